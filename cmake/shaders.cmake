@@ -1,0 +1,51 @@
+# tyndall_add_shaders(TARGET <t> NAME <set> SHADERS a.comp b.vert ... [DEFINES name:KEY=VALUE])
+# Compiles each shader (glslc, spirv-opt with names kept, spirv-val), reflects its bindings and
+# embeds both in a header <set>_shaders.hpp, which declares one tyndall::gpu::Shader per shader,
+# named like the file without its directory, dots as underscores (march_per_pixel_comp).
+# A shader given as path@variant:KEY=VALUE is compiled with that macro and named path's name + variant.
+find_program(TYNDALL_GLSLC glslc REQUIRED)
+find_program(TYNDALL_SPIRV_OPT spirv-opt REQUIRED)
+find_program(TYNDALL_SPIRV_VAL spirv-val REQUIRED)
+
+function(tyndall_add_shaders)
+  cmake_parse_arguments(arg "" "TARGET;NAME" "SHADERS" ${ARGN})
+  set(out_dir ${CMAKE_CURRENT_BINARY_DIR}/shaders)
+  file(MAKE_DIRECTORY ${out_dir})
+  set(modules)
+  foreach(entry ${arg_SHADERS})
+    set(defines)
+    set(variant)
+    set(source ${entry})
+    if(entry MATCHES "^(.+)@([^:]+):(.+)$")
+      set(source ${CMAKE_MATCH_1})
+      set(variant _${CMAKE_MATCH_2})
+      set(defines -D${CMAKE_MATCH_3})
+    endif()
+    get_filename_component(name ${source} NAME)
+    string(REPLACE "." "_" name ${name})
+    set(spv ${out_dir}/${name}${variant}.spv)
+    add_custom_command(
+      OUTPUT ${spv}
+      COMMAND ${TYNDALL_GLSLC} --target-env=vulkan1.3 -Werror ${defines}
+              -I ${PROJECT_SOURCE_DIR}/shaders -I ${PROJECT_SOURCE_DIR}/include -I ${PROJECT_SOURCE_DIR}/src
+              -MD -MF ${spv}.d -MT ${spv} ${PROJECT_SOURCE_DIR}/shaders/${source} -o ${spv}.raw
+      COMMAND ${TYNDALL_SPIRV_OPT} -O ${spv}.raw -o ${spv}
+      COMMAND ${TYNDALL_SPIRV_VAL} --target-env vulkan1.3 ${spv}
+      DEPENDS ${PROJECT_SOURCE_DIR}/shaders/${source}
+      DEPFILE ${spv}.d
+      COMMENT "Shader ${source}${variant}"
+      VERBATIM)
+    list(APPEND modules ${spv})
+  endforeach()
+  set(header ${out_dir}/${arg_NAME}_shaders.hpp)
+  add_custom_command(
+    OUTPUT ${header}
+    COMMAND tyndall_embed_shaders ${header} ${modules}
+    DEPENDS tyndall_embed_shaders ${modules}
+    COMMENT "Embedding ${arg_NAME} shaders"
+    VERBATIM)
+  add_custom_target(${arg_TARGET}_shaders DEPENDS ${header})
+  add_dependencies(${arg_TARGET} ${arg_TARGET}_shaders)
+  target_include_directories(${arg_TARGET} PRIVATE ${out_dir})
+  target_sources(${arg_TARGET} PRIVATE ${header})
+endfunction()

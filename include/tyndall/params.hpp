@@ -1,0 +1,72 @@
+// Params: every setting of the effect, made from the one list in params.def, and a table that
+// describes each (name, type, unit, range, default, meaning) for interfaces that are generated.
+// Values are SI; angles in files and parameters whose names end in _deg are degrees.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "tyndall/types.hpp"
+
+namespace tyndall {
+
+// What a change of a parameter makes stale, from cheap to dear.
+enum class Affects : std::uint32_t { Frame, Pipeline, Resources, Tables };
+
+enum class ParamType : std::uint32_t { float32, uint32, flag, enumeration, vec3, uvec4, string };
+
+// One row of a parameter table. `min` and `max` bound every component of numbers.
+struct ParamInfo {
+  std::string_view group;
+  std::string_view name;
+  ParamType type;
+  std::size_t offset;        // bytes from the start of the structure that the table describes
+  double min, max;           // numbers only
+  std::string_view unit;     // numbers only; "1" has no dimension
+  std::string_view choices;  // enumerations only: the names, separated by '|', in order of value
+  Affects affects;
+  std::string_view doc;
+};
+
+#define ENUM_BEGIN(type) enum class type : std::uint32_t {
+#define ENUM_VALUE(type, identifier, value, text) identifier = value,
+#define ENUM_END(type) \
+  }                    \
+  ;
+#define GROUP_BEGIN(group, type, title) struct type {
+#define GROUP_END(group, type) \
+  }                            \
+  ;
+#define PARAM_FLOAT(group, name, def, min, max, unit, affects, doc) \
+  float name = static_cast<float>(def);
+#define PARAM_UINT(group, name, def, min, max, unit, affects, doc) std::uint32_t name = def;
+#define PARAM_VEC3(group, name, def, min, max, unit, affects, doc) Vec3 name = Vec3 def;
+#define PARAM_FLAG(group, name, def, affects, doc) Flag name = def;
+#define PARAM_ENUM(group, name, type, def, affects, doc) type name = type::def;
+#include "tyndall/params.def"
+#include "tyndall/params_undef.h"
+
+struct Params {
+#define ENUM_BEGIN(type)
+#define ENUM_VALUE(type, identifier, value, text)
+#define ENUM_END(type)
+#define GROUP_BEGIN(group, type, title) type group;
+#define GROUP_END(group, type)
+#define PARAM_FLOAT(group, name, def, min, max, unit, affects, doc)
+#define PARAM_UINT(group, name, def, min, max, unit, affects, doc)
+#define PARAM_VEC3(group, name, def, min, max, unit, affects, doc)
+#define PARAM_FLAG(group, name, def, affects, doc)
+#define PARAM_ENUM(group, name, type, def, affects, doc)
+#include "tyndall/params.def"
+#include "tyndall/params_undef.h"
+};
+
+// The rows that describe Params, in the order of params.def. Offsets are from the start of Params.
+[[nodiscard]] std::span<const ParamInfo> param_table();
+
+// What has to be redone when `before` becomes `after`: a mask of bits 1 << Affects.
+[[nodiscard]] std::uint32_t affected(const Params& before, const Params& after);
+
+}  // namespace tyndall

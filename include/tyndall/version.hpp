@@ -1,0 +1,7 @@
+// The version of the library that these headers belong to. CMakeLists.txt reads it from here.
+#pragma once
+
+#define TYNDALL_VERSION_MAJOR 0
+#define TYNDALL_VERSION_MINOR 1
+#define TYNDALL_VERSION_PATCH 0
+#define TYNDALL_VERSION_STRING "0.1.0"

@@ -1,0 +1,22 @@
+// The participating medium with every derived coefficient resolved: what the shaders integrate.
+// Compiled by GLSL (std430) and by C++ (src/effect/shared.hpp in float, src/models/glsl_double.hpp in
+// double); each vec3 is followed by a float, so that the layouts agree without padding.
+// Lengths in m, coefficients in 1/m at sea level (ozone: at the peak of its layer).
+struct Medium {
+  vec3 rayleigh_scattering;
+  float planet_radius_m;
+  vec3 mie_scattering;
+  float atmosphere_height_m;
+  vec3 mie_extinction;  // scattering + absorption
+  float rayleigh_scale_height_m;
+  vec3 ozone_absorption;
+  float mie_scale_height_m;
+  float mie_g;
+  float ozone_centre_m;
+  float ozone_half_width_m;
+  uint mie_phase;  // a MiePhase of include/tyndall/params.def
+  float ground_albedo;
+  float unused_0;
+  float unused_1;
+  float unused_2;
+};
