@@ -26,11 +26,11 @@ function(tyndall_add_shaders)
     set(spv ${out_dir}/${name}${variant}.spv)
     add_custom_command(
       OUTPUT ${spv}
-      COMMAND ${TYNDALL_GLSLC} --target-env=vulkan1.3 -Werror ${defines}
+      COMMAND ${TYNDALL_GLSLC} --target-env=vulkan1.2 -Werror ${defines}
               -I ${PROJECT_SOURCE_DIR}/shaders -I ${PROJECT_SOURCE_DIR}/include -I ${PROJECT_SOURCE_DIR}/src
               -MD -MF ${spv}.d -MT ${spv} ${PROJECT_SOURCE_DIR}/shaders/${source} -o ${spv}.raw
       COMMAND ${TYNDALL_SPIRV_OPT} -O ${spv}.raw -o ${spv}
-      COMMAND ${TYNDALL_SPIRV_VAL} --target-env vulkan1.3 ${spv}
+      COMMAND ${TYNDALL_SPIRV_VAL} --target-env vulkan1.2 ${spv}
       DEPENDS ${PROJECT_SOURCE_DIR}/shaders/${source}
       DEPFILE ${spv}.d
       COMMENT "Shader ${source}${variant}"

@@ -1,0 +1,201 @@
+// POSIX files: bounded reading, and writing through a nameless or temporary file.
+#include "config/files.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "config/text.hpp"
+
+namespace tyndall::config {
+namespace {
+
+constexpr std::size_t kLongestShownPath = 200;
+
+std::string shown(std::string_view path) { return "'" + one_line(path, kLongestShownPath) + "'"; }
+
+std::string reason(int code) { return std::generic_category().message(code); }
+
+Error io_error(std::string_view what, std::string_view path, std::string_view rest) {
+  std::string message(what);
+  message.append(" ").append(shown(path)).append(", ").append(rest);
+  return Error{ErrorCode::io, std::move(message)};
+}
+
+std::string directory_of(const std::string& path) {
+  const std::string parent = std::filesystem::path(path).parent_path().string();
+  return parent.empty() ? "." : parent;
+}
+
+// A name in `directory` that no other run uses; short, so that it fits where the target's name does.
+std::string temporary_name(const std::string& directory, int attempt) {
+  return directory + "/.tyndall-" + std::to_string(::getpid()) + "-" + std::to_string(attempt) + ".tmp";
+}
+
+constexpr int kAttempts = 1000;
+constexpr mode_t kNewFileMode = 0666;  // less the umask
+
+}  // namespace
+
+Result<std::string> read_file(const std::string& path, std::uint64_t limit) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return io_error("cannot read", path, reason(errno));
+  struct stat info {};
+  std::string contents;
+  int failure = 0;
+  if (::fstat(descriptor, &info) != 0) {
+    failure = errno;
+  } else if (S_ISDIR(info.st_mode)) {
+    failure = EISDIR;
+  }
+  constexpr std::size_t kChunk = std::size_t{1} << 20U;
+  std::size_t used = 0;
+  while (failure == 0 && used <= limit) {
+    // Regular files are read in one piece, with a byte more to see the end.
+    const std::uint64_t expected = static_cast<std::uint64_t>(std::max<off_t>(info.st_size, 0)) + 1;
+    const std::uint64_t wanted = used < expected ? expected - used : kChunk;
+    contents.resize(used + static_cast<std::size_t>(std::min<std::uint64_t>(wanted, limit + 1 - used)));
+    if (contents.size() == used) break;
+    const ssize_t got = ::read(descriptor, contents.data() + used, contents.size() - used);
+    if (got == 0) break;
+    if (got > 0) used += static_cast<std::size_t>(got);
+    if (got < 0 && errno != EINTR) failure = errno;
+  }
+  ::close(descriptor);
+  if (failure != 0) return io_error("cannot read", path, reason(failure));
+  if (used > limit) return io_error("cannot read", path, "at most " + std::to_string(limit) + " bytes are allowed");
+  contents.resize(used);
+  return contents;
+}
+
+Result<AtomicFile> AtomicFile::create(const std::string& path) {
+  AtomicFile file;
+  file.shown_ = path;
+  file.path_ = path;
+  if (path.empty()) return Error{ErrorCode::io, "cannot write '', no file is named"};
+  if (path.find('\0') != std::string::npos) {
+    return Error{ErrorCode::io, "cannot write " + shown(path) + ", names hold no zero bytes"};
+  }
+  struct stat info {};
+  const bool exists = ::stat(path.c_str(), &info) == 0;
+  if (exists && S_ISDIR(info.st_mode)) return io_error("cannot write", path, "it is a directory");
+  if (exists && !S_ISREG(info.st_mode)) {
+    file.descriptor_ = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+    if (file.descriptor_ < 0) return file.error("cannot write");
+    return file;
+  }
+  if (exists) {
+    if (::access(path.c_str(), W_OK) != 0) return file.error("cannot write");
+    std::error_code ignored;
+    const std::filesystem::path target = std::filesystem::canonical(path, ignored);
+    if (!ignored) file.path_ = target.string();
+  }
+  const mode_t mode = exists ? info.st_mode & 07777U : kNewFileMode;
+  const std::string directory = directory_of(file.path_);
+  if (::access("/proc/self/fd", X_OK) == 0) {
+    file.descriptor_ = ::open(directory.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, kNewFileMode);
+    file.nameless_ = file.descriptor_ >= 0;
+  }
+  for (int attempt = 0; file.descriptor_ < 0 && attempt < kAttempts; ++attempt) {
+    const std::string name = temporary_name(directory, attempt);
+    file.descriptor_ = ::open(name.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, kNewFileMode);
+    if (file.descriptor_ >= 0) file.temporary_ = name;
+    if (file.descriptor_ < 0 && errno != EEXIST) break;
+  }
+  if (file.descriptor_ < 0) return file.error("cannot write");
+  if (exists && ::fchmod(file.descriptor_, mode) != 0) return file.error("cannot keep the mode of");
+  return file;
+}
+
+AtomicFile::AtomicFile(AtomicFile&& other) noexcept
+    : descriptor_(std::exchange(other.descriptor_, -1)),
+      shown_(std::move(other.shown_)),
+      path_(std::move(other.path_)),
+      temporary_(std::exchange(other.temporary_, {})),
+      nameless_(other.nameless_) {}
+
+AtomicFile& AtomicFile::operator=(AtomicFile&& other) noexcept {
+  if (this != &other) {
+    discard();
+    descriptor_ = std::exchange(other.descriptor_, -1);
+    shown_ = std::move(other.shown_);
+    path_ = std::move(other.path_);
+    temporary_ = std::exchange(other.temporary_, {});
+    nameless_ = other.nameless_;
+  }
+  return *this;
+}
+
+AtomicFile::~AtomicFile() { discard(); }
+
+void AtomicFile::discard() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  descriptor_ = -1;
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  temporary_.clear();
+}
+
+Error AtomicFile::error(std::string_view what) const { return io_error(what, shown_, reason(errno)); }
+
+Result<void> AtomicFile::write(const void* data, std::size_t size) {
+  const char* bytes = static_cast<const char*>(data);
+  while (size > 0) {
+    const ssize_t written = ::write(descriptor_, bytes, size);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return error("cannot write");
+    bytes += written;
+    size -= static_cast<std::size_t>(written);
+  }
+  return {};
+}
+
+Result<void> AtomicFile::seek(std::uint64_t position) {
+  if (::lseek(descriptor_, static_cast<off_t>(position), SEEK_SET) < 0) return error("cannot seek in");
+  return {};
+}
+
+Result<void> AtomicFile::commit() {
+  if (nameless_) {
+    // A nameless file cannot take the place of another: it gets a temporary name first.
+    const std::string source = "/proc/self/fd/" + std::to_string(descriptor_);
+    const std::string directory = directory_of(path_);
+    int linked = -1;
+    for (int attempt = 0; linked != 0 && attempt < kAttempts; ++attempt) {
+      const std::string name = temporary_name(directory, attempt);
+      linked = ::linkat(AT_FDCWD, source.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW);
+      if (linked == 0) temporary_ = name;
+      if (linked != 0 && errno != EEXIST) break;
+    }
+    if (linked != 0) return error("cannot write");
+  }
+  if (::close(std::exchange(descriptor_, -1)) != 0) return error("cannot write");
+  if (temporary_.empty()) return {};
+  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) return error("cannot write");
+  temporary_.clear();
+  return {};
+}
+
+Result<void> write_file(const std::string& path, std::string_view contents) {
+  Result<AtomicFile> file = AtomicFile::create(path);
+  if (!file) return std::move(file).error();
+  if (Result<void> written = file.value().write(contents); !written) return written;
+  return file.value().commit();
+}
+
+Result<void> check_writable(const std::string& path) {
+  // A pipe must not be opened for a test: its reader would see the end.
+  struct stat info {};
+  if (::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode)) return {};
+  const Result<AtomicFile> file = AtomicFile::create(path);
+  if (!file) return file.error();
+  return {};
+}
+
+}  // namespace tyndall::config

@@ -1,0 +1,105 @@
+// Device: a borrowed Vulkan device with its function table, and the owning handles made on it.
+// Nothing here creates or destroys the device itself (src/gpu/host.hpp does, for our own programs).
+// A Device must outlive every object made with it and must not move; one thread at a time.
+#pragma once
+
+#include <utility>
+
+#include "gpu/functions.hpp"
+#include "tyndall/result.hpp"
+
+namespace tyndall::gpu {
+
+struct Device {
+  Functions vk;
+  VkInstance instance = VK_NULL_HANDLE;
+  VkPhysicalDevice physical_device = VK_NULL_HANDLE;
+  VkDevice device = VK_NULL_HANDLE;
+  const VkAllocationCallbacks* allocator = nullptr;
+  VkPipelineCache pipeline_cache = VK_NULL_HANDLE;
+  VkPhysicalDeviceProperties properties = {};
+  VkPhysicalDeviceMemoryProperties memory = {};
+};
+
+// An Error for a VkResult, saying which call on which object failed.
+[[nodiscard]] Error vulkan_error(VkResult result, const char* what, const char* name);
+
+// Fills the table, the properties and the memory types. Fails where the device lacks a function.
+Result<void> init_device(Device& device, PFN_vkGetInstanceProcAddr get);
+
+// Index of a memory type of `bits` with all of `flags`; VK_MAX_MEMORY_TYPES when there is none.
+[[nodiscard]] std::uint32_t find_memory_type(const Device& device, std::uint32_t bits,
+                                             VkMemoryPropertyFlags flags);
+
+void destroy(const Device& device, VkBuffer handle);
+void destroy(const Device& device, VkImage handle);
+void destroy(const Device& device, VkImageView handle);
+void destroy(const Device& device, VkDeviceMemory handle);
+void destroy(const Device& device, VkPipeline handle);
+void destroy(const Device& device, VkPipelineLayout handle);
+void destroy(const Device& device, VkDescriptorSetLayout handle);
+void destroy(const Device& device, VkSampler handle);
+void destroy(const Device& device, VkQueryPool handle);
+void destroy(const Device& device, VkCommandPool handle);
+void destroy(const Device& device, VkFence handle);
+void destroy(const Device& device, VkShaderModule handle);
+
+// Move-only owner of one Vulkan object.
+template <typename T>
+class Handle {
+ public:
+  Handle() = default;
+  Handle(const Device& device, T value) : device_(&device), value_(value) {}
+  Handle(Handle&& other) noexcept
+      : device_(std::exchange(other.device_, nullptr)), value_(std::exchange(other.value_, T{})) {}
+  Handle& operator=(Handle&& other) noexcept {
+    if (this != &other) {
+      reset();
+      device_ = std::exchange(other.device_, nullptr);
+      value_ = std::exchange(other.value_, T{});
+    }
+    return *this;
+  }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  ~Handle() { reset(); }
+
+  void reset() {
+    if (device_ != nullptr && value_ != T{}) destroy(*device_, value_);
+    value_ = T{};
+  }
+  [[nodiscard]] T get() const { return value_; }
+  explicit operator bool() const { return value_ != T{}; }
+
+ private:
+  const Device* device_ = nullptr;
+  T value_ = T{};
+};
+
+// Names an object for validation messages and captures; does nothing without VK_EXT_debug_utils.
+void set_name(const Device& device, VkObjectType type, std::uint64_t handle, const char* name);
+template <typename T>
+void set_name(const Device& device, VkObjectType type, T handle, const char* name) {
+  set_name(device, type, reinterpret_cast<std::uint64_t>(handle), name);
+}
+
+// Labels the commands recorded while it lives.
+class Label {
+ public:
+  Label(const Device& device, VkCommandBuffer cmd, const char* name);
+  ~Label();
+  Label(const Label&) = delete;
+  Label& operator=(const Label&) = delete;
+
+ private:
+  const Device& device_;
+  VkCommandBuffer cmd_;
+};
+
+// The one form of barrier between passes: everything before, in `from`, is visible to `to`.
+void barrier(const Device& device, VkCommandBuffer cmd, VkPipelineStageFlags from, VkAccessFlags from_access,
+             VkPipelineStageFlags to, VkAccessFlags to_access);
+// Compute writes become visible to compute reads and writes.
+void compute_barrier(const Device& device, VkCommandBuffer cmd);
+
+}  // namespace tyndall::gpu

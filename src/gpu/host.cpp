@@ -1,0 +1,316 @@
+#include "gpu/host.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstring>
+
+#include "gpu/try.hpp"
+
+namespace tyndall::gpu {
+namespace {
+
+constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
+
+int rank(VkPhysicalDeviceType type) {
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return 0;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return 1;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return 2;
+    case VK_PHYSICAL_DEVICE_TYPE_CPU: return 3;
+    default: return 4;
+  }
+}
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+std::uint32_t find_queue_family(VkPhysicalDevice device) {
+  std::uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  const VkQueueFlags needed = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if ((families[i].queueFlags & needed) == needed && families[i].timestampValidBits > 0) return i;
+  }
+  return UINT32_MAX;
+}
+
+bool has_extension(VkPhysicalDevice device, const char* name) {
+  std::uint32_t count = 0;
+  vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
+  std::vector<VkExtensionProperties> extensions(count);
+  vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
+  return std::any_of(extensions.begin(), extensions.end(),
+                     [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
+}
+
+DeviceRow describe(VkPhysicalDevice device) {
+  VkPhysicalDeviceDriverProperties driver = {};
+  driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
+  VkPhysicalDeviceProperties2 properties = {VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &driver, {}};
+  vkGetPhysicalDeviceProperties2(device, &properties);
+  DeviceRow row;
+  row.name = properties.properties.deviceName;
+  row.driver = std::string(driver.driverName) + " " + driver.driverInfo;
+  row.type = properties.properties.deviceType;
+  row.api_version = properties.properties.apiVersion;
+  if (row.api_version < VK_API_VERSION_1_3) row.missing.emplace_back("Vulkan 1.3");
+  if (!has_extension(device, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME)) {
+    row.missing.emplace_back(VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
+  }
+  if (find_queue_family(device) == UINT32_MAX) {
+    row.missing.emplace_back("a queue with graphics, compute and timestamps");
+  }
+  return row;
+}
+
+Result<std::vector<VkPhysicalDevice>> enumerate(VkInstance instance) {
+  std::uint32_t count = 0;
+  VkResult result = vkEnumeratePhysicalDevices(instance, &count, nullptr);
+  std::vector<VkPhysicalDevice> devices(count);
+  if (result == VK_SUCCESS) result = vkEnumeratePhysicalDevices(instance, &count, devices.data());
+  if (result == VK_ERROR_INITIALIZATION_FAILED) count = 0;
+  else if (result != VK_SUCCESS && result != VK_INCOMPLETE) {
+    return vulkan_error(result, "enumerating", "the Vulkan devices");
+  }
+  devices.resize(count);
+  return devices;
+}
+
+// The index of the device to use. `wanted` as in HostDesc.
+Result<std::size_t> choose(const std::vector<DeviceRow>& rows, const std::string& wanted) {
+  if (rows.empty()) {
+    return Error{ErrorCode::unsupported_device,
+                 "no Vulkan device, on this machine, a driver is needed (without a GPU: Debian's mesa-vulkan-drivers)"};
+  }
+  std::size_t best = rows.size();
+  if (!wanted.empty()) {
+    const bool index = std::all_of(wanted.begin(), wanted.end(), [](unsigned char c) { return std::isdigit(c); });
+    for (std::size_t i = 0; i < rows.size() && best == rows.size(); ++i) {
+      if (index ? std::to_string(i) == wanted : lower(rows[i].name).find(lower(wanted)) != std::string::npos) best = i;
+    }
+    if (best == rows.size()) {
+      std::string names;
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        names += (i > 0 ? ", " : "") + std::to_string(i) + " = " + rows[i].name;
+      }
+      return Error{ErrorCode::invalid_argument,
+                   "no Vulkan device '" + wanted + "', --device, an index or a part of a name: " + names};
+    }
+  } else {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (!rows[i].missing.empty()) continue;
+      if (best == rows.size() || rank(rows[i].type) < rank(rows[best].type)) best = i;
+    }
+    if (best == rows.size()) best = 0;
+  }
+  if (!rows[best].missing.empty()) {
+    std::string missing;
+    for (const std::string& m : rows[best].missing) missing += (missing.empty() ? "" : ", ") + m;
+    return Error{ErrorCode::unsupported_device,
+                 "the Vulkan device '" + rows[best].name + "' cannot be used, it lacks " + missing};
+  }
+  return best;
+}
+
+bool has_layer(const char* name) {
+  std::uint32_t count = 0;
+  vkEnumerateInstanceLayerProperties(&count, nullptr);
+  std::vector<VkLayerProperties> layers(count);
+  vkEnumerateInstanceLayerProperties(&count, layers.data());
+  return std::any_of(layers.begin(), layers.end(),
+                     [&](const auto& layer) { return std::strcmp(layer.layerName, name) == 0; });
+}
+
+}  // namespace
+
+const char* type_name(VkPhysicalDeviceType type) {
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return "discrete GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return "integrated GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return "virtual GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_CPU: return "CPU";
+    default: return "other";
+  }
+}
+
+VkBool32 VKAPI_PTR Host::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT /*severity*/,
+                                    VkDebugUtilsMessageTypeFlagsEXT /*types*/,
+                                    const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
+  auto* host = static_cast<Host*>(user);
+  if (++host->validation_count_ <= 8) host->validation_text_ += std::string(data->pMessage) + "\n";
+  return VK_FALSE;
+}
+
+Result<void> Host::create_instance(bool validation) {
+  VkApplicationInfo application = {};
+  application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
+  application.pApplicationName = "tyndall";
+  application.apiVersion = VK_API_VERSION_1_3;
+  VkInstanceCreateInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
+  info.pApplicationInfo = &application;
+
+  const char* layers[] = {kValidationLayer};
+  const char* extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
+  const VkValidationFeatureEnableEXT enables[] = {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
+  VkDebugUtilsMessengerCreateInfoEXT messenger = {};
+  messenger.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
+  messenger.messageSeverity =
+      VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+  messenger.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
+  messenger.pfnUserCallback = on_message;
+  messenger.pUserData = this;
+  VkValidationFeaturesEXT features = {};
+  features.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT;
+  features.pNext = &messenger;
+  features.enabledValidationFeatureCount = 1;
+  features.pEnabledValidationFeatures = enables;
+  if (validation) {
+    if (!has_layer(kValidationLayer)) {
+      return Error{ErrorCode::unsupported_device,
+                   "the Vulkan validation layer is not installed (Debian: vulkan-validationlayers)"};
+    }
+    info.pNext = &features;
+    info.enabledLayerCount = 1;
+    info.ppEnabledLayerNames = layers;
+    info.enabledExtensionCount = 1;
+    info.ppEnabledExtensionNames = extensions;
+  }
+  const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
+  if (result != VK_SUCCESS) {
+    return Error{ErrorCode::unsupported_device,
+                 "Vulkan does not start (VkResult " + std::to_string(static_cast<int>(result)) +
+                     "), on this machine, a Vulkan 1.3 driver is needed (without a GPU: Debian's mesa-vulkan-drivers)",
+                 static_cast<std::int32_t>(result)};
+  }
+  if (validation) {
+    const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
+        vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));
+    if (create != nullptr) create(instance_, &messenger, nullptr, &messenger_);
+  }
+  return {};
+}
+
+Result<void> Host::create_device(const std::string& wanted) {
+  TYNDALL_ASSIGN(const std::vector<VkPhysicalDevice> devices, enumerate(instance_));
+  std::vector<DeviceRow> rows;
+  for (VkPhysicalDevice device : devices) rows.push_back(describe(device));
+  TYNDALL_ASSIGN(const std::size_t index, choose(rows, wanted));
+  device_.instance = instance_;
+  device_.physical_device = devices[index];
+  queue_family_ = find_queue_family(devices[index]);
+
+  const float priority = 1.0F;
+  VkDeviceQueueCreateInfo queue = {};
+  queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
+  queue.queueFamilyIndex = queue_family_;
+  queue.queueCount = 1;
+  queue.pQueuePriorities = &priority;
+  VkPhysicalDeviceVulkan13Features features = {};
+  features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
+  features.dynamicRendering = VK_TRUE;
+  const char* extensions[] = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
+  VkDeviceCreateInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+  info.pNext = &features;
+  info.queueCreateInfoCount = 1;
+  info.pQueueCreateInfos = &queue;
+  info.enabledExtensionCount = 1;
+  info.ppEnabledExtensionNames = extensions;
+  VkResult result = vkCreateDevice(device_.physical_device, &info, nullptr, &device_.device);
+  if (result != VK_SUCCESS) return vulkan_error(result, "creating the Vulkan device", rows[index].name.c_str());
+  TYNDALL_TRY(init_device(device_, vkGetInstanceProcAddr));
+  vkGetDeviceQueue(device_.device, queue_family_, 0, &queue_);
+
+  VkCommandPoolCreateInfo pool_info = {};
+  pool_info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+  pool_info.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
+  pool_info.queueFamilyIndex = queue_family_;
+  VkCommandPool pool = VK_NULL_HANDLE;
+  result = device_.vk.CreateCommandPool(device_.device, &pool_info, nullptr, &pool);
+  if (result != VK_SUCCESS) return vulkan_error(result, "creating", "the command pool");
+  pool_ = Handle<VkCommandPool>(device_, pool);
+  VkCommandBufferAllocateInfo allocate = {};
+  allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+  allocate.commandPool = pool;
+  allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+  allocate.commandBufferCount = 1;
+  result = device_.vk.AllocateCommandBuffers(device_.device, &allocate, &cmd_);
+  if (result != VK_SUCCESS) return vulkan_error(result, "allocating", "the command buffer");
+  VkFenceCreateInfo fence_info = {};
+  fence_info.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
+  VkFence fence = VK_NULL_HANDLE;
+  result = device_.vk.CreateFence(device_.device, &fence_info, nullptr, &fence);
+  if (result != VK_SUCCESS) return vulkan_error(result, "creating", "the fence");
+  fence_ = Handle<VkFence>(device_, fence);
+  return {};
+}
+
+Result<std::unique_ptr<Host>> Host::create(const HostDesc& desc) {
+  std::unique_ptr<Host> host(new Host());
+  TYNDALL_TRY(host->create_instance(desc.validation));
+  TYNDALL_TRY(host->create_device(desc.device));
+  return host;
+}
+
+Host::~Host() {
+  if (device_.device != VK_NULL_HANDLE && device_.vk.DeviceWaitIdle != nullptr) {
+    device_.vk.DeviceWaitIdle(device_.device);
+  }
+  fence_.reset();
+  pool_.reset();
+  if (device_.device != VK_NULL_HANDLE) vkDestroyDevice(device_.device, nullptr);
+  if (messenger_ != VK_NULL_HANDLE) {
+    const auto destroy_messenger = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
+        vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
+    if (destroy_messenger != nullptr) destroy_messenger(instance_, messenger_, nullptr);
+  }
+  if (instance_ != VK_NULL_HANDLE) vkDestroyInstance(instance_, nullptr);
+}
+
+Result<std::vector<DeviceRow>> Host::list(const std::string& wanted) {
+  std::unique_ptr<Host> host(new Host());
+  TYNDALL_TRY(host->create_instance(false));
+  TYNDALL_ASSIGN(const std::vector<VkPhysicalDevice> devices, enumerate(host->instance_));
+  std::vector<DeviceRow> rows;
+  for (VkPhysicalDevice device : devices) rows.push_back(describe(device));
+  const Result<std::size_t> chosen = choose(rows, wanted);
+  if (chosen.ok()) {
+    rows[chosen.value()].chosen = true;
+  } else if (!wanted.empty() || rows.empty()) {
+    return chosen.error();
+  }
+  return rows;
+}
+
+PFN_vkGetInstanceProcAddr Host::get_instance_proc_addr() const { return vkGetInstanceProcAddr; }
+
+Result<void> Host::run(const std::function<Result<void>(VkCommandBuffer)>& record) {
+  VkCommandBufferBeginInfo begin = {};
+  begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+  VkResult result = device_.vk.BeginCommandBuffer(cmd_, &begin);
+  if (result != VK_SUCCESS) return vulkan_error(result, "beginning", "a command buffer");
+  Result<void> recorded = record(cmd_);
+  result = device_.vk.EndCommandBuffer(cmd_);
+  if (!recorded.ok()) return recorded;
+  if (result != VK_SUCCESS) return vulkan_error(result, "ending", "a command buffer");
+  VkSubmitInfo submit = {};
+  submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+  submit.commandBufferCount = 1;
+  submit.pCommandBuffers = &cmd_;
+  result = device_.vk.QueueSubmit(queue_, 1, &submit, fence_.get());
+  if (result != VK_SUCCESS) return vulkan_error(result, "submitting", "a command buffer");
+  const VkFence fence = fence_.get();
+  result = device_.vk.WaitForFences(device_.device, 1, &fence, VK_TRUE, UINT64_MAX);
+  if (result != VK_SUCCESS) return vulkan_error(result, "waiting for", "the device");
+  device_.vk.ResetFences(device_.device, 1, &fence);
+  return {};
+}
+
+}  // namespace tyndall::gpu

@@ -1,0 +1,78 @@
+// Pipelines from embedded shaders: push-descriptor layouts follow from the reflected bindings, and
+// resources are bound by name. Specialisation constants choose variants; none is compiled at record time.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string_view>
+
+#include "gpu/device.hpp"
+#include "gpu/shader.hpp"
+
+namespace tyndall::gpu {
+
+constexpr std::uint32_t kMaxBindings = 16;
+
+// A resource under the name that shaders know it by.
+struct NamedResource {
+  std::string_view name;
+  VkDescriptorImageInfo image = {};
+  VkDescriptorBufferInfo buffer = {};
+};
+[[nodiscard]] inline NamedResource named_buffer(std::string_view name, VkBuffer buffer, VkDeviceSize offset = 0,
+                                                VkDeviceSize size = VK_WHOLE_SIZE) {
+  return {name, {}, {buffer, offset, size}};
+}
+[[nodiscard]] inline NamedResource named_image(std::string_view name, VkImageView view,
+                                               VkImageLayout layout = VK_IMAGE_LAYOUT_GENERAL,
+                                               VkSampler sampler = VK_NULL_HANDLE) {
+  return {name, {sampler, view, layout}, {}};
+}
+
+// A specialisation constant of four bytes.
+struct Constant {
+  std::uint32_t id;
+  std::uint32_t value;
+};
+
+struct Pipeline {
+  Handle<VkDescriptorSetLayout> set_layout;
+  Handle<VkPipelineLayout> layout;
+  Handle<VkPipeline> pipeline;
+  VkPipelineBindPoint bind_point = VK_PIPELINE_BIND_POINT_COMPUTE;
+  const char* name = "";
+  std::array<Binding, kMaxBindings> bindings = {};
+  std::uint32_t binding_count = 0;
+  VkShaderStageFlags push_stages = 0;
+  std::uint32_t push_bytes = 0;
+  std::uint32_t local_size[3] = {1, 1, 1};
+};
+
+Result<Pipeline> create_compute_pipeline(const Device& device, const Shader& shader,
+                                         std::span<const Constant> constants = {});
+
+// What a graphics pipeline of ours can differ in; everything is triangles from buffers read in the
+// vertex shader, drawn with dynamic rendering.
+struct GraphicsDesc {
+  const char* name;
+  const Shader* vertex;
+  const Shader* fragment = nullptr;  // none: depth only
+  VkFormat color_format = VK_FORMAT_UNDEFINED;
+  VkFormat depth_format = VK_FORMAT_UNDEFINED;
+  VkCompareOp depth_compare = VK_COMPARE_OP_GREATER;
+  bool depth_write = true;
+  VkCullModeFlags cull = VK_CULL_MODE_NONE;
+};
+Result<Pipeline> create_graphics_pipeline(const Device& device, const GraphicsDesc& desc,
+                                          std::span<const Constant> constants = {});
+
+// Binds the pipeline and each of its bindings from `resources` by name. Allocates nothing.
+// Returns the name of a binding that `resources` lacks, or an empty view.
+std::string_view bind(const Device& device, VkCommandBuffer cmd, const Pipeline& pipeline,
+                      std::span<const NamedResource> resources, const void* push = nullptr);
+
+// Groups of the pipeline's local size that cover x × y × z invocations.
+void dispatch(const Device& device, VkCommandBuffer cmd, const Pipeline& pipeline, std::uint32_t x,
+              std::uint32_t y = 1, std::uint32_t z = 1);
+
+}  // namespace tyndall::gpu

@@ -1,0 +1,178 @@
+#include "gpu/resource.hpp"
+
+#include "gpu/try.hpp"
+
+namespace tyndall::gpu {
+namespace {
+
+VkBufferCreateInfo buffer_create_info(VkDeviceSize size, VkBufferUsageFlags usage) {
+  VkBufferCreateInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+  info.size = size;
+  info.usage = usage;
+  return info;
+}
+
+std::uint32_t memory_type(const Device& device, std::uint32_t bits, MemoryKind kind) {
+  const VkMemoryPropertyFlags host = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  VkMemoryPropertyFlags wanted = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
+  VkMemoryPropertyFlags needed = 0;
+  if (kind == MemoryKind::upload) wanted = needed = host;
+  if (kind == MemoryKind::readback) {
+    wanted = host | VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+    needed = host;
+  }
+  const std::uint32_t best = find_memory_type(device, bits, wanted);
+  return best != VK_MAX_MEMORY_TYPES ? best : find_memory_type(device, bits, needed);
+}
+
+Result<Handle<VkDeviceMemory>> allocate(const Device& device, const VkMemoryRequirements& requirements,
+                                        MemoryKind kind, const char* name) {
+  VkMemoryAllocateInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+  info.allocationSize = requirements.size;
+  info.memoryTypeIndex = memory_type(device, requirements.memoryTypeBits, kind);
+  if (info.memoryTypeIndex == VK_MAX_MEMORY_TYPES) {
+    return Error{ErrorCode::unsupported_device, std::string("no memory type of the device can hold ") + name};
+  }
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+  const VkResult result = device.vk.AllocateMemory(device.device, &info, device.allocator, &memory);
+  if (result != VK_SUCCESS) return vulkan_error(result, "allocating the memory", name);
+  return Handle<VkDeviceMemory>(device, memory);
+}
+
+Result<Handle<VkImageView>> create_view(const Device& device, const Image& image, VkImageViewType type,
+                                        std::uint32_t first_layer, std::uint32_t layers) {
+  VkImageViewCreateInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
+  info.image = image.image.get();
+  info.viewType = type;
+  info.format = image.desc.format;
+  info.subresourceRange = {aspect_of(image.desc.format), 0, image.desc.levels, first_layer, layers};
+  VkImageView view = VK_NULL_HANDLE;
+  const VkResult result = device.vk.CreateImageView(device.device, &info, device.allocator, &view);
+  if (result != VK_SUCCESS) return vulkan_error(result, "creating the view", image.desc.name);
+  set_name(device, VK_OBJECT_TYPE_IMAGE_VIEW, view, image.desc.name);
+  return Handle<VkImageView>(device, view);
+}
+
+}  // namespace
+
+VkImageCreateInfo image_create_info(const ImageDesc& desc) {
+  VkImageCreateInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
+  info.imageType = desc.extent.depth > 1 ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D;
+  info.format = desc.format;
+  info.extent = desc.extent;
+  info.mipLevels = desc.levels;
+  info.arrayLayers = desc.layers;
+  info.samples = VK_SAMPLE_COUNT_1_BIT;
+  info.tiling = VK_IMAGE_TILING_OPTIMAL;
+  info.usage = desc.usage;
+  return info;
+}
+
+VkImageAspectFlags aspect_of(VkFormat format) {
+  return format == VK_FORMAT_D32_SFLOAT ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
+}
+
+Result<Image> create_image(const Device& device, const ImageDesc& desc) {
+  Image out;
+  out.desc = desc;
+  const VkImageCreateInfo info = image_create_info(desc);
+  VkImage image = VK_NULL_HANDLE;
+  VkResult result = device.vk.CreateImage(device.device, &info, device.allocator, &image);
+  if (result != VK_SUCCESS) return vulkan_error(result, "creating the image", desc.name);
+  out.image = Handle<VkImage>(device, image);
+  set_name(device, VK_OBJECT_TYPE_IMAGE, image, desc.name);
+  VkMemoryRequirements requirements = {};
+  device.vk.GetImageMemoryRequirements(device.device, image, &requirements);
+  TYNDALL_ASSIGN(out.memory, allocate(device, requirements, MemoryKind::device, desc.name));
+  out.bytes = requirements.size;
+  result = device.vk.BindImageMemory(device.device, image, out.memory.get(), 0);
+  if (result != VK_SUCCESS) return vulkan_error(result, "binding the memory", desc.name);
+  VkImageViewType type = desc.layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
+  if (desc.extent.depth > 1) type = VK_IMAGE_VIEW_TYPE_3D;
+  TYNDALL_ASSIGN(out.view, create_view(device, out, type, 0, desc.layers));
+  return out;
+}
+
+Result<Handle<VkImageView>> create_layer_view(const Device& device, const Image& image, std::uint32_t layer) {
+  return create_view(device, image, VK_IMAGE_VIEW_TYPE_2D, layer, 1);
+}
+
+Result<Buffer> create_buffer(const Device& device, const char* name, VkDeviceSize size,
+                             VkBufferUsageFlags usage, MemoryKind kind) {
+  Buffer out;
+  out.size = size;
+  const VkBufferCreateInfo info = buffer_create_info(size, usage);
+  VkBuffer buffer = VK_NULL_HANDLE;
+  VkResult result = device.vk.CreateBuffer(device.device, &info, device.allocator, &buffer);
+  if (result != VK_SUCCESS) return vulkan_error(result, "creating the buffer", name);
+  out.buffer = Handle<VkBuffer>(device, buffer);
+  set_name(device, VK_OBJECT_TYPE_BUFFER, buffer, name);
+  VkMemoryRequirements requirements = {};
+  device.vk.GetBufferMemoryRequirements(device.device, buffer, &requirements);
+  TYNDALL_ASSIGN(out.memory, allocate(device, requirements, kind, name));
+  out.bytes = requirements.size;
+  result = device.vk.BindBufferMemory(device.device, buffer, out.memory.get(), 0);
+  if (result != VK_SUCCESS) return vulkan_error(result, "binding the memory", name);
+  if (kind != MemoryKind::device) {
+    result = device.vk.MapMemory(device.device, out.memory.get(), 0, VK_WHOLE_SIZE, 0, &out.mapped);
+    if (result != VK_SUCCESS) return vulkan_error(result, "mapping the memory", name);
+  }
+  return out;
+}
+
+VkDeviceSize image_bytes(const Device& device, const ImageDesc& desc) {
+  const VkImageCreateInfo info = image_create_info(desc);
+  VkDeviceImageMemoryRequirements query = {};
+  query.sType = VK_STRUCTURE_TYPE_DEVICE_IMAGE_MEMORY_REQUIREMENTS;
+  query.pCreateInfo = &info;
+  VkMemoryRequirements2 requirements = {VK_STRUCTURE_TYPE_MEMORY_REQUIREMENTS_2, nullptr, {}};
+  device.vk.GetDeviceImageMemoryRequirements(device.device, &query, &requirements);
+  return requirements.memoryRequirements.size;
+}
+
+VkDeviceSize buffer_bytes(const Device& device, VkDeviceSize size, VkBufferUsageFlags usage) {
+  const VkBufferCreateInfo info = buffer_create_info(size, usage);
+  VkDeviceBufferMemoryRequirements query = {};
+  query.sType = VK_STRUCTURE_TYPE_DEVICE_BUFFER_MEMORY_REQUIREMENTS;
+  query.pCreateInfo = &info;
+  VkMemoryRequirements2 requirements = {VK_STRUCTURE_TYPE_MEMORY_REQUIREMENTS_2, nullptr, {}};
+  device.vk.GetDeviceBufferMemoryRequirements(device.device, &query, &requirements);
+  return requirements.memoryRequirements.size;
+}
+
+Result<Handle<VkSampler>> create_sampler(const Device& device, const SamplerDesc& desc) {
+  VkSamplerCreateInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
+  info.magFilter = info.minFilter = desc.filter;
+  info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST;
+  info.addressModeU = info.addressModeV = info.addressModeW = desc.address;
+  info.compareEnable = desc.compare ? VK_TRUE : VK_FALSE;
+  info.compareOp = desc.compare_op;
+  info.maxLod = VK_LOD_CLAMP_NONE;
+  info.borderColor = desc.border;
+  VkSampler sampler = VK_NULL_HANDLE;
+  const VkResult result = device.vk.CreateSampler(device.device, &info, device.allocator, &sampler);
+  if (result != VK_SUCCESS) return vulkan_error(result, "creating", "a sampler");
+  return Handle<VkSampler>(device, sampler);
+}
+
+void transition(const Device& device, VkCommandBuffer cmd, const Image& image, VkImageLayout from,
+                VkImageLayout to) {
+  VkImageMemoryBarrier info = {};
+  info.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
+  info.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT | VK_ACCESS_MEMORY_READ_BIT;
+  info.dstAccessMask = VK_ACCESS_MEMORY_WRITE_BIT | VK_ACCESS_MEMORY_READ_BIT;
+  info.oldLayout = from;
+  info.newLayout = to;
+  info.srcQueueFamilyIndex = info.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+  info.image = image.image.get();
+  info.subresourceRange = {aspect_of(image.desc.format), 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
+  device.vk.CmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0,
+                               nullptr, 0, nullptr, 1, &info);
+}
+
+}  // namespace tyndall::gpu

@@ -1,0 +1,61 @@
+#include "gpu/timer.hpp"
+
+#include "gpu/try.hpp"
+
+namespace tyndall::gpu {
+
+Result<Timer> Timer::create(const Device& device, std::uint32_t slots, std::uint32_t scopes) {
+  Timer out;
+  out.device_ = &device;
+  out.scopes_ = scopes;
+  VkQueryPoolCreateInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
+  info.queryType = VK_QUERY_TYPE_TIMESTAMP;
+  info.queryCount = slots * scopes * 2;
+  VkQueryPool pool = VK_NULL_HANDLE;
+  const VkResult result = device.vk.CreateQueryPool(device.device, &info, device.allocator, &pool);
+  if (result != VK_SUCCESS) return vulkan_error(result, "creating", "the timestamp queries");
+  out.pool_ = Handle<VkQueryPool>(device, pool);
+  out.names_.resize(slots);
+  for (auto& names : out.names_) names.reserve(scopes);
+  out.results_.reserve(scopes);
+  out.ticks_.resize(static_cast<std::size_t>(scopes) * 2);
+  return out;
+}
+
+void Timer::begin_frame(VkCommandBuffer cmd, std::uint32_t slot) {
+  slot_ = slot;
+  names_[slot].clear();
+  device_->vk.CmdResetQueryPool(cmd, pool_.get(), slot * scopes_ * 2, scopes_ * 2);
+}
+
+void Timer::begin(VkCommandBuffer cmd, const char* name) {
+  std::vector<const char*>& names = names_[slot_];
+  if (names.size() >= scopes_) return;
+  const auto query = static_cast<std::uint32_t>((slot_ * scopes_ + names.size()) * 2);
+  device_->vk.CmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, pool_.get(), query);
+  names.push_back(name);
+}
+
+void Timer::end(VkCommandBuffer cmd) {
+  const auto query = static_cast<std::uint32_t>((slot_ * scopes_ + names_[slot_].size() - 1) * 2 + 1);
+  device_->vk.CmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, pool_.get(), query);
+}
+
+std::span<const TimedScope> Timer::read(std::uint32_t slot) {
+  results_.clear();
+  const std::vector<const char*>& names = names_[slot];
+  if (names.empty()) return {};
+  const auto count = static_cast<std::uint32_t>(names.size() * 2);
+  const VkResult result =
+      device_->vk.GetQueryPoolResults(device_->device, pool_.get(), slot * scopes_ * 2, count, count * 8,
+                                      ticks_.data(), 8, VK_QUERY_RESULT_64_BIT);
+  if (result != VK_SUCCESS) return {};
+  const double ms_per_tick = static_cast<double>(device_->properties.limits.timestampPeriod) * 1e-6;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    results_.push_back({names[i], static_cast<double>(ticks_[2 * i + 1] - ticks_[2 * i]) * ms_per_tick});
+  }
+  return results_;
+}
+
+}  // namespace tyndall::gpu

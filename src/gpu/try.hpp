@@ -1,0 +1,21 @@
+// Early return on errors: TYNDALL_TRY(result expression) for Result<void>,
+// TYNDALL_ASSIGN(declaration, result expression) for Result<T>.
+#pragma once
+
+#include "tyndall/result.hpp"
+
+#define TYNDALL_CONCAT_2(a, b) a##b
+#define TYNDALL_CONCAT(a, b) TYNDALL_CONCAT_2(a, b)
+
+#define TYNDALL_TRY(expression)                                                                  \
+  do {                                                                                           \
+    auto try_result = (expression);                                                              \
+    if (!try_result.ok()) return std::move(try_result).error();                                  \
+  } while (false)
+
+#define TYNDALL_ASSIGN_2(result, declaration, expression) \
+  auto result = (expression);                             \
+  if (!result.ok()) return std::move(result).error();     \
+  declaration = std::move(result).value()
+#define TYNDALL_ASSIGN(declaration, expression) \
+  TYNDALL_ASSIGN_2(TYNDALL_CONCAT(try_result_, __LINE__), declaration, expression)
