@@ -2,6 +2,9 @@
 // Compiled by GLSL (std430) and by C++ (src/effect/shared.hpp in float, src/models/glsl_double.hpp in
 // double); each vec3 is followed by a float, so that the layouts agree without padding.
 // Lengths in m, coefficients in 1/m at sea level (ozone: at the peak of its layer).
+#ifndef TYNDALL_SHARED_MEDIUM
+#define TYNDALL_SHARED_MEDIUM
+
 struct Medium {
   vec3 rayleigh_scattering;
   float planet_radius_m;
@@ -20,3 +23,5 @@ struct Medium {
   float unused_1;
   float unused_2;
 };
+
+#endif

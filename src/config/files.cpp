@@ -19,14 +19,12 @@ namespace {
 
 constexpr std::size_t kLongestShownPath = 200;
 
-std::string shown(std::string_view path) { return "'" + one_line(path, kLongestShownPath) + "'"; }
+std::string shown(std::string_view path) { return concat({"'", one_line(path, kLongestShownPath), "'"}); }
 
 std::string reason(int code) { return std::generic_category().message(code); }
 
 Error io_error(std::string_view what, std::string_view path, std::string_view rest) {
-  std::string message(what);
-  message.append(" ").append(shown(path)).append(", ").append(rest);
-  return Error{ErrorCode::io, std::move(message)};
+  return Error{ErrorCode::io, concat({what, " ", shown(path), ", ", rest})};
 }
 
 std::string directory_of(const std::string& path) {
@@ -36,7 +34,7 @@ std::string directory_of(const std::string& path) {
 
 // A name in `directory` that no other run uses; short, so that it fits where the target's name does.
 std::string temporary_name(const std::string& directory, int attempt) {
-  return directory + "/.tyndall-" + std::to_string(::getpid()) + "-" + std::to_string(attempt) + ".tmp";
+  return concat({directory, "/.tyndall-", std::to_string(::getpid()), "-", std::to_string(attempt), ".tmp"});
 }
 
 constexpr int kAttempts = 1000;
@@ -70,7 +68,8 @@ Result<std::string> read_file(const std::string& path, std::uint64_t limit) {
   }
   ::close(descriptor);
   if (failure != 0) return io_error("cannot read", path, reason(failure));
-  if (used > limit) return io_error("cannot read", path, "at most " + std::to_string(limit) + " bytes are allowed");
+  if (used > limit)
+    return io_error("cannot read", path, concat({"at most ", std::to_string(limit), " bytes are allowed"}));
   contents.resize(used);
   return contents;
 }
@@ -79,12 +78,14 @@ Result<AtomicFile> AtomicFile::create(const std::string& path) {
   AtomicFile file;
   file.shown_ = path;
   file.path_ = path;
-  if (path.empty()) return Error{ErrorCode::io, "cannot write '', no file is named"};
+  if (path.empty()) return io_error("cannot write", path, "no file is named");
   if (path.find('\0') != std::string::npos) {
-    return Error{ErrorCode::io, "cannot write " + shown(path) + ", names hold no zero bytes"};
+    return io_error("cannot write", path, "names hold no zero bytes");
   }
   struct stat info {};
   const bool exists = ::stat(path.c_str(), &info) == 0;
+  if (!exists && errno != ENOENT) return file.error("cannot write");
+  if (path.back() == '/') return io_error("cannot write", path, "it names a directory");
   if (exists && S_ISDIR(info.st_mode)) return io_error("cannot write", path, "it is a directory");
   if (exists && !S_ISREG(info.st_mode)) {
     file.descriptor_ = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
@@ -164,7 +165,7 @@ Result<void> AtomicFile::seek(std::uint64_t position) {
 Result<void> AtomicFile::commit() {
   if (nameless_) {
     // A nameless file cannot take the place of another: it gets a temporary name first.
-    const std::string source = "/proc/self/fd/" + std::to_string(descriptor_);
+    const std::string source = concat({"/proc/self/fd/", std::to_string(descriptor_)});
     const std::string directory = directory_of(path_);
     int linked = -1;
     for (int attempt = 0; linked != 0 && attempt < kAttempts; ++attempt) {

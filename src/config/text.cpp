@@ -108,6 +108,19 @@ bool has_control_characters(std::string_view text) {
   return std::any_of(text.begin(), text.end(), is_control);
 }
 
+std::string concat(std::initializer_list<std::string_view> parts) {
+  std::size_t size = 0;
+  for (const std::string_view piece : parts) size += piece.size();
+  std::string text;
+  text.reserve(size);
+  for (const std::string_view piece : parts) text += piece;
+  return text;
+}
+
+Error input_error(std::string_view what, std::string_view where, std::string_view allowed) {
+  return Error{ErrorCode::invalid_argument, concat({what, ", ", where, ", ", allowed})};
+}
+
 std::string one_line(std::string_view text, std::size_t limit) {
   std::string line;
   while (!text.empty()) {
@@ -123,7 +136,7 @@ std::string one_line(std::string_view text, std::size_t limit) {
   return line;
 }
 
-std::string quoted(std::string_view text) {
+std::string quoted_text(std::string_view text) {
   constexpr std::string_view kHex = "0123456789abcdef";
   std::string out = "\"";
   for (const char c : text) {

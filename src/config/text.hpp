@@ -5,10 +5,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+
+#include "tyndall/result.hpp"
 
 namespace tyndall::config {
 
@@ -33,12 +36,17 @@ enum class NumberError : std::uint32_t { none, not_a_number, not_finite, too_lar
 // True when `text` holds a byte below 0x20 or the byte 0x7f.
 [[nodiscard]] bool has_control_characters(std::string_view text);
 
+[[nodiscard]] std::string concat(std::initializer_list<std::string_view> parts);
+
+// The error of bad input: "what, where, allowed".
+[[nodiscard]] Error input_error(std::string_view what, std::string_view where, std::string_view allowed);
+
 // `text` made fit for a message: one line, control characters and invalid bytes as '?', shortened
 // to at most `limit` bytes.
 [[nodiscard]] std::string one_line(std::string_view text, std::size_t limit = 80);
 
 // `text` as a JSON string (also a TOML basic string) with its quotes. Precondition: valid UTF-8.
-[[nodiscard]] std::string quoted(std::string_view text);
+[[nodiscard]] std::string quoted_text(std::string_view text);
 
 // Number of insertions, deletions, replacements and swaps of neighbours that turn a into b
 // (Damerau 1964, restricted form).
@@ -46,6 +54,7 @@ enum class NumberError : std::uint32_t { none, not_a_number, not_finite, too_lar
 
 // The candidate nearest to `name`, when it is near enough to be a slip of the finger (2 edits, or a
 // third of the length).
-[[nodiscard]] std::optional<std::string> nearest(std::string_view name, std::span<const std::string> candidates);
+[[nodiscard]] std::optional<std::string> nearest(std::string_view name,
+                                                 std::span<const std::string> candidates);
 
 }  // namespace tyndall::config

@@ -91,7 +91,7 @@ Result<Image> create_image(const Device& device, const ImageDesc& desc) {
   out.bytes = requirements.size;
   result = device.vk.BindImageMemory(device.device, image, out.memory.get(), 0);
   if (result != VK_SUCCESS) return vulkan_error(result, "binding the memory", desc.name);
-  VkImageViewType type = desc.layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
+  VkImageViewType type = desc.layers > 1 || desc.array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
   if (desc.extent.depth > 1) type = VK_IMAGE_VIEW_TYPE_3D;
   TYNDALL_ASSIGN(out.view, create_view(device, out, type, 0, desc.layers));
   return out;

@@ -14,12 +14,13 @@ struct ImageDesc {
   VkImageUsageFlags usage;
   std::uint32_t layers = 1;
   std::uint32_t levels = 1;
+  bool array = false;  // the view is of an array even with one layer
 };
 
 struct Image {
   Handle<VkDeviceMemory> memory;
   Handle<VkImage> image;
-  Handle<VkImageView> view;  // all layers and levels; an array view when layers > 1
+  Handle<VkImageView> view;  // all layers and levels; an array view when layers > 1 or desc.array
   ImageDesc desc = {};
   VkDeviceSize bytes = 0;
 };

@@ -47,9 +47,17 @@ constexpr ParamInfo kTable[] = {
   {#group, file_name(#name), ParamType::uvec4, AT(group, name), min, max, unit, "", Affects::affects, doc},
 #define PARAM_FLAG(group, name, def, affects, doc) \
   {#group, file_name(#name), ParamType::flag, AT(group, name), 0, 1, "", "", Affects::affects, doc},
-#define PARAM_ENUM(group, name, type, def, affects, doc)                      \
-  {#group, file_name(#name), ParamType::enumeration, AT(group, name), 0, 0, "", \
-   k##type##Choices.substr(1), Affects::affects, doc},
+#define PARAM_ENUM(group, name, type, def, affects, doc) \
+  {#group,                                               \
+   file_name(#name),                                     \
+   ParamType::enumeration,                               \
+   AT(group, name),                                      \
+   0,                                                    \
+   0,                                                    \
+   "",                                                   \
+   k##type##Choices.substr(1),                           \
+   Affects::affects,                                     \
+   doc},
 #define PARAM_STRING(group, name, def, unit, affects, doc) \
   {#group, file_name(#name), ParamType::string, AT(group, name), 0, 0, unit, "", Affects::affects, doc},
 #include "scene/scene_params.def"

@@ -1,0 +1,171 @@
+// Tyndall records outdoor light scattering into your command buffer: sky, aerial perspective and light
+// shafts, from your colour, depth and shadow cascades, as compute dispatches.
+//
+// Conventions: SI units; right-handed world, x east, y up, z south; y = 0 at sea level below the origin,
+// planet centre at (0, -planet.radius_m, 0); matrices are column-major; directions to the sun point
+// TOWARDS it. Radiance is in the caller's unit: that of sun.irradiance, per steradian.
+// Ownership: everything in DeviceInfo and FrameInputs is borrowed. The effect transitions none of the
+// caller's images, allocates nothing while recording, starts no threads and keeps no global state.
+// Threads: one Effect, one thread at a time; different Effects are independent.
+// Errors come back as Result; nothing throws, prints or exits.
+//
+// A frame:   effect.set_params(params);                       // when they changed
+//            effect.record_precompute(cmd);                   // until progress is complete
+//            ... draw shadow cascades and the opaque scene ...
+//            effect.record(cmd, inputs);                      // output = scene seen through the air
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "tyndall/params.hpp"
+#include "tyndall/result.hpp"
+#include "tyndall/types.hpp"
+
+namespace tyndall {
+
+constexpr std::uint32_t kMaxCascades = 8;
+
+enum class Severity : std::uint32_t { info, warning };
+
+// The device that the effect works on, borrowed for the effect's whole life.
+struct DeviceInfo {
+  VkInstance instance = VK_NULL_HANDLE;
+  VkPhysicalDevice physical_device = VK_NULL_HANDLE;
+  VkDevice device = VK_NULL_HANDLE;
+  PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;
+  const VkAllocationCallbacks* allocator = nullptr;
+  VkPipelineCache pipeline_cache = VK_NULL_HANDLE;
+  // Plain-language remarks about suspicious inputs; see EffectDesc::check_inputs.
+  void (*message)(void* user, Severity severity, std::string_view text) = nullptr;
+  void* message_user = nullptr;
+};
+
+// What a device must have been created with: Vulkan 1.3 and these extensions, no optional feature.
+struct Requirements {
+  std::uint32_t api_version;
+  std::span<const char* const> device_extensions;
+};
+[[nodiscard]] Requirements requirements();
+
+enum class OutputFormat : std::uint32_t { rgba16f, rgba32f };
+
+// What is fixed when the effect is created.
+struct EffectDesc {
+  VkExtent2D max_extent = {1920, 1080};  // [1; 16384] px - largest extent that record() will be given
+  std::uint32_t frames_in_flight = 2;    // [1; 8] - frames recorded before the first has completed
+  OutputFormat output_format = OutputFormat::rgba16f;
+  float sky_depth = 0.0F;            // 0 or 1 - device depth where nothing was drawn; 0 with reversed Z
+  bool shadow_depth_reversed = false;  // shadow maps hold 1 nearest to the sun
+  bool timings = false;              // measure each pass with timestamps
+  bool check_inputs = true;          // look at the inputs of each frame and say what is suspicious
+};
+
+// Bytes. `persistent` outlives a frame; `transient` is only used between the start and the end of a
+// record(); `host` is host-visible. Equal to what create() allocates.
+struct MemoryUsage {
+  VkDeviceSize persistent = 0;
+  VkDeviceSize transient = 0;
+  VkDeviceSize host = 0;
+};
+// Memory that an effect would take, asked before it is created. Allocates nothing.
+[[nodiscard]] Result<MemoryUsage> query_memory(const DeviceInfo& device, const EffectDesc& desc);
+
+// An image of the caller's and the layout that it is in while the effect runs.
+struct Texture {
+  VkImageView view = VK_NULL_HANDLE;
+  VkImageLayout layout = VK_IMAGE_LAYOUT_GENERAL;
+};
+
+// One orthographic shadow map, a layer of FrameInputs::shadow_maps.
+struct Cascade {
+  Mat4 shadow_from_world;  // to (u, v, depth), each 0 to 1 inside the map
+  float near_m = 0.0F;     // [m] - view-space depths that this cascade is meant for
+  float far_m = 0.0F;
+};
+
+struct Camera {
+  Mat4 world_from_view;  // rigid; the view looks down -z, x right, y up
+  Mat4 clip_from_view;   // Vulkan clip space, depth 0 to 1; infinite and reversed projections welcome
+};
+
+struct Sun {
+  Vec3 direction_to_sun = {0.0F, 1.0F, 0.0F};  // unit length
+  Vec3 irradiance = Vec3(10.0F);     // [>= 0] - above the atmosphere, at normal incidence; times scattering.scale
+  float angular_radius_rad = 0.004655F;
+};
+
+// What one frame is made from. All images must be visible to compute shaders when the commands execute.
+struct FrameInputs {
+  VkExtent2D extent = {0, 0};  // [1; max_extent] px - of color, depth and output
+  Texture color;               // linear radiance of the opaque scene and what is behind the air (disc, stars)
+  Texture depth;               // device depth; sampled as float
+  Texture shadow_maps;         // 2D array of depth images, one layer per cascade; null without cascades
+  std::uint32_t shadow_resolution = 0;     // texels - width and height of a layer
+  std::span<const Cascade> cascades;       // at most kMaxCascades, from near to far
+  std::uint32_t first_marched_cascade = 0;  // the air is marched from this one on; it must start at the camera
+  Camera camera;
+  Sun sun;
+  Texture output;  // written; its layout must be GENERAL; not the same image as color
+  std::uint64_t frame_index = 0;  // consecutive; selects the in-flight slot
+};
+
+struct Progress {
+  std::uint32_t done = 0;
+  std::uint32_t total = 0;
+  [[nodiscard]] bool complete() const { return done == total; }
+};
+
+struct PassTiming {
+  const char* name;
+  double gpu_ms;
+};
+
+// Small tables for shading the opaque scene by the light that the air leaves and sends: RGBA16F images
+// in GENERAL layout, to be sampled linearly and clamped at light_table_uv() of tyndall/light_tables.glsl.
+// Multiply by sun.irradiance * scattering.scale. Valid once record_precompute() is complete; its commands
+// write them in COMPUTE_SHADER / SHADER_WRITE.
+struct LightTables {
+  VkImageView sun_transmittance = VK_NULL_HANDLE;  // of the sun's light to a point, 0 below the horizon
+  VkImageView sky_irradiance = VK_NULL_HANDLE;     // on a horizontal surface under an open sky
+};
+
+class Effect {
+ public:
+  // Creates every pipeline and all memory. The tables are not built yet: see record_precompute().
+  static Result<Effect> create(const DeviceInfo& device, const EffectDesc& desc, const Params& params);
+  Effect(Effect&&) noexcept;
+  Effect& operator=(Effect&&) noexcept;
+  ~Effect();
+
+  // Checks and takes over new parameters: an error names the first that is out of range and changes
+  // nothing. Cheap; tables that become stale are rebuilt by record_precompute().
+  Result<void> set_params(const Params& params);
+  [[nodiscard]] const Params& params() const;
+
+  [[nodiscard]] Progress precompute_progress() const;
+  // Records at most `budget` slices of the building of stale tables. Nothing to do: records nothing.
+  Result<Progress> record_precompute(VkCommandBuffer cmd, std::uint32_t budget = UINT32_MAX);
+
+  // Records the effect: output = color seen through the air, plus the light that the air scatters.
+  // Before it, make the inputs visible to COMPUTE_SHADER / SHADER_READ in the layouts that they state;
+  // after it, the output is written by COMPUTE_SHADER / SHADER_WRITE.
+  Result<void> record(VkCommandBuffer cmd, const FrameInputs& inputs);
+
+  [[nodiscard]] LightTables light_tables() const;
+  [[nodiscard]] MemoryUsage memory() const;
+  // Times of the passes of a frame whose commands have completed, with EffectDesc::timings. The span is
+  // valid until the next call.
+  std::span<const PassTiming> timings(std::uint64_t frame_index);
+
+ private:
+  struct State;
+  explicit Effect(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace tyndall

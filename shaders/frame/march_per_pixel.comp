@@ -1,0 +1,104 @@
+// Brute force: single scattering integrated along the ray of every pixel, with the shadow test at every
+// step; the truth that faster techniques are compared with.
+// In: colour and depth of the scene, shadow cascades. Out: radiance seen through the air, in the unit of
+// the sun's irradiance per steradian.
+// Steps are one shadow-map texel long, so that no shadow boundary is missed; beyond the last cascade the
+// rest of the ray is integrated unshadowed (Yusov 2013, section 1.6, without the epipolar geometry).
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "shared/medium.h"
+#include "shared/frame_constants.h"
+#include "lib/single_scattering.glsl"
+#include "frame/view_ray.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
+layout(std430, binding = 1) readonly buffer frame_block { FrameConstants frame; };
+layout(binding = 2) uniform sampler2D scene_color;
+layout(binding = 3) uniform sampler2D scene_depth;
+layout(binding = 4) uniform sampler2DArrayShadow shadow_maps;
+layout(binding = 5, OUTPUT_FORMAT) uniform writeonly image2D output_color;
+
+// What the march has gathered: density columns from the camera [m], and per species the integral of
+// density times transmittance from the sun to the eye [m].
+struct March {
+  vec3 column;
+  vec3 rayleigh;
+  vec3 mie;
+};
+
+// Steps through [from, to] inside one cascade. `ray` holds altitudes and cosines at the camera.
+void march_cascade(uint cascade, Ray ray, float from, float to, inout March march) {
+  float radius = medium.planet_radius_m;
+  vec3 uvz_from = shadow_uvz(frame.cascades[cascade].shadow_from_world, frame.camera_position + ray.direction * from);
+  vec3 uvz_to = shadow_uvz(frame.cascades[cascade].shadow_from_world, frame.camera_position + ray.direction * to);
+  vec2 texels = abs(uvz_to.xy - uvz_from.xy) * float(frame.shadow_resolution);
+  // A ray towards the sun stays in one texel, yet crosses air of changing density: no step may climb
+  // more than a fraction of the aerosol's scale height.
+  float climb = abs(altitude_along(ray.altitude, ray.cos_zenith, to, radius) -
+                    altitude_along(ray.altitude, ray.cos_zenith, from, radius));
+  float wanted = max(max(texels.x, texels.y), max(float(frame.integration_steps), climb / (0.125 * medium.mie_scale_height_m)));
+  int steps = int(clamp(ceil(wanted), 1.0, 4.0 * float(frame.shadow_resolution)));
+  float dt = (to - from) / float(steps);
+  vec3 duvz = (uvz_to - uvz_from) / float(steps);
+  for (int i = 0; i < steps; ++i) {
+    float t = from + (float(i) + 0.5) * dt;
+    vec3 uvz = uvz_from + (float(i) + 0.5) * duvz;
+    float altitude = altitude_along(ray.altitude, ray.cos_zenith, t, radius);
+    vec3 density = densities(medium, altitude);
+    float lit = texture(shadow_maps, vec4(uvz.xy, float(cascade), clamp(uvz.z, 0.0, 1.0)));
+    if (lit > 0.0) {
+      float cos_sun = cos_sun_zenith_along(ray, t, radius);
+      lit *= sun_visibility(altitude, cos_sun, radius);
+      vec3 column = march.column + 0.5 * dt * density + column_to_top(medium, altitude, cos_sun);
+      vec3 arriving = (lit * dt) * transmittance(medium, column);
+      march.rayleigh += density.x * arriving;
+      march.mie += density.y * arriving;
+    }
+    march.column += density * dt;
+  }
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height)) return;
+  vec3 background = texelFetch(scene_color, pixel, 0).rgb;
+  if (frame.enabled == 0u) {
+    imageStore(output_color, pixel, vec4(background, 1.0));
+    return;
+  }
+  float depth = texelFetch(scene_depth, pixel, 0).r;
+  Ray ray = view_ray(frame, pixel, depth);
+  float start, end;
+  bool in_air = clip_to_air(medium, ray, start, end);
+  vec3 inscattered = vec3(0.0);
+  vec3 through = vec3(1.0);
+  if (in_air) {
+    float radius = medium.planet_radius_m;
+    March march = March(vec3(0.0), vec3(0.0), vec3(0.0));
+    float t = start;
+    // View-space depth grows in proportion to the distance along the ray.
+    float depth_per_m = max(dot(ray.direction, frame.camera_forward), 1e-6);
+    for (uint c = frame.first_marched_cascade; c < frame.cascade_count; ++c) {
+      float to = min(frame.cascades[c].far_m / depth_per_m, end);
+      if (to - t > 1e-3) {
+        march_cascade(c, ray, t, to, march);
+        t = to;
+      }
+    }
+    inscattered = medium.rayleigh_scattering * rayleigh_phase(ray.cos_view_sun) * march.rayleigh +
+                  medium.mie_scattering * mie_phase(medium, ray.cos_view_sun) * march.mie;
+    if (end - t > 1e-3) {
+      inscattered += single_scattering(medium, ray.altitude, ray.cos_zenith, ray.cos_sun_zenith, ray.cos_view_sun, t,
+                                       end, int(frame.integration_steps) / 3);
+    }
+    float from_altitude = altitude_along(ray.altitude, ray.cos_zenith, start, radius);
+    float from_cosine = cos_zenith_along(ray.altitude, ray.cos_zenith, start, radius);
+    through = transmittance(medium, column_along(medium, from_altitude, from_cosine, end - start));
+  }
+  vec3 color = inscattered * frame.sun_irradiance;
+  if (frame.only == 0u) color += background * through;
+  imageStore(output_color, pixel, vec4(color, 1.0));
+}

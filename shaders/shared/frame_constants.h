@@ -1,0 +1,33 @@
+// What the frame passes need of one frame: derived on the CPU by src/effect/frame_constants.cpp, never
+// set by the caller. In a storage buffer (std430): every vec3 is followed by a four-byte member.
+struct CascadeConstants {
+  mat4 shadow_from_world;
+  float near_m;
+  float far_m;
+  float unused_0;
+  float unused_1;
+};
+
+struct FrameConstants {
+  mat4 view_from_clip;
+  mat4 world_from_view;
+  vec3 camera_position;  // world [m]
+  float camera_altitude_m;
+  vec3 camera_forward;  // world
+  float sky_depth;
+  vec3 camera_up;  // vertical of the planet at the camera, world
+  float near_depth;
+  vec3 direction_to_sun;
+  float cos_sun_angular_radius;
+  vec3 sun_irradiance;  // times scattering.scale
+  uint shadow_resolution;
+  uint width;
+  uint height;
+  uint cascade_count;  // 0: nothing is shadowed
+  uint first_marched_cascade;
+  uint integration_steps;
+  uint enabled;  // 0: the output is the background
+  uint only;     // 1: the output is the in-scattered light alone
+  uint unused_0;
+  CascadeConstants cascades[8];
+};

@@ -1,0 +1,287 @@
+// The joint parameter table, and conversion between values and text.
+#include "config/settings.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+
+#include "config/text.hpp"
+#include "tyndall/version.hpp"
+
+namespace tyndall::config {
+namespace {
+
+constexpr std::string_view kLost = "'tyndall params' lists all";
+
+std::byte* address(Settings& settings, const Row& row) {
+  std::byte* const base = row.owner == Owner::effect ? reinterpret_cast<std::byte*>(&settings.effect)
+                                                     : reinterpret_cast<std::byte*>(&settings.scene);
+  return base + row.info.offset;
+}
+
+const std::byte* address(const Settings& settings, const Row& row) {
+  return address(const_cast<Settings&>(settings), row);
+}
+
+template <typename T>
+T read_bytes(const std::byte* from) {
+  T value;
+  std::memcpy(&value, from, sizeof(T));
+  return value;
+}
+
+std::size_t components(ParamType type) {
+  return type == ParamType::vec3 ? 3 : type == ParamType::uvec4 ? 4 : 1;
+}
+
+bool is_real(ParamType type) { return type == ParamType::float32 || type == ParamType::vec3; }
+
+// A count of components in words, for "expects 3 numbers".
+std::string expected(const Row& row) {
+  const std::size_t count = components(row.info.type);
+  const std::string_view kind = is_real(row.info.type) ? "number" : "whole number";
+  return count == 1 ? concat({"one ", kind}) : concat({std::to_string(count), " ", kind, "s"});
+}
+
+Error bad_value(const Row& row, std::string_view value, std::string_view problem, std::string_view where) {
+  return input_error(concat({"'", row.key(), "' = '", one_line(value), "' ", problem}), where,
+                     concat({"allowed is ", allowed_text(row)}));
+}
+
+// One component of a number as the four bytes that it is stored in.
+Result<std::uint32_t> number_bits(const Row& row, std::string_view text, std::string_view where) {
+  NumberError problem = NumberError::none;
+  std::uint32_t bits = 0;
+  bool inside = false;
+  if (is_real(row.info.type)) {
+    float value = 0.0F;
+    problem = read_number(text, value);
+    inside = value >= static_cast<float>(row.info.min) && value <= static_cast<float>(row.info.max);
+    std::memcpy(&bits, &value, sizeof(bits));
+  } else {
+    std::int64_t value = 0;
+    problem = read_integer(text, value);
+    inside =
+        value >= static_cast<std::int64_t>(row.info.min) && value <= static_cast<std::int64_t>(row.info.max);
+    bits = static_cast<std::uint32_t>(value);
+  }
+  if (problem == NumberError::not_finite) return bad_value(row, text, "is not a finite number", where);
+  if (problem == NumberError::not_a_number)
+    return bad_value(row, text, concat({"is not ", expected(row)}), where);
+  if (problem == NumberError::too_large || !inside) return bad_value(row, text, "is out of range", where);
+  return bits;
+}
+
+std::optional<std::uint32_t> flag_value(std::string_view text) {
+  if (text == "true" || text == "on" || text == "1") return 1U;
+  if (text == "false" || text == "off" || text == "0") return 0U;
+  return std::nullopt;
+}
+
+// The index of `text` among the choices; enumerations count from 0 in the order of their names.
+std::optional<std::uint32_t> choice_value(const Row& row, std::string_view text) {
+  for (std::uint32_t i = 0; i < count_parts(row.info.choices, '|'); ++i) {
+    if (part(row.info.choices, '|', i) == text) return i;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> all_keys() {
+  std::vector<std::string> keys;
+  for (const Row& row : rows()) keys.push_back(row.key());
+  return keys;
+}
+
+}  // namespace
+
+std::string Row::key() const { return concat({info.group, ".", info.name}); }
+
+const std::vector<Row>& rows() {
+  static const std::vector<Row> all = [] {
+    std::vector<Row> joined;
+    for (const ParamInfo& info : scene::scene_param_table()) joined.push_back({info, Owner::scene});
+    for (const ParamInfo& info : param_table()) joined.push_back({info, Owner::effect});
+    return joined;
+  }();
+  return all;
+}
+
+const std::vector<Group>& groups() {
+  static const std::vector<Group> all = {
+#define ENUM_BEGIN(type)
+#define ENUM_VALUE(type, identifier, value, text)
+#define ENUM_END(type)
+#define GROUP_BEGIN(group, type, title) {#group, title},
+#define GROUP_END(group, type)
+#define PARAM_FLOAT(group, name, def, min, max, unit, affects, doc)
+#define PARAM_UINT(group, name, def, min, max, unit, affects, doc)
+#define PARAM_VEC3(group, name, def, min, max, unit, affects, doc)
+#define PARAM_UVEC4(group, name, def, min, max, unit, affects, doc)
+#define PARAM_FLAG(group, name, def, affects, doc)
+#define PARAM_ENUM(group, name, type, def, affects, doc)
+#define PARAM_STRING(group, name, def, unit, affects, doc)
+#include "scene/scene_params.def"
+#include "tyndall/params.def"
+#include "tyndall/params_undef.h"
+  };
+  return all;
+}
+
+const Row* find_row(std::string_view key) {
+  const std::vector<Row>& all = rows();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Row& row) { return row.key() == key; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+Error unknown_key(std::string_view key, std::string_view where) {
+  const std::string what = concat({"unknown parameter '", one_line(key), "'"});
+  const std::size_t dot = key.find('.');
+  const std::string_view group = dot == std::string_view::npos ? std::string_view() : key.substr(0, dot);
+  const std::string_view name = dot == std::string_view::npos ? key : key.substr(dot + 1);
+  // The nearest whole key, unless the name as it stands belongs to one other group.
+  std::optional<std::string> near;
+  int same_name = 0;
+  for (const Row& row : rows()) {
+    if (row.info.name != name) continue;
+    ++same_name;
+    near = row.key();
+  }
+  if (same_name != 1) near = nearest(key, all_keys());
+  if (near) return input_error(what, where, concat({"did you mean '", *near, "'?"}));
+  std::string members;
+  for (const Row& row : rows()) {
+    if (row.info.group == group) members.append(members.empty() ? "" : ", ").append(row.info.name);
+  }
+  if (!members.empty()) return input_error(what, where, concat({"'", group, "' has ", members}));
+  return input_error(what, where, kLost);
+}
+
+Result<void> set(Settings& settings, std::string_view assignment, std::string_view where) {
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string_view::npos || trimmed(assignment.substr(0, equals)).empty()) {
+    return input_error(concat({"'", one_line(assignment), "' is no assignment"}), where,
+                       "allowed is KEY=VALUE");
+  }
+  return set(settings, trimmed(assignment.substr(0, equals)), assignment.substr(equals + 1), where);
+}
+
+Result<void> set(Settings& settings, std::string_view key, std::string_view value, std::string_view where) {
+  const Row* const row = find_row(key);
+  if (row == nullptr) return unknown_key(key, where);
+  if (row->info.type == ParamType::string) return store(settings, *row, {std::string(value)}, where);
+  const std::string_view text = trimmed(value);
+  const std::size_t count = components(row->info.type);
+  if (count == 1) return store(settings, *row, {std::string(text)}, where);
+  if (count_parts(text, ',') != count) {
+    return bad_value(*row, text, concat({"is not ", expected(*row), " separated by commas"}), where);
+  }
+  std::vector<std::string> parts;
+  for (std::size_t i = 0; i < count; ++i) parts.emplace_back(part(text, ',', i));
+  return store(settings, *row, parts, where);
+}
+
+Result<void> store(Settings& settings, const Row& row, const std::vector<std::string>& parts,
+                   std::string_view where) {
+  const std::size_t count = components(row.info.type);
+  if (parts.size() != count) {
+    return bad_value(row, concat({std::to_string(parts.size()), " values"}),
+                     concat({"is not ", expected(row)}), where);
+  }
+  std::byte* const target = address(settings, row);
+  if (row.info.type == ParamType::string) {
+    if (!is_utf8(parts[0])) return bad_value(row, parts[0], "is not valid UTF-8", where);
+    if (has_control_characters(parts[0])) return bad_value(row, parts[0], "holds control characters", where);
+    *reinterpret_cast<std::string*>(target) = parts[0];
+    return {};
+  }
+  std::uint32_t bits[4] = {};
+  if (row.info.type == ParamType::flag || row.info.type == ParamType::enumeration) {
+    const bool flag = row.info.type == ParamType::flag;
+    const std::optional<std::uint32_t> value = flag ? flag_value(parts[0]) : choice_value(row, parts[0]);
+    if (!value)
+      return bad_value(row, parts[0], flag ? "is neither on nor off" : "is not one of its values", where);
+    bits[0] = *value;
+  } else {
+    for (std::size_t i = 0; i < count; ++i) {
+      Result<std::uint32_t> number = number_bits(row, parts[i], where);
+      if (!number) return std::move(number).error();
+      bits[i] = number.value();
+    }
+  }
+  std::memcpy(target, bits, count * sizeof(bits[0]));
+  return {};
+}
+
+std::string value_text(const Row& row, const Settings& settings) {
+  const std::byte* const from = address(settings, row);
+  std::string text;
+  switch (row.info.type) {
+    case ParamType::string:
+      return *reinterpret_cast<const std::string*>(from);
+    case ParamType::flag:
+      return read_bytes<std::uint32_t>(from) != 0 ? "true" : "false";
+    case ParamType::enumeration:
+      return std::string(part(row.info.choices, '|', read_bytes<std::uint32_t>(from)));
+    default:
+      break;
+  }
+  for (std::size_t i = 0; i < components(row.info.type); ++i) {
+    if (i > 0) text += ',';
+    const std::byte* const at = from + i * sizeof(std::uint32_t);
+    text += is_real(row.info.type) ? number_text(read_bytes<float>(at))
+                                   : std::to_string(read_bytes<std::uint32_t>(at));
+  }
+  return text;
+}
+
+std::string allowed_text(const Row& row) {
+  std::string text;
+  switch (row.info.type) {
+    case ParamType::string:
+      return "text in UTF-8";
+    case ParamType::flag:
+      return "true or false";
+    case ParamType::enumeration:
+      for (std::size_t i = 0; i < count_parts(row.info.choices, '|'); ++i) {
+        text.append(i > 0 ? ", " : "").append(part(row.info.choices, '|', i));
+      }
+      return text;
+    default:
+      break;
+  }
+  const std::size_t count = components(row.info.type);
+  if (count > 1) text = concat({expected(row), ", each "});
+  if (count == 1 && !is_real(row.info.type)) text = "a whole number, ";
+  // Limits of whole numbers are written out: "4294967295", not "4.294967295e+09".
+  const auto limit = [&](double value) {
+    return is_real(row.info.type) ? number_text(value) : std::to_string(static_cast<std::int64_t>(value));
+  };
+  text.append(limit(row.info.min)).append(" to ").append(limit(row.info.max));
+  if (!row.info.unit.empty() && row.info.unit != "1") text.append(" ").append(row.info.unit);
+  return text;
+}
+
+Result<void> check(const Settings& settings) {
+  const scene::ShadowParams& shadows = settings.scene.shadows;
+  if (shadows.first_marched >= shadows.cascades) {
+    return input_error(
+        concat({"'shadows.first_marched' = ", std::to_string(shadows.first_marched), " is no cascade"}),
+        concat({"with 'shadows.cascades' = ", std::to_string(shadows.cascades)}),
+        concat({"allowed is 0 to ", std::to_string(shadows.cascades - 1)}));
+  }
+  if (settings.scene.terrain.source.empty()) {
+    return input_error("no terrain", "'terrain.source' is empty",
+                       "allowed is procedural or an elevation file");
+  }
+  return {};
+}
+
+std::vector<std::pair<std::string, std::string>> metadata(const Settings& settings) {
+  std::vector<std::pair<std::string, std::string>> list = {{"tyndall.version", TYNDALL_VERSION_STRING}};
+  for (const Row& row : rows()) {
+    list.emplace_back(concat({"tyndall.", row.key()}), value_text(row, settings));
+  }
+  return list;
+}
+
+}  // namespace tyndall::config

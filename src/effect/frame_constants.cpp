@@ -1,0 +1,100 @@
+#include "effect/frame_constants.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tyndall {
+namespace {
+
+Vec3 column(const Mat4& m, int i) { return {m.m[4 * i], m.m[4 * i + 1], m.m[4 * i + 2]}; }
+
+Vec3 normalized(const Vec3& v) {
+  const double length = std::sqrt(static_cast<double>(v.x) * v.x + static_cast<double>(v.y) * v.y +
+                                  static_cast<double>(v.z) * v.z);
+  return {static_cast<float>(v.x / length), static_cast<float>(v.y / length), static_cast<float>(v.z / length)};
+}
+
+}  // namespace
+
+Mat4 inverse(const Mat4& matrix) {
+  // Gauss-Jordan with partial pivoting on [matrix | identity]: projections with an infinite far plane
+  // have entries that differ by many orders of magnitude.
+  double a[4][8] = {};
+  for (int row = 0; row < 4; ++row) {
+    for (int col = 0; col < 4; ++col) a[row][col] = matrix.m[4 * col + row];
+    a[row][4 + row] = 1.0;
+  }
+  for (int col = 0; col < 4; ++col) {
+    int pivot = col;
+    for (int row = col + 1; row < 4; ++row) {
+      if (std::abs(a[row][col]) > std::abs(a[pivot][col])) pivot = row;
+    }
+    std::swap(a[col], a[pivot]);
+    const double scale = 1.0 / a[col][col];
+    for (double& entry : a[col]) entry *= scale;
+    for (int row = 0; row < 4; ++row) {
+      if (row == col) continue;
+      const double factor = a[row][col];
+      for (int k = 0; k < 8; ++k) a[row][k] -= factor * a[col][k];
+    }
+  }
+  Mat4 out;
+  for (int row = 0; row < 4; ++row) {
+    for (int col = 0; col < 4; ++col) out.m[4 * col + row] = static_cast<float>(a[row][4 + col]);
+  }
+  return out;
+}
+
+Vec3 transform_point(const Mat4& matrix, const Vec3& p) {
+  double out[4];
+  for (int row = 0; row < 4; ++row) {
+    out[row] = static_cast<double>(matrix.m[row]) * p.x + static_cast<double>(matrix.m[4 + row]) * p.y +
+               static_cast<double>(matrix.m[8 + row]) * p.z + static_cast<double>(matrix.m[12 + row]);
+  }
+  return {static_cast<float>(out[0] / out[3]), static_cast<float>(out[1] / out[3]),
+          static_cast<float>(out[2] / out[3])};
+}
+
+shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDesc& desc, const Params& params) {
+  shared::FrameConstants out = {};
+  out.view_from_clip = inverse(inputs.camera.clip_from_view);
+  out.world_from_view = inputs.camera.world_from_view;
+  out.camera_position = column(inputs.camera.world_from_view, 3);
+  const Vec3 back = column(inputs.camera.world_from_view, 2);
+  out.camera_forward = normalized({-back.x, -back.y, -back.z});
+
+  // Altitude and vertical in double: the planet's centre is millions of metres away.
+  const double radius = params.planet.radius_m;
+  const double x = out.camera_position.x;
+  const double y = out.camera_position.y;
+  const double z = out.camera_position.z;
+  const double distance = std::sqrt(x * x + z * z + (radius + y) * (radius + y));
+  out.camera_altitude_m = static_cast<float>((x * x + z * z + y * (2.0 * radius + y)) / (distance + radius));
+  out.camera_up = {static_cast<float>(x / distance), static_cast<float>((radius + y) / distance),
+                   static_cast<float>(z / distance)};
+
+  out.sky_depth = desc.sky_depth;
+  out.near_depth = 1.0F - desc.sky_depth;
+  out.direction_to_sun = normalized(inputs.sun.direction_to_sun);
+  out.cos_sun_angular_radius = std::cos(inputs.sun.angular_radius_rad);
+  const float scale = params.scattering.scale;
+  out.sun_irradiance = {inputs.sun.irradiance.x * scale, inputs.sun.irradiance.y * scale,
+                        inputs.sun.irradiance.z * scale};
+  out.shadow_resolution = inputs.shadow_resolution;
+  out.width = inputs.extent.width;
+  out.height = inputs.extent.height;
+  out.cascade_count =
+      params.scattering.light_shafts ? static_cast<std::uint32_t>(inputs.cascades.size()) : 0;
+  out.first_marched_cascade = inputs.first_marched_cascade;
+  out.integration_steps = params.scattering.integration_steps;
+  out.enabled = params.scattering.enabled.value;
+  out.only = params.scattering.only.value;
+  for (std::size_t i = 0; i < inputs.cascades.size(); ++i) {
+    out.cascades[i].shadow_from_world = inputs.cascades[i].shadow_from_world;
+    out.cascades[i].near_m = inputs.cascades[i].near_m;
+    out.cascades[i].far_m = inputs.cascades[i].far_m;
+  }
+  return out;
+}
+
+}  // namespace tyndall

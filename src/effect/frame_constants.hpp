@@ -1,0 +1,26 @@
+// From what the caller passes to what the shaders read: pure functions, no Vulkan objects.
+#pragma once
+
+#include "effect/shared.hpp"
+#include "tyndall/effect.hpp"
+
+namespace tyndall {
+
+// The inverse of any invertible 4×4 matrix, computed in double precision. A singular matrix gives
+// non-finite entries.
+[[nodiscard]] Mat4 inverse(const Mat4& matrix);
+// The affine or projective image of a point: matrix * (p, 1), divided by w.
+[[nodiscard]] Vec3 transform_point(const Mat4& matrix, const Vec3& p);
+
+[[nodiscard]] shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDesc& desc,
+                                                     const Params& params);
+
+// Why a frame cannot be recorded: one line, or empty. `warnings` receives remarks about inputs that
+// can be recorded but are hardly meant.
+[[nodiscard]] Result<void> check_frame(const FrameInputs& inputs, const EffectDesc& desc, const Params& params);
+void remark_on_frame(const FrameInputs& inputs, const Params& params, const DeviceInfo& device);
+
+// The first parameter that is out of range or not a number, as an error; see params.def.
+[[nodiscard]] Result<void> check_params(const Params& params);
+
+}  // namespace tyndall

@@ -1,0 +1,20 @@
+// The structures of shaders/shared in C++, in single precision: what is uploaded to the GPU.
+// vec3 is three floats (12 bytes, aligned to 4); the structures are laid out so that this agrees with std430.
+#pragma once
+
+#include <cstdint>
+
+#include "tyndall/types.hpp"
+
+namespace tyndall::shared {
+
+using uint = std::uint32_t;
+using vec3 = Vec3;
+using mat4 = Mat4;
+
+#include "shared/frame_constants.h"
+#include "shared/medium.h"
+
+static_assert(sizeof(Medium) == 96, "the layout of Medium must agree with std430");
+
+}  // namespace tyndall::shared

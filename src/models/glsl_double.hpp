@@ -1,0 +1,44 @@
+// shaders/lib compiled as C++ in double precision: tyndall::glsl64 holds Medium and every function of the library
+// (geometry, medium, phase, optical_depth, single_scattering, sky_irradiance), with vec3 = glm::dvec3.
+// Conventions are those of the GLSL files. For .cpp files only: it defines functions of internal linkage.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include <glm/glm.hpp>
+
+#include "effect/shared.hpp"
+
+namespace tyndall::glsl64 {
+
+using uint = std::uint32_t;
+using vec2 = glm::dvec2;
+using vec3 = glm::dvec3;
+using vec4 = glm::dvec4;
+
+#define float double
+#include "models/glsl_functions.inl"
+#undef float
+
+// The medium as uploaded, widened.
+inline Medium widen(const shared::Medium& m) {
+  const auto wide = [](const Vec3& v) { return vec3(v.x, v.y, v.z); };
+  Medium out = {};
+  out.rayleigh_scattering = wide(m.rayleigh_scattering);
+  out.planet_radius_m = m.planet_radius_m;
+  out.mie_scattering = wide(m.mie_scattering);
+  out.atmosphere_height_m = m.atmosphere_height_m;
+  out.mie_extinction = wide(m.mie_extinction);
+  out.rayleigh_scale_height_m = m.rayleigh_scale_height_m;
+  out.ozone_absorption = wide(m.ozone_absorption);
+  out.mie_scale_height_m = m.mie_scale_height_m;
+  out.mie_g = m.mie_g;
+  out.ozone_centre_m = m.ozone_centre_m;
+  out.ozone_half_width_m = m.ozone_half_width_m;
+  out.mie_phase = m.mie_phase;
+  out.ground_albedo = m.ground_albedo;
+  return out;
+}
+
+}  // namespace tyndall::glsl64

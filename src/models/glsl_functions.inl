@@ -1,0 +1,42 @@
+// The functions of shaders/lib as C++, in whatever namespace and precision the includer has set up (`float`,
+// vec2..vec4, uint). Included by src/models/glsl_double.hpp and by the tests; no include guard on purpose, and the
+// guards of the GLSL files are lifted so that several precisions can stand in one translation unit.
+#define IN(type) const type&
+#define OUT(type) type&
+#define INOUT(type) type&
+#undef TYNDALL_LIB_PORTABLE
+#undef TYNDALL_LIB_GEOMETRY
+#undef TYNDALL_LIB_MEDIUM
+#undef TYNDALL_LIB_PHASE
+#undef TYNDALL_LIB_OPTICAL_DEPTH
+#undef TYNDALL_LIB_SINGLE_SCATTERING
+#undef TYNDALL_LIB_SKY_IRRADIANCE
+#undef TYNDALL_SHARED_MEDIUM
+
+using glm::abs;
+using glm::acos;
+using glm::asin;
+using glm::clamp;
+using glm::cos;
+using glm::dot;
+using glm::exp;
+using glm::max;
+using glm::min;
+using glm::mix;
+using glm::normalize;
+using glm::sin;
+using glm::sqrt;
+
+#include "shared/medium.h"
+
+// Internal linkage: a header of plain functions, of which each user takes some.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+namespace {
+#include "lib/sky_irradiance.glsl"
+}  // namespace
+#pragma GCC diagnostic pop
+
+#undef IN
+#undef OUT
+#undef INOUT
