@@ -10,6 +10,7 @@ struct TerrainCell {
 struct TerrainSurface {
   float height_m;
   vec2 slope;
+  float crest;  // 1 on crests, 0 on floors
 };
 
 ivec2 terrain_units(vec2 map_m) { return ivec2(floor(map_m * 64.0 + vec2(0.5))); }
@@ -124,9 +125,10 @@ void terrain_gully_octave(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, int
   float steep2 = dot(s.slope, s.slope);
   vec2 across = vec2(-s.slope.y, s.slope.x) * inversesqrt(steep2 + 1.0e-6);
   vec2 z = terrain_gully(across, units, warp_m, a, b, shift, salt);
-  float amp = amplitude * wave_m * w * steep2 / (steep2 + gentle);
-  float crest = sqrt(max(0.5 - 0.5 * z.x, 0.0) + 0.003);
+  float amp = amplitude * wave_m * w * (steep2 + 0.7 * gentle * s.crest) / (steep2 + gentle);
+  float crest = sqrt(max(0.5 - 0.5 * z.x, 0.0) + 0.001);
   float shape = mix(z.x, 0.273 + 1.0 - 2.0 * crest, sharp);
+  s.crest = mix(s.crest, s.crest * clamp(0.6 + 0.7 * z.x, 0.0, 1.4), 0.6);
   s.height_m += amp * shape;
   s.slope -= across * (amp * z.y * (6.2832 / wave_m) * 0.5);
 }
@@ -141,7 +143,7 @@ float terrain_height_units(ivec2 units, float spacing_m, uint seed) {
   vec2 warp = wa * 2000.0 + wb * 200.0;
   vec2 o = vec2(units) * (1.0 / 64.0 / 90000.0);
   float home = 1.0 / (1.0 + dot(o, o) * dot(o, o));
-  float range = smoothstep(-0.5, 0.75, r0.x * 0.9 + r1.x * 0.45 + 0.15 + 0.3 * home);
+  float range = smoothstep(-0.5, 0.75, r0.x * 0.9 + r1.x * 0.45 + 0.15 + 0.5 * home);
 
   // valleys: zero lines
   vec3 n2 = terrain_gradient_noise(terrain_cell(units, warp * 1.2, 3, 2, 23), salt + 5u);  // 36 km
@@ -168,17 +170,18 @@ float terrain_height_units(ivec2 units, float spacing_m, uint seed) {
   float g2 = dot(n2d, n2d);
   vec2 across = vec2(-n2d.y, n2d.x) * inversesqrt(g2 + 1.0e-14);
   vec2 za = terrain_gully(across, units, warp, 3, 2, 21, salt + 9u);
+  s.crest = vprof * clamp(0.5 + 0.6 * za.x, 0.0, 1.0) * mount;
   float amp_a = 1500.0 * gain * vprof * g2 / (g2 + 2.0e-10);
-  s.height_m += amp_a * (0.273 + 1.0 - 2.0 * sqrt(max(0.5 - 0.5 * za.x, 0.0) + 0.003));
+  s.height_m += amp_a * (0.273 + 1.0 - 2.0 * sqrt(max(0.5 - 0.5 * za.x, 0.0) + 0.001));
   s.slope -= across * (amp_a * za.y * (6.2832 / 12100.0) * 0.7);
 
-  terrain_gully_octave(s, units, warp, 4, 1, 20, 3974.0, 0.12 * sqrt(gain), 0.012, 0.8, spacing_m, salt + 11u);
-  terrain_gully_octave(s, units, warp, 1, 2, 18, 1832.0, 0.10, 0.04, 0.8, spacing_m, salt + 12u);
-  terrain_gully_octave(s, units, warp, 2, 1, 17, 916.0, 0.065, 0.06, 0.8, spacing_m, salt + 13u);
-  terrain_gully_octave(s, units, warp, 1, 2, 16, 458.0, 0.045, 0.06, 0.8, spacing_m, salt + 14u);
-  terrain_gully_octave(s, units, warp, 1, 4, 16, 248.0, 0.03, 0.06, 0.8, spacing_m, salt + 16u);
-  terrain_gully_octave(s, units, warp, 2, 3, 15, 142.0, 0.03, 0.06, 0.8, spacing_m, salt + 17u);
-  terrain_gully_octave(s, units, warp, 3, 1, 14, 81.0, 0.03, 0.06, 0.8, spacing_m, salt + 18u);
+  terrain_gully_octave(s, units, warp, 4, 1, 20, 3974.0, 0.12 * sqrt(gain), 0.012, 1.0, spacing_m, salt + 11u);
+  terrain_gully_octave(s, units, warp, 1, 2, 18, 1832.0, 0.10, 0.04, 1.0, spacing_m, salt + 12u);
+  terrain_gully_octave(s, units, warp, 2, 1, 17, 916.0, 0.08, 0.06, 1.0, spacing_m, salt + 13u);
+  terrain_gully_octave(s, units, warp, 1, 2, 16, 458.0, 0.07, 0.06, 1.0, spacing_m, salt + 14u);
+  terrain_gully_octave(s, units, warp, 1, 4, 16, 248.0, 0.06, 0.06, 1.0, spacing_m, salt + 16u);
+  terrain_gully_octave(s, units, warp, 2, 3, 15, 142.0, 0.055, 0.06, 1.0, spacing_m, salt + 17u);
+  terrain_gully_octave(s, units, warp, 3, 1, 14, 81.0, 0.05, 0.06, 1.0, spacing_m, salt + 18u);
   return s.height_m;
 }
 

@@ -167,7 +167,9 @@ Result<void> Effect::State::create_objects() {
     compare.compare_op = VK_COMPARE_OP_GREATER_OR_EQUAL;
   }
   TYNDALL_ASSIGN(shadow_compare, gpu::create_sampler(device, compare));
-  if (desc.timings) TYNDALL_ASSIGN(timer, gpu::Timer::create(device, desc.frames_in_flight, kMaxTimedPasses));
+  if (desc.timings) {
+    TYNDALL_ASSIGN(timer, gpu::Timer::create(device, desc.frames_in_flight, kMaxTimedPasses));
+  }
   memory.persistent = sun_transmittance.bytes + sky_irradiance.bytes + no_shadows.bytes;
   memory.host = constants.bytes;
   return {};

@@ -1,0 +1,28 @@
+#version 460
+// Radiance of the light scattered once along given rays, by numerical integration: `tyndall probe --model single`.
+// One invocation per ray. rays: made by prepare_probe_ray (src/models/single_scattering.hpp);
+// results: radiance / E0 [1/sr] over black ground, and the transmittance to the ray's end.
+#extension GL_GOOGLE_include_directive : require
+
+#include "lib/single_scattering.glsl"
+#include "shared/probe.h"
+
+layout(local_size_x = 64) in;
+
+layout(constant_id = 0) const int kSteps = 16;  // see single_scattering
+
+layout(std430, binding = 0) readonly buffer MediumBuffer { Medium medium; };
+layout(std430, binding = 1) readonly buffer RayBuffer { ProbeRay rays[]; };
+layout(std430, binding = 2) writeonly buffer ResultBuffer { ProbeResult results[]; };
+
+void main() {
+  uint index = gl_GlobalInvocationID.x;
+  if (index >= uint(rays.length())) {
+    return;
+  }
+  ProbeRay ray = rays[index];
+  vec3 radiance = single_scattering(medium, ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith,
+                                    ray.cos_view_sun, 0.0, ray.end_m, kSteps);
+  vec3 column = column_along(medium, ray.altitude_m, ray.cos_view_zenith, ray.end_m);
+  results[index] = ProbeResult(radiance, 0.0, transmittance(medium, column), 0.0);
+}

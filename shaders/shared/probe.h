@@ -1,0 +1,24 @@
+// What shaders/probe reads and writes, one of each per ray. Made by prepare_probe_ray (src/models), in double
+// precision, because the horizon, the entry into the air and its end are where single precision would decide wrongly.
+#ifndef TYNDALL_SHARED_PROBE
+#define TYNDALL_SHARED_PROBE
+
+struct ProbeRay {
+  float altitude_m;  // of the origin, or of the entry into the atmosphere for rays from above it
+  float cos_view_zenith;
+  float cos_sun_zenith;
+  float cos_view_sun;
+  float end_m;     // distance to the ground or to the top; 0: the ray misses the atmosphere
+  uint on_ground;  // 1: the ray ends on the ground
+  float unused_0;
+  float unused_1;
+};
+
+struct ProbeResult {
+  vec3 radiance;  // relative to the sun's irradiance above the atmosphere [1/sr]
+  float unused_0;
+  vec3 transmittance;  // to the end of the ray
+  float unused_1;
+};
+
+#endif

@@ -1,0 +1,66 @@
+#include "models/single_scattering.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "models/glsl_double.hpp"
+
+namespace tyndall::models {
+namespace {
+
+constexpr int kSkyPanels = 4;  // panels of four nodes: 512 rays; 0.02 % for the default medium
+constexpr int kSkySteps = 8;
+
+std::array<double, 3> to_array(const glsl64::vec3& v) { return {v.x, v.y, v.z}; }
+
+}  // namespace
+
+Ray ray_from_angles(double altitude_m, double view_zenith_rad, double sun_zenith_rad, double azimuth_rad) {
+  const double cos_view_sun = std::cos(view_zenith_rad) * std::cos(sun_zenith_rad) +
+                              std::sin(view_zenith_rad) * std::sin(sun_zenith_rad) * std::cos(azimuth_rad);
+  return {altitude_m, std::cos(view_zenith_rad), std::cos(sun_zenith_rad), std::clamp(cos_view_sun, -1.0, 1.0)};
+}
+
+Answer single_scattering(const shared::Medium& medium, const Ray& ray, int steps) {
+  glsl64::vec3 transmittance;
+  const glsl64::vec3 radiance = glsl64::single_scattering_to_end(
+      glsl64::widen(medium), ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith, ray.cos_view_sun, steps,
+      transmittance);
+  return {to_array(radiance), to_array(transmittance)};
+}
+
+std::array<double, 3> single_sky_irradiance(const shared::Medium& medium, double altitude_m,
+                                            double cos_sun_zenith) {
+  return to_array(glsl64::sky_irradiance_single(glsl64::widen(medium), altitude_m, cos_sun_zenith, kSkyPanels,
+                                                kSkySteps));
+}
+
+shared::ProbeRay prepare_probe_ray(const shared::Medium& medium, const Ray& ray) {
+  const glsl64::Medium m = glsl64::widen(medium);
+  double start = 0.0;
+  double end = 0.0;
+  bool on_ground = false;
+  shared::ProbeRay out = {};
+  out.cos_view_sun = static_cast<float>(ray.cos_view_sun);
+  double altitude = ray.altitude_m;
+  double cos_view = ray.cos_view_zenith;
+  double cos_sun = ray.cos_sun_zenith;
+  if (glsl64::atmosphere_segment(altitude, cos_view, m.atmosphere_height_m, m.planet_radius_m, start, end,
+                                 on_ground)) {
+    if (start > 0.0) {
+      const double r0 = m.planet_radius_m + altitude;
+      const double r = m.planet_radius_m + m.atmosphere_height_m;
+      cos_sun = std::clamp((r0 * cos_sun + start * ray.cos_view_sun) / r, -1.0, 1.0);
+      cos_view = std::clamp((r0 * cos_view + start) / r, -1.0, 1.0);
+      altitude = m.atmosphere_height_m;
+    }
+    out.end_m = static_cast<float>(end - start);
+    out.on_ground = on_ground ? 1 : 0;
+  }
+  out.altitude_m = static_cast<float>(altitude);
+  out.cos_view_zenith = static_cast<float>(cos_view);
+  out.cos_sun_zenith = static_cast<float>(cos_sun);
+  return out;
+}
+
+}  // namespace tyndall::models

@@ -1,0 +1,228 @@
+// Scene files: round trips, partial files, and a clear line for everything that can be wrong.
+#include "config/scene_file.hpp"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "config/describe.hpp"
+#include "config/files.hpp"
+
+namespace tyndall::config {
+namespace {
+
+std::string failure(std::string_view toml) {
+  Settings settings;
+  const Result<void> result = load_text(settings, toml, "s.toml");
+  return result ? "(accepted)" : result.error().message;
+}
+
+std::string all_text(const Settings& settings) {
+  std::string text;
+  for (const auto& [name, value] : metadata(settings)) text += name + "=" + value + "\n";
+  return text;
+}
+
+// A value other than the default, valid for the row.
+std::string other_value(const Row& row, const Settings& defaults) {
+  const std::string now = value_text(row, defaults);
+  const auto number = [&](double fraction) {
+    return std::to_string(static_cast<std::int64_t>(row.info.min + fraction * (row.info.max - row.info.min)));
+  };
+  switch (row.info.type) {
+    case ParamType::float32:
+      return now == "0.1" ? "0.3" : row.info.min < 0.1 ? "0.1" : number(0.7);
+    case ParamType::uint32:
+      return number(0.6);
+    case ParamType::vec3:
+      return row.info.max <= 1.0 ? "0.1,1.5e-07,0.3" : number(0.3) + "," + number(0.7) + "," + number(0.5);
+    case ParamType::uvec4:
+      return number(1.0) + "," + number(0.5) + "," + number(0.25) + "," + number(0.0);
+    case ParamType::flag:
+      return now == "true" ? "false" : "true";
+    case ParamType::enumeration:
+      return std::string(row.info.choices.substr(row.info.choices.rfind('|') + 1));
+    case ParamType::string:
+      return "a \"quoted\" \\ n\xc3\xa4me.tif";
+  }
+  return "";
+}
+
+class SceneFile : public testing::Test {
+ protected:
+  SceneFile() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "tyndall-test-XXXXXX").string();
+    directory_ = ::mkdtemp(pattern.data());
+  }
+  ~SceneFile() override { std::filesystem::remove_all(directory_); }
+
+  std::string write(const std::string& name, std::string_view contents) {
+    const std::string path = (directory_ / name).string();
+    std::ofstream(path, std::ios::binary) << contents;
+    return path;
+  }
+  std::size_t entries() const {
+    std::size_t count = 0;
+    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(directory_)) ++count;
+    return count;
+  }
+
+  std::filesystem::path directory_;
+};
+
+TEST_F(SceneFile, EveryParameterSurvivesARoundTrip) {
+  Settings settings;
+  for (const Row& row : rows()) {
+    const Result<void> result = set(settings, row.key(), other_value(row, Settings()), "test");
+    ASSERT_TRUE(result.ok()) << result.error().message;
+  }
+  Settings back;
+  const Result<void> loaded = load_text(back, to_toml(settings), "round trip");
+  ASSERT_TRUE(loaded.ok()) << loaded.error().message;
+  EXPECT_EQ(all_text(back), all_text(settings));
+  EXPECT_NE(all_text(back), all_text(Settings()));
+
+  const std::string path = (directory_ / "saved.toml").string();
+  ASSERT_TRUE(save(settings, path).ok());
+  Settings from_file;
+  ASSERT_TRUE(load(from_file, path).ok());
+  EXPECT_EQ(all_text(from_file), all_text(settings));
+  EXPECT_EQ(entries(), 1U);
+}
+
+TEST_F(SceneFile, PartialFilesKeepTheRestAndLaterWins) {
+  Settings settings;
+  settings.scene.sun.azimuth_deg = 99.0F;
+  ASSERT_TRUE(load_text(settings, "[sun]\nelevation_deg = 3\n", "a.toml").ok());
+  ASSERT_TRUE(load_text(settings, "sun.elevation_deg = 4.5\r\ncamera = { yaw_deg = 1 }\r\n", "b.toml").ok());
+  EXPECT_EQ(settings.scene.sun.elevation_deg, 4.5F);
+  EXPECT_EQ(settings.scene.sun.azimuth_deg, 99.0F);
+  EXPECT_EQ(settings.scene.camera.yaw_deg, 1.0F);
+  for (const std::string_view empty : {"", "\n\n", "# only a comment", "[camera]\n", "\xEF\xBB\xBF"}) {
+    Settings untouched;
+    EXPECT_TRUE(load_text(untouched, empty, "empty").ok()) << empty;
+    EXPECT_EQ(all_text(untouched), all_text(Settings()));
+  }
+}
+
+TEST(SceneFileMessages, NameTheLineTheKeyAndWhatIsAllowed) {
+  EXPECT_EQ(failure("[atmosphere]\n\nmie_gg = 0.5\n"),
+            "unknown parameter 'atmosphere.mie_gg', s.toml:3, did you mean 'atmosphere.mie_g'?");
+  EXPECT_EQ(failure("[atmosphre]\nmie_g = 0.5\n"),
+            "unknown table [atmosphre], s.toml:1, did you mean [atmosphere]?");
+  EXPECT_EQ(failure("yaw_deg = 0.5\n"),
+            "unknown parameter 'yaw_deg', s.toml:1, did you mean 'camera.yaw_deg'?");
+  EXPECT_EQ(failure("camera = 0.5\n"), "'camera' is a number, s.toml:1, it has to be a table");
+  EXPECT_EQ(failure("[[camera]]\nyaw_deg = 0.5\n"), "'camera' is an array, s.toml:1, it has to be a table");
+  EXPECT_EQ(failure("[camera]\nyaw_deg = 'north'\n"),
+            "'camera.yaw_deg' is a string, s.toml:2, allowed is -3600 to 3600 deg");
+  EXPECT_EQ(failure("[camera]\nfov_deg = 171\n"),
+            "'camera.fov_deg' = '171' is out of range, s.toml:2, allowed is 1 to 170 deg");
+  EXPECT_EQ(failure("[camera]\nfov_deg = nan\n"),
+            "'camera.fov_deg' = 'nan' is not a finite number, s.toml:2, allowed is 1 to 170 deg");
+  EXPECT_EQ(failure("[camera]\nfov_deg = 1e300\n"),
+            "'camera.fov_deg' = '1e+300' is out of range, s.toml:2, allowed is 1 to 170 deg");
+  EXPECT_EQ(
+      failure("[camera]\nposition_m = [1, 2]\n"),
+      "'camera.position_m' = '2 values' is not 3 numbers, s.toml:2, allowed is 3 numbers, each -1e+09 to "
+      "1e+09 m");
+  EXPECT_EQ(failure("[camera]\nposition_m = 1\n"),
+            "'camera.position_m' is a whole number, s.toml:2, allowed is 3 numbers, each -1e+09 to 1e+09 m");
+  EXPECT_EQ(failure("[camera]\nposition_m = [1, 2, [3]]\n"),
+            "'camera.position_m' is an array, s.toml:2, allowed is 3 numbers, each -1e+09 to 1e+09 m");
+  EXPECT_EQ(failure("[shadows]\ncascades = 3.0\n"),
+            "'shadows.cascades' is a number, s.toml:2, allowed is a whole number, 1 to 8 cascades");
+  EXPECT_EQ(failure("[shadows]\nsmooth = 1\n"),
+            "'shadows.smooth' is a whole number, s.toml:2, allowed is true or false");
+  EXPECT_EQ(failure("[shadows]\nsmooth = 1979-05-27\n"),
+            "'shadows.smooth' is a date or time, s.toml:2, allowed is true or false");
+  EXPECT_EQ(
+      failure("[terrain]\nshading = 'shiny'\n"),
+      "'terrain.shading' = 'shiny' is not one of its values, s.toml:2, allowed is materials, height, plain");
+  EXPECT_EQ(failure("[terrain]\nsource = \"a\\u0000b\"\n"),
+            "'terrain.source' = 'a?b' holds control characters, s.toml:2, allowed is text in UTF-8");
+  EXPECT_EQ(failure("[camera.yaw_deg]\n"),
+            "'camera.yaw_deg' is a table, s.toml:1, allowed is -3600 to 3600 deg");
+  EXPECT_EQ(failure("[camera]\n\"yaw.deg\" = 1\n").substr(0, 45),
+            "unknown parameter 'camera.yaw.deg', s.toml:2,");
+}
+
+TEST(SceneFileMessages, BrokenTomlIsOneLineWithItsPlace) {
+  const std::string truncated = to_toml(Settings()).substr(0, 1200);
+  const std::string_view broken[] = {"[camera]\nyaw_deg = 1\n[camera]\npitch_deg = 2\n",
+                                     "[camera]\nyaw_deg = 1\nyaw_deg = 2\n",
+                                     "[camera\n",
+                                     "[camera]\nyaw_deg = \n",
+                                     "[camera]\nposition_m = [1, 2,",
+                                     "= 3",
+                                     "<?xml version='1.0'?>",
+                                     "\x01\x02\x03\x04"};
+  for (const std::string_view text : broken) {
+    const std::string message = failure(text);
+    EXPECT_EQ(message.rfind("not valid TOML: ", 0), 0U) << message;
+    EXPECT_NE(message.find(", s.toml:"), std::string::npos) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+  EXPECT_NE(failure(std::string(100000, '[')), "(accepted)");
+  EXPECT_EQ(failure("[terrain]\nsource = '\xff'\n"),
+            "not a text file, s.toml, allowed is a scene file: TOML in UTF-8");
+}
+
+// Every prefix of a complete scene file loads or is refused with one line; none may crash.
+TEST(SceneFileMessages, EveryTruncationIsHandled) {
+  const std::string whole = to_toml(Settings());
+  int refused = 0;
+  for (std::size_t length = 0; length < whole.size(); length += 37) {
+    const std::string message = failure(whole.substr(0, length));
+    if (message == "(accepted)") continue;
+    ++refused;
+    EXPECT_NE(message.find("s.toml:"), std::string::npos) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+  EXPECT_GT(refused, 0);
+}
+
+TEST_F(SceneFile, AFailedLoadChangesNothing) {
+  Settings settings;
+  EXPECT_FALSE(load_text(settings, "[sun]\nelevation_deg = 3\n[camera]\nfov_deg = 0\n", "s").ok());
+  EXPECT_EQ(all_text(settings), all_text(Settings()));
+}
+
+TEST_F(SceneFile, UnreadableFiles) {
+  Settings settings;
+  const Result<void> missing = load(settings, (directory_ / "none.toml").string());
+  ASSERT_FALSE(missing.ok());
+  EXPECT_EQ(missing.error().code, ErrorCode::io);
+  EXPECT_NE(missing.error().message.find("none.toml', No such file or directory"), std::string::npos);
+  const Result<void> directory = load(settings, directory_.string());
+  ASSERT_FALSE(directory.ok());
+  EXPECT_NE(directory.error().message.find("Is a directory"), std::string::npos);
+  const Result<void> huge = load(settings, write("huge.toml", std::string((1U << 20U) + 1, '#')));
+  ASSERT_FALSE(huge.ok());
+  EXPECT_NE(huge.error().message.find("at most 1048576 bytes"), std::string::npos);
+  EXPECT_TRUE(load(settings, write("empty.toml", "")).ok());
+}
+
+TEST_F(SceneFile, FilesAreFoundBesideTheScene) {
+  write("dem.tif", "x");
+  Settings settings;
+  ASSERT_TRUE(load(settings, write("s.toml", "[terrain]\nsource = 'dem.tif'\n")).ok());
+  EXPECT_EQ(settings.scene.terrain.source, (directory_ / "dem.tif").string());
+  ASSERT_TRUE(load(settings, write("s.toml", "[terrain]\nsource = 'elsewhere.tif'\n")).ok());
+  EXPECT_EQ(settings.scene.terrain.source, "elsewhere.tif");
+  write("procedural", "x");
+  ASSERT_TRUE(load(settings, write("s.toml", "[terrain]\nsource = 'procedural'\n")).ok());
+  EXPECT_EQ(settings.scene.terrain.source, "procedural");
+}
+
+TEST(Describe, MarkdownHasOneRowPerParameter) {
+  const std::string page = to_markdown();
+  for (const Row& row : rows())
+    EXPECT_NE(page.find("| `" + row.key() + "` |"), std::string::npos) << row.key();
+}
+
+}  // namespace
+}  // namespace tyndall::config

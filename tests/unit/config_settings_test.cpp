@@ -1,0 +1,186 @@
+// Parameters by name: the joint table, setting from text, exact round trips, messages.
+#include "config/settings.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <limits>
+#include <random>
+#include <set>
+
+#include "config/text.hpp"
+
+namespace tyndall::config {
+namespace {
+
+std::string failure(std::string_view assignment) {
+  Settings settings;
+  const Result<void> result = set(settings, assignment);
+  return result ? "(accepted)" : result.error().message;
+}
+
+TEST(ConfigSettings, KeysAreUniqueAndDefaultsAreAllowed) {
+  std::set<std::string> seen;
+  for (const Row& row : rows()) {
+    EXPECT_TRUE(seen.insert(row.key()).second) << row.key();
+    EXPECT_FALSE(row.info.doc.empty()) << row.key();
+    EXPECT_EQ(row.info.name.back() == '_', false) << row.key();
+    // The default's own text has to be accepted: in range, a known choice, the right count.
+    Settings settings;
+    const Result<void> result = set(settings, row.key(), value_text(row, settings), "default");
+    EXPECT_TRUE(result.ok()) << result.error().message;
+  }
+  EXPECT_NE(find_row("tonemap.operator"), nullptr);
+  EXPECT_NE(find_row("camera.yaw_deg"), nullptr);
+  EXPECT_EQ(find_row("tonemap.operator_"), nullptr);
+}
+
+TEST(ConfigSettings, SetReachesTheMembers) {
+  Settings settings;
+  ASSERT_TRUE(set(settings, "camera.yaw_deg=-12.5").ok());
+  ASSERT_TRUE(set(settings, "atmosphere.rayleigh_scattering = 5.8e-6, 13.5e-6 ,33.1e-6").ok());
+  ASSERT_TRUE(set(settings, "atmosphere.mie_phase=henyey-greenstein").ok());
+  ASSERT_TRUE(set(settings, "tonemap.operator=exponential").ok());
+  ASSERT_TRUE(set(settings, "shadows.cascades=8").ok());
+  ASSERT_TRUE(set(settings, "scattering.light_shafts=off").ok());
+  ASSERT_TRUE(set(settings, "sun.animate=1").ok());
+  ASSERT_TRUE(set(settings, "terrain.source=/data/a=b, c.tif").ok());
+  ASSERT_TRUE(set(settings, "terrain.seed=4294967295").ok());
+  EXPECT_EQ(settings.scene.camera.yaw_deg, -12.5F);
+  EXPECT_EQ(settings.effect.atmosphere.rayleigh_scattering, Vec3(5.8e-6F, 13.5e-6F, 33.1e-6F));
+  EXPECT_EQ(settings.effect.atmosphere.mie_phase, MiePhase::henyey_greenstein);
+  EXPECT_EQ(settings.scene.tonemap.operator_, scene::TonemapOperator::exponential);
+  EXPECT_EQ(settings.scene.shadows.cascades, 8U);
+  EXPECT_FALSE(settings.effect.scattering.light_shafts);
+  EXPECT_TRUE(settings.scene.sun.animate);
+  EXPECT_EQ(settings.scene.terrain.source, "/data/a=b, c.tif");
+  EXPECT_EQ(settings.scene.terrain.seed, 4294967295U);
+}
+
+TEST(ConfigSettings, LimitsThemselvesAreAllowed) {
+  Settings settings;
+  EXPECT_TRUE(set(settings, "atmosphere.mie_g=0.99").ok());  // float(0.99) is above double 0.99
+  EXPECT_EQ(failure("atmosphere.mie_g=0.9900001"),
+            "'atmosphere.mie_g' = '0.9900001' is out of range, --set, allowed is -0.99 to 0.99");
+}
+
+TEST(ConfigSettings, FloatsReadBackExactly) {
+  const Row& row = *find_row("camera.position_m");
+  std::mt19937 random(7);
+  for (int i = 0; i < 20000; ++i) {
+    Settings settings;
+    for (float* component : {&settings.scene.camera.position_m.x, &settings.scene.camera.position_m.y,
+                             &settings.scene.camera.position_m.z}) {
+      do {
+        *component = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
+      } while (!(std::abs(*component) <= 1.0e9F));
+    }
+    Settings back;
+    ASSERT_TRUE(set(back, row.key(), value_text(row, settings), "test").ok()) << value_text(row, settings);
+    ASSERT_EQ(back.scene.camera.position_m, settings.scene.camera.position_m) << value_text(row, settings);
+  }
+}
+
+TEST(ConfigSettings, MessagesSayWhatWhereAndWhatIsAllowed) {
+  EXPECT_EQ(failure("atmosphere.mie_gg=0.5"),
+            "unknown parameter 'atmosphere.mie_gg', --set, did you mean 'atmosphere.mie_g'?");
+  EXPECT_EQ(failure("atmopshere.mie_g=0.5"),
+            "unknown parameter 'atmopshere.mie_g', --set, did you mean 'atmosphere.mie_g'?");
+  EXPECT_EQ(failure("mie_g=0.5"), "unknown parameter 'mie_g', --set, did you mean 'atmosphere.mie_g'?");
+  EXPECT_EQ(failure("sky.exposure=0.5"),
+            "unknown parameter 'sky.exposure', --set, did you mean 'tonemap.exposure'?");
+  EXPECT_EQ(failure("planet.zzzzzzzzzzzz=1"),
+            "unknown parameter 'planet.zzzzzzzzzzzz', --set, 'planet' has radius_m, ground_albedo");
+  EXPECT_EQ(failure("qqqqqqqqqqqqqqqqq=1"),
+            "unknown parameter 'qqqqqqqqqqqqqqqqq', --set, 'tyndall params' lists all");
+  EXPECT_EQ(failure("camera.yaw_deg"), "'camera.yaw_deg' is no assignment, --set, allowed is KEY=VALUE");
+  EXPECT_EQ(failure("=3"), "'=3' is no assignment, --set, allowed is KEY=VALUE");
+  EXPECT_EQ(failure("camera.fov_deg=wide"),
+            "'camera.fov_deg' = 'wide' is not one number, --set, allowed is 1 to 170 deg");
+  EXPECT_EQ(failure("camera.fov_deg="),
+            "'camera.fov_deg' = '' is not one number, --set, allowed is 1 to 170 deg");
+  EXPECT_EQ(failure("camera.fov_deg=nan"),
+            "'camera.fov_deg' = 'nan' is not a finite number, --set, allowed is 1 to 170 deg");
+  EXPECT_EQ(failure("camera.fov_deg=-inf"),
+            "'camera.fov_deg' = '-inf' is not a finite number, --set, allowed is 1 to 170 deg");
+  EXPECT_EQ(failure("camera.fov_deg=1e999"),
+            "'camera.fov_deg' = '1e999' is out of range, --set, allowed is 1 to 170 deg");
+  EXPECT_EQ(failure("shadows.cascades=3.5"),
+            "'shadows.cascades' = '3.5' is not one whole number, --set, allowed is a whole number, 1 to 8 "
+            "cascades");
+  EXPECT_EQ(
+      failure("shadows.cascades=99999999999999999999999"),
+      "'shadows.cascades' = '99999999999999999999999' is out of range, --set, allowed is a whole number, 1 "
+      "to 8 cascades");
+  EXPECT_EQ(
+      failure("camera.position_m=1,2"),
+      "'camera.position_m' = '1,2' is not 3 numbers separated by commas, --set, allowed is 3 numbers, each "
+      "-1e+09 to 1e+09 m");
+  EXPECT_EQ(failure("camera.position_m=1,,2"),
+            "'camera.position_m' = '' is not 3 numbers, --set, allowed is 3 numbers, each -1e+09 to 1e+09 m");
+  EXPECT_EQ(failure("scattering.enabled=yes"),
+            "'scattering.enabled' = 'yes' is neither on nor off, --set, allowed is true or false");
+  EXPECT_EQ(
+      failure("terrain.shading=shiny"),
+      "'terrain.shading' = 'shiny' is not one of its values, --set, allowed is materials, height, plain");
+  EXPECT_EQ(failure("terrain.source=\xff\xfe"),
+            "'terrain.source' = '?\?' is not valid UTF-8, --set, allowed is text in UTF-8");
+}
+
+TEST(ConfigSettings, AFailedSetChangesNothing) {
+  Settings settings;
+  EXPECT_FALSE(set(settings, "camera.position_m=1,2,x").ok());
+  EXPECT_EQ(settings.scene.camera.position_m, Settings().scene.camera.position_m);
+}
+
+TEST(ConfigSettings, ValuesTooSmallForAFloatAreZero) {
+  Settings settings;
+  ASSERT_TRUE(set(settings, "camera.yaw_deg=1e-60").ok());
+  EXPECT_EQ(settings.scene.camera.yaw_deg, 0.0F);
+}
+
+TEST(ConfigSettings, CrossChecks) {
+  Settings settings;
+  EXPECT_TRUE(check(settings).ok());
+  settings.scene.shadows.cascades = 2;
+  settings.scene.shadows.first_marched = 2;
+  ASSERT_FALSE(check(settings).ok());
+  EXPECT_EQ(check(settings).error().message,
+            "'shadows.first_marched' = 2 is no cascade, with 'shadows.cascades' = 2, allowed is 0 to 1");
+  settings = Settings();
+  settings.scene.terrain.source.clear();
+  EXPECT_FALSE(check(settings).ok());
+}
+
+TEST(ConfigSettings, MetadataHoldsEverything) {
+  Settings settings;
+  ASSERT_TRUE(set(settings, "camera.yaw_deg=17").ok());
+  const std::vector<std::pair<std::string, std::string>> list = metadata(settings);
+  EXPECT_EQ(list.size(), rows().size() + 1);
+  EXPECT_EQ(list[0].first, "tyndall.version");
+  EXPECT_NE(std::find(list.begin(), list.end(),
+                      std::pair<std::string, std::string>("tyndall.camera.yaw_deg", "17")),
+            list.end());
+}
+
+TEST(ConfigText, EditDistance) {
+  EXPECT_EQ(edit_distance("", "abc"), 3U);
+  EXPECT_EQ(edit_distance("kitten", "sitting"), 3U);
+  EXPECT_EQ(edit_distance("ab", "ba"), 1U);
+  EXPECT_EQ(edit_distance("same", "same"), 0U);
+}
+
+TEST(ConfigText, Utf8) {
+  EXPECT_TRUE(is_utf8("gr\xc3\xbc\xc3\x9f \xe2\x82\xac \xf0\x9f\x8c\x84"));
+  EXPECT_FALSE(is_utf8("\xc3"));              // cut off
+  EXPECT_FALSE(is_utf8("\xc0\x80"));          // overlong
+  EXPECT_FALSE(is_utf8("\xed\xa0\x80"));      // surrogate
+  EXPECT_FALSE(is_utf8("\xf4\x90\x80\x80"));  // beyond U+10FFFF
+  EXPECT_FALSE(is_utf8("\x80"));
+  EXPECT_EQ(one_line("a\nb\xff\xc3\xbc"), "a?b?\xc3\xbc");
+  EXPECT_EQ(one_line("abcdef", 3), "abc...");
+  EXPECT_EQ(quoted_text("a\"b\\c\n"), "\"a\\\"b\\\\c\\u000a\"");
+}
+
+}  // namespace
+}  // namespace tyndall::config
