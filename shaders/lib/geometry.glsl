@@ -1,6 +1,6 @@
 // A spherical planet of radius R seen from near its surface: altitudes, horizons, shells.
-// A ray is given by the altitude h0 of its origin and the cosine mu of its angle from the local vertical; d is
-// the distance along it. World: planet centre at (0, -R, 0), y up.
+// A ray is given by the altitude h0 of its origin and the cosine mu of its angle from the local vertical; d
+// is the distance along it. World: planet centre at (0, -R, 0), y up.
 #ifndef TYNDALL_LIB_GEOMETRY
 #define TYNDALL_LIB_GEOMETRY
 
@@ -14,9 +14,7 @@ float altitude_of(vec3 p, float R) {
 }
 
 // Unit vector away from the planet's centre at the world position p.
-vec3 up_at(vec3 p, float R) {
-  return normalize(vec3(p.x, p.y + R, p.z));
-}
+vec3 up_at(vec3 p, float R) { return normalize(vec3(p.x, p.y + R, p.z)); }
 
 // Altitude at distance d (of either sign) along the ray: r^2 - r0^2 = d (2 r0 mu + d).
 float altitude_along(float h0, float mu, float d, float R) {
@@ -39,8 +37,8 @@ float perigee_altitude(float h0, float mu, float R) {
   return h0 - q0 * q0 / (r0 + r0 * sqrt(max((1.0 - mu) * (1.0 + mu), 0.0)));
 }
 
-// Distances at which the ray's whole line crosses the shell of altitude hs; false (near = far = 0) if it misses.
-// Both roots are free of cancellation; negative ones lie behind the origin.
+// Distances at which the ray's whole line crosses the shell of altitude hs; false (near = far = 0) if it
+// misses. Both roots are free of cancellation; negative ones lie behind the origin.
 bool shell_intersections(float h0, float mu, float hs, float R, OUT(float) near, OUT(float) far) {
   near = 0.0;
   far = 0.0;
@@ -80,13 +78,11 @@ float horizon_cos(float h, float R) {
   return -sqrt(above * (2.0 * R + above)) / (R + above);
 }
 
-bool ray_hits_ground(float h, float mu, float R) {
-  return mu < horizon_cos(h, R);
-}
+bool ray_hits_ground(float h, float mu, float R) { return mu < horizon_cos(h, R); }
 
 // The part of a ray, from anywhere, that lies in the atmosphere below `top` and before the ground: distances
-// start <= end [m], and whether it ends on the ground. False if there is none (start = end = 0). From below sea
-// level, rays downwards end where they begin and the others pass.
+// start <= end [m], and whether it ends on the ground. False if there is none (start = end = 0). From below
+// sea level, rays downwards end where they begin and the others pass.
 bool atmosphere_segment(float h0, float mu, float top, float R, OUT(float) start, OUT(float) end,
                         OUT(bool) hits_ground) {
   start = 0.0;
@@ -115,9 +111,7 @@ bool atmosphere_segment(float h0, float mu, float top, float R, OUT(float) start
 }
 
 // 1 where a point sun at cosine mu_s is above the geometric horizon of a point at altitude h, else 0.
-float sun_visibility(float h, float mu_s, float R) {
-  return mu_s < horizon_cos(h, R) ? 0.0 : 1.0;
-}
+float sun_visibility(float h, float mu_s, float R) { return mu_s < horizon_cos(h, R) ? 0.0 : 1.0; }
 
 // Fraction of the sun's disc above the geometric horizon, for surfaces; the horizon is taken as straight.
 float sun_disc_visibility(float h, float mu_s, float R, float angular_radius_rad) {

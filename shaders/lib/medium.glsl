@@ -1,5 +1,5 @@
-// Densities, extinction and transmittance of the medium. A column is the integral of the three relative densities
-// (x: Rayleigh, y: aerosol, z: ozone) along a path [m].
+// Densities, extinction and transmittance of the medium. A column is the integral of the three relative
+// densities (x: Rayleigh, y: aerosol, z: ozone) along a path [m].
 #ifndef TYNDALL_LIB_MEDIUM
 #define TYNDALL_LIB_MEDIUM
 
@@ -12,7 +12,8 @@ vec3 densities(IN(Medium) m, float h) {
     return vec3(0.0);
   }
   float ozone = max(0.0, 1.0 - abs(h - m.ozone_centre_m) / m.ozone_half_width_m);
-  return vec3(exp(min(-h / m.rayleigh_scale_height_m, 60.0)), exp(min(-h / m.mie_scale_height_m, 60.0)), ozone);
+  return vec3(exp(min(-h / m.rayleigh_scale_height_m, 60.0)), exp(min(-h / m.mie_scale_height_m, 60.0)),
+              ozone);
 }
 
 // Optical depth of a column, per channel.
@@ -21,12 +22,8 @@ vec3 optical_depth(IN(Medium) m, vec3 column) {
 }
 
 // Extinction coefficient at altitude h [1/m].
-vec3 extinction_at(IN(Medium) m, float h) {
-  return optical_depth(m, densities(m, h));
-}
+vec3 extinction_at(IN(Medium) m, float h) { return optical_depth(m, densities(m, h)); }
 
-vec3 transmittance(IN(Medium) m, vec3 column) {
-  return exp(-optical_depth(m, column));
-}
+vec3 transmittance(IN(Medium) m, vec3 column) { return exp(-optical_depth(m, column)); }
 
 #endif

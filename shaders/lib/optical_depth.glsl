@@ -1,14 +1,14 @@
-// Columns of the medium along rays, in closed form: no table and no marching. Where a ray passes below sea level
-// the densities continue; occlusion is the caller's business.
+// Columns of the medium along rays, in closed form: no table and no marching. Where a ray passes below sea
+// level the densities continue; occlusion is the caller's business.
 //
 // Exponential species. With q the signed distance from the ray's perigee (q0 = r0 mu at its origin) and y the
 // altitude gained, the column to infinity is exp(-h0 / H) * integral of exp(-y(q) / H) dq. To first order
 // y = (q^2 - q0^2) / (2 r0), so with s = sqrt(2 r0 H) and p = q / s it is exp(-h0 / H) s E(p0), where
-// E(p) = exp(p^2) * integral from p of exp(-t^2) dt = sqrt(pi) / 2 erfcx(p); the next order in H / r0 multiplies
-// it by 1 + c(p0) H / r0, where c is the mean of (p^2 - p0^2)^2 / 2 under exp(-p^2) beyond p0: from 3/8
-// (horizontal) to 1 (vertical). Both are replaced by rational functions fitted to them (relative errors
-// 5e-8 and 1.1e-3). What is left out is of order 0.2 (H / r0)^2: 1e-4 for the worst planet meant
-// (H = 20 km on r = 1000 km), 3e-7 on Earth.
+// E(p) = exp(p^2) * integral from p of exp(-t^2) dt = sqrt(pi) / 2 erfcx(p); the next order in H / r0
+// multiplies it by 1 + c(p0) H / r0, where c is the mean of (p^2 - p0^2)^2 / 2 under exp(-p^2) beyond p0:
+// from 3/8 (horizontal) to 1 (vertical). Both are replaced by rational functions fitted to them (relative
+// errors 5e-8 and 1.1e-3). What is left out is of order 0.2 (H / r0)^2: 1e-4 for the worst planet meant (H =
+// 20 km on r = 1000 km), 3e-7 on Earth.
 #ifndef TYNDALL_LIB_OPTICAL_DEPTH
 #define TYNDALL_LIB_OPTICAL_DEPTH
 
@@ -17,12 +17,14 @@
 
 // Column to infinity of one exponential species, outwards (q0 = r0 mu >= 0) from altitude h0 [m].
 float exponential_column(float h0, float q0, float scale_height, float R) {
-  float r0 = R + h0;
+  float r0 = max(R + h0, scale_height);  // only deep inside the planet is it smaller
   float s = sqrt(2.0 * r0 * scale_height);
   float p = q0 / s;
-  float e_above = 0.8862269642 + p * (1.1930734838 + p * (0.7531244636 + p * (0.2549023374 + p * 0.04060864678)));
+  float e_above =
+      0.8862269642 + p * (1.1930734838 + p * (0.7531244636 + p * (0.2549023374 + p * 0.04060864678)));
   float e_below =
-      1.0 + p * (2.4746223286 + p * (2.6420678442 + p * (1.5468079195 + p * (0.5098054906 + p * 0.08121729357))));
+      1.0 +
+      p * (2.4746223286 + p * (2.6420678442 + p * (1.5468079195 + p * (0.5098054906 + p * 0.08121729357))));
   float c_above = 0.3753936665 + p * (0.652352705 + p * 0.4259731527);
   float c_below = 1.0 + p * (0.6341824736 + p * 0.4259731527);
   return exp(min(-h0 / scale_height, 60.0)) * s * e_above * (c_below + c_above * scale_height / r0) /
@@ -66,6 +68,15 @@ float ozone_column(IN(Medium) m, float ha, float qa, float hb) {
          linear_column(h1, q1, h3, q3, high, m.ozone_centre_m, R);
 }
 
+// Whether the ozone tent has one of its three kinks between altitudes low and high.
+bool crosses_ozone_kink(IN(Medium) m, float low, float high) {
+  float low_distance = low - m.ozone_centre_m;
+  float high_distance = high - m.ozone_centre_m;
+  float w = m.ozone_half_width_m;
+  return (low_distance < -w && high_distance > -w) || (low_distance < 0.0 && high_distance > 0.0) ||
+         (low_distance < w && high_distance > w);
+}
+
 // Column of the three species between altitudes ha and hb, at distances da < db from the origin of the ray
 // (h0, mu), all within the atmosphere.
 vec3 column_between(IN(Medium) m, float h0, float mu, float da, float ha, float db, float hb) {
@@ -74,14 +85,22 @@ vec3 column_between(IN(Medium) m, float h0, float mu, float da, float ha, float 
   float qa = q0 + da;
   float qb = q0 + db;
   bool passes_perigee = qa < 0.0 && qb > 0.0;
-  float hp = ha;
+  float hp = min(ha, hb);  // the lowest altitude on the way
   if (passes_perigee) {
     float ra = R + ha;
-    hp = ha - qa * qa / (ra + sqrt(max((ra - qa) * (ra + qa), 0.0)));
+    hp = min(hp, ha - qa * qa / (ra + sqrt(max((ra - qa) * (ra + qa), 0.0))));
   }
+  float highest = max(ha, hb);
+
+  float span = db - da;
+  float scale = min(m.rayleigh_scale_height_m, m.mie_scale_height_m);
+  bool is_short = abs(hb - ha) < scale && span * span < 2.0 * (R + ha) * scale;
+  // Ozone by quadrature where its density is smooth or the altitudes differ by too little to be subtracted.
+  bool smooth_ozone =
+      is_short && (highest - hp < 1.0e-4 * m.ozone_half_width_m || !crosses_ozone_kink(m, hp, highest));
 
   float ozone = 0.0;
-  if (max(ha, hb) > m.ozone_centre_m - m.ozone_half_width_m) {
+  if (!smooth_ozone && highest > m.ozone_centre_m - m.ozone_half_width_m) {
     if (passes_perigee) {
       ozone = ozone_column(m, hp, 0.0, ha) + ozone_column(m, hp, 0.0, hb);
     } else if (qa >= 0.0) {
@@ -91,24 +110,15 @@ vec3 column_between(IN(Medium) m, float h0, float mu, float da, float ha, float 
     }
   }
 
-  float span = db - da;
-  float scale = min(m.rayleigh_scale_height_m, m.mie_scale_height_m);
-  if (abs(hb - ha) < scale && span * span < 2.0 * (R + ha) * scale) {
-    // Short: the closed form would be a small difference of large numbers. Three-point Gauss-Legendre.
+  if (is_short) {
+    // The closed form would be a small difference of large numbers. Three-point Gauss-Legendre.
     float middle = 0.5 * (da + db);
     float offset = 0.387298334620742 * span;
-    float h1 = altitude_along(h0, mu, middle - offset, R);
-    float h2 = altitude_along(h0, mu, middle, R);
-    float h3 = altitude_along(h0, mu, middle + offset, R);
-    float inverse_r = -1.0 / m.rayleigh_scale_height_m;
-    float inverse_m = -1.0 / m.mie_scale_height_m;
-    return vec3(span / 18.0 *
-                    (5.0 * (exp(min(h1 * inverse_r, 60.0)) + exp(min(h3 * inverse_r, 60.0))) +
-                     8.0 * exp(min(h2 * inverse_r, 60.0))),
-                span / 18.0 *
-                    (5.0 * (exp(min(h1 * inverse_m, 60.0)) + exp(min(h3 * inverse_m, 60.0))) +
-                     8.0 * exp(min(h2 * inverse_m, 60.0))),
-                ozone);
+    vec3 centre = densities(m, min(altitude_along(h0, mu, middle, R), m.atmosphere_height_m));
+    vec3 sides = densities(m, min(altitude_along(h0, mu, middle - offset, R), m.atmosphere_height_m)) +
+                 densities(m, min(altitude_along(h0, mu, middle + offset, R), m.atmosphere_height_m));
+    vec3 column = (8.0 * centre + 5.0 * sides) * (span / 18.0);
+    return vec3(column.x, column.y, smooth_ozone ? column.z : ozone);
   }
 
   float rayleigh_a = exponential_column(ha, abs(qa), m.rayleigh_scale_height_m, R);
@@ -144,8 +154,6 @@ vec3 column_along(IN(Medium) m, float h, float mu, float d) {
 }
 
 // Column from altitude h along cosine mu to the top of the atmosphere; the planet is no obstacle.
-vec3 column_to_top(IN(Medium) m, float h, float mu) {
-  return column_along(m, h, mu, 1.0e30);
-}
+vec3 column_to_top(IN(Medium) m, float h, float mu) { return column_along(m, h, mu, 1.0e30); }
 
 #endif

@@ -1,5 +1,5 @@
-// Phase functions [1/sr], each normalised to 1 over the sphere. nu is the cosine between the view direction (away
-// from the camera) and the direction to the sun: +1 looking at the sun; positive g scatters forward.
+// Phase functions [1/sr], each normalised to 1 over the sphere. nu is the cosine between the view direction
+// (away from the camera) and the direction to the sun: +1 looking at the sun; positive g scatters forward.
 #ifndef TYNDALL_LIB_PHASE
 #define TYNDALL_LIB_PHASE
 
@@ -7,13 +7,12 @@
 #include "shared/medium.h"
 
 // Rayleigh, without depolarisation: 3 / (16 pi) (1 + nu^2).
-float rayleigh_phase(float nu) {
-  return 0.0596831036594608 * (1.0 + nu * nu);
-}
+float rayleigh_phase(float nu) { return 0.0596831036594608 * (1.0 + nu * nu); }
 
 // 1 + g^2 - 2 g nu, to full relative precision where it is smallest.
 float henyey_greenstein_base(float nu, float g) {
-  return g >= 0.0 ? (1.0 - g) * (1.0 - g) + 2.0 * g * (1.0 - nu) : (1.0 + g) * (1.0 + g) - 2.0 * g * (1.0 + nu);
+  return g >= 0.0 ? (1.0 - g) * (1.0 - g) + 2.0 * g * (1.0 - nu)
+                  : (1.0 + g) * (1.0 + g) - 2.0 * g * (1.0 + nu);
 }
 
 // Henyey and Greenstein, "Diffuse radiation in the galaxy" (1941).

@@ -1,10 +1,10 @@
 // Light scattered once: radiance / E0 [1/sr] of the air along a ray, lit by a point sun, over black ground.
-// The ray is split where it enters and leaves the planet's shadow (a half-infinite cylinder), found from altitudes,
-// and each lit part is cut into panels on which the integrand is resolved: by altitude against the scale heights,
-// by optical depth from the camera and, near the terminator, by the altitude of the sun ray's perigee. Each panel
-// takes four-point Gauss-Legendre quadrature of closed-form transmittances.
-// A ray is (h0, mu, mu_s, nu): altitude, cosines of the view and sun zenith angles at its origin, cosine between
-// view direction and sun.
+// The ray is split where it enters and leaves the planet's shadow (a half-infinite cylinder), found from
+// altitudes, and each lit part is cut into panels on which the integrand is resolved: by altitude against the
+// scale heights, by optical depth from the camera and, near the terminator, by the altitude of the sun ray's
+// perigee. Each panel takes four-point Gauss-Legendre quadrature of closed-form transmittances. A ray is (h0,
+// mu, mu_s, nu): altitude, cosines of the view and sun zenith angles at its origin, cosine between view
+// direction and sun.
 #ifndef TYNDALL_LIB_SINGLE_SCATTERING
 #define TYNDALL_LIB_SINGLE_SCATTERING
 
@@ -52,8 +52,8 @@ bool shadow_segment(float h0, float mu, float mu_s, float nu, float R, OUT(float
   return high > low;
 }
 
-// Length of the next panel from distance d. `fineness` is 1 for the panels of a probe and smaller for finer ones.
-// tau_from_start: optical depth already crossed in this lit part, in the densest channel.
+// Length of the next panel from distance d. `fineness` is 1 for the panels of a probe and smaller for finer
+// ones. tau_from_start: optical depth already crossed in this lit part, in the densest channel.
 float panel_length(IN(Medium) m, float h0, float mu, float mu_s, float nu, float d, float fineness,
                    float tau_from_start) {
   float R = m.planet_radius_m;
@@ -78,9 +78,12 @@ float panel_length(IN(Medium) m, float h0, float mu, float mu_s, float nu, float
   float densest = max(extinction.x, max(extinction.y, extinction.z));
   span = min(span, fineness * 1.5 * (1.0 + 0.25 * tau_from_start) / max(densest, 1.0e-30));
 
-  // The sun's transmittance: by the altitude of the sun ray's perigee below the horizontal, by z around it.
+  // The sun's transmittance: by its optical depth, by z around the horizontal, and below the horizontal by
+  // the altitude of the sun ray's perigee.
   float z = r * clamp(((R + h0) * mu_s + d * nu) / r, -1.0, 1.0);
   float axis_scale = sqrt(2.0 * r * small_scale);
+  float sun_slope = max(densest * steepness * r / (abs(z) + axis_scale), 1.0e-30);
+  span = min(span, fineness * 2.0 / sun_slope);
   span = min(span, fineness * 0.5 * (axis_scale + abs(z)) / max(abs(nu), 1.0e-6));
   if (z < 0.0) {
     float h_sun = h - z * z / (r + sqrt(max((r - z) * (r + z), 0.0)));
@@ -123,16 +126,16 @@ vec3 lit_scattering(IN(Medium) m, float h0, float mu, float mu_s, float nu, floa
       vec3 density = densities(m, h);
       radiance += weight[i] * span * transmittance(m, column) * (rayleigh * density.x + mie * density.y);
     }
-    vec3 crossed = optical_depth(m, column_along(m, altitude_along(h0, mu, d, R),
-                                                 cos_zenith_along(h0, mu, d, R), span));
+    vec3 crossed =
+        optical_depth(m, column_along(m, altitude_along(h0, mu, d, R), cos_zenith_along(h0, mu, d, R), span));
     tau += max(crossed.x, max(crossed.y, crossed.z));
     d = span < left ? d + span : end;
   }
   return radiance;
 }
 
-// Radiance / E0 of the part [start, end] of the ray [m], seen from its origin. `steps` is about the number of panels
-// that a ray through the whole atmosphere takes: 12 for 0.1 %, 4 for about a per cent.
+// Radiance / E0 of the part [start, end] of the ray [m], seen from its origin. `steps` is about the number of
+// panels that a ray through the whole atmosphere takes: 12 for 0.1 %, 4 for about a per cent.
 vec3 single_scattering(IN(Medium) m, float h0, float mu, float mu_s, float nu, float start, float end,
                        int steps) {
   float fineness = 12.0 / float(max(steps, 1));

@@ -4,10 +4,11 @@
 
 #include "lib/single_scattering.glsl"
 
-// At altitude h for sun cosine mu_s, by a fixed product quadrature over the upper hemisphere. The zenith angle is
-// split at the sun's and both it and the azimuth are substituted (distance from the sun = square of the variable), so
-// that the nodes crowd into the aureole. `panels` four-point panels on each side of the sun in zenith angle and
-// in azimuth (half the circle: the other half is its mirror image); `steps` as for single_scattering.
+// At altitude h for sun cosine mu_s, by a fixed product quadrature over the upper hemisphere. The zenith
+// angle is split at the sun's and both it and the azimuth are substituted (distance from the sun = square of
+// the variable), so that the nodes crowd into the aureole. `panels` four-point panels on each side of the sun
+// in zenith angle and in azimuth (half the circle: the other half is its mirror image); `steps` as for
+// single_scattering.
 vec3 sky_irradiance_single(IN(Medium) m, float h, float mu_s, int panels, int steps) {
   float pi = 3.14159265358979;
   vec4 node = vec4(0.069431844202974, 0.330009478207572, 0.669990521792428, 0.930568155797026);
@@ -21,17 +22,20 @@ vec3 sky_irradiance_single(IN(Medium) m, float h, float mu_s, int panels, int st
     if (reach > 1.0e-6) {
       for (int i = 0; i < nodes; ++i) {
         float u = (float(i / 4) + node[i % 4]) / float(panels);
-        float offset = reach * u * u;
+        // Between the sun and the horizon the nodes crowd at both ends: the air is bright there too.
+        float offset = side == 0 ? reach * u * u : reach * u * u * (3.0 - 2.0 * u);
+        float stretch = side == 0 ? 2.0 * reach * u : 6.0 * reach * u * (1.0 - u);
         float zenith = side == 0 ? sun_zenith - offset : sun_zenith + offset;
         float mu = cos(zenith);
         float sin_zenith = sin(zenith);
-        float zenith_weight = 2.0 * reach * u * weight[i % 4] / float(panels) * sin_zenith * mu;
+        float zenith_weight = stretch * weight[i % 4] / float(panels) * sin_zenith * mu;
         for (int j = 0; j < nodes; ++j) {
           float v = (float(j / 4) + node[j % 4]) / float(panels);
           float nu = clamp(mu * mu_s + sin_zenith * sin_sun * cos(pi * v * v), -1.0, 1.0);
           float azimuth_weight = 2.0 * 2.0 * pi * v * weight[j % 4] / float(panels);
           vec3 unused;
-          irradiance += zenith_weight * azimuth_weight * single_scattering_to_end(m, h, mu, mu_s, nu, steps, unused);
+          irradiance +=
+              zenith_weight * azimuth_weight * single_scattering_to_end(m, h, mu, mu_s, nu, steps, unused);
         }
       }
     }

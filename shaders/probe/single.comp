@@ -1,6 +1,6 @@
 #version 460
-// Radiance of the light scattered once along given rays, by numerical integration: `tyndall probe --model single`.
-// One invocation per ray. rays: made by prepare_probe_ray (src/models/single_scattering.hpp);
+// Radiance of the light scattered once along given rays, by numerical integration: `tyndall probe --model
+// single`. One invocation per ray. rays: made by prepare_probe_ray (src/models/single_scattering.hpp);
 // results: radiance / E0 [1/sr] over black ground, and the transmittance to the ray's end.
 #extension GL_GOOGLE_include_directive : require
 
@@ -11,9 +11,9 @@ layout(local_size_x = 64) in;
 
 layout(constant_id = 0) const int kSteps = 16;  // see single_scattering
 
-layout(std430, binding = 0) readonly buffer MediumBuffer { Medium medium; };
-layout(std430, binding = 1) readonly buffer RayBuffer { ProbeRay rays[]; };
-layout(std430, binding = 2) writeonly buffer ResultBuffer { ProbeResult results[]; };
+layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
+layout(std430, binding = 1) readonly buffer ray_block { ProbeRay rays[]; };
+layout(std430, binding = 2) writeonly buffer result_block { ProbeResult results[]; };
 
 void main() {
   uint index = gl_GlobalInvocationID.x;

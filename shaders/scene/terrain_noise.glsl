@@ -1,42 +1,77 @@
+// Elevation of the procedural mountains: a pure function of the place on the map, the sample spacing and
+// a seed. Functions only; compiles as GLSL in single precision and as C++ in double
+// (src/scene/elevation/terrain_glsl.hpp), so literals have a dot and nothing assigns to a swizzle.
+//
+// Places are whole numbers of 1/64 m, x east and z south of the origin. Octave k of the noise lives on
+// the lattice that the integer matrix (a -b; b a) / 2^shift makes of them: rotated by atan(b/a), with cells
+// of 2^shift / (64 sqrt(a^2 + b^2)) m. Cell numbers and fractions come from integer arithmetic, so the
+// noise is as precise 2000 km away as at the origin. It is unique within 6700 km / sqrt(a^2 + b^2) * 2.2.
+//
+// The shape: valleys along the zero lines of a 36 km noise, side valleys across its gradient, and then
+// gullies that run down whatever slope the coarser octaves left, each octave branching off the previous
+// one. A gully octave is a sum of plane waves around jittered lattice points, as in sparse Gabor noise
+// (Lagae et al., "Procedural noise using sparse Gabor convolution", 2009), with the wave vector across
+// the local slope; the sum is normalised to a phase (Tricard et al., "Procedural phasor noise", 2019).
+// The wave is even about its points, so turning the slope by half a turn at a crest changes nothing.
 #ifndef TYNDALL_TERRAIN_NOISE_GLSL
 #define TYNDALL_TERRAIN_NOISE_GLSL
 
+#include "lib/portable.glsl"
+
+const float kTerrainUnitsPerM = 64.0;
+const float kTerrainMinM = 200.0;   // never reached
+const float kTerrainMaxM = 5000.0;  // never reached
+const float kTau = 6.283185307;
+
+// Wavelengths of a gully octave per lattice cell, and how far its points stray, in cells.
+const float kGullyTurns = 0.75;
+const float kGullyJitter = 0.5;
+
+// A place within one lattice.
 struct TerrainCell {
-  uvec2 corner;
-  uint mask;
-  vec2 f;
+  uvec2 corner;  // number of the cell
+  uint mask;     // valid bits of cell numbers
+  vec2 f;        // place in the cell, [0; 1)
 };
 
+// What the octaves so far have built.
 struct TerrainSurface {
   float height_m;
-  vec2 slope;
-  float crest;  // 1 on crests, 0 on floors
+  vec2 slope;   // smooth gradient by which finer gullies are steered, m/m
+  float crest;  // [0; 1] 1 on crests, 0 on valley floors
 };
 
-ivec2 terrain_units(vec2 map_m) { return ivec2(floor(map_m * 64.0 + vec2(0.5))); }
+// Lowest and highest elevation that terrain_height can give, m.
+vec2 terrain_height_bounds() { return vec2(kTerrainMinM, kTerrainMaxM); }
+
+// Nearest place to a point of the map; exact only where a float is (use integers further away).
+ivec2 terrain_units(vec2 map_m) { return ivec2(floor(map_m * kTerrainUnitsPerM + vec2(0.5, 0.5))); }
 
 TerrainCell terrain_cell(ivec2 units, vec2 warp_m, int a, int b, int shift) {
-  TerrainCell cell;
   uint ua = uint(a);
   uint ub = uint(b);
   uvec2 q = uvec2(units);
-  uvec2 u = uvec2(ua * q.x - ub * q.y, ub * q.x + ua * q.y);
-  uint low = (1u << uint(shift)) - 1u;
-  float per_m = 64.0 / float(1u << uint(shift));
+  uvec2 u = uvec2(ua * q.x - ub * q.y, ub * q.x + ua * q.y);  // modulo 2^32, as are cell numbers
+  uint size = 1u << uint(shift);
+  float per_unit = 1.0 / float(size);
+  float per_m = kTerrainUnitsPerM * per_unit;
   vec2 w = vec2(float(a) * warp_m.x - float(b) * warp_m.y, float(b) * warp_m.x + float(a) * warp_m.y) * per_m;
-  vec2 f = vec2(float(u.x & low), float(u.y & low)) * (1.0 / float(low + 1u)) + w;
-  vec2 n = floor(f);
-  cell.f = f - n;
+  vec2 f = vec2(float(u.x & (size - 1u)), float(u.y & (size - 1u))) * per_unit + w;
+  vec2 whole = floor(f);
+  TerrainCell cell;
+  cell.f = f - whole;
   cell.mask = 0xffffffffu >> uint(shift);
-  cell.corner = uvec2(u.x >> uint(shift), u.y >> uint(shift)) + uvec2(ivec2(n));
+  cell.corner = uvec2(u.x >> uint(shift), u.y >> uint(shift)) + uvec2(ivec2(whole));
   return cell;
 }
 
+// A gradient per cell of a lattice as a gradient per metre of the map.
 vec2 terrain_map_slope(vec2 d, int a, int b, int shift) {
-  float per_m = 64.0 / float(1u << uint(shift));
+  float per_m = kTerrainUnitsPerM / float(1u << uint(shift));
   return vec2(float(a) * d.x + float(b) * d.y, float(a) * d.y - float(b) * d.x) * per_m;
 }
 
+// Integer finaliser of the multiply-xorshift family; constants from C. Wellons' search (public domain).
 uint terrain_hash(uint n) {
   uint h = n;
   h = (h ^ (h >> 16u)) * 0x7feb352du;
@@ -44,8 +79,9 @@ uint terrain_hash(uint n) {
   return h ^ (h >> 16u);
 }
 
+// Two numbers in [-1; 1].
 vec2 terrain_random2(uint h) {
-  return vec2(float(h & 0xffffu), float(h >> 16u)) * (1.0 / 32767.5) - vec2(1.0);
+  return vec2(float(h & 0xffffu), float(h >> 16u)) * (1.0 / 32767.5) - vec2(1.0, 1.0);
 }
 
 uvec4 terrain_corners(TerrainCell cell, uint salt) {
@@ -56,17 +92,20 @@ uvec4 terrain_corners(TerrainCell cell, uint salt) {
   return uvec4(terrain_hash(x0 + y0), terrain_hash(x1 + y0), terrain_hash(x0 + y1), terrain_hash(x1 + y1));
 }
 
+// Two independent value noises in [-1; 1].
 vec2 terrain_value2(TerrainCell cell, uint salt) {
   uvec4 h = terrain_corners(cell, salt);
-  vec2 t = cell.f * cell.f * (vec2(3.0) - cell.f * 2.0);
-  return mix(mix(terrain_random2(h.x), terrain_random2(h.y), t.x), mix(terrain_random2(h.z), terrain_random2(h.w), t.x), t.y);
+  vec2 t = cell.f * cell.f * (vec2(3.0, 3.0) - cell.f * 2.0);
+  return mix(mix(terrain_random2(h.x), terrain_random2(h.y), t.x),
+             mix(terrain_random2(h.z), terrain_random2(h.w), t.x), t.y);
 }
 
+// Gradient noise (Perlin, "Improving noise", 2002): x value, mostly in [-0.7; 0.7]; yz gradient per cell.
 vec3 terrain_gradient_noise(TerrainCell cell, uint salt) {
   uvec4 h = terrain_corners(cell, salt);
   vec2 f = cell.f;
-  vec2 t = f * f * f * (f * (f * 6.0 - vec2(15.0)) + vec2(10.0));
-  vec2 dt = f * f * (f * (f - vec2(2.0)) + vec2(1.0)) * 30.0;
+  vec2 t = f * f * f * (f * (f * 6.0 - vec2(15.0, 15.0)) + vec2(10.0, 10.0));
+  vec2 dt = f * f * (f * (f - vec2(2.0, 2.0)) + vec2(1.0, 1.0)) * 30.0;
   vec2 ga = terrain_random2(h.x);
   vec2 gb = terrain_random2(h.y);
   vec2 gc = terrain_random2(h.z);
@@ -82,110 +121,131 @@ vec3 terrain_gradient_noise(TerrainCell cell, uint salt) {
   return vec3(v, d.x, d.y) * 1.4;
 }
 
+// Cosine and sine of an angle in turns, within 0.0012.
 vec2 terrain_phasor(float turns) {
   float x = turns - floor(turns + 0.5);
   float y = 0.25 - abs(x);
-  float xs = x * (8.0 - 16.0 * abs(x));
-  float c_arg = y;
-  float cs = c_arg * (8.0 - 16.0 * abs(c_arg));
-  return vec2(cs * (0.775 + 0.225 * abs(cs)), xs * (0.775 + 0.225 * abs(xs)));
+  float s = x * (8.0 - 16.0 * abs(x));
+  float c = y * (8.0 - 16.0 * abs(y));
+  return vec2(c * (0.775 + 0.225 * abs(c)), s * (0.775 + 0.225 * abs(s)));
 }
 
-const float kJitter = 0.5;
-vec2 terrain_gully_wave(TerrainCell cell, vec2 turns_per_cell, uint salt) {
+// Cosine and sine of the phase of gullies that run at right angles to `across` (map frame; its length,
+// at most one, scales the wave number).
+vec2 terrain_gully(vec2 across, ivec2 units, vec2 warp_m, int a, int b, int shift, uint salt) {
+  TerrainCell cell = terrain_cell(units, warp_m, a, b, shift);
   uvec4 h = terrain_corners(cell, salt);
+  float turns = kGullyTurns * inversesqrt(float(a * a + b * b));
+  vec2 k = vec2(float(a) * across.x - float(b) * across.y, float(b) * across.x + float(a) * across.y) * turns;
   vec2 f = cell.f;
-  vec2 t = f * f * (vec2(3.0) - f * 2.0);
-  vec2 k = turns_per_cell;
-  vec2 z00 = terrain_phasor(dot(k, f - terrain_random2(h.x) * kJitter));
-  vec2 z10 = terrain_phasor(dot(k, f - vec2(1.0, 0.0) - terrain_random2(h.y) * kJitter));
-  vec2 z01 = terrain_phasor(dot(k, f - vec2(0.0, 1.0) - terrain_random2(h.z) * kJitter));
-  vec2 z11 = terrain_phasor(dot(k, f - vec2(1.0, 1.0) - terrain_random2(h.w) * kJitter));
+  vec2 t = f * f * (vec2(3.0, 3.0) - f * 2.0);
+  vec2 z00 = terrain_phasor(dot(k, f - terrain_random2(h.x) * kGullyJitter));
+  vec2 z10 = terrain_phasor(dot(k, f - vec2(1.0, 0.0) - terrain_random2(h.y) * kGullyJitter));
+  vec2 z01 = terrain_phasor(dot(k, f - vec2(0.0, 1.0) - terrain_random2(h.z) * kGullyJitter));
+  vec2 z11 = terrain_phasor(dot(k, f - vec2(1.0, 1.0) - terrain_random2(h.w) * kGullyJitter));
   vec2 sum = mix(mix(z00, z10, t.x), mix(z01, z11, t.x), t.y);
   return sum * inversesqrt(dot(sum, sum) + 0.01);
 }
 
-float terrain_octave_weight(float wavelength_m, float spacing_m) {
-  return clamp(wavelength_m / spacing_m * 0.5 - 1.0, 0.0, 1.0);
+// Cross-section of a gully from the cosine of its phase: sharp crests, rounded floors, mean zero.
+// `blunt` rounds the crests to what the spacing can show.
+float terrain_gully_profile(float cosine, float blunt) {
+  return 1.273 - 2.0 * sqrt(max(0.5 - 0.5 * cosine, 0.0) + 0.001 + blunt);
 }
 
-const float kTurns = 0.75;
-
-// wave: x height, y its derivative by the phase
-vec2 terrain_gully(vec2 across, ivec2 units, vec2 warp_m, int a, int b, int shift, uint salt) {
-  float norm = kTurns * inversesqrt(float(a * a + b * b));
-  vec2 k = vec2(float(a) * across.x - float(b) * across.y, float(b) * across.x + float(a) * across.y) * norm;
-  return terrain_gully_wave(terrain_cell(units, warp_m, a, b, shift), k, salt);
+// One gully octave on top of `s`. amplitude: height per wavelength. gentle: squared slope below which
+// gullies fade. Octaves between detail_m and twice that fade in: procedural terrain passes a huge
+// detail_m, elevation files what they cannot resolve themselves.
+void terrain_gully_octave(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, int a, int b, int shift,
+                          float amplitude, float gentle, float spacing_m, float detail_m, uint salt) {
+  float wave_m = float(1u << uint(shift)) * inversesqrt(float(a * a + b * b)) *
+                 (1.0 / (kTerrainUnitsPerM * kGullyTurns));
+  float per_wave = spacing_m / wave_m;
+  float weight = clamp(0.5 / per_wave - 1.0, 0.0, 1.0) * clamp(2.0 - wave_m / detail_m, 0.0, 1.0);
+  if (weight > 0.0) {
+    float steep2 = dot(s.slope, s.slope);
+    // On crests, where the slope turns round, the wave number goes to zero rather than its direction jump.
+    vec2 across = vec2(-s.slope.y, s.slope.x) * inversesqrt(steep2 + 0.12 * gentle);
+    vec2 z = terrain_gully(across, units, warp_m, a, b, shift, salt);
+    float height_m = amplitude * wave_m * weight * (steep2 + 0.7 * gentle * s.crest) / (steep2 + gentle);
+    s.height_m += height_m * terrain_gully_profile(z.x, 2.0 * per_wave * per_wave);
+    s.slope -= across * (height_m * z.y * (kTau / wave_m) * 0.5);
+    s.crest = s.crest * mix(1.0, clamp(0.6 + 0.7 * z.x, 0.0, 1.4), 0.6);
+  }
 }
 
-void terrain_gully_octave(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, int a, int b, int shift, float cell_m,
-                          float amplitude, float gentle, float sharp, float spacing_m, uint salt) {
-  float wave_m = cell_m / kTurns;
-  float w = terrain_octave_weight(wave_m, spacing_m);
-  float steep2 = dot(s.slope, s.slope);
-  vec2 across = vec2(-s.slope.y, s.slope.x) * inversesqrt(steep2 + 1.0e-6);
-  vec2 z = terrain_gully(across, units, warp_m, a, b, shift, salt);
-  float amp = amplitude * wave_m * w * (steep2 + 0.7 * gentle * s.crest) / (steep2 + gentle);
-  float crest = sqrt(max(0.5 - 0.5 * z.x, 0.0) + 0.001);
-  float shape = mix(z.x, 0.273 + 1.0 - 2.0 * crest, sharp);
-  s.crest = mix(s.crest, s.crest * clamp(0.6 + 0.7 * z.x, 0.0, 1.4), 0.6);
-  s.height_m += amp * shape;
-  s.slope -= across * (amp * z.y * (6.2832 / wave_m) * 0.5);
+// The octaves from 2.4 km to 60 m.
+void terrain_gullies(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, float strength, float spacing_m,
+                     float detail_m, uint salt) {
+  terrain_gully_octave(s, units, warp_m, 1, 2, 18, 0.100 * strength, 0.05, spacing_m, detail_m, salt + 12u);
+  terrain_gully_octave(s, units, warp_m, 2, 1, 17, 0.080 * strength, 0.06, spacing_m, detail_m, salt + 13u);
+  terrain_gully_octave(s, units, warp_m, 1, 2, 16, 0.070 * strength, 0.06, spacing_m, detail_m, salt + 14u);
+  terrain_gully_octave(s, units, warp_m, 1, 4, 16, 0.060 * strength, 0.06, spacing_m, detail_m, salt + 15u);
+  terrain_gully_octave(s, units, warp_m, 2, 3, 15, 0.055 * strength, 0.06, spacing_m, detail_m, salt + 16u);
+  terrain_gully_octave(s, units, warp_m, 3, 1, 14, 0.050 * strength, 0.06, spacing_m, detail_m, salt + 17u);
 }
 
-float terrain_height_units(ivec2 units, float spacing_m, uint seed) {
-  uint salt = terrain_hash(seed + 0x51ed270bu);
-  // ranges
-  vec3 r0 = terrain_gradient_noise(terrain_cell(units, vec2(0.0), 1, 2, 25), salt + 1u);   // 234 km
-  vec3 r1 = terrain_gradient_noise(terrain_cell(units, vec2(0.0), 3, 1, 24), salt + 2u);   // 83 km
-  vec2 wa = terrain_value2(terrain_cell(units, vec2(0.0), 2, 1, 21), salt + 3u);   // 14.6 km
-  vec2 wb = terrain_value2(terrain_cell(units, vec2(0.0), 1, 3, 19), salt + 4u);   // 2.6 km
-  vec2 warp = wa * 2000.0 + wb * 200.0;
-  vec2 o = vec2(units) * (1.0 / 64.0 / 90000.0);
-  float home = 1.0 / (1.0 + dot(o, o) * dot(o, o));
-  float range = smoothstep(-0.5, 0.75, r0.x * 0.9 + r1.x * 0.45 + 0.15 + 0.5 * home);
+// Bends the map so that nothing runs along a lattice, m.
+vec2 terrain_warp(ivec2 units, uint salt) {
+  return terrain_value2(terrain_cell(units, vec2(0.0, 0.0), 2, 1, 21), salt + 3u) * 2000.0 +  // 14.7 km
+         terrain_value2(terrain_cell(units, vec2(0.0, 0.0), 1, 3, 19), salt + 4u) * 200.0;    // 2.6 km
+}
 
-  // valleys: zero lines
-  vec3 n2 = terrain_gradient_noise(terrain_cell(units, warp * 1.2, 3, 2, 23), salt + 5u);  // 36 km
-  vec2 n2d = terrain_map_slope(vec2(n2.y, n2.z), 3, 2, 23);
-  vec3 n1 = terrain_gradient_noise(terrain_cell(units, warp, 2, 1, 21), salt + 6u);  // 14.6 km
-  vec2 n1d = terrain_map_slope(vec2(n1.y, n1.z), 2, 1, 21);
+// Keeps a height strictly within the bounds without a kink; heights from 450 to 4400 m stay as they are.
+float terrain_soft_limit(float height_m) {
+  float over = max(height_m - 4400.0, 0.0);
+  float under = max(450.0 - height_m, 0.0);
+  return clamp(height_m, 450.0, 4400.0) + 600.0 * over / (over + 600.0) - 250.0 * under / (under + 250.0);
+}
 
-  float valley = sqrt(n2.x * n2.x + 0.003) - 0.05;           // 0 on the line
-  vec2 valley_d = n2d * (n2.x * inversesqrt(n2.x * n2.x + 0.01));
+uint terrain_salt(uint seed) { return terrain_hash(seed + 0x51ed270bu); }
 
-  float mount = range * range * (3.0 - 2.0 * range);
-  float relief = 250.0 + 2750.0 * mount;
-  float gain = relief / 3000.0;
+// Elevation in m at a place (1/64 m), without anything finer than about two spacings.
+float terrain_height_at(ivec2 units, float spacing_m, uint seed) {
+  uint salt = terrain_salt(seed);
+  // Ranges, 234 and 83 km: 0 lowland, 1 high mountains. The origin always lies in a range.
+  float coarse = terrain_gradient_noise(terrain_cell(units, vec2(0.0, 0.0), 1, 2, 25), salt + 1u).x * 0.9 +
+                 terrain_gradient_noise(terrain_cell(units, vec2(0.0, 0.0), 3, 1, 24), salt + 2u).x * 0.45;
+  vec2 away = vec2(units) * (1.0 / (kTerrainUnitsPerM * 90000.0));
+  float away2 = dot(away, away);
+  float range = smoothstep(-0.5, 0.75, coarse + 0.15 + 0.5 / (1.0 + away2 * away2));
+  float high = range * range * (3.0 - 2.0 * range);
+  float relief_m = 250.0 + 2750.0 * high;
+
+  // Main valleys: zero lines of `line`, and a lower-frequency swell between them.
+  vec2 warp_m = terrain_warp(units, salt);
+  vec3 line = terrain_gradient_noise(terrain_cell(units, warp_m * 1.2, 3, 2, 23), salt + 5u);  // 36 km
+  vec2 line_d = terrain_map_slope(vec2(line.y, line.z), 3, 2, 23);
+  vec3 swell = terrain_gradient_noise(terrain_cell(units, warp_m, 2, 1, 21), salt + 6u);  // 14.7 km
+  vec2 swell_d = terrain_map_slope(vec2(swell.y, swell.z), 2, 1, 21);
+  float off = sqrt(line.x * line.x + 0.003) - 0.05;
+  vec2 off_d = line_d * (line.x * inversesqrt(line.x * line.x + 0.01));
+  float rise = off / (off + 0.16);
+  float rise_d = 0.16 / ((off + 0.16) * (off + 0.16));
+  float body = 0.8 + 0.45 * swell.x;
   TerrainSurface s;
-  float c = 0.16;
-  float vprof = valley / (valley + c);
-  float vprof_d = c / ((valley + c) * (valley + c));
-  float b0 = 0.8;
-  float b1 = 0.45;
-  s.height_m = 400.0 + 500.0 * range + relief * vprof * (b0 + b1 * n1.x);
-  s.slope = (valley_d * (vprof_d * (b0 + b1 * n1.x)) + n1d * (b1 * vprof)) * relief;
+  s.height_m = 400.0 + 500.0 * range + relief_m * rise * body;
+  s.slope = (off_d * (rise_d * body) + swell_d * (0.45 * rise)) * relief_m;
 
-  // side valleys
-  float g2 = dot(n2d, n2d);
-  vec2 across = vec2(-n2d.y, n2d.x) * inversesqrt(g2 + 1.0e-14);
-  vec2 za = terrain_gully(across, units, warp, 3, 2, 21, salt + 9u);
-  s.crest = vprof * clamp(0.5 + 0.6 * za.x, 0.0, 1.0) * mount;
-  float amp_a = 1500.0 * gain * vprof * g2 / (g2 + 2.0e-10);
-  s.height_m += amp_a * (0.273 + 1.0 - 2.0 * sqrt(max(0.5 - 0.5 * za.x, 0.0) + 0.001));
-  s.slope -= across * (amp_a * za.y * (6.2832 / 12100.0) * 0.7);
+  // Side valleys, 12 km apart, straight down the flanks of the main ones.
+  float line_d2 = dot(line_d, line_d);
+  vec2 across = vec2(-line_d.y, line_d.x) * inversesqrt(line_d2 + 1.0e-11);
+  vec2 z = terrain_gully(across, units, warp_m, 3, 2, 21, salt + 9u);
+  float side_m = 0.5 * relief_m * rise * line_d2 / (line_d2 + 2.0e-10) *
+                 clamp(6058.0 / spacing_m - 1.0, 0.0, 1.0);
+  s.height_m += side_m * terrain_gully_profile(z.x, 0.0);
+  s.slope -= across * (side_m * z.y * (kTau / 12117.0) * 0.7);
+  s.crest = rise * clamp(0.5 + 0.6 * z.x, 0.0, 1.0) * high;
 
-  terrain_gully_octave(s, units, warp, 4, 1, 20, 3974.0, 0.12 * sqrt(gain), 0.012, 1.0, spacing_m, salt + 11u);
-  terrain_gully_octave(s, units, warp, 1, 2, 18, 1832.0, 0.10, 0.04, 1.0, spacing_m, salt + 12u);
-  terrain_gully_octave(s, units, warp, 2, 1, 17, 916.0, 0.08, 0.06, 1.0, spacing_m, salt + 13u);
-  terrain_gully_octave(s, units, warp, 1, 2, 16, 458.0, 0.07, 0.06, 1.0, spacing_m, salt + 14u);
-  terrain_gully_octave(s, units, warp, 1, 4, 16, 248.0, 0.06, 0.06, 1.0, spacing_m, salt + 16u);
-  terrain_gully_octave(s, units, warp, 2, 3, 15, 142.0, 0.055, 0.06, 1.0, spacing_m, salt + 17u);
-  terrain_gully_octave(s, units, warp, 3, 1, 14, 81.0, 0.05, 0.06, 1.0, spacing_m, salt + 18u);
-  return s.height_m;
+  float gain = sqrt(relief_m * (1.0 / 3000.0));
+  terrain_gully_octave(s, units, warp_m, 4, 1, 20, 0.12 * gain, 0.025, spacing_m, 1.0e9, salt + 11u);  // 5.3 km
+  terrain_gullies(s, units, warp_m, 1.0, spacing_m, 1.0e9, salt);
+  return terrain_soft_limit(s.height_m);
 }
 
+// The same at a point of the map in m: x east, y south.
 float terrain_height(vec2 map_m, float spacing_m, uint seed) {
-  return terrain_height_units(terrain_units(map_m), spacing_m, seed);
+  return terrain_height_at(terrain_units(map_m), spacing_m, seed);
 }
+
 #endif

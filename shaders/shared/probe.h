@@ -1,5 +1,6 @@
 // What shaders/probe reads and writes, one of each per ray. Made by prepare_probe_ray (src/models), in double
-// precision, because the horizon, the entry into the air and its end are where single precision would decide wrongly.
+// precision, because the horizon, the entry into the air and its end are where single precision would decide
+// wrongly.
 #ifndef TYNDALL_SHARED_PROBE
 #define TYNDALL_SHARED_PROBE
 

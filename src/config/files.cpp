@@ -27,6 +27,10 @@ Error io_error(std::string_view what, std::string_view path, std::string_view re
   return Error{ErrorCode::io, concat({what, " ", shown(path), ", ", rest})};
 }
 
+Error read_error(const std::string& path, int code) {
+  return io_error("cannot read", path, concat({reason(code), ", needed is a readable file"}));
+}
+
 std::string directory_of(const std::string& path) {
   const std::string parent = std::filesystem::path(path).parent_path().string();
   return parent.empty() ? "." : parent;
@@ -44,7 +48,7 @@ constexpr mode_t kNewFileMode = 0666;  // less the umask
 
 Result<std::string> read_file(const std::string& path, std::uint64_t limit) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) return io_error("cannot read", path, reason(errno));
+  if (descriptor < 0) return read_error(path, errno);
   struct stat info {};
   std::string contents;
   int failure = 0;
@@ -53,6 +57,9 @@ Result<std::string> read_file(const std::string& path, std::uint64_t limit) {
   } else if (S_ISDIR(info.st_mode)) {
     failure = EISDIR;
   }
+  // Pipes and devices do not say how much is to come; some never end.
+  constexpr std::uint64_t kLargestStream = std::uint64_t{256} << 20U;
+  if (!S_ISREG(info.st_mode)) limit = std::min(limit, kLargestStream);
   constexpr std::size_t kChunk = std::size_t{1} << 20U;
   std::size_t used = 0;
   while (failure == 0 && used <= limit) {
@@ -67,7 +74,7 @@ Result<std::string> read_file(const std::string& path, std::uint64_t limit) {
     if (got < 0 && errno != EINTR) failure = errno;
   }
   ::close(descriptor);
-  if (failure != 0) return io_error("cannot read", path, reason(failure));
+  if (failure != 0) return read_error(path, failure);
   if (used > limit)
     return io_error("cannot read", path, concat({"at most ", std::to_string(limit), " bytes are allowed"}));
   contents.resize(used);
@@ -143,7 +150,9 @@ void AtomicFile::discard() {
   temporary_.clear();
 }
 
-Error AtomicFile::error(std::string_view what) const { return io_error(what, shown_, reason(errno)); }
+Error AtomicFile::error(std::string_view what) const {
+  return io_error(what, shown_, concat({reason(errno), ", needed is a place with room that can be written"}));
+}
 
 Result<void> AtomicFile::write(const void* data, std::size_t size) {
   const char* bytes = static_cast<const char*>(data);

@@ -11,7 +11,7 @@
 
 namespace tyndall::config {
 
-// The bytes of a file of at most `limit` bytes. Refuses directories.
+// The bytes of a file of at most `limit` bytes (of a pipe or device: at most 256 MiB). Refuses directories.
 [[nodiscard]] Result<std::string> read_file(const std::string& path, std::uint64_t limit);
 
 // A file that appears under its name only when commit() succeeds; until then, and on destruction

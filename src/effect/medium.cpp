@@ -12,7 +12,8 @@ constexpr double kDepolarisation = 0.035;
 constexpr double kAerosolScatteringPerM = 2.0e-5;  // at aerosol_density 1, the same at every wavelength
 
 Vec3 scaled(const Vec3& v, double factor) {
-  return {static_cast<float>(v.x * factor), static_cast<float>(v.y * factor), static_cast<float>(v.z * factor)};
+  return {static_cast<float>(v.x * factor), static_cast<float>(v.y * factor),
+          static_cast<float>(v.z * factor)};
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ using mat4 = Mat4;
 #include "shared/probe.h"
 
 static_assert(sizeof(Medium) == 96, "the layout of Medium must agree with std430");
-static_assert(sizeof(ProbeRay) == 32 && sizeof(ProbeResult) == 32, "the layouts of probes must agree with std430");
+static_assert(sizeof(ProbeRay) == 32 && sizeof(ProbeResult) == 32,
+              "the layouts of probes must agree with std430");
 
 }  // namespace tyndall::shared

@@ -1,6 +1,7 @@
-// shaders/lib compiled as C++ in double precision: tyndall::glsl64 holds Medium and every function of the library
-// (geometry, medium, phase, optical_depth, single_scattering, sky_irradiance), with vec3 = glm::dvec3.
-// Conventions are those of the GLSL files. For .cpp files only: it defines functions of internal linkage.
+// shaders/lib compiled as C++ in double precision: tyndall::glsl64 holds Medium and every function of the
+// library (geometry, medium, phase, optical_depth, single_scattering, sky_irradiance), with vec3 =
+// glm::dvec3. Conventions are those of the GLSL files. For .cpp files only: it defines functions of internal
+// linkage.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // The functions of shaders/lib as C++, in whatever namespace and precision the includer has set up (`float`,
-// vec2..vec4, uint). Included by src/models/glsl_double.hpp and by the tests; no include guard on purpose, and the
+// vec2 to vec4, uint). Included by src/models/glsl_double.hpp and by the tests; no include guard, and the
 // guards of the GLSL files are lifted so that several precisions can stand in one translation unit.
 #define IN(type) const type&
 #define OUT(type) type&

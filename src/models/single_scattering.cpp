@@ -18,14 +18,15 @@ std::array<double, 3> to_array(const glsl64::vec3& v) { return {v.x, v.y, v.z}; 
 Ray ray_from_angles(double altitude_m, double view_zenith_rad, double sun_zenith_rad, double azimuth_rad) {
   const double cos_view_sun = std::cos(view_zenith_rad) * std::cos(sun_zenith_rad) +
                               std::sin(view_zenith_rad) * std::sin(sun_zenith_rad) * std::cos(azimuth_rad);
-  return {altitude_m, std::cos(view_zenith_rad), std::cos(sun_zenith_rad), std::clamp(cos_view_sun, -1.0, 1.0)};
+  return {altitude_m, std::cos(view_zenith_rad), std::cos(sun_zenith_rad),
+          std::clamp(cos_view_sun, -1.0, 1.0)};
 }
 
 Answer single_scattering(const shared::Medium& medium, const Ray& ray, int steps) {
   glsl64::vec3 transmittance;
-  const glsl64::vec3 radiance = glsl64::single_scattering_to_end(
-      glsl64::widen(medium), ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith, ray.cos_view_sun, steps,
-      transmittance);
+  const glsl64::vec3 radiance =
+      glsl64::single_scattering_to_end(glsl64::widen(medium), ray.altitude_m, ray.cos_view_zenith,
+                                       ray.cos_sun_zenith, ray.cos_view_sun, steps, transmittance);
   return {to_array(radiance), to_array(transmittance)};
 }
 

@@ -1,6 +1,6 @@
 // Light scattered once, by numerical integration in double precision over shaders/lib: the model `single` of
-// `probe` and `validate`. Radiance is relative to the sun's irradiance above the atmosphere [1/sr]; the ground is
-// black and the sun a point. Pure functions, safe from any thread.
+// `probe` and `validate`. Radiance is relative to the sun's irradiance above the atmosphere [1/sr]; the
+// ground is black and the sun a point. Pure functions, safe from any thread.
 #pragma once
 
 #include <array>
@@ -9,13 +9,14 @@
 
 namespace tyndall::models {
 
-// A question: light arriving at an altitude from a direction. Altitudes may be above the atmosphere, and slightly
-// below sea level.
+// A question: light arriving at an altitude from a direction. Altitudes may be above the atmosphere, and
+// slightly below sea level.
 struct Ray {
   double altitude_m = 0.0;
   double cos_view_zenith = 1.0;
   double cos_sun_zenith = 1.0;
-  double cos_view_sun = 1.0;  // between the view direction (away from the camera) and the direction to the sun
+  double cos_view_sun =
+      1.0;  // between the view direction (away from the camera) and the direction to the sun
 };
 
 // The ray whose view and sun directions differ by the azimuth given. Angles in rad.
@@ -30,7 +31,8 @@ struct Answer {
 // Within 0.01 % of the integral on Earth; `steps` as for single_scattering in shaders/lib.
 [[nodiscard]] Answer single_scattering(const shared::Medium& medium, const Ray& ray, int steps = 24);
 
-// Horizontal irradiance / E0 of the sky's light scattered once, at an altitude within or above the atmosphere.
+// Horizontal irradiance / E0 of the sky's light scattered once, at an altitude within or above the
+// atmosphere.
 [[nodiscard]] std::array<double, 3> single_sky_irradiance(const shared::Medium& medium, double altitude_m,
                                                           double cos_sun_zenith);
 

@@ -35,6 +35,9 @@ class Atmosphere {
   double rayleigh_scale_height_m, mie_scale_height_m;
   Rgb rayleigh_scattering, mie_scattering, mie_extinction, ozone_absorption;
   double ground_albedo;
+  // Light that passes the planet closer than this (a radius) is mostly lost in the air: where the sun is
+  // hidden by a sphere of this radius it is as good as set. Guides the sampling, nothing else.
+  double opaque_radius_m;
   MiePhaseFunction mie_phase;
 
   // Relative densities at radius r (ozone left out: it does not scatter).
@@ -45,15 +48,19 @@ class Atmosphere {
   // Relative density of ozone at radius r.
   [[nodiscard]] double ozone_density(double r) const;
 
+  [[nodiscard]] bool reaches_ozone(double r) const { return has_ozone_ && r > ozone_low_m_; }
+
   // Columns from position s >= 0 of a line (see geometry.hpp) to the top of the atmosphere, which the
   // line crosses at s_top >= s. `density` are the densities at s.
-  [[nodiscard]] Amounts columns_to_top(double tangent2, double s, double s_top, const Amounts& density) const {
+  [[nodiscard]] Amounts columns_to_top(double tangent2, double s, double s_top,
+                                       const Amounts& density) const {
     Amounts columns = exponential_columns(tangent2, s, s_top, density);
     columns.ozone = ozone_column(tangent2, s, s_top);
     return columns;
   }
   // The same without ozone, which is left 0.
-  [[nodiscard]] Amounts exponential_columns(double tangent2, double s, double s_top, const Amounts& density) const;
+  [[nodiscard]] Amounts exponential_columns(double tangent2, double s, double s_top,
+                                            const Amounts& density) const;
   [[nodiscard]] double ozone_column(double tangent2, double s, double s_top) const;
 
   [[nodiscard]] double transmittance(const Amounts& columns, std::size_t channel) const {
@@ -69,6 +76,7 @@ class Atmosphere {
 
  private:
   void build_table();
+  [[nodiscard]] double find_opaque_radius() const;
 
   // Ozone: density rises linearly from 0 at `low` to 1 at `centre` and falls to 0 at `high` (radii).
   double ozone_low_m_, ozone_centre_m_, ozone_high_m_, ozone_half_width_m_;

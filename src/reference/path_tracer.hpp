@@ -45,11 +45,12 @@ struct Options {
 
 struct Estimate {
   Rgb radiance{};        // L / E0, sr^-1; for the sky E / E0
-  Rgb standard_error{};  // of radiance, from independent blocks; 0 if it has no variance, infinite with one block
+  Rgb standard_error{};  // of radiance, from independent blocks; 0 if it has no variance, infinite with one
+                         // block
   // Deterministic. Along the ray to its end: the ground, or the top of the atmosphere (1 if the ray
   // misses it). For the sky: towards the sun, 0 where the planet hides it.
   Rgb transmittance{};
-  std::uint64_t samples = 0;  // paths that went in; less than asked only after a cancelled call
+  std::uint64_t samples = 0;              // paths that went in; less than asked only after a cancelled call
   std::vector<Rgb> order_radiance;        // with by_order: order_radiance[n - 1] holds n events
   std::vector<Rgb> order_standard_error;  // likewise
 };

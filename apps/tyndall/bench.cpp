@@ -1,0 +1,112 @@
+// `tyndall bench`: GPU milliseconds per pass of the demo scene, after a warm-up.
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "arguments.hpp"
+#include "cli.hpp"
+#include "gpu/host.hpp"
+#include "scene/scene.hpp"
+
+namespace tyndall::cli {
+namespace {
+
+constexpr std::uint32_t kWarmUpFrames = 2;
+
+struct Series {
+  std::vector<double> ms;
+  bool in_effect = false;
+
+  // Nearest-rank quantile.
+  [[nodiscard]] double quantile(double q) const {
+    std::vector<double> sorted = ms;
+    std::sort(sorted.begin(), sorted.end());
+    const auto rank = static_cast<std::size_t>(q * static_cast<double>(sorted.size() - 1) + 0.5);
+    return sorted[std::min(rank, sorted.size() - 1)];
+  }
+};
+
+double median_or_zero(const Series& series) { return series.ms.empty() ? 0.0 : series.quantile(0.5); }
+
+}  // namespace
+
+int run_bench(Args args) {
+  CommonOptions options;
+  options.frames = 5;
+  Arguments arguments("bench");
+  add_common(arguments, options, kScene | kSet | kDevice | kSize | kFrames | kJson);
+  if (const std::optional<int> status = arguments.parse(args)) return *status;
+  if (Result<void> r = resolve(options); !r) return fail(r.error());
+
+  Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({options.device, false});
+  if (!host) return fail(host.error());
+  scene::SceneDesc desc;
+  desc.extent = {options.size.width, options.size.height};
+  desc.timings = true;
+  Result<std::unique_ptr<scene::Scene>> scene =
+      scene::Scene::create(*host.value(), desc, options.settings.effect, options.settings.scene);
+  if (!scene) return fail(scene.error());
+
+  std::vector<std::string> order;
+  std::map<std::string, Series> passes;
+  Series effect;
+  Series frame_total;
+  Series floor;
+  Progress progress("bench");
+  for (std::uint32_t frame = 0; frame < kWarmUpFrames + options.frames; ++frame) {
+    progress.update(frame, kWarmUpFrames + options.frames);
+    if (Result<void> r = scene.value()->render(0.0, true); !r) return fail(r.error());
+    if (frame < kWarmUpFrames) continue;
+    double effect_ms = 0.0;
+    double frame_ms = 0.0;
+    for (const scene::PassTime& pass : scene.value()->timings()) {
+      if (pass.name == "floor") {
+        floor.ms.push_back(pass.ms);
+        continue;
+      }
+      if (!passes.contains(pass.name)) order.push_back(pass.name);
+      Series& series = passes[pass.name];
+      series.ms.push_back(pass.ms);
+      series.in_effect = pass.in_effect;
+      frame_ms += pass.ms;
+      if (pass.in_effect) effect_ms += pass.ms;
+    }
+    effect.ms.push_back(effect_ms);
+    frame_total.ms.push_back(frame_ms);
+  }
+
+  const scene::Scene::Memory memory = scene.value()->memory();
+  nlohmann::ordered_json out;
+  out["device"] = host.value()->device_name();
+  out["size"] = {options.size.width, options.size.height};
+  out["frames"] = options.frames;
+  out["passes"] = nlohmann::ordered_json::array();
+  for (const std::string& name : order) {
+    const Series& series = passes[name];
+    out["passes"].push_back({{"name", name}, {"median_ms", series.quantile(0.5)}, {"p95_ms", series.quantile(0.95)},
+                             {"in_effect", series.in_effect}});
+  }
+  out["effect_ms"] = median_or_zero(effect);
+  out["frame_ms"] = median_or_zero(frame_total);
+  out["floor_ms"] = median_or_zero(floor);
+  out["counters"] = nlohmann::ordered_json::object();
+  out["memory_bytes"] = {{"effect_persistent", memory.effect_persistent},
+                         {"effect_transient", memory.effect_transient},
+                         {"effect_host", memory.effect_host},
+                         {"scene", memory.scene}};
+  if (options.json) return print(out.dump(2) + "\n");
+  std::string text = out["device"].get<std::string>() + ", " + std::to_string(options.size.width) + "x" +
+                     std::to_string(options.size.height) + ", median of " + std::to_string(options.frames) + " frames\n";
+  char line[160];
+  for (const std::string& name : order) {
+    const Series& series = passes[name];
+    std::snprintf(line, sizeof line, "  %-20s %10.3f ms  p95 %10.3f ms%s\n", name.c_str(), series.quantile(0.5),
+                  series.quantile(0.95), series.in_effect ? "  (effect)" : "");
+    text += line;
+  }
+  std::snprintf(line, sizeof line, "  effect %.3f ms, frame %.3f ms, floor %.3f ms\n", median_or_zero(effect),
+                median_or_zero(frame_total), median_or_zero(floor));
+  return print(text + line);
+}
+
+}  // namespace tyndall::cli

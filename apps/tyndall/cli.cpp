@@ -1,0 +1,195 @@
+// The shared parts of the verbs: messages, common options, progress.
+#include "cli.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+
+#include "arguments.hpp"
+#include "config/files.hpp"
+#include "config/scene_file.hpp"
+#include "config/text.hpp"
+
+namespace tyndall::cli {
+namespace {
+
+using config::concat;
+using config::input_error;
+using config::one_line;
+
+constexpr std::uint32_t kMostFrames = 1000000;
+
+struct FramePattern {
+  std::size_t start = 0;   // of the percent sign
+  std::size_t length = 0;  // up to and with the d
+  std::size_t digits = 1;
+};
+
+// The first "%d" or "%0Nd" at or after `from`.
+std::optional<FramePattern> find_pattern(std::string_view text, std::size_t from = 0) {
+  for (std::size_t start = text.find('%', from); start != std::string_view::npos;
+       start = text.find('%', start + 1)) {
+    const std::string_view rest = text.substr(start + 1);
+    if (rest.starts_with('d')) return FramePattern{start, 2, 1};
+    const bool padded =
+        rest.size() >= 3 && rest[0] == '0' && rest[1] >= '1' && rest[1] <= '9' && rest[2] == 'd';
+    if (padded) return FramePattern{start, 4, static_cast<std::size_t>(rest[1] - '0')};
+  }
+  return std::nullopt;
+}
+
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+  return text;
+}
+
+std::string shown(std::string_view text) { return concat({"'", one_line(text), "'"}); }
+
+}  // namespace
+
+int fail(const Error& error) {
+  return fail(error.message, error.code == ErrorCode::invalid_argument ? kBadUsage : kFailed);
+}
+
+int fail(std::string_view message, int status) {
+  constexpr std::size_t kLongestLine = 2000;
+  std::fprintf(stderr, "tyndall: error: %s\n", one_line(message, kLongestLine).c_str());
+  return status;
+}
+
+int print(std::string_view text) {
+  const bool written =
+      std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+  return written ? kDone : fail("cannot write, standard output, it has to be open and have room", kFailed);
+}
+
+Result<Size> parse_size(std::string_view text, std::string_view option) {
+  std::int64_t width = 0;
+  std::int64_t height = 0;
+  const auto fits = [](std::int64_t side) { return side >= 1 && side <= kLargestSize; };
+  const bool valid = config::count_parts(text, 'x') == 2 &&
+                     config::read_integer(config::part(text, 'x', 0), width) == config::NumberError::none &&
+                     config::read_integer(config::part(text, 'x', 1), height) == config::NumberError::none &&
+                     fits(width) && fits(height);
+  if (valid) return Size{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
+  return input_error(concat({shown(text), " is no size"}), option,
+                     concat({"allowed is WIDTHxHEIGHT, 1 to ", std::to_string(kLargestSize), " each"}));
+}
+
+Result<std::uint32_t> parse_count(std::string_view text, std::string_view option, std::uint32_t min,
+                                  std::uint32_t max) {
+  std::int64_t value = 0;
+  if (config::read_integer(text, value) == config::NumberError::none && value >= min && value <= max) {
+    return static_cast<std::uint32_t>(value);
+  }
+  return input_error(
+      concat({shown(text), " is no count"}), option,
+      concat({"allowed is a whole number, ", std::to_string(min), " to ", std::to_string(max)}));
+}
+
+Result<double> parse_number(std::string_view text, std::string_view option, double min, double max) {
+  double value = 0.0;
+  if (config::read_number(text, value) == config::NumberError::none && value >= min && value <= max)
+    return value;
+  return input_error(
+      concat({shown(text), " is not allowed"}), option,
+      concat({"allowed is a number, ", config::number_text(min), " to ", config::number_text(max)}));
+}
+
+void add_common(Arguments& arguments, CommonOptions& options, unsigned which) {
+  if ((which & kScene) != 0)
+    arguments.positional("SCENE.toml", options.scene_file, false, "scene file; without, the defaults");
+  if ((which & kSet) != 0) {
+    arguments.texts("--set", options.sets, "KEY=VALUE",
+                    "set a parameter; may be repeated, later wins, wins over the scene");
+  }
+  if ((which & kOutput) != 0) arguments.text("-o,--output", options.output, "FILE", "where the result goes");
+  if ((which & kSize) != 0) {
+    arguments.value("--size", "WxH", "size of the picture in pixels [1280x720]",
+                    [&options](const std::string& text) {
+                      Result<Size> size = parse_size(text, "--size");
+                      if (!size) return Result<void>(std::move(size).error());
+                      options.size = size.value();
+                      return Result<void>();
+                    });
+  }
+  if ((which & kFrames) != 0) arguments.count("--frames", options.frames, 1, kMostFrames, "number of frames");
+  if ((which & kDevice) != 0) {
+    arguments.text("--device", options.device, "NAME",
+                   "Vulkan device, by index or part of its name (see tyndall devices)");
+  }
+  if ((which & kJson) != 0) arguments.flag("--json", options.json, "print the results as JSON");
+}
+
+Result<void> resolve(CommonOptions& options) {
+  options.settings = config::Settings();
+  if (!options.scene_file.empty()) {
+    if (Result<void> loaded = config::load(options.settings, options.scene_file); !loaded) {
+      // A scene file that cannot be read is bad input, not a failure of this run.
+      return Error{ErrorCode::invalid_argument, std::move(loaded).error().message};
+    }
+  }
+  for (const std::string& assignment : options.sets) {
+    if (Result<void> assigned = config::set(options.settings, assignment); !assigned) return assigned;
+  }
+  return config::check(options.settings);
+}
+
+std::string frame_path(const std::string& pattern, std::uint32_t frame) {
+  const std::optional<FramePattern> found = find_pattern(pattern);
+  if (!found) return pattern;
+  std::string number = std::to_string(frame);
+  if (number.size() < found->digits) number.insert(0, found->digits - number.size(), '0');
+  return concat({std::string_view(pattern).substr(0, found->start), number,
+                 std::string_view(pattern).substr(found->start + found->length)});
+}
+
+Result<void> check_output(const CommonOptions& options, const std::vector<std::string>& endings) {
+  std::string list;
+  bool known = endings.empty();
+  for (const std::string& ending : endings) {
+    list.append(list.empty() ? "" : " or ").append(ending);
+    known = known || lower_case(options.output).ends_with(ending);
+  }
+  if (options.output.empty()) {
+    return input_error(
+        "no output file", "-o",
+        endings.empty() ? "needed is -o FILE" : concat({"needed is -o FILE, with a name in ", list}));
+  }
+  if (!known)
+    return input_error(concat({"unknown format ", shown(options.output)}), "-o",
+                       concat({"allowed is a name in ", list}));
+  const std::optional<FramePattern> pattern = find_pattern(options.output);
+  const bool single = pattern && !find_pattern(options.output, pattern->start + pattern->length);
+  if (options.frames > 1 && !single) {
+    return input_error(concat({std::to_string(options.frames), " frames into ", shown(options.output)}), "-o",
+                       "needed is one place for the number, such as out.%04d.png");
+  }
+  return config::check_writable(frame_path(options.output, 0));
+}
+
+Progress::Progress(std::string_view label) : label_(label), visible_(::isatty(STDERR_FILENO) == 1) {}
+
+Progress::~Progress() {
+  if (visible_ && drawn_percent_ >= 0) std::fputs("\r\x1b[K", stderr);
+}
+
+void Progress::update(std::uint64_t done, std::uint64_t total) {
+  if (!visible_) return;
+  const double fraction =
+      total == 0 ? 1.0 : std::min(1.0, static_cast<double>(done) / static_cast<double>(total));
+  const int percent = static_cast<int>(100.0 * fraction);
+  if (percent == drawn_percent_) return;
+  drawn_percent_ = percent;
+  constexpr int kWidth = 40;  // characters
+  const int filled = percent * kWidth / 100;
+  const std::string bar = std::string(static_cast<std::size_t>(filled), '#') +
+                          std::string(static_cast<std::size_t>(kWidth - filled), '.');
+  std::fprintf(stderr, "\r%s [%s] %3d %%\x1b[K", label_.c_str(), bar.c_str(), percent);
+  std::fflush(stderr);
+}
+
+}  // namespace tyndall::cli

@@ -1,0 +1,87 @@
+// The command line `tyndall`: finds the verb and hands it the rest. Nothing that goes wrong ends in
+// anything but one line on stderr and an exit status.
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli.hpp"
+#include "config/text.hpp"
+#include "tyndall/version.hpp"
+#include "verbs.hpp"
+
+namespace tyndall::cli {
+namespace {
+
+using config::concat;
+
+std::string help_text() {
+  std::string text =
+      "Outdoor light scattering: sky, haze and light shafts.\n\n"
+      "Usage: tyndall VERB [OPTIONS]\n\nVerbs:\n";
+  for (const Verb& verb : kVerbs) {
+    constexpr std::size_t kColumn = 12;
+    text.append("  ")
+        .append(verb.name)
+        .append(kColumn - verb.name.size(), ' ')
+        .append(verb.summary)
+        .append("\n");
+  }
+  return text +
+         "\n'tyndall VERB --help' lists the options of a verb; 'tyndall --version' prints the version.\n"
+         "Exit status: 0 done, 1 it failed at run time, 2 bad usage or bad input.\n";
+}
+
+int run_verb(const std::string& name, Args args) {
+  std::vector<std::string> names;
+  std::string list;
+  for (const Verb& verb : kVerbs) {
+    if (verb.name == name) return verb.run(args);
+    names.emplace_back(verb.name);
+    list.append(list.empty() ? "" : ", ").append(verb.name);
+  }
+  const bool option = name.starts_with('-');
+  const std::optional<std::string> near = option ? std::nullopt : config::nearest(name, names);
+  return fail(config::input_error(
+      concat({option ? "unknown option '" : "unknown verb '", config::one_line(name), "'"}),
+      option ? "before the verb" : "command line",
+      near ? concat({"did you mean '", *near, "'?"})
+           : concat(
+                 {option ? "allowed are --help and --version" : "allowed is one of ", option ? "" : list})));
+}
+
+int run(Args args) {
+  if (args.empty()) return fail("no verb is given, command line, 'tyndall --help' lists them", kBadUsage);
+  const std::string& first = args[0];
+  if (first == "--version" || first == "-V") return print("tyndall " TYNDALL_VERSION_STRING "\n");
+  if (first == "--help" || first == "-h" || (first == "help" && args.size() == 1)) return print(help_text());
+  if (first == "help") {
+    const std::vector<std::string> ask = {"--help"};
+    return run_verb(args[1], ask);
+  }
+  return run_verb(first, args.subspan(1));
+}
+
+}  // namespace
+}  // namespace tyndall::cli
+
+int main(int argc, char** argv) {
+  // A file that grows beyond a limit is a failed write, with a message, and not the end.
+  std::signal(SIGXFSZ, SIG_IGN);
+  try {
+    const std::vector<std::string> args(argv + (argc > 0 ? 1 : 0), argv + argc);
+    return tyndall::cli::run(args);
+  } catch (const std::bad_alloc&) {
+    std::fputs(
+        "tyndall: error: not enough memory, this machine, a smaller size or fewer resources are needed\n",
+        stderr);
+  } catch (const std::exception& exception) {
+    std::fprintf(stderr, "tyndall: error: %s\n", exception.what());
+  } catch (...) {
+    std::fputs("tyndall: error: unknown failure\n", stderr);
+  }
+  return tyndall::cli::kFailed;
+}

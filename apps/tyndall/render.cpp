@@ -1,0 +1,60 @@
+// `tyndall render`: one frame, or a sequence, of the demo scene.
+#include <cmath>
+
+#include "arguments.hpp"
+#include "cli.hpp"
+#include "config/text.hpp"
+#include "gpu/host.hpp"
+#include "image/image.hpp"
+#include "scene/scene.hpp"
+
+namespace tyndall::cli {
+namespace {
+
+Result<void> write_frame(scene::Scene& scene, const std::string& path, const config::Settings& settings) {
+  const Result<image::FileKind> kind = image::kind_of_name(path);
+  if (!kind) return kind.error();
+  if (kind.value() == image::FileKind::exr) {
+    const Result<image::Image> radiance = scene.radiance();
+    if (!radiance) return radiance.error();
+    return image::write_exr(path, radiance.value(), config::metadata(settings));
+  }
+  const Result<image::Image> display = scene.display();
+  if (!display) return display.error();
+  return image::write_png(path, display.value(), config::metadata(settings));
+}
+
+}  // namespace
+
+int run_render(Args args) {
+  CommonOptions options;
+  double time_step = 1.0 / 30.0;
+  Arguments arguments("render");
+  add_common(arguments, options, kScene | kSet | kDevice | kSize | kFrames | kOutput);
+  arguments.number("--time-step", time_step, 0.0, 1.0e6, "seconds from one frame of a sequence to the next");
+  if (const std::optional<int> status = arguments.parse(args)) return *status;
+  if (Result<void> r = resolve(options); !r) return fail(r.error());
+  if (Result<void> r = check_output(options, {".png", ".exr"}); !r) return fail(r.error());
+
+  Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({options.device, false});
+  if (!host) return fail(host.error());
+  scene::SceneDesc desc;
+  desc.extent = {options.size.width, options.size.height};
+  Result<std::unique_ptr<scene::Scene>> scene =
+      scene::Scene::create(*host.value(), desc, options.settings.effect, options.settings.scene);
+  if (!scene) return fail(scene.error());
+  Progress progress("render");
+  for (std::uint32_t frame = 0; frame < options.frames; ++frame) {
+    progress.update(frame, options.frames);
+    if (Result<void> r = scene.value()->render(frame * time_step); !r) return fail(r.error());
+    if (Result<void> r = write_frame(*scene.value(), frame_path(options.output, frame), options.settings); !r) {
+      return fail(r.error());
+    }
+  }
+  for (const std::string& note : scene.value()->notes()) {
+    std::fprintf(stderr, "tyndall: note: %s\n", note.c_str());
+  }
+  return kDone;
+}
+
+}  // namespace tyndall::cli

@@ -1,0 +1,34 @@
+// The verbs of the command line, one .cpp each. A verb gets the arguments after its name and returns
+// the exit status; it prints results on stdout (cli.hpp's print) and at most one error line.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace tyndall::cli {
+
+using Args = std::span<const std::string>;
+
+int run_bench(Args args);
+int run_compare(Args args);
+int run_devices(Args args);
+int run_params(Args args);
+int run_render(Args args);
+
+struct Verb {
+  std::string_view name;
+  int (*run)(Args args);
+  std::string_view summary;
+};
+
+// What `tyndall --help` lists, in its order.
+inline constexpr Verb kVerbs[] = {
+    {"render", run_render, "render one frame or a sequence to PNG or EXR"},
+    {"bench", run_bench, "measure GPU milliseconds per pass"},
+    {"compare", run_compare, "say how much two images differ"},
+    {"devices", run_devices, "list the Vulkan devices and say which one would be used"},
+    {"params", run_params, "list every parameter: name, type, default, range, unit, meaning"},
+};
+
+}  // namespace tyndall::cli

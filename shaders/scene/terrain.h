@@ -1,0 +1,32 @@
+// What the terrain's shaders read of one view (std430; every vec3 or vec2 pair fills 16 bytes). Filled by
+// src/scene/terrain.cpp.
+struct TerrainLevel {
+  ivec2 origin;  // global grid index of the texture's first sample
+  float cell_m;
+  float range_m;
+};
+
+struct TerrainConstants {
+  vec2 camera_map;
+  float vertical_m;
+  float planet_radius_m;
+  vec3 direction_to_sun;
+  float atmosphere_height_m;
+  vec3 sun_irradiance;
+  float pixel_angle_rad;
+  vec3 camera_position;
+  float unused_0;
+  uint layers;
+  uint shading;          // a TerrainShading of scene_params.def
+  uint seed;
+  uint cascade_count;
+  float shadow_resolution;
+  uint smooth_shadows;
+  uint best_cascade;
+  uint show_cascades;
+  vec3 camera_forward;
+  float unused_1;
+  mat4 shadow_from_world[8];
+  vec4 cascade[8];       // far view depth [m], texel x [m], texel y [m], depth range [m]
+  TerrainLevel levels[16];
+};

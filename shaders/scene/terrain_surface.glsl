@@ -1,0 +1,57 @@
+// What the clipmap says of the ground at a pixel: its slope and how much of the sky it sees.
+#ifndef TYNDALL_TERRAIN_SURFACE_GLSL
+#define TYNDALL_TERRAIN_SURFACE_GLSL
+
+#include "scene/terrain.h"
+
+layout(std430, binding = 0) readonly buffer terrain_block { TerrainConstants terrain; };
+layout(binding = 2) uniform sampler2DArray terrain_heights;
+
+float height_at(ivec2 texel, uint layer) {
+  return texelFetch(terrain_heights, ivec3(texel, int(layer)), 0).r;
+}
+
+// Gradient of the elevation in map coordinates: central differences at the four samples around, mixed
+// linearly, so that it is continuous across cells.
+vec2 surface_gradient(vec2 texel, uint layer) {
+  vec2 base = floor(texel - 0.5);
+  vec2 f = texel - 0.5 - base;
+  ivec2 b = ivec2(base);
+  vec2 g[4];
+  for (int i = 0; i < 4; ++i) {
+    ivec2 at = b + ivec2(i & 1, i >> 1);
+    g[i] = vec2(height_at(at + ivec2(1, 0), layer) - height_at(at - ivec2(1, 0), layer),
+                height_at(at + ivec2(0, 1), layer) - height_at(at - ivec2(0, 1), layer));
+  }
+  vec2 mixed = mix(mix(g[0], g[1], f.x), mix(g[2], g[3], f.x), f.y);
+  return mixed / (2.0 * terrain.levels[layer].cell_m);
+}
+
+// Elevation at map coordinates from the finest level with cells of at least `cell_m`.
+float coarse_height(vec2 map_m, float cell_m) {
+  uint layer = 0u;
+  while (layer + 1u < terrain.layers && terrain.levels[layer].cell_m < cell_m) ++layer;
+  TerrainLevel level = terrain.levels[layer];
+  ivec2 texel = ivec2(floor(map_m / level.cell_m + 0.5)) - level.origin;
+  return height_at(clamp(texel, ivec2(0), ivec2(textureSize(terrain_heights, 0).xy) - 1), layer);
+}
+
+// The part of the sky's irradiance that the surrounding ground lets through, from the horizon's elevation
+// in eight directions at three distances: the mean of cos^2, exact for a uniform sky.
+float sky_visibility(vec2 map_m, float altitude_m) {
+  float visible = 0.0;
+  for (int i = 0; i < 8; ++i) {
+    float angle = 0.785398 * (float(i) + 0.5);
+    vec2 direction = vec2(cos(angle), sin(angle));
+    float tangent = 0.0;
+    float reach = 200.0;
+    for (int k = 0; k < 3; ++k) {
+      tangent = max(tangent, (coarse_height(map_m + direction * reach, 0.125 * reach) - altitude_m) / reach);
+      reach *= 4.0;
+    }
+    visible += 1.0 / (1.0 + tangent * tangent);
+  }
+  return visible / 8.0;
+}
+
+#endif

@@ -1,0 +1,234 @@
+// EXR through OpenEXR's C++ interface. OpenEXR reports errors by exceptions, which end here.
+#include <ImathBox.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
+#include <half.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <stdexcept>
+#include <vector>
+
+#include "config/files.hpp"
+#include "config/text.hpp"
+#include "image/codec.hpp"
+
+namespace tyndall::image {
+namespace {
+
+constexpr int kRowsAtOnce = 64;
+
+// A file in memory.
+class BytesIn : public Imf::IStream {
+ public:
+  BytesIn(std::string_view bytes, const std::string& path) : Imf::IStream(path.c_str()), bytes_(bytes) {}
+
+  bool isMemoryMapped() const override { return true; }
+  char* readMemoryMapped(int size) override {
+    const char* const start = take(size);
+    return const_cast<char*>(start);  // OpenEXR's interface; it only reads
+  }
+  bool read(char target[], int size) override {
+    std::memcpy(target, take(size), static_cast<std::size_t>(size));
+    return position_ < bytes_.size();
+  }
+  uint64_t tellg() override { return position_; }
+  void seekg(uint64_t position) override { position_ = position; }
+
+ private:
+  const char* take(int size) {
+    if (size < 0 || position_ > bytes_.size() || bytes_.size() - position_ < static_cast<std::size_t>(size)) {
+      throw std::runtime_error("the file is cut off");
+    }
+    const char* const start = bytes_.data() + position_;
+    position_ += static_cast<std::size_t>(size);
+    return start;
+  }
+
+  std::string_view bytes_;
+  std::size_t position_ = 0;
+};
+
+// The atomic file's own error, on its way out through OpenEXR.
+struct FileFailure : std::runtime_error {
+  explicit FileFailure(Error failed) : std::runtime_error(failed.message), error(std::move(failed)) {}
+  Error error;
+};
+
+class BytesOut : public Imf::OStream {
+ public:
+  BytesOut(config::AtomicFile& file, const std::string& path) : Imf::OStream(path.c_str()), file_(file) {}
+
+  void write(const char data[], int size) override {
+    require(file_.write(data, static_cast<std::size_t>(size)));
+    position_ += static_cast<std::uint64_t>(size);
+  }
+  uint64_t tellp() override { return position_; }
+  void seekp(uint64_t position) override {
+    if (position == position_) return;
+    require(file_.seek(position));
+    position_ = position;
+  }
+  // OpenEXR's destructors write the table of offsets and swallow exceptions: kept for the caller.
+  [[nodiscard]] const Error* error() const { return failed_ ? &error_ : nullptr; }
+
+ private:
+  void require(Result<void> result) {
+    if (result) return;
+    failed_ = true;
+    error_ = result.error();
+    throw FileFailure(std::move(result).error());
+  }
+
+  config::AtomicFile& file_;
+  std::uint64_t position_ = 0;
+  bool failed_ = false;
+  Error error_;
+};
+
+// The names of the channels that become red, green and blue.
+std::vector<std::string> channel_names(const Imf::ChannelList& channels) {
+  std::vector<std::string> names = {"R", "G", "B"};
+  if (channels.findChannel("R") == nullptr && channels.findChannel("Y") != nullptr) names = {"Y", "Y", "Y"};
+  for (const std::string& name : names) {
+    const Imf::Channel* const channel = channels.findChannel(name);
+    if (channel == nullptr) throw std::runtime_error("it has no channels R, G, B or Y");
+    if (channel->xSampling != 1 || channel->ySampling != 1)
+      throw std::runtime_error("its channels are subsampled");
+  }
+  return names;
+}
+
+Metadata string_attributes(const Imf::Header& header) {
+  Metadata metadata;
+  for (Imf::Header::ConstIterator it = header.begin(); it != header.end(); ++it) {
+    const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute());
+    if (text != nullptr) metadata.emplace_back(it.name(), text->value());
+  }
+  return metadata;
+}
+
+// One channel of the rows that start at `rows`, which are those from `top` of the data window.
+template <typename T>
+Imf::Slice slice(Imf::PixelType type, T* rows, const Imath::Box2i& window, int top, std::size_t stride) {
+  const std::ptrdiff_t x_stride = static_cast<std::ptrdiff_t>(stride * sizeof(T));
+  const std::ptrdiff_t width = std::ptrdiff_t{window.max.x} - window.min.x + 1;
+  char* const base = reinterpret_cast<char*>(rows) - window.min.x * x_stride - top * width * x_stride;
+  return {type, base, static_cast<std::size_t>(x_stride), static_cast<std::size_t>(width * x_stride)};
+}
+
+File decode(std::string_view bytes, const std::string& path) {
+  BytesIn stream(bytes, path);
+  Imf::Header::setMaxImageSize(static_cast<int>(kLargestSide), static_cast<int>(kLargestSide));
+  Imf::InputFile input(stream);
+  const Imath::Box2i window = input.header().dataWindow();
+  const std::vector<std::string> names = channel_names(input.header().channels());
+  const bool grey = names[0] == names[1];
+
+  File file;
+  file.kind = FileKind::exr;
+  file.metadata = string_attributes(input.header());
+  file.image.width = static_cast<std::uint32_t>(std::int64_t{window.max.x} - window.min.x + 1);
+  file.image.height = static_cast<std::uint32_t>(std::int64_t{window.max.y} - window.min.y + 1);
+  if (file.image.width > kLargestSide || file.image.height > kLargestSide)
+    throw std::runtime_error("it is too large");
+  // Reserved at once and filled as the data proves to be there: a header that lies does no harm.
+  file.image.rgb.reserve(std::size_t{3} * file.image.width * file.image.height);
+  for (int top = window.min.y; top <= window.max.y; top += kRowsAtOnce) {
+    const int bottom = std::min(top + kRowsAtOnce - 1, window.max.y);
+    const std::size_t start = file.image.rgb.size();
+    file.image.rgb.resize(start +
+                          std::size_t{3} * file.image.width * static_cast<std::size_t>(bottom - top + 1));
+    Imf::FrameBuffer target;
+    for (std::size_t channel = 0; channel < (grey ? 1 : 3); ++channel) {
+      target.insert(names[channel],
+                    slice(Imf::FLOAT, file.image.rgb.data() + start + channel, window, top, 3));
+    }
+    input.setFrameBuffer(target);
+    input.readPixels(top, bottom);
+    for (std::size_t i = start; grey && i < file.image.rgb.size(); i += 3) {
+      file.image.rgb[i + 1] = file.image.rgb[i + 2] = file.image.rgb[i];
+    }
+  }
+  return file;
+}
+
+void encode(Imf::OStream& stream, const Image& image, const Metadata& metadata, ExrPrecision precision) {
+  const Imf::PixelType type = precision == ExrPrecision::half16 ? Imf::HALF : Imf::FLOAT;
+  Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
+  header.compression() = Imf::ZIP_COMPRESSION;
+  for (const auto& [name, value] : metadata) header.insert(name.c_str(), Imf::StringAttribute(value));
+  for (const char* const name : {"R", "G", "B"}) header.channels().insert(name, Imf::Channel(type));
+  const Imath::Box2i window = header.dataWindow();
+  Imf::OutputFile output(stream, header);
+  std::vector<half> halves;
+  for (int top = 0; top <= window.max.y; top += kRowsAtOnce) {
+    const int rows = std::min(kRowsAtOnce, window.max.y - top + 1);
+    const std::size_t start = std::size_t{3} * image.width * static_cast<std::size_t>(top);
+    const std::size_t count = std::size_t{3} * image.width * static_cast<std::size_t>(rows);
+    if (type == Imf::HALF) halves.assign(image.rgb.data() + start, image.rgb.data() + start + count);
+    Imf::FrameBuffer source;
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      const char* const name = channel == 0 ? "R" : channel == 1 ? "G" : "B";
+      float* const floats = const_cast<float*>(image.rgb.data()) + start + channel;  // OpenEXR only reads
+      source.insert(name, type == Imf::HALF ? slice(type, halves.data() + channel, window, top, 3)
+                                            : slice(type, floats, window, top, 3));
+    }
+    output.setFrameBuffer(source);
+    output.writePixels(rows);
+  }
+}
+
+}  // namespace
+
+Result<File> decode_exr(std::string_view bytes, const std::string& path) {
+  try {
+    return decode(bytes, path);
+  } catch (const std::bad_alloc&) {
+    return read_error(path, "EXR: not enough memory");
+  } catch (const std::exception& exception) {
+    return read_error(path, config::concat({"EXR: ", exception.what()}));
+  }
+}
+
+Result<void> write_exr(const std::string& path, const Image& image, const Metadata& metadata,
+                       ExrPrecision precision) {
+  if (Result<void> fits = check_writable_image(path, image, metadata); !fits) return fits;
+  if (precision == ExrPrecision::half16) {
+    constexpr float kLargestHalf = 65504.0F;
+    const auto too_large = [](float value) {
+      return std::isfinite(value) && std::fabs(value) > kLargestHalf;
+    };
+    const auto first = std::find_if(image.rgb.begin(), image.rgb.end(), too_large);
+    if (first != image.rgb.end()) {
+      return write_error(ErrorCode::invalid_argument, path,
+                         config::concat({"it holds the value ", config::number_text(*first),
+                                         ", 16 bits allow at most 65504: use 32"}));
+    }
+  }
+  Result<config::AtomicFile> file = config::AtomicFile::create(path);
+  if (!file) return std::move(file).error();
+  BytesOut stream(file.value(), path);
+  try {
+    encode(stream, image, metadata, precision);
+  } catch (const FileFailure& failure) {
+    return failure.error;
+  } catch (const std::bad_alloc&) {
+    return write_error(ErrorCode::out_of_memory, path, "not enough memory");
+  } catch (const std::exception& exception) {
+    if (stream.error() != nullptr) return *stream.error();
+    return write_error(ErrorCode::io, path, config::concat({"EXR: ", exception.what()}));
+  }
+  if (stream.error() != nullptr) return *stream.error();
+  return file.value().commit();
+}
+
+}  // namespace tyndall::image

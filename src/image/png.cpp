@@ -1,0 +1,237 @@
+// PNG through libpng. libpng reports errors by longjmp, so the functions that call it hold no objects
+// with destructors; those live with their callers.
+#include <png.h>
+
+#include <cmath>
+#include <csetjmp>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <optional>
+
+#include "config/files.hpp"
+#include "config/text.hpp"
+#include "image/codec.hpp"
+
+namespace tyndall::image {
+namespace {
+
+constexpr std::size_t kMessageSize = 200;
+
+// Where libpng's callbacks leave what went wrong.
+struct Problem {
+  char message[kMessageSize] = "";
+};
+
+[[noreturn]] void on_error(png_structp png, png_const_charp message) {
+  Problem* problem = static_cast<Problem*>(png_get_error_ptr(png));
+  std::strncpy(problem->message, message, kMessageSize - 1);
+  png_longjmp(png, 1);
+}
+
+void on_warning(png_structp, png_const_charp) {}
+
+struct Reader {
+  std::string_view bytes;
+  std::size_t position = 0;
+  Problem problem;
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+  std::uint32_t width = 0, height = 0;
+  unsigned char* samples = nullptr;  // RGB, 8 or 16 bits in the machine's order
+  int depth = 8;
+};
+
+void on_read(png_structp png, png_bytep target, png_size_t size) {
+  Reader* reader = static_cast<Reader*>(png_get_io_ptr(png));
+  if (reader->bytes.size() - reader->position < size) png_error(png, "the file is cut off");
+  std::memcpy(target, reader->bytes.data() + reader->position, size);
+  reader->position += size;
+}
+
+bool read_samples(Reader* reader) {
+  if (setjmp(png_jmpbuf(reader->png)) != 0) return false;
+  png_set_read_fn(reader->png, reader, on_read);
+  png_set_user_limits(reader->png, kLargestSide, kLargestSide);
+  png_read_info(reader->png, reader->info);
+  reader->width = png_get_image_width(reader->png, reader->info);
+  reader->height = png_get_image_height(reader->png, reader->info);
+  png_set_expand(reader->png);
+  png_set_gray_to_rgb(reader->png);
+  png_set_strip_alpha(reader->png);
+  const std::uint16_t probe = 1;
+  unsigned char low = 0;
+  std::memcpy(&low, &probe, 1);
+  if (low == 1) png_set_swap(reader->png);
+  const int passes = png_set_interlace_handling(reader->png);
+  png_read_update_info(reader->png, reader->info);
+  reader->depth = png_get_bit_depth(reader->png, reader->info);
+  const std::size_t row_size = png_get_rowbytes(reader->png, reader->info);
+  if (row_size != std::size_t{3} * reader->width * static_cast<std::size_t>(reader->depth) / 8) {
+    png_error(reader->png, "its pixels have an unknown layout");
+  }
+  // Zeroed pages cost nothing until data arrives: a header that lies about the size does no harm.
+  reader->samples = static_cast<unsigned char*>(std::calloc(reader->height, row_size));
+  if (reader->samples == nullptr) png_error(reader->png, "not enough memory");
+  for (int pass = 0; pass < passes; ++pass) {
+    for (std::uint32_t y = 0; y < reader->height; ++y) {
+      png_read_row(reader->png, reader->samples + y * row_size, nullptr);
+    }
+  }
+  png_read_end(reader->png, reader->info);
+  return true;
+}
+
+Metadata text_chunks(const Reader& reader) {
+  Metadata metadata;
+  png_textp texts = nullptr;
+  const int count = png_get_text(reader.png, reader.info, &texts, nullptr);
+  for (int i = 0; i < count; ++i) {
+    const char* const value = texts[i].text;
+    metadata.emplace_back(texts[i].key, value == nullptr ? "" : value);
+  }
+  return metadata;
+}
+
+struct Writer {
+  config::AtomicFile* file = nullptr;
+  const Image* image = nullptr;
+  PngOptions options;
+  Problem problem;
+  bool file_failed = false;
+  Error file_error;
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+  png_textp texts = nullptr;
+  int text_count = 0;
+  unsigned char* row = nullptr;
+};
+
+// Apart from on_write, so that no object is alive where libpng jumps.
+bool write_bytes(Writer* writer, const unsigned char* data, std::size_t size) {
+  Result<void> result = writer->file->write(data, size);
+  if (!result) writer->file_error = std::move(result).error();
+  writer->file_failed = !result;
+  return result.ok();
+}
+
+void on_write(png_structp png, png_bytep data, png_size_t size) {
+  if (!write_bytes(static_cast<Writer*>(png_get_io_ptr(png)), data, size)) png_error(png, "write failed");
+}
+
+void on_flush(png_structp) {}
+
+void quantize_row(const Writer& writer, std::uint32_t y) {
+  const bool linear = writer.options.encoding == Encoding::linear;
+  for (std::uint32_t x = 0; x < writer.image->width; ++x) {
+    const float* const value = writer.image->pixel(x, y);
+    for (std::uint32_t channel = 0; channel < 3; ++channel) {
+      const float encoded = linear ? srgb_from_linear(value[channel]) : value[channel];
+      writer.row[3 * std::size_t{x} + channel] = quantize(encoded, x, y, channel, writer.options.dither);
+    }
+  }
+}
+
+bool write_samples(Writer* writer) {
+  if (setjmp(png_jmpbuf(writer->png)) != 0) return false;
+  png_set_write_fn(writer->png, writer, on_write, on_flush);
+  png_set_user_limits(writer->png, kLargestSide, kLargestSide);
+  png_set_IHDR(writer->png, writer->info, writer->image->width, writer->image->height, 8, PNG_COLOR_TYPE_RGB,
+               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_sRGB_gAMA_and_cHRM(writer->png, writer->info, PNG_sRGB_INTENT_PERCEPTUAL);
+  if (writer->text_count > 0) png_set_text(writer->png, writer->info, writer->texts, writer->text_count);
+  png_write_info(writer->png, writer->info);
+  for (std::uint32_t y = 0; y < writer->image->height; ++y) {
+    quantize_row(*writer, y);
+    png_write_row(writer->png, writer->row);
+  }
+  png_write_end(writer->png, nullptr);
+  return true;
+}
+
+// tEXt where the value is ASCII, iTXt (UTF-8) where it is not. libpng copies the strings.
+std::vector<png_text> png_texts(const Metadata& metadata) {
+  std::vector<png_text> texts;
+  for (const auto& [name, value] : metadata) {
+    bool ascii = true;
+    for (const char c : value) ascii = ascii && static_cast<unsigned char>(c) < 0x80U;
+    png_text text{};
+    text.compression = ascii ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;
+    text.key = const_cast<char*>(name.c_str());
+    text.text = const_cast<char*>(value.c_str());
+    (ascii ? text.text_length : text.itxt_length) = value.size();
+    texts.push_back(text);
+  }
+  return texts;
+}
+
+}  // namespace
+
+Result<File> decode_png(std::string_view bytes, const std::string& path) {
+  Reader reader;
+  reader.bytes = bytes;
+  reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader.problem, on_error, on_warning);
+  reader.info = reader.png == nullptr ? nullptr : png_create_info_struct(reader.png);
+  const bool done = reader.info != nullptr && read_samples(&reader);
+  const std::unique_ptr<unsigned char, void (*)(void*)> samples(reader.samples, std::free);
+  std::optional<File> file;
+  try {
+    if (done) {
+      file.emplace();
+      file->kind = FileKind::png;
+      file->image = Image(reader.width, reader.height);
+      file->metadata = text_chunks(reader);
+    }
+  } catch (const std::bad_alloc&) {
+    file.reset();
+    std::strcpy(reader.problem.message, "not enough memory");
+  }
+  png_destroy_read_struct(&reader.png, &reader.info, nullptr);
+  if (!file) return read_error(path, config::concat({"PNG: ", reader.problem.message}));
+  for (std::size_t i = 0; i < file->image.rgb.size(); ++i) {
+    if (reader.depth == 16) {
+      std::uint16_t value = 0;
+      std::memcpy(&value, samples.get() + 2 * i, sizeof(value));
+      file->image.rgb[i] = static_cast<float>(value) / 65535.0F;
+    } else {
+      file->image.rgb[i] = static_cast<float>(samples.get()[i]) / 255.0F;
+    }
+  }
+  return std::move(*file);
+}
+
+Result<void> write_png(const std::string& path, const Image& image, const Metadata& metadata,
+                       const PngOptions& options) {
+  if (Result<void> fits = check_writable_image(path, image, metadata); !fits) return fits;
+  if (const std::size_t bad = count_non_finite(image); bad > 0) {
+    std::size_t first = 0;
+    while (std::isfinite(image.rgb[first])) ++first;
+    const std::size_t pixel = first / 3;
+    return write_error(ErrorCode::invalid_argument, path,
+                       config::concat({std::to_string(bad), " values are not finite, the first at pixel ",
+                                       std::to_string(pixel % image.width), ",",
+                                       std::to_string(pixel / image.width), ", only EXR holds such values"}));
+  }
+  Result<config::AtomicFile> file = config::AtomicFile::create(path);
+  if (!file) return std::move(file).error();
+  std::vector<png_text> texts = png_texts(metadata);
+  std::vector<unsigned char> row(std::size_t{3} * image.width);
+  Writer writer;
+  writer.file = &file.value();
+  writer.image = &image;
+  writer.options = options;
+  writer.texts = texts.data();
+  writer.text_count = static_cast<int>(texts.size());
+  writer.row = row.data();
+  writer.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer.problem, on_error, on_warning);
+  writer.info = writer.png == nullptr ? nullptr : png_create_info_struct(writer.png);
+  const bool done = writer.info != nullptr && write_samples(&writer);
+  png_destroy_write_struct(&writer.png, &writer.info);
+  if (!done && writer.file_failed) return writer.file_error;
+  if (!done)
+    return write_error(ErrorCode::out_of_memory, path, config::concat({"PNG: ", writer.problem.message}));
+  return file.value().commit();
+}
+
+}  // namespace tyndall::image

@@ -1,0 +1,255 @@
+// trace(): checks, cuts the work into blocks, spreads the blocks over threads, and adds them up in a
+// fixed order so that the sums do not depend on who computed what.
+#include "reference/path_tracer.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <numbers>
+#include <string>
+#include <thread>
+
+#include "reference/random.hpp"
+#include "reference/transport.hpp"
+
+namespace tyndall::reference {
+namespace {
+
+// Enough blocks for a standard error that is itself good to about an eighth.
+constexpr std::uint64_t kBlocksWanted = 32;
+constexpr int kMaxOrders = 256;
+// Blocks that are kept in memory before they are added up.
+constexpr std::size_t kBatchValues = std::size_t{1} << 20;
+
+struct Plan {
+  int log2_count = 0;
+  std::uint64_t blocks = 1;
+};
+
+Plan plan_blocks(std::uint64_t samples) {
+  Plan plan;
+  while (plan.log2_count < SobolBlock::kMaxLog2Count && (kBlocksWanted << (plan.log2_count + 1)) <= samples) {
+    ++plan.log2_count;
+  }
+  const std::uint64_t count = std::uint64_t{1} << plan.log2_count;
+  plan.blocks = std::max<std::uint64_t>(1, (samples - 1) / count + 1);
+  return plan;
+}
+
+bool within(double value, double low, double high) { return value >= low && value <= high; }
+
+std::string check_query(const Query& q, double radius_m) {
+  if (!std::isfinite(q.altitude_m) || q.altitude_m < 0.0) return "altitude_m, must be finite and at least 0";
+  if (q.altitude_m > 1e6 * radius_m) return "altitude_m, must be at most a million radii of the planet";
+  if (!within(q.sun_zenith_rad, 0.0, std::numbers::pi)) return "sun_zenith_rad, must be in [0; pi]";
+  if (q.sky_irradiance) return {};
+  if (!within(q.view_zenith_rad, 0.0, std::numbers::pi)) return "view_zenith_rad, must be in [0; pi]";
+  if (!std::isfinite(q.azimuth_rad)) return "azimuth_rad, must be finite";
+  return {};
+}
+
+std::string check_options(const Options& options) {
+  if (options.samples < 1 || options.samples > (std::uint64_t{1} << 48))
+    return "samples, must be in [1; 2^48]";
+  if (options.orders < 1 || options.orders > kMaxOrders) return "orders, must be in [1; 256]";
+  if (options.threads < 0 || options.threads > 4096) return "threads, must be in [0; 4096]";
+  return {};
+}
+
+// The path tracer reads these two groups only; the table knows their ranges.
+std::string check_params(const Params& params) {
+  const char* base = reinterpret_cast<const char*>(&params);
+  for (const ParamInfo& info : param_table()) {
+    if (info.group != "planet" && info.group != "atmosphere") continue;
+    const bool vector = info.type == ParamType::vec3;
+    if (!vector && info.type != ParamType::float32) continue;
+    const float* value = reinterpret_cast<const float*>(base + info.offset);  // NOLINT
+    for (int i = 0; i < (vector ? 3 : 1); ++i) {
+      // Bounds in the table are exact decimals; a float may miss them by its rounding.
+      if (!within(value[i], info.min - std::abs(info.min) * 1e-6, info.max + std::abs(info.max) * 1e-6)) {
+        return std::string(info.group) + "." + std::string(info.name) + ", must be in [" +
+               std::to_string(info.min) + "; " + std::to_string(info.max) + "]";
+      }
+    }
+  }
+  return {};
+}
+
+// Sums of equal blocks of one query, added in the order of the blocks (Welford 1962).
+class Accumulator {
+ public:
+  explicit Accumulator(std::size_t orders) : orders_(orders), mean_(orders + 1), spread_(orders + 1) {}
+
+  // `block` holds a value per order; the last entry of the sums is their total.
+  void add(std::span<const Rgb> block) {
+    ++count_;
+    const double weight = 1.0 / static_cast<double>(count_);
+    Rgb total{};
+    for (std::size_t n = 0; n <= orders_; ++n) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double value = n < orders_ ? block[n][c] : total[c];
+        if (n < orders_) total[c] += value;
+        const double step = value - mean_[n][c];
+        mean_[n][c] += step * weight;
+        spread_[n][c] += step * (value - mean_[n][c]);
+      }
+    }
+  }
+
+  [[nodiscard]] std::uint64_t count() const { return count_; }
+  [[nodiscard]] const Rgb& mean(std::size_t n) const { return mean_[n]; }
+  [[nodiscard]] Rgb standard_error(std::size_t n) const {
+    if (count_ < 2) {
+      const double infinity = std::numeric_limits<double>::infinity();
+      return {infinity, infinity, infinity};
+    }
+    const double blocks = static_cast<double>(count_);
+    Rgb error;
+    for (std::size_t c = 0; c < 3; ++c) error[c] = std::sqrt(spread_[n][c] / (blocks * (blocks - 1.0)));
+    return error;
+  }
+
+ private:
+  std::size_t orders_;
+  std::uint64_t count_ = 0;
+  std::vector<Rgb> mean_, spread_;
+};
+
+// A batch of consecutive (query, block) pairs, their results side by side.
+struct Batch {
+  std::uint64_t first = 0, count = 0;
+  std::vector<Rgb> means;
+  std::vector<std::uint8_t> done;
+};
+
+class Work {
+ public:
+  Work(std::span<const Scene> scenes, const Options& options, const Plan& plan, const Progress& progress)
+      : scenes_(scenes),
+        options_(options),
+        plan_(plan),
+        progress_(progress),
+        orders_(static_cast<std::size_t>(options.orders)) {}
+
+  void run(std::vector<Accumulator>& sums) {
+    const std::uint64_t total = plan_.blocks * scenes_.size();
+    const unsigned machine = std::max(1U, std::thread::hardware_concurrency());
+    const std::uint64_t threads =
+        options_.threads > 0 ? static_cast<std::uint64_t>(options_.threads) : machine;
+    const std::uint64_t per_batch = std::max<std::uint64_t>(kBatchValues / orders_, 1);
+    for (std::uint64_t first = 0; first < total && !cancelled_; first += per_batch) {
+      Batch batch;
+      batch.first = first;
+      batch.count = std::min(per_batch, total - first);
+      batch.means.resize(batch.count * orders_);
+      batch.done.resize(batch.count);
+      next_ = 0;
+      std::vector<std::thread> helpers;
+      for (std::uint64_t i = 1; i < std::min(threads, batch.count); ++i) {
+        helpers.emplace_back([&] { work(batch, total); });
+      }
+      work(batch, total);
+      for (std::thread& helper : helpers) helper.join();
+      for (std::uint64_t i = 0; i < batch.count; ++i) {
+        if (batch.done[i] == 0) continue;
+        sums[(batch.first + i) / plan_.blocks].add(std::span(batch.means).subspan(i * orders_, orders_));
+      }
+    }
+  }
+
+ private:
+  void work(Batch& batch, std::uint64_t total) {
+    while (!cancelled_) {
+      const std::uint64_t i = next_.fetch_add(1);
+      if (i >= batch.count) return;
+      const std::uint64_t query = (batch.first + i) / plan_.blocks, block = (batch.first + i) % plan_.blocks;
+      const Scene& scene = scenes_[query];
+      if (scene.has_air()) {
+        trace_block(scene, hash_seed(options_.seed, query, block), plan_.log2_count,
+                    std::span(batch.means).subspan(i * orders_, orders_));
+      }
+      batch.done[i] = 1;
+      if (!progress_) continue;
+      const std::scoped_lock lock(progress_mutex_);
+      if (!cancelled_ && !progress_(static_cast<double>(++finished_) / static_cast<double>(total)))
+        cancelled_ = true;
+    }
+  }
+
+  std::span<const Scene> scenes_;
+  const Options& options_;
+  const Plan& plan_;
+  const Progress& progress_;
+  std::size_t orders_;
+  std::atomic<std::uint64_t> next_ = 0;
+  std::atomic<bool> cancelled_ = false;
+  std::mutex progress_mutex_;
+  std::uint64_t finished_ = 0;  // guarded by progress_mutex_
+};
+
+Estimate finish(const Accumulator& sums, const Scene& scene, const Options& options, const Plan& plan) {
+  const auto orders = static_cast<std::size_t>(options.orders);
+  Estimate estimate;
+  estimate.samples = sums.count() << plan.log2_count;
+  estimate.transmittance = scene.transmittance;
+  estimate.radiance = sums.mean(orders);
+  estimate.standard_error = scene.has_air() ? sums.standard_error(orders) : Rgb{};
+  for (std::size_t c = 0; c < 3; ++c) estimate.radiance[c] += scene.ground[c];
+  if (!options.by_order) return estimate;
+  for (std::size_t n = 0; n < orders; ++n) {
+    estimate.order_radiance.push_back(sums.mean(n));
+    estimate.order_standard_error.push_back(scene.has_air() ? sums.standard_error(n) : Rgb{});
+  }
+  for (std::size_t c = 0; c < 3; ++c) estimate.order_radiance[0][c] += scene.ground[c];
+  return estimate;
+}
+
+// Empty if everything is within its range.
+std::string check(const Params& params, std::span<const Query> queries, const Options& options) {
+  if (const std::string bad = check_params(params); !bad.empty()) return "parameter " + bad;
+  if (const std::string bad = check_options(options); !bad.empty()) return "path tracer, " + bad;
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    const std::string bad = check_query(queries[i], params.planet.radius_m);
+    if (!bad.empty()) return "query " + std::to_string(i + 1) + ", " + bad;
+  }
+  return {};
+}
+
+std::vector<Estimate> compute(const Params& params, std::span<const Query> queries, const Options& options,
+                              const Progress& progress) {
+  const Atmosphere air(params);
+  std::vector<Scene> scenes;
+  scenes.reserve(queries.size());
+  for (const Query& query : queries) scenes.emplace_back(air, query, options);
+  const Plan plan = plan_blocks(options.samples);
+  std::vector<Accumulator> sums(queries.size(), Accumulator(static_cast<std::size_t>(options.orders)));
+  Work(scenes, options, plan, progress).run(sums);
+
+  std::vector<Estimate> estimates;
+  estimates.reserve(queries.size());
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    estimates.push_back(finish(sums[i], scenes[i], options, plan));
+  }
+  return estimates;
+}
+
+}  // namespace
+
+Result<std::vector<Estimate>> trace(const Params& params, std::span<const Query> queries,
+                                    const Options& options, const Progress& progress) {
+  std::string bad = check(params, queries, options);
+  if (!bad.empty()) return Error{ErrorCode::invalid_argument, std::move(bad), 0};
+  return compute(params, queries, options, progress);
+}
+
+Result<Estimate> trace(const Params& params, const Query& query, const Options& options,
+                       const Progress& progress) {
+  const std::span<const Query> one(&query, 1);
+  std::string bad = check(params, one, options);
+  if (!bad.empty()) return Error{ErrorCode::invalid_argument, std::move(bad), 0};
+  return compute(params, one, options, progress).front();
+}
+
+}  // namespace tyndall::reference

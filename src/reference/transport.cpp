@@ -1,0 +1,314 @@
+// Paths start at the camera. At every vertex the sun is connected (next event estimation); the next
+// distance is sampled inside the atmosphere by inverting the optical depth of one channel, the next
+// direction from one phase function. All channels are weighted by the balance heuristic over the
+// choices that could have been made (Veach 1997; Wilkie et al., Hero wavelength spectral sampling, 2014),
+// with the channel chosen in proportion to what it will scatter, so that the sum of the three throughputs
+// never grows but for the factor of the lit part.
+#include "reference/transport.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "reference/random.hpp"
+
+namespace tyndall::reference {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+// Shares of the distance samples on a line through the planet's shadow that are kept to what the sun
+// reaches at all, and to what it reaches without being dimmed much (Atmosphere::opaque_radius_m).
+constexpr std::array<double, 2> kLitShares = {0.3, 0.3};
+
+#ifndef GS
+#define GS 0.35
+#define GG 0.7
+#endif
+const double kGlowShare = GS;
+const MiePhaseFunction kGlow(MiePhase::henyey_greenstein, GG);
+
+double sum(const Rgb& v) { return v[0] + v[1] + v[2]; }
+
+struct Vertex {
+  bool ground = false;
+  Vec position;
+  double r = 0.0;
+  Amounts density;
+};
+
+// The light of the sun that a Lambertian ground of reflected throughput `weight` returns.
+void add_ground(const Atmosphere& air, const Vertex& v, const Vec& sun, const Rgb& weight, Rgb& sums) {
+  Rgb through;
+  const double cosine = dot(v.position, sun) / v.r;
+  if (cosine <= 0.0 || !sun_transmittance(air, v.position, v.r, v.density, sun, through)) return;
+  for (std::size_t c = 0; c < 3; ++c) sums[c] += weight[c] * through[c] * cosine / kPi;
+}
+
+Vertex ground_vertex(const Atmosphere& air, const Line& line) {
+  Vertex v;
+  v.ground = true;
+  v.position = normalized(line.position(line.end())) * air.radius_m;
+  v.r = air.radius_m;
+  v.density = air.density(v.r);
+  return v;
+}
+
+// The part of a line outside the shadow of a sphere, with its probabilities for each channel in terms of
+// 1 - transmittance (without ozone) from the start of the line.
+struct LitPart {
+  double share = 0.0;  // of the samples that are kept to this part
+  Interval shadow;
+  Rgb before{};      // up to the shadow
+  Rgb shadow_end{};  // up to the end of the shadow
+  Rgb lit{};         // probability of the part
+
+  // How much likelier a position is for being sampled from this part.
+  [[nodiscard]] double preference(double s, double all, std::size_t channel) const {
+    return share > 0.0 && !(s > shadow.from && s < shadow.to) ? share * all / lit[channel] : 0.0;
+  }
+};
+
+// The share is 0 if the line misses the shadow or if there is nothing outside it to prefer.
+LitPart lit_part(const Atmosphere& air, const Line& line, const Vec& sun, double radius_m, const Rgb& all,
+                 double share) {
+  LitPart part;
+  part.shadow = line.shadow(sun, radius_m);
+  if (!(part.shadow.from < part.shadow.to)) return part;
+  part.share = share;
+  const bool begins_lit = part.shadow.from > line.start(), ends_lit = part.shadow.to < line.end();
+  Amounts entry, exit;
+  if (begins_lit) entry = line.travelled(line.point(part.shadow.from));
+  if (ends_lit) exit = line.travelled(line.point(part.shadow.to));
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (begins_lit) part.before[c] = std::max(0.0, -std::expm1(-air.exponential_depth(entry, c)));
+    part.shadow_end[c] = ends_lit ? std::min(all[c], -std::expm1(-air.exponential_depth(exit, c))) : all[c];
+    part.lit[c] = part.before[c] + all[c] - part.shadow_end[c];
+    // The columns are not accurate enough to single out less than this.
+    if (all[c] > 0.0 && !(part.lit[c] > 1e-6 * all[c])) part.share = 0.0;
+  }
+  return part;
+}
+
+// Samples where the light that arrives along `line` comes from; multiplies `weight` by contribution over
+// density. Returns false if there is nothing to scatter. `albedo` is that of the ground at its end.
+bool sample_event(const Atmosphere& air, const Line& line, const Vec& sun, double albedo, double u,
+                  Rgb& weight, Vertex& v) {
+  Rgb scattered{}, lost{};  // scattered: 1 - transmittance of each channel; lost: weighted
+  double reflected = 0.0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double through = std::expm1(-std::max(0.0, air.exponential_depth(line.total(), c)));
+    scattered[c] = -through;
+    lost[c] = weight[c] * scattered[c];
+    if (line.hits_ground()) reflected += weight[c] * albedo * (1.0 + through);
+  }
+  const double all_lost = sum(lost);
+  if (!(all_lost + reflected > 0.0)) return false;
+
+  const double reflect_share = reflected / (all_lost + reflected);
+  if (u < reflect_share) {
+    Amounts columns = line.total();
+    columns.ozone = line.ozone_travelled(line.end());
+    for (std::size_t c = 0; c < 3; ++c) weight[c] *= albedo * air.transmittance(columns, c) / reflect_share;
+    v = ground_vertex(air, line);
+    return true;
+  }
+  u = (u - reflect_share) / (1.0 - reflect_share);
+  if (!(all_lost > 0.0)) return false;
+
+  // The channel to invert, in proportion to what each will lose on this line.
+  u *= all_lost;
+  std::size_t channel = 0;
+  while (channel < 2 && u >= lost[channel]) u -= lost[channel++];
+  if (!(lost[channel] > 0.0)) return false;  // rounding at the end of the last channel
+  u = std::min(u / lost[channel], std::nextafter(1.0, 0.0));
+
+  // Where the planet's shadow falls on this line, part of the samples goes to what the sun lights.
+  std::array<LitPart, 2> lit = {lit_part(air, line, sun, air.radius_m, scattered, kLitShares[0]),
+                                lit_part(air, line, sun, air.opaque_radius_m, scattered, kLitShares[1])};
+  const double unguided = 1.0 - lit[0].share - lit[1].share;
+  double reached;  // 1 - transmittance at the sample
+  if (u < unguided) {
+    reached = u / unguided * scattered[channel];
+  } else {
+    u -= unguided;
+    const LitPart& part = u < lit[0].share ? lit[0] : lit[1];
+    if (u >= lit[0].share) u -= lit[0].share;
+    reached = u / part.share * part.lit[channel];
+    if (reached > part.before[channel]) reached += part.shadow_end[channel] - part.before[channel];
+  }
+  const LinePoint p = line.invert(channel, -std::log1p(-std::min(reached, scattered[channel])));
+  Amounts columns = line.travelled(p);
+  columns.ozone = line.ozone_travelled(p.s);
+
+  double density = 0.0;  // sum over channels of probability times probability density
+  Rgb contribution{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (weight[c] <= 0.0) continue;
+    const double through = std::exp(-air.exponential_depth(columns, c));
+    const double preference =
+        unguided + lit[0].preference(p.s, scattered[c], c) + lit[1].preference(p.s, scattered[c], c);
+    density += weight[c] * air.exponential_depth(p.density, c) * through * preference;
+    contribution[c] =
+        weight[c] * through * std::exp(-air.ozone_absorption[c] * columns.ozone) *
+        (air.rayleigh_scattering[c] * p.density.rayleigh + air.mie_scattering[c] * p.density.mie);
+  }
+  if (!(density > 0.0)) return false;
+  for (std::size_t c = 0; c < 3; ++c)
+    weight[c] = contribution[c] * all_lost / density / (1.0 - reflect_share);
+  v.ground = false;
+  v.position = line.position(p.s);
+  v.r = p.r;
+  v.density = p.density;
+  return true;
+}
+
+// Adds what the sun sends to a vertex in the air towards the line, and samples the direction that the
+// path goes on to (unless `last`).
+void scatter(const Scene& scene, const Vertex& v, bool last, PathNumbers& numbers, Rgb& weight,
+             Vec& direction, Rgb& sums) {
+  const Atmosphere& air = *scene.air;
+  Rgb rayleigh_share;
+  double rayleigh_weight = 0.0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double rayleigh = air.rayleigh_scattering[c] * v.density.rayleigh;
+    const double both = rayleigh + air.mie_scattering[c] * v.density.mie;
+    rayleigh_share[c] = both > 0.0 ? rayleigh / both : 0.0;
+    rayleigh_weight += weight[c] * rayleigh_share[c];
+  }
+  const double to_sun = dot(direction, scene.sun);
+  Rgb through;
+  if (sun_transmittance(air, v.position, v.r, v.density, scene.sun, through)) {
+    const double rayleigh = rayleigh_phase(to_sun), mie = air.mie_phase(to_sun);
+    for (std::size_t c = 0; c < 3; ++c) {
+      sums[c] += weight[c] * through[c] * (rayleigh_share[c] * rayleigh + (1.0 - rayleigh_share[c]) * mie);
+    }
+  }
+  if (last) return;
+
+  // In twilight the light comes from above the horizon on the sun's side: part of the directions goes there.
+  const Vec up = v.position * (1.0 / v.r);
+  const double sun_height = dot(up, scene.sun);
+  const Vec level = scene.sun + up * -sun_height;
+  const bool glow = sun_height < 0.0 && dot(level, level) > 1e-6;
+  const double glow_share = glow ? kGlowShare : 0.0;
+  const Vec glow_axis = glow ? normalized(level) : Vec{};
+
+  const double share = rayleigh_weight / sum(weight);
+  double u = numbers.next();
+  const double turn = 2.0 * kPi * numbers.next();
+  Vec next;
+  if (u < glow_share) {
+    next = around(glow_axis, kGlow.sample(u / glow_share, [&] { return numbers.random(); }), std::cos(turn), std::sin(turn));
+    const double height = dot(next, up);
+    if (height < 0.0) next = next + up * (-2.0 * height);
+  } else {
+    u = (u - glow_share) / (1.0 - glow_share);
+    double cosine;
+    if (u < share) {
+      cosine = sample_rayleigh(u / share);
+    } else {
+      u = std::min((u - share) / (1.0 - share), std::nextafter(1.0, 0.0));
+      cosine = air.mie_phase.sample(u, [&] { return numbers.random(); });
+    }
+    next = around(direction, cosine, std::cos(turn), std::sin(turn));
+  }
+  const double cosine = dot(direction, next);
+  const double rayleigh = rayleigh_phase(cosine), mie = air.mie_phase(cosine);
+  double density = (1.0 - glow_share) * (share * rayleigh + (1.0 - share) * mie);
+  if (glow && dot(next, up) >= 0.0) density += glow_share * 2.0 * kGlow(dot(next, glow_axis));
+  for (std::size_t c = 0; c < 3; ++c) {
+    weight[c] *= (rayleigh_share[c] * rayleigh + (1.0 - rayleigh_share[c]) * mie) / density;
+  }
+  direction = next;
+}
+
+Vec cosine_direction(const Vec& normal, double u, double turn) {
+  return around(normal, std::sqrt(1.0 - u), std::cos(2.0 * kPi * turn), std::sin(2.0 * kPi * turn));
+}
+
+void trace_path(const Scene& scene, const Line& first, PathNumbers& numbers, Rgb weight,
+                std::span<Rgb> sums) {
+  const Atmosphere& air = *scene.air;
+  std::optional<Line> next;
+  const Line* line = &first;
+  Vec direction = first.direction();
+  for (std::size_t order = 0; order < sums.size(); ++order) {
+    // The directly lit ground at the end of the first line is known without sampling (Scene::ground).
+    const bool seen = order == 0;
+    const bool last = order + 1 == sums.size();
+    const double albedo = seen && (!scene.visible_ground || last) ? 0.0 : air.ground_albedo;
+    Vertex v;
+    if (!sample_event(air, *line, scene.sun, albedo, numbers.next(), weight, v)) return;
+    if (v.ground) {
+      if (!seen) add_ground(air, v, scene.sun, weight, sums[order]);
+      if (last) return;
+      const double u = numbers.next();
+      direction = cosine_direction(v.position * (1.0 / v.r), u, numbers.next());
+    } else {
+      scatter(scene, v, last, numbers, weight, direction, sums[order]);
+      if (last) return;
+    }
+    next.emplace(air, v.position, direction);
+    line = &*next;
+  }
+}
+
+}  // namespace
+
+Scene::Scene(const Atmosphere& atmosphere, const Query& query, const Options& options)
+    : air(&atmosphere), sky(query.sky_irradiance), visible_ground(options.visible_ground) {
+  origin = {0.0, 0.0, atmosphere.radius_m + query.altitude_m};
+  const double sun_sine = std::sin(query.sun_zenith_rad);
+  sun = {sun_sine * std::cos(query.azimuth_rad), sun_sine * std::sin(query.azimuth_rad),
+         std::cos(query.sun_zenith_rad)};
+  view = sky ? sun : Vec{std::sin(query.view_zenith_rad), 0.0, std::cos(query.view_zenith_rad)};
+
+  // From space the ray starts where it enters the atmosphere.
+  const double along = dot(origin, view), r = origin.z;
+  const double tangent2 = std::max(0.0, r * r - along * along);
+  const double top2 = atmosphere.top_radius_m * atmosphere.top_radius_m;
+  Vec start = origin;
+  bool inside = true;
+  if (r >= atmosphere.top_radius_m) {
+    inside = along < 0.0 && tangent2 < top2;
+    if (inside) start = origin + view * (-std::sqrt(top2 - tangent2) - along);
+  }
+  if (inside) {
+    const Line line(atmosphere, start, view);
+    Amounts columns = line.total();
+    columns.ozone = line.ozone_travelled(line.end());
+    for (std::size_t c = 0; c < 3; ++c) transmittance[c] = atmosphere.transmittance(columns, c);
+    if (sky && line.hits_ground()) transmittance = {};
+    if (!sky && visible_ground && line.hits_ground() && atmosphere.ground_albedo > 0.0) {
+      Rgb weight;
+      for (std::size_t c = 0; c < 3; ++c) weight[c] = transmittance[c] * atmosphere.ground_albedo;
+      add_ground(atmosphere, ground_vertex(atmosphere, line), sun, weight, ground);
+    }
+  }
+  has_air_ = sky ? r < atmosphere.top_radius_m : inside;
+  if (!sky) origin = start;
+}
+
+void trace_block(const Scene& scene, std::uint64_t seed, int log2_count, std::span<Rgb> means) {
+  Generator generator(seed);
+  const SobolBlock block(log2_count, generator);
+  const std::uint32_t count = 1U << log2_count;
+  for (Rgb& mean : means) mean = {};
+  std::optional<Line> camera;
+  if (!scene.sky) camera.emplace(*scene.air, scene.origin, scene.view);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    PathNumbers numbers(block, i, generator);
+    Rgb weight = {1.0, 1.0, 1.0};
+    if (scene.sky) {
+      const double u = numbers.next();
+      camera.emplace(*scene.air, scene.origin, cosine_direction({0.0, 0.0, 1.0}, u, numbers.next()));
+      weight = {kPi, kPi, kPi};
+    }
+    trace_path(scene, *camera, numbers, weight, means);
+  }
+  for (Rgb& mean : means) {
+    for (double& value : mean) value /= static_cast<double>(count);
+  }
+}
+
+}  // namespace tyndall::reference

@@ -1,0 +1,68 @@
+// The ground's elevation, from procedural mountains or from an elevation file: the CPU's view of what
+// shaders/scene/terrain_heights.comp computes, from the same text, and the data that it needs.
+// Map coordinates: m along the sphere from the origin of the world, azimuthal equidistant, x east, z south. A
+// file's centre is at the origin; around it, over 20 % of its width, it turns into procedural terrain.
+// Immutable after creation, so any thread may read.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "scene/elevation/elevation_file.hpp"
+#include "tyndall/result.hpp"
+
+namespace tyndall::scene {
+
+// shaders/scene/terrain_fill.h as uploaded.
+namespace fill {
+using uint = std::uint32_t;
+struct ivec2 {
+  std::int32_t x = 0, y = 0;
+};
+#include "scene/terrain_fill.h"
+static_assert(sizeof(TerrainSource) == 40 && sizeof(TerrainFill) == 80, "the layouts must agree with std430");
+}  // namespace fill
+
+struct ElevationDesc {
+  std::string source = "procedural";  // or the name of an elevation file
+  std::uint32_t seed = 1;
+  double exaggeration = 1.0;
+  double planet_radius_m = 6360000.0;
+  int max_samples = kMaxElevationSamples;  // of a file, on a side; its atlas is 1.5 times as wide
+};
+
+// One R32F image with a file's samples and their coarser levels, laid out as terrain_source.glsl says.
+// Procedural terrain has one texel.
+struct ElevationAtlas {
+  int width = 1, height = 1;
+  std::vector<float> texels = {0.0F};
+};
+
+class ElevationSource {
+ public:
+  static Result<ElevationSource> create(const ElevationDesc& desc);
+
+  // Elevation of the ground in m, without anything finer than about two of `spacing_m` (at least 1/64 m).
+  // Places are taken to the nearest 1/64 m.
+  [[nodiscard]] float height_m(double x_m, double z_m, double spacing_m) const;
+
+  // No elevation is outside these, at any spacing.
+  [[nodiscard]] float min_height_m() const { return min_height_m_; }
+  [[nodiscard]] float max_height_m() const { return max_height_m_; }
+
+  [[nodiscard]] bool from_file() const { return constants_.kind != 0; }
+  // For TerrainFill::source and for the image elevation_atlas.
+  [[nodiscard]] const fill::TerrainSource& constants() const { return constants_; }
+  [[nodiscard]] const ElevationAtlas& atlas() const { return atlas_; }
+  // The host copy of the atlas is needed by height_m.
+  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
+
+ private:
+  fill::TerrainSource constants_ = {};
+  ElevationAtlas atlas_;
+  float min_height_m_ = 0.0F, max_height_m_ = 0.0F;
+  std::vector<std::string> notes_;
+};
+
+}  // namespace tyndall::scene

@@ -1,0 +1,347 @@
+#include "scene/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "gpu/try.hpp"
+#include "scene/chart.hpp"
+#include "scene_shaders.hpp"
+
+namespace tyndall::scene {
+namespace {
+
+constexpr VkFormat kColorFormat = VK_FORMAT_R32G32B32A32_SFLOAT;  // the sun's disc exceeds half precision
+constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
+constexpr std::uint32_t kMaxTimedPasses = 24;
+constexpr double kRadPerDeg = 0.017453292519943295;
+constexpr double kLeastHeight_m = 2.0;  // of the camera above the ground
+
+// What background.frag reads, in std430.
+struct BackgroundConstants {
+  Mat4 world_from_view;
+  Vec3 direction_to_sun;
+  float angular_radius_rad;
+  Vec3 disc_radiance;
+  float pixel_angle_rad;
+  Vec3 limb_exponent;
+  float unused_0;
+  float tan_half[2];
+  float unused_1[2];
+};
+
+// Exponents of the limb darkening by wavelength in nm (Hestroffer, Magnan 1998, eq. 4: 416 to 1099 nm).
+float limb_exponent(float wavelength_nm) {
+  const float um = std::clamp(wavelength_nm, 303.0F, 1099.0F) * 1e-3F;
+  return um < 0.422F ? 0.6F : -0.023F + 0.292F / um;
+}
+
+VkRenderingAttachmentInfo attachment(VkImageView view, VkImageLayout layout, VkAttachmentLoadOp load,
+                                     VkClearValue clear) {
+  VkRenderingAttachmentInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
+  info.imageView = view;
+  info.imageLayout = layout;
+  info.loadOp = load;
+  info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+  info.clearValue = clear;
+  return info;
+}
+
+void begin_rendering(const gpu::Device& device, VkCommandBuffer cmd, VkExtent2D extent,
+                     const VkRenderingAttachmentInfo* color, const VkRenderingAttachmentInfo* depth) {
+  VkRenderingInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
+  info.renderArea = {{0, 0}, extent};
+  info.layerCount = 1;
+  info.colorAttachmentCount = color != nullptr ? 1 : 0;
+  info.pColorAttachments = color;
+  info.pDepthAttachment = depth;
+  device.vk.CmdBeginRendering(cmd, &info);
+  const VkViewport viewport = {0, 0, static_cast<float>(extent.width), static_cast<float>(extent.height), 0, 1};
+  const VkRect2D scissor = {{0, 0}, extent};
+  device.vk.CmdSetViewport(cmd, 0, 1, &viewport);
+  device.vk.CmdSetScissor(cmd, 0, 1, &scissor);
+}
+
+Result<void> lacks(std::string_view name) {
+  return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(name)};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Scene>> Scene::create(gpu::Host& host, const SceneDesc& desc, const Params& params,
+                                             const SceneParams& scene) {
+  auto out = std::make_unique<Scene>();
+  out->host_ = &host;
+  out->desc_ = desc;
+  out->params_ = params;
+  out->scene_ = scene;
+  TYNDALL_ASSIGN(out->terrain_, Terrain::create(host, scene.terrain, params.planet.radius_m, kColorFormat, kDepthFormat));
+  out->notes_ = out->terrain_->notes();
+  TYNDALL_TRY(out->create_objects());
+  return out;
+}
+
+Result<void> Scene::create_objects() {
+  const gpu::Device& device = host_->device();
+  DeviceInfo info;
+  info.instance = device.instance;
+  info.physical_device = device.physical_device;
+  info.device = device.device;
+  info.get_instance_proc_addr = host_->get_instance_proc_addr();
+  info.message = [](void* user, Severity, std::string_view text) {
+    auto* notes = static_cast<std::vector<std::string>*>(user);
+    if (std::find(notes->begin(), notes->end(), text) == notes->end()) notes->emplace_back(text);
+  };
+  info.message_user = &notes_;
+  EffectDesc effect_desc;
+  effect_desc.max_extent = desc_.extent;
+  effect_desc.frames_in_flight = 1;
+  effect_desc.output_format = OutputFormat::rgba32f;
+  effect_desc.timings = desc_.timings;
+  TYNDALL_ASSIGN(Effect effect, Effect::create(info, effect_desc, params_));
+  effect_ = std::make_unique<Effect>(std::move(effect));
+  TYNDALL_ASSIGN(post::Tonemap tonemap, post::Tonemap::create(device));
+  tonemap_ = std::make_unique<post::Tonemap>(std::move(tonemap));
+
+  const VkExtent3D extent = {desc_.extent.width, desc_.extent.height, 1};
+  const std::uint32_t resolution = scene_.shadows.resolution;
+  TYNDALL_ASSIGN(color_, gpu::create_image(device, {"scene_color", kColorFormat, extent,
+                                                    VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT}));
+  TYNDALL_ASSIGN(depth_, gpu::create_image(device, {"scene_depth", kDepthFormat, extent,
+                                                    VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
+                                                        VK_IMAGE_USAGE_SAMPLED_BIT}));
+  TYNDALL_ASSIGN(output_, gpu::create_image(device, {"output", kColorFormat, extent,
+                                                     VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}));
+  TYNDALL_ASSIGN(display_, gpu::create_image(device, {"display", kColorFormat, extent,
+                                                      VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}));
+  TYNDALL_ASSIGN(shadow_maps_,
+                 gpu::create_image(device, {"shadow_maps", kDepthFormat, {resolution, resolution, 1},
+                                            VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                                            scene_.shadows.cascades, 1, true}));
+  for (std::uint32_t i = 0; i < scene_.shadows.cascades; ++i) {
+    TYNDALL_ASSIGN(gpu::Handle<VkImageView> layer, gpu::create_layer_view(device, shadow_maps_, i));
+    shadow_layers_.push_back(std::move(layer));
+  }
+  TYNDALL_ASSIGN(linear_, gpu::create_sampler(device, {}));
+  TYNDALL_ASSIGN(nearest_, gpu::create_sampler(device, {.filter = VK_FILTER_NEAREST}));
+  gpu::SamplerDesc compare;
+  compare.compare = true;
+  compare.address = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
+  TYNDALL_ASSIGN(shadow_compare_, gpu::create_sampler(device, compare));
+  gpu::GraphicsDesc background;
+  background.name = "background";
+  background.vertex = &shaders::background_vert;
+  background.fragment = &shaders::background_frag;
+  background.color_format = kColorFormat;
+  background.depth_format = kDepthFormat;
+  background.depth_compare = VK_COMPARE_OP_GREATER_OR_EQUAL;
+  background.depth_write = false;
+  TYNDALL_ASSIGN(background_, gpu::create_graphics_pipeline(device, background));
+  TYNDALL_ASSIGN(floor_, gpu::create_compute_pipeline(device, shaders::floor_comp));
+  TYNDALL_ASSIGN(background_constants_,
+                 gpu::create_buffer(device, "background_constants", sizeof(BackgroundConstants),
+                                    VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
+  if (desc_.timings) {
+    TYNDALL_ASSIGN(timer_, gpu::Timer::create(device, 1, kMaxTimedPasses));
+  }
+  return {};
+}
+
+void Scene::begin_pass(VkCommandBuffer cmd, const char* name) {
+  if (desc_.timings) timer_.begin(cmd, name);
+}
+
+void Scene::end_pass(VkCommandBuffer cmd) {
+  if (desc_.timings) timer_.end(cmd);
+}
+
+Result<void> Scene::render(double seconds, bool floor) {
+  const double radius = params_.planet.radius_m;
+  const double aspect = static_cast<double>(desc_.extent.width) / desc_.extent.height;
+  view_ = view_from_params(scene_.camera, aspect, radius);
+  to_sun_ = animated_direction_to_sun(scene_.sun, seconds);
+
+  const glm::dvec2 map = map_from_world(view_.position, radius);
+  const double ground_m = terrain_->height_at(map);
+  const double altitude = altitude_of(view_.position, radius);
+  if (altitude < ground_m + kLeastHeight_m) {
+    view_.position = world_from_map(map.x, map.y, ground_m + kLeastHeight_m, radius);
+    notes_.push_back("the camera was inside the ground and has been lifted to " +
+                     std::to_string(static_cast<int>(std::lround(ground_m + kLeastHeight_m))) + " m");
+  }
+  TYNDALL_TRY(terrain_->update(view_));
+  // Nothing can be nearer than half the height above the ground below, but for walls beside the camera.
+  const double above = std::max(altitude - ground_m, kLeastHeight_m);
+  cascades_ = fit_cascades(view_, to_sun_, scene_.shadows, terrain_->ground(), std::max(0.5 * above, 20.0));
+  light_.direction_to_sun = to_sun_;
+  light_.sun_irradiance = static_cast<double>(scene_.sun.irradiance) * params_.scattering.scale;
+  light_.atmosphere_height_m = params_.atmosphere.height_m;
+  light_.tables = effect_->light_tables();
+  light_.shadow_maps = shadow_maps_.view.get();
+  light_.shadow_sampler = shadow_compare_.get();
+  light_.linear = linear_.get();
+  TYNDALL_TRY(terrain_->prepare(view_, desc_.extent.height, scene_.shadows, cascades_, light_, scene_.terrain.shading));
+
+  const gpu::Device& device = host_->device();
+  Result<void> done = host_->run([&](VkCommandBuffer cmd) -> Result<void> {
+    if (desc_.timings) timer_.begin_frame(cmd, 0);
+    if (!images_ready_) {
+      gpu::transition(device, cmd, output_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
+      gpu::transition(device, cmd, display_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
+    }
+    images_ready_ = true;
+    if (!effect_->precompute_progress().complete()) {
+      begin_pass(cmd, "precompute");
+      Result<Progress> progress = effect_->record_precompute(cmd);
+      if (!progress.ok()) return std::move(progress).error();
+      end_pass(cmd);
+      gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
+                   VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT);
+    }
+    TYNDALL_TRY(draw_shadows(cmd));
+    TYNDALL_TRY(draw_view(cmd));
+    TYNDALL_TRY(run_effect(cmd));
+    if (floor) TYNDALL_TRY(run_floor(cmd));
+    return {};
+  });
+  TYNDALL_TRY(std::move(done));
+  times_.clear();
+  if (desc_.timings) {
+    for (const gpu::TimedScope& scope : timer_.read(0)) times_.push_back({scope.name, scope.milliseconds, false});
+    for (const PassTiming& pass : effect_->timings(frame_index_)) times_.push_back({pass.name, pass.gpu_ms, true});
+  }
+  ++frame_index_;
+  return {};
+}
+
+Result<void> Scene::draw_shadows(VkCommandBuffer cmd) {
+  const gpu::Device& device = host_->device();
+  const std::uint32_t resolution = scene_.shadows.resolution;
+  gpu::transition(device, cmd, shadow_maps_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
+  begin_pass(cmd, "shadow_maps");
+  for (std::uint32_t i = 0; i < cascades_.size(); ++i) {
+    const gpu::Label label(device, cmd, "shadow_maps");
+    VkClearValue clear = {};
+    clear.depthStencil = {1.0F, 0};
+    const VkRenderingAttachmentInfo depth = attachment(shadow_layers_[i].get(), VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                                                       VK_ATTACHMENT_LOAD_OP_CLEAR, clear);
+    begin_rendering(device, cmd, {resolution, resolution}, nullptr, &depth);
+    TYNDALL_TRY(terrain_->draw_cascade(cmd, cascades_[i], i));
+    device.vk.CmdEndRendering(cmd);
+  }
+  end_pass(cmd);
+  gpu::transition(device, cmd, shadow_maps_, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                  VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  return {};
+}
+
+Result<void> Scene::draw_view(VkCommandBuffer cmd) {
+  const gpu::Device& device = host_->device();
+  const double radius_rad = scene_.sun.angular_radius_deg * kRadPerDeg;
+  const double solid_angle = 6.283185307179586 * (1.0 - std::cos(radius_rad));
+  BackgroundConstants constants = {};
+  constants.world_from_view = camera_from_view(view_).world_from_view;
+  constants.direction_to_sun = to_vec3(to_sun_);
+  constants.angular_radius_rad = static_cast<float>(radius_rad);
+  constants.disc_radiance = Vec3(static_cast<float>(light_.sun_irradiance / solid_angle));
+  constants.pixel_angle_rad = static_cast<float>(2.0 * view_.tan_half_height / desc_.extent.height);
+  const Vec3& nm = params_.atmosphere.wavelengths_nm;
+  constants.limb_exponent = {limb_exponent(nm.x), limb_exponent(nm.y), limb_exponent(nm.z)};
+  constants.tan_half[0] = static_cast<float>(view_.tan_half_width);
+  constants.tan_half[1] = static_cast<float>(view_.tan_half_height);
+  std::memcpy(background_constants_.mapped, &constants, sizeof constants);
+
+  gpu::transition(device, cmd, color_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+  gpu::transition(device, cmd, depth_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
+  const VkRenderingAttachmentInfo color = attachment(color_.view.get(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                                                     VK_ATTACHMENT_LOAD_OP_CLEAR, {});
+  const VkRenderingAttachmentInfo depth = attachment(depth_.view.get(), VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                                                     VK_ATTACHMENT_LOAD_OP_CLEAR, {});  // reversed: 0 is far
+  begin_pass(cmd, "terrain");
+  begin_rendering(device, cmd, desc_.extent, &color, &depth);
+  TYNDALL_TRY(terrain_->draw_view(cmd, view_, light_));
+  {
+    const gpu::Label label(device, cmd, background_.name);
+    const gpu::NamedResource resources[] = {
+        gpu::named_buffer("background_block", background_constants_.buffer.get())};
+    const std::string_view missing = gpu::bind(device, cmd, background_, resources);
+    if (!missing.empty()) return lacks(missing);
+    device.vk.CmdDraw(cmd, 3, 1, 0, 0);
+  }
+  device.vk.CmdEndRendering(cmd);
+  end_pass(cmd);
+  gpu::transition(device, cmd, color_, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                  VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  gpu::transition(device, cmd, depth_, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                  VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  return {};
+}
+
+Result<void> Scene::run_effect(VkCommandBuffer cmd) {
+  const gpu::Device& device = host_->device();
+  std::array<Cascade, kMaxCascades> cascades;
+  for (std::size_t i = 0; i < cascades_.size(); ++i) {
+    cascades[i] = {to_mat4(cascades_[i].shadow_from_world()), static_cast<float>(cascades_[i].near_m),
+                   static_cast<float>(cascades_[i].far_m)};
+  }
+  FrameInputs inputs;
+  inputs.extent = desc_.extent;
+  inputs.color = {color_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+  inputs.depth = {depth_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+  inputs.shadow_maps = {shadow_maps_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+  inputs.shadow_resolution = scene_.shadows.resolution;
+  inputs.cascades = {cascades.data(), cascades_.size()};
+  inputs.first_marched_cascade = scene_.shadows.first_marched;
+  inputs.camera = camera_from_view(view_);
+  inputs.sun = {to_vec3(to_sun_), Vec3(scene_.sun.irradiance),
+                static_cast<float>(scene_.sun.angular_radius_deg * kRadPerDeg)};
+  inputs.output = {output_.view.get(), VK_IMAGE_LAYOUT_GENERAL};
+  inputs.frame_index = frame_index_;
+  TYNDALL_TRY(effect_->record(cmd, inputs));
+  gpu::compute_barrier(device, cmd);
+  begin_pass(cmd, "tonemap");
+  const post::TonemapSettings settings = {static_cast<post::Operator>(scene_.tonemap.operator_),
+                                          scene_.tonemap.exposure, scene_.tonemap.white_point};
+  TYNDALL_TRY(tonemap_->record(cmd, output_.view.get(), display_.view.get(), desc_.extent, settings));
+  end_pass(cmd);
+  return {};
+}
+
+Result<void> Scene::run_floor(VkCommandBuffer cmd) {
+  const gpu::Device& device = host_->device();
+  gpu::compute_barrier(device, cmd);
+  begin_pass(cmd, "floor");
+  const gpu::NamedResource resources[] = {
+      gpu::named_image("scene_color", color_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, nearest_.get()),
+      gpu::named_image("scene_depth", depth_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, nearest_.get()),
+      gpu::named_image("output_color", display_.view.get()),
+  };
+  const std::string_view missing = gpu::bind(device, cmd, floor_, resources);
+  if (!missing.empty()) return lacks(missing);
+  gpu::dispatch(device, cmd, floor_, desc_.extent.width, desc_.extent.height);
+  end_pass(cmd);
+  return {};
+}
+
+Result<image::Image> Scene::read_back(const gpu::Image& image) {
+  TYNDALL_ASSIGN(const std::vector<std::byte> bytes,
+                 gpu::download(*host_, image, VK_IMAGE_LAYOUT_GENERAL, 0, 4 * sizeof(float)));
+  image::Image out(desc_.extent.width, desc_.extent.height);
+  const std::size_t pixels = out.rgb.size() / 3;
+  for (std::size_t i = 0; i < pixels; ++i) std::memcpy(&out.rgb[3 * i], bytes.data() + i * 16, 12);
+  return out;
+}
+
+Result<image::Image> Scene::radiance() { return read_back(output_); }
+
+Result<image::Image> Scene::display() { return read_back(display_); }
+
+Scene::Memory Scene::memory() const {
+  const MemoryUsage effect = effect_->memory();
+  return {effect.persistent, effect.transient, effect.host,
+          color_.bytes + depth_.bytes + output_.bytes + display_.bytes + shadow_maps_.bytes + terrain_->bytes()};
+}
+
+}  // namespace tyndall::scene

@@ -1,0 +1,84 @@
+// The demo engine: terrain, shadow cascades, sun and camera, rendered into colour and depth, and then
+// seen through the air by tyndall::Effect. It is a client of include/tyndall and nothing else of the
+// library, like any engine would be. Renders one frame at a time and waits for it.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gpu/host.hpp"
+#include "gpu/timer.hpp"
+#include "image/image.hpp"
+#include "post/tonemap.hpp"
+#include "scene/terrain.hpp"
+
+namespace tyndall::scene {
+
+struct SceneDesc {
+  VkExtent2D extent = {1280, 720};
+  bool timings = false;
+};
+
+struct PassTime {
+  std::string name;
+  double ms = 0.0;
+  bool in_effect = false;
+};
+
+class Scene {
+ public:
+  // Loads the terrain, builds the tables: takes seconds.
+  static Result<std::unique_ptr<Scene>> create(gpu::Host& host, const SceneDesc& desc, const Params& params,
+                                               const SceneParams& scene);
+
+  // Renders the frame that is `seconds` into the sequence. `floor` adds the pass that costs the least.
+  Result<void> render(double seconds, bool floor = false);
+
+  // Of the frame rendered last: radiance, or display values 0 to 1 after tone mapping (both linear).
+  Result<image::Image> radiance();
+  Result<image::Image> display();
+  [[nodiscard]] const std::vector<PassTime>& timings() const { return times_; }
+
+  // Remarks for the user, one line each: what a file needed, that the camera was lifted, ...
+  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
+  struct Memory {
+    VkDeviceSize effect_persistent = 0, effect_transient = 0, effect_host = 0, scene = 0;
+  };
+  [[nodiscard]] Memory memory() const;
+
+ private:
+  Result<void> create_objects();
+  Result<void> draw_shadows(VkCommandBuffer cmd);
+  Result<void> draw_view(VkCommandBuffer cmd);
+  Result<void> run_effect(VkCommandBuffer cmd);
+  Result<void> run_floor(VkCommandBuffer cmd);
+  Result<image::Image> read_back(const gpu::Image& image);
+  void begin_pass(VkCommandBuffer cmd, const char* name);
+  void end_pass(VkCommandBuffer cmd);
+
+  gpu::Host* host_ = nullptr;
+  SceneDesc desc_;
+  Params params_;
+  SceneParams scene_;
+  std::unique_ptr<Terrain> terrain_;
+  std::unique_ptr<Effect> effect_;
+  std::unique_ptr<post::Tonemap> tonemap_;
+  gpu::Image color_, depth_, shadow_maps_, output_, display_;
+  std::vector<gpu::Handle<VkImageView>> shadow_layers_;
+  gpu::Handle<VkSampler> linear_, nearest_, shadow_compare_;
+  gpu::Pipeline background_, floor_;
+  gpu::Buffer background_constants_;
+  gpu::Timer timer_;
+
+  View view_;
+  glm::dvec3 to_sun_ = {};
+  std::vector<CascadeFit> cascades_;
+  TerrainLight light_;
+  std::uint64_t frame_index_ = 0;
+  bool images_ready_ = false;
+  std::vector<PassTime> times_;
+  std::vector<std::string> notes_;
+};
+
+}  // namespace tyndall::scene

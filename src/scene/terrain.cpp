@@ -1,0 +1,319 @@
+#include "scene/terrain.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "gpu/try.hpp"
+#include "scene/chart.hpp"
+#include "scene/terrain_constants.hpp"
+#include "scene_shaders.hpp"
+
+namespace tyndall::scene {
+namespace {
+
+constexpr std::uint32_t kIndicesPerBlock = kBlockCells * kBlockCells * 6;
+constexpr std::uint32_t kMaxBlocks = 32768;
+
+struct DrawPush {
+  Mat4 clip_from_world;
+  std::uint32_t first_block;
+};
+
+std::vector<std::uint32_t> block_indices() {
+  std::vector<std::uint32_t> out;
+  out.reserve(kIndicesPerBlock);
+  const std::uint32_t side = kBlockCells + 1;
+  for (std::uint32_t z = 0; z < kBlockCells; ++z) {
+    for (std::uint32_t x = 0; x < kBlockCells; ++x) {
+      const std::uint32_t a = z * side + x;
+      // The diagonal alternates, so that ridges in either direction are cut alike; even vertices, to
+      // which odd ones slide, keep their diagonals.
+      if (((x ^ z) & 1U) == 0) {
+        out.insert(out.end(), {a, a + side, a + side + 1, a, a + side + 1, a + 1});
+      } else {
+        out.insert(out.end(), {a, a + side, a + 1, a + 1, a + side, a + side + 1});
+      }
+    }
+  }
+  return out;
+}
+
+// Whether a sphere is outside the view, by its four side planes.
+bool outside(const View& view, const glm::dvec3& centre, double radius) {
+  const glm::dvec3 d = centre - view.position;
+  const double z = glm::dot(d, view.forward);
+  if (z < -radius) return true;
+  const double x = std::abs(glm::dot(d, view.right));
+  const double y = std::abs(glm::dot(d, view.up));
+  const auto beyond = [&](double side, double tangent) {
+    return (side - z * tangent) / std::sqrt(1.0 + tangent * tangent) > radius;
+  };
+  return beyond(x, view.tan_half_width) || beyond(y, view.tan_half_height);
+}
+
+bool outside(const CascadeFit& cascade, const glm::dvec3& centre, double radius) {
+  const glm::dvec3 p = glm::transpose(cascade.world_from_light) * centre - cascade.centre;
+  return std::abs(p.x) > cascade.half_extent.x + radius || std::abs(p.y) > cascade.half_extent.y + radius ||
+         std::abs(p.z) > cascade.half_extent.z + radius;
+}
+
+// A sphere around the ground over a square of the map.
+void bounding_sphere(const glm::dvec2& low, const glm::dvec2& high, const Ground& ground, glm::dvec3& centre,
+                     double& radius) {
+  const glm::dvec2 middle = 0.5 * (low + high);
+  centre = world_from_map(middle.x, middle.y, 0.5 * (ground.min_m + ground.max_m), ground.radius_m);
+  radius = 0.0;
+  for (int corner = 0; corner < 4; ++corner) {
+    const double x = (corner & 1) != 0 ? high.x : low.x;
+    const double z = (corner & 2) != 0 ? high.y : low.y;
+    for (const double h : {ground.min_m, ground.max_m}) {
+      radius = std::max(radius, glm::distance(centre, world_from_map(x, z, h, ground.radius_m)));
+    }
+  }
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Terrain>> Terrain::create(gpu::Host& host, const TerrainParams& params, double radius_m,
+                                                 VkFormat color_format, VkFormat depth_format) {
+  auto out = std::make_unique<Terrain>();
+  out->host_ = &host;
+  out->params_ = params;
+  out->radius_m_ = radius_m;
+  ElevationDesc elevation;
+  elevation.source = params.source;
+  elevation.seed = params.seed;
+  elevation.exaggeration = params.exaggeration;
+  elevation.planet_radius_m = radius_m;
+  elevation.max_samples = static_cast<int>(host.device().properties.limits.maxImageDimension2D) * 2 / 3;
+  elevation.max_samples = std::min(elevation.max_samples, kMaxElevationSamples);
+  TYNDALL_ASSIGN(ElevationSource source, ElevationSource::create(elevation));
+  out->source_ = std::make_unique<ElevationSource>(std::move(source));
+  out->notes_ = out->source_->notes();
+  TYNDALL_TRY(out->create_objects(color_format, depth_format));
+  return out;
+}
+
+Result<void> Terrain::create_objects(VkFormat color_format, VkFormat depth_format) {
+  const gpu::Device& device = host_->device();
+  TYNDALL_ASSIGN(fill_, gpu::create_compute_pipeline(device, shaders::terrain_heights_comp));
+  gpu::GraphicsDesc view;
+  view.name = "terrain";
+  view.vertex = &shaders::terrain_vert;
+  view.fragment = &shaders::terrain_frag;
+  view.color_format = color_format;
+  view.depth_format = depth_format;
+  view.depth_compare = VK_COMPARE_OP_GREATER;
+  TYNDALL_ASSIGN(view_pipeline_, gpu::create_graphics_pipeline(device, view));
+  gpu::GraphicsDesc shadow;
+  shadow.name = "terrain_shadow";
+  shadow.vertex = &shaders::terrain_shadow_vert;
+  shadow.depth_format = depth_format;
+  shadow.depth_compare = VK_COMPARE_OP_LESS;
+  TYNDALL_ASSIGN(shadow_pipeline_, gpu::create_graphics_pipeline(device, shadow));
+  TYNDALL_ASSIGN(nearest_, gpu::create_sampler(device, {.filter = VK_FILTER_NEAREST}));
+
+  const ElevationAtlas& atlas = source_->atlas();
+  const VkExtent3D extent = {static_cast<std::uint32_t>(atlas.width), static_cast<std::uint32_t>(atlas.height), 1};
+  TYNDALL_ASSIGN(atlas_, gpu::create_image(device, {"elevation_atlas", VK_FORMAT_R32_SFLOAT, extent,
+                                                    VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT}));
+  TYNDALL_TRY(gpu::upload(*host_, atlas_, atlas.texels.data(), atlas.texels.size() * sizeof(float),
+                          VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL));
+
+  const std::vector<std::uint32_t> indices = block_indices();
+  const VkDeviceSize index_bytes = indices.size() * sizeof(std::uint32_t);
+  TYNDALL_ASSIGN(indices_, gpu::create_buffer(device, "terrain_indices", index_bytes,
+                                              VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                              gpu::MemoryKind::device));
+  TYNDALL_TRY(gpu::upload(*host_, indices_, indices.data(), index_bytes));
+  TYNDALL_ASSIGN(constants_, gpu::create_buffer(device, "terrain_constants", sizeof(shared::TerrainConstants),
+                                                VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
+  TYNDALL_ASSIGN(blocks_, gpu::create_buffer(device, "terrain_blocks", kMaxBlocks * sizeof(TerrainBlock),
+                                             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
+  TYNDALL_ASSIGN(fill_constants_, gpu::create_buffer(device, "terrain_fill_constants", sizeof(fill::TerrainFill),
+                                                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
+  return {};
+}
+
+Ground Terrain::ground() const { return {source_->min_height_m(), source_->max_height_m(), radius_m_}; }
+
+double Terrain::height_at(const glm::dvec2& map) const { return source_->height_m(map.x, map.y, kFinestCell_m); }
+
+VkDeviceSize Terrain::bytes() const {
+  return heights_.bytes + atlas_.bytes + fill_constants_.bytes + constants_.bytes + blocks_.bytes + indices_.bytes;
+}
+
+Result<void> Terrain::update(const View& view) {
+  lod_ = plan_terrain(map_from_world(view.position, radius_m_), altitude_of(view.position, radius_m_),
+                      source_->max_height_m(), radius_m_);
+  const gpu::Device& device = host_->device();
+  const auto layers = static_cast<std::uint32_t>(lod_.levels.size());
+  if (heights_.desc.layers < layers || !heights_.image) {
+    filled_.clear();
+    TYNDALL_ASSIGN(heights_, gpu::create_image(device, {"terrain_heights", VK_FORMAT_R32_SFLOAT,
+                                                        {kLevelSamples, kLevelSamples, 1},
+                                                        VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                                                        layers, 1, true}));
+    TYNDALL_TRY(host_->run([&](VkCommandBuffer cmd) -> Result<void> {
+      gpu::transition(device, cmd, heights_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
+      return {};
+    }));
+  }
+  filled_.resize(lod_.levels.size());
+  for (std::size_t i = 0; i < lod_.levels.size(); ++i) {
+    const ClipLevel& level = lod_.levels[i];
+    if (filled_[i].cell_m == level.cell_m && filled_[i].origin == level.origin) continue;
+    TYNDALL_TRY(fill_level(i));
+    filled_[i] = level;
+  }
+  return {};
+}
+
+Result<void> Terrain::fill_level(std::size_t layer) {
+  const ClipLevel& level = lod_.levels[layer];
+  fill::TerrainFill constants = {};
+  constants.source = source_->constants();
+  constants.first_sample = {level.origin.x, level.origin.y};
+  constants.texel_offset = {0, 0};
+  constants.texel_mask = -1;
+  constants.texel_count = {kLevelSamples, kLevelSamples};
+  constants.spacing_m = static_cast<float>(level.cell_m);
+  constants.layer = static_cast<std::int32_t>(layer);
+  std::memcpy(fill_constants_.mapped, &constants, sizeof constants);
+  const gpu::Device& device = host_->device();
+  return host_->run([&](VkCommandBuffer cmd) -> Result<void> {
+    const gpu::Label label(device, cmd, fill_.name);
+    const gpu::NamedResource resources[] = {
+        gpu::named_buffer("terrain_fill_block", fill_constants_.buffer.get()),
+        gpu::named_image("elevation_atlas", atlas_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, nearest_.get()),
+        gpu::named_image("elevation_levels", heights_.view.get()),
+    };
+    const std::string_view missing = gpu::bind(device, cmd, fill_, resources);
+    if (!missing.empty()) return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(missing)};
+    gpu::dispatch(device, cmd, fill_, kLevelSamples, kLevelSamples);
+    gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
+                 VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+                 VK_ACCESS_SHADER_READ_BIT);
+    return {};
+  });
+}
+
+Result<void> Terrain::prepare(const View& view, std::uint32_t height_px, const ShadowParams& shadows,
+                              const std::vector<CascadeFit>& cascades, const TerrainLight& light,
+                              TerrainShading shading) {
+  const Ground whole = ground();
+  shared::TerrainConstants out = {};
+  out.camera_map = {static_cast<float>(lod_.camera_map.x), static_cast<float>(lod_.camera_map.y)};
+  out.vertical_m = static_cast<float>(lod_.vertical_m);
+  out.planet_radius_m = static_cast<float>(radius_m_);
+  out.direction_to_sun = to_vec3(light.direction_to_sun);
+  out.atmosphere_height_m = static_cast<float>(light.atmosphere_height_m);
+  out.sun_irradiance = Vec3(static_cast<float>(light.sun_irradiance));
+  out.pixel_angle_rad = static_cast<float>(2.0 * view.tan_half_height / height_px);
+  out.camera_position = to_vec3(view.position);
+  out.camera_forward = to_vec3(view.forward);
+  out.layers = static_cast<std::uint32_t>(lod_.levels.size());
+  out.shading = static_cast<std::uint32_t>(shading);
+  out.seed = params_.seed;
+  out.cascade_count = static_cast<std::uint32_t>(cascades.size());
+  out.shadow_resolution = static_cast<float>(shadows.resolution);
+  out.smooth_shadows = shadows.smooth.value;
+  out.best_cascade = shadows.best_cascade.value;
+  out.show_cascades = shadows.show_cascades.value;
+  for (std::size_t i = 0; i < lod_.levels.size(); ++i) {
+    const ClipLevel& level = lod_.levels[i];
+    out.levels[i] = {{level.origin.x, level.origin.y}, static_cast<float>(level.cell_m),
+                     static_cast<float>(lod_.range_m(level))};
+  }
+  for (std::size_t i = 0; i < cascades.size(); ++i) {
+    const CascadeFit& c = cascades[i];
+    out.shadow_from_world[i] = to_mat4(c.shadow_from_world());
+    out.cascade[i] = {static_cast<float>(c.far_m), static_cast<float>(2.0 * c.half_extent.x / shadows.resolution),
+                      static_cast<float>(2.0 * c.half_extent.y / shadows.resolution),
+                      static_cast<float>(2.0 * c.half_extent.z)};
+  }
+  std::memcpy(constants_.mapped, &out, sizeof out);
+
+  // The blocks of the view, nearest first so that what they hide is not shaded, then each cascade's: no
+  // finer than its texels can show.
+  auto* blocks = static_cast<TerrainBlock*>(blocks_.mapped);
+  std::uint32_t used = 0;
+  ranges_.clear();
+  const auto take = [&]() -> Result<void> {
+    if (used + scratch_.size() > kMaxBlocks) {
+      return Error{ErrorCode::out_of_memory, "the view needs more blocks of terrain than there is room for"};
+    }
+    std::copy(scratch_.begin(), scratch_.end(), blocks + used);
+    ranges_.push_back({used, static_cast<std::uint32_t>(scratch_.size())});
+    used += static_cast<std::uint32_t>(scratch_.size());
+    return {};
+  };
+  const auto sphere_test = [&](const auto& volume) {
+    return [&](const glm::dvec2& low, const glm::dvec2& high) {
+      glm::dvec3 centre;
+      double radius = 0.0;
+      bounding_sphere(low, high, whole, centre, radius);
+      return !outside(volume, centre, radius);
+    };
+  };
+  select_blocks(lod_, 0, sphere_test(view), scratch_);
+  const auto distance = [&](const TerrainBlock& b) {
+    const double cell = lod_.levels[static_cast<std::size_t>(b.layer)].cell_m;
+    return glm::distance(glm::dvec2(b.x + kBlockCells / 2, b.z + kBlockCells / 2) * cell, lod_.camera_map);
+  };
+  std::sort(scratch_.begin(), scratch_.end(),
+            [&](const TerrainBlock& a, const TerrainBlock& b) { return distance(a) < distance(b); });
+  TYNDALL_TRY(take());
+  for (const CascadeFit& cascade : cascades) {
+    int finest = 0;
+    while (finest + 1 < static_cast<int>(lod_.levels.size()) &&
+           lod_.levels[static_cast<std::size_t>(finest)].cell_m < 0.5 * cascade.texel_m) {
+      ++finest;
+    }
+    select_blocks(lod_, finest, sphere_test(cascade), scratch_);
+    TYNDALL_TRY(take());
+  }
+  return {};
+}
+
+Result<void> Terrain::draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline,
+                           std::span<const gpu::NamedResource> resources, const glm::dmat4& clip_from_world,
+                           std::uint32_t range) {
+  const gpu::Device& device = host_->device();
+  const gpu::Label label(device, cmd, pipeline.name);
+  const DrawPush push = {to_mat4(clip_from_world), ranges_[range].first};
+  const std::string_view missing = gpu::bind(device, cmd, pipeline, resources, &push);
+  if (!missing.empty()) return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(missing)};
+  device.vk.CmdBindIndexBuffer(cmd, indices_.buffer.get(), 0, VK_INDEX_TYPE_UINT32);
+  if (ranges_[range].count > 0) device.vk.CmdDrawIndexed(cmd, kIndicesPerBlock, ranges_[range].count, 0, 0, 0);
+  return {};
+}
+
+Result<void> Terrain::draw_view(VkCommandBuffer cmd, const View& view, const TerrainLight& light) {
+  const gpu::NamedResource resources[] = {
+      gpu::named_buffer("terrain_block", constants_.buffer.get()),
+      gpu::named_buffer("blocks_block", blocks_.buffer.get()),
+      gpu::named_image("terrain_heights", heights_.view.get(), VK_IMAGE_LAYOUT_GENERAL, nearest_.get()),
+      gpu::named_image("shadow_maps", light.shadow_maps, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, light.shadow_sampler),
+      gpu::named_image("sun_transmittance", light.tables.sun_transmittance, VK_IMAGE_LAYOUT_GENERAL, light.linear),
+      gpu::named_image("sky_irradiance", light.tables.sky_irradiance, VK_IMAGE_LAYOUT_GENERAL, light.linear),
+  };
+  return draw(cmd, view_pipeline_, resources, clip_from_world(view), 0);
+}
+
+Result<void> Terrain::draw_cascade(VkCommandBuffer cmd, const CascadeFit& cascade, std::uint32_t index) {
+  const gpu::NamedResource resources[] = {
+      gpu::named_buffer("terrain_block", constants_.buffer.get()),
+      gpu::named_buffer("blocks_block", blocks_.buffer.get()),
+      gpu::named_image("terrain_heights", heights_.view.get(), VK_IMAGE_LAYOUT_GENERAL, nearest_.get()),
+  };
+  glm::dmat4 clip_from_uv(1.0);
+  clip_from_uv[0][0] = clip_from_uv[1][1] = 2.0;
+  clip_from_uv[3] = glm::dvec4(-1.0, -1.0, 0.0, 1.0);
+  return draw(cmd, shadow_pipeline_, resources, clip_from_uv * cascade.shadow_from_world(), index + 1);
+}
+
+}  // namespace tyndall::scene

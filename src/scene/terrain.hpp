@@ -1,0 +1,82 @@
+// The terrain on the GPU: fills the clipmap of elevations around the camera, and draws it for the view
+// and for the shadow cascades.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "gpu/host.hpp"
+#include "gpu/pipeline.hpp"
+#include "scene/cascades.hpp"
+#include "scene/elevation/elevation_source.hpp"
+#include "scene/terrain_lod.hpp"
+
+namespace tyndall::scene {
+
+// What shading the ground needs of a frame, apart from the geometry.
+struct TerrainLight {
+  glm::dvec3 direction_to_sun = {};
+  double sun_irradiance = 0.0;  // above the atmosphere, times scattering.scale
+  double atmosphere_height_m = 0.0;
+  LightTables tables;
+  VkImageView shadow_maps = VK_NULL_HANDLE;
+  VkSampler shadow_sampler = VK_NULL_HANDLE;
+  VkSampler linear = VK_NULL_HANDLE;
+};
+
+class Terrain {
+ public:
+  static Result<std::unique_ptr<Terrain>> create(gpu::Host& host, const TerrainParams& params, double radius_m,
+                                                 VkFormat color_format, VkFormat depth_format);
+
+  // Brings the clipmap to the camera: fills the levels that have moved. Synchronous.
+  Result<void> update(const View& view);
+
+  [[nodiscard]] Ground ground() const;
+  // Elevation of the ground under the camera [m].
+  [[nodiscard]] double height_at(const glm::dvec2& map) const;
+  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
+  [[nodiscard]] VkDeviceSize bytes() const;
+
+  // Selects the blocks of a frame and writes the constants: before the draws are recorded.
+  Result<void> prepare(const View& view, std::uint32_t height_px, const ShadowParams& shadows,
+                       const std::vector<CascadeFit>& cascades, const TerrainLight& light,
+                       TerrainShading shading);
+  // Inside a rendering scope with colour and depth, or with the layer of a shadow map.
+  Result<void> draw_view(VkCommandBuffer cmd, const View& view, const TerrainLight& light);
+  Result<void> draw_cascade(VkCommandBuffer cmd, const CascadeFit& cascade, std::uint32_t index);
+
+ private:
+  Result<void> create_objects(VkFormat color_format, VkFormat depth_format);
+  Result<void> fill_level(std::size_t layer);
+  Result<void> draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline,
+                    std::span<const gpu::NamedResource> resources, const glm::dmat4& clip_from_world,
+                    std::uint32_t range);
+
+  struct Range {
+    std::uint32_t first = 0, count = 0;
+  };
+
+  gpu::Host* host_ = nullptr;
+  TerrainParams params_;
+  double radius_m_ = 0.0;
+  std::unique_ptr<ElevationSource> source_;
+  std::vector<std::string> notes_;
+  TerrainLod lod_;
+  std::vector<ClipLevel> filled_;
+
+  gpu::Pipeline fill_;
+  gpu::Pipeline view_pipeline_;
+  gpu::Pipeline shadow_pipeline_;
+  gpu::Image heights_;
+  gpu::Image atlas_;
+  gpu::Buffer fill_constants_;
+  gpu::Buffer constants_;
+  gpu::Buffer blocks_;
+  gpu::Buffer indices_;
+  gpu::Handle<VkSampler> nearest_;
+  std::vector<Range> ranges_;  // the view's, then each cascade's
+  std::vector<TerrainBlock> scratch_;
+};
+
+}  // namespace tyndall::scene

@@ -1,0 +1,55 @@
+// Level of detail of the terrain: a clipmap of elevations around the camera, drawn as a quadtree of
+// square blocks whose vertices slide into the next level's grid with distance (Strugar, "Continuous
+// Distance-Dependent Level of Detail for Rendering Heightmaps", 2009), so that no cracks can open.
+// Pure functions on the CPU. Level k has cells of kFinestCell_m * 2^k; grid indices are global, so that
+// blocks of all levels nest and cells never move.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
+#include <vector>
+
+namespace tyndall::scene {
+
+constexpr double kFinestCell_m = 4.0;
+constexpr int kBlockCells = 64;      // cells along a block's side
+constexpr int kRangeCells = 448;     // a level is drawn out to this many of its cells
+constexpr int kLevelSamples = 1280;  // samples along a side of a level's elevation texture
+constexpr int kMaxLevels = 16;
+
+struct ClipLevel {
+  int level = 0;
+  double cell_m = 0.0;
+  glm::ivec2 origin = {};  // global grid index of the texture's first sample; even
+};
+
+struct TerrainLod {
+  glm::dvec2 camera_map = {};  // map coordinates of the camera [m]
+  double vertical_m = 0.0;     // height of the camera above the highest ground, at least 0
+  double reach_m = 0.0;        // how far ground can be seen
+  std::vector<ClipLevel> levels;  // from fine to coarse
+
+  // Distance out to which a level is drawn.
+  [[nodiscard]] double range_m(const ClipLevel& level) const { return kRangeCells * level.cell_m; }
+};
+
+// A block of kBlockCells × kBlockCells cells, as shaders read it.
+struct TerrainBlock {
+  std::int32_t x = 0, z = 0;   // global grid index of its first vertex
+  std::int32_t layer = 0;      // index into TerrainLod::levels
+  std::int32_t unused = 0;
+};
+
+// The levels that a camera at these map coordinates and altitude needs, out to the horizon of the
+// highest ground.
+[[nodiscard]] TerrainLod plan_terrain(const glm::dvec2& camera_map, double altitude_m, double max_ground_m,
+                                      double radius_m);
+
+// The blocks to draw; none finer than `finest_layer`. `visible` is asked with a block's bounding square
+// in map coordinates (least and greatest corner).
+void select_blocks(const TerrainLod& lod, int finest_layer,
+                   const std::function<bool(const glm::dvec2&, const glm::dvec2&)>& visible,
+                   std::vector<TerrainBlock>& out);
+
+}  // namespace tyndall::scene

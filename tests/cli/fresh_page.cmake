@@ -1,0 +1,10 @@
+# Fails when PAGE is not what COMMAND prints. Arguments: -D PAGE=file -D COMMAND="a;b;c" -P this.
+execute_process(COMMAND ${COMMAND} OUTPUT_VARIABLE printed RESULT_VARIABLE status)
+if(NOT status EQUAL 0)
+  message(FATAL_ERROR "${COMMAND} ended with ${status}")
+endif()
+file(READ ${PAGE} page)
+if(NOT page STREQUAL printed)
+  string(REPLACE ";" " " command_line "${COMMAND}")
+  message(FATAL_ERROR "${PAGE} is stale; make it anew with: ${command_line} > ${PAGE}")
+endif()
