@@ -27,8 +27,8 @@ float exponential_column(float h0, float q0, float scale_height, float R) {
       p * (2.4746223286 + p * (2.6420678442 + p * (1.5468079195 + p * (0.5098054906 + p * 0.08121729357))));
   float c_above = 0.3753936665 + p * (0.652352705 + p * 0.4259731527);
   float c_below = 1.0 + p * (0.6341824736 + p * 0.4259731527);
-  return exp(min(-h0 / scale_height, 60.0)) * s * e_above * (c_below + c_above * scale_height / r0) /
-         (e_below * c_below);
+  float path = s * e_above * (c_below + c_above * scale_height / r0) / (e_below * c_below);
+  return exp(min(-h0 / scale_height, 60.0)) * path;
 }
 
 // Ozone column of a piece of a ray on which the density is linear in altitude, outwards from (ha, qa) to
@@ -37,7 +37,7 @@ float linear_column(float ha, float qa, float hb, float qb, float h_zero, float 
   if (hb <= ha) {
     return 0.0;
   }
-  float span = (hb - ha) * (2.0 * R + ha + hb) / (qa + qb);
+  float span = (hb - ha) * (2.0 * R + ha + hb) / max(qa + qb, 1.0e-6);
   float ra = R + ha;
   float d1 = 0.276393202250021 * span;
   float d2 = 0.723606797749979 * span;
@@ -61,9 +61,9 @@ float ozone_column(IN(Medium) m, float ha, float qa, float hb) {
   float R = m.planet_radius_m;
   float h1 = clamp(m.ozone_centre_m, h0, h3);
   float qa_squared = qa * qa;
-  float q0 = sqrt(qa_squared + (h0 - ha) * (2.0 * R + h0 + ha));
-  float q1 = sqrt(qa_squared + (h1 - ha) * (2.0 * R + h1 + ha));
-  float q3 = sqrt(qa_squared + (h3 - ha) * (2.0 * R + h3 + ha));
+  float q0 = sqrt(qa_squared + max((h0 - ha) * (2.0 * R + h0 + ha), 0.0));
+  float q1 = sqrt(qa_squared + max((h1 - ha) * (2.0 * R + h1 + ha), 0.0));
+  float q3 = sqrt(qa_squared + max((h3 - ha) * (2.0 * R + h3 + ha), 0.0));
   return linear_column(h0, q0, h1, q1, low, m.ozone_centre_m, R) +
          linear_column(h1, q1, h3, q3, high, m.ozone_centre_m, R);
 }

@@ -58,7 +58,7 @@ float panel_length(IN(Medium) m, float h0, float mu, float mu_s, float nu, float
                    float tau_from_start) {
   float R = m.planet_radius_m;
   float h = altitude_along(h0, mu, d, R);
-  float r = R + h;
+  float r = max(R + h, 1.0);
   float mu_d = cos_zenith_along(h0, mu, d, R);
   float small_scale = min(m.rayleigh_scale_height_m, m.mie_scale_height_m);
   float large_scale = max(m.rayleigh_scale_height_m, m.mie_scale_height_m);
@@ -121,7 +121,7 @@ vec3 lit_scattering(IN(Medium) m, float h0, float mu, float mu_s, float nu, floa
     for (int i = 0; i < 4; ++i) {
       float x = d + node[i] * span;
       float h = altitude_along(h0, mu, x, R);
-      float sun = clamp(((R + h0) * mu_s + x * nu) / (R + h), -1.0, 1.0);
+      float sun = clamp(((R + h0) * mu_s + x * nu) / max(R + h, 1.0), -1.0, 1.0);
       vec3 column = column_along(m, h0, mu, x) + column_to_top(m, h, sun);
       vec3 density = densities(m, h);
       radiance += weight[i] * span * transmittance(m, column) * (rayleigh * density.x + mie * density.y);

@@ -161,14 +161,25 @@ void terrain_gully_octave(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, int
   float wave_m = float(1u << uint(shift)) * inversesqrt(float(a * a + b * b)) *
                  (1.0 / (kTerrainUnitsPerM * kGullyTurns));
   float per_wave = spacing_m / wave_m;
-  float weight = clamp(0.5 / per_wave - 1.0, 0.0, 1.0) * clamp(2.0 - wave_m / detail_m, 0.0, 1.0);
-  if (weight > 0.0) {
+  float shown = clamp(0.5 / per_wave - 1.0, 0.0, 1.0);
+  float wanted = clamp(2.0 - wave_m / detail_m, 0.0, 1.0);
+  if (wanted > 0.0) {
     float steep2 = dot(s.slope, s.slope);
     // On crests, where the slope turns round, the wave number goes to zero rather than its direction jump.
-    vec2 across = vec2(-s.slope.y, s.slope.x) * inversesqrt(steep2 + 0.12 * gentle);
-    vec2 z = terrain_gully(across, units, warp_m, a, b, shift, salt);
-    float height_m = amplitude * wave_m * weight * (steep2 + 0.7 * gentle * s.crest) / (steep2 + gentle);
-    s.height_m += height_m * terrain_gully_profile(z.x, 2.0 * per_wave * per_wave);
+    // `still`, from 1 there to 0 on steep slopes, raises the mean of the wave: fitted to 2e5 places, within
+    // 0.05. What the spacing does not show is replaced by that mean, so that all spacings agree on average.
+    float turn2 = 0.12 * gentle;
+    float still = turn2 / (steep2 + turn2);
+    vec2 across = vec2(-s.slope.y, s.slope.x) * inversesqrt(steep2 + turn2);
+    vec2 z = vec2(0.075 + 0.92 * still, 0.0);
+    float profile = 0.049 + 1.106 * still * still;
+    if (shown > 0.0) {
+      vec2 wave = terrain_gully(across, units, warp_m, a, b, shift, salt);
+      profile = mix(profile, terrain_gully_profile(wave.x, 2.0 * per_wave * per_wave), shown);
+      z = mix(z, wave, shown);
+    }
+    float height_m = amplitude * wave_m * wanted * (steep2 + 0.7 * gentle * s.crest) / (steep2 + gentle);
+    s.height_m += height_m * profile;
     s.slope -= across * (height_m * z.y * (kTau / wave_m) * 0.5);
     s.crest = s.crest * mix(1.0, clamp(0.6 + 0.7 * z.x, 0.0, 1.4), 0.6);
   }

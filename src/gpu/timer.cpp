@@ -29,15 +29,29 @@ void Timer::begin_frame(VkCommandBuffer cmd, std::uint32_t slot) {
   device_->vk.CmdResetQueryPool(cmd, pool_.get(), slot * scopes_ * 2, scopes_ * 2);
 }
 
+namespace {
+
+// What is timed must begin after everything before and be complete at its end: passes that overlapped
+// would have no times of their own.
+void settle(const Device& device, VkCommandBuffer cmd) {
+  barrier(device, cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
+          VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
+}
+
+}  // namespace
+
 void Timer::begin(VkCommandBuffer cmd, const char* name) {
   std::vector<const char*>& names = names_[slot_];
   if (names.size() >= scopes_) return;
+  settle(*device_, cmd);
   const auto query = static_cast<std::uint32_t>((slot_ * scopes_ + names.size()) * 2);
   device_->vk.CmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, pool_.get(), query);
+  settle(*device_, cmd);  // some CPU devices take the time only when the next barrier makes them
   names.push_back(name);
 }
 
 void Timer::end(VkCommandBuffer cmd) {
+  settle(*device_, cmd);
   const auto query = static_cast<std::uint32_t>((slot_ * scopes_ + names_[slot_].size() - 1) * 2 + 1);
   device_->vk.CmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, pool_.get(), query);
 }

@@ -18,7 +18,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 // Shares of the distance samples on a line through the planet's shadow that are kept to what the sun
 // reaches at all, and to what it reaches without being dimmed much (Atmosphere::opaque_radius_m).
-constexpr std::array<double, 2> kLitShares = {0.3, 0.3};
+constexpr std::array<double, 2> kLitShares = {LA, LB};
 
 #ifndef GS
 #define GS 0.35
