@@ -175,10 +175,11 @@ void terrain_gully_octave(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, int
     float profile = 0.049 + 1.106 * still * still;
     if (shown > 0.0) {
       vec2 wave = terrain_gully(across, units, warp_m, a, b, shift, salt);
-      profile = mix(profile, terrain_gully_profile(wave.x, 2.0 * per_wave * per_wave), shown);
+      profile = mix(profile, terrain_gully_profile(wave.x, 6.0 * per_wave * per_wave), shown);
       z = mix(z, wave, shown);
     }
-    float height_m = amplitude * wave_m * wanted * (steep2 + 0.7 * gentle * s.crest) / (steep2 + gentle);
+    float height_m = amplitude * wave_m * wanted *
+                     (steep2 * (1.0 + 0.6 * min(steep2, 2.0)) + 0.7 * gentle * s.crest) / (steep2 + gentle);
     s.height_m += height_m * profile;
     s.slope -= across * (height_m * z.y * (kTau / wave_m) * 0.5);
     s.crest = s.crest * mix(1.0, clamp(0.6 + 0.7 * z.x, 0.0, 1.4), 0.6);
@@ -188,7 +189,7 @@ void terrain_gully_octave(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, int
 // The octaves from 2.4 km to 60 m.
 void terrain_gullies(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, float strength, float spacing_m,
                      float detail_m, uint salt) {
-  terrain_gully_octave(s, units, warp_m, 1, 2, 18, 0.100 * strength, 0.05, spacing_m, detail_m, salt + 12u);
+  terrain_gully_octave(s, units, warp_m, 1, 2, 18, 0.085 * strength, 0.05, spacing_m, detail_m, salt + 12u);
   terrain_gully_octave(s, units, warp_m, 2, 1, 17, 0.080 * strength, 0.06, spacing_m, detail_m, salt + 13u);
   terrain_gully_octave(s, units, warp_m, 1, 2, 16, 0.070 * strength, 0.06, spacing_m, detail_m, salt + 14u);
   terrain_gully_octave(s, units, warp_m, 1, 4, 16, 0.060 * strength, 0.06, spacing_m, detail_m, salt + 15u);
@@ -242,14 +243,14 @@ float terrain_height_at(ivec2 units, float spacing_m, uint seed) {
   float line_d2 = dot(line_d, line_d);
   vec2 across = vec2(-line_d.y, line_d.x) * inversesqrt(line_d2 + 1.0e-11);
   vec2 z = terrain_gully(across, units, warp_m, 3, 2, 21, salt + 9u);
-  float side_m = 0.5 * relief_m * rise * line_d2 / (line_d2 + 2.0e-10) *
+  float side_m = 0.46 * relief_m * rise * line_d2 / (line_d2 + 2.0e-10) *
                  clamp(6058.0 / spacing_m - 1.0, 0.0, 1.0);
   s.height_m += side_m * terrain_gully_profile(z.x, 0.0);
   s.slope -= across * (side_m * z.y * (kTau / 12117.0) * 0.7);
   s.crest = rise * clamp(0.5 + 0.6 * z.x, 0.0, 1.0) * high;
 
   float gain = sqrt(relief_m * (1.0 / 3000.0));
-  terrain_gully_octave(s, units, warp_m, 4, 1, 20, 0.12 * gain, 0.025, spacing_m, 1.0e9, salt + 11u);  // 5.3 km
+  terrain_gully_octave(s, units, warp_m, 4, 1, 20, 0.105 * gain, 0.025, spacing_m, 1.0e9, salt + 11u);  // 5.3 km
   terrain_gullies(s, units, warp_m, 1.0, spacing_m, 1.0e9, salt);
   return terrain_soft_limit(s.height_m);
 }

@@ -18,14 +18,12 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 // Shares of the distance samples on a line through the planet's shadow that are kept to what the sun
 // reaches at all, and to what it reaches without being dimmed much (Atmosphere::opaque_radius_m).
-constexpr std::array<double, 2> kLitShares = {LA, LB};
+constexpr std::array<double, 2> kLitShares = {0.2, 0.2};
 
-#ifndef GS
-#define GS 0.35
-#define GG 0.7
-#endif
-const double kGlowShare = GS;
-const MiePhaseFunction kGlow(MiePhase::henyey_greenstein, GG);
+// Share of the directions that is kept to the glow above the horizon where the sun has set, and the shape
+// of that lobe.
+constexpr double kGlowShare = 0.35;
+const MiePhaseFunction kGlow(MiePhase::henyey_greenstein, 0.75);
 
 double sum(const Rgb& v) { return v[0] + v[1] + v[2]; }
 
@@ -198,7 +196,8 @@ void scatter(const Scene& scene, const Vertex& v, bool last, PathNumbers& number
   const double turn = 2.0 * kPi * numbers.next();
   Vec next;
   if (u < glow_share) {
-    next = around(glow_axis, kGlow.sample(u / glow_share, [&] { return numbers.random(); }), std::cos(turn), std::sin(turn));
+    next = around(glow_axis, kGlow.sample(u / glow_share, [&] { return numbers.random(); }), std::cos(turn),
+                  std::sin(turn));
     const double height = dot(next, up);
     if (height < 0.0) next = next + up * (-2.0 * height);
   } else {
