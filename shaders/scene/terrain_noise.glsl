@@ -171,11 +171,14 @@ void terrain_gully_octave(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, int
     float turn2 = 0.12 * gentle;
     float still = turn2 / (steep2 + turn2);
     vec2 across = vec2(-s.slope.y, s.slope.x) * inversesqrt(steep2 + turn2);
+    // On valley floors that rise is taken out again, or it would draw a bank along them.
     vec2 z = vec2(0.075 + 0.92 * still, 0.0);
-    float profile = 0.049 + 1.106 * still * still;
+    float rise = 1.106 * still * still;
+    float sunk = rise * (1.0 - min(1.5 * s.crest, 1.0));
+    float profile = 0.049 + rise - sunk;
     if (shown > 0.0) {
       vec2 wave = terrain_gully(across, units, warp_m, a, b, shift, salt);
-      profile = mix(profile, terrain_gully_profile(wave.x, 6.0 * per_wave * per_wave), shown);
+      profile = mix(profile, terrain_gully_profile(wave.x, 6.0 * per_wave * per_wave) - sunk, shown);
       z = mix(z, wave, shown);
     }
     float height_m = amplitude * wave_m * wanted *
@@ -210,7 +213,7 @@ float terrain_soft_limit(float height_m) {
   return clamp(height_m, 450.0, 4400.0) + 600.0 * over / (over + 600.0) - 250.0 * under / (under + 250.0);
 }
 
-uint terrain_salt(uint seed) { return terrain_hash(seed + 0x51ed270bu); }
+uint terrain_salt(uint seed) { return terrain_hash(seed + 0x51ed2712u); }
 
 // Elevation in m at a place (1/64 m), without anything finer than about two spacings.
 float terrain_height_at(ivec2 units, float spacing_m, uint seed) {
@@ -230,8 +233,8 @@ float terrain_height_at(ivec2 units, float spacing_m, uint seed) {
   vec2 line_d = terrain_map_slope(vec2(line.y, line.z), 3, 2, 23);
   vec3 swell = terrain_gradient_noise(terrain_cell(units, warp_m, 2, 1, 21), salt + 6u);  // 14.7 km
   vec2 swell_d = terrain_map_slope(vec2(swell.y, swell.z), 2, 1, 21);
-  float off = sqrt(line.x * line.x + 0.003) - 0.05;
-  vec2 off_d = line_d * (line.x * inversesqrt(line.x * line.x + 0.01));
+  float off = sqrt(line.x * line.x + 0.006) - 0.0775;
+  vec2 off_d = line_d * (line.x * inversesqrt(line.x * line.x + 0.02));
   float rise = off / (off + 0.16);
   float rise_d = 0.16 / ((off + 0.16) * (off + 0.16));
   float body = 0.8 + 0.45 * swell.x;

@@ -81,8 +81,8 @@ LitPart lit_part(const Atmosphere& air, const Line& line, const Vec& sun, double
     if (begins_lit) part.before[c] = std::max(0.0, -std::expm1(-air.exponential_depth(entry, c)));
     part.shadow_end[c] = ends_lit ? std::min(all[c], -std::expm1(-air.exponential_depth(exit, c))) : all[c];
     part.lit[c] = part.before[c] + all[c] - part.shadow_end[c];
-    // The columns are not accurate enough to single out less than this.
-    if (all[c] > 0.0 && !(part.lit[c] > 1e-6 * all[c])) part.share = 0.0;
+    // Rounding of the difference forbids to single out less than this.
+    if (all[c] > 0.0 && !(part.lit[c] > 1e-9 * all[c])) part.share = 0.0;
   }
   return part;
 }
@@ -151,8 +151,9 @@ bool sample_event(const Atmosphere& air, const Line& line, const Vec& sun, doubl
         (air.rayleigh_scattering[c] * p.density.rayleigh + air.mie_scattering[c] * p.density.mie);
   }
   if (!(density > 0.0)) return false;
-  for (std::size_t c = 0; c < 3; ++c)
+  for (std::size_t c = 0; c < 3; ++c) {
     weight[c] = contribution[c] * all_lost / density / (1.0 - reflect_share);
+  }
   v.ground = false;
   v.position = line.position(p.s);
   v.r = p.r;
@@ -160,48 +161,66 @@ bool sample_event(const Atmosphere& air, const Line& line, const Vec& sun, doubl
   return true;
 }
 
-// Adds what the sun sends to a vertex in the air towards the line, and samples the direction that the
-// path goes on to (unless `last`).
-void scatter(const Scene& scene, const Vertex& v, bool last, PathNumbers& numbers, Rgb& weight,
-             Vec& direction, Rgb& sums) {
-  const Atmosphere& air = *scene.air;
-  Rgb rayleigh_share;
-  double rayleigh_weight = 0.0;
+// Share of Rayleigh scattering in all scattering at a vertex, for each channel.
+Rgb rayleigh_shares(const Atmosphere& air, const Amounts& density) {
+  Rgb share;
   for (std::size_t c = 0; c < 3; ++c) {
-    const double rayleigh = air.rayleigh_scattering[c] * v.density.rayleigh;
-    const double both = rayleigh + air.mie_scattering[c] * v.density.mie;
-    rayleigh_share[c] = both > 0.0 ? rayleigh / both : 0.0;
-    rayleigh_weight += weight[c] * rayleigh_share[c];
+    const double rayleigh = air.rayleigh_scattering[c] * density.rayleigh;
+    const double both = rayleigh + air.mie_scattering[c] * density.mie;
+    share[c] = both > 0.0 ? rayleigh / both : 0.0;
   }
-  const double to_sun = dot(direction, scene.sun);
+  return share;
+}
+
+// Adds the light of the sun that a vertex in the air scatters back along `direction`.
+void add_air(const Atmosphere& air, const Vertex& v, const Vec& sun, const Vec& direction,
+             const Rgb& rayleigh_share, const Rgb& weight, Rgb& sums) {
   Rgb through;
-  if (sun_transmittance(air, v.position, v.r, v.density, scene.sun, through)) {
-    const double rayleigh = rayleigh_phase(to_sun), mie = air.mie_phase(to_sun);
-    for (std::size_t c = 0; c < 3; ++c) {
-      sums[c] += weight[c] * through[c] * (rayleigh_share[c] * rayleigh + (1.0 - rayleigh_share[c]) * mie);
-    }
+  if (!sun_transmittance(air, v.position, v.r, v.density, sun, through)) return;
+  const double cosine = dot(direction, sun);
+  const double rayleigh = rayleigh_phase(cosine), mie = air.mie_phase(cosine);
+  for (std::size_t c = 0; c < 3; ++c) {
+    sums[c] += weight[c] * through[c] * (rayleigh_share[c] * rayleigh + (1.0 - rayleigh_share[c]) * mie);
   }
-  if (last) return;
+}
 
-  // In twilight the light comes from above the horizon on the sun's side: part of the directions goes there.
-  const Vec up = v.position * (1.0 / v.r);
-  const double sun_height = dot(up, scene.sun);
-  const Vec level = scene.sun + up * -sun_height;
-  const bool glow = sun_height < 0.0 && dot(level, level) > 1e-6;
-  const double glow_share = glow ? kGlowShare : 0.0;
-  const Vec glow_axis = glow ? normalized(level) : Vec{};
+// Where the sun has set, light comes from above the horizon on its side: a lobe for part of the directions.
+struct Glow {
+  Vec up, axis;
+  double share = 0.0;
 
+  Glow(const Vertex& v, const Vec& sun) : up(v.position * (1.0 / v.r)) {
+    const double height = dot(up, sun);
+    const Vec level = sun + up * -height;
+    if (height >= 0.0 || dot(level, level) < 1e-6) return;
+    axis = normalized(level);
+    share = kGlowShare;
+  }
+  // The lobe's lower half is folded upwards.
+  [[nodiscard]] Vec sample(double u, double turn, PathNumbers& numbers) const {
+    const double cosine = kGlow.sample(u, [&] { return numbers.random(); });
+    const Vec w = around(axis, cosine, std::cos(turn), std::sin(turn));
+    return w + up * (-2.0 * std::min(0.0, dot(w, up)));
+  }
+  [[nodiscard]] double density(const Vec& w) const {
+    return share > 0.0 && dot(w, up) >= 0.0 ? 2.0 * kGlow(dot(w, axis)) : 0.0;
+  }
+};
+
+// Samples the direction that the path goes on to from a vertex in the air.
+Vec sample_direction(const Atmosphere& air, const Vertex& v, const Vec& sun, const Vec& direction,
+                     const Rgb& rayleigh_share, PathNumbers& numbers, Rgb& weight) {
+  double rayleigh_weight = 0.0;
+  for (std::size_t c = 0; c < 3; ++c) rayleigh_weight += weight[c] * rayleigh_share[c];
   const double share = rayleigh_weight / sum(weight);
+  const Glow glow(v, sun);
   double u = numbers.next();
   const double turn = 2.0 * kPi * numbers.next();
   Vec next;
-  if (u < glow_share) {
-    next = around(glow_axis, kGlow.sample(u / glow_share, [&] { return numbers.random(); }), std::cos(turn),
-                  std::sin(turn));
-    const double height = dot(next, up);
-    if (height < 0.0) next = next + up * (-2.0 * height);
+  if (u < glow.share) {
+    next = glow.sample(u / glow.share, turn, numbers);
   } else {
-    u = (u - glow_share) / (1.0 - glow_share);
+    u = (u - glow.share) / (1.0 - glow.share);
     double cosine;
     if (u < share) {
       cosine = sample_rayleigh(u / share);
@@ -213,12 +232,12 @@ void scatter(const Scene& scene, const Vertex& v, bool last, PathNumbers& number
   }
   const double cosine = dot(direction, next);
   const double rayleigh = rayleigh_phase(cosine), mie = air.mie_phase(cosine);
-  double density = (1.0 - glow_share) * (share * rayleigh + (1.0 - share) * mie);
-  if (glow && dot(next, up) >= 0.0) density += glow_share * 2.0 * kGlow(dot(next, glow_axis));
+  const double density =
+      (1.0 - glow.share) * (share * rayleigh + (1.0 - share) * mie) + glow.share * glow.density(next);
   for (std::size_t c = 0; c < 3; ++c) {
     weight[c] *= (rayleigh_share[c] * rayleigh + (1.0 - rayleigh_share[c]) * mie) / density;
   }
-  direction = next;
+  return next;
 }
 
 Vec cosine_direction(const Vec& normal, double u, double turn) {
@@ -244,8 +263,10 @@ void trace_path(const Scene& scene, const Line& first, PathNumbers& numbers, Rgb
       const double u = numbers.next();
       direction = cosine_direction(v.position * (1.0 / v.r), u, numbers.next());
     } else {
-      scatter(scene, v, last, numbers, weight, direction, sums[order]);
+      const Rgb rayleigh_share = rayleigh_shares(air, v.density);
+      add_air(air, v, scene.sun, direction, rayleigh_share, weight, sums[order]);
       if (last) return;
+      direction = sample_direction(air, v, scene.sun, direction, rayleigh_share, numbers, weight);
     }
     next.emplace(air, v.position, direction);
     line = &*next;
