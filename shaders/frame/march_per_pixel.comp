@@ -21,7 +21,7 @@ layout(binding = 3) uniform sampler2D scene_depth;
 layout(binding = 4) uniform sampler2DArrayShadow shadow_maps;
 layout(binding = 5, OUTPUT_FORMAT) uniform writeonly image2D output_color;
 
-const int kReadsPerStep = 4;  // of the shadow map, per evaluation of the air
+const int kReadsPerStep = 8;  // of the shadow map, per evaluation of the air
 
 // What the march has gathered: density columns from the camera [m], and per species the integral of
 // density times transmittance from the sun to the eye [m].

@@ -21,5 +21,5 @@ void main() {
   if (texel.x >= size.x || texel.y >= size.y) return;
   vec2 uv = (vec2(texel) + 0.5) / vec2(size);
   vec2 point = light_table_point(uv, medium.planet_radius_m, medium.atmosphere_height_m);
-  imageStore(sky_irradiance_table, texel, vec4(sky_irradiance_single(medium, point.x, point.y, 2, 6), 1.0));
+  imageStore(sky_irradiance_table, texel, vec4(sky_irradiance_single(medium, point.x, point.y, 2, 4), 1.0));
 }

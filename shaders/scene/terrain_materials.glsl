@@ -73,14 +73,17 @@ TerrainMaterial terrain_material(ivec2 units, float altitude_m, vec3 normal, flo
   float trees = terrain_cover((treeline_m - altitude_m) / 420.0 + 0.55 * large + 0.6 * ragged - 0.15, edge) *
                 terrain_cover(large * 0.9 + ragged * 0.55 + 1.6 * min(steep, 0.45) - 0.38, edge) *
                 terrain_cover(1.25 - rough_steep, 0.3);
-  float barren = terrain_cover((altitude_m - 2150.0 - 120.0 * sunny) / 500.0 + 0.5 * large + 0.7 * ragged, 0.5 + edge);
+  float barren =
+      terrain_cover((altitude_m - 2150.0 - 120.0 * sunny) / 500.0 + 0.5 * large + 0.7 * ragged, 0.5 + edge);
   float scree = max(barren, terrain_cover(rough_steep - 0.62 + 0.10 * large, 0.10 + 0.2 * unresolved));
-  float rock = terrain_cover(rough_steep - 0.80 + 0.12 * large + 0.10 * barren * ragged, 0.10 + 0.25 * unresolved);
+  float rock =
+      terrain_cover(rough_steep - 0.80 + 0.12 * large + 0.10 * barren * ragged, 0.10 + 0.25 * unresolved);
   float snowline_m = 2620.0 + 260.0 * sunny;
   float snow_depth = (altitude_m - snowline_m) / 450.0 + 0.45 * large + 0.55 * ragged;
   float snow_hold = 0.62 + 0.22 * clamp((altitude_m - snowline_m) / 900.0, 0.0, 1.5);
   float snow = terrain_cover(snow_depth, edge) *
-               terrain_cover(snow_hold - steep * (1.0 + 0.35 * ragged - 0.25 * middle.x) + 0.12 * large, 0.10 + 0.25 * unresolved);
+               terrain_cover(snow_hold - steep * (1.0 + 0.35 * ragged - 0.25 * middle.x) + 0.12 * large,
+                             0.10 + 0.25 * unresolved);
 
   vec3 meadow = mix(kMeadowAlbedo, kDryGrassAlbedo,
                     clamp((altitude_m - 1100.0) / 1300.0 + 0.35 * large + 0.25 * ragged, 0.0, 1.0));

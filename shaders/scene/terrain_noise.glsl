@@ -150,7 +150,8 @@ vec2 terrain_gully(vec2 across, ivec2 units, vec2 warp_m, int a, int b, int shif
 // Cross-section of a gully from the cosine of its phase: sharp crests, rounded floors, mean zero.
 // `blunt` rounds the crests to what the spacing can show.
 float terrain_gully_profile(float cosine, float blunt) {
-  return 1.273 - 2.0 * sqrt(max(0.5 - 0.5 * cosine, 0.0) + 0.001 + blunt);
+  // The mean of sqrt(sin^2(phase / 2) + blunt) is sqrt(0.405 + blunt) within 0.02.
+  return 2.0 * (sqrt(0.405 + blunt) - sqrt(max(0.5 - 0.5 * cosine, 0.0) + 0.001 + blunt));
 }
 
 // One gully octave on top of `s`. amplitude: height per wavelength. gentle: squared slope below which
@@ -178,7 +179,7 @@ void terrain_gully_octave(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, int
     float profile = 0.049 + rise - sunk;
     if (shown > 0.0) {
       vec2 wave = terrain_gully(across, units, warp_m, a, b, shift, salt);
-      profile = mix(profile, terrain_gully_profile(wave.x, 6.0 * per_wave * per_wave) - sunk, shown);
+      profile = mix(profile, terrain_gully_profile(wave.x, 4.0 * per_wave * per_wave) - sunk, shown);
       z = mix(z, wave, shown);
     }
     float height_m = amplitude * wave_m * wanted *
@@ -221,9 +222,9 @@ float terrain_height_at(ivec2 units, float spacing_m, uint seed) {
   // Ranges, 234 and 83 km: 0 lowland, 1 high mountains. The origin always lies in a range.
   float coarse = terrain_gradient_noise(terrain_cell(units, vec2(0.0, 0.0), 1, 2, 25), salt + 1u).x * 0.9 +
                  terrain_gradient_noise(terrain_cell(units, vec2(0.0, 0.0), 3, 1, 24), salt + 2u).x * 0.45;
-  vec2 away = vec2(units) * (1.0 / (kTerrainUnitsPerM * 90000.0));
+  vec2 away = vec2(units) * (1.0 / (kTerrainUnitsPerM * 110000.0));
   float away2 = dot(away, away);
-  float range = smoothstep(-0.5, 0.75, coarse + 0.15 + 0.5 / (1.0 + away2 * away2));
+  float range = smoothstep(-0.5, 0.75, coarse + 0.22 + 0.55 / (1.0 + away2 * away2));
   float high = range * range * (3.0 - 2.0 * range);
   float relief_m = 250.0 + 2750.0 * high;
 
@@ -237,10 +238,10 @@ float terrain_height_at(ivec2 units, float spacing_m, uint seed) {
   vec2 off_d = line_d * (line.x * inversesqrt(line.x * line.x + 0.02));
   float rise = off / (off + 0.16);
   float rise_d = 0.16 / ((off + 0.16) * (off + 0.16));
-  float body = 0.8 + 0.45 * swell.x;
+  float body = 0.8 + 0.6 * swell.x;
   TerrainSurface s;
   s.height_m = 400.0 + 500.0 * range + relief_m * rise * body;
-  s.slope = (off_d * (rise_d * body) + swell_d * (0.45 * rise)) * relief_m;
+  s.slope = (off_d * (rise_d * body) + swell_d * (0.6 * rise)) * relief_m;
 
   // Side valleys, 12 km apart, straight down the flanks of the main ones.
   float line_d2 = dot(line_d, line_d);
@@ -253,7 +254,8 @@ float terrain_height_at(ivec2 units, float spacing_m, uint seed) {
   s.crest = rise * clamp(0.5 + 0.6 * z.x, 0.0, 1.0) * high;
 
   float gain = sqrt(relief_m * (1.0 / 3000.0));
-  terrain_gully_octave(s, units, warp_m, 4, 1, 20, 0.105 * gain, 0.025, spacing_m, 1.0e9, salt + 11u);  // 5.3 km
+  // 5.3 km
+  terrain_gully_octave(s, units, warp_m, 4, 1, 20, 0.105 * gain, 0.025, spacing_m, 1.0e9, salt + 11u);
   terrain_gullies(s, units, warp_m, 1.0, spacing_m, 1.0e9, salt);
   return terrain_soft_limit(s.height_m);
 }

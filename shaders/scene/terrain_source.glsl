@@ -72,8 +72,8 @@ float terrain_raster_height(TERRAIN_SOURCE source, ivec2 units, vec2 map_m, floa
   s.crest = 0.0;
   if (ratio < 1.0) {
     uint salt = terrain_salt(source.seed);
-    terrain_gullies(s, units, terrain_warp(units, salt), kRasterDetail, spacing_m, 2.0 * source.raster_spacing_m,
-                    salt);
+    terrain_gullies(s, units, terrain_warp(units, salt), kRasterDetail, spacing_m,
+                    2.0 * source.raster_spacing_m, salt);
   }
   float margin_m = 0.2 * source.raster_spacing_m;
   return clamp(s.height_m, source.raster_min_m - margin_m, source.raster_max_m + margin_m);
@@ -87,7 +87,8 @@ float terrain_source_height(TERRAIN_SOURCE source, ivec2 units, float spacing_m)
   } else {
     vec2 map_m = vec2(units) * (1.0 / kTerrainUnitsPerM);
     vec2 half_m = vec2(source.raster_size) * (0.5 * source.raster_spacing_m);
-    vec2 depth = (half_m - abs(map_m)) / (half_m * (2.0 * kRasterBorder));  // 0 on the border, 1 where it ends
+    // 0 on the border, 1 where it ends
+    vec2 depth = (half_m - abs(map_m)) / (half_m * (2.0 * kRasterBorder));
     float inside = smoothstep(0.0, 1.0, min(depth.x, depth.y));
     if (inside < 1.0) {
       vec2 away = map_m / (4.0 * (half_m.x + half_m.y));

@@ -198,9 +198,9 @@ Amounts Atmosphere::exponential_columns(double tangent2, double s, double s_top,
 
   // Cubic Lagrange interpolation over 4 x 4 nodes; the stencil is shifted inwards at the edges.
   const auto weights = [](double at, std::size_t count, std::size_t& first) {
-    const double last = static_cast<double>(count - 4);
-    const double base = std::clamp(std::floor(at) - 1.0, 0.0, last);
-    first = static_cast<std::size_t>(base);
+    const auto node = static_cast<std::size_t>(at);  // at >= 0
+    first = std::min(node > 0 ? node - 1 : 0, count - 4);
+    const double base = static_cast<double>(first);
     const double t = at - base, t1 = t - 1.0, t2 = t - 2.0, t3 = t - 3.0;
     return std::array<double, 4>{t1 * t2 * t3 * (-1.0 / 6.0), t * t2 * t3 * 0.5, t * t1 * t3 * -0.5,
                                  t * t1 * t2 * (1.0 / 6.0)};

@@ -48,8 +48,8 @@ class ElevationFile : public ::testing::Test {
 };
 
 TEST_F(ElevationFile, UtmBecomesTheMap) {
-  // On the central meridian UTM is aligned with the map and 0.9996 times as large; the sphere is 0.3 % smaller
-  // than the ellipsoid.
+  // On the central meridian UTM is aligned with the map and 0.9996 times as large; the sphere is 0.3 %
+  // smaller than the ellipsoid.
   const ElevationRaster r = read(folder_.write({}, hill));
   EXPECT_NEAR(r.width, 64, 2);
   EXPECT_NEAR(r.height, 64, 2);
@@ -72,7 +72,8 @@ TEST_F(ElevationFile, DegreesAreStretchedByLatitude) {
   file.height = 100;
   const ElevationRaster r = read(folder_.write(file, hill));
   const double degree_m = kRadius_m * M_PI / 180.0;
-  EXPECT_NEAR(r.width * r.spacing_m, 200.0 * second * degree_m * std::cos(59.986 * M_PI / 180.0), 2.5 * r.spacing_m);
+  EXPECT_NEAR(r.width * r.spacing_m, 200.0 * second * degree_m * std::cos(59.986 * M_PI / 180.0),
+              2.5 * r.spacing_m);
   EXPECT_NEAR(r.height * r.spacing_m, 100.0 * second * degree_m, 2.5 * r.spacing_m);
 }
 
@@ -123,7 +124,8 @@ TEST_F(ElevationFile, VerticalUnitsScaleAndOffset) {
   file.unit = "ft";
   EXPECT_NEAR(at(read(folder_.write(file, hill)), 10, 10), 0.3048 * hill(10, 10), 1e-3);
   file.unit = "US survey foot";
-  EXPECT_NEAR(at(read(folder_.write(file, [](int, int) { return 20000.0; })), 10, 10), 20000.0 * 1200.0 / 3937.0, 1e-3);
+  EXPECT_NEAR(at(read(folder_.write(file, [](int, int) { return 20000.0; })), 10, 10),
+              20000.0 * 1200.0 / 3937.0, 1e-3);
   file.unit = "";
   file.scale = 0.1;
   file.offset = -500.0;
@@ -167,7 +169,8 @@ TEST_F(ElevationFile, LargeFilesAreReadCoarser) {
   file.epsg = 0;
   file.width = 400;
   file.height = 100;
-  const ElevationRaster r = read(folder_.write(file, [](int x, int) { return x % 2 == 0 ? 0.0 : 1000.0; }), 100);
+  const ElevationRaster r =
+      read(folder_.write(file, [](int x, int) { return x % 2 == 0 ? 0.0 : 1000.0; }), 100);
   EXPECT_EQ(r.width, 100);
   EXPECT_EQ(r.height, 25);
   EXPECT_DOUBLE_EQ(r.spacing_m, 400.0);

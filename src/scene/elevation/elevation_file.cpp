@@ -72,7 +72,8 @@ Result<void> check_path(const std::filesystem::path& path) {
 }
 
 // Metres per unit of the heights; notes what is unknown.
-double vertical_unit_m(GDALRasterBand& band, const OGRSpatialReference* srs, std::vector<std::string>& notes) {
+double vertical_unit_m(GDALRasterBand& band, const OGRSpatialReference* srs,
+                       std::vector<std::string>& notes) {
   struct Unit {
     std::string_view name;
     double metres;
@@ -127,8 +128,9 @@ struct Georeference {
 
 Georeference georeference(GDALDataset& file, std::vector<std::string>& notes) {
   Georeference geo;
-  const bool placed = file.GetGeoTransform(geo.transform.data()) == CE_None &&
-                      std::abs(geo.transform[1] * geo.transform[5] - geo.transform[2] * geo.transform[4]) > 0.0;
+  const bool placed =
+      file.GetGeoTransform(geo.transform.data()) == CE_None &&
+      std::abs(geo.transform[1] * geo.transform[5] - geo.transform[2] * geo.transform[4]) > 0.0;
   const OGRSpatialReference* srs = file.GetSpatialRef();
   if (!placed) {
     notes.push_back("no georeferencing: samples taken as 30 m apart, north up");
@@ -200,20 +202,22 @@ Result<std::vector<float>> read_band(const std::filesystem::path& path, GDALData
 
   int has_no_data = 0;
   const double no_data = band.GetNoDataValue(&has_no_data);
-  const float no_data_sample = static_cast<float>(
-      std::clamp(no_data, -static_cast<double>(std::numeric_limits<float>::max()),
-                 static_cast<double>(std::numeric_limits<float>::max())));
+  const float no_data_sample =
+      static_cast<float>(std::clamp(no_data, -static_cast<double>(std::numeric_limits<float>::max()),
+                                    static_cast<double>(std::numeric_limits<float>::max())));
   const double unit = vertical_unit_m(band, file.GetSpatialRef(), notes);
   const double scale = band.GetScale() * unit;
   const double offset = band.GetOffset() * unit;
   std::size_t holes = 0;
   for (float& v : samples) {
     const double h = v * scale + offset;
-    const bool hole = !std::isfinite(v) || (has_no_data != 0 && v == no_data_sample) || std::abs(h) > kImpossible_m;
+    const bool hole =
+        !std::isfinite(v) || (has_no_data != 0 && v == no_data_sample) || std::abs(h) > kImpossible_m;
     v = hole ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(h);
     if (hole) ++holes;
   }
-  if (holes == samples.size()) return fail(path, "holds no elevation: every sample is a hole (no-data, NaN or beyond 20 km)");
+  if (holes == samples.size())
+    return fail(path, "holds no elevation: every sample is a hole (no-data, NaN or beyond 20 km)");
   if (holes > 0) notes.push_back("filled " + std::to_string(holes) + " samples without data");
   return samples;
 }
@@ -222,7 +226,8 @@ Result<std::vector<float>> read_band(const std::filesystem::path& path, GDALData
 void fill(std::vector<float>& samples, int width, int height) {
   if (std::none_of(samples.begin(), samples.end(), [](float v) { return std::isnan(v); })) return;
   std::vector<float> valid(samples.size());
-  std::transform(samples.begin(), samples.end(), valid.begin(), [](float v) { return std::isnan(v) ? 0.0F : 1.0F; });
+  std::transform(samples.begin(), samples.end(), valid.begin(),
+                 [](float v) { return std::isnan(v) ? 0.0F : 1.0F; });
   std::vector<float> filled = samples;
   std::replace_if(
       filled.begin(), filled.end(), [](float v) { return std::isnan(v); }, -1.0e30F);
@@ -230,8 +235,8 @@ void fill(std::vector<float>& samples, int width, int height) {
   const Dataset values = make_memory(width, height, nowhere, filled);
   const Dataset mask = make_memory(width, height, nowhere, valid);
   if (values && mask &&
-      GDALFillNodata(values->GetRasterBand(1), mask->GetRasterBand(1), kFillReach_samples, 0, 0, nullptr, nullptr,
-                     nullptr) == CE_None) {
+      GDALFillNodata(values->GetRasterBand(1), mask->GetRasterBand(1), kFillReach_samples, 0, 0, nullptr,
+                     nullptr, nullptr) == CE_None) {
     for (std::size_t i = 0; i < samples.size(); ++i) {
       if (std::isnan(samples[i]) && std::abs(filled[i]) <= kImpossible_m) samples[i] = filled[i];
     }
@@ -240,8 +245,8 @@ void fill(std::vector<float>& samples, int width, int height) {
 }
 
 // The azimuthal equidistant projection around the middle of the samples, as PROJ writes it.
-Result<std::string> map_projection(const std::filesystem::path& path, const Georeference& geo, int width, int height,
-                                   double radius_m) {
+Result<std::string> map_projection(const std::filesystem::path& path, const Georeference& geo, int width,
+                                   int height, double radius_m) {
   double x = geo.transform[0] + 0.5 * (width * geo.transform[1] + height * geo.transform[2]);
   double y = geo.transform[3] + 0.5 * (width * geo.transform[4] + height * geo.transform[5]);
   if (geo.srs.IsGeographic() == 0) {
@@ -254,8 +259,8 @@ Result<std::string> map_projection(const std::filesystem::path& path, const Geor
       return fail(path, "has a coordinate system that cannot be converted to latitudes and longitudes");
   }
   std::array<char, 160> text = {};
-  std::snprintf(text.data(), text.size(), "+proj=aeqd +lat_0=%.12g +lon_0=%.12g +R=%.12g +units=m +no_defs", y, x,
-                radius_m);
+  std::snprintf(text.data(), text.size(), "+proj=aeqd +lat_0=%.12g +lon_0=%.12g +R=%.12g +units=m +no_defs",
+                y, x, radius_m);
   return std::string(text.data());
 }
 
@@ -264,7 +269,8 @@ Result<ElevationRaster> warp(const std::filesystem::path& path, GDALDataset& sou
                              int max_samples, double radius_m, const Messages& messages) {
   std::string projection;
   if (!geo.srs.IsEmpty()) {
-    Result<std::string> made = map_projection(path, geo, source.GetRasterXSize(), source.GetRasterYSize(), radius_m);
+    Result<std::string> made =
+        map_projection(path, geo, source.GetRasterXSize(), source.GetRasterYSize(), radius_m);
     if (!made.ok()) return std::move(made).error();
     projection = std::move(made).value();
   }
@@ -272,7 +278,8 @@ Result<ElevationRaster> warp(const std::filesystem::path& path, GDALDataset& sou
   if (!projection.empty()) {
     OGRSpatialReference srs;
     char* text = nullptr;
-    if (srs.importFromProj4(projection.c_str()) == OGRERR_NONE && srs.exportToWkt(&text) == OGRERR_NONE) wkt = text;
+    if (srs.importFromProj4(projection.c_str()) == OGRERR_NONE && srs.exportToWkt(&text) == OGRERR_NONE)
+      wkt = text;
     CPLFree(text);
   }
   // Extent and spacing that keep the resolution.
@@ -282,9 +289,10 @@ Result<ElevationRaster> warp(const std::filesystem::path& path, GDALDataset& sou
   std::array<double, 4> extent = {};
   int width = 0;
   int height = 0;
-  const bool suggests = transformer != nullptr &&
-                        GDALSuggestedWarpOutput2(GDALDataset::ToHandle(&source), GDALGenImgProjTransform, transformer,
-                                                 suggested.data(), &width, &height, extent.data(), 0) == CE_None;
+  const bool suggests =
+      transformer != nullptr &&
+      GDALSuggestedWarpOutput2(GDALDataset::ToHandle(&source), GDALGenImgProjTransform, transformer,
+                               suggested.data(), &width, &height, extent.data(), 0) == CE_None;
   if (transformer != nullptr) GDALDestroyGenImgProjTransformer(transformer);
   if (!suggests) return fail(path, "cannot be projected onto the terrain's map" + messages.reason());
   const double centre_x = wkt.empty() ? 0.5 * (extent[0] + extent[2]) : 0.0;
@@ -305,10 +313,9 @@ Result<ElevationRaster> warp(const std::filesystem::path& path, GDALDataset& sou
   target.transform = {centre_x - 0.5 * raster.width * spacing,  spacing, 0.0,
                       centre_y + 0.5 * raster.height * spacing, 0.0,     -spacing};
   const Dataset memory = make_memory(raster.width, raster.height, target, raster.heights);
-  if (!memory ||
-      GDALReprojectImage(GDALDataset::ToHandle(&source), nullptr, GDALDataset::ToHandle(memory.get()),
-                         wkt.empty() ? nullptr : wkt.c_str(), GRA_Bilinear, 0.0, 0.0, nullptr, nullptr,
-                         nullptr) != CE_None)
+  if (!memory || GDALReprojectImage(GDALDataset::ToHandle(&source), nullptr,
+                                    GDALDataset::ToHandle(memory.get()), wkt.empty() ? nullptr : wkt.c_str(),
+                                    GRA_Bilinear, 0.0, 0.0, nullptr, nullptr, nullptr) != CE_None)
     return fail(path, "cannot be projected onto the terrain's map" + messages.reason());
   memory->FlushCache();
   return raster;
@@ -323,28 +330,32 @@ Result<ElevationRaster> read_elevation_file(const std::filesystem::path& path, d
   const Messages messages;
   GDALAllRegister();
   const Dataset file(static_cast<GDALDataset*>(
-      GDALOpenEx(path.string().c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr, nullptr,
-                 nullptr)));
+      GDALOpenEx(path.string().c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr,
+                 nullptr, nullptr)));
   if (!file) return fail(path, "is in no format that GDAL reads, or damaged" + messages.reason());
   if (file->GetRasterCount() < 1) return fail(path, "holds no raster; a file with one raster is needed");
   if (file->GetRasterXSize() < 2 || file->GetRasterYSize() < 2)
-    return fail(path, "has " + std::to_string(file->GetRasterXSize()) + " x " + std::to_string(file->GetRasterYSize()) +
-                          " samples, at least 2 x 2 are needed");
+    return fail(path, "has " + std::to_string(file->GetRasterXSize()) + " x " +
+                          std::to_string(file->GetRasterYSize()) + " samples, at least 2 x 2 are needed");
   if (GDALDataTypeIsComplex(file->GetRasterBand(1)->GetRasterDataType()) != 0)
     return fail(path, "holds complex numbers, real elevations are needed");
 
   std::vector<std::string> notes;
   if (file->GetRasterCount() > 1)
-    notes.push_back("has " + std::to_string(file->GetRasterCount()) + " bands, the first is taken as elevation");
+    notes.push_back("has " + std::to_string(file->GetRasterCount()) +
+                    " bands, the first is taken as elevation");
   Georeference geo = georeference(*file, notes);
   int width = 0;
   int height = 0;
-  Result<std::vector<float>> samples = read_band(path, *file, max_samples, geo, width, height, messages, notes);
+  Result<std::vector<float>> samples =
+      read_band(path, *file, max_samples, geo, width, height, messages, notes);
   if (!samples.ok()) return std::move(samples).error();
   fill(samples.value(), width, height);
 
   const Dataset memory = make_memory(width, height, geo, samples.value());
-  if (!memory) return Error{ErrorCode::out_of_memory, "elevation file " + path.string() + " does not fit into memory", 0};
+  if (!memory)
+    return Error{ErrorCode::out_of_memory, "elevation file " + path.string() + " does not fit into memory",
+                 0};
   Result<ElevationRaster> warped = warp(path, *memory, geo, max_samples, planet_radius_m, messages);
   if (!warped.ok()) return std::move(warped).error();
   ElevationRaster raster = std::move(warped).value();

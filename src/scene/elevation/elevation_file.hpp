@@ -4,8 +4,8 @@
 //
 // What the file leaves out is assumed, and said in `notes`:
 // - no georeferencing (e.g. a 16-bit PNG): samples 30 m apart, north up, heights in metres;
-// - a geotransform without a coordinate system: degrees on WGS 84 if it lies within ±360 and ±90 with samples
-//   less than one degree apart, else metres;
+// - a geotransform without a coordinate system: degrees on WGS 84 if it lies within ±360 and ±90 with
+//   samples less than one degree apart, else metres;
 // - no vertical unit: that of the vertical coordinate system if there is one, else metres.
 // The band's scale, offset, unit (metres, feet, US survey feet, and decimal multiples) and no-data value are
 // honoured. NaN, infinite and impossible heights (beyond ±20 km) are holes too; holes are filled from
@@ -31,8 +31,8 @@ struct ElevationRaster {
 
 constexpr int kMaxElevationSamples = 8192;
 
-// Errors: no such file, a directory, empty, in no known format, truncated, smaller than 2 x 2 samples, complex
-// numbers, nothing but holes. Prints nothing. Memory: about 12 bytes per sample of the result.
+// Errors: no such file, a directory, empty, in no known format, truncated, smaller than 2 x 2 samples,
+// complex numbers, nothing but holes. Prints nothing. Memory: about 12 bytes per sample of the result.
 Result<ElevationRaster> read_elevation_file(const std::filesystem::path& path, double planet_radius_m,
                                             int max_samples = kMaxElevationSamples);
 

@@ -57,7 +57,9 @@ ElevationAtlas build_atlas(const ElevationRaster& raster, const std::vector<Bloc
   atlas.width = raster.width + blocks[1].width;
   atlas.height = std::max(raster.height, blocks.back().y + blocks.back().height);
   atlas.texels.assign(static_cast<std::size_t>(atlas.width) * atlas.height, 0.0F);
-  const auto at = [&](int x, int y) -> float& { return atlas.texels[static_cast<std::size_t>(y) * atlas.width + x]; };
+  const auto at = [&](int x, int y) -> float& {
+    return atlas.texels[static_cast<std::size_t>(y) * atlas.width + x];
+  };
   for (int y = 0; y < raster.height; ++y) {
     const auto row = raster.heights.begin() + static_cast<std::ptrdiff_t>(y) * raster.width;
     std::copy(row, row + raster.width, &at(0, y));
@@ -94,8 +96,10 @@ float border_offset(const ElevationRaster& raster, std::uint32_t seed) {
     const double t = 2.0 * (i + 0.5) / kSamplesPerSide - 1.0;
     for (const double depth : {0.84, 1.0}) {
       for (const double side : {-depth, depth}) {
-        sum += file(t, side) - terrain64::terrain_height_at(units_of(t * half_x, side * half_z), spacing_m, seed);
-        sum += file(side, t) - terrain64::terrain_height_at(units_of(side * half_x, t * half_z), spacing_m, seed);
+        sum += file(t, side) -
+               terrain64::terrain_height_at(units_of(t * half_x, side * half_z), spacing_m, seed);
+        sum += file(side, t) -
+               terrain64::terrain_height_at(units_of(side * half_x, t * half_z), spacing_m, seed);
       }
     }
   }
@@ -143,7 +147,8 @@ Result<ElevationSource> ElevationSource::create(const ElevationDesc& desc) {
 
 float ElevationSource::height_m(double x_m, double z_m, double spacing_m) const {
   const double spacing = std::max(spacing_m, 1.0 / kUnitsPerM);
-  return static_cast<float>(terrain64::terrain_source_height(bind(constants_, atlas_), units_of(x_m, z_m), spacing));
+  return static_cast<float>(
+      terrain64::terrain_source_height(bind(constants_, atlas_), units_of(x_m, z_m), spacing));
 }
 
 }  // namespace tyndall::scene

@@ -1,5 +1,5 @@
-// The elevation shaders compiled as C++ in double precision: tyndall::scene::terrain64 holds every function of
-// shaders/scene/terrain_noise.glsl, terrain_source.glsl and terrain_materials.glsl, with vec2 = glm::dvec2.
+// The elevation shaders compiled as C++ in double precision: tyndall::scene::terrain64 holds every function
+// of shaders/scene/terrain_noise.glsl, terrain_source.glsl and terrain_materials.glsl, with vec2 = glm::dvec2.
 // Conventions are those of the GLSL files. For .cpp files only: it defines functions of internal linkage.
 #pragma once
 
@@ -45,7 +45,8 @@ struct BoundSource : TerrainSource {
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
 namespace {
-#define TERRAIN_RASTER(source, texel) source.atlas[static_cast<std::size_t>((texel).y) * source.atlas_width + (texel).x]
+#define TERRAIN_RASTER(source, texel) \
+  source.atlas[static_cast<std::size_t>((texel).y) * source.atlas_width + (texel).x]
 #define TERRAIN_SOURCE const BoundSource&
 #include "scene/terrain_materials.glsl"
 #include "scene/terrain_source.glsl"
