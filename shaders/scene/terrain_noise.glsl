@@ -5,7 +5,7 @@
 // Places are whole numbers of 1/64 m, x east and z south of the origin. Octave k of the noise lives on
 // the lattice that the integer matrix (a -b; b a) / 2^shift makes of them: rotated by atan(b/a), with cells
 // of 2^shift / (64 sqrt(a^2 + b^2)) m. Cell numbers and fractions come from integer arithmetic, so the
-// noise is as precise 2000 km away as at the origin. It is unique within 6700 km / sqrt(a^2 + b^2) * 2.2.
+// noise is as precise 2000 km away as at the origin, and no lattice repeats within 16 000 km.
 //
 // The shape: valleys along the zero lines of a 36 km noise, side valleys across its gradient, and then
 // gullies that run down whatever slope the coarser octaves left, each octave branching off the previous

@@ -27,7 +27,7 @@ struct BackgroundConstants {
   Vec3 limb_exponent;
   float unused_0;
   float tan_half[2];
-  float unused_1[2];
+  float jitter[2];
 };
 
 // Exponents of the limb darkening by wavelength in nm (Hestroffer, Magnan 1998, eq. 4: 416 to 1099 nm).
@@ -62,6 +62,17 @@ void begin_rendering(const gpu::Device& device, VkCommandBuffer cmd, VkExtent2D 
   const VkRect2D scissor = {{0, 0}, extent};
   device.vk.CmdSetViewport(cmd, 0, 1, &viewport);
   device.vk.CmdSetScissor(cmd, 0, 1, &scissor);
+}
+
+// Radical inverse of i (Halton, 1960): evenly spread over [0; 1).
+double halton(std::uint32_t i, std::uint32_t base) {
+  double out = 0.0;
+  double digit = 1.0;
+  for (; i > 0; i /= base) {
+    digit /= base;
+    out += digit * (i % base);
+  }
+  return out;
 }
 
 Result<void> lacks(std::string_view name) {
@@ -158,9 +169,43 @@ void Scene::end_pass(VkCommandBuffer cmd) {
 }
 
 Result<void> Scene::render(double seconds, bool floor) {
+  radiance_sum_ = {};
+  display_sum_ = {};
+  const std::uint32_t samples = scene_.camera.samples;
+  for (std::uint32_t i = 0; i < samples; ++i) {
+    // Centred offsets of up to half a pixel; a single picture stays where it is.
+    const glm::dvec2 offset = samples > 1 ? glm::dvec2(halton(i + 1, 2) - 0.5, halton(i + 1, 3) - 0.5) : glm::dvec2(0.0);
+    TYNDALL_TRY(render_sample(seconds, 2.0 * offset / glm::dvec2(desc_.extent.width, desc_.extent.height), floor));
+    if (samples == 1) break;
+    TYNDALL_TRY(accumulate(output_, radiance_sum_));
+    TYNDALL_TRY(accumulate(display_, display_sum_));
+  }
+  return {};
+}
+
+// Adds an image to a sum on the host.
+Result<void> Scene::accumulate(const gpu::Image& image, image::Image& sum) {
+  TYNDALL_ASSIGN(image::Image sample, read_back(image));
+  if (sum.rgb.empty()) {
+    sum = std::move(sample);
+  } else {
+    for (std::size_t i = 0; i < sum.rgb.size(); ++i) sum.rgb[i] += sample.rgb[i];
+  }
+  return {};
+}
+
+Result<image::Image> Scene::average(const gpu::Image& image, const image::Image& sum) {
+  if (scene_.camera.samples == 1) return read_back(image);
+  image::Image out = sum;
+  for (float& value : out.rgb) value /= static_cast<float>(scene_.camera.samples);
+  return out;
+}
+
+Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool floor) {
   const double radius = params_.planet.radius_m;
   const double aspect = static_cast<double>(desc_.extent.width) / desc_.extent.height;
   view_ = view_from_params(scene_.camera, aspect, radius);
+  view_.jitter = jitter;
   to_sun_ = animated_direction_to_sun(scene_.sun, seconds);
 
   const glm::dvec2 map = map_from_world(view_.position, radius);
@@ -251,6 +296,8 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
   constants.limb_exponent = {limb_exponent(nm.x), limb_exponent(nm.y), limb_exponent(nm.z)};
   constants.tan_half[0] = static_cast<float>(view_.tan_half_width);
   constants.tan_half[1] = static_cast<float>(view_.tan_half_height);
+  constants.jitter[0] = static_cast<float>(view_.jitter.x);
+  constants.jitter[1] = static_cast<float>(view_.jitter.y);
   std::memcpy(background_constants_.mapped, &constants, sizeof constants);
 
   gpu::transition(device, cmd, color_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
@@ -334,9 +381,9 @@ Result<image::Image> Scene::read_back(const gpu::Image& image) {
   return out;
 }
 
-Result<image::Image> Scene::radiance() { return read_back(output_); }
+Result<image::Image> Scene::radiance() { return average(output_, radiance_sum_); }
 
-Result<image::Image> Scene::display() { return read_back(display_); }
+Result<image::Image> Scene::display() { return average(display_, display_sum_); }
 
 Scene::Memory Scene::memory() const {
   const MemoryUsage effect = effect_->memory();
