@@ -102,7 +102,13 @@ Result<void> check_frame(const FrameInputs& inputs, const EffectDesc& desc, cons
   if (!finite(sun) || (sun.x == 0.0F && sun.y == 0.0F && sun.z == 0.0F)) {
     return invalid("Sun::direction_to_sun is not a direction");
   }
-  if (!finite(inputs.sun.irradiance)) return invalid("Sun::irradiance is not finite");
+  const Vec3 irradiance = inputs.sun.irradiance;
+  if (!finite(irradiance) || irradiance.x < 0.0F || irradiance.y < 0.0F || irradiance.z < 0.0F) {
+    return invalid("Sun::irradiance must be finite and not negative");
+  }
+  if (!std::isfinite(inputs.sun.angular_radius_rad) || inputs.sun.angular_radius_rad < 0.0F) {
+    return invalid("Sun::angular_radius_rad must be finite and not negative");
+  }
   static_cast<void>(params);
   return {};
 }

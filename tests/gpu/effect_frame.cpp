@@ -215,16 +215,14 @@ glm::dvec3 true_transmittance(const Params& params, const RayAngles& ray, double
   return glsl64::transmittance(medium, glsl64::column_along(medium, ray.altitude_m, ray.cos_view, end));
 }
 
-std::optional<std::array<double, 2>> air_segment(const Params& params, const RayAngles& ray) {
+std::optional<AirSegment> air_segment(const Params& params, const RayAngles& ray) {
   const glsl64::Medium medium = wide_medium(params);
-  double start = 0.0;
-  double end = 0.0;
-  bool ground = false;
+  AirSegment out = {};
   if (!glsl64::atmosphere_segment(ray.altitude_m, ray.cos_view, medium.atmosphere_height_m, medium.planet_radius_m,
-                                  start, end, ground)) {
+                                  out.start, out.end, out.on_ground)) {
     return std::nullopt;
   }
-  return std::array<double, 2>{start, end};
+  return out;
 }
 
 double relative_error(const glm::dvec3& value, const glm::dvec3& truth) {

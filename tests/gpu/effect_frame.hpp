@@ -3,7 +3,6 @@
 // precision.
 #pragma once
 
-#include <array>
 #include <functional>
 #include <glm/glm.hpp>
 #include <optional>
@@ -82,7 +81,11 @@ Result<std::vector<glm::dvec3>> render(gpu::Host& host, const Params& params, co
 [[nodiscard]] glm::dvec3 true_inscattering(const Params& params, const RayAngles& ray, double start, double end);
 [[nodiscard]] glm::dvec3 true_transmittance(const Params& params, const RayAngles& ray, double end);
 // The part of the ray in the air, to the ground or the top; nothing when it misses the air.
-[[nodiscard]] std::optional<std::array<double, 2>> air_segment(const Params& params, const RayAngles& ray);
+struct AirSegment {
+  double start, end;
+  bool on_ground;
+};
+[[nodiscard]] std::optional<AirSegment> air_segment(const Params& params, const RayAngles& ray);
 
 // Largest difference of a channel, relative to the brightest channel of the truth.
 [[nodiscard]] double relative_error(const glm::dvec3& value, const glm::dvec3& truth);
