@@ -1,7 +1,8 @@
 # The two commands. Everything else is CMake: see CONTRIBUTING.md.
 #   make demo   installs what is missing, builds, renders the demo scene to out/demo.png
 #   make check  installs what is missing, builds with warnings as errors, passes every test
-.PHONY: demo check setup build format tidy clean
+#   make pictures  renders the pictures of the documentation anew
+.PHONY: demo check pictures setup build format tidy clean
 
 PRESET ?= release
 
@@ -14,6 +15,13 @@ demo: build
 check: PRESET = ci
 check: build
 	@ctest --preset ci --no-tests=error -j "$$(nproc)"
+
+pictures: PRESET = release
+pictures: build
+	@mkdir -p docs/images
+	@for scene in demo noon stratosphere; do \
+	  build/release/bin/tyndall render scenes/$$scene.toml --size 768x432 -o docs/images/$$scene.png || exit 1; \
+	done
 
 setup:
 	@tools/setup.sh
