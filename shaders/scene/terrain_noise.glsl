@@ -242,7 +242,7 @@ float terrain_height_at(ivec2 units, float spacing_m, uint seed) {
   vec2 country = terrain_country(units, salt);
   float range = country.x;
   float high = range * range * (3.0 - 2.0 * range);
-  float relief_m = 220.0 + 260.0 * country.y + 2750.0 * high;
+  float relief_m = 220.0 + 260.0 * country.y + 2600.0 * high;
 
   // Main valleys: zero lines of `line`, and a lower-frequency swell between them.
   vec2 warp_m = terrain_warp(units, salt);
@@ -257,7 +257,7 @@ float terrain_height_at(ivec2 units, float spacing_m, uint seed) {
   float rise_d = 0.48 / ((off + 0.32) * (off + 0.32));
   float body = 0.72 + 0.62 * swell.x;
   TerrainSurface s;
-  s.height_m = 400.0 + 420.0 * range + 380.0 * country.y + relief_m * rise * body;
+  s.height_m = 400.0 + 250.0 * range + 330.0 * high + 380.0 * country.y + relief_m * rise * body;
   s.slope = (off_d * (rise_d * body) + swell_d * (0.62 * rise)) * relief_m;
 
   // Side valleys and the massifs between them. No gullies yet: what steers waves of this length turns within
