@@ -50,12 +50,15 @@ float terrain_material_weight(float cell_m, float footprint_m) {
   return clamp(cell_m / footprint_m * 0.4 - 0.8, 0.0, 1.0);
 }
 
-// Adds ribs and gullies that run down `slope`, an octave finer than the elevation shows them: x 1 on crests
-// to -1 in gullies, yz slope of a relief whose typical slope is one. On level ground they wander.
-vec3 terrain_material_ribs(vec2 slope, ivec2 units, int a, int b, int shift, float footprint_m, uint salt) {
+// Adds ribs and gullies that run down `slope`, finer than the elevation shows them: x 1 on crests to -1 in
+// gullies, yz slope of a relief whose typical slope is one. On level ground they wander. coarsest_m: waves of
+// that many metres and more are left to the elevation.
+vec3 terrain_material_ribs(vec2 slope, ivec2 units, int a, int b, int shift, float coarsest_m,
+                           float footprint_m, uint salt) {
   float wave_m = float(1u << uint(shift)) * inversesqrt(float(a * a + b * b)) *
                  (1.0 / (kTerrainUnitsPerM * kGullyTurns));
-  float weight = terrain_material_weight(0.6 * wave_m, footprint_m);
+  float weight =
+      terrain_material_weight(0.6 * wave_m, footprint_m) * clamp(2.0 - 2.0 * wave_m / coarsest_m, 0.0, 1.0);
   vec3 n = vec3(0.0, 0.0, 0.0);
   if (weight > 0.0) {
     vec2 across = vec2(-slope.y, slope.x) * inversesqrt(dot(slope, slope) + 0.01);
@@ -75,18 +78,27 @@ float terrain_cover(float x, float width) { return clamp(x / width + 0.5, 0.0, 1
 TerrainMaterial terrain_material(ivec2 units, float altitude_m, vec3 normal, float bend, float footprint_m,
                                  uint seed) {
   uint salt = terrain_hash(seed + 0x2c1b3c6du);
-  float hollow = bend / (0.35 + abs(bend));
   vec2 gradient = vec2(normal.x, normal.z) * (-1.0 / max(normal.y, 0.05));
   vec3 wide = terrain_material_octave(units, 1, 3, 18, footprint_m, salt + 1u);     // 1295 m
   vec3 patches = terrain_material_octave(units, 2, 1, 16, footprint_m, salt + 2u);  // 458 m
+  // Far away the elevation's cells span several pixels: about two of these stand in for what they lack.
+  float cells_m = 24.0 * footprint_m;
+  vec3 broad = terrain_material_ribs(gradient, units, 2, 1, 19, cells_m, footprint_m, salt + 10u);  // 4.9 km
+  broad += terrain_material_ribs(gradient + vec2(broad.y, broad.z) * 0.3, units, 1, 3, 18, cells_m, footprint_m,
+                                 salt + 11u);  // 1.7 km
+  broad += terrain_material_ribs(gradient + vec2(broad.y, broad.z) * 0.3, units, 3, 2, 17, cells_m, footprint_m,
+                                 salt + 12u);  // 0.76 km
+  broad += terrain_material_ribs(gradient + vec2(broad.y, broad.z) * 0.3, units, 1, 4, 16, cells_m, footprint_m,
+                                 salt + 13u);  // 0.33 km
   // Level ground has no downhill: there the patches' relief steers the ribs.
   vec2 steer = gradient + vec2(patches.y, patches.z) * 0.12;
-  vec3 coarse = terrain_material_ribs(steer, units, 4, 3, 15, footprint_m, salt + 3u);  // waves of 137 m
+  vec3 coarse = terrain_material_ribs(steer, units, 4, 3, 15, 1.0e9, footprint_m, salt + 3u);  // waves of 137 m
   steer += vec2(coarse.y, coarse.z) * 0.35;
-  vec3 middle = terrain_material_ribs(steer, units, 3, 1, 13, footprint_m, salt + 4u);  // waves of 54 m
+  vec3 middle = terrain_material_ribs(steer, units, 3, 1, 13, 1.0e9, footprint_m, salt + 4u);  // waves of 54 m
   vec3 fine = terrain_material_octave(units, 1, 2, 11, footprint_m, salt + 5u);     // 14 m
   vec3 grain = terrain_material_octave(units, 3, 2, 10, footprint_m, salt + 6u);    // 4.4 m
   vec3 pebbles = terrain_material_octave(units, 2, 1, 8, footprint_m, salt + 7u);   // 1.8 m
+  float hollow = bend / (0.35 + abs(bend)) - 0.28 * broad.x;
   float large = wide.x * 0.55 + patches.x * 0.45;
   float ragged = coarse.x * 0.22 + middle.x * 0.22 + fine.x * 0.32 + grain.x * 0.25;
   // What the footprint leaves unresolved of `ragged`, as the width of an even distribution with the same
@@ -102,7 +114,8 @@ TerrainMaterial terrain_material(ivec2 units, float altitude_m, vec3 normal, flo
   float bare_m = clamp((altitude_m - 1500.0) * (1.0 / 900.0), 0.0, 1.0);
   float hidden = clamp(log2(max(footprint_m, 16.0) * 0.0625) * 0.14, 0.0, 1.0);
   vec2 ribbed = gradient + (vec2(coarse.y, coarse.z) * 0.28 + vec2(middle.y, middle.z) * 0.34) *
-                               (bare_m * clamp(0.75 + large, 0.3, 1.2) * min(1.4 * length(gradient), 1.0));
+                               (bare_m * clamp(0.75 + large, 0.3, 1.2) * min(1.4 * length(gradient), 1.0)) +
+                vec2(broad.y, broad.z) * ((0.22 + 0.14 * bare_m) * min(2.2 * length(gradient), 1.0));
   float steep = length(ribbed) * (1.0 + hidden);
   float rough_steep = steep * (1.0 + 0.25 * ragged + 0.10 * large);
   float sunny = clamp(normal.z * 1.6, -1.0, 1.0);  // south faces lose their snow sooner

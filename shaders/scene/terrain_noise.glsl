@@ -183,7 +183,7 @@ void terrain_gully_octave(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, int
     float profile = 0.049 + rise - sunk;
     if (shown > 0.0) {
       vec2 wave = terrain_gully(across, units, warp_m, a, b, shift, salt);
-      profile = mix(profile, terrain_gully_profile(wave.x, 4.0 * per_wave * per_wave) - sunk, shown);
+      profile = mix(profile, terrain_gully_profile(wave.x, 2.5 * per_wave * per_wave) - sunk, shown);
       z = mix(z, wave, shown);
     }
     float height_m = amplitude * wave_m * wanted *
