@@ -146,7 +146,7 @@ TerrainMaterial terrain_material(ivec2 units, float altitude_m, vec3 normal, flo
   float snow_depth = (altitude_m - snowline_m) / 450.0 + 0.45 * large + 0.35 * ragged + 0.9 * hollow -
                      0.60 * (coarse.x * 0.55 + middle.x * 0.45);
   float snow_hold = 0.66 + 0.24 * clamp((altitude_m - snowline_m) / 900.0, 0.0, 1.5);
-  float snow = terrain_cover(snow_depth, 0.08 + edge) *
+  float snow = terrain_cover(snow_depth, 0.08 + edge + 2.0 * hidden) *
                terrain_cover(snow_hold - steep * (1.0 + 0.30 * (fine.x + grain.x)) + 0.12 * large + 0.30 * hollow -
                                  0.22 * (coarse.x * 0.5 + middle.x * 0.5),
                              0.07 + 0.5 * unresolved);
