@@ -183,7 +183,7 @@ void terrain_gully_octave(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, int
     float profile = 0.049 + rise - sunk;
     if (shown > 0.0) {
       vec2 wave = terrain_gully(across, units, warp_m, a, b, shift, salt);
-      profile = mix(profile, terrain_gully_profile(wave.x, 4.0 * per_wave * per_wave) - sunk, shown);
+      profile = mix(profile, terrain_gully_profile(wave.x, 2.5 * per_wave * per_wave) - sunk, shown);
       z = mix(z, wave, shown);
     }
     float height_m = amplitude * wave_m * wanted *
@@ -242,9 +242,9 @@ float terrain_height_at(ivec2 units, float spacing_m, uint seed) {
   vec2 country = terrain_country(units, salt);
   float range = country.x;
   float high = range * range * (3.0 - 2.0 * range);
-  float relief_m = 220.0 + 260.0 * country.y + 2750.0 * high;
+  float relief_m = 220.0 + 260.0 * country.y + 2600.0 * high;
 
-  // Main valleys: zero lines of `line`, and a lower-frequency swell between them.
+  // Main valleys: zero lines of `line`, and ridges of half their wavelength between them.
   vec2 warp_m = terrain_warp(units, salt);
   vec3 line = terrain_gradient_noise(terrain_cell(units, warp_m * 1.2, 3, 2, 23), salt + 5u);  // 36 km
   vec2 line_d = terrain_map_slope(vec2(line.y, line.z), 3, 2, 23);
@@ -255,10 +255,12 @@ float terrain_height_at(ivec2 units, float spacing_m, uint seed) {
   vec2 off_d = line_d * (line.x * root);
   float rise = 1.5 * off / (off + 0.32);
   float rise_d = 0.48 / ((off + 0.32) * (off + 0.32));
-  float body = 0.72 + 0.62 * swell.x;
+  // Main ridges along the zero lines of the swell, rounded over about 2 km.
+  float spine = sqrt(swell.x * swell.x + 0.012);
+  float body = 1.03 - 1.0 * spine;
   TerrainSurface s;
-  s.height_m = 400.0 + 420.0 * range + 380.0 * country.y + relief_m * rise * body;
-  s.slope = (off_d * (rise_d * body) + swell_d * (0.62 * rise)) * relief_m;
+  s.height_m = 400.0 + 250.0 * range + 330.0 * high + 380.0 * country.y + relief_m * rise * body;
+  s.slope = (off_d * (rise_d * body) + swell_d * (-rise * swell.x / spine)) * relief_m;
 
   // Side valleys and the massifs between them. No gullies yet: what steers waves of this length turns within
   // one of them, and where it does they would fold into walls.
