@@ -1,0 +1,45 @@
+// The source function between the nodes of its grid. Include after declaring a buffer `source[]` of vec4 that
+// holds the fourth root of (light scattered per metre / scattering coefficient).
+#ifndef TYNDALL_SOURCE_LOOKUP_GLSL
+#define TYNDALL_SOURCE_LOOKUP_GLSL
+
+#include "precompute/gather_grid.glsl"
+#include "lib/table_values.glsl"
+
+vec3 source_column(uint base, uint sun, float fraction) {
+  return mix(source[base + sun].rgb, source[base + sun + 1u].rgb, fraction);
+}
+
+vec3 source_plane(uint altitude, uint zenith, float zenith_part, uint azimuth, float azimuth_part, uint sun,
+                  float sun_part) {
+  uint base = source_index(altitude, zenith, azimuth, 0u);
+  uint row = kSourceAzimuths * kGatherSuns;
+  vec3 near = mix(source_column(base, sun, sun_part), source_column(base + kGatherSuns, sun, sun_part),
+                  azimuth_part);
+  base += row;
+  vec3 far = mix(source_column(base, sun, sun_part), source_column(base + kGatherSuns, sun, sun_part),
+                 azimuth_part);
+  return mix(near, far, zenith_part);
+}
+
+// Light scattered at altitude h into the direction opposite to a view ray of cosine mu, under a sun at mu_s,
+// with nu between view ray and sun; per scattering coefficient [1/sr].
+vec3 source_at(Medium m, float h, float mu, float mu_s, float nu) {
+  float spread = sqrt(max((1.0 - mu * mu) * (1.0 - mu_s * mu_s), 1.0e-12));
+  float azimuth = acos(clamp((nu - mu * mu_s) / spread, -1.0, 1.0)) / kPi * float(kSourceAzimuths - 1u);
+  float zenith = acos(clamp(mu, -1.0, 1.0)) / kPi * float(kSourceZeniths - 1u);
+  float sun = gather_sun_index(m, mu_s);
+  float altitude = gather_altitude_index(m, h);
+  uint a = min(uint(altitude), kGatherAltitudes - 2u);
+  uint z = min(uint(zenith), kSourceZeniths - 2u);
+  uint k = min(uint(azimuth), kSourceAzimuths - 2u);
+  uint s = min(uint(sun), kGatherSuns - 2u);
+  float zf = zenith - float(z);
+  float kf = azimuth - float(k);
+  float sf = sun - float(s);
+  vec3 low = source_plane(a, z, zf, k, kf, s, sf);
+  vec3 high = source_plane(a + 1u, z, zf, k, kf, s, sf);
+  return value_from_texel(mix(low, high, altitude - float(a)));
+}
+
+#endif
