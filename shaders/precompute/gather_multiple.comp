@@ -34,14 +34,14 @@ void main() {
   float spread = sqrt(max((1.0 - mu * mu) * (1.0 - mu_s * mu_s), 0.0));
   float nu = clamp(mu * mu_s + spread * cos(gather_azimuth(azimuth)), -1.0, 1.0);
   vec3 radiance = vec3(0.0);
-  for (uint i = 0u; i < kRayNodes; ++i) {
-    RayNode node = nodes[base + i];
+  for (uint i = 0u; i < kHighNodes; ++i) {
+    RayNode node = nodes[base + kFirstHighNode + i];
     float sun_here = (r0 * mu_s + node.distance_m * nu) / (R + node.altitude_m);
     vec3 scattering = medium.rayleigh_scattering * node.rayleigh + medium.mie_scattering * node.mie;
     radiance += node.weight_m * scattering * source_at(medium, node.altitude_m, node.cos_zenith, sun_here, nu);
   }
   if (below) {
-    RayNode end = nodes[base + kRayNodes];
+    RayNode end = nodes[base + kEndNode];
     float index = gather_sun_index(medium, (r0 * mu_s + end.distance_m * nu) / R);
     uint s = min(uint(index), kGatherSuns - 2u);
     vec3 light = mix(irradiance[s].rgb, irradiance[s + 1u].rgb, index - float(s));

@@ -36,13 +36,13 @@ void main() {
   vec3 rayleigh = medium.rayleigh_scattering * rayleigh_phase(nu);
   vec3 mie = medium.mie_scattering * mie_phase(medium, nu);
   vec3 radiance = vec3(0.0);
-  for (uint i = 0u; i < kRayNodes; ++i) {
+  for (uint i = 0u; i < kSingleNodes; ++i) {
     RayNode node = nodes[base + i];
     vec3 light = sun_transmittance_at(medium, node.altitude_m, r0 * mu_s + node.distance_m * nu);
     radiance += node.weight_m * light * (rayleigh * node.rayleigh + mie * node.mie);
   }
   if (below) {
-    RayNode end = nodes[base + kRayNodes];
+    RayNode end = nodes[base + kEndNode];
     float q = r0 * mu_s + end.distance_m * nu;
     vec3 light = max(q / R, 0.0) * sun_transmittance_at(medium, 0.0, q);
     radiance += end.weight_m * light * (medium.ground_albedo / kPi);

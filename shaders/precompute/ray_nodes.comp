@@ -16,6 +16,35 @@ layout(std430, binding = 2) writeonly buffer node_block { RayNode nodes[]; };
 
 layout(push_constant) uniform Push { uint first; } push;
 
+// Walks again, laying a boundary wherever another panel's worth of the total effort is reached.
+void lay_nodes(float h, float mu, float end, float total, uint panels, uint base) {
+  float bounds[kSinglePanels + 1u];
+  bounds[0] = 0.0;
+  uint found = 1u;
+  float sum = 0.0;
+  float tau = 0.0;
+  float before = 0.0;
+  for (int i = 0; i < kWalkSteps; ++i) {
+    float after = walk_distance(end, float(i + 1) / float(kWalkSteps));
+    float here = (after - before) * effort(medium, h, mu, 0.5 * (before + after), after - before, tau);
+    while (found < panels && sum + here >= total * float(found) / float(panels)) {
+      float part = here > 0.0 ? (total * float(found) / float(panels) - sum) / here : 0.0;
+      bounds[found] = before + clamp(part, 0.0, 1.0) * (after - before);
+      ++found;
+    }
+    sum += here;
+    before = after;
+  }
+  for (uint i = found; i <= panels; ++i) bounds[i] = end;
+  vec4 node = vec4(0.069431844202974, 0.330009478207572, 0.669990521792428, 0.930568155797026);
+  vec4 weight = vec4(0.173927422568727, 0.326072577431273, 0.326072577431273, 0.173927422568727);
+  for (uint i = 0u; i < 4u * panels; ++i) {
+    float a = bounds[i / 4u];
+    float span = bounds[i / 4u + 1u] - a;
+    nodes[base + i] = ray_node(medium, h, mu, a + node[i % 4u] * span, weight[i % 4u] * span);
+  }
+}
+
 void main() {
   uint view = gl_GlobalInvocationID.x;
   uint altitude = gl_GlobalInvocationID.y + push.first;
@@ -44,32 +73,7 @@ void main() {
     total += (after - before) * effort(medium, h, mu, 0.5 * (before + after), after - before, tau);
     before = after;
   }
-  // Again, laying a boundary wherever another panel's worth of effort is reached.
-  float bounds[kRayPanels + 1u];
-  bounds[0] = 0.0;
-  uint found = 1u;
-  float sum = 0.0;
-  tau = 0.0;
-  before = 0.0;
-  for (int i = 0; i < kWalkSteps; ++i) {
-    float after = walk_distance(end, float(i + 1) / float(kWalkSteps));
-    float here = (after - before) * effort(medium, h, mu, 0.5 * (before + after), after - before, tau);
-    while (found < kRayPanels && sum + here >= total * float(found) / float(kRayPanels)) {
-      float part = here > 0.0 ? (total * float(found) / float(kRayPanels) - sum) / here : 0.0;
-      bounds[found] = before + clamp(part, 0.0, 1.0) * (after - before);
-      ++found;
-    }
-    sum += here;
-    before = after;
-  }
-  for (uint i = found; i <= kRayPanels; ++i) bounds[i] = end;
-
-  vec4 node = vec4(0.069431844202974, 0.330009478207572, 0.669990521792428, 0.930568155797026);
-  vec4 weight = vec4(0.173927422568727, 0.326072577431273, 0.326072577431273, 0.173927422568727);
-  for (uint i = 0u; i < kRayNodes; ++i) {
-    float a = bounds[i / 4u];
-    float span = bounds[i / 4u + 1u] - a;
-    nodes[base + i] = ray_node(medium, h, mu, a + node[i % 4u] * span, weight[i % 4u] * span);
-  }
-  nodes[base + kRayNodes] = ray_node(medium, h, mu, end, 1.0);
+  lay_nodes(h, mu, end, total, kSinglePanels, base);
+  lay_nodes(h, mu, end, total, kHighPanels, base + kFirstHighNode);
+  nodes[base + kEndNode] = ray_node(medium, h, mu, end, 1.0);
 }

@@ -1,13 +1,15 @@
 // The integration along a ray that starts at altitude h: panels of equal effort, four Gauss-Legendre nodes
-// each, then one entry for the ray's end. Nodes depend on altitude and view angle only, hence serve every
-// position of the sun.
+// each. Nodes depend on altitude and view angle only, hence serve every position of the sun. Of each ray there
+// are kSingleNodes for light scattered once, kHighNodes for the smoother higher orders, and the ray's end.
 #ifndef TYNDALL_RAY_NODES_GLSL
 #define TYNDALL_RAY_NODES_GLSL
 
 #include "lib/optical_depth.glsl"
 #include "shared/tables.h"
 
-const uint kNodeStride = kRayNodes + 1u;
+const uint kFirstHighNode = kSingleNodes;
+const uint kEndNode = kSingleNodes + kHighNodes;
+const uint kNodeStride = kEndNode + 1u;
 
 // Of the search for the panels: steps along the ray, and the distance over which sunlight near the terminator
 // changes, as a fraction of sqrt(2 r H).

@@ -2,7 +2,7 @@
 // Fourier series in azimuth per zenith angle; and the horizontal irradiance there.
 // In: incident light of order n - 1. Out: source of order n (fourth root, per scattering coefficient), the sum
 // of the orders so far (linear; fourth root once complete, with the orders beyond as a geometric series),
-// irradiance of order n - 1, and the sum of the irradiances of orders >= 2. One group per altitude x sun.
+// irradiance of order n - 1, and the sum of the irradiances so far. One group per altitude x sun.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -99,7 +99,7 @@ void store_irradiance(uint altitude, uint sun, float h) {
   vec3 before = irradiance[index].rgb;
   irradiance[index] = vec4(sum, 0.0);
   if (push.order == 2u) {
-    sky[index] = vec4(0.0);
+    sky[index] = vec4(sum, 0.0);
   } else {
     if (push.order > shape.orders && push.order > 3u) sum += sum * beyond(sum, before);
     sky[index] += vec4(sum, 0.0);

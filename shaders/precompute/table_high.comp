@@ -31,14 +31,14 @@ void main() {
   float q0 = (R + h) * mu_s;
   vec3 radiance = vec3(0.0);
   if (shape.orders > 1u) {
-    for (uint i = 0u; i < kRayNodes; ++i) {
-      RayNode node = nodes[base + i];
+    for (uint i = 0u; i < kHighNodes; ++i) {
+      RayNode node = nodes[base + kFirstHighNode + i];
       vec3 scattering = medium.rayleigh_scattering * node.rayleigh + medium.mie_scattering * node.mie;
       float sun_here = (q0 + node.distance_m * nu) / (R + node.altitude_m);
       radiance += node.weight_m * scattering * source_at(medium, node.altitude_m, node.cos_zenith, sun_here, nu);
     }
   }
-  Guide guide = guide_for_column(medium, column_along(medium, h, mu, nodes[base + kRayNodes].distance_m));
+  Guide guide = guide_for_column(medium, column_along(medium, h, mu, nodes[base + kEndNode].distance_m));
   ivec3 texel = ivec3(int(push.first), int(id.z), int(id.x + shape.suns * id.y));
   imageStore(high_orders, texel, vec4(texel_from_value(radiance / max(guide.high, vec3(1.0e-30))), 1.0));
 }

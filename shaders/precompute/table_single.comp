@@ -31,13 +31,13 @@ void main() {
   float q0 = (R + h) * mu_s;
   vec3 rayleigh = vec3(0.0);
   vec3 mie = vec3(0.0);
-  for (uint i = 0u; i < kRayNodes; ++i) {
+  for (uint i = 0u; i < kSingleNodes; ++i) {
     RayNode node = nodes[base + i];
     vec3 light = node.weight_m * sun_transmittance_at(medium, node.altitude_m, q0 + node.distance_m * nu);
     rayleigh += light * node.rayleigh;
     mie += light * node.mie;
   }
-  Guide guide = guide_for_column(medium, column_along(medium, h, mu, nodes[base + kRayNodes].distance_m));
+  Guide guide = guide_for_column(medium, column_along(medium, h, mu, nodes[base + kEndNode].distance_m));
   ivec3 texel = ivec3(int(push.first), int(id.z), int(id.x + shape.suns * id.y));
   imageStore(single_rayleigh, texel, vec4(texel_from_value(rayleigh / guide.rayleigh), 1.0));
   imageStore(single_mie, texel, vec4(texel_from_value(mie / guide.mie), 1.0));

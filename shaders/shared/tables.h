@@ -26,8 +26,11 @@ const uint kGatherAzimuths = 16u;
 const uint kSourceZeniths = 25u;
 const uint kSourceAzimuths = 17u;
 const uint kModes = 16u;  // of the Fourier series in azimuth
-const uint kRayPanels = 8u;
-const uint kRayNodes = 32u;  // of the integration along a ray: four per panel
+// Of the integration along a ray, four nodes per panel: finer for light scattered once.
+const uint kSinglePanels = 6u;
+const uint kHighPanels = 4u;
+const uint kSingleNodes = 24u;
+const uint kHighNodes = 16u;
 
 // One node of the integration along a ray that depends on altitude and view angle only.
 struct RayNode {

@@ -16,9 +16,8 @@ namespace {
 constexpr VkImageUsageFlags kTableUsage =
     VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
 constexpr VkExtent3D kSunLightExtent = {32, 256, 1};
-constexpr VkExtent3D kSkyLightExtent = {32, 128, 1};
+constexpr VkExtent3D kSkyLightExtent = {32, 256, 1};
 constexpr std::uint32_t kAltitudesPerSlice = 8;  // of the gathering grid
-constexpr std::uint32_t kColumnsPerSlice = 4;    // of the sky's table
 constexpr std::uint32_t kMostSlices = 4096 * 3 + 512;
 
 // The order of the fields is that of the shaders' shape_block.
@@ -71,7 +70,7 @@ constexpr std::size_t kScratchBuffers = 9;
 
 std::array<BufferPlan, kScratchBuffers> plan_scratch(std::uint32_t views) {
   constexpr VkDeviceSize points = shared::kGatherAltitudes * shared::kGatherSuns;
-  constexpr VkDeviceSize ray = (shared::kRayNodes + 1) * sizeof(shared::RayNode);
+  constexpr VkDeviceSize ray = (shared::kSingleNodes + shared::kHighNodes + 1) * sizeof(shared::RayNode);
   constexpr VkDeviceSize vec4 = 16;
   constexpr VkDeviceSize source = points * shared::kSourceZeniths * shared::kSourceAzimuths * vec4;
   constexpr VkDeviceSize phase = VkDeviceSize{8} * shared::kGatherAltitudes * shared::kSourceZeniths *
@@ -263,7 +262,7 @@ void TableBuilder::plan_slices() {
       cut(order == 2 ? gather_single : gather_multiple, altitudes, kAltitudesPerSlice, order);
       cut(scatter, altitudes, kAltitudesPerSlice, order);
     }
-    cut(sky_light, kSkyLightExtent.width, kColumnsPerSlice, 0);
+    cut(sky_light, 1, 1, 0);
   }
   for (std::uint32_t altitude = 0; altitude < wanted_.tables.size.x; ++altitude) {
     slices_.push_back({ray_nodes, altitude, 1, 0});
@@ -345,7 +344,7 @@ Result<void> TableBuilder::record_slice(VkCommandBuffer cmd, const Slice& slice)
   VkExtent3D extent = {size.z, size.w, size.y};  // of the tables: sun, angle, view
   switch (slice.stage) {
     case sun_light: extent = kSunLightExtent; break;
-    case sky_light: extent = {slice.count, kSkyLightExtent.height, 1}; break;
+    case sky_light: extent = kSkyLightExtent; break;
     case grid_nodes: extent = {shared::kGatherZeniths, slice.count, 1}; break;
     case ray_nodes: extent = {size.y, 1, 1}; break;
     case phase_matrix: extent = {shared::kSourceZeniths, slice.count, 1}; break;

@@ -42,7 +42,7 @@ struct TableScratch {
   gpu::Buffer source;         // source function of one order
   gpu::Buffer sum;            // of the orders
   gpu::Buffer irradiance;     // of one order
-  gpu::Buffer sky;            // irradiance, sum of the orders >= 2
+  gpu::Buffer sky;            // irradiance, sum of the orders
   std::uint32_t views = 0;    // that ray_nodes has room for
   [[nodiscard]] VkDeviceSize bytes() const;
 };
