@@ -3,7 +3,7 @@
 #define TYNDALL_LIGHT_TABLES_GLSL
 
 // Texels of both tables along altitude; the first and the last stand for sea level and the top.
-const float kLightTableAltitudes = 32.0;
+const float kLightTableAltitudes = 64.0;
 
 // Texture coordinates for a point at `altitude_m` above sea level where the sun stands at
 // `cos_sun_zenith`. The sun's coordinate is centred on the horizon that the point sees, where the light

@@ -39,14 +39,17 @@ float gather_sun_index(Medium m, float mu_s) {
   return clamp((s - from) / (to - from), 0.0, 1.0) * float(kGatherSuns - 1u);
 }
 
-// Cosine of a direction of incident light, from a node in [0; 1] of one side of the horizon, quadratically
-// dense there; and what the weight of the node is to be multiplied by.
+// Cosine of a direction of incident light, from a node in [0; 1] of one side of the horizon: in proportion to
+// the angle, so that the aureole of a sun at any height falls between several nodes; and what the weight of the
+// node is to be multiplied by.
+float gather_angle_span(float horizon, bool below) { return below ? kPi - acos(horizon) : acos(horizon); }
 float gather_zenith(float horizon, float node, bool below) {
-  float square = node * node;
-  return below ? horizon - square * (horizon + 1.0) : horizon + square * (1.0 - horizon);
+  float offset = node * gather_angle_span(horizon, below);
+  return cos(below ? acos(horizon) + offset : acos(horizon) - offset);
 }
 float gather_zenith_stretch(float horizon, float node, bool below) {
-  return 2.0 * node * (below ? horizon + 1.0 : 1.0 - horizon);
+  float mu = gather_zenith(horizon, node, below);
+  return gather_angle_span(horizon, below) * sqrt(max((1.0 - mu) * (1.0 + mu), 0.0));
 }
 float gather_azimuth(uint k) { return (float(k) + 0.5) * kPi / float(kGatherAzimuths); }
 

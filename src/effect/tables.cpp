@@ -15,8 +15,8 @@ namespace {
 
 constexpr VkImageUsageFlags kTableUsage =
     VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-constexpr VkExtent3D kSunLightExtent = {32, 256, 1};
-constexpr VkExtent3D kSkyLightExtent = {32, 256, 1};
+constexpr VkExtent3D kSunLightExtent = {64, 256, 1};
+constexpr VkExtent3D kSkyLightExtent = {64, 256, 1};
 constexpr std::uint32_t kAltitudesPerSlice = 8;  // of the gathering grid
 constexpr std::uint32_t kMostSlices = 4096 * 3 + 512;
 
