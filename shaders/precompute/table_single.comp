@@ -27,7 +27,6 @@ void main() {
   float mu = view_from_v(shape, medium, h, (float(id.z) + 0.5) / float(shape.views), below);
   float mu_s = sun_from_w(shape, (float(id.x) + 0.5) / float(shape.suns));
   float nu = angle_from_q(shape, (float(id.y) + 0.5) / float(shape.angles));
-  nu = possible_angle(mu, mu_s, nu);
   float q0 = (R + h) * mu_s;
   vec3 rayleigh = vec3(0.0);
   vec3 mie = vec3(0.0);
