@@ -14,6 +14,7 @@ int run_bench(Args args);
 int run_compare(Args args);
 int run_devices(Args args);
 int run_params(Args args);
+int run_probe(Args args);
 int run_render(Args args);
 
 struct Verb {
@@ -25,6 +26,7 @@ struct Verb {
 // What `tyndall --help` lists, in its order.
 inline constexpr Verb kVerbs[] = {
     {"render", run_render, "render one frame or a sequence to PNG or EXR"},
+    {"probe", run_probe, "radiance and transmittance for given rays, by any of the models"},
     {"bench", run_bench, "measure GPU milliseconds per pass"},
     {"compare", run_compare, "say how much two images differ"},
     {"devices", run_devices, "list the Vulkan devices and say which one would be used"},

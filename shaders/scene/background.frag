@@ -15,10 +15,11 @@ layout(std430, binding = 0) readonly buffer background_block {
   vec3 limb_exponent;
   float unused_0;
   vec2 tan_half;          // of the field of view; y points down in clip space
+  vec2 jitter;            // of the picture, in clip space
 };
 
 void main() {
-  vec3 direction = normalize(mat3(world_from_view) * vec3(ndc.x * tan_half.x, -ndc.y * tan_half.y, -1.0));
+  vec3 direction = normalize(mat3(world_from_view) * vec3((ndc.x - jitter.x) * tan_half.x, -(ndc.y - jitter.y) * tan_half.y, -1.0));
   // The chord between unit vectors keeps the digits that the arc cosine of a dot product loses.
   float angle = 2.0 * asin(min(0.5 * distance(direction, direction_to_sun), 1.0));
   // Pixels away from the centre of the picture see a smaller angle.

@@ -20,7 +20,11 @@ bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && 
 Error invalid(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
 
 Result<void> check_number(const ParamInfo& info, double value) {
-  if (value >= info.min && value <= info.max) return {};  // false for NaN too
+  // A range's end counts as inside when it is given in single precision. False for NaN.
+  const bool real = info.type == ParamType::float32 || info.type == ParamType::vec3;
+  const double min = real ? static_cast<double>(static_cast<float>(info.min)) : info.min;
+  const double max = real ? static_cast<double>(static_cast<float>(info.max)) : info.max;
+  if (value >= min && value <= max) return {};
   return invalid(std::string(info.group) + "." + std::string(info.name) + " is " + std::to_string(value) +
                  ", allowed is " + std::to_string(info.min) + " to " + std::to_string(info.max));
 }
@@ -120,7 +124,13 @@ Result<void> check_frame(const FrameInputs& inputs, const EffectDesc& desc, cons
   if (!finite(sun) || (sun.x == 0.0F && sun.y == 0.0F && sun.z == 0.0F)) {
     return invalid("Sun::direction_to_sun is not a direction");
   }
-  if (!finite(inputs.sun.irradiance)) return invalid("Sun::irradiance is not finite");
+  const Vec3 irradiance = inputs.sun.irradiance;
+  if (!finite(irradiance) || irradiance.x < 0.0F || irradiance.y < 0.0F || irradiance.z < 0.0F) {
+    return invalid("Sun::irradiance must be finite and not negative");
+  }
+  if (!std::isfinite(inputs.sun.angular_radius_rad) || inputs.sun.angular_radius_rad < 0.0F) {
+    return invalid("Sun::angular_radius_rad must be finite and not negative");
+  }
   static_cast<void>(params);
   return {};
 }

@@ -207,7 +207,7 @@ Result<void> TableBuilder::set_params(const Params& params) {
 Result<void> TableBuilder::create_scratch(const Params& params) {
   const std::uint32_t views = params.tables.size.y;
   if (scratch_.views == views) return {};
-  retire({}, std::exchange(scratch_, {}));
+  if (scratch_.views > 0) retire({}, std::exchange(scratch_, {}));
   for (const BufferPlan& plan : plan_scratch(views)) {
     TYNDALL_ASSIGN(scratch_.*plan.buffer,
                    gpu::create_buffer(*device_, plan.name, plan.bytes, kScratchUsage, gpu::MemoryKind::device));
@@ -229,12 +229,15 @@ Result<void> TableBuilder::begin(const Params& params, std::uint32_t stale) {
     const bool fits = image.image.view && has.width == desc.extent.width && has.height == desc.extent.height &&
                       has.depth == desc.extent.depth;
     if (fits) continue;
-    TableSet old = {};
-    old[i] = std::exchange(image, {});
-    retire(std::move(old), {});
+    if (image.image.view) {
+      TableSet old = {};
+      old[i] = std::exchange(image, {});
+      retire(std::move(old), {});
+    }
     TYNDALL_ASSIGN(image.image, gpu::create_image(*device_, desc));
   }
   TYNDALL_TRY(create_scratch(params));
+  retired_.reserve(retired_.size() + 1);  // for the end of the build, when nothing may be allocated
   plan_slices();
   return {};
 }

@@ -36,6 +36,10 @@ struct Answer {
 [[nodiscard]] std::array<double, 3> single_sky_irradiance(const shared::Medium& medium, double altitude_m,
                                                           double cos_sun_zenith);
 
+// Of the sun's light to a point: 0 where the planet hides the sun.
+[[nodiscard]] std::array<double, 3> sun_transmittance(const shared::Medium& medium, double altitude_m,
+                                                      double cos_sun_zenith);
+
 // The ray as the GPU probe reads it: begun at the entry into the atmosphere and clipped, in double precision.
 [[nodiscard]] shared::ProbeRay prepare_probe_ray(const shared::Medium& medium, const Ray& ray);
 

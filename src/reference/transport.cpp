@@ -10,6 +10,7 @@
 #include <numbers>
 #include <optional>
 
+#include "reference/glow.hpp"
 #include "reference/random.hpp"
 
 namespace tyndall::reference {
@@ -19,11 +20,6 @@ constexpr double kPi = std::numbers::pi;
 // Shares of the distance samples on a line through the planet's shadow that are kept to what the sun
 // reaches at all, and to what it reaches without being dimmed much (Atmosphere::opaque_radius_m).
 constexpr std::array<double, 2> kLitShares = {0.2, 0.2};
-
-// Share of the directions that is kept to the glow above the horizon where the sun has set, and the shape
-// of that lobe.
-constexpr double kGlowShare = 0.35;
-const MiePhaseFunction kGlow(MiePhase::henyey_greenstein, 0.75);
 
 double sum(const Rgb& v) { return v[0] + v[1] + v[2]; }
 
@@ -184,41 +180,18 @@ void add_air(const Atmosphere& air, const Vertex& v, const Vec& sun, const Vec& 
   }
 }
 
-// Where the sun has set, light comes from above the horizon on its side: a lobe for part of the directions.
-struct Glow {
-  Vec up, axis;
-  double share = 0.0;
-
-  Glow(const Vertex& v, const Vec& sun) : up(v.position * (1.0 / v.r)) {
-    const double height = dot(up, sun);
-    const Vec level = sun + up * -height;
-    if (height >= 0.0 || dot(level, level) < 1e-6) return;
-    axis = normalized(level);
-    share = kGlowShare;
-  }
-  // The lobe's lower half is folded upwards.
-  [[nodiscard]] Vec sample(double u, double turn, PathNumbers& numbers) const {
-    const double cosine = kGlow.sample(u, [&] { return numbers.random(); });
-    const Vec w = around(axis, cosine, std::cos(turn), std::sin(turn));
-    return w + up * (-2.0 * std::min(0.0, dot(w, up)));
-  }
-  [[nodiscard]] double density(const Vec& w) const {
-    return share > 0.0 && dot(w, up) >= 0.0 ? 2.0 * kGlow(dot(w, axis)) : 0.0;
-  }
-};
-
 // Samples the direction that the path goes on to from a vertex in the air.
 Vec sample_direction(const Atmosphere& air, const Vertex& v, const Vec& sun, const Vec& direction,
                      const Rgb& rayleigh_share, PathNumbers& numbers, Rgb& weight) {
   double rayleigh_weight = 0.0;
   for (std::size_t c = 0; c < 3; ++c) rayleigh_weight += weight[c] * rayleigh_share[c];
   const double share = rayleigh_weight / sum(weight);
-  const Glow glow(v, sun);
+  const Glow glow(v.position * (1.0 / v.r), sun);
   double u = numbers.next();
   const double turn = 2.0 * kPi * numbers.next();
   Vec next;
   if (u < glow.share) {
-    next = glow.sample(u / glow.share, turn, numbers);
+    next = glow.sample(u / glow.share, turn, [&] { return numbers.random(); });
   } else {
     u = (u - glow.share) / (1.0 - glow.share);
     double cosine;

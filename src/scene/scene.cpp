@@ -1,5 +1,7 @@
 #include "scene/scene.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -27,13 +29,44 @@ struct BackgroundConstants {
   Vec3 limb_exponent;
   float unused_0;
   float tan_half[2];
-  float unused_1[2];
+  float jitter[2];
 };
 
 // Exponents of the limb darkening by wavelength in nm (Hestroffer, Magnan 1998, eq. 4: 416 to 1099 nm).
 float limb_exponent(float wavelength_nm) {
   const float um = std::clamp(wavelength_nm, 303.0F, 1099.0F) * 1e-3F;
   return um < 0.422F ? 0.6F : -0.023F + 0.292F / um;
+}
+
+// Refuses pictures and shadow maps that the device has no room for, before anything is created.
+Result<void> check_memory(const gpu::Device& device, VkExtent2D extent, std::uint32_t resolution,
+                          std::uint32_t cascades) {
+  VkDeviceSize largest = 0;
+  for (std::uint32_t i = 0; i < device.memory.memoryHeapCount; ++i) {
+    largest = std::max(largest, device.memory.memoryHeaps[i].size);
+  }
+  // A CPU device's heap is the machine's memory, whatever its driver says (lavapipe: at most 2 GiB).
+  if (device.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU) {
+    const long pages = sysconf(_SC_PHYS_PAGES);
+    const long page_bytes = sysconf(_SC_PAGESIZE);
+    if (pages > 0 && page_bytes > 0) {
+      largest = std::max(largest, static_cast<VkDeviceSize>(pages) * static_cast<VkDeviceSize>(page_bytes));
+    }
+  }
+  const std::uint32_t side = device.properties.limits.maxImageDimension2D;
+  if (extent.width > side || extent.height > side || resolution > side) {
+    return Error{ErrorCode::invalid_argument, "a picture or shadow map is larger than this device allows, --size or "
+                 "shadows.resolution, allowed is up to " + std::to_string(side) + " on a side"};
+  }
+  // Three colour images, depth, and as much as two of them again on the host for reading back.
+  constexpr double kBytesPerPixel = 3 * 16 + 4 + 2 * 16;
+  const double needed = kBytesPerPixel * extent.width * extent.height + 4.0 * resolution * resolution * cascades;
+  const double allowed = 0.8 * static_cast<double>(largest);
+  if (needed <= allowed) return {};
+  const auto gib = [](double bytes) { return std::to_string(static_cast<int>(std::ceil(bytes / 1073741824.0))); };
+  return Error{ErrorCode::out_of_memory, "a picture of " + std::to_string(extent.width) + "x" +
+               std::to_string(extent.height) + " with these shadow maps needs " + gib(needed) +
+               " GiB, --size, this device allows " + gib(allowed)};
 }
 
 VkRenderingAttachmentInfo attachment(VkImageView view, VkImageLayout layout, VkAttachmentLoadOp load,
@@ -62,6 +95,17 @@ void begin_rendering(const gpu::Device& device, VkCommandBuffer cmd, VkExtent2D 
   const VkRect2D scissor = {{0, 0}, extent};
   device.vk.CmdSetViewport(cmd, 0, 1, &viewport);
   device.vk.CmdSetScissor(cmd, 0, 1, &scissor);
+}
+
+// Radical inverse of i (Halton, 1960): evenly spread over [0; 1).
+double halton(std::uint32_t i, std::uint32_t base) {
+  double out = 0.0;
+  double digit = 1.0;
+  for (; i > 0; i /= base) {
+    digit /= base;
+    out += digit * (i % base);
+  }
+  return out;
 }
 
 Result<void> lacks(std::string_view name) {
@@ -107,6 +151,7 @@ Result<void> Scene::create_objects() {
 
   const VkExtent3D extent = {desc_.extent.width, desc_.extent.height, 1};
   const std::uint32_t resolution = scene_.shadows.resolution;
+  TYNDALL_TRY(check_memory(device, desc_.extent, resolution, scene_.shadows.cascades));
   TYNDALL_ASSIGN(color_, gpu::create_image(device, {"scene_color", kColorFormat, extent,
                                                     VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT}));
   TYNDALL_ASSIGN(depth_, gpu::create_image(device, {"scene_depth", kDepthFormat, extent,
@@ -158,9 +203,44 @@ void Scene::end_pass(VkCommandBuffer cmd) {
 }
 
 Result<void> Scene::render(double seconds, bool floor) {
+  radiance_sum_ = {};
+  display_sum_ = {};
+  const std::uint32_t samples = scene_.camera.samples;
+  for (std::uint32_t i = 0; i < samples; ++i) {
+    // Centred offsets of up to half a pixel; a single picture stays where it is.
+    const glm::dvec2 offset = samples > 1 ? glm::dvec2(halton(i + 1, 2) - 0.5, halton(i + 1, 3) - 0.5) : glm::dvec2(0.0);
+    const glm::dvec2 jitter = 2.0 * offset / glm::dvec2(desc_.extent.width, desc_.extent.height);
+    TYNDALL_TRY(render_sample(seconds, jitter, i == 0, floor));
+    if (samples == 1) break;
+    TYNDALL_TRY(accumulate(output_, radiance_sum_));
+    TYNDALL_TRY(accumulate(display_, display_sum_));
+  }
+  return {};
+}
+
+// Adds an image to a sum on the host.
+Result<void> Scene::accumulate(const gpu::Image& image, image::Image& sum) {
+  TYNDALL_ASSIGN(image::Image sample, read_back(image));
+  if (sum.rgb.empty()) {
+    sum = std::move(sample);
+  } else {
+    for (std::size_t i = 0; i < sum.rgb.size(); ++i) sum.rgb[i] += sample.rgb[i];
+  }
+  return {};
+}
+
+Result<image::Image> Scene::average(const gpu::Image& image, const image::Image& sum) {
+  if (scene_.camera.samples == 1) return read_back(image);
+  image::Image out = sum;
+  for (float& value : out.rgb) value /= static_cast<float>(scene_.camera.samples);
+  return out;
+}
+
+Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool first, bool floor) {
   const double radius = params_.planet.radius_m;
   const double aspect = static_cast<double>(desc_.extent.width) / desc_.extent.height;
   view_ = view_from_params(scene_.camera, aspect, radius);
+  view_.jitter = jitter;
   to_sun_ = animated_direction_to_sun(scene_.sun, seconds);
 
   const glm::dvec2 map = map_from_world(view_.position, radius);
@@ -200,7 +280,7 @@ Result<void> Scene::render(double seconds, bool floor) {
       gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
                    VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT);
     }
-    TYNDALL_TRY(draw_shadows(cmd));
+    if (first) TYNDALL_TRY(draw_shadows(cmd));  // jitter moves the picture, not the cascades
     TYNDALL_TRY(draw_view(cmd));
     TYNDALL_TRY(run_effect(cmd));
     if (floor) TYNDALL_TRY(run_floor(cmd));
@@ -251,6 +331,8 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
   constants.limb_exponent = {limb_exponent(nm.x), limb_exponent(nm.y), limb_exponent(nm.z)};
   constants.tan_half[0] = static_cast<float>(view_.tan_half_width);
   constants.tan_half[1] = static_cast<float>(view_.tan_half_height);
+  constants.jitter[0] = static_cast<float>(view_.jitter.x);
+  constants.jitter[1] = static_cast<float>(view_.jitter.y);
   std::memcpy(background_constants_.mapped, &constants, sizeof constants);
 
   gpu::transition(device, cmd, color_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
@@ -334,9 +416,9 @@ Result<image::Image> Scene::read_back(const gpu::Image& image) {
   return out;
 }
 
-Result<image::Image> Scene::radiance() { return read_back(output_); }
+Result<image::Image> Scene::radiance() { return average(output_, radiance_sum_); }
 
-Result<image::Image> Scene::display() { return read_back(display_); }
+Result<image::Image> Scene::display() { return average(display_, display_sum_); }
 
 Scene::Memory Scene::memory() const {
   const MemoryUsage effect = effect_->memory();

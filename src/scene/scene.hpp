@@ -53,6 +53,9 @@ class Scene {
   Result<void> draw_view(VkCommandBuffer cmd);
   Result<void> run_effect(VkCommandBuffer cmd);
   Result<void> run_floor(VkCommandBuffer cmd);
+  Result<void> render_sample(double seconds, const glm::dvec2& jitter, bool first, bool floor);
+  Result<void> accumulate(const gpu::Image& image, image::Image& sum);
+  Result<image::Image> average(const gpu::Image& image, const image::Image& sum);
   Result<image::Image> read_back(const gpu::Image& image);
   void begin_pass(VkCommandBuffer cmd, const char* name);
   void end_pass(VkCommandBuffer cmd);
@@ -77,6 +80,7 @@ class Scene {
   TerrainLight light_;
   std::uint64_t frame_index_ = 0;
   bool images_ready_ = false;
+  image::Image radiance_sum_, display_sum_;  // with camera.samples > 1
   std::vector<PassTime> times_;
   std::vector<std::string> notes_;
 };

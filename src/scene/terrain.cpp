@@ -49,7 +49,8 @@ bool outside(const View& view, const glm::dvec3& centre, double radius) {
   const double x = std::abs(glm::dot(d, view.right));
   const double y = std::abs(glm::dot(d, view.up));
   const auto beyond = [&](double side, double tangent) {
-    return (side - z * tangent) / std::sqrt(1.0 + tangent * tangent) > radius;
+    // Half a pixel of jitter, at any size, is less than the slack.
+    return (side - z * tangent * 1.02) / std::sqrt(1.0 + tangent * tangent) > radius + 1.0;
   };
   return beyond(x, view.tan_half_width) || beyond(y, view.tan_half_height);
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "reference/atmosphere.hpp"
+#include "reference/glow.hpp"
 #include "reference/line.hpp"
 #include "reference/random.hpp"
 #include "reference_oracle.hpp"
@@ -19,8 +20,8 @@ using namespace tyndall::reference;
 TEST(ReferenceMedium, DerivesCoefficients) {
   Params p;
   const Atmosphere air(p);
-  // technique.md section 1; the sea-level zenith transmittance there is (0.925, 0.861, 0.747) with an ozone of
-  // another profile, (0.930, 0.874, 0.747) without.
+  // technique.md section 1; the sea-level zenith transmittance there is (0.925, 0.861, 0.747) with an ozone
+  // of another profile, (0.930, 0.874, 0.747) without.
   EXPECT_NEAR(air.rayleigh_scattering[0], 5.8045e-6, 1e-10);
   EXPECT_NEAR(air.rayleigh_scattering[1], 1.35629e-5, 1e-10);
   EXPECT_NEAR(air.rayleigh_scattering[2], 3.31126e-5, 1e-10);
@@ -30,7 +31,8 @@ TEST(ReferenceMedium, DerivesCoefficients) {
   const Atmosphere dry(p);
   const double zenith[3] = {0.930, 0.874, 0.747};
   for (std::size_t c = 0; c < 3; ++c) {
-    const Amounts columns = dry.columns_to_top(0.0, dry.radius_m, dry.top_radius_m, dry.density(dry.radius_m));
+    const Amounts columns =
+        dry.columns_to_top(0.0, dry.radius_m, dry.top_radius_m, dry.density(dry.radius_m));
     EXPECT_NEAR(dry.transmittance(columns, c), zenith[c], 6e-4);
   }
 }
@@ -83,7 +85,7 @@ TEST(ReferenceMedium, ColumnsMatchQuadratureElsewhere) {
   p.atmosphere.height_m = 50000.0F;
   p.atmosphere.rayleigh_scale_height_m = 30000.0F;
   p.atmosphere.mie_scale_height_m = 300.0F;
-  p.atmosphere.ozone_centre_m = 5000.0F;   // the layer is cut by the ground ...
+  p.atmosphere.ozone_centre_m = 5000.0F;       // the layer is cut by the ground ...
   p.atmosphere.ozone_half_width_m = 90000.0F;  // ... and by the top
   expect_columns(p, 5e-6);
 }
@@ -98,7 +100,8 @@ TEST(ReferenceMedium, PhaseFunctionsAreNormalised) {
         mean += 2.0 * oracle::kPi * phase(c) * c * dc;
       });
       EXPECT_NEAR(norm, 1.0, 1e-9);
-      const double expected = kind == MiePhase::henyey_greenstein ? g : 3.0 * g * (4.0 + g * g) / (5.0 * (2.0 + g * g));
+      const double expected =
+          kind == MiePhase::henyey_greenstein ? g : 3.0 * g * (4.0 + g * g) / (5.0 * (2.0 + g * g));
       EXPECT_NEAR(mean, expected, 1e-9);  // Cornette and Shanks (1992), equation 9
     }
   }
@@ -136,6 +139,35 @@ TEST(ReferenceMedium, SamplesFollowThePhaseFunctions) {
       EXPECT_LT(chi_square(phase, [&] { return phase.sample(uniform(), uniform); }), kLimit) << g;
     }
   }
+}
+
+TEST(ReferenceMedium, SamplesFollowTheGlow) {
+  Generator random(13);
+  const Vec up = normalized({0.3, -0.2, 0.9}), sun = normalized({0.9, 0.1, -0.5});
+  const Glow glow(up, sun);
+  ASSERT_GT(glow.share, 0.0);
+  EXPECT_EQ(Glow(up, up).share, 0.0);
+  // Moments of the direction: from the density over uniform directions, and from samples.
+  constexpr int kCount = 400000;
+  double norm = 0.0, expected[3] = {}, sampled[3] = {};
+  for (int i = 0; i < kCount; ++i) {
+    const double turn = 2.0 * oracle::kPi * random.uniform();
+    // Uniform around the glow's axis, in even steps of the cosine.
+    const Vec w =
+        around(glow.axis, 2.0 * (i + random.uniform()) / kCount - 1.0, std::cos(turn), std::sin(turn));
+    const double weight = 4.0 * oracle::kPi * glow.density(w) / kCount;
+    const Vec v = glow.sample(random.uniform(), turn, [&] { return random.uniform(); });
+    EXPECT_GE(dot(v, up), -1e-12);
+    norm += weight;
+    expected[0] += weight * dot(w, up);
+    expected[1] += weight * dot(w, glow.axis);
+    expected[2] += weight * dot(w, up) * dot(w, up);
+    sampled[0] += dot(v, up) / kCount;
+    sampled[1] += dot(v, glow.axis) / kCount;
+    sampled[2] += dot(v, up) * dot(v, up) / kCount;
+  }
+  EXPECT_NEAR(norm, 1.0, 0.01);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(sampled[k], expected[k], 0.01 * expected[k] + 1e-3);
 }
 
 TEST(ReferenceMedium, DirectionsAroundAnAxis) {
@@ -212,7 +244,8 @@ TEST(ReferenceMedium, SobolPointsAreStratified) {
   for (int split = 0; split <= kLog2; ++split) {
     std::vector<int> cells(kCount);
     for (std::size_t i = 0; i < kCount; ++i) {
-      const int a = static_cast<int>(x[0][i] * (1 << split)), b = static_cast<int>(x[1][i] * (kCount >> split));
+      const int a = static_cast<int>(x[0][i] * (1 << split)),
+                b = static_cast<int>(x[1][i] * (kCount >> split));
       ++cells[static_cast<std::size_t>(a * (kCount >> split) + b)];
     }
     for (const int n : cells) EXPECT_EQ(n, 1) << "split " << split;

@@ -68,7 +68,8 @@ struct Air {
   }
   [[nodiscard]] double depth(const Point& p, const Point& w, double length, int panels) const {
     double sum = 0.0;
-    integrate(0.0, length, panels, [&](double t, double dt) { sum += dt * extinction_at(height(along(p, w, t))); });
+    integrate(0.0, length, panels,
+              [&](double t, double dt) { sum += dt * extinction_at(height(along(p, w, t))); });
     return sum;
   }
   // 0 in the planet's shadow.

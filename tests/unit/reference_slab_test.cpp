@@ -32,8 +32,11 @@ Params slab(const std::array<double, 3>& depth, const std::array<double, 3>& alb
   p.atmosphere.mie_g = static_cast<float>(g);
   p.atmosphere.mie_phase = phase;
   const double column_m = kScaleHeight_m * -std::expm1(-kHeight_m / kScaleHeight_m);
-  const auto coefficient = [&](std::size_t c, double share) { return static_cast<float>(depth[c] * share / column_m); };
-  p.atmosphere.mie_scattering = {coefficient(0, albedo[0]), coefficient(1, albedo[1]), coefficient(2, albedo[2])};
+  const auto coefficient = [&](std::size_t c, double share) {
+    return static_cast<float>(depth[c] * share / column_m);
+  };
+  p.atmosphere.mie_scattering = {coefficient(0, albedo[0]), coefficient(1, albedo[1]),
+                                 coefficient(2, albedo[2])};
   p.atmosphere.mie_absorption = {coefficient(0, 1.0 - albedo[0]), coefficient(1, 1.0 - albedo[1]),
                                  coefficient(2, 1.0 - albedo[2])};
   return p;
@@ -47,16 +50,19 @@ Query down(double cosine, double sun_cosine, double azimuth = 0.0) {
 }
 Query sky(double sun_cosine) { return {0.0, 0.0, std::acos(sun_cosine), 0.0, true}; }
 
-std::vector<Estimate> run(const Params& p, const std::vector<Query>& queries, std::uint64_t samples, int orders,
-                          bool by_order = false) {
+std::vector<Estimate> run(const Params& p, const std::vector<Query>& queries, std::uint64_t samples,
+                          int orders, bool by_order = false) {
   Options options;
   options.samples = samples;
   options.orders = orders;
   options.by_order = by_order;
   options.threads = 2;
-  auto result = trace(p, queries, options);
-  EXPECT_TRUE(result.ok());
-  return std::move(result.value());
+  const auto result = trace(p, queries, options);
+  if (!result.ok()) {
+    ADD_FAILURE() << result.error().message;
+    return std::vector<Estimate>(queries.size());
+  }
+  return result.value();
 }
 
 // Isotropic scattering in a layer over a Lambertian ground, order by order (Chandrasekhar, Radiative
@@ -97,7 +103,8 @@ struct IsotropicSlab {
   [[nodiscard]] double sky_irradiance(int n) const {
     double sum = 0.0;
     for (std::size_t j = 0; j < kLayers; ++j) {
-      sum += 2.0 * kPi * source[static_cast<std::size_t>(n)][j] * (e3(depth - edge(j + 1)) - e3(depth - edge(j)));
+      sum += 2.0 * kPi * source[static_cast<std::size_t>(n)][j] *
+             (e3(depth - edge(j + 1)) - e3(depth - edge(j)));
     }
     return sum;
   }
@@ -140,35 +147,47 @@ TEST(ReferenceSlab, SingleScatteringClosedForm) {
 
 // Every order of a layer, thin to thick, over black and bright ground.
 void expect_isotropic(const std::array<double, 3>& depth, const std::array<double, 3>& albedo, double ground,
-                      int orders) {
+                      int orders, std::uint64_t samples) {
   Params p = slab(depth, albedo);
   p.planet.ground_albedo = static_cast<float>(ground);
   const double mu0 = 0.6, mu = 0.35;
-  const auto estimates = run(p, {up(mu, mu0), down(mu, mu0), sky(mu0)}, 131072, orders, true);
+  const auto estimates = run(p, {up(mu, mu0), down(mu, mu0), sky(mu0)}, samples, orders, true);
   for (std::size_t c = 0; c < 3; ++c) {
     IsotropicSlab exact{depth[c], albedo[c], static_cast<double>(p.planet.ground_albedo), mu0, {}, {}};
     exact.solve(orders);
     for (int which = 0; which < 3; ++which) {
       const Estimate& e = estimates[static_cast<std::size_t>(which)];
       double total = 0.0;
+      std::vector<double> expected;
       for (int n = 0; n < orders; ++n) {
-        const double expected = which == 0   ? exact.looking_up(n, mu)
-                                : which == 1 ? exact.looking_down(n, mu)
-                                             : exact.sky_irradiance(n);
-        total += expected;
+        expected.push_back(which == 0   ? exact.looking_up(n, mu)
+                           : which == 1 ? exact.looking_down(n, mu)
+                                        : exact.sky_irradiance(n));
+        total += expected.back();
+      }
+      for (int n = 0; n < orders; ++n) {
+        // The last term is for the least of the orders, whose errors are not normally distributed.
         const auto at = static_cast<std::size_t>(n);
-        EXPECT_NEAR(e.order_radiance[at][c], expected, 4.5 * e.order_standard_error[at][c] + 1e-3 * expected)
+        EXPECT_NEAR(e.order_radiance[at][c], expected[at],
+                    4.5 * e.order_standard_error[at][c] + 1e-3 * expected[at] + 2e-5 * total)
             << "channel " << c << " query " << which << " order " << n + 1;
       }
-      EXPECT_NEAR(e.radiance[c], total, 4.0 * e.standard_error[c] + 3e-4 * total) << "channel " << c << " query " << which;
-      EXPECT_LT(e.standard_error[c], 6e-3 * total);
+      EXPECT_NEAR(e.radiance[c], total, 4.0 * e.standard_error[c] + 3e-4 * total)
+          << "channel " << c << " query " << which;
+      EXPECT_LT(e.standard_error[c], 4e-2 * total);
     }
   }
 }
 
-TEST(ReferenceSlab, IsotropicOrdersOverBlackGround) { expect_isotropic({0.1, 1.0, 3.0}, {1.0, 0.9, 1.0}, 0.0, 8); }
-TEST(ReferenceSlab, IsotropicOrdersOverBrightGround) { expect_isotropic({0.05, 0.6, 2.0}, {0.95, 1.0, 0.5}, 0.8, 8); }
-TEST(ReferenceSlab, IsotropicThickLayer) { expect_isotropic({6.0, 6.0, 6.0}, {1.0, 0.99, 0.8}, 0.0, 24); }
+TEST(ReferenceSlab, IsotropicOrdersOverBlackGround) {
+  expect_isotropic({0.1, 1.0, 3.0}, {1.0, 0.9, 1.0}, 0.0, 8, 65536);
+}
+TEST(ReferenceSlab, IsotropicOrdersOverBrightGround) {
+  expect_isotropic({0.05, 0.6, 2.0}, {0.95, 1.0, 0.5}, 0.8, 8, 65536);
+}
+TEST(ReferenceSlab, IsotropicThickLayer) {
+  expect_isotropic({6.0, 6.0, 6.0}, {1.0, 0.99, 0.8}, 0.0, 24, 16384);
+}
 
 // Helmholtz: exchanging sun and eye leaves radiance / cosine of the sun as it is.
 TEST(ReferenceSlab, Reciprocity) {
@@ -178,12 +197,12 @@ TEST(ReferenceSlab, Reciprocity) {
     p.atmosphere.rayleigh_scattering = Vec3(1e-3F, 2e-3F, 3e-3F);
     p.atmosphere.rayleigh_scale_height_m = 400.0F;
     const double a = 0.9, b = 0.3;
-    const auto e = run(p, {down(a, b, 1.0), down(b, a, 1.0)}, 100000, 10);
+    const auto e = run(p, {down(a, b, 1.0), down(b, a, 1.0)}, 65536, 10);
     for (std::size_t c = 0; c < 3; ++c) {
       const double left = e[0].radiance[c] / b, right = e[1].radiance[c] / a;
       const double sigma = std::hypot(e[0].standard_error[c] / b, e[1].standard_error[c] / a);
       EXPECT_NEAR(left, right, 4.0 * sigma + 1e-5 * left);
-      EXPECT_LT(sigma, 8e-3 * left);
+      EXPECT_LT(sigma, 1e-2 * left);
     }
   }
 }
@@ -197,8 +216,8 @@ TEST(ReferenceSlab, ConservesEnergy) {
     // Gauss-Legendre in the cosine (8 nodes) times 12 equal steps of azimuth (even, so half of the circle).
     const double node[4] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
     const double weight[4] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
-    std::vector<Query> queries = {sky(mu0)};
-    std::vector<double> weights = {1.0};
+    std::vector<Query> queries;
+    std::vector<double> weights;
     for (int i = 0; i < 8; ++i) {
       const double mu = 0.5 * (1.0 + (i < 4 ? node[i] : -node[i - 4]));
       for (int k = 0; k < 12; ++k) {
@@ -206,15 +225,17 @@ TEST(ReferenceSlab, ConservesEnergy) {
         weights.push_back(0.5 * weight[i % 4] * mu * 2.0 * kPi / 12.0);
       }
     }
-    const auto estimates = run(p, queries, 2048, 40);
+    const auto estimates = run(p, queries, 512, 30);
+    const auto below = run(p, {sky(mu0)}, 32768, 30);
     for (std::size_t c = 0; c < 3; ++c) {
-      double out = mu0 * std::exp(-depth[c] / mu0), variance = 0.0;
+      double out = mu0 * std::exp(-depth[c] / mu0) + below[0].radiance[c];
+      double variance = std::pow(below[0].standard_error[c], 2);
       for (std::size_t i = 0; i < queries.size(); ++i) {
         out += weights[i] * estimates[i].radiance[c];
         variance += std::pow(weights[i] * estimates[i].standard_error[c], 2);
       }
       EXPECT_NEAR(out / mu0, 1.0, 4.0 * std::sqrt(variance) / mu0 + 1e-3) << "channel " << c;
-      EXPECT_LT(std::sqrt(variance), 3e-3 * mu0);
+      EXPECT_LT(std::sqrt(variance), 6e-3 * mu0);
     }
   }
 }
@@ -227,7 +248,8 @@ TEST(ReferenceSlab, WhiteFurnaceOfAWholePlanet) {
   p.planet.ground_albedo = 1.0F;
   p.atmosphere.height_m = 8000.0F;
   p.atmosphere.mie_scale_height_m = 2000.0F;
-  for (float* v : {&p.atmosphere.mie_scattering.x, &p.atmosphere.mie_scattering.y, &p.atmosphere.mie_scattering.z}) {
+  for (float* v :
+       {&p.atmosphere.mie_scattering.x, &p.atmosphere.mie_scattering.y, &p.atmosphere.mie_scattering.z}) {
     *v *= 0.1F;
   }
   p.atmosphere.rayleigh_scattering = Vec3(1e-5F, 3e-5F, 1e-4F);
@@ -236,7 +258,7 @@ TEST(ReferenceSlab, WhiteFurnaceOfAWholePlanet) {
   const auto height_m = static_cast<double>(p.atmosphere.height_m);
 
   // Rays that are uniform over directions and over the disc, as seen from where they enter.
-  constexpr int kBatches = 16, kRays = 400;
+  constexpr int kBatches = 16, kRays = 250;
   std::mt19937_64 random(17);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   std::vector<Query> queries;
@@ -244,11 +266,13 @@ TEST(ReferenceSlab, WhiteFurnaceOfAWholePlanet) {
     const double shift[3] = {uniform(random), uniform(random), uniform(random)};
     for (int i = 0; i < kRays; ++i) {  // Roberts' additive recurrence in three dimensions
       const auto at = [&](int k, double step) { return std::fmod(shift[k] + i * step, 1.0); };
-      const double disc = at(0, 0.8191725133961645), sun = at(1, 0.6710436067037893), turn = at(2, 0.5497004779019703);
-      queries.push_back({height_m, kPi - std::asin(std::sqrt(disc)), std::acos(1.0 - 2.0 * sun), 2.0 * kPi * turn, false});
+      const double disc = at(0, 0.8191725133961645), sun = at(1, 0.6710436067037893),
+                   turn = at(2, 0.5497004779019703);
+      queries.push_back(
+          {height_m, kPi - std::asin(std::sqrt(disc)), std::acos(1.0 - 2.0 * sun), 2.0 * kPi * turn, false});
     }
   }
-  const auto estimates = run(p, queries, 32, 60);
+  const auto estimates = run(p, queries, 32, 50);
 
   for (std::size_t c = 0; c < 3; ++c) {
     // Sunlight that goes straight through the air beside the planet: by the transmittance of the same rays,

@@ -1,5 +1,6 @@
 // The elevation shaders compiled as C++ in double precision: tyndall::scene::terrain64 holds every function
-// of shaders/scene/terrain_noise.glsl, terrain_source.glsl and terrain_materials.glsl, with vec2 = glm::dvec2.
+// of shaders/scene/terrain_noise.glsl, terrain_source.glsl and terrain_materials.glsl, with
+// vec2 = glm::dvec2.
 // Conventions are those of the GLSL files. For .cpp files only: it defines functions of internal linkage.
 #pragma once
 
@@ -23,6 +24,7 @@ using glm::clamp;
 using glm::dot;
 using glm::floor;
 using glm::inversesqrt;
+using glm::length;
 using glm::log2;
 using glm::max;
 using glm::min;

@@ -1,0 +1,41 @@
+# The two commands. Everything else is CMake: see CONTRIBUTING.md.
+#   make demo   installs what is missing, builds, renders the demo scene to out/demo.png
+#   make check  installs what is missing, builds with warnings as errors, passes every test
+#   make pictures  renders the pictures of the documentation anew
+.PHONY: demo check pictures setup build format tidy clean
+
+PRESET ?= release
+
+demo: PRESET = release
+demo: build
+	@mkdir -p out
+	@build/release/bin/tyndall render scenes/demo.toml -o out/demo.png
+	@echo "The picture is at out/demo.png"
+
+check: PRESET = ci
+check: build
+	@ctest --preset ci --no-tests=error -j "$$(nproc)"
+
+pictures: PRESET = release
+pictures: build
+	@mkdir -p docs/images
+	@for scene in demo noon stratosphere; do \
+	  build/release/bin/tyndall render scenes/$$scene.toml --size 768x432 -o docs/images/$$scene.png || exit 1; \
+	done
+
+setup:
+	@tools/setup.sh
+
+build: setup
+	@cmake --preset $(PRESET) --log-level=WARNING
+	@cmake --build --preset $(PRESET)
+
+format:
+	@git ls-files '*.cpp' '*.hpp' '*.h' | xargs clang-format -i
+
+tidy: setup
+	@cmake --preset dev > /dev/null
+	@git ls-files 'src/*.cpp' 'apps/*.cpp' | xargs clang-tidy -p build/dev
+
+clean:
+	rm -rf build out

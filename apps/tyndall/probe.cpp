@@ -1,0 +1,100 @@
+// `tyndall probe`: what a model says for given rays. docs/probe.md describes the tables.
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "arguments.hpp"
+#include "cli.hpp"
+#include "config/files.hpp"
+#include "config/text.hpp"
+#include "probe_models.hpp"
+#include "probe_table.hpp"
+
+namespace tyndall::cli {
+namespace {
+
+constexpr std::uint32_t kMostOrders = 256;  // of the path tracer
+
+// JSON knows no infinity: the standard error of a single block of paths becomes null.
+nlohmann::json numbers_as_json(const std::array<double, 3>& numbers) {
+  nlohmann::json out = nlohmann::json::array();
+  for (const double number : numbers) {
+    out.push_back(std::isfinite(number) ? nlohmann::json(number) : nlohmann::json());
+  }
+  return out;
+}
+
+std::string as_json(const ProbeModel& model, const ProbeSettings& settings,
+                    std::span<const ProbeAnswer> answers) {
+  nlohmann::ordered_json out;
+  out["model"] = model.name;
+  if (model.random) {
+    out["orders"] = settings.orders;
+    out["samples"] = settings.samples;
+    out["seed"] = settings.seed;
+  }
+  out["answers"] = nlohmann::ordered_json::array();
+  for (const ProbeAnswer& answer : answers) {
+    nlohmann::ordered_json row;
+    row["L"] = numbers_as_json(answer.radiance);
+    row["T"] = numbers_as_json(answer.transmittance);
+    if (model.random) row["stderr"] = numbers_as_json(answer.standard_error);
+    out["answers"].push_back(std::move(row));
+  }
+  return out.dump(1) + "\n";
+}
+
+}  // namespace
+
+int run_probe(Args args) {
+  CommonOptions options;
+  ProbeSettings settings;
+  std::string queries;
+  std::string model_name = probe_models().front().name;
+  std::vector<std::string> model_names;
+  for (const ProbeModel& model : probe_models()) model_names.emplace_back(model.name);
+
+  Arguments arguments("probe");
+  add_common(arguments, options, kScene | kSet | kDevice | kOutput | kJson);
+  arguments.text("--queries", queries, "FILE",
+                 "rays as CSV: altitude_m, view_zenith_deg (or sky), sun_zenith_deg, azimuth_deg");
+  arguments.choice("--model", model_name, model_names,
+                   "who answers (single: over black ground; reference: with the ground's reflection)");
+  arguments.count("--orders", settings.orders, 1, kMostOrders, "reference: orders of scattering");
+  arguments.count("--samples", settings.samples, 1, UINT32_MAX, "reference: paths per ray");
+  arguments.count("--seed", settings.seed, 0, UINT32_MAX, "reference: of the random numbers");
+  if (const std::optional<int> status = arguments.parse(args)) return *status;
+  if (queries.empty()) {
+    return fail(config::input_error("no queries", "tyndall probe", "needed is --queries FILE"));
+  }
+  const ProbeModel& model = *std::find_if(probe_models().begin(), probe_models().end(),
+                                          [&](const ProbeModel& m) { return m.name == model_name; });
+  if (Result<void> r = resolve(options); !r) return fail(r.error());
+  const Result<ProbeTable> table = read_queries(queries);
+  if (!table) return fail(table.error());
+  if (!options.output.empty()) {
+    if (Result<void> r = config::check_writable(options.output); !r) return fail(r.error());
+  }
+
+  settings.params = options.settings.effect;
+  settings.device = options.device;
+  Result<std::vector<ProbeAnswer>> answers = std::vector<ProbeAnswer>();
+  {
+    Progress progress("probe");
+    constexpr std::uint64_t kSteps = 10000;
+    settings.progress = [&](double done) {
+      progress.update(static_cast<std::uint64_t>(done * static_cast<double>(kSteps)), kSteps);
+    };
+    answers = model.run(settings, table.value().queries);
+  }
+  if (!answers) return fail(answers.error());
+  const bool to_file = !options.output.empty();
+  if (to_file || !options.json) {
+    const std::string text = answers_as_csv(table.value(), answers.value(), model.random);
+    if (!to_file) return print(text);
+    if (Result<void> r = config::write_file(options.output, text); !r) return fail(r.error());
+  }
+  return options.json ? print(as_json(model, settings, answers.value())) : kDone;
+}
+
+}  // namespace tyndall::cli

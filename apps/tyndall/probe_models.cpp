@@ -1,0 +1,120 @@
+#include "probe_models.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "effect/medium.hpp"
+#include "gpu/host.hpp"
+#include "models/gpu_probe.hpp"
+#include "models/precomputed.hpp"
+#include "reference/path_tracer.hpp"
+
+namespace tyndall::cli {
+namespace {
+
+// Rays on the GPU; the sky, whose quadrature takes hundreds of rays, on the CPU in double precision.
+Result<std::vector<ProbeAnswer>> run_single(const ProbeSettings& settings,
+                                            std::span<const ProbeQuery> queries) {
+  const shared::Medium medium = medium_from_params(settings.params);
+  std::vector<ProbeAnswer> answers(queries.size());
+  std::vector<models::Ray> rays;
+  std::vector<std::size_t> places;  // of the rays among the queries
+  const auto sky_count = static_cast<double>(
+      std::count_if(queries.begin(), queries.end(), [](const ProbeQuery& q) { return q.sky; }));
+  double sky_done = 0.0;
+  const double sky_share = queries.empty() ? 0.0 : sky_count / static_cast<double>(queries.size());
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    const ProbeQuery& q = queries[i];
+    if (q.sky) {
+      const double cos_sun = std::cos(q.sun_zenith_rad);
+      answers[i].radiance = models::single_sky_irradiance(medium, q.altitude_m, cos_sun);
+      answers[i].transmittance = models::sun_transmittance(medium, q.altitude_m, cos_sun);
+      settings.progress(sky_share * ++sky_done / sky_count);
+    } else {
+      rays.push_back(
+          models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad));
+      places.push_back(i);
+    }
+  }
+  if (rays.empty()) return answers;  // needs no device
+  Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({settings.device, false});
+  if (!host) return std::move(host).error();
+  const auto progress = [&](std::size_t done) {
+    settings.progress(sky_share +
+                      (1.0 - sky_share) * static_cast<double>(done) / static_cast<double>(rays.size()));
+  };
+  const Result<std::vector<models::Answer>> found =
+      models::single_scattering_on_gpu(*host.value(), medium, rays, progress);
+  if (!found) return found.error();
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const models::Answer& answer = found.value()[i];
+    answers[places[i]] = {answer.radiance, answer.transmittance, {}, true};
+  }
+  return answers;
+}
+
+Result<std::vector<ProbeAnswer>> run_reference(const ProbeSettings& settings,
+                                               std::span<const ProbeQuery> queries) {
+  std::vector<reference::Query> asked;
+  asked.reserve(queries.size());
+  for (const ProbeQuery& q : queries) {
+    // The path tracer's planet is solid: below sea level is at sea level.
+    asked.push_back(
+        {std::max(q.altitude_m, 0.0), q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad, q.sky});
+  }
+  reference::Options options;
+  options.samples = settings.samples;
+  options.orders = static_cast<int>(settings.orders);
+  options.seed = settings.seed;
+  const Result<std::vector<reference::Estimate>> found =
+      reference::trace(settings.params, asked, options, [&](double done) {
+        settings.progress(done);
+        return true;
+      });
+  if (!found) return found.error();
+  std::vector<ProbeAnswer> answers;
+  answers.reserve(queries.size());
+  for (const reference::Estimate& estimate : found.value()) {
+    answers.push_back({estimate.radiance, estimate.transmittance, estimate.standard_error, false});
+  }
+  return answers;
+}
+
+Result<std::vector<ProbeAnswer>> run_precomputed(const ProbeSettings& settings,
+                                                 std::span<const ProbeQuery> queries) {
+  std::vector<ProbeAnswer> answers;
+  if (queries.empty()) return answers;
+  std::vector<models::PrecomputedQuery> asked;
+  asked.reserve(queries.size());
+  for (const ProbeQuery& q : queries) {
+    asked.push_back(
+        {models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad), q.sky});
+  }
+  Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({settings.device, false});
+  if (!host) return std::move(host).error();
+  const auto progress = [&](Progress built) {
+    settings.progress(static_cast<double>(built.done) / static_cast<double>(built.total));
+  };
+  Result<models::PrecomputedModel> model =
+      models::PrecomputedModel::create(*host.value(), settings.params, progress);
+  if (!model) return std::move(model).error();
+  const Result<std::vector<models::Answer>> found = model.value().answer(asked);
+  if (!found) return found.error();
+  answers.reserve(queries.size());
+  for (const models::Answer& answer : found.value()) {
+    answers.push_back({answer.radiance, answer.transmittance, {}, true});
+  }
+  return answers;
+}
+
+constexpr ProbeModel kModels[] = {
+    {"precomputed", false, run_precomputed},
+    {"single", false, run_single},
+    {"reference", true, run_reference},
+};
+
+}  // namespace
+
+std::span<const ProbeModel> probe_models() { return kModels; }
+
+}  // namespace tyndall::cli

@@ -1,0 +1,143 @@
+#include "probe_table.hpp"
+
+#include <algorithm>
+#include <numbers>
+#include <optional>
+
+#include "config/files.hpp"
+#include "config/text.hpp"
+
+namespace tyndall::cli {
+namespace {
+
+using config::concat;
+using config::input_error;
+
+constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 31U;  // bytes; some ten million rays
+constexpr std::string_view kSky = "sky";
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+
+struct Column {
+  std::string_view name;
+  double min, max;
+  std::string_view unit;
+};
+enum ColumnIndex : std::size_t { kAltitude, kViewZenith, kSunZenith, kAzimuth, kColumnCount };
+constexpr Column kColumns[kColumnCount] = {
+    {"altitude_m", -500.0, 1.0e9, "m"},
+    {"view_zenith_deg", 0.0, 180.0, "deg, or sky"},
+    {"sun_zenith_deg", 0.0, 180.0, "deg"},
+    {"azimuth_deg", -360.0, 360.0, "deg"},
+};
+constexpr std::string_view kAnswerColumns[] = {"L_r", "L_g",      "L_b",      "T_r",     "T_g",
+                                               "T_b", "stderr_r", "stderr_g", "stderr_b"};
+constexpr std::size_t kNumbersWithoutError = 6;
+
+std::string allowed_text(const Column& column) {
+  return concat({"allowed is ", config::number_text(column.min), " to ", config::number_text(column.max), " ",
+                 column.unit});
+}
+
+Result<double> read_cell(std::string_view field, const Column& column, std::string_view where) {
+  const std::string text = config::csv_value(field);
+  double value = 0.0;
+  const config::NumberError read = config::read_number(text, value);
+  if (read == config::NumberError::none && value >= column.min && value <= column.max) return value;
+  const char* const what = read == config::NumberError::none || read == config::NumberError::too_large
+                               ? "' is out of range"
+                           : read == config::NumberError::not_finite ? "' is not a finite number"
+                                                                     : "' is not a number";
+  return input_error(concat({"'", config::one_line(text), what}), where, allowed_text(column));
+}
+
+Result<std::size_t> find_column(const config::CsvTable& table, const Column& column,
+                                const std::string& path) {
+  const std::vector<std::size_t> found = table.find(column.name);
+  if (found.size() == 1) return found.front();
+  const std::string needed = concat({"needed are ", kColumns[0].name, ", ", kColumns[1].name, ", ",
+                                     kColumns[2].name, ", ", kColumns[3].name});
+  return input_error(concat({found.empty() ? "no column '" : "several columns '", column.name, "'"}),
+                     config::one_line(path, 200), concat({needed, found.empty() ? "" : ", once each"}));
+}
+
+void append_numbers(std::string& out, const std::array<double, 3>& numbers, bool single_precision) {
+  for (const double number : numbers) {
+    out += ',';
+    out += single_precision ? config::number_text(static_cast<float>(number)) : config::number_text(number);
+  }
+}
+
+}  // namespace
+
+Result<ProbeTable> read_queries(const std::string& path) {
+  const std::string shown = config::one_line(path, 200);
+  Result<std::string> text = config::read_file(path, kLargestFile);
+  // A table that cannot be read is bad input, not a failure of this run.
+  if (!text) return Error{ErrorCode::invalid_argument, std::move(text).error().message};
+  Result<config::CsvTable> parsed = config::parse_csv(std::move(text).value(), shown);
+  if (!parsed) return std::move(parsed).error();
+  ProbeTable table = {std::move(parsed).value(), {}};
+  std::array<std::size_t, kColumnCount> at = {};
+  for (std::size_t i = 0; i < kColumnCount; ++i) {
+    const Result<std::size_t> found = find_column(table.input, kColumns[i], path);
+    if (!found) return found.error();
+    at[i] = found.value();
+  }
+  table.queries.reserve(table.input.rows());
+  for (std::size_t row = 0; row < table.input.rows(); ++row) {
+    const auto cell = [&](ColumnIndex column) { return table.input.field(row, at[column]); };
+    ProbeQuery query;
+    query.sky = config::csv_value(cell(kViewZenith)) == kSky;
+    std::array<double, kColumnCount> numbers = {};
+    for (const ColumnIndex column : {kAltitude, kViewZenith, kSunZenith, kAzimuth}) {
+      // The sky is not looked at in any direction.
+      if (query.sky && (column == kViewZenith || (column == kAzimuth && config::csv_value(cell(column)).empty()))) {
+        continue;
+      }
+      double& number = numbers[column];
+      // Naming the place costs more than reading the number: it waits for an error.
+      const Result<double> quick = read_cell(cell(column), kColumns[column], {});
+      if (!quick) {
+        const std::string where = concat({shown, ":", std::to_string(table.input.lines[row]), ", column '",
+                                          kColumns[column].name, "'"});
+        return read_cell(cell(column), kColumns[column], where).error();
+      }
+      number = quick.value();
+    }
+    query.altitude_m = numbers[kAltitude];
+    query.view_zenith_rad = numbers[kViewZenith] * kRadPerDeg;
+    query.sun_zenith_rad = numbers[kSunZenith] * kRadPerDeg;
+    query.azimuth_rad = numbers[kAzimuth] * kRadPerDeg;
+    table.queries.push_back(query);
+  }
+  return table;
+}
+
+std::string answers_as_csv(const ProbeTable& table, std::span<const ProbeAnswer> answers, bool random) {
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < table.input.header.size(); ++i) {
+    const std::string name = config::csv_value(table.input.header[i]);
+    if (std::find(std::begin(kAnswerColumns), std::end(kAnswerColumns), name) == std::end(kAnswerColumns)) {
+      kept.push_back(i);
+    }
+  }
+  std::string out;
+  for (const std::size_t i : kept) out.append(out.empty() ? "" : ",").append(table.input.header[i]);
+  const std::size_t count = random ? std::size(kAnswerColumns) : kNumbersWithoutError;
+  for (std::size_t i = 0; i < count; ++i) out.append(",").append(kAnswerColumns[i]);
+  out += '\n';
+  for (std::size_t row = 0; row < table.input.rows(); ++row) {
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+      if (k > 0) out += ',';
+      out += table.input.field(row, kept[k]);
+    }
+    const ProbeAnswer& answer = answers[row];
+    append_numbers(out, answer.radiance, answer.single_precision);
+    append_numbers(out, answer.transmittance, answer.single_precision);
+    if (random) append_numbers(out, answer.standard_error, answer.single_precision);
+    out += '\n';
+  }
+  return out;
+}
+
+}  // namespace tyndall::cli

@@ -1,0 +1,69 @@
+#include "models/gpu_probe.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "gpu/pipeline.hpp"
+#include "gpu/try.hpp"
+#include "probe_shaders.hpp"
+
+namespace tyndall::models {
+namespace {
+
+constexpr std::size_t kBatchRays = 16384;  // well below a second of work on a CPU device
+
+std::array<double, 3> widened(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+}  // namespace
+
+Result<std::vector<Answer>> single_scattering_on_gpu(gpu::Host& host, const shared::Medium& medium,
+                                                     std::span<const Ray> rays,
+                                                     const std::function<void(std::size_t)>& progress) {
+  std::vector<Answer> answers;
+  if (rays.empty()) return answers;
+  const gpu::Device& device = host.device();
+  const std::size_t batch = std::min(rays.size(), kBatchRays);
+  constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  TYNDALL_ASSIGN(const gpu::Pipeline pipeline, gpu::create_compute_pipeline(device, shaders::single_comp));
+  TYNDALL_ASSIGN(const gpu::Buffer medium_buffer, gpu::create_buffer(device, "probe_medium", sizeof medium,
+                                                                     kStorage, gpu::MemoryKind::upload));
+  TYNDALL_ASSIGN(const gpu::Buffer ray_buffer,
+                 gpu::create_buffer(device, "probe_rays", batch * sizeof(shared::ProbeRay), kStorage,
+                                    gpu::MemoryKind::upload));
+  TYNDALL_ASSIGN(const gpu::Buffer result_buffer,
+                 gpu::create_buffer(device, "probe_results", batch * sizeof(shared::ProbeResult), kStorage,
+                                    gpu::MemoryKind::readback));
+  std::memcpy(medium_buffer.mapped, &medium, sizeof medium);
+  auto* const prepared = static_cast<shared::ProbeRay*>(ray_buffer.mapped);
+  const auto* const results = static_cast<const shared::ProbeResult*>(result_buffer.mapped);
+
+  answers.reserve(rays.size());
+  for (std::size_t first = 0; first < rays.size(); first += batch) {
+    const std::size_t count = std::min(batch, rays.size() - first);
+    for (std::size_t i = 0; i < count; ++i) prepared[i] = prepare_probe_ray(medium, rays[first + i]);
+    TYNDALL_TRY(host.run([&](VkCommandBuffer cmd) -> Result<void> {
+      // The shader takes the number of rays from the size of their block.
+      const gpu::NamedResource resources[] = {
+          gpu::named_buffer("medium_block", medium_buffer.buffer.get()),
+          gpu::named_buffer("ray_block", ray_buffer.buffer.get(), 0, count * sizeof(shared::ProbeRay)),
+          gpu::named_buffer("result_block", result_buffer.buffer.get(), 0,
+                            count * sizeof(shared::ProbeResult)),
+      };
+      const std::string_view missing = gpu::bind(device, cmd, pipeline, resources);
+      if (!missing.empty()) {
+        return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(missing)};
+      }
+      gpu::dispatch(device, cmd, pipeline, static_cast<std::uint32_t>(count));
+      gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
+                   VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+      return {};
+    }));
+    for (std::size_t i = 0; i < count; ++i) {
+      answers.push_back({widened(results[i].radiance), widened(results[i].transmittance)});
+    }
+    if (progress) progress(first + count);
+  }
+  return answers;
+}
+
+}  // namespace tyndall::models

@@ -1,0 +1,253 @@
+// `tyndall probe` as scripts see it: the tables, the numbers, and everything that can be wrong with a table.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "config/csv.hpp"
+#include "config/text.hpp"
+#include "effect/medium.hpp"
+#include "models/single_scattering.hpp"
+#include "run_tyndall.hpp"
+
+namespace tyndall::cli {
+namespace {
+
+constexpr double kRadPerDeg = 0.017453292519943295;
+const std::string kHeader = "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n";
+
+class CliProbe : public testing::Test {
+ protected:
+  // The table that `probe` prints for these queries; empty after a failure, which is reported.
+  config::CsvTable ask(const std::string& queries, std::vector<std::string> more = {}) const {
+    more.insert(more.begin(), {"probe", "--queries", scratch_.write("q.csv", queries)});
+    const Outcome outcome = run_tyndall(more);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    Result<config::CsvTable> table = config::parse_csv(outcome.out, "output");
+    EXPECT_TRUE(table.ok());
+    return table.ok() ? std::move(table).value() : config::CsvTable();
+  }
+  static double number(const config::CsvTable& table, std::size_t row, const std::string& column) {
+    const std::vector<std::size_t> found = table.find(column);
+    double value = std::numeric_limits<double>::quiet_NaN();
+    if (found.size() == 1 && row < table.rows()) {
+      static_cast<void>(config::read_number(table.field(row, found.front()), value));
+    }
+    return value;
+  }
+
+  Scratch scratch_;
+};
+
+TEST_F(CliProbe, EveryFormOfTableIsReadAndItsColumnsPassedOn) {
+  // Columns in another order, one more among them, quoted fields with a comma, a quote and a line end, CRLF,
+  // a byte order mark, blank lines, no line end at the end.
+  const config::CsvTable table = ask(
+      "\xEF\xBB\xBF\r\nid, azimuth_deg ,\"view_zenith_deg\",sun_zenith_deg,altitude_m\r\n"
+      "\"a,\"\"b\",30,60,+3e1,0\r\n\r\n   \r\n\"two\nlines\",-30, \"60\" ,30.0,0\r\nlast,,sky,30,0");
+  ASSERT_EQ(table.rows(), 3U);
+  EXPECT_EQ(table.header[0], "id");
+  EXPECT_EQ(table.header[1], " azimuth_deg ");
+  EXPECT_EQ(table.header[2], "\"view_zenith_deg\"");
+  EXPECT_EQ(table.field(0, 0), "\"a,\"\"b\"");
+  EXPECT_EQ(table.field(0, 3), "+3e1");
+  EXPECT_EQ(table.field(1, 0), "\"two\nlines\"");
+  EXPECT_EQ(table.field(2, 2), "sky");
+  ASSERT_EQ(table.header.size(), 11U);
+  for (const char* const column : {"L_r", "L_g", "L_b", "T_r", "T_g", "T_b"}) {
+    EXPECT_GT(number(table, 0, column), 0.0);
+    // The air is the same on both sides of the sun.
+    EXPECT_EQ(number(table, 0, column), number(table, 1, column)) << column;
+  }
+  // What was answered before gives way, and may be asked again.
+  const std::string again = std::string(*table.text);
+  EXPECT_EQ(*ask(again).text, again);
+}
+
+TEST_F(CliProbe, SingleIsTheIntegralAndTheSkyItsIrradiance) {
+  const shared::Medium medium = medium_from_params({});
+  const config::CsvTable table = ask(kHeader + "0,30,60,0\n8000,95,88,170\n400000,100,40,20\n400000,60,40,20\n3000,sky,70,0\n");
+  const double rays[3][4] = {{0, 30, 60, 0}, {8000, 95, 88, 170}, {400000, 100, 40, 20}};
+  const char* const channels = "rgb";
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::string l = std::string("L_") + channels[c];
+    const std::string t = std::string("T_") + channels[c];
+    for (std::size_t row = 0; row < 3; ++row) {
+      const double* ray = rays[row];
+      const models::Answer truth = models::single_scattering(
+          medium, models::ray_from_angles(ray[0], ray[1] * kRadPerDeg, ray[2] * kRadPerDeg, ray[3] * kRadPerDeg));
+      // Single precision on the device: see tests/gpu/probe_test.cpp for the whole range.
+      EXPECT_NEAR(number(table, row, l), truth.radiance[c], 2e-3 * truth.radiance[c]) << row;
+      EXPECT_NEAR(number(table, row, t), truth.transmittance[c], 2e-3 * truth.transmittance[c]) << row;
+    }
+    // Into space: nothing is in the way.
+    EXPECT_EQ(number(table, 3, l), 0.0);
+    EXPECT_EQ(number(table, 3, t), 1.0);
+    // Written with every digit of the double that it is.
+    const double cos_sun = std::cos(70.0 * kRadPerDeg);
+    EXPECT_EQ(number(table, 4, l), models::single_sky_irradiance(medium, 3000.0, cos_sun)[c]);
+    EXPECT_EQ(number(table, 4, t), models::sun_transmittance(medium, 3000.0, cos_sun)[c]);
+  }
+}
+
+TEST_F(CliProbe, ReferenceAgreesWithSingleWithinItsError) {
+  const std::string queries = kHeader + "0,30,60,0\n8000,95,88,170\n3000,sky,70,0\n-400,80,70,90\n0,100,40,0\n";
+  const std::vector<std::string> one = {"--model", "reference", "--orders", "1", "--samples", "20000"};
+  const config::CsvTable reference = ask(queries, one);
+  const config::CsvTable single = ask(queries);
+  ASSERT_EQ(reference.header.size(), 13U);
+  for (const char* const channel : {"r", "g", "b"}) {
+    const std::string l = std::string("L_") + channel;
+    for (std::size_t row = 0; row < 3; ++row) {
+      const double error = number(reference, row, std::string("stderr_") + channel);
+      EXPECT_GT(error, 0.0);
+      // Five standard errors (a chance of one in a million each), and 0.2 % for single precision.
+      EXPECT_NEAR(number(reference, row, l), number(single, row, l), 5.0 * error + 2e-3 * number(single, row, l));
+    }
+    EXPECT_GT(number(reference, 3, l), 0.0);  // from sea level
+  }
+  EXPECT_EQ(*ask(queries, one).text, *reference.text);
+  std::vector<std::string> seeded = one;
+  seeded.insert(seeded.end(), {"--seed", "2"});
+  EXPECT_NE(*ask(queries, seeded).text, *reference.text);
+  // The ground at the end of a ray shines in the reference, and is black in single scattering.
+  const auto lit_ground = [&](const std::string& model) {
+    return number(ask(kHeader + "0,180,40,0\n", {"--model", model, "--samples", "64", "--orders", "1", "--set",
+                                                 "planet.ground_albedo=0.5"}), 0, "L_g");
+  };
+  EXPECT_EQ(lit_ground("single"), 0.0);
+  EXPECT_GT(lit_ground("reference"), 0.05);
+}
+
+TEST_F(CliProbe, ParametersAndScenesApply) {
+  const std::string queries = kHeader + "0,30,60,0\n";
+  const config::CsvTable none = ask(queries, {"--set", "atmosphere.custom_coefficients=true", "--set",
+                                              "atmosphere.rayleigh_scattering=0,0,0", "--set", "atmosphere.aerosol_density=0",
+                                              "--set", "atmosphere.ozone_absorption=0,0,0"});
+  EXPECT_EQ(number(none, 0, "L_b"), 0.0);
+  EXPECT_EQ(number(none, 0, "T_b"), 1.0);
+  const std::string scene = scratch_.write("scene.toml", "[atmosphere]\naerosol_density = 5.0\n");
+  EXPECT_LT(number(ask(queries, {scene}), 0, "T_r"), number(ask(queries), 0, "T_r"));
+  // What a picture of the scene is scaled by is not part of the answer.
+  EXPECT_EQ(*ask(queries, {"--set", "scattering.scale=2"}).text, *ask(queries).text);
+}
+
+TEST_F(CliProbe, WritesAFileOrJson) {
+  const std::string queries = scratch_.write("q.csv", kHeader + "0,30,60,0\n0,sky,60,0\n");
+  const std::string file = scratch_.at("r.csv");
+  const Outcome outcome = run_tyndall({"probe", "--queries", queries, "-o", file, "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(contents_of(file), run_tyndall({"probe", "--queries", queries}).out);
+  const nlohmann::json document = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(document["model"], "single");
+  ASSERT_EQ(document["answers"].size(), 2U);
+  EXPECT_GT(document["answers"][0]["L"][2].get<double>(), 0.0);
+  // One block of samples has no standard error: infinite in a table, null in JSON.
+  const std::vector<std::string> rough = {"probe", "--queries", queries, "--model", "reference", "--samples", "1"};
+  std::vector<std::string> rough_json = rough;
+  rough_json.emplace_back("--json");
+  EXPECT_TRUE(nlohmann::json::parse(run_tyndall(rough_json).out)["answers"][0]["stderr"][0].is_null());
+  EXPECT_NE(run_tyndall(rough).out.find(",inf"), std::string::npos);
+  EXPECT_EQ(*ask(kHeader).text, "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg,L_r,L_g,L_b,T_r,T_g,T_b\n");
+}
+
+TEST_F(CliProbe, BadTablesAreNamedByLineAndColumn) {
+  const std::pair<std::string, std::string> tables[] = {
+      {"", "no header line, FILE, needed is a line with the names of the columns"},
+      {"\r\n \n", "no header line, FILE, needed is a line with the names of the columns"},
+      {"altitude_m,view_zenith_deg,sun_zenith_deg\n0,0,0\n",
+       "no column 'azimuth_deg', FILE, needed are altitude_m, view_zenith_deg, sun_zenith_deg, azimuth_deg"},
+      {"altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg,altitude_m\n",
+       "several columns 'altitude_m', FILE, needed are altitude_m, view_zenith_deg, sun_zenith_deg, azimuth_deg, once each"},
+      {kHeader + "0,0,0,0\n\n0,0,O,0\n",
+       "'O' is not a number, FILE:4, column 'sun_zenith_deg', allowed is 0 to 180 deg"},
+      {kHeader + "0,0,,0\n", "'' is not a number, FILE:2, column 'sun_zenith_deg', allowed is 0 to 180 deg"},
+      {kHeader + "0,Sky,0,0\n",
+       "'Sky' is not a number, FILE:2, column 'view_zenith_deg', allowed is 0 to 180 deg, or sky"},
+      {kHeader + "nan,0,0,0\n",
+       "'nan' is not a finite number, FILE:2, column 'altitude_m', allowed is -500 to 1e+09 m"},
+      {kHeader + "0,0,0,inf\n",
+       "'inf' is not a finite number, FILE:2, column 'azimuth_deg', allowed is -360 to 360 deg"},
+      {kHeader + "0,180.001,0,0\n",
+       "'180.001' is out of range, FILE:2, column 'view_zenith_deg', allowed is 0 to 180 deg, or sky"},
+      {kHeader + "0,0,-0.1,0\n", "'-0.1' is out of range, FILE:2, column 'sun_zenith_deg', allowed is 0 to 180 deg"},
+      {kHeader + "-501,0,0,0\n", "'-501' is out of range, FILE:2, column 'altitude_m', allowed is -500 to 1e+09 m"},
+      {kHeader + "1e999,0,0,0\n", "'1e999' is out of range, FILE:2, column 'altitude_m', allowed is -500 to 1e+09 m"},
+      {kHeader + "0,0,0\n", "3 fields, FILE:2, needed are 4, as in the header"},
+      {kHeader + "0,0,0,0,0\n", "5 fields, FILE:2, needed are 4, as in the header"},
+      {kHeader + "0,0,0,\"0\n0,0,0,0\n", "a quoted field does not end, FILE:2, needed is a closing '\"'"},
+      {kHeader + "0,0,0,\"0\"1\n", "text after a closing quote, FILE:2, allowed is a comma or the end of the line"},
+      {kHeader + std::string("0,0,0,0\0\n", 9), "not a text file, FILE, allowed is comma-separated text"},
+  };
+  for (const auto& [text, message] : tables) {
+    const std::string path = scratch_.write("bad.csv", text);
+    std::string expected = message;
+    expected.replace(expected.find("FILE"), 4, path);
+    const Outcome outcome = run_tyndall({"probe", "--queries", path, "-o", scratch_.at("r.csv")});
+    EXPECT_EQ(outcome.status, 2) << expected;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(outcome.err, "tyndall: error: " + expected + "\n");
+  }
+  EXPECT_FALSE(std::filesystem::exists(scratch_.at("r.csv")));
+}
+
+TEST_F(CliProbe, BadUsage) {
+  const std::string queries = scratch_.write("q.csv", kHeader + "0,30,60,0\n");
+  const std::pair<std::vector<std::string>, std::string> cases[] = {
+      {{}, "no queries, tyndall probe, needed is --queries FILE"},
+      {{"--queries", "/nonexistent.csv"},
+       "cannot read '/nonexistent.csv', No such file or directory, needed is a readable file"},
+      {{"--queries", "/"}, "cannot read '/', Is a directory, needed is a readable file"},
+      {{"--queries", queries, "--orders", "0"}, "'0' is no count, --orders, allowed is a whole number, 1 to 256"},
+      {{"--queries", queries, "--orders", "257"}, "'257' is no count, --orders, allowed is a whole number, 1 to 256"},
+      {{"--queries", queries, "--samples", "0"},
+       "'0' is no count, --samples, allowed is a whole number, 1 to 4294967295"},
+      {{"--queries", queries, "--seed", "-1"}, "'-1' is no count, --seed, allowed is a whole number, 0 to 4294967295"},
+  };
+  for (const auto& [more, message] : cases) {
+    std::vector<std::string> arguments = {"probe"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = run_tyndall(arguments);
+    EXPECT_EQ(outcome.status, 2) << message;
+    EXPECT_EQ(outcome.err, "tyndall: error: " + message + "\n");
+  }
+  // A model that is not there names those that are.
+  const Outcome model = run_tyndall({"probe", "--queries", queries, "--model", "onil"});
+  EXPECT_EQ(model.status, 2);
+  EXPECT_EQ(model.err.rfind("tyndall: error: unknown value 'onil', --model, allowed is single, ", 0), 0U) << model.err;
+  EXPECT_NE(model.err.find("reference"), std::string::npos);
+}
+
+TEST_F(CliProbe, OutputsThatCannotBeWritten) {
+  const std::string queries = scratch_.write("q.csv", kHeader + "0,30,60,0\n");
+  for (const std::string& output : {scratch_.at("none/r.csv"), scratch_.at(""), std::string("/dev/full")}) {
+    const Outcome outcome = run_tyndall({"probe", "--queries", queries, "-o", output});
+    EXPECT_EQ(outcome.status, 1) << output;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_EQ(outcome.err.rfind("tyndall: error: cannot ", 0), 0U) << outcome.err;
+  }
+  EXPECT_EQ(run_tyndall({"probe", "--queries", queries}, "/dev/full").status, 1);
+  // An existing result survives a run that fails.
+  const std::string kept = scratch_.write("kept.csv", "kept");
+  EXPECT_EQ(run_tyndall({"probe", "--queries", queries, "-o", kept, "--device", "no such"}).status, 2);
+  EXPECT_EQ(contents_of(kept), "kept");
+}
+
+TEST_F(CliProbe, AMillionLines) {
+  std::string text = kHeader;
+  // Looking away from the air costs the device little, so this is the table's own time and memory.
+  for (int i = 0; i < 1000000; ++i) text += "100000,1,30," + std::to_string(i % 360) + "\n";
+  const std::string out = scratch_.at("r.csv");
+  const Outcome outcome =
+      run_tyndall({"probe", "--queries", scratch_.write("big.csv", text), "-o", out});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::string written = contents_of(out);
+  EXPECT_EQ(std::count(written.begin(), written.end(), '\n'), 1000001);
+  EXPECT_TRUE(written.ends_with("100000,1,30,279,0,0,0,1,1,1\n")) << written.substr(written.size() - 60);
+}
+
+}  // namespace
+}  // namespace tyndall::cli

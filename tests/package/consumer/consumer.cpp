@@ -1,0 +1,17 @@
+// Uses the library without a device: what can be asked before there is one, and the error for having none.
+#include <tyndall/effect.hpp>
+#include <tyndall/version.hpp>
+
+#include <cstdio>
+#include <cstring>
+
+int main() {
+  const tyndall::Requirements needs = tyndall::requirements();
+  if (needs.api_version != VK_API_VERSION_1_3 || needs.device_extensions.size() != 1) return 1;
+  if (tyndall::param_table().empty()) return 2;
+  const tyndall::Result<tyndall::Effect> effect = tyndall::Effect::create({}, {}, {});
+  if (effect.ok() || effect.error().code != tyndall::ErrorCode::invalid_argument) return 3;
+  if (std::strstr(effect.error().message.c_str(), "DeviceInfo") == nullptr) return 4;
+  std::printf("tyndall %s: %s\n", TYNDALL_VERSION_STRING, effect.error().message.c_str());
+  return 0;
+}

@@ -1,0 +1,51 @@
+#!/bin/sh
+# Installs the Debian packages that are missing, with apt-get (and sudo when not root). On a system without
+# apt-get, or where installing is not possible, says which tools are needed and goes on with what there is.
+set -u
+
+packages="build-essential cmake ninja-build pkg-config ccache
+glslc spirv-tools libspirv-cross-c-shared-dev
+libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers
+libglm-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
+libopenexr-dev libpng-dev libgdal-dev libgtest-dev"
+
+needs() {
+  echo "Tyndall needs: a C++20 compiler, CMake 3.25, Ninja, pkg-config, glslc, SPIRV-Tools, SPIRV-Cross (C API)," >&2
+  echo "Vulkan 1.3 headers, loader, a driver and the validation layers, GLM, CLI11, toml++, nlohmann-json," >&2
+  echo "OpenEXR, libpng, GDAL and GoogleTest. Going on with what is installed." >&2
+}
+
+if ! command -v apt-get > /dev/null 2>&1 || ! command -v dpkg-query > /dev/null 2>&1; then
+  needs
+  exit 0
+fi
+
+missing=""
+for package in $packages; do
+  status=$(dpkg-query -W -f '${db:Status-Abbrev}' "$package" 2> /dev/null) || status=""
+  case "$status" in ii*) ;; *) missing="$missing $package" ;; esac
+done
+[ -z "$missing" ] && exit 0
+
+as_root=""
+if [ "$(id -u)" != 0 ]; then
+  if command -v sudo > /dev/null 2>&1; then
+    as_root="sudo"
+  else
+    echo "Missing Debian packages:$missing" >&2
+    echo "They cannot be installed: not root, and there is no sudo." >&2
+    needs
+    exit 0
+  fi
+fi
+
+echo "Installing:$missing"
+# shellcheck disable=SC2086  # the list is meant to be split
+if ! { $as_root env DEBIAN_FRONTEND=noninteractive apt-get -q update &&
+  $as_root env DEBIAN_FRONTEND=noninteractive apt-get -q install -y --no-install-recommends $missing; } \
+  > /tmp/tyndall-setup.$$.log 2>&1; then
+  tail -n 5 /tmp/tyndall-setup.$$.log >&2
+  needs
+fi
+rm -f /tmp/tyndall-setup.$$.log
+exit 0
