@@ -30,11 +30,12 @@ void main() {
   vec3 up = normalize(world_position + vec3(0.0, radius, 0.0));
   vec3 smooth_normal = normal_from_gradient(gradient, up);
   vec3 map_normal = normalize(vec3(-gradient.x, 1.0, -gradient.y));
+  float pixel_m = distance_m * terrain.pixel_angle_rad;
   // A pixel's width on the ground, longer where the ground is seen at a slant: the geometric mean.
   float facing = max(dot(smooth_normal, to_eye) / distance_m, 0.05);
-  float footprint_m = max(distance_m * terrain.pixel_angle_rad / sqrt(facing), 0.01);
-  TerrainMaterial ground = terrain_ground(terrain.shading, terrain_units(map_m), map_altitude.z, map_normal, shape.z,
-                                          footprint_m, terrain.seed);
+  float footprint_m = max(pixel_m / sqrt(facing), 0.01);
+  TerrainMaterial ground = terrain_ground(terrain.shading, terrain_units(map_m), map_altitude.z, map_normal,
+                                          shape.z, footprint_m, terrain.seed);
   vec3 normal = normal_from_gradient(-ground.normal.xz / max(ground.normal.y, 0.05), up);
 
   uint cascade;
@@ -42,6 +43,10 @@ void main() {
   float sun_cosine = max(dot(normal, terrain.direction_to_sun), 0.0);
   // Relief too fine for the shadow maps cannot light a slope that faces away.
   lit *= clamp(dot(smooth_normal, terrain.direction_to_sun) * 8.0 + 0.5, 0.0, 1.0);
+  // The sunlit rim of a crest against the light is often thinner than a pixel: the crest turns out of sight
+  // over facing^2 / 2 of its radius. Where one sample takes it for a whole pixel, it strings beads.
+  float turn_per_m = 2.0 * max(-shape.z, 0.0) / terrain.levels[level_layer].cell_m;
+  lit *= clamp(facing * facing / (2.0 * turn_per_m * pixel_m + 1e-6), 0.3, 1.0);
 
   vec2 uv = light_table_uv(map_altitude.z, dot(up, terrain.direction_to_sun), radius, terrain.atmosphere_height_m);
   vec3 sun = texture(sun_transmittance, uv).rgb * (lit * sun_cosine);

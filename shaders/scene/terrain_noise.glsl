@@ -7,9 +7,11 @@
 // of 2^shift / (64 sqrt(a^2 + b^2)) m. Cell numbers and fractions come from integer arithmetic, so the
 // noise is as precise 2000 km away as at the origin, and no lattice repeats within 16 000 km.
 //
-// The shape: valleys along the zero lines of a 36 km noise, side valleys across its gradient, and then
-// gullies that run down whatever slope the coarser octaves left, each octave branching off the previous
-// one. A gully octave is a sum of plane waves around jittered lattice points, as in sparse Gabor noise
+// The shape: belts of mountains over continents; in them valleys along the zero lines of a 36 km noise, ridges
+// along those of a 14.7 km noise and massifs of 7 km between; and then gullies that run down whatever slope
+// the coarser octaves left, each octave branching off the previous one. Gullies are steered by a smooth slope
+// that turns no faster than their own waves: where it did, they would fold into walls. A gully octave is a
+// sum of plane waves around jittered lattice points, as in sparse Gabor noise
 // (Lagae et al., "Procedural noise using sparse Gabor convolution", 2009), with the wave vector across
 // the local slope; the sum is normalised to a phase (Tricard et al., "Procedural phasor noise", 2019).
 // The wave is even about its points, so turning the slope by half a turn at a crest changes nothing.

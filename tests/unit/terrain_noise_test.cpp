@@ -153,8 +153,8 @@ TEST(TerrainNoise, HasNoCliffs) {
     slope.push_back(std::abs(height(x + 0.25, z, 10.0) - height(x, z, 10.0)) / 0.25);
   }
   std::sort(slope.begin(), slope.end());
-  EXPECT_LT(slope[slope.size() * 999 / 1000], 4.0);
-  EXPECT_LT(slope.back(), 40.0);
+  EXPECT_LT(slope[slope.size() * 999 / 1000], 2.5);  // 68 degrees
+  EXPECT_LT(slope.back(), 8.0);
 }
 
 // A jump would keep its size as the step shrinks: halve every steep step until it is 1/64 m long.
