@@ -172,15 +172,15 @@ void terrain_gully_octave(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, int
     float steep2 = dot(s.slope, s.slope);
     // On crests, where the slope turns round, the wave number goes to zero rather than its direction jump.
     // `still`, from 1 there to 0 on steep slopes, raises the mean of the wave: fitted to 2e5 places, within
-    // 0.05. What the spacing does not show is replaced by that mean, so that all spacings agree on average.
+    // 0.07. What the spacing does not show is replaced by that mean, so that all spacings agree on average.
     float turn2 = gentle;
     float still = turn2 / (steep2 + turn2);
     vec2 across = vec2(-s.slope.y, s.slope.x) * inversesqrt(steep2 + turn2);
     // On valley floors that rise is taken out again, or it would draw a bank along them.
-    vec2 z = vec2(0.075 + 0.92 * still, 0.0);
-    float rise = 1.106 * still * still;
+    vec2 z = vec2(0.07 + still * (0.22 + 0.65 * still), 0.0);
+    float rise = still * (0.22 + 0.7 * still * still);
     float sunk = rise * (1.0 - min(1.5 * s.crest, 1.0));
-    float profile = 0.049 + rise - sunk;
+    float profile = rise - sunk;
     if (shown > 0.0) {
       vec2 wave = terrain_gully(across, units, warp_m, a, b, shift, salt);
       profile = mix(profile, terrain_gully_profile(wave.x, 2.5 * per_wave * per_wave) - sunk, shown);

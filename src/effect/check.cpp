@@ -50,6 +50,12 @@ Result<void> check_params(const Params& params) {
       case ParamType::uint32:
         if (Result<void> r = check_number(info, word); !r) return r;
         break;
+      case ParamType::uvec4:
+        for (std::size_t i = 0; i < 4; ++i) {
+          std::memcpy(&word, bytes + info.offset + i * sizeof word, sizeof word);
+          if (Result<void> r = check_number(info, word); !r) return r;
+        }
+        break;
       case ParamType::enumeration:
         if (word >= choice_count(info.choices)) {
           return invalid(std::string(info.group) + "." + std::string(info.name) + " is not one of " +
@@ -62,6 +68,18 @@ Result<void> check_params(const Params& params) {
     for (std::size_t i = 0; i < count; ++i) {
       if (Result<void> r = check_number(info, static_cast<double>(numbers[i])); !r) return r;
     }
+  }
+  const UVec4& size = params.tables.size;
+  if (size.y % 2 != 0) {
+    return invalid("tables.size has " + std::to_string(size.y) +
+                   " view angles, allowed is an even number: half of them lie on each side of the horizon");
+  }
+  // Above this no device of today holds a table; the product of four sizes could also overflow.
+  constexpr double kMostTexels = 134217728.0;
+  const double texels = static_cast<double>(size.x) * size.y * size.z * size.w;
+  if (texels > kMostTexels) {
+    return invalid("tables.size asks for " + std::to_string(texels * 24.0 / 1048576.0) +
+                   " MiB of tables, allowed is 3072 MiB");
   }
   return {};
 }

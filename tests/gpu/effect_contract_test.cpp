@@ -274,8 +274,11 @@ TEST_F(EffectContract, TwoEffectsOnOneDeviceDoNotKnowOfEachOther) {
 }
 
 TEST_F(EffectContract, TablesInSlicesAreTablesInOneGo) {
-  Result<Effect> at_once = Effect::create(info(), {}, {});
-  Result<Effect> sliced = Effect::create(info(), {}, {});
+  Params params;
+  params.tables.size = {8, 16, 16, 4};
+  params.tables.orders = 2;
+  Result<Effect> at_once = Effect::create(info(), {}, params);
+  Result<Effect> sliced = Effect::create(info(), {}, params);
   ASSERT_OK(at_once);
   ASSERT_OK(sliced);
   EXPECT_FALSE(at_once.value().precompute_progress().complete());
@@ -306,7 +309,6 @@ TEST_F(EffectContract, TablesInSlicesAreTablesInOneGo) {
   }
   EXPECT_GT(brightest, 0.5F);
   // A parameter of the air makes them stale, another does not; the same tables come back.
-  Params params;
   params.scattering.integration_steps = 77;
   ASSERT_OK(sliced.value().set_params(params));
   EXPECT_TRUE(sliced.value().precompute_progress().complete());
