@@ -194,6 +194,18 @@ Result<void> Scene::create_objects() {
   return {};
 }
 
+Result<void> Scene::set_scene(const SceneParams& scene) {
+  const TerrainParams& terrain = scene_.terrain;
+  if (scene.terrain.source != terrain.source || scene.terrain.seed != terrain.seed ||
+      scene.terrain.exaggeration != terrain.exaggeration || scene.shadows.resolution != scene_.shadows.resolution ||
+      scene.shadows.cascades != scene_.shadows.cascades) {
+    return Error{ErrorCode::invalid_argument,
+                 "terrain.source, seed and exaggeration and shadows.resolution and cascades need a new scene"};
+  }
+  scene_ = scene;
+  return {};
+}
+
 void Scene::begin_pass(VkCommandBuffer cmd, const char* name) {
   if (desc_.timings) timer_.begin(cmd, name);
 }

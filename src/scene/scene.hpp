@@ -32,6 +32,10 @@ class Scene {
   static Result<std::unique_ptr<Scene>> create(gpu::Host& host, const SceneDesc& desc, const Params& params,
                                                const SceneParams& scene);
 
+  // Takes over what the next frame may change (camera, sun, shading, most of the shadows, tone mapping): an
+  // error when `scene` also differs in what the scene was created with.
+  Result<void> set_scene(const SceneParams& scene);
+
   // Renders the frame that is `seconds` into the sequence. `floor` adds the pass that costs the least.
   Result<void> render(double seconds, bool floor = false);
 

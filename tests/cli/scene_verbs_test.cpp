@@ -1,0 +1,206 @@
+// `render`, `bench` and `devices` with everything that can be wrong: one line, the right status, nothing left
+// behind.
+#include <gtest/gtest.h>
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "run_tyndall.hpp"
+
+namespace tyndall::cli {
+namespace {
+
+// Sets environment variables of the runs that follow, and puts back what was there.
+class Environment {
+ public:
+  Environment(std::initializer_list<std::pair<const char*, std::string>> values) {
+    for (const auto& [name, value] : values) {
+      const char* const before = std::getenv(name);
+      saved_.emplace_back(name, before != nullptr ? std::optional<std::string>(before) : std::nullopt);
+      ::setenv(name, value.c_str(), 1);
+    }
+  }
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
+  ~Environment() {
+    for (const auto& [name, value] : saved_) {
+      if (value) {
+        ::setenv(name, value->c_str(), 1);
+      } else {
+        ::unsetenv(name);
+      }
+    }
+  }
+
+ private:
+  std::vector<std::pair<const char*, std::optional<std::string>>> saved_;
+};
+
+class CliScenes : public testing::Test {
+ protected:
+  static void expect_one_line(const Outcome& outcome, int status, const std::string& part) {
+    EXPECT_EQ(outcome.status, status) << part << "\n" << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_EQ(outcome.err.rfind("tyndall: error: ", 0), 0U) << outcome.err;
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+  }
+  // Names of what is in the folder.
+  [[nodiscard]] std::size_t files() const {
+    std::size_t count = 0;
+    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(scratch_.at(""))) ++count;
+    return count;
+  }
+  Outcome render(std::vector<std::string> more) const {
+    more.insert(more.begin(), {"render", "--size", "16x9", "-o", scratch_.at("out.png")});
+    return run_tyndall(more);
+  }
+
+  Scratch scratch_;
+};
+
+TEST_F(CliScenes, ScenesThatCannotBeRead) {
+  const std::string cut = scratch_.write("cut.toml", "[camera]\nposition_m = [0.0, 5600.0,");
+  const std::string binary = scratch_.write("binary.toml", std::string("\x89PNG\0\0", 6));
+  const std::string unknown = scratch_.write("unknown.toml", "[camera]\nyaw = 3\n");
+  for (const char* const verb : {"render", "bench"}) {
+    std::vector<std::string> more = {verb};
+    if (std::string(verb) == "render") more.insert(more.end(), {"-o", scratch_.at("out.png")});
+    const auto with = [&](const std::string& scene) {
+      std::vector<std::string> arguments = more;
+      arguments.push_back(scene);
+      return run_tyndall(arguments);
+    };
+    expect_one_line(with("/nonexistent.toml"), 2, "cannot read '/nonexistent.toml'");
+    expect_one_line(with("/"), 2, "Is a directory");
+    expect_one_line(with(cut), 2, "not valid TOML");
+    expect_one_line(with(binary), 2, "not a text file");
+    expect_one_line(with(unknown), 2, "unknown parameter 'camera.yaw'");
+  }
+  EXPECT_EQ(files(), 3U);
+}
+
+TEST_F(CliScenes, SizesCountsAndOutputs) {
+  for (const char* const size : {"0x0", "100000x100000", "16x", "16385x1"}) {
+    expect_one_line(run_tyndall({"render", "--size", size, "-o", scratch_.at("a.png")}), 2, "is no size");
+    expect_one_line(run_tyndall({"bench", "--size", size}), 2, "is no size");
+  }
+  expect_one_line(render({"--frames", "0"}), 2, "'0' is no count");
+  expect_one_line(render({"--frames", "2"}), 2, "2 frames into");
+  expect_one_line(run_tyndall({"bench", "--frames", "0"}), 2, "'0' is no count");
+  expect_one_line(run_tyndall({"render"}), 2, "no output file");
+  expect_one_line(run_tyndall({"render", "-o", scratch_.at("a.jpg")}), 2, "unknown format");
+  expect_one_line(run_tyndall({"render", "-o", scratch_.at("none/a.png")}), 1, "No such file or directory");
+  ASSERT_TRUE(std::filesystem::create_directory(scratch_.at("folder.png")));
+  expect_one_line(run_tyndall({"render", "-o", scratch_.at("folder.png")}), 1, "folder.png");
+  EXPECT_EQ(files(), 1U);
+}
+
+TEST_F(CliScenes, ElevationFilesThatAreNone) {
+  std::string grid = "ncols 8\nnrows 8\nxllcorner 0\nyllcorner 0\ncellsize 500\n";
+  for (int i = 0; i < 64; ++i) grid += std::to_string(100 * (i % 7)) + (i % 8 == 7 ? "\n" : " ");
+  // A TIFF's first bytes promise a directory that never comes.
+  const std::pair<std::string, std::string> sources[] = {
+      {"/nonexistent.tif", "does not exist"},
+      {scratch_.at(""), "is a directory"},
+      {scratch_.write("empty.tif", ""), "is empty"},
+      {scratch_.write("cut.tif", std::string("II*\0\x08\0\0\0", 8)), "cut.tif"},
+      {scratch_.write("cut.asc", grid.substr(0, grid.size() / 2)), "cut.asc"},
+      {scratch_.write("text.tif", "no elevations"), "text.tif"},
+      {scratch_.write("narrow.asc", "ncols 1\nnrows 4\nxllcorner 0\nyllcorner 0\ncellsize 500\n1\n2\n3\n4\n"), "narrow.asc"},
+      {scratch_.write("holes.asc",
+                      "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 500\nNODATA_value -1\n-1 -1\n-1 -1\n"),
+       "holes.asc"},
+  };
+  for (const auto& [source, part] : sources) {
+    const Outcome outcome = render({"--set", "terrain.source=" + source});
+    EXPECT_TRUE(outcome.status == 1 || outcome.status == 2);
+    expect_one_line(outcome, outcome.status, part);
+    EXPECT_FALSE(std::filesystem::exists(scratch_.at("out.png")));
+  }
+}
+
+TEST_F(CliScenes, WithoutADeviceThereIsOneLine) {
+  const Environment none({{"VK_ICD_FILENAMES", scratch_.at("none.json")}, {"VK_DRIVER_FILES", scratch_.at("none.json")}});
+  const std::string queries = scratch_.write("q.csv", "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n0,1,2,3\n");
+  expect_one_line(render({}), 1, "driver is needed");
+  expect_one_line(run_tyndall({"bench"}), 1, "driver is needed");
+  expect_one_line(run_tyndall({"devices"}), 1, "driver is needed");
+  expect_one_line(run_tyndall({"probe", "--queries", queries}), 1, "driver is needed");
+  EXPECT_FALSE(std::filesystem::exists(scratch_.at("out.png")));
+  // What needs no device works without: the reference, and the sky.
+  EXPECT_EQ(run_tyndall({"probe", "--queries", queries, "--model", "reference", "--samples", "64"}).status, 0);
+  const std::string sky = scratch_.write("sky.csv", "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n0,sky,2,\n");
+  EXPECT_EQ(run_tyndall({"probe", "--queries", sky}).status, 0);
+}
+
+TEST_F(CliScenes, DevicesAreListedAndWrongOnesNamed) {
+  const Outcome text = run_tyndall({"devices"});
+  ASSERT_EQ(text.status, 0) << text.err;
+  EXPECT_NE(text.out.find("* "), std::string::npos);
+  const Outcome json = run_tyndall({"devices", "--json"});
+  ASSERT_EQ(json.status, 0) << json.err;
+  const nlohmann::json list = nlohmann::json::parse(json.out);
+  EXPECT_EQ(std::count_if(list.begin(), list.end(), [](const auto& row) { return row["used"] == true; }), 1);
+  for (const char* const wrong : {"99", "no such device"}) {
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{"devices"}, {"bench"}, {"render", "-o", scratch_.at("out.png")}}) {
+      std::vector<std::string> all = arguments;
+      all.insert(all.end(), {"--device", wrong});
+      expect_one_line(run_tyndall(all), 2, list[0]["name"].get<std::string>());
+    }
+  }
+  EXPECT_EQ(files(), 0U);
+}
+
+// A limit on the size of files stands for a disk that fills up while the picture is written.
+TEST_F(CliScenes, APictureThatDoesNotFitLeavesWhatWasThere) {
+  const std::string before = scratch_.write("out.png", "before");
+  std::string grid = "ncols 4\nnrows 4\nxllcorner 0\nyllcorner 0\ncellsize 500\n";
+  for (int i = 0; i < 16; ++i) grid += "100" + std::string(i % 4 == 3 ? "\n" : " ");
+  const std::vector<std::string> quick = {"--set", "terrain.source=" + scratch_.write("g.asc", grid),
+                                          "--set", "planet.radius_m=20000",
+                                          "--set", "shadows.cascades=1",
+                                          "--set", "shadows.first_marched=0"};
+  rlimit unlimited = {};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &unlimited), 0);
+  rlimit small = unlimited;
+  small.rlim_cur = 512;  // a PNG of this size with its metadata is larger
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  const Outcome outcome = render(quick);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &unlimited), 0);
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.err.find("tyndall: error: cannot write"), std::string::npos) << outcome.err;
+  EXPECT_EQ(contents_of(before), "before");
+  EXPECT_EQ(files(), 2U);
+  // With room it is replaced.
+  EXPECT_EQ(render(quick).status, 0);
+  EXPECT_EQ(contents_of(before).substr(1, 3), "PNG");
+}
+
+TEST_F(CliScenes, BenchSaysWhatIsPromised) {
+  const Outcome outcome = run_tyndall({"bench", "--json", "--size", "16x9", "--frames", "2", "--set", "planet.radius_m=20000"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json report = nlohmann::json::parse(outcome.out);
+  for (const char* const key : {"device", "size", "frames", "passes", "effect_ms", "frame_ms", "floor_ms", "counters", "memory_bytes"}) {
+    EXPECT_TRUE(report.contains(key)) << key;
+  }
+  EXPECT_EQ(report["size"], nlohmann::json({16, 9}));
+  EXPECT_EQ(report["frames"], 2);
+  double effect_ms = 0.0;
+  for (const nlohmann::json& pass : report["passes"]) {
+    EXPECT_GT(pass["median_ms"].get<double>(), 0.0);
+    EXPECT_GE(pass["p95_ms"].get<double>(), pass["median_ms"].get<double>());
+    if (pass["in_effect"] == true) effect_ms += pass["median_ms"].get<double>();
+  }
+  EXPECT_GT(effect_ms, 0.0);
+  EXPECT_GT(report["effect_ms"].get<double>(), 0.0);
+  EXPECT_GT(report["floor_ms"].get<double>(), 0.0);
+  EXPECT_GE(report["frame_ms"].get<double>(), report["effect_ms"].get<double>());
+}
+
+}  // namespace
+}  // namespace tyndall::cli

@@ -1,0 +1,235 @@
+// The demo engine on a device, small: every scene that is shipped, every parameter of the shadows at its ends, and
+// light where it belongs and nowhere else.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <numbers>
+
+#include "config/scene_file.hpp"
+#include "gpu_test.hpp"
+#include "scene/scene.hpp"
+
+namespace tyndall::scene {
+namespace {
+
+constexpr VkExtent2D kSmall = {64, 36};
+
+// A planet of the ordinary kind, but small: its horizon is near and its terrain has few levels, which take
+// most of the time of a scene.
+void make_planet_small(Params& params) { params.planet.radius_m = 100.0e3F; }
+
+class GpuScene : public GpuTest {
+ protected:
+  // An elevation file of a square of `n` samples, written as text; removed at the end.
+  std::string elevation_file(int n, double cell_m, const std::function<double(double x, double z)>& height) {
+    file_ = std::filesystem::temp_directory_path() /
+            ("tyndall-scene-" + std::to_string(reinterpret_cast<std::uintptr_t>(this)) + "-" +
+             std::to_string(::testing::UnitTest::GetInstance()->random_seed()) + ".asc");
+    std::ofstream out(file_);
+    out << "ncols " << n << "\nnrows " << n << "\nxllcorner 0\nyllcorner 0\ncellsize " << cell_m << "\n";
+    for (int row = 0; row < n; ++row) {
+      for (int column = 0; column < n; ++column) {
+        out << height((column - 0.5 * n) * cell_m, (row - 0.5 * n) * cell_m) << (column + 1 < n ? " " : "\n");
+      }
+    }
+    return file_.string();
+  }
+  void TearDown() override {
+    std::error_code ignored;
+    std::filesystem::remove(file_, ignored);
+    GpuTest::TearDown();
+  }
+
+  std::unique_ptr<Scene> make(const Params& params, const SceneParams& scene_params) {
+    SceneDesc desc;
+    desc.extent = kSmall;
+    Result<std::unique_ptr<Scene>> scene = Scene::create(host(), desc, params, scene_params);
+    EXPECT_OK(scene);
+    return scene.ok() ? std::move(scene).value() : nullptr;
+  }
+
+  // The radiance of a frame; everything in it is finite, and what is displayed is in range.
+  static image::Image draw(Scene& scene) {
+    EXPECT_OK(scene.render(0.0));
+    Result<image::Image> radiance = scene.radiance();
+    Result<image::Image> display = scene.display();
+    EXPECT_OK(radiance);
+    EXPECT_OK(display);
+    if (!radiance.ok() || !display.ok()) return image::Image(kSmall.width, kSmall.height);
+    for (const float value : radiance.value().rgb) EXPECT_TRUE(std::isfinite(value) && value >= 0.0F);
+    for (const float value : display.value().rgb) EXPECT_TRUE(value >= 0.0F && value <= 1.0F);
+    return std::move(radiance).value();
+  }
+  static image::Image draw(Scene& scene, const SceneParams& scene_params) {
+    EXPECT_OK(scene.set_scene(scene_params));
+    return draw(scene);
+  }
+
+ private:
+  std::filesystem::path file_;
+};
+
+double luminance_sum(const image::Image& image) {
+  double sum = 0.0;
+  for (const float value : image.rgb) sum += static_cast<double>(value);
+  return sum;
+}
+
+TEST_F(GpuScene, ShippedScenesAreDrawn) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(TYNDALL_SOURCE_DIR "/scenes")) {
+    if (entry.path().extension() != ".toml") continue;
+    config::Settings settings;
+    ASSERT_OK(config::load(settings, entry.path().string()));
+    settings.scene.camera.samples = 1;
+    const std::unique_ptr<Scene> scene = make(settings.effect, settings.scene);
+    ASSERT_NE(scene, nullptr);
+    const image::Image image = draw(*scene);
+    EXPECT_GT(luminance_sum(image), 0.0) << entry.path();
+    const auto [low, high] = std::minmax_element(image.rgb.begin(), image.rgb.end());
+    EXPECT_GT(*high, 1.5F * *low) << entry.path();  // not one colour
+    ++count;
+  }
+  EXPECT_GT(count, 0);
+}
+
+TEST_F(GpuScene, TheDefaultSceneRepeatsItselfAndIsDarkAtNight) {
+  SceneParams settings;
+  const std::unique_ptr<Scene> scene = make({}, settings);
+  ASSERT_NE(scene, nullptr);
+  const image::Image first = draw(*scene);
+  EXPECT_GT(luminance_sum(first), 0.0);
+  EXPECT_EQ(draw(*scene).rgb, first.rgb);
+  // What is part of a scene's creation cannot be changed afterwards.
+  settings.terrain.seed = 2;
+  EXPECT_FALSE(scene->set_scene(settings).ok());
+  settings.terrain.seed = 1;
+  // The ground below in the planet's shadow: no sun, and next to no sky.
+  settings.camera.pitch_deg = -60.0F;
+  settings.sun.elevation_deg = 30.0F;
+  const image::Image day = draw(*scene, settings);
+  settings.sun.elevation_deg = -10.0F;
+  const image::Image night = draw(*scene, settings);
+  for (std::size_t i = 0; i < night.rgb.size(); ++i) {
+    ASSERT_GT(day.rgb[i], 1e-3F) << i;
+    // Light scattered once at -10 degrees comes from above 90 km but for the sun's grazing rays: thousands of
+    // times less than by day.
+    ASSERT_LT(night.rgb[i], 1e-3F * day.rgb[i]) << i;
+  }
+}
+
+TEST_F(GpuScene, ShadowParametersAtBothEnds) {
+  Params params;
+  make_planet_small(params);
+  SceneParams least;
+  least.camera.position_m = {0.0F, 2500.0F, 0.0F};
+  SceneParams most = least;
+  // Many large maps at once would only show how much memory there is.
+  least.shadows = {4096, 1, 0, 0.0F, 1000.0F, false, false, false};
+  most.shadows = {512, 8, 7, 1.0F, 1.0e7F, true, true, true};
+  for (const SceneParams& settings : {least, most}) {
+    const std::unique_ptr<Scene> scene = make(params, settings);
+    ASSERT_NE(scene, nullptr);
+    EXPECT_GT(luminance_sum(draw(*scene)), 0.0);
+  }
+}
+
+TEST_F(GpuScene, ShadingsTheCascadeViewAndTheSunsDisc) {
+  Params params;
+  make_planet_small(params);
+  params.scattering.enabled = false;  // the ground's own light
+  params.scattering.scale = 1.0F;
+  SceneParams settings;
+  settings.terrain.source = elevation_file(
+      64, 300.0, [](double x, double z) { return 800.0 + 500.0 * std::sin(x / 1500.0) * std::cos(z / 1900.0); });
+  settings.camera.position_m = {0.0F, 3000.0F, 0.0F};
+  settings.camera.pitch_deg = -35.0F;
+  settings.sun.elevation_deg = 40.0F;
+  const std::unique_ptr<Scene> scene = make(params, settings);
+  ASSERT_NE(scene, nullptr);
+  std::vector<std::vector<float>> images;
+  for (const TerrainShading shading : {TerrainShading::materials, TerrainShading::height, TerrainShading::plain}) {
+    settings.terrain.shading = shading;
+    images.push_back(draw(*scene, settings).rgb);
+  }
+  EXPECT_NE(images[0], images[1]);
+  EXPECT_NE(images[1], images[2]);
+  settings.shadows.show_cascades = true;
+  const image::Image cascades = draw(*scene, settings);
+  // Colours where the plain ground has none.
+  double saturation = 0.0;
+  for (std::size_t i = 0; i < cascades.rgb.size(); i += 3) {
+    const auto spread = [i](const std::vector<float>& rgb) {
+      const auto [low, high] = std::minmax({rgb[i], rgb[i + 1], rgb[i + 2]});
+      return (high - low) / high;
+    };
+    saturation = std::max(saturation, static_cast<double>(spread(cascades.rgb) - spread(images[2])));
+  }
+  EXPECT_GT(saturation, 0.1);
+
+  // The disc, wide enough for 450 pixels: its radiance times solid angle is the irradiance, darkened limb or not.
+  settings.sun.elevation_deg = settings.camera.pitch_deg = 30.0F;
+  settings.sun.azimuth_deg = settings.camera.yaw_deg = 0.0F;
+  settings.sun.irradiance = 3.0F;
+  settings.sun.angular_radius_deg = 2.0F;
+  settings.camera.fov_deg = 6.0F;
+  const image::Image disc = draw(*scene, settings);
+  const double side = 2.0 * std::tan(3.0 * std::numbers::pi / 180.0) / kSmall.height;
+  double sum[3] = {};
+  for (std::uint32_t y = 0; y < kSmall.height; ++y) {
+    for (std::uint32_t x = 0; x < kSmall.width; ++x) {
+      const double u = (x + 0.5 - 0.5 * kSmall.width) * side;
+      const double v = (y + 0.5 - 0.5 * kSmall.height) * side;
+      const double solid_angle = side * side / std::pow(1.0 + u * u + v * v, 1.5);
+      for (std::size_t c = 0; c < 3; ++c) {
+        sum[c] += solid_angle * static_cast<double>(disc.rgb[3 * (y * kSmall.width + x) + c]);
+      }
+    }
+  }
+  // The edge is a ramp of one pixel, where the limb is darkest.
+  for (const double total : sum) EXPECT_NEAR(total, 3.0, 0.03);
+}
+
+TEST_F(GpuScene, SmoothGroundUnderAHighSunHasNoAcne) {
+  Params params;
+  params.scattering.enabled = false;
+  SceneParams settings;
+  // In view slopes of at most 13 degrees, nowhere turned away from a sun of 60 degrees. Out of view in the west a
+  // range of 2 km, whose shadow the high sun keeps to itself.
+  settings.terrain.source = elevation_file(256, 200.0, [](double x, double z) {
+    const double range = (x + 6000.0) / 800.0;
+    return 800.0 + 350.0 * std::sin(x / 1500.0) * std::cos(z / 1500.0) + 2000.0 * std::exp(-range * range);
+  });
+  settings.terrain.shading = TerrainShading::plain;
+  // From 2.2 km above the mean ground, between 10 and 20 km away.
+  settings.camera = {{0.0F, 3000.0F, 0.0F}, -1.0F, 0.0F, -9.0F, 3.0F, 1};
+  settings.sun.elevation_deg = 60.0F;
+  settings.sun.azimuth_deg = 270.0F;
+  const std::unique_ptr<Scene> scene = make(params, settings);
+  ASSERT_NE(scene, nullptr);
+  // The same without shadows: the cascades end at twice the camera's height, in front of all that is seen.
+  SceneParams open_settings = settings;
+  open_settings.shadows.distance_m = 1000.0F;
+  const auto lit_fraction = [&] {
+    const image::Image shadowed = draw(*scene, settings);
+    const image::Image open = draw(*scene, open_settings);
+    std::size_t lit = 0;
+    std::size_t count = 0;
+    for (std::size_t i = 1; i < open.rgb.size(); i += 3) {
+      if (open.rgb[i] <= 0.0F) continue;
+      ++count;
+      lit += shadowed.rgb[i] >= 0.999F * open.rgb[i] ? 1 : 0;
+    }
+    EXPECT_EQ(count, static_cast<std::size_t>(kSmall.width) * kSmall.height);
+    return static_cast<double>(lit) / static_cast<double>(count);
+  };
+  EXPECT_GE(lit_fraction(), 0.999);
+  // Shadows would be seen: the low sun stands behind the range. (Slopes that face away are dark in both.)
+  settings.sun.elevation_deg = open_settings.sun.elevation_deg = 10.0F;
+  EXPECT_LT(lit_fraction(), 0.5);
+}
+
+}  // namespace
+}  // namespace tyndall::scene
