@@ -33,6 +33,9 @@ float table_altitude(IN(Medium) m, float h) {
   return clamp(h, margin, m.atmosphere_height_m - margin);
 }
 
+// Distance from altitude h to the geometric horizon [m].
+float horizon_distance(float h, float R) { return sqrt(h * (2.0 * R + h)); }
+
 float u_from_altitude(IN(TableShape) t, IN(Medium) m, float h) {
   float margin = altitude_margin(m);
   float height = m.atmosphere_height_m;
@@ -40,11 +43,10 @@ float u_from_altitude(IN(TableShape) t, IN(Medium) m, float h) {
   if (t.parameterization == 0u) {
     x = sqrt(x);
   } else if (t.parameterization == 1u) {
-    // Distance to the horizon: sqrt(r^2 - R^2), relative to that of the top.
-    float high = height - margin;
-    float at = table_altitude(m, h);
+    // Distance to the horizon: sqrt(r^2 - R^2), between those of the lowest and the highest texel.
     float R = m.planet_radius_m;
-    x = sqrt(at * (2.0 * R + at) / (high * (2.0 * R + high)));
+    float low = horizon_distance(margin, R);
+    x = (horizon_distance(table_altitude(m, h), R) - low) / (horizon_distance(height - margin, R) - low);
   }
   return texel_from_unit(x, float(t.altitudes));
 }
@@ -54,10 +56,9 @@ float altitude_from_u(IN(TableShape) t, IN(Medium) m, float u) {
   float height = m.atmosphere_height_m;
   float x = unit_from_texel(u, float(t.altitudes));
   if (t.parameterization == 1u) {
-    float high = height - margin;
     float R = m.planet_radius_m;
-    float squared = x * x * high * (2.0 * R + high);
-    return clamp(squared / (sqrt(R * R + squared) + R), margin, high);
+    float rho = mix(horizon_distance(margin, R), horizon_distance(height - margin, R), x);
+    return clamp(rho * rho / (sqrt(R * R + rho * rho) + R), margin, height - margin);
   }
   if (t.parameterization == 0u) {
     x = x * x;
@@ -83,7 +84,7 @@ float v_from_view(IN(TableShape) t, IN(Medium) m, float h, float mu, bool below)
     float x = below ? (horizon - mu) / (horizon + 1.0) : (mu - horizon) / (1.0 - horizon);
     return v_from_half(below, pow(clamp(x, 0.0, 1.0), 0.2), n);
   }
-  float rho = sqrt(h * (2.0 * R + h));  // distance to the horizon
+  float rho = horizon_distance(h, R);
   float top = m.atmosphere_height_m;
   float near;
   float far;
@@ -95,7 +96,7 @@ float v_from_view(IN(TableShape) t, IN(Medium) m, float h, float mu, bool below)
     // Texel 0 straight down, the last one at the horizon: counted from the horizon as in the other half.
     return v_from_half(true, clamp((rho - d) / (rho - h), 0.0, 1.0), n);
   }
-  float longest = rho + sqrt(top * (2.0 * R + top));
+  float longest = rho + horizon_distance(top, R);
   float d = distance_to_top(h, mu, top, R);
   return v_from_half(false, clamp((longest - d) / (longest - (top - h)), 0.0, 1.0), n);
 }
@@ -116,11 +117,11 @@ float view_from_v(IN(TableShape) t, IN(Medium) m, float h, float v, OUT(bool) be
     float fifth = x2 * x2 * x;
     return below ? horizon - fifth * (horizon + 1.0) : horizon + fifth * (1.0 - horizon);
   }
-  float rho = sqrt(h * (2.0 * R + h));
+  float rho = horizon_distance(h, R);
   float top = m.atmosphere_height_m;
   // Cosine of the ray that reaches the shell of altitude s at distance d: r_s^2 = r^2 + d^2 + 2 r d mu.
   float shell = below ? 0.0 : top;
-  float longest = below ? rho : rho + sqrt(top * (2.0 * R + top));
+  float longest = below ? rho : rho + horizon_distance(top, R);
   float shortest = below ? h : top - h;
   float d = max(longest - x * (longest - shortest), 1.0e-3);
   float mu = ((shell - h) * (2.0 * R + shell + h) - d * d) / (2.0 * (R + h) * d);

@@ -1,0 +1,99 @@
+// The mappings between rays and texels of the scattering tables (shaders/lib/table_mapping.glsl) are each
+// other's inverses, and what the texels hold (shaders/lib/table_values.glsl) has the limits it should.
+#include <gtest/gtest.h>
+
+#include "effect/medium.hpp"
+#include "models/glsl_double.hpp"
+
+namespace tyndall {
+namespace {
+
+glsl64::Medium earth() { return glsl64::widen(medium_from_params({})); }
+
+glsl64::TableShape shape_of(std::uint32_t parameterization) { return {32, 128, 64, 16, parameterization, 4, 0, 0}; }
+
+class TableMapping : public testing::TestWithParam<std::uint32_t> {};
+
+TEST_P(TableMapping, TexelCentresComeBack) {
+  const glsl64::Medium m = earth();
+  const glsl64::TableShape t = shape_of(GetParam());
+  for (std::uint32_t i = 0; i < t.altitudes; ++i) {
+    const double u = (i + 0.5) / t.altitudes;
+    const double h = glsl64::altitude_from_u(t, m, u);
+    EXPECT_GT(h, 0.0);
+    EXPECT_LT(h, m.atmosphere_height_m);
+    EXPECT_NEAR(glsl64::u_from_altitude(t, m, h), u, 1e-9);
+    for (std::uint32_t j = 0; j < t.views; ++j) {
+      const double v = (j + 0.5) / t.views;
+      bool below = false;
+      const double mu = glsl64::view_from_v(t, m, h, v, below);
+      ASSERT_GE(mu, -1.0);
+      ASSERT_LE(mu, 1.0);
+      // Next to the horizon the fifth power leaves the cosine no digits for the way back.
+      const bool grazing = std::abs(mu - glsl64::horizon_cos(h, m.planet_radius_m)) < 1e-7;
+      EXPECT_NEAR(glsl64::v_from_view(t, m, h, mu, below), v, grazing ? 0.02 : 2e-6) << i << " " << j;
+      if (t.parameterization != 2) {
+        EXPECT_EQ(below, v < 0.5);
+      }
+    }
+  }
+  for (std::uint32_t i = 0; i < t.suns; ++i) {
+    const double w = (i + 0.5) / t.suns;
+    // The published lowest sun lies a little inside the first texel.
+    EXPECT_NEAR(glsl64::w_from_sun(t, glsl64::sun_from_w(t, w)), w, i == 0 ? 1e-3 : 1e-6);
+  }
+  for (std::uint32_t i = 0; i < t.angles; ++i) {
+    const double q = (i + 0.5) / t.angles;
+    EXPECT_NEAR(glsl64::q_from_angle(t, glsl64::angle_from_q(t, q)), q, 1e-6);
+  }
+}
+
+TEST_P(TableMapping, NothingIsFilteredAcrossTheHorizon) {
+  if (GetParam() == 2) GTEST_SKIP() << "the linear mapping is the one that does";
+  const glsl64::Medium m = earth();
+  const glsl64::TableShape t = shape_of(GetParam());
+  const double half_texel = 0.5 / t.views;
+  for (const double h : {16.0, 1000.0, 30000.0, 79984.0}) {
+    for (const double mu : {-1.0, -0.3, glsl64::horizon_cos(h, m.planet_radius_m), 0.1, 1.0}) {
+      const double below = glsl64::v_from_view(t, m, h, mu, true);
+      const double above = glsl64::v_from_view(t, m, h, mu, false);
+      EXPECT_GE(below, half_texel - 1e-12);
+      EXPECT_LE(below, 0.5 - half_texel + 1e-12);
+      EXPECT_GE(above, 0.5 + half_texel - 1e-12);
+      EXPECT_LE(above, 1.0 - half_texel + 1e-12);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, TableMapping, testing::Values(0U, 1U, 2U));
+
+TEST(TableValues, GuideIsExactForAMixedMediumUnderAFullSun) {
+  glsl64::Medium m = earth();
+  m.mie_extinction = m.mie_scattering = glsl64::vec3(0.0);
+  m.ozone_absorption = glsl64::vec3(0.0);
+  // One species without absorption: what is not transmitted has been scattered.
+  const glsl64::vec3 column = glsl64::column_to_top(m, 500.0, 0.1);
+  const glsl64::Guide guide = glsl64::guide_for_column(m, column);
+  const glsl64::vec3 expected = glsl64::vec3(1.0) - glsl64::transmittance(m, column);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(guide.high[c], expected[c], 1e-9);
+  const glsl64::vec3 value(1e-12, 0.3, 1.0);
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_NEAR(glsl64::value_from_texel(glsl64::texel_from_value(value))[c] / value[c], 1.0, 1e-12);
+  }
+}
+
+TEST(TableValues, SunsLightIsThatOfTheColumns) {
+  const glsl64::Medium m = earth();
+  for (const double h : {0.0, 3000.0, 40000.0}) {
+    for (const double mu : {1.0, 0.3, 0.02, -0.01, -0.05, -0.1}) {
+      const double r = m.planet_radius_m + h;
+      const glsl64::vec3 found = glsl64::sun_transmittance_at(m, h, r * mu);
+      const glsl64::vec3 expected = glsl64::sun_visibility(h, mu, m.planet_radius_m) *
+                                    glsl64::transmittance(m, glsl64::column_to_top(m, h, mu));
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 2e-4) << h << " " << mu;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tyndall
