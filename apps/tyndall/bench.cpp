@@ -45,7 +45,7 @@ int run_bench(Args args) {
   desc.timings = true;
   Result<std::unique_ptr<scene::Scene>> scene =
       scene::Scene::create(*host.value(), desc, options.settings.effect, options.settings.scene);
-  if (!scene) return fail(scene.error());
+  if (!scene) return fail_input(scene.error());
 
   std::vector<std::string> order;
   std::map<std::string, Series> passes;

@@ -54,6 +54,10 @@ int fail(const Error& error) {
   return fail(error.message, error.code == ErrorCode::invalid_argument ? kBadUsage : kFailed);
 }
 
+int fail_input(const Error& error) {
+  return error.code == ErrorCode::io ? fail(error.message, kBadUsage) : fail(error);
+}
+
 int fail(std::string_view message, int status) {
   constexpr std::size_t kLongestLine = 2000;
   std::fprintf(stderr, "tyndall: error: %s\n", one_line(message, kLongestLine).c_str());

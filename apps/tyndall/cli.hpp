@@ -23,6 +23,8 @@ constexpr int kBadUsage = 2;  // bad usage or bad input
 // Prints "tyndall: error: MESSAGE" on stderr, as one line; the status that belongs to the error's code:
 // kBadUsage for invalid_argument, kFailed for the rest.
 int fail(const Error& error);
+// For what is read from files that the user names: whatever cannot be read is bad input (kBadUsage).
+int fail_input(const Error& error);
 // The same with the status given.
 int fail(std::string_view message, int status);
 

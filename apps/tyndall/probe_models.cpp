@@ -6,6 +6,7 @@
 #include "effect/medium.hpp"
 #include "gpu/host.hpp"
 #include "models/gpu_probe.hpp"
+#include "models/precomputed.hpp"
 #include "reference/path_tracer.hpp"
 
 namespace tyndall::cli {
@@ -79,7 +80,35 @@ Result<std::vector<ProbeAnswer>> run_reference(const ProbeSettings& settings,
   return answers;
 }
 
+Result<std::vector<ProbeAnswer>> run_precomputed(const ProbeSettings& settings,
+                                                 std::span<const ProbeQuery> queries) {
+  std::vector<ProbeAnswer> answers;
+  if (queries.empty()) return answers;
+  std::vector<models::PrecomputedQuery> asked;
+  asked.reserve(queries.size());
+  for (const ProbeQuery& q : queries) {
+    asked.push_back(
+        {models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad), q.sky});
+  }
+  Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({settings.device, false});
+  if (!host) return std::move(host).error();
+  const auto progress = [&](Progress built) {
+    settings.progress(static_cast<double>(built.done) / static_cast<double>(built.total));
+  };
+  Result<models::PrecomputedModel> model =
+      models::PrecomputedModel::create(*host.value(), settings.params, progress);
+  if (!model) return std::move(model).error();
+  const Result<std::vector<models::Answer>> found = model.value().answer(asked);
+  if (!found) return found.error();
+  answers.reserve(queries.size());
+  for (const models::Answer& answer : found.value()) {
+    answers.push_back({answer.radiance, answer.transmittance, {}, true});
+  }
+  return answers;
+}
+
 constexpr ProbeModel kModels[] = {
+    {"precomputed", false, run_precomputed},
     {"single", false, run_single},
     {"reference", true, run_reference},
 };

@@ -42,7 +42,7 @@ int run_render(Args args) {
   desc.extent = {options.size.width, options.size.height};
   Result<std::unique_ptr<scene::Scene>> scene =
       scene::Scene::create(*host.value(), desc, options.settings.effect, options.settings.scene);
-  if (!scene) return fail(scene.error());
+  if (!scene) return fail_input(scene.error());
   Progress progress("render");
   for (std::uint32_t frame = 0; frame < options.frames; ++frame) {
     progress.update(frame, options.frames);

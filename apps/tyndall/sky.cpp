@@ -11,6 +11,7 @@
 #include "gpu/host.hpp"
 #include "image/image.hpp"
 #include "models/gpu_probe.hpp"
+#include "models/precomputed.hpp"
 #include "scene/solar_position.hpp"
 #include "scene/sun_disc.hpp"
 #include "sky_map.hpp"
@@ -60,17 +61,41 @@ class SingleSource final : public SkySource {
   shared::Medium medium_;
 };
 
+// All orders of scattering from the tables, and the ground in the light of sun and sky.
+class PrecomputedSource final : public SkySource {
+ public:
+  explicit PrecomputedSource(models::PrecomputedModel model) : model_(std::move(model)) {}
+
+  Result<std::vector<models::Answer>> answer(std::span<const models::Ray> rays) override {
+    std::vector<models::PrecomputedQuery> queries;
+    queries.reserve(rays.size());
+    for (const models::Ray& ray : rays) queries.push_back({ray, false});
+    return model_.answer(queries);
+  }
+
+ private:
+  models::PrecomputedModel model_;
+};
+
 using MakeSource = Result<std::unique_ptr<SkySource>> (*)(gpu::Host& host, const Params& params);
 
 Result<std::unique_ptr<SkySource>> make_single(gpu::Host& host, const Params& params) {
   return std::unique_ptr<SkySource>(std::make_unique<SingleSource>(host, params));
 }
 
+Result<std::unique_ptr<SkySource>> make_precomputed(gpu::Host& host, const Params& params) {
+  Progress progress("tables");
+  Result<models::PrecomputedModel> model = models::PrecomputedModel::create(
+      host, params, [&](tyndall::Progress built) { progress.update(built.done, built.total); });
+  if (!model) return std::move(model).error();
+  return std::unique_ptr<SkySource>(std::make_unique<PrecomputedSource>(std::move(model).value()));
+}
+
 struct SkyModel {
   const char* name;
   MakeSource make;
 };
-constexpr SkyModel kModels[] = {{"single", make_single}};
+constexpr SkyModel kModels[] = {{"precomputed", make_precomputed}, {"single", make_single}};
 
 // The sun's elevation and azimuth by one of the two ways, in deg.
 struct SunAngles {

@@ -65,15 +65,17 @@ struct EffectDesc {
   bool check_inputs = true;          // look at the inputs of each frame and say what is suspicious
 };
 
-// Bytes. `persistent` outlives a frame; `transient` is only used between the start and the end of a
-// record(); `host` is host-visible. Equal to what create() allocates.
+// Bytes. `persistent` is there for the effect's whole life; `transient` is freed when tables have been built
+// and the frames that were in flight then are done (until it is, a rebuild also keeps the tables that are in
+// use); `host` is host-visible. Equal to what create() allocates.
 struct MemoryUsage {
   VkDeviceSize persistent = 0;
   VkDeviceSize transient = 0;
   VkDeviceSize host = 0;
 };
 // Memory that an effect would take, asked before it is created. Allocates nothing.
-[[nodiscard]] Result<MemoryUsage> query_memory(const DeviceInfo& device, const EffectDesc& desc);
+[[nodiscard]] Result<MemoryUsage> query_memory(const DeviceInfo& device, const EffectDesc& desc,
+                                                const Params& params = {});
 
 // An image of the caller's and the layout that it is in while the effect runs.
 struct Texture {
@@ -134,6 +136,20 @@ struct LightTables {
   VkImageView sky_irradiance = VK_NULL_HANDLE;     // on a horizontal surface under an open sky
 };
 
+// A scattering table: a 3D image, RGBA16F in GENERAL layout, with tables.size as its extent: altitude, view zenith
+// angle, and sun zenith angle (fast) with the angle between view and sun (slow) along the third axis.
+struct Table {
+  VkImage image = VK_NULL_HANDLE;
+  VkImageView view = VK_NULL_HANDLE;
+  VkExtent3D extent = {0, 0, 0};
+};
+// What the texels hold is told in shaders/lib/table_values.glsl, where they lie in shaders/lib/table_mapping.glsl.
+struct ScatteringTables {
+  Table single_rayleigh;
+  Table single_mie;
+  Table high_orders;
+};
+
 class Effect {
  public:
   // Creates every pipeline and all memory. The tables are not built yet: see record_precompute().
@@ -143,7 +159,9 @@ class Effect {
   ~Effect();
 
   // Checks and takes over new parameters: an error names the first that is out of range and changes
-  // nothing. Cheap; tables that become stale are rebuilt by record_precompute().
+  // nothing. Tables that become stale are rebuilt by record_precompute(), for which memory is allocated here;
+  // the finished ones stay in use until then. Views of light_tables() and scattering_tables() change when
+  // record_precompute() reports the build complete.
   Result<void> set_params(const Params& params);
   [[nodiscard]] const Params& params() const;
 
@@ -157,10 +175,13 @@ class Effect {
   Result<void> record(VkCommandBuffer cmd, const FrameInputs& inputs);
 
   [[nodiscard]] LightTables light_tables() const;
+  [[nodiscard]] ScatteringTables scattering_tables() const;
   [[nodiscard]] MemoryUsage memory() const;
   // Times of the passes of a frame whose commands have completed, with EffectDesc::timings. The span is
   // valid until the next call.
   std::span<const PassTiming> timings(std::uint64_t frame_index);
+  // Times of the stages of the last build of tables, all of whose commands have completed; likewise.
+  std::span<const PassTiming> precompute_timings();
 
  private:
   struct State;

@@ -31,42 +31,59 @@ struct March {
   vec3 mie;
 };
 
+// Mean densities between two points, from those at both: exponential profiles exactly, where altitude is linear.
+vec3 mean_densities(vec3 a, vec3 b, float climb) {
+  vec2 scales = climb / vec2(medium.rayleigh_scale_height_m, medium.mie_scale_height_m);
+  vec3 mean = 0.5 * (a + b);
+  // Level: the difference of nearly equal numbers would lose its digits, and the mean is good to 1e-5.
+  if (abs(scales.x) > 0.01) mean.x = (a.x - b.x) / scales.x;
+  if (abs(scales.y) > 0.01) mean.y = (a.y - b.y) / scales.y;
+  return mean;
+}
+
 // Steps through [from, to] inside one cascade. `ray` holds altitudes and cosines at the camera.
-void march_cascade(uint cascade, Ray ray, float from, float to, inout March march) {
+void march_cascade(uint cascade, Ray ray, float from, float to, float steps_per_m, inout March march) {
   float radius = medium.planet_radius_m;
   vec3 uvz_from = shadow_uvz(frame.cascades[cascade].shadow_from_world, frame.camera_position + ray.direction * from);
   vec3 uvz_to = shadow_uvz(frame.cascades[cascade].shadow_from_world, frame.camera_position + ray.direction * to);
   vec2 texels = abs(uvz_to.xy - uvz_from.xy) * float(frame.shadow_resolution);
-  // A ray towards the sun stays in one texel, yet crosses air of changing density: no step may climb
-  // more than a fraction of the aerosol's scale height.
-  float climb = abs(altitude_along(ray.altitude, ray.cos_zenith, to, radius) -
-                    altitude_along(ray.altitude, ray.cos_zenith, from, radius));
-  float wanted = max(max(texels.x, texels.y), max(float(frame.integration_steps), climb / (0.125 * medium.mie_scale_height_m)));
-  // The air changes slowly, shadows abruptly: the map is read at every texel, the air in the middle of
-  // every few. Within so short a stretch the air's part of the integrand is linear, and its product with
-  // the lit fraction errs by less than the map's own resolution does.
-  int groups = int(clamp(ceil(wanted / float(kReadsPerStep)), 1.0, 2.0 * float(frame.shadow_resolution)));
+  // A ray towards the sun stays in one texel, yet crosses air of changing density: no group of reads may climb
+  // more than half the aerosol's scale height.
+  float h_from = altitude_along(ray.altitude, ray.cos_zenith, from, radius);
+  float h_to = altitude_along(ray.altitude, ray.cos_zenith, to, radius);
+  float wanted = max(max(max(texels.x, texels.y) / float(kReadsPerStep), (to - from) * steps_per_m),
+                     abs(h_to - h_from) / (0.5 * medium.mie_scale_height_m));
+  // The air changes slowly, shadows abruptly: the map is read at every texel, the air once in a group of
+  // texels. Within so short a stretch the light that arrives is linear, and its product with the lit fraction
+  // errs by less than the map's own resolution does.
+  int groups = int(clamp(ceil(wanted), 1.0, 2.0 * float(frame.shadow_resolution)));
   float dt = (to - from) / float(groups);
   vec3 duvz = (uvz_to - uvz_from) / float(groups * kReadsPerStep);
   vec3 uvz = uvz_from + 0.5 * duvz;
+  float altitude = h_from;
+  vec3 density = densities(medium, altitude);
   for (int i = 0; i < groups; ++i) {
     float lit = 0.0;
     for (int k = 0; k < kReadsPerStep; ++k) {
       lit += texture(shadow_maps, vec4(uvz.xy, float(cascade), clamp(uvz.z, 0.0, 1.0)));
       uvz += duvz;
     }
-    float t = from + (float(i) + 0.5) * dt;
-    float altitude = altitude_along(ray.altitude, ray.cos_zenith, t, radius);
-    vec3 density = densities(medium, altitude);
+    float next_altitude = altitude_along(ray.altitude, ray.cos_zenith, from + (float(i) + 1.0) * dt, radius);
+    vec3 next_density = densities(medium, next_altitude);
+    vec3 mean = mean_densities(density, next_density, next_altitude - altitude);
     if (lit > 0.0) {
+      float t = from + (float(i) + 0.5) * dt;
+      float middle = altitude_along(ray.altitude, ray.cos_zenith, t, radius);
       float cos_sun = cos_sun_zenith_along(ray, t, radius);
-      lit *= sun_visibility(altitude, cos_sun, radius) / float(kReadsPerStep);
-      vec3 column = march.column + 0.5 * dt * density + column_to_top(medium, altitude, cos_sun);
+      lit *= sun_visibility(middle, cos_sun, radius) / float(kReadsPerStep);
+      vec3 column = march.column + 0.5 * dt * mean + column_to_top(medium, middle, cos_sun);
       vec3 arriving = (lit * dt) * transmittance(medium, column);
-      march.rayleigh += density.x * arriving;
-      march.mie += density.y * arriving;
+      march.rayleigh += mean.x * arriving;
+      march.mie += mean.y * arriving;
     }
-    march.column += density * dt;
+    march.column += mean * dt;
+    altitude = next_altitude;
+    density = next_density;
   }
 }
 
@@ -90,10 +107,12 @@ void main() {
     float t = start;
     // View-space depth grows in proportion to the distance along the ray.
     float depth_per_m = max(dot(ray.direction, frame.camera_forward), 1e-6);
+    float last = frame.cascade_count > 0u ? frame.cascades[frame.cascade_count - 1u].far_m / depth_per_m : 0.0;
+    float steps_per_m = float(frame.integration_steps) / max(min(last, end) - start, 1.0);
     for (uint c = frame.first_marched_cascade; c < frame.cascade_count; ++c) {
       float to = min(frame.cascades[c].far_m / depth_per_m, end);
       if (to - t > 1e-3) {
-        march_cascade(c, ray, t, to, march);
+        march_cascade(c, ray, t, to, steps_per_m, march);
         t = to;
       }
     }

@@ -1,25 +1,35 @@
-// Irradiance of the single-scattered sky on a horizontal surface, per irradiance of the sun above the
-// atmosphere: an estimate from below of the true skylight, which also holds light scattered more than once.
-// Out: rgb (LightTables::sky_irradiance). One invocation per texel; `first` is the first column to fill.
+// Irradiance of the sky on a horizontal surface, per irradiance of the sun above the atmosphere: all orders,
+// as the points of the gathering grid receive them.
+// In: sky (altitude x sun). Out: rgb (LightTables::sky_irradiance). One invocation per texel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#include "shared/medium.h"
-#include "lib/sky_irradiance.glsl"
+#include "lib/table_values.glsl"
+#include "precompute/gather_grid.glsl"
 #include "tyndall/light_tables.glsl"
 
-layout(local_size_x = 1, local_size_y = 8) in;
+layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
 layout(binding = 1, rgba16f) uniform writeonly image2D sky_irradiance_table;
+layout(std430, binding = 2) readonly buffer sky_block { vec4 sky[]; };
 
-layout(push_constant) uniform Push { int first; } push;
+vec3 between_suns(uint first, float part) {
+  return mix(texel_from_value(sky[first].rgb), texel_from_value(sky[first + 1u].rgb), part);
+}
 
 void main() {
-  ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + ivec2(push.first, 0);
+  ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
   ivec2 size = imageSize(sky_irradiance_table);
   if (texel.x >= size.x || texel.y >= size.y) return;
   vec2 uv = (vec2(texel) + 0.5) / vec2(size);
   vec2 point = light_table_point(uv, medium.planet_radius_m, medium.atmosphere_height_m);
-  imageStore(sky_irradiance_table, texel, vec4(sky_irradiance_single(medium, point.x, point.y, 2, 4), 1.0));
+  float altitude = gather_altitude_index(medium, point.x);
+  float sun = gather_sun_index(medium, point.y);
+  uint a = min(uint(altitude), kGatherAltitudes - 2u);
+  uint s = min(uint(sun), kGatherSuns - 2u);
+  // Fourth roots are interpolated: twilight falls like an exponential.
+  vec3 low = between_suns(a * kGatherSuns + s, sun - float(s));
+  vec3 high = between_suns((a + 1u) * kGatherSuns + s, sun - float(s));
+  imageStore(sky_irradiance_table, texel, vec4(value_from_texel(mix(low, high, altitude - float(a))), 1.0));
 }

@@ -20,8 +20,9 @@ layout(binding = 5) uniform sampler2D sky_irradiance;
 
 void main() {
   vec2 map_m = map_altitude.xy;
-  vec2 gradient = surface_gradient(texels.xy, level_layer);
-  if (level_morph > 0.0) gradient = mix(gradient, surface_gradient(texels.zw, level_layer + 1u), level_morph);
+  vec3 shape = surface_shape(texels.xy, level_layer);
+  if (level_morph > 0.0) shape = mix(shape, surface_shape(texels.zw, level_layer + 1u), level_morph);
+  vec2 gradient = shape.xy;
 
   vec3 to_eye = terrain.camera_position - world_position;
   float distance_m = length(to_eye);
@@ -32,7 +33,7 @@ void main() {
   // A pixel's width on the ground, longer where the ground is seen at a slant: the geometric mean.
   float facing = max(dot(smooth_normal, to_eye) / distance_m, 0.05);
   float footprint_m = max(distance_m * terrain.pixel_angle_rad / sqrt(facing), 0.01);
-  TerrainMaterial ground = terrain_ground(terrain.shading, terrain_units(map_m), map_altitude.z, map_normal,
+  TerrainMaterial ground = terrain_ground(terrain.shading, terrain_units(map_m), map_altitude.z, map_normal, shape.z,
                                           footprint_m, terrain.seed);
   vec3 normal = normal_from_gradient(-ground.normal.xz / max(ground.normal.y, 0.05), up);
 

@@ -18,8 +18,9 @@ void main() {
   ivec2 t = ivec2(gl_GlobalInvocationID.xy);
   if (t.x >= fill.texel_count.x || t.y >= fill.texel_count.y) return;
   int sample_units = int(fill.spacing_m * kTerrainUnitsPerM + 0.5);
-  // Twice the spacing: a crest as narrow as one cell would be cut into teeth by the grid.
-  float height_m = terrain_source_height(fill.source, (fill.first_sample + t) * sample_units, 2.0 * fill.spacing_m);
+  // A little more than the spacing: a crest as narrow as one cell would be cut into teeth by the grid.
+  float height_m =
+      terrain_source_height(fill.source, (fill.first_sample + t) * sample_units, 1.25 * fill.spacing_m);
   ivec2 texel = (fill.texel_offset + t) & fill.texel_mask;
   imageStore(elevation_levels, ivec3(texel, fill.layer), vec4(height_m, 0.0, 0.0, 0.0));
 }

@@ -19,6 +19,7 @@ const uint kTerrainShadingPlain = 2u;
 const vec3 kMeadowAlbedo = vec3(0.062, 0.098, 0.036);
 const vec3 kDryGrassAlbedo = vec3(0.118, 0.112, 0.058);
 const vec3 kForestAlbedo = vec3(0.024, 0.039, 0.019);
+const vec3 kSteppeAlbedo = vec3(0.215, 0.180, 0.115);
 const vec3 kScreeAlbedo = vec3(0.245, 0.228, 0.205);
 const vec3 kGraniteAlbedo = vec3(0.165, 0.155, 0.148);
 const vec3 kLimestoneAlbedo = vec3(0.235, 0.205, 0.170);
@@ -44,53 +45,118 @@ vec3 terrain_material_octave(ivec2 units, int a, int b, int shift, float footpri
   return n;
 }
 
+// Weight of detail of a wavelength, or of a lattice's cell, at a footprint.
+float terrain_material_weight(float cell_m, float footprint_m) {
+  return clamp(cell_m / footprint_m * 0.4 - 0.8, 0.0, 1.0);
+}
+
+// Adds ribs and gullies that run down `slope`, finer than the elevation shows them: x 1 on crests to -1 in
+// gullies, yz slope of a relief whose typical slope is one. On level ground they wander. coarsest_m: waves of
+// that many metres and more are left to the elevation.
+vec3 terrain_material_ribs(vec2 slope, ivec2 units, int a, int b, int shift, float coarsest_m,
+                           float footprint_m, uint salt) {
+  float wave_m = float(1u << uint(shift)) * inversesqrt(float(a * a + b * b)) *
+                 (1.0 / (kTerrainUnitsPerM * kGullyTurns));
+  float weight =
+      terrain_material_weight(0.6 * wave_m, footprint_m) * clamp(2.0 - 2.0 * wave_m / coarsest_m, 0.0, 1.0);
+  vec3 n = vec3(0.0, 0.0, 0.0);
+  if (weight > 0.0) {
+    vec2 across = vec2(-slope.y, slope.x) * inversesqrt(dot(slope, slope) + 0.01);
+    vec2 z = terrain_gully(across, units, vec2(0.0, 0.0), a, b, shift, salt) * weight;
+    vec2 fall = across * (-1.2 * z.y);
+    n = vec3(z.x, fall.x, fall.y);
+  }
+  return n;
+}
+
 // Share of a cover whose edge lies where `x` is zero; `width` in the unit of x.
 float terrain_cover(float x, float width) { return clamp(x / width + 0.5, 0.0, 1.0); }
 
 // units: place on the map, see terrain_units. altitude_m: above sea level. normal: of the large relief.
-// footprint_m: width of a pixel on the map. About 1200 operations within a few metres, where every octave is
+// bend: change of its slope over the distance that it resolves, positive in hollows. footprint_m: width of a pixel on the map. About 1400 operations within a few metres, where every octave is
 // visible, 150 fewer for each that is not.
-TerrainMaterial terrain_material(ivec2 units, float altitude_m, vec3 normal, float footprint_m, uint seed) {
+TerrainMaterial terrain_material(ivec2 units, float altitude_m, vec3 normal, float bend, float footprint_m,
+                                 uint seed) {
   uint salt = terrain_hash(seed + 0x2c1b3c6du);
+  vec2 gradient = vec2(normal.x, normal.z) * (-1.0 / max(normal.y, 0.05));
   vec3 wide = terrain_material_octave(units, 1, 3, 18, footprint_m, salt + 1u);     // 1295 m
   vec3 patches = terrain_material_octave(units, 2, 1, 16, footprint_m, salt + 2u);  // 458 m
-  vec3 coarse = terrain_material_octave(units, 2, 3, 15, footprint_m, salt + 3u);   // 142 m
-  vec3 middle = terrain_material_octave(units, 3, 1, 13, footprint_m, salt + 4u);   // 40 m
+  // Far away the elevation's cells span several pixels: about two of these stand in for what they lack.
+  float cells_m = 24.0 * footprint_m;
+  vec3 broad = terrain_material_ribs(gradient, units, 2, 1, 19, cells_m, footprint_m, salt + 10u);  // 4.9 km
+  broad += terrain_material_ribs(gradient + vec2(broad.y, broad.z) * 0.3, units, 1, 3, 18, cells_m, footprint_m,
+                                 salt + 11u);  // 1.7 km
+  broad += terrain_material_ribs(gradient + vec2(broad.y, broad.z) * 0.3, units, 3, 2, 17, cells_m, footprint_m,
+                                 salt + 12u);  // 0.76 km
+  broad += terrain_material_ribs(gradient + vec2(broad.y, broad.z) * 0.3, units, 1, 4, 16, cells_m, footprint_m,
+                                 salt + 13u);  // 0.33 km
+  // Level ground has no downhill: there the patches' relief steers the ribs.
+  vec2 steer = gradient + vec2(patches.y, patches.z) * 0.12;
+  vec3 coarse = terrain_material_ribs(steer, units, 4, 3, 15, 1.0e9, footprint_m, salt + 3u);  // waves of 137 m
+  steer += vec2(coarse.y, coarse.z) * 0.35;
+  vec3 middle = terrain_material_ribs(steer, units, 3, 1, 13, 1.0e9, footprint_m, salt + 4u);  // waves of 54 m
   vec3 fine = terrain_material_octave(units, 1, 2, 11, footprint_m, salt + 5u);     // 14 m
   vec3 grain = terrain_material_octave(units, 3, 2, 10, footprint_m, salt + 6u);    // 4.4 m
   vec3 pebbles = terrain_material_octave(units, 2, 1, 8, footprint_m, salt + 7u);   // 1.8 m
+  float hollow = bend / (0.35 + abs(bend)) - 0.28 * broad.x;
   float large = wide.x * 0.55 + patches.x * 0.45;
-  float ragged = coarse.x * 0.4 + middle.x * 0.35 + fine.x * 0.25 + grain.x * 0.15;
-  // How much of `ragged` the footprint leaves unresolved: edges are that much softer.
-  float unresolved = clamp(footprint_m * 0.02, 0.0, 1.0);
-  float edge = 0.12 + 0.7 * unresolved;
+  float ragged = coarse.x * 0.22 + middle.x * 0.22 + fine.x * 0.32 + grain.x * 0.25;
+  // What the footprint leaves unresolved of `ragged`, as the width of an even distribution with the same
+  // variance: edges are that much softer.
+  float lost_coarse = 1.0 - terrain_material_weight(82.0, footprint_m);
+  float lost_middle = 1.0 - terrain_material_weight(32.0, footprint_m);
+  float lost_fine = 1.0 - terrain_material_weight(14.0, footprint_m);
+  float unresolved = sqrt(0.30 * lost_coarse + 0.30 * lost_middle + 0.25 * lost_fine);
+  float edge = 0.05 + 0.75 * unresolved;
 
-  float steep = sqrt(max(1.0 - normal.y * normal.y, 0.0)) / max(normal.y, 0.05);  // tangent of the slope
-  float rough_steep = steep * (1.0 + 0.30 * ragged + 0.10 * large);
+  // Tangent of the slope, with the ribs that the elevation is too coarse for. Where even large relief is below
+  // a pixel, the ground is steeper than its mean: or distant mountains would be all snow.
+  float bare_m = clamp((altitude_m - 1500.0) * (1.0 / 900.0), 0.0, 1.0);
+  float hidden = clamp(log2(max(footprint_m, 16.0) * 0.0625) * 0.14, 0.0, 1.0);
+  vec2 ribbed = gradient + (vec2(coarse.y, coarse.z) * 0.28 + vec2(middle.y, middle.z) * 0.34) *
+                               (bare_m * clamp(0.75 + large, 0.3, 1.2) * min(1.4 * length(gradient), 1.0)) +
+                vec2(broad.y, broad.z) * ((0.22 + 0.14 * bare_m) * min(2.2 * length(gradient), 1.0));
+  float steep = length(ribbed) * (1.0 + hidden);
+  float rough_steep = steep * (1.0 + 0.25 * ragged + 0.10 * large);
   float sunny = clamp(normal.z * 1.6, -1.0, 1.0);  // south faces lose their snow sooner
+
+  // Wet and dry countries, 939 and 130 km; the origin's is wet.
+  vec2 none = vec2(0.0, 0.0);
+  vec2 away = vec2(units) * (1.0 / (kTerrainUnitsPerM * 160000.0));
+  float away2 = dot(away, away);
+  float dry = terrain_gradient_noise(terrain_cell(units, none, 2, 1, 27), salt + 8u).x * 1.7 +
+              terrain_gradient_noise(terrain_cell(units, none, 1, 4, 25), salt + 9u).x * 0.7 -
+              0.9 / (1.0 + away2 * away2);
+  dry = clamp(0.30 + 0.8 * dry + 0.10 * large + (altitude_m - 900.0) * 0.0003 - 0.25 * hollow, 0.0, 1.0);
 
   // Which ground, as shares that later layers cover.
   float treeline_m = 1750.0 + 130.0 * sunny;
   float trees = terrain_cover((treeline_m - altitude_m) / 420.0 + 0.55 * large + 0.6 * ragged - 0.15, edge) *
-                terrain_cover(large * 0.9 + ragged * 0.55 + 1.6 * min(steep, 0.45) - 0.38, edge) *
+                terrain_cover(large * 0.9 + ragged * 0.7 + 1.6 * min(steep, 0.45) + 0.25 * hollow - 0.38 - 0.7 * dry, edge) *
                 terrain_cover(1.25 - rough_steep, 0.3);
-  float barren =
-      terrain_cover((altitude_m - 2150.0 - 120.0 * sunny) / 500.0 + 0.5 * large + 0.7 * ragged, 0.5 + edge);
-  float scree = max(barren, terrain_cover(rough_steep - 0.62 + 0.10 * large, 0.10 + 0.2 * unresolved));
-  float rock =
-      terrain_cover(rough_steep - 0.80 + 0.12 * large + 0.10 * barren * ragged, 0.10 + 0.25 * unresolved);
-  float snowline_m = 2620.0 + 260.0 * sunny;
-  float snow_depth = (altitude_m - snowline_m) / 450.0 + 0.45 * large + 0.55 * ragged;
-  float snow_hold = 0.62 + 0.22 * clamp((altitude_m - snowline_m) / 900.0, 0.0, 1.5);
-  float snow = terrain_cover(snow_depth, edge) *
-               terrain_cover(snow_hold - steep * (1.0 + 0.35 * ragged - 0.25 * middle.x) + 0.12 * large,
-                             0.10 + 0.25 * unresolved);
+  float barren = terrain_cover(
+      (altitude_m - 2150.0 - 120.0 * sunny) / 500.0 + 0.5 * large + 0.8 * ragged + 0.5 * (steep - 0.5) - 0.5 * hollow, 0.35 + edge);
+  float scree = max(barren, terrain_cover(rough_steep - 0.66 + 0.10 * large, 0.10 + 0.35 * unresolved));
+  // Rock stands out as ribs; what falls from it lies in the gullies between.
+  float rock = terrain_cover(rough_steep - 0.84 + 0.12 * large - 0.25 * hollow + 0.28 * (coarse.x * 0.5 + middle.x * 0.5) +
+                                 0.14 * barren * (fine.x + grain.x),
+                             0.07 + 0.5 * unresolved);
+  // Snow fills gullies, and the wind takes it from crests.
+  float snowline_m = 2700.0 + 260.0 * sunny;
+  float snow_depth = (altitude_m - snowline_m) / 450.0 + 0.45 * large + 0.35 * ragged + 0.9 * hollow -
+                     0.60 * (coarse.x * 0.55 + middle.x * 0.45);
+  float snow_hold = 0.66 + 0.24 * clamp((altitude_m - snowline_m) / 900.0, 0.0, 1.5);
+  float snow = terrain_cover(snow_depth, 0.08 + edge + 2.0 * hidden) *
+               terrain_cover(snow_hold - steep * (1.0 + 0.30 * (fine.x + grain.x)) + 0.12 * large + 0.30 * hollow -
+                                 0.22 * (coarse.x * 0.5 + middle.x * 0.5),
+                             0.07 + 0.5 * unresolved);
 
   vec3 meadow = mix(kMeadowAlbedo, kDryGrassAlbedo,
-                    clamp((altitude_m - 1100.0) / 1300.0 + 0.35 * large + 0.25 * ragged, 0.0, 1.0));
-  vec3 albedo = meadow * (1.0 + 0.18 * patches.x + 0.15 * ragged);
-  albedo = mix(albedo, kForestAlbedo * (1.0 + 0.25 * fine.x + 0.2 * ragged), trees);
-  albedo = mix(albedo, kScreeAlbedo * (1.0 + 0.12 * ragged + 0.10 * pebbles.x), scree);
+                    clamp((altitude_m - 1100.0) / 1300.0 + 0.35 * large + 0.25 * ragged + 0.9 * dry, 0.0, 1.0));
+  meadow = mix(meadow, kSteppeAlbedo, clamp(2.0 * dry - 0.9, 0.0, 1.0));
+  vec3 albedo = meadow * (1.0 + 0.18 * patches.x + 0.20 * (fine.x + grain.x + 0.6 * pebbles.x) + 0.08 * middle.x);
+  albedo = mix(albedo, kForestAlbedo * (1.0 + 0.45 * fine.x + 0.35 * grain.x + 0.1 * ragged), trees);
+  albedo = mix(albedo, kScreeAlbedo * (1.0 + 0.16 * (fine.x + grain.x) - 0.10 * middle.x + 0.10 * pebbles.x), scree);
 
   // Rock: kinds change over kilometres, beds over tens of metres of altitude (tilted by the wide noise).
   float kind = large + 0.35 * wide.x;
@@ -99,16 +165,15 @@ TerrainMaterial terrain_material(ivec2 units, float altitude_m, vec3 normal, flo
   float bed = (altitude_m + 60.0 * wide.x + 10.0 * coarse.x + 4.0 * middle.x) * (1.0 / 46.0);
   float bed_seen = clamp(46.0 / (footprint_m * max(steep, 0.2) * 4.0) - 0.5, 0.0, 1.0);
   float beds = (terrain_phasor(bed).x * 0.6 + terrain_phasor(bed * 2.7).x * 0.4) * bed_seen;
-  albedo = mix(albedo, stone * (1.0 + 0.13 * beds + 0.22 * ragged), rock);
+  albedo = mix(albedo, stone * (0.94 + 0.16 * beds + 0.14 * middle.x + 0.22 * (fine.x + grain.x)), rock);
   albedo = mix(albedo, kSnowAlbedo * (1.0 + 0.02 * ragged), snow);
 
-  // Fine relief: typical slope of each octave by cover.
+  // Fine relief: typical slope of each octave by cover; ribs on bare ground only, half filled by snow.
   float bare = max(scree * 0.6, rock);
-  float relief = mix(mix(0.10, 0.55, trees), mix(0.32, 0.50, rock), bare);
+  float relief = mix(mix(0.10, 0.55, trees), mix(0.32, 0.60, rock), bare);
   relief = mix(relief, 0.09, snow);
-  vec2 slope = vec2(coarse.y, coarse.z) * 0.35 * (1.0 - 0.8 * trees) + vec2(middle.y, middle.z) * 0.45 +
-               vec2(fine.y, fine.z) * 0.5 + vec2(grain.y, grain.z) * 0.5 + vec2(pebbles.y, pebbles.z) * 0.35;
-  slope = slope * relief;
+  vec2 slope = (ribbed - gradient) * (1.0 - 0.65 * snow) + (vec2(fine.y, fine.z) * 0.5 +
+               vec2(grain.y, grain.z) * 0.5 + vec2(pebbles.y, pebbles.z) * 0.35) * relief;
 
   TerrainMaterial result;
   result.albedo = clamp(albedo, vec3(0.005), vec3(0.93));
@@ -126,13 +191,13 @@ vec3 terrain_height_albedo(float altitude_m) {
 }
 
 // The ground in one of the three modes of terrain.shading.
-TerrainMaterial terrain_ground(uint shading, ivec2 units, float altitude_m, vec3 normal, float footprint_m,
-                               uint seed) {
+TerrainMaterial terrain_ground(uint shading, ivec2 units, float altitude_m, vec3 normal, float bend,
+                               float footprint_m, uint seed) {
   TerrainMaterial ground;
   ground.normal = normal;
   ground.albedo = kPlainAlbedo;
   if (shading == kTerrainShadingMaterials) {
-    ground = terrain_material(units, altitude_m, normal, footprint_m, seed);
+    ground = terrain_material(units, altitude_m, normal, bend, footprint_m, seed);
   } else if (shading == kTerrainShadingHeight) {
     ground.albedo = terrain_height_albedo(altitude_m);
   }

@@ -26,6 +26,8 @@ const float kTau = 6.283185307;
 // Wavelengths of a gully octave per lattice cell, and how far its points stray, in cells.
 const float kGullyTurns = 0.75;
 const float kGullyJitter = 0.5;
+// Squared strength of a wave at which normalising it to a phase begins to let go.
+const float kGullyCalm = 0.12;
 
 // A place within one lattice.
 struct TerrainCell {
@@ -144,7 +146,9 @@ vec2 terrain_gully(vec2 across, ivec2 units, vec2 warp_m, int a, int b, int shif
   vec2 z01 = terrain_phasor(dot(k, f - vec2(0.0, 1.0) - terrain_random2(h.z) * kGullyJitter));
   vec2 z11 = terrain_phasor(dot(k, f - vec2(1.0, 1.0) - terrain_random2(h.w) * kGullyJitter));
   vec2 sum = mix(mix(z00, z10, t.x), mix(z01, z11, t.x), t.y);
-  return sum * inversesqrt(dot(sum, sum) + 0.01);
+  // Where the waves cancel, crest and floor lie next to each other: too eager a normalisation makes a wall
+  // of what is between them.
+  return sum * inversesqrt(dot(sum, sum) + kGullyCalm);
 }
 
 // Cross-section of a gully from the cosine of its phase: sharp crests, rounded floors, mean zero.
@@ -169,7 +173,7 @@ void terrain_gully_octave(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, int
     // On crests, where the slope turns round, the wave number goes to zero rather than its direction jump.
     // `still`, from 1 there to 0 on steep slopes, raises the mean of the wave: fitted to 2e5 places, within
     // 0.05. What the spacing does not show is replaced by that mean, so that all spacings agree on average.
-    float turn2 = 0.12 * gentle;
+    float turn2 = gentle;
     float still = turn2 / (steep2 + turn2);
     vec2 across = vec2(-s.slope.y, s.slope.x) * inversesqrt(steep2 + turn2);
     // On valley floors that rise is taken out again, or it would draw a bank along them.
@@ -179,11 +183,11 @@ void terrain_gully_octave(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, int
     float profile = 0.049 + rise - sunk;
     if (shown > 0.0) {
       vec2 wave = terrain_gully(across, units, warp_m, a, b, shift, salt);
-      profile = mix(profile, terrain_gully_profile(wave.x, 4.0 * per_wave * per_wave) - sunk, shown);
+      profile = mix(profile, terrain_gully_profile(wave.x, 2.5 * per_wave * per_wave) - sunk, shown);
       z = mix(z, wave, shown);
     }
     float height_m = amplitude * wave_m * wanted *
-                     (steep2 * (1.0 + 0.6 * min(steep2, 2.0)) + 0.7 * gentle * s.crest) / (steep2 + gentle);
+                     (steep2 + 0.4 * gentle * s.crest) / ((steep2 + 0.5 * gentle) * (1.0 + 0.3 * steep2 * steep2));
     s.height_m += height_m * profile;
     s.slope -= across * (height_m * z.y * (kTau / wave_m) * 0.5);
     s.crest = s.crest * mix(1.0, clamp(0.6 + 0.7 * z.x, 0.0, 1.4), 0.6);
@@ -193,12 +197,12 @@ void terrain_gully_octave(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, int
 // The octaves from 2.4 km to 60 m.
 void terrain_gullies(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, float strength, float spacing_m,
                      float detail_m, uint salt) {
-  terrain_gully_octave(s, units, warp_m, 1, 2, 18, 0.085 * strength, 0.05, spacing_m, detail_m, salt + 12u);
-  terrain_gully_octave(s, units, warp_m, 2, 1, 17, 0.080 * strength, 0.06, spacing_m, detail_m, salt + 13u);
-  terrain_gully_octave(s, units, warp_m, 1, 2, 16, 0.070 * strength, 0.06, spacing_m, detail_m, salt + 14u);
-  terrain_gully_octave(s, units, warp_m, 1, 4, 16, 0.060 * strength, 0.06, spacing_m, detail_m, salt + 15u);
-  terrain_gully_octave(s, units, warp_m, 2, 3, 15, 0.055 * strength, 0.06, spacing_m, detail_m, salt + 16u);
-  terrain_gully_octave(s, units, warp_m, 3, 1, 14, 0.050 * strength, 0.06, spacing_m, detail_m, salt + 17u);
+  terrain_gully_octave(s, units, warp_m, 1, 2, 18, 0.110 * strength, 0.024, spacing_m, detail_m, salt + 12u);
+  terrain_gully_octave(s, units, warp_m, 2, 1, 17, 0.095 * strength, 0.018, spacing_m, detail_m, salt + 13u);
+  terrain_gully_octave(s, units, warp_m, 1, 2, 16, 0.080 * strength, 0.014, spacing_m, detail_m, salt + 14u);
+  terrain_gully_octave(s, units, warp_m, 1, 4, 16, 0.066 * strength, 0.012, spacing_m, detail_m, salt + 15u);
+  terrain_gully_octave(s, units, warp_m, 2, 3, 15, 0.060 * strength, 0.012, spacing_m, detail_m, salt + 16u);
+  terrain_gully_octave(s, units, warp_m, 3, 1, 14, 0.054 * strength, 0.012, spacing_m, detail_m, salt + 17u);
 }
 
 // Bends the map so that nothing runs along a lattice, m.
@@ -216,47 +220,66 @@ float terrain_soft_limit(float height_m) {
 
 uint terrain_salt(uint seed) { return terrain_hash(seed + 0x51ed2712u); }
 
+// How mountainous the country is: x 0 lowland to 1 high mountains, y 0 plain to 1 upland. The origin always
+// lies in high mountains.
+vec2 terrain_country(ivec2 units, uint salt) {
+  // Belts of mountains follow the zero lines of a 1050 km noise, uplands lie on one side of them.
+  vec2 none = vec2(0.0, 0.0);
+  float plates = terrain_gradient_noise(terrain_cell(units, none, 4, 1, 28), salt + 1u).x +
+                 terrain_gradient_noise(terrain_cell(units, none, 1, 2, 26), salt + 7u).x * 0.32;     // 469 km
+  float broken = terrain_gradient_noise(terrain_cell(units, none, 3, 1, 25), salt + 2u).x;             // 166 km
+  vec2 away = vec2(units) * (1.0 / (kTerrainUnitsPerM * 110000.0));
+  float away2 = dot(away, away);
+  float belt = 1.0 - abs(plates - 0.05) * 4.2 + broken * 1.1;
+  float range = smoothstep(-0.35, 1.1, belt + 1.2 / (1.0 + away2 * away2));
+  float upland = smoothstep(-0.15, 0.45, plates + 0.25 * broken);
+  return vec2(range, upland);
+}
+
 // Elevation in m at a place (1/64 m), without anything finer than about two spacings.
 float terrain_height_at(ivec2 units, float spacing_m, uint seed) {
   uint salt = terrain_salt(seed);
-  // Ranges, 234 and 83 km: 0 lowland, 1 high mountains. The origin always lies in a range.
-  float coarse = terrain_gradient_noise(terrain_cell(units, vec2(0.0, 0.0), 1, 2, 25), salt + 1u).x * 0.9 +
-                 terrain_gradient_noise(terrain_cell(units, vec2(0.0, 0.0), 3, 1, 24), salt + 2u).x * 0.45;
-  vec2 away = vec2(units) * (1.0 / (kTerrainUnitsPerM * 110000.0));
-  float away2 = dot(away, away);
-  float range = smoothstep(-0.5, 0.75, coarse + 0.22 + 0.55 / (1.0 + away2 * away2));
+  vec2 country = terrain_country(units, salt);
+  float range = country.x;
   float high = range * range * (3.0 - 2.0 * range);
-  float relief_m = 250.0 + 2750.0 * high;
+  float relief_m = 220.0 + 260.0 * country.y + 2600.0 * high;
 
-  // Main valleys: zero lines of `line`, and a lower-frequency swell between them.
+  // Main valleys: zero lines of `line`, and ridges of half their wavelength between them.
   vec2 warp_m = terrain_warp(units, salt);
   vec3 line = terrain_gradient_noise(terrain_cell(units, warp_m * 1.2, 3, 2, 23), salt + 5u);  // 36 km
   vec2 line_d = terrain_map_slope(vec2(line.y, line.z), 3, 2, 23);
   vec3 swell = terrain_gradient_noise(terrain_cell(units, warp_m, 2, 1, 21), salt + 6u);  // 14.7 km
   vec2 swell_d = terrain_map_slope(vec2(swell.y, swell.z), 2, 1, 21);
-  float off = sqrt(line.x * line.x + 0.006) - 0.0775;
-  vec2 off_d = line_d * (line.x * inversesqrt(line.x * line.x + 0.02));
-  float rise = off / (off + 0.16);
-  float rise_d = 0.16 / ((off + 0.16) * (off + 0.16));
-  float body = 0.8 + 0.6 * swell.x;
+  float root = inversesqrt(line.x * line.x + 0.006);
+  float off = 1.0 / root - 0.0775;
+  vec2 off_d = line_d * (line.x * root);
+  float rise = 1.5 * off / (off + 0.32);
+  float rise_d = 0.48 / ((off + 0.32) * (off + 0.32));
+  // Main ridges along the zero lines of the swell, rounded over about 2 km.
+  float spine = sqrt(swell.x * swell.x + 0.012);
+  float body = 1.03 - 1.0 * spine;
   TerrainSurface s;
-  s.height_m = 400.0 + 500.0 * range + relief_m * rise * body;
-  s.slope = (off_d * (rise_d * body) + swell_d * (0.6 * rise)) * relief_m;
+  s.height_m = 400.0 + 250.0 * range + 330.0 * high + 380.0 * country.y + relief_m * rise * body;
+  s.slope = (off_d * (rise_d * body) + swell_d * (-rise * swell.x / spine)) * relief_m;
 
-  // Side valleys, 12 km apart, straight down the flanks of the main ones.
-  float line_d2 = dot(line_d, line_d);
-  vec2 across = vec2(-line_d.y, line_d.x) * inversesqrt(line_d2 + 1.0e-11);
-  vec2 z = terrain_gully(across, units, warp_m, 3, 2, 21, salt + 9u);
-  float side_m = 0.46 * relief_m * rise * line_d2 / (line_d2 + 2.0e-10) *
-                 clamp(6058.0 / spacing_m - 1.0, 0.0, 1.0);
-  s.height_m += side_m * terrain_gully_profile(z.x, 0.0);
-  s.slope -= across * (side_m * z.y * (kTau / 12117.0) * 0.7);
-  s.crest = rise * clamp(0.5 + 0.6 * z.x, 0.0, 1.0) * high;
+  // Side valleys and the massifs between them. No gullies yet: what steers waves of this length turns within
+  // one of them, and where it does they would fold into walls.
+  vec3 side = terrain_gradient_noise(terrain_cell(units, warp_m * 0.8, 2, 1, 20), salt + 9u);  // 7.3 km
+  vec2 side_d = terrain_map_slope(vec2(side.y, side.z), 2, 1, 20);
+  float side_m = 0.62 * relief_m * (0.25 + 0.75 * rise) * clamp(7327.0 / spacing_m - 1.0, 0.0, 1.0);
+  s.height_m += side_m * side.x;
+  s.slope += side_d * side_m;
+  s.crest = rise * clamp(0.55 + 1.2 * side.x, 0.0, 1.0) * high;
 
   float gain = sqrt(relief_m * (1.0 / 3000.0));
   // 5.3 km
-  terrain_gully_octave(s, units, warp_m, 4, 1, 20, 0.105 * gain, 0.025, spacing_m, 1.0e9, salt + 11u);
-  terrain_gullies(s, units, warp_m, 1.0, spacing_m, 1.0e9, salt);
+  terrain_gully_octave(s, units, warp_m, 4, 1, 20, 0.140 * gain, 0.030, spacing_m, 1.0e9, salt + 11u);
+  // Where all that is level, finer gullies would have nothing to run down: knolls.
+  vec3 knoll = terrain_gradient_noise(terrain_cell(units, warp_m, 1, 2, 18), salt + 10u);  // 1.8 km
+  float knoll_m = 190.0 * gain * (0.3 + 0.7 * rise) * clamp(1832.0 / spacing_m - 1.0, 0.0, 1.0);
+  s.height_m += knoll_m * knoll.x;
+  s.slope += terrain_map_slope(vec2(knoll.y, knoll.z), 1, 2, 18) * knoll_m;
+  terrain_gullies(s, units, warp_m, 0.35 + 0.65 * gain, spacing_m, 1.0e9, salt);
   return terrain_soft_limit(s.height_m);
 }
 

@@ -1,4 +1,4 @@
-// What the clipmap says of the ground at a pixel: its slope and how much of the sky it sees.
+// What the clipmap says of the ground at a pixel: its shape and how much of the sky it sees.
 #ifndef TYNDALL_TERRAIN_SURFACE_GLSL
 #define TYNDALL_TERRAIN_SURFACE_GLSL
 
@@ -11,19 +11,22 @@ float height_at(ivec2 texel, uint layer) {
   return texelFetch(terrain_heights, ivec3(texel, int(layer)), 0).r;
 }
 
-// Gradient of the elevation in map coordinates: central differences at the four samples around, mixed
-// linearly, so that it is continuous across cells.
-vec2 surface_gradient(vec2 texel, uint layer) {
+// xy gradient of the elevation in map coordinates, z how hollow the ground is: change of slope over a cell.
+// Central differences at the four samples around, mixed linearly, so that all is continuous across cells.
+vec3 surface_shape(vec2 texel, uint layer) {
   vec2 base = floor(texel - 0.5);
   vec2 f = texel - 0.5 - base;
   ivec2 b = ivec2(base);
-  vec2 g[4];
+  vec3 g[4];
   for (int i = 0; i < 4; ++i) {
     ivec2 at = b + ivec2(i & 1, i >> 1);
-    g[i] = vec2(height_at(at + ivec2(1, 0), layer) - height_at(at - ivec2(1, 0), layer),
-                height_at(at + ivec2(0, 1), layer) - height_at(at - ivec2(0, 1), layer));
+    float east = height_at(at + ivec2(1, 0), layer);
+    float west = height_at(at - ivec2(1, 0), layer);
+    float south = height_at(at + ivec2(0, 1), layer);
+    float north = height_at(at - ivec2(0, 1), layer);
+    g[i] = vec3(east - west, south - north, east + west + south + north - 4.0 * height_at(at, layer));
   }
-  vec2 mixed = mix(mix(g[0], g[1], f.x), mix(g[2], g[3], f.x), f.y);
+  vec3 mixed = mix(mix(g[0], g[1], f.x), mix(g[2], g[3], f.x), f.y);
   return mixed / (2.0 * terrain.levels[layer].cell_m);
 }
 

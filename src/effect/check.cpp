@@ -20,7 +20,11 @@ bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && 
 Error invalid(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
 
 Result<void> check_number(const ParamInfo& info, double value) {
-  if (value >= info.min && value <= info.max) return {};  // false for NaN too
+  // A range's end counts as inside when it is given in single precision. False for NaN.
+  const bool real = info.type == ParamType::float32 || info.type == ParamType::vec3;
+  const double min = real ? static_cast<double>(static_cast<float>(info.min)) : info.min;
+  const double max = real ? static_cast<double>(static_cast<float>(info.max)) : info.max;
+  if (value >= min && value <= max) return {};
   return invalid(std::string(info.group) + "." + std::string(info.name) + " is " + std::to_string(value) +
                  ", allowed is " + std::to_string(info.min) + " to " + std::to_string(info.max));
 }
@@ -46,6 +50,12 @@ Result<void> check_params(const Params& params) {
       case ParamType::uint32:
         if (Result<void> r = check_number(info, word); !r) return r;
         break;
+      case ParamType::uvec4:
+        for (std::size_t i = 0; i < 4; ++i) {
+          std::memcpy(&word, bytes + info.offset + i * sizeof word, sizeof word);
+          if (Result<void> r = check_number(info, word); !r) return r;
+        }
+        break;
       case ParamType::enumeration:
         if (word >= choice_count(info.choices)) {
           return invalid(std::string(info.group) + "." + std::string(info.name) + " is not one of " +
@@ -58,6 +68,18 @@ Result<void> check_params(const Params& params) {
     for (std::size_t i = 0; i < count; ++i) {
       if (Result<void> r = check_number(info, static_cast<double>(numbers[i])); !r) return r;
     }
+  }
+  const UVec4& size = params.tables.size;
+  if (size.y % 2 != 0) {
+    return invalid("tables.size has " + std::to_string(size.y) +
+                   " view angles, allowed is an even number: half of them lie on each side of the horizon");
+  }
+  // Above this no device of today holds a table; the product of four sizes could also overflow.
+  constexpr double kMostTexels = 134217728.0;
+  const double texels = static_cast<double>(size.x) * size.y * size.z * size.w;
+  if (texels > kMostTexels) {
+    return invalid("tables.size asks for " + std::to_string(texels * 24.0 / 1048576.0) +
+                   " MiB of tables, allowed is 3072 MiB");
   }
   return {};
 }
@@ -102,7 +124,13 @@ Result<void> check_frame(const FrameInputs& inputs, const EffectDesc& desc, cons
   if (!finite(sun) || (sun.x == 0.0F && sun.y == 0.0F && sun.z == 0.0F)) {
     return invalid("Sun::direction_to_sun is not a direction");
   }
-  if (!finite(inputs.sun.irradiance)) return invalid("Sun::irradiance is not finite");
+  const Vec3 irradiance = inputs.sun.irradiance;
+  if (!finite(irradiance) || irradiance.x < 0.0F || irradiance.y < 0.0F || irradiance.z < 0.0F) {
+    return invalid("Sun::irradiance must be finite and not negative");
+  }
+  if (!std::isfinite(inputs.sun.angular_radius_rad) || inputs.sun.angular_radius_rad < 0.0F) {
+    return invalid("Sun::angular_radius_rad must be finite and not negative");
+  }
   static_cast<void>(params);
   return {};
 }

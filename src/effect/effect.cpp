@@ -9,6 +9,7 @@
 
 #include "effect/frame_constants.hpp"
 #include "effect/medium.hpp"
+#include "effect/tables.hpp"
 #include "effect_shaders.hpp"
 #include "gpu/pipeline.hpp"
 #include "gpu/resource.hpp"
@@ -23,18 +24,9 @@ constexpr std::uint32_t kMaxTimedPasses = 16;
 // Storage buffers may be bound at multiples of this on every device (the largest minimum allowed).
 constexpr VkDeviceSize kBufferAlignment = 256;
 
-constexpr VkImageUsageFlags kTableUsage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
-constexpr VkExtent3D kSunLightExtent = {32, 256, 1};
-constexpr VkExtent3D kSkyLightExtent = {16, 64, 1};
-
-constexpr gpu::ImageDesc kSunTransmittance = {"sun_transmittance", VK_FORMAT_R16G16B16A16_SFLOAT,
-                                              kSunLightExtent, kTableUsage};
-constexpr gpu::ImageDesc kSkyIrradiance = {"sky_irradiance_table", VK_FORMAT_R16G16B16A16_SFLOAT,
-                                           kSkyLightExtent, kTableUsage};
 // Stands in for the shadow maps of a frame that has none; never read.
 constexpr gpu::ImageDesc kNoShadows = {"no_shadows", VK_FORMAT_D32_SFLOAT, {1, 1, 1},
                                        VK_IMAGE_USAGE_SAMPLED_BIT, 1, 1, true};
-constexpr gpu::ImageDesc kPersistentImages[] = {kSunTransmittance, kSkyIrradiance, kNoShadows};
 
 // A slot of the ring of constants: what one frame in flight reads.
 constexpr VkDeviceSize align(VkDeviceSize size) {
@@ -43,9 +35,6 @@ constexpr VkDeviceSize align(VkDeviceSize size) {
 constexpr VkDeviceSize kFrameBytes = align(sizeof(shared::FrameConstants));
 constexpr VkDeviceSize kMediumBytes = align(sizeof(shared::Medium));
 constexpr VkDeviceSize kSlotBytes = kFrameBytes + kMediumBytes;
-
-// The slices of the precomputation: one for the sun's light, one per column of the sky's.
-constexpr std::uint32_t kPrecomputeSlices = 1 + kSkyLightExtent.width;
 
 Result<void> check_desc(const DeviceInfo& info, const EffectDesc& desc) {
   const auto invalid = [](const char* text) { return Error{ErrorCode::invalid_argument, text}; };
@@ -73,11 +62,14 @@ Result<void> open_device(gpu::Device& device, const DeviceInfo& info) {
   return gpu::init_device(device, info.get_instance_proc_addr);
 }
 
-MemoryUsage plan_memory(const gpu::Device& device, const EffectDesc& desc) {
+MemoryUsage plan_memory(const gpu::Device& device, const EffectDesc& desc, const Params& params) {
   MemoryUsage usage;
-  for (const gpu::ImageDesc& image : kPersistentImages) usage.persistent += gpu::image_bytes(device, image);
-  // One slot more than frames in flight: tables are built from constants of their own.
-  usage.host = gpu::buffer_bytes(device, kSlotBytes * (desc.frames_in_flight + 1), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  usage.persistent = gpu::image_bytes(device, kNoShadows);
+  for (std::uint32_t i = 0; i < kTableCount; ++i) {
+    usage.persistent += gpu::image_bytes(device, table_desc(static_cast<TableId>(i), params));
+  }
+  usage.transient = table_scratch_bytes(device, params);
+  usage.host = gpu::buffer_bytes(device, kSlotBytes * desc.frames_in_flight, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
   return usage;
 }
 
@@ -90,13 +82,9 @@ struct Effect::State {
   EffectDesc desc;
   Params params;
   gpu::Device device;
-  MemoryUsage memory;
 
   gpu::Pipeline march_per_pixel;
-  gpu::Pipeline sun_light;
-  gpu::Pipeline sky_light;
-  gpu::Image sun_transmittance;
-  gpu::Image sky_irradiance;
+  TableBuilder tables;
   gpu::Image no_shadows;
   gpu::Buffer constants;
   gpu::Handle<VkSampler> nearest;
@@ -104,7 +92,6 @@ struct Effect::State {
   gpu::Timer timer;
   std::array<PassTiming, kMaxTimedPasses> timings = {};
 
-  std::uint32_t slices_done = 0;
   bool images_ready = false;  // the first recording moves them out of the undefined layout
 
   [[nodiscard]] std::uint32_t slot(std::uint64_t frame_index) const {
@@ -125,11 +112,13 @@ Effect::Effect(Effect&&) noexcept = default;
 Effect& Effect::operator=(Effect&&) noexcept = default;
 Effect::~Effect() = default;
 
-Result<MemoryUsage> query_memory(const DeviceInfo& info, const EffectDesc& desc) {
+Result<MemoryUsage> query_memory(const DeviceInfo& info, const EffectDesc& desc, const Params& params) {
   TYNDALL_TRY(check_desc(info, desc));
+  TYNDALL_TRY(check_params(params));
   gpu::Device device;
   TYNDALL_TRY(open_device(device, info));
-  return plan_memory(device, desc);
+  TYNDALL_TRY(check_table_size(device, params));
+  return plan_memory(device, desc, params);
 }
 
 Result<Effect> Effect::create(const DeviceInfo& info, const EffectDesc& desc, const Params& params) {
@@ -149,14 +138,9 @@ Result<void> Effect::State::create_objects() {
                                                                          : shaders::march_per_pixel_comp_rgba16f;
   TYNDALL_ASSIGN(march_per_pixel, gpu::create_compute_pipeline(device, march));
   march_per_pixel.name = "march_per_pixel";
-  TYNDALL_ASSIGN(sun_light, gpu::create_compute_pipeline(device, shaders::sun_light_comp));
-  sun_light.name = "sun_light";
-  TYNDALL_ASSIGN(sky_light, gpu::create_compute_pipeline(device, shaders::sky_light_comp));
-  sky_light.name = "sky_light";
-  TYNDALL_ASSIGN(sun_transmittance, gpu::create_image(device, kSunTransmittance));
-  TYNDALL_ASSIGN(sky_irradiance, gpu::create_image(device, kSkyIrradiance));
+  TYNDALL_TRY(tables.create(device, desc.frames_in_flight, desc.timings, params));
   TYNDALL_ASSIGN(no_shadows, gpu::create_image(device, kNoShadows));
-  TYNDALL_ASSIGN(constants, gpu::create_buffer(device, "constants", kSlotBytes * (desc.frames_in_flight + 1),
+  TYNDALL_ASSIGN(constants, gpu::create_buffer(device, "constants", kSlotBytes * desc.frames_in_flight,
                                                VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
   TYNDALL_ASSIGN(nearest, gpu::create_sampler(device, {.filter = VK_FILTER_NEAREST}));
   gpu::SamplerDesc compare;
@@ -170,8 +154,6 @@ Result<void> Effect::State::create_objects() {
   if (desc.timings) {
     TYNDALL_ASSIGN(timer, gpu::Timer::create(device, desc.frames_in_flight, kMaxTimedPasses));
   }
-  memory.persistent = sun_transmittance.bytes + sky_irradiance.bytes + no_shadows.bytes;
-  memory.host = constants.bytes;
   return {};
 }
 
@@ -190,49 +172,24 @@ Result<void> Effect::State::run(VkCommandBuffer cmd, const gpu::Pipeline& pipeli
 
 Result<void> Effect::set_params(const Params& params) {
   TYNDALL_TRY(check_params(params));
-  const std::uint32_t stale = affected(state_->params, params);
+  TYNDALL_TRY(state_->tables.set_params(params));
   state_->params = params;
-  if ((stale & (1U << static_cast<std::uint32_t>(Affects::Tables))) != 0) state_->slices_done = 0;
   return {};
 }
 
 const Params& Effect::params() const { return state_->params; }
 
-Progress Effect::precompute_progress() const { return {state_->slices_done, kPrecomputeSlices}; }
+Progress Effect::precompute_progress() const { return state_->tables.progress(); }
 
 void Effect::State::prepare_images(VkCommandBuffer cmd) {
+  tables.begin_frame(cmd);
   if (images_ready) return;
-  gpu::transition(device, cmd, sun_transmittance, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
-  gpu::transition(device, cmd, sky_irradiance, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
   gpu::transition(device, cmd, no_shadows, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
   images_ready = true;
 }
 
 Result<Progress> Effect::record_precompute(VkCommandBuffer cmd, std::uint32_t budget) {
-  State& s = *state_;
-  s.prepare_images(cmd);
-  const VkDeviceSize offset = kSlotBytes * s.desc.frames_in_flight + kFrameBytes;
-  if (s.slices_done == 0) {
-    const shared::Medium medium = medium_from_params(s.params);
-    std::memcpy(s.mapped(offset), &medium, sizeof medium);
-  }
-  const gpu::NamedResource medium_block =
-      gpu::named_buffer("medium_block", s.constants.buffer.get(), offset, sizeof(shared::Medium));
-  if (s.slices_done == 0 && budget > 0) {
-    const gpu::NamedResource resources[] = {medium_block,
-                                            gpu::named_image("sun_transmittance", s.sun_transmittance.view.get())};
-    TYNDALL_TRY(s.run(cmd, s.sun_light, resources, nullptr, kSunLightExtent));
-    s.slices_done = 1;
-    --budget;
-  }
-  if (s.slices_done < kPrecomputeSlices && budget > 0) {
-    const gpu::NamedResource resources[] = {medium_block,
-                                            gpu::named_image("sky_irradiance_table", s.sky_irradiance.view.get())};
-    const std::uint32_t first = s.slices_done - 1;
-    const std::uint32_t count = std::min(budget, kSkyLightExtent.width - first);
-    TYNDALL_TRY(s.run(cmd, s.sky_light, resources, &first, {count, kSkyLightExtent.height, 1}));
-    s.slices_done += count;
-  }
+  TYNDALL_TRY(state_->tables.record(cmd, budget));
   return precompute_progress();
 }
 
@@ -268,10 +225,25 @@ Result<void> Effect::record(VkCommandBuffer cmd, const FrameInputs& inputs) {
 }
 
 LightTables Effect::light_tables() const {
-  return {state_->sun_transmittance.view.get(), state_->sky_irradiance.view.get()};
+  const TableBuilder& tables = state_->tables;
+  return {tables.table(TableId::sun_transmittance).view.get(), tables.table(TableId::sky_irradiance).view.get()};
 }
 
-MemoryUsage Effect::memory() const { return state_->memory; }
+ScatteringTables Effect::scattering_tables() const {
+  const TableBuilder& tables = state_->tables;
+  const auto table = [&](TableId id) -> Table {
+    const gpu::Image& image = tables.table(id);
+    return {image.image.get(), image.view.get(), image.desc.extent};
+  };
+  return {table(TableId::single_rayleigh), table(TableId::single_mie), table(TableId::high_orders)};
+}
+
+std::span<const PassTiming> Effect::precompute_timings() { return state_->tables.stage_times(); }
+
+MemoryUsage Effect::memory() const {
+  const State& s = *state_;
+  return {s.tables.persistent_bytes() + s.no_shadows.bytes, s.tables.transient_bytes(), s.constants.bytes};
+}
 
 std::span<const PassTiming> Effect::timings(std::uint64_t frame_index) {
   State& s = *state_;

@@ -15,8 +15,10 @@ using mat4 = Mat4;
 #include "shared/frame_constants.h"
 #include "shared/medium.h"
 #include "shared/probe.h"
+#include "shared/tables.h"
 
 static_assert(sizeof(Medium) == 96, "the layout of Medium must agree with std430");
+static_assert(sizeof(RayNode) == 32 && sizeof(TableShape) == 32, "the layouts of tables must agree with std430");
 static_assert(sizeof(ProbeRay) == 32 && sizeof(ProbeResult) == 32,
               "the layouts of probes must agree with std430");
 

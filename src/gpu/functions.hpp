@@ -37,6 +37,7 @@ namespace tyndall::gpu {
   X(CmdResetQueryPool)               \
   X(CmdSetScissor)                   \
   X(CmdSetViewport)                  \
+  X(CmdUpdateBuffer)                 \
   X(CmdWriteTimestamp)               \
   X(CreateBuffer)                    \
   X(CreateCommandPool)               \

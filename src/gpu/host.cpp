@@ -143,6 +143,7 @@ VkBool32 VKAPI_PTR Host::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT /*sev
                                     const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
   auto* host = static_cast<Host*>(user);
   if (++host->validation_count_ <= 8) host->validation_text_ += std::string(data->pMessage) + "\n";
+  if (host->validation_log_ != nullptr) host->validation_log_->emplace_back(data->pMessage);
   return VK_FALSE;
 }
 
@@ -253,6 +254,7 @@ Result<void> Host::create_device(const std::string& wanted) {
 
 Result<std::unique_ptr<Host>> Host::create(const HostDesc& desc) {
   std::unique_ptr<Host> host(new Host());
+  host->validation_log_ = desc.validation_log;
   TYNDALL_TRY(host->create_instance(desc.validation));
   TYNDALL_TRY(host->create_device(desc.device));
   return host;

@@ -26,6 +26,9 @@ struct DeviceRow {
 struct HostDesc {
   std::string device;       // index, or part of a name (case does not matter); empty: the preferred one
   bool validation = false;  // with synchronisation checks; fails where the layer is not installed
+  // Gets every validation message, those about what is left when the device is destroyed included; outlives
+  // the Host.
+  std::vector<std::string>* validation_log = nullptr;
 };
 
 // Instance, device, one queue with graphics and compute, and the helpers to use it synchronously.
@@ -69,6 +72,7 @@ class Host {
   Handle<VkFence> fence_;
   std::atomic<std::uint32_t> validation_count_ = 0;
   std::string validation_text_;
+  std::vector<std::string>* validation_log_ = nullptr;
 };
 
 // Copies bytes to a device-local buffer, or into every layer of an image that is then left in `layout`.

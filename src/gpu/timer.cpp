@@ -42,7 +42,8 @@ void settle(const Device& device, VkCommandBuffer cmd) {
 
 void Timer::begin(VkCommandBuffer cmd, const char* name) {
   std::vector<const char*>& names = names_[slot_];
-  if (names.size() >= scopes_) return;
+  open_ = names.size() < scopes_;
+  if (!open_) return;
   settle(*device_, cmd);
   const auto query = static_cast<std::uint32_t>((slot_ * scopes_ + names.size()) * 2);
   device_->vk.CmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, pool_.get(), query);
@@ -51,6 +52,8 @@ void Timer::begin(VkCommandBuffer cmd, const char* name) {
 }
 
 void Timer::end(VkCommandBuffer cmd) {
+  if (!open_) return;
+  open_ = false;
   settle(*device_, cmd);
   const auto query = static_cast<std::uint32_t>((slot_ * scopes_ + names_[slot_].size() - 1) * 2 + 1);
   device_->vk.CmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, pool_.get(), query);

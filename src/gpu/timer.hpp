@@ -21,6 +21,7 @@ class Timer {
   static Result<Timer> create(const Device& device, std::uint32_t slots, std::uint32_t scopes);
 
   void begin_frame(VkCommandBuffer cmd, std::uint32_t slot);
+  // Passes beyond `scopes` are not timed.
   void begin(VkCommandBuffer cmd, const char* name);
   void end(VkCommandBuffer cmd);
 
@@ -32,6 +33,7 @@ class Timer {
   Handle<VkQueryPool> pool_;
   std::uint32_t scopes_ = 0;
   std::uint32_t slot_ = 0;
+  bool open_ = false;  // between begin and end of a pass that is timed
   std::vector<std::vector<const char*>> names_;
   std::vector<TimedScope> results_;
   std::vector<std::uint64_t> ticks_;

@@ -11,29 +11,40 @@
 #undef TYNDALL_LIB_OPTICAL_DEPTH
 #undef TYNDALL_LIB_SINGLE_SCATTERING
 #undef TYNDALL_LIB_SKY_IRRADIANCE
+#undef TYNDALL_LIB_TABLE_MAPPING
+#undef TYNDALL_LIB_TABLE_VALUES
 #undef TYNDALL_SHARED_MEDIUM
+#undef TYNDALL_SHARED_TABLES
 
 using glm::abs;
 using glm::acos;
 using glm::asin;
+using glm::atan;
 using glm::clamp;
 using glm::cos;
 using glm::dot;
 using glm::exp;
+using glm::log;
 using glm::max;
 using glm::min;
 using glm::mix;
 using glm::normalize;
+using glm::pow;
+using glm::sign;
 using glm::sin;
 using glm::sqrt;
+using glm::tan;
 
 #include "shared/medium.h"
+#include "shared/tables.h"
 
 // Internal linkage: a header of plain functions, of which each user takes some.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
 namespace {
 #include "lib/sky_irradiance.glsl"
+#include "lib/table_mapping.glsl"
+#include "lib/table_values.glsl"
 }  // namespace
 #pragma GCC diagnostic pop
 

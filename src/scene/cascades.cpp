@@ -130,15 +130,18 @@ std::vector<CascadeFit> fit_cascades(const View& view, const glm::dvec3& directi
     double caster_reach = 0.0;
     const Bounds bounds = shell_bounds(sphere_centre, sphere_radius, light_from_world, direction_to_sun, ground,
                                        caster_reach);
-    // Width from the sphere alone, so that it is constant; height from the cut, rounded more coarsely.
-    // A margin of a few texels keeps filters inside.
+    // Across, what is seen of the shell: both the shell's bounds and the sphere's. Rounded up, the height more
+    // coarsely because it changes with the camera's. A margin of a few texels keeps filters inside.
+    const glm::dvec3 sphere_light = light_from_world * sphere_centre;
+    const glm::dvec3 low = glm::max(bounds.min, sphere_light - sphere_radius);
+    const glm::dvec3 high = glm::max(glm::min(bounds.max, sphere_light + sphere_radius), low);
     const double margin = 1.0 + 8.0 / shadows.resolution;
-    const glm::dvec3 half = 0.5 * (bounds.max - bounds.min);
+    const glm::dvec3 half = 0.5 * (high - low);
     fit.half_extent.x = round_up(std::max(half.x, 1.0) * margin, 8.0);
-    fit.half_extent.y = round_up(std::max(std::min(half.y, sphere_radius), 1.0) * margin, 4.0);
+    fit.half_extent.y = round_up(std::max(half.y, 1.0) * margin, 4.0);
     const glm::dvec2 texel = 2.0 * glm::dvec2(fit.half_extent) / static_cast<double>(shadows.resolution);
     fit.texel_m = std::max(texel.x, texel.y);
-    const glm::dvec3 middle = 0.5 * (bounds.max + bounds.min);
+    const glm::dvec3 middle = 0.5 * (high + low);
     fit.centre.x = std::round(middle.x / texel.x) * texel.x;
     fit.centre.y = std::round(middle.y / texel.y) * texel.y;
     const double slack = 0.01 * (bounds.max.z - bounds.min.z) + 10.0;

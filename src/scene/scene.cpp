@@ -204,7 +204,8 @@ Result<void> Scene::render(double seconds, bool floor) {
   for (std::uint32_t i = 0; i < samples; ++i) {
     // Centred offsets of up to half a pixel; a single picture stays where it is.
     const glm::dvec2 offset = samples > 1 ? glm::dvec2(halton(i + 1, 2) - 0.5, halton(i + 1, 3) - 0.5) : glm::dvec2(0.0);
-    TYNDALL_TRY(render_sample(seconds, 2.0 * offset / glm::dvec2(desc_.extent.width, desc_.extent.height), floor));
+    const glm::dvec2 jitter = 2.0 * offset / glm::dvec2(desc_.extent.width, desc_.extent.height);
+    TYNDALL_TRY(render_sample(seconds, jitter, i == 0, floor));
     if (samples == 1) break;
     TYNDALL_TRY(accumulate(output_, radiance_sum_));
     TYNDALL_TRY(accumulate(display_, display_sum_));
@@ -230,7 +231,7 @@ Result<image::Image> Scene::average(const gpu::Image& image, const image::Image&
   return out;
 }
 
-Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool floor) {
+Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool first, bool floor) {
   const double radius = params_.planet.radius_m;
   const double aspect = static_cast<double>(desc_.extent.width) / desc_.extent.height;
   view_ = view_from_params(scene_.camera, aspect, radius);
@@ -274,7 +275,7 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
       gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
                    VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT);
     }
-    TYNDALL_TRY(draw_shadows(cmd));
+    if (first) TYNDALL_TRY(draw_shadows(cmd));  // jitter moves the picture, not the cascades
     TYNDALL_TRY(draw_view(cmd));
     TYNDALL_TRY(run_effect(cmd));
     if (floor) TYNDALL_TRY(run_floor(cmd));

@@ -53,7 +53,7 @@ class Scene {
   Result<void> draw_view(VkCommandBuffer cmd);
   Result<void> run_effect(VkCommandBuffer cmd);
   Result<void> run_floor(VkCommandBuffer cmd);
-  Result<void> render_sample(double seconds, const glm::dvec2& jitter, bool floor);
+  Result<void> render_sample(double seconds, const glm::dvec2& jitter, bool first, bool floor);
   Result<void> accumulate(const gpu::Image& image, image::Image& sum);
   Result<image::Image> average(const gpu::Image& image, const image::Image& sum);
   Result<image::Image> read_back(const gpu::Image& image);

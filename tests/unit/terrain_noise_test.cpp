@@ -220,7 +220,7 @@ TEST(TerrainMaterials, AlbedosArePhysicalAndFollowAltitude) {
         for (const double steep : {0.0, 0.5, 1.5}) {
           const terrain64::vec3 normal = glm::normalize(glm::dvec3(-steep, 1.0, 0.3 * steep));
           const terrain64::TerrainMaterial m =
-              terrain64::terrain_material(units, altitude_m, normal, footprint_m, kSeed);
+              terrain64::terrain_material(units, altitude_m, normal, 0.0, footprint_m, kSeed);
           for (int c = 0; c < 3; ++c) {
             ASSERT_GT(m.albedo[c], 0.0);
             ASSERT_LT(m.albedo[c], 0.95);
@@ -231,9 +231,9 @@ TEST(TerrainMaterials, AlbedosArePhysicalAndFollowAltitude) {
       }
     }
     const terrain64::vec3 up(0.0, 1.0, 0.0);
-    valley += terrain64::terrain_material(units, 800.0, up, 20.0, kSeed).albedo.y / kPlaces;
-    summit += terrain64::terrain_material(units, 4200.0, up, 20.0, kSeed).albedo.y / kPlaces;
-    face += terrain64::terrain_material(units, 2400.0, glm::normalize(glm::dvec3(1.5, 1.0, 0.0)), 20.0, kSeed)
+    valley += terrain64::terrain_material(units, 800.0, up, 0.0, 20.0, kSeed).albedo.y / kPlaces;
+    summit += terrain64::terrain_material(units, 4200.0, up, 0.0, 20.0, kSeed).albedo.y / kPlaces;
+    face += terrain64::terrain_material(units, 2400.0, glm::normalize(glm::dvec3(1.5, 1.0, 0.0)), 0.0, 20.0, kSeed)
                 .albedo.y /
             kPlaces;
   }
@@ -259,8 +259,8 @@ TEST(TerrainMaterials, DistanceAveragesRatherThanSparkles) {
       for (int a = 0; a < kSide; ++a) {
         const terrain64::ivec2 units = {std::lround((x + 20.0 * a) * 64.0),
                                         std::lround((z + 20.0 * b) * 64.0)};
-        near += terrain64::terrain_material(units, 1500.0, normal, 2.0, kSeed).albedo.y / (kSide * kSide);
-        far += terrain64::terrain_material(units, 1500.0, normal, 200.0, kSeed).albedo.y / (kSide * kSide);
+        near += terrain64::terrain_material(units, 1500.0, normal, 0.0, 2.0, kSeed).albedo.y / (kSide * kSide);
+        far += terrain64::terrain_material(units, 1500.0, normal, 0.0, 200.0, kSeed).albedo.y / (kSide * kSide);
       }
     }
     worst = std::max(worst, std::abs(near - far));

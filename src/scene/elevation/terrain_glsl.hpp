@@ -24,6 +24,7 @@ using glm::clamp;
 using glm::dot;
 using glm::floor;
 using glm::inversesqrt;
+using glm::length;
 using glm::log2;
 using glm::max;
 using glm::min;

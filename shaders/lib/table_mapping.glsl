@@ -1,0 +1,175 @@
+// Where a ray stands in the scattering tables, and back. Each of the four axes has a pair of functions between
+// its quantity and a coordinate in [0; 1] over the texels; three parameterisations of each:
+//   yusov    - Yusov, "High Performance Outdoor Light Scattering Using Epipolar Sampling" (2013), section 2:
+//              square root of altitude, fifth root of the distance from the horizon in cosine, Bruneton's
+//              arctangent for the sun, power 3/2 of the angle between view and sun;
+//   bruneton - Bruneton and Neyret, "Precomputed Atmospheric Scattering" (2008), section 4: distances to the
+//              horizon and to the boundary, an exponential for the sun, linear in the cosine to the sun;
+//   linear   - in altitude and the three cosines.
+// In the first two the view axis has one half for rays that end on the ground and one for those that leave the
+// air (`below` tells which), and filtering never crosses the horizon.
+#ifndef TYNDALL_LIB_TABLE_MAPPING
+#define TYNDALL_LIB_TABLE_MAPPING
+
+#include "lib/geometry.glsl"
+#include "shared/medium.h"
+#include "shared/tables.h"
+
+// Altitudes nearer to the ground or the top than this are looked up as if they were this far [m].
+const float kTableMargin = 16.0;
+// The yusov mapping of the sun: lowest cosine, and its shape.
+const float kLowestSun = -0.1975;
+const float kTanSunShape = 5.3496235;  // tan(1.26 * 1.1)
+
+// A value x in [0; 1] that is to lie on texel centres at 0 and 1, as a texture coordinate over n texels.
+float texel_from_unit(float x, float n) { return (x * (n - 1.0) + 0.5) / n; }
+float unit_from_texel(float c, float n) { return clamp((c * n - 0.5) / (n - 1.0), 0.0, 1.0); }
+
+float altitude_margin(IN(Medium) m) { return min(kTableMargin, 0.01 * m.atmosphere_height_m); }
+
+// The altitude that stands for h in the tables.
+float table_altitude(IN(Medium) m, float h) {
+  float margin = altitude_margin(m);
+  return clamp(h, margin, m.atmosphere_height_m - margin);
+}
+
+float u_from_altitude(IN(TableShape) t, IN(Medium) m, float h) {
+  float margin = altitude_margin(m);
+  float height = m.atmosphere_height_m;
+  float x = clamp((h - margin) / (height - 2.0 * margin), 0.0, 1.0);
+  if (t.parameterization == 0u) {
+    x = sqrt(x);
+  } else if (t.parameterization == 1u) {
+    // Distance to the horizon: sqrt(r^2 - R^2), relative to that of the top.
+    float high = height - margin;
+    float at = table_altitude(m, h);
+    float R = m.planet_radius_m;
+    x = sqrt(at * (2.0 * R + at) / (high * (2.0 * R + high)));
+  }
+  return texel_from_unit(x, float(t.altitudes));
+}
+
+float altitude_from_u(IN(TableShape) t, IN(Medium) m, float u) {
+  float margin = altitude_margin(m);
+  float height = m.atmosphere_height_m;
+  float x = unit_from_texel(u, float(t.altitudes));
+  if (t.parameterization == 1u) {
+    float high = height - margin;
+    float R = m.planet_radius_m;
+    float squared = x * x * high * (2.0 * R + high);
+    return clamp(squared / (sqrt(R * R + squared) + R), margin, high);
+  }
+  if (t.parameterization == 0u) {
+    x = x * x;
+  }
+  return margin + x * (height - 2.0 * margin);
+}
+
+// Coordinate within one half of the view axis of n texels: x in [0; 1] counts from the horizon.
+float v_from_half(bool below, float x, float n) {
+  float v = (0.5 + x * (0.5 * n - 1.0)) / n;
+  return below ? v : 0.5 + v;
+}
+
+// h is an altitude as from table_altitude.
+float v_from_view(IN(TableShape) t, IN(Medium) m, float h, float mu, bool below) {
+  float n = float(t.views);
+  if (t.parameterization == 2u) {
+    return texel_from_unit(0.5 * mu + 0.5, n);
+  }
+  float R = m.planet_radius_m;
+  float horizon = horizon_cos(h, R);
+  if (t.parameterization == 0u) {
+    float x = below ? (horizon - mu) / (horizon + 1.0) : (mu - horizon) / (1.0 - horizon);
+    return v_from_half(below, pow(clamp(x, 0.0, 1.0), 0.2), n);
+  }
+  float rho = sqrt(h * (2.0 * R + h));  // distance to the horizon
+  float top = m.atmosphere_height_m;
+  float near;
+  float far;
+  if (below) {
+    float d = -(R + h) * mu;
+    if (shell_intersections(h, mu, 0.0, R, near, far)) {
+      d = near;
+    }
+    // Texel 0 straight down, the last one at the horizon: counted from the horizon as in the other half.
+    return v_from_half(true, clamp((rho - d) / (rho - h), 0.0, 1.0), n);
+  }
+  float longest = rho + sqrt(top * (2.0 * R + top));
+  float d = distance_to_top(h, mu, top, R);
+  return v_from_half(false, clamp((longest - d) / (longest - (top - h)), 0.0, 1.0), n);
+}
+
+float view_from_v(IN(TableShape) t, IN(Medium) m, float h, float v, OUT(bool) below) {
+  float n = float(t.views);
+  float R = m.planet_radius_m;
+  if (t.parameterization == 2u) {
+    float mu = 2.0 * unit_from_texel(v, n) - 1.0;
+    below = ray_hits_ground(h, mu, R);
+    return mu;
+  }
+  below = v < 0.5;
+  float x = clamp(((below ? v : v - 0.5) * n - 0.5) / (0.5 * n - 1.0), 0.0, 1.0);
+  float horizon = horizon_cos(h, R);
+  if (t.parameterization == 0u) {
+    float x2 = x * x;
+    float fifth = x2 * x2 * x;
+    return below ? horizon - fifth * (horizon + 1.0) : horizon + fifth * (1.0 - horizon);
+  }
+  float rho = sqrt(h * (2.0 * R + h));
+  float top = m.atmosphere_height_m;
+  // Cosine of the ray that reaches the shell of altitude s at distance d: r_s^2 = r^2 + d^2 + 2 r d mu.
+  float shell = below ? 0.0 : top;
+  float longest = below ? rho : rho + sqrt(top * (2.0 * R + top));
+  float shortest = below ? h : top - h;
+  float d = max(longest - x * (longest - shortest), 1.0e-3);
+  float mu = ((shell - h) * (2.0 * R + shell + h) - d * d) / (2.0 * (R + h) * d);
+  return below ? clamp(mu, -1.0, horizon) : clamp(mu, horizon, 1.0);
+}
+
+float w_from_sun(IN(TableShape) t, float mu_s) {
+  float x = 0.5 * mu_s + 0.5;
+  if (t.parameterization == 0u) {
+    x = 0.5 * (atan(max(mu_s, kLowestSun) * kTanSunShape) / 1.1 + (1.0 - 0.26));
+  } else if (t.parameterization == 1u) {
+    x = (1.0 - exp(-3.0 * max(mu_s, -0.2) - 0.6)) / (1.0 - exp(-3.6));
+  }
+  return texel_from_unit(clamp(x, 0.0, 1.0), float(t.suns));
+}
+
+float sun_from_w(IN(TableShape) t, float w) {
+  float x = unit_from_texel(w, float(t.suns));
+  if (t.parameterization == 0u) {
+    return clamp(tan((2.0 * x - 1.0 + 0.26) * 1.1) / kTanSunShape, kLowestSun, 1.0);
+  }
+  if (t.parameterization == 1u) {
+    return clamp(-(log(1.0 - x * (1.0 - exp(-3.6))) + 0.6) / 3.0, -0.2, 1.0);
+  }
+  return 2.0 * x - 1.0;
+}
+
+float q_from_angle(IN(TableShape) t, float nu) {
+  float x = 0.5 * nu + 0.5;
+  if (t.parameterization == 0u) {
+    float s = 2.0 * acos(clamp(nu, -1.0, 1.0)) * 0.318309886183791 - 1.0;
+    x = 0.5 + 0.5 * sign(s) * abs(s) * sqrt(abs(s));
+  }
+  return texel_from_unit(clamp(x, 0.0, 1.0), float(t.angles));
+}
+
+float angle_from_q(IN(TableShape) t, float q) {
+  float s = 2.0 * unit_from_texel(q, float(t.angles)) - 1.0;
+  if (t.parameterization == 0u) {
+    float a = 0.5 + 0.5 * sign(s) * pow(abs(s), 0.66666666666666667);
+    return cos(a * 3.14159265358979);
+  }
+  return s;
+}
+
+// The cosine to the sun that view and sun zenith angles allow, nearest to nu.
+float possible_angle(float mu, float mu_s, float nu) {
+  float spread = sqrt(max((1.0 - mu) * (1.0 + mu) * (1.0 - mu_s) * (1.0 + mu_s), 0.0));
+  return clamp(nu, mu * mu_s - spread, mu * mu_s + spread);
+}
+
+#endif

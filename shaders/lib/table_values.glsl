@@ -1,0 +1,73 @@
+// What a texel of the scattering tables holds. In words: the mean of the light along the ray, over the share
+// that each stretch of it sends to the eye. As numbers: the fourth root of
+//   single, per species:  integral of (density x transmittance x sun's transmittance) / guide
+//   higher orders:        radiance of orders >= 2 / guide
+// where the guide is what a medium mixed evenly along the ray would give under a sun of 1. It is known in
+// closed form, follows every abrupt change at the horizon and near the boundaries, and leaves numbers in
+// [0; ~1] that vary slowly. What remains falls like an exponential into twilight; linear interpolation of its
+// fourth root errs a quarter as much as of itself, and half precision covers fifteen decades.
+#ifndef TYNDALL_LIB_TABLE_VALUES
+#define TYNDALL_LIB_TABLE_VALUES
+
+#include "lib/optical_depth.glsl"
+
+struct Guide {
+  vec3 rayleigh;  // [m]
+  vec3 mie;       // [m]
+  vec3 high;      // sr times a radiance / E0
+};
+
+// (1 - exp(-tau)) / tau: the mean transmittance within a slab of optical depth tau.
+float mean_transmittance(float tau) {
+  return tau < 1.0e-2 ? 1.0 - tau * (0.5 - tau * 0.166666666666667) : (1.0 - exp(-tau)) / tau;
+}
+
+// For the column of a whole ray.
+Guide guide_for_column(IN(Medium) m, vec3 column) {
+  vec3 tau = optical_depth(m, column);
+  vec3 mean = vec3(mean_transmittance(tau.x), mean_transmittance(tau.y), mean_transmittance(tau.z));
+  Guide g;
+  g.rayleigh = max(column.x, 1.0e-30) * mean;
+  g.mie = max(column.y, 1.0e-30) * mean;
+  g.high = m.rayleigh_scattering * g.rayleigh + m.mie_scattering * g.mie;
+  return g;
+}
+
+vec3 texel_from_value(vec3 value) { return sqrt(sqrt(max(value, vec3(0.0)))); }
+vec3 value_from_texel(vec3 texel) {
+  vec3 squared = texel * texel;
+  return squared * squared;
+}
+
+// Column towards the sun from altitude h where the ray to it has q = r cos(zenith) [m]; `hidden` if the
+// planet is in the way. What lies above the top is left in for the exponential species: a 1e-4th of them.
+vec3 column_to_sun(IN(Medium) m, float h, float q, OUT(bool) hidden) {
+  float R = m.planet_radius_m;
+  float top = m.atmosphere_height_m;
+  float out_q = abs(q);
+  hidden = false;
+  vec3 outward = vec3(exponential_column(h, out_q, m.rayleigh_scale_height_m, R),
+                      exponential_column(h, out_q, m.mie_scale_height_m, R), ozone_column(m, h, out_q, top));
+  if (q >= 0.0) {
+    return outward;
+  }
+  float r = R + h;
+  float perigee = h - q * q / (r + sqrt(max((r - out_q) * (r + out_q), 0.0)));
+  hidden = perigee < 0.0;
+  if (hidden) {
+    return outward;
+  }
+  vec3 across = vec3(exponential_column(perigee, 0.0, m.rayleigh_scale_height_m, R),
+                     exponential_column(perigee, 0.0, m.mie_scale_height_m, R),
+                     ozone_column(m, perigee, 0.0, top));
+  return 2.0 * across - outward;
+}
+
+// Transmittance towards the sun, 0 where the planet hides it.
+vec3 sun_transmittance_at(IN(Medium) m, float h, float q) {
+  bool hidden;
+  vec3 column = column_to_sun(m, h, q, hidden);
+  return hidden ? vec3(0.0) : transmittance(m, column);
+}
+
+#endif

@@ -1,0 +1,64 @@
+// The grids on which the orders of scattering are solved, and the look-up of the light that the air scatters
+// (the source function) at any point and direction. Altitudes are spaced by their square root, suns densest
+// near the horizon, source directions evenly in zenith angle and in azimuth from the sun's plane: all smooth
+// there, at the zenith and at the sun's own too.
+#ifndef TYNDALL_GATHER_GRID_GLSL
+#define TYNDALL_GATHER_GRID_GLSL
+
+#include "lib/geometry.glsl"
+#include "shared/medium.h"
+#include "shared/tables.h"
+
+const float kPi = 3.14159265358979;
+const float kSunKnee = 0.2;  // the sun's cosine at which the spacing has quadrupled
+
+float gather_altitude(Medium m, uint i) {
+  float x = float(i) / float(kGatherAltitudes - 1u);
+  return x * x * m.atmosphere_height_m;
+}
+float gather_altitude_index(Medium m, float h) {
+  return sqrt(clamp(h / m.atmosphere_height_m, 0.0, 1.0)) * float(kGatherAltitudes - 1u);
+}
+
+// The lowest sun of the grid: some way below the horizon of the top of the air, where it lights nothing.
+float lowest_gather_sun(Medium m) {
+  return max(1.6 * horizon_cos(m.atmosphere_height_m, m.planet_radius_m), -1.0);
+}
+float gather_sun(Medium m, uint i) {
+  float low = lowest_gather_sun(m);
+  float from = low / (kSunKnee - low);
+  float to = 1.0 / (kSunKnee + 1.0);
+  float s = mix(from, to, float(i) / float(kGatherSuns - 1u));
+  return clamp(kSunKnee * s / (1.0 - abs(s)), -1.0, 1.0);
+}
+float gather_sun_index(Medium m, float mu_s) {
+  float low = lowest_gather_sun(m);
+  float from = low / (kSunKnee - low);
+  float to = 1.0 / (kSunKnee + 1.0);
+  float s = mu_s / (kSunKnee + abs(mu_s));
+  return clamp((s - from) / (to - from), 0.0, 1.0) * float(kGatherSuns - 1u);
+}
+
+// Cosine of a direction of incident light, from a node in [0; 1] of one side of the horizon: in proportion to
+// the angle, so that the aureole of a sun at any height falls between several nodes; and what the weight of the
+// node is to be multiplied by.
+float gather_angle_span(float horizon, bool below) { return below ? kPi - acos(horizon) : acos(horizon); }
+float gather_zenith(float horizon, float node, bool below) {
+  float offset = node * gather_angle_span(horizon, below);
+  return cos(below ? acos(horizon) + offset : acos(horizon) - offset);
+}
+float gather_zenith_stretch(float horizon, float node, bool below) {
+  float mu = gather_zenith(horizon, node, below);
+  return gather_angle_span(horizon, below) * sqrt(max((1.0 - mu) * (1.0 + mu), 0.0));
+}
+float gather_azimuth(uint k) { return (float(k) + 0.5) * kPi / float(kGatherAzimuths); }
+
+// Index of incident light. Sun-minor: neighbouring invocations treat neighbouring suns.
+uint gather_index(uint altitude, uint zenith, uint azimuth, uint sun) {
+  return ((altitude * kGatherZeniths + zenith) * kGatherAzimuths + azimuth) * kGatherSuns + sun;
+}
+uint source_index(uint altitude, uint zenith, uint azimuth, uint sun) {
+  return ((altitude * kSourceZeniths + zenith) * kSourceAzimuths + azimuth) * kGatherSuns + sun;
+}
+
+#endif

@@ -1,0 +1,61 @@
+// The integration along a ray that starts at altitude h: panels of equal effort, four Gauss-Legendre nodes
+// each. Nodes depend on altitude and view angle only, hence serve every position of the sun. Of each ray there
+// are kSingleNodes for light scattered once, kHighNodes for the smoother higher orders, and the ray's end.
+#ifndef TYNDALL_RAY_NODES_GLSL
+#define TYNDALL_RAY_NODES_GLSL
+
+#include "lib/optical_depth.glsl"
+#include "shared/tables.h"
+
+const uint kFirstHighNode = kSingleNodes;
+const uint kEndNode = kSingleNodes + kHighNodes;
+const uint kNodeStride = kEndNode + 1u;
+
+// Of the search for the panels: steps along the ray, and the distance over which sunlight near the terminator
+// changes, as a fraction of sqrt(2 r H).
+const int kWalkSteps = 192;
+
+// Distance along a ray of length `end` for s in [0; 1], dense at both ends.
+float walk_distance(float end, float s) { return end * s * s * (3.0 - 2.0 * s); }
+
+// Effort per metre at distance d: how fast the integrand changes with optical depth, altitude and distance,
+// less where little of the light gets through. tau: so far, in the clearest channel; grows by this step's.
+float effort(Medium m, float h0, float mu, float d, float step_m, inout float tau) {
+  float R = m.planet_radius_m;
+  float h = max(altitude_along(h0, mu, d, R), 0.0);
+  float cosine = cos_zenith_along(h0, mu, d, R);
+  vec3 extinction = extinction_at(m, h);
+  float clearest = min(extinction.x, min(extinction.y, extinction.z));
+  float densest = max(extinction.x, max(extinction.y, extinction.z));
+  float seen = 0.1 + exp(-0.5 * (tau + 0.5 * clearest * step_m));
+  tau += clearest * step_m;
+  float small_scale = min(m.rayleigh_scale_height_m, m.mie_scale_height_m);
+  float large_scale = max(m.rayleigh_scale_height_m, m.mie_scale_height_m);
+  float scale = min(small_scale + 0.3333 * h, large_scale);
+  float along_sun = 1.0 / (0.5 * sqrt(2.0 * R * large_scale));
+  return seen * (0.5 * densest + abs(cosine) / scale + along_sun);
+}
+
+float distance_to_end(Medium m, float h, float mu, bool below) {
+  float R = m.planet_radius_m;
+  if (!below) return distance_to_top(h, mu, m.atmosphere_height_m, R);
+  float near;
+  float far;
+  if (shell_intersections(h, mu, 0.0, R, near, far)) return max(near, 0.0);
+  return max(-(R + h) * mu, 0.0);  // grazing, by a rounding error
+}
+
+RayNode ray_node(Medium m, float h0, float mu, float d, float weight_m) {
+  float R = m.planet_radius_m;
+  RayNode node;
+  node.distance_m = d;
+  node.altitude_m = clamp(altitude_along(h0, mu, d, R), 0.0, m.atmosphere_height_m);
+  node.cos_zenith = cos_zenith_along(h0, mu, d, R);
+  vec3 density = densities(m, node.altitude_m);
+  node.rayleigh = density.x;
+  node.mie = density.y;
+  node.weight_m = weight_m * transmittance(m, column_along(m, h0, mu, d));
+  return node;
+}
+
+#endif

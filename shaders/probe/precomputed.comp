@@ -1,0 +1,70 @@
+// Radiance along given rays as the renderer reads it from the scattering tables, and the sky's irradiance:
+// `tyndall probe --model precomputed`. One invocation per ray. rays: made by prepare_probe_ray
+// (src/models/single_scattering.hpp), a negative length asks for the irradiance of a horizontal surface;
+// results: radiance / E0 [1/sr] (sky: E / E0), and the transmittance to the ray's end.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "lib/single_scattering.glsl"
+#include "shared/probe.h"
+#include "shared/tables.h"
+#include "tyndall/light_tables.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
+layout(std430, binding = 1) readonly buffer ray_block { ProbeRay rays[]; };
+layout(std430, binding = 2) writeonly buffer result_block { ProbeResult results[]; };
+layout(std430, binding = 3) readonly buffer setup_block {
+  TableShape shape;
+  uint integrate_single;  // 1: order 1 by integration, the tables for the rest
+  uint steps;             // of that, see single_scattering
+  uint visible_ground;    // 1: light reflected where the ray ends belongs to it
+};
+layout(binding = 4) uniform sampler3D single_rayleigh;
+layout(binding = 5) uniform sampler3D single_mie;
+layout(binding = 6) uniform sampler3D high_orders;
+layout(binding = 7) uniform sampler2D sky_irradiance;
+
+#include "frame/table_lookup.glsl"
+
+vec3 sky_light(float h, float mu_s) {
+  vec2 uv = light_table_uv(h, mu_s, medium.planet_radius_m, medium.atmosphere_height_m);
+  return textureLod(sky_irradiance, uv, 0.0).rgb;
+}
+
+// Sent up by the ground where the ray ends.
+vec3 ground_light(ProbeRay ray) {
+  float R = medium.planet_radius_m;
+  float q = (R + ray.altitude_m) * ray.cos_sun_zenith + ray.end_m * ray.cos_view_sun;
+  vec3 light = max(q / R, 0.0) * sun_transmittance_at(medium, 0.0, q) + sky_light(0.0, q / R);
+  return light * (medium.ground_albedo * 0.318309886183791);
+}
+
+void main() {
+  uint index = gl_GlobalInvocationID.x;
+  if (index >= uint(rays.length())) return;
+  ProbeRay ray = rays[index];
+  if (ray.end_m < 0.0) {
+    vec3 towards_sun = sun_visibility(ray.altitude_m, ray.cos_sun_zenith, medium.planet_radius_m) *
+                       transmittance(medium, column_to_top(medium, ray.altitude_m, ray.cos_sun_zenith));
+    results[index] = ProbeResult(sky_light(ray.altitude_m, ray.cos_sun_zenith), 0.0, towards_sun, 0.0);
+    return;
+  }
+  if (ray.end_m == 0.0) {
+    vec3 seen = ray.on_ground == 1u && visible_ground == 1u ? ground_light(ray) : vec3(0.0);
+    results[index] = ProbeResult(seen, 0.0, vec3(1.0), 0.0);
+    return;
+  }
+  TableRay path = TableRay(ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith, ray.cos_view_sun,
+                           ray.on_ground == 1u, ray.end_m);
+  AirLight light = light_to_end(shape, medium, path);
+  if (integrate_single == 1u) {
+    light.single = single_scattering(medium, ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith,
+                                     ray.cos_view_sun, 0.0, ray.end_m, int(steps));
+  }
+  vec3 through = transmittance(medium, column_along(medium, ray.altitude_m, ray.cos_view_zenith, ray.end_m));
+  vec3 radiance = light.single + light.high;
+  if (ray.on_ground == 1u && visible_ground == 1u) radiance += through * ground_light(ray);
+  results[index] = ProbeResult(radiance, 0.0, through, 0.0);
+}

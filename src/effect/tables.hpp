@@ -1,0 +1,114 @@
+// The scattering tables: what they are made of, and the building of them in slices.
+// How the orders of scattering are solved is described in docs/tables.md.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "effect/shared.hpp"
+#include "gpu/pipeline.hpp"
+#include "gpu/resource.hpp"
+#include "gpu/timer.hpp"
+#include "tyndall/effect.hpp"
+
+namespace tyndall {
+
+enum class TableId : std::uint32_t { single_rayleigh, single_mie, high_orders, sun_transmittance, sky_irradiance };
+constexpr std::uint32_t kTableCount = 5;
+
+// An image in GENERAL layout, once it has been recorded into for the first time.
+struct TableImage {
+  gpu::Image image;
+  bool ready = false;
+};
+using TableSet = std::array<TableImage, kTableCount>;
+
+[[nodiscard]] shared::TableShape table_shape(const Params& params);
+// An error where the device's limits do not allow tables of this size.
+[[nodiscard]] Result<void> check_table_size(const gpu::Device& device, const Params& params);
+[[nodiscard]] gpu::ImageDesc table_desc(TableId table, const Params& params);
+// Which tables (bits 1 << TableId) differ between two sets of parameters.
+[[nodiscard]] std::uint32_t stale_tables(const Params& built, const Params& wanted);
+
+// What a build needs besides its result: freed when it is complete.
+struct TableScratch {
+  gpu::Buffer constants;      // Medium, then TableShape and ZenithQuadrature
+  gpu::Buffer grid_nodes;     // RayNode of the gathering grid
+  gpu::Buffer ray_nodes;      // RayNode of one altitude of the tables
+  gpu::Buffer phase;          // Fourier coefficients of the phase functions
+  gpu::Buffer incident;       // light of one order
+  gpu::Buffer source;         // source function of one order
+  gpu::Buffer sum;            // of the orders
+  gpu::Buffer irradiance;     // of one order
+  gpu::Buffer sky;            // irradiance, sum of the orders
+  std::uint32_t views = 0;    // that ray_nodes has room for
+  [[nodiscard]] VkDeviceSize bytes() const;
+};
+[[nodiscard]] VkDeviceSize table_scratch_bytes(const gpu::Device& device, const Params& params);
+
+// Builds tables; owns pipelines and, while it builds, scratch memory and the unfinished tables. Objects that
+// commands in flight may still use are kept until `frames_in_flight` more frames have been recorded.
+class TableBuilder {
+ public:
+  // Pipelines, and the first set of tables, still empty.
+  Result<void> create(const gpu::Device& device, std::uint32_t frames_in_flight, bool timings, const Params& params);
+
+  // Starts over for what differs from the finished tables; nothing if they are up to date.
+  Result<void> set_params(const Params& params);
+  // Records at most `budget` slices.
+  Result<void> record(VkCommandBuffer cmd, std::uint32_t budget);
+  // Once per frame: moves new images out of the undefined layout, and frees what no frame uses any more.
+  void begin_frame(VkCommandBuffer cmd);
+
+  [[nodiscard]] Progress progress() const { return {done_, static_cast<std::uint32_t>(slices_.size())}; }
+  // The finished tables; before the first build is complete, those that it fills.
+  [[nodiscard]] const gpu::Image& table(TableId id) const { return tables_[static_cast<std::uint32_t>(id)].image; }
+  [[nodiscard]] VkDeviceSize persistent_bytes() const;
+  [[nodiscard]] VkDeviceSize transient_bytes() const;
+  // Times of the stages of the last build, once its commands have completed; needs `timings`.
+  [[nodiscard]] std::span<const PassTiming> stage_times();
+
+ private:
+  enum Stage : std::uint32_t { sun_light, grid_nodes, phase_matrix, gather_single, gather_multiple, scatter,
+                               ray_nodes, table_single, table_high, sky_light, kStages };
+  // A dispatch: for the altitudes (or columns) [first; first + count), of one order of scattering.
+  struct Slice {
+    Stage stage;
+    std::uint32_t first, count, order;
+  };
+  struct Retired {
+    TableSet tables;
+    TableScratch scratch;
+    std::uint32_t frames_left;
+  };
+
+  Result<void> begin(const Params& params, std::uint32_t stale);
+  Result<void> create_scratch(const Params& params);
+  void plan_slices();
+  void upload_constants(VkCommandBuffer cmd);
+  Result<void> record_slice(VkCommandBuffer cmd, const Slice& slice);
+  void finish();
+  void retire(TableSet tables, TableScratch scratch);
+  TableImage& target(TableId id);
+
+  const gpu::Device* device_ = nullptr;
+  std::uint32_t frames_in_flight_ = 0;
+  bool timings_ = false;
+  std::array<gpu::Pipeline, kStages> pipelines_ = {};
+  TableSet tables_ = {};
+  TableSet next_ = {};        // where `tables_` is in use and stale
+  TableScratch scratch_ = {};
+  Params built_ = {};         // of tables_, if complete_
+  Params wanted_ = {};        // of the build
+  bool complete_ = false;     // tables_ have been built once
+  std::uint32_t stale_ = 0;   // what the build makes
+  std::vector<Slice> slices_ = {};
+  std::uint32_t done_ = 0;
+  std::vector<Retired> retired_ = {};
+  gpu::Timer timer_ = {};
+  std::array<PassTiming, kStages> times_ = {};
+};
+
+}  // namespace tyndall

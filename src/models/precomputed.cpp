@@ -1,0 +1,140 @@
+#include "models/precomputed.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+
+#include "effect/medium.hpp"
+#include "effect/tables.hpp"
+#include "gpu/pipeline.hpp"
+#include "gpu/try.hpp"
+#include "precomputed_shaders.hpp"
+
+namespace tyndall::models {
+namespace {
+
+constexpr std::uint32_t kIntegrationSteps = 16;
+
+// Mirrors setup_block of shaders/probe/precomputed.comp.
+struct Setup {
+  shared::TableShape shape;
+  std::uint32_t integrate_single;
+  std::uint32_t steps;
+  std::uint32_t visible_ground;
+  std::uint32_t unused;
+};
+
+shared::ProbeRay probe_ray(const shared::Medium& medium, const PrecomputedQuery& query) {
+  if (!query.sky_irradiance) return prepare_probe_ray(medium, query.ray);
+  shared::ProbeRay out = {};
+  out.altitude_m = static_cast<float>(query.ray.altitude_m);
+  out.cos_sun_zenith = static_cast<float>(query.ray.cos_sun_zenith);
+  out.end_m = -1.0F;
+  return out;
+}
+
+}  // namespace
+
+struct PrecomputedModel::State {
+  gpu::Host* host;
+  std::unique_ptr<Effect> effect;
+  gpu::Pipeline pipeline;
+  gpu::Handle<VkSampler> linear;
+};
+
+PrecomputedModel::PrecomputedModel(std::unique_ptr<State> state) : state_(std::move(state)) {}
+PrecomputedModel::PrecomputedModel(PrecomputedModel&&) noexcept = default;
+PrecomputedModel& PrecomputedModel::operator=(PrecomputedModel&&) noexcept = default;
+PrecomputedModel::~PrecomputedModel() = default;
+
+Effect& PrecomputedModel::effect() { return *state_->effect; }
+
+Result<PrecomputedModel> PrecomputedModel::create(gpu::Host& host, const Params& params,
+                                                  const std::function<void(Progress)>& progress,
+                                                  std::uint32_t slice_budget) {
+  const gpu::Device& device = host.device();
+  auto state = std::make_unique<State>();
+  state->host = &host;
+  DeviceInfo info;
+  info.instance = device.instance;
+  info.physical_device = device.physical_device;
+  info.device = device.device;
+  info.get_instance_proc_addr = host.get_instance_proc_addr();
+  EffectDesc desc;
+  desc.max_extent = {16, 16};
+  desc.frames_in_flight = 1;
+  desc.timings = true;
+  TYNDALL_ASSIGN(Effect effect, Effect::create(info, desc, params));
+  state->effect = std::make_unique<Effect>(std::move(effect));
+  TYNDALL_ASSIGN(state->pipeline, gpu::create_compute_pipeline(device, shaders::precomputed_comp));
+  TYNDALL_ASSIGN(state->linear, gpu::create_sampler(device, {}));
+  while (!state->effect->precompute_progress().complete()) {
+    TYNDALL_TRY(host.run([&](VkCommandBuffer cmd) -> Result<void> {
+      Result<Progress> recorded = state->effect->record_precompute(cmd, std::max(slice_budget, 1U));
+      if (!recorded) return std::move(recorded).error();
+      return {};
+    }));
+    if (progress) progress(state->effect->precompute_progress());
+  }
+  return PrecomputedModel(std::move(state));
+}
+
+Result<std::vector<Answer>> PrecomputedModel::answer(std::span<const PrecomputedQuery> queries,
+                                                     bool visible_ground) {
+  std::vector<Answer> out(queries.size());
+  if (queries.empty()) return out;
+  State& s = *state_;
+  const gpu::Device& device = s.host->device();
+  const Params& params = s.effect->params();
+  const shared::Medium medium = medium_from_params(params);
+  Setup setup = {};
+  setup.shape = table_shape(params);
+  setup.integrate_single = params.scattering.single == SingleScattering::integration ? 1 : 0;
+  setup.steps = kIntegrationSteps;
+  setup.visible_ground = visible_ground ? 1 : 0;
+  std::vector<shared::ProbeRay> rays;
+  rays.reserve(queries.size());
+  for (const PrecomputedQuery& query : queries) rays.push_back(probe_ray(medium, query));
+
+  constexpr VkBufferUsageFlags kUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  const auto filled = [&](const char* name, const void* data, std::size_t size) -> Result<gpu::Buffer> {
+    TYNDALL_ASSIGN(gpu::Buffer buffer, gpu::create_buffer(device, name, size, kUsage, gpu::MemoryKind::upload));
+    std::memcpy(buffer.mapped, data, size);
+    return buffer;
+  };
+  TYNDALL_ASSIGN(const gpu::Buffer medium_buffer, filled("probe_medium", &medium, sizeof medium));
+  TYNDALL_ASSIGN(const gpu::Buffer setup_buffer, filled("probe_setup", &setup, sizeof setup));
+  TYNDALL_ASSIGN(const gpu::Buffer ray_buffer, filled("probe_rays", rays.data(), rays.size() * sizeof rays[0]));
+  TYNDALL_ASSIGN(const gpu::Buffer result_buffer,
+                 gpu::create_buffer(device, "probe_results", rays.size() * sizeof(shared::ProbeResult), kUsage,
+                                    gpu::MemoryKind::readback));
+  const ScatteringTables tables = s.effect->scattering_tables();
+  const VkSampler linear = s.linear.get();
+  constexpr VkImageLayout kLayout = VK_IMAGE_LAYOUT_GENERAL;
+  const gpu::NamedResource resources[] = {
+      gpu::named_buffer("medium_block", medium_buffer.buffer.get()),
+      gpu::named_buffer("setup_block", setup_buffer.buffer.get()),
+      gpu::named_buffer("ray_block", ray_buffer.buffer.get()),
+      gpu::named_buffer("result_block", result_buffer.buffer.get()),
+      gpu::named_image("single_rayleigh", tables.single_rayleigh.view, kLayout, linear),
+      gpu::named_image("single_mie", tables.single_mie.view, kLayout, linear),
+      gpu::named_image("high_orders", tables.high_orders.view, kLayout, linear),
+      gpu::named_image("sky_irradiance", s.effect->light_tables().sky_irradiance, kLayout, linear),
+  };
+  TYNDALL_TRY(s.host->run([&](VkCommandBuffer cmd) -> Result<void> {
+    const std::string_view missing = gpu::bind(device, cmd, s.pipeline, resources);
+    if (!missing.empty()) {
+      return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(missing)};
+    }
+    gpu::dispatch(device, cmd, s.pipeline, static_cast<std::uint32_t>(rays.size()));
+    gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
+                 VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+    return {};
+  }));
+  const auto* results = static_cast<const shared::ProbeResult*>(result_buffer.mapped);
+  const auto wide = [](const Vec3& v) { return std::array<double, 3>{v.x, v.y, v.z}; };
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = {wide(results[i].radiance), wide(results[i].transmittance)};
+  return out;
+}
+
+}  // namespace tyndall::models

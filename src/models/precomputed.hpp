@@ -1,0 +1,45 @@
+// What the renderer's scattering tables answer for given rays: the model `precomputed` of `probe` and
+// `validate`. Builds the tables of a set of parameters on a device once and reads them there, with the
+// renderer's own shader code. One thread at a time.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "gpu/host.hpp"
+#include "models/single_scattering.hpp"
+#include "tyndall/effect.hpp"
+
+namespace tyndall::models {
+
+struct PrecomputedQuery {
+  Ray ray;
+  bool sky_irradiance = false;  // of a horizontal surface facing up, instead of a radiance
+};
+
+class PrecomputedModel {
+ public:
+  // Builds the tables, `slice_budget` slices per submission; `progress` (may be empty) is called between them.
+  static Result<PrecomputedModel> create(gpu::Host& host, const Params& params,
+                                         const std::function<void(Progress)>& progress = {},
+                                         std::uint32_t slice_budget = 8);
+  PrecomputedModel(PrecomputedModel&&) noexcept;
+  PrecomputedModel& operator=(PrecomputedModel&&) noexcept;
+  ~PrecomputedModel();
+
+  // One answer per query. Radiance / E0 [1/sr] of air and, with `visible_ground`, of the ground at the ray's
+  // end; for the sky E / E0 and the transmittance towards the sun. scattering.single of the parameters says
+  // whether order 1 is integrated.
+  Result<std::vector<Answer>> answer(std::span<const PrecomputedQuery> queries, bool visible_ground = true);
+
+  // The effect that holds the tables: times of the stages, memory, images for export.
+  [[nodiscard]] Effect& effect();
+
+ private:
+  struct State;
+  explicit PrecomputedModel(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace tyndall::models

@@ -1,0 +1,369 @@
+// What include/tyndall/effect.hpp promises apart from the picture: memory that is known beforehand, recording
+// without allocation, errors that change nothing, effects that do not know of each other, the same bytes.
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <new>
+
+#include "effect_frame.hpp"
+#include "gpu/pipeline.hpp"
+#include "gpu_test_shaders.hpp"
+
+namespace {
+std::atomic<std::size_t> allocations = 0;
+}  // namespace
+
+// Counts every allocation of the program; what the device does on its own side uses malloc.
+void* operator new(std::size_t size) {
+  ++allocations;
+  void* const made = std::malloc(size > 0 ? size : 1);
+  if (made == nullptr) throw std::bad_alloc();
+  return made;
+}
+void operator delete(void* pointer) noexcept { std::free(pointer); }
+void operator delete(void* pointer, std::size_t) noexcept { std::free(pointer); }
+
+namespace tyndall {
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+TestFrame small_frame() {
+  TestFrame frame;
+  frame.view = TestView::at(2000.0, 0.2, 0.05, 0.8);
+  frame.to_sun = {0.3, 0.4, -0.866};
+  frame.distance_m = [](std::uint32_t x, std::uint32_t) { return x < 5 ? 8000.0 : 0.0; };
+  Cascade cascade;
+  cascade.far_m = 20000.0F;
+  cascade.shadow_from_world.m[0] = cascade.shadow_from_world.m[9] = 1e-5F;
+  cascade.shadow_from_world.m[5] = 0.0F;
+  cascade.shadow_from_world.m[6] = 1e-6F;
+  cascade.shadow_from_world.m[10] = 0.0F;
+  cascade.shadow_from_world.m[12] = cascade.shadow_from_world.m[13] = cascade.shadow_from_world.m[14] = 0.5F;
+  frame.cascades = {cascade, cascade};
+  frame.shadow_depth = [](std::uint32_t, double u, double v) { return std::fmod(8.0 * u + v, 1.0) < 0.5 ? 0.0F : 1.0F; };
+  return frame;
+}
+
+class EffectContract : public GpuTest {
+ protected:
+  // The two light tables as floats, read the way an engine would.
+  std::vector<float> light_tables(const Effect& effect) {
+    std::vector<float> out;
+    const gpu::Device& device = host().device();
+    Result<gpu::Pipeline> pipeline = gpu::create_compute_pipeline(device, shaders::read_table_comp);
+    Result<gpu::Handle<VkSampler>> sampler = gpu::create_sampler(device, {});
+    constexpr std::uint32_t kWidth = 32;
+    constexpr std::uint32_t kHeight = 256;
+    constexpr VkDeviceSize kBytes = kWidth * kHeight * 16;
+    Result<gpu::Buffer> buffer = gpu::create_buffer(device, "texels", kBytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                                    gpu::MemoryKind::readback);
+    EXPECT_OK(pipeline);
+    EXPECT_OK(sampler);
+    EXPECT_OK(buffer);
+    if (!pipeline.ok() || !sampler.ok() || !buffer.ok()) return out;
+    const LightTables tables = effect.light_tables();
+    for (VkImageView view : {tables.sun_transmittance, tables.sky_irradiance}) {
+      EXPECT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
+        gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
+                     VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT);
+        const gpu::NamedResource resources[] = {
+            gpu::named_image("table", view, VK_IMAGE_LAYOUT_GENERAL, sampler.value().get()),
+            gpu::named_buffer("texel_block", buffer.value().buffer.get())};
+        EXPECT_EQ(gpu::bind(device, cmd, pipeline.value(), resources), "");
+        gpu::dispatch(device, cmd, pipeline.value(), kWidth, kHeight);
+        gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
+                     VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+        return {};
+      }));
+      const auto* texels = static_cast<const float*>(buffer.value().mapped);
+      out.insert(out.end(), texels, texels + kBytes / sizeof(float));
+    }
+    return out;
+  }
+};
+
+TEST_F(EffectContract, MemoryIsKnownBeforehand) {
+  for (const std::uint32_t frames : {1U, 3U, 8U}) {
+    for (const OutputFormat format : {OutputFormat::rgba16f, OutputFormat::rgba32f}) {
+      EffectDesc desc;
+      desc.max_extent = {333, 77};
+      desc.frames_in_flight = frames;
+      desc.output_format = format;
+      const Result<MemoryUsage> asked = query_memory(info(), desc);
+      ASSERT_OK(asked);
+      const Result<Effect> effect = Effect::create(info(), desc, {});
+      ASSERT_OK(effect);
+      const MemoryUsage taken = effect.value().memory();
+      EXPECT_GT(taken.persistent, 0U);
+      EXPECT_GT(taken.host, 0U);
+      EXPECT_EQ(asked.value().persistent, taken.persistent);
+      EXPECT_EQ(asked.value().transient, taken.transient);
+      EXPECT_EQ(asked.value().host, taken.host);
+    }
+  }
+}
+
+TEST_F(EffectContract, DescriptionsOutOfRangeAreRefused) {
+  const auto refused = [&](const auto& change) {
+    EffectDesc desc;
+    DeviceInfo device = info();
+    change(desc, device);
+    const Result<Effect> effect = Effect::create(device, desc, {});
+    EXPECT_EQ(query_memory(device, desc).ok(), effect.ok());
+    return !effect.ok() && effect.error().code == ErrorCode::invalid_argument;
+  };
+  EXPECT_FALSE(refused([](EffectDesc&, DeviceInfo&) {}));
+  EXPECT_TRUE(refused([](EffectDesc& d, DeviceInfo&) { d.max_extent = {0, 720}; }));
+  EXPECT_TRUE(refused([](EffectDesc& d, DeviceInfo&) { d.max_extent = {16385, 1}; }));
+  EXPECT_TRUE(refused([](EffectDesc& d, DeviceInfo&) { d.frames_in_flight = 0; }));
+  EXPECT_TRUE(refused([](EffectDesc& d, DeviceInfo&) { d.frames_in_flight = 9; }));
+  EXPECT_TRUE(refused([](EffectDesc& d, DeviceInfo&) { d.sky_depth = 0.5F; }));
+  EXPECT_TRUE(refused([](EffectDesc& d, DeviceInfo&) { d.sky_depth = kNaN; }));
+  EXPECT_TRUE(refused([](EffectDesc&, DeviceInfo& i) { i.device = VK_NULL_HANDLE; }));
+  EXPECT_TRUE(refused([](EffectDesc&, DeviceInfo& i) { i.get_instance_proc_addr = nullptr; }));
+  Params params;
+  params.atmosphere.mie_g = 2.0F;
+  EXPECT_FALSE(Effect::create(info(), {}, params).ok());
+}
+
+TEST_F(EffectContract, ParametersOutOfRangeAreRefusedAndTheOldOnesStay) {
+  Result<Effect> effect = Effect::create(info(), {}, {});
+  ASSERT_OK(effect);
+  Params good;
+  good.scattering.scale = 2.0F;
+  ASSERT_OK(effect.value().set_params(good));
+  for (const ParamInfo& row : param_table()) {
+    const auto with = [&](auto value) {
+      Params bad = good;
+      std::memcpy(reinterpret_cast<char*>(&bad) + row.offset, &value, sizeof value);
+      return effect.value().set_params(bad);
+    };
+    std::vector<Result<void>> outcomes;
+    switch (row.type) {
+      case ParamType::float32:
+      case ParamType::vec3:
+        for (const float value : {kNaN, kInfinity, -kInfinity, std::nextafter(static_cast<float>(row.max), kInfinity) * 1.001F,
+                                  static_cast<float>(row.min) - 1.0F}) {
+          outcomes.push_back(with(value));
+        }
+        break;
+      case ParamType::uint32:
+        outcomes.push_back(with(static_cast<std::uint32_t>(row.max) + 1U));
+        if (row.min > 0.0) outcomes.push_back(with(static_cast<std::uint32_t>(row.min) - 1U));
+        break;
+      case ParamType::enumeration: outcomes.push_back(with(1000U)); break;
+      default: break;
+    }
+    for (const Result<void>& outcome : outcomes) {
+      ASSERT_FALSE(outcome.ok()) << row.group << "." << row.name;
+      EXPECT_EQ(outcome.error().code, ErrorCode::invalid_argument);
+      EXPECT_NE(outcome.error().message.find(std::string(row.group) + "." + std::string(row.name)), std::string::npos);
+    }
+    EXPECT_EQ(affected(effect.value().params(), good), 0U) << row.name;
+  }
+}
+
+TEST_F(EffectContract, FramesThatCannotBeDrawnAreErrors) {
+  const TestFrame frame = small_frame();
+  Result<FrameImages> images = FrameImages::create(host(), frame, OutputFormat::rgba32f);
+  ASSERT_OK(images);
+  Result<Effect> effect = Effect::create(info(), desc_for(frame), {});
+  ASSERT_OK(effect);
+  std::array<Cascade, kMaxCascades + 1> many;
+  many.fill(frame.cascades[0]);
+  const auto refused = [&](const auto& change) {
+    FrameInputs inputs = images.value().inputs(frame);
+    std::array<Cascade, 2> cascades = {frame.cascades[0], frame.cascades[1]};
+    inputs.cascades = cascades;
+    change(inputs, cascades);
+    Result<void> outcome;
+    EXPECT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
+      outcome = effect.value().record(cmd, inputs);
+      return {};
+    }));
+    EXPECT_TRUE(outcome.ok() || outcome.error().code == ErrorCode::invalid_argument);
+    return !outcome.ok();
+  };
+  using Two = std::array<Cascade, 2>;
+  EXPECT_FALSE(refused([](FrameInputs&, Two&) {}));
+  EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.extent = {0, 9}; }));
+  EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.extent = {17, 9}; }));
+  EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.color.view = VK_NULL_HANDLE; }));
+  EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.depth.view = VK_NULL_HANDLE; }));
+  EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.output.view = VK_NULL_HANDLE; }));
+  EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.output.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL; }));
+  EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.shadow_maps.view = VK_NULL_HANDLE; }));
+  EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.shadow_resolution = 0; }));
+  EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.first_marched_cascade = 2; }));
+  EXPECT_TRUE(refused([&](FrameInputs& f, Two&) { f.cascades = many; }));
+  EXPECT_TRUE(refused([](FrameInputs&, Two& c) { c[1].shadow_from_world.m[5] = kNaN; }));
+  EXPECT_TRUE(refused([](FrameInputs&, Two& c) { c[0].far_m = -1.0F; }));
+  EXPECT_TRUE(refused([](FrameInputs&, Two& c) { c[0].near_m = kNaN; }));
+  EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.camera.world_from_view.m[12] = kInfinity; }));
+  EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.camera.clip_from_view.m[0] = 0.0F; }));
+  EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.camera.clip_from_view.m[0] = kNaN; }));
+  EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.sun.direction_to_sun = Vec3(0.0F); }));
+  EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.sun.direction_to_sun.x = kNaN; }));
+  EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.sun.irradiance.y = kNaN; }));
+  EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.sun.irradiance.y = -1.0F; }));
+  EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.sun.angular_radius_rad = kNaN; }));
+}
+
+TEST_F(EffectContract, RecordingTwiceGivesTheSameBytes) {
+  const TestFrame frame = small_frame();
+  Result<FrameImages> images = FrameImages::create(host(), frame, OutputFormat::rgba32f);
+  ASSERT_OK(images);
+  EffectDesc desc = desc_for(frame);
+  desc.timings = true;
+  Result<Effect> effect = Effect::create(info(), desc, {});
+  ASSERT_OK(effect);
+  std::vector<std::byte> first;
+  for (std::uint64_t i = 0; i < 5; ++i) {
+    FrameInputs inputs = images.value().inputs(frame);
+    inputs.frame_index = i;
+    ASSERT_OK(host().run([&](VkCommandBuffer cmd) { return effect.value().record(cmd, inputs); }));
+    Result<std::vector<std::byte>> bytes = images.value().output_bytes(host());
+    ASSERT_OK(bytes);
+    if (i == 0) first = bytes.value();
+    EXPECT_EQ(bytes.value(), first) << i;
+    const std::span<const PassTiming> timings = effect.value().timings(i);
+    ASSERT_FALSE(timings.empty());
+    for (const PassTiming& pass : timings) {
+      EXPECT_GT(pass.gpu_ms, 0.0) << pass.name;
+      EXPECT_LT(pass.gpu_ms, 60000.0) << pass.name;
+    }
+  }
+}
+
+TEST_F(EffectContract, TwoEffectsOnOneDeviceDoNotKnowOfEachOther) {
+  const TestFrame frame = small_frame();
+  Params thick;
+  thick.atmosphere.aerosol_density = 20.0F;
+  const Result<std::vector<glm::dvec3>> clear_alone = render(host(), Params(), frame);
+  const Result<std::vector<glm::dvec3>> thick_alone = render(host(), thick, frame);
+  ASSERT_OK(clear_alone);
+  ASSERT_OK(thick_alone);
+  ASSERT_NE(clear_alone.value(), thick_alone.value());
+  Result<Effect> a = Effect::create(info(), desc_for(frame), {});
+  Result<Effect> b = Effect::create(info(), desc_for(frame), thick);
+  ASSERT_OK(a);
+  ASSERT_OK(b);
+  Result<FrameImages> images_a = FrameImages::create(host(), frame, OutputFormat::rgba32f);
+  Result<FrameImages> images_b = FrameImages::create(host(), frame, OutputFormat::rgba32f);
+  ASSERT_OK(images_a);
+  ASSERT_OK(images_b);
+  ASSERT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
+    Result<void> recorded = a.value().record(cmd, images_a.value().inputs(frame));
+    if (recorded.ok()) recorded = b.value().record(cmd, images_b.value().inputs(frame));
+    return recorded;
+  }));
+  // Moving an effect takes its frame along; the first goes while the second is in use.
+  {
+    const Effect gone = std::move(a).value();
+  }
+  const Result<std::vector<glm::dvec3>> clear = images_a.value().output(host());
+  const Result<std::vector<glm::dvec3>> hazy = images_b.value().output(host());
+  ASSERT_OK(clear);
+  ASSERT_OK(hazy);
+  EXPECT_EQ(clear.value(), clear_alone.value());
+  EXPECT_EQ(hazy.value(), thick_alone.value());
+}
+
+TEST_F(EffectContract, TablesInSlicesAreTablesInOneGo) {
+  Params params;
+  params.tables.size = {8, 16, 16, 4};
+  params.tables.orders = 2;
+  Result<Effect> at_once = Effect::create(info(), {}, params);
+  Result<Effect> sliced = Effect::create(info(), {}, params);
+  ASSERT_OK(at_once);
+  ASSERT_OK(sliced);
+  EXPECT_FALSE(at_once.value().precompute_progress().complete());
+  const auto build = [&](Effect& effect, std::uint32_t budget) {
+    std::uint32_t calls = 0;
+    while (!effect.precompute_progress().complete() && calls < 10000) {
+      const std::uint32_t before = effect.precompute_progress().done;
+      EXPECT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
+        const Result<Progress> progress = effect.record_precompute(cmd, budget);
+        if (!progress.ok()) return progress.error();
+        EXPECT_EQ(progress.value().done, effect.precompute_progress().done);
+        return {};
+      }));
+      EXPECT_GT(effect.precompute_progress().done, before);
+      if (effect.precompute_progress().done <= before) break;
+      ++calls;
+    }
+    return calls;
+  };
+  EXPECT_EQ(build(at_once.value(), UINT32_MAX), 1U);
+  EXPECT_EQ(build(sliced.value(), 1), sliced.value().precompute_progress().total);
+  const std::vector<float> expected = light_tables(at_once.value());
+  EXPECT_EQ(light_tables(sliced.value()), expected);
+  float brightest = 0.0F;
+  for (const float value : expected) {
+    ASSERT_TRUE(std::isfinite(value));
+    brightest = std::max(brightest, value);
+  }
+  EXPECT_GT(brightest, 0.5F);
+  // A parameter of the air makes them stale, another does not; the same tables come back.
+  params.scattering.integration_steps = 77;
+  ASSERT_OK(sliced.value().set_params(params));
+  EXPECT_TRUE(sliced.value().precompute_progress().complete());
+  params.atmosphere.aerosol_density = 3.0F;
+  ASSERT_OK(sliced.value().set_params(params));
+  EXPECT_FALSE(sliced.value().precompute_progress().complete());
+  build(sliced.value(), 5);
+  EXPECT_NE(light_tables(sliced.value()), expected);
+  params.atmosphere.aerosol_density = 1.0F;
+  ASSERT_OK(sliced.value().set_params(params));
+  build(sliced.value(), UINT32_MAX);
+  EXPECT_EQ(light_tables(sliced.value()), expected);
+}
+
+// Without the validation layer, which allocates for itself.
+TEST(EffectAllocation, RecordingAllocatesNothing) {
+  Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({});
+  ASSERT_TRUE(host.ok()) << "the GPU tests need a Vulkan 1.3 device: " << host.error().message;
+  const TestFrame frame = small_frame();
+  Result<FrameImages> images = FrameImages::create(*host.value(), frame, OutputFormat::rgba32f);
+  ASSERT_OK(images);
+  EffectDesc desc = desc_for(frame);
+  desc.timings = true;
+  const gpu::Device& device = host.value()->device();
+  DeviceInfo info;
+  info.instance = device.instance;
+  info.physical_device = device.physical_device;
+  info.device = device.device;
+  info.get_instance_proc_addr = host.value()->get_instance_proc_addr();
+  info.message = [](void*, Severity, std::string_view) {};
+  Result<Effect> effect = Effect::create(info, desc, {});
+  ASSERT_OK(effect);
+  FrameInputs inputs = images.value().inputs(frame);
+  for (std::uint64_t i = 0; i < 4; ++i) {
+    inputs.frame_index = i;
+    std::size_t during = 1;
+    ASSERT_OK(host.value()->run([&](VkCommandBuffer cmd) -> Result<void> {
+      const std::size_t before = allocations;
+      const Result<Progress> built = effect.value().record_precompute(cmd, 3);
+      const Result<void> recorded = effect.value().record(cmd, inputs);
+      during = allocations - before;
+      if (!built.ok()) return built.error();
+      return recorded;
+    }));
+    EXPECT_EQ(during, 0U) << i;
+    const std::size_t before = allocations;
+    EXPECT_FALSE(effect.value().timings(i).empty());
+    EXPECT_EQ(allocations, before);
+  }
+  // The count does count.
+  const std::size_t before = allocations;
+  delete new int(3);
+  const std::string long_text(1000, 'x');
+  EXPECT_GT(allocations, before) << long_text;
+}
+
+}  // namespace
+}  // namespace tyndall

@@ -1,0 +1,104 @@
+// Every parameter at its ends, in random combinations, seen from everywhere: whatever is allowed gives finite
+// light that is not negative.
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include "effect_frame.hpp"
+
+namespace tyndall {
+namespace {
+
+// Each number to its least, its greatest or its default value.
+Params random_params(std::mt19937& engine) {
+  Params params;
+  const auto pick = [&](double least, double greatest, double normal) {
+    switch (engine() % 3) {
+      case 0: return least;
+      case 1: return greatest;
+      default: return normal;
+    }
+  };
+  char* const bytes = reinterpret_cast<char*>(&params);
+  for (const ParamInfo& row : param_table()) {
+    char* const at = bytes + row.offset;
+    const int floats = row.type == ParamType::vec3 ? 3 : row.type == ParamType::float32 ? 1 : 0;
+    for (int i = 0; i < floats; ++i) {
+      float value = 0.0F;
+      std::memcpy(&value, at + 4 * i, sizeof value);
+      value = static_cast<float>(pick(row.min, row.max, value));
+      std::memcpy(at + 4 * i, &value, sizeof value);
+    }
+    if (floats == 0) {
+      std::uint32_t value = 0;
+      std::memcpy(&value, at, sizeof value);
+      if (row.type == ParamType::flag) value = engine() % 2;
+      if (row.type == ParamType::uint32) value = static_cast<std::uint32_t>(pick(row.min, row.max, value));
+      if (row.type == ParamType::enumeration) {
+        std::uint32_t choices = 1;
+        for (const char c : row.choices) choices += c == '|' ? 1 : 0;
+        value = engine() % choices;
+      }
+      std::memcpy(at, &value, sizeof value);
+    }
+  }
+  // 1000 steps in each of a thousand pixels say no more than 200 do, and take minutes.
+  params.scattering.integration_steps = std::min(params.scattering.integration_steps, 200U);
+  return params;
+}
+
+class EffectExtremes : public GpuTest {};
+
+TEST_F(EffectExtremes, WhateverIsAllowedGivesFiniteLight) {
+  std::mt19937 engine(42);
+  TestFrame shape;
+  shape.extent = {4, 4};
+  for (const OutputFormat format : {OutputFormat::rgba32f, OutputFormat::rgba16f}) {
+    Result<Effect> effect = Effect::create(info(), desc_for(shape, format), {});
+    ASSERT_OK(effect);
+    for (int i = 0; i < 500; ++i) {
+      const Params params = random_params(engine);
+      ASSERT_OK(effect.value().set_params(params));
+      const auto pick = [&](std::initializer_list<double> values) {
+        return *(values.begin() + engine() % values.size());
+      };
+      TestFrame frame = shape;
+      const double top = params.atmosphere.height_m;
+      const double altitude = pick({0.0, 0.5, 1000.0, 0.5 * top, top, 1.01 * top, 10.0 * top});
+      frame.view = TestView::at(altitude, pick({0.0, 1.0, 3.14159265}), pick({-1.5707963, -0.1, 0.0, 0.3, 1.5707963}),
+                                pick({0.01, 0.6, 5.0}));
+      const double elevation = pick({-1.5707963, -0.1, 0.0, 0.05, 1.0, 1.5707963});
+      frame.to_sun = {0.0, std::sin(elevation), -std::cos(elevation)};
+      frame.background = Vec3(static_cast<float>(pick({0.0, 1.0, 1e4})));
+      const double distance = pick({0.0, 2.0, 3000.0, 1e6});
+      frame.distance_m = [=](std::uint32_t x, std::uint32_t) { return x % 2 == 0 ? distance : 0.0; };
+      const auto count = static_cast<std::uint32_t>(engine() % (kMaxCascades + 1));
+      for (std::uint32_t c = 0; c < count; ++c) {
+        Cascade cascade;
+        cascade.far_m = static_cast<float>(pick({1.0, 1e4, 1e6}));
+        cascade.near_m = 0.0F;
+        const auto scale = static_cast<float>(pick({1e-7, 1e-4, 1.0}));
+        for (const int k : {0, 6, 9}) cascade.shadow_from_world.m[k] = scale;
+        cascade.shadow_from_world.m[5] = cascade.shadow_from_world.m[10] = 0.0F;
+        frame.cascades.push_back(cascade);
+      }
+      frame.first_marched = count > 0 ? engine() % count : 0;
+      frame.shadow_depth = [](std::uint32_t, double u, double) { return u < 0.5 ? 0.0F : 1.0F; };
+      const Result<std::vector<glm::dvec3>> image = render(host(), effect.value(), frame, format);
+      ASSERT_OK(image);
+      for (std::size_t p = 0; p < image.value().size(); ++p) {
+        for (int c = 0; c < 3; ++c) {
+          ASSERT_TRUE(std::isfinite(image.value()[p][c]) && image.value()[p][c] >= 0.0)
+              << "frame " << i << " pixel " << p << " channel " << c << " is " << image.value()[p][c] << ": radius "
+              << params.planet.radius_m << ", height " << params.atmosphere.height_m << ", scale heights "
+              << params.atmosphere.rayleigh_scale_height_m << " " << params.atmosphere.mie_scale_height_m
+              << ", altitude " << altitude << ", sun " << elevation << ", cascades " << count << ", distance " << distance
+              << ", custom " << params.atmosphere.custom_coefficients.value << ", pitch " << frame.view.forward.y;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tyndall

@@ -1,0 +1,233 @@
+#include "effect_frame.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <glm/gtc/packing.hpp>
+
+#include "effect/medium.hpp"
+#include "gpu/try.hpp"
+#include "models/glsl_double.hpp"
+
+namespace tyndall {
+namespace {
+
+constexpr double kNear_m = 1.0;
+constexpr double kFar_m = 1.0e6;  // standard convention
+
+float device_depth(const TestFrame& frame, double view_depth_m) {
+  if (frame.convention == DepthConvention::reversed_infinite) {
+    return view_depth_m <= 0.0 ? 0.0F : static_cast<float>(kNear_m / view_depth_m);
+  }
+  if (view_depth_m <= 0.0) return 1.0F;
+  return static_cast<float>(kFar_m / (kFar_m - kNear_m) * (1.0 - kNear_m / view_depth_m));
+}
+
+Camera camera_of(const TestFrame& frame) {
+  const TestView& v = frame.view;
+  Camera out;
+  const glm::dvec3 columns[4] = {v.right, v.up, -v.forward, v.position};
+  for (int c = 0; c < 4; ++c) {
+    for (int r = 0; r < 3; ++r) out.world_from_view.m[4 * c + r] = static_cast<float>(columns[c][r]);
+  }
+  Mat4& clip = out.clip_from_view;
+  clip = Mat4{{}};
+  clip.m[0] = static_cast<float>(1.0 / v.tan_half_width);
+  clip.m[5] = static_cast<float>(-1.0 / v.tan_half_height);
+  clip.m[11] = -1.0F;
+  if (frame.convention == DepthConvention::reversed_infinite) {
+    clip.m[14] = static_cast<float>(kNear_m);
+  } else {
+    clip.m[10] = static_cast<float>(kFar_m / (kNear_m - kFar_m));
+    clip.m[14] = static_cast<float>(kNear_m * kFar_m / (kNear_m - kFar_m));
+  }
+  return out;
+}
+
+glsl64::Medium wide_medium(const Params& params) { return glsl64::widen(medium_from_params(params)); }
+
+}  // namespace
+
+TestView TestView::at(double altitude_m, double yaw_rad, double pitch_rad, double tan_half) {
+  TestView out;
+  out.position = {0.0, altitude_m, 0.0};
+  const glm::dvec3 heading(std::sin(yaw_rad), 0.0, -std::cos(yaw_rad));
+  out.forward = heading * std::cos(pitch_rad) + glm::dvec3(0, 1, 0) * std::sin(pitch_rad);
+  out.right = {std::cos(yaw_rad), 0.0, std::sin(yaw_rad)};
+  out.up = glm::cross(out.right, out.forward);
+  out.tan_half_width = out.tan_half_height = tan_half;
+  return out;
+}
+
+glm::dvec3 TestView::ray(std::uint32_t x, std::uint32_t y, VkExtent2D extent) const {
+  const double ndc_x = 2.0 * (x + 0.5) / extent.width - 1.0;
+  const double ndc_y = 2.0 * (y + 0.5) / extent.height - 1.0;
+  return glm::normalize(forward + right * (ndc_x * tan_half_width) - up * (ndc_y * tan_half_height));
+}
+
+RayAngles TestFrame::ray(std::uint32_t x, std::uint32_t y, double planet_radius_m) const {
+  // Of the camera as the effect gets it, rounded to single precision.
+  const glm::dvec3 p = glm::vec3(view.position);
+  const glm::dvec3 from_centre = p + glm::dvec3(0.0, planet_radius_m, 0.0);
+  const double distance = glm::length(from_centre);
+  const double altitude = (p.x * p.x + p.z * p.z + p.y * (2.0 * planet_radius_m + p.y)) / (distance + planet_radius_m);
+  const glm::dvec3 direction = view.ray(x, y, extent);
+  const glm::dvec3 vertical = from_centre / distance;
+  const glm::dvec3 sun = glm::normalize(to_sun);
+  return {altitude, glm::dot(direction, vertical), glm::dot(sun, vertical), glm::dot(direction, sun)};
+}
+
+Result<FrameImages> FrameImages::create(gpu::Host& host, const TestFrame& frame, OutputFormat format) {
+  FrameImages out;
+  out.format_ = format;
+  const gpu::Device& device = host.device();
+  const VkExtent3D extent = {frame.extent.width, frame.extent.height, 1};
+  constexpr VkImageUsageFlags kInput = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  constexpr VkImageLayout kRead = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+  const std::size_t pixels = static_cast<std::size_t>(extent.width) * extent.height;
+
+  std::vector<float> color;
+  std::vector<float> depth;
+  for (std::uint32_t y = 0; y < extent.height; ++y) {
+    for (std::uint32_t x = 0; x < extent.width; ++x) {
+      color.insert(color.end(), {frame.background.x, frame.background.y, frame.background.z, 1.0F});
+      const double distance = frame.distance_m ? frame.distance_m(x, y) : 0.0;
+      depth.push_back(
+          device_depth(frame, distance * glm::dot(frame.view.ray(x, y, frame.extent), frame.view.forward)));
+    }
+  }
+  TYNDALL_ASSIGN(out.color_, gpu::create_image(device, {"color", VK_FORMAT_R32G32B32A32_SFLOAT, extent, kInput}));
+  TYNDALL_TRY(gpu::upload(host, out.color_, color.data(), pixels * 16, kRead));
+  TYNDALL_ASSIGN(out.depth_, gpu::create_image(device, {"depth", VK_FORMAT_D32_SFLOAT, extent, kInput}));
+  TYNDALL_TRY(gpu::upload(host, out.depth_, depth.data(), pixels * 4, kRead));
+
+  if (!frame.cascades.empty()) {
+    const std::uint32_t n = frame.shadow_resolution;
+    std::vector<float> shadows;
+    for (std::uint32_t c = 0; c < frame.cascades.size(); ++c) {
+      for (std::uint32_t y = 0; y < n; ++y) {
+        for (std::uint32_t x = 0; x < n; ++x) {
+          const float nothing = frame.shadow_depth_reversed ? 0.0F : 1.0F;
+          shadows.push_back(frame.shadow_depth ? frame.shadow_depth(c, (x + 0.5) / n, (y + 0.5) / n) : nothing);
+        }
+      }
+    }
+    TYNDALL_ASSIGN(out.shadows_, gpu::create_image(device, {"shadows", VK_FORMAT_D32_SFLOAT, {n, n, 1}, kInput,
+                                                            static_cast<std::uint32_t>(frame.cascades.size()), 1, true}));
+    TYNDALL_TRY(gpu::upload(host, out.shadows_, shadows.data(), shadows.size() * 4, kRead));
+  }
+
+  const VkFormat output_format =
+      format == OutputFormat::rgba16f ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
+  TYNDALL_ASSIGN(out.output_, gpu::create_image(device, {"output", output_format, extent,
+                                                         VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+                                                             VK_IMAGE_USAGE_TRANSFER_DST_BIT}));
+  // Filled with what no frame leaves, so that a pixel that is not written is found.
+  const std::vector<std::byte> unwritten(pixels * (format == OutputFormat::rgba16f ? 8 : 16), std::byte{0xFF});
+  TYNDALL_TRY(gpu::upload(host, out.output_, unwritten.data(), unwritten.size(), VK_IMAGE_LAYOUT_GENERAL));
+  return out;
+}
+
+FrameInputs FrameImages::inputs(const TestFrame& frame) const {
+  constexpr VkImageLayout kRead = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+  FrameInputs out;
+  out.extent = frame.extent;
+  out.color = {color_.view.get(), kRead};
+  out.depth = {depth_.view.get(), kRead};
+  out.shadow_maps = {shadows_.view.get(), kRead};
+  out.shadow_resolution = frame.shadow_resolution;
+  out.cascades = frame.cascades;
+  out.first_marched_cascade = frame.first_marched;
+  out.camera = camera_of(frame);
+  out.sun.direction_to_sun = {static_cast<float>(frame.to_sun.x), static_cast<float>(frame.to_sun.y),
+                              static_cast<float>(frame.to_sun.z)};
+  out.sun.irradiance = frame.irradiance;
+  out.output = {output_.view.get(), VK_IMAGE_LAYOUT_GENERAL};
+  return out;
+}
+
+Result<std::vector<std::byte>> FrameImages::output_bytes(gpu::Host& host) {
+  return gpu::download(host, output_, VK_IMAGE_LAYOUT_GENERAL, 0, format_ == OutputFormat::rgba16f ? 8 : 16);
+}
+
+Result<std::vector<glm::dvec3>> FrameImages::output(gpu::Host& host) {
+  TYNDALL_ASSIGN(const std::vector<std::byte> bytes, output_bytes(host));
+  std::vector<glm::dvec3> out(static_cast<std::size_t>(output_.desc.extent.width) * output_.desc.extent.height);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (format_ == OutputFormat::rgba16f) {
+        std::uint16_t half = 0;
+        std::memcpy(&half, bytes.data() + i * 8 + c * 2, sizeof half);
+        out[i][static_cast<int>(c)] = glm::unpackHalf1x16(half);
+      } else {
+        float value = 0.0F;
+        std::memcpy(&value, bytes.data() + i * 16 + c * 4, sizeof value);
+        out[i][static_cast<int>(c)] = value;
+      }
+    }
+  }
+  return out;
+}
+
+EffectDesc desc_for(const TestFrame& frame, OutputFormat format) {
+  EffectDesc desc;
+  desc.max_extent = frame.extent;
+  desc.output_format = format;
+  desc.sky_depth = frame.convention == DepthConvention::standard ? 1.0F : 0.0F;
+  desc.shadow_depth_reversed = frame.shadow_depth_reversed;
+  return desc;
+}
+
+Result<std::vector<glm::dvec3>> render(gpu::Host& host, Effect& effect, const TestFrame& frame, OutputFormat format) {
+  TYNDALL_ASSIGN(FrameImages images, FrameImages::create(host, frame, format));
+  TYNDALL_TRY(host.run([&](VkCommandBuffer cmd) { return effect.record(cmd, images.inputs(frame)); }));
+  return images.output(host);
+}
+
+Result<std::vector<glm::dvec3>> render(gpu::Host& host, const Params& params, const TestFrame& frame,
+                                       OutputFormat format) {
+  const gpu::Device& device = host.device();
+  DeviceInfo info;
+  info.instance = device.instance;
+  info.physical_device = device.physical_device;
+  info.device = device.device;
+  info.get_instance_proc_addr = host.get_instance_proc_addr();
+  TYNDALL_ASSIGN(Effect effect, Effect::create(info, desc_for(frame, format), params));
+  return render(host, effect, frame, format);
+}
+
+Params precise_params() {
+  Params params;
+  params.scattering.scale = 1.0F;
+  params.scattering.integration_steps = 48;
+  return params;
+}
+
+glm::dvec3 true_inscattering(const Params& params, const RayAngles& ray, double start, double end) {
+  constexpr int kSteps = 48;  // four times what 0.1 % takes
+  if (end <= start) return glm::dvec3(0.0);
+  return glsl64::single_scattering(wide_medium(params), ray.altitude_m, ray.cos_view, ray.cos_sun, ray.cos_view_sun,
+                                   start, end, kSteps);
+}
+
+glm::dvec3 true_transmittance(const Params& params, const RayAngles& ray, double end) {
+  const glsl64::Medium medium = wide_medium(params);
+  return glsl64::transmittance(medium, glsl64::column_along(medium, ray.altitude_m, ray.cos_view, end));
+}
+
+std::optional<AirSegment> air_segment(const Params& params, const RayAngles& ray) {
+  const glsl64::Medium medium = wide_medium(params);
+  AirSegment out = {};
+  if (!glsl64::atmosphere_segment(ray.altitude_m, ray.cos_view, medium.atmosphere_height_m, medium.planet_radius_m,
+                                  out.start, out.end, out.on_ground)) {
+    return std::nullopt;
+  }
+  return out;
+}
+
+double relative_error(const glm::dvec3& value, const glm::dvec3& truth) {
+  const glm::dvec3 difference = glm::abs(value - truth);
+  return std::max({difference.x, difference.y, difference.z}) / std::max({truth.x, truth.y, truth.z, 1e-30});
+}
+
+}  // namespace tyndall

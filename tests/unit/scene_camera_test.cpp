@@ -1,0 +1,111 @@
+// The chart that lays the map on the planet, and the camera and sun over it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scene/camera.hpp"
+#include "scene/chart.hpp"
+
+namespace tyndall::scene {
+namespace {
+
+constexpr double kRadius_m = 6.36e6;
+constexpr double kRad = 0.017453292519943295;
+
+TEST(SceneChart, MapAndWorldAreInverse) {
+  for (const double distance : {0.0, 1e-3, 1.0, 1e4, 1e6, 1.5e7}) {
+    for (const double angle : {0.0, 0.7, 2.9, 4.0, 6.0}) {
+      for (const double altitude : {-400.0, 0.0, 8848.0, 4e5}) {
+        const double x = distance * std::cos(angle);
+        const double z = distance * std::sin(angle);
+        const glm::dvec3 p = world_from_map(x, z, altitude, kRadius_m);
+        // Micrometres in double precision, at planetary distances.
+        EXPECT_NEAR(altitude_of(p, kRadius_m), altitude, 1e-6);
+        const glm::dvec2 map = map_from_world(p, kRadius_m);
+        EXPECT_NEAR(map.x, x, 1e-6);
+        EXPECT_NEAR(map.y, z, 1e-6);
+        EXPECT_NEAR(glm::dot(up_of(p, kRadius_m), glm::normalize(p + glm::dvec3(0, kRadius_m, 0))), 1.0, 1e-12);
+      }
+    }
+  }
+  // Azimuthal equidistant: a quarter of the circumference away the vertical is horizontal.
+  const glm::dvec3 quarter = world_from_map(0.5 * 3.141592653589793 * kRadius_m, 0.0, 0.0, kRadius_m);
+  EXPECT_NEAR(quarter.x, kRadius_m, 1e-6);
+  EXPECT_NEAR(quarter.y, -kRadius_m, 1e-6);
+}
+
+TEST(SceneCamera, LooksWhereYawAndPitchSay) {
+  CameraParams params;
+  params.position_m = {0.0F, 100.0F, 0.0F};
+  const struct {
+    float yaw, pitch;
+    glm::dvec3 forward;
+  } cases[] = {{0, 0, {0, 0, -1}}, {90, 0, {1, 0, 0}}, {180, 0, {0, 0, 1}}, {0, 90, {0, 1, 0}}, {-90, -90, {0, -1, 0}}};
+  for (const auto& c : cases) {
+    params.yaw_deg = c.yaw;
+    params.pitch_deg = c.pitch;
+    const View view = view_from_params(params, 1.5, kRadius_m);
+    EXPECT_NEAR(glm::distance(view.forward, c.forward), 0.0, 1e-6) << c.yaw << " " << c.pitch;
+    EXPECT_NEAR(glm::distance(glm::cross(view.right, view.up), -view.forward), 0.0, 1e-12);  // right-handed
+    EXPECT_NEAR(view.tan_half_width, 1.5 * view.tan_half_height, 1e-12);
+    EXPECT_NEAR(view.tan_half_height, std::tan(0.5 * params.fov_deg * kRad), 1e-6);
+  }
+  // Far from the origin the horizon is the local one, and altitude_m replaces the altitude alone.
+  params.position_m = {3.0e6F, -500.0F, 1.0e6F};
+  params.altitude_m = 1234.0F;
+  params.pitch_deg = 0.0F;
+  const View away = view_from_params(params, 1.0, kRadius_m);
+  EXPECT_NEAR(altitude_of(away.position, kRadius_m), 1234.0, 1e-3);
+  EXPECT_NEAR(glm::dot(away.forward, up_of(away.position, kRadius_m)), 0.0, 1e-12);
+}
+
+TEST(SceneCamera, DepthIsReversedWithAnInfiniteFarPlane) {
+  CameraParams params;
+  params.position_m = {4000.0F, 2500.0F, -800.0F};
+  params.yaw_deg = 33.0F;
+  params.pitch_deg = -21.0F;
+  const View view = view_from_params(params, 16.0 / 9.0, kRadius_m);
+  const glm::dmat4 clip_from_world_matrix = clip_from_world(view);
+  const auto ndc = [&](double depth, double right, double up) {
+    const glm::dvec3 p = view.position + view.forward * depth + view.right * (right * view.tan_half_width * depth) +
+                         view.up * (up * view.tan_half_height * depth);
+    const glm::dvec4 clip = clip_from_world_matrix * glm::dvec4(p, 1.0);
+    return glm::dvec3(clip) / clip.w;
+  };
+  EXPECT_NEAR(ndc(kNearPlane_m, 0, 0).z, 1.0, 1e-9);
+  for (const double depth : {1.0, 100.0, 1e5, 1e8}) {
+    EXPECT_NEAR(ndc(depth, 0, 0).z * depth, kNearPlane_m, 1e-6) << depth;
+    // x to the right and y downwards, as in Vulkan.
+    EXPECT_NEAR(glm::distance(glm::dvec2(ndc(depth, 0.5, 0.25)), glm::dvec2(0.5, -0.25)), 0.0, 1e-6) << depth;
+  }
+  // The public structure says the same, rounded to single precision.
+  const Camera camera = camera_from_view(view);
+  EXPECT_EQ(camera.world_from_view.m[12], 4000.0F);
+  EXPECT_EQ(camera.clip_from_view.m[11], -1.0F);
+  EXPECT_EQ(camera.clip_from_view.m[10], 0.0F);
+  EXPECT_EQ(camera.clip_from_view.m[14], static_cast<float>(kNearPlane_m));
+}
+
+TEST(SceneCamera, TheSunStandsAtItsAngles) {
+  SunParams sun;
+  sun.elevation_deg = 30.0F;
+  sun.azimuth_deg = 90.0F;
+  EXPECT_NEAR(glm::distance(direction_to_sun(sun), glm::dvec3(std::sqrt(0.75), 0.5, 0.0)), 0.0, 1e-7);
+  sun.azimuth_deg = 0.0F;
+  EXPECT_NEAR(direction_to_sun(sun).z, -std::sqrt(0.75), 1e-7);  // north
+  // It stands still unless told to move, then turns at its speed about the axis (0.5, 0.3, 0).
+  EXPECT_EQ(animated_direction_to_sun(sun, 100.0), direction_to_sun(sun));
+  sun.animate = true;
+  sun.animate_speed_deg = 10.0F;
+  const glm::dvec3 axis = glm::normalize(glm::dvec3(0.5, 0.3, 0.0));
+  const glm::dvec3 start = direction_to_sun(sun);
+  const glm::dvec3 later = animated_direction_to_sun(sun, 9.0);  // a quarter turn
+  EXPECT_NEAR(glm::length(later), 1.0, 1e-12);
+  EXPECT_NEAR(glm::dot(later, axis), glm::dot(start, axis), 1e-12);
+  const glm::dvec3 a = start - axis * glm::dot(start, axis);
+  const glm::dvec3 b = later - axis * glm::dot(later, axis);
+  EXPECT_NEAR(glm::dot(a, b), 0.0, 1e-7);
+}
+
+}  // namespace
+}  // namespace tyndall::scene

@@ -1,0 +1,173 @@
+// The fit of shadow cascades, for suns from below the horizon to the zenith and cameras from the ground to space:
+// the part of the view that terrain can shadow is inside, casters towards the sun are within the depth range, and
+// texels stay where they are when the camera moves.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <set>
+
+#include "scene/cascades.hpp"
+#include "scene/chart.hpp"
+
+namespace tyndall::scene {
+namespace {
+
+constexpr double kRad = 0.017453292519943295;
+constexpr Ground kGround = {-50.0, 4500.0, 6.36e6};
+constexpr double kElevations_deg[] = {-5.0, 0.0, 0.3, 4.0, 20.0, 60.0, 89.9, 90.0};
+constexpr double kAltitudes_m[] = {2.0, 300.0, 5000.0, 30.0e3, 400.0e3};
+
+View view_at(double altitude_m, double yaw_deg, double pitch_deg) {
+  CameraParams camera;
+  camera.position_m = {1200.0F, 0.0F, -700.0F};
+  camera.altitude_m = static_cast<float>(altitude_m);
+  camera.yaw_deg = static_cast<float>(yaw_deg);
+  camera.pitch_deg = static_cast<float>(pitch_deg);
+  return view_from_params(camera, 16.0 / 9.0, kGround.radius_m);
+}
+
+glm::dvec3 sun_at(double elevation_deg, double azimuth_deg = 35.0) {
+  SunParams sun;
+  sun.elevation_deg = static_cast<float>(elevation_deg);
+  sun.azimuth_deg = static_cast<float>(azimuth_deg);
+  return direction_to_sun(sun);
+}
+
+double first_near(double altitude_m) { return std::max(0.5 * altitude_m, 20.0); }
+
+template <typename Check>
+void for_every_setting(const Check& check) {
+  for (const double elevation : kElevations_deg) {
+    for (const double altitude : kAltitudes_m) {
+      for (const double pitch : {-70.0, -10.0, 12.0}) {
+        for (const std::uint32_t count : {1U, 4U, 8U}) {
+          ShadowParams shadows;
+          shadows.cascades = count;
+          shadows.first_marched = count / 2;
+          const View view = view_at(altitude, 40.0 * elevation, pitch);
+          const glm::dvec3 sun = sun_at(elevation);
+          check(view, sun, shadows, fit_cascades(view, sun, shadows, kGround, first_near(altitude)));
+          if (testing::Test::HasFailure()) {
+            FAIL() << "sun at " << elevation << ", camera at " << altitude << ", pitch " << pitch << ", cascades " << count;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(SceneCascades, SplitsEndInOrderAtTheFarDistance) {
+  for (const double partitioning : {0.0, 0.5, 0.95, 1.0}) {
+    for (const std::uint32_t count : {1U, 2U, 8U}) {
+      const std::vector<double> ends = split_distances(10.0, 1e5, count, partitioning);
+      ASSERT_EQ(ends.size(), count);
+      EXPECT_EQ(ends.back(), 1e5);
+      double before = 10.0;
+      for (const double end : ends) {
+        EXPECT_GT(end, before);
+        before = end;
+      }
+    }
+  }
+  EXPECT_NEAR(split_distances(10.0, 1e5, 2, 0.0)[0], 0.5 * (10.0 + 1e5), 1e-6);
+  EXPECT_NEAR(split_distances(10.0, 1e5, 2, 1.0)[0], 1000.0, 1e-6);  // geometric mean
+}
+
+TEST(SceneCascades, AreFiniteOrderedAndMarchedFromTheCamera) {
+  for_every_setting([](const View&, const glm::dvec3&, const ShadowParams& shadows, const std::vector<CascadeFit>& fits) {
+    ASSERT_EQ(fits.size(), shadows.cascades);
+    double end = 0.0;
+    for (const CascadeFit& fit : fits) {
+      const glm::dmat4 matrix = fit.shadow_from_world();
+      for (int c = 0; c < 4; ++c) {
+        for (int r = 0; r < 4; ++r) ASSERT_TRUE(std::isfinite(matrix[c][r]));
+      }
+      EXPECT_GT(std::abs(glm::determinant(glm::dmat3(matrix))), 0.0);
+      EXPECT_GT(fit.texel_m, 0.0);
+      EXPECT_GT(fit.far_m, end);
+      EXPECT_LE(fit.near_m, end);  // no gap
+      end = fit.far_m;
+    }
+    EXPECT_EQ(fits[0].near_m, 0.0);
+    EXPECT_EQ(fits[shadows.first_marched].near_m, 0.0);
+    EXPECT_GE(end, shadows.distance_m);
+  });
+}
+
+TEST(SceneCascades, HoldTheGroundOfTheirSliceAndItsCasters) {
+  std::mt19937 engine(5);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  std::size_t receivers = 0;
+  std::size_t casters = 0;
+  for_every_setting([&](const View& view, const glm::dvec3& sun, const ShadowParams&,
+                        const std::vector<CascadeFit>& fits) {
+    for (const CascadeFit& fit : fits) {
+      const glm::dmat4 shadow_from_world = fit.shadow_from_world();
+      for (int i = 0; i < 400; ++i) {
+        // A point of the view's slice, at a depth that is spread evenly over the distances' logarithms.
+        const double low = std::max(fit.near_m, 1.0);
+        const double depth = low * std::pow(fit.far_m / low, uniform(engine));
+        const double x = (2.0 * uniform(engine) - 1.0) * view.tan_half_width * depth;
+        const double y = (2.0 * uniform(engine) - 1.0) * view.tan_half_height * depth;
+        const glm::dvec3 p = view.position + view.forward * depth + view.right * x + view.up * y;
+        const double altitude = altitude_of(p, kGround.radius_m);
+        if (altitude < kGround.min_m || altitude > kGround.max_m) continue;
+        ++receivers;
+        const glm::dvec3 uvz(shadow_from_world * glm::dvec4(p, 1.0));
+        for (int k = 0; k < 3; ++k) {
+          ASSERT_GE(uvz[k], 0.0) << "axis " << k << " at altitude " << altitude << ", depth " << depth;
+          ASSERT_LE(uvz[k], 1.0) << "axis " << k << " at altitude " << altitude << ", depth " << depth;
+        }
+        // Terrain between the point and the sun, as far as the rays stay below the summits.
+        for (const double distance : {1e3, 1e4, 1e5, 3e5}) {
+          const glm::dvec3 caster = p + sun * distance;
+          const double above = altitude_of(caster, kGround.radius_m);
+          if (above < kGround.min_m || above > kGround.max_m) break;
+          ++casters;
+          ASSERT_GE((shadow_from_world * glm::dvec4(caster, 1.0)).z, 0.0) << "caster at " << distance;
+        }
+      }
+    }
+  });
+  // The draws do find ground in view, and casters.
+  EXPECT_GT(receivers, 10000U);
+  EXPECT_GT(casters, 1000U);
+}
+
+TEST(SceneCascades, TexelsStayWhenTheCameraMovesAndTurns) {
+  ShadowParams shadows;
+  for (const double elevation : {4.0, 45.0, 90.0}) {
+    for (const double altitude : {500.0, 8000.0}) {
+      const glm::dvec3 sun = sun_at(elevation);
+      std::vector<CascadeFit> before;
+      std::vector<std::set<double>> sizes(shadows.cascades);
+      for (int step = 0; step < 500; ++step) {
+        View view = view_at(altitude, 0.05 * step, -8.0);
+        view.position += glm::dvec3(0.37 * step, 0.0, -0.83 * step);
+        const std::vector<CascadeFit> fits = fit_cascades(view, sun, shadows, kGround, 250.0);
+        for (std::size_t i = 0; i < fits.size(); ++i) {
+          sizes[i].insert(fits[i].half_extent.x);
+          if (before.empty() || fits[i].half_extent.x != before[i].half_extent.x ||
+              fits[i].half_extent.y != before[i].half_extent.y) {
+            continue;
+          }
+          EXPECT_EQ(fits[i].world_from_light, before[i].world_from_light);
+          for (int axis = 0; axis < 2; ++axis) {
+            const double texel = 2.0 * fits[i].half_extent[axis] / shadows.resolution;
+            const double moved = (fits[i].centre[axis] - before[i].centre[axis]) / texel;
+            // Whole texels; what remains is the rounding of planet-sized coordinates.
+            ASSERT_NEAR(moved, std::round(moved), 1e-6) << "cascade " << i << " step " << step;
+          }
+        }
+        before = fits;
+      }
+      // Sizes change in steps, a few times over a walk of 450 m and a turn of 25 degrees.
+      for (const std::set<double>& seen : sizes) EXPECT_LE(seen.size(), 4U) << "sun " << elevation << " at " << altitude;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tyndall::scene
