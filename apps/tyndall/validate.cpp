@@ -8,6 +8,7 @@
 #include "config/text.hpp"
 #include "effect/medium.hpp"
 #include "gpu/host.hpp"
+#include "models/precomputed.hpp"
 #include "models/single_scattering.hpp"
 #include "probe_models.hpp"
 #include "tyndall/version.hpp"
@@ -61,11 +62,81 @@ Result<std::vector<Rgb>> ask_single(const std::string& device, const Params& par
   return found;
 }
 
-std::vector<validate::Model> all_models(const std::string& device) {
+// The tables of the last parameters that were asked for, kept for the next question.
+class Tables {
+ public:
+  explicit Tables(std::string device) : device_(std::move(device)) {}
+
+  Result<std::vector<Rgb>> ask(const Params& params, std::span<const reference::Query> queries) {
+    if (Result<void> r = build(params); !r) return std::move(r).error();
+    std::vector<models::PrecomputedQuery> asked;
+    asked.reserve(queries.size());
+    for (const reference::Query& q : queries) {
+      asked.push_back(
+          {models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad),
+           q.sky_irradiance});
+    }
+    const Result<std::vector<models::Answer>> found = model_->answer(asked);
+    if (!found) return found.error();
+    std::vector<Rgb> out;
+    out.reserve(found.value().size());
+    for (const models::Answer& answer : found.value()) out.push_back(answer.radiance);
+    return out;
+  }
+
+ private:
+  Result<void> build(const Params& params) {
+    constexpr std::uint32_t kTables = 1U << static_cast<std::uint32_t>(Affects::Tables);
+    if (model_ && (affected(model_->effect().params(), params) & kTables) == 0)
+      return model_->effect().set_params(params);
+    model_.reset();
+    if (!host_) {
+      Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({device_, false});
+      if (!host) return std::move(host).error();
+      host_ = std::move(host).value();
+    }
+    Result<models::PrecomputedModel> model = models::PrecomputedModel::create(*host_, params);
+    if (!model) return std::move(model).error();
+    model_.emplace(std::move(model).value());
+    return {};
+  }
+
+  std::string device_;
+  std::unique_ptr<gpu::Host> host_;
+  std::optional<models::PrecomputedModel> model_;
+};
+
+validate::Model table_model(std::string name, std::string meaning, const std::shared_ptr<Tables>& tables,
+                            const std::function<void(Params&)>& change) {
+  return {std::move(name), std::move(meaning), 0,
+          [tables, change](const Params& params, std::span<const reference::Query> queries) {
+            Params changed = params;
+            change(changed);
+            return tables->ask(changed, queries);
+          }};
+}
+
+// The parameterisations of the tables, for the horizon.
+std::vector<validate::Model> parameterizations(const std::shared_ptr<Tables>& tables) {
+  std::vector<validate::Model> out;
+  for (const auto& [name, value] : {std::pair("yusov", TableParameterization::yusov),
+                                    std::pair("bruneton", TableParameterization::bruneton),
+                                    std::pair("linear", TableParameterization::linear)}) {
+    out.push_back(
+        table_model(name, "", tables, [value = value](Params& p) { p.tables.parameterization = value; }));
+  }
+  return out;
+}
+
+std::vector<validate::Model> all_models(const std::string& device, const std::shared_ptr<Tables>& tables) {
   const auto single = [device](const Params& params, std::span<const reference::Query> queries) {
     return ask_single(device, params, queries);
   };
   return {
+      table_model("precomputed", "all orders, from the renderer's tables", tables,
+                  [](Params& p) { p.scattering.single = SingleScattering::table; }),
+      table_model("precomputed, order 1 integrated", "the same with scattering.single = integration", tables,
+                  [](Params& p) { p.scattering.single = SingleScattering::integration; }),
       {"single", "light scattered once, integrated for every ray", 1, single},
       {"single, against all orders", "the same: what leaving out multiple scattering costs", 0, single},
   };
@@ -130,10 +201,12 @@ int run_validate(Args args) {
   {
     Progress progress("validate");
     constexpr std::uint64_t kSteps = 1000;
-    study = validate::run_study(
-        options.settings.effect, study_options, all_models(options.device), {}, [&](double done) {
-          progress.update(static_cast<std::uint64_t>(done * static_cast<double>(kSteps)), kSteps);
-        });
+    const auto tables = std::make_shared<Tables>(options.device);
+    study = validate::run_study(options.settings.effect, study_options, all_models(options.device, tables),
+                                parameterizations(tables), [&](double done) {
+                                  progress.update(
+                                      static_cast<std::uint64_t>(done * static_cast<double>(kSteps)), kSteps);
+                                });
   }
   if (!study) return fail(study.error());
   if (!options.output.empty()) {

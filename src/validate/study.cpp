@@ -199,9 +199,6 @@ Result<Study> run_study(const Params& params, const Options& options, std::vecto
   for (VerticalTest& test : study.verticals) take(test.answers);
   Result<void> sky = asker.ask(params, study.models, kSkyFactor * options.samples, study.sky.answers);
   if (!sky) return std::move(sky).error();
-  for (std::size_t a = 1; a < study.rays.size(); ++a) {
-    if (Result<void> r = ask_rays(a); !r) return std::move(r).error();
-  }
   if (!study.horizons.empty()) {
     all = {};
     for (const HorizonTest& test : study.horizons) {
@@ -211,6 +208,9 @@ Result<Study> run_study(const Params& params, const Options& options, std::vecto
       return std::move(r).error();
     next = 0;
     for (HorizonTest& test : study.horizons) take(test.answers);
+  }
+  for (std::size_t a = 1; a < study.rays.size(); ++a) {
+    if (Result<void> r = ask_rays(a); !r) return std::move(r).error();
   }
   return study;
 }
