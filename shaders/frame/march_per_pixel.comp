@@ -1,5 +1,5 @@
-// Brute force: single scattering integrated along the ray of every pixel, with the shadow test at every
-// texel; the truth that faster techniques are compared with.
+// Brute force: the light of every pixel's ray by itself, with the shadow test at every texel, in all modes of
+// scattering.single and scattering.multiple; the truth that faster techniques are compared with.
 // In: colour and depth of the scene, shadow cascades. Out: radiance seen through the air, in the unit of
 // the sun's irradiance per steradian.
 // The shadow map is read once per texel that the ray crosses, so that no shadow boundary is missed; beyond the last cascade the
@@ -20,6 +20,11 @@ layout(binding = 2) uniform sampler2D scene_color;
 layout(binding = 3) uniform sampler2D scene_depth;
 layout(binding = 4) uniform sampler2DArrayShadow shadow_maps;
 layout(binding = 5, OUTPUT_FORMAT) uniform writeonly image2D output_color;
+layout(binding = 6) uniform sampler3D single_rayleigh;
+layout(binding = 7) uniform sampler3D single_mie;
+layout(binding = 8) uniform sampler3D high_orders;
+
+#include "frame/table_light.glsl"
 
 const int kReadsPerStep = 8;  // of the shadow map, per evaluation of the air
 
@@ -87,6 +92,45 @@ void march_cascade(uint cascade, Ray ray, float from, float to, float steps_per_
   }
 }
 
+// Light scattered once, integrated over [start, end] of the ray.
+vec3 integrated_light(Ray ray, float start, float end) {
+  March march = March(vec3(0.0), vec3(0.0), vec3(0.0));
+  float t = start;
+  // View-space depth grows in proportion to the distance along the ray.
+  float depth_per_m = max(dot(ray.direction, frame.camera_forward), 1e-6);
+  float last = frame.cascade_count > 0u ? frame.cascades[frame.cascade_count - 1u].far_m / depth_per_m : 0.0;
+  float steps_per_m = float(frame.integration_steps) / max(min(last, end) - start, 1.0);
+  for (uint c = frame.first_marched_cascade; c < frame.cascade_count; ++c) {
+    float to = min(frame.cascades[c].far_m / depth_per_m, end);
+    if (to - t > 1e-3) {
+      march_cascade(c, ray, t, to, steps_per_m, march);
+      t = to;
+    }
+  }
+  vec3 light = medium.rayleigh_scattering * rayleigh_phase(ray.cos_view_sun) * march.rayleigh +
+               medium.mie_scattering * mie_phase(medium, ray.cos_view_sun) * march.mie;
+  if (end - t > 1e-3) {
+    light += single_scattering(medium, ray.altitude, ray.cos_zenith, ray.cos_sun_zenith, ray.cos_view_sun, t, end,
+                               int(frame.integration_steps) / 3);
+  }
+  return light;
+}
+
+// All that the air of [start, end] sends to the eye, as the modes ask.
+vec3 air_light(Ray ray, float start, float end) {
+  vec3 light = frame.single == 1u ? integrated_light(ray, start, end) : vec3(0.0);
+  bool lit_single = frame.single == 2u;
+  bool lit_high = frame.multiple == 1u;
+  TableRay path = table_ray_of(ray, start);
+  if (lit_single || lit_high) {
+    AirLight lit = lit_table_light(ray, path, start, end);
+    if (lit_single) light += lit.single;
+    if (lit_high) light += lit.high;
+  }
+  if (frame.multiple == 2u) light += section_light(path, start, start, end).high;
+  return light;
+}
+
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height)) return;
@@ -98,32 +142,12 @@ void main() {
   float depth = texelFetch(scene_depth, pixel, 0).r;
   Ray ray = view_ray(frame, pixel, depth);
   float start, end;
-  bool in_air = clip_to_air(medium, ray, start, end);
   vec3 inscattered = vec3(0.0);
   vec3 through = vec3(1.0);
-  if (in_air) {
-    float radius = medium.planet_radius_m;
-    March march = March(vec3(0.0), vec3(0.0), vec3(0.0));
-    float t = start;
-    // View-space depth grows in proportion to the distance along the ray.
-    float depth_per_m = max(dot(ray.direction, frame.camera_forward), 1e-6);
-    float last = frame.cascade_count > 0u ? frame.cascades[frame.cascade_count - 1u].far_m / depth_per_m : 0.0;
-    float steps_per_m = float(frame.integration_steps) / max(min(last, end) - start, 1.0);
-    for (uint c = frame.first_marched_cascade; c < frame.cascade_count; ++c) {
-      float to = min(frame.cascades[c].far_m / depth_per_m, end);
-      if (to - t > 1e-3) {
-        march_cascade(c, ray, t, to, steps_per_m, march);
-        t = to;
-      }
-    }
-    inscattered = medium.rayleigh_scattering * rayleigh_phase(ray.cos_view_sun) * march.rayleigh +
-                  medium.mie_scattering * mie_phase(medium, ray.cos_view_sun) * march.mie;
-    if (end - t > 1e-3) {
-      inscattered += single_scattering(medium, ray.altitude, ray.cos_zenith, ray.cos_sun_zenith, ray.cos_view_sun, t,
-                                       end, int(frame.integration_steps) / 3);
-    }
-    float from_altitude = altitude_along(ray.altitude, ray.cos_zenith, start, radius);
-    float from_cosine = cos_zenith_along(ray.altitude, ray.cos_zenith, start, radius);
+  if (clip_to_air(medium, ray, start, end)) {
+    inscattered = air_light(ray, start, end);
+    float from_altitude = altitude_along(ray.altitude, ray.cos_zenith, start, medium.planet_radius_m);
+    float from_cosine = cos_zenith_along(ray.altitude, ray.cos_zenith, start, medium.planet_radius_m);
     through = transmittance(medium, column_along(medium, from_altitude, from_cosine, end - start));
   }
   vec3 color = inscattered * frame.sun_irradiance;

@@ -1,5 +1,7 @@
 // What the frame passes need of one frame: derived on the CPU by src/effect/frame_constants.cpp, never
 // set by the caller. In a storage buffer (std430): every vec3 is followed by a four-byte member.
+#include "shared/tables.h"
+
 struct CascadeConstants {
   mat4 shadow_from_world;
   float near_m;
@@ -28,6 +30,11 @@ struct FrameConstants {
   uint integration_steps;
   uint enabled;  // 0: the output is the background
   uint only;     // 1: the output is the in-scattered light alone
+  uint single;    // SingleScattering, MultipleScattering and LitSections of include/tyndall/params.def
+  uint multiple;
+  uint sections;
   uint unused_0;
+  uint unused_1;
+  TableShape tables;
   CascadeConstants cascades[8];
 };

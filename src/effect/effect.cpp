@@ -88,6 +88,7 @@ struct Effect::State {
   gpu::Image no_shadows;
   gpu::Buffer constants;
   gpu::Handle<VkSampler> nearest;
+  gpu::Handle<VkSampler> linear;
   gpu::Handle<VkSampler> shadow_compare;
   gpu::Timer timer;
   std::array<PassTiming, kMaxTimedPasses> timings = {};
@@ -142,6 +143,7 @@ Result<void> Effect::State::create_objects() {
   TYNDALL_ASSIGN(no_shadows, gpu::create_image(device, kNoShadows));
   TYNDALL_ASSIGN(constants, gpu::create_buffer(device, "constants", kSlotBytes * desc.frames_in_flight,
                                                VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
+  TYNDALL_ASSIGN(linear, gpu::create_sampler(device, {}));
   TYNDALL_ASSIGN(nearest, gpu::create_sampler(device, {.filter = VK_FILTER_NEAREST}));
   gpu::SamplerDesc compare;
   compare.compare = true;
@@ -210,12 +212,18 @@ Result<void> Effect::record(VkCommandBuffer cmd, const FrameInputs& inputs) {
   s.prepare_images(cmd);
   const Texture none = {s.no_shadows.view.get(), VK_IMAGE_LAYOUT_GENERAL};
   const Texture& shadows = inputs.cascades.empty() ? none : inputs.shadow_maps;
+  const auto table = [&s](const char* name, TableId id) {
+    return gpu::named_image(name, s.tables.table(id).view.get(), VK_IMAGE_LAYOUT_GENERAL, s.linear.get());
+  };
   const gpu::NamedResource resources[] = {
       gpu::named_buffer("medium_block", s.constants.buffer.get(), medium_offset, sizeof medium),
       gpu::named_buffer("frame_block", s.constants.buffer.get(), frame_offset, sizeof frame),
       gpu::named_image("scene_color", inputs.color.view, inputs.color.layout, s.nearest.get()),
       gpu::named_image("scene_depth", inputs.depth.view, inputs.depth.layout, s.nearest.get()),
       gpu::named_image("shadow_maps", shadows.view, shadows.layout, s.shadow_compare.get()),
+      table("single_rayleigh", TableId::single_rayleigh),
+      table("single_mie", TableId::single_mie),
+      table("high_orders", TableId::high_orders),
       gpu::named_image("output_color", inputs.output.view, inputs.output.layout),
   };
   if (s.desc.timings) s.timer.begin(cmd, s.march_per_pixel.name);

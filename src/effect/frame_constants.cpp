@@ -55,6 +55,18 @@ Vec3 transform_point(const Mat4& matrix, const Vec3& p) {
           static_cast<float>(out[2] / out[3])};
 }
 
+shared::TableShape table_shape(const Params& params) {
+  const UVec4& size = params.tables.size;
+  shared::TableShape shape = {};
+  shape.altitudes = size.x;
+  shape.views = size.y;
+  shape.suns = size.z;
+  shape.angles = size.w;
+  shape.parameterization = static_cast<std::uint32_t>(params.tables.parameterization);
+  shape.orders = params.tables.orders;
+  return shape;
+}
+
 shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDesc& desc, const Params& params) {
   shared::FrameConstants out = {};
   out.view_from_clip = inverse(inputs.camera.clip_from_view);
@@ -89,6 +101,10 @@ shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDe
   out.integration_steps = params.scattering.integration_steps;
   out.enabled = params.scattering.enabled.value;
   out.only = params.scattering.only.value;
+  out.single = static_cast<std::uint32_t>(params.scattering.single);
+  out.multiple = static_cast<std::uint32_t>(params.scattering.multiple);
+  out.sections = static_cast<std::uint32_t>(params.scattering.sections);
+  out.tables = table_shape(params);
   for (std::size_t i = 0; i < inputs.cascades.size(); ++i) {
     out.cascades[i].shadow_from_world = inputs.cascades[i].shadow_from_world;
     out.cascades[i].near_m = inputs.cascades[i].near_m;

@@ -12,6 +12,8 @@ namespace tyndall {
 // The affine or projective image of a point: matrix * (p, 1), divided by w.
 [[nodiscard]] Vec3 transform_point(const Mat4& matrix, const Vec3& p);
 
+// The shape of the scattering tables, as tables.* asks for it.
+[[nodiscard]] shared::TableShape table_shape(const Params& params);
 [[nodiscard]] shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDesc& desc,
                                                      const Params& params);
 

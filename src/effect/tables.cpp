@@ -89,18 +89,6 @@ constexpr VkBufferUsageFlags kScratchUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT 
 
 }  // namespace
 
-shared::TableShape table_shape(const Params& params) {
-  const UVec4& size = params.tables.size;
-  shared::TableShape shape = {};
-  shape.altitudes = size.x;
-  shape.views = size.y;
-  shape.suns = size.z;
-  shape.angles = size.w;
-  shape.parameterization = static_cast<std::uint32_t>(params.tables.parameterization);
-  shape.orders = params.tables.orders;
-  return shape;
-}
-
 Result<void> check_table_size(const gpu::Device& device, const Params& params) {
   const UVec4& size = params.tables.size;
   const std::uint32_t limit = device.properties.limits.maxImageDimension3D;

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "effect/frame_constants.hpp"
 #include "effect/shared.hpp"
 #include "gpu/pipeline.hpp"
 #include "gpu/resource.hpp"
@@ -25,7 +26,6 @@ struct TableImage {
 };
 using TableSet = std::array<TableImage, kTableCount>;
 
-[[nodiscard]] shared::TableShape table_shape(const Params& params);
 // An error where the device's limits do not allow tables of this size.
 [[nodiscard]] Result<void> check_table_size(const gpu::Device& device, const Params& params);
 [[nodiscard]] gpu::ImageDesc table_desc(TableId table, const Params& params);

@@ -241,14 +241,15 @@ TEST_F(EffectContract, RecordingTwiceGivesTheSameBytes) {
 
 TEST_F(EffectContract, TwoEffectsOnOneDeviceDoNotKnowOfEachOther) {
   const TestFrame frame = small_frame();
-  Params thick;
+  const Params thin = precise_params();
+  Params thick = thin;
   thick.atmosphere.aerosol_density = 20.0F;
-  const Result<std::vector<glm::dvec3>> clear_alone = render(host(), Params(), frame);
+  const Result<std::vector<glm::dvec3>> clear_alone = render(host(), thin, frame);
   const Result<std::vector<glm::dvec3>> thick_alone = render(host(), thick, frame);
   ASSERT_OK(clear_alone);
   ASSERT_OK(thick_alone);
   ASSERT_NE(clear_alone.value(), thick_alone.value());
-  Result<Effect> a = Effect::create(info(), desc_for(frame), {});
+  Result<Effect> a = Effect::create(info(), desc_for(frame), thin);
   Result<Effect> b = Effect::create(info(), desc_for(frame), thick);
   ASSERT_OK(a);
   ASSERT_OK(b);

@@ -200,6 +200,10 @@ Params precise_params() {
   Params params;
   params.scattering.scale = 1.0F;
   params.scattering.integration_steps = 48;
+  // What the tables give is tested in tables_test.cpp; here they are not built.
+  params.scattering.single = SingleScattering::integration;
+  params.scattering.multiple = MultipleScattering::none;
+  params.tables.size = {8, 16, 16, 4};
   return params;
 }
 
