@@ -19,19 +19,22 @@ std::uint64_t mixed(std::uint64_t x) {
   return x ^ (x >> 31U);
 }
 
-// Four numbers in [0; 1): an additive recurrence over the powers of the root of x^5 = x + 1 (Roberts 2018,
-// after Kronecker), which covers the cube evenly at any count, moved by the seed.
-std::array<double, 4> even_point(std::uint64_t seed, std::uint32_t index) {
-  constexpr double kRoot = 1.1673039782614187;
-  std::array<double, 4> out = {};
-  double power = 1.0;
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    power /= kRoot;
-    const double shift = static_cast<double>(mixed(seed * 4 + i) >> 11U) * 0x1p-53;
-    const double value = shift + power * (index + 1.0);
-    out[i] = value - std::floor(value);
+// Points of the cube [0; 1)^4, of which every coordinate falls once into each of `count` equal parts (Latin
+// hypercube, McKay, Beckman and Conover 1979).
+std::vector<std::array<double, 4>> even_points(std::uint64_t seed, std::uint32_t count) {
+  std::vector<std::array<double, 4>> points(count);
+  std::uint64_t state = mixed(seed);
+  const auto below = [&](std::uint64_t limit) { return (state = mixed(state)) % limit; };
+  std::vector<std::uint32_t> order(count);
+  for (std::size_t axis = 0; axis < 4; ++axis) {
+    for (std::uint32_t i = 0; i < count; ++i) order[i] = i;
+    for (std::uint32_t i = count; i > 1; --i) std::swap(order[i - 1], order[below(i)]);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const double within = static_cast<double>(mixed(state + i) >> 11U) * 0x1p-53;
+      points[i][axis] = (order[i] + within) / count;
+    }
   }
-  return out;
+  return points;
 }
 
 // Turns the sun's direction as the place nearest the ground sees it into the eye's frame. The ray leaves the
@@ -57,8 +60,9 @@ std::vector<TestRay> make_rays(Region region, SunBand band, std::uint32_t count,
   const std::uint64_t group =
       mixed(seed) + kSunBands * static_cast<std::uint64_t>(region) + static_cast<std::uint64_t>(band);
   const double scale = height_m / 80000.0;
+  const std::vector<std::array<double, 4>> points = even_points(group, count);
   for (std::uint32_t i = 0; i < count; ++i) {
-    const std::array<double, 4> u = even_point(mixed(group), i);
+    const std::array<double, 4>& u = points[i];
     TestRay ray;
     ray.region = region;
     ray.band = band;

@@ -89,6 +89,29 @@ std::string error_tables(const Study& study) {
   return out;
 }
 
+std::string worst_tables(const Study& study) {
+  std::string out =
+      "<p>The rays on which each is furthest off, as <code>tyndall probe</code> takes them.</p>\n";
+  for (std::size_t m = 0; m < study.models.size(); ++m) {
+    out +=
+        concat({"<table>\n<tr><th class=\"t\">", escaped(study.models[m].name),
+                "</th><th>altitude_m</th><th>view_zenith_deg</th><th>sun_zenith_deg</th><th>azimuth_deg</th>"
+                "<th>error, r / g / b</th><th>noise</th></tr>\n"});
+    for (const BadRay& bad : worst_rays(study, m, 6)) {
+      const reference::Query& q = study.rays[bad.atmosphere].rays[bad.ray].query;
+      const Comparison& c = bad.comparison;
+      out +=
+          concat({"<tr>", text_cell(study.atmospheres[bad.atmosphere].name), cell(fixed(q.altitude_m, 1)),
+                  cell(fixed(q.view_zenith_rad * kDegPerRad, 4)),
+                  cell(fixed(q.sun_zenith_rad * kDegPerRad, 4)), cell(fixed(q.azimuth_rad * kDegPerRad, 3)),
+                  cell(concat({percent(c.error[0]), " / ", percent(c.error[1]), " / ", percent(c.error[2])})),
+                  cell(percent(*std::max_element(c.noise.begin(), c.noise.end()))), "</tr>\n"});
+    }
+    out += "</table>\n";
+  }
+  return out;
+}
+
 // The largest channel's error of every ray against something about it; a dot each.
 std::string error_plot(const Study& study, std::string title, Axis x,
                        const std::function<double(const TestRay&)>& abscissa) {
@@ -232,7 +255,8 @@ std::string to_html(const Study& study, const Origin& origin) {
        "measured. Rays "
        "on which the reference is dark, or uncertain by more than 3 %, are left out.</p>\n"});
   out += model_list(study);
-  out += "<h2>Errors</h2>\n<div class=\"plots\">\n" + error_plots(study) + "</div>\n" + error_tables(study);
+  out += "<h2>Errors</h2>\n<div class=\"plots\">\n" + error_plots(study) + "</div>\n" + error_tables(study) +
+         worst_tables(study);
 
   out +=
       "<h2>The sky along the sun's vertical</h2>\n<p>From sea level, from the horizon under the sun (−90°) "

@@ -227,6 +227,24 @@ ErrorSummary summarise(const Study& study, std::size_t model, std::size_t atmosp
   return summarise(comparisons);
 }
 
+std::vector<BadRay> worst_rays(const Study& study, std::size_t model, std::size_t count) {
+  std::vector<BadRay> out;
+  for (std::size_t a = 0; a < study.rays.size(); ++a) {
+    const RayTest& test = study.rays[a];
+    for (std::size_t i = 0; i < test.rays.size(); ++i) {
+      const Truth right = truth(test.answers.reference[i], study.models[model].orders);
+      if (is_comparable(right)) out.push_back({a, i, compare(test.answers.models[model][i], right)});
+    }
+  }
+  const auto error = [](const BadRay& r) {
+    return *std::max_element(r.comparison.error.begin(), r.comparison.error.end());
+  };
+  std::stable_sort(out.begin(), out.end(),
+                   [&](const BadRay& a, const BadRay& b) { return error(a) > error(b); });
+  out.resize(std::min(out.size(), count));
+  return out;
+}
+
 ErrorSummary summarise_sky(const Study& study, std::size_t model, double low_deg, double high_deg) {
   std::vector<Comparison> comparisons;
   for (std::size_t i = 0; i < study.sky.sun_elevation_deg.size(); ++i) {

@@ -98,6 +98,14 @@ struct Study {
 // Errors of a model over the rays of one atmosphere that a predicate takes.
 [[nodiscard]] ErrorSummary summarise(const Study& study, std::size_t model, std::size_t atmosphere,
                                      const std::function<bool(const TestRay&)>& takes);
+// The rays of all atmospheres on which a model is furthest off, worst first.
+struct BadRay {
+  std::size_t atmosphere = 0;
+  std::size_t ray = 0;  // of rays[atmosphere]
+  Comparison comparison;
+};
+[[nodiscard]] std::vector<BadRay> worst_rays(const Study& study, std::size_t model, std::size_t count);
+
 // Of the sky's irradiance, over the elevations from `low` to `high` [deg].
 [[nodiscard]] ErrorSummary summarise_sky(const Study& study, std::size_t model, double low_deg,
                                          double high_deg);
