@@ -112,7 +112,9 @@ void add_common(Arguments& arguments, CommonOptions& options, unsigned which) {
   }
   if ((which & kOutput) != 0) arguments.text("-o,--output", options.output, "FILE", "where the result goes");
   if ((which & kSize) != 0) {
-    arguments.value("--size", "WxH", "size of the picture in pixels [1280x720]",
+    arguments.value("--size", "WxH",
+                    concat({"size of the picture in pixels [", std::to_string(options.size.width), "x",
+                            std::to_string(options.size.height), "]"}),
                     [&options](const std::string& text) {
                       Result<Size> size = parse_size(text, "--size");
                       if (!size) return Result<void>(std::move(size).error());

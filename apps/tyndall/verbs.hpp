@@ -16,6 +16,8 @@ int run_devices(Args args);
 int run_params(Args args);
 int run_probe(Args args);
 int run_render(Args args);
+int run_sky(Args args);
+int run_validate(Args args);
 
 struct Verb {
   std::string_view name;
@@ -27,6 +29,8 @@ struct Verb {
 inline constexpr Verb kVerbs[] = {
     {"render", run_render, "render one frame or a sequence to PNG or EXR"},
     {"probe", run_probe, "radiance and transmittance for given rays, by any of the models"},
+    {"sky", run_sky, "the sky as an environment map, for a sun given by angles or by place and time"},
+    {"validate", run_validate, "every model against the reference, as a report with tables and plots"},
     {"bench", run_bench, "measure GPU milliseconds per pass"},
     {"compare", run_compare, "say how much two images differ"},
     {"devices", run_devices, "list the Vulkan devices and say which one would be used"},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "models/glsl_double.hpp"
 
@@ -41,6 +42,29 @@ std::array<double, 3> sun_transmittance(const shared::Medium& medium, double alt
   const glsl64::Medium m = glsl64::widen(medium);
   if (glsl64::sun_visibility(altitude_m, cos_sun_zenith, m.planet_radius_m) == 0.0) return {};
   return to_array(glsl64::transmittance(m, glsl64::column_to_top(m, altitude_m, cos_sun_zenith)));
+}
+
+std::array<double, 3> sunlit_ground(const shared::Medium& medium, const Ray& ray) {
+  const glsl64::Medium m = glsl64::widen(medium);
+  double start = 0.0;
+  double end = 0.0;
+  bool on_ground = false;
+  if (m.ground_albedo == 0.0 ||
+      !glsl64::atmosphere_segment(ray.altitude_m, ray.cos_view_zenith, m.atmosphere_height_m,
+                                  m.planet_radius_m, start, end, on_ground)) {
+    // On the ground itself a ray downwards has no length, and still sees it.
+    end = 0.0;
+    on_ground = m.ground_albedo > 0.0 &&
+                glsl64::ray_hits_ground(ray.altitude_m, ray.cos_view_zenith, m.planet_radius_m);
+  }
+  if (!on_ground) return {};
+  const double r0 = m.planet_radius_m + ray.altitude_m;
+  const double cos_sun =
+      std::clamp((r0 * ray.cos_sun_zenith + end * ray.cos_view_sun) / m.planet_radius_m, -1.0, 1.0);
+  if (cos_sun <= 0.0) return {};
+  std::array<double, 3> out = sun_transmittance(medium, 0.0, cos_sun);
+  for (double& channel : out) channel *= m.ground_albedo * cos_sun / std::numbers::pi;
+  return out;
 }
 
 shared::ProbeRay prepare_probe_ray(const shared::Medium& medium, const Ray& ray) {

@@ -40,6 +40,11 @@ struct Answer {
 [[nodiscard]] std::array<double, 3> sun_transmittance(const shared::Medium& medium, double altitude_m,
                                                       double cos_sun_zenith);
 
+// What the ground at the end of a ray sends towards the eye when the sun alone lights it, before the air
+// takes its part: radiance / E0 [1/sr] by Medium::ground_albedo, a Lambertian surface; 0 for rays that miss
+// it.
+[[nodiscard]] std::array<double, 3> sunlit_ground(const shared::Medium& medium, const Ray& ray);
+
 // The ray as the GPU probe reads it: begun at the entry into the atmosphere and clipped, in double precision.
 [[nodiscard]] shared::ProbeRay prepare_probe_ray(const shared::Medium& medium, const Ray& ray);
 

@@ -8,6 +8,7 @@
 
 #include "gpu/try.hpp"
 #include "scene/chart.hpp"
+#include "scene/sun_disc.hpp"
 #include "scene_shaders.hpp"
 
 namespace tyndall::scene {
@@ -31,12 +32,6 @@ struct BackgroundConstants {
   float tan_half[2];
   float jitter[2];
 };
-
-// Exponents of the limb darkening by wavelength in nm (Hestroffer, Magnan 1998, eq. 4: 416 to 1099 nm).
-float limb_exponent(float wavelength_nm) {
-  const float um = std::clamp(wavelength_nm, 303.0F, 1099.0F) * 1e-3F;
-  return um < 0.422F ? 0.6F : -0.023F + 0.292F / um;
-}
 
 // Refuses pictures and shadow maps that the device has no room for, before anything is created.
 Result<void> check_memory(const gpu::Device& device, VkExtent2D extent, std::uint32_t resolution,

@@ -1,0 +1,238 @@
+// `tyndall sky`: the sky as an environment map. docs/sky.md describes the picture.
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "arguments.hpp"
+#include "cli.hpp"
+#include "config/text.hpp"
+#include "effect/medium.hpp"
+#include "gpu/host.hpp"
+#include "image/image.hpp"
+#include "models/gpu_probe.hpp"
+#include "models/precomputed.hpp"
+#include "scene/solar_position.hpp"
+#include "scene/sun_disc.hpp"
+#include "sky_map.hpp"
+
+namespace tyndall::cli {
+namespace {
+
+using config::concat;
+using config::input_error;
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+constexpr std::size_t kBatchRays = 131072;
+
+struct SkyOptions {
+  std::optional<double> sun_elevation_deg, sun_azimuth_deg;
+  std::string place, time;
+  double altitude_m = 0.0;
+  std::string disc = "true";
+  std::string model;
+};
+
+// Answers rays with radiance / E0 of the air and the ground behind it.
+class SkySource {
+ public:
+  virtual ~SkySource() = default;
+  virtual Result<std::vector<models::Answer>> answer(std::span<const models::Ray> rays) = 0;
+};
+
+// Light scattered once, and the ground in the sun's light.
+class SingleSource final : public SkySource {
+ public:
+  SingleSource(gpu::Host& host, const Params& params) : host_(host), medium_(medium_from_params(params)) {}
+
+  Result<std::vector<models::Answer>> answer(std::span<const models::Ray> rays) override {
+    Result<std::vector<models::Answer>> found = models::single_scattering_on_gpu(host_, medium_, rays);
+    if (!found || medium_.ground_albedo == 0.0F) return found;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      models::Answer& answer = found.value()[i];
+      const std::array<double, 3> ground = models::sunlit_ground(medium_, rays[i]);
+      for (std::size_t c = 0; c < 3; ++c) answer.radiance[c] += answer.transmittance[c] * ground[c];
+    }
+    return found;
+  }
+
+ private:
+  gpu::Host& host_;
+  shared::Medium medium_;
+};
+
+// All orders of scattering from the tables, and the ground in the light of sun and sky.
+class PrecomputedSource final : public SkySource {
+ public:
+  explicit PrecomputedSource(models::PrecomputedModel model) : model_(std::move(model)) {}
+
+  Result<std::vector<models::Answer>> answer(std::span<const models::Ray> rays) override {
+    std::vector<models::PrecomputedQuery> queries;
+    queries.reserve(rays.size());
+    for (const models::Ray& ray : rays) queries.push_back({ray, false});
+    return model_.answer(queries);
+  }
+
+ private:
+  models::PrecomputedModel model_;
+};
+
+using MakeSource = Result<std::unique_ptr<SkySource>> (*)(gpu::Host& host, const Params& params);
+
+Result<std::unique_ptr<SkySource>> make_single(gpu::Host& host, const Params& params) {
+  return std::unique_ptr<SkySource>(std::make_unique<SingleSource>(host, params));
+}
+
+Result<std::unique_ptr<SkySource>> make_precomputed(gpu::Host& host, const Params& params) {
+  Progress progress("tables");
+  Result<models::PrecomputedModel> model = models::PrecomputedModel::create(
+      host, params, [&](tyndall::Progress built) { progress.update(built.done, built.total); });
+  if (!model) return std::move(model).error();
+  return std::unique_ptr<SkySource>(std::make_unique<PrecomputedSource>(std::move(model).value()));
+}
+
+struct SkyModel {
+  const char* name;
+  MakeSource make;
+};
+constexpr SkyModel kModels[] = {{"precomputed", make_precomputed}, {"single", make_single}};
+
+// The sun's elevation and azimuth by one of the two ways, in deg.
+struct SunAngles {
+  double elevation_deg, azimuth_deg;
+};
+
+Result<SunAngles> find_sun(const SkyOptions& options) {
+  const bool any_angle = options.sun_elevation_deg || options.sun_azimuth_deg;
+  const bool any_place = !options.place.empty() || !options.time.empty();
+  constexpr std::string_view kNeeded =
+      "needed is either --sun-elevation-deg E --sun-azimuth-deg A or --at LAT,LON --time ISO8601";
+  const auto error = [&](std::string_view what) { return input_error(what, "tyndall sky", kNeeded); };
+  if (any_angle && any_place) return error("the sun is given by angles and by place and time");
+  if (!any_angle && !any_place) return error("the sun is not given");
+  if (any_angle) {
+    if (!options.sun_elevation_deg) return error("--sun-elevation-deg is missing");
+    if (!options.sun_azimuth_deg) return error("--sun-azimuth-deg is missing");
+    return SunAngles{*options.sun_elevation_deg, *options.sun_azimuth_deg};
+  }
+  if (options.place.empty()) return error("--at is missing");
+  if (options.time.empty()) return error("--time is missing");
+  const Result<scene::Place> place = scene::parse_place(options.place, "--at");
+  if (!place) return place.error();
+  const Result<double> time = scene::parse_time(options.time, "--time");
+  if (!time) return time.error();
+  const scene::SolarPosition position =
+      scene::solar_position(place.value(), time.value(), options.altitude_m);
+  return SunAngles{position.elevation_deg, position.azimuth_deg};
+}
+
+// Fills the image with irradiance times what the source answers, some rows at a time.
+Result<void> fill(image::Image& image, const SkyMap& map, double irradiance, SkySource& source) {
+  Progress progress("sky");
+  const std::uint32_t rows = static_cast<std::uint32_t>(std::max<std::size_t>(kBatchRays / map.width, 1));
+  std::vector<models::Ray> rays;
+  for (std::uint32_t first = 0; first < map.height; first += rows) {
+    progress.update(first, map.height);
+    const std::uint32_t last = std::min(first + rows, map.height);
+    rays.clear();
+    for (std::uint32_t y = first; y < last; ++y) {
+      for (std::uint32_t x = 0; x < map.width; ++x) rays.push_back(map.ray(x, y));
+    }
+    const Result<std::vector<models::Answer>> found = source.answer(rays);
+    if (!found) return found.error();
+    float* out = image.pixel(0, first);
+    for (const models::Answer& answer : found.value()) {
+      for (const double channel : answer.radiance) *out++ = static_cast<float>(irradiance * channel);
+    }
+  }
+  return {};
+}
+
+std::array<double, 3> horizontal_irradiance(const image::Image& image, const SkyMap& map) {
+  std::array<double, 3> sum = {};
+  for (std::uint32_t y = 0; 2 * y + 1 < map.height; ++y) {
+    const double weight = map.pixel_solid_angle(y) * std::cos(std::numbers::pi * (y + 0.5) / map.height);
+    for (std::uint32_t x = 0; x < map.width; ++x) {
+      for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * image.pixel(x, y)[c];
+    }
+  }
+  return sum;
+}
+
+}  // namespace
+
+int run_sky(Args args) {
+  CommonOptions options;
+  options.size = {2048, 1024};
+  SkyOptions sky;
+  sky.model = kModels[0].name;
+  std::vector<std::string> model_names;
+  for (const SkyModel& model : kModels) model_names.emplace_back(model.name);
+  Arguments arguments("sky");
+  add_common(arguments, options, kScene | kSet | kDevice | kSize | kOutput | kJson);
+  arguments.number("--sun-elevation-deg", sky.sun_elevation_deg, -90.0, 90.0,
+                   "of the sun above the horizontal");
+  arguments.number("--sun-azimuth-deg", sky.sun_azimuth_deg, -3600.0, 3600.0,
+                   "of the sun, clockwise from north");
+  arguments.text("--at", sky.place, "LAT,LON", "the place in degrees, north and east positive; with --time");
+  arguments.text("--time", sky.time, "ISO8601", "the time there, as 2003-10-17T12:30:30-07:00; 1900 to 2100");
+  arguments.number("--altitude", sky.altitude_m, 0.0, 1.0e9, "of the eye above sea level in m, up to space");
+  arguments.choice("--disc", sky.disc, {"true", "false"}, "draw the sun's disc");
+  arguments.choice("--model", sky.model, model_names, "who answers");
+  if (const std::optional<int> status = arguments.parse(args)) return *status;
+  const Result<SunAngles> sun = find_sun(sky);
+  if (!sun) return fail(sun.error());
+  if (Result<void> r = resolve(options); !r) return fail(r.error());
+  if (Result<void> r = check_output(options, {".exr"}); !r) return fail(r.error());
+
+  const Params& params = options.settings.effect;
+  scene::SceneParams& scene = options.settings.scene;
+  scene.sun.elevation_deg = static_cast<float>(sun.value().elevation_deg);
+  scene.sun.azimuth_deg = static_cast<float>(sun.value().azimuth_deg);
+  scene.camera.altitude_m = static_cast<float>(sky.altitude_m);
+  const SkyMap map = {options.size.width, options.size.height, sky.altitude_m,
+                      sun.value().elevation_deg * kRadPerDeg, sun.value().azimuth_deg * kRadPerDeg};
+  const double irradiance = double{scene.sun.irradiance} * params.scattering.scale;
+
+  Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({options.device, false});
+  if (!host) return fail(host.error());
+  const SkyModel& model = *std::find_if(std::begin(kModels), std::end(kModels),
+                                        [&](const SkyModel& m) { return m.name == sky.model; });
+  Result<std::unique_ptr<SkySource>> source = model.make(*host.value(), params);
+  if (!source) return fail(source.error());
+  image::Image image(map.width, map.height);
+  if (Result<void> r = fill(image, map, irradiance, *source.value()); !r) return fail(r.error());
+  const std::array<double, 3> diffuse = horizontal_irradiance(image, map);
+  if (sky.disc == "true") {
+    const Vec3& nm = params.atmosphere.wavelengths_nm;
+    const SunFace face = {
+        scene.sun.angular_radius_deg * kRadPerDeg,
+        {scene::limb_exponent(nm.x), scene::limb_exponent(nm.y), scene::limb_exponent(nm.z)},
+        irradiance};
+    add_sun(image, map, face, medium_from_params(params));
+  }
+
+  image::Metadata metadata = config::metadata(options.settings);
+  metadata.emplace_back(
+      "tyndall.sky.projection",
+      "latitude-longitude: zenith at the top, north at the left edge, azimuth clockwise to the right");
+  metadata.emplace_back("tyndall.sky.model", sky.model);
+  metadata.emplace_back("tyndall.sky.disc", sky.disc);
+  if (!sky.place.empty()) {
+    metadata.emplace_back("tyndall.sky.at", config::one_line(sky.place));
+    metadata.emplace_back("tyndall.sky.time", config::one_line(sky.time));
+  }
+  if (Result<void> r = image::write_exr(options.output, image, metadata); !r) return fail(r.error());
+  if (!options.json) return kDone;
+  nlohmann::ordered_json out;
+  out["device"] = host.value()->device_name();
+  out["model"] = sky.model;
+  out["size"] = {map.width, map.height};
+  out["altitude_m"] = sky.altitude_m;
+  out["sun_elevation_deg"] = sun.value().elevation_deg;
+  out["sun_azimuth_deg"] = sun.value().azimuth_deg;
+  out["sky_irradiance"] = diffuse;
+  return print(out.dump(2) + "\n");
+}
+
+}  // namespace tyndall::cli

@@ -1,0 +1,129 @@
+#include "sky_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace tyndall::cli {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kSamplesPerRadius = 24.0;  // across the disc; 0.05 % of a pixel that it fills
+
+// A piece of the disc within one pixel.
+struct Piece {
+  std::uint32_t x, y;
+  std::array<double, 3> flux;  // relative
+};
+
+class Splitter {
+ public:
+  Splitter(const SkyMap& map, const SunFace& sun, const shared::Medium& medium)
+      : map_(map), sun_(sun), medium_(medium), sun_zenith_(0.5 * kPi - map.sun_elevation_rad) {}
+
+  void split() {
+    const double row = kPi / map_.height;
+    const double top = std::max(sun_zenith_ - sun_.angular_radius_rad, 0.0);
+    const double bottom = std::min(sun_zenith_ + sun_.angular_radius_rad, kPi);
+    const auto first = static_cast<std::uint32_t>(top / row);
+    for (std::uint32_t y = first; y < map_.height && y * row < bottom; ++y) {
+      const double start = std::max(top, y * row);
+      const double end = std::min(bottom, (y + 1) * row);
+      const int count = pieces_along(end - start);
+      const double step = (end - start) / count;
+      for (int i = 0; i < count; ++i) split_chord(y, start + (i + 0.5) * step, step);
+    }
+  }
+
+  [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
+  // What all pieces would hold without air and horizon.
+  [[nodiscard]] const std::array<double, 3>& total() const { return total_; }
+
+ private:
+  [[nodiscard]] int pieces_along(double length_rad) const {
+    return std::max(1, static_cast<int>(std::ceil(length_rad * kSamplesPerRadius / sun_.angular_radius_rad)));
+  }
+
+  // The part of the disc at this zenith angle: azimuths within `reach` of the sun's.
+  void split_chord(std::uint32_t y, double zenith, double height_rad) {
+    const double across = std::sin(zenith) * std::sin(sun_zenith_);
+    const double along = std::cos(sun_.angular_radius_rad) - std::cos(zenith) * std::cos(sun_zenith_);
+    if (along > across) return;
+    const double reach = along <= -across ? kPi : std::acos(along / across);
+    const std::array<double, 3> passed =
+        models::sun_transmittance(medium_, map_.altitude_m, std::clamp(std::cos(zenith), -1.0, 1.0));
+    const double column = 2.0 * kPi / map_.width;
+    const double from = map_.sun_azimuth_rad - reach;
+    const double to = map_.sun_azimuth_rad + reach;
+    for (auto x = static_cast<std::int64_t>(std::floor(from / column)); static_cast<double>(x) * column < to;
+         ++x) {
+      const double start = std::max(from, static_cast<double>(x) * column);
+      const double end = std::min(to, static_cast<double>(x + 1) * column);
+      if (end <= start) continue;
+      const int count = pieces_along((end - start) * std::sin(zenith));
+      const double step = (end - start) / count;
+      Piece piece = {wrapped(x), y, {}};
+      for (int i = 0; i < count; ++i) {
+        const double azimuth = start + (i + 0.5) * step - map_.sun_azimuth_rad;
+        // By half angles, which keeps the digits of small distances.
+        const double half_height = std::sin(0.5 * (zenith - sun_zenith_));
+        const double half_width = std::sin(0.5 * azimuth);
+        const double angle =
+            2.0 *
+            std::asin(std::min(std::sqrt(half_height * half_height + across * half_width * half_width), 1.0));
+        const double fraction = std::min(angle / sun_.angular_radius_rad, 1.0);
+        const double mu = std::sqrt(std::max(1.0 - fraction * fraction, 0.0));
+        const double area = std::sin(zenith) * height_rad * step;
+        for (std::size_t c = 0; c < 3; ++c) {
+          const double flux = area * std::pow(mu, sun_.limb_exponent[c]);
+          total_[c] += flux;
+          piece.flux[c] += flux * passed[c];
+        }
+      }
+      pieces_.push_back(piece);
+    }
+  }
+
+  [[nodiscard]] std::uint32_t wrapped(std::int64_t x) const {
+    const std::int64_t width = map_.width;
+    return static_cast<std::uint32_t>(((x % width) + width) % width);
+  }
+
+  const SkyMap& map_;
+  const SunFace& sun_;
+  const shared::Medium& medium_;
+  double sun_zenith_;
+  std::vector<Piece> pieces_;
+  std::array<double, 3> total_ = {};
+};
+
+}  // namespace
+
+double SkyMap::pixel_solid_angle(std::uint32_t y) const {
+  const double top = kPi * y / height;
+  const double bottom = kPi * (y + 1.0) / height;
+  // cos(top) - cos(bottom), without the difference of like numbers.
+  return 2.0 * kPi / width * 2.0 * std::sin(0.5 * (top + bottom)) * std::sin(0.5 * (bottom - top));
+}
+
+models::Ray SkyMap::ray(std::uint32_t x, std::uint32_t y) const {
+  const double zenith = kPi * (y + 0.5) / height;
+  const double azimuth = 2.0 * kPi * (x + 0.5) / width;
+  return models::ray_from_angles(altitude_m, zenith, 0.5 * kPi - sun_elevation_rad,
+                                 azimuth - sun_azimuth_rad);
+}
+
+void add_sun(image::Image& image, const SkyMap& map, const SunFace& sun, const shared::Medium& medium) {
+  Splitter splitter(map, sun, medium);
+  splitter.split();
+  for (const Piece& piece : splitter.pieces()) {
+    const double solid_angle = map.pixel_solid_angle(piece.y);
+    float* const pixel = image.pixel(piece.x, piece.y);
+    for (std::size_t c = 0; c < 3; ++c) {
+      pixel[c] += static_cast<float>(sun.irradiance * piece.flux[c] / (splitter.total()[c] * solid_angle));
+    }
+  }
+}
+
+}  // namespace tyndall::cli

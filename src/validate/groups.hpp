@@ -1,0 +1,34 @@
+// The groups of rays that the tables of a report have as rows.
+#pragma once
+
+#include "validate/study.hpp"
+
+namespace tyndall::validate {
+
+struct Group {
+  const char* sun;
+  const char* region;
+  bool (*takes)(const TestRay& ray);
+};
+
+constexpr Group kGroups[] = {
+    {"up", "ground", [](const TestRay& r) { return r.band == SunBand::up && r.region == Region::ground; }},
+    {"up", "air", [](const TestRay& r) { return r.band == SunBand::up && r.region == Region::air; }},
+    {"up", "space", [](const TestRay& r) { return r.band == SunBand::up && r.region == Region::space; }},
+    {"up", "all", [](const TestRay& r) { return r.band == SunBand::up; }},
+    {"0 to -6 deg", "ground",
+     [](const TestRay& r) { return r.band == SunBand::twilight && r.region == Region::ground; }},
+    {"0 to -6 deg", "air",
+     [](const TestRay& r) { return r.band == SunBand::twilight && r.region == Region::air; }},
+    {"0 to -6 deg", "space",
+     [](const TestRay& r) { return r.band == SunBand::twilight && r.region == Region::space; }},
+    {"0 to -6 deg", "all", [](const TestRay& r) { return r.band == SunBand::twilight; }},
+};
+
+struct SkyBand {
+  const char* sun;
+  double low_deg, high_deg;
+};
+constexpr SkyBand kSkyBands[] = {{"up", 0.001, 90.0}, {"0 to -6 deg", -6.0, 0.0}};
+
+}  // namespace tyndall::validate

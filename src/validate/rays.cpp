@@ -1,0 +1,99 @@
+#include "validate/rays.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace tyndall::validate {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kRadPerDeg = kPi / 180.0;
+
+// SplitMix64 (Steele, Lea, Flood 2014).
+std::uint64_t mixed(std::uint64_t x) {
+  x += 0x9e3779b97f4a7c15U;
+  x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9U;
+  x = (x ^ (x >> 27U)) * 0x94d049bb133111ebU;
+  return x ^ (x >> 31U);
+}
+
+// Points of the cube [0; 1)^4, of which every coordinate falls once into each of `count` equal parts (Latin
+// hypercube, McKay, Beckman and Conover 1979).
+std::vector<std::array<double, 4>> even_points(std::uint64_t seed, std::uint32_t count) {
+  std::vector<std::array<double, 4>> points(count);
+  std::uint64_t state = mixed(seed);
+  const auto below = [&](std::uint64_t limit) { return (state = mixed(state)) % limit; };
+  std::vector<std::uint32_t> order(count);
+  for (std::size_t axis = 0; axis < 4; ++axis) {
+    for (std::uint32_t i = 0; i < count; ++i) order[i] = i;
+    for (std::uint32_t i = count; i > 1; --i) std::swap(order[i - 1], order[below(i)]);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const double within = static_cast<double>(mixed(state + i) >> 11U) * 0x1p-53;
+      points[i][axis] = (order[i] + within) / count;
+    }
+  }
+  return points;
+}
+
+// Turns the sun's direction as the place nearest the ground sees it into the eye's frame. The ray leaves the
+// eye at zenith angle z and arrives at the place under the local zenith angle z - turn, having gone `turn`
+// around the planet; sun and ray differ by `azimuth` at the place.
+void set_sun(reference::Query& query, double turn, double sun_elevation_rad, double azimuth) {
+  // In the plane of the ray: x along its heading, y up, z to the side.
+  const double x = std::cos(sun_elevation_rad) * std::cos(azimuth);
+  const double y = std::sin(sun_elevation_rad);
+  const double side = std::cos(sun_elevation_rad) * std::sin(azimuth);
+  // The eye's vertical lies `turn` behind the place's.
+  const double eye_x = x * std::cos(turn) + y * std::sin(turn);
+  const double eye_y = y * std::cos(turn) - x * std::sin(turn);
+  query.sun_zenith_rad = std::acos(std::clamp(eye_y, -1.0, 1.0));
+  query.azimuth_rad = std::abs(std::atan2(side, eye_x));
+}
+
+}  // namespace
+
+std::vector<TestRay> make_rays(Region region, SunBand band, std::uint32_t count, std::uint64_t seed,
+                               double radius_m, double height_m) {
+  std::vector<TestRay> rays;
+  const std::uint64_t group =
+      mixed(seed) + kSunBands * static_cast<std::uint64_t>(region) + static_cast<std::uint64_t>(band);
+  const double scale = height_m / 80000.0;
+  const std::vector<std::array<double, 4>> points = even_points(group, count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::array<double, 4>& u = points[i];
+    TestRay ray;
+    ray.region = region;
+    ray.band = band;
+    ray.sun_elevation_rad = (band == SunBand::up ? 90.0 * u[0] : -6.0 * u[0]) * kRadPerDeg;
+    const double azimuth = kPi * u[1];
+    reference::Query& q = ray.query;
+    if (region != Region::space) {
+      q.altitude_m =
+          scale * (region == Region::ground ? 2000.0 * u[2] * u[2] : 2000.0 + 68000.0 * u[2] * u[2]);
+      q.view_zenith_rad = (region == Region::ground ? 90.0 : 180.0) * u[3] * kRadPerDeg;
+      q.sun_zenith_rad = 0.5 * kPi - ray.sun_elevation_rad;
+      q.azimuth_rad = azimuth;
+    } else {
+      q.altitude_m = scale * 100000.0 * std::pow(200.0, u[2]);
+      const double r = radius_m + q.altitude_m;
+      if (i % 2 == 0) {
+        // To the ground, evenly by the angle from the nadir; at the ground the ray falls in under `fall`.
+        const double nadir = std::asin(radius_m / r) * u[3];
+        const double fall = std::asin(std::min(r * std::sin(nadir) / radius_m, 1.0));
+        q.view_zenith_rad = kPi - nadir;
+        set_sun(q, fall - nadir, ray.sun_elevation_rad, azimuth);
+      } else {
+        const double tangent = radius_m + scale * 60000.0 * u[3];
+        const double nadir = std::asin(tangent / r);
+        q.view_zenith_rad = kPi - nadir;
+        set_sun(q, 0.5 * kPi - nadir, ray.sun_elevation_rad, azimuth);
+      }
+    }
+    rays.push_back(ray);
+  }
+  return rays;
+}
+
+}  // namespace tyndall::validate

@@ -1,0 +1,135 @@
+#include <algorithm>
+#include <cmath>
+
+#include "config/text.hpp"
+#include "validate/groups.hpp"
+#include "validate/plot.hpp"
+#include "validate/report.hpp"
+
+namespace tyndall::validate {
+namespace {
+
+using config::concat;
+using config::quoted_text;
+
+std::string percent(double value) { return fixed(100.0 * value, 2); }
+
+std::string json_number(double value) { return std::isfinite(value) ? config::number_text(value) : "null"; }
+
+std::string json_summary(const Summary& s) {
+  return concat({"\"rays\": ", std::to_string(s.count), ", \"mean\": ", json_number(s.mean),
+                 ", \"median\": ", json_number(s.median), ", \"p95\": ", json_number(s.p95),
+                 ", \"worst\": ", json_number(s.worst)});
+}
+
+std::string json_errors(const ErrorSummary& errors) {
+  std::string out =
+      concat({"\"rays\": ", std::to_string(errors.channels[0].count),
+              ", \"mean\": ", json_number(errors.all.mean), ", \"median\": ", json_number(errors.all.median),
+              ", \"p95\": ", json_number(errors.all.p95), ", \"worst\": ", json_number(errors.all.worst),
+              ", \"noise\": ", json_number(errors.noise), ", \"channels\": ["});
+  for (std::size_t c = 0; c < 3; ++c)
+    out += concat({c > 0 ? ", {" : "{", json_summary(errors.channels[c]), "}"});
+  return out + "]";
+}
+
+}  // namespace
+
+std::string to_json(const Study& study, const Origin& origin) {
+  std::string out = concat(
+      {"{\n \"command\": ", quoted_text(origin.command), ",\n \"version\": ", quoted_text(origin.version),
+       ",\n \"device\": ", quoted_text(origin.device), ",\n \"rays\": ", std::to_string(study.options.rays),
+       ",\n \"samples\": ", std::to_string(study.options.samples),
+       ",\n \"seed\": ", std::to_string(study.options.seed),
+       ",\n \"orders\": ", std::to_string(study.options.orders), ",\n \"models\": ["});
+  for (std::size_t m = 0; m < study.models.size(); ++m) {
+    out += concat({m > 0 ? ",\n" : "\n", "  {\"name\": ", quoted_text(study.models[m].name),
+                   ", \"orders\": ", std::to_string(study.models[m].orders), ", \"groups\": ["});
+    bool first = true;
+    for (std::size_t a = 0; a < study.atmospheres.size(); ++a) {
+      for (const Group& group : kGroups) {
+        out += concat({first ? "\n" : ",\n", "   {\"atmosphere\": ", quoted_text(study.atmospheres[a].name),
+                       ", \"sun\": ", quoted_text(group.sun), ", \"region\": ", quoted_text(group.region),
+                       ", ", json_errors(summarise(study, m, a, group.takes)), "}"});
+        first = false;
+      }
+    }
+    out += "\n  ], \"sky\": [";
+    first = true;
+    for (const SkyBand& band : kSkyBands) {
+      out += concat({first ? "\n" : ",\n", "   {\"sun\": ", quoted_text(band.sun), ", ",
+                     json_errors(summarise_sky(study, m, band.low_deg, band.high_deg)), "}"});
+      first = false;
+    }
+    out += "\n  ]}";
+  }
+  return out + "\n ]\n}\n";
+}
+
+std::string to_markdown(const Study& study, const Origin& origin) {
+  std::string out = concat({"# How right the models are\n\nMade by\n\n    ", origin.command,
+                            "\n\nwith Tyndall ", origin.version, " on ", origin.device,
+                            ", against the path tracer of [reference.md](reference.md). An error is that of "
+                            "a channel, relative to the "
+                            "largest\nchannel of the reference on the same ray; `noise` is the reference's "
+                            "own mean standard error in the "
+                            "same measure. All in per cent.\nRays are spread over all directions: from the "
+                            "ground (0 to 2 km), from the air (2 to "
+                            "70 km) and from space (100 to 20 000 km), with the\nsun above the horizon and "
+                            "from 0 to −6° below it.\n\n## Models\n\n"
+                            "| model | what it is | compared with |\n|---|---|---|\n"});
+  for (const Model& model : study.models) {
+    out += concat({"| ", model.name, " | ", model.meaning, " | ",
+                   model.orders == 0   ? concat({"orders 1 to ", std::to_string(study.options.orders)})
+                   : model.orders == 1 ? std::string("order 1")
+                                       : concat({"orders 1 to ", std::to_string(model.orders)}),
+                   " |\n"});
+  }
+  out +=
+      "\n## Radiance of the sky, the air and the limb\n\n| model | atmosphere | sun | rays | mean | median | "
+      "95 % | worst | noise |\n"
+      "|---|---|---|--:|--:|--:|--:|--:|--:|\n";
+  for (std::size_t m = 0; m < study.models.size(); ++m) {
+    for (std::size_t a = 0; a < study.atmospheres.size(); ++a) {
+      for (const Group& group : kGroups) {
+        if (std::string_view(group.region) != "all") continue;
+        const ErrorSummary e = summarise(study, m, a, group.takes);
+        out += concat({"| ", study.models[m].name, " | ", study.atmospheres[a].name, " | ", group.sun, " | ",
+                       std::to_string(e.channels[0].count), " | ", percent(e.all.mean), " | ",
+                       percent(e.all.median), " | ", percent(e.all.p95), " | ", percent(e.all.worst), " | ",
+                       percent(e.noise), " |\n"});
+      }
+    }
+  }
+  out +=
+      "\n## Irradiance of the sky at sea level\n\n| model | sun | elevations | mean | worst | noise "
+      "|\n|---|---|--:|--:|--:|--:|\n";
+  for (std::size_t m = 0; m < study.models.size(); ++m) {
+    for (const SkyBand& band : kSkyBands) {
+      const ErrorSummary e = summarise_sky(study, m, band.low_deg, band.high_deg);
+      out +=
+          concat({"| ", study.models[m].name, " | ", band.sun, " | ", std::to_string(e.channels[0].count),
+                  " | ", percent(e.all.mean), " | ", percent(e.all.worst), " | ", percent(e.noise), " |\n"});
+    }
+  }
+  out += "\n## What each order of scattering adds to the sky's irradiance (550 nm, %)\n\n| sun |";
+  std::string rule = "\n|--:|";
+  for (int n = 1; n <= study.options.orders; ++n) {
+    out += concat({" ", std::to_string(n), " |"});
+    rule += "--:|";
+  }
+  out += rule + "\n";
+  for (std::size_t i = 0; i < study.sky.sun_elevation_deg.size(); ++i) {
+    const double sun = study.sky.sun_elevation_deg[i];
+    if (sun != 60.0 && sun != 30.0 && sun != 10.0 && sun != 4.0 && sun != 0.0 && sun != -3.0 && sun != -6.0)
+      continue;
+    out += concat({"| ", fixed(sun, 0), "° |"});
+    const reference::Estimate& estimate = study.sky.answers.reference[i];
+    for (const Rgb& order : estimate.order_radiance)
+      out += concat({" ", percent(order[1] / estimate.radiance[1]), " |"});
+    out += "\n";
+  }
+  return out;
+}
+
+}  // namespace tyndall::validate

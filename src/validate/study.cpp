@@ -1,0 +1,260 @@
+#include "validate/study.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tyndall::validate {
+namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+constexpr double kMostNoise = 0.03;      // of the reference's largest channel
+constexpr std::uint32_t kSkyFactor = 4;  // more paths for the irradiance of the sky
+constexpr double kVerticalSuns_deg[] = {45.0, 6.0, 0.0, -4.0};
+constexpr double kHorizonSuns_deg[] = {20.0, 0.0};
+constexpr double kHorizonAltitude_m = 2000.0;
+
+// Runs the questions of a study in order and keeps count of the work.
+class Asker {
+ public:
+  Asker(const Options& options, double work, const Progress& progress)
+      : options_(options), work_(work), progress_(progress) {}
+
+  Result<void> ask(const Params& params, const std::vector<Model>& models, std::uint32_t samples,
+                   Answers& answers) {
+    reference::Options how;
+    how.samples = samples;
+    how.orders = options_.orders;
+    // Every set of questions has random numbers of its own.
+    how.seed = options_.seed + 1000 * asked_++;
+    how.by_order = true;
+    const double share = static_cast<double>(samples) * static_cast<double>(answers.queries.size());
+    Result<std::vector<reference::Estimate>> estimates =
+        reference::trace(params, answers.queries, how, [&](double part) {
+          progress_(std::min((done_ + part * share) / work_, 1.0));
+          return true;
+        });
+    if (!estimates) return std::move(estimates).error();
+    done_ += share;
+    answers.reference = std::move(estimates).value();
+    for (const Model& model : models) {
+      Result<std::vector<Rgb>> found = model.answer(params, answers.queries);
+      if (!found) return std::move(found).error();
+      answers.models.push_back(std::move(found).value());
+    }
+    return {};
+  }
+
+ private:
+  const Options& options_;
+  double work_;
+  const Progress& progress_;
+  std::uint64_t asked_ = 0;
+  double done_ = 0.0;
+};
+
+reference::Query query_of(double altitude_m, double view_zenith_deg, double sun_elevation_deg,
+                          double azimuth_deg) {
+  return {altitude_m, view_zenith_deg * kRadPerDeg, (90.0 - sun_elevation_deg) * kRadPerDeg,
+          azimuth_deg * kRadPerDeg, false};
+}
+
+std::vector<RayTest> make_ray_tests(const std::vector<Atmosphere>& atmospheres, const Options& options) {
+  std::vector<RayTest> tests(atmospheres.size());
+  const auto groups = static_cast<std::uint32_t>(atmospheres.size()) * kRegions * kSunBands;
+  const std::uint32_t count = std::max(options.rays / groups, 1U);
+  for (std::size_t a = 0; a < atmospheres.size(); ++a) {
+    const Params& params = atmospheres[a].params;
+    for (const Region region : {Region::ground, Region::air, Region::space}) {
+      for (const SunBand band : {SunBand::up, SunBand::twilight}) {
+        const std::vector<TestRay> made = make_rays(region, band, count, options.seed * 16 + a,
+                                                    params.planet.radius_m, params.atmosphere.height_m);
+        tests[a].rays.insert(tests[a].rays.end(), made.begin(), made.end());
+      }
+    }
+    for (const TestRay& ray : tests[a].rays) tests[a].answers.queries.push_back(ray.query);
+  }
+  return tests;
+}
+
+std::vector<VerticalTest> make_verticals() {
+  std::vector<VerticalTest> tests;
+  for (const double sun : kVerticalSuns_deg) {
+    VerticalTest test;
+    test.sun_elevation_deg = sun;
+    for (int angle = -90; angle <= 90; angle += 5) {
+      // The horizon itself is of measure nothing.
+      const double angle_deg = std::clamp(static_cast<double>(angle), -89.5, 89.5);
+      test.angle_deg.push_back(angle_deg);
+      test.answers.queries.push_back(query_of(0.0, std::abs(angle_deg), sun, angle_deg < 0.0 ? 0.0 : 180.0));
+    }
+    tests.push_back(std::move(test));
+  }
+  return tests;
+}
+
+SkyTest make_sky() {
+  SkyTest test;
+  for (const double sun : {90.0, 75.0, 60.0, 45.0, 30.0, 20.0, 15.0, 10.0, 8.0,  6.0,  4.0, 3.0,
+                           2.0,  1.0,  0.0,  -1.0, -2.0, -3.0, -4.0, -5.0, -6.0, -7.0, -8.0}) {
+    test.sun_elevation_deg.push_back(sun);
+    reference::Query query = query_of(0.0, 0.0, sun, 0.0);
+    query.sky_irradiance = true;
+    test.answers.queries.push_back(query);
+  }
+  return test;
+}
+
+std::vector<HorizonTest> make_horizons(const Params& params) {
+  std::vector<HorizonTest> tests;
+  const double radius = params.planet.radius_m;
+  const double dip_deg = std::acos(radius / (radius + kHorizonAltitude_m)) / kRadPerDeg;
+  for (const double sun : kHorizonSuns_deg) {
+    HorizonTest test;
+    test.altitude_m = kHorizonAltitude_m;
+    test.sun_elevation_deg = sun;
+    for (int i = -16; i <= 24; ++i) {
+      const double elevation = 0.25 * i + 0.125;
+      test.elevation_deg.push_back(elevation);
+      test.answers.queries.push_back(query_of(kHorizonAltitude_m, 90.0 + dip_deg - elevation, sun, 60.0));
+    }
+    tests.push_back(std::move(test));
+  }
+  return tests;
+}
+
+}  // namespace
+
+std::vector<Atmosphere> atmospheres(const Params& params) {
+  std::vector<Atmosphere> out = {
+      {"as given", params}, {"five times the aerosol", params}, {"without ozone", params}};
+  out[1].params.atmosphere.aerosol_density *= 5.0F;
+  out[2].params.atmosphere.ozone_absorption = {0.0F, 0.0F, 0.0F};
+  return out;
+}
+
+Truth truth(const reference::Estimate& estimate, int orders) {
+  if (orders <= 0 || static_cast<std::size_t>(orders) >= estimate.order_radiance.size()) {
+    return {estimate.radiance, estimate.standard_error};
+  }
+  Truth out = {};
+  for (std::size_t n = 0; n < static_cast<std::size_t>(orders); ++n) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      out.value[c] += estimate.order_radiance[n][c];
+      out.standard_error[c] = std::hypot(out.standard_error[c], estimate.order_standard_error[n][c]);
+    }
+  }
+  return out;
+}
+
+bool is_comparable(const Truth& truth) {
+  const double largest = *std::max_element(truth.value.begin(), truth.value.end());
+  const double noise = *std::max_element(truth.standard_error.begin(), truth.standard_error.end());
+  return largest > 0.0 && noise <= kMostNoise * largest;
+}
+
+Comparison compare(const Rgb& model, const Truth& truth) {
+  Comparison out = {relative_error(model, truth.value), {}};
+  const double largest = *std::max_element(truth.value.begin(), truth.value.end());
+  for (std::size_t c = 0; c < 3; ++c) out.noise[c] = truth.standard_error[c] / largest;
+  return out;
+}
+
+Result<Study> run_study(const Params& params, const Options& options, std::vector<Model> models,
+                        std::vector<Model> horizon_models, const Progress& progress) {
+  Study study;
+  study.options = options;
+  study.models = std::move(models);
+  study.horizon_models = std::move(horizon_models);
+  study.atmospheres = atmospheres(params);
+  study.rays = make_ray_tests(study.atmospheres, options);
+  study.verticals = make_verticals();
+  study.sky = make_sky();
+  if (!study.horizon_models.empty()) study.horizons = make_horizons(params);
+
+  double work = kSkyFactor * static_cast<double>(study.sky.answers.queries.size());
+  for (const RayTest& test : study.rays) work += static_cast<double>(test.rays.size());
+  for (const VerticalTest& test : study.verticals) work += static_cast<double>(test.angle_deg.size());
+  for (const HorizonTest& test : study.horizons) work += static_cast<double>(test.elevation_deg.size());
+  Asker asker(options, work * options.samples, progress);
+  const auto ask_rays = [&](std::size_t a) {
+    return asker.ask(study.atmospheres[a].params, study.models, options.samples, study.rays[a].answers);
+  };
+  // Atmosphere by atmosphere: a model may keep the tables of the last one.
+  if (Result<void> r = ask_rays(0); !r) return std::move(r).error();
+  Answers all;
+  for (const VerticalTest& test : study.verticals) {
+    all.queries.insert(all.queries.end(), test.answers.queries.begin(), test.answers.queries.end());
+  }
+  if (Result<void> r = asker.ask(params, study.models, options.samples, all); !r) return std::move(r).error();
+  std::size_t next = 0;
+  const auto take = [&](Answers& answers) {
+    const auto from = static_cast<std::ptrdiff_t>(next);
+    const auto to = static_cast<std::ptrdiff_t>(next + answers.queries.size());
+    answers.reference.assign(all.reference.begin() + from, all.reference.begin() + to);
+    for (const std::vector<Rgb>& model : all.models)
+      answers.models.emplace_back(model.begin() + from, model.begin() + to);
+    next += answers.queries.size();
+  };
+  for (VerticalTest& test : study.verticals) take(test.answers);
+  Result<void> sky = asker.ask(params, study.models, kSkyFactor * options.samples, study.sky.answers);
+  if (!sky) return std::move(sky).error();
+  if (!study.horizons.empty()) {
+    all = {};
+    for (const HorizonTest& test : study.horizons) {
+      all.queries.insert(all.queries.end(), test.answers.queries.begin(), test.answers.queries.end());
+    }
+    if (Result<void> r = asker.ask(params, study.horizon_models, options.samples, all); !r)
+      return std::move(r).error();
+    next = 0;
+    for (HorizonTest& test : study.horizons) take(test.answers);
+  }
+  for (std::size_t a = 1; a < study.rays.size(); ++a) {
+    if (Result<void> r = ask_rays(a); !r) return std::move(r).error();
+  }
+  return study;
+}
+
+ErrorSummary summarise(const Study& study, std::size_t model, std::size_t atmosphere,
+                       const std::function<bool(const TestRay&)>& takes) {
+  const RayTest& test = study.rays[atmosphere];
+  std::vector<Comparison> comparisons;
+  for (std::size_t i = 0; i < test.rays.size(); ++i) {
+    const Truth right = truth(test.answers.reference[i], study.models[model].orders);
+    if (takes(test.rays[i]) && is_comparable(right))
+      comparisons.push_back(compare(test.answers.models[model][i], right));
+  }
+  return summarise(comparisons);
+}
+
+std::vector<BadRay> worst_rays(const Study& study, std::size_t model, std::size_t count) {
+  std::vector<BadRay> out;
+  for (std::size_t a = 0; a < study.rays.size(); ++a) {
+    const RayTest& test = study.rays[a];
+    for (std::size_t i = 0; i < test.rays.size(); ++i) {
+      const Truth right = truth(test.answers.reference[i], study.models[model].orders);
+      if (is_comparable(right)) out.push_back({a, i, compare(test.answers.models[model][i], right)});
+    }
+  }
+  const auto error = [](const BadRay& r) {
+    return *std::max_element(r.comparison.error.begin(), r.comparison.error.end());
+  };
+  std::stable_sort(out.begin(), out.end(),
+                   [&](const BadRay& a, const BadRay& b) { return error(a) > error(b); });
+  out.resize(std::min(out.size(), count));
+  return out;
+}
+
+ErrorSummary summarise_sky(const Study& study, std::size_t model, double low_deg, double high_deg) {
+  std::vector<Comparison> comparisons;
+  for (std::size_t i = 0; i < study.sky.sun_elevation_deg.size(); ++i) {
+    const double sun = study.sky.sun_elevation_deg[i];
+    const Truth right = truth(study.sky.answers.reference[i], study.models[model].orders);
+    if (sun >= low_deg && sun <= high_deg && is_comparable(right)) {
+      comparisons.push_back(compare(study.sky.answers.models[model][i], right));
+    }
+  }
+  return summarise(comparisons);
+}
+
+}  // namespace tyndall::validate

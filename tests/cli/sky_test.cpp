@@ -1,0 +1,252 @@
+// `tyndall sky` as scripts see it, and the map and the sun's disc below it: where things are, and that no
+// light is lost.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "config/csv.hpp"
+#include "config/text.hpp"
+#include "effect/medium.hpp"
+#include "image/image.hpp"
+#include "models/single_scattering.hpp"
+#include "run_tyndall.hpp"
+#include "sky_map.hpp"
+
+namespace tyndall::cli {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kRadPerDeg = kPi / 180.0;
+
+// Over the whole sphere, or its upper half times the cosine.
+std::array<double, 3> integral(const image::Image& image, bool horizontal) {
+  SkyMap map;
+  map.width = image.width;
+  map.height = image.height;
+  std::array<double, 3> sum = {};
+  for (std::uint32_t y = 0; y < image.height; ++y) {
+    const double cosine = std::cos(kPi * (y + 0.5) / image.height);
+    const double weight = map.pixel_solid_angle(y) * (horizontal ? std::max(cosine, 0.0) : 1.0);
+    for (std::uint32_t x = 0; x < image.width; ++x) {
+      for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * image.pixel(x, y)[c];
+    }
+  }
+  return sum;
+}
+
+SkyMap map_of(std::uint32_t width, std::uint32_t height, double elevation_deg, double azimuth_deg,
+              double altitude_m = 0.0) {
+  return {width, height, altitude_m, elevation_deg * kRadPerDeg, azimuth_deg * kRadPerDeg};
+}
+
+const SunFace kFace = {0.2667 * kRadPerDeg, {0.4, 0.5, 0.6}, 10.0};
+
+TEST(CliSkyMap, PixelsCoverTheSphereAndLookWhereTheyShould) {
+  double sum = 0.0;
+  const SkyMap map = map_of(36, 18, 35.0, 125.0);
+  for (std::uint32_t y = 0; y < map.height; ++y) sum += map.width * map.pixel_solid_angle(y);
+  EXPECT_NEAR(sum, 4.0 * kPi, 1e-12);
+  // Zenith angle 55, azimuth 125 are the centre of column 12 (120 to 130) and row 5 (50 to 60).
+  EXPECT_NEAR(map.ray(12, 5).cos_view_sun, 1.0, 1e-12);
+  EXPECT_NEAR(map.ray(30, 12).cos_view_sun, -1.0, 1e-12);
+  EXPECT_NEAR(map.ray(0, 0).cos_view_zenith, std::cos(5.0 * kRadPerDeg), 1e-12);
+  // 10 deg clockwise is the next column to the right.
+  EXPECT_NEAR(map.ray(13, 5).cos_view_sun, map.ray(11, 5).cos_view_sun, 1e-12);
+}
+
+TEST(CliSkyMap, TheDiscHoldsTheDirectSunAtEverySize) {
+  const shared::Medium medium = medium_from_params({});
+  for (const auto& [width, height] :
+       {std::pair(2U, 1U), std::pair(16U, 8U), std::pair(333U, 77U), std::pair(2048U, 1024U)}) {
+    // In the open, at the seam of the map, at the zenith, and near it.
+    for (const auto& [elevation, azimuth] :
+         {std::pair(30.0, 100.0), std::pair(45.0, 0.0), std::pair(20.0, -720.05), std::pair(90.0, 40.0),
+          std::pair(89.9, 200.0)}) {
+      const SkyMap map = map_of(width, height, elevation, azimuth);
+      image::Image image(width, height);
+      add_sun(image, map, kFace, medium);
+      const std::array<double, 3> found = integral(image, false);
+      const std::array<double, 3> passed =
+          models::sun_transmittance(medium, 0.0, std::sin(elevation * kRadPerDeg));
+      for (std::size_t c = 0; c < 3; ++c) {
+        // Pixels are floats, and the air is not quite the same over the disc.
+        EXPECT_NEAR(found[c], 10.0 * passed[c], 2e-5 * 10.0) << width << ' ' << elevation << ' ' << azimuth;
+      }
+    }
+  }
+}
+
+TEST(CliSkyMap, TheHorizonCutsTheDisc) {
+  Params vacuum;
+  vacuum.atmosphere.custom_coefficients = true;
+  vacuum.atmosphere.rayleigh_scattering = {0, 0, 0};
+  vacuum.atmosphere.aerosol_density = 0;
+  vacuum.atmosphere.ozone_absorption = {0, 0, 0};
+  const shared::Medium medium = medium_from_params(vacuum);
+  const auto flux = [&](double elevation_deg, double altitude_m) {
+    const SkyMap map = map_of(720, 360, elevation_deg, 10.0, altitude_m);
+    image::Image image(map.width, map.height);
+    add_sun(image, map, {0.2667 * kRadPerDeg, {}, 10.0}, medium);
+    return integral(image, false)[1];
+  };
+  EXPECT_NEAR(flux(0.0, 0.0), 5.0, 0.01);  // half of it; a uniform face
+  // A chord at half the radius leaves 1/2 + (x sqrt(1 - x^2) + asin x) / pi.
+  EXPECT_NEAR(flux(0.13335, 0.0), 10.0 * (0.5 + (0.5 * std::sqrt(0.75) + std::asin(0.5)) / kPi), 0.02);
+  EXPECT_EQ(flux(-0.27, 0.0), 0.0);
+  // From above, the horizon lies deeper.
+  EXPECT_NEAR(flux(-0.27, 1000.0), 10.0, 1e-4);
+  EXPECT_NEAR(flux(-10.0, 400000.0), 10.0, 1e-4);
+  EXPECT_EQ(flux(-30.0, 400000.0), 0.0);
+}
+
+class CliSky : public testing::Test {
+ protected:
+  image::File make(std::vector<std::string> arguments) {
+    const std::string path = scratch_.at("sky.exr");
+    arguments.insert(arguments.begin(), {"sky", "-o", path});
+    const Outcome outcome = run_tyndall(arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    out_ = outcome.out;
+    Result<image::File> file = image::read(path);
+    EXPECT_TRUE(file.ok());
+    return file ? std::move(file).value() : image::File();
+  }
+  std::array<double, 3> probe(const std::string& ray, std::vector<std::string> more = {}) {
+    const std::string header = "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n";
+    more.insert(more.begin(), {"probe", "--json", "--queries", scratch_.write("q.csv", header + ray + "\n")});
+    const Outcome outcome = run_tyndall(more);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out)["answers"][0]["L"];
+  }
+
+  Scratch scratch_;
+  std::string out_;
+};
+
+const std::vector<std::string> kSingle = {"--model", "single"};
+std::vector<std::string> with_single(std::vector<std::string> arguments) {
+  arguments.insert(arguments.end(), kSingle.begin(), kSingle.end());
+  return arguments;
+}
+
+TEST_F(CliSky, TheUpperHalfHoldsTheIrradianceOfTheSky) {
+  for (const double elevation : {60.0, 15.0, 0.0, -4.0}) {
+    for (const double altitude : {0.0, 9000.0}) {
+      // The sun's irradiance is 10 and the scale 0.5.
+      const image::File file = make(with_single(
+          {"--size", "180x360", "--sun-elevation-deg", config::number_text(elevation), "--sun-azimuth-deg",
+           "77", "--altitude", config::number_text(altitude), "--disc", "false"}));
+      const std::array<double, 3> found = integral(file.image, true);
+      const std::array<double, 3> truth = probe(
+          config::number_text(altitude) + ",sky," + config::number_text(90.0 - elevation) + ",", kSingle);
+      for (std::size_t c = 0; c < 3; ++c) {
+        EXPECT_NEAR(found[c], 5.0 * truth[c], 0.005 * 5.0 * truth[c])
+            << elevation << ' ' << altitude << ' ' << c;
+      }
+    }
+  }
+}
+
+TEST_F(CliSky, PixelsAreRays) {
+  const image::File file =
+      make(with_single({"--size", "36x18", "--sun-elevation-deg", "30", "--sun-azimuth-deg", "40",
+                        "--altitude", "400000", "--set", "sun.irradiance=2", "--set", "scattering.scale=1"}));
+  for (const auto& [x, y] : {std::pair(4U, 11U), std::pair(20U, 17U), std::pair(7U, 5U)}) {
+    const std::string ray =
+        "400000," + config::number_text(5.0 + 10.0 * y) + ",60," + config::number_text(5.0 + 10.0 * x - 40.0);
+    const std::array<double, 3> truth = probe(ray, kSingle);
+    for (std::size_t c = 0; c < 3; ++c) {
+      // The sun itself is in row 5 (zenith angles 50 to 60) or 6, column 3 or 4.
+      EXPECT_NEAR(file.image.pixel(x, y)[c], 2.0 * truth[c], 2e-5 * truth[c]) << x << ' ' << y;
+    }
+  }
+  const auto value = [&](const std::string& name) {
+    for (const auto& [key, text] : file.metadata) {
+      if (key == name) return text;
+    }
+    return std::string("none");
+  };
+  EXPECT_EQ(value("tyndall.sun.elevation_deg"), "30");
+  EXPECT_EQ(value("tyndall.sun.azimuth_deg"), "40");
+  EXPECT_EQ(value("tyndall.camera.altitude_m"), "4e+05");
+  EXPECT_EQ(value("tyndall.sky.disc"), "true");
+  EXPECT_EQ(value("tyndall.sky.model"), "single");
+}
+
+TEST_F(CliSky, TheGroundIsThatOfTheReference) {
+  const image::File file = make(with_single(
+      {"--size", "4x6", "--sun-elevation-deg", "40", "--sun-azimuth-deg", "45", "--altitude", "5000",
+       "--disc", "false", "--set", "planet.ground_albedo=0.4", "--set", "sun.irradiance=2"}));
+  for (const auto& [x, y] : {std::pair(0U, 5U), std::pair(2U, 4U), std::pair(1U, 3U)}) {
+    const std::string ray =
+        "5000," + config::number_text(15.0 + 30.0 * y) + ",50," + config::number_text(90.0 * x);
+    const std::array<double, 3> truth = probe(ray, {"--model", "reference", "--orders", "1", "--samples",
+                                                    "20000", "--set", "planet.ground_albedo=0.4"});
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_NEAR(file.image.pixel(x, y)[c], truth[c], 0.004 * truth[c]) << x << ' ' << y;
+  }
+}
+
+TEST_F(CliSky, TheSunByPlaceAndTime) {
+  const image::File file = make(
+      {"--size", "360x180", "--at", "39.742476,-105.1786", "--time", "2003-10-17T12:30:30-07:00", "--json"});
+  const nlohmann::json out = nlohmann::json::parse(out_);
+  EXPECT_NEAR(out["sun_elevation_deg"].get<double>(), 39.87205, 0.0005);
+  EXPECT_NEAR(out["sun_azimuth_deg"].get<double>(), 194.34024, 0.0005);
+  // The brightest pixel is the sun's.
+  std::size_t best = 0;
+  for (std::size_t i = 0; i < file.image.rgb.size() / 3; ++i) {
+    if (file.image.rgb[3 * i] > file.image.rgb[3 * best]) best = i;
+  }
+  EXPECT_EQ(best % 360, 194U);
+  EXPECT_EQ(best / 360, 50U);
+}
+
+TEST_F(CliSky, WhatIsWrongIsSaid) {
+  const std::string either =
+      ", tyndall sky, needed is either --sun-elevation-deg E --sun-azimuth-deg A or --at LAT,LON --time "
+      "ISO8601\n";
+  const auto error = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "sky");
+    arguments.insert(arguments.end(), {"-o", scratch_.at("none.exr"), "--size", "4x2"});
+    const Outcome outcome = run_tyndall(arguments);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
+    return outcome.err;
+  };
+  EXPECT_EQ(error({}), "tyndall: error: the sun is not given" + either);
+  EXPECT_EQ(error({"--sun-elevation-deg", "3"}), "tyndall: error: --sun-azimuth-deg is missing" + either);
+  EXPECT_EQ(error({"--sun-azimuth-deg", "3"}), "tyndall: error: --sun-elevation-deg is missing" + either);
+  EXPECT_EQ(error({"--at", "1,2"}), "tyndall: error: --time is missing" + either);
+  EXPECT_EQ(error({"--time", "2000-01-01T00:00Z"}), "tyndall: error: --at is missing" + either);
+  EXPECT_EQ(error({"--sun-azimuth-deg", "3", "--time", "2000-01-01T00:00Z"}),
+            "tyndall: error: the sun is given by angles and by place and time" + either);
+  EXPECT_NE(error({"--at", "91,0", "--time", "2000-01-01T00:00Z"})
+                .find("is out of range, --at, allowed is LAT,LON"),
+            std::string::npos);
+  EXPECT_NE(error({"--at", "1,0", "--time", "2001-02-29T00:00Z"}).find("has no such day, --time, allowed"),
+            std::string::npos);
+  const std::vector<std::string> sun = {"--sun-elevation-deg", "3", "--sun-azimuth-deg", "4"};
+  const auto with_sun = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), sun.begin(), sun.end());
+    return error(more);
+  };
+  EXPECT_NE(with_sun({"--altitude", "-3"}).find("--altitude, allowed is a number, 0 to 1e+09"),
+            std::string::npos);
+  EXPECT_NE(with_sun({"--disc", "maybe"}).find("--disc, allowed is true, false"), std::string::npos);
+  EXPECT_NE(with_sun({"--model", "reference"}).find("--model, allowed is "), std::string::npos);
+  EXPECT_NE(with_sun({"--set", "sun.irradiance=-1"}).find("sun.irradiance"), std::string::npos);
+  const Outcome png = run_tyndall({"sky", "-o", scratch_.at("a.png"), sun[0], sun[1], sun[2], sun[3]});
+  EXPECT_EQ(png.status, 2);
+  EXPECT_NE(png.err.find("-o, allowed is a name in .exr"), std::string::npos);
+  const Outcome lost = run_tyndall({"sky", "-o", scratch_.at("no/a.exr"), sun[0], sun[1], sun[2], sun[3]});
+  EXPECT_EQ(lost.status, 1);
+  EXPECT_FALSE(std::filesystem::exists(scratch_.at("none.exr")));
+}
+
+}  // namespace
+}  // namespace tyndall::cli

@@ -1,0 +1,76 @@
+// `tyndall validate` as scripts see it, at its smallest.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "run_tyndall.hpp"
+
+namespace tyndall::cli {
+namespace {
+
+const std::vector<std::string> kSmall = {"--rays", "36", "--samples", "300", "--orders", "3", "--seed", "7"};
+
+class CliValidate : public testing::Test {
+ protected:
+  static Outcome run(std::vector<std::string> more) {
+    more.insert(more.begin(), kSmall.begin(), kSmall.end());
+    more.insert(more.begin(), "validate");
+    return run_tyndall(more);
+  }
+  Scratch scratch_;
+};
+
+TEST_F(CliValidate, ReportsAndPagesAreTheSameEveryTime) {
+  const std::string html = scratch_.at("report.html");
+  const std::string page = scratch_.at("page.md");
+  const Outcome outcome = run({"-o", html, "--markdown", page, "--json", "--set", "atmosphere.mie_g=0.7"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  const nlohmann::json json = nlohmann::json::parse(outcome.out);
+  const std::string command =
+      "tyndall validate -o REPORT.html --rays 36 --samples 300 --seed 7 --orders 3 --set "
+      "atmosphere.mie_g=0.7";
+  EXPECT_EQ(json["command"], command);
+  EXPECT_NE(contents_of(html).find(command), std::string::npos);
+  EXPECT_NE(contents_of(page).find("    " + command + "\n"), std::string::npos);
+  EXPECT_NE(contents_of(page).find(json["device"].get<std::string>()), std::string::npos);
+  bool found = false;
+  for (const nlohmann::json& model : json["models"]) {
+    if (model["name"] != "single") continue;
+    for (const nlohmann::json& group : model["groups"]) {
+      if (group["sun"] != "up" || group["region"] != "all") continue;
+      found = true;
+      // Single scattering is right; what is left is the noise of 300 paths.
+      EXPECT_LT(group["mean"].get<double>(), 2.0 * group["noise"].get<double>() + 0.002);
+    }
+  }
+  EXPECT_TRUE(found);
+  const std::string first_html = contents_of(html);
+  const std::string first_page = contents_of(page);
+  ASSERT_EQ(run({"-o", html, "--markdown", page, "--set", "atmosphere.mie_g=0.7"}).status, 0);
+  EXPECT_EQ(contents_of(html), first_html);
+  EXPECT_EQ(contents_of(page), first_page);
+}
+
+TEST_F(CliValidate, WhatIsWrongIsSaid) {
+  const auto error = [&](const std::vector<std::string>& arguments, int status = 2) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.status, status) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
+    return outcome.err;
+  };
+  EXPECT_EQ(error({}),
+            "tyndall: error: no output file, -o, needed is -o REPORT.html, --markdown FILE or --json\n");
+  EXPECT_NE(error({"-o", scratch_.at("a.pdf")}).find("-o, allowed is a name in .html or .htm"),
+            std::string::npos);
+  EXPECT_NE(error({"--markdown", scratch_.at("a.txt")}).find("--markdown, allowed is a name in .md"),
+            std::string::npos);
+  EXPECT_NE(error({"-o", scratch_.at("no/a.html")}, 1).find("No such file or directory"), std::string::npos);
+  const Outcome few = run_tyndall({"validate", "--json", "--rays", "3"});
+  EXPECT_EQ(few.status, 2);
+  EXPECT_NE(few.err.find("--rays, allowed is a whole number, 18 to"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tyndall::cli

@@ -1,0 +1,192 @@
+// The cache on disk: what is kept comes back, and nothing else ever does.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "config/file_cache.hpp"
+
+namespace tyndall::config {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string pattern(std::size_t size, unsigned seed) {
+  std::string out(size, '\0');
+  for (std::size_t i = 0; i < size; ++i) {
+    seed = seed * 1664525U + 1013904223U;
+    out[i] = static_cast<char>(seed >> 24U);
+  }
+  return out;
+}
+std::span<const std::byte> bytes_of(const std::string& text) { return std::as_bytes(std::span(text)); }
+
+class ConfigFileCache : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "tyndall-cache-XXXXXX").string();
+    ASSERT_NE(::mkdtemp(name.data()), nullptr);
+    root_ = name;
+  }
+  void TearDown() override {
+    ::chmod(root_.c_str(), 0700);
+    fs::remove_all(root_);
+  }
+  [[nodiscard]] FileCache open(std::uint64_t limit = 1U << 20U, const std::string& version = "v1") const {
+    return {(root_ / "a/b").string(), limit, version};
+  }
+  static std::string contents_of(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  }
+  static void overwrite(const std::string& path, const std::string& contents) {
+    std::ofstream(path, std::ios::binary) << contents;
+  }
+  fs::path root_;
+};
+
+TEST_F(ConfigFileCache, WhatIsKeptComesBack) {
+  FileCache cache = open();
+  EXPECT_FALSE(cache.read("key", 10));
+  EXPECT_EQ(cache.note(), "");
+  EXPECT_FALSE(fs::exists(root_ / "a"));
+  for (const std::size_t size : {0U, 1U, 31U, 32U, 33U, 100000U}) {
+    const std::string contents = pattern(size, 1);
+    cache.write("key", bytes_of(contents));
+    EXPECT_EQ(cache.note(), "");
+    EXPECT_EQ(open().read("key", size), contents) << size;
+  }
+  EXPECT_FALSE(cache.read("another", 100000));
+  cache.write("another", bytes_of("x"));
+  EXPECT_EQ(cache.read("another", 1), "x");
+  EXPECT_TRUE(cache.read("key", 100000));
+}
+
+TEST_F(ConfigFileCache, WhatIsNotWholeIsRefusedInOneLine) {
+  FileCache cache = open();
+  const std::string contents = pattern(1000, 2);
+  cache.write("key", bytes_of(contents));
+  const std::string file = cache.path("key");
+  const std::string good = contents_of(file);
+  const auto note = [&](const std::string& now) {
+    overwrite(file, now);
+    EXPECT_FALSE(cache.read("key", 1000));
+    EXPECT_EQ(cache.note().find('\n'), std::string::npos);
+    return cache.note();
+  };
+  const auto says = [&](const std::string& why) {
+    return "the cached file " + file + " is " + why + " and is made anew";
+  };
+  for (const std::size_t length : {0U, 1U, 47U, 48U, 60U, 1000U})
+    EXPECT_EQ(note(good.substr(0, length)), says("truncated"));
+  EXPECT_EQ(note(good.substr(0, good.size() - 1)), says("truncated"));
+  EXPECT_EQ(note(good + "x"), says("damaged"));
+  // One bit anywhere.
+  for (std::size_t at = 0; at < good.size(); ++at) {
+    std::string flipped = good;
+    flipped[at] = static_cast<char>(flipped[at] ^ 4);
+    EXPECT_NE(note(flipped), "") << at;
+  }
+  EXPECT_EQ(note(pattern(2000, 3)), says("of another kind"));
+  EXPECT_EQ(note(good + std::string(10000, 'x')), says("not readable or too large"));
+  overwrite(file, good);
+  EXPECT_EQ(cache.read("key", 1000), contents);
+  EXPECT_EQ(cache.note(), "");
+  EXPECT_FALSE(cache.read("key", 999));
+  EXPECT_EQ(cache.note(), says("of something else"));
+  FileCache newer = open(1U << 20U, "v2");
+  EXPECT_FALSE(newer.read("key", 1000));
+  EXPECT_EQ(newer.note(), says("of another version"));
+  // Made anew, it is good again.
+  newer.write("key", bytes_of(contents));
+  EXPECT_EQ(newer.read("key", 1000), contents);
+  // Another key's file under this key's name.
+  cache.write("other", bytes_of(contents));
+  overwrite(file, contents_of(cache.path("other")));
+  EXPECT_FALSE(cache.read("key", 1000));
+}
+
+TEST_F(ConfigFileCache, TheOldestGoWhenThereIsNoRoom) {
+  FileCache cache = open(10000);
+  const std::string contents = pattern(3000, 4);
+  for (const char* const key : {"a", "b", "c"}) {
+    cache.write(key, bytes_of(contents));
+    ::usleep(20000);
+  }
+  EXPECT_TRUE(cache.read("a", 3000));  // used last, now
+  cache.write("d", bytes_of(contents));
+  EXPECT_TRUE(cache.read("a", 3000));
+  EXPECT_FALSE(cache.read("b", 3000));
+  EXPECT_TRUE(cache.read("c", 3000));
+  EXPECT_TRUE(cache.read("d", 3000));
+  // What is no file of ours stays.
+  overwrite((root_ / "a/b/notes.txt").string(), pattern(20000, 5));
+  cache.write("e", bytes_of(contents));
+  EXPECT_TRUE(fs::exists(root_ / "a/b/notes.txt"));
+  const std::string large = pattern(10001, 6);
+  cache.write("large", bytes_of(large));
+  EXPECT_NE(cache.note().find("more than its limit of 10000"), std::string::npos);
+  EXPECT_TRUE(cache.read("e", 3000));
+}
+
+TEST_F(ConfigFileCache, TroubleIsToldAndNothingMore) {
+  overwrite((root_ / "file").string(), "");
+  FileCache blocked((root_ / "file/below").string(), 1000, "v");
+  blocked.write("key", bytes_of("x"));
+  EXPECT_NE(blocked.note().find("nothing is cached: "), std::string::npos);
+  EXPECT_FALSE(blocked.read("key", 1));
+  FileCache off;
+  off.write("key", bytes_of("x"));
+  EXPECT_EQ(off.note(), "");
+  EXPECT_FALSE(off.read("key", 1));
+}
+
+TEST_F(ConfigFileCache, SeveralProcessesShareIt) {
+  constexpr int kProcesses = 4;
+  const std::string contents = pattern(300000, 7);
+  std::vector<pid_t> children;
+  for (int p = 0; p < kProcesses; ++p) {
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      FileCache cache = open();
+      bool good = true;
+      for (int i = 0; i < 30; ++i) {
+        const std::optional<std::string> read = cache.read("shared", contents.size());
+        // Absent or whole, never damaged.
+        good = good && cache.note().empty() && (!read || *read == contents);
+        cache.write("shared", bytes_of(contents));
+        good = good && cache.note().empty();
+      }
+      ::_exit(good ? 0 : 1);
+    }
+    children.push_back(child);
+  }
+  for (const pid_t child : children) {
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  }
+  // No temporary files are left.
+  EXPECT_EQ(std::distance(fs::directory_iterator(root_ / "a/b"), fs::directory_iterator()), 1);
+}
+
+TEST_F(ConfigFileCache, Directories) {
+  EXPECT_EQ(cache_directory("off"), "");
+  EXPECT_EQ(cache_directory("some/where"), "some/where");
+  ::setenv("XDG_CACHE_HOME", "/x", 1);
+  EXPECT_EQ(cache_directory("auto"), "/x/tyndall");
+  ::setenv("XDG_CACHE_HOME", "relative", 1);
+  ::setenv("HOME", "/h", 1);
+  EXPECT_EQ(cache_directory("auto"), "/h/.cache/tyndall");
+  ::unsetenv("XDG_CACHE_HOME");
+  ::unsetenv("HOME");
+  EXPECT_EQ(cache_directory("auto"), "");
+}
+
+}  // namespace
+}  // namespace tyndall::config
