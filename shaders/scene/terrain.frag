@@ -43,10 +43,11 @@ void main() {
   float sun_cosine = max(dot(normal, terrain.direction_to_sun), 0.0);
   // Relief too fine for the shadow maps cannot light a slope that faces away.
   lit *= clamp(dot(smooth_normal, terrain.direction_to_sun) * 8.0 + 0.5, 0.0, 1.0);
-  // The sunlit rim of a crest against the light is often thinner than a pixel: the crest turns out of sight
-  // over facing^2 / 2 of its radius. Where one sample takes it for a whole pixel, it strings beads.
+  // The sunlit rim of a crest against the sun is often thinner than a pixel: the crest turns out of sight
+  // within facing^2 / 2 of its radius. Where one sample takes it for a whole pixel, it strings beads.
   float turn_per_m = 2.0 * max(-shape.z, 0.0) / terrain.levels[level_layer].cell_m;
-  lit *= clamp(facing * facing / (2.0 * turn_per_m * pixel_m + 1e-6), 0.3, 1.0);
+  float rim = clamp(facing * facing / (2.0 * turn_per_m * pixel_m + 1e-6), 0.3, 1.0);
+  lit *= mix(1.0, rim, smoothstep(0.4, 0.8, -dot(to_eye, terrain.direction_to_sun) / distance_m));
 
   vec2 uv = light_table_uv(map_altitude.z, dot(up, terrain.direction_to_sun), radius, terrain.atmosphere_height_m);
   vec3 sun = texture(sun_transmittance, uv).rgb * (lit * sun_cosine);
