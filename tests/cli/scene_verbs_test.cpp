@@ -134,7 +134,7 @@ TEST_F(CliScenes, WithoutADeviceThereIsOneLine) {
   // What needs no device works without: the reference, and the sky.
   EXPECT_EQ(run_tyndall({"probe", "--queries", queries, "--model", "reference", "--samples", "64"}).status, 0);
   const std::string sky = scratch_.write("sky.csv", "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n0,sky,2,\n");
-  EXPECT_EQ(run_tyndall({"probe", "--queries", sky}).status, 0);
+  EXPECT_EQ(run_tyndall({"probe", "--queries", sky, "--model", "single"}).status, 0);
 }
 
 TEST_F(CliScenes, DevicesAreListedAndWrongOnesNamed) {
@@ -163,6 +163,8 @@ TEST_F(CliScenes, APictureThatDoesNotFitLeavesWhatWasThere) {
   for (int i = 0; i < 16; ++i) grid += "100" + std::string(i % 4 == 3 ? "\n" : " ");
   const std::vector<std::string> quick = {"--set", "terrain.source=" + scratch_.write("g.asc", grid),
                                           "--set", "planet.radius_m=20000",
+                                          "--set", "tables.size=4,4,4,4",
+                                          "--set", "tables.orders=1",
                                           "--set", "shadows.cascades=1",
                                           "--set", "shadows.first_marched=0"};
   rlimit unlimited = {};
@@ -182,7 +184,8 @@ TEST_F(CliScenes, APictureThatDoesNotFitLeavesWhatWasThere) {
 }
 
 TEST_F(CliScenes, BenchSaysWhatIsPromised) {
-  const Outcome outcome = run_tyndall({"bench", "--json", "--size", "16x9", "--frames", "2", "--set", "planet.radius_m=20000"});
+  const Outcome outcome = run_tyndall({"bench", "--json", "--size", "16x9", "--frames", "2", "--set", "planet.radius_m=20000",
+                                       "--set", "tables.size=4,4,4,4", "--set", "tables.orders=1"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const nlohmann::json report = nlohmann::json::parse(outcome.out);
   for (const char* const key : {"device", "size", "frames", "passes", "effect_ms", "frame_ms", "floor_ms", "counters", "memory_bytes"}) {

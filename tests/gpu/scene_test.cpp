@@ -16,9 +16,20 @@ namespace {
 
 constexpr VkExtent2D kSmall = {64, 36};
 
+// Tables that are built in a moment: what they hold is the business of tables_test.cpp.
+Params with_small_tables(Params params = {}) {
+  params.tables.size = {8, 32, 32, 4};
+  params.tables.orders = 2;
+  return params;
+}
+
 // A planet of the ordinary kind, but small: its horizon is near and its terrain has few levels, which take
-// most of the time of a scene.
-void make_planet_small(Params& params) { params.planet.radius_m = 100.0e3F; }
+// most of the rest of a scene's time.
+Params small_planet() {
+  Params params = with_small_tables();
+  params.planet.radius_m = 100.0e3F;
+  return params;
+}
 
 class GpuScene : public GpuTest {
  protected:
@@ -84,7 +95,7 @@ TEST_F(GpuScene, ShippedScenesAreDrawn) {
     config::Settings settings;
     ASSERT_OK(config::load(settings, entry.path().string()));
     settings.scene.camera.samples = 1;
-    const std::unique_ptr<Scene> scene = make(settings.effect, settings.scene);
+    const std::unique_ptr<Scene> scene = make(with_small_tables(settings.effect), settings.scene);
     ASSERT_NE(scene, nullptr);
     const image::Image image = draw(*scene);
     EXPECT_GT(luminance_sum(image), 0.0) << entry.path();
@@ -97,7 +108,7 @@ TEST_F(GpuScene, ShippedScenesAreDrawn) {
 
 TEST_F(GpuScene, TheDefaultSceneRepeatsItselfAndIsDarkAtNight) {
   SceneParams settings;
-  const std::unique_ptr<Scene> scene = make({}, settings);
+  const std::unique_ptr<Scene> scene = make(with_small_tables(), settings);
   ASSERT_NE(scene, nullptr);
   const image::Image first = draw(*scene);
   EXPECT_GT(luminance_sum(first), 0.0);
@@ -121,8 +132,7 @@ TEST_F(GpuScene, TheDefaultSceneRepeatsItselfAndIsDarkAtNight) {
 }
 
 TEST_F(GpuScene, ShadowParametersAtBothEnds) {
-  Params params;
-  make_planet_small(params);
+  Params params = small_planet();
   SceneParams least;
   least.camera.position_m = {0.0F, 2500.0F, 0.0F};
   SceneParams most = least;
@@ -137,8 +147,7 @@ TEST_F(GpuScene, ShadowParametersAtBothEnds) {
 }
 
 TEST_F(GpuScene, ShadingsTheCascadeViewAndTheSunsDisc) {
-  Params params;
-  make_planet_small(params);
+  Params params = small_planet();
   params.scattering.enabled = false;  // the ground's own light
   params.scattering.scale = 1.0F;
   SceneParams settings;
@@ -193,7 +202,7 @@ TEST_F(GpuScene, ShadingsTheCascadeViewAndTheSunsDisc) {
 }
 
 TEST_F(GpuScene, SmoothGroundUnderAHighSunHasNoAcne) {
-  Params params;
+  Params params = with_small_tables();
   params.scattering.enabled = false;
   SceneParams settings;
   // In view slopes of at most 13 degrees, nowhere turned away from a sun of 60 degrees. Out of view in the west a
