@@ -20,7 +20,7 @@ pictures: PRESET = release
 pictures: build
 	@mkdir -p docs/images
 	@for scene in demo noon stratosphere; do \
-	  build/release/bin/tyndall render scenes/$$scene.toml --size 768x432 -o docs/images/$$scene.png || exit 1; \
+	  build/release/bin/tyndall render scenes/$$scene.toml --size 640x360 -o docs/images/$$scene.png || exit 1; \
 	done
 
 setup:
