@@ -43,6 +43,7 @@ int run_bench(Args args) {
   scene::SceneDesc desc;
   desc.extent = {options.size.width, options.size.height};
   desc.timings = true;
+  desc.counters = true;
   Result<std::unique_ptr<scene::Scene>> scene =
       scene::Scene::create(*host.value(), desc, options.settings.effect, options.settings.scene);
   if (!scene) return fail_input(scene.error());
@@ -89,11 +90,18 @@ int run_bench(Args args) {
   out["effect_ms"] = median_or_zero(effect);
   out["frame_ms"] = median_or_zero(frame_total);
   out["floor_ms"] = median_or_zero(floor);
-  out["counters"] = nlohmann::ordered_json::object();
-  out["memory_bytes"] = {{"effect_persistent", memory.effect_persistent},
+  const Counters counters = scene.value()->counters();
+  out["counters"] = {{"samples_marched", counters.samples_marched},
+                     {"march_steps", counters.march_steps},
+                     {"tree_nodes_visited", counters.tree_nodes_visited},
+                     {"shadow_map_fetches", counters.shadow_map_fetches},
+                     {"pixels_corrected", counters.pixels_corrected}};
+  out["memory_bytes"] = {{"total", memory.effect_persistent + memory.effect_transient + memory.effect_host + memory.scene},
+                         {"effect_persistent", memory.effect_persistent},
                          {"effect_transient", memory.effect_transient},
                          {"effect_host", memory.effect_host},
                          {"scene", memory.scene}};
+  for (const ResourceMemory& row : memory.effect_resources) out["memory_bytes"]["effect_resources"][row.name] = row.bytes;
   if (options.json) return print(out.dump(2) + "\n");
   std::string text = out["device"].get<std::string>() + ", " + std::to_string(options.size.width) + "x" +
                      std::to_string(options.size.height) + ", median of " + std::to_string(options.frames) + " frames\n";
@@ -106,7 +114,12 @@ int run_bench(Args args) {
   }
   std::snprintf(line, sizeof line, "  effect %.3f ms, frame %.3f ms, floor %.3f ms\n", median_or_zero(effect),
                 median_or_zero(frame_total), median_or_zero(floor));
-  return print(text + line);
+  text += line;
+  for (const auto& [name, value] : out["counters"].items()) {
+    std::snprintf(line, sizeof line, "  %-20s %10llu\n", name.c_str(), static_cast<unsigned long long>(value));
+    text += line;
+  }
+  return print(text);
 }
 
 }  // namespace tyndall::cli

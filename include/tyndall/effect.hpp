@@ -61,7 +61,12 @@ struct EffectDesc {
   OutputFormat output_format = OutputFormat::rgba16f;
   float sky_depth = 0.0F;            // 0 or 1 - device depth where nothing was drawn; 0 with reversed Z
   bool shadow_depth_reversed = false;  // shadow maps hold 1 nearest to the sun
+  // With technique = epipolar: cascades that the air is marched through [1; 8], and texels of a shadow map's side
+  // that the trees have room for [1; 16384]; wider maps work, but what is beyond is read texel by texel.
+  std::uint32_t max_cascades = 4;
+  std::uint32_t max_shadow_resolution = 1024;
   bool timings = false;              // measure each pass with timestamps
+  bool counters = false;             // count what the passes do; see Effect::counters()
   bool check_inputs = true;          // look at the inputs of each frame and say what is suspicious
 };
 
@@ -122,6 +127,21 @@ struct Progress {
   [[nodiscard]] bool complete() const { return done == total; }
 };
 
+// Device memory of one resource of the effect.
+struct ResourceMemory {
+  const char* name;
+  VkDeviceSize bytes;
+};
+
+// What the passes of a frame have done.
+struct Counters {
+  std::uint64_t samples_marched = 0;   // rays: epipolar samples, or pixels with brute force
+  std::uint64_t march_steps = 0;       // stretches of rays that were found lit or dark
+  std::uint64_t tree_nodes_visited = 0;
+  std::uint64_t shadow_map_fetches = 0;  // comparisons, of four texels each; without those that build trees
+  std::uint64_t pixels_corrected = 0;
+};
+
 struct PassTiming {
   const char* name;
   double gpu_ms;
@@ -177,6 +197,10 @@ class Effect {
   [[nodiscard]] LightTables light_tables() const;
   [[nodiscard]] ScatteringTables scattering_tables() const;
   [[nodiscard]] MemoryUsage memory() const;
+  // The resources that memory().persistent consists of; the span is valid until the next call.
+  std::span<const ResourceMemory> resources();
+  // What a frame whose commands have completed has done; zeros without EffectDesc::counters.
+  [[nodiscard]] Counters counters(std::uint64_t frame_index) const;
   // Times of the passes of a frame whose commands have completed, with EffectDesc::timings. The span is
   // valid until the next call.
   std::span<const PassTiming> timings(std::uint64_t frame_index);

@@ -23,10 +23,16 @@ layout(binding = 5, OUTPUT_FORMAT) uniform writeonly image2D output_color;
 layout(binding = 6) uniform sampler3D single_rayleigh;
 layout(binding = 7) uniform sampler3D single_mie;
 layout(binding = 8) uniform sampler3D high_orders;
+layout(std430, binding = 9) buffer counter_block { uint counters[]; };
 
+#include "frame/counters.glsl"
 #include "frame/table_light.glsl"
 
 const int kReadsPerStep = 8;  // of the shadow map, per evaluation of the air
+const int kMostReads = 60000;  // of one cascade: some CPU devices end a loop after 65 535 rounds
+
+uint reads_done = 0u;
+uint steps_done = 0u;
 
 // What the march has gathered: density columns from the camera [m], and per species the integral of
 // density times transmittance from the sun to the eye [m].
@@ -35,16 +41,6 @@ struct March {
   vec3 rayleigh;
   vec3 mie;
 };
-
-// Mean densities between two points, from those at both: exponential profiles exactly, where altitude is linear.
-vec3 mean_densities(vec3 a, vec3 b, float climb) {
-  vec2 scales = climb / vec2(medium.rayleigh_scale_height_m, medium.mie_scale_height_m);
-  vec3 mean = 0.5 * (a + b);
-  // Level: the difference of nearly equal numbers would lose its digits, and the mean is good to 1e-5.
-  if (abs(scales.x) > 0.01) mean.x = (a.x - b.x) / scales.x;
-  if (abs(scales.y) > 0.01) mean.y = (a.y - b.y) / scales.y;
-  return mean;
-}
 
 // Steps through [from, to] inside one cascade. `ray` holds altitudes and cosines at the camera.
 void march_cascade(uint cascade, Ray ray, float from, float to, float steps_per_m, inout March march) {
@@ -75,7 +71,7 @@ void march_cascade(uint cascade, Ray ray, float from, float to, float steps_per_
     }
     float next_altitude = altitude_along(ray.altitude, ray.cos_zenith, from + (float(i) + 1.0) * dt, radius);
     vec3 next_density = densities(medium, next_altitude);
-    vec3 mean = mean_densities(density, next_density, next_altitude - altitude);
+    vec3 mean = mean_densities(medium, density, next_density, next_altitude - altitude);
     if (lit > 0.0) {
       float t = from + (float(i) + 0.5) * dt;
       float middle = altitude_along(ray.altitude, ray.cos_zenith, t, radius);
@@ -90,6 +86,8 @@ void march_cascade(uint cascade, Ray ray, float from, float to, float steps_per_
     altitude = next_altitude;
     density = next_density;
   }
+  steps_done += uint(groups);
+  reads_done += uint(groups * kReadsPerStep);
 }
 
 // Light scattered once, integrated over [start, end] of the ray.
@@ -116,18 +114,62 @@ vec3 integrated_light(Ray ray, float start, float end) {
   return light;
 }
 
+// Reads the map at every texel between two distances inside one cascade, for the light of the tables.
+void walk_cascade(uint cascade, Ray ray, TableRay path, float start, float from, float to, inout LitSections lit) {
+  mat4 shadow_from_world = frame.cascades[cascade].shadow_from_world;
+  vec3 uvz_from = shadow_uvz(shadow_from_world, frame.camera_position + ray.direction * from);
+  vec3 uvz_to = shadow_uvz(shadow_from_world, frame.camera_position + ray.direction * to);
+  vec2 texels = abs(uvz_to.xy - uvz_from.xy) * float(frame.shadow_resolution);
+  float wanted = max(max(texels.x, texels.y), float(frame.integration_steps));
+  int reads = int(clamp(ceil(wanted), 1.0, float(kMostReads)));
+  float step_m = (to - from) / float(reads);
+  vec3 duvz = (uvz_to - uvz_from) / float(reads);
+  vec3 uvz = uvz_from + 0.5 * duvz;
+  int i = 0;
+  while (i < reads) {
+    for (; i < reads && lit.closed_at < 0.0; ++i) {
+      float share = texture(shadow_maps, vec4(uvz.xy, float(cascade), clamp(uvz.z, 0.0, 1.0)));
+      float here = from + float(i) * step_m;
+      add_stretch(lit, here, here + step_m, share);
+      uvz += duvz;
+    }
+    close_section(lit, path, start);
+  }
+  if (kSections == kEach && lit.since >= 0.0) {
+    lit.closed_at = to;
+    close_section(lit, path, start);
+  }
+  steps_done += uint(reads);
+  reads_done += uint(reads);
+}
+
+// The lit part of [start, end]: cut by the shadow maps as far as they reach, whole beyond them.
+AirLight lit_table_light(Ray ray, TableRay path, float start, float end) {
+  LitSections lit = nothing_lit();
+  float depth_per_m = max(dot(ray.direction, frame.camera_forward), 1e-6);
+  float t = start;
+  for (uint c = frame.first_marched_cascade; c < frame.cascade_count; ++c) {
+    float to = min(frame.cascades[c].far_m / depth_per_m, end);
+    if (to - t > 1e-3) {
+      walk_cascade(c, ray, path, start, t, to, lit);
+      t = to;
+    }
+  }
+  return lit_light(lit, path, start, t, end);
+}
+
 // All that the air of [start, end] sends to the eye, as the modes ask.
 vec3 air_light(Ray ray, float start, float end) {
-  vec3 light = frame.single == 1u ? integrated_light(ray, start, end) : vec3(0.0);
-  bool lit_single = frame.single == 2u;
-  bool lit_high = frame.multiple == 1u;
+  vec3 light = vec3(0.0);
+  if (kSingle == kIntegration) light += integrated_light(ray, start, end);
+  if (kSingle != kTable && kMultiple == kNone) return light;
   TableRay path = table_ray_of(ray, start);
-  if (lit_single || lit_high) {
+  if (kLitTables) {
     AirLight lit = lit_table_light(ray, path, start, end);
-    if (lit_single) light += lit.single;
-    if (lit_high) light += lit.high;
+    if (kSingle == kTable) light += lit.single;
+    if (kMultiple == kOccluded) light += lit.high;
   }
-  if (frame.multiple == 2u) light += section_light(path, start, start, end).high;
+  if (kMultiple == kUnoccluded) light += section_light(path, start, start, end).high;
   return light;
 }
 
@@ -135,10 +177,6 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height)) return;
   vec3 background = texelFetch(scene_color, pixel, 0).rgb;
-  if (frame.enabled == 0u) {
-    imageStore(output_color, pixel, vec4(background, 1.0));
-    return;
-  }
   float depth = texelFetch(scene_depth, pixel, 0).r;
   Ray ray = view_ray(frame, pixel, depth);
   float start, end;
@@ -153,4 +191,7 @@ void main() {
   vec3 color = inscattered * frame.sun_irradiance;
   if (frame.only == 0u) color += background * through;
   imageStore(output_color, pixel, vec4(color, 1.0));
+  count(kSamplesMarched, 1u);
+  count(kMarchSteps, steps_done);
+  count(kShadowFetches, reads_done);
 }

@@ -1,19 +1,36 @@
 // The light of a ray by the scattering tables, with the shadow maps' shafts: what `single = table` and
-// `multiple = occluded` take. Include after the declarations of medium, frame, shadow_maps and the tables.
+// `multiple = occluded` take. Include after the declarations of medium, frame and the tables.
 // Sources: Yusov, "High Performance Outdoor Light Scattering Using Epipolar Sampling" (2013), section 2.4, for
 // one contiguous section from the first lit point; each lit section by itself is ours.
 #ifndef TYNDALL_TABLE_LIGHT_GLSL
 #define TYNDALL_TABLE_LIGHT_GLSL
 
+#include "frame/modes.glsl"
 #include "frame/table_lookup.glsl"
+#include "frame/view_ray.glsl"
 
 // What a walk along the ray has found. Distances from the ray's origin [m].
 struct LitSections {
-  float first;    // lit point; < 0: none yet
-  float total_m;  // lit length
-  float since;    // start of the lit section that the walk is in; < 0: in the shadow
-  AirLight light;  // of the sections that are complete, with each = true
+  float first;      // lit point; < 0: none yet
+  float total;      // lit length
+  float since;      // with kEach: start of the lit section that the walk is in; < 0: in the shadow
+  float closed_at;  // with kEach: end of that section, once it is found; close_section() must follow
+  AirLight light;   // with kEach: of the sections that are complete
 };
+
+LitSections nothing_lit() { return LitSections(-1.0, 0.0, -1.0, -1.0, AirLight(vec3(0.0), vec3(0.0))); }
+
+// The stretch [from, to], of which `share` is lit.
+void add_stretch(inout LitSections lit, float from, float to, float share) {
+  if (kSections == kContiguous) {
+    if (share > 0.0 && lit.first < 0.0) lit.first = to - share * (to - from);
+    lit.total += share * (to - from);
+  } else {
+    bool bright = share >= 0.5;
+    if (bright && lit.since < 0.0) lit.since = from;
+    if (!bright && lit.since >= 0.0) lit.closed_at = from;
+  }
+}
 
 AirLight add(AirLight a, AirLight b) { return AirLight(a.single + b.single, a.high + b.high); }
 
@@ -31,51 +48,23 @@ AirLight section_light(TableRay path, float start, float from, float to) {
   return light_between(frame.tables, medium, path, from - start, to - start);
 }
 
-// Reads the map at every texel between two distances inside one cascade.
-void walk_cascade(uint cascade, Ray ray, TableRay path, float start, float from, float to, bool each,
-                  inout LitSections lit) {
-  mat4 shadow_from_world = frame.cascades[cascade].shadow_from_world;
-  vec3 uvz_from = shadow_uvz(shadow_from_world, frame.camera_position + ray.direction * from);
-  vec3 uvz_to = shadow_uvz(shadow_from_world, frame.camera_position + ray.direction * to);
-  vec2 texels = abs(uvz_to.xy - uvz_from.xy) * float(frame.shadow_resolution);
-  float wanted = max(max(texels.x, texels.y), float(frame.integration_steps));
-  int reads = int(clamp(ceil(wanted), 1.0, 16.0 * float(frame.shadow_resolution)));
-  float step_m = (to - from) / float(reads);
-  vec3 duvz = (uvz_to - uvz_from) / float(reads);
-  vec3 uvz = uvz_from + 0.5 * duvz;
-  for (int i = 0; i < reads; ++i) {
-    float share = texture(shadow_maps, vec4(uvz.xy, float(cascade), clamp(uvz.z, 0.0, 1.0)));
-    float here = from + float(i) * step_m;
-    if (share > 0.0 && lit.first < 0.0) lit.first = here + (1.0 - share) * step_m;
-    lit.total_m += share * step_m;
-    if (each && share >= 0.5 && lit.since < 0.0) lit.since = here;
-    if (each && share < 0.5 && lit.since >= 0.0) {
-      lit.light = add(lit.light, section_light(path, start, lit.since, here));
-      lit.since = -1.0;
-    }
-    uvz += duvz;
+// With kEach: adds the light of the section that ended at closed_at.
+void close_section(inout LitSections lit, TableRay path, float start) {
+  if (kSections != kEach) return;
+  if (lit.since >= 0.0 && lit.closed_at > lit.since) {
+    lit.light = add(lit.light, section_light(path, start, lit.since, lit.closed_at));
   }
+  lit.since = lit.closed_at >= 0.0 ? -1.0 : lit.since;
+  lit.closed_at = -1.0;
 }
 
-// The lit part of [start, end]: cut by the shadow maps as far as they reach, whole beyond them.
-AirLight lit_table_light(Ray ray, TableRay path, float start, float end) {
-  bool each = frame.sections == 1u;
-  LitSections lit = LitSections(-1.0, 0.0, -1.0, AirLight(vec3(0.0), vec3(0.0)));
-  float depth_per_m = max(dot(ray.direction, frame.camera_forward), 1e-6);
-  float t = start;
-  for (uint c = frame.first_marched_cascade; c < frame.cascade_count; ++c) {
-    float to = min(frame.cascades[c].far_m / depth_per_m, end);
-    if (to - t > 1e-3) {
-      walk_cascade(c, ray, path, start, t, to, each, lit);
-      t = to;
-    }
-  }
-  if (each) {
-    float from = lit.since >= 0.0 ? lit.since : t;
-    return end - from > 1e-3 ? add(lit.light, section_light(path, start, from, end)) : lit.light;
-  }
+// The light of all that was found up to distance t, and of the rest of the ray to `end`, which nothing shadows.
+AirLight lit_light(LitSections lit, TableRay path, float start, float t, float end) {
   AirLight light = lit.light;
-  if (lit.total_m > 1e-3) light = section_light(path, start, lit.first, lit.first + lit.total_m);
+  if (kSections == kContiguous) {
+    light = AirLight(vec3(0.0), vec3(0.0));
+    if (lit.total > 1e-3) light = section_light(path, start, lit.first, lit.first + lit.total);
+  }
   if (end - t > 1e-3) light = add(light, section_light(path, start, t, end));
   return light;
 }

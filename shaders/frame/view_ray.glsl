@@ -14,24 +14,34 @@ struct Ray {
   bool sky;
 };
 
-vec3 view_position(mat4 view_from_clip, vec2 ndc, float depth) {
-  vec4 p = view_from_clip * vec4(ndc, depth, 1.0);
-  return p.xyz / p.w;
+// View-space depth [m] of what the depth buffer shows at a place of the picture [pixels].
+float view_depth(FrameConstants frame, vec2 position, float depth) {
+  vec2 ndc = 2.0 * position / vec2(float(frame.width), float(frame.height)) - 1.0;
+  vec4 p = frame.view_from_clip * vec4(ndc, depth, 1.0);
+  return -p.z / p.w;
 }
 
-Ray view_ray(FrameConstants frame, ivec2 pixel, float depth) {
-  vec2 ndc = 2.0 * (vec2(pixel) + 0.5) / vec2(float(frame.width), float(frame.height)) - 1.0;
+vec3 ray_direction(FrameConstants frame, vec2 position) {
+  return normalize(frame.ray_origin + position.x * frame.ray_x + position.y * frame.ray_y);
+}
+
+// The ray through a place of the picture [pixels; a pixel's middle is at + 0.5], ending at a view-space depth,
+// or nowhere.
+Ray ray_to_depth(FrameConstants frame, vec2 position, float depth_m, bool sky) {
   Ray ray;
-  vec3 near = view_position(frame.view_from_clip, ndc, frame.near_depth);
-  ray.direction = normalize(mat3(frame.world_from_view) * near);
-  ray.sky = depth == frame.sky_depth;
-  ray.length_m = 1e9;
-  if (!ray.sky) ray.length_m = length(view_position(frame.view_from_clip, ndc, depth));
+  ray.direction = ray_direction(frame, position);
+  ray.sky = sky;
+  ray.length_m = sky ? 1e9 : depth_m / max(dot(ray.direction, frame.camera_forward), 1e-6);
   ray.altitude = frame.camera_altitude_m;
   ray.cos_zenith = clamp(dot(ray.direction, frame.camera_up), -1.0, 1.0);
   ray.cos_sun_zenith = clamp(dot(frame.direction_to_sun, frame.camera_up), -1.0, 1.0);
   ray.cos_view_sun = clamp(dot(frame.direction_to_sun, ray.direction), -1.0, 1.0);
   return ray;
+}
+
+Ray view_ray(FrameConstants frame, ivec2 pixel, float depth) {
+  vec2 position = vec2(pixel) + 0.5;
+  return ray_to_depth(frame, position, view_depth(frame, position, depth), depth == frame.sky_depth);
 }
 
 // Cosine of the sun's zenith angle at distance t along the ray.

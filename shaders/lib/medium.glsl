@@ -16,6 +16,22 @@ vec3 densities(IN(Medium) m, float h) {
               ozone);
 }
 
+// Mean densities between two points, from those at both: exponential profiles exactly, where altitude is linear
+// between them; `climb` is their difference in altitude [m].
+vec3 mean_densities(IN(Medium) m, vec3 a, vec3 b, float climb) {
+  float rayleigh = climb / m.rayleigh_scale_height_m;
+  float mie = climb / m.mie_scale_height_m;
+  vec3 mean = 0.5 * (a + b);
+  // Level: the difference of nearly equal numbers would lose its digits, and the mean is good to 1e-5.
+  if (abs(rayleigh) > 0.01) {
+    mean.x = (a.x - b.x) / rayleigh;
+  }
+  if (abs(mie) > 0.01) {
+    mean.y = (a.y - b.y) / mie;
+  }
+  return mean;
+}
+
 // Optical depth of a column, per channel.
 vec3 optical_depth(IN(Medium) m, vec3 column) {
   return m.rayleigh_scattering * column.x + m.mie_extinction * column.y + m.ozone_absorption * column.z;

@@ -19,6 +19,12 @@ struct FrameConstants {
   float sky_depth;
   vec3 camera_up;  // vertical of the planet at the camera, world
   float near_depth;
+  vec3 ray_origin;  // rays through pixels: ray_origin + x ray_x + y ray_y, world, not of unit length
+  float unused_0;
+  vec3 ray_x;
+  float unused_1;
+  vec3 ray_y;
+  float unused_2;
   vec3 direction_to_sun;
   float cos_sun_angular_radius;
   vec3 sun_irradiance;  // times scattering.scale
@@ -28,13 +34,9 @@ struct FrameConstants {
   uint cascade_count;  // 0: nothing is shadowed
   uint first_marched_cascade;
   uint integration_steps;
-  uint enabled;  // 0: the output is the background
   uint only;     // 1: the output is the in-scattered light alone
-  uint single;    // SingleScattering, MultipleScattering and LitSections of include/tyndall/params.def
-  uint multiple;
-  uint sections;
-  uint unused_0;
-  uint unused_1;
+  uint shadow_depth_reversed;
+  uint unused_3;
   TableShape tables;
   CascadeConstants cascades[8];
 };

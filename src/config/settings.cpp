@@ -86,6 +86,16 @@ std::optional<std::uint32_t> choice_value(const Row& row, std::string_view text)
   return std::nullopt;
 }
 
+// A group that both lists have a part of stands where the last has it.
+std::vector<Group> without_repetitions(const std::vector<Group>& groups) {
+  std::vector<Group> out;
+  for (const Group& group : groups) {
+    std::erase_if(out, [&](const Group& before) { return before.name == group.name; });
+    out.push_back(group);
+  }
+  return out;
+}
+
 std::vector<std::string> all_keys() {
   std::vector<std::string> keys;
   for (const Row& row : rows()) keys.push_back(row.key());
@@ -107,7 +117,7 @@ const std::vector<Row>& rows() {
 }
 
 const std::vector<Group>& groups() {
-  static const std::vector<Group> all = {
+  static const std::vector<Group> all = without_repetitions({
 #define ENUM_BEGIN(type)
 #define ENUM_VALUE(type, identifier, value, text)
 #define ENUM_END(type)
@@ -123,7 +133,7 @@ const std::vector<Group>& groups() {
 #include "scene/scene_params.def"
 #include "tyndall/params.def"
 #include "tyndall/params_undef.h"
-  };
+  });
   return all;
 }
 

@@ -131,7 +131,14 @@ Result<void> check_frame(const FrameInputs& inputs, const EffectDesc& desc, cons
   if (!std::isfinite(inputs.sun.angular_radius_rad) || inputs.sun.angular_radius_rad < 0.0F) {
     return invalid("Sun::angular_radius_rad must be finite and not negative");
   }
-  static_cast<void>(params);
+  if (params.scattering.technique == Technique::epipolar && params.scattering.light_shafts) {
+    const std::size_t marched = inputs.cascades.empty() ? 0 : inputs.cascades.size() - inputs.first_marched_cascade;
+    if (marched > desc.max_cascades) {
+      return invalid("FrameInputs::cascades has " + std::to_string(marched) +
+                     " cascades to march, at most EffectDesc::max_cascades, " + std::to_string(desc.max_cascades) +
+                     ", are allowed");
+    }
+  }
   return {};
 }
 

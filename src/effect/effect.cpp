@@ -7,8 +7,10 @@
 #include <cstring>
 #include <string>
 
+#include "effect/epipolar.hpp"
 #include "effect/frame_constants.hpp"
 #include "effect/medium.hpp"
+#include "effect/modes.hpp"
 #include "effect/tables.hpp"
 #include "effect_shaders.hpp"
 #include "gpu/pipeline.hpp"
@@ -20,7 +22,7 @@ namespace tyndall {
 namespace {
 
 constexpr const char* kExtensions[] = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
-constexpr std::uint32_t kMaxTimedPasses = 16;
+constexpr std::uint32_t kMaxTimedPasses = 40;
 // Storage buffers may be bound at multiples of this on every device (the largest minimum allowed).
 constexpr VkDeviceSize kBufferAlignment = 256;
 
@@ -34,7 +36,13 @@ constexpr VkDeviceSize align(VkDeviceSize size) {
 }
 constexpr VkDeviceSize kFrameBytes = align(sizeof(shared::FrameConstants));
 constexpr VkDeviceSize kMediumBytes = align(sizeof(shared::Medium));
-constexpr VkDeviceSize kSlotBytes = kFrameBytes + kMediumBytes;
+constexpr VkDeviceSize kEpipolarBytes = align(sizeof(shared::EpipolarConstants));
+constexpr VkDeviceSize kSlotBytes = kFrameBytes + kMediumBytes + kEpipolarBytes;
+// Counters of a frame, as pairs of words.
+constexpr VkDeviceSize kCounterBytes = align(shared::kCounters * sizeof(std::uint64_t));
+
+constexpr VkBufferUsageFlags kCounterUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+                                             VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
 
 Result<void> check_desc(const DeviceInfo& info, const EffectDesc& desc) {
   const auto invalid = [](const char* text) { return Error{ErrorCode::invalid_argument, text}; };
@@ -48,6 +56,12 @@ Result<void> check_desc(const DeviceInfo& info, const EffectDesc& desc) {
   }
   if (desc.frames_in_flight == 0 || desc.frames_in_flight > 8) {
     return invalid("EffectDesc::frames_in_flight must be 1 to 8");
+  }
+  if (desc.max_cascades == 0 || desc.max_cascades > kMaxCascades) {
+    return invalid("EffectDesc::max_cascades must be 1 to 8");
+  }
+  if (desc.max_shadow_resolution == 0 || desc.max_shadow_resolution > 16384) {
+    return invalid("EffectDesc::max_shadow_resolution must be 1 to 16384");
   }
   if (desc.sky_depth != 0.0F && desc.sky_depth != 1.0F) return invalid("EffectDesc::sky_depth must be 0 or 1");
   return {};
@@ -68,8 +82,13 @@ MemoryUsage plan_memory(const gpu::Device& device, const EffectDesc& desc, const
   for (std::uint32_t i = 0; i < kTableCount; ++i) {
     usage.persistent += gpu::image_bytes(device, table_desc(static_cast<TableId>(i), params));
   }
+  usage.persistent += gpu::buffer_bytes(device, kCounterBytes * desc.frames_in_flight, kCounterUsage);
+  usage.persistent += epipolar_bytes(device, desc, params);
   usage.transient = table_scratch_bytes(device, params);
   usage.host = gpu::buffer_bytes(device, kSlotBytes * desc.frames_in_flight, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  if (desc.counters) {
+    usage.host += gpu::buffer_bytes(device, kCounterBytes * desc.frames_in_flight, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  }
   return usage;
 }
 
@@ -83,15 +102,21 @@ struct Effect::State {
   Params params;
   gpu::Device device;
 
-  gpu::Pipeline march_per_pixel;
+  std::array<gpu::Pipeline, kModeCount> march_per_pixel;
+  gpu::Pipeline no_air;
+  Epipolar epipolar;
   TableBuilder tables;
   gpu::Image no_shadows;
   gpu::Buffer constants;
+  gpu::Buffer counters;           // written by shaders
+  gpu::Buffer counters_readback;  // with EffectDesc::counters
   gpu::Handle<VkSampler> nearest;
   gpu::Handle<VkSampler> linear;
   gpu::Handle<VkSampler> shadow_compare;
+  gpu::Handle<VkSampler> shadow_plain;  // the depths themselves, with the same border
   gpu::Timer timer;
   std::array<PassTiming, kMaxTimedPasses> timings = {};
+  std::array<ResourceMemory, kTableCount + kEpipolarBuffers + 2> resource_rows = {};
 
   bool images_ready = false;  // the first recording moves them out of the undefined layout
 
@@ -104,6 +129,8 @@ struct Effect::State {
 
   Result<void> create_objects();
   void prepare_images(VkCommandBuffer cmd);
+  void clear_counters(VkCommandBuffer cmd, VkDeviceSize offset);
+  void read_counters(VkCommandBuffer cmd, VkDeviceSize offset);
   Result<void> run(VkCommandBuffer cmd, const gpu::Pipeline& pipeline,
                    std::span<const gpu::NamedResource> resources, const void* push, VkExtent3D size);
 };
@@ -135,16 +162,37 @@ Result<Effect> Effect::create(const DeviceInfo& info, const EffectDesc& desc, co
 }
 
 Result<void> Effect::State::create_objects() {
-  const gpu::Shader& march = desc.output_format == OutputFormat::rgba32f ? shaders::march_per_pixel_comp_rgba32f
-                                                                         : shaders::march_per_pixel_comp_rgba16f;
-  TYNDALL_ASSIGN(march_per_pixel, gpu::create_compute_pipeline(device, march));
-  march_per_pixel.name = "march_per_pixel";
+  const bool full = desc.output_format == OutputFormat::rgba32f;
+  const gpu::Shader& march = full ? shaders::march_per_pixel_comp_rgba32f : shaders::march_per_pixel_comp_rgba16f;
+  for (std::uint32_t mode = 0; mode < kModeCount; ++mode) {
+    if (!mode_exists(mode)) continue;
+    const std::array<gpu::Constant, 3> m = mode_constants(mode);
+    const gpu::Constant of_march[] = {m[0], m[1], m[2], {8, desc.counters ? 1U : 0U}};
+    TYNDALL_ASSIGN(march_per_pixel[mode], gpu::create_compute_pipeline(device, march, of_march));
+    march_per_pixel[mode].name = "march_per_pixel";
+  }
+  TYNDALL_ASSIGN(no_air, gpu::create_compute_pipeline(
+                             device, full ? shaders::no_air_comp_rgba32f : shaders::no_air_comp_rgba16f));
+  no_air.name = "no_air";
+  TYNDALL_TRY(epipolar.create(device, desc, params));
   TYNDALL_TRY(tables.create(device, desc.frames_in_flight, desc.timings, params));
   TYNDALL_ASSIGN(no_shadows, gpu::create_image(device, kNoShadows));
   TYNDALL_ASSIGN(constants, gpu::create_buffer(device, "constants", kSlotBytes * desc.frames_in_flight,
                                                VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
+  const VkDeviceSize counter_bytes = kCounterBytes * desc.frames_in_flight;
+  TYNDALL_ASSIGN(counters,
+                 gpu::create_buffer(device, "counters", counter_bytes, kCounterUsage, gpu::MemoryKind::device));
+  if (desc.counters) {
+    TYNDALL_ASSIGN(counters_readback, gpu::create_buffer(device, "counters_readback", counter_bytes,
+                                                         VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryKind::readback));
+  }
   TYNDALL_ASSIGN(linear, gpu::create_sampler(device, {}));
   TYNDALL_ASSIGN(nearest, gpu::create_sampler(device, {.filter = VK_FILTER_NEAREST}));
+  gpu::SamplerDesc plain;
+  plain.filter = VK_FILTER_NEAREST;
+  plain.address = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
+  if (desc.shadow_depth_reversed) plain.border = VK_BORDER_COLOR_FLOAT_OPAQUE_BLACK;
+  TYNDALL_ASSIGN(shadow_plain, gpu::create_sampler(device, plain));
   gpu::SamplerDesc compare;
   compare.compare = true;
   compare.address = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
@@ -174,6 +222,7 @@ Result<void> Effect::State::run(VkCommandBuffer cmd, const gpu::Pipeline& pipeli
 
 Result<void> Effect::set_params(const Params& params) {
   TYNDALL_TRY(check_params(params));
+  TYNDALL_TRY(state_->epipolar.set_params(params));
   TYNDALL_TRY(state_->tables.set_params(params));
   state_->params = params;
   return {};
@@ -185,6 +234,7 @@ Progress Effect::precompute_progress() const { return state_->tables.progress();
 
 void Effect::State::prepare_images(VkCommandBuffer cmd) {
   tables.begin_frame(cmd);
+  epipolar.begin_frame();
   if (images_ready) return;
   gpu::transition(device, cmd, no_shadows, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
   images_ready = true;
@@ -208,8 +258,14 @@ Result<void> Effect::record(VkCommandBuffer cmd, const FrameInputs& inputs) {
   std::memcpy(s.mapped(frame_offset), &frame, sizeof frame);
   std::memcpy(s.mapped(medium_offset), &medium, sizeof medium);
 
+  const VkDeviceSize epipolar_offset = medium_offset + kMediumBytes;
+  const shared::EpipolarConstants epipolar = epipolar_constants(inputs, s.desc, s.params);
+  std::memcpy(s.mapped(epipolar_offset), &epipolar, sizeof epipolar);
+
   if (s.desc.timings) s.timer.begin_frame(cmd, slot);
   s.prepare_images(cmd);
+  const VkDeviceSize counter_offset = kCounterBytes * slot;
+  if (s.desc.counters) s.clear_counters(cmd, counter_offset);
   const Texture none = {s.no_shadows.view.get(), VK_IMAGE_LAYOUT_GENERAL};
   const Texture& shadows = inputs.cascades.empty() ? none : inputs.shadow_maps;
   const auto table = [&s](const char* name, TableId id) {
@@ -218,18 +274,74 @@ Result<void> Effect::record(VkCommandBuffer cmd, const FrameInputs& inputs) {
   const gpu::NamedResource resources[] = {
       gpu::named_buffer("medium_block", s.constants.buffer.get(), medium_offset, sizeof medium),
       gpu::named_buffer("frame_block", s.constants.buffer.get(), frame_offset, sizeof frame),
+      gpu::named_buffer("epipolar_block", s.constants.buffer.get(), epipolar_offset, sizeof epipolar),
+      gpu::named_buffer("counter_block", s.counters.buffer.get(), counter_offset, kCounterBytes),
       gpu::named_image("scene_color", inputs.color.view, inputs.color.layout, s.nearest.get()),
       gpu::named_image("scene_depth", inputs.depth.view, inputs.depth.layout, s.nearest.get()),
       gpu::named_image("shadow_maps", shadows.view, shadows.layout, s.shadow_compare.get()),
+      gpu::named_image("shadow_depths", shadows.view, shadows.layout, s.shadow_plain.get()),
       table("single_rayleigh", TableId::single_rayleigh),
       table("single_mie", TableId::single_mie),
       table("high_orders", TableId::high_orders),
       gpu::named_image("output_color", inputs.output.view, inputs.output.layout),
   };
-  if (s.desc.timings) s.timer.begin(cmd, s.march_per_pixel.name);
-  TYNDALL_TRY(s.run(cmd, s.march_per_pixel, resources, nullptr, {inputs.extent.width, inputs.extent.height, 1}));
-  if (s.desc.timings) s.timer.end(cmd);
+  gpu::Timer* timer = s.desc.timings ? &s.timer : nullptr;
+  if (s.params.scattering.enabled && s.params.scattering.technique == Technique::epipolar) {
+    TYNDALL_TRY(s.epipolar.record(cmd, inputs, s.params, resources, timer));
+  } else {
+    const gpu::Pipeline& pipeline =
+        s.params.scattering.enabled ? s.march_per_pixel[mode_index(s.params.scattering)] : s.no_air;
+    if (timer != nullptr) timer->begin(cmd, pipeline.name);
+    TYNDALL_TRY(s.run(cmd, pipeline, resources, &inputs.extent, {inputs.extent.width, inputs.extent.height, 1}));
+    if (timer != nullptr) timer->end(cmd);
+  }
+  if (s.desc.counters) s.read_counters(cmd, counter_offset);
   return {};
+}
+
+void Effect::State::clear_counters(VkCommandBuffer cmd, VkDeviceSize offset) {
+  gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT,
+               VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_READ_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
+               VK_ACCESS_TRANSFER_WRITE_BIT);
+  device.vk.CmdFillBuffer(cmd, counters.buffer.get(), offset, kCounterBytes, 0);
+  gpu::barrier(device, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
+               VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
+}
+
+void Effect::State::read_counters(VkCommandBuffer cmd, VkDeviceSize offset) {
+  gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
+               VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT);
+  const VkBufferCopy region = {offset, offset, kCounterBytes};
+  device.vk.CmdCopyBuffer(cmd, counters.buffer.get(), counters_readback.buffer.get(), 1, &region);
+  gpu::barrier(device, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_HOST_BIT,
+               VK_ACCESS_HOST_READ_BIT);
+}
+
+Counters Effect::counters(std::uint64_t frame_index) const {
+  const State& s = *state_;
+  if (!s.desc.counters) return {};
+  std::uint64_t values[shared::kCounters];
+  std::memcpy(values, static_cast<const std::byte*>(s.counters_readback.mapped) + kCounterBytes * s.slot(frame_index),
+              sizeof values);
+  return {values[shared::kSamplesMarched], values[shared::kMarchSteps], values[shared::kTreeNodes],
+          values[shared::kShadowFetches], values[shared::kPixelsCorrected]};
+}
+
+std::span<const ResourceMemory> Effect::resources() {
+  State& s = *state_;
+  std::size_t used = 0;
+  const auto row = [&](const char* name, VkDeviceSize bytes) { s.resource_rows[used++] = {name, bytes}; };
+  for (std::uint32_t i = 0; i < kTableCount; ++i) {
+    const gpu::Image& table = s.tables.table(static_cast<TableId>(i));
+    row(table.desc.name, table.bytes);
+  }
+  row(s.no_shadows.desc.name, s.no_shadows.bytes);
+  row("counters", s.counters.bytes);
+  for (std::uint32_t i = 0; i < kEpipolarBuffers; ++i) {
+    const auto buffer = static_cast<EpipolarBuffer>(i);
+    if (s.epipolar.bytes(buffer) > 0) row(epipolar_buffer_name(buffer), s.epipolar.bytes(buffer));
+  }
+  return {s.resource_rows.data(), used};
 }
 
 LightTables Effect::light_tables() const {
@@ -250,7 +362,8 @@ std::span<const PassTiming> Effect::precompute_timings() { return state_->tables
 
 MemoryUsage Effect::memory() const {
   const State& s = *state_;
-  return {s.tables.persistent_bytes() + s.no_shadows.bytes, s.tables.transient_bytes(), s.constants.bytes};
+  return {s.tables.persistent_bytes() + s.no_shadows.bytes + s.counters.bytes + s.epipolar.bytes(),
+          s.tables.transient_bytes() + s.epipolar.retired_bytes(), s.constants.bytes + s.counters_readback.bytes};
 }
 
 std::span<const PassTiming> Effect::timings(std::uint64_t frame_index) {

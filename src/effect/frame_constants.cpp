@@ -85,6 +85,33 @@ shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDe
   out.camera_up = {static_cast<float>(x / distance), static_cast<float>((radius + y) / distance),
                    static_cast<float>(z / distance)};
 
+  // Through a pixel's middle goes the direction of any point that projects there: taken on the near plane, where
+  // it is an affine function of the pixel.
+  const double near_plane = 1.0 - static_cast<double>(desc.sky_depth);
+  const Mat4& m = out.view_from_clip;
+  const auto entry = [&](int row, int col) { return static_cast<double>(m.m[4 * col + row]); };
+  const double width = inputs.extent.width;
+  const double height = inputs.extent.height;
+  const double sign = entry(3, 2) * near_plane + entry(3, 3) < 0.0 ? -1.0 : 1.0;
+  double view[3][3];  // constant, per pixel to the right, per pixel downwards
+  double largest = 0.0;
+  for (int row = 0; row < 3; ++row) {
+    view[1][row] = sign * entry(row, 0) * 2.0 / width;
+    view[2][row] = sign * entry(row, 1) * 2.0 / height;
+    view[0][row] = sign * (entry(row, 2) * near_plane + entry(row, 3) - entry(row, 0) - entry(row, 1));
+    largest = std::max(largest, std::abs(sign * (entry(row, 2) * near_plane + entry(row, 3))));
+  }
+  Vec3* const rays[3] = {&out.ray_origin, &out.ray_x, &out.ray_y};
+  for (int i = 0; i < 3; ++i) {
+    double world[3] = {};
+    for (int row = 0; row < 3; ++row) {
+      for (int k = 0; k < 3; ++k) {
+        world[row] += static_cast<double>(inputs.camera.world_from_view.m[4 * k + row]) * view[i][k] / largest;
+      }
+    }
+    *rays[i] = {static_cast<float>(world[0]), static_cast<float>(world[1]), static_cast<float>(world[2])};
+  }
+
   out.sky_depth = desc.sky_depth;
   out.near_depth = 1.0F - desc.sky_depth;
   out.direction_to_sun = normalized(inputs.sun.direction_to_sun);
@@ -99,11 +126,8 @@ shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDe
       params.scattering.light_shafts ? static_cast<std::uint32_t>(inputs.cascades.size()) : 0;
   out.first_marched_cascade = inputs.first_marched_cascade;
   out.integration_steps = params.scattering.integration_steps;
-  out.enabled = params.scattering.enabled.value;
   out.only = params.scattering.only.value;
-  out.single = static_cast<std::uint32_t>(params.scattering.single);
-  out.multiple = static_cast<std::uint32_t>(params.scattering.multiple);
-  out.sections = static_cast<std::uint32_t>(params.scattering.sections);
+  out.shadow_depth_reversed = desc.shadow_depth_reversed ? 1 : 0;
   out.tables = table_shape(params);
   for (std::size_t i = 0; i < inputs.cascades.size(); ++i) {
     out.cascades[i].shadow_from_world = inputs.cascades[i].shadow_from_world;

@@ -12,6 +12,8 @@ using uint = std::uint32_t;
 using vec3 = Vec3;
 using mat4 = Mat4;
 
+#include "shared/counters.h"
+#include "shared/epipolar.h"
 #include "shared/frame_constants.h"
 #include "shared/medium.h"
 #include "shared/probe.h"
@@ -19,6 +21,8 @@ using mat4 = Mat4;
 
 static_assert(sizeof(Medium) == 96, "the layout of Medium must agree with std430");
 static_assert(sizeof(RayNode) == 32 && sizeof(TableShape) == 32, "the layouts of tables must agree with std430");
+static_assert(sizeof(EpipolarConstants) == 96 && sizeof(EpipolarSlice) == 32 && sizeof(ShadowRow) == 32,
+              "the layouts of epipolar sampling must agree with std430");
 static_assert(sizeof(ProbeRay) == 32 && sizeof(ProbeResult) == 32,
               "the layouts of probes must agree with std430");
 

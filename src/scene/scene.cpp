@@ -138,7 +138,10 @@ Result<void> Scene::create_objects() {
   effect_desc.max_extent = desc_.extent;
   effect_desc.frames_in_flight = 1;
   effect_desc.output_format = OutputFormat::rgba32f;
+  effect_desc.max_cascades = scene_.shadows.cascades;
+  effect_desc.max_shadow_resolution = scene_.shadows.resolution;
   effect_desc.timings = desc_.timings;
+  effect_desc.counters = desc_.counters;
   TYNDALL_ASSIGN(Effect effect, Effect::create(info, effect_desc, params_));
   effect_ = std::make_unique<Effect>(std::move(effect));
   TYNDALL_ASSIGN(post::Tonemap tonemap, post::Tonemap::create(device));
@@ -427,9 +430,12 @@ Result<image::Image> Scene::radiance() { return average(output_, radiance_sum_);
 
 Result<image::Image> Scene::display() { return average(display_, display_sum_); }
 
+Counters Scene::counters() const { return frame_index_ > 0 ? effect_->counters(frame_index_ - 1) : Counters{}; }
+
 Scene::Memory Scene::memory() const {
   const MemoryUsage effect = effect_->memory();
-  return {effect.persistent, effect.transient, effect.host,
+  const std::span<const ResourceMemory> rows = effect_->resources();
+  return {effect.persistent, effect.transient, effect.host, std::vector<ResourceMemory>(rows.begin(), rows.end()),
           color_.bytes + depth_.bytes + output_.bytes + display_.bytes + shadow_maps_.bytes + terrain_->bytes()};
 }
 

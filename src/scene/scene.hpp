@@ -18,6 +18,7 @@ namespace tyndall::scene {
 struct SceneDesc {
   VkExtent2D extent = {1280, 720};
   bool timings = false;
+  bool counters = false;
 };
 
 struct PassTime {
@@ -47,8 +48,12 @@ class Scene {
   // Remarks for the user, one line each: what a file needed, that the camera was lifted, ...
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
   struct Memory {
-    VkDeviceSize effect_persistent = 0, effect_transient = 0, effect_host = 0, scene = 0;
+    VkDeviceSize effect_persistent = 0, effect_transient = 0, effect_host = 0;
+    std::vector<ResourceMemory> effect_resources;  // what effect_persistent consists of
+    VkDeviceSize scene = 0;
   };
+  // Of the frame rendered last, with SceneDesc::counters.
+  [[nodiscard]] Counters counters() const;
   [[nodiscard]] Memory memory() const;
 
  private:

@@ -1,0 +1,237 @@
+// Marching a ray of a slice through the shadow cascades. Include after declaring medium, frame, epipolar, rows
+// (ShadowRow[]), tree (uint[]), shadow_maps, the tables, and counters.
+// A walk finds stretches that are lit or dark; with the tree whole nodes at a time, without it cell by cell. Where
+// a cell is undecided the map itself is compared, at the same place in both: the tree saves reads and changes
+// nothing. The air is summed over panels on which it is smooth, whatever the shadows: a panel's light is that
+// in its middle times the lit length, plus its slope times the lit length's first moment.
+#ifndef TYNDALL_MARCH_GLSL
+#define TYNDALL_MARCH_GLSL
+
+#include "lib/single_scattering.glsl"
+#include "frame/counters.glsl"
+#include "frame/table_light.glsl"
+#include "epipolar/shadow_tree.glsl"
+
+const uint kTopLevel = kTreeLevels - 1u;
+
+uint steps_done = 0u;
+uint nodes_visited = 0u;
+uint reads_done = 0u;
+
+// What cascades have added to the light of a ray, in any order.
+struct March {
+  LitSections lit;  // single = table, multiple = occluded
+  vec3 light;       // single = integration
+};
+
+// A walk along a row. Distances in cells from the camera.
+struct Walk {
+  ShadowRow row;
+  uint cascade;
+  uint tree_base;        // of the row's blocks in `tree`
+  float slope;           // change of depth per cell
+  float number;          // slope as the tree has it
+  float reads_per_cell;
+  float metres;          // of the ray in a cell
+  float x;
+  uint level;
+  float lit;             // within the panel: length, and first moment about its middle
+  float moment;
+  float middle;
+};
+
+void add_run(inout Walk w, inout LitSections sections, float to, float share) {
+  if (kSingle == kIntegration) {
+    float length_lit = share * (to - w.x);
+    w.lit += length_lit;
+    w.moment += length_lit * (0.5 * (w.x + to) - w.middle);
+  }
+  if (kLitTables) add_stretch(sections, w.x * w.metres, to * w.metres, share);
+  w.x = to;
+}
+
+bool section_closed(LitSections sections) { return kLitTables && kSections == kEach && sections.closed_at >= 0.0; }
+
+// Goes on to `to`, or until a lit section is complete.
+void walk_to(inout Walk w, inout LitSections sections, float to) {
+  float resolution = float(frame.shadow_resolution);
+  while (w.x < to && !section_closed(sections)) {
+    bool undecided = false;
+    while (w.x < to && !undecided && !section_closed(sections)) {
+      int j = int(w.x) - w.row.first;
+      bool inside = j >= 0 && j < w.row.extent;
+      bool in_tree = kTree != 0u && inside && j < w.row.count;
+      bool dark = false;
+      uint level = 0u;
+      if (kTree != 0u) {
+        level = w.level;
+        uint cell = in_tree ? uint(j) : 0u;
+        uint at = w.tree_base + (cell / kTreeBlock) * kTreeNodes16 + node_index(cell % kTreeBlock, level);
+        vec2 node;
+        if (kTree == kUnorm16) {
+          uint pair = tree[at];
+          node = vec2(float(pair & 0xFFFFu), float(pair >> 16u));
+        } else {
+          node = vec2(uintBitsToFloat(tree[2u * at]), uintBitsToFloat(tree[2u * at + 1u]));
+        }
+        dark = in_tree && w.number > node.y;
+        undecided = in_tree && w.number > node.x && !dark;
+        nodes_visited += in_tree ? 1u : 0u;
+      }
+      undecided = undecided || (inside && !in_tree);
+      if (!undecided) {
+        int next = ((j >> level) + 1) << level;
+        float end = inside ? float(w.row.first + next) : j < 0 ? float(w.row.first) : to;
+        add_run(w, sections, end > w.x ? min(end, to) : to, dark ? 0.0 : 1.0);
+        ++steps_done;
+        // One level up where a node of that level begins.
+        if (kTree != 0u && in_tree && (next & ((2 << level) - 1)) == 0) w.level = min(level + 1u, kTopLevel);
+      } else if (in_tree && level > 0u) {
+        w.level = level - 1u;
+        undecided = false;
+      }
+    }
+    if (undecided) {
+      float cell = floor(w.x);
+      float from = w.x;
+      float end = min(to, cell + 1.0);
+      vec2 uv = vec2(w.row.u, w.row.v) + (cell + 0.5) * vec2(w.row.du, w.row.dv);
+      int reads = int(clamp(ceil((end - from) * w.reads_per_cell - 1e-3), 1.0, 1024.0));
+      float step_cells = (end - from) / float(reads);
+      for (int i = 0; i < reads && !section_closed(sections); ++i) {
+        float z = w.row.depth + (from + (float(i) + 0.5) * step_cells) * w.slope;
+        float share = texture(shadow_maps, vec4(uv, float(w.cascade), clamp(z, 0.0, 1.0)));
+        add_run(w, sections, i + 1 == reads ? end : from + float(i + 1) * step_cells, share);
+      }
+      reads_done += uint(reads);
+      steps_done += uint(reads);
+      w.level = (int(end) - w.row.first & 1) == 0 ? 1u : 0u;
+    }
+  }
+}
+
+// Through [from, to] of a ray of a slice, in one cascade.
+void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start, float from, float to,
+                   inout March march) {
+  float resolution = float(frame.shadow_resolution);
+  uint row = (cascade - epipolar.first_cascade) * epipolar.slices + slice;
+  Walk w;
+  w.row = rows[row];
+  w.cascade = cascade;
+  w.tree_base = row * (epipolar.tree_cells / kTreeBlock) * kTreeNodes16;
+  vec3 per_metre = (frame.cascades[cascade].shadow_from_world * vec4(ray.direction, 0.0)).xyz;
+  float cells_per_m = max(max(abs(per_metre.x), abs(per_metre.y)) * resolution, 1e-12);
+  w.slope = per_metre.z / cells_per_m;
+  w.number = tree_number(frame.shadow_depth_reversed != 0u ? -w.slope : w.slope, resolution);
+  w.metres = 1.0 / cells_per_m;
+  w.x = from * cells_per_m;
+  float end = to * cells_per_m;
+  w.reads_per_cell = max(1.0, float(frame.integration_steps) / max(end - w.x, 1e-12));
+  w.level = 0u;
+  w.lit = 0.0;
+  w.moment = 0.0;
+  w.middle = 0.0;
+
+  if (kSingle != kIntegration) {
+    while (w.x < end) {
+      walk_to(w, march.lit, end);
+      close_section(march.lit, path, start);
+    }
+  } else {
+    float radius = medium.planet_radius_m;
+    float h = altitude_along(ray.altitude, ray.cos_zenith, from, radius);
+    float h_end = altitude_along(ray.altitude, ray.cos_zenith, to, radius);
+    vec3 density = densities(medium, h);
+    vec3 extinction = extinction_at(medium, min(h, h_end));
+    float densest = max(extinction.r, max(extinction.g, extinction.b));
+    // Panels: half of the aerosol's scale height, a fifth of an optical depth, a share of the cascade at most.
+    float wanted = max(max(abs(h_end - h) / (0.5 * medium.mie_scale_height_m), (to - from) * densest / 0.2), 12.0);
+    int panels = int(clamp(ceil(wanted), 1.0, 256.0));
+    float panel_m = (to - from) / float(panels);
+    vec3 rayleigh = medium.rayleigh_scattering * rayleigh_phase(ray.cos_view_sun);
+    vec3 mie = medium.mie_scattering * mie_phase(medium, ray.cos_view_sun);
+    // The column up to here, from where the ray enters the air.
+    float start_h = altitude_along(ray.altitude, ray.cos_zenith, start, radius);
+    float start_mu = cos_zenith_along(ray.altitude, ray.cos_zenith, start, radius);
+    vec3 column = column_along(medium, start_h, start_mu, from - start);
+    for (int i = 0; i < panels; ++i) {
+      float t = from + float(i) * panel_m;
+      float panel_end = i + 1 == panels ? end : (t + panel_m) * cells_per_m;
+      w.lit = 0.0;
+      w.moment = 0.0;
+      w.middle = (t + 0.5 * panel_m) * cells_per_m;
+      while (w.x < panel_end) {
+        walk_to(w, march.lit, panel_end);
+        if (kLitTables) close_section(march.lit, path, start);
+      }
+      float h_next = altitude_along(ray.altitude, ray.cos_zenith, t + panel_m, radius);
+      vec3 density_next = densities(medium, h_next);
+      vec3 mean = mean_densities(medium, density, density_next, h_next - h);
+      float middle = altitude_along(ray.altitude, ray.cos_zenith, t + 0.5 * panel_m, radius);
+      float cos_sun = cos_sun_zenith_along(ray, t + 0.5 * panel_m, radius);
+      vec3 total = column + 0.5 * panel_m * mean + column_to_top(medium, middle, cos_sun);
+      vec3 arriving = sun_visibility(middle, cos_sun, radius) * transmittance(medium, total);
+      float lit_m = w.lit * w.metres;
+      float moment = w.moment * w.metres / max(panel_m * cells_per_m, 1e-20);  // [m], of a coordinate of one panel
+      march.light += arriving * (rayleigh * max(mean.x * lit_m + (density_next.x - density.x) * moment, 0.0) +
+                                 mie * max(mean.y * lit_m + (density_next.y - density.y) * moment, 0.0));
+      column += mean * panel_m;
+      h = h_next;
+      density = density_next;
+    }
+  }
+  if (kLitTables && kSections == kEach && march.lit.since >= 0.0) {
+    march.lit.closed_at = to;
+    close_section(march.lit, path, start);
+  }
+}
+
+March nothing_marched() { return March(nothing_lit(), vec3(0.0)); }
+
+March add(March a, March b) {
+  March m;
+  m.lit = nothing_lit();
+  m.lit.first = a.lit.first < 0.0 ? b.lit.first : b.lit.first < 0.0 ? a.lit.first : min(a.lit.first, b.lit.first);
+  m.lit.total = a.lit.total + b.lit.total;
+  m.lit.light = add(a.lit.light, b.lit.light);
+  m.light = a.light + b.light;
+  return m;
+}
+
+// Distances between which a ray is in a cascade; nothing where to <= from.
+void cascade_range(uint cascade, Ray ray, float start, float end, out float from, out float to) {
+  float depth_per_m = max(dot(ray.direction, frame.camera_forward), 1e-6);
+  from = start;
+  if (cascade > epipolar.first_cascade) from = clamp(frame.cascades[cascade - 1u].far_m / depth_per_m, start, end);
+  to = clamp(frame.cascades[cascade].far_m / depth_per_m, from, end);
+}
+
+// All the light of a ray, from what its cascades have added.
+vec3 light_of(March march, Ray ray, TableRay path, float start, float end) {
+  float depth_per_m = max(dot(ray.direction, frame.camera_forward), 1e-6);
+  float t = start;
+  if (epipolar.cascades > epipolar.first_cascade) {
+    t = clamp(frame.cascades[epipolar.cascades - 1u].far_m / depth_per_m, start, end);
+  }
+  vec3 light = march.light;
+  if (kSingle == kIntegration) {
+    if (end - t > 1e-3) {
+      light += single_scattering(medium, ray.altitude, ray.cos_zenith, ray.cos_sun_zenith, ray.cos_view_sun, t, end,
+                                 int(frame.integration_steps) / 3);
+    }
+  }
+  if (kLitTables) {
+    AirLight lit = lit_light(march.lit, path, start, t, end);
+    if (kSingle == kTable) light += lit.single;
+    if (kMultiple == kOccluded) light += lit.high;
+  }
+  if (kMultiple == kUnoccluded) light += section_light(path, start, start, end).high;
+  return light;
+}
+
+// The ray of a sample.
+Ray sample_ray(vec2 position, float depth_m) {
+  return ray_to_depth(frame, position, depth_m, depth_m >= kSkyDepth);
+}
+
+#endif

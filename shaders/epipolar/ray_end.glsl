@@ -1,0 +1,19 @@
+// Where a ray ends for the purposes of interpolation: at what the depth buffer shows, at the planet where
+// nothing was drawn, or in the sky. Include after the declarations of medium and frame.
+#ifndef TYNDALL_RAY_END_GLSL
+#define TYNDALL_RAY_END_GLSL
+
+#include "frame/view_ray.glsl"
+#include "epipolar/records.glsl"
+
+// View-space depth [m] of the end of a ray to the sky: kSkyDepth, or where the planet is in the way.
+float sky_depth_m(vec3 direction) {
+  float h = frame.camera_altitude_m;
+  float radius = medium.planet_radius_m;
+  float mu = dot(direction, frame.camera_up);
+  float near, far;
+  bool hit = ray_hits_ground(h, mu, radius) && shell_intersections(h, mu, min(h, 0.0), radius, near, far);
+  return hit ? max(near, 0.0) * dot(direction, frame.camera_forward) : kSkyDepth;
+}
+
+#endif

@@ -1,0 +1,26 @@
+// A tree of the shadow casters along a row (Yusov 2013, section 1.5), over slopes in place of depths (after
+// Chen, Baran, Durand and Jarosz, "Real-Time Volumetric Shadows using 1D Min-Max Mipmaps", 2011): seen from the
+// camera, where every ray of the slice begins, a caster of depth d in cell x is met by the rays that change depth by
+// more than (d - camera's) / x per cell. A ray has one such slope, so that a node tells all its rays apart: lit
+// below its least slope, dark above its greatest, and in between undecided.
+// The numbers kept are steps of the curve y / (1 + |y|), which maps all slopes to [-1; 1] in order.
+#ifndef TYNDALL_SHADOW_TREE_GLSL
+#define TYNDALL_SHADOW_TREE_GLSL
+
+const uint kUnorm16 = 1u;
+const uint kFloat32 = 2u;
+layout(constant_id = 3) const uint kTree = kUnorm16;  // 0: no tree
+
+// A slope in the numbers of the tree, before they are rounded.
+float tree_number(float slope, float resolution) {
+  float y = slope * resolution;
+  float curve = abs(y) < 1e18 ? y / (1.0 + abs(y)) : sign(y);
+  return kTree == kUnorm16 ? (0.5 + 0.5 * curve) * 65535.0 : curve;
+}
+
+uint block_numbers() { return kTree == kFloat32 ? 2u * kTreeNodes16 : kTreeNodes16; }
+
+// Of a node within its block: `cell` is any of its cells.
+uint node_index(uint cell, uint level) { return kTreeNodes16 - (kTreeNodes16 >> level) + (cell >> level); }
+
+#endif

@@ -1,0 +1,39 @@
+// Marks the samples in the picture: marched ones by four bright red pixels, interpolated ones by a dark red one.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "shared/medium.h"
+#include "shared/frame_constants.h"
+#include "shared/epipolar.h"
+
+layout(local_size_x = 32, local_size_y = 2) in;
+
+layout(std430, binding = 0) readonly buffer frame_block { FrameConstants frame; };
+layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants epipolar; };
+layout(std430, binding = 2) readonly buffer slice_block { EpipolarSlice slices[]; };
+layout(std430, binding = 3) readonly buffer source_block { uint sources[]; };
+layout(binding = 4, OUTPUT_FORMAT) uniform writeonly image2D output_color;
+
+layout(push_constant) uniform Push { uint marched; };  // 0: the interpolated ones; 1, in a later pass: the marched
+
+#include "epipolar/slices.glsl"
+
+void mark(ivec2 pixel, vec3 color) {
+  if (pixel.x < 0 || pixel.y < 0 || pixel.x >= int(frame.width) || pixel.y >= int(frame.height)) return;
+  imageStore(output_color, pixel, vec4(color * dot(frame.sun_irradiance, vec3(0.333)), 1.0));
+}
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  uint id = gl_GlobalInvocationID.y;
+  if (i >= epipolar.samples || id >= epipolar.slices || i > slices[id].last) return;
+  uint source = sources[id * epipolar.samples + i];
+  bool is_marched = (source & 0xFFFFu) == source >> 16u;
+  if (is_marched != (marched != 0u)) return;
+  ivec2 pixel = ivec2(floor(sample_position(slices[id], i)));
+  if (!is_marched) {
+    mark(pixel, vec3(0.02, 0.0, 0.0));
+    return;
+  }
+  for (int k = 0; k < 4; ++k) mark(pixel + ivec2(k & 1, k >> 1), vec3(0.3, 0.0, 0.0));
+}

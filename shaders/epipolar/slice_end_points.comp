@@ -1,0 +1,41 @@
+// Where each slice begins and ends in the picture, and how its samples are spread (Yusov 2013, section 1.2).
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "shared/medium.h"
+#include "shared/frame_constants.h"
+#include "shared/epipolar.h"
+
+layout(local_size_x = 64) in;
+
+layout(std430, binding = 0) readonly buffer frame_block { FrameConstants frame; };
+layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants epipolar; };
+layout(std430, binding = 2) writeonly buffer slice_block { EpipolarSlice slices[]; };
+
+#include "epipolar/slices.glsl"
+
+void main() {
+  uint id = gl_GlobalInvocationID.x;
+  if (id >= epipolar.slices) return;
+  float steps = float(epipolar.closed != 0u ? epipolar.slices : epipolar.slices - 1u);
+  vec2 exit = border_place(epipolar.perimeter * float(id) / steps);
+  vec2 direction = away_from_epipole(exit);
+  bool across;
+  float visible = distance_to_border(exit, -direction, across);
+  if (epipolar.sun_in_picture != 0u) visible = distance(exit, epipole());
+  vec2 entry = exit - direction * visible;
+
+  // Short slices are stretched beyond the border, so that samples are no closer than a pixel.
+  float intervals = float(epipolar.samples - 1u);
+  float stretched = epipolar.optimize_locations != 0u ? max(visible, intervals) : max(visible, 1e-3);
+  EpipolarSlice slice;
+  slice.entry_x = entry.x;
+  slice.entry_y = entry.y;
+  slice.direction_x = direction.x;
+  slice.direction_y = direction.y;
+  slice.length_px = stretched;
+  slice.last = uint(clamp(ceil(visible / stretched * intervals - 1e-3), 1.0, intervals));
+  slice.unused_0 = 0.0;
+  slice.unused_1 = 0.0;
+  slices[id] = slice;
+}

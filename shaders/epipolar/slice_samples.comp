@@ -1,0 +1,57 @@
+// The samples of all slices: where their rays end, what the air takes away on the way there, and, coarsely, the
+// light that it would send without shadows: what a medium mixed evenly along the ray gives, in closed form.
+// It follows every change of depth and direction, which is all that refinement needs of it.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "shared/medium.h"
+#include "shared/frame_constants.h"
+#include "shared/epipolar.h"
+#include "lib/phase.glsl"
+#include "lib/optical_depth.glsl"
+#include "lib/table_values.glsl"
+
+layout(local_size_x = 32, local_size_y = 2) in;
+
+layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
+layout(std430, binding = 1) readonly buffer frame_block { FrameConstants frame; };
+layout(std430, binding = 2) readonly buffer epipolar_block { EpipolarConstants epipolar; };
+layout(std430, binding = 3) readonly buffer slice_block { EpipolarSlice slices[]; };
+layout(std430, binding = 4) writeonly buffer sample_block { uvec4 samples[]; };
+layout(std430, binding = 5) writeonly buffer coarse_block { vec4 coarse[]; };
+layout(binding = 6) uniform sampler2D scene_depth;
+
+#include "epipolar/ray_end.glsl"
+#include "epipolar/slices.glsl"
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  uint id = gl_GlobalInvocationID.y;
+  if (i >= epipolar.samples || id >= epipolar.slices) return;
+  EpipolarSlice slice = slices[id];
+  if (i > slice.last) return;
+  vec2 position = sample_position(slice, i);
+  // The nearest pixel's depth: a mixture of near and far would be the depth of nothing.
+  ivec2 pixel = clamp(ivec2(floor(position)), ivec2(0), ivec2(frame.width, frame.height) - 1);
+  float depth = texelFetch(scene_depth, pixel, 0).r;
+  bool sky = depth == frame.sky_depth;
+  Ray ray = ray_to_depth(frame, position, view_depth(frame, position, depth), sky);
+
+  Sample s;
+  s.depth_m = sky ? sky_depth_m(ray.direction) : ray.length_m * dot(ray.direction, frame.camera_forward);
+  s.source = vec3(0.0);
+  vec3 column = vec3(0.0);
+  float start, end;
+  if (clip_to_air(medium, ray, start, end)) {
+    float from_altitude = altitude_along(ray.altitude, ray.cos_zenith, start, medium.planet_radius_m);
+    float from_cosine = cos_zenith_along(ray.altitude, ray.cos_zenith, start, medium.planet_radius_m);
+    column = max(column_along(medium, from_altitude, from_cosine, end - start), vec3(0.0));
+  }
+  s.log_density = log_density(optical_depth(medium, column), s.depth_m);
+  uint at = id * epipolar.samples + i;
+  samples[at] = pack_sample(s);
+  Guide guide = guide_for_column(medium, column);
+  vec3 light = medium.rayleigh_scattering * rayleigh_phase(ray.cos_view_sun) * guide.rayleigh +
+               medium.mie_scattering * mie_phase(medium, ray.cos_view_sun) * guide.mie;
+  coarse[at] = vec4(light, s.depth_m);
+}

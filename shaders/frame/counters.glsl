@@ -1,0 +1,16 @@
+// What the passes of a frame have done, for `bench`: 64-bit counts in pairs of words, low one first. Include
+// after declaring  buffer counter_block { uint counters[]; }  Costs nothing unless EffectDesc::counters is set.
+#ifndef TYNDALL_COUNTERS_GLSL
+#define TYNDALL_COUNTERS_GLSL
+
+#include "shared/counters.h"
+
+layout(constant_id = 8) const bool kCount = false;
+
+void count(uint which, uint n) {
+  if (!kCount) return;
+  uint before = atomicAdd(counters[2u * which], n);
+  if (before + n < before) atomicAdd(counters[2u * which + 1u], 1u);
+}
+
+#endif

@@ -1,0 +1,74 @@
+// What the passes of epipolar sampling share. Compiled by GLSL (std430) and by C++ (src/effect/shared.hpp).
+// Places in the picture are in pixels, from its upper left corner; a pixel's middle is at + 0.5. The border is
+// the rectangle of the outermost pixels' middles; its sides are 0 left (downwards), 1 bottom (to the right),
+// 2 right (upwards) and 3 top (to the left).
+#ifndef TYNDALL_SHARED_EPIPOLAR
+#define TYNDALL_SHARED_EPIPOLAR
+
+struct EpipolarConstants {
+  uint slices;
+  uint samples;  // of each slice
+  uint initial_step;
+  uint epipole_density;
+  float threshold;
+  uint optimize_locations;
+  uint correct_depth_breaks;
+  uint show_depth_breaks;
+  // The epipole: where the sun stands in the picture or, behind the camera, the point opposite to it, is
+  // (sun_x, sun_y) / sun_w; sun_w >= 0, and 0 for a sun at right angles to the view.
+  float sun_x;
+  float sun_y;
+  float sun_w;
+  uint sun_in_picture;
+  float fallback_x;  // direction away from the epipole, where it coincides with a place on the border
+  float fallback_y;
+  float perimeter;  // of the sides on which slices end [pixels]
+  uint closed;      // 1: slices end on all four, and the last is next to the first
+  float side_start[4];  // along the perimeter; < 0: no slice ends there
+  uint first_cascade;   // marched
+  uint cascades;        // behind the last marched one
+  uint tree_cells;      // of a row, at most; a multiple of kTreeBlock
+  uint unused_0;
+};
+
+// A slice: samples lie at entry + direction x length_px x i / (samples - 1), i <= last.
+struct EpipolarSlice {
+  float entry_x;
+  float entry_y;
+  float direction_x;  // unit length
+  float direction_y;
+  float length_px;    // of all samples
+  uint last;          // sample: the first at or behind the border
+  float unused_0;
+  float unused_1;
+};
+
+// The line of a slice in a cascade's map: texture coordinates (u, v) + x (du, dv), where x counts cells of one
+// texel (along the axis that changes faster) from the camera on. `first` to first + extent - 1 are inside the
+// map and within the reach of the slice's rays; the first `count` of these are in the tree.
+struct ShadowRow {
+  float u;
+  float v;
+  float du;
+  float dv;
+  float depth;  // of the camera
+  int first;
+  int extent;
+  int count;
+};
+
+const uint kTreeBlock = 256u;  // cells of a tree
+const uint kTreeLevels = 9u;   // nodes of 1, 2, 4, ... 256 cells
+const uint kTreeNodes16 = 512u;  // numbers that a block takes, in pairs of 16 bits; twice as many in full precision
+
+const uint kMarchGroup = 64u;  // invocations
+
+// What is counted and dispatched indirectly: arguments of a dispatch, then the number of items.
+struct WorkList {
+  uint groups_x;
+  uint groups_y;
+  uint groups_z;
+  uint count;
+};
+
+#endif

@@ -1,0 +1,347 @@
+#include "effect/epipolar.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "effect_shaders.hpp"
+#include "gpu/try.hpp"
+
+namespace tyndall {
+namespace {
+
+constexpr VkDeviceSize kStateBytes = 12 * sizeof(float);  // of march_state.glsl
+constexpr VkDeviceSize kLeastBytes = 256;                 // of buffers that shaders bind but do not use
+constexpr VkBufferUsageFlags kUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+                                      VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
+
+constexpr const char* kNames[kEpipolarBuffers] = {"slices",     "shadow_rows", "samples",     "coarse_inscattering", "sources",
+                                                  "march_list", "break_list",  "shadow_tree", "march_states"};
+constexpr const char* kBlocks[kEpipolarBuffers] = {"slice_block",      "row_block",        "sample_block",
+                                                   "coarse_block",     "source_block",     "march_list_block",
+                                                   "break_list_block", "tree_block",       "state_block"};
+
+std::size_t index(EpipolarBuffer buffer) { return static_cast<std::size_t>(buffer); }
+
+bool lists_breaks(const Params& params) {
+  return params.epipolar.correct_depth_breaks.value != 0 || params.epipolar.show_depth_breaks.value != 0;
+}
+
+}  // namespace
+
+std::uint32_t tree_cells(const EffectDesc& desc) {
+  return (desc.max_shadow_resolution + shared::kTreeBlock - 1) / shared::kTreeBlock * shared::kTreeBlock;
+}
+
+EpipolarSizes epipolar_sizes(const EffectDesc& desc, const Params& params) {
+  EpipolarSizes out = {};
+  if (params.scattering.technique != Technique::epipolar) return out;
+  const VkDeviceSize slices = params.epipolar.slices;
+  const VkDeviceSize samples = slices * params.epipolar.samples;
+  const VkDeviceSize rows = slices * desc.max_cascades;
+  const VkDeviceSize pixels = VkDeviceSize{desc.max_extent.width} * desc.max_extent.height;
+  out[index(EpipolarBuffer::slices)] = slices * sizeof(shared::EpipolarSlice);
+  out[index(EpipolarBuffer::rows)] = rows * sizeof(shared::ShadowRow);
+  out[index(EpipolarBuffer::samples)] = samples * 16;
+  out[index(EpipolarBuffer::coarse)] = samples * 16;
+  out[index(EpipolarBuffer::sources)] = samples * 4;
+  out[index(EpipolarBuffer::march_list)] = sizeof(shared::WorkList) + samples * 4;
+  out[index(EpipolarBuffer::break_list)] = lists_breaks(params) ? sizeof(shared::WorkList) + pixels * 4 : kLeastBytes;
+  const VkDeviceSize number = params.epipolar.min_max_format == MinMaxFormat::float32 ? 8 : 4;
+  const VkDeviceSize row_bytes = tree_cells(desc) / shared::kTreeBlock * shared::kTreeNodes16 * number;
+  out[index(EpipolarBuffer::tree)] = params.epipolar.min_max_tree ? rows * row_bytes : kLeastBytes;
+  const CascadeProcessing processing = params.shadows.cascade_processing;
+  const VkDeviceSize turns = processing == CascadeProcessing::multi_pass_instanced ? desc.max_cascades : 1;
+  out[index(EpipolarBuffer::states)] =
+      processing == CascadeProcessing::single_pass ? kLeastBytes : samples * turns * kStateBytes;
+  return out;
+}
+
+const char* epipolar_buffer_name(EpipolarBuffer buffer) { return kNames[index(buffer)]; }
+
+VkDeviceSize epipolar_bytes(const gpu::Device& device, const EffectDesc& desc, const Params& params) {
+  VkDeviceSize sum = 0;
+  for (const VkDeviceSize size : epipolar_sizes(desc, params)) {
+    if (size > 0) sum += gpu::buffer_bytes(device, size, kUsage);
+  }
+  return sum;
+}
+
+shared::EpipolarConstants epipolar_constants(const FrameInputs& inputs, const EffectDesc& desc, const Params& params) {
+  shared::EpipolarConstants out = {};
+  const EpipolarParams& p = params.epipolar;
+  out.slices = p.slices;
+  out.samples = p.samples;
+  out.initial_step = p.initial_step;
+  out.epipole_density = p.epipole_density;
+  out.threshold = p.refinement_threshold;
+  out.optimize_locations = p.optimize_locations.value;
+  out.correct_depth_breaks = p.correct_depth_breaks.value;
+  out.show_depth_breaks = p.show_depth_breaks.value;
+  out.tree_cells = tree_cells(desc);
+  out.cascades = params.scattering.light_shafts ? static_cast<std::uint32_t>(inputs.cascades.size()) : 0;
+  out.first_cascade = std::min(inputs.first_marched_cascade, out.cascades);
+
+  // The epipole: the direction to the sun through the camera's matrices, in double.
+  const auto row_of = [](const Mat4& m, int row, const double* v) {
+    double sum = 0.0;
+    for (int col = 0; col < 4; ++col) sum += static_cast<double>(m.m[4 * col + row]) * v[col];
+    return sum;
+  };
+  const Vec3& s = inputs.sun.direction_to_sun;
+  const double length = std::sqrt(static_cast<double>(s.x) * s.x + static_cast<double>(s.y) * s.y +
+                                  static_cast<double>(s.z) * s.z);
+  const double world[3] = {s.x / length, s.y / length, s.z / length};
+  double view[4] = {};
+  for (int i = 0; i < 3; ++i) {
+    // world_from_view is rigid: its transpose takes directions back.
+    for (int k = 0; k < 3; ++k) view[i] += static_cast<double>(inputs.camera.world_from_view.m[4 * i + k]) * world[k];
+  }
+  const double clip_x = row_of(inputs.camera.clip_from_view, 0, view);
+  const double clip_y = row_of(inputs.camera.clip_from_view, 1, view);
+  const double clip_w = row_of(inputs.camera.clip_from_view, 3, view);
+  const double width = inputs.extent.width;
+  const double height = inputs.extent.height;
+  double x = 0.5 * (clip_x + clip_w) * width;
+  double y = 0.5 * (clip_y + clip_w) * height;
+  double w = clip_w;
+  if (w < 0.0) {
+    x = -x;
+    y = -y;
+    w = -w;
+  }
+  const double size = std::max({std::abs(x), std::abs(y), w * std::max(width, height), 1e-300});
+  x /= size;
+  y /= size;
+  w /= size;
+  if (w < 1e-12) w = 0.0;  // parallel slices
+  out.sun_x = static_cast<float>(x);
+  out.sun_y = static_cast<float>(y);
+  out.sun_w = static_cast<float>(w);
+
+  // Sides that lines from the epipole reach from within the picture; in the order of shared/epipolar.h. Decided by
+  // the rounded numbers that the shaders have.
+  const double px = static_cast<double>(out.sun_x);
+  const double py = static_cast<double>(out.sun_y);
+  const double pw = static_cast<double>(out.sun_w);
+  const bool ends[4] = {px - 0.5 * pw > 0.0, (height - 0.5) * pw - py > 0.0, (width - 0.5) * pw - px > 0.0,
+                        py - 0.5 * pw > 0.0};
+  const double lengths[4] = {height - 1.0, width - 1.0, height - 1.0, width - 1.0};
+  const bool closed = ends[0] && ends[1] && ends[2] && ends[3];
+  out.closed = closed ? 1 : 0;
+  out.sun_in_picture = closed ? 1 : 0;
+  int first = 0;
+  if (!closed) {
+    while (first < 3 && !(ends[first] && !ends[(first + 3) % 4])) ++first;
+  }
+  double along = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    const int side = (first + i) % 4;
+    out.side_start[side] = ends[side] ? static_cast<float>(along) : -1.0F;
+    if (ends[side]) along += lengths[side];
+  }
+  out.perimeter = static_cast<float>(std::max(along, 1e-3));
+  // From an epipole on the border, into the picture.
+  const double to_x = 0.5 * width * pw - px;
+  const double to_y = 0.5 * height * pw - py;
+  const double to = std::hypot(to_x, to_y);
+  out.fallback_x = to > 1e-12 ? static_cast<float>(to_x / to) : 1.0F;
+  out.fallback_y = to > 1e-12 ? static_cast<float>(to_y / to) : 0.0F;
+  return out;
+}
+
+Result<void> Epipolar::create(const gpu::Device& device, const EffectDesc& desc, const Params& params) {
+  device_ = &device;
+  desc_ = desc;
+  TYNDALL_TRY(create_pipelines());
+  return set_params(params);
+}
+
+Result<void> Epipolar::create_pipelines() {
+  const bool full = desc_.output_format == OutputFormat::rgba32f;
+  const std::uint32_t counting = desc_.counters ? 1 : 0;
+  const auto make = [this](gpu::Pipeline& out, const gpu::Shader& shader, const char* name,
+                           std::span<const gpu::Constant> constants = {}) -> Result<void> {
+    TYNDALL_ASSIGN(out, gpu::create_compute_pipeline(*device_, shader, constants));
+    out.name = name;
+    return {};
+  };
+  TYNDALL_TRY(make(slice_end_points_, shaders::slice_end_points_comp, "slice_end_points"));
+  TYNDALL_TRY(make(slice_samples_, shaders::slice_samples_comp, "slice_samples"));
+  TYNDALL_TRY(make(slice_directions_, shaders::slice_directions_comp, "slice_directions"));
+  TYNDALL_TRY(make(interpolate_samples_, shaders::interpolate_samples_comp, "interpolate_samples"));
+  TYNDALL_TRY(make(show_sampling_, full ? shaders::show_sampling_comp_rgba32f : shaders::show_sampling_comp_rgba16f,
+                   "show_sampling"));
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    const gpu::Constant by_criterion[] = {{0, i}};
+    TYNDALL_TRY(make(refine_samples_[i], shaders::refine_samples_comp, "refine_samples", by_criterion));
+    const gpu::Constant by_format[] = {{3, i + 1}};
+    TYNDALL_TRY(make(shadow_tree_[i], shaders::shadow_tree_comp, "shadow_tree", by_format));
+    for (std::uint32_t breaks = 0; breaks < 2; ++breaks) {
+      const gpu::Constant of_unwarp[] = {{0, i}, {1, breaks}};
+      TYNDALL_TRY(make(unwarp_[i][breaks], full ? shaders::unwarp_comp_rgba32f : shaders::unwarp_comp_rgba16f, "unwarp",
+                       of_unwarp));
+    }
+  }
+  for (std::uint32_t mode = 0; mode < kModeCount; ++mode) {
+    if (!mode_exists(mode)) continue;
+    const std::array<gpu::Constant, 3> m = mode_constants(mode);
+    for (std::uint32_t tree = 0; tree < 3; ++tree) {
+      const gpu::Constant constants[] = {m[0], m[1], m[2], {3, tree}, {8, counting}};
+      TYNDALL_TRY(make(march_samples_[tree][mode], shaders::march_samples_comp, "march_samples", constants));
+      TYNDALL_TRY(make(correct_pixels_[tree][mode],
+                       full ? shaders::correct_pixels_comp_rgba32f : shaders::correct_pixels_comp_rgba16f,
+                       "correct_pixels", constants));
+    }
+    TYNDALL_TRY(make(finish_samples_[mode], shaders::finish_samples_comp, "finish_samples", m));
+  }
+  return {};
+}
+
+Result<void> Epipolar::set_params(const Params& params) {
+  const EpipolarSizes sizes = epipolar_sizes(desc_, params);
+  // All new buffers first, so that an error changes nothing.
+  Buffers fresh = {};
+  retired_.reserve(retired_.size() + kEpipolarBuffers);
+  for (std::size_t i = 0; i < kEpipolarBuffers; ++i) {
+    if (sizes[i] == 0 || sizes[i] == buffers_[i].size) continue;
+    TYNDALL_ASSIGN(fresh[i], gpu::create_buffer(*device_, kNames[i], sizes[i], kUsage, gpu::MemoryKind::device));
+  }
+  for (std::size_t i = 0; i < kEpipolarBuffers; ++i) {
+    if (sizes[i] == buffers_[i].size) continue;
+    if (buffers_[i].size > 0) retired_.push_back({std::move(buffers_[i]), desc_.frames_in_flight + 1});
+    buffers_[i] = std::move(fresh[i]);
+  }
+  return {};
+}
+
+void Epipolar::begin_frame() {
+  for (Retired& r : retired_) --r.frames_left;
+  std::erase_if(retired_, [](const Retired& r) { return r.frames_left == 0; });
+}
+
+VkDeviceSize Epipolar::bytes() const {
+  VkDeviceSize sum = 0;
+  for (const gpu::Buffer& buffer : buffers_) sum += buffer.bytes;
+  return sum;
+}
+
+VkDeviceSize Epipolar::retired_bytes() const {
+  VkDeviceSize sum = 0;
+  for (const Retired& r : retired_) sum += r.buffer.bytes;
+  return sum;
+}
+
+Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, const Params& params,
+                              std::span<const gpu::NamedResource> frame_resources, gpu::Timer* timer) {
+  constexpr std::size_t kMostFrameResources = 16;
+  std::array<gpu::NamedResource, kEpipolarBuffers + kMostFrameResources> all;
+  std::size_t used = 0;
+  for (const gpu::NamedResource& r : frame_resources) all[used++] = r;
+  for (std::size_t i = 0; i < kEpipolarBuffers; ++i) all[used++] = gpu::named_buffer(kBlocks[i], buffers_[i].buffer.get());
+  const std::span<const gpu::NamedResource> resources(all.data(), used);
+
+  struct Size {
+    std::uint32_t x = 1, y = 1, z = 1;  // invocations, or groups
+  };
+  // One pass after what it reads has been written.
+  const auto begin = [&](const gpu::Pipeline& pipeline, const void* push) -> Result<void> {
+    gpu::compute_barrier(*device_, cmd);
+    if (timer != nullptr) timer->begin(cmd, pipeline.name);
+    const std::string_view missing = gpu::bind(*device_, cmd, pipeline, resources, push);
+    if (missing.empty()) return {};
+    return Error{ErrorCode::invalid_argument,
+                 std::string("nothing is bound to ") + std::string(missing) + " of " + pipeline.name};
+  };
+  const auto end = [&] {
+    if (timer != nullptr) timer->end(cmd);
+  };
+  const auto run = [&](const gpu::Pipeline& pipeline, Size size, const void* push = nullptr) -> Result<void> {
+    const gpu::Label label(*device_, cmd, pipeline.name);
+    TYNDALL_TRY(begin(pipeline, push));
+    gpu::dispatch(*device_, cmd, pipeline, size.x, size.y, size.z);
+    end();
+    return {};
+  };
+  const auto run_list = [&](const gpu::Pipeline& pipeline, EpipolarBuffer list, const void* push = nullptr) -> Result<void> {
+    const gpu::Label label(*device_, cmd, pipeline.name);
+    TYNDALL_TRY(begin(pipeline, push));
+    device_->vk.CmdDispatchIndirect(cmd, buffers_[index(list)].buffer.get(), 0);
+    end();
+    return {};
+  };
+
+  const EpipolarParams& p = params.epipolar;
+  const std::uint32_t cascades =
+      params.scattering.light_shafts ? static_cast<std::uint32_t>(inputs.cascades.size()) : 0;
+  const std::uint32_t marched = cascades > 0 ? cascades - inputs.first_marched_cascade : 0;
+  const std::uint32_t mode = mode_index(params.scattering);
+  const bool walks = params.scattering.single != SingleScattering::none ||
+                     params.scattering.multiple == MultipleScattering::occluded;
+  const bool trees = p.min_max_tree.value != 0 && walks && marched > 0;
+  const std::uint32_t tree = trees ? static_cast<std::uint32_t>(p.min_max_format) + 1 : 0;
+  const bool breaks = lists_breaks(params);
+  CascadeProcessing processing = params.shadows.cascade_processing;
+  if (marched == 0 || !walks) processing = CascadeProcessing::single_pass;
+  const bool instanced = processing == CascadeProcessing::multi_pass_instanced;
+
+  // Empty work lists.
+  gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
+               VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT,
+               VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
+  shared::WorkList empty = {0, instanced ? marched : 1, 1, 0};
+  device_->vk.CmdUpdateBuffer(cmd, buffers_[index(EpipolarBuffer::march_list)].buffer.get(), 0, sizeof empty, &empty);
+  empty.groups_y = 1;
+  device_->vk.CmdUpdateBuffer(cmd, buffers_[index(EpipolarBuffer::break_list)].buffer.get(), 0, sizeof empty, &empty);
+  gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
+               VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
+  const auto lists_ready = [&] {
+    gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
+                 VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT, VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
+  };
+
+  TYNDALL_TRY(run(slice_end_points_, {p.slices}));
+  TYNDALL_TRY(run(slice_samples_, {p.samples, p.slices}));
+  const gpu::Pipeline& refine = refine_samples_[static_cast<std::size_t>(p.refinement)];
+  TYNDALL_TRY(run(refine, {p.slices * refine.local_size[0]}));
+  lists_ready();
+  const gpu::Pipeline& tree_pipeline = shadow_tree_[static_cast<std::size_t>(p.min_max_format)];
+  const std::uint32_t block_threads = tree_cells(desc_) / shared::kTreeBlock * tree_pipeline.local_size[0];
+  if (walks && marched > 0) TYNDALL_TRY(run(slice_directions_, {p.slices, marched}));
+  const gpu::Pipeline& march = march_samples_[tree][mode];
+  struct MarchPush {
+    std::uint32_t passes, turn;
+  };
+  if (processing == CascadeProcessing::multi_pass) {
+    for (std::uint32_t turn = 0; turn < marched; ++turn) {
+      const std::uint32_t first_row = turn * p.slices;
+      if (trees) TYNDALL_TRY(run(tree_pipeline, {block_threads, p.slices, 1}, &first_row));
+      const MarchPush push = {1, turn};
+      TYNDALL_TRY(run_list(march, EpipolarBuffer::march_list, &push));
+    }
+  } else {
+    const std::uint32_t first_row = 0;
+    if (trees) TYNDALL_TRY(run(tree_pipeline, {block_threads, p.slices, marched}, &first_row));
+    const MarchPush push = {static_cast<std::uint32_t>(processing), 0};
+    TYNDALL_TRY(run_list(march, EpipolarBuffer::march_list, &push));
+  }
+  if (processing != CascadeProcessing::single_pass) {
+    const MarchPush push = {static_cast<std::uint32_t>(processing), 0};
+    TYNDALL_TRY(run_list(finish_samples_[mode], EpipolarBuffer::march_list, &push));
+  }
+  TYNDALL_TRY(run(interpolate_samples_, {p.samples, p.slices}));
+  const gpu::Pipeline& unwarp = unwarp_[static_cast<std::size_t>(params.scattering.extinction)][breaks ? 1 : 0];
+  TYNDALL_TRY(run(unwarp, {inputs.extent.width, inputs.extent.height}));
+  if (breaks) {
+    lists_ready();
+    TYNDALL_TRY(run_list(correct_pixels_[tree][mode], EpipolarBuffer::break_list));
+  }
+  if (p.show_sampling) {
+    for (std::uint32_t marked = 0; marked < 2; ++marked) {
+      TYNDALL_TRY(run(show_sampling_, {p.samples, p.slices}, &marked));
+    }
+  }
+  return {};
+}
+
+}  // namespace tyndall

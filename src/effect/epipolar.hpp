@@ -1,0 +1,79 @@
+// Epipolar sampling: its memory, its pipelines, and the recording of its passes in their order.
+// The method and the reasons for where it departs from the published one: docs/epipolar.md.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "effect/frame_constants.hpp"
+#include "effect/modes.hpp"
+#include "effect/shared.hpp"
+#include "gpu/pipeline.hpp"
+#include "gpu/resource.hpp"
+#include "gpu/timer.hpp"
+#include "tyndall/effect.hpp"
+
+namespace tyndall {
+
+// Buffers of epipolar sampling, in the order of the plan in epipolar.cpp.
+enum class EpipolarBuffer : std::uint32_t { slices, rows, samples, coarse, sources, march_list, break_list, tree, states };
+constexpr std::uint32_t kEpipolarBuffers = 9;
+using EpipolarSizes = std::array<VkDeviceSize, kEpipolarBuffers>;
+
+// Bytes of each; all zero with technique = brute-force.
+[[nodiscard]] EpipolarSizes epipolar_sizes(const EffectDesc& desc, const Params& params);
+[[nodiscard]] const char* epipolar_buffer_name(EpipolarBuffer buffer);
+// Device memory that they take.
+[[nodiscard]] VkDeviceSize epipolar_bytes(const gpu::Device& device, const EffectDesc& desc, const Params& params);
+
+// Cells of the rows of the trees; texels of a map beyond them are read directly.
+[[nodiscard]] std::uint32_t tree_cells(const EffectDesc& desc);
+// The geometry of the picture as the passes need it.
+[[nodiscard]] shared::EpipolarConstants epipolar_constants(const FrameInputs& inputs, const EffectDesc& desc,
+                                                           const Params& params);
+
+class Epipolar {
+ public:
+  Result<void> create(const gpu::Device& device, const EffectDesc& desc, const Params& params);
+  // Allocates what the parameters ask for; what commands in flight still use is kept until begin_frame() has
+  // been called often enough.
+  Result<void> set_params(const Params& params);
+  void begin_frame();
+
+  // Records all passes. `resources` are those of the frame: medium_block, frame_block, epipolar_block,
+  // counter_block, scene_color, scene_depth, shadow_maps, shadow_depths, the scattering tables, output_color.
+  Result<void> record(VkCommandBuffer cmd, const FrameInputs& inputs, const Params& params,
+                      std::span<const gpu::NamedResource> resources, gpu::Timer* timer);
+
+  [[nodiscard]] VkDeviceSize bytes(EpipolarBuffer buffer) const {
+    return buffers_[static_cast<std::uint32_t>(buffer)].bytes;
+  }
+  [[nodiscard]] VkDeviceSize bytes() const;         // in use
+  [[nodiscard]] VkDeviceSize retired_bytes() const;  // waiting for frames in flight
+
+ private:
+  using Buffers = std::array<gpu::Buffer, kEpipolarBuffers>;
+  struct Retired {
+    gpu::Buffer buffer;
+    std::uint32_t frames_left;
+  };
+  using PerMode = std::array<gpu::Pipeline, kModeCount>;
+
+  Result<void> create_pipelines();
+
+  const gpu::Device* device_ = nullptr;
+  EffectDesc desc_;
+  Buffers buffers_ = {};
+  std::vector<Retired> retired_ = {};
+  gpu::Pipeline slice_end_points_, slice_samples_, slice_directions_, interpolate_samples_, show_sampling_;
+  std::array<gpu::Pipeline, 2> refine_samples_;  // by Refinement
+  std::array<gpu::Pipeline, 2> shadow_tree_;     // by MinMaxFormat
+  std::array<PerMode, 3> march_samples_;         // without tree, and by MinMaxFormat + 1
+  PerMode finish_samples_;
+  std::array<PerMode, 3> correct_pixels_;
+  std::array<std::array<gpu::Pipeline, 2>, 2> unwarp_;  // by Extinction, and whether breaks are listed
+};
+
+}  // namespace tyndall
