@@ -86,6 +86,16 @@ std::optional<std::uint32_t> choice_value(const Row& row, std::string_view text)
   return std::nullopt;
 }
 
+// A group that both lists have a part of stands where the last has it.
+std::vector<Group> without_repetitions(const std::vector<Group>& groups) {
+  std::vector<Group> out;
+  for (const Group& group : groups) {
+    std::erase_if(out, [&](const Group& before) { return before.name == group.name; });
+    out.push_back(group);
+  }
+  return out;
+}
+
 std::vector<std::string> all_keys() {
   std::vector<std::string> keys;
   for (const Row& row : rows()) keys.push_back(row.key());
@@ -107,7 +117,7 @@ const std::vector<Row>& rows() {
 }
 
 const std::vector<Group>& groups() {
-  static const std::vector<Group> all = {
+  static const std::vector<Group> all = without_repetitions({
 #define ENUM_BEGIN(type)
 #define ENUM_VALUE(type, identifier, value, text)
 #define ENUM_END(type)
@@ -123,7 +133,7 @@ const std::vector<Group>& groups() {
 #include "scene/scene_params.def"
 #include "tyndall/params.def"
 #include "tyndall/params_undef.h"
-  };
+  });
   return all;
 }
 
@@ -268,6 +278,10 @@ Result<void> check(const Settings& settings) {
         concat({"'shadows.first_marched' = ", std::to_string(shadows.first_marched), " is no cascade"}),
         concat({"with 'shadows.cascades' = ", std::to_string(shadows.cascades)}),
         concat({"allowed is 0 to ", std::to_string(shadows.cascades - 1)}));
+  }
+  if (settings.scene.tables.cache.empty()) {
+    return input_error("no place for the cache", "'tables.cache' is empty",
+                       "allowed is auto, off or a directory");
   }
   if (settings.scene.terrain.source.empty()) {
     return input_error("no terrain", "'terrain.source' is empty",
