@@ -30,8 +30,9 @@ constexpr const char* kIndex = "tables.json";
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 Error directory_error(const std::string& directory, const std::string& why) {
-  return Error{ErrorCode::io, concat({"cannot write to '", config::one_line(directory, 200), "', ", why,
-                                      ", needed is a directory, or a name for one in a directory that is there"})};
+  return Error{ErrorCode::io,
+               concat({"cannot write to '", config::one_line(directory, 200), "', ", why,
+                       ", needed is a directory, or a name for one in a directory that is there"})};
 }
 
 // IEEE 754 binary16; the tables hold no NaN and no infinity.
@@ -46,8 +47,8 @@ float float_from_half(std::uint16_t half) {
 Result<std::vector<std::uint16_t>> download(gpu::Host& host, Effect& effect) {
   const gpu::Device& device = host.device();
   const VkDeviceSize size = effect.table_bytes();
-  Result<gpu::Buffer> to = gpu::create_buffer(device, "exported_tables", size, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                                              gpu::MemoryKind::readback);
+  Result<gpu::Buffer> to = gpu::create_buffer(device, "exported_tables", size,
+                                              VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryKind::readback);
   if (!to) return std::move(to).error();
   const Result<void> copied = host.run([&](VkCommandBuffer cmd) -> Result<void> {
     if (Result<void> r = effect.record_save_tables(cmd, to.value().buffer.get()); !r) return r;
@@ -81,13 +82,14 @@ class Staging {
   ~Staging() {
     std::error_code ignored;
     if (!folder_.empty()) fs::remove_all(folder_, ignored);
-    if (made_directory_ && !directory_.empty() && fs::is_empty(directory_, ignored)) fs::remove(directory_, ignored);
+    if (made_directory_ && !directory_.empty() && fs::is_empty(directory_, ignored))
+      fs::remove(directory_, ignored);
   }
 
   [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
 
-  // All files at once, as far as a file system allows: the index goes first and comes last, so that at no time
-  // it stands beside files that it does not describe.
+  // All files at once, as far as a file system allows: the index goes first and comes last, so that at no
+  // time it stands beside files that it does not describe.
   [[nodiscard]] Result<void> publish(const std::vector<std::string>& files) const {
     std::error_code failed;
     for (const std::string& file : files) {
@@ -132,8 +134,12 @@ class Exporter {
  public:
   Exporter(const config::Settings& settings, const Staging& staging,
            const std::function<void(std::size_t, std::size_t)>& progress)
-      : settings_(settings), params_(settings.effect), staging_(staging), progress_(progress),
-        axes_(models::table_axes(params_)), factors_(models::table_factors(params_, axes_)) {}
+      : settings_(settings),
+        params_(settings.effect),
+        staging_(staging),
+        progress_(progress),
+        axes_(models::table_axes(params_)),
+        factors_(models::table_factors(params_, axes_)) {}
 
   // `texels` as record_save_tables orders them. The names of the files, the index last.
   Result<std::vector<std::string>> write(std::span<const std::uint16_t> texels, const std::string& device) {
@@ -143,8 +149,9 @@ class Exporter {
       const char* unit;
       std::array<double, 3> models::TableFactors::*factor;
     };
-    constexpr const char* kOfSpecies = " once, radiance over the sun's irradiance above the atmosphere, without the "
-                                       "phase function: times P(cos_view_sun) it is L / E0";
+    constexpr const char* kOfSpecies =
+        " once, radiance over the sun's irradiance above the atmosphere, without the "
+        "phase function: times P(cos_view_sun) it is L / E0";
     const std::string rayleigh = concat({"light scattered by air", kOfSpecies});
     const std::string mie = concat({"light scattered by aerosol", kOfSpecies});
     const Kind kinds[] = {
@@ -152,8 +159,9 @@ class Exporter {
         {TableId::single_mie, mie.c_str(), "1", &models::TableFactors::single_mie},
         {TableId::high_orders, "light scattered twice and more, phase functions included: L / E0", "1/sr",
          &models::TableFactors::high_orders},
-        {TableId::sun_transmittance, "sunlight that reaches a point: fraction of E0, softened at the horizon by the sun's disc",
-         "1", nullptr},
+        {TableId::sun_transmittance,
+         "sunlight that reaches a point: fraction of E0, softened at the horizon by the sun's disc", "1",
+         nullptr},
         {TableId::sky_irradiance, "light of the open sky on a horizontal surface: E / E0", "1", nullptr},
     };
     total_ = 3 * axes_.altitude_m.size() + 2;
@@ -209,7 +217,8 @@ class Exporter {
       const std::string number = std::to_string(altitude);
       const std::string file = name + "_" + std::string(4 - number.size(), '0') + number + ".exr";
       if (Result<void> r = write_image(file, image); !r) return std::move(r).error();
-      files.push_back({{"file", file}, {"altitude_index", altitude}, {"altitude_m", axes_.altitude_m[altitude]}});
+      files.push_back(
+          {{"file", file}, {"altitude_index", altitude}, {"altitude_m", axes_.altitude_m[altitude]}});
     }
     return files;
   }
@@ -235,8 +244,10 @@ class Exporter {
     out["size"] = {size.x, size.y, size.z, size.w};
     ordered_json& parameters = out["parameters"];
     for (const auto& [name, value] : config::metadata(settings_)) {
-      const config::Row* const row = name.starts_with("tyndall.") ? config::find_row(name.substr(8)) : nullptr;
-      const bool matters = row != nullptr && row->owner == config::Owner::effect && row->info.affects == Affects::Tables;
+      const config::Row* const row =
+          name.starts_with("tyndall.") ? config::find_row(name.substr(8)) : nullptr;
+      const bool matters =
+          row != nullptr && row->owner == config::Owner::effect && row->info.affects == Affects::Tables;
       if (matters) parameters[row->key()] = value;
       if (name == "tyndall.version") out["version"] = value;
     }
@@ -251,7 +262,8 @@ class Exporter {
     scattering["row"] = "view zenith angle, from the top; its values belong to the altitude of the file";
     scattering["column"] = "sun zenith angle + " + std::to_string(size.z) + " * angle between view and sun";
     scattering["continued"] =
-        "where |cos_view_sun - cos_view_zenith cos_sun_zenith| > sin_view_zenith sin_sun_zenith no geometry has the "
+        "where |cos_view_sun - cos_view_zenith cos_sun_zenith| > sin_view_zenith sin_sun_zenith no geometry "
+        "has the "
         "three angles: such texels continue the table for interpolation";
     scattering["altitude_m"] = axes_.altitude_m;
     ordered_json views = ordered_json::array();
@@ -259,17 +271,20 @@ class Exporter {
       const std::size_t first = i * size.y;
       ordered_json view = cosines(std::span(axes_.cos_view_zenith).subspan(first, size.y));
       ordered_json& ends = view["ends_on_ground"] = ordered_json::array();
-      for (std::size_t k = 0; k < size.y; ++k) ends.push_back(static_cast<bool>(axes_.ends_on_ground[first + k]));
+      for (std::size_t k = 0; k < size.y; ++k)
+        ends.push_back(static_cast<bool>(axes_.ends_on_ground[first + k]));
       views.push_back(std::move(view));
     }
     scattering["view_zenith_by_altitude"] = std::move(views);
     scattering["sun_zenith"] = cosines(axes_.cos_sun_zenith);
     scattering["view_sun"] = cosines(axes_.cos_view_sun);
 
-    const models::LightTableAxes light = models::light_table_axes(params_, light_extent_.width, light_extent_.height);
+    const models::LightTableAxes light =
+        models::light_table_axes(params_, light_extent_.width, light_extent_.height);
     ordered_json& lights = out["axes"]["light"];
-    lights["row"] = "sun zenith angle: its cosine is cos_horizon of the column + cos_sun_from_horizon of the row, "
-                    "within -1 to 1";
+    lights["row"] =
+        "sun zenith angle: its cosine is cos_horizon of the column + cos_sun_from_horizon of the row, "
+        "within -1 to 1";
     lights["column"] = "altitude";
     lights["altitude_m"] = light.altitude_m;
     lights["cos_horizon"] = light.cos_horizon;
@@ -292,8 +307,8 @@ class Exporter {
 }  // namespace
 
 const char* table_name(TableId table) {
-  constexpr const char* kNames[kTableCount] = {"single_rayleigh", "single_mie", "high_orders", "sun_transmittance",
-                                               "sky_irradiance"};
+  constexpr const char* kNames[kTableCount] = {"single_rayleigh", "single_mie", "high_orders",
+                                               "sun_transmittance", "sky_irradiance"};
   return kNames[static_cast<std::uint32_t>(table)];
 }
 

@@ -18,9 +18,9 @@ namespace tyndall::cli {
 // Whether the directory is there or can be made, and takes files: for a check before long work.
 [[nodiscard]] Result<void> check_export(const std::string& directory);
 
-// Writes the finished tables of an effect whose parameters are settings.effect; the number of files. They appear in
-// the directory when all of them are written, in place of those of an earlier export; after an error, what was
-// there is there.
+// Writes the finished tables of an effect whose parameters are settings.effect; the number of files. They
+// appear in the directory when all of them are written, in place of those of an earlier export; after an
+// error, what was there is there.
 [[nodiscard]] Result<std::size_t> export_tables(
     const std::string& directory, gpu::Host& host, Effect& effect, const config::Settings& settings,
     const std::function<void(std::size_t done, std::size_t total)>& progress);

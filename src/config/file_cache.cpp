@@ -82,6 +82,8 @@ class OpenFile {
     if (descriptor_ >= 0) ::close(descriptor_);
   }
 
+  // Whether there was no such file: another process may have thrown it away.
+  [[nodiscard]] bool missing() const { return missing_; }
   // Of a regular file; of anything else nothing.
   [[nodiscard]] std::optional<std::uint64_t> size() const {
     struct stat info {};
@@ -102,6 +104,7 @@ class OpenFile {
 
  private:
   int descriptor_;
+  bool missing_ = descriptor_ < 0 && errno == ENOENT;
 };
 
 constexpr std::size_t kPiece = std::size_t{1} << 18U;  // bytes, well within a cache
@@ -165,6 +168,7 @@ bool FileCache::read(std::string_view key, std::span<std::byte> to) {
     return false;
   };
   const OpenFile open(file);
+  if (open.missing()) return false;
   const std::optional<std::uint64_t> bytes = open.size();
   Header header;
   if (!bytes || *bytes > sizeof header + version_.size() + key.size() + to.size() + 4096)
@@ -180,7 +184,8 @@ bool FileCache::read(std::string_view key, std::span<std::byte> to) {
   std::string text(text_bytes, '\0');
   if (!open.read(text.data(), text.size())) return unusable("truncated");
   if (checksum(as_bytes(text)) != header.text_checksum) return unusable("damaged");
-  if (std::string_view(text).substr(0, header.version_bytes) != version_) return unusable("of another version");
+  if (std::string_view(text).substr(0, header.version_bytes) != version_)
+    return unusable("of another version");
   if (std::string_view(text).substr(header.version_bytes) != key || header.contents_bytes != to.size())
     return unusable("of something else");
   // Piece by piece, so that each is summed while it is in the processor's cache.

@@ -1,6 +1,6 @@
 // Makes the tables of an effect ready: from the cache on disk if they are there, otherwise by building them,
-// after which they are kept there. What every program here does before it asks for light; an engine can do the
-// same with the public interface.
+// after which they are kept there. What every program here does before it asks for light; an engine can do
+// the same with the public interface.
 #pragma once
 
 #include <functional>

@@ -1,5 +1,5 @@
-// `tyndall tables` as scripts see it: its report, what it exports, and everything that can be wrong; and the cache
-// of the tables, which all verbs share.
+// `tyndall tables` as scripts see it: its report, what it exports, and everything that can be wrong; and the
+// cache of the tables, which all verbs share.
 #include <gtest/gtest.h>
 
 #include <sys/resource.h>
@@ -35,7 +35,8 @@ class CliTables : public testing::Test {
   static std::vector<std::string> names(const std::string& directory) {
     std::vector<std::string> out;
     std::error_code missing;
-    for (const auto& entry : std::filesystem::directory_iterator(directory, missing)) out.push_back(entry.path().filename());
+    for (const auto& entry : std::filesystem::directory_iterator(directory, missing))
+      out.push_back(entry.path().filename());
     std::sort(out.begin(), out.end());
     return out;
   }
@@ -89,8 +90,8 @@ TEST_F(CliTables, EveryStageHasATime) {
 TEST_F(CliTables, TheExportHoldsWhatTheRendererReads) {
   for (const std::string parameterization : {"yusov", "bruneton", "linear"}) {
     const std::string directory = scratch_.at(parameterization);
-    const std::vector<std::string> set = {"--set", "tables.parameterization=" + parameterization, kTwoOrders[0],
-                                          kTwoOrders[1]};
+    const std::vector<std::string> set = {"--set", "tables.parameterization=" + parameterization,
+                                          kTwoOrders[0], kTwoOrders[1]};
     std::vector<std::string> arguments = set;
     arguments.insert(arguments.end(), {"-o", directory});
     const Outcome outcome = run("tables", arguments);
@@ -136,7 +137,8 @@ TEST_F(CliTables, TheExportHoldsWhatTheRendererReads) {
             views["ends_on_ground"][v + 1] != views["ends_on_ground"][v]) {
           continue;
         }
-        // Without the darkest sun: as finely as devices filter, the next and much brighter one has a part in it.
+        // Without the darkest sun: as finely as devices filter, the next and much brighter one has a part in
+        // it.
         for (std::uint32_t s = 1; s < 12; ++s) {
           for (std::uint32_t n = 0; n < 6; ++n) {
             const double mu_s = axes["sun_zenith"]["cosine"][s];
@@ -157,7 +159,8 @@ TEST_F(CliTables, TheExportHoldsWhatTheRendererReads) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> lights;
     for (std::uint32_t x = 0; x < 64; x += 9) {
       for (std::uint32_t y = 60; y < 256; y += 14) {
-        const double cosine = light["cos_horizon"][x].get<double>() + light["cos_sun_from_horizon"][y].get<double>();
+        const double cosine =
+            light["cos_horizon"][x].get<double>() + light["cos_sun_from_horizon"][y].get<double>();
         if (std::abs(cosine) > 1.0) continue;
         lights.emplace_back(x, y);
         queries += config::number_text(light["altitude_m"][x].get<double>()) + ",sky," +
@@ -185,7 +188,8 @@ TEST_F(CliTables, TheExportHoldsWhatTheRendererReads) {
         };
         const double expected = rayleigh * value(0) + mie * value(1) + value(2);
         EXPECT_NEAR(answers[i]["L"][c].get<double>(), expected, 0.01 * expected + 1e-9)
-            << parameterization << ' ' << t.altitude << ' ' << t.view << ' ' << t.sun << ' ' << t.angle << ' ' << c;
+            << parameterization << ' ' << t.altitude << ' ' << t.view << ' ' << t.sun << ' ' << t.angle << ' '
+            << c;
       }
     }
     for (std::size_t i = 0; i < lights.size(); ++i) {
@@ -194,7 +198,8 @@ TEST_F(CliTables, TheExportHoldsWhatTheRendererReads) {
       for (std::size_t c = 0; c < 3; ++c) {
         const double sky = tables[4][0].pixel(x, y)[c];
         EXPECT_NEAR(answer["L"][c].get<double>(), sky, 0.002 * sky + 1e-9) << x << ' ' << y;
-        if (std::abs(light["cos_sun_from_horizon"][y].get<double>()) < 0.01) continue;  // the disc is not a point there
+        if (std::abs(light["cos_sun_from_horizon"][y].get<double>()) < 0.01)
+          continue;  // the disc is not a point there
         const double sun = tables[3][0].pixel(x, y)[c];
         EXPECT_NEAR(answer["T"][c].get<double>(), sun, 0.002 * sun + 1e-6) << x << ' ' << y;
       }
@@ -211,7 +216,8 @@ TEST_F(CliTables, AnExportIsWholeOrNotThere) {
     small.rlim_cur = bytes;
     EXPECT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
     // Without the cache, which the limit would keep from being written.
-    Outcome outcome = run_tyndall({"tables", "-o", directory, kSmall[0], kSmall[1], kSmall[2], kSmall[3], "--set", "tables.cache=off"});
+    Outcome outcome = run_tyndall(
+        {"tables", "-o", directory, kSmall[0], kSmall[1], kSmall[2], kSmall[3], "--set", "tables.cache=off"});
     EXPECT_EQ(::setrlimit(RLIMIT_FSIZE, &unlimited), 0);
     return outcome;
   };
@@ -243,7 +249,8 @@ TEST_F(CliTables, WhatIsWrongIsSaid) {
   expect_one_line(run("tables", {"--device", "none such"}), 2, "no Vulkan device 'none such'");
   expect_one_line(run_tyndall({"tables", "--set", "tables.size=8,15,8,8"}), 2, "tables.size");
   expect_one_line(run_tyndall({"tables", "--set", "tables.size=4096,4096,4096,4096"}), 2, "tables.size");
-  expect_one_line(run_tyndall({"tables", "--set", "tables.cache="}), 2, "'tables.cache' is empty, allowed is auto, off or a directory");
+  expect_one_line(run_tyndall({"tables", "--set", "tables.cache="}), 2,
+                  "'tables.cache' is empty, allowed is auto, off or a directory");
   expect_one_line(run_tyndall({"tables", "--set", "tables.cache_limit_mib=0"}), 2, "tables.cache_limit_mib");
   EXPECT_EQ(names(scratch_.at("")), std::vector<std::string>{"file"});
 }
@@ -252,8 +259,8 @@ class CliTableCache : public CliTables {
  protected:
   // {"from", "ms"}, or null when it fails.
   nlohmann::json sky(std::vector<std::string> more = {}) {
-    more.insert(more.begin(), {"-o", scratch_.at("sky.exr"), "--size", "8x4", "--json", "--sun-elevation-deg", "20",
-                               "--sun-azimuth-deg", "0"});
+    more.insert(more.begin(), {"-o", scratch_.at("sky.exr"), "--size", "8x4", "--json", "--sun-elevation-deg",
+                               "20", "--sun-azimuth-deg", "0"});
     const Outcome outcome = run("sky", more);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     err_ = outcome.err;
@@ -272,7 +279,8 @@ TEST_F(CliTableCache, AllVerbsShareIt) {
   struct stat before {};
   const std::string path = scratch_.at("cache/" + cached()[0]);
   ASSERT_EQ(::stat(path.c_str(), &before), 0);
-  const std::string queries = scratch_.write("q.csv", "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n0,1,2,3\n");
+  const std::string queries =
+      scratch_.write("q.csv", "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n0,1,2,3\n");
   EXPECT_EQ(run("probe", {"--queries", queries}).status, 0);
   EXPECT_EQ(run("render", {"--size", "16x9", "-o", scratch_.at("a.png")}).status, 0);
   EXPECT_EQ(run("bench", {"--size", "16x9", "--frames", "1"}).status, 0);
@@ -316,21 +324,25 @@ TEST_F(CliTableCache, DamageIsSaidInOneLineAndRepaired) {
   const std::string name = "cache/" + cached()[0];
   std::string bytes = contents_of(scratch_.at(name));
   bytes[bytes.size() / 2] ^= 8;
-  for (const auto& [contents, why] : {std::pair(bytes, "damaged"), std::pair(bytes.substr(0, 100000), "truncated")}) {
+  for (const auto& [contents, why] :
+       {std::pair(bytes, "damaged"), std::pair(bytes.substr(0, 100000), "truncated")}) {
     scratch_.write(name, contents);
     EXPECT_EQ(sky()["from"], "build");
-    EXPECT_EQ(err_, "tyndall: note: the cached file " + scratch_.at(name) + " is " + why + " and is made anew\n");
+    EXPECT_EQ(err_,
+              "tyndall: note: the cached file " + scratch_.at(name) + " is " + why + " and is made anew\n");
     EXPECT_EQ(contents_of(scratch_.at("sky.exr")), good);
   }
   EXPECT_EQ(sky()["from"], "cache");
   EXPECT_EQ(err_, "");
   // A cache that cannot be written is a line as well, for every verb.
   const std::string blocked = "tables.cache=" + scratch_.write("blocked", "");
-  const std::string queries = scratch_.write("q.csv", "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n0,1,2,3\n");
-  const std::vector<std::vector<std::string>> verbs = {{"tables"},
-                                                       {"probe", "--queries", queries},
-                                                       {"render", "--size", "16x9", "-o", scratch_.at("a.png")},
-                                                       {"bench", "--size", "16x9", "--frames", "1"}};
+  const std::string queries =
+      scratch_.write("q.csv", "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n0,1,2,3\n");
+  const std::vector<std::vector<std::string>> verbs = {
+      {"tables"},
+      {"probe", "--queries", queries},
+      {"render", "--size", "16x9", "-o", scratch_.at("a.png")},
+      {"bench", "--size", "16x9", "--frames", "1"}};
   for (std::vector<std::string> arguments : verbs) {
     arguments.insert(arguments.end(), kSmall.begin(), kSmall.end());
     arguments.insert(arguments.end(), {"--set", blocked});
@@ -342,7 +354,8 @@ TEST_F(CliTableCache, DamageIsSaidInOneLineAndRepaired) {
 }
 
 TEST_F(CliTableCache, ProcessesShareIt) {
-  const std::string queries = scratch_.write("q.csv", "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n0,70,50,3\n");
+  const std::string queries =
+      scratch_.write("q.csv", "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n0,70,50,3\n");
   std::vector<std::future<Outcome>> running;
   for (int i = 0; i < 3; ++i)
     running.push_back(std::async(std::launch::async, [&] { return run("probe", {"--queries", queries}); }));

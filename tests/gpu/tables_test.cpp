@@ -353,6 +353,13 @@ TEST_F(SavedTablesTest, KeysTellApartWhatMatters) {
   }
 }
 
+// Without the orders that take most of the time.
+Params quick_tables() {
+  Params params = small_tables();
+  params.tables.orders = 1;
+  return params;
+}
+
 // The same with the cache, as the programs do it.
 class CachedTablesTest : public SavedTablesTest {
  protected:
@@ -374,7 +381,7 @@ class CachedTablesTest : public SavedTablesTest {
     return outcome ? std::move(outcome).value() : tables::Outcome();
   }
   // From a new effect.
-  tables::Outcome ready(const Params& params = small_tables()) {
+  tables::Outcome ready(const Params& params = quick_tables()) {
     Effect effect = make(params, false);
     tables::Outcome outcome = ready(effect);
     bytes_ = save(effect);
@@ -409,7 +416,7 @@ TEST_F(CachedTablesTest, AreBuiltOnceAndFoundAfterwards) {
   EXPECT_EQ(bytes_, built);
 
   // What the tables do not depend on changes nothing; what they do is made anew.
-  Params params = small_tables();
+  Params params = quick_tables();
   params.scattering.scale = 2.0F;
   EXPECT_EQ(ready(params).origin, tables::Origin::cache);
   params.atmosphere.mie_g = 0.7F;
@@ -419,7 +426,7 @@ TEST_F(CachedTablesTest, AreBuiltOnceAndFoundAfterwards) {
   Effect effect = make(params, false);
   EXPECT_EQ(ready(effect).origin, tables::Origin::cache);
   EXPECT_EQ(ready(effect).origin, tables::Origin::unchanged);
-  ASSERT_OK(effect.set_params(small_tables()));
+  ASSERT_OK(effect.set_params(quick_tables()));
   EXPECT_EQ(ready(effect).origin, tables::Origin::cache);
   EXPECT_EQ(save(effect), built);
 
@@ -439,7 +446,7 @@ TEST_F(CachedTablesTest, ProbesDoNotKnowTheDifference) {
   }
   std::vector<std::vector<models::Answer>> answers;
   for (const tables::Origin origin : {tables::Origin::build, tables::Origin::cache}) {
-    Result<models::PrecomputedModel> model = models::PrecomputedModel::create(host(), small_tables(), how_);
+    Result<models::PrecomputedModel> model = models::PrecomputedModel::create(host(), quick_tables(), how_);
     ASSERT_OK(model);
     EXPECT_EQ(model.value().origin().origin, origin);
     Result<std::vector<models::Answer>> found = model.value().answer(queries);
@@ -477,7 +484,7 @@ TEST_F(CachedTablesTest, WhatIsWrongOnDiskIsSaidOnceAndMadeAnew) {
   expect_anew(damaged, "damaged");
   {
     config::FileCache other(how_.cache.place, how_.cache.limit_bytes, "0.0.0");
-    other.write(make(small_tables(), false).table_key(), built);
+    other.write(make(quick_tables(), false).table_key(), built);
   }
   std::string of_other;
   {
@@ -497,7 +504,7 @@ TEST_F(CachedTablesTest, WhatIsWrongOnDiskIsSaidOnceAndMadeAnew) {
 }
 
 TEST_F(CachedTablesTest, KeepToTheirLimit) {
-  Params params = small_tables();
+  Params params = quick_tables();
   const VkDeviceSize size = make(params, false).table_bytes();
   how_.cache.limit_bytes = 2 * size + 10000;
   for (const float density : {1.0F, 2.0F, 3.0F}) {
