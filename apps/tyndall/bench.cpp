@@ -6,6 +6,7 @@
 #include "arguments.hpp"
 #include "cli.hpp"
 #include "gpu/host.hpp"
+#include "make_tables.hpp"
 #include "scene/scene.hpp"
 
 namespace tyndall::cli {
@@ -44,6 +45,7 @@ int run_bench(Args args) {
   desc.extent = {options.size.width, options.size.height};
   desc.timings = true;
   desc.counters = true;
+  desc.make_tables = make_tables(options.settings.scene);
   Result<std::unique_ptr<scene::Scene>> scene =
       scene::Scene::create(*host.value(), desc, options.settings.effect, options.settings.scene);
   if (!scene) return fail_input(scene.error());
@@ -76,6 +78,7 @@ int run_bench(Args args) {
     frame_total.ms.push_back(frame_ms);
   }
 
+  for (const std::string& text : scene.value()->notes()) note(text);
   const scene::Scene::Memory memory = scene.value()->memory();
   nlohmann::ordered_json out;
   out["device"] = host.value()->device_name();

@@ -20,6 +20,7 @@ using config::input_error;
 using config::one_line;
 
 constexpr std::uint32_t kMostFrames = 1000000;
+constexpr std::size_t kLongestLine = 2000;
 
 struct FramePattern {
   std::size_t start = 0;   // of the percent sign
@@ -59,9 +60,12 @@ int fail_input(const Error& error) {
 }
 
 int fail(std::string_view message, int status) {
-  constexpr std::size_t kLongestLine = 2000;
   std::fprintf(stderr, "tyndall: error: %s\n", one_line(message, kLongestLine).c_str());
   return status;
+}
+
+void note(std::string_view message) {
+  std::fprintf(stderr, "tyndall: note: %s\n", one_line(message, kLongestLine).c_str());
 }
 
 int print(std::string_view text) {

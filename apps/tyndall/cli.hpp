@@ -28,6 +28,9 @@ int fail_input(const Error& error);
 // The same with the status given.
 int fail(std::string_view message, int status);
 
+// Prints "tyndall: note: MESSAGE" on stderr, as one line: what the user should know of a run that goes on.
+void note(std::string_view message);
+
 // Writes to stdout and flushes; kDone, or kFailed (after the error line) when stdout does not take it.
 int print(std::string_view text);
 

@@ -7,6 +7,7 @@
 #include "cli.hpp"
 #include "config/files.hpp"
 #include "config/text.hpp"
+#include "make_tables.hpp"
 #include "probe_models.hpp"
 #include "probe_table.hpp"
 
@@ -78,6 +79,9 @@ int run_probe(Args args) {
 
   settings.params = options.settings.effect;
   settings.device = options.device;
+  settings.table_cache = table_cache(options.settings.scene);
+  std::vector<std::string> notes;
+  settings.note = [&](const std::string& text) { notes.push_back(text); };
   Result<std::vector<ProbeAnswer>> answers = std::vector<ProbeAnswer>();
   {
     Progress progress("probe");
@@ -87,6 +91,7 @@ int run_probe(Args args) {
     };
     answers = model.run(settings, table.value().queries);
   }
+  for (const std::string& text : notes) note(text);
   if (!answers) return fail(answers.error());
   const bool to_file = !options.output.empty();
   if (to_file || !options.json) {

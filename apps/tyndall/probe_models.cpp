@@ -92,12 +92,17 @@ Result<std::vector<ProbeAnswer>> run_precomputed(const ProbeSettings& settings,
   }
   Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({settings.device, false});
   if (!host) return std::move(host).error();
-  const auto progress = [&](Progress built) {
+  tables::MakeReady how;
+  how.cache = settings.table_cache;
+  how.progress = [&](Progress built) {
     settings.progress(static_cast<double>(built.done) / static_cast<double>(built.total));
   };
   Result<models::PrecomputedModel> model =
-      models::PrecomputedModel::create(*host.value(), settings.params, progress);
+      models::PrecomputedModel::create(*host.value(), settings.params, how);
   if (!model) return std::move(model).error();
+  for (const std::string& text : model.value().origin().notes) {
+    if (settings.note) settings.note(text);
+  }
   const Result<std::vector<models::Answer>> found = model.value().answer(asked);
   if (!found) return found.error();
   answers.reserve(queries.size());

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tables/make_ready.hpp"
 #include "tyndall/params.hpp"
 #include "tyndall/result.hpp"
 
@@ -36,6 +37,8 @@ struct ProbeSettings {
   std::uint32_t samples = 100000;
   std::uint32_t seed = 1;
   std::string device;
+  tables::CacheDesc table_cache = {};
+  std::function<void(const std::string& text)> note;  // gets remarks for the user; may be empty
   std::function<void(double done)> progress;  // the part done, 0 to 1
 };
 

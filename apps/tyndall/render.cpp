@@ -6,6 +6,7 @@
 #include "config/text.hpp"
 #include "gpu/host.hpp"
 #include "image/image.hpp"
+#include "make_tables.hpp"
 #include "scene/scene.hpp"
 
 namespace tyndall::cli {
@@ -40,6 +41,7 @@ int run_render(Args args) {
   if (!host) return fail(host.error());
   scene::SceneDesc desc;
   desc.extent = {options.size.width, options.size.height};
+  desc.make_tables = make_tables(options.settings.scene);
   Result<std::unique_ptr<scene::Scene>> scene =
       scene::Scene::create(*host.value(), desc, options.settings.effect, options.settings.scene);
   if (!scene) return fail_input(scene.error());
@@ -51,9 +53,7 @@ int run_render(Args args) {
       return fail(r.error());
     }
   }
-  for (const std::string& note : scene.value()->notes()) {
-    std::fprintf(stderr, "tyndall: note: %s\n", note.c_str());
-  }
+  for (const std::string& text : scene.value()->notes()) note(text);
   return kDone;
 }
 

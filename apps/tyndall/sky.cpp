@@ -10,6 +10,7 @@
 #include "effect/medium.hpp"
 #include "gpu/host.hpp"
 #include "image/image.hpp"
+#include "make_tables.hpp"
 #include "models/gpu_probe.hpp"
 #include "models/precomputed.hpp"
 #include "scene/solar_position.hpp"
@@ -38,6 +39,8 @@ class SkySource {
  public:
   virtual ~SkySource() = default;
   virtual Result<std::vector<models::Answer>> answer(std::span<const models::Ray> rays) = 0;
+  // Where its tables came from; nullptr without tables.
+  [[nodiscard]] virtual const tables::Outcome* tables() const { return nullptr; }
 };
 
 // Light scattered once, and the ground in the sun's light.
@@ -72,22 +75,23 @@ class PrecomputedSource final : public SkySource {
     for (const models::Ray& ray : rays) queries.push_back({ray, false});
     return model_.answer(queries);
   }
+  [[nodiscard]] const tables::Outcome* tables() const override { return &model_.origin(); }
 
  private:
   models::PrecomputedModel model_;
 };
 
-using MakeSource = Result<std::unique_ptr<SkySource>> (*)(gpu::Host& host, const Params& params);
+using MakeSource = Result<std::unique_ptr<SkySource>> (*)(gpu::Host& host, const config::Settings& settings);
 
-Result<std::unique_ptr<SkySource>> make_single(gpu::Host& host, const Params& params) {
-  return std::unique_ptr<SkySource>(std::make_unique<SingleSource>(host, params));
+Result<std::unique_ptr<SkySource>> make_single(gpu::Host& host, const config::Settings& settings) {
+  return std::unique_ptr<SkySource>(std::make_unique<SingleSource>(host, settings.effect));
 }
 
-Result<std::unique_ptr<SkySource>> make_precomputed(gpu::Host& host, const Params& params) {
-  Progress progress("tables");
-  Result<models::PrecomputedModel> model = models::PrecomputedModel::create(
-      host, params, [&](tyndall::Progress built) { progress.update(built.done, built.total); });
+Result<std::unique_ptr<SkySource>> make_precomputed(gpu::Host& host, const config::Settings& settings) {
+  Result<models::PrecomputedModel> model =
+      models::PrecomputedModel::create(host, settings.effect, make_tables(settings.scene));
   if (!model) return std::move(model).error();
+  for (const std::string& text : model.value().origin().notes) note(text);
   return std::unique_ptr<SkySource>(std::make_unique<PrecomputedSource>(std::move(model).value()));
 }
 
@@ -198,7 +202,7 @@ int run_sky(Args args) {
   if (!host) return fail(host.error());
   const SkyModel& model = *std::find_if(std::begin(kModels), std::end(kModels),
                                         [&](const SkyModel& m) { return m.name == sky.model; });
-  Result<std::unique_ptr<SkySource>> source = model.make(*host.value(), params);
+  Result<std::unique_ptr<SkySource>> source = model.make(*host.value(), options.settings);
   if (!source) return fail(source.error());
   image::Image image(map.width, map.height);
   if (Result<void> r = fill(image, map, irradiance, *source.value()); !r) return fail(r.error());
@@ -232,6 +236,9 @@ int run_sky(Args args) {
   out["sun_elevation_deg"] = sun.value().elevation_deg;
   out["sun_azimuth_deg"] = sun.value().azimuth_deg;
   out["sky_irradiance"] = diffuse;
+  if (const tables::Outcome* const made = source.value()->tables(); made != nullptr) {
+    out["tables"] = {{"from", made->origin == tables::Origin::cache ? "cache" : "build"}, {"ms", made->milliseconds}};
+  }
   return print(out.dump(2) + "\n");
 }
 

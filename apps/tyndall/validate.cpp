@@ -8,6 +8,7 @@
 #include "config/text.hpp"
 #include "effect/medium.hpp"
 #include "gpu/host.hpp"
+#include "make_tables.hpp"
 #include "models/precomputed.hpp"
 #include "models/single_scattering.hpp"
 #include "probe_models.hpp"
@@ -65,7 +66,10 @@ Result<std::vector<Rgb>> ask_single(const std::string& device, const Params& par
 // The tables of the last parameters that were asked for, kept for the next question.
 class Tables {
  public:
-  explicit Tables(std::string device) : device_(std::move(device)) {}
+  Tables(std::string device, tables::CacheDesc cache) : device_(std::move(device)) { how_.cache = std::move(cache); }
+
+  // About the cache, each but once.
+  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
 
   Result<std::vector<Rgb>> ask(const Params& params, std::span<const reference::Query> queries) {
     if (Result<void> r = build(params); !r) return std::move(r).error();
@@ -95,13 +99,18 @@ class Tables {
       if (!host) return std::move(host).error();
       host_ = std::move(host).value();
     }
-    Result<models::PrecomputedModel> model = models::PrecomputedModel::create(*host_, params);
+    Result<models::PrecomputedModel> model = models::PrecomputedModel::create(*host_, params, how_);
     if (!model) return std::move(model).error();
+    for (const std::string& text : model.value().origin().notes) {
+      if (std::find(notes_.begin(), notes_.end(), text) == notes_.end()) notes_.push_back(text);
+    }
     model_.emplace(std::move(model).value());
     return {};
   }
 
   std::string device_;
+  tables::MakeReady how_;
+  std::vector<std::string> notes_;
   std::unique_ptr<gpu::Host> host_;
   std::optional<models::PrecomputedModel> model_;
 };
@@ -198,16 +207,17 @@ int run_validate(Args args) {
     origin.device = host.value()->device_name();
   }
   Result<validate::Study> study = validate::Study();
+  const auto tables = std::make_shared<Tables>(options.device, table_cache(options.settings.scene));
   {
     Progress progress("validate");
     constexpr std::uint64_t kSteps = 1000;
-    const auto tables = std::make_shared<Tables>(options.device);
     study = validate::run_study(options.settings.effect, study_options, all_models(options.device, tables),
                                 parameterizations(tables), [&](double done) {
                                   progress.update(
                                       static_cast<std::uint64_t>(done * static_cast<double>(kSteps)), kSteps);
                                 });
   }
+  for (const std::string& text : tables->notes()) note(text);
   if (!study) return fail(study.error());
   if (!options.output.empty()) {
     if (Result<void> r = config::write_file(options.output, to_html(study.value(), origin)); !r)

@@ -17,6 +17,7 @@ int run_params(Args args);
 int run_probe(Args args);
 int run_render(Args args);
 int run_sky(Args args);
+int run_tables(Args args);
 int run_validate(Args args);
 
 struct Verb {
@@ -29,6 +30,7 @@ struct Verb {
 inline constexpr Verb kVerbs[] = {
     {"render", run_render, "render one frame or a sequence to PNG or EXR"},
     {"probe", run_probe, "radiance and transmittance for given rays, by any of the models"},
+    {"tables", run_tables, "build the scattering tables anew (those in the cache too), say how long it took, export them"},
     {"sky", run_sky, "the sky as an environment map, for a sun given by angles or by place and time"},
     {"validate", run_validate, "every model against the reference, as a report with tables and plots"},
     {"bench", run_bench, "measure GPU milliseconds per pass"},

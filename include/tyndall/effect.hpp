@@ -20,6 +20,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "tyndall/params.hpp"
@@ -188,6 +189,24 @@ class Effect {
   [[nodiscard]] Progress precompute_progress() const;
   // Records at most `budget` slices of the building of stale tables. Nothing to do: records nothing.
   Result<Progress> record_precompute(VkCommandBuffer cmd, std::uint32_t budget = UINT32_MAX);
+
+  // Finished tables can be kept, on disk for instance, and loaded instead of being built again.
+  // table_key() is printable text of several lines: two effects whose keys are equal have the same tables, byte for
+  // byte. It names the medium, the tables' shape, their shaders, the library's version, the device and its driver.
+  // table_bytes() is the size of all tables of params(): one after another, texel by texel without padding, in the
+  // order single_rayleigh, single_mie, high_orders, sun_transmittance, sky_irradiance.
+  [[nodiscard]] std::string table_key() const;
+  [[nodiscard]] VkDeviceSize table_bytes() const;
+  // Records the copy of the tables to `buffer` (VK_BUFFER_USAGE_TRANSFER_DST_BIT) from `offset` on, a multiple of 8
+  // [bytes]; an error unless precompute_progress() is complete. After it the buffer is written by TRANSFER /
+  // TRANSFER_WRITE: before the host reads it, make that visible to HOST / HOST_READ and wait for the commands.
+  Result<void> record_save_tables(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset = 0);
+  // Records the loading of what such a buffer (VK_BUFFER_USAGE_TRANSFER_SRC_BIT) holds, saved under the same
+  // table_key(), in place of what is left to be built: precompute_progress() is then complete. Nothing to do: records
+  // nothing. Before it make the buffer visible to TRANSFER / TRANSFER_READ, and keep it until the commands have
+  // completed; after it synchronise as after record_precompute(). What the buffer holds is not checked: that
+  // is for who kept it.
+  Result<void> record_load_tables(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset = 0);
 
   // Records the effect: output = color seen through the air, plus the light that the air scatters.
   // Before it, make the inputs visible to COMPUTE_SHADER / SHADER_READ in the layouts that they state;

@@ -132,57 +132,59 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
   w.moment = 0.0;
   w.middle = 0.0;
 
-  if (kSingle != kIntegration) {
-    while (w.x < end) {
-      walk_to(w, march.lit, end);
-      close_section(march.lit, path, start);
-    }
-  } else {
-    float radius = medium.planet_radius_m;
-    float h = altitude_along(ray.altitude, ray.cos_zenith, from, radius);
+  // One panel for all of it where only lit lengths are asked for.
+  int panels = 1;
+  float radius = medium.planet_radius_m;
+  float h = 0.0;
+  vec3 density = vec3(0.0);
+  vec3 column = vec3(0.0);
+  vec3 rayleigh = vec3(0.0);
+  vec3 mie = vec3(0.0);
+  if (kSingle == kIntegration) {
+    h = altitude_along(ray.altitude, ray.cos_zenith, from, radius);
     float h_end = altitude_along(ray.altitude, ray.cos_zenith, to, radius);
-    vec3 density = densities(medium, h);
+    density = densities(medium, h);
     vec3 extinction = extinction_at(medium, min(h, h_end));
     float densest = max(extinction.r, max(extinction.g, extinction.b));
     // Panels: half of the aerosol's scale height, a fifth of an optical depth, a share of the cascade at most.
     float wanted = max(max(abs(h_end - h) / (0.5 * medium.mie_scale_height_m), (to - from) * densest / 0.2), 12.0);
-    int panels = int(clamp(ceil(wanted), 1.0, 256.0));
-    float panel_m = (to - from) / float(panels);
-    vec3 rayleigh = medium.rayleigh_scattering * rayleigh_phase(ray.cos_view_sun);
-    vec3 mie = medium.mie_scattering * mie_phase(medium, ray.cos_view_sun);
+    panels = int(clamp(ceil(wanted), 1.0, 256.0));
+    rayleigh = medium.rayleigh_scattering * rayleigh_phase(ray.cos_view_sun);
+    mie = medium.mie_scattering * mie_phase(medium, ray.cos_view_sun);
     // The column up to here, from where the ray enters the air.
-    float start_h = altitude_along(ray.altitude, ray.cos_zenith, start, radius);
-    float start_mu = cos_zenith_along(ray.altitude, ray.cos_zenith, start, radius);
-    vec3 column = column_along(medium, start_h, start_mu, from - start);
-    for (int i = 0; i < panels; ++i) {
-      float t = from + float(i) * panel_m;
-      float panel_end = i + 1 == panels ? end : (t + panel_m) * cells_per_m;
-      w.lit = 0.0;
-      w.moment = 0.0;
-      w.middle = (t + 0.5 * panel_m) * cells_per_m;
-      while (w.x < panel_end) {
-        walk_to(w, march.lit, panel_end);
-        if (kLitTables) close_section(march.lit, path, start);
-      }
-      float h_next = altitude_along(ray.altitude, ray.cos_zenith, t + panel_m, radius);
-      vec3 density_next = densities(medium, h_next);
-      vec3 mean = mean_densities(medium, density, density_next, h_next - h);
-      float middle = altitude_along(ray.altitude, ray.cos_zenith, t + 0.5 * panel_m, radius);
-      float cos_sun = cos_sun_zenith_along(ray, t + 0.5 * panel_m, radius);
-      vec3 total = column + 0.5 * panel_m * mean + column_to_top(medium, middle, cos_sun);
-      vec3 arriving = sun_visibility(middle, cos_sun, radius) * transmittance(medium, total);
-      float lit_m = w.lit * w.metres;
-      float moment = w.moment * w.metres / max(panel_m * cells_per_m, 1e-20);  // [m], of a coordinate of one panel
-      march.light += arriving * (rayleigh * max(mean.x * lit_m + (density_next.x - density.x) * moment, 0.0) +
-                                 mie * max(mean.y * lit_m + (density_next.y - density.y) * moment, 0.0));
-      column += mean * panel_m;
-      h = h_next;
-      density = density_next;
-    }
+    column = column_along(medium, ray.altitude, ray.cos_zenith, from);
   }
-  if (kLitTables && kSections == kEach && march.lit.since >= 0.0) {
-    march.lit.closed_at = to;
-    close_section(march.lit, path, start);
+  float panel_m = (to - from) / float(panels);
+  for (int i = 0; i < panels; ++i) {
+    float t = from + float(i) * panel_m;
+    bool last = i + 1 == panels;
+    float panel_end = last ? end : (t + panel_m) * cells_per_m;
+    w.lit = 0.0;
+    w.moment = 0.0;
+    w.middle = (t + 0.5 * panel_m) * cells_per_m;
+    while (w.x < panel_end) {
+      walk_to(w, march.lit, panel_end);
+      if (kLitTables) {
+        bool open = kSections == kEach && march.lit.since >= 0.0 && march.lit.closed_at < 0.0;
+        if (open && last && w.x >= end) march.lit.closed_at = to;
+        close_section(march.lit, path, start);
+      }
+    }
+    if (kSingle != kIntegration) break;
+    float h_next = altitude_along(ray.altitude, ray.cos_zenith, t + panel_m, radius);
+    vec3 density_next = densities(medium, h_next);
+    vec3 mean = mean_densities(medium, density, density_next, h_next - h);
+    float middle = altitude_along(ray.altitude, ray.cos_zenith, t + 0.5 * panel_m, radius);
+    float cos_sun = cos_sun_zenith_along(ray, t + 0.5 * panel_m, radius);
+    vec3 total = column + 0.5 * panel_m * mean + column_to_top(medium, middle, cos_sun);
+    vec3 arriving = sun_visibility(middle, cos_sun, radius) * transmittance(medium, total);
+    float lit_m = w.lit * w.metres;
+    float moment = w.moment * w.metres / max(panel_m * cells_per_m, 1e-20);  // [m], of a coordinate of one panel
+    march.light += arriving * (rayleigh * max(mean.x * lit_m + (density_next.x - density.x) * moment, 0.0) +
+                               mie * max(mean.y * lit_m + (density_next.y - density.y) * moment, 0.0));
+    column += mean * panel_m;
+    h = h_next;
+    density = density_next;
   }
 }
 
@@ -220,12 +222,7 @@ vec3 light_of(March march, Ray ray, TableRay path, float start, float end) {
                                  int(frame.integration_steps) / 3);
     }
   }
-  if (kLitTables) {
-    AirLight lit = lit_light(march.lit, path, start, t, end);
-    if (kSingle == kTable) light += lit.single;
-    if (kMultiple == kOccluded) light += lit.high;
-  }
-  if (kMultiple == kUnoccluded) light += section_light(path, start, start, end).high;
+  if (kSingle == kTable || kMultiple != kNone) light += table_light(march.lit, path, start, t, end);
   return light;
 }
 

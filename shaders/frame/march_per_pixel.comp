@@ -133,43 +133,36 @@ void walk_cascade(uint cascade, Ray ray, TableRay path, float start, float from,
       add_stretch(lit, here, here + step_m, share);
       uvz += duvz;
     }
-    close_section(lit, path, start);
-  }
-  if (kSections == kEach && lit.since >= 0.0) {
-    lit.closed_at = to;
+    if (kSections == kEach && i >= reads && lit.since >= 0.0 && lit.closed_at < 0.0) lit.closed_at = to;
     close_section(lit, path, start);
   }
   steps_done += uint(reads);
   reads_done += uint(reads);
 }
 
-// The lit part of [start, end]: cut by the shadow maps as far as they reach, whole beyond them.
-AirLight lit_table_light(Ray ray, TableRay path, float start, float end) {
+// The light of the tables of [start, end]: cut by the shadow maps as far as they reach.
+vec3 shadowed_table_light(Ray ray, float start, float end) {
+  TableRay path = table_ray_of(ray, start);
   LitSections lit = nothing_lit();
-  float depth_per_m = max(dot(ray.direction, frame.camera_forward), 1e-6);
   float t = start;
-  for (uint c = frame.first_marched_cascade; c < frame.cascade_count; ++c) {
-    float to = min(frame.cascades[c].far_m / depth_per_m, end);
-    if (to - t > 1e-3) {
-      walk_cascade(c, ray, path, start, t, to, lit);
-      t = to;
+  if (kLitTables) {
+    float depth_per_m = max(dot(ray.direction, frame.camera_forward), 1e-6);
+    for (uint c = frame.first_marched_cascade; c < frame.cascade_count; ++c) {
+      float to = min(frame.cascades[c].far_m / depth_per_m, end);
+      if (to - t > 1e-3) {
+        walk_cascade(c, ray, path, start, t, to, lit);
+        t = to;
+      }
     }
   }
-  return lit_light(lit, path, start, t, end);
+  return table_light(lit, path, start, t, end);
 }
 
 // All that the air of [start, end] sends to the eye, as the modes ask.
 vec3 air_light(Ray ray, float start, float end) {
   vec3 light = vec3(0.0);
   if (kSingle == kIntegration) light += integrated_light(ray, start, end);
-  if (kSingle != kTable && kMultiple == kNone) return light;
-  TableRay path = table_ray_of(ray, start);
-  if (kLitTables) {
-    AirLight lit = lit_table_light(ray, path, start, end);
-    if (kSingle == kTable) light += lit.single;
-    if (kMultiple == kOccluded) light += lit.high;
-  }
-  if (kMultiple == kUnoccluded) light += section_light(path, start, start, end).high;
+  if (kSingle == kTable || kMultiple != kNone) light += shadowed_table_light(ray, start, end);
   return light;
 }
 

@@ -58,14 +58,24 @@ void close_section(inout LitSections lit, TableRay path, float start) {
   lit.closed_at = -1.0;
 }
 
-// The light of all that was found up to distance t, and of the rest of the ray to `end`, which nothing shadows.
-AirLight lit_light(LitSections lit, TableRay path, float start, float t, float end) {
-  AirLight light = lit.light;
-  if (kSections == kContiguous) {
-    light = AirLight(vec3(0.0), vec3(0.0));
-    if (lit.total > 1e-3) light = section_light(path, start, lit.first, lit.first + lit.total);
+// The light that the tables give: of the lit part, which was found up to distance t, of the rest of the ray to
+// `end`, which nothing shadows, and of the whole ray where shadows do not count. A loop over these sections.
+vec3 table_light(LitSections lit, TableRay path, float start, float t, float end) {
+  vec3 light = vec3(0.0);
+  if (kSections == kEach) {
+    if (kSingle == kTable) light += lit.light.single;
+    if (kMultiple == kOccluded) light += lit.light.high;
   }
-  if (end - t > 1e-3) light = add(light, section_light(path, start, t, end));
+  uint turns = kMultiple == kUnoccluded ? 3u : 2u;
+  for (uint i = kLitTables ? kSections == kContiguous ? 0u : 1u : 2u; i < turns; ++i) {
+    float from = i == 0u ? lit.first : i == 1u ? t : start;
+    float to = i == 0u ? lit.first + lit.total : end;
+    if (to - from <= 1e-3 || (i == 0u && lit.total <= 1e-3)) continue;
+    AirLight section = section_light(path, start, from, to);
+    if (kSingle == kTable && i < 2u) light += section.single;
+    if (kMultiple == kOccluded && i < 2u) light += section.high;
+    if (kMultiple == kUnoccluded && i == 2u) light += section.high;
+  }
   return light;
 }
 

@@ -98,16 +98,18 @@ AirLight light_between(TableShape t, Medium m, TableRay ray, float from, float t
   float end = min(to, ray.end_m);
   AirLight light = AirLight(vec3(0.0), vec3(0.0));
   if (end <= from) return light;
-  vec3 before = transmittance(m, column_along(m, ray.altitude, ray.cos_zenith, from));
-  light = light_to_end(t, m, ray_further_on(m, ray, from));
-  light.single *= before;
-  light.high *= before;
-  if (end < ray.end_m) {
-    AirLight rest = light_to_end(t, m, ray_further_on(m, ray, end));
-    vec3 through = transmittance(m, column_along(m, ray.altitude, ray.cos_zenith, end));
-    light.single = max(light.single - through * rest.single, vec3(0.0));
-    light.high = max(light.high - through * rest.high, vec3(0.0));
+  // A loop, because every copy of the look-up is a heavy piece of code.
+  int ends = end < ray.end_m ? 2 : 1;
+  for (int i = 0; i < ends; ++i) {
+    float d = i == 0 ? from : end;
+    vec3 through = transmittance(m, column_along(m, ray.altitude, ray.cos_zenith, d));
+    AirLight beyond = light_to_end(t, m, ray_further_on(m, ray, d));
+    vec3 share = i == 0 ? through : -through;
+    light.single += share * beyond.single;
+    light.high += share * beyond.high;
   }
+  light.single = max(light.single, vec3(0.0));
+  light.high = max(light.high, vec3(0.0));
   return light;
 }
 

@@ -101,12 +101,13 @@ vec3 column_between(IN(Medium) m, float h0, float mu, float da, float ha, float 
 
   float ozone = 0.0;
   if (!smooth_ozone && highest > m.ozone_centre_m - m.ozone_half_width_m) {
-    if (passes_perigee) {
-      ozone = ozone_column(m, hp, 0.0, ha) + ozone_column(m, hp, 0.0, hb);
-    } else if (qa >= 0.0) {
-      ozone = ozone_column(m, ha, qa, hb);
-    } else {
-      ozone = ozone_column(m, hb, -qb, ha);
+    // Outwards: from the lower end, or from the perigee to each end.
+    float from = passes_perigee ? hp : qa >= 0.0 ? ha : hb;
+    float q = passes_perigee ? 0.0 : abs(qa >= 0.0 ? qa : qb);
+    float to = passes_perigee || qa < 0.0 ? ha : hb;
+    int parts = passes_perigee ? 2 : 1;
+    for (int part = 0; part < parts; ++part) {
+      ozone += ozone_column(m, from, q, part == 0 ? to : hb);
     }
   }
 

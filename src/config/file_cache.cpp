@@ -4,10 +4,12 @@
 
 #include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -33,38 +35,98 @@ struct Header {
 
 std::span<const std::byte> as_bytes(std::string_view text) { return std::as_bytes(std::span(text)); }
 
+// The checksum of `total` bytes that come in pieces, each a multiple of 32 bytes but the last. Four lanes of
+// multiply and rotate over words, so that memory is the limit; then the finish of SplitMix64.
+class Checksum {
+ public:
+  explicit Checksum(std::uint64_t total)
+      : lanes_{0x9e3779b97f4a7c15U, 0xbf58476d1ce4e5b9U, 0x94d049bb133111ebU, total} {}
+
+  void add(std::span<const std::byte> bytes) {
+    std::size_t at = 0;
+    const auto word = [&](std::size_t offset) {
+      std::uint64_t value = 0;
+      std::memcpy(&value, bytes.data() + offset, std::min<std::size_t>(8, bytes.size() - offset));
+      return value;
+    };
+    for (; at + 32 <= bytes.size(); at += 32) {
+      for (std::size_t i = 0; i < 4; ++i) lanes_[i] = mix(lanes_[i], word(at + 8 * i));
+    }
+    for (std::size_t lane = 0; at < bytes.size(); at += 8, ++lane) lanes_[lane] = mix(lanes_[lane], word(at));
+  }
+
+  [[nodiscard]] std::uint64_t finish() const {
+    std::uint64_t sum = 0;
+    for (const std::uint64_t lane : lanes_) {
+      sum = mix(sum, lane);
+      sum = (sum ^ (sum >> 30U)) * 0xbf58476d1ce4e5b9U;
+      sum ^= sum >> 27U;
+    }
+    return sum;
+  }
+
+ private:
+  static std::uint64_t mix(std::uint64_t lane, std::uint64_t value) {
+    return std::rotl((lane ^ value) * 0x9fb21c651e98df25U, 29);
+  }
+  std::array<std::uint64_t, 4> lanes_;
+};
+
+// A file that is open for reading.
+class OpenFile {
+ public:
+  explicit OpenFile(const std::string& path) : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  ~OpenFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+
+  // Whether there was no such file: another process may have thrown it away.
+  [[nodiscard]] bool missing() const { return missing_; }
+  // Of a regular file; of anything else nothing.
+  [[nodiscard]] std::optional<std::uint64_t> size() const {
+    struct stat info {};
+    if (descriptor_ < 0 || ::fstat(descriptor_, &info) != 0 || !S_ISREG(info.st_mode)) return std::nullopt;
+    return static_cast<std::uint64_t>(info.st_size);
+  }
+  // Whether all of it could be read.
+  [[nodiscard]] bool read(void* to, std::size_t size) const {
+    for (auto* at = static_cast<std::byte*>(to); size > 0;) {
+      const ssize_t got = ::read(descriptor_, at, size);
+      if (got < 0 && errno == EINTR) continue;
+      if (got <= 0) return false;
+      at += got;
+      size -= static_cast<std::size_t>(got);
+    }
+    return true;
+  }
+
+ private:
+  int descriptor_;
+  bool missing_ = descriptor_ < 0 && errno == ENOENT;
+};
+
+constexpr std::size_t kPiece = std::size_t{1} << 18U;  // bytes, well within a cache
+
 std::string hexadecimal(std::uint64_t value) {
   std::string out(16, '0');
   for (std::size_t i = 0; i < out.size(); ++i) out[15 - i] = "0123456789abcdef"[(value >> (4 * i)) & 15U];
   return out;
 }
 
+// Whether a file may be one of ours: the directory is the user's, and may hold others.
+bool is_entry_name(std::string_view name) {
+  return name.size() == 16 + kEnding.size() && name.ends_with(kEnding) &&
+         name.substr(0, 16).find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
 }  // namespace
 
 std::uint64_t checksum(std::span<const std::byte> bytes) {
-  // Four lanes of multiply and rotate over words, so that memory is the limit; then the finish of SplitMix64.
-  std::array<std::uint64_t, 4> lanes = {0x9e3779b97f4a7c15U, 0xbf58476d1ce4e5b9U, 0x94d049bb133111ebU,
-                                        bytes.size()};
-  std::size_t at = 0;
-  const auto word = [&](std::size_t offset) {
-    std::uint64_t value = 0;
-    std::memcpy(&value, bytes.data() + offset, std::min<std::size_t>(8, bytes.size() - offset));
-    return value;
-  };
-  const auto mix = [](std::uint64_t lane, std::uint64_t value) {
-    return std::rotl((lane ^ value) * 0x9fb21c651e98df25U, 29);
-  };
-  for (; at + 32 <= bytes.size(); at += 32) {
-    for (std::size_t i = 0; i < 4; ++i) lanes[i] = mix(lanes[i], word(at + 8 * i));
-  }
-  for (std::size_t lane = 0; at < bytes.size(); at += 8, ++lane) lanes[lane] = mix(lanes[lane], word(at));
-  std::uint64_t sum = 0;
-  for (const std::uint64_t lane : lanes) {
-    sum = mix(sum, lane);
-    sum = (sum ^ (sum >> 30U)) * 0xbf58476d1ce4e5b9U;
-    sum ^= sum >> 27U;
-  }
-  return sum;
+  Checksum sum(bytes.size());
+  sum.add(bytes);
+  return sum.finish();
 }
 
 std::string cache_directory(std::string_view place) {
@@ -86,41 +148,59 @@ std::string FileCache::path(std::string_view key) const {
   return concat({directory_, "/", hexadecimal(checksum(as_bytes(key))), kEnding});
 }
 
-std::optional<std::string> FileCache::read(std::string_view key, std::uint64_t size) {
-  note_.clear();
-  if (!enabled()) return std::nullopt;
-  const std::string file = path(key);
+bool FileCache::holds(std::string_view key) const {
   std::error_code failed;
-  if (!std::filesystem::exists(file, failed)) return std::nullopt;
+  return enabled() && std::filesystem::exists(path(key), failed);
+}
+
+std::optional<std::string> FileCache::read(std::string_view key, std::uint64_t size) {
+  std::string out(holds(key) ? size : 0, '\0');
+  if (!read(key, std::as_writable_bytes(std::span(out)))) return std::nullopt;
+  return out;
+}
+
+bool FileCache::read(std::string_view key, std::span<std::byte> to) {
+  note_.clear();
+  if (!holds(key)) return false;
+  const std::string file = path(key);
   const auto unusable = [&](std::string_view why) {
     note_ = concat({"the cached file ", one_line(file, 200), " is ", why, " and is made anew"});
-    return std::nullopt;
+    return false;
   };
+  const OpenFile open(file);
+  if (open.missing()) return false;
+  const std::optional<std::uint64_t> bytes = open.size();
   Header header;
-  Result<std::string> read = read_file(file, sizeof header + version_.size() + key.size() + size + 4096);
-  if (!read) return unusable("not readable or too large");
-  std::string& bytes = read.value();
-  if (bytes.size() < sizeof header) return unusable("truncated");
-  std::memcpy(&header, bytes.data(), sizeof header);
+  if (!bytes || *bytes > sizeof header + version_.size() + key.size() + to.size() + 4096)
+    return unusable("not readable or too large");
+  if (*bytes < sizeof header || !open.read(&header, sizeof header)) return unusable("truncated");
   if (header.mark != kMark) return unusable("of another kind");
-  const std::uint64_t rest = bytes.size() - sizeof header;
+  const std::uint64_t rest = *bytes - sizeof header;
   if (header.version_bytes > rest || header.key_bytes > rest || header.contents_bytes > rest)
     return unusable("truncated");
   const std::uint64_t text_bytes = header.version_bytes + header.key_bytes;
   if (text_bytes + header.contents_bytes > rest) return unusable("truncated");
   if (text_bytes + header.contents_bytes < rest) return unusable("damaged");
-  const std::string_view text = std::string_view(bytes).substr(sizeof header, text_bytes);
+  std::string text(text_bytes, '\0');
+  if (!open.read(text.data(), text.size())) return unusable("truncated");
   if (checksum(as_bytes(text)) != header.text_checksum) return unusable("damaged");
-  if (text.substr(0, header.version_bytes) != version_) return unusable("of another version");
-  if (text.substr(header.version_bytes) != key || header.contents_bytes != size)
+  if (std::string_view(text).substr(0, header.version_bytes) != version_)
+    return unusable("of another version");
+  if (std::string_view(text).substr(header.version_bytes) != key || header.contents_bytes != to.size())
     return unusable("of something else");
-  const std::size_t start = sizeof header + text_bytes;
-  if (checksum(as_bytes(std::string_view(bytes).substr(start))) != header.contents_checksum)
-    return unusable("damaged");
-  bytes.erase(0, start);
+  // Piece by piece, so that each is summed while it is in the processor's cache.
+  Checksum sum(to.size());
+  std::vector<std::byte> piece(std::min(kPiece, to.size()));
+  for (std::size_t at = 0; at < to.size(); at += piece.size()) {
+    const std::span<std::byte> next = std::span(piece).first(std::min(piece.size(), to.size() - at));
+    if (!open.read(next.data(), next.size())) return unusable("truncated");
+    sum.add(next);
+    std::memcpy(to.data() + at, next.data(), next.size());
+  }
+  if (sum.finish() != header.contents_checksum) return unusable("damaged");
   // Used now: the last to be thrown away.
   static_cast<void>(::utimensat(AT_FDCWD, file.c_str(), nullptr, 0));
-  return std::move(read).value();
+  return true;
 }
 
 void FileCache::write(std::string_view key, std::span<const std::byte> contents) {
@@ -167,7 +247,7 @@ void FileCache::make_room(const std::string& kept) const {
   for (std::filesystem::directory_iterator it(directory_, failed), end; !failed && it != end;
        it.increment(failed)) {
     std::error_code gone;
-    if (it->path().extension() != kEnding || !it->is_regular_file(gone) || gone) continue;
+    if (!is_entry_name(it->path().filename().string()) || !it->is_regular_file(gone) || gone) continue;
     const std::uint64_t bytes = it->file_size(gone);
     const std::filesystem::file_time_type used = it->last_write_time(gone);
     if (gone) continue;

@@ -26,8 +26,13 @@ class FileCache {
   [[nodiscard]] bool enabled() const { return !directory_.empty(); }
   [[nodiscard]] const std::string& directory() const { return directory_; }
 
+  // Whether there is a file under the key, which read() may yet refuse.
+  [[nodiscard]] bool holds(std::string_view key) const;
   // What was kept under the key, if it has `size` bytes. Marks it as used.
   [[nodiscard]] std::optional<std::string> read(std::string_view key, std::uint64_t size);
+  // The same, to memory of the caller's of that size: written once and in order, never read, so that memory
+  // of a device will do. What it holds after `false` is not to be used.
+  [[nodiscard]] bool read(std::string_view key, std::span<std::byte> to);
   // Keeps it, in place of what was there.
   void write(std::string_view key, std::span<const std::byte> contents);
 

@@ -279,6 +279,10 @@ Result<void> check(const Settings& settings) {
         concat({"with 'shadows.cascades' = ", std::to_string(shadows.cascades)}),
         concat({"allowed is 0 to ", std::to_string(shadows.cascades - 1)}));
   }
+  if (settings.scene.tables.cache.empty()) {
+    return input_error("no place for the cache", "'tables.cache' is empty",
+                       "allowed is auto, off or a directory");
+  }
   if (settings.scene.terrain.source.empty()) {
     return input_error("no terrain", "'terrain.source' is empty",
                        "allowed is procedural or an elevation file");

@@ -58,7 +58,8 @@ struct Group {
 // The error for a key that does not exist, with the nearest that does.
 [[nodiscard]] Error unknown_key(std::string_view key, std::string_view where);
 
-// What ranges alone cannot say: shadows.first_marched below shadows.cascades, terrain.source not empty.
+// What ranges alone cannot say: shadows.first_marched below shadows.cascades, terrain.source and
+// tables.cache not empty.
 // To be called once everything is set.
 [[nodiscard]] Result<void> check(const Settings& settings);
 

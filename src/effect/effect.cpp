@@ -344,6 +344,18 @@ std::span<const ResourceMemory> Effect::resources() {
   return {s.resource_rows.data(), used};
 }
 
+std::string Effect::table_key() const { return tyndall::table_key(state_->device, state_->params); }
+
+VkDeviceSize Effect::table_bytes() const { return tyndall::table_bytes(state_->params); }
+
+Result<void> Effect::record_save_tables(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset) {
+  return state_->tables.record_save(cmd, buffer, offset);
+}
+
+Result<void> Effect::record_load_tables(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset) {
+  return state_->tables.record_load(cmd, buffer, offset);
+}
+
 LightTables Effect::light_tables() const {
   const TableBuilder& tables = state_->tables;
   return {tables.table(TableId::sun_transmittance).view.get(), tables.table(TableId::sky_irradiance).view.get()};

@@ -9,12 +9,14 @@
 #include "effect/medium.hpp"
 #include "effect_shaders.hpp"
 #include "gpu/try.hpp"
+#include "tyndall/version.hpp"
 
 namespace tyndall {
 namespace {
 
 constexpr VkImageUsageFlags kTableUsage =
-    VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+    VK_IMAGE_USAGE_TRANSFER_DST_BIT;
 constexpr VkExtent3D kSunLightExtent = {64, 256, 1};
 constexpr VkExtent3D kSkyLightExtent = {64, 256, 1};
 constexpr std::uint32_t kAltitudesPerSlice = 8;  // of the gathering grid
@@ -87,6 +89,57 @@ std::array<BufferPlan, kScratchBuffers> plan_scratch(std::uint32_t views) {
 }
 constexpr VkBufferUsageFlags kScratchUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 
+// To be raised when the bytes of the tables change although shaders, constants and version stay: another plan
+// of the slices, another order of the tables in a buffer.
+constexpr int kTableRevision = 1;
+constexpr VkDeviceSize kTexelBytes = 8;
+
+VkDeviceSize texel_bytes(const VkExtent3D& extent) {
+  return kTexelBytes * extent.width * extent.height * extent.depth;
+}
+
+// FNV-1a (Fowler, Noll, Vo): for telling inputs apart, not against intent.
+class Hash {
+ public:
+  void add(const void* data, std::size_t size) {
+    const auto* bytes = static_cast<const unsigned char*>(data);
+    for (std::size_t i = 0; i < size; ++i) value_ = (value_ ^ bytes[i]) * 0x100000001b3U;
+  }
+  [[nodiscard]] std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 0xcbf29ce484222325U;
+};
+
+void append_hexadecimal(std::string& out, std::uint64_t value, int digits) {
+  for (int shift = 4 * (digits - 1); shift >= 0; shift -= 4) out += "0123456789abcdef"[(value >> shift) & 15U];
+}
+
+// The bits of a structure of 32-bit words: floats are told apart exactly.
+void append_words(std::string& out, const void* data, std::size_t size) {
+  for (std::size_t at = 0; at < size; at += sizeof(std::uint32_t)) {
+    std::uint32_t word = 0;
+    std::memcpy(&word, static_cast<const char*>(data) + at, sizeof word);
+    out += ' ';
+    append_hexadecimal(out, word, 8);
+  }
+}
+
+Result<void> check_table_buffer(VkBuffer buffer, VkDeviceSize offset) {
+  if (buffer == VK_NULL_HANDLE) return Error{ErrorCode::invalid_argument, "the buffer of the tables is null"};
+  if (offset % kTexelBytes == 0) return {};
+  return Error{ErrorCode::invalid_argument, "the tables' offset in their buffer is " + std::to_string(offset) +
+                                                ", allowed are multiples of 8"};
+}
+
+VkBufferImageCopy whole_table(const gpu::Image& image, VkDeviceSize offset) {
+  VkBufferImageCopy copy = {};
+  copy.bufferOffset = offset;
+  copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+  copy.imageExtent = image.desc.extent;
+  return copy;
+}
+
 }  // namespace
 
 Result<void> check_table_size(const gpu::Device& device, const Params& params) {
@@ -127,6 +180,44 @@ std::uint32_t stale_tables(const Params& built, const Params& wanted) {
   if (air || shape) stale |= kSingleTables;
   if (air) stale |= bit(TableId::sun_transmittance);
   return stale;
+}
+
+VkDeviceSize table_bytes(const Params& params) {
+  VkDeviceSize total = 0;
+  for (std::uint32_t i = 0; i < kTableCount; ++i) {
+    total += texel_bytes(table_desc(static_cast<TableId>(i), params).extent);
+  }
+  return total;
+}
+
+std::string table_key(const gpu::Device& device, const Params& params) {
+  const gpu::Shader* const used[] = {
+      &shaders::sun_light_comp,    &shaders::ray_nodes_comp,       &shaders::phase_matrix_comp,
+      &shaders::gather_single_comp, &shaders::gather_multiple_comp, &shaders::scatter_comp,
+      &shaders::table_single_comp, &shaders::table_high_comp,      &shaders::sky_light_comp};
+  Hash code;
+  for (const gpu::Shader* shader : used) code.add(shader->spirv.data(), shader->spirv.size_bytes());
+  const shared::ZenithQuadrature quadrature = zenith_quadrature();
+  code.add(&quadrature, sizeof quadrature);
+
+  std::string key = "tyndall " TYNDALL_VERSION_STRING " tables " + std::to_string(kTableRevision) + "\nshaders ";
+  append_hexadecimal(key, code.value(), 16);
+  key += "\ndevice ";
+  const VkPhysicalDeviceProperties& p = device.properties;
+  append_hexadecimal(key, p.vendorID, 8);
+  append_hexadecimal(key, p.deviceID, 8);
+  key += std::string(" ") + p.deviceName + "\ndriver ";
+  // The version alone does not tell builds of a driver apart; what it gives its pipeline caches does.
+  append_hexadecimal(key, p.driverVersion, 8);
+  key += ' ';
+  for (const std::uint8_t byte : p.pipelineCacheUUID) append_hexadecimal(key, byte, 2);
+  const shared::Medium medium = medium_from_params(params);
+  const shared::TableShape shape = table_shape(params);
+  key += "\nmedium";
+  append_words(key, &medium, sizeof medium);
+  key += "\nshape";
+  append_words(key, &shape, sizeof shape);
+  return key;
 }
 
 VkDeviceSize TableScratch::bytes() const {
@@ -274,18 +365,64 @@ void TableBuilder::upload_constants(VkCommandBuffer cmd) {
                VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT);
 }
 
+void TableBuilder::make_images_ready(VkCommandBuffer cmd) {
+  for (TableSet* set : {&tables_, &next_}) {
+    for (TableImage& table : *set) {
+      if (table.ready || !table.image.view) continue;
+      gpu::transition(*device_, cmd, table.image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
+      table.ready = true;
+    }
+  }
+}
+
+Result<void> TableBuilder::record_save(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset) {
+  TYNDALL_TRY(check_table_buffer(buffer, offset));
+  if (!progress().complete()) {
+    return Error{ErrorCode::invalid_argument, "the tables are not complete, nothing can be saved before they are"};
+  }
+  gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT,
+               VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
+               VK_ACCESS_TRANSFER_READ_BIT);
+  for (const TableImage& table : tables_) {
+    const VkBufferImageCopy copy = whole_table(table.image, offset);
+    device_->vk.CmdCopyImageToBuffer(cmd, table.image.image.get(), VK_IMAGE_LAYOUT_GENERAL, buffer, 1, &copy);
+    offset += texel_bytes(table.image.desc.extent);
+  }
+  // A later build writes them only when they have been read.
+  gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0);
+  return {};
+}
+
+Result<void> TableBuilder::record_load(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset) {
+  TYNDALL_TRY(check_table_buffer(buffer, offset));
+  if (progress().complete()) return {};
+  make_images_ready(cmd);
+  // Frames before may still read what is not yet built, a build that has begun may still write it.
+  gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
+               VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
+  for (std::uint32_t i = 0; i < kTableCount; ++i) {
+    const auto id = static_cast<TableId>(i);
+    if ((stale_ & bit(id)) != 0) {
+      const gpu::Image& image = target(id).image;
+      const VkBufferImageCopy copy = whole_table(image, offset);
+      device_->vk.CmdCopyBufferToImage(cmd, buffer, image.image.get(), VK_IMAGE_LAYOUT_GENERAL, 1, &copy);
+    }
+    offset += texel_bytes(table_desc(id, wanted_).extent);
+  }
+  // From here on as if compute shaders had written them: what waits for a build waits for this as well.
+  gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
+               VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
+  done_ = static_cast<std::uint32_t>(slices_.size());
+  finish();
+  return {};
+}
+
 Result<void> TableBuilder::record(VkCommandBuffer cmd, std::uint32_t budget) {
   if (done_ >= slices_.size() || budget == 0) return {};
   if (done_ == 0) {
     if (timings_) timer_.begin_frame(cmd, 0);
     upload_constants(cmd);
-    for (TableSet* set : {&tables_, &next_}) {
-      for (TableImage& table : *set) {
-        if (table.ready || !table.image.view) continue;
-        gpu::transition(*device_, cmd, table.image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
-        table.ready = true;
-      }
-    }
+    make_images_ready(cmd);
   }
   for (; budget > 0 && done_ < slices_.size(); --budget, ++done_) {
     gpu::compute_barrier(*device_, cmd);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "effect/frame_constants.hpp"
@@ -31,6 +32,9 @@ using TableSet = std::array<TableImage, kTableCount>;
 [[nodiscard]] gpu::ImageDesc table_desc(TableId table, const Params& params);
 // Which tables (bits 1 << TableId) differ between two sets of parameters.
 [[nodiscard]] std::uint32_t stale_tables(const Params& built, const Params& wanted);
+// See Effect::table_key() and Effect::table_bytes().
+[[nodiscard]] std::string table_key(const gpu::Device& device, const Params& params);
+[[nodiscard]] VkDeviceSize table_bytes(const Params& params);
 
 // What a build needs besides its result: freed when it is complete.
 struct TableScratch {
@@ -59,6 +63,11 @@ class TableBuilder {
   Result<void> set_params(const Params& params);
   // Records at most `budget` slices.
   Result<void> record(VkCommandBuffer cmd, std::uint32_t budget);
+  // Copies the finished tables to a buffer, in the order of TableId and without padding; an error while some
+  // are stale.
+  Result<void> record_save(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset);
+  // Copies what is stale from such a buffer, in place of the rest of the build; nothing if nothing is.
+  Result<void> record_load(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset);
   // Once per frame: moves new images out of the undefined layout, and frees what no frame uses any more.
   void begin_frame(VkCommandBuffer cmd);
 
@@ -88,6 +97,7 @@ class TableBuilder {
   Result<void> create_scratch(const Params& params);
   void plan_slices();
   void upload_constants(VkCommandBuffer cmd);
+  void make_images_ready(VkCommandBuffer cmd);
   Result<void> record_slice(VkCommandBuffer cmd, const Slice& slice);
   void finish();
   void retire(TableSet tables, TableScratch scratch);

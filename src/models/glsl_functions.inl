@@ -13,6 +13,7 @@
 #undef TYNDALL_LIB_SKY_IRRADIANCE
 #undef TYNDALL_LIB_TABLE_MAPPING
 #undef TYNDALL_LIB_TABLE_VALUES
+#undef TYNDALL_LIGHT_TABLES_GLSL
 #undef TYNDALL_SHARED_MEDIUM
 #undef TYNDALL_SHARED_TABLES
 
@@ -45,6 +46,7 @@ namespace {
 #include "lib/sky_irradiance.glsl"
 #include "lib/table_mapping.glsl"
 #include "lib/table_values.glsl"
+#include "tyndall/light_tables.glsl"
 }  // namespace
 #pragma GCC diagnostic pop
 

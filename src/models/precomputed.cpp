@@ -1,6 +1,5 @@
 #include "models/precomputed.hpp"
 
-#include <algorithm>
 #include <cstring>
 #include <string>
 
@@ -40,6 +39,7 @@ struct PrecomputedModel::State {
   std::unique_ptr<Effect> effect;
   gpu::Pipeline pipeline;
   gpu::Handle<VkSampler> linear;
+  tables::Outcome origin;
 };
 
 PrecomputedModel::PrecomputedModel(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -49,9 +49,10 @@ PrecomputedModel::~PrecomputedModel() = default;
 
 Effect& PrecomputedModel::effect() { return *state_->effect; }
 
+const tables::Outcome& PrecomputedModel::origin() const { return state_->origin; }
+
 Result<PrecomputedModel> PrecomputedModel::create(gpu::Host& host, const Params& params,
-                                                  const std::function<void(Progress)>& progress,
-                                                  std::uint32_t slice_budget) {
+                                                  const tables::MakeReady& how) {
   const gpu::Device& device = host.device();
   auto state = std::make_unique<State>();
   state->host = &host;
@@ -68,14 +69,7 @@ Result<PrecomputedModel> PrecomputedModel::create(gpu::Host& host, const Params&
   state->effect = std::make_unique<Effect>(std::move(effect));
   TYNDALL_ASSIGN(state->pipeline, gpu::create_compute_pipeline(device, shaders::precomputed_comp));
   TYNDALL_ASSIGN(state->linear, gpu::create_sampler(device, {}));
-  while (!state->effect->precompute_progress().complete()) {
-    TYNDALL_TRY(host.run([&](VkCommandBuffer cmd) -> Result<void> {
-      Result<Progress> recorded = state->effect->record_precompute(cmd, std::max(slice_budget, 1U));
-      if (!recorded) return std::move(recorded).error();
-      return {};
-    }));
-    if (progress) progress(state->effect->precompute_progress());
-  }
+  TYNDALL_ASSIGN(state->origin, tables::make_ready(host, *state->effect, how));
   return PrecomputedModel(std::move(state));
 }
 

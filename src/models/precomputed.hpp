@@ -1,5 +1,5 @@
 // What the renderer's scattering tables answer for given rays: the model `precomputed` of `probe` and
-// `validate`. Builds the tables of a set of parameters on a device once and reads them there, with the
+// `validate`. Makes the tables of a set of parameters ready on a device once and reads them there, with the
 // renderer's own shader code. One thread at a time.
 #pragma once
 
@@ -9,6 +9,7 @@
 
 #include "gpu/host.hpp"
 #include "models/single_scattering.hpp"
+#include "tables/make_ready.hpp"
 #include "tyndall/effect.hpp"
 
 namespace tyndall::models {
@@ -20,10 +21,8 @@ struct PrecomputedQuery {
 
 class PrecomputedModel {
  public:
-  // Builds the tables, `slice_budget` slices per submission; `progress` (may be empty) is called between them.
   static Result<PrecomputedModel> create(gpu::Host& host, const Params& params,
-                                         const std::function<void(Progress)>& progress = {},
-                                         std::uint32_t slice_budget = 8);
+                                         const tables::MakeReady& how = {});
   PrecomputedModel(PrecomputedModel&&) noexcept;
   PrecomputedModel& operator=(PrecomputedModel&&) noexcept;
   ~PrecomputedModel();
@@ -33,6 +32,8 @@ class PrecomputedModel {
   // whether order 1 is integrated.
   Result<std::vector<Answer>> answer(std::span<const PrecomputedQuery> queries, bool visible_ground = true);
 
+  // Where its tables came from.
+  [[nodiscard]] const tables::Outcome& origin() const;
   // The effect that holds the tables: times of the stages, memory, images for export.
   [[nodiscard]] Effect& effect();
 

@@ -189,6 +189,8 @@ Result<void> Scene::create_objects() {
   if (desc_.timings) {
     TYNDALL_ASSIGN(timer_, gpu::Timer::create(device, 1, kMaxTimedPasses));
   }
+  TYNDALL_ASSIGN(const tables::Outcome made, tables::make_ready(*host_, *effect_, desc_.make_tables));
+  notes_.insert(notes_.end(), made.notes.begin(), made.notes.end());
   return {};
 }
 
@@ -282,14 +284,6 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
       gpu::transition(device, cmd, display_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
     }
     images_ready_ = true;
-    if (!effect_->precompute_progress().complete()) {
-      begin_pass(cmd, "precompute");
-      Result<Progress> progress = effect_->record_precompute(cmd);
-      if (!progress.ok()) return std::move(progress).error();
-      end_pass(cmd);
-      gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
-                   VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT);
-    }
     if (first) TYNDALL_TRY(draw_shadows(cmd));  // jitter moves the picture, not the cascades
     TYNDALL_TRY(draw_view(cmd));
     TYNDALL_TRY(run_effect(cmd));

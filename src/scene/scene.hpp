@@ -12,6 +12,7 @@
 #include "image/image.hpp"
 #include "post/tonemap.hpp"
 #include "scene/terrain.hpp"
+#include "tables/make_ready.hpp"
 
 namespace tyndall::scene {
 
@@ -19,6 +20,7 @@ struct SceneDesc {
   VkExtent2D extent = {1280, 720};
   bool timings = false;
   bool counters = false;
+  tables::MakeReady make_tables = {};  // how the effect's tables are made
 };
 
 struct PassTime {
@@ -29,7 +31,7 @@ struct PassTime {
 
 class Scene {
  public:
-  // Loads the terrain, builds the tables: takes seconds.
+  // Loads the terrain, builds the tables unless they are cached: takes seconds.
   static Result<std::unique_ptr<Scene>> create(gpu::Host& host, const SceneDesc& desc, const Params& params,
                                                const SceneParams& scene);
 

@@ -14,6 +14,9 @@
 
 namespace tyndall::cli {
 
+// The user's cache is not for tests: they have one of their own, which all of them share and later runs find.
+inline const int kOwnCache = ::setenv("XDG_CACHE_HOME", TYNDALL_TEST_CACHE, 1);
+
 struct Outcome {
   int status = -1;  // exit status; 1000 + the signal's number when a signal ended it
   std::string out;

@@ -359,6 +359,25 @@ TEST(EffectAllocation, RecordingAllocatesNothing) {
     EXPECT_FALSE(effect.value().timings(i).empty());
     EXPECT_EQ(allocations, before);
   }
+  // Nor does taking tables from a buffer, and giving them.
+  Result<Effect> other = Effect::create(info, desc, {});
+  ASSERT_OK(other);
+  const Result<gpu::Buffer> saved = gpu::create_buffer(
+      device, "saved", other.value().table_bytes(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+      gpu::MemoryKind::device);
+  ASSERT_OK(saved);
+  ASSERT_OK(host.value()->run([&](VkCommandBuffer cmd) -> Result<void> {
+    const VkBuffer buffer = saved.value().buffer.get();
+    const std::size_t before = allocations;
+    Result<void> recorded = other.value().record_load_tables(cmd, buffer);
+    if (recorded.ok()) {
+      gpu::barrier(device, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, VK_PIPELINE_STAGE_TRANSFER_BIT, 0);
+      recorded = other.value().record_save_tables(cmd, buffer);
+    }
+    EXPECT_EQ(allocations, before);
+    return recorded;
+  }));
+  EXPECT_TRUE(other.value().precompute_progress().complete());
   // The count does count.
   const std::size_t before = allocations;
   delete new int(3);

@@ -1,5 +1,7 @@
 // The demo engine on a device, small: every scene that is shipped, every parameter of the shadows at its ends, and
 // light where it belongs and nowhere else.
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -104,6 +106,26 @@ TEST_F(GpuScene, ShippedScenesAreDrawn) {
     ++count;
   }
   EXPECT_GT(count, 0);
+}
+
+TEST_F(GpuScene, TablesFromTheCacheDrawTheSamePicture) {
+  const std::filesystem::path cache =
+      std::filesystem::temp_directory_path() / ("tyndall-scene-cache-" + std::to_string(::getpid()));
+  SceneDesc desc;
+  desc.extent = kSmall;
+  desc.make_tables.cache.place = cache.string();
+  bool built = false;
+  desc.make_tables.progress = [&](Progress) { built = true; };
+  std::vector<image::Image> images;
+  for (const bool expected : {true, false}) {
+    built = false;
+    Result<std::unique_ptr<Scene>> scene = Scene::create(host(), desc, small_planet(), {});
+    ASSERT_OK(scene);
+    EXPECT_EQ(built, expected);
+    images.push_back(draw(*scene.value()));
+  }
+  EXPECT_EQ(images[0].rgb, images[1].rgb);
+  std::filesystem::remove_all(cache);
 }
 
 TEST_F(GpuScene, TheDefaultSceneRepeatsItselfAndIsDarkAtNight) {

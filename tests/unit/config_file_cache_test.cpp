@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -54,11 +55,14 @@ TEST_F(ConfigFileCache, WhatIsKeptComesBack) {
   EXPECT_FALSE(cache.read("key", 10));
   EXPECT_EQ(cache.note(), "");
   EXPECT_FALSE(fs::exists(root_ / "a"));
-  for (const std::size_t size : {0U, 1U, 31U, 32U, 33U, 100000U}) {
+  for (const std::size_t size : {0U, 1U, 31U, 32U, 33U, 262144U, 600001U, 100000U}) {
     const std::string contents = pattern(size, 1);
     cache.write("key", bytes_of(contents));
     EXPECT_EQ(cache.note(), "");
     EXPECT_EQ(open().read("key", size), contents) << size;
+    std::vector<std::byte> memory(size);
+    EXPECT_TRUE(open().read("key", std::span(memory)));
+    EXPECT_EQ(std::memcmp(memory.data(), contents.data(), size), 0);
   }
   EXPECT_FALSE(cache.read("another", 100000));
   cache.write("another", bytes_of("x"));
@@ -125,8 +129,10 @@ TEST_F(ConfigFileCache, TheOldestGoWhenThereIsNoRoom) {
   EXPECT_TRUE(cache.read("d", 3000));
   // What is no file of ours stays.
   overwrite((root_ / "a/b/notes.txt").string(), pattern(20000, 5));
+  overwrite((root_ / "a/b/their.cache").string(), pattern(20000, 5));
   cache.write("e", bytes_of(contents));
   EXPECT_TRUE(fs::exists(root_ / "a/b/notes.txt"));
+  EXPECT_TRUE(fs::exists(root_ / "a/b/their.cache"));
   const std::string large = pattern(10001, 6);
   cache.write("large", bytes_of(large));
   EXPECT_NE(cache.note().find("more than its limit of 10000"), std::string::npos);

@@ -150,6 +150,9 @@ TEST(ConfigSettings, CrossChecks) {
   settings = Settings();
   settings.scene.terrain.source.clear();
   EXPECT_FALSE(check(settings).ok());
+  settings = Settings();
+  settings.scene.tables.cache.clear();
+  EXPECT_FALSE(check(settings).ok());
 }
 
 TEST(ConfigSettings, MetadataHoldsEverything) {

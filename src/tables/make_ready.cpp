@@ -1,0 +1,103 @@
+#include "tables/make_ready.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <span>
+
+#include "config/file_cache.hpp"
+#include "gpu/try.hpp"
+#include "tyndall/version.hpp"
+
+namespace tyndall::tables {
+namespace {
+
+std::span<std::byte> bytes_of(const gpu::Buffer& buffer) {
+  return {static_cast<std::byte*>(buffer.mapped), static_cast<std::size_t>(buffer.size)};
+}
+
+// Whatever reads the tables next, in any stage.
+void publish(const gpu::Device& device, VkCommandBuffer cmd) {
+  gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
+               VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_READ_BIT);
+}
+
+// Whether they were there.
+Result<bool> load(gpu::Host& host, Effect& effect, config::FileCache& cache, Outcome& outcome) {
+  const gpu::Device& device = host.device();
+  const std::string key = effect.table_key();
+  if (!cache.holds(key)) return false;
+  TYNDALL_ASSIGN(const gpu::Buffer staging,
+                 gpu::create_buffer(device, "cached_tables", effect.table_bytes(),
+                                    VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::MemoryKind::upload));
+  const bool found = cache.read(key, bytes_of(staging));
+  if (!cache.note().empty()) outcome.notes.push_back(cache.note());
+  if (!found) return false;
+  TYNDALL_TRY(host.run([&](VkCommandBuffer cmd) -> Result<void> {
+    if (Result<void> r = effect.record_load_tables(cmd, staging.buffer.get()); !r) return r;
+    publish(device, cmd);
+    return {};
+  }));
+  return true;
+}
+
+Result<void> keep(gpu::Host& host, Effect& effect, config::FileCache& cache, Outcome& outcome) {
+  const gpu::Device& device = host.device();
+  TYNDALL_ASSIGN(const gpu::Buffer staging,
+                 gpu::create_buffer(device, "cached_tables", effect.table_bytes(),
+                                    VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryKind::readback));
+  TYNDALL_TRY(host.run([&](VkCommandBuffer cmd) -> Result<void> {
+    if (Result<void> r = effect.record_save_tables(cmd, staging.buffer.get()); !r) return r;
+    gpu::barrier(device, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
+                 VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+    return {};
+  }));
+  cache.write(effect.table_key(), bytes_of(staging));
+  if (!cache.note().empty()) outcome.notes.push_back(cache.note());
+  return {};
+}
+
+}  // namespace
+
+Result<Outcome> make_ready(gpu::Host& host, Effect& effect, const MakeReady& how) {
+  Outcome outcome;
+  if (effect.precompute_progress().complete()) return outcome;
+  const auto start = std::chrono::steady_clock::now();
+  const auto milliseconds = [&] {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  };
+  config::FileCache cache(config::cache_directory(how.cache.place), how.cache.limit_bytes,
+                          TYNDALL_VERSION_STRING);
+  // Being short of memory for the cache is no reason to fail: the build already has its own.
+  const auto without_cache = [&](const Error& error) -> Result<void> {
+    if (error.code != ErrorCode::out_of_memory) return error;
+    outcome.notes.push_back("the cache of the tables is not used: " + error.message);
+    return {};
+  };
+  if (!how.build_anew) {
+    const Result<bool> loaded = load(host, effect, cache, outcome);
+    if (!loaded) TYNDALL_TRY(without_cache(loaded.error()));
+    if (loaded && loaded.value()) {
+      outcome.origin = Origin::cache;
+      outcome.milliseconds = milliseconds();
+      return outcome;
+    }
+  }
+  if (how.progress) how.progress(effect.precompute_progress());
+  while (!effect.precompute_progress().complete()) {
+    TYNDALL_TRY(host.run([&](VkCommandBuffer cmd) -> Result<void> {
+      const Result<Progress> recorded = effect.record_precompute(cmd, std::max(how.slice_budget, 1U));
+      if (!recorded) return recorded.error();
+      publish(host.device(), cmd);
+      return {};
+    }));
+    if (how.progress) how.progress(effect.precompute_progress());
+  }
+  outcome.origin = Origin::build;
+  outcome.milliseconds = milliseconds();
+  if (!cache.enabled()) return outcome;
+  if (const Result<void> kept = keep(host, effect, cache, outcome); !kept)
+    TYNDALL_TRY(without_cache(kept.error()));
+  return outcome;
+}
+
+}  // namespace tyndall::tables
