@@ -8,10 +8,12 @@
 #define TYNDALL_MARCH_GLSL
 
 #include "lib/single_scattering.glsl"
+#include "epipolar/ray_end.glsl"
 #include "frame/counters.glsl"
 #include "frame/table_light.glsl"
 #include "epipolar/shadow_tree.glsl"
 
+layout(constant_id = 3) const bool kTree = true;
 const uint kTopLevel = kTreeLevels - 1u;
 
 uint steps_done = 0u;
@@ -40,6 +42,13 @@ struct Walk {
   float middle;
 };
 
+vec2 load_node(uint at) {
+  bool full = epipolar.tree_format == kFloat32;
+  uint low = tree[full ? 2u * at : at];
+  uint high = tree[full ? 2u * at + 1u : at];
+  return full ? vec2(uintBitsToFloat(low), uintBitsToFloat(high)) : vec2(float(low & 0xFFFFu), float(high >> 16u));
+}
+
 void add_run(inout Walk w, inout LitSections sections, float to, float share) {
   if (kSingle == kIntegration) {
     float length_lit = share * (to - w.x);
@@ -60,20 +69,14 @@ void walk_to(inout Walk w, inout LitSections sections, float to) {
     while (w.x < to && !undecided && !section_closed(sections)) {
       int j = int(w.x) - w.row.first;
       bool inside = j >= 0 && j < w.row.extent;
-      bool in_tree = kTree != 0u && inside && j < w.row.count;
+      bool in_tree = kTree && inside && j < w.row.count;
       bool dark = false;
       uint level = 0u;
-      if (kTree != 0u) {
+      if (kTree) {
         level = w.level;
         uint cell = in_tree ? uint(j) : 0u;
         uint at = w.tree_base + (cell / kTreeBlock) * kTreeNodes16 + node_index(cell % kTreeBlock, level);
-        vec2 node;
-        if (kTree == kUnorm16) {
-          uint pair = tree[at];
-          node = vec2(float(pair & 0xFFFFu), float(pair >> 16u));
-        } else {
-          node = vec2(uintBitsToFloat(tree[2u * at]), uintBitsToFloat(tree[2u * at + 1u]));
-        }
+        vec2 node = load_node(at);
         dark = in_tree && w.number > node.y;
         undecided = in_tree && w.number > node.x && !dark;
         nodes_visited += in_tree ? 1u : 0u;
@@ -85,7 +88,7 @@ void walk_to(inout Walk w, inout LitSections sections, float to) {
         add_run(w, sections, end > w.x ? min(end, to) : to, dark ? 0.0 : 1.0);
         ++steps_done;
         // One level up where a node of that level begins.
-        if (kTree != 0u && in_tree && (next & ((2 << level) - 1)) == 0) w.level = min(level + 1u, kTopLevel);
+        if (kTree && in_tree && (next & ((2 << level) - 1)) == 0) w.level = min(level + 1u, kTopLevel);
       } else if (in_tree && level > 0u) {
         w.level = level - 1u;
         undecided = false;
@@ -122,7 +125,7 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
   vec3 per_metre = (frame.cascades[cascade].shadow_from_world * vec4(ray.direction, 0.0)).xyz;
   float cells_per_m = max(max(abs(per_metre.x), abs(per_metre.y)) * resolution, 1e-12);
   w.slope = per_metre.z / cells_per_m;
-  w.number = tree_number(frame.shadow_depth_reversed != 0u ? -w.slope : w.slope, resolution);
+  w.number = tree_number(frame.shadow_depth_reversed != 0u ? -w.slope : w.slope, resolution, epipolar.tree_format);
   w.metres = 1.0 / cells_per_m;
   w.x = from * cells_per_m;
   float end = to * cells_per_m;
@@ -222,7 +225,7 @@ vec3 light_of(March march, Ray ray, TableRay path, float start, float end) {
                                  int(frame.integration_steps) / 3);
     }
   }
-  if (kSingle == kTable || kMultiple != kNone) light += table_light(march.lit, path, start, t, end);
+  if (kLitTables || frame.unoccluded != 0u) light += table_light(march.lit, path, start, t, end);
   return light;
 }
 

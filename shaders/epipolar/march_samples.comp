@@ -1,43 +1,80 @@
-// Marches the chosen samples: through all cascades, or through one and leaving what was gathered to
-// finish_samples.comp (Yusov 2013, section 1.6; cascades: 1.8).
+// Marches the chosen samples: through all cascades at once, or through one and leaving what was gathered to a
+// last pass (Yusov 2013, section 1.6; cascades: 1.8); or pixels that no sample fits in depth (section 1.7), in
+// the rows of the slice that is nearest to each. One shader for all, because a pipeline of each for every mode
+// would be dear to create.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
+#include "shared/medium.h"
+#include "shared/frame_constants.h"
 #include "shared/epipolar.h"
 
 layout(local_size_x = kMarchGroup) in;
 
-#include "epipolar/march_bindings.glsl"
-
+layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
+layout(std430, binding = 1) readonly buffer frame_block { FrameConstants frame; };
+layout(std430, binding = 2) readonly buffer epipolar_block { EpipolarConstants epipolar; };
+layout(std430, binding = 3) readonly buffer row_block { ShadowRow rows[]; };
+layout(std430, binding = 4) readonly buffer tree_block { uint tree[]; };
+layout(binding = 5) uniform sampler2DArrayShadow shadow_maps;
+layout(binding = 6) uniform sampler3D single_rayleigh;
+layout(binding = 7) uniform sampler3D single_mie;
+layout(binding = 8) uniform sampler3D high_orders;
+layout(std430, binding = 9) buffer counter_block { uint counters[]; };
 layout(std430, binding = 10) readonly buffer slice_block { EpipolarSlice slices[]; };
-layout(std430, binding = 11) readonly buffer march_list_block { WorkList march_work; uint march_list[]; };
+layout(std430, binding = 11) readonly buffer work_block { WorkList work; uint items[]; };
 layout(std430, binding = 12) buffer sample_block { uvec4 samples[]; };
 layout(std430, binding = 13) buffer state_block { float states[]; };
+layout(binding = 14) uniform sampler2D scene_depth;
+layout(std430, binding = 15) writeonly buffer corrected_block { vec4 corrected[]; };
 
 layout(push_constant) uniform Push {
-  uint processing;  // CascadeProcessing
-  uint pass;        // 1: the cascade, counted from the first marched
+  uint processing;  // kAllCascades to kPixels
+  uint turn;        // kOneCascade: the cascade, counted from the first marched
 };
 
+#include "epipolar/march.glsl"
 #include "epipolar/march_state.glsl"
 #include "epipolar/slices.glsl"
 
 void main() {
   uint at = gl_GlobalInvocationID.x;
-  if (at >= march_work.count) return;
-  uint id = march_list[at] >> 16u;
-  uint i = march_list[at] & 0xFFFFu;
-  uint sample_at = id * epipolar.samples + i;
+  bool first_group = gl_WorkGroupID.y == 0u;
+  if (at >= work.count || (processing != kCascadesAside && !first_group)) return;
+  bool pixels = processing == kPixels;
+  uint item = items[at];
+  ivec2 pixel = ivec2(item & 0xFFFFu, item >> 16u);
+  uint id = item >> 16u;
+  uint sample_at = pixels ? 0u : id * epipolar.samples + (item & 0xFFFFu);
   Sample s = unpack_sample(samples[sample_at]);
-  Ray ray = sample_ray(sample_position(slices[id], i), s.depth_m);
+  vec2 position = vec2(pixel) + 0.5;
+  if (pixels) {
+    float depth = texelFetch(scene_depth, pixel, 0).r;
+    s.depth_m = depth == frame.sky_depth ? kSkyDepth : view_depth(frame, position, depth);
+    id = uint(slice_coordinate(position) + 0.5);
+    id = id >= epipolar.slices ? (epipolar.closed != 0u ? 0u : epipolar.slices - 1u) : id;
+  } else {
+    position = sample_position(slices[id], item & 0xFFFFu);
+  }
+  Ray ray = ray_to_depth(frame, position, s.depth_m, s.depth_m >= kSkyDepth);
   float start, end;
   bool in_air = clip_to_air(medium, ray, start, end);
   if (!in_air) end = start;
   TableRay path = table_ray_of(ray, start);
 
-  uint turn = processing == 2u ? gl_WorkGroupID.y : pass;
-  uint first = epipolar.first_cascade + (processing == 0u ? 0u : turn);
-  uint last = processing == 0u ? epipolar.cascades : first + 1u;
+  uint first = epipolar.first_cascade;
+  uint last = epipolar.cascades;
+  uint state = at;
+  if (processing == kOneCascade) {
+    first += turn;
+    last = first + 1u;
+  } else if (processing == kCascadesAside) {
+    first += gl_WorkGroupID.y;
+    last = first + 1u;
+    state += gl_WorkGroupID.y * epipolar.slices * epipolar.samples;
+  } else if (processing == kFinish) {
+    last = first;
+  }
   March march = nothing_marched();
   if (kLitTables || kSingle == kIntegration) {
     for (uint c = first; c < last; ++c) {
@@ -47,18 +84,27 @@ void main() {
       march_cascade(c, id, ray, path, start, from, to, march);
     }
   }
-  if (processing == 0u) {
-    vec3 light = in_air ? light_of(march, ray, path, start, end) : vec3(0.0);
-    vec3 through, lost;
-    attenuation(optical_depth_at(s.log_density, s.depth_m), through, lost);
-    s.source = light / max(lost, vec3(1e-20));
-    samples[sample_at] = pack_sample(s);
-  } else {
-    uint state = processing == 2u ? turn * epipolar.slices * epipolar.samples + at : at;
-    if (processing == 1u && turn > 0u) march = add(load_march(state), march);
+  if (processing == kOneCascade || processing == kCascadesAside) {
+    if (processing == kOneCascade && turn > 0u) march = add(load_march(state), march);
     store_march(state, march);
+  } else {
+    // `turn` states to add up, for kFinish.
+    for (uint i = 0u; i < (processing == kFinish ? turn : 0u); ++i) {
+      march = add(march, load_march(i * epipolar.slices * epipolar.samples + at));
+    }
+    vec3 light = in_air ? light_of(march, ray, path, start, end) : vec3(0.0);
+    if (pixels) {
+      corrected[at] = vec4(light, 0.0);
+    } else {
+      vec3 through, lost;
+      attenuation(optical_depth_at(s.log_density, s.depth_m), through, lost);
+      s.source = light / max(lost, vec3(1e-20));
+      samples[sample_at] = pack_sample(s);
+    }
   }
-  if (processing == 0u || turn == 0u) count(kSamplesMarched, 1u);
+  count(kPixelsCorrected, pixels ? 1u : 0u);
+  count(kSamplesMarched, processing == kAllCascades || (processing == kOneCascade && turn == 0u) ||
+                                 (processing == kCascadesAside && first_group) ? 1u : 0u);
   count(kMarchSteps, steps_done);
   count(kTreeNodes, nodes_visited);
   count(kShadowFetches, reads_done);

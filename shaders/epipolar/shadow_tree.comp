@@ -7,6 +7,7 @@
 #include "shared/epipolar.h"
 
 layout(local_size_x = 32) in;
+layout(constant_id = 0) const uint kFormat = 0u;  // MinMaxFormat
 
 layout(std430, binding = 0) readonly buffer frame_block { FrameConstants frame; };
 layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants epipolar; };
@@ -44,8 +45,8 @@ vec2 cell_slopes(ShadowRow row, int x, uint cascade) {
 
 vec2 rounded_numbers(vec2 slopes) {
   float resolution = float(frame.shadow_resolution);
-  vec2 n = vec2(tree_number(slopes.x, resolution), tree_number(slopes.y, resolution));
-  if (kTree == kUnorm16) {
+  vec2 n = vec2(tree_number(slopes.x, resolution, kFormat), tree_number(slopes.y, resolution, kFormat));
+  if (kFormat == kUnorm16) {
     n = clamp(vec2(floor(n.x - 0.02), ceil(n.y + 0.02)), vec2(0.0), vec2(65535.0));
     return vec2(slopes.x >= kAlwaysLit ? 65535.0 : n.x, n.y);
   }
@@ -53,7 +54,7 @@ vec2 rounded_numbers(vec2 slopes) {
 }
 
 void store_node(uint at, vec2 n) {
-  if (kTree == kUnorm16) {
+  if (kFormat == kUnorm16) {
     tree[at] = uint(n.x) | uint(n.y) << 16u;
   } else {
     tree[2u * at] = floatBitsToUint(n.x);

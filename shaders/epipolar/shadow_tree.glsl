@@ -7,18 +7,15 @@
 #ifndef TYNDALL_SHADOW_TREE_GLSL
 #define TYNDALL_SHADOW_TREE_GLSL
 
-const uint kUnorm16 = 1u;
-const uint kFloat32 = 2u;
-layout(constant_id = 3) const uint kTree = kUnorm16;  // 0: no tree
+const uint kUnorm16 = 0u;  // MinMaxFormat
+const uint kFloat32 = 1u;
 
 // A slope in the numbers of the tree, before they are rounded.
-float tree_number(float slope, float resolution) {
+float tree_number(float slope, float resolution, uint format) {
   float y = slope * resolution;
   float curve = abs(y) < 1e18 ? y / (1.0 + abs(y)) : sign(y);
-  return kTree == kUnorm16 ? (0.5 + 0.5 * curve) * 65535.0 : curve;
+  return format == kUnorm16 ? (0.5 + 0.5 * curve) * 65535.0 : curve;
 }
-
-uint block_numbers() { return kTree == kFloat32 ? 2u * kTreeNodes16 : kTreeNodes16; }
 
 // Of a node within its block: `cell` is any of its cells.
 uint node_index(uint cell, uint level) { return kTreeNodes16 - (kTreeNodes16 >> level) + (cell >> level); }

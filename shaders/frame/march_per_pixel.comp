@@ -162,7 +162,7 @@ vec3 shadowed_table_light(Ray ray, float start, float end) {
 vec3 air_light(Ray ray, float start, float end) {
   vec3 light = vec3(0.0);
   if (kSingle == kIntegration) light += integrated_light(ray, start, end);
-  if (kSingle == kTable || kMultiple != kNone) light += shadowed_table_light(ray, start, end);
+  if (kLitTables || frame.unoccluded != 0u) light += shadowed_table_light(ray, start, end);
   return light;
 }
 

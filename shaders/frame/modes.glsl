@@ -7,16 +7,14 @@
 const uint kNone = 0u;
 const uint kIntegration = 1u;  // of kSingle
 const uint kTable = 2u;
-const uint kOccluded = 1u;     // of kMultiple
-const uint kUnoccluded = 2u;
 const uint kContiguous = 0u;   // of kSections
 const uint kEach = 1u;
 
 layout(constant_id = 0) const uint kSingle = kIntegration;
-layout(constant_id = 1) const uint kMultiple = kNone;
+layout(constant_id = 1) const bool kOccluded = false;  // the higher orders are cut by shadows
 layout(constant_id = 2) const uint kSections = kContiguous;
 
 // Whether the light of the tables is cut by shadows.
-const bool kLitTables = kSingle == kTable || kMultiple == kOccluded;
+const bool kLitTables = kSingle == kTable || kOccluded;
 
 #endif

@@ -64,17 +64,16 @@ vec3 table_light(LitSections lit, TableRay path, float start, float t, float end
   vec3 light = vec3(0.0);
   if (kSections == kEach) {
     if (kSingle == kTable) light += lit.light.single;
-    if (kMultiple == kOccluded) light += lit.light.high;
+    if (kOccluded) light += lit.light.high;
   }
-  uint turns = kMultiple == kUnoccluded ? 3u : 2u;
+  uint turns = frame.unoccluded != 0u ? 3u : 2u;
   for (uint i = kLitTables ? kSections == kContiguous ? 0u : 1u : 2u; i < turns; ++i) {
     float from = i == 0u ? lit.first : i == 1u ? t : start;
     float to = i == 0u ? lit.first + lit.total : end;
     if (to - from <= 1e-3 || (i == 0u && lit.total <= 1e-3)) continue;
     AirLight section = section_light(path, start, from, to);
     if (kSingle == kTable && i < 2u) light += section.single;
-    if (kMultiple == kOccluded && i < 2u) light += section.high;
-    if (kMultiple == kUnoccluded && i == 2u) light += section.high;
+    if (kOccluded ? i < 2u : i == 2u) light += section.high;
   }
   return light;
 }

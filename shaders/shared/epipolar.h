@@ -28,7 +28,7 @@ struct EpipolarConstants {
   uint first_cascade;   // marched
   uint cascades;        // behind the last marched one
   uint tree_cells;      // of a row, at most; a multiple of kTreeBlock
-  uint unused_0;
+  uint tree_format;     // MinMaxFormat
 };
 
 // A slice: samples lie at entry + direction x length_px x i / (samples - 1), i <= last.
@@ -60,6 +60,13 @@ struct ShadowRow {
 const uint kTreeBlock = 256u;  // cells of a tree
 const uint kTreeLevels = 9u;   // nodes of 1, 2, 4, ... 256 cells
 const uint kTreeNodes16 = 512u;  // numbers that a block takes, in pairs of 16 bits; twice as many in full precision
+
+// What a dispatch of march_samples.comp does; the first three are those of CascadeProcessing.
+const uint kAllCascades = 0u;
+const uint kOneCascade = 1u;    // and adds it to what the one before has left
+const uint kCascadesAside = 2u;  // one for each group along y
+const uint kFinish = 3u;        // makes light of what the cascades have left
+const uint kPixels = 4u;        // pixels, as the first
 
 const uint kMarchGroup = 64u;  // invocations
 

@@ -36,7 +36,7 @@ struct FrameConstants {
   uint integration_steps;
   uint only;     // 1: the output is the in-scattered light alone
   uint shadow_depth_reversed;
-  uint unused_3;
+  uint unoccluded;  // 1: the higher orders of the whole ray, whatever is in shadow
   TableShape tables;
   CascadeConstants cascades[8];
 };

@@ -16,10 +16,11 @@ constexpr VkBufferUsageFlags kUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BU
                                       VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
 
 constexpr const char* kNames[kEpipolarBuffers] = {"slices",     "shadow_rows", "samples",     "coarse_inscattering", "sources",
-                                                  "march_list", "break_list",  "shadow_tree", "march_states"};
+                                                  "march_list", "break_list",  "corrected_pixels", "shadow_tree", "march_states"};
 constexpr const char* kBlocks[kEpipolarBuffers] = {"slice_block",      "row_block",        "sample_block",
                                                    "coarse_block",     "source_block",     "march_list_block",
-                                                   "break_list_block", "tree_block",       "state_block"};
+                                                   "break_list_block", "corrected_block",  "tree_block",
+                                                   "state_block"};
 
 std::size_t index(EpipolarBuffer buffer) { return static_cast<std::size_t>(buffer); }
 
@@ -47,6 +48,7 @@ EpipolarSizes epipolar_sizes(const EffectDesc& desc, const Params& params) {
   out[index(EpipolarBuffer::sources)] = samples * 4;
   out[index(EpipolarBuffer::march_list)] = sizeof(shared::WorkList) + samples * 4;
   out[index(EpipolarBuffer::break_list)] = lists_breaks(params) ? sizeof(shared::WorkList) + pixels * 4 : kLeastBytes;
+  out[index(EpipolarBuffer::corrected)] = lists_breaks(params) ? pixels * 16 : kLeastBytes;
   const VkDeviceSize number = params.epipolar.min_max_format == MinMaxFormat::float32 ? 8 : 4;
   const VkDeviceSize row_bytes = tree_cells(desc) / shared::kTreeBlock * shared::kTreeNodes16 * number;
   out[index(EpipolarBuffer::tree)] = params.epipolar.min_max_tree ? rows * row_bytes : kLeastBytes;
@@ -79,6 +81,7 @@ shared::EpipolarConstants epipolar_constants(const FrameInputs& inputs, const Ef
   out.correct_depth_breaks = p.correct_depth_breaks.value;
   out.show_depth_breaks = p.show_depth_breaks.value;
   out.tree_cells = tree_cells(desc);
+  out.tree_format = static_cast<std::uint32_t>(p.min_max_format);
   out.cascades = params.scattering.light_shafts ? static_cast<std::uint32_t>(inputs.cascades.size()) : 0;
   out.first_cascade = std::min(inputs.first_marched_cascade, out.cascades);
 
@@ -172,10 +175,12 @@ Result<void> Epipolar::create_pipelines() {
   TYNDALL_TRY(make(interpolate_samples_, shaders::interpolate_samples_comp, "interpolate_samples"));
   TYNDALL_TRY(make(show_sampling_, full ? shaders::show_sampling_comp_rgba32f : shaders::show_sampling_comp_rgba16f,
                    "show_sampling"));
+  TYNDALL_TRY(make(correct_pixels_, full ? shaders::correct_pixels_comp_rgba32f : shaders::correct_pixels_comp_rgba16f,
+                   "correct_pixels"));
   for (std::uint32_t i = 0; i < 2; ++i) {
     const gpu::Constant by_criterion[] = {{0, i}};
     TYNDALL_TRY(make(refine_samples_[i], shaders::refine_samples_comp, "refine_samples", by_criterion));
-    const gpu::Constant by_format[] = {{3, i + 1}};
+    const gpu::Constant by_format[] = {{0, i}};
     TYNDALL_TRY(make(shadow_tree_[i], shaders::shadow_tree_comp, "shadow_tree", by_format));
     for (std::uint32_t breaks = 0; breaks < 2; ++breaks) {
       const gpu::Constant of_unwarp[] = {{0, i}, {1, breaks}};
@@ -186,14 +191,10 @@ Result<void> Epipolar::create_pipelines() {
   for (std::uint32_t mode = 0; mode < kModeCount; ++mode) {
     if (!mode_exists(mode)) continue;
     const std::array<gpu::Constant, 3> m = mode_constants(mode);
-    for (std::uint32_t tree = 0; tree < 3; ++tree) {
+    for (std::uint32_t tree = 0; tree < 2; ++tree) {
       const gpu::Constant constants[] = {m[0], m[1], m[2], {3, tree}, {8, counting}};
       TYNDALL_TRY(make(march_samples_[tree][mode], shaders::march_samples_comp, "march_samples", constants));
-      TYNDALL_TRY(make(correct_pixels_[tree][mode],
-                       full ? shaders::correct_pixels_comp_rgba32f : shaders::correct_pixels_comp_rgba16f,
-                       "correct_pixels", constants));
     }
-    TYNDALL_TRY(make(finish_samples_[mode], shaders::finish_samples_comp, "finish_samples", m));
   }
   return {};
 }
@@ -235,8 +236,9 @@ VkDeviceSize Epipolar::retired_bytes() const {
 Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, const Params& params,
                               std::span<const gpu::NamedResource> frame_resources, gpu::Timer* timer) {
   constexpr std::size_t kMostFrameResources = 16;
-  std::array<gpu::NamedResource, kEpipolarBuffers + kMostFrameResources> all;
+  std::array<gpu::NamedResource, kEpipolarBuffers + kMostFrameResources + 1> all;
   std::size_t used = 0;
+  gpu::NamedResource& work = all[used++];  // the list that a pass works through
   for (const gpu::NamedResource& r : frame_resources) all[used++] = r;
   for (std::size_t i = 0; i < kEpipolarBuffers; ++i) all[used++] = gpu::named_buffer(kBlocks[i], buffers_[i].buffer.get());
   const std::span<const gpu::NamedResource> resources(all.data(), used);
@@ -265,6 +267,7 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
   };
   const auto run_list = [&](const gpu::Pipeline& pipeline, EpipolarBuffer list, const void* push = nullptr) -> Result<void> {
     const gpu::Label label(*device_, cmd, pipeline.name);
+    work = gpu::named_buffer("work_block", buffers_[index(list)].buffer.get());
     TYNDALL_TRY(begin(pipeline, push));
     device_->vk.CmdDispatchIndirect(cmd, buffers_[index(list)].buffer.get(), 0);
     end();
@@ -279,7 +282,6 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
   const bool walks = params.scattering.single != SingleScattering::none ||
                      params.scattering.multiple == MultipleScattering::occluded;
   const bool trees = p.min_max_tree.value != 0 && walks && marched > 0;
-  const std::uint32_t tree = trees ? static_cast<std::uint32_t>(p.min_max_format) + 1 : 0;
   const bool breaks = lists_breaks(params);
   CascadeProcessing processing = params.shadows.cascade_processing;
   if (marched == 0 || !walks) processing = CascadeProcessing::single_pass;
@@ -308,15 +310,15 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
   const gpu::Pipeline& tree_pipeline = shadow_tree_[static_cast<std::size_t>(p.min_max_format)];
   const std::uint32_t block_threads = tree_cells(desc_) / shared::kTreeBlock * tree_pipeline.local_size[0];
   if (walks && marched > 0) TYNDALL_TRY(run(slice_directions_, {p.slices, marched}));
-  const gpu::Pipeline& march = march_samples_[tree][mode];
+  const gpu::Pipeline& march = march_samples_[trees ? 1 : 0][mode];
   struct MarchPush {
-    std::uint32_t passes, turn;
+    std::uint32_t processing, turn;
   };
   if (processing == CascadeProcessing::multi_pass) {
     for (std::uint32_t turn = 0; turn < marched; ++turn) {
       const std::uint32_t first_row = turn * p.slices;
       if (trees) TYNDALL_TRY(run(tree_pipeline, {block_threads, p.slices, 1}, &first_row));
-      const MarchPush push = {1, turn};
+      const MarchPush push = {shared::kOneCascade, turn};
       TYNDALL_TRY(run_list(march, EpipolarBuffer::march_list, &push));
     }
   } else {
@@ -326,15 +328,17 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
     TYNDALL_TRY(run_list(march, EpipolarBuffer::march_list, &push));
   }
   if (processing != CascadeProcessing::single_pass) {
-    const MarchPush push = {static_cast<std::uint32_t>(processing), 0};
-    TYNDALL_TRY(run_list(finish_samples_[mode], EpipolarBuffer::march_list, &push));
+    const MarchPush push = {shared::kFinish, instanced ? marched : 1};
+    TYNDALL_TRY(run_list(march, EpipolarBuffer::march_list, &push));
   }
   TYNDALL_TRY(run(interpolate_samples_, {p.samples, p.slices}));
   const gpu::Pipeline& unwarp = unwarp_[static_cast<std::size_t>(params.scattering.extinction)][breaks ? 1 : 0];
   TYNDALL_TRY(run(unwarp, {inputs.extent.width, inputs.extent.height}));
   if (breaks) {
     lists_ready();
-    TYNDALL_TRY(run_list(correct_pixels_[tree][mode], EpipolarBuffer::break_list));
+    const MarchPush push = {shared::kPixels, 0};
+    if (p.correct_depth_breaks) TYNDALL_TRY(run_list(march, EpipolarBuffer::break_list, &push));
+    TYNDALL_TRY(run_list(correct_pixels_, EpipolarBuffer::break_list));
   }
   if (p.show_sampling) {
     for (std::uint32_t marked = 0; marked < 2; ++marked) {

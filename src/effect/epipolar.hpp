@@ -18,8 +18,9 @@
 namespace tyndall {
 
 // Buffers of epipolar sampling, in the order of the plan in epipolar.cpp.
-enum class EpipolarBuffer : std::uint32_t { slices, rows, samples, coarse, sources, march_list, break_list, tree, states };
-constexpr std::uint32_t kEpipolarBuffers = 9;
+enum class EpipolarBuffer : std::uint32_t { slices, rows, samples, coarse, sources, march_list, break_list,
+                                           corrected, tree, states };
+constexpr std::uint32_t kEpipolarBuffers = 10;
 using EpipolarSizes = std::array<VkDeviceSize, kEpipolarBuffers>;
 
 // Bytes of each; all zero with technique = brute-force.
@@ -70,9 +71,8 @@ class Epipolar {
   gpu::Pipeline slice_end_points_, slice_samples_, slice_directions_, interpolate_samples_, show_sampling_;
   std::array<gpu::Pipeline, 2> refine_samples_;  // by Refinement
   std::array<gpu::Pipeline, 2> shadow_tree_;     // by MinMaxFormat
-  std::array<PerMode, 3> march_samples_;         // without tree, and by MinMaxFormat + 1
-  PerMode finish_samples_;
-  std::array<PerMode, 3> correct_pixels_;
+  std::array<PerMode, 2> march_samples_;         // without and with tree
+  gpu::Pipeline correct_pixels_;
   std::array<std::array<gpu::Pipeline, 2>, 2> unwarp_;  // by Extinction, and whether breaks are listed
 };
 

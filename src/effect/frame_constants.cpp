@@ -127,6 +127,7 @@ shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDe
   out.first_marched_cascade = inputs.first_marched_cascade;
   out.integration_steps = params.scattering.integration_steps;
   out.only = params.scattering.only.value;
+  out.unoccluded = params.scattering.multiple == MultipleScattering::unoccluded ? 1 : 0;
   out.shadow_depth_reversed = desc.shadow_depth_reversed ? 1 : 0;
   out.tables = table_shape(params);
   for (std::size_t i = 0; i < inputs.cascades.size(); ++i) {

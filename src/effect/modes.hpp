@@ -10,27 +10,24 @@
 
 namespace tyndall {
 
-constexpr std::uint32_t kModeCount = 3 * 3 * 2;
+constexpr std::uint32_t kModeCount = 3 * 2 * 2;
 
 // Index of the pipeline for a set of parameters.
 [[nodiscard]] inline std::uint32_t mode_index(const ScatteringParams& p) {
-  const bool lit_tables = p.single == SingleScattering::table || p.multiple == MultipleScattering::occluded;
-  const std::uint32_t sections = lit_tables ? static_cast<std::uint32_t>(p.sections) : 0;
-  return (static_cast<std::uint32_t>(p.single) * 3 + static_cast<std::uint32_t>(p.multiple)) * 2 + sections;
+  const bool occluded = p.multiple == MultipleScattering::occluded;
+  const bool each = (p.single == SingleScattering::table || occluded) && p.sections == LitSections::each;
+  return (static_cast<std::uint32_t>(p.single) * 2 + (occluded ? 1 : 0)) * 2 + (each ? 1 : 0);
 }
 
-// Its constants: ids 0 single, 1 multiple, 2 sections.
+// Its constants: ids 0 single, 1 whether the higher orders are occluded, 2 sections.
 [[nodiscard]] inline std::array<gpu::Constant, 3> mode_constants(std::uint32_t index) {
-  return {{{0, index / 6}, {1, index / 2 % 3}, {2, index % 2}}};
+  return {{{0, index / 4}, {1, index / 2 % 2}, {2, index % 2}}};
 }
 
-// Whether mode_index() ever gives it.
+// Whether mode_index() ever gives it: sections tell nothing apart where no table is cut by shadows.
 [[nodiscard]] inline bool mode_exists(std::uint32_t index) {
-  ScatteringParams p;
-  p.single = static_cast<SingleScattering>(index / 6);
-  p.multiple = static_cast<MultipleScattering>(index / 2 % 3);
-  p.sections = static_cast<LitSections>(index % 2);
-  return mode_index(p) == index;
+  const bool lit_tables = index / 4 == static_cast<std::uint32_t>(SingleScattering::table) || index / 2 % 2 == 1;
+  return lit_tables || index % 2 == 0;
 }
 
 }  // namespace tyndall
