@@ -1,7 +1,7 @@
-// published_tables: the published way of building the scattering tables beside ours, on the same device, with the same
-// rays and the same path tracer: what each costs and how far off it is. Prints Markdown (docs/generated/published.md).
-// The method is Yusov's (2013, section 2), transcribed from its description in shaders/published; ozone, which it
-// does not know, is off.
+// published_tables: the published way of building the scattering tables beside ours, on the same device, with
+// the same rays and the same path tracer: what each costs and how far off it is. Prints Markdown
+// (docs/generated/published.md). The method is Yusov's (2013, section 2), transcribed from its description in
+// shaders/published; ozone, which it does not know, is off.
 //   published_tables [RAYS_PER_GROUP] [PATHS_PER_RAY]
 #include <algorithm>
 #include <chrono>
@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <random>
 
 #include "effect/medium.hpp"
@@ -26,15 +27,29 @@ constexpr std::uint32_t kDirections = 128;
 constexpr VkExtent3D kTexels = {32, 128, 64 * 16};
 constexpr std::uint32_t kSlice = 64;  // texels along the third axis, per submission
 
-double seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+// By the clock, and of the processor: on a CPU device the latter tells more where other work is going on.
+struct Time {
+  double wall_s = 0.0, processor_s = 0.0;
+  Time& operator+=(const Time& t) {
+    wall_s += t.wall_s;
+    processor_s += t.processor_s;
+    return *this;
+  }
+};
+Time now() {
+  return {std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(),
+          static_cast<double>(std::clock()) / CLOCKS_PER_SEC};
+}
+Time since(const Time& start) {
+  const Time end = now();
+  return {end.wall_s - start.wall_s, end.processor_s - start.processor_s};
 }
 
 class Published {
  public:
-  struct Seconds {
-    double density = 0.0, single = 0.0, scatter = 0.0, gather = 0.0;
-    [[nodiscard]] double all() const { return density + single + scatter + gather; }
+  struct Times {
+    Time density, single, scatter, gather;
+    [[nodiscard]] Time all() const { return (((Time() += density) += single) += scatter) += gather; }
   };
 
   explicit Published(gpu::Host& host) : host_(host) {}
@@ -63,22 +78,25 @@ class Published {
     TYNDALL_TRY(pass(shaders::published_density_comp, {1024, 1024, 1}, single_, 0, times_.density));
     TYNDALL_TRY(pass(shaders::published_single_comp, kTexels, single_, 0, times_.single));
     for (std::uint32_t n = 2; n <= kOrders; ++n) {
-      TYNDALL_TRY(pass(shaders::published_scatter_comp, kTexels, n == 2 ? single_ : order_, 0, times_.scatter));
+      TYNDALL_TRY(
+          pass(shaders::published_scatter_comp, kTexels, n == 2 ? single_ : order_, 0, times_.scatter));
       TYNDALL_TRY(pass(shaders::published_gather_comp, kTexels, order_, n - 2, times_.gather));
     }
     return {};
   }
 
-  Result<std::vector<validate::Rgb>> answer(const shared::Medium& medium, std::span<const reference::Query> queries) {
+  Result<std::vector<validate::Rgb>> answer(const shared::Medium& medium,
+                                            std::span<const reference::Query> queries) {
     std::vector<shared::ProbeRay> rays;
     for (const reference::Query& q : queries) {
       rays.push_back(models::prepare_probe_ray(
           medium, models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad)));
     }
     TYNDALL_TRY(fill(rays_, "rays", rays.data(), rays.size() * sizeof rays[0]));
-    TYNDALL_ASSIGN(results_, gpu::create_buffer(host_.device(), "results", rays.size() * sizeof(shared::ProbeResult),
-                                                VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::readback));
-    double unused = 0.0;
+    TYNDALL_ASSIGN(results_,
+                   gpu::create_buffer(host_.device(), "results", rays.size() * sizeof(shared::ProbeResult),
+                                      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::readback));
+    Time unused;
     const VkExtent3D extent = {static_cast<std::uint32_t>(rays.size()), 1, 1};
     TYNDALL_TRY(pass(shaders::published_answer_comp, extent, order_, 0, unused));
     const auto* results = static_cast<const shared::ProbeResult*>(results_.mapped);
@@ -90,7 +108,7 @@ class Published {
     return out;
   }
 
-  [[nodiscard]] const Seconds& times() const { return times_; }
+  [[nodiscard]] const Times& times() const { return times_; }
 
  private:
   Result<void> fill(gpu::Buffer& buffer, const char* name, const void* data, std::size_t size) {
@@ -101,8 +119,9 @@ class Published {
   }
 
   Result<void> image(gpu::Image& out, VkFormat format, VkExtent3D extent) {
-    TYNDALL_ASSIGN(out, gpu::create_image(host_.device(), {"published", format, extent,
-                                                           VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT}));
+    TYNDALL_ASSIGN(
+        out, gpu::create_image(host_.device(), {"published", format, extent,
+                                                VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT}));
     return host_.run([&](VkCommandBuffer cmd) -> Result<void> {
       gpu::transition(host_.device(), cmd, out, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
       return {};
@@ -110,8 +129,8 @@ class Published {
   }
 
   // One invocation per texel of `extent`; adds the time it takes to `time`.
-  Result<void> pass(const gpu::Shader& shader, VkExtent3D extent, const gpu::Image& before, std::uint32_t adds,
-                    double& time) {
+  Result<void> pass(const gpu::Shader& shader, VkExtent3D extent, const gpu::Image& before,
+                    std::uint32_t adds, Time& time) {
     const gpu::Device& device = host_.device();
     TYNDALL_ASSIGN(const gpu::Pipeline pipeline, gpu::create_compute_pipeline(device, shader));
     const auto named = [&](const char* name, const gpu::Image& i) {
@@ -129,21 +148,22 @@ class Published {
         named("order_now", order_),
         named("sum_of_orders", sum_),
     };
-    const double start = seconds();
+    const Time start = now();
     for (std::uint32_t first = 0; first < extent.depth; first += kSlice) {
       const std::uint32_t push[] = {first, adds};
       TYNDALL_TRY(host_.run([&](VkCommandBuffer cmd) -> Result<void> {
         const std::string_view missing = gpu::bind(device, cmd, pipeline, resources, push);
         if (!missing.empty())
           return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(missing)};
-        gpu::dispatch(device, cmd, pipeline, extent.width, extent.height, std::min(kSlice, extent.depth - first));
+        gpu::dispatch(device, cmd, pipeline, extent.width, extent.height,
+                      std::min(kSlice, extent.depth - first));
         gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
                      VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
         gpu::compute_barrier(device, cmd);
         return {};
       }));
     }
-    time += seconds() - start;
+    time += since(start);
     return {};
   }
 
@@ -151,7 +171,7 @@ class Published {
   gpu::Handle<VkSampler> linear_;
   gpu::Buffer medium_, directions_, rays_, results_;
   gpu::Image density_, single_, sum_, scattered_, order_;
-  Seconds times_;
+  Times times_;
 };
 
 void print_errors(const char* sun, const char* method, const std::vector<validate::Rgb>& answers,
@@ -163,7 +183,8 @@ void print_errors(const char* sun, const char* method, const std::vector<validat
   }
   const validate::ErrorSummary e = validate::summarise(comparisons);
   std::printf("| %s | %s | %zu | %.2f | %.2f | %.2f | %.2f | %.2f |\n", sun, method, e.channels[0].count,
-              100.0 * e.all.mean, 100.0 * e.all.median, 100.0 * e.all.p95, 100.0 * e.all.worst, 100.0 * e.noise);
+              100.0 * e.all.mean, 100.0 * e.all.median, 100.0 * e.all.p95, 100.0 * e.all.worst,
+              100.0 * e.noise);
 }
 
 Result<void> run(std::uint32_t rays, std::uint32_t samples) {
@@ -172,33 +193,38 @@ Result<void> run(std::uint32_t rays, std::uint32_t samples) {
   const shared::Medium medium = medium_from_params(params);
   TYNDALL_ASSIGN(const std::unique_ptr<gpu::Host> host, gpu::Host::create({}));
 
-  double start = seconds();
+  const Time start = now();
   TYNDALL_ASSIGN(models::PrecomputedModel ours, models::PrecomputedModel::create(*host, params));
-  const double ours_s = seconds() - start;
+  const Time own = since(start);
   Published published(*host);
   TYNDALL_TRY(published.build(medium));
 
   std::printf("Made by `published_tables %u %u` on %s.\n\n", rays, samples, host->device_name().c_str());
-  std::printf("| stage | s | times all of ours |\n|---|--:|--:|\n");
-  const Published::Seconds& t = published.times();
+  std::printf("| stage | s | processor s | of the latter, times all of ours |\n|---|--:|--:|--:|\n");
+  const Published::Times& t = published.times();
   for (const auto& [name, time] :
        {std::pair("published: densities", t.density), std::pair("published: order 1", t.single),
         std::pair("published: orders 2 to 4, light that points scatter", t.scatter),
         std::pair("published: orders 2 to 4, along the rays", t.gather), std::pair("published: all", t.all()),
-        std::pair("ours: all", ours_s)}) {
-    std::printf("| %s | %.1f | %.2f |\n", name, time, time / ours_s);
+        std::pair("ours: all", own)}) {
+    std::printf("| %s | %.1f | %.1f | %.2f |\n", name, time.wall_s, time.processor_s,
+                time.processor_s / own.processor_s);
   }
-  std::printf("\n| sun | tables | rays | mean | median | 95 %% | worst | noise |\n|---|---|--:|--:|--:|--:|--:|--:|\n");
+  std::printf(
+      "\n| sun | tables | rays | mean | median | 95 %% | worst | noise "
+      "|\n|---|---|--:|--:|--:|--:|--:|--:|\n");
   for (const validate::SunBand band : {validate::SunBand::up, validate::SunBand::twilight}) {
     std::vector<reference::Query> queries;
     std::vector<models::PrecomputedQuery> asked;
-    for (const validate::Region region : {validate::Region::ground, validate::Region::air, validate::Region::space}) {
-      for (const validate::TestRay& ray : validate::make_rays(region, band, rays, 1, params.planet.radius_m,
-                                                              params.atmosphere.height_m)) {
+    for (const validate::Region region :
+         {validate::Region::ground, validate::Region::air, validate::Region::space}) {
+      for (const validate::TestRay& ray :
+           validate::make_rays(region, band, rays, 1, params.planet.radius_m, params.atmosphere.height_m)) {
         const reference::Query& q = ray.query;
         queries.push_back(q);
         asked.push_back(
-            {models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad), false});
+            {models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad),
+             false});
       }
     }
     reference::Options options;
@@ -207,10 +233,10 @@ Result<void> run(std::uint32_t rays, std::uint32_t samples) {
     TYNDALL_ASSIGN(const std::vector<reference::Estimate> truths, reference::trace(params, queries, options));
     TYNDALL_ASSIGN(const std::vector<validate::Rgb> theirs, published.answer(medium, queries));
     TYNDALL_ASSIGN(const std::vector<models::Answer> answers, ours.answer(asked));
-    std::vector<validate::Rgb> own;
-    for (const models::Answer& answer : answers) own.push_back(answer.radiance);
+    std::vector<validate::Rgb> mine;
+    for (const models::Answer& answer : answers) mine.push_back(answer.radiance);
     print_errors(sun, "published", theirs, truths);
-    print_errors(sun, "ours", own, truths);
+    print_errors(sun, "ours", mine, truths);
   }
   return {};
 }
