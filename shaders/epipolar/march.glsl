@@ -14,7 +14,6 @@
 #include "epipolar/shadow_tree.glsl"
 
 layout(constant_id = 3) const bool kTree = true;
-const uint kTopLevel = kTreeLevels - 1u;
 
 uint steps_done = 0u;
 uint nodes_visited = 0u;
@@ -63,52 +62,52 @@ bool section_closed(LitSections sections) { return kLitTables && kSections == kE
 
 // Goes on to `to`, or until a lit section is complete.
 void walk_to(inout Walk w, inout LitSections sections, float to) {
-  float resolution = float(frame.shadow_resolution);
   while (w.x < to && !section_closed(sections)) {
     bool undecided = false;
+    float stop = to;  // of what is undecided
     while (w.x < to && !undecided && !section_closed(sections)) {
       int j = int(w.x) - w.row.first;
       bool inside = j >= 0 && j < w.row.extent;
       bool in_tree = kTree && inside && j < w.row.count;
       bool dark = false;
-      uint level = 0u;
+      uint level = kTreeLeafLevel;
       if (kTree) {
         level = w.level;
         uint cell = in_tree ? uint(j) : 0u;
-        uint at = w.tree_base + (cell / kTreeBlock) * kTreeNodes16 + node_index(cell % kTreeBlock, level);
-        vec2 node = load_node(at);
+        vec2 node = load_node(w.tree_base + (cell / kTreeBlock) * kTreeNodes + node_index(cell % kTreeBlock, level));
         dark = in_tree && w.number > node.y;
         undecided = in_tree && w.number > node.x && !dark;
         nodes_visited += in_tree ? 1u : 0u;
       }
       undecided = undecided || (inside && !in_tree);
+      int next = ((j >> level) + 1) << level;
+      // A node may reach behind the map, where nothing is dark.
+      float end = inside ? float(w.row.first + min(next, w.row.extent)) : j < 0 ? float(w.row.first) : to;
+      stop = end > w.x ? min(end, to) : to;
       if (!undecided) {
-        int next = ((j >> level) + 1) << level;
-        float end = inside ? float(w.row.first + next) : j < 0 ? float(w.row.first) : to;
-        add_run(w, sections, end > w.x ? min(end, to) : to, dark ? 0.0 : 1.0);
+        add_run(w, sections, stop, dark ? 0.0 : 1.0);
         ++steps_done;
         // One level up where a node of that level begins.
-        if (kTree && in_tree && (next & ((2 << level) - 1)) == 0) w.level = min(level + 1u, kTopLevel);
-      } else if (in_tree && level > 0u) {
+        if (kTree && in_tree && (next & ((2 << level) - 1)) == 0) w.level = min(level + 1u, kTreeTopLevel);
+      } else if (in_tree && level > kTreeLeafLevel) {
         w.level = level - 1u;
         undecided = false;
       }
     }
     if (undecided) {
-      float cell = floor(w.x);
-      float from = w.x;
-      float end = min(to, cell + 1.0);
-      vec2 uv = vec2(w.row.u, w.row.v) + (cell + 0.5) * vec2(w.row.du, w.row.dv);
-      int reads = int(clamp(ceil((end - from) * w.reads_per_cell - 1e-3), 1.0, 1024.0));
-      float step_cells = (end - from) / float(reads);
-      for (int i = 0; i < reads && !section_closed(sections); ++i) {
-        float z = w.row.depth + (from + (float(i) + 0.5) * step_cells) * w.slope;
+      float step_cells = 1.0 / w.reads_per_cell;
+      while (w.x < stop && !section_closed(sections)) {
+        float cell = floor(w.x);
+        float end = w.x + step_cells;
+        end = min(cell + 1.0 - end > 0.01 * step_cells ? end : cell + 1.0, stop);
+        end = end > w.x ? end : stop;
+        vec2 uv = vec2(w.row.u, w.row.v) + (cell + 0.5) * vec2(w.row.du, w.row.dv);
+        float z = w.row.depth + 0.5 * (w.x + end) * w.slope;
         float share = texture(shadow_maps, vec4(uv, float(w.cascade), clamp(z, 0.0, 1.0)));
-        add_run(w, sections, i + 1 == reads ? end : from + float(i + 1) * step_cells, share);
+        add_run(w, sections, end, share);
+        ++reads_done;
+        ++steps_done;
       }
-      reads_done += uint(reads);
-      steps_done += uint(reads);
-      w.level = (int(end) - w.row.first & 1) == 0 ? 1u : 0u;
     }
   }
 }
@@ -121,7 +120,7 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
   Walk w;
   w.row = rows[row];
   w.cascade = cascade;
-  w.tree_base = row * (epipolar.tree_cells / kTreeBlock) * kTreeNodes16;
+  w.tree_base = row * (epipolar.tree_cells / kTreeBlock) * kTreeNodes;
   vec3 per_metre = (frame.cascades[cascade].shadow_from_world * vec4(ray.direction, 0.0)).xyz;
   float cells_per_m = max(max(abs(per_metre.x), abs(per_metre.y)) * resolution, 1e-12);
   w.slope = per_metre.z / cells_per_m;
@@ -130,7 +129,7 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
   w.x = from * cells_per_m;
   float end = to * cells_per_m;
   w.reads_per_cell = max(1.0, float(frame.integration_steps) / max(end - w.x, 1e-12));
-  w.level = 0u;
+  w.level = kTreeLeafLevel;
   w.lit = 0.0;
   w.moment = 0.0;
   w.middle = 0.0;

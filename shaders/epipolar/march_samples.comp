@@ -110,6 +110,6 @@ void main() {
   uint items_here = processing == kCascadesAside || gl_WorkGroupID.y == 0u ? work.count : 0u;
   for (uint at = gl_GlobalInvocationID.x; at < items_here; at += gl_NumWorkGroups.x * kMarchGroup) march_item(at);
   count(kMarchSteps, steps_done);
-  count(kTreeNodes, nodes_visited);
+  count(kNodesVisited, nodes_visited);
   count(kShadowFetches, reads_done);
 }

@@ -19,28 +19,35 @@ layout(std430, binding = 5) readonly buffer work_block { WorkList work; uint ite
 
 #include "epipolar/shadow_tree.glsl"
 
-const uint kCells = 8u;  // of a thread
+const uint kCells = 1u << kTreeLeafLevel;  // of a thread
 const float kAlwaysLit = 1e30;
 
 shared vec2 thread_nodes[32];
 
-// Least and greatest slope of what the comparison in the middle of cell x can meet, a little outwards.
-vec2 cell_slopes(ShadowRow row, int x, uint cascade) {
+vec2 both(vec2 a, vec2 b) { return vec2(min(a.x, b.x), max(a.y, b.y)); }
+
+// Least and greatest depth that the comparisons in the middles of cell x and the next can meet.
+vec2 pair_depths(ShadowRow row, int x, uint cascade) {
   vec2 uv = vec2(row.u, row.v) + (float(x) + 0.5) * vec2(row.du, row.dv);
-  vec4 depths = textureGather(shadow_depths, vec3(uv, float(cascade)));
-  if (frame.shadow_depth_reversed != 0u) depths = 1.0 - depths;
-  float camera = frame.shadow_depth_reversed != 0u ? 1.0 - row.depth : row.depth;
-  vec2 least_most = vec2(min(min(depths.x, depths.y), min(depths.z, depths.w)),
-                         max(max(depths.x, depths.y), max(depths.z, depths.w)));
+  vec4 a = textureGather(shadow_depths, vec3(uv, float(cascade)));
+  vec4 b = textureGather(shadow_depths, vec3(uv + vec2(row.du, row.dv), float(cascade)));
+  vec4 low = min(a, b);
+  vec4 high = max(a, b);
+  vec2 depths = vec2(min(min(low.x, low.y), min(low.z, low.w)), max(max(high.x, high.y), max(high.z, high.w)));
+  return frame.shadow_depth_reversed != 0u ? vec2(1.0 - depths.y, 1.0 - depths.x) : depths;
+}
+
+// Least and greatest slope of rays that may meet these depths anywhere from cell x to the end of the next.
+vec2 pair_slopes(vec2 depths, int x, float camera) {
   // Rounding of the ray's depth, which is the sum of the camera's and that of the way.
   float slack = 4e-7 * (1.0 + abs(camera));
-  vec2 rise = vec2(least_most.x - slack, least_most.y + slack) - camera;
-  // A ray may be compared anywhere within the cell: the slope that is safe is that to its nearer or farther end.
-  vec2 ends = vec2(max(float(x), 1e-9), float(x) + 1.0);
-  float low = rise.x / (rise.x >= 0.0 ? ends.y : ends.x);
-  float high = rise.y / (rise.y >= 0.0 ? ends.x : ends.y);
+  vec2 rise = vec2(depths.x - slack, depths.y + slack) - camera;
+  // The slope that is safe is that to the nearer or the farther end.
+  vec2 per_cell = 1.0 / vec2(max(float(x), 1e-9), float(x) + 2.0);
+  float low = rise.x * (rise.x >= 0.0 ? per_cell.y : per_cell.x);
+  float high = rise.y * (rise.y >= 0.0 ? per_cell.x : per_cell.y);
   // Where nothing casts a shadow, nothing is dark however deep.
-  return vec2(least_most.x >= 1.0 ? kAlwaysLit : low, least_most.y >= 1.0 ? kAlwaysLit : high);
+  return vec2(depths.x >= 1.0 ? kAlwaysLit : low, depths.y >= 1.0 ? kAlwaysLit : high);
 }
 
 vec2 rounded_numbers(vec2 slopes) {
@@ -62,45 +69,33 @@ void store_node(uint at, vec2 n) {
   }
 }
 
-vec2 both(vec2 a, vec2 b) { return vec2(min(a.x, b.x), max(a.y, b.y)); }
 
 void build_block(uint id, uint block) {
   ShadowRow row = rows[id];
   uint cascade = epipolar.first_cascade + id / epipolar.slices;
   uint thread = gl_LocalInvocationID.x;
-  uint base = (id * (epipolar.tree_cells / kTreeBlock) + block) * kTreeNodes16;
+  uint base = (id * (epipolar.tree_cells / kTreeBlock) + block) * kTreeNodes;
+  float camera = frame.shadow_depth_reversed != 0u ? 1.0 - row.depth : row.depth;
 
-  uint first = thread * kCells;
-  // Behind the row's end nothing is shadowed.
-  vec2 neutral = rounded_numbers(vec2(kAlwaysLit));
-  vec2 pair, four, eight;
-  for (uint k = 0u; k < kCells; ++k) {
-    uint cell = first + k;
-    int j = int(block * kTreeBlock + cell);
-    vec2 n = rounded_numbers(cell_slopes(row, row.first + j, cascade));
-    n = j < row.count ? n : neutral;
-    store_node(base + node_index(cell, 0u), n);
-    pair = (k & 1u) == 0u ? n : both(pair, n);
-    if ((k & 1u) == 1u) {
-      store_node(base + node_index(cell, 1u), pair);
-      four = (k & 2u) == 0u ? pair : both(four, pair);
-    }
-    if ((k & 3u) == 3u) {
-      store_node(base + node_index(cell, 2u), four);
-      eight = (k & 4u) == 0u ? four : both(eight, four);
-    }
+  int first = int(block * kTreeBlock + thread * kCells);
+  vec2 slopes = vec2(kAlwaysLit, -kAlwaysLit);
+  for (int k = 0; k < int(kCells); k += 2) {
+    int x = row.first + first + k;
+    slopes = both(slopes, pair_slopes(pair_depths(row, x, cascade), x, camera));
   }
-  store_node(base + node_index(first, 3u), eight);
-  thread_nodes[thread] = eight;
+  // Behind the row's end nothing is shadowed, and nodes there are not asked for what is.
+  vec2 n = rounded_numbers(first < row.count ? slopes : vec2(kAlwaysLit));
+  store_node(base + thread, n);
+  thread_nodes[thread] = n;
   barrier();
   // The levels above, each node by itself: 16 of 16 cells, 8 of 32, 4 of 64, 2 of 128, 1 of 256.
-  uint level = thread < 16u ? 4u : thread < 24u ? 5u : thread < 28u ? 6u : thread < 30u ? 7u : 8u;
-  uint index = thread - (32u - (32u >> (level - 4u)));
+  uint up = thread < 16u ? 1u : thread < 24u ? 2u : thread < 28u ? 3u : thread < 30u ? 4u : 5u;
+  uint index = thread - (32u - (64u >> up));
   if (thread < 31u) {
-    uint span = 1u << (level - 3u);
-    vec2 n = thread_nodes[index * span];
+    uint span = 1u << up;
+    n = thread_nodes[index * span];
     for (uint k = 1u; k < span; ++k) n = both(n, thread_nodes[index * span + k]);
-    store_node(base + node_index(index << level, level), n);
+    store_node(base + 32u + thread, n);
   }
 }
 

@@ -18,6 +18,6 @@ float tree_number(float slope, float resolution, uint format) {
 }
 
 // Of a node within its block: `cell` is any of its cells.
-uint node_index(uint cell, uint level) { return kTreeNodes16 - (kTreeNodes16 >> level) + (cell >> level); }
+uint node_index(uint cell, uint level) { return kTreeNodes - (kTreeNodes >> (level - kTreeLeafLevel)) + (cell >> level); }
 
 #endif

@@ -58,9 +58,10 @@ struct ShadowRow {
   int count;
 };
 
-const uint kTreeBlock = 256u;  // cells of a tree
-const uint kTreeLevels = 9u;   // nodes of 1, 2, 4, ... 256 cells
-const uint kTreeNodes16 = 512u;  // numbers that a block takes, in pairs of 16 bits; twice as many in full precision
+const uint kTreeBlock = 256u;     // cells of a tree
+const uint kTreeLeafLevel = 3u;   // nodes of 8, 16, ... 256 cells: 2 to the power of the level
+const uint kTreeTopLevel = 8u;
+const uint kTreeNodes = 64u;      // of a block, with one to spare
 
 // What a dispatch of march_samples.comp does; the first three are those of CascadeProcessing.
 const uint kAllCascades = 0u;

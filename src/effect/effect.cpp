@@ -323,7 +323,7 @@ Counters Effect::counters(std::uint64_t frame_index) const {
   std::uint64_t values[shared::kCounters];
   std::memcpy(values, static_cast<const std::byte*>(s.counters_readback.mapped) + kCounterBytes * s.slot(frame_index),
               sizeof values);
-  return {values[shared::kSamplesMarched], values[shared::kMarchSteps], values[shared::kTreeNodes],
+  return {values[shared::kSamplesMarched], values[shared::kMarchSteps], values[shared::kNodesVisited],
           values[shared::kShadowFetches], values[shared::kPixelsCorrected]};
 }
 

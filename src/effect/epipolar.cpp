@@ -62,7 +62,7 @@ EpipolarSizes epipolar_sizes(const EffectDesc& desc, const Params& params) {
   out[index(EpipolarBuffer::break_list)] = lists_breaks(params) ? sizeof(shared::WorkList) + pixels * 4 : kLeastBytes;
   out[index(EpipolarBuffer::corrected)] = lists_breaks(params) ? pixels * 16 : kLeastBytes;
   const VkDeviceSize number = params.epipolar.min_max_format == MinMaxFormat::float32 ? 8 : 4;
-  const VkDeviceSize row_bytes = tree_cells(desc) / shared::kTreeBlock * shared::kTreeNodes16 * number;
+  const VkDeviceSize row_bytes = tree_cells(desc) / shared::kTreeBlock * shared::kTreeNodes * number;
   out[index(EpipolarBuffer::tree_list)] = sizeof(shared::WorkList) + rows * (tree_cells(desc) / shared::kTreeBlock) * 4;
   out[index(EpipolarBuffer::tree)] = params.epipolar.min_max_tree ? rows * row_bytes : kLeastBytes;
   const CascadeProcessing processing = params.shadows.cascade_processing;
