@@ -10,7 +10,9 @@
 #include "shared/frame_constants.h"
 #include "shared/epipolar.h"
 
-layout(local_size_x = 128) in;
+const uint kThreads = 64u;
+
+layout(local_size_x = kThreads) in;
 layout(constant_id = 0) const uint kRefinement = 1u;  // 0 by depth, 1 by in-scattering
 
 layout(std430, binding = 0) readonly buffer frame_block { FrameConstants frame; };
@@ -29,7 +31,7 @@ const float kDark = 0.05;
 shared uint breaks[kWords];   // bit i: between samples i and i + 1
 shared uint marched[kWords];
 shared uint before[kWords];   // marched samples in the words before
-shared vec3 partial[128];
+shared vec3 partial[kThreads];
 shared vec3 floor_light;
 shared uint list_start;
 
@@ -78,23 +80,23 @@ void main() {
     marched[thread] = 0u;
   }
   vec3 sum = vec3(0.0);
-  for (uint i = thread; i <= slice.last; i += 128u) sum += coarse[row + i].rgb;
+  for (uint i = thread; i <= slice.last; i += kThreads) sum += coarse[row + i].rgb;
   partial[thread] = sum;
   barrier();
   if (thread == 0u) {
     vec3 all = vec3(0.0);
-    for (uint i = 0u; i < 128u; ++i) all += partial[i];
+    for (uint i = 0u; i < kThreads; ++i) all += partial[i];
     floor_light = max(all * (kDark / float(slice.last + 1u)), vec3(1e-30));
   }
   barrier();
-  for (uint i = thread; i < slice.last; i += 128u) {
+  for (uint i = thread; i < slice.last; i += kThreads) {
     if (is_break(row + i)) atomicOr(breaks[i >> 5u], 1u << (i & 31u));
   }
   barrier();
 
   uint fine_step = max(epipolar.initial_step / epipolar.epipole_density, 1u);
   float near_epipole = 0.05 * float(max(frame.width, frame.height));
-  for (uint i = thread; i <= slice.last; i += 128u) {
+  for (uint i = thread; i <= slice.last; i += kThreads) {
     uint from = i / epipolar.initial_step * epipolar.initial_step;
     uint to = from + epipolar.initial_step;
     bool near = epipolar.sun_in_picture != 0u && from * 20u < epipolar.samples &&
@@ -125,7 +127,7 @@ void main() {
     atomicMax(march.groups_x, min((list_start + total + kMarchGroup - 1u) / kMarchGroup, kMostGroups));
   }
   barrier();
-  for (uint i = thread; i <= slice.last; i += 128u) {
+  for (uint i = thread; i <= slice.last; i += kThreads) {
     uint word = i >> 5u;
     uint bit = 1u << (i & 31u);
     if ((marched[word] & bit) != 0u) {

@@ -43,9 +43,7 @@ void main() {
   vec3 column = vec3(0.0);
   float start, end;
   if (clip_to_air(medium, ray, start, end)) {
-    float from_altitude = altitude_along(ray.altitude, ray.cos_zenith, start, medium.planet_radius_m);
-    float from_cosine = cos_zenith_along(ray.altitude, ray.cos_zenith, start, medium.planet_radius_m);
-    column = max(column_along(medium, from_altitude, from_cosine, end - start), vec3(0.0));
+    column = max(column_along(medium, ray.altitude, ray.cos_zenith, end), vec3(0.0));
   }
   s.log_density = log_density(optical_depth(medium, column), s.depth_m);
   uint at = id * epipolar.samples + i;

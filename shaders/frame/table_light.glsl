@@ -66,14 +66,19 @@ vec3 table_light(LitSections lit, TableRay path, float start, float t, float end
     if (kSingle == kTable) light += lit.light.single;
     if (kOccluded) light += lit.light.high;
   }
-  uint turns = frame.unoccluded != 0u ? 3u : 2u;
-  for (uint i = kLitTables ? kSections == kContiguous ? 0u : 1u : 2u; i < turns; ++i) {
-    float from = i == 0u ? lit.first : i == 1u ? t : start;
-    float to = i == 0u ? lit.first + lit.total : end;
-    if (to - from <= 1e-3 || (i == 0u && lit.total <= 1e-3)) continue;
+  // Sections: 0 what is lit, 1 the rest, 2 the whole. A set, so that rays side by side do not wait for what only
+  // some of them have.
+  uint sections = frame.unoccluded != 0u ? 4u : 0u;
+  if (kLitTables && kSections == kContiguous && lit.total > 1e-3) sections |= 1u;
+  if (kLitTables && end - t > 1e-3) sections |= 2u;
+  while (sections != 0u) {
+    int i = findLSB(sections);
+    sections &= sections - 1u;
+    float from = i == 0 ? lit.first : i == 1 ? t : start;
+    float to = i == 0 ? lit.first + lit.total : end;
     AirLight section = section_light(path, start, from, to);
-    if (kSingle == kTable && i < 2u) light += section.single;
-    if (kOccluded ? i < 2u : i == 2u) light += section.high;
+    if (kSingle == kTable && i < 2) light += section.single;
+    if (kOccluded ? i < 2 : i == 2) light += section.high;
   }
   return light;
 }
