@@ -24,6 +24,30 @@ layout(binding = 6) uniform sampler2D scene_depth;
 #include "epipolar/ray_end.glsl"
 #include "epipolar/slices.glsl"
 
+// Device depth at a place between pixels: on one surface that of the surface there, because device depth is affine in
+// the picture; across a break that of the nearest pixel, because a mixture would be the depth of nothing.
+float depth_at(vec2 position) {
+  const float kSameSurface = 0.9;  // least ratio of view depths
+  vec2 place = position - 0.5;
+  vec2 part = place - floor(place);
+  ivec2 corner = ivec2(floor(place));
+  ivec2 most = ivec2(frame.width, frame.height) - 1;
+  float depths[4];
+  float nearest_m = kSkyDepth;
+  float farthest_m = 0.0;
+  float nearest_pixel = 0.0;
+  for (int k = 0; k < 4; ++k) {
+    ivec2 offset = ivec2(k & 1, k >> 1);
+    depths[k] = texelFetch(scene_depth, clamp(corner + offset, ivec2(0), most), 0).r;
+    float depth_m = depths[k] == frame.sky_depth ? kSkyDepth : view_depth(frame, position, depths[k]);
+    nearest_m = min(nearest_m, depth_m);
+    farthest_m = max(farthest_m, depth_m);
+    if (offset == ivec2(greaterThanEqual(part, vec2(0.5)))) nearest_pixel = depths[k];
+  }
+  float between = mix(mix(depths[0], depths[1], part.x), mix(depths[2], depths[3], part.x), part.y);
+  return nearest_m > kSameSurface * farthest_m && farthest_m < kSkyDepth ? between : nearest_pixel;
+}
+
 void main() {
   uint i = gl_GlobalInvocationID.x;
   uint id = gl_GlobalInvocationID.y;
@@ -31,9 +55,7 @@ void main() {
   EpipolarSlice slice = slices[id];
   if (i > slice.last) return;
   vec2 position = sample_position(slice, i);
-  // The nearest pixel's depth: a mixture of near and far would be the depth of nothing.
-  ivec2 pixel = clamp(ivec2(floor(position)), ivec2(0), ivec2(frame.width, frame.height) - 1);
-  float depth = texelFetch(scene_depth, pixel, 0).r;
+  float depth = depth_at(position);
   bool sky = depth == frame.sky_depth;
   Ray ray = ray_to_depth(frame, position, view_depth(frame, position, depth), sky);
 

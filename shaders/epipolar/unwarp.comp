@@ -48,7 +48,7 @@ void main() {
   vec2 middle = vec2(corner) + 1.0;
   float planet_m = sky_depth_m(ray_direction(frame, middle));
   float depth_m = kinds == 1u ? 0.5 * (nearest + farthest) : planet_m;
-  bool one_depth = kinds == 1u ? farthest - nearest < epipolar.threshold * farthest : kinds == 2u || kinds == 4u;
+  bool one_depth = kinds == 1u ? farthest - nearest < epipolar.threshold * farthest : kinds == 4u;
   Around a = around(middle, depth_m);
   if (!one_depth || (kBreaks && blend(a, middle).weight < kLeastWeight)) {
     uint at = atomicAdd(broken.count, 1u);
