@@ -73,7 +73,7 @@ Result<std::vector<glm::dvec3>> render(gpu::Host& host, const Params& params, co
                                        OutputFormat format = OutputFormat::rgba32f);
 [[nodiscard]] EffectDesc desc_for(const TestFrame& frame, OutputFormat format = OutputFormat::rgba32f);
 
-// scattering.scale 1 and enough integration_steps for 0.1 % where nothing shadows.
+// scattering.scale 1, every pixel marched by itself, and enough integration_steps for 0.1 % where nothing shadows.
 [[nodiscard]] Params precise_params();
 
 // In-scattered radiance / E0 between two distances of a ray, with the fine steps of the CPU model, and the
