@@ -2,7 +2,8 @@
 #   make demo   installs what is missing, builds, renders the demo scene to out/demo.png
 #   make check  installs what is missing, builds with warnings as errors, passes every test
 #   make pictures  renders the pictures of the documentation anew
-.PHONY: demo check pictures setup build format tidy clean
+#   make accuracy  measures the numbers of docs/accuracy.md anew
+.PHONY: demo check pictures accuracy setup build format tidy clean
 
 PRESET ?= release
 
@@ -22,6 +23,17 @@ pictures: build
 	@for scene in demo noon stratosphere; do \
 	  build/release/bin/tyndall render scenes/$$scene.toml --size 640x360 -o docs/images/$$scene.png || exit 1; \
 	done
+	@while read -r name sun yaw exposure; do \
+	  build/release/bin/tyndall render scenes/twilight.toml --size 480x270 --set sun.elevation_deg=$$sun \
+	    --set camera.yaw_deg=$$yaw --set tonemap.exposure=$$exposure -o docs/images/$$name.png < /dev/null || exit 1; \
+	done < scenes/twilight_pictures.txt
+
+# The numbers of docs/accuracy.md.
+accuracy: PRESET = release
+accuracy: build
+	@build/release/bin/tyndall validate --markdown docs/generated/accuracy.md
+	@cmake --build build/release --target published_tables
+	@build/release/bin/published_tables > docs/generated/published.md
 
 setup:
 	@tools/setup.sh

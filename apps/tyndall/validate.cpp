@@ -176,7 +176,7 @@ int run_validate(Args args) {
   std::string markdown;
   Arguments arguments("validate");
   add_common(arguments, options, kScene | kSet | kDevice | kOutput | kJson);
-  arguments.text("--markdown", markdown, "FILE", "write the summary as Markdown too (docs/accuracy.md)");
+  arguments.text("--markdown", markdown, "FILE", "write the summary as Markdown too (docs/generated/accuracy.md)");
   arguments.count("--rays", study_options.rays, 18, 1000000, "rays of the error tables");
   arguments.count("--samples", study_options.samples, 2, 1000000000, "paths per ray of the reference");
   arguments.count("--seed", seed, 0, UINT32_MAX, "of the rays and the paths");

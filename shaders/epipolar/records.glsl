@@ -25,8 +25,7 @@ vec3 log_density(vec3 optical_depth, float depth_m) {
 // exp(-tau) and 1 - exp(-tau), the latter without cancellation.
 void attenuation(vec3 tau, out vec3 through, out vec3 lost) {
   through = exp(-tau);
-  vec3 series = tau * (1.0 - tau * (0.5 - tau * (0.16666667 - 0.04166667 * tau)));
-  lost = mix(1.0 - through, series, lessThan(tau, vec3(0.03)));
+  lost = mix(1.0 - through, tau - 0.5 * tau * tau, lessThan(tau, vec3(2e-3)));
 }
 
 vec3 optical_depth_at(vec3 log_density, float depth_m) { return exp2(log_density) * depth_in_megametres(depth_m); }

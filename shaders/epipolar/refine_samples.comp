@@ -38,7 +38,7 @@ bool is_break(uint at) {
   vec4 b = coarse[at + 1u];
   if (kRefinement == 0u) return abs(a.w - b.w) > 0.2 * epipolar.threshold * max(max(a.w, b.w), 1.0);
   vec3 change = abs(a.rgb - b.rgb) / max(max(a.rgb, b.rgb), floor_light);
-  return max(change.r, max(change.g, change.b)) > epipolar.threshold;
+  return max(change.r, max(change.g, change.b)) > 3.0 * epipolar.threshold;
 }
 
 uint bits_from(uint first) { return 0xFFFFFFFFu << (first & 31u); }

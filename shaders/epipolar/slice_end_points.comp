@@ -31,11 +31,11 @@ void main() {
   EpipolarSlice slice;
   slice.entry_x = entry.x;
   slice.entry_y = entry.y;
-  slice.direction_x = direction.x;
-  slice.direction_y = direction.y;
-  slice.length_px = stretched;
+  slice.stride_x = direction.x * stretched / intervals;
+  slice.stride_y = direction.y * stretched / intervals;
+  slice.axis_x = direction.x * intervals / stretched;
+  slice.axis_y = direction.y * intervals / stretched;
   slice.last = uint(clamp(ceil(visible / stretched * intervals - 1e-3), 1.0, intervals));
-  slice.unused_0 = 0.0;
-  slice.unused_1 = 0.0;
+  slice.unused_0 = 0u;
   slices[id] = slice;
 }

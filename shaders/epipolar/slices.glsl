@@ -70,8 +70,7 @@ float slice_coordinate(vec2 position) {
 }
 
 vec2 sample_position(EpipolarSlice slice, uint i) {
-  float along = slice.length_px * float(i) / float(epipolar.samples - 1u);
-  return vec2(slice.entry_x, slice.entry_y) + vec2(slice.direction_x, slice.direction_y) * along;
+  return vec2(slice.entry_x, slice.entry_y) + vec2(slice.stride_x, slice.stride_y) * float(i);
 }
 
 #endif

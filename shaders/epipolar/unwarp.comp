@@ -1,18 +1,13 @@
-// From slices to the picture: every pixel between four samples, two on each of two slices, weighted by nearness
-// in the picture and in depth (Yusov 2013, section 1.7), and put over the background. The last and only pass over
-// all pixels. What is interpolated is the source and the optical depth per metre; the pixel's own depth makes
-// light of them, so that a sample of another depth is a fair substitute where there is none of the pixel's own.
+// Puts the picture together, in blocks of 2 x 2 pixels: where they are at one depth, all four are blended from
+// the same samples. The others are left to unwarp_pixels.comp. Every pixel is read and written once.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
 #include "shared/medium.h"
 #include "shared/frame_constants.h"
 #include "shared/epipolar.h"
-#include "lib/optical_depth.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(constant_id = 0) const uint kExtinction = 0u;  // 0 epipolar, 1 per pixel
-layout(constant_id = 1) const bool kBreaks = false;   // list the pixels that no sample fits
 
 layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
 layout(std430, binding = 1) readonly buffer frame_block { FrameConstants frame; };
@@ -22,89 +17,51 @@ layout(std430, binding = 4) readonly buffer sample_block { uvec4 samples[]; };
 layout(binding = 5) uniform sampler2D scene_color;
 layout(binding = 6) uniform sampler2D scene_depth;
 layout(binding = 7, OUTPUT_FORMAT) uniform writeonly image2D output_color;
-layout(std430, binding = 8) buffer break_list_block { WorkList breaks; uint break_list[]; };
+layout(std430, binding = 8) buffer broken_list_block { WorkList broken; uint broken_list[]; };
 
-#include "epipolar/ray_end.glsl"
-#include "epipolar/slices.glsl"
+#include "epipolar/unwarp.glsl"
 
-// Below this sum of weights no sample is near in depth; the weights then still choose the nearest.
-const float kLeastWeight = 1e-2;
-
-struct Blend {
-  float weight;
-  vec3 source;
-  vec3 log_density;
-};
-
-void blend(inout Blend b, uvec4 packed, float depth_m, float weight) {
-  Sample s = unpack_sample(packed);
-  float apart = abs(s.depth_m - depth_m) / max(max(s.depth_m, depth_m), 1.0);
-  float nearness = epipolar.threshold / max(apart, epipolar.threshold);
-  nearness *= nearness;
-  // The last term keeps the sum above zero, whatever the samples.
-  float w = weight * nearness * nearness + 1e-9;
-  b.weight += w;
-  b.source += w * s.source;
-  b.log_density += w * s.log_density;
-}
-
-void blend_slice(inout Blend b, uint id, vec2 position, float depth_m, float weight) {
-  EpipolarSlice slice = slices[id];
-  vec2 offset = position - vec2(slice.entry_x, slice.entry_y);
-  float along = dot(offset, vec2(slice.direction_x, slice.direction_y)) / slice.length_px;
-  float place = clamp(along * float(epipolar.samples - 1u), 0.0, float(slice.last));
-  uint i = min(uint(place), slice.last - 1u);
-  float part = place - float(i);
-  uint at = id * epipolar.samples + i;
-  blend(b, samples[at], depth_m, weight * (1.0 - part));
-  blend(b, samples[at + 1u], depth_m, weight * part);
-}
+ivec2 pixel_of(ivec2 corner, int k) { return min(corner + ivec2(k & 1, k >> 1), ivec2(frame.width, frame.height) - 1); }
 
 void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height)) return;
-  vec2 position = vec2(pixel) + 0.5;
-  float depth = texelFetch(scene_depth, pixel, 0).r;
-  bool sky = depth == frame.sky_depth;
-  float visible_m = view_depth(frame, position, depth);
-  float depth_m = sky ? sky_depth_m(ray_direction(frame, position)) : visible_m;
-
-  float place = slice_coordinate(position);
-  uint lower = uint(place);
-  float part = place - float(lower);
-  uint upper = lower + 1u;
-  if (epipolar.closed != 0u) {
-    lower = lower >= epipolar.slices ? lower - epipolar.slices : lower;
-    upper = upper >= epipolar.slices ? upper - epipolar.slices : upper;
-  } else {
-    lower = min(lower, epipolar.slices - 1u);
-    upper = min(upper, epipolar.slices - 1u);
+  ivec2 corner = 2 * ivec2(gl_GlobalInvocationID.xy);
+  if (corner.x >= int(frame.width) || corner.y >= int(frame.height)) return;
+  // Depths of the four, and whether they see the sky, the planet where nothing was drawn, or the scene.
+  float visible_m[4];
+  bool sky[4];
+  float nearest = kSkyDepth;
+  float farthest = 0.0;
+  uint kinds = 0u;
+  float horizon = horizon_cos(frame.camera_altitude_m, medium.planet_radius_m);
+  for (int k = 0; k < 4; ++k) {
+    ivec2 pixel = pixel_of(corner, k);
+    vec2 position = vec2(pixel) + 0.5;
+    float depth = texelFetch(scene_depth, pixel, 0).r;
+    sky[k] = depth == frame.sky_depth;
+    visible_m[k] = view_depth(frame, position, depth);
+    vec3 direction = frame.ray_origin + position.x * frame.ray_x + position.y * frame.ray_y;
+    bool planet = dot(direction, frame.camera_up) < horizon * length(direction);
+    kinds |= !sky[k] ? 1u : planet ? 2u : 4u;
+    nearest = sky[k] ? nearest : min(nearest, visible_m[k]);
+    farthest = sky[k] ? farthest : max(farthest, visible_m[k]);
   }
-  Blend b = Blend(0.0, vec3(0.0), vec3(0.0));
-  blend_slice(b, lower, position, depth_m, 1.0 - part);
-  blend_slice(b, upper, position, depth_m, part);
-
-  vec3 tau;
-  if (kExtinction == 0u) {
-    tau = optical_depth_at(b.log_density / b.weight, depth_m);
-  } else {
-    Ray ray = ray_to_depth(frame, position, visible_m, sky);
-    float start, end;
-    tau = vec3(0.0);
-    if (clip_to_air(medium, ray, start, end)) {
-      float from_altitude = altitude_along(ray.altitude, ray.cos_zenith, start, medium.planet_radius_m);
-      float from_cosine = cos_zenith_along(ray.altitude, ray.cos_zenith, start, medium.planet_radius_m);
-      tau = optical_depth(medium, column_along(medium, from_altitude, from_cosine, end - start));
-    }
+  vec2 middle = vec2(corner) + 1.0;
+  float planet_m = sky_depth_m(ray_direction(frame, middle));
+  float depth_m = kinds == 1u ? 0.5 * (nearest + farthest) : planet_m;
+  bool one_depth = kinds == 1u ? farthest - nearest < epipolar.threshold * farthest : kinds == 2u || kinds == 4u;
+  Around a = around(middle, depth_m);
+  if (!one_depth || (kBreaks && blend(a, middle).weight < kLeastWeight)) {
+    uint at = atomicAdd(broken.count, 1u);
+    broken_list[at] = uint(corner.y) << 16u | uint(corner.x);
+    atomicMax(broken.groups_x, (4u * at + 4u + kMarchGroup - 1u) / kMarchGroup);
+    return;
   }
-  vec3 through, lost;
-  attenuation(tau, through, lost);
-  vec3 color = b.source * (lost / b.weight) * frame.sun_irradiance;
-  if (frame.only == 0u) color += texelFetch(scene_color, pixel, 0).rgb * through;
-  imageStore(output_color, pixel, vec4(color, 1.0));
-  if (kBreaks && b.weight < kLeastWeight) {
-    uint at = atomicAdd(breaks.count, 1u);
-    break_list[at] = uint(pixel.y) << 16u | uint(pixel.x);
-    atomicMax(breaks.groups_x, at / kMarchGroup + 1u);
+  for (int k = 0; k < 4; ++k) {
+    ivec2 pixel = pixel_of(corner, k);
+    float own_m = kinds == 1u ? visible_m[k] : depth_m;
+    vec3 background = texelFetch(scene_color, pixel, 0).rgb;
+    vec2 position = vec2(pixel) + 0.5;
+    vec3 color = compose(blend(a, position), position, own_m, visible_m[k], sky[k], background);
+    imageStore(output_color, pixel, vec4(color, 1.0));
   }
 }

@@ -61,11 +61,13 @@ struct TableCoordinates {
   float far_part;
 };
 
-TableCoordinates table_coordinates(TableShape t, Medium m, TableRay ray) {
+// `column`: of the whole ray.
+TableCoordinates table_coordinates(TableShape t, Medium m, TableRay ray, vec3 column) {
   float h = table_altitude(m, ray.altitude);
   float u = u_from_altitude(t, m, h);
   float v = v_from_view(t, m, h, ray.cos_zenith, ray.below);
-  float w = w_from_sun(t, ray.cos_sun_zenith);
+  float middle = middle_of_air(m, ray.altitude, ray.cos_zenith, ray.end_m, column);
+  float w = w_from_sun(t, ray_further_on(m, ray, middle).cos_sun_zenith);
   float slices = float(t.angles);
   float slice = clamp(q_from_angle(t, ray.cos_view_sun) * slices - 0.5, 0.0, slices - 1.0);
   float first = min(floor(slice), slices - 2.0);
@@ -81,8 +83,9 @@ vec3 table_value(sampler3D table, TableCoordinates c) {
 }
 
 AirLight light_to_end(TableShape t, Medium m, TableRay ray) {
-  TableCoordinates c = table_coordinates(t, m, ray);
-  Guide guide = guide_for_column(m, column_along(m, ray.altitude, ray.cos_zenith, ray.end_m));
+  vec3 column = column_along(m, ray.altitude, ray.cos_zenith, ray.end_m);
+  TableCoordinates c = table_coordinates(t, m, ray, column);
+  Guide guide = guide_for_column(m, column);
   vec3 rayleigh = m.rayleigh_scattering * rayleigh_phase(ray.cos_view_sun);
   vec3 mie = m.mie_scattering * mie_phase(m, ray.cos_view_sun);
   AirLight light;

@@ -2,7 +2,8 @@
 // its quantity and a coordinate in [0; 1] over the texels; three parameterisations of each:
 //   yusov    - Yusov, "High Performance Outdoor Light Scattering Using Epipolar Sampling" (2013), section 2:
 //              square root of altitude, fifth root of the distance from the horizon in cosine, Bruneton's
-//              arctangent for the sun, power 3/2 of the angle between view and sun;
+//              arctangent for the sun; even in the angle between view and sun, where he takes its power 3/2:
+//              that leaves 30 degrees between the texels around 90, and triples the errors of twilight;
 //   bruneton - Bruneton and Neyret, "Precomputed Atmospheric Scattering" (2008), section 4: distances to the
 //              horizon and to the boundary, an exponential for the sun, linear in the cosine to the sun;
 //   linear   - in altitude and the three cosines.
@@ -17,9 +18,15 @@
 
 // Altitudes nearer to the ground or the top than this are looked up as if they were this far [m].
 const float kTableMargin = 16.0;
-// The yusov mapping of the sun: lowest cosine, and its shape.
-const float kLowestSun = -0.1975;
-const float kTanSunShape = 5.3496235;  // tan(1.26 * 1.1)
+// The lowest sun, as a cosine: 16 degrees below the horizontal, where rays from high up that begin in twilight
+// have the middle of their air. (The sources end at 11 degrees, of the sun at the ray's beginning.)
+const float kLowestSun = -0.28;
+// The yusov mapping of the sun: the arctangent of so many times its cosine, and its least and largest.
+const float kSunShape = 5.3496235;  // tan(1.26 * 1.1)
+const float kSunFrom = -0.982145272;
+const float kSunTo = 1.386;
+// The bruneton mapping of the sun.
+const float kSunFade = 3.0;
 
 // A value x in [0; 1] that is to lie on texel centres at 0 and 1, as a texture coordinate over n texels.
 float texel_from_unit(float x, float n) { return (x * (n - 1.0) + 0.5) / n; }
@@ -131,9 +138,9 @@ float view_from_v(IN(TableShape) t, IN(Medium) m, float h, float v, OUT(bool) be
 float w_from_sun(IN(TableShape) t, float mu_s) {
   float x = 0.5 * mu_s + 0.5;
   if (t.parameterization == 0u) {
-    x = 0.5 * (atan(max(mu_s, kLowestSun) * kTanSunShape) / 1.1 + (1.0 - 0.26));
+    x = (atan(max(mu_s, kLowestSun) * kSunShape) - kSunFrom) / (kSunTo - kSunFrom);
   } else if (t.parameterization == 1u) {
-    x = (1.0 - exp(-3.0 * max(mu_s, -0.2) - 0.6)) / (1.0 - exp(-3.6));
+    x = (1.0 - exp(-kSunFade * (max(mu_s, kLowestSun) - kLowestSun))) / (1.0 - exp(-kSunFade * (1.0 - kLowestSun)));
   }
   return texel_from_unit(clamp(x, 0.0, 1.0), float(t.suns));
 }
@@ -141,10 +148,11 @@ float w_from_sun(IN(TableShape) t, float mu_s) {
 float sun_from_w(IN(TableShape) t, float w) {
   float x = unit_from_texel(w, float(t.suns));
   if (t.parameterization == 0u) {
-    return clamp(tan((2.0 * x - 1.0 + 0.26) * 1.1) / kTanSunShape, kLowestSun, 1.0);
+    return clamp(tan(mix(kSunFrom, kSunTo, x)) / kSunShape, kLowestSun, 1.0);
   }
   if (t.parameterization == 1u) {
-    return clamp(-(log(1.0 - x * (1.0 - exp(-3.6))) + 0.6) / 3.0, -0.2, 1.0);
+    float part = 1.0 - x * (1.0 - exp(-kSunFade * (1.0 - kLowestSun)));
+    return clamp(kLowestSun - log(part) / kSunFade, kLowestSun, 1.0);
   }
   return 2.0 * x - 1.0;
 }
@@ -152,19 +160,14 @@ float sun_from_w(IN(TableShape) t, float w) {
 float q_from_angle(IN(TableShape) t, float nu) {
   float x = 0.5 * nu + 0.5;
   if (t.parameterization == 0u) {
-    float s = 2.0 * acos(clamp(nu, -1.0, 1.0)) * 0.318309886183791 - 1.0;
-    x = 0.5 + 0.5 * sign(s) * abs(s) * sqrt(abs(s));
+    x = acos(clamp(nu, -1.0, 1.0)) * 0.318309886183791;
   }
   return texel_from_unit(clamp(x, 0.0, 1.0), float(t.angles));
 }
 
 float angle_from_q(IN(TableShape) t, float q) {
-  float s = 2.0 * unit_from_texel(q, float(t.angles)) - 1.0;
-  if (t.parameterization == 0u) {
-    float a = 0.5 + 0.5 * sign(s) * pow(abs(s), 0.66666666666666667);
-    return cos(a * 3.14159265358979);
-  }
-  return s;
+  float x = unit_from_texel(q, float(t.angles));
+  return t.parameterization == 0u ? cos(x * 3.14159265358979) : 2.0 * x - 1.0;
 }
 
 // The cosine to the sun that view and sun zenith angles allow, nearest to nu.

@@ -33,6 +33,19 @@ Guide guide_for_column(IN(Medium) m, vec3 column) {
   return g;
 }
 
+// Distance from altitude h to the middle of a ray's air, weighed by the density of the first species [m]: the
+// point whose sun the tables go by. Along a grazing ray the sun's height changes by degrees; told by the
+// sun at its origin, the light of the far end would hang on the angle between view and sun, of which there are
+// few texels, and under a sun that the table no longer holds. The integral of density times distance q from the
+// perigee is closed: q dq = r dr.
+float middle_of_air(IN(Medium) m, float h, float mu, float end_m, vec3 column) {
+  float R = m.planet_radius_m;
+  float H = m.rayleigh_scale_height_m;
+  float end = clamp(altitude_along(h, mu, end_m, R), 0.0, m.atmosphere_height_m);
+  float moment = H * ((R + h + H) * exp(-h / H) - (R + end + H) * exp(-end / H));
+  return clamp(moment / max(column.x, 1.0e-30) - (R + h) * mu, 0.0, end_m);
+}
+
 vec3 texel_from_value(vec3 value) { return sqrt(sqrt(max(value, vec3(0.0)))); }
 vec3 value_from_texel(vec3 texel) {
   vec3 squared = texel * texel;

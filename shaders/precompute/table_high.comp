@@ -27,7 +27,11 @@ void main() {
   float mu = view_from_v(shape, medium, h, (float(id.z) + 0.5) / float(shape.views), below);
   float mu_s = sun_from_w(shape, (float(id.x) + 0.5) / float(shape.suns));
   float nu = angle_from_q(shape, (float(id.y) + 0.5) / float(shape.angles));
-  float q0 = (R + h) * mu_s;
+  float end = nodes[base + kEndNode].distance_m;
+  vec3 column = column_along(medium, h, mu, end);
+  // q0: where the sun stands at the origin, r0 cos(zenith), from where it stands in the middle of the air.
+  float middle = middle_of_air(medium, h, mu, end, column);
+  float q0 = (R + altitude_along(h, mu, middle, R)) * mu_s - middle * nu;
   vec3 radiance = vec3(0.0);
   if (shape.orders > 1u) {
     for (uint i = 0u; i < kHighNodes; ++i) {
@@ -37,7 +41,7 @@ void main() {
       radiance += node.weight_m * scattering * source_at(medium, node.altitude_m, node.cos_zenith, sun_here, nu);
     }
   }
-  Guide guide = guide_for_column(medium, column_along(medium, h, mu, nodes[base + kEndNode].distance_m));
+  Guide guide = guide_for_column(medium, column);
   ivec3 texel = ivec3(int(push.first), int(id.z), int(id.x + shape.suns * id.y));
   imageStore(high_orders, texel, vec4(texel_from_value(radiance / max(guide.high, vec3(1.0e-30))), 1.0));
 }

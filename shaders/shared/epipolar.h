@@ -31,16 +31,17 @@ struct EpipolarConstants {
   uint tree_format;     // MinMaxFormat
 };
 
-// A slice: samples lie at entry + direction x length_px x i / (samples - 1), i <= last.
+// A slice: sample i lies at entry + stride x i, i <= last; a place p of the picture falls on sample
+// dot(p - entry, axis).
 struct EpipolarSlice {
   float entry_x;
   float entry_y;
-  float direction_x;  // unit length
-  float direction_y;
-  float length_px;    // of all samples
-  uint last;          // sample: the first at or behind the border
-  float unused_0;
-  float unused_1;
+  float stride_x;
+  float stride_y;
+  float axis_x;
+  float axis_y;
+  uint last;  // sample: the first at or behind the border
+  uint unused_0;
 };
 
 // The line of a slice in a cascade's map: texture coordinates (u, v) + x (du, dv), where x counts cells of one

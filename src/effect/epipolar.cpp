@@ -15,12 +15,21 @@ constexpr VkDeviceSize kLeastBytes = 256;                 // of buffers that sha
 constexpr VkBufferUsageFlags kUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
                                       VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
 
-constexpr const char* kNames[kEpipolarBuffers] = {"slices",     "shadow_rows", "samples",     "coarse_inscattering", "sources",
-                                                  "march_list", "break_list",  "corrected_pixels", "shadow_tree", "march_states"};
-constexpr const char* kBlocks[kEpipolarBuffers] = {"slice_block",      "row_block",        "sample_block",
-                                                   "coarse_block",     "source_block",     "march_list_block",
-                                                   "break_list_block", "corrected_block",  "tree_block",
-                                                   "state_block"};
+struct BufferName {
+  const char* name;
+  const char* block;  // in the shaders
+};
+constexpr BufferName kNames[kEpipolarBuffers] = {{"slices", "slice_block"},
+                                                 {"shadow_rows", "row_block"},
+                                                 {"samples", "sample_block"},
+                                                 {"coarse_inscattering", "coarse_block"},
+                                                 {"sources", "source_block"},
+                                                 {"march_list", "march_list_block"},
+                                                 {"broken_blocks", "broken_list_block"},
+                                                 {"depth_breaks", "break_list_block"},
+                                                 {"corrected_pixels", "corrected_block"},
+                                                 {"shadow_tree", "tree_block"},
+                                                 {"march_states", "state_block"}};
 
 std::size_t index(EpipolarBuffer buffer) { return static_cast<std::size_t>(buffer); }
 
@@ -47,6 +56,8 @@ EpipolarSizes epipolar_sizes(const EffectDesc& desc, const Params& params) {
   out[index(EpipolarBuffer::coarse)] = samples * 16;
   out[index(EpipolarBuffer::sources)] = samples * 4;
   out[index(EpipolarBuffer::march_list)] = sizeof(shared::WorkList) + samples * 4;
+  const VkDeviceSize blocks = VkDeviceSize{(desc.max_extent.width + 1) / 2} * ((desc.max_extent.height + 1) / 2);
+  out[index(EpipolarBuffer::broken_list)] = sizeof(shared::WorkList) + blocks * 4;
   out[index(EpipolarBuffer::break_list)] = lists_breaks(params) ? sizeof(shared::WorkList) + pixels * 4 : kLeastBytes;
   out[index(EpipolarBuffer::corrected)] = lists_breaks(params) ? pixels * 16 : kLeastBytes;
   const VkDeviceSize number = params.epipolar.min_max_format == MinMaxFormat::float32 ? 8 : 4;
@@ -59,7 +70,7 @@ EpipolarSizes epipolar_sizes(const EffectDesc& desc, const Params& params) {
   return out;
 }
 
-const char* epipolar_buffer_name(EpipolarBuffer buffer) { return kNames[index(buffer)]; }
+const char* epipolar_buffer_name(EpipolarBuffer buffer) { return kNames[index(buffer)].name; }
 
 VkDeviceSize epipolar_bytes(const gpu::Device& device, const EffectDesc& desc, const Params& params) {
   VkDeviceSize sum = 0;
@@ -186,6 +197,9 @@ Result<void> Epipolar::create_pipelines() {
       const gpu::Constant of_unwarp[] = {{0, i}, {1, breaks}};
       TYNDALL_TRY(make(unwarp_[i][breaks], full ? shaders::unwarp_comp_rgba32f : shaders::unwarp_comp_rgba16f, "unwarp",
                        of_unwarp));
+      TYNDALL_TRY(make(unwarp_pixels_[i][breaks],
+                       full ? shaders::unwarp_pixels_comp_rgba32f : shaders::unwarp_pixels_comp_rgba16f, "unwarp_pixels",
+                       of_unwarp));
     }
   }
   for (std::uint32_t mode = 0; mode < kModeCount; ++mode) {
@@ -206,7 +220,7 @@ Result<void> Epipolar::set_params(const Params& params) {
   retired_.reserve(retired_.size() + kEpipolarBuffers);
   for (std::size_t i = 0; i < kEpipolarBuffers; ++i) {
     if (sizes[i] == 0 || sizes[i] == buffers_[i].size) continue;
-    TYNDALL_ASSIGN(fresh[i], gpu::create_buffer(*device_, kNames[i], sizes[i], kUsage, gpu::MemoryKind::device));
+    TYNDALL_ASSIGN(fresh[i], gpu::create_buffer(*device_, kNames[i].name, sizes[i], kUsage, gpu::MemoryKind::device));
   }
   for (std::size_t i = 0; i < kEpipolarBuffers; ++i) {
     if (sizes[i] == buffers_[i].size) continue;
@@ -240,7 +254,7 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
   std::size_t used = 0;
   gpu::NamedResource& work = all[used++];  // the list that a pass works through
   for (const gpu::NamedResource& r : frame_resources) all[used++] = r;
-  for (std::size_t i = 0; i < kEpipolarBuffers; ++i) all[used++] = gpu::named_buffer(kBlocks[i], buffers_[i].buffer.get());
+  for (std::size_t i = 0; i < kEpipolarBuffers; ++i) all[used++] = gpu::named_buffer(kNames[i].block, buffers_[i].buffer.get());
   const std::span<const gpu::NamedResource> resources(all.data(), used);
 
   struct Size {
@@ -294,7 +308,9 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
   shared::WorkList empty = {0, instanced ? marched : 1, 1, 0};
   device_->vk.CmdUpdateBuffer(cmd, buffers_[index(EpipolarBuffer::march_list)].buffer.get(), 0, sizeof empty, &empty);
   empty.groups_y = 1;
-  device_->vk.CmdUpdateBuffer(cmd, buffers_[index(EpipolarBuffer::break_list)].buffer.get(), 0, sizeof empty, &empty);
+  for (const EpipolarBuffer list : {EpipolarBuffer::broken_list, EpipolarBuffer::break_list}) {
+    device_->vk.CmdUpdateBuffer(cmd, buffers_[index(list)].buffer.get(), 0, sizeof empty, &empty);
+  }
   gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
                VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
   const auto lists_ready = [&] {
@@ -332,8 +348,10 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
     TYNDALL_TRY(run_list(march, EpipolarBuffer::march_list, &push));
   }
   TYNDALL_TRY(run(interpolate_samples_, {p.samples, p.slices}));
-  const gpu::Pipeline& unwarp = unwarp_[static_cast<std::size_t>(params.scattering.extinction)][breaks ? 1 : 0];
-  TYNDALL_TRY(run(unwarp, {inputs.extent.width, inputs.extent.height}));
+  const auto extinction = static_cast<std::size_t>(params.scattering.extinction);
+  TYNDALL_TRY(run(unwarp_[extinction][breaks ? 1 : 0], {(inputs.extent.width + 1) / 2, (inputs.extent.height + 1) / 2}));
+  lists_ready();
+  TYNDALL_TRY(run_list(unwarp_pixels_[extinction][breaks ? 1 : 0], EpipolarBuffer::broken_list));
   if (breaks) {
     lists_ready();
     const MarchPush push = {shared::kPixels, 0};

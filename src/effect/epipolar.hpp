@@ -18,9 +18,9 @@
 namespace tyndall {
 
 // Buffers of epipolar sampling, in the order of the plan in epipolar.cpp.
-enum class EpipolarBuffer : std::uint32_t { slices, rows, samples, coarse, sources, march_list, break_list,
-                                           corrected, tree, states };
-constexpr std::uint32_t kEpipolarBuffers = 10;
+enum class EpipolarBuffer : std::uint32_t { slices, rows, samples, coarse, sources, march_list, broken_list,
+                                           break_list, corrected, tree, states };
+constexpr std::uint32_t kEpipolarBuffers = 11;
 using EpipolarSizes = std::array<VkDeviceSize, kEpipolarBuffers>;
 
 // Bytes of each; all zero with technique = brute-force.
@@ -73,7 +73,7 @@ class Epipolar {
   std::array<gpu::Pipeline, 2> shadow_tree_;     // by MinMaxFormat
   std::array<PerMode, 2> march_samples_;         // without and with tree
   gpu::Pipeline correct_pixels_;
-  std::array<std::array<gpu::Pipeline, 2>, 2> unwarp_;  // by Extinction, and whether breaks are listed
+  std::array<std::array<gpu::Pipeline, 2>, 2> unwarp_, unwarp_pixels_;  // by Extinction, and whether breaks are listed
 };
 
 }  // namespace tyndall

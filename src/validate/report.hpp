@@ -16,7 +16,7 @@ struct Origin {
 
 // Tables and plots of everything.
 [[nodiscard]] std::string to_html(const Study& study, const Origin& origin);
-// The tables that matter most: docs/accuracy.md.
+// The tables that matter most: docs/generated/accuracy.md.
 [[nodiscard]] std::string to_markdown(const Study& study, const Origin& origin);
 // {"command", "version", "device", "rays", "samples", "seed", "orders", "models": [{"name", "orders",
 // "groups":

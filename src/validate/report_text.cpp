@@ -69,7 +69,7 @@ std::string to_json(const Study& study, const Origin& origin) {
 std::string to_markdown(const Study& study, const Origin& origin) {
   std::string out = concat({"# How right the models are\n\nMade by\n\n    ", origin.command,
                             "\n\nwith Tyndall ", origin.version, " on ", origin.device,
-                            ", against the path tracer of [reference.md](reference.md). An error is that of "
+                            ", against the path tracer of [reference.md](../reference.md). An error is that of "
                             "a channel, relative to the "
                             "largest\nchannel of the reference on the same ray; `noise` is the reference's "
                             "own mean standard error in the "

@@ -191,6 +191,27 @@ TEST_F(CliSky, TheGroundIsThatOfTheReference) {
   }
 }
 
+TEST_F(CliSky, TheDefaultIsThatOfTheReferenceInAllOrders) {
+  // Rows at 15, 45, 75 and 105 degrees from the zenith; small tables, whose own error is below the tolerance.
+  const std::vector<std::string> tables = {"--set", "tables.size=16,64,32,8"};
+  for (const double elevation : {35.0, -2.0}) {
+    const std::string sun = config::number_text(90.0 - elevation);
+    std::vector<std::string> arguments = {"--size", "4x6", "--sun-elevation-deg", config::number_text(elevation),
+                                          "--sun-azimuth-deg", "45", "--altitude", "2000", "--disc", "false",
+                                          "--set", "sun.irradiance=2"};
+    arguments.insert(arguments.end(), tables.begin(), tables.end());
+    const image::File file = make(arguments);
+    for (const auto& [x, y] : {std::pair(0U, 0U), std::pair(1U, 1U), std::pair(2U, 2U), std::pair(3U, 3U)}) {
+      const std::string ray =
+          "2000," + config::number_text(15.0 + 30.0 * y) + "," + sun + "," + config::number_text(90.0 * x);
+      const std::array<double, 3> truth = probe(ray, {"--model", "reference", "--samples", "60000"});
+      const double brightest = *std::max_element(truth.begin(), truth.end());
+      for (std::size_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(file.image.pixel(x, y)[c], truth[c], 0.03 * brightest) << x << ' ' << y << ' ' << elevation;
+    }
+  }
+}
+
 TEST_F(CliSky, TheSunByPlaceAndTime) {
   const image::File file = make(
       {"--size", "360x180", "--at", "39.742476,-105.1786", "--time", "2003-10-17T12:30:30-07:00", "--json"});

@@ -1,0 +1,108 @@
+// From slices to the picture: a place between four samples, two on each of two slices, weighted by nearness in
+// the picture and in depth (Yusov 2013, section 1.7). What is interpolated is the source and the optical depth
+// per metre; the place's own depth makes light of them, so that a sample of another depth is a fair substitute
+// where there is none of its own. Include after declaring medium, frame, epipolar, slices, samples.
+#ifndef TYNDALL_UNWARP_GLSL
+#define TYNDALL_UNWARP_GLSL
+
+#include "lib/optical_depth.glsl"
+#include "epipolar/ray_end.glsl"
+#include "epipolar/slices.glsl"
+
+layout(constant_id = 0) const uint kExtinction = 0u;  // 0 epipolar, 1 per pixel
+layout(constant_id = 1) const bool kBreaks = false;   // list the pixels that no sample fits
+
+// Below this sum of weights no sample is near in depth; the weights then still choose the nearest.
+const float kLeastWeight = 1e-2;
+
+struct Blend {
+  float weight;
+  vec3 source;
+  vec3 log_density;
+};
+
+// The four samples around a place: two on each of two slices, and how near each is in depth.
+struct Around {
+  uint lower;  // slice
+  uvec2 first;  // sample on each of the two
+  vec4 origin_lower;  // entry and axis of the two
+  vec4 origin_upper;
+  vec4 nearness;
+  vec3 source[4];
+  vec3 log_density[4];
+};
+
+float depth_nearness(float sample_m, float depth_m) {
+  float tolerated = epipolar.threshold * max(max(sample_m, depth_m), 1.0);
+  float nearness = tolerated / max(abs(sample_m - depth_m), tolerated);
+  nearness *= nearness;
+  return nearness * nearness;
+}
+
+float place_on_slice(vec4 origin, vec2 position) { return dot(position - origin.xy, origin.zw); }
+
+Around around(vec2 position, float depth_m) {
+  Around a;
+  uint last = epipolar.slices - 1u;
+  a.lower = uint(slice_coordinate(position));
+  uint ids[2] = uint[2](a.lower, a.lower + 1u);
+  for (int i = 0; i < 2; ++i) {
+    ids[i] = ids[i] <= last ? ids[i] : epipolar.closed != 0u ? ids[i] - last - 1u : last;
+    EpipolarSlice slice = slices[ids[i]];
+    vec4 origin = vec4(slice.entry_x, slice.entry_y, slice.axis_x, slice.axis_y);
+    float place = clamp(place_on_slice(origin, position), 0.0, float(slice.last));
+    uint first = min(uint(place), slice.last - 1u);
+    if (i == 0) a.origin_lower = origin;
+    else a.origin_upper = origin;
+    a.first[i] = first;
+    for (int k = 0; k < 2; ++k) {
+      Sample s = unpack_sample(samples[ids[i] * epipolar.samples + first + uint(k)]);
+      a.source[2 * i + k] = s.source;
+      a.log_density[2 * i + k] = s.log_density;
+      a.nearness[2 * i + k] = depth_nearness(s.depth_m, depth_m);
+    }
+  }
+  return a;
+}
+
+// At a place that is as far away, and no farther than a pixel from that of around().
+Blend blend(Around a, vec2 position) {
+  float part = slice_coordinate(position) - float(a.lower);
+  // The last slice of all sides is next to the first.
+  float all = float(epipolar.slices);
+  part = part > 0.5 * all ? part - all : part < -0.5 * all ? part + all : part;
+  part = clamp(part, 0.0, 1.0);
+  vec2 along = clamp(vec2(place_on_slice(a.origin_lower, position) - float(a.first.x),
+                          place_on_slice(a.origin_upper, position) - float(a.first.y)), 0.0, 1.0);
+  vec4 bilinear = vec4((1.0 - part) * (1.0 - along.x), (1.0 - part) * along.x, part * (1.0 - along.y), part * along.y);
+  // The last term keeps the sum above zero, whatever the samples.
+  vec4 w = bilinear * a.nearness + 1e-9;
+  Blend b;
+  b.weight = w.x + w.y + w.z + w.w;
+  w /= b.weight;
+  b.source = w.x * a.source[0] + w.y * a.source[1] + w.z * a.source[2] + w.w * a.source[3];
+  b.log_density =
+      w.x * a.log_density[0] + w.y * a.log_density[1] + w.z * a.log_density[2] + w.w * a.log_density[3];
+  return b;
+}
+
+// The background seen through the air, from blended samples. `visible_m`: view-space depth of what was drawn.
+vec3 compose(Blend b, vec2 position, float depth_m, float visible_m, bool sky, vec3 background) {
+  vec3 tau;
+  if (kExtinction == 0u) {
+    tau = optical_depth_at(b.log_density, depth_m);
+  } else {
+    Ray ray = ray_to_depth(frame, position, visible_m, sky);
+    float start, end;
+    tau = vec3(0.0);
+    if (clip_to_air(medium, ray, start, end)) {
+      tau = optical_depth(medium, column_along(medium, ray.altitude, ray.cos_zenith, end));
+    }
+  }
+  vec3 through, lost;
+  attenuation(tau, through, lost);
+  vec3 color = b.source * lost * frame.sun_irradiance;
+  return frame.only == 0u ? color + background * through : color;
+}
+
+#endif
