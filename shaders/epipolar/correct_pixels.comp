@@ -19,9 +19,7 @@ layout(binding = 5) uniform sampler2D scene_color;
 layout(binding = 6) uniform sampler2D scene_depth;
 layout(binding = 7, OUTPUT_FORMAT) uniform writeonly image2D output_color;
 
-void main() {
-  uint at = gl_GlobalInvocationID.x;
-  if (at >= work.count) return;
+void put_pixel(uint at) {
   ivec2 pixel = ivec2(items[at] & 0xFFFFu, items[at] >> 16u);
   Ray ray = view_ray(frame, pixel, texelFetch(scene_depth, pixel, 0).r);
   float start, end;
@@ -34,4 +32,8 @@ void main() {
   // Seen against anything: green, as bright as a white surface under the sun.
   if (epipolar.show_depth_breaks != 0u) color = vec3(0.0, frame.sun_irradiance.g * 0.3, 0.0);
   imageStore(output_color, pixel, vec4(color, 1.0));
+}
+
+void main() {
+  for (uint at = gl_GlobalInvocationID.x; at < work.count; at += gl_NumWorkGroups.x * kMarchGroup) put_pixel(at);
 }

@@ -37,10 +37,7 @@ layout(push_constant) uniform Push {
 #include "epipolar/march_state.glsl"
 #include "epipolar/slices.glsl"
 
-void main() {
-  uint at = gl_GlobalInvocationID.x;
-  bool first_group = gl_WorkGroupID.y == 0u;
-  if (at >= work.count || (processing != kCascadesAside && !first_group)) return;
+void march_item(uint at) {
   bool pixels = processing == kPixels;
   uint item = items[at];
   ivec2 pixel = ivec2(item & 0xFFFFu, item >> 16u);
@@ -102,9 +99,16 @@ void main() {
       samples[sample_at] = pack_sample(s);
     }
   }
+  bool counts = processing == kAllCascades || (processing == kOneCascade && turn == 0u) ||
+                (processing == kCascadesAside && gl_WorkGroupID.y == 0u);
   count(kPixelsCorrected, pixels ? 1u : 0u);
-  count(kSamplesMarched, processing == kAllCascades || (processing == kOneCascade && turn == 0u) ||
-                                 (processing == kCascadesAside && first_group) ? 1u : 0u);
+  count(kSamplesMarched, counts ? 1u : 0u);
+}
+
+void main() {
+  // The list of samples has groups for every cascade aside; other turns need only one of them.
+  uint items_here = processing == kCascadesAside || gl_WorkGroupID.y == 0u ? work.count : 0u;
+  for (uint at = gl_GlobalInvocationID.x; at < items_here; at += gl_NumWorkGroups.x * kMarchGroup) march_item(at);
   count(kMarchSteps, steps_done);
   count(kTreeNodes, nodes_visited);
   count(kShadowFetches, reads_done);

@@ -122,7 +122,7 @@ void main() {
       total += uint(bitCount(marched[word]));
     }
     list_start = atomicAdd(march.count, total);
-    atomicMax(march.groups_x, (list_start + total + kMarchGroup - 1u) / kMarchGroup);
+    atomicMax(march.groups_x, min((list_start + total + kMarchGroup - 1u) / kMarchGroup, kMostGroups));
   }
   barrier();
   for (uint i = thread; i <= slice.last; i += 128u) {

@@ -15,7 +15,7 @@ layout(std430, binding = 2) readonly buffer row_block { ShadowRow rows[]; };
 layout(std430, binding = 3) writeonly buffer tree_block { uint tree[]; };
 layout(binding = 4) uniform sampler2DArray shadow_depths;
 
-layout(push_constant) uniform Push { uint first_row; };
+layout(std430, binding = 5) readonly buffer work_block { WorkList work; uint items[]; };  // row << 8 | block
 
 #include "epipolar/shadow_tree.glsl"
 
@@ -64,16 +64,11 @@ void store_node(uint at, vec2 n) {
 
 vec2 both(vec2 a, vec2 b) { return vec2(min(a.x, b.x), max(a.y, b.y)); }
 
-void main() {
-  uint block = gl_WorkGroupID.x;
-  uint id = first_row + gl_WorkGroupID.z * epipolar.slices + gl_WorkGroupID.y;
+void build_block(uint id, uint block) {
   ShadowRow row = rows[id];
   uint cascade = epipolar.first_cascade + id / epipolar.slices;
   uint thread = gl_LocalInvocationID.x;
-  uint blocks = epipolar.tree_cells / kTreeBlock;
-  uint base = (id * blocks + block) * kTreeNodes16;
-  bool used = int(block * kTreeBlock) < row.count;
-  if (!used) return;
+  uint base = (id * (epipolar.tree_cells / kTreeBlock) + block) * kTreeNodes16;
 
   uint first = thread * kCells;
   // Behind the row's end nothing is shadowed.
@@ -106,5 +101,12 @@ void main() {
     vec2 n = thread_nodes[index * span];
     for (uint k = 1u; k < span; ++k) n = both(n, thread_nodes[index * span + k]);
     store_node(base + node_index(index << level, level), n);
+  }
+}
+
+void main() {
+  for (uint at = gl_WorkGroupID.x; at < work.count; at += gl_NumWorkGroups.x) {
+    build_block(items[at] >> 8u, items[at] & 0xFFu);
+    barrier();
   }
 }

@@ -1,4 +1,5 @@
-// The line of each slice in each marched cascade's map (Yusov 2013, section 1.4). All rays of a slice lie in one
+// The line of each slice in each marched cascade's map, and which parts of its tree are to be built (Yusov 2013,
+// section 1.4). All rays of a slice lie in one
 // plane with the direction to the sun, which the map shows as a line through the camera.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -13,6 +14,7 @@ layout(std430, binding = 0) readonly buffer frame_block { FrameConstants frame; 
 layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants epipolar; };
 layout(std430, binding = 2) readonly buffer slice_block { EpipolarSlice slices[]; };
 layout(std430, binding = 3) writeonly buffer row_block { ShadowRow rows[]; };
+layout(std430, binding = 4) buffer tree_list_block { WorkList trees; uint tree_list[]; };
 
 #include "epipolar/slices.glsl"
 #include "frame/view_ray.glsl"
@@ -57,5 +59,11 @@ void main() {
   row.first = int(clamp(floor(first), 0.0, 1e9));
   row.extent = int(clamp(ceil(last) - floor(first), 0.0, 1e6));
   row.count = min(row.extent, int(epipolar.tree_cells));
-  rows[gl_GlobalInvocationID.y * epipolar.slices + id] = row;
+  uint row_id = gl_GlobalInvocationID.y * epipolar.slices + id;
+  rows[row_id] = row;
+  // The blocks of the tree that have cells; each is a group.
+  uint blocks = (uint(row.count) + kTreeBlock - 1u) / kTreeBlock;
+  uint at = atomicAdd(trees.count, blocks);
+  atomicMax(trees.groups_x, min(at + blocks, kMostGroups));
+  for (uint i = 0u; i < blocks; ++i) tree_list[at + i] = row_id << 8u | i;
 }

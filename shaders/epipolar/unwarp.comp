@@ -53,7 +53,7 @@ void main() {
   if (!one_depth || (kBreaks && blend(a, middle).weight < kLeastWeight)) {
     uint at = atomicAdd(broken.count, 1u);
     broken_list[at] = uint(corner.y) << 16u | uint(corner.x);
-    atomicMax(broken.groups_x, (4u * at + 4u + kMarchGroup - 1u) / kMarchGroup);
+    atomicMax(broken.groups_x, min((4u * at + 4u + kMarchGroup - 1u) / kMarchGroup, kMostGroups));
     return;
   }
   for (int k = 0; k < 4; ++k) {

@@ -22,11 +22,8 @@ layout(std430, binding = 9) buffer break_list_block { WorkList breaks; uint brea
 
 #include "epipolar/unwarp.glsl"
 
-void main() {
-  uint at = gl_GlobalInvocationID.x / 4u;
-  uint k = gl_GlobalInvocationID.x % 4u;
-  if (at >= work.count) return;
-  ivec2 pixel = ivec2((items[at] & 0xFFFFu) + (k & 1u), (items[at] >> 16u) + (k >> 1u));
+void unwarp_pixel(uint block, uint k) {
+  ivec2 pixel = ivec2((block & 0xFFFFu) + (k & 1u), (block >> 16u) + (k >> 1u));
   if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height)) return;
   vec2 position = vec2(pixel) + 0.5;
   float depth = texelFetch(scene_depth, pixel, 0).r;
@@ -39,6 +36,11 @@ void main() {
   if (kBreaks && b.weight < kLeastWeight) {
     uint slot = atomicAdd(breaks.count, 1u);
     break_list[slot] = uint(pixel.y) << 16u | uint(pixel.x);
-    atomicMax(breaks.groups_x, slot / kMarchGroup + 1u);
+    atomicMax(breaks.groups_x, min(slot / kMarchGroup + 1u, kMostGroups));
   }
+}
+
+void main() {
+  uint all = 4u * work.count;
+  for (uint i = gl_GlobalInvocationID.x; i < all; i += gl_NumWorkGroups.x * kMarchGroup) unwarp_pixel(items[i / 4u], i % 4u);
 }

@@ -70,8 +70,10 @@ const uint kFinish = 3u;        // makes light of what the cascades have left
 const uint kPixels = 4u;        // pixels, as the first
 
 const uint kMarchGroup = 64u;  // invocations
+// Groups of an indirect dispatch, at most: what every device takes. The shaders loop over longer lists.
+const uint kMostGroups = 65535u;
 
-// What is counted and dispatched indirectly: arguments of a dispatch, then the number of items.
+// The head of a list that is worked through indirectly: arguments of a dispatch, then the number of items.
 struct WorkList {
   uint groups_x;
   uint groups_y;

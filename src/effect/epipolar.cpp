@@ -28,6 +28,7 @@ constexpr BufferName kNames[kEpipolarBuffers] = {{"slices", "slice_block"},
                                                  {"broken_blocks", "broken_list_block"},
                                                  {"depth_breaks", "break_list_block"},
                                                  {"corrected_pixels", "corrected_block"},
+                                                 {"tree_blocks", "tree_list_block"},
                                                  {"shadow_tree", "tree_block"},
                                                  {"march_states", "state_block"}};
 
@@ -62,6 +63,7 @@ EpipolarSizes epipolar_sizes(const EffectDesc& desc, const Params& params) {
   out[index(EpipolarBuffer::corrected)] = lists_breaks(params) ? pixels * 16 : kLeastBytes;
   const VkDeviceSize number = params.epipolar.min_max_format == MinMaxFormat::float32 ? 8 : 4;
   const VkDeviceSize row_bytes = tree_cells(desc) / shared::kTreeBlock * shared::kTreeNodes16 * number;
+  out[index(EpipolarBuffer::tree_list)] = sizeof(shared::WorkList) + rows * (tree_cells(desc) / shared::kTreeBlock) * 4;
   out[index(EpipolarBuffer::tree)] = params.epipolar.min_max_tree ? rows * row_bytes : kLeastBytes;
   const CascadeProcessing processing = params.shadows.cascade_processing;
   const VkDeviceSize turns = processing == CascadeProcessing::multi_pass_instanced ? desc.max_cascades : 1;
@@ -308,7 +310,7 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
   shared::WorkList empty = {0, instanced ? marched : 1, 1, 0};
   device_->vk.CmdUpdateBuffer(cmd, buffers_[index(EpipolarBuffer::march_list)].buffer.get(), 0, sizeof empty, &empty);
   empty.groups_y = 1;
-  for (const EpipolarBuffer list : {EpipolarBuffer::broken_list, EpipolarBuffer::break_list}) {
+  for (const EpipolarBuffer list : {EpipolarBuffer::broken_list, EpipolarBuffer::break_list, EpipolarBuffer::tree_list}) {
     device_->vk.CmdUpdateBuffer(cmd, buffers_[index(list)].buffer.get(), 0, sizeof empty, &empty);
   }
   gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
@@ -322,24 +324,21 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
   TYNDALL_TRY(run(slice_samples_, {p.samples, p.slices}));
   const gpu::Pipeline& refine = refine_samples_[static_cast<std::size_t>(p.refinement)];
   TYNDALL_TRY(run(refine, {p.slices * refine.local_size[0]}));
-  lists_ready();
-  const gpu::Pipeline& tree_pipeline = shadow_tree_[static_cast<std::size_t>(p.min_max_format)];
-  const std::uint32_t block_threads = tree_cells(desc_) / shared::kTreeBlock * tree_pipeline.local_size[0];
   if (walks && marched > 0) TYNDALL_TRY(run(slice_directions_, {p.slices, marched}));
+  lists_ready();
+  if (trees) {
+    TYNDALL_TRY(run_list(shadow_tree_[static_cast<std::size_t>(p.min_max_format)], EpipolarBuffer::tree_list));
+  }
   const gpu::Pipeline& march = march_samples_[trees ? 1 : 0][mode];
   struct MarchPush {
     std::uint32_t processing, turn;
   };
   if (processing == CascadeProcessing::multi_pass) {
     for (std::uint32_t turn = 0; turn < marched; ++turn) {
-      const std::uint32_t first_row = turn * p.slices;
-      if (trees) TYNDALL_TRY(run(tree_pipeline, {block_threads, p.slices, 1}, &first_row));
       const MarchPush push = {shared::kOneCascade, turn};
       TYNDALL_TRY(run_list(march, EpipolarBuffer::march_list, &push));
     }
   } else {
-    const std::uint32_t first_row = 0;
-    if (trees) TYNDALL_TRY(run(tree_pipeline, {block_threads, p.slices, marched}, &first_row));
     const MarchPush push = {static_cast<std::uint32_t>(processing), 0};
     TYNDALL_TRY(run_list(march, EpipolarBuffer::march_list, &push));
   }

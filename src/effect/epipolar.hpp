@@ -19,8 +19,8 @@ namespace tyndall {
 
 // Buffers of epipolar sampling, in the order of the plan in epipolar.cpp.
 enum class EpipolarBuffer : std::uint32_t { slices, rows, samples, coarse, sources, march_list, broken_list,
-                                           break_list, corrected, tree, states };
-constexpr std::uint32_t kEpipolarBuffers = 11;
+                                           break_list, corrected, tree_list, tree, states };
+constexpr std::uint32_t kEpipolarBuffers = 12;
 using EpipolarSizes = std::array<VkDeviceSize, kEpipolarBuffers>;
 
 // Bytes of each; all zero with technique = brute-force.
