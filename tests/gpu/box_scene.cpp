@@ -14,13 +14,13 @@ constexpr double kRad = std::numbers::pi / 180.0;
 constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr double kPlanetRadius_m = 6.36e6;  // as planet.radius_m
 
-double hit_box(const Box& box, const glm::dvec3& from, const glm::dvec3& direction) {
+double hit_box(const glm::dvec3& low, const glm::dvec3& high, const glm::dvec3& from, const glm::dvec3& direction) {
   double enter = -kNone;
   double leave = kNone;
   for (int i = 0; i < 3; ++i) {
     const double step = std::abs(direction[i]) > 1e-12 ? direction[i] : 1e-12;
-    const double a = (box.low[i] - from[i]) / step;
-    const double b = (box.high[i] - from[i]) / step;
+    const double a = (low[i] - from[i]) / step;
+    const double b = (high[i] - from[i]) / step;
     enter = std::max(enter, std::min(a, b));
     leave = std::min(leave, std::max(a, b));
   }
@@ -36,10 +36,25 @@ double hit_planet(const glm::dvec3& from, const glm::dvec3& direction) {
   return std::max(c / (-b + std::sqrt(square)), 0.0);
 }
 
-double first_hit(const BoxScene& scene, const glm::dvec3& from, const glm::dvec3& direction) {
-  double nearest = scene.ground ? hit_planet(from, direction) : kNone;
-  if (scene.buildings) {
-    for (const Box& box : buildings()) nearest = std::min(nearest, hit_box(box, from, direction));
+// Between the camera, at the origin, and 30 km to the north, with gaps that let shafts through, low and high.
+struct Box {
+  glm::dvec3 low, high;
+};
+constexpr Box kBuildings[] = {
+    {{-2500, 0, -9000}, {-1700, 2600, -8200}},   {{-900, 0, -9500}, {-300, 3400, -8900}},
+    {{600, 0, -9200}, {900, 2200, -8800}},       {{1500, 0, -7500}, {2600, 1700, -7000}},
+    {{-5200, 0, -14000}, {-4000, 4200, -12500}}, {{300, 0, -16000}, {1900, 4800, -15500}},
+    {{3500, 0, -15000}, {4200, 3900, -14000}},   {{-700, 0, -4200}, {-350, 1500, -3900}},
+    {{6000, 0, -26000}, {9500, 5000, -24000}},   {{-12000, 0, -29000}, {-7000, 5500, -27000}},
+    {{900, 1500, -5200}, {1500, 1800, -4800}},    // hovers
+    {{-4000, 0, 3000}, {4000, 2500, 4000}},       // behind the camera
+};
+
+double first_hit(const BoxScene& scene, bool ground, const glm::dvec3& from, const glm::dvec3& direction) {
+  double nearest = ground ? hit_planet(from, direction) : kNone;
+  if (!scene.buildings) return nearest;
+  for (const Box& box : kBuildings) {
+    nearest = std::min(nearest, scene.building_size * hit_box(box.low, box.high, from / scene.building_size, direction));
   }
   return nearest;
 }
@@ -69,19 +84,6 @@ float shown(double linear) {
 
 }  // namespace
 
-const std::vector<Box>& buildings() {
-  // Between the camera, at the origin, and 30 km to the north, with gaps that let shafts through, low and high.
-  static const std::vector<Box> all = {
-      {{-2500, 0, -9000}, {-1700, 2600, -8200}}, {{-900, 0, -9500}, {-300, 3400, -8900}},
-      {{600, 0, -9200}, {900, 2200, -8800}},     {{1500, 0, -7500}, {2600, 1700, -7000}},
-      {{-5200, 0, -14000}, {-4000, 4200, -12500}}, {{300, 0, -16000}, {1900, 4800, -15500}},
-      {{3500, 0, -15000}, {4200, 3900, -14000}}, {{-700, 0, -4200}, {-350, 1500, -3900}},
-      {{6000, 0, -26000}, {9500, 5000, -24000}}, {{-12000, 0, -29000}, {-7000, 5500, -27000}},
-      {{900, 1500, -5200}, {1500, 1800, -4800}},  // hovers
-      {{-4000, 0, 3000}, {4000, 2500, 4000}}};    // behind the camera
-  return all;
-}
-
 TestFrame frame_of(const BoxScene& scene) {
   TestFrame frame;
   frame.extent = scene.extent;
@@ -95,7 +97,7 @@ TestFrame frame_of(const BoxScene& scene) {
   frame.irradiance = Vec3(10.0F);
   frame.background = {0.02F, 0.03F, 0.05F};
   frame.distance_m = [scene, view = frame.view](std::uint32_t x, std::uint32_t y) {
-    const double t = first_hit(scene, view.position, view.ray(x, y, scene.extent));
+    const double t = first_hit(scene, scene.ground, view.position, view.ray(x, y, scene.extent));
     return t < kNone ? std::max(t, 2.0) : 0.0;
   };
   std::vector<Map> maps;
@@ -132,7 +134,7 @@ TestFrame frame_of(const BoxScene& scene) {
     const Map& map = maps[c];
     const glm::dvec3 from = map.middle + map.right * ((2.0 * u - 1.0) * map.half_m) +
                             map.up * ((2.0 * v - 1.0) * map.half_m) + map.to_sun * map.half_depth_m;
-    const double t = first_hit(scene, from, -map.to_sun);
+    const double t = first_hit(scene, scene.ground && scene.ground_casts, from, -map.to_sun);
     const double depth = t < kNone ? std::min(t / (2.0 * map.half_depth_m), 1.0) : 1.0;
     return static_cast<float>(scene.shadow_depth_reversed ? 1.0 - depth : depth);
   };

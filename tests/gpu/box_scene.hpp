@@ -9,10 +9,6 @@
 
 namespace tyndall {
 
-struct Box {
-  glm::dvec3 low, high;
-};
-
 struct BoxScene {
   std::string name;
   VkExtent2D extent = {160, 90};
@@ -25,7 +21,9 @@ struct BoxScene {
   bool sun_behind = false;  // opposite to that place
   double sun_elevation_deg = 9.0, sun_azimuth_deg = 12.0;
   bool buildings = true;
+  double building_size = 1.0;  // times theirs, distances included
   bool ground = true;  // drawn; the planet is there in any case
+  bool ground_casts = true;
   std::uint32_t cascades = 3, first_marched = 0;
   std::uint32_t shadow_resolution = 256;
   double far_m = 40000.0;
@@ -33,7 +31,6 @@ struct BoxScene {
   bool shadow_depth_reversed = false;
 };
 
-[[nodiscard]] const std::vector<Box>& buildings();
 [[nodiscard]] TestFrame frame_of(const BoxScene& scene);
 
 // How far a picture is from the reference, as `tyndall compare` says it of two PNGs: the exposure is that at which
