@@ -71,6 +71,20 @@ Result<std::vector<glm::dvec3>> render(gpu::Host& host, Effect& effect, const Te
 // The same with an effect made for this frame alone.
 Result<std::vector<glm::dvec3>> render(gpu::Host& host, const Params& params, const TestFrame& frame,
                                        OutputFormat format = OutputFormat::rgba32f);
+// The same with an effect that is made once for all frames of a convention and format: to create one takes seconds.
+class EffectKeeper {
+ public:
+  Result<std::vector<glm::dvec3>> render(gpu::Host& host, const Params& params, const TestFrame& frame,
+                                         OutputFormat format = OutputFormat::rgba32f);
+  void clear() { kept_.clear(); }  // before the host goes
+
+ private:
+  struct Kept {
+    EffectDesc desc;
+    Effect effect;
+  };
+  std::vector<Kept> kept_;
+};
 [[nodiscard]] EffectDesc desc_for(const TestFrame& frame, OutputFormat format = OutputFormat::rgba32f);
 
 // scattering.scale 1, every pixel marched by itself, and enough integration_steps for 0.1 % where nothing shadows.
