@@ -100,6 +100,7 @@ TEST_F(EffectContract, MemoryIsKnownBeforehand) {
   // All that memory depends on differs between the three.
   EffectDesc descs[3];
   Params params[3];
+  for (Params& p : params) p.tables.size = {8, 16, 16, 4};
   descs[0].max_extent = {333, 77};
   descs[0].frames_in_flight = 1;
   params[0].epipolar.correct_depth_breaks = true;
