@@ -35,11 +35,15 @@ vec2 border_place(float along) {
   vec2 high = border_high();
   vec2 size = high - low;
   vec2 place = low;
+  // The side that holds it, or for want of one by rounding, ends closest before it.
+  float least_beyond = 1e30;
   for (int side = 0; side < 4; ++side) {
     float start = epipolar.side_start[side];
     float x = along - start;
     float length_px = side == 0 || side == 2 ? size.y : size.x;
-    if (start >= 0.0 && x >= 0.0) {
+    float beyond = max(x - length_px, 0.0);
+    if (start >= 0.0 && x >= 0.0 && beyond <= least_beyond) {
+      least_beyond = beyond;
       x = min(x, length_px);
       place = side == 0   ? vec2(low.x, low.y + x)
               : side == 1 ? vec2(low.x + x, high.y)

@@ -203,6 +203,13 @@ TEST_F(CliScenes, BenchSaysWhatIsPromised) {
   EXPECT_GT(report["effect_ms"].get<double>(), 0.0);
   EXPECT_GT(report["floor_ms"].get<double>(), 0.0);
   EXPECT_GE(report["frame_ms"].get<double>(), report["effect_ms"].get<double>());
+  for (const char* const key : {"samples_marched", "march_steps", "tree_nodes_visited", "shadow_map_fetches"}) {
+    EXPECT_GT(report["counters"][key].get<std::uint64_t>(), 0U) << key;
+  }
+  EXPECT_EQ(report["counters"]["pixels_corrected"], 0);
+  std::uint64_t bytes = 0;
+  for (const auto& [name, size] : report["memory_bytes"]["effect_resources"].items()) bytes += size.get<std::uint64_t>();
+  EXPECT_EQ(report["memory_bytes"]["effect_persistent"], bytes);
 }
 
 }  // namespace

@@ -23,13 +23,21 @@ glm::dvec3 sun_at(double elevation_deg, double azimuth_deg = 30.0) {
 
 class EffectAir : public GpuTest {
  protected:
+  void TearDown() override {
+    effects_.clear();
+    GpuTest::TearDown();
+  }
+
   std::vector<glm::dvec3> draw(const Params& params, const TestFrame& frame,
                                OutputFormat format = OutputFormat::rgba32f) {
-    Result<std::vector<glm::dvec3>> image = render(host(), params, frame, format);
+    Result<std::vector<glm::dvec3>> image = effects_.render(host(), params, frame, format);
     EXPECT_OK(image);
     const std::size_t pixels = static_cast<std::size_t>(frame.extent.width) * frame.extent.height;
     return image.ok() ? std::move(image).value() : std::vector<glm::dvec3>(pixels);
   }
+
+ private:
+  EffectKeeper effects_;
 };
 
 struct Place {

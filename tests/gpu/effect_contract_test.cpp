@@ -6,6 +6,8 @@
 #include <cstring>
 #include <limits>
 #include <new>
+#include <set>
+#include <string>
 
 #include "effect_frame.hpp"
 #include "gpu/pipeline.hpp"
@@ -48,6 +50,14 @@ TestFrame small_frame() {
   return frame;
 }
 
+constexpr Technique kTechniques[] = {Technique::epipolar, Technique::brute_force};
+
+Params with_technique(Technique technique) {
+  Params params;
+  params.scattering.technique = technique;
+  return params;
+}
+
 class EffectContract : public GpuTest {
  protected:
   // The two light tables as floats, read the way an engine would.
@@ -87,22 +97,55 @@ class EffectContract : public GpuTest {
 };
 
 TEST_F(EffectContract, MemoryIsKnownBeforehand) {
-  for (const std::uint32_t frames : {1U, 3U, 8U}) {
-    for (const OutputFormat format : {OutputFormat::rgba16f, OutputFormat::rgba32f}) {
-      EffectDesc desc;
-      desc.max_extent = {333, 77};
-      desc.frames_in_flight = frames;
-      desc.output_format = format;
-      const Result<MemoryUsage> asked = query_memory(info(), desc);
-      ASSERT_OK(asked);
-      const Result<Effect> effect = Effect::create(info(), desc, {});
-      ASSERT_OK(effect);
-      const MemoryUsage taken = effect.value().memory();
-      EXPECT_GT(taken.persistent, 0U);
-      EXPECT_GT(taken.host, 0U);
-      EXPECT_EQ(asked.value().persistent, taken.persistent);
-      EXPECT_EQ(asked.value().transient, taken.transient);
-      EXPECT_EQ(asked.value().host, taken.host);
+  // All that memory depends on differs between the three.
+  EffectDesc descs[3];
+  Params params[3];
+  for (Params& p : params) p.tables.size = {8, 16, 16, 4};
+  descs[0].max_extent = {333, 77};
+  descs[0].frames_in_flight = 1;
+  params[0].epipolar.correct_depth_breaks = true;
+  params[0].shadows.cascade_processing = CascadeProcessing::multi_pass;
+  descs[1] = descs[0];
+  descs[1].frames_in_flight = 3;
+  descs[1].output_format = OutputFormat::rgba32f;
+  descs[1].counters = true;
+  params[1].scattering.technique = Technique::brute_force;
+  descs[2] = descs[1];
+  descs[2].frames_in_flight = 8;
+  descs[2].max_cascades = 7;
+  descs[2].max_shadow_resolution = 700;
+  params[2].epipolar.slices = 77;
+  params[2].epipolar.samples = 33;
+  params[2].epipolar.min_max_format = MinMaxFormat::float32;
+  params[2].shadows.cascade_processing = CascadeProcessing::multi_pass_instanced;
+  for (std::size_t i = 0; i < std::size(descs); ++i) {
+    const Result<MemoryUsage> asked = query_memory(info(), descs[i], params[i]);
+    ASSERT_OK(asked);
+    Result<Effect> effect = Effect::create(info(), descs[i], params[i]);
+    ASSERT_OK(effect);
+    const MemoryUsage taken = effect.value().memory();
+    EXPECT_GT(taken.persistent, 0U);
+    EXPECT_GT(taken.host, 0U);
+    EXPECT_EQ(asked.value().persistent, taken.persistent) << i;
+    EXPECT_EQ(asked.value().transient, taken.transient) << i;
+    EXPECT_EQ(asked.value().host, taken.host) << i;
+    VkDeviceSize sum = 0;
+    std::set<std::string> names;
+    for (const ResourceMemory& resource : effect.value().resources()) {
+      EXPECT_TRUE(names.insert(resource.name).second) << resource.name;
+      EXPECT_GT(resource.bytes, 0U) << resource.name;
+      sum += resource.bytes;
+    }
+    EXPECT_EQ(sum, taken.persistent) << i;
+    EXPECT_EQ(names.contains("shadow_tree"), params[i].scattering.technique == Technique::epipolar);
+    EXPECT_TRUE(names.contains("single_rayleigh"));
+    // The same is known of what set_params() will ask for.
+    for (const Params& other : params) {
+      const Result<MemoryUsage> expected = query_memory(info(), descs[i], other);
+      ASSERT_OK(expected);
+      ASSERT_OK(effect.value().set_params(other));
+      EXPECT_EQ(effect.value().memory().persistent, expected.value().persistent) << i;
+      EXPECT_EQ(effect.value().memory().host, expected.value().host) << i;
     }
   }
 }
@@ -121,6 +164,10 @@ TEST_F(EffectContract, DescriptionsOutOfRangeAreRefused) {
   EXPECT_TRUE(refused([](EffectDesc& d, DeviceInfo&) { d.max_extent = {16385, 1}; }));
   EXPECT_TRUE(refused([](EffectDesc& d, DeviceInfo&) { d.frames_in_flight = 0; }));
   EXPECT_TRUE(refused([](EffectDesc& d, DeviceInfo&) { d.frames_in_flight = 9; }));
+  EXPECT_TRUE(refused([](EffectDesc& d, DeviceInfo&) { d.max_cascades = 0; }));
+  EXPECT_TRUE(refused([](EffectDesc& d, DeviceInfo&) { d.max_cascades = kMaxCascades + 1; }));
+  EXPECT_TRUE(refused([](EffectDesc& d, DeviceInfo&) { d.max_shadow_resolution = 0; }));
+  EXPECT_TRUE(refused([](EffectDesc& d, DeviceInfo&) { d.max_shadow_resolution = 16385; }));
   EXPECT_TRUE(refused([](EffectDesc& d, DeviceInfo&) { d.sky_depth = 0.5F; }));
   EXPECT_TRUE(refused([](EffectDesc& d, DeviceInfo&) { d.sky_depth = kNaN; }));
   EXPECT_TRUE(refused([](EffectDesc&, DeviceInfo& i) { i.device = VK_NULL_HANDLE; }));
@@ -213,6 +260,33 @@ TEST_F(EffectContract, FramesThatCannotBeDrawnAreErrors) {
   EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.sun.angular_radius_rad = kNaN; }));
 }
 
+TEST_F(EffectContract, OnlyAsManyCascadesAreMarchedAsThereIsMemoryFor) {
+  const TestFrame frame = small_frame();  // has two
+  Result<FrameImages> images = FrameImages::create(host(), frame, OutputFormat::rgba32f);
+  ASSERT_OK(images);
+  EffectDesc desc = desc_for(frame);
+  desc.max_cascades = 1;
+  Result<Effect> effect = Effect::create(info(), desc, {});
+  ASSERT_OK(effect);
+  const auto drawn = [&](const Params& params, std::uint32_t first_marched) {
+    EXPECT_OK(effect.value().set_params(params));
+    FrameInputs inputs = images.value().inputs(frame);
+    inputs.first_marched_cascade = first_marched;
+    Result<void> outcome;
+    EXPECT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
+      outcome = effect.value().record(cmd, inputs);
+      return {};
+    }));
+    return outcome.ok();
+  };
+  EXPECT_FALSE(drawn({}, 0));
+  EXPECT_TRUE(drawn({}, 1));
+  EXPECT_TRUE(drawn(with_technique(Technique::brute_force), 0));
+  Params open;
+  open.scattering.light_shafts = false;
+  EXPECT_TRUE(drawn(open, 0));
+}
+
 TEST_F(EffectContract, RecordingTwiceGivesTheSameBytes) {
   const TestFrame frame = small_frame();
   Result<FrameImages> images = FrameImages::create(host(), frame, OutputFormat::rgba32f);
@@ -221,27 +295,32 @@ TEST_F(EffectContract, RecordingTwiceGivesTheSameBytes) {
   desc.timings = true;
   Result<Effect> effect = Effect::create(info(), desc, {});
   ASSERT_OK(effect);
-  std::vector<std::byte> first;
-  for (std::uint64_t i = 0; i < 5; ++i) {
-    FrameInputs inputs = images.value().inputs(frame);
-    inputs.frame_index = i;
-    ASSERT_OK(host().run([&](VkCommandBuffer cmd) { return effect.value().record(cmd, inputs); }));
-    Result<std::vector<std::byte>> bytes = images.value().output_bytes(host());
-    ASSERT_OK(bytes);
-    if (i == 0) first = bytes.value();
-    EXPECT_EQ(bytes.value(), first) << i;
-    const std::span<const PassTiming> timings = effect.value().timings(i);
-    ASSERT_FALSE(timings.empty());
-    for (const PassTiming& pass : timings) {
-      EXPECT_GT(pass.gpu_ms, 0.0) << pass.name;
-      EXPECT_LT(pass.gpu_ms, 60000.0) << pass.name;
+  for (const Technique technique : kTechniques) {
+    ASSERT_OK(effect.value().set_params(with_technique(technique)));
+    std::vector<std::byte> first;
+    for (std::uint64_t i = 0; i < 5; ++i) {
+      FrameInputs inputs = images.value().inputs(frame);
+      inputs.frame_index = i;
+      ASSERT_OK(host().run([&](VkCommandBuffer cmd) { return effect.value().record(cmd, inputs); }));
+      Result<std::vector<std::byte>> bytes = images.value().output_bytes(host());
+      ASSERT_OK(bytes);
+      if (i == 0) first = bytes.value();
+      EXPECT_EQ(bytes.value(), first) << i;
+      const std::span<const PassTiming> timings = effect.value().timings(i);
+      ASSERT_EQ(timings.size() > 1, technique == Technique::epipolar);
+      ASSERT_FALSE(timings.empty());
+      for (const PassTiming& pass : timings) {
+        EXPECT_GT(pass.gpu_ms, 0.0) << pass.name;
+        EXPECT_LT(pass.gpu_ms, 60000.0) << pass.name;
+      }
     }
   }
 }
 
 TEST_F(EffectContract, TwoEffectsOnOneDeviceDoNotKnowOfEachOther) {
   const TestFrame frame = small_frame();
-  const Params thin = precise_params();
+  Params thin = precise_params();
+  thin.scattering.technique = Technique::epipolar;
   Params thick = thin;
   thick.atmosphere.aerosol_density = 20.0F;
   const Result<std::vector<glm::dvec3>> clear_alone = render(host(), thin, frame);
@@ -333,6 +412,7 @@ TEST(EffectAllocation, RecordingAllocatesNothing) {
   ASSERT_OK(images);
   EffectDesc desc = desc_for(frame);
   desc.timings = true;
+  desc.counters = true;
   const gpu::Device& device = host.value()->device();
   DeviceInfo info;
   info.instance = device.instance;
@@ -343,7 +423,13 @@ TEST(EffectAllocation, RecordingAllocatesNothing) {
   Result<Effect> effect = Effect::create(info, desc, {});
   ASSERT_OK(effect);
   FrameInputs inputs = images.value().inputs(frame);
-  for (std::uint64_t i = 0; i < 4; ++i) {
+  for (std::uint64_t i = 0; i < 8; ++i) {
+    // Both techniques, and every pass of the first.
+    Params params = with_technique(i < 6 ? Technique::epipolar : Technique::brute_force);
+    params.shadows.cascade_processing = static_cast<CascadeProcessing>(i % 3);
+    params.epipolar.show_sampling = i >= 3;
+    params.epipolar.correct_depth_breaks = i >= 3;
+    ASSERT_OK(effect.value().set_params(params));
     inputs.frame_index = i;
     std::size_t during = 1;
     ASSERT_OK(host.value()->run([&](VkCommandBuffer cmd) -> Result<void> {

@@ -184,22 +184,49 @@ Result<std::vector<glm::dvec3>> render(gpu::Host& host, Effect& effect, const Te
   return images.output(host);
 }
 
-Result<std::vector<glm::dvec3>> render(gpu::Host& host, const Params& params, const TestFrame& frame,
-                                       OutputFormat format) {
+namespace {
+DeviceInfo info_of(const gpu::Host& host) {
   const gpu::Device& device = host.device();
   DeviceInfo info;
   info.instance = device.instance;
   info.physical_device = device.physical_device;
   info.device = device.device;
   info.get_instance_proc_addr = host.get_instance_proc_addr();
-  TYNDALL_ASSIGN(Effect effect, Effect::create(info, desc_for(frame, format), params));
+  return info;
+}
+}  // namespace
+
+Result<std::vector<glm::dvec3>> render(gpu::Host& host, const Params& params, const TestFrame& frame,
+                                       OutputFormat format) {
+  TYNDALL_ASSIGN(Effect effect, Effect::create(info_of(host), desc_for(frame, format), params));
   return render(host, effect, frame, format);
+}
+
+Result<std::vector<glm::dvec3>> EffectKeeper::render(gpu::Host& host, const Params& params, const TestFrame& frame,
+                                                     OutputFormat format) {
+  EffectDesc wanted = desc_for(frame, format);
+  wanted.max_extent = {128, 128};
+  wanted.max_cascades = kMaxCascades;
+  auto kept = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) {
+    return k.desc.output_format == wanted.output_format && k.desc.sky_depth == wanted.sky_depth &&
+           k.desc.shadow_depth_reversed == wanted.shadow_depth_reversed;
+  });
+  if (kept == kept_.end()) {
+    TYNDALL_ASSIGN(Effect effect, Effect::create(info_of(host), wanted, params));
+    kept_.push_back({wanted, std::move(effect)});
+    kept = kept_.end() - 1;
+  } else {
+    TYNDALL_TRY(kept->effect.set_params(params));
+  }
+  return tyndall::render(host, kept->effect, frame, format);
 }
 
 Params precise_params() {
   Params params;
   params.scattering.scale = 1.0F;
   params.scattering.integration_steps = 48;
+  // Every pixel's own ray, which is what these tests compute; epipolar_test.cpp compares the techniques.
+  params.scattering.technique = Technique::brute_force;
   // What the tables give is tested in tables_test.cpp; here they are not built.
   params.scattering.single = SingleScattering::integration;
   params.scattering.multiple = MultipleScattering::none;

@@ -71,9 +71,23 @@ Result<std::vector<glm::dvec3>> render(gpu::Host& host, Effect& effect, const Te
 // The same with an effect made for this frame alone.
 Result<std::vector<glm::dvec3>> render(gpu::Host& host, const Params& params, const TestFrame& frame,
                                        OutputFormat format = OutputFormat::rgba32f);
+// The same with an effect that is made once for all frames of a convention and format: to create one takes seconds.
+class EffectKeeper {
+ public:
+  Result<std::vector<glm::dvec3>> render(gpu::Host& host, const Params& params, const TestFrame& frame,
+                                         OutputFormat format = OutputFormat::rgba32f);
+  void clear() { kept_.clear(); }  // before the host goes
+
+ private:
+  struct Kept {
+    EffectDesc desc;
+    Effect effect;
+  };
+  std::vector<Kept> kept_;
+};
 [[nodiscard]] EffectDesc desc_for(const TestFrame& frame, OutputFormat format = OutputFormat::rgba32f);
 
-// scattering.scale 1 and enough integration_steps for 0.1 % where nothing shadows.
+// scattering.scale 1, every pixel marched by itself, and enough integration_steps for 0.1 % where nothing shadows.
 [[nodiscard]] Params precise_params();
 
 // In-scattered radiance / E0 between two distances of a ray, with the fine steps of the CPU model, and the

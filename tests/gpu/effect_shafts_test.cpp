@@ -113,8 +113,13 @@ Truth truth_of(const Params& params, const TestFrame& frame, const Setting& sett
 
 class EffectShafts : public GpuTest {
  protected:
+  void TearDown() override {
+    effects_.clear();
+    GpuTest::TearDown();
+  }
+
   std::vector<glm::dvec3> draw(const Params& params, const TestFrame& frame) {
-    Result<std::vector<glm::dvec3>> image = render(host(), params, frame);
+    Result<std::vector<glm::dvec3>> image = effects_.render(host(), params, frame);
     EXPECT_OK(image);
     const std::size_t pixels = static_cast<std::size_t>(frame.extent.width) * frame.extent.height;
     return image.ok() ? std::move(image).value() : std::vector<glm::dvec3>(pixels);
@@ -146,6 +151,9 @@ class EffectShafts : public GpuTest {
     }
     return out;
   }
+
+ private:
+  EffectKeeper effects_;
 };
 
 TEST_F(EffectShafts, AllLitIsAsWithoutShadows) {

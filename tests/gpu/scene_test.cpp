@@ -11,6 +11,7 @@
 
 #include "config/scene_file.hpp"
 #include "gpu_test.hpp"
+#include "image/metrics.hpp"
 #include "scene/scene.hpp"
 
 namespace tyndall::scene {
@@ -55,9 +56,9 @@ class GpuScene : public GpuTest {
     GpuTest::TearDown();
   }
 
-  std::unique_ptr<Scene> make(const Params& params, const SceneParams& scene_params) {
+  std::unique_ptr<Scene> make(const Params& params, const SceneParams& scene_params, VkExtent2D extent = kSmall) {
     SceneDesc desc;
-    desc.extent = kSmall;
+    desc.extent = extent;
     Result<std::unique_ptr<Scene>> scene = Scene::create(host(), desc, params, scene_params);
     EXPECT_OK(scene);
     return scene.ok() ? std::move(scene).value() : nullptr;
@@ -70,7 +71,7 @@ class GpuScene : public GpuTest {
     Result<image::Image> display = scene.display();
     EXPECT_OK(radiance);
     EXPECT_OK(display);
-    if (!radiance.ok() || !display.ok()) return image::Image(kSmall.width, kSmall.height);
+    if (!radiance.ok() || !display.ok()) return {};
     for (const float value : radiance.value().rgb) EXPECT_TRUE(std::isfinite(value) && value >= 0.0F);
     for (const float value : display.value().rgb) EXPECT_TRUE(value >= 0.0F && value <= 1.0F);
     return std::move(radiance).value();
@@ -106,6 +107,55 @@ TEST_F(GpuScene, ShippedScenesAreDrawn) {
     ++count;
   }
   EXPECT_GT(count, 0);
+}
+
+// As `tyndall render` and `tyndall compare` would have it: the exposure is the scene's own, the PNGs have 8 bits.
+TEST_F(GpuScene, EpipolarSamplingOfTerrainIsLikeBruteForce) {
+  struct View {
+    const char* name;
+    std::function<void(SceneParams&)> change;
+    double floor_db;
+  };
+  const View views[] = {
+      {"as it is", [](SceneParams&) {}, 40.0},
+      {"low sun in view", [](SceneParams& s) {
+         s.sun.elevation_deg = 3.0F;
+         s.sun.azimuth_deg = 340.0F;
+         s.camera.pitch_deg = 0.0F;
+       }, 40.0},
+      {"in a valley, the sun at the side", [](SceneParams& s) {
+         s.camera.altitude_m = 1500.0F;  // lifted above the ground, where that is higher
+         s.camera.pitch_deg = 5.0F;
+         s.sun.azimuth_deg = 62.0F;
+       }, 40.0},
+  };
+  constexpr VkExtent2D kExtent = {192, 108};
+  std::vector<image::Image> pictures;
+  for (const Technique technique : {Technique::brute_force, Technique::epipolar}) {
+    Params params = with_small_tables();
+    params.scattering.technique = technique;
+    const std::unique_ptr<Scene> scene = make(params, {}, kExtent);
+    ASSERT_NE(scene, nullptr);
+    for (const View& view : views) {
+      SceneParams settings;
+      view.change(settings);
+      draw(*scene, settings);
+      Result<image::Image> display = scene->display();
+      ASSERT_OK(display);
+      for (float& value : display.value().rgb) {
+        const double encoded = static_cast<double>(value) <= 0.0031308
+                                   ? 12.92 * static_cast<double>(value)
+                                   : 1.055 * std::pow(static_cast<double>(value), 1.0 / 2.4) - 0.055;
+        value = static_cast<float>(std::round(255.0 * encoded) / 255.0);
+      }
+      pictures.push_back(std::move(display).value());
+    }
+  }
+  for (std::size_t i = 0; i < std::size(views); ++i) {
+    const image::Metrics metrics = image::compare(pictures[std::size(views) + i], pictures[i]);
+    RecordProperty(std::string("dB: ") + views[i].name, std::to_string(metrics.psnr_db));
+    EXPECT_GE(metrics.psnr_db, views[i].floor_db) << views[i].name;
+  }
 }
 
 TEST_F(GpuScene, TablesFromTheCacheDrawTheSamePicture) {

@@ -1,0 +1,663 @@
+// Epipolar sampling against brute force: the same frame, the same shadow maps, the same modes, at fixed exposure. Each
+// case has a floor, some 3 dB below what it reaches but 40 dB where it reaches that; none may have a pixel that is
+// black, negative or not finite. Small pictures are hard ones: a pixel of theirs is eight of a large one.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "box_scene.hpp"
+#include "gpu/device.hpp"
+
+namespace tyndall {
+namespace {
+
+using Picture = std::vector<glm::dvec3>;
+
+// Of small pictures, with samples as far apart as the defaults put them in large ones, and tables that are built in
+// a moment: both techniques take the same.
+Params small_params() {
+  Params params;
+  params.tables.size = {8, 32, 16, 8};
+  params.tables.orders = 2;
+  params.epipolar.slices = 128;
+  params.epipolar.samples = 64;
+  return params;
+}
+
+Params by_brute_force(Params params) {
+  params.scattering.technique = Technique::brute_force;
+  return params;
+}
+
+std::string hundredths(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f", value);
+  return text;
+}
+
+// Device and effect are shared by all tests of this program: to create an effect takes longer than to draw many pictures.
+class Epipolar : public testing::Test {
+ protected:
+  static EffectDesc desc() {
+    EffectDesc out;
+    out.max_extent = {4096, 256};
+    out.frames_in_flight = 3;
+    out.output_format = OutputFormat::rgba32f;
+    out.max_cascades = kMaxCascades;
+    out.max_shadow_resolution = 512;
+    out.counters = true;
+    return out;
+  }
+  static void SetUpTestSuite() {
+    Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({"", true, &messages_});
+    ASSERT_TRUE(host.ok()) << "the GPU tests need a Vulkan 1.3 device and the Khronos validation layer: "
+                           << host.error().message;
+    host_ = std::move(host).value();
+    make(effect_, desc());
+  }
+  static void TearDownTestSuite() {
+    effect_.reset();
+    host_.reset();
+    report_messages();
+  }
+  void SetUp() override { ASSERT_TRUE(effect_.has_value()); }
+  void TearDown() override {
+    images_.reset();
+    report_messages();
+  }
+  static void report_messages() {
+    for (const std::string& message : messages_) ADD_FAILURE() << message;
+    messages_.clear();
+  }
+
+  static gpu::Host& host() { return *host_; }
+  static DeviceInfo info() {
+    const gpu::Device& device = host_->device();
+    DeviceInfo out;
+    out.instance = device.instance;
+    out.physical_device = device.physical_device;
+    out.device = device.device;
+    out.get_instance_proc_addr = host_->get_instance_proc_addr();
+    return out;
+  }
+  static void make(std::optional<Effect>& effect, const EffectDesc& desc) {
+    Result<Effect> made = Effect::create(info(), desc, small_params());
+    ASSERT_OK(made);
+    effect.emplace(std::move(made).value());
+    ASSERT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
+      const Result<Progress> built = effect->record_precompute(cmd);
+      if (!built.ok()) return built.error();
+      return {};
+    }));
+  }
+  Effect& effect() { return own_effect_ ? *own_effect_ : *effect_; }
+
+  // The frame whose images are drawn from until the next call.
+  void show(const BoxScene& scene) { show(frame_of(scene)); }
+  void show(const TestFrame& frame) {
+    frame_ = frame;
+    Result<FrameImages> images = FrameImages::create(host(), frame_, OutputFormat::rgba32f);
+    ASSERT_OK(images);
+    images_.emplace(std::move(images).value());
+  }
+  [[nodiscard]] const TestFrame& frame() const { return frame_; }
+  FrameImages& images() { return *images_; }
+
+  // Every pixel is checked. Black is allowed where nothing is to be seen.
+  Picture draw(const Params& params, const std::string& name, bool may_be_black = false) {
+    const std::size_t pixels = static_cast<std::size_t>(frame_.extent.width) * frame_.extent.height;
+    Picture picture(pixels, glm::dvec3(-1.0));
+    EXPECT_OK(effect().set_params(params));
+    EXPECT_OK(host().run([&](VkCommandBuffer cmd) { return effect().record(cmd, images().inputs(frame_)); }));
+    Result<Picture> output = images().output(host());
+    EXPECT_OK(output);
+    if (output.ok()) picture = std::move(output).value();
+    std::size_t bad = 0;
+    for (const glm::dvec3& p : picture) {
+      bool fine = may_be_black || std::max({p.x, p.y, p.z}) > 0.0;
+      for (int c = 0; c < 3; ++c) fine = fine && std::isfinite(p[c]) && p[c] >= 0.0;
+      bad += fine ? 0 : 1;
+    }
+    EXPECT_EQ(bad, 0U) << name << ": pixels that are black, negative or not finite";
+    return picture;
+  }
+  Counters counters() { return effect().counters(0); }
+
+  // Draws both and holds the floor.
+  Likeness expect_alike(const std::string& name, const Params& params, double floor_db) {
+    const Picture reference = draw(by_brute_force(params), name + ", brute force", params.scattering.only);
+    const Picture picture = draw(params, name, params.scattering.only);
+    const Likeness likeness = compare(picture, reference, frame_.extent);
+    EXPECT_GE(likeness.psnr_db, floor_db) << name << ", mean relative error " << likeness.mean_relative_error;
+    RecordProperty("dB: " + name, hundredths(likeness.psnr_db) + " floor " + hundredths(floor_db) + " mean " +
+                                      std::to_string(likeness.mean_relative_error) + " worst " +
+                                      std::to_string(likeness.worst_relative_error));
+    return likeness;
+  }
+
+  std::optional<Effect> own_effect_;  // in place of the shared one
+
+ private:
+  TestFrame frame_;
+  std::optional<FrameImages> images_;
+  static std::vector<std::string> messages_;
+  static std::unique_ptr<gpu::Host> host_;
+  static std::optional<Effect> effect_;
+};
+
+std::vector<std::string> Epipolar::messages_;
+std::unique_ptr<gpu::Host> Epipolar::host_;
+std::optional<Effect> Epipolar::effect_;
+
+const char* name_of(SingleScattering s) {
+  return s == SingleScattering::none ? "none" : s == SingleScattering::integration ? "integration" : "table";
+}
+const char* name_of(MultipleScattering m) {
+  return m == MultipleScattering::none ? "none" : m == MultipleScattering::occluded ? "occluded" : "unoccluded";
+}
+
+TEST_F(Epipolar, EveryModeIsLikeBruteForce) {
+  BoxScene scene;
+  scene.extent = {128, 72};
+  show(scene);
+  for (const SingleScattering single : {SingleScattering::none, SingleScattering::integration, SingleScattering::table}) {
+    for (const MultipleScattering multiple :
+         {MultipleScattering::none, MultipleScattering::occluded, MultipleScattering::unoccluded}) {
+      for (const bool shafts : {true, false}) {
+        for (const LitSections sections : {LitSections::contiguous, LitSections::each}) {
+          const bool tables_lit = single == SingleScattering::table || multiple == MultipleScattering::occluded;
+          if (sections == LitSections::each && !(shafts && tables_lit)) continue;  // the same as contiguous
+          Params params = small_params();
+          params.scattering.single = single;
+          params.scattering.multiple = multiple;
+          params.scattering.light_shafts = shafts;
+          params.scattering.sections = sections;
+          expect_alike(std::string("single ") + name_of(single) + ", multiple " + name_of(multiple) +
+                           (shafts ? ", shafts" : "") + (sections == LitSections::each ? ", each" : ""),
+                       params, 40.0);
+        }
+      }
+    }
+  }
+  // The other parameters, where the shafts are strongest.
+  const auto with = [&](const char* name, const std::function<void(Params&)>& change, double floor_db) {
+    Params params = small_params();
+    params.scattering.single = SingleScattering::integration;
+    change(params);
+    expect_alike(name, params, floor_db);
+  };
+  with("extinction per pixel", [](Params& p) { p.scattering.extinction = Extinction::per_pixel; }, 42.0);
+  with("refinement by depth", [](Params& p) { p.epipolar.refinement = Refinement::depth; }, 43.0);
+  with("correct_depth_breaks", [](Params& p) { p.epipolar.correct_depth_breaks = true; }, 41.0);
+  with("samples not optimised", [](Params& p) { p.epipolar.optimize_locations = false; }, 43.0);
+  with("initial_step 1", [](Params& p) { p.epipolar.initial_step = 1; }, 45.0);
+  with("initial_step 256", [](Params& p) { p.epipolar.initial_step = 256; }, 32.0);
+  with("epipole_density 32", [](Params& p) { p.epipolar.epipole_density = 32; }, 42.0);
+  with("threshold 0.001", [](Params& p) { p.epipolar.refinement_threshold = 0.001F; }, 43.0);
+  with("threshold 0.5", [](Params& p) { p.epipolar.refinement_threshold = 0.5F; }, 29.0);
+  with("light alone", [](Params& p) { p.scattering.only = true; }, 40.0);
+}
+
+TEST_F(Epipolar, TreesFormatsAndOrderOfCascadesChangeNothing) {
+  for (const bool reached : {true, false}) {
+    BoxScene scene;
+    // Maps of which a part is behind the room for trees, and such that fit.
+    scene.shadow_resolution = reached ? 512 : 1024;
+    scene.pitch_deg = reached ? 3.0 : 12.0;
+    show(scene);
+    for (const bool integrated : {true, false}) {
+      Params base = small_params();
+      base.scattering.single = integrated ? SingleScattering::integration : SingleScattering::table;
+      base.scattering.multiple = MultipleScattering::occluded;
+      base.scattering.sections = integrated ? LitSections::each : LitSections::contiguous;
+      const std::string where = std::string(integrated ? "integrated" : "tables") + (reached ? "" : ", larger map");
+      const Picture picture = draw(base, where);
+      const auto same = [&](const char* name, const std::function<void(Params&)>& change) {
+        Params params = base;
+        change(params);
+        const Likeness likeness = compare(draw(params, where + ", " + name), picture, frame().extent);
+        EXPECT_LE(likeness.worst_relative_error, 1e-3) << where << ", " << name;
+        RecordProperty("worst: " + where + ", " + name, std::to_string(likeness.worst_relative_error));
+      };
+      same("no tree", [](Params& p) { p.epipolar.min_max_tree = false; });
+      same("float32", [](Params& p) { p.epipolar.min_max_format = MinMaxFormat::float32; });
+      same("multi-pass", [](Params& p) { p.shadows.cascade_processing = CascadeProcessing::multi_pass; });
+      same("instanced", [](Params& p) { p.shadows.cascade_processing = CascadeProcessing::multi_pass_instanced; });
+      same("instanced without tree", [](Params& p) {
+        p.shadows.cascade_processing = CascadeProcessing::multi_pass_instanced;
+        p.epipolar.min_max_tree = false;
+      });
+    }
+  }
+}
+
+struct View {
+  BoxScene scene;
+  double floor_db = 40.0;
+};
+
+BoxScene seen(const std::string& name, const std::function<void(BoxScene&)>& change) {
+  BoxScene scene;
+  scene.name = name;
+  change(scene);
+  return scene;
+}
+
+BoxScene sun_at(const std::string& name, double x, double y, double pitch_deg, bool behind = false) {
+  return seen(name, [=](BoxScene& s) {
+    s.sun_in_view = true;
+    s.sun_x = x;
+    s.sun_y = y;
+    s.pitch_deg = pitch_deg;
+    s.sun_behind = behind;
+  });
+}
+
+TEST_F(Epipolar, TheSunMayStandAnywhere) {
+  const double pixel = 1.0 / 160.0;  // the outermost pixel's middle is half a pixel, this much, from the border
+  const double line = 1.0 / 90.0;
+  std::vector<View> views = {
+      {sun_at("straight ahead", 0.0, 0.0, 6.0), 40.0},
+      {sun_at("straight behind", 0.0, 0.0, -6.0, true), 43.0},
+      {sun_at("behind, beside the picture", 1.7, 0.2, -20.0, true), 47.0},
+      {sun_at("left border", -1.0, 0.1, 8.0), 40.0},
+      {sun_at("right border", 1.0, -0.2, 8.0), 41.0},
+      {sun_at("upper border", 0.3, -1.0, 0.0), 41.0},
+      {sun_at("lower border", -0.2, 1.0, 27.0), 42.0},
+      {sun_at("upper left corner", -1.0, -1.0, 0.0), 42.0},
+      {sun_at("upper right corner", 1.0, -1.0, 0.0), 42.0},
+      {sun_at("lower left corner", -1.0, 1.0, 27.0), 42.0},
+      {sun_at("lower right corner", 1.0, 1.0, 27.0), 42.0},
+      {sun_at("leftmost pixels", -1.0 + pixel, 0.0, 8.0), 43.0},
+      {sun_at("corner pixel", 1.0 - pixel, -1.0 + line, 0.0), 43.0},
+      {sun_at("beside the picture", 1.4, -0.3, 8.0), 42.0},
+      {sun_at("far above", 0.2, -9.0, 0.0), 42.0},
+  };
+  // At right angles to the view: w of the epipole is 0.
+  views.push_back({seen("exactly at the side", [](BoxScene& s) {
+    s.sun_elevation_deg = 0.0;
+    s.sun_azimuth_deg = 90.0;
+    s.pitch_deg = 0.0;
+  }), 46.0});
+  views.push_back({seen("in the zenith of a level view", [](BoxScene& s) {
+    s.sun_elevation_deg = 90.0;
+    s.pitch_deg = 0.0;
+  }), 40.0});
+  views.push_back({seen("nearly at the side", [](BoxScene& s) {
+    s.sun_elevation_deg = 5.0;
+    s.sun_azimuth_deg = 90.001;
+    s.pitch_deg = 0.0;
+  }), 48.0});
+  views.push_back({seen("below the horizon", [](BoxScene& s) { s.sun_elevation_deg = -2.0; }), 41.0});
+  for (const View& view : views) {
+    show(view.scene);
+    expect_alike(view.scene.name, small_params(), view.floor_db);
+    Params integrated = small_params();
+    integrated.scattering.single = SingleScattering::integration;
+    expect_alike(view.scene.name + ", integrated", integrated, view.floor_db);
+  }
+}
+
+TEST_F(Epipolar, TheCameraMayStandAnywhere) {
+  const auto open = [](BoxScene& s) {
+    s.buildings = false;
+    s.ground = false;
+    s.cascades = 0;
+  };
+  const std::vector<View> views = {
+      {seen("on the ground", [](BoxScene& s) { s.altitude_m = 2.0; s.pitch_deg = 15.0; }), 40.0},
+      {seen("in a building's shadow", [](BoxScene& s) {
+        s.altitude_m = 300.0;  // the hovering one and the nearest tower stand before the sun
+        s.sun_azimuth_deg = 353.0;
+        s.sun_elevation_deg = 12.0;
+        s.pitch_deg = 10.0;
+      }), 40.0},
+      {seen("on a summit", [](BoxScene& s) { s.altitude_m = 6000.0; s.pitch_deg = -12.0; }), 43.0},
+      {seen("at 30 km", [](BoxScene& s) { s.altitude_m = 30000.0; s.pitch_deg = -25.0; s.far_m = 150000.0; }), 40.0},
+      // Below the 40 dB that are the aim: half a pixel is kilometres of altitude, so that a sample's ray with its
+      // pixel's depth ends above the ground or below it.
+      {seen("limb from 400 km", [](BoxScene& s) {
+        s.altitude_m = 400000.0;
+        s.pitch_deg = -20.0;
+        s.far_m = 3.0e6;
+        s.tan_half_height = 0.12;
+        s.building_size = 60.0;  // shadows of hundreds of kilometres
+        s.ground_casts = false;  // not from a map with texels higher than most of the air
+      }), 31.0},
+      {seen("limb from 400 km, planet not drawn", [](BoxScene& s) {
+        s.altitude_m = 400000.0;
+        s.pitch_deg = -20.0;
+        s.tan_half_height = 0.12;
+        s.buildings = s.ground = false;
+        s.cascades = 0;
+      }), 42.0},
+      // Likewise; and the light that breaks are looked for in knows nothing of the planet's shadow.
+      {seen("limb against the sun", [](BoxScene& s) {
+        s.altitude_m = 400000.0;
+        s.pitch_deg = -18.0;
+        s.tan_half_height = 0.12;
+        s.sun_in_view = true;
+        s.sun_y = -0.3;
+        s.buildings = false;
+        s.cascades = 0;
+      }), 31.0},
+      {seen("no terrain at all", [&](BoxScene& s) { open(s); s.pitch_deg = -8.0; }), 40.0},
+      {seen("sky alone", [&](BoxScene& s) { open(s); s.pitch_deg = 40.0; }), 45.0},
+      {seen("straight down", [](BoxScene& s) { s.altitude_m = 9000.0; s.pitch_deg = -90.0; }), 44.0},
+      {seen("straight up", [](BoxScene& s) { s.altitude_m = 5.0; s.pitch_deg = 90.0; }), 54.0},
+      {seen("1 x 1", [](BoxScene& s) { s.extent = {1, 1}; }), 57.0},
+      {seen("1 x 40", [](BoxScene& s) { s.extent = {1, 40}; }), 42.0},
+      {seen("40 x 1", [](BoxScene& s) { s.extent = {40, 1}; s.tan_half_height = 0.02; }), 40.0},
+      {seen("4096 x 2", [](BoxScene& s) { s.extent = {4096, 2}; s.tan_half_height = 0.0004; }), 52.0},
+      {seen("portrait", [](BoxScene& s) { s.extent = {60, 140}; s.tan_half_height = 0.8; }), 43.0},
+      {seen("ultra-wide", [](BoxScene& s) { s.extent = {320, 40}; s.tan_half_height = 0.25; }), 40.0},
+      {seen("wide angle", [](BoxScene& s) { s.tan_half_height = 2.0; }), 42.0},
+      {seen("telescope", [](BoxScene& s) { s.tan_half_height = 0.01; s.pitch_deg = 7.0; }), 57.0},
+  };
+  for (const View& view : views) {
+    show(view.scene);
+    expect_alike(view.scene.name, small_params(), view.floor_db);
+    Params integrated = small_params();
+    integrated.scattering.single = SingleScattering::integration;
+    expect_alike(view.scene.name + ", integrated", integrated, view.floor_db);
+  }
+}
+
+TEST_F(Epipolar, AnyShadowMapsWillDo) {
+  Params params = small_params();
+  params.scattering.single = SingleScattering::integration;
+  params.scattering.multiple = MultipleScattering::occluded;
+  const auto with = [&](const std::string& name, std::uint32_t cascades, std::uint32_t first, std::uint32_t resolution,
+                        double floor_db) {
+    show(seen(name, [=](BoxScene& s) {
+      s.extent = {96, 54};
+      s.cascades = cascades;
+      s.first_marched = first;
+      s.shadow_resolution = resolution;
+    }));
+    expect_alike(name, params, floor_db);
+  };
+  with("none", 0, 0, 512, 42.0);
+  for (const std::uint32_t n : {1U, 2U, 5U, 8U}) with(std::to_string(n) + " cascades", n, 0, 256, 40.0);
+  with("8 cascades from the third on", 8, 3, 256, 40.0);
+  with("8 cascades, the last alone", 8, 7, 256, 40.0);
+  with("2048 texels, four times what trees have room for", 2, 0, 2048, 40.0);
+  with("64 texels", 3, 0, 64, 41.0);
+  with("333 texels", 3, 0, 333, 40.0);
+}
+
+TEST_F(Epipolar, DepthMayBeStandardAndThatOfShadowsReversed) {
+  BoxScene scene;
+  scene.extent = {96, 54};
+  scene.far_m = 30000.0;
+  Params params = small_params();
+  params.scattering.single = SingleScattering::integration;
+  show(scene);
+  const Picture usual = draw(params, "reversed depth, standard shadows");
+  scene.convention = DepthConvention::standard;
+  scene.shadow_depth_reversed = true;
+  EffectDesc description = desc();
+  description.sky_depth = 1.0F;
+  description.shadow_depth_reversed = true;
+  make(own_effect_, description);
+  show(scene);
+  const std::string name = "standard depth, reversed shadows";
+  expect_alike(name, params, 44.0);
+  const Picture swapped = draw(params, name);
+  params.epipolar.min_max_tree = false;
+  EXPECT_LE(compare(draw(params, name), swapped, scene.extent).worst_relative_error, 1e-3);
+  const Likeness likeness = compare(swapped, usual, scene.extent);
+  RecordProperty("dB: the one and the other", hundredths(likeness.psnr_db));
+  EXPECT_GE(likeness.psnr_db, 60.0);
+}
+
+TEST_F(Epipolar, SlicesAndSamplesAtBothEnds) {
+  BoxScene scene;
+  scene.extent = {96, 54};
+  show(scene);
+  Params params = small_params();
+  const auto with = [&](std::uint32_t slices, std::uint32_t samples, bool optimised, double floor_db) {
+    params.epipolar.slices = slices;
+    params.epipolar.samples = samples;
+    params.epipolar.optimize_locations = optimised;
+    expect_alike(std::to_string(slices) + " slices, " + std::to_string(samples) + " samples" + (optimised ? "" : ", all used"),
+                 params, floor_db);
+  };
+  with(32, 32, true, 32.0);
+  with(2048, 32, true, 40.0);
+  with(32, 2048, true, 32.0);
+  with(2048, 2048, true, 40.0);
+  with(128, 2048, false, 41.0);
+  with(33, 33, true, 31.0);
+}
+
+// Where the light is smooth, it is smooth across slices: what a seam would add to the second differences is bounded by
+// those of brute force.
+TEST_F(Epipolar, SmoothLightHasNoSeams) {
+  for (const bool inside : {true, false}) {
+    BoxScene scene = inside ? sun_at("sun in view", 0.31, -0.23, 25.0) : sun_at("sun beside the view", 1.8, -1.5, 25.0);
+    scene.buildings = scene.ground = false;
+    scene.cascades = 0;
+    scene.tan_half_height = 0.06;  // the sky bends little from pixel to pixel
+    show(scene);
+    Params params = small_params();
+    const Picture reference = draw(by_brute_force(params), scene.name);
+    const Picture picture = draw(params, scene.name);
+    double worst = 0.0;
+    const std::uint32_t width = scene.extent.width;
+    for (std::uint32_t y = 1; y + 1 < scene.extent.height; ++y) {
+      for (std::uint32_t x = 1; x + 1 < width; ++x) {
+        const std::size_t i = static_cast<std::size_t>(y) * width + x;
+        for (const std::size_t step : {std::size_t{1}, std::size_t{width}}) {
+          const auto second = [&](const Picture& p) { return p[i - step] - 2.0 * p[i] + p[i + step]; };
+          const glm::dvec3 off = glm::abs(second(picture) - second(reference)) / reference[i];
+          worst = std::max({worst, off.x, off.y, off.z});
+        }
+      }
+    }
+    RecordProperty("seam: " + scene.name, std::to_string(worst));
+    EXPECT_LE(worst, 0.03) << scene.name;
+  }
+}
+
+TEST_F(Epipolar, CountersSayWhatWasDone) {
+  BoxScene scene;
+  scene.shadow_resolution = 512;
+  show(scene);
+  const std::uint64_t pixels = std::uint64_t{scene.extent.width} * scene.extent.height;
+  Params params = small_params();
+  draw(by_brute_force(params), "brute force");
+  const Counters brute = counters();
+  EXPECT_EQ(brute.samples_marched, pixels);
+  EXPECT_GT(brute.march_steps, pixels);
+  EXPECT_GT(brute.shadow_map_fetches, pixels);
+  EXPECT_EQ(brute.tree_nodes_visited, 0U);
+  EXPECT_EQ(brute.pixels_corrected, 0U);
+
+  draw(params, "tree");
+  const Counters tree = counters();
+  EXPECT_GT(tree.samples_marched, 0U);
+  EXPECT_LE(tree.samples_marched, std::uint64_t{params.epipolar.slices} * params.epipolar.samples);
+  EXPECT_GT(tree.tree_nodes_visited, tree.samples_marched);
+  EXPECT_EQ(tree.pixels_corrected, 0U);
+  params.epipolar.min_max_tree = false;
+  draw(params, "no tree");
+  const Counters texels = counters();
+  EXPECT_EQ(texels.samples_marched, tree.samples_marched);
+  EXPECT_EQ(texels.tree_nodes_visited, 0U);
+  EXPECT_GT(texels.shadow_map_fetches, 5 * tree.shadow_map_fetches);
+  EXPECT_LT(texels.shadow_map_fetches, brute.shadow_map_fetches);
+  RecordProperty("fetches", std::to_string(brute.shadow_map_fetches) + " " + std::to_string(texels.shadow_map_fetches) +
+                                " " + std::to_string(tree.shadow_map_fetches));
+
+  // The same rays, however the cascades follow each other.
+  params.epipolar.min_max_tree = true;
+  for (const CascadeProcessing processing : {CascadeProcessing::multi_pass, CascadeProcessing::multi_pass_instanced}) {
+    params.shadows.cascade_processing = processing;
+    draw(params, "in several passes");
+    EXPECT_EQ(counters().samples_marched, tree.samples_marched);
+    EXPECT_EQ(counters().shadow_map_fetches, tree.shadow_map_fetches);
+  }
+  // Without shafts nothing is fetched.
+  params = small_params();
+  params.scattering.light_shafts = false;
+  draw(params, "no shafts");
+  EXPECT_EQ(counters().shadow_map_fetches, 0U);
+  EXPECT_EQ(counters().tree_nodes_visited, 0U);
+  EXPECT_GT(counters().samples_marched, 0U);
+}
+
+TEST_F(Epipolar, DepthBreaksAreCorrectedAndMarked) {
+  BoxScene scene;
+  show(scene);
+  Params params = small_params();
+  params.scattering.single = SingleScattering::integration;
+  // Few samples, so that many pixels of the silhouettes have none of their depth near.
+  params.epipolar.slices = 512;
+  params.epipolar.samples = 32;
+  const Picture reference = draw(by_brute_force(params), "brute force");
+  const Picture plain = draw(params, "not corrected");
+  EXPECT_EQ(counters().pixels_corrected, 0U);
+  params.epipolar.correct_depth_breaks = true;
+  const Picture corrected = draw(params, "corrected");
+  const std::uint64_t count = counters().pixels_corrected;
+  EXPECT_GT(count, 20U);
+  EXPECT_LT(count, plain.size() / 4);
+  params.epipolar.show_depth_breaks = true;
+  const Picture marked = draw(params, "marked");
+  EXPECT_EQ(counters().pixels_corrected, count);
+  params.epipolar.correct_depth_breaks = false;
+  const Picture only_marked = draw(params, "only marked");
+  EXPECT_EQ(counters().pixels_corrected, 0U);
+
+  std::uint64_t green = 0;
+  double before = 0.0;
+  double after = 0.0;
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    EXPECT_EQ(marked[i], only_marked[i]) << i;
+    const bool is_marked = marked[i].x == 0.0 && marked[i].z == 0.0 && marked[i].y > 0.0;
+    if (!is_marked) {
+      // What is not marked is not touched.
+      EXPECT_EQ(marked[i], plain[i]) << i;
+      EXPECT_EQ(corrected[i], plain[i]) << i;
+      continue;
+    }
+    ++green;
+    before += glm::length(plain[i] - reference[i]) / glm::length(reference[i]);
+    after += glm::length(corrected[i] - reference[i]) / glm::length(reference[i]);
+    // A silhouette: a neighbour of another depth.
+    const auto x = static_cast<std::uint32_t>(i % scene.extent.width);
+    const auto y = static_cast<std::uint32_t>(i / scene.extent.width);
+    const auto depth = [&](std::uint32_t px, std::uint32_t py) {
+      const double d = frame().distance_m(px, py);
+      return d > 0.0 ? d : 1e9;
+    };
+    bool edge = false;
+    for (int dy = -4; dy <= 4; ++dy) {
+      for (int dx = -4; dx <= 4; ++dx) {
+        const auto px = std::min(x + static_cast<std::uint32_t>(std::max(dx, -static_cast<int>(x))), scene.extent.width - 1);
+        const auto py = std::min(y + static_cast<std::uint32_t>(std::max(dy, -static_cast<int>(y))), scene.extent.height - 1);
+        edge = edge || std::abs(depth(px, py) / depth(x, y) - 1.0) > 0.03;
+      }
+    }
+    EXPECT_TRUE(edge) << x << " " << y;
+  }
+  EXPECT_EQ(green, count);
+  RecordProperty("corrected", std::to_string(count) + " pixels, mean error " +
+                                  std::to_string(before / static_cast<double>(green)) + " to " +
+                                  std::to_string(after / static_cast<double>(green)));
+  EXPECT_LT(after, 0.5 * before);
+}
+
+TEST_F(Epipolar, SamplesAreShown) {
+  show(sun_at("sun in view", 0.2, -0.4, 8.0));
+  Params params = small_params();
+  const Picture plain = draw(params, "plain");
+  params.epipolar.show_sampling = true;
+  const Picture shown = draw(params, "shown");
+  std::size_t bright = 0;
+  std::size_t dark = 0;
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    if (shown[i] == plain[i]) continue;
+    // Nothing but red.
+    EXPECT_GT(shown[i].x, 0.0);
+    EXPECT_EQ(shown[i].y, 0.0);
+    EXPECT_EQ(shown[i].z, 0.0);
+    (shown[i].x > 0.5 ? bright : dark) += 1;
+  }
+  EXPECT_GT(bright, 50U);
+  EXPECT_GT(dark, 50U);
+  // The samples closest to the sun and those at the border are marched.
+  const std::uint32_t sun_x = 96;
+  const std::uint32_t sun_y = 27;
+  EXPECT_GT(shown[sun_y * frame().extent.width + sun_x].x, 0.5);
+  // All of them where every sample is marched.
+  params.epipolar.initial_step = 1;
+  const Picture all = draw(params, "all marched");
+  params.epipolar.show_sampling = false;
+  const Picture all_plain = draw(params, "all marched, not shown");
+  for (std::size_t i = 0; i < plain.size(); ++i) EXPECT_TRUE(all[i] == all_plain[i] || all[i].x > 0.5) << i;
+}
+
+TEST_F(Epipolar, ParametersChangeWhileFramesAreInFlight) {
+  const EffectDesc description = desc();
+  ASSERT_EQ(description.frames_in_flight, 3U);
+  BoxScene scene;
+  scene.extent = {48, 27};
+  show(scene);
+  std::vector<Params> changes;
+  const auto add = [&](const std::function<void(Params&)>& change) {
+    Params params = small_params();
+    change(params);
+    changes.push_back(params);
+  };
+  add([](Params&) {});
+  add([](Params& p) { p.epipolar.slices = 32; });
+  add([](Params& p) { p.scattering.technique = Technique::brute_force; });
+  add([](Params& p) { p.epipolar.min_max_format = MinMaxFormat::float32; });
+  add([](Params& p) { p.shadows.cascade_processing = CascadeProcessing::multi_pass; });
+  add([](Params& p) { p.epipolar.samples = 200; });
+  add([](Params& p) { p.epipolar.min_max_tree = false; });
+  add([](Params& p) { p.shadows.cascade_processing = CascadeProcessing::multi_pass_instanced; });
+  add([](Params& p) { p.epipolar.correct_depth_breaks = true; });
+  add([](Params& p) { p.scattering.enabled = false; });
+  add([](Params&) {});
+  // Each alone.
+  std::vector<Picture> alone;
+  for (const Params& params : changes) alone.push_back(draw(params, "alone"));
+  bool kept = false;
+  // As many as may be in flight, in one submission, all of different parameters; the last one's picture is left.
+  std::uint64_t index = 0;
+  for (std::size_t first = 0; first < changes.size(); ++first) {
+    const std::size_t last = std::min(first + 2, changes.size() - 1);
+    ASSERT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
+      for (std::size_t i = first; i <= last; ++i) {
+        FrameInputs inputs = images().inputs(frame());
+        inputs.frame_index = index++;
+        gpu::compute_barrier(host().device(), cmd);  // the frame before wrote the same output
+        const Result<void> taken = effect().set_params(changes[i]);
+        if (!taken.ok()) return taken.error();
+        const Result<void> recorded = effect().record(cmd, inputs);
+        if (!recorded.ok()) return recorded.error();
+        const Result<MemoryUsage> expected = query_memory(info(), description, changes[i]);
+        if (!expected.ok()) return expected.error();
+        EXPECT_EQ(effect().memory().persistent, expected.value().persistent) << i;
+        kept = kept || effect().memory().transient > 0;
+      }
+      return {};
+    }));
+    const Result<Picture> output = images().output(host());
+    ASSERT_OK(output);
+    EXPECT_EQ(output.value(), alone[last]) << first;
+  }
+  // What was replaced is gone when no frame can use it any more.
+  EXPECT_TRUE(kept);
+  for (int i = 0; i < 5; ++i) draw(changes.back(), "again");
+  EXPECT_EQ(effect().memory().transient, 0U);
+}
+
+}  // namespace
+}  // namespace tyndall
