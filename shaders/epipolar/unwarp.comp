@@ -47,8 +47,7 @@ void main() {
   }
   // Not beyond the last pixels of an odd size: what is seen there is none of the four.
   vec2 middle = min(vec2(corner) + 1.0, vec2(float(frame.width), float(frame.height)) - 0.5);
-  float planet_m = sky_depth_m(ray_direction(frame, middle));
-  float depth_m = kinds == 1u ? 0.5 * (nearest + farthest) : planet_m;
+  float depth_m = kinds == 1u ? 0.5 * (nearest + farthest) : kSkyDepth;
   bool one_depth = kinds == 1u ? farthest - nearest < epipolar.threshold * farthest : kinds == 4u;
   Around a = around(middle, depth_m);
   if (!one_depth || (kBreaks && blend(a, middle).weight < kLeastWeight)) {
