@@ -50,7 +50,8 @@ void main() {
   float depth_m = kinds == 1u ? 0.5 * (nearest + farthest) : kSkyDepth;
   bool one_depth = kinds == 1u ? farthest - nearest < epipolar.threshold * farthest : kinds == 4u;
   Around a = around(middle, depth_m);
-  if (!one_depth || (kBreaks && blend(a, middle).weight < kLeastWeight)) {
+  bool dense = max(length(a.origin_lower.zw), length(a.origin_upper.zw)) > kDense;
+  if (!one_depth || dense || (kBreaks && blend(a, middle).weight < kLeastWeight)) {
     uint at = atomicAdd(broken.count, 1u);
     broken_list[at] = uint(corner.y) << 16u | uint(corner.x);
     atomicMax(broken.groups_x, min((4u * at + 4u + kMarchGroup - 1u) / kMarchGroup, kMostGroups));

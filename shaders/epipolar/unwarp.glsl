@@ -12,6 +12,10 @@
 layout(constant_id = 0) const uint kExtinction = 0u;  // 0 epipolar, 1 per pixel
 layout(constant_id = 1) const bool kBreaks = false;   // list the pixels that no sample fits
 
+const float kBeyond = 0.5;  // of the way between two samples
+// Samples to a pixel from which on a block of four pixels would reach too far beyond its samples.
+const float kDense = 0.75;
+
 // Below this sum of weights no sample is near in depth; the weights then still choose the nearest.
 const float kLeastWeight = 1e-2;
 
@@ -71,16 +75,20 @@ Blend blend(Around a, vec2 position) {
   // The last slice of all sides is next to the first.
   float all = float(epipolar.slices);
   part = part > 0.5 * all ? part - all : part < -0.5 * all ? part + all : part;
-  part = clamp(part, 0.0, 1.0);
+  // A little beyond the four, where they are so close that the place has moved out from between them.
+  part = clamp(part, -kBeyond, 1.0 + kBeyond);
   vec2 along = clamp(vec2(place_on_slice(a.origin_lower, position) - float(a.first.x),
-                          place_on_slice(a.origin_upper, position) - float(a.first.y)), 0.0, 1.0);
+                          place_on_slice(a.origin_upper, position) - float(a.first.y)), -kBeyond, 1.0 + kBeyond);
   vec4 bilinear = vec4((1.0 - part) * (1.0 - along.x), (1.0 - part) * along.x, part * (1.0 - along.y), part * along.y);
+  bool alike = min(min(a.nearness.x, a.nearness.y), min(a.nearness.z, a.nearness.w)) > 0.99;
+  bilinear = alike ? bilinear : max(bilinear, vec4(0.0));
   // The last term keeps the sum above zero, whatever the samples.
   vec4 w = bilinear * a.nearness + 1e-9;
   Blend b;
   b.weight = w.x + w.y + w.z + w.w;
   w /= b.weight;
   b.source = w.x * a.source[0] + w.y * a.source[1] + w.z * a.source[2] + w.w * a.source[3];
+  b.source = max(b.source, vec3(0.0));
   b.log_density =
       w.x * a.log_density[0] + w.y * a.log_density[1] + w.z * a.log_density[2] + w.w * a.log_density[3];
   return b;
