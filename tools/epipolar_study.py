@@ -5,7 +5,7 @@ docs/generated/epipolar.md, docs/images/epipolar_*.svg and docs/images/epipolar_
 
 Needs Pillow and matplotlib. Sections: sweeps, pixels, tree, presets, pictures; without, all of them. What a section
 has measured is kept in out/epipolar_study.json, so that the others need not run again.
-Times are medians of a run and are given in floor passes of the same run, because machines are shared and differ.
+Times are medians of three frames and are given in floor passes of the same run, because machines are shared and differ.
 """
 import json
 import pathlib
@@ -74,7 +74,7 @@ class Study:
             out += ["--set", f"{key}={value}"]
         return tuple(out + ["--size", size])
 
-    def bench(self, settings, size=SIZE, frames=1):
+    def bench(self, settings, size=SIZE, frames=3):
         key = self.arguments(None, without_defaults(settings), size)
         if key not in self.benched:
             self.benched[key] = json.loads(self.run("bench", *key, "--frames", str(frames), "--json"))
@@ -199,6 +199,7 @@ def plot(kept):
             labels = [short(r["settings"]) for r in rows]
             axis.plot(labels, [r["psnr"] for r in rows], "o-", color="tab:blue")
             axis.set_ylabel("PSNR against brute force [dB]", color="tab:blue")
+            axis.set_ylim(44, 62)
             axis.set_title(name)
             axis.tick_params(axis="x", rotation=20 if len(rows) > 5 else 0)
             other = axis.twinx()
