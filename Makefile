@@ -3,7 +3,8 @@
 #   make check  installs what is missing, builds with warnings as errors, passes every test
 #   make pictures  renders the pictures of the documentation anew
 #   make accuracy  measures the numbers of docs/accuracy.md anew
-.PHONY: demo check pictures accuracy setup build format tidy clean
+#   make epipolar-study  installs Pillow and matplotlib, and makes the numbers, plots and pictures of docs/epipolar.md anew
+.PHONY: demo check pictures accuracy epipolar-study setup build format tidy clean
 
 PRESET ?= release
 
@@ -34,6 +35,12 @@ accuracy: build
 	@build/release/bin/tyndall validate --markdown docs/generated/accuracy.md
 	@cmake --build build/release --target published_tables
 	@build/release/bin/published_tables > docs/generated/published.md
+
+# Of SECTIONS (sweeps, pixels, tree, presets, pictures) or all. Debian's Python, because its packages are used.
+epipolar-study: PRESET = release
+epipolar-study: build
+	@tools/setup.sh python3-pil python3-matplotlib
+	@/usr/bin/python3 tools/epipolar_study.py build/release/bin/tyndall $(SECTIONS)
 
 setup:
 	@tools/setup.sh

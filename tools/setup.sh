@@ -1,13 +1,14 @@
 #!/bin/sh
 # Installs the Debian packages that are missing, with apt-get (and sudo when not root). On a system without
 # apt-get, or where installing is not possible, says which tools are needed and goes on with what there is.
+# Arguments: packages that are needed besides.
 set -u
 
 packages="build-essential cmake ninja-build pkg-config ccache
 glslc spirv-tools libspirv-cross-c-shared-dev
 libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers
 libglm-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
-libopenexr-dev libpng-dev libgdal-dev libgtest-dev"
+libopenexr-dev libpng-dev libgdal-dev libgtest-dev $*"
 
 needs() {
   echo "Tyndall needs: a C++20 compiler, CMake 3.25, Ninja, pkg-config, glslc, SPIRV-Tools, SPIRV-Cross (C API)," >&2

@@ -183,6 +183,16 @@ TEST_F(CliScenes, APictureThatDoesNotFitLeavesWhatWasThere) {
   EXPECT_EQ(contents_of(before).substr(1, 3), "PNG");
 }
 
+// Scenes are read before the device is looked for: it is enough that the device is what is wrong.
+TEST_F(CliScenes, PresetsAreScenes) {
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(TYNDALL_PRESETS)) {
+    expect_one_line(run_tyndall({"bench", entry.path().string(), "--device", "nonesuch"}), 2, "--device");
+    ++count;
+  }
+  EXPECT_EQ(count, 3U);
+}
+
 TEST_F(CliScenes, BenchSaysWhatIsPromised) {
   const Outcome outcome = run_tyndall({"bench", "--json", "--size", "16x9", "--frames", "2", "--set", "planet.radius_m=20000",
                                        "--set", "tables.size=4,4,4,4", "--set", "tables.orders=1"});
