@@ -22,14 +22,11 @@ layout(std430, binding = 3) readonly buffer coarse_block { vec4 coarse[]; };
 layout(std430, binding = 4) writeonly buffer source_block { uint sources[]; };
 layout(std430, binding = 5) buffer march_list_block { WorkList march; uint march_list[]; };
 
-#include "epipolar/records.glsl"
 #include "epipolar/slices.glsl"
 
 const uint kWords = 64u;  // for 2048 samples
 // Light below this part of the slice's mean makes no break: it is too dark to be seen beside the rest.
 const float kDark = 0.05;
-// Light that changes with depth: the source, which is what is interpolated, changes by a third of it or less.
-const float kOfDepth = 3.0;
 
 shared uint breaks[kWords];   // bit i: between samples i and i + 1
 shared uint marched[kWords];
@@ -43,8 +40,7 @@ bool is_break(uint at) {
   vec4 b = coarse[at + 1u];
   if (kRefinement == 0u) return abs(a.w - b.w) > 0.2 * epipolar.threshold * max(max(a.w, b.w), 1.0);
   vec3 change = abs(a.rgb - b.rgb) / max(max(a.rgb, b.rgb), floor_light);
-  float tolerated = a.w >= kSkyDepth && b.w >= kSkyDepth ? epipolar.threshold : kOfDepth * epipolar.threshold;
-  return max(change.r, max(change.g, change.b)) > tolerated;
+  return max(change.r, max(change.g, change.b)) > epipolar.threshold;
 }
 
 uint bits_from(uint first) { return 0xFFFFFFFFu << (first & 31u); }
