@@ -277,6 +277,7 @@ class Exporter {
     }
     scattering["view_zenith_by_altitude"] = std::move(views);
     scattering["sun_zenith"] = cosines(axes_.cos_sun_zenith);
+    scattering["sun_zenith_at"] = "the middle of the air on the ray, middle_of_air in shaders/lib/table_values.glsl";
     scattering["view_sun"] = cosines(axes_.cos_view_sun);
 
     const models::LightTableAxes light =
