@@ -260,11 +260,14 @@ class Exporter {
     ordered_json& scattering = out["axes"]["scattering"];
     scattering["file"] = "altitude";
     scattering["row"] = "view zenith angle, from the top; its values belong to the altitude of the file";
-    scattering["column"] = "sun zenith angle + " + std::to_string(size.z) + " * angle between view and sun";
+    scattering["column"] = "sun zenith angle at the middle of the ray's air + " + std::to_string(size.z) +
+                           " * angle between view and sun";
+    scattering["sun_at_origin"] =
+        "with r = radius + altitude and r_m = sqrt(r^2 + d^2 + 2 r d cos_view_zenith), d = middle_of_air_m of the row: "
+        "cos_sun_zenith at the ray's origin = (r_m cos_sun_zenith - d cos_view_sun) / r";
     scattering["continued"] =
-        "where |cos_view_sun - cos_view_zenith cos_sun_zenith| > sin_view_zenith sin_sun_zenith no geometry "
-        "has the "
-        "three angles: such texels continue the table for interpolation";
+        "where, at the ray's origin, |cos_view_sun - cos_view_zenith cos_sun_zenith| > sin_view_zenith "
+        "sin_sun_zenith no geometry has the three angles: such texels continue the table for interpolation";
     scattering["altitude_m"] = axes_.altitude_m;
     ordered_json views = ordered_json::array();
     for (std::size_t i = 0; i < size.x; ++i) {
@@ -273,11 +276,11 @@ class Exporter {
       ordered_json& ends = view["ends_on_ground"] = ordered_json::array();
       for (std::size_t k = 0; k < size.y; ++k)
         ends.push_back(static_cast<bool>(axes_.ends_on_ground[first + k]));
+      view["middle_of_air_m"] = std::span(axes_.middle_of_air_m).subspan(first, size.y);
       views.push_back(std::move(view));
     }
     scattering["view_zenith_by_altitude"] = std::move(views);
     scattering["sun_zenith"] = cosines(axes_.cos_sun_zenith);
-    scattering["sun_zenith_at"] = "the middle of the air on the ray, middle_of_air in shaders/lib/table_values.glsl";
     scattering["view_sun"] = cosines(axes_.cos_view_sun);
 
     const models::LightTableAxes light =

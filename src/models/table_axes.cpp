@@ -41,6 +41,9 @@ TableAxes table_axes(const Params& params) {
       bool below = false;
       axes.cos_view_zenith.push_back(glsl64::view_from_v(shape, m, h, centre(k, shape.views), below));
       axes.ends_on_ground.push_back(below);
+      const double mu = axes.cos_view_zenith.back();
+      const double end = distance_to_end(m, h, mu, below);
+      axes.middle_of_air_m.push_back(glsl64::middle_of_air(m, h, mu, end, glsl64::column_along(m, h, mu, end)));
     }
   }
   for (std::uint32_t i = 0; i < shape.suns; ++i)

@@ -17,6 +17,7 @@ struct TableAxes {
   // The view axis is laid out around the horizon, which depends on altitude: [altitude * views + view].
   std::vector<double> cos_view_zenith;
   std::vector<bool> ends_on_ground;
+  std::vector<double> middle_of_air_m;  // along the ray, likewise: where the sun has the angle of the sun axis
   std::vector<double> cos_sun_zenith;
   std::vector<double> cos_view_sun;  // of the angle between view and sun
 };
