@@ -113,6 +113,9 @@ struct FrameInputs {
   Texture color;               // linear radiance of the opaque scene and what is behind the air (disc, stars)
   Texture depth;               // device depth; sampled as float
   Texture shadow_maps;         // 2D array of depth images, one layer per cascade; null without cascades
+  // 2D array like shadow_maps, same size and layers: what glass leaves of the sun's light, linear, 1 = clear; filtered like
+  // the shadow comparison. Where a map is in shadow its colour does not matter. Null: no colour.
+  Texture shadow_colors;
   std::uint32_t shadow_resolution = 0;     // texels - width and height of a layer
   std::span<const Cascade> cascades;       // at most kMaxCascades, from near to far
   std::uint32_t first_marched_cascade = 0;  // the air is marched from this one on; it must start at the camera

@@ -105,6 +105,12 @@ Result<void> check_frame(const FrameInputs& inputs, const EffectDesc& desc, cons
   if (!inputs.cascades.empty()) {
     if (inputs.shadow_maps.view == VK_NULL_HANDLE) return invalid("FrameInputs::shadow_maps has no view");
     if (inputs.shadow_resolution == 0) return invalid("FrameInputs::shadow_resolution is 0");
+    if (inputs.shadow_colors.view != VK_NULL_HANDLE && inputs.shadow_colors.view == inputs.shadow_maps.view) {
+      return invalid("FrameInputs::shadow_colors is the view of FrameInputs::shadow_maps, it must be one of colours, or null");
+    }
+    if (inputs.shadow_colors.view != VK_NULL_HANDLE && inputs.shadow_colors.layout == VK_IMAGE_LAYOUT_UNDEFINED) {
+      return invalid("FrameInputs::shadow_colors is in VK_IMAGE_LAYOUT_UNDEFINED, it must be in a layout that can be sampled");
+    }
     if (inputs.first_marched_cascade >= inputs.cascades.size()) {
       return invalid("FrameInputs::first_marched_cascade is " + std::to_string(inputs.first_marched_cascade) +
                      ", it must be below the number of cascades, " + std::to_string(inputs.cascades.size()));
@@ -155,6 +161,9 @@ void remark_on_frame(const FrameInputs& inputs, const Params& params, const Devi
   }
   if (params.scattering.light_shafts && inputs.cascades.empty()) {
     say("scattering.light_shafts is on, but there are no shadow cascades: nothing will be shadowed");
+  }
+  if (inputs.shadow_colors.view != VK_NULL_HANDLE && (inputs.cascades.empty() || !params.scattering.light_shafts)) {
+    say("there are shadow_colors, but no light shafts for them: nothing will be coloured");
   }
   if (!inputs.cascades.empty() && inputs.first_marched_cascade < inputs.cascades.size() &&
       inputs.cascades[inputs.first_marched_cascade].near_m > 1.0F) {

@@ -244,6 +244,10 @@ TEST_F(EffectContract, FramesThatCannotBeDrawnAreErrors) {
   EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.output.view = VK_NULL_HANDLE; }));
   EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.output.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL; }));
   EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.shadow_maps.view = VK_NULL_HANDLE; }));
+  EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.shadow_colors = f.shadow_maps; }));
+  EXPECT_TRUE(refused([](FrameInputs& f, Two&) {
+    f.shadow_colors = {f.color.view, VK_IMAGE_LAYOUT_UNDEFINED};
+  }));
   EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.shadow_resolution = 0; }));
   EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.first_marched_cascade = 2; }));
   EXPECT_TRUE(refused([&](FrameInputs& f, Two&) { f.cascades = many; }));
