@@ -1,33 +1,13 @@
-// What lies behind the air: the sun's disc on black. Radiance, so that the mean over the disc times its
-// solid angle is the irradiance above the atmosphere. Limb darkening: I = I0 mu^alpha with alpha by
-// wavelength (Hestroffer, Magnan, "Wavelength dependency of the Solar limb darkening", 1998, eq. 4).
+// What lies behind the air: the sun's disc on black.
 #version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "scene/sun_disc.glsl"
 
 layout(location = 0) in vec2 ndc;
 layout(location = 0) out vec4 radiance;
 
-layout(std430, binding = 0) readonly buffer background_block {
-  mat4 world_from_view;
-  vec3 direction_to_sun;
-  float angular_radius_rad;
-  vec3 disc_radiance;     // mean over the disc
-  float pixel_angle_rad;  // of one pixel at the centre of the picture
-  vec3 limb_exponent;
-  float unused_0;
-  vec2 tan_half;          // of the field of view; y points down in clip space
-  vec2 jitter;            // of the picture, in clip space
-};
-
 void main() {
   vec3 direction = normalize(mat3(world_from_view) * vec3((ndc.x - jitter.x) * tan_half.x, -(ndc.y - jitter.y) * tan_half.y, -1.0));
-  // The chord between unit vectors keeps the digits that the arc cosine of a dot product loses.
-  float angle = 2.0 * asin(min(0.5 * distance(direction, direction_to_sun), 1.0));
-  // Pixels away from the centre of the picture see a smaller angle.
-  float forward = dot(direction, -vec3(world_from_view[2]));
-  float pixel = pixel_angle_rad * forward * forward;
-  float cover = clamp((angular_radius_rad - angle) / pixel + 0.5, 0.0, 1.0);
-  float x = min(angle / angular_radius_rad, 1.0);
-  float mu = sqrt(max(1.0 - x * x, 1e-4));
-  vec3 limb = pow(vec3(mu), limb_exponent) * (0.5 * limb_exponent + 1.0);
-  radiance = vec4(cover * limb * disc_radiance, 1.0);
+  radiance = vec4(sun_disc(direction), 1.0);
 }

@@ -3,62 +3,18 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#include "scene/chart.glsl"
-#include "scene/terrain_shadow.glsl"
-#include "scene/terrain_materials.glsl"
+#include "scene/terrain_ground.glsl"
 #include "tyndall/light_tables.glsl"
 
-layout(location = 0) in vec3 world_position;
-layout(location = 1) in vec3 map_altitude;
-layout(location = 2) in vec4 texels;
-layout(location = 3) in float level_morph;
-layout(location = 4) flat in uint level_layer;
 layout(location = 0) out vec4 radiance;
 
 layout(binding = 4) uniform sampler2D sun_transmittance;
 layout(binding = 5) uniform sampler2D sky_irradiance;
 
-void main() {
-  vec2 map_m = map_altitude.xy;
-  vec3 shape = surface_shape(texels.xy, level_layer);
-  if (level_morph > 0.0) shape = mix(shape, surface_shape(texels.zw, level_layer + 1u), level_morph);
-  vec2 gradient = shape.xy;
-
-  vec3 to_eye = terrain.camera_position - world_position;
-  float distance_m = length(to_eye);
-  float radius = terrain.planet_radius_m;
-  vec3 up = normalize(world_position + vec3(0.0, radius, 0.0));
-  vec3 smooth_normal = normal_from_gradient(gradient, up);
-  vec3 map_normal = normalize(vec3(-gradient.x, 1.0, -gradient.y));
-  float pixel_m = distance_m * terrain.pixel_angle_rad;
-  // A pixel's width on the ground, longer where the ground is seen at a slant: the geometric mean.
-  float facing = max(dot(smooth_normal, to_eye) / distance_m, 0.05);
-  float footprint_m = max(pixel_m / sqrt(facing), 0.01);
-  TerrainMaterial ground = terrain_ground(terrain.shading, terrain_units(map_m), map_altitude.z, map_normal,
-                                          shape.z, footprint_m, terrain.seed);
-  vec3 normal = normal_from_gradient(-ground.normal.xz / max(ground.normal.y, 0.05), up);
-
-  uint cascade;
-  float lit = sun_light_at(world_position, smooth_normal, cascade);
-  float sun_cosine = max(dot(normal, terrain.direction_to_sun), 0.0);
-  // Relief too fine for the shadow maps cannot light a slope that faces away.
-  lit *= clamp(dot(smooth_normal, terrain.direction_to_sun) * 8.0 + 0.5, 0.0, 1.0);
-  // The sunlit rim of a crest against the sun is often thinner than a pixel: the crest turns out of sight
-  // within facing^2 / 2 of its radius. Where one sample takes it for a whole pixel, it strings beads.
-  float turn_per_m = 2.0 * max(-shape.z, 0.0) / terrain.levels[level_layer].cell_m;
-  float rim = clamp(facing * facing / (2.0 * turn_per_m * pixel_m + 1e-6), 0.3, 1.0);
-  lit *= mix(1.0, rim, smoothstep(0.4, 0.8, -dot(to_eye, terrain.direction_to_sun) / distance_m));
-
-  vec2 uv = light_table_uv(map_altitude.z, dot(up, terrain.direction_to_sun), radius, terrain.atmosphere_height_m);
-  vec3 sun = texture(sun_transmittance, uv).rgb * (lit * sun_cosine);
-  vec3 open_sky = texture(sky_irradiance, uv).rgb;
-  float visible = sky_visibility(map_m, map_altitude.z);
-  vec3 sky = open_sky * (visible * 0.5 * (1.0 + dot(normal, up)));
-  // The rest of the hemisphere is other ground, under the same sky and, on average, a flat ground's sun.
-  vec3 sun_on_flat = texture(sun_transmittance, uv).rgb * max(dot(up, terrain.direction_to_sun), 0.0);
-  vec3 bounced = ground.albedo * (open_sky + sun_on_flat) * (1.0 - visible * 0.5 * (1.0 + dot(normal, up)));
-
-  vec3 albedo = ground.albedo;
-  if (terrain.show_cascades != 0u && cascade < terrain.cascade_count) albedo = 0.75 * albedo + 0.25 * cascade_color(cascade);
-  radiance = vec4(albedo * 0.318309886 * (sun + sky + bounced) * terrain.sun_irradiance, 1.0);
+void ground_light(float altitude_m, float cos_sun_zenith, out vec3 sun, out vec3 sky) {
+  vec2 uv = light_table_uv(altitude_m, cos_sun_zenith, terrain.planet_radius_m, terrain.atmosphere_height_m);
+  sun = texture(sun_transmittance, uv).rgb;
+  sky = texture(sky_irradiance, uv).rgb;
 }
+
+void main() { radiance = vec4(ground_radiance(), 1.0); }

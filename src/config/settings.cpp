@@ -279,6 +279,13 @@ Result<void> check(const Settings& settings) {
         concat({"with 'shadows.cascades' = ", std::to_string(shadows.cascades)}),
         concat({"allowed is 0 to ", std::to_string(shadows.cascades - 1)}));
   }
+  const scene::HomogeneousParams& homogeneous = settings.scene.homogeneous;
+  if (homogeneous.haze_length_m > homogeneous.air_length_m) {
+    return input_error(
+        concat({"'homogeneous.haze_length_m' = ", number_text(homogeneous.haze_length_m), " reaches above the air"}),
+        concat({"with 'homogeneous.air_length_m' = ", number_text(homogeneous.air_length_m)}),
+        concat({"allowed is 1 to ", number_text(homogeneous.air_length_m)}));
+  }
   if (settings.scene.tables.cache.empty()) {
     return input_error("no place for the cache", "'tables.cache' is empty",
                        "allowed is auto, off or a directory");

@@ -189,8 +189,20 @@ Result<void> Scene::create_objects() {
   if (desc_.timings) {
     TYNDALL_ASSIGN(timer_, gpu::Timer::create(device, 1, kMaxTimedPasses));
   }
-  TYNDALL_ASSIGN(const tables::Outcome made, tables::make_ready(*host_, *effect_, desc_.make_tables));
-  notes_.insert(notes_.end(), made.notes.begin(), made.notes.end());
+  return make_model_ready();
+}
+
+// The tables, or the model that draws without them.
+Result<void> Scene::make_model_ready() {
+  if (scene_.scattering.model == ScatteringModel::atmosphere) {
+    model_.reset();
+    if (tables_ready_) return {};
+    TYNDALL_ASSIGN(const tables::Outcome made, tables::make_ready(*host_, *effect_, desc_.make_tables));
+    notes_.insert(notes_.end(), made.notes.begin(), made.notes.end());
+    tables_ready_ = true;
+    return {};
+  }
+  TYNDALL_ASSIGN(model_, create_sky_model(*host_, scene_, kColorFormat, kDepthFormat));
   return {};
 }
 
@@ -202,8 +214,14 @@ Result<void> Scene::set_scene(const SceneParams& scene) {
     return Error{ErrorCode::invalid_argument,
                  "terrain.source, seed and exaggeration and shadows.resolution and cascades need a new scene"};
   }
+  const bool other_model = scene.scattering.model != scene_.scattering.model ||
+                           scene.scattering.evaluate != scene_.scattering.evaluate;
+  const SceneParams before = scene_;
   scene_ = scene;
-  return {};
+  if (!other_model) return {};
+  Result<void> ready = make_model_ready();
+  if (!ready) scene_ = before;
+  return ready;
 }
 
 void Scene::begin_pass(VkCommandBuffer cmd, const char* name) {
@@ -270,11 +288,12 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   light_.direction_to_sun = to_sun_;
   light_.sun_irradiance = static_cast<double>(scene_.sun.irradiance) * params_.scattering.scale;
   light_.atmosphere_height_m = params_.atmosphere.height_m;
-  light_.tables = effect_->light_tables();
+  light_.tables = tables_ready_ ? effect_->light_tables() : LightTables{};
   light_.shadow_maps = shadow_maps_.view.get();
   light_.shadow_sampler = shadow_compare_.get();
   light_.linear = linear_.get();
   TYNDALL_TRY(terrain_->prepare(view_, desc_.extent.height, scene_.shadows, cascades_, light_, scene_.terrain.shading));
+  if (model_ != nullptr) TYNDALL_TRY(model_->prepare({view_, light_, params_, scene_}));
 
   const gpu::Device& device = host_->device();
   Result<void> done = host_->run([&](VkCommandBuffer cmd) -> Result<void> {
@@ -286,7 +305,8 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
     images_ready_ = true;
     if (first) TYNDALL_TRY(draw_shadows(cmd));  // jitter moves the picture, not the cascades
     TYNDALL_TRY(draw_view(cmd));
-    TYNDALL_TRY(run_effect(cmd));
+    TYNDALL_TRY(model_ != nullptr ? copy_color(cmd) : run_effect(cmd));
+    TYNDALL_TRY(tonemap(cmd));
     if (floor) TYNDALL_TRY(run_floor(cmd));
     return {};
   });
@@ -294,7 +314,8 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   times_.clear();
   if (desc_.timings) {
     for (const gpu::TimedScope& scope : timer_.read(0)) times_.push_back({scope.name, scope.milliseconds, false});
-    for (const PassTiming& pass : effect_->timings(frame_index_)) times_.push_back({pass.name, pass.gpu_ms, true});
+    const bool by_effect = model_ == nullptr;
+    for (const PassTiming& pass : by_effect ? effect_->timings(frame_index_) : std::span<const PassTiming>()) times_.push_back({pass.name, pass.gpu_ms, true});
   }
   ++frame_index_;
   return {};
@@ -347,8 +368,11 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
                                                      VK_ATTACHMENT_LOAD_OP_CLEAR, {});  // reversed: 0 is far
   begin_pass(cmd, "terrain");
   begin_rendering(device, cmd, desc_.extent, &color, &depth);
-  TYNDALL_TRY(terrain_->draw_view(cmd, view_, light_));
-  {
+  if (model_ != nullptr) {
+    TYNDALL_TRY(model_->draw_ground(cmd, *terrain_, {view_, light_, params_, scene_}));
+    TYNDALL_TRY(model_->draw_sky(cmd, background_constants_.buffer.get()));
+  } else {
+    TYNDALL_TRY(terrain_->draw_view(cmd, view_, light_));
     const gpu::Label label(device, cmd, background_.name);
     const gpu::NamedResource resources[] = {
         gpu::named_buffer("background_block", background_constants_.buffer.get())};
@@ -366,7 +390,6 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
 }
 
 Result<void> Scene::run_effect(VkCommandBuffer cmd) {
-  const gpu::Device& device = host_->device();
   std::array<Cascade, kMaxCascades> cascades;
   for (std::size_t i = 0; i < cascades_.size(); ++i) {
     cascades[i] = {to_mat4(cascades_[i].shadow_from_world()), static_cast<float>(cascades_[i].near_m),
@@ -385,8 +408,19 @@ Result<void> Scene::run_effect(VkCommandBuffer cmd) {
                 static_cast<float>(scene_.sun.angular_radius_deg * kRadPerDeg)};
   inputs.output = {output_.view.get(), VK_IMAGE_LAYOUT_GENERAL};
   inputs.frame_index = frame_index_;
-  TYNDALL_TRY(effect_->record(cmd, inputs));
-  gpu::compute_barrier(device, cmd);
+  return effect_->record(cmd, inputs);
+}
+
+// With a model the scene's colour holds the air already.
+Result<void> Scene::copy_color(VkCommandBuffer cmd) {
+  begin_pass(cmd, "copy");
+  TYNDALL_TRY(copy_to(cmd, output_));
+  end_pass(cmd);
+  return {};
+}
+
+Result<void> Scene::tonemap(VkCommandBuffer cmd) {
+  gpu::compute_barrier(host_->device(), cmd);
   begin_pass(cmd, "tonemap");
   const post::TonemapSettings settings = {static_cast<post::Operator>(scene_.tonemap.operator_),
                                           scene_.tonemap.exposure, scene_.tonemap.white_point};
@@ -396,18 +430,24 @@ Result<void> Scene::run_effect(VkCommandBuffer cmd) {
 }
 
 Result<void> Scene::run_floor(VkCommandBuffer cmd) {
-  const gpu::Device& device = host_->device();
-  gpu::compute_barrier(device, cmd);
+  gpu::compute_barrier(host_->device(), cmd);
   begin_pass(cmd, "floor");
+  TYNDALL_TRY(copy_to(cmd, display_));
+  end_pass(cmd);
+  return {};
+}
+
+// The scene's colour as it is, by the least pass.
+Result<void> Scene::copy_to(VkCommandBuffer cmd, const gpu::Image& to) {
+  const gpu::Device& device = host_->device();
   const gpu::NamedResource resources[] = {
       gpu::named_image("scene_color", color_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, nearest_.get()),
       gpu::named_image("scene_depth", depth_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, nearest_.get()),
-      gpu::named_image("output_color", display_.view.get()),
+      gpu::named_image("output_color", to.view.get()),
   };
   const std::string_view missing = gpu::bind(device, cmd, floor_, resources);
   if (!missing.empty()) return lacks(missing);
   gpu::dispatch(device, cmd, floor_, desc_.extent.width, desc_.extent.height);
-  end_pass(cmd);
   return {};
 }
 
@@ -424,13 +464,14 @@ Result<image::Image> Scene::radiance() { return average(output_, radiance_sum_);
 
 Result<image::Image> Scene::display() { return average(display_, display_sum_); }
 
-Counters Scene::counters() const { return frame_index_ > 0 ? effect_->counters(frame_index_ - 1) : Counters{}; }
+Counters Scene::counters() const { return frame_index_ > 0 && model_ == nullptr ? effect_->counters(frame_index_ - 1) : Counters{}; }
 
 Scene::Memory Scene::memory() const {
   const MemoryUsage effect = effect_->memory();
   const std::span<const ResourceMemory> rows = effect_->resources();
   return {effect.persistent, effect.transient, effect.host, std::vector<ResourceMemory>(rows.begin(), rows.end()),
-          color_.bytes + depth_.bytes + output_.bytes + display_.bytes + shadow_maps_.bytes + terrain_->bytes()};
+          color_.bytes + depth_.bytes + output_.bytes + display_.bytes + shadow_maps_.bytes + terrain_->bytes() +
+              (model_ != nullptr ? model_->bytes() : 0)};
 }
 
 }  // namespace tyndall::scene

@@ -11,6 +11,7 @@
 #include "gpu/timer.hpp"
 #include "image/image.hpp"
 #include "post/tonemap.hpp"
+#include "scene/sky_model.hpp"
 #include "scene/terrain.hpp"
 #include "tables/make_ready.hpp"
 
@@ -35,8 +36,9 @@ class Scene {
   static Result<std::unique_ptr<Scene>> create(gpu::Host& host, const SceneDesc& desc, const Params& params,
                                                const SceneParams& scene);
 
-  // Takes over what the next frame may change (camera, sun, shading, most of the shadows, tone mapping): an
-  // error when `scene` also differs in what the scene was created with.
+  // Takes over what the next frame may change (camera, sun, shading, model, most of the shadows, tone mapping): an
+  // error when `scene` also differs in what the scene was created with. Back to scattering.model = atmosphere makes
+  // the tables ready if they are not.
   Result<void> set_scene(const SceneParams& scene);
 
   // Renders the frame that is `seconds` into the sequence. `floor` adds the pass that costs the least.
@@ -60,10 +62,14 @@ class Scene {
 
  private:
   Result<void> create_objects();
+  Result<void> make_model_ready();
   Result<void> draw_shadows(VkCommandBuffer cmd);
   Result<void> draw_view(VkCommandBuffer cmd);
   Result<void> run_effect(VkCommandBuffer cmd);
+  Result<void> copy_color(VkCommandBuffer cmd);
+  Result<void> tonemap(VkCommandBuffer cmd);
   Result<void> run_floor(VkCommandBuffer cmd);
+  Result<void> copy_to(VkCommandBuffer cmd, const gpu::Image& to);
   Result<void> render_sample(double seconds, const glm::dvec2& jitter, bool first, bool floor);
   Result<void> accumulate(const gpu::Image& image, image::Image& sum);
   Result<image::Image> average(const gpu::Image& image, const image::Image& sum);
@@ -77,6 +83,8 @@ class Scene {
   SceneParams scene_;
   std::unique_ptr<Terrain> terrain_;
   std::unique_ptr<Effect> effect_;
+  std::unique_ptr<SkyModel> model_;  // none: the effect draws the air
+  bool tables_ready_ = false;
   std::unique_ptr<post::Tonemap> tonemap_;
   gpu::Image color_, depth_, shadow_maps_, output_, display_;
   std::vector<gpu::Handle<VkImageView>> shadow_layers_;

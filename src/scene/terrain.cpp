@@ -294,7 +294,12 @@ Result<void> Terrain::draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline,
 }
 
 Result<void> Terrain::draw_view(VkCommandBuffer cmd, const View& view, const TerrainLight& light) {
-  const gpu::NamedResource resources[] = {
+  return draw_view(cmd, view, light, view_pipeline_, {});
+}
+
+Result<void> Terrain::draw_view(VkCommandBuffer cmd, const View& view, const TerrainLight& light,
+                                const gpu::Pipeline& pipeline, std::span<const gpu::NamedResource> more) {
+  std::vector<gpu::NamedResource> resources = {
       gpu::named_buffer("terrain_block", constants_.buffer.get()),
       gpu::named_buffer("blocks_block", blocks_.buffer.get()),
       gpu::named_image("terrain_heights", heights_.view.get(), VK_IMAGE_LAYOUT_GENERAL, nearest_.get()),
@@ -302,7 +307,8 @@ Result<void> Terrain::draw_view(VkCommandBuffer cmd, const View& view, const Ter
       gpu::named_image("sun_transmittance", light.tables.sun_transmittance, VK_IMAGE_LAYOUT_GENERAL, light.linear),
       gpu::named_image("sky_irradiance", light.tables.sky_irradiance, VK_IMAGE_LAYOUT_GENERAL, light.linear),
   };
-  return draw(cmd, view_pipeline_, resources, clip_from_world(view), 0);
+  resources.insert(resources.end(), more.begin(), more.end());
+  return draw(cmd, pipeline, resources, clip_from_world(view), 0);
 }
 
 Result<void> Terrain::draw_cascade(VkCommandBuffer cmd, const CascadeFit& cascade, std::uint32_t index) {

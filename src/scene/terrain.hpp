@@ -44,6 +44,10 @@ class Terrain {
                        TerrainShading shading);
   // Inside a rendering scope with colour and depth, or with the layer of a shadow map.
   Result<void> draw_view(VkCommandBuffer cmd, const View& view, const TerrainLight& light);
+  // The same through a pipeline of someone else's, over scene/terrain_vertex.glsl and scene/terrain_ground.glsl;
+  // `more` are the resources that it reads beyond the terrain's.
+  Result<void> draw_view(VkCommandBuffer cmd, const View& view, const TerrainLight& light,
+                         const gpu::Pipeline& pipeline, std::span<const gpu::NamedResource> more);
   Result<void> draw_cascade(VkCommandBuffer cmd, const CascadeFit& cascade, std::uint32_t index);
 
  private:

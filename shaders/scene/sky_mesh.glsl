@@ -1,0 +1,28 @@
+// The sky mesh of src/scene/sky_model.hpp: a sphere of directions around the camera, whose vertices a model
+// moves to whatever distance it likes. For vertex shaders.
+#ifndef TYNDALL_SKY_MESH_GLSL
+#define TYNDALL_SKY_MESH_GLSL
+
+layout(std430, binding = 1) readonly buffer mesh_block {
+  mat4 clip_from_world;
+  vec3 mesh_up;      // away from the planet's centre
+  uint mesh_columns;
+  vec3 mesh_ahead;   // horizontal, below or above the sun
+  uint mesh_rows;
+  vec3 mesh_right;
+  float unused_mesh;
+  float mesh_angles[];  // azimuths from mesh_ahead of the columns + 1 lines, then zenith angles of the rows + 1 [rad]
+};
+
+// Unit vector from the camera to vertex `index`, in the world's frame.
+vec3 sky_mesh_direction(uint index) {
+  uint row = index / (mesh_columns + 1u);
+  float azimuth = mesh_angles[index - row * (mesh_columns + 1u)];
+  float zenith = mesh_angles[mesh_columns + 1u + row];
+  return mesh_up * cos(zenith) + (mesh_ahead * cos(azimuth) + mesh_right * sin(azimuth)) * sin(zenith);
+}
+
+// Where a vertex at `offset` from the camera is drawn: at the depth of the sky, wherever it is.
+vec4 sky_mesh_clip(vec3 offset) { return clip_from_world * vec4(offset, 0.0); }
+
+#endif
