@@ -44,6 +44,11 @@ struct DeviceInfo {
   // Plain-language remarks about suspicious inputs; see EffectDesc::check_inputs.
   void (*message)(void* user, Severity severity, std::string_view text) = nullptr;
   void* message_user = nullptr;
+  // For work on the shaders while a program runs: SPIR-V to use in place of the built-in shader of that name, valid
+  // until the pipelines are made, or an empty span. Its bindings must be those of the built-in one. Tables that
+  // other shaders made do not belong under table_key().
+  std::span<const std::uint32_t> (*replace_shader)(void* user, std::string_view name) = nullptr;
+  void* replace_shader_user = nullptr;
 };
 
 // What a device must have been created with: Vulkan 1.3 and these extensions, no optional feature.
@@ -176,7 +181,7 @@ struct ScatteringTables {
 
 class Effect {
  public:
-  // Creates every pipeline and all memory. The tables are not built yet: see record_precompute().
+  // Creates all memory, and the pipelines that `params` need. The tables are not built yet: see record_precompute().
   static Result<Effect> create(const DeviceInfo& device, const EffectDesc& desc, const Params& params);
   Effect(Effect&&) noexcept;
   Effect& operator=(Effect&&) noexcept;
@@ -186,8 +191,17 @@ class Effect {
   // nothing. Tables that become stale are rebuilt by record_precompute(), for which memory is allocated here;
   // the finished ones stay in use until then. Views of light_tables() and scattering_tables() change when
   // record_precompute() reports the build complete.
+  // Pipelines that were not needed before are made here, which takes about 0.1 s each on a CPU device, unless
+  // prepare_pipelines() has made them. record() makes one only for a frame without shadow cascades while
+  // scattering.light_shafts and epipolar.min_max_tree are on.
   Result<void> set_params(const Params& params);
   [[nodiscard]] const Params& params() const;
+  // Makes at most `budget` of the pipelines that other parameters would need, so that switching costs nothing.
+  Result<Progress> prepare_pipelines(std::uint32_t budget = UINT32_MAX);
+
+  // Takes over other limits than those of EffectDesc, as set_params() takes over parameters: an error changes nothing,
+  // what commands in flight use is kept until they are done.
+  Result<void> set_limits(VkExtent2D max_extent, std::uint32_t max_cascades, std::uint32_t max_shadow_resolution);
 
   [[nodiscard]] Progress precompute_progress() const;
   // Records at most `budget` slices of the building of stale tables. Nothing to do: records nothing.

@@ -73,6 +73,8 @@ Result<void> open_device(gpu::Device& device, const DeviceInfo& info) {
   device.device = info.device;
   device.allocator = info.allocator;
   device.pipeline_cache = info.pipeline_cache;
+  device.replace_shader = info.replace_shader;
+  device.replace_shader_user = info.replace_shader_user;
   return gpu::init_device(device, info.get_instance_proc_addr);
 }
 
@@ -102,7 +104,7 @@ struct Effect::State {
   Params params;
   gpu::Device device;
 
-  std::array<gpu::Pipeline, kModeCount> march_per_pixel;
+  std::array<gpu::Pipeline, kModeCount> march_per_pixel;  // made when asked for
   gpu::Pipeline no_air;
   Epipolar epipolar;
   TableBuilder tables;
@@ -128,6 +130,8 @@ struct Effect::State {
   }
 
   Result<void> create_objects();
+  Result<void> make_march_per_pixel(std::uint32_t mode);
+  Result<void> prepare_pipelines(const Params& params);
   void prepare_images(VkCommandBuffer cmd);
   void clear_counters(VkCommandBuffer cmd, VkDeviceSize offset);
   void read_counters(VkCommandBuffer cmd, VkDeviceSize offset);
@@ -163,18 +167,11 @@ Result<Effect> Effect::create(const DeviceInfo& info, const EffectDesc& desc, co
 
 Result<void> Effect::State::create_objects() {
   const bool full = desc.output_format == OutputFormat::rgba32f;
-  const gpu::Shader& march = full ? shaders::march_per_pixel_comp_rgba32f : shaders::march_per_pixel_comp_rgba16f;
-  for (std::uint32_t mode = 0; mode < kModeCount; ++mode) {
-    if (!mode_exists(mode)) continue;
-    const std::array<gpu::Constant, 3> m = mode_constants(mode);
-    const gpu::Constant of_march[] = {m[0], m[1], m[2], {8, desc.counters ? 1U : 0U}};
-    TYNDALL_ASSIGN(march_per_pixel[mode], gpu::create_compute_pipeline(device, march, of_march));
-    march_per_pixel[mode].name = "march_per_pixel";
-  }
   TYNDALL_ASSIGN(no_air, gpu::create_compute_pipeline(
                              device, full ? shaders::no_air_comp_rgba32f : shaders::no_air_comp_rgba16f));
   no_air.name = "no_air";
   TYNDALL_TRY(epipolar.create(device, desc, params));
+  TYNDALL_TRY(prepare_pipelines(params));
   TYNDALL_TRY(tables.create(device, desc.frames_in_flight, desc.timings, params));
   TYNDALL_ASSIGN(no_shadows, gpu::create_image(device, kNoShadows));
   TYNDALL_ASSIGN(constants, gpu::create_buffer(device, "constants", kSlotBytes * desc.frames_in_flight,
@@ -207,6 +204,24 @@ Result<void> Effect::State::create_objects() {
   return {};
 }
 
+Result<void> Effect::State::make_march_per_pixel(std::uint32_t mode) {
+  if (march_per_pixel[mode].pipeline) return {};
+  const bool full = desc.output_format == OutputFormat::rgba32f;
+  const gpu::Shader& shader = full ? shaders::march_per_pixel_comp_rgba32f : shaders::march_per_pixel_comp_rgba16f;
+  const std::array<gpu::Constant, 3> m = mode_constants(mode);
+  const gpu::Constant of_march[] = {m[0], m[1], m[2], {8, desc.counters ? 1U : 0U}};
+  TYNDALL_ASSIGN(march_per_pixel[mode], gpu::create_compute_pipeline(device, shader, of_march));
+  march_per_pixel[mode].name = "march_per_pixel";
+  return {};
+}
+
+// The dear pipelines that record() will ask for.
+Result<void> Effect::State::prepare_pipelines(const Params& p) {
+  if (!p.scattering.enabled) return {};
+  if (p.scattering.technique == Technique::epipolar) return epipolar.prepare(p);
+  return make_march_per_pixel(mode_index(p.scattering));
+}
+
 // Labels, binds by name and dispatches one pass over `size` invocations.
 Result<void> Effect::State::run(VkCommandBuffer cmd, const gpu::Pipeline& pipeline,
                                 std::span<const gpu::NamedResource> resources, const void* push, VkExtent3D size) {
@@ -222,9 +237,40 @@ Result<void> Effect::State::run(VkCommandBuffer cmd, const gpu::Pipeline& pipeli
 
 Result<void> Effect::set_params(const Params& params) {
   TYNDALL_TRY(check_params(params));
+  TYNDALL_TRY(state_->prepare_pipelines(params));
   TYNDALL_TRY(state_->epipolar.set_params(params));
   TYNDALL_TRY(state_->tables.set_params(params));
   state_->params = params;
+  return {};
+}
+
+Result<Progress> Effect::prepare_pipelines(std::uint32_t budget) {
+  Progress progress;
+  for (std::uint32_t mode = 0; mode < kModeCount; ++mode) {
+    if (!mode_exists(mode)) continue;
+    ++progress.total;
+    const bool made = static_cast<bool>(state_->march_per_pixel[mode].pipeline);
+    if (!made && budget > 0) {
+      TYNDALL_TRY(state_->make_march_per_pixel(mode));
+      --budget;
+    } else if (!made) {
+      continue;
+    }
+    ++progress.done;
+  }
+  TYNDALL_TRY(state_->epipolar.prepare_others(budget, progress));
+  return progress;
+}
+
+Result<void> Effect::set_limits(VkExtent2D max_extent, std::uint32_t max_cascades,
+                                std::uint32_t max_shadow_resolution) {
+  EffectDesc desc = state_->desc;
+  desc.max_extent = max_extent;
+  desc.max_cascades = max_cascades;
+  desc.max_shadow_resolution = max_shadow_resolution;
+  TYNDALL_TRY(check_desc(state_->info, desc));
+  TYNDALL_TRY(state_->epipolar.set_limits(desc, state_->params));
+  state_->desc = desc;
   return {};
 }
 

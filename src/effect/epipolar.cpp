@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "effect_shaders.hpp"
 #include "gpu/try.hpp"
@@ -175,7 +176,6 @@ Result<void> Epipolar::create(const gpu::Device& device, const EffectDesc& desc,
 
 Result<void> Epipolar::create_pipelines() {
   const bool full = desc_.output_format == OutputFormat::rgba32f;
-  const std::uint32_t counting = desc_.counters ? 1 : 0;
   const auto make = [this](gpu::Pipeline& out, const gpu::Shader& shader, const char* name,
                            std::span<const gpu::Constant> constants = {}) -> Result<void> {
     TYNDALL_ASSIGN(out, gpu::create_compute_pipeline(*device_, shader, constants));
@@ -204,15 +204,56 @@ Result<void> Epipolar::create_pipelines() {
                        of_unwarp));
     }
   }
+  return {};
+}
+
+bool Epipolar::walks(const Params& params) {
+  return params.scattering.single != SingleScattering::none ||
+         params.scattering.multiple == MultipleScattering::occluded;
+}
+
+Result<const gpu::Pipeline*> Epipolar::march(bool tree, std::uint32_t mode) {
+  gpu::Pipeline& out = march_samples_[tree ? 1 : 0][mode];
+  if (!out.pipeline) {
+    const std::array<gpu::Constant, 3> m = mode_constants(mode);
+    const gpu::Constant constants[] = {m[0], m[1], m[2], {3, tree ? 1U : 0U}, {8, desc_.counters ? 1U : 0U}};
+    TYNDALL_ASSIGN(out, gpu::create_compute_pipeline(*device_, shaders::march_samples_comp, constants));
+    out.name = "march_samples";
+  }
+  return &out;
+}
+
+Result<void> Epipolar::prepare(const Params& params) {
+  if (params.scattering.technique != Technique::epipolar) return {};
+  // As record() chooses, for frames with cascades.
+  const bool tree = params.epipolar.min_max_tree.value != 0 && walks(params) && params.scattering.light_shafts.value != 0;
+  TYNDALL_ASSIGN([[maybe_unused]] const gpu::Pipeline* pipeline, march(tree, mode_index(params.scattering)));
+  return {};
+}
+
+Result<void> Epipolar::prepare_others(std::uint32_t& budget, Progress& progress) {
   for (std::uint32_t mode = 0; mode < kModeCount; ++mode) {
     if (!mode_exists(mode)) continue;
-    const std::array<gpu::Constant, 3> m = mode_constants(mode);
-    for (std::uint32_t tree = 0; tree < 2; ++tree) {
-      const gpu::Constant constants[] = {m[0], m[1], m[2], {3, tree}, {8, counting}};
-      TYNDALL_TRY(make(march_samples_[tree][mode], shaders::march_samples_comp, "march_samples", constants));
+    for (const bool tree : {false, true}) {
+      ++progress.total;
+      const bool made = static_cast<bool>(march_samples_[tree ? 1 : 0][mode].pipeline);
+      if (!made && budget > 0) {
+        TYNDALL_ASSIGN([[maybe_unused]] const gpu::Pipeline* pipeline, march(tree, mode));
+        --budget;
+        ++progress.done;
+      } else if (made) {
+        ++progress.done;
+      }
     }
   }
   return {};
+}
+
+Result<void> Epipolar::set_limits(const EffectDesc& desc, const Params& params) {
+  const EffectDesc before = std::exchange(desc_, desc);
+  Result<void> done = set_params(params);
+  if (!done) desc_ = before;
+  return done;
 }
 
 Result<void> Epipolar::set_params(const Params& params) {
@@ -295,12 +336,11 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
       params.scattering.light_shafts ? static_cast<std::uint32_t>(inputs.cascades.size()) : 0;
   const std::uint32_t marched = cascades > 0 ? cascades - inputs.first_marched_cascade : 0;
   const std::uint32_t mode = mode_index(params.scattering);
-  const bool walks = params.scattering.single != SingleScattering::none ||
-                     params.scattering.multiple == MultipleScattering::occluded;
-  const bool trees = p.min_max_tree.value != 0 && walks && marched > 0;
+  const bool walking = walks(params);
+  const bool trees = p.min_max_tree.value != 0 && walking && marched > 0;
   const bool breaks = lists_breaks(params);
   CascadeProcessing processing = params.shadows.cascade_processing;
-  if (marched == 0 || !walks) processing = CascadeProcessing::single_pass;
+  if (marched == 0 || !walking) processing = CascadeProcessing::single_pass;
   const bool instanced = processing == CascadeProcessing::multi_pass_instanced;
 
   // Empty work lists.
@@ -324,12 +364,13 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
   TYNDALL_TRY(run(slice_samples_, {p.samples, p.slices}));
   const gpu::Pipeline& refine = refine_samples_[static_cast<std::size_t>(p.refinement)];
   TYNDALL_TRY(run(refine, {p.slices * refine.local_size[0]}));
-  if (walks && marched > 0) TYNDALL_TRY(run(slice_directions_, {p.slices, marched}));
+  if (walking && marched > 0) TYNDALL_TRY(run(slice_directions_, {p.slices, marched}));
   lists_ready();
   if (trees) {
     TYNDALL_TRY(run_list(shadow_tree_[static_cast<std::size_t>(p.min_max_format)], EpipolarBuffer::tree_list));
   }
-  const gpu::Pipeline& march = march_samples_[trees ? 1 : 0][mode];
+  TYNDALL_ASSIGN(const gpu::Pipeline* chosen, this->march(trees, mode));
+  const gpu::Pipeline& march = *chosen;
   struct MarchPush {
     std::uint32_t processing, turn;
   };

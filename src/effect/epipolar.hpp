@@ -41,7 +41,13 @@ class Epipolar {
   // Allocates what the parameters ask for; what commands in flight still use is kept until begin_frame() has
   // been called often enough.
   Result<void> set_params(const Params& params);
+  // The same for other limits in `desc`.
+  Result<void> set_limits(const EffectDesc& desc, const Params& params);
   void begin_frame();
+  // Pipelines of the march are dear to make: those that these parameters need, where missing.
+  Result<void> prepare(const Params& params);
+  // All others, at most `budget`, which is counted down; `progress` counts those that exist, and all.
+  Result<void> prepare_others(std::uint32_t& budget, Progress& progress);
 
   // Records all passes. `resources` are those of the frame: medium_block, frame_block, epipolar_block,
   // counter_block, scene_color, scene_depth, shadow_maps, shadow_depths, the scattering tables, output_color.
@@ -63,6 +69,9 @@ class Epipolar {
   using PerMode = std::array<gpu::Pipeline, kModeCount>;
 
   Result<void> create_pipelines();
+  // Whether the march looks at the shadows at all.
+  [[nodiscard]] static bool walks(const Params& params);
+  Result<const gpu::Pipeline*> march(bool tree, std::uint32_t mode);
 
   const gpu::Device* device_ = nullptr;
   EffectDesc desc_;
@@ -71,7 +80,7 @@ class Epipolar {
   gpu::Pipeline slice_end_points_, slice_samples_, slice_directions_, interpolate_samples_, show_sampling_;
   std::array<gpu::Pipeline, 2> refine_samples_;  // by Refinement
   std::array<gpu::Pipeline, 2> shadow_tree_;     // by MinMaxFormat
-  std::array<PerMode, 2> march_samples_;         // without and with tree
+  std::array<PerMode, 2> march_samples_;         // without and with tree; made when asked for
   gpu::Pipeline correct_pixels_;
   std::array<std::array<gpu::Pipeline, 2>, 2> unwarp_, unwarp_pixels_;  // by Extinction, and whether breaks are listed
 };

@@ -1,5 +1,5 @@
 // The modes of scattering.* that shaders are specialised for (shaders/frame/modes.glsl): one pipeline for each
-// combination that differs, all created with the effect, so that switching costs nothing.
+// combination that differs, made when it is first asked for or by Effect::prepare_pipelines().
 #pragma once
 
 #include <array>

@@ -3,6 +3,9 @@
 // A Device must outlive every object made with it and must not move; one thread at a time.
 #pragma once
 
+#include <cstdint>
+#include <span>
+#include <string_view>
 #include <utility>
 
 #include "gpu/functions.hpp"
@@ -19,6 +22,9 @@ struct Device {
   VkPipelineCache pipeline_cache = VK_NULL_HANDLE;
   VkPhysicalDeviceProperties properties = {};
   VkPhysicalDeviceMemoryProperties memory = {};
+  // SPIR-V to use in place of the built-in shader of that name, or an empty span; see DeviceInfo::replace_shader.
+  std::span<const std::uint32_t> (*replace_shader)(void* user, std::string_view name) = nullptr;
+  void* replace_shader_user = nullptr;
 };
 
 // An Error for a VkResult, saying which call on which object failed.

@@ -68,10 +68,15 @@ Result<void> create_layouts(const Device& device, Pipeline& pipeline,
 }
 
 Result<Handle<VkShaderModule>> create_module(const Device& device, const Shader& shader) {
+  std::span<const std::uint32_t> spirv = shader.spirv;
+  if (device.replace_shader != nullptr) {
+    const std::span<const std::uint32_t> other = device.replace_shader(device.replace_shader_user, shader.name);
+    if (!other.empty()) spirv = other;
+  }
   VkShaderModuleCreateInfo info = {};
   info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-  info.codeSize = shader.spirv.size_bytes();
-  info.pCode = shader.spirv.data();
+  info.codeSize = spirv.size_bytes();
+  info.pCode = spirv.data();
   VkShaderModule module = VK_NULL_HANDLE;
   const VkResult result = device.vk.CreateShaderModule(device.device, &info, device.allocator, &module);
   if (result != VK_SUCCESS) return vulkan_error(result, "creating the shader", shader.name);

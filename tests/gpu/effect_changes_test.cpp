@@ -1,0 +1,104 @@
+// What an effect takes over after its creation: parameters that need other pipelines, and other limits.
+#include <cmath>
+
+#include "effect_frame.hpp"
+
+namespace tyndall {
+namespace {
+
+TestFrame small_frame() {
+  TestFrame frame;
+  frame.view = TestView::at(2000.0, 0.2, 0.05, 0.8);
+  frame.to_sun = {0.3, 0.4, -0.866};
+  frame.distance_m = [](std::uint32_t x, std::uint32_t) { return x < 5 ? 8000.0 : 0.0; };
+  Cascade cascade;
+  cascade.far_m = 20000.0F;
+  cascade.shadow_from_world.m[0] = cascade.shadow_from_world.m[9] = 1e-5F;
+  cascade.shadow_from_world.m[5] = 0.0F;
+  cascade.shadow_from_world.m[6] = 1e-6F;
+  cascade.shadow_from_world.m[10] = 0.0F;
+  cascade.shadow_from_world.m[12] = cascade.shadow_from_world.m[13] = cascade.shadow_from_world.m[14] = 0.5F;
+  frame.cascades = {cascade, cascade};
+  frame.shadow_depth = [](std::uint32_t, double u, double v) { return std::fmod(8.0 * u + v, 1.0) < 0.5 ? 0.0F : 1.0F; };
+  return frame;
+}
+
+Params with_technique(Technique technique) {
+  Params params;
+  params.scattering.technique = technique;
+  return params;
+}
+
+class EffectChanges : public GpuTest {
+ protected:
+  DeviceInfo info() {
+    DeviceInfo out;
+    out.instance = host().device().instance;
+    out.physical_device = host().device().physical_device;
+    out.device = host().device().device;
+    out.get_instance_proc_addr = host().get_instance_proc_addr();
+    return out;
+  }
+};
+
+// Pipelines that are made when asked for give what those made at creation give, and can be made beforehand.
+TEST_F(EffectChanges, PipelinesAreMadeWhenAskedFor) {
+  const TestFrame frame = small_frame();
+  Result<FrameImages> images = FrameImages::create(host(), frame, OutputFormat::rgba32f);
+  ASSERT_OK(images);
+  Result<Effect> effect = Effect::create(info(), desc_for(frame), with_technique(Technique::epipolar));
+  ASSERT_OK(effect);
+  const Result<Progress> none = effect.value().prepare_pipelines(0);
+  ASSERT_OK(none);
+  EXPECT_EQ(none.value().done, 1U);  // the one that the parameters need
+  ASSERT_OK(effect.value().set_params(with_technique(Technique::brute_force)));
+  const Result<Progress> both = effect.value().prepare_pipelines(0);
+  ASSERT_OK(both);
+  EXPECT_EQ(both.value().done, 2U);
+  const Result<Progress> some = effect.value().prepare_pipelines(3);
+  ASSERT_OK(some);
+  EXPECT_EQ(some.value().done, 5U);
+  const Result<Progress> all = effect.value().prepare_pipelines();
+  ASSERT_OK(all);
+  EXPECT_TRUE(all.value().complete());
+  EXPECT_EQ(all.value().total, some.value().total);
+}
+
+// Limits can change: what the effect then takes is what it takes when created with them, and it draws the same.
+TEST_F(EffectChanges, LimitsChange) {
+  const TestFrame frame = small_frame();
+  Result<FrameImages> images = FrameImages::create(host(), frame, OutputFormat::rgba32f);
+  ASSERT_OK(images);
+  Params params = with_technique(Technique::epipolar);
+  params.scattering.single = SingleScattering::integration;  // no tables are needed
+  params.scattering.multiple = MultipleScattering::none;
+  const EffectDesc desc = desc_for(frame);
+  EffectDesc small = desc;
+  small.max_extent = {8, 8};
+  small.max_cascades = 1;
+  small.max_shadow_resolution = 64;
+  Result<Effect> grown = Effect::create(info(), small, params);
+  Result<Effect> whole = Effect::create(info(), desc, params);
+  ASSERT_OK(grown);
+  ASSERT_OK(whole);
+  EXPECT_FALSE(grown.value().set_limits({0, 8}, 1, 64).ok());
+  ASSERT_OK(grown.value().set_limits(desc.max_extent, desc.max_cascades, desc.max_shadow_resolution));
+  std::vector<std::byte> bytes[2];
+  for (int i = 0; i < 2; ++i) {
+    Effect& effect = i == 0 ? grown.value() : whole.value();
+    for (std::uint64_t k = 0; k < 4; ++k) {  // until what the first limits needed is given back
+      FrameInputs inputs = images.value().inputs(frame);
+      inputs.frame_index = k;
+      ASSERT_OK(host().run([&](VkCommandBuffer cmd) { return effect.record(cmd, inputs); }));
+    }
+    Result<std::vector<std::byte>> output = images.value().output_bytes(host());
+    ASSERT_OK(output);
+    bytes[i] = output.value();
+  }
+  EXPECT_EQ(bytes[0], bytes[1]);
+  EXPECT_EQ(grown.value().memory().persistent, whole.value().memory().persistent);
+  EXPECT_EQ(grown.value().memory().transient, whole.value().memory().transient);
+}
+
+}  // namespace
+}  // namespace tyndall
