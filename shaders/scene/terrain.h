@@ -15,7 +15,7 @@ struct TerrainConstants {
   vec3 sun_irradiance;
   float pixel_angle_rad;
   vec3 camera_position;
-  float unused_0;
+  uint block_cells;      // along a side of a block
   uint layers;
   uint shading;          // a TerrainShading of scene_params.def
   uint seed;

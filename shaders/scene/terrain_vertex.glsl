@@ -25,13 +25,12 @@ struct TerrainVertex {
   uint layer;
 };
 
-const uint kVerticesPerSide = 65u;
-
 TerrainVertex terrain_vertex(uint vertex, uint instance) {
   ivec4 block = blocks[push.first_block + instance];
   uint layer = uint(block.z);
   TerrainLevel level = terrain.levels[layer];
-  ivec2 grid = block.xy + ivec2(vertex % kVerticesPerSide, vertex / kVerticesPerSide);
+  uint side = terrain.block_cells + 1u;
+  ivec2 grid = block.xy + ivec2(vertex % side, vertex / side);
   ivec2 even = grid & ~1;
 
   vec2 offset = vec2(grid) * level.cell_m - terrain.camera_map;

@@ -147,7 +147,7 @@ VkBool32 VKAPI_PTR Host::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT /*sev
   return VK_FALSE;
 }
 
-Result<void> Host::create_instance(bool validation) {
+Result<void> Host::create_instance(bool validation, const std::vector<const char*>& wanted_extensions) {
   VkApplicationInfo application = {};
   application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
   application.pApplicationName = "tyndall";
@@ -157,7 +157,7 @@ Result<void> Host::create_instance(bool validation) {
   info.pApplicationInfo = &application;
 
   const char* layers[] = {kValidationLayer};
-  const char* extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
+  std::vector<const char*> extensions = wanted_extensions;
   const VkValidationFeatureEnableEXT enables[] = {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
   VkDebugUtilsMessengerCreateInfoEXT messenger = {};
   messenger.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
@@ -179,9 +179,10 @@ Result<void> Host::create_instance(bool validation) {
     info.pNext = &features;
     info.enabledLayerCount = 1;
     info.ppEnabledLayerNames = layers;
-    info.enabledExtensionCount = 1;
-    info.ppEnabledExtensionNames = extensions;
+    extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
   }
+  info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
+  info.ppEnabledExtensionNames = extensions.data();
   const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
   if (result != VK_SUCCESS) {
     return Error{ErrorCode::unsupported_device,
@@ -197,11 +198,20 @@ Result<void> Host::create_instance(bool validation) {
   return {};
 }
 
-Result<void> Host::create_device(const std::string& wanted) {
+Result<void> Host::create_device(const HostDesc& desc) {
   TYNDALL_ASSIGN(const std::vector<VkPhysicalDevice> devices, enumerate(instance_));
   std::vector<DeviceRow> rows;
-  for (VkPhysicalDevice device : devices) rows.push_back(describe(device));
-  TYNDALL_ASSIGN(const std::size_t index, choose(rows, wanted));
+  for (VkPhysicalDevice device : devices) {
+    rows.push_back(describe(device));
+    for (const char* extension : desc.device_extensions) {
+      if (!has_extension(device, extension)) rows.back().missing.emplace_back(extension);
+    }
+    const std::uint32_t family = find_queue_family(device);
+    if (desc.can_present && family != UINT32_MAX && !desc.can_present(instance_, device, family)) {
+      rows.back().missing.emplace_back("a queue that can present to this display");
+    }
+  }
+  TYNDALL_ASSIGN(const std::size_t index, choose(rows, desc.device));
   device_.instance = instance_;
   device_.physical_device = devices[index];
   queue_family_ = find_queue_family(devices[index]);
@@ -215,14 +225,15 @@ Result<void> Host::create_device(const std::string& wanted) {
   VkPhysicalDeviceVulkan13Features features = {};
   features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
   features.dynamicRendering = VK_TRUE;
-  const char* extensions[] = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
+  std::vector<const char*> extensions = desc.device_extensions;
+  extensions.push_back(VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
   VkDeviceCreateInfo info = {};
   info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
   info.pNext = &features;
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue;
-  info.enabledExtensionCount = 1;
-  info.ppEnabledExtensionNames = extensions;
+  info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
+  info.ppEnabledExtensionNames = extensions.data();
   VkResult result = vkCreateDevice(device_.physical_device, &info, nullptr, &device_.device);
   if (result != VK_SUCCESS) return vulkan_error(result, "creating the Vulkan device", rows[index].name.c_str());
   TYNDALL_TRY(init_device(device_, vkGetInstanceProcAddr));
@@ -255,8 +266,8 @@ Result<void> Host::create_device(const std::string& wanted) {
 Result<std::unique_ptr<Host>> Host::create(const HostDesc& desc) {
   std::unique_ptr<Host> host(new Host());
   host->validation_log_ = desc.validation_log;
-  TYNDALL_TRY(host->create_instance(desc.validation));
-  TYNDALL_TRY(host->create_device(desc.device));
+  TYNDALL_TRY(host->create_instance(desc.validation, desc.instance_extensions));
+  TYNDALL_TRY(host->create_device(desc));
   return host;
 }
 

@@ -29,6 +29,10 @@ struct HostDesc {
   // Gets every validation message, those about what is left when the device is destroyed included; outlives
   // the Host.
   std::vector<std::string>* validation_log = nullptr;
+  // For programs with a window: what the windowing system needs, and whether a queue family can present there.
+  std::vector<const char*> instance_extensions = {};
+  std::vector<const char*> device_extensions = {};
+  std::function<bool(VkInstance, VkPhysicalDevice, std::uint32_t queue_family)> can_present = {};
 };
 
 // Instance, device, one queue with graphics and compute, and the helpers to use it synchronously.
@@ -45,6 +49,12 @@ class Host {
   [[nodiscard]] const Device& device() const { return device_; }
   [[nodiscard]] PFN_vkGetInstanceProcAddr get_instance_proc_addr() const;
   [[nodiscard]] std::uint32_t queue_family() const { return queue_family_; }
+  [[nodiscard]] VkQueue queue() const { return queue_; }
+  // See DeviceInfo::replace_shader: for every pipeline made from here on.
+  void set_replace_shader(std::span<const std::uint32_t> (*replace)(void* user, std::string_view name), void* user) {
+    device_.replace_shader = replace;
+    device_.replace_shader_user = user;
+  }
   [[nodiscard]] std::string device_name() const { return device_.properties.deviceName; }
 
   // Records with `record` into a command buffer, submits it and waits until it has completed.
@@ -56,8 +66,8 @@ class Host {
 
  private:
   Host() = default;
-  Result<void> create_instance(bool validation);
-  Result<void> create_device(const std::string& device);
+  Result<void> create_instance(bool validation, const std::vector<const char*>& wanted_extensions = {});
+  Result<void> create_device(const HostDesc& desc);
   static VkBool32 VKAPI_PTR on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
                                        VkDebugUtilsMessageTypeFlagsEXT types,
                                        const VkDebugUtilsMessengerCallbackDataEXT* data, void* user);

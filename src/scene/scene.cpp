@@ -5,17 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "gpu/try.hpp"
 #include "scene/chart.hpp"
+#include "scene/formats.hpp"
 #include "scene/sun_disc.hpp"
 #include "scene_shaders.hpp"
 
 namespace tyndall::scene {
 namespace {
 
-constexpr VkFormat kColorFormat = VK_FORMAT_R32G32B32A32_SFLOAT;  // the sun's disc exceeds half precision
-constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
 constexpr std::uint32_t kMaxTimedPasses = 24;
 constexpr double kRadPerDeg = 0.017453292519943295;
 constexpr double kLeastHeight_m = 2.0;  // of the camera above the ground
@@ -116,7 +116,8 @@ Result<std::unique_ptr<Scene>> Scene::create(gpu::Host& host, const SceneDesc& d
   out->desc_ = desc;
   out->params_ = params;
   out->scene_ = scene;
-  TYNDALL_ASSIGN(out->terrain_, Terrain::create(host, scene.terrain, params.planet.radius_m, kColorFormat, kDepthFormat));
+  TYNDALL_ASSIGN(out->terrain_, Terrain::create(host, scene.terrain, params.planet.radius_m, kColorFormat, kDepthFormat,
+                                                 desc.terrain_coarseness));
   out->notes_ = out->terrain_->notes();
   TYNDALL_TRY(out->create_objects());
   return out;
@@ -134,6 +135,8 @@ Result<void> Scene::create_objects() {
     if (std::find(notes->begin(), notes->end(), text) == notes->end()) notes->emplace_back(text);
   };
   info.message_user = &notes_;
+  info.replace_shader = device.replace_shader;
+  info.replace_shader_user = device.replace_shader_user;
   EffectDesc effect_desc;
   effect_desc.max_extent = desc_.extent;
   effect_desc.frames_in_flight = 1;
@@ -147,26 +150,9 @@ Result<void> Scene::create_objects() {
   TYNDALL_ASSIGN(post::Tonemap tonemap, post::Tonemap::create(device));
   tonemap_ = std::make_unique<post::Tonemap>(std::move(tonemap));
 
-  const VkExtent3D extent = {desc_.extent.width, desc_.extent.height, 1};
-  const std::uint32_t resolution = scene_.shadows.resolution;
-  TYNDALL_TRY(check_memory(device, desc_.extent, resolution, scene_.shadows.cascades));
-  TYNDALL_ASSIGN(color_, gpu::create_image(device, {"scene_color", kColorFormat, extent,
-                                                    VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT}));
-  TYNDALL_ASSIGN(depth_, gpu::create_image(device, {"scene_depth", kDepthFormat, extent,
-                                                    VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
-                                                        VK_IMAGE_USAGE_SAMPLED_BIT}));
-  TYNDALL_ASSIGN(output_, gpu::create_image(device, {"output", kColorFormat, extent,
-                                                     VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}));
-  TYNDALL_ASSIGN(display_, gpu::create_image(device, {"display", kColorFormat, extent,
-                                                      VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}));
-  TYNDALL_ASSIGN(shadow_maps_,
-                 gpu::create_image(device, {"shadow_maps", kDepthFormat, {resolution, resolution, 1},
-                                            VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-                                            scene_.shadows.cascades, 1, true}));
-  for (std::uint32_t i = 0; i < scene_.shadows.cascades; ++i) {
-    TYNDALL_ASSIGN(gpu::Handle<VkImageView> layer, gpu::create_layer_view(device, shadow_maps_, i));
-    shadow_layers_.push_back(std::move(layer));
-  }
+  TYNDALL_TRY(check_memory(device, desc_.extent, scene_.shadows.resolution, scene_.shadows.cascades));
+  TYNDALL_TRY(create_images(desc_.extent));
+  TYNDALL_TRY(create_shadow_maps(scene_.shadows));
   TYNDALL_ASSIGN(linear_, gpu::create_sampler(device, {}));
   TYNDALL_ASSIGN(nearest_, gpu::create_sampler(device, {.filter = VK_FILTER_NEAREST}));
   gpu::SamplerDesc compare;
@@ -190,38 +176,6 @@ Result<void> Scene::create_objects() {
     TYNDALL_ASSIGN(timer_, gpu::Timer::create(device, 1, kMaxTimedPasses));
   }
   return make_model_ready();
-}
-
-// The tables, or the model that draws without them.
-Result<void> Scene::make_model_ready() {
-  if (scene_.scattering.model == ScatteringModel::atmosphere) {
-    model_.reset();
-    if (tables_ready_) return {};
-    TYNDALL_ASSIGN(const tables::Outcome made, tables::make_ready(*host_, *effect_, desc_.make_tables));
-    notes_.insert(notes_.end(), made.notes.begin(), made.notes.end());
-    tables_ready_ = true;
-    return {};
-  }
-  TYNDALL_ASSIGN(model_, create_sky_model(*host_, scene_, kColorFormat, kDepthFormat));
-  return {};
-}
-
-Result<void> Scene::set_scene(const SceneParams& scene) {
-  const TerrainParams& terrain = scene_.terrain;
-  if (scene.terrain.source != terrain.source || scene.terrain.seed != terrain.seed ||
-      scene.terrain.exaggeration != terrain.exaggeration || scene.shadows.resolution != scene_.shadows.resolution ||
-      scene.shadows.cascades != scene_.shadows.cascades) {
-    return Error{ErrorCode::invalid_argument,
-                 "terrain.source, seed and exaggeration and shadows.resolution and cascades need a new scene"};
-  }
-  const bool other_model = scene.scattering.model != scene_.scattering.model ||
-                           scene.scattering.evaluate != scene_.scattering.evaluate;
-  const SceneParams before = scene_;
-  scene_ = scene;
-  if (!other_model) return {};
-  Result<void> ready = make_model_ready();
-  if (!ready) scene_ = before;
-  return ready;
 }
 
 void Scene::begin_pass(VkCommandBuffer cmd, const char* name) {
@@ -278,7 +232,7 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   const double altitude = altitude_of(view_.position, radius);
   if (altitude < ground_m + kLeastHeight_m) {
     view_.position = world_from_map(map.x, map.y, ground_m + kLeastHeight_m, radius);
-    notes_.push_back("the camera was inside the ground and has been lifted to " +
+    if (!std::exchange(lifted_, true)) notes_.push_back("the camera was inside the ground and has been lifted to " +
                      std::to_string(static_cast<int>(std::lround(ground_m + kLeastHeight_m))) + " m");
   }
   TYNDALL_TRY(terrain_->update(view_));
@@ -303,7 +257,8 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
       gpu::transition(device, cmd, display_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
     }
     images_ready_ = true;
-    if (first) TYNDALL_TRY(draw_shadows(cmd));  // jitter moves the picture, not the cascades
+    // Jitter moves the picture, not the cascades.
+    if (first && !(desc_.keep_shadows && shadows_are_drawn())) TYNDALL_TRY(draw_shadows(cmd));
     TYNDALL_TRY(draw_view(cmd));
     TYNDALL_TRY(model_ != nullptr ? copy_color(cmd) : run_effect(cmd));
     TYNDALL_TRY(tonemap(cmd));
@@ -311,6 +266,8 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
     return {};
   });
   TYNDALL_TRY(std::move(done));
+  drawn_cascades_ = cascades_;
+  drawn_terrain_ = terrain_->version();
   times_.clear();
   if (desc_.timings) {
     for (const gpu::TimedScope& scope : timer_.read(0)) times_.push_back({scope.name, scope.milliseconds, false});

@@ -22,6 +22,9 @@ struct SceneDesc {
   bool timings = false;
   bool counters = false;
   tables::MakeReady make_tables = {};  // how the effect's tables are made
+  bool tables_later = false;           // with advance_tables(), instead of at once
+  int terrain_coarseness = 1;          // see TerrainLod
+  bool keep_shadows = false;           // do not draw shadow maps anew that would come out the same
 };
 
 struct PassTime {
@@ -36,10 +39,21 @@ class Scene {
   static Result<std::unique_ptr<Scene>> create(gpu::Host& host, const SceneDesc& desc, const Params& params,
                                                const SceneParams& scene);
 
-  // Takes over what the next frame may change (camera, sun, shading, model, most of the shadows, tone mapping): an
-  // error when `scene` also differs in what the scene was created with. Back to scattering.model = atmosphere makes
-  // the tables ready if they are not.
+  // Take over new parameters; an error leaves things as they were. Another terrain is loaded here, which takes long
+  // for large files, unless set_terrain() has brought it. Back to scattering.model = atmosphere, and other
+  // parameters of the air, make the tables ready if they are not, unless with SceneDesc::tables_later.
   Result<void> set_scene(const SceneParams& scene);
+  Result<void> set_params(const Params& params);
+  // What Terrain::load_source() gave for these parameters and this radius of the planet.
+  Result<void> set_terrain(const TerrainParams& params, double radius_m, ElevationSource source);
+  Result<void> set_extent(VkExtent2D extent);
+
+  // One step towards the tables that the parameters ask for, from the cache or `budget` slices of the build. Until
+  // they are complete, frames are drawn with those that were; without any, render() fails.
+  Result<Progress> advance_tables(std::uint32_t budget);
+  [[nodiscard]] Progress tables_progress() const { return effect_->precompute_progress(); }
+  [[nodiscard]] bool can_render() const { return model_ != nullptr || tables_ready_; }
+  Effect& effect() { return *effect_; }
 
   // Renders the frame that is `seconds` into the sequence. `floor` adds the pass that costs the least.
   Result<void> render(double seconds, bool floor = false);
@@ -48,6 +62,17 @@ class Scene {
   Result<image::Image> radiance();
   Result<image::Image> display();
   [[nodiscard]] const std::vector<PassTime>& timings() const { return times_; }
+
+  // The images of the frame rendered last, on the device. `display` and `output` (radiance) are in GENERAL layout,
+  // the others in SHADER_READ_ONLY_OPTIMAL; shadow_maps is an array with one layer per cascade.
+  struct Images {
+    const gpu::Image &display, &output, &color, &depth, &shadow_maps;
+  };
+  [[nodiscard]] Images images() const { return {display_, output_, color_, depth_, shadow_maps_}; }
+  [[nodiscard]] VkExtent2D extent() const { return desc_.extent; }
+  [[nodiscard]] const View& view() const { return view_; }
+  // Elevation of the ground below a point of the world [m].
+  [[nodiscard]] double ground_below(const glm::dvec3& world) const;
 
   // Remarks for the user, one line each: what a file needed, that the camera was lifted, ...
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
@@ -62,6 +87,9 @@ class Scene {
 
  private:
   Result<void> create_objects();
+  Result<void> create_images(VkExtent2D extent);
+  Result<void> create_shadow_maps(const ShadowParams& shadows);
+  [[nodiscard]] bool shadows_are_drawn() const;
   Result<void> make_model_ready();
   Result<void> draw_shadows(VkCommandBuffer cmd);
   Result<void> draw_view(VkCommandBuffer cmd);
@@ -99,6 +127,9 @@ class Scene {
   TerrainLight light_;
   std::uint64_t frame_index_ = 0;
   bool images_ready_ = false;
+  bool lifted_ = false;  // the camera, which has been noted
+  std::vector<CascadeFit> drawn_cascades_;  // what the shadow maps show
+  std::uint64_t drawn_terrain_ = 0;
   image::Image radiance_sum_, display_sum_;  // with camera.samples > 1
   std::vector<PassTime> times_;
   std::vector<std::string> notes_;

@@ -14,7 +14,6 @@
 namespace tyndall::scene {
 namespace {
 
-constexpr std::uint32_t kIndicesPerBlock = kBlockCells * kBlockCells * 6;
 constexpr std::uint32_t kMaxBlocks = 32768;
 
 struct DrawPush {
@@ -22,12 +21,18 @@ struct DrawPush {
   std::uint32_t first_block;
 };
 
-std::vector<std::uint32_t> block_indices() {
+std::uint32_t indices_per_block(int coarseness) {
+  const auto cells = static_cast<std::uint32_t>(kBlockCells / coarseness);
+  return cells * cells * 6;
+}
+
+std::vector<std::uint32_t> block_indices(int coarseness) {
   std::vector<std::uint32_t> out;
-  out.reserve(kIndicesPerBlock);
-  const std::uint32_t side = kBlockCells + 1;
-  for (std::uint32_t z = 0; z < kBlockCells; ++z) {
-    for (std::uint32_t x = 0; x < kBlockCells; ++x) {
+  out.reserve(indices_per_block(coarseness));
+  const auto cells = static_cast<std::uint32_t>(kBlockCells / coarseness);
+  const std::uint32_t side = cells + 1;
+  for (std::uint32_t z = 0; z < cells; ++z) {
+    for (std::uint32_t x = 0; x < cells; ++x) {
       const std::uint32_t a = z * side + x;
       // The diagonal alternates, so that ridges in either direction are cut alike; even vertices, to
       // which odd ones slide, keep their diagonals.
@@ -79,23 +84,43 @@ void bounding_sphere(const glm::dvec2& low, const glm::dvec2& high, const Ground
 }  // namespace
 
 Result<std::unique_ptr<Terrain>> Terrain::create(gpu::Host& host, const TerrainParams& params, double radius_m,
-                                                 VkFormat color_format, VkFormat depth_format) {
+                                                 VkFormat color_format, VkFormat depth_format, int coarseness) {
   auto out = std::make_unique<Terrain>();
   out->host_ = &host;
-  out->params_ = params;
-  out->radius_m_ = radius_m;
+  out->coarseness_ = coarseness;
+  TYNDALL_ASSIGN(ElevationSource source, load_source(host.device(), params, radius_m));
+  TYNDALL_TRY(out->create_objects(color_format, depth_format));
+  TYNDALL_TRY(out->set_source(params, radius_m, std::move(source)));
+  return out;
+}
+
+Result<ElevationSource> Terrain::load_source(const gpu::Device& device, const TerrainParams& params, double radius_m) {
   ElevationDesc elevation;
   elevation.source = params.source;
   elevation.seed = params.seed;
   elevation.exaggeration = params.exaggeration;
   elevation.planet_radius_m = radius_m;
-  elevation.max_samples = static_cast<int>(host.device().properties.limits.maxImageDimension2D) * 2 / 3;
+  elevation.max_samples = static_cast<int>(device.properties.limits.maxImageDimension2D) * 2 / 3;
   elevation.max_samples = std::min(elevation.max_samples, kMaxElevationSamples);
-  TYNDALL_ASSIGN(ElevationSource source, ElevationSource::create(elevation));
-  out->source_ = std::make_unique<ElevationSource>(std::move(source));
-  out->notes_ = out->source_->notes();
-  TYNDALL_TRY(out->create_objects(color_format, depth_format));
-  return out;
+  return ElevationSource::create(elevation);
+}
+
+Result<void> Terrain::set_source(const TerrainParams& params, double radius_m, ElevationSource source) {
+  const ElevationAtlas& atlas = source.atlas();
+  const VkExtent3D extent = {static_cast<std::uint32_t>(atlas.width), static_cast<std::uint32_t>(atlas.height), 1};
+  TYNDALL_ASSIGN(gpu::Image image,
+                 gpu::create_image(host_->device(), {"elevation_atlas", VK_FORMAT_R32_SFLOAT, extent,
+                                                     VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT}));
+  TYNDALL_TRY(gpu::upload(*host_, image, atlas.texels.data(), atlas.texels.size() * sizeof(float),
+                          VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL));
+  atlas_ = std::move(image);
+  params_ = params;
+  radius_m_ = radius_m;
+  source_ = std::make_unique<ElevationSource>(std::move(source));
+  notes_ = source_->notes();
+  filled_.clear();
+  ++version_;
+  return {};
 }
 
 Result<void> Terrain::create_objects(VkFormat color_format, VkFormat depth_format) {
@@ -117,14 +142,7 @@ Result<void> Terrain::create_objects(VkFormat color_format, VkFormat depth_forma
   TYNDALL_ASSIGN(shadow_pipeline_, gpu::create_graphics_pipeline(device, shadow));
   TYNDALL_ASSIGN(nearest_, gpu::create_sampler(device, {.filter = VK_FILTER_NEAREST}));
 
-  const ElevationAtlas& atlas = source_->atlas();
-  const VkExtent3D extent = {static_cast<std::uint32_t>(atlas.width), static_cast<std::uint32_t>(atlas.height), 1};
-  TYNDALL_ASSIGN(atlas_, gpu::create_image(device, {"elevation_atlas", VK_FORMAT_R32_SFLOAT, extent,
-                                                    VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT}));
-  TYNDALL_TRY(gpu::upload(*host_, atlas_, atlas.texels.data(), atlas.texels.size() * sizeof(float),
-                          VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL));
-
-  const std::vector<std::uint32_t> indices = block_indices();
+  const std::vector<std::uint32_t> indices = block_indices(coarseness_);
   const VkDeviceSize index_bytes = indices.size() * sizeof(std::uint32_t);
   TYNDALL_ASSIGN(indices_, gpu::create_buffer(device, "terrain_indices", index_bytes,
                                               VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
@@ -149,13 +167,14 @@ VkDeviceSize Terrain::bytes() const {
 
 Result<void> Terrain::update(const View& view) {
   lod_ = plan_terrain(map_from_world(view.position, radius_m_), altitude_of(view.position, radius_m_),
-                      source_->max_height_m(), radius_m_);
+                      source_->max_height_m(), radius_m_, coarseness_);
   const gpu::Device& device = host_->device();
   const auto layers = static_cast<std::uint32_t>(lod_.levels.size());
+  const auto samples = static_cast<std::uint32_t>(lod_.level_samples());
   if (heights_.desc.layers < layers || !heights_.image) {
     filled_.clear();
     TYNDALL_ASSIGN(heights_, gpu::create_image(device, {"terrain_heights", VK_FORMAT_R32_SFLOAT,
-                                                        {kLevelSamples, kLevelSamples, 1},
+                                                        {samples, samples, 1},
                                                         VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
                                                         layers, 1, true}));
     TYNDALL_TRY(host_->run([&](VkCommandBuffer cmd) -> Result<void> {
@@ -169,6 +188,7 @@ Result<void> Terrain::update(const View& view) {
     if (filled_[i].cell_m == level.cell_m && filled_[i].origin == level.origin) continue;
     TYNDALL_TRY(fill_level(i));
     filled_[i] = level;
+    ++version_;
   }
   return {};
 }
@@ -180,7 +200,7 @@ Result<void> Terrain::fill_level(std::size_t layer) {
   constants.first_sample = {level.origin.x, level.origin.y};
   constants.texel_offset = {0, 0};
   constants.texel_mask = -1;
-  constants.texel_count = {kLevelSamples, kLevelSamples};
+  constants.texel_count = {lod_.level_samples(), lod_.level_samples()};
   constants.spacing_m = static_cast<float>(level.cell_m);
   constants.layer = static_cast<std::int32_t>(layer);
   std::memcpy(fill_constants_.mapped, &constants, sizeof constants);
@@ -194,7 +214,8 @@ Result<void> Terrain::fill_level(std::size_t layer) {
     };
     const std::string_view missing = gpu::bind(device, cmd, fill_, resources);
     if (!missing.empty()) return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(missing)};
-    gpu::dispatch(device, cmd, fill_, kLevelSamples, kLevelSamples);
+    const auto samples = static_cast<std::uint32_t>(lod_.level_samples());
+    gpu::dispatch(device, cmd, fill_, samples, samples);
     gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
                  VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
                  VK_ACCESS_SHADER_READ_BIT);
@@ -214,6 +235,7 @@ Result<void> Terrain::prepare(const View& view, std::uint32_t height_px, const S
   out.atmosphere_height_m = static_cast<float>(light.atmosphere_height_m);
   out.sun_irradiance = Vec3(static_cast<float>(light.sun_irradiance));
   out.pixel_angle_rad = static_cast<float>(2.0 * view.tan_half_height / height_px);
+  out.block_cells = static_cast<std::uint32_t>(lod_.block_cells());
   out.camera_position = to_vec3(view.position);
   out.camera_forward = to_vec3(view.forward);
   out.layers = static_cast<std::uint32_t>(lod_.levels.size());
@@ -263,7 +285,7 @@ Result<void> Terrain::prepare(const View& view, std::uint32_t height_px, const S
   select_blocks(lod_, 0, sphere_test(view), scratch_);
   const auto distance = [&](const TerrainBlock& b) {
     const double cell = lod_.levels[static_cast<std::size_t>(b.layer)].cell_m;
-    return glm::distance(glm::dvec2(b.x + kBlockCells / 2, b.z + kBlockCells / 2) * cell, lod_.camera_map);
+    return glm::distance(glm::dvec2(b.x + lod_.block_cells() / 2, b.z + lod_.block_cells() / 2) * cell, lod_.camera_map);
   };
   std::sort(scratch_.begin(), scratch_.end(),
             [&](const TerrainBlock& a, const TerrainBlock& b) { return distance(a) < distance(b); });
@@ -289,7 +311,7 @@ Result<void> Terrain::draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline,
   const std::string_view missing = gpu::bind(device, cmd, pipeline, resources, &push);
   if (!missing.empty()) return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(missing)};
   device.vk.CmdBindIndexBuffer(cmd, indices_.buffer.get(), 0, VK_INDEX_TYPE_UINT32);
-  if (ranges_[range].count > 0) device.vk.CmdDrawIndexed(cmd, kIndicesPerBlock, ranges_[range].count, 0, 0, 0);
+  if (ranges_[range].count > 0) device.vk.CmdDrawIndexed(cmd, indices_per_block(coarseness_), ranges_[range].count, 0, 0, 0);
   return {};
 }
 

@@ -26,14 +26,22 @@ struct TerrainLight {
 
 class Terrain {
  public:
+  // `coarseness` as in TerrainLod.
   static Result<std::unique_ptr<Terrain>> create(gpu::Host& host, const TerrainParams& params, double radius_m,
-                                                 VkFormat color_format, VkFormat depth_format);
+                                                 VkFormat color_format, VkFormat depth_format, int coarseness = 1);
+
+  // Reads or makes what set_source() takes: may take seconds, and may run on a thread of its own.
+  static Result<ElevationSource> load_source(const gpu::Device& device, const TerrainParams& params, double radius_m);
+  // Replaces the elevations by those loaded for these parameters and this radius.
+  Result<void> set_source(const TerrainParams& params, double radius_m, ElevationSource source);
+  // Counts the changes of what is drawn.
+  [[nodiscard]] std::uint64_t version() const { return version_; }
 
   // Brings the clipmap to the camera: fills the levels that have moved. Synchronous.
   Result<void> update(const View& view);
 
   [[nodiscard]] Ground ground() const;
-  // Elevation of the ground under the camera [m].
+  // Elevation of the ground over a place on the map [m].
   [[nodiscard]] double height_at(const glm::dvec2& map) const;
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
   [[nodiscard]] VkDeviceSize bytes() const;
@@ -64,6 +72,8 @@ class Terrain {
   gpu::Host* host_ = nullptr;
   TerrainParams params_;
   double radius_m_ = 0.0;
+  int coarseness_ = 1;
+  std::uint64_t version_ = 0;
   std::unique_ptr<ElevationSource> source_;
   std::vector<std::string> notes_;
   TerrainLod lod_;

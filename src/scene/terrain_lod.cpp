@@ -20,7 +20,7 @@ struct Selection {
   // Takes the block at block coordinates (bx, bz) of a layer, or the finer blocks that it consists of.
   void visit(int layer, int bx, int bz) const {
     const ClipLevel& level = lod.levels[static_cast<std::size_t>(layer)];
-    const double size = kBlockCells * level.cell_m;
+    const double size = lod.block_cells() * level.cell_m;
     const glm::dvec2 low(bx * size, bz * size);
     const glm::dvec2 high = low + glm::dvec2(size);
     if (!visible(low, high)) return;
@@ -31,14 +31,16 @@ struct Selection {
         return;
       }
     }
-    out.push_back({bx * kBlockCells, bz * kBlockCells, layer, 0});
+    out.push_back({bx * lod.block_cells(), bz * lod.block_cells(), layer, 0});
   }
 };
 
 }  // namespace
 
-TerrainLod plan_terrain(const glm::dvec2& camera_map, double altitude_m, double max_ground_m, double radius_m) {
+TerrainLod plan_terrain(const glm::dvec2& camera_map, double altitude_m, double max_ground_m, double radius_m,
+                        int coarseness) {
   TerrainLod out;
+  out.coarseness = coarseness;
   out.camera_map = camera_map;
   out.vertical_m = std::max(altitude_m - max_ground_m, 0.0);
   // Arc to the horizon of the camera plus arc to that of the highest summit behind it.
@@ -51,7 +53,7 @@ TerrainLod plan_terrain(const glm::dvec2& camera_map, double altitude_m, double 
     const double range = out.range_m(level);
     if (range <= out.vertical_m) continue;  // the camera is too high to see anything this fine
     const glm::dvec2 cell = glm::floor(camera_map / (2.0 * level.cell_m));
-    level.origin = 2 * glm::ivec2(cell) - kLevelSamples / 2;
+    level.origin = 2 * glm::ivec2(cell) - out.level_samples() / 2;
     out.levels.push_back(level);
     const double slant = std::hypot(out.reach_m, out.vertical_m);
     if (range >= slant || out.levels.size() == kMaxLevels) break;
@@ -66,7 +68,7 @@ void select_blocks(const TerrainLod& lod, int finest_layer,
   if (lod.levels.empty()) return;
   const int top = static_cast<int>(lod.levels.size()) - 1;
   const ClipLevel& coarsest = lod.levels.back();
-  const double size = kBlockCells * coarsest.cell_m;
+  const double size = lod.block_cells() * coarsest.cell_m;
   const double reach = std::min(lod.reach_m, lod.range_m(coarsest));
   const glm::ivec2 first(glm::floor((lod.camera_map - reach) / size));
   const glm::ivec2 last(glm::floor((lod.camera_map + reach) / size));

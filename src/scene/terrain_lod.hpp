@@ -25,16 +25,20 @@ struct ClipLevel {
 };
 
 struct TerrainLod {
+  // 1, 2 or 4: so many times fewer cells along a block, a level's reach and its texture, for slow devices.
+  int coarseness = 1;
   glm::dvec2 camera_map = {};  // map coordinates of the camera [m]
   double vertical_m = 0.0;     // height of the camera above the highest ground, at least 0
   double reach_m = 0.0;        // how far ground can be seen
   std::vector<ClipLevel> levels;  // from fine to coarse
 
   // Distance out to which a level is drawn.
-  [[nodiscard]] double range_m(const ClipLevel& level) const { return kRangeCells * level.cell_m; }
+  [[nodiscard]] double range_m(const ClipLevel& level) const { return kRangeCells / coarseness * level.cell_m; }
+  [[nodiscard]] int block_cells() const { return kBlockCells / coarseness; }
+  [[nodiscard]] int level_samples() const { return kLevelSamples / coarseness; }
 };
 
-// A block of kBlockCells × kBlockCells cells, as shaders read it.
+// A block of block_cells() × block_cells() cells, as shaders read it.
 struct TerrainBlock {
   std::int32_t x = 0, z = 0;   // global grid index of its first vertex
   std::int32_t layer = 0;      // index into TerrainLod::levels
@@ -44,7 +48,7 @@ struct TerrainBlock {
 // The levels that a camera at these map coordinates and altitude needs, out to the horizon of the
 // highest ground.
 [[nodiscard]] TerrainLod plan_terrain(const glm::dvec2& camera_map, double altitude_m, double max_ground_m,
-                                      double radius_m);
+                                      double radius_m, int coarseness = 1);
 
 // The blocks to draw; none finer than `finest_layer`. `visible` is asked with a block's bounding square
 // in map coordinates (least and greatest corner).

@@ -40,7 +40,29 @@ Result<bool> load(gpu::Host& host, Effect& effect, config::FileCache& cache, Out
   return true;
 }
 
-Result<void> keep(gpu::Host& host, Effect& effect, config::FileCache& cache, Outcome& outcome) {
+}  // namespace
+
+Result<void> advance(gpu::Host& host, Effect& effect, const MakeReady& how, std::uint32_t budget,
+                     std::vector<std::string>& notes) {
+  const Progress progress = effect.precompute_progress();
+  if (progress.complete()) return {};
+  if (progress.done == 0 && !how.build_anew) {
+    config::FileCache cache(config::cache_directory(how.cache.place), how.cache.limit_bytes, TYNDALL_VERSION_STRING);
+    Outcome outcome;
+    const Result<bool> loaded = load(host, effect, cache, outcome);
+    notes.insert(notes.end(), outcome.notes.begin(), outcome.notes.end());
+    if (!loaded && loaded.error().code != ErrorCode::out_of_memory) return loaded.error();
+    if (loaded && loaded.value()) return {};
+  }
+  return host.run([&](VkCommandBuffer cmd) -> Result<void> {
+    const Result<Progress> recorded = effect.record_precompute(cmd, std::max(budget, 1U));
+    if (!recorded) return recorded.error();
+    publish(host.device(), cmd);
+    return {};
+  });
+}
+
+Result<Keeper> Keeper::fetch(gpu::Host& host, Effect& effect, const CacheDesc& cache) {
   const gpu::Device& device = host.device();
   TYNDALL_ASSIGN(const gpu::Buffer staging,
                  gpu::create_buffer(device, "cached_tables", effect.table_bytes(),
@@ -51,12 +73,19 @@ Result<void> keep(gpu::Host& host, Effect& effect, config::FileCache& cache, Out
                  VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
     return {};
   }));
-  cache.write(effect.table_key(), bytes_of(staging));
-  if (!cache.note().empty()) outcome.notes.push_back(cache.note());
-  return {};
+  Keeper out;
+  out.cache_ = cache;
+  out.key_ = effect.table_key();
+  const std::span<std::byte> bytes = bytes_of(staging);
+  out.bytes_.assign(bytes.begin(), bytes.end());
+  return out;
 }
 
-}  // namespace
+std::string Keeper::write() {
+  config::FileCache cache(config::cache_directory(cache_.place), cache_.limit_bytes, TYNDALL_VERSION_STRING);
+  cache.write(key_, bytes_);
+  return cache.note();
+}
 
 Result<Outcome> make_ready(gpu::Host& host, Effect& effect, const MakeReady& how) {
   Outcome outcome;
@@ -95,8 +124,12 @@ Result<Outcome> make_ready(gpu::Host& host, Effect& effect, const MakeReady& how
   outcome.origin = Origin::build;
   outcome.milliseconds = milliseconds();
   if (!cache.enabled()) return outcome;
-  if (const Result<void> kept = keep(host, effect, cache, outcome); !kept)
-    TYNDALL_TRY(without_cache(kept.error()));
+  Result<Keeper> keeper = Keeper::fetch(host, effect, how.cache);
+  if (!keeper) {
+    TYNDALL_TRY(without_cache(keeper.error()));
+  } else if (const std::string note = keeper.value().write(); !note.empty()) {
+    outcome.notes.push_back(note);
+  }
   return outcome;
 }
 

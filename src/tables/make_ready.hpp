@@ -3,6 +3,7 @@
 // the same with the public interface.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <vector>
@@ -38,5 +39,24 @@ struct Outcome {
 
 // Records, submits and waits until the tables of effect.params() are complete.
 Result<Outcome> make_ready(gpu::Host& host, Effect& effect, const MakeReady& how);
+
+// One step of the same, for programs that draw meanwhile: loads the tables from the cache, or else builds at most
+// `budget` slices. Keeps nothing in the cache: see keep(). Remarks are added to `notes`.
+Result<void> advance(gpu::Host& host, Effect& effect, const MakeReady& how, std::uint32_t budget,
+                     std::vector<std::string>& notes);
+
+// Finished tables on their way into the cache. fetch() reads them back from the device; write() may run on a
+// thread of its own.
+class Keeper {
+ public:
+  static Result<Keeper> fetch(gpu::Host& host, Effect& effect, const CacheDesc& cache);
+  // The remark about trouble, or nothing.
+  [[nodiscard]] std::string write();
+
+ private:
+  CacheDesc cache_;
+  std::string key_;
+  std::vector<std::byte> bytes_;
+};
 
 }  // namespace tyndall::tables

@@ -16,10 +16,12 @@ constexpr double kSummit_m = 4500.0;
 struct Camera {
   glm::dvec2 map;
   double altitude_m;
+  int coarseness = 1;
 };
 const Camera kCameras[] = {{{0.0, 0.0}, 2.0},           {{1234.5, -987.6}, 1500.0}, {{-100003.0, 40000.0}, 6000.0},
                            {{31.0, 33.0}, 30.0e3},      {{-5.0e5, 7.0e5}, 400.0e3}, {{511.999, 512.0}, 4499.0},
-                           {{2.0e6, -3.0e6}, 12000.0}};
+                           {{2.0e6, -3.0e6}, 12000.0},
+                           {{1234.5, -987.6}, 1500.0, 2}, {{-100003.0, 40000.0}, 6000.0, 4}, {{31.0, 33.0}, 30.0e3, 4}};
 
 struct Square {
   glm::dvec2 low, high;
@@ -29,7 +31,7 @@ struct Square {
 Square square_of(const TerrainLod& lod, const TerrainBlock& block) {
   const double cell = lod.levels[static_cast<std::size_t>(block.layer)].cell_m;
   const glm::dvec2 low(block.x * cell, block.z * cell);
-  return {low, low + glm::dvec2(kBlockCells * cell), block.layer};
+  return {low, low + glm::dvec2(lod.block_cells() * cell), block.layer};
 }
 
 double distance_of(const TerrainLod& lod, const glm::dvec2& p) {
@@ -51,7 +53,7 @@ std::vector<TerrainBlock> all_blocks(const TerrainLod& lod, int finest) {
 
 TEST(SceneTerrainLod, ThePlanReachesTheHorizonAndNests) {
   for (const Camera& camera : kCameras) {
-    const TerrainLod lod = plan_terrain(camera.map, camera.altitude_m, kSummit_m, kRadius_m);
+    const TerrainLod lod = plan_terrain(camera.map, camera.altitude_m, kSummit_m, kRadius_m, camera.coarseness);
     ASSERT_FALSE(lod.levels.empty());
     ASSERT_LE(lod.levels.size(), static_cast<std::size_t>(kMaxLevels));
     // As far as a summit can stand behind the horizon (Pythagoras along the tangent).
@@ -73,7 +75,7 @@ TEST(SceneTerrainLod, BlocksTileTheReachOnce) {
   std::mt19937 engine(3);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   for (const Camera& camera : kCameras) {
-    const TerrainLod lod = plan_terrain(camera.map, camera.altitude_m, kSummit_m, kRadius_m);
+    const TerrainLod lod = plan_terrain(camera.map, camera.altitude_m, kSummit_m, kRadius_m, camera.coarseness);
     for (const int finest : {0, 2, 100}) {
       std::vector<Square> squares;
       for (const TerrainBlock& block : all_blocks(lod, finest)) squares.push_back(square_of(lod, block));
@@ -95,7 +97,7 @@ TEST(SceneTerrainLod, BlocksTileTheReachOnce) {
 TEST(SceneTerrainLod, LevelsMeetWithoutCracks) {
   std::size_t meetings = 0;
   for (const Camera& camera : kCameras) {
-    const TerrainLod lod = plan_terrain(camera.map, camera.altitude_m, kSummit_m, kRadius_m);
+    const TerrainLod lod = plan_terrain(camera.map, camera.altitude_m, kSummit_m, kRadius_m, camera.coarseness);
     for (const int finest : {0, 3}) {
       std::vector<Square> squares;
       for (const TerrainBlock& block : all_blocks(lod, finest)) squares.push_back(square_of(lod, block));
@@ -123,7 +125,7 @@ TEST(SceneTerrainLod, LevelsMeetWithoutCracks) {
 
 TEST(SceneTerrainLod, EveryVertexIsInsideItsTextures) {
   for (const Camera& camera : kCameras) {
-    const TerrainLod lod = plan_terrain(camera.map, camera.altitude_m, kSummit_m, kRadius_m);
+    const TerrainLod lod = plan_terrain(camera.map, camera.altitude_m, kSummit_m, kRadius_m, camera.coarseness);
     for (const TerrainBlock& block : all_blocks(lod, 0)) {
       const auto layer = static_cast<std::size_t>(block.layer);
       // A gradient reads two samples beyond the vertex, in its own level and in the next coarser one.
@@ -132,9 +134,9 @@ TEST(SceneTerrainLod, EveryVertexIsInsideItsTextures) {
       for (std::size_t k = layer; k < std::min(layer + 2, lod.levels.size()); ++k) {
         const int scale = k == layer ? 1 : 2;
         const glm::ivec2 first = grid / scale - lod.levels[k].origin - kBeyond;
-        const glm::ivec2 last = (grid + kBlockCells) / scale - lod.levels[k].origin + kBeyond;
+        const glm::ivec2 last = (grid + lod.block_cells()) / scale - lod.levels[k].origin + kBeyond;
         ASSERT_GE(std::min(first.x, first.y), 0) << "layer " << layer << " in " << k;
-        ASSERT_LT(std::max(last.x, last.y), kLevelSamples) << "layer " << layer << " in " << k;
+        ASSERT_LT(std::max(last.x, last.y), lod.level_samples()) << "layer " << layer << " in " << k;
       }
     }
   }

@@ -1,0 +1,11 @@
+// Formats of the images that the scene draws into.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+namespace tyndall::scene {
+
+constexpr VkFormat kColorFormat = VK_FORMAT_R32G32B32A32_SFLOAT;  // the sun's disc exceeds half precision
+constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
+
+}  // namespace tyndall::scene
