@@ -71,6 +71,7 @@ struct EffectDesc {
   // that the trees have room for [1; 16384]; wider maps work, but what is beyond is read texel by texel.
   std::uint32_t max_cascades = 4;
   std::uint32_t max_shadow_resolution = 1024;
+  bool shadow_colors = false;        // frames may have FrameInputs::shadow_colors: pipelines for these are made as well
   bool timings = false;              // measure each pass with timestamps
   bool counters = false;             // count what the passes do; see Effect::counters()
   bool check_inputs = true;          // look at the inputs of each frame and say what is suspicious
@@ -118,8 +119,9 @@ struct FrameInputs {
   Texture color;               // linear radiance of the opaque scene and what is behind the air (disc, stars)
   Texture depth;               // device depth; sampled as float
   Texture shadow_maps;         // 2D array of depth images, one layer per cascade; null without cascades
-  // 2D array like shadow_maps, same size and layers: what glass leaves of the sun's light, linear, 1 = clear; filtered like
-  // the shadow comparison. Where a map is in shadow its colour does not matter. Null: no colour.
+  // 2D array like shadow_maps, same size and layers: what glass leaves of the sun's light, linear, 1 = clear; with
+  // EffectDesc::shadow_colors. Filtered like the shadow comparison and by itself, so that glass should go on for a texel
+  // under its frame; deeper in shadow its colour does not matter. Null: no colour.
   Texture shadow_colors;
   std::uint32_t shadow_resolution = 0;     // texels - width and height of a layer
   std::span<const Cascade> cascades;       // at most kMaxCascades, from near to far

@@ -1,9 +1,10 @@
 // Marching a ray of a slice through the shadow cascades. Include after declaring medium, frame, epipolar, rows
-// (ShadowRow[]), tree (uint[]), shadow_maps, the tables, and counters.
+// (ShadowRow[]), tree (uint[]), shadow_maps, shadow_colors, the tables, and counters.
 // A walk finds stretches that are lit or dark; with the tree whole nodes at a time, without it cell by cell. Where
 // a cell is undecided the map itself is compared, at the same place in both: the tree saves reads and changes
 // nothing. The air is summed over panels on which it is smooth, whatever the shadows: a panel's light is that
-// in its middle times the lit length, plus its slope times the lit length's first moment.
+// in its middle times the lit length, plus its slope times the lit length's first moment. With kColors both are
+// weighted by the glass's colour, which is read in every cell that is not dark.
 #ifndef TYNDALL_MARCH_GLSL
 #define TYNDALL_MARCH_GLSL
 
@@ -39,6 +40,8 @@ struct Walk {
   float lit;             // within the panel: length, and first moment about its middle
   float moment;
   float middle;
+  vec3 lit_tinted;       // the same, with kColors
+  vec3 moment_tinted;
 };
 
 vec2 load_node(uint at) {
@@ -48,13 +51,18 @@ vec2 load_node(uint at) {
   return full ? vec2(uintBitsToFloat(low), uintBitsToFloat(high)) : vec2(float(low & 0xFFFFu), float(high >> 16u));
 }
 
-void add_run(inout Walk w, inout LitSections sections, float to, float share) {
+void add_run(inout Walk w, inout LitSections sections, float to, float share, vec3 color) {
   if (kSingle == kIntegration) {
     float length_lit = share * (to - w.x);
+    float moment = length_lit * (0.5 * (w.x + to) - w.middle);
     w.lit += length_lit;
-    w.moment += length_lit * (0.5 * (w.x + to) - w.middle);
+    w.moment += moment;
+    if (kColors) {
+      w.lit_tinted += length_lit * color;
+      w.moment_tinted += moment * color;
+    }
   }
-  if (kLitTables) add_stretch(sections, w.x * w.metres, to * w.metres, share);
+  if (kLitTables) add_stretch(sections, w.x * w.metres, to * w.metres, share, color);
   w.x = to;
 }
 
@@ -64,8 +72,9 @@ bool section_closed(LitSections sections) { return kLitTables && kSections == kE
 void walk_to(inout Walk w, inout LitSections sections, float to) {
   while (w.x < to && !section_closed(sections)) {
     bool undecided = false;
-    float stop = to;  // of what is undecided
-    while (w.x < to && !undecided && !section_closed(sections)) {
+    bool read = false;
+    float stop = to;  // of what is read
+    while (w.x < to && !read && !section_closed(sections)) {
       int j = int(w.x) - w.row.first;
       bool inside = j >= 0 && j < w.row.extent;
       bool in_tree = kTree && inside && j < w.row.count;
@@ -84,17 +93,19 @@ void walk_to(inout Walk w, inout LitSections sections, float to) {
       // A node may reach behind the map, where nothing is dark.
       float end = inside ? float(w.row.first + min(next, w.row.extent)) : j < 0 ? float(w.row.first) : to;
       stop = end > w.x ? min(end, to) : to;
-      if (!undecided) {
-        add_run(w, sections, stop, dark ? 0.0 : 1.0);
+      // What is lit through glass is read too.
+      read = undecided || (kColors && inside && !dark);
+      if (!read) {
+        add_run(w, sections, stop, dark ? 0.0 : 1.0, vec3(1.0));
         ++steps_done;
-        // One level up where a node of that level begins.
-        if (kTree && in_tree && (next & ((2 << level) - 1)) == 0) w.level = min(level + 1u, kTreeTopLevel);
-      } else if (in_tree && level > kTreeLeafLevel) {
+      } else if (undecided && in_tree && level > kTreeLeafLevel) {
         w.level = level - 1u;
-        undecided = false;
+        read = false;
       }
+      // One level up where a node of that level begins.
+      if (kTree && !undecided && in_tree && (next & ((2 << level) - 1)) == 0) w.level = min(level + 1u, kTreeTopLevel);
     }
-    if (undecided) {
+    if (read) {
       float step_cells = 1.0 / w.reads_per_cell;
       while (w.x < stop && !section_closed(sections)) {
         float cell = floor(w.x);
@@ -104,7 +115,8 @@ void walk_to(inout Walk w, inout LitSections sections, float to) {
         vec2 uv = vec2(w.row.u, w.row.v) + (cell + 0.5) * vec2(w.row.du, w.row.dv);
         float z = w.row.depth + 0.5 * (w.x + end) * w.slope;
         float share = texture(shadow_maps, vec4(uv, float(w.cascade), clamp(z, 0.0, 1.0)));
-        add_run(w, sections, end, share);
+        vec3 color = kColors ? textureLod(shadow_colors, vec3(uv, float(w.cascade)), 0.0).rgb : vec3(1.0);
+        add_run(w, sections, end, share, color);
         ++reads_done;
         ++steps_done;
       }
@@ -133,6 +145,8 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
   w.lit = 0.0;
   w.moment = 0.0;
   w.middle = 0.0;
+  w.lit_tinted = vec3(0.0);
+  w.moment_tinted = vec3(0.0);
 
   // One panel for all of it where only lit lengths are asked for.
   int panels = 1;
@@ -163,6 +177,8 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
     float panel_end = last ? end : (t + panel_m) * cells_per_m;
     w.lit = 0.0;
     w.moment = 0.0;
+    w.lit_tinted = vec3(0.0);
+    w.moment_tinted = vec3(0.0);
     w.middle = (t + 0.5 * panel_m) * cells_per_m;
     while (w.x < panel_end) {
       walk_to(w, march.lit, panel_end);
@@ -180,10 +196,18 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
     float cos_sun = cos_sun_zenith_along(ray, t + 0.5 * panel_m, radius);
     vec3 total = column + 0.5 * panel_m * mean + column_to_top(medium, middle, cos_sun);
     vec3 arriving = sun_visibility(middle, cos_sun, radius) * transmittance(medium, total);
-    float lit_m = w.lit * w.metres;
-    float moment = w.moment * w.metres / max(panel_m * cells_per_m, 1e-20);  // [m], of a coordinate of one panel
-    march.light += arriving * (rayleigh * max(mean.x * lit_m + (density_next.x - density.x) * moment, 0.0) +
-                               mie * max(mean.y * lit_m + (density_next.y - density.y) * moment, 0.0));
+    float per_panel = w.metres / max(panel_m * cells_per_m, 1e-20);
+    if (kColors) {
+      vec3 lit_m = w.lit_tinted * w.metres;
+      vec3 moment = w.moment_tinted * per_panel;
+      march.light += arriving * (rayleigh * max(mean.x * lit_m + (density_next.x - density.x) * moment, vec3(0.0)) +
+                                 mie * max(mean.y * lit_m + (density_next.y - density.y) * moment, vec3(0.0)));
+    } else {
+      float lit_m = w.lit * w.metres;
+      float moment = w.moment * per_panel;  // [m], of a coordinate of one panel
+      march.light += arriving * (rayleigh * max(mean.x * lit_m + (density_next.x - density.x) * moment, 0.0) +
+                                 mie * max(mean.y * lit_m + (density_next.y - density.y) * moment, 0.0));
+    }
     column += mean * panel_m;
     h = h_next;
     density = density_next;
@@ -198,6 +222,7 @@ March add(March a, March b) {
   m.lit.first = a.lit.first < 0.0 ? b.lit.first : b.lit.first < 0.0 ? a.lit.first : min(a.lit.first, b.lit.first);
   m.lit.total = a.lit.total + b.lit.total;
   m.lit.light = add(a.lit.light, b.lit.light);
+  m.lit.tint = a.lit.tint + b.lit.tint;
   m.light = a.light + b.light;
   return m;
 }

@@ -24,6 +24,7 @@ layout(binding = 6) uniform sampler3D single_rayleigh;
 layout(binding = 7) uniform sampler3D single_mie;
 layout(binding = 8) uniform sampler3D high_orders;
 layout(std430, binding = 9) buffer counter_block { uint counters[]; };
+layout(binding = 10) uniform sampler2DArray shadow_colors;
 
 #include "frame/counters.glsl"
 #include "frame/table_light.glsl"
@@ -41,6 +42,11 @@ struct March {
   vec3 rayleigh;
   vec3 mie;
 };
+
+// What glass leaves of the sun's light at a place of a map.
+vec3 glass_color(vec2 uv, uint cascade) {
+  return kColors ? textureLod(shadow_colors, vec3(uv, float(cascade)), 0.0).rgb : vec3(1.0);
+}
 
 // Steps through [from, to] inside one cascade. `ray` holds altitudes and cosines at the camera.
 void march_cascade(uint cascade, Ray ray, float from, float to, float steps_per_m, inout March march) {
@@ -65,8 +71,11 @@ void march_cascade(uint cascade, Ray ray, float from, float to, float steps_per_
   vec3 density = densities(medium, altitude);
   for (int i = 0; i < groups; ++i) {
     float lit = 0.0;
+    vec3 tint = vec3(0.0);
     for (int k = 0; k < kReadsPerStep; ++k) {
-      lit += texture(shadow_maps, vec4(uvz.xy, float(cascade), clamp(uvz.z, 0.0, 1.0)));
+      float share = texture(shadow_maps, vec4(uvz.xy, float(cascade), clamp(uvz.z, 0.0, 1.0)));
+      lit += share;
+      if (kColors) tint += share * glass_color(uvz.xy, cascade);
       uvz += duvz;
     }
     float next_altitude = altitude_along(ray.altitude, ray.cos_zenith, from + (float(i) + 1.0) * dt, radius);
@@ -76,9 +85,11 @@ void march_cascade(uint cascade, Ray ray, float from, float to, float steps_per_
       float t = from + (float(i) + 0.5) * dt;
       float middle = altitude_along(ray.altitude, ray.cos_zenith, t, radius);
       float cos_sun = cos_sun_zenith_along(ray, t, radius);
+      float lit_reads = lit;
       lit *= sun_visibility(middle, cos_sun, radius) / float(kReadsPerStep);
       vec3 column = march.column + 0.5 * dt * mean + column_to_top(medium, middle, cos_sun);
       vec3 arriving = (lit * dt) * transmittance(medium, column);
+      if (kColors) arriving *= tint / lit_reads;
       march.rayleigh += mean.x * arriving;
       march.mie += mean.y * arriving;
     }
@@ -130,7 +141,7 @@ void walk_cascade(uint cascade, Ray ray, TableRay path, float start, float from,
     for (; i < reads && lit.closed_at < 0.0; ++i) {
       float share = texture(shadow_maps, vec4(uvz.xy, float(cascade), clamp(uvz.z, 0.0, 1.0)));
       float here = from + float(i) * step_m;
-      add_stretch(lit, here, here + step_m, share);
+      add_stretch(lit, here, here + step_m, share, glass_color(uvz.xy, cascade));
       uvz += duvz;
     }
     if (kSections == kEach && i >= reads && lit.since >= 0.0 && lit.closed_at < 0.0) lit.closed_at = to;

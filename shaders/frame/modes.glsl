@@ -13,6 +13,7 @@ const uint kEach = 1u;
 layout(constant_id = 0) const uint kSingle = kIntegration;
 layout(constant_id = 1) const bool kOccluded = false;  // the higher orders are cut by shadows
 layout(constant_id = 2) const uint kSections = kContiguous;
+layout(constant_id = 4) const bool kColors = false;  // what is lit is lit through glass: shadow_colors
 
 // Whether the light of the tables is cut by shadows.
 const bool kLitTables = kSingle == kTable || kOccluded;

@@ -16,23 +16,33 @@ struct LitSections {
   float since;      // with kEach: start of the lit section that the walk is in; < 0: in the shadow
   float closed_at;  // with kEach: end of that section, once it is found; close_section() must follow
   AirLight light;   // with kEach: of the sections that are complete
+  vec3 tint;        // with kColors: integral of the glass's colour over the lit length; with kEach: of the open section
 };
 
-LitSections nothing_lit() { return LitSections(-1.0, 0.0, -1.0, -1.0, AirLight(vec3(0.0), vec3(0.0))); }
+LitSections nothing_lit() { return LitSections(-1.0, 0.0, -1.0, -1.0, AirLight(vec3(0.0), vec3(0.0)), vec3(0.0)); }
 
-// The stretch [from, to], of which `share` is lit.
-void add_stretch(inout LitSections lit, float from, float to, float share) {
+// The stretch [from, to], of which `share` is lit, in that colour.
+void add_stretch(inout LitSections lit, float from, float to, float share, vec3 color) {
   if (kSections == kContiguous) {
     if (share > 0.0 && lit.first < 0.0) lit.first = to - share * (to - from);
     lit.total += share * (to - from);
+    if (kColors) lit.tint += share * (to - from) * color;
   } else {
     bool bright = share >= 0.5;
     if (bright && lit.since < 0.0) lit.since = from;
     if (!bright && lit.since >= 0.0) lit.closed_at = from;
+    if (kColors && bright) lit.tint += (to - from) * color;
   }
 }
 
 AirLight add(AirLight a, AirLight b) { return AirLight(a.single + b.single, a.high + b.high); }
+
+// A section's light is its light without glass times the mean colour over its lit length: tables know no place on it.
+AirLight tinted(AirLight light, vec3 tint, float length_m) {
+  if (!kColors) return light;
+  vec3 mean = tint / max(length_m, 1e-6);
+  return AirLight(light.single * mean, light.high * mean);
+}
 
 // The ray in the coordinates of the tables: begun where it enters the air, at distance `start`.
 TableRay table_ray_of(Ray ray, float start) {
@@ -52,8 +62,10 @@ AirLight section_light(TableRay path, float start, float from, float to) {
 void close_section(inout LitSections lit, TableRay path, float start) {
   if (kSections != kEach) return;
   if (lit.since >= 0.0 && lit.closed_at > lit.since) {
-    lit.light = add(lit.light, section_light(path, start, lit.since, lit.closed_at));
+    AirLight section = section_light(path, start, lit.since, lit.closed_at);
+    lit.light = add(lit.light, tinted(section, lit.tint, lit.closed_at - lit.since));
   }
+  if (kColors && lit.closed_at >= 0.0) lit.tint = vec3(0.0);
   lit.since = lit.closed_at >= 0.0 ? -1.0 : lit.since;
   lit.closed_at = -1.0;
 }
@@ -77,6 +89,7 @@ vec3 table_light(LitSections lit, TableRay path, float start, float t, float end
     float from = i == 0 ? lit.first : i == 1 ? t : start;
     float to = i == 0 ? lit.first + lit.total : end;
     AirLight section = section_light(path, start, from, to);
+    if (i == 0) section = tinted(section, lit.tint, lit.total);
     if (kSingle == kTable && i < 2) light += section.single;
     if (kOccluded ? i < 2 : i == 2) light += section.high;
   }

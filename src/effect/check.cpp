@@ -108,6 +108,9 @@ Result<void> check_frame(const FrameInputs& inputs, const EffectDesc& desc, cons
     if (inputs.shadow_colors.view != VK_NULL_HANDLE && inputs.shadow_colors.view == inputs.shadow_maps.view) {
       return invalid("FrameInputs::shadow_colors is the view of FrameInputs::shadow_maps, it must be one of colours, or null");
     }
+    if (inputs.shadow_colors.view != VK_NULL_HANDLE && !desc.shadow_colors) {
+      return invalid("there are FrameInputs::shadow_colors, which need EffectDesc::shadow_colors");
+    }
     if (inputs.shadow_colors.view != VK_NULL_HANDLE && inputs.shadow_colors.layout == VK_IMAGE_LAYOUT_UNDEFINED) {
       return invalid("FrameInputs::shadow_colors is in VK_IMAGE_LAYOUT_UNDEFINED, it must be in a layout that can be sampled");
     }

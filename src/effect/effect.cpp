@@ -30,6 +30,10 @@ constexpr VkDeviceSize kBufferAlignment = 256;
 constexpr gpu::ImageDesc kNoShadows = {"no_shadows", VK_FORMAT_D32_SFLOAT, {1, 1, 1},
                                        VK_IMAGE_USAGE_SAMPLED_BIT, 1, 1, true};
 
+// Stands in for the colours of a frame that has none; never read.
+constexpr gpu::ImageDesc kNoColors = {"no_colors", VK_FORMAT_R8G8B8A8_UNORM, {1, 1, 1},
+                                      VK_IMAGE_USAGE_SAMPLED_BIT, 1, 1, true};
+
 // A slot of the ring of constants: what one frame in flight reads.
 constexpr VkDeviceSize align(VkDeviceSize size) {
   return (size + kBufferAlignment - 1) / kBufferAlignment * kBufferAlignment;
@@ -80,7 +84,7 @@ Result<void> open_device(gpu::Device& device, const DeviceInfo& info) {
 
 MemoryUsage plan_memory(const gpu::Device& device, const EffectDesc& desc, const Params& params) {
   MemoryUsage usage;
-  usage.persistent = gpu::image_bytes(device, kNoShadows);
+  usage.persistent = gpu::image_bytes(device, kNoShadows) + gpu::image_bytes(device, kNoColors);
   for (std::uint32_t i = 0; i < kTableCount; ++i) {
     usage.persistent += gpu::image_bytes(device, table_desc(static_cast<TableId>(i), params));
   }
@@ -104,11 +108,11 @@ struct Effect::State {
   Params params;
   gpu::Device device;
 
-  std::array<gpu::Pipeline, kModeCount> march_per_pixel;  // made when asked for
+  std::array<std::array<gpu::Pipeline, kModeCount>, 2> march_per_pixel;  // without and with colours; made when asked for
   gpu::Pipeline no_air;
   Epipolar epipolar;
   TableBuilder tables;
-  gpu::Image no_shadows;
+  gpu::Image no_shadows, no_colors;
   gpu::Buffer constants;
   gpu::Buffer counters;           // written by shaders
   gpu::Buffer counters_readback;  // with EffectDesc::counters
@@ -116,9 +120,10 @@ struct Effect::State {
   gpu::Handle<VkSampler> linear;
   gpu::Handle<VkSampler> shadow_compare;
   gpu::Handle<VkSampler> shadow_plain;  // the depths themselves, with the same border
+  gpu::Handle<VkSampler> shadow_tint;
   gpu::Timer timer;
   std::array<PassTiming, kMaxTimedPasses> timings = {};
-  std::array<ResourceMemory, kTableCount + kEpipolarBuffers + 2> resource_rows = {};
+  std::array<ResourceMemory, kTableCount + kEpipolarBuffers + 3> resource_rows = {};
 
   bool images_ready = false;  // the first recording moves them out of the undefined layout
 
@@ -130,7 +135,7 @@ struct Effect::State {
   }
 
   Result<void> create_objects();
-  Result<void> make_march_per_pixel(std::uint32_t mode);
+  Result<void> make_march_per_pixel(bool colors, std::uint32_t mode);
   Result<void> prepare_pipelines(const Params& params);
   void prepare_images(VkCommandBuffer cmd);
   void clear_counters(VkCommandBuffer cmd, VkDeviceSize offset);
@@ -174,6 +179,7 @@ Result<void> Effect::State::create_objects() {
   TYNDALL_TRY(prepare_pipelines(params));
   TYNDALL_TRY(tables.create(device, desc.frames_in_flight, desc.timings, params));
   TYNDALL_ASSIGN(no_shadows, gpu::create_image(device, kNoShadows));
+  TYNDALL_ASSIGN(no_colors, gpu::create_image(device, kNoColors));
   TYNDALL_ASSIGN(constants, gpu::create_buffer(device, "constants", kSlotBytes * desc.frames_in_flight,
                                                VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
   const VkDeviceSize counter_bytes = kCounterBytes * desc.frames_in_flight;
@@ -190,6 +196,9 @@ Result<void> Effect::State::create_objects() {
   plain.address = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
   if (desc.shadow_depth_reversed) plain.border = VK_BORDER_COLOR_FLOAT_OPAQUE_BLACK;
   TYNDALL_ASSIGN(shadow_plain, gpu::create_sampler(device, plain));
+  gpu::SamplerDesc tint;
+  tint.address = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
+  TYNDALL_ASSIGN(shadow_tint, gpu::create_sampler(device, tint));
   gpu::SamplerDesc compare;
   compare.compare = true;
   compare.address = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
@@ -204,14 +213,15 @@ Result<void> Effect::State::create_objects() {
   return {};
 }
 
-Result<void> Effect::State::make_march_per_pixel(std::uint32_t mode) {
-  if (march_per_pixel[mode].pipeline) return {};
+Result<void> Effect::State::make_march_per_pixel(bool colors, std::uint32_t mode) {
+  gpu::Pipeline& out = march_per_pixel[colors ? 1 : 0][mode];
+  if (out.pipeline) return {};
   const bool full = desc.output_format == OutputFormat::rgba32f;
   const gpu::Shader& shader = full ? shaders::march_per_pixel_comp_rgba32f : shaders::march_per_pixel_comp_rgba16f;
   const std::array<gpu::Constant, 3> m = mode_constants(mode);
-  const gpu::Constant of_march[] = {m[0], m[1], m[2], {8, desc.counters ? 1U : 0U}};
-  TYNDALL_ASSIGN(march_per_pixel[mode], gpu::create_compute_pipeline(device, shader, of_march));
-  march_per_pixel[mode].name = "march_per_pixel";
+  const gpu::Constant of_march[] = {m[0], m[1], m[2], {4, colors ? 1U : 0U}, {8, desc.counters ? 1U : 0U}};
+  TYNDALL_ASSIGN(out, gpu::create_compute_pipeline(device, shader, of_march));
+  out.name = "march_per_pixel";
   return {};
 }
 
@@ -219,7 +229,8 @@ Result<void> Effect::State::make_march_per_pixel(std::uint32_t mode) {
 Result<void> Effect::State::prepare_pipelines(const Params& p) {
   if (!p.scattering.enabled) return {};
   if (p.scattering.technique == Technique::epipolar) return epipolar.prepare(p);
-  return make_march_per_pixel(mode_index(p.scattering));
+  if (desc.shadow_colors) TYNDALL_TRY(make_march_per_pixel(true, mode_index(p.scattering)));
+  return make_march_per_pixel(false, mode_index(p.scattering));
 }
 
 // Labels, binds by name and dispatches one pass over `size` invocations.
@@ -249,9 +260,9 @@ Result<Progress> Effect::prepare_pipelines(std::uint32_t budget) {
   for (std::uint32_t mode = 0; mode < kModeCount; ++mode) {
     if (!mode_exists(mode)) continue;
     ++progress.total;
-    const bool made = static_cast<bool>(state_->march_per_pixel[mode].pipeline);
+    const bool made = static_cast<bool>(state_->march_per_pixel[0][mode].pipeline);
     if (!made && budget > 0) {
-      TYNDALL_TRY(state_->make_march_per_pixel(mode));
+      TYNDALL_TRY(state_->make_march_per_pixel(false, mode));
       --budget;
     } else if (!made) {
       continue;
@@ -283,6 +294,7 @@ void Effect::State::prepare_images(VkCommandBuffer cmd) {
   epipolar.begin_frame();
   if (images_ready) return;
   gpu::transition(device, cmd, no_shadows, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
+  gpu::transition(device, cmd, no_colors, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
   images_ready = true;
 }
 
@@ -314,6 +326,8 @@ Result<void> Effect::record(VkCommandBuffer cmd, const FrameInputs& inputs) {
   if (s.desc.counters) s.clear_counters(cmd, counter_offset);
   const Texture none = {s.no_shadows.view.get(), VK_IMAGE_LAYOUT_GENERAL};
   const Texture& shadows = inputs.cascades.empty() ? none : inputs.shadow_maps;
+  const bool colored = has_colors(inputs, s.params);
+  const Texture& colors = colored ? inputs.shadow_colors : Texture{s.no_colors.view.get(), VK_IMAGE_LAYOUT_GENERAL};
   const auto table = [&s](const char* name, TableId id) {
     return gpu::named_image(name, s.tables.table(id).view.get(), VK_IMAGE_LAYOUT_GENERAL, s.linear.get());
   };
@@ -326,6 +340,7 @@ Result<void> Effect::record(VkCommandBuffer cmd, const FrameInputs& inputs) {
       gpu::named_image("scene_depth", inputs.depth.view, inputs.depth.layout, s.nearest.get()),
       gpu::named_image("shadow_maps", shadows.view, shadows.layout, s.shadow_compare.get()),
       gpu::named_image("shadow_depths", shadows.view, shadows.layout, s.shadow_plain.get()),
+      gpu::named_image("shadow_colors", colors.view, colors.layout, s.shadow_tint.get()),
       table("single_rayleigh", TableId::single_rayleigh),
       table("single_mie", TableId::single_mie),
       table("high_orders", TableId::high_orders),
@@ -336,7 +351,7 @@ Result<void> Effect::record(VkCommandBuffer cmd, const FrameInputs& inputs) {
     TYNDALL_TRY(s.epipolar.record(cmd, inputs, s.params, resources, timer));
   } else {
     const gpu::Pipeline& pipeline =
-        s.params.scattering.enabled ? s.march_per_pixel[mode_index(s.params.scattering)] : s.no_air;
+        s.params.scattering.enabled ? s.march_per_pixel[colored ? 1 : 0][mode_index(s.params.scattering)] : s.no_air;
     if (timer != nullptr) timer->begin(cmd, pipeline.name);
     TYNDALL_TRY(s.run(cmd, pipeline, resources, &inputs.extent, {inputs.extent.width, inputs.extent.height, 1}));
     if (timer != nullptr) timer->end(cmd);
@@ -382,6 +397,7 @@ std::span<const ResourceMemory> Effect::resources() {
     row(table.desc.name, table.bytes);
   }
   row(s.no_shadows.desc.name, s.no_shadows.bytes);
+  row(s.no_colors.desc.name, s.no_colors.bytes);
   row("counters", s.counters.bytes);
   for (std::uint32_t i = 0; i < kEpipolarBuffers; ++i) {
     const auto buffer = static_cast<EpipolarBuffer>(i);
@@ -420,7 +436,7 @@ std::span<const PassTiming> Effect::precompute_timings() { return state_->tables
 
 MemoryUsage Effect::memory() const {
   const State& s = *state_;
-  return {s.tables.persistent_bytes() + s.no_shadows.bytes + s.counters.bytes + s.epipolar.bytes(),
+  return {s.tables.persistent_bytes() + s.no_shadows.bytes + s.no_colors.bytes + s.counters.bytes + s.epipolar.bytes(),
           s.tables.transient_bytes() + s.epipolar.retired_bytes(), s.constants.bytes + s.counters_readback.bytes};
 }
 

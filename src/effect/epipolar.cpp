@@ -11,7 +11,7 @@
 namespace tyndall {
 namespace {
 
-constexpr VkDeviceSize kStateBytes = 12 * sizeof(float);  // of march_state.glsl
+constexpr VkDeviceSize kStateBytes = 16 * sizeof(float);  // of march_state.glsl
 constexpr VkDeviceSize kLeastBytes = 256;                 // of buffers that shaders bind but do not use
 constexpr VkBufferUsageFlags kUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
                                       VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
@@ -212,11 +212,12 @@ bool Epipolar::walks(const Params& params) {
          params.scattering.multiple == MultipleScattering::occluded;
 }
 
-Result<const gpu::Pipeline*> Epipolar::march(bool tree, std::uint32_t mode) {
-  gpu::Pipeline& out = march_samples_[tree ? 1 : 0][mode];
+Result<const gpu::Pipeline*> Epipolar::march(bool tree, bool colors, std::uint32_t mode) {
+  gpu::Pipeline& out = march_samples_[tree ? 1 : 0][colors ? 1 : 0][mode];
   if (!out.pipeline) {
     const std::array<gpu::Constant, 3> m = mode_constants(mode);
-    const gpu::Constant constants[] = {m[0], m[1], m[2], {3, tree ? 1U : 0U}, {8, desc_.counters ? 1U : 0U}};
+    const gpu::Constant constants[] = {m[0], m[1], m[2], {3, tree ? 1U : 0U}, {4, colors ? 1U : 0U},
+                                       {8, desc_.counters ? 1U : 0U}};
     TYNDALL_ASSIGN(out, gpu::create_compute_pipeline(*device_, shaders::march_samples_comp, constants));
     out.name = "march_samples";
   }
@@ -227,7 +228,10 @@ Result<void> Epipolar::prepare(const Params& params) {
   if (params.scattering.technique != Technique::epipolar) return {};
   // As record() chooses, for frames with cascades.
   const bool tree = params.epipolar.min_max_tree.value != 0 && walks(params) && params.scattering.light_shafts.value != 0;
-  TYNDALL_ASSIGN([[maybe_unused]] const gpu::Pipeline* pipeline, march(tree, mode_index(params.scattering)));
+  for (const bool colors : {false, true}) {
+    if (colors && !desc_.shadow_colors) continue;
+    TYNDALL_ASSIGN([[maybe_unused]] const gpu::Pipeline* pipeline, march(tree, colors, mode_index(params.scattering)));
+  }
   return {};
 }
 
@@ -236,9 +240,9 @@ Result<void> Epipolar::prepare_others(std::uint32_t& budget, Progress& progress)
     if (!mode_exists(mode)) continue;
     for (const bool tree : {false, true}) {
       ++progress.total;
-      const bool made = static_cast<bool>(march_samples_[tree ? 1 : 0][mode].pipeline);
+      const bool made = static_cast<bool>(march_samples_[tree ? 1 : 0][0][mode].pipeline);
       if (!made && budget > 0) {
-        TYNDALL_ASSIGN([[maybe_unused]] const gpu::Pipeline* pipeline, march(tree, mode));
+        TYNDALL_ASSIGN([[maybe_unused]] const gpu::Pipeline* pipeline, march(tree, false, mode));
         --budget;
         ++progress.done;
       } else if (made) {
@@ -369,7 +373,8 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
   if (trees) {
     TYNDALL_TRY(run_list(shadow_tree_[static_cast<std::size_t>(p.min_max_format)], EpipolarBuffer::tree_list));
   }
-  TYNDALL_ASSIGN(const gpu::Pipeline* chosen, this->march(trees, mode));
+  const bool colored = walking && marched > 0 && has_colors(inputs, params);
+  TYNDALL_ASSIGN(const gpu::Pipeline* chosen, this->march(trees, colored, mode));
   const gpu::Pipeline& march = *chosen;
   struct MarchPush {
     std::uint32_t processing, turn;

@@ -50,7 +50,8 @@ class Epipolar {
   Result<void> prepare_others(std::uint32_t& budget, Progress& progress);
 
   // Records all passes. `resources` are those of the frame: medium_block, frame_block, epipolar_block,
-  // counter_block, scene_color, scene_depth, shadow_maps, shadow_depths, the scattering tables, output_color.
+  // counter_block, scene_color, scene_depth, shadow_maps, shadow_depths, shadow_colors, the scattering tables,
+  // output_color.
   Result<void> record(VkCommandBuffer cmd, const FrameInputs& inputs, const Params& params,
                       std::span<const gpu::NamedResource> resources, gpu::Timer* timer);
 
@@ -71,7 +72,7 @@ class Epipolar {
   Result<void> create_pipelines();
   // Whether the march looks at the shadows at all.
   [[nodiscard]] static bool walks(const Params& params);
-  Result<const gpu::Pipeline*> march(bool tree, std::uint32_t mode);
+  Result<const gpu::Pipeline*> march(bool tree, bool colors, std::uint32_t mode);
 
   const gpu::Device* device_ = nullptr;
   EffectDesc desc_;
@@ -80,7 +81,7 @@ class Epipolar {
   gpu::Pipeline slice_end_points_, slice_samples_, slice_directions_, interpolate_samples_, show_sampling_;
   std::array<gpu::Pipeline, 2> refine_samples_;  // by Refinement
   std::array<gpu::Pipeline, 2> shadow_tree_;     // by MinMaxFormat
-  std::array<PerMode, 2> march_samples_;         // without and with tree; made when asked for
+  std::array<std::array<PerMode, 2>, 2> march_samples_;  // without and with tree, and colours; made when asked for
   gpu::Pipeline correct_pixels_;
   std::array<std::array<gpu::Pipeline, 2>, 2> unwarp_, unwarp_pixels_;  // by Extinction, and whether breaks are listed
 };

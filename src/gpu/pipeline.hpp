@@ -11,7 +11,7 @@
 
 namespace tyndall::gpu {
 
-constexpr std::uint32_t kMaxBindings = 16;
+constexpr std::uint32_t kMaxBindings = 20;
 
 // A resource under the name that shaders know it by.
 struct NamedResource {

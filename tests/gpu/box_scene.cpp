@@ -138,6 +138,16 @@ TestFrame frame_of(const BoxScene& scene) {
     const double depth = t < kNone ? std::min(t / (2.0 * map.half_depth_m), 1.0) : 1.0;
     return static_cast<float>(scene.shadow_depth_reversed ? 1.0 - depth : depth);
   };
+  if (scene.panes_m > 0.0) {
+    frame.shadow_color = [scene, maps](std::uint32_t c, double u, double v) {
+      const Map& map = maps[c];
+      const glm::dvec3 place = map.middle + map.right * ((2.0 * u - 1.0) * map.half_m) + map.up * ((2.0 * v - 1.0) * map.half_m);
+      const auto column = static_cast<long>(std::floor(glm::dot(place, map.right) / scene.panes_m));
+      const auto row = static_cast<long>(std::floor(glm::dot(place, map.up) / scene.panes_m));
+      constexpr glm::dvec3 kPanes[] = {{1.0, 0.15, 0.1}, {0.1, 0.4, 1.0}, {1.0, 1.0, 1.0}, {1.0, 0.75, 0.1}, {0.1, 0.8, 0.3}};
+      return kPanes[static_cast<std::size_t>((column * 2 + row * 3) % 5 + 5) % 5];
+    };
+  }
   return frame;
 }
 

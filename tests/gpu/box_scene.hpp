@@ -29,6 +29,7 @@ struct BoxScene {
   double far_m = 40000.0;
   DepthConvention convention = DepthConvention::reversed_infinite;
   bool shadow_depth_reversed = false;
+  double panes_m = 0.0;  // > 0: all sunlight comes through coloured panes of that size
 };
 
 [[nodiscard]] TestFrame frame_of(const BoxScene& scene);

@@ -245,6 +245,7 @@ TEST_F(EffectContract, FramesThatCannotBeDrawnAreErrors) {
   EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.output.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL; }));
   EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.shadow_maps.view = VK_NULL_HANDLE; }));
   EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.shadow_colors = f.shadow_maps; }));
+  EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.shadow_colors = f.color; }));  // without EffectDesc::shadow_colors
   EXPECT_TRUE(refused([](FrameInputs& f, Two&) {
     f.shadow_colors = {f.color.view, VK_IMAGE_LAYOUT_UNDEFINED};
   }));

@@ -115,6 +115,20 @@ Result<FrameImages> FrameImages::create(gpu::Host& host, const TestFrame& frame,
     TYNDALL_ASSIGN(out.shadows_, gpu::create_image(device, {"shadows", VK_FORMAT_D32_SFLOAT, {n, n, 1}, kInput,
                                                             static_cast<std::uint32_t>(frame.cascades.size()), 1, true}));
     TYNDALL_TRY(gpu::upload(host, out.shadows_, shadows.data(), shadows.size() * 4, kRead));
+    if (frame.shadow_color) {
+      std::vector<float> glass;
+      for (std::uint32_t c = 0; c < frame.cascades.size(); ++c) {
+        for (std::uint32_t y = 0; y < n; ++y) {
+          for (std::uint32_t x = 0; x < n; ++x) {
+            const glm::vec3 pane = frame.shadow_color(c, (x + 0.5) / n, (y + 0.5) / n);
+            glass.insert(glass.end(), {pane.x, pane.y, pane.z, 1.0F});
+          }
+        }
+      }
+      TYNDALL_ASSIGN(out.glass_, gpu::create_image(device, {"glass", VK_FORMAT_R32G32B32A32_SFLOAT, {n, n, 1}, kInput,
+                                                            static_cast<std::uint32_t>(frame.cascades.size()), 1, true}));
+      TYNDALL_TRY(gpu::upload(host, out.glass_, glass.data(), glass.size() * 4, kRead));
+    }
   }
 
   const VkFormat output_format =
@@ -135,6 +149,7 @@ FrameInputs FrameImages::inputs(const TestFrame& frame) const {
   out.color = {color_.view.get(), kRead};
   out.depth = {depth_.view.get(), kRead};
   out.shadow_maps = {shadows_.view.get(), kRead};
+  out.shadow_colors = {glass_.view.get(), kRead};
   out.shadow_resolution = frame.shadow_resolution;
   out.cascades = frame.cascades;
   out.first_marched_cascade = frame.first_marched;
@@ -175,6 +190,7 @@ EffectDesc desc_for(const TestFrame& frame, OutputFormat format) {
   desc.output_format = format;
   desc.sky_depth = frame.convention == DepthConvention::standard ? 1.0F : 0.0F;
   desc.shadow_depth_reversed = frame.shadow_depth_reversed;
+  desc.shadow_colors = static_cast<bool>(frame.shadow_color);
   return desc;
 }
 
@@ -209,7 +225,8 @@ Result<std::vector<glm::dvec3>> EffectKeeper::render(gpu::Host& host, const Para
   wanted.max_cascades = kMaxCascades;
   auto kept = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) {
     return k.desc.output_format == wanted.output_format && k.desc.sky_depth == wanted.sky_depth &&
-           k.desc.shadow_depth_reversed == wanted.shadow_depth_reversed;
+           k.desc.shadow_depth_reversed == wanted.shadow_depth_reversed &&
+           k.desc.shadow_colors == wanted.shadow_colors;
   });
   if (kept == kept_.end()) {
     TYNDALL_ASSIGN(Effect effect, Effect::create(info_of(host), wanted, params));

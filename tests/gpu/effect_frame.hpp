@@ -47,6 +47,8 @@ struct TestFrame {
   bool shadow_depth_reversed = false;  // as in EffectDesc
   // Depth in a cascade's map at texture coordinates; none: nothing casts a shadow.
   std::function<float(std::uint32_t cascade, double u, double v)> shadow_depth;
+  // What glass leaves there; none: the frame has no colours.
+  std::function<glm::dvec3(std::uint32_t cascade, double u, double v)> shadow_color;
 
   [[nodiscard]] RayAngles ray(std::uint32_t x, std::uint32_t y, double planet_radius_m) const;
 };
@@ -62,7 +64,7 @@ class FrameImages {
 
  private:
   OutputFormat format_ = OutputFormat::rgba32f;
-  gpu::Image color_, depth_, shadows_, output_;
+  gpu::Image color_, depth_, shadows_, glass_, output_;
 };
 
 // Records the frame once with an effect that has built its tables; red, green, blue of each pixel.

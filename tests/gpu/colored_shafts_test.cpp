@@ -1,0 +1,145 @@
+// Light shafts through stained glass: FrameInputs::shadow_colors in every mode and both techniques.
+#include <functional>
+
+#include "shared_effect.hpp"
+
+namespace tyndall {
+namespace {
+
+class ColoredShafts : public SharedEffect {
+ public:
+  static void SetUpTestSuite() {
+    with_colors_ = true;
+    SharedEffect::SetUpTestSuite();
+  }
+
+ protected:
+  static BoxScene colored() {
+    BoxScene scene;
+    scene.panes_m = 900.0;
+    return scene;
+  }
+};
+
+struct Mode {
+  const char* name;
+  SingleScattering single;
+  MultipleScattering multiple;
+  LitSections sections;
+};
+constexpr Mode kModes[] = {
+    {"integration", SingleScattering::integration, MultipleScattering::none, LitSections::contiguous},
+    {"table", SingleScattering::table, MultipleScattering::none, LitSections::contiguous},
+    {"table, each section", SingleScattering::table, MultipleScattering::none, LitSections::each},
+    {"integration, occluded", SingleScattering::integration, MultipleScattering::occluded, LitSections::contiguous},
+    {"table, occluded, each section", SingleScattering::table, MultipleScattering::occluded, LitSections::each},
+    {"table, unoccluded", SingleScattering::table, MultipleScattering::unoccluded, LitSections::contiguous},
+};
+Params params_of(const Mode& mode) {
+  Params params = small_params();
+  params.scattering.single = mode.single;
+  params.scattering.multiple = mode.multiple;
+  params.scattering.sections = mode.sections;
+  return params;
+}
+
+TEST_F(ColoredShafts, EveryModeIsLikeBruteForce) {
+  for (const double yaw_deg : {0.0, 150.0}) {
+    BoxScene scene = colored();
+    scene.extent = {128, 72};
+    scene.yaw_deg = yaw_deg;
+    show(scene);
+    const std::string where = yaw_deg == 0.0 ? ", towards the sun" : ", away from it";
+    for (const Mode& mode : kModes) expect_alike(mode.name + where, params_of(mode), 40.0);
+  }
+}
+
+TEST_F(ColoredShafts, TreesFormatsAndOrderOfCascadesChangeNothing) {
+  for (const bool reached : {true, false}) {
+    BoxScene scene = colored();
+    scene.extent = {96, 54};
+    scene.shadow_resolution = reached ? 512 : 1024;  // all of it in the tree, or a part
+    show(scene);
+    for (const Mode& mode : {kModes[0], kModes[1], kModes[4]}) {
+      Params params = params_of(mode);
+      const Picture picture = draw(params, mode.name);
+      const std::uint64_t read_with_tree = counters().shadow_map_fetches;
+      const auto same = [&](const std::string& name, const std::function<void(Params&)>& change) {
+        Params other = params;
+        change(other);
+        const Likeness likeness = compare(draw(other, name), picture, frame().extent);
+        EXPECT_LE(likeness.worst_relative_error, 1e-3) << mode.name << ", " << name;
+        RecordProperty("worst: " + std::string(mode.name) + ", " + name, std::to_string(likeness.worst_relative_error));
+      };
+      same("no tree", [](Params& p) { p.epipolar.min_max_tree = false; });
+      // The tree skips what is dark, and only that.
+      EXPECT_LT(read_with_tree, counters().shadow_map_fetches) << mode.name;
+      same("float32", [](Params& p) { p.epipolar.min_max_format = MinMaxFormat::float32; });
+      same("multi-pass", [](Params& p) { p.shadows.cascade_processing = CascadeProcessing::multi_pass; });
+      same("instanced", [](Params& p) { p.shadows.cascade_processing = CascadeProcessing::multi_pass_instanced; });
+    }
+  }
+}
+
+// Glass of one colour is a sun of that colour; clear glass is none.
+TEST_F(ColoredShafts, OneColorScalesTheLight) {
+  BoxScene scene = colored();
+  scene.extent = {96, 54};
+  scene.pitch_deg = -26.0;  // no sky: every ray ends within the maps, beyond which nothing has a colour
+  TestFrame glass = frame_of(scene);
+  TestFrame bare = glass;
+  bare.shadow_color = nullptr;
+  for (const Mode& mode : kModes) {
+    if (mode.multiple == MultipleScattering::unoccluded) continue;  // light that no glass cuts
+    for (const Technique technique : {Technique::epipolar, Technique::brute_force}) {
+      Params params = params_of(mode);
+      params.scattering.technique = technique;
+      params.scattering.only = true;
+      const std::string name = std::string(mode.name) + (technique == Technique::epipolar ? "" : ", brute force");
+      show(bare);
+      const Picture white = draw(params, name + ", no glass", true);
+      for (const glm::dvec3& color : {glm::dvec3(1.0), glm::dvec3(0.25, 0.5, 0.75)}) {
+        glass.shadow_color = [color](std::uint32_t, double, double) { return color; };
+        show(glass);
+        const Picture picture = draw(params, name, true);
+        double worst = 0.0;
+        double brightest = 0.0;
+        for (std::size_t i = 0; i < picture.size(); ++i) {
+          const glm::dvec3 off = glm::abs(picture[i] - color * white[i]);
+          worst = std::max({worst, off.x, off.y, off.z});
+          brightest = std::max({brightest, white[i].x, white[i].y, white[i].z});
+        }
+        RecordProperty("off: " + name + (color.x == 1.0 ? ", clear" : ", coloured"), std::to_string(worst / brightest));
+        // Brute force rounds once more; sources are kept in half precision.
+        EXPECT_LE(worst / brightest, technique == Technique::epipolar ? 1.5e-3 : 2e-6) << name << " " << color.x;
+      }
+    }
+  }
+}
+
+TEST_F(ColoredShafts, ShaftsAreColored) {
+  BoxScene scene = colored();
+  show(scene);
+  Params params = params_of(kModes[0]);
+  params.scattering.only = true;
+  const Picture colored_picture = draw(params, "panes", true);
+  TestFrame bare = frame_of(scene);
+  bare.shadow_color = nullptr;
+  show(bare);
+  const Picture white = draw(params, "no glass", true);
+  std::size_t redder = 0;
+  std::size_t bluer = 0;
+  for (std::size_t i = 0; i < white.size(); ++i) {
+    for (int c = 0; c < 3; ++c) EXPECT_LE(colored_picture[i][c], white[i][c] * 1.01 + 1e-6);
+    if (white[i].x <= 0.0 || white[i].z <= 0.0) continue;
+    const double ratio = (colored_picture[i].x / white[i].x) / (colored_picture[i].z / white[i].z);
+    redder += ratio > 1.2 ? 1 : 0;
+    bluer += ratio < 0.8 ? 1 : 0;
+  }
+  EXPECT_GT(redder, white.size() / 50);
+  EXPECT_GT(bluer, white.size() / 50);
+  RecordProperty("redder, bluer", std::to_string(redder) + " " + std::to_string(bluer));
+}
+
+}  // namespace
+}  // namespace tyndall
