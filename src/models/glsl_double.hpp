@@ -1,5 +1,5 @@
 // shaders/lib compiled as C++ in double precision: tyndall::glsl64 holds Medium and every function of the
-// library (geometry, medium, phase, optical_depth, single_scattering, sky_irradiance), with vec3 =
+// library (geometry, medium, phase, optical_depth, single_scattering, sky_irradiance, oneil), with vec3 =
 // glm::dvec3. Conventions are those of the GLSL files. For .cpp files only: it defines functions of internal
 // linkage.
 #pragma once
@@ -10,6 +10,7 @@
 #include <glm/glm.hpp>
 
 #include "effect/shared.hpp"
+#include "models/oneil_texels.hpp"
 
 namespace tyndall::glsl64 {
 
@@ -21,6 +22,13 @@ using vec4 = glm::dvec4;
 #define float double
 #include "models/glsl_functions.inl"
 #undef float
+
+inline OneilScale widen(const shared::OneilScale& s) {
+  return {s.scale_height_m, s.bend, s.k0, s.k1, s.k2, s.k3, s.k4, 0.0};
+}
+inline Oneil widen(const shared::Oneil& o) {
+  return {o.columns, o.samples, o.spacing, o.table_size, o.rayleigh_phase, 0, 0, 0, widen(o.rayleigh), widen(o.mie)};
+}
 
 // The medium as uploaded, widened.
 inline Medium widen(const shared::Medium& m) {

@@ -4,6 +4,8 @@
 #define IN(type) const type&
 #define OUT(type) type&
 #define INOUT(type) type&
+#define ONEIL_TABLE ::tyndall::models::OneilTexels
+#define ONEIL_TEXEL(table, i) vec4((table)[i][0], (table)[i][1], (table)[i][2], (table)[i][3])
 #undef TYNDALL_LIB_PORTABLE
 #undef TYNDALL_LIB_GEOMETRY
 #undef TYNDALL_LIB_MEDIUM
@@ -11,10 +13,12 @@
 #undef TYNDALL_LIB_OPTICAL_DEPTH
 #undef TYNDALL_LIB_SINGLE_SCATTERING
 #undef TYNDALL_LIB_SKY_IRRADIANCE
+#undef TYNDALL_LIB_ONEIL
 #undef TYNDALL_LIB_TABLE_MAPPING
 #undef TYNDALL_LIB_TABLE_VALUES
 #undef TYNDALL_LIGHT_TABLES_GLSL
 #undef TYNDALL_SHARED_MEDIUM
+#undef TYNDALL_SHARED_ONEIL
 #undef TYNDALL_SHARED_TABLES
 
 using glm::abs;
@@ -37,12 +41,14 @@ using glm::sqrt;
 using glm::tan;
 
 #include "shared/medium.h"
+#include "shared/oneil.h"
 #include "shared/tables.h"
 
 // Internal linkage: a header of plain functions, of which each user takes some.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
 namespace {
+#include "lib/oneil.glsl"
 #include "lib/sky_irradiance.glsl"
 #include "lib/table_mapping.glsl"
 #include "lib/table_values.glsl"
@@ -53,3 +59,5 @@ namespace {
 #undef IN
 #undef OUT
 #undef INOUT
+#undef ONEIL_TABLE
+#undef ONEIL_TEXEL

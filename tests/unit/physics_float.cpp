@@ -4,6 +4,8 @@
 
 #include <glm/glm.hpp>
 
+#include "models/oneil_texels.hpp"
+
 namespace tyndall::glsl32 {
 namespace lib {
 
