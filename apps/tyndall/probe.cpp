@@ -78,6 +78,7 @@ int run_probe(Args args) {
   }
 
   settings.params = options.settings.effect;
+  settings.scene = options.settings.scene;
   settings.device = options.device;
   settings.table_cache = table_cache(options.settings.scene);
   std::vector<std::string> notes;

@@ -6,8 +6,10 @@
 #include "effect/medium.hpp"
 #include "gpu/host.hpp"
 #include "models/gpu_probe.hpp"
+#include "models/oneil.hpp"
 #include "models/precomputed.hpp"
 #include "reference/path_tracer.hpp"
+#include "scene/oneil_settings.hpp"
 
 namespace tyndall::cli {
 namespace {
@@ -112,9 +114,45 @@ Result<std::vector<ProbeAnswer>> run_precomputed(const ProbeSettings& settings,
   return answers;
 }
 
+// On the CPU in double precision: the functions that the shaders draw with.
+Result<std::vector<ProbeAnswer>> run_oneil_model(const ProbeSettings& settings, std::span<const ProbeQuery> queries,
+                                                 bool table) {
+  const models::OneilModel model =
+      models::make_oneil(medium_from_params(settings.params), scene::oneil_settings(settings.scene.oneil, table));
+  if (settings.note) settings.note(models::describe_errors(model));
+  if (settings.note && settings.params.atmosphere.ozone_absorption != Vec3(0.0F)) {
+    settings.note("O'Neil's model has no ozone: atmosphere.ozone_absorption is left out");
+  }
+  std::vector<ProbeAnswer> answers;
+  answers.reserve(queries.size());
+  for (const ProbeQuery& q : queries) {
+    if (q.sky) {
+      const double cos_sun = std::cos(q.sun_zenith_rad);
+      answers.push_back({models::oneil_sky_irradiance(model, q.altitude_m, cos_sun),
+                         models::oneil_sun_transmittance(model, q.altitude_m, cos_sun), {}, false});
+    } else {
+      const models::Answer answer = models::oneil(
+          model, models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad));
+      answers.push_back({answer.radiance, answer.transmittance, {}, false});
+    }
+    settings.progress(static_cast<double>(answers.size()) / static_cast<double>(queries.size()));
+  }
+  return answers;
+}
+
+Result<std::vector<ProbeAnswer>> run_oneil(const ProbeSettings& settings, std::span<const ProbeQuery> queries) {
+  return run_oneil_model(settings, queries, false);
+}
+
+Result<std::vector<ProbeAnswer>> run_oneil_table(const ProbeSettings& settings, std::span<const ProbeQuery> queries) {
+  return run_oneil_model(settings, queries, true);
+}
+
 constexpr ProbeModel kModels[] = {
     {"precomputed", false, run_precomputed},
     {"single", false, run_single},
+    {"oneil", false, run_oneil},
+    {"oneil-table", false, run_oneil_table},
     {"reference", true, run_reference},
 };
 

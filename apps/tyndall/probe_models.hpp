@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/scene_params.hpp"
 #include "tables/make_ready.hpp"
 #include "tyndall/params.hpp"
 #include "tyndall/result.hpp"
@@ -33,6 +34,7 @@ struct ProbeAnswer {
 
 struct ProbeSettings {
   Params params;
+  scene::SceneParams scene;  // for the models that have parameters of their own
   std::uint32_t orders = 8;
   std::uint32_t samples = 100000;
   std::uint32_t seed = 1;

@@ -22,10 +22,12 @@ using config::concat;
 using validate::Rgb;
 
 // Answers of one of probe's models; a ray that ends on lit ground sees it, as in the reference.
-Result<std::vector<Rgb>> ask_probe(const ProbeModel& model, const std::string& device, const Params& params,
+Result<std::vector<Rgb>> ask_probe(const ProbeModel& model, const std::string& device,
+                                   const scene::SceneParams& scene, const Params& params,
                                    std::span<const reference::Query> queries) {
   ProbeSettings settings;
   settings.params = params;
+  settings.scene = scene;
   settings.device = device;
   settings.progress = [](double) {};
   std::vector<ProbeQuery> asked;
@@ -46,9 +48,11 @@ const ProbeModel& probe_model(std::string_view name) {
                        [&](const ProbeModel& m) { return m.name == name; });
 }
 
-Result<std::vector<Rgb>> ask_single(const std::string& device, const Params& params,
-                                    std::span<const reference::Query> queries) {
-  Result<std::vector<Rgb>> found = ask_probe(probe_model("single"), device, params, queries);
+// A model whose ground is black, with the ground that the sun lights directly added.
+Result<std::vector<Rgb>> ask_over_ground(const ProbeModel& model, const std::string& device,
+                                         const scene::SceneParams& scene, const Params& params,
+                                         std::span<const reference::Query> queries) {
+  Result<std::vector<Rgb>> found = ask_probe(model, device, scene, params, queries);
   if (!found || params.planet.ground_albedo == 0.0F) return found;
   const shared::Medium medium = medium_from_params(params);
   for (std::size_t i = 0; i < queries.size(); ++i) {
@@ -137,17 +141,32 @@ std::vector<validate::Model> parameterizations(const std::shared_ptr<Tables>& ta
   return out;
 }
 
-std::vector<validate::Model> all_models(const std::string& device, const std::shared_ptr<Tables>& tables) {
-  const auto single = [device](const Params& params, std::span<const reference::Query> queries) {
-    return ask_single(device, params, queries);
-  };
+// One of probe's models over black ground, which claims `orders` orders (0: is compared with all).
+validate::Model probe_row(std::string name, std::string meaning, int orders, std::string_view model,
+                          const std::string& device, const scene::SceneParams& scene) {
+  return {std::move(name), std::move(meaning), orders,
+          [&model = probe_model(model), device, scene](const Params& params,
+                                                       std::span<const reference::Query> queries) {
+            return ask_over_ground(model, device, scene, params, queries);
+          }};
+}
+
+std::vector<validate::Model> all_models(const std::string& device, const scene::SceneParams& scene,
+                                        const std::shared_ptr<Tables>& tables) {
+  scene::SceneParams by_column = scene;
+  by_column.oneil.spacing = scene::OneilSpacing::column;
   return {
       table_model("precomputed", "all orders, from the renderer's tables", tables,
                   [](Params& p) { p.scattering.single = SingleScattering::table; }),
       table_model("precomputed, order 1 integrated", "the same with scattering.single = integration", tables,
                   [](Params& p) { p.scattering.single = SingleScattering::integration; }),
-      {"single", "light scattered once, integrated for every ray", 1, single},
-      {"single, against all orders", "the same: what leaving out multiple scattering costs", 0, single},
+      probe_row("single", "light scattered once, integrated for every ray", 1, "single", device, scene),
+      probe_row("single, against all orders", "the same: what leaving out multiple scattering costs", 0, "single",
+                device, scene),
+      probe_row("oneil", "O'Neil: light scattered once, few points and the scale function, no ozone", 1, "oneil",
+                device, scene),
+      probe_row("oneil, points by column", "the same with oneil.spacing = column", 1, "oneil", device, by_column),
+      probe_row("oneil-table", "the same as oneil with the table of 2004", 1, "oneil-table", device, scene),
   };
 }
 
@@ -211,7 +230,7 @@ int run_validate(Args args) {
   {
     Progress progress("validate");
     constexpr std::uint64_t kSteps = 1000;
-    study = validate::run_study(options.settings.effect, study_options, all_models(options.device, tables),
+    study = validate::run_study(options.settings.effect, study_options, all_models(options.device, options.settings.scene, tables),
                                 parameterizations(tables), [&](double done) {
                                   progress.update(
                                       static_cast<std::uint64_t>(done * static_cast<double>(kSteps)), kSteps);
