@@ -27,6 +27,7 @@ IMAGES = ROOT / "docs/images"
 KEPT = ROOT / "out/epipolar_study.json"
 SIZE = "1280x720"
 PARALLEL_RENDERS = 2
+FIXED_EXPOSURE = ["--set", "tonemap.auto_exposure=false"]  # the pictures are compared
 BRUTE_FORCE = {"scattering.technique": "brute-force"}
 SWEEPS = {
     "slices × samples": [{"epipolar.slices": a, "epipolar.samples": b}
@@ -69,7 +70,7 @@ class Study:
 
     @staticmethod
     def arguments(scene, settings, size):
-        out = [scene] if scene else []
+        out = ([scene] if scene else []) + FIXED_EXPOSURE
         for key, value in sorted(settings.items()):
             out += ["--set", f"{key}={value}"]
         return tuple(out + ["--size", size])

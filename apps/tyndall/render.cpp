@@ -12,17 +12,24 @@
 namespace tyndall::cli {
 namespace {
 
+// The settings, and what became of them in this frame.
+std::vector<std::pair<std::string, std::string>> metadata_of(const scene::Scene& scene, const config::Settings& settings) {
+  std::vector<std::pair<std::string, std::string>> list = config::metadata(settings);
+  list.emplace_back("tyndall.frame.exposure", config::number_text(scene.exposure()));
+  return list;
+}
+
 Result<void> write_frame(scene::Scene& scene, const std::string& path, const config::Settings& settings) {
   const Result<image::FileKind> kind = image::kind_of_name(path);
   if (!kind) return kind.error();
   if (kind.value() == image::FileKind::exr) {
     const Result<image::Image> radiance = scene.radiance();
     if (!radiance) return radiance.error();
-    return image::write_exr(path, radiance.value(), config::metadata(settings));
+    return image::write_exr(path, radiance.value(), metadata_of(scene, settings));
   }
   const Result<image::Image> display = scene.display();
   if (!display) return display.error();
-  return image::write_png(path, display.value(), config::metadata(settings));
+  return image::write_png(path, display.value(), metadata_of(scene, settings));
 }
 
 }  // namespace

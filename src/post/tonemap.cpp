@@ -7,21 +7,38 @@
 
 namespace tyndall::post {
 
-Result<Tonemap> Tonemap::create(const gpu::Device& device) {
+Result<Tonemap> Tonemap::create(const gpu::Device& device, std::uint32_t frames_in_flight) {
   Tonemap out;
   out.device_ = &device;
-  TYNDALL_ASSIGN(out.pipeline_, gpu::create_compute_pipeline(device, shaders::tonemap_comp));
-  out.pipeline_.name = "tonemap";
+  for (std::uint32_t i = 0; i < kOperators; ++i) {
+    const gpu::Constant constants[] = {{0, i}};
+    TYNDALL_ASSIGN(out.pipelines_[i], gpu::create_compute_pipeline(device, shaders::tonemap_comp, constants));
+    out.pipelines_[i].name = "tonemap";
+  }
+  TYNDALL_ASSIGN(out.exposure_, Exposure::create(device, frames_in_flight));
   return out;
 }
 
 Result<void> Tonemap::record(VkCommandBuffer cmd, VkImageView from, VkImageView to, VkExtent2D extent,
                              const TonemapSettings& settings) const {
-  const gpu::Label label(*device_, cmd, pipeline_.name);
-  const gpu::NamedResource resources[] = {gpu::named_image("radiance", from), gpu::named_image("display", to)};
-  const std::string_view missing = gpu::bind(*device_, cmd, pipeline_, resources, &settings);
+  if (settings.auto_exposure && !exposure_.measured()) {
+    return Error{ErrorCode::invalid_argument, "auto exposure needs a picture that has been measured"};
+  }
+  if (static_cast<std::uint32_t>(settings.op) >= kOperators) {
+    return Error{ErrorCode::invalid_argument, "there is no such tone-mapping operator"};
+  }
+  const gpu::Pipeline& pipeline = pipelines_[static_cast<std::size_t>(settings.op)];
+  const gpu::Label label(*device_, cmd, pipeline.name);
+  const gpu::NamedResource resources[] = {gpu::named_image("radiance", from), gpu::named_image("display", to),
+                                          gpu::named_buffer("exposure_block", exposure_.state())};
+  const struct {
+    float exposure;
+    std::uint32_t auto_exposure;
+    float white_point, saturation;
+  } push = {settings.exposure, settings.auto_exposure ? 1U : 0U, settings.white_point, settings.saturation};
+  const std::string_view missing = gpu::bind(*device_, cmd, pipeline, resources, &push);
   if (!missing.empty()) return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(missing)};
-  gpu::dispatch(*device_, cmd, pipeline_, extent.width, extent.height);
+  gpu::dispatch(*device_, cmd, pipeline, extent.width, extent.height);
   return {};
 }
 

@@ -3,31 +3,26 @@
 // Output is linear 0 to 1 in Rec. 709 primaries; encoding as sRGB and dithering belong to the file.
 #pragma once
 
-#include "gpu/pipeline.hpp"
-#include "gpu/resource.hpp"
+#include "post/exposure.hpp"
 
 namespace tyndall::post {
 
-// Values of TonemapOperator in src/scene/scene_params.def.
-enum class Operator : std::uint32_t { exponential, uncharted2 };
-
-struct TonemapSettings {
-  Operator op = Operator::uncharted2;
-  float exposure = 1.8F;     // scales the radiance
-  float white_point = 3.0F;  // scaled value that becomes white (Uncharted 2)
-};
-
 class Tonemap {
  public:
-  static Result<Tonemap> create(const gpu::Device& device);
+  static Result<Tonemap> create(const gpu::Device& device, std::uint32_t frames_in_flight = 1);
 
-  // `from` and `to` are RGBA32F in GENERAL layout, of the same extent; barriers are the caller's.
+  // `from` and `to` are RGBA32F in GENERAL layout, of the same extent; barriers are the caller's. With auto exposure,
+  // exposure().measure() comes before: an error when it never did.
   Result<void> record(VkCommandBuffer cmd, VkImageView from, VkImageView to, VkExtent2D extent,
                       const TonemapSettings& settings) const;
 
+  [[nodiscard]] Exposure& exposure() { return exposure_; }
+  [[nodiscard]] const Exposure& exposure() const { return exposure_; }
+
  private:
   const gpu::Device* device_ = nullptr;
-  gpu::Pipeline pipeline_;
+  std::array<gpu::Pipeline, kOperators> pipelines_;
+  Exposure exposure_;
 };
 
 }  // namespace tyndall::post

@@ -186,7 +186,12 @@ void Scene::end_pass(VkCommandBuffer cmd) {
   if (desc_.timings) timer_.end(cmd);
 }
 
-Result<void> Scene::render(double seconds, bool floor) {
+Result<void> Scene::render(double seconds, bool floor, std::optional<double> step_s) {
+  // Time that does not advance, and pictures that were not measured, leave nothing to adapt from.
+  step_s_ = step_s.value_or(last_seconds_ ? seconds - *last_seconds_ : 0.0);
+  if (!last_seconds_ || step_s_ <= 0.0) tonemap_->exposure().cut();
+  last_seconds_ = seconds;
+  if (!scene_.tonemap.auto_exposure && !desc_.histogram) last_seconds_.reset();
   radiance_sum_ = {};
   display_sum_ = {};
   const std::uint32_t samples = scene_.camera.samples;
@@ -261,7 +266,7 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
     if (first && !(desc_.keep_shadows && shadows_are_drawn())) TYNDALL_TRY(draw_shadows(cmd));
     TYNDALL_TRY(draw_view(cmd));
     TYNDALL_TRY(model_ != nullptr ? copy_color(cmd) : run_effect(cmd));
-    TYNDALL_TRY(tonemap(cmd));
+    TYNDALL_TRY(tonemap(cmd, first));
     if (floor) TYNDALL_TRY(run_floor(cmd));
     return {};
   });
@@ -376,11 +381,23 @@ Result<void> Scene::copy_color(VkCommandBuffer cmd) {
   return {};
 }
 
-Result<void> Scene::tonemap(VkCommandBuffer cmd) {
+Result<void> Scene::tonemap(VkCommandBuffer cmd, bool first) {
   gpu::compute_barrier(host_->device(), cmd);
+  const TonemapParams& params = scene_.tonemap;
+  const post::TonemapSettings settings = {static_cast<post::Operator>(params.operator_),
+                                          params.middle_gray,
+                                          params.white_point,
+                                          params.saturation,
+                                          params.auto_exposure,
+                                          params.light_adaptation,
+                                          params.least_luminance,
+                                          params.exposure};
+  if (first && (params.auto_exposure || desc_.histogram)) {
+    begin_pass(cmd, "exposure");
+    TYNDALL_TRY(tonemap_->exposure().measure(cmd, output_.view.get(), desc_.extent, settings, step_s_));
+    end_pass(cmd);
+  }
   begin_pass(cmd, "tonemap");
-  const post::TonemapSettings settings = {static_cast<post::Operator>(scene_.tonemap.operator_),
-                                          scene_.tonemap.exposure, scene_.tonemap.white_point};
   TYNDALL_TRY(tonemap_->record(cmd, output_.view.get(), display_.view.get(), desc_.extent, settings));
   end_pass(cmd);
   return {};
@@ -421,6 +438,12 @@ Result<image::Image> Scene::radiance() { return average(output_, radiance_sum_);
 
 Result<image::Image> Scene::display() { return average(display_, display_sum_); }
 
+post::Measurement Scene::measurement() const { return tonemap_->exposure().read(); }
+
+float Scene::exposure() const {
+  return scene_.tonemap.auto_exposure ? measurement().exposure : scene_.tonemap.exposure;
+}
+
 Counters Scene::counters() const { return frame_index_ > 0 && model_ == nullptr ? effect_->counters(frame_index_ - 1) : Counters{}; }
 
 Scene::Memory Scene::memory() const {
@@ -428,7 +451,7 @@ Scene::Memory Scene::memory() const {
   const std::span<const ResourceMemory> rows = effect_->resources();
   return {effect.persistent, effect.transient, effect.host, std::vector<ResourceMemory>(rows.begin(), rows.end()),
           color_.bytes + depth_.bytes + output_.bytes + display_.bytes + shadow_maps_.bytes + terrain_->bytes() +
-              (model_ != nullptr ? model_->bytes() : 0)};
+              (model_ != nullptr ? model_->bytes() : 0) + tonemap_->exposure().bytes()};
 }
 
 }  // namespace tyndall::scene

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct SceneDesc {
   VkExtent2D extent = {1280, 720};
   bool timings = false;
   bool counters = false;
+  bool histogram = false;  // measure every picture, not only those that auto exposure needs measured
   tables::MakeReady make_tables = {};  // how the effect's tables are made
   bool tables_later = false;           // with advance_tables(), instead of at once
   int terrain_coarseness = 1;          // see TerrainLod
@@ -55,12 +57,17 @@ class Scene {
   [[nodiscard]] bool can_render() const { return model_ != nullptr || tables_ready_; }
   Effect& effect() { return *effect_; }
 
-  // Renders the frame that is `seconds` into the sequence. `floor` adds the pass that costs the least.
-  Result<void> render(double seconds, bool floor = false);
+  // Renders the frame that is `seconds` into the sequence. `floor` adds the pass that costs the least. `step_s`: time
+  // in which the eye adapts to this frame; without, the time since the frame before. The first frame, and one after no
+  // time at all, is exposed for itself.
+  Result<void> render(double seconds, bool floor = false, std::optional<double> step_s = {});
 
   // Of the frame rendered last: radiance, or display values 0 to 1 after tone mapping (both linear).
   Result<image::Image> radiance();
   Result<image::Image> display();
+  // What scaled the radiance, and what was measured of it: with auto exposure or SceneDesc::histogram.
+  [[nodiscard]] float exposure() const;
+  [[nodiscard]] post::Measurement measurement() const;
   [[nodiscard]] const std::vector<PassTime>& timings() const { return times_; }
 
   // The images of the frame rendered last, on the device. `display` and `output` (radiance) are in GENERAL layout,
@@ -95,7 +102,7 @@ class Scene {
   Result<void> draw_view(VkCommandBuffer cmd);
   Result<void> run_effect(VkCommandBuffer cmd);
   Result<void> copy_color(VkCommandBuffer cmd);
-  Result<void> tonemap(VkCommandBuffer cmd);
+  Result<void> tonemap(VkCommandBuffer cmd, bool first);
   Result<void> run_floor(VkCommandBuffer cmd);
   Result<void> copy_to(VkCommandBuffer cmd, const gpu::Image& to);
   Result<void> render_sample(double seconds, const glm::dvec2& jitter, bool first, bool floor);
@@ -126,6 +133,8 @@ class Scene {
   std::vector<CascadeFit> cascades_;
   TerrainLight light_;
   std::uint64_t frame_index_ = 0;
+  std::optional<double> last_seconds_;  // of the frame before, if it was measured
+  double step_s_ = 0.0;
   bool images_ready_ = false;
   bool lifted_ = false;  // the camera, which has been noted
   std::vector<CascadeFit> drawn_cascades_;  // what the shadow maps show

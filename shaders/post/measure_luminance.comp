@@ -1,0 +1,53 @@
+// The histogram of a picture's luminance, for the exposure and for people. Reads one pixel in stride x stride, staggered
+// so that rows and columns of the picture are all met. Counts are whole numbers: their sum has no order.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "post/tonemap_curves.glsl"
+#include "shared/exposure.h"
+
+layout(local_size_x = 16, local_size_y = 16) in;
+
+layout(binding = 0, rgba32f) uniform readonly image2D radiance;
+layout(std430, binding = 1) buffer CountsBlock {
+  LuminanceCounts counts;
+} counts_block;
+
+layout(push_constant) uniform Push {
+  uint stride;
+} push;
+
+shared uint bins[kLuminanceBins];
+shared uint black;
+
+const int kSamplesOnSide = 4;  // of one invocation
+
+void main() {
+  uint index = gl_LocalInvocationIndex;
+  bins[index] = 0u;
+  if (index == 0u) black = 0u;
+  barrier();
+  ivec2 size = imageSize(radiance);
+  int stride = int(push.stride);
+  ivec2 first = ivec2(gl_WorkGroupID.xy) * (16 * kSamplesOnSide) + ivec2(gl_LocalInvocationID.xy);
+  for (int i = 0; i < kSamplesOnSide * kSamplesOnSide; ++i) {
+    ivec2 at = first + 16 * ivec2(i % kSamplesOnSide, i / kSamplesOnSide);
+    ivec2 pixel = at * stride + at.yx % stride;
+    if (pixel.x >= size.x || pixel.y >= size.y) continue;
+    // Channels that are no numbers or infinite do not reach the sum.
+    float luminance = tonemap_luminance(tonemap_scaled(imageLoad(radiance, pixel).rgb, 1.0));
+    float place = (log2(max(luminance, 1.0e-30)) - kLowestStop) / kStopsPerBin;
+    if (place < 0.0) {
+      atomicAdd(black, kSampleParts);
+    } else {
+      place = min(place, float(kLuminanceBins - 1u));
+      uint bin = min(uint(place), kLuminanceBins - 2u);
+      uint upper = uint((place - float(bin)) * float(kSampleParts) + 0.5);
+      atomicAdd(bins[bin], kSampleParts - upper);
+      atomicAdd(bins[bin + 1u], upper);
+    }
+  }
+  barrier();
+  if (bins[index] > 0u) atomicAdd(counts_block.counts.bins[index], bins[index]);
+  if (index == 0u && black > 0u) atomicAdd(counts_block.counts.black, black);
+}
