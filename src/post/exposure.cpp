@@ -67,12 +67,12 @@ Result<void> Exposure::measure(VkCommandBuffer cmd, VkImageView from, VkExtent2D
   // The picture before may still be mapped with the state, and its counts be copied.
   constexpr VkPipelineStageFlags kBoth = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
   constexpr VkAccessFlags kWrites = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
-  constexpr VkAccessFlags kAll =
-      kWrites | VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT;
+  constexpr VkAccessFlags kAll = kWrites | VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT;
   gpu::barrier(*device_, cmd, kBoth, kWrites, kBoth, kAll);
   device_->vk.CmdFillBuffer(cmd, counts_.buffer.get(), 0, sizeof(LuminanceCounts), 0);
   if (!measured_) device_->vk.CmdFillBuffer(cmd, state_.buffer.get(), 0, sizeof(ExposureState), 0);
-  gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, kWrites, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, kAll);
+  gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
+               VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
 
   const std::uint32_t stride = stride_of(extent);
   std::string_view missing = gpu::bind(*device_, cmd, measure_, resources, &stride);
