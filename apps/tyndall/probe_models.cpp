@@ -148,15 +148,45 @@ Result<std::vector<ProbeAnswer>> run_oneil_table(const ProbeSettings& settings, 
   return run_oneil_model(settings, queries, true);
 }
 
+// Closed forms, on the CPU in double precision.
+Result<std::vector<ProbeAnswer>> run_homogeneous(const ProbeSettings& settings,
+                                                 std::span<const ProbeQuery> queries) {
+  const shared::Homogeneous medium =
+      models::homogeneous_from_params(settings.params, homogeneous_lengths(settings.scene));
+  if (settings.note && settings.params.atmosphere.ozone_absorption != Vec3(0.0F)) {
+    settings.note("the homogeneous model has no ozone: atmosphere.ozone_absorption is left out");
+  }
+  std::vector<ProbeAnswer> answers;
+  answers.reserve(queries.size());
+  for (const ProbeQuery& q : queries) {
+    if (q.sky) {
+      const double cos_sun = std::cos(q.sun_zenith_rad);
+      answers.push_back({models::homogeneous_sky_irradiance(medium, cos_sun),
+                         models::homogeneous_sun(medium, cos_sun), {}, false});
+      continue;
+    }
+    const models::Answer answer = models::homogeneous_light(
+        medium, models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad));
+    answers.push_back({answer.radiance, answer.transmittance, {}, false});
+  }
+  return answers;
+}
+
 constexpr ProbeModel kModels[] = {
     {"precomputed", false, run_precomputed},
     {"single", false, run_single},
+    {"homogeneous", false, run_homogeneous},
     {"oneil", false, run_oneil},
     {"oneil-table", false, run_oneil_table},
     {"reference", true, run_reference},
 };
 
 }  // namespace
+
+models::HomogeneousLengths homogeneous_lengths(const scene::SceneParams& scene) {
+  const scene::HomogeneousParams& own = scene.homogeneous;
+  return {own.air_length_m, own.haze_length_m, own.falloff.value != 0};
+}
 
 std::span<const ProbeModel> probe_models() { return kModels; }
 

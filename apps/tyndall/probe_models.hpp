@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "models/homogeneous.hpp"
 #include "scene/scene_params.hpp"
 #include "tables/make_ready.hpp"
 #include "tyndall/params.hpp"
@@ -43,6 +44,9 @@ struct ProbeSettings {
   std::function<void(const std::string& text)> note;  // gets remarks for the user; may be empty
   std::function<void(double done)> progress;  // the part done, 0 to 1
 };
+
+// What the scene's parameters say of the models.
+[[nodiscard]] models::HomogeneousLengths homogeneous_lengths(const scene::SceneParams& scene);
 
 struct ProbeModel {
   const char* name;

@@ -15,6 +15,7 @@ using mat4 = Mat4;
 #include "shared/counters.h"
 #include "shared/epipolar.h"
 #include "shared/frame_constants.h"
+#include "shared/homogeneous.h"
 #include "shared/medium.h"
 #include "shared/oneil.h"
 #include "shared/probe.h"
@@ -22,6 +23,7 @@ using mat4 = Mat4;
 
 static_assert(sizeof(OneilScale) == 32 && sizeof(Oneil) == 96, "the layout of Oneil must agree with std430");
 static_assert(sizeof(Medium) == 96, "the layout of Medium must agree with std430");
+static_assert(sizeof(Homogeneous) == 64, "the layout of Homogeneous must agree with std430");
 static_assert(sizeof(RayNode) == 32 && sizeof(TableShape) == 32, "the layouts of tables must agree with std430");
 static_assert(sizeof(EpipolarConstants) == 96 && sizeof(EpipolarSlice) == 32 && sizeof(ShadowRow) == 32,
               "the layouts of epipolar sampling must agree with std430");

@@ -1,5 +1,5 @@
 // shaders/lib compiled as C++ in double precision: tyndall::glsl64 holds Medium and every function of the
-// library (geometry, medium, phase, optical_depth, single_scattering, sky_irradiance, oneil), with vec3 =
+// library (geometry, medium, phase, optical_depth, single_scattering, sky_irradiance, homogeneous, oneil), with vec3 =
 // glm::dvec3. Conventions are those of the GLSL files. For .cpp files only: it defines functions of internal
 // linkage.
 #pragma once

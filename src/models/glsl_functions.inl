@@ -17,6 +17,8 @@
 #undef TYNDALL_LIB_TABLE_MAPPING
 #undef TYNDALL_LIB_TABLE_VALUES
 #undef TYNDALL_LIGHT_TABLES_GLSL
+#undef TYNDALL_LIB_HOMOGENEOUS
+#undef TYNDALL_SHARED_HOMOGENEOUS
 #undef TYNDALL_SHARED_MEDIUM
 #undef TYNDALL_SHARED_ONEIL
 #undef TYNDALL_SHARED_TABLES
@@ -40,6 +42,7 @@ using glm::sin;
 using glm::sqrt;
 using glm::tan;
 
+#include "shared/homogeneous.h"
 #include "shared/medium.h"
 #include "shared/oneil.h"
 #include "shared/tables.h"
@@ -49,6 +52,7 @@ using glm::tan;
 #pragma GCC diagnostic ignored "-Wunused-function"
 namespace {
 #include "lib/oneil.glsl"
+#include "lib/homogeneous.glsl"
 #include "lib/sky_irradiance.glsl"
 #include "lib/table_mapping.glsl"
 #include "lib/table_values.glsl"

@@ -7,6 +7,7 @@
 
 #include "gpu/try.hpp"
 #include "scene/chart.hpp"
+#include "scene/homogeneous_sky.hpp"
 
 namespace tyndall::scene {
 namespace {
@@ -162,18 +163,17 @@ Result<void> SkyModel::draw_sky(VkCommandBuffer cmd, VkBuffer background) {
 
 Result<std::unique_ptr<SkyModel>> create_sky_model(gpu::Host& host, const SceneParams& scene, VkFormat color_format,
                                                    VkFormat depth_format) {
-  static_cast<void>(host);
-  static_cast<void>(color_format);
-  static_cast<void>(depth_format);
-  const char* name = "";
+  const ModelEvaluation evaluation = scene.scattering.evaluate;
+  const char* name = "atmosphere";
   switch (scene.scattering.model) {
-    case ScatteringModel::atmosphere: name = "atmosphere"; break;
-    case ScatteringModel::homogeneous: name = "homogeneous"; break;
+    case ScatteringModel::homogeneous:
+      return create_homogeneous_sky(host, evaluation, color_format, depth_format);
     case ScatteringModel::oneil: name = "oneil"; break;
     case ScatteringModel::oneil_table: name = "oneil-table"; break;
+    case ScatteringModel::atmosphere: break;
   }
   return Error{ErrorCode::invalid_argument, "'scattering.model' = '" + std::string(name) +
-               "' does not draw frames in this version, scattering.model, allowed is atmosphere"};
+               "' does not draw frames in this version, scattering.model, allowed is atmosphere or homogeneous"};
 }
 
 }  // namespace tyndall::scene

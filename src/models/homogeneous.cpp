@@ -1,0 +1,90 @@
+#include "models/homogeneous.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "effect/medium.hpp"
+#include "models/glsl_double.hpp"
+
+namespace tyndall::models {
+namespace {
+
+constexpr int kZenithPanels = 12;  // of two Gauss nodes each; 0.1 % of the sky's irradiance, see the tests
+constexpr int kAzimuths = 32;
+
+std::array<double, 3> to_array(const glsl64::vec3& v) { return {v.x, v.y, v.z}; }
+
+glsl64::Homogeneous widen(const shared::Homogeneous& m) {
+  const auto wide = [](const Vec3& v) { return glsl64::vec3(v.x, v.y, v.z); };
+  glsl64::Homogeneous out = {};
+  out.air_scattering = wide(m.air_scattering);
+  out.air_length_m = m.air_length_m;
+  out.haze_scattering = wide(m.haze_scattering);
+  out.haze_length_m = m.haze_length_m;
+  out.haze_extinction = wide(m.haze_extinction);
+  out.haze_g = m.haze_g;
+  out.planet_radius_m = m.planet_radius_m;
+  out.atmosphere_height_m = m.atmosphere_height_m;
+  out.sun_radius_rad = m.sun_radius_rad;
+  out.falloff = m.falloff;
+  return out;
+}
+
+}  // namespace
+
+shared::Homogeneous homogeneous_from_params(const Params& params, const HomogeneousLengths& lengths) {
+  const shared::Medium medium = medium_from_params(params);
+  shared::Homogeneous out = {};
+  out.air_scattering = medium.rayleigh_scattering;
+  out.air_length_m = static_cast<float>(lengths.air_m);
+  out.haze_scattering = medium.mie_scattering;
+  out.haze_length_m = static_cast<float>(lengths.haze_m);
+  out.haze_extinction = medium.mie_extinction;
+  out.haze_g = medium.mie_g;
+  out.planet_radius_m = medium.planet_radius_m;
+  out.atmosphere_height_m = medium.atmosphere_height_m;
+  out.falloff = lengths.falloff ? 1 : 0;
+  return out;
+}
+
+Answer homogeneous_light(const shared::Homogeneous& medium, const Ray& ray) {
+  const glsl64::Homogeneous m = widen(medium);
+  const glsl64::HomogeneousPath path = glsl64::homogeneous_path(m, ray.altitude_m, ray.cos_view_zenith,
+                                                                ray.cos_sun_zenith, ray.cos_view_sun, -1.0);
+  glsl64::vec3 extinction;
+  const glsl64::vec3 radiance = glsl64::homogeneous_inscattering(m, path, ray.cos_view_sun, extinction);
+  return {to_array(radiance * glsl64::homogeneous_sun(m, path.mu_s)), to_array(extinction)};
+}
+
+// Even steps of the azimuth, which is periodic, and Gauss nodes in x with zenith angle (1 - x^2) 90 deg: close
+// together at the horizon, where the sky is brightest.
+std::array<double, 3> homogeneous_sky_irradiance(const shared::Homogeneous& medium, double cos_sun_zenith) {
+  const glsl64::Homogeneous m = widen(medium);
+  const glsl64::vec3 sun = glsl64::homogeneous_sun(m, cos_sun_zenith);
+  if (sun == glsl64::vec3(0.0)) return {};
+  const double sin_sun = std::sqrt(std::max(1.0 - cos_sun_zenith * cos_sun_zenith, 0.0));
+  glsl64::vec3 sum(0.0);
+  for (int i = 0; i < 2 * kZenithPanels; ++i) {
+    const double node = (i % 2 == 0 ? -1.0 : 1.0) / std::numbers::sqrt3;
+    const double x = (i / 2 + 0.5 + 0.5 * node) / kZenithPanels;
+    const double zenith = 0.5 * std::numbers::pi * (1.0 - x * x);
+    const double weight = std::numbers::pi * x / (2.0 * kZenithPanels);  // |d zenith / d x| times the node's
+    const double mu = std::cos(zenith);
+    const double sine = std::sin(zenith);
+    for (int k = 0; k < kAzimuths; ++k) {
+      const double azimuth = 2.0 * std::numbers::pi * (k + 0.5) / kAzimuths;
+      const double nu = mu * cos_sun_zenith + sine * sin_sun * std::cos(azimuth);
+      glsl64::vec3 extinction;
+      const glsl64::HomogeneousPath path = glsl64::homogeneous_path(m, 0.0, mu, cos_sun_zenith, nu, -1.0);
+      sum += glsl64::homogeneous_inscattering(m, path, nu, extinction) *
+             (weight * mu * sine * 2.0 * std::numbers::pi / kAzimuths);
+    }
+  }
+  return to_array(sum * sun);
+}
+
+std::array<double, 3> homogeneous_sun(const shared::Homogeneous& medium, double cos_sun_zenith) {
+  return to_array(glsl64::homogeneous_sun(widen(medium), cos_sun_zenith));
+}
+
+}  // namespace tyndall::models
