@@ -109,8 +109,8 @@ void SkyModel::fill_mesh(const ModelFrame& frame) {
     out.angles[i] = static_cast<float>(kHalfTurn * x * (0.3 + 0.7 * x * x));
   }
   // Rows towards the edge of the sky: the horizontal, or, from space, the rim of the air; then to the horizon of
-  // the sphere at sea level. At the edge itself and at the horizon stands a pair of rows close together, so that
-  // a break there is not smeared over a row.
+  // the sphere at sea level. At either stands a pair of rows close together, so that a break there is not
+  // smeared over a row, and on neither side of the horizon a vertex in doubt.
   const double altitude = std::max(altitude_of(frame.view.position, radius), 0.0);
   const auto dip = [&](double below_m) {  // angle of a sphere's rim below the horizontal
     const double r = radius + altitude;
@@ -124,9 +124,10 @@ void SkyModel::fill_mesh(const ModelFrame& frame) {
     zenith[i] = static_cast<float>(edge * (1.0 - x * (0.1 + 0.9 * x)));
   }
   constexpr double kNarrow_rad = 1e-4;
+  const double last = horizon - kNarrow_rad;
   for (std::uint32_t i = 1; i <= kRowsBetween; ++i) {
     const double x = static_cast<double>(i - 1) / (kRowsBetween - 1);
-    zenith[kRowsAbove + i] = static_cast<float>(std::min(edge + kNarrow_rad, horizon) * (1.0 - x) + horizon * x);
+    zenith[kRowsAbove + i] = static_cast<float>(std::min(edge + kNarrow_rad, last) * (1.0 - x) + last * x);
   }
   for (std::uint32_t i = 1; i <= kRowsBelow; ++i) {
     const double x = static_cast<double>(i - 1) / (kRowsBelow - 1);
