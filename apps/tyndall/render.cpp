@@ -55,10 +55,13 @@ int run_render(Args args) {
   Progress progress("render");
   for (std::uint32_t frame = 0; frame < options.frames; ++frame) {
     progress.update(frame, options.frames);
-    if (Result<void> r = scene.value()->render(frame * time_step); !r) return fail(r.error());
-    if (Result<void> r = write_frame(*scene.value(), frame_path(options.output, frame), options.settings); !r) {
-      return fail(r.error());
-    }
+    const double seconds = frame * time_step;
+    config::Settings now = options.settings;
+    now.scene = scene::pose_at(now.path, seconds, options.settings.scene,
+                               static_cast<double>(now.effect.planet.radius_m));
+    if (Result<void> r = scene.value()->set_scene(now.scene); !r) return fail(r.error());
+    if (Result<void> r = scene.value()->render(seconds); !r) return fail(r.error());
+    if (Result<void> r = write_frame(*scene.value(), frame_path(options.output, frame), now); !r) return fail(r.error());
   }
   for (const std::string& text : scene.value()->notes()) note(text);
   return kDone;

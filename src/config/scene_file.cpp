@@ -4,8 +4,10 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <optional>
+#include <sstream>
 #include <vector>
 
 #include "config/files.hpp"
@@ -114,9 +116,164 @@ Result<void> load_table(Settings& settings, std::string_view group, const toml::
   return {};
 }
 
+// The keys of a frame of [[path]] that are parameters at a time, and where they go.
+struct FrameKey {
+  std::string_view name, parameter;
+  std::optional<float> scene::PathFrame::*target;
+};
+constexpr FrameKey kFrameKeys[] = {
+    {"altitude_m", "camera.altitude_m", &scene::PathFrame::altitude_m},
+    {"yaw_deg", "camera.yaw_deg", &scene::PathFrame::yaw_deg},
+    {"pitch_deg", "camera.pitch_deg", &scene::PathFrame::pitch_deg},
+    {"fov_deg", "camera.fov_deg", &scene::PathFrame::fov_deg},
+    {"sun_elevation_deg", "sun.elevation_deg", &scene::PathFrame::sun_elevation_deg},
+    {"sun_azimuth_deg", "sun.azimuth_deg", &scene::PathFrame::sun_azimuth_deg},
+};
+
+Error unknown_name(std::string_view key, std::string_view table, const std::vector<std::string>& names,
+                   std::string_view where) {
+  std::string list;
+  for (const std::string& name : names) list.append(list.empty() ? "" : ", ").append(name);
+  const std::optional<std::string> near = nearest(key, names);
+  return input_error(concat({"unknown key '", one_line(key), "' in ", table}), where,
+                     near ? concat({"did you mean '", *near, "'?"}) : concat({"keys are ", list}));
+}
+
+Result<void> load_date(scene::PathFrame& frame, const toml::node& node, const std::string& where) {
+  if (const auto* text = node.as_string()) {
+    frame.date = text->get();
+  } else if (const auto* time = node.as_date_time()) {
+    std::ostringstream written;
+    written << time->get();
+    frame.date = written.str();
+  } else {
+    return input_error(concat({"'date' is ", kind_of(node)}), where, "allowed is a date and time with its offset from UTC");
+  }
+  Result<double> day = scene::parse_time(frame.date, where);
+  if (!day) return std::move(day).error();
+  frame.julian_day = day.value();
+  return {};
+}
+
+// Numbers are read as the parameters that they stand for, with their ranges.
+Result<void> load_frame_value(scene::PathFrame& frame, std::string_view key, const toml::node& node,
+                              std::string_view name) {
+  const std::string where = position(name, node.source());
+  if (key == "date") return load_date(frame, node, where);
+  if (key == "time_s") {
+    const std::optional<double> seconds = node.value<double>();
+    if (!node.is_number() || !std::isfinite(*seconds) || *seconds < 0.0 || *seconds > 1.0e6) {
+      return input_error("'time_s' is no time", where, "allowed is a number, 0 to 1e+06 s");
+    }
+    frame.time_s = *seconds;
+    return {};
+  }
+  Settings scratch;
+  if (key == "position_m") {
+    if (Result<void> read = load_value(scratch, *find_row("camera.position_m"), node, name); !read) return read;
+    frame.position_m = scratch.scene.camera.position_m;
+    return {};
+  }
+  for (const FrameKey& known : kFrameKeys) {
+    if (key != known.name) continue;
+    const Row& row = *find_row(known.parameter);
+    if (Result<void> read = load_value(scratch, row, node, name); !read) return read;
+    float value = 0.0F;
+    static_cast<void>(read_number(value_text(row, scratch), value));
+    if (key == "altitude_m" && value < 0.0F) {
+      return input_error("'altitude_m' is below the sea", where, "allowed is 0 to 1e+09 m; position_m goes lower");
+    }
+    frame.*known.target = value;
+    return {};
+  }
+  std::vector<std::string> names = {"time_s", "position_m", "date"};
+  for (const FrameKey& known : kFrameKeys) names.emplace_back(known.name);
+  return unknown_name(key, "[[path]]", names, where);
+}
+
+bool has_sun(const scene::PathFrame& frame) { return frame.sun_elevation_deg || frame.sun_azimuth_deg; }
+
+Result<void> load_path(scene::CameraPath& path, const toml::node& node, std::string_view name, const std::string& where) {
+  const toml::array* const frames = node.as_array();
+  if (frames == nullptr || !frames->is_homogeneous(toml::node_type::table)) {
+    return input_error("'path' is no list of frames", where, "allowed is one table [[path]] for each frame");
+  }
+  path = scene::CameraPath{};
+  for (const toml::node& element : *frames) {
+    const toml::table& table = *element.as_table();
+    const std::string at = position(name, element.source());
+    scene::PathFrame frame;
+    if (table.get("time_s") == nullptr) return input_error("a frame of the path has no time", at, "needed is time_s = SECONDS");
+    for (const auto& [key, value] : table) {
+      if (Result<void> read = load_frame_value(frame, key.str(), value, name); !read) return read;
+    }
+    if (!path.frames.empty() && frame.time_s <= path.frames.back().time_s) {
+      return input_error(concat({"the path's time goes from ", number_text(path.frames.back().time_s), " s to ",
+                                 number_text(frame.time_s), " s"}), at, "each frame's time_s has to be greater than that before");
+    }
+    const scene::PathFrame* const first = path.frames.empty() ? nullptr : &path.frames.front();
+    if (has_sun(frame) && (frame.julian_day || (first != nullptr && first->julian_day))) {
+      return input_error("the sun stands by date and by angles", at, "allowed is one of them in a path");
+    }
+    path.frames.push_back(std::move(frame));
+  }
+  if (path.frames.size() < 2) return input_error("a path of one frame", where, "needed are two or more [[path]]");
+  return {};
+}
+
+Result<void> load_playback(scene::CameraPath& path, const toml::node& node, std::string_view name, const std::string& where) {
+  const toml::table* const table = node.as_table();
+  if (table == nullptr) return input_error(concat({"'playback' is ", kind_of(node)}), where, "it has to be a table");
+  for (const auto& [key, value] : *table) {
+    const std::string at = position(name, value.source());
+    if (key.str() == "loop") {
+      if (!value.is_boolean()) return input_error(concat({"'loop' is ", kind_of(value)}), at, "allowed is true or false");
+      path.loop = **value.as_boolean();
+    } else if (key.str() == "place") {
+      if (!value.is_string()) return input_error(concat({"'place' is ", kind_of(value)}), at, "allowed is \"LAT,LON\" in degrees");
+      path.place_text = **value.as_string();
+      Result<scene::Place> place = scene::parse_place(path.place_text, at);
+      if (!place) return std::move(place).error();
+      path.place = place.value();
+    } else {
+      return unknown_name(key.str(), "[playback]", {"loop", "place"}, position(name, key.source()));
+    }
+  }
+  return {};
+}
+
+// What [[path]] and [playback] have to agree in.
+Result<void> check_path(const scene::CameraPath& path, const std::string& where) {
+  const auto dated = [](const scene::PathFrame& frame) { return frame.julian_day.has_value(); };
+  const bool by_date = std::any_of(path.frames.begin(), path.frames.end(), dated);
+  if (by_date && std::any_of(path.frames.begin(), path.frames.end(), has_sun)) {
+    return input_error("the sun stands by date and by angles", where, "allowed is one of them in a path");
+  }
+  if (by_date && path.place_text.empty()) {
+    return input_error("a path with dates has no place", where, "needed is place = \"LAT,LON\" in [playback]");
+  }
+  if (!path.loop) return {};
+  if (path.empty()) return input_error("there is no path to loop", where, "needed are two or more [[path]]");
+  const scene::PathFrame& last = path.frames.back();
+  const auto given = [&](const FrameKey& key) { return (last.*key.target).has_value(); };
+  if (last.position_m || last.julian_day || std::any_of(std::begin(kFrameKeys), std::end(kFrameKeys), given)) {
+    return input_error("the last frame of a loop is the first again", where, "allowed is time_s alone in the last [[path]]");
+  }
+  return {};
+}
+
 Result<void> load_root(Settings& settings, const toml::table& root, std::string_view name) {
+  std::string path_at;  // of what is said of a path in this file
   for (const auto& [group, node] : root) {
     const std::string where = position(name, group.source());
+    if (group.str() == "path" || group.str() == "playback") {
+      // The key of an array of tables has the place of its last table.
+      path_at = position(name, node.source());
+      Result<void> loaded = group.str() == "path" ? load_path(settings.path, node, name, path_at)
+                                                  : load_playback(settings.path, node, name, path_at);
+      if (!loaded) return loaded;
+      continue;
+    }
     const toml::table* const table = node.as_table();
     if (!is_group(group.str())) {
       return table != nullptr ? unknown_table(group.str(), where) : unknown_key(group.str(), where);
@@ -126,7 +283,7 @@ Result<void> load_root(Settings& settings, const toml::table& root, std::string_
     }
     if (Result<void> loaded = load_table(settings, group.str(), *table, name); !loaded) return loaded;
   }
-  return {};
+  return path_at.empty() ? Result<void>() : check_path(settings.path, path_at);
 }
 
 // A parameter that names a file, given relative to the scene file, becomes a path from here.
@@ -172,6 +329,26 @@ std::string toml_value(const Row& row, const Settings& settings) {
   }
 }
 
+void append_path(std::string& out, const scene::CameraPath& path) {
+  if (path.empty()) return;
+  out.append("\n# How the path below is played\n[playback]\n");
+  out.append("loop = ").append(path.loop ? "true" : "false").append("\n");
+  if (!path.place_text.empty()) out.append("place = ").append(quoted_text(path.place_text)).append("\n");
+  for (const scene::PathFrame& frame : path.frames) {
+    out.append("\n[[path]]\ntime_s = ").append(toml_number(number_text(frame.time_s), true)).append("\n");
+    if (frame.position_m) {
+      const auto part = [](float value) { return toml_number(number_text(value), true); };
+      const Vec3& p = *frame.position_m;
+      out.append("position_m = [").append(part(p.x)).append(", ").append(part(p.y)).append(", ").append(part(p.z)).append("]\n");
+    }
+    for (const FrameKey& key : kFrameKeys) {
+      const std::optional<float>& value = frame.*key.target;
+      if (value) out.append(key.name).append(" = ").append(toml_number(number_text(*value), true)).append("\n");
+    }
+    if (!frame.date.empty()) out.append("date = ").append(quoted_text(frame.date)).append("\n");
+  }
+}
+
 }  // namespace
 
 Result<void> load_text(Settings& settings, std::string_view toml, std::string_view name) {
@@ -213,6 +390,7 @@ std::string to_toml(const Settings& settings) {
       out.append(row.info.name).append(" = ").append(toml_value(row, settings)).append("\n");
     }
   }
+  append_path(out, settings.path);
   return out;
 }
 

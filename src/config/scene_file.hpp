@@ -1,6 +1,7 @@
 // Scene files: TOML with one table per group ([camera], [sun], ...) and exactly the parameter names as
 // keys. A file may be partial; what it leaves out keeps its value. Numbers, arrays of numbers,
-// booleans and strings stand as TOML has them.
+// booleans and strings stand as TOML has them. A flight of the camera is a list [[path]] and a table [playback]
+// (docs/scenes.md); it replaces the one before as a whole.
 #pragma once
 
 #include <string>

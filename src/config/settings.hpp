@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "scene/camera_path.hpp"
 #include "scene/scene_params.hpp"
 #include "tyndall/params.hpp"
 #include "tyndall/result.hpp"
@@ -19,6 +20,7 @@ namespace tyndall::config {
 struct Settings {
   Params effect;
   scene::SceneParams scene;
+  scene::CameraPath path;  // of scene files alone; empty: the camera stands where `scene` has it
 };
 
 enum class Owner : std::uint32_t { scene, effect };

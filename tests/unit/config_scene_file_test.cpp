@@ -93,6 +93,83 @@ TEST_F(SceneFile, EveryParameterSurvivesARoundTrip) {
   EXPECT_EQ(entries(), 1U);
 }
 
+constexpr std::string_view kPath = R"(
+[playback]
+loop = false
+place = "46.6,8.0"
+[[path]]
+time_s = 0
+position_m = [-15000.0, 1500.5, -15000]
+yaw_deg = 350.1
+date = 2026-06-21T03:00:00Z
+[[path]]
+time_s = 12.5
+altitude_m = 400000
+pitch_deg = -10
+fov_deg = 60
+date = "2026-06-21T07:30:00+02:00"
+)";
+
+TEST_F(SceneFile, APathSurvivesARoundTrip) {
+  Settings settings;
+  const Result<void> loaded = load_text(settings, kPath, "p.toml");
+  ASSERT_TRUE(loaded.ok()) << loaded.error().message;
+  ASSERT_EQ(settings.path.frames.size(), 2U);
+  EXPECT_EQ(settings.path.frames[0].position_m->y, 1500.5F);
+  EXPECT_EQ(settings.path.frames[0].yaw_deg, 350.1F);
+  EXPECT_FALSE(settings.path.frames[0].altitude_m.has_value());
+  EXPECT_EQ(settings.path.frames[1].time_s, 12.5);
+  EXPECT_EQ(settings.path.frames[1].fov_deg, 60.0F);
+  EXPECT_NEAR(*settings.path.frames[1].julian_day - *settings.path.frames[0].julian_day, 2.5 / 24.0, 1e-8);
+  EXPECT_EQ(settings.path.place.longitude_deg, 8.0);
+  Settings back;
+  const Result<void> again = load_text(back, to_toml(settings), "round trip");
+  ASSERT_TRUE(again.ok()) << again.error().message;
+  EXPECT_EQ(to_toml(back), to_toml(settings));
+  EXPECT_EQ(back.path.frames[0].julian_day, settings.path.frames[0].julian_day);
+  // Without frames nothing is written; another path replaces the whole.
+  EXPECT_EQ(to_toml(Settings()).find("path"), std::string::npos);
+  ASSERT_TRUE(load_text(back, "[[path]]\ntime_s = 0\n[[path]]\ntime_s = 1\nyaw_deg = 3\n", "q.toml").ok());
+  EXPECT_EQ(back.path.frames.size(), 2U);
+  EXPECT_EQ(back.path.place_text, "");
+  // A loop's last frame has nothing but its time.
+  ASSERT_TRUE(load_text(back, "playback.loop = true\n[[path]]\ntime_s = 0\nyaw_deg = 3\n[[path]]\ntime_s = 1\n", "l.toml").ok());
+  EXPECT_TRUE(back.path.loop);
+}
+
+TEST_F(SceneFile, PathsThatAreWrongSayWhereAndWhy) {
+  const std::string two = "[[path]]\ntime_s = 0\n[[path]]\ntime_s = 5\n";
+  const std::pair<std::string, std::string> wrong[] = {
+      {"path = 3", "'path' is no list of frames, s.toml:1, allowed is one table [[path]] for each frame"},
+      {"[[path]]\ntime_s = 0\n", "a path of one frame, s.toml:1, needed are two or more [[path]]"},
+      {"[[path]]\nyaw_deg = 0\n", "a frame of the path has no time, s.toml:1, needed is time_s = SECONDS"},
+      {two + "[[path]]\ntime_s = 5\n",
+       "the path's time goes from 5 s to 5 s, s.toml:5, each frame's time_s has to be greater than that before"},
+      {two + "yaw_dge = 3\n", "unknown key 'yaw_dge' in [[path]], s.toml:5, did you mean 'yaw_deg'?"},
+      {two + "xyz = 3\n", "unknown key 'xyz' in [[path]], s.toml:5, keys are time_s, position_m, date, altitude_m, yaw_deg, "
+                          "pitch_deg, fov_deg, sun_elevation_deg, sun_azimuth_deg"},
+      {"[[path]]\ntime_s = -1\n", "'time_s' is no time, s.toml:2, allowed is a number, 0 to 1e+06 s"},
+      {"[[path]]\ntime_s = nan\n", "'time_s' is no time, s.toml:2, allowed is a number, 0 to 1e+06 s"},
+      {"[[path]]\ntime_s = \"0\"\n", "'time_s' is no time, s.toml:2, allowed is a number, 0 to 1e+06 s"},
+      {two + "altitude_m = -1\n", "'altitude_m' is below the sea, s.toml:5, allowed is 0 to 1e+09 m; position_m goes lower"},
+      {two + "position_m = [1, 2]\n", "'camera.position_m' = '2 values' is not 3 numbers, s.toml:5, allowed is 3 numbers, each -1e+09 to 1e+09 m"},
+      {two + "fov_deg = 200\n", "'camera.fov_deg' = '200' is out of range, s.toml:5, allowed is 1 to 170 deg"},
+      {two + "date = \"yesterday\"\n", "yesterday"},
+      {two + "date = \"2026-06-21T03:00:00Z\"\n",
+       "a path with dates has no place, s.toml:1, needed is place = \"LAT,LON\" in [playback]"},
+      {two + "date = \"2026-06-21T03:00:00Z\"\nsun_elevation_deg = 3\n",
+       "the sun stands by date and by angles, s.toml:3, allowed is one of them in a path"},
+      {two + "[playback]\nloops = true\n", "unknown key 'loops' in [playback], s.toml:6, did you mean 'loop'?"},
+      {two + "[playback]\nloop = 1\n", "'loop' is a whole number, s.toml:6, allowed is true or false"},
+      {two + "[playback]\nplace = \"north\"\n", "s.toml:6"},
+      {"[playback]\nloop = true\n", "there is no path to loop, s.toml:1, needed are two or more [[path]]"},
+      {"playback = 3", "'playback' is a whole number, s.toml:1, it has to be a table"},
+      {two + "yaw_deg = 3\n[playback]\nloop = true\n",
+       "the last frame of a loop is the first again, s.toml:6, allowed is time_s alone in the last [[path]]"},
+  };
+  for (const auto& [toml, message] : wrong) EXPECT_NE(failure(toml).find(message), std::string::npos) << toml << failure(toml);
+}
+
 TEST_F(SceneFile, PartialFilesKeepTheRestAndLaterWins) {
   Settings settings;
   settings.scene.sun.azimuth_deg = 99.0F;
