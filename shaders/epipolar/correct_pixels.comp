@@ -6,7 +6,6 @@
 #include "shared/frame_constants.h"
 #include "shared/epipolar.h"
 #include "lib/optical_depth.glsl"
-#include "frame/view_ray.glsl"
 
 layout(local_size_x = kMarchGroup) in;
 
@@ -19,15 +18,20 @@ layout(binding = 5) uniform sampler2D scene_color;
 layout(binding = 6) uniform sampler2D scene_depth;
 layout(binding = 7, OUTPUT_FORMAT) uniform writeonly image2D output_color;
 
+#include "frame/homogeneous_medium.glsl"
+
 void put_pixel(uint at) {
   ivec2 pixel = ivec2(items[at] & 0xFFFFu, items[at] >> 16u);
   Ray ray = view_ray(frame, pixel, texelFetch(scene_depth, pixel, 0).r);
   float start, end;
   vec3 through = vec3(1.0);
-  if (clip_to_air(medium, ray, start, end)) {
-    through = transmittance(medium, column_along(medium, ray.altitude, ray.cos_zenith, end));
-  }
+  vec3 lost;
   vec3 color = corrected[at].rgb * frame.sun_irradiance;
+  if (clip_to_medium(ray, start, end)) {
+    if (kHomogeneous) homogeneous_attenuation(end - start, through, lost);
+    else through = transmittance(medium, column_along(medium, ray.altitude, ray.cos_zenith, end));
+  }
+  if (kHomogeneous) color *= homogeneous_phase(ray.cos_view_sun);
   if (frame.only == 0u) color += texelFetch(scene_color, pixel, 0).rgb * through;
   // Seen against anything: green, as bright as a white surface under the sun.
   if (epipolar.show_depth_breaks != 0u) color = vec3(0.0, frame.sun_irradiance.g * 0.3, 0.0);

@@ -11,10 +11,12 @@
 #include "lib/single_scattering.glsl"
 #include "epipolar/ray_end.glsl"
 #include "frame/counters.glsl"
+#include "frame/homogeneous_medium.glsl"
 #include "frame/table_light.glsl"
 #include "epipolar/shadow_tree.glsl"
 
 layout(constant_id = 3) const bool kTree = true;
+const bool kPanels = kSingle == kIntegration && !kHomogeneous;
 
 uint steps_done = 0u;
 uint nodes_visited = 0u;
@@ -23,7 +25,7 @@ uint reads_done = 0u;
 // What cascades have added to the light of a ray, in any order.
 struct March {
   LitSections lit;  // single = table, multiple = occluded
-  vec3 light;       // single = integration
+  vec3 light;       // single = integration; in a homogeneous medium before homogeneous_phase()
 };
 
 // A walk along a row. Distances in cells from the camera.
@@ -42,6 +44,12 @@ struct Walk {
   float middle;
   vec3 lit_tinted;       // the same, with kColors
   vec3 moment_tinted;
+  // In a homogeneous medium: transmittance up to `since` and the light so far, and what has lit the ray from there on.
+  // Sections are closed where that changes, so that they are the same whatever pieces they were found in.
+  vec3 through;
+  vec3 light;
+  vec3 shine;
+  float since;
 };
 
 vec2 load_node(uint at) {
@@ -51,8 +59,20 @@ vec2 load_node(uint at) {
   return full ? vec2(uintBitsToFloat(low), uintBitsToFloat(high)) : vec2(float(low & 0xFFFFu), float(high >> 16u));
 }
 
+void close_homogeneous(inout Walk w) {
+  vec3 through, lost;
+  homogeneous_attenuation((w.x - w.since) * w.metres, through, lost);
+  w.light += w.shine * w.through * lost;
+  w.through *= through;
+  w.since = w.x;
+}
+
 void add_run(inout Walk w, inout LitSections sections, float to, float share, vec3 color) {
-  if (kSingle == kIntegration) {
+  if (kHomogeneous) {
+    if (w.shine != share * color) close_homogeneous(w);
+    w.shine = share * color;
+  }
+  if (kPanels) {
     float length_lit = share * (to - w.x);
     float moment = length_lit * (0.5 * (w.x + to) - w.middle);
     w.lit += length_lit;
@@ -147,6 +167,10 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
   w.middle = 0.0;
   w.lit_tinted = vec3(0.0);
   w.moment_tinted = vec3(0.0);
+  w.light = vec3(0.0);
+  w.shine = vec3(0.0);
+  w.since = w.x;
+  w.through = kHomogeneous ? exp(-frame.homogeneous.extinction * (from - start)) : vec3(1.0);
 
   // One panel for all of it where only lit lengths are asked for.
   int panels = 1;
@@ -156,7 +180,7 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
   vec3 column = vec3(0.0);
   vec3 rayleigh = vec3(0.0);
   vec3 mie = vec3(0.0);
-  if (kSingle == kIntegration) {
+  if (kPanels) {
     h = altitude_along(ray.altitude, ray.cos_zenith, from, radius);
     float h_end = altitude_along(ray.altitude, ray.cos_zenith, to, radius);
     density = densities(medium, h);
@@ -188,7 +212,7 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
         close_section(march.lit, path, start);
       }
     }
-    if (kSingle != kIntegration) break;
+    if (!kPanels) break;
     float h_next = altitude_along(ray.altitude, ray.cos_zenith, t + panel_m, radius);
     vec3 density_next = densities(medium, h_next);
     vec3 mean = mean_densities(medium, density, density_next, h_next - h);
@@ -211,6 +235,10 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
     column += mean * panel_m;
     h = h_next;
     density = density_next;
+  }
+  if (kHomogeneous) {
+    close_homogeneous(w);
+    march.light += w.light;
   }
 }
 
@@ -243,7 +271,13 @@ vec3 light_of(March march, Ray ray, TableRay path, float start, float end) {
     t = clamp(frame.cascades[epipolar.cascades - 1u].far_m / depth_per_m, start, end);
   }
   vec3 light = march.light;
-  if (kSingle == kIntegration) {
+  if (kHomogeneous) {
+    vec3 through, lost;
+    homogeneous_attenuation(end - t, through, lost);
+    if (kSingle != kNone) light += exp(-frame.homogeneous.extinction * (t - start)) * lost;
+    return light;
+  }
+  if (kPanels) {
     if (end - t > 1e-3) {
       light += single_scattering(medium, ray.altitude, ray.cos_zenith, ray.cos_sun_zenith, ray.cos_view_sun, t, end,
                                  int(frame.integration_steps) / 3);

@@ -56,7 +56,7 @@ void march_item(uint at) {
   }
   Ray ray = ray_to_depth(frame, position, s.depth_m, s.depth_m >= kSkyDepth);
   float start, end;
-  bool in_air = clip_to_air(medium, ray, start, end);
+  bool in_air = clip_to_medium(ray, start, end);
   if (!in_air) end = start;
   TableRay path = table_ray_of(ray, start);
 
@@ -96,7 +96,10 @@ void march_item(uint at) {
     } else {
       vec3 through, lost;
       attenuation(optical_depth_at(s.log_density, s.depth_m), through, lost);
+      if (kHomogeneous) homogeneous_attenuation(end - start, through, lost);
       s.source = light / max(lost, vec3(1e-20));
+      // Beside a medium that a ray misses others are lit.
+      if (kHomogeneous && kSingle != kNone && !in_air) s.source = vec3(1.0);
       samples[sample_at] = pack_sample(s);
     }
   }

@@ -22,6 +22,7 @@ layout(std430, binding = 5) writeonly buffer coarse_block { vec4 coarse[]; };
 layout(binding = 6) uniform sampler2D scene_depth;
 
 #include "epipolar/ray_end.glsl"
+#include "frame/homogeneous_medium.glsl"
 #include "epipolar/slices.glsl"
 
 // Device depth at a place between pixels: on one surface that of the surface there, because device depth is affine in
@@ -62,13 +63,25 @@ void main() {
   Sample s;
   s.depth_m = sky ? sky_depth_m(ray.direction) : ray.length_m * dot(ray.direction, frame.camera_forward);
   s.source = vec3(0.0);
+  uint at = id * epipolar.samples + i;
+  if (kHomogeneous) {
+    // All that changes along a slice is the length in the medium: the phase functions are left to the pixels.
+    float start, end;
+    ray = ray_to_depth(frame, position, s.depth_m, s.depth_m >= kSkyDepth);
+    if (!clip_to_homogeneous(ray, start, end)) end = start;
+    vec3 through, lost;
+    homogeneous_attenuation(end - start, through, lost);
+    s.log_density = log_density(frame.homogeneous.extinction * (end - start), s.depth_m);
+    samples[at] = pack_sample(s);
+    coarse[at] = vec4(lost, s.depth_m);
+    return;
+  }
   vec3 column = vec3(0.0);
   float start, end;
   if (clip_to_air(medium, ray, start, end)) {
     column = max(column_along(medium, ray.altitude, ray.cos_zenith, end), vec3(0.0));
   }
   s.log_density = log_density(optical_depth(medium, column), s.depth_m);
-  uint at = id * epipolar.samples + i;
   samples[at] = pack_sample(s);
   Guide guide = guide_for_column(medium, column);
   vec3 light = medium.rayleigh_scattering * rayleigh_phase(ray.cos_view_sun) * guide.rayleigh +

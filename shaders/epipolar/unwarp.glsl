@@ -8,6 +8,7 @@
 #include "lib/optical_depth.glsl"
 #include "epipolar/ray_end.glsl"
 #include "epipolar/slices.glsl"
+#include "frame/homogeneous_medium.glsl"
 
 layout(constant_id = 0) const uint kExtinction = 0u;  // 0 epipolar, 1 per pixel
 layout(constant_id = 1) const bool kBreaks = false;   // list the pixels that no sample fits
@@ -96,6 +97,15 @@ Blend blend(Around a, vec2 position) {
 
 // The background seen through the air, from blended samples. `visible_m`: view-space depth of what was drawn.
 vec3 compose(Blend b, vec2 position, float depth_m, float visible_m, bool sky, vec3 background) {
+  if (kHomogeneous) {
+    Ray ray = ray_to_depth(frame, position, depth_m, depth_m >= kSkyDepth);
+    float start, end;
+    if (!clip_to_homogeneous(ray, start, end)) end = start;
+    vec3 through, lost;
+    homogeneous_attenuation(end - start, through, lost);
+    vec3 light = b.source * lost * homogeneous_phase(ray.cos_view_sun) * frame.sun_irradiance;
+    return frame.only == 0u ? light + background * through : light;
+  }
   vec3 tau;
   if (kExtinction == 0u) {
     tau = optical_depth_at(b.log_density, depth_m);

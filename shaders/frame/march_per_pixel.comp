@@ -27,6 +27,7 @@ layout(std430, binding = 9) buffer counter_block { uint counters[]; };
 layout(binding = 10) uniform sampler2DArray shadow_colors;
 
 #include "frame/counters.glsl"
+#include "frame/homogeneous_medium.glsl"
 #include "frame/table_light.glsl"
 
 const int kReadsPerStep = 8;  // of the shadow map, per evaluation of the air
@@ -169,9 +170,43 @@ vec3 shadowed_table_light(Ray ray, float start, float end) {
   return table_light(lit, path, start, t, end);
 }
 
+// The closed form of a homogeneous medium over the lit parts of [start, end].
+vec3 homogeneous_light(Ray ray, float start, float end) {
+  vec3 light = vec3(0.0);
+  vec3 before = vec3(1.0);
+  vec3 through, lost;
+  float t = start;
+  float depth_per_m = max(dot(ray.direction, frame.camera_forward), 1e-6);
+  for (uint c = frame.first_marched_cascade; c < frame.cascade_count; ++c) {
+    float to = min(frame.cascades[c].far_m / depth_per_m, end);
+    if (to - t <= 1e-3) continue;
+    mat4 shadow_from_world = frame.cascades[c].shadow_from_world;
+    vec3 uvz_from = shadow_uvz(shadow_from_world, frame.camera_position + ray.direction * t);
+    vec3 uvz_to = shadow_uvz(shadow_from_world, frame.camera_position + ray.direction * to);
+    vec2 texels = abs(uvz_to.xy - uvz_from.xy) * float(frame.shadow_resolution);
+    float wanted = max(max(texels.x, texels.y), float(frame.integration_steps));
+    int reads = int(clamp(ceil(wanted), 1.0, float(kMostReads)));
+    homogeneous_attenuation((to - t) / float(reads), through, lost);
+    vec3 duvz = (uvz_to - uvz_from) / float(reads);
+    vec3 uvz = uvz_from + 0.5 * duvz;
+    for (int i = 0; i < reads; ++i) {
+      float share = texture(shadow_maps, vec4(uvz.xy, float(c), clamp(uvz.z, 0.0, 1.0)));
+      light += share * glass_color(uvz.xy, c) * before * lost;
+      before *= through;
+      uvz += duvz;
+    }
+    steps_done += uint(reads);
+    reads_done += uint(reads);
+    t = to;
+  }
+  homogeneous_attenuation(end - t, through, lost);
+  return (light + before * lost) * homogeneous_phase(ray.cos_view_sun);
+}
+
 // All that the air of [start, end] sends to the eye, as the modes ask.
 vec3 air_light(Ray ray, float start, float end) {
   vec3 light = vec3(0.0);
+  if (kHomogeneous) return kSingle == kNone ? light : homogeneous_light(ray, start, end);
   if (kSingle == kIntegration) light += integrated_light(ray, start, end);
   if (kLitTables || frame.unoccluded != 0u) light += shadowed_table_light(ray, start, end);
   return light;
@@ -186,11 +221,13 @@ void main() {
   float start, end;
   vec3 inscattered = vec3(0.0);
   vec3 through = vec3(1.0);
-  if (clip_to_air(medium, ray, start, end)) {
+  if (clip_to_medium(ray, start, end)) {
     inscattered = air_light(ray, start, end);
+    vec3 lost;
+    if (kHomogeneous) homogeneous_attenuation(end - start, through, lost);
     float from_altitude = altitude_along(ray.altitude, ray.cos_zenith, start, medium.planet_radius_m);
     float from_cosine = cos_zenith_along(ray.altitude, ray.cos_zenith, start, medium.planet_radius_m);
-    through = transmittance(medium, column_along(medium, from_altitude, from_cosine, end - start));
+    if (!kHomogeneous) through = transmittance(medium, column_along(medium, from_altitude, from_cosine, end - start));
   }
   vec3 color = inscattered * frame.sun_irradiance;
   if (frame.only == 0u) color += background * through;

@@ -10,6 +10,16 @@ struct CascadeConstants {
   float unused_1;
 };
 
+// scattering.medium = homogeneous, every coefficient resolved.
+struct HomogeneousMedium {
+  vec3 rayleigh_scattering;  // [1/m]
+  float extent_m;            // of rays on which nothing is drawn
+  vec3 mie_scattering;
+  float height_m;  // altitude of the top
+  vec3 extinction;
+  float unused_0;
+};
+
 struct FrameConstants {
   mat4 view_from_clip;
   mat4 world_from_view;
@@ -38,5 +48,6 @@ struct FrameConstants {
   uint shadow_depth_reversed;
   uint unoccluded;  // 1: the higher orders of the whole ray, whatever is in shadow
   TableShape tables;
+  HomogeneousMedium homogeneous;
   CascadeConstants cascades[8];
 };

@@ -218,8 +218,8 @@ Result<void> Effect::State::make_march_per_pixel(bool colors, std::uint32_t mode
   if (out.pipeline) return {};
   const bool full = desc.output_format == OutputFormat::rgba32f;
   const gpu::Shader& shader = full ? shaders::march_per_pixel_comp_rgba32f : shaders::march_per_pixel_comp_rgba16f;
-  const std::array<gpu::Constant, 3> m = mode_constants(mode);
-  const gpu::Constant of_march[] = {m[0], m[1], m[2], {4, colors ? 1U : 0U}, {8, desc.counters ? 1U : 0U}};
+  const std::array<gpu::Constant, 4> m = mode_constants(mode);
+  const gpu::Constant of_march[] = {m[0], m[1], m[2], m[3], {4, colors ? 1U : 0U}, {8, desc.counters ? 1U : 0U}};
   TYNDALL_ASSIGN(out, gpu::create_compute_pipeline(device, shader, of_march));
   out.name = "march_per_pixel";
   return {};

@@ -39,6 +39,11 @@ bool lists_breaks(const Params& params) {
   return params.epipolar.correct_depth_breaks.value != 0 || params.epipolar.show_depth_breaks.value != 0;
 }
 
+// Which of the pipelines by Extinction; one for both where that of every pixel is a single exponential.
+std::uint32_t extinction_index(const Params& params) {
+  return is_homogeneous(params.scattering) ? 0 : static_cast<std::uint32_t>(params.scattering.extinction);
+}
+
 }  // namespace
 
 std::uint32_t tree_cells(const EffectDesc& desc) {
@@ -183,31 +188,41 @@ Result<void> Epipolar::create_pipelines() {
     return {};
   };
   TYNDALL_TRY(make(slice_end_points_, shaders::slice_end_points_comp, "slice_end_points"));
-  TYNDALL_TRY(make(slice_samples_, shaders::slice_samples_comp, "slice_samples"));
   TYNDALL_TRY(make(slice_directions_, shaders::slice_directions_comp, "slice_directions"));
   TYNDALL_TRY(make(interpolate_samples_, shaders::interpolate_samples_comp, "interpolate_samples"));
   TYNDALL_TRY(make(show_sampling_, full ? shaders::show_sampling_comp_rgba32f : shaders::show_sampling_comp_rgba16f,
                    "show_sampling"));
-  TYNDALL_TRY(make(correct_pixels_, full ? shaders::correct_pixels_comp_rgba32f : shaders::correct_pixels_comp_rgba16f,
-                   "correct_pixels"));
   for (std::uint32_t i = 0; i < 2; ++i) {
     const gpu::Constant by_criterion[] = {{0, i}};
     TYNDALL_TRY(make(refine_samples_[i], shaders::refine_samples_comp, "refine_samples", by_criterion));
     const gpu::Constant by_format[] = {{0, i}};
     TYNDALL_TRY(make(shadow_tree_[i], shaders::shadow_tree_comp, "shadow_tree", by_format));
-    for (std::uint32_t breaks = 0; breaks < 2; ++breaks) {
-      const gpu::Constant of_unwarp[] = {{0, i}, {1, breaks}};
-      TYNDALL_TRY(make(unwarp_[i][breaks], full ? shaders::unwarp_comp_rgba32f : shaders::unwarp_comp_rgba16f, "unwarp",
-                       of_unwarp));
-      TYNDALL_TRY(make(unwarp_pixels_[i][breaks],
-                       full ? shaders::unwarp_pixels_comp_rgba32f : shaders::unwarp_pixels_comp_rgba16f, "unwarp_pixels",
-                       of_unwarp));
-    }
+    for (const bool breaks : {false, true}) TYNDALL_TRY(make_of_medium(MediumKind::atmosphere, i, breaks));
   }
   return {};
 }
 
+Result<void> Epipolar::make_of_medium(MediumKind medium, std::uint32_t extinction, bool breaks) {
+  const bool full = desc_.output_format == OutputFormat::rgba32f;
+  const gpu::Constant constants[] = {{0, extinction}, {1, breaks ? 1U : 0U}, {5, static_cast<std::uint32_t>(medium)}};
+  const auto make = [&](gpu::Pipeline& out, const gpu::Shader& shader, const char* name) -> Result<void> {
+    if (out.pipeline) return {};
+    TYNDALL_ASSIGN(out, gpu::create_compute_pipeline(*device_, shader, constants));
+    out.name = name;
+    return {};
+  };
+  PerMedium& of = of_medium_[static_cast<std::size_t>(medium)];
+  TYNDALL_TRY(make(of.slice_samples, shaders::slice_samples_comp, "slice_samples"));
+  TYNDALL_TRY(make(of.correct_pixels, full ? shaders::correct_pixels_comp_rgba32f : shaders::correct_pixels_comp_rgba16f,
+                   "correct_pixels"));
+  TYNDALL_TRY(make(of.unwarp[extinction][breaks ? 1 : 0],
+                   full ? shaders::unwarp_comp_rgba32f : shaders::unwarp_comp_rgba16f, "unwarp"));
+  return make(of.unwarp_pixels[extinction][breaks ? 1 : 0],
+              full ? shaders::unwarp_pixels_comp_rgba32f : shaders::unwarp_pixels_comp_rgba16f, "unwarp_pixels");
+}
+
 bool Epipolar::walks(const Params& params) {
+  if (is_homogeneous(params.scattering)) return params.scattering.single != SingleScattering::none;
   return params.scattering.single != SingleScattering::none ||
          params.scattering.multiple == MultipleScattering::occluded;
 }
@@ -215,8 +230,8 @@ bool Epipolar::walks(const Params& params) {
 Result<const gpu::Pipeline*> Epipolar::march(bool tree, bool colors, std::uint32_t mode) {
   gpu::Pipeline& out = march_samples_[tree ? 1 : 0][colors ? 1 : 0][mode];
   if (!out.pipeline) {
-    const std::array<gpu::Constant, 3> m = mode_constants(mode);
-    const gpu::Constant constants[] = {m[0], m[1], m[2], {3, tree ? 1U : 0U}, {4, colors ? 1U : 0U},
+    const std::array<gpu::Constant, 4> m = mode_constants(mode);
+    const gpu::Constant constants[] = {m[0], m[1], m[2], m[3], {3, tree ? 1U : 0U}, {4, colors ? 1U : 0U},
                                        {8, desc_.counters ? 1U : 0U}};
     TYNDALL_ASSIGN(out, gpu::create_compute_pipeline(*device_, shaders::march_samples_comp, constants));
     out.name = "march_samples";
@@ -226,6 +241,9 @@ Result<const gpu::Pipeline*> Epipolar::march(bool tree, bool colors, std::uint32
 
 Result<void> Epipolar::prepare(const Params& params) {
   if (params.scattering.technique != Technique::epipolar) return {};
+  if (is_homogeneous(params.scattering)) {
+    TYNDALL_TRY(make_of_medium(MediumKind::homogeneous, extinction_index(params), lists_breaks(params)));
+  }
   // As record() chooses, for frames with cascades.
   const bool tree = params.epipolar.min_max_tree.value != 0 && walks(params) && params.scattering.light_shafts.value != 0;
   for (const bool colors : {false, true}) {
@@ -365,7 +383,8 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
   };
 
   TYNDALL_TRY(run(slice_end_points_, {p.slices}));
-  TYNDALL_TRY(run(slice_samples_, {p.samples, p.slices}));
+  const PerMedium& of = of_medium_[static_cast<std::size_t>(params.scattering.medium)];
+  TYNDALL_TRY(run(of.slice_samples, {p.samples, p.slices}));
   const gpu::Pipeline& refine = refine_samples_[static_cast<std::size_t>(p.refinement)];
   TYNDALL_TRY(run(refine, {p.slices * refine.local_size[0]}));
   if (walking && marched > 0) TYNDALL_TRY(run(slice_directions_, {p.slices, marched}));
@@ -393,15 +412,15 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
     TYNDALL_TRY(run_list(march, EpipolarBuffer::march_list, &push));
   }
   TYNDALL_TRY(run(interpolate_samples_, {p.samples, p.slices}));
-  const auto extinction = static_cast<std::size_t>(params.scattering.extinction);
-  TYNDALL_TRY(run(unwarp_[extinction][breaks ? 1 : 0], {(inputs.extent.width + 1) / 2, (inputs.extent.height + 1) / 2}));
+  const std::uint32_t extinction = extinction_index(params);
+  TYNDALL_TRY(run(of.unwarp[extinction][breaks ? 1 : 0], {(inputs.extent.width + 1) / 2, (inputs.extent.height + 1) / 2}));
   lists_ready();
-  TYNDALL_TRY(run_list(unwarp_pixels_[extinction][breaks ? 1 : 0], EpipolarBuffer::broken_list));
+  TYNDALL_TRY(run_list(of.unwarp_pixels[extinction][breaks ? 1 : 0], EpipolarBuffer::broken_list));
   if (breaks) {
     lists_ready();
     const MarchPush push = {shared::kPixels, 0};
     if (p.correct_depth_breaks) TYNDALL_TRY(run_list(march, EpipolarBuffer::break_list, &push));
-    TYNDALL_TRY(run_list(correct_pixels_, EpipolarBuffer::break_list));
+    TYNDALL_TRY(run_list(of.correct_pixels, EpipolarBuffer::break_list));
   }
   if (p.show_sampling) {
     for (std::uint32_t marked = 0; marked < 2; ++marked) {

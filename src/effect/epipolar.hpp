@@ -68,8 +68,14 @@ class Epipolar {
     std::uint32_t frames_left;
   };
   using PerMode = std::array<gpu::Pipeline, kModeCount>;
+  // Specialised for a medium.
+  struct PerMedium {
+    gpu::Pipeline slice_samples, correct_pixels;
+    std::array<std::array<gpu::Pipeline, 2>, 2> unwarp, unwarp_pixels;  // by Extinction, and whether breaks are listed
+  };
 
   Result<void> create_pipelines();
+  Result<void> make_of_medium(MediumKind medium, std::uint32_t extinction, bool breaks);
   // Whether the march looks at the shadows at all.
   [[nodiscard]] static bool walks(const Params& params);
   Result<const gpu::Pipeline*> march(bool tree, bool colors, std::uint32_t mode);
@@ -78,12 +84,11 @@ class Epipolar {
   EffectDesc desc_;
   Buffers buffers_ = {};
   std::vector<Retired> retired_ = {};
-  gpu::Pipeline slice_end_points_, slice_samples_, slice_directions_, interpolate_samples_, show_sampling_;
+  gpu::Pipeline slice_end_points_, slice_directions_, interpolate_samples_, show_sampling_;
   std::array<gpu::Pipeline, 2> refine_samples_;  // by Refinement
   std::array<gpu::Pipeline, 2> shadow_tree_;     // by MinMaxFormat
   std::array<std::array<PerMode, 2>, 2> march_samples_;  // without and with tree, and colours; made when asked for
-  gpu::Pipeline correct_pixels_;
-  std::array<std::array<gpu::Pipeline, 2>, 2> unwarp_, unwarp_pixels_;  // by Extinction, and whether breaks are listed
+  std::array<PerMedium, 2> of_medium_;  // by MediumKind; those of the homogeneous one are made when asked for
 };
 
 }  // namespace tyndall

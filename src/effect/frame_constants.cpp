@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "effect/medium.hpp"
+#include "effect/modes.hpp"
+
 namespace tyndall {
 namespace {
 
@@ -127,7 +130,21 @@ shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDe
   out.first_marched_cascade = inputs.first_marched_cascade;
   out.integration_steps = params.scattering.integration_steps;
   out.only = params.scattering.only.value;
-  out.unoccluded = params.scattering.multiple == MultipleScattering::unoccluded ? 1 : 0;
+  const bool homogeneous = is_homogeneous(params.scattering);
+  out.unoccluded = !homogeneous && params.scattering.multiple == MultipleScattering::unoccluded ? 1 : 0;
+  if (homogeneous) {
+    const HomogeneousMediumParams& p = params.homogeneous_medium;
+    const shared::Medium sea_level = medium_from_params(params);
+    const auto times = [](const Vec3& v, const Vec3& by) { return Vec3(v.x * by.x, v.y * by.y, v.z * by.z); };
+    out.homogeneous.rayleigh_scattering = times(sea_level.rayleigh_scattering, Vec3(p.density));
+    out.homogeneous.mie_scattering = times(sea_level.mie_scattering, Vec3(p.density));
+    const Vec3& air = sea_level.rayleigh_scattering;
+    const Vec3& aerosol = sea_level.mie_extinction;
+    out.homogeneous.extinction = times(Vec3(air.x + aerosol.x, air.y + aerosol.y, air.z + aerosol.z), Vec3(p.density));
+    out.homogeneous.extent_m = p.extent_m;
+    out.homogeneous.height_m = p.height_m;
+    out.sun_irradiance = times(out.sun_irradiance, p.sunlight);
+  }
   out.shadow_depth_reversed = desc.shadow_depth_reversed ? 1 : 0;
   out.tables = table_shape(params);
   for (std::size_t i = 0; i < inputs.cascades.size(); ++i) {

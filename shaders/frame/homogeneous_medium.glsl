@@ -1,0 +1,58 @@
+// A medium of constant density in place of the atmosphere (Yusov, "IVB Atmospheric Light Scattering", 2012, section 2):
+// the light that reaches it is the same everywhere, so that the light of a lit stretch [a, b] of a ray is in closed form
+//   L = E (beta_R p_R + beta_M p_M) / sigma (exp(-sigma a) - exp(-sigma b)),
+// per channel. What depends on the direction alone, all before the bracket, is left out along the ray and applied at the
+// pixel. Include after declaring medium and frame. docs/homogeneous_medium.md has the equations and what they leave out.
+#ifndef TYNDALL_HOMOGENEOUS_MEDIUM_GLSL
+#define TYNDALL_HOMOGENEOUS_MEDIUM_GLSL
+
+#include "lib/phase.glsl"
+#include "frame/view_ray.glsl"
+
+layout(constant_id = 5) const bool kHomogeneous = false;
+
+// The part of the ray inside the medium [m]; false when there is none. Rays end at what was drawn, at the planet, or
+// at the medium's extent.
+bool clip_to_homogeneous(Ray ray, out float start, out float end) {
+  start = 0.0;
+  end = ray.length_m;
+  if (ray.sky) {
+    float near, far;
+    float h = frame.camera_altitude_m;
+    float radius = medium.planet_radius_m;
+    bool ground = ray_hits_ground(h, ray.cos_zenith, radius) &&
+                  shell_intersections(h, ray.cos_zenith, min(h, 0.0), radius, near, far);
+    end = ground ? max(near, 0.0) : frame.homogeneous.extent_m;
+  }
+  // The flat top, level where the camera is.
+  float above = frame.camera_altitude_m - frame.homogeneous.height_m;
+  float crossing = -above / (abs(ray.cos_zenith) > 1e-9 ? ray.cos_zenith : 1e-9);
+  if (above > 0.0) {
+    start = ray.cos_zenith < 0.0 ? crossing : end;
+  } else if (ray.cos_zenith > 0.0) {
+    end = min(end, crossing);
+  }
+  end = max(end, start);
+  return end > start;
+}
+
+bool clip_to_medium(Ray ray, out float start, out float end) {
+  if (kHomogeneous) return clip_to_homogeneous(ray, start, end);
+  return clip_to_air(medium, ray, start, end);
+}
+
+// exp(-sigma d) and 1 - exp(-sigma d), the latter without cancellation.
+void homogeneous_attenuation(float length_m, out vec3 through, out vec3 lost) {
+  vec3 tau = frame.homogeneous.extinction * length_m;
+  through = exp(-tau);
+  lost = mix(1.0 - through, tau - 0.5 * tau * tau, lessThan(tau, vec3(2e-3)));
+}
+
+// The factor of the direction [1/sr].
+vec3 homogeneous_phase(float cos_view_sun) {
+  vec3 scattered = frame.homogeneous.rayleigh_scattering * rayleigh_phase(cos_view_sun) +
+                   frame.homogeneous.mie_scattering * mie_phase(medium, cos_view_sun);
+  return scattered / max(frame.homogeneous.extinction, vec3(1e-30));
+}
+
+#endif
