@@ -7,6 +7,7 @@
 .PHONY: demo check pictures accuracy epipolar-study setup build format tidy clean
 
 PRESET ?= release
+OPERATORS = exponential reinhard reinhard-modified uncharted2 filmic-alu logarithmic adaptive-logarithmic agx pbr-neutral
 
 demo: PRESET = release
 demo: build
@@ -28,6 +29,14 @@ pictures: build
 	  build/release/bin/tyndall render scenes/twilight.toml --size 480x270 --set sun.elevation_deg=$$sun \
 	    --set camera.yaw_deg=$$yaw --set tonemap.exposure=$$exposure -o docs/images/$$name.png < /dev/null || exit 1; \
 	done < scenes/twilight_pictures.txt
+	@for operator in $(OPERATORS); do \
+	  build/release/bin/tyndall render scenes/demo.toml --size 256x144 --set tonemap.operator=$$operator \
+	    --set tonemap.auto_exposure=true -o docs/images/tonemap_$$operator.png || exit 1; \
+	done
+	@build/release/bin/tyndall render scenes/flythrough.toml --size 256x144 --frames 9 --time-step 7.5 \
+	  -o docs/images/flythrough_%d.png
+	@cmake --build build/release --target tonemap_curves
+	@build/release/bin/tonemap_curves docs/images/tonemap_curves.svg
 
 # The numbers of docs/accuracy.md.
 accuracy: PRESET = release

@@ -183,6 +183,26 @@ TEST_F(CliScenes, APictureThatDoesNotFitLeavesWhatWasThere) {
   EXPECT_EQ(contents_of(before).substr(1, 3), "PNG");
 }
 
+// What each frame of a flight was drawn with stands in its metadata.
+TEST_F(CliScenes, FlightsArePlayed) {
+  const std::string scene = scratch_.write("flight.toml",
+                                           "planet.radius_m = 20000\ntables = { size = [4, 4, 4, 4], orders = 1 }\n"
+                                           "shadows = { cascades = 1, first_marched = 0, resolution = 512 }\n"
+                                           "[[path]]\ntime_s = 0\nyaw_deg = 350\nsun_elevation_deg = 60\n"
+                                           "[[path]]\ntime_s = 2\nyaw_deg = 30\nsun_elevation_deg = 1\n");
+  const Outcome outcome = run_tyndall({"render", scene, "--size", "16x9", "--frames", "3", "--time-step", "1", "-o", scratch_.at("f%d.png")});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto has = [&](int frame, const std::string& key, const std::string& value) {
+    const std::string png = contents_of(scratch_.at("f" + std::to_string(frame) + ".png"));
+    return png.find("tyndall." + key + std::string(1, '\0') + value) != std::string::npos;
+  };
+  EXPECT_TRUE(has(0, "camera.yaw_deg", "350"));
+  EXPECT_TRUE(has(1, "camera.yaw_deg", "10"));
+  EXPECT_TRUE(has(2, "camera.yaw_deg", "30"));
+  EXPECT_TRUE(has(1, "sun.elevation_deg", "30.5"));
+  EXPECT_TRUE(has(1, "frame.exposure", ""));
+}
+
 // Scenes are read before the device is looked for: it is enough that the device is what is wrong.
 TEST_F(CliScenes, PresetsAreScenes) {
   std::size_t count = 0;
