@@ -14,6 +14,9 @@ layout(std430, binding = 1) readonly buffer mesh_block {
   float mesh_angles[];  // azimuths from mesh_ahead of the columns + 1 lines, then zenith angles of the rows + 1 [rad]
 };
 
+// Angle of a vertex from the zenith [rad].
+float sky_mesh_zenith(uint index) { return mesh_angles[mesh_columns + 1u + index / (mesh_columns + 1u)]; }
+
 // Unit vector from the camera to vertex `index`, in the world's frame.
 vec3 sky_mesh_direction(uint index) {
   uint row = index / (mesh_columns + 1u);

@@ -14,6 +14,10 @@ layout(std430, binding = 0) readonly buffer background_block {
   float unused_0;
   vec2 tan_half;          // of the field of view; y points down in clip space
   vec2 jitter;            // of the picture, in clip space
+  vec3 direction_to_moon;
+  float moon_radius_rad;  // 0: no moon
+  vec3 moon_irradiance;   // of the sun's light on it
+  float unused_1;
 };
 
 // In a direction of unit length; 0 beside the disc.

@@ -117,25 +117,25 @@ Answer oneil(const OneilModel& model, const Ray& ray) {
   return {to_array(radiance), to_array(through)};
 }
 
-std::array<double, 3> oneil_sky_irradiance(const OneilModel& model, double altitude_m, double cos_sun_zenith) {
+std::array<double, 3> oneil_sky_irradiance(const OneilModel& model, double altitude_m, double cos_sun_zenith,
+                                           int nodes) {
   // As sky_irradiance_single in shaders/lib: the zenith angle is split at the sun's, and the nodes crowd
   // around it.
-  constexpr int kNodes = 24;
   const double sun_zenith = std::acos(std::clamp(cos_sun_zenith, 0.0, 1.0));
   const double half_pi = 0.5 * std::numbers::pi;
   std::array<double, 3> sum = {};
   for (int side = 0; side < 2; ++side) {
     const double reach = side == 0 ? sun_zenith : half_pi - sun_zenith;
     if (reach <= 1.0e-6) continue;
-    for (int i = 0; i < kNodes; ++i) {
-      const double u = (i + 0.5) / kNodes;
+    for (int i = 0; i < nodes; ++i) {
+      const double u = (i + 0.5) / nodes;
       const double offset = side == 0 ? reach * u * u : reach * u * u * (3.0 - 2.0 * u);
       const double stretch = side == 0 ? 2.0 * reach * u : 6.0 * reach * u * (1.0 - u);
       const double zenith = side == 0 ? sun_zenith - offset : sun_zenith + offset;
-      for (int j = 0; j < kNodes; ++j) {
-        const double v = (j + 0.5) / kNodes;
+      for (int j = 0; j < nodes; ++j) {
+        const double v = (j + 0.5) / nodes;
         const double weight = stretch * std::sin(zenith) * std::cos(zenith) * 4.0 * std::numbers::pi * v /
-                              (kNodes * kNodes);
+                              (nodes * nodes);
         const Ray ray = ray_from_angles(altitude_m, zenith, std::acos(std::clamp(cos_sun_zenith, -1.0, 1.0)),
                                         std::numbers::pi * v * v);
         const Answer answer = oneil(model, ray);

@@ -25,6 +25,8 @@ struct OneilSettings {
   std::uint32_t table_size = 128;  // [16; 1024] entries along each side
   bool space_by_column = false;    // points where most of the air is; not with the printed equations
   bool rayleigh_phase = true;      // false: Rayleigh scattering is even in all directions
+
+  bool operator==(const OneilSettings&) const = default;
 };
 
 // How far columns are from those of the integral, relative to these: of outward rays, per species.
@@ -48,9 +50,9 @@ struct OneilModel {
 [[nodiscard]] std::string describe_errors(const OneilModel& model);
 
 [[nodiscard]] Answer oneil(const OneilModel& model, const Ray& ray);
-// Horizontal irradiance / E0 of the sky at an altitude.
+// Horizontal irradiance / E0 of the sky at an altitude, from 2 nodes^2 rays.
 [[nodiscard]] std::array<double, 3> oneil_sky_irradiance(const OneilModel& model, double altitude_m,
-                                                         double cos_sun_zenith);
+                                                         double cos_sun_zenith, int nodes = 24);
 // Of the sun's light to a point: 0 where the planet hides the sun.
 [[nodiscard]] std::array<double, 3> oneil_sun_transmittance(const OneilModel& model, double altitude_m,
                                                             double cos_sun_zenith);

@@ -31,6 +31,10 @@ struct BackgroundConstants {
   float unused_0;
   float tan_half[2];
   float jitter[2];
+  Vec3 direction_to_moon;
+  float moon_radius_rad;
+  Vec3 moon_irradiance;
+  float unused_1;
 };
 
 // Refuses pictures and shadow maps that the device has no room for, before anything is created.
@@ -320,6 +324,14 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
   constants.tan_half[1] = static_cast<float>(view_.tan_half_height);
   constants.jitter[0] = static_cast<float>(view_.jitter.x);
   constants.jitter[1] = static_cast<float>(view_.jitter.y);
+  if (scene_.moon.visible) {
+    SunParams place;
+    place.elevation_deg = scene_.moon.elevation_deg;
+    place.azimuth_deg = scene_.moon.azimuth_deg;
+    constants.direction_to_moon = to_vec3(direction_to_sun(place));
+    constants.moon_radius_rad = static_cast<float>(scene_.moon.angular_radius_deg * kRadPerDeg);
+    constants.moon_irradiance = Vec3(static_cast<float>(light_.sun_irradiance));
+  }
   std::memcpy(background_constants_.mapped, &constants, sizeof constants);
 
   gpu::transition(device, cmd, color_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);

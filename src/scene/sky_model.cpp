@@ -143,6 +143,7 @@ Result<void> SkyModel::prepare(const ModelFrame& frame) {
 }
 
 Result<void> SkyModel::draw_ground(VkCommandBuffer cmd, Terrain& terrain, const ModelFrame& frame) {
+  if (!draws_terrain(frame)) return {};
   std::vector<gpu::NamedResource> more = more_resources();
   more.push_back(gpu::named_buffer("model_block", constants_.buffer.get()));
   return terrain.draw_view(cmd, frame.view, frame.light, ground_, more);

@@ -51,6 +51,11 @@ class SkyModel {
 
   // Fills `model_block`, constants_bytes long.
   virtual Result<void> fill(const ModelFrame& frame, void* constants) = 0;
+  // Whether the terrain is the ground; the sky pipeline draws what lies below the horizon otherwise.
+  [[nodiscard]] virtual bool draws_terrain(const ModelFrame& frame) const {
+    static_cast<void>(frame);
+    return true;
+  }
   // What the shaders read beyond model_block.
   [[nodiscard]] virtual std::vector<gpu::NamedResource> more_resources() const { return {}; }
 

@@ -1,0 +1,91 @@
+// The air of O'Neil's model between the eye and what it sees. Binding 6 is filled by src/scene/oneil_sky.cpp, 7
+// is the table of oneil-table.
+#ifndef TYNDALL_ONEIL_AIR_GLSL
+#define TYNDALL_ONEIL_AIR_GLSL
+
+layout(std430, binding = 7) readonly buffer oneil_table_block { vec4 oneil_texels[]; };
+#define ONEIL_TEXEL(table, index) oneil_texels[index]
+#include "lib/oneil.glsl"
+
+layout(constant_id = 0) const uint kPerPixel = 0u;
+
+const uint kSunsOfSky = 64u;
+
+layout(std430, binding = 6) readonly buffer model_block {
+  Medium medium;
+  Oneil oneil;
+  vec3 eye_position;
+  float eye_altitude_m;
+  vec3 eye_up;           // away from the planet's centre
+  float eye_cos_sun;     // of the sun's zenith angle at the eye
+  vec3 to_sun;
+  float horizon_rad;     // zenith angle of the horizon at sea level
+  vec3 sun_irradiance;   // above the air
+  float air_shown;       // 0: no air
+  vec3 north_pole;       // of the sphere's surface
+  float ground_shown;    // 0: nothing but the light of the air
+  uint sphere_seed;
+  uint is_sphere;        // the ground is the sphere, and not the terrain
+  float unused_model_0;
+  float unused_model_1;
+  // Irradiance of the sky at sea level / E0 for cosines of the sun's zenith angle from -0.25 to 1.
+  vec4 sky_by_sun[kSunsOfSky];
+};
+
+// Where a ray ends.
+const uint kAtDistance = 0u;
+const uint kAtGround = 1u;  // the sphere at sea level, which it meets
+const uint kInSpace = 2u;
+
+// Light of the ray into `direction` but for the phase functions, and what it lets through; all relative to the
+// sun's irradiance. Before the air, behind it and past it there is none.
+void oneil_air(vec3 direction, float distance_m, uint ends, out vec3 rayleigh, out vec3 mie, out vec3 through) {
+  rayleigh = vec3(0.0);
+  mie = vec3(0.0);
+  through = vec3(1.0);
+  float R = medium.planet_radius_m;
+  float top = medium.atmosphere_height_m;
+  float altitude = eye_altitude_m;
+  float mu = clamp(dot(direction, eye_up), -1.0, 1.0);
+  float mu_s = eye_cos_sun;
+  float nu = clamp(dot(direction, to_sun), -1.0, 1.0);
+  float near;
+  float far;
+  if (air_shown == 0.0 || !shell_intersections(altitude, mu, top, R, near, far) || far <= 0.0) {
+    return;
+  }
+  float start = altitude > top ? max(near, 0.0) : 0.0;
+  float end = far;
+  if (ends == kAtDistance) {
+    end = min(distance_m, far);
+  } else if (ends == kAtGround) {
+    float ground_far;
+    if (!shell_intersections(altitude, mu, min(altitude, 0.0), R, end, ground_far)) {
+      end = -(R + altitude) * mu;  // touches by a rounding error
+    }
+  }
+  if (end <= start) {
+    return;
+  }
+  oneil_enter(top, R, altitude, mu, mu_s, nu, start, end);
+  oneil_scattering(medium, oneil, 0u, altitude, mu, mu_s, nu, 0.0, end, rayleigh, mie, through);
+}
+
+// Radiance of what oneil_air found: here enter the phase functions, for every pixel.
+vec3 air_radiance(vec3 direction, vec3 rayleigh, vec3 mie) {
+  return oneil_radiance(medium, oneil, clamp(dot(direction, to_sun), -1.0, 1.0), rayleigh, mie) * sun_irradiance;
+}
+
+// Light on the ground, relative to the sun's above the air: across the sun's direction, and of the open sky.
+void light_on_ground(float altitude_m, float cos_sun_zenith, out vec3 sun, out vec3 sky) {
+  sun = vec3(1.0);
+  sky = vec3(0.0);
+  if (air_shown != 0.0) {
+    sun = oneil_sunlight(medium, oneil, 0u, clamp(altitude_m, 0.0, medium.atmosphere_height_m), cos_sun_zenith);
+    float place = clamp((cos_sun_zenith + 0.25) / 1.25, 0.0, 1.0) * float(kSunsOfSky - 1u);
+    uint below = min(uint(place), kSunsOfSky - 2u);
+    sky = mix(sky_by_sun[below].rgb, sky_by_sun[below + 1u].rgb, place - float(below));
+  }
+}
+
+#endif

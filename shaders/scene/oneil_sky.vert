@@ -1,0 +1,26 @@
+// The sky mesh in O'Neil's model: the integral along the ray through each vertex, out of the air or, below
+// the horizon, to the sphere of the planet.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "scene/sky_mesh.glsl"
+#include "scene/oneil_air.glsl"
+
+layout(location = 0) out vec3 offset;  // from the eye
+layout(location = 1) out vec3 vertex_rayleigh;
+layout(location = 2) out vec3 vertex_mie;
+layout(location = 3) out vec3 vertex_through;
+
+void main() {
+  offset = sky_mesh_direction(uint(gl_VertexIndex)) * 1000.0;
+  vertex_rayleigh = vec3(0.0);
+  vertex_mie = vec3(0.0);
+  vertex_through = vec3(1.0);
+  if (kPerPixel == 0u) {
+    // The mesh has a row on the horizon and one right below it, so that the break there stays sharp.
+    float zenith = sky_mesh_zenith(uint(gl_VertexIndex));
+    oneil_air(normalize(offset), 0.0, zenith > horizon_rad + 2.0e-5 ? kAtGround : kInSpace, vertex_rayleigh,
+              vertex_mie, vertex_through);
+  }
+  gl_Position = sky_mesh_clip(offset);
+}

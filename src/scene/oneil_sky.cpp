@@ -1,0 +1,127 @@
+#include "scene/oneil_sky.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+#include "effect/medium.hpp"
+#include "gpu/try.hpp"
+#include "scene/chart.hpp"
+#include "scene/oneil_settings.hpp"
+#include "scene_shaders.hpp"
+
+namespace tyndall::scene {
+namespace {
+
+constexpr std::size_t kSuns = 64;
+constexpr int kSkyNodes = 10;              // of the irradiance of the sky: 200 rays for each sun
+constexpr std::uint32_t kSkySamples = 8;   // on such a ray at most
+
+// model_block of shaders/scene/oneil_air.glsl, in std430.
+struct Block {
+  tyndall::shared::Medium medium;
+  tyndall::shared::Oneil oneil;
+  Vec3 eye_position;
+  float eye_altitude_m;
+  Vec3 eye_up;
+  float eye_cos_sun;
+  Vec3 to_sun;
+  float horizon_rad;
+  Vec3 sun_irradiance;
+  float air_shown;
+  Vec3 north_pole;
+  float ground_shown;
+  std::uint32_t sphere_seed;
+  std::uint32_t is_sphere;
+  float unused[2];
+  float sky_by_sun[kSuns][4];
+};
+static_assert(sizeof(Block) == 2 * 96 + 6 * 16 + 16 * kSuns);
+
+class OneilSky : public SkyModel {
+ public:
+  explicit OneilSky(bool table) : table_(table) {}
+
+  Result<void> create(gpu::Host& host, ModelEvaluation evaluation, VkFormat color_format, VkFormat depth_format) {
+    return create_objects(host,
+                          {&shaders::oneil_terrain_vert, &shaders::oneil_terrain_frag, &shaders::oneil_sky_vert,
+                           &shaders::oneil_sky_frag},
+                          evaluation, sizeof(Block), color_format, depth_format);
+  }
+
+ protected:
+  Result<void> fill(const ModelFrame& frame, void* constants) override {
+    TYNDALL_TRY(make(medium_from_params(frame.params), oneil_settings(frame.scene.oneil, table_)));
+    const double radius = frame.params.planet.radius_m;
+    const glm::dvec3 up = up_of(frame.view.position, radius);
+    const double altitude = altitude_of(frame.view.position, radius);
+    Block out = {};
+    out.medium = model_.medium;
+    out.oneil = model_.constants;
+    out.eye_position = to_vec3(frame.view.position);
+    out.eye_altitude_m = static_cast<float>(altitude);
+    out.eye_up = to_vec3(up);
+    out.eye_cos_sun = static_cast<float>(std::clamp(glm::dot(up, frame.light.direction_to_sun), -1.0, 1.0));
+    out.to_sun = to_vec3(frame.light.direction_to_sun);
+    const double above = std::max(altitude, 0.0);
+    out.horizon_rad = static_cast<float>(0.5 * std::numbers::pi + std::acos(radius / (radius + above)));
+    out.sun_irradiance = Vec3(static_cast<float>(frame.light.sun_irradiance));
+    out.air_shown = frame.params.scattering.enabled ? 1.0F : 0.0F;
+    out.ground_shown = frame.params.scattering.only ? 0.0F : 1.0F;
+    // North is -z at the origin, which lies at 25 degrees of latitude.
+    out.north_pole = to_vec3(glm::normalize(glm::dvec3(0.0, std::sin(0.436), -std::cos(0.436))));
+    out.sphere_seed = frame.scene.terrain.seed;
+    out.is_sphere = frame.scene.oneil.ground == OneilGround::sphere ? 1 : 0;
+    std::memcpy(out.sky_by_sun, sky_by_sun_, sizeof sky_by_sun_);
+    std::memcpy(constants, &out, sizeof out);
+    return {};
+  }
+
+  [[nodiscard]] bool draws_terrain(const ModelFrame& frame) const override {
+    return frame.scene.oneil.ground == OneilGround::terrain;
+  }
+
+  [[nodiscard]] std::vector<gpu::NamedResource> more_resources() const override {
+    return {gpu::named_buffer("oneil_table_block", table_buffer_.buffer.get())};
+  }
+
+ private:
+  // The fit or the table, and the light of the sky: when planet, air or settings are others. No frame is in flight.
+  Result<void> make(const tyndall::shared::Medium& medium, const models::OneilSettings& settings) {
+    const bool same = table_buffer_.buffer && settings == settings_ && std::memcmp(&medium, &model_.medium, sizeof medium) == 0;
+    if (same) return {};
+    models::OneilModel model = models::make_oneil(medium, settings);
+    const VkDeviceSize bytes = model.table.size() * sizeof model.table[0];
+    TYNDALL_ASSIGN(table_buffer_, gpu::create_buffer(host_->device(), "oneil_table", bytes,
+                                                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
+    std::memcpy(table_buffer_.mapped, model.table.data(), bytes);
+    settings_ = settings;
+    model_ = std::move(model);
+    models::OneilModel coarse = model_;
+    coarse.constants.samples = std::min(coarse.constants.samples, kSkySamples);
+    for (std::size_t i = 0; i < kSuns; ++i) {
+      const double cos_sun = -0.25 + 1.25 * static_cast<double>(i) / (kSuns - 1);
+      const std::array<double, 3> sky = models::oneil_sky_irradiance(coarse, 0.0, cos_sun, kSkyNodes);
+      for (std::size_t c = 0; c < 3; ++c) sky_by_sun_[i][c] = static_cast<float>(sky[c]);
+    }
+    return {};
+  }
+
+  bool table_ = false;
+  models::OneilModel model_ = {};
+  models::OneilSettings settings_ = {};
+  float sky_by_sun_[kSuns][4] = {};
+  gpu::Buffer table_buffer_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<SkyModel>> create_oneil_sky(gpu::Host& host, ModelEvaluation evaluation, bool table,
+                                                   VkFormat color_format, VkFormat depth_format) {
+  auto out = std::make_unique<OneilSky>(table);
+  TYNDALL_TRY(out->create(host, evaluation, color_format, depth_format));
+  return std::unique_ptr<SkyModel>(std::move(out));
+}
+
+}  // namespace tyndall::scene
