@@ -19,7 +19,7 @@ const uint kOneilPublished = 1u;  // the polynomial and the equations as printed
 const uint kOneilTable = 2u;      // altitude times angle
 
 const uint kOneilUniform = 0u;  // points evenly along the ray, as printed
-const uint kOneilColumn = 1u;   // points where most of the air is
+const uint kOneilColumn = 1u;   // points where most of the air is that can be seen
 
 // The table: GLSL reads a buffer by ONEIL_TEXEL, C++ passes a pointer.
 #ifndef ONEIL_TABLE
@@ -117,8 +117,9 @@ vec2 oneil_sun_column(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h, flo
   return 2.0 * oneil_column(m, o, table, lowest, 0.0) - oneil_column(m, o, table, h, -c);
 }
 
+// On other planets than its own the printed function makes columns negative without bound.
 vec3 oneil_transmittance(IN(Medium) m, vec2 column) {
-  return exp(-(m.rayleigh_scattering * column.x + m.mie_extinction * column.y));
+  return exp(min(-(m.rayleigh_scattering * column.x + m.mie_extinction * column.y), vec3(40.0)));
 }
 
 // Of the sun's light to altitude h; 0 where the planet hides it, but with the printed function, which grows
@@ -129,11 +130,11 @@ vec3 oneil_sunlight(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h, float
 }
 
 // A distance in [from, to] of the ray by which `share` of its air between the two has been crossed: the mean of
-// the shares of both species, whose columns from `from` to `to` are `whole`. Newton's method in a bracket that
+// the shares of both species, whose columns from `from` to `to` are `whole`, and a part `even` of the length. Newton's method in a bracket that
 // shrinks; it comes from one side when `guess` lies between the densest air and the answer. To `tolerance` in the
 // share.
 float oneil_place(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h0, float mu, float hp, float from, float to,
-                  vec2 whole, float share, float tolerance, float guess) {
+                  vec2 whole, float even, float share, float tolerance, float guess) {
   float R = m.planet_radius_m;
   float q0 = (R + h0) * mu;
   float h_from = min(altitude_along(h0, mu, from, R), m.atmosphere_height_m);
@@ -144,7 +145,7 @@ float oneil_place(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h0, float 
     float h = min(altitude_along(h0, mu, d, R), m.atmosphere_height_m);
     vec2 crossed = oneil_column_between(m, o, table, q0 + from, h_from, q0 + d, h, hp, false) / whole;
     vec2 slope = oneil_densities(m, o, table, h) / whole;
-    float missing = share - 0.5 * (crossed.x + crossed.y);
+    float missing = share - even * (d - from) / (to - from) - (0.5 - 0.5 * even) * (crossed.x + crossed.y);
     if (abs(missing) < tolerance) {
       break;
     }
@@ -153,10 +154,16 @@ float oneil_place(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h0, float 
     } else {
       high = d;
     }
-    float next = d + missing / max(0.5 * (slope.x + slope.y), 1.0e-30);
+    float next = d + missing / max((0.5 - 0.5 * even) * (slope.x + slope.y) + even / (to - from), 1.0e-30);
     d = next > low && next < high ? next : 0.5 * (low + high);
   }
   return d;
+}
+
+// Share of the air before which a fraction `seen` of what an eye sees of it lies, if the air between the eye and all
+// of it has this optical depth.
+float oneil_seen(float seen, float depth) {
+  return depth > 0.01 ? -log(max(1.0 - seen, 0.0) + seen * exp(-depth)) / depth : seen;
 }
 
 // Light of the part [start, end] of the ray (h0, mu, mu_s, nu: see single_scattering), which begins and ends in
@@ -171,7 +178,7 @@ void oneil_scattering(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h0, fl
   float hp = perigee_altitude(h0, mu, R);
   float ha = min(altitude_along(h0, mu, start, R), top);
   float hb = min(altitude_along(h0, mu, end, R), top);
-  bool reversed = hb < ha;
+  bool reversed = hb < ha - 1.0e-4 * top;  // more than a rounding error: from top to top is not
   rayleigh = vec3(0.0);
   mie = vec3(0.0);
   through = oneil_transmittance(
@@ -193,20 +200,28 @@ void oneil_scattering(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h0, fl
       float count = float(o.samples);
       bool by_column = o.spacing == kOneilColumn && o.columns != kOneilPublished;
       vec2 whole = vec2(1.0);
+      float depth = 0.0;
       if (by_column) {
         float h_from = min(altitude_along(h0, mu, from, R), top);
         float h_to = min(altitude_along(h0, mu, to, R), top);
         whole = oneil_column_between(m, o, table, q0 + from, h_from, q0 + to, h_to, hp, false);
         by_column = min(whole.x, whole.y) > 1.0e-20;
+        vec3 tau = m.rayleigh_scattering * whole.x + m.mie_extinction * whole.y;
+        depth = min((tau.x + tau.y + tau.z) / 3.0, 20.0);
       }
+      // In twilight the dense air below gets no light: there they are spread over the whole ray as well.
+      float even = clamp(0.5 - 4.0 * mu_s, 0.0, 0.7);
       float densest = clamp(-q0, from, to);
       float last = densest;
       for (uint i = 0u; i < o.samples; ++i) {
         // Away from the densest air, so that each place starts from the one before.
-        float share = (float(densest < to ? i : o.samples - 1u - i) + 0.5) / count;
-        float d = from + share * span;
+        float place = (float(densest < to ? i : o.samples - 1u - i) + 0.5) / count;
+        float d = from + place * span;
+        float part_of_air = 1.0 / count;
         if (by_column) {
-          d = oneil_place(m, o, table, h0, mu, hp, from, to, whole, share, 0.02 / count, last);
+          float share = oneil_seen(place, depth);
+          part_of_air = oneil_seen(place + 0.5 / count, depth) - oneil_seen(place - 0.5 / count, depth);
+          d = oneil_place(m, o, table, h0, mu, hp, from, to, whole, even, share, 0.02 * part_of_air, last);
           last = d < densest && densest < to ? densest : d;
         }
         float h = min(altitude_along(h0, mu, d, R), top);
@@ -216,7 +231,7 @@ void oneil_scattering(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h0, fl
         vec2 density = oneil_densities(m, o, table, h);
         float length_m = span / count;
         if (by_column) {
-          length_m = 2.0 / (count * max(density.x / whole.x + density.y / whole.y, 1.0e-30));
+          length_m = part_of_air / max((0.5 - 0.5 * even) * (density.x / whole.x + density.y / whole.y) + even / span, 1.0e-30);
         }
         vec3 arrives = oneil_transmittance(m, column) * length_m;
         rayleigh += arrives * density.x;

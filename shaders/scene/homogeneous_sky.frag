@@ -1,8 +1,8 @@
-// The sky of Hoffman and Preetham's model, and the sun's disc through it.
+// The sky of Hoffman and Preetham's model, and sun and moon through it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#include "scene/sun_disc.glsl"
+#include "scene/moon.glsl"
 #include "scene/homogeneous_air.glsl"
 
 layout(location = 0) in vec3 offset;
@@ -20,5 +20,5 @@ void main() {
   }
   // Behind the planet there is no sun, whether or not ground is drawn there.
   bool open = !ray_hits_ground(eye_altitude_m, dot(direction, eye_up), medium.planet_radius_m);
-  radiance = vec4((open ? sun_disc(direction) * ground_shown * extinction : vec3(0.0)) + inscattering, 1.0);
+  radiance = vec4((open ? beyond_air(direction) * ground_shown * extinction : vec3(0.0)) + inscattering, 1.0);
 }

@@ -9,7 +9,7 @@ layout(std430, binding = 7) readonly buffer oneil_table_block { vec4 oneil_texel
 
 layout(constant_id = 0) const uint kPerPixel = 0u;
 
-const uint kSunsOfSky = 64u;
+const uint kSunsOfSky = 128u;
 
 layout(std430, binding = 6) readonly buffer model_block {
   Medium medium;
@@ -28,7 +28,7 @@ layout(std430, binding = 6) readonly buffer model_block {
   uint is_sphere;        // the ground is the sphere, and not the terrain
   float unused_model_0;
   float unused_model_1;
-  // Irradiance of the sky at sea level / E0 for cosines of the sun's zenith angle from -0.25 to 1.
+  // Irradiance of the sky at sea level / E0 for cosines of the sun's zenith angle from -1 to 1.
   vec4 sky_by_sun[kSunsOfSky];
 };
 
@@ -82,7 +82,7 @@ void light_on_ground(float altitude_m, float cos_sun_zenith, out vec3 sun, out v
   sky = vec3(0.0);
   if (air_shown != 0.0) {
     sun = oneil_sunlight(medium, oneil, 0u, clamp(altitude_m, 0.0, medium.atmosphere_height_m), cos_sun_zenith);
-    float place = clamp((cos_sun_zenith + 0.25) / 1.25, 0.0, 1.0) * float(kSunsOfSky - 1u);
+    float place = clamp(0.5 + 0.5 * cos_sun_zenith, 0.0, 1.0) * float(kSunsOfSky - 1u);
     uint below = min(uint(place), kSunsOfSky - 2u);
     sky = mix(sky_by_sun[below].rgb, sky_by_sun[below + 1u].rgb, place - float(below));
   }

@@ -14,17 +14,16 @@ constexpr std::size_t kBatchRays = 16384;  // well below a second of work on a C
 
 std::array<double, 3> widened(const Vec3& v) { return {v.x, v.y, v.z}; }
 
-}  // namespace
-
-Result<std::vector<Answer>> single_scattering_on_gpu(gpu::Host& host, const shared::Medium& medium,
-                                                     std::span<const Ray> rays,
-                                                     const std::function<void(std::size_t)>& progress) {
+// Asks one of shaders/probe, which reads `more` beside the medium, the rays and the results.
+Result<std::vector<Answer>> ask(gpu::Host& host, const gpu::Shader& shader, const shared::Medium& medium,
+                                std::span<const gpu::NamedResource> more, std::span<const Ray> rays,
+                                const std::function<void(std::size_t)>& progress) {
   std::vector<Answer> answers;
   if (rays.empty()) return answers;
   const gpu::Device& device = host.device();
   const std::size_t batch = std::min(rays.size(), kBatchRays);
   constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-  TYNDALL_ASSIGN(const gpu::Pipeline pipeline, gpu::create_compute_pipeline(device, shaders::single_comp));
+  TYNDALL_ASSIGN(const gpu::Pipeline pipeline, gpu::create_compute_pipeline(device, shader));
   TYNDALL_ASSIGN(const gpu::Buffer medium_buffer, gpu::create_buffer(device, "probe_medium", sizeof medium,
                                                                      kStorage, gpu::MemoryKind::upload));
   TYNDALL_ASSIGN(const gpu::Buffer ray_buffer,
@@ -43,12 +42,13 @@ Result<std::vector<Answer>> single_scattering_on_gpu(gpu::Host& host, const shar
     for (std::size_t i = 0; i < count; ++i) prepared[i] = prepare_probe_ray(medium, rays[first + i]);
     TYNDALL_TRY(host.run([&](VkCommandBuffer cmd) -> Result<void> {
       // The shader takes the number of rays from the size of their block.
-      const gpu::NamedResource resources[] = {
+      std::vector<gpu::NamedResource> resources = {
           gpu::named_buffer("medium_block", medium_buffer.buffer.get()),
           gpu::named_buffer("ray_block", ray_buffer.buffer.get(), 0, count * sizeof(shared::ProbeRay)),
           gpu::named_buffer("result_block", result_buffer.buffer.get(), 0,
                             count * sizeof(shared::ProbeResult)),
       };
+      resources.insert(resources.end(), more.begin(), more.end());
       const std::string_view missing = gpu::bind(device, cmd, pipeline, resources);
       if (!missing.empty()) {
         return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(missing)};
@@ -64,6 +64,28 @@ Result<std::vector<Answer>> single_scattering_on_gpu(gpu::Host& host, const shar
     if (progress) progress(first + count);
   }
   return answers;
+}
+
+}  // namespace
+
+Result<std::vector<Answer>> single_scattering_on_gpu(gpu::Host& host, const shared::Medium& medium,
+                                                     std::span<const Ray> rays,
+                                                     const std::function<void(std::size_t)>& progress) {
+  return ask(host, shaders::single_comp, medium, {}, rays, progress);
+}
+
+Result<std::vector<Answer>> oneil_on_gpu(gpu::Host& host, const OneilModel& model, std::span<const Ray> rays) {
+  constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  const std::size_t table_bytes = model.table.size() * sizeof model.table[0];
+  TYNDALL_ASSIGN(const gpu::Buffer constants, gpu::create_buffer(host.device(), "oneil", sizeof model.constants,
+                                                                 kStorage, gpu::MemoryKind::upload));
+  TYNDALL_ASSIGN(const gpu::Buffer table, gpu::create_buffer(host.device(), "oneil_table", table_bytes, kStorage,
+                                                             gpu::MemoryKind::upload));
+  std::memcpy(constants.mapped, &model.constants, sizeof model.constants);
+  std::memcpy(table.mapped, model.table.data(), table_bytes);
+  const gpu::NamedResource more[] = {gpu::named_buffer("oneil_block", constants.buffer.get()),
+                                     gpu::named_buffer("oneil_table_block", table.buffer.get())};
+  return ask(host, shaders::oneil_comp, model.medium, more, rays, {});
 }
 
 }  // namespace tyndall::models

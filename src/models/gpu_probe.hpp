@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gpu/host.hpp"
+#include "models/oneil.hpp"
 #include "models/single_scattering.hpp"
 
 namespace tyndall::models {
@@ -16,5 +17,8 @@ namespace tyndall::models {
 Result<std::vector<Answer>> single_scattering_on_gpu(gpu::Host& host, const shared::Medium& medium,
                                                      std::span<const Ray> rays,
                                                      const std::function<void(std::size_t)>& progress = {});
+
+// The same of O'Neil's model, by shaders/probe/oneil.comp.
+Result<std::vector<Answer>> oneil_on_gpu(gpu::Host& host, const OneilModel& model, std::span<const Ray> rays);
 
 }  // namespace tyndall::models

@@ -14,7 +14,7 @@
 namespace tyndall::scene {
 namespace {
 
-constexpr std::size_t kSuns = 64;
+constexpr std::size_t kSuns = 128;
 constexpr int kSkyNodes = 10;              // of the irradiance of the sky: 200 rays for each sun
 constexpr std::uint32_t kSkySamples = 8;   // on such a ray at most
 
@@ -101,7 +101,7 @@ class OneilSky : public SkyModel {
     models::OneilModel coarse = model_;
     coarse.constants.samples = std::min(coarse.constants.samples, kSkySamples);
     for (std::size_t i = 0; i < kSuns; ++i) {
-      const double cos_sun = -0.25 + 1.25 * static_cast<double>(i) / (kSuns - 1);
+      const double cos_sun = -1.0 + 2.0 * static_cast<double>(i) / (kSuns - 1);
       const std::array<double, 3> sky = models::oneil_sky_irradiance(coarse, 0.0, cos_sun, kSkyNodes);
       for (std::size_t c = 0; c < 3; ++c) sky_by_sun_[i][c] = static_cast<float>(sky[c]);
     }

@@ -8,13 +8,14 @@
 #include "gpu/try.hpp"
 #include "scene/chart.hpp"
 #include "scene/homogeneous_sky.hpp"
+#include "scene/oneil_sky.hpp"
 
 namespace tyndall::scene {
 namespace {
 
 constexpr std::uint32_t kColumns = 128;
 constexpr std::uint32_t kRowsAbove = 64;   // from the zenith to the edge of the sky
-constexpr std::uint32_t kRowsBetween = 16;  // to the planet's horizon
+constexpr std::uint32_t kRowsBetween = 48;  // to the planet's horizon
 constexpr std::uint32_t kRowsBelow = 48;   // to the nadir
 constexpr std::uint32_t kRows = kRowsAbove + kRowsBetween + kRowsBelow;
 constexpr std::uint32_t kIndices = kColumns * kRows * 6;
@@ -126,7 +127,9 @@ void SkyModel::fill_mesh(const ModelFrame& frame) {
   constexpr double kNarrow_rad = 1e-4;
   const double last = horizon - kNarrow_rad;
   for (std::uint32_t i = 1; i <= kRowsBetween; ++i) {
-    const double x = static_cast<double>(i - 1) / (kRowsBetween - 1);
+    // Closer together at both ends: light rises as a square root from the rim, and exponentially to the horizon.
+    const double t = static_cast<double>(i - 1) / (kRowsBetween - 1);
+    const double x = t * t * (3.0 - 2.0 * t);
     zenith[kRowsAbove + i] = static_cast<float>(std::min(edge + kNarrow_rad, last) * (1.0 - x) + last * x);
   }
   for (std::uint32_t i = 1; i <= kRowsBelow; ++i) {
@@ -166,16 +169,14 @@ Result<void> SkyModel::draw_sky(VkCommandBuffer cmd, VkBuffer background) {
 Result<std::unique_ptr<SkyModel>> create_sky_model(gpu::Host& host, const SceneParams& scene, VkFormat color_format,
                                                    VkFormat depth_format) {
   const ModelEvaluation evaluation = scene.scattering.evaluate;
-  const char* name = "atmosphere";
   switch (scene.scattering.model) {
-    case ScatteringModel::homogeneous:
-      return create_homogeneous_sky(host, evaluation, color_format, depth_format);
-    case ScatteringModel::oneil: name = "oneil"; break;
-    case ScatteringModel::oneil_table: name = "oneil-table"; break;
+    case ScatteringModel::homogeneous: return create_homogeneous_sky(host, evaluation, color_format, depth_format);
+    case ScatteringModel::oneil: return create_oneil_sky(host, evaluation, false, color_format, depth_format);
+    case ScatteringModel::oneil_table: return create_oneil_sky(host, evaluation, true, color_format, depth_format);
     case ScatteringModel::atmosphere: break;
   }
-  return Error{ErrorCode::invalid_argument, "'scattering.model' = '" + std::string(name) +
-               "' does not draw frames in this version, scattering.model, allowed is atmosphere or homogeneous"};
+  return Error{ErrorCode::invalid_argument,
+               "'scattering.model' = 'atmosphere' is not a sky model, scattering.model, allowed are the others"};
 }
 
 }  // namespace tyndall::scene

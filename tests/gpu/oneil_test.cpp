@@ -1,0 +1,241 @@
+// O'Neil's model on the device: its functions against double precision, and the scene that draws with it.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "effect/medium.hpp"
+#include "gpu_test.hpp"
+#include "image/metrics.hpp"
+#include "models/gpu_probe.hpp"
+#include "scene/scene.hpp"
+
+namespace tyndall {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+class GpuOneil : public GpuTest {};
+
+TEST_F(GpuOneil, AgreesWithDoublePrecision) {
+  std::mt19937 engine(2005);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  std::vector<models::Ray> rays;
+  for (int i = 0; i < 1500; ++i) {
+    const double altitude = (i % 4 == 3 ? 5000.0e3 : i % 2 == 0 ? 3000.0 : 79000.0) * uniform(engine);
+    rays.push_back(models::ray_from_angles(altitude, std::acos(1.0 - 2.0 * uniform(engine)),
+                                           100.0 / 180.0 * kPi * uniform(engine), 2.0 * kPi * uniform(engine)));
+  }
+  for (const models::OneilColumns columns : {models::OneilColumns::computed, models::OneilColumns::published, models::OneilColumns::table}) {
+    for (const bool by_column : {false, true}) {
+      models::OneilSettings settings;
+      settings.columns = columns;
+      settings.space_by_column = by_column;
+      shared::Medium medium = medium_from_params({});
+      if (columns == models::OneilColumns::published) {  // for the planet that it was made for
+        medium.atmosphere_height_m = 159.0e3F;
+        medium.rayleigh_scale_height_m = medium.mie_scale_height_m = 39750.0F;
+        medium.rayleigh_scattering = {1.1e-6F, 1.9e-6F, 3.9e-6F};
+        medium.mie_scattering = medium.mie_extinction = Vec3(7.9e-8F);
+      }
+      const models::OneilModel model = models::make_oneil(medium, settings);
+      const Result<std::vector<models::Answer>> answers = models::oneil_on_gpu(host(), model, rays);
+      ASSERT_OK(answers);
+      double mean = 0.0;
+      double worst = 0.0;
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        const models::Answer truth = models::oneil(model, rays[i]);
+        const double brightest = std::max({truth.radiance[0], truth.radiance[1], truth.radiance[2]});
+        if (brightest < 1.0e-9) continue;
+        // Steeply downwards past the planet the printed polynomial amplifies, and rounding errors with it.
+        if (*std::max_element(truth.transmittance.begin(), truth.transmittance.end()) > 1.0001) continue;
+        double error = 0.0;
+        for (std::size_t c = 0; c < 3; ++c) {
+          error = std::max(error, std::abs(answers.value()[i].radiance[c] - truth.radiance[c]) / brightest);
+          EXPECT_NEAR(answers.value()[i].transmittance[c], truth.transmittance[c], 1.0e-4);
+        }
+        mean += error / static_cast<double>(rays.size());
+        worst = std::max(worst, error);
+      }
+      // Single precision; at the edge of the planet's shadow the ends of a ray's lit part keep few digits.
+      EXPECT_LT(mean, 2.0e-4) << static_cast<int>(columns) << by_column;
+      EXPECT_LT(worst, 0.01) << static_cast<int>(columns) << by_column;
+    }
+  }
+}
+
+namespace s = scene;
+
+// The demo planet, small in pixels.
+struct DemoPlanet {
+  Params params;
+  s::SceneParams scene;
+
+  DemoPlanet() {
+    params.tables.size = {8, 32, 32, 4};
+    params.atmosphere.height_m = 159.0e3F;
+    params.atmosphere.rayleigh_scale_height_m = 39750.0F;
+    params.atmosphere.mie_scale_height_m = 39750.0F;
+    params.atmosphere.custom_coefficients = true;
+    params.atmosphere.rayleigh_scattering = {1.1e-6F, 1.9e-6F, 3.9e-6F};
+    params.atmosphere.mie_scattering = Vec3(7.9e-8F);
+    params.atmosphere.mie_absorption = Vec3(0.0F);
+    scene.scattering.model = s::ScatteringModel::oneil;
+    scene.oneil.ground = s::OneilGround::sphere;
+    scene.sun.elevation_deg = 30.0F;
+    scene.sun.azimuth_deg = 60.0F;
+    scene.camera.position_m = {0.0F, 159.0e3F, 0.0F};
+    scene.camera.yaw_deg = 0.0F;
+    scene.camera.pitch_deg = -20.0F;
+    scene.shadows.resolution = 512;
+    scene.shadows.cascades = 1;
+    scene.shadows.first_marched = 0;
+  }
+};
+
+class GpuOneilScene : public GpuTest {
+ protected:
+  std::unique_ptr<s::Scene> make(const DemoPlanet& setup, VkExtent2D extent = {96, 64}) {
+    s::SceneDesc desc;
+    desc.extent = extent;
+    Result<std::unique_ptr<s::Scene>> scene = s::Scene::create(host(), desc, setup.params, setup.scene);
+    EXPECT_OK(scene);
+    return scene.ok() ? std::move(scene).value() : nullptr;
+  }
+  static image::Image draw(s::Scene& scene, const s::SceneParams& params) {
+    EXPECT_OK(scene.set_scene(params));
+    EXPECT_OK(scene.render(0.0));
+    Result<image::Image> radiance = scene.radiance();
+    EXPECT_OK(radiance);
+    if (!radiance.ok()) return {};
+    for (const float value : radiance.value().rgb) EXPECT_TRUE(std::isfinite(value) && value >= 0.0F);
+    return std::move(radiance).value();
+  }
+};
+
+double largest(const image::Image& image) {
+  return *std::max_element(image.rgb.begin(), image.rgb.end());
+}
+
+double largest_difference(const image::Image& a, const image::Image& b) {
+  double out = 0.0;
+  for (std::size_t i = 0; i < a.rgb.size(); ++i) out = std::max(out, static_cast<double>(std::abs(a.rgb[i] - b.rgb[i])));
+  return out;
+}
+
+// A metre below the top and a metre above it: the same picture. What differs is the sliver of thin air above the
+// horizontal, and where the rows of the mesh stand.
+TEST_F(GpuOneilScene, CrossesTheTopWithoutAJump) {
+  DemoPlanet setup;
+  const std::unique_ptr<s::Scene> scene = make(setup);
+  ASSERT_NE(scene, nullptr);
+  for (const s::ModelEvaluation evaluate : {s::ModelEvaluation::pixel, s::ModelEvaluation::vertex}) {
+    s::SceneParams params = setup.scene;
+    params.scattering.evaluate = evaluate;
+    params.camera.position_m.y = 159.0e3F - 1.0F;
+    const image::Image below = draw(*scene, params);
+    params.camera.position_m.y = 159.0e3F + 1.0F;
+    const image::Image above = draw(*scene, params);
+    EXPECT_LT(largest_difference(below, above), 0.02 * largest(below)) << static_cast<int>(evaluate);
+  }
+}
+
+TEST_F(GpuOneilScene, VerticesAreFineEnough) {
+  DemoPlanet setup;
+  const std::unique_ptr<s::Scene> scene = make(setup);
+  ASSERT_NE(scene, nullptr);
+  for (const float altitude : {100.0F, 30.0e3F, 159.0e3F, 6000.0e3F}) {
+    s::SceneParams params = setup.scene;
+    params.camera.altitude_m = altitude;
+    params.camera.pitch_deg = altitude > 1.0e6F ? -65.0F : -10.0F;
+    params.scattering.evaluate = s::ModelEvaluation::pixel;
+    const image::Image pixel = draw(*scene, params);
+    params.scattering.evaluate = s::ModelEvaluation::vertex;
+    const image::Image vertex = draw(*scene, params);
+    const image::Metrics metrics = image::compare(vertex, pixel);
+    EXPECT_GT(largest(pixel), 0.1) << altitude;
+    EXPECT_LT(metrics.rmse, 0.004 * largest(pixel)) << altitude;
+  }
+}
+
+// Thick air, where a ray that touches the ground crosses many optical depths: no seam, and nothing undefined.
+TEST_F(GpuOneilScene, ThickAirHasNoSeamAtTheHorizon) {
+  DemoPlanet setup;
+  setup.params.planet.radius_m = 2575.0e3F;
+  setup.params.atmosphere.height_m = 450.0e3F;
+  setup.params.atmosphere.mie_scattering = Vec3(2.0e-5F);
+  setup.scene.oneil.spacing = s::OneilSpacing::column;
+  setup.scene.camera.position_m = {0.0F, 6000.0e3F, 0.0F};
+  setup.scene.camera.pitch_deg = -72.5F;
+  setup.scene.camera.fov_deg = 4.0F;
+  setup.scene.sun.azimuth_deg = 0.0F;
+  const std::unique_ptr<s::Scene> scene = make(setup);
+  ASSERT_NE(scene, nullptr);
+  for (const s::ModelEvaluation evaluate : {s::ModelEvaluation::vertex, s::ModelEvaluation::pixel}) {
+    s::SceneParams params = setup.scene;
+    params.scattering.evaluate = evaluate;
+    const image::Image image = draw(*scene, params);
+    for (std::size_t y = 1; y + 1 < 64; ++y) {  // down the middle, across the horizon
+      const auto at = [&](std::size_t row) { return static_cast<double>(image.rgb[(row * 96 + 48) * 3]); };
+      EXPECT_GT(at(y), 0.7 * std::min(at(y - 1), at(y + 1))) << y;
+    }
+    EXPECT_GT(largest(image), 0.1);
+  }
+}
+
+TEST_F(GpuOneilScene, NightSideIsBlack) {
+  DemoPlanet setup;
+  setup.scene.sun.elevation_deg = -90.0F;
+  setup.scene.camera.position_m = {0.0F, 6000.0e3F, 0.0F};
+  setup.scene.camera.pitch_deg = -90.0F;
+  setup.scene.camera.fov_deg = 20.0F;
+  const std::unique_ptr<s::Scene> scene = make(setup);
+  ASSERT_NE(scene, nullptr);
+  for (const s::ModelEvaluation evaluate : {s::ModelEvaluation::vertex, s::ModelEvaluation::pixel}) {
+    s::SceneParams params = setup.scene;
+    params.scattering.evaluate = evaluate;
+    EXPECT_LT(largest(draw(*scene, params)), 1.0e-6);
+  }
+}
+
+// Through the air near the horizon a full moon loses light, blue more than red; out of the air it keeps it.
+TEST_F(GpuOneilScene, MoonIsSeenThroughTheAir) {
+  DemoPlanet setup;
+  setup.scene.sun.elevation_deg = -3.0F;
+  setup.scene.sun.azimuth_deg = 180.0F;
+  setup.scene.moon.visible = true;
+  setup.scene.moon.elevation_deg = 5.0F;
+  setup.scene.moon.azimuth_deg = 0.0F;
+  setup.scene.moon.angular_radius_deg = 4.0F;
+  setup.scene.camera.position_m = {0.0F, 10.0F, 0.0F};
+  setup.scene.camera.pitch_deg = 5.0F;
+  setup.scene.camera.fov_deg = 10.0F;
+  const std::unique_ptr<s::Scene> scene = make(setup);
+  ASSERT_NE(scene, nullptr);
+  const auto moonlight = [&](bool air) {
+    Params params = setup.params;
+    params.scattering.enabled = air;
+    EXPECT_OK(scene->set_params(params));
+    s::SceneParams with = setup.scene;
+    s::SceneParams without = setup.scene;
+    without.moon.visible = false;
+    const image::Image a = draw(*scene, with);
+    const image::Image b = draw(*scene, without);
+    std::array<double, 3> out = {};
+    const std::size_t middle = (32 * 96 + 48) * 3;
+    for (std::size_t c = 0; c < 3; ++c) out[c] = static_cast<double>(a.rgb[middle + c]) - static_cast<double>(b.rgb[middle + c]);
+    return out;
+  };
+  const std::array<double, 3> clear = moonlight(false);
+  const std::array<double, 3> hazy = moonlight(true);
+  const models::OneilModel model = models::make_oneil(medium_from_params(setup.params), {});
+  const models::Answer truth = models::oneil(model, models::ray_from_angles(10.0, 85.0 * kPi / 180.0, 1.6, kPi));
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_GT(clear[c], 0.01);
+    EXPECT_NEAR(hazy[c] / clear[c], truth.transmittance[c], 0.02);
+  }
+  EXPECT_LT(hazy[2] / clear[2], hazy[0] / clear[0]);
+}
+
+}  // namespace
+}  // namespace tyndall
