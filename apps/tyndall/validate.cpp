@@ -155,6 +155,10 @@ std::vector<validate::Model> all_models(const std::string& device, const scene::
                                         const std::shared_ptr<Tables>& tables) {
   scene::SceneParams by_column = scene;
   by_column.oneil.spacing = scene::OneilSpacing::column;
+  scene::SceneParams everywhere = scene;
+  everywhere.homogeneous.falloff = false;
+  scene::SceneParams falling = scene;
+  falling.homogeneous.falloff = true;
   return {
       table_model("precomputed", "all orders, from the renderer's tables", tables,
                   [](Params& p) { p.scattering.single = SingleScattering::table; }),
@@ -163,6 +167,9 @@ std::vector<validate::Model> all_models(const std::string& device, const scene::
       probe_row("single", "light scattered once, integrated for every ray", 1, "single", device, scene),
       probe_row("single, against all orders", "the same: what leaving out multiple scattering costs", 0, "single",
                 device, scene),
+      probe_row("homogeneous", "Hoffman and Preetham: closed forms for one density at every altitude, no ozone, no other sunset "
+                "than the horizontal", 1, "homogeneous", device, everywhere),
+      probe_row("homogeneous, falling off", "the same with homogeneous.falloff", 1, "homogeneous", device, falling),
       probe_row("oneil", "O'Neil: light scattered once, few points and the scale function, no ozone", 1, "oneil",
                 device, scene),
       probe_row("oneil, points by column", "the same with oneil.spacing = column", 1, "oneil", device, by_column),

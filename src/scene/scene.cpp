@@ -344,6 +344,8 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
   begin_rendering(device, cmd, desc_.extent, &color, &depth);
   if (model_ != nullptr) {
     TYNDALL_TRY(model_->draw_ground(cmd, *terrain_, {view_, light_, params_, scene_}));
+    end_pass(cmd);
+    begin_pass(cmd, "sky");
     TYNDALL_TRY(model_->draw_sky(cmd, background_constants_.buffer.get()));
   } else {
     TYNDALL_TRY(terrain_->draw_view(cmd, view_, light_));
