@@ -4,7 +4,8 @@
 #   make pictures  renders the pictures of the documentation anew
 #   make accuracy  measures the numbers of docs/accuracy.md anew
 #   make epipolar-study  installs Pillow and matplotlib, and makes the numbers, plots and pictures of docs/epipolar.md anew
-.PHONY: demo check pictures accuracy epipolar-study setup build format tidy clean
+#   make models-study  measures and renders what docs/models.md shows
+.PHONY: demo check pictures accuracy epipolar-study models-study setup build format tidy clean
 
 PRESET ?= release
 OPERATORS = exponential reinhard reinhard-modified uncharted2 filmic-alu logarithmic adaptive-logarithmic agx pbr-neutral
@@ -50,6 +51,15 @@ epipolar-study: PRESET = release
 epipolar-study: build
 	@tools/setup.sh python3-pil python3-matplotlib
 	@/usr/bin/python3 tools/epipolar_study.py build/release/bin/tyndall $(SECTIONS)
+
+# The numbers and pictures of docs/models.md.
+models-study: PRESET = release
+models-study: build
+	@tools/setup.sh python3-pil
+	@/usr/bin/python3 tools/models_study.py build/release/bin/tyndall
+	@for figure in a b c; do \
+	  build/release/bin/tyndall render scenes/figure_12$$figure.toml --size 480x270 -o docs/images/figure_12$$figure.png || exit 1; \
+	done
 
 setup:
 	@tools/setup.sh

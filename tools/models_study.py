@@ -9,15 +9,14 @@ import math
 import pathlib
 import subprocess
 import sys
-import tempfile
 
 from PIL import Image
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SCENE = ROOT / "scenes" / "models.toml"
-SIZE = "640x360"
+SIZE = "480x270"
 COST_SIZE = "320x180"
-COST_FRAMES = 7
+COST_FRAMES = 5
 # What air costs is what frames cost above the bare ground's: shadows are small and the ground is grey, so that
 # the rest does not drown it.
 COST = ["terrain.shading=plain", "shadows.resolution=512", "shadows.cascades=2"]
@@ -80,11 +79,6 @@ def mean_error(validation, row, region):
 def main():
     tyndall = sys.argv[1]
     images = ROOT / "docs" / "images"
-    if "--validation" in sys.argv:
-        validation = json.loads(pathlib.Path(sys.argv[sys.argv.index("--validation") + 1]).read_text())
-    else:
-        validation = json.loads(run(tyndall, "validate", "--json"))
-
     drawn = []
     for name, title, settings, row in MODELS:
         path = images / f"models_{name}.png"
@@ -100,10 +94,14 @@ def main():
     bare = passes(tyndall, ["scattering.enabled=false"])[0]["terrain"]
     lines = ["# Every model on one scene", "",
              "Made by `make models-study`. The scene is `scenes/models.toml`.", ""]
+    measured = [passes(tyndall, settings) for _, _, settings, _, _ in drawn]
+    if "--validation" in sys.argv:
+        validation = json.loads(pathlib.Path(sys.argv[sys.argv.index("--validation") + 1]).read_text())
+    else:
+        validation = json.loads(run(tyndall, "validate", "--json"))
     rows = []
-    device = ""
-    for name, title, settings, row, picture in drawn:
-        times, effect, device = passes(tyndall, settings)
+    device = measured[0][2]
+    for (name, title, settings, row, picture), (times, effect, _) in zip(drawn, measured):
         air = effect if effect > 0 else times["terrain"] + times["sky"] - bare
         twin = by_name.get(name.replace("_vertex", "_pixel")) if name.endswith("_vertex") else None
         if name == "atmosphere":

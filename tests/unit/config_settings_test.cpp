@@ -153,6 +153,12 @@ TEST(ConfigSettings, CrossChecks) {
   settings = Settings();
   settings.scene.tables.cache.clear();
   EXPECT_FALSE(check(settings).ok());
+  settings = Settings();
+  settings.scene.homogeneous.haze_length_m = 9000.0F;
+  ASSERT_FALSE(check(settings).ok());
+  EXPECT_EQ(check(settings).error().message,
+            "'homogeneous.haze_length_m' = 9000 reaches above the air, with 'homogeneous.air_length_m' = 8400, allowed "
+            "is 1 to 8400");
 }
 
 TEST(ConfigSettings, MetadataHoldsEverything) {
