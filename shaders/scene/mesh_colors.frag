@@ -1,0 +1,19 @@
+// What glass leaves of the sun's light, multiplied into a map of colours; alpha keeps the least depth.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "scene/mesh_push.glsl"
+
+layout(location = 0) in vec2 uv;
+layout(location = 1) in vec4 vertex_color;
+layout(location = 2) flat in float handed;
+layout(location = 0) out vec4 left;
+
+layout(binding = 3) uniform sampler2D base_color;
+
+void main() {
+  // Of closed bodies one side counts: the one towards the sun. (The maps are mirrored: v runs up.)
+  bool front = gl_FrontFacing != (handed > 0.0);
+  if (!front && push.double_sided == 0u) discard;
+  left = vec4(passing(texture(base_color, uv) * push.color * vertex_color), gl_FragCoord.z);
+}

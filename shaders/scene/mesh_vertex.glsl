@@ -1,0 +1,37 @@
+// The vertices of the meshes, shared by the view and the shadow maps.
+#ifndef TYNDALL_MESH_VERTEX_GLSL
+#define TYNDALL_MESH_VERTEX_GLSL
+
+#include "scene/mesh.h"
+#include "scene/mesh_push.glsl"
+
+layout(std430, binding = 1) readonly buffer vertices_block { uint vertex_words[]; };
+layout(std430, binding = 2) readonly buffer instances_block { MeshInstance instances[]; };
+
+// MeshVertex of src/scene/mesh/mesh_data.hpp: nine words.
+struct MeshVertex {
+  vec3 position;  // world
+  vec3 normal;    // world, unit length
+  vec2 uv;
+  vec4 color;
+  float handed;
+};
+
+vec3 vertex_vec3(uint word) {
+  return vec3(uintBitsToFloat(vertex_words[word]), uintBitsToFloat(vertex_words[word + 1u]), uintBitsToFloat(vertex_words[word + 2u]));
+}
+
+MeshVertex mesh_vertex(uint vertex, uint instance) {
+  uint word = vertex * 9u;
+  MeshInstance placed = instances[instance];
+  MeshVertex v;
+  v.position = (placed.world_from_mesh * vec4(vertex_vec3(word), 1.0)).xyz;
+  vec3 n = vertex_vec3(word + 3u);
+  v.normal = normalize(placed.normal_x.xyz * n.x + placed.normal_y.xyz * n.y + placed.normal_z.xyz * n.z);
+  v.uv = vec2(uintBitsToFloat(vertex_words[word + 6u]), uintBitsToFloat(vertex_words[word + 7u]));
+  v.color = unpackUnorm4x8(vertex_words[word + 8u]);
+  v.handed = placed.normal_x.w;
+  return v;
+}
+
+#endif
