@@ -3,6 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
+#define SHADOW_COLORS 6
 #include "scene/terrain_ground.glsl"
 #include "tyndall/light_tables.glsl"
 

@@ -25,7 +25,7 @@ struct TerrainConstants {
   uint best_cascade;
   uint show_cascades;
   vec3 camera_forward;
-  float unused_1;
+  uint has_glass;        // the maps of colours are there
   mat4 shadow_from_world[8];
   vec4 cascade[8];       // far view depth [m], texel x [m], texel y [m], depth range [m]
   TerrainLevel levels[16];

@@ -52,6 +52,9 @@ vec3 ground_radiance() {
   vec3 sun_on_plane, open_sky;
   ground_light(map_altitude.z, dot(up, terrain.direction_to_sun), sun_on_plane, open_sky);
   vec3 sun = sun_on_plane * (lit * sun_cosine);
+#ifdef SHADOW_COLORS
+  if (lit > 0.0) sun *= sun_color_at(world_position, smooth_normal, cascade);
+#endif
   float visible = sky_visibility(map_m, map_altitude.z);
   vec3 sky = open_sky * (visible * 0.5 * (1.0 + dot(normal, up)));
   // The rest of the hemisphere is other ground, under the same sky and, on average, a flat ground's sun.

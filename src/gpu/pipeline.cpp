@@ -177,6 +177,17 @@ Result<Pipeline> create_graphics_pipeline(const Device& device, const GraphicsDe
   depth.depthCompareOp = desc.depth_compare;
   VkPipelineColorBlendAttachmentState attachment = {};
   attachment.colorWriteMask = 0xF;
+  if (desc.blend != Blend::none) {
+    const bool add = desc.blend == Blend::add;
+    attachment.blendEnable = VK_TRUE;
+    attachment.srcColorBlendFactor = add ? VK_BLEND_FACTOR_ONE : VK_BLEND_FACTOR_ZERO;
+    attachment.dstColorBlendFactor = add ? VK_BLEND_FACTOR_ONE : VK_BLEND_FACTOR_SRC_COLOR;
+    attachment.colorBlendOp = VK_BLEND_OP_ADD;
+    // The minimum takes no factors; otherwise alpha stays.
+    attachment.srcAlphaBlendFactor = VK_BLEND_FACTOR_ZERO;
+    attachment.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
+    attachment.alphaBlendOp = desc.blend == Blend::multiply_min ? VK_BLEND_OP_MIN : VK_BLEND_OP_ADD;
+  }
   VkPipelineColorBlendStateCreateInfo blend = {};
   blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
   const bool color = desc.color_format != VK_FORMAT_UNDEFINED;

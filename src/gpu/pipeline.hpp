@@ -51,6 +51,10 @@ struct Pipeline {
 Result<Pipeline> create_compute_pipeline(const Device& device, const Shader& shader,
                                          std::span<const Constant> constants = {});
 
+// How a fragment's colour joins what is there: in its place, added, multiplied with it; multiply_min: the colour
+// multiplied, of alpha the lesser.
+enum class Blend { none, add, multiply, multiply_min };
+
 // What a graphics pipeline of ours can differ in; everything is triangles from buffers read in the
 // vertex shader, drawn with dynamic rendering.
 struct GraphicsDesc {
@@ -62,6 +66,7 @@ struct GraphicsDesc {
   VkCompareOp depth_compare = VK_COMPARE_OP_GREATER;
   bool depth_write = true;
   VkCullModeFlags cull = VK_CULL_MODE_NONE;
+  Blend blend = Blend::none;
 };
 Result<Pipeline> create_graphics_pipeline(const Device& device, const GraphicsDesc& desc,
                                           std::span<const Constant> constants = {});

@@ -148,7 +148,7 @@ Result<Handle<VkSampler>> create_sampler(const Device& device, const SamplerDesc
   VkSamplerCreateInfo info = {};
   info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
   info.magFilter = info.minFilter = desc.filter;
-  info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST;
+  info.mipmapMode = desc.between_levels ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST;
   info.addressModeU = info.addressModeV = info.addressModeW = desc.address;
   info.compareEnable = desc.compare ? VK_TRUE : VK_FALSE;
   info.compareOp = desc.compare_op;

@@ -56,6 +56,7 @@ struct SamplerDesc {
   VkFilter filter = VK_FILTER_LINEAR;
   VkSamplerAddressMode address = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
   VkBorderColor border = VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE;
+  bool between_levels = false;  // mixes the two nearest mip levels
   bool compare = false;
   VkCompareOp compare_op = VK_COMPARE_OP_LESS_OR_EQUAL;
 };

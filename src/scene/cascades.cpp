@@ -95,6 +95,13 @@ glm::dmat4 CascadeFit::shadow_from_world() const {
   return out;
 }
 
+glm::dmat4 clip_from_shadow() {
+  glm::dmat4 out(1.0);
+  out[0][0] = out[1][1] = 2.0;
+  out[3] = glm::dvec4(-1.0, -1.0, 0.0, 1.0);
+  return out;
+}
+
 std::vector<double> split_distances(double near_m, double far_m, std::uint32_t count, double partitioning) {
   std::vector<double> out(count);
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -133,8 +140,14 @@ std::vector<CascadeFit> fit_cascades(const View& view, const glm::dvec3& directi
     // Across, what is seen of the shell: both the shell's bounds and the sphere's. Rounded up, the height more
     // coarsely because it changes with the camera's. A margin of a few texels keeps filters inside.
     const glm::dvec3 sphere_light = light_from_world * sphere_centre;
-    const glm::dvec3 low = glm::max(bounds.min, sphere_light - sphere_radius);
-    const glm::dvec3 high = glm::max(glm::min(bounds.max, sphere_light + sphere_radius), low);
+    glm::dvec3 low = glm::max(bounds.min, sphere_light - sphere_radius);
+    glm::dvec3 high = glm::max(glm::min(bounds.max, sphere_light + sphere_radius), low);
+    if (!ground.casters.empty()) {
+      Bounds casters;
+      for (const glm::dvec3& p : ground.casters) casters.add(light_from_world * p);
+      low = glm::clamp(casters.min, low, high);
+      high = glm::clamp(casters.max, low, high);
+    }
     const double margin = 1.0 + 8.0 / shadows.resolution;
     const glm::dvec3 half = 0.5 * (high - low);
     fit.half_extent.x = round_up(std::max(half.x, 1.0) * margin, 8.0);

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "scene/camera.hpp"
@@ -25,9 +26,14 @@ struct CascadeFit {
   [[nodiscard]] glm::dmat4 shadow_from_world() const;
 };
 
+// To Vulkan's clip space from (u, v, depth).
+[[nodiscard]] glm::dmat4 clip_from_shadow();
+
 struct Ground {
   double min_m = 0.0, max_m = 0.0;  // lowest and highest elevation
   double radius_m = 0.0;            // of the planet
+  // World [m]. Not empty: nothing outside the hull of these points casts a shadow, so maps end there.
+  std::span<const glm::dvec3> casters;
 };
 
 // View depths at which the cascades end, the last being `far_m`: partitioning between even (0) and

@@ -39,7 +39,7 @@ struct BackgroundConstants {
 
 // Refuses pictures and shadow maps that the device has no room for, before anything is created.
 Result<void> check_memory(const gpu::Device& device, VkExtent2D extent, std::uint32_t resolution,
-                          std::uint32_t cascades) {
+                          std::uint32_t cascades, double bytes_per_texel) {
   VkDeviceSize largest = 0;
   for (std::uint32_t i = 0; i < device.memory.memoryHeapCount; ++i) {
     largest = std::max(largest, device.memory.memoryHeaps[i].size);
@@ -59,7 +59,7 @@ Result<void> check_memory(const gpu::Device& device, VkExtent2D extent, std::uin
   }
   // Three colour images, depth, and as much as two of them again on the host for reading back.
   constexpr double kBytesPerPixel = 3 * 16 + 4 + 2 * 16;
-  const double needed = kBytesPerPixel * extent.width * extent.height + 4.0 * resolution * resolution * cascades;
+  const double needed = kBytesPerPixel * extent.width * extent.height + bytes_per_texel * resolution * resolution * cascades;
   const double allowed = 0.8 * static_cast<double>(largest);
   if (needed <= allowed) return {};
   const auto gib = [](double bytes) { return std::to_string(static_cast<int>(std::ceil(bytes / 1073741824.0))); };
@@ -123,6 +123,7 @@ Result<std::unique_ptr<Scene>> Scene::create(gpu::Host& host, const SceneDesc& d
   TYNDALL_ASSIGN(out->terrain_, Terrain::create(host, scene.terrain, params.planet.radius_m, kColorFormat, kDepthFormat,
                                                  desc.terrain_coarseness));
   out->notes_ = out->terrain_->notes();
+  TYNDALL_TRY(out->make_meshes(scene));
   TYNDALL_TRY(out->create_objects());
   return out;
 }
@@ -154,9 +155,11 @@ Result<void> Scene::create_objects() {
   TYNDALL_ASSIGN(post::Tonemap tonemap, post::Tonemap::create(device));
   tonemap_ = std::make_unique<post::Tonemap>(std::move(tonemap));
 
-  TYNDALL_TRY(check_memory(device, desc_.extent, scene_.shadows.resolution, scene_.shadows.cascades));
+  TYNDALL_TRY(check_memory(device, desc_.extent, scene_.shadows.resolution, scene_.shadows.cascades,
+                           meshes_ != nullptr && meshes_->has_glass() ? 12.0 : 4.0));
   TYNDALL_TRY(create_images(desc_.extent));
   TYNDALL_TRY(create_shadow_maps(scene_.shadows));
+  TYNDALL_TRY(create_shadow_colors(scene_.shadows));
   TYNDALL_ASSIGN(linear_, gpu::create_sampler(device, {}));
   TYNDALL_ASSIGN(nearest_, gpu::create_sampler(device, {.filter = VK_FILTER_NEAREST}));
   gpu::SamplerDesc compare;
@@ -239,23 +242,32 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   const glm::dvec2 map = map_from_world(view_.position, radius);
   const double ground_m = terrain_->height_at(map);
   const double altitude = altitude_of(view_.position, radius);
-  if (altitude < ground_m + kLeastHeight_m) {
-    view_.position = world_from_map(map.x, map.y, ground_m + kLeastHeight_m, radius);
+  // Meshes are no obstacle: their insides are for cameras. The bare ground is flat, so the near plane is what counts.
+  const double least_m = terrain_->none() ? kNearPlane_m : kLeastHeight_m;
+  if (altitude < ground_m + least_m) {
+    view_.position = world_from_map(map.x, map.y, ground_m + least_m, radius);
     if (!std::exchange(lifted_, true)) notes_.push_back("the camera was inside the ground and has been lifted to " +
-                     std::to_string(static_cast<int>(std::lround(ground_m + kLeastHeight_m))) + " m");
+                     std::to_string(static_cast<int>(std::lround(ground_m + least_m))) + " m");
   }
   TYNDALL_TRY(terrain_->update(view_));
   // Nothing can be nearer than half the height above the ground below, but for walls beside the camera.
-  const double above = std::max(altitude - ground_m, kLeastHeight_m);
-  cascades_ = fit_cascades(view_, to_sun_, scene_.shadows, terrain_->ground(), std::max(0.5 * above, 20.0));
+  const double above = std::max(altitude - ground_m, least_m);
+  const Ground ground = meshes_ != nullptr ? meshes_->ground(terrain_->ground()) : terrain_->ground();
+  const double nearest = std::min(20.0, 0.02 * static_cast<double>(scene_.shadows.distance_m));
+  cascades_ = fit_cascades(view_, to_sun_, scene_.shadows, ground, std::max(0.5 * above, nearest));
   light_.direction_to_sun = to_sun_;
   light_.sun_irradiance = static_cast<double>(scene_.sun.irradiance) * params_.scattering.scale;
   light_.atmosphere_height_m = params_.atmosphere.height_m;
   light_.tables = tables_ready_ ? effect_->light_tables() : LightTables{};
   light_.shadow_maps = shadow_maps_.view.get();
   light_.shadow_sampler = shadow_compare_.get();
+  light_.shadow_colors = shadow_colors_.view.get();
+  light_.has_glass = meshes_ != nullptr && meshes_->has_glass();
   light_.linear = linear_.get();
   TYNDALL_TRY(terrain_->prepare(view_, desc_.extent.height, scene_.shadows, cascades_, light_, scene_.terrain.shading));
+  if (meshes_ != nullptr) {
+    meshes_->prepare(view_, scene_.shadows, cascades_, light_, scene_.meshes.sky_light);
+  }
   if (model_ != nullptr) TYNDALL_TRY(model_->prepare({view_, light_, params_, scene_}));
 
   const gpu::Device& device = host_->device();
@@ -300,10 +312,33 @@ Result<void> Scene::draw_shadows(VkCommandBuffer cmd) {
                                                        VK_ATTACHMENT_LOAD_OP_CLEAR, clear);
     begin_rendering(device, cmd, {resolution, resolution}, nullptr, &depth);
     TYNDALL_TRY(terrain_->draw_cascade(cmd, cascades_[i], i));
+    if (meshes_ != nullptr) TYNDALL_TRY(meshes_->draw_cascade(cmd, cascades_[i]));
     device.vk.CmdEndRendering(cmd);
   }
   end_pass(cmd);
   gpu::transition(device, cmd, shadow_maps_, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                  VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  return draw_shadow_colors(cmd);
+}
+
+// What glass leaves of the light, cascade by cascade.
+Result<void> Scene::draw_shadow_colors(VkCommandBuffer cmd) {
+  if (meshes_ == nullptr || !meshes_->has_glass()) return {};
+  const gpu::Device& device = host_->device();
+  const std::uint32_t resolution = scene_.shadows.resolution;
+  gpu::transition(device, cmd, shadow_colors_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+  begin_pass(cmd, "shadow_colors");
+  for (std::uint32_t i = 0; i < cascades_.size(); ++i) {
+    VkClearValue clear = {};
+    clear.color = {{1.0F, 1.0F, 1.0F, 1.0F}};
+    const VkRenderingAttachmentInfo color = attachment(shadow_color_layers_[i].get(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                                                       VK_ATTACHMENT_LOAD_OP_CLEAR, clear);
+    begin_rendering(device, cmd, {resolution, resolution}, &color, nullptr);
+    TYNDALL_TRY(meshes_->draw_colors(cmd, cascades_[i]));
+    device.vk.CmdEndRendering(cmd);
+  }
+  end_pass(cmd);
+  gpu::transition(device, cmd, shadow_colors_, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                   VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
   return {};
 }
@@ -349,12 +384,14 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
     TYNDALL_TRY(model_->draw_sky(cmd, background_constants_.buffer.get()));
   } else {
     TYNDALL_TRY(terrain_->draw_view(cmd, view_, light_));
+    if (meshes_ != nullptr) TYNDALL_TRY(meshes_->draw_view(cmd, view_, light_));
     const gpu::Label label(device, cmd, background_.name);
     const gpu::NamedResource resources[] = {
         gpu::named_buffer("background_block", background_constants_.buffer.get())};
     const std::string_view missing = gpu::bind(device, cmd, background_, resources);
     if (!missing.empty()) return lacks(missing);
     device.vk.CmdDraw(cmd, 3, 1, 0, 0);
+    if (meshes_ != nullptr) TYNDALL_TRY(meshes_->draw_clear_glass(cmd, view_, light_));
   }
   device.vk.CmdEndRendering(cmd);
   end_pass(cmd);
@@ -376,6 +413,7 @@ Result<void> Scene::run_effect(VkCommandBuffer cmd) {
   inputs.color = {color_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
   inputs.depth = {depth_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
   inputs.shadow_maps = {shadow_maps_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+  if (light_.has_glass) inputs.shadow_colors = {shadow_colors_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
   inputs.shadow_resolution = scene_.shadows.resolution;
   inputs.cascades = {cascades.data(), cascades_.size()};
   inputs.first_marched_cascade = scene_.shadows.first_marched;
@@ -464,7 +502,8 @@ Scene::Memory Scene::memory() const {
   const MemoryUsage effect = effect_->memory();
   const std::span<const ResourceMemory> rows = effect_->resources();
   return {effect.persistent, effect.transient, effect.host, std::vector<ResourceMemory>(rows.begin(), rows.end()),
-          color_.bytes + depth_.bytes + output_.bytes + display_.bytes + shadow_maps_.bytes + terrain_->bytes() +
+          color_.bytes + depth_.bytes + output_.bytes + display_.bytes + shadow_maps_.bytes + shadow_colors_.bytes +
+              terrain_->bytes() + (meshes_ != nullptr ? meshes_->bytes() : 0) +
               (model_ != nullptr ? model_->bytes() : 0) + tonemap_->exposure().bytes()};
 }
 

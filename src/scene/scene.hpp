@@ -12,6 +12,7 @@
 #include "gpu/timer.hpp"
 #include "image/image.hpp"
 #include "post/tonemap.hpp"
+#include "scene/meshes.hpp"
 #include "scene/sky_model.hpp"
 #include "scene/terrain.hpp"
 #include "tables/make_ready.hpp"
@@ -98,7 +99,10 @@ class Scene {
   Result<void> create_shadow_maps(const ShadowParams& shadows);
   [[nodiscard]] bool shadows_are_drawn() const;
   Result<void> make_model_ready();
+  Result<void> create_shadow_colors(const ShadowParams& shadows);
+  Result<void> make_meshes(const SceneParams& scene);
   Result<void> draw_shadows(VkCommandBuffer cmd);
+  Result<void> draw_shadow_colors(VkCommandBuffer cmd);
   Result<void> draw_view(VkCommandBuffer cmd);
   Result<void> run_effect(VkCommandBuffer cmd);
   Result<void> copy_color(VkCommandBuffer cmd);
@@ -117,12 +121,13 @@ class Scene {
   Params params_;
   SceneParams scene_;
   std::unique_ptr<Terrain> terrain_;
+  std::unique_ptr<Meshes> meshes_;  // none: no meshes, and terrain
   std::unique_ptr<Effect> effect_;
   std::unique_ptr<SkyModel> model_;  // none: the effect draws the air
   bool tables_ready_ = false;
   std::unique_ptr<post::Tonemap> tonemap_;
-  gpu::Image color_, depth_, shadow_maps_, output_, display_;
-  std::vector<gpu::Handle<VkImageView>> shadow_layers_;
+  gpu::Image color_, depth_, shadow_maps_, shadow_colors_, output_, display_;
+  std::vector<gpu::Handle<VkImageView>> shadow_layers_, shadow_color_layers_;
   gpu::Handle<VkSampler> linear_, nearest_, shadow_compare_;
   gpu::Pipeline background_, floor_;
   gpu::Buffer background_constants_;

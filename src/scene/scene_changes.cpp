@@ -1,6 +1,7 @@
 // What of a scene can change between frames: parameters, terrain, the size of the picture, the tables.
 #include <algorithm>
 #include <array>
+#include <tuple>
 #include <utility>
 
 #include "gpu/try.hpp"
@@ -13,6 +14,21 @@ namespace {
 
 bool same_source(const TerrainParams& a, const TerrainParams& b) {
   return a.source == b.source && a.seed == b.seed && a.exaggeration == b.exaggeration;
+}
+
+bool same_meshes(const MeshParams& a, const MeshParams& b) {
+  const auto all = [](const MeshParams& m) {
+    return std::tie(m.source, m.position_m.x, m.position_m.y, m.position_m.z, m.scale, m.yaw_deg);
+  };
+  return all(a) == all(b);
+}
+
+// Models other than the effect draw the terrain and the sky, and nothing else.
+Result<void> check_model(const SceneParams& scene) {
+  if (scene.scattering.model == ScatteringModel::atmosphere) return {};
+  if (scene.meshes.source == "none" && scene.terrain.source != "none") return {};
+  return Error{ErrorCode::invalid_argument, "only the effect draws meshes and bare ground, scattering.model, allowed is "
+               "atmosphere with meshes.source or with terrain.source = none"};
 }
 
 bool same(const CascadeFit& a, const CascadeFit& b) {
@@ -57,6 +73,44 @@ Result<void> Scene::create_shadow_maps(const ShadowParams& shadows) {
   return {};
 }
 
+// Maps of what glass leaves of the light; one clear texel where there is no glass.
+Result<void> Scene::create_shadow_colors(const ShadowParams& shadows) {
+  const gpu::Device& device = host_->device();
+  shadow_color_layers_.clear();
+  if (meshes_ == nullptr || !meshes_->has_glass()) {
+    const std::uint16_t clear[] = {0x3C00, 0x3C00, 0x3C00, 0x3C00};  // ones in half precision
+    TYNDALL_ASSIGN(shadow_colors_, gpu::create_image(device, {"no_shadow_colors", kShadowColorFormat, {1, 1, 1},
+                                                              VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+                                                              1, 1, true}));
+    return gpu::upload(*host_, shadow_colors_, clear, sizeof clear, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  }
+  TYNDALL_ASSIGN(shadow_colors_,
+                 gpu::create_image(device, {"shadow_colors", kShadowColorFormat, {shadows.resolution, shadows.resolution, 1},
+                                            VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                                            shadows.cascades, 1, true}));
+  for (std::uint32_t i = 0; i < shadows.cascades; ++i) {
+    TYNDALL_ASSIGN(gpu::Handle<VkImageView> layer, gpu::create_layer_view(device, shadow_colors_, i));
+    shadow_color_layers_.push_back(std::move(layer));
+  }
+  return {};
+}
+
+// The meshes that `scene` asks for, on the terrain that is there.
+Result<void> Scene::make_meshes(const SceneParams& scene) {
+  TYNDALL_TRY(check_model(scene));
+  std::unique_ptr<Meshes> made;
+  if (scene.meshes.source != "none" || terrain_->none()) {
+    TYNDALL_ASSIGN(made, Meshes::create(*host_, scene.meshes, *terrain_, params_.planet.radius_m, kColorFormat, kDepthFormat,
+                                        kShadowColorFormat));
+    for (const std::string& note : made->notes()) {
+      if (std::find(notes_.begin(), notes_.end(), note) == notes_.end()) notes_.push_back(note);
+    }
+  }
+  meshes_ = std::move(made);
+  drawn_cascades_.clear();
+  return {};
+}
+
 // The tables, or the model that draws without them.
 Result<void> Scene::make_model_ready() {
   if (scene_.scattering.model == ScatteringModel::atmosphere) {
@@ -81,6 +135,9 @@ Result<Progress> Scene::advance_tables(std::uint32_t budget) {
 }
 
 Result<void> Scene::set_terrain(const TerrainParams& params, double radius_m, ElevationSource source) {
+  SceneParams wanted = scene_;
+  wanted.terrain = params;
+  TYNDALL_TRY(check_model(wanted));
   TYNDALL_TRY(terrain_->set_source(params, radius_m, std::move(source)));
   for (const std::string& note : terrain_->notes()) {
     if (std::find(notes_.begin(), notes_.end(), note) == notes_.end()) notes_.push_back(note);
@@ -89,10 +146,12 @@ Result<void> Scene::set_terrain(const TerrainParams& params, double radius_m, El
   scene_.terrain = params;
   scene_.terrain.shading = shading;
   params_.planet.radius_m = static_cast<float>(radius_m);
-  return {};
+  TYNDALL_TRY(make_meshes(scene_));
+  return create_shadow_colors(scene_.shadows);
 }
 
 Result<void> Scene::set_scene(const SceneParams& scene) {
+  TYNDALL_TRY(check_model(scene));
   const bool other_maps = scene.shadows.resolution != scene_.shadows.resolution ||
                           scene.shadows.cascades != scene_.shadows.cascades;
   const bool other_model = scene.scattering.model != scene_.scattering.model ||
@@ -102,9 +161,15 @@ Result<void> Scene::set_scene(const SceneParams& scene) {
                    Terrain::load_source(host_->device(), scene.terrain, params_.planet.radius_m));
     TYNDALL_TRY(set_terrain(scene.terrain, params_.planet.radius_m, std::move(source)));
   }
+  if (!same_meshes(scene.meshes, scene_.meshes)) {
+    TYNDALL_TRY(make_meshes(scene));
+    scene_.meshes = scene.meshes;
+    TYNDALL_TRY(create_shadow_colors(scene_.shadows));
+  }
   if (other_maps) {
     TYNDALL_TRY(effect_->set_limits(desc_.extent, scene.shadows.cascades, scene.shadows.resolution));
     TYNDALL_TRY(create_shadow_maps(scene.shadows));
+    TYNDALL_TRY(create_shadow_colors(scene.shadows));
   }
   const SceneParams before = std::exchange(scene_, scene);
   if (!other_model) return {};

@@ -96,7 +96,7 @@ Result<std::unique_ptr<Terrain>> Terrain::create(gpu::Host& host, const TerrainP
 
 Result<ElevationSource> Terrain::load_source(const gpu::Device& device, const TerrainParams& params, double radius_m) {
   ElevationDesc elevation;
-  elevation.source = params.source;
+  elevation.source = params.source == "none" ? "procedural" : params.source;
   elevation.seed = params.seed;
   elevation.exaggeration = params.exaggeration;
   elevation.planet_radius_m = radius_m;
@@ -157,15 +157,21 @@ Result<void> Terrain::create_objects(VkFormat color_format, VkFormat depth_forma
   return {};
 }
 
-Ground Terrain::ground() const { return {source_->min_height_m(), source_->max_height_m(), radius_m_}; }
+Ground Terrain::ground() const {
+  if (none()) return {0.0, 0.0, radius_m_, {}};
+  return {source_->min_height_m(), source_->max_height_m(), radius_m_, {}};
+}
 
-double Terrain::height_at(const glm::dvec2& map) const { return source_->height_m(map.x, map.y, kFinestCell_m); }
+double Terrain::height_at(const glm::dvec2& map) const {
+  return none() ? 0.0 : source_->height_m(map.x, map.y, kFinestCell_m);
+}
 
 VkDeviceSize Terrain::bytes() const {
   return heights_.bytes + atlas_.bytes + fill_constants_.bytes + constants_.bytes + blocks_.bytes + indices_.bytes;
 }
 
 Result<void> Terrain::update(const View& view) {
+  if (none()) return {};
   lod_ = plan_terrain(map_from_world(view.position, radius_m_), altitude_of(view.position, radius_m_),
                       source_->max_height_m(), radius_m_, coarseness_);
   const gpu::Device& device = host_->device();
@@ -226,6 +232,7 @@ Result<void> Terrain::fill_level(std::size_t layer) {
 Result<void> Terrain::prepare(const View& view, std::uint32_t height_px, const ShadowParams& shadows,
                               const std::vector<CascadeFit>& cascades, const TerrainLight& light,
                               TerrainShading shading) {
+  if (none()) return {};
   const Ground whole = ground();
   shared::TerrainConstants out = {};
   out.camera_map = {static_cast<float>(lod_.camera_map.x), static_cast<float>(lod_.camera_map.y)};
@@ -246,6 +253,7 @@ Result<void> Terrain::prepare(const View& view, std::uint32_t height_px, const S
   out.smooth_shadows = shadows.smooth.value;
   out.best_cascade = shadows.best_cascade.value;
   out.show_cascades = shadows.show_cascades.value;
+  out.has_glass = light.has_glass ? 1U : 0U;
   for (std::size_t i = 0; i < lod_.levels.size(); ++i) {
     const ClipLevel& level = lod_.levels[i];
     out.levels[i] = {{level.origin.x, level.origin.y}, static_cast<float>(level.cell_m),
@@ -321,11 +329,13 @@ Result<void> Terrain::draw_view(VkCommandBuffer cmd, const View& view, const Ter
 
 Result<void> Terrain::draw_view(VkCommandBuffer cmd, const View& view, const TerrainLight& light,
                                 const gpu::Pipeline& pipeline, std::span<const gpu::NamedResource> more) {
+  if (none()) return {};
   std::vector<gpu::NamedResource> resources = {
       gpu::named_buffer("terrain_block", constants_.buffer.get()),
       gpu::named_buffer("blocks_block", blocks_.buffer.get()),
       gpu::named_image("terrain_heights", heights_.view.get(), VK_IMAGE_LAYOUT_GENERAL, nearest_.get()),
       gpu::named_image("shadow_maps", light.shadow_maps, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, light.shadow_sampler),
+      gpu::named_image("shadow_colors", light.shadow_colors, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, light.linear),
       gpu::named_image("sun_transmittance", light.tables.sun_transmittance, VK_IMAGE_LAYOUT_GENERAL, light.linear),
       gpu::named_image("sky_irradiance", light.tables.sky_irradiance, VK_IMAGE_LAYOUT_GENERAL, light.linear),
   };
@@ -334,15 +344,13 @@ Result<void> Terrain::draw_view(VkCommandBuffer cmd, const View& view, const Ter
 }
 
 Result<void> Terrain::draw_cascade(VkCommandBuffer cmd, const CascadeFit& cascade, std::uint32_t index) {
+  if (none()) return {};
   const gpu::NamedResource resources[] = {
       gpu::named_buffer("terrain_block", constants_.buffer.get()),
       gpu::named_buffer("blocks_block", blocks_.buffer.get()),
       gpu::named_image("terrain_heights", heights_.view.get(), VK_IMAGE_LAYOUT_GENERAL, nearest_.get()),
   };
-  glm::dmat4 clip_from_uv(1.0);
-  clip_from_uv[0][0] = clip_from_uv[1][1] = 2.0;
-  clip_from_uv[3] = glm::dvec4(-1.0, -1.0, 0.0, 1.0);
-  return draw(cmd, shadow_pipeline_, resources, clip_from_uv * cascade.shadow_from_world(), index + 1);
+  return draw(cmd, shadow_pipeline_, resources, clip_from_shadow() * cascade.shadow_from_world(), index + 1);
 }
 
 }  // namespace tyndall::scene

@@ -21,11 +21,14 @@ struct TerrainLight {
   LightTables tables;
   VkImageView shadow_maps = VK_NULL_HANDLE;
   VkSampler shadow_sampler = VK_NULL_HANDLE;
+  VkImageView shadow_colors = VK_NULL_HANDLE;  // one white texel without glass
+  bool has_glass = false;
   VkSampler linear = VK_NULL_HANDLE;
 };
 
 class Terrain {
  public:
+  // With terrain.source = none there is nothing to draw, and the ground is at sea level.
   // `coarseness` as in TerrainLod.
   static Result<std::unique_ptr<Terrain>> create(gpu::Host& host, const TerrainParams& params, double radius_m,
                                                  VkFormat color_format, VkFormat depth_format, int coarseness = 1);
@@ -40,6 +43,7 @@ class Terrain {
   // Brings the clipmap to the camera: fills the levels that have moved. Synchronous.
   Result<void> update(const View& view);
 
+  [[nodiscard]] bool none() const { return params_.source == "none"; }
   [[nodiscard]] Ground ground() const;
   // Elevation of the ground over a place on the map [m].
   [[nodiscard]] double height_at(const glm::dvec2& map) const;
