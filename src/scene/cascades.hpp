@@ -33,7 +33,7 @@ struct Ground {
   double min_m = 0.0, max_m = 0.0;  // lowest and highest elevation
   double radius_m = 0.0;            // of the planet
   // World [m]. Not empty: nothing outside the hull of these points casts a shadow, so maps end there.
-  std::span<const glm::dvec3> casters;
+  std::span<const glm::dvec3> casters = {};
 };
 
 // View depths at which the cascades end, the last being `far_m`: partitioning between even (0) and

@@ -7,6 +7,7 @@
 #include "gpu/try.hpp"
 #include "scene/chart.hpp"
 #include "scene/mesh/gltf_file.hpp"
+#include "scene/mesh/hall.hpp"
 #include "scene/mesh_constants.hpp"
 #include "scene/mesh_textures.hpp"
 #include "scene_shaders.hpp"
@@ -88,7 +89,11 @@ Result<std::unique_ptr<Meshes>> Meshes::create(gpu::Host& host, const MeshParams
 
 Result<void> Meshes::load(const MeshParams& params, const Terrain& terrain) {
   if (params.source == "none") return {};
-  TYNDALL_ASSIGN(data_, load_gltf(params.source));
+  if (params.source == "hall") {
+    data_ = make_hall();
+  } else {
+    TYNDALL_ASSIGN(data_, load_gltf(params.source));
+  }
   world_from_model_ = placement(params, terrain, radius_m_);
   lowest_m_ = std::numeric_limits<double>::max();
   highest_m_ = std::numeric_limits<double>::lowest();
