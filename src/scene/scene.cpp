@@ -148,6 +148,8 @@ Result<void> Scene::create_objects() {
   effect_desc.output_format = OutputFormat::rgba32f;
   effect_desc.max_cascades = scene_.shadows.cascades;
   effect_desc.max_shadow_resolution = scene_.shadows.resolution;
+  colored_air_ = meshes_ != nullptr && meshes_->has_glass();
+  effect_desc.shadow_colors = colored_air_;
   effect_desc.timings = desc_.timings;
   effect_desc.counters = desc_.counters;
   TYNDALL_ASSIGN(Effect effect, Effect::create(info, effect_desc, params_));
@@ -413,7 +415,7 @@ Result<void> Scene::run_effect(VkCommandBuffer cmd) {
   inputs.color = {color_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
   inputs.depth = {depth_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
   inputs.shadow_maps = {shadow_maps_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-  if (light_.has_glass) inputs.shadow_colors = {shadow_colors_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+  if (light_.has_glass && colored_air_ && params_.scattering.light_shafts) inputs.shadow_colors = {shadow_colors_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
   inputs.shadow_resolution = scene_.shadows.resolution;
   inputs.cascades = {cascades.data(), cascades_.size()};
   inputs.first_marched_cascade = scene_.shadows.first_marched;

@@ -106,6 +106,9 @@ Result<void> Scene::make_meshes(const SceneParams& scene) {
       if (std::find(notes_.begin(), notes_.end(), note) == notes_.end()) notes_.push_back(note);
     }
   }
+  if (effect_ != nullptr && !colored_air_ && made != nullptr && made->has_glass()) {
+    notes_.emplace_back("the glass of the new meshes colours surfaces, but the air only after a start with them");
+  }
   meshes_ = std::move(made);
   drawn_cascades_.clear();
   return {};

@@ -507,7 +507,7 @@ class Reader {
   }
 
   static std::string range(std::size_t count) {
-    return count == 0 ? "it has none" : "allowed is 0 to " + std::to_string(count - 1);
+    return count == 0 ? "allowed is none: the file has none" : "allowed is 0 to " + std::to_string(count - 1);
   }
 
   const tinygltf::Model& model_;

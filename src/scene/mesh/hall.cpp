@@ -23,6 +23,7 @@ constexpr double kRise_m = 7.0;         // of the vault
 constexpr double kBay_m = 6.0;
 constexpr int kBays = 6;
 constexpr double kGlass_m = 0.5;        // of the panes beyond the wall's inner face
+constexpr double kBehind_m = 0.05;      // of the panes that the stone hides, on each side
 constexpr double kSill_m = 2.6;
 constexpr Lancet kWindow = {1.1, 3.4, 5.3};  // above the sill
 constexpr Vec kRose = {0.0, 9.8, kHalfLength_m};
@@ -83,6 +84,7 @@ class Builder {
       const std::array<Vec, 4> q = {p(i, false), p(i + 1, false), p(i + 1, true), p(i, true)};
       quad(material, q, {n(i), n(i + 1), n(i + 1), n(i)}, {uv(i, q[0]), uv(i + 1, q[1]), uv(i + 1, q[2]), uv(i, q[3])});
       quad(material, q[3], q[2], Vec(x, top(x), z), Vec(x, top(x), z));  // the lid
+      if (low > kFloor_m) quad(material, q[1], q[0], Vec(x, low, z), Vec(x, low, z));
     }
   }
 
@@ -166,8 +168,12 @@ void wall(Builder& b, const Frame& f, double from, double to, const std::functio
         return glm::dvec2((x - o.picture_low.x) / (o.picture_high.x - o.picture_low.x),
                           (o.picture_high.y - y) / (o.picture_high.y - o.picture_low.y));
       };
-      b.quad(o.glass, {f.at(u1, l1, kGlass_m), f.at(u0, l0, kGlass_m), f.at(u0, h0, kGlass_m), f.at(u1, h1, kGlass_m)},
-             {f.out, f.out, f.out, f.out}, {uv(x1, l1), uv(x0, l0), uv(x0, h0), uv(x1, h1)});
+      // The panes go on behind the stone, so that no texel of a map of colours beside them is lit and clear.
+      const double wider = 1.0 + kBehind_m / o.half;
+      const auto pane = [&](double x, double y) { return f.at(o.middle + x * wider, y, kGlass_m); };
+      b.quad(o.glass, {pane(x1, l1 - kBehind_m), pane(x0, l0 - kBehind_m), pane(x0, h0 + kBehind_m), pane(x1, h1 + kBehind_m)},
+             {f.out, f.out, f.out, f.out},
+             {uv(x1 * wider, l1 - kBehind_m), uv(x0 * wider, l0 - kBehind_m), uv(x0 * wider, h0 + kBehind_m), uv(x1 * wider, h1 + kBehind_m)});
     }
     // The jambs, where the opening begins and ends with some height.
     const double left = o.middle - o.half, right = o.middle + o.half;

@@ -1,0 +1,270 @@
+// Meshes on a device: where they are, their holes, their shadows, and the colour of what glass lets pass, on surfaces
+// and in the air.
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "config/scene_file.hpp"
+#include "gpu_test.hpp"
+#include "image/metrics.hpp"
+#include "mesh_files.hpp"
+#include "scene/mesh_textures.hpp"
+#include "scene/scene.hpp"
+
+namespace tyndall::scene {
+namespace {
+
+constexpr VkExtent2D kExtent = {96, 54};
+constexpr double kHeight_m = 20.0;  // of the camera, which looks straight down; north is up in the picture
+
+class GpuMeshes : public GpuTest {
+ protected:
+  GpuMeshes() : path_((std::filesystem::temp_directory_path() / ("tyndall-meshes-" + std::to_string(::getpid()) + ".glb")).string()) {
+    params_.tables.size = {8, 32, 32, 4};
+    params_.tables.orders = 2;
+    params_.scattering.enabled = false;  // the light of the surfaces themselves
+    scene_.terrain.source = "none";
+    scene_.camera.position_m = {0.0F, static_cast<float>(kHeight_m), 0.0F};
+    scene_.camera.yaw_deg = 0.0F;
+    scene_.camera.pitch_deg = -90.0F;
+    scene_.camera.fov_deg = 45.0F;
+    scene_.sun.elevation_deg = 60.0F;
+    scene_.sun.azimuth_deg = 90.0F;
+    scene_.shadows.distance_m = 60.0F;
+    scene_.shadows.cascades = 2;
+    scene_.shadows.first_marched = 0;
+    white_ = file_.material({{"pbrMetallicRoughness", {{"baseColorFactor", {0.6, 0.6, 0.6, 1}}}}});
+  }
+  void TearDown() override {
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+    GpuTest::TearDown();
+  }
+
+  int glass(double r, double g, double b, double roughness) {
+    return file_.material({{"pbrMetallicRoughness", {{"baseColorFactor", {r, g, b, 1}}, {"roughnessFactor", roughness}}},
+                           {"doubleSided", true},
+                           {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1.0}}}}}});
+  }
+
+  std::unique_ptr<Scene> make(bool with_file = true, VkExtent2D extent = kExtent, bool timings = false) {
+    SceneDesc desc;
+    desc.extent = extent;
+    desc.timings = timings;
+    scene_.meshes.source = with_file ? file_.save(path_) : "none";
+    Result<std::unique_ptr<Scene>> scene = Scene::create(host(), desc, params_, scene_);
+    EXPECT_OK(scene);
+    return scene.ok() ? std::move(scene).value() : nullptr;
+  }
+  image::Image draw(bool with_file = true) {
+    const std::unique_ptr<Scene> scene = make(with_file);
+    return scene != nullptr ? draw(*scene) : image::Image(kExtent.width, kExtent.height);
+  }
+  static image::Image draw(Scene& scene) {
+    EXPECT_OK(scene.render(0.0));
+    Result<image::Image> radiance = scene.radiance();
+    EXPECT_OK(radiance);
+    for (const float value : radiance.value().rgb) EXPECT_TRUE(std::isfinite(value) && value >= 0.0F);
+    return std::move(radiance).value();
+  }
+  // Radiance at a place that stands `y` above the ground, seen from above.
+  static glm::dvec3 at(const image::Image& image, double x, double z, double y = 0.0) {
+    const double px_per_m = 0.5 * kExtent.height / (std::tan(0.5 * 0.785398163) * (kHeight_m - y));
+    const auto i = static_cast<std::size_t>(0.5 * kExtent.width + x * px_per_m);
+    const auto j = static_cast<std::size_t>(0.5 * kExtent.height + z * px_per_m);
+    const float* const p = &image.rgb[3 * (j * kExtent.width + i)];
+    return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
+  }
+  static void expect_near(const glm::dvec3& a, const glm::dvec3& b, double share, const char* what) {
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], share * b[c] + 1e-9) << what << " channel " << c;
+  }
+
+  GltfFile file_;
+  int white_ = 0;
+  Params params_;
+  SceneParams scene_;
+
+ private:
+  std::string path_;
+};
+
+TEST_F(GpuMeshes, ALevelFaceIsLitLikeTheGroundAndOnlyItsFrontIsSeen) {
+  file_.level_quad(-6, -2, -2, 2, 0.5F, white_);
+  file_.quad({2, 0.5F, -2}, {6, 0.5F, -2}, {6, 0.5F, 2}, {2, 0.5F, 2}, white_);  // faces down
+  const int mirrored = file_.level_quad(8, -2, 12, 2, 0.5F, white_);
+  file_.root["nodes"][static_cast<std::size_t>(mirrored)]["scale"] = {-1, 1, 1};  // at x -12 to -8, still facing up
+  const image::Image image = draw();
+  const glm::dvec3 ground = at(image, 0.0, 6.0);
+  for (int c = 0; c < 3; ++c) EXPECT_GT(ground[c], 0.0);
+  // Both are level under one sun and sky: the albedo is what differs, 0.6 to the bare ground's 0.3.
+  expect_near(at(image, -4.0, 0.0, 0.5), 2.0 * ground, 0.002, "face");
+  expect_near(at(image, -10.0, 0.0, 0.5), 2.0 * ground, 0.002, "mirrored face");
+  EXPECT_LT(at(image, 4.0, 0.0, 0.5).x, 0.5 * ground.x);  // its shadow on the ground is what is seen
+  // The shape: as many pixels as the face covers.
+  const double px_per_m = 0.5 * kExtent.height / (std::tan(0.5 * 0.785398163) * (kHeight_m - 0.5));
+  std::size_t bright = 0;
+  for (std::size_t i = 0; i < image.rgb.size(); i += 3) bright += image.rgb[i] > 1.5 * ground.x ? 1 : 0;
+  EXPECT_NEAR(static_cast<double>(bright), 2.0 * 16.0 * px_per_m * px_per_m, 0.15 * 32.0 * px_per_m * px_per_m);
+}
+
+TEST_F(GpuMeshes, HolesLetThroughLightAndSight) {
+  // The western half is a hole.
+  {
+    // Alpha cannot be written by src/image: vertices carry it instead.
+    const int position = file_.points({{-4, 3, 3}, {0, 3, 3}, {0, 3, -3}, {-4, 3, -3}, {0, 3, 3}, {4, 3, 3}, {4, 3, -3}, {0, 3, -3}});
+    const int color = file_.floats({1, 1, 1, 0.2F, 1, 1, 1, 0.2F, 1, 1, 1, 0.2F, 1, 1, 1, 0.2F,
+                                    1, 1, 1, 0.9F, 1, 1, 1, 0.9F, 1, 1, 1, 0.9F, 1, 1, 1, 0.9F}, 4);
+    const int indices = file_.accessor<std::uint16_t>({0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7}, 5123, "SCALAR", 1);
+    const int mask = file_.material({{"alphaMode", "MASK"}, {"doubleSided", true}});
+    file_.node({{"mesh", file_.mesh({{"attributes", {{"POSITION", position}, {"COLOR_0", color}}}, {"indices", indices}, {"material", mask}})}});
+  }
+  const image::Image with = draw();
+  const image::Image without = draw(false);
+  const glm::dvec3 open = at(without, -8.0, 5.0);
+  expect_near(at(with, -2.0, 0.0, 3.0), at(without, -2.0, 0.0, 3.0), 0.002, "through the hole");
+  EXPECT_GT(at(with, 2.0, 0.0, 3.0).x, 2.5 * open.x);  // white
+  // The sun stands in the east at 60 degrees: shadows lie 3 / tan(60) = 1.7 m to the west. The hole's is none.
+  expect_near(at(with, -5.0, 0.0), at(without, -5.0, 0.0), 0.002, "light through the hole");
+  EXPECT_LT(at(with, -1.2, 0.0).x, 0.5 * open.x);  // below the hole, but in the shadow of the other half
+}
+
+TEST_F(GpuMeshes, GlassColoursWhatLiesBehindItAndNotWhatLiesBefore) {
+  const int clear = glass(1.0, 0.1, 0.5, 0.0);
+  file_.level_quad(-8, -4, -2, 4, 3.0F, clear);
+  file_.level_quad(-6, -1, -4, 1, 4.0F, white_);  // before the glass, towards the sun
+  // Bare of glass, for comparison: a face at the same height and its shadow.
+  file_.level_quad(4, -1, 6, 1, 4.0F, white_);
+  const image::Image image = draw();
+  const glm::dvec3 open = at(image, 0.0, 7.0);
+  const glm::dvec3 dark = at(image, 5.0 - 4.0 / std::tan(1.047197551), 0.0);
+  ASSERT_LT(dark.x, 0.6 * open.x);
+  // On the ground in the glass's shadow and not below it (x -9.7 to -8 as seen): the sun's part times the glass's colour.
+  const glm::dvec3 colored = at(image, -8.9, 2.0);
+  const glm::dvec3 expected = dark + (open - dark) * glm::dvec3(1.0, 0.1, 0.5);
+  expect_near(colored, expected, 0.03, "ground behind glass");
+  // What is seen through clear glass is multiplied by its colour once more; the light of the sky is not coloured.
+  const glm::dvec3 seen = at(image, -3.0, 3.0, 3.0);
+  EXPECT_LT(seen.y, 0.2 * seen.x);
+  // In front of the glass all is as without.
+  expect_near(at(image, -5.0, 0.0, 4.0), at(image, 5.0, 0.0, 4.0), 0.002, "before the glass");
+}
+
+TEST_F(GpuMeshes, DiffusingGlassGlowsAndHidesWhatIsBehind) {
+  file_.level_quad(-3, -3, 3, 3, 3.0F, glass(0.2, 0.9, 0.2, 1.0));
+  file_.level_quad(-1, -1, 1, 1, 9.0F, white_);  // beyond it, and not before the sun's middle
+  scene_.camera.position_m = {0.0F, 1.0F, 0.0F};
+  scene_.camera.pitch_deg = 90.0F;
+  const image::Image image = draw();
+  const float* const p = &image.rgb[3 * (kExtent.height / 2 * kExtent.width + kExtent.width / 2)];
+  EXPECT_GT(p[1], 0.1F);
+  EXPECT_NEAR(p[0] / p[1], 0.2 / 0.9, 0.03);
+}
+
+TEST_F(GpuMeshes, WithoutGlassThereAreNoMapsOfColours) {
+  file_.level_quad(-2, -2, 2, 2, 0.5F, white_);
+  std::unique_ptr<Scene> plain = make(true, kExtent, true);
+  ASSERT_NE(plain, nullptr);
+  draw(*plain);
+  const auto colors = [](const Scene& scene) {
+    return std::count_if(scene.timings().begin(), scene.timings().end(), [](const PassTime& p) { return p.name == "shadow_colors"; });
+  };
+  EXPECT_EQ(colors(*plain), 0);
+  const VkDeviceSize before = plain->memory().scene;
+  file_.level_quad(4, -2, 6, 2, 0.5F, glass(1, 0, 0, 1));
+  const std::unique_ptr<Scene> with = make(true, kExtent, true);
+  ASSERT_NE(with, nullptr);
+  draw(*with);
+  EXPECT_EQ(colors(*with), 1);
+  EXPECT_GE(with->memory().scene, before + 8ULL * 1024 * 1024 * 2);
+}
+
+TEST_F(GpuMeshes, MeshesComeAndGoAndOtherModelsRefuseThem) {
+  const std::unique_ptr<Scene> scene = make(false);
+  ASSERT_NE(scene, nullptr);
+  const image::Image bare = draw(*scene);
+  file_.level_quad(-2, -2, 2, 2, 0.5F, white_);
+  SceneParams changed = scene_;
+  changed.meshes.source = file_.save(std::filesystem::temp_directory_path() / ("tyndall-meshes-" + std::to_string(::getpid()) + ".glb"));
+  ASSERT_OK(scene->set_scene(changed));
+  EXPECT_NE(draw(*scene).rgb, bare.rgb);
+  SceneParams wrong = changed;
+  wrong.meshes.source = "/nonexistent.glb";
+  EXPECT_FALSE(scene->set_scene(wrong).ok());
+  wrong = changed;
+  wrong.scattering.model = ScatteringModel::homogeneous;
+  EXPECT_FALSE(scene->set_scene(wrong).ok());
+  ASSERT_OK(scene->set_scene(scene_));
+  EXPECT_EQ(draw(*scene).rgb, bare.rgb);
+  // Yaw turns clockwise seen from above: what lies east comes to the south.
+  changed.meshes.position_m = {0.0F, 0.0F, 0.0F};
+  file_.level_quad(4, -1, 6, 1, 0.5F, white_);
+  changed.meshes.source = file_.save(changed.meshes.source);
+  changed.meshes.yaw_deg = 90.0F;
+  ASSERT_OK(scene->set_scene(changed));
+  const image::Image turned = draw(*scene);
+  EXPECT_GT(at(turned, 0.0, 5.0, 0.5).x, 1.5 * at(turned, 5.0, 0.0, 0.5).x);
+}
+
+// As `tyndall render` would have it, with the exposure of the scene.
+TEST_F(GpuMeshes, ColouredShaftsOfTheHallAreThoseOfBruteForce) {
+  config::Settings settings;
+  ASSERT_OK(config::load(settings, TYNDALL_SOURCE_DIR "/scenes/hall.toml"));
+  settings.scene.camera.samples = 1;
+  settings.effect.tables.size = {8, 32, 32, 4};
+  settings.effect.tables.orders = 2;
+  settings.scene.shadows.resolution = 1024;
+  constexpr VkExtent2D kPicture = {256, 144};
+  std::vector<image::Image> pictures;
+  for (const Technique technique : {Technique::brute_force, Technique::epipolar}) {
+    Params params = settings.effect;
+    params.scattering.technique = technique;
+    SceneDesc desc;
+    desc.extent = kPicture;
+    Result<std::unique_ptr<Scene>> scene = Scene::create(host(), desc, params, settings.scene);
+    ASSERT_OK(scene);
+    draw(*scene.value());
+    Result<image::Image> display = scene.value()->display();
+    ASSERT_OK(display);
+    for (float& value : display.value().rgb) {
+      const double x = static_cast<double>(value);
+      const double encoded = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
+      value = static_cast<float>(std::round(255.0 * encoded) / 255.0);
+    }
+    pictures.push_back(std::move(display).value());
+  }
+  const image::Metrics metrics = image::compare(pictures[1], pictures[0]);
+  RecordProperty("dB", std::to_string(metrics.psnr_db));
+  EXPECT_GE(metrics.psnr_db, 40.0);
+  // The air itself has colours: with it, some pixels of the picture are far from grey.
+  double saturation = 0.0;
+  for (std::size_t i = 0; i < pictures[0].rgb.size(); i += 3) {
+    const auto [low, high] = std::minmax({pictures[0].rgb[i], pictures[0].rgb[i + 1], pictures[0].rgb[i + 2]});
+    saturation = std::max(saturation, static_cast<double>(high - low));
+  }
+  EXPECT_GT(saturation, 0.3);
+}
+
+TEST(MeshTextures, LevelsAverageLightAndIgnoreHoles) {
+  MeshTexture texture;
+  texture.width = 4;
+  texture.height = 2;
+  // Black and white in halves; the right half is green with a hole that is red.
+  for (int y = 0; y < 2; ++y) {
+    const std::vector<std::uint8_t> row = {0, 0, 0, 255, 255, 255, 255, 255, 0, 255, 0, 255, 255, 0, 0, 0};
+    texture.rgba.insert(texture.rgba.end(), row.begin(), row.end());
+  }
+  const std::vector<MeshTexture> levels = mip_levels(texture);
+  ASSERT_EQ(levels.size(), 2U);
+  EXPECT_EQ(levels[0].width, 2U);
+  EXPECT_EQ(levels[0].height, 1U);
+  EXPECT_EQ(levels[1].width, 1U);
+  EXPECT_NEAR(levels[0].rgba[0], 188, 1);  // half the light, in sRGB
+  EXPECT_EQ(levels[0].rgba[4], 0);         // no red from the hole
+  EXPECT_EQ(levels[0].rgba[5], 255);
+  EXPECT_EQ(levels[0].rgba[7], 128);
+}
+
+}  // namespace
+}  // namespace tyndall::scene
