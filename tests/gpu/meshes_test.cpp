@@ -136,12 +136,14 @@ TEST_F(GpuMeshes, GlassColoursWhatLiesBehindItAndNotWhatLiesBefore) {
   file_.level_quad(-6, -1, -4, 1, 4.0F, white_);  // before the glass, towards the sun
   // Bare of glass, for comparison: a face at the same height and its shadow.
   file_.level_quad(4, -1, 6, 1, 4.0F, white_);
+  scene_.sun.elevation_deg = 30.0F;
   const image::Image image = draw();
   const glm::dvec3 open = at(image, 0.0, 7.0);
-  const glm::dvec3 dark = at(image, 5.0 - 4.0 / std::tan(1.047197551), 0.0);
+  const glm::dvec3 dark = at(image, 5.0 - 4.0 / std::tan(0.523598776), 0.0);
   ASSERT_LT(dark.x, 0.6 * open.x);
-  // On the ground in the glass's shadow and not below it (x -9.7 to -8 as seen): the sun's part times the glass's colour.
-  const glm::dvec3 colored = at(image, -8.9, 2.0);
+  // On the ground in the glass's shadow (x -13.2 to -7.2), where the glass is not in sight's way (beyond -9.4): the
+  // sun's part times the glass's colour.
+  const glm::dvec3 colored = at(image, -11.0, 2.5);
   const glm::dvec3 expected = dark + (open - dark) * glm::dvec3(1.0, 0.1, 0.5);
   expect_near(colored, expected, 0.03, "ground behind glass");
   // What is seen through clear glass is multiplied by its colour once more; the light of the sky is not coloured.
