@@ -23,7 +23,7 @@ check: build
 pictures: PRESET = release
 pictures: build
 	@mkdir -p docs/images
-	@for scene in demo noon stratosphere; do \
+	@for scene in demo noon stratosphere hall; do \
 	  build/release/bin/tyndall render scenes/$$scene.toml --size 640x360 -o docs/images/$$scene.png || exit 1; \
 	done
 	@while read -r name sun yaw exposure; do \

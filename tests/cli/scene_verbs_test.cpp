@@ -123,6 +123,26 @@ TEST_F(CliScenes, ElevationFilesThatAreNone) {
   }
 }
 
+TEST_F(CliScenes, MeshFilesThatAreNone) {
+  const std::pair<std::string, std::string> sources[] = {
+      {"/nonexistent.glb", "/nonexistent.glb"},
+      {scratch_.at(""), "Is a directory"},
+      {scratch_.write("empty.gltf", ""), "is no glTF file"},
+      {scratch_.write("text.gltf", "no meshes"), "is no glTF file"},
+      {scratch_.write("cut.glb", std::string("glTF\2\0\0\0\x40\0\0\0", 12)), "cut.glb cannot be read"},
+      {scratch_.write("bare.gltf", R"({"asset":{"version":"2.0"}})"), "no triangles"},
+      {scratch_.write("outside.gltf", R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":12,"uri":"none.bin"}]})"), "none.bin"},
+  };
+  for (const auto& [source, part] : sources) {
+    const Outcome outcome = render({"--set", "terrain.source=none", "--set", "meshes.source=" + source});
+    EXPECT_TRUE(outcome.status == 1 || outcome.status == 2);
+    expect_one_line(outcome, outcome.status, part);
+    EXPECT_FALSE(std::filesystem::exists(scratch_.at("out.png")));
+  }
+  // Other models draw the terrain and the sky only.
+  expect_one_line(render({"--set", "meshes.source=hall", "--set", "scattering.model=homogeneous"}), 2, "scattering.model");
+}
+
 TEST_F(CliScenes, WithoutADeviceThereIsOneLine) {
   const Environment none({{"VK_ICD_FILENAMES", scratch_.at("none.json")}, {"VK_DRIVER_FILES", scratch_.at("none.json")}});
   const std::string queries = scratch_.write("q.csv", "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n0,1,2,3\n");
