@@ -6,12 +6,13 @@
 #include "shared/frame_constants.h"
 #include "shared/epipolar.h"
 #include "lib/optical_depth.glsl"
+#include "epipolar/work_list.glsl"
 
 layout(local_size_x = kMarchGroup) in;
 
-layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
-layout(std430, binding = 1) readonly buffer frame_block { FrameConstants frame; };
-layout(std430, binding = 2) readonly buffer epipolar_block { EpipolarConstants epipolar; };
+layout(std140, binding = 0) uniform medium_block { Medium medium; };
+layout(std140, binding = 1) uniform frame_block { FrameConstants frame; };
+layout(std140, binding = 2) uniform epipolar_block { EpipolarConstants epipolar; };
 layout(std430, binding = 3) readonly buffer work_block { WorkList work; uint items[]; };
 layout(std430, binding = 4) readonly buffer corrected_block { vec4 corrected[]; };
 layout(binding = 5) uniform sampler2D scene_color;
@@ -39,5 +40,6 @@ void put_pixel(uint at) {
 }
 
 void main() {
-  for (uint at = gl_GlobalInvocationID.x; at < work.count; at += gl_NumWorkGroups.x * kMarchGroup) put_pixel(at);
+  uint at = list_item(kMarchGroup);
+  if (at < work.count) put_pixel(at);
 }

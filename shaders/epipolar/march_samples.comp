@@ -37,6 +37,7 @@ layout(push_constant) uniform Push {
 #include "epipolar/march.glsl"
 #include "epipolar/march_state.glsl"
 #include "epipolar/slices.glsl"
+#include "epipolar/work_list.glsl"
 
 void march_item(uint at) {
   bool pixels = processing == kPixels;
@@ -67,9 +68,9 @@ void march_item(uint at) {
     first += turn;
     last = first + 1u;
   } else if (processing == kCascadesAside) {
-    first += gl_WorkGroupID.y;
+    first += gl_WorkGroupID.z;
     last = first + 1u;
-    state += gl_WorkGroupID.y * epipolar.slices * epipolar.samples;
+    state += gl_WorkGroupID.z * epipolar.slices * epipolar.samples;
   } else if (processing == kFinish) {
     last = first;
   }
@@ -95,7 +96,7 @@ void march_item(uint at) {
       corrected[at] = vec4(light, 0.0);
     } else {
       vec3 through, lost;
-      attenuation(optical_depth_at(s.log_density, s.depth_m), through, lost);
+      attenuation(optical_depth_at(s.density, s.depth_m), through, lost);
       if (kHomogeneous) homogeneous_attenuation(end - start, through, lost);
       s.source = light / max(lost, vec3(1e-20));
       // Beside a medium that a ray misses others are lit.
@@ -104,15 +105,16 @@ void march_item(uint at) {
     }
   }
   bool counts = processing == kAllCascades || (processing == kOneCascade && turn == 0u) ||
-                (processing == kCascadesAside && gl_WorkGroupID.y == 0u);
+                (processing == kCascadesAside && gl_WorkGroupID.z == 0u);
   count(kPixelsCorrected, pixels ? 1u : 0u);
   count(kSamplesMarched, counts ? 1u : 0u);
 }
 
 void main() {
   // The list of samples has groups for every cascade aside; other turns need only one of them.
-  uint items_here = processing == kCascadesAside || gl_WorkGroupID.y == 0u ? work.count : 0u;
-  for (uint at = gl_GlobalInvocationID.x; at < items_here; at += gl_NumWorkGroups.x * kMarchGroup) march_item(at);
+  bool turn_here = processing == kCascadesAside || gl_WorkGroupID.z == 0u;
+  uint at = list_item(kMarchGroup);
+  if (turn_here && at < work.count) march_item(at);
   count(kMarchSteps, steps_done);
   count(kNodesVisited, nodes_visited);
   count(kShadowFetches, reads_done);

@@ -15,14 +15,15 @@ const uint kThreads = 64u;
 layout(local_size_x = kThreads) in;
 layout(constant_id = 0) const uint kRefinement = 1u;  // 0 by depth, 1 by in-scattering
 
-layout(std430, binding = 0) readonly buffer frame_block { FrameConstants frame; };
-layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants epipolar; };
+layout(std140, binding = 0) uniform frame_block { FrameConstants frame; };
+layout(std140, binding = 1) uniform epipolar_block { EpipolarConstants epipolar; };
 layout(std430, binding = 2) readonly buffer slice_block { EpipolarSlice slices[]; };
 layout(std430, binding = 3) readonly buffer coarse_block { vec4 coarse[]; };
 layout(std430, binding = 4) writeonly buffer source_block { uint sources[]; };
 layout(std430, binding = 5) buffer march_list_block { WorkList march; uint march_list[]; };
 
 #include "epipolar/slices.glsl"
+#include "epipolar/work_list.glsl"
 
 const uint kWords = 64u;  // for 2048 samples
 // Light below this part of the slice's mean makes no break: it is too dark to be seen beside the rest.
@@ -124,7 +125,9 @@ void main() {
       total += uint(bitCount(marched[word]));
     }
     list_start = atomicAdd(march.count, total);
-    atomicMax(march.groups_x, min((list_start + total + kMarchGroup - 1u) / kMarchGroup, kMostGroups));
+    uint groups = (list_start + total + kMarchGroup - 1u) / kMarchGroup;
+    atomicMax(march.groups_x, groups_along_x(groups));
+    atomicMax(march.groups_y, groups_along_y(groups));
   }
   barrier();
   for (uint i = thread; i <= slice.last; i += kThreads) {

@@ -9,8 +9,8 @@
 layout(local_size_x = 32) in;
 layout(constant_id = 0) const uint kFormat = 0u;  // MinMaxFormat
 
-layout(std430, binding = 0) readonly buffer frame_block { FrameConstants frame; };
-layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants epipolar; };
+layout(std140, binding = 0) uniform frame_block { FrameConstants frame; };
+layout(std140, binding = 1) uniform epipolar_block { EpipolarConstants epipolar; };
 layout(std430, binding = 2) readonly buffer row_block { ShadowRow rows[]; };
 layout(std430, binding = 3) writeonly buffer tree_block { uint tree[]; };
 layout(binding = 4) uniform sampler2DArray shadow_depths;
@@ -18,6 +18,7 @@ layout(binding = 4) uniform sampler2DArray shadow_depths;
 layout(std430, binding = 5) readonly buffer work_block { WorkList work; uint items[]; };  // row << 8 | block
 
 #include "epipolar/shadow_tree.glsl"
+#include "epipolar/work_list.glsl"
 
 const uint kCells = 1u << kTreeLeafLevel;  // of a thread
 const float kAlwaysLit = 1e30;
@@ -100,8 +101,6 @@ void build_block(uint id, uint block) {
 }
 
 void main() {
-  for (uint at = gl_WorkGroupID.x; at < work.count; at += gl_NumWorkGroups.x) {
-    build_block(items[at] >> 8u, items[at] & 0xFFu);
-    barrier();
-  }
+  uint at = min(list_group(), work.count - 1u);
+  build_block(items[at] >> 8u, items[at] & 0xFFu);
 }

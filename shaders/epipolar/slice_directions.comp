@@ -10,13 +10,14 @@
 
 layout(local_size_x = 64) in;
 
-layout(std430, binding = 0) readonly buffer frame_block { FrameConstants frame; };
-layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants epipolar; };
+layout(std140, binding = 0) uniform frame_block { FrameConstants frame; };
+layout(std140, binding = 1) uniform epipolar_block { EpipolarConstants epipolar; };
 layout(std430, binding = 2) readonly buffer slice_block { EpipolarSlice slices[]; };
 layout(std430, binding = 3) writeonly buffer row_block { ShadowRow rows[]; };
 layout(std430, binding = 4) buffer tree_list_block { WorkList trees; uint tree_list[]; };
 
 #include "epipolar/slices.glsl"
+#include "epipolar/work_list.glsl"
 #include "frame/view_ray.glsl"
 
 // Cells per metre of view depth along the ray through a place, and their direction.
@@ -64,6 +65,7 @@ void main() {
   // The blocks of the tree that have cells; each is a group.
   uint blocks = (uint(row.count) + kTreeBlock - 1u) / kTreeBlock;
   uint at = atomicAdd(trees.count, blocks);
-  atomicMax(trees.groups_x, min(at + blocks, kMostGroups));
+  atomicMax(trees.groups_x, groups_along_x(at + blocks));
+  atomicMax(trees.groups_y, groups_along_y(at + blocks));
   for (uint i = 0u; i < blocks; ++i) tree_list[at + i] = row_id << 8u | i;
 }

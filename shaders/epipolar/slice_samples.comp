@@ -13,9 +13,9 @@
 
 layout(local_size_x = 32, local_size_y = 2) in;
 
-layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
-layout(std430, binding = 1) readonly buffer frame_block { FrameConstants frame; };
-layout(std430, binding = 2) readonly buffer epipolar_block { EpipolarConstants epipolar; };
+layout(std140, binding = 0) uniform medium_block { Medium medium; };
+layout(std140, binding = 1) uniform frame_block { FrameConstants frame; };
+layout(std140, binding = 2) uniform epipolar_block { EpipolarConstants epipolar; };
 layout(std430, binding = 3) readonly buffer slice_block { EpipolarSlice slices[]; };
 layout(std430, binding = 4) writeonly buffer sample_block { uvec4 samples[]; };
 layout(std430, binding = 5) writeonly buffer coarse_block { vec4 coarse[]; };
@@ -71,7 +71,7 @@ void main() {
     if (!clip_to_homogeneous(ray, start, end)) end = start;
     vec3 through, lost;
     homogeneous_attenuation(end - start, through, lost);
-    s.log_density = log_density(frame.homogeneous.extinction * (end - start), s.depth_m);
+    s.density = density_of(frame.homogeneous.extinction * (end - start), s.depth_m);
     samples[at] = pack_sample(s);
     coarse[at] = vec4(lost, s.depth_m);
     return;
@@ -81,7 +81,7 @@ void main() {
   if (clip_to_air(medium, ray, start, end)) {
     column = max(column_along(medium, ray.altitude, ray.cos_zenith, end), vec3(0.0));
   }
-  s.log_density = log_density(optical_depth(medium, column), s.depth_m);
+  s.density = density_of(optical_depth(medium, column), s.depth_m);
   samples[at] = pack_sample(s);
   Guide guide = guide_for_column(medium, column);
   vec3 light = medium.rayleigh_scattering * rayleigh_phase(ray.cos_view_sun) * guide.rayleigh +

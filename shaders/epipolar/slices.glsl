@@ -7,12 +7,15 @@
 #ifndef TYNDALL_SLICES_GLSL
 #define TYNDALL_SLICES_GLSL
 
-// Unit vector away from the epipole.
-vec2 away_from_epipole(vec2 position) {
+// Away from the epipole, of any length above 1e-20.
+vec2 direction_from_epipole(vec2 position) {
   vec2 d = position * epipolar.sun_w - vec2(epipolar.sun_x, epipolar.sun_y);
-  float size = max(abs(d.x), abs(d.y));
-  vec2 fallback = vec2(epipolar.fallback_x, epipolar.fallback_y);
-  return normalize(size > 1e-20 ? d / size : fallback);
+  return max(abs(d.x), abs(d.y)) > 1e-20 ? d : vec2(epipolar.fallback_x, epipolar.fallback_y);
+}
+
+vec2 away_from_epipole(vec2 position) {
+  vec2 d = direction_from_epipole(position);
+  return normalize(d / max(abs(d.x), abs(d.y)));
 }
 
 vec2 epipole() { return vec2(epipolar.sun_x, epipolar.sun_y) / epipolar.sun_w; }
@@ -37,8 +40,9 @@ vec2 border_place(float along) {
   vec2 place = low;
   // The side that holds it, or for want of one by rounding, ends closest before it.
   float least_beyond = 1e30;
+  vec4 starts = vec4(epipolar.left_start, epipolar.bottom_start, epipolar.right_start, epipolar.top_start);
   for (int side = 0; side < 4; ++side) {
-    float start = epipolar.side_start[side];
+    float start = starts[side];
     float x = along - start;
     float length_px = side == 0 || side == 2 ? size.y : size.x;
     float beyond = max(x - length_px, 0.0);
@@ -54,20 +58,48 @@ vec2 border_place(float along) {
   return place;
 }
 
-// The slices around the line from the epipole through a place: the lower one plus the part of the way to the next.
-float slice_coordinate(vec2 position) {
-  vec2 direction = away_from_epipole(position);
-  bool across;
-  float t = distance_to_border(position, direction, across);
-  vec2 exit = position + t * direction;
+// The side of the border that a line from the epipole through a place ends on: the border's coordinate across it,
+// and how the slices are numbered along it.
+struct Side {
+  bool upright;  // left or right
+  float edge;
+  float sign;    // of the numbering along the picture's axis
+  float offset;  // of a place at 0 of that axis along the perimeter
+};
+
+Side side_behind(vec2 position) {
+  vec2 d = direction_from_epipole(position);
   vec2 low = border_low();
   vec2 high = border_high();
-  int side = across ? (direction.x > 0.0 ? 2 : 0) : (direction.y > 0.0 ? 1 : 3);
-  float x = side == 0 ? exit.y - low.y : side == 1 ? exit.x - low.x : side == 2 ? high.y - exit.y : high.x - exit.x;
-  float along = max(epipolar.side_start[side], 0.0) + max(x, 0.0);
-  float count = float(epipolar.closed != 0u ? epipolar.slices : epipolar.slices - 1u);
-  return clamp(along / epipolar.perimeter * count, 0.0, count);
+  bool right = d.x > 0.0;
+  bool down = d.y > 0.0;
+  vec2 edge = vec2(right ? high.x : low.x, down ? high.y : low.y);
+  vec2 gap = max(vec2(right ? edge.x - position.x : position.x - edge.x, down ? edge.y - position.y : position.y - edge.y),
+                 vec2(0.0));
+  Side side;
+  side.upright = gap.x * abs(d.y) <= gap.y * abs(d.x);
+  side.edge = side.upright ? edge.x : edge.y;
+  side.sign = (side.upright ? right : !down) ? -1.0 : 1.0;
+  float start = side.upright ? (right ? epipolar.right_start : epipolar.left_start)
+                             : (down ? epipolar.bottom_start : epipolar.top_start);
+  float first = side.upright ? (right ? high.y : low.y) : (down ? low.x : high.x);
+  side.offset = max(start, 0.0) - side.sign * first;
+  return side;
 }
+
+// The slices around the line from the epipole through a place: the lower one plus the part of the way to the next.
+// `side`: where the line ends, or that of a neighbouring pixel.
+float slice_coordinate(vec2 position, Side side) {
+  const float kLevel = 1e-9;  // to a side, or less: a line that meets it nowhere
+  vec2 d = direction_from_epipole(position);
+  vec2 at = side.upright ? position : position.yx;
+  d = side.upright ? d : d.yx;
+  float exit = at.y + (side.edge - at.x) * d.y / (abs(d.x) > kLevel ? d.x : kLevel);
+  float count = float(epipolar.closed != 0u ? epipolar.slices : epipolar.slices - 1u);
+  return clamp((side.offset + side.sign * exit) * (count / epipolar.perimeter), 0.0, count);
+}
+
+float slice_coordinate(vec2 position) { return slice_coordinate(position, side_behind(position)); }
 
 vec2 sample_position(EpipolarSlice slice, uint i) {
   return vec2(slice.entry_x, slice.entry_y) + vec2(slice.stride_x, slice.stride_y) * float(i);

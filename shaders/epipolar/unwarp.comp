@@ -7,11 +7,11 @@
 #include "shared/frame_constants.h"
 #include "shared/epipolar.h"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 64) in;  // along rows, as images lie in memory
 
-layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
-layout(std430, binding = 1) readonly buffer frame_block { FrameConstants frame; };
-layout(std430, binding = 2) readonly buffer epipolar_block { EpipolarConstants epipolar; };
+layout(std140, binding = 0) uniform medium_block { Medium medium; };
+layout(std140, binding = 1) uniform frame_block { FrameConstants frame; };
+layout(std140, binding = 2) uniform epipolar_block { EpipolarConstants epipolar; };
 layout(std430, binding = 3) readonly buffer slice_block { EpipolarSlice slices[]; };
 layout(std430, binding = 4) readonly buffer sample_block { uvec4 samples[]; };
 layout(binding = 5) uniform sampler2D scene_color;
@@ -20,6 +20,7 @@ layout(binding = 7, OUTPUT_FORMAT) uniform writeonly image2D output_color;
 layout(std430, binding = 8) buffer broken_list_block { WorkList broken; uint broken_list[]; };
 
 #include "epipolar/unwarp.glsl"
+#include "epipolar/work_list.glsl"
 
 ivec2 pixel_of(ivec2 corner, int k) { return min(corner + ivec2(k & 1, k >> 1), ivec2(frame.width, frame.height) - 1); }
 
@@ -54,7 +55,9 @@ void main() {
   if (!one_depth || dense || (kBreaks && blend(a, middle).weight < kLeastWeight)) {
     uint at = atomicAdd(broken.count, 1u);
     broken_list[at] = uint(corner.y) << 16u | uint(corner.x);
-    atomicMax(broken.groups_x, min((4u * at + 4u + kMarchGroup - 1u) / kMarchGroup, kMostGroups));
+    uint groups = (4u * at + 4u + kMarchGroup - 1u) / kMarchGroup;
+    atomicMax(broken.groups_x, groups_along_x(groups));
+    atomicMax(broken.groups_y, groups_along_y(groups));
     return;
   }
   for (int k = 0; k < 4; ++k) {

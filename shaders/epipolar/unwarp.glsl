@@ -23,18 +23,19 @@ const float kLeastWeight = 1e-2;
 struct Blend {
   float weight;
   vec3 source;
-  vec3 log_density;
+  vec3 density;
 };
 
 // The four samples around a place: two on each of two slices, and how near each is in depth.
 struct Around {
-  uint lower;  // slice
-  uvec2 first;  // sample on each of the two
+  Side side;
+  float lower;  // slice
+  vec2 first;   // sample on each of the two
   vec4 origin_lower;  // entry and axis of the two
   vec4 origin_upper;
   vec4 nearness;
   vec3 source[4];
-  vec3 log_density[4];
+  vec3 density[4];
 };
 
 float depth_nearness(float sample_m, float depth_m) {
@@ -49,21 +50,23 @@ float place_on_slice(vec4 origin, vec2 position) { return dot(position - origin.
 Around around(vec2 position, float depth_m) {
   Around a;
   uint last = epipolar.slices - 1u;
-  a.lower = uint(slice_coordinate(position));
-  uint ids[2] = uint[2](a.lower, a.lower + 1u);
+  a.side = side_behind(position);
+  uint lower = uint(slice_coordinate(position, a.side));
+  a.lower = float(lower);
   for (int i = 0; i < 2; ++i) {
-    ids[i] = ids[i] <= last ? ids[i] : epipolar.closed != 0u ? ids[i] - last - 1u : last;
-    EpipolarSlice slice = slices[ids[i]];
+    uint id = lower + uint(i);
+    id = id <= last ? id : epipolar.closed != 0u ? id - last - 1u : last;
+    EpipolarSlice slice = slices[id];
     vec4 origin = vec4(slice.entry_x, slice.entry_y, slice.axis_x, slice.axis_y);
     float place = clamp(place_on_slice(origin, position), 0.0, float(slice.last));
     uint first = min(uint(place), slice.last - 1u);
     if (i == 0) a.origin_lower = origin;
     else a.origin_upper = origin;
-    a.first[i] = first;
+    a.first[i] = float(first);
     for (int k = 0; k < 2; ++k) {
-      Sample s = unpack_sample(samples[ids[i] * epipolar.samples + first + uint(k)]);
+      Sample s = unpack_sample(samples[id * epipolar.samples + first + uint(k)]);
       a.source[2 * i + k] = s.source;
-      a.log_density[2 * i + k] = s.log_density;
+      a.density[2 * i + k] = s.density;
       a.nearness[2 * i + k] = depth_nearness(s.depth_m, depth_m);
     }
   }
@@ -72,14 +75,14 @@ Around around(vec2 position, float depth_m) {
 
 // At a place that is as far away, and no farther than a pixel from that of around().
 Blend blend(Around a, vec2 position) {
-  float part = slice_coordinate(position) - float(a.lower);
+  float part = slice_coordinate(position, a.side) - a.lower;
   // The last slice of all sides is next to the first.
   float all = float(epipolar.slices);
   part = part > 0.5 * all ? part - all : part < -0.5 * all ? part + all : part;
   // A little beyond the four, where they are so close that the place has moved out from between them.
   part = clamp(part, -kBeyond, 1.0 + kBeyond);
-  vec2 along = clamp(vec2(place_on_slice(a.origin_lower, position) - float(a.first.x),
-                          place_on_slice(a.origin_upper, position) - float(a.first.y)), -kBeyond, 1.0 + kBeyond);
+  vec2 along = clamp(vec2(place_on_slice(a.origin_lower, position), place_on_slice(a.origin_upper, position)) - a.first,
+                     -kBeyond, 1.0 + kBeyond);
   vec4 bilinear = vec4((1.0 - part) * (1.0 - along.x), (1.0 - part) * along.x, part * (1.0 - along.y), part * along.y);
   bool alike = min(min(a.nearness.x, a.nearness.y), min(a.nearness.z, a.nearness.w)) > 0.99;
   bilinear = alike ? bilinear : max(bilinear, vec4(0.0));
@@ -89,9 +92,9 @@ Blend blend(Around a, vec2 position) {
   b.weight = w.x + w.y + w.z + w.w;
   w /= b.weight;
   b.source = w.x * a.source[0] + w.y * a.source[1] + w.z * a.source[2] + w.w * a.source[3];
+  b.density = w.x * a.density[0] + w.y * a.density[1] + w.z * a.density[2] + w.w * a.density[3];
   b.source = max(b.source, vec3(0.0));
-  b.log_density =
-      w.x * a.log_density[0] + w.y * a.log_density[1] + w.z * a.log_density[2] + w.w * a.log_density[3];
+  b.density = max(b.density, vec3(0.0));
   return b;
 }
 
@@ -108,7 +111,7 @@ vec3 compose(Blend b, vec2 position, float depth_m, float visible_m, bool sky, v
   }
   vec3 tau;
   if (kExtinction == 0u) {
-    tau = optical_depth_at(b.log_density, depth_m);
+    tau = optical_depth_at(b.density, depth_m);
   } else {
     Ray ray = ray_to_depth(frame, position, visible_m, sky);
     float start, end;

@@ -9,9 +9,9 @@
 
 layout(local_size_x = kMarchGroup) in;
 
-layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
-layout(std430, binding = 1) readonly buffer frame_block { FrameConstants frame; };
-layout(std430, binding = 2) readonly buffer epipolar_block { EpipolarConstants epipolar; };
+layout(std140, binding = 0) uniform medium_block { Medium medium; };
+layout(std140, binding = 1) uniform frame_block { FrameConstants frame; };
+layout(std140, binding = 2) uniform epipolar_block { EpipolarConstants epipolar; };
 layout(std430, binding = 3) readonly buffer slice_block { EpipolarSlice slices[]; };
 layout(std430, binding = 4) readonly buffer sample_block { uvec4 samples[]; };
 layout(binding = 5) uniform sampler2D scene_color;
@@ -21,6 +21,7 @@ layout(std430, binding = 8) readonly buffer work_block { WorkList work; uint ite
 layout(std430, binding = 9) buffer break_list_block { WorkList breaks; uint break_list[]; };
 
 #include "epipolar/unwarp.glsl"
+#include "epipolar/work_list.glsl"
 
 void unwarp_pixel(uint block, uint k) {
   ivec2 pixel = ivec2((block & 0xFFFFu) + (k & 1u), (block >> 16u) + (k >> 1u));
@@ -36,11 +37,13 @@ void unwarp_pixel(uint block, uint k) {
   if (kBreaks && b.weight < kLeastWeight) {
     uint slot = atomicAdd(breaks.count, 1u);
     break_list[slot] = uint(pixel.y) << 16u | uint(pixel.x);
-    atomicMax(breaks.groups_x, min(slot / kMarchGroup + 1u, kMostGroups));
+    uint groups = slot / kMarchGroup + 1u;
+    atomicMax(breaks.groups_x, groups_along_x(groups));
+    atomicMax(breaks.groups_y, groups_along_y(groups));
   }
 }
 
 void main() {
-  uint all = 4u * work.count;
-  for (uint i = gl_GlobalInvocationID.x; i < all; i += gl_NumWorkGroups.x * kMarchGroup) unwarp_pixel(items[i / 4u], i % 4u);
+  uint i = list_item(kMarchGroup);
+  if (i < 4u * work.count) unwarp_pixel(items[i / 4u], i % 4u);
 }

@@ -24,7 +24,11 @@ struct EpipolarConstants {
   float fallback_y;
   float perimeter;  // of the sides on which slices end [pixels]
   uint closed;      // 1: slices end on all four, and the last is next to the first
-  float side_start[4];  // along the perimeter; < 0: no slice ends there
+  // Where each side begins along the perimeter; < 0: no slice ends there.
+  float left_start;
+  float bottom_start;
+  float right_start;
+  float top_start;
   uint first_cascade;   // marched
   uint cascades;        // behind the last marched one
   uint tree_cells;      // of a row, at most; a multiple of kTreeBlock
@@ -71,7 +75,8 @@ const uint kFinish = 3u;        // makes light of what the cascades have left
 const uint kPixels = 4u;        // pixels, as the first
 
 const uint kMarchGroup = 64u;  // invocations
-// Groups of an indirect dispatch, at most: what every device takes. The shaders loop over longer lists.
+// Groups of an indirect dispatch along an axis, at most: what every device takes. Longer lists go on along y. (A loop in
+// the shaders would do, but CPU devices keep all that lives in a loop in memory: the trees took twice as long.)
 const uint kMostGroups = 65535u;
 
 // The head of a list that is worked through indirectly: arguments of a dispatch, then the number of items.

@@ -45,6 +45,8 @@ constexpr VkDeviceSize kSlotBytes = kFrameBytes + kMediumBytes + kEpipolarBytes;
 // Counters of a frame, as pairs of words.
 constexpr VkDeviceSize kCounterBytes = align(shared::kCounters * sizeof(std::uint64_t));
 
+// Read as storage by the passes of the tables, as uniforms by those of epipolar sampling.
+constexpr VkBufferUsageFlags kConstantsUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
 constexpr VkBufferUsageFlags kCounterUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
                                              VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
 
@@ -91,7 +93,7 @@ MemoryUsage plan_memory(const gpu::Device& device, const EffectDesc& desc, const
   usage.persistent += gpu::buffer_bytes(device, kCounterBytes * desc.frames_in_flight, kCounterUsage);
   usage.persistent += epipolar_bytes(device, desc, params);
   usage.transient = table_scratch_bytes(device, params);
-  usage.host = gpu::buffer_bytes(device, kSlotBytes * desc.frames_in_flight, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  usage.host = gpu::buffer_bytes(device, kSlotBytes * desc.frames_in_flight, kConstantsUsage);
   if (desc.counters) {
     usage.host += gpu::buffer_bytes(device, kCounterBytes * desc.frames_in_flight, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   }
@@ -181,7 +183,7 @@ Result<void> Effect::State::create_objects() {
   TYNDALL_ASSIGN(no_shadows, gpu::create_image(device, kNoShadows));
   TYNDALL_ASSIGN(no_colors, gpu::create_image(device, kNoColors));
   TYNDALL_ASSIGN(constants, gpu::create_buffer(device, "constants", kSlotBytes * desc.frames_in_flight,
-                                               VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
+                                               kConstantsUsage, gpu::MemoryKind::upload));
   const VkDeviceSize counter_bytes = kCounterBytes * desc.frames_in_flight;
   TYNDALL_ASSIGN(counters,
                  gpu::create_buffer(device, "counters", counter_bytes, kCounterUsage, gpu::MemoryKind::device));

@@ -157,9 +157,10 @@ shared::EpipolarConstants epipolar_constants(const FrameInputs& inputs, const Ef
     while (first < 3 && !(ends[first] && !ends[(first + 3) % 4])) ++first;
   }
   double along = 0.0;
+  float* const starts[4] = {&out.left_start, &out.bottom_start, &out.right_start, &out.top_start};
   for (int i = 0; i < 4; ++i) {
     const int side = (first + i) % 4;
-    out.side_start[side] = ends[side] ? static_cast<float>(along) : -1.0F;
+    *starts[side] = ends[side] ? static_cast<float>(along) : -1.0F;
     if (ends[side]) along += lengths[side];
   }
   out.perimeter = static_cast<float>(std::max(along, 1e-3));
@@ -369,9 +370,9 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
   gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
                VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT,
                VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
-  shared::WorkList empty = {0, instanced ? marched : 1, 1, 0};
+  shared::WorkList empty = {0, 1, instanced ? marched : 1, 0};
   device_->vk.CmdUpdateBuffer(cmd, buffers_[index(EpipolarBuffer::march_list)].buffer.get(), 0, sizeof empty, &empty);
-  empty.groups_y = 1;
+  empty.groups_z = 1;
   for (const EpipolarBuffer list : {EpipolarBuffer::broken_list, EpipolarBuffer::break_list, EpipolarBuffer::tree_list}) {
     device_->vk.CmdUpdateBuffer(cmd, buffers_[index(list)].buffer.get(), 0, sizeof empty, &empty);
   }
