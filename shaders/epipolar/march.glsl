@@ -13,6 +13,7 @@
 #include "frame/counters.glsl"
 #include "frame/homogeneous_medium.glsl"
 #include "frame/table_light.glsl"
+#include "epipolar/sample_light.glsl"
 #include "epipolar/shadow_tree.glsl"
 
 layout(constant_id = 3) const bool kTree = true;
@@ -283,7 +284,10 @@ vec3 light_of(March march, Ray ray, TableRay path, float start, float end) {
                                  int(frame.integration_steps) / 3);
     }
   }
-  if (kLitTables || frame.unoccluded != 0u) light += table_light(march.lit, path, start, t, end);
+  if (kLitTables || frame.unoccluded != 0u) {
+    light += kSections == kEach ? table_light(march.lit, path, start, t, end)
+                                : contiguous_light(march.lit, path, start, t, end);
+  }
   return light;
 }
 

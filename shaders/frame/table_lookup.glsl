@@ -82,8 +82,8 @@ vec3 table_value(sampler3D table, TableCoordinates c) {
   return value_from_texel(mix(textureLod(table, c.near, 0.0).rgb, textureLod(table, c.far, 0.0).rgb, c.far_part));
 }
 
-AirLight light_to_end(TableShape t, Medium m, TableRay ray) {
-  vec3 column = column_along(m, ray.altitude, ray.cos_zenith, ray.end_m);
+// `column`: of the whole ray.
+AirLight light_of_column(TableShape t, Medium m, TableRay ray, vec3 column) {
   TableCoordinates c = table_coordinates(t, m, ray, column);
   Guide guide = guide_for_column(m, column);
   vec3 rayleigh = m.rayleigh_scattering * rayleigh_phase(ray.cos_view_sun);
@@ -93,6 +93,10 @@ AirLight light_to_end(TableShape t, Medium m, TableRay ray) {
                  mie * guide.mie * table_value(single_mie, c);
   light.high = guide.high * table_value(high_orders, c);
   return light;
+}
+
+AirLight light_to_end(TableShape t, Medium m, TableRay ray) {
+  return light_of_column(t, m, ray, column_along(m, ray.altitude, ray.cos_zenith, ray.end_m));
 }
 
 // The light of the part [from, to] of a ray [m], seen from the ray's origin: L(a) - T(a, b) L(b), dimmed by

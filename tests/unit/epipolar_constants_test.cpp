@@ -2,6 +2,7 @@
 // slices end, the memory that the parameters ask for, and the numbering of the modes.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -42,10 +43,15 @@ shared::EpipolarConstants with_sun(const Vec3& sun, const Params& params = {}) {
   return epipolar_constants(inputs, {}, params);
 }
 
+// In the order of shared/epipolar.h.
+std::array<float, 4> side_starts(const shared::EpipolarConstants& c) {
+  return {c.left_start, c.bottom_start, c.right_start, c.top_start};
+}
+
 // Sides on which slices end, as bits: 1 left, 2 bottom, 4 right, 8 top.
 int sides(const shared::EpipolarConstants& c) {
   int out = 0;
-  for (int i = 0; i < 4; ++i) out |= c.side_start[i] >= 0.0F ? 1 << i : 0;
+  for (int i = 0; i < 4; ++i) out |= side_starts(c)[i] >= 0.0F ? 1 << i : 0;
   return out;
 }
 
@@ -57,10 +63,10 @@ void expect_chain(const shared::EpipolarConstants& c) {
   int first = -1;
   double sum = 0.0;
   for (int i = 0; i < 4; ++i) {
-    if (c.side_start[i] < 0.0F) continue;
+    if (side_starts(c)[i] < 0.0F) continue;
     ++count;
     sum += lengths[i];
-    if (c.side_start[i] == 0.0F) {
+    if (side_starts(c)[i] == 0.0F) {
       EXPECT_EQ(first, -1);
       first = i;
     }
@@ -70,7 +76,7 @@ void expect_chain(const shared::EpipolarConstants& c) {
   double along = 0.0;
   for (int k = 0; k < count; ++k) {
     const int side = (first + k) % 4;
-    EXPECT_NEAR(static_cast<double>(c.side_start[side]), along, 1e-3) << side;
+    EXPECT_NEAR(static_cast<double>(side_starts(c)[side]), along, 1e-3) << side;
     along += lengths[side];
   }
   EXPECT_EQ(c.closed != 0, count == 4);

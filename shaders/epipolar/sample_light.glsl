@@ -1,0 +1,53 @@
+// The light of the tables for a marched sample, in the modes that take one section from the first lit point: what
+// table_light() of frame/table_light.glsl gives, from fewer look-ups. The light of a part of the ray is that of all beyond its
+// begin less that of all beyond its end; so every end that parts share is looked up once, in one loop over
+// the places, and the column beyond a place is the whole ray's less that before it.
+#ifndef TYNDALL_SAMPLE_LIGHT_GLSL
+#define TYNDALL_SAMPLE_LIGHT_GLSL
+
+#include "frame/table_light.glsl"
+
+// Of the lit part, which was found up to distance t, of the rest of the ray to `end`, which nothing shadows, and
+// of the whole ray where shadows do not count.
+vec3 contiguous_light(LitSections lit, TableRay path, float start, float t, float end) {
+  const float kNear = 1e-3;  // [m]
+  float lit_from = lit.first;
+  float lit_to = lit.first + lit.total;
+  bool any_lit = kLitTables && lit.total > kNear;
+  bool any_rest = kLitTables && end - t > kNear;
+  // What all beyond each place counts, of the shadowed light and of that of the whole ray.
+  bool whole = frame.unoccluded != 0u;
+  bool to_rest = any_lit && any_rest && t - lit_to < kNear;
+  vec4 places = vec4(start, lit_from, lit_to, t);
+  vec4 shadowed = vec4(0.0, any_lit ? 1.0 : 0.0, any_lit && !to_rest ? -1.0 : 0.0, any_rest && !to_rest ? 1.0 : 0.0);
+  float shadowed_end = any_rest ? -1.0 : 0.0;
+  if (any_lit && lit_from - start < kNear) shadowed.xy = vec2(1.0, 0.0);
+  if (any_lit && !any_rest && end - lit_to < kNear) {
+    shadowed.z = 0.0;
+    shadowed_end = -1.0;
+  }
+  bool beyond_end = end - start < path.end_m;
+  uint wanted = (whole || shadowed.x != 0.0 ? 1u : 0u) | (shadowed.y != 0.0 ? 2u : 0u) | (shadowed.z != 0.0 ? 4u : 0u) |
+                (shadowed.w != 0.0 ? 8u : 0u) | (beyond_end && (whole || shadowed_end != 0.0) ? 16u : 0u);
+  vec3 column = column_along(medium, path.altitude, path.cos_zenith, path.end_m);
+  vec3 light = vec3(0.0);
+  vec3 high = vec3(0.0);
+  while (wanted != 0u) {
+    int i = findLSB(wanted);
+    wanted &= wanted - 1u;
+    float place = i == 0 ? places.x : i == 1 ? places.y : i == 2 ? places.z : i == 3 ? places.w : end;
+    float counts = i == 0 ? shadowed.x : i == 1 ? shadowed.y : i == 2 ? shadowed.z : i == 3 ? shadowed.w : shadowed_end;
+    float d = min(place - start, path.end_m);
+    vec3 before = column_along(medium, path.altitude, path.cos_zenith, d);
+    vec3 through = transmittance(medium, before);
+    AirLight beyond = light_of_column(frame.tables, medium, ray_further_on(medium, path, d), max(column - before, vec3(0.0)));
+    if (kSingle == kTable) light += counts * through * beyond.single;
+    if (kOccluded) light += counts * through * beyond.high;
+    else if (i == 0) high += through * beyond.high;
+    else if (i == 4) high -= through * beyond.high;
+  }
+  light = max(light, vec3(0.0));
+  return whole ? light + max(high, vec3(0.0)) : light;
+}
+
+#endif
