@@ -30,23 +30,16 @@ layout(binding = 6) uniform sampler2D scene_depth;
 float depth_at(vec2 position) {
   const float kSameSurface = 0.9;  // least ratio of view depths
   vec2 place = position - 0.5;
-  vec2 part = place - floor(place);
-  ivec2 corner = ivec2(floor(place));
-  ivec2 most = ivec2(frame.width, frame.height) - 1;
-  float depths[4];
-  float nearest_m = kSkyDepth;
-  float farthest_m = 0.0;
-  float nearest_pixel = 0.0;
-  for (int k = 0; k < 4; ++k) {
-    ivec2 offset = ivec2(k & 1, k >> 1);
-    depths[k] = texelFetch(scene_depth, clamp(corner + offset, ivec2(0), most), 0).r;
-    float depth_m = depths[k] == frame.sky_depth ? kSkyDepth : view_depth(frame, position, depths[k]);
-    nearest_m = min(nearest_m, depth_m);
-    farthest_m = max(farthest_m, depth_m);
-    if (offset == ivec2(greaterThanEqual(part, vec2(0.5)))) nearest_pixel = depths[k];
-  }
-  float between = mix(mix(depths[0], depths[1], part.x), mix(depths[2], depths[3], part.x), part.y);
-  return nearest_m > kSameSurface * farthest_m && farthest_m < kSkyDepth ? between : nearest_pixel;
+  vec2 corner = floor(place);
+  vec2 part = place - corner;
+  // The four pixels around, in the order of textureGather: lower left, lower right, upper right, upper left.
+  vec4 d = textureGather(scene_depth, (corner + 1.0) / vec2(float(frame.width), float(frame.height)));
+  float a = view_depth(frame, position, min(min(d.x, d.y), min(d.z, d.w)));
+  float b = view_depth(frame, position, max(max(d.x, d.y), max(d.z, d.w)));
+  bool scene = all(notEqual(d, vec4(frame.sky_depth)));
+  float between = mix(mix(d.w, d.z, part.x), mix(d.x, d.y, part.x), part.y);
+  float nearest_pixel = part.y >= 0.5 ? (part.x >= 0.5 ? d.y : d.x) : (part.x >= 0.5 ? d.z : d.w);
+  return scene && min(a, b) > kSameSurface * max(a, b) ? between : nearest_pixel;
 }
 
 void main() {

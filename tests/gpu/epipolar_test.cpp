@@ -75,11 +75,15 @@ TEST_F(Epipolar, TreesFormatsAndOrderOfCascadesChangeNothing) {
       base.scattering.sections = integrated ? LitSections::each : LitSections::contiguous;
       const std::string where = std::string(integrated ? "integrated" : "tables") + (reached ? "" : ", larger map");
       const Picture picture = draw(base, where);
+      // Trees tell nothing that the maps do not. Another order of additions may move a sample's source by a step
+      // of its root in half precision.
+      constexpr double kStep = 2.0 / 1024.0;
       const auto same = [&](const char* name, const std::function<void(Params&)>& change) {
         Params params = base;
         change(params);
         const Likeness likeness = compare(draw(params, where + ", " + name), picture, frame().extent);
-        EXPECT_LE(likeness.worst_relative_error, 1e-3) << where << ", " << name;
+        const bool ordered = params.shadows.cascade_processing == base.shadows.cascade_processing;
+        EXPECT_LE(likeness.worst_relative_error, ordered ? 0.0 : kStep) << where << ", " << name;
         RecordProperty("worst: " + where + ", " + name, std::to_string(likeness.worst_relative_error));
       };
       same("no tree", [](Params& p) { p.epipolar.min_max_tree = false; });
