@@ -285,8 +285,8 @@ vec3 light_of(March march, Ray ray, TableRay path, float start, float end) {
     }
   }
   if (kLitTables || frame.unoccluded != 0u) {
-    light += kSections == kEach ? table_light(march.lit, path, start, t, end)
-                                : contiguous_light(march.lit, path, start, t, end);
+    light += kSections == kEach || kColors ? table_light(march.lit, path, start, t, end)
+                                           : contiguous_light(march.lit, path, start, t, end);
   }
   return light;
 }

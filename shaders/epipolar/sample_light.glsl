@@ -1,4 +1,4 @@
-// The light of the tables for a marched sample, in the modes that take one section from the first lit point: what
+// The light of the tables for a marched sample, in the modes that take one section from the first lit point, uncoloured: what
 // table_light() of frame/table_light.glsl gives, from fewer look-ups. The light of a part of the ray is that of all beyond its
 // begin less that of all beyond its end; so every end that parts share is looked up once, in one loop over
 // the places, and the column beyond a place is the whole ray's less that before it.
