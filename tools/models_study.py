@@ -1,6 +1,6 @@
 """Every model on one scene: pictures, cost, and error. `make models-study` runs it.
 
-    models_study.py TYNDALL [--validation FILE.json]
+    models_study.py TYNDALL [--validation FILE.json] [--keep-pictures]
 
 writes docs/images/models_*.png and docs/generated/models.md. Models that this build does not draw are left out. The errors
 against the path tracer are those of `tyndall validate --json`, which is run unless its output is given."""
@@ -84,7 +84,8 @@ def main():
     for name, title, settings, row in MODELS:
         path = images / f"models_{name}.png"
         try:
-            run(tyndall, "render", str(SCENE), "--size", SIZE, "-o", str(path), *sets(settings))
+            if "--keep-pictures" not in sys.argv or not path.exists():
+                run(tyndall, "render", str(SCENE), "--size", SIZE, "-o", str(path), *sets(settings))
         except RuntimeError as error:
             print(f"{name}: left out: {error}", file=sys.stderr)
             path.unlink(missing_ok=True)
