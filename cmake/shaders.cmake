@@ -36,6 +36,13 @@ function(tyndall_add_shaders)
       COMMENT "Shader ${source}${variant}"
       VERBATIM)
     list(APPEND modules ${spv})
+    # For programs that compile shaders anew while they run: set|name|source|define.
+    if(defines)
+      string(SUBSTRING ${defines} 2 -1 define)
+    else()
+      set(define -)
+    endif()
+    set_property(GLOBAL APPEND PROPERTY TYNDALL_SHADER_ROWS "${arg_NAME}|${name}${variant}|${source}|${define}")
   endforeach()
   set(header ${out_dir}/${arg_NAME}_shaders.hpp)
   add_custom_command(

@@ -19,6 +19,7 @@ int run_render(Args args);
 int run_sky(Args args);
 int run_tables(Args args);
 int run_validate(Args args);
+int run_view(Args args);
 
 struct Verb {
   std::string_view name;
@@ -29,6 +30,7 @@ struct Verb {
 // What `tyndall --help` lists, in its order.
 inline constexpr Verb kVerbs[] = {
     {"render", run_render, "render one frame or a sequence to PNG or EXR"},
+    {"view", run_view, "fly over the scene in a window, with every control under the hand"},
     {"probe", run_probe, "radiance and transmittance for given rays, by any of the models"},
     {"tables", run_tables, "build the scattering tables anew (those in the cache too), say how long it took, export them"},
     {"sky", run_sky, "the sky as an environment map, for a sun given by angles or by place and time"},

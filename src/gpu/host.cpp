@@ -304,6 +304,7 @@ Result<std::vector<DeviceRow>> Host::list(const std::string& wanted) {
 PFN_vkGetInstanceProcAddr Host::get_instance_proc_addr() const { return vkGetInstanceProcAddr; }
 
 Result<void> Host::run(const std::function<Result<void>(VkCommandBuffer)>& record) {
+  const std::unique_lock<std::mutex> locked = lock();
   VkCommandBufferBeginInfo begin = {};
   begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
   begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;

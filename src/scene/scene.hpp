@@ -50,6 +50,7 @@ class Scene {
   // What Terrain::load_source() gave for these parameters and this radius of the planet.
   Result<void> set_terrain(const TerrainParams& params, double radius_m, ElevationSource source);
   Result<void> set_extent(VkExtent2D extent);
+  Result<void> set_terrain_coarseness(int coarseness) { return terrain_->set_coarseness(coarseness); }
 
   // One step towards the tables that the parameters ask for, from the cache or `budget` slices of the build. Until
   // they are complete, frames are drawn with those that were; without any, render() fails.

@@ -142,12 +142,7 @@ Result<void> Terrain::create_objects(VkFormat color_format, VkFormat depth_forma
   TYNDALL_ASSIGN(shadow_pipeline_, gpu::create_graphics_pipeline(device, shadow));
   TYNDALL_ASSIGN(nearest_, gpu::create_sampler(device, {.filter = VK_FILTER_NEAREST}));
 
-  const std::vector<std::uint32_t> indices = block_indices(coarseness_);
-  const VkDeviceSize index_bytes = indices.size() * sizeof(std::uint32_t);
-  TYNDALL_ASSIGN(indices_, gpu::create_buffer(device, "terrain_indices", index_bytes,
-                                              VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                                              gpu::MemoryKind::device));
-  TYNDALL_TRY(gpu::upload(*host_, indices_, indices.data(), index_bytes));
+  TYNDALL_TRY(create_indices());
   TYNDALL_ASSIGN(constants_, gpu::create_buffer(device, "terrain_constants", sizeof(shared::TerrainConstants),
                                                 VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
   TYNDALL_ASSIGN(blocks_, gpu::create_buffer(device, "terrain_blocks", kMaxBlocks * sizeof(TerrainBlock),
@@ -155,6 +150,26 @@ Result<void> Terrain::create_objects(VkFormat color_format, VkFormat depth_forma
   TYNDALL_ASSIGN(fill_constants_, gpu::create_buffer(device, "terrain_fill_constants", sizeof(fill::TerrainFill),
                                                      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
   return {};
+}
+
+Result<void> Terrain::create_indices() {
+  const gpu::Device& device = host_->device();
+  const std::vector<std::uint32_t> indices = block_indices(coarseness_);
+  const VkDeviceSize index_bytes = indices.size() * sizeof(std::uint32_t);
+  TYNDALL_ASSIGN(indices_, gpu::create_buffer(device, "terrain_indices", index_bytes,
+                                              VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                              gpu::MemoryKind::device));
+  TYNDALL_TRY(gpu::upload(*host_, indices_, indices.data(), index_bytes));
+  return {};
+}
+
+Result<void> Terrain::set_coarseness(int coarseness) {
+  if (coarseness == coarseness_) return {};
+  coarseness_ = coarseness;
+  heights_ = {};
+  filled_.clear();
+  ++version_;
+  return none() ? Result<void>() : create_indices();
 }
 
 Ground Terrain::ground() const {

@@ -37,6 +37,8 @@ class Terrain {
   static Result<ElevationSource> load_source(const gpu::Device& device, const TerrainParams& params, double radius_m);
   // Replaces the elevations by those loaded for these parameters and this radius.
   Result<void> set_source(const TerrainParams& params, double radius_m, ElevationSource source);
+  // See TerrainLod.
+  Result<void> set_coarseness(int coarseness);
   // Counts the changes of what is drawn.
   [[nodiscard]] std::uint64_t version() const { return version_; }
 
@@ -64,6 +66,7 @@ class Terrain {
 
  private:
   Result<void> create_objects(VkFormat color_format, VkFormat depth_format);
+  Result<void> create_indices();
   Result<void> fill_level(std::size_t layer);
   Result<void> draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline,
                     std::span<const gpu::NamedResource> resources, const glm::dmat4& clip_from_world,

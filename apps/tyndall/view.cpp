@@ -1,0 +1,32 @@
+// `tyndall view`: the interactive viewer (apps/viewer).
+#include "arguments.hpp"
+#include "cli.hpp"
+#include "make_tables.hpp"
+#include "viewer.hpp"
+
+namespace tyndall::cli {
+
+int run_view(Args args) {
+  CommonOptions options;
+  viewer::ViewerDesc desc;
+  Arguments arguments("view");
+  add_common(arguments, options, kScene | kSet | kDevice | kSize);
+  arguments.text("--state", desc.state_file, "FILE", "where F5 saves the state and F9 finds it [~/.local/state/tyndall/view.toml]");
+  arguments.text("--screenshots", desc.screenshots, "FOLDER", "where F12 leaves pictures [the working directory]");
+  arguments.text("--log", desc.log, "FILE", "write what happens, a line each");
+  bool no_first_steps = false;
+  arguments.flag("--no-first-steps", no_first_steps, "do not show the help of the first run");
+  arguments.flag("--validation", desc.validation, "check with the Vulkan validation layer; exit 1 when it has something to say");
+  if (const std::optional<int> status = arguments.parse(args)) return *status;
+  if (Result<void> r = resolve(options); !r) return fail(r.error());
+  desc.settings = options.settings;
+  desc.width = options.size.width;
+  desc.height = options.size.height;
+  desc.device = options.device;
+  desc.make_tables.cache = table_cache(options.settings.scene);
+  desc.first_steps = !no_first_steps;
+  if (Result<void> r = viewer::run(desc); !r) return fail(r.error());
+  return kDone;
+}
+
+}  // namespace tyndall::cli

@@ -1,0 +1,34 @@
+#include "event_log.hpp"
+
+#include "config/files.hpp"
+
+namespace tyndall::viewer {
+
+bool EventLog::open(const std::string& path) {
+  path_ = path;
+  file_ = std::fopen(path.c_str(), "w");
+  return file_ != nullptr;
+}
+
+void EventLog::line(double seconds, const std::string& text) {
+  if (file_ == nullptr) return;
+  std::fprintf(file_, "%.3f %s\n", seconds, text.c_str());
+  std::fflush(file_);
+}
+
+void EventLog::places(const std::vector<Place>& places) {
+  if (file_ == nullptr) return;
+  std::string text;
+  for (const Place& p : places) {
+    char numbers[96];
+    std::snprintf(numbers, sizeof numbers, "%.0f %.0f %.0f %.0f ", static_cast<double>(p.x), static_cast<double>(p.y),
+                  static_cast<double>(p.width), static_cast<double>(p.height));
+    text += numbers + p.name + "\n";
+  }
+  if (text == places_) return;
+  places_ = std::move(text);
+  // Whole or not at all: a test may be reading. What cannot be written is for the test to find missing.
+  if (Result<void> written = config::write_file(path_ + ".places", places_); !written) places_.clear();
+}
+
+}  // namespace tyndall::viewer

@@ -1,0 +1,32 @@
+// What happens in the viewer, a line each, for tests and for reports of trouble: "0.532 frame 3 640 360".
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "widgets.hpp"
+
+namespace tyndall::viewer {
+
+class EventLog {
+ public:
+  EventLog() = default;
+  EventLog(const EventLog&) = delete;
+  EventLog& operator=(const EventLog&) = delete;
+  ~EventLog() {
+    if (file_ != nullptr) std::fclose(file_);
+  }
+  // False when the file cannot be written.
+  bool open(const std::string& path);
+  [[nodiscard]] bool on() const { return file_ != nullptr; }
+  void line(double seconds, const std::string& text);
+  // Writes where everything stands that can be clicked to PATH.places, when that has changed.
+  void places(const std::vector<Place>& places);
+
+ private:
+  std::string path_, places_;
+  std::FILE* file_ = nullptr;
+};
+
+}  // namespace tyndall::viewer

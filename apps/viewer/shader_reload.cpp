@@ -1,0 +1,180 @@
+#include "shader_reload.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <shaderc/shaderc.hpp>
+#include <spirv-tools/optimizer.hpp>
+#include <sstream>
+
+#include "files.hpp"
+#include "shader_sources.hpp"
+#include "window.hpp"
+
+namespace tyndall::viewer {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool read(const fs::path& path, std::string& text) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return false;
+  std::ostringstream out;
+  out << file.rdbuf();
+  text = out.str();
+  return true;
+}
+
+// Looks in the folders that the build looks in.
+class Includer : public shaderc::CompileOptions::IncluderInterface {
+ public:
+  explicit Includer(std::vector<fs::path> folders) : folders_(std::move(folders)) {}
+
+  shaderc_include_result* GetInclude(const char* wanted, shaderc_include_type, const char*, std::size_t) override {
+    auto* found = new Found;
+    found->text = "cannot be found";
+    for (const fs::path& folder : folders_) {
+      const fs::path path = folder / wanted;
+      if (!read(path, found->text)) continue;
+      found->name = path.string();
+      break;
+    }
+    found->result = {found->name.c_str(), found->name.size(), found->text.c_str(), found->text.size(), found};
+    return &found->result;
+  }
+  void ReleaseInclude(shaderc_include_result* result) override { delete static_cast<Found*>(result->user_data); }
+
+ private:
+  struct Found {
+    std::string name, text;
+    shaderc_include_result result;
+  };
+  std::vector<fs::path> folders_;
+};
+
+shaderc_shader_kind kind_of(VkShaderStageFlagBits stage) {
+  switch (stage) {
+    case VK_SHADER_STAGE_VERTEX_BIT: return shaderc_glsl_vertex_shader;
+    case VK_SHADER_STAGE_FRAGMENT_BIT: return shaderc_glsl_fragment_shader;
+    default: return shaderc_glsl_compute_shader;
+  }
+}
+
+// What the program has taken down of a shader at build time, and cannot learn anew: binding numbers and the size of
+// groups. Reads the decorations of the module (SPIR-V 1.6, 3.32: OpDecorate 71, OpExecutionMode 16).
+bool fits(const gpu::Shader& shader, const std::vector<std::uint32_t>& words) {
+  constexpr std::uint32_t kDecorate = 71, kBinding = 33, kExecutionMode = 16, kLocalSize = 17;
+  std::set<std::uint32_t> found, known;
+  for (const gpu::Binding& binding : shader.bindings) known.insert(binding.binding);
+  bool same_size = true;
+  for (std::size_t i = 5; i < words.size();) {
+    const std::uint32_t length = words[i] >> 16U;
+    const std::uint32_t code = words[i] & 0xFFFFU;
+    if (length == 0 || i + length > words.size()) return false;
+    if (code == kDecorate && length == 4 && words[i + 2] == kBinding) found.insert(words[i + 3]);
+    if (code == kExecutionMode && length == 6 && words[i + 2] == kLocalSize) {
+      same_size = std::equal(shader.local_size, shader.local_size + 3, &words[i + 3]);
+    }
+    i += length;
+  }
+  return same_size && found == known;
+}
+
+}  // namespace
+
+ShaderReload::~ShaderReload() {
+  if (compiling_.valid()) compiling_.wait();
+}
+
+std::span<const std::uint32_t> ShaderReload::replace(void* user, std::string_view name) {
+  const auto* self = static_cast<const ShaderReload*>(user);
+  const auto found = self->words_.find(name);
+  return found == self->words_.end() ? std::span<const std::uint32_t>() : std::span<const std::uint32_t>(found->second);
+}
+
+ShaderReload::Compiled ShaderReload::compile(const std::string& folder) {
+  Compiled out;
+  const fs::path shaders(folder);
+  shaderc::Compiler compiler;
+  for (const ShaderSource& row : kShaderSources) {
+    shaderc::CompileOptions options;
+    options.SetTargetEnvironment(shaderc_target_env_vulkan, shaderc_env_version_vulkan_1_2);
+    options.SetWarningsAsErrors();
+    options.SetIncluder(std::make_unique<Includer>(
+        std::vector<fs::path>{shaders, shaders / ".." / "include", shaders / ".." / "src"}));
+    const std::string define(row.define);
+    if (const std::size_t equals = define.find('='); equals != std::string::npos) {
+      options.AddMacroDefinition(define.substr(0, equals), define.substr(equals + 1));
+    }
+    std::string text;
+    const fs::path path = shaders / row.source;
+    if (!read(path, text)) {
+      out.message = path.string() + " cannot be read";
+      return out;
+    }
+    const shaderc::SpvCompilationResult result =
+        compiler.CompileGlslToSpv(text, kind_of(row.shader->stage), path.string().c_str(), options);
+    if (result.GetCompilationStatus() != shaderc_compilation_status_success) {
+      out.message = result.GetErrorMessage();
+      return out;
+    }
+    // As the build does it: names stay, because bindings are found by them.
+    const Words raw(result.cbegin(), result.cend());
+    Words words;
+    spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_2);
+    optimizer.RegisterPerformancePasses();
+    if (!optimizer.Run(raw.data(), raw.size(), &words)) {
+      out.message = path.string() + " cannot be optimised";
+      return out;
+    }
+    if (words.size() == row.shader->spirv.size() && std::equal(words.begin(), words.end(), row.shader->spirv.begin())) continue;
+    if (!fits(*row.shader, words)) {
+      out.message = path.string() + ": bindings or the size of groups have changed, which needs a build of the program";
+      return out;
+    }
+    out.changed.emplace(row.shader->name, std::move(words));
+  }
+  return out;
+}
+
+Result<void> ShaderReload::start() {
+  const std::string folder = shipped_folder("shaders");
+  if (folder.empty()) {
+    return Error{ErrorCode::io, "the sources of the shaders are not here, F8, $TYNDALL_DATA names the folder that holds shaders/"};
+  }
+  compiling_ = std::async(std::launch::async, [folder] {
+    Compiled compiled = compile(folder);
+    Window::wake();
+    return compiled;
+  });
+  return {};
+}
+
+Result<ShaderReload::Outcome> ShaderReload::finish() {
+  Outcome out;
+  if (!compiling_.valid() || compiling_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return out;
+  Compiled compiled = compiling_.get();
+  out.finished = true;
+  out.message = std::move(compiled.message);
+  if (!out.message.empty()) return out;
+  for (const auto& [name, words] : compiled.changed) {
+    const auto old = words_.find(name);
+    if (old == words_.end() || old->second != words) ++out.changed;
+  }
+  for (const auto& [name, words] : words_) {
+    if (!compiled.changed.contains(name)) ++out.restored;
+  }
+  for (const ShaderSource& row : kShaderSources) {
+    const bool of_tables = row.source.starts_with("precompute/");
+    if (of_tables && compiled.changed.contains(row.shader->name)) out.tables_differ = true;
+  }
+  if (out.changed > 0 || out.restored > 0) {
+    before_.push_back(std::move(words_));
+    words_ = std::move(compiled.changed);
+  }
+  return out;
+}
+
+}  // namespace tyndall::viewer
