@@ -203,6 +203,7 @@ void Gui::first_run(const GuiFacts& facts) {
   centre_next(facts);
   ImGui::SetNextWindowBgAlpha(0.9F);
   if (ImGui::Begin("first steps", nullptr, kOverlay)) {
+    ImGui::PushTextWrapPos(std::clamp(0.9F * static_cast<float>(facts.window.width), 200.0F, 520.0F));
     const ImVec4 bright(1.0F, 0.8F, 0.35F, 1.0F);
     ImGui::TextColored(bright, "Move:");
     ImGui::SameLine(110.0F);
@@ -216,6 +217,7 @@ void Gui::first_run(const GuiFacts& facts) {
     ImGui::TextColored(bright, "All keys:");
     ImGui::SameLine(110.0F);
     ImGui::TextUnformatted("F1.");
+    ImGui::PopTextWrapPos();
     ImGui::Spacing();
     if (ImGui::Button("Let me fly")) state.first_run = false;
     widgets.place("first_run.close");

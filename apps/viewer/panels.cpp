@@ -42,8 +42,9 @@ void Gui::edit(config::Settings& settings, std::initializer_list<const char*> ke
 void Gui::controls(config::Settings& settings, GuiRequests&) {
   const ImGuiViewport* viewport = ImGui::GetMainViewport();
   const float width = std::min(360.0F, 0.5F * viewport->WorkSize.x);
-  ImGui::SetNextWindowPos(viewport->WorkPos, ImGuiCond_FirstUseEver);
-  ImGui::SetNextWindowSize(ImVec2(width, viewport->WorkSize.y), ImGuiCond_FirstUseEver);
+  const float top = ImGui::GetFrameHeight();  // below the menu
+  ImGui::SetNextWindowPos(ImVec2(0.0F, top), ImGuiCond_FirstUseEver);
+  ImGui::SetNextWindowSize(ImVec2(width, viewport->Size.y - top), ImGuiCond_FirstUseEver);
   ImGui::SetNextWindowSizeConstraints(ImVec2(120.0F, 60.0F), ImVec2(viewport->WorkSize.x, viewport->WorkSize.y));
   if (ImGui::Begin("Controls", &state.controls, ImGuiWindowFlags_NoSavedSettings)) {
     if (state.picture.compare) {

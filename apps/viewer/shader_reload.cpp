@@ -139,6 +139,12 @@ ShaderReload::Compiled ShaderReload::compile(const std::string& folder) {
   return out;
 }
 
+void ShaderReload::revert() {
+  if (before_.empty()) return;
+  words_ = std::move(before_.back());
+  before_.pop_back();
+}
+
 Result<void> ShaderReload::start() {
   const std::string folder = shipped_folder("shaders");
   if (folder.empty()) {

@@ -34,6 +34,8 @@ class ShaderReload {
   Result<void> start();
   [[nodiscard]] bool working() const { return compiling_.valid(); }
   Result<Outcome> finish();
+  // Back to the shaders before the last rebuild, when no pipelines can be made from these.
+  void revert();
   // For DeviceInfo::replace_shader; `user` is a ShaderReload.
   static std::span<const std::uint32_t> replace(void* user, std::string_view name);
 

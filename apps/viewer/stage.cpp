@@ -70,6 +70,10 @@ void Stage::start(gpu::Host& host, const scene::SceneDesc& desc, const config::S
     if (made && !made.value()->tables_progress().complete()) {
       if (Result<Progress> step = made.value()->advance_tables(1); !step) made = step.error();
     }
+    // The first frame takes longest: the device's driver makes its own of the shaders, the ground is filled.
+    if (made && made.value()->can_render()) {
+      if (Result<void> drawn = made.value()->render(0.0); !drawn) made = drawn.error();
+    }
     Window::wake();
     return made;
   });

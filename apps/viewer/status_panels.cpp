@@ -30,8 +30,7 @@ void plot(const char* label, const std::array<float, FrameTimes::kCount>& values
 
 void Gui::performance(const GuiFacts& facts) {
   const ImGuiViewport* viewport = ImGui::GetMainViewport();
-  ImGui::SetNextWindowPos(ImVec2(viewport->WorkPos.x + viewport->WorkSize.x, viewport->WorkPos.y), ImGuiCond_FirstUseEver,
-                          ImVec2(1.0F, 0.0F));
+  ImGui::SetNextWindowPos(ImVec2(viewport->Size.x, ImGui::GetFrameHeight()), ImGuiCond_FirstUseEver, ImVec2(1.0F, 0.0F));
   ImGui::SetNextWindowSize(ImVec2(std::min(340.0F, 0.5F * viewport->WorkSize.x), std::min(520.0F, viewport->WorkSize.y)),
                            ImGuiCond_FirstUseEver);
   if (ImGui::Begin("Performance", &state.performance, ImGuiWindowFlags_NoSavedSettings)) {

@@ -35,6 +35,7 @@ Viewer::~Viewer() {
   if (writing_.valid()) writing_.wait();
   left_.reset();
   other_.reset();
+  next_.reset();
 }
 
 double Viewer::now() const { return std::chrono::duration<double>(Clock::now() - started_).count(); }
@@ -104,11 +105,11 @@ double Viewer::wait_time() const {
   const bool flying = std::any_of(std::begin(kFlightKeys), std::end(kFlightKeys), [this](int key) { return window_.held(key); });
   const bool animated = settings_.scene.sun.animate && left_->ready();
   if (flying || animated) return 0.0;
-  for (const Stage* stage : {left_.get(), other_.get()}) {
+  for (const Stage* stage : {left_.get(), other_.get(), next_.get()}) {
     if (stage == nullptr) continue;
     if (stage->building() || (stage->stale() && stage->ready())) return 0.0;
   }
-  if (left_->working() || (other_ != nullptr && other_->working()) || writing_.valid() || shaders_->working()) return 0.05;
+  if (next_ != nullptr || left_->working() || (other_ != nullptr && other_->working()) || writing_.valid() || shaders_->working()) return 0.05;
   if (left_->ready() && !pipelines_.complete()) return std::max(kIdleAfter_s - (now() - last_activity_), 0.01);
   if (gui_.showing_toasts(now())) return 0.25;
   return -1.0;
@@ -141,6 +142,10 @@ Result<void> Viewer::loop() {
 
 Result<void> Viewer::step() {
   finish_tasks();
+  if (Result<void> polled = poll_next(); !polled) {
+    if (lost(polled.error())) return polled;
+    report(polled.error());
+  }
   for (Stage* stage : {left_.get(), other_.get()}) {
     if (stage == nullptr) continue;
     if (Result<void> polled = stage->poll(); !polled) {
@@ -314,7 +319,7 @@ Result<void> Viewer::follow() {
 
 // Tables in slices; and when the hands rest, what makes later changes cheap.
 Result<void> Viewer::work(bool idle) {
-  for (Stage* stage : {left_.get(), other_.get()}) {
+  for (Stage* stage : {left_.get(), other_.get(), next_.get()}) {
     if (stage == nullptr || stage->scene() == nullptr) continue;
     TYNDALL_ASSIGN(const bool built, stage->advance_tables(kTables_ms));
     if (built) {

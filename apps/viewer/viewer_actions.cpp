@@ -128,17 +128,26 @@ Result<void> Viewer::finish_reload() {
   // Tables that changed shaders make are not those of the cache.
   desc_.make_tables.build_anew = outcome.tables_differ;
   if (outcome.tables_differ) desc_.make_tables.cache.place = "off";
-  auto made = std::make_unique<Stage>();
-  TYNDALL_TRY(make_stage(*made, left_->settings()));
-  left_ = std::move(made);
-  if (other_ != nullptr) {
-    auto other = std::make_unique<Stage>();
-    TYNDALL_TRY(make_stage(*other, other_->settings()));
-    other_ = std::move(other);
+  next_ = std::make_unique<Stage>();
+  return make_stage(*next_, settings_);
+}
+
+Result<void> Viewer::poll_next() {
+  if (next_ == nullptr) return {};
+  if (Result<void> polled = next_->poll(); !polled) {
+    next_.reset();
+    shaders_->revert();
+    shader_message_ = polled.error().message;
+    log("shaders failed " + polled.error().message);
+    return polled;
   }
+  if (!next_->ready()) return {};
+  left_ = std::move(next_);
+  other_.reset();  // made anew, if it is still wanted
   pipelines_ = {};
-  tell(std::to_string(outcome.changed) + " shaders rebuilt");
-  log("shaders rebuilt " + std::to_string(outcome.changed));
+  shader_message_.clear();
+  tell("The shaders are rebuilt");
+  log("shaders rebuilt");
   return {};
 }
 

@@ -59,6 +59,7 @@ class Viewer {
   void write_screenshot();
   void start_reload();
   Result<void> finish_reload();
+  Result<void> poll_next();
   void finish_tasks();
   Result<void> make_stage(Stage& stage, const config::Settings& settings);
   [[nodiscard]] VkExtent2D picture_extent() const;
@@ -77,6 +78,7 @@ class Viewer {
   bool gui_started_ = false;
   config::Settings settings_, right_;   // wanted, of the left (or only) and the right side
   std::unique_ptr<Stage> left_, other_;
+  std::unique_ptr<Stage> next_;         // with rebuilt shaders, until it can take the place of left_
   FrameTimes times_;
   Progress pipelines_ = {};
 
