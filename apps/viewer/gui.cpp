@@ -200,10 +200,14 @@ void Gui::help(const GuiFacts& facts) {
 }
 
 void Gui::first_run(const GuiFacts& facts) {
-  centre_next(facts);
+  // In the middle of what the controls leave free.
+  const float width = static_cast<float>(facts.window.width);
+  const float taken = state.controls && !state.hidden ? std::min(360.0F, 0.5F * width) : 0.0F;
+  ImGui::SetNextWindowPos(ImVec2(0.5F * (taken + width), 0.5F * static_cast<float>(facts.window.height)), ImGuiCond_Always,
+                          ImVec2(0.5F, 0.5F));
   ImGui::SetNextWindowBgAlpha(0.9F);
   if (ImGui::Begin("first steps", nullptr, kOverlay)) {
-    ImGui::PushTextWrapPos(std::clamp(0.9F * static_cast<float>(facts.window.width), 200.0F, 520.0F));
+    ImGui::PushTextWrapPos(std::clamp(0.95F * (width - taken), 220.0F, 520.0F));
     const ImVec4 bright(1.0F, 0.8F, 0.35F, 1.0F);
     ImGui::TextColored(bright, "Move:");
     ImGui::SameLine(110.0F);

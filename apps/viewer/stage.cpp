@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 
 #include "gpu/try.hpp"
@@ -64,7 +65,8 @@ void Stage::start(gpu::Host& host, const scene::SceneDesc& desc, const config::S
   desc_ = desc;
   desc_.tables_later = true;
   wanted_ = applied_ = settings;
-  creating_ = std::async(std::launch::async, [&host, made_from = desc_, settings] {
+  applied_.scene.camera.samples = 1;
+  creating_ = std::async(std::launch::async, [&host, made_from = desc_, settings = applied_] {
     Result<std::unique_ptr<scene::Scene>> made = scene::Scene::create(host, made_from, settings.effect, settings.scene);
     // The first step looks into the cache: with tables there, the scene comes ready to draw.
     if (made && !made.value()->tables_progress().complete()) {
@@ -97,10 +99,11 @@ Result<void> Stage::poll() {
     scene_ = std::move(made).value();
     notes_taken_ = 0;
     unkept_ = building();
-    stale_ = true;
+    stale_ = !ready();  // it comes with its first frame
     // What changed meanwhile.
     if (scene_->extent().width != desc_.extent.width || scene_->extent().height != desc_.extent.height) {
       TYNDALL_TRY(scene_->set_extent(desc_.extent));
+      stale_ = true;
     }
     const config::Settings wanted = wanted_;
     wanted_ = applied_;
@@ -139,6 +142,7 @@ config::Settings Stage::loaded(config::Settings settings) const {
   settings.scene.terrain.seed = applied_.scene.terrain.seed;
   settings.scene.terrain.exaggeration = applied_.scene.terrain.exaggeration;
   settings.effect.planet.radius_m = applied_.effect.planet.radius_m;
+  settings.scene.camera.samples = 1;  // there is one picture on the device
   return settings;
 }
 
@@ -163,6 +167,7 @@ Result<void> Stage::follow(const config::Settings& wanted) {
     return {};
   }
   if (Result<void> valid = config::check(wanted); !valid) return valid;
+  const config::Settings before = wanted_;
   const config::Settings next = loaded(wanted);
   if (affected(applied_.effect, next.effect) != 0) {
     TYNDALL_TRY(scene_->set_params(next.effect));
@@ -174,9 +179,12 @@ Result<void> Stage::follow(const config::Settings& wanted) {
     stale_ = true;
     return set;
   }
+  const bool only_tone = std::all_of(config::rows().begin(), config::rows().end(), [&](const config::Row& row) {
+    return row.info.group == "tonemap" || same_value(row, wanted, before);
+  });
   applied_.scene = next.scene;
   wanted_ = wanted;
-  stale_ = true;
+  (only_tone ? tone_stale_ : stale_) = true;
   load_terrain();
   return {};
 }
@@ -226,9 +234,23 @@ Result<bool> Stage::keep_tables() {
   return true;
 }
 
-Result<void> Stage::render(double seconds) {
-  stale_ = false;
-  return scene_->render(seconds);
+Result<void> Stage::render(double seconds, double step_s) {
+  stale_ = tone_stale_ = false;
+  return scene_->render(seconds, false, step_s);
+}
+
+Result<void> Stage::tone(double step_s) {
+  tone_stale_ = false;
+  return scene_->tone(step_s);
+}
+
+bool Stage::tone_stale() const {
+  if (tone_stale_) return true;
+  const scene::TonemapParams& params = applied_.scene.tonemap;
+  if (!params.auto_exposure || !params.light_adaptation || !ready() || stale_) return false;
+  constexpr float kAdapted = 0.005F;  // relative difference that nobody sees
+  const post::Measurement m = scene_->measurement();
+  return m.measured > 0.0F && std::abs(m.luminance - std::max(m.measured, params.least_luminance)) > kAdapted * m.luminance;
 }
 
 }  // namespace tyndall::viewer

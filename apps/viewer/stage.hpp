@@ -39,7 +39,10 @@ class Stage {
   Result<bool> advance_tables(double milliseconds);
   // Keeps finished tables in the cache; whether anything was done.
   Result<bool> keep_tables();
-  Result<void> render(double seconds);
+  // The frame at `seconds` of the scene's time, `step_s` after the last one.
+  Result<void> render(double seconds, double step_s);
+  // Only exposure and tone mapping.
+  Result<void> tone(double step_s);
 
   [[nodiscard]] bool ready() const { return scene_ != nullptr && scene_->can_render(); }
   [[nodiscard]] bool creating() const { return creating_.valid(); }
@@ -48,6 +51,8 @@ class Stage {
   // Whether a frame would show something new.
   [[nodiscard]] bool stale() const { return stale_; }
   void make_stale() { stale_ = true; }
+  // Whether the picture wants other exposure or tone mapping, because of settings or because the eye still adapts.
+  [[nodiscard]] bool tone_stale() const;
   [[nodiscard]] scene::Scene* scene() const { return scene_.get(); }
   // Remarks that have not been taken yet.
   [[nodiscard]] std::vector<std::string> take_notes();
@@ -67,6 +72,7 @@ class Stage {
   std::future<std::string> keeping_;
   bool unkept_ = false;      // tables that were built and are not in the cache
   bool stale_ = true;
+  bool tone_stale_ = false;
   std::uint32_t budget_ = 1;  // slices that took less than the time allowed
   std::size_t notes_taken_ = 0;
 };

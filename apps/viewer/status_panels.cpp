@@ -2,6 +2,8 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 
 #include "gui.hpp"
 
@@ -14,6 +16,39 @@ void text_bytes(const char* name, VkDeviceSize bytes) {
   ImGui::TextUnformatted(name);
   ImGui::TableNextColumn();
   ImGui::Text("%8.2f MiB", static_cast<double>(bytes) / 1048576.0);
+}
+
+// Shares of the picture by luminance in stops, and where the eye is.
+void histogram(const scene::Scene& scene) {
+  const post::Measurement m = scene.measurement();
+  float largest = 1.0e-4F;
+  for (const float share : m.share) largest = std::max(largest, share);
+  ImGui::PlotHistogram("##histogram", m.share.data(), static_cast<int>(m.share.size()), 0, nullptr, 0.0F, largest * 1.05F,
+                       ImVec2(-1.0F, 60.0F));
+  const ImVec2 min = ImGui::GetItemRectMin();
+  const ImVec2 max = ImGui::GetItemRectMax();
+  const double first = post::stop_of_bin(0);
+  const double last = post::stop_of_bin(post::kHistogramBins - 1);
+  const auto mark = [&](float luminance, ImU32 color) {
+    if (luminance <= 0.0F) return;
+    const double t = (std::log2(static_cast<double>(luminance)) - first) / (last - first);
+    if (t < 0.0 || t > 1.0) return;
+    const float x = min.x + static_cast<float>(t) * (max.x - min.x);
+    ImGui::GetWindowDrawList()->AddLine(ImVec2(x, min.y), ImVec2(x, max.y), color, 1.5F);
+  };
+  mark(m.measured, IM_COL32(120, 200, 255, 255));
+  mark(m.luminance, IM_COL32(255, 200, 90, 255));
+  ImGui::TextDisabled("2^%.0f", first);
+  ImGui::SameLine();
+  ImGui::SetCursorPosX(ImGui::GetContentRegionMax().x - 40.0F);
+  ImGui::TextDisabled("2^%.0f", last);
+  ImGui::Text("Exposure %.4g (%+.2f stops)", static_cast<double>(scene.exposure()),
+              std::log2(std::max(static_cast<double>(scene.exposure()), 1.0e-12)));
+  ImGui::TextColored(ImVec4(0.47F, 0.78F, 1.0F, 1.0F), "Picture %.4g", static_cast<double>(m.measured));
+  ImGui::SameLine();
+  ImGui::TextColored(ImVec4(1.0F, 0.78F, 0.35F, 1.0F), "Eye %.4g", static_cast<double>(m.luminance));
+  ImGui::SameLine();
+  ImGui::TextDisabled("darker %.1f %%", 100.0 * static_cast<double>(m.black));
 }
 
 void plot(const char* label, const std::array<float, FrameTimes::kCount>& values, std::size_t next) {
@@ -67,6 +102,9 @@ void Gui::performance(const GuiFacts& facts) {
         ImGui::EndTable();
       }
     }
+    const bool light_open = ImGui::CollapsingHeader("Histogram and exposure", ImGuiTreeNodeFlags_DefaultOpen);
+    widgets.place("histogram");
+    if (light_open && facts.scene != nullptr && facts.scene->can_render()) histogram(*facts.scene);
     const bool memory_open = ImGui::CollapsingHeader("Memory");
     widgets.place("memory");
     if (memory_open && facts.scene != nullptr) {

@@ -7,8 +7,13 @@
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_vulkan.h>
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <utility>
 
 #include "config/text.hpp"
 #include "gpu/try.hpp"
@@ -24,6 +29,17 @@ constexpr double kLongestFlightStep_s = 0.25;
 constexpr float kSlowScale = 0.5F;
 constexpr int kSlowCoarseness = 4;
 constexpr int kFlightKeys[] = {GLFW_KEY_W, GLFW_KEY_A, GLFW_KEY_S, GLFW_KEY_D, GLFW_KEY_Q, GLFW_KEY_E};
+
+// Memory of the process in KiB (proc(5), statm).
+long resident_kib() {
+  long pages = 0;
+  long resident = 0;
+  if (std::FILE* file = std::fopen("/proc/self/statm", "r"); file != nullptr) {
+    if (std::fscanf(file, "%ld %ld", &pages, &resident) != 2) resident = 0;
+    std::fclose(file);
+  }
+  return resident * (sysconf(_SC_PAGESIZE) / 1024);
+}
 
 bool lost(const Error& error) {
   return error.code == ErrorCode::device_lost || error.vk_result == VK_ERROR_DEVICE_LOST;
@@ -45,6 +61,10 @@ bool Viewer::slow_device() const { return host_->device().properties.deviceType 
 Result<void> Viewer::start() {
   if (!desc_.log.empty() && !log_.open(desc_.log)) {
     return Error{ErrorCode::io, "cannot be written, '" + desc_.log + "', --log needs a file in a folder that exists"};
+  }
+  if (desc_.script == "walk") script_ = Script(Script::Kind::walk, 0.0, desc_.settings);
+  if (desc_.script.starts_with("soak=")) {
+    script_ = Script(Script::Kind::soak, std::strtod(desc_.script.c_str() + 5, nullptr), desc_.settings);
   }
   if (desc_.state_file.empty()) desc_.state_file = default_state_file();
   TYNDALL_TRY(window_.open(desc_.width, desc_.height, "Tyndall"));
@@ -92,6 +112,7 @@ Result<void> Viewer::make_stage(Stage& stage, const config::Settings& settings) 
   scene::SceneDesc desc;
   desc.extent = picture_extent();
   desc.timings = true;
+  desc.histogram = true;
   desc.make_tables = desc_.make_tables;
   desc.terrain_coarseness = gui_.state.coarseness;
   desc.keep_shadows = true;
@@ -104,10 +125,13 @@ double Viewer::wait_time() const {
   if (frames_to_draw_ > 0) return 0.0;
   const bool flying = std::any_of(std::begin(kFlightKeys), std::end(kFlightKeys), [this](int key) { return window_.held(key); });
   const bool animated = settings_.scene.sun.animate && left_->ready();
-  if (flying || animated) return 0.0;
+  if (flying || animated || (script_.on() && left_->ready())) return 0.0;
   for (const Stage* stage : {left_.get(), other_.get(), next_.get()}) {
     if (stage == nullptr) continue;
     if (stage->building() || (stage->stale() && stage->ready())) return 0.0;
+  }
+  for (const Stage* stage : {left_.get(), other_.get()}) {
+    if (stage != nullptr && stage->tone_stale()) return 1.0 / 60.0;
   }
   if (next_ != nullptr || left_->working() || (other_ != nullptr && other_->working()) || writing_.valid() || shaders_->working()) return 0.05;
   if (left_->ready() && !pipelines_.complete()) return std::max(kIdleAfter_s - (now() - last_activity_), 0.01);
@@ -122,7 +146,9 @@ Result<void> Viewer::loop() {
       TYNDALL_TRY(left_->poll());
       continue;
     }
-    window_.wait(wait_time());
+    const double wait = wait_time();
+    if (wait < 0.0) log("resting");
+    window_.wait(wait);
     const Clock::time_point begin = Clock::now();
     const bool activity = window_.take_activity();
     if (activity) {
@@ -185,7 +211,11 @@ Result<void> Viewer::step() {
   gui_.state.full_screen = window_.full_screen();
   const bool first_run_before = gui_.state.first_run;
   GuiRequests requests;
+  run_script();
+  const config::Settings sides[2] = {settings_, right_};
   gui_.draw(settings_, right_, facts, requests);
+  log_sets(sides[0], settings_, "set ");
+  log_sets(sides[1], right_, "set right ");
   if (first_run_before && !gui_.state.first_run) leave_first_run_mark(desc_.state_file);
   ImGui::Render();
   log_.places(gui_.widgets.places());
@@ -205,6 +235,14 @@ Result<void> Viewer::step() {
   return {};
 }
 
+// What a hand has set with a widget.
+void Viewer::log_sets(const config::Settings& before, const config::Settings& after, const char* what) {
+  if (!log_.on()) return;
+  for (const config::Row& row : config::rows()) {
+    if (!same_value(row, before, after)) log(what + row.key() + "=" + config::value_text(row, after));
+  }
+}
+
 void Viewer::begin_gui() {
   ImGui_ImplVulkan_NewFrame();
   ImGui_ImplGlfw_NewFrame();
@@ -220,17 +258,22 @@ void Viewer::handle_events(const std::vector<Event>& events) {
         if (!io.WantTextInput || event.key == GLFW_KEY_ESCAPE) handle_key(event.key);
         break;
       case Event::Kind::press:
+        log(event.button == Button::left ? "press left" : "press right");
         pointer_[0] = event.x;
         pointer_[1] = event.y;
         if (io.WantCaptureMouse) break;
         (event.button == Button::left ? dragging_view_ : dragging_sun_) = true;
         break;
-      case Event::Kind::release: (event.button == Button::left ? dragging_view_ : dragging_sun_) = false; break;
+      case Event::Kind::release:
+        log(event.button == Button::left ? "release left" : "release right");
+        (event.button == Button::left ? dragging_view_ : dragging_sun_) = false;
+        break;
       case Event::Kind::move: {
         const double dx = event.x - pointer_[0];
         const double dy = event.y - pointer_[1];
         pointer_[0] = event.x;
         pointer_[1] = event.y;
+        if (log_.on()) log("pointer " + config::number_text(event.x) + " " + config::number_text(event.y));
         if (dragging_view_) camera_ = turned(camera_, dx, dy, height);
         if (dragging_sun_) settings_.scene.sun = sun_turned(settings_.scene.sun, dx, dy, height);
         break;
@@ -338,15 +381,40 @@ Result<void> Viewer::work(bool idle) {
   return {};
 }
 
+// Seconds since that side was drawn last.
+double Viewer::step_of(int side) {
+  const double last = std::exchange(drawn_at_[side], now());
+  return std::clamp(drawn_at_[side] - last, 1.0e-3, 1.0);
+}
+
+void Viewer::run_script() {
+  if (script_.done()) window_.close();
+  if (!script_.on() || !left_->ready() || left_->stale() || left_->working()) return;
+  log("script " + script_.advance(settings_, gui_.state, now()));
+  if (now() - last_memory_ < 2.0) return;
+  last_memory_ = now();
+  const scene::Scene::Memory memory = left_->scene()->memory();
+  log("memory " + std::to_string(resident_kib()) + " " +
+      std::to_string(memory.effect_persistent + memory.effect_transient + memory.effect_host + memory.scene));
+}
+
 // At most one scene per step, so that the GUI stays at hand.
 Result<void> Viewer::render() {
   Stage* stages[2] = {left_.get(), other_.get()};
   for (int i = 0; i < 2; ++i) {
     turn_ = !turn_;
     Stage* const stage = stages[turn_ ? 0 : 1];
-    if (stage == nullptr || !stage->ready() || !stage->stale()) continue;
+    if (stage == nullptr || !stage->ready()) continue;
+    const int side = turn_ ? 0 : 1;
+    if (!stage->stale()) {
+      if (stage == left_.get() && frames_ == 0) ++frames_;  // the first frame came with the scene
+      if (!stage->tone_stale()) continue;
+      TYNDALL_TRY(stage->tone(step_of(side)));
+      frames_to_draw_ = std::max(frames_to_draw_, 1);
+      continue;
+    }
     const Clock::time_point begin = Clock::now();
-    TYNDALL_TRY(stage->render(seconds_));
+    TYNDALL_TRY(stage->render(seconds_, step_of(side)));
     const double took = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
     if (stage == left_.get()) {
       times_.add(stage->scene()->timings(), took);
@@ -375,12 +443,20 @@ Result<void> Viewer::present() {
     if (!something) return {};
     return pictures_.record(cmd, window, *left_->scene(), two ? other_->scene() : nullptr, gui_.state.picture);
   }));
-  if (drawn == Drawn::surface_lost) {
+  if (desc_.script == "lose-device" && frames_ > 0) {
+    return Error{ErrorCode::device_lost, "asked for by --script", VK_ERROR_DEVICE_LOST};
+  }
+  if (drawn == Drawn::surface_lost || (desc_.script == "lose-surface" && frames_ > 0)) {
+    if (desc_.script == "lose-surface") desc_.script.clear();
     log("surface lost");
     TYNDALL_TRY(screen_.recover());
     frames_to_draw_ = 3;
   }
   if (drawn == Drawn::not_now) frames_to_draw_ = std::max(frames_to_draw_, 2);
+  if (two != two_shown_) {
+    two_shown_ = two;
+    log(two ? "shown two" : "shown one");
+  }
   if (drawn == Drawn::done && something && !first_frame_told_) {
     first_frame_told_ = true;
     log("ready " + std::to_string(now()));

@@ -19,6 +19,9 @@ struct ViewerDesc {
   std::string screenshots;       // folder; empty: the working directory
   std::string log;               // where what happens is written, a line each; empty: nowhere
   bool validation = false;
+  // For tests: "walk" takes every parameter to both ends, "soak=SECONDS" changes them at random; then it leaves.
+  // "lose-surface" and "lose-device" act as if that had happened after some frames.
+  std::string script;
   bool first_steps = true;       // show them when this is the first run
 };
 

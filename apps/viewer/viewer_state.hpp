@@ -9,6 +9,7 @@
 #include "event_log.hpp"
 #include "gui.hpp"
 #include "screen.hpp"
+#include "script.hpp"
 #include "shader_reload.hpp"
 #include "stage.hpp"
 #include "viewer.hpp"
@@ -37,6 +38,7 @@ class Viewer {
   [[nodiscard]] double wait_time() const;
   Result<void> step();
   void begin_gui();
+  void log_sets(const config::Settings& before, const config::Settings& after, const char* what);
   void handle_events(const std::vector<Event>& events);
   void handle_key(int key);
   void fly(double seconds);
@@ -45,7 +47,9 @@ class Viewer {
   Result<void> follow();
   Result<void> follow_side(Stage& stage, config::Settings& settings);
   Result<void> work(bool idle);
+  void run_script();
   Result<void> render();
+  double step_of(int side);
   Result<void> present();
   void report(const Error& error);
   void tell(const std::string& text);
@@ -94,10 +98,14 @@ class Viewer {
   std::uint64_t frames_ = 0;            // of the scene
   bool turn_ = false;                   // whose turn it is to be rendered, with two sides
   bool first_frame_told_ = false;
+  bool two_shown_ = false;
   bool screenshot_wanted_ = false;
   std::future<Result<std::string>> writing_;
   std::string shader_message_;
   double longest_step_ms_ = 0.0;
+  Script script_;
+  double last_memory_ = -100.0;
+  double drawn_at_[2] = {0.0, 0.0};     // when each side was drawn or exposed last [s]
 };
 
 }  // namespace tyndall::viewer

@@ -64,6 +64,10 @@ class Scene {
   // time at all, is exposed for itself.
   Result<void> render(double seconds, bool floor = false, std::optional<double> step_s = {});
 
+  // Exposes and tone maps the frame rendered last anew, `step_s` after the last time: for adaptation, and when nothing
+  // but tonemap.* has changed.
+  Result<void> tone(double step_s);
+
   // Of the frame rendered last: radiance, or display values 0 to 1 after tone mapping (both linear).
   Result<image::Image> radiance();
   Result<image::Image> display();

@@ -202,6 +202,14 @@ Result<void> Scene::set_extent(VkExtent2D extent) {
   return {};
 }
 
+Result<void> Scene::tone(double step_s) {
+  step_s_ = step_s;
+  return host_->run([&](VkCommandBuffer cmd) -> Result<void> {
+    if (desc_.timings) timer_.begin_frame(cmd, 0);
+    return tonemap(cmd, true);
+  });
+}
+
 bool Scene::shadows_are_drawn() const {
   return drawn_terrain_ == terrain_->version() && drawn_cascades_.size() == cascades_.size() &&
          std::equal(cascades_.begin(), cascades_.end(), drawn_cascades_.begin(), same);

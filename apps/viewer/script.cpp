@@ -1,0 +1,91 @@
+#include "script.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+#include "config/text.hpp"
+#include "widgets.hpp"
+
+namespace tyndall::viewer {
+namespace {
+
+// What a soak leaves alone: sizes that take minutes to fill on a device without a GPU, and text.
+bool is_soaked(const config::Row& row) {
+  constexpr std::string_view kNot[] = {"tables.size", "tables.orders", "tables.cache", "tables.cache_limit_mib",
+                                       "shadows.resolution", "epipolar.slices", "epipolar.samples", "camera.samples",
+                                       "camera.position_m", "scattering.model", "scattering.technique"};
+  if (row.info.type == ParamType::string || row.info.group == "meshes") return false;
+  return std::find(std::begin(kNot), std::end(kNot), row.key()) == std::end(kNot);
+}
+
+std::string random_value(const config::Row& row, std::mt19937& random) {
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  const auto number = [&] {
+    // In the lower tenth of wide ranges more often than not, where the values of daily use are.
+    const double t = row.info.max - row.info.min > 1000.0 ? 0.1 * part(random) * part(random) : part(random);
+    return row.info.min + t * (row.info.max - row.info.min);
+  };
+  switch (row.info.type) {
+    case ParamType::float32: return config::number_text(static_cast<float>(number()));
+    case ParamType::uint32: return std::to_string(static_cast<std::uint32_t>(number()));
+    case ParamType::flag: return part(random) < 0.5 ? "off" : "on";
+    case ParamType::enumeration: {
+      const std::size_t count = config::count_parts(row.info.choices, '|');
+      const auto chosen = std::min(static_cast<std::size_t>(part(random) * static_cast<double>(count)), count - 1);
+      return std::string(config::part(row.info.choices, '|', chosen));
+    }
+    case ParamType::vec3: {
+      std::string text;
+      for (int i = 0; i < 3; ++i) text += (i > 0 ? "," : "") + config::number_text(static_cast<float>(number()));
+      return text;
+    }
+    default: return {};
+  }
+}
+
+}  // namespace
+
+std::string Script::advance(config::Settings& settings, GuiState& gui, double now) {
+  if (!on()) return {};
+  if (begun_ < 0.0) begun_ = now;
+  return kind_ == Kind::walk ? walk(settings) : soak(settings, gui, now);
+}
+
+// Each parameter from where it was to its least and its largest value, and back, one frame each.
+std::string Script::walk(config::Settings& settings) {
+  const std::vector<config::Row>& rows = config::rows();
+  while (next_ / 3 < rows.size() && rows[next_ / 3].info.type == ParamType::string) next_ += 3;
+  if (next_ / 3 >= rows.size()) {
+    done_ = true;
+    settings = start_;
+    return "done";
+  }
+  const config::Row& row = rows[next_ / 3];
+  const std::size_t turn = next_++ % 3;
+  settings = start_;
+  if (turn < 2) set_to_end(row, settings, turn == 1);
+  return row.key() + (turn == 0 ? " least" : turn == 1 ? " largest" : " back");
+}
+
+std::string Script::soak(config::Settings& settings, GuiState& gui, double now) {
+  if (now - begun_ > seconds_) {
+    done_ = true;
+    settings = start_;
+    return "done after " + std::to_string(changes_) + " changes";
+  }
+  // Back to the beginning now and then, so that no corner holds the soak for its whole time.
+  if (changes_++ % 24 == 0) {
+    settings = start_;
+    gui.resolution_scale = 0.25F + 0.01F * static_cast<float>(changes_ % 7);
+    return "start";
+  }
+  const std::vector<config::Row>& rows = config::rows();
+  std::uniform_int_distribution<std::size_t> any(0, rows.size() - 1);
+  const config::Row* row = &rows[any(random_)];
+  while (!is_soaked(*row)) row = &rows[any(random_)];
+  const std::string value = random_value(*row, random_);
+  if (!config::set(settings, row->key(), value, "soak").ok()) return row->key() + " refused";
+  return row->key() + "=" + value;
+}
+
+}  // namespace tyndall::viewer

@@ -1,0 +1,38 @@
+// Changes without hands, for tests and soaks: every parameter to both ends of its range, or parameters at random.
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <string>
+
+#include "config/settings.hpp"
+#include "gui.hpp"
+
+namespace tyndall::viewer {
+
+class Script {
+ public:
+  enum class Kind { none, walk, soak };
+  Script() = default;
+  Script(Kind kind, double seconds, const config::Settings& start) : kind_(kind), seconds_(seconds), start_(start) {}
+
+  [[nodiscard]] bool on() const { return kind_ != Kind::none && !done_; }
+  [[nodiscard]] bool done() const { return done_; }
+  // The next change, when what the one before led to has been drawn. What was changed, for the log.
+  std::string advance(config::Settings& settings, GuiState& gui, double now);
+
+ private:
+  std::string walk(config::Settings& settings);
+  std::string soak(config::Settings& settings, GuiState& gui, double now);
+
+  Kind kind_ = Kind::none;
+  double seconds_ = 0.0;
+  double begun_ = -1.0;
+  bool done_ = false;
+  config::Settings start_;
+  std::size_t next_ = 0;
+  std::uint64_t changes_ = 0;
+  std::mt19937 random_{20130703};
+};
+
+}  // namespace tyndall::viewer

@@ -1,0 +1,243 @@
+#include "desk.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+#include "image/image.hpp"
+
+namespace tyndall::desk {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string read_text(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+bool installed(const std::string& program) {
+  std::istringstream path(std::getenv("PATH") != nullptr ? std::getenv("PATH") : "");
+  for (std::string folder; std::getline(path, folder, ':');) {
+    if (::access((folder + "/" + program).c_str(), X_OK) == 0) return true;
+  }
+  return false;
+}
+
+void pause(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
+
+// Starts a program; its output goes to `output`, `descriptor` stays open in it.
+int start(std::vector<std::string> words, const std::vector<std::string>& environment, const std::string& output) {
+  const int child = ::fork();
+  if (child != 0) return child;
+  const int out = ::open(output.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
+  ::dup2(out, 1);
+  ::dup2(out, 2);
+  for (const std::string& assignment : environment) ::putenv(const_cast<char*>(assignment.c_str()));
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  ::execvp(arguments[0], arguments.data());
+  std::_Exit(127);
+}
+
+int status_of(int child, double seconds) {
+  for (double waited = 0.0; waited < seconds; waited += 0.05) {
+    int status = 0;
+    if (::waitpid(child, &status, WNOHANG) == child) return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    pause(0.05);
+  }
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+  return -1;
+}
+
+std::uint32_t big_endian(const std::string& bytes, std::size_t word) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) value = (value << 8U) | static_cast<unsigned char>(bytes[4 * word + i]);
+  return value;
+}
+
+}  // namespace
+
+bool equipped() { return installed("Xvfb") && installed("xdotool"); }
+
+Desk::Desk(const std::string& name) : folder_(std::string(TYNDALL_VIEWER_ARTEFACTS) + "/" + name) {
+  fs::remove_all(folder_);
+  fs::create_directories(folder_ + "/screen");
+  // The server chooses a free display and says which.
+  const std::string said = folder_ + "/display";
+  server_ = start({"sh", "-c", "exec Xvfb -displayfd 3 -screen 0 800x600x24 -fbdir '" + folder_ + "/screen' -nolisten tcp 3>'" + said + "'"},
+                  {}, folder_ + "/server.txt");
+  for (int i = 0; i < 600 && display_.empty(); ++i) {
+    const std::string text = read_text(said);
+    if (text.ends_with('\n')) display_ = ":" + text.substr(0, text.size() - 1);
+    pause(0.05);
+  }
+}
+
+Desk::~Desk() {
+  if (viewer_ > 0) {
+    ::kill(viewer_, SIGKILL);
+    ::waitpid(viewer_, nullptr, 0);
+  }
+  if (server_ > 0) {
+    ::kill(server_, SIGTERM);
+    ::waitpid(server_, nullptr, 0);
+  }
+  std::error_code ignored;
+  fs::remove_all(folder_ + "/screen", ignored);
+}
+
+bool Desk::open(const std::vector<std::string>& arguments, const std::vector<std::string>& environment) {
+  if (display_.empty()) return false;
+  std::vector<std::string> words = {TYNDALL_EXECUTABLE, "view", "--log", folder_ + "/log.txt", "--state",
+                                    folder_ + "/state.toml", "--screenshots", folder_, "--validation",
+                                    "--set", "tables.cache=" TYNDALL_TEST_CACHE};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<std::string> variables = environment;
+  variables.push_back("DISPLAY=" + display_);
+  viewer_ = start(words, variables, folder_ + "/errors.txt");
+  if (!wait_for({"ready"})) return false;
+  window_.clear();
+  for (int i = 0; i < 100 && window_.empty(); ++i) {
+    const std::string found = folder_ + "/window.txt";
+    std::error_code ignored;
+    fs::remove(found, ignored);
+    status_of(start({"xdotool", "search", "--onlyvisible", "--name", "Tyndall"}, {"DISPLAY=" + display_}, found), 20.0);
+    std::istringstream text(read_text(found));
+    text >> window_;
+  }
+  if (window_.empty()) return false;
+  hands("windowmove --sync " + window_ + " 0 0");
+  hands("windowfocus " + window_);
+  return true;
+}
+
+void Desk::hands(const std::string& commands) {
+  std::vector<std::string> words = {"xdotool"};
+  std::istringstream text(commands);
+  for (std::string word; text >> word;) words.push_back(word);
+  // "--sync" waits for ever when there is nothing left to do.
+  status_of(start(words, {"DISPLAY=" + display_}, folder_ + "/hands.txt"), 10.0);
+}
+
+std::string Desk::log_text() const { return read_text(folder_ + "/log.txt"); }
+std::string Desk::errors() const { return read_text(folder_ + "/errors.txt"); }
+
+std::size_t Desk::lines() const {
+  const std::string text = log_text();
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+std::optional<std::string> Desk::wait_for(const std::vector<std::string>& words, std::size_t from, double seconds) {
+  for (double waited = 0.0; waited < seconds; waited += 0.05) {
+    std::istringstream text(log_text());
+    std::size_t number = 0;
+    for (std::string line; std::getline(text, line) && !text.eof(); ++number) {
+      if (number < from) continue;
+      bool all = true;
+      for (const std::string& word : words) all = all && line.find(word) != std::string::npos;
+      if (all) return line;
+    }
+    if (viewer_ > 0 && ::kill(viewer_, 0) != 0) return std::nullopt;
+    pause(0.05);
+  }
+  return std::nullopt;
+}
+
+std::map<std::string, Desk::Rect> Desk::places() const {
+  std::map<std::string, Rect> out;
+  std::istringstream text(read_text(folder_ + "/log.txt.places"));
+  for (std::string line; std::getline(text, line);) {
+    std::istringstream words(line);
+    Rect rect = {};
+    std::string name;
+    words >> rect.x >> rect.y >> rect.width >> rect.height;
+    std::getline(words >> std::ws, name);
+    out[name] = rect;
+  }
+  return out;
+}
+
+bool Desk::wait_for_place(const std::string& place) {
+  for (int i = 0; i < 1200; ++i) {
+    if (places().contains(place)) return true;
+    pause(0.05);
+  }
+  return false;
+}
+
+bool Desk::point_at(const std::string& place, double part) {
+  if (!wait_for_place(place)) return false;
+  const Rect rect = places()[place];
+  const std::size_t from = lines();
+  const int x = static_cast<int>(rect.x + part * rect.width);
+  const int y = static_cast<int>(rect.y + 0.5 * rect.height);
+  hands("mousemove " + std::to_string(x) + " " + std::to_string(y));
+  return wait_for({"pointer " + std::to_string(x) + " " + std::to_string(y)}, from).has_value();
+}
+
+bool Desk::click(const std::string& place, double part) {
+  if (!point_at(place, part)) return false;
+  std::size_t from = lines();
+  hands("mousedown 1");
+  if (!wait_for({"press left"}, from)) return false;
+  from = lines();
+  hands("mouseup 1");
+  return wait_for({"release left"}, from).has_value();
+}
+
+int Desk::leave() {
+  hands("key --window " + window_ + " Escape");
+  hands("key Escape");
+  return wait_for_end(120.0);
+}
+
+int Desk::wait_for_end(double seconds) {
+  const int status = status_of(viewer_, seconds);
+  viewer_ = -1;
+  return status;
+}
+
+// Xvfb keeps the screen in a file: an XWD header of big-endian words, a colour map of 12 bytes an entry, pixels.
+bool Desk::picture(const std::string& name) {
+  const std::string bytes = read_text(folder_ + "/screen/Xvfb_screen0");
+  if (bytes.size() < 100) return false;
+  const std::uint32_t header = big_endian(bytes, 0);
+  const std::uint32_t width = big_endian(bytes, 4);
+  const std::uint32_t height = big_endian(bytes, 5);
+  const std::uint32_t stride = big_endian(bytes, 12);
+  const std::uint32_t colors = big_endian(bytes, 19);
+  const std::size_t first = header + 12U * colors;
+  if (bytes.size() < first + std::size_t{stride} * height) return false;
+  image::Image image(width, height);
+  for (std::uint32_t y = 0; y < height; ++y) {
+    for (std::uint32_t x = 0; x < width; ++x) {
+      for (std::uint32_t c = 0; c < 3; ++c) {
+        const auto byte = static_cast<unsigned char>(bytes[first + std::size_t{stride} * y + 4 * x + 2 - c]);
+        const double encoded = byte / 255.0;
+        const double linear = encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+        image.rgb[3 * (std::size_t{y} * width + x) + c] = static_cast<float>(linear);
+      }
+    }
+  }
+  image::PngOptions plain;
+  plain.dither = false;
+  return image::write_png(folder_ + "/" + name + ".png", image, {}, plain).ok();
+}
+
+}  // namespace tyndall::desk

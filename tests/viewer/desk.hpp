@@ -1,0 +1,58 @@
+// A desk for tests of the viewer: an X server without a screen (Xvfb), the viewer in a window on it, and hands
+// (xdotool) that press real keys and move a real pointer. Everything waits for what the viewer's log says.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tyndall::desk {
+
+// False where Xvfb or xdotool are missing: tests are skipped then.
+[[nodiscard]] bool equipped();
+
+class Desk {
+ public:
+  // `name` is that of the folder for what the test leaves: log, state, pictures.
+  explicit Desk(const std::string& name);
+  Desk(const Desk&) = delete;
+  Desk& operator=(const Desk&) = delete;
+  ~Desk();
+
+  // Opens the viewer with these arguments besides; false when no first frame came.
+  bool open(const std::vector<std::string>& arguments, const std::vector<std::string>& environment = {});
+  // Commands of xdotool, split at blanks.
+  void hands(const std::string& commands);
+  // The number of the log's lines so far.
+  [[nodiscard]] std::size_t lines() const;
+  // The first line from `from` on that contains all of `words`; waits for it.
+  std::optional<std::string> wait_for(const std::vector<std::string>& words, std::size_t from = 0, double seconds = 240.0);
+  // Moves the pointer to the middle of something in the window, or to a part of its width, and waits until the viewer
+  // has seen it; false when it is not there.
+  bool point_at(const std::string& place, double part = 0.5);
+  bool click(const std::string& place, double part = 0.5);
+  // Waits until a place is in the window.
+  bool wait_for_place(const std::string& place);
+  // Leaves by Esc; the exit status, or -1.
+  int leave();
+  // Waits for the end by itself.
+  int wait_for_end(double seconds);
+  // What is on the screen, as NAME.png in the folder.
+  bool picture(const std::string& name);
+  [[nodiscard]] const std::string& folder() const { return folder_; }
+  [[nodiscard]] std::string errors() const;  // what the viewer has printed
+  [[nodiscard]] std::string log_text() const;
+  [[nodiscard]] std::string window() const { return window_; }
+
+ private:
+  struct Rect {
+    double x, y, width, height;
+  };
+  [[nodiscard]] std::map<std::string, Rect> places() const;
+
+  std::string folder_, display_, window_;
+  int server_ = -1, viewer_ = -1;
+};
+
+}  // namespace tyndall::desk
