@@ -453,6 +453,12 @@ Result<void> Viewer::present() {
     frames_to_draw_ = 3;
   }
   if (drawn == Drawn::not_now) frames_to_draw_ = std::max(frames_to_draw_, 2);
+  if (drawn == Drawn::done && something && (frames_ != shown_frame_ || screen_.extent().width != shown_width_)) {
+    shown_frame_ = frames_;
+    shown_width_ = screen_.extent().width;
+    log("shown " + std::to_string(frames_) + " in " + std::to_string(screen_.extent().width) + " " +
+        std::to_string(screen_.extent().height));
+  }
   if (two != two_shown_) {
     two_shown_ = two;
     log(two ? "shown two" : "shown one");

@@ -99,6 +99,8 @@ class Viewer {
   bool turn_ = false;                   // whose turn it is to be rendered, with two sides
   bool first_frame_told_ = false;
   bool two_shown_ = false;
+  std::uint64_t shown_frame_ = 0;
+  std::uint32_t shown_width_ = 0;
   bool screenshot_wanted_ = false;
   std::future<Result<std::string>> writing_;
   std::string shader_message_;

@@ -169,7 +169,7 @@ Result<void> Terrain::set_coarseness(int coarseness) {
   heights_ = {};
   filled_.clear();
   ++version_;
-  return none() ? Result<void>() : create_indices();
+  return create_indices();
 }
 
 Ground Terrain::ground() const {

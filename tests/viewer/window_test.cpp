@@ -172,6 +172,7 @@ TEST(Window, FollowsTheHands) {
   from = desk.lines();
   desk.hands("key F11");
   ASSERT_TRUE(desk.wait_for({"frame left", " 400 300 "}, from));
+  ASSERT_TRUE(desk.wait_for({"shown", " in 800 600"}, from));
   desk.picture("5_full_screen");
   from = desk.lines();
   desk.hands("key F11");
