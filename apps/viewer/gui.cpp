@@ -25,6 +25,7 @@ constexpr HelpLine kHelp[] = {
     {"Left drag", "look around"},
     {"Right drag", "turn the sun"},
     {"Wheel", "field of view"},
+    {"P", "play the flight of the scene file"},
     {"F1", "this help"},
     {"F2", "hide or show the panels"},
     {"F5, F9", "save and restore the whole state"},
@@ -92,7 +93,7 @@ void Gui::toast(std::string text, bool bad, double now) {
 void Gui::draw(config::Settings& left, config::Settings& right, const GuiFacts& facts, GuiRequests& requests) {
   widgets.begin_frame();
   if (!state.hidden) {
-    menu(requests);
+    menu(facts, requests);
     if (state.controls) controls(state.picture.compare && state.edit_right ? right : left, requests);
     if (state.performance) performance(facts);
     if (state.views) views(facts, requests);
@@ -104,7 +105,7 @@ void Gui::draw(config::Settings& left, config::Settings& right, const GuiFacts& 
   toasts(facts);
 }
 
-void Gui::menu(GuiRequests& requests) {
+void Gui::menu(const GuiFacts& facts, GuiRequests& requests) {
   if (!ImGui::BeginMainMenuBar()) return;
   const auto begin = [this](const char* name) {
     const bool open = ImGui::BeginMenu(name);
@@ -120,6 +121,7 @@ void Gui::menu(GuiRequests& requests) {
     requests.save = item("Save the state", "F5") || requests.save;
     requests.restore = item("Restore the state", "F9") || requests.restore;
     requests.screenshot = item("Screenshot", "F12") || requests.screenshot;
+    if (facts.has_path) requests.play = item(facts.flying_path ? "Stop the flight" : "Play the flight", "P") || requests.play;
     requests.reload_shaders = item("Rebuild the shaders", "F8") || requests.reload_shaders;
     ImGui::Separator();
     requests.quit = item("Leave", "Esc") || requests.quit;
@@ -179,6 +181,7 @@ void Gui::status(const GuiFacts& facts) {
       ImGui::ProgressBar(static_cast<float>(facts.tables.done) / static_cast<float>(std::max(facts.tables.total, 1U)),
                          ImVec2(180.0F, 6.0F), "");
     }
+    if (facts.flying_path) ImGui::Text("Flight: %.1f s of %.1f s", facts.path_s, facts.path_end_s);
     const bool far = facts.altitude_m >= 10000.0;
     ImGui::Text(far ? "%.1f km up, %.1f km/s" : "%.0f m up, %.0f m/s", far ? facts.altitude_m / 1000.0 : facts.altitude_m,
                 far ? facts.speed_m_s / 1000.0 : facts.speed_m_s);

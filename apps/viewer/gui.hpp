@@ -46,7 +46,7 @@ struct GuiState {
 
 // What was asked for in this frame.
 struct GuiRequests {
-  bool save = false, restore = false, screenshot = false, reload_shaders = false, quit = false;
+  bool save = false, restore = false, screenshot = false, reload_shaders = false, quit = false, play = false;
   bool copy_to_right = false;   // the right side of the comparison becomes what the left is
   std::string scene;            // a scene file over the defaults
   std::string preset;           // a scene file over what there is
@@ -62,6 +62,8 @@ struct GuiFacts {
   bool creating = false;
   std::string shader_message;   // of the last rebuild that failed
   bool slow_device = false;
+  bool has_path = false, flying_path = false;
+  double path_s = 0.0, path_end_s = 0.0;
   double altitude_m = 0.0, height_m = 0.0, speed_m_s = 0.0;
   double now = 0.0;
 };
@@ -78,7 +80,7 @@ class Gui {
   [[nodiscard]] bool showing_toasts(double now) const { return !toasts_.empty() && toasts_.back().until > now; }
 
  private:
-  void menu(GuiRequests& requests);
+  void menu(const GuiFacts& facts, GuiRequests& requests);
   void controls(config::Settings& settings, GuiRequests& requests);
   void basic(config::Settings& settings);
   void additional(config::Settings& settings);

@@ -187,7 +187,9 @@ Result<void> Viewer::step() {
   const double elapsed = last_step_ - before;
   begin_gui();
   handle_events(window_.take_events());
+  follow_path(std::min(elapsed, kLongestFlightStep_s));
   fly(std::min(elapsed, kLongestFlightStep_s));
+  window_.forget_keys();
 
   GuiFacts facts;
   facts.scene = left_->scene();
@@ -207,6 +209,10 @@ Result<void> Viewer::step() {
   facts.altitude_m = scene::altitude_of(camera_.position, settings_.effect.planet.radius_m);
   facts.height_m = height_m_;
   facts.speed_m_s = speed_m_s_;
+  facts.has_path = !settings_.path.empty();
+  facts.flying_path = flying_path_;
+  facts.path_s = path_s_;
+  facts.path_end_s = settings_.path.duration_s();
   facts.now = now();
   gui_.state.full_screen = window_.full_screen();
   const bool first_run_before = gui_.state.first_run;
@@ -283,6 +289,23 @@ void Viewer::handle_events(const std::vector<Event>& events) {
         break;
     }
   }
+}
+
+// The flight of the scene file, by the same function as in `render`; hands stop it.
+void Viewer::follow_path(double seconds) {
+  if (!flying_path_) return;
+  const bool hands = dragging_view_ || dragging_sun_ ||
+                     std::any_of(std::begin(kFlightKeys), std::end(kFlightKeys), [this](int key) { return window_.held(key); });
+  const double end_s = settings_.path.duration_s();
+  if (hands || settings_.path.empty() || (!settings_.path.loop && path_s_ >= end_s)) {
+    flying_path_ = false;
+    log("path stops");
+    return;
+  }
+  if (left_->ready()) path_s_ += seconds;
+  if (!settings_.path.loop) path_s_ = std::min(path_s_, end_s);
+  settings_.scene = scene::pose_at(settings_.path, path_s_, settings_.scene, settings_.effect.planet.radius_m);
+  frames_to_draw_ = std::max(frames_to_draw_, 2);
 }
 
 void Viewer::fly(double seconds) {
@@ -398,6 +421,23 @@ void Viewer::run_script() {
       std::to_string(memory.effect_persistent + memory.effect_transient + memory.effect_host + memory.scene));
 }
 
+void Viewer::log_frame(const Stage& stage, double took) {
+  if (!log_.on()) return;
+  const VkExtent2D extent = stage.scene()->extent();
+  const scene::SceneParams& s = settings_.scene;
+  log(std::string("frame ") + (&stage == left_.get() ? "left " : "right ") + std::to_string(frames_) + " " +
+      std::to_string(extent.width) + " " + std::to_string(extent.height) + " ms " + config::number_text(took) + " camera " +
+      config::number_text(camera_.position.x) + " " + config::number_text(camera_.position.y) + " " +
+      config::number_text(camera_.position.z) + " " + config::number_text(camera_.yaw_deg) + " " +
+      config::number_text(camera_.pitch_deg) + " " + config::number_text(camera_.fov_deg) + " sun " +
+      config::number_text(s.sun.azimuth_deg) + " " + config::number_text(s.sun.elevation_deg));
+  std::string passes = "passes";
+  for (const scene::PassTime& pass : stage.scene()->timings()) {
+    passes += " " + pass.name + " " + config::number_text(std::round(100.0 * pass.ms) / 100.0);
+  }
+  log(passes);
+}
+
 // At most one scene per step, so that the GUI stays at hand.
 Result<void> Viewer::render() {
   Stage* stages[2] = {left_.get(), other_.get()};
@@ -407,7 +447,10 @@ Result<void> Viewer::render() {
     if (stage == nullptr || !stage->ready()) continue;
     const int side = turn_ ? 0 : 1;
     if (!stage->stale()) {
-      if (stage == left_.get() && frames_ == 0) ++frames_;  // the first frame came with the scene
+      if (stage == left_.get() && frames_ == 0) {  // the first frame came with the scene
+        ++frames_;
+        log_frame(*stage, 0.0);
+      }
       if (!stage->tone_stale()) continue;
       TYNDALL_TRY(stage->tone(step_of(side)));
       frames_to_draw_ = std::max(frames_to_draw_, 1);
@@ -420,16 +463,7 @@ Result<void> Viewer::render() {
       times_.add(stage->scene()->timings(), took);
       ++frames_;
     }
-    if (log_.on()) {
-      const VkExtent2D extent = stage->scene()->extent();
-      const scene::SceneParams& s = settings_.scene;
-      log(std::string("frame ") + (stage == left_.get() ? "left " : "right ") + std::to_string(frames_) + " " +
-          std::to_string(extent.width) + " " + std::to_string(extent.height) + " ms " + config::number_text(took) + " camera " +
-          config::number_text(camera_.position.x) + " " + config::number_text(camera_.position.y) + " " +
-          config::number_text(camera_.position.z) + " " + config::number_text(camera_.yaw_deg) + " " +
-          config::number_text(camera_.pitch_deg) + " " + config::number_text(camera_.fov_deg) + " sun " +
-          config::number_text(s.sun.azimuth_deg) + " " + config::number_text(s.sun.elevation_deg));
-    }
+    log_frame(*stage, took);
     frames_to_draw_ = std::max(frames_to_draw_, 1);
     return {};
   }

@@ -19,6 +19,7 @@ void Viewer::handle_key(int key) {
     case GLFW_KEY_F5: requests.save = true; break;
     case GLFW_KEY_F8: requests.reload_shaders = true; break;
     case GLFW_KEY_F9: requests.restore = true; break;
+    case GLFW_KEY_P: requests.play = true; break;
     case GLFW_KEY_F11: window_.set_full_screen(!window_.full_screen()); break;
     case GLFW_KEY_F12: requests.screenshot = true; break;
     case GLFW_KEY_ESCAPE: requests.quit = true; break;
@@ -30,6 +31,15 @@ void Viewer::handle_key(int key) {
 
 void Viewer::do_requests(const GuiRequests& requests) {
   if (requests.save) save_state();
+  if (requests.play) {
+    if (settings_.path.empty()) {
+      tell("This scene has no flight");
+    } else {
+      flying_path_ = !flying_path_;
+      if (!settings_.path.loop && path_s_ >= settings_.path.duration_s()) path_s_ = 0.0;
+      log(flying_path_ ? "path begins" : "path stops");
+    }
+  }
   if (requests.restore) restore_state();
   if (requests.screenshot) take_screenshot();
   if (requests.reload_shaders) start_reload();
@@ -64,7 +74,9 @@ void Viewer::load_file(const std::string& path, bool over_defaults) {
   if (Result<void> read = config::load(loaded, path); !read) return report(read.error());
   if (Result<void> valid = config::check(loaded); !valid) return report(valid.error());
   settings_ = loaded;
-  seconds_ = 0.0;
+  seconds_ = path_s_ = 0.0;
+  flying_path_ = false;
+  if (!settings_.path.empty()) tell("This scene has a flight: P plays it");
   tell("Loaded " + path);
   log("loaded " + path);
 }

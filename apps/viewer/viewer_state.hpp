@@ -42,12 +42,14 @@ class Viewer {
   void handle_events(const std::vector<Event>& events);
   void handle_key(int key);
   void fly(double seconds);
+  void follow_path(double seconds);
   void take_camera();
   void put_camera();
   Result<void> follow();
   Result<void> follow_side(Stage& stage, config::Settings& settings);
   Result<void> work(bool idle);
   void run_script();
+  void log_frame(const Stage& stage, double took);
   Result<void> render();
   double step_of(int side);
   Result<void> present();
@@ -92,6 +94,8 @@ class Viewer {
   bool dragging_view_ = false, dragging_sun_ = false;
   double pointer_[2] = {0.0, 0.0};
   double seconds_ = 0.0;                // of the scene's own time
+  bool flying_path_ = false;            // along the path of the scene file
+  double path_s_ = 0.0;
   double last_step_ = 0.0;
   double last_activity_ = 0.0;
   int frames_to_draw_ = 3;              // of the GUI, until it has settled

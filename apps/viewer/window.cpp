@@ -120,7 +120,6 @@ void Window::wait(double seconds) {
 void Window::wake() { glfwPostEmptyEvent(); }
 
 std::vector<Event> Window::take_events() {
-  touched_.clear();
   return std::exchange(events_, {});
 }
 

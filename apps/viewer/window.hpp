@@ -47,8 +47,9 @@ class Window {
   [[nodiscard]] std::vector<Event> take_events();
   // Whether something has happened since the last call: events, another size, an exposed window.
   [[nodiscard]] bool take_activity();
-  // Whether a key is down, or was for a moment since the last take_events().
+  // Whether a key is down, or was for a moment since the last forget_keys().
   [[nodiscard]] bool held(int key) const;
+  void forget_keys() { touched_.clear(); }
 
   [[nodiscard]] bool closing() const;
   void close();
@@ -64,7 +65,7 @@ class Window {
 
   GLFWwindow* window_ = nullptr;
   std::vector<Event> events_;
-  std::vector<int> touched_;  // keys pressed since the last take_events()
+  std::vector<int> touched_;  // keys pressed since the last forget_keys()
   bool activity_ = true;
   bool full_screen_ = false;
   int windowed_[4] = {0, 0, 640, 360};  // place and size before full screen
