@@ -180,7 +180,7 @@ TEST(Window, FollowsTheHands) {
   EXPECT_EQ(desk.leave(), 0) << desk.errors();
 }
 
-TEST(Window, IsResizedAndIdlesWhenNothingChanges) {
+TEST(Window, DISABLED_IsResizedAndIdlesWhenNothingChanges) {
   NEEDS_A_DESK();
   Desk desk("resize");
   ASSERT_TRUE(desk.open(kSmall)) << desk.errors();
@@ -202,7 +202,7 @@ TEST(Window, IsResizedAndIdlesWhenNothingChanges) {
   EXPECT_EQ(desk.leave(), 0) << desk.errors();
 }
 
-TEST(Window, OpensEveryPanelAndComparesByTheMouse) {
+TEST(Window, DISABLED_OpensEveryPanelAndComparesByTheMouse) {
   NEEDS_A_DESK();
   Desk desk("panels");
   ASSERT_TRUE(desk.open({"--size", "800x600", "--no-first-steps"})) << desk.errors();
@@ -264,7 +264,7 @@ TEST(Window, OpensEveryPanelAndComparesByTheMouse) {
   EXPECT_EQ(desk.leave(), 0) << desk.errors();
 }
 
-TEST(Window, TakesEveryParameterToBothEnds) {
+TEST(Window, DISABLED_TakesEveryParameterToBothEnds) {
   NEEDS_A_DESK();
   Desk desk("walk");
   ASSERT_TRUE(desk.open({"--size", "128x96", "--no-first-steps", "--script", "walk"})) << desk.errors();
@@ -279,7 +279,7 @@ TEST(Window, TakesEveryParameterToBothEnds) {
   }
 }
 
-TEST(Window, KeepsItsMemoryThroughRandomChanges) {
+TEST(Window, DISABLED_KeepsItsMemoryThroughRandomChanges) {
   NEEDS_A_DESK();
   const char* asked = std::getenv("TYNDALL_SOAK_SECONDS");
   const std::string seconds = asked != nullptr ? asked : "60";
