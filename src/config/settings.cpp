@@ -148,15 +148,15 @@ Error unknown_key(std::string_view key, std::string_view where) {
   const std::size_t dot = key.find('.');
   const std::string_view group = dot == std::string_view::npos ? std::string_view() : key.substr(0, dot);
   const std::string_view name = dot == std::string_view::npos ? key : key.substr(dot + 1);
-  // The nearest whole key, unless the name as it stands belongs to one other group.
+  // The nearest whole key, unless the name as it stands belongs to one other group, or to two.
   std::optional<std::string> near;
   int same_name = 0;
   for (const Row& row : rows()) {
     if (row.info.name != name) continue;
     ++same_name;
-    near = row.key();
+    near = near ? concat({*near, "' or '", row.key()}) : row.key();
   }
-  if (same_name != 1) near = nearest(key, all_keys());
+  if (same_name != 1 && same_name != 2) near = nearest(key, all_keys());
   if (near) return input_error(what, where, concat({"did you mean '", *near, "'?"}));
   std::string members;
   for (const Row& row : rows()) {

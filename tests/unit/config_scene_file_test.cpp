@@ -191,7 +191,9 @@ TEST(SceneFileMessages, NameTheLineTheKeyAndWhatIsAllowed) {
   EXPECT_EQ(failure("[atmosphre]\nmie_g = 0.5\n"),
             "unknown table [atmosphre], s.toml:1, did you mean [atmosphere]?");
   EXPECT_EQ(failure("yaw_deg = 0.5\n"),
-            "unknown parameter 'yaw_deg', s.toml:1, did you mean 'camera.yaw_deg'?");
+            "unknown parameter 'yaw_deg', s.toml:1, did you mean 'camera.yaw_deg' or 'meshes.yaw_deg'?");
+  EXPECT_EQ(failure("fov_deg = 50.0\n"),
+            "unknown parameter 'fov_deg', s.toml:1, did you mean 'camera.fov_deg'?");
   EXPECT_EQ(failure("camera = 0.5\n"), "'camera' is a number, s.toml:1, it has to be a table");
   EXPECT_EQ(failure("[[camera]]\nyaw_deg = 0.5\n"), "'camera' is an array, s.toml:1, it has to be a table");
   EXPECT_EQ(failure("[camera]\nyaw_deg = 'north'\n"),

@@ -280,6 +280,14 @@ TEST(Modes, EveryCombinationHasAPipelineOfItsMeaning) {
         EXPECT_EQ(constants[1].value, occluded ? 1U : 0U);
         const bool lit_tables = single == SingleScattering::table || occluded;
         EXPECT_EQ(constants[2].value, lit_tables && sections == LitSections::each ? 1U : 0U);
+        EXPECT_EQ(constants[3].value, 0U);
+
+        params.medium = MediumKind::homogeneous;
+        const std::uint32_t homogeneous = mode_index(params);
+        ASSERT_LT(homogeneous, kModeCount);
+        reached.insert(homogeneous);
+        EXPECT_EQ(mode_constants(homogeneous)[0].value == 0U, single == SingleScattering::none);
+        EXPECT_EQ(mode_constants(homogeneous)[3].value, 1U);
       }
     }
   }
