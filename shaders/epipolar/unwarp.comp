@@ -52,6 +52,10 @@ void main() {
   bool one_depth = kinds == 1u ? farthest - nearest < epipolar.threshold * farthest : kinds == 4u;
   Around a = around(middle, depth_m);
   bool dense = max(length(a.origin_lower.zw), length(a.origin_upper.zw)) > kDense;
+  // Beside the limb air thins out from sample to sample: what goes on in a line beyond them soon is none at all.
+  vec3 least = min(min(a.density[0], a.density[1]), min(a.density[2], a.density[3]));
+  vec3 most = max(max(a.density[0], a.density[1]), max(a.density[2], a.density[3]));
+  dense = dense || any(greaterThan(most, kUneven * least));
   if (!one_depth || dense || (kBreaks && blend(a, middle).weight < kLeastWeight)) {
     uint at = atomicAdd(broken.count, 1u);
     broken_list[at] = uint(corner.y) << 16u | uint(corner.x);

@@ -16,6 +16,8 @@ layout(constant_id = 1) const bool kBreaks = false;   // list the pixels that no
 const float kBeyond = 0.5;  // of the way between two samples
 // Samples to a pixel from which on a block of four pixels would reach too far beyond its samples.
 const float kDense = 0.75;
+// Ratio of the densities of four samples from which on what lies a little beyond them is not told by them.
+const float kUneven = 1.5;
 
 // Below this sum of weights no sample is near in depth; the weights then still choose the nearest.
 const float kLeastWeight = 1e-2;

@@ -230,7 +230,7 @@ TEST_F(CliScenes, PresetsAreScenes) {
     expect_one_line(run_tyndall({"bench", entry.path().string(), "--device", "nonesuch"}), 2, "--device");
     ++count;
   }
-  EXPECT_EQ(count, 3U);
+  EXPECT_EQ(count, 7U);
 }
 
 TEST_F(CliScenes, BenchSaysWhatIsPromised) {
