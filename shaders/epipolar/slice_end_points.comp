@@ -25,9 +25,9 @@ void main() {
   if (epipolar.sun_in_picture != 0u) visible = distance(exit, epipole());
   vec2 entry = exit - direction * visible;
 
-  // Short slices are stretched beyond the border, so that samples are no closer than a pixel.
+  // Short slices are stretched beyond the border, so that samples are no closer than a pixel (of the reduced picture).
   float intervals = float(epipolar.samples - 1u);
-  float stretched = epipolar.optimize_locations != 0u ? max(visible, intervals) : max(visible, 1e-3);
+  float stretched = epipolar.optimize_locations != 0u ? max(visible, intervals * float(epipolar.downscale)) : max(visible, 1e-3);
   EpipolarSlice slice;
   slice.entry_x = entry.x;
   slice.entry_y = entry.y;

@@ -103,12 +103,15 @@ Blend blend(Around a, vec2 position) {
 // The background seen through the air, from blended samples. `visible_m`: view-space depth of what was drawn.
 vec3 compose(Blend b, vec2 position, float depth_m, float visible_m, bool sky, vec3 background) {
   if (kHomogeneous) {
-    Ray ray = ray_to_depth(frame, position, depth_m, depth_m >= kSkyDepth);
-    float start, end;
-    if (!clip_to_homogeneous(ray, start, end)) end = start;
+    // `depth_m` knows of the planet, so that only the extent and the top are left to be seen to.
+    vec3 direction = ray_direction(frame, position);
+    float start;
+    float end = depth_m / max(dot(direction, frame.camera_forward), 1e-6);
+    end = depth_m >= kSkyDepth ? frame.homogeneous.extent_m : end;
+    clip_to_top(dot(direction, frame.camera_up), start, end);
     vec3 through, lost;
     homogeneous_attenuation(end - start, through, lost);
-    vec3 light = b.source * lost * homogeneous_phase(ray.cos_view_sun) * frame.sun_irradiance;
+    vec3 light = b.source * lost * homogeneous_phase(dot(direction, frame.direction_to_sun)) * frame.sun_irradiance;
     return frame.only == 0u ? light + background * through : light;
   }
   vec3 tau;

@@ -11,10 +11,22 @@
 
 layout(constant_id = 5) const bool kHomogeneous = false;
 
+// The part of [0, end] below the medium's flat top, which is level where the camera is.
+void clip_to_top(float cos_zenith, out float start, inout float end) {
+  start = 0.0;
+  float above = frame.camera_altitude_m - frame.homogeneous.height_m;
+  float crossing = -above / (abs(cos_zenith) > 1e-9 ? cos_zenith : 1e-9);
+  if (above > 0.0) {
+    start = cos_zenith < 0.0 ? crossing : end;
+  } else if (cos_zenith > 0.0) {
+    end = min(end, crossing);
+  }
+  end = max(end, start);
+}
+
 // The part of the ray inside the medium [m]; false when there is none. Rays end at what was drawn, at the planet, or
 // at the medium's extent.
 bool clip_to_homogeneous(Ray ray, out float start, out float end) {
-  start = 0.0;
   end = ray.length_m;
   if (ray.sky) {
     float near, far;
@@ -24,15 +36,7 @@ bool clip_to_homogeneous(Ray ray, out float start, out float end) {
                   shell_intersections(h, ray.cos_zenith, min(h, 0.0), radius, near, far);
     end = ground ? max(near, 0.0) : frame.homogeneous.extent_m;
   }
-  // The flat top, level where the camera is.
-  float above = frame.camera_altitude_m - frame.homogeneous.height_m;
-  float crossing = -above / (abs(ray.cos_zenith) > 1e-9 ? ray.cos_zenith : 1e-9);
-  if (above > 0.0) {
-    start = ray.cos_zenith < 0.0 ? crossing : end;
-  } else if (ray.cos_zenith > 0.0) {
-    end = min(end, crossing);
-  }
-  end = max(end, start);
+  clip_to_top(ray.cos_zenith, start, end);
   return end > start;
 }
 

@@ -33,6 +33,11 @@ struct EpipolarConstants {
   uint cascades;        // behind the last marched one
   uint tree_cells;      // of a row, at most; a multiple of kTreeBlock
   uint tree_format;     // MinMaxFormat
+  // The picture that the light is computed for; `slices` and `samples` are those for it.
+  uint downscale;
+  uint reduced_width;
+  uint reduced_height;
+  uint unused_0;
 };
 
 // A slice: sample i lies at entry + stride x i, i <= last; a place p of the picture falls on sample

@@ -69,6 +69,10 @@ Result<void> check_params(const Params& params) {
       if (Result<void> r = check_number(info, static_cast<double>(numbers[i])); !r) return r;
     }
   }
+  const std::uint32_t downscale = params.scattering.downscale;
+  if (downscale != 1 && downscale != 2 && downscale != 4) {
+    return invalid("scattering.downscale is " + std::to_string(downscale) + ", allowed is 1, 2 or 4");
+  }
   const UVec4& size = params.tables.size;
   if (size.y % 2 != 0) {
     return invalid("tables.size has " + std::to_string(size.y) +

@@ -31,12 +31,26 @@ constexpr BufferName kNames[kEpipolarBuffers] = {{"slices", "slice_block"},
                                                  {"corrected_pixels", "corrected_block"},
                                                  {"tree_blocks", "tree_list_block"},
                                                  {"shadow_tree", "tree_block"},
-                                                 {"march_states", "state_block"}};
+                                                 {"march_states", "state_block"},
+                                                 {"reduced_inscattering", "reduced_block"}};
 
 std::size_t index(EpipolarBuffer buffer) { return static_cast<std::size_t>(buffer); }
 
+bool is_downscaled(const Params& params) { return params.scattering.downscale > 1; }
+
+// Slices or samples of the picture that the light is computed for.
+std::uint32_t reduced_count(std::uint32_t count, const Params& params) {
+  constexpr std::uint32_t kLeast = 32;
+  return std::max(count / params.scattering.downscale, kLeast);
+}
+
+VkExtent2D reduced_extent(VkExtent2D extent, const Params& params) {
+  const std::uint32_t d = params.scattering.downscale;
+  return {(extent.width + d - 1) / d, (extent.height + d - 1) / d};
+}
+
 bool lists_breaks(const Params& params) {
-  return params.epipolar.correct_depth_breaks.value != 0 || params.epipolar.show_depth_breaks.value != 0;
+  return is_downscaled(params) || params.epipolar.correct_depth_breaks.value != 0 || params.epipolar.show_depth_breaks.value != 0;
 }
 
 // Which of the pipelines by Extinction; one for both where that of every pixel is a single exponential.
@@ -53,8 +67,8 @@ std::uint32_t tree_cells(const EffectDesc& desc) {
 EpipolarSizes epipolar_sizes(const EffectDesc& desc, const Params& params) {
   EpipolarSizes out = {};
   if (params.scattering.technique != Technique::epipolar) return out;
-  const VkDeviceSize slices = params.epipolar.slices;
-  const VkDeviceSize samples = slices * params.epipolar.samples;
+  const VkDeviceSize slices = reduced_count(params.epipolar.slices, params);
+  const VkDeviceSize samples = slices * reduced_count(params.epipolar.samples, params);
   const VkDeviceSize rows = slices * desc.max_cascades;
   const VkDeviceSize pixels = VkDeviceSize{desc.max_extent.width} * desc.max_extent.height;
   out[index(EpipolarBuffer::slices)] = slices * sizeof(shared::EpipolarSlice);
@@ -64,7 +78,9 @@ EpipolarSizes epipolar_sizes(const EffectDesc& desc, const Params& params) {
   out[index(EpipolarBuffer::sources)] = samples * 4;
   out[index(EpipolarBuffer::march_list)] = sizeof(shared::WorkList) + samples * 4;
   const VkDeviceSize blocks = VkDeviceSize{(desc.max_extent.width + 1) / 2} * ((desc.max_extent.height + 1) / 2);
-  out[index(EpipolarBuffer::broken_list)] = sizeof(shared::WorkList) + blocks * 4;
+  out[index(EpipolarBuffer::broken_list)] = sizeof(shared::WorkList) + (is_downscaled(params) ? pixels : blocks) * 4;
+  const VkExtent2D reduced = reduced_extent(desc.max_extent, params);
+  if (is_downscaled(params)) out[index(EpipolarBuffer::reduced)] = VkDeviceSize{reduced.width} * reduced.height * 16;
   out[index(EpipolarBuffer::break_list)] = lists_breaks(params) ? sizeof(shared::WorkList) + pixels * 4 : kLeastBytes;
   out[index(EpipolarBuffer::corrected)] = lists_breaks(params) ? pixels * 16 : kLeastBytes;
   const VkDeviceSize number = params.epipolar.min_max_format == MinMaxFormat::float32 ? 8 : 4;
@@ -91,8 +107,12 @@ VkDeviceSize epipolar_bytes(const gpu::Device& device, const EffectDesc& desc, c
 shared::EpipolarConstants epipolar_constants(const FrameInputs& inputs, const EffectDesc& desc, const Params& params) {
   shared::EpipolarConstants out = {};
   const EpipolarParams& p = params.epipolar;
-  out.slices = p.slices;
-  out.samples = p.samples;
+  out.slices = reduced_count(p.slices, params);
+  out.samples = reduced_count(p.samples, params);
+  out.downscale = params.scattering.downscale;
+  const VkExtent2D reduced = reduced_extent(inputs.extent, params);
+  out.reduced_width = reduced.width;
+  out.reduced_height = reduced.height;
   out.initial_step = p.initial_step;
   out.epipole_density = p.epipole_density;
   out.threshold = p.refinement_threshold;
@@ -222,6 +242,23 @@ Result<void> Epipolar::make_of_medium(MediumKind medium, std::uint32_t extinctio
               full ? shaders::unwarp_pixels_comp_rgba32f : shaders::unwarp_pixels_comp_rgba16f, "unwarp_pixels");
 }
 
+Result<void> Epipolar::make_downscaled(MediumKind medium, std::uint32_t extinction, std::uint32_t downscale) {
+  const bool full = desc_.output_format == OutputFormat::rgba32f;
+  const gpu::Constant constants[] = {{0, extinction}, {5, static_cast<std::uint32_t>(medium)}, {6, downscale}};
+  const auto make = [&](gpu::Pipeline& out, const gpu::Shader& shader, const char* name) -> Result<void> {
+    if (out.pipeline) return {};
+    TYNDALL_ASSIGN(out, gpu::create_compute_pipeline(*device_, shader, constants));
+    out.name = name;
+    return {};
+  };
+  PerMedium& of = of_medium_[static_cast<std::size_t>(medium)];
+  TYNDALL_TRY(make(of.unwarp_reduced, shaders::unwarp_reduced_comp, "unwarp_reduced"));
+  TYNDALL_TRY(make(of.correct_reduced, shaders::correct_reduced_comp, "correct_reduced"));
+  TYNDALL_TRY(make(of.upscale[extinction][downscale / 4], full ? shaders::upscale_comp_rgba32f : shaders::upscale_comp_rgba16f, "upscale"));
+  return make(of.upscale_pixels[extinction],
+              full ? shaders::upscale_pixels_comp_rgba32f : shaders::upscale_pixels_comp_rgba16f, "upscale_pixels");
+}
+
 bool Epipolar::walks(const Params& params) {
   if (is_homogeneous(params.scattering)) return params.scattering.single != SingleScattering::none;
   return params.scattering.single != SingleScattering::none ||
@@ -245,6 +282,8 @@ Result<void> Epipolar::prepare(const Params& params) {
   if (is_homogeneous(params.scattering)) {
     TYNDALL_TRY(make_of_medium(MediumKind::homogeneous, extinction_index(params), lists_breaks(params)));
   }
+  if (is_downscaled(params)) TYNDALL_TRY(make_downscaled(params.scattering.medium, extinction_index(params),
+                                                             params.scattering.downscale));
   // As record() chooses, for frames with cascades.
   const bool tree = params.epipolar.min_max_tree.value != 0 && walks(params) && params.scattering.light_shafts.value != 0;
   for (const bool colors : {false, true}) {
@@ -355,6 +394,8 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
   };
 
   const EpipolarParams& p = params.epipolar;
+  const std::uint32_t slices = reduced_count(p.slices, params);
+  const std::uint32_t samples = reduced_count(p.samples, params);
   const std::uint32_t cascades =
       params.scattering.light_shafts ? static_cast<std::uint32_t>(inputs.cascades.size()) : 0;
   const std::uint32_t marched = cascades > 0 ? cascades - inputs.first_marched_cascade : 0;
@@ -366,29 +407,31 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
   if (marched == 0 || !walking) processing = CascadeProcessing::single_pass;
   const bool instanced = processing == CascadeProcessing::multi_pass_instanced;
 
-  // Empty work lists.
-  gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
-               VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT,
-               VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
-  shared::WorkList empty = {0, 1, instanced ? marched : 1, 0};
-  device_->vk.CmdUpdateBuffer(cmd, buffers_[index(EpipolarBuffer::march_list)].buffer.get(), 0, sizeof empty, &empty);
-  empty.groups_z = 1;
-  for (const EpipolarBuffer list : {EpipolarBuffer::broken_list, EpipolarBuffer::break_list, EpipolarBuffer::tree_list}) {
-    device_->vk.CmdUpdateBuffer(cmd, buffers_[index(list)].buffer.get(), 0, sizeof empty, &empty);
-  }
-  gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
-               VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
+  const auto empty_lists = [&](std::initializer_list<EpipolarBuffer> lists) {
+    gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
+                 VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT,
+                 VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
+    for (const EpipolarBuffer list : lists) {
+      const bool of_cascades = list == EpipolarBuffer::march_list && instanced;
+      const shared::WorkList empty = {0, 1, of_cascades ? marched : 1, 0};
+      device_->vk.CmdUpdateBuffer(cmd, buffers_[index(list)].buffer.get(), 0, sizeof empty, &empty);
+    }
+    gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
+                 VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
+  };
+  empty_lists({EpipolarBuffer::march_list, EpipolarBuffer::broken_list, EpipolarBuffer::break_list,
+               EpipolarBuffer::tree_list});
   const auto lists_ready = [&] {
     gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
                  VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT, VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
   };
 
-  TYNDALL_TRY(run(slice_end_points_, {p.slices}));
+  TYNDALL_TRY(run(slice_end_points_, {slices}));
   const PerMedium& of = of_medium_[static_cast<std::size_t>(params.scattering.medium)];
-  TYNDALL_TRY(run(of.slice_samples, {p.samples, p.slices}));
+  TYNDALL_TRY(run(of.slice_samples, {samples, slices}));
   const gpu::Pipeline& refine = refine_samples_[static_cast<std::size_t>(p.refinement)];
-  TYNDALL_TRY(run(refine, {p.slices * refine.local_size[0]}));
-  if (walking && marched > 0) TYNDALL_TRY(run(slice_directions_, {p.slices, marched}));
+  TYNDALL_TRY(run(refine, {slices * refine.local_size[0]}));
+  if (walking && marched > 0) TYNDALL_TRY(run(slice_directions_, {slices, marched}));
   lists_ready();
   if (trees) {
     TYNDALL_TRY(run_list(shadow_tree_[static_cast<std::size_t>(p.min_max_format)], EpipolarBuffer::tree_list));
@@ -412,20 +455,35 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
     const MarchPush push = {shared::kFinish, instanced ? marched : 1};
     TYNDALL_TRY(run_list(march, EpipolarBuffer::march_list, &push));
   }
-  TYNDALL_TRY(run(interpolate_samples_, {p.samples, p.slices}));
+  TYNDALL_TRY(run(interpolate_samples_, {samples, slices}));
   const std::uint32_t extinction = extinction_index(params);
-  TYNDALL_TRY(run(of.unwarp[extinction][breaks ? 1 : 0], {(inputs.extent.width + 1) / 2, (inputs.extent.height + 1) / 2}));
-  lists_ready();
-  TYNDALL_TRY(run_list(of.unwarp_pixels[extinction][breaks ? 1 : 0], EpipolarBuffer::broken_list));
-  if (breaks) {
+  const MarchPush of_pixels = {shared::kPixels, 0};
+  // Pixels that no sample fits: marched, and put where they belong.
+  const auto correct = [&](const gpu::Pipeline& put) -> Result<void> {
     lists_ready();
-    const MarchPush push = {shared::kPixels, 0};
-    if (p.correct_depth_breaks) TYNDALL_TRY(run_list(march, EpipolarBuffer::break_list, &push));
-    TYNDALL_TRY(run_list(of.correct_pixels, EpipolarBuffer::break_list));
+    if (p.correct_depth_breaks || is_downscaled(params)) {
+      TYNDALL_TRY(run_list(march, EpipolarBuffer::break_list, &of_pixels));
+    }
+    return run_list(put, EpipolarBuffer::break_list);
+  };
+  if (is_downscaled(params)) {
+    const VkExtent2D reduced = reduced_extent(inputs.extent, params);
+    TYNDALL_TRY(run(of.unwarp_reduced, {reduced.width, reduced.height}));
+    TYNDALL_TRY(correct(of.correct_reduced));
+    empty_lists({EpipolarBuffer::break_list});
+    TYNDALL_TRY(run(of.upscale[extinction][params.scattering.downscale / 4], {reduced.width + 1, reduced.height + 1}));
+    lists_ready();
+    TYNDALL_TRY(run_list(of.upscale_pixels[extinction], EpipolarBuffer::broken_list));
+    TYNDALL_TRY(correct(of.correct_pixels));
+  } else {
+    TYNDALL_TRY(run(of.unwarp[extinction][breaks ? 1 : 0], {(inputs.extent.width + 1) / 2, (inputs.extent.height + 1) / 2}));
+    lists_ready();
+    TYNDALL_TRY(run_list(of.unwarp_pixels[extinction][breaks ? 1 : 0], EpipolarBuffer::broken_list));
+    if (breaks) TYNDALL_TRY(correct(of.correct_pixels));
   }
   if (p.show_sampling) {
     for (std::uint32_t marked = 0; marked < 2; ++marked) {
-      TYNDALL_TRY(run(show_sampling_, {p.samples, p.slices}, &marked));
+      TYNDALL_TRY(run(show_sampling_, {samples, slices}, &marked));
     }
   }
   return {};

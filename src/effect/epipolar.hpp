@@ -19,8 +19,8 @@ namespace tyndall {
 
 // Buffers of epipolar sampling, in the order of the plan in epipolar.cpp.
 enum class EpipolarBuffer : std::uint32_t { slices, rows, samples, coarse, sources, march_list, broken_list,
-                                           break_list, corrected, tree_list, tree, states };
-constexpr std::uint32_t kEpipolarBuffers = 12;
+                                           break_list, corrected, tree_list, tree, states, reduced };
+constexpr std::uint32_t kEpipolarBuffers = 13;
 using EpipolarSizes = std::array<VkDeviceSize, kEpipolarBuffers>;
 
 // Bytes of each; all zero with technique = brute-force.
@@ -68,13 +68,17 @@ class Epipolar {
     std::uint32_t frames_left;
   };
   using PerMode = std::array<gpu::Pipeline, kModeCount>;
-  // Specialised for a medium.
+  // Specialised for a medium. The second line is made when asked for.
   struct PerMedium {
     gpu::Pipeline slice_samples, correct_pixels;
     std::array<std::array<gpu::Pipeline, 2>, 2> unwarp, unwarp_pixels;  // by Extinction, and whether breaks are listed
+    gpu::Pipeline unwarp_reduced, correct_reduced;
+    std::array<gpu::Pipeline, 2> upscale_pixels;          // by Extinction
+    std::array<std::array<gpu::Pipeline, 2>, 2> upscale;  // and whether to four times the size
   };
 
   Result<void> create_pipelines();
+  Result<void> make_downscaled(MediumKind medium, std::uint32_t extinction, std::uint32_t downscale);
   Result<void> make_of_medium(MediumKind medium, std::uint32_t extinction, bool breaks);
   // Whether the march looks at the shadows at all.
   [[nodiscard]] static bool walks(const Params& params);

@@ -1,0 +1,46 @@
+// Makes records of the light that was marched for reduced pixels which no sample fits (Yusov 2012, section 6.7).
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "shared/medium.h"
+#include "shared/frame_constants.h"
+#include "shared/epipolar.h"
+#include "lib/optical_depth.glsl"
+#include "epipolar/work_list.glsl"
+
+layout(local_size_x = kMarchGroup) in;
+
+layout(std140, binding = 0) uniform medium_block { Medium medium; };
+layout(std140, binding = 1) uniform frame_block { FrameConstants frame; };
+layout(std140, binding = 2) uniform epipolar_block { EpipolarConstants epipolar; };
+layout(std430, binding = 3) readonly buffer work_block { WorkList work; uint items[]; };
+layout(std430, binding = 4) readonly buffer corrected_block { vec4 corrected[]; };
+layout(std430, binding = 5) buffer reduced_block { uvec4 reduced[]; };
+layout(binding = 6) uniform sampler2D scene_depth;
+
+#include "epipolar/records.glsl"
+#include "epipolar/reduced.glsl"
+#include "frame/homogeneous_medium.glsl"
+
+void put_pixel(uint at) {
+  ivec2 pixel = ivec2(items[at] & 0xFFFFu, items[at] >> 16u);
+  Ray ray = view_ray(frame, pixel, texelFetch(scene_depth, pixel, 0).r);
+  float start, end;
+  vec3 through, lost;
+  vec3 tau = vec3(0.0);
+  bool inside = clip_to_medium(ray, start, end);
+  if (kHomogeneous) tau = frame.homogeneous.extinction * (end - start);
+  else if (inside) tau = optical_depth(medium, column_along(medium, ray.altitude, ray.cos_zenith, end));
+  attenuation(tau, through, lost);
+  uint index = reduced_index(uvec2(pixel) / epipolar.downscale);
+  Sample s = unpack_sample(reduced[index]);
+  s.density = density_of(tau, s.depth_m);
+  s.source = corrected[at].rgb / max(lost, vec3(1e-20));
+  if (kHomogeneous && !inside) s.source = vec3(1.0);
+  reduced[index] = pack_sample(s);
+}
+
+void main() {
+  uint at = list_item(kMarchGroup);
+  if (at < work.count) put_pixel(at);
+}
