@@ -351,6 +351,7 @@ TEST_F(SavedTablesTest, KeysTellApartWhatMatters) {
     // What stands at the end of its range goes the other way.
     if (real && double{std::bit_cast<float>(bits)} > row.max) bits -= 512;
     if (row.type == ParamType::enumeration && bits > 1) bits = 1;
+    if (row.name == "downscale") bits = 2;  // 1, 2 and 4 are allowed
     std::memcpy(at, &bits, sizeof bits);
     EXPECT_EQ(key_of(params) != before, row.affects == Affects::Tables) << row.name;
   }
