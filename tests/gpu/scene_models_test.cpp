@@ -39,6 +39,7 @@ class GpuSceneModels : public GpuTest {
     if (drawn_ == nullptr) {
       SceneDesc desc;
       desc.extent = extent;
+      desc.timings = true;
       Result<std::unique_ptr<Scene>> made = Scene::create(host(), desc, params_, scene_);
       EXPECT_OK(made);
       if (!made.ok()) return {};
