@@ -138,7 +138,7 @@ void Gui::views(const GuiFacts& facts, GuiRequests& requests) {
   if (ImGui::Begin("Views and comparison", &state.views, ImGuiWindowFlags_NoSavedSettings)) {
     PictureOptions& p = state.picture;
     ImGui::SetNextItemWidth(190.0F);
-    if (ImGui::BeginCombo("Show", name_of(p.shown))) {
+    if (ImGui::BeginCombo("Show", name_of(p.shown), ImGuiComboFlags_HeightLarge)) {
       for (int i = 0; i < kShownCount; ++i) {
         const auto shown = static_cast<Shown>(i);
         if (ImGui::Selectable(name_of(shown), shown == p.shown)) p.shown = shown;
