@@ -264,7 +264,7 @@ TEST(Window, OpensEveryPanelAndComparesByTheMouse) {
   EXPECT_EQ(desk.leave(), 0) << desk.errors();
 }
 
-TEST(Window, DISABLED_TakesEveryParameterToBothEnds) {
+TEST(Window, TakesEveryParameterToBothEnds) {
   NEEDS_A_DESK();
   Desk desk("walk");
   ASSERT_TRUE(desk.open({"--size", "128x96", "--no-first-steps", "--script", "walk"})) << desk.errors();
