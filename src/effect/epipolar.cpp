@@ -80,7 +80,8 @@ EpipolarSizes epipolar_sizes(const EffectDesc& desc, const Params& params) {
   const VkDeviceSize blocks = VkDeviceSize{(desc.max_extent.width + 1) / 2} * ((desc.max_extent.height + 1) / 2);
   out[index(EpipolarBuffer::broken_list)] = sizeof(shared::WorkList) + (is_downscaled(params) ? pixels : blocks) * 4;
   const VkExtent2D reduced = reduced_extent(desc.max_extent, params);
-  if (is_downscaled(params)) out[index(EpipolarBuffer::reduced)] = VkDeviceSize{reduced.width} * reduced.height * 16;
+  out[index(EpipolarBuffer::reduced)] =
+      is_downscaled(params) ? VkDeviceSize{reduced.width} * reduced.height * 16 : kLeastBytes;
   out[index(EpipolarBuffer::break_list)] = lists_breaks(params) ? sizeof(shared::WorkList) + pixels * 4 : kLeastBytes;
   out[index(EpipolarBuffer::corrected)] = lists_breaks(params) ? pixels * 16 : kLeastBytes;
   const VkDeviceSize number = params.epipolar.min_max_format == MinMaxFormat::float32 ? 8 : 4;

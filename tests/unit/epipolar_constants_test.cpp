@@ -247,6 +247,10 @@ TEST(EpipolarSizes, FollowTheParameters) {
     EXPECT_GE(size_of(sizes, EpipolarBuffer::corrected), pixels * 12);
     EXPECT_GE(size_of(sizes, EpipolarBuffer::break_list), pixels * 4);
   }
+  EXPECT_LT(size_of(usual, EpipolarBuffer::reduced), 1024U);
+  params = {};
+  params.scattering.downscale = 2;
+  EXPECT_GE(size_of(epipolar_sizes(desc, params), EpipolarBuffer::reduced), pixels / 4 * 16);
   desc.max_cascades *= 2;
   EXPECT_EQ(size_of(epipolar_sizes(desc, {}), EpipolarBuffer::tree), 2 * size_of(usual, EpipolarBuffer::tree));
   EXPECT_EQ(size_of(epipolar_sizes(desc, {}), EpipolarBuffer::rows), 2 * size_of(usual, EpipolarBuffer::rows));
