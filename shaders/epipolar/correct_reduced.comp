@@ -10,9 +10,9 @@
 
 layout(local_size_x = kMarchGroup) in;
 
-layout(std140, binding = 0) uniform medium_block { Medium medium; };
-layout(std140, binding = 1) uniform frame_block { FrameConstants frame; };
-layout(std140, binding = 2) uniform epipolar_block { EpipolarConstants epipolar; };
+layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
+layout(std430, binding = 1) readonly buffer frame_block { FrameConstants frame; };
+layout(std430, binding = 2) readonly buffer epipolar_block { EpipolarConstants epipolar; };
 layout(std430, binding = 3) readonly buffer work_block { WorkList work; uint items[]; };
 layout(std430, binding = 4) readonly buffer corrected_block { vec4 corrected[]; };
 layout(std430, binding = 5) buffer reduced_block { uvec4 reduced[]; };

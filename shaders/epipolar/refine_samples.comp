@@ -15,8 +15,8 @@ const uint kThreads = 64u;
 layout(local_size_x = kThreads) in;
 layout(constant_id = 0) const uint kRefinement = 1u;  // 0 by depth, 1 by in-scattering
 
-layout(std140, binding = 0) uniform frame_block { FrameConstants frame; };
-layout(std140, binding = 1) uniform epipolar_block { EpipolarConstants epipolar; };
+layout(std430, binding = 0) readonly buffer frame_block { FrameConstants frame; };
+layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants epipolar; };
 layout(std430, binding = 2) readonly buffer slice_block { EpipolarSlice slices[]; };
 layout(std430, binding = 3) readonly buffer coarse_block { vec4 coarse[]; };
 layout(std430, binding = 4) writeonly buffer source_block { uint sources[]; };

@@ -9,8 +9,8 @@
 layout(local_size_x = 32) in;
 layout(constant_id = 0) const uint kFormat = 0u;  // MinMaxFormat
 
-layout(std140, binding = 0) uniform frame_block { FrameConstants frame; };
-layout(std140, binding = 1) uniform epipolar_block { EpipolarConstants epipolar; };
+layout(std430, binding = 0) readonly buffer frame_block { FrameConstants frame; };
+layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants epipolar; };
 layout(std430, binding = 2) readonly buffer row_block { ShadowRow rows[]; };
 layout(std430, binding = 3) writeonly buffer tree_block { uint tree[]; };
 layout(binding = 4) uniform sampler2DArray shadow_depths;

@@ -10,8 +10,8 @@
 
 layout(local_size_x = 64) in;
 
-layout(std140, binding = 0) uniform frame_block { FrameConstants frame; };
-layout(std140, binding = 1) uniform epipolar_block { EpipolarConstants epipolar; };
+layout(std430, binding = 0) readonly buffer frame_block { FrameConstants frame; };
+layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants epipolar; };
 layout(std430, binding = 2) readonly buffer slice_block { EpipolarSlice slices[]; };
 layout(std430, binding = 3) writeonly buffer row_block { ShadowRow rows[]; };
 layout(std430, binding = 4) buffer tree_list_block { WorkList trees; uint tree_list[]; };

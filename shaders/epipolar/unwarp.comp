@@ -9,7 +9,7 @@
 
 layout(local_size_x = 64) in;  // along rows, as images lie in memory
 
-layout(std140, binding = 0) uniform medium_block { Medium medium; };
+layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
 layout(std140, binding = 1) uniform frame_block { FrameConstants frame; };
 layout(std140, binding = 2) uniform epipolar_block { EpipolarConstants epipolar; };
 layout(std430, binding = 3) readonly buffer slice_block { EpipolarSlice slices[]; };

@@ -45,7 +45,7 @@ constexpr VkDeviceSize kSlotBytes = kFrameBytes + kMediumBytes + kEpipolarBytes;
 // Counters of a frame, as pairs of words.
 constexpr VkDeviceSize kCounterBytes = align(shared::kCounters * sizeof(std::uint64_t));
 
-// Read as storage by the passes of the tables, as uniforms by those of epipolar sampling.
+// Read as storage by most passes, as uniforms by those that unwarp (docs/epipolar.md says why).
 constexpr VkBufferUsageFlags kConstantsUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
 constexpr VkBufferUsageFlags kCounterUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
                                              VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
