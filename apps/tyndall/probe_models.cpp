@@ -6,6 +6,7 @@
 #include "effect/medium.hpp"
 #include "gpu/host.hpp"
 #include "models/gpu_probe.hpp"
+#include "models/homogeneous_medium.hpp"
 #include "models/oneil.hpp"
 #include "models/precomputed.hpp"
 #include "reference/path_tracer.hpp"
@@ -172,10 +173,30 @@ Result<std::vector<ProbeAnswer>> run_homogeneous(const ProbeSettings& settings,
   return answers;
 }
 
+// The medium of scattering.medium = homogeneous, wholly lit, on the CPU in double precision.
+Result<std::vector<ProbeAnswer>> run_homogeneous_medium(const ProbeSettings& settings,
+                                                        std::span<const ProbeQuery> queries) {
+  const models::HomogeneousMedium medium = models::homogeneous_medium_from_params(settings.params);
+  std::vector<ProbeAnswer> answers;
+  answers.reserve(queries.size());
+  for (const ProbeQuery& q : queries) {
+    if (q.sky) {
+      answers.push_back({models::homogeneous_medium_sky(medium, q.altitude_m, std::cos(q.sun_zenith_rad)),
+                         medium.sunlight, {}, false});
+      continue;
+    }
+    const models::Answer answer = models::homogeneous_medium_light(
+        medium, models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad));
+    answers.push_back({answer.radiance, answer.transmittance, {}, false});
+  }
+  return answers;
+}
+
 constexpr ProbeModel kModels[] = {
     {"precomputed", false, run_precomputed},
     {"single", false, run_single},
     {"homogeneous", false, run_homogeneous},
+    {"homogeneous-medium", false, run_homogeneous_medium},
     {"oneil", false, run_oneil},
     {"oneil-table", false, run_oneil_table},
     {"reference", true, run_reference},

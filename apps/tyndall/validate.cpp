@@ -170,6 +170,8 @@ std::vector<validate::Model> all_models(const std::string& device, const scene::
       probe_row("homogeneous", "Hoffman and Preetham: closed forms for one density at every altitude, no ozone, no other sunset "
                 "than the horizontal", 1, "homogeneous", device, everywhere),
       probe_row("homogeneous, falling off", "the same with homogeneous.falloff", 1, "homogeneous", device, falling),
+      probe_row("homogeneous medium", "Yusov 2012: scattering.medium = homogeneous, wholly lit: one density out to its extent, "
+                "sunlight that nothing takes from, no sunset", 1, "homogeneous-medium", device, scene),
       probe_row("oneil", "O'Neil: light scattered once, few points and the scale function, no ozone", 1, "oneil",
                 device, scene),
       probe_row("oneil, points by column", "the same with oneil.spacing = column", 1, "oneil", device, by_column),

@@ -198,7 +198,8 @@ class Effect {
   // scattering.light_shafts and epipolar.min_max_tree are on.
   Result<void> set_params(const Params& params);
   [[nodiscard]] const Params& params() const;
-  // Makes at most `budget` of the pipelines that other parameters would need, so that switching costs nothing.
+  // Makes at most `budget` of the pipelines that other parameters would need, so that switching costs nothing. What one set
+  // of parameters needs at once (unwarping in a medium, scaling up) counts as one.
   Result<Progress> prepare_pipelines(std::uint32_t budget = UINT32_MAX);
 
   // Takes over other limits than those of EffectDesc, as set_params() takes over parameters: an error changes nothing,

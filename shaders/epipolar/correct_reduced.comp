@@ -15,12 +15,17 @@ layout(std430, binding = 1) readonly buffer frame_block { FrameConstants frame; 
 layout(std430, binding = 2) readonly buffer epipolar_block { EpipolarConstants epipolar; };
 layout(std430, binding = 3) readonly buffer work_block { WorkList work; uint items[]; };
 layout(std430, binding = 4) readonly buffer corrected_block { vec4 corrected[]; };
-layout(std430, binding = 5) buffer reduced_block { uvec4 reduced[]; };
+layout(std430, binding = 5) buffer reduced_block { vec4 reduced[]; };
 layout(binding = 6) uniform sampler2D scene_depth;
 
 #include "epipolar/records.glsl"
 #include "epipolar/reduced.glsl"
 #include "frame/homogeneous_medium.glsl"
+
+struct Blend {
+  vec3 source;
+  vec3 density;
+};
 
 void put_pixel(uint at) {
   ivec2 pixel = ivec2(items[at] & 0xFFFFu, items[at] >> 16u);
@@ -32,12 +37,12 @@ void put_pixel(uint at) {
   if (kHomogeneous) tau = frame.homogeneous.extinction * (end - start);
   else if (inside) tau = optical_depth(medium, column_along(medium, ray.altitude, ray.cos_zenith, end));
   attenuation(tau, through, lost);
-  uint index = reduced_index(uvec2(pixel) / epipolar.downscale);
-  Sample s = unpack_sample(reduced[index]);
-  s.density = density_of(tau, s.depth_m);
-  s.source = corrected[at].rgb / max(lost, vec3(1e-20));
-  if (kHomogeneous && !inside) s.source = vec3(1.0);
-  reduced[index] = pack_sample(s);
+  ivec2 place = pixel / kDownscale;
+  Blend b;
+  b.density = density_of(tau, reduced[reduced_index(place)].a);
+  b.source = corrected[at].rgb / max(lost, vec3(1e-20));
+  if (kHomogeneous && !inside) b.source = vec3(1.0);
+  STORE_REDUCED(place, reduced[reduced_index(place)].a, b);
 }
 
 void main() {

@@ -1,5 +1,5 @@
-// Puts the picture together where the pixels of a block differ in depth, each by itself, and lists those that no
-// sample fits.
+// Puts the picture, or the reduced one, together where the pixels of a block differ in depth, each by itself, and lists
+// those that no sample fits.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -19,21 +19,28 @@ layout(binding = 6) uniform sampler2D scene_depth;
 layout(binding = 7, OUTPUT_FORMAT) uniform writeonly image2D output_color;
 layout(std430, binding = 8) readonly buffer work_block { WorkList work; uint items[]; };
 layout(std430, binding = 9) buffer break_list_block { WorkList breaks; uint break_list[]; };
+layout(std430, binding = 10) writeonly buffer reduced_block { vec4 reduced[]; };
 
 #include "epipolar/unwarp.glsl"
+#include "epipolar/reduced.glsl"
 #include "epipolar/work_list.glsl"
 
 void unwarp_pixel(uint block, uint k) {
-  ivec2 pixel = ivec2((block & 0xFFFFu) + (k & 1u), (block >> 16u) + (k >> 1u));
-  if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height)) return;
+  ivec2 place = ivec2((block & 0xFFFFu) + (k & 1u), (block >> 16u) + (k >> 1u));
+  if (any(greaterThanEqual(place, computed_size()))) return;
+  ivec2 pixel = kDownscale == 1 ? place : pixel_of_reduced(place);
   vec2 position = vec2(pixel) + 0.5;
   float depth = texelFetch(scene_depth, pixel, 0).r;
   bool sky = depth == frame.sky_depth;
   float visible_m = view_depth(frame, position, depth);
   float depth_m = sky ? sky_depth_m(ray_direction(frame, position)) : visible_m;
   Blend b = blend(around(position, depth_m), position);
-  vec3 background = texelFetch(scene_color, pixel, 0).rgb;
-  imageStore(output_color, pixel, vec4(compose(b, position, depth_m, visible_m, sky, background), 1.0));
+  if (kDownscale == 1) {
+    vec3 background = texelFetch(scene_color, pixel, 0).rgb;
+    imageStore(output_color, pixel, vec4(compose(b, position, depth_m, visible_m, sky, background), 1.0));
+  } else {
+    STORE_REDUCED(place, depth_m, b);
+  }
   if (kBreaks && b.weight < kLeastWeight) {
     uint slot = atomicAdd(breaks.count, 1u);
     break_list[slot] = uint(pixel.y) << 16u | uint(pixel.x);

@@ -1,4 +1,5 @@
-// The pixels that no reduced one fits, from the slices themselves; those that no sample fits either are listed again.
+// scattering.downscale: the pixels of blocks that differ in depth from what is around them. Each takes the reduced pixels
+// that are as far away as it is, or, where there is none, the slices; those that no sample fits either are listed.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -9,8 +10,8 @@
 layout(local_size_x = kMarchGroup) in;
 
 layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
-layout(std430, binding = 1) readonly buffer frame_block { FrameConstants frame; };
-layout(std430, binding = 2) readonly buffer epipolar_block { EpipolarConstants epipolar; };
+layout(std140, binding = 1) uniform frame_block { FrameConstants frame; };
+layout(std140, binding = 2) uniform epipolar_block { EpipolarConstants epipolar; };
 layout(std430, binding = 3) readonly buffer slice_block { EpipolarSlice slices[]; };
 layout(std430, binding = 4) readonly buffer sample_block { uvec4 samples[]; };
 layout(binding = 5) uniform sampler2D scene_color;
@@ -18,23 +19,37 @@ layout(binding = 6) uniform sampler2D scene_depth;
 layout(binding = 7, OUTPUT_FORMAT) uniform writeonly image2D output_color;
 layout(std430, binding = 8) readonly buffer work_block { WorkList work; uint items[]; };
 layout(std430, binding = 9) buffer break_list_block { WorkList breaks; uint break_list[]; };
+layout(std430, binding = 10) readonly buffer reduced_block { vec4 reduced[]; };
 
 #include "epipolar/unwarp.glsl"
+#include "epipolar/reduced_around.glsl"
 #include "epipolar/work_list.glsl"
 
-void upscale_pixel(uint item) {
-  ivec2 pixel = ivec2(item & 0xFFFFu, item >> 16u);
+// Below this sum of weights a pixel goes back to the slices.
+const float kLeastUpscaled = 0.1;
+
+void upscale_pixel(uint block, uint k) {
+  ivec2 pixel = ivec2((block & 0xFFFFu) + (k & 1u), (block >> 16u) + (k >> 1u));
+  if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height)) return;
   vec2 position = vec2(pixel) + 0.5;
   float depth = texelFetch(scene_depth, pixel, 0).r;
   bool sky = depth == frame.sky_depth;
   float visible_m = view_depth(frame, position, depth);
   float depth_m = sky ? sky_depth_m(ray_direction(frame, position)) : visible_m;
-  Blend b = blend(around(position, depth_m), position);
+  Sample near[4];
+  vec2 part;
+  reduced_around(pixel, part, near);
+  vec4 w = bilinear_weights(part);
+  for (int i = 0; i < 4; ++i) w[i] *= depth_nearness(near[i].depth_m, depth_m);
+  float sum = w.x + w.y + w.z + w.w;
+  Blend b = blend_reduced(near, w / max(sum, 1e-9));
+  Blend of_slices = blend(around(position, depth_m), position);
+  if (sum < kLeastUpscaled) b = of_slices;
   vec3 background = texelFetch(scene_color, pixel, 0).rgb;
   imageStore(output_color, pixel, vec4(compose(b, position, depth_m, visible_m, sky, background), 1.0));
-  if (b.weight < kLeastWeight) {
+  if (sum < kLeastUpscaled && b.weight < kLeastWeight) {
     uint slot = atomicAdd(breaks.count, 1u);
-    break_list[slot] = item;
+    break_list[slot] = uint(pixel.y) << 16u | uint(pixel.x);
     uint groups = slot / kMarchGroup + 1u;
     atomicMax(breaks.groups_x, groups_along_x(groups));
     atomicMax(breaks.groups_y, groups_along_y(groups));
@@ -42,6 +57,6 @@ void upscale_pixel(uint item) {
 }
 
 void main() {
-  uint at = list_item(kMarchGroup);
-  if (at < work.count) upscale_pixel(items[at]);
+  uint i = list_item(kMarchGroup);
+  if (i < 4u * work.count) upscale_pixel(items[i / 4u], i % 4u);
 }

@@ -6,22 +6,15 @@
 #ifndef TYNDALL_HOMOGENEOUS_MEDIUM_GLSL
 #define TYNDALL_HOMOGENEOUS_MEDIUM_GLSL
 
-#include "lib/phase.glsl"
 #include "frame/view_ray.glsl"
 
 layout(constant_id = 5) const bool kHomogeneous = false;
 
 // The part of [0, end] below the medium's flat top, which is level where the camera is.
 void clip_to_top(float cos_zenith, out float start, inout float end) {
-  start = 0.0;
-  float above = frame.camera_altitude_m - frame.homogeneous.height_m;
-  float crossing = -above / (abs(cos_zenith) > 1e-9 ? cos_zenith : 1e-9);
-  if (above > 0.0) {
-    start = cos_zenith < 0.0 ? crossing : end;
-  } else if (cos_zenith > 0.0) {
-    end = min(end, crossing);
-  }
-  end = max(end, start);
+  float crossing = (frame.homogeneous.height_m - frame.camera_altitude_m) / (abs(cos_zenith) > 1e-9 ? cos_zenith : 1e-9);
+  start = cos_zenith < 0.0 ? max(crossing, 0.0) : 0.0;
+  end = max(cos_zenith < 0.0 ? end : min(end, crossing), start);
 }
 
 // The part of the ray inside the medium [m]; false when there is none. Rays end at what was drawn, at the planet, or
@@ -52,11 +45,13 @@ void homogeneous_attenuation(float length_m, out vec3 through, out vec3 lost) {
   lost = mix(1.0 - through, tau - 0.5 * tau * tau, lessThan(tau, vec3(2e-3)));
 }
 
-// The factor of the direction [1/sr].
+// The factor of the direction [1/sr]: (beta_R p_R + beta_M p_M) / sigma, from constants that tell both phase functions.
 vec3 homogeneous_phase(float cos_view_sun) {
-  vec3 scattered = frame.homogeneous.rayleigh_scattering * rayleigh_phase(cos_view_sun) +
-                   frame.homogeneous.mie_scattering * mie_phase(medium, cos_view_sun);
-  return scattered / max(frame.homogeneous.extinction, vec3(1e-30));
+  float second = cos_view_sun * cos_view_sun;
+  float root = inversesqrt(frame.homogeneous.phase_least +
+                           frame.homogeneous.phase_slope * (1.0 - frame.homogeneous.phase_sign * cos_view_sun));
+  return frame.homogeneous.rayleigh_source * (1.0 + second) +
+         frame.homogeneous.mie_source * ((1.0 + frame.homogeneous.phase_second * second) * (root * root * root));
 }
 
 #endif

@@ -18,7 +18,16 @@ struct HomogeneousMedium {
   vec3 mie_scattering;
   float height_m;  // altitude of the top
   vec3 extinction;
+  float phase_least;  // the aerosol's phase function: (1 - |g|)^2
+  // Phase functions at right angles to the sun, times scattering, divided by extinction [1/sr].
+  vec3 rayleigh_source;
+  float phase_slope;  // 2 |g|
+  vec3 mie_source;    // before the division by (phase_least + phase_slope (1 - |cos|))^1.5
+  float phase_sign;   // of g
+  float phase_second;  // of cos^2: 1 Cornette-Shanks, 0 Henyey-Greenstein
   float unused_0;
+  float unused_1;
+  float unused_2;
 };
 
 struct FrameConstants {
@@ -31,7 +40,7 @@ struct FrameConstants {
   vec3 camera_up;  // vertical of the planet at the camera, world
   float near_depth;
   vec3 ray_origin;  // rays through pixels: ray_origin + x ray_x + y ray_y, world, not of unit length
-  float unused_0;
+  float horizon_cos;  // cosine of the zenith angle of the planet's horizon
   vec3 ray_x;
   float unused_1;
   vec3 ray_y;

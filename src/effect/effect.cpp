@@ -261,15 +261,18 @@ Result<Progress> Effect::prepare_pipelines(std::uint32_t budget) {
   Progress progress;
   for (std::uint32_t mode = 0; mode < kModeCount; ++mode) {
     if (!mode_exists(mode)) continue;
-    ++progress.total;
-    const bool made = static_cast<bool>(state_->march_per_pixel[0][mode].pipeline);
-    if (!made && budget > 0) {
-      TYNDALL_TRY(state_->make_march_per_pixel(false, mode));
-      --budget;
-    } else if (!made) {
-      continue;
+    for (const bool colors : {false, true}) {
+      if (colors && !state_->desc.shadow_colors) continue;
+      ++progress.total;
+      const bool made = static_cast<bool>(state_->march_per_pixel[colors ? 1 : 0][mode].pipeline);
+      if (!made && budget > 0) {
+        TYNDALL_TRY(state_->make_march_per_pixel(colors, mode));
+        --budget;
+      } else if (!made) {
+        continue;
+      }
+      ++progress.done;
     }
-    ++progress.done;
   }
   TYNDALL_TRY(state_->epipolar.prepare_others(budget, progress));
   return progress;

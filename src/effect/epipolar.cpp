@@ -78,10 +78,10 @@ EpipolarSizes epipolar_sizes(const EffectDesc& desc, const Params& params) {
   out[index(EpipolarBuffer::sources)] = samples * 4;
   out[index(EpipolarBuffer::march_list)] = sizeof(shared::WorkList) + samples * 4;
   const VkDeviceSize blocks = VkDeviceSize{(desc.max_extent.width + 1) / 2} * ((desc.max_extent.height + 1) / 2);
-  out[index(EpipolarBuffer::broken_list)] = sizeof(shared::WorkList) + (is_downscaled(params) ? pixels : blocks) * 4;
+  out[index(EpipolarBuffer::broken_list)] = sizeof(shared::WorkList) + blocks * 4;
   const VkExtent2D reduced = reduced_extent(desc.max_extent, params);
   out[index(EpipolarBuffer::reduced)] =
-      is_downscaled(params) ? VkDeviceSize{reduced.width} * reduced.height * 16 : kLeastBytes;
+      is_downscaled(params) ? VkDeviceSize{reduced.width} * reduced.height * (is_homogeneous(params.scattering) ? 16 : 32) : kLeastBytes;
   out[index(EpipolarBuffer::break_list)] = lists_breaks(params) ? sizeof(shared::WorkList) + pixels * 4 : kLeastBytes;
   out[index(EpipolarBuffer::corrected)] = lists_breaks(params) ? pixels * 16 : kLeastBytes;
   const VkDeviceSize number = params.epipolar.min_max_format == MinMaxFormat::float32 ? 8 : 4;
@@ -245,7 +245,7 @@ Result<void> Epipolar::make_of_medium(MediumKind medium, std::uint32_t extinctio
 
 Result<void> Epipolar::make_downscaled(MediumKind medium, std::uint32_t extinction, std::uint32_t downscale) {
   const bool full = desc_.output_format == OutputFormat::rgba32f;
-  const gpu::Constant constants[] = {{0, extinction}, {5, static_cast<std::uint32_t>(medium)}, {6, downscale}};
+  const gpu::Constant constants[] = {{0, extinction}, {1, 1}, {5, static_cast<std::uint32_t>(medium)}, {6, downscale}};
   const auto make = [&](gpu::Pipeline& out, const gpu::Shader& shader, const char* name) -> Result<void> {
     if (out.pipeline) return {};
     TYNDALL_ASSIGN(out, gpu::create_compute_pipeline(*device_, shader, constants));
@@ -253,10 +253,13 @@ Result<void> Epipolar::make_downscaled(MediumKind medium, std::uint32_t extincti
     return {};
   };
   PerMedium& of = of_medium_[static_cast<std::size_t>(medium)];
-  TYNDALL_TRY(make(of.unwarp_reduced, shaders::unwarp_reduced_comp, "unwarp_reduced"));
-  TYNDALL_TRY(make(of.correct_reduced, shaders::correct_reduced_comp, "correct_reduced"));
-  TYNDALL_TRY(make(of.upscale[extinction][downscale / 4], full ? shaders::upscale_comp_rgba32f : shaders::upscale_comp_rgba16f, "upscale"));
-  return make(of.upscale_pixels[extinction],
+  const std::size_t quarter = downscale / 4;
+  TYNDALL_TRY(make(of.unwarp_reduced[quarter], full ? shaders::unwarp_comp_rgba32f : shaders::unwarp_comp_rgba16f, "unwarp_reduced"));
+  TYNDALL_TRY(make(of.unwarp_reduced_pixels[quarter],
+                   full ? shaders::unwarp_pixels_comp_rgba32f : shaders::unwarp_pixels_comp_rgba16f, "unwarp_reduced_pixels"));
+  TYNDALL_TRY(make(of.correct_reduced[quarter], shaders::correct_reduced_comp, "correct_reduced"));
+  TYNDALL_TRY(make(of.upscale[extinction][quarter], full ? shaders::upscale_comp_rgba32f : shaders::upscale_comp_rgba16f, "upscale"));
+  return make(of.upscale_pixels[extinction][quarter],
               full ? shaders::upscale_pixels_comp_rgba32f : shaders::upscale_pixels_comp_rgba16f, "upscale_pixels");
 }
 
@@ -295,17 +298,40 @@ Result<void> Epipolar::prepare(const Params& params) {
 }
 
 Result<void> Epipolar::prepare_others(std::uint32_t& budget, Progress& progress) {
+  // What is made together counts as one.
+  const auto take = [&](bool made, const auto& make) -> Result<void> {
+    ++progress.total;
+    if (!made && budget == 0) return {};
+    if (!made) {
+      TYNDALL_TRY(make());
+      --budget;
+    }
+    ++progress.done;
+    return {};
+  };
   for (std::uint32_t mode = 0; mode < kModeCount; ++mode) {
     if (!mode_exists(mode)) continue;
-    for (const bool tree : {false, true}) {
-      ++progress.total;
-      const bool made = static_cast<bool>(march_samples_[tree ? 1 : 0][0][mode].pipeline);
-      if (!made && budget > 0) {
-        TYNDALL_ASSIGN([[maybe_unused]] const gpu::Pipeline* pipeline, march(tree, false, mode));
-        --budget;
-        ++progress.done;
-      } else if (made) {
-        ++progress.done;
+    for (const bool colors : {false, true}) {
+      if (colors && !desc_.shadow_colors) continue;
+      for (const bool tree : {false, true}) {
+        const bool made = static_cast<bool>(march_samples_[tree ? 1 : 0][colors ? 1 : 0][mode].pipeline);
+        TYNDALL_TRY(take(made, [&]() -> Result<void> {
+          TYNDALL_ASSIGN([[maybe_unused]] const gpu::Pipeline* pipeline, march(tree, colors, mode));
+          return {};
+        }));
+      }
+    }
+  }
+  for (const MediumKind medium : {MediumKind::atmosphere, MediumKind::homogeneous}) {
+    const PerMedium& of = of_medium_[static_cast<std::size_t>(medium)];
+    for (std::uint32_t extinction = 0; extinction < (medium == MediumKind::atmosphere ? 2U : 1U); ++extinction) {
+      for (const bool breaks : {false, true}) {
+        TYNDALL_TRY(take(static_cast<bool>(of.unwarp_pixels[extinction][breaks ? 1 : 0].pipeline),
+                         [&] { return make_of_medium(medium, extinction, breaks); }));
+      }
+      for (const std::uint32_t downscale : {2U, 4U}) {
+        TYNDALL_TRY(take(static_cast<bool>(of.upscale_pixels[extinction][downscale / 4].pipeline),
+                         [&] { return make_downscaled(medium, extinction, downscale); }));
       }
     }
   }
@@ -469,12 +495,15 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
   };
   if (is_downscaled(params)) {
     const VkExtent2D reduced = reduced_extent(inputs.extent, params);
-    TYNDALL_TRY(run(of.unwarp_reduced, {reduced.width, reduced.height}));
-    TYNDALL_TRY(correct(of.correct_reduced));
-    empty_lists({EpipolarBuffer::break_list});
-    TYNDALL_TRY(run(of.upscale[extinction][params.scattering.downscale / 4], {reduced.width + 1, reduced.height + 1}));
+    const std::size_t quarter = params.scattering.downscale / 4;
+    TYNDALL_TRY(run(of.unwarp_reduced[quarter], {(reduced.width + 1) / 2, (reduced.height + 1) / 2}));
     lists_ready();
-    TYNDALL_TRY(run_list(of.upscale_pixels[extinction], EpipolarBuffer::broken_list));
+    TYNDALL_TRY(run_list(of.unwarp_reduced_pixels[quarter], EpipolarBuffer::broken_list));
+    TYNDALL_TRY(correct(of.correct_reduced[quarter]));
+    empty_lists({EpipolarBuffer::broken_list, EpipolarBuffer::break_list});
+    TYNDALL_TRY(run(of.upscale[extinction][quarter], {(inputs.extent.width + 1) / 2, (inputs.extent.height + 1) / 2}));
+    lists_ready();
+    TYNDALL_TRY(run_list(of.upscale_pixels[extinction][quarter], EpipolarBuffer::broken_list));
     TYNDALL_TRY(correct(of.correct_pixels));
   } else {
     TYNDALL_TRY(run(of.unwarp[extinction][breaks ? 1 : 0], {(inputs.extent.width + 1) / 2, (inputs.extent.height + 1) / 2}));

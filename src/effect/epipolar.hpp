@@ -72,9 +72,8 @@ class Epipolar {
   struct PerMedium {
     gpu::Pipeline slice_samples, correct_pixels;
     std::array<std::array<gpu::Pipeline, 2>, 2> unwarp, unwarp_pixels;  // by Extinction, and whether breaks are listed
-    gpu::Pipeline unwarp_reduced, correct_reduced;
-    std::array<gpu::Pipeline, 2> upscale_pixels;          // by Extinction
-    std::array<std::array<gpu::Pipeline, 2>, 2> upscale;  // and whether to four times the size
+    std::array<gpu::Pipeline, 2> unwarp_reduced, unwarp_reduced_pixels, correct_reduced;  // by whether to a quarter
+    std::array<std::array<gpu::Pipeline, 2>, 2> upscale, upscale_pixels;                  // by Extinction, and that
   };
 
   Result<void> create_pipelines();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "effect/medium.hpp"
 #include "effect/modes.hpp"
@@ -85,6 +86,8 @@ shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDe
   const double z = out.camera_position.z;
   const double distance = std::sqrt(x * x + z * z + (radius + y) * (radius + y));
   out.camera_altitude_m = static_cast<float>((x * x + z * z + y * (2.0 * radius + y)) / (distance + radius));
+  const double above = std::max(static_cast<double>(out.camera_altitude_m), 0.0);
+  out.horizon_cos = static_cast<float>(-std::sqrt(above * (2.0 * radius + above)) / (radius + above));
   out.camera_up = {static_cast<float>(x / distance), static_cast<float>((radius + y) / distance),
                    static_cast<float>(z / distance)};
 
@@ -141,6 +144,20 @@ shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDe
     const Vec3& air = sea_level.rayleigh_scattering;
     const Vec3& aerosol = sea_level.mie_extinction;
     out.homogeneous.extinction = times(Vec3(air.x + aerosol.x, air.y + aerosol.y, air.z + aerosol.z), Vec3(p.density));
+    const double g = params.atmosphere.mie_g;
+    const bool second = params.atmosphere.mie_phase == MiePhase::cornette_shanks;
+    const double rayleigh = 3.0 / (16.0 * std::numbers::pi);
+    const double mie = (1.0 - g * g) * (second ? 3.0 / (8.0 * std::numbers::pi * (2.0 + g * g)) : 0.25 / std::numbers::pi);
+    const auto source = [](double factor, const Vec3& scattering, const Vec3& extinction) {
+      const auto of = [factor](float s, float e) { return static_cast<float>(factor * s / std::max(static_cast<double>(e), 1e-30)); };
+      return Vec3(of(scattering.x, extinction.x), of(scattering.y, extinction.y), of(scattering.z, extinction.z));
+    };
+    out.homogeneous.rayleigh_source = source(rayleigh, out.homogeneous.rayleigh_scattering, out.homogeneous.extinction);
+    out.homogeneous.mie_source = source(mie, out.homogeneous.mie_scattering, out.homogeneous.extinction);
+    out.homogeneous.phase_least = static_cast<float>((1.0 - std::abs(g)) * (1.0 - std::abs(g)));
+    out.homogeneous.phase_slope = static_cast<float>(2.0 * std::abs(g));
+    out.homogeneous.phase_sign = g < 0.0 ? -1.0F : 1.0F;
+    out.homogeneous.phase_second = second ? 1.0F : 0.0F;
     out.homogeneous.extent_m = p.extent_m;
     out.homogeneous.height_m = p.height_m;
     out.sun_irradiance = times(out.sun_irradiance, p.sunlight);

@@ -81,6 +81,32 @@ TEST_F(ColoredShafts, TreesFormatsAndOrderOfCascadesChangeNothing) {
   }
 }
 
+// A reduced picture is marched, corrected and scaled up as without colours, in both media.
+TEST_F(ColoredShafts, AreDownscaled) {
+  BoxScene scene = colored();
+  scene.extent = {320, 180};
+  show(scene);
+  for (const MediumKind medium : {MediumKind::atmosphere, MediumKind::homogeneous}) {
+    for (const CascadeProcessing processing :
+         {CascadeProcessing::single_pass, CascadeProcessing::multi_pass, CascadeProcessing::multi_pass_instanced}) {
+      Params params = params_of(kModes[0]);
+      params.epipolar.slices = 256;
+      params.epipolar.samples = 128;
+      params.scattering.medium = medium;
+      params.shadows.cascade_processing = processing;
+      const std::string name = std::string(medium == MediumKind::atmosphere ? "atmosphere" : "homogeneous") + ", processing " +
+                               std::to_string(static_cast<int>(processing));
+      const Picture full = draw(params, name);
+      for (const std::uint32_t downscale : {2U, 4U}) {
+        params.scattering.downscale = downscale;
+        const Likeness likeness = compare(draw(params, name), full, scene.extent);
+        EXPECT_GE(likeness.psnr_db, downscale == 2 ? 40.0 : 35.0) << name << ", downscale " << downscale;
+        RecordProperty("dB: " + name + ", downscale " + std::to_string(downscale), hundredths(likeness.psnr_db));
+      }
+    }
+  }
+}
+
 // Glass of one colour is a sun of that colour; clear glass is none.
 TEST_F(ColoredShafts, OneColorScalesTheLight) {
   BoxScene scene = colored();

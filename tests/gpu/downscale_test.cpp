@@ -60,6 +60,24 @@ TEST_F(Downscale, IsLikeFullResolution) {
   }
 }
 
+TEST_F(Downscale, OrderOfCascadesChangesNothing) {
+  show(wide());
+  for (const MediumKind medium : {MediumKind::atmosphere, MediumKind::homogeneous}) {
+    for (const std::uint32_t downscale : {2U, 4U}) {
+      Params params = params_of(medium, downscale);
+      const Picture at_once = draw(params, "single-pass");
+      for (const CascadeProcessing processing : {CascadeProcessing::multi_pass, CascadeProcessing::multi_pass_instanced}) {
+        params.shadows.cascade_processing = processing;
+        const Likeness likeness = compare(draw(params, "in turn"), at_once, frame().extent);
+        EXPECT_LE(likeness.worst_relative_error, 1e-3) << downscale << " " << static_cast<int>(processing);
+        RecordProperty("worst: in turn, " + std::to_string(downscale) + " " + std::to_string(static_cast<int>(processing)) +
+                           (medium == MediumKind::atmosphere ? " atmosphere" : " homogeneous"),
+                       std::to_string(likeness.worst_relative_error));
+      }
+    }
+  }
+}
+
 TEST_F(Downscale, CountersSayWhatWasSaved) {
   show(wide());
   draw(params_of(MediumKind::homogeneous, 1), "full");

@@ -50,18 +50,30 @@ TEST_F(EffectChanges, PipelinesAreMadeWhenAskedFor) {
   ASSERT_OK(effect);
   const Result<Progress> none = effect.value().prepare_pipelines(0);
   ASSERT_OK(none);
-  EXPECT_EQ(none.value().done, 1U);  // the one that the parameters need
+  const std::uint32_t first = none.value().done;  // those made at creation, and the one that the parameters need
   ASSERT_OK(effect.value().set_params(with_technique(Technique::brute_force)));
   const Result<Progress> both = effect.value().prepare_pipelines(0);
   ASSERT_OK(both);
-  EXPECT_EQ(both.value().done, 2U);
+  EXPECT_EQ(both.value().done, first + 1U);
   const Result<Progress> some = effect.value().prepare_pipelines(3);
   ASSERT_OK(some);
-  EXPECT_EQ(some.value().done, 5U);
+  EXPECT_EQ(some.value().done, first + 4U);
   const Result<Progress> all = effect.value().prepare_pipelines();
   ASSERT_OK(all);
   EXPECT_TRUE(all.value().complete());
   EXPECT_EQ(all.value().total, some.value().total);
+  // Nothing is left to be made, whatever the parameters: the count stays what it is.
+  for (const MediumKind medium : {MediumKind::atmosphere, MediumKind::homogeneous}) {
+    for (const std::uint32_t downscale : {1U, 2U, 4U}) {
+      Params params = with_technique(Technique::epipolar);
+      params.scattering.medium = medium;
+      params.scattering.downscale = downscale;
+      ASSERT_OK(effect.value().set_params(params));
+    }
+  }
+  const Result<Progress> after = effect.value().prepare_pipelines(0);
+  ASSERT_OK(after);
+  EXPECT_EQ(after.value().done, all.value().total);
 }
 
 // Limits can change: what the effect then takes is what it takes when created with them, and it draws the same.

@@ -1,0 +1,43 @@
+// Blocks of 2 x 2 pixels: how far away they are, and the list of those whose pixels are done each by itself. Include after
+// declaring medium, frame, epipolar, scene_depth, broken, broken_list, and unwarp.glsl.
+#ifndef TYNDALL_BLOCK_GLSL
+#define TYNDALL_BLOCK_GLSL
+
+#include "epipolar/work_list.glsl"
+
+const uint kScene = 1u;
+const uint kPlanet = 2u;  // where nothing was drawn
+const uint kSky = 4u;
+
+struct Block {
+  ivec2 pixel[4];
+  float visible_m[4];
+  bool sky[4];
+  uint kinds;  // all that were found
+  float nearest_m;  // of the scene
+  float farthest_m;
+};
+
+void look_at_pixel(inout Block block, int k) {
+  vec2 position = vec2(block.pixel[k]) + 0.5;
+  float depth = texelFetch(scene_depth, block.pixel[k], 0).r;
+  bool sky = depth == frame.sky_depth;
+  float visible_m = view_depth(frame, position, depth);
+  vec3 direction = frame.ray_origin + position.x * frame.ray_x + position.y * frame.ray_y;
+  bool planet = dot(direction, frame.camera_up) < frame.horizon_cos * length(direction);
+  block.sky[k] = sky;
+  block.visible_m[k] = visible_m;
+  block.kinds |= !sky ? kScene : planet ? kPlanet : kSky;
+  block.nearest_m = sky ? block.nearest_m : min(block.nearest_m, visible_m);
+  block.farthest_m = sky ? block.farthest_m : max(block.farthest_m, visible_m);
+}
+
+void list_broken(ivec2 corner) {
+  uint at = atomicAdd(broken.count, 1u);
+  broken_list[at] = uint(corner.y) << 16u | uint(corner.x);
+  uint groups = (4u * at + 4u + kMarchGroup - 1u) / kMarchGroup;
+  atomicMax(broken.groups_x, groups_along_x(groups));
+  atomicMax(broken.groups_y, groups_along_y(groups));
+}
+
+#endif

@@ -1,0 +1,33 @@
+// The four reduced pixels around a pixel of the whole picture. Include after declaring reduced and unwarp.glsl.
+#ifndef TYNDALL_REDUCED_AROUND_GLSL
+#define TYNDALL_REDUCED_AROUND_GLSL
+
+#include "epipolar/reduced.glsl"
+
+// `part`: of the way from the first to the last. Where the picture ends there are fewer than four.
+void reduced_around(ivec2 pixel, out vec2 part, out Sample around[4]) {
+  ivec2 at = reduced_before(pixel, part);
+  ivec2 most = ivec2(epipolar.reduced_width, epipolar.reduced_height) - 1;
+  for (int k = 0; k < 4; ++k) {
+    uint index = reduced_index(clamp(at + ivec2(k & 1, k >> 1), ivec2(0), most));
+    vec4 source = reduced[index];
+    around[k].source = source.rgb;
+    around[k].depth_m = source.a;
+    uint behind = epipolar.reduced_width * epipolar.reduced_height;
+    around[k].density = kHomogeneous ? vec3(0.0) : reduced[behind + index].rgb;
+  }
+}
+
+vec4 bilinear_weights(vec2 part) {
+  return vec4((1.0 - part.x) * (1.0 - part.y), part.x * (1.0 - part.y), (1.0 - part.x) * part.y, part.x * part.y);
+}
+
+Blend blend_reduced(Sample around[4], vec4 w) {
+  Blend b;
+  b.weight = 1.0;
+  b.source = w.x * around[0].source + w.y * around[1].source + w.z * around[2].source + w.w * around[3].source;
+  b.density = w.x * around[0].density + w.y * around[1].density + w.z * around[2].density + w.w * around[3].density;
+  return b;
+}
+
+#endif

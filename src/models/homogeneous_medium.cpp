@@ -1,0 +1,97 @@
+#include "models/homogeneous_medium.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "effect/medium.hpp"
+#include "models/glsl_double.hpp"
+
+namespace tyndall::models {
+namespace {
+
+constexpr int kZenithPanels = 48;  // of two Gauss nodes each
+constexpr int kAzimuths = 64;
+
+std::array<double, 3> times(const Vec3& v, const Vec3& by) {
+  return {static_cast<double>(v.x) * static_cast<double>(by.x), static_cast<double>(v.y) * static_cast<double>(by.y),
+          static_cast<double>(v.z) * static_cast<double>(by.z)};
+}
+
+// The length of a ray in the medium.
+double length_in(const HomogeneousMedium& m, double altitude_m, double cos_zenith) {
+  double start = 0.0;
+  double end = m.extent_m;
+  double near = 0.0;
+  double far = 0.0;
+  if (glsl64::ray_hits_ground(altitude_m, cos_zenith, m.planet_radius_m) &&
+      glsl64::shell_intersections(altitude_m, cos_zenith, std::min(altitude_m, 0.0), m.planet_radius_m, near, far)) {
+    end = std::max(near, 0.0);
+  }
+  // Below the plane height_m: on the near side of where the ray leaves it, or the far side of where it enters.
+  const double below = m.height_m - altitude_m;
+  if (cos_zenith > 0.0) end = std::min(end, below / cos_zenith);
+  if (cos_zenith < 0.0) start = std::max(below / cos_zenith, 0.0);
+  if (cos_zenith == 0.0 && below < 0.0) end = 0.0;
+  return std::max(end - start, 0.0);
+}
+
+}  // namespace
+
+HomogeneousMedium homogeneous_medium_from_params(const Params& params) {
+  const shared::Medium sea_level = medium_from_params(params);
+  const HomogeneousMediumParams& p = params.homogeneous_medium;
+  HomogeneousMedium out;
+  out.rayleigh_scattering = times(sea_level.rayleigh_scattering, Vec3(p.density));
+  out.mie_scattering = times(sea_level.mie_scattering, Vec3(p.density));
+  out.extinction = times(sea_level.mie_extinction, Vec3(p.density));
+  for (std::size_t c = 0; c < 3; ++c) out.extinction[c] += out.rayleigh_scattering[c];
+  out.sunlight = times(p.sunlight, Vec3(1.0F));
+  out.g = params.atmosphere.mie_g;
+  out.cornette_shanks = params.atmosphere.mie_phase == MiePhase::cornette_shanks;
+  out.planet_radius_m = params.planet.radius_m;
+  out.extent_m = p.extent_m;
+  out.height_m = p.height_m;
+  return out;
+}
+
+Answer homogeneous_medium_light(const HomogeneousMedium& m, const Ray& ray) {
+  const double length = length_in(m, ray.altitude_m, ray.cos_view_zenith);
+  const double rayleigh = glsl64::rayleigh_phase(ray.cos_view_sun);
+  const double mie = m.cornette_shanks ? glsl64::cornette_shanks_phase(ray.cos_view_sun, m.g)
+                                       : glsl64::henyey_greenstein_phase(ray.cos_view_sun, m.g);
+  Answer out;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double tau = m.extinction[c] * length;
+    // (1 - exp(-tau)) / sigma; the length itself where there is nothing.
+    const double lit = m.extinction[c] > 0.0 ? -std::expm1(-tau) / m.extinction[c] : length;
+    out.radiance[c] = m.sunlight[c] * (m.rayleigh_scattering[c] * rayleigh + m.mie_scattering[c] * mie) * lit;
+    out.transmittance[c] = std::exp(-tau);
+  }
+  return out;
+}
+
+// Even steps of the azimuth, which is periodic, and Gauss nodes in x with zenith angle (1 - x^2) 90 deg.
+std::array<double, 3> homogeneous_medium_sky(const HomogeneousMedium& m, double altitude_m, double cos_sun_zenith) {
+  const double sin_sun = std::sqrt(std::max(1.0 - cos_sun_zenith * cos_sun_zenith, 0.0));
+  std::array<double, 3> sum = {};
+  for (int i = 0; i < 2 * kZenithPanels; ++i) {
+    const double node = (i % 2 == 0 ? -1.0 : 1.0) / std::numbers::sqrt3;
+    const double x = (i / 2 + 0.5 + 0.5 * node) / kZenithPanels;
+    const double zenith = 0.5 * std::numbers::pi * (1.0 - x * x);
+    const double weight = std::numbers::pi * x / (2.0 * kZenithPanels);  // |d zenith / d x| times the node's
+    const double mu = std::cos(zenith);
+    const double sine = std::sin(zenith);
+    for (int k = 0; k < kAzimuths; ++k) {
+      const double azimuth = 2.0 * std::numbers::pi * (k + 0.5) / kAzimuths;
+      const double nu = mu * cos_sun_zenith + sine * sin_sun * std::cos(azimuth);
+      const Answer answer = homogeneous_medium_light(m, {altitude_m, mu, cos_sun_zenith, nu});
+      for (std::size_t c = 0; c < 3; ++c) {
+        sum[c] += answer.radiance[c] * weight * mu * sine * 2.0 * std::numbers::pi / kAzimuths;
+      }
+    }
+  }
+  return sum;
+}
+
+}  // namespace tyndall::models

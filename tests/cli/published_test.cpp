@@ -1,0 +1,298 @@
+// `tyndall probe` against the equations of the documents, evaluated here in double precision from the text alone, for
+// random rays and media: Hoffman and Preetham (2002), O'Neil (2005) with its printed polynomial, his table (2004) against
+// the columns that it stands for, and the homogeneous medium of Yusov (2012). Nothing of the library's own is used.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+
+#include "config/csv.hpp"
+#include "config/text.hpp"
+#include "run_tyndall.hpp"
+
+namespace tyndall::cli {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kTolerance = 1e-3;
+using Rgb = std::array<double, 3>;
+
+struct Direction {
+  double up = 1.0, across = 0.0, aside = 0.0;
+};
+Direction direction(double zenith, double azimuth) {
+  return {std::cos(zenith), std::sin(zenith) * std::cos(azimuth), std::sin(zenith) * std::sin(azimuth)};
+}
+double dot(const Direction& a, const Direction& b) { return a.up * b.up + a.across * b.across + a.aside * b.aside; }
+Direction along(const Direction& p, const Direction& d, double t) {
+  return {p.up + t * d.up, p.across + t * d.across, p.aside + t * d.aside};
+}
+
+struct Question {
+  double altitude_m = 0.0, view_deg = 0.0, sun_deg = 0.0, azimuth_deg = 0.0;
+  [[nodiscard]] Direction view() const { return direction(view_deg * kPi / 180.0, 0.0); }
+  [[nodiscard]] Direction sun() const { return direction(sun_deg * kPi / 180.0, azimuth_deg * kPi / 180.0); }
+};
+struct Seen {
+  Rgb radiance = {}, transmittance = {};
+};
+
+struct Coefficients {
+  Rgb rayleigh = {}, mie = {}, absorption = {};
+  double g = 0.0;
+};
+
+// 3 / (16 pi) (1 + cos^2), and what Cornette and Shanks or Henyey and Greenstein wrote, positive g forwards.
+double rayleigh_phase(double c) { return 3.0 / (16.0 * kPi) * (1.0 + c * c); }
+double henyey_greenstein(double c, double g) { return (1.0 - g * g) / (4.0 * kPi * std::pow(1.0 + g * g - 2.0 * g * c, 1.5)); }
+double cornette_shanks(double c, double g) {
+  return 3.0 * (1.0 - g * g) * (1.0 + c * c) / (8.0 * kPi * (2.0 + g * g) * std::pow(1.0 + g * g - 2.0 * g * c, 1.5));
+}
+
+class CliPublished : public testing::Test {
+ protected:
+  std::mt19937 engine_{2002};
+  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
+  // Numbers that survive being floats, which parameters are.
+  double number(double low, double high) { return static_cast<double>(static_cast<float>(uniform(low, high))); }
+  Coefficients coefficients() {
+    Coefficients c;
+    for (std::size_t i = 0; i < 3; ++i) {
+      c.rayleigh[i] = number(3e-6, 4e-5);
+      c.mie[i] = number(2e-6, 4e-5);
+      c.absorption[i] = number(0.0, 5e-6);
+    }
+    c.g = number(-0.5, 0.9);
+    return c;
+  }
+  static std::string text(double value) {
+    char out[40];
+    std::snprintf(out, sizeof out, "%.17g", value);
+    return out;
+  }
+  static std::vector<std::string> with(const Coefficients& c, std::vector<std::string> more) {
+    const auto vec = [](const Rgb& v) { return text(v[0]) + "," + text(v[1]) + "," + text(v[2]); };
+    for (const std::string& set :
+         {std::string("atmosphere.custom_coefficients=true"), "atmosphere.rayleigh_scattering=" + vec(c.rayleigh),
+          "atmosphere.mie_scattering=" + vec(c.mie), "atmosphere.mie_absorption=" + vec(c.absorption),
+          "atmosphere.mie_g=" + text(c.g), std::string("atmosphere.ozone_absorption=0,0,0")}) {
+      more.insert(more.end(), {"--set", set});
+    }
+    return more;
+  }
+  // Asks, and holds every answer against `truth`.
+  void expect_published(const std::vector<std::string>& arguments, const std::vector<Question>& questions,
+                        const std::function<Seen(const Question&)>& truth) {
+    std::string csv = "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n";
+    for (const Question& q : questions) {
+      csv += text(q.altitude_m) + "," + text(q.view_deg) + "," + text(q.sun_deg) + "," + text(q.azimuth_deg) + "\n";
+    }
+    std::vector<std::string> all = {"probe", "--queries", scratch_.write("q.csv", csv)};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    const Outcome outcome = run_tyndall(all);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const Result<config::CsvTable> table = config::parse_csv(outcome.out, "output");
+    ASSERT_TRUE(table.ok());
+    ASSERT_EQ(table.value().rows(), questions.size());
+    double worst = 0.0;
+    for (std::size_t row = 0; row < questions.size(); ++row) {
+      const Seen right = truth(questions[row]);
+      for (std::size_t c = 0; c < 3; ++c) {
+        for (const bool light : {true, false}) {
+          const std::string column = std::string(light ? "L_" : "T_") + "rgb"[c];
+          const double published = light ? right.radiance[c] : right.transmittance[c];
+          double found = -1.0;
+          static_cast<void>(config::read_number(table.value().field(row, table.value().find(column).front()), found));
+          EXPECT_NEAR(found, published, kTolerance * published + 1e-12)
+              << column << ": altitude " << questions[row].altitude_m << " view " << questions[row].view_deg << " sun "
+              << questions[row].sun_deg << " azimuth " << questions[row].azimuth_deg;
+          worst = std::max(worst, std::abs(found - published) / std::max(published, 1e-9));
+        }
+      }
+    }
+    RecordProperty("worst", std::to_string(worst));
+  }
+
+  Scratch scratch_;
+};
+
+// Equation 5 for the optical lengths, and the sky of two shells.
+TEST_F(CliPublished, HoffmanAndPreetham) {
+  for (int medium = 0; medium < 4; ++medium) {
+    const Coefficients k = coefficients();
+    const double air_m = number(5000.0, 12000.0);
+    const double haze_m = number(500.0, 4000.0);
+    std::vector<Question> questions;
+    for (int i = 0; i < 100; ++i) questions.push_back({uniform(0.0, 5000.0), uniform(0.0, 89.9), uniform(0.0, 89.9), uniform(0.0, 360.0)});
+    const auto length = [](double zenith_m, double deg) {
+      return zenith_m / (std::cos(deg * kPi / 180.0) + 0.15 * std::pow(93.885 - deg, -1.253));
+    };
+    expect_published(
+        with(k, {"--model", "homogeneous", "--set", "homogeneous.air_length_m=" + text(air_m), "--set",
+                 "homogeneous.haze_length_m=" + text(haze_m)}),
+        questions, [&](const Question& q) {
+          const double nu = dot(q.view(), q.sun());
+          Seen out;
+          for (std::size_t c = 0; c < 3; ++c) {
+            const double haze_ex = k.mie[c] + k.absorption[c];
+            const double sun = std::exp(-(k.rayleigh[c] * length(air_m, q.sun_deg) + haze_ex * length(haze_m, q.sun_deg)));
+            const double both = k.rayleigh[c] + haze_ex;
+            const double low_m = length(haze_m, q.view_deg);
+            const double high_m = length(air_m, q.view_deg) - low_m;
+            const double air = k.rayleigh[c] * rayleigh_phase(nu);
+            const double low = (air + k.mie[c] * henyey_greenstein(nu, k.g)) / both * (1.0 - std::exp(-both * low_m));
+            const double high = air / k.rayleigh[c] * (1.0 - std::exp(-k.rayleigh[c] * high_m));
+            out.radiance[c] = sun * (low + std::exp(-both * low_m) * high);
+            out.transmittance[c] = std::exp(-both * low_m - k.rayleigh[c] * high_m);
+          }
+          return out;
+        });
+  }
+}
+
+// The sum of chapter 16 for rays that leave the air, with columns from whatever function.
+using Column = std::function<double(double height_m, double scale_height_m, double cos_zenith)>;
+Seen oneil(const Question& q, const Coefficients& k, double radius_m, double top_m, const Rgb& scale_heights_m, int samples,
+           const Column& column) {
+  const Direction eye = {radius_m + q.altitude_m, 0.0, 0.0};
+  const Direction view = q.view();
+  const Direction sun = q.sun();
+  const double b = dot(eye, view);
+  const double end = -b + std::sqrt(b * b - dot(eye, eye) + (radius_m + top_m) * (radius_m + top_m));
+  const double nu = dot(view, sun);
+  Rgb start = {};
+  for (std::size_t s = 0; s < 2; ++s) start[s] = column(q.altitude_m, scale_heights_m[s], view.up);
+  Seen out;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double out_c = k.mie[c] + k.absorption[c];
+    for (int i = 0; i < samples; ++i) {
+      const Direction p = along(eye, view, (i + 0.5) * end / samples);
+      const double r = std::sqrt(dot(p, p));
+      Rgb tau = {};
+      for (std::size_t s = 0; s < 2; ++s) {
+        tau[s] = start[s] - column(r - radius_m, scale_heights_m[s], dot(p, view) / r) +
+                 column(r - radius_m, scale_heights_m[s], dot(p, sun) / r);
+      }
+      out.radiance[c] += end / samples * std::exp(-k.rayleigh[c] * tau[0] - out_c * tau[1]) *
+                         (k.rayleigh[c] * std::exp(-(r - radius_m) / scale_heights_m[0]) * rayleigh_phase(nu) +
+                          k.mie[c] * std::exp(-(r - radius_m) / scale_heights_m[1]) * cornette_shanks(nu, k.g));
+    }
+    out.transmittance[c] = std::exp(-k.rayleigh[c] * start[0] - out_c * start[1]);
+  }
+  return out;
+}
+
+TEST_F(CliPublished, ONeilWithThePrintedPolynomial) {
+  constexpr double kRadius = 6360000.0;
+  constexpr double kTop = 159000.0;
+  constexpr double kScaleHeight = 39750.0;  // a quarter of the thickness, for which the polynomial is
+  for (int medium = 0; medium < 4; ++medium) {
+    const Coefficients k = coefficients();
+    std::vector<Question> questions;
+    for (int i = 0; i < 100; ++i) questions.push_back({uniform(0.0, 150000.0), uniform(0.0, 85.0), uniform(0.0, 85.0), uniform(0.0, 360.0)});
+    // In the document's unit, the thickness of the air; the column down to where nothing is left is that to the top.
+    const Column printed = [&](double height_m, double scale_height_m, double cos_zenith) {
+      const double x = 1.0 - cos_zenith;
+      const double scale = scale_height_m / kTop * std::exp(-0.00287 + x * (0.459 + x * (3.83 + x * (-6.80 + x * 5.25))));
+      return kTop * std::exp(-height_m / scale_height_m) * scale;
+    };
+    const int samples = 2 + 3 * medium;
+    expect_published(
+        with(k, {"--model", "oneil", "--set", "oneil.scale_function=published", "--set", "oneil.samples=" + std::to_string(samples),
+                 "--set", "planet.radius_m=6360000", "--set", "atmosphere.height_m=159000", "--set",
+                 "atmosphere.rayleigh_scale_height_m=39750", "--set", "atmosphere.mie_scale_height_m=39750"}),
+        questions, [&](const Question& q) {
+          Seen out = oneil(q, k, kRadius, kTop, {kScaleHeight, kScaleHeight, 0.0}, samples, printed);
+          // What is left at the top is subtracted from the whole path too.
+          const Direction eye = {kRadius + q.altitude_m, 0.0, 0.0};
+          const Direction view = q.view();
+          const double b = dot(eye, view);
+          const double end = -b + std::sqrt(b * b - dot(eye, eye) + (kRadius + kTop) * (kRadius + kTop));
+          const Direction top = along(eye, view, end);
+          for (std::size_t c = 0; c < 3; ++c) {
+            const double column = printed(q.altitude_m, kScaleHeight, view.up) - printed(kTop, kScaleHeight, dot(top, view) / (kRadius + kTop));
+            out.transmittance[c] = std::exp(-(k.rayleigh[c] + k.mie[c] + k.absorption[c]) * column);
+          }
+          return out;
+        });
+  }
+}
+
+TEST_F(CliPublished, ONeilsTable) {
+  constexpr double kRadius = 6360000.0;
+  constexpr double kTop = 80000.0;
+  const Coefficients k = coefficients();
+  std::vector<Question> questions;
+  for (int i = 0; i < 60; ++i) questions.push_back({uniform(0.0, 40000.0), uniform(0.0, 85.0), uniform(0.0, 85.0), uniform(0.0, 360.0)});
+  // To the top, by Simpson's rule in a coordinate that has most points where the air is dense.
+  const Column column = [](double height_m, double scale_height_m, double cos_zenith) {
+    const double r = kRadius + height_m;
+    const double end = -r * cos_zenith + std::sqrt(std::max(r * r * (cos_zenith * cos_zenith - 1.0) + (kRadius + kTop) * (kRadius + kTop), 0.0));
+    constexpr int kSteps = 400;
+    double sum = 0.0;
+    for (int i = 0; i <= kSteps; ++i) {
+      const double x = static_cast<double>(i) / kSteps;
+      const double t = end * x * x * x;
+      const double h = std::sqrt(r * r + 2.0 * r * t * cos_zenith + t * t) - kRadius;
+      const double weight = i == 0 || i == kSteps ? 1.0 : i % 2 == 1 ? 4.0 : 2.0;
+      sum += weight * 3.0 * x * x * end * std::exp(-h / scale_height_m);
+    }
+    return sum / (3.0 * kSteps);
+  };
+  expect_published(with(k, {"--model", "oneil-table", "--set", "oneil.table_size=512", "--set", "oneil.samples=12"}), questions,
+                   [&](const Question& q) { return oneil(q, k, kRadius, kTop, {7994.0, 1200.0, 0.0}, 12, column); });
+}
+
+// The in-scattering integral under the assumptions of section 2, by Simpson's rule, out to the extent, the planet or the
+// flat top.
+TEST_F(CliPublished, TheHomogeneousMediumOf2012) {
+  for (int medium = 0; medium < 4; ++medium) {
+    const Coefficients k = coefficients();
+    const double density = number(0.01, 3.0);
+    const double height_m = number(500.0, 6000.0);
+    const double extent_m = number(20000.0, 200000.0);
+    const bool hg = medium % 2 == 0;
+    std::vector<Question> questions;
+    for (int i = 0; i < 100; ++i) questions.push_back({uniform(0.0, 8000.0), uniform(0.0, 180.0), uniform(0.0, 180.0), uniform(0.0, 360.0)});
+    expect_published(
+        with(k, {"--model", "homogeneous-medium", "--set", "homogeneous_medium.density=" + text(density), "--set",
+                 "homogeneous_medium.height_m=" + text(height_m), "--set", "homogeneous_medium.extent_m=" + text(extent_m), "--set",
+                 "homogeneous_medium.sunlight=1,0.5,0.25", "--set",
+                 std::string("atmosphere.mie_phase=") + (hg ? "henyey-greenstein" : "cornette-shanks")}),
+        questions, [&](const Question& q) {
+          constexpr double kRadius = 6360000.0;
+          const Direction eye = {kRadius + q.altitude_m, 0.0, 0.0};
+          const double b = dot(eye, q.view());
+          const double ground = b * b - dot(eye, eye) + kRadius * kRadius;
+          double end = ground > 0.0 && b < 0.0 ? -b - std::sqrt(ground) : extent_m;
+          double start = 0.0;
+          const double crossing = (height_m - q.altitude_m) / q.view().up;
+          if (q.altitude_m > height_m) start = crossing > 0.0 ? crossing : end;
+          if (q.altitude_m <= height_m && q.view().up > 0.0) end = std::min(end, crossing);
+          const double length = std::max(end - start, 0.0);
+          const double nu = dot(q.view(), q.sun());
+          const Rgb sunlight = {1.0, 0.5, 0.25};
+          Seen out;
+          for (std::size_t c = 0; c < 3; ++c) {
+            const double sigma = density * (k.rayleigh[c] + k.mie[c] + k.absorption[c]);
+            constexpr int kSteps = 1000;
+            double sum = 0.0;
+            for (int i = 0; i <= kSteps; ++i) {
+              const double weight = i == 0 || i == kSteps ? 1.0 : i % 2 == 1 ? 4.0 : 2.0;
+              sum += weight * std::exp(-sigma * length * i / kSteps);
+            }
+            const double phase = k.rayleigh[c] * rayleigh_phase(nu) +
+                                 k.mie[c] * (hg ? henyey_greenstein(nu, k.g) : cornette_shanks(nu, k.g));
+            out.radiance[c] = sunlight[c] * density * phase * sum * length / (3.0 * kSteps);
+            out.transmittance[c] = std::exp(-sigma * length);
+          }
+          return out;
+        });
+  }
+}
+
+}  // namespace
+}  // namespace tyndall::cli
