@@ -16,7 +16,7 @@ std::vector<fs::path> data_folders() {
   if (const char* place = std::getenv("TYNDALL_DATA"); place != nullptr && *place != '\0') out.emplace_back(place);
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (!error) out.push_back(program.parent_path() / ".." / TYNDALL_DATA_FROM_PROGRAM);
+  if (!error) out.push_back(program.parent_path() / TYNDALL_DATA_FROM_PROGRAM);
   out.emplace_back(TYNDALL_SOURCE_FOLDER);
   return out;
 }

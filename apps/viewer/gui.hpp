@@ -7,7 +7,7 @@
 
 #include "files.hpp"
 #include "pictures.hpp"
-#include "scene/scene.hpp"
+#include "scene_work.hpp"
 #include "widgets.hpp"
 
 namespace tyndall::viewer {
@@ -54,7 +54,7 @@ struct GuiRequests {
 
 // What the GUI shows of the program.
 struct GuiFacts {
-  const scene::Scene* scene = nullptr;
+  const SceneFacts* scene = nullptr;  // of the left side
   const FrameTimes* times = nullptr;
   std::string device, state_file, present_mode;
   VkExtent2D window = {}, picture = {};

@@ -1,19 +1,12 @@
-// What the window shows under the GUI: the picture, two pictures compared, or one of the images and tables that it
-// was made from.
+// What the window shows under the GUI: the canvas of a scene, or two of them compared. Works on the window's device, on
+// the GUI's thread; goes on showing the last canvas while the scene is worked on.
 #pragma once
 
-#include "gpu/pipeline.hpp"
-#include "gpu/resource.hpp"
-#include "scene/scene.hpp"
+#include <array>
+
+#include "canvas.hpp"
 
 namespace tyndall::viewer {
-
-enum class Shown : int {
-  picture, radiance, color, depth, shadow_map, single_rayleigh, single_mie, high_orders, sun_transmittance, sky_irradiance
-};
-constexpr int kShownCount = 10;
-[[nodiscard]] const char* name_of(Shown shown);
-[[nodiscard]] const char* meaning_of(Shown shown);
 
 struct PictureOptions {
   Shown shown = Shown::picture;
@@ -25,20 +18,25 @@ struct PictureOptions {
   float divider = 0.5F;  // of the window's width
 };
 
+// What the canvases of a window of this size are to show.
+[[nodiscard]] View view_of(const PictureOptions& options, VkExtent2D window);
+
 class Pictures {
  public:
-  Result<void> create(const gpu::Device& device, VkFormat format);
-  // Inside a rendering scope over the window. `other` may be null.
-  Result<void> record(VkCommandBuffer cmd, VkExtent2D window, scene::Scene& scene, scene::Scene* other,
-                      const PictureOptions& options);
+  Result<void> create(gpu::Host& host, VkFormat format);
+  // Takes a canvas, 0: left or only, 1: right.
+  Result<void> take(std::size_t side, Picture picture);
+  void forget(std::size_t side) { sides_.at(side) = {}; }
+  [[nodiscard]] bool has(std::size_t side) const { return sides_.at(side) != nullptr; }
+  // Inside a rendering scope over the window.
+  Result<void> record(VkCommandBuffer cmd, VkExtent2D window, bool two, const PictureOptions& options);
 
  private:
-  Result<void> draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline, std::span<const gpu::NamedResource> resources,
-                    const void* push);
-
-  const gpu::Device* device_ = nullptr;
-  gpu::Pipeline picture_, depth_, layer_, table_;
-  gpu::Handle<VkSampler> linear_, nearest_;
+  gpu::Host* host_ = nullptr;
+  gpu::Pipeline present_;
+  gpu::Handle<VkSampler> sampler_;
+  std::array<std::shared_ptr<const gpu::Image>, 2> sides_;
+  std::shared_ptr<const gpu::Image> nothing_;  // one dark texel, until there is a picture
 };
 
 }  // namespace tyndall::viewer

@@ -42,7 +42,7 @@ VkImageMemoryBarrier to_attachment(VkImage image) {
 Screen::~Screen() {
   if (host_ == nullptr) return;
   const VkDevice device = host_->device().device;
-  vkDeviceWaitIdle(device);
+  wait_idle();
   if (gui_) ImGui_ImplVulkan_Shutdown();
   destroy_targets();
   if (swapchain_ != VK_NULL_HANDLE) vkDestroySwapchainKHR(device, swapchain_, nullptr);
@@ -162,7 +162,7 @@ Result<void> Screen::start_gui() {
 
 Result<void> Screen::recover() {
   const VkDevice device = host_->device().device;
-  vkDeviceWaitIdle(device);
+  wait_idle();
   destroy_targets();
   if (swapchain_ != VK_NULL_HANDLE) vkDestroySwapchainKHR(device, swapchain_, nullptr);
   swapchain_ = VK_NULL_HANDLE;
@@ -184,6 +184,11 @@ const char* Screen::present_mode() const {
     case VK_PRESENT_MODE_FIFO_KHR: return "fifo";
     default: return "other";
   }
+}
+
+void Screen::wait_idle() {
+  const std::unique_lock<std::mutex> locked = host_->lock();
+  vkDeviceWaitIdle(host_->device().device);
 }
 
 void Screen::destroy_targets() {
@@ -218,7 +223,7 @@ Result<bool> Screen::create_swapchain() {
   if (!vsync_ && offers(VK_PRESENT_MODE_MAILBOX_KHR)) mode_ = VK_PRESENT_MODE_MAILBOX_KHR;
   if (!vsync_ && offers(VK_PRESENT_MODE_IMMEDIATE_KHR)) mode_ = VK_PRESENT_MODE_IMMEDIATE_KHR;
 
-  vkDeviceWaitIdle(device);
+  wait_idle();
   VkSwapchainCreateInfoKHR info = {};
   info.sType = VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR;
   info.surface = surface_;

@@ -52,6 +52,7 @@ class Screen {
   Result<void> start_gui();
   Result<bool> create_swapchain();  // false: the window has no area now
   void destroy_targets();
+  void wait_idle();
   Result<void> record(VkCommandBuffer cmd, const Target& target,
                       const std::function<Result<void>(VkCommandBuffer, VkExtent2D)>& picture);
 

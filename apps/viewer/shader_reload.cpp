@@ -89,7 +89,8 @@ ShaderReload::~ShaderReload() {
 }
 
 std::span<const std::uint32_t> ShaderReload::replace(void* user, std::string_view name) {
-  const auto* self = static_cast<const ShaderReload*>(user);
+  auto* self = static_cast<ShaderReload*>(user);
+  const std::lock_guard<std::mutex> locked(self->mutex_);
   const auto found = self->words_.find(name);
   return found == self->words_.end() ? std::span<const std::uint32_t>() : std::span<const std::uint32_t>(found->second);
 }
@@ -141,7 +142,9 @@ ShaderReload::Compiled ShaderReload::compile(const std::string& folder) {
 
 void ShaderReload::revert() {
   if (before_.empty()) return;
-  words_ = std::move(before_.back());
+  const std::lock_guard<std::mutex> locked(mutex_);
+  std::swap(words_, before_.back());
+  refused_.push_back(std::move(before_.back()));
   before_.pop_back();
 }
 
@@ -177,6 +180,7 @@ Result<ShaderReload::Outcome> ShaderReload::finish() {
     if (of_tables && compiled.changed.contains(row.shader->name)) out.tables_differ = true;
   }
   if (out.changed > 0 || out.restored > 0) {
+    const std::lock_guard<std::mutex> locked(mutex_);
     before_.push_back(std::move(words_));
     words_ = std::move(compiled.changed);
   }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <future>
 #include <map>
+#include <mutex>
 #include <span>
 #include <string>
 #include <string_view>
@@ -47,8 +48,9 @@ class ShaderReload {
   };
   static Compiled compile(const std::string& folder);
 
+  std::mutex mutex_;  // of words_: threads that make pipelines ask for them
   std::map<std::string, Words, std::less<>> words_;  // of shaders other than the program's
-  std::vector<std::map<std::string, Words, std::less<>>> before_;  // pipelines may be being made from them
+  std::vector<std::map<std::string, Words, std::less<>>> before_, refused_;  // pipelines may be being made from them
   std::future<Compiled> compiling_;
 };
 

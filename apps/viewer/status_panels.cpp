@@ -19,8 +19,8 @@ void text_bytes(const char* name, VkDeviceSize bytes) {
 }
 
 // Shares of the picture by luminance in stops, and where the eye is.
-void histogram(const scene::Scene& scene) {
-  const post::Measurement m = scene.measurement();
+void histogram(const SceneFacts& scene) {
+  const post::Measurement& m = scene.measurement;
   float largest = 1.0e-4F;
   for (const float share : m.share) largest = std::max(largest, share);
   ImGui::PlotHistogram("##histogram", m.share.data(), static_cast<int>(m.share.size()), 0, nullptr, 0.0F, largest * 1.05F,
@@ -42,8 +42,8 @@ void histogram(const scene::Scene& scene) {
   ImGui::SameLine();
   ImGui::SetCursorPosX(ImGui::GetContentRegionMax().x - 40.0F);
   ImGui::TextDisabled("2^%.0f", last);
-  ImGui::Text("Exposure %.4g (%+.2f stops)", static_cast<double>(scene.exposure()),
-              std::log2(std::max(static_cast<double>(scene.exposure()), 1.0e-12)));
+  ImGui::Text("Exposure %.4g (%+.2f stops)", static_cast<double>(scene.exposure),
+              std::log2(std::max(static_cast<double>(scene.exposure), 1.0e-12)));
   ImGui::TextColored(ImVec4(0.47F, 0.78F, 1.0F, 1.0F), "Picture %.4g", static_cast<double>(m.measured));
   ImGui::SameLine();
   ImGui::TextColored(ImVec4(1.0F, 0.78F, 0.35F, 1.0F), "Eye %.4g", static_cast<double>(m.luminance));
@@ -104,11 +104,11 @@ void Gui::performance(const GuiFacts& facts) {
     }
     const bool light_open = ImGui::CollapsingHeader("Histogram and exposure", ImGuiTreeNodeFlags_DefaultOpen);
     widgets.place("histogram");
-    if (light_open && facts.scene != nullptr && facts.scene->can_render()) histogram(*facts.scene);
+    if (light_open && facts.scene != nullptr && facts.scene->can_render) histogram(*facts.scene);
     const bool memory_open = ImGui::CollapsingHeader("Memory");
     widgets.place("memory");
     if (memory_open && facts.scene != nullptr) {
-      const scene::Scene::Memory memory = facts.scene->memory();
+      const scene::Scene::Memory& memory = facts.scene->memory;
       if (ImGui::BeginTable("memory", 2, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp)) {
         for (const ResourceMemory& resource : memory.effect_resources) text_bytes(resource.name, resource.bytes);
         text_bytes("effect, persistent", memory.effect_persistent);
@@ -148,7 +148,7 @@ void Gui::views(const GuiFacts& facts, GuiRequests& requests) {
     }
     widgets.place("shown");
     ImGui::TextWrapped("%s", meaning_of(p.shown));
-    const int layers = facts.scene != nullptr ? static_cast<int>(facts.scene->images().shadow_maps.desc.layers) : 1;
+    const int layers = facts.scene != nullptr ? facts.scene->shadow_layers : 1;
     p.layer = std::clamp(p.layer, 0, layers - 1);
     ImGui::SetNextItemWidth(190.0F);
     if (p.shown == Shown::shadow_map) ImGui::SliderInt("Cascade", &p.layer, 0, layers - 1);

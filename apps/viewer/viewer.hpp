@@ -1,4 +1,4 @@
-// `tyndall view`: the interactive viewer. One thread draws the GUI and the scene; see stage.hpp for what runs beside it.
+// `tyndall view`: the interactive viewer. One thread draws the GUI; each scene has another, see stage.hpp.
 #pragma once
 
 #include <string>
@@ -20,7 +20,8 @@ struct ViewerDesc {
   std::string log;               // where what happens is written, a line each; empty: nowhere
   bool validation = false;
   // For tests: "walk" takes every parameter to both ends, "soak=SECONDS" changes them at random; then it leaves.
-  // "lose-surface" and "lose-device" act as if that had happened after some frames.
+  // "lose-surface" and "lose-device" act as if that had happened after some frames; "one-device" draws the window and
+  // the scenes on one device, whatever it is.
   std::string script;
   bool first_steps = true;       // show them when this is the first run
 };

@@ -41,7 +41,7 @@ void Viewer::do_requests(const GuiRequests& requests) {
     }
   }
   if (requests.restore) restore_state();
-  if (requests.screenshot) take_screenshot();
+  if (requests.screenshot) screenshot_wanted_ = true;
   if (requests.reload_shaders) start_reload();
   if (!requests.scene.empty()) load_file(requests.scene, true);
   if (!requests.preset.empty()) load_file(requests.preset, false);
@@ -81,21 +81,13 @@ void Viewer::load_file(const std::string& path, bool over_defaults) {
   log("loaded " + path);
 }
 
-void Viewer::take_screenshot() { screenshot_wanted_ = true; }
-
-// Called when the picture that is shown is that of the settings.
-void Viewer::write_screenshot() {
-  if (writing_.valid()) return;  // when the last one is written
+void Viewer::write_screenshot(Capture capture) {
   screenshot_wanted_ = false;
-  Result<image::Image> display = left_->scene()->display();
-  Result<image::Image> radiance = left_->scene()->radiance();
-  if (!display) return report(display.error());
-  if (!radiance) return report(radiance.error());
   const std::string stem = screenshot_stem(desc_.screenshots, {".png", ".exr"});
-  writing_ = std::async(std::launch::async, [stem, png = std::move(display).value(), exr = std::move(radiance).value(),
-                                             metadata = config::metadata(settings_)]() -> Result<std::string> {
-    Result<void> written = image::write_png(stem + ".png", png, metadata);
-    if (written) written = image::write_exr(stem + ".exr", exr, metadata);
+  writing_ = std::async(std::launch::async, [stem, shot = std::move(capture)]() -> Result<std::string> {
+    const auto metadata = config::metadata(shot.settings);
+    Result<void> written = image::write_png(stem + ".png", shot.display, metadata);
+    if (written) written = image::write_exr(stem + ".exr", shot.radiance, metadata);
     Window::wake();
     if (!written) return written.error();
     return stem;
@@ -141,31 +133,12 @@ Result<void> Viewer::finish_reload() {
   desc_.make_tables.build_anew = outcome.tables_differ;
   if (outcome.tables_differ) desc_.make_tables.cache.place = "off";
   next_ = std::make_unique<Stage>();
-  return make_stage(*next_, settings_);
-}
-
-Result<void> Viewer::poll_next() {
-  if (next_ == nullptr) return {};
-  if (Result<void> polled = next_->poll(); !polled) {
-    next_.reset();
-    shaders_->revert();
-    shader_message_ = polled.error().message;
-    log("shaders failed " + polled.error().message);
-    return polled;
-  }
-  if (!next_->ready()) return {};
-  left_ = std::move(next_);
-  other_.reset();  // made anew, if it is still wanted
-  pipelines_ = {};
-  shader_message_.clear();
-  tell("The shaders are rebuilt");
-  log("shaders rebuilt");
+  make_stage(*next_);
   return {};
 }
 
 Error Viewer::after_loss(const Error& error) {
-  const bool gone = error.code == ErrorCode::device_lost || error.vk_result == VK_ERROR_DEVICE_LOST ||
-                    error.vk_result == VK_ERROR_SURFACE_LOST_KHR;
+  const bool gone = lost(error) || error.vk_result == VK_ERROR_SURFACE_LOST_KHR;
   log("failed " + error.message);
   if (!gone) return error;
   const bool surface = error.vk_result == VK_ERROR_SURFACE_LOST_KHR;

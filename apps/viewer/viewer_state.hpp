@@ -1,5 +1,5 @@
-// The viewer itself, between the window, the GUI and the scenes. viewer.cpp has the loop, viewer_actions.cpp what
-// keys and menus ask for.
+// The viewer itself, between the window, the GUI and the scenes. viewer.cpp has the loop, viewer_hands.cpp the flight,
+// viewer_scenes.cpp what becomes of the scenes, viewer_actions.cpp what keys and menus ask for.
 #pragma once
 
 #include <chrono>
@@ -12,10 +12,15 @@
 #include "script.hpp"
 #include "shader_reload.hpp"
 #include "stage.hpp"
+#include "step_times.hpp"
 #include "viewer.hpp"
 #include "window.hpp"
 
 namespace tyndall::viewer {
+
+[[nodiscard]] inline bool lost(const Error& error) {
+  return error.code == ErrorCode::device_lost || error.vk_result == VK_ERROR_DEVICE_LOST;
+}
 
 class Viewer {
  public:
@@ -26,8 +31,9 @@ class Viewer {
 
   Result<void> start();
   Result<void> loop();
-  [[nodiscard]] std::uint32_t validation_messages() const { return host_ != nullptr ? host_->validation_messages() : 0; }
-  [[nodiscard]] std::string validation_text() const { return host_ != nullptr ? host_->validation_text() : ""; }
+  // Of the validation layer, on both devices.
+  [[nodiscard]] std::uint32_t validation_messages() const;
+  [[nodiscard]] std::string validation_text() const;
   // What is left to do when the device or the surface is gone: keeps the state, and tells where.
   Error after_loss(const Error& error);
 
@@ -36,47 +42,59 @@ class Viewer {
 
   [[nodiscard]] double now() const;
   [[nodiscard]] double wait_time() const;
+  [[nodiscard]] bool resting() const;
+  [[nodiscard]] bool throttled() const;
+  [[nodiscard]] gpu::HostDesc host_desc() const;
+  Result<void> open_device();
+  Result<void> open_window_device();
   Result<void> step();
   void begin_gui();
-  void log_sets(const config::Settings& before, const config::Settings& after, const char* what);
-  void handle_events(const std::vector<Event>& events);
-  void handle_key(int key);
-  void fly(double seconds);
-  void follow_path(double seconds);
-  void take_camera();
-  void put_camera();
-  Result<void> follow();
-  Result<void> follow_side(Stage& stage, config::Settings& settings);
-  Result<void> work(bool idle);
-  void run_script();
-  void log_frame(const Stage& stage, double took);
-  Result<void> render();
-  double step_of(int side);
+  void draw_gui();
+  [[nodiscard]] GuiFacts gui_facts() const;
   Result<void> present();
   void report(const Error& error);
   void tell(const std::string& text);
   void log(const std::string& text) { log_.line(now(), text); }
+  void log_sets(const config::Settings& before, const config::Settings& after, const char* what);
+  void run_script();
+
+  void handle_events(const std::vector<Event>& events);
+  void handle_key(int key);
+  void fly(double seconds);
+  [[nodiscard]] bool flying() const;
+  [[nodiscard]] double ground_below(const SceneFacts& facts) const;
+  void follow_path(double seconds);
+  void take_camera();
+  void put_camera();
+
+  void make_stage(Stage& stage);
+  [[nodiscard]] Wish wish_of(const Stage& stage) const;
+  [[nodiscard]] VkExtent2D picture_extent() const;
+  void follow();
+  void launch_work();
+  [[nodiscard]] bool work_is_due() const;
+  Result<void> take_outcomes();
+  Result<void> take_outcome(std::size_t side, Outcome& outcome);
+  Result<void> take_next();
+  void log_frame(std::size_t side, double took_ms);
 
   void do_requests(const GuiRequests& requests);
   void save_state();
   void restore_state();
   void load_file(const std::string& path, bool over_defaults);
-  void take_screenshot();
-  void write_screenshot();
+  void write_screenshot(Capture capture);
   void start_reload();
   Result<void> finish_reload();
-  Result<void> poll_next();
   void finish_tasks();
-  Result<void> make_stage(Stage& stage, const config::Settings& settings);
-  [[nodiscard]] VkExtent2D picture_extent() const;
   [[nodiscard]] bool slow_device() const;
 
   ViewerDesc desc_;
   Clock::time_point started_ = Clock::now();
   EventLog log_;
-  std::vector<std::string> validation_log_;
   Window window_;
-  std::unique_ptr<gpu::Host> host_;
+  // The scenes' device, and the window's. On a device without a GPU the window has one of its own: a queue works through
+  // what it gets in order, and the GUI would wait for whole frames of the scene. The same one otherwise.
+  std::shared_ptr<gpu::Host> host_, window_host_;
   std::unique_ptr<ShaderReload> shaders_;  // outlives the scenes
   Screen screen_;
   Pictures pictures_;
@@ -85,8 +103,9 @@ class Viewer {
   config::Settings settings_, right_;   // wanted, of the left (or only) and the right side
   std::unique_ptr<Stage> left_, other_;
   std::unique_ptr<Stage> next_;         // with rebuilt shaders, until it can take the place of left_
+  std::optional<Picture> next_picture_;
   FrameTimes times_;
-  Progress pipelines_ = {};
+  StepTimes steps_;
 
   CameraState camera_;
   scene::CameraParams camera_params_;   // as put_camera() wrote them
@@ -100,7 +119,15 @@ class Viewer {
   double last_activity_ = 0.0;
   int frames_to_draw_ = 3;              // of the GUI, until it has settled
   std::uint64_t frames_ = 0;            // of the scene
-  bool turn_ = false;                   // whose turn it is to be rendered, with two sides
+  bool turn_ = false;                   // whose turn it is to be worked on, with two sides
+  bool again_[2] = {false, false};      // the scene's time has gone on
+  struct Pose {
+    CameraState camera;
+    scene::SunParams sun;
+  } drawn_camera_[2];                   // of the frame that is being drawn, or was last
+  bool settled_told_ = false;
+  double last_present_ = -1.0;
+  bool opened_ = false;                 // the window has shown something
   bool first_frame_told_ = false;
   bool two_shown_ = false;
   std::uint64_t shown_frame_ = 0;
@@ -108,10 +135,8 @@ class Viewer {
   bool screenshot_wanted_ = false;
   std::future<Result<std::string>> writing_;
   std::string shader_message_;
-  double longest_step_ms_ = 0.0;
   Script script_;
   double last_memory_ = -100.0;
-  double drawn_at_[2] = {0.0, 0.0};     // when each side was drawn or exposed last [s]
 };
 
 }  // namespace tyndall::viewer

@@ -1,4 +1,4 @@
-// The picture, or two side by side: left of the divider one setting, right of it the other.
+// What is shown, or two of it side by side: left of the divider one setting, right of it the other.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

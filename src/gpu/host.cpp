@@ -142,6 +142,7 @@ VkBool32 VKAPI_PTR Host::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT /*sev
                                     VkDebugUtilsMessageTypeFlagsEXT /*types*/,
                                     const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
   auto* host = static_cast<Host*>(user);
+  const std::lock_guard<std::mutex> telling(host->message_mutex_);
   if (++host->validation_count_ <= 8) host->validation_text_ += std::string(data->pMessage) + "\n";
   if (host->validation_log_ != nullptr) host->validation_log_->emplace_back(data->pMessage);
   return VK_FALSE;
@@ -304,7 +305,7 @@ Result<std::vector<DeviceRow>> Host::list(const std::string& wanted) {
 PFN_vkGetInstanceProcAddr Host::get_instance_proc_addr() const { return vkGetInstanceProcAddr; }
 
 Result<void> Host::run(const std::function<Result<void>(VkCommandBuffer)>& record) {
-  const std::unique_lock<std::mutex> locked = lock();
+  const std::lock_guard<std::mutex> running(run_mutex_);
   VkCommandBufferBeginInfo begin = {};
   begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
   begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
@@ -318,7 +319,10 @@ Result<void> Host::run(const std::function<Result<void>(VkCommandBuffer)>& recor
   submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
   submit.commandBufferCount = 1;
   submit.pCommandBuffers = &cmd_;
-  result = device_.vk.QueueSubmit(queue_, 1, &submit, fence_.get());
+  {
+    const std::unique_lock<std::mutex> locked = lock();
+    result = device_.vk.QueueSubmit(queue_, 1, &submit, fence_.get());
+  }
   if (result != VK_SUCCESS) return vulkan_error(result, "submitting", "a command buffer");
   const VkFence fence = fence_.get();
   result = device_.vk.WaitForFences(device_.device, 1, &fence, VK_TRUE, UINT64_MAX);

@@ -50,9 +50,9 @@ class Host {
   [[nodiscard]] const Device& device() const { return device_; }
   [[nodiscard]] PFN_vkGetInstanceProcAddr get_instance_proc_addr() const;
   [[nodiscard]] std::uint32_t queue_family() const { return queue_family_; }
-  // For submissions of the program's own, under the lock.
+  // For submissions of the program's own, and for waiting until the device is idle, under the lock.
   [[nodiscard]] VkQueue queue() const { return queue_; }
-  [[nodiscard]] std::unique_lock<std::mutex> lock() { return std::unique_lock(mutex_); }
+  [[nodiscard]] std::unique_lock<std::mutex> lock() { return std::unique_lock(queue_mutex_); }
   // See DeviceInfo::replace_shader: for every pipeline made from here on.
   void set_replace_shader(std::span<const std::uint32_t> (*replace)(void* user, std::string_view name), void* user) {
     device_.replace_shader = replace;
@@ -61,7 +61,7 @@ class Host {
   [[nodiscard]] std::string device_name() const { return device_.properties.deviceName; }
 
   // Records with `record` into a command buffer, submits it and waits until it has completed. From any thread: one
-  // after the other.
+  // after the other. The queue is locked for the submission only.
   Result<void> run(const std::function<Result<void>(VkCommandBuffer)>& record);
 
   // Messages of the validation layer so far (warnings and errors); the first ones are kept as text.
@@ -76,7 +76,7 @@ class Host {
                                        VkDebugUtilsMessageTypeFlagsEXT types,
                                        const VkDebugUtilsMessengerCallbackDataEXT* data, void* user);
 
-  std::mutex mutex_;  // of the queue and what run() uses
+  std::mutex queue_mutex_, run_mutex_;  // of the queue, and of what run() uses
   VkInstance instance_ = VK_NULL_HANDLE;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
   Device device_;
@@ -85,6 +85,7 @@ class Host {
   Handle<VkCommandPool> pool_;
   VkCommandBuffer cmd_ = VK_NULL_HANDLE;
   Handle<VkFence> fence_;
+  std::mutex message_mutex_;  // messages come from the thread that called
   std::atomic<std::uint32_t> validation_count_ = 0;
   std::string validation_text_;
   std::vector<std::string>* validation_log_ = nullptr;

@@ -84,8 +84,8 @@ class Scene {
   [[nodiscard]] Images images() const { return {display_, output_, color_, depth_, shadow_maps_}; }
   [[nodiscard]] VkExtent2D extent() const { return desc_.extent; }
   [[nodiscard]] const View& view() const { return view_; }
-  // Elevation of the ground below a point of the world [m].
-  [[nodiscard]] double ground_below(const glm::dvec3& world) const;
+  // The ground under the scene, for other threads as well; none: flat at sea level.
+  [[nodiscard]] std::shared_ptr<const ElevationSource> elevations() const { return terrain_->source(); }
 
   // Remarks for the user, one line each: what a file needed, that the camera was lifted, ...
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "gpu/try.hpp"
-#include "scene/chart.hpp"
 #include "scene/formats.hpp"
 #include "scene/scene.hpp"
 
@@ -213,10 +212,6 @@ Result<void> Scene::tone(double step_s) {
 bool Scene::shadows_are_drawn() const {
   return drawn_terrain_ == terrain_->version() && drawn_cascades_.size() == cascades_.size() &&
          std::equal(cascades_.begin(), cascades_.end(), drawn_cascades_.begin(), same);
-}
-
-double Scene::ground_below(const glm::dvec3& world) const {
-  return terrain_->height_at(map_from_world(world, params_.planet.radius_m));
 }
 
 }  // namespace tyndall::scene

@@ -116,7 +116,7 @@ Result<void> Terrain::set_source(const TerrainParams& params, double radius_m, E
   atlas_ = std::move(image);
   params_ = params;
   radius_m_ = radius_m;
-  source_ = std::make_unique<ElevationSource>(std::move(source));
+  source_ = std::make_shared<const ElevationSource>(std::move(source));
   notes_ = source_->notes();
   filled_.clear();
   ++version_;
@@ -177,8 +177,12 @@ Ground Terrain::ground() const {
   return {source_->min_height_m(), source_->max_height_m(), radius_m_, {}};
 }
 
+double ground_height(const ElevationSource& source, const glm::dvec2& map) {
+  return source.height_m(map.x, map.y, kFinestCell_m);
+}
+
 double Terrain::height_at(const glm::dvec2& map) const {
-  return none() ? 0.0 : source_->height_m(map.x, map.y, kFinestCell_m);
+  return none() ? 0.0 : ground_height(*source_, map);
 }
 
 VkDeviceSize Terrain::bytes() const {

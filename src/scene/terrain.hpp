@@ -26,6 +26,9 @@ struct TerrainLight {
   VkSampler linear = VK_NULL_HANDLE;
 };
 
+// Elevation of the ground over a place on the map [m], as finely as it is drawn.
+[[nodiscard]] double ground_height(const ElevationSource& source, const glm::dvec2& map);
+
 class Terrain {
  public:
   // With terrain.source = none there is nothing to draw, and the ground is at sea level.
@@ -49,6 +52,8 @@ class Terrain {
   [[nodiscard]] Ground ground() const;
   // Elevation of the ground over a place on the map [m].
   [[nodiscard]] double height_at(const glm::dvec2& map) const;
+  // The elevations themselves, which stay as they are and may be read from any thread.
+  [[nodiscard]] std::shared_ptr<const ElevationSource> source() const { return none() ? nullptr : source_; }
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
   [[nodiscard]] VkDeviceSize bytes() const;
 
@@ -81,7 +86,7 @@ class Terrain {
   double radius_m_ = 0.0;
   int coarseness_ = 1;
   std::uint64_t version_ = 0;
-  std::unique_ptr<ElevationSource> source_;
+  std::shared_ptr<const ElevationSource> source_;
   std::vector<std::string> notes_;
   TerrainLod lod_;
   std::vector<ClipLevel> filled_;

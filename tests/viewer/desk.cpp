@@ -159,6 +159,17 @@ std::optional<std::string> Desk::wait_for(const std::vector<std::string>& words,
   return std::nullopt;
 }
 
+bool Desk::settles_after(const std::vector<std::string>& words, std::size_t from) {
+  const std::optional<std::string> line = wait_for(words, from);
+  if (!line) return false;
+  std::istringstream text(log_text());
+  std::size_t number = 0;
+  for (std::string other; std::getline(text, other); ++number) {
+    if (number >= from && other == *line) break;
+  }
+  return wait_for({"settled"}, number + 1).has_value();
+}
+
 std::map<std::string, Desk::Rect> Desk::places() const {
   std::map<std::string, Rect> out;
   std::istringstream text(read_text(folder_ + "/log.txt.places"));

@@ -28,6 +28,8 @@ class Desk {
   [[nodiscard]] std::size_t lines() const;
   // The first line from `from` on that contains all of `words`; waits for it.
   std::optional<std::string> wait_for(const std::vector<std::string>& words, std::size_t from = 0, double seconds = 240.0);
+  // Waits for such a line and then until the picture is that of the settings.
+  bool settles_after(const std::vector<std::string>& words, std::size_t from);
   // Moves the pointer to the middle of something in the window, or to a part of its width, and waits until the viewer
   // has seen it; false when it is not there.
   bool point_at(const std::string& place, double part = 0.5);

@@ -1,8 +1,5 @@
 // A slice through a table of the air: 3D, one layer of the third axis.
 #version 460
-#extension GL_GOOGLE_include_directive : require
-
-#include "viewer/encode.glsl"
 
 layout(location = 0) in vec2 uv;
 layout(location = 0) out vec4 color;
@@ -11,9 +8,8 @@ layout(binding = 0) uniform sampler3D table;
 
 layout(push_constant) uniform Push {
   float slice;  // 0 to 1 along the third axis
-  float gain;
 } push;
 
 void main() {
-  color = window_color(textureLod(table, vec3(uv.x, 1.0 - uv.y, push.slice), 0.0).rgb * push.gain, gl_FragCoord.xy);
+  color = vec4(textureLod(table, vec3(uv.x, 1.0 - uv.y, push.slice), 0.0).rgb, 1.0);
 }

@@ -1,0 +1,63 @@
+// What is shown of one scene: its picture, or one of the images and tables that it was made from, drawn over a canvas of
+// the window's size. Works on the scene's device, on the thread that works on the scene.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "gpu/host.hpp"
+#include "gpu/pipeline.hpp"
+#include "gpu/resource.hpp"
+#include "scene/scene.hpp"
+
+namespace tyndall::viewer {
+
+enum class Shown : int {
+  picture, radiance, color, depth, shadow_map, single_rayleigh, single_mie, high_orders, sun_transmittance, sky_irradiance
+};
+constexpr int kShownCount = 10;
+[[nodiscard]] const char* name_of(Shown shown);
+[[nodiscard]] const char* meaning_of(Shown shown);
+
+// What a canvas depends on besides the scene.
+struct View {
+  Shown shown = Shown::picture;
+  int layer = 0;         // of the shadow maps
+  float slice = 0.5F;    // through a table
+  float stretch = 1.0F;  // of a shadow map's depths
+  VkExtent2D extent = {0, 0};
+};
+[[nodiscard]] bool same_view(const View& a, const View& b);
+
+// A finished canvas: linear, 0 to 1 or radiance. On the window's device, or as texels (RGBA32F) to be taken there.
+struct Picture {
+  VkExtent2D extent = {0, 0};
+  std::shared_ptr<const gpu::Image> image;  // in SHADER_READ_ONLY_OPTIMAL
+  std::vector<std::byte> texels;
+};
+constexpr VkFormat kCanvasFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+
+class Canvas {
+ public:
+  // `to_host`: as texels.
+  Result<void> create(gpu::Host& host, bool to_host);
+  Result<Picture> draw(scene::Scene& scene, const View& view);
+
+ private:
+  Result<void> record(VkCommandBuffer cmd, scene::Scene& scene, const View& view);
+  Result<void> draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline, const gpu::NamedResource& resource,
+                    const void* push = nullptr);
+
+  gpu::Host* host_ = nullptr;
+  bool to_host_ = false;
+  std::shared_ptr<gpu::Image> image_;
+  gpu::Pipeline color_, depth_, layer_, table_;
+  gpu::Handle<VkSampler> nearest_, linear_;
+};
+
+// A sampler for RGBA32F: linear where the device filters it.
+Result<gpu::Handle<VkSampler>> create_float_sampler(const gpu::Device& device);
+
+}  // namespace tyndall::viewer

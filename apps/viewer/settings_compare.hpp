@@ -1,0 +1,16 @@
+// Whether settings are the same, parameter by parameter.
+#pragma once
+
+#include "config/settings.hpp"
+
+namespace tyndall::viewer {
+
+[[nodiscard]] bool same_value(const config::Row& row, const config::Settings& a, const config::Settings& b);
+[[nodiscard]] bool same_settings(const config::Settings& a, const config::Settings& b);
+// Whether nothing but tonemap.* differs.
+[[nodiscard]] bool same_but_for_tone(const config::Settings& a, const config::Settings& b);
+[[nodiscard]] bool same_ground(const scene::TerrainParams& a, const scene::TerrainParams& b);
+// Makes what ranges alone cannot say hold: shadows.first_marched below shadows.cascades.
+void make_consistent(config::Settings& settings);
+
+}  // namespace tyndall::viewer

@@ -1,0 +1,193 @@
+// The scenes of the viewer: what they are to show, what has come of their work, and the next piece of it.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "config/text.hpp"
+#include "gpu/try.hpp"
+#include "settings_compare.hpp"
+#include "viewer_state.hpp"
+
+namespace tyndall::viewer {
+
+VkExtent2D Viewer::picture_extent() const {
+  const VkExtent2D window = window_.size();
+  const auto scaled = [this](std::uint32_t side) {
+    return std::clamp(static_cast<std::uint32_t>(std::lround(static_cast<double>(side) * gui_.state.resolution_scale)), 16U, 8192U);
+  };
+  return {scaled(window.width), scaled(window.height)};
+}
+
+Wish Viewer::wish_of(const Stage& stage) const {
+  const bool left = &stage != other_.get();
+  Wish wish;
+  wish.settings = left ? settings_ : right_;
+  wish.extent = picture_extent();
+  wish.coarseness = gui_.state.coarseness;
+  wish.view = view_of(gui_.state.picture, window_.size());
+  wish.seconds = seconds_;
+  wish.again = again_[left ? 0 : 1];
+  wish.rest = &stage == left_.get() && resting();
+  wish.capture = &stage == left_.get() && screenshot_wanted_ && !writing_.valid();
+  return wish;
+}
+
+void Viewer::make_stage(Stage& stage) {
+  scene::SceneDesc desc;
+  desc.timings = true;
+  desc.histogram = true;
+  desc.make_tables = desc_.make_tables;
+  desc.keep_shadows = true;
+  stage.start(*host_, desc, wish_of(stage), slow_device() && desc_.script != "one-device");
+}
+
+// The settings as they are wanted now, and the scenes that they need.
+void Viewer::follow() {
+  make_consistent(settings_);
+  if (!gui_.state.picture.compare) {
+    if (other_ != nullptr && !other_->busy()) {
+      other_.reset();
+      pictures_.forget(1);
+    }
+    return;
+  }
+  right_.scene.camera = settings_.scene.camera;
+  right_.scene.sun = settings_.scene.sun;
+  make_consistent(right_);
+  if (other_ != nullptr) return;
+  other_ = std::make_unique<Stage>();
+  make_stage(*other_);
+}
+
+// One piece of work at a time, left and right in turn, so that they do not take the machine from each other.
+void Viewer::launch_work() {
+  Stage* stages[2] = {left_.get(), other_.get()};
+  for (const Stage* stage : stages) {
+    if (stage != nullptr && stage->busy() && !stage->creating()) return;
+  }
+  if (next_ != nullptr && next_->busy() && !next_->creating()) return;
+  if (next_ != nullptr && !next_->busy() && next_->wants(wish_of(*next_))) return next_->launch(wish_of(*next_));
+  for (int i = 0; i < 2; ++i) {
+    turn_ = !turn_;
+    const int side = turn_ ? 0 : 1;
+    Stage* const stage = stages[side];
+    if (stage == nullptr || stage->busy()) continue;
+    const Wish wish = wish_of(*stage);
+    if (!stage->wants(wish)) continue;
+    again_[side] = false;
+    drawn_camera_[side] = {camera_, settings_.scene.sun};
+    if (!wish.rest) settled_told_ = false;
+    stage->launch(wish);
+    return;
+  }
+  if (!settled_told_ && left_->facts().can_render && !left_->busy() && other_ == nullptr) {
+    settled_told_ = true;
+    log("settled");
+  }
+}
+
+// Whether a piece of work could begin now.
+bool Viewer::work_is_due() const {
+  for (const Stage* stage : {left_.get(), other_.get(), next_.get()}) {
+    if (stage != nullptr && stage->busy() && !stage->creating()) return false;
+  }
+  for (const Stage* stage : {left_.get(), other_.get(), next_.get()}) {
+    if (stage != nullptr && !stage->busy() && stage->wants(wish_of(*stage))) return true;
+  }
+  return false;
+}
+
+Result<void> Viewer::take_outcomes() {
+  TYNDALL_TRY(take_next());
+  if (std::optional<Outcome> outcome = left_->poll()) TYNDALL_TRY(take_outcome(0, *outcome));
+  if (other_ == nullptr) return {};
+  if (std::optional<Outcome> outcome = other_->poll()) TYNDALL_TRY(take_outcome(1, *outcome));
+  return {};
+}
+
+Result<void> Viewer::take_outcome(std::size_t side, Outcome& outcome) {
+  const Stage& stage = side == 0 ? *left_ : *other_;
+  for (const std::string& note : outcome.notes) tell(note);
+  if (outcome.error) {
+    if (lost(*outcome.error) || (outcome.over && side == 0)) return *outcome.error;
+    report(*outcome.error);
+    frames_to_draw_ = std::max(frames_to_draw_, 3);
+    if (outcome.over) {
+      gui_.state.picture.compare = false;
+      return {};
+    }
+    // What the scene could not follow goes back; camera and sun stay in the hands.
+    config::Settings& settings = side == 0 ? settings_ : right_;
+    const scene::CameraParams camera = settings.scene.camera;
+    const scene::SunParams sun = settings.scene.sun;
+    settings = outcome.settings;
+    settings.scene.camera = camera;
+    settings.scene.sun = sun;
+  }
+  if (outcome.picture) {
+    TYNDALL_TRY(pictures_.take(side, std::move(*outcome.picture)));
+    frames_to_draw_ = std::max(frames_to_draw_, 1);
+  }
+  if (outcome.frame) {
+    if (side == 0) {
+      times_.add(stage.facts().timings, outcome.frame_ms);
+      ++frames_;
+    }
+    log_frame(side, outcome.frame_ms);
+  }
+  if (outcome.tables) frames_to_draw_ = std::max(frames_to_draw_, 1);
+  if (outcome.tables_done) log("tables");
+  if (outcome.tables_kept) log("tables kept");
+  if (outcome.pipelines_done) log("pipelines");
+  if (outcome.capture) write_screenshot(std::move(*outcome.capture));
+  return {};
+}
+
+// A scene with rebuilt shaders takes the place of the one before when it can be drawn.
+Result<void> Viewer::take_next() {
+  if (next_ == nullptr) return {};
+  if (std::optional<Outcome> outcome = next_->poll()) {
+    if (outcome->error && outcome->over) {
+      next_.reset();
+      shaders_->revert();
+      shader_message_ = outcome->error->message;
+      log("shaders failed " + outcome->error->message);
+      if (lost(*outcome->error)) return *outcome->error;
+      report(*outcome->error);
+      return {};
+    }
+    if (outcome->picture) next_picture_ = std::move(outcome->picture);
+  }
+  const bool others_busy = left_->busy() || (other_ != nullptr && other_->busy());
+  if (next_->busy() || others_busy || !next_picture_) return {};
+  left_ = std::move(next_);
+  TYNDALL_TRY(pictures_.take(0, std::move(*std::exchange(next_picture_, std::nullopt))));
+  ++frames_;
+  frames_to_draw_ = std::max(frames_to_draw_, 1);
+  other_.reset();  // made anew, if it is still wanted
+  pictures_.forget(1);
+  shader_message_.clear();
+  tell("The shaders are rebuilt");
+  log("shaders rebuilt");
+  return {};
+}
+
+void Viewer::log_frame(std::size_t side, double took_ms) {
+  if (!log_.on()) return;
+  const SceneFacts& facts = (side == 0 ? *left_ : *other_).facts();
+  const CameraState& camera = drawn_camera_[side].camera;
+  const scene::SunParams& sun = drawn_camera_[side].sun;
+  log(std::string("frame ") + (side == 0 ? "left " : "right ") + std::to_string(frames_) + " " +
+      std::to_string(facts.extent.width) + " " + std::to_string(facts.extent.height) + " ms " + config::number_text(took_ms) +
+      " camera " + config::number_text(camera.position.x) + " " + config::number_text(camera.position.y) + " " +
+      config::number_text(camera.position.z) + " " + config::number_text(camera.yaw_deg) + " " +
+      config::number_text(camera.pitch_deg) + " " + config::number_text(camera.fov_deg) + " sun " +
+      config::number_text(sun.azimuth_deg) + " " + config::number_text(sun.elevation_deg));
+  std::string passes = "passes";
+  for (const scene::PassTime& pass : facts.timings) {
+    passes += " " + pass.name + " " + config::number_text(std::round(100.0 * pass.ms) / 100.0);
+  }
+  log(passes);
+}
+
+}  // namespace tyndall::viewer

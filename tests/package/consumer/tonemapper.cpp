@@ -1,0 +1,19 @@
+// Uses tone mapping alone, without the effect: what can be asked without a device.
+#include <post/tonemap.hpp>
+
+#include <cmath>
+#include <cstdio>
+
+int main() {
+  using namespace tyndall;
+  gpu::Device device;
+  const PFN_vkGetInstanceProcAddr nothing = [](VkInstance, const char*) -> PFN_vkVoidFunction { return nullptr; };
+  if (gpu::init_device(device, nothing).ok()) return 1;
+  post::TonemapSettings settings;
+  settings.op = post::Operator::reinhard;
+  const auto dark = post::tonemapped(settings, 1.0, {0.1, 0.1, 0.1});
+  const auto bright = post::tonemapped(settings, 1.0, {10.0, 10.0, 10.0});
+  if (!(dark[1] > 0.0 && dark[1] < bright[1] && bright[1] <= 1.0)) return 2;
+  std::printf("0.1 -> %.3f, 10 -> %.3f\n", dark[1], bright[1]);
+  return 0;
+}
