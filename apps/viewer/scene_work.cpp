@@ -85,12 +85,17 @@ double SceneWork::keep_in_s() const {
   return std::max((first_tables_ ? kKeepFirst_s : kKeep_s) - seconds_since(tables_since_), 0.0);
 }
 
+bool SceneWork::follows(const Wish& wish) const {
+  return wish.extent.width == desc_.extent.width && wish.extent.height == desc_.extent.height &&
+         wish.coarseness == desc_.terrain_coarseness && same_settings(wish.settings, wanted_);
+}
+
+bool SceneWork::shows(const Wish& wish) const { return drawn_ && !stale_ && follows(wish); }
+
 bool SceneWork::wants(const Wish& wish) const {
   if (scene_ == nullptr) return false;
   if (is_done(loading_) || is_done(keeping_)) return true;
-  const auto same_extent = wish.extent.width == desc_.extent.width && wish.extent.height == desc_.extent.height;
-  if (!same_extent || wish.coarseness != desc_.terrain_coarseness || !same_settings(wish.settings, wanted_)) return true;
-  if (building()) return true;
+  if (!follows(wish) || building()) return true;
   if (!ready()) return false;
   if (stale_ || wish.again || wish.capture || !same_view(wish.view, drawn_view_)) return true;
   if (tone_stale() && seconds_since(drawn_at_) >= kTonePeriod_s) return true;

@@ -75,6 +75,8 @@ class SceneWork {
   Outcome create(gpu::Host& host, const scene::SceneDesc& desc, const Wish& wish, bool to_host);
   // Whether there is something to do for the wish now.
   [[nodiscard]] bool wants(const Wish& wish) const;
+  // Whether the last frame is that of the wish, but for the tables that are still being built and the eye that adapts.
+  [[nodiscard]] bool shows(const Wish& wish) const;
   // The next piece.
   Outcome run(const Wish& wish);
 
@@ -93,6 +95,7 @@ class SceneWork {
   Result<void> advance_tables(Outcome& out);
   Result<void> draw(const Wish& wish, Outcome& out);
   Result<bool> keep_tables();
+  [[nodiscard]] bool follows(const Wish& wish) const;
   [[nodiscard]] bool building() const;
   [[nodiscard]] bool ready() const { return scene_ != nullptr && scene_->can_render(); }
   [[nodiscard]] bool tone_stale() const;

@@ -23,8 +23,9 @@ class Stage {
   std::optional<Outcome> poll();
   [[nodiscard]] bool busy() const { return running_.valid(); }
   [[nodiscard]] bool creating() const { return busy() && !made_; }
-  // Whether a piece of work is due; only when not busy.
+  // Whether a piece of work is due, and whether the last frame is that of the wish; only when not busy.
   [[nodiscard]] bool wants(const Wish& wish) const { return made_ && work_->wants(wish); }
+  [[nodiscard]] bool shows(const Wish& wish) const { return made_ && work_->shows(wish); }
   void launch(const Wish& wish);
   // After the last finished piece.
   [[nodiscard]] const SceneFacts& facts() const { return facts_; }

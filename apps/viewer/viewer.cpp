@@ -263,7 +263,7 @@ void Viewer::begin_gui() {
 
 void Viewer::run_script() {
   if (script_.done()) window_.close();
-  if (!script_.on() || !left_->facts().can_render || left_->busy() || left_->facts().working || left_->wants(wish_of(*left_))) return;
+  if (!script_.on() || left_->busy() || left_->facts().working || !left_->shows(wish_of(*left_))) return;
   log("script " + script_.advance(settings_, gui_.state, now()));
   frames_to_draw_ = std::max(frames_to_draw_, 1);
   if (now() - last_memory_ < 2.0) return;

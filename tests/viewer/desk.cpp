@@ -54,6 +54,12 @@ int start(std::vector<std::string> words, const std::vector<std::string>& enviro
   std::_Exit(127);
 }
 
+// Leaves its status to be asked for.
+bool has_ended(int child) {
+  siginfo_t info = {};
+  return ::waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid == child;
+}
+
 int status_of(int child, double seconds) {
   for (double waited = 0.0; waited < seconds; waited += 0.05) {
     int status = 0;
@@ -153,7 +159,7 @@ std::optional<std::string> Desk::wait_for(const std::vector<std::string>& words,
       for (const std::string& word : words) all = all && line.find(word) != std::string::npos;
       if (all) return line;
     }
-    if (viewer_ > 0 && ::kill(viewer_, 0) != 0) return std::nullopt;
+    if (viewer_ > 0 && has_ended(viewer_)) return std::nullopt;
     pause(0.05);
   }
   return std::nullopt;
