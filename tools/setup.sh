@@ -8,13 +8,13 @@ packages="build-essential cmake ninja-build pkg-config ccache
 glslc spirv-tools libspirv-cross-c-shared-dev
 libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers
 libglm-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
-libglfw3-dev libimgui-dev libshaderc-dev xvfb xdotool
+libglfw3-dev libimgui-dev libshaderc-dev xvfb xdotool openbox
 libtinygltf-dev libstb-dev libopenexr-dev libpng-dev libgdal-dev libgtest-dev $*"
 
 needs() {
   echo "Tyndall needs: a C++20 compiler, CMake 3.25, Ninja, pkg-config, glslc, SPIRV-Tools, SPIRV-Cross (C API)," >&2
   echo "Vulkan 1.3 headers, loader, a driver and the validation layers, GLM, CLI11, toml++, nlohmann-json," >&2
-  echo "tinygltf, stb, OpenEXR, libpng, GDAL, GoogleTest, GLFW, Dear ImGui, shaderc; Xvfb and xdotool for tests of windows." >&2
+  echo "tinygltf, stb, OpenEXR, libpng, GDAL, GoogleTest, GLFW, Dear ImGui, shaderc; Xvfb, xdotool and openbox for tests of windows." >&2
   echo "Going on with what is installed." >&2
 }
 

@@ -159,7 +159,11 @@ bool Viewer::throttled() const {
 
 Result<void> Viewer::loop() {
   while (!window_.closing()) {
-    if (window_.minimised()) {
+    if (window_.minimised() != minimised_) {
+      minimised_ = !minimised_;
+      log(minimised_ ? "minimised" : "restored");
+    }
+    if (minimised_) {
       window_.wait(0.5);
       TYNDALL_TRY(take_outcomes());
       continue;

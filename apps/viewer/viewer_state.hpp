@@ -127,6 +127,7 @@ class Viewer {
   } drawn_camera_[2];                   // of the frame that is being drawn, or was last
   bool settled_told_ = false;
   double last_present_ = -1.0;
+  bool minimised_ = false;
   bool opened_ = false;                 // the window has shown something
   bool first_frame_told_ = false;
   bool two_shown_ = false;

@@ -100,6 +100,10 @@ Desk::~Desk() {
     ::kill(viewer_, SIGKILL);
     ::waitpid(viewer_, nullptr, 0);
   }
+  if (manager_ > 0) {
+    ::kill(manager_, SIGTERM);
+    ::waitpid(manager_, nullptr, 0);
+  }
   if (server_ > 0) {
     ::kill(server_, SIGTERM);
     ::waitpid(server_, nullptr, 0);
@@ -131,6 +135,17 @@ bool Desk::open(const std::vector<std::string>& arguments, const std::vector<std
   hands("windowmove --sync " + window_ + " 0 0");
   hands("windowfocus " + window_);
   return true;
+}
+
+bool Desk::manage() {
+  if (!installed("openbox")) return false;
+  manager_ = start({"openbox", "--config-file", "/dev/null"}, {"DISPLAY=" + display_, "HOME=" + folder_}, folder_ + "/manager.txt");
+  // It is there when it has told its name.
+  for (int i = 0; i < 200; ++i) {
+    if (status_of(start({"xdotool", "get_num_desktops"}, {"DISPLAY=" + display_}, folder_ + "/hands.txt"), 10.0) == 0) return true;
+    pause(0.05);
+  }
+  return false;
 }
 
 void Desk::hands(const std::string& commands) {

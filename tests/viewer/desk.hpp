@@ -22,6 +22,8 @@ class Desk {
 
   // Opens the viewer with these arguments besides; false when no first frame came.
   bool open(const std::vector<std::string>& arguments, const std::vector<std::string>& environment = {});
+  // Starts a window manager (openbox), which takes what needs one, as minimising does; false where there is none.
+  bool manage();
   // Commands of xdotool, split at blanks.
   void hands(const std::string& commands);
   // The number of the log's lines so far.
@@ -54,7 +56,7 @@ class Desk {
   [[nodiscard]] std::map<std::string, Rect> places() const;
 
   std::string folder_, display_, window_;
-  int server_ = -1, viewer_ = -1;
+  int server_ = -1, viewer_ = -1, manager_ = -1;
 };
 
 }  // namespace tyndall::desk

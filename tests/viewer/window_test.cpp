@@ -13,6 +13,7 @@
 #include "config/scene_file.hpp"
 #include "desk.hpp"
 #include "image/image.hpp"
+#include "scene/camera_path.hpp"
 
 namespace tyndall {
 namespace {
@@ -212,6 +213,81 @@ TEST(Window, IsResizedAndIdlesWhenNothingChanges) {
   // At rest: every pipeline made, the eye adapted, then no step of the loop any more.
   ASSERT_TRUE(desk.wait_for({"pipelines"}));
   ASSERT_TRUE(desk.wait_for({"resting"}));
+  EXPECT_EQ(desk.leave(), 0) << desk.errors();
+}
+
+// Minimised nothing is drawn, and then it goes on; a window manager is what minimises.
+TEST(Window, IsMinimisedAndRestored) {
+  NEEDS_A_DESK();
+  Desk desk("minimised");
+  if (!desk.manage()) GTEST_SKIP() << "openbox is not installed";
+  ASSERT_TRUE(desk.open(kSmall)) << desk.errors();
+  for (int i = 0; i < 3; ++i) {
+    std::size_t from = desk.lines();
+    desk.hands("windowminimize " + desk.window());
+    ASSERT_TRUE(desk.wait_for({"minimised"}, from));
+    from = desk.lines();
+    desk.hands("windowactivate " + desk.window());
+    ASSERT_TRUE(desk.wait_for({"restored"}, from));
+    from = desk.lines();
+    desk.hands("key w");
+    ASSERT_TRUE(desk.wait_for({"frame left"}, from)) << i;
+  }
+  // Between full screen and window, by the manager's rules.
+  std::size_t from = desk.lines();
+  desk.hands("key F11");
+  ASSERT_TRUE(desk.wait_for({"shown", " in 800 600"}, from));
+  desk.picture("full_screen");
+  from = desk.lines();
+  desk.hands("key F11");
+  ASSERT_TRUE(desk.wait_for({"shown", " in 480 270"}, from));
+  desk.picture("back");
+  EXPECT_EQ(desk.leave(), 0) << desk.errors();
+}
+
+// P plays the flight of the scene file: every frame is a pose of the path, later ones later, until a hand takes over.
+TEST(Window, PlaysTheFlightOfTheScene) {
+  NEEDS_A_DESK();
+  Desk desk("flight");
+  const std::string scene = std::string(TYNDALL_SOURCE_DIR) + "/scenes/flythrough.toml";
+  std::vector<std::string> arguments = kSmall;
+  arguments.insert(arguments.end(), {scene, "--set", "tables.size=8,16,16,4", "--set", "tables.orders=2"});
+  ASSERT_TRUE(desk.open(arguments)) << desk.errors();
+  config::Settings settings;
+  ASSERT_TRUE(config::load(settings, scene).ok());
+  std::size_t from = desk.lines();
+  desk.hands("key p");
+  ASSERT_TRUE(desk.wait_for({"path begins"}, from));
+  double last_s = -1.0;
+  for (int i = 0; i < 5; ++i) {
+    from = desk.lines();
+    const std::optional<std::string> line = desk.wait_for({"frame left"}, from);
+    ASSERT_TRUE(line);
+    const Frame f = frame_of(*line);
+    // The time of the path whose pose is nearest.
+    double nearest_m = 1.0e9;
+    double at_s = 0.0;
+    scene::SceneParams pose;
+    for (double t = 0.0; t < 40.0; t += 0.002) {
+      const scene::SceneParams p = scene::pose_at(settings.path, t, settings.scene, settings.effect.planet.radius_m);
+      const double away_m = std::hypot(static_cast<double>(p.camera.position_m.x) - f.x, static_cast<double>(p.camera.position_m.z) - f.z);
+      if (away_m >= nearest_m) continue;
+      nearest_m = away_m;
+      at_s = t;
+      pose = p;
+    }
+    EXPECT_LT(nearest_m, 5.0) << *line;
+    EXPECT_NEAR(f.yaw, pose.camera.yaw_deg, 0.05);
+    EXPECT_NEAR(f.pitch, pose.camera.pitch_deg, 0.05);
+    EXPECT_NEAR(f.elevation, pose.sun.elevation_deg, 0.01);
+    EXPECT_GE(at_s, last_s);
+    last_s = at_s;
+  }
+  EXPECT_GT(last_s, 0.0);
+  desk.picture("flying");
+  from = desk.lines();
+  desk.hands("key w");
+  ASSERT_TRUE(desk.wait_for({"path stops"}, from));
   EXPECT_EQ(desk.leave(), 0) << desk.errors();
 }
 
