@@ -171,8 +171,10 @@ void Gui::divider(const GuiFacts& facts) {
 }
 
 void Gui::status(const GuiFacts& facts) {
-  ImGui::SetNextWindowPos(ImVec2(static_cast<float>(facts.window.width) - 6.0F, static_cast<float>(facts.window.height) - 6.0F),
-                          ImGuiCond_Always, ImVec2(1.0F, 1.0F));
+  // Beside the controls: the right edge is where the other windows are.
+  const float width = static_cast<float>(facts.window.width);
+  const float left = state.controls ? std::min(360.0F, 0.5F * width) : 0.0F;
+  ImGui::SetNextWindowPos(ImVec2(left + 6.0F, static_cast<float>(facts.window.height) - 6.0F), ImGuiCond_Always, ImVec2(0.0F, 1.0F));
   ImGui::SetNextWindowBgAlpha(0.55F);
   if (ImGui::Begin("status", nullptr, kOverlay | ImGuiWindowFlags_NoInputs)) {
     if (facts.creating) ImGui::TextUnformatted("Making the scene ...");

@@ -178,6 +178,7 @@ void Gui::atmosphere(config::Settings& s) {
 }
 
 void Gui::everything(config::Settings& s) {
+  widgets.with_group = false;  // the headers have it
   for (const config::Group& group : config::groups()) {
     const std::string name(group.title);
     const bool open = ImGui::CollapsingHeader(name.c_str());
@@ -187,6 +188,7 @@ void Gui::everything(config::Settings& s) {
       if (row.info.group == group.name) widgets.edit(row, s);
     }
   }
+  widgets.with_group = true;
 }
 
 }  // namespace tyndall::viewer

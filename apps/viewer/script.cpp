@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "config/text.hpp"
 #include "widgets.hpp"
@@ -16,6 +18,32 @@ bool is_soaked(const config::Row& row) {
                                        "camera.position_m", "scattering.model", "scattering.technique"};
   if (row.info.type == ParamType::string || row.info.group == "meshes") return false;
   return std::find(std::begin(kNot), std::end(kNot), row.key()) == std::end(kNot);
+}
+
+// What chooses between variants of shaders. A device without a GPU keeps what it has compiled of each, some MiB, so that every
+// combination of them would fill memory for hours without anything being lost.
+bool chooses_shaders(const config::Row& row) {
+  return row.info.type == ParamType::enumeration || row.info.type == ParamType::flag || row.key() == "scattering.downscale";
+}
+
+// Each of these choices by itself.
+std::vector<std::pair<std::string, std::string>> choices_of_shaders() {
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const config::Row& row : config::rows()) {
+    if (!is_soaked(row) || !chooses_shaders(row)) continue;
+    if (row.info.type == ParamType::enumeration) {
+      for (std::size_t i = 0; i < config::count_parts(row.info.choices, '|'); ++i) {
+        out.emplace_back(row.key(), std::string(config::part(row.info.choices, '|', i)));
+      }
+    } else if (row.info.type == ParamType::flag) {
+      out.emplace_back(row.key(), "off");
+      out.emplace_back(row.key(), "on");
+    } else {
+      out.emplace_back(row.key(), "2");
+      out.emplace_back(row.key(), "4");
+    }
+  }
+  return out;
 }
 
 std::string random_value(const config::Row& row, std::mt19937& random) {
@@ -73,6 +101,14 @@ std::string Script::soak(config::Settings& settings, GuiState& gui, double now) 
     settings = start_;
     return "done after " + std::to_string(changes_) + " changes";
   }
+  // First every shader that will be asked for, then at random: memory stands still from there on.
+  static const std::vector<std::pair<std::string, std::string>> choices = choices_of_shaders();
+  if (next_ < choices.size()) {
+    settings = start_;
+    const auto& [key, value] = choices[next_++];
+    (void)config::set(settings, key, value, "soak");
+    return key + "=" + value;
+  }
   // Back to the beginning now and then, so that no corner holds the soak for its whole time.
   if (changes_++ % 24 == 0) {
     settings = start_;
@@ -84,6 +120,7 @@ std::string Script::soak(config::Settings& settings, GuiState& gui, double now) 
   const config::Row* row = &rows[any(random_)];
   while (!is_soaked(*row)) row = &rows[any(random_)];
   const std::string value = random_value(*row, random_);
+  if (chooses_shaders(*row)) settings = start_;
   if (!config::set(settings, row->key(), value, "soak").ok()) return row->key() + " refused";
   return row->key() + "=" + value;
 }

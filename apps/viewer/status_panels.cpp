@@ -10,6 +10,8 @@
 namespace tyndall::viewer {
 namespace {
 
+constexpr float kViewsHeight = 190.0F;  // of the window below that of the times
+
 void text_bytes(const char* name, VkDeviceSize bytes) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
@@ -24,7 +26,7 @@ void histogram(const SceneFacts& scene) {
   float largest = 1.0e-4F;
   for (const float share : m.share) largest = std::max(largest, share);
   ImGui::PlotHistogram("##histogram", m.share.data(), static_cast<int>(m.share.size()), 0, nullptr, 0.0F, largest * 1.05F,
-                       ImVec2(-1.0F, 60.0F));
+                       ImVec2(ImGui::GetContentRegionAvail().x, 60.0F));
   const ImVec2 min = ImGui::GetItemRectMin();
   const ImVec2 max = ImGui::GetItemRectMax();
   const double first = post::stop_of_bin(0);
@@ -58,7 +60,7 @@ void plot(const char* label, const std::array<float, FrameTimes::kCount>& values
   char overlay[48];
   std::snprintf(overlay, sizeof overlay, "%.1f ms (graph to %.0f)", static_cast<double>(last), static_cast<double>(largest));
   ImGui::PlotLines(label, values.data(), static_cast<int>(FrameTimes::kCount), static_cast<int>(next), overlay, 0.0F,
-                   largest * 1.05F, ImVec2(-70.0F, 44.0F));
+                   largest * 1.05F, ImVec2(ImGui::GetContentRegionAvail().x - 60.0F, 44.0F));
 }
 
 }  // namespace
@@ -66,7 +68,7 @@ void plot(const char* label, const std::array<float, FrameTimes::kCount>& values
 void Gui::performance(const GuiFacts& facts) {
   const ImGuiViewport* viewport = ImGui::GetMainViewport();
   ImGui::SetNextWindowPos(ImVec2(viewport->Size.x, ImGui::GetFrameHeight()), ImGuiCond_FirstUseEver, ImVec2(1.0F, 0.0F));
-  ImGui::SetNextWindowSize(ImVec2(std::min(340.0F, 0.5F * viewport->WorkSize.x), std::min(520.0F, viewport->WorkSize.y)),
+  ImGui::SetNextWindowSize(ImVec2(std::min(340.0F, 0.5F * viewport->WorkSize.x), std::clamp(viewport->WorkSize.y - kViewsHeight, 200.0F, 620.0F)),
                            ImGuiCond_FirstUseEver);
   if (ImGui::Begin("Performance", &state.performance, ImGuiWindowFlags_NoSavedSettings)) {
     ImGui::TextWrapped("%s", facts.device.c_str());
@@ -134,7 +136,7 @@ void Gui::views(const GuiFacts& facts, GuiRequests& requests) {
   const ImGuiViewport* viewport = ImGui::GetMainViewport();
   ImGui::SetNextWindowPos(ImVec2(viewport->WorkPos.x + viewport->WorkSize.x, viewport->WorkPos.y + viewport->WorkSize.y),
                           ImGuiCond_FirstUseEver, ImVec2(1.0F, 1.0F));
-  ImGui::SetNextWindowSize(ImVec2(std::min(330.0F, 0.5F * viewport->WorkSize.x), 210.0F), ImGuiCond_FirstUseEver);
+  ImGui::SetNextWindowSize(ImVec2(std::min(340.0F, 0.5F * viewport->WorkSize.x), kViewsHeight), ImGuiCond_FirstUseEver);
   if (ImGui::Begin("Views and comparison", &state.views, ImGuiWindowFlags_NoSavedSettings)) {
     PictureOptions& p = state.picture;
     ImGui::SetNextItemWidth(190.0F);

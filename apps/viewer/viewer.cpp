@@ -8,6 +8,9 @@
 #include <backends/imgui_impl_vulkan.h>
 
 #include <unistd.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include <algorithm>
 #include <cmath>
@@ -331,6 +334,10 @@ void Viewer::tell(const std::string& text) {
 }
 
 Result<void> run(const ViewerDesc& desc) {
+#ifdef __GLIBC__
+  // Threads come and go here and in the drivers; with an arena for each, memory that was freed lies about in all of them.
+  mallopt(M_ARENA_MAX, 2);
+#endif
   TYNDALL_TRY(Window::start());
   Result<void> outcome;
   std::uint32_t messages = 0;

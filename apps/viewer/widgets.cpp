@@ -111,11 +111,13 @@ void show_tooltip(const std::string& text) {
 
 }  // namespace
 
-std::string label_of(const Row& row) {
+// A word by itself says too little among controls of other groups: "Sun elevation".
+std::string label_of(const Row& row, bool with_group) {
   std::string text(row.info.name);
   for (const std::string_view unit : {"_m", "_deg", "_nm", "_mib"}) {
     if (text.size() > unit.size() && text.ends_with(unit)) text.resize(text.size() - unit.size());
   }
+  if (with_group && text.find('_') == std::string::npos) text = std::string(row.info.group) + ' ' + text;
   std::replace(text.begin(), text.end(), '_', ' ');
   if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
   return text;
@@ -170,7 +172,7 @@ bool Widgets::edit(const Row& row, Settings& settings) {
   const std::string key = row.key();
   ImGui::PushID(key.c_str());
   bool changed = false;
-  const std::string label = label_of(row);
+  const std::string label = label_of(row, with_group);
   const bool flag = row.info.type == ParamType::flag;
   if (!flag) {
     // The label stands to the right, as wide as it needs; the widget takes the rest.
@@ -224,7 +226,7 @@ bool Widgets::edit_color(std::string_view key, Settings& settings, float scale) 
   if (row == nullptr || row->info.type != ParamType::vec3) return false;
   auto* const values = at<float>(*row, settings);
   std::array<float, 3> color = {values[0] / scale, values[1] / scale, values[2] / scale};
-  const std::string id = label_of(*row) + "##" + std::string(key) + "_color";
+  const std::string id = label_of(*row, with_group) + "##" + std::string(key) + "_color";
   const bool changed = ImGui::ColorEdit3(id.c_str(), color.data(),
                                          ImGuiColorEditFlags_Float | ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_HDR);
   place(std::string(key) + "_color");

@@ -17,6 +17,8 @@ struct Place {
 
 class Widgets {
  public:
+  bool with_group = true;  // in the labels, where they are one word
+
   // The values before the edit; forget the places of the last frame.
   void begin_frame();
   // Draws the widget of a parameter and changes `settings`. True when it did.
