@@ -335,8 +335,10 @@ void Viewer::tell(const std::string& text) {
 
 Result<void> run(const ViewerDesc& desc) {
 #ifdef __GLIBC__
-  // Threads come and go here and in the drivers; with an arena for each, memory that was freed lies about in all of them.
-  mallopt(M_ARENA_MAX, 2);
+  // Threads come and go here and in the drivers: with an arena for each, memory that was freed lies about in all of them.
+  // Large blocks, the tables and pictures of a device without a GPU, go back to the system when they are freed.
+  mallopt(M_ARENA_MAX, 1);
+  mallopt(M_MMAP_THRESHOLD, 1 << 20);
 #endif
   TYNDALL_TRY(Window::start());
   Result<void> outcome;

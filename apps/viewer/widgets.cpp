@@ -31,9 +31,9 @@ bool is_wide(const Row& row) { return row.info.max - row.info.min > 500.0 && row
 
 bool is_boundless(const Row& row) { return row.info.max > 1.0e6; }
 
-const char* float_format(const Row& row) {
+const char* float_format(const Row& row, float value) {
   static std::string text;  // read at once by ImGui, one thread
-  const bool fine = row.info.max - row.info.min <= 2.0;
+  const bool fine = row.info.max - row.info.min <= 2.0 && (value == 0.0F || std::abs(value) >= 0.001F);
   text = fine ? "%.3f" : "%.4g";
   if (!row.info.unit.empty() && row.info.unit != "1") text.append(" ").append(row.info.unit);
   return text.c_str();
@@ -48,11 +48,11 @@ bool edit_float(const Row& row, const char* id, float* values, int count) {
     float largest = 0.0F;
     for (int i = 0; i < count; ++i) largest = std::max(largest, std::abs(values[i]));
     const float speed = tiny ? std::max(0.01F * largest, 1.0e-8F) : std::max(0.005F * largest, 0.01F);
-    return ImGui::DragScalarN(id, ImGuiDataType_Float, values, count, speed, &min, &max, count > 1 ? "%.3g" : float_format(row),
+    return ImGui::DragScalarN(id, ImGuiDataType_Float, values, count, speed, &min, &max, count > 1 ? "%.3g" : float_format(row, values[0]),
                               kSlider);
   }
   const ImGuiSliderFlags flags = kSlider | (is_wide(row) ? ImGuiSliderFlags_Logarithmic : 0);
-  return ImGui::SliderScalarN(id, ImGuiDataType_Float, values, count, &min, &max, count > 1 ? "%.3g" : float_format(row), flags);
+  return ImGui::SliderScalarN(id, ImGuiDataType_Float, values, count, &min, &max, count > 1 ? "%.3g" : float_format(row, values[0]), flags);
 }
 
 bool edit_whole(const Row& row, const char* id, std::uint32_t* values, int count) {
