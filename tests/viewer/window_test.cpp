@@ -462,8 +462,8 @@ TEST(Window, KeepsItsMemoryThroughRandomChanges) {
   };
   const double before_mib = median_of(1);
   const double after_mib = median_of(3);
-  // A minute lies between them. Measured: 22 MiB, of combinations of numbers that the driver still compiled anew; a shader
-  // that compiled for every value of a slider was 3 MiB/s.
+  // A minute lies between them. Measured once: 22 MiB, not explained in full; shaders that were compiled anew for every value
+  // of a slider took 3 MiB/s.
   EXPECT_LT(after_mib, before_mib + 48.0) << "MiB";
   RecordProperty("second_quarter_mib", static_cast<int>(before_mib));
   RecordProperty("last_quarter_mib", static_cast<int>(after_mib));
