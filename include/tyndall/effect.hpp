@@ -202,6 +202,9 @@ class Effect {
   // of parameters needs at once (unwarping in a medium, scaling up) counts as one.
   Result<Progress> prepare_pipelines(std::uint32_t budget = UINT32_MAX);
 
+  // Takes over another EffectDesc::shadow_colors; the pipelines that the parameters then need are made here.
+  Result<void> set_shadow_colors(bool shadow_colors);
+
   // Takes over other limits than those of EffectDesc, as set_params() takes over parameters: an error changes nothing,
   // what commands in flight use is kept until they are done.
   Result<void> set_limits(VkExtent2D max_extent, std::uint32_t max_cascades, std::uint32_t max_shadow_resolution);

@@ -278,6 +278,17 @@ Result<Progress> Effect::prepare_pipelines(std::uint32_t budget) {
   return progress;
 }
 
+Result<void> Effect::set_shadow_colors(bool shadow_colors) {
+  const EffectDesc before = state_->desc;
+  state_->desc.shadow_colors = shadow_colors;
+  Result<void> done = state_->epipolar.set_limits(state_->desc, state_->params);
+  if (done) done = state_->prepare_pipelines(state_->params);
+  if (done) return done;
+  state_->desc = before;
+  static_cast<void>(state_->epipolar.set_limits(before, state_->params));  // what it takes is there
+  return done;
+}
+
 Result<void> Effect::set_limits(VkExtent2D max_extent, std::uint32_t max_cascades,
                                 std::uint32_t max_shadow_resolution) {
   EffectDesc desc = state_->desc;

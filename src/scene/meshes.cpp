@@ -111,8 +111,31 @@ Result<void> Meshes::load(const MeshParams& params, const Terrain& terrain) {
   // The sphere bends down from under a flat mesh: between its corners it is higher by the sagitta.
   const double side = glm::distance(corners_[0], corners_[7]);
   lowest_m_ -= side * side / (8.0 * radius_m_);
+  find_boxes();
   for (const MeshPart& part : data_.parts) has_glass_ = has_glass_ || data_.materials[part.material].transmits();
   return {};
+}
+
+void Meshes::find_boxes() {
+  boxes_.clear();
+  for (const Mesh& mesh : data_.meshes) {
+    Box whole;
+    for (std::uint32_t i = 0; i < mesh.part_count; ++i) {
+      const MeshPart& part = data_.parts[mesh.first_part + i];
+      Box box;
+      for (std::uint32_t k = 0; k < part.index_count; ++k) box.add(data_.vertices[data_.indices[part.first_index + k]].position);
+      if (mesh.instance_count == 1) {
+        boxes_.push_back(placed_box(world_from_model_ * glm::dmat4(data_.instances[mesh.first_instance]), box));
+      } else if (!box.empty()) {
+        whole.add(box.min);
+        whole.add(box.max);
+      }
+    }
+    if (mesh.instance_count == 1) continue;
+    for (std::uint32_t i = 0; i < mesh.instance_count; ++i) {
+      boxes_.push_back(placed_box(world_from_model_ * glm::dmat4(data_.instances[mesh.first_instance + i]), whole));
+    }
+  }
 }
 
 Result<void> Meshes::create_pipelines(VkFormat color_format, VkFormat depth_format, VkFormat shadow_color_format) {
@@ -267,7 +290,8 @@ std::vector<gpu::NamedResource> Meshes::resources(const TerrainLight* light) con
   return out;
 }
 
-// Draws the parts whose material is chosen, one draw each: what a material needs is bound with it.
+// Draws the parts whose material is chosen and which can be in sight, one draw each for instances in a row: what a
+// material needs is bound with it.
 template <typename Choose>
 Result<void> Meshes::draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline, const glm::dmat4& clip_from_world,
                           const TerrainLight* light, const Choose& choose) {
@@ -278,11 +302,21 @@ Result<void> Meshes::draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline, co
   device.vk.CmdBindIndexBuffer(cmd, indices_.buffer.get(), 0, VK_INDEX_TYPE_UINT32);
   MeshPush push = {};
   push.clip_from_world = to_mat4(clip_from_world);
+  const Sides sides = sides_of(clip_from_world);
+  const Box* box = boxes_.data();
   for (const Mesh& mesh : data_.meshes) {
+    const Box* const boxes = box;
+    box += mesh.instance_count == 1 ? mesh.part_count : mesh.instance_count;
+    const auto in_sight = [&](std::uint32_t part, std::uint32_t instance) {
+      return !is_outside(sides, boxes[mesh.instance_count == 1 ? part : instance]);
+    };
     for (std::uint32_t i = 0; i < mesh.part_count; ++i) {
       const MeshPart& part = data_.parts[mesh.first_part + i];
       const MeshMaterial& material = data_.materials[part.material];
       if (!choose(material)) continue;
+      std::uint32_t first = 0;
+      while (first < mesh.instance_count && !in_sight(i, first)) ++first;
+      if (first == mesh.instance_count) continue;
       std::memcpy(push.color, &material.color, sizeof push.color);
       push.alpha_cutoff = material.alpha_cutoff;
       push.transmission = material.transmission;
@@ -292,7 +326,13 @@ Result<void> Meshes::draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline, co
       bound.back() = gpu::named_image("base_color", texture.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, repeat_.get());
       const std::string_view missing = gpu::bind(device, cmd, pipeline, bound, &push);
       if (!missing.empty()) return lacks(missing);
-      device.vk.CmdDrawIndexed(cmd, part.index_count, mesh.instance_count, part.first_index, 0, mesh.first_instance);
+      while (first < mesh.instance_count) {
+        std::uint32_t end = first + 1;
+        while (end < mesh.instance_count && in_sight(i, end)) ++end;
+        device.vk.CmdDrawIndexed(cmd, part.index_count, end - first, part.first_index, 0, mesh.first_instance + first);
+        first = end;
+        while (first < mesh.instance_count && !in_sight(i, first)) ++first;
+      }
     }
   }
   return {};

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "scene/mesh/cull.hpp"
 #include "scene/mesh/mesh_data.hpp"
 #include "scene/terrain.hpp"
 
@@ -40,6 +41,7 @@ class Meshes {
   Result<void> load(const MeshParams& params, const Terrain& terrain);
   Result<void> create_pipelines(VkFormat color_format, VkFormat depth_format, VkFormat shadow_color_format);
   Result<void> create_buffers();
+  void find_boxes();
   [[nodiscard]] std::vector<gpu::NamedResource> resources(const TerrainLight* light) const;
   template <typename Choose>
   Result<void> draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline, const glm::dmat4& clip_from_world,
@@ -51,6 +53,8 @@ class Meshes {
   bool has_glass_ = false;
   MeshData data_;  // without vertices, indices and texels once they are on the device
   glm::dmat4 world_from_model_ = glm::dmat4(1.0);
+  // Of meshes that are placed once those of their parts, of others those of their instances; mesh by mesh.
+  std::vector<Box> boxes_;
   std::array<glm::dvec3, 8> corners_ = {};  // of the bounds, in the world
   double lowest_m_ = 0.0, highest_m_ = 0.0;
 

@@ -130,7 +130,7 @@ class Scene {
   std::unique_ptr<Effect> effect_;
   std::unique_ptr<SkyModel> model_;  // none: the effect draws the air
   bool tables_ready_ = false;
-  bool colored_air_ = false;  // the effect was created for maps of colours
+  bool colored_air_ = false;  // the effect takes maps of colours
   std::unique_ptr<post::Tonemap> tonemap_;
   gpu::Image color_, depth_, shadow_maps_, shadow_colors_, output_, display_;
   std::vector<gpu::Handle<VkImageView>> shadow_layers_, shadow_color_layers_;

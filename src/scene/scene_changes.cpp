@@ -106,7 +106,8 @@ Result<void> Scene::make_meshes(const SceneParams& scene) {
     }
   }
   if (effect_ != nullptr && !colored_air_ && made != nullptr && made->has_glass()) {
-    notes_.emplace_back("the glass of the new meshes colours surfaces, but the air only after a start with them");
+    TYNDALL_TRY(effect_->set_shadow_colors(true));
+    colored_air_ = true;
   }
   meshes_ = std::move(made);
   drawn_cascades_.clear();

@@ -248,6 +248,27 @@ TEST_F(GpuMeshes, ColouredShaftsOfTheHallAreThoseOfBruteForce) {
   EXPECT_GT(saturation, 0.3);
 }
 
+// Meshes with glass that come later colour the air as those that were there from the start.
+TEST_F(GpuMeshes, GlassThatComesLaterColoursTheAir) {
+  config::Settings settings;
+  ASSERT_OK(config::load(settings, TYNDALL_SOURCE_DIR "/scenes/hall.toml"));
+  settings.scene.camera.samples = 1;
+  settings.effect.tables.size = {8, 32, 32, 4};
+  settings.effect.tables.orders = 2;
+  settings.scene.shadows.resolution = 512;
+  SceneDesc desc;
+  desc.extent = {128, 72};
+  SceneParams without = settings.scene;
+  without.meshes.source = "none";
+  Result<std::unique_ptr<Scene>> later = Scene::create(host(), desc, settings.effect, without);
+  ASSERT_OK(later);
+  draw(*later.value());
+  ASSERT_OK(later.value()->set_scene(settings.scene));
+  Result<std::unique_ptr<Scene>> at_once = Scene::create(host(), desc, settings.effect, settings.scene);
+  ASSERT_OK(at_once);
+  EXPECT_EQ(draw(*later.value()).rgb, draw(*at_once.value()).rgb);
+}
+
 TEST(MeshTextures, LevelsAverageLightAndIgnoreHoles) {
   MeshTexture texture;
   texture.width = 4;

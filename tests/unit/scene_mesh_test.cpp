@@ -11,6 +11,7 @@
 
 #include "image/image.hpp"
 #include "mesh_files.hpp"
+#include "scene/mesh/cull.hpp"
 #include "scene/mesh/gltf_file.hpp"
 #include "scene/mesh/hall.hpp"
 
@@ -322,6 +323,56 @@ TEST_F(SceneMesh, TheHallIsClosedAndSeenFromInside) {
     }
   }
   EXPECT_GT(glass, 60);
+}
+
+// Boxes with a point in sight are never left out; those wholly on the other side of one plane are.
+TEST(SceneMeshCulling, LeavesOutOnlyWhatIsOutOfSight) {
+  std::mt19937 engine(6);
+  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine); };
+  int outside = 0;
+  for (int i = 0; i < 2000; ++i) {
+    // A perspective that looks along -z with an infinite far plane, or a box, as of a cascade; turned and moved.
+    glm::dmat4 clip(0.0);
+    clip[0][0] = uniform(0.5, 3.0);
+    clip[1][1] = uniform(0.5, 3.0);
+    if (i % 2 == 0) {
+      clip[2][3] = -1.0;
+      clip[3][2] = 0.5;
+    } else {
+      clip[0][0] *= 0.1;
+      clip[1][1] *= 0.1;
+      clip[3][3] = 1.0;
+    }
+    const double turn = uniform(0.0, 6.28);
+    const glm::dmat4 view(std::cos(turn), 0, std::sin(turn), 0, 0, 1, 0, 0, -std::sin(turn), 0, std::cos(turn), 0, uniform(-20, 20), uniform(-20, 20), uniform(-20, 20), 1);
+    clip = clip * view;
+    Box box;
+    const glm::dvec3 corner(uniform(-30, 30), uniform(-30, 30), uniform(-30, 30));
+    box.add(corner);
+    box.add(corner + glm::dvec3(uniform(0, 20), uniform(0, 20), uniform(0, 20)));
+    const bool left_out = is_outside(sides_of(clip), box);
+    outside += left_out ? 1 : 0;
+    for (int k = 0; k < 64 && left_out; ++k) {
+      const glm::dvec3 p = glm::mix(box.min, box.max, glm::dvec3(uniform(0, 1), uniform(0, 1), uniform(0, 1)));
+      const glm::dvec4 seen = clip * glm::dvec4(p, 1.0);
+      EXPECT_FALSE(std::abs(seen.x) <= seen.w && std::abs(seen.y) <= seen.w) << i;
+    }
+    // Behind the camera, or beside the cascade: nothing of a small box is in sight.
+    Box point;
+    point.add(corner);
+    const glm::dvec4 seen = clip * glm::dvec4(corner, 1.0);
+    EXPECT_EQ(is_outside(sides_of(clip), point), std::abs(seen.x) > seen.w || std::abs(seen.y) > seen.w) << i;
+  }
+  EXPECT_GT(outside, 400);
+  EXPECT_LT(outside, 1900);
+  // A placed box holds its corners, mirrored and turned as they may be.
+  const glm::dmat4 place(0, 2, 0, 0, -3, 0, 0, 0, 0, 0, -1, 0, 5, 6, 7, 1);
+  Box box;
+  box.add(glm::dvec3(-1, -2, -3));
+  box.add(glm::dvec3(4, 5, 6));
+  const Box placed = placed_box(place, box);
+  EXPECT_LE(glm::distance(placed.min, glm::dvec3(-10, 4, 1)), 0.01);
+  EXPECT_LE(glm::distance(placed.max, glm::dvec3(11, 14, 10)), 0.01);
 }
 
 }  // namespace

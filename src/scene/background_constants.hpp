@@ -1,0 +1,24 @@
+// What background.frag reads, in std430.
+#pragma once
+
+#include "tyndall/types.hpp"
+
+namespace tyndall::scene {
+
+struct BackgroundConstants {
+  Mat4 world_from_view;
+  Vec3 direction_to_sun;
+  float angular_radius_rad;
+  Vec3 disc_radiance;
+  float pixel_angle_rad;
+  Vec3 limb_exponent;
+  float unused_0;
+  float tan_half[2];
+  float jitter[2];
+  Vec3 direction_to_moon;
+  float moon_radius_rad;
+  Vec3 moon_irradiance;
+  float unused_1;
+};
+
+}  // namespace tyndall::scene

@@ -1,0 +1,167 @@
+// What of a scene is drawn: the shadow maps, the maps of colours, and the view.
+#include <cmath>
+#include <cstring>
+
+#include "gpu/try.hpp"
+#include "scene/background_constants.hpp"
+#include "scene/formats.hpp"
+#include "scene/scene.hpp"
+#include "scene/sun_disc.hpp"
+
+namespace tyndall::scene {
+namespace {
+
+constexpr double kRadPerDeg = 0.017453292519943295;
+
+VkRenderingAttachmentInfo attachment(VkImageView view, VkImageLayout layout, VkAttachmentLoadOp load,
+                                     VkClearValue clear) {
+  VkRenderingAttachmentInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
+  info.imageView = view;
+  info.imageLayout = layout;
+  info.loadOp = load;
+  info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+  info.clearValue = clear;
+  return info;
+}
+
+void begin_rendering(const gpu::Device& device, VkCommandBuffer cmd, VkExtent2D extent,
+                     const VkRenderingAttachmentInfo* color, const VkRenderingAttachmentInfo* depth) {
+  VkRenderingInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
+  info.renderArea = {{0, 0}, extent};
+  info.layerCount = 1;
+  info.colorAttachmentCount = color != nullptr ? 1 : 0;
+  info.pColorAttachments = color;
+  info.pDepthAttachment = depth;
+  device.vk.CmdBeginRendering(cmd, &info);
+  const VkViewport viewport = {0, 0, static_cast<float>(extent.width), static_cast<float>(extent.height), 0, 1};
+  const VkRect2D scissor = {{0, 0}, extent};
+  device.vk.CmdSetViewport(cmd, 0, 1, &viewport);
+  device.vk.CmdSetScissor(cmd, 0, 1, &scissor);
+}
+
+Result<void> lacks(std::string_view name) {
+  return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(name)};
+}
+
+}  // namespace
+
+Result<void> Scene::draw_shadows(VkCommandBuffer cmd) {
+  const gpu::Device& device = host_->device();
+  const std::uint32_t resolution = scene_.shadows.resolution;
+  gpu::transition(device, cmd, shadow_maps_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
+  begin_pass(cmd, "shadow_maps");
+  for (std::uint32_t i = 0; i < cascades_.size(); ++i) {
+    const gpu::Label label(device, cmd, "shadow_maps");
+    VkClearValue clear = {};
+    clear.depthStencil = {1.0F, 0};
+    const VkRenderingAttachmentInfo depth = attachment(shadow_layers_[i].get(), VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                                                       VK_ATTACHMENT_LOAD_OP_CLEAR, clear);
+    begin_rendering(device, cmd, {resolution, resolution}, nullptr, &depth);
+    TYNDALL_TRY(terrain_->draw_cascade(cmd, cascades_[i], i));
+    if (meshes_ != nullptr) TYNDALL_TRY(meshes_->draw_cascade(cmd, cascades_[i]));
+    device.vk.CmdEndRendering(cmd);
+  }
+  end_pass(cmd);
+  gpu::transition(device, cmd, shadow_maps_, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                  VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  return draw_shadow_colors(cmd);
+}
+
+// What glass leaves of the light, cascade by cascade.
+Result<void> Scene::draw_shadow_colors(VkCommandBuffer cmd) {
+  if (meshes_ == nullptr || !meshes_->has_glass()) return {};
+  const gpu::Device& device = host_->device();
+  const std::uint32_t resolution = scene_.shadows.resolution;
+  gpu::transition(device, cmd, shadow_colors_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+  begin_pass(cmd, "shadow_colors");
+  for (std::uint32_t i = 0; i < cascades_.size(); ++i) {
+    VkClearValue clear = {};
+    clear.color = {{1.0F, 1.0F, 1.0F, 1.0F}};
+    const VkRenderingAttachmentInfo color = attachment(shadow_color_layers_[i].get(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                                                       VK_ATTACHMENT_LOAD_OP_CLEAR, clear);
+    begin_rendering(device, cmd, {resolution, resolution}, &color, nullptr);
+    TYNDALL_TRY(meshes_->draw_colors(cmd, cascades_[i]));
+    device.vk.CmdEndRendering(cmd);
+  }
+  end_pass(cmd);
+  gpu::transition(device, cmd, shadow_colors_, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                  VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  return {};
+}
+
+Result<void> Scene::draw_view(VkCommandBuffer cmd) {
+  const gpu::Device& device = host_->device();
+  const double radius_rad = scene_.sun.angular_radius_deg * kRadPerDeg;
+  const double solid_angle = 6.283185307179586 * (1.0 - std::cos(radius_rad));
+  BackgroundConstants constants = {};
+  constants.world_from_view = camera_from_view(view_).world_from_view;
+  constants.direction_to_sun = to_vec3(to_sun_);
+  constants.angular_radius_rad = static_cast<float>(radius_rad);
+  constants.disc_radiance = Vec3(static_cast<float>(light_.sun_irradiance / solid_angle));
+  constants.pixel_angle_rad = static_cast<float>(2.0 * view_.tan_half_height / desc_.extent.height);
+  const Vec3& nm = params_.atmosphere.wavelengths_nm;
+  constants.limb_exponent = {limb_exponent(nm.x), limb_exponent(nm.y), limb_exponent(nm.z)};
+  constants.tan_half[0] = static_cast<float>(view_.tan_half_width);
+  constants.tan_half[1] = static_cast<float>(view_.tan_half_height);
+  constants.jitter[0] = static_cast<float>(view_.jitter.x);
+  constants.jitter[1] = static_cast<float>(view_.jitter.y);
+  if (scene_.moon.visible) {
+    SunParams place;
+    place.elevation_deg = scene_.moon.elevation_deg;
+    place.azimuth_deg = scene_.moon.azimuth_deg;
+    constants.direction_to_moon = to_vec3(direction_to_sun(place));
+    constants.moon_radius_rad = static_cast<float>(scene_.moon.angular_radius_deg * kRadPerDeg);
+    constants.moon_irradiance = Vec3(static_cast<float>(light_.sun_irradiance));
+  }
+  std::memcpy(background_constants_.mapped, &constants, sizeof constants);
+
+  gpu::transition(device, cmd, color_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+  gpu::transition(device, cmd, depth_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
+  const VkRenderingAttachmentInfo color = attachment(color_.view.get(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                                                     VK_ATTACHMENT_LOAD_OP_CLEAR, {});
+  const VkRenderingAttachmentInfo depth = attachment(depth_.view.get(), VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                                                     VK_ATTACHMENT_LOAD_OP_CLEAR, {});  // reversed: 0 is far
+  begin_pass(cmd, "terrain");
+  begin_rendering(device, cmd, desc_.extent, &color, &depth);
+  if (model_ != nullptr) {
+    TYNDALL_TRY(model_->draw_ground(cmd, *terrain_, {view_, light_, params_, scene_}));
+    // Times are taken between renderings, because their barriers may not stand inside one.
+    device.vk.CmdEndRendering(cmd);
+    end_pass(cmd);
+    begin_pass(cmd, "sky");
+    const VkRenderingAttachmentInfo on_color = attachment(color_.view.get(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                                                          VK_ATTACHMENT_LOAD_OP_LOAD, {});
+    const VkRenderingAttachmentInfo on_depth = attachment(depth_.view.get(), VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                                                          VK_ATTACHMENT_LOAD_OP_LOAD, {});
+    gpu::barrier(device, cmd,
+                 VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT,
+                 VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
+                 VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT |
+                     VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT,
+                 VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT |
+                     VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT);
+    begin_rendering(device, cmd, desc_.extent, &on_color, &on_depth);
+    TYNDALL_TRY(model_->draw_sky(cmd, background_constants_.buffer.get()));
+  } else {
+    TYNDALL_TRY(terrain_->draw_view(cmd, view_, light_));
+    if (meshes_ != nullptr) TYNDALL_TRY(meshes_->draw_view(cmd, view_, light_));
+    const gpu::Label label(device, cmd, background_.name);
+    const gpu::NamedResource resources[] = {
+        gpu::named_buffer("background_block", background_constants_.buffer.get())};
+    const std::string_view missing = gpu::bind(device, cmd, background_, resources);
+    if (!missing.empty()) return lacks(missing);
+    device.vk.CmdDraw(cmd, 3, 1, 0, 0);
+    if (meshes_ != nullptr) TYNDALL_TRY(meshes_->draw_clear_glass(cmd, view_, light_));
+  }
+  device.vk.CmdEndRendering(cmd);
+  end_pass(cmd);
+  gpu::transition(device, cmd, color_, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                  VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  gpu::transition(device, cmd, depth_, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                  VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  return {};
+}
+
+}  // namespace tyndall::scene
