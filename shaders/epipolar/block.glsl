@@ -32,6 +32,14 @@ void look_at_pixel(inout Block block, int k) {
   block.farthest_m = sky ? block.farthest_m : max(block.farthest_m, visible_m);
 }
 
+// Fills in the rest from the pixels' places.
+void look_at_block(inout Block block) {
+  block.kinds = 0u;
+  block.nearest_m = kSkyDepth;
+  block.farthest_m = 0.0;
+  for (int k = 0; k < 4; ++k) look_at_pixel(block, k);
+}
+
 void list_broken(ivec2 corner) {
   uint at = atomicAdd(broken.count, 1u);
   broken_list[at] = uint(corner.y) << 16u | uint(corner.x);

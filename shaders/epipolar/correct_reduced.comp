@@ -22,11 +22,6 @@ layout(binding = 6) uniform sampler2D scene_depth;
 #include "epipolar/reduced.glsl"
 #include "frame/homogeneous_medium.glsl"
 
-struct Blend {
-  vec3 source;
-  vec3 density;
-};
-
 void put_pixel(uint at) {
   ivec2 pixel = ivec2(items[at] & 0xFFFFu, items[at] >> 16u);
   Ray ray = view_ray(frame, pixel, texelFetch(scene_depth, pixel, 0).r);
@@ -38,11 +33,12 @@ void put_pixel(uint at) {
   else if (inside) tau = optical_depth(medium, column_along(medium, ray.altitude, ray.cos_zenith, end));
   attenuation(tau, through, lost);
   ivec2 place = pixel / kDownscale;
-  Blend b;
-  b.density = density_of(tau, reduced[reduced_index(place)].a);
-  b.source = corrected[at].rgb / max(lost, vec3(1e-20));
-  if (kHomogeneous && !inside) b.source = vec3(1.0);
-  STORE_REDUCED(place, reduced[reduced_index(place)].a, b);
+  Sample s;
+  s.depth_m = reduced[reduced_index(place)].a;
+  s.density = density_of(tau, s.depth_m);
+  s.source = corrected[at].rgb / max(lost, vec3(1e-20));
+  if (kHomogeneous && !inside) s.source = vec3(1.0);
+  STORE_REDUCED(place, s.depth_m, s);
 }
 
 void main() {

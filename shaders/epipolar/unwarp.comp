@@ -31,15 +31,12 @@ void main() {
   ivec2 size = computed_size();
   if (corner.x >= size.x || corner.y >= size.y) return;
   Block block;
-  block.kinds = 0u;
-  block.nearest_m = kSkyDepth;
-  block.farthest_m = 0.0;
   ivec2 place[4];
   for (int k = 0; k < 4; ++k) {
     place[k] = min(corner + ivec2(k & 1, k >> 1), size - 1);
     block.pixel[k] = kDownscale == 1 ? place[k] : pixel_of_reduced(place[k]);
-    look_at_pixel(block, k);
   }
+  look_at_block(block);
   // Not beyond the last pixels of an odd size: what is seen there is none of the four.
   vec2 middle = 0.5 * vec2(block.pixel[0] + block.pixel[3]) + 0.5;
   bool scene = block.kinds == kScene;

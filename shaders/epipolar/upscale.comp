@@ -34,13 +34,8 @@ void main() {
   ivec2 size = ivec2(frame.width, frame.height);
   if (corner.x >= size.x || corner.y >= size.y) return;
   Block block;
-  block.kinds = 0u;
-  block.nearest_m = kSkyDepth;
-  block.farthest_m = 0.0;
-  for (int k = 0; k < 4; ++k) {
-    block.pixel[k] = min(corner + ivec2(k & 1, k >> 1), size - 1);
-    look_at_pixel(block, k);
-  }
+  for (int k = 0; k < 4; ++k) block.pixel[k] = min(corner + ivec2(k & 1, k >> 1), size - 1);
+  look_at_block(block);
   Sample near[4];
   vec2 part;
   reduced_around(corner, part, near);
@@ -51,7 +46,6 @@ void main() {
     nearest_m = min(nearest_m, near[k].depth_m);
     farthest_m = max(farthest_m, near[k].depth_m);
   }
-  // Within what depth_nearness() takes for equal.
   bool one_depth = scene ? farthest_m - nearest_m <= kOneSlope * epipolar.threshold * nearest_m
                          : block.kinds == kSky && nearest_m >= kSkyDepth;
   if (!one_depth) {

@@ -1,6 +1,6 @@
 // What the frame passes need of one frame: derived on the CPU by src/effect/frame_constants.cpp, never
-// set by the caller. In storage buffers (std430) and uniform ones (std140; see docs/epipolar.md for which): every vec3 is followed by a four-byte
-// member, every structure is a multiple of 16 bytes.
+// set by the caller. In storage buffers (std430) and uniform ones (std140; docs/epipolar.md says which): every vec3 is
+// followed by a four-byte member, every structure is a multiple of 16 bytes.
 #include "shared/tables.h"
 
 struct CascadeConstants {

@@ -1,10 +1,10 @@
 #include "models/homogeneous.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include "effect/medium.hpp"
 #include "models/glsl_double.hpp"
+#include "models/hemisphere.hpp"
 
 namespace tyndall::models {
 namespace {
@@ -56,31 +56,15 @@ Answer homogeneous_light(const shared::Homogeneous& medium, const Ray& ray) {
   return {to_array(radiance * glsl64::homogeneous_sun(m, path.mu_s)), to_array(extinction)};
 }
 
-// Even steps of the azimuth, which is periodic, and Gauss nodes in x with zenith angle (1 - x^2) 90 deg: close
-// together at the horizon, where the sky is brightest.
 std::array<double, 3> homogeneous_sky_irradiance(const shared::Homogeneous& medium, double cos_sun_zenith) {
   const glsl64::Homogeneous m = widen(medium);
   const glsl64::vec3 sun = glsl64::homogeneous_sun(m, cos_sun_zenith);
   if (sun == glsl64::vec3(0.0)) return {};
-  const double sin_sun = std::sqrt(std::max(1.0 - cos_sun_zenith * cos_sun_zenith, 0.0));
-  glsl64::vec3 sum(0.0);
-  for (int i = 0; i < 2 * kZenithPanels; ++i) {
-    const double node = (i % 2 == 0 ? -1.0 : 1.0) / std::numbers::sqrt3;
-    const double x = (i / 2 + 0.5 + 0.5 * node) / kZenithPanels;
-    const double zenith = 0.5 * std::numbers::pi * (1.0 - x * x);
-    const double weight = std::numbers::pi * x / (2.0 * kZenithPanels);  // |d zenith / d x| times the node's
-    const double mu = std::cos(zenith);
-    const double sine = std::sin(zenith);
-    for (int k = 0; k < kAzimuths; ++k) {
-      const double azimuth = 2.0 * std::numbers::pi * (k + 0.5) / kAzimuths;
-      const double nu = mu * cos_sun_zenith + sine * sin_sun * std::cos(azimuth);
-      glsl64::vec3 extinction;
-      const glsl64::HomogeneousPath path = glsl64::homogeneous_path(m, 0.0, mu, cos_sun_zenith, nu, -1.0);
-      sum += glsl64::homogeneous_inscattering(m, path, nu, extinction) *
-             (weight * mu * sine * 2.0 * std::numbers::pi / kAzimuths);
-    }
-  }
-  return to_array(sum * sun);
+  return hemisphere_irradiance(cos_sun_zenith, kZenithPanels, kAzimuths, [&](double mu, double nu) {
+    glsl64::vec3 extinction;
+    const glsl64::HomogeneousPath path = glsl64::homogeneous_path(m, 0.0, mu, cos_sun_zenith, nu, -1.0);
+    return to_array(glsl64::homogeneous_inscattering(m, path, nu, extinction) * sun);
+  });
 }
 
 std::array<double, 3> homogeneous_sun(const shared::Homogeneous& medium, double cos_sun_zenith) {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "effect/medium.hpp"
 #include "models/glsl_double.hpp"
+#include "models/hemisphere.hpp"
 
 namespace tyndall::models {
 namespace {
@@ -71,27 +71,10 @@ Answer homogeneous_medium_light(const HomogeneousMedium& m, const Ray& ray) {
   return out;
 }
 
-// Even steps of the azimuth, which is periodic, and Gauss nodes in x with zenith angle (1 - x^2) 90 deg.
 std::array<double, 3> homogeneous_medium_sky(const HomogeneousMedium& m, double altitude_m, double cos_sun_zenith) {
-  const double sin_sun = std::sqrt(std::max(1.0 - cos_sun_zenith * cos_sun_zenith, 0.0));
-  std::array<double, 3> sum = {};
-  for (int i = 0; i < 2 * kZenithPanels; ++i) {
-    const double node = (i % 2 == 0 ? -1.0 : 1.0) / std::numbers::sqrt3;
-    const double x = (i / 2 + 0.5 + 0.5 * node) / kZenithPanels;
-    const double zenith = 0.5 * std::numbers::pi * (1.0 - x * x);
-    const double weight = std::numbers::pi * x / (2.0 * kZenithPanels);  // |d zenith / d x| times the node's
-    const double mu = std::cos(zenith);
-    const double sine = std::sin(zenith);
-    for (int k = 0; k < kAzimuths; ++k) {
-      const double azimuth = 2.0 * std::numbers::pi * (k + 0.5) / kAzimuths;
-      const double nu = mu * cos_sun_zenith + sine * sin_sun * std::cos(azimuth);
-      const Answer answer = homogeneous_medium_light(m, {altitude_m, mu, cos_sun_zenith, nu});
-      for (std::size_t c = 0; c < 3; ++c) {
-        sum[c] += answer.radiance[c] * weight * mu * sine * 2.0 * std::numbers::pi / kAzimuths;
-      }
-    }
-  }
-  return sum;
+  return hemisphere_irradiance(cos_sun_zenith, kZenithPanels, kAzimuths, [&](double mu, double nu) {
+    return homogeneous_medium_light(m, {altitude_m, mu, cos_sun_zenith, nu}).radiance;
+  });
 }
 
 }  // namespace tyndall::models
