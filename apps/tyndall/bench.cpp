@@ -62,18 +62,19 @@ int run_bench(Args args) {
     if (frame < kWarmUpFrames) continue;
     double effect_ms = 0.0;
     double frame_ms = 0.0;
+    std::map<std::string, double> of_frame;  // a pass may be done several times
     for (const scene::PassTime& pass : scene.value()->timings()) {
       if (pass.name == "floor") {
         floor.ms.push_back(pass.ms);
         continue;
       }
       if (!passes.contains(pass.name)) order.push_back(pass.name);
-      Series& series = passes[pass.name];
-      series.ms.push_back(pass.ms);
-      series.in_effect = pass.in_effect;
+      passes[pass.name].in_effect = pass.in_effect;
+      of_frame[pass.name] += pass.ms;
       frame_ms += pass.ms;
       if (pass.in_effect) effect_ms += pass.ms;
     }
+    for (const auto& [name, ms] : of_frame) passes[name].ms.push_back(ms);
     effect.ms.push_back(effect_ms);
     frame_total.ms.push_back(frame_ms);
   }

@@ -262,5 +262,19 @@ TEST_F(CliScenes, BenchSaysWhatIsPromised) {
   EXPECT_EQ(report["memory_bytes"]["effect_persistent"], bytes);
 }
 
+// The march is done once for each cascade: its time is that of all of them, so that one frame's passes are its effect.
+TEST_F(CliScenes, BenchAddsUpPassesThatAreDoneSeveralTimes) {
+  const Outcome outcome = run_tyndall({"bench", "--json", "--size", "64x36", "--frames", "1", "--set", "planet.radius_m=20000",
+                                       "--set", "tables.size=4,4,4,4", "--set", "tables.orders=1", "--set",
+                                       "shadows.cascade_processing=multi-pass"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json report = nlohmann::json::parse(outcome.out);
+  double effect_ms = 0.0;
+  for (const nlohmann::json& pass : report["passes"]) {
+    if (pass["in_effect"] == true) effect_ms += pass["median_ms"].get<double>();
+  }
+  EXPECT_NEAR(effect_ms, report["effect_ms"].get<double>(), 1e-6);
+}
+
 }  // namespace
 }  // namespace tyndall::cli
