@@ -2,7 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#include "scene/terrain_ground.glsl"
+#include "scene/terrain_inputs.glsl"
 #include "scene/homogeneous_air.glsl"
 
 layout(location = 5) in vec3 vertex_extinction;

@@ -1,21 +1,12 @@
-// The ground in sunlight that has come through the air and under the light of the sky.
-// Out: radiance of the ground itself; what the air adds between it and the eye is the effect's business.
+// Which ground is seen: terrain_light.comp lights it. Triangles are about as small as pixels, and a device shades at least
+// four pixels of each, a CPU sixteen; so nothing that costs is done here.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#define SHADOW_COLORS 6
-#include "scene/terrain_ground.glsl"
-#include "tyndall/light_tables.glsl"
+#include "scene/terrain_point.glsl"
 
-layout(location = 0) out vec4 radiance;
+layout(location = 0) in vec4 place;
+layout(location = 1) flat in uint level_layer;
+layout(location = 0) out vec4 point;
 
-layout(binding = 4) uniform sampler2D sun_transmittance;
-layout(binding = 5) uniform sampler2D sky_irradiance;
-
-void ground_light(float altitude_m, float cos_sun_zenith, out vec3 sun, out vec3 sky) {
-  vec2 uv = light_table_uv(altitude_m, cos_sun_zenith, terrain.planet_radius_m, terrain.atmosphere_height_m);
-  sun = texture(sun_transmittance, uv).rgb;
-  sky = texture(sky_irradiance, uv).rgb;
-}
-
-void main() { radiance = vec4(ground_radiance(), 1.0); }
+void main() { point = pack_ground_point(place.xy, place.z, level_layer, place.w); }

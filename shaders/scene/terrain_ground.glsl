@@ -9,53 +9,57 @@
 #include "scene/terrain_shadow.glsl"
 #include "scene/terrain_materials.glsl"
 
-layout(location = 0) in vec3 world_position;
-layout(location = 1) in vec3 map_altitude;
-layout(location = 2) in vec4 texels;
-layout(location = 3) in float level_morph;
-layout(location = 4) flat in uint level_layer;
+// A place on the ground, as terrain_vertex.glsl has it at the vertices.
+struct GroundPoint {
+  vec3 position;  // world
+  vec2 map_m;
+  float altitude_m;
+  vec2 texel;         // in the level's texture
+  vec2 parent_texel;  // in that of the next coarser level
+  float morph;        // towards that level
+  uint layer;
+};
 
 void ground_light(float altitude_m, float cos_sun_zenith, out vec3 sun, out vec3 sky);
 
-// Radiance of the ground at this pixel, towards the eye and before the air takes its part.
-vec3 ground_radiance() {
-  vec2 map_m = map_altitude.xy;
-  vec3 shape = surface_shape(texels.xy, level_layer);
-  if (level_morph > 0.0) shape = mix(shape, surface_shape(texels.zw, level_layer + 1u), level_morph);
+// Radiance of the ground at a point, towards the eye and before the air takes its part.
+vec3 ground_radiance(GroundPoint point) {
+  vec3 shape = surface_shape(point.texel, point.layer);
+  if (point.morph > 0.0) shape = mix(shape, surface_shape(point.parent_texel, point.layer + 1u), point.morph);
   vec2 gradient = shape.xy;
 
-  vec3 to_eye = terrain.camera_position - world_position;
+  vec3 to_eye = terrain.camera_position - point.position;
   float distance_m = length(to_eye);
   float radius = terrain.planet_radius_m;
-  vec3 up = normalize(world_position + vec3(0.0, radius, 0.0));
+  vec3 up = normalize(point.position + vec3(0.0, radius, 0.0));
   vec3 smooth_normal = normal_from_gradient(gradient, up);
   vec3 map_normal = normalize(vec3(-gradient.x, 1.0, -gradient.y));
   float pixel_m = distance_m * terrain.pixel_angle_rad;
   // A pixel's width on the ground, longer where the ground is seen at a slant: the geometric mean.
   float facing = max(dot(smooth_normal, to_eye) / distance_m, 0.05);
   float footprint_m = max(pixel_m / sqrt(facing), 0.01);
-  TerrainMaterial ground = terrain_ground(terrain.shading, terrain_units(map_m), map_altitude.z, map_normal,
+  TerrainMaterial ground = terrain_ground(terrain.shading, terrain_units(point.map_m), point.altitude_m, map_normal,
                                           shape.z, footprint_m, terrain.seed);
   vec3 normal = normal_from_gradient(-ground.normal.xz / max(ground.normal.y, 0.05), up);
 
   uint cascade;
-  float lit = sun_light_at(world_position, smooth_normal, cascade);
+  float lit = sun_light_at(point.position, smooth_normal, cascade);
   float sun_cosine = max(dot(normal, terrain.direction_to_sun), 0.0);
   // Relief too fine for the shadow maps cannot light a slope that faces away.
   lit *= clamp(dot(smooth_normal, terrain.direction_to_sun) * 8.0 + 0.5, 0.0, 1.0);
   // The sunlit rim of a crest against the sun is often thinner than a pixel: the crest turns out of sight
   // within facing^2 / 2 of its radius. Where one sample takes it for a whole pixel, it strings beads.
-  float turn_per_m = 2.0 * max(-shape.z, 0.0) / terrain.levels[level_layer].cell_m;
+  float turn_per_m = 2.0 * max(-shape.z, 0.0) / terrain.levels[point.layer].cell_m;
   float rim = clamp(facing * facing / (2.0 * turn_per_m * pixel_m + 1e-6), 0.3, 1.0);
   lit *= mix(1.0, rim, smoothstep(0.4, 0.8, -dot(to_eye, terrain.direction_to_sun) / distance_m));
 
   vec3 sun_on_plane, open_sky;
-  ground_light(map_altitude.z, dot(up, terrain.direction_to_sun), sun_on_plane, open_sky);
+  ground_light(point.altitude_m, dot(up, terrain.direction_to_sun), sun_on_plane, open_sky);
   vec3 sun = sun_on_plane * (lit * sun_cosine);
 #ifdef SHADOW_COLORS
-  if (lit > 0.0) sun *= sun_color_at(world_position, smooth_normal, cascade);
+  if (lit > 0.0) sun *= sun_color_at(point.position, smooth_normal, cascade);
 #endif
-  float visible = sky_visibility(map_m, map_altitude.z);
+  float visible = sky_visibility(point.map_m, point.altitude_m);
   vec3 sky = open_sky * (visible * 0.5 * (1.0 + dot(normal, up)));
   // The rest of the hemisphere is other ground, under the same sky and, on average, a flat ground's sun.
   vec3 sun_on_flat = sun_on_plane * max(dot(up, terrain.direction_to_sun), 0.0);

@@ -42,7 +42,8 @@ Result<void> Scene::create_images(VkExtent2D size) {
   const VkImageUsageFlags written = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
   TYNDALL_ASSIGN(gpu::Image color,
                  gpu::create_image(device, {"scene_color", kColorFormat, extent,
-                                            VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT}));
+                                            VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                                                VK_IMAGE_USAGE_STORAGE_BIT}));
   TYNDALL_ASSIGN(gpu::Image depth,
                  gpu::create_image(device, {"scene_depth", kDepthFormat, extent,
                                             VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT}));

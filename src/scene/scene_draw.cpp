@@ -123,29 +123,39 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
                                                      VK_ATTACHMENT_LOAD_OP_CLEAR, {});
   const VkRenderingAttachmentInfo depth = attachment(depth_.view.get(), VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
                                                      VK_ATTACHMENT_LOAD_OP_CLEAR, {});  // reversed: 0 is far
+  const VkRenderingAttachmentInfo on_color = attachment(color_.view.get(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                                                        VK_ATTACHMENT_LOAD_OP_LOAD, {});
+  const VkRenderingAttachmentInfo on_depth = attachment(depth_.view.get(), VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                                                        VK_ATTACHMENT_LOAD_OP_LOAD, {});
+  // Times are taken between renderings, because their barriers may not stand inside one.
   begin_pass(cmd, "terrain");
   begin_rendering(device, cmd, desc_.extent, &color, &depth);
   if (model_ != nullptr) {
     TYNDALL_TRY(model_->draw_ground(cmd, *terrain_, {view_, light_, params_, scene_}));
-    // Times are taken between renderings, because their barriers may not stand inside one.
-    device.vk.CmdEndRendering(cmd);
+  } else {
+    TYNDALL_TRY(terrain_->draw_view(cmd, view_));
+  }
+  device.vk.CmdEndRendering(cmd);
+  end_pass(cmd);
+  if (model_ == nullptr) {
+    gpu::transition(device, cmd, color_, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL);
+    begin_pass(cmd, "terrain_light");
+    TYNDALL_TRY(terrain_->light_view(cmd, light_, color_.view.get(), desc_.extent));
     end_pass(cmd);
-    begin_pass(cmd, "sky");
-    const VkRenderingAttachmentInfo on_color = attachment(color_.view.get(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                                                          VK_ATTACHMENT_LOAD_OP_LOAD, {});
-    const VkRenderingAttachmentInfo on_depth = attachment(depth_.view.get(), VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
-                                                          VK_ATTACHMENT_LOAD_OP_LOAD, {});
-    gpu::barrier(device, cmd,
-                 VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT,
-                 VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
-                 VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT |
-                     VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT,
-                 VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT |
-                     VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT);
-    begin_rendering(device, cmd, desc_.extent, &on_color, &on_depth);
+    gpu::transition(device, cmd, color_, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+  }
+  gpu::barrier(device, cmd,
+               VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT,
+               VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
+               VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT |
+                   VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT,
+               VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT |
+                   VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT);
+  begin_pass(cmd, model_ != nullptr ? "sky" : "background");
+  begin_rendering(device, cmd, desc_.extent, &on_color, &on_depth);
+  if (model_ != nullptr) {
     TYNDALL_TRY(model_->draw_sky(cmd, background_constants_.buffer.get()));
   } else {
-    TYNDALL_TRY(terrain_->draw_view(cmd, view_, light_));
     if (meshes_ != nullptr) TYNDALL_TRY(meshes_->draw_view(cmd, view_, light_));
     const gpu::Label label(device, cmd, background_.name);
     const gpu::NamedResource resources[] = {

@@ -2,7 +2,7 @@
 // pipeline and draws the sky on a mesh around the camera, straight into the scene's colour. What they share
 // is here: the mesh, the pipelines, the drawing. A model adds four shaders and what those read.
 //
-// Shaders. Ground: over scene/terrain_vertex.glsl and scene/terrain_ground.glsl (bindings 0 to 5 and locations 0
+// Shaders. Ground: over scene/terrain_vertex.glsl and scene/terrain_inputs.glsl (bindings 0 to 5 and locations 0
 // to 4 are the terrain's). Sky: over scene/sky_mesh.glsl and scene/sun_disc.glsl (bindings 0 and 1). The model's
 // own constants are the block `model_block` at binding 6 in all four; further resources come after it.
 // Specialisation constant 0 is 1 with scattering.evaluate = pixel.

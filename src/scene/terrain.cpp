@@ -134,6 +134,7 @@ Result<void> Terrain::create_objects(VkFormat color_format, VkFormat depth_forma
   view.depth_format = depth_format;
   view.depth_compare = VK_COMPARE_OP_GREATER;
   TYNDALL_ASSIGN(view_pipeline_, gpu::create_graphics_pipeline(device, view));
+  TYNDALL_ASSIGN(light_, gpu::create_compute_pipeline(device, shaders::terrain_light_comp));
   gpu::GraphicsDesc shadow;
   shadow.name = "terrain_shadow";
   shadow.vertex = &shaders::terrain_shadow_vert;
@@ -342,34 +343,50 @@ Result<void> Terrain::draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline,
   return {};
 }
 
-Result<void> Terrain::draw_view(VkCommandBuffer cmd, const View& view, const TerrainLight& light) {
-  return draw_view(cmd, view, light, view_pipeline_, {});
+Result<void> Terrain::draw_view(VkCommandBuffer cmd, const View& view) {
+  if (none()) return {};
+  return draw(cmd, view_pipeline_, geometry(), clip_from_world(view), 0);
+}
+
+Result<void> Terrain::light_view(VkCommandBuffer cmd, const TerrainLight& light, VkImageView color, VkExtent2D extent) {
+  if (none()) return {};
+  const gpu::Device& device = host_->device();
+  const gpu::Label label(device, cmd, light_.name);
+  std::vector<gpu::NamedResource> resources = lit(light);
+  resources.push_back(gpu::named_image("scene_color", color));
+  const std::string_view missing = gpu::bind(device, cmd, light_, resources);
+  if (!missing.empty()) return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(missing)};
+  gpu::dispatch(device, cmd, light_, extent.width, extent.height);
+  return {};
 }
 
 Result<void> Terrain::draw_view(VkCommandBuffer cmd, const View& view, const TerrainLight& light,
                                 const gpu::Pipeline& pipeline, std::span<const gpu::NamedResource> more) {
   if (none()) return {};
-  std::vector<gpu::NamedResource> resources = {
-      gpu::named_buffer("terrain_block", constants_.buffer.get()),
-      gpu::named_buffer("blocks_block", blocks_.buffer.get()),
-      gpu::named_image("terrain_heights", heights_.view.get(), VK_IMAGE_LAYOUT_GENERAL, nearest_.get()),
-      gpu::named_image("shadow_maps", light.shadow_maps, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, light.shadow_sampler),
-      gpu::named_image("shadow_colors", light.shadow_colors, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, light.linear),
-      gpu::named_image("sun_transmittance", light.tables.sun_transmittance, VK_IMAGE_LAYOUT_GENERAL, light.linear),
-      gpu::named_image("sky_irradiance", light.tables.sky_irradiance, VK_IMAGE_LAYOUT_GENERAL, light.linear),
-  };
+  std::vector<gpu::NamedResource> resources = lit(light);
   resources.insert(resources.end(), more.begin(), more.end());
   return draw(cmd, pipeline, resources, clip_from_world(view), 0);
 }
 
+std::vector<gpu::NamedResource> Terrain::geometry() const {
+  return {gpu::named_buffer("terrain_block", constants_.buffer.get()),
+          gpu::named_buffer("blocks_block", blocks_.buffer.get()),
+          gpu::named_image("terrain_heights", heights_.view.get(), VK_IMAGE_LAYOUT_GENERAL, nearest_.get())};
+}
+
+std::vector<gpu::NamedResource> Terrain::lit(const TerrainLight& light) const {
+  constexpr VkImageLayout kRead = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+  std::vector<gpu::NamedResource> out = geometry();
+  out.insert(out.end(), {gpu::named_image("shadow_maps", light.shadow_maps, kRead, light.shadow_sampler),
+                         gpu::named_image("shadow_colors", light.shadow_colors, kRead, light.linear),
+                         gpu::named_image("sun_transmittance", light.tables.sun_transmittance, VK_IMAGE_LAYOUT_GENERAL, light.linear),
+                         gpu::named_image("sky_irradiance", light.tables.sky_irradiance, VK_IMAGE_LAYOUT_GENERAL, light.linear)});
+  return out;
+}
+
 Result<void> Terrain::draw_cascade(VkCommandBuffer cmd, const CascadeFit& cascade, std::uint32_t index) {
   if (none()) return {};
-  const gpu::NamedResource resources[] = {
-      gpu::named_buffer("terrain_block", constants_.buffer.get()),
-      gpu::named_buffer("blocks_block", blocks_.buffer.get()),
-      gpu::named_image("terrain_heights", heights_.view.get(), VK_IMAGE_LAYOUT_GENERAL, nearest_.get()),
-  };
-  return draw(cmd, shadow_pipeline_, resources, clip_from_shadow() * cascade.shadow_from_world(), index + 1);
+  return draw(cmd, shadow_pipeline_, geometry(), clip_from_shadow() * cascade.shadow_from_world(), index + 1);
 }
 
 }  // namespace tyndall::scene

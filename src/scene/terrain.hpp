@@ -61,12 +61,15 @@ class Terrain {
   Result<void> prepare(const View& view, std::uint32_t height_px, const ShadowParams& shadows,
                        const std::vector<CascadeFit>& cascades, const TerrainLight& light,
                        TerrainShading shading);
-  // Inside a rendering scope with colour and depth, or with the layer of a shadow map.
-  Result<void> draw_view(VkCommandBuffer cmd, const View& view, const TerrainLight& light);
-  // The same through a pipeline of someone else's, over scene/terrain_vertex.glsl and scene/terrain_ground.glsl;
-  // `more` are the resources that it reads beyond the terrain's.
+  // Inside a rendering scope with colour and depth. The colour says which ground is seen, until light_view() has made
+  // radiance of it, outside of the scope and with the image in GENERAL layout.
+  Result<void> draw_view(VkCommandBuffer cmd, const View& view);
+  Result<void> light_view(VkCommandBuffer cmd, const TerrainLight& light, VkImageView color, VkExtent2D extent);
+  // Draws the lit ground through a pipeline of someone else's, over scene/terrain_vertex.glsl and
+  // scene/terrain_inputs.glsl; `more` are the resources that it reads beyond the terrain's.
   Result<void> draw_view(VkCommandBuffer cmd, const View& view, const TerrainLight& light,
                          const gpu::Pipeline& pipeline, std::span<const gpu::NamedResource> more);
+  // Inside a rendering scope with the layer of a shadow map.
   Result<void> draw_cascade(VkCommandBuffer cmd, const CascadeFit& cascade, std::uint32_t index);
 
  private:
@@ -76,6 +79,9 @@ class Terrain {
   Result<void> draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline,
                     std::span<const gpu::NamedResource> resources, const glm::dmat4& clip_from_world,
                     std::uint32_t range);
+
+  [[nodiscard]] std::vector<gpu::NamedResource> geometry() const;
+  [[nodiscard]] std::vector<gpu::NamedResource> lit(const TerrainLight& light) const;
 
   struct Range {
     std::uint32_t first = 0, count = 0;
@@ -93,6 +99,7 @@ class Terrain {
 
   gpu::Pipeline fill_;
   gpu::Pipeline view_pipeline_;
+  gpu::Pipeline light_;
   gpu::Pipeline shadow_pipeline_;
   gpu::Image heights_;
   gpu::Image atlas_;
