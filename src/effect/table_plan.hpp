@@ -1,0 +1,46 @@
+// What the tables' description (tables.cpp) and their building (table_builder.cpp) share: sizes, sets of tables, and the plan of the scratch memory.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "effect/tables.hpp"
+
+namespace tyndall {
+
+constexpr VkExtent3D kSunLightExtent = {64, 256, 1};
+constexpr VkExtent3D kSkyLightExtent = {64, 256, 1};
+constexpr VkDeviceSize kTexelBytes = 8;
+
+// The order of the fields is that of the shaders' shape_block.
+struct ShapeBlock {
+  shared::TableShape shape;
+  shared::ZenithQuadrature quadrature;
+};
+constexpr VkDeviceSize kShapeOffset = 256;  // a multiple of every device's alignment
+constexpr VkDeviceSize kConstantBytes = kShapeOffset + sizeof(ShapeBlock);
+
+constexpr std::uint32_t bit(TableId id) { return 1U << static_cast<std::uint32_t>(id); }
+constexpr std::uint32_t kSingleTables = bit(TableId::single_rayleigh) | bit(TableId::single_mie);
+// Built together, from the same sums.
+constexpr std::uint32_t kHighTables = bit(TableId::high_orders) | bit(TableId::sky_irradiance);
+constexpr std::uint32_t kAllTables = (1U << kTableCount) - 1U;
+
+struct BufferPlan {
+  const char* name;
+  gpu::Buffer TableScratch::*buffer;
+  VkDeviceSize bytes;
+};
+constexpr std::size_t kScratchBuffers = 9;
+
+[[nodiscard]] std::array<BufferPlan, kScratchBuffers> plan_scratch(std::uint32_t views);
+constexpr VkBufferUsageFlags kScratchUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+
+// Gauss-Legendre nodes and weights on [0; 1], by Newton's method on the Legendre polynomial.
+[[nodiscard]] shared::ZenithQuadrature zenith_quadrature();
+
+[[nodiscard]] inline VkDeviceSize texel_bytes(const VkExtent3D& extent) {
+  return kTexelBytes * extent.width * extent.height * extent.depth;
+}
+
+}  // namespace tyndall

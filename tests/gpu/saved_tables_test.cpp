@@ -1,0 +1,297 @@
+// Tables that are kept: what an engine saves comes back, and the cache of the programs.
+#include <unistd.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "config/file_cache.hpp"
+#include "models/precomputed.hpp"
+#include "table_fixture.hpp"
+#include "table_rays.hpp"
+#include "tables/make_ready.hpp"
+
+namespace tyndall {
+namespace {
+
+TEST_F(SavedTablesTest, ComeBackAsTheyWere) {
+  Effect built = make(small_tables(), true);
+  EXPECT_EQ(built.table_bytes(), 8U * (3U * 6 * 16 * 12 * 4 + 2U * 64 * 256));
+  const std::vector<std::byte> bytes = save(built);
+  EXPECT_EQ(save(built, 4096), bytes);
+  // In the order that is promised.
+  TableBuilder builder;
+  ASSERT_OK(builder.create(host().device(), 1, false, small_tables()));
+  TableBuilderTest::build(builder, UINT32_MAX);
+  std::vector<std::byte> in_order;
+  for (std::uint32_t i = 0; i < kTableCount; ++i) {
+    const std::vector<std::byte> table = TableBuilderTest::bytes(builder, static_cast<TableId>(i));
+    in_order.insert(in_order.end(), table.begin(), table.end());
+  }
+  EXPECT_EQ(bytes, in_order);
+
+  Effect loaded = make(small_tables(), false);
+  EXPECT_EQ(loaded.table_key(), built.table_key());
+  ASSERT_OK(load(loaded, bytes, 64));
+  EXPECT_TRUE(loaded.precompute_progress().complete());
+  EXPECT_EQ(save(loaded), bytes);
+  // Nothing is left to be done; a build that has begun gives way.
+  std::vector<std::byte> noise(bytes.size(), std::byte{1});
+  ASSERT_OK(load(loaded, noise));
+  EXPECT_EQ(save(loaded), bytes);
+  Effect begun = make(small_tables(), false);
+  build(begun, 7);
+  ASSERT_FALSE(begun.precompute_progress().complete());
+  ASSERT_OK(load(begun, bytes));
+  EXPECT_TRUE(begun.precompute_progress().complete());
+  EXPECT_EQ(save(begun), bytes);
+
+  // A change afterwards builds what is stale and nothing else.
+  const std::uint32_t whole = built.precompute_progress().total;
+  Params params = small_tables();
+  params.planet.ground_albedo = 0.5F;
+  ASSERT_OK(loaded.set_params(params));
+  EXPECT_FALSE(loaded.precompute_progress().complete());
+  EXPECT_LT(loaded.precompute_progress().total, whole);
+  build(loaded);
+  Effect direct = make(params, true);
+  EXPECT_NE(save(direct), bytes);
+  EXPECT_EQ(save(loaded), save(direct));
+  // And back, from what was saved: into tables that are in use.
+  ASSERT_OK(loaded.set_params(small_tables()));
+  ASSERT_OK(load(loaded, bytes));
+  EXPECT_EQ(save(loaded), bytes);
+}
+
+TEST_F(SavedTablesTest, NothingHalfDoneIsSaved) {
+  Effect effect = make(small_tables(), false);
+  const gpu::Buffer to = buffer(effect.table_bytes() + 8);
+  const auto refused = [&](VkBuffer buffer, VkDeviceSize offset) {
+    Result<void> outcome;
+    EXPECT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
+      outcome = effect.record_save_tables(cmd, buffer, offset);
+      return {};
+    }));
+    EXPECT_TRUE(outcome.ok() || outcome.error().code == ErrorCode::invalid_argument);
+    return !outcome.ok();
+  };
+  EXPECT_TRUE(refused(to.buffer.get(), 0));
+  build(effect, effect.precompute_progress().total - 1);
+  EXPECT_TRUE(refused(to.buffer.get(), 0));
+  build(effect);
+  EXPECT_FALSE(refused(to.buffer.get(), 8));
+  EXPECT_TRUE(refused(to.buffer.get(), 4));
+  EXPECT_TRUE(refused(VK_NULL_HANDLE, 0));
+  // The old tables are whole, but not those of the parameters.
+  Params other = small_tables();
+  other.atmosphere.aerosol_density = 3.0F;
+  ASSERT_OK(effect.set_params(other));
+  EXPECT_TRUE(refused(to.buffer.get(), 0));
+  EXPECT_FALSE(load(effect, std::vector<std::byte>(8), 4).ok());
+}
+
+TEST_F(SavedTablesTest, KeysTellApartWhatMatters) {
+  Effect effect = make(small_tables(), false);
+  const auto key_of = [&](const Params& params) {
+    EXPECT_OK(effect.set_params(params));
+    return effect.table_key();
+  };
+  const std::string key = effect.table_key();
+  for (const char c : key) EXPECT_TRUE(c == '\n' || (c >= ' ' && c <= '~'));
+  EXPECT_NE(key.find(host().device_name()), std::string::npos);
+  for (const ParamInfo& row : param_table()) {
+    if (row.type == ParamType::enumeration && row.choices.find('|') == std::string_view::npos) continue;
+    Params params = small_tables();
+    // Coefficients of their own count only where they are in use.
+    params.atmosphere.custom_coefficients = row.name == "rayleigh_scattering" || row.name == "mie_scattering" ||
+                                            row.name == "mie_absorption";
+    const std::string before = key_of(params);
+    auto* const at = reinterpret_cast<char*>(&params) + row.offset;
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, at, sizeof bits);
+    const bool real = row.type == ParamType::float32 || row.type == ParamType::vec3;
+    bits = row.type == ParamType::flag || row.type == ParamType::enumeration ? 1 - bits : bits + (real ? 256 : 2);
+    // What stands at the end of its range goes the other way.
+    if (real && double{std::bit_cast<float>(bits)} > row.max) bits -= 512;
+    if (row.type == ParamType::enumeration && bits > 1) bits = 1;
+    if (row.name == "downscale") bits = 2;  // 1, 2 and 4 are allowed
+    std::memcpy(at, &bits, sizeof bits);
+    EXPECT_EQ(key_of(params) != before, row.affects == Affects::Tables) << row.name;
+  }
+}
+
+// Without the orders that take most of the time.
+Params quick_tables() {
+  Params params = small_tables();
+  params.tables.orders = 1;
+  return params;
+}
+
+// The same with the cache, as the programs do it.
+class CachedTablesTest : public SavedTablesTest {
+ protected:
+  void SetUp() override {
+    SavedTablesTest::SetUp();
+    std::string name = (std::filesystem::temp_directory_path() / "tyndall-tables-XXXXXX").string();
+    ASSERT_NE(::mkdtemp(name.data()), nullptr);
+    directory_ = name;
+    how_.cache.place = (directory_ / "cache").string();
+  }
+  void TearDown() override {
+    std::filesystem::remove_all(directory_);
+    SavedTablesTest::TearDown();
+  }
+  tables::Outcome ready(Effect& effect) {
+    Result<tables::Outcome> outcome = tables::make_ready(host(), effect, how_);
+    EXPECT_OK(outcome);
+    EXPECT_TRUE(effect.precompute_progress().complete());
+    return outcome ? std::move(outcome).value() : tables::Outcome();
+  }
+  // From a new effect.
+  tables::Outcome ready(const Params& params = quick_tables()) {
+    Effect effect = make(params, false);
+    tables::Outcome outcome = ready(effect);
+    bytes_ = save(effect);
+    return outcome;
+  }
+  [[nodiscard]] std::vector<std::filesystem::path> files() const {
+    std::vector<std::filesystem::path> out;
+    std::error_code missing;
+    for (const auto& entry : std::filesystem::directory_iterator(directory_ / "cache", missing)) out.push_back(entry.path());
+    return out;
+  }
+
+  std::filesystem::path directory_;
+  tables::MakeReady how_;
+  std::vector<std::byte> bytes_;
+};
+
+TEST_F(CachedTablesTest, AreBuiltOnceAndFoundAfterwards) {
+  std::uint32_t calls = 0;
+  how_.progress = [&](Progress) { ++calls; };
+  tables::Outcome outcome = ready();
+  const std::vector<std::byte> built = bytes_;
+  EXPECT_EQ(outcome.origin, tables::Origin::build);
+  EXPECT_TRUE(outcome.notes.empty());
+  EXPECT_GT(calls, 2U);
+  ASSERT_EQ(files().size(), 1U);
+  calls = 0;
+  outcome = ready();
+  EXPECT_EQ(outcome.origin, tables::Origin::cache);
+  EXPECT_GT(outcome.milliseconds, 0.0);
+  EXPECT_EQ(calls, 0U);
+  EXPECT_EQ(bytes_, built);
+
+  // What the tables do not depend on changes nothing; what they do is made anew.
+  Params params = quick_tables();
+  params.scattering.scale = 2.0F;
+  EXPECT_EQ(ready(params).origin, tables::Origin::cache);
+  params.atmosphere.mie_g = 0.7F;
+  EXPECT_EQ(ready(params).origin, tables::Origin::build);
+  EXPECT_EQ(ready(params).origin, tables::Origin::cache);
+  EXPECT_EQ(files().size(), 2U);
+  Effect effect = make(params, false);
+  EXPECT_EQ(ready(effect).origin, tables::Origin::cache);
+  EXPECT_EQ(ready(effect).origin, tables::Origin::unchanged);
+  ASSERT_OK(effect.set_params(quick_tables()));
+  EXPECT_EQ(ready(effect).origin, tables::Origin::cache);
+  EXPECT_EQ(save(effect), built);
+
+  how_.build_anew = true;
+  EXPECT_EQ(ready().origin, tables::Origin::build);
+  EXPECT_EQ(bytes_, built);
+  how_ = {};
+  EXPECT_EQ(ready().origin, tables::Origin::build);
+  EXPECT_EQ(files().size(), 2U);
+}
+
+TEST_F(CachedTablesTest, ProbesDoNotKnowTheDifference) {
+  std::vector<models::PrecomputedQuery> queries;
+  for (const reference::Query& q : random_rays(5, 50, -6.0, 90.0)) {
+    queries.push_back({models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad), false});
+    queries.push_back({queries.back().ray, true});
+  }
+  std::vector<std::vector<models::Answer>> answers;
+  for (const tables::Origin origin : {tables::Origin::build, tables::Origin::cache}) {
+    Result<models::PrecomputedModel> model = models::PrecomputedModel::create(host(), quick_tables(), how_);
+    ASSERT_OK(model);
+    EXPECT_EQ(model.value().origin().origin, origin);
+    Result<std::vector<models::Answer>> found = model.value().answer(queries);
+    ASSERT_OK(found);
+    answers.push_back(std::move(found).value());
+  }
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    EXPECT_EQ(answers[0][i].radiance, answers[1][i].radiance) << i;
+    EXPECT_EQ(answers[0][i].transmittance, answers[1][i].transmittance) << i;
+  }
+}
+
+TEST_F(CachedTablesTest, WhatIsWrongOnDiskIsSaidOnceAndMadeAnew) {
+  ready();
+  const std::vector<std::byte> built = bytes_;
+  ASSERT_EQ(files().size(), 1U);
+  const std::filesystem::path file = files()[0];
+  std::string good;
+  {
+    std::ifstream in(file, std::ios::binary);
+    good.assign(std::istreambuf_iterator<char>(in), {});
+  }
+  const auto expect_anew = [&](const std::string& contents, const std::string& why) {
+    std::ofstream(file, std::ios::binary) << contents;
+    const tables::Outcome outcome = ready();
+    EXPECT_EQ(outcome.origin, tables::Origin::build);
+    ASSERT_EQ(outcome.notes.size(), 1U) << why;
+    EXPECT_EQ(outcome.notes[0], "the cached file " + file.string() + " is " + why + " and is made anew");
+    EXPECT_EQ(bytes_, built);
+  };
+  expect_anew(good.substr(0, good.size() / 2), "truncated");
+  expect_anew("", "truncated");
+  std::string damaged = good;
+  damaged[good.size() - 1000] ^= 1;
+  expect_anew(damaged, "damaged");
+  {
+    config::FileCache other(how_.cache.place, how_.cache.limit_bytes, "0.0.0");
+    other.write(make(quick_tables(), false).table_key(), built);
+  }
+  std::string of_other;
+  {
+    std::ifstream in(file, std::ios::binary);
+    of_other.assign(std::istreambuf_iterator<char>(in), {});
+  }
+  expect_anew(of_other, "of another version");
+  EXPECT_EQ(ready().origin, tables::Origin::cache);
+
+  // Where nothing can be kept, one line says so, and the tables are there all the same.
+  std::ofstream(directory_ / "file") << "";
+  how_.cache.place = (directory_ / "file/below").string();
+  const tables::Outcome outcome = ready();
+  EXPECT_EQ(outcome.origin, tables::Origin::build);
+  ASSERT_EQ(outcome.notes.size(), 1U);
+  EXPECT_EQ(outcome.notes[0].rfind("nothing is cached: ", 0), 0U) << outcome.notes[0];
+}
+
+TEST_F(CachedTablesTest, KeepToTheirLimit) {
+  Params params = quick_tables();
+  const VkDeviceSize size = make(params, false).table_bytes();
+  how_.cache.limit_bytes = 2 * size + 10000;
+  for (const float density : {1.0F, 2.0F, 3.0F}) {
+    params.atmosphere.aerosol_density = density;
+    EXPECT_EQ(ready(params).origin, tables::Origin::build);
+    ::usleep(20000);
+  }
+  EXPECT_EQ(files().size(), 2U);
+  EXPECT_EQ(ready(params).origin, tables::Origin::cache);
+  params.atmosphere.aerosol_density = 1.0F;
+  EXPECT_EQ(ready(params).origin, tables::Origin::build);
+  how_.cache.limit_bytes = size;
+  params.atmosphere.aerosol_density = 9.0F;
+  const tables::Outcome outcome = ready(params);
+  ASSERT_EQ(outcome.notes.size(), 1U);
+  EXPECT_NE(outcome.notes[0].find("more than its limit of " + std::to_string(size)), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tyndall
