@@ -21,6 +21,12 @@ const uint kOneilTable = 2u;      // altitude times angle
 const uint kOneilUniform = 0u;  // points evenly along the ray, as printed
 const uint kOneilColumn = 1u;   // points where most of the air is that can be seen
 
+// GLSL may give these as constants: of a variable CPU devices go both ways, and the search for places of points is most of the work.
+#ifndef ONEIL_COLUMNS
+#define ONEIL_COLUMNS(o) o.columns
+#define ONEIL_SPACING(o) o.spacing
+#endif
+
 // The table: GLSL reads a buffer by ONEIL_TEXEL, C++ passes a pointer.
 #ifndef ONEIL_TABLE
 #define ONEIL_TABLE uint
@@ -64,7 +70,7 @@ vec4 oneil_table(IN(Oneil) o, ONEIL_TABLE table, float h, float c, float top) {
 }
 
 vec2 oneil_densities(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h) {
-  if (o.columns == kOneilTable) {
+  if (ONEIL_COLUMNS(o) == kOneilTable) {
     vec4 entry = oneil_table(o, table, h, 1.0, m.atmosphere_height_m);
     return vec2(entry.x, entry.z);
   }
@@ -73,11 +79,11 @@ vec2 oneil_densities(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h) {
 
 // Column outwards from altitude h under c; c >= 0 but with the printed function.
 vec2 oneil_column(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h, float c) {
-  if (o.columns == kOneilTable) {
+  if (ONEIL_COLUMNS(o) == kOneilTable) {
     vec4 entry = oneil_table(o, table, h, c, m.atmosphere_height_m);
     return vec2(entry.y, entry.w);
   }
-  if (o.columns == kOneilPublished) {
+  if (ONEIL_COLUMNS(o) == kOneilPublished) {
     return oneil_densities(m, o, table, h) * vec2(oneil_scale(o.rayleigh, c), oneil_scale(o.mie, c));
   }
   float R = m.planet_radius_m;
@@ -93,7 +99,7 @@ vec2 oneil_column_between(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float qa
   float R = m.planet_radius_m;
   float ca = clamp(qa / (R + ha), -1.0, 1.0);
   float cb = clamp(qb / (R + hb), -1.0, 1.0);
-  if (o.columns == kOneilPublished) {
+  if (ONEIL_COLUMNS(o) == kOneilPublished) {
     return reversed ? oneil_column(m, o, table, hb, -cb) - oneil_column(m, o, table, ha, -ca)
                     : oneil_column(m, o, table, ha, ca) - oneil_column(m, o, table, hb, cb);
   }
@@ -110,7 +116,7 @@ vec2 oneil_column_between(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float qa
 
 // Column from altitude h towards the sun at cosine c; the planet is no obstacle.
 vec2 oneil_sun_column(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h, float c) {
-  if (c >= 0.0 || o.columns == kOneilPublished) {
+  if (c >= 0.0 || ONEIL_COLUMNS(o) == kOneilPublished) {
     return oneil_column(m, o, table, h, c);
   }
   float lowest = max(perigee_altitude(h, c, m.planet_radius_m), 0.0);
@@ -125,7 +131,7 @@ vec3 oneil_transmittance(IN(Medium) m, vec2 column) {
 // Of the sun's light to altitude h; 0 where the planet hides it, but with the printed function, which grows
 // instead.
 vec3 oneil_sunlight(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h, float c) {
-  float visible = o.columns == kOneilPublished ? 1.0 : sun_visibility(h, c, m.planet_radius_m);
+  float visible = ONEIL_COLUMNS(o) == kOneilPublished ? 1.0 : sun_visibility(h, c, m.planet_radius_m);
   return visible * oneil_transmittance(m, oneil_sun_column(m, o, table, h, c));
 }
 
@@ -188,7 +194,7 @@ void oneil_scattering(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h0, fl
   float second_start = end;
   float dark_start;
   float dark_end;
-  if (o.columns != kOneilPublished && shadow_segment(h0, mu, mu_s, nu, R, dark_start, dark_end)) {
+  if (ONEIL_COLUMNS(o) != kOneilPublished && shadow_segment(h0, mu, mu_s, nu, R, dark_start, dark_end)) {
     first_end = clamp(dark_start, start, end);
     second_start = clamp(dark_end, start, end);
   }
@@ -198,7 +204,7 @@ void oneil_scattering(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h0, fl
     if (span > 0.0) {
       float to = from + span;
       float count = float(o.samples);
-      bool by_column = o.spacing == kOneilColumn && o.columns != kOneilPublished;
+      bool by_column = ONEIL_SPACING(o) == kOneilColumn && ONEIL_COLUMNS(o) != kOneilPublished;
       vec2 whole = vec2(1.0);
       float depth = 0.0;
       if (by_column) {

@@ -5,6 +5,11 @@
 
 layout(std430, binding = 7) readonly buffer oneil_table_block { vec4 oneil_texels[]; };
 #define ONEIL_TEXEL(table, index) oneil_texels[index]
+// Those of the block's Oneil: src/scene/oneil_sky.cpp chooses the pipeline by them.
+layout(constant_id = 1) const uint kColumnsOfAir = 0u;
+layout(constant_id = 2) const uint kSpacingOfPoints = 0u;
+#define ONEIL_COLUMNS(o) kColumnsOfAir
+#define ONEIL_SPACING(o) kSpacingOfPoints
 #include "lib/oneil.glsl"
 
 layout(constant_id = 0) const uint kPerPixel = 0u;

@@ -1,9 +1,12 @@
 #include "scene/oneil_sky.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <numbers>
+#include <span>
+#include <vector>
 
 #include "effect/medium.hpp"
 #include "gpu/try.hpp"
@@ -44,10 +47,13 @@ class OneilSky : public SkyModel {
   explicit OneilSky(bool table) : table_(table) {}
 
   Result<void> create(gpu::Host& host, ModelEvaluation evaluation, VkFormat color_format, VkFormat depth_format) {
+    std::vector<std::array<gpu::Constant, 2>> constants;
+    for (const Variant& v : variants()) constants.push_back({{{1, v.columns}, {2, v.spacing}}});
+    const std::vector<std::span<const gpu::Constant>> spans(constants.begin(), constants.end());
     return create_objects(host,
                           {&shaders::oneil_terrain_vert, &shaders::oneil_terrain_frag, &shaders::oneil_sky_vert,
                            &shaders::oneil_sky_frag},
-                          evaluation, sizeof(Block), color_format, depth_format);
+                          evaluation, sizeof(Block), color_format, depth_format, spans);
   }
 
  protected:
@@ -78,6 +84,12 @@ class OneilSky : public SkyModel {
     return {};
   }
 
+  [[nodiscard]] std::size_t variant() const override {
+    const Variant wanted = {model_.constants.columns, model_.constants.spacing};
+    const std::span<const Variant> all = variants();
+    return static_cast<std::size_t>(std::find(all.begin(), all.end() - 1, wanted) - all.begin());
+  }
+
   [[nodiscard]] bool draws_terrain(const ModelFrame& frame) const override {
     return frame.scene.oneil.ground == OneilGround::terrain;
   }
@@ -106,6 +118,20 @@ class OneilSky : public SkyModel {
       for (std::size_t c = 0; c < 3; ++c) sky_by_sun_[i][c] = static_cast<float>(sky[c]);
     }
     return {};
+  }
+
+  // What the pipelines are made for; with the printed function points are spaced evenly, whatever is asked for.
+  struct Variant {
+    std::uint32_t columns, spacing;
+    bool operator==(const Variant&) const = default;
+  };
+  [[nodiscard]] std::span<const Variant> variants() const {
+    constexpr auto kComputed = static_cast<std::uint32_t>(models::OneilColumns::computed);
+    constexpr auto kPublished = static_cast<std::uint32_t>(models::OneilColumns::published);
+    constexpr auto kTable = static_cast<std::uint32_t>(models::OneilColumns::table);
+    static constexpr Variant kOfFunction[] = {{kComputed, 0}, {kComputed, 1}, {kPublished, 0}};
+    static constexpr Variant kOfTable[] = {{kTable, 0}, {kTable, 1}};
+    return table_ ? std::span<const Variant>(kOfTable) : std::span<const Variant>(kOfFunction);
   }
 
   bool table_ = false;

@@ -58,11 +58,11 @@ glm::dvec3 horizontal(const glm::dvec3& wanted, const glm::dvec3& up) {
 }  // namespace
 
 Result<void> SkyModel::create_objects(gpu::Host& host, const Shaders& shaders, ModelEvaluation evaluation,
-                                      std::size_t constants_bytes, VkFormat color_format, VkFormat depth_format) {
+                                      std::size_t constants_bytes, VkFormat color_format, VkFormat depth_format,
+                                      std::span<const std::span<const gpu::Constant>> variants) {
   host_ = &host;
   evaluation_ = evaluation;
   const gpu::Device& device = host.device();
-  const gpu::Constant variant[] = {{0, evaluation == ModelEvaluation::pixel ? 1U : 0U}};
   gpu::GraphicsDesc ground;
   ground.name = "terrain";
   ground.vertex = shaders.ground_vertex;
@@ -70,14 +70,20 @@ Result<void> SkyModel::create_objects(gpu::Host& host, const Shaders& shaders, M
   ground.color_format = color_format;
   ground.depth_format = depth_format;
   ground.depth_compare = VK_COMPARE_OP_GREATER;
-  TYNDALL_ASSIGN(ground_, gpu::create_graphics_pipeline(device, ground, variant));
   gpu::GraphicsDesc sky = ground;
   sky.name = "sky";
   sky.vertex = shaders.sky_vertex;
   sky.fragment = shaders.sky_fragment;
   sky.depth_compare = VK_COMPARE_OP_GREATER_OR_EQUAL;
   sky.depth_write = false;
-  TYNDALL_ASSIGN(sky_, gpu::create_graphics_pipeline(device, sky, variant));
+  for (std::size_t i = 0; i < std::max(variants.size(), std::size_t{1}); ++i) {
+    std::vector<gpu::Constant> constants = {{0, evaluation == ModelEvaluation::pixel ? 1U : 0U}};
+    if (!variants.empty()) constants.insert(constants.end(), variants[i].begin(), variants[i].end());
+    TYNDALL_ASSIGN(gpu::Pipeline of_ground, gpu::create_graphics_pipeline(device, ground, constants));
+    TYNDALL_ASSIGN(gpu::Pipeline of_sky, gpu::create_graphics_pipeline(device, sky, constants));
+    ground_.push_back(std::move(of_ground));
+    sky_.push_back(std::move(of_sky));
+  }
 
   const std::vector<std::uint32_t> indices = mesh_indices();
   const VkDeviceSize index_bytes = indices.size() * sizeof(std::uint32_t);
@@ -149,17 +155,18 @@ Result<void> SkyModel::draw_ground(VkCommandBuffer cmd, Terrain& terrain, const 
   if (!draws_terrain(frame)) return {};
   std::vector<gpu::NamedResource> more = more_resources();
   more.push_back(gpu::named_buffer("model_block", constants_.buffer.get()));
-  return terrain.draw_view(cmd, frame.view, frame.light, ground_, more);
+  return terrain.draw_view(cmd, frame.view, frame.light, ground_[variant()], more);
 }
 
 Result<void> SkyModel::draw_sky(VkCommandBuffer cmd, VkBuffer background) {
   const gpu::Device& device = host_->device();
-  const gpu::Label label(device, cmd, sky_.name);
+  const gpu::Pipeline& sky = sky_[variant()];
+  const gpu::Label label(device, cmd, sky.name);
   std::vector<gpu::NamedResource> resources = more_resources();
   resources.push_back(gpu::named_buffer("model_block", constants_.buffer.get()));
   resources.push_back(gpu::named_buffer("mesh_block", mesh_.buffer.get()));
   resources.push_back(gpu::named_buffer("background_block", background));
-  const std::string_view missing = gpu::bind(device, cmd, sky_, resources);
+  const std::string_view missing = gpu::bind(device, cmd, sky, resources);
   if (!missing.empty()) return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(missing)};
   device.vk.CmdBindIndexBuffer(cmd, indices_.buffer.get(), 0, VK_INDEX_TYPE_UINT32);
   device.vk.CmdDrawIndexed(cmd, kIndices, 1, 0, 0, 0);

@@ -5,10 +5,11 @@
 // Shaders. Ground: over scene/terrain_vertex.glsl and scene/terrain_inputs.glsl (bindings 0 to 5 and locations 0
 // to 4 are the terrain's). Sky: over scene/sky_mesh.glsl and scene/sun_disc.glsl (bindings 0 and 1). The model's
 // own constants are the block `model_block` at binding 6 in all four; further resources come after it.
-// Specialisation constant 0 is 1 with scattering.evaluate = pixel.
+// Specialisation constant 0 is 1 with scattering.evaluate = pixel; a model may have variants by constants of its own.
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "scene/terrain.hpp"
@@ -47,10 +48,13 @@ class SkyModel {
   };
   SkyModel() = default;
   Result<void> create_objects(gpu::Host& host, const Shaders& shaders, ModelEvaluation evaluation,
-                              std::size_t constants_bytes, VkFormat color_format, VkFormat depth_format);
+                              std::size_t constants_bytes, VkFormat color_format, VkFormat depth_format,
+                              std::span<const std::span<const gpu::Constant>> variants = {});
 
   // Fills `model_block`, constants_bytes long.
   virtual Result<void> fill(const ModelFrame& frame, void* constants) = 0;
+  // Which of the variants that create_objects was given draws the frame that has been filled.
+  [[nodiscard]] virtual std::size_t variant() const { return 0; }
   // Whether the terrain is the ground; the sky pipeline draws what lies below the horizon otherwise.
   [[nodiscard]] virtual bool draws_terrain(const ModelFrame& frame) const {
     static_cast<void>(frame);
@@ -65,7 +69,7 @@ class SkyModel {
   void fill_mesh(const ModelFrame& frame);
 
   ModelEvaluation evaluation_ = ModelEvaluation::vertex;
-  gpu::Pipeline ground_, sky_;
+  std::vector<gpu::Pipeline> ground_, sky_;  // by variant
   gpu::Buffer mesh_, indices_, constants_;
 };
 

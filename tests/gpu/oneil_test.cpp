@@ -140,6 +140,34 @@ TEST_F(GpuOneilScene, CrossesTheTopWithoutAJump) {
   }
 }
 
+// The same over Earth, with the fitted functions and with the table, and with points by column.
+TEST_F(GpuOneilScene, CrossesTheTopOfEarthsAirWithoutAJump) {
+  DemoPlanet setup;
+  setup.params = Params();
+  setup.params.tables.size = {8, 32, 32, 4};
+  setup.scene.oneil.scale_function = s::OneilScaleFunction::computed;
+  setup.scene.camera.pitch_deg = -8.0F;
+  for (const s::ScatteringModel model : {s::ScatteringModel::oneil, s::ScatteringModel::oneil_table}) {
+    setup.scene.scattering.model = model;
+    const std::unique_ptr<s::Scene> scene = make(setup);
+    ASSERT_NE(scene, nullptr);
+    for (const s::OneilSpacing spacing : {s::OneilSpacing::uniform, s::OneilSpacing::column}) {
+      for (const s::ModelEvaluation evaluate : {s::ModelEvaluation::pixel, s::ModelEvaluation::vertex}) {
+        s::SceneParams params = setup.scene;
+        params.oneil.spacing = spacing;
+        params.scattering.evaluate = evaluate;
+        params.camera.position_m.y = 80.0e3F - 1.0F;
+        const image::Image below = draw(*scene, params);
+        params.camera.position_m.y = 80.0e3F + 1.0F;
+        const image::Image above = draw(*scene, params);
+        EXPECT_GT(largest(below), 0.1);
+        EXPECT_LT(largest_difference(below, above), 0.02 * largest(below))
+            << static_cast<int>(model) << " " << static_cast<int>(spacing) << " " << static_cast<int>(evaluate);
+      }
+    }
+  }
+}
+
 TEST_F(GpuOneilScene, VerticesAreFineEnough) {
   DemoPlanet setup;
   const std::unique_ptr<s::Scene> scene = make(setup);
