@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace tyndall::viewer {
 namespace {
@@ -33,6 +34,20 @@ constexpr HelpLine kHelp[] = {
     {"F11", "full screen"},
     {"F12", "screenshot, PNG and EXR"},
     {"Esc", "leave"},
+};
+
+// The systems of docs/models.md.
+struct ModelItem {
+  const char* name;
+  scene::ScatteringModel model;
+  MediumKind medium = MediumKind::atmosphere;
+};
+constexpr ModelItem kModels[] = {
+    {"Atmosphere, all orders, shafts (Yusov 2013)", scene::ScatteringModel::atmosphere},
+    {"Homogeneous medium, shafts (Yusov 2012)", scene::ScatteringModel::atmosphere, MediumKind::homogeneous},
+    {"Air and haze (Hoffman, Preetham 2002)", scene::ScatteringModel::homogeneous},
+    {"Scale function (O'Neil 2005)", scene::ScatteringModel::oneil},
+    {"Table (O'Neil 2004)", scene::ScatteringModel::oneil_table},
 };
 
 void help_table() {
@@ -72,6 +87,10 @@ void FrameTimes::add(const std::vector<scene::PassTime>& times, double whole_ms)
 
 void Gui::start() {
   scenes_ = shipped_scenes("scenes");
+  for (SceneFile scene : shipped_scenes("scenes/oneil")) {
+    scene.name.insert(0, "oneil/");
+    scenes_.push_back(std::move(scene));
+  }
   presets_ = shipped_scenes("scenes/presets");
   ImGui::StyleColorsDark();
   ImGuiStyle& style = ImGui::GetStyle();
@@ -93,8 +112,9 @@ void Gui::toast(std::string text, bool bad, double now) {
 void Gui::draw(config::Settings& left, config::Settings& right, const GuiFacts& facts, GuiRequests& requests) {
   widgets.begin_frame();
   if (!state.hidden) {
-    menu(facts, requests);
-    if (state.controls) controls(state.picture.compare && state.edit_right ? right : left, requests);
+    config::Settings& side = state.picture.compare && state.edit_right ? right : left;
+    menu(side, facts, requests);
+    if (state.controls) controls(side, requests);
     if (state.performance) performance(facts);
     if (state.views) views(facts, requests);
     status(facts);
@@ -105,7 +125,7 @@ void Gui::draw(config::Settings& left, config::Settings& right, const GuiFacts& 
   toasts(facts);
 }
 
-void Gui::menu(const GuiFacts& facts, GuiRequests& requests) {
+void Gui::menu(config::Settings& settings, const GuiFacts& facts, GuiRequests& requests) {
   if (!ImGui::BeginMainMenuBar()) return;
   const auto begin = [this](const char* name) {
     const bool open = ImGui::BeginMenu(name);
@@ -139,6 +159,26 @@ void Gui::menu(const GuiFacts& facts, GuiRequests& requests) {
       if (item(preset.name.c_str(), nullptr)) requests.preset = preset.path;
     }
     if (presets_.empty()) ImGui::TextDisabled("no presets found; $TYNDALL_DATA names their place");
+    ImGui::EndMenu();
+  }
+  if (begin("Model")) {
+    scene::SceneParams& scene = settings.scene;
+    MediumKind& medium = settings.effect.scattering.medium;
+    for (const ModelItem& model : kModels) {
+      bool chosen = scene.scattering.model == model.model && (model.model != scene::ScatteringModel::atmosphere || medium == model.medium);
+      if (!item(model.name, nullptr, &chosen)) continue;
+      scene.scattering.model = model.model;
+      if (model.model == scene::ScatteringModel::atmosphere) medium = model.medium;
+    }
+    ImGui::Separator();
+    const bool apart = scene.scattering.model != scene::ScatteringModel::atmosphere;
+    bool pixel = scene.scattering.evaluate == scene::ModelEvaluation::pixel;
+    ImGui::BeginDisabled(!apart);
+    if (item("For every pixel", nullptr, &pixel)) {
+      scene.scattering.evaluate = pixel ? scene::ModelEvaluation::pixel : scene::ModelEvaluation::vertex;
+    }
+    ImGui::EndDisabled();
+    if (state.picture.compare) ImGui::TextDisabled(state.edit_right ? "of the right side" : "of the left side");
     ImGui::EndMenu();
   }
   if (begin("Windows")) {

@@ -80,7 +80,7 @@ class Gui {
   [[nodiscard]] bool showing_toasts(double now) const { return !toasts_.empty() && toasts_.back().until > now; }
 
  private:
-  void menu(const GuiFacts& facts, GuiRequests& requests);
+  void menu(config::Settings& settings, const GuiFacts& facts, GuiRequests& requests);
   void controls(config::Settings& settings, GuiRequests& requests);
   void basic(config::Settings& settings);
   void additional(config::Settings& settings);

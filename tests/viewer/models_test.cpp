@@ -1,0 +1,50 @@
+// The models in the viewer: chosen from the menu, and two of them on the sides of a comparison.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+
+#include "desk.hpp"
+
+namespace tyndall {
+namespace {
+
+using desk::Desk;
+
+// From the menu, whose entries begin with what is given.
+bool choose(Desk& desk, const std::string& name) { return desk.click("menu.Model") && desk.click("item." + name); }
+
+TEST(Window, ComparesTwoModels) {
+  if (!desk::equipped()) GTEST_SKIP() << "Xvfb or xdotool is not installed";
+  Desk desk("models");
+  ASSERT_TRUE(desk.open({"--size", "800x600", "--no-first-steps"})) << desk.errors();
+  std::size_t from = desk.lines();
+  ASSERT_TRUE(choose(desk, "Homogeneous medium, shafts (Yusov 2012)"));
+  ASSERT_TRUE(desk.wait_for({"set scattering.medium=homogeneous"}, from));
+  ASSERT_TRUE(desk.wait_for({"frame left"}, from));
+  from = desk.lines();
+  ASSERT_TRUE(choose(desk, "Atmosphere, all orders, shafts (Yusov 2013)"));
+  ASSERT_TRUE(desk.wait_for({"set scattering.medium=atmosphere"}, from));
+
+  ASSERT_TRUE(desk.click("menu.Windows"));
+  ASSERT_TRUE(desk.click("item.Views and comparison"));
+  ASSERT_TRUE(desk.wait_for_place("compare"));
+  from = desk.lines();
+  ASSERT_TRUE(desk.click("compare", 0.1));
+  ASSERT_TRUE(desk.wait_for({"shown two"}, from));
+  ASSERT_TRUE(desk.click("side.right"));
+  // Right of the divider another system; the left side stays.
+  for (const auto& [name, value] : {std::pair{"Air and haze (Hoffman, Preetham 2002)", "homogeneous"},
+                                    {"Scale function (O'Neil 2005)", "oneil"}, {"Table (O'Neil 2004)", "oneil-table"}}) {
+    from = desk.lines();
+    ASSERT_TRUE(choose(desk, name));
+    ASSERT_TRUE(desk.settles_after({std::string("set right scattering.model=") + value}, from)) << value;
+    ASSERT_TRUE(desk.wait_for({"frame right"}, from)) << value;
+    desk.picture(value);
+  }
+  EXPECT_EQ(desk.log_text().find("set scattering.model"), std::string::npos);
+  EXPECT_EQ(desk.leave(), 0) << desk.errors();
+}
+
+}  // namespace
+}  // namespace tyndall
