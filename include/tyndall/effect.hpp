@@ -123,6 +123,9 @@ struct FrameInputs {
   // EffectDesc::shadow_colors. Filtered like the shadow comparison and by itself, so that glass should go on for a texel
   // under its frame; deeper in shadow its colour does not matter. Null: no colour.
   Texture shadow_colors;
+  // Alpha of shadow_colors is the depth of the glass nearest to the sun, as shadow_maps would have it, in half floats or better:
+  // the air between sun and glass is not coloured. Without, the colour holds along the whole lit path.
+  bool shadow_color_depths = false;
   std::uint32_t shadow_resolution = 0;     // texels - width and height of a layer
   std::span<const Cascade> cascades;       // at most kMaxCascades, from near to far
   std::uint32_t first_marched_cascade = 0;  // the air is marched from this one on; it must start at the camera

@@ -11,6 +11,7 @@
 #include "lib/single_scattering.glsl"
 #include "epipolar/ray_end.glsl"
 #include "frame/counters.glsl"
+#include "frame/glass.glsl"
 #include "frame/homogeneous_medium.glsl"
 #include "frame/table_light.glsl"
 #include "epipolar/sample_light.glsl"
@@ -136,8 +137,7 @@ void walk_to(inout Walk w, inout LitSections sections, float to) {
         vec2 uv = vec2(w.row.u, w.row.v) + (cell + 0.5) * vec2(w.row.du, w.row.dv);
         float z = w.row.depth + 0.5 * (w.x + end) * w.slope;
         float share = texture(shadow_maps, vec4(uv, float(w.cascade), clamp(z, 0.0, 1.0)));
-        vec3 color = kColors ? textureLod(shadow_colors, vec3(uv, float(w.cascade)), 0.0).rgb : vec3(1.0);
-        add_run(w, sections, end, share, color);
+        add_run(w, sections, end, share, glass_color(uv, z, w.cascade));
         ++reads_done;
         ++steps_done;
       }

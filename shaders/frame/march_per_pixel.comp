@@ -27,6 +27,7 @@ layout(std430, binding = 9) buffer counter_block { uint counters[]; };
 layout(binding = 10) uniform sampler2DArray shadow_colors;
 
 #include "frame/counters.glsl"
+#include "frame/glass.glsl"
 #include "frame/homogeneous_medium.glsl"
 #include "frame/table_light.glsl"
 
@@ -43,11 +44,6 @@ struct March {
   vec3 rayleigh;
   vec3 mie;
 };
-
-// What glass leaves of the sun's light at a place of a map.
-vec3 glass_color(vec2 uv, uint cascade) {
-  return kColors ? textureLod(shadow_colors, vec3(uv, float(cascade)), 0.0).rgb : vec3(1.0);
-}
 
 // Steps through [from, to] inside one cascade. `ray` holds altitudes and cosines at the camera.
 void march_cascade(uint cascade, Ray ray, float from, float to, float steps_per_m, inout March march) {
@@ -76,7 +72,7 @@ void march_cascade(uint cascade, Ray ray, float from, float to, float steps_per_
     for (int k = 0; k < kReadsPerStep; ++k) {
       float share = texture(shadow_maps, vec4(uvz.xy, float(cascade), clamp(uvz.z, 0.0, 1.0)));
       lit += share;
-      if (kColors) tint += share * glass_color(uvz.xy, cascade);
+      if (kColors) tint += share * glass_color(uvz.xy, uvz.z, cascade);
       uvz += duvz;
     }
     float next_altitude = altitude_along(ray.altitude, ray.cos_zenith, from + (float(i) + 1.0) * dt, radius);
@@ -142,7 +138,7 @@ void walk_cascade(uint cascade, Ray ray, TableRay path, float start, float from,
     for (; i < reads && lit.closed_at < 0.0; ++i) {
       float share = texture(shadow_maps, vec4(uvz.xy, float(cascade), clamp(uvz.z, 0.0, 1.0)));
       float here = from + float(i) * step_m;
-      add_stretch(lit, here, here + step_m, share, glass_color(uvz.xy, cascade));
+      add_stretch(lit, here, here + step_m, share, glass_color(uvz.xy, uvz.z, cascade));
       uvz += duvz;
     }
     if (kSections == kEach && i >= reads && lit.since >= 0.0 && lit.closed_at < 0.0) lit.closed_at = to;
@@ -191,7 +187,7 @@ vec3 homogeneous_light(Ray ray, float start, float end) {
     vec3 uvz = uvz_from + 0.5 * duvz;
     for (int i = 0; i < reads; ++i) {
       float share = texture(shadow_maps, vec4(uvz.xy, float(c), clamp(uvz.z, 0.0, 1.0)));
-      light += share * glass_color(uvz.xy, c) * before * lost;
+      light += share * glass_color(uvz.xy, uvz.z, c) * before * lost;
       before *= through;
       uvz += duvz;
     }

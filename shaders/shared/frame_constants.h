@@ -42,7 +42,7 @@ struct FrameConstants {
   vec3 ray_origin;  // rays through pixels: ray_origin + x ray_x + y ray_y, world, not of unit length
   float horizon_cos;  // cosine of the zenith angle of the planet's horizon
   vec3 ray_x;
-  float unused_1;
+  float glass_depth_sign;  // of depths behind glass less the glass's: 1, -1 with shadow_depth_reversed; 0: no depths in shadow_colors
   vec3 ray_y;
   float unused_2;
   vec3 direction_to_sun;

@@ -162,6 +162,7 @@ shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDe
     out.homogeneous.height_m = p.height_m;
     out.sun_irradiance = times(out.sun_irradiance, p.sunlight);
   }
+  out.glass_depth_sign = !inputs.shadow_color_depths ? 0.0F : desc.shadow_depth_reversed ? -1.0F : 1.0F;
   out.shadow_depth_reversed = desc.shadow_depth_reversed ? 1 : 0;
   out.tables = table_shape(params);
   for (std::size_t i = 0; i < inputs.cascades.size(); ++i) {

@@ -267,7 +267,10 @@ Result<void> Scene::run_effect(VkCommandBuffer cmd) {
   inputs.color = {color_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
   inputs.depth = {depth_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
   inputs.shadow_maps = {shadow_maps_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-  if (light_.has_glass && colored_air_ && params_.scattering.light_shafts) inputs.shadow_colors = {shadow_colors_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+  if (light_.has_glass && colored_air_ && params_.scattering.light_shafts) {
+    inputs.shadow_colors = {shadow_colors_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+    inputs.shadow_color_depths = true;
+  }
   inputs.shadow_resolution = scene_.shadows.resolution;
   inputs.cascades = {cascades.data(), cascades_.size()};
   inputs.first_marched_cascade = scene_.shadows.first_marched;

@@ -153,6 +153,39 @@ TEST_F(CliPublished, HoffmanAndPreetham) {
   }
 }
 
+// Equations 1, 3 and 4 for rays that meet the ground: one density along the whole distance, the sun as it is seen from the ground.
+TEST_F(CliPublished, HoffmanAndPreethamsGround) {
+  constexpr double kRadius = 6360000.0;
+  for (int medium = 0; medium < 4; ++medium) {
+    const Coefficients k = coefficients();
+    const double air_m = number(5000.0, 12000.0);
+    const double haze_m = number(500.0, 4000.0);
+    std::vector<Question> questions;
+    for (int i = 0; i < 100; ++i) questions.push_back({uniform(100.0, 5000.0), uniform(93.0, 180.0), uniform(0.0, 89.0), uniform(0.0, 360.0)});
+    const auto length = [](double zenith_m, double deg) {
+      return zenith_m / (std::cos(deg * kPi / 180.0) + 0.15 * std::pow(93.885 - deg, -1.253));
+    };
+    expect_published(
+        with(k, {"--model", "homogeneous", "--set", "homogeneous.air_length_m=" + text(air_m), "--set",
+                 "homogeneous.haze_length_m=" + text(haze_m), "--set", "planet.radius_m=6360000"}),
+        questions, [&](const Question& q) {
+          const double nu = dot(q.view(), q.sun());
+          const double r = kRadius + q.altitude_m;
+          const double b = r * q.view().up;
+          const double s = -b - std::sqrt(b * b - q.altitude_m * (2.0 * kRadius + q.altitude_m));
+          Seen out;
+          for (std::size_t c = 0; c < 3; ++c) {
+            const double haze_ex = k.mie[c] + k.absorption[c];
+            const double sun = std::exp(-(k.rayleigh[c] * length(air_m, q.sun_deg) + haze_ex * length(haze_m, q.sun_deg)));
+            const double ex = k.rayleigh[c] + haze_ex;
+            out.transmittance[c] = std::exp(-ex * s);
+            out.radiance[c] = sun / ex * (k.rayleigh[c] * rayleigh_phase(nu) + k.mie[c] * henyey_greenstein(nu, k.g)) * (1.0 - out.transmittance[c]);
+          }
+          return out;
+        });
+  }
+}
+
 // The sum of chapter 16 for rays that leave the air, with columns from whatever function.
 using Column = std::function<double(double height_m, double scale_height_m, double cos_zenith)>;
 Seen oneil(const Question& q, const Coefficients& k, double radius_m, double top_m, const Rgb& scale_heights_m, int samples,
@@ -215,6 +248,62 @@ TEST_F(CliPublished, ONeilWithThePrintedPolynomial) {
           for (std::size_t c = 0; c < 3; ++c) {
             const double column = printed(q.altitude_m, kScaleHeight, view.up) - printed(kTop, kScaleHeight, dot(top, view) / (kRadius + kTop));
             out.transmittance[c] = std::exp(-(k.rayleigh[c] + k.mie[c] + k.absorption[c]) * column);
+          }
+          return out;
+        });
+  }
+}
+
+// From space down to the ground: the ray from where it enters the air, columns as printed from each point back towards the camera.
+TEST_F(CliPublished, ONeilFromSpace) {
+  constexpr double kRadius = 6360000.0;
+  constexpr double kTop = 159000.0;
+  constexpr double kScaleHeight = 39750.0;
+  const auto scale = [](double cosine) {
+    const double x = 1.0 - cosine;
+    return kScaleHeight * std::exp(-0.00287 + x * (0.459 + x * (3.83 + x * (-6.80 + x * 5.25))));
+  };
+  for (int medium = 0; medium < 3; ++medium) {
+    const Coefficients k = coefficients();
+    const int samples = 3 + 2 * medium;
+    std::vector<Question> questions;
+    while (questions.size() < 60) {
+      const Question q = {uniform(200000.0, 8000000.0), uniform(100.0, 180.0), uniform(0.0, 60.0), uniform(0.0, 360.0)};
+      const double r = kRadius + q.altitude_m;
+      // Rays down to the ground, where it is day.
+      if (r * std::sin(q.view_deg * kPi / 180.0) > 0.98 * kRadius) continue;
+      questions.push_back(q);
+    }
+    expect_published(
+        with(k, {"--model", "oneil", "--set", "oneil.scale_function=published", "--set", "oneil.samples=" + std::to_string(samples),
+                 "--set", "planet.radius_m=6360000", "--set", "atmosphere.height_m=159000", "--set",
+                 "atmosphere.rayleigh_scale_height_m=39750", "--set", "atmosphere.mie_scale_height_m=39750"}),
+        questions, [&](const Question& q) {
+          const Direction eye = {kRadius + q.altitude_m, 0.0, 0.0};
+          const Direction view = q.view();
+          const Direction sun = q.sun();
+          const double b = dot(eye, view);
+          const auto meets = [&](double radius) { return -b - std::sqrt(b * b - dot(eye, eye) + radius * radius); };
+          const double near = meets(kRadius + kTop);
+          const double length = meets(kRadius) - near;
+          const auto cosine = [](const Direction& p, const Direction& d) { return dot(p, d) / std::sqrt(dot(p, p)); };
+          const Direction back = {-view.up, -view.across, -view.aside};
+          const Direction start = along(eye, view, near);
+          // exp(-4): what is left of the air where drawing ends.
+          const double offset = std::exp(-kTop / kScaleHeight) * scale(cosine(start, back));
+          const double nu = dot(view, sun);
+          Seen out;
+          for (std::size_t c = 0; c < 3; ++c) {
+            const double ex = k.rayleigh[c] + k.mie[c] + k.absorption[c];
+            for (int i = 0; i < samples; ++i) {
+              const Direction p = along(start, view, (i + 0.5) * length / samples);
+              const double density = std::exp(-(std::sqrt(dot(p, p)) - kRadius) / kScaleHeight);
+              const double column = density * (scale(cosine(p, sun)) + scale(cosine(p, back))) - offset;
+              out.radiance[c] += length / samples * density * std::exp(-ex * column) *
+                                 (k.rayleigh[c] * rayleigh_phase(nu) + k.mie[c] * cornette_shanks(nu, k.g));
+            }
+            const Direction ground = along(start, view, length);
+            out.transmittance[c] = std::exp(-ex * (scale(cosine(ground, back)) - offset));
           }
           return out;
         });

@@ -1,5 +1,9 @@
 // Light shafts through stained glass: FrameInputs::shadow_colors in every mode and both techniques.
+#include <algorithm>
 #include <functional>
+
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
 
 #include "shared_effect.hpp"
 
@@ -141,6 +145,67 @@ TEST_F(ColoredShafts, OneColorScalesTheLight) {
       }
     }
   }
+}
+
+// With the glass's depth the air on the sun's side of it has the sun's own colour: above everything it colours all, below
+// everything nothing, and in between what lies below it; epipolar sampling as brute force.
+TEST_F(ColoredShafts, OnlyTheAirBehindTheGlassIsColored) {
+  for (const bool reversed : {false, true}) {
+    BoxScene scene = colored();
+    scene.extent = {128, 72};
+    scene.shadow_depth_reversed = reversed;
+    own_effect_.reset();
+    if (reversed) {
+      EffectDesc with = desc();
+      with.shadow_depth_reversed = true;
+      make(own_effect_, with);
+    }
+    TestFrame frame = frame_of(scene);
+    // Depth at which a map's place is at an altitude above the origin.
+    const auto level = [cascades = frame.cascades](double height_m) {
+      return [cascades, height_m](std::uint32_t c, double u, double v) {
+        glm::dmat4 shadow_from_world;
+        for (int i = 0; i < 16; ++i) shadow_from_world[i / 4][i % 4] = static_cast<double>(cascades[c].shadow_from_world.m[i]);
+        const glm::dmat4 world_from_shadow = glm::inverse(shadow_from_world);
+        const double near = (world_from_shadow * glm::dvec4(u, v, 0.0, 1.0)).y;
+        const double far = (world_from_shadow * glm::dvec4(u, v, 1.0, 1.0)).y;
+        return static_cast<float>(std::clamp((height_m - near) / (far - near), 0.0, 1.0));
+      };
+    };
+    for (const Mode& mode : {kModes[0], kModes[1], kModes[4]}) {
+      Params params = params_of(mode);
+      params.scattering.only = true;
+      const std::string name = std::string(mode.name) + (reversed ? ", reversed" : "");
+      show(frame);
+      const Picture everywhere = draw(params, name + ", everywhere", true);
+      frame.glass_depth = level(1e6);
+      show(frame);
+      EXPECT_LE(compare(draw(params, name + ", glass above all", true), everywhere, scene.extent).worst_relative_error, 1e-6) << name;
+      TestFrame bare = frame;
+      bare.shadow_color = nullptr;
+      show(bare);
+      const Picture white = draw(params, name + ", no glass", true);
+      frame.glass_depth = level(-1e6);
+      show(frame);
+      const Likeness below = compare(draw(params, name + ", glass below all", true), white, scene.extent);
+      // Every cell is read instead of whole nodes: sums of other parts, in single precision, kept in half floats.
+      EXPECT_LE(below.worst_relative_error, 2e-3) << name;
+      // Across the sun's direction, 4 km before the camera.
+      const glm::dvec3 place = frame.view.position + 4000.0 * frame.to_sun;
+      frame.glass_depth = [cascades = frame.cascades, place](std::uint32_t c, double, double) {
+        const Mat4& m = cascades[c].shadow_from_world;
+        return static_cast<float>(static_cast<double>(m.m[2]) * place.x + static_cast<double>(m.m[6]) * place.y +
+                                  static_cast<double>(m.m[10]) * place.z + static_cast<double>(m.m[14]));
+      };
+      show(frame);
+      expect_alike(name + ", glass before the camera", params, 40.0);
+      const Picture some = draw(params, name, true);
+      EXPECT_LT(compare(some, everywhere, scene.extent).psnr_db, 35.0) << name;
+      EXPECT_LT(compare(some, white, scene.extent).psnr_db, 35.0) << name;
+      frame.glass_depth = nullptr;
+    }
+  }
+  own_effect_.reset();
 }
 
 TEST_F(ColoredShafts, ShaftsAreColored) {

@@ -121,7 +121,7 @@ Result<FrameImages> FrameImages::create(gpu::Host& host, const TestFrame& frame,
         for (std::uint32_t y = 0; y < n; ++y) {
           for (std::uint32_t x = 0; x < n; ++x) {
             const glm::vec3 pane = frame.shadow_color(c, (x + 0.5) / n, (y + 0.5) / n);
-            glass.insert(glass.end(), {pane.x, pane.y, pane.z, 1.0F});
+            glass.insert(glass.end(), {pane.x, pane.y, pane.z, frame.glass_depth ? frame.glass_depth(c, (x + 0.5) / n, (y + 0.5) / n) : 1.0F});
           }
         }
       }
@@ -150,6 +150,7 @@ FrameInputs FrameImages::inputs(const TestFrame& frame) const {
   out.depth = {depth_.view.get(), kRead};
   out.shadow_maps = {shadows_.view.get(), kRead};
   out.shadow_colors = {glass_.view.get(), kRead};
+  out.shadow_color_depths = static_cast<bool>(frame.glass_depth);
   out.shadow_resolution = frame.shadow_resolution;
   out.cascades = frame.cascades;
   out.first_marched_cascade = frame.first_marched;

@@ -49,6 +49,7 @@ struct TestFrame {
   std::function<float(std::uint32_t cascade, double u, double v)> shadow_depth;
   // What glass leaves there; none: the frame has no colours.
   std::function<glm::dvec3(std::uint32_t cascade, double u, double v)> shadow_color;
+  std::function<float(std::uint32_t cascade, double u, double v)> glass_depth;  // and at which depth; none: no depths
 
   [[nodiscard]] RayAngles ray(std::uint32_t x, std::uint32_t y, double planet_radius_m) const;
 };

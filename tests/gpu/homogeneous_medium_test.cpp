@@ -127,7 +127,9 @@ TEST_F(HomogeneousMedium, WithShadowsIsTheIntegralOverLitSections) {
   cascade.shadow_from_world = Mat4{{}};
   cascade.shadow_from_world.m[0] = 1.0F / 20000.0F;  // u from x
   cascade.shadow_from_world.m[9] = 1.0F / 20000.0F;  // v from z
-  cascade.shadow_from_world.m[12] = cascade.shadow_from_world.m[13] = cascade.shadow_from_world.m[14] = 0.5F;
+  cascade.shadow_from_world.m[6] = -1.0F / 40000.0F;  // depth from y, downwards
+  cascade.shadow_from_world.m[12] = cascade.shadow_from_world.m[13] = 0.5F;
+  cascade.shadow_from_world.m[14] = 0.7F;
   cascade.shadow_from_world.m[15] = 1.0F;
   frame.cascades = {cascade};
   const auto bar = [](double u, double v) { return static_cast<int>(std::floor(16.0 * u) + std::floor(16.0 * v)); };
@@ -135,11 +137,16 @@ TEST_F(HomogeneousMedium, WithShadowsIsTheIntegralOverLitSections) {
   const auto glass = [bar](std::uint32_t, double u, double v) {
     return bar(u, v) % 4 == 0 ? glm::dvec3(1.0, 0.25, 0.5) : glm::dvec3(0.5, 1.0, 0.75);
   };
-  for (const bool colored : {false, true}) {
+  // The glass: none, of no certain height, level at 850 m, where it colours the air below it.
+  constexpr double kGlass_m = 850.0;
+  enum class Glass { none, anywhere, level };
+  for (const Glass kind : {Glass::none, Glass::anywhere, Glass::level}) {
+    const bool colored = kind != Glass::none;
     with_colors_ = colored;
     make(own_effect_, desc());
     with_colors_ = false;
     if (colored) frame.shadow_color = glass;
+    if (kind == Glass::level) frame.glass_depth = [](std::uint32_t, double, double) { return static_cast<float>(0.7 - kGlass_m / 40000.0); };
     show(frame);
     Params params = with_coefficients(8.0);
     const auto truth = [&](std::uint32_t x, std::uint32_t y) {
@@ -167,12 +174,12 @@ TEST_F(HomogeneousMedium, WithShadowsIsTheIntegralOverLitSections) {
           share += weight * (inside ? static_cast<double>(frame.shadow_depth(0, tu, tv)) : 1.0);
           color += weight * (inside && colored ? glass(0, tu, tv) : glm::dvec3(1.0));
         }
-        return share * color;
+        return kind == Glass::level && p.y > kGlass_m ? glm::dvec3(share) : share * color;
       };
       const Seen s = quadrature(8.0, ray.cos_view_sun, 0.0, end, 20000, lit);
       return s.light + s.through * glm::dvec3(frame.background.x, frame.background.y, frame.background.z);
     };
-    const std::string name = colored ? "coloured bars" : "bars";
+    const std::string name = kind == Glass::none ? "bars" : kind == Glass::anywhere ? "coloured bars" : "coloured bars below glass";
     // The map is read at every texel, and what lies between is taken as there: a texel is 300 m.
     params.scattering.integration_steps = 1000;
     const double brute = worst_error(draw(params, name), truth, frame.extent);

@@ -86,7 +86,6 @@ class GpuMeshes : public GpuTest {
   Params params_;
   SceneParams scene_;
 
- private:
   std::string path_;
 };
 
@@ -207,6 +206,40 @@ TEST_F(GpuMeshes, MeshesComeAndGoAndOtherModelsRefuseThem) {
   ASSERT_OK(scene->set_scene(changed));
   const image::Image turned = draw(*scene);
   EXPECT_GT(at(turned, 0.0, 5.0, 0.5).x, 1.5 * at(turned, 5.0, 0.0, 0.5).x);
+}
+
+// Dust between the sun and a red pane is in white light, dust behind it in red.
+TEST_F(GpuMeshes, AirOnTheSunsSideOfGlassIsNotColoured) {
+  file_.level_quad(-40, -40, 40, 40, 10.0F, glass(1.0, 0.1, 0.1, 0.0));
+  params_.scattering.enabled = true;
+  params_.scattering.only = true;
+  params_.scattering.medium = MediumKind::homogeneous;
+  params_.homogeneous_medium.density = 300.0F;
+  params_.homogeneous_medium.extent_m = 12.0F;  // rays end within the pane
+  scene_.camera.pitch_deg = 0.0F;
+  const std::unique_ptr<Scene> with = make(true);
+  ASSERT_NE(with, nullptr);
+  const std::unique_ptr<Scene> without = make(false);
+  ASSERT_NE(without, nullptr);
+  const std::string source = file_.save(path_);
+  for (const Technique technique : {Technique::brute_force, Technique::epipolar}) {
+    params_.scattering.technique = technique;
+    for (const float y_m : {20.0F, 3.0F}) {
+      const auto air = [&](Scene& scene, const std::string& meshes) {
+        EXPECT_OK(scene.set_params(params_));
+        scene_.camera.position_m.y = y_m;
+        scene_.meshes.source = meshes;
+        EXPECT_OK(scene.set_scene(scene_));
+        const image::Image image = draw(scene);
+        const float* const p = &image.rgb[3 * (kExtent.height / 3 * kExtent.width + kExtent.width / 2)];  // sky
+        return glm::dvec3(p[0], p[1], p[2]);
+      };
+      const glm::dvec3 white = air(*without, "none");
+      const glm::dvec3 color = y_m > 10.0F ? glm::dvec3(1.0) : glm::dvec3(1.0, 0.1, 0.1);
+      ASSERT_GT(white.y, 0.0);
+      expect_near(air(*with, source), color * white, 0.01, y_m > 10.0F ? "the sun's side" : "behind the pane");
+    }
+  }
 }
 
 // As `tyndall render` would have it, with the exposure of the scene.
