@@ -52,11 +52,11 @@ epipolar-study: build
 	@tools/setup.sh python3-pil python3-matplotlib
 	@/usr/bin/python3 tools/epipolar_study.py build/release/bin/tyndall $(SECTIONS)
 
-# The numbers and pictures of docs/models.md.
+# The numbers and pictures of docs/models.md: of PARTS (pictures, times, errors) or all.
 models-study: PRESET = release
 models-study: build
 	@tools/setup.sh python3-pil
-	@/usr/bin/python3 tools/models_study.py build/release/bin/tyndall
+	@/usr/bin/python3 tools/models_study.py build/release/bin/tyndall $(PARTS)
 	@for figure in a b c; do \
 	  build/release/bin/tyndall render scenes/figure_12$$figure.toml --size 480x270 -o docs/images/figure_12$$figure.png || exit 1; \
 	done

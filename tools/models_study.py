@@ -1,12 +1,14 @@
 """Every model on one scene: pictures, cost, and error. `make models-study` runs it.
 
-    models_study.py TYNDALL [--validation FILE.json] [--keep-pictures]
+    models_study.py TYNDALL [pictures] [times] [errors] [--validation FILE.json]
 
-writes docs/images/models_*.png and docs/generated/models.md. Models that this build does not draw are left out. The errors
-against the path tracer are those of `tyndall validate --json`, which is run unless its output is given."""
+writes docs/images/models_*.png and docs/generated/models.md, of all three parts or of those named: the others keep what the
+page has. `times` wants a quiet machine and takes a minute or two. The errors against the path tracer are those of
+`tyndall validate --json`, which is run unless its output is given."""
 import json
 import math
 import pathlib
+import statistics
 import subprocess
 import sys
 
@@ -14,10 +16,12 @@ from PIL import Image
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SCENE = ROOT / "scenes" / "models.toml"
+PAGE = ROOT / "docs" / "generated" / "models.md"
+REGIONS = ("ground", "air", "space")
 SIZE = "480x270"
 COST_SIZE = "320x180"
 COST_FRAMES = 5
-QUIET = 0.05  # costs are differences: they are left out where the bare ground, measured before and after, differs by more
+QUIET = 0.05  # costs are differences: they are left out where the times of the bare ground differ by more
 # What air costs is what frames cost above the bare ground's: shadows are small and the ground is grey, so that
 # the rest does not drown it.
 COST = ["terrain.shading=plain", "shadows.resolution=512", "shadows.cascades=2"]
@@ -36,7 +40,7 @@ MODELS = [
     ("oneil_table_vertex", "`oneil-table`, `vertex`", ["scattering.model=oneil-table"], "oneil-table"),
     ("oneil_table_pixel", "`oneil-table`, `pixel`",
      ["scattering.model=oneil-table", "scattering.evaluate=pixel"], "oneil-table"),
-    ("medium_homogeneous", "`scattering.medium` = `homogeneous`", ["scattering.medium=homogeneous"], None),
+    ("medium_homogeneous", "`scattering.medium` = `homogeneous`", ["scattering.medium=homogeneous"], "homogeneous medium"),
 ]
 
 
@@ -67,60 +71,93 @@ def difference_db(a, b):
     return math.inf if squares == 0 else 10 * math.log10(255 * 255 / squares)
 
 
-def mean_error(validation, row, region):
+def mean_error(validation, row, atmosphere, region):
     for model in validation["models"]:
         if model["name"] != row:
             continue
         for group in model["groups"]:
-            if group["atmosphere"] == "as given" and group["sun"] == "up" and group["region"] == region:
-                return group["mean"]
-    return None
+            if group["atmosphere"] == atmosphere and group["sun"] == "up" and group["region"] == region:
+                return f"{100 * group['mean']:.1f}"
+    return ""
+
+
+def render_pictures(tyndall):
+    """Decibels between a model per vertex and per pixel, by title."""
+    images = ROOT / "docs" / "images"
+    seen = {}
+    for name, _, settings, _ in MODELS:
+        path = images / f"models_{name}.png"
+        run(tyndall, "render", str(SCENE), "--size", SIZE, "-o", str(path), *sets(settings))
+        seen[name] = pixels(path)
+    out = {}
+    for name, title, _, _ in MODELS:
+        twin = "brute_force" if name == "atmosphere" else name.replace("_vertex", "_pixel")
+        out[title] = f"{difference_db(seen[name], seen[twin]):.1f}" if twin != name and twin in seen else ""
+    return out
+
+
+def measure_times(tyndall):
+    """Milliseconds by title, and the words that say how they were measured."""
+    bare = [passes(tyndall, ["scattering.enabled=false"])[0]["terrain"]]
+    taken = {}
+    for _, title, settings, _ in MODELS:
+        times, effect, device = passes(tyndall, settings)
+        bare.append(passes(tyndall, ["scattering.enabled=false"])[0]["terrain"])
+        # A model that is drawn with the ground costs what its frame takes longer than the bare ground's before and after.
+        taken[title] = (effect if effect > 0 else times["terrain"] + times["sky"] - 0.5 * (bare[-2] + bare[-1]), effect > 0)
+    spread = statistics.pstdev(bare)
+    quiet = max(bare) - min(bare) <= QUIET * min(bare)
+    cells = {title: f"{ms:.1f}" if exact or quiet else "" for title, (ms, exact) in taken.items()}
+    words = (f"Cost: milliseconds that the air adds to a frame of {COST_SIZE} on {device}, median of {COST_FRAMES}, in one run: the passes of the effect,\n"
+             f"or the frame less the bare ground's before and after it, {statistics.mean(bare):.0f} ms with a standard deviation of {spread:.1f}"
+             + ("." if quiet else ";\nempty where the bare ground's times differ too much to tell."))
+    return cells, words
+
+
+def read_page():
+    """What the page has, by title, and its words about the times."""
+    if not PAGE.exists():
+        return {}, ""
+    text = PAGE.read_text()
+    rows = {}
+    for line in text.splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split("|")] if line.startswith("| `") else []
+        if len(cells) == 3 + 2 * len(REGIONS):
+            rows[cells[0]] = cells
+    words = text[text.index("Cost:"):text.index("\nPer pixel:")] if "Cost:" in text and "\nPer pixel:" in text else ""
+    return rows, words
 
 
 def main():
     tyndall = sys.argv[1]
-    images = ROOT / "docs" / "images"
-    drawn = []
-    for name, title, settings, row in MODELS:
-        path = images / f"models_{name}.png"
-        try:
-            if "--keep-pictures" not in sys.argv or not path.exists():
-                run(tyndall, "render", str(SCENE), "--size", SIZE, "-o", str(path), *sets(settings))
-        except RuntimeError as error:
-            print(f"{name}: left out: {error}", file=sys.stderr)
-            path.unlink(missing_ok=True)
-            continue
-        drawn.append((name, title, settings, row, pixels(path)))
-    by_name = {entry[0]: entry[4] for entry in drawn}
-
-    bare = passes(tyndall, ["scattering.enabled=false"])[0]["terrain"]
-    lines = ["# Every model on one scene", "",
-             "Made by `make models-study`. The scene is `scenes/models.toml`.", ""]
-    measured = [passes(tyndall, settings) for _, _, settings, _, _ in drawn]
-    bare_again = passes(tyndall, ["scattering.enabled=false"])[0]["terrain"]
-    quiet = abs(bare_again - bare) <= QUIET * bare
-    if "--validation" in sys.argv:
-        validation = json.loads(pathlib.Path(sys.argv[sys.argv.index("--validation") + 1]).read_text())
-    else:
-        validation = json.loads(run(tyndall, "validate", "--json"))
-    rows = []
-    device = measured[0][2]
-    for (name, title, settings, row, picture), (times, effect, _) in zip(drawn, measured):
-        air = effect if effect > 0 else times["terrain"] + times["sky"] - bare
-        twin = by_name.get(name.replace("_vertex", "_pixel")) if name.endswith("_vertex") else None
-        if name == "atmosphere":
-            twin = by_name.get("brute_force")
-        near = f"{difference_db(picture, twin):.1f}" if twin else ""
-        errors = [mean_error(validation, row, region) if row else None for region in ("ground", "air", "space")]
-        rows.append((title, f"{air:.1f}" if quiet else "", near, [f"{100 * e:.1f}" if e is not None else "" for e in errors]))
-    lines += [f"Cost: milliseconds that the air adds to a frame of {COST_SIZE} on {device}, median of {COST_FRAMES}, over the",
-              f"bare ground's {bare:.0f} ms before and {bare_again:.0f} ms after, in one run; empty where those differ too much to tell. Per pixel: decibels between the picture and that of the same model for",
-              f"every pixel, at {SIZE}. Error: mean against the path tracer, per cent of the ray's brightest channel, sun up, medium as given,",
-              "for eyes on the ground, in the air and in space; all orders for `atmosphere`, the first for the others.", "",
-              "| model | cost, ms | per pixel, dB | error, ground | air | space |", "|---|--:|--:|--:|--:|--:|"]
-    for title, air, near, errors in rows:
-        lines.append(f"| {title} | {air} | {near} | {errors[0]} | {errors[1]} | {errors[2]} |")
-    (ROOT / "docs" / "generated" / "models.md").write_text("\n".join(lines) + "\n")
+    parts = [a for a in sys.argv[2:] if a in ("pictures", "times", "errors")] or ["pictures", "times", "errors"]
+    rows, words = read_page()
+    titles = [title for _, title, _, _ in MODELS]
+    rows = {title: rows.get(title, [title] + [""] * (2 + 2 * len(REGIONS))) for title in titles}
+    if "times" in parts:  # first, before the machine is warm
+        cells, words = measure_times(tyndall)
+        for title in titles:
+            rows[title][1] = cells[title]
+    if "pictures" in parts:
+        for title, near in render_pictures(tyndall).items():
+            rows[title][2] = near
+    if "errors" in parts:
+        if "--validation" in sys.argv:
+            validation = json.loads(pathlib.Path(sys.argv[sys.argv.index("--validation") + 1]).read_text())
+        else:
+            validation = json.loads(run(tyndall, "validate", "--json"))
+        for _, title, _, row in MODELS:
+            rows[title][3:] = [mean_error(validation, row, atmosphere, region)
+                               for atmosphere in ("as given", "without ozone") for region in REGIONS]
+    lines = ["# Every model on one scene", "", "Made by `make models-study`. The scene is `scenes/models.toml`.", "", words,
+             f"Per pixel: decibels between the picture and that of the same model for every pixel, at {SIZE}.",
+             "Error: mean against the path tracer, per cent of the ray's brightest channel, sun up, for eyes on the ground, in the air and",
+             "in space, in the medium as given and in the same without ozone, which only `atmosphere` knows; all orders for `atmosphere`,",
+             "the first for the others.", "",
+             "| model | cost, ms | per pixel, dB | ground | air | space | ground, no ozone | air, no ozone | space, no ozone |",
+             "|---" + "|--:" * (2 + 2 * len(REGIONS)) + "|"]
+    lines += ["| " + " | ".join(rows[title]) + " |" for title in titles]
+    PAGE.write_text("\n".join(lines) + "\n")
 
 
 if __name__ == "__main__":
