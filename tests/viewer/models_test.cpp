@@ -38,7 +38,7 @@ TEST(Window, ComparesTwoModels) {
                                     {"Scale function (O'Neil 2005)", "oneil"}, {"Table (O'Neil 2004)", "oneil-table"}}) {
     from = desk.lines();
     ASSERT_TRUE(choose(desk, name));
-    ASSERT_TRUE(desk.settles_after({std::string("set right scattering.model=") + value}, from)) << value;
+    ASSERT_TRUE(desk.wait_for({std::string("set right scattering.model=") + value}, from)) << value;
     ASSERT_TRUE(desk.wait_for({"frame right"}, from)) << value;
     desk.picture(value);
   }
