@@ -104,6 +104,15 @@ bool SceneWork::wants(const Wish& wish) const {
 
 Outcome SceneWork::run(const Wish& wish) {
   Outcome out;
+  // First of all, and of the frame that is seen: in flight there is always another one due.
+  if (wish.capture && drawn_) {
+    if (Result<void> captured = capture(out); !captured) {
+      out.error = captured.error();
+      out.over = true;
+    }
+    out.settings = wanted_;
+    return out;
+  }
   Result<void> done = take_terrain();
   if (done) done = follow_settings(wish.settings);
   if (!done) out.error = done.error();
@@ -127,12 +136,6 @@ Result<void> SceneWork::next(const Wish& wish, Outcome& out) {
   if (building()) TYNDALL_TRY(advance_tables(out));
   if (!ready()) return {};
   if (stale_ || wish.again || !same_view(wish.view, drawn_view_)) return draw(wish, out);
-  if (wish.capture) {
-    TYNDALL_ASSIGN(image::Image display, scene_->display());
-    TYNDALL_ASSIGN(image::Image radiance, scene_->radiance());
-    out.capture = Capture{std::move(display), std::move(radiance), wanted_};
-    return {};
-  }
   if (tone_stale()) return draw(wish, out);
   if (!wish.rest || out.tables) return {};
   if (keep_in_s() == 0.0) {
@@ -170,17 +173,27 @@ double SceneWork::step_s() {
   return std::clamp(std::chrono::duration<double>(drawn_at_ - before).count(), 1.0e-3, 1.0);
 }
 
+// The frame drawn last as images.
+Result<void> SceneWork::capture(Outcome& out) {
+  TYNDALL_ASSIGN(image::Image display, scene_->display());
+  TYNDALL_ASSIGN(image::Image radiance, scene_->radiance());
+  out.capture = Capture{std::move(display), std::move(radiance), drawn_settings_};
+  return {};
+}
+
 Result<void> SceneWork::draw(const Wish& wish, Outcome& out) {
   if (stale_ || wish.again) {
     const Clock::time_point start = Clock::now();
     stale_ = tone_wanted_ = false;
     TYNDALL_TRY(scene_->render(wish.seconds, false, step_s()));
     out.frame = drawn_ = true;
+    drawn_settings_ = wanted_;
     out.frame_ms = 1000.0 * seconds_since(start);
   } else if (tone_stale()) {
     tone_wanted_ = false;
     TYNDALL_TRY(scene_->tone(step_s()));
     out.tone = true;
+    drawn_settings_.scene.tonemap = wanted_.scene.tonemap;
   }
   TYNDALL_ASSIGN(out.picture, canvas_.draw(*scene_, wish.view));
   drawn_view_ = wish.view;

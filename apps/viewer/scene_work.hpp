@@ -94,6 +94,7 @@ class SceneWork {
   Result<void> next(const Wish& wish, Outcome& out);
   Result<void> advance_tables(Outcome& out);
   Result<void> draw(const Wish& wish, Outcome& out);
+  Result<void> capture(Outcome& out);
   Result<bool> keep_tables();
   [[nodiscard]] bool follows(const Wish& wish) const;
   [[nodiscard]] bool building() const;
@@ -104,7 +105,7 @@ class SceneWork {
 
   gpu::Host* host_ = nullptr;
   scene::SceneDesc desc_;
-  config::Settings wanted_, applied_;
+  config::Settings wanted_, applied_, drawn_settings_;
   std::unique_ptr<scene::Scene> scene_;
   Canvas canvas_;
   View drawn_view_;

@@ -81,8 +81,16 @@ void Gui::performance(const GuiFacts& facts) {
     const char* details[] = {"full", "half", "quarter"};
     int detail = state.coarseness == 4 ? 2 : state.coarseness == 2 ? 1 : 0;
     ImGui::SetNextItemWidth(140.0F);
-    if (ImGui::Combo("Detail of the ground", &detail, details, 3)) state.coarseness = 1 << detail;
+    if (ImGui::BeginCombo("Detail of the ground", details[detail])) {
+      for (int i = 0; i < 3; ++i) {
+        if (ImGui::Selectable(details[i], i == detail)) detail = i;
+        widgets.place("coarseness." + std::to_string(i));
+      }
+      ImGui::EndCombo();
+    }
     widgets.place("coarseness");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Cells of the ground, full, or two or four times as wide.\nA quarter on devices without a GPU, unless changed.");
+    state.coarseness = 1 << detail;
     if (facts.times != nullptr) {
       plot("passes", facts.times->gpu, facts.times->next);
       plot("frame", facts.times->whole, facts.times->next);

@@ -45,6 +45,16 @@ long resident_kib() {
   return resident * (sysconf(_SC_PAGESIZE) / 1024);
 }
 
+// What the process has of that from malloc and not given back, in KiB; 0 where that cannot be told.
+std::size_t allocated_kib() {
+#if defined(__GLIBC__) && (__GLIBC__ > 2 || __GLIBC_MINOR__ >= 33)
+  const struct mallinfo2 info = mallinfo2();
+  return (info.uordblks + info.hblkhd) / 1024;
+#else
+  return 0;
+#endif
+}
+
 }  // namespace
 
 Viewer::~Viewer() {
@@ -277,7 +287,8 @@ void Viewer::run_script() {
   last_memory_ = now();
   const scene::Scene::Memory& memory = left_->facts().memory;
   log("memory " + std::to_string(resident_kib()) + " " +
-      std::to_string(memory.effect_persistent + memory.effect_transient + memory.effect_host + memory.scene));
+      std::to_string(memory.effect_persistent + memory.effect_transient + memory.effect_host + memory.scene) + " " +
+      std::to_string(allocated_kib()));
 }
 
 Result<void> Viewer::present() {

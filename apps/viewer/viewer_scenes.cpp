@@ -38,6 +38,7 @@ void Viewer::make_stage(Stage& stage) {
   desc.histogram = true;
   desc.make_tables = desc_.make_tables;
   desc.keep_shadows = true;
+  desc.in_parts = window_host_ == host_;  // the window's frames come in between
   stage.start(*host_, desc, wish_of(stage), slow_device() && desc_.script != "one-device");
 }
 

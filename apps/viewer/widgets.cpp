@@ -8,6 +8,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstring>
+#include <functional>
 
 #include "config/text.hpp"
 
@@ -55,7 +56,8 @@ bool edit_float(const Row& row, const char* id, float* values, int count) {
   return ImGui::SliderScalarN(id, ImGuiDataType_Float, values, count, &min, &max, count > 1 ? "%.3g" : float_format(row, values[0]), flags);
 }
 
-bool edit_whole(const Row& row, const char* id, std::uint32_t* values, int count) {
+// `place` tells where the choices are.
+bool edit_whole(const Row& row, const char* id, std::uint32_t* values, int count, const std::function<void(std::uint32_t)>& place) {
   const auto min = static_cast<std::uint32_t>(row.info.min);
   const auto max = static_cast<std::uint32_t>(row.info.max);
   if (row.info.group == "shadows" && row.info.name == "resolution") {
@@ -67,6 +69,7 @@ bool edit_whole(const Row& row, const char* id, std::uint32_t* values, int count
           changed = *values != size;
           *values = size;
         }
+        place(size);
       }
       ImGui::EndCombo();
     }
@@ -80,16 +83,17 @@ bool edit_whole(const Row& row, const char* id, std::uint32_t* values, int count
   return ImGui::SliderScalar(id, ImGuiDataType_U32, values, &min, &max, "%u", flags);
 }
 
-bool edit_choice(const Row& row, const char* id, std::uint32_t* value) {
+bool edit_choice(const Row& row, const char* id, std::uint32_t* value, const std::function<void(std::uint32_t)>& place) {
   bool changed = false;
   const std::string shown(config::part(row.info.choices, '|', *value));
-  if (!ImGui::BeginCombo(id, shown.c_str())) return false;
+  if (!ImGui::BeginCombo(id, shown.c_str(), ImGuiComboFlags_HeightLarge)) return false;
   for (std::uint32_t i = 0; i < config::count_parts(row.info.choices, '|'); ++i) {
     const std::string name(config::part(row.info.choices, '|', i));
     if (ImGui::Selectable(name.c_str(), i == *value)) {
       changed = i != *value;
       *value = i;
     }
+    place(i);
   }
   ImGui::EndCombo();
   return changed;
@@ -179,18 +183,19 @@ bool Widgets::edit(const Row& row, Settings& settings) {
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.52F);
   }
   const char* const id = label.c_str();
+  const auto place_choice = [&](std::uint32_t i) { place(key + "." + std::to_string(i)); };
   switch (row.info.type) {
     case ParamType::float32: changed = edit_float(row, id, at<float>(row, settings), 1); break;
     case ParamType::vec3: changed = edit_float(row, id, at<float>(row, settings), 3); break;
     case ParamType::uint32: {
       auto* const value = at<std::uint32_t>(row, settings);
-      changed = edit_whole(row, id, value, 1);
+      changed = edit_whole(row, id, value, 1, place_choice);
       clamp_whole(row, value, 1);
       break;
     }
     case ParamType::uvec4: {
       auto* const values = at<std::uint32_t>(row, settings);
-      changed = edit_whole(row, id, values, 4);
+      changed = edit_whole(row, id, values, 4, place_choice);
       clamp_whole(row, values, 4);
       break;
     }
@@ -201,7 +206,7 @@ bool Widgets::edit(const Row& row, Settings& settings) {
       *value = on ? 1 : 0;
       break;
     }
-    case ParamType::enumeration: changed = edit_choice(row, id, at<std::uint32_t>(row, settings)); break;
+    case ParamType::enumeration: changed = edit_choice(row, id, at<std::uint32_t>(row, settings), place_choice); break;
     case ParamType::string: {
       std::string text = *at<std::string>(row, settings);
       if (ImGui::InputText(id, &text, ImGuiInputTextFlags_EnterReturnsTrue)) {

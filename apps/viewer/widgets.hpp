@@ -38,8 +38,8 @@ class Widgets {
 };
 
 // "Refinement threshold", from refinement_threshold; the unit is left to the format.
-[[nodiscard]] std::string label_of(const config::Row& row);
-// Meaning, key, what is allowed, the default.
+[[nodiscard]] std::string label_of(const config::Row& row, bool with_group);
+// Meaning, key, what is allowed and in which unit, the default.
 [[nodiscard]] std::string tooltip_of(const config::Row& row);
 // Sets a parameter to an end of its range: numbers to their least or largest value, choices to the first or last.
 // Nothing for text.

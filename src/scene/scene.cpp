@@ -228,7 +228,7 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   if (model_ != nullptr) TYNDALL_TRY(model_->prepare({view_, light_, params_, scene_}));
 
   const gpu::Device& device = host_->device();
-  Result<void> done = host_->run([&](VkCommandBuffer cmd) -> Result<void> {
+  const auto shadows = [&](VkCommandBuffer cmd) -> Result<void> {
     if (desc_.timings) timer_.begin_frame(cmd, 0);
     if (!images_ready_) {
       gpu::transition(device, cmd, output_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
@@ -236,14 +236,26 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
     }
     images_ready_ = true;
     // Jitter moves the picture, not the cascades.
-    if (first && !(desc_.keep_shadows && shadows_are_drawn())) TYNDALL_TRY(draw_shadows(cmd));
-    TYNDALL_TRY(draw_view(cmd));
+    return first && !(desc_.keep_shadows && shadows_are_drawn()) ? draw_shadows(cmd) : Result<void>();
+  };
+  const auto view = [&](VkCommandBuffer cmd) { return draw_view(cmd); };
+  const auto air = [&](VkCommandBuffer cmd) -> Result<void> {
     TYNDALL_TRY(model_ != nullptr ? copy_color(cmd) : run_effect(cmd));
     TYNDALL_TRY(tonemap(cmd, first));
-    if (floor) TYNDALL_TRY(run_floor(cmd));
-    return {};
-  });
-  TYNDALL_TRY(std::move(done));
+    return floor ? run_floor(cmd) : Result<void>();
+  };
+  const auto whole = [&](VkCommandBuffer cmd) -> Result<void> {
+    TYNDALL_TRY(shadows(cmd));
+    TYNDALL_TRY(view(cmd));
+    return air(cmd);
+  };
+  if (desc_.in_parts) {
+    TYNDALL_TRY(host_->run(shadows));
+    TYNDALL_TRY(host_->run(view));
+    TYNDALL_TRY(host_->run(air));
+  } else {
+    TYNDALL_TRY(host_->run(whole));
+  }
   drawn_cascades_ = cascades_;
   drawn_terrain_ = terrain_->version();
   times_.clear();

@@ -28,6 +28,7 @@ struct SceneDesc {
   bool tables_later = false;           // with advance_tables(), instead of at once
   int terrain_coarseness = 1;          // see TerrainLod
   bool keep_shadows = false;           // do not draw shadow maps anew that would come out the same
+  bool in_parts = false;               // submit a frame part by part: between them others have their turn on the queue
 };
 
 struct PassTime {

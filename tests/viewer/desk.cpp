@@ -81,12 +81,13 @@ std::uint32_t big_endian(const std::string& bytes, std::size_t word) {
 
 bool equipped() { return installed("Xvfb") && installed("xdotool"); }
 
-Desk::Desk(const std::string& name) : folder_(std::string(TYNDALL_VIEWER_ARTEFACTS) + "/" + name) {
+Desk::Desk(const std::string& name, int width, int height) : folder_(std::string(TYNDALL_VIEWER_ARTEFACTS) + "/" + name) {
   fs::remove_all(folder_);
   fs::create_directories(folder_ + "/screen");
   // The server chooses a free display and says which.
   const std::string said = folder_ + "/display";
-  server_ = start({"sh", "-c", "exec Xvfb -displayfd 3 -screen 0 800x600x24 -fbdir '" + folder_ + "/screen' -nolisten tcp 3>'" + said + "'"},
+  const std::string size = std::to_string(width) + "x" + std::to_string(height);
+  server_ = start({"sh", "-c", "exec Xvfb -displayfd 3 -screen 0 " + size + "x24 -fbdir '" + folder_ + "/screen' -nolisten tcp 3>'" + said + "'"},
                   {}, folder_ + "/server.txt");
   for (int i = 0; i < 600 && display_.empty(); ++i) {
     const std::string text = read_text(said);
@@ -115,8 +116,9 @@ Desk::~Desk() {
 bool Desk::open(const std::vector<std::string>& arguments, const std::vector<std::string>& environment) {
   if (display_.empty()) return false;
   std::vector<std::string> words = {TYNDALL_EXECUTABLE, "view", "--log", folder_ + "/log.txt", "--state",
-                                    folder_ + "/state.toml", "--screenshots", folder_, "--validation",
-                                    "--set", "tables.cache=" TYNDALL_TEST_CACHE};
+                                    folder_ + "/state.toml", "--screenshots", folder_, "--set",
+                                    "tables.cache=" TYNDALL_TEST_CACHE};
+  if (validation) words.emplace_back("--validation");
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<std::string> variables = environment;
   variables.push_back("DISPLAY=" + display_);
@@ -215,22 +217,49 @@ bool Desk::wait_for_place(const std::string& place) {
 
 bool Desk::point_at(const std::string& place, double part) {
   if (!wait_for_place(place)) return false;
-  const Rect rect = places()[place];
+  // Menus find their place within a few frames.
+  Rect rect = places()[place];
+  for (Rect before = {}; rect.x != before.x || rect.y != before.y; rect = places()[place]) {
+    before = rect;
+    pause(0.12);
+  }
   const std::size_t from = lines();
   const int x = static_cast<int>(rect.x + part * rect.width);
   const int y = static_cast<int>(rect.y + 0.5 * rect.height);
+  if (x == pointer_[0] && y == pointer_[1]) return true;  // no event comes of that
+  pointer_[0] = x;
+  pointer_[1] = y;
   hands("mousemove " + std::to_string(x) + " " + std::to_string(y));
   return wait_for({"pointer " + std::to_string(x) + " " + std::to_string(y)}, from).has_value();
 }
 
-bool Desk::click(const std::string& place, double part) {
+bool Desk::click(const std::string& place, double part, int button) {
   if (!point_at(place, part)) return false;
+  const std::string side = button == 1 ? "left" : "right";
   std::size_t from = lines();
-  hands("mousedown 1");
-  if (!wait_for({"press left"}, from)) return false;
+  hands("mousedown " + std::to_string(button));
+  if (!wait_for({"press " + side}, from)) return false;
   from = lines();
-  hands("mouseup 1");
-  return wait_for({"release left"}, from).has_value();
+  hands("mouseup " + std::to_string(button));
+  return wait_for({"release " + side}, from).has_value();
+}
+
+std::vector<std::string> Desk::place_names() const {
+  std::vector<std::string> out;
+  for (const auto& [name, rect] : places()) out.push_back(name);
+  return out;
+}
+
+// Fields 14 and 15 of proc(5), stat, counted after the name in parentheses.
+double Desk::cpu_s() const {
+  const std::string text = read_text("/proc/" + std::to_string(viewer_) + "/stat");
+  std::istringstream fields(text.substr(std::min(text.rfind(')') + 1, text.size())));
+  std::string word;
+  for (int i = 0; i < 11; ++i) fields >> word;
+  double user = 0.0;
+  double system = 0.0;
+  fields >> user >> system;
+  return (user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
 }
 
 int Desk::leave() {

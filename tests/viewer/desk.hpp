@@ -14,14 +14,16 @@ namespace tyndall::desk {
 
 class Desk {
  public:
-  // `name` is that of the folder for what the test leaves: log, state, pictures.
-  explicit Desk(const std::string& name);
+  // `name` is that of the folder for what the test leaves: log, state, pictures. The screen's size is in pixels.
+  explicit Desk(const std::string& name, int width = 800, int height = 600);
   Desk(const Desk&) = delete;
   Desk& operator=(const Desk&) = delete;
   ~Desk();
 
   // Opens the viewer with these arguments besides; false when no first frame came.
   bool open(const std::vector<std::string>& arguments, const std::vector<std::string>& environment = {});
+  // Whether the validation layers listen; they take their time.
+  bool validation = true;
   // Starts a window manager (openbox), which takes what needs one, as minimising does; false where there is none.
   bool manage();
   // Commands of xdotool, split at blanks.
@@ -35,7 +37,9 @@ class Desk {
   // Moves the pointer to the middle of something in the window, or to a part of its width, and waits until the viewer
   // has seen it; false when it is not there.
   bool point_at(const std::string& place, double part = 0.5);
-  bool click(const std::string& place, double part = 0.5);
+  bool click(const std::string& place, double part = 0.5, int button = 1);
+  // Everything that can be clicked now.
+  [[nodiscard]] std::vector<std::string> place_names() const;
   // Waits until a place is in the window.
   bool wait_for_place(const std::string& place);
   // Leaves by Esc; the exit status, or -1.
@@ -48,6 +52,8 @@ class Desk {
   [[nodiscard]] std::string errors() const;  // what the viewer has printed
   [[nodiscard]] std::string log_text() const;
   [[nodiscard]] std::string window() const { return window_; }
+  // Time of a processor that the viewer has used so far [s].
+  [[nodiscard]] double cpu_s() const;
 
  private:
   struct Rect {
@@ -57,6 +63,7 @@ class Desk {
 
   std::string folder_, display_, window_;
   int server_ = -1, viewer_ = -1, manager_ = -1;
+  int pointer_[2] = {-1, -1};  // where point_at() has moved it
 };
 
 }  // namespace tyndall::desk

@@ -1,0 +1,41 @@
+// A lost surface and a lost device.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "config/scene_file.hpp"
+#include "window_tools.hpp"
+
+namespace tyndall {
+namespace {
+
+using namespace desk;
+
+TEST(Window, ALostSurfaceIsMadeAnewAndALostDeviceSavesTheState) {
+  NEEDS_A_DESK();
+  {
+    Desk desk("lost_surface");
+    std::vector<std::string> arguments = kSmall;
+    arguments.insert(arguments.end(), {"--script", "lose-surface"});
+    ASSERT_TRUE(desk.open(arguments)) << desk.errors();
+    ASSERT_TRUE(desk.wait_for({"surface lost"}));
+    const std::size_t from = desk.lines();
+    desk.hands("key w");
+    EXPECT_TRUE(desk.wait_for({"frame left"}, from));
+    EXPECT_EQ(desk.leave(), 0) << desk.errors();
+  }
+  Desk desk("lost_device");
+  std::vector<std::string> arguments = kSmall;
+  arguments.insert(arguments.end(), {"--script", "lose-device", "--set", "sun.azimuth_deg=123"});
+  desk.open(arguments);
+  EXPECT_EQ(desk.wait_for_end(240.0), 1);
+  EXPECT_NE(desk.errors().find("tyndall: error: the Vulkan device was lost"), std::string::npos) << desk.errors();
+  EXPECT_NE(desk.errors().find("state.toml"), std::string::npos);
+  config::Settings state;
+  ASSERT_TRUE(config::load(state, desk.folder() + "/state.toml").ok());
+  EXPECT_EQ(state.scene.sun.azimuth_deg, 123.0F);
+}
+
+}  // namespace
+}  // namespace tyndall

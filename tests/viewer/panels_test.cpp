@@ -1,0 +1,65 @@
+// Panels, menus, views and the comparison, by the mouse.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "window_tools.hpp"
+
+namespace tyndall {
+namespace {
+
+using namespace desk;
+
+TEST(Window, OpensEveryPanelAndComparesByTheMouse) {
+  NEEDS_A_DESK();
+  Desk desk("panels");
+  ASSERT_TRUE(desk.open({"--size", "800x600", "--no-first-steps"})) << desk.errors();
+  for (const char* tab : {"Additional", "Tone mapping", "Atmosphere", "All", "Basic"}) {
+    ASSERT_TRUE(desk.click(std::string("tab.") + tab)) << tab;
+    const char* key = std::string(tab) == "Additional"     ? "shadows.cascades"
+                      : std::string(tab) == "Tone mapping" ? "tonemap.white_point"
+                      : std::string(tab) == "Atmosphere"   ? "planet.radius_m"
+                      : std::string(tab) == "All"          ? "group.camera"
+                                                           : "epipolar.slices";
+    EXPECT_TRUE(desk.wait_for_place(key)) << tab;
+    desk.picture(std::string("tab_") + tab);
+  }
+  // A slider to both of its ends with the real mouse.
+  std::size_t from = desk.lines();
+  ASSERT_TRUE(pull(desk, "scattering.scale", {-0.02}));
+  ASSERT_TRUE(desk.wait_for({"set scattering.scale=0.01"}, from));
+  from = desk.lines();
+  ASSERT_TRUE(pull(desk, "scattering.scale", {0.9}));
+  ASSERT_TRUE(desk.wait_for({"set scattering.scale=10"}, from));
+  from = desk.lines();
+  ASSERT_TRUE(desk.click("epipolar.show_sampling", 0.05));
+  ASSERT_TRUE(desk.wait_for({"set epipolar.show_sampling=true"}, from));
+  ASSERT_TRUE(desk.wait_for({"frame left"}, from));
+  desk.picture("sampling");
+
+  // Windows from the menu, and a comparison: the other side is drawn too.
+  for (const char* item : {"item.Performance", "item.Views and comparison"}) {
+    ASSERT_TRUE(desk.click("menu.Windows"));
+    ASSERT_TRUE(desk.click(item)) << item;
+  }
+  ASSERT_TRUE(desk.wait_for_place("compare"));
+  from = desk.lines();
+  ASSERT_TRUE(desk.click("compare", 0.1));
+  ASSERT_TRUE(desk.wait_for({"shown two"}, from));
+  desk.picture("comparison");
+  // Every view of what the picture is made from.
+  for (int i = 1; i < 10; ++i) {
+    ASSERT_TRUE(desk.click("shown", 0.3));
+    ASSERT_TRUE(desk.click("shown." + std::to_string(i), 0.3)) << i;
+    desk.picture("view_" + std::to_string(i));
+  }
+  // A scene from the menu.
+  from = desk.lines();
+  ASSERT_TRUE(desk.click("menu.Scenes"));
+  ASSERT_TRUE(desk.click("item.noon"));
+  ASSERT_TRUE(desk.wait_for({"loaded"}, from));
+  EXPECT_EQ(desk.leave(), 0) << desk.errors();
+}
+
+}  // namespace
+}  // namespace tyndall

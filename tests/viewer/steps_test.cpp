@@ -1,0 +1,90 @@
+// No step of the loop of the GUI takes long, whatever the scene does meanwhile.
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <string>
+
+#include "window_tools.hpp"
+
+namespace tyndall {
+namespace {
+
+using namespace desk;
+
+// The loop of the GUI goes on while the scene takes its time: nothing that a hand does waits for a frame of the scene, for
+// tables, for pipelines or for another scene. Steps of the loop are timed by the viewer itself.
+void works_without_a_freeze(Desk& desk) {
+  std::size_t from = desk.lines();
+  desk.hands("keydown w");
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(desk.wait_for({"frame left"}, from));
+    from = desk.lines();
+  }
+  desk.hands("keyup w");
+  // The air: other tables.
+  ASSERT_TRUE(pull(desk, "atmosphere.aerosol_density", {0.3, 0.35, 0.4, 0.45, 0.5}));
+  ASSERT_TRUE(desk.wait_for({"set atmosphere.aerosol_density"}, from));
+  from = desk.lines();
+  ASSERT_TRUE(desk.wait_for({"tables"}, from));
+  ASSERT_TRUE(desk.click("tab.Additional"));
+  from = desk.lines();
+  ASSERT_TRUE(pull(desk, "shadows.cascades", {0.1, 0.6}));
+  ASSERT_TRUE(desk.wait_for({"set shadows.cascades"}, from));
+  ASSERT_TRUE(desk.wait_for({"frame left"}, from));
+  // Another technique, with pipelines that have not been made.
+  ASSERT_TRUE(desk.click("menu.Windows"));
+  ASSERT_TRUE(desk.click("item.Views and comparison"));
+  ASSERT_TRUE(desk.wait_for_place("compare"));
+  from = desk.lines();
+  ASSERT_TRUE(desk.click("compare", 0.1));
+  ASSERT_TRUE(desk.wait_for({"shown two"}, from));
+  ASSERT_TRUE(desk.wait_for({"frame right"}, from));
+  desk.picture("worked");
+  EXPECT_EQ(desk.leave(), 0) << desk.errors();
+  const std::optional<std::string> line = desk.wait_for({" steps "});
+  ASSERT_TRUE(line);
+  std::istringstream text(*line);
+  std::string word;
+  double count = 0.0, longest_ms = 0.0;
+  text >> word >> word >> count >> word >> longest_ms;
+  EXPECT_GT(count, 100.0);
+  EXPECT_LE(longest_ms, 200.0) << *line;
+  testing::Test::RecordProperty("longest_step_ms", static_cast<int>(longest_ms));
+}
+
+TEST(Window, NeverFreezes) {
+  NEEDS_A_DESK();
+  Desk desk("freeze");
+  ASSERT_TRUE(desk.open({"--size", "640x360", "--no-first-steps"})) << desk.errors();
+  works_without_a_freeze(desk);
+}
+
+// As on devices with a GPU: the window and the scenes on one device, from two threads.
+TEST(Window, SharesOneDeviceWithTheScenes) {
+  NEEDS_A_DESK();
+  Desk desk("one_device");
+  std::vector<std::string> arguments = kSmall;
+  arguments.insert(arguments.end(), {"--script", "one-device"});
+  ASSERT_TRUE(desk.open(arguments)) << desk.errors();
+  std::size_t from = desk.lines();
+  desk.hands("keydown w");
+  ASSERT_TRUE(desk.wait_for({"frame left"}, from));
+  desk.hands("keyup w");
+  from = desk.lines();
+  desk.hands("windowsize " + desk.window() + " 400 300");
+  ASSERT_TRUE(desk.wait_for({"frame left", " 200 150 "}, from));
+  ASSERT_TRUE(desk.click("menu.Windows"));
+  ASSERT_TRUE(desk.click("item.Views and comparison"));
+  from = desk.lines();
+  ASSERT_TRUE(desk.click("compare", 0.1));
+  ASSERT_TRUE(desk.wait_for({"shown two"}, from));
+  desk.picture("two");
+  from = desk.lines();
+  desk.hands("key F11");
+  ASSERT_TRUE(desk.wait_for({"frame right", " 400 300 "}, from));
+  desk.picture("full_screen");
+  EXPECT_EQ(desk.leave(), 0) << desk.errors();
+}
+
+}  // namespace
+}  // namespace tyndall
