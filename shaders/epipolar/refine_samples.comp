@@ -28,47 +28,39 @@ layout(std430, binding = 5) buffer march_list_block { WorkList march; uint march
 const uint kWords = 64u;  // for 2048 samples
 // Light below this part of the slice's mean makes no break: it is too dark to be seen beside the rest.
 const float kDark = 0.05;
+const uint kSparse = 4u;   // of this many samples one counts for the mean
+const uint kPartials = 8u;
 
-shared uint breaks[kWords];   // bit i: between samples i and i + 1
-shared uint marched[kWords];
-shared uint before[kWords];   // marched samples in the words before
+shared uint marked[kWords];   // bit i: sample i
+shared uint before[kWords];   // marked samples in the words before
 shared vec3 partial[kThreads];
-shared vec3 floor_light;
 shared uint list_start;
 
-bool is_break(uint at) {
-  vec4 a = coarse[at];
-  vec4 b = coarse[at + 1u];
-  if (kRefinement == 0u) return abs(a.w - b.w) > 0.2 * epipolar.threshold * max(max(a.w, b.w), 1.0);
-  vec3 change = abs(a.rgb - b.rgb) / max(max(a.rgb, b.rgb), floor_light);
-  return max(change.r, max(change.g, change.b)) > epipolar.threshold;
+// Whether light does not go on in a line here, or depth makes a step to one of the neighbours.
+bool is_kink(uint at, vec3 floor_light) {
+  vec4 a = coarse[at - 1u];
+  vec4 b = coarse[at];
+  vec4 c = coarse[at + 1u];
+  if (kRefinement == 0u) {
+    float step_m = max(abs(a.w - b.w) / max(max(a.w, b.w), 1.0), abs(c.w - b.w) / max(max(c.w, b.w), 1.0));
+    return step_m > 0.2 * epipolar.threshold;
+  }
+  vec3 change = abs(a.rgb + c.rgb - 2.0 * b.rgb) / max(max(a.rgb, max(b.rgb, c.rgb)), floor_light);
+  return max(change.r, max(change.g, change.b)) > 0.5 * epipolar.threshold;
 }
 
-uint bits_from(uint first) { return 0xFFFFFFFFu << (first & 31u); }
-uint bits_to(uint last) { return 0xFFFFFFFFu >> (31u - (last & 31u)); }
-
-// The sample after the last break in [from, at - 1], or from.
-uint left_source(uint from, uint at) {
-  for (uint i = at; i > from;) {
-    uint word = (i - 1u) >> 5u;
-    uint bits = breaks[word] & bits_to(i - 1u);
-    if (word == from >> 5u) bits &= bits_from(from);
-    if (bits != 0u) return word * 32u + uint(findMSB(bits)) + 1u;
-    i = min(word * 32u, i - 1u);
-  }
-  return from;
+uint left_marked(uint i) {
+  uint word = i >> 5u;
+  uint bits = marked[word] & (0xFFFFFFFFu >> (31u - (i & 31u)));
+  while (bits == 0u) bits = marked[--word];
+  return word * 32u + uint(findMSB(bits));
 }
 
-// The first break in [at, to - 1], or to.
-uint right_source(uint at, uint to) {
-  for (uint i = at; i < to;) {
-    uint word = i >> 5u;
-    uint bits = breaks[word] & bits_from(i);
-    if (word == (to - 1u) >> 5u) bits &= bits_to(to - 1u);
-    if (bits != 0u) return word * 32u + uint(findLSB(bits));
-    i = (word + 1u) * 32u;
-  }
-  return to;
+uint right_marked(uint i) {
+  uint word = i >> 5u;
+  uint bits = marked[word] & (0xFFFFFFFFu << (i & 31u));
+  while (bits == 0u) bits = marked[++word];
+  return word * 32u + uint(findLSB(bits));
 }
 
 void main() {
@@ -76,53 +68,36 @@ void main() {
   uint thread = gl_LocalInvocationID.x;
   EpipolarSlice slice = slices[id];
   uint row = id * epipolar.samples;
-  if (thread < kWords) {
-    breaks[thread] = 0u;
-    marched[thread] = 0u;
-  }
+  marked[thread] = 0u;
   vec3 sum = vec3(0.0);
-  for (uint i = thread; i <= slice.last; i += kThreads) sum += coarse[row + i].rgb;
+  for (uint i = thread * kSparse; i <= slice.last; i += kThreads * kSparse) sum += coarse[row + i].rgb;
   partial[thread] = sum;
   barrier();
-  if (thread == 0u) {
-    vec3 all = vec3(0.0);
-    for (uint i = 0u; i < kThreads; ++i) all += partial[i];
-    floor_light = max(all * (kDark / float(slice.last + 1u)), vec3(1e-30));
+  if (thread < kPartials) {
+    for (uint i = thread + kPartials; i < kThreads; i += kPartials) sum += partial[i];
+    partial[thread] = sum;
   }
   barrier();
-  for (uint i = thread; i < slice.last; i += kThreads) {
-    if (is_break(row + i)) atomicOr(breaks[i >> 5u], 1u << (i & 31u));
-  }
-  barrier();
+  sum = vec3(0.0);
+  for (uint i = 0u; i < kPartials; ++i) sum += partial[i];
+  vec3 floor_light = max(sum * (kDark / float(slice.last / kSparse + 1u)), vec3(1e-30));
 
   uint fine_step = max(epipolar.initial_step / epipolar.epipole_density, 1u);
   float near_epipole = 0.05 * float(max(frame.width, frame.height));
   for (uint i = thread; i <= slice.last; i += kThreads) {
-    uint from = i / epipolar.initial_step * epipolar.initial_step;
-    uint to = from + epipolar.initial_step;
+    uint beyond = i % epipolar.initial_step;
+    uint from = i - beyond;
     bool near = epipolar.sun_in_picture != 0u && from * 20u < epipolar.samples &&
                 distance(sample_position(slice, from), epipole()) < near_epipole;
-    if (near) {
-      from += (i - from) / fine_step * fine_step;
-      to = min(to, from + fine_step);
-    }
-    to = min(to, slice.last);
-    from = min(from, to);
-    uint left = left_source(from, i);
-    uint right = right_source(i, to);
-    if (left == i || right == i) {
-      left = i;
-      right = i;
-      atomicOr(marched[i >> 5u], 1u << (i & 31u));
-    }
-    sources[row + i] = left | right << 16u;
+    bool mark = beyond % (near ? fine_step : epipolar.initial_step) == 0u || i == slice.last;
+    if (mark || is_kink(row + i, floor_light)) atomicOr(marked[i >> 5u], 1u << (i & 31u));
   }
   barrier();
   if (thread == 0u) {
     uint total = 0u;
-    for (uint word = 0u; word < kWords; ++word) {
+    for (uint word = 0u; word <= slice.last >> 5u; ++word) {
       before[word] = total;
-      total += uint(bitCount(marched[word]));
+      total += uint(bitCount(marked[word]));
     }
     list_start = atomicAdd(march.count, total);
     uint groups = (list_start + total + kMarchGroup - 1u) / kMarchGroup;
@@ -131,10 +106,11 @@ void main() {
   }
   barrier();
   for (uint i = thread; i <= slice.last; i += kThreads) {
+    uint left = left_marked(i);
+    uint right = right_marked(i);
+    sources[row + i] = left | right << 16u;
     uint word = i >> 5u;
     uint bit = 1u << (i & 31u);
-    if ((marched[word] & bit) != 0u) {
-      march_list[list_start + before[word] + uint(bitCount(marched[word] & (bit - 1u)))] = id << 16u | i;
-    }
+    if (left == right) march_list[list_start + before[word] + uint(bitCount(marked[word] & (bit - 1u)))] = id << 16u | i;
   }
 }
