@@ -25,5 +25,5 @@ void main() {
   vec3 a = unpack_sample(samples[row + left]).source;
   vec3 b = unpack_sample(samples[row + right]).source;
   s.source = mix(a, b, float(i - left) / float(right - left));
-  samples[row + i] = pack_sample(s);
+  samples[row + i].yz = pack_sample(s).yz;
 }

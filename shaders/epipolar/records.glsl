@@ -6,6 +6,7 @@
 #define TYNDALL_RECORDS_GLSL
 
 const float kSkyDepth = 1e9;       // [m] of rays that leave the air
+const float kCoarseUnit = 1e6;     // of the light there: full precision down to 1e-14
 const float kLongest = 1e6;        // [m] Beyond this depth, what is stored is the optical depth itself.
 
 struct Sample {
@@ -44,6 +45,17 @@ Sample unpack_sample(uvec4 packed) {
   s.source = vec3(a, b.x) * vec3(a, b.x);
   s.density = vec3(b.y, c) * vec3(b.y, c);
   return s;
+}
+
+// Light without shadows, for refine_samples.comp: its roots, like those of a sample.
+uvec2 pack_coarse(vec3 light) {
+  vec3 root = root_for_half(light * kCoarseUnit);
+  return uvec2(packHalf2x16(root.xy), packHalf2x16(vec2(root.z, 0.0)));
+}
+
+vec3 unpack_coarse(uvec2 packed) {
+  vec3 root = vec3(unpackHalf2x16(packed.x), unpackHalf2x16(packed.y).x);
+  return root * root;
 }
 
 #endif

@@ -18,10 +18,12 @@ layout(constant_id = 0) const uint kRefinement = 1u;  // 0 by depth, 1 by in-sca
 layout(std430, binding = 0) readonly buffer frame_block { FrameConstants frame; };
 layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants epipolar; };
 layout(std430, binding = 2) readonly buffer slice_block { EpipolarSlice slices[]; };
-layout(std430, binding = 3) readonly buffer coarse_block { vec4 coarse[]; };
+layout(std430, binding = 3) readonly buffer coarse_block { uvec2 coarse[]; };
+layout(std430, binding = 6) readonly buffer sample_block { uvec4 samples[]; };
 layout(std430, binding = 4) writeonly buffer source_block { uint sources[]; };
 layout(std430, binding = 5) buffer march_list_block { WorkList march; uint march_list[]; };
 
+#include "epipolar/records.glsl"
 #include "epipolar/slices.glsl"
 #include "epipolar/work_list.glsl"
 
@@ -38,14 +40,16 @@ shared uint list_start;
 
 // Whether light does not go on in a line here, or depth makes a step to one of the neighbours.
 bool is_kink(uint at, vec3 floor_light) {
-  vec4 a = coarse[at - 1u];
-  vec4 b = coarse[at];
-  vec4 c = coarse[at + 1u];
   if (kRefinement == 0u) {
-    float step_m = max(abs(a.w - b.w) / max(max(a.w, b.w), 1.0), abs(c.w - b.w) / max(max(c.w, b.w), 1.0));
-    return step_m > 0.2 * epipolar.threshold;
+    float depth = uintBitsToFloat(samples[at].x);
+    vec2 others = uintBitsToFloat(uvec2(samples[at - 1u].x, samples[at + 1u].x));
+    vec2 change = abs(others - depth) / max(max(others, depth), 1.0);
+    return max(change.x, change.y) > 0.2 * epipolar.threshold;
   }
-  vec3 change = abs(a.rgb + c.rgb - 2.0 * b.rgb) / max(max(a.rgb, max(b.rgb, c.rgb)), floor_light);
+  vec3 a = unpack_coarse(coarse[at - 1u]);
+  vec3 b = unpack_coarse(coarse[at]);
+  vec3 c = unpack_coarse(coarse[at + 1u]);
+  vec3 change = abs(a + c - 2.0 * b) / max(max(a, max(b, c)), floor_light);
   return max(change.r, max(change.g, change.b)) > 0.5 * epipolar.threshold;
 }
 
@@ -70,7 +74,7 @@ void main() {
   uint row = id * epipolar.samples;
   marked[thread] = 0u;
   vec3 sum = vec3(0.0);
-  for (uint i = thread * kSparse; i <= slice.last; i += kThreads * kSparse) sum += coarse[row + i].rgb;
+  for (uint i = thread * kSparse; i <= slice.last; i += kThreads * kSparse) sum += unpack_coarse(coarse[row + i]);
   partial[thread] = sum;
   barrier();
   if (thread < kPartials) {

@@ -18,7 +18,7 @@ layout(std430, binding = 1) readonly buffer frame_block { FrameConstants frame; 
 layout(std430, binding = 2) readonly buffer epipolar_block { EpipolarConstants epipolar; };
 layout(std430, binding = 3) readonly buffer slice_block { EpipolarSlice slices[]; };
 layout(std430, binding = 4) writeonly buffer sample_block { uvec4 samples[]; };
-layout(std430, binding = 5) writeonly buffer coarse_block { vec4 coarse[]; };
+layout(std430, binding = 5) writeonly buffer coarse_block { uvec2 coarse[]; };
 layout(binding = 6) uniform sampler2D scene_depth;
 
 #include "epipolar/ray_end.glsl"
@@ -66,7 +66,7 @@ void main() {
     homogeneous_attenuation(end - start, through, lost);
     s.density = density_of(frame.homogeneous.extinction * (end - start), s.depth_m);
     samples[at] = pack_sample(s);
-    coarse[at] = vec4(lost, s.depth_m);
+    coarse[at] = pack_coarse(lost);
     return;
   }
   vec3 column = vec3(0.0);
@@ -79,5 +79,5 @@ void main() {
   Guide guide = guide_for_column(medium, column);
   vec3 light = medium.rayleigh_scattering * rayleigh_phase(ray.cos_view_sun) * guide.rayleigh +
                medium.mie_scattering * mie_phase(medium, ray.cos_view_sun) * guide.mie;
-  coarse[at] = vec4(light, s.depth_m);
+  coarse[at] = pack_coarse(light);
 }
