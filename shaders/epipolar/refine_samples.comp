@@ -10,7 +10,7 @@
 #include "shared/frame_constants.h"
 #include "shared/epipolar.h"
 
-const uint kThreads = 64u;
+const uint kThreads = 32u;
 
 layout(local_size_x = kThreads) in;
 layout(constant_id = 0) const uint kRefinement = 1u;  // 0 by depth, 1 by in-scattering
@@ -72,7 +72,7 @@ void main() {
   uint thread = gl_LocalInvocationID.x;
   EpipolarSlice slice = slices[id];
   uint row = id * epipolar.samples;
-  marked[thread] = 0u;
+  for (uint w = thread; w < kWords; w += kThreads) marked[w] = 0u;
   vec3 sum = vec3(0.0);
   for (uint i = thread * kSparse; i <= slice.last; i += kThreads * kSparse) sum += unpack_coarse(coarse[row + i]);
   partial[thread] = sum;
