@@ -1,5 +1,6 @@
-// Blocks of 2 x 2 pixels: how far away they are, and the list of those whose pixels are done each by itself. Include after
-// declaring medium, frame, epipolar, scene_depth, broken, broken_list, and unwarp.glsl.
+// Blocks of kBlockWidth x 2 pixels: how far away they are, and the list of those whose pixels are done each by itself, which
+// names squares of 2 x 2. Include after declaring medium, frame, epipolar, scene_depth, broken, broken_list, kBlockWidth, and
+// unwarp.glsl.
 #ifndef TYNDALL_BLOCK_GLSL
 #define TYNDALL_BLOCK_GLSL
 
@@ -9,10 +10,15 @@ const uint kScene = 1u;
 const uint kPlanet = 2u;  // where nothing was drawn
 const uint kSky = 4u;
 
+const int kBlockPixels = 2 * kBlockWidth;
+
+// Pixel k of a block is at its corner plus this.
+ivec2 place_in_block(int k) { return ivec2(k % kBlockWidth, k / kBlockWidth); }
+
 struct Block {
-  ivec2 pixel[4];
-  float visible_m[4];
-  bool sky[4];
+  ivec2 pixel[kBlockPixels];
+  float visible_m[kBlockPixels];
+  bool sky[kBlockPixels];
   uint kinds;  // all that were found
   float nearest_m;  // of the scene
   float farthest_m;
@@ -37,13 +43,14 @@ void look_at_block(inout Block block) {
   block.kinds = 0u;
   block.nearest_m = kSkyDepth;
   block.farthest_m = 0.0;
-  for (int k = 0; k < 4; ++k) look_at_pixel(block, k);
+  for (int k = 0; k < kBlockPixels; ++k) look_at_pixel(block, k);
 }
 
 void list_broken(ivec2 corner) {
-  uint at = atomicAdd(broken.count, 1u);
-  broken_list[at] = uint(corner.y) << 16u | uint(corner.x);
-  uint groups = (4u * at + 4u + kMarchGroup - 1u) / kMarchGroup;
+  const uint squares = uint(kBlockWidth) / 2u;
+  uint at = atomicAdd(broken.count, squares);
+  for (uint i = 0u; i < squares; ++i) broken_list[at + i] = uint(corner.y) << 16u | (uint(corner.x) + 2u * i);
+  uint groups = (4u * (at + squares) + kMarchGroup - 1u) / kMarchGroup;
   atomicMax(broken.groups_x, groups_along_x(groups));
   atomicMax(broken.groups_y, groups_along_y(groups));
 }

@@ -1,4 +1,4 @@
-// Puts the picture together, in blocks of 2 x 2 pixels: where they are at one depth, all four are blended from
+// Puts the picture together, in blocks of 4 x 2 pixels: where they are at one depth, all eight are blended from
 // the same samples. The others are left to unwarp_pixels.comp. Every pixel is read and written once. With kDownscale it is
 // the reduced picture, whose pixels hold the source, not the light (Yusov 2012, section 6.6).
 #version 460
@@ -24,21 +24,22 @@ layout(std430, binding = 9) writeonly buffer reduced_block { vec4 reduced[]; };
 
 #include "epipolar/unwarp.glsl"
 #include "epipolar/reduced.glsl"
+const int kBlockWidth = int(kUnwarpWidth);
 #include "epipolar/block.glsl"
 
 void main() {
-  ivec2 corner = 2 * ivec2(gl_GlobalInvocationID.xy);
+  ivec2 corner = ivec2(kBlockWidth, 2) * ivec2(gl_GlobalInvocationID.xy);
   ivec2 size = computed_size();
   if (corner.x >= size.x || corner.y >= size.y) return;
   Block block;
-  ivec2 place[4];
-  for (int k = 0; k < 4; ++k) {
-    place[k] = min(corner + ivec2(k & 1, k >> 1), size - 1);
+  ivec2 place[kBlockPixels];
+  for (int k = 0; k < kBlockPixels; ++k) {
+    place[k] = min(corner + place_in_block(k), size - 1);
     block.pixel[k] = kDownscale == 1 ? place[k] : pixel_of_reduced(place[k]);
   }
   look_at_block(block);
-  // Not beyond the last pixels of an odd size: what is seen there is none of the four.
-  vec2 middle = 0.5 * vec2(block.pixel[0] + block.pixel[3]) + 0.5;
+  // Not beyond the last pixels of an odd size: what is seen there is none of these.
+  vec2 middle = 0.5 * vec2(block.pixel[0] + block.pixel[kBlockPixels - 1]) + 0.5;
   bool scene = block.kinds == kScene;
   float depth_m = scene ? 0.5 * (block.nearest_m + block.farthest_m) : kSkyDepth;
   bool one_depth = scene ? block.farthest_m - block.nearest_m < epipolar.threshold * block.farthest_m : block.kinds == kSky;
@@ -52,7 +53,7 @@ void main() {
     list_broken(corner);
     return;
   }
-  for (int k = 0; k < 4; ++k) {
+  for (int k = 0; k < kBlockPixels; ++k) {
     ivec2 pixel = block.pixel[k];
     vec2 position = vec2(pixel) + 0.5;
     float own_m = scene ? block.visible_m[k] : depth_m;

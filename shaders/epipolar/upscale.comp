@@ -23,6 +23,7 @@ layout(std430, binding = 9) buffer broken_list_block { WorkList broken; uint bro
 
 #include "epipolar/unwarp.glsl"
 #include "epipolar/reduced_around.glsl"
+const int kBlockWidth = 2;
 #include "epipolar/block.glsl"
 
 // Thresholds of refinement within which depths are those of one slope: it is even between the reduced pixels, whatever
@@ -34,7 +35,7 @@ void main() {
   ivec2 size = ivec2(frame.width, frame.height);
   if (corner.x >= size.x || corner.y >= size.y) return;
   Block block;
-  for (int k = 0; k < 4; ++k) block.pixel[k] = min(corner + ivec2(k & 1, k >> 1), size - 1);
+  for (int k = 0; k < kBlockPixels; ++k) block.pixel[k] = min(corner + place_in_block(k), size - 1);
   look_at_block(block);
   Sample near[4];
   vec2 part;
@@ -52,10 +53,10 @@ void main() {
     list_broken(corner);
     return;
   }
-  for (int k = 0; k < 4; ++k) {
+  for (int k = 0; k < kBlockPixels; ++k) {
     ivec2 pixel = block.pixel[k];
     vec2 position = vec2(pixel) + 0.5;
-    vec2 own_part = part + vec2(k & 1, k >> 1) / float(kDownscale);
+    vec2 own_part = part + vec2(place_in_block(k)) / float(kDownscale);
     vec3 background = texelFetch(scene_color, pixel, 0).rgb;
     float own_m = scene ? block.visible_m[k] : kSkyDepth;
     vec3 color = compose(blend_reduced(near, bilinear_weights(own_part)), position, own_m, block.visible_m[k], block.sky[k], background);

@@ -72,6 +72,8 @@ const uint kTreeLeafLevel = 3u;   // nodes of 8, 16, ... 256 cells: 2 to the pow
 const uint kTreeTopLevel = 8u;
 const uint kTreeNodes = 64u;      // of a block, with one to spare
 
+const uint kUnwarpWidth = 4u;  // pixels of a block of unwarp.comp; they are 2 high
+
 // What a dispatch of march_samples.comp does; the first three are those of CascadeProcessing.
 const uint kAllCascades = 0u;
 const uint kOneCascade = 1u;    // and adds it to what the one before has left

@@ -58,6 +58,11 @@ std::uint32_t extinction_index(const Params& params) {
   return is_homogeneous(params.scattering) ? 0 : static_cast<std::uint32_t>(params.scattering.extinction);
 }
 
+// Blocks of unwarp.comp over a picture.
+VkExtent2D unwarp_blocks(VkExtent2D extent) {
+  return {(extent.width + shared::kUnwarpWidth - 1) / shared::kUnwarpWidth, (extent.height + 1) / 2};
+}
+
 }  // namespace
 
 std::uint32_t tree_cells(const EffectDesc& desc) {
@@ -77,8 +82,9 @@ EpipolarSizes epipolar_sizes(const EffectDesc& desc, const Params& params) {
   out[index(EpipolarBuffer::coarse)] = samples * 8;
   out[index(EpipolarBuffer::sources)] = samples * 4;
   out[index(EpipolarBuffer::march_list)] = sizeof(shared::WorkList) + samples * 4;
-  const VkDeviceSize blocks = VkDeviceSize{(desc.max_extent.width + 1) / 2} * ((desc.max_extent.height + 1) / 2);
-  out[index(EpipolarBuffer::broken_list)] = sizeof(shared::WorkList) + blocks * 4;
+  const VkExtent2D blocks = unwarp_blocks(desc.max_extent);
+  const VkDeviceSize squares = VkDeviceSize{blocks.width} * (shared::kUnwarpWidth / 2) * blocks.height;
+  out[index(EpipolarBuffer::broken_list)] = sizeof(shared::WorkList) + squares * 4;
   const VkExtent2D reduced = reduced_extent(desc.max_extent, params);
   out[index(EpipolarBuffer::reduced)] =
       is_downscaled(params) ? VkDeviceSize{reduced.width} * reduced.height * (is_homogeneous(params.scattering) ? 16 : 32) : kLeastBytes;
@@ -496,7 +502,8 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
   if (is_downscaled(params)) {
     const VkExtent2D reduced = reduced_extent(inputs.extent, params);
     const std::size_t quarter = params.scattering.downscale / 4;
-    TYNDALL_TRY(run(of.unwarp_reduced[quarter], {(reduced.width + 1) / 2, (reduced.height + 1) / 2}));
+    const VkExtent2D blocks = unwarp_blocks(reduced);
+    TYNDALL_TRY(run(of.unwarp_reduced[quarter], {blocks.width, blocks.height}));
     lists_ready();
     TYNDALL_TRY(run_list(of.unwarp_reduced_pixels[quarter], EpipolarBuffer::broken_list));
     TYNDALL_TRY(correct(of.correct_reduced[quarter]));
@@ -506,7 +513,8 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
     TYNDALL_TRY(run_list(of.upscale_pixels[extinction][quarter], EpipolarBuffer::broken_list));
     TYNDALL_TRY(correct(of.correct_pixels));
   } else {
-    TYNDALL_TRY(run(of.unwarp[extinction][breaks ? 1 : 0], {(inputs.extent.width + 1) / 2, (inputs.extent.height + 1) / 2}));
+    const VkExtent2D blocks = unwarp_blocks(inputs.extent);
+    TYNDALL_TRY(run(of.unwarp[extinction][breaks ? 1 : 0], {blocks.width, blocks.height}));
     lists_ready();
     TYNDALL_TRY(run_list(of.unwarp_pixels[extinction][breaks ? 1 : 0], EpipolarBuffer::broken_list));
     if (breaks) TYNDALL_TRY(correct(of.correct_pixels));
