@@ -14,8 +14,8 @@
 layout(local_size_x = 32, local_size_y = 2) in;
 
 layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
-layout(std430, binding = 1) readonly buffer frame_block { FrameConstants frame; };
-layout(std430, binding = 2) readonly buffer epipolar_block { EpipolarConstants epipolar; };
+layout(std140, binding = 1) uniform frame_block { FrameConstants frame; };
+layout(std140, binding = 2) uniform epipolar_block { EpipolarConstants epipolar; };
 layout(std430, binding = 3) readonly buffer slice_block { EpipolarSlice slices[]; };
 layout(std430, binding = 4) writeonly buffer sample_block { uvec4 samples[]; };
 layout(std430, binding = 5) writeonly buffer coarse_block { uvec2 coarse[]; };
