@@ -30,6 +30,8 @@ layout(std430, binding = 5) buffer march_list_block { WorkList march; uint march
 const uint kWords = 64u;  // for 2048 samples
 // Light below this part of the slice's mean makes no break: it is too dark to be seen beside the rest.
 const float kDark = 0.05;
+// Part of the threshold by which light may be off the line between that of marked samples.
+const float kOffLine = 0.75;
 const uint kSparse = 4u;   // of this many samples one counts for the mean
 const uint kPartials = 8u;
 
@@ -38,19 +40,20 @@ shared uint before[kWords];   // marked samples in the words before
 shared vec3 partial[kThreads];
 shared uint list_start;
 
-// Whether light does not go on in a line here, or depth makes a step to one of the neighbours.
-bool is_kink(uint at, vec3 floor_light) {
-  if (kRefinement == 0u) {
-    float depth = uintBitsToFloat(samples[at].x);
-    vec2 others = uintBitsToFloat(uvec2(samples[at - 1u].x, samples[at + 1u].x));
-    vec2 change = abs(others - depth) / max(max(others, depth), 1.0);
-    return max(change.x, change.y) > 0.2 * epipolar.threshold;
-  }
-  vec3 a = unpack_coarse(coarse[at - 1u]);
-  vec3 b = unpack_coarse(coarse[at]);
-  vec3 c = unpack_coarse(coarse[at + 1u]);
-  vec3 change = abs(a + c - 2.0 * b) / max(max(a, max(b, c)), floor_light);
-  return max(change.r, max(change.g, change.b)) > 0.5 * epipolar.threshold;
+// How far light at a sample is off the line between that of two others.
+float off_line(uint row, uint left, uint i, uint right, vec3 floor_light) {
+  vec3 a = unpack_coarse(coarse[row + left]);
+  vec3 b = unpack_coarse(coarse[row + i]);
+  vec3 c = unpack_coarse(coarse[row + right]);
+  vec3 off = abs(mix(a, c, float(i - left) / float(right - left)) - b) / max(max(a, max(b, c)), floor_light);
+  return max(off.r, max(off.g, off.b));
+}
+
+float depth_step(uint at) {
+  float depth = uintBitsToFloat(samples[at].x);
+  vec2 others = uintBitsToFloat(uvec2(samples[at - 1u].x, samples[at + 1u].x));
+  vec2 change = abs(others - depth) / max(max(others, depth), 1.0);
+  return max(change.x, change.y);
 }
 
 uint left_marked(uint i) {
@@ -94,7 +97,26 @@ void main() {
     bool near = epipolar.sun_in_picture != 0u && from * 20u < epipolar.samples &&
                 distance(sample_position(slice, from), epipole()) < near_epipole;
     bool mark = beyond % (near ? fine_step : epipolar.initial_step) == 0u || i == slice.last;
-    if (mark || is_kink(row + i, floor_light)) atomicOr(marked[i >> 5u], 1u << (i & 31u));
+    bool kink = !mark && (kRefinement == 0u ? depth_step(row + i) > 0.2 * epipolar.threshold
+                                             : off_line(row, i - 1u, i, i + 1u, floor_light) > kOffLine * epipolar.threshold);
+    if (mark || kink) atomicOr(marked[i >> 5u], 1u << (i & 31u));
+  }
+  barrier();
+  // What bends slowly has no kink: the middles of steps, of their halves and so on, against what is marked on both sides so far.
+  if (kRefinement == 1u) {
+    uint segment = epipolar.initial_step;
+    for (uint from = thread * segment; from < slice.last; from += kThreads * segment) {
+      uint end = min(from + segment, slice.last);
+      for (uint part = segment / 2u; part > 1u; part /= 2u) {
+        for (uint i = from + part; i < end; i += 2u * part) {
+          uint left = left_marked(i);
+          uint right = right_marked(i);
+          if (left != right && off_line(row, left, i, right, floor_light) > kOffLine * epipolar.threshold) {
+            atomicOr(marked[i >> 5u], 1u << (i & 31u));
+          }
+        }
+      }
+    }
   }
   barrier();
   if (thread == 0u) {
