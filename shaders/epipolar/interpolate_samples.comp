@@ -21,9 +21,11 @@ void main() {
   uint left = sources[row + i] & 0xFFFFu;
   uint right = sources[row + i] >> 16u;
   if (left == right) return;
-  Sample s = unpack_sample(samples[row + i]);
-  vec3 a = unpack_sample(samples[row + left]).source;
-  vec3 b = unpack_sample(samples[row + right]).source;
-  s.source = mix(a, b, float(i - left) / float(right - left));
-  samples[row + i].yz = pack_sample(s).yz;
+  uvec4 a = samples[row + left];
+  uvec4 b = samples[row + right];
+  float part = float(i - left) / float(right - left);
+  // Roots of the sources: three halves of y and z, whose fourth is of the density.
+  samples[row + i].y = packHalf2x16(mix(unpackHalf2x16(a.y), unpackHalf2x16(b.y), part));
+  float blue = mix(unpackHalf2x16(a.z).x, unpackHalf2x16(b.z).x, part);
+  samples[row + i].z = (packHalf2x16(vec2(blue, 0.0)) & 0xFFFFu) | (samples[row + i].z & 0xFFFF0000u);
 }

@@ -36,14 +36,22 @@ uvec4 pack_sample(Sample s) {
                packHalf2x16(density.yz));
 }
 
-Sample unpack_sample(uvec4 packed) {
+// With roots of density and source.
+Sample unpack_roots(uvec4 packed) {
   vec2 a = unpackHalf2x16(packed.y);
   vec2 b = unpackHalf2x16(packed.z);
   vec2 c = unpackHalf2x16(packed.w);
   Sample s;
   s.depth_m = uintBitsToFloat(packed.x);
-  s.source = vec3(a, b.x) * vec3(a, b.x);
-  s.density = vec3(b.y, c) * vec3(b.y, c);
+  s.source = vec3(a, b.x);
+  s.density = vec3(b.y, c);
+  return s;
+}
+
+Sample unpack_sample(uvec4 packed) {
+  Sample s = unpack_roots(packed);
+  s.source *= s.source;
+  s.density *= s.density;
   return s;
 }
 

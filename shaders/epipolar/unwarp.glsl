@@ -17,7 +17,7 @@ const float kBeyond = 0.5;  // of the way between two samples
 // Samples to a pixel from which on a block of four pixels would reach too far beyond its samples.
 const float kDense = 0.75;
 // Ratio of the densities of four samples from which on what lies a little beyond them is not told by them.
-const float kUneven = 1.5;
+const float kUneven = 1.2247;
 
 // Below this sum of weights no sample is near in depth; the weights then still choose the nearest.
 const float kLeastWeight = 1e-2;
@@ -36,8 +36,8 @@ struct Around {
   vec4 origin_lower;  // entry and axis of the two
   vec4 origin_upper;
   vec4 nearness;
-  vec3 source[4];
-  vec3 density[4];
+  vec3 source[4];   // roots
+  vec3 density[4];  // roots
 };
 
 float depth_nearness(float sample_m, float depth_m) {
@@ -66,7 +66,7 @@ Around around(vec2 position, float depth_m) {
     else a.origin_upper = origin;
     a.first[i] = float(first);
     for (int k = 0; k < 2; ++k) {
-      Sample s = unpack_sample(samples[id * epipolar.samples + first + uint(k)]);
+      Sample s = unpack_roots(samples[id * epipolar.samples + first + uint(k)]);
       a.source[2 * i + k] = s.source;
       a.density[2 * i + k] = s.density;
       a.nearness[2 * i + k] = depth_nearness(s.depth_m, depth_m);
@@ -97,6 +97,8 @@ Blend blend(Around a, vec2 position) {
   b.density = w.x * a.density[0] + w.y * a.density[1] + w.z * a.density[2] + w.w * a.density[3];
   b.source = max(b.source, vec3(0.0));
   b.density = max(b.density, vec3(0.0));
+  b.source *= b.source;
+  b.density *= b.density;
   return b;
 }
 
