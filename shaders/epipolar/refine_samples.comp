@@ -1,6 +1,7 @@
 // Chooses the samples that are marched, and for the others the two that they are interpolated between
-// (Yusov 2013, section 1.3). One group per slice: breaks between neighbours become bits, and each sample looks
-// for the nearest to both sides within its segment of initial_step samples.
+// (Yusov 2013, section 1.3). Marched are samples where the unshadowed light is off the line between its neighbours' by more
+// than the threshold: first next to each, which finds edges, then halving the steps between, which finds slow bends.
+// One group per slice: marked samples are bits, and each sample looks for the nearest to both sides.
 // sources: index of the left source, and of the right one << 16, on the same slice; equal where it is marched.
 // The list of marched samples, slice << 16 | index, keeps the order of each slice.
 #version 460
@@ -30,8 +31,6 @@ layout(std430, binding = 5) buffer march_list_block { WorkList march; uint march
 const uint kWords = 64u;  // for 2048 samples
 // Light below this part of the slice's mean makes no break: it is too dark to be seen beside the rest.
 const float kDark = 0.05;
-// Part of the threshold by which light may be off the line between that of marked samples.
-const float kOffLine = 0.75;
 const uint kSparse = 4u;   // of this many samples one counts for the mean
 const uint kPartials = 8u;
 
@@ -98,7 +97,7 @@ void main() {
                 distance(sample_position(slice, from), epipole()) < near_epipole;
     bool mark = beyond % (near ? fine_step : epipolar.initial_step) == 0u || i == slice.last;
     bool kink = !mark && (kRefinement == 0u ? depth_step(row + i) > 0.2 * epipolar.threshold
-                                             : off_line(row, i - 1u, i, i + 1u, floor_light) > kOffLine * epipolar.threshold);
+                                             : off_line(row, i - 1u, i, i + 1u, floor_light) > epipolar.threshold);
     if (mark || kink) atomicOr(marked[i >> 5u], 1u << (i & 31u));
   }
   barrier();
@@ -111,7 +110,7 @@ void main() {
         for (uint i = from + part; i < end; i += 2u * part) {
           uint left = left_marked(i);
           uint right = right_marked(i);
-          if (left != right && off_line(row, left, i, right, floor_light) > kOffLine * epipolar.threshold) {
+          if (left != right && off_line(row, left, i, right, floor_light) > epipolar.threshold) {
             atomicOr(marked[i >> 5u], 1u << (i & 31u));
           }
         }

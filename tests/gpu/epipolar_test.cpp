@@ -54,10 +54,10 @@ TEST_F(Epipolar, EveryModeIsLikeBruteForce) {
   with("correct_depth_breaks", [](Params& p) { p.epipolar.correct_depth_breaks = true; }, 41.0);
   with("samples not optimised", [](Params& p) { p.epipolar.optimize_locations = false; }, 43.0);
   with("initial_step 1", [](Params& p) { p.epipolar.initial_step = 1; }, 45.0);
-  with("initial_step 256", [](Params& p) { p.epipolar.initial_step = 256; }, 32.0);
+  with("initial_step 256", [](Params& p) { p.epipolar.initial_step = 256; }, 43.0);
   with("epipole_density 32", [](Params& p) { p.epipolar.epipole_density = 32; }, 42.0);
   with("threshold 0.001", [](Params& p) { p.epipolar.refinement_threshold = 0.001F; }, 43.0);
-  with("threshold 0.5", [](Params& p) { p.epipolar.refinement_threshold = 0.5F; }, 29.0);
+  with("threshold 0.5", [](Params& p) { p.epipolar.refinement_threshold = 0.5F; }, 31.0);
   with("light alone", [](Params& p) { p.scattering.only = true; }, 40.0);
 }
 
@@ -195,9 +195,9 @@ TEST_F(Epipolar, TheCameraMayStandAnywhere) {
         s.tan_half_height = 0.12;
         s.buildings = s.ground = false;
         s.cascades = 0;
-      }), 42.0},
-      // Below the 40 dB as well: lit from behind, the light along the limb changes several times over from pixel to
-      // pixel, more than samples a pixel apart can follow. The demo's terrain from there, at 320 x 180, has 45 dB.
+      }), 43.0},
+      // Below the 40 dB: lit from behind, the light of the lowest air changes several times over from pixel to pixel, and where
+      // no sample lies between the planet and the next pixel above it, it is taken from there. The demo's terrain from there, at 320 x 180, has 45 dB.
       {seen("limb against the sun", [](BoxScene& s) {
         s.altitude_m = 400000.0;
         s.pitch_deg = -18.0;
@@ -206,7 +206,7 @@ TEST_F(Epipolar, TheCameraMayStandAnywhere) {
         s.sun_y = -0.3;
         s.buildings = false;
         s.cascades = 0;
-      }), 28.0},
+      }), 34.0},
       {seen("no terrain at all", [&](BoxScene& s) { open(s); s.pitch_deg = -8.0; }), 40.0},
       {seen("sky alone", [&](BoxScene& s) { open(s); s.pitch_deg = 40.0; }), 45.0},
       {seen("straight down", [](BoxScene& s) { s.altitude_m = 9000.0; s.pitch_deg = -90.0; }), 44.0},
@@ -340,6 +340,8 @@ TEST_F(Epipolar, CountersSayWhatWasDone) {
   EXPECT_EQ(brute.tree_nodes_visited, 0U);
   EXPECT_EQ(brute.pixels_corrected, 0U);
 
+  // All samples, so that what is counted does not hang on which are chosen.
+  params.epipolar.initial_step = 1;
   draw(params, "tree");
   const Counters tree = counters();
   EXPECT_GT(tree.samples_marched, 0U);
