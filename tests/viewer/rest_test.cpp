@@ -72,7 +72,9 @@ TEST(Window, KeepsTablesThatHaveStood) {
     if (from >= desk.lines()) break;
   }
   EXPECT_GT(finished_s, 0.0);
-  EXPECT_GE(time_of(*kept) - finished_s, 20.0);
+  // The 20 s begin where the tables are finished; the line that says so comes with the frame that shows them.
+  constexpr double kFrame_s = 1.0;
+  EXPECT_GE(time_of(*kept) - finished_s, 20.0 - kFrame_s);
   EXPECT_LE(time_of(*kept) - finished_s, 30.0);
   ASSERT_TRUE(desk.wait_for({"resting"}, from > 0 ? from - 1 : 0));
   EXPECT_EQ(files_in(cache), first + 1) << "those in between are not kept";
