@@ -6,7 +6,6 @@
 #define TYNDALL_RECORDS_GLSL
 
 const float kSkyDepth = 1e9;       // [m] of rays that leave the air
-const float kCoarseUnit = 1e6;     // of the light there: full precision down to 1e-14
 const float kLongest = 1e6;        // [m] Beyond this depth, what is stored is the optical depth itself.
 
 struct Sample {
@@ -54,6 +53,8 @@ Sample unpack_sample(uvec4 packed) {
   s.density *= s.density;
   return s;
 }
+
+const float kCoarseUnit = 1e6;  // of light without shadows: full precision down to 1e-14
 
 // Light without shadows, for refine_samples.comp: its roots, like those of a sample.
 uvec2 pack_coarse(vec3 light) {

@@ -49,7 +49,7 @@ void main() {
   vec3 least = min(min(a.density[0], a.density[1]), min(a.density[2], a.density[3]));
   vec3 most = max(max(a.density[0], a.density[1]), max(a.density[2], a.density[3]));
   dense = dense || any(greaterThan(most, kUneven * least));
-  if (!one_depth || dense || (kBreaks && blend(a, middle).weight < (kDownscale == 1 ? kLeastWeight : kLeastReduced))) {
+  if (!one_depth || dense || (kBreaks && blend(a, middle).weight < least_weight())) {
     list_broken(corner);
     return;
   }

@@ -16,14 +16,9 @@ layout(constant_id = 1) const bool kBreaks = false;   // list the pixels that no
 const float kBeyond = 0.5;  // of the way between two samples
 // Samples to a pixel from which on a block of four pixels would reach too far beyond its samples.
 const float kDense = 0.75;
-// Ratio of the densities of four samples from which on what lies a little beyond them is not told by them.
+// Ratio of the roots of the densities of four samples (of 1.5 between these) from which on what lies a little beyond them is not
+// told by them.
 const float kUneven = 1.2247;
-
-// Below this sum of weights no sample is near in depth; the weights then still choose the nearest.
-const float kLeastWeight = 1e-2;
-// With scattering.downscale the source of a sample a sixth nearer or farther is no worse than what the picture's fewer
-// pixels do anyway; what is left to be marched are half as many.
-const float kLeastReduced = 1e-3;
 
 struct Blend {
   float weight;

@@ -41,7 +41,7 @@ void unwarp_pixel(uint block, uint k) {
   } else {
     STORE_REDUCED(place, depth_m, b);
   }
-  if (kBreaks && b.weight < (kDownscale == 1 ? kLeastWeight : kLeastReduced)) {
+  if (kBreaks && b.weight < least_weight()) {
     uint slot = atomicAdd(breaks.count, 1u);
     break_list[slot] = uint(pixel.y) << 16u | uint(pixel.x);
     uint groups = slot / kMarchGroup + 1u;

@@ -47,7 +47,7 @@ void upscale_pixel(uint block, uint k) {
   if (sum < kLeastUpscaled) b = of_slices;
   vec3 background = texelFetch(scene_color, pixel, 0).rgb;
   imageStore(output_color, pixel, vec4(compose(b, position, depth_m, visible_m, sky, background), 1.0));
-  if (sum < kLeastUpscaled && b.weight < kLeastReduced) {
+  if (sum < kLeastUpscaled && b.weight < least_weight()) {
     uint slot = atomicAdd(breaks.count, 1u);
     break_list[slot] = uint(pixel.y) << 16u | uint(pixel.x);
     uint groups = slot / kMarchGroup + 1u;

@@ -4,18 +4,18 @@
 #include <string>
 #include <utility>
 
-#include "desk.hpp"
+#include "window_tools.hpp"
 
 namespace tyndall {
 namespace {
 
-using desk::Desk;
+using namespace desk;
 
 // From the menu, whose entries begin with what is given.
 bool choose(Desk& desk, const std::string& name) { return desk.click("menu.Model") && desk.click("item." + name); }
 
 TEST(Window, ComparesTwoModels) {
-  if (!desk::equipped()) GTEST_SKIP() << "Xvfb or xdotool is not installed";
+  NEEDS_A_DESK();
   Desk desk("models");
   ASSERT_TRUE(desk.open({"--size", "800x600", "--no-first-steps"})) << desk.errors();
   std::size_t from = desk.lines();
@@ -26,12 +26,7 @@ TEST(Window, ComparesTwoModels) {
   ASSERT_TRUE(choose(desk, "Atmosphere, all orders, shafts (Yusov 2013)"));
   ASSERT_TRUE(desk.wait_for({"set scattering.medium=atmosphere"}, from));
 
-  ASSERT_TRUE(desk.click("menu.Windows"));
-  ASSERT_TRUE(desk.click("item.Views and comparison"));
-  ASSERT_TRUE(desk.wait_for_place("compare"));
-  from = desk.lines();
-  ASSERT_TRUE(desk.click("compare", 0.1));
-  ASSERT_TRUE(desk.wait_for({"shown two"}, from));
+  ASSERT_TRUE(compare_two(desk));
   ASSERT_TRUE(desk.click("side.right"));
   // Right of the divider another system; the left side stays.
   for (const auto& [name, value] : {std::pair{"Air and haze (Hoffman, Preetham 2002)", "homogeneous"},

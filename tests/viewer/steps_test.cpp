@@ -32,12 +32,8 @@ void works_without_a_freeze(Desk& desk) {
   ASSERT_TRUE(desk.wait_for({"set shadows.cascades"}, from));
   ASSERT_TRUE(desk.wait_for({"frame left"}, from));
   // Another technique, with pipelines that have not been made.
-  ASSERT_TRUE(desk.click("menu.Windows"));
-  ASSERT_TRUE(desk.click("item.Views and comparison"));
-  ASSERT_TRUE(desk.wait_for_place("compare"));
   from = desk.lines();
-  ASSERT_TRUE(desk.click("compare", 0.1));
-  ASSERT_TRUE(desk.wait_for({"shown two"}, from));
+  ASSERT_TRUE(compare_two(desk));
   ASSERT_TRUE(desk.wait_for({"frame right"}, from));
   desk.picture("worked");
   EXPECT_EQ(desk.leave(), 0) << desk.errors();

@@ -25,6 +25,9 @@ struct Frame {
 // Drags a slider from a quarter of its width through these parts of it.
 [[nodiscard]] bool pull(Desk& desk, const std::string& key, const std::vector<double>& ways);
 
+// Opens the window of views and switches the comparison on, until two pictures are shown.
+[[nodiscard]] bool compare_two(Desk& desk);
+
 inline const std::vector<std::string> kSmall = {"--size", "480x270", "--no-first-steps"};
 // With tables that are built within a second or two.
 inline const std::vector<std::string> kSmallTables = {"--set", "tables.size=8,16,16,4", "--set", "tables.orders=2"};
