@@ -114,8 +114,7 @@ def measure_times(tyndall):
     cells = {title: f"{ms:.0f}" if exact else f"{ms:.0f} ± {spread:.0f}" for title, (ms, exact) in taken.items()}
     words = (f"Cost: milliseconds that the air adds to a frame of {COST_SIZE} on {device}, median of {COST_FRAMES}, in one run: the passes of the effect,\n"
              f"or, of models that are drawn with the ground, what the frame takes longer than one without air, {statistics.mean(bare):.0f} ms,\n"
-             "with the standard deviation of that one's times. That one lights the ground once for each pixel, the models for every triangle that touches it: most of\n"
-             "what `homogeneous` takes longer is that.")
+             "with the standard deviation of that one's times. All light the ground once for each pixel that shows it.")
     return cells, words
 
 

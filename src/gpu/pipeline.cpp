@@ -191,8 +191,13 @@ Result<Pipeline> create_graphics_pipeline(const Device& device, const GraphicsDe
   VkPipelineColorBlendStateCreateInfo blend = {};
   blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
   const bool color = desc.color_format != VK_FORMAT_UNDEFINED;
-  blend.attachmentCount = color ? 1 : 0;
-  blend.pAttachments = &attachment;
+  const std::uint32_t colors = color ? desc.color_count : 0;
+  std::array<VkPipelineColorBlendAttachmentState, kMaxColors> attachments;
+  std::array<VkFormat, kMaxColors> formats;
+  attachments.fill(attachment);
+  formats.fill(desc.color_format);
+  blend.attachmentCount = colors;
+  blend.pAttachments = attachments.data();
   const VkDynamicState dynamic_states[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
   VkPipelineDynamicStateCreateInfo dynamic = {};
   dynamic.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO;
@@ -200,8 +205,8 @@ Result<Pipeline> create_graphics_pipeline(const Device& device, const GraphicsDe
   dynamic.pDynamicStates = dynamic_states;
   VkPipelineRenderingCreateInfo rendering = {};
   rendering.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO;
-  rendering.colorAttachmentCount = color ? 1 : 0;
-  rendering.pColorAttachmentFormats = &desc.color_format;
+  rendering.colorAttachmentCount = colors;
+  rendering.pColorAttachmentFormats = formats.data();
   rendering.depthAttachmentFormat = desc.depth_format;
   VkGraphicsPipelineCreateInfo info = {};
   info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;

@@ -55,6 +55,8 @@ Result<Pipeline> create_compute_pipeline(const Device& device, const Shader& sha
 // multiplied, of alpha the lesser.
 enum class Blend { none, add, multiply, multiply_min };
 
+constexpr std::uint32_t kMaxColors = 4;  // what every device has
+
 // What a graphics pipeline of ours can differ in; everything is triangles from buffers read in the
 // vertex shader, drawn with dynamic rendering.
 struct GraphicsDesc {
@@ -62,6 +64,7 @@ struct GraphicsDesc {
   const Shader* vertex;
   const Shader* fragment = nullptr;  // none: depth only
   VkFormat color_format = VK_FORMAT_UNDEFINED;
+  std::uint32_t color_count = 1;  // attachments of that format, kMaxColors at most
   VkFormat depth_format = VK_FORMAT_UNDEFINED;
   VkCompareOp depth_compare = VK_COMPARE_OP_GREATER;
   bool depth_write = true;

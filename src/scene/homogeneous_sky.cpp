@@ -40,7 +40,8 @@ class HomogeneousSky : public SkyModel {
   Result<void> create(gpu::Host& host, ModelEvaluation evaluation, VkFormat color_format, VkFormat depth_format) {
     return create_objects(host,
                           {&shaders::homogeneous_terrain_vert, &shaders::homogeneous_terrain_frag,
-                           &shaders::homogeneous_sky_vert, &shaders::homogeneous_sky_frag},
+                           &shaders::homogeneous_light_comp, 2, &shaders::homogeneous_sky_vert,
+                           &shaders::homogeneous_sky_frag},
                           evaluation, sizeof(Block), color_format, depth_format);
   }
 

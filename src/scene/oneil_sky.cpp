@@ -51,8 +51,8 @@ class OneilSky : public SkyModel {
     for (const Variant& v : variants()) constants.push_back({{{1, v.columns}, {2, v.spacing}}});
     const std::vector<std::span<const gpu::Constant>> spans(constants.begin(), constants.end());
     return create_objects(host,
-                          {&shaders::oneil_terrain_vert, &shaders::oneil_terrain_frag, &shaders::oneil_sky_vert,
-                           &shaders::oneil_sky_frag},
+                          {&shaders::oneil_terrain_vert, &shaders::oneil_terrain_frag, &shaders::oneil_light_comp, 3,
+                           &shaders::oneil_sky_vert, &shaders::oneil_sky_frag},
                           evaluation, sizeof(Block), color_format, depth_format, spans);
   }
 

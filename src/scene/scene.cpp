@@ -22,7 +22,7 @@ constexpr double kLeastHeight_m = 2.0;  // of the camera above the ground
 
 // Refuses pictures and shadow maps that the device has no room for, before anything is created.
 Result<void> check_memory(const gpu::Device& device, VkExtent2D extent, std::uint32_t resolution,
-                          std::uint32_t cascades, double bytes_per_texel) {
+                          std::uint32_t cascades, double bytes_per_texel, double more_bytes_per_pixel) {
   VkDeviceSize largest = 0;
   for (std::uint32_t i = 0; i < device.memory.memoryHeapCount; ++i) {
     largest = std::max(largest, device.memory.memoryHeaps[i].size);
@@ -42,7 +42,7 @@ Result<void> check_memory(const gpu::Device& device, VkExtent2D extent, std::uin
   }
   // Three colour images, depth, and as much as two of them again on the host for reading back.
   constexpr double kBytesPerPixel = 3 * 16 + 4 + 2 * 16;
-  const double needed = kBytesPerPixel * extent.width * extent.height + bytes_per_texel * resolution * resolution * cascades;
+  const double needed = (kBytesPerPixel + more_bytes_per_pixel) * extent.width * extent.height + bytes_per_texel * resolution * resolution * cascades;
   const double allowed = 0.8 * static_cast<double>(largest);
   if (needed <= allowed) return {};
   const auto gib = [](double bytes) { return std::to_string(static_cast<int>(std::ceil(bytes / 1073741824.0))); };
@@ -113,7 +113,8 @@ Result<void> Scene::create_objects() {
   tonemap_ = std::make_unique<post::Tonemap>(std::move(tonemap));
 
   TYNDALL_TRY(check_memory(device, desc_.extent, scene_.shadows.resolution, scene_.shadows.cascades,
-                           meshes_ != nullptr && meshes_->has_glass() ? 12.0 : 4.0));
+                           meshes_ != nullptr && meshes_->has_glass() ? 12.0 : 4.0,
+                           scene_.scattering.model != ScatteringModel::atmosphere ? 3 * 16.0 : 0.0));  // SkyModel::air
   TYNDALL_TRY(create_images(desc_.extent));
   TYNDALL_TRY(create_shadow_maps(scene_.shadows));
   TYNDALL_TRY(create_shadow_colors(scene_.shadows));
@@ -225,7 +226,7 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   if (meshes_ != nullptr) {
     meshes_->prepare(view_, scene_.shadows, cascades_, light_, scene_.meshes.sky_light);
   }
-  if (model_ != nullptr) TYNDALL_TRY(model_->prepare({view_, light_, params_, scene_}));
+  if (model_ != nullptr) TYNDALL_TRY(model_->prepare({view_, light_, params_, scene_, desc_.extent}));
 
   const gpu::Device& device = host_->device();
   const auto shadows = [&](VkCommandBuffer cmd) -> Result<void> {

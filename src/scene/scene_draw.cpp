@@ -26,13 +26,13 @@ VkRenderingAttachmentInfo attachment(VkImageView view, VkImageLayout layout, VkA
 }
 
 void begin_rendering(const gpu::Device& device, VkCommandBuffer cmd, VkExtent2D extent,
-                     const VkRenderingAttachmentInfo* color, const VkRenderingAttachmentInfo* depth) {
+                     std::span<const VkRenderingAttachmentInfo> colors, const VkRenderingAttachmentInfo* depth) {
   VkRenderingInfo info = {};
   info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
   info.renderArea = {{0, 0}, extent};
   info.layerCount = 1;
-  info.colorAttachmentCount = color != nullptr ? 1 : 0;
-  info.pColorAttachments = color;
+  info.colorAttachmentCount = static_cast<std::uint32_t>(colors.size());
+  info.pColorAttachments = colors.data();
   info.pDepthAttachment = depth;
   device.vk.CmdBeginRendering(cmd, &info);
   const VkViewport viewport = {0, 0, static_cast<float>(extent.width), static_cast<float>(extent.height), 0, 1};
@@ -58,7 +58,7 @@ Result<void> Scene::draw_shadows(VkCommandBuffer cmd) {
     clear.depthStencil = {1.0F, 0};
     const VkRenderingAttachmentInfo depth = attachment(shadow_layers_[i].get(), VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
                                                        VK_ATTACHMENT_LOAD_OP_CLEAR, clear);
-    begin_rendering(device, cmd, {resolution, resolution}, nullptr, &depth);
+    begin_rendering(device, cmd, {resolution, resolution}, {}, &depth);
     TYNDALL_TRY(terrain_->draw_cascade(cmd, cascades_[i], i));
     if (meshes_ != nullptr) TYNDALL_TRY(meshes_->draw_cascade(cmd, cascades_[i]));
     device.vk.CmdEndRendering(cmd);
@@ -81,7 +81,7 @@ Result<void> Scene::draw_shadow_colors(VkCommandBuffer cmd) {
     clear.color = {{1.0F, 1.0F, 1.0F, 1.0F}};
     const VkRenderingAttachmentInfo color = attachment(shadow_color_layers_[i].get(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                                                        VK_ATTACHMENT_LOAD_OP_CLEAR, clear);
-    begin_rendering(device, cmd, {resolution, resolution}, &color, nullptr);
+    begin_rendering(device, cmd, {resolution, resolution}, {&color, 1}, nullptr);
     TYNDALL_TRY(meshes_->draw_colors(cmd, cascades_[i]));
     device.vk.CmdEndRendering(cmd);
   }
@@ -119,8 +119,18 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
 
   gpu::transition(device, cmd, color_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
   gpu::transition(device, cmd, depth_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
-  const VkRenderingAttachmentInfo color = attachment(color_.view.get(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                                                     VK_ATTACHMENT_LOAD_OP_CLEAR, {});
+  std::vector<VkRenderingAttachmentInfo> colors = {
+      attachment(color_.view.get(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_ATTACHMENT_LOAD_OP_CLEAR, {})};
+  std::span<const gpu::Image> air, air_drawn;
+  if (model_ != nullptr) {
+    air = model_->air();
+    air_drawn = model_->attachments();
+    for (const gpu::Image& image : air_drawn) {
+      gpu::transition(device, cmd, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+      // Read is only where ground has been drawn.
+      colors.push_back(attachment(image.view.get(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_ATTACHMENT_LOAD_OP_DONT_CARE, {}));
+    }
+  }
   const VkRenderingAttachmentInfo depth = attachment(depth_.view.get(), VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
                                                      VK_ATTACHMENT_LOAD_OP_CLEAR, {});  // reversed: 0 is far
   const VkRenderingAttachmentInfo on_color = attachment(color_.view.get(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
@@ -129,21 +139,26 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
                                                         VK_ATTACHMENT_LOAD_OP_LOAD, {});
   // Times are taken between renderings, because their barriers may not stand inside one.
   begin_pass(cmd, "terrain");
-  begin_rendering(device, cmd, desc_.extent, &color, &depth);
+  begin_rendering(device, cmd, desc_.extent, colors, &depth);
+  const ModelFrame frame = {view_, light_, params_, scene_, desc_.extent};
   if (model_ != nullptr) {
-    TYNDALL_TRY(model_->draw_ground(cmd, *terrain_, {view_, light_, params_, scene_}));
+    TYNDALL_TRY(model_->draw_ground(cmd, *terrain_, frame));
   } else {
     TYNDALL_TRY(terrain_->draw_view(cmd, view_));
   }
   device.vk.CmdEndRendering(cmd);
   end_pass(cmd);
-  if (model_ == nullptr) {
-    gpu::transition(device, cmd, color_, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL);
-    begin_pass(cmd, "terrain_light");
+  gpu::transition(device, cmd, color_, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL);
+  const VkImageLayout air_layout = air_drawn.empty() ? VK_IMAGE_LAYOUT_UNDEFINED : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  for (const gpu::Image& image : air) gpu::transition(device, cmd, image, air_layout, VK_IMAGE_LAYOUT_GENERAL);
+  begin_pass(cmd, "terrain_light");
+  if (model_ != nullptr) {
+    TYNDALL_TRY(model_->light_ground(cmd, *terrain_, frame, color_.view.get()));
+  } else {
     TYNDALL_TRY(terrain_->light_view(cmd, light_, color_.view.get(), desc_.extent));
-    end_pass(cmd);
-    gpu::transition(device, cmd, color_, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
   }
+  end_pass(cmd);
+  gpu::transition(device, cmd, color_, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
   gpu::barrier(device, cmd,
                VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT,
                VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
@@ -152,7 +167,7 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
                VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT |
                    VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT);
   begin_pass(cmd, model_ != nullptr ? "sky" : "background");
-  begin_rendering(device, cmd, desc_.extent, &on_color, &on_depth);
+  begin_rendering(device, cmd, desc_.extent, {&on_color, 1}, &on_depth);
   if (model_ != nullptr) {
     TYNDALL_TRY(model_->draw_sky(cmd, background_constants_.buffer.get()));
   } else {

@@ -71,6 +71,7 @@ Result<void> SkyModel::create_objects(gpu::Host& host, const Shaders& shaders, M
   ground.depth_format = depth_format;
   ground.depth_compare = VK_COMPARE_OP_GREATER;
   gpu::GraphicsDesc sky = ground;
+  ground.color_count = 1 + shaders.air_images;
   sky.name = "sky";
   sky.vertex = shaders.sky_vertex;
   sky.fragment = shaders.sky_fragment;
@@ -79,11 +80,17 @@ Result<void> SkyModel::create_objects(gpu::Host& host, const Shaders& shaders, M
   for (std::size_t i = 0; i < std::max(variants.size(), std::size_t{1}); ++i) {
     std::vector<gpu::Constant> constants = {{0, evaluation == ModelEvaluation::pixel ? 1U : 0U}};
     if (!variants.empty()) constants.insert(constants.end(), variants[i].begin(), variants[i].end());
-    TYNDALL_ASSIGN(gpu::Pipeline of_ground, gpu::create_graphics_pipeline(device, ground, constants));
+    if (evaluation == ModelEvaluation::vertex) {
+      TYNDALL_ASSIGN(gpu::Pipeline of_ground, gpu::create_graphics_pipeline(device, ground, constants));
+      ground_.push_back(std::move(of_ground));
+    }
+    TYNDALL_ASSIGN(gpu::Pipeline of_light, gpu::create_compute_pipeline(device, *shaders.ground_light, constants));
     TYNDALL_ASSIGN(gpu::Pipeline of_sky, gpu::create_graphics_pipeline(device, sky, constants));
-    ground_.push_back(std::move(of_ground));
+    light_.push_back(std::move(of_light));
     sky_.push_back(std::move(of_sky));
   }
+  air_.resize(shaders.air_images);
+  air_format_ = color_format;
 
   const std::vector<std::uint32_t> indices = mesh_indices();
   const VkDeviceSize index_bytes = indices.size() * sizeof(std::uint32_t);
@@ -146,24 +153,54 @@ void SkyModel::fill_mesh(const ModelFrame& frame) {
   std::memcpy(mesh_.mapped, &out, sizeof out);
 }
 
+Result<void> SkyModel::create_air(VkExtent2D extent) {
+  if (evaluation_ == ModelEvaluation::pixel) extent = {1, 1};
+  static constexpr const char* kNames[] = {"air_0", "air_1", "air_2"};
+  for (std::size_t i = 0; i < air_.size(); ++i) {
+    const VkExtent3D& had = air_[i].desc.extent;
+    if (air_[i].image && had.width == extent.width && had.height == extent.height) continue;
+    TYNDALL_ASSIGN(air_[i], gpu::create_image(host_->device(), {kNames[i], air_format_, {extent.width, extent.height, 1},
+                                                                VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_STORAGE_BIT}));
+  }
+  return {};
+}
+
+VkDeviceSize SkyModel::bytes() const {
+  VkDeviceSize out = mesh_.bytes + constants_.bytes + indices_.bytes;
+  for (const gpu::Image& image : air_) out += image.bytes;
+  return out;
+}
+
+std::vector<gpu::NamedResource> SkyModel::own_resources() const {
+  std::vector<gpu::NamedResource> out = more_resources();
+  out.push_back(gpu::named_buffer("model_block", constants_.buffer.get()));
+  return out;
+}
+
 Result<void> SkyModel::prepare(const ModelFrame& frame) {
   fill_mesh(frame);
+  TYNDALL_TRY(create_air(frame.extent));
   return fill(frame, constants_.mapped);
 }
 
 Result<void> SkyModel::draw_ground(VkCommandBuffer cmd, Terrain& terrain, const ModelFrame& frame) {
   if (!draws_terrain(frame)) return {};
-  std::vector<gpu::NamedResource> more = more_resources();
-  more.push_back(gpu::named_buffer("model_block", constants_.buffer.get()));
-  return terrain.draw_view(cmd, frame.view, frame.light, ground_[variant()], more);
+  if (ground_.empty()) return terrain.draw_view(cmd, frame.view);
+  return terrain.draw_view(cmd, frame.view, ground_[variant()], own_resources());
+}
+
+Result<void> SkyModel::light_ground(VkCommandBuffer cmd, Terrain& terrain, const ModelFrame& frame, VkImageView color) {
+  if (!draws_terrain(frame)) return {};
+  std::vector<gpu::NamedResource> more = own_resources();
+  for (const gpu::Image& image : air_) more.push_back(gpu::named_image(image.desc.name, image.view.get()));
+  return terrain.light_view(cmd, frame.light, color, frame.extent, light_[variant()], more);
 }
 
 Result<void> SkyModel::draw_sky(VkCommandBuffer cmd, VkBuffer background) {
   const gpu::Device& device = host_->device();
   const gpu::Pipeline& sky = sky_[variant()];
   const gpu::Label label(device, cmd, sky.name);
-  std::vector<gpu::NamedResource> resources = more_resources();
-  resources.push_back(gpu::named_buffer("model_block", constants_.buffer.get()));
+  std::vector<gpu::NamedResource> resources = own_resources();
   resources.push_back(gpu::named_buffer("mesh_block", mesh_.buffer.get()));
   resources.push_back(gpu::named_buffer("background_block", background));
   const std::string_view missing = gpu::bind(device, cmd, sky, resources);

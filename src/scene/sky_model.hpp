@@ -1,10 +1,12 @@
-// Models other than the effect that draw the frame (scattering.model): each shades the ground with its own
-// pipeline and draws the sky on a mesh around the camera, straight into the scene's colour. What they share
-// is here: the mesh, the pipelines, the drawing. A model adds four shaders and what those read.
+// Models other than the effect that draw the frame (scattering.model): each lights the ground through its own air
+// and draws the sky on a mesh around the camera, straight into the scene's colour. What they share
+// is here: the mesh, the pipelines, the drawing. A model adds five shaders and what those read.
 //
-// Shaders. Ground: over scene/terrain_vertex.glsl and scene/terrain_inputs.glsl (bindings 0 to 5 and locations 0
-// to 4 are the terrain's). Sky: over scene/sky_mesh.glsl and scene/sun_disc.glsl (bindings 0 and 1). The model's
-// own constants are the block `model_block` at binding 6 in all four; further resources come after it.
+// Shaders. Ground: over scene/terrain_vertex.glsl, scene/terrain_point.glsl and, to light it, scene/terrain_pixel.glsl
+// (bindings 0 to 5 and 8, locations 0 and 1 are the terrain's). What the vertices find of the air goes from further
+// locations into images, air_0 and on, which the pass that lights reads; evaluated per pixel, that pass finds it itself,
+// and the ground is drawn as for the effect. Sky: over scene/sky_mesh.glsl and scene/sun_disc.glsl (bindings 0 and 1).
+// The model's own constants are the block `model_block` at binding 6; further resources come at 7 and from 9.
 // Specialisation constant 0 is 1 with scattering.evaluate = pixel; a model may have variants by constants of its own.
 #pragma once
 
@@ -22,6 +24,7 @@ struct ModelFrame {
   const TerrainLight& light;
   const Params& params;
   const SceneParams& scene;
+  VkExtent2D extent;
 };
 
 class SkyModel {
@@ -30,19 +33,30 @@ class SkyModel {
   SkyModel(const SkyModel&) = delete;
   SkyModel& operator=(const SkyModel&) = delete;
 
-  // Writes the constants of a frame: before its draws are recorded.
+  // Writes the constants of a frame: before its draws are recorded, and with none in flight.
   Result<void> prepare(const ModelFrame& frame);
-  // Inside a rendering scope with colour and depth, the ground first. `background` holds the sun's disc.
+  // Inside a rendering scope with colour, `attachments()` and depth: see Terrain::draw_view.
   Result<void> draw_ground(VkCommandBuffer cmd, Terrain& terrain, const ModelFrame& frame);
+  // Outside of it, with colour and air() in GENERAL layout: radiance of the ground behind the air.
+  Result<void> light_ground(VkCommandBuffer cmd, Terrain& terrain, const ModelFrame& frame, VkImageView color);
+  // Inside a rendering scope with colour and depth. `background` holds the sun's disc.
   Result<void> draw_sky(VkCommandBuffer cmd, VkBuffer background);
 
   [[nodiscard]] const ModelEvaluation& evaluation() const { return evaluation_; }
-  [[nodiscard]] VkDeviceSize bytes() const { return mesh_.bytes + constants_.bytes + indices_.bytes; }
+  // Images of what the vertices of the ground find of the air; one texel each where pixels find it.
+  [[nodiscard]] std::span<const gpu::Image> air() const { return air_; }
+  // Those of air() that the ground is drawn into.
+  [[nodiscard]] std::span<const gpu::Image> attachments() const {
+    return evaluation_ == ModelEvaluation::vertex ? air() : std::span<const gpu::Image>();
+  }
+  [[nodiscard]] VkDeviceSize bytes() const;
 
  protected:
   struct Shaders {
     const gpu::Shader* ground_vertex;
     const gpu::Shader* ground_fragment;
+    const gpu::Shader* ground_light;
+    std::uint32_t air_images;  // that the fragment writes after the place on the ground
     const gpu::Shader* sky_vertex;
     const gpu::Shader* sky_fragment;
   };
@@ -67,9 +81,13 @@ class SkyModel {
 
  private:
   void fill_mesh(const ModelFrame& frame);
+  Result<void> create_air(VkExtent2D extent);
+  [[nodiscard]] std::vector<gpu::NamedResource> own_resources() const;
 
   ModelEvaluation evaluation_ = ModelEvaluation::vertex;
-  std::vector<gpu::Pipeline> ground_, sky_;  // by variant
+  std::vector<gpu::Pipeline> ground_, light_, sky_;  // by variant; of the ground none where pixels find the air
+  std::vector<gpu::Image> air_;
+  VkFormat air_format_ = VK_FORMAT_UNDEFINED;
   gpu::Buffer mesh_, indices_, constants_;
 };
 

@@ -343,29 +343,32 @@ Result<void> Terrain::draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline,
   return {};
 }
 
-Result<void> Terrain::draw_view(VkCommandBuffer cmd, const View& view) {
+Result<void> Terrain::draw_view(VkCommandBuffer cmd, const View& view) { return draw_view(cmd, view, view_pipeline_, {}); }
+
+Result<void> Terrain::draw_view(VkCommandBuffer cmd, const View& view, const gpu::Pipeline& pipeline,
+                                std::span<const gpu::NamedResource> more) {
   if (none()) return {};
-  return draw(cmd, view_pipeline_, geometry(), clip_from_world(view), 0);
+  std::vector<gpu::NamedResource> resources = geometry();
+  resources.insert(resources.end(), more.begin(), more.end());
+  return draw(cmd, pipeline, resources, clip_from_world(view), 0);
 }
 
 Result<void> Terrain::light_view(VkCommandBuffer cmd, const TerrainLight& light, VkImageView color, VkExtent2D extent) {
-  if (none()) return {};
-  const gpu::Device& device = host_->device();
-  const gpu::Label label(device, cmd, light_.name);
-  std::vector<gpu::NamedResource> resources = lit(light);
-  resources.push_back(gpu::named_image("scene_color", color));
-  const std::string_view missing = gpu::bind(device, cmd, light_, resources);
-  if (!missing.empty()) return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(missing)};
-  gpu::dispatch(device, cmd, light_, extent.width, extent.height);
-  return {};
+  return light_view(cmd, light, color, extent, light_, {});
 }
 
-Result<void> Terrain::draw_view(VkCommandBuffer cmd, const View& view, const TerrainLight& light,
-                                const gpu::Pipeline& pipeline, std::span<const gpu::NamedResource> more) {
+Result<void> Terrain::light_view(VkCommandBuffer cmd, const TerrainLight& light, VkImageView color, VkExtent2D extent,
+                                 const gpu::Pipeline& pipeline, std::span<const gpu::NamedResource> more) {
   if (none()) return {};
+  const gpu::Device& device = host_->device();
+  const gpu::Label label(device, cmd, pipeline.name);
   std::vector<gpu::NamedResource> resources = lit(light);
+  resources.push_back(gpu::named_image("scene_color", color));
   resources.insert(resources.end(), more.begin(), more.end());
-  return draw(cmd, pipeline, resources, clip_from_world(view), 0);
+  const std::string_view missing = gpu::bind(device, cmd, pipeline, resources);
+  if (!missing.empty()) return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(missing)};
+  gpu::dispatch(device, cmd, pipeline, extent.width, extent.height);
+  return {};
 }
 
 std::vector<gpu::NamedResource> Terrain::geometry() const {

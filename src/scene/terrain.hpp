@@ -65,10 +65,12 @@ class Terrain {
   // radiance of it, outside of the scope and with the image in GENERAL layout.
   Result<void> draw_view(VkCommandBuffer cmd, const View& view);
   Result<void> light_view(VkCommandBuffer cmd, const TerrainLight& light, VkImageView color, VkExtent2D extent);
-  // Draws the lit ground through a pipeline of someone else's, over scene/terrain_vertex.glsl and
-  // scene/terrain_inputs.glsl; `more` are the resources that it reads beyond the terrain's.
-  Result<void> draw_view(VkCommandBuffer cmd, const View& view, const TerrainLight& light,
-                         const gpu::Pipeline& pipeline, std::span<const gpu::NamedResource> more);
+  // The same through pipelines of someone else's, over scene/terrain_vertex.glsl and scene/terrain_pixel.glsl; `more` are
+  // the resources that they read beyond the terrain's.
+  Result<void> draw_view(VkCommandBuffer cmd, const View& view, const gpu::Pipeline& pipeline,
+                         std::span<const gpu::NamedResource> more);
+  Result<void> light_view(VkCommandBuffer cmd, const TerrainLight& light, VkImageView color, VkExtent2D extent,
+                          const gpu::Pipeline& pipeline, std::span<const gpu::NamedResource> more);
   // Inside a rendering scope with the layer of a shadow map.
   Result<void> draw_cascade(VkCommandBuffer cmd, const CascadeFit& cascade, std::uint32_t index);
 

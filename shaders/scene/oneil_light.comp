@@ -1,0 +1,35 @@
+// The ground through O'Neil's air, once for each pixel that shows it: what it sends, attenuated, and the light that the
+// air adds.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "scene/terrain_pixel.glsl"
+#include "scene/oneil_air.glsl"
+
+// What the vertices found; not read with scattering.evaluate = pixel.
+layout(binding = 9, rgba32f) readonly uniform image2D air_0;
+layout(binding = 10, rgba32f) readonly uniform image2D air_1;
+layout(binding = 11, rgba32f) readonly uniform image2D air_2;
+
+void ground_light(float altitude_m, float cos_sun_zenith, out vec3 sun, out vec3 sky) {
+  light_on_ground(altitude_m, cos_sun_zenith, sun, sky);
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  GroundPoint point;
+  if (!ground_of_pixel(pixel, point)) return;
+  vec3 offset = point.position - eye_position;
+  vec3 rayleigh;
+  vec3 mie;
+  vec3 through;
+  if (kPerPixel != 0u) {
+    oneil_air(normalize(offset), length(offset), kAtDistance, rayleigh, mie, through);
+  } else {
+    rayleigh = imageLoad(air_0, pixel).rgb;
+    mie = imageLoad(air_1, pixel).rgb;
+    through = imageLoad(air_2, pixel).rgb;
+  }
+  vec3 ground = ground_shown != 0.0 ? ground_radiance(point) : vec3(0.0);
+  imageStore(scene_color, pixel, vec4(ground * through + air_radiance(normalize(offset), rayleigh, mie), 1.0));
+}

@@ -1,0 +1,31 @@
+// The ground that a pixel shows, for the passes that light it: what was drawn into the scene's colour is a place, and the
+// pass puts radiance there.
+#ifndef TYNDALL_TERRAIN_PIXEL_GLSL
+#define TYNDALL_TERRAIN_PIXEL_GLSL
+
+#include "scene/terrain_ground.glsl"
+#include "scene/terrain_point.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(binding = 8, rgba32f) uniform image2D scene_color;
+
+// False where there is no ground, and outside the picture.
+bool ground_of_pixel(ivec2 pixel, out GroundPoint point) {
+  ivec2 size = imageSize(scene_color);
+  if (pixel.x >= size.x || pixel.y >= size.y) return false;
+  vec4 stored = imageLoad(scene_color, pixel);
+  if (!is_ground_point(stored)) return false;
+  unpack_level(stored, point.layer, point.morph);
+  TerrainLevel level = terrain.levels[point.layer];
+  TerrainLevel parent = terrain.levels[min(point.layer + 1u, terrain.layers - 1u)];
+  vec2 cells = stored.xy - 0.5;  // from the level's first sample, whose index is even
+  point.texel = stored.xy;
+  point.parent_texel = cells * 0.5 + vec2(level.origin / 2 - parent.origin) + 0.5;
+  point.map_m = (vec2(level.origin) + cells) * level.cell_m;
+  point.altitude_m = stored.z;
+  point.position = world_from_map(point.map_m, point.altitude_m, terrain.planet_radius_m);
+  return true;
+}
+
+#endif
