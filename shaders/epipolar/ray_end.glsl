@@ -4,6 +4,7 @@
 #define TYNDALL_RAY_END_GLSL
 
 #include "frame/view_ray.glsl"
+#include "frame/homogeneous_medium.glsl"
 #include "epipolar/records.glsl"
 
 // View-space depth [m] of the end of a ray to the sky: kSkyDepth, or where the planet is in the way.
@@ -14,6 +15,14 @@ float sky_depth_m(vec3 direction) {
   float near, far;
   bool hit = ray_hits_ground(h, mu, radius) && shell_intersections(h, mu, min(h, 0.0), radius, near, far);
   return hit ? max(near, 0.0) * dot(direction, frame.camera_forward) : kSkyDepth;
+}
+
+// Length [m] inside the homogeneous medium of a ray to such a depth; from kSkyDepth on to the medium's extent.
+float length_in_homogeneous(vec3 direction, float depth_m) {
+  float start;
+  float end = depth_m >= kSkyDepth ? frame.homogeneous.extent_m : depth_m / max(dot(direction, frame.camera_forward), 1e-6);
+  clip_to_top(dot(direction, frame.camera_up), start, end);
+  return end - start;
 }
 
 #endif

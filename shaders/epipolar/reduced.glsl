@@ -5,10 +5,6 @@
 
 layout(constant_id = 6) const int kDownscale = 1;
 
-// Below this sum of weights no sample is near in depth, and the pixel is listed as a break; the weights then still choose the
-// nearest. In a reduced picture a sample a sixth nearer or farther will do, which halves what is marched.
-float least_weight() { return kDownscale == 1 ? 1e-2 : 1e-3; }
-
 // Of the first in the whole picture. Even, so that every block of 2 x 2 lies between the same four reduced pixels.
 const int kFirstReduced = kDownscale == 4 ? 2 : 0;
 

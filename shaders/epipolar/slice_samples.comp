@@ -22,7 +22,6 @@ layout(std430, binding = 5) writeonly buffer coarse_block { uvec2 coarse[]; };
 layout(binding = 6) uniform sampler2D scene_depth;
 
 #include "epipolar/ray_end.glsl"
-#include "frame/homogeneous_medium.glsl"
 #include "epipolar/slices.glsl"
 
 // Device depth at a place between pixels: on one surface that of the surface there, because device depth is affine in
@@ -51,24 +50,22 @@ void main() {
   vec2 position = sample_position(slice, i);
   float depth = depth_at(position);
   bool sky = depth == frame.sky_depth;
-  Ray ray = ray_to_depth(frame, position, view_depth(frame, position, depth), sky);
-
   Sample s;
-  s.depth_m = sky ? sky_depth_m(ray.direction) : ray.length_m * dot(ray.direction, frame.camera_forward);
   s.source = vec3(0.0);
   uint at = id * epipolar.samples + i;
   if (kHomogeneous) {
-    // All that changes along a slice is the length in the medium: the phase functions are left to the pixels.
-    float start, end;
-    ray = ray_to_depth(frame, position, s.depth_m, s.depth_m >= kSkyDepth);
-    if (!clip_to_homogeneous(ray, start, end)) end = start;
+    // All that changes along a slice is the length in the medium: the phase functions and the density are left to the pixels.
+    vec3 direction = ray_direction(frame, position);
+    s.depth_m = sky ? sky_depth_m(direction) : view_depth(frame, position, depth);
+    s.density = vec3(0.0);
     vec3 through, lost;
-    homogeneous_attenuation(end - start, through, lost);
-    s.density = density_of(frame.homogeneous.extinction * (end - start), s.depth_m);
+    homogeneous_attenuation(length_in_homogeneous(direction, s.depth_m), through, lost);
     samples[at] = pack_sample(s);
     coarse[at] = pack_coarse(lost);
     return;
   }
+  Ray ray = ray_to_depth(frame, position, view_depth(frame, position, depth), sky);
+  s.depth_m = sky ? sky_depth_m(ray.direction) : ray.length_m * dot(ray.direction, frame.camera_forward);
   vec3 column = vec3(0.0);
   float start, end;
   if (clip_to_air(medium, ray, start, end)) {

@@ -46,10 +46,8 @@ void main() {
   Around a = around(middle, depth_m);
   bool dense = max(length(a.origin_lower.zw), length(a.origin_upper.zw)) * float(kDownscale) > kDense;
   // Beside the limb air thins out from sample to sample: what goes on in a line beyond them soon is none at all.
-  vec3 least = min(min(a.density[0], a.density[1]), min(a.density[2], a.density[3]));
-  vec3 most = max(max(a.density[0], a.density[1]), max(a.density[2], a.density[3]));
-  dense = dense || any(greaterThan(most, kUneven * least));
-  if (!one_depth || dense || (kBreaks && blend(a, middle).weight < least_weight())) {
+  dense = dense || uneven(a);
+  if (!one_depth || dense || (kBreaks && blend(a, middle).weight < epipolar.least_weight)) {
     list_broken(corner);
     return;
   }

@@ -8,7 +8,6 @@
 #include "lib/optical_depth.glsl"
 #include "epipolar/ray_end.glsl"
 #include "epipolar/slices.glsl"
-#include "frame/homogeneous_medium.glsl"
 
 layout(constant_id = 0) const uint kExtinction = 0u;  // 0 epipolar, 1 per pixel
 layout(constant_id = 1) const bool kBreaks = false;   // list the pixels that no sample fits
@@ -73,6 +72,13 @@ Around around(vec2 position, float depth_m) {
   return a;
 }
 
+// Whether air thins out from sample to sample, as beside the limb.
+bool uneven(Around a) {
+  vec3 least = min(min(a.density[0], a.density[1]), min(a.density[2], a.density[3]));
+  vec3 most = max(max(a.density[0], a.density[1]), max(a.density[2], a.density[3]));
+  return any(greaterThan(most, kUneven * least));
+}
+
 // At a place that is as far away, and no farther than a pixel from that of around().
 Blend blend(Around a, vec2 position) {
   float part = slice_coordinate(position, a.side) - a.lower;
@@ -103,14 +109,9 @@ Blend blend(Around a, vec2 position) {
 // The background seen through the air, from blended samples. `visible_m`: view-space depth of what was drawn.
 vec3 compose(Blend b, vec2 position, float depth_m, float visible_m, bool sky, vec3 background) {
   if (kHomogeneous) {
-    // `depth_m` knows of the planet, so that only the extent and the top are left to be seen to.
     vec3 direction = ray_direction(frame, position);
-    float start;
-    float end = depth_m / max(dot(direction, frame.camera_forward), 1e-6);
-    end = depth_m >= kSkyDepth ? frame.homogeneous.extent_m : end;
-    clip_to_top(dot(direction, frame.camera_up), start, end);
     vec3 through, lost;
-    homogeneous_attenuation(end - start, through, lost);
+    homogeneous_attenuation(length_in_homogeneous(direction, depth_m), through, lost);
     vec3 light = b.source * lost * homogeneous_phase(dot(direction, frame.direction_to_sun)) * frame.sun_irradiance;
     return frame.only == 0u ? light + background * through : light;
   }

@@ -23,7 +23,20 @@ layout(std430, binding = 10) writeonly buffer reduced_block { vec4 reduced[]; };
 
 #include "epipolar/unwarp.glsl"
 #include "epipolar/reduced.glsl"
-#include "epipolar/work_list.glsl"
+#include "epipolar/break_list.glsl"
+
+// Whether a ray goes down through all of the air, to graze the planet or to rise again, and not all samples around it end where it
+// does: beside the limb light changes several times over from pixel to pixel, so that those which do are no substitute.
+bool at_limb(Around a, vec2 position) {
+  const float kGrazing = 4.0;   // below the surface, scale heights
+  const float kAlike = 0.5;
+  if (kHomogeneous) return false;
+  float cos_zenith = dot(ray_direction(frame, position), frame.camera_up);
+  float sin_zenith = sqrt(max(1.0 - cos_zenith * cos_zenith, 0.0));
+  float dip = (1.0 - sin_zenith) * (medium.planet_radius_m + frame.camera_altitude_m) / medium.rayleigh_scale_height_m;
+  bool grazes = cos_zenith < 0.0 && dip > kAllOfAir && dip < frame.camera_altitude_m / medium.rayleigh_scale_height_m + kGrazing;
+  return grazes && min(min(a.nearness.x, a.nearness.y), min(a.nearness.z, a.nearness.w)) < kAlike;
+}
 
 void unwarp_pixel(uint block, uint k) {
   ivec2 place = ivec2((block & 0xFFFFu) + (k & 1u), (block >> 16u) + (k >> 1u));
@@ -34,20 +47,15 @@ void unwarp_pixel(uint block, uint k) {
   bool sky = depth == frame.sky_depth;
   float visible_m = view_depth(frame, position, depth);
   float depth_m = sky ? sky_depth_m(ray_direction(frame, position)) : visible_m;
-  Blend b = blend(around(position, depth_m), position);
+  Around a = around(position, depth_m);
+  Blend b = blend(a, position);
   if (kDownscale == 1) {
     vec3 background = texelFetch(scene_color, pixel, 0).rgb;
     imageStore(output_color, pixel, vec4(compose(b, position, depth_m, visible_m, sky, background), 1.0));
   } else {
     STORE_REDUCED(place, depth_m, b);
   }
-  if (kBreaks && b.weight < least_weight()) {
-    uint slot = atomicAdd(breaks.count, 1u);
-    break_list[slot] = uint(pixel.y) << 16u | uint(pixel.x);
-    uint groups = slot / kMarchGroup + 1u;
-    atomicMax(breaks.groups_x, groups_along_x(groups));
-    atomicMax(breaks.groups_y, groups_along_y(groups));
-  }
+  if (kBreaks && (b.weight < epipolar.least_weight || at_limb(a, position))) list_break(pixel);
 }
 
 void main() {

@@ -23,7 +23,7 @@ layout(std430, binding = 10) readonly buffer reduced_block { vec4 reduced[]; };
 
 #include "epipolar/unwarp.glsl"
 #include "epipolar/reduced_around.glsl"
-#include "epipolar/work_list.glsl"
+#include "epipolar/break_list.glsl"
 
 // Below this sum of weights a pixel goes back to the slices.
 const float kLeastUpscaled = 0.1;
@@ -47,13 +47,7 @@ void upscale_pixel(uint block, uint k) {
   if (sum < kLeastUpscaled) b = of_slices;
   vec3 background = texelFetch(scene_color, pixel, 0).rgb;
   imageStore(output_color, pixel, vec4(compose(b, position, depth_m, visible_m, sky, background), 1.0));
-  if (sum < kLeastUpscaled && b.weight < least_weight()) {
-    uint slot = atomicAdd(breaks.count, 1u);
-    break_list[slot] = uint(pixel.y) << 16u | uint(pixel.x);
-    uint groups = slot / kMarchGroup + 1u;
-    atomicMax(breaks.groups_x, groups_along_x(groups));
-    atomicMax(breaks.groups_y, groups_along_y(groups));
-  }
+  if (sum < kLeastUpscaled && b.weight < epipolar.least_weight) list_break(pixel);
 }
 
 void main() {

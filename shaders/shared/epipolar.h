@@ -12,7 +12,7 @@ struct EpipolarConstants {
   uint epipole_density;
   float threshold;
   uint optimize_locations;
-  uint correct_depth_breaks;
+  float least_weight;  // below this sum of weights a pixel is a break; 0: none is
   uint show_depth_breaks;
   // The epipole: where the sun stands in the picture or, behind the camera, the point opposite to it, is
   // (sun_x, sun_y) / sun_w; sun_w >= 0, and 0 for a sun at right angles to the view.
@@ -37,7 +37,7 @@ struct EpipolarConstants {
   uint downscale;
   uint reduced_width;
   uint reduced_height;
-  uint unused_0;
+  uint break_capacity;  // of the list of pixels to be marched; a multiple of kMarchGroup
 };
 
 // A slice: sample i lies at entry + stride x i, i <= last; a place p of the picture falls on sample
@@ -71,6 +71,9 @@ const uint kTreeBlock = 256u;     // cells of a tree
 const uint kTreeLeafLevel = 3u;   // nodes of 8, 16, ... 256 cells: 2 to the power of the level
 const uint kTreeTopLevel = 8u;
 const uint kTreeNodes = 64u;      // of a block, with one to spare
+
+// Scale heights of air [Rayleigh] above which there is next to none: a camera above them sees a limb.
+const float kAllOfAir = 5.0f;
 
 const uint kUnwarpWidth = 4u;  // pixels of a block of unwarp.comp; they are 2 high
 

@@ -1,7 +1,6 @@
 #include "effect/epipolar.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 
@@ -11,194 +10,14 @@
 namespace tyndall {
 namespace {
 
-constexpr VkDeviceSize kStateBytes = 16 * sizeof(float);  // of march_state.glsl
-constexpr VkDeviceSize kLeastBytes = 256;                 // of buffers that shaders bind but do not use
-constexpr VkBufferUsageFlags kUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
-                                      VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
-
-struct BufferName {
-  const char* name;
-  const char* block;  // in the shaders
-};
-constexpr BufferName kNames[kEpipolarBuffers] = {{"slices", "slice_block"},
-                                                 {"shadow_rows", "row_block"},
-                                                 {"samples", "sample_block"},
-                                                 {"coarse_inscattering", "coarse_block"},
-                                                 {"sources", "source_block"},
-                                                 {"march_list", "march_list_block"},
-                                                 {"broken_blocks", "broken_list_block"},
-                                                 {"depth_breaks", "break_list_block"},
-                                                 {"corrected_pixels", "corrected_block"},
-                                                 {"tree_blocks", "tree_list_block"},
-                                                 {"shadow_tree", "tree_block"},
-                                                 {"march_states", "state_block"},
-                                                 {"reduced_inscattering", "reduced_block"}};
-
-std::size_t index(EpipolarBuffer buffer) { return static_cast<std::size_t>(buffer); }
-
-bool is_downscaled(const Params& params) { return params.scattering.downscale > 1; }
-
-// Slices or samples of the picture that the light is computed for.
-std::uint32_t reduced_count(std::uint32_t count, const Params& params) {
-  constexpr std::uint32_t kLeast = 32;
-  return std::max(count / params.scattering.downscale, kLeast);
-}
-
-VkExtent2D reduced_extent(VkExtent2D extent, const Params& params) {
-  const std::uint32_t d = params.scattering.downscale;
-  return {(extent.width + d - 1) / d, (extent.height + d - 1) / d};
-}
-
-bool lists_breaks(const Params& params) {
-  return is_downscaled(params) || params.epipolar.correct_depth_breaks.value != 0 || params.epipolar.show_depth_breaks.value != 0;
-}
-
 // Which of the pipelines by Extinction; one for both where that of every pixel is a single exponential.
 std::uint32_t extinction_index(const Params& params) {
   return is_homogeneous(params.scattering) ? 0 : static_cast<std::uint32_t>(params.scattering.extinction);
 }
 
-// Blocks of unwarp.comp over a picture.
-VkExtent2D unwarp_blocks(VkExtent2D extent) {
-  return {(extent.width + shared::kUnwarpWidth - 1) / shared::kUnwarpWidth, (extent.height + 1) / 2};
-}
+std::size_t index(EpipolarBuffer buffer) { return static_cast<std::size_t>(buffer); }
 
 }  // namespace
-
-std::uint32_t tree_cells(const EffectDesc& desc) {
-  return (desc.max_shadow_resolution + shared::kTreeBlock - 1) / shared::kTreeBlock * shared::kTreeBlock;
-}
-
-EpipolarSizes epipolar_sizes(const EffectDesc& desc, const Params& params) {
-  EpipolarSizes out = {};
-  if (params.scattering.technique != Technique::epipolar) return out;
-  const VkDeviceSize slices = reduced_count(params.epipolar.slices, params);
-  const VkDeviceSize samples = slices * reduced_count(params.epipolar.samples, params);
-  const VkDeviceSize rows = slices * desc.max_cascades;
-  const VkDeviceSize pixels = VkDeviceSize{desc.max_extent.width} * desc.max_extent.height;
-  out[index(EpipolarBuffer::slices)] = slices * sizeof(shared::EpipolarSlice);
-  out[index(EpipolarBuffer::rows)] = rows * sizeof(shared::ShadowRow);
-  out[index(EpipolarBuffer::samples)] = samples * 16;
-  out[index(EpipolarBuffer::coarse)] = samples * 8;
-  out[index(EpipolarBuffer::sources)] = samples * 4;
-  out[index(EpipolarBuffer::march_list)] = sizeof(shared::WorkList) + samples * 4;
-  const VkExtent2D blocks = unwarp_blocks(desc.max_extent);
-  const VkDeviceSize squares = VkDeviceSize{blocks.width} * (shared::kUnwarpWidth / 2) * blocks.height;
-  out[index(EpipolarBuffer::broken_list)] = sizeof(shared::WorkList) + squares * 4;
-  const VkExtent2D reduced = reduced_extent(desc.max_extent, params);
-  out[index(EpipolarBuffer::reduced)] =
-      is_downscaled(params) ? VkDeviceSize{reduced.width} * reduced.height * (is_homogeneous(params.scattering) ? 16 : 32) : kLeastBytes;
-  out[index(EpipolarBuffer::break_list)] = lists_breaks(params) ? sizeof(shared::WorkList) + pixels * 4 : kLeastBytes;
-  out[index(EpipolarBuffer::corrected)] = lists_breaks(params) ? pixels * 16 : kLeastBytes;
-  const VkDeviceSize number = params.epipolar.min_max_format == MinMaxFormat::float32 ? 8 : 4;
-  const VkDeviceSize row_bytes = tree_cells(desc) / shared::kTreeBlock * shared::kTreeNodes * number;
-  out[index(EpipolarBuffer::tree_list)] = sizeof(shared::WorkList) + rows * (tree_cells(desc) / shared::kTreeBlock) * 4;
-  out[index(EpipolarBuffer::tree)] = params.epipolar.min_max_tree ? rows * row_bytes : kLeastBytes;
-  const CascadeProcessing processing = params.shadows.cascade_processing;
-  const VkDeviceSize turns = processing == CascadeProcessing::multi_pass_instanced ? desc.max_cascades : 1;
-  out[index(EpipolarBuffer::states)] =
-      processing == CascadeProcessing::single_pass ? kLeastBytes : samples * turns * kStateBytes;
-  return out;
-}
-
-const char* epipolar_buffer_name(EpipolarBuffer buffer) { return kNames[index(buffer)].name; }
-
-VkDeviceSize epipolar_bytes(const gpu::Device& device, const EffectDesc& desc, const Params& params) {
-  VkDeviceSize sum = 0;
-  for (const VkDeviceSize size : epipolar_sizes(desc, params)) {
-    if (size > 0) sum += gpu::buffer_bytes(device, size, kUsage);
-  }
-  return sum;
-}
-
-shared::EpipolarConstants epipolar_constants(const FrameInputs& inputs, const EffectDesc& desc, const Params& params) {
-  shared::EpipolarConstants out = {};
-  const EpipolarParams& p = params.epipolar;
-  out.slices = reduced_count(p.slices, params);
-  out.samples = reduced_count(p.samples, params);
-  out.downscale = params.scattering.downscale;
-  const VkExtent2D reduced = reduced_extent(inputs.extent, params);
-  out.reduced_width = reduced.width;
-  out.reduced_height = reduced.height;
-  out.initial_step = p.initial_step;
-  out.epipole_density = p.epipole_density;
-  out.threshold = p.refinement_threshold;
-  out.optimize_locations = p.optimize_locations.value;
-  out.correct_depth_breaks = p.correct_depth_breaks.value;
-  out.show_depth_breaks = p.show_depth_breaks.value;
-  out.tree_cells = tree_cells(desc);
-  out.tree_format = static_cast<std::uint32_t>(p.min_max_format);
-  out.cascades = params.scattering.light_shafts ? static_cast<std::uint32_t>(inputs.cascades.size()) : 0;
-  out.first_cascade = std::min(inputs.first_marched_cascade, out.cascades);
-
-  // The epipole: the direction to the sun through the camera's matrices, in double.
-  const auto row_of = [](const Mat4& m, int row, const double* v) {
-    double sum = 0.0;
-    for (int col = 0; col < 4; ++col) sum += static_cast<double>(m.m[4 * col + row]) * v[col];
-    return sum;
-  };
-  const Vec3& s = inputs.sun.direction_to_sun;
-  const double length = std::sqrt(static_cast<double>(s.x) * s.x + static_cast<double>(s.y) * s.y +
-                                  static_cast<double>(s.z) * s.z);
-  const double world[3] = {s.x / length, s.y / length, s.z / length};
-  double view[4] = {};
-  for (int i = 0; i < 3; ++i) {
-    // world_from_view is rigid: its transpose takes directions back.
-    for (int k = 0; k < 3; ++k) view[i] += static_cast<double>(inputs.camera.world_from_view.m[4 * i + k]) * world[k];
-  }
-  const double clip_x = row_of(inputs.camera.clip_from_view, 0, view);
-  const double clip_y = row_of(inputs.camera.clip_from_view, 1, view);
-  const double clip_w = row_of(inputs.camera.clip_from_view, 3, view);
-  const double width = inputs.extent.width;
-  const double height = inputs.extent.height;
-  double x = 0.5 * (clip_x + clip_w) * width;
-  double y = 0.5 * (clip_y + clip_w) * height;
-  double w = clip_w;
-  if (w < 0.0) {
-    x = -x;
-    y = -y;
-    w = -w;
-  }
-  const double size = std::max({std::abs(x), std::abs(y), w * std::max(width, height), 1e-300});
-  x /= size;
-  y /= size;
-  w /= size;
-  if (w < 1e-12) w = 0.0;  // parallel slices
-  out.sun_x = static_cast<float>(x);
-  out.sun_y = static_cast<float>(y);
-  out.sun_w = static_cast<float>(w);
-
-  // Sides that lines from the epipole reach from within the picture; in the order of shared/epipolar.h. Decided by
-  // the rounded numbers that the shaders have.
-  const double px = static_cast<double>(out.sun_x);
-  const double py = static_cast<double>(out.sun_y);
-  const double pw = static_cast<double>(out.sun_w);
-  const bool ends[4] = {px - 0.5 * pw > 0.0, (height - 0.5) * pw - py > 0.0, (width - 0.5) * pw - px > 0.0,
-                        py - 0.5 * pw > 0.0};
-  const double lengths[4] = {height - 1.0, width - 1.0, height - 1.0, width - 1.0};
-  const bool closed = ends[0] && ends[1] && ends[2] && ends[3];
-  out.closed = closed ? 1 : 0;
-  out.sun_in_picture = closed ? 1 : 0;
-  int first = 0;
-  if (!closed) {
-    while (first < 3 && !(ends[first] && !ends[(first + 3) % 4])) ++first;
-  }
-  double along = 0.0;
-  float* const starts[4] = {&out.left_start, &out.bottom_start, &out.right_start, &out.top_start};
-  for (int i = 0; i < 4; ++i) {
-    const int side = (first + i) % 4;
-    *starts[side] = ends[side] ? static_cast<float>(along) : -1.0F;
-    if (ends[side]) along += lengths[side];
-  }
-  out.perimeter = static_cast<float>(std::max(along, 1e-3));
-  // From an epipole on the border, into the picture.
-  const double to_x = 0.5 * width * pw - px;
-  const double to_y = 0.5 * height * pw - py;
-  const double to = std::hypot(to_x, to_y);
-  out.fallback_x = to > 1e-12 ? static_cast<float>(to_x / to) : 1.0F;
-  out.fallback_y = to > 1e-12 ? static_cast<float>(to_y / to) : 0.0F;
-  return out;
-}
 
 Result<void> Epipolar::create(const gpu::Device& device, const EffectDesc& desc, const Params& params) {
   device_ = &device;
@@ -358,7 +177,8 @@ Result<void> Epipolar::set_params(const Params& params) {
   retired_.reserve(retired_.size() + kEpipolarBuffers);
   for (std::size_t i = 0; i < kEpipolarBuffers; ++i) {
     if (sizes[i] == 0 || sizes[i] == buffers_[i].size) continue;
-    TYNDALL_ASSIGN(fresh[i], gpu::create_buffer(*device_, kNames[i].name, sizes[i], kUsage, gpu::MemoryKind::device));
+    const char* name = epipolar_buffer_name(static_cast<EpipolarBuffer>(i));
+    TYNDALL_ASSIGN(fresh[i], gpu::create_buffer(*device_, name, sizes[i], kEpipolarUsage, gpu::MemoryKind::device));
   }
   for (std::size_t i = 0; i < kEpipolarBuffers; ++i) {
     if (sizes[i] == buffers_[i].size) continue;
@@ -392,7 +212,9 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
   std::size_t used = 0;
   gpu::NamedResource& work = all[used++];  // the list that a pass works through
   for (const gpu::NamedResource& r : frame_resources) all[used++] = r;
-  for (std::size_t i = 0; i < kEpipolarBuffers; ++i) all[used++] = gpu::named_buffer(kNames[i].block, buffers_[i].buffer.get());
+  for (std::size_t i = 0; i < kEpipolarBuffers; ++i) {
+    all[used++] = gpu::named_buffer(epipolar_block_name(static_cast<EpipolarBuffer>(i)), buffers_[i].buffer.get());
+  }
   const std::span<const gpu::NamedResource> resources(all.data(), used);
 
   struct Size {
@@ -435,7 +257,8 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
   const std::uint32_t mode = mode_index(params.scattering);
   const bool walking = walks(params);
   const bool trees = p.min_max_tree.value != 0 && walking && marched > 0;
-  const bool breaks = lists_breaks(params);
+  const bool limb = lists_limb(inputs, params);
+  const bool lists_pixels = limb || lists_breaks(params);
   CascadeProcessing processing = params.shadows.cascade_processing;
   if (marched == 0 || !walking) processing = CascadeProcessing::single_pass;
   const bool instanced = processing == CascadeProcessing::multi_pass_instanced;
@@ -494,7 +317,7 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
   // Pixels that no sample fits: marched, and put where they belong.
   const auto correct = [&](const gpu::Pipeline& put) -> Result<void> {
     lists_ready();
-    if (p.correct_depth_breaks || is_downscaled(params)) {
+    if (limb || p.correct_depth_breaks || is_downscaled(params)) {
       TYNDALL_TRY(run_list(march, EpipolarBuffer::break_list, &of_pixels));
     }
     return run_list(put, EpipolarBuffer::break_list);
@@ -514,10 +337,10 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
     TYNDALL_TRY(correct(of.correct_pixels));
   } else {
     const VkExtent2D blocks = unwarp_blocks(inputs.extent);
-    TYNDALL_TRY(run(of.unwarp[extinction][breaks ? 1 : 0], {blocks.width, blocks.height}));
+    TYNDALL_TRY(run(of.unwarp[extinction][lists_pixels ? 1 : 0], {blocks.width, blocks.height}));
     lists_ready();
-    TYNDALL_TRY(run_list(of.unwarp_pixels[extinction][breaks ? 1 : 0], EpipolarBuffer::broken_list));
-    if (breaks) TYNDALL_TRY(correct(of.correct_pixels));
+    TYNDALL_TRY(run_list(of.unwarp_pixels[extinction][lists_pixels ? 1 : 0], EpipolarBuffer::broken_list));
+    if (lists_pixels) TYNDALL_TRY(correct(of.correct_pixels));
   }
   if (p.show_sampling) {
     for (std::uint32_t marked = 0; marked < 2; ++marked) {

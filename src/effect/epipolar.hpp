@@ -1,4 +1,4 @@
-// Epipolar sampling: its memory, its pipelines, and the recording of its passes in their order.
+// Epipolar sampling: its pipelines, and the recording of its passes in their order.
 // The method and the reasons for where it departs from the published one: docs/epipolar.md.
 #pragma once
 
@@ -7,33 +7,13 @@
 #include <span>
 #include <vector>
 
-#include "effect/frame_constants.hpp"
+#include "effect/epipolar_plan.hpp"
 #include "effect/modes.hpp"
-#include "effect/shared.hpp"
 #include "gpu/pipeline.hpp"
-#include "gpu/resource.hpp"
 #include "gpu/timer.hpp"
 #include "tyndall/effect.hpp"
 
 namespace tyndall {
-
-// Buffers of epipolar sampling, in the order of the plan in epipolar.cpp.
-enum class EpipolarBuffer : std::uint32_t { slices, rows, samples, coarse, sources, march_list, broken_list,
-                                           break_list, corrected, tree_list, tree, states, reduced };
-constexpr std::uint32_t kEpipolarBuffers = 13;
-using EpipolarSizes = std::array<VkDeviceSize, kEpipolarBuffers>;
-
-// Bytes of each; all zero with technique = brute-force.
-[[nodiscard]] EpipolarSizes epipolar_sizes(const EffectDesc& desc, const Params& params);
-[[nodiscard]] const char* epipolar_buffer_name(EpipolarBuffer buffer);
-// Device memory that they take.
-[[nodiscard]] VkDeviceSize epipolar_bytes(const gpu::Device& device, const EffectDesc& desc, const Params& params);
-
-// Cells of the rows of the trees; texels of a map beyond them are read directly.
-[[nodiscard]] std::uint32_t tree_cells(const EffectDesc& desc);
-// The geometry of the picture as the passes need it.
-[[nodiscard]] shared::EpipolarConstants epipolar_constants(const FrameInputs& inputs, const EffectDesc& desc,
-                                                           const Params& params);
 
 class Epipolar {
  public:

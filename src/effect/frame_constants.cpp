@@ -71,6 +71,16 @@ shared::TableShape table_shape(const Params& params) {
   return shape;
 }
 
+double camera_altitude_m(const FrameInputs& inputs, const Params& params) {
+  const double radius = params.planet.radius_m;
+  const Vec3 place = column(inputs.camera.world_from_view, 3);
+  const double x = place.x;
+  const double y = place.y;
+  const double z = place.z;
+  const double distance = std::sqrt(x * x + z * z + (radius + y) * (radius + y));
+  return (x * x + z * z + y * (2.0 * radius + y)) / (distance + radius);
+}
+
 shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDesc& desc, const Params& params) {
   shared::FrameConstants out = {};
   out.view_from_clip = inverse(inputs.camera.clip_from_view);
@@ -79,13 +89,12 @@ shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDe
   const Vec3 back = column(inputs.camera.world_from_view, 2);
   out.camera_forward = normalized({-back.x, -back.y, -back.z});
 
-  // Altitude and vertical in double: the planet's centre is millions of metres away.
   const double radius = params.planet.radius_m;
   const double x = out.camera_position.x;
   const double y = out.camera_position.y;
   const double z = out.camera_position.z;
   const double distance = std::sqrt(x * x + z * z + (radius + y) * (radius + y));
-  out.camera_altitude_m = static_cast<float>((x * x + z * z + y * (2.0 * radius + y)) / (distance + radius));
+  out.camera_altitude_m = static_cast<float>(camera_altitude_m(inputs, params));
   const double above = std::max(static_cast<double>(out.camera_altitude_m), 0.0);
   out.horizon_cos = static_cast<float>(-std::sqrt(above * (2.0 * radius + above)) / (radius + above));
   out.camera_up = {static_cast<float>(x / distance), static_cast<float>((radius + y) / distance),

@@ -14,12 +14,13 @@ namespace tyndall {
 
 // The shape of the scattering tables, as tables.* asks for it.
 [[nodiscard]] shared::TableShape table_shape(const Params& params);
-[[nodiscard]] // Whether the air is marched through coloured maps.
+// Whether the air is marched through coloured maps.
 [[nodiscard]] inline bool has_colors(const FrameInputs& inputs, const Params& params) {
   return inputs.shadow_colors.view != VK_NULL_HANDLE && !inputs.cascades.empty() && params.scattering.light_shafts;
 }
-shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDesc& desc,
-                                                     const Params& params);
+// Above the planet's sphere, in double: its centre is millions of metres away.
+[[nodiscard]] double camera_altitude_m(const FrameInputs& inputs, const Params& params);
+[[nodiscard]] shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDesc& desc, const Params& params);
 
 // Why a frame cannot be recorded: one line, or empty. `warnings` receives remarks about inputs that
 // can be recorded but are hardly meant.
