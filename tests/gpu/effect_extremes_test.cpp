@@ -44,7 +44,7 @@ Params random_params(std::mt19937& engine) {
   }
   // 1000 steps in each of a thousand pixels say no more than 200 do, and take minutes.
   params.scattering.integration_steps = std::min(params.scattering.integration_steps, 200U);
-  // Likewise millions of samples for 16 pixels; epipolar_test.cpp has both ends of these ranges.
+  // Likewise millions of samples for 16 pixels; epipolar_views_test.cpp has both ends of these ranges.
   params.epipolar.slices = std::min(params.epipolar.slices, 33U);
   params.epipolar.samples = std::min(params.epipolar.samples, 33U);
   return params;

@@ -243,7 +243,7 @@ Params precise_params() {
   Params params;
   params.scattering.scale = 1.0F;
   params.scattering.integration_steps = 48;
-  // Every pixel's own ray, which is what these tests compute; epipolar_test.cpp compares the techniques.
+  // Every pixel's own ray, which is what these tests compute; epipolar_modes_test.cpp compares the techniques.
   params.scattering.technique = Technique::brute_force;
   // What the tables give is tested in tables_test.cpp; here they are not built.
   params.scattering.single = SingleScattering::integration;

@@ -1,0 +1,331 @@
+// Epipolar sampling against brute force wherever sun and camera are, and whatever the picture's size, the maps, the slices: the same
+// frame, the same shadow maps, the same modes, at fixed exposure. Each case has a floor, some 3 dB below what it reaches but 40 dB
+// where it reaches that; none may have a pixel that is black, negative or not finite. Small pictures are hard ones: a pixel of theirs
+// is eight of a large one.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "shared_effect.hpp"
+
+namespace tyndall {
+namespace {
+
+using Epipolar = SharedEffect;
+
+struct View {
+  BoxScene scene;
+  double floor_db = 40.0;
+};
+
+BoxScene seen(const std::string& name, const std::function<void(BoxScene&)>& change) {
+  BoxScene scene;
+  scene.name = name;
+  change(scene);
+  return scene;
+}
+
+BoxScene sun_at(const std::string& name, double x, double y, double pitch_deg, bool behind = false) {
+  return seen(name, [=](BoxScene& s) {
+    s.sun_in_view = true;
+    s.sun_x = x;
+    s.sun_y = y;
+    s.pitch_deg = pitch_deg;
+    s.sun_behind = behind;
+  });
+}
+
+TEST_F(Epipolar, TheSunMayStandAnywhere) {
+  const double pixel =
+      1.0 / 160.0;  // the outermost pixel's middle is half a pixel, this much, from the border
+  const double line = 1.0 / 90.0;
+  std::vector<View> views = {
+      {sun_at("straight ahead", 0.0, 0.0, 6.0), 40.0},
+      {sun_at("straight behind", 0.0, 0.0, -6.0, true), 43.0},
+      {sun_at("behind, beside the picture", 1.7, 0.2, -20.0, true), 47.0},
+      {sun_at("left border", -1.0, 0.1, 8.0), 40.0},
+      {sun_at("right border", 1.0, -0.2, 8.0), 41.0},
+      {sun_at("upper border", 0.3, -1.0, 0.0), 41.0},
+      {sun_at("lower border", -0.2, 1.0, 27.0), 42.0},
+      {sun_at("upper left corner", -1.0, -1.0, 0.0), 42.0},
+      {sun_at("upper right corner", 1.0, -1.0, 0.0), 42.0},
+      {sun_at("lower left corner", -1.0, 1.0, 27.0), 42.0},
+      {sun_at("lower right corner", 1.0, 1.0, 27.0), 42.0},
+      {sun_at("leftmost pixels", -1.0 + pixel, 0.0, 8.0), 43.0},
+      {sun_at("corner pixel", 1.0 - pixel, -1.0 + line, 0.0), 43.0},
+      {sun_at("beside the picture", 1.4, -0.3, 8.0), 42.0},
+      {sun_at("far above", 0.2, -9.0, 0.0), 42.0},
+  };
+  // At right angles to the view: w of the epipole is 0.
+  views.push_back({seen("exactly at the side",
+                        [](BoxScene& s) {
+                          s.sun_elevation_deg = 0.0;
+                          s.sun_azimuth_deg = 90.0;
+                          s.pitch_deg = 0.0;
+                        }),
+                   46.0});
+  views.push_back({seen("in the zenith of a level view",
+                        [](BoxScene& s) {
+                          s.sun_elevation_deg = 90.0;
+                          s.pitch_deg = 0.0;
+                        }),
+                   40.0});
+  views.push_back({seen("nearly at the side",
+                        [](BoxScene& s) {
+                          s.sun_elevation_deg = 5.0;
+                          s.sun_azimuth_deg = 90.001;
+                          s.pitch_deg = 0.0;
+                        }),
+                   48.0});
+  views.push_back({seen("below the horizon", [](BoxScene& s) { s.sun_elevation_deg = -2.0; }), 41.0});
+  for (const View& view : views) {
+    show(view.scene);
+    expect_alike(view.scene.name, small_params(), view.floor_db);
+    Params integrated = small_params();
+    integrated.scattering.single = SingleScattering::integration;
+    expect_alike(view.scene.name + ", integrated", integrated, view.floor_db);
+  }
+}
+
+TEST_F(Epipolar, TheCameraMayStandAnywhere) {
+  const auto open = [](BoxScene& s) {
+    s.buildings = false;
+    s.ground = false;
+    s.cascades = 0;
+  };
+  const std::vector<View> views = {
+      {seen("on the ground",
+            [](BoxScene& s) {
+              s.altitude_m = 2.0;
+              s.pitch_deg = 15.0;
+            }),
+       40.0},
+      {seen("in a building's shadow",
+            [](BoxScene& s) {
+              s.altitude_m = 300.0;  // the hovering one and the nearest tower stand before the sun
+              s.sun_azimuth_deg = 353.0;
+              s.sun_elevation_deg = 12.0;
+              s.pitch_deg = 10.0;
+            }),
+       40.0},
+      {seen("on a summit",
+            [](BoxScene& s) {
+              s.altitude_m = 6000.0;
+              s.pitch_deg = -12.0;
+            }),
+       43.0},
+      {seen("at 30 km",
+            [](BoxScene& s) {
+              s.altitude_m = 30000.0;
+              s.pitch_deg = -25.0;
+              s.far_m = 150000.0;
+            }),
+       40.0},
+      {seen("limb from 400 km",
+            [](BoxScene& s) {
+              s.altitude_m = 400000.0;
+              s.pitch_deg = -20.0;
+              s.far_m = 3.0e6;
+              s.tan_half_height = 0.12;
+              s.building_size = 60.0;  // shadows of hundreds of kilometres
+              s.ground_casts = false;  // not from a map with texels higher than most of the air
+            }),
+       40.0},
+      {seen("limb from 400 km, planet not drawn",
+            [](BoxScene& s) {
+              s.altitude_m = 400000.0;
+              s.pitch_deg = -20.0;
+              s.tan_half_height = 0.12;
+              s.buildings = s.ground = false;
+              s.cascades = 0;
+            }),
+       47.0},
+      // Lit from behind, the light of the lowest air changes several times over from pixel to pixel.
+      {seen("limb against the sun",
+            [](BoxScene& s) {
+              s.altitude_m = 400000.0;
+              s.pitch_deg = -18.0;
+              s.tan_half_height = 0.12;
+              s.sun_in_view = true;
+              s.sun_y = -0.3;
+              s.buildings = false;
+              s.cascades = 0;
+            }),
+       40.0},
+      {seen("no terrain at all",
+            [&](BoxScene& s) {
+              open(s);
+              s.pitch_deg = -8.0;
+            }),
+       40.0},
+      {seen("sky alone",
+            [&](BoxScene& s) {
+              open(s);
+              s.pitch_deg = 40.0;
+            }),
+       45.0},
+      {seen("straight down",
+            [](BoxScene& s) {
+              s.altitude_m = 9000.0;
+              s.pitch_deg = -90.0;
+            }),
+       44.0},
+      {seen("straight up",
+            [](BoxScene& s) {
+              s.altitude_m = 5.0;
+              s.pitch_deg = 90.0;
+            }),
+       54.0},
+      {seen("1 x 1",
+            [](BoxScene& s) {
+              s.extent = {1, 1};
+            }),
+       57.0},
+      {seen("1 x 40",
+            [](BoxScene& s) {
+              s.extent = {1, 40};
+            }),
+       42.0},
+      {seen("40 x 1",
+            [](BoxScene& s) {
+              s.extent = {40, 1};
+              s.tan_half_height = 0.02;
+            }),
+       40.0},
+      {seen("4096 x 2",
+            [](BoxScene& s) {
+              s.extent = {4096, 2};
+              s.tan_half_height = 0.0004;
+            }),
+       52.0},
+      {seen("portrait",
+            [](BoxScene& s) {
+              s.extent = {60, 140};
+              s.tan_half_height = 0.8;
+            }),
+       43.0},
+      {seen("ultra-wide",
+            [](BoxScene& s) {
+              s.extent = {320, 40};
+              s.tan_half_height = 0.25;
+            }),
+       40.0},
+      {seen("wide angle", [](BoxScene& s) { s.tan_half_height = 2.0; }), 42.0},
+      {seen("telescope",
+            [](BoxScene& s) {
+              s.tan_half_height = 0.01;
+              s.pitch_deg = 7.0;
+            }),
+       57.0},
+  };
+  for (const View& view : views) {
+    show(view.scene);
+    expect_alike(view.scene.name, small_params(), view.floor_db);
+    Params integrated = small_params();
+    integrated.scattering.single = SingleScattering::integration;
+    expect_alike(view.scene.name + ", integrated", integrated, view.floor_db);
+  }
+}
+
+TEST_F(Epipolar, AnyShadowMapsWillDo) {
+  Params params = small_params();
+  params.scattering.single = SingleScattering::integration;
+  params.scattering.multiple = MultipleScattering::occluded;
+  const auto with = [&](const std::string& name, std::uint32_t cascades, std::uint32_t first,
+                        std::uint32_t resolution, double floor_db) {
+    show(seen(name, [=](BoxScene& s) {
+      s.extent = {96, 54};
+      s.cascades = cascades;
+      s.first_marched = first;
+      s.shadow_resolution = resolution;
+    }));
+    expect_alike(name, params, floor_db);
+  };
+  with("none", 0, 0, 512, 42.0);
+  for (const std::uint32_t n : {1U, 2U, 5U, 8U}) with(std::to_string(n) + " cascades", n, 0, 256, 40.0);
+  with("8 cascades from the third on", 8, 3, 256, 40.0);
+  with("8 cascades, the last alone", 8, 7, 256, 40.0);
+  with("2048 texels, four times what trees have room for", 2, 0, 2048, 40.0);
+  with("64 texels", 3, 0, 64, 41.0);
+  with("333 texels", 3, 0, 333, 40.0);
+}
+
+TEST_F(Epipolar, DepthMayBeStandardAndThatOfShadowsReversed) {
+  BoxScene scene;
+  scene.extent = {96, 54};
+  scene.far_m = 30000.0;
+  Params params = small_params();
+  params.scattering.single = SingleScattering::integration;
+  show(scene);
+  const Picture usual = draw(params, "reversed depth, standard shadows");
+  scene.convention = DepthConvention::standard;
+  scene.shadow_depth_reversed = true;
+  EffectDesc description = desc();
+  description.sky_depth = 1.0F;
+  description.shadow_depth_reversed = true;
+  make(own_effect_, description);
+  show(scene);
+  const std::string name = "standard depth, reversed shadows";
+  expect_alike(name, params, 44.0);
+  const Picture swapped = draw(params, name);
+  params.epipolar.min_max_tree = false;
+  EXPECT_LE(compare(draw(params, name), swapped, scene.extent).worst_relative_error, 1e-3);
+  const Likeness likeness = compare(swapped, usual, scene.extent);
+  RecordProperty("dB: the one and the other", hundredths(likeness.psnr_db));
+  EXPECT_GE(likeness.psnr_db, 60.0);
+}
+
+TEST_F(Epipolar, SlicesAndSamplesAtBothEnds) {
+  BoxScene scene;
+  scene.extent = {96, 54};
+  show(scene);
+  Params params = small_params();
+  const auto with = [&](std::uint32_t slices, std::uint32_t samples, bool optimised, double floor_db) {
+    params.epipolar.slices = slices;
+    params.epipolar.samples = samples;
+    params.epipolar.optimize_locations = optimised;
+    expect_alike(std::to_string(slices) + " slices, " + std::to_string(samples) + " samples" +
+                     (optimised ? "" : ", all used"),
+                 params, floor_db);
+  };
+  with(32, 32, true, 32.0);
+  with(2048, 32, true, 40.0);
+  with(32, 2048, true, 32.0);
+  with(2048, 2048, true, 40.0);
+  with(128, 2048, false, 41.0);
+  with(33, 33, true, 31.0);
+}
+
+// Where the light is smooth, it is smooth across slices: what a seam would add to the second differences is
+// bounded by those of brute force.
+
+TEST_F(Epipolar, SmoothLightHasNoSeams) {
+  for (const bool inside : {true, false}) {
+    BoxScene scene =
+        inside ? sun_at("sun in view", 0.31, -0.23, 25.0) : sun_at("sun beside the view", 1.8, -1.5, 25.0);
+    scene.buildings = scene.ground = false;
+    scene.cascades = 0;
+    scene.tan_half_height = 0.06;  // the sky bends little from pixel to pixel
+    show(scene);
+    Params params = small_params();
+    const Picture reference = draw(by_brute_force(params), scene.name);
+    const Picture picture = draw(params, scene.name);
+    double worst = 0.0;
+    const std::uint32_t width = scene.extent.width;
+    for (std::uint32_t y = 1; y + 1 < scene.extent.height; ++y) {
+      for (std::uint32_t x = 1; x + 1 < width; ++x) {
+        const std::size_t i = static_cast<std::size_t>(y) * width + x;
+        for (const std::size_t step : {std::size_t{1}, std::size_t{width}}) {
+          const auto second = [&](const Picture& p) { return p[i - step] - 2.0 * p[i] + p[i + step]; };
+          const glm::dvec3 off = glm::abs(second(picture) - second(reference)) / reference[i];
+          worst = std::max({worst, off.x, off.y, off.z});
+        }
+      }
+    }
+    RecordProperty("seam: " + scene.name, std::to_string(worst));
+    EXPECT_LE(worst, 0.03) << scene.name;
+  }
+}
+
+}  // namespace
+}  // namespace tyndall
