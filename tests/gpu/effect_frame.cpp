@@ -239,6 +239,29 @@ Result<std::vector<glm::dvec3>> EffectKeeper::render(gpu::Host& host, const Para
   return tyndall::render(host, kept->effect, frame, format);
 }
 
+TestFrame small_frame() {
+  TestFrame frame;
+  frame.view = TestView::at(2000.0, 0.2, 0.05, 0.8);
+  frame.to_sun = {0.3, 0.4, -0.866};
+  frame.distance_m = [](std::uint32_t x, std::uint32_t) { return x < 5 ? 8000.0 : 0.0; };
+  Cascade cascade;
+  cascade.far_m = 20000.0F;
+  cascade.shadow_from_world.m[0] = cascade.shadow_from_world.m[9] = 1e-5F;
+  cascade.shadow_from_world.m[5] = 0.0F;
+  cascade.shadow_from_world.m[6] = 1e-6F;
+  cascade.shadow_from_world.m[10] = 0.0F;
+  cascade.shadow_from_world.m[12] = cascade.shadow_from_world.m[13] = cascade.shadow_from_world.m[14] = 0.5F;
+  frame.cascades = {cascade, cascade};
+  frame.shadow_depth = [](std::uint32_t, double u, double v) { return std::fmod(8.0 * u + v, 1.0) < 0.5 ? 0.0F : 1.0F; };
+  return frame;
+}
+
+Params with_technique(Technique technique) {
+  Params params;
+  params.scattering.technique = technique;
+  return params;
+}
+
 Params precise_params() {
   Params params;
   params.scattering.scale = 1.0F;

@@ -90,6 +90,10 @@ class EffectKeeper {
 };
 [[nodiscard]] EffectDesc desc_for(const TestFrame& frame, OutputFormat format = OutputFormat::rgba32f);
 
+// A few pixels of ground and sky under two cascades with shadows in them.
+[[nodiscard]] TestFrame small_frame();
+
+[[nodiscard]] Params with_technique(Technique technique);
 // scattering.scale 1, every pixel marched by itself, and enough integration_steps for 0.1 % where nothing shadows.
 [[nodiscard]] Params precise_params();
 

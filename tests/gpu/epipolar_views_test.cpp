@@ -1,7 +1,7 @@
-// Epipolar sampling against brute force wherever sun and camera are, and whatever the picture's size, the maps, the slices: the same
-// frame, the same shadow maps, the same modes, at fixed exposure. Each case has a floor, some 3 dB below what it reaches but 40 dB
-// where it reaches that; none may have a pixel that is black, negative or not finite. Small pictures are hard ones: a pixel of theirs
-// is eight of a large one.
+// Epipolar sampling against brute force wherever sun and camera are, and whatever the picture's size, the
+// maps, the slices: the same frame, the same shadow maps, the same modes, at fixed exposure. Each case has a
+// floor, some 3 dB below what it reaches but 40 dB where it reaches that; none may have a pixel that is
+// black, negative or not finite. Small pictures are hard ones: a pixel of theirs is eight of a large one.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -10,8 +10,6 @@
 
 namespace tyndall {
 namespace {
-
-using Epipolar = SharedEffect;
 
 struct View {
   BoxScene scene;
@@ -34,6 +32,20 @@ BoxScene sun_at(const std::string& name, double x, double y, double pitch_deg, b
     s.sun_behind = behind;
   });
 }
+
+class Epipolar : public SharedEffect {
+ protected:
+  // With light from the tables and with light integrated along the ray.
+  void expect_alike_in_both_modes(const std::vector<View>& views) {
+    for (const View& view : views) {
+      show(view.scene);
+      expect_alike(view.scene.name, small_params(), view.floor_db);
+      Params integrated = small_params();
+      integrated.scattering.single = SingleScattering::integration;
+      expect_alike(view.scene.name + ", integrated", integrated, view.floor_db);
+    }
+  }
+};
 
 TEST_F(Epipolar, TheSunMayStandAnywhere) {
   const double pixel =
@@ -78,13 +90,7 @@ TEST_F(Epipolar, TheSunMayStandAnywhere) {
                         }),
                    48.0});
   views.push_back({seen("below the horizon", [](BoxScene& s) { s.sun_elevation_deg = -2.0; }), 41.0});
-  for (const View& view : views) {
-    show(view.scene);
-    expect_alike(view.scene.name, small_params(), view.floor_db);
-    Params integrated = small_params();
-    integrated.scattering.single = SingleScattering::integration;
-    expect_alike(view.scene.name + ", integrated", integrated, view.floor_db);
-  }
+  expect_alike_in_both_modes(views);
 }
 
 TEST_F(Epipolar, TheCameraMayStandAnywhere) {
@@ -218,13 +224,7 @@ TEST_F(Epipolar, TheCameraMayStandAnywhere) {
             }),
        57.0},
   };
-  for (const View& view : views) {
-    show(view.scene);
-    expect_alike(view.scene.name, small_params(), view.floor_db);
-    Params integrated = small_params();
-    integrated.scattering.single = SingleScattering::integration;
-    expect_alike(view.scene.name + ", integrated", integrated, view.floor_db);
-  }
+  expect_alike_in_both_modes(views);
 }
 
 TEST_F(Epipolar, AnyShadowMapsWillDo) {
