@@ -210,6 +210,8 @@ TEST_F(SceneMesh, WrongFilesSayWhatIsWrong) {
   refuses(changed([](GltfFile& f) { f.root["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = f.points({{0, 0, 1}}); }), "another length than POSITION");
   refuses(changed([](GltfFile& f) { f.root["extensionsRequired"] = {"KHR_draco_mesh_compression"}; }), "requires the extension KHR_draco");
   refuses(changed([](GltfFile& f) { f.root["accessors"][0]["sparse"] = {{"count", 1}, {"indices", {{"bufferView", 0}, {"componentType", 5123}}}, {"values", {{"bufferView", 0}}}}; }), "is sparse");
+  refuses(changed([](GltfFile& f) { f.material({{"alphaMode", "PERHAPS"}}); }), "materials[0].alphaMode 'PERHAPS'");
+  refuses(changed([](GltfFile& f) { f.material({{"alphaMode", "MASK"}, {"alphaCutoff", -0.5}}); }), "materials[0].alphaCutoff out of range");
   const float infinite[] = {0, 0, std::numeric_limits<float>::quiet_NaN()};
   refuses(changed([&](GltfFile& f) { std::memcpy(f.bytes.data(), infinite, sizeof infinite); }), "position that is not finite");
   refuses(changed([](GltfFile& f) { f.root["nodes"][0]["scale"] = {1e30, 1, 1}; }), "farther than a planet");

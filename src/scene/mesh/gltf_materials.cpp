@@ -35,17 +35,21 @@ MeshMaterial GltfReader::material(std::size_t index) {
     out.color[c] = static_cast<float>(bounded(factor[static_cast<std::size_t>(c)], index, "baseColorFactor"));
   }
   out.roughness = static_cast<float>(bounded(in.pbrMetallicRoughness.roughnessFactor, index, "roughnessFactor"));
-  out.alpha_cutoff = static_cast<float>(std::clamp(in.alphaCutoff, 0.0, 1.0));
+  if (!(in.alphaCutoff >= 0.0)) fail("has " + at("materials", index) + ".alphaCutoff out of range", "allowed is 0 and more");
+  out.alpha_cutoff = static_cast<float>(std::min(in.alphaCutoff, 2.0));  // above 1 nothing is left of the surface
   out.double_sided = in.doubleSided;
-  if (in.alphaMode == "MASK") out.kind = SurfaceKind::mask;
-  if (in.alphaMode == "BLEND") out.kind = SurfaceKind::blend;
+  if (in.alphaMode == "MASK") {
+    out.kind = SurfaceKind::mask;
+  } else if (in.alphaMode == "BLEND") {
+    out.kind = SurfaceKind::blend;
+  } else if (in.alphaMode != "OPAQUE") {
+    fail("has " + at("materials", index) + ".alphaMode '" + config::one_line(in.alphaMode, 40) + "'", "allowed are OPAQUE, MASK and BLEND");
+  }
   const auto extension = in.extensions.find("KHR_materials_transmission");
   if (extension != in.extensions.end() && extension->second.IsObject()) {
     const tinygltf::Value& value = extension->second.Get("transmissionFactor");
-    if (value.IsNumber() && value.GetNumberAsDouble() > 0.0) {
-      out.kind = SurfaceKind::glass;
-      out.transmission = static_cast<float>(bounded(value.GetNumberAsDouble(), index, "transmissionFactor"));
-    }
+    if (value.IsNumber()) out.transmission = static_cast<float>(bounded(value.GetNumberAsDouble(), index, "transmissionFactor"));
+    if (out.transmission > 0.0F) out.kind = SurfaceKind::glass;
   }
   if (in.pbrMetallicRoughness.baseColorTexture.index >= 0) {
     out.texture = texture(static_cast<std::size_t>(in.pbrMetallicRoughness.baseColorTexture.index), index);

@@ -142,11 +142,21 @@ void wall(Builder& b, const Frame& f, double from, double to, const std::functio
     b.quad(kStone, f.at(u0, low0, 0), f.at(u1, low1, 0), f.at(u1, high1, 0), f.at(u0, high0, 0));
     b.quad(kStone, f.at(u1, low1, kWall_m), f.at(u0, low0, kWall_m), f.at(u0, high0, kWall_m), f.at(u1, high1, kWall_m));
   };
+  // Openings of a wall begin and end at the same heights.
+  std::vector<double> rows;
+  if (!openings.empty()) rows = {openings.front().low(openings.front().half), openings.front().high(openings.front().half)};
   const auto solid = [&](double u0, double u1) {
     for (int i = 0; i < smoothness; ++i) {
       const double a = u0 + (u1 - u0) * i / smoothness;
       const double c = u0 + (u1 - u0) * (i + 1) / smoothness;
-      face(a, c, 0, 0, top(a), top(c));
+      // In rows that end where the openings beside it do: an edge that others meet halfway lets light through.
+      double low = 0.0;
+      for (const double row : rows) {
+        if (row <= low) continue;
+        face(a, c, std::min(low, top(a)), std::min(low, top(c)), std::min(row, top(a)), std::min(row, top(c)));
+        low = row;
+      }
+      face(a, c, std::min(low, top(a)), std::min(low, top(c)), top(a), top(c));
       b.quad(kStone, f.at(a, top(a), 0), f.at(c, top(c), 0), f.at(c, top(c), kWall_m), f.at(a, top(a), kWall_m));
     }
   };
@@ -195,6 +205,7 @@ void wall(Builder& b, const Frame& f, double from, double to, const std::functio
 
 void side_walls(Builder& b) {
   constexpr double kIntoGable_m = 0.4;
+  constexpr double kBehindVault_m = 0.2;
   for (const double side : {-1.0, 1.0}) {
     const Frame f = {Vec(side * kHalfWidth_m, 0, 0), Vec(0, 0, side), Vec(side, 0, 0)};
     std::vector<Opening> openings;
@@ -216,7 +227,8 @@ void side_walls(Builder& b) {
       o.picture_high = {kWindow.half_width_m, kSill_m + kWindow.top_m};
       openings.push_back(o);
     }
-    wall(b, f, -kHalfLength_m - kIntoGable_m, kHalfLength_m + kIntoGable_m, [](double) { return kSpring_m; }, openings, 1);
+    // Up behind the vault, whose edge has other corners.
+    wall(b, f, -kHalfLength_m - kIntoGable_m, kHalfLength_m + kIntoGable_m, [](double) { return kSpring_m + kBehindVault_m; }, openings, 1);
   }
 }
 
