@@ -4,7 +4,7 @@
 #   make pictures  renders the pictures of the documentation anew
 #   make accuracy  measures the numbers of docs/accuracy.md anew
 #   make epipolar-study  installs Pillow and matplotlib, and makes the numbers, plots and pictures of docs/epipolar.md anew
-#   make models-study  measures and renders what docs/models.md shows
+#   make models-study  measures and renders what docs/models.md and docs/oneil.md show
 .PHONY: demo check pictures accuracy epipolar-study models-study setup build format tidy clean
 
 PRESET ?= release
@@ -52,13 +52,16 @@ epipolar-study: build
 	@tools/setup.sh python3-pil python3-matplotlib
 	@/usr/bin/python3 tools/epipolar_study.py build/release/bin/tyndall $(SECTIONS)
 
-# The numbers and pictures of docs/models.md: of PARTS (pictures, times, errors) or all.
+# The numbers and pictures of docs/models.md, and the pictures of docs/oneil.md: of PARTS (pictures, times, errors) or all.
 models-study: PRESET = release
 models-study: build
 	@tools/setup.sh python3-pil
 	@/usr/bin/python3 tools/models_study.py build/release/bin/tyndall $(PARTS)
 	@for figure in a b c; do \
 	  build/release/bin/tyndall render scenes/figure_12$$figure.toml --size 480x270 -o docs/images/figure_12$$figure.png || exit 1; \
+	done
+	@for planet in demo_planet earth earth_space mars titan; do \
+	  build/release/bin/tyndall render scenes/oneil/$$planet.toml --size 640x360 -o docs/images/oneil_$$planet.png || exit 1; \
 	done
 
 setup:
