@@ -104,6 +104,7 @@ bool SceneWork::wants(const Wish& wish) const {
 
 Outcome SceneWork::run(const Wish& wish) {
   Outcome out;
+  out.asked = wish.settings;
   // First of all, and of the frame that is seen: in flight there is always another one due.
   if (wish.capture && drawn_) {
     if (Result<void> captured = capture(out); !captured) {

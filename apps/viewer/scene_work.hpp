@@ -55,6 +55,7 @@ struct Outcome {
   std::optional<Error> error;        // for the user
   bool over = false;                 // after that the scene does not go on; otherwise with what it had
   config::Settings settings;         // taken over, or being taken over
+  config::Settings asked;            // of the wish
   bool frame = false, tone = false;  // was drawn
   double frame_ms = 0.0;             // until it was there, waiting for the machine included
   bool tables = false;               // slices were built

@@ -73,10 +73,14 @@ std::string random_value(const config::Row& row, std::mt19937& random) {
 
 }  // namespace
 
-std::string Script::advance(config::Settings& settings, GuiState& gui, double now) {
+std::string Script::advance(config::Settings& settings, GuiState& gui, double now, std::uint64_t frames) {
   if (!on()) return {};
   if (begun_ < 0.0) begun_ = now;
-  return kind_ == Kind::walk ? walk(settings) : soak(settings, gui, now);
+  if (kind_ == Kind::walk) return walk(settings);
+  if (frames_ > 0 ? frames < frames_ : now - begun_ <= seconds_) return soak(settings, gui);
+  done_ = true;
+  settings = start_;
+  return "done after " + std::to_string(changes_) + " changes and " + std::to_string(frames) + " frames";
 }
 
 // Each parameter from where it was to its least and its largest value, and back, one frame each.
@@ -95,12 +99,7 @@ std::string Script::walk(config::Settings& settings) {
   return row.key() + (turn == 0 ? " least" : turn == 1 ? " largest" : " back");
 }
 
-std::string Script::soak(config::Settings& settings, GuiState& gui, double now) {
-  if (now - begun_ > seconds_) {
-    done_ = true;
-    settings = start_;
-    return "done after " + std::to_string(changes_) + " changes";
-  }
+std::string Script::soak(config::Settings& settings, GuiState& gui) {
   // First every shader that will be asked for, then at random: memory stands still from there on.
   static const std::vector<std::pair<std::string, std::string>> choices = choices_of_shaders();
   if (next_ < choices.size()) {

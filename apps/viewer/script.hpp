@@ -14,19 +14,22 @@ class Script {
  public:
   enum class Kind { none, walk, soak };
   Script() = default;
-  Script(Kind kind, double seconds, const config::Settings& start) : kind_(kind), seconds_(seconds), start_(start) {}
+  // A soak ends after so many seconds or, where that is not 0, so many frames of the scene.
+  Script(Kind kind, double seconds, std::uint64_t frames, const config::Settings& start)
+      : kind_(kind), seconds_(seconds), frames_(frames), start_(start) {}
 
   [[nodiscard]] bool on() const { return kind_ != Kind::none && !done_; }
   [[nodiscard]] bool done() const { return done_; }
-  // The next change, when what the one before led to has been drawn. What was changed, for the log.
-  std::string advance(config::Settings& settings, GuiState& gui, double now);
+  // The next change, when what the one before led to has been drawn; `frames` of the scene so far. What was changed, for the log.
+  std::string advance(config::Settings& settings, GuiState& gui, double now, std::uint64_t frames);
 
  private:
   std::string walk(config::Settings& settings);
-  std::string soak(config::Settings& settings, GuiState& gui, double now);
+  std::string soak(config::Settings& settings, GuiState& gui);
 
   Kind kind_ = Kind::none;
   double seconds_ = 0.0;
+  std::uint64_t frames_ = 0;
   double begun_ = -1.0;
   bool done_ = false;
   config::Settings start_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "config/text.hpp"
+
 namespace tyndall::viewer {
 namespace {
 
@@ -35,6 +37,13 @@ bool same_but_for_tone(const config::Settings& a, const config::Settings& b) {
 
 bool same_ground(const scene::TerrainParams& a, const scene::TerrainParams& b) {
   return a.source == b.source && a.seed == b.seed && a.exaggeration == b.exaggeration;
+}
+
+void go_back(config::Settings& settings, const config::Settings& asked, const config::Settings& had) {
+  for (const config::Row& row : config::rows()) {
+    if (same_value(row, asked, had) || !same_value(row, settings, asked)) continue;
+    (void)config::set(settings, row.key(), config::value_text(row, had), row.key());  // it was there before
+  }
 }
 
 void make_consistent(config::Settings& settings) {

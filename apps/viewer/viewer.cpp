@@ -82,9 +82,12 @@ Result<void> Viewer::start() {
   if (!desc_.log.empty() && !log_.open(desc_.log)) {
     return Error{ErrorCode::io, "cannot be written, '" + desc_.log + "', --log needs a file in a folder that exists"};
   }
-  if (desc_.script == "walk") script_ = Script(Script::Kind::walk, 0.0, desc_.settings);
+  if (desc_.script == "walk") script_ = Script(Script::Kind::walk, 0.0, 0, desc_.settings);
   if (desc_.script.starts_with("soak=")) {
-    script_ = Script(Script::Kind::soak, std::strtod(desc_.script.c_str() + 5, nullptr), desc_.settings);
+    script_ = Script(Script::Kind::soak, std::strtod(desc_.script.c_str() + 5, nullptr), 0, desc_.settings);
+  }
+  if (desc_.script.starts_with("soak-frames=")) {
+    script_ = Script(Script::Kind::soak, 0.0, std::strtoull(desc_.script.c_str() + 12, nullptr, 10), desc_.settings);
   }
   if (desc_.state_file.empty()) desc_.state_file = default_state_file();
   TYNDALL_TRY(window_.open(desc_.width, desc_.height, "Tyndall"));
@@ -103,7 +106,7 @@ Result<void> Viewer::start() {
 
   ImGui::CreateContext();
   gui_started_ = true;
-  ImGui_ImplGlfw_InitForVulkan(window_.handle(), true);
+  window_.start_gui();
   gui_.start();
   gui_.state.first_run = desc_.first_steps && viewer::first_run(desc_.state_file);
   gui_.state.vsync = true;
@@ -259,6 +262,8 @@ void Viewer::draw_gui() {
   if (first_run_before && !gui_.state.first_run) leave_first_run_mark(desc_.state_file);
   ImGui::Render();
   log_.places(gui_.widgets.places());
+  // After the places that the pointer has been seen among.
+  if (!pointer_seen_.empty()) log(std::exchange(pointer_seen_, {}));
   if (gui_.state.full_screen != window_.full_screen()) window_.set_full_screen(gui_.state.full_screen);
   screen_.set_vsync(gui_.state.vsync);
   do_requests(requests);
@@ -274,14 +279,14 @@ void Viewer::log_sets(const config::Settings& before, const config::Settings& af
 
 void Viewer::begin_gui() {
   ImGui_ImplVulkan_NewFrame();
-  ImGui_ImplGlfw_NewFrame();
+  window_.begin_gui();
   ImGui::NewFrame();
 }
 
 void Viewer::run_script() {
   if (script_.done()) window_.close();
   if (!script_.on() || left_->busy() || left_->facts().working || !left_->shows(wish_of(*left_))) return;
-  log("script " + script_.advance(settings_, gui_.state, now()));
+  log("script " + script_.advance(settings_, gui_.state, now(), frames_));
   frames_to_draw_ = std::max(frames_to_draw_, 1);
   if (now() - last_memory_ < 2.0) return;
   last_memory_ = now();

@@ -19,7 +19,7 @@ struct ViewerDesc {
   std::string screenshots;       // folder; empty: the working directory
   std::string log;               // where what happens is written, a line each; empty: nowhere
   bool validation = false;
-  // For tests: "walk" takes every parameter to both ends, "soak=SECONDS" changes them at random; then it leaves.
+  // For tests: "walk" takes every parameter to both ends, "soak=SECONDS" or "soak-frames=COUNT" changes them at random; then it leaves.
   // "lose-surface" and "lose-device" act as if that had happened after some frames; "one-device" draws the window and
   // the scenes on one device, whatever it is.
   std::string script;

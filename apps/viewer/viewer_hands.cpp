@@ -41,7 +41,7 @@ void Viewer::handle_events(const std::vector<Event>& events) {
         const double dy = event.y - pointer_[1];
         pointer_[0] = event.x;
         pointer_[1] = event.y;
-        if (log_.on()) log("pointer " + config::number_text(event.x) + " " + config::number_text(event.y));
+        if (log_.on()) pointer_seen_ = "pointer " + config::number_text(event.x) + " " + config::number_text(event.y);
         if (dragging_view_) camera_ = turned(camera_, dx, dy, height);
         if (dragging_sun_) settings_.scene.sun = sun_turned(settings_.scene.sun, dx, dy, height);
         break;

@@ -121,7 +121,7 @@ Result<void> Viewer::take_outcome(std::size_t side, Outcome& outcome) {
     config::Settings& settings = side == 0 ? settings_ : right_;
     const scene::CameraParams camera = settings.scene.camera;
     const scene::SunParams sun = settings.scene.sun;
-    settings = outcome.settings;
+    go_back(settings, outcome.asked, outcome.settings);
     settings.scene.camera = camera;
     settings.scene.sun = sun;
   }

@@ -112,6 +112,7 @@ class Viewer {
   double speed_m_s_ = 0.0, height_m_ = 0.0;
   bool dragging_view_ = false, dragging_sun_ = false;
   double pointer_[2] = {0.0, 0.0};
+  std::string pointer_seen_;            // for the log
   double seconds_ = 0.0;                // of the scene's own time
   bool flying_path_ = false;            // along the path of the scene file
   double path_s_ = 0.0;

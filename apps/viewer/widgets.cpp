@@ -27,6 +27,10 @@ T* at(const Row& row, Settings& settings) {
   return reinterpret_cast<T*>(base + row.info.offset);
 }
 
+int component_count(const Row& row) {
+  return row.info.type == ParamType::vec3 ? 3 : row.info.type == ParamType::uvec4 ? 4 : 1;
+}
+
 // Ranges over several powers of ten are walked evenly in powers.
 bool is_wide(const Row& row) { return row.info.max - row.info.min > 500.0 && row.info.min >= 0.0; }
 
@@ -137,7 +141,7 @@ std::string tooltip_of(const Row& row) {
 
 void set_to_end(const Row& row, Settings& settings, bool largest) {
   const double end = largest ? row.info.max : row.info.min;
-  const int count = row.info.type == ParamType::vec3 ? 3 : row.info.type == ParamType::uvec4 ? 4 : 1;
+  const int count = component_count(row);
   switch (row.info.type) {
     case ParamType::float32:
     case ParamType::vec3:
@@ -167,6 +171,19 @@ void Widgets::place(std::string name) {
   if (ImGui::IsItemVisible()) places_.push_back({std::move(name), min.x, min.y, max.x - min.x, max.y - min.y});
 }
 
+// KEY.0 and so on: they share the width.
+void Widgets::place_components(const Row& row, const std::string& key, float width) {
+  const int count = component_count(row);
+  if (count == 1 || !ImGui::IsItemVisible()) return;
+  const ImVec2 min = ImGui::GetItemRectMin();
+  const float height = ImGui::GetItemRectMax().y - min.y;
+  const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
+  const float each = (width - gap * static_cast<float>(count - 1)) / static_cast<float>(count);
+  for (int i = 0; i < count; ++i) {
+    places_.push_back({key + "." + std::to_string(i), min.x + static_cast<float>(i) * (each + gap), min.y, each, height});
+  }
+}
+
 bool Widgets::edit(std::string_view key, Settings& settings) {
   const Row* const row = config::find_row(key);
   return row != nullptr && edit(*row, settings);
@@ -177,11 +194,9 @@ bool Widgets::edit(const Row& row, Settings& settings) {
   ImGui::PushID(key.c_str());
   bool changed = false;
   const std::string label = label_of(row, with_group);
-  const bool flag = row.info.type == ParamType::flag;
-  if (!flag) {
-    // The label stands to the right, as wide as it needs; the widget takes the rest.
-    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.52F);
-  }
+  // The label stands to the right, as wide as it needs; the widget takes the rest.
+  const float width = ImGui::GetContentRegionAvail().x * 0.52F;
+  if (row.info.type != ParamType::flag) ImGui::SetNextItemWidth(width);
   const char* const id = label.c_str();
   const auto place_choice = [&](std::uint32_t i) { place(key + "." + std::to_string(i)); };
   switch (row.info.type) {
@@ -216,6 +231,7 @@ bool Widgets::edit(const Row& row, Settings& settings) {
     }
   }
   place(key);
+  place_components(row, key, width);
   dragging_ = dragging_ || ImGui::IsItemActive();
   if (ImGui::IsItemHovered() && !ImGui::IsItemActive()) show_tooltip(tooltip_of(row));
   if (ImGui::IsItemHovered() && ImGui::IsMouseReleased(ImGuiMouseButton_Right)) {

@@ -33,6 +33,8 @@ class Widgets {
   [[nodiscard]] bool dragging() const { return dragging_; }
 
  private:
+  void place_components(const config::Row& row, const std::string& key, float width);
+
   std::vector<Place> places_;
   bool dragging_ = false;
 };

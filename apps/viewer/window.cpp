@@ -2,6 +2,8 @@
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <imgui.h>
+#include <backends/imgui_impl_glfw.h>
 
 #include <algorithm>
 
@@ -64,13 +66,6 @@ Result<void> Window::open(std::uint32_t width, std::uint32_t height, const char*
 
 void Window::install_callbacks() {
   glfwSetWindowUserPointer(window_, this);
-  glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int) {
-    Window& self = of(w);
-    self.activity_ = true;
-    if (action != GLFW_PRESS) return;
-    self.touched_.push_back(key);
-    self.events_.push_back({Event::Kind::key, key, Button::left, 0.0, 0.0});
-  });
   glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int button, int action, int) {
     Window& self = of(w);
     self.activity_ = true;
@@ -80,6 +75,7 @@ void Window::install_callbacks() {
     event.button = button == GLFW_MOUSE_BUTTON_LEFT ? Button::left : Button::right;
     glfwGetCursorPos(w, &event.x, &event.y);
     self.events_.push_back(event);
+    self.keys_.add({KeyEvent::Kind::button, button, 0, action, 0, 0, event.x, event.y});
   });
   glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double x, double y) {
     Window& self = of(w);
@@ -91,12 +87,26 @@ void Window::install_callbacks() {
     self.activity_ = true;
     self.events_.push_back({Event::Kind::wheel, 0, Button::left, 0.0, y});
   });
-  glfwSetCharCallback(window_, [](GLFWwindow* w, unsigned) { of(w).activity_ = true; });
   glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* w, int, int) { of(w).activity_ = true; });
   glfwSetWindowRefreshCallback(window_, [](GLFWwindow* w) { of(w).activity_ = true; });
   glfwSetWindowIconifyCallback(window_, [](GLFWwindow* w, int) { of(w).activity_ = true; });
   glfwSetWindowFocusCallback(window_, [](GLFWwindow* w, int) { of(w).activity_ = true; });
   glfwSetCursorEnterCallback(window_, [](GLFWwindow* w, int) { of(w).activity_ = true; });
+}
+
+void Window::install_key_callbacks() {
+  glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
+    Window& self = of(w);
+    self.activity_ = true;
+    if (action != GLFW_REPEAT) self.keys_.add({KeyEvent::Kind::key, key, scancode, action, mods, 0});
+    if (action != GLFW_PRESS) return;
+    self.touched_.push_back(key);
+    self.events_.push_back({Event::Kind::key, key, Button::left, 0.0, 0.0});
+  });
+  glfwSetCharCallback(window_, [](GLFWwindow* w, unsigned character) {
+    of(w).activity_ = true;
+    of(w).keys_.add({KeyEvent::Kind::character, 0, 0, 0, 0, character});
+  });
 }
 
 Result<VkSurfaceKHR> Window::create_surface(VkInstance instance) {
@@ -123,7 +133,30 @@ std::vector<Event> Window::take_events() {
   return std::exchange(events_, {});
 }
 
-bool Window::take_activity() { return std::exchange(activity_, false); }
+bool Window::take_activity() { return std::exchange(activity_, false) || !keys_.empty(); }
+
+void Window::start_gui() {
+  ImGui_ImplGlfw_InitForVulkan(window_, true);
+  // Of what that has put before the callbacks of ours, keys go another way.
+  install_key_callbacks();
+}
+
+void Window::begin_gui() {
+  const std::vector<KeyEvent> events = keys_.take();
+  for (const KeyEvent& event : events) {
+    if (event.kind == KeyEvent::Kind::key) ImGui_ImplGlfw_KeyCallback(window_, event.key, event.scancode, event.action, event.mods);
+    if (event.kind == KeyEvent::Kind::character) ImGui_ImplGlfw_CharCallback(window_, event.character);
+  }
+  ImGui_ImplGlfw_NewFrame();
+  // That took the pointer as it is now.
+  ImGuiIO& io = ImGui::GetIO();
+  for (const KeyEvent& event : events) {
+    if (event.kind != KeyEvent::Kind::button) continue;
+    buttons_[event.key] = event.action == GLFW_PRESS;
+    io.MousePos = ImVec2(static_cast<float>(event.x), static_cast<float>(event.y));
+  }
+  for (int i : {GLFW_MOUSE_BUTTON_LEFT, GLFW_MOUSE_BUTTON_RIGHT}) io.MouseDown[i] = buttons_[i];
+}
 
 bool Window::held(int key) const {
   return glfwGetKey(window_, key) == GLFW_PRESS || std::find(touched_.begin(), touched_.end(), key) != touched_.end();

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "key_feed.hpp"
 #include "tyndall/result.hpp"
 
 struct GLFWwindow;
@@ -39,6 +40,10 @@ class Window {
   Result<void> open(std::uint32_t width, std::uint32_t height, const char* title);
   Result<VkSurfaceKHR> create_surface(VkInstance instance);
 
+  // Connects ImGui's context with the window; before each of its frames begin_gui() brings it what the hands did.
+  void start_gui();
+  void begin_gui();
+
   // Waits for events at most `seconds` (negative: for ever; 0: not at all).
   void wait(double seconds);
   // Wakes wait(), from any thread.
@@ -62,9 +67,12 @@ class Window {
 
  private:
   void install_callbacks();
+  void install_key_callbacks();
 
   GLFWwindow* window_ = nullptr;
   std::vector<Event> events_;
+  KeyFeed keys_;              // for the GUI
+  bool buttons_[2] = {false, false};  // left and right, as the GUI has seen them
   std::vector<int> touched_;  // keys pressed since the last forget_keys()
   bool activity_ = true;
   bool full_screen_ = false;

@@ -37,6 +37,9 @@ bool installed(const std::string& program) {
   return false;
 }
 
+constexpr double kLook_s = 0.02;   // between two looks at what the viewer does
+constexpr double kLong_s = 240.0;  // nothing takes so long
+
 void pause(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
 
 // Starts a program; its output goes to `output`, `descriptor` stays open in it.
@@ -61,10 +64,11 @@ bool has_ended(int child) {
 }
 
 int status_of(int child, double seconds) {
-  for (double waited = 0.0; waited < seconds; waited += 0.05) {
+  constexpr double kStep_s = 0.005;  // hands take some milliseconds
+  for (double waited = 0.0; waited < seconds; waited += kStep_s) {
     int status = 0;
     if (::waitpid(child, &status, WNOHANG) == child) return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    pause(0.05);
+    pause(kStep_s);
   }
   ::kill(child, SIGKILL);
   ::waitpid(child, nullptr, 0);
@@ -122,12 +126,15 @@ bool Desk::open(const std::vector<std::string>& arguments, const std::vector<std
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<std::string> variables = environment;
   variables.push_back("DISPLAY=" + display_);
+  log_.clear();
+  log_read_ = 0;
+  std::error_code ignored;
+  fs::remove(folder_ + "/log.txt", ignored);
   viewer_ = start(words, variables, folder_ + "/errors.txt");
   if (!wait_for({"ready"})) return false;
   window_.clear();
   for (int i = 0; i < 100 && window_.empty(); ++i) {
     const std::string found = folder_ + "/window.txt";
-    std::error_code ignored;
     fs::remove(found, ignored);
     status_of(start({"xdotool", "search", "--onlyvisible", "--name", "Tyndall"}, {"DISPLAY=" + display_}, found), 20.0);
     std::istringstream text(read_text(found));
@@ -161,36 +168,50 @@ void Desk::hands(const std::string& commands) {
 std::string Desk::log_text() const { return read_text(folder_ + "/log.txt"); }
 std::string Desk::errors() const { return read_text(folder_ + "/errors.txt"); }
 
-std::size_t Desk::lines() const {
-  const std::string text = log_text();
-  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+// What the viewer has written since the last look; only whole lines.
+void Desk::read_log() const {
+  std::ifstream file(folder_ + "/log.txt", std::ios::binary);
+  if (!file || !file.seekg(log_read_)) return;
+  std::ostringstream text;
+  text << file.rdbuf();
+  const std::string more = text.str();
+  std::size_t begin = 0;
+  for (std::size_t end = 0; (end = more.find('\n', begin)) != std::string::npos; begin = end + 1) {
+    log_.push_back(more.substr(begin, end - begin));
+  }
+  log_read_ += static_cast<std::streamoff>(begin);
 }
 
-std::optional<std::string> Desk::wait_for(const std::vector<std::string>& words, std::size_t from, double seconds) {
-  for (double waited = 0.0; waited < seconds; waited += 0.05) {
-    std::istringstream text(log_text());
-    std::size_t number = 0;
-    for (std::string line; std::getline(text, line) && !text.eof(); ++number) {
-      if (number < from) continue;
-      bool all = true;
-      for (const std::string& word : words) all = all && line.find(word) != std::string::npos;
-      if (all) return line;
+std::size_t Desk::lines() const {
+  read_log();
+  return log_.size();
+}
+
+std::optional<std::size_t> Desk::number_of(const std::vector<std::string>& words, std::size_t from, double seconds) {
+  const auto has_all = [&words](const std::string& line) {
+    return std::all_of(words.begin(), words.end(), [&line](const std::string& word) { return line.find(word) != std::string::npos; });
+  };
+  for (double waited = 0.0; waited < seconds; waited += kLook_s) {
+    // Before the log is read for the last time.
+    const bool ended = viewer_ > 0 && has_ended(viewer_);
+    for (const std::size_t count = lines(); from < count; ++from) {
+      if (has_all(log_[from])) return from;
     }
-    if (viewer_ > 0 && has_ended(viewer_)) return std::nullopt;
-    pause(0.05);
+    if (ended) return std::nullopt;
+    pause(kLook_s);
   }
   return std::nullopt;
 }
 
+std::optional<std::string> Desk::wait_for(const std::vector<std::string>& words, std::size_t from, double seconds) {
+  const std::optional<std::size_t> number = number_of(words, from, seconds);
+  if (!number) return std::nullopt;
+  return log_[*number];
+}
+
 bool Desk::settles_after(const std::vector<std::string>& words, std::size_t from) {
-  const std::optional<std::string> line = wait_for(words, from);
-  if (!line) return false;
-  std::istringstream text(log_text());
-  std::size_t number = 0;
-  for (std::string other; std::getline(text, other); ++number) {
-    if (number >= from && other == *line) break;
-  }
-  return wait_for({"settled"}, number + 1).has_value();
+  const std::optional<std::size_t> number = number_of(words, from, kLong_s);
+  return number && wait_for({"settled"}, *number + 1).has_value();
 }
 
 std::map<std::string, Desk::Rect> Desk::places() const {
@@ -208,29 +229,28 @@ std::map<std::string, Desk::Rect> Desk::places() const {
 }
 
 bool Desk::wait_for_place(const std::string& place) {
-  for (int i = 0; i < 1200; ++i) {
+  for (double waited = 0.0; waited < 60.0; waited += kLook_s) {
     if (places().contains(place)) return true;
-    pause(0.05);
+    pause(kLook_s);
   }
   return false;
 }
 
 bool Desk::point_at(const std::string& place, double part) {
-  if (!wait_for_place(place)) return false;
-  // Menus find their place within a few frames.
-  Rect rect = places()[place];
-  for (Rect before = {}; rect.x != before.x || rect.y != before.y; rect = places()[place]) {
-    before = rect;
-    pause(0.12);
+  // Menus find their place within a few frames: it is under the pointer when it still is after the viewer has seen that.
+  for (int i = 0; i < 20; ++i) {
+    if (!wait_for_place(place)) return false;
+    const Rect rect = places()[place];
+    const int x = static_cast<int>(rect.x + part * rect.width);
+    const int y = static_cast<int>(rect.y + 0.5 * rect.height);
+    if (x == pointer_[0] && y == pointer_[1]) return true;  // no event comes of that
+    const std::size_t from = lines();
+    pointer_[0] = x;
+    pointer_[1] = y;
+    hands("mousemove " + std::to_string(x) + " " + std::to_string(y));
+    if (!wait_for({"pointer " + std::to_string(x) + " " + std::to_string(y)}, from)) return false;
   }
-  const std::size_t from = lines();
-  const int x = static_cast<int>(rect.x + part * rect.width);
-  const int y = static_cast<int>(rect.y + 0.5 * rect.height);
-  if (x == pointer_[0] && y == pointer_[1]) return true;  // no event comes of that
-  pointer_[0] = x;
-  pointer_[1] = y;
-  hands("mousemove " + std::to_string(x) + " " + std::to_string(y));
-  return wait_for({"pointer " + std::to_string(x) + " " + std::to_string(y)}, from).has_value();
+  return false;
 }
 
 bool Desk::click(const std::string& place, double part, int button) {

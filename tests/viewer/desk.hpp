@@ -2,6 +2,7 @@
 // (xdotool) that press real keys and move a real pointer. Everything waits for what the viewer's log says.
 #pragma once
 
+#include <ios>
 #include <map>
 #include <optional>
 #include <string>
@@ -32,6 +33,9 @@ class Desk {
   [[nodiscard]] std::size_t lines() const;
   // The first line from `from` on that contains all of `words`; waits for it.
   std::optional<std::string> wait_for(const std::vector<std::string>& words, std::size_t from = 0, double seconds = 240.0);
+  // The number of such a line, and the line with a number.
+  std::optional<std::size_t> number_of(const std::vector<std::string>& words, std::size_t from, double seconds);
+  [[nodiscard]] const std::string& line(std::size_t number) const { return log_[number]; }
   // Waits for such a line and then until the picture is that of the settings.
   bool settles_after(const std::vector<std::string>& words, std::size_t from);
   // Moves the pointer to the middle of something in the window, or to a part of its width, and waits until the viewer
@@ -60,10 +64,13 @@ class Desk {
     double x, y, width, height;
   };
   [[nodiscard]] std::map<std::string, Rect> places() const;
+  void read_log() const;
 
   std::string folder_, display_, window_;
   int server_ = -1, viewer_ = -1, manager_ = -1;
   int pointer_[2] = {-1, -1};  // where point_at() has moved it
+  mutable std::vector<std::string> log_;  // its whole lines so far
+  mutable std::streamoff log_read_ = 0;   // what they take of the file [bytes]
 };
 
 }  // namespace tyndall::desk

@@ -16,12 +16,7 @@ TEST(Window, OpensEveryPanelAndComparesByTheMouse) {
   ASSERT_TRUE(desk.open({"--size", "800x600", "--no-first-steps"})) << desk.errors();
   for (const char* tab : {"Additional", "Tone mapping", "Atmosphere", "All", "Basic"}) {
     ASSERT_TRUE(desk.click(std::string("tab.") + tab)) << tab;
-    const char* key = std::string(tab) == "Additional"     ? "shadows.cascades"
-                      : std::string(tab) == "Tone mapping" ? "tonemap.white_point"
-                      : std::string(tab) == "Atmosphere"   ? "planet.radius_m"
-                      : std::string(tab) == "All"          ? "group.camera"
-                                                           : "epipolar.slices";
-    EXPECT_TRUE(desk.wait_for_place(key)) << tab;
+    EXPECT_TRUE(desk.wait_for_place(key_of(tab))) << tab;
     desk.picture(std::string("tab_") + tab);
   }
   // A slider to both of its ends with the real mouse.

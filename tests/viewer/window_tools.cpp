@@ -42,6 +42,14 @@ bool pull(Desk& desk, const std::string& key, const std::vector<double>& ways) {
   return desk.wait_for({"release left"}, at).has_value();
 }
 
+std::string key_of(const std::string& panel) {
+  if (panel == "Basic") return "epipolar.slices";
+  if (panel == "Additional") return "shadows.cascades";
+  if (panel == "Tone mapping") return "tonemap.white_point";
+  if (panel == "Atmosphere") return "planet.radius_m";
+  return "group.camera";
+}
+
 std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;

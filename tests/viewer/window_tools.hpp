@@ -25,6 +25,9 @@ struct Frame {
 // Drags a slider from a quarter of its width through these parts of it.
 [[nodiscard]] bool pull(Desk& desk, const std::string& key, const std::vector<double>& ways);
 
+// Something that only this panel of controls has.
+[[nodiscard]] std::string key_of(const std::string& panel);
+
 // Opens the window of views and switches the comparison on, until two pictures are shown.
 [[nodiscard]] bool compare_two(Desk& desk);
 
