@@ -8,7 +8,7 @@ packages="build-essential cmake ninja-build pkg-config ccache
 glslc spirv-tools libspirv-cross-c-shared-dev
 libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers
 libglm-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
-libglfw3-dev libimgui-dev libshaderc-dev xvfb xdotool openbox
+libglfw3-dev libx11-dev libimgui-dev libshaderc-dev xvfb xdotool openbox
 libtinygltf-dev libstb-dev libopenexr-dev libpng-dev libgdal-dev libgtest-dev $*"
 
 needs() {

@@ -36,6 +36,13 @@ constexpr HelpLine kHelp[] = {
     {"Esc", "leave"},
 };
 
+constexpr HelpLine kFirstSteps[] = {
+    {"W A S D, and E Q for up and down; Shift is faster. Drag with the left button to look.", "Move"},
+    {"drag with the right button.", "Turn the sun"},
+    {"the slider \"Aerosol density\", on top of the controls.", "More haze"},
+    {"F1.", "All keys"},
+};
+
 // The systems of docs/models.md.
 struct ModelItem {
   const char* name;
@@ -253,19 +260,12 @@ void Gui::first_run(const GuiFacts& facts) {
   ImGui::SetNextWindowBgAlpha(0.9F);
   if (ImGui::Begin("first steps", nullptr, kOverlay)) {
     ImGui::PushTextWrapPos(std::clamp(0.95F * (width - taken), 220.0F, 520.0F));
-    const ImVec4 bright(1.0F, 0.8F, 0.35F, 1.0F);
-    ImGui::TextColored(bright, "Move:");
-    ImGui::SameLine(110.0F);
-    ImGui::TextUnformatted("W A S D, and E Q for up and down; Shift is faster. Drag with the left button to look.");
-    ImGui::TextColored(bright, "Turn the sun:");
-    ImGui::SameLine(110.0F);
-    ImGui::TextUnformatted("drag with the right button.");
-    ImGui::TextColored(bright, "More haze:");
-    ImGui::SameLine(110.0F);
-    ImGui::TextUnformatted("the slider \"Aerosol density\", on top of the controls.");
-    ImGui::TextColored(bright, "All keys:");
-    ImGui::SameLine(110.0F);
-    ImGui::TextUnformatted("F1.");
+    for (const HelpLine& line : kFirstSteps) {
+      ImGui::TextColored(ImVec4(1.0F, 0.8F, 0.35F, 1.0F), "%s:", line.what);
+      ImGui::SameLine(110.0F);
+      ImGui::TextUnformatted(line.hands);
+      widgets.place(std::string("first_run.") + line.what);
+    }
     ImGui::PopTextWrapPos();
     ImGui::Spacing();
     if (ImGui::Button("Let me fly")) state.first_run = false;

@@ -115,6 +115,16 @@ ShaderReload::Compiled ShaderReload::compile(const std::string& folder) {
       out.message = path.string() + " cannot be read";
       return out;
     }
+    // What is read of it, included files and all. The same as the last time is not compiled again.
+    const shaderc::PreprocessedSourceCompilationResult source =
+        compiler.PreprocessGlsl(text, kind_of(row.shader->stage), path.string().c_str(), options);
+    std::string whole(source.cbegin(), source.cend());
+    Known& known = known_[row.shader->name];
+    if (source.GetCompilationStatus() == shaderc_compilation_status_success && known.source == whole) {
+      if (known.differs) out.changed.emplace(row.shader->name, known.words);
+      continue;
+    }
+    known = {};
     const shaderc::SpvCompilationResult result =
         compiler.CompileGlslToSpv(text, kind_of(row.shader->stage), path.string().c_str(), options);
     if (result.GetCompilationStatus() != shaderc_compilation_status_success) {
@@ -130,11 +140,15 @@ ShaderReload::Compiled ShaderReload::compile(const std::string& folder) {
       out.message = path.string() + " cannot be optimised";
       return out;
     }
-    if (words.size() == row.shader->spirv.size() && std::equal(words.begin(), words.end(), row.shader->spirv.begin())) continue;
+    if (words.size() == row.shader->spirv.size() && std::equal(words.begin(), words.end(), row.shader->spirv.begin())) {
+      known.source = std::move(whole);
+      continue;
+    }
     if (!fits(*row.shader, words)) {
       out.message = path.string() + ": bindings or the size of groups have changed, which needs a build of the program";
       return out;
     }
+    known = {std::move(whole), words, true};
     out.changed.emplace(row.shader->name, std::move(words));
   }
   return out;
@@ -153,7 +167,7 @@ Result<void> ShaderReload::start() {
   if (folder.empty()) {
     return Error{ErrorCode::io, "the sources of the shaders are not here, F8, $TYNDALL_DATA names the folder that holds shaders/"};
   }
-  compiling_ = std::async(std::launch::async, [folder] {
+  compiling_ = std::async(std::launch::async, [this, folder] {
     Compiled compiled = compile(folder);
     Window::wake();
     return compiled;

@@ -46,7 +46,15 @@ class ShaderReload {
     std::string message;
     std::map<std::string, Words, std::less<>> changed;
   };
-  static Compiled compile(const std::string& folder);
+  // What came of a source that compiles and fits.
+  struct Known {
+    std::string source;  // with what it includes; empty: nothing is known
+    Words words;         // where they are not the program's
+    bool differs = false;
+  };
+  Compiled compile(const std::string& folder);
+
+  std::map<std::string, Known, std::less<>> known_;  // by the shader's name; of the thread that compiles
 
   std::mutex mutex_;  // of words_: threads that make pipelines ask for them
   std::map<std::string, Words, std::less<>> words_;  // of shaders other than the program's

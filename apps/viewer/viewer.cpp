@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "config/text.hpp"
+#include "display_loss.hpp"
 #include "gpu/try.hpp"
 #include "scene/chart.hpp"
 #include "settings_compare.hpp"
@@ -54,6 +55,8 @@ std::size_t allocated_kib() {
   return 0;
 #endif
 }
+
+void say(const Error& error) { std::fprintf(stderr, "tyndall: error: %s\n", config::one_line(error.message, 2000).c_str()); }
 
 }  // namespace
 
@@ -91,6 +94,10 @@ Result<void> Viewer::start() {
   }
   if (desc_.state_file.empty()) desc_.state_file = default_state_file();
   TYNDALL_TRY(window_.open(desc_.width, desc_.height, "Tyndall"));
+  watch_window(window_.handle());
+  on_display_loss([this] {
+    say(after_loss({ErrorCode::device_lost, "the connection to the display has broken off", VK_ERROR_SURFACE_LOST_KHR}));
+  });
   TYNDALL_TRY(open_device());
   if (slow_device()) {
     gui_.state.resolution_scale = kSlowScale;
@@ -178,6 +185,9 @@ Result<void> Viewer::loop() {
     if (window_.minimised() != minimised_) {
       minimised_ = !minimised_;
       log(minimised_ ? "minimised" : "restored");
+    }
+    if (window_is_gone()) {
+      return Error{ErrorCode::device_lost, "the window has been destroyed from outside", VK_ERROR_SURFACE_LOST_KHR};
     }
     if (minimised_) {
       window_.wait(0.5);
@@ -315,6 +325,10 @@ Result<void> Viewer::present() {
   }
   if (drawn == Drawn::not_now) frames_to_draw_ = std::max(frames_to_draw_, 2);
   if (drawn != Drawn::done) return {};
+  if (present_mode_ != screen_.present_mode()) {
+    present_mode_ = screen_.present_mode();
+    log("present_mode " + present_mode_);
+  }
   if (!opened_) {
     // The window's first frame is part of starting: the driver makes its own of the GUI's shaders.
     opened_ = true;
@@ -340,7 +354,7 @@ Result<void> Viewer::present() {
 void Viewer::report(const Error& error) {
   log("error " + error.message);
   gui_.toast(error.message, true, now());
-  std::fprintf(stderr, "tyndall: error: %s\n", config::one_line(error.message, 2000).c_str());
+  say(error);
 }
 
 void Viewer::tell(const std::string& text) {
@@ -365,6 +379,10 @@ Result<void> run(const ViewerDesc& desc) {
     outcome = viewer.start();
     if (outcome) outcome = viewer.loop();
     if (!outcome) outcome = viewer.after_loss(outcome.error());
+    // What there is to say has been found out; when the display breaks off only now, it is still to be said.
+    on_display_loss([outcome] {
+      if (!outcome) say(outcome.error());
+    });
     messages = viewer.validation_messages();
     text = viewer.validation_text();
   }

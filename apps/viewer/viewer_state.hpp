@@ -132,6 +132,7 @@ class Viewer {
   bool opened_ = false;                 // the window has shown something
   bool first_frame_told_ = false;
   bool two_shown_ = false;
+  std::string present_mode_;            // that was told
   std::uint64_t shown_frame_ = 0;
   std::uint32_t shown_width_ = 0;
   bool screenshot_wanted_ = false;

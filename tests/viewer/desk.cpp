@@ -109,12 +109,16 @@ Desk::~Desk() {
     ::kill(manager_, SIGTERM);
     ::waitpid(manager_, nullptr, 0);
   }
-  if (server_ > 0) {
-    ::kill(server_, SIGTERM);
-    ::waitpid(server_, nullptr, 0);
-  }
+  end_server();
   std::error_code ignored;
   fs::remove_all(folder_ + "/screen", ignored);
+}
+
+void Desk::end_server() {
+  if (server_ <= 0) return;
+  ::kill(server_, SIGTERM);
+  ::waitpid(server_, nullptr, 0);
+  server_ = -1;
 }
 
 bool Desk::open(const std::vector<std::string>& arguments, const std::vector<std::string>& environment) {
@@ -130,6 +134,7 @@ bool Desk::open(const std::vector<std::string>& arguments, const std::vector<std
   log_read_ = 0;
   std::error_code ignored;
   fs::remove(folder_ + "/log.txt", ignored);
+  fs::remove(folder_ + "/log.txt.places", ignored);
   viewer_ = start(words, variables, folder_ + "/errors.txt");
   if (!wait_for({"ready"})) return false;
   window_.clear();
@@ -231,6 +236,14 @@ std::map<std::string, Desk::Rect> Desk::places() const {
 bool Desk::wait_for_place(const std::string& place) {
   for (double waited = 0.0; waited < 60.0; waited += kLook_s) {
     if (places().contains(place)) return true;
+    pause(kLook_s);
+  }
+  return false;
+}
+
+bool Desk::wait_for_no_place(const std::string& place) {
+  for (double waited = 0.0; waited < 20.0; waited += kLook_s) {
+    if (!places().contains(place)) return true;
     pause(kLook_s);
   }
   return false;

@@ -46,6 +46,10 @@ class Desk {
   [[nodiscard]] std::vector<std::string> place_names() const;
   // Waits until a place is in the window.
   bool wait_for_place(const std::string& place);
+  // Ends the X server.
+  void end_server();
+  // Waits until it is not.
+  bool wait_for_no_place(const std::string& place);
   // Leaves by Esc; the exit status, or -1.
   int leave();
   // Waits for the end by itself.

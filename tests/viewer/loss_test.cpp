@@ -16,7 +16,7 @@ TEST(Window, ALostSurfaceIsMadeAnewAndALostDeviceSavesTheState) {
   NEEDS_A_DESK();
   {
     Desk desk("lost_surface");
-    std::vector<std::string> arguments = kSmall;
+    std::vector<std::string> arguments = joined(kSmall, kSmallTables);
     arguments.insert(arguments.end(), {"--script", "lose-surface"});
     ASSERT_TRUE(desk.open(arguments)) << desk.errors();
     ASSERT_TRUE(desk.wait_for({"surface lost"}));
@@ -26,7 +26,7 @@ TEST(Window, ALostSurfaceIsMadeAnewAndALostDeviceSavesTheState) {
     EXPECT_EQ(desk.leave(), 0) << desk.errors();
   }
   Desk desk("lost_device");
-  std::vector<std::string> arguments = kSmall;
+  std::vector<std::string> arguments = joined(kSmall, kSmallTables);
   arguments.insert(arguments.end(), {"--script", "lose-device", "--set", "sun.azimuth_deg=123"});
   desk.open(arguments);
   EXPECT_EQ(desk.wait_for_end(240.0), 1);
@@ -35,6 +35,26 @@ TEST(Window, ALostSurfaceIsMadeAnewAndALostDeviceSavesTheState) {
   config::Settings state;
   ASSERT_TRUE(config::load(state, desk.folder() + "/state.toml").ok());
   EXPECT_EQ(state.scene.sun.azimuth_deg, 123.0F);
+}
+
+// From outside: the window destroyed, the viewer's connection closed, the X server ended.
+TEST(Window, SavesTheStateWhenTheDisplayIsLost) {
+  NEEDS_A_DESK();
+  for (const char* what : {"destroyed", "killed", "server"}) {
+    Desk desk(std::string("lost_display_") + what);
+    ASSERT_TRUE(desk.open(joined(joined(kSmall, kSmallTables), {"--set", "sun.azimuth_deg=123"}))) << desk.errors();
+    if (what == std::string("destroyed")) desk.hands("windowclose " + desk.window());
+    if (what == std::string("killed")) desk.hands("windowkill " + desk.window());
+    if (what == std::string("server")) desk.end_server();
+    EXPECT_EQ(desk.wait_for_end(60.0), 1) << what;
+    const std::string said = desk.errors();
+    EXPECT_NE(said.find("tyndall: error: the window's surface was lost"), std::string::npos) << what << ": " << said;
+    EXPECT_NE(said.find("the state is saved, 'tyndall view "), std::string::npos) << what << ": " << said;
+    EXPECT_EQ(said.find("tyndall: error", 1), std::string::npos) << "said once: " << said;
+    config::Settings state;
+    ASSERT_TRUE(config::load(state, desk.folder() + "/state.toml").ok()) << what;
+    EXPECT_EQ(state.scene.sun.azimuth_deg, 123.0F);
+  }
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ bool choose(Desk& desk, const std::string& name) { return desk.click("menu.Model
 TEST(Window, ComparesTwoModels) {
   NEEDS_A_DESK();
   Desk desk("models");
-  ASSERT_TRUE(desk.open({"--size", "800x600", "--no-first-steps"})) << desk.errors();
+  ASSERT_TRUE(desk.open(joined(kSmallTables, {"--size", "800x600", "--no-first-steps"}))) << desk.errors();
   std::size_t from = desk.lines();
   ASSERT_TRUE(choose(desk, "Homogeneous medium, shafts (Yusov 2012)"));
   ASSERT_TRUE(desk.wait_for({"set scattering.medium=homogeneous"}, from));

@@ -58,7 +58,7 @@ TEST(Window, KeepsTablesThatHaveStood) {
   ASSERT_TRUE(pull(desk, "atmosphere.aerosol_density", {0.3}));
   ASSERT_TRUE(desk.wait_for({"set atmosphere.aerosol_density"}, from));
   ASSERT_TRUE(desk.wait_for({" tables"}, from));
-  std::this_thread::sleep_for(std::chrono::seconds(5));
+  std::this_thread::sleep_for(std::chrono::seconds(2));
   from = desk.lines();
   ASSERT_TRUE(pull(desk, "atmosphere.aerosol_density", {0.4}));
   ASSERT_TRUE(desk.wait_for({"set atmosphere.aerosol_density"}, from));

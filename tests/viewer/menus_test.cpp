@@ -1,0 +1,69 @@
+// Menus and buttons, by the mouse, and the help of the first run.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "config/settings.hpp"
+#include "window_tools.hpp"
+
+namespace tyndall {
+namespace {
+
+using namespace desk;
+
+// Presets change what they name and leave the rest; VSync chooses how the window presents.
+TEST(Window, TakesPresetsAndVsyncByTheMouse) {
+  NEEDS_A_DESK();
+  Desk desk("menus");
+  ASSERT_TRUE(desk.open(joined(kSmallTables, {"--size", "480x400", "--no-first-steps", "--set", "camera.fov_deg=33"}))) << desk.errors();
+  for (const char* preset : {"heavy_haze", "high_performance"}) {
+    const std::size_t from = desk.lines();
+    ASSERT_TRUE(desk.click("menu.Presets"));
+    ASSERT_TRUE(desk.click(std::string("item.") + preset)) << preset;
+    EXPECT_TRUE(desk.wait_for({"loaded ", std::string("presets/") + preset + ".toml"}, from)) << preset;
+    EXPECT_TRUE(desk.wait_for({"frame left"}, from)) << preset;
+    EXPECT_EQ(last_frame(desk).fov, 33.0) << "not of the preset";
+  }
+  const std::optional<std::string> first = desk.wait_for({" present_mode "});
+  ASSERT_TRUE(first);
+  EXPECT_TRUE(first->ends_with(" fifo")) << *first;
+  std::size_t from = desk.lines();
+  ASSERT_TRUE(desk.click("button.vsync", 0.1));
+  const std::optional<std::string> off = desk.wait_for({" present_mode "}, from, 20.0);
+  ASSERT_TRUE(off);
+  EXPECT_FALSE(off->ends_with(" fifo")) << *off;
+  desk.picture("without_vsync");
+  from = desk.lines();
+  ASSERT_TRUE(desk.click("button.vsync", 0.1));
+  EXPECT_TRUE(desk.wait_for({" present_mode fifo"}, from, 20.0));
+  EXPECT_EQ(desk.leave(), 0) << desk.errors();
+}
+
+// On the first start with a state folder a help says how to move, to turn the sun and to make haze, until it is closed; then
+// it has been read for ever.
+TEST(Window, ShowsTheFirstStepsOnce) {
+  NEEDS_A_DESK();
+  Desk desk("first_steps");
+  const std::vector<std::string> arguments = joined(kSmallTables, {"--size", "640x480"});
+  ASSERT_TRUE(desk.open(arguments)) << desk.errors();
+  for (const char* line : {"Move", "Turn the sun", "More haze", "All keys"}) EXPECT_TRUE(desk.wait_for_place(std::string("first_run.") + line)) << line;
+  desk.picture("first");
+  // What it says of the haze is there: the slider, without anything done before.
+  EXPECT_TRUE(desk.wait_for_place("atmosphere.aerosol_density"));
+  ASSERT_TRUE(desk.click("first_run.close"));
+  EXPECT_TRUE(desk.wait_for_no_place("first_run.close"));
+  EXPECT_EQ(desk.leave(), 0) << desk.errors();
+
+  ASSERT_TRUE(desk.open(arguments)) << desk.errors();
+  ASSERT_TRUE(desk.wait_for_place("menu.Help"));
+  EXPECT_TRUE(desk.wait_for_no_place("first_run.close"));
+  // Again from the menu.
+  ASSERT_TRUE(desk.click("menu.Help"));
+  ASSERT_TRUE(desk.click("item.First steps"));
+  EXPECT_TRUE(desk.wait_for_place("first_run.close"));
+  EXPECT_EQ(desk.leave(), 0) << desk.errors();
+}
+
+}  // namespace
+}  // namespace tyndall
