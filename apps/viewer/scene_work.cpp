@@ -243,6 +243,8 @@ config::Settings SceneWork::loaded(config::Settings settings) const {
   settings.scene.terrain.source = applied_.scene.terrain.source;
   settings.scene.terrain.seed = applied_.scene.terrain.seed;
   settings.scene.terrain.exaggeration = applied_.scene.terrain.exaggeration;
+  // Only the effect draws without terrain; another model follows when there is one.
+  if (settings.scene.terrain.source == "none") settings.scene.scattering.model = scene::ScatteringModel::atmosphere;
   settings.effect.planet.radius_m = applied_.effect.planet.radius_m;
   settings.scene.camera.samples = 1;
   return settings;

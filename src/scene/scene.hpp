@@ -105,6 +105,7 @@ class Scene {
   Result<void> create_shadow_maps(const ShadowParams& shadows);
   [[nodiscard]] bool shadows_are_drawn() const;
   Result<void> make_model_ready();
+  Result<void> replace_ground(const SceneParams& wanted, double radius_m, ElevationSource source);
   Result<void> create_shadow_colors(const ShadowParams& shadows);
   Result<void> make_meshes(const SceneParams& scene);
   Result<void> draw_shadows(VkCommandBuffer cmd);

@@ -141,16 +141,22 @@ Result<Progress> Scene::advance_tables(std::uint32_t budget) {
 Result<void> Scene::set_terrain(const TerrainParams& params, double radius_m, ElevationSource source) {
   SceneParams wanted = scene_;
   wanted.terrain = params;
+  return replace_ground(wanted, radius_m, std::move(source));
+}
+
+// Terrain and meshes of `wanted` in the place of those that are there.
+Result<void> Scene::replace_ground(const SceneParams& wanted, double radius_m, ElevationSource source) {
   TYNDALL_TRY(check_model(wanted));
-  TYNDALL_TRY(terrain_->set_source(params, radius_m, std::move(source)));
+  TYNDALL_TRY(terrain_->set_source(wanted.terrain, radius_m, std::move(source)));
   for (const std::string& note : terrain_->notes()) {
     if (std::find(notes_.begin(), notes_.end(), note) == notes_.end()) notes_.push_back(note);
   }
   const TerrainShading shading = scene_.terrain.shading;
-  scene_.terrain = params;
+  scene_.terrain = wanted.terrain;
   scene_.terrain.shading = shading;
   params_.planet.radius_m = static_cast<float>(radius_m);
-  TYNDALL_TRY(make_meshes(scene_));
+  TYNDALL_TRY(make_meshes(wanted));
+  scene_.meshes = wanted.meshes;
   return create_shadow_colors(scene_.shadows);
 }
 
@@ -163,7 +169,7 @@ Result<void> Scene::set_scene(const SceneParams& scene) {
   if (!same_source(scene.terrain, scene_.terrain)) {
     TYNDALL_ASSIGN(ElevationSource source,
                    Terrain::load_source(host_->device(), scene.terrain, params_.planet.radius_m));
-    TYNDALL_TRY(set_terrain(scene.terrain, params_.planet.radius_m, std::move(source)));
+    TYNDALL_TRY(replace_ground(scene, params_.planet.radius_m, std::move(source)));
   }
   if (!same_meshes(scene.meshes, scene_.meshes)) {
     TYNDALL_TRY(make_meshes(scene));
