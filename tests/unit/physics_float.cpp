@@ -1,5 +1,6 @@
 #include "physics_float.hpp"
 
+#include <bit>
 #include <cstdint>
 
 #include <glm/glm.hpp>
@@ -20,26 +21,8 @@ using vec4 = glm::vec4;
 
 namespace {
 
-static_assert(sizeof(lib::Medium) == sizeof(shared::Medium));
-
-lib::Medium medium_of(const shared::Medium& m) {
-  const auto vec = [](const Vec3& v) { return lib::vec3(v.x, v.y, v.z); };
-  lib::Medium out = {};
-  out.rayleigh_scattering = vec(m.rayleigh_scattering);
-  out.planet_radius_m = m.planet_radius_m;
-  out.mie_scattering = vec(m.mie_scattering);
-  out.atmosphere_height_m = m.atmosphere_height_m;
-  out.mie_extinction = vec(m.mie_extinction);
-  out.rayleigh_scale_height_m = m.rayleigh_scale_height_m;
-  out.ozone_absorption = vec(m.ozone_absorption);
-  out.mie_scale_height_m = m.mie_scale_height_m;
-  out.mie_g = m.mie_g;
-  out.ozone_centre_m = m.ozone_centre_m;
-  out.ozone_half_width_m = m.ozone_half_width_m;
-  out.mie_phase = m.mie_phase;
-  out.ground_albedo = m.ground_albedo;
-  return out;
-}
+// The same members in the same order, as the shaders see them.
+lib::Medium medium_of(const shared::Medium& m) { return std::bit_cast<lib::Medium>(m); }
 
 Column array_of(const lib::vec3& v) { return {v.x, v.y, v.z}; }
 
