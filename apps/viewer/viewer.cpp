@@ -62,6 +62,7 @@ void say(const Error& error) { std::fprintf(stderr, "tyndall: error: %s\n", conf
 
 Viewer::~Viewer() {
   if (writing_.valid()) writing_.wait();
+  if (retired_.valid()) retired_.wait();
   left_.reset();
   other_.reset();
   next_.reset();

@@ -161,6 +161,8 @@ Result<void> Viewer::take_next() {
   }
   const bool others_busy = left_->busy() || (other_ != nullptr && other_->busy());
   if (next_->busy() || others_busy || !next_picture_) return {};
+  // Giving back what the one before held takes longer than a step of the GUI may.
+  retired_ = std::async(std::launch::async, [before = std::shared_ptr<Stage>(std::move(left_))]() mutable { before.reset(); });
   left_ = std::move(next_);
   TYNDALL_TRY(pictures_.take(0, std::move(*std::exchange(next_picture_, std::nullopt))));
   ++frames_;

@@ -137,6 +137,7 @@ class Viewer {
   std::uint32_t shown_width_ = 0;
   bool screenshot_wanted_ = false;
   std::future<Result<std::string>> writing_;
+  std::future<void> retired_;           // a scene that is being given back
   std::string shader_message_;
   Script script_;
   double last_memory_ = -100.0;
