@@ -11,6 +11,7 @@
 
 layout(constant_id = 0) const uint kExtinction = 0u;  // 0 epipolar, 1 per pixel
 layout(constant_id = 1) const bool kBreaks = false;   // list the pixels that no sample fits
+layout(constant_id = 9) const bool kGuided = false;   // pixels among samples of other depths take the shape of the light from their own rays
 
 const float kBeyond = 0.5;  // of the way between two samples
 // Samples to a pixel from which on a block of four pixels would reach too far beyond its samples.
@@ -32,6 +33,7 @@ struct Around {
   vec2 first;   // sample on each of the two
   vec4 origin_lower;  // entry and axis of the two
   vec4 origin_upper;
+  uvec2 at;  // of the first ones
   vec4 nearness;
   vec3 source[4];   // roots
   vec3 density[4];  // roots
@@ -62,6 +64,7 @@ Around around(vec2 position, float depth_m) {
     if (i == 0) a.origin_lower = origin;
     else a.origin_upper = origin;
     a.first[i] = float(first);
+    a.at[i] = id * epipolar.samples + first;
     for (int k = 0; k < 2; ++k) {
       Sample s = unpack_roots(samples[id * epipolar.samples + first + uint(k)]);
       a.source[2 * i + k] = s.source;
@@ -79,8 +82,13 @@ bool uneven(Around a) {
   return any(greaterThan(most, kUneven * least));
 }
 
-// At a place that is as far away, and no farther than a pixel from that of around().
-Blend blend(Around a, vec2 position) {
+float least_nearness(Around a) { return min(min(a.nearness.x, a.nearness.y), min(a.nearness.z, a.nearness.w)); }
+
+// Whether not all four end at about the depth that was asked for.
+bool lopsided(Around a) { return least_nearness(a) < 0.5; }
+
+// At a place that is as far away, and no farther than a pixel from that of around(). The weights add up to 1; `sum`: to what before.
+vec4 blend_weights(Around a, vec2 position, out float sum) {
   float part = slice_coordinate(position, a.side) - a.lower;
   // The last slice of all sides is next to the first.
   float all = float(epipolar.slices);
@@ -90,13 +98,16 @@ Blend blend(Around a, vec2 position) {
   vec2 along = clamp(vec2(place_on_slice(a.origin_lower, position), place_on_slice(a.origin_upper, position)) - a.first,
                      -kBeyond, 1.0 + kBeyond);
   vec4 bilinear = vec4((1.0 - part) * (1.0 - along.x), (1.0 - part) * along.x, part * (1.0 - along.y), part * along.y);
-  bool alike = min(min(a.nearness.x, a.nearness.y), min(a.nearness.z, a.nearness.w)) > 0.99;
-  bilinear = alike ? bilinear : max(bilinear, vec4(0.0));
+  bilinear = least_nearness(a) > 0.99 ? bilinear : max(bilinear, vec4(0.0));
   // The last term keeps the sum above zero, whatever the samples.
   vec4 w = bilinear * a.nearness + 1e-9;
+  sum = w.x + w.y + w.z + w.w;
+  return w / sum;
+}
+
+Blend blend(Around a, vec2 position) {
   Blend b;
-  b.weight = w.x + w.y + w.z + w.w;
-  w /= b.weight;
+  vec4 w = blend_weights(a, position, b.weight);
   b.source = w.x * a.source[0] + w.y * a.source[1] + w.z * a.source[2] + w.w * a.source[3];
   b.density = w.x * a.density[0] + w.y * a.density[1] + w.z * a.density[2] + w.w * a.density[3];
   b.source = max(b.source, vec3(0.0));

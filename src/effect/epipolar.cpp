@@ -15,6 +15,9 @@ std::uint32_t extinction_index(const Params& params) {
   return is_homogeneous(params.scattering) ? 0 : static_cast<std::uint32_t>(params.scattering.extinction);
 }
 
+// Of the pipelines that unwarp: whether pixels are listed, and is_guided().
+std::size_t unwarp_index(bool lists, bool guided) { return (lists ? 1U : 0U) + (guided ? 2U : 0U); }
+
 std::size_t index(EpipolarBuffer buffer) { return static_cast<std::size_t>(buffer); }
 
 }  // namespace
@@ -44,14 +47,15 @@ Result<void> Epipolar::create_pipelines() {
     TYNDALL_TRY(make(refine_samples_[i], shaders::refine_samples_comp, "refine_samples", by_criterion));
     const gpu::Constant by_format[] = {{0, i}};
     TYNDALL_TRY(make(shadow_tree_[i], shaders::shadow_tree_comp, "shadow_tree", by_format));
-    for (const bool breaks : {false, true}) TYNDALL_TRY(make_of_medium(MediumKind::atmosphere, i, breaks));
+    for (const bool breaks : {false, true}) TYNDALL_TRY(make_of_medium(MediumKind::atmosphere, i, breaks, false));
   }
   return {};
 }
 
-Result<void> Epipolar::make_of_medium(MediumKind medium, std::uint32_t extinction, bool breaks) {
+Result<void> Epipolar::make_of_medium(MediumKind medium, std::uint32_t extinction, bool lists, bool guided) {
   const bool full = desc_.output_format == OutputFormat::rgba32f;
-  const gpu::Constant constants[] = {{0, extinction}, {1, breaks ? 1U : 0U}, {5, static_cast<std::uint32_t>(medium)}};
+  const gpu::Constant constants[] = {{0, extinction}, {1, lists ? 1U : 0U}, {5, static_cast<std::uint32_t>(medium)}, {9, guided ? 1U : 0U}};
+  const std::size_t variant = unwarp_index(lists, guided);
   const auto make = [&](gpu::Pipeline& out, const gpu::Shader& shader, const char* name) -> Result<void> {
     if (out.pipeline) return {};
     TYNDALL_ASSIGN(out, gpu::create_compute_pipeline(*device_, shader, constants));
@@ -62,9 +66,9 @@ Result<void> Epipolar::make_of_medium(MediumKind medium, std::uint32_t extinctio
   TYNDALL_TRY(make(of.slice_samples, shaders::slice_samples_comp, "slice_samples"));
   TYNDALL_TRY(make(of.correct_pixels, full ? shaders::correct_pixels_comp_rgba32f : shaders::correct_pixels_comp_rgba16f,
                    "correct_pixels"));
-  TYNDALL_TRY(make(of.unwarp[extinction][breaks ? 1 : 0],
+  TYNDALL_TRY(make(of.unwarp[extinction][variant],
                    full ? shaders::unwarp_comp_rgba32f : shaders::unwarp_comp_rgba16f, "unwarp"));
-  return make(of.unwarp_pixels[extinction][breaks ? 1 : 0],
+  return make(of.unwarp_pixels[extinction][variant],
               full ? shaders::unwarp_pixels_comp_rgba32f : shaders::unwarp_pixels_comp_rgba16f, "unwarp_pixels");
 }
 
@@ -109,7 +113,10 @@ Result<const gpu::Pipeline*> Epipolar::march(bool tree, bool colors, std::uint32
 Result<void> Epipolar::prepare(const Params& params) {
   if (params.scattering.technique != Technique::epipolar) return {};
   if (is_homogeneous(params.scattering)) {
-    TYNDALL_TRY(make_of_medium(MediumKind::homogeneous, extinction_index(params), lists_breaks(params)));
+    TYNDALL_TRY(make_of_medium(MediumKind::homogeneous, extinction_index(params), lists_breaks(params), false));
+  }
+  if (is_guided(params)) {
+    for (const bool lists : {false, true}) TYNDALL_TRY(make_of_medium(MediumKind::atmosphere, extinction_index(params), lists, true));
   }
   if (is_downscaled(params)) TYNDALL_TRY(make_downscaled(params.scattering.medium, extinction_index(params),
                                                              params.scattering.downscale));
@@ -150,9 +157,9 @@ Result<void> Epipolar::prepare_others(std::uint32_t& budget, Progress& progress)
   for (const MediumKind medium : {MediumKind::atmosphere, MediumKind::homogeneous}) {
     const PerMedium& of = of_medium_[static_cast<std::size_t>(medium)];
     for (std::uint32_t extinction = 0; extinction < (medium == MediumKind::atmosphere ? 2U : 1U); ++extinction) {
-      for (const bool breaks : {false, true}) {
-        TYNDALL_TRY(take(static_cast<bool>(of.unwarp_pixels[extinction][breaks ? 1 : 0].pipeline),
-                         [&] { return make_of_medium(medium, extinction, breaks); }));
+      for (std::size_t variant = 0; variant < (medium == MediumKind::atmosphere ? 4U : 2U); ++variant) {
+        TYNDALL_TRY(take(static_cast<bool>(of.unwarp_pixels[extinction][variant].pipeline),
+                         [&] { return make_of_medium(medium, extinction, variant % 2 == 1, variant >= 2); }));
       }
       for (const std::uint32_t downscale : {2U, 4U}) {
         TYNDALL_TRY(take(static_cast<bool>(of.upscale_pixels[extinction][downscale / 4].pipeline),
@@ -337,9 +344,10 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
     TYNDALL_TRY(correct(of.correct_pixels));
   } else {
     const VkExtent2D blocks = unwarp_blocks(inputs.extent);
-    TYNDALL_TRY(run(of.unwarp[extinction][lists_pixels ? 1 : 0], {blocks.width, blocks.height}));
+    const std::size_t variant = unwarp_index(lists_pixels, is_guided(params));
+    TYNDALL_TRY(run(of.unwarp[extinction][variant], {blocks.width, blocks.height}));
     lists_ready();
-    TYNDALL_TRY(run_list(of.unwarp_pixels[extinction][lists_pixels ? 1 : 0], EpipolarBuffer::broken_list));
+    TYNDALL_TRY(run_list(of.unwarp_pixels[extinction][variant], EpipolarBuffer::broken_list));
     if (lists_pixels) TYNDALL_TRY(correct(of.correct_pixels));
   }
   if (p.show_sampling) {

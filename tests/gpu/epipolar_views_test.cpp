@@ -288,12 +288,13 @@ TEST_F(Epipolar, SlicesAndSamplesAtBothEnds) {
                      (optimised ? "" : ", all used"),
                  params, floor_db);
   };
-  with(32, 32, true, 32.0);
+  // A picture of boxes whose shafts are finer than so few slices; the default scene at 1280 x 720 has 40 dB with them.
+  with(32, 32, true, 36.0);
   with(2048, 32, true, 40.0);
-  with(32, 2048, true, 32.0);
+  with(32, 2048, true, 36.0);
   with(2048, 2048, true, 40.0);
   with(128, 2048, false, 41.0);
-  with(33, 33, true, 31.0);
+  with(33, 33, true, 36.0);
 }
 
 // Where the light is smooth, it is smooth across slices: what a seam would add to the second differences is
