@@ -27,6 +27,10 @@ layout(std430, binding = 9) writeonly buffer reduced_block { vec4 reduced[]; };
 const int kBlockWidth = int(kUnwarpWidth);
 #include "epipolar/block.glsl"
 
+// Thresholds of refinement within which the pixels of a block are at one depth. Those of the reduced picture are farther apart, and the
+// whole one's pixels are at depths of their own again.
+const float kOneDepth = kDownscale == 1 ? 1.0 : 3.0;
+
 void main() {
   ivec2 corner = ivec2(kBlockWidth, 2) * ivec2(gl_GlobalInvocationID.xy);
   ivec2 size = computed_size();
@@ -42,7 +46,7 @@ void main() {
   vec2 middle = 0.5 * vec2(block.pixel[0] + block.pixel[kBlockPixels - 1]) + 0.5;
   bool scene = block.kinds == kScene;
   float depth_m = scene ? 0.5 * (block.nearest_m + block.farthest_m) : kSkyDepth;
-  bool one_depth = scene ? block.farthest_m - block.nearest_m < epipolar.threshold * block.farthest_m : block.kinds == kSky;
+  bool one_depth = scene ? block.farthest_m - block.nearest_m < kOneDepth * epipolar.threshold * block.farthest_m : block.kinds == kSky;
   Around a = around(middle, depth_m);
   bool dense = max(length(a.origin_lower.zw), length(a.origin_upper.zw)) * float(kDownscale) > kDense;
   // Beside the limb air thins out from sample to sample: what goes on in a line beyond them soon is none at all.

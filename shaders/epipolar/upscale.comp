@@ -28,7 +28,7 @@ const int kBlockWidth = 2;
 
 // Thresholds of refinement within which depths are those of one slope: it is even between the reduced pixels, whatever
 // depth_nearness() says of their distances.
-const float kOneSlope = 4.0;
+const float kOneSlope = 8.0;
 
 void main() {
   ivec2 corner = 2 * ivec2(gl_GlobalInvocationID.xy);
