@@ -1,11 +1,15 @@
 // The samples of all slices: where their rays end, what the air takes away on the way there, and, coarsely, the
-// light that it would send without shadows, which refinement goes by.
+// light that it would send without shadows: what a medium mixed evenly along the ray gives, in closed form.
+// It follows every change of depth and direction, which is all that refinement needs of it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
 #include "shared/medium.h"
 #include "shared/frame_constants.h"
 #include "shared/epipolar.h"
+#include "lib/phase.glsl"
+#include "lib/optical_depth.glsl"
+#include "lib/table_values.glsl"
 
 layout(local_size_x = 32, local_size_y = 2) in;
 
@@ -19,7 +23,6 @@ layout(binding = 6) uniform sampler2D scene_depth;
 
 #include "epipolar/ray_end.glsl"
 #include "epipolar/slices.glsl"
-#include "epipolar/unshadowed.glsl"
 
 // Device depth at a place between pixels: on one surface that of the surface there, because device depth is affine in
 // the picture; across a break that of the nearest pixel, because a mixture would be the depth of nothing.
@@ -70,5 +73,8 @@ void main() {
   }
   s.density = density_of(optical_depth(medium, column), s.depth_m);
   samples[at] = pack_sample(s);
-  coarse[at] = pack_coarse(unshadowed_light(ray.cos_view_sun, column));
+  Guide guide = guide_for_column(medium, column);
+  vec3 light = medium.rayleigh_scattering * rayleigh_phase(ray.cos_view_sun) * guide.rayleigh +
+               medium.mie_scattering * mie_phase(medium, ray.cos_view_sun) * guide.mie;
+  coarse[at] = pack_coarse(light);
 }

@@ -11,7 +11,7 @@
 
 layout(constant_id = 0) const uint kExtinction = 0u;  // 0 epipolar, 1 per pixel
 layout(constant_id = 1) const bool kBreaks = false;   // list the pixels that no sample fits
-layout(constant_id = 9) const bool kGuided = false;   // pixels among samples of other depths take the shape of the light from their own rays
+layout(constant_id = 9) const bool kSparse = false;   // among samples of other depths pixels take optical depth from their own rays
 
 const float kBeyond = 0.5;  // of the way between two samples
 // Samples to a pixel from which on a block of four pixels would reach too far beyond its samples.
@@ -33,7 +33,6 @@ struct Around {
   vec2 first;   // sample on each of the two
   vec4 origin_lower;  // entry and axis of the two
   vec4 origin_upper;
-  uvec2 at;  // of the first ones
   vec4 nearness;
   vec3 source[4];   // roots
   vec3 density[4];  // roots
@@ -64,7 +63,6 @@ Around around(vec2 position, float depth_m) {
     if (i == 0) a.origin_lower = origin;
     else a.origin_upper = origin;
     a.first[i] = float(first);
-    a.at[i] = id * epipolar.samples + first;
     for (int k = 0; k < 2; ++k) {
       Sample s = unpack_roots(samples[id * epipolar.samples + first + uint(k)]);
       a.source[2 * i + k] = s.source;
@@ -87,8 +85,8 @@ float least_nearness(Around a) { return min(min(a.nearness.x, a.nearness.y), min
 // Whether not all four end at about the depth that was asked for.
 bool lopsided(Around a) { return least_nearness(a) < 0.5; }
 
-// At a place that is as far away, and no farther than a pixel from that of around(). The weights add up to 1; `sum`: to what before.
-vec4 blend_weights(Around a, vec2 position, out float sum) {
+// At a place that is as far away, and no farther than a pixel from that of around().
+Blend blend(Around a, vec2 position) {
   float part = slice_coordinate(position, a.side) - a.lower;
   // The last slice of all sides is next to the first.
   float all = float(epipolar.slices);
@@ -101,13 +99,9 @@ vec4 blend_weights(Around a, vec2 position, out float sum) {
   bilinear = least_nearness(a) > 0.99 ? bilinear : max(bilinear, vec4(0.0));
   // The last term keeps the sum above zero, whatever the samples.
   vec4 w = bilinear * a.nearness + 1e-9;
-  sum = w.x + w.y + w.z + w.w;
-  return w / sum;
-}
-
-Blend blend(Around a, vec2 position) {
   Blend b;
-  vec4 w = blend_weights(a, position, b.weight);
+  b.weight = w.x + w.y + w.z + w.w;
+  w /= b.weight;
   b.source = w.x * a.source[0] + w.y * a.source[1] + w.z * a.source[2] + w.w * a.source[3];
   b.density = w.x * a.density[0] + w.y * a.density[1] + w.z * a.density[2] + w.w * a.density[3];
   b.source = max(b.source, vec3(0.0));
@@ -115,6 +109,14 @@ Blend blend(Around a, vec2 position) {
   b.source *= b.source;
   b.density *= b.density;
   return b;
+}
+
+// In closed form, of a pixel's own ray.
+vec3 own_optical_depth(vec2 position, float visible_m, bool sky) {
+  Ray ray = ray_to_depth(frame, position, visible_m, sky);
+  float start, end;
+  if (!clip_to_air(medium, ray, start, end)) return vec3(0.0);
+  return optical_depth(medium, column_along(medium, ray.altitude, ray.cos_zenith, end));
 }
 
 // The background seen through the air, from blended samples. `visible_m`: view-space depth of what was drawn.
@@ -130,12 +132,7 @@ vec3 compose(Blend b, vec2 position, float depth_m, float visible_m, bool sky, v
   if (kExtinction == 0u) {
     tau = optical_depth_at(b.density, depth_m);
   } else {
-    Ray ray = ray_to_depth(frame, position, visible_m, sky);
-    float start, end;
-    tau = vec3(0.0);
-    if (clip_to_air(medium, ray, start, end)) {
-      tau = optical_depth(medium, column_along(medium, ray.altitude, ray.cos_zenith, end));
-    }
+    tau = own_optical_depth(position, visible_m, sky);
   }
   vec3 through, lost;
   attenuation(tau, through, lost);

@@ -19,13 +19,11 @@ layout(binding = 6) uniform sampler2D scene_depth;
 layout(binding = 7, OUTPUT_FORMAT) uniform writeonly image2D output_color;
 layout(std430, binding = 8) readonly buffer work_block { WorkList work; uint items[]; };
 layout(std430, binding = 9) buffer break_list_block { WorkList breaks; uint break_list[]; };
-layout(std430, binding = 11) readonly buffer coarse_block { uvec2 coarse[]; };
 layout(std430, binding = 10) writeonly buffer reduced_block { vec4 reduced[]; };
 
 #include "epipolar/unwarp.glsl"
 #include "epipolar/reduced.glsl"
 #include "epipolar/break_list.glsl"
-#include "epipolar/unshadowed.glsl"
 
 // Whether a ray goes down through all of the air, to graze the planet or to rise again, and not all samples around it end where it
 // does: beside the limb light changes several times over from pixel to pixel, so that those which do are no substitute.
@@ -39,30 +37,6 @@ bool at_limb(Around a, vec2 position) {
   return grazes && lopsided(a);
 }
 
-// Blends how much of their unshadowed light the samples have, and takes the rest from the pixel's own ray.
-Blend guided_blend(Around a, vec2 position, float visible_m, bool sky, float depth_m) {
-  Blend b;
-  vec4 w = blend_weights(a, position, b.weight);
-  vec3 part = vec3(0.0);
-  vec3 through, lost;
-  for (int k = 0; k < 4; ++k) {
-    uint at = a.at[k / 2] + uint(k & 1);
-    Sample s = unpack_sample(samples[at]);
-    attenuation(optical_depth_at(s.density, s.depth_m), through, lost);
-    vec3 guide = max(unpack_coarse(coarse[at]) / kCoarseUnit, vec3(1e-14));
-    part += w[k] * s.source * lost / guide;
-  }
-  Ray ray = ray_to_depth(frame, position, visible_m, sky);
-  float start, end;
-  vec3 column = vec3(0.0);
-  if (clip_to_air(medium, ray, start, end)) column = max(column_along(medium, ray.altitude, ray.cos_zenith, end), vec3(0.0));
-  vec3 tau = optical_depth(medium, column);
-  attenuation(tau, through, lost);
-  b.density = density_of(tau, depth_m);
-  b.source = part * unshadowed_light(ray.cos_view_sun, column) / max(lost, vec3(1e-20));
-  return b;
-}
-
 void unwarp_pixel(uint block, uint k) {
   ivec2 place = ivec2((block & 0xFFFFu) + (k & 1u), (block >> 16u) + (k >> 1u));
   if (any(greaterThanEqual(place, computed_size()))) return;
@@ -73,7 +47,9 @@ void unwarp_pixel(uint block, uint k) {
   float visible_m = view_depth(frame, position, depth);
   float depth_m = sky ? sky_depth_m(ray_direction(frame, position)) : visible_m;
   Around a = around(position, depth_m);
-  Blend b = kGuided && !kHomogeneous && lopsided(a) ? guided_blend(a, position, visible_m, sky, depth_m) : blend(a, position);
+  Blend b = blend(a, position);
+  // What only one of two slices tells ends in a seam; most of that is optical depth.
+  if (kSparse && !kHomogeneous && lopsided(a)) b.density = density_of(max(own_optical_depth(position, visible_m, sky), vec3(0.0)), depth_m);
   if (kDownscale == 1) {
     vec3 background = texelFetch(scene_color, pixel, 0).rgb;
     imageStore(output_color, pixel, vec4(compose(b, position, depth_m, visible_m, sky, background), 1.0));

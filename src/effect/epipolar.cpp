@@ -15,8 +15,8 @@ std::uint32_t extinction_index(const Params& params) {
   return is_homogeneous(params.scattering) ? 0 : static_cast<std::uint32_t>(params.scattering.extinction);
 }
 
-// Of the pipelines that unwarp: whether pixels are listed, and is_guided().
-std::size_t unwarp_index(bool lists, bool guided) { return (lists ? 1U : 0U) + (guided ? 2U : 0U); }
+// Of the pipelines that unwarp: whether pixels are listed, and is_sparse().
+std::size_t unwarp_index(bool lists, bool sparse) { return (lists ? 1U : 0U) + (sparse ? 2U : 0U); }
 
 std::size_t index(EpipolarBuffer buffer) { return static_cast<std::size_t>(buffer); }
 
@@ -52,10 +52,10 @@ Result<void> Epipolar::create_pipelines() {
   return {};
 }
 
-Result<void> Epipolar::make_of_medium(MediumKind medium, std::uint32_t extinction, bool lists, bool guided) {
+Result<void> Epipolar::make_of_medium(MediumKind medium, std::uint32_t extinction, bool lists, bool sparse) {
   const bool full = desc_.output_format == OutputFormat::rgba32f;
-  const gpu::Constant constants[] = {{0, extinction}, {1, lists ? 1U : 0U}, {5, static_cast<std::uint32_t>(medium)}, {9, guided ? 1U : 0U}};
-  const std::size_t variant = unwarp_index(lists, guided);
+  const gpu::Constant constants[] = {{0, extinction}, {1, lists ? 1U : 0U}, {5, static_cast<std::uint32_t>(medium)}, {9, sparse ? 1U : 0U}};
+  const std::size_t variant = unwarp_index(lists, sparse);
   const auto make = [&](gpu::Pipeline& out, const gpu::Shader& shader, const char* name) -> Result<void> {
     if (out.pipeline) return {};
     TYNDALL_ASSIGN(out, gpu::create_compute_pipeline(*device_, shader, constants));
@@ -115,7 +115,7 @@ Result<void> Epipolar::prepare(const Params& params) {
   if (is_homogeneous(params.scattering)) {
     TYNDALL_TRY(make_of_medium(MediumKind::homogeneous, extinction_index(params), lists_breaks(params), false));
   }
-  if (is_guided(params)) {
+  if (is_sparse(params)) {
     for (const bool lists : {false, true}) TYNDALL_TRY(make_of_medium(MediumKind::atmosphere, extinction_index(params), lists, true));
   }
   if (is_downscaled(params)) TYNDALL_TRY(make_downscaled(params.scattering.medium, extinction_index(params),
@@ -344,7 +344,7 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
     TYNDALL_TRY(correct(of.correct_pixels));
   } else {
     const VkExtent2D blocks = unwarp_blocks(inputs.extent);
-    const std::size_t variant = unwarp_index(lists_pixels, is_guided(params));
+    const std::size_t variant = unwarp_index(lists_pixels, is_sparse(params));
     TYNDALL_TRY(run(of.unwarp[extinction][variant], {blocks.width, blocks.height}));
     lists_ready();
     TYNDALL_TRY(run_list(of.unwarp_pixels[extinction][variant], EpipolarBuffer::broken_list));

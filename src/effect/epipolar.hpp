@@ -58,7 +58,7 @@ class Epipolar {
 
   Result<void> create_pipelines();
   Result<void> make_downscaled(MediumKind medium, std::uint32_t extinction, std::uint32_t downscale);
-  Result<void> make_of_medium(MediumKind medium, std::uint32_t extinction, bool lists, bool guided);
+  Result<void> make_of_medium(MediumKind medium, std::uint32_t extinction, bool lists, bool sparse);
   // Whether the march looks at the shadows at all.
   [[nodiscard]] static bool walks(const Params& params);
   Result<const gpu::Pipeline*> march(bool tree, bool colors, std::uint32_t mode);

@@ -65,9 +65,9 @@ bool lists_breaks(const Params& params) {
          params.epipolar.show_depth_breaks.value != 0;
 }
 
-bool is_guided(const Params& params) {
-  constexpr std::uint32_t kSparse = 64;
-  return params.epipolar.slices < kSparse && !is_downscaled(params) && !is_homogeneous(params.scattering);
+bool is_sparse(const Params& params) {
+  constexpr std::uint32_t kMany = 64;
+  return params.epipolar.slices < kMany && !is_downscaled(params) && !is_homogeneous(params.scattering);
 }
 
 bool lists_limb(const FrameInputs& inputs, const Params& params) {

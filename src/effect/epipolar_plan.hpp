@@ -58,8 +58,8 @@ constexpr VkBufferUsageFlags kEpipolarUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT
 [[nodiscard]] inline bool is_downscaled(const Params& params) { return params.scattering.downscale > 1; }
 // Whether pixels that no sample fits in depth are listed.
 [[nodiscard]] bool lists_breaks(const Params& params);
-// Whether slices are so few that pixels among samples of other depths need more than these.
-[[nodiscard]] bool is_guided(const Params& params);
+// Whether slices are so few that pixels among samples of other depths take optical depth from their own rays.
+[[nodiscard]] bool is_sparse(const Params& params);
 // Whether pixels at the limb are listed, because the camera is above most of the air.
 [[nodiscard]] bool lists_limb(const FrameInputs& inputs, const Params& params);
 

@@ -300,6 +300,38 @@ TEST_F(Epipolar, SlicesAndSamplesAtBothEnds) {
 // Where the light is smooth, it is smooth across slices: what a seam would add to the second differences is
 // bounded by those of brute force.
 
+// Fewer than 64 slices have pipelines of their own.
+TEST_F(Epipolar, FewSlicesWillDoInEveryMode) {
+  const auto with = [&](const std::string& name, const std::function<void(Params&)>& change, double floor_db) {
+    Params params = small_params();
+    params.epipolar.slices = 40;
+    change(params);
+    expect_alike("40 slices, " + name, params, floor_db);
+  };
+  BoxScene scene;
+  scene.extent = {96, 54};
+  show(scene);
+  with("integrated", [](Params& p) { p.scattering.single = SingleScattering::integration; }, 36.0);
+  with("higher orders alone", [](Params& p) { p.scattering.single = SingleScattering::none; }, 36.0);
+  with("no shafts", [](Params& p) { p.scattering.light_shafts = false; }, 36.0);
+  with("extinction per pixel", [](Params& p) { p.scattering.extinction = Extinction::per_pixel; }, 36.0);
+  with("correct_depth_breaks", [](Params& p) { p.epipolar.correct_depth_breaks = true; }, 36.0);
+  scene.name = "below the horizon";
+  scene.sun_elevation_deg = -2.0;
+  show(scene);
+  with("sun below the horizon", [](Params&) {}, 36.0);
+  scene = {};
+  scene.name = "limb";
+  scene.extent = {96, 54};
+  scene.altitude_m = 400000.0;
+  scene.pitch_deg = -20.0;
+  scene.tan_half_height = 0.12;
+  scene.buildings = scene.ground = false;
+  scene.cascades = 0;
+  show(scene);
+  with("limb", [](Params&) {}, 36.0);
+}
+
 TEST_F(Epipolar, SmoothLightHasNoSeams) {
   for (const bool inside : {true, false}) {
     BoxScene scene =
