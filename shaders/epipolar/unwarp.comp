@@ -31,6 +31,26 @@ const int kBlockWidth = int(kUnwarpWidth);
 // whole one's pixels are at depths of their own again.
 const float kOneDepth = kDownscale == 1 ? 1.0 : 3.0;
 
+// Optical depth per metre of the pixels' own rays: that of three corners of a block, and affine between.
+struct OwnDensity {
+  vec3 corner;
+  vec3 per_x;  // by the pixel
+  vec3 per_y;
+};
+
+OwnDensity own_density(Block block, bool scene) {
+  const int kCorners[3] = int[3](0, kBlockWidth - 1, kBlockWidth);
+  vec3 density[3];
+  for (int i = 0; i < 3; ++i) {
+    int k = kCorners[i];
+    vec3 tau = own_optical_depth(vec2(block.pixel[k]) + 0.5, block.visible_m[k], block.sky[k]);
+    density[i] = density_of(tau, scene ? block.visible_m[k] : kSkyDepth);
+  }
+  // The last block of a row may be narrower.
+  float width = max(float(block.pixel[kBlockWidth - 1].x - block.pixel[0].x), 1.0);
+  return OwnDensity(density[0], (density[1] - density[0]) / width, density[2] - density[0]);
+}
+
 void main() {
   ivec2 corner = ivec2(kBlockWidth, 2) * ivec2(gl_GlobalInvocationID.xy);
   ivec2 size = computed_size();
@@ -51,15 +71,20 @@ void main() {
   bool dense = max(length(a.origin_lower.zw), length(a.origin_upper.zw)) * float(kDownscale) > kDense;
   // Beside the limb air thins out from sample to sample: what goes on in a line beyond them soon is none at all.
   dense = dense || uneven(a);
-  if (!one_depth || dense || (kSparse && lopsided(a)) || (kBreaks && blend(a, middle).weight < epipolar.least_weight)) {
+  if (!one_depth || dense || (kSkyline && !scene && lopsided(a)) || (kBreaks && blend(a, middle).weight < epipolar.least_weight)) {
     list_broken(corner);
     return;
   }
+  bool own = kSparse && kExtinction == 0u && (!scene || lopsided(a));
+  OwnDensity density;
+  if (own) density = own_density(block, scene);
   for (int k = 0; k < kBlockPixels; ++k) {
     ivec2 pixel = block.pixel[k];
     vec2 position = vec2(pixel) + 0.5;
     float own_m = scene ? block.visible_m[k] : depth_m;
     Blend b = blend(a, position);
+    vec2 off = vec2(pixel - block.pixel[0]);
+    if (own) b.density = max(density.corner + off.x * density.per_x + off.y * density.per_y, vec3(0.0));
     if (kDownscale == 1) {
       vec3 background = texelFetch(scene_color, pixel, 0).rgb;
       vec3 color = compose(b, position, own_m, block.visible_m[k], block.sky[k], background);

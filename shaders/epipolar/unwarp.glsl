@@ -11,7 +11,10 @@
 
 layout(constant_id = 0) const uint kExtinction = 0u;  // 0 epipolar, 1 per pixel
 layout(constant_id = 1) const bool kBreaks = false;   // list the pixels that no sample fits
-layout(constant_id = 9) const bool kSparse = false;   // among samples of other depths pixels take optical depth from their own rays
+layout(constant_id = 9) const uint kSparsity = 0u;    // of src/effect/epipolar_plan.hpp
+
+const bool kSkyline = kSparsity >= 1u && !kHomogeneous;
+const bool kSparse = kSparsity == 2u && !kHomogeneous;
 
 const float kBeyond = 0.5;  // of the way between two samples
 // Samples to a pixel from which on a block of four pixels would reach too far beyond its samples.

@@ -24,6 +24,7 @@ layout(std430, binding = 10) writeonly buffer reduced_block { vec4 reduced[]; };
 #include "epipolar/unwarp.glsl"
 #include "epipolar/reduced.glsl"
 #include "epipolar/break_list.glsl"
+#include "epipolar/skyline.glsl"
 
 // Whether a ray goes down through all of the air, to graze the planet or to rise again, and not all samples around it end where it
 // does: beside the limb light changes several times over from pixel to pixel, so that those which do are no substitute.
@@ -49,7 +50,10 @@ void unwarp_pixel(uint block, uint k) {
   Around a = around(position, depth_m);
   Blend b = blend(a, position);
   // What only one of two slices tells ends in a seam; most of that is optical depth.
-  if (kSparse && !kHomogeneous && lopsided(a)) b.density = density_of(max(own_optical_depth(position, visible_m, sky), vec3(0.0)), depth_m);
+  // What only one of two slices tells would end in a step where the other begins to.
+  bool skyline = kSkyline && depth_m >= kSkyDepth && lopsided(a);
+  if (skyline) b.source = sky_source(a, position, b.source);
+  if (skyline || kSparse) b.density = density_of(max(own_optical_depth(position, visible_m, sky), vec3(0.0)), depth_m);
   if (kDownscale == 1) {
     vec3 background = texelFetch(scene_color, pixel, 0).rgb;
     imageStore(output_color, pixel, vec4(compose(b, position, depth_m, visible_m, sky, background), 1.0));

@@ -15,8 +15,8 @@ std::uint32_t extinction_index(const Params& params) {
   return is_homogeneous(params.scattering) ? 0 : static_cast<std::uint32_t>(params.scattering.extinction);
 }
 
-// Of the pipelines that unwarp: whether pixels are listed, and is_sparse().
-std::size_t unwarp_index(bool lists, bool sparse) { return (lists ? 1U : 0U) + (sparse ? 2U : 0U); }
+// Of the pipelines that unwarp: whether pixels are listed, and sparsity().
+std::size_t unwarp_index(bool lists, Sparsity sparsity) { return (lists ? 1U : 0U) + 2 * static_cast<std::size_t>(sparsity); }
 
 std::size_t index(EpipolarBuffer buffer) { return static_cast<std::size_t>(buffer); }
 
@@ -47,15 +47,16 @@ Result<void> Epipolar::create_pipelines() {
     TYNDALL_TRY(make(refine_samples_[i], shaders::refine_samples_comp, "refine_samples", by_criterion));
     const gpu::Constant by_format[] = {{0, i}};
     TYNDALL_TRY(make(shadow_tree_[i], shaders::shadow_tree_comp, "shadow_tree", by_format));
-    for (const bool breaks : {false, true}) TYNDALL_TRY(make_of_medium(MediumKind::atmosphere, i, breaks, false));
+    for (const bool breaks : {false, true}) TYNDALL_TRY(make_of_medium(MediumKind::atmosphere, i, breaks, Sparsity::none));
   }
   return {};
 }
 
-Result<void> Epipolar::make_of_medium(MediumKind medium, std::uint32_t extinction, bool lists, bool sparse) {
+Result<void> Epipolar::make_of_medium(MediumKind medium, std::uint32_t extinction, bool lists, Sparsity sparsity) {
   const bool full = desc_.output_format == OutputFormat::rgba32f;
-  const gpu::Constant constants[] = {{0, extinction}, {1, lists ? 1U : 0U}, {5, static_cast<std::uint32_t>(medium)}, {9, sparse ? 1U : 0U}};
-  const std::size_t variant = unwarp_index(lists, sparse);
+  const gpu::Constant constants[] = {{0, extinction}, {1, lists ? 1U : 0U}, {5, static_cast<std::uint32_t>(medium)},
+                                     {9, static_cast<std::uint32_t>(sparsity)}};
+  const std::size_t variant = unwarp_index(lists, sparsity);
   const auto make = [&](gpu::Pipeline& out, const gpu::Shader& shader, const char* name) -> Result<void> {
     if (out.pipeline) return {};
     TYNDALL_ASSIGN(out, gpu::create_compute_pipeline(*device_, shader, constants));
@@ -113,10 +114,14 @@ Result<const gpu::Pipeline*> Epipolar::march(bool tree, bool colors, std::uint32
 Result<void> Epipolar::prepare(const Params& params) {
   if (params.scattering.technique != Technique::epipolar) return {};
   if (is_homogeneous(params.scattering)) {
-    TYNDALL_TRY(make_of_medium(MediumKind::homogeneous, extinction_index(params), lists_breaks(params), false));
+    TYNDALL_TRY(make_of_medium(MediumKind::homogeneous, extinction_index(params), lists_breaks(params), Sparsity::none));
   }
-  if (is_sparse(params)) {
-    for (const bool lists : {false, true}) TYNDALL_TRY(make_of_medium(MediumKind::atmosphere, extinction_index(params), lists, true));
+  if (may_be_sparse(params)) {
+    for (const Sparsity sparsity : {Sparsity::skyline, Sparsity::all}) {
+      for (const bool lists : {false, true}) {
+        TYNDALL_TRY(make_of_medium(MediumKind::atmosphere, extinction_index(params), lists, sparsity));
+      }
+    }
   }
   if (is_downscaled(params)) TYNDALL_TRY(make_downscaled(params.scattering.medium, extinction_index(params),
                                                              params.scattering.downscale));
@@ -157,9 +162,9 @@ Result<void> Epipolar::prepare_others(std::uint32_t& budget, Progress& progress)
   for (const MediumKind medium : {MediumKind::atmosphere, MediumKind::homogeneous}) {
     const PerMedium& of = of_medium_[static_cast<std::size_t>(medium)];
     for (std::uint32_t extinction = 0; extinction < (medium == MediumKind::atmosphere ? 2U : 1U); ++extinction) {
-      for (std::size_t variant = 0; variant < (medium == MediumKind::atmosphere ? 4U : 2U); ++variant) {
+      for (std::size_t variant = 0; variant < (medium == MediumKind::atmosphere ? 2 * kSparsities : 2); ++variant) {
         TYNDALL_TRY(take(static_cast<bool>(of.unwarp_pixels[extinction][variant].pipeline),
-                         [&] { return make_of_medium(medium, extinction, variant % 2 == 1, variant >= 2); }));
+                         [&] { return make_of_medium(medium, extinction, variant % 2 == 1, static_cast<Sparsity>(variant / 2)); }));
       }
       for (const std::uint32_t downscale : {2U, 4U}) {
         TYNDALL_TRY(take(static_cast<bool>(of.upscale_pixels[extinction][downscale / 4].pipeline),
@@ -344,7 +349,7 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
     TYNDALL_TRY(correct(of.correct_pixels));
   } else {
     const VkExtent2D blocks = unwarp_blocks(inputs.extent);
-    const std::size_t variant = unwarp_index(lists_pixels, is_sparse(params));
+    const std::size_t variant = unwarp_index(lists_pixels, sparsity(inputs.extent, params));
     TYNDALL_TRY(run(of.unwarp[extinction][variant], {blocks.width, blocks.height}));
     lists_ready();
     TYNDALL_TRY(run_list(of.unwarp_pixels[extinction][variant], EpipolarBuffer::broken_list));

@@ -65,9 +65,18 @@ bool lists_breaks(const Params& params) {
          params.epipolar.show_depth_breaks.value != 0;
 }
 
-bool is_sparse(const Params& params) {
-  constexpr std::uint32_t kMany = 64;
+bool may_be_sparse(const Params& params) {
+  constexpr std::uint32_t kMany = 512;
   return params.epipolar.slices < kMany && !is_downscaled(params) && !is_homogeneous(params.scattering);
+}
+
+Sparsity sparsity(VkExtent2D extent, const Params& params) {
+  constexpr std::uint32_t kFew = 256;
+  // Along the border. What is told by one of two slices reaches as far from the skyline, about.
+  constexpr std::uint32_t kVisiblePixels = 8;
+  const bool far_apart = params.epipolar.slices * kVisiblePixels <= 2 * (extent.width + extent.height);
+  if (!may_be_sparse(params) || !far_apart) return Sparsity::none;
+  return params.epipolar.slices < kFew ? Sparsity::all : Sparsity::skyline;
 }
 
 bool lists_limb(const FrameInputs& inputs, const Params& params) {

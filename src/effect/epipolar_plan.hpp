@@ -58,8 +58,16 @@ constexpr VkBufferUsageFlags kEpipolarUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT
 [[nodiscard]] inline bool is_downscaled(const Params& params) { return params.scattering.downscale > 1; }
 // Whether pixels that no sample fits in depth are listed.
 [[nodiscard]] bool lists_breaks(const Params& params);
-// Whether slices are so few that pixels among samples of other depths take optical depth from their own rays.
-[[nodiscard]] bool is_sparse(const Params& params);
+// How much pixels find out by themselves because slices are few.
+enum class Sparsity : std::uint32_t {
+  none,
+  skyline,  // of the sky, where not all slices around a pixel are in the sky: optical depth, and light from farther along the slices
+  all,      // optical depth in all of the sky and among samples of other depths too
+};
+constexpr std::size_t kSparsities = 3;
+[[nodiscard]] Sparsity sparsity(VkExtent2D extent, const Params& params);
+// Whether there are pictures for which sparsity() is not none.
+[[nodiscard]] bool may_be_sparse(const Params& params);
 // Whether pixels at the limb are listed, because the camera is above most of the air.
 [[nodiscard]] bool lists_limb(const FrameInputs& inputs, const Params& params);
 

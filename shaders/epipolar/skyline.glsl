@@ -1,0 +1,57 @@
+// The sky beside a skyline, where slices are far apart: between a slice that is in the sky and one that is not, or not any more.
+// Include after unwarp.glsl.
+#ifndef TYNDALL_SKYLINE_GLSL
+#define TYNDALL_SKYLINE_GLSL
+
+// What a slice tells of the sky at a place that it may pass behind the ground.
+struct SkyOnSlice {
+  vec3 source;   // root
+  float away;    // of the samples that tell it [pixels]
+  bool any;
+};
+
+bool in_sky(uint at) { return uintBitsToFloat(samples[at].x) >= kSkyDepth; }
+
+SkyOnSlice sky_on_slice(uint id, vec4 origin, vec2 position) {
+  uint row = id * epipolar.samples;
+  int last = int(slices[id].last);
+  float place = clamp(place_on_slice(origin, position), 0.0, float(last));
+  int left = int(place);
+  int right = min(left + 1, last);
+  while (left >= 0 && !in_sky(row + uint(left))) --left;
+  while (right <= last && !in_sky(row + uint(right))) ++right;
+  bool any_left = left >= 0;
+  bool any_right = right <= last;
+  SkyOnSlice sky = SkyOnSlice(vec3(0.0), 0.0, any_left || any_right);
+  if (!sky.any) return sky;
+  left = any_left ? left : right;
+  right = any_right ? right : left;
+  float part = right > left ? clamp((place - float(left)) / float(right - left), 0.0, 1.0) : 0.0;
+  sky.source = mix(unpack_roots(samples[row + uint(left)]).source, unpack_roots(samples[row + uint(right)]).source, part);
+  float gap = min(abs(place - float(left)), abs(float(right) - place)) - 1.0;  // in samples
+  sky.away = max(gap, 0.0) / max(length(origin.zw), 1e-9);
+  return sky;
+}
+
+// The source at a place in the sky, from the nearest samples of both slices that are in the sky. A slice tells the less the
+// farther away these are, so that nothing jumps where it comes out of the ground. `otherwise`: where both are in the ground.
+vec3 sky_source(Around a, vec2 position, vec3 otherwise) {
+  uint last = epipolar.slices - 1u;
+  uint lower = uint(a.lower);
+  uint upper = lower < last ? lower + 1u : epipolar.closed != 0u ? 0u : last;
+  float part = clamp(slice_coordinate(position, a.side) - a.lower, 0.0, 1.0);
+  float reach = epipolar.perimeter / float(epipolar.slices);  // as far as slices are apart
+  SkyOnSlice sky[2] = SkyOnSlice[2](sky_on_slice(min(lower, last), a.origin_lower, position), sky_on_slice(upper, a.origin_upper, position));
+  float sum = 0.0;
+  vec3 root = vec3(0.0);
+  for (int i = 0; i < 2; ++i) {
+    float far = sky[i].away / reach;
+    float weight = sky[i].any ? (i == 0 ? 1.0 - part : part) / (1.0 + far * far) : 0.0;
+    sum += weight;
+    root += weight * sky[i].source;
+  }
+  root /= max(sum, 1e-20);
+  return sum > 1e-6 ? root * root : otherwise;
+}
+
+#endif
