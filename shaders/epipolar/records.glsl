@@ -56,14 +56,12 @@ Sample unpack_sample(uvec4 packed) {
 
 const float kCoarseUnit = 1e6;  // of light without shadows: full precision down to 1e-14
 
-// Light without shadows, for refine_samples.comp: its roots, like those of a sample.
-uvec2 pack_coarse(vec3 light) {
-  vec3 root = root_for_half(light * kCoarseUnit);
-  return uvec2(packHalf2x16(root.xy), packHalf2x16(vec2(root.z, 0.0)));
-}
+// Light without shadows, for refine_samples.comp: the roots, like those of a sample, of red and blue, between which green
+// changes.
+uint pack_coarse(vec3 light) { return packHalf2x16(root_for_half(light * kCoarseUnit).xz); }
 
-vec3 unpack_coarse(uvec2 packed) {
-  vec3 root = vec3(unpackHalf2x16(packed.x), unpackHalf2x16(packed.y).x);
+vec2 unpack_coarse(uint packed) {
+  vec2 root = unpackHalf2x16(packed);
   return root * root;
 }
 

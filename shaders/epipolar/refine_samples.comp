@@ -19,7 +19,7 @@ layout(constant_id = 0) const uint kRefinement = 1u;  // 0 by depth, 1 by in-sca
 layout(std430, binding = 0) readonly buffer frame_block { FrameConstants frame; };
 layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants epipolar; };
 layout(std430, binding = 2) readonly buffer slice_block { EpipolarSlice slices[]; };
-layout(std430, binding = 3) readonly buffer coarse_block { uvec2 coarse[]; };
+layout(std430, binding = 3) readonly buffer coarse_block { uint coarse[]; };
 layout(std430, binding = 6) readonly buffer sample_block { uvec4 samples[]; };
 layout(std430, binding = 4) writeonly buffer source_block { uint sources[]; };
 layout(std430, binding = 5) buffer march_list_block { WorkList march; uint march_list[]; };
@@ -36,16 +36,16 @@ const uint kPartials = 8u;
 
 shared uint marked[kWords];   // bit i: sample i
 shared uint before[kWords];   // marked samples in the words before
-shared vec3 partial[kThreads];
+shared vec2 partial[kThreads];
 shared uint list_start;
 
 // How far light at a sample is off the line between that of two others.
-float off_line(uint row, uint left, uint i, uint right, vec3 floor_light) {
-  vec3 a = unpack_coarse(coarse[row + left]);
-  vec3 b = unpack_coarse(coarse[row + i]);
-  vec3 c = unpack_coarse(coarse[row + right]);
-  vec3 off = abs(mix(a, c, float(i - left) / float(right - left)) - b) / max(max(a, max(b, c)), floor_light);
-  return max(off.r, max(off.g, off.b));
+float off_line(uint row, uint left, uint i, uint right, vec2 floor_light) {
+  vec2 a = unpack_coarse(coarse[row + left]);
+  vec2 b = unpack_coarse(coarse[row + i]);
+  vec2 c = unpack_coarse(coarse[row + right]);
+  vec2 off = abs(mix(a, c, float(i - left) / float(right - left)) - b) / max(max(a, max(b, c)), floor_light);
+  return max(off.x, off.y);
 }
 
 float depth_step(uint at) {
@@ -75,7 +75,7 @@ void main() {
   EpipolarSlice slice = slices[id];
   uint row = id * epipolar.samples;
   for (uint w = thread; w < kWords; w += kThreads) marked[w] = 0u;
-  vec3 sum = vec3(0.0);
+  vec2 sum = vec2(0.0);
   for (uint i = thread * kSparse; i <= slice.last; i += kThreads * kSparse) sum += unpack_coarse(coarse[row + i]);
   partial[thread] = sum;
   barrier();
@@ -84,9 +84,9 @@ void main() {
     partial[thread] = sum;
   }
   barrier();
-  sum = vec3(0.0);
+  sum = vec2(0.0);
   for (uint i = 0u; i < kPartials; ++i) sum += partial[i];
-  vec3 floor_light = max(sum * (kDark / float(slice.last / kSparse + 1u)), vec3(1e-30));
+  vec2 floor_light = max(sum * (kDark / float(slice.last / kSparse + 1u)), vec2(1e-30));
 
   uint fine_step = max(epipolar.initial_step / epipolar.epipole_density, 1u);
   float near_epipole = 0.05 * float(max(frame.width, frame.height));

@@ -18,7 +18,7 @@ layout(std140, binding = 1) uniform frame_block { FrameConstants frame; };
 layout(std140, binding = 2) uniform epipolar_block { EpipolarConstants epipolar; };
 layout(std430, binding = 3) readonly buffer slice_block { EpipolarSlice slices[]; };
 layout(std430, binding = 4) writeonly buffer sample_block { uvec4 samples[]; };
-layout(std430, binding = 5) writeonly buffer coarse_block { uvec2 coarse[]; };
+layout(std430, binding = 5) writeonly buffer coarse_block { uint coarse[]; };
 layout(binding = 6) uniform sampler2D scene_depth;
 
 #include "epipolar/ray_end.glsl"
