@@ -10,8 +10,13 @@ layout(std430, binding = 0) readonly buffer epipolar_block { EpipolarConstants e
 layout(std430, binding = 1) readonly buffer slice_block { EpipolarSlice slices[]; };
 layout(std430, binding = 2) readonly buffer source_block { uint sources[]; };
 layout(std430, binding = 3) buffer sample_block { uvec4 samples[]; };
+layout(std430, binding = 4) readonly buffer coarse_block { uint coarse[]; };
 
 #include "epipolar/records.glsl"
+
+// Of the root of the source, for each part of the light that comes from the dark.
+const float kLostInShadow = 0.35;
+const float kMostBeyond = 0.1;  // beyond samples of another depth
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
@@ -24,8 +29,16 @@ void main() {
   uvec4 a = samples[row + left];
   uvec4 b = samples[row + right];
   float part = float(i - left) / float(right - left);
+  // Light that is off the line between theirs is that of air beyond where their rays end. Where that is in shadow, only what is
+  // scattered more than once comes from it, and the source is a mean with less in it.
+  uint coarse_a = coarse[row + left];
+  uint coarse_b = coarse[row + right];
+  vec2 light = unpack_coarse(coarse[row + i]);
+  vec2 beyond = (light - mix(unpack_coarse(coarse_a), unpack_coarse(coarse_b), part)) / max(light, vec2(1e-30));
+  float dark = mix(dark_end(coarse_a), dark_end(coarse_b), part);
+  float scale = 1.0 - kLostInShadow * dark * clamp(0.5 * (beyond.x + beyond.y), -kMostBeyond, kMostBeyond);
   // Roots of the sources: three halves of y and z, whose fourth is of the density.
-  samples[row + i].y = packHalf2x16(mix(unpackHalf2x16(a.y), unpackHalf2x16(b.y), part));
-  float blue = mix(unpackHalf2x16(a.z).x, unpackHalf2x16(b.z).x, part);
+  samples[row + i].y = packHalf2x16(mix(unpackHalf2x16(a.y), unpackHalf2x16(b.y), part) * scale);
+  float blue = mix(unpackHalf2x16(a.z).x, unpackHalf2x16(b.z).x, part) * scale;
   samples[row + i].z = (packHalf2x16(vec2(blue, 0.0)) & 0xFFFFu) | (samples[row + i].z & 0xFFFF0000u);
 }

@@ -28,6 +28,7 @@ uint reads_done = 0u;
 struct March {
   LitSections lit;  // single = table, multiple = occluded
   vec3 light;       // single = integration; in a homogeneous medium before homogeneous_phase()
+  float end_share;  // of the light at the end of the farthest cascade marched; -1: none marched
 };
 
 // A walk along a row. Distances in cells from the camera.
@@ -52,6 +53,7 @@ struct Walk {
   vec3 light;
   vec3 shine;
   float since;
+  float share;  // of the last run
 };
 
 vec2 load_node(uint at) {
@@ -86,6 +88,7 @@ void add_run(inout Walk w, inout LitSections sections, float to, float share, ve
   }
   if (kLitTables) add_stretch(sections, w.x * w.metres, to * w.metres, share, color);
   w.x = to;
+  w.share = share;
 }
 
 bool section_closed(LitSections sections) { return kLitTables && kSections == kEach && sections.closed_at >= 0.0; }
@@ -171,6 +174,7 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
   w.light = vec3(0.0);
   w.shine = vec3(0.0);
   w.since = w.x;
+  w.share = 1.0;
   w.through = kHomogeneous ? exp(-frame.homogeneous.extinction * (from - start)) : vec3(1.0);
 
   // One panel for all of it where only lit lengths are asked for.
@@ -241,9 +245,10 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
     close_homogeneous(w);
     march.light += w.light;
   }
+  march.end_share = w.share;
 }
 
-March nothing_marched() { return March(nothing_lit(), vec3(0.0)); }
+March nothing_marched() { return March(nothing_lit(), vec3(0.0), -1.0); }
 
 March add(March a, March b) {
   March m;
@@ -253,6 +258,7 @@ March add(March a, March b) {
   m.lit.light = add(a.lit.light, b.lit.light);
   m.lit.tint = a.lit.tint + b.lit.tint;
   m.light = a.light + b.light;
+  m.end_share = b.end_share >= 0.0 ? b.end_share : a.end_share;
   return m;
 }
 
@@ -289,6 +295,12 @@ vec3 light_of(March march, Ray ray, TableRay path, float start, float end) {
                                            : contiguous_light(march.lit, path, start, t, end);
   }
   return light;
+}
+
+// Whether the air just before the end of a ray, at a view-space depth, is in shadow.
+bool ends_in_shadow(March march, float depth_m) {
+  bool in_map = epipolar.cascades > epipolar.first_cascade && depth_m <= frame.cascades[max(epipolar.cascades, 1u) - 1u].far_m;
+  return in_map && march.end_share >= 0.0 && march.end_share < 0.5;
 }
 
 // The ray of a sample.

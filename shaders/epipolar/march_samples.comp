@@ -27,6 +27,7 @@ layout(std430, binding = 12) buffer sample_block { uvec4 samples[]; };
 layout(std430, binding = 13) buffer state_block { float states[]; };
 layout(binding = 14) uniform sampler2D scene_depth;
 layout(binding = 16) uniform sampler2DArray shadow_colors;
+layout(std430, binding = 17) buffer coarse_block { uint coarse[]; };
 layout(std430, binding = 15) writeonly buffer corrected_block { vec4 corrected[]; };
 
 layout(push_constant) uniform Push {
@@ -102,6 +103,7 @@ void march_item(uint at) {
       // Beside a medium that a ray misses others are lit.
       if (kHomogeneous && kSingle != kNone && !in_air) s.source = vec3(1.0);
       samples[sample_at] = pack_sample(s);
+      if (ends_in_shadow(march, s.depth_m)) coarse[sample_at] |= kDarkEnd;
     }
   }
   bool counts = processing == kAllCascades || (processing == kOneCascade && turn == 0u) ||

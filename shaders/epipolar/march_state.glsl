@@ -9,6 +9,7 @@ void store_march(uint at, March m) {
   uint i = at * kStateFloats;
   states[i] = m.lit.first;
   states[i + 1u] = m.lit.total;
+  states[i + 14u] = m.end_share;
   for (uint k = 0u; k < 3u; ++k) {
     states[i + 2u + k] = m.lit.light.single[k];
     states[i + 5u + k] = m.lit.light.high[k];
@@ -22,6 +23,7 @@ March load_march(uint at) {
   March m = nothing_marched();
   m.lit.first = states[i];
   m.lit.total = states[i + 1u];
+  m.end_share = states[i + 14u];
   m.lit.light.single = vec3(states[i + 2u], states[i + 3u], states[i + 4u]);
   m.lit.light.high = vec3(states[i + 5u], states[i + 6u], states[i + 7u]);
   m.light = vec3(states[i + 8u], states[i + 9u], states[i + 10u]);

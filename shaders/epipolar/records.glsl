@@ -60,6 +60,11 @@ const float kCoarseUnit = 1e6;  // of light without shadows: full precision down
 // changes.
 uint pack_coarse(vec3 light) { return packHalf2x16(root_for_half(light * kCoarseUnit).xz); }
 
+// Of a marched sample, set by march_samples.comp: the air just before the end of its ray is in shadow. The roots have no sign.
+const uint kDarkEnd = 0x80000000u;
+
+float dark_end(uint coarse) { return (coarse & kDarkEnd) != 0u ? 1.0 : 0.0; }
+
 vec2 unpack_coarse(uint packed) {
   vec2 root = unpackHalf2x16(packed);
   return root * root;

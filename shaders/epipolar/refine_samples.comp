@@ -31,6 +31,8 @@ layout(std430, binding = 5) buffer march_list_block { WorkList march; uint march
 const uint kWords = 64u;  // for 2048 samples
 // Light below this part of the slice's mean makes no break: it is too dark to be seen beside the rest.
 const float kDark = 0.05;
+// Times the threshold: interpolation knows what is off the line, and makes up for most of it.
+const float kOff = 1.5;
 const uint kSparse = 4u;   // of this many samples one counts for the mean
 const uint kPartials = 8u;
 
@@ -97,7 +99,7 @@ void main() {
                 distance(sample_position(slice, from), epipole()) < near_epipole;
     bool mark = beyond % (near ? fine_step : epipolar.initial_step) == 0u || i == slice.last;
     bool kink = !mark && (kRefinement == 0u ? depth_step(row + i) > 0.2 * epipolar.threshold
-                                             : off_line(row, i - 1u, i, i + 1u, floor_light) > epipolar.threshold);
+                                             : off_line(row, i - 1u, i, i + 1u, floor_light) > kOff * epipolar.threshold);
     if (mark || kink) atomicOr(marked[i >> 5u], 1u << (i & 31u));
   }
   barrier();
@@ -110,7 +112,7 @@ void main() {
         for (uint i = from + part; i < end; i += 2u * part) {
           uint left = left_marked(i);
           uint right = right_marked(i);
-          if (left != right && off_line(row, left, i, right, floor_light) > epipolar.threshold) {
+          if (left != right && off_line(row, left, i, right, floor_light) > kOff * epipolar.threshold) {
             atomicOr(marked[i >> 5u], 1u << (i & 31u));
           }
         }

@@ -99,7 +99,7 @@ EpipolarSizes epipolar_sizes(const EffectDesc& desc, const Params& params) {
   out[index(EpipolarBuffer::slices)] = slices * sizeof(shared::EpipolarSlice);
   out[index(EpipolarBuffer::rows)] = rows * sizeof(shared::ShadowRow);
   out[index(EpipolarBuffer::samples)] = samples * 16;
-  out[index(EpipolarBuffer::coarse)] = samples * 8;
+  out[index(EpipolarBuffer::coarse)] = samples * 4;
   out[index(EpipolarBuffer::sources)] = samples * 4;
   out[index(EpipolarBuffer::march_list)] = sizeof(shared::WorkList) + samples * 4;
   const VkExtent2D blocks = unwarp_blocks(desc.max_extent);
