@@ -1,6 +1,6 @@
 // Chooses the samples that are marched, and for the others the two that they are interpolated between
 // (Yusov 2013, section 1.3). Marched are samples where the unshadowed light is off the line between its neighbours' by more
-// than the threshold: first next to each, which finds edges, then halving the steps between, which finds slow bends.
+// than kOff times the threshold: first next to each, which finds edges, then halving the steps between, which finds slow bends.
 // One group per slice: marked samples are bits, and each sample looks for the nearest to both sides.
 // sources: index of the left source, and of the right one << 16, on the same slice; equal where it is marched.
 // The list of marched samples, slice << 16 | index, keeps the order of each slice.
