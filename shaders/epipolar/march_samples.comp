@@ -26,9 +26,9 @@ layout(std430, binding = 11) readonly buffer work_block { WorkList work; uint it
 layout(std430, binding = 12) buffer sample_block { uvec4 samples[]; };
 layout(std430, binding = 13) buffer state_block { float states[]; };
 layout(binding = 14) uniform sampler2D scene_depth;
+layout(std430, binding = 15) writeonly buffer corrected_block { vec4 corrected[]; };
 layout(binding = 16) uniform sampler2DArray shadow_colors;
 layout(std430, binding = 17) buffer coarse_block { uint coarse[]; };
-layout(std430, binding = 15) writeonly buffer corrected_block { vec4 corrected[]; };
 
 layout(push_constant) uniform Push {
   uint processing;  // kAllCascades to kPixels

@@ -73,7 +73,7 @@ bool may_be_sparse(const Params& params) {
 Sparsity sparsity(VkExtent2D extent, const Params& params) {
   constexpr std::uint32_t kFew = 256;
   // Along the border. What is told by one of two slices reaches as far from the skyline, about.
-  constexpr std::uint32_t kVisiblePixels = 8;
+  constexpr std::uint32_t kVisiblePixels = 4;
   const bool far_apart = params.epipolar.slices * kVisiblePixels <= 2 * (extent.width + extent.height);
   if (!may_be_sparse(params) || !far_apart) return Sparsity::none;
   return params.epipolar.slices < kFew ? Sparsity::all : Sparsity::skyline;
