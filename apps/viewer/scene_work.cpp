@@ -132,7 +132,9 @@ Outcome SceneWork::run(const Wish& wish) {
 
 Result<void> SceneWork::next(const Wish& wish, Outcome& out) {
   if (is_done(keeping_)) {
-    if (const std::string note = keeping_.get(); !note.empty()) out.notes.push_back(note);
+    const std::string note = keeping_.get();
+    out.tables_kept = note.empty();
+    if (!out.tables_kept) out.notes.push_back(note);
   }
   if (building()) TYNDALL_TRY(advance_tables(out));
   if (!ready()) return {};
@@ -140,8 +142,7 @@ Result<void> SceneWork::next(const Wish& wish, Outcome& out) {
   if (tone_stale()) return draw(wish, out);
   if (!wish.rest || out.tables) return {};
   if (keep_in_s() == 0.0) {
-    TYNDALL_ASSIGN(out.tables_kept, keep_tables());
-    return {};
+    return keep_tables();
   }
   if (!pipelines_.complete() || pipelines_.total == 0) {
     TYNDALL_ASSIGN(pipelines_, scene_->effect().prepare_pipelines(1));
@@ -201,7 +202,8 @@ Result<void> SceneWork::draw(const Wish& wish, Outcome& out) {
   return {};
 }
 
-Result<bool> SceneWork::keep_tables() {
+// Writes on a thread of its own; next() says when it is done.
+Result<void> SceneWork::keep_tables() {
   unkept_ = first_tables_ = false;
   TYNDALL_ASSIGN(tables::Keeper keeper, tables::Keeper::fetch(*host_, scene_->effect(), desc_.make_tables.cache));
   keeping_ = std::async(std::launch::async, [kept = std::move(keeper)]() mutable {
@@ -209,7 +211,7 @@ Result<bool> SceneWork::keep_tables() {
     Window::wake();
     return note;
   });
-  return true;
+  return {};
 }
 
 // A terrain that has been read.

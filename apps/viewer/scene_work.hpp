@@ -96,7 +96,7 @@ class SceneWork {
   Result<void> advance_tables(Outcome& out);
   Result<void> draw(const Wish& wish, Outcome& out);
   Result<void> capture(Outcome& out);
-  Result<bool> keep_tables();
+  Result<void> keep_tables();
   [[nodiscard]] bool follows(const Wish& wish) const;
   [[nodiscard]] bool building() const;
   [[nodiscard]] bool ready() const { return scene_ != nullptr && scene_->can_render(); }
