@@ -115,8 +115,9 @@ void walk_to(inout Walk w, inout LitSections sections, float to) {
       }
       undecided = undecided || (inside && !in_tree);
       int next = ((j >> level) + 1) << level;
-      // A node may reach behind the map, where nothing is dark.
-      float end = inside ? float(w.row.first + min(next, w.row.extent)) : j < 0 ? float(w.row.first) : to;
+      // A node may reach behind what was put into the tree.
+      int known = in_tree ? w.row.count : w.row.extent;
+      float end = inside ? float(w.row.first + min(next, known)) : j < 0 ? float(w.row.first) : to;
       stop = end > w.x ? min(end, to) : to;
       // What is lit through glass is read too.
       read = undecided || (kColors && inside && !dark);

@@ -18,7 +18,7 @@ layout(constant_id = 0) const uint kRefinement = 1u;  // 0 by depth, 1 by in-sca
 
 layout(std430, binding = 0) readonly buffer frame_block { FrameConstants frame; };
 layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants epipolar; };
-layout(std430, binding = 2) readonly buffer slice_block { EpipolarSlice slices[]; };
+layout(std430, binding = 2) buffer slice_block { EpipolarSlice slices[]; };
 layout(std430, binding = 3) readonly buffer coarse_block { uint coarse[]; };
 layout(std430, binding = 6) readonly buffer sample_block { uvec4 samples[]; };
 layout(std430, binding = 4) writeonly buffer source_block { uint sources[]; };
@@ -127,6 +127,7 @@ void main() {
       total += uint(bitCount(marked[word]));
     }
     list_start = atomicAdd(march.count, total);
+    slices[id].first_marched = list_start;
     uint groups = (list_start + total + kMarchGroup - 1u) / kMarchGroup;
     atomicMax(march.groups_x, groups_along_x(groups));
     atomicMax(march.groups_y, groups_along_y(groups));

@@ -1,4 +1,5 @@
-// Builds the trees of all rows: a group makes the nodes of one block of 256 cells.
+// Builds the trees of all rows. A thread makes the nodes of a part of a block, one leaf after the other: its row is loaded once,
+// and only the few nodes above parts are put together across threads.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -6,7 +7,10 @@
 #include "shared/frame_constants.h"
 #include "shared/epipolar.h"
 
-layout(local_size_x = 32) in;
+const uint kPartLevel = 6u;                    // of a part's topmost node
+const uint kParts = kTreeBlock >> kPartLevel;  // of a block
+
+layout(local_size_x = kTreeGroup * kParts) in;
 layout(constant_id = 0) const uint kFormat = 0u;  // MinMaxFormat
 
 layout(std430, binding = 0) readonly buffer frame_block { FrameConstants frame; };
@@ -20,10 +24,11 @@ layout(std430, binding = 5) readonly buffer work_block { WorkList work; uint ite
 #include "epipolar/shadow_tree.glsl"
 #include "epipolar/work_list.glsl"
 
-const uint kCells = 1u << kTreeLeafLevel;  // of a thread
+const uint kCells = 1u << kTreeLeafLevel;  // of a leaf
+const uint kPartLeaves = 1u << (kPartLevel - kTreeLeafLevel);
 const float kAlwaysLit = 1e30;
 
-shared vec2 thread_nodes[32];
+shared vec2 part_nodes[kTreeGroup * kParts];
 
 vec2 both(vec2 a, vec2 b) { return vec2(min(a.x, b.x), max(a.y, b.y)); }
 
@@ -70,37 +75,57 @@ void store_node(uint at, vec2 n) {
   }
 }
 
+// What both() takes no notice of.
+vec2 no_cells() { return kFormat == kUnorm16 ? vec2(65535.0, 0.0) : vec2(2.0, -2.0); }
 
-void build_block(uint id, uint block) {
-  ShadowRow row = rows[id];
-  uint cascade = epipolar.first_cascade + id / epipolar.slices;
-  uint thread = gl_LocalInvocationID.x;
-  uint base = (id * (epipolar.tree_cells / kTreeBlock) + block) * kTreeNodes;
+// Makes the nodes of a part of a block; the last of them.
+vec2 build_part(uint base, ShadowRow row, uint cascade, uint block, uint part) {
   float camera = frame.shadow_depth_reversed != 0u ? 1.0 - row.depth : row.depth;
-
-  int first = int(block * kTreeBlock + thread * kCells);
-  vec2 slopes = vec2(kAlwaysLit, -kAlwaysLit);
-  for (int k = 0; k < int(kCells); k += 2) {
-    int x = row.first + first + k;
-    slopes = both(slopes, pair_slopes(pair_depths(row, x, cascade), x, camera));
+  vec2 first_half[kPartLevel - kTreeLeafLevel];  // of the node in the making, by its children's level
+  vec2 n = no_cells();
+  for (uint leaf = 0u; leaf < kPartLeaves; ++leaf) {
+    uint cell = (part << kPartLevel) + leaf * kCells;
+    int from = int(block * kTreeBlock + cell);
+    n = no_cells();
+    if (from < row.count) {
+      vec2 slopes = vec2(kAlwaysLit, -kAlwaysLit);
+      for (int k = 0; k < int(kCells); k += 2) {
+        int x = row.first + from + k;
+        slopes = both(slopes, pair_slopes(pair_depths(row, x, cascade), x, camera));
+      }
+      n = rounded_numbers(slopes);
+    }
+    store_node(base + node_index(cell, kTreeLeafLevel), n);
+    for (uint k = 0u; k < kPartLevel - kTreeLeafLevel; ++k) {
+      if ((leaf >> k & 1u) == 0u) {
+        first_half[k] = n;
+        break;
+      }
+      n = both(first_half[k], n);
+      store_node(base + node_index(cell, kTreeLeafLevel + k + 1u), n);
+    }
   }
-  // Behind the row's end nothing is shadowed, and nodes there are not asked for what is.
-  vec2 n = rounded_numbers(first < row.count ? slopes : vec2(kAlwaysLit));
-  store_node(base + thread, n);
-  thread_nodes[thread] = n;
-  barrier();
-  // The levels above, each node by itself: 16 of 16 cells, 8 of 32, 4 of 64, 2 of 128, 1 of 256.
-  uint up = thread < 16u ? 1u : thread < 24u ? 2u : thread < 28u ? 3u : thread < 30u ? 4u : 5u;
-  uint index = thread - (32u - (64u >> up));
-  if (thread < 31u) {
-    uint span = 1u << up;
-    n = thread_nodes[index * span];
-    for (uint k = 1u; k < span; ++k) n = both(n, thread_nodes[index * span + k]);
-    store_node(base + 32u + thread, n);
-  }
+  return n;
 }
 
 void main() {
-  uint at = min(list_group(), work.count - 1u);
-  build_block(items[at] >> 8u, items[at] & 0xFFu);
+  uint thread = gl_LocalInvocationIndex;
+  uint part = thread % kParts;
+  uint at = list_group() * kTreeGroup + thread / kParts;
+  bool working = at < work.count;
+  uint base = 0u;
+  if (working) {
+    uint row = items[at] >> 8u;
+    uint block = items[at] & 0xFFu;
+    base = (row * (epipolar.tree_cells / kTreeBlock) + block) * kTreeNodes;
+    part_nodes[thread] = build_part(base, rows[row], epipolar.first_cascade + row / epipolar.slices, block, part);
+  }
+  barrier();
+  for (uint level = kPartLevel + 1u; level <= kTreeTopLevel; ++level) {
+    uint parts = 1u << (level - kPartLevel);
+    if (!working || part % parts != 0u) break;
+    vec2 n = part_nodes[thread];
+    for (uint k = 1u; k < parts; ++k) n = both(n, part_nodes[thread + k]);
+    store_node(base + node_index(part << kPartLevel, level), n);
+  }
 }

@@ -1,6 +1,7 @@
 // The line of each slice in each marched cascade's map, and which parts of its tree are to be built (Yusov 2013,
-// section 1.4). All rays of a slice lie in one
-// plane with the direction to the sun, which the map shows as a line through the camera.
+// section 1.4). All rays of a slice lie in one plane with the direction to the sun, which the map shows as a line through the
+// camera. Far cascades are crossed by few rays of a slice, and those by the sun move little in the map: only cells that a marched
+// sample's ray comes to are put into the tree.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -15,6 +16,8 @@ layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants e
 layout(std430, binding = 2) readonly buffer slice_block { EpipolarSlice slices[]; };
 layout(std430, binding = 3) writeonly buffer row_block { ShadowRow rows[]; };
 layout(std430, binding = 4) buffer tree_list_block { WorkList trees; uint tree_list[]; };
+layout(std430, binding = 5) readonly buffer march_list_block { WorkList march; uint march_list[]; };
+layout(std430, binding = 6) readonly buffer sample_block { uvec4 samples[]; };
 
 #include "epipolar/slices.glsl"
 #include "epipolar/work_list.glsl"
@@ -27,11 +30,24 @@ vec2 texels_per_depth(mat4 shadow_from_world, vec2 position) {
   return (shadow_from_world * vec4(d, 0.0)).xy * (float(frame.shadow_resolution) / depth);
 }
 
-void main() {
-  uint id = gl_GlobalInvocationID.x;
-  uint cascade = epipolar.first_cascade + gl_GlobalInvocationID.y;
-  if (id >= epipolar.slices || cascade >= epipolar.cascades) return;
-  EpipolarSlice slice = slices[id];
+float begin_of(uint cascade) { return cascade > epipolar.first_cascade ? frame.cascades[cascade - 1u].far_m : 0.0; }
+
+// How far rays of a slice's marched samples come in a cascade [cells from the camera].
+float reach_of(EpipolarSlice slice, uint id, uint cascade) {
+  float begin = begin_of(cascade);
+  float far_m = frame.cascades[cascade].far_m;
+  mat4 shadow_from_world = frame.cascades[cascade].shadow_from_world;
+  float reach = 0.0;
+  for (uint at = slice.first_marched; at < march.count && march_list[at] >> 16u == id; ++at) {
+    uint i = march_list[at] & 0xFFFFu;
+    float depth_m = uintBitsToFloat(samples[id * epipolar.samples + i].x);
+    vec2 cells = texels_per_depth(shadow_from_world, sample_position(slice, i));
+    if (depth_m > begin) reach = max(reach, min(depth_m, far_m) * max(abs(cells.x), abs(cells.y)));
+  }
+  return reach;
+}
+
+ShadowRow row_of(EpipolarSlice slice, uint cascade, float reach_cells) {
   mat4 shadow_from_world = frame.cascades[cascade].shadow_from_world;
   vec3 camera = shadow_uvz(shadow_from_world, frame.camera_position);
   vec2 near = texels_per_depth(shadow_from_world, sample_position(slice, 0u));
@@ -47,8 +63,7 @@ void main() {
   float inside = max(max(min(a.x, b.x), min(a.y, b.y)), 0.0);
   float outside = min(max(a.x, b.x), max(a.y, b.y));
   // Cells that rays of this slice cross in this cascade: along a slice, cells per depth grow steadily.
-  float begins = cascade > epipolar.first_cascade ? frame.cascades[cascade - 1u].far_m : 0.0;
-  float first = max(inside, begins * max(abs(near.x), abs(near.y)) - 1.0);
+  float first = max(inside, begin_of(cascade) * max(abs(near.x), abs(near.y)) - 1.0);
   float last = min(outside, frame.cascades[cascade].far_m * scale + 1.0);
 
   ShadowRow row;
@@ -59,13 +74,24 @@ void main() {
   row.depth = camera.z;
   row.first = int(clamp(floor(first), 0.0, 1e9));
   row.extent = int(clamp(ceil(last) - floor(first), 0.0, 1e6));
-  row.count = min(row.extent, int(epipolar.tree_cells));
+  float reached = ceil(min(reach_cells + 1.0, 1e9)) - float(row.first);
+  row.count = int(clamp(reached, 0.0, float(min(row.extent, int(epipolar.tree_cells)))));
+  return row;
+}
+
+void main() {
+  uint id = gl_GlobalInvocationID.x;
+  uint cascade = epipolar.first_cascade + gl_GlobalInvocationID.y;
+  if (id >= epipolar.slices || cascade >= epipolar.cascades) return;
+  EpipolarSlice slice = slices[id];
+  ShadowRow row = row_of(slice, cascade, epipolar.tree_cells > 0u ? reach_of(slice, id, cascade) : 0.0);
   uint row_id = gl_GlobalInvocationID.y * epipolar.slices + id;
   rows[row_id] = row;
-  // The blocks of the tree that have cells; each is a group.
+  // The blocks of the tree that have cells.
   uint blocks = (uint(row.count) + kTreeBlock - 1u) / kTreeBlock;
   uint at = atomicAdd(trees.count, blocks);
-  atomicMax(trees.groups_x, groups_along_x(at + blocks));
-  atomicMax(trees.groups_y, groups_along_y(at + blocks));
+  uint groups = (at + blocks + kTreeGroup - 1u) / kTreeGroup;
+  atomicMax(trees.groups_x, groups_along_x(groups));
+  atomicMax(trees.groups_y, groups_along_y(groups));
   for (uint i = 0u; i < blocks; ++i) tree_list[at + i] = row_id << 8u | i;
 }

@@ -36,6 +36,6 @@ void main() {
   slice.axis_x = direction.x * intervals / stretched;
   slice.axis_y = direction.y * intervals / stretched;
   slice.last = uint(clamp(ceil(visible / stretched * intervals - 1e-3), 1.0, intervals));
-  slice.unused_0 = 0u;
+  slice.first_marched = 0u;
   slices[id] = slice;
 }

@@ -31,7 +31,7 @@ struct EpipolarConstants {
   float top_start;
   uint first_cascade;   // marched
   uint cascades;        // behind the last marched one
-  uint tree_cells;      // of a row, at most; a multiple of kTreeBlock
+  uint tree_cells;      // of a row, at most; a multiple of kTreeBlock; 0: no trees
   uint tree_format;     // MinMaxFormat
   // The picture that the light is computed for; `slices` and `samples` are those for it.
   uint downscale;
@@ -50,12 +50,12 @@ struct EpipolarSlice {
   float axis_x;
   float axis_y;
   uint last;  // sample: the first at or behind the border
-  uint unused_0;
+  uint first_marched;  // where its samples begin in the list of marched ones
 };
 
 // The line of a slice in a cascade's map: texture coordinates (u, v) + x (du, dv), where x counts cells of one
 // texel (along the axis that changes faster) from the camera on. `first` to first + extent - 1 are inside the
-// map and within the reach of the slice's rays; the first `count` of these are in the tree.
+// map and within the reach of the cascade; the first `count` of these, which rays of marched samples come to, are in the tree.
 struct ShadowRow {
   float u;
   float v;
@@ -71,6 +71,7 @@ const uint kTreeBlock = 256u;     // cells of a tree
 const uint kTreeLeafLevel = 3u;   // nodes of 8, 16, ... 256 cells: 2 to the power of the level
 const uint kTreeTopLevel = 8u;
 const uint kTreeNodes = 64u;      // of a block, with one to spare
+const uint kTreeGroup = 8u;       // blocks that are built together
 
 // Scale heights of air [Rayleigh] above which there is next to none: a camera above them sees a limb.
 const float kAllOfAir = 5.0f;

@@ -154,7 +154,7 @@ shared::EpipolarConstants epipolar_constants(const FrameInputs& inputs, const Ef
                                              : kLeastWeight;
   out.break_capacity = break_capacity(desc, params);
   out.show_depth_breaks = p.show_depth_breaks.value;
-  out.tree_cells = tree_cells(desc);
+  out.tree_cells = p.min_max_tree.value != 0 ? tree_cells(desc) : 0;
   out.tree_format = static_cast<std::uint32_t>(p.min_max_format);
   out.cascades = params.scattering.light_shafts ? static_cast<std::uint32_t>(inputs.cascades.size()) : 0;
   out.first_cascade = std::min(inputs.first_marched_cascade, out.cascades);
