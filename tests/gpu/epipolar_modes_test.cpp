@@ -165,6 +165,28 @@ TEST_F(Epipolar, CountersSayWhatWasDone) {
   EXPECT_GT(counters().samples_marched, 0U);
 }
 
+// A tree ends where rays of marched samples do; those of corrected pixels may go on.
+TEST_F(Epipolar, RaysGoOnWhereTreesEnd) {
+  BoxScene scene;
+  scene.pitch_deg = 0.0;
+  scene.sun_elevation_deg = 25.0;
+  scene.sun_azimuth_deg = 60.0;
+  scene.shadow_resolution = 512;
+  show(scene);
+  Params params = small_params();
+  params.scattering.single = SingleScattering::integration;
+  params.epipolar.slices = 512;
+  params.epipolar.samples = 32;
+  params.epipolar.initial_step = 256;
+  params.epipolar.refinement_threshold = 0.1F;
+  params.epipolar.correct_depth_breaks = true;
+  const Picture with_tree = draw(params, "tree");
+  EXPECT_GT(counters().pixels_corrected, 50U);
+  params.epipolar.min_max_tree = false;
+  constexpr double kSums = 1e-6;  // of the same stretches in other pieces
+  EXPECT_LE(compare(draw(params, "no tree"), with_tree, scene.extent).worst_relative_error, kSums);
+}
+
 TEST_F(Epipolar, DepthBreaksAreCorrectedAndMarked) {
   BoxScene scene;
   show(scene);
