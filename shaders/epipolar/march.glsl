@@ -36,6 +36,7 @@ struct Walk {
   ShadowRow row;
   uint cascade;
   uint tree_base;        // of the row's blocks in `tree`
+  bool full;             // nodes are of two words
   float slope;           // change of depth per cell
   float number;          // slope as the tree has it
   float reads_per_cell;
@@ -56,10 +57,10 @@ struct Walk {
   float share;  // of the last run
 };
 
-vec2 load_node(uint at) {
-  bool full = epipolar.tree_format == kFloat32;
+vec2 load_node(bool full, uint at) {
   uint low = tree[full ? 2u * at : at];
-  uint high = tree[full ? 2u * at + 1u : at];
+  uint high = low;
+  if (full) high = tree[2u * at + 1u];
   return full ? vec2(uintBitsToFloat(low), uintBitsToFloat(high)) : vec2(float(low & 0xFFFFu), float(high >> 16u));
 }
 
@@ -108,7 +109,7 @@ void walk_to(inout Walk w, inout LitSections sections, float to) {
       if (kTree) {
         level = w.level;
         uint cell = in_tree ? uint(j) : 0u;
-        vec2 node = load_node(w.tree_base + (cell / kTreeBlock) * kTreeNodes + node_index(cell % kTreeBlock, level));
+        vec2 node = load_node(w.full, w.tree_base + (cell / kTreeBlock) * kTreeNodes + node_index(cell % kTreeBlock, level));
         dark = in_tree && w.number > node.y;
         undecided = in_tree && w.number > node.x && !dark;
         nodes_visited += in_tree ? 1u : 0u;
@@ -158,6 +159,7 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
   w.row = rows[row];
   w.cascade = cascade;
   w.tree_base = row * (epipolar.tree_cells / kTreeBlock) * kTreeNodes;
+  w.full = epipolar.tree_format == kFloat32;
   vec3 per_metre = (frame.cascades[cascade].shadow_from_world * vec4(ray.direction, 0.0)).xyz;
   float cells_per_m = max(max(abs(per_metre.x), abs(per_metre.y)) * resolution, 1e-12);
   w.slope = per_metre.z / cells_per_m;
