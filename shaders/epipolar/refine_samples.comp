@@ -90,29 +90,34 @@ void main() {
   for (uint i = 0u; i < kPartials; ++i) sum += partial[i];
   vec2 floor_light = max(sum * (kDark / float(slice.last / kSparse + 1u)), vec2(1e-30));
 
-  uint fine_step = max(epipolar.initial_step / epipolar.epipole_density, 1u);
+  // Once, not in the loops: a device without a GPU loads from buffers for each invocation.
+  const uint initial_step = epipolar.initial_step;
+  const float threshold = epipolar.threshold;
+  const vec2 center = epipole();
+  // Of samples, those that may be near the epipole.
+  const uint near_samples = epipolar.sun_in_picture != 0u ? (epipolar.samples + 19u) / 20u : 0u;
+  uint fine_step = max(initial_step / epipolar.epipole_density, 1u);
   float near_epipole = 0.05 * float(max(frame.width, frame.height));
   for (uint i = thread; i <= slice.last; i += kThreads) {
-    uint beyond = i % epipolar.initial_step;
+    uint beyond = i % initial_step;
     uint from = i - beyond;
-    bool near = epipolar.sun_in_picture != 0u && from * 20u < epipolar.samples &&
-                distance(sample_position(slice, from), epipole()) < near_epipole;
-    bool mark = beyond % (near ? fine_step : epipolar.initial_step) == 0u || i == slice.last;
-    bool kink = !mark && (kRefinement == 0u ? depth_step(row + i) > 0.2 * epipolar.threshold
-                                             : off_line(row, i - 1u, i, i + 1u, floor_light) > kOff * epipolar.threshold);
+    bool near = from < near_samples && distance(sample_position(slice, from), center) < near_epipole;
+    bool mark = beyond % (near ? fine_step : initial_step) == 0u || i == slice.last;
+    bool kink = !mark && (kRefinement == 0u ? depth_step(row + i) > 0.2 * threshold
+                                             : off_line(row, i - 1u, i, i + 1u, floor_light) > kOff * threshold);
     if (mark || kink) atomicOr(marked[i >> 5u], 1u << (i & 31u));
   }
   barrier();
   // What bends slowly has no kink: the middles of steps, of their halves and so on, against what is marked on both sides so far.
   if (kRefinement == 1u) {
-    uint segment = epipolar.initial_step;
+    uint segment = initial_step;
     for (uint from = thread * segment; from < slice.last; from += kThreads * segment) {
       uint end = min(from + segment, slice.last);
       for (uint part = segment / 2u; part > 1u; part /= 2u) {
         for (uint i = from + part; i < end; i += 2u * part) {
           uint left = left_marked(i);
           uint right = right_marked(i);
-          if (left != right && off_line(row, left, i, right, floor_light) > kOff * epipolar.threshold) {
+          if (left != right && off_line(row, left, i, right, floor_light) > kOff * threshold) {
             atomicOr(marked[i >> 5u], 1u << (i & 31u));
           }
         }
