@@ -141,9 +141,7 @@ Result<void> SceneWork::next(const Wish& wish, Outcome& out) {
   if (stale_ || wish.again || !same_view(wish.view, drawn_view_)) return draw(wish, out);
   if (tone_stale()) return draw(wish, out);
   if (!wish.rest || out.tables) return {};
-  if (keep_in_s() == 0.0) {
-    return keep_tables();
-  }
+  if (keep_in_s() == 0.0) return keep_tables();
   if (!pipelines_.complete() || pipelines_.total == 0) {
     TYNDALL_ASSIGN(pipelines_, scene_->effect().prepare_pipelines(1));
     out.pipelines_done = pipelines_.complete();
