@@ -6,11 +6,14 @@
 
 layout(local_size_x = 32, local_size_y = 2) in;
 
-layout(std430, binding = 0) readonly buffer epipolar_block { EpipolarConstants epipolar; };
+layout(std430, binding = 0) readonly buffer epipolar_block { EpipolarConstants stored_epipolar; };
 layout(std430, binding = 1) readonly buffer slice_block { EpipolarSlice slices[]; };
 layout(std430, binding = 2) readonly buffer source_block { uint sources[]; };
 layout(std430, binding = 3) buffer sample_block { uvec4 samples[]; };
 layout(std430, binding = 4) readonly buffer coarse_block { uint coarse[]; };
+
+// Loaded by main() before anything else (docs/epipolar.md says why).
+EpipolarConstants epipolar;
 
 #include "epipolar/records.glsl"
 
@@ -19,6 +22,7 @@ const float kLostInShadow = 0.35;
 const float kMostBeyond = 0.1;  // beyond samples of another depth
 
 void main() {
+  epipolar = stored_epipolar;
   uint i = gl_GlobalInvocationID.x;
   uint id = gl_GlobalInvocationID.y;
   if (i >= epipolar.samples || id >= epipolar.slices || i > slices[id].last) return;

@@ -160,7 +160,7 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
   w.cascade = cascade;
   w.tree_base = row * (epipolar.tree_cells / kTreeBlock) * kTreeNodes;
   w.full = epipolar.tree_format == kFloat32;
-  vec3 per_metre = (frame.cascades[cascade].shadow_from_world * vec4(ray.direction, 0.0)).xyz;
+  vec3 per_metre = (cascades[cascade].shadow_from_world * vec4(ray.direction, 0.0)).xyz;
   float cells_per_m = max(max(abs(per_metre.x), abs(per_metre.y)) * resolution, 1e-12);
   w.slope = per_metre.z / cells_per_m;
   w.number = tree_number(frame.shadow_depth_reversed != 0u ? -w.slope : w.slope, resolution, epipolar.tree_format);
@@ -269,8 +269,8 @@ March add(March a, March b) {
 void cascade_range(uint cascade, Ray ray, float start, float end, out float from, out float to) {
   float depth_per_m = max(dot(ray.direction, frame.camera_forward), 1e-6);
   from = start;
-  if (cascade > epipolar.first_cascade) from = clamp(frame.cascades[cascade - 1u].far_m / depth_per_m, start, end);
-  to = clamp(frame.cascades[cascade].far_m / depth_per_m, from, end);
+  if (cascade > epipolar.first_cascade) from = clamp(cascades[cascade - 1u].far_m / depth_per_m, start, end);
+  to = clamp(cascades[cascade].far_m / depth_per_m, from, end);
 }
 
 // All the light of a ray, from what its cascades have added.
@@ -278,7 +278,7 @@ vec3 light_of(March march, Ray ray, TableRay path, float start, float end) {
   float depth_per_m = max(dot(ray.direction, frame.camera_forward), 1e-6);
   float t = start;
   if (epipolar.cascades > epipolar.first_cascade) {
-    t = clamp(frame.cascades[epipolar.cascades - 1u].far_m / depth_per_m, start, end);
+    t = clamp(cascades[epipolar.cascades - 1u].far_m / depth_per_m, start, end);
   }
   vec3 light = march.light;
   if (kHomogeneous) {
@@ -302,7 +302,7 @@ vec3 light_of(March march, Ray ray, TableRay path, float start, float end) {
 
 // Whether the air just before the end of a ray, at a view-space depth, is in shadow.
 bool ends_in_shadow(March march, float depth_m) {
-  bool in_map = epipolar.cascades > epipolar.first_cascade && depth_m <= frame.cascades[max(epipolar.cascades, 1u) - 1u].far_m;
+  bool in_map = epipolar.cascades > epipolar.first_cascade && depth_m <= cascades[max(epipolar.cascades, 1u) - 1u].far_m;
   return in_map && march.end_share >= 0.0 && march.end_share < 0.5;
 }
 

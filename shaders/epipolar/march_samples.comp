@@ -11,9 +11,9 @@
 
 layout(local_size_x = kMarchGroup) in;
 
-layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
-layout(std430, binding = 1) readonly buffer frame_block { FrameConstants frame; };
-layout(std430, binding = 2) readonly buffer epipolar_block { EpipolarConstants epipolar; };
+layout(std430, binding = 0) readonly buffer medium_block { Medium stored_medium; };
+layout(std430, binding = 1) readonly buffer frame_block { FrameConstants stored_frame; };
+layout(std430, binding = 2) readonly buffer epipolar_block { EpipolarConstants stored_epipolar; };
 layout(std430, binding = 3) readonly buffer row_block { ShadowRow rows[]; };
 layout(std430, binding = 4) readonly buffer tree_block { uint tree[]; };
 layout(binding = 5) uniform sampler2DArrayShadow shadow_maps;
@@ -29,6 +29,12 @@ layout(binding = 14) uniform sampler2D scene_depth;
 layout(std430, binding = 15) writeonly buffer corrected_block { vec4 corrected[]; };
 layout(binding = 16) uniform sampler2DArray shadow_colors;
 layout(std430, binding = 17) buffer coarse_block { uint coarse[]; };
+layout(std140, binding = 18) uniform cascade_block { CascadeConstants cascades[kMostCascades]; };
+
+// Loaded by main() before anything else (docs/epipolar.md says why).
+Medium medium;
+FrameConstants frame;
+EpipolarConstants epipolar;
 
 layout(push_constant) uniform Push {
   uint processing;  // kAllCascades to kPixels
@@ -113,6 +119,9 @@ void march_item(uint at) {
 }
 
 void main() {
+  medium = stored_medium;
+  frame = stored_frame;
+  epipolar = stored_epipolar;
   // The list of samples has groups for every cascade aside; other turns need only one of them.
   bool turn_here = processing == kCascadesAside || gl_WorkGroupID.z == 0u;
   uint at = list_item(kMarchGroup);

@@ -13,13 +13,17 @@ const uint kParts = kTreeBlock >> kPartLevel;  // of a block
 layout(local_size_x = kTreeGroup * kParts) in;
 layout(constant_id = 0) const uint kFormat = 0u;  // MinMaxFormat
 
-layout(std430, binding = 0) readonly buffer frame_block { FrameConstants frame; };
-layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants epipolar; };
+layout(std430, binding = 0) readonly buffer frame_block { FrameConstants stored_frame; };
+layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants stored_epipolar; };
 layout(std430, binding = 2) readonly buffer row_block { ShadowRow rows[]; };
 layout(std430, binding = 3) writeonly buffer tree_block { uint tree[]; };
 layout(binding = 4) uniform sampler2DArray shadow_depths;
 
 layout(std430, binding = 5) readonly buffer work_block { WorkList work; uint items[]; };  // row << 8 | block
+
+// Loaded by main() before anything else (docs/epipolar.md says why).
+FrameConstants frame;
+EpipolarConstants epipolar;
 
 #include "epipolar/shadow_tree.glsl"
 #include "epipolar/work_list.glsl"
@@ -109,6 +113,8 @@ vec2 build_part(uint base, ShadowRow row, uint cascade, uint block, uint part) {
 }
 
 void main() {
+  frame = stored_frame;
+  epipolar = stored_epipolar;
   uint thread = gl_LocalInvocationIndex;
   uint part = thread % kParts;
   uint at = list_group() * kTreeGroup + thread / kParts;

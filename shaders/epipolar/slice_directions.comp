@@ -11,13 +11,18 @@
 
 layout(local_size_x = 64) in;
 
-layout(std430, binding = 0) readonly buffer frame_block { FrameConstants frame; };
-layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants epipolar; };
+layout(std430, binding = 0) readonly buffer frame_block { FrameConstants stored_frame; };
+layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants stored_epipolar; };
 layout(std430, binding = 2) readonly buffer slice_block { EpipolarSlice slices[]; };
 layout(std430, binding = 3) writeonly buffer row_block { ShadowRow rows[]; };
 layout(std430, binding = 4) buffer tree_list_block { WorkList trees; uint tree_list[]; };
 layout(std430, binding = 5) readonly buffer march_list_block { WorkList march; uint march_list[]; };
 layout(std430, binding = 6) readonly buffer sample_block { uvec4 samples[]; };
+layout(std140, binding = 7) uniform cascade_block { CascadeConstants cascades[kMostCascades]; };
+
+// Loaded by main() before anything else (docs/epipolar.md says why).
+FrameConstants frame;
+EpipolarConstants epipolar;
 
 #include "epipolar/slices.glsl"
 #include "epipolar/work_list.glsl"
@@ -30,13 +35,13 @@ vec2 texels_per_depth(mat4 shadow_from_world, vec2 position) {
   return (shadow_from_world * vec4(d, 0.0)).xy * (float(frame.shadow_resolution) / depth);
 }
 
-float begin_of(uint cascade) { return cascade > epipolar.first_cascade ? frame.cascades[cascade - 1u].far_m : 0.0; }
+float begin_of(uint cascade) { return cascade > epipolar.first_cascade ? cascades[cascade - 1u].far_m : 0.0; }
 
 // How far rays of a slice's marched samples come in a cascade [cells from the camera].
 float reach_of(EpipolarSlice slice, uint id, uint cascade) {
   float begin = begin_of(cascade);
-  float far_m = frame.cascades[cascade].far_m;
-  mat4 shadow_from_world = frame.cascades[cascade].shadow_from_world;
+  float far_m = cascades[cascade].far_m;
+  mat4 shadow_from_world = cascades[cascade].shadow_from_world;
   float reach = 0.0;
   for (uint at = slice.first_marched; at < march.count && march_list[at] >> 16u == id; ++at) {
     uint i = march_list[at] & 0xFFFFu;
@@ -48,7 +53,7 @@ float reach_of(EpipolarSlice slice, uint id, uint cascade) {
 }
 
 ShadowRow row_of(EpipolarSlice slice, uint cascade, float reach_cells) {
-  mat4 shadow_from_world = frame.cascades[cascade].shadow_from_world;
+  mat4 shadow_from_world = cascades[cascade].shadow_from_world;
   vec3 camera = shadow_uvz(shadow_from_world, frame.camera_position);
   vec2 near = texels_per_depth(shadow_from_world, sample_position(slice, 0u));
   vec2 far = texels_per_depth(shadow_from_world, sample_position(slice, slice.last));
@@ -64,7 +69,7 @@ ShadowRow row_of(EpipolarSlice slice, uint cascade, float reach_cells) {
   float outside = min(max(a.x, b.x), max(a.y, b.y));
   // Cells that rays of this slice cross in this cascade: along a slice, cells per depth grow steadily.
   float first = max(inside, begin_of(cascade) * max(abs(near.x), abs(near.y)) - 1.0);
-  float last = min(outside, frame.cascades[cascade].far_m * scale + 1.0);
+  float last = min(outside, cascades[cascade].far_m * scale + 1.0);
 
   ShadowRow row;
   row.u = camera.x;
@@ -80,6 +85,8 @@ ShadowRow row_of(EpipolarSlice slice, uint cascade, float reach_cells) {
 }
 
 void main() {
+  frame = stored_frame;
+  epipolar = stored_epipolar;
   uint id = gl_GlobalInvocationID.x;
   uint cascade = epipolar.first_cascade + gl_GlobalInvocationID.y;
   if (id >= epipolar.slices || cascade >= epipolar.cascades) return;

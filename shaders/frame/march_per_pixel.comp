@@ -14,8 +14,8 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
-layout(std430, binding = 1) readonly buffer frame_block { FrameConstants frame; };
+layout(std430, binding = 0) readonly buffer medium_block { Medium stored_medium; };
+layout(std430, binding = 1) readonly buffer frame_block { FrameConstants stored_frame; };
 layout(binding = 2) uniform sampler2D scene_color;
 layout(binding = 3) uniform sampler2D scene_depth;
 layout(binding = 4) uniform sampler2DArrayShadow shadow_maps;
@@ -25,6 +25,11 @@ layout(binding = 7) uniform sampler3D single_mie;
 layout(binding = 8) uniform sampler3D high_orders;
 layout(std430, binding = 9) buffer counter_block { uint counters[]; };
 layout(binding = 10) uniform sampler2DArray shadow_colors;
+layout(std140, binding = 11) uniform cascade_block { CascadeConstants cascades[kMostCascades]; };
+
+// Loaded by main() before anything else (docs/epipolar.md says why).
+Medium medium;
+FrameConstants frame;
 
 #include "frame/counters.glsl"
 #include "frame/glass.glsl"
@@ -48,8 +53,8 @@ struct March {
 // Steps through [from, to] inside one cascade. `ray` holds altitudes and cosines at the camera.
 void march_cascade(uint cascade, Ray ray, float from, float to, float steps_per_m, inout March march) {
   float radius = medium.planet_radius_m;
-  vec3 uvz_from = shadow_uvz(frame.cascades[cascade].shadow_from_world, frame.camera_position + ray.direction * from);
-  vec3 uvz_to = shadow_uvz(frame.cascades[cascade].shadow_from_world, frame.camera_position + ray.direction * to);
+  vec3 uvz_from = shadow_uvz(cascades[cascade].shadow_from_world, frame.camera_position + ray.direction * from);
+  vec3 uvz_to = shadow_uvz(cascades[cascade].shadow_from_world, frame.camera_position + ray.direction * to);
   vec2 texels = abs(uvz_to.xy - uvz_from.xy) * float(frame.shadow_resolution);
   // A ray towards the sun stays in one texel, yet crosses air of changing density: no group of reads may climb
   // more than half the aerosol's scale height.
@@ -104,10 +109,10 @@ vec3 integrated_light(Ray ray, float start, float end) {
   float t = start;
   // View-space depth grows in proportion to the distance along the ray.
   float depth_per_m = max(dot(ray.direction, frame.camera_forward), 1e-6);
-  float last = frame.cascade_count > 0u ? frame.cascades[frame.cascade_count - 1u].far_m / depth_per_m : 0.0;
+  float last = frame.cascade_count > 0u ? cascades[frame.cascade_count - 1u].far_m / depth_per_m : 0.0;
   float steps_per_m = float(frame.integration_steps) / max(min(last, end) - start, 1.0);
   for (uint c = frame.first_marched_cascade; c < frame.cascade_count; ++c) {
-    float to = min(frame.cascades[c].far_m / depth_per_m, end);
+    float to = min(cascades[c].far_m / depth_per_m, end);
     if (to - t > 1e-3) {
       march_cascade(c, ray, t, to, steps_per_m, march);
       t = to;
@@ -124,7 +129,7 @@ vec3 integrated_light(Ray ray, float start, float end) {
 
 // Reads the map at every texel between two distances inside one cascade, for the light of the tables.
 void walk_cascade(uint cascade, Ray ray, TableRay path, float start, float from, float to, inout LitSections lit) {
-  mat4 shadow_from_world = frame.cascades[cascade].shadow_from_world;
+  mat4 shadow_from_world = cascades[cascade].shadow_from_world;
   vec3 uvz_from = shadow_uvz(shadow_from_world, frame.camera_position + ray.direction * from);
   vec3 uvz_to = shadow_uvz(shadow_from_world, frame.camera_position + ray.direction * to);
   vec2 texels = abs(uvz_to.xy - uvz_from.xy) * float(frame.shadow_resolution);
@@ -156,7 +161,7 @@ vec3 shadowed_table_light(Ray ray, float start, float end) {
   if (kLitTables) {
     float depth_per_m = max(dot(ray.direction, frame.camera_forward), 1e-6);
     for (uint c = frame.first_marched_cascade; c < frame.cascade_count; ++c) {
-      float to = min(frame.cascades[c].far_m / depth_per_m, end);
+      float to = min(cascades[c].far_m / depth_per_m, end);
       if (to - t > 1e-3) {
         walk_cascade(c, ray, path, start, t, to, lit);
         t = to;
@@ -174,9 +179,9 @@ vec3 homogeneous_light(Ray ray, float start, float end) {
   float t = start;
   float depth_per_m = max(dot(ray.direction, frame.camera_forward), 1e-6);
   for (uint c = frame.first_marched_cascade; c < frame.cascade_count; ++c) {
-    float to = min(frame.cascades[c].far_m / depth_per_m, end);
+    float to = min(cascades[c].far_m / depth_per_m, end);
     if (to - t <= 1e-3) continue;
-    mat4 shadow_from_world = frame.cascades[c].shadow_from_world;
+    mat4 shadow_from_world = cascades[c].shadow_from_world;
     vec3 uvz_from = shadow_uvz(shadow_from_world, frame.camera_position + ray.direction * t);
     vec3 uvz_to = shadow_uvz(shadow_from_world, frame.camera_position + ray.direction * to);
     vec2 texels = abs(uvz_to.xy - uvz_from.xy) * float(frame.shadow_resolution);
@@ -209,6 +214,8 @@ vec3 air_light(Ray ray, float start, float end) {
 }
 
 void main() {
+  medium = stored_medium;
+  frame = stored_frame;
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height)) return;
   vec3 background = texelFetch(scene_color, pixel, 0).rgb;

@@ -3,6 +3,8 @@
 // followed by a four-byte member, every structure is a multiple of 16 bytes.
 #include "shared/tables.h"
 
+const uint kMostCascades = 8u;
+
 struct CascadeConstants {
   mat4 shadow_from_world;
   float near_m;
@@ -59,5 +61,4 @@ struct FrameConstants {
   uint unoccluded;  // 1: the higher orders of the whole ray, whatever is in shadow
   TableShape tables;
   HomogeneousMedium homogeneous;
-  CascadeConstants cascades[8];
 };

@@ -39,9 +39,11 @@ constexpr VkDeviceSize align(VkDeviceSize size) {
   return (size + kBufferAlignment - 1) / kBufferAlignment * kBufferAlignment;
 }
 constexpr VkDeviceSize kFrameBytes = align(sizeof(shared::FrameConstants));
+constexpr VkDeviceSize kCascadeBytes = align(sizeof(CascadeArray));
 constexpr VkDeviceSize kMediumBytes = align(sizeof(shared::Medium));
 constexpr VkDeviceSize kEpipolarBytes = align(sizeof(shared::EpipolarConstants));
-constexpr VkDeviceSize kSlotBytes = kFrameBytes + kMediumBytes + kEpipolarBytes;
+constexpr VkDeviceSize kSlotBytes = kFrameBytes + kCascadeBytes + kMediumBytes + kEpipolarBytes;
+static_assert(shared::kMostCascades == kMaxCascades);
 // Counters of a frame, as pairs of words.
 constexpr VkDeviceSize kCounterBytes = align(shared::kCounters * sizeof(std::uint64_t));
 
@@ -326,10 +328,13 @@ Result<void> Effect::record(VkCommandBuffer cmd, const FrameInputs& inputs) {
 
   const std::uint32_t slot = s.slot(inputs.frame_index);
   const VkDeviceSize frame_offset = kSlotBytes * slot;
-  const VkDeviceSize medium_offset = frame_offset + kFrameBytes;
+  const VkDeviceSize cascade_offset = frame_offset + kFrameBytes;
+  const VkDeviceSize medium_offset = cascade_offset + kCascadeBytes;
   const shared::FrameConstants frame = frame_constants(inputs, s.desc, s.params);
+  const CascadeArray cascades = cascade_constants(inputs);
   const shared::Medium medium = medium_from_params(s.params);
   std::memcpy(s.mapped(frame_offset), &frame, sizeof frame);
+  std::memcpy(s.mapped(cascade_offset), &cascades, sizeof cascades);
   std::memcpy(s.mapped(medium_offset), &medium, sizeof medium);
 
   const VkDeviceSize epipolar_offset = medium_offset + kMediumBytes;
@@ -350,6 +355,7 @@ Result<void> Effect::record(VkCommandBuffer cmd, const FrameInputs& inputs) {
   const gpu::NamedResource resources[] = {
       gpu::named_buffer("medium_block", s.constants.buffer.get(), medium_offset, sizeof medium),
       gpu::named_buffer("frame_block", s.constants.buffer.get(), frame_offset, sizeof frame),
+      gpu::named_buffer("cascade_block", s.constants.buffer.get(), cascade_offset, sizeof cascades),
       gpu::named_buffer("epipolar_block", s.constants.buffer.get(), epipolar_offset, sizeof epipolar),
       gpu::named_buffer("counter_block", s.counters.buffer.get(), counter_offset, kCounterBytes),
       gpu::named_image("scene_color", inputs.color.view, inputs.color.layout, s.nearest.get()),

@@ -174,10 +174,15 @@ shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDe
   out.glass_depth_sign = !inputs.shadow_color_depths ? 0.0F : desc.shadow_depth_reversed ? -1.0F : 1.0F;
   out.shadow_depth_reversed = desc.shadow_depth_reversed ? 1 : 0;
   out.tables = table_shape(params);
+  return out;
+}
+
+CascadeArray cascade_constants(const FrameInputs& inputs) {
+  CascadeArray out = {};
   for (std::size_t i = 0; i < inputs.cascades.size(); ++i) {
-    out.cascades[i].shadow_from_world = inputs.cascades[i].shadow_from_world;
-    out.cascades[i].near_m = inputs.cascades[i].near_m;
-    out.cascades[i].far_m = inputs.cascades[i].far_m;
+    out[i].shadow_from_world = inputs.cascades[i].shadow_from_world;
+    out[i].near_m = inputs.cascades[i].near_m;
+    out[i].far_m = inputs.cascades[i].far_m;
   }
   return out;
 }

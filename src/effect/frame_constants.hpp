@@ -1,6 +1,8 @@
 // From what the caller passes to what the shaders read: pure functions, no Vulkan objects.
 #pragma once
 
+#include <array>
+
 #include "effect/shared.hpp"
 #include "tyndall/effect.hpp"
 
@@ -21,6 +23,8 @@ namespace tyndall {
 // Above the planet's sphere, in double: its centre is millions of metres away.
 [[nodiscard]] double camera_altitude_m(const FrameInputs& inputs, const Params& params);
 [[nodiscard]] shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDesc& desc, const Params& params);
+using CascadeArray = std::array<shared::CascadeConstants, shared::kMostCascades>;
+[[nodiscard]] CascadeArray cascade_constants(const FrameInputs& inputs);
 
 // Why a frame cannot be recorded: one line, or empty. `warnings` receives remarks about inputs that
 // can be recorded but are hardly meant.
