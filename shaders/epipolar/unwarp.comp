@@ -10,7 +10,7 @@
 
 layout(local_size_x = 64) in;  // along rows, as images lie in memory
 
-layout(std430, binding = 0) readonly buffer medium_block { Medium stored_medium; };
+layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
 layout(std140, binding = 1) uniform frame_block { FrameConstants frame; };
 layout(std140, binding = 2) uniform epipolar_block { EpipolarConstants epipolar; };
 layout(std430, binding = 3) readonly buffer slice_block { EpipolarSlice slices[]; };
@@ -21,9 +21,6 @@ layout(binding = 7, OUTPUT_FORMAT) uniform writeonly image2D output_color;
 layout(std430, binding = 8) buffer broken_list_block { WorkList broken; uint broken_list[]; };
 
 layout(std430, binding = 9) writeonly buffer reduced_block { vec4 reduced[]; };
-
-// Loaded by main() before anything else (docs/epipolar.md says why).
-Medium medium;
 
 #include "epipolar/unwarp.glsl"
 #include "epipolar/reduced.glsl"
@@ -55,7 +52,6 @@ OwnDensity own_density(Block block, bool scene) {
 }
 
 void main() {
-  medium = stored_medium;
   ivec2 corner = ivec2(kBlockWidth, 2) * ivec2(gl_GlobalInvocationID.xy);
   ivec2 size = computed_size();
   if (corner.x >= size.x || corner.y >= size.y) return;

@@ -9,7 +9,7 @@
 
 layout(local_size_x = kMarchGroup) in;
 
-layout(std430, binding = 0) readonly buffer medium_block { Medium stored_medium; };
+layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
 layout(std140, binding = 1) uniform frame_block { FrameConstants frame; };
 layout(std140, binding = 2) uniform epipolar_block { EpipolarConstants epipolar; };
 layout(std430, binding = 3) readonly buffer slice_block { EpipolarSlice slices[]; };
@@ -20,9 +20,6 @@ layout(binding = 7, OUTPUT_FORMAT) uniform writeonly image2D output_color;
 layout(std430, binding = 8) readonly buffer work_block { WorkList work; uint items[]; };
 layout(std430, binding = 9) buffer break_list_block { WorkList breaks; uint break_list[]; };
 layout(std430, binding = 10) writeonly buffer reduced_block { vec4 reduced[]; };
-
-// Loaded by main() before anything else (docs/epipolar.md says why).
-Medium medium;
 
 #include "epipolar/unwarp.glsl"
 #include "epipolar/reduced.glsl"
@@ -67,7 +64,6 @@ void unwarp_pixel(uint block, uint k) {
 }
 
 void main() {
-  medium = stored_medium;
   uint i = list_item(kMarchGroup);
   if (i < 4u * work.count) unwarp_pixel(items[i / 4u], i % 4u);
 }
