@@ -24,9 +24,8 @@ struct Block {
   float farthest_m;
 };
 
-void look_at_pixel(inout Block block, int k) {
+void look_at_pixel(inout Block block, int k, float depth) {
   vec2 position = vec2(block.pixel[k]) + 0.5;
-  float depth = texelFetch(scene_depth, block.pixel[k], 0).r;
   bool sky = depth == frame.sky_depth;
   float visible_m = view_depth(frame, position, depth);
   vec3 direction = frame.ray_origin + position.x * frame.ray_x + position.y * frame.ray_y;
@@ -43,7 +42,20 @@ void look_at_block(inout Block block) {
   block.kinds = 0u;
   block.nearest_m = kSkyDepth;
   block.farthest_m = 0.0;
-  for (int k = 0; k < kBlockPixels; ++k) look_at_pixel(block, k);
+  float depth[kBlockPixels];
+  if (kDownscale == 1) {
+    // Of each square of 2 x 2 in the order of textureGather: lower left, lower right, upper right, upper left.
+    for (int k = 0; k < kBlockWidth; k += 2) {
+      vec4 d = textureGather(scene_depth, vec2(block.pixel[0] + ivec2(k + 1, 1)) / vec2(float(frame.width), float(frame.height)));
+      depth[k] = d.w;
+      depth[k + 1] = d.z;
+      depth[kBlockWidth + k] = d.x;
+      depth[kBlockWidth + k + 1] = d.y;
+    }
+  } else {
+    for (int k = 0; k < kBlockPixels; ++k) depth[k] = texelFetch(scene_depth, block.pixel[k], 0).r;
+  }
+  for (int k = 0; k < kBlockPixels; ++k) look_at_pixel(block, k, depth[k]);
 }
 
 void list_broken(ivec2 corner) {

@@ -1,5 +1,5 @@
 // Marching a ray of a slice through the shadow cascades. Include after declaring medium, frame, epipolar, rows
-// (ShadowRow[]), tree (uint[]), shadow_maps, shadow_colors, the tables, and counters.
+// (ShadowRow[]), tree (uvec2[]), shadow_maps, shadow_colors, the tables, and counters.
 // A walk finds stretches that are lit or dark; with the tree whole nodes at a time, without it cell by cell. Where
 // a cell is undecided the map itself is compared, at the same place in both: the tree saves reads and changes
 // nothing. The air is summed over panels on which it is smooth, whatever the shadows: a panel's light is that
@@ -33,7 +33,11 @@ struct March {
 
 // A walk along a row. Distances in cells from the camera.
 struct Walk {
-  ShadowRow row;
+  vec4 line;             // ShadowRow
+  float depth;
+  int first;
+  int extent;
+  int count;
   uint cascade;
   uint tree_base;        // of the row's blocks in `tree`
   bool full;             // nodes are of two words
@@ -58,10 +62,10 @@ struct Walk {
 };
 
 vec2 load_node(bool full, uint at) {
-  uint low = tree[full ? 2u * at : at];
-  uint high = low;
-  if (full) high = tree[2u * at + 1u];
-  return full ? vec2(uintBitsToFloat(low), uintBitsToFloat(high)) : vec2(float(low & 0xFFFFu), float(high >> 16u));
+  // One load for both: CPU devices execute those of all branches.
+  uvec2 words = tree[full ? at : at >> 1u];
+  uint halves = (at & 1u) != 0u ? words.y : words.x;
+  return full ? uintBitsToFloat(words) : vec2(float(halves & 0xFFFFu), float(halves >> 16u));
 }
 
 void close_homogeneous(inout Walk w) {
@@ -101,9 +105,9 @@ void walk_to(inout Walk w, inout LitSections sections, float to) {
     bool read = false;
     float stop = to;  // of what is read
     while (w.x < to && !read && !section_closed(sections)) {
-      int j = int(w.x) - w.row.first;
-      bool inside = j >= 0 && j < w.row.extent;
-      bool in_tree = kTree && inside && j < w.row.count;
+      int j = int(w.x) - w.first;
+      bool inside = j >= 0 && j < w.extent;
+      bool in_tree = kTree && inside && j < w.count;
       bool dark = false;
       uint level = kTreeLeafLevel;
       if (kTree) {
@@ -117,8 +121,8 @@ void walk_to(inout Walk w, inout LitSections sections, float to) {
       undecided = undecided || (inside && !in_tree);
       int next = ((j >> level) + 1) << level;
       // A node may reach behind what was put into the tree.
-      int known = in_tree ? w.row.count : w.row.extent;
-      float end = inside ? float(w.row.first + min(next, known)) : j < 0 ? float(w.row.first) : to;
+      int known = in_tree ? w.count : w.extent;
+      float end = inside ? float(w.first + min(next, known)) : j < 0 ? float(w.first) : to;
       stop = end > w.x ? min(end, to) : to;
       // What is lit through glass is read too.
       read = undecided || (kColors && inside && !dark);
@@ -139,8 +143,8 @@ void walk_to(inout Walk w, inout LitSections sections, float to) {
         float end = w.x + step_cells;
         end = min(cell + 1.0 - end > 0.01 * step_cells ? end : cell + 1.0, stop);
         end = end > w.x ? end : stop;
-        vec2 uv = vec2(w.row.u, w.row.v) + (cell + 0.5) * vec2(w.row.du, w.row.dv);
-        float z = w.row.depth + 0.5 * (w.x + end) * w.slope;
+        vec2 uv = w.line.xy + (cell + 0.5) * w.line.zw;
+        float z = w.depth + 0.5 * (w.x + end) * w.slope;
         float share = texture(shadow_maps, vec4(uv, float(w.cascade), clamp(z, 0.0, 1.0)));
         add_run(w, sections, end, share, glass_color(uv, z, w.cascade));
         ++reads_done;
@@ -156,7 +160,12 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
   float resolution = float(frame.shadow_resolution);
   uint row = (cascade - epipolar.first_cascade) * epipolar.slices + slice;
   Walk w;
-  w.row = rows[row];
+  ShadowRow stored = rows[row];
+  w.line = stored.line;
+  w.depth = stored.depth;
+  w.first = stored.cells.x;
+  w.extent = stored.cells.y;
+  w.count = stored.cells.z;
   w.cascade = cascade;
   w.tree_base = row * (epipolar.tree_cells / kTreeBlock) * kTreeNodes;
   w.full = epipolar.tree_format == kFloat32;

@@ -1,33 +1,30 @@
 // What a ray has gathered, between passes that march one cascade each. Include after declaring
-//   buffer state_block { float states[]; };
+//   buffer state_block { vec4 states[]; };
 #ifndef TYNDALL_MARCH_STATE_GLSL
 #define TYNDALL_MARCH_STATE_GLSL
 
-const uint kStateFloats = 16u;  // as in src/effect/epipolar.cpp
+const uint kStateVectors = 4u;  // kStateBytes of src/effect/epipolar_plan.cpp
 
 void store_march(uint at, March m) {
-  uint i = at * kStateFloats;
-  states[i] = m.lit.first;
-  states[i + 1u] = m.lit.total;
-  states[i + 14u] = m.end_share;
-  for (uint k = 0u; k < 3u; ++k) {
-    states[i + 2u + k] = m.lit.light.single[k];
-    states[i + 5u + k] = m.lit.light.high[k];
-    states[i + 8u + k] = m.light[k];
-    states[i + 11u + k] = m.lit.tint[k];
-  }
+  uint i = at * kStateVectors;
+  states[i] = vec4(m.lit.light.single, m.lit.first);
+  states[i + 1u] = vec4(m.lit.light.high, m.lit.total);
+  states[i + 2u] = vec4(m.light, m.end_share);
+  states[i + 3u] = vec4(m.lit.tint, 0.0);
 }
 
 March load_march(uint at) {
-  uint i = at * kStateFloats;
+  uint i = at * kStateVectors;
+  vec4 single = states[i];
+  vec4 high = states[i + 1u];
+  vec4 light = states[i + 2u];
   March m = nothing_marched();
-  m.lit.first = states[i];
-  m.lit.total = states[i + 1u];
-  m.end_share = states[i + 14u];
-  m.lit.light.single = vec3(states[i + 2u], states[i + 3u], states[i + 4u]);
-  m.lit.light.high = vec3(states[i + 5u], states[i + 6u], states[i + 7u]);
-  m.light = vec3(states[i + 8u], states[i + 9u], states[i + 10u]);
-  m.lit.tint = vec3(states[i + 11u], states[i + 12u], states[i + 13u]);
+  m.lit.light = AirLight(single.rgb, high.rgb);
+  m.lit.first = single.a;
+  m.lit.total = high.a;
+  m.lit.tint = states[i + 3u].rgb;
+  m.light = light.rgb;
+  m.end_share = light.a;
   return m;
 }
 

@@ -38,9 +38,9 @@ vec2 both(vec2 a, vec2 b) { return vec2(min(a.x, b.x), max(a.y, b.y)); }
 
 // Least and greatest depth that the comparisons in the middles of cell x and the next can meet.
 vec2 pair_depths(ShadowRow row, int x, uint cascade) {
-  vec2 uv = vec2(row.u, row.v) + (float(x) + 0.5) * vec2(row.du, row.dv);
+  vec2 uv = row.line.xy + (float(x) + 0.5) * row.line.zw;
   vec4 a = textureGather(shadow_depths, vec3(uv, float(cascade)));
-  vec4 b = textureGather(shadow_depths, vec3(uv + vec2(row.du, row.dv), float(cascade)));
+  vec4 b = textureGather(shadow_depths, vec3(uv + row.line.zw, float(cascade)));
   vec4 low = min(a, b);
   vec4 high = max(a, b);
   vec2 depths = vec2(min(min(low.x, low.y), min(low.z, low.w)), max(max(high.x, high.y), max(high.z, high.w)));
@@ -91,10 +91,10 @@ vec2 build_part(uint base, ShadowRow row, uint cascade, uint block, uint part) {
     uint cell = (part << kPartLevel) + leaf * kCells;
     int from = int(block * kTreeBlock + cell);
     n = no_cells();
-    if (from < row.count) {
+    if (from < row.cells.z) {
       vec2 slopes = vec2(kAlwaysLit, -kAlwaysLit);
       for (int k = 0; k < int(kCells); k += 2) {
-        int x = row.first + from + k;
+        int x = row.cells.x + from + k;
         slopes = both(slopes, pair_slopes(pair_depths(row, x, cascade), x, camera));
       }
       n = rounded_numbers(slopes);

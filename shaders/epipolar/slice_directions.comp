@@ -72,15 +72,12 @@ ShadowRow row_of(EpipolarSlice slice, uint cascade, float reach_cells) {
   float last = min(outside, cascades[cascade].far_m * scale + 1.0);
 
   ShadowRow row;
-  row.u = camera.x;
-  row.v = camera.y;
-  row.du = step_uv.x;
-  row.dv = step_uv.y;
+  row.line = vec4(camera.xy, step_uv);
   row.depth = camera.z;
-  row.first = int(clamp(floor(first), 0.0, 1e9));
-  row.extent = int(clamp(ceil(last) - floor(first), 0.0, 1e6));
-  float reached = ceil(min(reach_cells + 1.0, 1e9)) - float(row.first);
-  row.count = int(clamp(reached, 0.0, float(min(row.extent, int(epipolar.tree_cells)))));
+  row.cells.x = int(clamp(floor(first), 0.0, 1e9));
+  row.cells.y = int(clamp(ceil(last) - floor(first), 0.0, 1e6));
+  float reached = ceil(min(reach_cells + 1.0, 1e9)) - float(row.cells.x);
+  row.cells.z = int(clamp(reached, 0.0, float(min(row.cells.y, int(epipolar.tree_cells)))));
   return row;
 }
 
@@ -95,7 +92,7 @@ void main() {
   uint row_id = gl_GlobalInvocationID.y * epipolar.slices + id;
   rows[row_id] = row;
   // The blocks of the tree that have cells.
-  uint blocks = (uint(row.count) + kTreeBlock - 1u) / kTreeBlock;
+  uint blocks = (uint(row.cells.z) + kTreeBlock - 1u) / kTreeBlock;
   uint at = atomicAdd(trees.count, blocks);
   uint groups = (at + blocks + kTreeGroup - 1u) / kTreeGroup;
   atomicMax(trees.groups_x, groups_along_x(groups));

@@ -29,12 +29,8 @@ void main() {
   float intervals = float(epipolar.samples - 1u);
   float stretched = epipolar.optimize_locations != 0u ? max(visible, intervals * float(epipolar.downscale)) : max(visible, 1e-3);
   EpipolarSlice slice;
-  slice.entry_x = entry.x;
-  slice.entry_y = entry.y;
-  slice.stride_x = direction.x * stretched / intervals;
-  slice.stride_y = direction.y * stretched / intervals;
-  slice.axis_x = direction.x * intervals / stretched;
-  slice.axis_y = direction.y * intervals / stretched;
+  slice.line = vec4(entry, direction * (intervals / stretched));
+  slice.stride = direction * (stretched / intervals);
   slice.last = uint(clamp(ceil(visible / stretched * intervals - 1e-3), 1.0, intervals));
   slice.first_marched = 0u;
   slices[id] = slice;

@@ -102,7 +102,7 @@ float slice_coordinate(vec2 position, Side side) {
 float slice_coordinate(vec2 position) { return slice_coordinate(position, side_behind(position)); }
 
 vec2 sample_position(EpipolarSlice slice, uint i) {
-  return vec2(slice.entry_x, slice.entry_y) + vec2(slice.stride_x, slice.stride_y) * float(i);
+  return slice.line.xy + slice.stride * float(i);
 }
 
 #endif

@@ -60,7 +60,7 @@ Around around(vec2 position, float depth_m) {
     uint id = lower + uint(i);
     id = id <= last ? id : epipolar.closed != 0u ? id - last - 1u : last;
     EpipolarSlice slice = slices[id];
-    vec4 origin = vec4(slice.entry_x, slice.entry_y, slice.axis_x, slice.axis_y);
+    vec4 origin = slice.line;
     float place = clamp(place_on_slice(origin, position), 0.0, float(slice.last));
     uint first = min(uint(place), slice.last - 1u);
     if (i == 0) a.origin_lower = origin;
