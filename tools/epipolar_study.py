@@ -5,10 +5,12 @@ docs/generated/epipolar.md, docs/images/epipolar_*.svg and docs/images/epipolar_
 
 Needs Pillow and matplotlib. Sections: sweeps, pixels, tree, presets, pictures; without, all of them. What a section
 has measured is kept in out/epipolar_study.json, so that the others need not run again.
-Times are medians of three frames and are given in floor passes of the same run, because machines are shared and differ.
+Times are medians of three runs of three frames each, in turns with those that they are compared with, and are given in floor
+passes of the same run, because machines are shared and differ.
 """
 import json
 import pathlib
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -27,6 +29,7 @@ IMAGES = ROOT / "docs/images"
 KEPT = ROOT / "out/epipolar_study.json"
 SIZE = "1280x720"
 PARALLEL_RENDERS = 2
+TURNS = 3
 FIXED_EXPOSURE = ["--set", "tonemap.auto_exposure=false"]  # the pictures are compared
 BRUTE_FORCE = {"scattering.technique": "brute-force"}
 SWEEPS = {
@@ -59,7 +62,6 @@ class Study:
     def __init__(self, tyndall, scratch):
         self.tyndall = tyndall
         self.scratch = pathlib.Path(scratch)
-        self.benched = {}
         self.rendered = {}
 
     def run(self, *arguments):
@@ -75,11 +77,14 @@ class Study:
             out += ["--set", f"{key}={value}"]
         return tuple(out + ["--size", size])
 
-    def bench(self, settings, size=SIZE, frames=3):
-        key = self.arguments(None, without_defaults(settings), size)
-        if key not in self.benched:
-            self.benched[key] = json.loads(self.run("bench", *key, "--frames", str(frames), "--json"))
-        return self.benched[key]
+    def costs(self, points, frames=3):
+        """points: (settings, size). What each costs, run in turns, because a machine's speed changes with time."""
+        keys = [self.arguments(None, without_defaults(settings), size) for settings, size in points]
+        runs = {k: [] for k in keys}
+        for _ in range(TURNS):
+            for k in runs:
+                runs[k].append(json.loads(self.run("bench", *k, "--frames", str(frames), "--json")))
+        return [cost(runs[k]) for k in keys]
 
     def render(self, jobs):
         """jobs: (scene, settings, kind). Renders those that are new and returns the files of all."""
@@ -113,29 +118,32 @@ class Study:
         return out
 
 
-def cost(bench):
-    floor = bench["floor_ms"]
-    passes = {p["name"]: p["median_ms"] / floor for p in bench["passes"] if p["in_effect"]}
-    effect = bench["memory_bytes"]["effect_resources"]
-    return {"floors": bench["effect_ms"] / floor, "ms": bench["effect_ms"], "passes": passes,
-            "counters": bench["counters"], "mib": sum(v for k, v in effect.items()) / 2**20,
-            "resources": effect, "device": bench["device"]}
+def cost(runs):
+    def median(number):
+        return statistics.median(number(run) for run in runs)
+
+    def floors(name):
+        return median(lambda run: next(p["median_ms"] for p in run["passes"] if p["name"] == name) / run["floor_ms"])
+
+    first = runs[0]
+    effect = first["memory_bytes"]["effect_resources"]
+    return {"floors": median(lambda run: run["effect_ms"] / run["floor_ms"]), "ms": median(lambda run: run["effect_ms"]),
+            "passes": {p["name"]: floors(p["name"]) for p in first["passes"] if p["in_effect"]},
+            "counters": first["counters"], "mib": sum(v for k, v in effect.items()) / 2**20,
+            "resources": effect, "device": first["device"]}
 
 
 def sweeps(study):
     points = [(name, p) for name, rows in SWEEPS.items() for p in rows]
     errors = study.errors([(None, p, ("png", "exr")) for _, p in points])
-    out = {"rows": [{"sweep": name, "settings": p, **e, "cost": cost(study.bench(p))}
-                    for (name, p), e in zip(points, errors)]}
-    out["brute_force"] = cost(study.bench(BRUTE_FORCE))
-    # Again beside it, because a machine's speed changes with time.
-    study.benched.clear()
-    out["epipolar"] = cost(study.bench({}))
+    costs = study.costs([(p, SIZE) for _, p in points])
+    out = {"rows": [{"sweep": name, "settings": p, **e, "cost": c} for (name, p), e, c in zip(points, errors, costs)]}
+    out["brute_force"], out["epipolar"] = study.costs([(BRUTE_FORCE, SIZE), ({}, SIZE)])
     return out
 
 
 def pixels(study):
-    return {size: cost(study.bench({}, size)) for size in SIZES}
+    return dict(zip(SIZES, study.costs([({}, size) for size in SIZES])))
 
 
 def tree(study):
@@ -145,8 +153,8 @@ def tree(study):
         off = settings | {"epipolar.min_max_tree": "false"}
         a, b = study.render([(None, settings, "png"), (None, off, "png")])
         equal = json.loads(study.run("compare", a, b, "--json"))["max_abs"] == 0.0
-        rows.append({"resolution": resolution, "equal": equal, "with": cost(study.bench(settings)),
-                     "without": cost(study.bench(off))})
+        with_tree, without = study.costs([(settings, SIZE), (off, SIZE)])
+        rows.append({"resolution": resolution, "equal": equal, "with": with_tree, "without": without})
     return rows
 
 
@@ -161,8 +169,8 @@ def presets(study):
         chosen = {k: v for k, v in preset_settings(name).items() if k not in ("shadows.cascades", "shadows.first_marched")}
         points += [(scene, more | chosen, ("png",)) for scene, more in VIEWS.values()]
     errors = iter(study.errors(points))
-    return {name: {"errors": {view: next(errors) for view in VIEWS}, "cost": cost(study.bench(preset_settings(name)))}
-            for name in PRESETS}
+    costs = study.costs([(preset_settings(name), SIZE) for name in PRESETS])
+    return {name: {"errors": {view: next(errors) for view in VIEWS}, "cost": c} for name, c in zip(PRESETS, costs)}
 
 
 def pictures(study):
