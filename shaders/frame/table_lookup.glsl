@@ -53,50 +53,61 @@ TableRay ray_further_on(Medium m, TableRay ray, float distance_m) {
   return out_ray;
 }
 
-// Texture coordinates of altitude, view and sun, and the slice that the angle to the sun lies in: the third
+// What is the same all along a ray: how much of the scattered light goes its way, and the slices that its angle to the sun lies
+// between. To be had once, before a loop over the ray's places: some compilers move nothing out of loops.
+struct TableAngle {
+  vec3 rayleigh;  // scattering x phase function [1 / (m sr)]
+  vec3 mie;
+  float slices;
+  float first;
+  float part;  // of the way to the next
+};
+
+TableAngle table_angle(TableShape t, Medium m, float nu) {
+  TableAngle a;
+  a.rayleigh = m.rayleigh_scattering * rayleigh_phase(nu);
+  a.mie = m.mie_scattering * mie_phase(m, nu);
+  a.slices = float(t.angles);
+  float slice = clamp(q_from_angle(t, nu) * a.slices - 0.5, 0.0, a.slices - 1.0);
+  a.first = min(floor(slice), a.slices - 2.0);
+  a.part = slice - a.first;
+  return a;
+}
+
+// Texture coordinates of altitude, view and sun, on both slices of the angle: the third
 // texture axis holds the suns of one angle after the other, and filtering stays within one.
 struct TableCoordinates {
   vec3 near;
   vec3 far;
-  float far_part;
 };
 
 // `column`: of the whole ray.
-TableCoordinates table_coordinates(TableShape t, Medium m, TableRay ray, vec3 column) {
+TableCoordinates table_coordinates(TableShape t, Medium m, TableAngle angle, TableRay ray, vec3 column) {
   float h = table_altitude(m, ray.altitude);
   float u = u_from_altitude(t, m, h);
   float v = v_from_view(t, m, h, ray.cos_zenith, ray.below);
   float middle = middle_of_air(m, ray.altitude, ray.cos_zenith, ray.end_m, column);
   float w = w_from_sun(t, ray_further_on(m, ray, middle).cos_sun_zenith);
-  float slices = float(t.angles);
-  float slice = clamp(q_from_angle(t, ray.cos_view_sun) * slices - 0.5, 0.0, slices - 1.0);
-  float first = min(floor(slice), slices - 2.0);
-  TableCoordinates c;
-  c.near = vec3(u, v, (first + w) / slices);
-  c.far = vec3(u, v, (first + 1.0 + w) / slices);
-  c.far_part = slice - first;
-  return c;
+  return TableCoordinates(vec3(u, v, (angle.first + w) / angle.slices), vec3(u, v, (angle.first + 1.0 + w) / angle.slices));
 }
 
-vec3 table_value(sampler3D table, TableCoordinates c) {
-  return value_from_texel(mix(textureLod(table, c.near, 0.0).rgb, textureLod(table, c.far, 0.0).rgb, c.far_part));
+vec3 table_value(sampler3D table, TableCoordinates c, float part) {
+  return value_from_texel(mix(textureLod(table, c.near, 0.0).rgb, textureLod(table, c.far, 0.0).rgb, part));
 }
 
 // `column`: of the whole ray.
-AirLight light_of_column(TableShape t, Medium m, TableRay ray, vec3 column) {
-  TableCoordinates c = table_coordinates(t, m, ray, column);
+AirLight light_of_column(TableShape t, Medium m, TableAngle angle, TableRay ray, vec3 column) {
+  TableCoordinates c = table_coordinates(t, m, angle, ray, column);
   Guide guide = guide_for_column(m, column);
-  vec3 rayleigh = m.rayleigh_scattering * rayleigh_phase(ray.cos_view_sun);
-  vec3 mie = m.mie_scattering * mie_phase(m, ray.cos_view_sun);
   AirLight light;
-  light.single = rayleigh * guide.rayleigh * table_value(single_rayleigh, c) +
-                 mie * guide.mie * table_value(single_mie, c);
-  light.high = guide.high * table_value(high_orders, c);
+  light.single = angle.rayleigh * guide.rayleigh * table_value(single_rayleigh, c, angle.part) +
+                 angle.mie * guide.mie * table_value(single_mie, c, angle.part);
+  light.high = guide.high * table_value(high_orders, c, angle.part);
   return light;
 }
 
-AirLight light_to_end(TableShape t, Medium m, TableRay ray) {
-  return light_of_column(t, m, ray, column_along(m, ray.altitude, ray.cos_zenith, ray.end_m));
+AirLight light_to_end(TableShape t, Medium m, TableAngle angle, TableRay ray) {
+  return light_of_column(t, m, angle, ray, column_along(m, ray.altitude, ray.cos_zenith, ray.end_m));
 }
 
 // The light of the part [from, to] of a ray [m], seen from the ray's origin: L(a) - T(a, b) L(b), dimmed by
@@ -107,10 +118,11 @@ AirLight light_between(TableShape t, Medium m, TableRay ray, float from, float t
   if (end <= from) return light;
   // A loop, because every copy of the look-up is a heavy piece of code.
   int ends = end < ray.end_m ? 2 : 1;
+  TableAngle angle = table_angle(t, m, ray.cos_view_sun);
   for (int i = 0; i < ends; ++i) {
     float d = i == 0 ? from : end;
     vec3 through = transmittance(m, column_along(m, ray.altitude, ray.cos_zenith, d));
-    AirLight beyond = light_to_end(t, m, ray_further_on(m, ray, d));
+    AirLight beyond = light_to_end(t, m, angle, ray_further_on(m, ray, d));
     vec3 share = i == 0 ? through : -through;
     light.single += share * beyond.single;
     light.high += share * beyond.high;
