@@ -1,7 +1,8 @@
 // Chooses the samples that are marched, and for the others the two that they are interpolated between
 // (Yusov 2013, section 1.3). Marched are samples where the unshadowed light is off the line between its neighbours' by more
 // than kOff times the threshold: first next to each, which finds edges, then halving the steps between, which finds slow bends.
-// One group per slice: marked samples are bits, and each sample looks for the nearest to both sides.
+// One group per slice, and a thread for each run of kRun samples: marked samples are bits, and each sample looks for the nearest
+// to both sides.
 // sources: index of the left source, and of the right one << 16, on the same slice; equal where it is marched.
 // The list of marched samples, slice << 16 | index, keeps the order of each slice.
 #version 460
@@ -29,6 +30,7 @@ layout(std430, binding = 5) buffer march_list_block { WorkList march; uint march
 #include "epipolar/work_list.glsl"
 
 const uint kWords = 64u;  // for 2048 samples
+const uint kRun = 8u;     // samples; a part of a word
 // Light below this part of the slice's mean makes no break: it is too dark to be seen beside the rest.
 const float kDark = 0.05;
 // Times the threshold: interpolation knows what is off the line, and makes up for most of it.
@@ -41,14 +43,19 @@ shared uint before[kWords];   // marked samples in the words before
 shared vec2 partial[kThreads];
 shared uint list_start;
 
-// How far light at a sample is off the line between that of two others.
-float off_line(uint row, uint left, uint i, uint right, vec2 floor_light) {
-  vec2 a = unpack_coarse(coarse[row + left]);
-  vec2 b = unpack_coarse(coarse[row + i]);
-  vec2 c = unpack_coarse(coarse[row + right]);
-  vec2 off = abs(mix(a, c, float(i - left) / float(right - left)) - b) / max(max(a, max(b, c)), floor_light);
+// How far light b is off the line between a and c, a part of the way from a.
+float off_line(vec2 a, vec2 b, vec2 c, float part, vec2 floor_light) {
+  vec2 off = abs(mix(a, c, part) - b) / max(max(a, max(b, c)), floor_light);
   return max(off.x, off.y);
 }
+
+float off_line(uint row, uint left, uint i, uint right, vec2 floor_light) {
+  return off_line(unpack_coarse(coarse[row + left]), unpack_coarse(coarse[row + i]), unpack_coarse(coarse[row + right]),
+                  float(i - left) / float(right - left), floor_light);
+}
+
+// Of samples and steps up to 2048. (CPU devices divide integers one by one.)
+uint remainder_of(uint i, uint divisor) { return i - uint((float(i) + 0.5) / float(divisor)) * divisor; }
 
 float depth_step(uint at) {
   float depth = uintBitsToFloat(samples[at].x);
@@ -98,14 +105,23 @@ void main() {
   const uint near_samples = epipolar.sun_in_picture != 0u ? (epipolar.samples + 19u) / 20u : 0u;
   uint fine_step = max(initial_step / epipolar.epipole_density, 1u);
   float near_epipole = 0.05 * float(max(frame.width, frame.height));
-  for (uint i = thread; i <= slice.last; i += kThreads) {
-    uint beyond = i % initial_step;
-    uint from = i - beyond;
-    bool near = from < near_samples && distance(sample_position(slice, from), center) < near_epipole;
-    bool mark = beyond % (near ? fine_step : initial_step) == 0u || i == slice.last;
-    bool kink = !mark && (kRefinement == 0u ? depth_step(row + i) > 0.2 * threshold
-                                             : off_line(row, i - 1u, i, i + 1u, floor_light) > kOff * threshold);
-    if (mark || kink) atomicOr(marked[i >> 5u], 1u << (i & 31u));
+  for (uint first = thread * kRun; first <= slice.last; first += kThreads * kRun) {
+    uint bits = 0u;
+    vec2 a = unpack_coarse(coarse[row + max(first, 1u) - 1u]);
+    vec2 b = unpack_coarse(coarse[row + first]);
+    for (uint i = first; i < first + kRun; ++i) {
+      vec2 c = unpack_coarse(coarse[row + min(i + 1u, slice.last)]);
+      uint beyond = remainder_of(i, initial_step);
+      uint from = i - beyond;
+      bool near = from < near_samples && distance(sample_position(slice, from), center) < near_epipole;
+      bool mark = remainder_of(beyond, near ? fine_step : initial_step) == 0u || i == slice.last;
+      bool kink = !mark && (kRefinement == 0u ? depth_step(row + min(i, slice.last - 1u)) > 0.2 * threshold
+                                               : off_line(a, b, c, 0.5, floor_light) > kOff * threshold);
+      bits |= i <= slice.last && (mark || kink) ? 1u << (i & 31u) : 0u;
+      a = b;
+      b = c;
+    }
+    atomicOr(marked[first >> 5u], bits);
   }
   barrier();
   // What bends slowly has no kink: the middles of steps, of their halves and so on, against what is marked on both sides so far.
@@ -138,12 +154,20 @@ void main() {
     atomicMax(march.groups_y, groups_along_y(groups));
   }
   barrier();
-  for (uint i = thread; i <= slice.last; i += kThreads) {
-    uint left = left_marked(i);
-    uint right = right_marked(i);
-    sources[row + i] = left | right << 16u;
-    uint word = i >> 5u;
-    uint bit = 1u << (i & 31u);
-    if (left == right) march_list[list_start + before[word] + uint(bitCount(marked[word] & (bit - 1u)))] = id << 16u | i;
+  for (uint first = thread * kRun; first <= slice.last; first += kThreads * kRun) {
+    uint word = first >> 5u;
+    uint bits = marked[word];
+    uint left = left_marked(first);
+    uint behind = right_marked(min(first + kRun - 1u, slice.last));
+    uint at = list_start + before[word] + uint(bitCount(bits & ((1u << (first & 31u)) - 1u)));
+    uint end = min(first + kRun, slice.last + 1u);
+    for (uint i = first; i < end; ++i) {
+      uint onwards = bits >> (i & 31u);
+      bool here = (onwards & 1u) != 0u;
+      left = here ? i : left;
+      uint right = onwards != 0u ? i + uint(findLSB(onwards)) : behind;
+      sources[row + i] = left | right << 16u;
+      if (here) march_list[at++] = id << 16u | i;
+    }
   }
 }
