@@ -1,4 +1,4 @@
-// Marching a ray of a slice through the shadow cascades. Include after declaring medium, frame, epipolar, rows
+// Marching a ray of a slice through the shadow cascades. Include after declaring medium, frame, cascades, epipolar, rows
 // (ShadowRow[]), tree (uvec2[]), shadow_maps, shadow_colors, the tables, and counters.
 // A walk finds stretches that are lit or dark; with the tree whole nodes at a time, without it cell by cell. Where
 // a cell is undecided the map itself is compared, at the same place in both: the tree saves reads and changes

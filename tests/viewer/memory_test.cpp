@@ -51,8 +51,9 @@ TEST(Window, KeepsItsMemoryThroughRandomChanges) {
   ASSERT_TRUE(desk.wait_for({"script done"}, 0, frames != nullptr ? 86400.0 : 420.0));
   EXPECT_EQ(desk.wait_for_end(120.0), 0) << desk.errors();
   // Lines "memory RESIDENT_KIB DEVICE_BYTES ALLOCATED_KIB". Every shader has been compiled in the first quarter; from there on
-  // memory stands still, but for what the settings of the moment take: medians of the second and the last quarter.
-  std::vector<double> resident, allocated;
+  // memory stands still, but for what the settings of the moment take: half of them take 53 MiB more of device memory than the others,
+  // which on a device without a GPU is the process's own.
+  std::vector<double> resident, allocated, device;
   std::istringstream text(desk.log_text());
   for (std::string line; std::getline(text, line);) {
     std::istringstream words(line);
@@ -60,20 +61,28 @@ TEST(Window, KeepsItsMemoryThroughRandomChanges) {
     double resident_kib = 0.0, device_bytes = 0.0, allocated_kib = 0.0;
     if (!(words >> time >> word) || word != "memory" || !(words >> resident_kib >> device_bytes >> allocated_kib)) continue;
     resident.push_back(resident_kib / 1024.0);
-    allocated.push_back(allocated_kib / 1024.0);
+    device.push_back(device_bytes / (1024.0 * 1024.0));
+    allocated.push_back(allocated_kib / 1024.0 - device.back());
   }
   ASSERT_GT(resident.size(), 16U);
-  const auto growth_mib = [](const std::vector<double>& all) { return median_of(all, 4, 3) - median_of(all, 4, 1); };
-  // A minute lies between them. Measured over 1500 changes: both stand still from the 400th on, and differ by up to 20 MiB from one
-  // quarter of two minutes to another; before, the heap grows to its size. Shaders that were compiled anew for every value of a
-  // slider took 3 MiB/s.
-  EXPECT_LT(growth_mib(resident), 40.0) << "MiB";
-  EXPECT_LT(growth_mib(allocated), 40.0) << "MiB";
+  // Of the second and the last quarter, between which a minute lies. What malloc has handed out beside device memory: by the medians, which
+  // differ by up to 22 MiB. Resident memory goes up and down by 60 MiB with what is freed where, and so hardly tells by its medians: the
+  // least of the last quarter is at most 2 MiB above the greatest of the second. Shaders that were compiled anew for every value of a
+  // slider took 3 MiB/s, which is 90 MiB from the end of the second quarter to the begin of the last.
+  const double allocated_growth = median_of(allocated, 4, 3) - median_of(allocated, 4, 1);
+  const auto rise = [](const std::vector<double>& all) {
+    const auto at = [&all](std::size_t quarter) { return all.begin() + static_cast<std::ptrdiff_t>(all.size() * quarter / 4); };
+    return *std::min_element(at(3), at(4)) - *std::max_element(at(1), at(2));
+  };
+  EXPECT_LT(allocated_growth, 40.0) << "MiB";
+  EXPECT_LT(rise(resident), 20.0) << "MiB";
+  EXPECT_LT(rise(device), 5.0) << "MiB";
   for (std::size_t part = 0; part < 8; ++part) {
-    std::printf("eighth %zu: resident %.1f MiB, allocated %.1f MiB\n", part + 1, median_of(resident, 8, part), median_of(allocated, 8, part));
+    std::printf("eighth %zu: resident %.1f MiB, allocated beside device memory %.1f MiB\n", part + 1, median_of(resident, 8, part),
+                median_of(allocated, 8, part));
   }
-  RecordProperty("resident_growth_mib", static_cast<int>(growth_mib(resident)));
-  RecordProperty("allocated_growth_mib", static_cast<int>(growth_mib(allocated)));
+  RecordProperty("resident_rise_mib", static_cast<int>(rise(resident)));
+  RecordProperty("allocated_growth_mib", static_cast<int>(allocated_growth));
 }
 
 }  // namespace
