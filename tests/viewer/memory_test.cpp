@@ -67,21 +67,25 @@ TEST(Window, KeepsItsMemoryThroughRandomChanges) {
   ASSERT_GT(resident.size(), 16U);
   // Of the second and the last quarter, between which a minute lies. What malloc has handed out beside device memory: by the medians, which
   // differ by up to 22 MiB. Resident memory goes up and down by 60 MiB with what is freed where, and so hardly tells by its medians: the
-  // least of the last quarter is at most 2 MiB above the greatest of the second. Shaders that were compiled anew for every value of a
-  // slider took 3 MiB/s, which is 90 MiB from the end of the second quarter to the begin of the last.
+  // least of the last quarter is at most 6 MiB above the greatest of the second. Shaders that were compiled anew for every value of a
+  // slider took 3 MiB/s, which is 90 MiB from the end of the second quarter to the begin of the last. Device memory comes back to what the
+  // leanest settings take, which are there again and again: 23 to 28 MiB.
   const double allocated_growth = median_of(allocated, 4, 3) - median_of(allocated, 4, 1);
-  const auto rise = [](const std::vector<double>& all) {
-    const auto at = [&all](std::size_t quarter) { return all.begin() + static_cast<std::ptrdiff_t>(all.size() * quarter / 4); };
-    return *std::min_element(at(3), at(4)) - *std::max_element(at(1), at(2));
+  const auto quarter = [](const std::vector<double>& all, std::size_t which) {
+    return all.begin() + static_cast<std::ptrdiff_t>(all.size() * which / 4);
   };
+  const auto least = [&](const std::vector<double>& all, std::size_t from, std::size_t to) {
+    return *std::min_element(quarter(all, from), quarter(all, to));
+  };
+  const double resident_rise = least(resident, 3, 4) - *std::max_element(quarter(resident, 1), quarter(resident, 2));
   EXPECT_LT(allocated_growth, 40.0) << "MiB";
-  EXPECT_LT(rise(resident), 20.0) << "MiB";
-  EXPECT_LT(rise(device), 5.0) << "MiB";
+  EXPECT_LT(resident_rise, 20.0) << "MiB";
+  EXPECT_LT(least(device, 2, 4) - least(device, 1, 2), 10.0) << "MiB";
   for (std::size_t part = 0; part < 8; ++part) {
     std::printf("eighth %zu: resident %.1f MiB, allocated beside device memory %.1f MiB\n", part + 1, median_of(resident, 8, part),
                 median_of(allocated, 8, part));
   }
-  RecordProperty("resident_rise_mib", static_cast<int>(rise(resident)));
+  RecordProperty("resident_rise_mib", static_cast<int>(resident_rise));
   RecordProperty("allocated_growth_mib", static_cast<int>(allocated_growth));
 }
 
