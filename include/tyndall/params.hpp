@@ -8,6 +8,7 @@
 #include <span>
 #include <string_view>
 
+#include "tyndall/result.hpp"
 #include "tyndall/types.hpp"
 
 namespace tyndall {
@@ -70,5 +71,10 @@ struct Params {
 
 // What has to be redone when `before` becomes `after`: a mask of bits 1 << Affects.
 [[nodiscard]] std::uint32_t affected(const Params& before, const Params& after);
+
+// Returns an error (invalid_argument) that names the first parameter that is out of range, not finite, or not one
+// of the values allowed for it (scattering.downscale, tables.size). Needs no device. Limits of the device itself,
+// such as the largest 3D image, are checked by Effect::create() and Effect::set_params().
+[[nodiscard]] Result<void> check_params(const Params& params);
 
 }  // namespace tyndall

@@ -272,6 +272,7 @@ std::string allowed_text(const Row& row) {
 }
 
 Result<void> check(const Settings& settings) {
+  if (Result<void> allowed = check_params(settings.effect); !allowed) return allowed;
   const scene::ShadowParams& shadows = settings.scene.shadows;
   if (shadows.first_marched >= shadows.cascades) {
     return input_error(

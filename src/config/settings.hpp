@@ -60,9 +60,8 @@ struct Group {
 // The error for a key that does not exist, with the nearest that does.
 [[nodiscard]] Error unknown_key(std::string_view key, std::string_view where);
 
-// What ranges alone cannot say: shadows.first_marched below shadows.cascades, terrain.source and
-// tables.cache not empty.
-// To be called once everything is set.
+// Checks what ranges alone cannot say, once everything is set: the values allowed for scattering.downscale and
+// tables.size, shadows.first_marched below shadows.cascades, terrain.source and tables.cache not empty.
 [[nodiscard]] Result<void> check(const Settings& settings);
 
 // Every parameter as {"tyndall.camera.yaw_deg", "332"} after {"tyndall.version", "0.1.0"}: for images.

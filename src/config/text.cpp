@@ -23,6 +23,24 @@ std::string_view without_plus(std::string_view text) {
   return text;
 }
 
+// The power of ten of the first digit that is not 0 in a decimal number that from_chars accepts.
+std::int64_t order_of_magnitude(std::string_view text) {
+  constexpr std::int64_t kLargestExponent = std::int64_t{1} << 40;
+  const std::size_t e = std::min(text.find_first_of("eE"), text.size());
+  std::int64_t exponent = 0;
+  bool negative = false;
+  for (const char c : text.substr(std::min(e + 1, text.size()))) {
+    if (c == '-') negative = true;
+    if (c >= '0' && c <= '9') exponent = std::min(10 * exponent + (c - '0'), kLargestExponent);
+  }
+  if (negative) exponent = -exponent;
+  const std::string_view digits = text.substr(0, e);
+  const std::size_t point = std::min(digits.find('.'), digits.size());
+  const std::size_t first = std::min(digits.find_first_of("123456789"), digits.size());
+  const std::int64_t places = static_cast<std::int64_t>(point) - static_cast<std::int64_t>(first);
+  return exponent + (first < point ? places - 1 : places);
+}
+
 template <typename T>
 NumberError read_real(std::string_view text, T& value) {
   text = without_plus(trimmed(text));
@@ -32,11 +50,9 @@ NumberError read_real(std::string_view text, T& value) {
     return NumberError::not_a_number;
   }
   if (end.ec == std::errc::result_out_of_range) {
-    // Too small is zero; too large is an error. from_chars does not say which, the wider type does.
-    double wide = 0.0;
-    const std::from_chars_result again = std::from_chars(text.data(), text.data() + text.size(), wide);
-    if (again.ec != std::errc() || std::fabs(wide) > 1.0) return NumberError::too_large;
-    read = static_cast<T>(wide);
+    // from_chars does not report which end of the range was left. A number too small for T is zero.
+    if (order_of_magnitude(text) > 0) return NumberError::too_large;
+    read = T{};
   }
   if (!std::isfinite(read)) return NumberError::not_finite;
   value = read;

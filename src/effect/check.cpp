@@ -1,6 +1,5 @@
 // What can be wrong with what the caller passes, in the caller's terms.
 #include <cmath>
-#include <cstring>
 #include <string>
 
 #include "effect/frame_constants.hpp"
@@ -19,74 +18,7 @@ bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && 
 
 Error invalid(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
 
-Result<void> check_number(const ParamInfo& info, double value) {
-  // A range's end counts as inside when it is given in single precision. False for NaN.
-  const bool real = info.type == ParamType::float32 || info.type == ParamType::vec3;
-  const double min = real ? static_cast<double>(static_cast<float>(info.min)) : info.min;
-  const double max = real ? static_cast<double>(static_cast<float>(info.max)) : info.max;
-  if (value >= min && value <= max) return {};
-  return invalid(std::string(info.group) + "." + std::string(info.name) + " is " + std::to_string(value) +
-                 ", allowed is " + std::to_string(info.min) + " to " + std::to_string(info.max));
-}
-
-std::uint32_t choice_count(std::string_view choices) {
-  std::uint32_t count = 1;
-  for (const char c : choices) count += c == '|' ? 1 : 0;
-  return count;
-}
-
 }  // namespace
-
-Result<void> check_params(const Params& params) {
-  const char* bytes = reinterpret_cast<const char*>(&params);
-  for (const ParamInfo& info : param_table()) {
-    float numbers[3] = {};
-    std::uint32_t word = 0;
-    std::memcpy(&word, bytes + info.offset, sizeof word);
-    std::size_t count = 0;
-    switch (info.type) {
-      case ParamType::float32: count = 1; break;
-      case ParamType::vec3: count = 3; break;
-      case ParamType::uint32:
-        if (Result<void> r = check_number(info, word); !r) return r;
-        break;
-      case ParamType::uvec4:
-        for (std::size_t i = 0; i < 4; ++i) {
-          std::memcpy(&word, bytes + info.offset + i * sizeof word, sizeof word);
-          if (Result<void> r = check_number(info, word); !r) return r;
-        }
-        break;
-      case ParamType::enumeration:
-        if (word >= choice_count(info.choices)) {
-          return invalid(std::string(info.group) + "." + std::string(info.name) + " is not one of " +
-                         std::string(info.choices));
-        }
-        break;
-      default: break;
-    }
-    std::memcpy(numbers, bytes + info.offset, count * sizeof(float));
-    for (std::size_t i = 0; i < count; ++i) {
-      if (Result<void> r = check_number(info, static_cast<double>(numbers[i])); !r) return r;
-    }
-  }
-  const std::uint32_t downscale = params.scattering.downscale;
-  if (downscale != 1 && downscale != 2 && downscale != 4) {
-    return invalid("scattering.downscale is " + std::to_string(downscale) + ", allowed is 1, 2 or 4");
-  }
-  const UVec4& size = params.tables.size;
-  if (size.y % 2 != 0) {
-    return invalid("tables.size has " + std::to_string(size.y) +
-                   " view angles, allowed is an even number: half of them lie on each side of the horizon");
-  }
-  // Above this no device of today holds a table; the product of four sizes could also overflow.
-  constexpr double kMostTexels = 134217728.0;
-  const double texels = static_cast<double>(size.x) * size.y * size.z * size.w;
-  if (texels > kMostTexels) {
-    return invalid("tables.size asks for " + std::to_string(texels * 24.0 / 1048576.0) +
-                   " MiB of tables, allowed is 3072 MiB");
-  }
-  return {};
-}
 
 Result<void> check_frame(const FrameInputs& inputs, const EffectDesc& desc, const Params& params) {
   const VkExtent2D extent = inputs.extent;

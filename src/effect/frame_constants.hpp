@@ -31,7 +31,4 @@ using CascadeArray = std::array<shared::CascadeConstants, shared::kMostCascades>
 [[nodiscard]] Result<void> check_frame(const FrameInputs& inputs, const EffectDesc& desc, const Params& params);
 void remark_on_frame(const FrameInputs& inputs, const Params& params, const DeviceInfo& device);
 
-// The first parameter that is out of range or not a number, as an error; see params.def.
-[[nodiscard]] Result<void> check_params(const Params& params);
-
 }  // namespace tyndall

@@ -59,7 +59,7 @@ std::string check_options(const Options& options) {
 }
 
 // The path tracer reads these two groups only; the table knows their ranges.
-std::string check_params(const Params& params) {
+std::string problem_of(const Params& params) {
   const char* base = reinterpret_cast<const char*>(&params);
   for (const ParamInfo& info : param_table()) {
     if (info.group != "planet" && info.group != "atmosphere") continue;
@@ -208,7 +208,7 @@ Estimate finish(const Accumulator& sums, const Scene& scene, const Options& opti
 
 // Empty if everything is within its range.
 std::string check(const Params& params, std::span<const Query> queries, const Options& options) {
-  if (const std::string bad = check_params(params); !bad.empty()) return "parameter " + bad;
+  if (const std::string bad = problem_of(params); !bad.empty()) return "parameter " + bad;
   if (const std::string bad = check_options(options); !bad.empty()) return "path tracer, " + bad;
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const std::string bad = check_query(queries[i], params.planet.radius_m);

@@ -137,6 +137,23 @@ TEST(ConfigSettings, ValuesTooSmallForAFloatAreZero) {
   Settings settings;
   ASSERT_TRUE(set(settings, "camera.yaw_deg=1e-60").ok());
   EXPECT_EQ(settings.scene.camera.yaw_deg, 0.0F);
+  ASSERT_TRUE(set(settings, "camera.yaw_deg=-1e-400").ok());
+  EXPECT_EQ(settings.scene.camera.yaw_deg, 0.0F);
+}
+
+TEST(ConfigText, NumbersBeyondTheRangeOfADouble) {
+  double value = 1.0;
+  for (const std::string& tiny : {std::string("1e-400"), std::string("-4.9e-330"), "0." + std::string(400, '0') + "1",
+                                  "1" + std::string(400, '0') + "e-900"}) {
+    value = 1.0;
+    EXPECT_EQ(read_number(tiny, value), NumberError::none) << tiny;
+    EXPECT_EQ(value, 0.0) << tiny;
+  }
+  EXPECT_EQ(read_number("3e-310", value), NumberError::none);  // subnormal
+  EXPECT_NEAR(value / 3e-310, 1.0, 1e-12);
+  for (const std::string& huge : {std::string("1e400"), "1" + std::string(400, '0'), "0." + std::string(400, '0') + "1e900"}) {
+    EXPECT_EQ(read_number(huge, value), NumberError::too_large) << huge;
+  }
 }
 
 TEST(ConfigSettings, CrossChecks) {
@@ -147,6 +164,13 @@ TEST(ConfigSettings, CrossChecks) {
   ASSERT_FALSE(check(settings).ok());
   EXPECT_EQ(check(settings).error().message,
             "'shadows.first_marched' = 2 is no cascade, with 'shadows.cascades' = 2, allowed is 0 to 1");
+  settings = Settings();
+  settings.effect.scattering.downscale = 3;
+  ASSERT_FALSE(check(settings).ok());
+  EXPECT_EQ(check(settings).error().message, "scattering.downscale is 3, allowed is 1, 2 or 4");
+  settings = Settings();
+  settings.effect.tables.size.y = 33;
+  EXPECT_FALSE(check(settings).ok());
   settings = Settings();
   settings.scene.terrain.source.clear();
   EXPECT_FALSE(check(settings).ok());
