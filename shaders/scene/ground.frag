@@ -4,6 +4,10 @@
 
 #include "scene/mesh_light.glsl"
 
+// The ground counts as farther away by this part when it is compared with meshes, so that a floor at sea level hides it
+// however depths are rounded. Seen from a height h that is as if it lay lower by kBehindMeshes * h.
+const float kBehindMeshes = 5.0e-4;
+
 layout(location = 0) in vec2 ndc;
 layout(location = 0) out vec4 radiance;
 
@@ -28,7 +32,7 @@ void main() {
   vec3 position = p + direction * t;
   float depth = push.near_m / (t * view_depth_per_m);
   if (depth > 1.0) discard;
-  gl_FragDepth = depth;
+  gl_FragDepth = depth * (1.0 - kBehindMeshes);
 
   SurfaceLight light = surface_light(position);
   uint cascade;

@@ -108,6 +108,61 @@ TEST_F(GpuMeshes, ALevelFaceIsLitLikeTheGroundAndOnlyItsFrontIsSeen) {
   EXPECT_NEAR(static_cast<double>(bright), 2.0 * 16.0 * px_per_m * px_per_m, 0.15 * 32.0 * px_per_m * px_per_m);
 }
 
+// A model's floor at y = 0 lies in the plane of the bare ground and hides it, from near and far and at grazing angles.
+TEST_F(GpuMeshes, AFloorAtSeaLevelHidesTheBareGround) {
+  struct Shot {
+    View view;
+    image::Image image;
+  };
+  const std::unique_ptr<Scene> scene = make(false);
+  ASSERT_NE(scene, nullptr);
+  const auto shots = [&](const std::string& meshes) {
+    scene_.meshes.source = meshes;
+    std::vector<Shot> out;
+    for (const float height_m : {0.6F, 1.7F, 40.0F, 700.0F, 9000.0F}) {
+      for (const float pitch_deg : {-90.0F, -35.0F, -4.0F}) {
+        for (const float x_m : {0.013F, 7.7F}) {
+          scene_.camera.position_m = {x_m, height_m, 0.3F * x_m};
+          scene_.camera.yaw_deg = 30.0F * x_m;
+          scene_.camera.pitch_deg = pitch_deg;
+          EXPECT_OK(scene->set_scene(scene_));
+          image::Image image = draw(*scene);
+          out.push_back({scene->view(), std::move(image)});
+        }
+      }
+    }
+    return out;
+  };
+  const std::vector<Shot> bare = shots("none");
+  file_.level_quad(-1, -1, 1, 1, 0.0F, file_.material({{"name", "white"}}));
+  const std::string source = file_.save(path_);
+  for (const float size_m : {15.0F, 1000.0F}) {
+    scene_.meshes.scale = size_m;
+    const std::vector<Shot> floors = shots(source);
+    std::size_t checked = 0;
+    std::size_t ground = 0;
+    for (std::size_t k = 0; k < floors.size(); ++k) {
+      const View& view = floors[k].view;
+      for (std::uint32_t j = 0; j < kExtent.height; ++j) {
+        for (std::uint32_t i = 0; i < kExtent.width; ++i) {
+          const double x = (2.0 * (i + 0.5) / kExtent.width - 1.0) * view.tan_half_width;
+          const double y = (1.0 - 2.0 * (j + 0.5) / kExtent.height) * view.tan_half_height;
+          const glm::dvec3 ray = view.forward + view.right * x + view.up * y;
+          if (ray.y >= 0.0) continue;
+          const glm::dvec3 hit = view.position - ray * (view.position.y / ray.y);
+          if (std::max(std::abs(hit.x), std::abs(hit.z)) > 0.95 * static_cast<double>(size_m)) continue;
+          ++checked;
+          // The floor's albedo is 1, the ground's 0.3.
+          const std::size_t pixel = 3 * (j * kExtent.width + i);
+          if (floors[k].image.rgb[pixel] < 2.0F * bare[k].image.rgb[pixel]) ++ground;
+        }
+      }
+    }
+    EXPECT_GT(checked, 10000U) << size_m;
+    EXPECT_EQ(ground, 0U) << "of " << checked << " pixels of a floor of " << size_m << " m";
+  }
+}
+
 TEST_F(GpuMeshes, HolesLetThroughLightAndSight) {
   // The western half is a hole.
   {
