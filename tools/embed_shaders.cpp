@@ -1,6 +1,6 @@
 // embed_shaders OUT.hpp A.spv B.spv ...: writes a header with one tyndall::gpu::Shader for each module:
 // its words, stage, local size, push-constant size and its bindings by name, with what each is used for.
-// The name of a module is that of its file without the extension. All bindings must be in set 0 and be
+// The name of a module is that of its file without the extension, and an array named as OUT lists them all. All bindings must be in set 0 and be
 // named; storage images and buffers must say readonly or writeonly where they are so, because barriers
 // follow from it.
 #include <spirv_cross/spirv_cross_c.h>
@@ -168,7 +168,9 @@ int main(int argc, char** argv) {
         "// Made by tools/embed_shaders.cpp from the compiled shaders.\n#pragma once\n\n"
         "#include \"gpu/shader.hpp\"\n\nnamespace tyndall::shaders {\n\n";
     for (int i = 2; i < argc; ++i) text += embed(argv[i]);
-    text += "}  // namespace tyndall::shaders\n";
+    text += "inline constexpr const tyndall::gpu::Shader* " + std::filesystem::path(argv[1]).stem().string() + "[] = {";
+    for (int i = 2; i < argc; ++i) text += "&" + std::filesystem::path(argv[i]).stem().string() + ", ";
+    text += "};\n\n}  // namespace tyndall::shaders\n";
     std::ofstream out(argv[1], std::ios::binary);
     out << text;
     out.close();

@@ -7,7 +7,9 @@
 // Ownership: everything in DeviceInfo and FrameInputs is borrowed. The effect transitions none of the
 // caller's images, allocates nothing while recording, starts no threads and keeps no global state.
 // Threads: one Effect, one thread at a time; different Effects are independent.
-// Errors come back as Result; nothing throws, prints or exits.
+// Errors come back as Result; nothing throws, prints or exits, and no callback of DeviceInfo may throw. A function that
+// returns an error has changed nothing: frames are drawn as before, memory() and the progress of the tables are what
+// they were, and the same call can be repeated.
 //
 // A frame:   effect.set_params(params);                       // when they changed
 //            effect.record_precompute(cmd);                   // until progress is complete
@@ -188,17 +190,20 @@ class Effect {
  public:
   // Creates all memory, and the pipelines that `params` need. The tables are not built yet: see record_precompute().
   static Result<Effect> create(const DeviceInfo& device, const EffectDesc& desc, const Params& params);
+  // An Effect that was moved from can be destroyed or assigned to. Its functions return an error, or, where they return
+  // no Result, default values: null handles, zeros, empty strings and spans.
   Effect(Effect&&) noexcept;
   Effect& operator=(Effect&&) noexcept;
+  // Destroys everything at once. All commands that the effect recorded must have completed before, as for any Vulkan
+  // object that they use; the same holds for the effect that is assigned to. The effect cannot check this: the
+  // validation layers do.
   ~Effect();
 
-  // Checks and takes over new parameters: an error names the first that is out of range and changes
-  // nothing. Tables that become stale are rebuilt by record_precompute(), for which memory is allocated here;
-  // the finished ones stay in use until then. Views of light_tables() and scattering_tables() change when
-  // record_precompute() reports the build complete.
+  // Checks and takes over new parameters: an error names the first that is out of range. Tables that become stale are
+  // rebuilt by record_precompute(), for which memory is allocated here; the finished ones stay in use until then. Views
+  // of light_tables() and scattering_tables() change when record_precompute() reports the build complete.
   // Pipelines that were not needed before are made here, which takes about 0.1 s each on a CPU device, unless
-  // prepare_pipelines() has made them. record() makes one only for a frame without shadow cascades while
-  // scattering.light_shafts and epipolar.min_max_tree are on.
+  // prepare_pipelines() has made them. record() makes none.
   Result<void> set_params(const Params& params);
   [[nodiscard]] const Params& params() const;
   // Makes at most `budget` of the pipelines that other parameters would need, so that switching costs nothing. What one set
@@ -208,8 +213,8 @@ class Effect {
   // Takes over another EffectDesc::shadow_colors; the pipelines that the parameters then need are made here.
   Result<void> set_shadow_colors(bool shadow_colors);
 
-  // Takes over other limits than those of EffectDesc, as set_params() takes over parameters: an error changes nothing,
-  // what commands in flight use is kept until they are done.
+  // Takes over other limits than those of EffectDesc, as set_params() takes over parameters. What commands in flight use
+  // is freed when they are done.
   Result<void> set_limits(VkExtent2D max_extent, std::uint32_t max_cascades, std::uint32_t max_shadow_resolution);
 
   [[nodiscard]] Progress precompute_progress() const;
@@ -219,6 +224,7 @@ class Effect {
   // Finished tables can be kept, on disk for instance, and loaded instead of being built again.
   // table_key() is printable text of several lines: two effects whose keys are equal have the same tables, byte for
   // byte. It names the medium, the tables' shape, their shaders, the library's version, the device and its driver.
+  // It is empty when the host is out of memory.
   // table_bytes() is the size of all tables of params(): one after another, texel by texel without padding, in the
   // order single_rayleigh, single_mie, high_orders, sun_transmittance, sky_irradiance.
   [[nodiscard]] std::string table_key() const;

@@ -22,11 +22,10 @@ std::size_t index(EpipolarBuffer buffer) { return static_cast<std::size_t>(buffe
 
 }  // namespace
 
-Result<void> Epipolar::create(const gpu::Device& device, const EffectDesc& desc, const Params& params) {
+Result<void> Epipolar::create(const gpu::Device& device, const EffectDesc& desc) {
   device_ = &device;
   desc_ = desc;
-  TYNDALL_TRY(create_pipelines());
-  return set_params(params);
+  return create_pipelines();
 }
 
 Result<void> Epipolar::create_pipelines() {
@@ -99,19 +98,22 @@ bool Epipolar::walks(const Params& params) {
          params.scattering.multiple == MultipleScattering::occluded;
 }
 
-Result<const gpu::Pipeline*> Epipolar::march(bool tree, bool colors, std::uint32_t mode) {
-  gpu::Pipeline& out = march_samples_[tree ? 1 : 0][colors ? 1 : 0][mode];
-  if (!out.pipeline) {
-    const std::array<gpu::Constant, 4> m = mode_constants(mode);
-    const gpu::Constant constants[] = {m[0], m[1], m[2], m[3], {3, tree ? 1U : 0U}, {4, colors ? 1U : 0U},
-                                       {8, desc_.counters ? 1U : 0U}};
-    TYNDALL_ASSIGN(out, gpu::create_compute_pipeline(*device_, shaders::march_samples_comp, constants));
-    out.name = "march_samples";
-  }
-  return &out;
+bool Epipolar::uses_trees(const Params& params) {
+  return params.epipolar.min_max_tree && walks(params) && params.scattering.light_shafts;
 }
 
-Result<void> Epipolar::prepare(const Params& params) {
+Result<void> Epipolar::make_march(bool tree, bool colors, std::uint32_t mode) {
+  gpu::Pipeline& out = march_samples_[tree ? 1 : 0][colors ? 1 : 0][mode];
+  if (out.pipeline) return {};
+  const std::array<gpu::Constant, 4> m = mode_constants(mode);
+  const gpu::Constant constants[] = {m[0], m[1], m[2], m[3], {3, tree ? 1U : 0U}, {4, colors ? 1U : 0U},
+                                     {8, desc_.counters ? 1U : 0U}};
+  TYNDALL_ASSIGN(out, gpu::create_compute_pipeline(*device_, shaders::march_samples_comp, constants));
+  out.name = "march_samples";
+  return {};
+}
+
+Result<void> Epipolar::prepare(const EffectDesc& desc, const Params& params) {
   if (params.scattering.technique != Technique::epipolar) return {};
   if (is_homogeneous(params.scattering)) {
     TYNDALL_TRY(make_of_medium(MediumKind::homogeneous, extinction_index(params), lists_breaks(params), Sparsity::none));
@@ -125,11 +127,9 @@ Result<void> Epipolar::prepare(const Params& params) {
   }
   if (is_downscaled(params)) TYNDALL_TRY(make_downscaled(params.scattering.medium, extinction_index(params),
                                                              params.scattering.downscale));
-  // As record() chooses, for frames with cascades.
-  const bool tree = params.epipolar.min_max_tree.value != 0 && walks(params) && params.scattering.light_shafts.value != 0;
   for (const bool colors : {false, true}) {
-    if (colors && !desc_.shadow_colors) continue;
-    TYNDALL_ASSIGN([[maybe_unused]] const gpu::Pipeline* pipeline, march(tree, colors, mode_index(params.scattering)));
+    if (colors && !desc.shadow_colors) continue;
+    TYNDALL_TRY(make_march(uses_trees(params), colors, mode_index(params.scattering)));
   }
   return {};
 }
@@ -152,10 +152,7 @@ Result<void> Epipolar::prepare_others(std::uint32_t& budget, Progress& progress)
       if (colors && !desc_.shadow_colors) continue;
       for (const bool tree : {false, true}) {
         const bool made = static_cast<bool>(march_samples_[tree ? 1 : 0][colors ? 1 : 0][mode].pipeline);
-        TYNDALL_TRY(take(made, [&]() -> Result<void> {
-          TYNDALL_ASSIGN([[maybe_unused]] const gpu::Pipeline* pipeline, march(tree, colors, mode));
-          return {};
-        }));
+        TYNDALL_TRY(take(made, [&] { return make_march(tree, colors, mode); }));
       }
     }
   }
@@ -175,29 +172,28 @@ Result<void> Epipolar::prepare_others(std::uint32_t& budget, Progress& progress)
   return {};
 }
 
-Result<void> Epipolar::set_limits(const EffectDesc& desc, const Params& params) {
-  const EffectDesc before = std::exchange(desc_, desc);
-  Result<void> done = set_params(params);
-  if (!done) desc_ = before;
-  return done;
+Result<Epipolar::Pending> Epipolar::plan(const EffectDesc& desc, const Params& params) {
+  Pending pending;
+  pending.desc = desc;
+  const EpipolarSizes sizes = epipolar_sizes(desc, params);
+  for (std::size_t i = 0; i < kEpipolarBuffers; ++i) {
+    pending.replaced[i] = sizes[i] != buffers_[i].size;
+    if (sizes[i] == 0 || !pending.replaced[i]) continue;
+    const char* name = epipolar_buffer_name(static_cast<EpipolarBuffer>(i));
+    TYNDALL_ASSIGN(pending.buffers[i],
+                   gpu::create_buffer(*device_, name, sizes[i], kEpipolarUsage, gpu::MemoryKind::device));
+  }
+  retired_.reserve(retired_.size() + kEpipolarBuffers);  // so that commit() need not allocate
+  return pending;
 }
 
-Result<void> Epipolar::set_params(const Params& params) {
-  const EpipolarSizes sizes = epipolar_sizes(desc_, params);
-  // All new buffers first, so that an error changes nothing.
-  Buffers fresh = {};
-  retired_.reserve(retired_.size() + kEpipolarBuffers);
+void Epipolar::commit(Pending&& pending) noexcept {
+  desc_ = pending.desc;
   for (std::size_t i = 0; i < kEpipolarBuffers; ++i) {
-    if (sizes[i] == 0 || sizes[i] == buffers_[i].size) continue;
-    const char* name = epipolar_buffer_name(static_cast<EpipolarBuffer>(i));
-    TYNDALL_ASSIGN(fresh[i], gpu::create_buffer(*device_, name, sizes[i], kEpipolarUsage, gpu::MemoryKind::device));
-  }
-  for (std::size_t i = 0; i < kEpipolarBuffers; ++i) {
-    if (sizes[i] == buffers_[i].size) continue;
+    if (!pending.replaced[i]) continue;
     if (buffers_[i].size > 0) retired_.push_back({std::move(buffers_[i]), desc_.frames_in_flight + 1});
-    buffers_[i] = std::move(fresh[i]);
+    buffers_[i] = std::move(pending.buffers[i]);
   }
-  return {};
 }
 
 void Epipolar::begin_frame() {
@@ -268,7 +264,7 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
   const std::uint32_t marched = cascades > 0 ? cascades - inputs.first_marched_cascade : 0;
   const std::uint32_t mode = mode_index(params.scattering);
   const bool walking = walks(params);
-  const bool trees = p.min_max_tree.value != 0 && walking && marched > 0;
+  const bool trees = uses_trees(params) && marched > 0;
   const bool limb = lists_limb(inputs, params);
   const bool lists_pixels = limb || lists_breaks(params);
   CascadeProcessing processing = params.shadows.cascade_processing;
@@ -305,8 +301,8 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
     TYNDALL_TRY(run_list(shadow_tree_[static_cast<std::size_t>(p.min_max_format)], EpipolarBuffer::tree_list));
   }
   const bool colored = walking && marched > 0 && has_colors(inputs, params);
-  TYNDALL_ASSIGN(const gpu::Pipeline* chosen, this->march(trees, colored, mode));
-  const gpu::Pipeline& march = *chosen;
+  // Without cascades none of its invocations looks at a tree.
+  const gpu::Pipeline& march = march_samples_[uses_trees(params) ? 1 : 0][colored ? 1 : 0][mode];
   struct MarchPush {
     std::uint32_t processing, turn;
   };

@@ -17,15 +17,23 @@ namespace tyndall {
 
 class Epipolar {
  public:
-  Result<void> create(const gpu::Device& device, const EffectDesc& desc, const Params& params);
-  // Allocates what the parameters ask for; what commands in flight still use is kept until begin_frame() has
-  // been called often enough.
-  Result<void> set_params(const Params& params);
-  // The same for other limits in `desc`.
-  Result<void> set_limits(const EffectDesc& desc, const Params& params);
+  // Buffers for other settings, in place of those whose size changes.
+  struct Pending {
+    EffectDesc desc;
+    std::array<gpu::Buffer, kEpipolarBuffers> buffers = {};
+    std::array<bool, kEpipolarBuffers> replaced = {};
+  };
+
+  // Makes the pipelines that do not depend on parameters. There are no buffers before the first commit().
+  Result<void> create(const gpu::Device& device, const EffectDesc& desc);
+  // Allocates what other settings need and changes nothing.
+  Result<Pending> plan(const EffectDesc& desc, const Params& params);
+  // Takes over what was planned last. Commands in flight may still use the buffers that it replaces: they are freed
+  // when begin_frame() has been called often enough.
+  void commit(Pending&& pending) noexcept;
   void begin_frame();
-  // Pipelines of the march are dear to make: those that these parameters need, where missing.
-  Result<void> prepare(const Params& params);
+  // Makes the pipelines that these settings need, where missing. They are expensive to make.
+  Result<void> prepare(const EffectDesc& desc, const Params& params);
   // All others, at most `budget`, which is counted down; `progress` counts those that exist, and all.
   Result<void> prepare_others(std::uint32_t& budget, Progress& progress);
 
@@ -61,7 +69,9 @@ class Epipolar {
   Result<void> make_of_medium(MediumKind medium, std::uint32_t extinction, bool lists, Sparsity sparsity);
   // Whether the march looks at the shadows at all.
   [[nodiscard]] static bool walks(const Params& params);
-  Result<const gpu::Pipeline*> march(bool tree, bool colors, std::uint32_t mode);
+  // Whether it looks at them through the trees.
+  [[nodiscard]] static bool uses_trees(const Params& params);
+  Result<void> make_march(bool tree, bool colors, std::uint32_t mode);
 
   const gpu::Device* device_ = nullptr;
   EffectDesc desc_;

@@ -21,20 +21,24 @@ constexpr VkDeviceSize kLimbPart = 8;
 struct BufferName {
   const char* name;
   const char* block;  // in the shaders
+  const char* cause;  // the settings that its size follows from, for messages
 };
-constexpr BufferName kNames[kEpipolarBuffers] = {{"slices", "slice_block"},
-                                                 {"shadow_rows", "row_block"},
-                                                 {"samples", "sample_block"},
-                                                 {"coarse_inscattering", "coarse_block"},
-                                                 {"sources", "source_block"},
-                                                 {"march_list", "march_list_block"},
-                                                 {"broken_blocks", "broken_list_block"},
-                                                 {"depth_breaks", "break_list_block"},
-                                                 {"corrected_pixels", "corrected_block"},
-                                                 {"tree_blocks", "tree_list_block"},
-                                                 {"shadow_tree", "tree_block"},
-                                                 {"march_states", "state_block"},
-                                                 {"reduced_inscattering", "reduced_block"}};
+constexpr const char* kOfSamples = "epipolar.slices and epipolar.samples";
+constexpr const char* kOfShadows = "epipolar.slices, EffectDesc::max_cascades and EffectDesc::max_shadow_resolution";
+constexpr const char* kOfPixels = "the pixels of EffectDesc::max_extent";
+constexpr BufferName kNames[kEpipolarBuffers] = {{"slices", "slice_block", kOfSamples},
+                                                 {"shadow_rows", "row_block", kOfShadows},
+                                                 {"samples", "sample_block", kOfSamples},
+                                                 {"coarse_inscattering", "coarse_block", kOfSamples},
+                                                 {"sources", "source_block", kOfSamples},
+                                                 {"march_list", "march_list_block", kOfSamples},
+                                                 {"broken_blocks", "broken_list_block", kOfPixels},
+                                                 {"depth_breaks", "break_list_block", kOfPixels},
+                                                 {"corrected_pixels", "corrected_block", kOfPixels},
+                                                 {"tree_blocks", "tree_list_block", kOfShadows},
+                                                 {"shadow_tree", "tree_block", kOfShadows},
+                                                 {"march_states", "state_block", kOfSamples},
+                                                 {"reduced_inscattering", "reduced_block", kOfPixels}};
 
 std::size_t index(EpipolarBuffer buffer) { return static_cast<std::size_t>(buffer); }
 
@@ -125,6 +129,7 @@ EpipolarSizes epipolar_sizes(const EffectDesc& desc, const Params& params) {
 }
 
 const char* epipolar_buffer_name(EpipolarBuffer buffer) { return kNames[index(buffer)].name; }
+const char* epipolar_buffer_cause(EpipolarBuffer buffer) { return kNames[index(buffer)].cause; }
 const char* epipolar_block_name(EpipolarBuffer buffer) { return kNames[index(buffer)].block; }
 
 VkDeviceSize epipolar_bytes(const gpu::Device& device, const EffectDesc& desc, const Params& params) {

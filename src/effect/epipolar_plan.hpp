@@ -34,6 +34,8 @@ using EpipolarSizes = std::array<VkDeviceSize, kEpipolarBuffers>;
 // Bytes of each; all zero with technique = brute-force.
 [[nodiscard]] EpipolarSizes epipolar_sizes(const EffectDesc& desc, const Params& params);
 [[nodiscard]] const char* epipolar_buffer_name(EpipolarBuffer buffer);
+// The settings that its size follows from, as messages name them.
+[[nodiscard]] const char* epipolar_buffer_cause(EpipolarBuffer buffer);
 // Its name in the shaders.
 [[nodiscard]] const char* epipolar_block_name(EpipolarBuffer buffer);
 constexpr VkBufferUsageFlags kEpipolarUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |

@@ -32,8 +32,7 @@ VkBufferImageCopy whole_table(const gpu::Image& image, VkDeviceSize offset) {
 
 }  // namespace
 
-Result<void> TableBuilder::create(const gpu::Device& device, std::uint32_t frames_in_flight, bool timings,
-                                  const Params& params) {
+Result<void> TableBuilder::create(const gpu::Device& device, std::uint32_t frames_in_flight, bool timings) {
   device_ = &device;
   frames_in_flight_ = frames_in_flight;
   timings_ = timings;
@@ -62,93 +61,107 @@ Result<void> TableBuilder::create(const gpu::Device& device, std::uint32_t frame
   if (timings) {
     TYNDALL_ASSIGN(timer_, gpu::Timer::create(device, 1, kMostSlices));
   }
-  return begin(params, kAllTables);
+  return {};
 }
 
-Result<void> TableBuilder::set_params(const Params& params) {
-  TYNDALL_TRY(check_table_size(*device_, params));
-  const std::uint32_t stale = complete_ ? stale_tables(built_, params) : kAllTables;
-  const bool building = done_ < slices_.size();
-  if (building && stale_tables(wanted_, params) == 0) return {};
-  if (stale == 0) {
-    // Back to what the finished tables are, from a build that is no longer wanted.
-    if (building) {
-      retire(std::exchange(next_, {}), std::exchange(scratch_, {}));
-      slices_.resize(done_);
-    }
-    return {};
-  }
-  return begin(params, stale);
-}
-
-Result<void> TableBuilder::create_scratch(const Params& params) {
-  const std::uint32_t views = params.tables.size.y;
-  if (scratch_.views == views) return {};
-  if (scratch_.views > 0) retire({}, std::exchange(scratch_, {}));
+Result<TableScratch> TableBuilder::create_scratch(std::uint32_t views) const {
+  TableScratch out = {};
   for (const BufferPlan& plan : plan_scratch(views)) {
-    TYNDALL_ASSIGN(scratch_.*plan.buffer,
+    TYNDALL_ASSIGN(out.*plan.buffer,
                    gpu::create_buffer(*device_, plan.name, plan.bytes, kScratchUsage, gpu::MemoryKind::device));
   }
-  scratch_.views = views;
-  return {};
+  out.views = views;
+  return out;
 }
 
-Result<void> TableBuilder::begin(const Params& params, std::uint32_t stale) {
-  TYNDALL_TRY(check_table_size(*device_, params));
-  wanted_ = params;
-  stale_ = stale;
-  done_ = 0;
+Result<TableBuilder::Pending> TableBuilder::plan(const Params& params) {
+  Pending out;
+  const bool building = done_ < slices_.size();
+  // For what commit() retires, and for what the end of the build does, when nothing may be allocated.
+  retired_.reserve(retired_.size() + 2);
+  if (building && stale_tables(wanted_, params) == 0) return out;
+  out.wanted = params;
+  out.stale = complete_ ? stale_tables(built_, params) : kAllTables;
+  if (out.stale == 0) {
+    if (building) out.kind = Pending::Kind::cancel;
+    return out;
+  }
+  out.kind = Pending::Kind::build;
   for (std::uint32_t i = 0; i < kTableCount; ++i) {
-    if ((stale & (1U << i)) == 0) continue;
+    if ((out.stale & (1U << i)) == 0) continue;
     const gpu::ImageDesc desc = table_desc(static_cast<TableId>(i), params);
-    TableImage& image = target(static_cast<TableId>(i));
-    const VkExtent3D& has = image.image.desc.extent;
-    const bool fits = image.image.view && has.width == desc.extent.width && has.height == desc.extent.height &&
+    const gpu::Image& image = target(static_cast<TableId>(i)).image;
+    const VkExtent3D& has = image.desc.extent;
+    const bool fits = image.view && has.width == desc.extent.width && has.height == desc.extent.height &&
                       has.depth == desc.extent.depth;
     if (fits) continue;
-    if (image.image.view) {
-      TableSet old = {};
-      old[i] = std::exchange(image, {});
-      retire(std::move(old), {});
-    }
-    TYNDALL_ASSIGN(image.image, gpu::create_image(*device_, desc));
+    TYNDALL_ASSIGN(out.images[i].image, gpu::create_image(*device_, desc));
   }
-  TYNDALL_TRY(create_scratch(params));
-  retired_.reserve(retired_.size() + 1);  // for the end of the build, when nothing may be allocated
-  plan_slices();
-  return {};
+  if (scratch_.views != params.tables.size.y) {
+    TYNDALL_ASSIGN(out.scratch, create_scratch(params.tables.size.y));
+  }
+  out.slices = plan_slices(params, out.stale);
+  return out;
+}
+
+void TableBuilder::commit(Pending&& pending) noexcept {
+  if (pending.kind == Pending::Kind::nothing) return;
+  if (pending.kind == Pending::Kind::cancel) {
+    retire(std::exchange(next_, {}), std::exchange(scratch_, {}));
+    slices_.resize(done_);
+    return;
+  }
+  TableSet old = {};
+  TableScratch old_scratch = {};
+  bool replaced = false;
+  for (std::uint32_t i = 0; i < kTableCount; ++i) {
+    if (!pending.images[i].image.view) continue;
+    TableImage& image = target(static_cast<TableId>(i));
+    replaced = replaced || image.image.view;
+    old[i] = std::exchange(image, std::move(pending.images[i]));
+  }
+  if (pending.scratch.views > 0) {
+    replaced = replaced || scratch_.views > 0;
+    old_scratch = std::exchange(scratch_, std::move(pending.scratch));
+  }
+  if (replaced) retire(std::move(old), std::move(old_scratch));
+  wanted_ = pending.wanted;
+  stale_ = pending.stale;
+  slices_ = std::move(pending.slices);
+  done_ = 0;
 }
 
 TableImage& TableBuilder::target(TableId id) {
   return (complete_ ? next_ : tables_)[static_cast<std::uint32_t>(id)];
 }
 
-void TableBuilder::plan_slices() {
-  slices_.clear();
-  const auto cut = [this](Stage stage, std::uint32_t count, std::uint32_t per_slice, std::uint32_t order) {
+std::vector<TableBuilder::Slice> TableBuilder::plan_slices(const Params& params, std::uint32_t stale) {
+  std::vector<Slice> out;
+  const auto cut = [&out](Stage stage, std::uint32_t count, std::uint32_t per_slice, std::uint32_t order) {
     for (std::uint32_t first = 0; first < count; first += per_slice) {
-      slices_.push_back({stage, first, std::min(per_slice, count - first), order});
+      out.push_back({stage, first, std::min(per_slice, count - first), order});
     }
   };
-  if ((stale_ & bit(TableId::sun_transmittance)) != 0) cut(sun_light, 1, 1, 0);
-  const bool high = (stale_ & kHighTables) != 0;
-  const bool single = (stale_ & kSingleTables) != 0;
+  if ((stale & bit(TableId::sun_transmittance)) != 0) cut(sun_light, 1, 1, 0);
+  const bool high = (stale & kHighTables) != 0;
+  const bool single = (stale & kSingleTables) != 0;
   if (high) {
     const std::uint32_t altitudes = shared::kGatherAltitudes;
     cut(grid_nodes, altitudes, altitudes, 0);
     cut(phase_matrix, altitudes, altitudes, 0);
     // The last turn scatters nothing any more: it adds the last order's irradiance.
-    for (std::uint32_t order = 2; order <= wanted_.tables.orders + 1; ++order) {
+    for (std::uint32_t order = 2; order <= params.tables.orders + 1; ++order) {
       cut(order == 2 ? gather_single : gather_multiple, altitudes, kAltitudesPerSlice, order);
       cut(scatter, altitudes, kAltitudesPerSlice, order);
     }
     cut(sky_light, 1, 1, 0);
   }
-  for (std::uint32_t altitude = 0; altitude < wanted_.tables.size.x; ++altitude) {
-    slices_.push_back({ray_nodes, altitude, 1, 0});
-    if (single) slices_.push_back({table_single, altitude, 1, 0});
-    if (high) slices_.push_back({table_high, altitude, 1, 0});
+  for (std::uint32_t altitude = 0; altitude < params.tables.size.x; ++altitude) {
+    out.push_back({ray_nodes, altitude, 1, 0});
+    if (single) out.push_back({table_single, altitude, 1, 0});
+    if (high) out.push_back({table_high, altitude, 1, 0});
   }
+  return out;
 }
 
 void TableBuilder::upload_constants(VkCommandBuffer cmd) {
@@ -285,7 +298,7 @@ Result<void> TableBuilder::record_slice(VkCommandBuffer cmd, const Slice& slice)
   return {};
 }
 
-void TableBuilder::finish() {
+void TableBuilder::finish() noexcept {
   if (complete_) {
     for (std::uint32_t i = 0; i < kTableCount; ++i) {
       if ((stale_ & (1U << i)) != 0) std::swap(tables_[i], next_[i]);
@@ -296,7 +309,7 @@ void TableBuilder::finish() {
   retire(std::exchange(next_, {}), std::exchange(scratch_, {}));
 }
 
-void TableBuilder::retire(TableSet tables, TableScratch scratch) {
+void TableBuilder::retire(TableSet tables, TableScratch scratch) noexcept {
   retired_.push_back({std::move(tables), std::move(scratch), frames_in_flight_ + 1});
 }
 

@@ -56,11 +56,17 @@ struct TableScratch {
 // commands in flight may still use are kept until `frames_in_flight` more frames have been recorded.
 class TableBuilder {
  public:
-  // Pipelines, and the first set of tables, still empty.
-  Result<void> create(const gpu::Device& device, std::uint32_t frames_in_flight, bool timings, const Params& params);
+  // What other parameters change, allocated beforehand; defined below.
+  struct Pending;
 
-  // Starts over for what differs from the finished tables; nothing if they are up to date.
-  Result<void> set_params(const Params& params);
+  // Makes the pipelines. There are no tables before the first commit().
+  Result<void> create(const gpu::Device& device, std::uint32_t frames_in_flight, bool timings);
+
+  // Allocates what building the tables of other parameters needs, and changes nothing: their images where the sizes
+  // differ, the scratch memory, the list of slices.
+  Result<Pending> plan(const Params& params);
+  // Takes over what was planned last: starts over for the tables that differ from the finished ones.
+  void commit(Pending&& pending) noexcept;
   // Records at most `budget` slices.
   Result<void> record(VkCommandBuffer cmd, std::uint32_t budget);
   // Copies the finished tables to a buffer, in the order of TableId and without padding; an error while some
@@ -93,14 +99,13 @@ class TableBuilder {
     std::uint32_t frames_left;
   };
 
-  Result<void> begin(const Params& params, std::uint32_t stale);
-  Result<void> create_scratch(const Params& params);
-  void plan_slices();
+  [[nodiscard]] static std::vector<Slice> plan_slices(const Params& params, std::uint32_t stale);
+  [[nodiscard]] Result<TableScratch> create_scratch(std::uint32_t views) const;
   void upload_constants(VkCommandBuffer cmd);
   void make_images_ready(VkCommandBuffer cmd);
   Result<void> record_slice(VkCommandBuffer cmd, const Slice& slice);
-  void finish();
-  void retire(TableSet tables, TableScratch scratch);
+  void finish() noexcept;
+  void retire(TableSet tables, TableScratch scratch) noexcept;
   TableImage& target(TableId id);
 
   const gpu::Device* device_ = nullptr;
@@ -119,6 +124,21 @@ class TableBuilder {
   std::vector<Retired> retired_ = {};
   gpu::Timer timer_ = {};
   std::array<PassTiming, kStages> times_ = {};
+};
+
+// The work that commit() takes over, with everything allocated for it.
+struct TableBuilder::Pending {
+  enum class Kind : std::uint32_t {
+    nothing,  // the tables, or the build that is running, are those of the parameters
+    cancel,   // the finished tables are, and a build is running
+    build
+  };
+  Kind kind = Kind::nothing;
+  Params wanted = {};
+  std::uint32_t stale = 0;
+  TableSet images = {};       // of stale tables whose image does not have the size
+  TableScratch scratch = {};  // if `views` is not 0, in place of what is there
+  std::vector<Slice> slices = {};
 };
 
 }  // namespace tyndall

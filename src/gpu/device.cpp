@@ -44,7 +44,16 @@ Result<void> init_device(Device& device, PFN_vkGetInstanceProcAddr get) {
                  std::string("the Vulkan device lacks ") + missing +
                      ": Vulkan 1.3 and VK_KHR_push_descriptor are needed"};
   }
-  device.vk.GetPhysicalDeviceProperties(device.physical_device, &device.properties);
+  VkPhysicalDeviceMaintenance4Properties buffers = {};
+  buffers.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_PROPERTIES;
+  VkPhysicalDeviceMaintenance3Properties allocations = {};
+  allocations.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES;
+  allocations.pNext = &buffers;
+  VkPhysicalDeviceProperties2 properties = {VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &allocations, {}};
+  device.vk.GetPhysicalDeviceProperties2(device.physical_device, &properties);
+  device.properties = properties.properties;
+  device.max_buffer_bytes = buffers.maxBufferSize;
+  device.max_allocation_bytes = allocations.maxMemoryAllocationSize;
   device.vk.GetPhysicalDeviceMemoryProperties(device.physical_device, &device.memory);
   return {};
 }

@@ -21,6 +21,8 @@ struct Device {
   const VkAllocationCallbacks* allocator = nullptr;
   VkPipelineCache pipeline_cache = VK_NULL_HANDLE;
   VkPhysicalDeviceProperties properties = {};
+  VkDeviceSize max_buffer_bytes = 0;
+  VkDeviceSize max_allocation_bytes = 0;
   VkPhysicalDeviceMemoryProperties memory = {};
   // SPIR-V to use in place of the built-in shader of that name, or an empty span; see DeviceInfo::replace_shader.
   std::span<const std::uint32_t> (*replace_shader)(void* user, std::string_view name) = nullptr;

@@ -8,7 +8,7 @@ namespace tyndall::gpu {
 
 #define TYNDALL_INSTANCE_FUNCTIONS(X)    \
   X(GetDeviceProcAddr)                   \
-  X(GetPhysicalDeviceProperties)         \
+  X(GetPhysicalDeviceProperties2)        \
   X(GetPhysicalDeviceMemoryProperties)   \
   X(GetPhysicalDeviceFormatProperties)   \
   X(GetPhysicalDeviceQueueFamilyProperties)

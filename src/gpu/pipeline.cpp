@@ -16,7 +16,7 @@ Result<void> add_bindings(Pipeline& pipeline, const Shader& shader,
     std::uint32_t i = 0;
     while (i < pipeline.binding_count && pipeline.bindings[i].binding != binding.binding) ++i;
     if (i == kMaxBindings) {
-      return Error{ErrorCode::unsupported_device, std::string("more than 16 bindings in ") + shader.name};
+      return Error{ErrorCode::unsupported_device, "more than " + std::to_string(kMaxBindings) + " bindings in " + shader.name};
     }
     if (i == pipeline.binding_count) {
       pipeline.bindings[i] = binding;
@@ -113,6 +113,37 @@ VkPipelineShaderStageCreateInfo stage_info(const Shader& shader, VkShaderModule 
 }
 
 }  // namespace
+
+Result<void> check_shader(const Device& device, const Shader& shader) {
+  const VkPhysicalDeviceLimits& limits = device.properties.limits;
+  const auto exceeds = [&](const char* what, std::uint64_t needed, std::uint64_t allowed) -> Result<void> {
+    if (needed <= allowed) return {};
+    return Error{ErrorCode::unsupported_device, std::string("the shader ") + shader.name + " needs " +
+                                                    std::to_string(needed) + " " + what + ", the device allows " +
+                                                    std::to_string(allowed)};
+  };
+  const auto count = [&](std::initializer_list<VkDescriptorType> types) {
+    return static_cast<std::uint32_t>(std::count_if(shader.bindings.begin(), shader.bindings.end(), [&](const Binding& b) {
+      return std::find(types.begin(), types.end(), b.type) != types.end();
+    }));
+  };
+  TYNDALL_TRY(exceeds("storage buffers", count({VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}), limits.maxPerStageDescriptorStorageBuffers));
+  TYNDALL_TRY(exceeds("uniform buffers", count({VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}), limits.maxPerStageDescriptorUniformBuffers));
+  TYNDALL_TRY(exceeds("storage images", count({VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}), limits.maxPerStageDescriptorStorageImages));
+  TYNDALL_TRY(exceeds("sampled images", count({VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}),
+                      limits.maxPerStageDescriptorSampledImages));
+  TYNDALL_TRY(exceeds("samplers", count({VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_DESCRIPTOR_TYPE_SAMPLER}),
+                      limits.maxPerStageDescriptorSamplers));
+  TYNDALL_TRY(exceeds("resources", shader.bindings.size(), limits.maxPerStageResources));
+  TYNDALL_TRY(exceeds("bytes of push constants", shader.push_constant_bytes, limits.maxPushConstantsSize));
+  if (shader.stage != VK_SHADER_STAGE_COMPUTE_BIT) return {};
+  std::uint64_t invocations = 1;
+  for (std::size_t i = 0; i < 3; ++i) {
+    TYNDALL_TRY(exceeds("invocations in a direction of a group", shader.local_size[i], limits.maxComputeWorkGroupSize[i]));
+    invocations *= shader.local_size[i];
+  }
+  return exceeds("invocations in a group", invocations, limits.maxComputeWorkGroupInvocations);
+}
 
 Result<Pipeline> create_compute_pipeline(const Device& device, const Shader& shader,
                                          std::span<const Constant> constants) {

@@ -11,7 +11,7 @@
 
 namespace tyndall::gpu {
 
-constexpr std::uint32_t kMaxBindings = 20;
+constexpr std::uint32_t kMaxBindings = 20;  // every device can push 32 descriptors
 
 // A resource under the name that shaders know it by.
 struct NamedResource {
@@ -47,6 +47,9 @@ struct Pipeline {
   std::uint32_t push_bytes = 0;
   std::uint32_t local_size[3] = {1, 1, 1};
 };
+
+// An error where the device's limits do not suffice for a shader: its bindings, push constants and group size.
+[[nodiscard]] Result<void> check_shader(const Device& device, const Shader& shader);
 
 Result<Pipeline> create_compute_pipeline(const Device& device, const Shader& shader,
                                          std::span<const Constant> constants = {});

@@ -25,7 +25,7 @@ void publish(const gpu::Device& device, VkCommandBuffer cmd) {
 Result<bool> load(gpu::Host& host, Effect& effect, config::FileCache& cache, Outcome& outcome) {
   const gpu::Device& device = host.device();
   const std::string key = effect.table_key();
-  if (!cache.holds(key)) return false;
+  if (key.empty() || !cache.holds(key)) return false;
   TYNDALL_ASSIGN(const gpu::Buffer staging,
                  gpu::create_buffer(device, "cached_tables", effect.table_bytes(),
                                     VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::MemoryKind::upload));
@@ -82,6 +82,7 @@ Result<Keeper> Keeper::fetch(gpu::Host& host, Effect& effect, const CacheDesc& c
 }
 
 std::string Keeper::write() {
+  if (key_.empty()) return {};
   config::FileCache cache(config::cache_directory(cache_.place), cache_.limit_bytes, TYNDALL_VERSION_STRING);
   cache.write(key_, bytes_);
   return cache.note();

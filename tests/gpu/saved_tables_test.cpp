@@ -24,7 +24,7 @@ TEST_F(SavedTablesTest, ComeBackAsTheyWere) {
   EXPECT_EQ(save(built, 4096), bytes);
   // In the order that is promised.
   TableBuilder builder;
-  ASSERT_OK(builder.create(host().device(), 1, false, small_tables()));
+  ASSERT_OK(create(builder, false, small_tables()));
   TableBuilderTest::build(builder, UINT32_MAX);
   std::vector<std::byte> in_order;
   for (std::uint32_t i = 0; i < kTableCount; ++i) {

@@ -7,8 +7,8 @@ namespace {
 TEST_F(TableBuilderTest, SlicesAndRepetitionsGiveTheSameBytes) {
   TableBuilder at_once;
   TableBuilder sliced;
-  ASSERT_OK(at_once.create(host().device(), 1, false, small_tables()));
-  ASSERT_OK(sliced.create(host().device(), 1, true, small_tables()));
+  ASSERT_OK(create(at_once, false, small_tables()));
+  ASSERT_OK(create(sliced, true, small_tables()));
   build(at_once, UINT32_MAX);
   build(sliced, 1);
   for (std::uint32_t i = 0; i < kTableCount; ++i) {
@@ -23,7 +23,7 @@ TEST_F(TableBuilderTest, SlicesAndRepetitionsGiveTheSameBytes) {
 TEST_F(TableBuilderTest, OldTablesServeUntilTheNewOnesAreWhole) {
   TableBuilder builder;
   Params params = small_tables();
-  ASSERT_OK(builder.create(host().device(), 1, false, params));
+  ASSERT_OK(create(builder, false, params));
   build(builder, UINT32_MAX);
   const std::uint32_t whole = builder.progress().total;
   const VkImageView high = builder.table(TableId::high_orders).view.get();
@@ -32,7 +32,7 @@ TEST_F(TableBuilderTest, OldTablesServeUntilTheNewOnesAreWhole) {
 
   // The ground has no part in light scattered once: only the higher orders are built again.
   params.planet.ground_albedo = 0.5F;
-  ASSERT_OK(builder.set_params(params));
+  ASSERT_OK(change(builder, params));
   EXPECT_LT(builder.progress().total, whole);
   EXPECT_GT(builder.transient_bytes(), 0U);
   ASSERT_OK(host().run([&](VkCommandBuffer cmd) { return builder.record(cmd, builder.progress().total - 1); }));
@@ -57,9 +57,9 @@ TEST_F(TableBuilderTest, OldTablesServeUntilTheNewOnesAreWhole) {
   const std::vector<std::byte> now = bytes(builder, TableId::high_orders);
   Params other = params;
   other.atmosphere.aerosol_density = 2.0F;
-  ASSERT_OK(builder.set_params(other));
+  ASSERT_OK(change(builder, other));
   ASSERT_OK(host().run([&](VkCommandBuffer cmd) { return builder.record(cmd, 3); }));
-  ASSERT_OK(builder.set_params(params));
+  ASSERT_OK(change(builder, params));
   EXPECT_TRUE(builder.progress().complete());
   EXPECT_EQ(bytes(builder, TableId::high_orders), now);
 }

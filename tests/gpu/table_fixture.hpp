@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "effect/tables.hpp"
+#include "gpu/try.hpp"
 #include "gpu_test.hpp"
 
 namespace tyndall {
@@ -20,6 +21,15 @@ inline Params small_tables() {
 
 class TableBuilderTest : public GpuTest {
  protected:
+  static Result<void> change(TableBuilder& builder, const Params& params) {
+    TYNDALL_ASSIGN(TableBuilder::Pending pending, builder.plan(params));
+    builder.commit(std::move(pending));
+    return {};
+  }
+  Result<void> create(TableBuilder& builder, bool timings, const Params& params) {
+    TYNDALL_TRY(builder.create(host().device(), 1, timings));
+    return change(builder, params);
+  }
   void build(TableBuilder& builder, std::uint32_t budget) {
     while (!builder.progress().complete()) {
       ASSERT_OK(host().run([&](VkCommandBuffer cmd) { return builder.record(cmd, budget); }));

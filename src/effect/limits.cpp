@@ -1,0 +1,84 @@
+#include "effect/limits.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "effect/epipolar_plan.hpp"
+#include "effect/table_plan.hpp"
+#include "effect_shaders.hpp"
+#include "gpu/pipeline.hpp"
+#include "gpu/try.hpp"
+
+namespace tyndall {
+namespace {
+
+// `cause`: the settings that the size of the buffer follows from.
+Result<void> check_buffer(const gpu::Device& device, const char* name, VkDeviceSize size, const char* cause) {
+  const VkDeviceSize allowed = std::min({VkDeviceSize{device.properties.limits.maxStorageBufferRange},
+                                         device.max_buffer_bytes, device.max_allocation_bytes});
+  if (size <= allowed) return {};
+  return Error{ErrorCode::invalid_argument, std::string(cause) + " need a buffer (" + name + ") of " +
+                                                std::to_string(size) + " bytes, this device allows " +
+                                                std::to_string(allowed)};
+}
+
+}  // namespace
+
+Result<void> check_desc(const DeviceInfo& info, const EffectDesc& desc) {
+  const auto invalid = [](const char* text) { return Error{ErrorCode::invalid_argument, text}; };
+  if (info.device == VK_NULL_HANDLE || info.physical_device == VK_NULL_HANDLE || info.instance == VK_NULL_HANDLE ||
+      info.get_instance_proc_addr == nullptr) {
+    return invalid("DeviceInfo needs instance, physical_device, device and get_instance_proc_addr");
+  }
+  if (desc.max_extent.width == 0 || desc.max_extent.height == 0 || desc.max_extent.width > 16384 ||
+      desc.max_extent.height > 16384) {
+    return invalid("EffectDesc::max_extent must be 1x1 to 16384x16384");
+  }
+  if (desc.frames_in_flight == 0 || desc.frames_in_flight > 8) {
+    return invalid("EffectDesc::frames_in_flight must be 1 to 8");
+  }
+  if (desc.max_cascades == 0 || desc.max_cascades > kMaxCascades) {
+    return invalid("EffectDesc::max_cascades must be 1 to 8");
+  }
+  if (desc.max_shadow_resolution == 0 || desc.max_shadow_resolution > 16384) {
+    return invalid("EffectDesc::max_shadow_resolution must be 1 to 16384");
+  }
+  if (desc.output_format != OutputFormat::rgba16f && desc.output_format != OutputFormat::rgba32f) {
+    return invalid("EffectDesc::output_format must be rgba16f or rgba32f");
+  }
+  if (desc.sky_depth != 0.0F && desc.sky_depth != 1.0F) return invalid("EffectDesc::sky_depth must be 0 or 1");
+  return {};
+}
+
+Result<void> check_device(const gpu::Device& device) {
+  for (const gpu::Shader* shader : shaders::effect_shaders) TYNDALL_TRY(gpu::check_shader(device, *shader));
+  // No dispatch has more groups in a direction, and every device must allow as many.
+  const std::uint32_t* groups = device.properties.limits.maxComputeWorkGroupCount;
+  const std::uint32_t least = std::min({groups[0], groups[1], groups[2]});
+  if (least >= shared::kMostGroups) return {};
+  return Error{ErrorCode::unsupported_device, "the device allows dispatches of " + std::to_string(least) + " groups, " +
+                                                  std::to_string(shared::kMostGroups) + " are needed"};
+}
+
+Result<void> check_limits(const gpu::Device& device, const EffectDesc& desc, const Params& params) {
+  TYNDALL_TRY(check_table_size(device, params));
+  for (std::uint32_t i = 0; i < kTableCount; ++i) {
+    const gpu::ImageDesc table = table_desc(static_cast<TableId>(i), params);
+    const VkDeviceSize bytes = gpu::image_bytes(device, table);
+    if (bytes <= device.max_allocation_bytes) continue;
+    return Error{ErrorCode::invalid_argument, std::string("tables.size needs an image (") + table.name + ") of " +
+                                                  std::to_string(bytes) + " bytes, this device allows " +
+                                                  std::to_string(device.max_allocation_bytes)};
+  }
+  for (const BufferPlan& plan : plan_scratch(params.tables.size.y)) {
+    TYNDALL_TRY(check_buffer(device, plan.name, plan.bytes, "tables.size"));
+  }
+  const EpipolarSizes sizes = epipolar_sizes(desc, params);
+  for (std::size_t i = 0; i < kEpipolarBuffers; ++i) {
+    const auto buffer = static_cast<EpipolarBuffer>(i);
+    TYNDALL_TRY(check_buffer(device, epipolar_buffer_name(buffer), sizes[i], epipolar_buffer_cause(buffer)));
+  }
+  return {};
+}
+
+}  // namespace tyndall
