@@ -1,5 +1,7 @@
 #include "table_export.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,6 +13,7 @@
 #include <numbers>
 #include <span>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "config/files.hpp"
@@ -74,14 +77,23 @@ class Staging {
     out.folder_ = out.directory_ / concat({".tyndall-", std::to_string(::getpid())});
     fs::create_directory(out.folder_, failed);
     if (failed) return directory_error(directory, failed.message());
+    // The lock tells config::remove_leftovers() that this run is alive.
+    out.lock_ = ::open(out.folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (out.lock_ >= 0) static_cast<void>(::flock(out.lock_, LOCK_EX | LOCK_NB));
+    config::remove_leftovers(directory);
     return out;
   }
-  Staging(Staging&& other) noexcept = default;
+  Staging(Staging&& other) noexcept
+      : directory_(std::move(other.directory_)),
+        folder_(std::exchange(other.folder_, {})),
+        made_directory_(other.made_directory_),
+        lock_(std::exchange(other.lock_, -1)) {}
   Staging& operator=(Staging&& other) = delete;
   Staging(const Staging&) = delete;
   ~Staging() {
     std::error_code ignored;
     if (!folder_.empty()) fs::remove_all(folder_, ignored);
+    if (lock_ >= 0) ::close(lock_);
     if (made_directory_ && !directory_.empty() && fs::is_empty(directory_, ignored))
       fs::remove(directory_, ignored);
   }
@@ -108,6 +120,7 @@ class Staging {
   Staging() = default;
   fs::path directory_, folder_;
   bool made_directory_ = false;
+  int lock_ = -1;  // descriptor of the folder
 };
 
 ordered_json cosines(std::span<const double> values) {

@@ -231,6 +231,7 @@ void FileCache::write(std::string_view key, std::span<const std::byte> contents)
     note_ = concat({"nothing is cached: ", stored.error().message});
     return;
   }
+  remove_leftovers(directory_);
   make_room(file);
 }
 

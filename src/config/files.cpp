@@ -2,11 +2,13 @@
 #include "config/files.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
@@ -44,7 +46,59 @@ std::string temporary_name(const std::string& directory, int attempt) {
 constexpr int kAttempts = 1000;
 constexpr mode_t kNewFileMode = 0666;  // less the umask
 
+constexpr std::string_view kTemporaryPrefix = ".tyndall-";
+
+// The file that writing to `path` creates or replaces: symbolic links are followed, also those whose target does
+// not exist yet. Empty for a chain of links that has no end.
+std::string followed(const std::string& path) {
+  constexpr int kMaxLinks = 40;  // as the kernel allows
+  std::filesystem::path target = path;
+  for (int links = 0; links <= kMaxLinks; ++links) {
+    std::error_code failed;
+    if (!std::filesystem::is_symlink(std::filesystem::symlink_status(target, failed))) return target.string();
+    const std::filesystem::path next = std::filesystem::read_symlink(target, failed);
+    if (failed) return "";
+    target = target.parent_path() / next;  // `next` itself when it is absolute
+  }
+  return "";
+}
+
+// Copies a file from its beginning; false (with errno) when it cannot be read or written.
+bool copy_contents(int from, int to) {
+  char piece[1 << 16];
+  off_t position = 0;
+  for (;;) {
+    const ssize_t got = ::pread(from, piece, sizeof piece, position);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return got == 0;
+    for (ssize_t done = 0; done < got;) {
+      const ssize_t written = ::write(to, piece + done, static_cast<std::size_t>(got - done));
+      if (written < 0 && errno != EINTR) return false;
+      if (written > 0) done += written;
+    }
+    position += got;
+  }
+}
+
 }  // namespace
+
+void remove_leftovers(const std::string& directory) {
+  namespace fs = std::filesystem;
+  // Whoever writes takes the lock of a temporary file right after creating it. Younger ones are left alone.
+  constexpr auto kMinAge = std::chrono::minutes(1);
+  std::error_code failed;
+  for (fs::directory_iterator it(directory, failed), end; !failed && it != end; it.increment(failed)) {
+    if (!it->path().filename().string().starts_with(kTemporaryPrefix)) continue;
+    std::error_code gone;
+    const bool folder = fs::is_directory(it->symlink_status(gone));
+    if (!folder && !fs::is_regular_file(it->symlink_status(gone))) continue;
+    if (fs::file_time_type::clock::now() - fs::last_write_time(it->path(), gone) < kMinAge || gone) continue;
+    const int descriptor = ::open(it->path().c_str(), (folder ? O_RDONLY | O_DIRECTORY : O_RDWR) | O_CLOEXEC | O_NOFOLLOW);
+    if (descriptor < 0) continue;
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) fs::remove_all(it->path(), gone);
+    ::close(descriptor);
+  }
+}
 
 Result<std::string> read_file(const std::string& path, std::uint64_t limit) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
@@ -99,27 +153,31 @@ Result<AtomicFile> AtomicFile::create(const std::string& path) {
     if (file.descriptor_ < 0) return file.error("cannot write");
     return file;
   }
-  if (exists) {
-    if (::access(path.c_str(), W_OK) != 0) return file.error("cannot write");
-    std::error_code ignored;
-    const std::filesystem::path target = std::filesystem::canonical(path, ignored);
-    if (!ignored) file.path_ = target.string();
-  }
-  const mode_t mode = exists ? info.st_mode & 07777U : kNewFileMode;
+  if (exists && ::access(path.c_str(), W_OK) != 0) return file.error("cannot write");
+  file.path_ = followed(path);
+  if (file.path_.empty()) return io_error("cannot write", path, "its symbolic links have no end");
   const std::string directory = directory_of(file.path_);
   if (::access("/proc/self/fd", X_OK) == 0) {
-    file.descriptor_ = ::open(directory.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, kNewFileMode);
+    file.descriptor_ = ::open(directory.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, kNewFileMode);
     file.nameless_ = file.descriptor_ >= 0;
   }
-  for (int attempt = 0; file.descriptor_ < 0 && attempt < kAttempts; ++attempt) {
-    const std::string name = temporary_name(directory, attempt);
-    file.descriptor_ = ::open(name.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, kNewFileMode);
-    if (file.descriptor_ >= 0) file.temporary_ = name;
-    if (file.descriptor_ < 0 && errno != EEXIST) break;
-  }
-  if (file.descriptor_ < 0) return file.error("cannot write");
-  if (exists && ::fchmod(file.descriptor_, mode) != 0) return file.error("cannot keep the mode of");
+  if (!file.nameless_ && !file.open_temporary()) return file.error("cannot write");
+  // Best effort: some network file systems have neither locks nor modes.
+  static_cast<void>(::flock(file.descriptor_, LOCK_EX | LOCK_NB));
+  if (exists) file.mode_ = info.st_mode & 07777U;
+  if (exists) static_cast<void>(::fchmod(file.descriptor_, *file.mode_));
   return file;
+}
+
+bool AtomicFile::open_temporary() {
+  const std::string directory = directory_of(path_);
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    const std::string name = temporary_name(directory, attempt);
+    descriptor_ = ::open(name.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, kNewFileMode);
+    if (descriptor_ >= 0) temporary_ = name;
+    if (descriptor_ >= 0 || errno != EEXIST) break;
+  }
+  return descriptor_ >= 0;
 }
 
 AtomicFile::AtomicFile(AtomicFile&& other) noexcept
@@ -127,6 +185,7 @@ AtomicFile::AtomicFile(AtomicFile&& other) noexcept
       shown_(std::move(other.shown_)),
       path_(std::move(other.path_)),
       temporary_(std::exchange(other.temporary_, {})),
+      mode_(other.mode_),
       nameless_(other.nameless_) {}
 
 AtomicFile& AtomicFile::operator=(AtomicFile&& other) noexcept {
@@ -136,6 +195,7 @@ AtomicFile& AtomicFile::operator=(AtomicFile&& other) noexcept {
     shown_ = std::move(other.shown_);
     path_ = std::move(other.path_);
     temporary_ = std::exchange(other.temporary_, {});
+    mode_ = other.mode_;
     nameless_ = other.nameless_;
   }
   return *this;
@@ -183,13 +243,23 @@ Result<void> AtomicFile::commit() {
       if (linked == 0) temporary_ = name;
       if (linked != 0 && errno != EEXIST) break;
     }
-    if (linked != 0) return error("cannot write");
+    if (linked != 0 && !copy_to_named()) return error("cannot write");
   }
   if (::close(std::exchange(descriptor_, -1)) != 0) return error("cannot write");
   if (temporary_.empty()) return {};
   if (std::rename(temporary_.c_str(), path_.c_str()) != 0) return error("cannot write");
   temporary_.clear();
   return {};
+}
+
+bool AtomicFile::copy_to_named() {
+  const int nameless = std::exchange(descriptor_, -1);
+  const bool copied = open_temporary() && copy_contents(nameless, descriptor_);
+  if (copied && mode_) static_cast<void>(::fchmod(descriptor_, *mode_));
+  const int reason = errno;
+  ::close(nameless);
+  errno = reason;
+  return copied;
 }
 
 Result<void> write_file(const std::string& path, std::string_view contents) {
@@ -205,6 +275,7 @@ Result<void> check_writable(const std::string& path) {
   if (::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode)) return {};
   const Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return file.error();
+  remove_leftovers(directory_of(followed(path)));
   return {};
 }
 

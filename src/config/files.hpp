@@ -2,8 +2,11 @@
 // name. Both return one-line errors (ErrorCode::io) that name the file.
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -16,8 +19,10 @@ namespace tyndall::config {
 
 // A file that appears under its name only when commit() succeeds; until then, and on destruction
 // without commit(), nothing remains. The data goes to a nameless file in the target's directory
-// where the file system has such, otherwise to a temporary file there. Symbolic links are followed;
-// devices and pipes (/dev/stdout) are written directly. Move-only, one thread.
+// where the file system has such, otherwise to a temporary file there, which remove_leftovers() removes if the
+// process is killed. Symbolic links are followed, also to a target that does not exist yet; devices and pipes
+// (/dev/stdout) are written directly. An existing file's mode is kept where the file system permits it.
+// Move-only, one thread.
 class AtomicFile {
  public:
   // Fails when the directory is missing, or the file cannot be written.
@@ -39,18 +44,28 @@ class AtomicFile {
   AtomicFile() = default;
   [[nodiscard]] Error error(std::string_view what) const;  // with the meaning of errno
   void discard();
+  // Opens a named temporary file beside the target; false (with errno) when none can be made.
+  [[nodiscard]] bool open_temporary();
+  // Copies a nameless file that cannot be linked to a named temporary file.
+  [[nodiscard]] bool copy_to_named();
 
   int descriptor_ = -1;
   std::string shown_;      // as the caller named it, for messages
   std::string path_;       // where it goes, links followed
   std::string temporary_;  // the name before commit; empty for nameless files and devices
+  std::optional<mode_t> mode_;  // of the file that is replaced
   bool nameless_ = false;
 };
 
 // create(), write() and commit() in one.
 [[nodiscard]] Result<void> write_file(const std::string& path, std::string_view contents);
 
-// Whether create() would succeed, without leaving anything: for a check before long work.
+// Returns the error that create() would return, and leaves no file: for a check before long work. Also removes
+// leftovers beside the target.
 [[nodiscard]] Result<void> check_writable(const std::string& path);
+
+// Removes the temporary files and folders (named ".tyndall-...") of killed runs from `directory`: those that are
+// older than a minute and whose lock (flock) nobody holds.
+void remove_leftovers(const std::string& directory);
 
 }  // namespace tyndall::config

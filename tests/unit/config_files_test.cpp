@@ -1,15 +1,46 @@
 // Files are written whole or not at all.
 #include "config/files.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <stdlib.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <filesystem>
+#include <fstream>
+
+namespace {
+
+// Stand for file systems (CIFS, FUSE, WSL drives) that refuse these calls.
+bool refuse_modes = false, refuse_links = false, refuse_nameless = false;
+
+}  // namespace
+
+extern "C" int fchmod(int descriptor, mode_t mode) noexcept {
+  if (!refuse_modes) return static_cast<int>(::syscall(SYS_fchmod, descriptor, mode));
+  errno = EPERM;
+  return -1;
+}
+
+extern "C" int linkat(int from_directory, const char* from, int to_directory, const char* to, int flags) noexcept {
+  if (!refuse_links) return static_cast<int>(::syscall(SYS_linkat, from_directory, from, to_directory, to, flags));
+  errno = EPERM;
+  return -1;
+}
+
+// access() decides whether nameless files are used.
+extern "C" int access(const char* path, int mode) noexcept {
+  if (!refuse_nameless || std::string(path) != "/proc/self/fd") return static_cast<int>(::syscall(SYS_access, path, mode));
+  errno = EACCES;
+  return -1;
+}
 
 namespace tyndall::config {
 namespace {
@@ -70,6 +101,82 @@ TEST_F(Files, LinksAndModesAreKept) {
   struct stat info {};
   ASSERT_EQ(::stat(at("target").c_str(), &info), 0);
   EXPECT_EQ(info.st_mode & 0777U, 0640U);
+}
+
+TEST_F(Files, AreReplacedWhereModesCannotBeSet) {
+  ASSERT_TRUE(write_file(at("a"), "old").ok());
+  refuse_modes = true;
+  const Result<void> written = write_file(at("a"), "new");
+  refuse_modes = false;
+  ASSERT_TRUE(written.ok()) << written.error().message;
+  EXPECT_EQ(read_file(at("a"), 100).value(), "new");
+  EXPECT_EQ(entries(), 1U);
+}
+
+TEST_F(Files, AreReplacedWhereNamelessFilesCannotBeLinked) {
+  ASSERT_TRUE(write_file(at("a"), "old").ok());
+  ASSERT_EQ(::chmod(at("a").c_str(), 0600), 0);
+  refuse_links = true;
+  const Result<void> written = write_file(at("a"), std::string(200000, 'n'));
+  refuse_links = false;
+  ASSERT_TRUE(written.ok()) << written.error().message;
+  EXPECT_EQ(read_file(at("a"), 300000).value(), std::string(200000, 'n'));
+  struct stat info {};
+  ASSERT_EQ(::stat(at("a").c_str(), &info), 0);
+  EXPECT_EQ(info.st_mode & 0777U, 0600U);
+  EXPECT_EQ(entries(), 1U);
+}
+
+TEST_F(Files, LinksToFilesThatDoNotExistYetAreFollowed) {
+  std::filesystem::create_directory(at("folder"));
+  std::filesystem::create_symlink("folder/target", at("link"));
+  std::filesystem::create_symlink("link", at("link_to_link"));
+  ASSERT_TRUE(check_writable(at("link_to_link")).ok());
+  ASSERT_TRUE(write_file(at("link_to_link"), "new").ok());
+  EXPECT_TRUE(std::filesystem::is_symlink(at("link")));
+  EXPECT_TRUE(std::filesystem::is_symlink(at("link_to_link")));
+  EXPECT_EQ(read_file(at("folder/target"), 100).value(), "new");
+  std::filesystem::create_symlink("none/target", at("astray"));
+  EXPECT_FALSE(write_file(at("astray"), "x").ok());
+  EXPECT_TRUE(std::filesystem::is_symlink(at("astray")));
+  std::filesystem::create_symlink("circle", at("circle"));
+  EXPECT_FALSE(write_file(at("circle"), "x").ok());
+}
+
+TEST_F(Files, LeftoversOfKilledRunsAreRemoved) {
+  const auto age = [&](const std::string& name) {
+    std::filesystem::last_write_time(at(name), std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
+  };
+  // A run that is killed before it commits, where there are no nameless files.
+  const pid_t child = ::fork();
+  if (child == 0) {
+    refuse_nameless = true;
+    Result<AtomicFile> file = AtomicFile::create(at("partial"));
+    if (file) static_cast<void>(file.value().write("half").ok());
+    ::kill(::getpid(), SIGKILL);
+  }
+  int status = -1;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_EQ(entries(), 1U);
+  const std::string left = std::filesystem::directory_iterator(directory_)->path().filename().string();
+  remove_leftovers(directory_.string());
+  EXPECT_EQ(entries(), 1U) << "too young: its writer may be about to take the lock";
+  age(left);
+  std::filesystem::create_directory(at(".tyndall-1"));  // a folder of an export
+  std::ofstream(at(".tyndall-1/a.exr")) << "a";
+  age(".tyndall-1");
+  std::ofstream(at(".hidden")) << "not ours";
+  age(".hidden");
+  std::ofstream(at(".tyndall-2-0.tmp")) << "in use";
+  age(".tyndall-2-0.tmp");
+  const int in_use = ::open(at(".tyndall-2-0.tmp").c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_EQ(::flock(in_use, LOCK_EX | LOCK_NB), 0);
+  ASSERT_TRUE(check_writable(at("next")).ok());
+  EXPECT_FALSE(std::filesystem::exists(at(left)));
+  EXPECT_FALSE(std::filesystem::exists(at(".tyndall-1")));
+  EXPECT_TRUE(std::filesystem::exists(at(".hidden")));
+  EXPECT_TRUE(std::filesystem::exists(at(".tyndall-2-0.tmp")));
+  ::close(in_use);
 }
 
 TEST_F(Files, DevicesAreWrittenAndNotReplaced) {
