@@ -12,6 +12,7 @@
 
 #include "config/files.hpp"
 #include "config/text.hpp"
+#include "config/toml_limits.hpp"
 
 namespace tyndall::config {
 namespace {
@@ -355,6 +356,7 @@ Result<void> load_text(Settings& settings, std::string_view toml, std::string_vi
   if (!is_utf8(toml)) {
     return input_error("not a text file", one_line(name, 200), "allowed is a scene file: TOML in UTF-8");
   }
+  if (Result<void> shallow = check_key_depth(toml, name); !shallow) return shallow;
   try {
     const toml::table root = toml::parse(toml, name);
     Settings loaded = settings;

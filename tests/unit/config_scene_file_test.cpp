@@ -303,5 +303,24 @@ TEST(Describe, MarkdownHasOneRowPerParameter) {
     EXPECT_NE(page.find("| `" + row.key() + "` |"), std::string::npos) << row.key();
 }
 
+// Each part of a dotted key is a table inside the one before: forty thousand overflow the parser's stack.
+TEST(ConfigSceneFile, KeysOfManyPartsAreRefused) {
+  std::string dots = "a";
+  for (int i = 0; i < 40000; ++i) dots += ".a";
+  std::string spaced = "a";
+  for (int i = 0; i < 40000; ++i) spaced += " . \"b\"";
+  for (const std::string& text : {"\n" + dots + " = 1\n", "\n[" + dots + "]\n", "\n[[" + dots + "]]\n", "\n" + spaced + "=1",
+                                  "\ncamera = { " + dots + " = 1 }"}) {
+    Settings settings;
+    const Result<void> read = load_text(settings, text, "deep.toml");
+    ASSERT_FALSE(read.ok());
+    EXPECT_EQ(read.error().message, "a key of more than 16 parts, deep.toml:2, allowed is KEY = VALUE in [TABLES]");
+  }
+  Settings settings;
+  const std::string quoted = "# " + dots + "\n[terrain]\nsource = \"" + dots + "\"\n[meshes]\nsource = '''" + dots + "'''\n";
+  const Result<void> read = load_text(settings, quoted, "quoted.toml");
+  EXPECT_TRUE(read.ok()) << read.error().message;
+}
+
 }  // namespace
 }  // namespace tyndall::config
