@@ -121,6 +121,9 @@ int run_compare(Args args) {
                         size_text(b.value().image), ", allowed are equal sizes"}),
                 kSizesDiffer);
   }
+  for (const auto& [path, file] : {std::pair(path_a, &a.value()), std::pair(path_b, &b.value())}) {
+    if (!file->note.empty()) note(concat({"'", config::one_line(path, 200), "': ", file->note}));
+  }
   const image::Metrics metrics = image::compare(a.value().image, b.value().image);
   if (!difference_path.empty()) {
     if (const Result<void> written = write_difference(difference_path, a.value(), b.value()); !written) {

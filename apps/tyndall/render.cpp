@@ -13,8 +13,10 @@ namespace tyndall::cli {
 namespace {
 
 // The settings, and what became of them in this frame.
-std::vector<std::pair<std::string, std::string>> metadata_of(const scene::Scene& scene, const config::Settings& settings) {
-  std::vector<std::pair<std::string, std::string>> list = config::metadata(settings);
+std::vector<std::pair<std::string, std::string>> metadata_of(const scene::Scene& scene, const config::Settings& settings,
+                                                             image::FileKind kind) {
+  std::vector<std::pair<std::string, std::string>> list =
+      kind == image::FileKind::exr ? config::radiance_metadata(settings) : config::metadata(settings);
   list.emplace_back("tyndall.frame.exposure", config::number_text(scene.exposure()));
   return list;
 }
@@ -25,11 +27,12 @@ Result<void> write_frame(scene::Scene& scene, const std::string& path, const con
   if (kind.value() == image::FileKind::exr) {
     const Result<image::Image> radiance = scene.radiance();
     if (!radiance) return radiance.error();
-    return image::write_exr(path, radiance.value(), metadata_of(scene, settings));
+    return image::write_exr(path, radiance.value(), metadata_of(scene, settings, kind.value()),
+                            {.content = image::ExrContent::radiance});
   }
   const Result<image::Image> display = scene.display();
   if (!display) return display.error();
-  return image::write_png(path, display.value(), metadata_of(scene, settings));
+  return image::write_png(path, display.value(), metadata_of(scene, settings, kind.value()));
 }
 
 }  // namespace

@@ -216,7 +216,7 @@ int run_sky(Args args) {
     add_sun(image, map, face, medium_from_params(params));
   }
 
-  image::Metadata metadata = config::metadata(options.settings);
+  image::Metadata metadata = config::radiance_metadata(options.settings);
   metadata.emplace_back(
       "tyndall.sky.projection",
       "latitude-longitude: zenith at the top, north at the left edge, azimuth clockwise to the right");
@@ -226,7 +226,14 @@ int run_sky(Args args) {
     metadata.emplace_back("tyndall.sky.at", config::one_line(sky.place));
     metadata.emplace_back("tyndall.sky.time", config::one_line(sky.time));
   }
-  if (Result<void> r = image::write_exr(options.output, image, metadata); !r) return fail(r.error());
+  constexpr float kLargestHalf = 65504.0F;
+  if (const float largest = *std::max_element(image.rgb.begin(), image.rgb.end()); largest > kLargestHalf) {
+    note(concat({"the sun's disc has values up to ", config::number_text(largest),
+                 ", programs that read the map in half precision hold at most 65504; --disc false leaves the disc out"}));
+  }
+  if (Result<void> r = image::write_exr(options.output, image, metadata, {.content = image::ExrContent::environment_map}); !r) {
+    return fail(r.error());
+  }
   if (!options.json) return kDone;
   nlohmann::ordered_json out;
   out["device"] = host.value()->device_name();

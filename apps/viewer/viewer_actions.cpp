@@ -85,9 +85,11 @@ void Viewer::write_screenshot(Capture capture) {
   screenshot_wanted_ = false;
   const std::string stem = screenshot_stem(desc_.screenshots, {".png", ".exr"});
   writing_ = std::async(std::launch::async, [stem, shot = std::move(capture)]() -> Result<std::string> {
-    const auto metadata = config::metadata(shot.settings);
-    Result<void> written = image::write_png(stem + ".png", shot.display, metadata);
-    if (written) written = image::write_exr(stem + ".exr", shot.radiance, metadata);
+    Result<void> written = image::write_png(stem + ".png", shot.display, config::metadata(shot.settings));
+    if (written) {
+      written = image::write_exr(stem + ".exr", shot.radiance, config::radiance_metadata(shot.settings),
+                                 {.content = image::ExrContent::radiance});
+    }
     Window::wake();
     if (!written) return written.error();
     return stem;

@@ -306,4 +306,13 @@ std::vector<std::pair<std::string, std::string>> metadata(const Settings& settin
   return list;
 }
 
+std::vector<std::pair<std::string, std::string>> radiance_metadata(const Settings& settings) {
+  std::vector<std::pair<std::string, std::string>> list = metadata(settings);
+  const Vec3& nm = settings.effect.atmosphere.wavelengths_nm;
+  list.emplace_back("tyndall.channels",
+                    concat({"R, G, B are the radiance at ", number_text(nm.x), ", ", number_text(nm.y), " and ", number_text(nm.z),
+                            " nm, in the unit of sun.irradiance per steradian; they are shown as if they were linear Rec. 709"}));
+  return list;
+}
+
 }  // namespace tyndall::config

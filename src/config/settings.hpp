@@ -67,6 +67,9 @@ struct Group {
 // Every parameter as {"tyndall.camera.yaw_deg", "332"} after {"tyndall.version", "0.1.0"}: for images.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> metadata(const Settings& settings);
 
+// metadata() and what an EXR of linear radiance has to say of its channels ("tyndall.channels").
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> radiance_metadata(const Settings& settings);
+
 // Stores one value whose parts are already apart: for readers of other syntaxes. Numbers are given as
 // text; a vector has as many parts as components.
 [[nodiscard]] Result<void> store(Settings& settings, const Row& row, const std::vector<std::string>& parts,

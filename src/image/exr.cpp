@@ -1,11 +1,15 @@
 // EXR through OpenEXR's C++ interface. OpenEXR reports errors by exceptions, which end here.
 #include <ImathBox.h>
 #include <ImfChannelList.h>
+#include <ImfChromaticities.h>
+#include <ImfEnvmap.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfRgbaFile.h>
+#include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 #include <half.h>
 
@@ -20,6 +24,7 @@
 #include "config/files.hpp"
 #include "config/text.hpp"
 #include "image/codec.hpp"
+#include "image/exr_header.hpp"
 
 namespace tyndall::image {
 namespace {
@@ -94,17 +99,23 @@ class BytesOut : public Imf::OStream {
   Error error_;
 };
 
-// The names of the channels that become red, green and blue.
-std::vector<std::string> channel_names(const Imf::ChannelList& channels) {
-  std::vector<std::string> names = {"R", "G", "B"};
-  if (channels.findChannel("R") == nullptr && channels.findChannel("Y") != nullptr) names = {"Y", "Y", "Y"};
-  for (const std::string& name : names) {
+// How the channels of a file become red, green and blue.
+enum class Channels : std::uint32_t { rgb, grey, luminance_chroma };
+
+Channels kind_of_channels(const Imf::ChannelList& channels) {
+  const auto has = [&](const char* name) { return channels.findChannel(name) != nullptr; };
+  if (!has("R") && has("Y") && has("RY") && has("BY")) return Channels::luminance_chroma;
+  if (!has("R") && has("Y")) {
+    if (has("RY") || has("BY")) throw std::runtime_error("its chroma has only one of the channels RY and BY");
+    return Channels::grey;
+  }
+  for (const char* const name : {"R", "G", "B"}) {
     const Imf::Channel* const channel = channels.findChannel(name);
-    if (channel == nullptr) throw std::runtime_error("it has no channels R, G, B or Y");
+    if (channel == nullptr) throw std::runtime_error("it has neither the channels R, G, B nor Y");
     if (channel->xSampling != 1 || channel->ySampling != 1)
       throw std::runtime_error("its channels are subsampled");
   }
-  return names;
+  return Channels::rgb;
 }
 
 Metadata string_attributes(const Imf::Header& header) {
@@ -125,47 +136,104 @@ Imf::Slice slice(Imf::PixelType type, T* rows, const Imath::Box2i& window, int t
   return {type, base, static_cast<std::size_t>(x_stride), static_cast<std::size_t>(width * x_stride)};
 }
 
+std::int64_t width_of(const Imath::Box2i& window) { return std::int64_t{window.max.x} - window.min.x + 1; }
+std::int64_t height_of(const Imath::Box2i& window) { return std::int64_t{window.max.y} - window.min.y + 1; }
+
+void check_window(const Imath::Box2i& window, std::int64_t max_pixels, const char* problem) {
+  const bool fits = width_of(window) >= 1 && height_of(window) >= 1 && width_of(window) <= kLargestSide &&
+                    height_of(window) <= kLargestSide && width_of(window) * height_of(window) <= max_pixels;
+  if (!fits) throw std::runtime_error(problem);
+}
+
+// Appends the rows of the data window as the file is read: a header that lies about them does no harm.
+void read_rows(Imf::InputFile& input, const Imath::Box2i& window, bool grey, Image& image) {
+  for (int top = window.min.y; top <= window.max.y; top += kRowsAtOnce) {
+    const int bottom = std::min(top + kRowsAtOnce - 1, window.max.y);
+    const std::size_t start = image.rgb.size();
+    image.rgb.resize(start + std::size_t{3} * image.width * static_cast<std::size_t>(bottom - top + 1));
+    Imf::FrameBuffer target;
+    for (std::size_t channel = 0; channel < (grey ? 1 : 3); ++channel) {
+      const char* const name = grey ? "Y" : channel == 0 ? "R" : channel == 1 ? "G" : "B";
+      target.insert(name, slice(Imf::FLOAT, image.rgb.data() + start + channel, window, top, 3));
+    }
+    input.setFrameBuffer(target);
+    input.readPixels(top, bottom);
+    for (std::size_t i = start; grey && i < image.rgb.size(); i += 3) {
+      image.rgb[i + 1] = image.rgb[i + 2] = image.rgb[i];
+    }
+  }
+}
+
+// Luminance and subsampled chroma, which OpenEXR makes RGB of in half precision.
+void read_luminance_chroma(std::string_view bytes, const std::string& path, const Imath::Box2i& window, Image& image) {
+  BytesIn stream(bytes, path);
+  Imf::RgbaInputFile input(stream);
+  const std::size_t width = image.width;
+  std::vector<Imf::Rgba> row(width);
+  for (int y = window.min.y; y <= window.max.y; ++y) {
+    input.setFrameBuffer(row.data() - window.min.x - static_cast<std::ptrdiff_t>(y) * static_cast<std::ptrdiff_t>(width), 1, width);
+    input.readPixels(y);
+    for (const Imf::Rgba& pixel : row) image.rgb.insert(image.rgb.end(), {pixel.r, pixel.g, pixel.b});
+  }
+}
+
+std::string window_text(const Imath::Box2i& window) {
+  return config::concat({std::to_string(width_of(window)), "x", std::to_string(height_of(window)), " from ",
+                         std::to_string(window.min.x), ",", std::to_string(window.min.y)});
+}
+
+// The display window of an image that holds the data window.
+Image displayed(const Image& data, const Imath::Box2i& window, const Imath::Box2i& display) {
+  Image out(static_cast<std::uint32_t>(width_of(display)), static_cast<std::uint32_t>(height_of(display)));
+  const int left = std::max(window.min.x, display.min.x), right = std::min(window.max.x, display.max.x);
+  const int top = std::max(window.min.y, display.min.y), bottom = std::min(window.max.y, display.max.y);
+  for (int y = top; y <= bottom && left <= right; ++y) {
+    const float* const from = data.pixel(static_cast<std::uint32_t>(left - window.min.x), static_cast<std::uint32_t>(y - window.min.y));
+    std::copy_n(from, 3 * (static_cast<std::size_t>(right - left) + 1),
+                out.pixel(static_cast<std::uint32_t>(left - display.min.x), static_cast<std::uint32_t>(y - display.min.y)));
+  }
+  return out;
+}
+
 File decode(std::string_view bytes, const std::string& path) {
+  if (const std::string problem = exr_header_problem(bytes); !problem.empty()) throw std::runtime_error(problem);
   BytesIn stream(bytes, path);
   Imf::Header::setMaxImageSize(static_cast<int>(kLargestSide), static_cast<int>(kLargestSide));
+  Imf::Header::setMaxTileSize(4096, 4096);
   Imf::InputFile input(stream);
   const Imath::Box2i window = input.header().dataWindow();
-  const std::vector<std::string> names = channel_names(input.header().channels());
-  const bool grey = names[0] == names[1];
+  const Imath::Box2i display = input.header().displayWindow();
+  const Channels channels = kind_of_channels(input.header().channels());
+  check_window(window, static_cast<std::int64_t>(kMaxPixels), "it is too large");
 
   File file;
   file.kind = FileKind::exr;
   file.metadata = string_attributes(input.header());
-  file.image.width = static_cast<std::uint32_t>(std::int64_t{window.max.x} - window.min.x + 1);
-  file.image.height = static_cast<std::uint32_t>(std::int64_t{window.max.y} - window.min.y + 1);
-  if (file.image.width > kLargestSide || file.image.height > kLargestSide)
-    throw std::runtime_error("it is too large");
-  // Reserved at once and filled as the data proves to be there: a header that lies does no harm.
-  file.image.rgb.reserve(std::size_t{3} * file.image.width * file.image.height);
-  for (int top = window.min.y; top <= window.max.y; top += kRowsAtOnce) {
-    const int bottom = std::min(top + kRowsAtOnce - 1, window.max.y);
-    const std::size_t start = file.image.rgb.size();
-    file.image.rgb.resize(start +
-                          std::size_t{3} * file.image.width * static_cast<std::size_t>(bottom - top + 1));
-    Imf::FrameBuffer target;
-    for (std::size_t channel = 0; channel < (grey ? 1 : 3); ++channel) {
-      target.insert(names[channel],
-                    slice(Imf::FLOAT, file.image.rgb.data() + start + channel, window, top, 3));
-    }
-    input.setFrameBuffer(target);
-    input.readPixels(top, bottom);
-    for (std::size_t i = start; grey && i < file.image.rgb.size(); i += 3) {
-      file.image.rgb[i + 1] = file.image.rgb[i + 2] = file.image.rgb[i];
-    }
+  file.image.width = static_cast<std::uint32_t>(width_of(window));
+  file.image.height = static_cast<std::uint32_t>(height_of(window));
+  if (channels == Channels::luminance_chroma) {
+    read_luminance_chroma(bytes, path, window, file.image);
+  } else {
+    read_rows(input, window, channels == Channels::grey, file.image);
+  }
+  if (window != display) {
+    // Pixels that no data stands behind are bounded more tightly.
+    constexpr std::int64_t kMaxEmptyPixels = std::int64_t{1} << 25;
+    check_window(display, std::max(kMaxEmptyPixels, width_of(window) * height_of(window)), "its display window is too large");
+    file.image = displayed(file.image, window, display);
+    file.note = config::concat({"its pixels cover ", window_text(window), ", its display window ", window_text(display),
+                                ": taken is the display window, black where there are no pixels"});
   }
   return file;
 }
 
-void encode(Imf::OStream& stream, const Image& image, const Metadata& metadata, ExrPrecision precision) {
-  const Imf::PixelType type = precision == ExrPrecision::half16 ? Imf::HALF : Imf::FLOAT;
+void encode(Imf::OStream& stream, const Image& image, const Metadata& metadata, const ExrOptions& options) {
+  const Imf::PixelType type = options.precision == ExrPrecision::half16 ? Imf::HALF : Imf::FLOAT;
   Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
   header.compression() = Imf::ZIP_COMPRESSION;
   for (const auto& [name, value] : metadata) header.insert(name.c_str(), Imf::StringAttribute(value));
+  if (options.content != ExrContent::data) Imf::addChromaticities(header, Imf::Chromaticities());  // Rec. 709
+  if (options.content == ExrContent::environment_map) Imf::addEnvmap(header, Imf::ENVMAP_LATLONG);
   for (const char* const name : {"R", "G", "B"}) header.channels().insert(name, Imf::Channel(type));
   const Imath::Box2i window = header.dataWindow();
   Imf::OutputFile output(stream, header);
@@ -200,9 +268,9 @@ Result<File> decode_exr(std::string_view bytes, const std::string& path) {
 }
 
 Result<void> write_exr(const std::string& path, const Image& image, const Metadata& metadata,
-                       ExrPrecision precision) {
+                       const ExrOptions& options) {
   if (Result<void> fits = check_writable_image(path, image, metadata); !fits) return fits;
-  if (precision == ExrPrecision::half16) {
+  if (options.precision == ExrPrecision::half16) {
     constexpr float kLargestHalf = 65504.0F;
     const auto too_large = [](float value) {
       return std::isfinite(value) && std::fabs(value) > kLargestHalf;
@@ -218,7 +286,7 @@ Result<void> write_exr(const std::string& path, const Image& image, const Metada
   if (!file) return std::move(file).error();
   BytesOut stream(file.value(), path);
   try {
-    encode(stream, image, metadata, precision);
+    encode(stream, image, metadata, options);
   } catch (const FileFailure& failure) {
     return failure.error;
   } catch (const std::bad_alloc&) {

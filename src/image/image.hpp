@@ -14,6 +14,7 @@
 namespace tyndall::image {
 
 constexpr std::uint32_t kLargestSide = 32768;  // pixels, read or written
+constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 28;  // read; 3.2 GB in memory
 
 struct Image {
   std::uint32_t width = 0;
@@ -62,22 +63,40 @@ struct PngOptions {
 
 enum class ExrPrecision : std::uint32_t { half16, float32 };
 
+// What the channels of an EXR hold, which its header then says by OpenEXR's standard attributes.
+enum class ExrContent : std::uint32_t {
+  data,            // numbers that are no colours: no attribute
+  radiance,        // to be shown as linear Rec. 709: `chromaticities`
+  environment_map  // radiance by latitude and longitude: `chromaticities` and `envmap`
+};
+
+struct ExrOptions {
+  ExrPrecision precision = ExrPrecision::float32;
+  ExrContent content = ExrContent::data;
+};
+
 // EXR with channels R, G, B, ZIP compression and the metadata as string attributes. Values that are not
 // finite are stored as they are (count_non_finite() finds them). Fails (invalid_argument) when a finite
 // value is beyond what half16 holds (65504).
 [[nodiscard]] Result<void> write_exr(const std::string& path, const Image& image, const Metadata& metadata,
-                                     ExrPrecision precision = ExrPrecision::float32);
+                                     const ExrOptions& options = {});
 
 // An image file as read.
 struct File {
   FileKind kind = FileKind::png;  // by content, not by name
   Image image;                    // PNG: its own encoded values, scaled to 0..1; EXR: linear values
   Metadata metadata;              // PNG: text chunks; EXR: string attributes
+  // What the reader should know of the pixels, one line, empty for most files: an EXR whose data window is not its
+  // display window, luminance and chroma made to RGB.
+  std::string note;
 };
 
 // Reads a PNG (any depth and colour type; grey becomes RGB, transparency is dropped) or an EXR (scan
-// lines or tiles; channels R, G, B or Y of any type; of several parts the first; the data window).
-// Errors: io for what is missing, damaged or of another kind; out_of_memory.
+// lines or tiles; channels R, G, B of any type, Y alone as grey, or Y, RY and BY as luminance and chroma; of several
+// parts the first). The image of an EXR is its display window: black where the data window has no pixels, without
+// what lies outside.
+// Errors: io for what is missing, damaged, of another kind or larger than kMaxPixels; out_of_memory. What the header
+// of a file claims is checked against its length first, so that small files cost little memory.
 [[nodiscard]] Result<File> read(const std::string& path);
 
 // How many values are NaN or infinite.

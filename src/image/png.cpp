@@ -43,6 +43,21 @@ struct Reader {
   int depth = 8;
 };
 
+// Returns why the chunks of a PNG cannot be true, empty when they can: libpng allocates what a chunk claims before it
+// finds that the file ends.
+const char* chunk_problem(std::string_view bytes) {
+  constexpr std::size_t kSignature = 8, kAround = 12;  // length, kind and checksum of a chunk
+  std::size_t at = kSignature;
+  while (bytes.size() - at >= kAround) {
+    std::uint32_t length = 0;
+    for (std::size_t i = 0; i < 4; ++i) length = length << 8U | static_cast<unsigned char>(bytes[at + i]);
+    if (length > bytes.size() - at - kAround) return "the file is cut off";
+    if (bytes.substr(at + 4, 4) == "IEND") return "";
+    at += kAround + length;
+  }
+  return "the file is cut off";
+}
+
 void on_read(png_structp png, png_bytep target, png_size_t size) {
   Reader* reader = static_cast<Reader*>(png_get_io_ptr(png));
   if (reader->bytes.size() - reader->position < size) png_error(png, "the file is cut off");
@@ -54,6 +69,8 @@ bool read_samples(Reader* reader) {
   if (setjmp(png_jmpbuf(reader->png)) != 0) return false;
   png_set_read_fn(reader->png, reader, on_read);
   png_set_user_limits(reader->png, kLargestSide, kLargestSide);
+  constexpr png_alloc_size_t kMaxChunk = 8U << 20U;  // bytes of one chunk of text or a profile, decompressed
+  png_set_chunk_malloc_max(reader->png, kMaxChunk);
   png_read_info(reader->png, reader->info);
   reader->width = png_get_image_width(reader->png, reader->info);
   reader->height = png_get_image_height(reader->png, reader->info);
@@ -71,7 +88,11 @@ bool read_samples(Reader* reader) {
   if (row_size != std::size_t{3} * reader->width * static_cast<std::size_t>(reader->depth) / 8) {
     png_error(reader->png, "its pixels have an unknown layout");
   }
-  // Zeroed pages cost nothing until data arrives: a header that lies about the size does no harm.
+  // Deflate makes at most 1032 bytes of one.
+  constexpr std::size_t kMaxRatio = 1032;
+  if (reader->height > reader->bytes.size() * kMaxRatio / row_size + 1) png_error(reader->png, "the file is cut off");
+  if (std::uint64_t{reader->width} * reader->height > kMaxPixels) png_error(reader->png, "it is too large");
+  // Zeroed pages cost nothing until data arrives.
   reader->samples = static_cast<unsigned char*>(std::calloc(reader->height, row_size));
   if (reader->samples == nullptr) png_error(reader->png, "not enough memory");
   for (int pass = 0; pass < passes; ++pass) {
@@ -169,6 +190,9 @@ std::vector<png_text> png_texts(const Metadata& metadata) {
 }  // namespace
 
 Result<File> decode_png(std::string_view bytes, const std::string& path) {
+  if (const char* const problem = chunk_problem(bytes); *problem != '\0') {
+    return read_error(path, config::concat({"PNG: ", problem}));
+  }
   Reader reader;
   reader.bytes = bytes;
   reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader.problem, on_error, on_warning);

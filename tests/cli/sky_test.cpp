@@ -177,6 +177,18 @@ TEST_F(CliSky, PixelsAreRays) {
   EXPECT_EQ(value("tyndall.sky.model"), "single");
 }
 
+TEST_F(CliSky, DiscsBeyondHalfPrecisionAreNoted) {
+  const std::vector<std::string> sky = with_single({"sky", "-o", scratch_.at("sky.exr"), "--size", "2048x1024", "--sun-elevation-deg",
+                                                    "60", "--sun-azimuth-deg", "0"});
+  const Outcome noted = run_tyndall(sky);
+  EXPECT_EQ(noted.status, 0);
+  EXPECT_NE(noted.err.find("tyndall: note: the sun's disc has values up to "), std::string::npos) << noted.err;
+  EXPECT_NE(noted.err.find("65504"), std::string::npos);
+  std::vector<std::string> without = sky;
+  without.insert(without.end(), {"--disc", "false"});
+  EXPECT_EQ(run_tyndall(without).err, "");
+}
+
 TEST_F(CliSky, TheGroundIsThatOfTheReference) {
   const image::File file = make(with_single(
       {"--size", "4x6", "--sun-elevation-deg", "40", "--sun-azimuth-deg", "45", "--altitude", "5000",

@@ -1,8 +1,18 @@
 // EXR and PNG on disk: what goes in comes out, and damaged files are one clear line.
+#include <ImfChannelList.h>
+#include <ImfChromaticitiesAttribute.h>
+#include <ImfEnvmap.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfRgbaFile.h>
+#include <ImfStandardAttributes.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <sys/resource.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,6 +22,7 @@
 
 #include "config/files.hpp"
 #include "image/image.hpp"
+#include "image/metrics.hpp"
 
 namespace tyndall::image {
 namespace {
@@ -77,13 +88,13 @@ TEST_F(ImageFiles, ExrKeepsEveryBit) {
 
 TEST_F(ImageFiles, HalfExrIsWithinItsPrecision) {
   const Image image = ramp(40, 70, 3.0F);
-  ASSERT_TRUE(write_exr(at("a.exr"), image, {}, ExrPrecision::half16).ok());
+  ASSERT_TRUE(write_exr(at("a.exr"), image, {}, {.precision = ExrPrecision::half16}).ok());
   const Result<File> back = read(at("a.exr"));
   ASSERT_TRUE(back.ok()) << back.error().message;
   for (std::size_t i = 0; i < image.rgb.size(); ++i) {
     ASSERT_NEAR(back.value().image.rgb[i], image.rgb[i], image.rgb[i] / 2048.0F + 1e-7F);
   }
-  const Result<void> too_large = write_exr(at("b.exr"), ramp(4, 4, 70000.0F), {}, ExrPrecision::half16);
+  const Result<void> too_large = write_exr(at("b.exr"), ramp(4, 4, 70000.0F), {}, {.precision = ExrPrecision::half16});
   ASSERT_FALSE(too_large.ok());
   EXPECT_NE(too_large.error().message.find("65504"), std::string::npos);
   EXPECT_EQ(entries(), 1U);
@@ -213,6 +224,164 @@ TEST_F(ImageFiles, DamagedFiles) {
       refused += damage != "(accepted)" ? 1 : 0;
     }
     EXPECT_GT(refused, 20) << name;
+  }
+}
+
+// A file of a data window of its own: every pixel holds its coordinates in the plane of the display window.
+void write_windows(const std::string& path, const Imath::Box2i& display, const Imath::Box2i& data) {
+  Imf::Header header(display, data);
+  for (const char* const name : {"R", "G", "B"}) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+  const int width = data.max.x - data.min.x + 1, height = data.max.y - data.min.y + 1;
+  std::vector<float> red, green;
+  for (int y = data.min.y; y <= data.max.y; ++y) {
+    for (int x = data.min.x; x <= data.max.x; ++x) {
+      red.push_back(static_cast<float>(x));
+      green.push_back(static_cast<float>(y));
+    }
+  }
+  ASSERT_EQ(red.size(), static_cast<std::size_t>(width * height));
+  Imf::FrameBuffer source;
+  const auto slice = [&](std::vector<float>& values) {
+    return Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data() - data.min.x - data.min.y * width), sizeof(float),
+                      sizeof(float) * static_cast<std::size_t>(width));
+  };
+  source.insert("R", slice(red));
+  source.insert("G", slice(green));
+  source.insert("B", slice(green));
+  Imf::OutputFile output(path.c_str(), header);
+  output.setFrameBuffer(source);
+  output.writePixels(height);
+}
+
+TEST_F(ImageFiles, ExrIsItsDisplayWindow) {
+  // Data beyond the right edge, and none on the left of column 3 and above row 2.
+  write_windows(at("a.exr"), {{0, 0}, {15, 8}}, {{3, 2}, {20, 8}});
+  const Result<File> file = read(at("a.exr"));
+  ASSERT_TRUE(file.ok()) << file.error().message;
+  ASSERT_EQ(file.value().image.width, 16U);
+  ASSERT_EQ(file.value().image.height, 9U);
+  for (std::uint32_t y = 0; y < 9; ++y) {
+    for (std::uint32_t x = 0; x < 16; ++x) {
+      const bool inside = x >= 3 && y >= 2;
+      EXPECT_EQ(file.value().image.pixel(x, y)[0], inside ? static_cast<float>(x) : 0.0F) << x << ' ' << y;
+      EXPECT_EQ(file.value().image.pixel(x, y)[1], inside ? static_cast<float>(y) : 0.0F) << x << ' ' << y;
+    }
+  }
+  EXPECT_EQ(file.value().note,
+            "its pixels cover 18x7 from 3,2, its display window 16x9 from 0,0: taken is the display window, black where there "
+            "are no pixels");
+  // The same pixels somewhere else are another picture.
+  write_windows(at("b.exr"), {{0, 0}, {15, 8}}, {{0, 0}, {15, 8}});
+  const Result<File> whole = read(at("b.exr"));
+  ASSERT_TRUE(whole.ok());
+  EXPECT_EQ(whole.value().note, "");
+  EXPECT_LT(compare(file.value().image, whole.value().image).psnr_db, 40.0);
+  // Nothing of it in sight, and a frame that is far larger than what the file holds.
+  write_windows(at("c.exr"), {{0, 0}, {3, 3}}, {{100, 100}, {103, 103}});
+  const Result<File> outside = read(at("c.exr"));
+  ASSERT_TRUE(outside.ok());
+  EXPECT_EQ(outside.value().image.rgb, std::vector<float>(48, 0.0F));
+  write_windows(at("d.exr"), {{0, 0}, {32767, 32767}}, {{0, 0}, {3, 3}});
+  EXPECT_NE(message_of(at("d.exr")).find("its display window is too large"), std::string::npos);
+}
+
+TEST_F(ImageFiles, LuminanceAndChromaAreColours) {
+  Imf::Header header(32, 18);
+  std::vector<Imf::Rgba> red(32 * 18, Imf::Rgba(0.8F, 0.1F, 0.05F, 1.0F));
+  const auto write = [&](const std::string& path, Imf::RgbaChannels channels) {
+    Imf::RgbaOutputFile output(path.c_str(), header, channels);
+    output.setFrameBuffer(red.data(), 1, 32);
+    output.writePixels(18);
+  };
+  write(at("yc.exr"), Imf::WRITE_YC);
+  write(at("y.exr"), Imf::WRITE_Y);
+  const Result<File> colour = read(at("yc.exr"));
+  ASSERT_TRUE(colour.ok()) << colour.error().message;
+  for (std::uint32_t y = 0; y < 18; ++y) {
+    for (std::uint32_t x = 0; x < 32; ++x) {
+      const float* const pixel = colour.value().image.pixel(x, y);
+      EXPECT_NEAR(pixel[0], 0.8F, 0.01F) << x << ' ' << y;
+      EXPECT_NEAR(pixel[1], 0.1F, 0.01F) << x << ' ' << y;
+      EXPECT_NEAR(pixel[2], 0.05F, 0.01F) << x << ' ' << y;
+    }
+  }
+  const Result<File> grey = read(at("y.exr"));
+  ASSERT_TRUE(grey.ok());
+  const float* const pixel = grey.value().image.pixel(7, 7);
+  EXPECT_NEAR(pixel[0], 0.2126F * 0.8F + 0.7152F * 0.1F + 0.0722F * 0.05F, 0.002F);
+  EXPECT_EQ(pixel[0], pixel[2]);
+}
+
+TEST_F(ImageFiles, ExrHeadersSayWhatTheChannelsAre) {
+  const auto header_of = [&](ExrContent content) {
+    EXPECT_TRUE(write_exr(at("a.exr"), ramp(8, 4, 1.0F), {}, {.content = content}).ok());
+    return Imf::InputFile(at("a.exr").c_str()).header();
+  };
+  EXPECT_FALSE(Imf::hasChromaticities(header_of(ExrContent::data)));
+  const Imf::Header radiance = header_of(ExrContent::radiance);
+  ASSERT_TRUE(Imf::hasChromaticities(radiance));
+  EXPECT_NEAR(Imf::chromaticities(radiance).red.x, 0.64F, 1e-6F);
+  EXPECT_NEAR(Imf::chromaticities(radiance).white.x, 0.3127F, 1e-6F);
+  EXPECT_FALSE(Imf::hasEnvmap(radiance));
+  const Imf::Header map = header_of(ExrContent::environment_map);
+  ASSERT_TRUE(Imf::hasEnvmap(map));
+  EXPECT_EQ(Imf::envmap(map), Imf::ENVMAP_LATLONG);
+  EXPECT_TRUE(Imf::hasChromaticities(map));
+}
+
+std::string big_endian(std::uint32_t value) {
+  std::string text;
+  for (int shift = 24; shift >= 0; shift -= 8) text += static_cast<char>((value >> shift) & 0xFFU);
+  return text;
+}
+
+std::string little_endian(std::uint32_t value) {
+  std::string text;
+  for (int shift = 0; shift <= 24; shift += 8) text += static_cast<char>((value >> shift) & 0xFFU);
+  return text;
+}
+
+std::string exr_attribute(const std::string& name, const std::string& type, const std::string& value) {
+  return name + '\0' + type + '\0' + little_endian(static_cast<std::uint32_t>(value.size())) + value;
+}
+
+// Files of a few bytes whose headers claim gigabytes are refused without spending the memory.
+TEST_F(ImageFiles, ClaimsAreCheckedAgainstTheLengthOfTheFile) {
+  const std::string png = "\x89PNG\r\n\x1a\n";
+  const std::string crc(4, 'c');
+  const std::string small = big_endian(13) + "IHDR" + big_endian(1) + big_endian(1) + std::string("\x08\x02\0\0\0", 5) + crc;
+  const std::string exr = std::string("\x76\x2f\x31\x01\x02\0\0\0", 8);
+  const std::string tiled = std::string("\x76\x2f\x31\x01\x02\x02\0\0", 8);
+  const std::string window = little_endian(0) + little_endian(0) + little_endian(32767) + little_endian(32767);
+  const std::string channel = "R" + std::string(1, '\0') + little_endian(2) + std::string(4, '\0') + little_endian(1) + little_endian(1);
+  std::string rest = exr_attribute("channels", "chlist", channel + '\0') + exr_attribute("dataWindow", "box2i", window) +
+                     exr_attribute("displayWindow", "box2i", window) + exr_attribute("compression", "compression", std::string(1, '\x03')) +
+                     exr_attribute("lineOrder", "lineOrder", std::string(1, '\0')) +
+                     exr_attribute("pixelAspectRatio", "float", little_endian(0x3f800000)) +
+                     exr_attribute("screenWindowCenter", "v2f", std::string(8, '\0')) +
+                     exr_attribute("screenWindowWidth", "float", little_endian(0x3f800000));
+  const std::string tile = exr_attribute("tiles", "tiledesc", little_endian(1) + little_endian(1) + '\0');
+  const std::pair<const char*, std::string> claims[] = {
+      {"a text chunk", png + small + big_endian(0x7ffffff0U) + "tEXta"},
+      {"pixels of a PNG", png + big_endian(13) + "IHDR" + big_endian(32768) + big_endian(32768) + std::string("\x10\x02\0\0\0", 5) + crc +
+                              big_endian(4) + "IDAT" + "abcd" + crc + big_endian(0) + "IEND" + crc},
+      {"a string", exr + "comments" + '\0' + "string" + '\0' + little_endian(0x7ffffff0U) + "abc"},
+      {"scan lines", exr + rest + '\0'},
+      {"tiles", tiled + rest + tile + '\0'},
+  };
+  for (const auto& [what, bytes] : claims) {
+    ASSERT_TRUE(config::write_file(at("claim"), bytes).ok());
+    const pid_t child = ::fork();
+    if (child == 0) {
+      const std::string message = message_of(at("claim"));
+      rusage used{};
+      ::getrusage(RUSAGE_SELF, &used);
+      const bool refused = message.find("cannot read") != std::string::npos;
+      ::_exit(!refused ? 1 : used.ru_maxrss > 200 * 1024 ? 2 : 0);  // KiB
+    }
+    int status = -1;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_EQ(status, 0) << what << ": " << message_of(at("claim"));
   }
 }
 

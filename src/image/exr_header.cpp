@@ -1,0 +1,112 @@
+#include "image/exr_header.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+
+namespace tyndall::image {
+namespace {
+
+constexpr const char* kCutOff = "the file is cut off";
+
+// Reads little-endian values and zero-terminated names from the front.
+class Reader {
+ public:
+  explicit Reader(std::string_view bytes) : rest_(bytes) {}
+
+  std::optional<std::string_view> name() {
+    constexpr std::size_t kLongestName = 255;
+    const std::size_t end = rest_.substr(0, kLongestName + 1).find('\0');
+    if (end == std::string_view::npos) return std::nullopt;
+    const std::string_view found = rest_.substr(0, end);
+    rest_.remove_prefix(end + 1);
+    return found;
+  }
+  std::optional<std::uint32_t> word() {
+    if (rest_.size() < 4) return std::nullopt;
+    std::uint32_t value = 0;
+    for (std::size_t i = 4; i-- > 0;) value = value << 8U | static_cast<unsigned char>(rest_[i]);
+    rest_.remove_prefix(4);
+    return value;
+  }
+  std::optional<std::string_view> take(std::size_t size) {
+    if (rest_.size() < size) return std::nullopt;
+    const std::string_view found = rest_.substr(0, size);
+    rest_.remove_prefix(size);
+    return found;
+  }
+
+ private:
+  std::string_view rest_;
+};
+
+// The attributes of one part that say how many pieces its pixels are stored in.
+struct Layout {
+  std::int64_t width = 0, height = 0;
+  std::uint8_t compression = 0;
+  std::int64_t tile_width = 0, tile_height = 0;  // 0: scan lines
+};
+
+void read_attribute(Layout& layout, std::string_view name, std::string_view value) {
+  Reader reader(value);
+  const auto signed_word = [&] { return std::int64_t{static_cast<std::int32_t>(reader.word().value_or(0))}; };
+  if (name == "dataWindow" && value.size() == 16) {
+    const std::int64_t left = signed_word(), top = signed_word(), right = signed_word(), bottom = signed_word();
+    layout.width = right - left + 1;
+    layout.height = bottom - top + 1;
+  } else if (name == "compression" && value.size() == 1) {
+    layout.compression = static_cast<std::uint8_t>(value[0]);
+  } else if (name == "tiles" && value.size() == 9) {
+    layout.tile_width = reader.word().value_or(0);
+    layout.tile_height = reader.word().value_or(0);
+  }
+}
+
+// Pieces, at the full resolution.
+std::int64_t piece_count(const Layout& layout) {
+  const auto pieces = [](std::int64_t size, std::int64_t each) { return (size + each - 1) / each; };
+  if (layout.tile_width > 0 && layout.tile_height > 0) {
+    return pieces(layout.width, layout.tile_width) * pieces(layout.height, layout.tile_height);
+  }
+  // Scan lines together in one piece, by compression: none, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA, DWAB.
+  constexpr std::int64_t kLines[] = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
+  return pieces(layout.height, layout.compression < std::size(kLines) ? kLines[layout.compression] : 256);
+}
+
+}  // namespace
+
+std::string exr_header_problem(std::string_view bytes) {
+  Reader reader(bytes);
+  static_cast<void>(reader.word());  // the magic number
+  const std::optional<std::uint32_t> version = reader.word();
+  if (!version) return kCutOff;
+  constexpr std::uint32_t kMultiPart = 0x1000;
+  const bool many = (*version & kMultiPart) != 0;
+  std::int64_t pieces = 0;
+  for (bool more = true; more;) {
+    Layout layout;
+    bool empty = true;
+    for (;;) {
+      const std::optional<std::string_view> name = reader.name();
+      if (!name) return kCutOff;
+      if (name->empty()) break;
+      empty = false;
+      const std::optional<std::string_view> type = reader.name();
+      const std::optional<std::uint32_t> size = reader.word();
+      if (!type || !size) return kCutOff;
+      const std::optional<std::string_view> value = reader.take(*size);
+      if (!value) return kCutOff;
+      read_attribute(layout, *name, *value);
+    }
+    more = many && !empty;
+    if (empty) break;
+    if (layout.width < 1 || layout.height < 1) return "its data window is empty";
+    pieces += piece_count(layout);
+  }
+  // Each piece has its offset in a table, 8 bytes, and a header of at least 8 bytes.
+  constexpr std::int64_t kLeastBytes = 16;
+  return pieces > static_cast<std::int64_t>(bytes.size()) / kLeastBytes ? kCutOff : "";
+}
+
+}  // namespace tyndall::image
