@@ -64,6 +64,7 @@ struct Arguments::Implementation {
   std::deque<Option> options;
   std::vector<std::pair<std::string, std::string>> flags;  // names, help
   std::vector<Positional> positionals;
+  std::string footer;
 };
 
 std::string Arguments::Implementation::help() const {
@@ -86,6 +87,7 @@ std::string Arguments::Implementation::help() const {
     text.append("  ").append(left).append(left.size() < kColumn ? kColumn - left.size() : 1, ' ');
     text.append(right).append("\n");
   }
+  if (!footer.empty()) text.append("\n").append(footer);
   return text;
 }
 
@@ -226,6 +228,8 @@ void Arguments::positional(const std::string& name, std::string& target, bool re
                            const std::string& help) {
   implementation_->positionals.push_back({name, help, &target, required});
 }
+
+void Arguments::footer(const std::string& text) { implementation_->footer = text; }
 
 std::optional<int> Arguments::parse(Args args) {
   try {

@@ -40,6 +40,9 @@ class Arguments {
              std::function<Result<void>(const std::string&)> store);
   void positional(const std::string& name, std::string& target, bool required, const std::string& help);
 
+  // Text below the list of options in the help, in whole lines.
+  void footer(const std::string& text);
+
   // The exit status when there is nothing more to do: after --help (0) or an error (2), both of them
   // printed. Nothing when the verb is to go on.
   [[nodiscard]] std::optional<int> parse(Args args);

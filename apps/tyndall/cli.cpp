@@ -11,6 +11,7 @@
 #include "config/files.hpp"
 #include "config/scene_file.hpp"
 #include "config/text.hpp"
+#include "input_files.hpp"
 
 namespace tyndall::cli {
 namespace {
@@ -177,6 +178,10 @@ Result<void> check_output(const CommonOptions& options, const std::vector<std::s
   if (options.frames > 1 && !single) {
     return input_error(concat({std::to_string(options.frames), " frames into ", shown(options.output)}), "-o",
                        "needed is one place for the number, such as out.%04d.png");
+  }
+  const std::vector<InputFile> inputs = input_files(options);
+  for (std::uint32_t frame = 0; frame < options.frames; ++frame) {
+    if (Result<void> r = check_not_input(frame_path(options.output, frame), "-o", inputs); !r) return r;
   }
   return config::check_writable(frame_path(options.output, 0));
 }

@@ -81,7 +81,8 @@ void add_common(Arguments& arguments, CommonOptions& options, unsigned which);
 [[nodiscard]] std::string frame_path(const std::string& pattern, std::uint32_t frame);
 
 // Before long work: the output is given, its name ends in one of `endings` (".png"; empty: any), a
-// sequence of more than one frame has exactly one number pattern, and the first file can be written.
+// sequence of more than one frame has exactly one number pattern, no file of it is one that the run reads, and the
+// first file can be written.
 [[nodiscard]] Result<void> check_output(const CommonOptions& options,
                                         const std::vector<std::string>& endings);
 

@@ -6,6 +6,7 @@
 #include "config/text.hpp"
 #include "image/image.hpp"
 #include "image/metrics.hpp"
+#include "input_files.hpp"
 
 namespace tyndall::cli {
 namespace {
@@ -102,10 +103,14 @@ int run_compare(Args args) {
   arguments.number("--mre-max", limits.mre_max, 0.0, 1.0e6, "largest mean_relative_error allowed");
   arguments.text("--diff", difference_path, "OUT", "write |A - B| x 16 as a PNG or EXR");
   arguments.flag("--json", json, "print the results as JSON");
+  arguments.footer(
+      "Exit status: 0 within --psnr-min and --mre-max; 1 the difference cannot be written; 2 beyond a limit, values that\n"
+      "are not finite, or bad usage; 3 the sizes differ; 4 a file cannot be read, or the two are of different kinds.\n");
   if (const std::optional<int> status = arguments.parse(args)) return *status;
   if (!difference_path.empty()) {
-    if (const Result<image::FileKind> kind = image::kind_of_name(difference_path); !kind)
-      return fail(kind.error());
+    if (const Result<image::FileKind> kind = image::kind_of_name(difference_path); !kind) return fail(kind.error());
+    const Result<void> apart = check_not_input(difference_path, "--diff", {{"A", path_a}, {"B", path_b}});
+    if (!apart) return fail(apart.error());
   }
 
   const Result<image::File> a = image::read(path_a);

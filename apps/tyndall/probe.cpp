@@ -7,6 +7,7 @@
 #include "cli.hpp"
 #include "config/files.hpp"
 #include "config/text.hpp"
+#include "input_files.hpp"
 #include "make_tables.hpp"
 #include "probe_models.hpp"
 #include "probe_table.hpp"
@@ -74,6 +75,9 @@ int run_probe(Args args) {
   const Result<ProbeTable> table = read_queries(queries);
   if (!table) return fail(table.error());
   if (!options.output.empty()) {
+    std::vector<InputFile> inputs = input_files(options);
+    inputs.push_back({"the file of queries", queries});
+    if (Result<void> r = check_not_input(options.output, "-o", inputs); !r) return fail(r.error());
     if (Result<void> r = config::check_writable(options.output); !r) return fail(r.error());
   }
 

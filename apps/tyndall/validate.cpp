@@ -8,6 +8,7 @@
 #include "config/text.hpp"
 #include "effect/medium.hpp"
 #include "gpu/host.hpp"
+#include "input_files.hpp"
 #include "make_tables.hpp"
 #include "models/precomputed.hpp"
 #include "models/single_scattering.hpp"
@@ -225,6 +226,7 @@ int run_validate(Args args) {
       return fail(config::input_error(concat({"unknown format '", config::one_line(markdown), "'"}),
                                       "--markdown", "allowed is a name in .md"));
     }
+    if (Result<void> r = check_not_input(markdown, "--markdown", input_files(options)); !r) return fail(r.error());
     if (Result<void> r = config::check_writable(markdown); !r) return fail(r.error());
   }
 

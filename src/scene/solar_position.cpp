@@ -277,9 +277,13 @@ Result<Place> parse_place(std::string_view text, std::string_view where) {
       config::count_parts(text, ',') == 2 &&
       config::read_number(config::part(text, ',', 0), place.latitude_deg) == config::NumberError::none &&
       config::read_number(config::part(text, ',', 1), place.longitude_deg) == config::NumberError::none;
-  if (read && std::abs(place.latitude_deg) <= 90.0 && std::abs(place.longitude_deg) <= 180.0) return place;
+  if (read && std::abs(place.latitude_deg) <= 90.0 && std::abs(place.longitude_deg) <= 360.0) {
+    // Maps of the Pacific and many data sets count from 0 to 360.
+    place.longitude_deg = std::remainder(place.longitude_deg, 360.0);
+    return place;
+  }
   return input_error(concat({"'", one_line(text), read ? "' is out of range" : "' is no place"}), where,
-                     "allowed is LAT,LON in degrees, -90 to 90 northwards and -180 to 180 eastwards");
+                     "allowed is LAT,LON in degrees, -90 to 90 northwards and -360 to 360 eastwards");
 }
 
 Result<double> parse_time(std::string_view text, std::string_view where) {
@@ -299,8 +303,11 @@ Result<double> parse_time(std::string_view text, std::string_view where) {
   if (civil.day < 1 || civil.day > last) {
     return error("has no such day", concat({"allowed is 01 to ", std::to_string(last), " in that month"}));
   }
-  if (civil.hour > 23 || civil.minute > 59 || civil.second > 59) {
-    return error("has no such time of day", "allowed is 00:00:00 to 23:59:59, with a fraction");
+  // ISO 8601 has 24:00:00 for the end of a day, and a second 60 where a leap second is inserted.
+  const bool end_of_day = civil.hour == 24 && civil.minute == 0 && civil.second == 0 && civil.fraction_s == 0.0;
+  const bool leap_second = civil.minute == 59 && civil.second == 60;
+  if ((civil.hour > 23 && !end_of_day) || civil.minute > 59 || (civil.second > 59 && !leap_second)) {
+    return error("has no such time of day", "allowed is 00:00:00 to 24:00:00, with a fraction");
   }
   const std::int64_t seconds = 60 * (60 * civil.hour + civil.minute - civil.offset_minutes) + civil.second;
   return 2440587.5 + static_cast<double>(days_from_civil(civil.year, civil.month, civil.day)) +

@@ -107,5 +107,24 @@ TEST_F(CliCompare, TheDifferenceIsWritten) {
   EXPECT_EQ(run_tyndall({"compare", a, b, "--diff", scratch_.at("none/d.png")}).status, 1);
 }
 
+TEST_F(CliCompare, TheDifferenceIsNotWrittenOverAnInput) {
+  const std::string a = png("a.png", 105);
+  const std::string b = png("b.png", 100);
+  const std::string before = contents_of(b);
+  std::filesystem::create_hard_link(b, scratch_.at("same.png"));
+  std::filesystem::create_symlink(b, scratch_.at("link.png"));
+  for (const std::string& path : {b, scratch_.at("same.png"), scratch_.at("link.png"), scratch_.at("./b.png")}) {
+    const Outcome outcome = run_tyndall({"compare", a, b, "--diff", path});
+    EXPECT_EQ(outcome.status, 2) << path;
+    EXPECT_NE(outcome.err.find("is B of this run, --diff, allowed is a file that is not read"), std::string::npos) << outcome.err;
+    EXPECT_EQ(contents_of(b), before);
+  }
+}
+
+TEST_F(CliCompare, HelpListsTheExitStatuses) {
+  const std::string help = run_tyndall({"compare", "--help"}).out;
+  EXPECT_NE(help.find("3 the sizes differ; 4 a file cannot be read"), std::string::npos) << help;
+}
+
 }  // namespace
 }  // namespace tyndall::cli

@@ -123,6 +123,40 @@ TEST_F(CliScenes, ElevationFilesThatAreNone) {
   }
 }
 
+TEST_F(CliScenes, OutputsAreNotWrittenOverInputs) {
+  const std::string dem = scratch_.write("dem.png", "an elevation file");
+  const std::string gltf = scratch_.write("model.gltf", R"({"images": [{"uri": "wood%20grain.png"}], "buffers": [{"uri": "data:,"}]})");
+  const std::string texture = scratch_.write("wood grain.png", "a texture");
+  const std::string scene = scratch_.write("scene.exr", "[camera]\nyaw_deg = 1.0\n");
+  const std::string frame = scratch_.write("out.0003.png", "a frame that is an elevation file");
+  const auto refused = [&](const std::vector<std::string>& arguments, const std::string& why) {
+    const Outcome outcome = run_tyndall(arguments);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_NE(outcome.err.find(why), std::string::npos) << outcome.err;
+  };
+  refused({"render", "--set", "terrain.source=" + dem, "-o", dem}, "is terrain.source of this run, -o");
+  refused({"render", "--set", "meshes.source=" + gltf, "-o", texture}, "is a file of meshes.source of this run, -o");
+  refused({"render", scene, "-o", scene}, "is the scene file of this run, -o");
+  refused({"render", "--set", "terrain.source=" + frame, "--frames", "5", "-o", scratch_.at("out.%04d.png")},
+          "is terrain.source of this run, -o");
+  refused({"sky", scene, "-o", scene, "--sun-elevation-deg", "5", "--sun-azimuth-deg", "5"}, "is the scene file of this run, -o");
+  const std::string queries = scratch_.write("q.csv", "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n0,0,0,0\n");
+  refused({"probe", "--queries", queries, "-o", queries}, "is the file of queries of this run, -o");
+  EXPECT_EQ(contents_of(dem), "an elevation file");
+  EXPECT_EQ(contents_of(texture), "a texture");
+  EXPECT_EQ(contents_of(frame), "a frame that is an elevation file");
+}
+
+// Values that are not a range are refused with the other bad input, before a device is opened.
+TEST_F(CliScenes, ValuesThatAreNoRangeAreBadInput) {
+  for (const std::string& setting : {std::string("scattering.downscale=3"), std::string("tables.size=32,127,64,16")}) {
+    const Outcome outcome = run_tyndall({"render", "--device", "no such device", "--set", setting, "-o", scratch_.at("a.png")});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_EQ(outcome.err.find("no such device"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("allowed is"), std::string::npos) << outcome.err;
+  }
+}
+
 TEST_F(CliScenes, MeshFilesThatAreNone) {
   const std::pair<std::string, std::string> sources[] = {
       {"/nonexistent.glb", "/nonexistent.glb"},

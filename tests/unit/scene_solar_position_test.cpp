@@ -167,7 +167,9 @@ TEST(SolarPosition, TimesAreRefused) {
                                  "2024-00-01T12:00Z",
                                  "2024-06-31T12:00Z",
                                  "2024-06-00T12:00Z",
-                                 "2024-06-01T24:00Z",
+                                 "2024-06-01T24:01Z",
+                                 "2024-06-01T24:00:00.5Z",
+                                 "2024-06-01T25:00Z",
                                  "2024-06-01T12:60Z",
                                  "2024-06-01T12:00:60Z",
                                  "20240601T120000Z",
@@ -178,13 +180,23 @@ TEST(SolarPosition, TimesAreRefused) {
   }
 }
 
+TEST(SolarPosition, TheEndOfADayAndLeapSeconds) {
+  const auto day = [](const char* text) { return parse_time(text, "--time").value(); };
+  EXPECT_EQ(day("2024-06-01T24:00:00Z"), day("2024-06-02T00:00:00Z"));
+  EXPECT_EQ(day("2024-12-31T24:00+01:00"), day("2025-01-01T00:00+01:00"));
+  EXPECT_EQ(day("2016-12-31T23:59:60Z"), day("2017-01-01T00:00:00Z"));
+}
+
 TEST(SolarPosition, Places) {
   const Result<Place> place = parse_place(" 47.5, -122.25", "--at");
   ASSERT_TRUE(place.ok());
   EXPECT_EQ(place.value().latitude_deg, 47.5);
   EXPECT_EQ(place.value().longitude_deg, -122.25);
-  for (const char* const text : {"", "47", "47,", ",8", "47,8,9", "47;8", "91,0", "-90.01,0", "0,180.5",
-                                 "0,-181", "nan,0", "inf,0", "47N,8E"}) {
+  EXPECT_EQ(parse_place("0,237.75", "--at").value().longitude_deg, -122.25);
+  EXPECT_EQ(parse_place("0,180", "--at").value().longitude_deg, 180.0);
+  EXPECT_EQ(parse_place("0,-190", "--at").value().longitude_deg, 170.0);
+  for (const char* const text : {"", "47", "47,", ",8", "47,8,9", "47;8", "91,0", "-90.01,0", "0,360.5",
+                                 "0,-361", "nan,0", "inf,0", "47N,8E"}) {
     const Result<Place> refused = parse_place(text, "--at");
     ASSERT_FALSE(refused.ok()) << text;
     EXPECT_NE(refused.error().message.find(", --at, allowed is LAT,LON in degrees"), std::string::npos);

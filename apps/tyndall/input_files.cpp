@@ -1,0 +1,80 @@
+#include "input_files.hpp"
+
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "config/files.hpp"
+#include "config/text.hpp"
+
+namespace tyndall::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using config::concat;
+
+// A file's name in a URI, whose special characters stand as %XX (RFC 3986).
+std::string decoded_uri(std::string_view uri) {
+  std::string out;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    const std::string digits(uri.substr(i + 1, 2));
+    if (uri[i] == '%' && digits.size() == 2 && digits.find_first_not_of("0123456789abcdefABCDEF") == std::string::npos) {
+      out += static_cast<char>(std::stoi(digits, nullptr, 16));
+      i += 2;
+    } else {
+      out += uri[i];
+    }
+  }
+  return out;
+}
+
+// Adds what a glTF file refers to. What cannot be read is left to the reader of the model to report.
+void add_references(const std::string& path, std::vector<InputFile>& out) {
+  constexpr std::uint64_t kLargestDocument = std::uint64_t{64} << 20;
+  const Result<std::string> text = config::read_file(path, kLargestDocument);
+  if (!text) return;
+  const nlohmann::json document = nlohmann::json::parse(text.value(), nullptr, false);
+  if (!document.is_object()) return;
+  for (const char* const list : {"buffers", "images"}) {
+    const auto found = document.find(list);
+    if (found == document.end() || !found->is_array()) continue;
+    for (const nlohmann::json& entry : *found) {
+      const auto uri = entry.is_object() ? entry.find("uri") : entry.end();
+      if (!entry.is_object() || uri == entry.end() || !uri->is_string()) continue;
+      const std::string name = uri->get<std::string>();
+      if (name.starts_with("data:")) continue;
+      out.push_back({concat({"a file of meshes.source"}), (fs::path(path).parent_path() / decoded_uri(name)).string()});
+    }
+  }
+}
+
+bool same_file(const struct stat& a, const struct stat& b) { return a.st_dev == b.st_dev && a.st_ino == b.st_ino; }
+
+}  // namespace
+
+std::vector<InputFile> input_files(const CommonOptions& options) {
+  std::vector<InputFile> out;
+  if (!options.scene_file.empty()) out.push_back({"the scene file", options.scene_file});
+  for (const config::Row& row : config::rows()) {
+    if (row.info.type == ParamType::string && row.info.unit == "file") {
+      out.push_back({row.key(), config::value_text(row, options.settings)});
+    }
+  }
+  add_references(options.settings.scene.meshes.source, out);
+  return out;
+}
+
+Result<void> check_not_input(const std::string& path, std::string_view option, const std::vector<InputFile>& inputs) {
+  struct stat output {};
+  if (::stat(path.c_str(), &output) != 0 || !S_ISREG(output.st_mode)) return {};
+  for (const InputFile& input : inputs) {
+    struct stat info {};
+    if (::stat(input.path.c_str(), &info) != 0 || !same_file(info, output)) continue;
+    return config::input_error(concat({"'", config::one_line(path, 200), "' is ", input.name, " of this run"}), option,
+                               "allowed is a file that is not read");
+  }
+  return {};
+}
+
+}  // namespace tyndall::cli
