@@ -53,7 +53,13 @@ Result<void> check_params(const Params& params) {
                          std::string(info.choices));
         }
         break;
-      default: break;
+      case ParamType::flag:
+        if (word > 1) {
+          return invalid(std::string(info.group) + "." + std::string(info.name) + " is " + std::to_string(word) +
+                         ", allowed is 0 (off) or 1 (on)");
+        }
+        break;
+      case ParamType::string: break;  // of scenes only
     }
     std::memcpy(numbers, bytes + info.offset, count * sizeof(float));
     for (std::size_t i = 0; i < count; ++i) {

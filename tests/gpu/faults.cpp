@@ -1,0 +1,280 @@
+#include "faults.hpp"
+
+#include <cstdlib>
+#include <cstring>
+#include <map>
+#include <new>
+#include <string_view>
+#include <type_traits>
+
+#include "gpu/functions.hpp"
+
+namespace tyndall::faults {
+namespace {
+
+thread_local Kind armed_kind = Kind::vulkan;
+thread_local long left = -1;  // calls before the one that fails; < 0: none does
+thread_local bool has_failed = false;
+thread_local int in_driver = 0;
+
+bool fails(Kind kind) {
+  if (left < 0 || kind != armed_kind || in_driver > 0) return false;
+  if (left-- > 0) return false;
+  has_failed = true;
+  return true;
+}
+
+constexpr bool starts_with(std::string_view text, std::string_view start) {
+  return text.substr(0, start.size()) == start;
+}
+constexpr bool makes(std::string_view name) {
+  return starts_with(name, "Create") || starts_with(name, "Allocate") || starts_with(name, "Bind") ||
+         starts_with(name, "Map");
+}
+constexpr VkResult kError = VK_ERROR_OUT_OF_DEVICE_MEMORY;
+
+gpu::Functions real;
+std::function<void(VkPhysicalDeviceProperties2&)> change_properties;
+
+template <auto kMember, bool kMakes, typename Function>
+struct Wrapped;
+template <auto kMember, bool kMakes, typename R, typename... Args>
+struct Wrapped<kMember, kMakes, R(VKAPI_PTR*)(Args...)> {
+  static R VKAPI_CALL call(Args... args) {
+    if constexpr (kMakes && std::is_same_v<R, VkResult>) {
+      if (fails(Kind::vulkan)) return kError;
+    }
+    struct InDriver {
+      InDriver() { ++in_driver; }
+      ~InDriver() { --in_driver; }
+    } const driver;
+    return (real.*kMember)(args...);
+  }
+};
+
+void VKAPI_CALL properties(VkPhysicalDevice device, VkPhysicalDeviceProperties2* out) {
+  real.GetPhysicalDeviceProperties2(device, out);
+  if (change_properties) change_properties(*out);
+}
+
+PFN_vkVoidFunction VKAPI_CALL device_proc_addr(VkDevice device, const char* name) {
+  const std::string_view wanted = name;
+#define X(function)                                                                                            \
+  if (wanted == "vk" #function) {                                                                              \
+    real.function = reinterpret_cast<PFN_vk##function>(real.GetDeviceProcAddr(device, name));                  \
+    if (real.function == nullptr) return nullptr;                                                              \
+    return reinterpret_cast<PFN_vkVoidFunction>(                                                               \
+        Wrapped<&gpu::Functions::function, makes(#function), PFN_vk##function>::call);                         \
+  }
+  TYNDALL_DEVICE_FUNCTIONS(X)
+  TYNDALL_DEBUG_FUNCTIONS(X)
+#undef X
+  return real.GetDeviceProcAddr(device, name);
+}
+
+// The fake device. Numbers of objects are never used twice.
+std::map<std::uint64_t, VkDeviceSize> live;  // bytes of buffers and images
+std::map<std::uint64_t, void*> memory;
+std::uint64_t next_object = 1;
+std::size_t pipeline_objects = 0;
+std::size_t hash = 0;
+
+VkDeviceSize bytes_of(const VkBufferCreateInfo& info) { return (info.size + 255) / 256 * 256; }
+VkDeviceSize bytes_of(const VkImageCreateInfo& info) {
+  return VkDeviceSize{16} * info.extent.width * info.extent.height * info.extent.depth * info.arrayLayers;
+}
+template <typename Info>
+VkDeviceSize bytes_of(const Info&) {
+  return 0;
+}
+template <typename T>
+constexpr bool kOfPipelines = std::is_same_v<T, VkPipeline> || std::is_same_v<T, VkPipelineLayout> ||
+                              std::is_same_v<T, VkDescriptorSetLayout>;
+
+template <typename T>
+VkResult make(T* out, VkDeviceSize bytes) {
+  if (fails(Kind::vulkan)) return kError;
+  ++in_driver;  // its own memory is the driver's
+  live[next_object] = bytes;
+  --in_driver;
+  if constexpr (kOfPipelines<T>) ++pipeline_objects;
+  *out = reinterpret_cast<T>(next_object++);
+  return VK_SUCCESS;
+}
+
+// What the functions do, by the types of their arguments.
+template <typename Info, typename T>
+VkResult fake(VkDevice, const Info* info, const VkAllocationCallbacks*, T* out) {
+  return make(out, bytes_of(*info));
+}
+VkResult fake(VkDevice, VkPipelineCache, std::uint32_t, const VkComputePipelineCreateInfo*, const VkAllocationCallbacks*,
+              VkPipeline* out) {
+  return make(out, 0);
+}
+VkResult fake(VkDevice, VkDeviceMemory of, VkDeviceSize, VkDeviceSize, VkMemoryMapFlags, void** out) {
+  if (fails(Kind::vulkan)) return kError;
+  ++in_driver;
+  void*& mapped = memory[reinterpret_cast<std::uint64_t>(of)];
+  if (mapped == nullptr) mapped = std::calloc(1, 1 << 20);
+  --in_driver;
+  *out = mapped;
+  return VK_SUCCESS;
+}
+template <typename T>
+VkResult fake(VkDevice, T, VkDeviceMemory, VkDeviceSize) {  // binds
+  return fails(Kind::vulkan) ? kError : VK_SUCCESS;
+}
+template <typename T, typename = std::enable_if_t<std::is_pointer_v<T>>>
+void fake(VkDevice, T object, const VkAllocationCallbacks*) {
+  const auto number = reinterpret_cast<std::uint64_t>(object);
+  if (live.erase(number) != 1) std::abort();  // destroyed twice, or never made
+  if constexpr (kOfPipelines<T>) --pipeline_objects;
+  if (const auto found = memory.find(number); found != memory.end()) {
+    std::free(found->second);
+    memory.erase(found);
+  }
+}
+void require(VkMemoryRequirements& out, VkDeviceSize bytes) { out = {bytes, 256, 1}; }
+template <typename T>
+void fake(VkDevice, T object, VkMemoryRequirements* out) {
+  require(*out, live.at(reinterpret_cast<std::uint64_t>(object)));
+}
+template <typename Query>
+void fake(VkDevice, const Query* query, VkMemoryRequirements2* out) {
+  require(out->memoryRequirements, bytes_of(*query->pCreateInfo));
+}
+// Commands, and what nothing here depends on. Pointers are not part of the hash: what they point at need not last.
+template <typename T>
+void mix(const T& value) {
+  if constexpr (std::is_integral_v<T>) hash = (hash ^ static_cast<std::size_t>(value)) * 0x100000001b3U;
+}
+void mix(VkBuffer buffer) { mix(reinterpret_cast<std::uint64_t>(buffer)); }
+void mix(VkImage image) { mix(reinterpret_cast<std::uint64_t>(image)); }
+void mix(VkPipeline pipeline) { mix(reinterpret_cast<std::uint64_t>(pipeline)); }
+
+template <auto kMember, typename Function>
+struct Fake;
+template <auto kMember, typename R, typename... Args>
+struct Fake<kMember, R(VKAPI_PTR*)(Args...)> {
+  static R VKAPI_CALL call(Args... args) {
+    if constexpr (requires { fake(args...); }) {
+      return fake(args...);
+    } else {
+      mix(reinterpret_cast<std::uint64_t>(&call));
+      (mix(args), ...);
+      if constexpr (!std::is_void_v<R>) return R{};
+    }
+  }
+};
+// The descriptors that a pass is given are the frame's inputs and the effect's own objects.
+void VKAPI_CALL push_descriptors(VkCommandBuffer, VkPipelineBindPoint, VkPipelineLayout, std::uint32_t,
+                                 std::uint32_t count, const VkWriteDescriptorSet* writes) {
+  for (std::uint32_t i = 0; i < count; ++i) {
+    mix(writes[i].pBufferInfo->buffer);
+    mix(writes[i].pBufferInfo->offset);
+    mix(reinterpret_cast<std::uint64_t>(writes[i].pImageInfo->imageView));
+  }
+}
+
+void VKAPI_CALL fake_properties(VkPhysicalDevice, VkPhysicalDeviceProperties2* out) {
+  VkPhysicalDeviceLimits& limits = out->properties.limits;
+  std::memset(&limits, 0x7F, sizeof limits);  // large integers
+  limits.timestampPeriod = 1.0F;
+  for (auto* next = static_cast<VkBaseOutStructure*>(out->pNext); next != nullptr; next = next->pNext) {
+    if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES) {
+      reinterpret_cast<VkPhysicalDeviceMaintenance3Properties*>(next)->maxMemoryAllocationSize = UINT64_MAX;
+    }
+    if (next->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_PROPERTIES) {
+      reinterpret_cast<VkPhysicalDeviceMaintenance4Properties*>(next)->maxBufferSize = UINT64_MAX;
+    }
+  }
+  if (change_properties) change_properties(*out);
+}
+void VKAPI_CALL fake_memory(VkPhysicalDevice, VkPhysicalDeviceMemoryProperties* out) {
+  *out = {};
+  out->memoryTypeCount = 1;
+  out->memoryTypes[0].propertyFlags = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
+                                      VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  out->memoryHeapCount = 1;
+}
+VkResult VKAPI_CALL fake_queries(VkDevice, VkQueryPool, std::uint32_t, std::uint32_t, std::size_t, void*, VkDeviceSize,
+                                 VkQueryResultFlags) {
+  return VK_NOT_READY;
+}
+
+PFN_vkVoidFunction VKAPI_CALL fake_device_proc(VkDevice, const char* name) {
+  const std::string_view wanted = name;
+  if (wanted == "vkCmdPushDescriptorSetKHR") return reinterpret_cast<PFN_vkVoidFunction>(push_descriptors);
+  if (wanted == "vkGetQueryPoolResults") return reinterpret_cast<PFN_vkVoidFunction>(fake_queries);
+#define X(function)                                                                                          \
+  if (wanted == "vk" #function) {                                                                            \
+    return reinterpret_cast<PFN_vkVoidFunction>(Fake<&gpu::Functions::function, PFN_vk##function>::call);    \
+  }
+  TYNDALL_DEVICE_FUNCTIONS(X)
+#undef X
+  return nullptr;
+}
+
+PFN_vkVoidFunction VKAPI_CALL fake_instance_proc(VkInstance, const char* name) {
+  const std::string_view wanted = name;
+  if (wanted == "vkGetDeviceProcAddr") return reinterpret_cast<PFN_vkVoidFunction>(fake_device_proc);
+  if (wanted == "vkGetPhysicalDeviceProperties2") return reinterpret_cast<PFN_vkVoidFunction>(fake_properties);
+  if (wanted == "vkGetPhysicalDeviceMemoryProperties") return reinterpret_cast<PFN_vkVoidFunction>(fake_memory);
+  return reinterpret_cast<PFN_vkVoidFunction>(fake_memory);  // not called
+}
+
+}  // namespace
+
+void arm(Kind kind, long n) {
+  armed_kind = kind;
+  has_failed = false;
+  left = n;
+}
+
+bool disarm() {
+  left = -1;
+  return has_failed;
+}
+
+bool host_allocation_fails() { return fails(Kind::host); }
+
+void set_properties(std::function<void(VkPhysicalDeviceProperties2&)> change) { change_properties = std::move(change); }
+
+PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance instance, const char* name) {
+  const std::string_view wanted = name;
+  if (wanted == "vkGetDeviceProcAddr") {
+    real.GetDeviceProcAddr = reinterpret_cast<PFN_vkGetDeviceProcAddr>(vkGetInstanceProcAddr(instance, name));
+    return reinterpret_cast<PFN_vkVoidFunction>(device_proc_addr);
+  }
+  if (wanted == "vkGetPhysicalDeviceProperties2") {
+    real.GetPhysicalDeviceProperties2 =
+        reinterpret_cast<PFN_vkGetPhysicalDeviceProperties2>(vkGetInstanceProcAddr(instance, name));
+    return reinterpret_cast<PFN_vkVoidFunction>(properties);
+  }
+  return vkGetInstanceProcAddr(instance, name);
+}
+
+DeviceInfo fake_device() {
+  DeviceInfo out;
+  out.instance = reinterpret_cast<VkInstance>(std::uintptr_t{1});
+  out.physical_device = reinterpret_cast<VkPhysicalDevice>(std::uintptr_t{1});
+  out.device = reinterpret_cast<VkDevice>(std::uintptr_t{1});
+  out.get_instance_proc_addr = fake_instance_proc;
+  return out;
+}
+
+std::size_t live_objects() { return live.size() - pipeline_objects; }
+std::size_t live_pipeline_objects() { return pipeline_objects; }
+std::size_t command_hash() { return hash; }
+void forget_commands() { hash = 0; }
+
+}  // namespace tyndall::faults
+
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  if (tyndall::faults::host_allocation_fails()) throw std::bad_alloc();
+  void* const made = std::malloc(size > 0 ? size : 1);
+  if (made == nullptr) throw std::bad_alloc();
+  return made;
+}
+[[gnu::noinline]] void operator delete(void* pointer) noexcept { std::free(pointer); }
+[[gnu::noinline]] void operator delete(void* pointer, std::size_t) noexcept { std::free(pointer); }
