@@ -167,6 +167,7 @@ vec3 shadowed_table_light(Ray ray, float start, float end) {
         t = to;
       }
     }
+    if (end - t <= 1e-3) t = end;  // what was too short for a cascade is not beyond the last one
   }
   return table_light(lit, path, start, t, end);
 }
@@ -200,6 +201,7 @@ vec3 homogeneous_light(Ray ray, float start, float end) {
     reads_done += uint(reads);
     t = to;
   }
+  if (end - t <= 1e-3) return light * homogeneous_phase(ray.cos_view_sun);  // what was too short for a cascade
   homogeneous_attenuation(end - t, through, lost);
   return (light + before * lost) * homogeneous_phase(ray.cos_view_sun);
 }

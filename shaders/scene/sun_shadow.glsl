@@ -9,12 +9,13 @@ layout(binding = SHADOW_MAPS) uniform sampler2DArrayShadow shadow_maps;
 // Texels that the filter reaches over.
 const float kFilterMargin = 3.0;
 
-// How far inside cascade c a place in it is: 0 at the margin, 1 well inside, negative outside.
-float cascade_margin(vec3 uvz) {
+// How far inside cascade c a place in it is: 0 at the margin, 1 well inside, negative outside. Behind the last cascade's
+// depths, away from the sun, all casters are nearer.
+float cascade_margin(uint c, vec3 uvz) {
   float edge = kFilterMargin / SHADED.shadow_resolution;
   vec2 inside = min(uvz.xy, 1.0 - uvz.xy) - edge;
-  float depth = min(uvz.z, 1.0 - uvz.z);
-  return min(min(inside.x, inside.y) / 0.05, depth >= 0.0 ? 1.0 : -1.0);
+  bool deep_enough = uvz.z >= 0.0 && (uvz.z <= 1.0 || c + 1u == SHADED.cascade_count);
+  return min(min(inside.x, inside.y) / 0.05, deep_enough ? 1.0 : -1.0);
 }
 
 // The place in cascade c of a receiver, moved along its normal by about the filter's footprint, so that it does not
@@ -32,7 +33,7 @@ vec3 cascade_place(uint c, vec3 position, vec3 normal) {
 // Lit fraction in one cascade.
 float cascade_light(uint c, vec3 position, vec3 normal, out float margin) {
   vec3 uvz = cascade_place(c, position, normal);
-  margin = cascade_margin(uvz);
+  margin = cascade_margin(c, uvz);
   if (margin < 0.0) return 1.0;
   uvz.z = clamp(uvz.z, 0.0, 1.0);
   if (SHADED.smooth_shadows == 0u) return texture(shadow_maps, vec4(uvz.xy, float(c), uvz.z));

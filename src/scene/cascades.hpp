@@ -21,6 +21,7 @@ struct CascadeFit {
   glm::dvec3 half_extent = {};  // light space [m]
   double near_m = 0.0, far_m = 0.0;  // view-space depth that the cascade is for
   double texel_m = 0.0;              // the larger side of a texel
+  bool holds_room = false;           // fitted to Ground::room instead of the view
 
   // To (u, v, depth); depth grows away from the sun, 0 to 1.
   [[nodiscard]] glm::dmat4 shadow_from_world() const;
@@ -34,6 +35,8 @@ struct Ground {
   double radius_m = 0.0;            // of the planet
   // World [m]. Not empty: nothing outside the hull of these points casts a shadow, so maps end there.
   std::span<const glm::dvec3> casters = {};
+  // World [m]. Not empty: corners of what may be a room around the camera, which one cascade has to hold whole.
+  std::span<const glm::dvec3> room = {};
 };
 
 // View depths at which the cascades end, the last being `far_m`: partitioning between even (0) and
@@ -43,8 +46,13 @@ struct Ground {
 
 // `first_near_m` is where the first cascade's own range begins; every cascade is at the same time
 // fitted so that it is whole from its near to its far depth. The cascade `first_marched` starts at the camera.
+//
+// With a room, the first cascade that is coarser than a map of the whole room becomes that map, and the next one starts
+// where it would have started. A room that reaches farther than twice the shadows' distance gets none.
 [[nodiscard]] std::vector<CascadeFit> fit_cascades(const View& view, const glm::dvec3& direction_to_sun,
                                                    const ShadowParams& shadows, const Ground& ground,
                                                    double first_near_m);
+// The cascade from which on the air is marched: `first_marched`, or the room's, which holds the air at the camera too.
+[[nodiscard]] std::uint32_t first_marched(const ShadowParams& shadows, std::span<const CascadeFit> cascades);
 
 }  // namespace tyndall::scene

@@ -234,11 +234,13 @@ Result<void> Meshes::create_buffers() {
   return {};
 }
 
-Ground Meshes::ground(Ground ground) const {
+Ground Meshes::ground(Ground ground, const glm::dvec3& camera) const {
   if (!any()) return ground;
   ground.min_m = std::min(ground.min_m, lowest_m_);
   ground.max_m = std::max(ground.max_m, highest_m_);
   if (bare_ground_) ground.casters = corners_;
+  // From a diameter away one looks in at windows and doors.
+  if (glm::distance(camera, 0.5 * (corners_[0] + corners_[7])) < glm::distance(corners_[0], corners_[7])) ground.room = corners_;
   return ground;
 }
 

@@ -23,7 +23,7 @@ class Meshes {
   // Whether light passes through some of them: the maps of colours are wanted.
   [[nodiscard]] bool has_glass() const { return has_glass_; }
   // `ground` with the meshes' heights and, without terrain, with them as the only casters.
-  [[nodiscard]] Ground ground(Ground ground) const;
+  [[nodiscard]] Ground ground(Ground ground, const glm::dvec3& camera) const;
   [[nodiscard]] const std::vector<std::string>& notes() const { return data_.notes; }
   [[nodiscard]] VkDeviceSize bytes() const;
 

@@ -210,7 +210,7 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   TYNDALL_TRY(terrain_->update(view_));
   // Nothing can be nearer than half the height above the ground below, but for walls beside the camera.
   const double above = std::max(altitude - ground_m, least_m);
-  const Ground ground = meshes_ != nullptr ? meshes_->ground(terrain_->ground()) : terrain_->ground();
+  const Ground ground = meshes_ != nullptr ? meshes_->ground(terrain_->ground(), view_.position) : terrain_->ground();
   const double nearest = std::min(20.0, 0.02 * static_cast<double>(scene_.shadows.distance_m));
   cascades_ = fit_cascades(view_, to_sun_, scene_.shadows, ground, std::max(0.5 * above, nearest));
   light_.direction_to_sun = to_sun_;
@@ -286,7 +286,7 @@ Result<void> Scene::run_effect(VkCommandBuffer cmd) {
   }
   inputs.shadow_resolution = scene_.shadows.resolution;
   inputs.cascades = {cascades.data(), cascades_.size()};
-  inputs.first_marched_cascade = scene_.shadows.first_marched;
+  inputs.first_marched_cascade = first_marched(scene_.shadows, cascades_);
   inputs.camera = camera_from_view(view_);
   inputs.sun = {to_vec3(to_sun_), Vec3(scene_.sun.irradiance),
                 static_cast<float>(scene_.sun.angular_radius_deg * kRadPerDeg)};

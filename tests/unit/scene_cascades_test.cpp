@@ -136,6 +136,56 @@ TEST(SceneCascades, HoldTheGroundOfTheirSliceAndItsCasters) {
   EXPECT_GT(casters, 1000U);
 }
 
+// Whatever the view, one cascade holds a room around the camera well inside of its map, and finer ones come before it.
+TEST(SceneCascades, OneHoldsARoomAroundTheCamera) {
+  std::size_t rooms = 0;
+  for (const bool bare : {false, true}) {
+    for (const float distance_m : {10.0F, 60.0F, 3.0e5F}) {
+      for (const std::uint32_t count : {1U, 2U, 4U, 8U}) {
+        for (const double elevation : kElevations_deg) {
+          std::vector<glm::dvec3> corners;
+          for (int i = 0; i < 8; ++i) {
+            corners.push_back(world_from_map(1193.0 + 13.0 * (i & 1), -706.0 + 11.0 * (i >> 2), 500.0 + 8.0 * (i >> 1 & 1), kGround.radius_m));
+          }
+          Ground ground = kGround;
+          ground.room = corners;
+          if (bare) ground.casters = corners;
+          ShadowParams shadows;
+          shadows.cascades = count;
+          shadows.first_marched = count - 1;
+          shadows.distance_m = distance_m;
+          const View view = view_at(502.0, 40.0 * elevation, 5.0);
+          const glm::dvec3 sun = sun_at(elevation);
+          const std::vector<CascadeFit> fits = fit_cascades(view, sun, shadows, ground, 1.0);
+          ASSERT_EQ(fits.size(), count);
+          double end = 0.0;
+          const CascadeFit* room = nullptr;
+          for (const CascadeFit& fit : fits) {
+            EXPECT_GT(fit.far_m, end);
+            EXPECT_LE(fit.near_m, end);
+            end = fit.far_m;
+            if (fit.holds_room) room = &fit;
+          }
+          ASSERT_NE(room, nullptr) << count << " cascades to " << distance_m;
+          ++rooms;
+          const auto at = static_cast<std::uint32_t>(room - fits.data());
+          EXPECT_EQ(first_marched(shadows, fits), std::min(at, shadows.first_marched));
+          for (std::size_t i = 0; i < at; ++i) EXPECT_LT(fits[i].texel_m, room->texel_m);
+          EXPECT_LT(room->texel_m, 0.035);  // 18.8 m of diagonal in 1024 texels
+          for (const glm::dvec3& p : corners) {
+            EXPECT_LE(glm::distance(p, view.position), room->far_m + 1e-9);
+            const glm::dvec3 uvz(room->shadow_from_world() * glm::dvec4(p, 1.0));
+            for (int k = 0; k < 2; ++k) EXPECT_LE(std::abs(uvz[k] - 0.5), 0.45 - 3.0 / shadows.resolution);
+            EXPECT_GT(uvz.z, 0.0);
+            EXPECT_LT(uvz.z, 1.0);
+          }
+        }
+      }
+    }
+  }
+  EXPECT_EQ(rooms, 2U * 3U * 4U * std::size(kElevations_deg));
+}
+
 TEST(SceneCascades, TexelsStayWhenTheCameraMovesAndTurns) {
   ShadowParams shadows;
   for (const double elevation : {4.0, 45.0, 90.0}) {
