@@ -17,6 +17,7 @@ class GltfFile {
  public:
   nlohmann::json root = {{"asset", {{"version", "2.0"}}}, {"scene", 0}, {"scenes", {{{"nodes", nlohmann::json::array()}}}}};
   std::string bytes;  // of the buffer
+  nlohmann::json more_buffers = nlohmann::json::array();  // after the first
 
   int view(const void* data, std::size_t size) {
     bytes.resize((bytes.size() + 3) / 4 * 4);
@@ -70,6 +71,7 @@ class GltfFile {
   [[nodiscard]] std::string text() const {
     nlohmann::json out = root;
     out["buffers"] = {{{"byteLength", bytes.size()}, {"uri", "data:application/octet-stream;base64," + base64(bytes)}}};
+    for (const nlohmann::json& buffer : more_buffers) out["buffers"].push_back(buffer);
     return out.dump();
   }
   [[nodiscard]] std::string binary() const {
@@ -77,6 +79,7 @@ class GltfFile {
     std::string data = bytes;
     data.resize((data.size() + 3) / 4 * 4);
     out["buffers"] = {{{"byteLength", data.size()}}};
+    for (const nlohmann::json& buffer : more_buffers) out["buffers"].push_back(buffer);
     std::string json = out.dump();
     json.resize((json.size() + 3) / 4 * 4, ' ');
     std::string file = "glTF";

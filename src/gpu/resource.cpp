@@ -147,12 +147,16 @@ VkDeviceSize buffer_bytes(const Device& device, VkDeviceSize size, VkBufferUsage
 Result<Handle<VkSampler>> create_sampler(const Device& device, const SamplerDesc& desc) {
   VkSamplerCreateInfo info = {};
   info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
-  info.magFilter = info.minFilter = desc.filter;
+  info.magFilter = desc.filter;
+  info.minFilter = desc.min_filter.value_or(desc.filter);
   info.mipmapMode = desc.between_levels ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST;
-  info.addressModeU = info.addressModeV = info.addressModeW = desc.address;
+  info.addressModeU = info.addressModeW = desc.address;
+  info.addressModeV = desc.address_v.value_or(desc.address);
   info.compareEnable = desc.compare ? VK_TRUE : VK_FALSE;
   info.compareOp = desc.compare_op;
-  info.maxLod = VK_LOD_CLAMP_NONE;
+  // Above 0, so that minification can be distinguished from magnification, but rounded to the first level (Vulkan 1.3,
+  // VkSamplerCreateInfo, on GL_NEAREST and GL_LINEAR).
+  info.maxLod = desc.first_level_only ? 0.25F : VK_LOD_CLAMP_NONE;
   info.borderColor = desc.border;
   VkSampler sampler = VK_NULL_HANDLE;
   const VkResult result = device.vk.CreateSampler(device.device, &info, device.allocator, &sampler);

@@ -1,6 +1,7 @@
 // Images and buffers with their memory. One allocation each: the few dozen of a frame do not need more.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "gpu/device.hpp"
@@ -54,9 +55,12 @@ Result<Buffer> create_buffer(const Device& device, const char* name, VkDeviceSiz
 
 struct SamplerDesc {
   VkFilter filter = VK_FILTER_LINEAR;
+  std::optional<VkFilter> min_filter = {};  // where the image is minified; `filter` if none
   VkSamplerAddressMode address = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  std::optional<VkSamplerAddressMode> address_v = {};  // in the second direction; `address` if none
   VkBorderColor border = VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE;
   bool between_levels = false;  // mixes the two nearest mip levels
+  bool first_level_only = false;
   bool compare = false;
   VkCompareOp compare_op = VK_COMPARE_OP_LESS_OR_EQUAL;
 };

@@ -56,7 +56,27 @@ MeshTexture half_of(const MeshTexture& in) {
   return out;
 }
 
+VkSamplerAddressMode address_mode(TextureWrap wrap) {
+  switch (wrap) {
+    case TextureWrap::repeat: return VK_SAMPLER_ADDRESS_MODE_REPEAT;
+    case TextureWrap::mirrored_repeat: return VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
+    case TextureWrap::clamp_to_edge: break;
+  }
+  return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+}
+
 }  // namespace
+
+Result<gpu::Handle<VkSampler>> create_texture_sampler(const gpu::Device& device, const MeshSampler& sampler) {
+  gpu::SamplerDesc desc;
+  desc.filter = sampler.mag_linear ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;
+  desc.min_filter = sampler.min_linear ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;
+  desc.address = address_mode(sampler.wrap_u);
+  desc.address_v = address_mode(sampler.wrap_v);
+  desc.between_levels = sampler.mip == MipFilter::linear;
+  desc.first_level_only = sampler.mip == MipFilter::none;
+  return gpu::create_sampler(device, desc);
+}
 
 std::vector<MeshTexture> mip_levels(const MeshTexture& texture) {
   std::vector<MeshTexture> out;

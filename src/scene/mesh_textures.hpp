@@ -11,5 +11,6 @@ namespace tyndall::scene {
 [[nodiscard]] std::vector<MeshTexture> mip_levels(const MeshTexture& texture);
 // An sRGB image with all levels, in SHADER_READ_ONLY_OPTIMAL.
 Result<gpu::Image> upload_texture(gpu::Host& host, const MeshTexture& texture);
+Result<gpu::Handle<VkSampler>> create_texture_sampler(const gpu::Device& device, const MeshSampler& sampler);
 
 }  // namespace tyndall::scene

@@ -225,10 +225,10 @@ Result<void> Meshes::create_buffers() {
     textures_.push_back(std::move(image));
     texture.rgba = {};
   }
-  gpu::SamplerDesc repeat;
-  repeat.address = VK_SAMPLER_ADDRESS_MODE_REPEAT;
-  repeat.between_levels = true;
-  TYNDALL_ASSIGN(repeat_, gpu::create_sampler(device, repeat));
+  for (const MeshMaterial& material : data_.materials) {
+    if (samplers_.contains(material.sampler)) continue;
+    TYNDALL_ASSIGN(samplers_[material.sampler], create_texture_sampler(device, material.sampler));
+  }
   data_.vertices = {};
   data_.indices = {};
   return {};
@@ -325,7 +325,8 @@ Result<void> Meshes::draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline, co
       push.kind = static_cast<std::uint32_t>(material.kind);
       push.double_sided = material.double_sided ? 1U : 0U;
       const gpu::Image& texture = material.texture < 0 ? textures_.back() : textures_[static_cast<std::size_t>(material.texture)];
-      bound.back() = gpu::named_image("base_color", texture.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, repeat_.get());
+      bound.back() = gpu::named_image("base_color", texture.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                                      samplers_.at(material.sampler).get());
       const std::string_view missing = gpu::bind(device, cmd, pipeline, bound, &push);
       if (!missing.empty()) return lacks(missing);
       while (first < mesh.instance_count) {

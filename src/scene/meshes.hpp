@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -61,7 +62,7 @@ class Meshes {
   gpu::Pipeline surfaces_, multiply_, add_, shadow_, shadow_mask_, colors_, ground_;
   gpu::Buffer constants_, vertices_, indices_, instances_;
   std::vector<gpu::Image> textures_;  // the last is white
-  gpu::Handle<VkSampler> repeat_;
+  std::map<MeshSampler, gpu::Handle<VkSampler>> samplers_;  // of the materials
 };
 
 }  // namespace tyndall::scene

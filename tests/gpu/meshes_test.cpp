@@ -357,6 +357,47 @@ TEST_F(GpuMeshes, GlassThatComesLaterColoursTheAir) {
   EXPECT_EQ(draw(*later.value()).rgb, draw(*at_once.value()).rgb);
 }
 
+// Three faces with the same picture, red and blue, three times across: repeated, mirrored and clamped; and one with smooth texels.
+TEST_F(GpuMeshes, TexturesAreWrappedAndFilteredAsTheirSamplersSay) {
+  image::Image picture(2, 1);
+  picture.rgb = {1, 0, 0, 0, 0, 1};
+  const std::string png = path_ + ".png";
+  ASSERT_OK(image::write_png(png, picture, {}));
+  file_.root["images"] = {{{"uri", std::filesystem::path(png).filename().string()}}};
+  const auto face = [&](float z, int wrap, int filter) {
+    file_.root["samplers"].push_back({{"wrapS", wrap}, {"wrapT", wrap}, {"magFilter", filter}, {"minFilter", filter}});
+    file_.root["textures"].push_back({{"source", 0}, {"sampler", file_.root["samplers"].size() - 1}});
+    const int material = file_.material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", file_.root["textures"].size() - 1}}}}}});
+    const int position = file_.points({{-6, 0.5F, z + 1}, {6, 0.5F, z + 1}, {6, 0.5F, z - 1}, {-6, 0.5F, z - 1}});
+    const int uv = file_.floats({0, 0, 3, 0, 3, 0, 0, 0}, 2);
+    const int indices = file_.accessor<std::uint16_t>({0, 1, 2, 0, 2, 3}, 5123, "SCALAR", 1);
+    file_.node({{"mesh", file_.mesh({{"attributes", {{"POSITION", position}, {"TEXCOORD_0", uv}}}, {"indices", indices}, {"material", material}})}});
+  };
+  face(-5, 10497, 9728);
+  face(-2, 33648, 9728);
+  face(1, 33071, 9728);
+  face(4, 10497, 9729);
+  const image::Image image = draw();
+  std::filesystem::remove(png);
+  // The part of red in red and blue, at a coordinate.
+  const auto red = [&](double u, double z) {
+    const glm::dvec3 color = at(image, -6.0 + 4.0 * u, z, 0.5);
+    return color.x / (color.x + color.z);
+  };
+  struct Expected {
+    double z, first, second, third;  // in the left half of each repetition
+  };
+  for (const Expected& e : {Expected{-5, 1, 1, 1}, Expected{-2, 1, 0, 1}, Expected{1, 1, 0, 0}}) {
+    const double wanted[] = {e.first, e.second, e.third};
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(red(i + 0.25, e.z), wanted[i], 0.1) << e.z << " repetition " << i;
+    EXPECT_NEAR(red(0.75, e.z), 0.0, 0.1) << e.z;
+  }
+  // Nearest: a step between the texels; linear: a ramp.
+  EXPECT_GT(red(1.40, -5.0), 0.9);
+  EXPECT_GT(red(1.40, 4.0), 0.4);
+  EXPECT_LT(red(1.40, 4.0), 0.85);
+}
+
 TEST(MeshTextures, LevelsAverageLightAndIgnoreHoles) {
   MeshTexture texture;
   texture.width = 4;

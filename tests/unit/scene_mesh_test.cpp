@@ -180,8 +180,8 @@ TEST_F(SceneMesh, WrongFilesSayWhatIsWrong) {
   refuses("", "is no glTF file");
   refuses("not glTF at all", "is no glTF file");
   refuses("{", "cannot be read");
-  refuses("{}", "cannot be read");
-  refuses(std::string("glTF\2\0\0\0", 8), "cannot be read");
+  refuses("{}", "asset is missing");
+  refuses(std::string("glTF\2\0\0\0", 8), "ends within the header");
   refuses("{\"asset\":{\"version\":\"2.0\"}}", "no triangles");
   std::string deep = "{\"asset\":{\"version\":\"2.0\"},\"extras\":";
   for (int i = 0; i < 100000; ++i) deep += "[";
@@ -192,28 +192,26 @@ TEST_F(SceneMesh, WrongFilesSayWhatIsWrong) {
     change(file);
     return file.text();
   };
-  refuses(changed([](GltfFile& f) { f.root["nodes"][0]["mesh"] = 7; }), "nodes[0] with a mesh that is not there");
-  refuses(changed([](GltfFile& f) { f.root["scene"] = 7; }), "a scene that is not there");
-  refuses(changed([](GltfFile& f) { f.root["scenes"][0]["nodes"] = {9}; }), "a node that is not there");
+  refuses(changed([](GltfFile& f) { f.root["nodes"][0]["mesh"] = 7; }), "nodes[0].mesh is 7");
+  refuses(changed([](GltfFile& f) { f.root["scene"] = 7; }), "scene is 7");
+  refuses(changed([](GltfFile& f) { f.root["scenes"][0]["nodes"] = {9}; }), "scenes[0].nodes[0] is 9");
   refuses(changed([](GltfFile& f) { f.root["nodes"][0]["children"] = {0}; }), "in a circle");
-  refuses(changed([](GltfFile& f) { f.root["nodes"][0]["rotation"] = {0, 0, 0, 0}; }), "rotation of no length");
+  refuses(changed([](GltfFile& f) { f.root["nodes"][0]["rotation"] = {0, 0, 0, 0}; }), "nodes[0].rotation has no length");
   refuses(changed([](GltfFile& f) { f.root["accessors"][0]["count"] = 4; }), "beyond the end of its bufferView");
   refuses(changed([](GltfFile& f) { f.root["accessors"][0]["count"] = 4000000000U; }), "accessors[0]");
   refuses(changed([](GltfFile& f) { f.root["accessors"][0]["byteOffset"] = 4000000000U; }), "beyond the end of its bufferView");
   refuses(changed([](GltfFile& f) { f.root["bufferViews"][0]["byteLength"] = 4000000000U; }), "beyond the end of its buffer");
-  refuses(changed([](GltfFile& f) { f.root["bufferViews"][0]["buffer"] = 3; }), "a buffer that is not there");
+  refuses(changed([](GltfFile& f) { f.root["bufferViews"][0]["buffer"] = 3; }), "bufferViews[0].buffer is 3");
   refuses(changed([](GltfFile& f) { f.root["meshes"][0]["primitives"][0]["indices"] = 0; }), "indices of a wrong type");
   refuses(changed([](GltfFile& f) {
             f.root["meshes"][0]["primitives"][0]["indices"] = f.accessor<std::uint16_t>({0, 1, 3}, 5123, "SCALAR", 1);
           }), "index 3 of 3 vertices");
-  refuses(changed([](GltfFile& f) { f.root["meshes"][0]["primitives"][0]["material"] = 3; }), "a material that is not there");
+  refuses(changed([](GltfFile& f) { f.root["meshes"][0]["primitives"][0]["material"] = 3; }), "meshes[0].primitives[0].material is 3");
   refuses(changed([](GltfFile& f) { f.root["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = f.points({{0, 0, 1}}); }), "another length than POSITION");
-  refuses(changed([](GltfFile& f) { f.root["extensionsRequired"] = {"KHR_draco_mesh_compression"}; }), "requires the extension KHR_draco");
-  refuses(changed([](GltfFile& f) { f.root["accessors"][0]["sparse"] = {{"count", 1}, {"indices", {{"bufferView", 0}, {"componentType", 5123}}}, {"values", {{"bufferView", 0}}}}; }), "is sparse");
-  refuses(changed([](GltfFile& f) { f.material({{"alphaMode", "PERHAPS"}}); }), "materials[0].alphaMode 'PERHAPS'");
-  refuses(changed([](GltfFile& f) { f.material({{"alphaMode", "MASK"}, {"alphaCutoff", -0.5}}); }), "materials[0].alphaCutoff out of range");
+  refuses(changed([](GltfFile& f) { f.material({{"alphaMode", "PERHAPS"}}); }), "materials[0].alphaMode is \"PERHAPS\"");
+  refuses(changed([](GltfFile& f) { f.material({{"alphaMode", "MASK"}, {"alphaCutoff", -0.5}}); }), "materials[0].alphaCutoff is -0.5");
   const float infinite[] = {0, 0, std::numeric_limits<float>::quiet_NaN()};
-  refuses(changed([&](GltfFile& f) { std::memcpy(f.bytes.data(), infinite, sizeof infinite); }), "position that is not finite");
+  refuses(changed([&](GltfFile& f) { std::memcpy(f.bytes.data(), infinite, sizeof infinite); }), "meshes[0].primitives[0].attributes.POSITION (accessors[0]) has an element that is not finite");
   refuses(changed([](GltfFile& f) { f.root["nodes"][0]["scale"] = {1e30, 1, 1}; }), "farther than a planet");
   const auto textured = [&](const json& images) {
     return changed([&](GltfFile& f) {
@@ -222,10 +220,10 @@ TEST_F(SceneMesh, WrongFilesSayWhatIsWrong) {
       f.material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
     });
   };
-  refuses(textured({{{"uri", "missing.png"}}}), "images[0] 'missing.png', which cannot be read");
+  refuses(textured({{{"uri", "missing.png"}}}), "images[0].uri: cannot read");
   refuses(textured({{{"uri", "data:image/png;base64,QUJDREVGRw=="}}}), "is no picture");
-  refuses(textured({{{"bufferView", 9}, {"mimeType", "image/png"}}}), "cannot be read");
-  refuses(textured(json::array({json::object()})), "cannot be read");
+  refuses(textured({{{"bufferView", 9}, {"mimeType", "image/png"}}}), "images[0].bufferView is 9");
+  refuses(textured(json::array({json::object()})), "images[0] is no picture");
   GltfFile outside = triangle();
   outside.root["buffers"] = {{{"byteLength", 36}, {"uri", "missing.bin"}}};
   refuses(outside.root.dump(), "missing.bin");

@@ -1,131 +1,83 @@
-// Reading through tinygltf, which parses; what its model holds is checked by GltfReader before it is used.
+// Reads a glTF file: the container here, the document in gltf_document.cpp, the meshes in gltf_reader.hpp.
 #include "scene/mesh/gltf_file.hpp"
 
-#define TINYGLTF_IMPLEMENTATION
-#include "scene/mesh/gltf_reader.hpp"
-
+#include <cstring>
 #include <filesystem>
+#include <new>
 
 #include "config/files.hpp"
 #include "config/text.hpp"
+#include "scene/mesh/gltf_reader.hpp"
 
 namespace tyndall::scene {
 namespace {
 
-constexpr std::uint64_t kMaxFileBytes = std::uint64_t{1} << 31U;
-constexpr int kMaxJsonDepth = 96;   // tinygltf recurses
+constexpr const char* kAllowed = "allowed are none, hall, and glTF 2.0 files: .gltf or .glb";
 
-// Depth of the nesting of a JSON text, strings left out.
-bool too_deep(std::string_view json) {
-  int depth = 0;
-  bool quoted = false;
-  for (std::size_t i = 0; i < json.size(); ++i) {
-    const char c = json[i];
-    if (quoted) {
-      if (c == '\\') ++i;
-      if (c == '"') quoted = false;
-    } else if (c == '"') {
-      quoted = true;
-    } else if (c == '{' || c == '[') {
-      if (++depth > kMaxJsonDepth) return true;
-    } else if (c == '}' || c == ']') {
-      --depth;
+// The parts of a file. Views into its bytes.
+struct Container {
+  std::string_view json, chunk;
+  bool trailing = false;  // whether bytes follow the end that a .glb states
+};
+
+std::uint32_t word(std::string_view bytes, std::size_t at) {
+  std::uint32_t out = 0;
+  std::memcpy(&out, bytes.data() + at, 4);
+  return out;
+}
+
+// Chunks of a .glb (glTF 2.0, section 4.4).
+Container split_binary(std::string_view bytes) {
+  constexpr std::uint32_t kJson = 0x4E4F534AU, kBin = 0x004E4942U;
+  if (bytes.size() < 12) fail("ends within the header of a .glb", "allowed are 12 bytes and the chunks");
+  const std::uint32_t version = word(bytes, 4);
+  if (version != 2) fail("is a .glb of version " + std::to_string(version), "allowed is version 2");
+  const std::uint32_t length = word(bytes, 8);
+  if (length < 12 || length > bytes.size()) {
+    fail("is a .glb that states " + std::to_string(length) + " bytes and has " + std::to_string(bytes.size()), "allowed are all of them");
+  }
+  Container out;
+  out.trailing = length < bytes.size();
+  bytes = bytes.substr(0, length);
+  for (std::size_t i = 12, number = 0; i < bytes.size(); ++number) {
+    if (bytes.size() - i < 8) fail("ends within a chunk of a .glb", "allowed are whole chunks");
+    const std::uint32_t size = word(bytes, i), kind = word(bytes, i + 4);
+    if (size > bytes.size() - i - 8) {
+      fail("has a chunk of " + std::to_string(size) + " bytes, beyond its end", "allowed are up to " + std::to_string(bytes.size() - i - 8));
     }
+    if (number == 0 && kind != kJson) fail("is a .glb without JSON at its start", "allowed is a first chunk of JSON");
+    if (number == 0) out.json = bytes.substr(i + 8, size);
+    if (number == 1 && kind == kBin) out.chunk = bytes.substr(i + 8, size);
+    i += std::size_t{8} + size;
   }
-  return false;
+  if (out.json.empty()) fail("is a .glb without JSON", "allowed is a first chunk of JSON");
+  return out;
 }
 
-// Files that a glTF file refers to. The last error is kept: tinygltf says less.
-bool read_whole(std::vector<unsigned char>* out, std::string* error, const std::string& path, void*) {
-  Result<std::string> text = config::read_file(path, kMaxFileBytes);
-  if (!text.ok()) {
-    *error = text.error().message;
-    return false;
-  }
-  out->assign(text.value().begin(), text.value().end());
-  return true;
-}
-
-bool exists(const std::string& path, void*) {
-  std::error_code ignored;
-  return std::filesystem::is_regular_file(path, ignored);
-}
-
-std::string unchanged(const std::string& path, void*) { return path; }
-
-// Keeps the file's bytes of a picture; those of buffers are looked up when they are needed.
-bool keep_bytes(tinygltf::Image* image, const int, std::string*, std::string*, int, int, const unsigned char* bytes,
-                int size, void*) {
-  if (image->bufferView < 0 && size > 0) image->image.assign(bytes, bytes + size);
-  return true;
+Container split(std::string_view bytes) {
+  if (bytes.starts_with("glTF")) return split_binary(bytes);
+  const std::size_t start = bytes.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+  if (start == std::string_view::npos || bytes[start] != '{') fail("is no glTF file", kAllowed);
+  return {bytes, {}, false};
 }
 
 Error error_of(const std::string& path, const std::string& what, const std::string& allowed) {
-  return Error{ErrorCode::invalid_argument, "mesh file " + config::one_line(path, 300) + " " + config::one_line(what, 400) +
-               ", meshes.source, " + config::one_line(allowed, 200)};
-}
-
-// The first line of what tinygltf says, without its full stop.
-std::string first_line(const std::string& text) {
-  std::string line = text.substr(0, text.find('\n'));
-  while (!line.empty() && (line.back() == '.' || line.back() == ' ')) line.pop_back();
-  return line.empty() ? "it is damaged" : line;
+  return Error{ErrorCode::invalid_argument, "mesh file " + config::one_line(path, 300) + ": " + config::one_line(what, 400) +
+               ", meshes.source, " + config::one_line(allowed, 300)};
 }
 
 }  // namespace
 
-void GltfReader::read() {
-  check_extensions();
-  read_materials();
-  // A mesh without instances costs nothing: those of the scene are collected first.
-  std::vector<std::vector<glm::dmat4>> placed(model_.meshes.size());
-  place(placed);
-  for (std::size_t i = 0; i < placed.size(); ++i) {
-    if (!placed[i].empty()) read_mesh(i, placed[i]);
-  }
-  if (out_.indices.empty()) fail("has no triangles in its scene", "allowed is a file with at least one triangle");
-  if (skipped_lines_) out_.notes.emplace_back("lines and points of the meshes are left out");
-  if (!model_.animations.empty() || !model_.skins.empty()) {
-    out_.notes.emplace_back("the meshes are drawn at rest: animations and skins are left out");
-  }
-}
-
-void GltfReader::check_extensions() const {
-  for (const std::string& name : model_.extensionsRequired) {
-    const bool known = name.rfind("KHR_materials_", 0) == 0 || name == "KHR_mesh_quantization" ||
-                       name == "KHR_texture_transform" || name == "KHR_lights_punctual";
-    if (!known) fail("requires the extension " + name, "allowed are KHR_materials_*, KHR_mesh_quantization and KHR_texture_transform");
-  }
-}
-
 Result<MeshData> load_gltf(const std::string& path) {
-  const char* const kAllowed = "allowed are none, hall, and glTF 2.0 files: .gltf or .glb";
-  Result<std::string> text = config::read_file(path, kMaxFileBytes);
-  if (!text.ok()) return Error{ErrorCode::io, text.error().message + ", meshes.source, " + kAllowed};
-  const std::string& bytes = text.value();
-  const bool binary = bytes.rfind("glTF", 0) == 0;
-  std::string_view json(bytes);
-  if (binary) {
-    std::uint32_t length = 0;
-    if (bytes.size() >= 20) std::memcpy(&length, bytes.data() + 12, 4);
-    json = json.size() > 20 ? json.substr(20, length) : std::string_view();
-  } else if (json.find_first_not_of(" \t\r\n\xEF\xBB\xBF") == std::string_view::npos || json[json.find_first_not_of(" \t\r\n\xEF\xBB\xBF")] != '{') {
-    return error_of(path, "is no glTF file", kAllowed);
-  }
-  if (too_deep(json)) return error_of(path, "is nested too deeply", kAllowed);
+  Result<std::string> bytes = config::read_file(path, kMaxGltfFileBytes);
+  if (!bytes.ok()) return Error{ErrorCode::io, bytes.error().message + ", meshes.source, " + kAllowed};
   try {
-    tinygltf::TinyGLTF loader;
-    loader.SetImageLoader(keep_bytes, nullptr);
-    loader.SetFsCallbacks({exists, unchanged, read_whole, nullptr, nullptr});
-    tinygltf::Model model;
-    std::string error, warning;
-    const std::string folder = std::filesystem::path(path).parent_path().string();
-    const auto size = static_cast<unsigned>(bytes.size());
-    const bool read = binary ? loader.LoadBinaryFromMemory(&model, &error, &warning, reinterpret_cast<const unsigned char*>(bytes.data()), size, folder)
-                             : loader.LoadASCIIFromString(&model, &error, &warning, bytes.data(), size, folder);
-    if (!read) return error_of(path, "cannot be read: " + first_line(error), kAllowed);
+    const Container parts = split(bytes.value());
+    const GltfDocument document = parse_gltf(parts.json);
+    GltfData data(document, std::filesystem::path(path).parent_path().string(), parts.chunk);
     MeshData out;
-    GltfReader(model, out).read();
+    GltfReader(document, data, out).read();
+    if (parts.trailing) out.notes.emplace_back("bytes after the end that the .glb states are ignored");
     return out;
   } catch (const GltfFailure& failure) {
     return error_of(path, failure.what, failure.allowed);

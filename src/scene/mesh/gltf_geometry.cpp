@@ -1,74 +1,110 @@
-// Triangles and what stands at their corners, from accessors that are checked against the end of their buffers.
-#include "scene/mesh/gltf_reader.hpp"
-
+// Triangles and what stands at their corners, with morph targets and skins applied.
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "scene/mesh/gltf_reader.hpp"
 
 namespace tyndall::scene {
 namespace {
 
 constexpr double kLargestCoordinate_m = 1.0e7;
 
+std::string shown_range(int low, int high) {
+  return low == high ? std::to_string(low) : std::to_string(low) + " to " + std::to_string(high);
+}
+
+// The normal of a triangle; up where it has none.
+glm::vec3 flat_normal(const MeshVertex& a, const MeshVertex& b, const MeshVertex& c) {
+  const glm::dvec3 n = glm::cross(glm::dvec3(b.position) - glm::dvec3(a.position), glm::dvec3(c.position) - glm::dvec3(a.position));
+  const double length = glm::length(n);
+  return length > 0.0 ? glm::vec3(n / length) : glm::vec3(0, 1, 0);
+}
+
 }  // namespace
 
-std::span<const unsigned char> GltfReader::view_bytes(std::size_t index) const {
-  if (index >= model_.bufferViews.size()) fail("has a bufferView that is not there", range(model_.bufferViews.size()));
-  const tinygltf::BufferView& view = model_.bufferViews[index];
-  if (view.buffer < 0 || static_cast<std::size_t>(view.buffer) >= model_.buffers.size()) {
-    fail("has " + at("bufferViews", index) + " of a buffer that is not there", range(model_.buffers.size()));
+// An element of an attribute and what the morph targets add to it. Components that are missing are 1.
+glm::dvec4 GltfVertices::morphed(const GltfValues& base, GltfValues Target::*target, std::size_t i) const {
+  glm::dvec4 out(1.0);
+  for (int c = 0; c < base.components; ++c) out[c] = base.real(i, c);
+  for (const Target& one : targets) {
+    const GltfValues& moved = one.*target;
+    for (int c = 0; c < moved.components; ++c) out[c] += one.weight * moved.real(i, c);
   }
-  const std::vector<unsigned char>& bytes = model_.buffers[static_cast<std::size_t>(view.buffer)].data;
-  if (view.byteOffset > bytes.size() || view.byteLength > bytes.size() - view.byteOffset) {
-    fail("has " + at("bufferViews", index) + " beyond the end of its buffer", "allowed are up to " + std::to_string(bytes.size()) + " bytes");
-  }
-  return std::span(bytes).subspan(view.byteOffset, view.byteLength);
-}
-
-GltfReader::Values GltfReader::values(int index) const {
-  if (index < 0 || static_cast<std::size_t>(index) >= model_.accessors.size()) fail("has an accessor that is not there", range(model_.accessors.size()));
-  const auto i = static_cast<std::size_t>(index);
-  const tinygltf::Accessor& accessor = model_.accessors[i];
-  if (accessor.sparse.isSparse) fail("has " + at("accessors", i) + ", which is sparse", "allowed are accessors without sparse");
-  if (accessor.bufferView < 0) fail("has " + at("accessors", i) + " without data", "allowed are accessors with a bufferView");
-  const std::span<const unsigned char> bytes = view_bytes(static_cast<std::size_t>(accessor.bufferView));
-  const int component = tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType));
-  const int components = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
-  if (component <= 0 || components <= 0) fail("has " + at("accessors", i) + " of an unknown type", "allowed are the types of glTF 2.0");
-  const auto element = static_cast<std::size_t>(component) * static_cast<std::size_t>(components);
-  const std::size_t step = model_.bufferViews[static_cast<std::size_t>(accessor.bufferView)].byteStride;
-  Values out;
-  out.stride = step == 0 ? element : step;
-  out.count = accessor.count;
-  out.type = accessor.componentType;
-  out.components = components;
-  out.normalized = accessor.normalized;
-  if (out.count == 0 || out.count > std::max(kMaxMeshVertices, kMaxMeshIndices)) {
-    fail("has " + at("accessors", i) + " of " + std::to_string(out.count) + " elements", "allowed are 1 to " + std::to_string(kMaxMeshIndices));
-  }
-  if (out.stride < element || out.stride > 1024 || accessor.byteOffset > bytes.size() ||
-      (out.count - 1) * out.stride + element > bytes.size() - accessor.byteOffset) {
-    fail("has " + at("accessors", i) + " beyond the end of its bufferView", "allowed are up to " + std::to_string(bytes.size()) + " bytes");
-  }
-  out.data = bytes.data() + accessor.byteOffset;
   return out;
 }
 
-// The values of an attribute, or none.
-GltfReader::Values GltfReader::attribute(const tinygltf::Primitive& primitive, const std::string& name, std::size_t count, int least, int most) const {
-  const auto found = primitive.attributes.find(name);
-  if (found == primitive.attributes.end()) return {};
-  const Values out = values(found->second);
-  if (out.components < least || out.components > most) fail("has an attribute " + name + " of " + std::to_string(out.components) + " components", "allowed are " + std::to_string(least) + " to " + std::to_string(most));
-  if (count > 0 && out.count != count) fail("has an attribute " + name + " of another length than POSITION", "allowed are " + std::to_string(count) + " elements");
+// The matrices of the vertex's joints in the parts of their weights, whose sum counts as one.
+glm::dmat4 GltfVertices::skinned(std::size_t i) const {
+  glm::dmat4 out(0.0);
+  double sum = 0.0;
+  for (const Influence& one : influences) {
+    for (int c = 0; c < 4; ++c) {
+      const double weight = one.weights.real(i, c);
+      if (weight < 0.0) fail(where + " has a negative weight of a joint at vertex " + std::to_string(i), "allowed are weights of 0 and more");
+      if (weight == 0.0) continue;
+      const std::uint32_t joint = one.joints.whole(i, c);
+      if (joint >= joints->size()) {
+        fail(where + " has joint " + std::to_string(joint) + " at vertex " + std::to_string(i),
+             "allowed are 0 to " + std::to_string(joints->size() - 1));
+      }
+      out += weight * (*joints)[joint];
+      sum += weight;
+    }
+  }
+  if (sum > 0.0) return out / sum;
+  unweighted = true;
+  return joints->front();
+}
+
+MeshVertex GltfVertices::at(std::size_t i) const {
+  MeshVertex out;
+  glm::dvec3 p = morphed(position, &Target::position, i);
+  glm::dvec3 n(0.0);
+  if (!normal.empty()) n = morphed(normal, &Target::normal, i);
+  if (!influences.empty()) {
+    const glm::dmat4 m = skinned(i);
+    p = glm::dvec3(m * glm::dvec4(p, 1.0));
+    // Normals turn with the cofactors, which keep their direction where the matrix is flat.
+    const glm::dmat3 c(glm::cross(glm::dvec3(m[1]), glm::dvec3(m[2])), glm::cross(glm::dvec3(m[2]), glm::dvec3(m[0])),
+                       glm::cross(glm::dvec3(m[0]), glm::dvec3(m[1])));
+    n = c * n;
+  }
+  // Every input is finite, but sums and products can leave the range of floats.
+  for (int c = 0; c < 3; ++c) {
+    if (!(std::abs(p[c]) <= kLargestCoordinate_m)) fail(where + " reaches farther than a planet", "allowed are coordinates of up to 10000 km");
+  }
+  out.position = glm::vec3(p);
+  const double length = glm::length(n);
+  out.normal = length > 1e-30 && std::isfinite(length) ? glm::vec3(n / length) : glm::vec3(0.0F);
+  if (!uv.empty()) {
+    const glm::dvec2 t = glm::dvec2(morphed(uv, &Target::uv, i)) * texture.scale;
+    const double cosine = std::cos(texture.rotation_rad), sine = std::sin(texture.rotation_rad);
+    out.uv = glm::vec2(texture.offset + glm::dvec2(t.x * cosine + t.y * sine, t.y * cosine - t.x * sine));
+    if (!std::isfinite(out.uv.x) || !std::isfinite(out.uv.y)) fail(where + " has a texture coordinate that is too large", "allowed are 32-bit floats");
+  }
+  if (!color.empty()) {
+    const glm::dvec4 x = morphed(color, &Target::color, i);
+    out.color = 0;
+    for (int c = 0; c < 4; ++c) {
+      clamped = clamped || x[c] > 1.001 || x[c] < -0.001;
+      out.color |= static_cast<std::uint32_t>(std::lround(255.0 * std::clamp(x[c], 0.0, 1.0))) << (8 * c);
+    }
+  }
   return out;
 }
 
-void GltfReader::read_mesh(std::size_t index, const std::vector<glm::dmat4>& placed) {
+void GltfReader::read_shape(const Shape& shape, const std::vector<glm::dmat4>& placed) {
+  const auto [index, skin, weights] = shape;
   Mesh mesh;
   mesh.first_part = static_cast<std::uint32_t>(out_.parts.size());
   const std::size_t first_vertex = out_.vertices.size();
-  for (const tinygltf::Primitive& primitive : model_.meshes[index].primitives) read_primitive(primitive);
+  std::vector<glm::dmat4> joints;
+  if (skin >= 0) joints = joint_matrices(static_cast<std::size_t>(skin));
+  const std::vector<GltfPrimitive>& primitives = document_.meshes[static_cast<std::size_t>(index)].primitives;
+  for (std::size_t i = 0; i < primitives.size(); ++i) {
+    read_primitive(primitives[i], scene::at("meshes", static_cast<std::size_t>(index)) + "." + scene::at("primitives", i), shape, joints);
+  }
   mesh.part_count = static_cast<std::uint32_t>(out_.parts.size()) - mesh.first_part;
   if (mesh.part_count == 0) return;
   mesh.first_instance = static_cast<std::uint32_t>(out_.instances.size());
@@ -90,76 +126,122 @@ void GltfReader::read_mesh(std::size_t index, const std::vector<glm::dmat4>& pla
   out_.meshes.push_back(mesh);
 }
 
-void GltfReader::read_primitive(const tinygltf::Primitive& primitive) {
-  const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
-  if (mode < TINYGLTF_MODE_TRIANGLES || mode > TINYGLTF_MODE_TRIANGLE_FAN) {
-    skipped_lines_ = true;
-    return;
+void GltfReader::read_primitive(const GltfPrimitive& primitive, const std::string& where, const Shape& shape,
+                                const std::vector<glm::dmat4>& joints) {
+  if (primitive.mode < 4) return note("lines and points of the meshes are left out");
+  if (!primitive.attributes.contains("POSITION")) return note(where + " has no POSITION and is left out");
+  std::optional<DracoMesh> draco;
+  if (primitive.draco) draco = decode_draco(document_, primitive, data_.view(primitive.draco->view), where);
+  const DracoMesh* const decoded = draco ? &*draco : nullptr;
+  const GltfVertices read = vertices(primitive, where, decoded, shape, joints);
+  const std::vector<std::uint32_t> corners = draco ? std::move(draco->corners) : triangles(primitive, where, read.position.count);
+  emit(read, corners, material_of(primitive, !read.uv.empty(), where));
+  // Morphed colours are clamped by the specification.
+  if (read.clamped && read.targets.empty()) note(where + ".attributes.COLOR_0 has values outside 0 to 1, which are clamped");
+  if (read.unweighted) note(where + " has vertices whose joints have no weight; they follow the first joint");
+}
+
+// The values of an attribute, or none.
+GltfValues GltfReader::attribute(const GltfAttributes& attributes, const std::string& name, const std::string& where,
+                                 const DracoMesh* draco, std::size_t count, int min_components, int max_components) {
+  const auto found = attributes.find(name);
+  if (found == attributes.end()) return {};
+  const auto index = static_cast<std::size_t>(found->second);
+  const std::string path = where + "." + name;
+  const GltfAccessor& accessor = document_.accessors[index];
+  const std::string full = path + " (" + scene::at("accessors", index) + ")";
+  if (accessor.components < min_components || accessor.components > max_components) {
+    fail(full + " has " + std::to_string(accessor.components) + " components", "allowed are " + shown_range(min_components, max_components));
   }
-  std::size_t material = out_.materials.size() - 1;
-  if (primitive.material >= 0) {
-    material = static_cast<std::size_t>(primitive.material);
-    if (material >= model_.materials.size()) fail("has a primitive with a material that is not there", range(model_.materials.size()));
+  if (count > 0 && accessor.count != count) {
+    fail(full + " has another length than POSITION", "allowed are " + std::to_string(count) + " elements");
   }
-  const Values position = attribute(primitive, "POSITION", 0, 3, 3);
-  if (position.data == nullptr) return;  // a primitive without positions draws nothing
-  const std::vector<std::uint32_t> corners = triangles(primitive, mode, position.count);
-  const Values normal = attribute(primitive, "NORMAL", position.count, 3, 3);
-  // Of the set that the base colour asks for, moved as KHR_texture_transform says.
-  int set = 0;
-  glm::dvec2 offset(0.0), scale(1.0);
-  double turn = 0.0;
-  if (primitive.material >= 0) {
-    texture_transform(model_.materials[material].pbrMetallicRoughness.baseColorTexture, set, offset, scale, turn);
+  if (draco != nullptr) {
+    const auto compressed = draco->attributes.find(name);
+    if (compressed != draco->attributes.end()) return data_.values_of(index, compressed->second, path);
   }
-  const Values uv = attribute(primitive, "TEXCOORD_" + std::to_string(set), position.count, 2, 2);
-  const Values color = attribute(primitive, "COLOR_0", position.count, 3, 4);
-  const auto vertex = [&](std::size_t i) {
-    MeshVertex v;
-    for (int c = 0; c < 3; ++c) {
-      const double x = position.real(i, c);
-      if (!std::isfinite(x)) fail("has a position that is not finite", "allowed are finite numbers");
-      v.position[c] = static_cast<float>(x);
+  return data_.values(index, path);
+}
+
+GltfVertices GltfReader::vertices(const GltfPrimitive& primitive, const std::string& where, const DracoMesh* draco,
+                                  const Shape& shape, const std::vector<glm::dmat4>& joints) {
+  GltfVertices out;
+  out.where = where;
+  const std::string path = where + ".attributes";
+  out.position = attribute(primitive.attributes, "POSITION", path, draco, 0, 3, 3);
+  const std::size_t count = out.position.count;
+  if (count > kMaxMeshVertices) fail("has too many vertices", "allowed are up to " + std::to_string(kMaxMeshVertices));
+  if (draco != nullptr && count != draco->points) {
+    fail(path + ".POSITION has " + std::to_string(count) + " elements", "allowed are the " + std::to_string(draco->points) + " of the Draco mesh");
+  }
+  out.normal = attribute(primitive.attributes, "NORMAL", path, draco, count, 3, 3);
+  // Of the set that the base colour names, moved as KHR_texture_transform says.
+  if (primitive.material >= 0) out.texture = document_.materials[static_cast<std::size_t>(primitive.material)].texture;
+  const std::string uv = "TEXCOORD_" + std::to_string(out.texture.set);
+  out.uv = attribute(primitive.attributes, uv, path, draco, count, 2, 2);
+  out.color = attribute(primitive.attributes, "COLOR_0", path, draco, count, 3, 4);
+  if (!out.color.empty() && out.color.component != GltfComponent::float32 && !out.color.normalized) {
+    fail(path + ".COLOR_0 has integers that are not normalized", "allowed is \"normalized\": true, or floats");
+  }
+  const std::vector<double>& weights = std::get<2>(shape);
+  for (std::size_t i = 0; i < primitive.targets.size(); ++i) {
+    if (weights[i] == 0.0) continue;
+    const std::string target = where + "." + scene::at("targets", i);
+    const GltfAttributes& in = primitive.targets[i];
+    GltfVertices::Target moved;
+    moved.weight = weights[i];
+    moved.position = attribute(in, "POSITION", target, nullptr, count, 3, 3);
+    moved.normal = attribute(in, "NORMAL", target, nullptr, count, 3, 3);
+    moved.uv = attribute(in, uv, target, nullptr, count, 2, 2);
+    moved.color = attribute(in, "COLOR_0", target, nullptr, count, 3, 4);
+    out.targets.push_back(std::move(moved));
+  }
+  if (joints.empty()) return out;
+  out.joints = &joints;
+  for (std::size_t set = 0; set < 16; ++set) {
+    GltfVertices::Influence one;
+    one.joints = attribute(primitive.attributes, "JOINTS_" + std::to_string(set), path, draco, count, 4, 4);
+    one.weights = attribute(primitive.attributes, "WEIGHTS_" + std::to_string(set), path, draco, count, 4, 4);
+    if (one.joints.empty() != one.weights.empty()) fail(path + " has only one of JOINTS_" + std::to_string(set) + " and WEIGHTS_" + std::to_string(set), "allowed are both");
+    if (one.joints.empty()) break;
+    if (one.joints.component != GltfComponent::uint8 && one.joints.component != GltfComponent::uint16) {
+      fail(path + ".JOINTS_" + std::to_string(set) + " has another type", "allowed are unsigned bytes and shorts");
     }
-    if (normal.data != nullptr) {
-      const glm::dvec3 n(normal.real(i, 0), normal.real(i, 1), normal.real(i, 2));
-      const double length = glm::length(n);
-      if (!std::isfinite(length)) fail("has a normal that is not finite", "allowed are finite numbers");
-      if (length > 1e-6) v.normal = glm::vec3(n / length);
-    }
-    if (uv.data != nullptr) {
-      const glm::dvec2 t = glm::dvec2(uv.real(i, 0), uv.real(i, 1)) * scale;
-      v.uv = glm::vec2(offset + glm::dvec2(t.x * std::cos(turn) + t.y * std::sin(turn), t.y * std::cos(turn) - t.x * std::sin(turn)));
-      if (!std::isfinite(v.uv.x) || !std::isfinite(v.uv.y)) fail("has a texture coordinate that is not finite", "allowed are finite numbers");
-    }
-    if (color.data != nullptr) {
-      v.color = 0;
-      for (int c = 0; c < 4; ++c) {
-        const double x = c < color.components ? color.real(i, c) : 1.0;
-        v.color |= static_cast<std::uint32_t>(std::lround(255.0 * (x > 0.0 ? std::min(x, 1.0) : 0.0))) << (8 * c);
-      }
-    }
-    return v;
-  };
-  const std::size_t added = normal.data != nullptr ? position.count : corners.size();
+    out.influences.push_back(std::move(one));
+  }
+  if (out.influences.empty()) fail(path + " has no JOINTS_0 and WEIGHTS_0", "allowed are both in a mesh with a skin");
+  return out;
+}
+
+void GltfReader::emit(const GltfVertices& vertices, const std::vector<std::uint32_t>& corners, std::uint32_t material) {
+  const bool flat = vertices.normal.empty();
+  const std::size_t added = flat ? corners.size() : vertices.position.count;
   if (out_.vertices.size() + added > kMaxMeshVertices) fail("has too many vertices", "allowed are up to " + std::to_string(kMaxMeshVertices));
   if (out_.indices.size() + corners.size() > kMaxMeshIndices) fail("has too many triangles", "allowed are up to " + std::to_string(kMaxMeshIndices / 3));
   MeshPart part;
   part.first_index = static_cast<std::uint32_t>(out_.indices.size());
   part.index_count = static_cast<std::uint32_t>(corners.size());
-  part.material = static_cast<std::uint32_t>(material);
+  part.material = material;
   const auto base = static_cast<std::uint32_t>(out_.vertices.size());
-  if (normal.data != nullptr) {
-    for (std::size_t i = 0; i < position.count; ++i) out_.vertices.push_back(vertex(i));
+  if (!flat) {
+    for (std::size_t i = 0; i < vertices.position.count; ++i) out_.vertices.push_back(vertices.at(i));
     for (const std::uint32_t c : corners) out_.indices.push_back(base + c);
+    // A normal without a length is that of a triangle at the vertex.
+    for (std::size_t t = 0; t + 2 < corners.size(); t += 3) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        glm::vec3& normal = out_.vertices[base + corners[t + k]].normal;
+        if (normal == glm::vec3(0.0F)) {
+          normal = flat_normal(out_.vertices[base + corners[t]], out_.vertices[base + corners[t + 1]], out_.vertices[base + corners[t + 2]]);
+        }
+      }
+    }
   } else {
     // Without normals triangles are flat, so no two share a vertex.
     for (std::size_t t = 0; t + 2 < corners.size(); t += 3) {
-      std::array<MeshVertex, 3> v = {vertex(corners[t]), vertex(corners[t + 1]), vertex(corners[t + 2])};
-      const glm::dvec3 n = glm::cross(glm::dvec3(v[1].position) - glm::dvec3(v[0].position), glm::dvec3(v[2].position) - glm::dvec3(v[0].position));
-      const double length = glm::length(n);
+      std::array<MeshVertex, 3> v = {vertices.at(corners[t]), vertices.at(corners[t + 1]), vertices.at(corners[t + 2])};
+      const glm::vec3 normal = flat_normal(v[0], v[1], v[2]);
       for (MeshVertex& one : v) {
-        if (length > 0.0) one.normal = glm::vec3(n / length);
+        one.normal = normal;
         out_.indices.push_back(static_cast<std::uint32_t>(out_.vertices.size()));
         out_.vertices.push_back(one);
       }
@@ -169,30 +251,34 @@ void GltfReader::read_primitive(const tinygltf::Primitive& primitive) {
 }
 
 // Corners of the triangles, three by three, whatever the mode.
-std::vector<std::uint32_t> GltfReader::triangles(const tinygltf::Primitive& primitive, int mode, std::size_t count) const {
+std::vector<std::uint32_t> GltfReader::triangles(const GltfPrimitive& primitive, const std::string& where, std::size_t count) {
   std::vector<std::uint32_t> list;
   if (primitive.indices >= 0) {
-    const Values in = values(primitive.indices);
-    const bool whole = in.type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE || in.type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
-                       in.type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
-    if (!whole || in.components != 1) fail("has indices of a wrong type", "allowed are unsigned bytes, shorts and ints");
+    const auto index = static_cast<std::size_t>(primitive.indices);
+    const GltfAccessor& accessor = document_.accessors[index];
+    const bool whole = accessor.component == GltfComponent::uint8 || accessor.component == GltfComponent::uint16 ||
+                       accessor.component == GltfComponent::uint32;
+    if (!whole || accessor.components != 1) {
+      fail(where + ".indices (" + scene::at("accessors", index) + ") are indices of a wrong type", "allowed are SCALAR unsigned bytes, shorts and ints");
+    }
+    const GltfValues in = data_.values(index, where + ".indices");
     list.reserve(in.count);
     for (std::size_t i = 0; i < in.count; ++i) {
-      const std::uint64_t value = in.whole(i);
-      if (value >= count) fail("has index " + std::to_string(value) + " of " + std::to_string(count) + " vertices", range(count));
-      list.push_back(static_cast<std::uint32_t>(value));
+      const std::uint32_t value = in.whole(i);
+      if (value >= count) fail(where + " has index " + std::to_string(value) + " of " + std::to_string(count) + " vertices", "allowed are 0 to " + std::to_string(count - 1));
+      list.push_back(value);
     }
   } else {
-    if (count > kMaxMeshVertices) fail("has too many vertices", "allowed are up to " + std::to_string(kMaxMeshVertices));
     for (std::size_t i = 0; i < count; ++i) list.push_back(static_cast<std::uint32_t>(i));
   }
-  if (mode == TINYGLTF_MODE_TRIANGLES) {
+  if (primitive.mode == 4) {
+    if (list.size() % 3 != 0) note(where + " has " + std::to_string(list.size()) + " corners, which is no multiple of 3; the last ones are left out");
     list.resize(list.size() / 3 * 3);
     return list;
   }
   std::vector<std::uint32_t> out;
   for (std::size_t i = 2; i < list.size(); ++i) {
-    if (mode == TINYGLTF_MODE_TRIANGLE_FAN) {
+    if (primitive.mode == 6) {
       out.insert(out.end(), {list[0], list[i - 1], list[i]});
     } else if (i % 2 == 0) {
       out.insert(out.end(), {list[i - 2], list[i - 1], list[i]});
@@ -201,26 +287,6 @@ std::vector<std::uint32_t> GltfReader::triangles(const tinygltf::Primitive& prim
     }
   }
   return out;
-}
-
-void GltfReader::texture_transform(const tinygltf::TextureInfo& info, int& set, glm::dvec2& offset, glm::dvec2& scale, double& turn) {
-  set = info.texCoord;
-  const auto found = info.extensions.find("KHR_texture_transform");
-  if (found == info.extensions.end() || !found->second.IsObject()) return;
-  const auto pair = [&](const char* name, glm::dvec2& out) {
-    const tinygltf::Value& value = found->second.Get(name);
-    if (!value.IsArray() || value.ArrayLen() != 2 || !value.Get(0).IsNumber() || !value.Get(1).IsNumber()) return;
-    out = {value.Get(0).GetNumberAsDouble(), value.Get(1).GetNumberAsDouble()};
-  };
-  pair("offset", offset);
-  pair("scale", scale);
-  if (found->second.Get("rotation").IsNumber()) turn = found->second.Get("rotation").GetNumberAsDouble();
-  if (found->second.Get("texCoord").IsInt()) set = found->second.Get("texCoord").GetNumberAsInt();
-}
-
-
-std::string GltfReader::range(std::size_t count) {
-  return count == 0 ? "allowed is none: the file has none" : "allowed is 0 to " + std::to_string(count - 1);
 }
 
 }  // namespace tyndall::scene

@@ -1,101 +1,125 @@
-// Materials, and their pictures through stb_image, which is kept to this file. Pictures are decoded here: tinygltf passes on
-// any range of a buffer that a file names.
-#include "scene/mesh/gltf_reader.hpp"
-
-#define STB_IMAGE_IMPLEMENTATION
-#define STB_IMAGE_STATIC
-#define STBI_NO_STDIO
-#define STBI_ONLY_PNG
-#define STBI_ONLY_JPEG
-#define STBI_MAX_DIMENSIONS 8192
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function"
-#include <stb_image.h>
-#pragma GCC diagnostic pop
-
+// Materials, textures, samplers and images of a glTF document. Pictures are decoded in gltf_images.cpp.
 #include <algorithm>
-#include <limits>
-#include <memory>
 
-#include "config/text.hpp"
+#include "scene/mesh/gltf_json.hpp"
 
 namespace tyndall::scene {
+namespace {
 
-void GltfReader::read_materials() {
-  for (std::size_t i = 0; i < model_.materials.size(); ++i) out_.materials.push_back(material(i));
-  out_.materials.emplace_back();  // of parts that name none
+TextureWrap wrap(const GltfJson& json, const char* name) {
+  switch (json.integer(name, 0, std::numeric_limits<std::int64_t>::max(), 10497)) {
+    case 10497: return TextureWrap::repeat;
+    case 33071: return TextureWrap::clamp_to_edge;
+    case 33648: return TextureWrap::mirrored_repeat;
+    default: json.refuse(name, "allowed are 10497, 33071 and 33648");
+  }
 }
 
-MeshMaterial GltfReader::material(std::size_t index) {
-  const tinygltf::Material& in = model_.materials[index];
-  MeshMaterial out;
-  out.name = in.name;
-  const std::vector<double>& factor = in.pbrMetallicRoughness.baseColorFactor;
-  for (int c = 0; c < 4 && c < static_cast<int>(factor.size()); ++c) {
-    out.color[c] = static_cast<float>(bounded(factor[static_cast<std::size_t>(c)], index, "baseColorFactor"));
-  }
-  out.roughness = static_cast<float>(bounded(in.pbrMetallicRoughness.roughnessFactor, index, "roughnessFactor"));
-  if (!(in.alphaCutoff >= 0.0)) fail("has " + at("materials", index) + ".alphaCutoff out of range", "allowed is 0 and more");
-  out.alpha_cutoff = static_cast<float>(std::min(in.alphaCutoff, 2.0));  // above 1 nothing is left of the surface
-  out.double_sided = in.doubleSided;
-  if (in.alphaMode == "MASK") {
-    out.kind = SurfaceKind::mask;
-  } else if (in.alphaMode == "BLEND") {
-    out.kind = SurfaceKind::blend;
-  } else if (in.alphaMode != "OPAQUE") {
-    fail("has " + at("materials", index) + ".alphaMode '" + config::one_line(in.alphaMode, 40) + "'", "allowed are OPAQUE, MASK and BLEND");
-  }
-  const auto extension = in.extensions.find("KHR_materials_transmission");
-  if (extension != in.extensions.end() && extension->second.IsObject()) {
-    const tinygltf::Value& value = extension->second.Get("transmissionFactor");
-    if (value.IsNumber()) out.transmission = static_cast<float>(bounded(value.GetNumberAsDouble(), index, "transmissionFactor"));
-    if (out.transmission > 0.0F) out.kind = SurfaceKind::glass;
-  }
-  if (in.pbrMetallicRoughness.baseColorTexture.index >= 0) {
-    out.texture = texture(static_cast<std::size_t>(in.pbrMetallicRoughness.baseColorTexture.index), index);
+// A missing filter leaves the choice to the program, which then filters as smoothly as it can.
+MeshSampler sampler(const GltfJson& json) {
+  MeshSampler out;
+  out.wrap_u = wrap(json, "wrapS");
+  out.wrap_v = wrap(json, "wrapT");
+  const std::int64_t mag = json.integer("magFilter", 9728, std::numeric_limits<std::int64_t>::max(), 9729);
+  if (mag > 9729) json.refuse("magFilter", "allowed are 9728 and 9729");
+  out.mag_linear = mag == 9729;
+  switch (json.integer("minFilter", 0, std::numeric_limits<std::int64_t>::max(), 9987)) {
+    case 9728: out.min_linear = false, out.mip = MipFilter::none; break;
+    case 9729: out.min_linear = true, out.mip = MipFilter::none; break;
+    case 9984: out.min_linear = false, out.mip = MipFilter::nearest; break;
+    case 9985: out.min_linear = true, out.mip = MipFilter::nearest; break;
+    case 9986: out.min_linear = false, out.mip = MipFilter::linear; break;
+    case 9987: out.min_linear = true, out.mip = MipFilter::linear; break;
+    default: json.refuse("minFilter", "allowed are 9728, 9729 and 9984 to 9987");
   }
   return out;
 }
 
-double GltfReader::bounded(double value, std::size_t index, const char* name) {
-  if (!(value >= 0.0 && value <= 1.0)) fail("has " + at("materials", index) + "." + name + " out of range", "allowed is 0 to 1");
-  return value;
+GltfTextureUse texture_use(const GltfJson& json) {
+  GltfTextureUse out;
+  out.texture = json.index("index", "textures", true);
+  out.set = static_cast<int>(json.integer("texCoord", 0, 1000, 0));
+  if (const auto transform = json.extension("KHR_texture_transform")) {
+    transform->numbers("offset", std::span<double>(&out.offset.x, 2));
+    transform->numbers("scale", std::span<double>(&out.scale.x, 2));
+    out.rotation_rad = transform->number("rotation", 0.0);
+    out.set = static_cast<int>(transform->integer("texCoord", 0, 1000, out.set));
+  }
+  return out;
 }
 
-// The picture of a texture, decoded once.
-int GltfReader::texture(std::size_t index, std::size_t material) {
-  if (index >= model_.textures.size()) fail("has " + at("materials", material) + " with a texture that is not there", range(model_.textures.size()));
-  const int source = model_.textures[index].source;
-  if (source < 0 || static_cast<std::size_t>(source) >= model_.images.size()) {
-    fail("has " + at("textures", index) + " with an image that is not there", range(model_.images.size()));
+// The base colour of either of the two models of materials. Specular reflection is not drawn, so of
+// KHR_materials_pbrSpecularGlossiness the diffuse colour is the base colour.
+void base_color(const GltfJson& json, const char* factor, const char* texture, GltfMaterial& out) {
+  glm::dvec4 color(1.0);
+  json.bounded(factor, 0.0, 1.0, std::span<double>(&color.x, 4));
+  out.drawn.color = glm::vec4(color);
+  out.texture = {};
+  if (const auto used = json.find_object(texture)) out.texture = texture_use(*used);
+}
+
+void alpha_mode(const GltfJson& json, MeshMaterial& out) {
+  const std::string mode = json.text("alphaMode", "OPAQUE");
+  if (mode == "MASK") {
+    out.kind = SurfaceKind::mask;
+  } else if (mode == "BLEND") {
+    out.kind = SurfaceKind::blend;
+  } else if (mode != "OPAQUE") {
+    json.refuse("alphaMode", "allowed are OPAQUE, MASK and BLEND");
   }
-  const auto known = decoded_.find(source);
-  if (known != decoded_.end()) return known->second;
-  const tinygltf::Image& image = model_.images[static_cast<std::size_t>(source)];
-  std::span<const unsigned char> bytes(image.image);
-  if (image.bufferView >= 0) bytes = view_bytes(static_cast<std::size_t>(image.bufferView));
-  const std::string name = at("images", static_cast<std::size_t>(source)) +
-                           (image.uri.empty() ? "" : " '" + config::one_line(image.uri, 200) + "'");
-  if (bytes.empty()) fail("has " + name + ", which cannot be read", "allowed is a PNG or JPEG picture beside it or in it");
-  int width = 0, height = 0, channels = 0;
-  const int size = static_cast<int>(std::min<std::size_t>(bytes.size(), std::numeric_limits<int>::max()));
-  if (stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) == 0) {
-    fail("has " + name + ", which is no picture", "allowed are PNG and JPEG of up to " + std::to_string(kMaxTextureSide) + " texels on a side");
+  const double cutoff = json.bounded("alphaCutoff", 0.0, std::numeric_limits<double>::max(), 0.5);
+  out.alpha_cutoff = static_cast<float>(std::min(cutoff, 2.0));  // above 1 nothing is left of the surface
+}
+
+GltfMaterial material(const GltfJson& json, std::set<std::string>& undrawn) {
+  GltfMaterial out;
+  out.drawn.name = json.text("name", "");
+  alpha_mode(json, out.drawn);
+  out.drawn.double_sided = json.flag("doubleSided");
+  if (const auto pbr = json.find_object("pbrMetallicRoughness")) {
+    base_color(*pbr, "baseColorFactor", "baseColorTexture", out);
+    out.drawn.roughness = static_cast<float>(pbr->bounded("roughnessFactor", 0.0, 1.0, 1.0));
+    const bool metallic = pbr->bounded("metallicFactor", 0.0, 1.0, 1.0) > 0.0;
+    if (metallic && (pbr->has("metallicFactor") || pbr->has("metallicRoughnessTexture"))) undrawn.insert("metallic reflection");
   }
-  if (width <= 0 || height <= 0 || width > static_cast<int>(kMaxTextureSide) || height > static_cast<int>(kMaxTextureSide)) {
-    fail("has " + name + " of " + std::to_string(width) + "x" + std::to_string(height), "allowed are up to " + std::to_string(kMaxTextureSide) + " texels on a side");
+  if (const auto specular = json.extension("KHR_materials_pbrSpecularGlossiness")) {
+    base_color(*specular, "diffuseFactor", "diffuseTexture", out);
+    out.drawn.roughness = static_cast<float>(1.0 - specular->bounded("glossinessFactor", 0.0, 1.0, 1.0));
+    undrawn.insert("specular reflection of KHR_materials_pbrSpecularGlossiness");
   }
-  texture_bytes_ += 4ULL * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-  if (texture_bytes_ > kMaxTextureBytes) fail("has more texels than there is room for", "allowed are textures of up to 1 GiB together");
-  const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
-      stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 4), stbi_image_free);
-  if (pixels == nullptr) fail("has " + name + ", which is damaged", "allowed is a whole PNG or JPEG picture");
-  MeshTexture out;
-  out.width = static_cast<std::uint32_t>(width);
-  out.height = static_cast<std::uint32_t>(height);
-  out.rgba.assign(pixels.get(), pixels.get() + 4ULL * out.width * out.height);
-  out_.textures.push_back(std::move(out));
-  return decoded_[source] = static_cast<int>(out_.textures.size()) - 1;
+  if (const auto transmission = json.extension("KHR_materials_transmission")) {
+    out.drawn.transmission = static_cast<float>(transmission->bounded("transmissionFactor", 0.0, 1.0, 0.0));
+    if (out.drawn.transmission > 0.0F) out.drawn.kind = SurfaceKind::glass;
+    if (transmission->has("transmissionTexture")) undrawn.insert("transmission textures");
+  }
+  glm::dvec3 emission(0.0);
+  json.bounded("emissiveFactor", 0.0, 1.0, std::span<double>(&emission.x, 3));
+  if (emission != glm::dvec3(0.0)) undrawn.insert("emission");
+  if (json.has("normalTexture")) undrawn.insert("normal maps");
+  if (json.has("occlusionTexture")) undrawn.insert("occlusion maps");
+  return out;
+}
+
+}  // namespace
+
+void parse_materials(const GltfJson& root, GltfDocument& out, std::set<std::string>& undrawn) {
+  for (const GltfJson& json : root.objects("images")) {
+    GltfImage image;
+    if (json.has("uri")) image.uri = json.text("uri");
+    image.view = json.index("bufferView", "bufferViews");
+    if (image.uri.has_value() == (image.view >= 0)) fail(json.path() + " is no picture", "allowed is either uri or bufferView");
+    out.images.push_back(std::move(image));
+  }
+  std::vector<MeshSampler> samplers;
+  for (const GltfJson& json : root.objects("samplers")) samplers.push_back(sampler(json));
+  for (const GltfJson& json : root.objects("textures")) {
+    GltfTexture texture;
+    texture.image = json.index("source", "images");
+    const int index = json.index("sampler", "samplers");
+    if (index >= 0) texture.sampler = samplers[static_cast<std::size_t>(index)];
+    out.textures.push_back(texture);
+  }
+  for (const GltfJson& json : root.objects("materials")) out.materials.push_back(material(json, undrawn));
 }
 
 }  // namespace tyndall::scene

@@ -1,75 +1,133 @@
-// Where meshes are placed: the tree of nodes of the scene.
-#include "scene/mesh/gltf_reader.hpp"
-
+// Meshes, nodes, skins and scenes of a glTF document.
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
+
+#include "scene/mesh/gltf_decoders.hpp"
+#include "scene/mesh/gltf_json.hpp"
 
 namespace tyndall::scene {
 namespace {
 
-constexpr int kMaxNodeDepth = 256;  // of a tree of nodes
-constexpr std::uint64_t kMaxNodeVisits = 1U << 20U;
+GltfAttributes attributes(const GltfJson& json) {
+  GltfAttributes out;
+  for (auto& [semantic, accessor] : json.named_indices("accessors")) out[semantic] = accessor;
+  return out;
+}
 
-}  // namespace
-
-glm::dmat4 GltfReader::transform(const tinygltf::Node& node, std::size_t index) {
-  glm::dmat4 out(1.0);
-  if (node.matrix.size() == 16) {
-    for (int i = 0; i < 16; ++i) out[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
-  } else {
-    const auto vector = [](const std::vector<double>& v, double rest) {
-      return v.size() == 3 ? glm::dvec3(v[0], v[1], v[2]) : glm::dvec3(rest);
-    };
-    const glm::dvec3 scale = vector(node.scale, 1.0);
-    glm::dquat turn(1.0, 0.0, 0.0, 0.0);
-    if (node.rotation.size() == 4) turn = glm::dquat(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
-    const double length = glm::length(turn);
-    if (!(length > 0.0)) fail("has " + at("nodes", index) + " with a rotation of no length", "allowed is a unit quaternion");
-    const glm::dmat3 rotation = glm::mat3_cast(turn / length);
-    for (int c = 0; c < 3; ++c) out[c] = glm::dvec4(rotation[c] * scale[c], 0.0);
-    out[3] = glm::dvec4(vector(node.translation, 0.0), 1.0);
+GltfPrimitive primitive(const GltfJson& json) {
+  GltfPrimitive out;
+  out.attributes = attributes(json.object("attributes"));
+  out.indices = json.index("indices", "accessors");
+  out.material = json.index("material", "materials");
+  out.mode = static_cast<int>(json.integer("mode", 0, 6, 4));
+  for (const GltfJson& target : json.objects("targets")) out.targets.push_back(attributes(target));
+  if (const auto draco = json.extension("KHR_draco_mesh_compression"); kHasDraco && draco) {
+    if (out.mode != 4 && out.mode != 5) json.refuse("mode", "allowed are 4 and 5 with KHR_draco_mesh_compression");
+    GltfDraco compressed;
+    compressed.view = static_cast<std::size_t>(draco->index("bufferView", "bufferViews", true));
+    const GltfJson numbers = draco->object("attributes");
+    for (const auto& [semantic, accessor] : out.attributes) {
+      if (!numbers.has(semantic.c_str())) continue;
+      compressed.attributes[semantic] = static_cast<std::uint32_t>(numbers.integer(semantic.c_str(), 0, 65535));
+    }
+    out.draco = std::move(compressed);
   }
-  for (int c = 0; c < 4; ++c) {
-    for (int r = 0; r < 4; ++r) {
-      if (!std::isfinite(out[c][r])) fail("has " + at("nodes", index) + " with a transform that is not finite", "allowed are finite numbers");
+  return out;
+}
+
+glm::dmat4 local_transform(const GltfJson& json) {
+  glm::dmat4 out(1.0);
+  if (json.numbers("matrix", std::span<double>(&out[0][0], 16))) {
+    for (const char* const other : {"translation", "rotation", "scale"}) {
+      if (json.has(other)) fail(json.path() + " has both a matrix and a " + other, "allowed is one of them");
+    }
+    if (std::abs(out[0][3]) > 1e-6 || std::abs(out[1][3]) > 1e-6 || std::abs(out[2][3]) > 1e-6 || std::abs(out[3][3] - 1.0) > 1e-6) {
+      json.refuse("matrix", "allowed is a matrix whose fourth row is 0, 0, 0, 1");
+    }
+    return out;
+  }
+  glm::dvec3 translation(0.0), scale(1.0);
+  glm::dvec4 rotation(0.0, 0.0, 0.0, 1.0);
+  json.numbers("translation", std::span<double>(&translation.x, 3));
+  json.numbers("scale", std::span<double>(&scale.x, 3));
+  json.bounded("rotation", -1.0, 1.0, std::span<double>(&rotation.x, 4));
+  const double length = glm::length(rotation);
+  if (!(length > 1e-3)) fail(json.path("rotation") + " has no length", "allowed is a unit quaternion");
+  rotation /= length;
+  const glm::dmat3 turned = glm::mat3_cast(glm::dquat(rotation.w, rotation.x, rotation.y, rotation.z));
+  for (int c = 0; c < 3; ++c) out[c] = glm::dvec4(turned[c] * scale[c], 0.0);
+  out[3] = glm::dvec4(translation, 1.0);
+  return out;
+}
+
+GltfMesh mesh(const GltfJson& json) {
+  GltfMesh out;
+  for (const GltfJson& part : json.objects("primitives")) out.primitives.push_back(primitive(part));
+  if (out.primitives.empty()) json.refuse("primitives", "allowed is an array of at least one primitive");
+  const std::size_t targets = out.primitives[0].targets.size();
+  for (const GltfPrimitive& part : out.primitives) {
+    if (part.targets.size() != targets) fail(json.path() + " has primitives with unequal numbers of morph targets", "allowed is one number for all");
+  }
+  out.weights = json.numbers("weights");
+  if (json.has("weights") && out.weights.size() != targets) {
+    json.refuse("weights", "allowed are " + std::to_string(targets) + " numbers, one for each morph target");
+  }
+  out.weights.resize(targets, 0.0);
+  return out;
+}
+
+GltfNode node(const GltfJson& json, const GltfDocument& document) {
+  GltfNode out;
+  out.parent_from_node = local_transform(json);
+  out.mesh = json.index("mesh", "meshes");
+  out.skin = json.index("skin", "skins");
+  out.children = json.indices("children", "nodes");
+  if (json.has("weights")) {
+    out.weights = json.numbers("weights");
+    const std::size_t targets = out.mesh < 0 ? 0 : document.meshes[static_cast<std::size_t>(out.mesh)].weights.size();
+    if (out.weights->size() != targets) {
+      json.refuse("weights", "allowed are " + std::to_string(targets) + " numbers, one for each morph target of its mesh");
     }
   }
   return out;
 }
 
-void GltfReader::place(std::vector<std::vector<glm::dmat4>>& placed) {
-  if (model_.scenes.empty()) {
-    // Without a scene: every node that is no other's child.
-    std::vector<bool> child(model_.nodes.size(), false);
-    for (const tinygltf::Node& node : model_.nodes) {
-      for (const int c : node.children) {
-        if (c >= 0 && static_cast<std::size_t>(c) < child.size()) child[static_cast<std::size_t>(c)] = true;
-      }
+GltfSkin skin(const GltfJson& json, const GltfDocument& document) {
+  GltfSkin out;
+  out.joints = json.indices("joints", "nodes");
+  if (out.joints.empty()) json.refuse("joints", "allowed is an array of at least one node");
+  out.inverse_bind = json.index("inverseBindMatrices", "accessors");
+  if (out.inverse_bind >= 0) {
+    const GltfAccessor& accessor = document.accessors[static_cast<std::size_t>(out.inverse_bind)];
+    if (accessor.components != 16 || accessor.component != GltfComponent::float32 || accessor.count < out.joints.size()) {
+      json.refuse("inverseBindMatrices", "allowed is an accessor of at least " + std::to_string(out.joints.size()) + " MAT4 of floats");
     }
-    for (std::size_t i = 0; i < model_.nodes.size(); ++i) {
-      if (!child[i]) visit(static_cast<int>(i), glm::dmat4(1.0), 0, placed);
-    }
-    return;
   }
-  const int index = model_.defaultScene < 0 ? 0 : model_.defaultScene;
-  if (static_cast<std::size_t>(index) >= model_.scenes.size()) fail("asks for a scene that is not there", range(model_.scenes.size()));
-  for (const int node : model_.scenes[static_cast<std::size_t>(index)].nodes) visit(node, glm::dmat4(1.0), 0, placed);
+  return out;
 }
 
-void GltfReader::visit(int index, const glm::dmat4& parent, int depth, std::vector<std::vector<glm::dmat4>>& placed) {
-  if (index < 0 || static_cast<std::size_t>(index) >= model_.nodes.size()) fail("has a node that is not there", range(model_.nodes.size()));
-  if (depth > kMaxNodeDepth || ++visits_ > kMaxNodeVisits) {
-    fail("has nodes that are nested too deeply or in a circle", "allowed is a tree of up to " + std::to_string(kMaxNodeDepth) + " levels");
+}  // namespace
+
+void parse_nodes(const GltfJson& root, GltfDocument& out, std::set<std::string>& undrawn) {
+  for (const GltfJson& json : root.objects("meshes")) out.meshes.push_back(mesh(json));
+  for (const GltfJson& json : root.objects("nodes")) out.nodes.push_back(node(json, out));
+  for (const GltfJson& json : root.objects("skins")) out.skins.push_back(skin(json, out));
+  const std::vector<GltfJson> scenes = root.objects("scenes");
+  const int index = root.index("scene", "scenes");
+  if (!scenes.empty()) {
+    out.roots = scenes[index < 0 ? 0 : static_cast<std::size_t>(index)].indices("nodes", "nodes");
+  } else {
+    // Without a scene: every node that is no other's child.
+    std::vector<bool> child(out.nodes.size(), false);
+    for (const GltfNode& one : out.nodes) {
+      for (const int c : one.children) child[static_cast<std::size_t>(c)] = true;
+    }
+    for (std::size_t i = 0; i < out.nodes.size(); ++i) {
+      if (!child[i]) out.roots.push_back(static_cast<int>(i));
+    }
   }
-  const auto i = static_cast<std::size_t>(index);
-  const tinygltf::Node& node = model_.nodes[i];
-  const glm::dmat4 here = parent * transform(node, i);
-  if (node.mesh >= 0) {
-    if (static_cast<std::size_t>(node.mesh) >= placed.size()) fail("has " + at("nodes", i) + " with a mesh that is not there", range(placed.size()));
-    if (++instances_ > kMaxMeshInstances) fail("places too many meshes", "allowed are up to " + std::to_string(kMaxMeshInstances));
-    placed[static_cast<std::size_t>(node.mesh)].push_back(here);
-  }
-  for (const int child : node.children) visit(child, here, depth + 1, placed);
+  if (root.has("animations")) undrawn.insert("animations (the nodes stand as the file places them)");
 }
 
 }  // namespace tyndall::scene

@@ -2,6 +2,7 @@
 // each, and instances that place the meshes. Filled from glTF files (gltf_file.hpp) or in code (hall.hpp).
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
@@ -33,10 +34,22 @@ enum class SurfaceKind : std::uint32_t {
   glass,  // light passes, multiplied by the colour
 };
 
+enum class TextureWrap : std::uint32_t { repeat, mirrored_repeat, clamp_to_edge };
+enum class MipFilter : std::uint32_t { none, nearest, linear };  // none: only the picture itself is sampled
+
+// How a texture is sampled. The default repeats it and filters between texels and mip levels.
+struct MeshSampler {
+  TextureWrap wrap_u = TextureWrap::repeat, wrap_v = TextureWrap::repeat;
+  bool mag_linear = true, min_linear = true;  // nearest otherwise
+  MipFilter mip = MipFilter::linear;
+  auto operator<=>(const MeshSampler&) const = default;
+};
+
 struct MeshMaterial {
   std::string name;
   glm::vec4 color = glm::vec4(1.0F);  // linear
   int texture = -1;                   // sRGB; multiplies the colour
+  MeshSampler sampler;                // of the texture
   SurfaceKind kind = SurfaceKind::opaque;
   float alpha_cutoff = 0.5F;
   float transmission = 0.0F;  // of glass: the part of the light that is not reflected diffusely

@@ -1,0 +1,547 @@
+// What glTF files say is what is drawn, or a line says what is not: samplers, morph targets, skins, sparse and compressed
+// data, and the schema, whose violations are refused with the path of the value.
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <random>
+
+#include "image/image.hpp"
+#include "mesh_files.hpp"
+#include "scene/mesh/gltf_file.hpp"
+
+#ifdef TYNDALL_WITH_DRACO
+#include <draco/compression/encode.h>
+#include <draco/mesh/triangle_soup_mesh_builder.h>
+#endif
+#ifdef TYNDALL_WITH_MESHOPT
+#include <meshoptimizer.h>
+#endif
+
+namespace tyndall::scene {
+namespace {
+
+using nlohmann::json;
+
+const std::vector<Point> kCorners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+class SceneGltf : public testing::Test {
+ protected:
+  SceneGltf() : folder_(std::filesystem::temp_directory_path() / ("tyndall-gltf-" + std::to_string(::getpid()))) {
+    std::filesystem::create_directories(folder_);
+  }
+  ~SceneGltf() override { std::filesystem::remove_all(folder_); }
+  [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
+  [[nodiscard]] Result<MeshData> read_bytes(const std::string& bytes) const {
+    std::ofstream(at("a.gltf"), std::ios::binary) << bytes;
+    return load_gltf(at("a.gltf"));
+  }
+  [[nodiscard]] MeshData load(const GltfFile& file) const {
+    Result<MeshData> read = read_bytes(file.text());
+    EXPECT_TRUE(read.ok()) << read.error().message;
+    return read.ok() ? std::move(read).value() : MeshData();
+  }
+  void refuses_bytes(const std::string& bytes, const std::string& part) const {
+    const Result<MeshData> read = read_bytes(bytes);
+    ASSERT_FALSE(read.ok()) << part;
+    EXPECT_NE(read.error().message.find(part), std::string::npos) << read.error().message << "\nexpected: " << part;
+    EXPECT_EQ(read.error().message.find('\n'), std::string::npos);
+    EXPECT_NE(read.error().message.find("allowed"), std::string::npos) << read.error().message;
+  }
+  void refuses(const std::function<void(GltfFile&)>& change, const std::string& part) const {
+    GltfFile file = triangle();
+    change(file);
+    refuses_bytes(file.text(), part);
+  }
+  static void expect_note(const MeshData& data, const std::string& part) {
+    std::size_t found = 0;
+    for (const std::string& note : data.notes) found += note.find(part) != std::string::npos ? 1 : 0;
+    EXPECT_EQ(found, 1U) << part << ", notes: " << json(data.notes).dump();
+  }
+  // A file with one mesh, one material and one node.
+  static GltfFile triangle() {
+    GltfFile file;
+    const int material = file.material({{"pbrMetallicRoughness", json::object()}});
+    const int position = file.points(kCorners);
+    file.node({{"mesh", file.mesh({{"attributes", {{"POSITION", position}}}, {"material", material}})}});
+    return file;
+  }
+  static json& primitive(GltfFile& file) { return file.root["meshes"][0]["primitives"][0]; }
+  // A picture in a view of the file, as the base colour of materials[0].
+  static void set_picture(GltfFile& file, const std::string& bytes) {
+    file.root["images"] = {{{"bufferView", file.view(bytes.data(), bytes.size())}, {"mimeType", "image/png"}}};
+    file.root["textures"] = {{{"source", 0}}};
+    file.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
+  }
+  [[nodiscard]] std::string picture() const {
+    image::Image picture(2, 1);
+    picture.rgb = {1, 0, 0, 0, 0, 1};
+    EXPECT_TRUE(image::write_png(at("p.png"), picture, {}).ok());
+    std::ifstream png(at("p.png"), std::ios::binary);
+    return {std::istreambuf_iterator<char>(png), std::istreambuf_iterator<char>()};
+  }
+  static std::vector<glm::vec3> positions(const MeshData& data) {
+    std::vector<glm::vec3> out;
+    for (const std::uint32_t i : data.indices) out.push_back(data.vertices[i].position);
+    return out;
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+TEST_F(SceneGltf, SamplersAreThoseOfTheFile) {
+  GltfFile file = triangle();
+  set_picture(file, picture());
+  file.root["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}, {"minFilter", 9728}},
+                           {{"minFilter", 9985}}, json::object()};
+  file.root["textures"] = {{{"source", 0}, {"sampler", 0}}, {{"source", 0}, {"sampler", 1}}, {{"source", 0}, {"sampler", 2}}, {{"source", 0}}};
+  for (int i = 1; i < 4; ++i) file.material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", i}}}}}});
+  const MeshData data = load(file);
+  ASSERT_GE(data.materials.size(), 4U);
+  EXPECT_EQ(data.textures.size(), 1U);  // one picture, however it is sampled
+  EXPECT_EQ(data.materials[0].sampler, (MeshSampler{TextureWrap::clamp_to_edge, TextureWrap::mirrored_repeat, false, false, MipFilter::none}));
+  EXPECT_EQ(data.materials[1].sampler, (MeshSampler{TextureWrap::repeat, TextureWrap::repeat, true, true, MipFilter::nearest}));
+  EXPECT_EQ(data.materials[2].sampler, MeshSampler());
+  EXPECT_EQ(data.materials[3].sampler, MeshSampler());
+  for (const auto& [name, value] : {std::pair("wrapS", 33072), std::pair("wrapT", 0), std::pair("magFilter", 9987), std::pair("minFilter", 9730)}) {
+    refuses([&, key = name, number = value](GltfFile& f) { f.root["samplers"] = {{{key, number}}}; },
+            "samplers[0]." + std::string(name) + " is " + std::to_string(value));
+  }
+}
+
+TEST_F(SceneGltf, MorphTargetsHaveTheirDefaultWeights) {
+  GltfFile file = triangle();
+  const int up = file.points({{0, 0, 4}, {0, 0, 4}, {0, 0, 4}});
+  const int aside = file.points({{8, 0, 0}, {8, 0, 0}, {8, 0, 0}});
+  primitive(file)["targets"] = {{{"POSITION", up}}, {{"POSITION", aside}}};
+  EXPECT_EQ(load(file).bounds.max, glm::dvec3(1, 1, 0));  // without weights the targets do not count
+  file.root["meshes"][0]["weights"] = {0.5, 0.0};
+  EXPECT_EQ(load(file).bounds.min, glm::dvec3(0, 0, 2));
+  // A node's weights replace those of its mesh, which other nodes keep.
+  file.node({{"mesh", 0}, {"weights", {0.0, 1.0}}});
+  const MeshData data = load(file);
+  EXPECT_EQ(data.meshes.size(), 2U);
+  EXPECT_EQ(data.bounds.min, glm::dvec3(0, 0, 0));
+  EXPECT_EQ(data.bounds.max, glm::dvec3(9, 1, 2));
+  file.root["nodes"][1]["weights"] = {1.0};
+  refuses_bytes(file.text(), "nodes[1].weights is an array of 1");
+  file.root["nodes"][1].erase("weights");
+  file.root["meshes"][0]["weights"] = {1.0, 0.0, 0.0};
+  refuses_bytes(file.text(), "meshes[0].weights is an array of 3");
+}
+
+TEST_F(SceneGltf, MorphTargetsMoveNormalsCoordinatesAndColours) {
+  GltfFile file = triangle();
+  primitive(file)["attributes"]["NORMAL"] = file.points({{0, 0, 1}, {0, 0, 1}, {0, 0, 1}});
+  primitive(file)["attributes"]["TEXCOORD_0"] = file.floats({0, 0, 1, 0, 0, 1}, 2);
+  primitive(file)["attributes"]["COLOR_0"] = file.floats({0, 0, 0, 0, 0, 0, 0, 0, 0}, 3);
+  primitive(file)["targets"] = {{{"NORMAL", file.points({{1, 0, -1}, {1, 0, -1}, {1, 0, -1}})},
+                                 {"TEXCOORD_0", file.floats({2, 0, 2, 0, 2, 0}, 2)},
+                                 {"COLOR_0", file.floats({1, 0, 9, 1, 0, 9, 1, 0, 9}, 3)}}};
+  file.root["meshes"][0]["weights"] = {1.0};
+  const MeshData data = load(file);
+  ASSERT_EQ(data.vertices.size(), 3U);
+  EXPECT_EQ(data.vertices[0].normal, glm::vec3(1, 0, 0));
+  EXPECT_EQ(data.vertices[1].uv, glm::vec2(3, 0));
+  EXPECT_EQ(data.vertices[0].color, 0xFFFF00FFU);
+}
+
+TEST_F(SceneGltf, SpecularGlossinessIsDrawnWithItsDiffuseColour) {
+  GltfFile file = triangle();
+  file.root["materials"][0] = {{"pbrMetallicRoughness", {{"baseColorFactor", {0, 0, 1, 1}}}},
+                               {"extensions", {{"KHR_materials_pbrSpecularGlossiness", {{"diffuseFactor", {0.5, 0.25, 0, 1}}, {"glossinessFactor", 0.75}}}}}};
+  file.root["extensionsUsed"] = file.root["extensionsRequired"] = {"KHR_materials_pbrSpecularGlossiness"};
+  const MeshData data = load(file);
+  ASSERT_FALSE(data.materials.empty());
+  EXPECT_EQ(data.materials[0].color, glm::vec4(0.5F, 0.25F, 0.0F, 1.0F));
+  EXPECT_EQ(data.materials[0].roughness, 0.25F);
+  expect_note(data, "KHR_materials_pbrSpecularGlossiness");
+}
+
+TEST_F(SceneGltf, VersionsThatAreNotReadAreRefused) {
+  for (const char* const version : {"1.0", "3.0", "2", "two", "2.0.1"}) {
+    refuses([&](GltfFile& f) { f.root["asset"]["version"] = version; }, "asset.version is \"" + std::string(version));
+  }
+  refuses([](GltfFile& f) { f.root["asset"]["version"] = 2.0; }, "asset.version is 2.0");
+  refuses([](GltfFile& f) { f.root["asset"]["minVersion"] = "2.1"; }, "asset.minVersion is \"2.1\"");
+  GltfFile file = triangle();
+  file.root["asset"] = {{"version", "2.1"}, {"minVersion", "2.0"}};
+  EXPECT_FALSE(load(file).indices.empty());
+  std::string binary = triangle().binary();
+  ASSERT_TRUE(read_bytes(binary).ok());
+  binary[4] = 1;
+  refuses_bytes(binary, "a .glb of version 1");
+  binary[4] = 2;
+  refuses_bytes(binary.substr(0, binary.size() - 4), "states " + std::to_string(binary.size()) + " bytes");
+  const Result<MeshData> longer = read_bytes(binary + "tail");
+  ASSERT_TRUE(longer.ok());
+  expect_note(longer.value(), "bytes after the end");
+}
+
+// Types, lengths and ranges of the schema, of which the reader once skipped what did not fit.
+TEST_F(SceneGltf, ValuesOutsideTheSchemaAreRefusedWithTheirPath) {
+  const auto set = [&](const char* pointer, const json& value, const std::string& part) {
+    refuses([&](GltfFile& f) { f.root[json::json_pointer(pointer)] = value; }, part);
+  };
+  set("/bufferViews/0/byteOffset", -16, "bufferViews[0].byteOffset is -16");
+  set("/bufferViews/0/byteOffset", "0", "bufferViews[0].byteOffset is \"0\"");
+  set("/bufferViews/0/byteStride", -12, "bufferViews[0].byteStride is -12");
+  set("/bufferViews/0/byteStride", 14, "bufferViews[0].byteStride is 14");
+  set("/bufferViews/0/byteStride", 8, "accessors[0] has elements of 12 bytes");
+  set("/bufferViews/0/byteLength", 0, "bufferViews[0].byteLength is 0");
+  set("/bufferViews/0/buffer", 0.5, "bufferViews[0].buffer is 0.5");
+  set("/accessors/0/byteOffset", -4, "accessors[0].byteOffset is -4");
+  set("/accessors/0/bufferView", -1, "accessors[0].bufferView is -1");
+  set("/accessors/0/componentType", 5124, "accessors[0].componentType is 5124");
+  set("/accessors/0/type", "VEC5", "accessors[0].type is \"VEC5\"");
+  set("/accessors/0/count", 0, "accessors[0].count is 0");
+  set("/accessors/0/normalized", 1, "accessors[0].normalized is 1");
+  set("/meshes/0/primitives/0/indices", -5, "meshes[0].primitives[0].indices is -5");
+  set("/meshes/0/primitives/0/indices", "0", "meshes[0].primitives[0].indices is \"0\"");
+  set("/meshes/0/primitives/0/mode", 7, "meshes[0].primitives[0].mode is 7");
+  set("/meshes/0/primitives/0/attributes/NORMAL", -1, "meshes[0].primitives[0].attributes.NORMAL is -1");
+  set("/meshes/0/primitives", json::object(), "meshes[0].primitives is an object");
+  set("/materials/0/pbrMetallicRoughness/baseColorFactor", {1, 1}, "materials[0].pbrMetallicRoughness.baseColorFactor is an array of 2");
+  set("/materials/0/pbrMetallicRoughness/baseColorFactor", {1, 1, "1", 1}, "baseColorFactor[2] is \"1\"");
+  set("/materials/0/pbrMetallicRoughness/baseColorFactor", {1.1, 1, 1, 1}, "baseColorFactor[0] is 1.1");
+  set("/materials/0/pbrMetallicRoughness/baseColorTexture", {{"index", -1}}, "baseColorTexture.index is -1");
+  set("/materials/0/pbrMetallicRoughness", 3, "materials[0].pbrMetallicRoughness is 3");
+  set("/materials/0/doubleSided", "yes", "materials[0].doubleSided is \"yes\"");
+  set("/materials/0/alphaMode", 2, "materials[0].alphaMode is 2");
+  set("/materials/0/extensions/KHR_materials_transmission", {{"transmissionFactor", "1"}}, "transmissionFactor is \"1\"");
+  set("/materials", json::object(), "materials is an object");
+  set("/nodes/0/translation", {1, 2}, "nodes[0].translation is an array of 2");
+  set("/nodes/0/rotation", {0, 0, 0, 2}, "nodes[0].rotation[3] is 2");
+  set("/nodes/0/scale", "2", "nodes[0].scale is \"2\"");
+  set("/nodes/0/matrix", std::vector<int>(15, 1), "nodes[0].matrix is an array of 15");
+  set("/nodes/0/matrix", std::vector<int>(16, 1), "nodes[0].matrix is an array of 16");
+  set("/nodes/0/mesh", 0.5, "nodes[0].mesh is 0.5");
+  set("/nodes/0/children", 3, "nodes[0].children is 3");
+  set("/nodes/0/skin", 0, "nodes[0].skin is 0");
+  set("/scene", -1, "scene is -1");
+  set("/extensionsRequired", "KHR_x", "extensionsRequired is \"KHR_x\"");
+  refuses([](GltfFile& f) { f.root["nodes"][0]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; f.root["nodes"][0]["scale"] = {1, 1, 1}; },
+          "nodes[0] has both a matrix and a scale");
+  // A texture's transform counts as a whole, too.
+  refuses([&](GltfFile& f) {
+    set_picture(f, picture());
+    f.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"] = {{"scale", {2}}};
+  }, "KHR_texture_transform.scale is an array of 1");
+  refuses([](GltfFile& f) { primitive(f)["attributes"]["COLOR_0"] = f.accessor<std::uint8_t>(std::vector<std::uint8_t>(9, 255), 5121, "VEC3", 3); },
+          "COLOR_0 has integers that are not normalized");
+  EXPECT_NE(read_bytes("[1, 2]").ok(), true);
+}
+
+TEST_F(SceneGltf, RoundedFactorsAreClamped) {
+  GltfFile file = triangle();
+  file.root["materials"][0] = {{"pbrMetallicRoughness", {{"baseColorFactor", {1.0000001192092896, -1e-8, 0.5, 1}}, {"roughnessFactor", 1.0000001}}}};
+  const MeshData data = load(file);
+  ASSERT_FALSE(data.materials.empty());
+  EXPECT_EQ(data.materials[0].color, glm::vec4(1.0F, 0.0F, 0.5F, 1.0F));
+  EXPECT_EQ(data.materials[0].roughness, 1.0F);
+}
+
+TEST_F(SceneGltf, NumbersThatAreNotFiniteAreRefusedByName) {
+  for (const auto& [name, components] : {std::pair("NORMAL", 3), std::pair("TEXCOORD_0", 2), std::pair("COLOR_0", 3), std::pair("COLOR_0", 4)}) {
+    for (const float bad : {kNaN, std::numeric_limits<float>::infinity()}) {
+      refuses([&, key = name, size = components](GltfFile& f) {
+        std::vector<float> values(3 * static_cast<std::size_t>(size), 0.5F);
+        values.back() = bad;
+        primitive(f)["attributes"][key] = f.floats(values, size);
+      }, "meshes[0].primitives[0].attributes." + std::string(name) + " (accessors[1]) has an element that is not finite, number 2");
+    }
+  }
+  GltfFile file = triangle();
+  primitive(file)["attributes"]["COLOR_0"] = file.floats({2, 0, 0, 1, 0, 0, 1, 0, 0}, 3);
+  const MeshData data = load(file);
+  EXPECT_EQ(data.vertices[0].color, 0xFF0000FFU);
+  expect_note(data, "COLOR_0 has values outside 0 to 1");
+}
+
+TEST_F(SceneGltf, ATextureWithoutItsCoordinatesIsLeftOutWithANote) {
+  GltfFile file = triangle();
+  set_picture(file, picture());
+  file.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"] = 1;
+  file.root["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {0.5, 0.5, 0.5, 1};
+  primitive(file)["attributes"]["TEXCOORD_0"] = file.floats({0, 0, 1, 0, 0, 1}, 2);
+  const MeshData without = load(file);
+  ASSERT_EQ(without.parts.size(), 1U);
+  EXPECT_EQ(without.materials[without.parts[0].material].texture, -1);
+  EXPECT_EQ(without.materials[without.parts[0].material].color.x, 0.5F);
+  expect_note(without, "meshes[0].primitives[0] has no TEXCOORD_1, which materials[0] names");
+  primitive(file)["attributes"]["TEXCOORD_1"] = file.floats({0.5, 0, 1, 0, 0, 1}, 2);
+  const MeshData with = load(file);
+  EXPECT_EQ(with.materials[with.parts[0].material].texture, 0);
+  EXPECT_EQ(with.vertices[0].uv, glm::vec2(0.5F, 0.0F));
+  EXPECT_TRUE(with.notes.empty());
+}
+
+TEST_F(SceneGltf, AccessorsWithoutDataAreZerosAndSparseOnesAreRead) {
+  GltfFile file = triangle();
+  const std::vector<std::uint16_t> where = {1, 2};
+  const int index_view = file.view(where.data(), where.size() * sizeof(std::uint16_t));
+  const std::vector<float> values = {5, 0, 0, 0, 5, 0};
+  const int value_view = file.view(values.data(), values.size() * sizeof(float));
+  const json sparse = {{"count", 2}, {"indices", {{"bufferView", index_view}, {"componentType", 5123}}}, {"values", {{"bufferView", value_view}}}};
+  // Over the corners, and over zeros.
+  for (const bool zeros : {false, true}) {
+    file.root["accessors"][0]["sparse"] = sparse;
+    if (zeros) file.root["accessors"][0].erase("bufferView");
+    EXPECT_EQ(positions(load(file)), (std::vector<glm::vec3>{{0, 0, 0}, {5, 0, 0}, {0, 5, 0}}));
+  }
+  file.root["accessors"][0]["sparse"]["count"] = 4;
+  refuses_bytes(file.text(), "accessors[0].sparse.count is 4");
+  file.root["accessors"][0]["sparse"] = sparse;
+  file.root["accessors"][0]["sparse"]["values"]["byteOffset"] = 8;
+  refuses_bytes(file.text(), "accessors[0].sparse.values of 2 elements ends at byte 32");
+  file.root["accessors"][0]["sparse"] = sparse;
+  file.bytes[37] = 9;  // the first index
+  refuses_bytes(file.text(), "has the sparse index 2305");
+  // Colours without data are black.
+  GltfFile black = triangle();
+  black.root["accessors"].push_back({{"componentType", 5126}, {"type", "VEC3"}, {"count", 3}});
+  primitive(black)["attributes"]["COLOR_0"] = 1;
+  EXPECT_EQ(load(black).vertices[0].color, 0xFF000000U);
+}
+
+TEST_F(SceneGltf, ExtensionsAreRefusedOrNotedByName) {
+  refuses([](GltfFile& f) { f.root["extensionsRequired"] = {"KHR_texture_basisu"}; }, "requires the extension KHR_texture_basisu");
+  refuses([](GltfFile& f) { f.root["extensionsRequired"] = {"KHR_materials_unlit"}; }, "requires the extension KHR_materials_unlit");
+  GltfFile file = triangle();
+  file.root["extensionsUsed"] = {"KHR_materials_unlit", "KHR_texture_transform", "KHR_lights_punctual", "KHR_materials_unlit"};
+  file.root["materials"][0]["emissiveFactor"] = {1, 0, 0};
+  file.root["animations"] = json::array({json::object()});
+  const MeshData data = load(file);
+  expect_note(data, "not supported are ignored: KHR_lights_punctual, KHR_materials_unlit");
+  expect_note(data, "animations");
+  expect_note(data, "emission");
+  // A texture that only an extension fills.
+  set_picture(file, picture());
+  file.root["textures"] = {{{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}}};
+  expect_note(load(file), "textures[0] has no PNG or JPEG picture");
+}
+
+TEST_F(SceneGltf, SkinsAreDrawnInThePoseOfTheirJoints) {
+  GltfFile file = triangle();
+  primitive(file)["attributes"]["JOINTS_0"] = file.accessor<std::uint8_t>({0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}, 5121, "VEC4", 4);
+  primitive(file)["attributes"]["WEIGHTS_0"] = file.floats({1, 0, 0, 0, 1, 0, 0, 0, 0.5, 0.5, 0, 0}, 4);
+  primitive(file)["attributes"]["NORMAL"] = file.points({{0, 0, 1}, {0, 0, 1}, {0, 1, 0}});
+  // The second joint is a child of the first and stands at (1, 0, 0) when it is bound; now it is turned by 90 degrees about z.
+  const int child = file.node({{"translation", {1, 0, 0}}, {"rotation", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}}}, false);
+  const int root = file.node({{"translation", {0, 0, 3}}, {"children", {child}}});
+  const int inverse = file.accessor<float>({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1,
+                                            1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1}, 5126, "MAT4", 16);
+  file.root["skins"] = {{{"joints", {root, child}}, {"inverseBindMatrices", inverse}}};
+  file.root["nodes"][0]["skin"] = 0;
+  file.root["nodes"][0]["translation"] = {100, 0, 0};  // does not count
+  const MeshData data = load(file);
+  const std::vector<glm::vec3> p = positions(data);
+  ASSERT_EQ(p.size(), 3U);
+  // (0, 1, 0) relative to the second joint is (-1, 1, 0), which turns to (-1, -1, 0): (0, -1, 3). Its other half is (0, 1, 3).
+  const std::vector<glm::vec3> expected = {{0, 0, 3}, {1, 0, 3}, {0, 0, 3}};
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_LT(glm::distance(p[i], expected[i]), 1e-5F) << i;
+  EXPECT_LT(glm::distance(data.vertices[2].normal, glm::normalize(glm::vec3(-1, 1, 0))), 1e-5F);
+  expect_note(data, "skins are drawn in the pose");
+  primitive(file)["attributes"].erase("WEIGHTS_0");
+  refuses_bytes(file.text(), "only one of JOINTS_0 and WEIGHTS_0");
+  file.root["skins"][0]["joints"] = {root};
+  GltfFile few = file;
+  primitive(few)["attributes"]["WEIGHTS_0"] = few.floats({1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 0, 0}, 4);
+  refuses_bytes(few.text(), "has joint 1 at vertex 1");
+}
+
+std::string chunk(const std::string& kind, const std::string& body) {
+  const auto word = [](std::size_t value) {
+    return std::string{static_cast<char>(value >> 24U), static_cast<char>(value >> 16U), static_cast<char>(value >> 8U), static_cast<char>(value)};
+  };
+  const std::string text = kind + body;
+  return word(body.size()) + text + word(crc32(0, reinterpret_cast<const unsigned char*>(text.data()), static_cast<unsigned>(text.size())));
+}
+
+// A PNG of 8-bit grey of side 256 * `high_byte` whose picture data inflates to `size` zeros.
+std::string grey_png(char high_byte, std::size_t size) {
+  std::vector<unsigned char> zeros(size), packed(compressBound(size));
+  uLongf length = packed.size();
+  compress(packed.data(), &length, zeros.data(), size);
+  const std::string side = {0, 0, high_byte, static_cast<char>(high_byte == 0 ? 2 : 0)};
+  return "\x89PNG\r\n\x1a\n" + chunk("IHDR", side + side + std::string("\x08\0\0\0\0", 5)) +
+         chunk("IDAT", std::string(reinterpret_cast<char*>(packed.data()), length)) + chunk("IEND", "");
+}
+
+long peak_kib() {
+  rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss;
+}
+
+TEST_F(SceneGltf, DamagedPicturesAreRefusedBeforeTheyCostMemory) {
+  const auto with = [&](const std::string& bytes) {
+    return [&](GltfFile& f) { set_picture(f, bytes); };
+  };
+  // 2x2, and the same with too little and too much picture data.
+  GltfFile fine = triangle();
+  set_picture(fine, grey_png(0, 6));
+  EXPECT_EQ(load(fine).textures.size(), 1U);
+  const long before = peak_kib();
+  refuses(with(grey_png(0, 5)), "images[0] is a picture whose picture data is damaged");
+  refuses(with(grey_png(0, 60'000'000)), "images[0] is a picture whose picture data is damaged");
+  refuses(with(grey_png(30, 1000)), "images[0] is a picture whose picture data is damaged");
+  std::string claims = grey_png(0, 6);
+  claims[33] = 0x7F;  // the length of IDAT
+  refuses(with(claims), "has a chunk of 2130706");
+  EXPECT_LT(peak_kib() - before, 150'000);  // the test itself needs 60 MB for the zeros
+  std::string changed = grey_png(0, 6);
+  changed[43] = static_cast<char>(changed[43] ^ 1);
+  refuses(with(changed), "images[0] is a picture whose checksums are wrong");
+  refuses(with(grey_png(0, 6).substr(0, 60)), "images[0] is a picture which");
+  refuses([&](GltfFile& f) {
+    set_picture(f, picture());
+    f.root["bufferViews"].back()["byteOffset"] = 1000;
+  }, "bufferViews[1] ends at byte ");
+}
+
+#ifdef TYNDALL_WITH_MESHOPT
+// Two triangles in compressed views, whose own buffer has no data. With normals through a filter.
+GltfFile compressed_quad(const char* mode) {
+  GltfFile file;
+  const std::vector<float> corners = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+  const std::vector<std::uint32_t> indices = {0, 1, 2, 0, 2, 3};
+  std::vector<unsigned char> packed(meshopt_encodeVertexBufferBound(4, 12));
+  packed.resize(meshopt_encodeVertexBuffer(packed.data(), packed.size(), corners.data(), 4, 12));
+  const auto add = [&](std::size_t stride, std::size_t count, const char* as, const char* filter) {
+    const int view = file.view(packed.data(), packed.size());
+    const json at = file.root["bufferViews"][static_cast<std::size_t>(view)];
+    json compressed = {{"buffer", 0}, {"byteOffset", at["byteOffset"]}, {"byteLength", at["byteLength"]}, {"byteStride", stride}, {"count", count}, {"mode", as}};
+    if (filter != nullptr) compressed["filter"] = filter;
+    file.root["bufferViews"][static_cast<std::size_t>(view)] = {{"buffer", 1}, {"byteLength", stride * count}, {"extensions", {{"EXT_meshopt_compression", compressed}}}};
+    return view;
+  };
+  const int position = add(12, 4, "ATTRIBUTES", nullptr);
+  const std::vector<float> normals = {0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0};
+  std::vector<std::int8_t> octahedral(16);
+  meshopt_encodeFilterOct(octahedral.data(), 4, 4, 8, normals.data());
+  packed.resize(meshopt_encodeVertexBufferBound(4, 4));
+  packed.resize(meshopt_encodeVertexBuffer(packed.data(), packed.size(), octahedral.data(), 4, 4));
+  const int normal = add(4, 4, "ATTRIBUTES", "OCTAHEDRAL");
+  file.root["bufferViews"][static_cast<std::size_t>(normal)]["byteStride"] = 4;
+  packed.resize(meshopt_encodeIndexBufferBound(6, 4));
+  packed.resize(mode == std::string("TRIANGLES") ? meshopt_encodeIndexBuffer(packed.data(), packed.size(), indices.data(), 6)
+                                                 : meshopt_encodeIndexSequence(packed.data(), packed.size(), indices.data(), 6));
+  const int index = add(2, 6, mode, nullptr);
+  file.root["accessors"] = {{{"bufferView", position}, {"componentType", 5126}, {"type", "VEC3"}, {"count", 4}},
+                            {{"bufferView", normal}, {"componentType", 5120}, {"normalized", true}, {"type", "VEC3"}, {"count", 4}},
+                            {{"bufferView", index}, {"componentType", 5123}, {"type", "SCALAR"}, {"count", 6}}};
+  file.node({{"mesh", file.mesh({{"attributes", {{"POSITION", 0}, {"NORMAL", 1}}}, {"indices", 2}})}});
+  file.root["extensionsRequired"] = {"EXT_meshopt_compression", "KHR_mesh_quantization"};
+  file.more_buffers = {{{"byteLength", 4 * 12}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}};
+  return file;
+}
+
+TEST_F(SceneGltf, MeshoptCompressionIsRead) {
+  for (const char* const mode : {"TRIANGLES", "INDICES"}) {
+    const MeshData data = load(compressed_quad(mode));
+    ASSERT_EQ(data.indices.size(), 6U) << mode;
+    double area = 0.0;
+    for (std::size_t t = 0; t < 6; t += 3) {
+      const auto p = [&](std::size_t k) { return data.vertices[data.indices[t + k]].position; };
+      area += 0.5 * static_cast<double>(glm::cross(p(1) - p(0), p(2) - p(0)).z);
+    }
+    EXPECT_DOUBLE_EQ(area, 1.0);
+    EXPECT_EQ(data.bounds.max, glm::dvec3(1, 1, 0));
+    for (const MeshVertex& v : data.vertices) EXPECT_EQ(v.normal, glm::vec3(0, 0, 1));
+  }
+  const auto changed = [&](const char* name, const json& value, const std::string& part) {
+    GltfFile file = compressed_quad("TRIANGLES");
+    file.root["bufferViews"][2]["extensions"]["EXT_meshopt_compression"][name] = value;
+    refuses_bytes(file.text(), part);
+  };
+  changed("mode", "POINTS", "EXT_meshopt_compression.mode is \"POINTS\"");
+  changed("byteStride", 3, "EXT_meshopt_compression.byteStride is 3");
+  changed("count", 7, "EXT_meshopt_compression.count is 7");
+  changed("count", 9, "EXT_meshopt_compression decodes to 18 bytes");
+  changed("byteLength", 4, "EXT_meshopt_compression cannot be decoded");
+  GltfFile huge = compressed_quad("TRIANGLES");
+  huge.root["bufferViews"][2]["extensions"]["EXT_meshopt_compression"]["count"] = 90'000'000;
+  huge.root["bufferViews"][2]["byteLength"] = 180'000'000;
+  huge.more_buffers[0]["byteLength"] = 180'000'000;
+  refuses_bytes(huge.text(), "claims 180000000 bytes");
+}
+#endif
+
+#ifdef TYNDALL_WITH_DRACO
+GltfFile draco_quad() {
+  draco::TriangleSoupMeshBuilder builder;
+  builder.Start(2);
+  const int position = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+  const int uv = builder.AddAttribute(draco::GeometryAttribute::TEX_COORD, 2, draco::DT_FLOAT32);
+  const std::vector<std::array<float, 3>> p = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  const std::array<std::array<std::size_t, 3>, 2> faces = {{{0, 1, 2}, {0, 2, 3}}};
+  for (std::uint32_t f = 0; f < 2; ++f) {
+    const auto& [a, b, c] = faces[f];
+    builder.SetAttributeValuesForFace(position, draco::FaceIndex(f), p[a].data(), p[b].data(), p[c].data());
+    builder.SetAttributeValuesForFace(uv, draco::FaceIndex(f), p[a].data(), p[b].data(), p[c].data());  // x and y
+  }
+  const std::unique_ptr<draco::Mesh> mesh = builder.Finalize();
+  draco::Encoder encoder;
+  draco::EncoderBuffer buffer;
+  EXPECT_TRUE(encoder.EncodeMeshToBuffer(*mesh, &buffer).ok());
+  GltfFile file;
+  const int view = file.view(buffer.data(), buffer.size());
+  file.root["accessors"] = {{{"componentType", 5126}, {"type", "VEC3"}, {"count", 4}},
+                            {{"componentType", 5126}, {"type", "VEC2"}, {"count", 4}},
+                            {{"componentType", 5125}, {"type", "SCALAR"}, {"count", 6}}};
+  const json compressed = {{"bufferView", view}, {"attributes", {{"POSITION", mesh->attribute(position)->unique_id()}, {"TEXCOORD_0", mesh->attribute(uv)->unique_id()}}}};
+  file.node({{"mesh", file.mesh({{"attributes", {{"POSITION", 0}, {"TEXCOORD_0", 1}}}, {"indices", 2}, {"extensions", {{"KHR_draco_mesh_compression", compressed}}}})}});
+  file.root["extensionsRequired"] = {"KHR_draco_mesh_compression"};
+  return file;
+}
+
+TEST_F(SceneGltf, DracoCompressionIsRead) {
+  const GltfFile file = draco_quad();
+  const MeshData data = load(file);
+  ASSERT_EQ(data.indices.size(), 6U);
+  EXPECT_EQ(data.bounds.min, glm::dvec3(0, 0, 0));
+  EXPECT_EQ(data.bounds.max, glm::dvec3(1, 1, 0));
+  double area = 0.0;
+  for (std::size_t t = 0; t < 6; t += 3) {
+    const auto v = [&](std::size_t k) { return data.vertices[data.indices[t + k]]; };
+    area += 0.5 * static_cast<double>(glm::cross(v(1).position - v(0).position, v(2).position - v(0).position).z);
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(v(k).uv, glm::vec2(v(k).position));
+  }
+  EXPECT_DOUBLE_EQ(area, 1.0);
+  const auto changed = [&](const char* pointer, const json& value, const std::string& part) {
+    GltfFile wrong = file;
+    wrong.root[json::json_pointer(pointer)] = value;
+    refuses_bytes(wrong.text(), part);
+  };
+  changed("/accessors/0/count", 5, "POSITION has 4 elements");
+  changed("/accessors/1/componentType", 5123, "TEXCOORD_0 has another type than its accessor");
+  changed("/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression/attributes/POSITION", 7, "attributes.POSITION is 7");
+  changed("/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression/bufferView", 3, "KHR_draco_mesh_compression.bufferView is 3");
+  changed("/bufferViews/0/byteLength", 9, "KHR_draco_mesh_compression cannot be decoded");
+}
+#endif
+
+#if defined(TYNDALL_WITH_MESHOPT) && defined(TYNDALL_WITH_DRACO)
+TEST_F(SceneGltf, DamagedCompressedDataNeverCrashes) {
+  std::mt19937 engine(5);
+  std::size_t refused = 0;
+  for (const GltfFile& whole : {compressed_quad("TRIANGLES"), compressed_quad("INDICES"), draco_quad()}) {
+    for (int i = 0; i < 150; ++i) {
+      GltfFile damaged = whole;
+      for (int k = 0; k < 1 + i % 3; ++k) damaged.bytes[engine() % damaged.bytes.size()] = static_cast<char>(engine());
+      refused += read_bytes(damaged.text()).ok() ? 0 : 1;
+    }
+  }
+  EXPECT_GT(refused, 100U);
+}
+#endif
+
+}  // namespace
+}  // namespace tyndall::scene
