@@ -35,6 +35,17 @@ Result<void> write_frame(scene::Scene& scene, const std::string& path, const con
   return image::write_png(path, display.value(), metadata_of(scene, settings, kind.value()));
 }
 
+// A flight by date takes its place from the elevation file when the scene file gives none.
+Result<void> find_place(scene::CameraPath& path, const scene::Scene& scene) {
+  if (!path.has_dates() || !path.place_text.empty()) return {};
+  if (!scene.place()) {
+    return config::input_error("a path with dates has no place, and the elevation file has none on the Earth", "[playback]",
+                               "needed is place = \"LAT,LON\"");
+  }
+  path.place = *scene.place();
+  return {};
+}
+
 }  // namespace
 
 int run_render(Args args) {
@@ -55,6 +66,7 @@ int run_render(Args args) {
   Result<std::unique_ptr<scene::Scene>> scene =
       scene::Scene::create(*host.value(), desc, options.settings.effect, options.settings.scene);
   if (!scene) return fail_input(scene.error());
+  if (Result<void> r = find_place(options.settings.path, *scene.value()); !r) return fail(r.error());
   Progress progress("render");
   for (std::uint32_t frame = 0; frame < options.frames; ++frame) {
     progress.update(frame, options.frames);

@@ -36,7 +36,7 @@ bool same_but_for_tone(const config::Settings& a, const config::Settings& b) {
 }
 
 bool same_ground(const scene::TerrainParams& a, const scene::TerrainParams& b) {
-  return a.source == b.source && a.seed == b.seed && a.exaggeration == b.exaggeration;
+  return a.source == b.source && a.seed == b.seed && a.exaggeration == b.exaggeration && a.units == b.units;
 }
 
 void go_back(config::Settings& settings, const config::Settings& asked, const config::Settings& had) {

@@ -63,7 +63,12 @@ void Viewer::follow_path(double seconds) {
     log("path stops");
     return;
   }
-  if (left_->facts().can_render) path_s_ += seconds;
+  const SceneFacts facts = left_->facts();
+  if (facts.can_render) path_s_ += seconds;
+  // A flight by date takes its place from the elevation file when the scene file gives none.
+  if (settings_.path.place_text.empty() && facts.elevations != nullptr && facts.elevations->place()) {
+    settings_.path.place = *facts.elevations->place();
+  }
   if (!settings_.path.loop) path_s_ = std::min(path_s_, end_s);
   settings_.scene = scene::pose_at(settings_.path, path_s_, settings_.scene, settings_.effect.planet.radius_m);
   frames_to_draw_ = std::max(frames_to_draw_, 2);

@@ -250,9 +250,6 @@ Result<void> check_path(const scene::CameraPath& path, const std::string& where)
   if (by_date && std::any_of(path.frames.begin(), path.frames.end(), has_sun)) {
     return input_error("the sun stands by date and by angles", where, "allowed is one of them in a path");
   }
-  if (by_date && path.place_text.empty()) {
-    return input_error("a path with dates has no place", where, "needed is place = \"LAT,LON\" in [playback]");
-  }
   if (!path.loop) return {};
   if (path.empty()) return input_error("there is no path to loop", where, "needed are two or more [[path]]");
   const scene::PathFrame& last = path.frames.back();

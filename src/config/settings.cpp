@@ -287,6 +287,12 @@ Result<void> check(const Settings& settings) {
         concat({"with 'homogeneous.air_length_m' = ", number_text(homogeneous.air_length_m)}),
         concat({"allowed is 1 to ", number_text(homogeneous.air_length_m)}));
   }
+  const std::string& source = settings.scene.terrain.source;
+  const bool file = source != "procedural" && source != "none";
+  if (settings.path.has_dates() && settings.path.place_text.empty() && !file) {
+    return input_error("a path with dates has no place", "[playback]",
+                       "needed is place = \"LAT,LON\", or an elevation file with a coordinate system in terrain.source");
+  }
   if (settings.scene.tables.cache.empty()) {
     return input_error("no place for the cache", "'tables.cache' is empty",
                        "allowed is auto, off or a directory");

@@ -151,6 +151,10 @@ void move(CameraParams& camera, const Pose& pose, double radius_m) {
 
 }  // namespace
 
+bool CameraPath::has_dates() const {
+  return std::any_of(frames.begin(), frames.end(), [](const PathFrame& frame) { return frame.julian_day.has_value(); });
+}
+
 double CameraPath::duration_s() const { return frames.empty() ? 0.0 : frames.back().time_s; }
 
 SceneParams pose_at(const CameraPath& path, double seconds, const SceneParams& base, double radius_m) {

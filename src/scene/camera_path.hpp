@@ -25,10 +25,11 @@ struct PathFrame {
 struct CameraPath {
   std::vector<PathFrame> frames;  // by rising time; none, or two and more
   bool loop = false;  // the last frame is the first again, and has nothing but its time
-  std::string place_text;  // "LAT,LON"; empty: not given
+  std::string place_text;  // "LAT,LON"; empty: that of the elevation file, see Scene::place()
   Place place;
 
   [[nodiscard]] bool empty() const { return frames.empty(); }
+  [[nodiscard]] bool has_dates() const;    // whether the sun stands by date and place
   [[nodiscard]] double duration_s() const;  // time of the last frame
 };
 

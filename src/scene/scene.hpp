@@ -90,6 +90,8 @@ class Scene {
 
   // Remarks for the user, one line each: what a file needed, that the camera was lifted, ...
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
+  // Where the origin of the world is on the Earth, by the elevation file; nothing without one.
+  [[nodiscard]] const std::optional<Place>& place() const { return terrain_->place(); }
   struct Memory {
     VkDeviceSize effect_persistent = 0, effect_transient = 0, effect_host = 0;
     std::vector<ResourceMemory> effect_resources;  // what effect_persistent consists of

@@ -12,7 +12,7 @@ namespace tyndall::scene {
 namespace {
 
 bool same_source(const TerrainParams& a, const TerrainParams& b) {
-  return a.source == b.source && a.seed == b.seed && a.exaggeration == b.exaggeration;
+  return a.source == b.source && a.seed == b.seed && a.exaggeration == b.exaggeration && a.units == b.units;
 }
 
 bool same_meshes(const MeshParams& a, const MeshParams& b) {

@@ -99,6 +99,7 @@ Result<ElevationSource> Terrain::load_source(const gpu::Device& device, const Te
   elevation.source = params.source == "none" ? "procedural" : params.source;
   elevation.seed = params.seed;
   elevation.exaggeration = params.exaggeration;
+  elevation.units = params.units;
   elevation.planet_radius_m = radius_m;
   elevation.max_samples = static_cast<int>(device.properties.limits.maxImageDimension2D) * 2 / 3;
   elevation.max_samples = std::min(elevation.max_samples, kMaxElevationSamples);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "gpu/host.hpp"
@@ -55,6 +56,8 @@ class Terrain {
   // The elevations themselves, which stay as they are and may be read from any thread.
   [[nodiscard]] std::shared_ptr<const ElevationSource> source() const { return none() ? nullptr : source_; }
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
+  // Where the origin of the world is on the Earth, by the elevation file; nothing without one.
+  [[nodiscard]] const std::optional<Place>& place() const { return source_->place(); }
   [[nodiscard]] VkDeviceSize bytes() const;
 
   // Selects the blocks of a frame and writes the constants: before the draws are recorded.

@@ -258,6 +258,34 @@ TEST_F(CliScenes, FlightsArePlayed) {
 }
 
 // Scenes are read before the device is looked for: it is enough that the device is what is wrong.
+// A flight by date over an elevation file takes its place from the file.
+TEST_F(CliScenes, ElevationFilesGiveFlightsTheirPlace) {
+  std::string grid = "ncols 4\nnrows 4\nxllcorner 35.4\nyllcorner 31.4\ncellsize 0.01\n";
+  for (int i = 0; i < 16; ++i) grid += "100" + std::string(i % 4 == 3 ? "\n" : " ");
+  const std::string dates = "date = \"2026-06-21T09:30:00Z\"\n";
+  const std::string scene = scratch_.write("flight.toml", "[[path]]\ntime_s = 0\n" + dates + "[[path]]\ntime_s = 2\n" + dates);
+  const std::string file = scratch_.write("g.asc", grid);
+  const std::string out = scratch_.at("out.exr");
+  const std::vector<std::string> common = {"render", scene, "-o", out, "--size", "16x9", "--set", "tables.size=4,4,4,4", "--set",
+                                           "tables.orders=1", "--set", "shadows.cascades=1", "--set", "shadows.first_marched=0",
+                                           "--set", "shadows.resolution=512"};
+  EXPECT_EQ(run_tyndall(common).status, 2) << "procedural terrain is nowhere";
+  std::vector<std::string> placed = common;
+  placed.insert(placed.end(), {"--set", "terrain.source=" + file});
+  const Outcome outcome = run_tyndall(placed);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  // Half past eleven by the sun in Jerusalem on the longest day: 81.8 deg up, as `sky --at 31.42,35.42` has it too.
+  const std::string header = contents_of(out);
+  const std::size_t at = header.find("tyndall.sun.elevation_deg");
+  ASSERT_NE(at, std::string::npos);
+  const double elevation = std::stod(header.substr(at + std::string("tyndall.sun.elevation_deg").size() + 1 + 7 + 4, 12));
+  EXPECT_GT(elevation, 80.0);
+  EXPECT_LT(elevation, 83.0);
+  // Metres say nothing about the place.
+  placed.insert(placed.end(), {"--set", "terrain.units=metres"});
+  EXPECT_EQ(run_tyndall(placed).status, 2);
+}
+
 TEST_F(CliScenes, PresetsAreScenes) {
   std::size_t count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(TYNDALL_PRESETS)) {

@@ -155,8 +155,6 @@ TEST_F(SceneFile, PathsThatAreWrongSayWhereAndWhy) {
       {two + "position_m = [1, 2]\n", "'camera.position_m' = '2 values' is not 3 numbers, s.toml:5, allowed is 3 numbers, each -1e+09 to 1e+09 m"},
       {two + "fov_deg = 200\n", "'camera.fov_deg' = '200' is out of range, s.toml:5, allowed is 1 to 170 deg"},
       {two + "date = \"yesterday\"\n", "yesterday"},
-      {two + "date = \"2026-06-21T03:00:00Z\"\n",
-       "a path with dates has no place, s.toml:1, needed is place = \"LAT,LON\" in [playback]"},
       {two + "date = \"2026-06-21T03:00:00Z\"\nsun_elevation_deg = 3\n",
        "the sun stands by date and by angles, s.toml:3, allowed is one of them in a path"},
       {two + "[playback]\nloops = true\n", "unknown key 'loops' in [playback], s.toml:6, did you mean 'loop'?"},

@@ -175,6 +175,16 @@ TEST(ConfigSettings, CrossChecks) {
   settings.scene.terrain.source.clear();
   EXPECT_FALSE(check(settings).ok());
   settings = Settings();
+  settings.path.frames.resize(2);
+  settings.path.frames[1].time_s = 1.0;
+  for (scene::PathFrame& frame : settings.path.frames) frame.julian_day = 2460000.0;
+  ASSERT_FALSE(check(settings).ok());
+  EXPECT_EQ(check(settings).error().message,
+            "a path with dates has no place, [playback], needed is place = \"LAT,LON\", or an elevation file with a coordinate "
+            "system in terrain.source");
+  settings.scene.terrain.source = "mine.tif";
+  EXPECT_TRUE(check(settings).ok());
+  settings = Settings();
   settings.scene.tables.cache.clear();
   EXPECT_FALSE(check(settings).ok());
   settings = Settings();

@@ -6,6 +6,11 @@
 #include <fstream>
 #include <limits>
 
+#include <cpl_conv.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+
 #include "scene/elevation/elevation_file.hpp"
 #include "terrain_files.hpp"
 
@@ -20,14 +25,14 @@ class ElevationFile : public ::testing::Test {
  protected:
   ElevationRaster read(const std::filesystem::path& path, int max_samples = kMaxElevationSamples) {
     testing::internal::CaptureStderr();
-    Result<ElevationRaster> result = read_elevation_file(path, kRadius_m, max_samples);
+    Result<ElevationRaster> result = read_elevation_file(path.string(), {kRadius_m, max_samples});
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
     EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().message);
     return result.ok() ? std::move(result).value() : ElevationRaster{};
   }
   std::string error(const std::filesystem::path& path) {
     testing::internal::CaptureStderr();
-    Result<ElevationRaster> result = read_elevation_file(path, kRadius_m);
+    Result<ElevationRaster> result = read_elevation_file(path.string(), {kRadius_m});
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
     EXPECT_FALSE(result.ok()) << path;
     if (result.ok()) return {};
@@ -233,6 +238,192 @@ TEST_F(ElevationFile, TruncatedFiles) {
     std::filesystem::resize_file(cut, static_cast<std::uintmax_t>(static_cast<double>(size) * part));
     error(cut);
   }
+}
+
+// Esri grids of old tools hold -9999 where there are no data, and do not say so.
+TEST_F(ElevationFile, UndeclaredHolesAreFound) {
+  for (const double hole : {-9999.0, -32767.0, -999.0}) {
+    TestFile file;
+    file.name = "undeclared.tif";
+    const auto hilly = [&](int x, int y) { return x > 20 && x < 30 && y > 20 && y < 30 ? hole : hill(x, y); };
+    const ElevationRaster r = read(folder_.write(file, hilly));
+    EXPECT_GT(r.min_m, 900.0F) << hole;
+    EXPECT_TRUE(noted(r, "far from all others, taken as holes")) << hole;
+    // Also where the file is read at a lower resolution, whose means would mix them with heights.
+    EXPECT_GT(read(folder_.path("undeclared.tif"), 16).min_m, 900.0F) << hole;
+  }
+  // A trench whose depths reach -9999 is one.
+  TestFile trench;
+  trench.name = "trench.tif";
+  const ElevationRaster r = read(folder_.write(trench, [](int x, int) { return -8000.0 - 199.9 * std::min(x, 10); }));
+  EXPECT_NEAR(r.min_m, -9999.0, 1.0);
+  EXPECT_FALSE(noted(r, "holes"));
+}
+
+TEST_F(ElevationFile, UnitsOfCoordinatesCanBeStated) {
+  TestFile file;
+  file.driver = "AAIGrid";
+  file.name = "survey.asc";
+  file.epsg = 0;
+  file.transform = {12.0, 0.5, 0.0, 48.0, 0.0, -0.5};
+  const std::string path = folder_.write(file, hill).string();
+  const Result<ElevationRaster> metres = read_elevation_file(path, {kRadius_m, 4096, TerrainUnits::metres});
+  ASSERT_TRUE(metres.ok()) << metres.error().message;
+  EXPECT_DOUBLE_EQ(metres.value().spacing_m, 0.5);
+  EXPECT_TRUE(metres.value().notes.empty());
+  const Result<ElevationRaster> degrees = read_elevation_file(path, {kRadius_m, 4096, TerrainUnits::degrees});
+  ASSERT_TRUE(degrees.ok()) << degrees.error().message;
+  EXPECT_GT(degrees.value().spacing_m, 20000.0);
+  EXPECT_TRUE(noted(read(path), "terrain.units=metres takes them as metres"));
+  // A survey that begins at 0,0 is local without being told.
+  file.transform = {0.0, 0.5, 0.0, 32.0, 0.0, -0.5};
+  EXPECT_DOUBLE_EQ(read(folder_.write(file, hill)).spacing_m, 0.5);
+}
+
+// A file of the Earth on Mars, and one of Mars on the Earth: latitudes and longitudes stay as they are.
+TEST_F(ElevationFile, OtherBodiesKeepTheirAngles) {
+  constexpr double kMars_m = 3389500.0;
+  TestFile earth;
+  earth.name = "earth.tif";
+  earth.epsg = 4326;
+  earth.transform = {7.0, 0.01, 0.0, 0.32, 0.0, -0.01};
+  const std::string path = folder_.write(earth, hill).string();
+  const Result<ElevationRaster> on_mars = read_elevation_file(path, {kMars_m});
+  ASSERT_TRUE(on_mars.ok()) << on_mars.error().message;
+  EXPECT_NEAR(on_mars.value().height * on_mars.value().spacing_m, 0.64 * kMars_m * std::acos(-1.0) / 180.0, 2.0 * on_mars.value().spacing_m);
+  EXPECT_TRUE(noted(on_mars.value(), "made for a body of radius 6378 km"));
+  ASSERT_TRUE(on_mars.value().centre);
+  EXPECT_NEAR(on_mars.value().centre->latitude_deg, 0.0, 1e-9);
+  EXPECT_NEAR(on_mars.value().centre->longitude_deg, 7.32, 1e-9);
+
+  TestFile mars;
+  mars.driver = "AAIGrid";
+  mars.name = "mars.asc";
+  mars.epsg = 0;
+  mars.transform = {-32000.0, 1000.0, 0.0, 32000.0, 0.0, -1000.0};
+  folder_.write(mars, hill);
+  std::ofstream(folder_.path("mars.prj"))
+      << "PROJCS[\"Mars\",GEOGCS[\"Mars 2000\",DATUM[\"Mars 2000\",SPHEROID[\"Mars 2000\",3396190.0,169.8944]],PRIMEM[\"Meridian\",0.0],"
+         "UNIT[\"Degree\",0.0174532925199433]],PROJECTION[\"Equidistant_Cylindrical\"],PARAMETER[\"False_Easting\",0.0],"
+         "PARAMETER[\"False_Northing\",0.0],PARAMETER[\"Central_Meridian\",0.0],PARAMETER[\"Standard_Parallel_1\",0.0],UNIT[\"Meter\",1.0]]";
+  const Result<ElevationRaster> on_earth = read_elevation_file(folder_.path("mars.asc").string(), {kRadius_m});
+  ASSERT_TRUE(on_earth.ok()) << on_earth.error().message;
+  EXPECT_NEAR(on_earth.value().spacing_m, 1000.0 * kRadius_m / 3396190.0, 10.0);
+  EXPECT_FALSE(on_earth.value().centre) << "no place on the Earth";
+  const Result<ElevationRaster> at_home = read_elevation_file(folder_.path("mars.asc").string(), {kMars_m});
+  ASSERT_TRUE(at_home.ok()) << at_home.error().message;
+  EXPECT_NEAR(at_home.value().spacing_m, 1000.0, 10.0);
+}
+
+TEST_F(ElevationFile, PlacesThatNoPlanetHasAreRefused) {
+  TestFile file;
+  file.name = "far.tif";
+  file.epsg = 4326;
+  file.transform = {7.0, 0.1, 0.0, 93.0, 0.0, -0.1};
+  EXPECT_NE(error(folder_.write(file, hill)).find("accepted are -90 to 90 degrees"), std::string::npos);
+  file.transform = {-180.0, 10.0, 0.0, 50.0, 0.0, -0.1};
+  EXPECT_NE(error(folder_.write(file, hill)).find("accepted are at most 360 degrees"), std::string::npos);
+  file.epsg = 32632;
+  file.transform = {500000.0, 1e41, 0.0, 5000000.0, 0.0, -1e41};
+  EXPECT_NE(error(folder_.write(file, hill)).find("accepted are at most 1e+08 m"), std::string::npos);
+  file.epsg = 0;
+  file.transform = {500000.0, 1e-9, 0.0, 5000000.0, 0.0, -1e-9};
+  EXPECT_NE(error(folder_.write(file, hill)).find("at least 0.001 m"), std::string::npos);
+  // Half a sample beyond the pole is how cell centres are placed on it.
+  file.epsg = 4326;
+  file.transform = {7.0, 0.1, 0.0, 90.05, 0.0, -0.1};
+  read(folder_.write(file, hill));
+}
+
+TEST_F(ElevationFile, NamesOfGdalsOwnAreRead) {
+  TestFile file;
+  file.name = "plain.tif";
+  const std::filesystem::path plain = folder_.write(file, hill);
+  const std::string zip = "/vsizip/" + folder_.path("archive.zip").string() + "/inside.tif";
+  ASSERT_EQ(CPLCopyFile(zip.c_str(), plain.string().c_str()), 0);
+  EXPECT_EQ(read(zip).heights, read(plain).heights);
+  EXPECT_EQ(read("GTIFF_DIR:1:" + plain.string()).heights, read(plain).heights);
+  EXPECT_NE(error("/vsizip/" + folder_.path("archive.zip").string() + "/missing.tif").find("no format"), std::string::npos);
+}
+
+// What is downloaded must not open connections: a virtual raster that refers to a server, and a description of a service.
+TEST_F(ElevationFile, FilesDoNotReachTheNetwork) {
+  // A listener that must not hear of anything.
+  const int listener = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address = {};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  ASSERT_EQ(::bind(listener, reinterpret_cast<const sockaddr*>(&address), size), 0);
+  ASSERT_EQ(::listen(listener, 8), 0);
+  ASSERT_EQ(::getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size), 0);
+  const std::string server = "http://127.0.0.1:" + std::to_string(ntohs(address.sin_port));
+  CPLSetConfigOption("GDAL_HTTP_TIMEOUT", "2");  // of a connection that should not be
+  const auto vrt = [&](const char* name, const std::string& source) {
+    std::ofstream(folder_.path(name)) << "<VRTDataset rasterXSize=\"8\" rasterYSize=\"8\"><VRTRasterBand dataType=\"Float32\" band=\"1\">"
+                                         "<SimpleSource><SourceFilename relativeToVRT=\"0\">"
+                                      << source << "</SourceFilename><SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>";
+    return folder_.path(name);
+  };
+  for (const std::string& source : {"/vsicurl/" + server + "/a.tif", std::string("/vsis3/bucket/a.tif"), "/vsizip//vsicurl/" + server + "/a.zip/a.tif"}) {
+    EXPECT_NE(error(vrt("curl.vrt", source)).find("refers to a network file system"), std::string::npos) << source;
+  }
+  // Through a second virtual raster, which is read only when its samples are.
+  const std::string inner = vrt("inner.vrt", "/vsicurl/" + server + "/a.tif").string();
+  error(vrt("outer.vrt", inner));
+  std::ofstream(folder_.path("wms.xml")) << "<GDAL_WMS><Service name=\"TMS\"><ServerUrl>" << server << "/${z}/${x}/${y}</ServerUrl></Service>"
+                                            "<DataWindow><UpperLeftX>-20037508.34</UpperLeftX><UpperLeftY>20037508.34</UpperLeftY>"
+                                            "<LowerRightX>20037508.34</LowerRightX><LowerRightY>-20037508.34</LowerRightY><TileLevel>3</TileLevel>"
+                                            "<TileCountX>1</TileCountX><TileCountY>1</TileCountY></DataWindow><Projection>EPSG:3857</Projection>"
+                                            "<BlockSizeX>256</BlockSizeX><BlockSizeY>256</BlockSizeY><BandsCount>3</BandsCount></GDAL_WMS>";
+  EXPECT_NE(error(folder_.path("wms.xml")).find("is in no format that is read"), std::string::npos);
+  error(vrt("wms.vrt", folder_.path("wms.xml").string()));
+  error(vrt("http.vrt", server + "/a.tif"));
+  pollfd waiting = {listener, POLLIN, 0};
+  EXPECT_EQ(::poll(&waiting, 1, 0), 0) << "something connected";
+  ::close(listener);
+  // Virtual rasters over local files are read.
+  TestFile file;
+  file.name = "local.tif";
+  folder_.write(file, hill);
+  file.driver = "VRT";
+  file.name = "local.vrt";
+  std::ofstream(folder_.path("local.vrt"))
+      << "<VRTDataset rasterXSize=\"64\" rasterYSize=\"64\"><GeoTransform>0, 100, 0, 6400, 0, -100</GeoTransform>"
+         "<VRTRasterBand dataType=\"Float32\" band=\"1\"><SimpleSource><SourceFilename relativeToVRT=\"1\">local.tif</SourceFilename>"
+         "<SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>";
+  EXPECT_FLOAT_EQ(at(read(folder_.path("local.vrt")), 5, 7), static_cast<float>(hill(5, 7)));
+}
+
+TEST_F(ElevationFile, ColourTilesAreDecoded) {
+  // Written band by band: red, green and blue of an 8-bit PNG.
+  const auto tile = [&](const char* name, const std::function<unsigned(int, int)>& colour) {
+    GDALDriverManager& drivers = *GetGDALDriverManager();
+    GDALDataset* data = drivers.GetDriverByName("MEM")->Create("", 64, 64, 3, GDT_Byte, nullptr);
+    for (int b = 0; b < 3; ++b) {
+      std::vector<unsigned char> samples;
+      for (int y = 0; y < 64; ++y) {
+        for (int x = 0; x < 64; ++x) samples.push_back(static_cast<unsigned char>(colour(x, y) >> (16 - 8 * b)));
+      }
+      EXPECT_EQ(data->GetRasterBand(b + 1)->RasterIO(GF_Write, 0, 0, 64, 64, samples.data(), 64, 64, GDT_Byte, 0, 0, nullptr), CE_None);
+      data->GetRasterBand(b + 1)->SetColorInterpretation(static_cast<GDALColorInterp>(GCI_RedBand + b));
+    }
+    const std::string to = folder_.path(name).string();
+    GDALClose(drivers.GetDriverByName("PNG")->CreateCopy(to.c_str(), data, FALSE, nullptr, nullptr, nullptr));
+    GDALClose(data);
+    return std::filesystem::path(to);
+  };
+  const auto height = [](int x, int y) { return -30.0 + 40.25 * x + 3.5 * y; };
+  const ElevationRaster terrarium =
+      read(tile("terrarium.png", [&](int x, int y) { return static_cast<unsigned>((height(x, y) + 32768.0) * 256.0 + 0.5); }));
+  EXPECT_NEAR(at(terrarium, 5, 60), height(5, 60), 0.01);
+  EXPECT_TRUE(noted(terrarium, "Terrarium"));
+  const ElevationRaster terrain_rgb =
+      read(tile("rgb.png", [&](int x, int y) { return static_cast<unsigned>((height(x, y) + 10000.0) * 10.0 + 0.5); }));
+  EXPECT_NEAR(at(terrain_rgb, 5, 60), height(5, 60), 0.06);
+  EXPECT_TRUE(noted(terrain_rgb, "Terrain-RGB"));
+  EXPECT_NE(error(tile("photo.png", [](int x, int y) { return static_cast<unsigned>(x * 4 * 65536 + y * 1024 + 77); })).find("holds no heights"),
+            std::string::npos);
 }
 
 TEST_F(ElevationFile, RealMassif) {

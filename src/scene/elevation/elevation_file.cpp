@@ -8,17 +8,17 @@
 #include <cstdio>
 #include <limits>
 #include <memory>
+#include <numbers>
+#include <optional>
 #include <string_view>
-#include <system_error>
 
-#include <cpl_error.h>
 #include <gdal.h>
 #include <gdal_alg.h>
-#include <gdal_priv.h>
 #include <gdalwarper.h>
 #include <ogr_spatialref.h>
 
 #include "scene/elevation/elevation_fill.hpp"
+#include "scene/elevation/elevation_gdal.hpp"
 
 namespace tyndall::scene {
 namespace {
@@ -26,50 +26,6 @@ namespace {
 constexpr double kImpossible_m = 20000.0;
 constexpr double kAssumedSpacing_m = 30.0;
 constexpr int kFillReach_samples = 100;  // of GDAL's interpolation; larger holes are filled more coarsely
-
-struct DatasetCloser {
-  void operator()(GDALDataset* dataset) const { GDALClose(GDALDataset::ToHandle(dataset)); }
-};
-using Dataset = std::unique_ptr<GDALDataset, DatasetCloser>;
-
-// Takes GDAL's messages while it lives, on this thread: nothing goes to stderr, the first failure is kept.
-class Messages {
- public:
-  Messages() { CPLPushErrorHandlerEx(&Messages::take, this); }
-  ~Messages() { CPLPopErrorHandler(); }
-  Messages(const Messages&) = delete;
-  Messages& operator=(const Messages&) = delete;
-
-  // The failure in brackets, or nothing.
-  [[nodiscard]] std::string reason() const { return first_.empty() ? "" : " (" + first_ + ")"; }
-
- private:
-  static void CPL_STDCALL take(CPLErr level, CPLErrorNum, const char* text) {
-    auto* self = static_cast<Messages*>(CPLGetErrorHandlerUserData());
-    if (level < CE_Failure || !self->first_.empty()) return;
-    self->first_ = text;
-    std::replace_if(
-        self->first_.begin(), self->first_.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-    while (!self->first_.empty() && (self->first_.back() == ' ' || self->first_.back() == '.'))
-      self->first_.pop_back();
-  }
-
-  std::string first_;
-};
-
-Error fail(const std::filesystem::path& path, const std::string& what) {
-  return Error{ErrorCode::io, "elevation file " + path.string() + " " + what, 0};
-}
-
-Result<void> check_path(const std::filesystem::path& path) {
-  std::error_code ignored;
-  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
-  if (!std::filesystem::exists(status)) return fail(path, "does not exist");
-  if (std::filesystem::is_directory(status)) return fail(path, "is a directory, a file is needed");
-  if (!std::filesystem::is_regular_file(status)) return fail(path, "is not a regular file");
-  if (std::filesystem::file_size(path, ignored) == 0) return fail(path, "is empty");
-  return {};
-}
 
 // Metres per unit of the heights; notes what is unknown.
 double vertical_unit_m(GDALRasterBand& band, const OGRSpatialReference* srs,
@@ -126,7 +82,27 @@ struct Georeference {
   OGRSpatialReference srs;
 };
 
-Georeference georeference(GDALDataset& file, std::vector<std::string>& notes) {
+// The corners of the raster in the file's coordinates: least and greatest.
+struct Extent {
+  double min_x, max_x, min_y, max_y;
+};
+
+Extent extent_of(const std::array<double, 6>& t, int width, int height) {
+  const std::array<double, 4> x = {t[0], t[0] + t[1] * width, t[0] + t[2] * height, t[0] + t[1] * width + t[2] * height};
+  const std::array<double, 4> y = {t[3], t[3] + t[4] * width, t[3] + t[5] * height, t[3] + t[4] * width + t[5] * height};
+  const auto [min_x, max_x] = std::minmax_element(x.begin(), x.end());
+  const auto [min_y, max_y] = std::minmax_element(y.begin(), y.end());
+  return {*min_x, *max_x, *min_y, *max_y};
+}
+
+// Whether coordinates without a coordinate system are probably degrees. A survey that begins at 0,0 is local.
+bool look_like_degrees(const std::array<double, 6>& t, const Extent& extent) {
+  const bool local = extent.min_x == 0.0 && extent.min_y == 0.0;
+  return !local && std::max(std::abs(extent.min_x), std::abs(extent.max_x)) <= 360.0 &&
+         std::max(std::abs(extent.min_y), std::abs(extent.max_y)) <= 90.0 && std::abs(t[1]) + std::abs(t[2]) < 1.0;
+}
+
+Georeference georeference(GDALDataset& file, TerrainUnits units, std::vector<std::string>& notes) {
   Georeference geo;
   const bool placed =
       file.GetGeoTransform(geo.transform.data()) == CE_None &&
@@ -141,18 +117,48 @@ Georeference georeference(GDALDataset& file, std::vector<std::string>& notes) {
     geo.srs = *srs;
     geo.srs.StripVertical();
   } else {
-    const std::array<double, 6>& t = geo.transform;
-    const double east = t[0] + t[1] * file.GetRasterXSize() + t[2] * file.GetRasterYSize();
-    const double south = t[3] + t[4] * file.GetRasterXSize() + t[5] * file.GetRasterYSize();
-    const bool degrees = std::max(std::abs(t[0]), std::abs(east)) <= 360.0 &&
-                         std::max(std::abs(t[3]), std::abs(south)) <= 90.0 &&
-                         std::abs(t[1]) + std::abs(t[2]) < 1.0;
-    notes.push_back(degrees ? "no coordinate system: taken as degrees on WGS 84"
-                            : "no coordinate system: taken as metres");
+    const Extent extent = extent_of(geo.transform, file.GetRasterXSize(), file.GetRasterYSize());
+    const bool degrees =
+        units == TerrainUnits::automatic ? look_like_degrees(geo.transform, extent) : units == TerrainUnits::degrees;
+    if (units == TerrainUnits::automatic) {
+      notes.push_back(degrees ? "no coordinate system: taken as degrees on WGS 84; terrain.units=metres takes them as metres"
+                              : "no coordinate system: taken as metres; terrain.units=degrees takes them as degrees");
+    }
     if (degrees) geo.srs.SetWellKnownGeogCS("WGS84");
   }
   geo.srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   return geo;
+}
+
+// Refuses places that no planet has. PROJ answers some of them with infinities, others with a wrong scale.
+Result<void> check_extent(const std::string& source_name, const Georeference& geo, int width, int height) {
+  const Extent extent = extent_of(geo.transform, width, height);
+  const auto text = [](double value) {
+    std::array<char, 32> digits = {};
+    std::snprintf(digits.data(), digits.size(), "%.6g", value);
+    return std::string(digits.data());
+  };
+  if (geo.srs.IsGeographic() != 0) {
+    const double half_x = 0.5 * (std::abs(geo.transform[1]) + std::abs(geo.transform[2]));
+    const double half_y = 0.5 * (std::abs(geo.transform[4]) + std::abs(geo.transform[5]));
+    const double per_degree = geo.srs.GetAngularUnits() / (std::numbers::pi / 180.0);
+    if (std::max(-extent.min_y - half_y, extent.max_y - half_y) * per_degree > 90.0) {
+      return elevation_error(source_name, "reaches from latitude " + text(extent.min_y) + " to " + text(extent.max_y) +
+                                              "; accepted are -90 to 90 degrees");
+    }
+    if ((extent.max_x - extent.min_x - 2.0 * half_x) * per_degree > 360.0 || std::abs(extent.min_x) * per_degree > 720.0) {
+      return elevation_error(source_name, "reaches from longitude " + text(extent.min_x) + " to " + text(extent.max_x) +
+                                              "; accepted are at most 360 degrees");
+    }
+    return {};
+  }
+  constexpr double kMaxExtent_m = 1.0e8, kMinSpacing_m = 1.0e-3;
+  const double unit_m = geo.srs.IsEmpty() ? 1.0 : geo.srs.GetLinearUnits();
+  const double size_m = std::max(extent.max_x - extent.min_x, extent.max_y - extent.min_y) * unit_m;
+  const double spacing_m = std::hypot(geo.transform[1], geo.transform[4]) * unit_m;
+  if (size_m <= kMaxExtent_m && spacing_m >= kMinSpacing_m) return {};
+  return elevation_error(source_name, "covers " + text(size_m) + " m with samples " + text(spacing_m) +
+                                          " m apart; accepted are at most 1e+08 m and at least 0.001 m");
 }
 
 Dataset make_memory(int width, int height, const Georeference& geo, std::vector<float>& samples) {
@@ -173,7 +179,7 @@ Dataset make_memory(int width, int height, const Georeference& geo, std::vector<
 }
 
 // The first band at no more than max_samples, in metres, holes as NaN; adapts the transform to the size.
-Result<std::vector<float>> read_band(const std::filesystem::path& path, GDALDataset& file, int max_samples,
+Result<std::vector<float>> read_band(const std::string& source_name, GDALDataset& file, int max_samples,
                                      Georeference& geo, int& width, int& height, const Messages& messages,
                                      std::vector<std::string>& notes) {
   GDALRasterBand& band = *file.GetRasterBand(1);
@@ -192,7 +198,7 @@ Result<std::vector<float>> read_band(const std::filesystem::path& path, GDALData
   std::vector<float> samples(static_cast<std::size_t>(width) * height);
   if (band.RasterIO(GF_Read, 0, 0, file_width, file_height, samples.data(), width, height, GDT_Float32, 0, 0,
                     &how) != CE_None)
-    return fail(path, "cannot be read: truncated or damaged" + messages.reason());
+    return elevation_error(source_name, "cannot be read: truncated or damaged" + messages.reason());
   const double sx = static_cast<double>(file_width) / width;
   const double sy = static_cast<double>(file_height) / height;
   geo.transform[1] *= sx;
@@ -217,7 +223,7 @@ Result<std::vector<float>> read_band(const std::filesystem::path& path, GDALData
     if (hole) ++holes;
   }
   if (holes == samples.size())
-    return fail(path, "holds no elevation: every sample is a hole (no-data, NaN or beyond 20 km)");
+    return elevation_error(source_name, "holds no elevation: every sample is a hole (no-data, NaN or beyond 20 km)");
   if (holes > 0) notes.push_back("filled " + std::to_string(holes) + " samples without data");
   return samples;
 }
@@ -244,44 +250,60 @@ void fill(std::vector<float>& samples, int width, int height) {
   fill_holes(samples, width, height);
 }
 
-// The azimuthal equidistant projection around the middle of the samples, as PROJ writes it.
-Result<std::string> map_projection(const std::filesystem::path& path, const Georeference& geo, int width,
-                                   int height, double radius_m) {
+// The azimuthal equidistant projection around the middle of the samples.
+struct MapProjection {
+  std::string wkt;  // empty: the file's coordinates are metres already
+  double scale = 1.0;  // metres on the planet per unit of the projection
+  std::optional<Place> centre;
+};
+
+Result<MapProjection> map_projection(const std::string& source_name, const Georeference& geo, int width, int height,
+                                     double radius_m, std::vector<std::string>& notes) {
+  MapProjection out;
+  if (geo.srs.IsEmpty()) return out;
   double x = geo.transform[0] + 0.5 * (width * geo.transform[1] + height * geo.transform[2]);
   double y = geo.transform[3] + 0.5 * (width * geo.transform[4] + height * geo.transform[5]);
   if (geo.srs.IsGeographic() == 0) {
     const std::unique_ptr<OGRSpatialReference> geographic(geo.srs.CloneGeogCS());
-    if (!geographic) return fail(path, "has a coordinate system without latitudes and longitudes");
+    if (!geographic) return elevation_error(source_name, "has a coordinate system without latitudes and longitudes");
     geographic->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
     const std::unique_ptr<OGRCoordinateTransformation> to_degrees(
         OGRCreateCoordinateTransformation(&geo.srs, geographic.get()));
     if (!to_degrees || to_degrees->Transform(1, &x, &y) == 0)
-      return fail(path, "has a coordinate system that cannot be converted to latitudes and longitudes");
+      return elevation_error(source_name, "has a coordinate system that cannot be converted to latitudes and longitudes");
   }
+  // PROJ refuses to go from one celestial body to another: the sphere has the size of the file's own body, and what
+  // it gives is scaled to the planet. Latitudes and longitudes stay as they are.
+  constexpr double kSameBody = 0.005;
+  const double file_radius_m = geo.srs.GetSemiMajor();
+  const bool same_body = std::abs(file_radius_m - radius_m) <= kSameBody * file_radius_m;
+  const double sphere_m = same_body ? radius_m : file_radius_m;
+  out.scale = radius_m / sphere_m;
+  constexpr double kEarth_m = 6378137.0;
+  if (std::abs(file_radius_m - kEarth_m) <= kSameBody * kEarth_m) out.centre = Place{y, std::remainder(x, 360.0)};
   std::array<char, 160> text = {};
-  std::snprintf(text.data(), text.size(), "+proj=aeqd +lat_0=%.12g +lon_0=%.12g +R=%.12g +units=m +no_defs",
-                y, x, radius_m);
-  return std::string(text.data());
+  if (!same_body) {
+    std::snprintf(text.data(), text.size(), "made for a body of radius %.0f km; its latitudes and longitudes are laid on this planet of %.0f km",
+                  file_radius_m / 1000.0, radius_m / 1000.0);
+    notes.emplace_back(text.data());
+  }
+  std::snprintf(text.data(), text.size(), "+proj=aeqd +lat_0=%.12g +lon_0=%.12g +R=%.12g +units=m +no_defs", y, x, sphere_m);
+  OGRSpatialReference srs;
+  char* wkt = nullptr;
+  if (srs.importFromProj4(text.data()) == OGRERR_NONE && srs.exportToWkt(&wkt) == OGRERR_NONE) out.wkt = wkt;
+  CPLFree(wkt);
+  if (out.wkt.empty()) return elevation_error(source_name, "lies where no map can be made around its middle");
+  return out;
 }
 
 // Resamples to square cells around the centre, on the map's projection unless there is no coordinate system.
-Result<ElevationRaster> warp(const std::filesystem::path& path, GDALDataset& source, const Georeference& geo,
-                             int max_samples, double radius_m, const Messages& messages) {
-  std::string projection;
-  if (!geo.srs.IsEmpty()) {
-    Result<std::string> made =
-        map_projection(path, geo, source.GetRasterXSize(), source.GetRasterYSize(), radius_m);
-    if (!made.ok()) return std::move(made).error();
-    projection = std::move(made).value();
-  }
-  std::string wkt;
-  if (!projection.empty()) {
-    OGRSpatialReference srs;
-    char* text = nullptr;
-    if (srs.importFromProj4(projection.c_str()) == OGRERR_NONE && srs.exportToWkt(&text) == OGRERR_NONE)
-      wkt = text;
-    CPLFree(text);
-  }
+Result<ElevationRaster> warp(const std::string& source_name, GDALDataset& source, const Georeference& geo,
+                             const ElevationRequest& request, const Messages& messages, std::vector<std::string>& notes) {
+  const int max_samples = request.max_samples;
+  Result<MapProjection> projection = map_projection(source_name, geo, source.GetRasterXSize(), source.GetRasterYSize(),
+                                                    request.planet_radius_m, notes);
+  if (!projection.ok()) return std::move(projection).error();
+  const std::string& wkt = projection.value().wkt;
   // Extent and spacing that keep the resolution.
   void* transformer = GDALCreateGenImgProjTransformer(GDALDataset::ToHandle(&source), nullptr, nullptr,
                                                       wkt.empty() ? nullptr : wkt.c_str(), FALSE, 0.0, 1);
@@ -294,17 +316,18 @@ Result<ElevationRaster> warp(const std::filesystem::path& path, GDALDataset& sou
       GDALSuggestedWarpOutput2(GDALDataset::ToHandle(&source), GDALGenImgProjTransform, transformer,
                                suggested.data(), &width, &height, extent.data(), 0) == CE_None;
   if (transformer != nullptr) GDALDestroyGenImgProjTransformer(transformer);
-  if (!suggests) return fail(path, "cannot be projected onto the terrain's map" + messages.reason());
+  if (!suggests) return elevation_error(source_name, "cannot be projected onto the terrain's map" + messages.reason());
   const double centre_x = wkt.empty() ? 0.5 * (extent[0] + extent[2]) : 0.0;
   const double centre_y = wkt.empty() ? 0.5 * (extent[1] + extent[3]) : 0.0;
   const double half_x = std::max(centre_x - extent[0], extent[2] - centre_x);
   const double half_y = std::max(centre_y - extent[1], extent[3] - centre_y);
   const double spacing = std::max(suggested[1], 2.0 * std::max(half_x, half_y) / max_samples);
   if (!(spacing > 0.0) || !std::isfinite(half_x + half_y))
-    return fail(path, "cannot be projected onto the terrain's map" + messages.reason());
+    return elevation_error(source_name, "cannot be projected onto the terrain's map" + messages.reason());
 
   ElevationRaster raster;
-  raster.spacing_m = spacing;
+  raster.spacing_m = spacing * projection.value().scale;
+  raster.centre = projection.value().centre;
   raster.width = std::clamp(static_cast<int>(std::lround(2.0 * half_x / spacing)), 2, max_samples);
   raster.height = std::clamp(static_cast<int>(std::lround(2.0 * half_y / spacing)), 2, max_samples);
   raster.heights.assign(static_cast<std::size_t>(raster.width) * raster.height,
@@ -316,51 +339,53 @@ Result<ElevationRaster> warp(const std::filesystem::path& path, GDALDataset& sou
   if (!memory || GDALReprojectImage(GDALDataset::ToHandle(&source), nullptr,
                                     GDALDataset::ToHandle(memory.get()), wkt.empty() ? nullptr : wkt.c_str(),
                                     GRA_Bilinear, 0.0, 0.0, nullptr, nullptr, nullptr) != CE_None)
-    return fail(path, "cannot be projected onto the terrain's map" + messages.reason());
+    return elevation_error(source_name, "cannot be projected onto the terrain's map" + messages.reason());
   memory->FlushCache();
   return raster;
 }
 
 }  // namespace
 
-Result<ElevationRaster> read_elevation_file(const std::filesystem::path& path, double planet_radius_m,
-                                            int max_samples) {
-  Result<void> exists = check_path(path);
-  if (!exists.ok()) return std::move(exists).error();
+Result<ElevationRaster> read_elevation_file(const std::string& source_name, const ElevationRequest& request) {
   const Messages messages;
-  GDALAllRegister();
-  const Dataset file(static_cast<GDALDataset*>(
-      GDALOpenEx(path.string().c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr,
-                 nullptr, nullptr)));
-  if (!file) return fail(path, "is in no format that GDAL reads, or damaged" + messages.reason());
-  if (file->GetRasterCount() < 1) return fail(path, "holds no raster; a file with one raster is needed");
+  const NetworkGuard guard(source_name);
+  Result<Dataset> opened = open_elevation(source_name, messages);
+  if (!opened.ok()) return std::move(opened).error();
+  GDALDataset* file = opened.value().get();
   if (file->GetRasterXSize() < 2 || file->GetRasterYSize() < 2)
-    return fail(path, "has " + std::to_string(file->GetRasterXSize()) + " x " +
-                          std::to_string(file->GetRasterYSize()) + " samples, at least 2 x 2 are needed");
+    return elevation_error(source_name, "has " + std::to_string(file->GetRasterXSize()) + " x " +
+                                            std::to_string(file->GetRasterYSize()) + " samples, at least 2 x 2 are needed");
   if (GDALDataTypeIsComplex(file->GetRasterBand(1)->GetRasterDataType()) != 0)
-    return fail(path, "holds complex numbers, real elevations are needed");
+    return elevation_error(source_name, "holds complex numbers, real elevations are needed");
 
   std::vector<std::string> notes;
+  Result<Dataset> decoded = decode_colours(source_name, *file, notes);
+  if (!decoded.ok()) return std::move(decoded).error();
+  if (decoded.value()) file = decoded.value().get();
+  const Dataset declared = declare_no_data(*file, notes);
+  if (declared) file = declared.get();
   if (file->GetRasterCount() > 1)
     notes.push_back("has " + std::to_string(file->GetRasterCount()) +
                     " bands, the first is taken as elevation");
-  Georeference geo = georeference(*file, notes);
+  Georeference geo = georeference(*file, request.units, notes);
+  Result<void> somewhere = check_extent(source_name, geo, file->GetRasterXSize(), file->GetRasterYSize());
+  if (!somewhere.ok()) return std::move(somewhere).error();
   int width = 0;
   int height = 0;
   Result<std::vector<float>> samples =
-      read_band(path, *file, max_samples, geo, width, height, messages, notes);
+      read_band(source_name, *file, request.max_samples, geo, width, height, messages, notes);
   if (!samples.ok()) return std::move(samples).error();
   fill(samples.value(), width, height);
 
   const Dataset memory = make_memory(width, height, geo, samples.value());
   if (!memory)
-    return Error{ErrorCode::out_of_memory, "elevation file " + path.string() + " does not fit into memory",
+    return Error{ErrorCode::out_of_memory, "elevation file " + source_name + " does not fit into memory",
                  0};
-  Result<ElevationRaster> warped = warp(path, *memory, geo, max_samples, planet_radius_m, messages);
+  Result<ElevationRaster> warped = warp(source_name, *memory, geo, request, messages, notes);
   if (!warped.ok()) return std::move(warped).error();
   ElevationRaster raster = std::move(warped).value();
   if (std::all_of(raster.heights.begin(), raster.heights.end(), [](float v) { return std::isnan(v); }))
-    return fail(path, "cannot be projected onto the terrain's map" + messages.reason());
+    return elevation_error(source_name, "cannot be projected onto the terrain's map" + messages.reason());
   fill_holes(raster.heights, raster.width, raster.height);
   const auto [low, high] = std::minmax_element(raster.heights.begin(), raster.heights.end());
   raster.min_m = *low;

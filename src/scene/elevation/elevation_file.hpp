@@ -4,19 +4,23 @@
 //
 // What the file leaves out is assumed, and said in `notes`:
 // - no georeferencing (e.g. a 16-bit PNG): samples 30 m apart, north up, heights in metres;
-// - a geotransform without a coordinate system: degrees on WGS 84 if it lies within ±360 and ±90 with
-//   samples less than one degree apart, else metres;
+// - a geotransform without a coordinate system: as ElevationRequest::units says; automatic takes degrees on WGS 84
+//   if it lies within ±360 and ±90 with samples less than one degree apart and does not begin at 0,0, else metres;
 // - no vertical unit: that of the vertical coordinate system if there is one, else metres.
 // The band's scale, offset, unit (metres, feet, US survey feet, and decimal multiples) and no-data value are
 // honoured. NaN, infinite and impossible heights (beyond ±20 km) are holes too; holes are filled from
-// their borders. Of several bands the first is read. Files larger than max_samples on a side are read at a
-// lower resolution.
+// their borders. Undeclared samples of -9999 and the like are holes when they lie far from all others. Of several
+// bands the first is read, but colour tiles (Terrarium, Terrain-RGB) are decoded and other colour images refused. Files
+// larger than max_samples on a side are read at a lower resolution. A file of another celestial body keeps its
+// latitudes and longitudes.
 #pragma once
 
-#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "scene/scene_params.hpp"
+#include "scene/solar_position.hpp"
 #include "tyndall/result.hpp"
 
 namespace tyndall::scene {
@@ -26,14 +30,22 @@ struct ElevationRaster {
   double spacing_m = 0.0;      // of samples, both ways
   std::vector<float> heights;  // m above sea level, row-major, north row first
   float min_m = 0.0F, max_m = 0.0F;
+  std::optional<Place> centre;  // latitude and longitude on the Earth, where the file has a coordinate system
   std::vector<std::string> notes;  // one line each: what was assumed or changed in reading
 };
 
 constexpr int kMaxElevationSamples = 8192;
 
-// Errors: no such file, a directory, empty, in no known format, truncated, smaller than 2 x 2 samples,
-// complex numbers, nothing but holes. Prints nothing. Memory: about 12 bytes per sample of the result.
-Result<ElevationRaster> read_elevation_file(const std::filesystem::path& path, double planet_radius_m,
-                                            int max_samples = kMaxElevationSamples);
+struct ElevationRequest {
+  double planet_radius_m = 6360000.0;
+  int max_samples = kMaxElevationSamples;  // on a side
+  TerrainUnits units = TerrainUnits::automatic;
+};
+
+// Reads what `source` names: a file, or a name of GDAL's own (/vsizip/..., /vsicurl/..., NETCDF:...).
+// Errors: no such file, a directory, empty, in no format that is read, truncated, smaller than 2 x 2 samples,
+// complex numbers, nothing but holes, latitudes beyond 90 degrees, extents that no planet has, a picture.
+// Prints nothing. Memory: about 12 bytes per sample of the result.
+Result<ElevationRaster> read_elevation_file(const std::string& source, const ElevationRequest& request = {});
 
 }  // namespace tyndall::scene

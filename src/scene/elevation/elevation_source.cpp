@@ -123,7 +123,7 @@ Result<ElevationSource> ElevationSource::create(const ElevationDesc& desc) {
   double high = procedural.y;
 
   if (desc.source != "procedural") {
-    Result<ElevationRaster> read = read_elevation_file(desc.source, desc.planet_radius_m, desc.max_samples);
+    Result<ElevationRaster> read = read_elevation_file(desc.source, {desc.planet_radius_m, desc.max_samples, desc.units});
     if (!read.ok()) return std::move(read).error();
     const ElevationRaster& raster = read.value();
     const std::vector<Block> blocks = atlas_blocks(raster.width, raster.height);
@@ -136,6 +136,7 @@ Result<ElevationSource> ElevationSource::create(const ElevationDesc& desc) {
     c.outside_offset_m = border_offset(raster, desc.seed);
     source.atlas_ = build_atlas(raster, blocks);
     source.notes_ = raster.notes;
+    source.place_ = raster.centre;
     const double margin_m = 0.2 * raster.spacing_m;  // as in terrain_raster_height
     low = std::min(low + std::min(c.outside_offset_m, 0.0F), raster.min_m - margin_m);
     high = std::max(high + std::max(c.outside_offset_m, 0.0F), raster.max_m + margin_m);

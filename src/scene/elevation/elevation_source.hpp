@@ -30,6 +30,7 @@ struct ElevationDesc {
   double exaggeration = 1.0;
   double planet_radius_m = 6360000.0;
   int max_samples = kMaxElevationSamples;  // of a file, on a side; its atlas is 1.5 times as wide
+  TerrainUnits units = TerrainUnits::automatic;  // of a file without a coordinate system
 };
 
 // One R32F image with a file's samples and their coarser levels, laid out as terrain_source.glsl says.
@@ -51,6 +52,9 @@ class ElevationSource {
   [[nodiscard]] float min_height_m() const { return min_height_m_; }
   [[nodiscard]] float max_height_m() const { return max_height_m_; }
 
+  // Where the origin of the world is on the Earth, by the file; nothing for procedural terrain.
+  [[nodiscard]] const std::optional<Place>& place() const { return place_; }
+
   [[nodiscard]] bool from_file() const { return constants_.kind != 0; }
   // For TerrainFill::source and for the image elevation_atlas.
   [[nodiscard]] const fill::TerrainSource& constants() const { return constants_; }
@@ -62,6 +66,7 @@ class ElevationSource {
   fill::TerrainSource constants_ = {};
   ElevationAtlas atlas_;
   float min_height_m_ = 0.0F, max_height_m_ = 0.0F;
+  std::optional<Place> place_;
   std::vector<std::string> notes_;
 };
 

@@ -1,0 +1,128 @@
+// Heights that are stored in unusual ways: in colours, or beside samples that mean "no data" without saying so.
+#include <gdal_utils.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "scene/elevation/elevation_gdal.hpp"
+
+namespace tyndall::scene {
+namespace {
+
+constexpr int kRowsAtOnce = 64;
+
+bool is_colour_image(GDALDataset& file) {
+  const int bands = file.GetRasterCount();
+  if (bands != 3 && bands != 4) return false;
+  constexpr std::array<GDALColorInterp, 3> kColours = {GCI_RedBand, GCI_GreenBand, GCI_BlueBand};
+  for (int i = 0; i < 3; ++i) {
+    GDALRasterBand& band = *file.GetRasterBand(i + 1);
+    if (band.GetRasterDataType() != GDT_Byte || band.GetColorInterpretation() != kColours[static_cast<std::size_t>(i)]) return false;
+  }
+  return true;
+}
+
+struct Encoding {
+  const char* name;
+  double offset_m, per_red_m, per_green_m, per_blue_m;
+};
+constexpr std::array<Encoding, 2> kEncodings = {
+    {{"Terrarium (Mapzen)", -32768.0, 256.0, 1.0, 1.0 / 256.0}, {"Terrain-RGB (Mapbox)", -10000.0, 6553.6, 25.6, 0.1}}};
+constexpr double kLowest_m = -11500.0, kHighest_m = 9500.0;
+
+}  // namespace
+
+Result<Dataset> decode_colours(const std::string& source, GDALDataset& file, std::vector<std::string>& notes) {
+  if (!is_colour_image(file)) return Dataset();
+  const int width = file.GetRasterXSize();
+  const int height = file.GetRasterYSize();
+  constexpr double kMaxPixels = 1 << 28;
+  if (static_cast<double>(width) * height > kMaxPixels) return elevation_error(source, "is too large for an image of colours");
+  GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName("MEM");
+  std::array<Dataset, kEncodings.size()> decoded;
+  std::array<bool, kEncodings.size()> possible = {};
+  for (std::size_t e = 0; e < kEncodings.size(); ++e) {
+    if (driver != nullptr) decoded[e].reset(driver->Create("", width, height, 1, GDT_Float32, nullptr));
+    possible[e] = decoded[e] != nullptr;
+  }
+  std::vector<std::uint8_t> colours(static_cast<std::size_t>(width) * kRowsAtOnce * 3);
+  std::vector<float> heights(static_cast<std::size_t>(width) * kRowsAtOnce);
+  std::array<int, 3> bands = {1, 2, 3};
+  for (int top = 0; top < height; top += kRowsAtOnce) {
+    const int rows = std::min(kRowsAtOnce, height - top);
+    if (file.RasterIO(GF_Read, 0, top, width, rows, colours.data(), width, rows, GDT_Byte, 3, bands.data(), 3,
+                      GSpacing{3} * width, 1, nullptr) != CE_None)
+      return elevation_error(source, "cannot be read: truncated or damaged");
+    for (std::size_t e = 0; e < kEncodings.size(); ++e) {
+      if (!possible[e]) continue;
+      const Encoding& encoding = kEncodings[e];
+      for (std::size_t i = 0; i < static_cast<std::size_t>(width) * static_cast<std::size_t>(rows); ++i) {
+        const double h = encoding.offset_m + encoding.per_red_m * colours[3 * i] + encoding.per_green_m * colours[3 * i + 1] +
+                         encoding.per_blue_m * colours[3 * i + 2];
+        possible[e] = possible[e] && h >= kLowest_m && h <= kHighest_m;
+        heights[i] = static_cast<float>(h);
+      }
+      if (decoded[e]->GetRasterBand(1)->RasterIO(GF_Write, 0, top, width, rows, heights.data(), width, rows, GDT_Float32, 0, 0,
+                                                 nullptr) != CE_None)
+        return elevation_error(source, "does not fit into memory");
+    }
+  }
+  for (std::size_t e = 0; e < kEncodings.size(); ++e) {
+    if (!possible[e]) continue;
+    notes.push_back(std::string("heights are taken from its colours, encoded as ") + kEncodings[e].name);
+    std::array<double, 6> transform = {};
+    if (file.GetGeoTransform(transform.data()) == CE_None) decoded[e]->SetGeoTransform(transform.data());
+    if (file.GetSpatialRef() != nullptr) decoded[e]->SetSpatialRef(file.GetSpatialRef());
+    return std::move(decoded[e]);
+  }
+  return elevation_error(source, "is a colour image that holds no heights; accepted are one band of heights, or tiles encoded as "
+                                 "Terrarium or Terrain-RGB");
+}
+
+Dataset declare_no_data(GDALDataset& file, std::vector<std::string>& notes) {
+  GDALRasterBand& band = *file.GetRasterBand(1);
+  int declared = 0;
+  static_cast<void>(band.GetNoDataValue(&declared));
+  if (declared != 0) return nullptr;
+  constexpr std::array<double, 6> kUsual = {-9999.0, -32768.0, -32767.0, -999.0, 32767.0, 9999.0};
+  constexpr double kMinGap = 500.0;  // no land falls by as much between two samples and stays away from all heights between
+  std::array<std::size_t, kUsual.size()> count = {};
+  std::array<double, kUsual.size()> gap = {};
+  gap.fill(std::numeric_limits<double>::infinity());
+  const int width = file.GetRasterXSize();
+  const int height = file.GetRasterYSize();
+  std::vector<float> samples(static_cast<std::size_t>(width) * kRowsAtOnce);
+  std::size_t others = 0;
+  for (int top = 0; top < height; top += kRowsAtOnce) {
+    const int rows = std::min(kRowsAtOnce, height - top);
+    if (band.RasterIO(GF_Read, 0, top, width, rows, samples.data(), width, rows, GDT_Float32, 0, 0, nullptr) != CE_None)
+      return nullptr;  // reading the band reports it
+    for (std::size_t i = 0; i < static_cast<std::size_t>(width) * static_cast<std::size_t>(rows); ++i) {
+      const double sample = static_cast<double>(samples[i]);
+      bool usual = false;
+      for (std::size_t k = 0; k < kUsual.size(); ++k) {
+        const double distance = std::abs(sample - kUsual[k]);
+        count[k] += distance == 0.0 ? 1 : 0;
+        usual = usual || distance == 0.0;
+        if (distance > 0.0 && distance < gap[k]) gap[k] = distance;
+      }
+      others += usual ? 0 : 1;
+    }
+  }
+  if (others == 0) return nullptr;
+  for (std::size_t k = 0; k < kUsual.size(); ++k) {
+    if (count[k] == 0 || gap[k] < kMinGap) continue;
+    const std::string value = std::to_string(static_cast<int>(kUsual[k]));
+    std::array<const char*, 5> arguments = {"-of", "VRT", "-a_nodata", value.c_str(), nullptr};
+    GDALTranslateOptions* const options = GDALTranslateOptionsNew(const_cast<char**>(arguments.data()), nullptr);
+    Dataset out(GDALDataset::FromHandle(GDALTranslate("", GDALDataset::ToHandle(&file), options, nullptr)));
+    GDALTranslateOptionsFree(options);
+    if (out) notes.push_back(std::to_string(count[k]) + " samples of " + value + ", far from all others, taken as holes");
+    return out;
+  }
+  return nullptr;
+}
+
+}  // namespace tyndall::scene

@@ -1,0 +1,132 @@
+// Opening elevation files: which names, which drivers.
+#include <cpl_conv.h>
+
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "scene/elevation/elevation_gdal.hpp"
+
+namespace tyndall::scene {
+namespace {
+
+// Formats of elevations, and of images that carry them. None of them opens network connections by itself; GDAL's other
+// drivers (WMS, WCS, HTTP, STAC, databases, ...) are not needed and are removed.
+constexpr std::array<const char*, 63> kDrivers = {
+    "AAIGrid", "AIG",     "BAG",    "BMP",     "BT",      "COG",      "CTG",        "DTED",     "EHdr",   "ENVI",  "ERS",
+    "EXR",     "GenBin",  "GFF",    "GMT",     "GPKG",    "GRASSASCIIGrid", "GRIB", "GS7BG",    "GSAG",   "GSBG",  "GTiff",
+    "GXF",     "HDF4",    "HDF4Image", "HDF5", "HDF5Image", "HFA",    "ILWIS",      "ISG",      "ISIS2",  "ISIS3", "JP2OpenJPEG",
+    "JPEG",    "KRO",     "LCP",    "Leveller", "MEM",    "netCDF",   "NGSGEOID",   "NWT_GRC",  "NWT_GRD", "PCIDSK", "PDS",
+    "PDS4",    "PNG",     "RMF",    "ROI_PAC", "RRASTER", "RST",      "S102",       "SAGA",     "SDTS",   "SRTMHGT", "Terragen",
+    "USGSDEM", "VICAR",   "VRT",    "WEBP",    "XYZ",     "Zarr",     "ZMap",       nullptr};
+
+bool is_allowed(std::string_view name) {
+  for (const char* const driver : kDrivers) {
+    if (driver != nullptr && name == driver) return true;
+  }
+  return false;
+}
+
+// Removes the other drivers from the process: the sources of a virtual raster are opened with whatever is registered.
+void register_drivers() {
+  GDALAllRegister();
+  GDALDriverManager& manager = *GetGDALDriverManager();
+  for (int i = manager.GetDriverCount() - 1; i >= 0; --i) {
+    GDALDriver* const driver = manager.GetDriver(i);
+    const bool raster = driver->GetMetadataItem(GDAL_DCAP_RASTER) != nullptr;
+    if (!raster || is_allowed(driver->GetDescription())) continue;
+    manager.DeregisterDriver(driver);
+    delete driver;
+  }
+}
+
+bool begins_with(std::string_view text, std::string_view start) { return text.substr(0, start.size()) == start; }
+
+// Virtual file systems that stay on this machine.
+bool is_local_vsi(std::string_view name) {
+  for (const std::string_view local : {"/vsizip/", "/vsigzip/", "/vsitar/", "/vsimem/", "/vsisubfile/", "/vsisparse/"}) {
+    if (begins_with(name, local)) return true;
+  }
+  return false;
+}
+
+// Whether a text names a virtual file system that goes over a network.
+bool names_network(std::string_view text) {
+  for (std::size_t at = text.find("/vsi"); at != std::string_view::npos; at = text.find("/vsi", at + 1)) {
+    if (!is_local_vsi(text.substr(at))) return true;
+  }
+  return false;
+}
+
+// "NETCDF:file.nc:variable": the driver's name, a colon, and no such file.
+bool is_subdataset(const std::string& source) {
+  const std::size_t colon = source.find(':');
+  if (colon == std::string::npos || colon < 2) return false;
+  for (const char c : source.substr(0, colon)) {
+    if (std::isupper(static_cast<unsigned char>(c)) == 0 && std::isdigit(static_cast<unsigned char>(c)) == 0 && c != '_') return false;
+  }
+  std::error_code ignored;
+  return !std::filesystem::exists(source, ignored);
+}
+
+Result<void> check_path(const std::string& source) {
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(source, ignored);
+  if (!std::filesystem::exists(status)) return elevation_error(source, "does not exist");
+  if (std::filesystem::is_directory(status)) return elevation_error(source, "is a directory, a file is needed");
+  if (!std::filesystem::is_regular_file(status)) return elevation_error(source, "is not a regular file");
+  if (std::filesystem::file_size(source, ignored) == 0) return elevation_error(source, "is empty");
+  return {};
+}
+
+// A virtual raster is a text that refers to other files.
+Result<void> check_references(const std::string& source) {
+  constexpr std::size_t kMaxText = std::size_t{16} << 20;
+  std::ifstream file(source, std::ios::binary);
+  std::string text(64, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.find("<VRTDataset") == std::string::npos) return {};
+  file.clear();
+  file.seekg(0);
+  text.assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+  if (text.size() > kMaxText) return elevation_error(source, "is a virtual raster of more than 16 MiB");
+  if (!names_network(text)) return {};
+  return elevation_error(source, "is a virtual raster that refers to a network file system; accepted are references to local files");
+}
+
+}  // namespace
+
+// The network file systems of GDAL read this option before they connect.
+constexpr const char* kAllowedNames = "CPL_VSIL_CURL_ALLOWED_FILENAME";
+
+NetworkGuard::NetworkGuard(const std::string& source) : closed_(!names_network(source)) {
+  if (closed_) CPLSetThreadLocalConfigOption(kAllowedNames, "none");
+}
+
+NetworkGuard::~NetworkGuard() {
+  if (closed_) CPLSetThreadLocalConfigOption(kAllowedNames, nullptr);
+}
+
+Result<Dataset> open_elevation(const std::string& source, const Messages& messages) {
+  const bool virtual_name = begins_with(source, "/vsi");
+  if (!virtual_name && !is_subdataset(source)) {
+    if (Result<void> exists = check_path(source); !exists.ok()) return std::move(exists).error();
+    if (Result<void> local = check_references(source); !local.ok()) return std::move(local).error();
+  }
+  register_drivers();
+  Dataset file(static_cast<GDALDataset*>(GDALOpenEx(
+      source.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, kDrivers.data(), nullptr, nullptr)));
+  if (!file) return elevation_error(source, "is in no format that is read, or damaged" + messages.reason());
+  if (file->GetRasterCount() < 1) {
+    char** const inside = file->GetMetadata("SUBDATASETS");
+    const char* const first = inside != nullptr ? CSLFetchNameValue(inside, "SUBDATASET_1_NAME") : nullptr;
+    if (first != nullptr) return elevation_error(source, std::string("holds several rasters; name one, as ") + first);
+    return elevation_error(source, "holds no raster; a file with one raster is needed");
+  }
+  return file;
+}
+
+}  // namespace tyndall::scene
