@@ -32,6 +32,7 @@
 namespace tyndall {
 
 constexpr std::uint32_t kMaxCascades = 8;
+constexpr std::uint32_t kMaxViews = 8;
 
 enum class Severity : std::uint32_t { info, warning };
 
@@ -66,8 +67,13 @@ enum class OutputFormat : std::uint32_t { rgba16f, rgba32f };
 struct EffectDesc {
   VkExtent2D max_extent = {1920, 1080};  // [1; 16384] px - largest extent that record() will be given
   std::uint32_t frames_in_flight = 2;    // [1; 8] - frames recorded before the first has completed
+  // [1; 8] - pictures of one frame: the eyes of a stereo pair, halves of a split screen, a reflection. Each has constants of
+  // its own, so that all may be recorded before any has completed; they share the rest, and commands run one after the other.
+  std::uint32_t views = 1;
   OutputFormat output_format = OutputFormat::rgba16f;
   float sky_depth = 0.0F;            // 0 or 1 - device depth where nothing was drawn; 0 with reversed Z
+  // Format of FrameInputs::depth, for check_inputs alone: with 16 bits distant ground reads as sky. UNDEFINED: not stated.
+  VkFormat depth_format = VK_FORMAT_UNDEFINED;
   bool shadow_depth_reversed = false;  // shadow maps hold 1 nearest to the sun
   // With technique = epipolar: cascades that the air is marched through [1; 8], and texels of a shadow map's side
   // that the trees have room for [1; 16384]; wider maps work, but what is beyond is read texel by texel.
@@ -76,7 +82,8 @@ struct EffectDesc {
   bool shadow_colors = false;        // frames may have FrameInputs::shadow_colors: pipelines for these are made as well
   bool timings = false;              // measure each pass with timestamps
   bool counters = false;             // count what the passes do; see Effect::counters()
-  bool check_inputs = true;          // look at the inputs of each frame and say what is suspicious
+  // Says through DeviceInfo::message what is suspicious in the inputs of a frame: once, and again only after it was right.
+  bool check_inputs = true;
 };
 
 // Bytes. `persistent` is there for the effect's whole life; `transient` is freed when tables have been built
@@ -94,16 +101,21 @@ struct MemoryUsage {
 // An image of the caller's and the layout that it is in while the effect runs.
 struct Texture {
   VkImageView view = VK_NULL_HANDLE;
-  VkImageLayout layout = VK_IMAGE_LAYOUT_GENERAL;
+  VkImageLayout layout = VK_IMAGE_LAYOUT_GENERAL;  // one in which it can be sampled
+  // [>= 0] px - where the rectangle of FrameInputs::extent begins, for color, depth and output: each may be larger than
+  // the rectangle, and only the rectangle is read or written. Shadow maps are used whole: theirs must be 0.
+  VkOffset2D offset = {0, 0};
 };
 
 // One orthographic shadow map, a layer of FrameInputs::shadow_maps.
 struct Cascade {
-  Mat4 shadow_from_world;  // to (u, v, depth), each 0 to 1 inside the map
+  Mat4 shadow_from_world;  // affine, to (u, v, depth), each 0 to 1 inside the map; along the sun's direction
   float near_m = 0.0F;     // [m] - view-space depths that this cascade is meant for
   float far_m = 0.0F;
 };
 
+// Perspective only. What would draw garbage is an error: a world_from_view that is transposed, scaled or sheared, a
+// projection that is orthographic, looks down +z or contradicts EffectDesc::sky_depth.
 struct Camera {
   Mat4 world_from_view;  // rigid; the view looks down -z, x right, y up
   Mat4 clip_from_view;   // Vulkan clip space, depth 0 to 1; infinite and reversed projections welcome
@@ -117,7 +129,7 @@ struct Sun {
 
 // What one frame is made from. All images must be visible to compute shaders when the commands execute.
 struct FrameInputs {
-  VkExtent2D extent = {0, 0};  // [1; max_extent] px - of color, depth and output
+  VkExtent2D extent = {0, 0};  // [1; max_extent] px - of the picture, a rectangle of color, depth and output from their offsets on
   Texture color;               // linear radiance of the opaque scene and what is behind the air (disc, stars)
   Texture depth;               // device depth; sampled as float
   Texture shadow_maps;         // 2D array of depth images, one layer per cascade; null without cascades
@@ -133,8 +145,11 @@ struct FrameInputs {
   std::uint32_t first_marched_cascade = 0;  // the air is marched from this one on; it must start at the camera
   Camera camera;
   Sun sun;
-  Texture output;  // written; its layout must be GENERAL; not the same image as color
-  std::uint64_t frame_index = 0;  // consecutive; selects the in-flight slot
+  Texture output;  // written; its layout must be GENERAL; not the same view as color or depth
+  // Consecutive; selects the in-flight slot. The same index and view again is an error until the commands that were recorded
+  // first have completed: both would be drawn with the second camera.
+  std::uint64_t frame_index = 0;
+  std::uint32_t view = 0;  // below EffectDesc::views
 };
 
 struct Progress {
@@ -251,10 +266,10 @@ class Effect {
   // The resources that memory().persistent consists of; the span is valid until the next call.
   std::span<const ResourceMemory> resources();
   // What a frame whose commands have completed has done; zeros without EffectDesc::counters.
-  [[nodiscard]] Counters counters(std::uint64_t frame_index) const;
+  [[nodiscard]] Counters counters(std::uint64_t frame_index, std::uint32_t view = 0) const;
   // Times of the passes of a frame whose commands have completed, with EffectDesc::timings. The span is
   // valid until the next call.
-  std::span<const PassTiming> timings(std::uint64_t frame_index);
+  std::span<const PassTiming> timings(std::uint64_t frame_index, std::uint32_t view = 0);
   // Times of the stages of the last build of tables, all of whose commands have completed; likewise.
   std::span<const PassTiming> precompute_timings();
 

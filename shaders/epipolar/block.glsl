@@ -1,6 +1,6 @@
 // Blocks of kBlockWidth x 2 pixels: how far away they are, and the list of those whose pixels are done each by itself, which
-// names squares of 2 x 2. Include after declaring medium, frame, epipolar, scene_depth, broken, broken_list, kBlockWidth, and
-// unwarp.glsl.
+// names squares of 2 x 2. Include after declaring medium, frame, epipolar, scene_depth, broken, broken_list, kBlockWidth,
+// picture.glsl and unwarp.glsl.
 #ifndef TYNDALL_BLOCK_GLSL
 #define TYNDALL_BLOCK_GLSL
 
@@ -44,16 +44,23 @@ void look_at_block(inout Block block) {
   block.farthest_m = 0.0;
   float depth[kBlockPixels];
   if (kDownscale == 1) {
-    // Of each square of 2 x 2 in the order of textureGather: lower left, lower right, upper right, upper left.
+    // In squares of 2 x 2.
     for (int k = 0; k < kBlockWidth; k += 2) {
-      vec4 d = textureGather(scene_depth, vec2(block.pixel[0] + ivec2(k + 1, 1)) / vec2(float(frame.width), float(frame.height)));
+      vec4 d = GATHER_DEPTH(block.pixel[0] + ivec2(k, 0));
       depth[k] = d.w;
       depth[k + 1] = d.z;
       depth[kBlockWidth + k] = d.x;
       depth[kBlockWidth + k + 1] = d.y;
     }
+    // A block that reaches beyond the picture holds its last pixels again, not what lies beyond.
+    ivec2 inside = ivec2(frame.width, frame.height) - block.pixel[0];
+    for (int k = 1; k < kBlockWidth; ++k) {
+      depth[k] = k < inside.x ? depth[k] : depth[k - 1];
+      depth[kBlockWidth + k] = k < inside.x ? depth[kBlockWidth + k] : depth[kBlockWidth + k - 1];
+    }
+    for (int k = 0; k < kBlockWidth; ++k) depth[kBlockWidth + k] = inside.y > 1 ? depth[kBlockWidth + k] : depth[k];
   } else {
-    for (int k = 0; k < kBlockPixels; ++k) depth[k] = texelFetch(scene_depth, block.pixel[k], 0).r;
+    for (int k = 0; k < kBlockPixels; ++k) depth[k] = LOAD_DEPTH(block.pixel[k]);
   }
   for (int k = 0; k < kBlockPixels; ++k) look_at_pixel(block, k, depth[k]);
 }

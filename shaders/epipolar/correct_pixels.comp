@@ -20,10 +20,11 @@ layout(binding = 6) uniform sampler2D scene_depth;
 layout(binding = 7, OUTPUT_FORMAT) uniform writeonly image2D output_color;
 
 #include "frame/homogeneous_medium.glsl"
+#include "frame/picture.glsl"
 
 void put_pixel(uint at) {
   ivec2 pixel = ivec2(items[at] & 0xFFFFu, items[at] >> 16u);
-  Ray ray = view_ray(frame, pixel, texelFetch(scene_depth, pixel, 0).r);
+  Ray ray = view_ray(frame, pixel, LOAD_DEPTH(pixel));
   float start, end;
   vec3 through = vec3(1.0);
   vec3 lost;
@@ -33,10 +34,10 @@ void put_pixel(uint at) {
     else through = transmittance(medium, column_along(medium, ray.altitude, ray.cos_zenith, end));
   }
   if (kHomogeneous) color *= homogeneous_phase(ray.cos_view_sun);
-  if (frame.only == 0u) color += texelFetch(scene_color, pixel, 0).rgb * through;
+  if (frame.only == 0u) color += LOAD_COLOR(pixel) * through;
   // Seen against anything: green, as bright as a white surface under the sun.
   if (epipolar.show_depth_breaks != 0u) color = vec3(0.0, frame.sun_irradiance.g * 0.3, 0.0);
-  imageStore(output_color, pixel, vec4(color, 1.0));
+  STORE_COLOR(pixel, color);
 }
 
 void main() {

@@ -21,10 +21,11 @@ layout(binding = 6) uniform sampler2D scene_depth;
 #include "epipolar/records.glsl"
 #include "epipolar/reduced.glsl"
 #include "frame/homogeneous_medium.glsl"
+#include "frame/picture.glsl"
 
 void put_pixel(uint at) {
   ivec2 pixel = ivec2(items[at] & 0xFFFFu, items[at] >> 16u);
-  Ray ray = view_ray(frame, pixel, texelFetch(scene_depth, pixel, 0).r);
+  Ray ray = view_ray(frame, pixel, LOAD_DEPTH(pixel));
   float start, end;
   vec3 through, lost;
   vec3 tau = vec3(0.0);

@@ -41,6 +41,7 @@ layout(push_constant) uniform Push {
   uint turn;        // kOneCascade: the cascade, counted from the first marched
 };
 
+#include "frame/picture.glsl"
 #include "epipolar/march.glsl"
 #include "epipolar/march_state.glsl"
 #include "epipolar/slices.glsl"
@@ -55,7 +56,7 @@ void march_item(uint at) {
   Sample s = unpack_sample(samples[sample_at]);
   vec2 position = vec2(pixel) + 0.5;
   if (pixels) {
-    float depth = texelFetch(scene_depth, pixel, 0).r;
+    float depth = LOAD_DEPTH(pixel);
     s.depth_m = depth == frame.sky_depth ? kSkyDepth : view_depth(frame, position, depth);
     id = uint(slice_coordinate(position) + 0.5);
     id = id >= epipolar.slices ? (epipolar.closed != 0u ? 0u : epipolar.slices - 1u) : id;

@@ -16,11 +16,12 @@ layout(binding = 4, OUTPUT_FORMAT) uniform writeonly image2D output_color;
 
 layout(push_constant) uniform Push { uint marched; };  // 0: the interpolated ones; 1, in a later pass: the marched
 
+#include "frame/picture.glsl"
 #include "epipolar/slices.glsl"
 
 void mark(ivec2 pixel, vec3 color) {
   if (pixel.x < 0 || pixel.y < 0 || pixel.x >= int(frame.width) || pixel.y >= int(frame.height)) return;
-  imageStore(output_color, pixel, vec4(color * dot(frame.sun_irradiance, vec3(0.333)), 1.0));
+  STORE_COLOR(pixel, color * dot(frame.sun_irradiance, vec3(0.333)));
 }
 
 void main() {

@@ -24,6 +24,7 @@ layout(binding = 6) uniform sampler2D scene_depth;
 // Loaded by main() before anything else (docs/epipolar.md says why).
 Medium medium;
 
+#include "frame/picture.glsl"
 #include "epipolar/ray_end.glsl"
 #include "epipolar/slices.glsl"
 
@@ -31,11 +32,15 @@ Medium medium;
 // the picture; across a break that of the nearest pixel, because a mixture would be the depth of nothing.
 float depth_at(vec2 position) {
   const float kSameSurface = 0.9;  // least ratio of view depths
-  vec2 place = position - 0.5;
+  vec2 last = vec2(float(frame.width), float(frame.height)) - 1.0;
+  vec2 place = clamp(position - 0.5, vec2(-0.5), last + 0.5);
   vec2 corner = floor(place);
   vec2 part = place - corner;
-  // The four pixels around, in the order of textureGather: lower left, lower right, upper right, upper left.
-  vec4 d = textureGather(scene_depth, (corner + 1.0) / vec2(float(frame.width), float(frame.height)));
+  // The four pixels around: x lower left, y lower right, z upper right, w upper left. Beyond the picture its outermost ones are
+  // repeated, whatever the image holds there.
+  vec4 d = GATHER_DEPTH(ivec2(corner));
+  d = corner.x < 0.0 ? d.yyzz : corner.x >= last.x ? d.xxww : d;
+  d = corner.y < 0.0 ? d.xyyx : corner.y >= last.y ? d.wzzw : d;
   float a = view_depth(frame, position, min(min(d.x, d.y), min(d.z, d.w)));
   float b = view_depth(frame, position, max(max(d.x, d.y), max(d.z, d.w)));
   bool scene = all(notEqual(d, vec4(frame.sky_depth)));

@@ -22,6 +22,7 @@ layout(std430, binding = 8) buffer broken_list_block { WorkList broken; uint bro
 
 layout(std430, binding = 9) writeonly buffer reduced_block { vec4 reduced[]; };
 
+#include "frame/picture.glsl"
 #include "epipolar/unwarp.glsl"
 #include "epipolar/reduced.glsl"
 const int kBlockWidth = int(kUnwarpWidth);
@@ -86,9 +87,9 @@ void main() {
     vec2 off = vec2(pixel - block.pixel[0]);
     if (own) b.density = max(density.corner + off.x * density.per_x + off.y * density.per_y, vec3(0.0));
     if (kDownscale == 1) {
-      vec3 background = texelFetch(scene_color, pixel, 0).rgb;
+      vec3 background = LOAD_COLOR(pixel);
       vec3 color = compose(b, position, own_m, block.visible_m[k], block.sky[k], background);
-      imageStore(output_color, pixel, vec4(color, 1.0));
+      STORE_COLOR(pixel, color);
     } else {
       STORE_REDUCED(place[k], own_m, b);
     }

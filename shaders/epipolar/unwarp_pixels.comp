@@ -21,6 +21,7 @@ layout(std430, binding = 8) readonly buffer work_block { WorkList work; uint ite
 layout(std430, binding = 9) buffer break_list_block { WorkList breaks; uint break_list[]; };
 layout(std430, binding = 10) writeonly buffer reduced_block { vec4 reduced[]; };
 
+#include "frame/picture.glsl"
 #include "epipolar/unwarp.glsl"
 #include "epipolar/reduced.glsl"
 #include "epipolar/break_list.glsl"
@@ -43,7 +44,7 @@ void unwarp_pixel(uint block, uint k) {
   if (any(greaterThanEqual(place, computed_size()))) return;
   ivec2 pixel = kDownscale == 1 ? place : pixel_of_reduced(place);
   vec2 position = vec2(pixel) + 0.5;
-  float depth = texelFetch(scene_depth, pixel, 0).r;
+  float depth = LOAD_DEPTH(pixel);
   bool sky = depth == frame.sky_depth;
   float visible_m = view_depth(frame, position, depth);
   float depth_m = sky ? sky_depth_m(ray_direction(frame, position)) : visible_m;
@@ -55,8 +56,8 @@ void unwarp_pixel(uint block, uint k) {
   if (skyline) b.source = sky_source(a, position, b.source);
   if (skyline || kSparse) b.density = density_of(max(own_optical_depth(position, visible_m, sky), vec3(0.0)), depth_m);
   if (kDownscale == 1) {
-    vec3 background = texelFetch(scene_color, pixel, 0).rgb;
-    imageStore(output_color, pixel, vec4(compose(b, position, depth_m, visible_m, sky, background), 1.0));
+    vec3 background = LOAD_COLOR(pixel);
+    STORE_COLOR(pixel, compose(b, position, depth_m, visible_m, sky, background));
   } else {
     STORE_REDUCED(place, depth_m, b);
   }

@@ -21,6 +21,7 @@ layout(binding = 7) uniform sampler2D scene_depth;
 layout(binding = 8, OUTPUT_FORMAT) uniform writeonly image2D output_color;
 layout(std430, binding = 9) buffer broken_list_block { WorkList broken; uint broken_list[]; };
 
+#include "frame/picture.glsl"
 #include "epipolar/unwarp.glsl"
 #include "epipolar/reduced_around.glsl"
 const int kBlockWidth = 2;
@@ -57,9 +58,9 @@ void main() {
     ivec2 pixel = block.pixel[k];
     vec2 position = vec2(pixel) + 0.5;
     vec2 own_part = part + vec2(place_in_block(k)) / float(kDownscale);
-    vec3 background = texelFetch(scene_color, pixel, 0).rgb;
+    vec3 background = LOAD_COLOR(pixel);
     float own_m = scene ? block.visible_m[k] : kSkyDepth;
     vec3 color = compose(blend_reduced(near, bilinear_weights(own_part)), position, own_m, block.visible_m[k], block.sky[k], background);
-    imageStore(output_color, pixel, vec4(color, 1.0));
+    STORE_COLOR(pixel, color);
   }
 }

@@ -21,6 +21,7 @@ layout(std430, binding = 8) readonly buffer work_block { WorkList work; uint ite
 layout(std430, binding = 9) buffer break_list_block { WorkList breaks; uint break_list[]; };
 layout(std430, binding = 10) readonly buffer reduced_block { vec4 reduced[]; };
 
+#include "frame/picture.glsl"
 #include "epipolar/unwarp.glsl"
 #include "epipolar/reduced_around.glsl"
 #include "epipolar/break_list.glsl"
@@ -32,7 +33,7 @@ void upscale_pixel(uint block, uint k) {
   ivec2 pixel = ivec2((block & 0xFFFFu) + (k & 1u), (block >> 16u) + (k >> 1u));
   if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height)) return;
   vec2 position = vec2(pixel) + 0.5;
-  float depth = texelFetch(scene_depth, pixel, 0).r;
+  float depth = LOAD_DEPTH(pixel);
   bool sky = depth == frame.sky_depth;
   float visible_m = view_depth(frame, position, depth);
   float depth_m = sky ? sky_depth_m(ray_direction(frame, position)) : visible_m;
@@ -45,8 +46,8 @@ void upscale_pixel(uint block, uint k) {
   Blend b = blend_reduced(near, w / max(sum, 1e-9));
   Blend of_slices = blend(around(position, depth_m), position);
   if (sum < kLeastUpscaled) b = of_slices;
-  vec3 background = texelFetch(scene_color, pixel, 0).rgb;
-  imageStore(output_color, pixel, vec4(compose(b, position, depth_m, visible_m, sky, background), 1.0));
+  vec3 background = LOAD_COLOR(pixel);
+  STORE_COLOR(pixel, compose(b, position, depth_m, visible_m, sky, background));
   if (sum < kLeastUpscaled && b.weight < epipolar.least_weight) list_break(pixel);
 }
 

@@ -34,6 +34,7 @@ FrameConstants frame;
 #include "frame/counters.glsl"
 #include "frame/glass.glsl"
 #include "frame/homogeneous_medium.glsl"
+#include "frame/picture.glsl"
 #include "frame/table_light.glsl"
 
 const int kReadsPerStep = 8;  // of the shadow map, per evaluation of the air
@@ -220,8 +221,8 @@ void main() {
   frame = stored_frame;
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height)) return;
-  vec3 background = texelFetch(scene_color, pixel, 0).rgb;
-  float depth = texelFetch(scene_depth, pixel, 0).r;
+  vec3 background = LOAD_COLOR(pixel);
+  float depth = LOAD_DEPTH(pixel);
   Ray ray = view_ray(frame, pixel, depth);
   float start, end;
   vec3 inscattered = vec3(0.0);
@@ -236,7 +237,7 @@ void main() {
   }
   vec3 color = inscattered * frame.sun_irradiance;
   if (frame.only == 0u) color += background * through;
-  imageStore(output_color, pixel, vec4(color, 1.0));
+  STORE_COLOR(pixel, color);
   count(kSamplesMarched, 1u);
   count(kMarchSteps, steps_done);
   count(kShadowFetches, reads_done);

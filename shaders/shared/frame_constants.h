@@ -59,6 +59,11 @@ struct FrameConstants {
   uint only;     // 1: the output is the in-scattered light alone
   uint shadow_depth_reversed;
   uint unoccluded;  // 1: the higher orders of the whole ray, whatever is in shadow
+  // Where the picture begins in the caller's images [pixels].
+  ivec2 color_offset;
+  ivec2 depth_offset;
+  ivec2 output_offset;
+  ivec2 unused_3;
   TableShape tables;
   HomogeneousMedium homogeneous;
 };

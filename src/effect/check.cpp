@@ -3,6 +3,8 @@
 #include <string>
 
 #include "effect/frame_constants.hpp"
+#include "effect/frame_geometry.hpp"
+#include "gpu/try.hpp"
 
 namespace tyndall {
 namespace {
@@ -18,6 +20,91 @@ bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && 
 
 Error invalid(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
 
+// Layouts that no shader can sample an image in; those of extensions pass.
+bool can_be_sampled(VkImageLayout layout) {
+  switch (layout) {
+    case VK_IMAGE_LAYOUT_UNDEFINED:
+    case VK_IMAGE_LAYOUT_PREINITIALIZED:
+    case VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL:
+    case VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL:
+    case VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL:
+    case VK_IMAGE_LAYOUT_STENCIL_ATTACHMENT_OPTIMAL:
+    case VK_IMAGE_LAYOUT_STENCIL_READ_ONLY_OPTIMAL:
+    case VK_IMAGE_LAYOUT_ATTACHMENT_OPTIMAL:
+    case VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL:
+    case VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL:
+    case VK_IMAGE_LAYOUT_PRESENT_SRC_KHR: return false;
+    default: return true;
+  }
+}
+
+Result<void> check_layout(const Texture& texture, const char* name) {
+  if (can_be_sampled(texture.layout)) return {};
+  return invalid(std::string(name) + "'s layout is " + std::to_string(static_cast<int>(texture.layout)) +
+                 " (of VkImageLayout); expected one that can be sampled, such as SHADER_READ_ONLY_OPTIMAL or GENERAL");
+}
+
+// What draws garbage with certainty.
+Result<void> check_camera(const Camera& camera, const EffectDesc& desc) {
+  constexpr double kRigid = 1e-2;
+  if (affine_error(camera.world_from_view) > 1e-4) {
+    return invalid("Camera::world_from_view has a last row other than 0 0 0 1; expected a rigid matrix, column-major: is it transposed?");
+  }
+  if (orthonormal_error(camera.world_from_view) > kRigid) {
+    return invalid("Camera::world_from_view is scaled or sheared: the first column is " +
+                   std::to_string(length(column_of(camera.world_from_view, 0))) +
+                   " long; expected a rigid matrix, whose first three columns are orthonormal");
+  }
+  const Projection p = projection_of(camera.clip_from_view);
+  if (!p.perspective) {
+    return invalid("Camera::clip_from_view is orthographic, which is not supported; expected a perspective projection, with a "
+                   "last row of 0 0 -1 0");
+  }
+  if (!p.forward) {
+    return invalid("Camera::clip_from_view looks down +z of the view; expected one that looks down -z, with a last row of 0 0 -1 0");
+  }
+  // Depth falls with the distance where the slope is positive.
+  const float far_side = p.depth_slope > 0.0 ? 0.0F : 1.0F;
+  if (far_side != desc.sky_depth) {
+    return invalid("EffectDesc::sky_depth is " + std::to_string(static_cast<int>(desc.sky_depth)) +
+                   ", but the depth of Camera::clip_from_view " + (p.depth_slope > 0.0 ? "falls" : "rises") +
+                   " with the distance; expected " + (p.depth_slope > 0.0 ? "0 (reversed Z)" : "1"));
+  }
+  return {};
+}
+
+Result<void> check_cascade(const Cascade& cascade, std::size_t index) {
+  const auto fault = [&](const std::string& what) {
+    return invalid("FrameInputs::cascades[" + std::to_string(index) + "]" + what);
+  };
+  const Mat4& m = cascade.shadow_from_world;
+  if (!finite(m)) return fault("'s shadow_from_world is not finite");
+  if (!(cascade.near_m >= 0.0F && cascade.far_m >= cascade.near_m)) {
+    return fault("'s range is " + std::to_string(cascade.near_m) + " to " + std::to_string(cascade.far_m) +
+                 " m; expected 0 <= near_m <= far_m");
+  }
+  // Far below what any map's texels or depths could be.
+  const double volume = determinant3(m);
+  const double rows = length(row_of(m, 0)) * length(row_of(m, 1)) * length(row_of(m, 2));
+  if (!(std::abs(volume) > 1e-4 * rows) || !(rows > 0.0)) {
+    return fault("'s shadow_from_world is zero or cannot be inverted; expected a matrix from the world to (u, v, depth)");
+  }
+  if (affine_error(m) > 1e-4) {
+    return fault("'s shadow_from_world has a last row other than 0 0 0 1; expected an orthographic shadow map's matrix, column-major: "
+                 "is it transposed, or a perspective one?");
+  }
+  return {};
+}
+
+// What is larger than any image overflows in the shaders.
+Result<void> check_offset(const Texture& texture, const char* name) {
+  constexpr std::int32_t kMaxOffset = 1 << 20;
+  const VkOffset2D o = texture.offset;
+  if (o.x >= 0 && o.y >= 0 && o.x <= kMaxOffset && o.y <= kMaxOffset) return {};
+  return invalid(std::string(name) + "'s offset is " + std::to_string(o.x) + "," + std::to_string(o.y) +
+                 "; expected pixels inside the image, from 0,0 on");
+}
+
 }  // namespace
 
 Result<void> check_frame(const FrameInputs& inputs, const EffectDesc& desc, const Params& params) {
@@ -31,8 +118,26 @@ Result<void> check_frame(const FrameInputs& inputs, const EffectDesc& desc, cons
   if (inputs.color.view == VK_NULL_HANDLE) return invalid("FrameInputs::color has no view");
   if (inputs.depth.view == VK_NULL_HANDLE) return invalid("FrameInputs::depth has no view");
   if (inputs.output.view == VK_NULL_HANDLE) return invalid("FrameInputs::output has no view");
+  TYNDALL_TRY(check_layout(inputs.color, "FrameInputs::color"));
+  TYNDALL_TRY(check_layout(inputs.depth, "FrameInputs::depth"));
+  if (inputs.output.view == inputs.color.view || inputs.output.view == inputs.depth.view) {
+    return invalid("FrameInputs::output is the view of FrameInputs::color or depth; expected an image of its own, because both are read "
+                   "while it is written");
+  }
+  if (inputs.view >= desc.views) {
+    return invalid("FrameInputs::view is " + std::to_string(inputs.view) + "; expected below EffectDesc::views, " +
+                   std::to_string(desc.views));
+  }
   if (inputs.output.layout != VK_IMAGE_LAYOUT_GENERAL) {
     return invalid("FrameInputs::output must be in VK_IMAGE_LAYOUT_GENERAL");
+  }
+  TYNDALL_TRY(check_offset(inputs.color, "FrameInputs::color"));
+  TYNDALL_TRY(check_offset(inputs.depth, "FrameInputs::depth"));
+  TYNDALL_TRY(check_offset(inputs.output, "FrameInputs::output"));
+  for (const Texture& texture : {inputs.shadow_maps, inputs.shadow_colors}) {
+    if (texture.offset.x != 0 || texture.offset.y != 0) {
+      return invalid("FrameInputs::shadow_maps or shadow_colors has an offset; shadow maps are used whole, expected 0,0");
+    }
   }
   if (inputs.cascades.size() > kMaxCascades) {
     return invalid("FrameInputs::cascades has " + std::to_string(inputs.cascades.size()) + " entries, at most " +
@@ -47,24 +152,21 @@ Result<void> check_frame(const FrameInputs& inputs, const EffectDesc& desc, cons
     if (inputs.shadow_colors.view != VK_NULL_HANDLE && !desc.shadow_colors) {
       return invalid("there are FrameInputs::shadow_colors, which need EffectDesc::shadow_colors");
     }
-    if (inputs.shadow_colors.view != VK_NULL_HANDLE && inputs.shadow_colors.layout == VK_IMAGE_LAYOUT_UNDEFINED) {
-      return invalid("FrameInputs::shadow_colors is in VK_IMAGE_LAYOUT_UNDEFINED, it must be in a layout that can be sampled");
+    TYNDALL_TRY(check_layout(inputs.shadow_maps, "FrameInputs::shadow_maps"));
+    if (inputs.shadow_colors.view != VK_NULL_HANDLE) {
+      TYNDALL_TRY(check_layout(inputs.shadow_colors, "FrameInputs::shadow_colors"));
     }
     if (inputs.first_marched_cascade >= inputs.cascades.size()) {
       return invalid("FrameInputs::first_marched_cascade is " + std::to_string(inputs.first_marched_cascade) +
                      ", it must be below the number of cascades, " + std::to_string(inputs.cascades.size()));
     }
   }
-  for (const Cascade& cascade : inputs.cascades) {
-    if (!finite(cascade.shadow_from_world)) return invalid("a matrix of FrameInputs::cascades is not finite");
-    if (!(cascade.near_m >= 0.0F && cascade.far_m >= cascade.near_m)) {
-      return invalid("a cascade's near_m and far_m must satisfy 0 <= near_m <= far_m");
-    }
-  }
+  for (std::size_t i = 0; i < inputs.cascades.size(); ++i) TYNDALL_TRY(check_cascade(inputs.cascades[i], i));
   if (!finite(inputs.camera.world_from_view)) return invalid("Camera::world_from_view is not finite");
   if (!finite(inputs.camera.clip_from_view) || !finite(inverse(inputs.camera.clip_from_view))) {
     return invalid("Camera::clip_from_view is not finite or cannot be inverted");
   }
+  TYNDALL_TRY(check_camera(inputs.camera, desc));
   const Vec3 sun = inputs.sun.direction_to_sun;
   if (!finite(sun) || (sun.x == 0.0F && sun.y == 0.0F && sun.z == 0.0F)) {
     return invalid("Sun::direction_to_sun is not a direction");
@@ -85,36 +187,6 @@ Result<void> check_frame(const FrameInputs& inputs, const EffectDesc& desc, cons
     }
   }
   return {};
-}
-
-void remark_on_frame(const FrameInputs& inputs, const Params& params, const DeviceInfo& device) {
-  if (device.message == nullptr) return;
-  const auto say = [&](std::string_view text) { device.message(device.message_user, Severity::warning, text); };
-  const Vec3 sun = inputs.sun.direction_to_sun;
-  const float squared = sun.x * sun.x + sun.y * sun.y + sun.z * sun.z;
-  if (std::abs(squared - 1.0F) > 1e-3F) {
-    say("Sun::direction_to_sun is not of unit length: it is normalised, but is it a direction, and towards the sun?");
-  }
-  if (inputs.sun.irradiance.x + inputs.sun.irradiance.y + inputs.sun.irradiance.z <= 0.0F) {
-    say("Sun::irradiance is 0: the air will be black");
-  }
-  if (params.scattering.light_shafts && inputs.cascades.empty()) {
-    say("scattering.light_shafts is on, but there are no shadow cascades: nothing will be shadowed");
-  }
-  if (inputs.shadow_colors.view != VK_NULL_HANDLE && (inputs.cascades.empty() || !params.scattering.light_shafts)) {
-    say("there are shadow_colors, but no light shafts for them: nothing will be coloured");
-  }
-  if (!inputs.cascades.empty() && inputs.first_marched_cascade < inputs.cascades.size() &&
-      inputs.cascades[inputs.first_marched_cascade].near_m > 1.0F) {
-    say("the first marched cascade does not start at the camera: the air before it is taken as lit");
-  }
-  const float* m = inputs.camera.world_from_view.m;
-  const double radius = params.planet.radius_m;
-  const double altitude = std::hypot(static_cast<double>(m[12]), static_cast<double>(m[13]) + radius,
-                                     static_cast<double>(m[14])) - radius;
-  if (altitude < -500.0) {
-    say("the camera is more than 500 m below sea level: is y up, and the unit the metre?");
-  }
 }
 
 }  // namespace tyndall

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -46,6 +47,12 @@ constexpr VkBufferUsageFlags kConstantsUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BI
 constexpr VkBufferUsageFlags kCounterUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
                                              VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
 
+// Of no_air.comp.
+struct NoAirPush {
+  VkExtent2D extent;
+  VkOffset2D color_offset, output_offset;
+};
+
 }  // namespace
 
 Result<void> open_device(gpu::Device& device, const DeviceInfo& info) {
@@ -66,12 +73,12 @@ MemoryUsage plan_memory(const gpu::Device& device, const EffectDesc& desc, const
   for (std::uint32_t i = 0; i < kTableCount; ++i) {
     usage.persistent += gpu::image_bytes(device, table_desc(static_cast<TableId>(i), params));
   }
-  usage.persistent += gpu::buffer_bytes(device, kCounterBytes * desc.frames_in_flight, kCounterUsage);
+  usage.persistent += gpu::buffer_bytes(device, kCounterBytes * FrameRing::slots(desc), kCounterUsage);
   usage.persistent += epipolar_bytes(device, desc, params);
   usage.transient = table_scratch_bytes(device, params);
-  usage.host = gpu::buffer_bytes(device, kSlotBytes * desc.frames_in_flight, kConstantsUsage);
+  usage.host = gpu::buffer_bytes(device, kSlotBytes * FrameRing::slots(desc), kConstantsUsage);
   if (desc.counters) {
-    usage.host += gpu::buffer_bytes(device, kCounterBytes * desc.frames_in_flight, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+    usage.host += gpu::buffer_bytes(device, kCounterBytes * FrameRing::slots(desc), VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   }
   return usage;
 }
@@ -83,22 +90,23 @@ Result<void> Effect::State::create_objects() {
                              device, full ? shaders::no_air_comp_rgba32f : shaders::no_air_comp_rgba16f));
   no_air.name = "no_air";
   TYNDALL_TRY(epipolar.create(device, desc));
-  TYNDALL_TRY(tables.create(device, desc.frames_in_flight, desc.timings));
+  TYNDALL_TRY(tables.create(device, FrameRing::slots(desc), desc.timings));
   TYNDALL_TRY(change(desc, params));
   TYNDALL_ASSIGN(no_shadows, gpu::create_image(device, kNoShadows));
   TYNDALL_ASSIGN(no_colors, gpu::create_image(device, kNoColors));
-  TYNDALL_ASSIGN(constants, gpu::create_buffer(device, "constants", kSlotBytes * desc.frames_in_flight,
+  TYNDALL_ASSIGN(constants, gpu::create_buffer(device, "constants", kSlotBytes * FrameRing::slots(desc),
                                                kConstantsUsage, gpu::MemoryKind::upload));
-  const VkDeviceSize counter_bytes = kCounterBytes * desc.frames_in_flight;
+  const VkDeviceSize counter_bytes = kCounterBytes * FrameRing::slots(desc);
   TYNDALL_ASSIGN(counters,
                  gpu::create_buffer(device, "counters", counter_bytes, kCounterUsage, gpu::MemoryKind::device));
   if (desc.counters) {
     TYNDALL_ASSIGN(counters_readback, gpu::create_buffer(device, "counters_readback", counter_bytes,
                                                          VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryKind::readback));
   }
+  TYNDALL_ASSIGN(ring, FrameRing::create(device, desc));
   TYNDALL_TRY(create_samplers());
   if (desc.timings) {
-    TYNDALL_ASSIGN(timer, gpu::Timer::create(device, desc.frames_in_flight, kMaxTimedPasses));
+    TYNDALL_ASSIGN(timer, gpu::Timer::create(device, FrameRing::slots(desc), kMaxTimedPasses));
   }
   return {};
 }
@@ -212,13 +220,13 @@ void Effect::State::prepare_images(VkCommandBuffer cmd) {
 Result<void> Effect::State::record(VkCommandBuffer cmd, const FrameInputs& inputs) {
   State& s = *this;
   TYNDALL_TRY(check_frame(inputs, s.desc, s.params));
-  if (s.desc.check_inputs) remark_on_frame(inputs, s.params, s.info);
-
-  const std::uint32_t slot = s.slot(inputs.frame_index);
+  TYNDALL_ASSIGN(const std::optional<std::uint64_t> unfinished, s.ring.take(inputs.frame_index, inputs.view));
+  const std::uint32_t slot = s.ring.slot(inputs.frame_index, inputs.view);
   const VkDeviceSize frame_offset = kSlotBytes * slot;
   const VkDeviceSize cascade_offset = frame_offset + kFrameBytes;
   const VkDeviceSize medium_offset = cascade_offset + kCascadeBytes;
   const shared::FrameConstants frame = frame_constants(inputs, s.desc, s.params);
+  if (s.desc.check_inputs) s.remarks.on_frame(inputs, {s.desc, s.params, frame, s.tables.ready(), unfinished}, s.info);
   const CascadeArray cascades = cascade_constants(inputs);
   const shared::Medium medium = medium_from_params(s.params);
   std::memcpy(s.mapped(frame_offset), &frame, sizeof frame);
@@ -263,10 +271,12 @@ Result<void> Effect::State::record(VkCommandBuffer cmd, const FrameInputs& input
     const gpu::Pipeline& pipeline =
         s.params.scattering.enabled ? s.march_per_pixel[colored ? 1 : 0][mode_index(s.params.scattering)] : s.no_air;
     if (passes != nullptr) passes->begin(cmd, pipeline.name);
-    TYNDALL_TRY(s.run(cmd, pipeline, resources, &inputs.extent, {inputs.extent.width, inputs.extent.height, 1}));
+    const NoAirPush push = {inputs.extent, inputs.color.offset, inputs.output.offset};
+    TYNDALL_TRY(s.run(cmd, pipeline, resources, &push, {inputs.extent.width, inputs.extent.height, 1}));
     if (passes != nullptr) passes->end(cmd);
   }
   if (s.desc.counters) s.copy_counters(cmd, counter_offset);
+  s.ring.record_end(cmd, inputs.frame_index, inputs.view);
   return {};
 }
 
@@ -288,10 +298,10 @@ void Effect::State::copy_counters(VkCommandBuffer cmd, VkDeviceSize offset) {
                VK_ACCESS_HOST_READ_BIT);
 }
 
-Counters Effect::State::read_counters(std::uint64_t frame_index) const {
-  if (!desc.counters) return {};
+Counters Effect::State::read_counters(std::uint64_t frame_index, std::uint32_t view) const {
+  if (!desc.counters || view >= desc.views) return {};
   std::uint64_t values[shared::kCounters];
-  std::memcpy(values, static_cast<const std::byte*>(counters_readback.mapped) + kCounterBytes * slot(frame_index),
+  std::memcpy(values, static_cast<const std::byte*>(counters_readback.mapped) + kCounterBytes * ring.slot(frame_index, view),
               sizeof values);
   return {values[shared::kSamplesMarched], values[shared::kMarchSteps], values[shared::kNodesVisited],
           values[shared::kShadowFetches], values[shared::kPixelsCorrected]};
@@ -319,9 +329,9 @@ MemoryUsage Effect::State::memory() const {
           tables.transient_bytes() + epipolar.retired_bytes(), constants.bytes + counters_readback.bytes};
 }
 
-std::span<const PassTiming> Effect::State::read_timings(std::uint64_t frame_index) {
-  if (!desc.timings) return {};
-  const std::span<const gpu::TimedScope> scopes = timer.read(slot(frame_index));
+std::span<const PassTiming> Effect::State::read_timings(std::uint64_t frame_index, std::uint32_t view) {
+  if (!desc.timings || view >= desc.views) return {};
+  const std::span<const gpu::TimedScope> scopes = timer.read(ring.slot(frame_index, view));
   const std::size_t count = std::min(scopes.size(), timings.size());
   for (std::size_t i = 0; i < count; ++i) timings[i] = {scopes[i].name, scopes[i].milliseconds};
   return {timings.data(), count};

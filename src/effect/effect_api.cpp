@@ -156,12 +156,12 @@ std::span<const ResourceMemory> Effect::resources() {
   return state_ ? state_->list_resources() : std::span<const ResourceMemory>();
 }
 
-Counters Effect::counters(std::uint64_t frame_index) const {
-  return state_ ? state_->read_counters(frame_index) : Counters{};
+Counters Effect::counters(std::uint64_t frame_index, std::uint32_t view) const {
+  return state_ ? state_->read_counters(frame_index, view) : Counters{};
 }
 
-std::span<const PassTiming> Effect::timings(std::uint64_t frame_index) {
-  return state_ ? state_->read_timings(frame_index) : std::span<const PassTiming>();
+std::span<const PassTiming> Effect::timings(std::uint64_t frame_index, std::uint32_t view) {
+  return state_ ? state_->read_timings(frame_index, view) : std::span<const PassTiming>();
 }
 
 std::span<const PassTiming> Effect::precompute_timings() {

@@ -7,6 +7,8 @@
 #include <span>
 
 #include "effect/epipolar.hpp"
+#include "effect/frame_ring.hpp"
+#include "effect/remarks.hpp"
 #include "effect/tables.hpp"
 #include "gpu/pipeline.hpp"
 #include "gpu/resource.hpp"
@@ -41,6 +43,8 @@ struct Effect::State {
   gpu::Handle<VkSampler> shadow_compare;
   gpu::Handle<VkSampler> shadow_plain;  // the depths themselves, with the same border
   gpu::Handle<VkSampler> shadow_tint;
+  FrameRing ring;
+  Remarks remarks;
   gpu::Timer timer;
   std::array<PassTiming, kMaxTimedPasses> timings = {};
   std::array<ResourceMemory, kTableCount + kEpipolarBuffers + 3> resource_rows = {};
@@ -55,9 +59,6 @@ struct Effect::State {
     TableBuilder::Pending tables;
   };
 
-  [[nodiscard]] std::uint32_t slot(std::uint64_t frame_index) const {
-    return static_cast<std::uint32_t>(frame_index % desc.frames_in_flight);
-  }
   [[nodiscard]] std::byte* mapped(VkDeviceSize offset) const {
     return static_cast<std::byte*>(constants.mapped) + offset;
   }
@@ -74,10 +75,10 @@ struct Effect::State {
 
   Result<Progress> prepare_pipelines(std::uint32_t budget);
   Result<void> record(VkCommandBuffer cmd, const FrameInputs& inputs);
-  [[nodiscard]] Counters read_counters(std::uint64_t frame_index) const;
+  [[nodiscard]] Counters read_counters(std::uint64_t frame_index, std::uint32_t view) const;
   [[nodiscard]] std::span<const ResourceMemory> list_resources();
   [[nodiscard]] MemoryUsage memory() const;
-  [[nodiscard]] std::span<const PassTiming> read_timings(std::uint64_t frame_index);
+  [[nodiscard]] std::span<const PassTiming> read_timings(std::uint64_t frame_index, std::uint32_t view);
 
  private:
   Result<void> create_samplers();

@@ -191,7 +191,7 @@ void Epipolar::commit(Pending&& pending) noexcept {
   desc_ = pending.desc;
   for (std::size_t i = 0; i < kEpipolarBuffers; ++i) {
     if (!pending.replaced[i]) continue;
-    if (buffers_[i].size > 0) retired_.push_back({std::move(buffers_[i]), desc_.frames_in_flight + 1});
+    if (buffers_[i].size > 0) retired_.push_back({std::move(buffers_[i]), desc_.frames_in_flight * desc_.views + 1});
     buffers_[i] = std::move(pending.buffers[i]);
   }
 }

@@ -173,6 +173,9 @@ shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDe
   }
   out.glass_depth_sign = !inputs.shadow_color_depths ? 0.0F : desc.shadow_depth_reversed ? -1.0F : 1.0F;
   out.shadow_depth_reversed = desc.shadow_depth_reversed ? 1 : 0;
+  out.color_offset = {inputs.color.offset.x, inputs.color.offset.y};
+  out.depth_offset = {inputs.depth.offset.x, inputs.depth.offset.y};
+  out.output_offset = {inputs.output.offset.x, inputs.output.offset.y};
   out.tables = table_shape(params);
   return out;
 }

@@ -26,9 +26,7 @@ namespace tyndall {
 using CascadeArray = std::array<shared::CascadeConstants, shared::kMostCascades>;
 [[nodiscard]] CascadeArray cascade_constants(const FrameInputs& inputs);
 
-// Why a frame cannot be recorded: one line, or empty. `warnings` receives remarks about inputs that
-// can be recorded but are hardly meant.
+// Why a frame cannot be recorded, as an error of one line. Remarks on frames that can be are in remarks.hpp.
 [[nodiscard]] Result<void> check_frame(const FrameInputs& inputs, const EffectDesc& desc, const Params& params);
-void remark_on_frame(const FrameInputs& inputs, const Params& params, const DeviceInfo& device);
 
 }  // namespace tyndall

@@ -37,6 +37,7 @@ Result<void> check_desc(const DeviceInfo& info, const EffectDesc& desc) {
   if (desc.frames_in_flight == 0 || desc.frames_in_flight > 8) {
     return invalid("EffectDesc::frames_in_flight must be 1 to 8");
   }
+  if (desc.views == 0 || desc.views > kMaxViews) return invalid("EffectDesc::views must be 1 to 8");
   if (desc.max_cascades == 0 || desc.max_cascades > kMaxCascades) {
     return invalid("EffectDesc::max_cascades must be 1 to 8");
   }

@@ -11,12 +11,14 @@ namespace tyndall::shared {
 using uint = std::uint32_t;
 using vec3 = Vec3;
 using mat4 = Mat4;
-// Of structures that only the GPU fills: known here for their size alone.
 struct vec2 {
   float x, y;
 };
 struct vec4 {
   float x, y, z, w;
+};
+struct ivec2 {
+  std::int32_t x, y;
 };
 struct ivec3 {
   std::int32_t x, y, z;

@@ -78,6 +78,8 @@ class TableBuilder {
   void begin_frame(VkCommandBuffer cmd);
 
   [[nodiscard]] Progress progress() const { return {done_, static_cast<std::uint32_t>(slices_.size())}; }
+  // Whether tables have been built once; stale ones stay in use until others are.
+  [[nodiscard]] bool ready() const { return complete_; }
   // The finished tables; before the first build is complete, those that it fills.
   [[nodiscard]] const gpu::Image& table(TableId id) const { return tables_[static_cast<std::uint32_t>(id)].image; }
   [[nodiscard]] VkDeviceSize persistent_bytes() const;

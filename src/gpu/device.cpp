@@ -80,6 +80,7 @@ TYNDALL_DESTROY(VkSampler, DestroySampler)
 TYNDALL_DESTROY(VkQueryPool, DestroyQueryPool)
 TYNDALL_DESTROY(VkCommandPool, DestroyCommandPool)
 TYNDALL_DESTROY(VkFence, DestroyFence)
+TYNDALL_DESTROY(VkEvent, DestroyEvent)
 TYNDALL_DESTROY(VkShaderModule, DestroyShaderModule)
 #undef TYNDALL_DESTROY
 

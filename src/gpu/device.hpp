@@ -50,6 +50,7 @@ void destroy(const Device& device, VkSampler handle);
 void destroy(const Device& device, VkQueryPool handle);
 void destroy(const Device& device, VkCommandPool handle);
 void destroy(const Device& device, VkFence handle);
+void destroy(const Device& device, VkEvent handle);
 void destroy(const Device& device, VkShaderModule handle);
 
 // Move-only owner of one Vulkan object.

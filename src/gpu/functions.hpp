@@ -35,6 +35,7 @@ namespace tyndall::gpu {
   X(CmdPushConstants)                \
   X(CmdPushDescriptorSetKHR)         \
   X(CmdResetQueryPool)               \
+  X(CmdSetEvent)                     \
   X(CmdSetScissor)                   \
   X(CmdSetViewport)                  \
   X(CmdUpdateBuffer)                 \
@@ -43,6 +44,7 @@ namespace tyndall::gpu {
   X(CreateCommandPool)               \
   X(CreateComputePipelines)          \
   X(CreateDescriptorSetLayout)       \
+  X(CreateEvent)                     \
   X(CreateFence)                     \
   X(CreateGraphicsPipelines)         \
   X(CreateImage)                     \
@@ -54,6 +56,7 @@ namespace tyndall::gpu {
   X(DestroyBuffer)                   \
   X(DestroyCommandPool)              \
   X(DestroyDescriptorSetLayout)      \
+  X(DestroyEvent)                    \
   X(DestroyFence)                    \
   X(DestroyImage)                    \
   X(DestroyImageView)                \
@@ -68,11 +71,13 @@ namespace tyndall::gpu {
   X(GetBufferMemoryRequirements)     \
   X(GetDeviceBufferMemoryRequirements) \
   X(GetDeviceImageMemoryRequirements) \
+  X(GetEventStatus)                  \
   X(GetImageMemoryRequirements)      \
   X(GetQueryPoolResults)             \
   X(MapMemory)                       \
   X(QueueSubmit)                     \
   X(ResetCommandBuffer)              \
+  X(ResetEvent)                      \
   X(ResetFences)                     \
   X(WaitForFences)
 

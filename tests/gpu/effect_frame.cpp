@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <glm/gtc/packing.hpp>
+#include <limits>
 
 #include "effect/medium.hpp"
 #include "gpu/try.hpp"
@@ -81,7 +82,8 @@ Result<FrameImages> FrameImages::create(gpu::Host& host, const TestFrame& frame,
   FrameImages out;
   out.format_ = format;
   const gpu::Device& device = host.device();
-  const VkExtent3D extent = {frame.extent.width, frame.extent.height, 1};
+  const VkExtent2D whole = frame.image_extent.width > 0 ? frame.image_extent : frame.extent;
+  const VkExtent3D extent = {whole.width, whole.height, 1};
   constexpr VkImageUsageFlags kInput = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
   constexpr VkImageLayout kRead = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
   const std::size_t pixels = static_cast<std::size_t>(extent.width) * extent.height;
@@ -90,10 +92,22 @@ Result<FrameImages> FrameImages::create(gpu::Host& host, const TestFrame& frame,
   std::vector<float> depth;
   for (std::uint32_t y = 0; y < extent.height; ++y) {
     for (std::uint32_t x = 0; x < extent.width; ++x) {
-      color.insert(color.end(), {frame.background.x, frame.background.y, frame.background.z, 1.0F});
-      const double distance = frame.distance_m ? frame.distance_m(x, y) : 0.0;
+      const auto inside = [&](const VkOffset2D& offset) {
+        const std::uint32_t px = x - static_cast<std::uint32_t>(offset.x);
+        const std::uint32_t py = y - static_cast<std::uint32_t>(offset.y);
+        return px < frame.extent.width && py < frame.extent.height;
+      };
+      const Vec3 shown = inside(frame.color_offset) ? frame.background : Vec3(std::numeric_limits<float>::quiet_NaN());
+      color.insert(color.end(), {shown.x, shown.y, shown.z, 1.0F});
+      if (!inside(frame.depth_offset)) {
+        depth.push_back((x + y) % 2 == 0 ? 0.875F : 1.0F / 65536.0F);
+        continue;
+      }
+      const std::uint32_t px = x - static_cast<std::uint32_t>(frame.depth_offset.x);
+      const std::uint32_t py = y - static_cast<std::uint32_t>(frame.depth_offset.y);
+      const double distance = frame.distance_m ? frame.distance_m(px, py) : 0.0;
       depth.push_back(
-          device_depth(frame, distance * glm::dot(frame.view.ray(x, y, frame.extent), frame.view.forward)));
+          device_depth(frame, distance * glm::dot(frame.view.ray(px, py, frame.extent), frame.view.forward)));
     }
   }
   TYNDALL_ASSIGN(out.color_, gpu::create_image(device, {"color", VK_FORMAT_R32G32B32A32_SFLOAT, extent, kInput}));
@@ -146,8 +160,8 @@ FrameInputs FrameImages::inputs(const TestFrame& frame) const {
   constexpr VkImageLayout kRead = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
   FrameInputs out;
   out.extent = frame.extent;
-  out.color = {color_.view.get(), kRead};
-  out.depth = {depth_.view.get(), kRead};
+  out.color = {color_.view.get(), kRead, frame.color_offset};
+  out.depth = {depth_.view.get(), kRead, frame.depth_offset};
   out.shadow_maps = {shadows_.view.get(), kRead};
   out.shadow_colors = {glass_.view.get(), kRead};
   out.shadow_color_depths = static_cast<bool>(frame.glass_depth);
@@ -158,7 +172,7 @@ FrameInputs FrameImages::inputs(const TestFrame& frame) const {
   out.sun.direction_to_sun = {static_cast<float>(frame.to_sun.x), static_cast<float>(frame.to_sun.y),
                               static_cast<float>(frame.to_sun.z)};
   out.sun.irradiance = frame.irradiance;
-  out.output = {output_.view.get(), VK_IMAGE_LAYOUT_GENERAL};
+  out.output = {output_.view.get(), VK_IMAGE_LAYOUT_GENERAL, frame.output_offset};
   return out;
 }
 
@@ -239,19 +253,27 @@ Result<std::vector<glm::dvec3>> EffectKeeper::render(gpu::Host& host, const Para
   return tyndall::render(host, kept->effect, frame, format);
 }
 
+Cascade sun_cascade(const glm::dvec3& to_sun, const glm::dvec3& middle, double half_m, double near_m, double far_m) {
+  const glm::dvec3 sun = glm::normalize(to_sun);
+  const glm::dvec3 right = glm::normalize(glm::cross(std::abs(sun.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0), sun));
+  const glm::dvec3 rows[3] = {right * (0.5 / half_m), glm::cross(sun, right) * (0.5 / half_m), sun * (-0.5 / (4.0 * half_m))};
+  Cascade out;
+  out.near_m = static_cast<float>(near_m);
+  out.far_m = static_cast<float>(far_m);
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) out.shadow_from_world.m[4 * c + r] = static_cast<float>(rows[r][c]);
+    out.shadow_from_world.m[12 + r] = static_cast<float>(0.5 - glm::dot(rows[r], middle));
+  }
+  return out;
+}
+
 TestFrame small_frame() {
   TestFrame frame;
   frame.view = TestView::at(2000.0, 0.2, 0.05, 0.8);
   frame.to_sun = {0.3, 0.4, -0.866};
   frame.distance_m = [](std::uint32_t x, std::uint32_t) { return x < 5 ? 8000.0 : 0.0; };
-  Cascade cascade;
-  cascade.far_m = 20000.0F;
-  cascade.shadow_from_world.m[0] = cascade.shadow_from_world.m[9] = 1e-5F;
-  cascade.shadow_from_world.m[5] = 0.0F;
-  cascade.shadow_from_world.m[6] = 1e-6F;
-  cascade.shadow_from_world.m[10] = 0.0F;
-  cascade.shadow_from_world.m[12] = cascade.shadow_from_world.m[13] = cascade.shadow_from_world.m[14] = 0.5F;
-  frame.cascades = {cascade, cascade};
+  frame.cascades = {sun_cascade(frame.to_sun, frame.view.position, 50000.0, 0.0, 10000.0),
+                    sun_cascade(frame.to_sun, frame.view.position, 50000.0, 10000.0, 20000.0)};
   frame.shadow_depth = [](std::uint32_t, double u, double v) { return std::fmod(8.0 * u + v, 1.0) < 0.5 ? 0.0F : 1.0F; };
   return frame;
 }

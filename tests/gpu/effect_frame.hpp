@@ -34,6 +34,9 @@ struct RayAngles {
 
 struct TestFrame {
   VkExtent2D extent = {16, 9};
+  // Larger images around the picture, filled with what must not be read; 0: of the picture's size.
+  VkExtent2D image_extent = {0, 0};
+  VkOffset2D color_offset = {0, 0}, depth_offset = {0, 0}, output_offset = {0, 0};
   TestView view;
   DepthConvention convention = DepthConvention::reversed_infinite;
   glm::dvec3 to_sun = {0, 1, 0};
@@ -60,7 +63,7 @@ class FrameImages {
   static Result<FrameImages> create(gpu::Host& host, const TestFrame& frame, OutputFormat format);
   [[nodiscard]] FrameInputs inputs(const TestFrame& frame) const;
   Result<std::vector<std::byte>> output_bytes(gpu::Host& host);
-  // Red, green, blue of each pixel.
+  // Red, green, blue of each pixel of the image, which is the picture's unless TestFrame::image_extent makes it larger.
   Result<std::vector<glm::dvec3>> output(gpu::Host& host);
 
  private:
@@ -90,6 +93,8 @@ class EffectKeeper {
 };
 [[nodiscard]] EffectDesc desc_for(const TestFrame& frame, OutputFormat format = OutputFormat::rgba32f);
 
+// A square map along the sun's direction, depth 0 nearest to the sun.
+[[nodiscard]] Cascade sun_cascade(const glm::dvec3& to_sun, const glm::dvec3& middle, double half_m, double near_m, double far_m);
 // A few pixels of ground and sky under two cascades with shadows in them.
 [[nodiscard]] TestFrame small_frame();
 

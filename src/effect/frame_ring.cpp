@@ -1,0 +1,54 @@
+#include "effect/frame_ring.hpp"
+
+#include <string>
+
+namespace tyndall {
+
+Result<FrameRing> FrameRing::create(const gpu::Device& device, const EffectDesc& desc) {
+  FrameRing out;
+  out.device_ = &device;
+  out.frames_ = desc.frames_in_flight;
+  out.views_ = desc.views;
+  out.slots_.resize(slots(desc));
+  for (Slot& slot : out.slots_) {
+    VkEventCreateInfo info = {};
+    info.sType = VK_STRUCTURE_TYPE_EVENT_CREATE_INFO;
+    VkEvent event = VK_NULL_HANDLE;
+    const VkResult made = device.vk.CreateEvent(device.device, &info, device.allocator, &event);
+    if (made != VK_SUCCESS) return gpu::vulkan_error(made, "vkCreateEvent", "frame_ring");
+    slot.done = gpu::Handle<VkEvent>(device, event);
+  }
+  return out;
+}
+
+// A lost device has completed everything that it ever will.
+bool FrameRing::busy(const Slot& slot) const {
+  return slot.recorded && device_->vk.GetEventStatus(device_->device, slot.done.get()) == VK_EVENT_RESET;
+}
+
+Result<std::optional<std::uint64_t>> FrameRing::take(std::uint64_t frame_index, std::uint32_t view) const {
+  const Slot& s = slots_[slot(frame_index, view)];
+  if (!busy(s)) return std::optional<std::uint64_t>();
+  if (s.frame_index != frame_index) return std::optional<std::uint64_t>(s.frame_index);
+  return Error{ErrorCode::invalid_argument,
+               "FrameInputs::frame_index " + std::to_string(frame_index) + " with view " + std::to_string(view) +
+                   " was recorded before, and its commands have not completed: both would be drawn with the second camera; "
+                   "expected the next frame_index, another view below EffectDesc::views (" + std::to_string(views_) +
+                   "), or to wait for the first commands"};
+}
+
+void FrameRing::record_end(VkCommandBuffer cmd, std::uint64_t frame_index, std::uint32_t view) {
+  Slot& s = slots_[slot(frame_index, view)];
+  if (busy(s)) {
+    // Other commands are still to set the event: an event must not be set twice without a barrier.
+    device_->vk.CmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, nullptr, 0,
+                                   nullptr, 0, nullptr);
+  } else {
+    device_->vk.ResetEvent(device_->device, s.done.get());
+  }
+  s.frame_index = frame_index;
+  s.recorded = true;
+  device_->vk.CmdSetEvent(cmd, s.done.get(), VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT);
+}
+
+}  // namespace tyndall

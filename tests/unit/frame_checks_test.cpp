@@ -1,0 +1,360 @@
+// What the effect says about its inputs: errors for what would draw garbage, remarks for what is hardly meant, each once,
+// and nothing about what is right, whatever the convention.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "effect/frame_constants.hpp"
+#include "effect/remarks.hpp"
+
+namespace tyndall {
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+VkImageView view_number(std::uintptr_t number) {
+  return reinterpret_cast<VkImageView>(number);  // NOLINT(performance-no-int-to-ptr): never used as one
+}
+
+// A camera 1200 m up that looks a little down and to the east of north, under a sun in the south-east; three cascades along
+// the sun, each a square around the view down to its end.
+struct Case {
+  EffectDesc desc;
+  Params params;
+  std::vector<Cascade> cascades;
+  FrameInputs inputs;
+  bool tables_ready = true;
+
+  FrameInputs frame() const {
+    FrameInputs out = inputs;
+    out.cascades = cascades;
+    return out;
+  }
+};
+
+void set_row(Mat4& m, int row, double x, double y, double z, double w) {
+  const double values[4] = {x, y, z, w};
+  for (int column = 0; column < 4; ++column) m.m[4 * column + row] = static_cast<float>(values[column]);
+}
+
+Mat4 projection(double near_m, bool reversed, double far_m = 0.0) {
+  Mat4 p = {{}};
+  p.m[0] = 1.0F;
+  p.m[5] = -1.6F;
+  p.m[11] = -1.0F;
+  // depth = (a distance + b) / distance
+  const double n = reversed ? far_m : near_m;
+  const double f = reversed ? near_m : far_m;
+  p.m[10] = static_cast<float>(far_m > 0.0 ? f / (n - f) : reversed ? 0.0 : -1.0);
+  p.m[14] = static_cast<float>(far_m > 0.0 ? n * f / (n - f) : reversed ? near_m : -near_m);
+  return p;
+}
+
+Mat4 camera_at(double x, double y, double z, double yaw, double pitch) {
+  Mat4 m;
+  const double sy = std::sin(yaw), cy = std::cos(yaw), sp = std::sin(pitch), cp = std::cos(pitch);
+  const double columns[4][3] = {{cy, 0.0, sy}, {-sy * sp, cp, cy * sp}, {-sy * cp, -sp, cy * cp}, {x, y, z}};
+  for (int c = 0; c < 4; ++c) {
+    for (int r = 0; r < 3; ++r) m.m[4 * c + r] = static_cast<float>(columns[c][r]);
+  }
+  return m;
+}
+
+void place_cascades(Case& s) {
+  const double to_sun[3] = {0.48, 0.6, 0.64};
+  const double right[3] = {0.8, 0.0, -0.6};
+  const double up[3] = {-0.36, 0.8, -0.48};
+  s.inputs.sun.direction_to_sun = {0.48F, 0.6F, 0.64F};
+  s.cascades.clear();
+  const float* m = s.inputs.camera.world_from_view.m;
+  for (const double end : {2000.0, 8000.0, 30000.0}) {
+    Cascade c;
+    c.near_m = s.cascades.empty() ? 0.0F : s.cascades.back().far_m;
+    c.far_m = static_cast<float>(end);
+    double middle[3];
+    for (int i = 0; i < 3; ++i) middle[i] = static_cast<double>(m[12 + i]) - 0.5 * end * static_cast<double>(m[8 + i]);
+    const auto row = [&](int index, const double* axis, double scale) {
+      const double offset = 0.5 - scale * (axis[0] * middle[0] + axis[1] * middle[1] + axis[2] * middle[2]);
+      set_row(c.shadow_from_world, index, scale * axis[0], scale * axis[1], scale * axis[2], offset);
+    };
+    row(0, right, 0.4 / end);
+    row(1, up, 0.4 / end);
+    row(2, to_sun, (s.desc.shadow_depth_reversed ? 0.5 : -0.5) / (end + 20000.0));
+    s.cascades.push_back(c);
+  }
+}
+
+Case right() {
+  Case s;
+  s.inputs.extent = {160, 100};
+  s.inputs.color.view = view_number(1);
+  s.inputs.depth.view = view_number(2);
+  s.inputs.output.view = view_number(3);
+  s.inputs.shadow_maps.view = view_number(4);
+  s.inputs.shadow_resolution = 512;
+  s.inputs.camera = {camera_at(300.0, 1200.0, -500.0, 0.4, -0.1), projection(0.1, true)};
+  place_cascades(s);
+  return s;
+}
+
+std::string error_of(const std::function<void(Case&)>& change) {
+  Case s = right();
+  change(s);
+  const Result<void> outcome = check_frame(s.frame(), s.desc, s.params);
+  return outcome.ok() ? "" : outcome.error().message;
+}
+
+// The remarks of a checker that may have seen other frames.
+std::vector<std::string> remarks_of(Remarks& remarks, const Case& s) {
+  const FrameInputs inputs = s.frame();
+  const Result<void> outcome = check_frame(inputs, s.desc, s.params);
+  EXPECT_TRUE(outcome.ok()) << outcome.error().message;
+  std::vector<std::string> texts;
+  DeviceInfo device;
+  device.message = [](void* user, Severity severity, std::string_view text) {
+    EXPECT_EQ(severity, Severity::warning);
+    static_cast<std::vector<std::string>*>(user)->emplace_back(text);
+  };
+  device.message_user = &texts;
+  const shared::FrameConstants frame = frame_constants(inputs, s.desc, s.params);
+  remarks.on_frame(inputs, {s.desc, s.params, frame, s.tables_ready, {}}, device);
+  return texts;
+}
+
+// What is said about a frame, one line each.
+std::string remark_of(const std::function<void(Case&)>& change) {
+  Case s = right();
+  change(s);
+  Remarks remarks;
+  std::string all;
+  for (const std::string& text : remarks_of(remarks, s)) all += text + "\n";
+  return all;
+}
+
+void expect_words(const std::string& text, const std::vector<std::string>& words) {
+  for (const std::string& word : words) EXPECT_NE(text.find(word), std::string::npos) << "'" << word << "' in: " << text;
+  EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 1) << text;
+}
+
+TEST(FrameChecks, NothingIsSaidAboutARightFrame) {
+  EXPECT_EQ(error_of([](Case&) {}), "");
+  EXPECT_EQ(remark_of([](Case&) {}), "");
+  const auto silent = [](const char* name, const std::function<void(Case&)>& change) {
+    EXPECT_EQ(error_of(change), "") << name;
+    EXPECT_EQ(remark_of(change), "") << name;
+  };
+  const auto with_projection = [](const Mat4& p, float sky_depth) {
+    return [=](Case& s) {
+      s.inputs.camera.clip_from_view = p;
+      s.desc.sky_depth = sky_depth;
+    };
+  };
+  for (const double near_m : {0.01, 0.1, 1.0, 100.0}) {
+    silent("reversed and infinite", with_projection(projection(near_m, true), 0.0F));
+    silent("infinite", with_projection(projection(near_m, false), 1.0F));
+    for (const double far_m : {1000.0, 50000.0, 1e6}) {
+      silent("reversed", with_projection(projection(near_m, true, far_m), 0.0F));
+      silent("standard", with_projection(projection(near_m, false, far_m), 1.0F));
+    }
+  }
+  silent("jittered and off the axis", [](Case& s) {
+    s.inputs.camera.clip_from_view.m[8] = 0.37F;
+    s.inputs.camera.clip_from_view.m[9] = -0.004F;
+  });
+  silent("scaled as a whole", [](Case& s) {
+    for (float& entry : s.inputs.camera.clip_from_view.m) entry *= 100.0F;
+  });
+  // Swapchains of phones are turned in the projection.
+  silent("turned by a quarter", [](Case& s) {
+    Mat4& p = s.inputs.camera.clip_from_view;
+    p.m[0] = p.m[5] = 0.0F;
+    p.m[1] = p.m[4] = 1.3F;
+  });
+  silent("turned by a half", [](Case& s) {
+    Mat4& p = s.inputs.camera.clip_from_view;
+    p.m[0] = -p.m[0];
+    p.m[5] = -p.m[5];
+  });
+  silent("an oblique near plane", [](Case& s) { s.inputs.camera.clip_from_view.m[2] = 0.3F; });
+  silent("reversed shadow maps", [](Case& s) {
+    s.desc.shadow_depth_reversed = true;
+    place_cascades(s);
+  });
+  silent("below sea level", [](Case& s) {
+    s.inputs.camera.world_from_view = camera_at(300.0, -420.0, -500.0, 0.4, -0.1);
+    place_cascades(s);
+  });
+  silent("from space", [](Case& s) {
+    s.inputs.camera.world_from_view = camera_at(0.0, 2e7, 0.0, 0.4, -1.2);
+    place_cascades(s);
+  });
+  silent("tables that are not needed", [](Case& s) {
+    s.tables_ready = false;
+    s.params.scattering.single = SingleScattering::integration;
+    s.params.scattering.multiple = MultipleScattering::none;
+  });
+  silent("a declared depth format", [](Case& s) { s.desc.depth_format = VK_FORMAT_D32_SFLOAT; });
+  silent("16 bits for a short range", [](Case& s) {
+    s.desc.depth_format = VK_FORMAT_D16_UNORM;
+    s.desc.sky_depth = 1.0F;
+    s.inputs.camera.clip_from_view = projection(1.0, false, 10000.0);
+  });
+}
+
+TEST(FrameChecks, WhatDrawsGarbageIsAnError) {
+  const auto expect_error = [](const std::vector<std::string>& words, const std::function<void(Case&)>& change) {
+    expect_words(error_of(change), words);
+  };
+  expect_error({"clip_from_view", "orthographic", "perspective"}, [](Case& s) {
+    Mat4& p = s.inputs.camera.clip_from_view;
+    p = {};
+    p.m[0] = 0.01F;
+    p.m[5] = -0.01F;
+    p.m[10] = -1e-4F;
+  });
+  expect_error({"clip_from_view", "+z", "-z"}, [](Case& s) {
+    for (const int entry : {10, 11}) s.inputs.camera.clip_from_view.m[entry] *= -1.0F;
+  });
+  expect_error({"sky_depth is 1", "reversed Z"}, [](Case& s) { s.desc.sky_depth = 1.0F; });
+  expect_error({"sky_depth is 0", "expected 1"}, [](Case& s) { s.inputs.camera.clip_from_view = projection(0.1, false, 1e5); });
+  expect_error({"world_from_view", "0 0 0 1", "transposed"}, [](Case& s) {
+    Mat4 turned;
+    for (int i = 0; i < 16; ++i) turned.m[i] = s.inputs.camera.world_from_view.m[i % 4 * 4 + i / 4];
+    s.inputs.camera.world_from_view = turned;
+  });
+  expect_error({"world_from_view", "scaled", "99.99"}, [](Case& s) {
+    for (int i = 0; i < 12; ++i) s.inputs.camera.world_from_view.m[i] *= 100.0F;
+  });
+  expect_error({"cascades[1]", "0 0 0 1", "transposed"}, [](Case& s) {
+    Mat4 turned;
+    for (int i = 0; i < 16; ++i) turned.m[i] = s.cascades[1].shadow_from_world.m[i % 4 * 4 + i / 4];
+    s.cascades[1].shadow_from_world = turned;
+  });
+  expect_error({"cascades[2]", "zero"}, [](Case& s) { s.cascades[2].shadow_from_world = Mat4{{}}; });
+  expect_error({"cascades[0]", "zero or cannot be inverted"}, [](Case& s) { set_row(s.cascades[0].shadow_from_world, 2, 0, 0, 0, 0.5); });
+  expect_error({"cascades[0]", "not finite"}, [](Case& s) { s.cascades[0].shadow_from_world.m[3] = kNaN; });
+  expect_error({"cascades[1]", "near_m <= far_m"}, [](Case& s) { s.cascades[1].far_m = 10.0F; });
+  expect_error({"FrameInputs::depth", "layout", "SHADER_READ_ONLY_OPTIMAL"},
+               [](Case& s) { s.inputs.depth.layout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL; });
+  expect_error({"FrameInputs::color", "layout"}, [](Case& s) { s.inputs.color.layout = VK_IMAGE_LAYOUT_UNDEFINED; });
+  expect_error({"FrameInputs::shadow_maps", "layout"}, [](Case& s) { s.inputs.shadow_maps.layout = VK_IMAGE_LAYOUT_UNDEFINED; });
+  expect_error({"FrameInputs::output", "color or depth"}, [](Case& s) { s.inputs.output.view = s.inputs.color.view; });
+  expect_error({"FrameInputs::view is 1", "EffectDesc::views"}, [](Case& s) { s.inputs.view = 1; });
+  expect_error({"FrameInputs::depth", "offset", "-1,0"}, [](Case& s) { s.inputs.depth.offset.x = -1; });
+}
+
+TEST(FrameChecks, WhatIsHardlyMeantIsRemarkedOn) {
+  const auto expect_remark = [](const std::vector<std::string>& words, const std::function<void(Case&)>& change) {
+    const std::string text = remark_of(change);
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+    expect_words(text, words);
+  };
+  // The camera.
+  expect_remark({"world_from_view", "mirrored", "+1"}, [](Case& s) {
+    for (int i = 0; i < 3; ++i) s.inputs.camera.world_from_view.m[i] *= -1.0F;
+  });
+  expect_remark({"world_from_view", "inverse", "view_from_world"}, [](Case& s) {
+    s.inputs.cascades = {};
+    s.params.scattering.light_shafts = false;
+    // Of a camera 12 m above the sea, near the origin and far from it.
+    const Mat4 m = camera_at(5.0, 12.0, 30.0, 0.4, 0.2);
+    Mat4 inverse;
+    for (int r = 0; r < 3; ++r) {
+      float offset = 0.0F;
+      for (int c = 0; c < 3; ++c) {
+        inverse.m[4 * c + r] = m.m[4 * r + c];
+        offset -= m.m[4 * r + c] * m.m[12 + c];
+      }
+      inverse.m[12 + r] = offset;
+    }
+    s.inputs.camera.world_from_view = inverse;
+  });
+  expect_remark({"world_from_view", "below sea level", "y up"}, [](Case& s) {
+    s.params.scattering.light_shafts = false;
+    s.inputs.camera.world_from_view = camera_at(0.0, -900.0, 0.0, 0.0, -1.5707963);
+  });
+  expect_remark({"world_from_view", "1e9", "metre"}, [](Case& s) {
+    s.params.scattering.light_shafts = false;
+    s.inputs.camera.world_from_view.m[13] = 4e9F;
+  });
+  expect_remark({"clip_from_view", "y up", "OpenGL"}, [](Case& s) { s.inputs.camera.clip_from_view.m[5] *= -1.0F; });
+  expect_remark({"clip_from_view", "near plane", "metre"}, [](Case& s) { s.inputs.camera.clip_from_view.m[14] = 1e-4F; });
+  // OpenGL's depth, -1 to 1, reversed: at 0 is twice the near plane.
+  expect_remark({"clip_from_view", "far plane", "depth 0 to 1"}, [](Case& s) {
+    s.inputs.camera.clip_from_view.m[10] = 1.0001F;
+    s.inputs.camera.clip_from_view.m[14] = 0.2F;
+  });
+  expect_remark({"clip_from_view", "origin", "world_from_view"}, [](Case& s) { s.inputs.camera.clip_from_view.m[12] = 0.032F; });
+  expect_remark({"depth_format", "16 bits", "sky"}, [](Case& s) { s.desc.depth_format = VK_FORMAT_D16_UNORM; });
+  expect_remark({"depth_format", "16 bits", "sky"}, [](Case& s) {
+    s.desc.depth_format = VK_FORMAT_D16_UNORM;
+    s.desc.sky_depth = 1.0F;
+    s.inputs.camera.clip_from_view = projection(0.1, false, 1e5);
+  });
+  // Cascades.
+  const auto on_each = [](const std::function<void(Mat4&)>& change) {
+    return [=](Case& s) {
+      for (Cascade& c : s.cascades) change(c.shadow_from_world);
+    };
+  };
+  expect_remark({"cascades[first_marched_cascade]", "clip space", "0 to 1"}, on_each([](Mat4& m) {
+                  for (int c = 0; c < 4; ++c) {
+                    for (int r = 0; r < 2; ++r) m.m[4 * c + r] = 2.0F * m.m[4 * c + r] - (c == 3 ? 1.0F : 0.0F);
+                  }
+                }));
+  expect_remark({"cascades[first_marched_cascade]", "nothing will be shadowed"}, on_each([](Mat4& m) { m.m[13] += 3.0F; }));
+  expect_remark({"cascades[0]", "past the sun", "direction_to_sun"}, [](Case& s) { s.inputs.sun.direction_to_sun = {0.0F, 1.0F, 0.0F}; });
+  expect_remark({"cascades[0]", "shadow_depth_reversed is off", "expected 0"}, on_each([](Mat4& m) {
+                  for (int c = 0; c < 4; ++c) m.m[4 * c + 2] = (c == 3 ? 1.0F : 0.0F) - m.m[4 * c + 2];
+                }));
+  expect_remark({"cascades[0]", "shadow_depth_reversed is on", "expected 1"}, [](Case& s) { s.desc.shadow_depth_reversed = true; });
+  expect_remark({"cascades[1]", "empty range"}, [](Case& s) { s.cascades[1].near_m = s.cascades[1].far_m; });
+  expect_remark({"cascades[0]", "empty range"}, [](Case& s) {
+    s.cascades.resize(1);
+    s.cascades[0].far_m = 0.0F;
+  });
+  expect_remark({"cascades[2]", "near to far"}, [](Case& s) {
+    s.cascades[2].near_m = 0.0F;
+    s.cascades[2].far_m = 5000.0F;
+  });
+  expect_remark({"cascades", "starts 40 m"}, [](Case& s) { s.cascades[0].near_m = 40.0F; });
+  expect_remark({"cascades", "metre"}, [](Case& s) {
+    s.cascades.resize(1);
+    s.cascades[0].far_m = 0.5F;
+  });
+  expect_remark({"light_shafts", "nothing will be shadowed"}, [](Case& s) { s.cascades.clear(); });
+  // The rest.
+  expect_remark({"tables are not built", "record_precompute()", "black"}, [](Case& s) { s.tables_ready = false; });
+  expect_remark({"direction_to_sun", "unit length"}, [](Case& s) { s.inputs.sun.direction_to_sun = {0.96F, 1.2F, 1.28F}; });
+  expect_remark({"angular_radius_rad", "degrees"}, [](Case& s) { s.inputs.sun.angular_radius_rad = 0.27F; });
+  expect_remark({"irradiance is 0", "black"}, [](Case& s) { s.inputs.sun.irradiance = Vec3(0.0F); });
+}
+
+TEST(FrameChecks, ARemarkIsMadeOnceUntilItWasRightInBetween) {
+  Remarks remarks;
+  Case good = right();
+  Case wrong = right();
+  wrong.inputs.camera.clip_from_view.m[5] *= -1.0F;
+  EXPECT_EQ(remarks_of(remarks, good).size(), 0U);
+  EXPECT_EQ(remarks_of(remarks, wrong).size(), 1U);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(remarks_of(remarks, wrong).size(), 0U);
+  // Another fault is another remark; another view has remarks of its own.
+  wrong.inputs.sun.irradiance = Vec3(0.0F);
+  EXPECT_EQ(remarks_of(remarks, wrong).size(), 1U);
+  wrong.desc.views = 2;
+  wrong.inputs.view = 1;
+  EXPECT_EQ(remarks_of(remarks, wrong).size(), 2U);
+  wrong.inputs.view = 0;
+  EXPECT_EQ(remarks_of(remarks, wrong).size(), 0U);
+  EXPECT_EQ(remarks_of(remarks, good).size(), 0U);
+  EXPECT_EQ(remarks_of(remarks, wrong).size(), 2U);
+}
+
+}  // namespace
+}  // namespace tyndall
