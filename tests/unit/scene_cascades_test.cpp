@@ -8,6 +8,8 @@
 #include <random>
 #include <set>
 
+#include "effect/frame_constants.hpp"
+#include "effect/remarks.hpp"
 #include "scene/cascades.hpp"
 #include "scene/chart.hpp"
 
@@ -215,6 +217,55 @@ TEST(SceneCascades, TexelsStayWhenTheCameraMovesAndTurns) {
       }
       // Sizes change in steps, a few times over a walk of 450 m and a turn of 25 degrees.
       for (const std::set<double>& seen : sizes) EXPECT_LE(seen.size(), 4U) << "sun " << elevation << " at " << altitude;
+    }
+  }
+}
+
+// Remarks on inputs (src/effect/remarks.hpp) are for mistakes: these cascades and cameras are none.
+void expect_no_remark(const View& view, const glm::dvec3& sun, const ShadowParams& shadows, const std::vector<CascadeFit>& fits) {
+  std::vector<Cascade> cascades;
+  for (const CascadeFit& fit : fits) {
+    cascades.push_back({to_mat4(fit.shadow_from_world()), static_cast<float>(fit.near_m), static_cast<float>(fit.far_m)});
+  }
+  const auto view_number = [](std::uintptr_t number) { return reinterpret_cast<VkImageView>(number); };  // NOLINT
+  FrameInputs inputs;
+  inputs.extent = {1280, 720};
+  inputs.color.view = view_number(1);
+  inputs.depth.view = view_number(2);
+  inputs.output.view = view_number(3);
+  inputs.shadow_maps.view = view_number(4);
+  inputs.shadow_resolution = shadows.resolution;
+  inputs.cascades = cascades;
+  inputs.first_marched_cascade = shadows.first_marched;
+  inputs.camera = camera_from_view(view);
+  inputs.sun.direction_to_sun = to_vec3(sun);
+  EffectDesc desc;
+  desc.max_cascades = kMaxCascades;
+  const Params params;
+  const Result<void> checked = check_frame(inputs, desc, params);
+  EXPECT_TRUE(checked.ok()) << checked.error().message;
+  DeviceInfo device;
+  device.message = [](void*, Severity, std::string_view text) { ADD_FAILURE() << text; };
+  const shared::FrameConstants frame = frame_constants(inputs, desc, params);
+  Remarks().on_frame(inputs, {desc, params, frame, true, {}}, device);
+}
+
+TEST(SceneCascades, TheEffectHasNothingToRemarkAboutThem) {
+  for_every_setting(expect_no_remark);
+  // Maps that end at a few casters: around the camera, in front of it, and behind it.
+  for (const double distance_m : {0.0, 300.0, -300.0}) {
+    for (const double elevation : kElevations_deg) {
+      for (const double altitude : {2.0, 60.0, 2000.0}) {
+        const View view = view_at(altitude, 70.0, -5.0);
+        const glm::dvec3 place = view.position + distance_m * view.forward;
+        const glm::dvec3 casters[] = {place - glm::dvec3(20.0, 10.0, 30.0), place + glm::dvec3(20.0, 10.0, 30.0)};
+        Ground ground = kGround;
+        ground.casters = casters;
+        ShadowParams shadows;
+        const glm::dvec3 sun = sun_at(elevation);
+        expect_no_remark(view, sun, shadows, fit_cascades(view, sun, shadows, ground, first_near(altitude)));
+        ASSERT_FALSE(testing::Test::HasFailure()) << "sun at " << elevation << ", camera at " << altitude << ", casters at " << distance_m;
+      }
     }
   }
 }
