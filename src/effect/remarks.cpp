@@ -162,11 +162,18 @@ void remark_on_coverage(Speaker& s, const FrameInputs& inputs, const FrameState&
   // A map of clip space is around (0, 0), and reaches from -1 to 1.
   bool clip = std::min(f.low[0], f.low[1]) < -0.3;
   bool elsewhere = false;
+  double sizes = 0.0;  // of the view in the map
   for (int axis = 0; axis < 2; ++axis) {
     clip = clip && f.low[axis] > -1.3 && f.high[axis] < 1.3 && std::abs(f.low[axis] + f.high[axis]) < 0.8;
-    const double slack = 0.25 * (f.high[axis] - f.low[axis]) + 0.02;
+    const double size = f.high[axis] - f.low[axis];
+    const double slack = 0.25 * size + 0.02;
     elsewhere = elsewhere || f.low[axis] - slack > 1.0 || f.high[axis] + slack < 0.0;
+    sizes = std::max(sizes, size);
   }
+  // A map that is much smaller than the view ends at what casts shadows, which may be out of sight; and what is seen from high
+  // up may have no ground to be shadowed.
+  constexpr float kHigh_m = 10000.0F;
+  elsewhere = elsewhere && sizes < 20.0 && state.frame.camera_altitude_m < kHigh_m;
   s.say_if(Kind::cascade_clip, clip, "FrameInputs::cascades[first_marched_cascade] puts the view at ", f.low[0], " to ", f.high[0],
            " of its map; expected texture coordinates, 0 to 1: does shadow_from_world lead to clip space, -1 to 1?");
   s.say_if(Kind::cascade_elsewhere, elsewhere && !clip, "FrameInputs::cascades[first_marched_cascade] puts the view at u ", f.low[0], " to ",

@@ -60,6 +60,7 @@ FrameInputs fake_frame() {
   inputs.output.view = number<VkImageView>(1000004);
   inputs.shadow_resolution = 64;
   inputs.cascades = cascades;
+  inputs.camera.clip_from_view = {{1.0F, 0, 0, 0, 0, -1.0F, 0, 0, 0, 0, 0, -1, 0, 0, 0.1F, 0}};
   return inputs;
 }
 
