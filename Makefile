@@ -1,16 +1,17 @@
 # The two commands. Everything else is CMake: see CONTRIBUTING.md.
-#   make demo   installs what is missing, builds, renders the demo scene to out/demo.png
-#   make check  installs what is missing, builds with warnings as errors, passes every test
-#   make pictures  renders the pictures of the documentation anew
-#   make accuracy  measures the numbers of docs/accuracy.md anew
-#   make epipolar-study  installs Pillow and matplotlib, and makes the numbers, plots and pictures of docs/epipolar.md anew
-#   make models-study  measures and renders what docs/models.md and docs/oneil.md show
+#   make demo            installs what is missing, builds the program, renders the demo scene to out/demo.png
+#   make check           installs what is missing, builds everything with warnings as errors, runs every test
+#   make pictures        renders the pictures of the documentation
+#   make accuracy        measures the numbers of docs/accuracy.md
+#   make epipolar-study  installs Pillow and matplotlib; makes the numbers, plots and pictures of docs/epipolar.md
+#   make models-study    measures and renders what docs/models.md and docs/oneil.md show
 .PHONY: demo check pictures accuracy epipolar-study models-study setup build format tidy clean
 
 PRESET ?= release
 OPERATORS = exponential reinhard reinhard-modified uncharted2 filmic-alu logarithmic adaptive-logarithmic agx pbr-neutral
 
 demo: PRESET = release
+demo: TARGETS = tyndall
 demo: build
 	@mkdir -p out
 	@build/release/bin/tyndall render scenes/demo.toml -o out/demo.png
@@ -21,6 +22,7 @@ check: build
 	@ctest --preset ci --no-tests=error -j "$$(nproc)"
 
 pictures: PRESET = release
+pictures: TARGETS = tyndall
 pictures: build
 	@mkdir -p docs/images
 	@for scene in demo noon stratosphere hall; do \
@@ -46,13 +48,13 @@ accuracy: build
 	@cmake --build build/release --target published_tables
 	@build/release/bin/published_tables > docs/generated/published.md
 
-# Of SECTIONS (sweeps, pixels, tree, presets, pictures) or all. Debian's Python, because its packages are used.
+# SECTIONS chooses among sweeps, pixels, tree, presets and pictures. Debian's Python, because its packages are used.
 epipolar-study: PRESET = release
 epipolar-study: build
 	@tools/setup.sh python3-pil python3-matplotlib
 	@/usr/bin/python3 tools/epipolar_study.py build/release/bin/tyndall $(SECTIONS)
 
-# The numbers and pictures of docs/models.md, and the pictures of docs/oneil.md: of PARTS (pictures, times, errors) or all.
+# The numbers and pictures of docs/models.md, and the pictures of docs/oneil.md. PARTS chooses among pictures, times, errors.
 models-study: PRESET = release
 models-study: build
 	@tools/setup.sh python3-pil
@@ -69,7 +71,7 @@ setup:
 
 build: setup
 	@cmake --preset $(PRESET) --log-level=WARNING
-	@cmake --build --preset $(PRESET)
+	@cmake --build --preset $(PRESET) $(if $(TARGETS),--target $(TARGETS))
 
 format:
 	@git ls-files '*.cpp' '*.hpp' '*.h' | xargs clang-format -i

@@ -43,13 +43,34 @@ if [ "$(id -u)" != 0 ]; then
   fi
 fi
 
+# Shows how far apt-get is: in one line on a terminal, in a line every 50 steps otherwise. With what the packages depend
+# on, each of them is downloaded, unpacked and set up.
+show_progress() {
+  awk -v terminal="$([ -t 1 ] && echo 1)" '
+    function show(what) {
+      if (terminal) printf "\r  %s: %d of %d steps\033[K", what, steps, total
+      else if (steps % 50 == 0) printf "  %s: %d of %d steps\n", what, steps, total
+      fflush()
+    }
+    / newly installed,/ { for (i = 2; i <= NF; ++i) if ($i == "newly") total += 3 * $(i - 1) }
+    /^Get:/ && total { ++steps; show("downloading") }
+    /^Unpacking / { ++steps; show("unpacking") }
+    /^Setting up / { ++steps; show("setting up") }
+    END { if (terminal) printf "\r\033[K" }'
+}
+
 echo "Installing:$missing"
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
 # shellcheck disable=SC2086  # the list is meant to be split
-if ! { $as_root env DEBIAN_FRONTEND=noninteractive apt-get -q update &&
-  $as_root env DEBIAN_FRONTEND=noninteractive apt-get -q install -y --no-install-recommends $missing; } \
-  > /tmp/tyndall-setup.$$.log 2>&1; then
-  tail -n 5 /tmp/tyndall-setup.$$.log >&2
+{
+  if $as_root env DEBIAN_FRONTEND=noninteractive apt-get -q update &&
+    $as_root env DEBIAN_FRONTEND=noninteractive apt-get -q install -y --no-install-recommends $missing; then
+    : > "$work/done"
+  fi
+} 2>&1 | tee "$work/log" | show_progress
+if [ ! -e "$work/done" ]; then
+  tail -n 5 "$work/log" >&2
   needs
 fi
-rm -f /tmp/tyndall-setup.$$.log
 exit 0
