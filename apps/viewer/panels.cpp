@@ -110,9 +110,7 @@ void Gui::basic(config::Settings& s) {
   {
     const Enabled on(epipolar(s));
     edit(s, {"epipolar.show_sampling", "epipolar.min_max_tree", "epipolar.optimize_locations",
-             "epipolar.correct_depth_breaks"});
-    const Enabled corrected(s.effect.epipolar.correct_depth_breaks);
-    edit(s, {"epipolar.show_depth_breaks"});
+             "epipolar.correct_depth_breaks", "epipolar.show_depth_breaks"});
   }
   edit(s, {"scattering.only"});
 }

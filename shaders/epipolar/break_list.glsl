@@ -1,11 +1,10 @@
-// The list of pixels that are marched by themselves. Include after declaring breaks (WorkList), break_list (uint[]) and
-// epipolar.
+// The list of pixels that are marched by themselves. When there are more than it has room for, none of them is marched: which
+// ones come first differs from run to run. Include after declaring breaks (WorkList), break_list (uint[]) and epipolar.
 #ifndef TYNDALL_BREAK_LIST_GLSL
 #define TYNDALL_BREAK_LIST_GLSL
 
 #include "epipolar/work_list.glsl"
 
-// Pixels that it has no room for stay as they are.
 void list_break(ivec2 pixel) {
   uint slot = atomicAdd(breaks.count, 1u);
   if (slot >= epipolar.break_capacity) return;

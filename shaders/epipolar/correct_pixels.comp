@@ -14,12 +14,12 @@ layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
 layout(std430, binding = 1) readonly buffer frame_block { FrameConstants frame; };
 layout(std430, binding = 2) readonly buffer epipolar_block { EpipolarConstants epipolar; };
 layout(std430, binding = 3) readonly buffer work_block { WorkList work; uint items[]; };
-layout(std430, binding = 4) readonly buffer corrected_block { vec4 corrected[]; };
+layout(std430, binding = 4) readonly buffer corrected_block { uvec2 corrected[]; };
 layout(binding = 5) uniform sampler2D scene_color;
 layout(binding = 6) uniform sampler2D scene_depth;
 layout(binding = 7, OUTPUT_FORMAT) uniform writeonly image2D output_color;
 
-#include "frame/homogeneous_medium.glsl"
+#include "epipolar/ray_end.glsl"
 #include "frame/picture.glsl"
 
 void put_pixel(uint at) {
@@ -28,7 +28,7 @@ void put_pixel(uint at) {
   float start, end;
   vec3 through = vec3(1.0);
   vec3 lost;
-  vec3 color = corrected[at].rgb * frame.sun_irradiance;
+  vec3 color = unpack_light(corrected[at]) * frame.sun_irradiance;
   if (clip_to_medium(ray, start, end)) {
     if (kHomogeneous) homogeneous_attenuation(end - start, through, lost);
     else through = transmittance(medium, column_along(medium, ray.altitude, ray.cos_zenith, end));
@@ -42,5 +42,6 @@ void put_pixel(uint at) {
 
 void main() {
   uint at = list_item(kMarchGroup);
-  if (at < work.count) put_pixel(at);
+  bool overflown = work.count > epipolar.break_capacity;  // break_list.glsl
+  if (at < work.count && !overflown) put_pixel(at);
 }

@@ -14,7 +14,7 @@ layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
 layout(std430, binding = 1) readonly buffer frame_block { FrameConstants frame; };
 layout(std430, binding = 2) readonly buffer epipolar_block { EpipolarConstants epipolar; };
 layout(std430, binding = 3) readonly buffer work_block { WorkList work; uint items[]; };
-layout(std430, binding = 4) readonly buffer corrected_block { vec4 corrected[]; };
+layout(std430, binding = 4) readonly buffer corrected_block { uvec2 corrected[]; };
 layout(std430, binding = 5) buffer reduced_block { vec4 reduced[]; };
 layout(binding = 6) uniform sampler2D scene_depth;
 
@@ -37,12 +37,13 @@ void put_pixel(uint at) {
   Sample s;
   s.depth_m = reduced[reduced_index(place)].a;
   s.density = density_of(tau, s.depth_m);
-  s.source = corrected[at].rgb / max(lost, vec3(1e-20));
+  s.source = unpack_light(corrected[at]) / max(lost, vec3(1e-20));
   if (kHomogeneous && !inside) s.source = vec3(1.0);
   STORE_REDUCED(place, s.depth_m, s);
 }
 
 void main() {
   uint at = list_item(kMarchGroup);
-  if (at < work.count) put_pixel(at);
+  bool overflown = work.count > epipolar.break_capacity;  // break_list.glsl
+  if (at < work.count && !overflown) put_pixel(at);
 }

@@ -172,7 +172,7 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
   vec3 per_metre = (cascades[cascade].shadow_from_world * vec4(ray.direction, 0.0)).xyz;
   float cells_per_m = max(max(abs(per_metre.x), abs(per_metre.y)) * resolution, 1e-12);
   w.slope = per_metre.z / cells_per_m;
-  w.number = tree_number(frame.shadow_depth_reversed != 0u ? -w.slope : w.slope, resolution, epipolar.tree_format);
+  w.number = ray_number(frame.shadow_depth_reversed != 0u ? -w.slope : w.slope, resolution, epipolar.tree_format);
   w.metres = 1.0 / cells_per_m;
   w.x = from * cells_per_m;
   float end = to * cells_per_m;

@@ -26,7 +26,7 @@ layout(std430, binding = 11) readonly buffer work_block { WorkList work; uint it
 layout(std430, binding = 12) buffer sample_block { uvec4 samples[]; };
 layout(std430, binding = 13) buffer state_block { vec4 states[]; };
 layout(binding = 14) uniform sampler2D scene_depth;
-layout(std430, binding = 15) writeonly buffer corrected_block { vec4 corrected[]; };
+layout(std430, binding = 15) writeonly buffer corrected_block { uvec2 corrected[]; };
 layout(binding = 16) uniform sampler2DArray shadow_colors;
 layout(std430, binding = 17) buffer coarse_block { uint coarse[]; };
 layout(std140, binding = 18) uniform cascade_block { CascadeConstants cascades[kMostCascades]; };
@@ -101,7 +101,7 @@ void march_item(uint at) {
     }
     vec3 light = in_air ? light_of(march, ray, path, start, end) : vec3(0.0);
     if (pixels) {
-      corrected[at] = vec4(light, 0.0);
+      corrected[at] = pack_light(light);
     } else {
       vec3 through, lost;
       attenuation(optical_depth_at(s.density, s.depth_m), through, lost);
@@ -126,7 +126,8 @@ void main() {
   // The list of samples has groups for every cascade aside; other turns need only one of them.
   bool turn_here = processing == kCascadesAside || gl_WorkGroupID.z == 0u;
   uint at = list_item(kMarchGroup);
-  if (turn_here && at < work.count) march_item(at);
+  bool overflown = processing == kPixels && work.count > epipolar.break_capacity;  // break_list.glsl
+  if (turn_here && at < work.count && !overflown) march_item(at);
   count(kMarchSteps, steps_done);
   count(kNodesVisited, nodes_visited);
   count(kShadowFetches, reads_done);

@@ -54,7 +54,7 @@ Sample unpack_sample(uvec4 packed) {
   return s;
 }
 
-const float kCoarseUnit = 1e6;  // of light without shadows: full precision down to 1e-14
+const float kCoarseUnit = 1e6;  // of light: full precision down to 1e-14
 
 // Light without shadows, for refine_samples.comp: the roots, like those of a sample, of red and blue, between which green
 // changes.
@@ -64,6 +64,17 @@ uint pack_coarse(vec3 light) { return packHalf2x16(root_for_half(light * kCoarse
 const uint kDarkEnd = 0x80000000u;
 
 float dark_end(uint coarse) { return (coarse & kDarkEnd) != 0u ? 1.0 : 0.0; }
+
+// Light of a pixel that was marched by itself: the roots in half precision, as those of samples.
+uvec2 pack_light(vec3 light) {
+  vec3 root = root_for_half(light * kCoarseUnit);
+  return uvec2(packHalf2x16(root.xy), packHalf2x16(vec2(root.z, 0.0)));
+}
+
+vec3 unpack_light(uvec2 packed) {
+  vec3 root = vec3(unpackHalf2x16(packed.x), unpackHalf2x16(packed.y).x);
+  return root * root / kCoarseUnit;
+}
 
 vec2 unpack_coarse(uint packed) {
   vec2 root = unpackHalf2x16(packed);

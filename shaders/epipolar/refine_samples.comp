@@ -64,6 +64,19 @@ float depth_step(uint at) {
   return max(change.x, change.y);
 }
 
+// The last of the first samples of a slice, up to a number of them, that ends at another depth than the one before; 0: none does.
+uint last_break(uint row, uint count) {
+  const float kOtherSurface = 0.8;  // ratio of depths, at most
+  float before = uintBitsToFloat(samples[row].x);
+  uint found = 0u;
+  for (uint i = 1u; i < count; ++i) {
+    float depth = uintBitsToFloat(samples[row + i].x);
+    found = min(depth, before) < kOtherSurface * max(depth, before) ? i : found;
+    before = depth;
+  }
+  return found;
+}
+
 uint left_marked(uint i) {
   uint word = i >> 5u;
   uint bits = marked[word] & (0xFFFFFFFFu >> (31u - (i & 31u)));
@@ -122,6 +135,15 @@ void main() {
       b = c;
     }
     atomicOr(marked[first >> 5u], bits);
+  }
+  barrier();
+  // Next to the epipole shadows change from sample to sample by an edge, on the face of what is in front of the sun too, whose own
+  // light says nothing about it: all samples up to the last edge are marched there.
+  const float kAround = 2.0;  // times as far as initial samples are denser
+  if (thread == 0u && epipolar.sun_in_picture != 0u) {
+    uint count = min(uint(kAround * near_epipole / max(length(slice.stride), 1e-6)), slice.last) + 1u;
+    uint last = last_break(row, count);
+    for (uint i = 0u; i < last; ++i) atomicOr(marked[i >> 5u], 1u << (i & 31u));
   }
   barrier();
   // What bends slowly has no kink: the middles of steps, of their halves and so on, against what is marked on both sides so far.

@@ -72,7 +72,7 @@ void main() {
   bool dense = max(length(a.origin_lower.zw), length(a.origin_upper.zw)) * float(kDownscale) > kDense;
   // Beside the limb air thins out from sample to sample: what goes on in a line beyond them soon is none at all.
   dense = dense || uneven(a);
-  if (!one_depth || dense || (kSkyline && !scene && lopsided(a)) || (kBreaks && blend(a, middle).weight < epipolar.least_weight)) {
+  if (!one_depth || dense || (kSkyline && !scene && lopsided(a)) || blend(a, middle).weight < epipolar.least_weight) {
     list_broken(corner);
     return;
   }

@@ -10,7 +10,6 @@
 #include "epipolar/slices.glsl"
 
 layout(constant_id = 0) const uint kExtinction = 0u;  // 0 epipolar, 1 per pixel
-layout(constant_id = 1) const bool kBreaks = false;   // list the pixels that no sample fits
 layout(constant_id = 9) const uint kSparsity = 0u;    // of src/effect/epipolar_plan.hpp
 
 const bool kSkyline = kSparsity >= 1u && !kHomogeneous;

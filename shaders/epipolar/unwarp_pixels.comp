@@ -31,11 +31,12 @@ layout(std430, binding = 10) writeonly buffer reduced_block { vec4 reduced[]; };
 // does: beside the limb light changes several times over from pixel to pixel, so that those which do are no substitute.
 bool at_limb(Around a, vec2 position) {
   const float kGrazing = 4.0;   // below the surface, scale heights
-  if (kHomogeneous) return false;
+  float scale_heights = frame.camera_altitude_m / medium.rayleigh_scale_height_m;
+  if (kHomogeneous || scale_heights < kAllOfAir) return false;
   float cos_zenith = dot(ray_direction(frame, position), frame.camera_up);
   float sin_zenith = sqrt(max(1.0 - cos_zenith * cos_zenith, 0.0));
   float dip = (1.0 - sin_zenith) * (medium.planet_radius_m + frame.camera_altitude_m) / medium.rayleigh_scale_height_m;
-  bool grazes = cos_zenith < 0.0 && dip > kAllOfAir && dip < frame.camera_altitude_m / medium.rayleigh_scale_height_m + kGrazing;
+  bool grazes = cos_zenith < 0.0 && dip > kAllOfAir && dip < scale_heights + kGrazing;
   return grazes && lopsided(a);
 }
 
@@ -61,7 +62,7 @@ void unwarp_pixel(uint block, uint k) {
   } else {
     STORE_REDUCED(place, depth_m, b);
   }
-  if (kBreaks && (b.weight < epipolar.least_weight || at_limb(a, position))) list_break(pixel);
+  if (b.weight < epipolar.least_weight || at_limb(a, position)) list_break(pixel);
 }
 
 void main() {

@@ -12,7 +12,7 @@ struct EpipolarConstants {
   uint epipole_density;
   float threshold;
   uint optimize_locations;
-  float least_weight;  // below this sum of weights a pixel is a break; 0: none is
+  float least_weight;  // a pixel with a smaller sum of weights is marched by itself
   uint show_depth_breaks;
   // The epipole: where the sun stands in the picture or, behind the camera, the point opposite to it, is
   // (sun_x, sun_y) / sun_w; sun_w >= 0, and 0 for a sun at right angles to the view.

@@ -15,9 +15,6 @@ std::uint32_t extinction_index(const Params& params) {
   return is_homogeneous(params.scattering) ? 0 : static_cast<std::uint32_t>(params.scattering.extinction);
 }
 
-// Of the pipelines that unwarp: whether pixels are listed, and sparsity().
-std::size_t unwarp_index(bool lists, Sparsity sparsity) { return (lists ? 1U : 0U) + 2 * static_cast<std::size_t>(sparsity); }
-
 std::size_t index(EpipolarBuffer buffer) { return static_cast<std::size_t>(buffer); }
 
 }  // namespace
@@ -46,16 +43,15 @@ Result<void> Epipolar::create_pipelines() {
     TYNDALL_TRY(make(refine_samples_[i], shaders::refine_samples_comp, "refine_samples", by_criterion));
     const gpu::Constant by_format[] = {{0, i}};
     TYNDALL_TRY(make(shadow_tree_[i], shaders::shadow_tree_comp, "shadow_tree", by_format));
-    for (const bool breaks : {false, true}) TYNDALL_TRY(make_of_medium(MediumKind::atmosphere, i, breaks, Sparsity::none));
+    TYNDALL_TRY(make_of_medium(MediumKind::atmosphere, i, Sparsity::none));
   }
   return {};
 }
 
-Result<void> Epipolar::make_of_medium(MediumKind medium, std::uint32_t extinction, bool lists, Sparsity sparsity) {
+Result<void> Epipolar::make_of_medium(MediumKind medium, std::uint32_t extinction, Sparsity sparsity) {
   const bool full = desc_.output_format == OutputFormat::rgba32f;
-  const gpu::Constant constants[] = {{0, extinction}, {1, lists ? 1U : 0U}, {5, static_cast<std::uint32_t>(medium)},
-                                     {9, static_cast<std::uint32_t>(sparsity)}};
-  const std::size_t variant = unwarp_index(lists, sparsity);
+  const gpu::Constant constants[] = {{0, extinction}, {5, static_cast<std::uint32_t>(medium)}, {9, static_cast<std::uint32_t>(sparsity)}};
+  const auto variant = static_cast<std::size_t>(sparsity);
   const auto make = [&](gpu::Pipeline& out, const gpu::Shader& shader, const char* name) -> Result<void> {
     if (out.pipeline) return {};
     TYNDALL_ASSIGN(out, gpu::create_compute_pipeline(*device_, shader, constants));
@@ -74,7 +70,7 @@ Result<void> Epipolar::make_of_medium(MediumKind medium, std::uint32_t extinctio
 
 Result<void> Epipolar::make_downscaled(MediumKind medium, std::uint32_t extinction, std::uint32_t downscale) {
   const bool full = desc_.output_format == OutputFormat::rgba32f;
-  const gpu::Constant constants[] = {{0, extinction}, {1, 1}, {5, static_cast<std::uint32_t>(medium)}, {6, downscale}};
+  const gpu::Constant constants[] = {{0, extinction}, {5, static_cast<std::uint32_t>(medium)}, {6, downscale}};
   const auto make = [&](gpu::Pipeline& out, const gpu::Shader& shader, const char* name) -> Result<void> {
     if (out.pipeline) return {};
     TYNDALL_ASSIGN(out, gpu::create_compute_pipeline(*device_, shader, constants));
@@ -116,13 +112,11 @@ Result<void> Epipolar::make_march(bool tree, bool colors, std::uint32_t mode) {
 Result<void> Epipolar::prepare(const EffectDesc& desc, const Params& params) {
   if (params.scattering.technique != Technique::epipolar) return {};
   if (is_homogeneous(params.scattering)) {
-    TYNDALL_TRY(make_of_medium(MediumKind::homogeneous, extinction_index(params), lists_breaks(params), Sparsity::none));
+    TYNDALL_TRY(make_of_medium(MediumKind::homogeneous, extinction_index(params), Sparsity::none));
   }
   if (may_be_sparse(params)) {
     for (const Sparsity sparsity : {Sparsity::skyline, Sparsity::all}) {
-      for (const bool lists : {false, true}) {
-        TYNDALL_TRY(make_of_medium(MediumKind::atmosphere, extinction_index(params), lists, sparsity));
-      }
+      TYNDALL_TRY(make_of_medium(MediumKind::atmosphere, extinction_index(params), sparsity));
     }
   }
   if (is_downscaled(params)) TYNDALL_TRY(make_downscaled(params.scattering.medium, extinction_index(params),
@@ -159,9 +153,9 @@ Result<void> Epipolar::prepare_others(std::uint32_t& budget, Progress& progress)
   for (const MediumKind medium : {MediumKind::atmosphere, MediumKind::homogeneous}) {
     const PerMedium& of = of_medium_[static_cast<std::size_t>(medium)];
     for (std::uint32_t extinction = 0; extinction < (medium == MediumKind::atmosphere ? 2U : 1U); ++extinction) {
-      for (std::size_t variant = 0; variant < (medium == MediumKind::atmosphere ? 2 * kSparsities : 2); ++variant) {
+      for (std::size_t variant = 0; variant < (medium == MediumKind::atmosphere ? kSparsities : 1); ++variant) {
         TYNDALL_TRY(take(static_cast<bool>(of.unwarp_pixels[extinction][variant].pipeline),
-                         [&] { return make_of_medium(medium, extinction, variant % 2 == 1, static_cast<Sparsity>(variant / 2)); }));
+                         [&] { return make_of_medium(medium, extinction, static_cast<Sparsity>(variant)); }));
       }
       for (const std::uint32_t downscale : {2U, 4U}) {
         TYNDALL_TRY(take(static_cast<bool>(of.upscale_pixels[extinction][downscale / 4].pipeline),
@@ -265,8 +259,6 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
   const std::uint32_t mode = mode_index(params.scattering);
   const bool walking = walks(params);
   const bool trees = uses_trees(params) && marched > 0;
-  const bool limb = lists_limb(inputs, params);
-  const bool lists_pixels = limb || lists_breaks(params);
   CascadeProcessing processing = params.shadows.cascade_processing;
   if (marched == 0 || !walking) processing = CascadeProcessing::single_pass;
   const bool instanced = processing == CascadeProcessing::multi_pass_instanced;
@@ -325,9 +317,7 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
   // Pixels that no sample fits: marched, and put where they belong.
   const auto correct = [&](const gpu::Pipeline& put) -> Result<void> {
     lists_ready();
-    if (limb || p.correct_depth_breaks || is_downscaled(params)) {
-      TYNDALL_TRY(run_list(march, EpipolarBuffer::break_list, &of_pixels));
-    }
+    TYNDALL_TRY(run_list(march, EpipolarBuffer::break_list, &of_pixels));
     return run_list(put, EpipolarBuffer::break_list);
   };
   if (is_downscaled(params)) {
@@ -345,11 +335,11 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
     TYNDALL_TRY(correct(of.correct_pixels));
   } else {
     const VkExtent2D blocks = unwarp_blocks(inputs.extent);
-    const std::size_t variant = unwarp_index(lists_pixels, sparsity(inputs.extent, params));
+    const auto variant = static_cast<std::size_t>(sparsity(inputs.extent, params));
     TYNDALL_TRY(run(of.unwarp[extinction][variant], {blocks.width, blocks.height}));
     lists_ready();
     TYNDALL_TRY(run_list(of.unwarp_pixels[extinction][variant], EpipolarBuffer::broken_list));
-    if (lists_pixels) TYNDALL_TRY(correct(of.correct_pixels));
+    TYNDALL_TRY(correct(of.correct_pixels));
   }
   if (p.show_sampling) {
     for (std::uint32_t marked = 0; marked < 2; ++marked) {

@@ -59,14 +59,14 @@ class Epipolar {
   // Specialised for a medium. The second line is made when asked for.
   struct PerMedium {
     gpu::Pipeline slice_samples, correct_pixels;
-    std::array<std::array<gpu::Pipeline, 2 * kSparsities>, 2> unwarp, unwarp_pixels;  // by Extinction, and unwarp_index()
+    std::array<std::array<gpu::Pipeline, kSparsities>, 2> unwarp, unwarp_pixels;  // by Extinction and Sparsity
     std::array<gpu::Pipeline, 2> unwarp_reduced, unwarp_reduced_pixels, correct_reduced;  // by whether to a quarter
     std::array<std::array<gpu::Pipeline, 2>, 2> upscale, upscale_pixels;                  // by Extinction, and that
   };
 
   Result<void> create_pipelines();
   Result<void> make_downscaled(MediumKind medium, std::uint32_t extinction, std::uint32_t downscale);
-  Result<void> make_of_medium(MediumKind medium, std::uint32_t extinction, bool lists, Sparsity sparsity);
+  Result<void> make_of_medium(MediumKind medium, std::uint32_t extinction, Sparsity sparsity);
   // Whether the march looks at the shadows at all.
   [[nodiscard]] static bool walks(const Params& params);
   // Whether it looks at them through the trees.

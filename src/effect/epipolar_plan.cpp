@@ -9,14 +9,17 @@ namespace tyndall {
 namespace {
 
 constexpr VkDeviceSize kStateBytes = 16 * sizeof(float);  // of march_state.glsl
+constexpr VkDeviceSize kLightBytes = 8;                   // of pack_light() in records.glsl
 constexpr VkDeviceSize kLeastBytes = 256;                 // of buffers that shaders bind but do not use
-// Below this sum of weights no sample is near in depth. In a reduced picture a sample a sixth nearer or
-// farther will do, which halves what is marched.
+// Pixels with a smaller sum of weights are marched. By default that means that no sample is near in depth; with
+// correct_depth_breaks, that those which are near have little weight, or are a twentieth off. In a reduced picture a sample
+// a sixth nearer or farther will do, which halves what is marched.
 constexpr float kLeastWeight = 1e-2F;
+constexpr float kLeastWeightAll = 0.1F;
 constexpr float kLeastWeightReduced = 1e-3F;
-// Of all pixels, the part that the list of those at the limb has room for: a limb of 16 pixels around the
-// whole picture is less.
-constexpr VkDeviceSize kLimbPart = 8;
+// The list of pixels that are marched has room for one in this many, unless correct_depth_breaks gives it room for all.
+// Default views list one in a thousand; a limb of 16 pixels around the whole picture is less than an eighth.
+constexpr VkDeviceSize kBreakPart = 8;
 
 struct BufferName {
   const char* name;
@@ -44,7 +47,8 @@ std::size_t index(EpipolarBuffer buffer) { return static_cast<std::size_t>(buffe
 
 std::uint32_t break_capacity(const EffectDesc& desc, const Params& params) {
   const VkDeviceSize pixels = VkDeviceSize{desc.max_extent.width} * desc.max_extent.height;
-  const VkDeviceSize wanted = lists_breaks(params) ? pixels : pixels / kLimbPart;
+  const bool all = is_downscaled(params) || params.epipolar.correct_depth_breaks.value != 0;
+  const VkDeviceSize wanted = all ? pixels : pixels / kBreakPart;
   return static_cast<std::uint32_t>((wanted / shared::kMarchGroup + 1) * shared::kMarchGroup);
 }
 
@@ -64,11 +68,6 @@ VkExtent2D unwarp_blocks(VkExtent2D extent) {
   return {(extent.width + shared::kUnwarpWidth - 1) / shared::kUnwarpWidth, (extent.height + 1) / 2};
 }
 
-bool lists_breaks(const Params& params) {
-  return is_downscaled(params) || params.epipolar.correct_depth_breaks.value != 0 ||
-         params.epipolar.show_depth_breaks.value != 0;
-}
-
 bool may_be_sparse(const Params& params) {
   constexpr std::uint32_t kMany = 512;
   return params.epipolar.slices < kMany && !is_downscaled(params) && !is_homogeneous(params.scattering);
@@ -81,12 +80,6 @@ Sparsity sparsity(VkExtent2D extent, const Params& params) {
   const bool far_apart = params.epipolar.slices * kVisiblePixels <= 2 * (extent.width + extent.height);
   if (!may_be_sparse(params) || !far_apart) return Sparsity::none;
   return params.epipolar.slices < kFew ? Sparsity::all : Sparsity::skyline;
-}
-
-bool lists_limb(const FrameInputs& inputs, const Params& params) {
-  return !is_homogeneous(params.scattering) &&
-         camera_altitude_m(inputs, params) >
-             shared::kAllOfAir * static_cast<double>(params.atmosphere.rayleigh_scale_height_m);
 }
 
 std::uint32_t tree_cells(const EffectDesc& desc) {
@@ -115,7 +108,7 @@ EpipolarSizes epipolar_sizes(const EffectDesc& desc, const Params& params) {
           ? VkDeviceSize{reduced.width} * reduced.height * (is_homogeneous(params.scattering) ? 16 : 32)
           : kLeastBytes;
   out[index(EpipolarBuffer::break_list)] = sizeof(shared::WorkList) + breaks * 4;
-  out[index(EpipolarBuffer::corrected)] = breaks * 16;
+  out[index(EpipolarBuffer::corrected)] = breaks * kLightBytes;
   const VkDeviceSize number = params.epipolar.min_max_format == MinMaxFormat::float32 ? 8 : 4;
   const VkDeviceSize row_bytes = tree_cells(desc) / shared::kTreeBlock * shared::kTreeNodes * number;
   out[index(EpipolarBuffer::tree_list)] =
@@ -154,9 +147,9 @@ shared::EpipolarConstants epipolar_constants(const FrameInputs& inputs, const Ef
   out.epipole_density = p.epipole_density;
   out.threshold = p.refinement_threshold;
   out.optimize_locations = p.optimize_locations.value;
-  out.least_weight = !lists_breaks(params)   ? 0.0F
-                     : is_downscaled(params) ? kLeastWeightReduced
-                                             : kLeastWeight;
+  out.least_weight = is_downscaled(params)                           ? kLeastWeightReduced
+                     : params.epipolar.correct_depth_breaks.value != 0 ? kLeastWeightAll
+                                                                       : kLeastWeight;
   out.break_capacity = break_capacity(desc, params);
   out.show_depth_breaks = p.show_depth_breaks.value;
   out.tree_cells = p.min_max_tree.value != 0 ? tree_cells(desc) : 0;

@@ -58,8 +58,6 @@ constexpr VkBufferUsageFlags kEpipolarUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT
 [[nodiscard]] VkExtent2D unwarp_blocks(VkExtent2D extent);
 
 [[nodiscard]] inline bool is_downscaled(const Params& params) { return params.scattering.downscale > 1; }
-// Whether pixels that no sample fits in depth are listed.
-[[nodiscard]] bool lists_breaks(const Params& params);
 // How much pixels find out by themselves because slices are few.
 enum class Sparsity : std::uint32_t {
   none,
@@ -70,7 +68,5 @@ constexpr std::size_t kSparsities = 3;
 [[nodiscard]] Sparsity sparsity(VkExtent2D extent, const Params& params);
 // Whether there are pictures for which sparsity() is not none.
 [[nodiscard]] bool may_be_sparse(const Params& params);
-// Whether pixels at the limb are listed, because the camera is above most of the air.
-[[nodiscard]] bool lists_limb(const FrameInputs& inputs, const Params& params);
 
 }  // namespace tyndall

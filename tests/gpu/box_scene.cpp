@@ -37,10 +37,7 @@ double hit_planet(const glm::dvec3& from, const glm::dvec3& direction) {
 }
 
 // Between the camera, at the origin, and 30 km to the north, with gaps that let shafts through, low and high.
-struct Box {
-  glm::dvec3 low, high;
-};
-constexpr Box kBuildings[] = {
+const std::vector<Box> kBuildings = {
     {{-2500, 0, -9000}, {-1700, 2600, -8200}},   {{-900, 0, -9500}, {-300, 3400, -8900}},
     {{600, 0, -9200}, {900, 2200, -8800}},       {{1500, 0, -7500}, {2600, 1700, -7000}},
     {{-5200, 0, -14000}, {-4000, 4200, -12500}}, {{300, 0, -16000}, {1900, 4800, -15500}},
@@ -53,7 +50,7 @@ constexpr Box kBuildings[] = {
 double first_hit(const BoxScene& scene, bool ground, const glm::dvec3& from, const glm::dvec3& direction) {
   double nearest = ground ? hit_planet(from, direction) : kNone;
   if (!scene.buildings) return nearest;
-  for (const Box& box : kBuildings) {
+  for (const Box& box : scene.own_buildings.empty() ? kBuildings : scene.own_buildings) {
     nearest = std::min(nearest, scene.building_size * hit_box(box.low, box.high, from / scene.building_size, direction));
   }
   return nearest;

@@ -9,6 +9,11 @@
 
 namespace tyndall {
 
+// Corners in metres; x east, y up from the ground, z south of the camera.
+struct Box {
+  glm::dvec3 low, high;
+};
+
 struct BoxScene {
   std::string name;
   VkExtent2D extent = {160, 90};
@@ -21,6 +26,7 @@ struct BoxScene {
   bool sun_behind = false;  // opposite to that place
   double sun_elevation_deg = 9.0, sun_azimuth_deg = 12.0;
   bool buildings = true;
+  std::vector<Box> own_buildings;  // in place of the usual ones, unless empty
   double building_size = 1.0;  // times theirs, distances included
   bool ground = true;  // drawn; the planet is there in any case
   bool ground_casts = true;

@@ -1,0 +1,114 @@
+// Epipolar sampling where it is hardest: an occluder in front of the sun, and scenes with more depth discontinuities than are
+// corrected. The reference is brute force with the same frame and the same shadow maps.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "shared_effect.hpp"
+
+namespace tyndall {
+namespace {
+
+using EpipolarErrors = SharedEffect;
+
+double largest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
+
+// A pillar that hides the sun, in haze under a low sun.
+struct Pillar {
+  const char* name;
+  double distance_m, half_width_m;
+  double sun_from_middle;  // in half widths
+  double sun_elevation_deg, altitude_m, far_m;
+  float aerosol_density;
+  double bound;            // on the relative error of any pixel of its face
+};
+
+BoxScene scene_of(const Pillar& pillar) {
+  BoxScene scene;
+  scene.name = pillar.name;
+  scene.extent = {640, 240};
+  scene.tan_half_height = 0.25;
+  scene.altitude_m = pillar.altitude_m;
+  scene.pitch_deg = 8.0;
+  scene.sun_azimuth_deg = std::atan(pillar.sun_from_middle * pillar.half_width_m / pillar.distance_m) * 57.29578;
+  scene.sun_elevation_deg = pillar.sun_elevation_deg;
+  scene.far_m = pillar.far_m;
+  scene.shadow_resolution = 512;
+  scene.own_buildings = {{{-pillar.half_width_m, 0, -pillar.distance_m - pillar.half_width_m},
+                          {pillar.half_width_m, pillar.distance_m + 50.0, -pillar.distance_m}}};
+  return scene;
+}
+
+// The sides of the pillar are left out: shadow maps have texels wider than a pixel, and both techniques read them at different
+// places.
+TEST_F(EpipolarErrors, FaceBeforeTheSunHasNoSparks) {
+  const Pillar pillars[] = {
+      {"sun in the middle", 500.0, 40.0, 0.0, 9.0, 20.0, 2000.0, 1.0F, 0.05},
+      {"narrow", 3000.0, 60.0, 0.3, 3.0, 100.0, 20000.0, 5.0F, 0.05},
+      {"wide", 3000.0, 240.0, 0.9, 3.0, 100.0, 20000.0, 5.0F, 0.05},
+  };
+  constexpr std::uint32_t kInside = 3;  // pixels from the sides
+  for (const Pillar& pillar : pillars) {
+    const BoxScene scene = scene_of(pillar);
+    show(scene);
+    for (const bool tree : {true, false}) {
+      Params params = small_params();
+      params.epipolar.slices = 512;
+      params.epipolar.samples = 256;
+      params.atmosphere.aerosol_density = pillar.aerosol_density;
+      params.epipolar.min_max_tree = tree;
+      const Picture reference = draw(by_brute_force(params), scene.name);
+      const Picture picture = draw(params, scene.name);
+      const auto on_face = [&](std::uint32_t x, std::uint32_t y) {
+        const double d = frame().distance_m(x, y);
+        return d > 0.0 && d < 1.2 * pillar.distance_m;
+      };
+      double worst = 0.0;
+      std::size_t face = 0;
+      std::string where;
+      for (std::uint32_t y = 0; y < 180; ++y) {
+        for (std::uint32_t x = kInside; x + kInside < scene.extent.width; ++x) {
+          if (!on_face(x - kInside, y) || !on_face(x + kInside, y)) continue;
+          ++face;
+          const std::size_t i = std::size_t{y} * scene.extent.width + x;
+          const double off = largest(glm::abs(picture[i] - reference[i])) / largest(reference[i]);
+          if (off <= worst) continue;
+          worst = off;
+          where = std::to_string(x) + ", " + std::to_string(y);
+        }
+      }
+      EXPECT_GT(face, 1000U);
+      EXPECT_LE(worst, pillar.bound) << pillar.name << (tree ? "" : ", no tree") << ", at " << where;
+    }
+  }
+}
+
+// Depths without any order, so that most pixels have a depth of their own: more than there is room for.
+TEST_F(EpipolarErrors, TooManyDepthBreaksAreAllLeftAlone) {
+  TestFrame scattered = frame_of({});
+  const std::uint32_t width = scattered.extent.width;
+  scattered.distance_m = [width](std::uint32_t x, std::uint32_t y) {
+    const std::uint32_t mixed = (y * width + x) * 2654435761U;
+    return 500.0 * std::pow(1.5, mixed >> 28U);
+  };
+  EffectDesc description = desc();
+  description.max_extent = scattered.extent;
+  make(own_effect_, description);
+  show(scattered);
+  const std::uint64_t pixels = std::uint64_t{scattered.extent.width} * scattered.extent.height;
+  Params params = small_params();
+  const Picture reference = draw(by_brute_force(params), "brute force");
+  const Picture picture = draw(params, "more than there is room for");
+  EXPECT_EQ(counters().pixels_corrected, 0U);
+  EXPECT_EQ(draw(params, "again"), picture);
+  params.epipolar.correct_depth_breaks = true;
+  const Picture corrected = draw(params, "room for all");
+  EXPECT_GT(counters().pixels_corrected, pixels / 8);
+  EXPECT_LE(counters().pixels_corrected, pixels);
+  EXPECT_GT(compare(corrected, reference, scattered.extent).psnr_db,
+            compare(picture, reference, scattered.extent).psnr_db + 3.0);
+}
+
+}  // namespace
+}  // namespace tyndall
