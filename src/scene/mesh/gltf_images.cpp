@@ -94,12 +94,20 @@ std::optional<std::string> fault_of_png(std::string_view bytes, std::uint64_t wi
   return {};
 }
 
-// A JPEG that ends early decodes to a picture with a grey rest; and each block of 8x8 texels takes at least a bit.
+// What is wrong with a JPEG: one that ends early decodes to a picture with a grey rest, and each block of 8x8 texels takes
+// at least a bit.
 std::optional<std::string> fault_of_jpeg(std::string_view bytes, std::uint64_t width, std::uint64_t height) {
-  const std::size_t scan = bytes.rfind("\xFF\xDA"), end = bytes.rfind("\xFF\xD9");
-  if (scan == std::string_view::npos || end == std::string_view::npos || end < scan || width * height / 64 / 8 > bytes.size()) {
-    return "which ends early";
+  // Segments with a marker and a length each, up to the first scan. In a scan the marker of the end cannot be data.
+  std::size_t i = 2;
+  while (i + 4 <= bytes.size() && bytes.substr(i, 2) != "\xFF\xDA") {
+    if (bytes[i + 1] == '\xFF') {
+      ++i;  // padding
+    } else {
+      i += 2 + (std::size_t{static_cast<std::uint8_t>(bytes[i + 2])} << 8U | static_cast<std::uint8_t>(bytes[i + 3]));
+    }
   }
+  const bool ended = i < bytes.size() && bytes.find("\xFF\xD9", i) != std::string_view::npos;
+  if (!ended || width * height / 64 / 8 > bytes.size()) return "which ends early";
   return {};
 }
 
