@@ -129,7 +129,7 @@ void GltfReader::read_shape(const Shape& shape, const std::vector<glm::dmat4>& p
 void GltfReader::read_primitive(const GltfPrimitive& primitive, const std::string& where, const Shape& shape,
                                 const std::vector<glm::dmat4>& joints) {
   if (primitive.mode < 4) return note("lines and points of the meshes are left out");
-  if (!primitive.attributes.contains("POSITION")) return note(where + " has no POSITION and is left out");
+  if (!primitive.attributes.contains("POSITION")) return note_each("position", where + " has no POSITION and is left out");
   std::optional<DracoMesh> draco;
   if (primitive.draco) draco = decode_draco(document_, primitive, data_.view(primitive.draco->view), where);
   const DracoMesh* const decoded = draco ? &*draco : nullptr;
@@ -137,8 +137,8 @@ void GltfReader::read_primitive(const GltfPrimitive& primitive, const std::strin
   const std::vector<std::uint32_t> corners = draco ? std::move(draco->corners) : triangles(primitive, where, read.position.count);
   emit(read, corners, material_of(primitive, !read.uv.empty(), where));
   // Morphed colours are clamped by the specification.
-  if (read.clamped && read.targets.empty()) note(where + ".attributes.COLOR_0 has values outside 0 to 1, which are clamped");
-  if (read.unweighted) note(where + " has vertices whose joints have no weight; they follow the first joint");
+  if (read.clamped && read.targets.empty()) note_each("color", where + ".attributes.COLOR_0 has values outside 0 to 1, which are clamped");
+  if (read.unweighted) note_each("joints", where + " has vertices whose joints have no weight; they follow the first joint");
 }
 
 // The values of an attribute, or none.
@@ -272,7 +272,7 @@ std::vector<std::uint32_t> GltfReader::triangles(const GltfPrimitive& primitive,
     for (std::size_t i = 0; i < count; ++i) list.push_back(static_cast<std::uint32_t>(i));
   }
   if (primitive.mode == 4) {
-    if (list.size() % 3 != 0) note(where + " has " + std::to_string(list.size()) + " corners, which is no multiple of 3; the last ones are left out");
+    if (list.size() % 3 != 0) note_each("corners", where + " has " + std::to_string(list.size()) + " corners, which is no multiple of 3; the last ones are left out");
     list.resize(list.size() / 3 * 3);
     return list;
   }

@@ -122,7 +122,7 @@ void GltfReader::read_materials() {
       const GltfTexture& texture = document_.textures[index];
       out.sampler = texture.sampler;
       if (texture.image >= 0) out.texture = read_image(static_cast<std::size_t>(texture.image));
-      else note(at("textures", index) + " has no PNG or JPEG picture and is left out of " + at("materials", i));
+      else note_each("texture", at("textures", index) + " has no PNG or JPEG picture and is left out of " + at("materials", i));
     }
     out_.materials.push_back(std::move(out));
   }
@@ -173,7 +173,7 @@ std::uint32_t GltfReader::material_of(const GltfPrimitive& primitive, bool has_c
   if (primitive.material < 0) return static_cast<std::uint32_t>(document_.materials.size());
   const auto index = static_cast<std::uint32_t>(primitive.material);
   if (has_coordinates || out_.materials[index].texture < 0) return index;
-  note(where + " has no TEXCOORD_" + std::to_string(document_.materials[index].texture.set) + ", which " + at("materials", index) +
+  note_each("coordinates", where + " has no TEXCOORD_" + std::to_string(document_.materials[index].texture.set) + ", which " + at("materials", index) +
        " names for its texture: it is drawn without the texture");
   const auto [found, is_new] = untextured_.try_emplace(primitive.material, static_cast<std::uint32_t>(out_.materials.size()));
   if (is_new) {

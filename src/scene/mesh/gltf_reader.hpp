@@ -52,7 +52,9 @@ class GltfReader {
   // What is placed together: a mesh, its skin or -1, and the weights of its morph targets.
   using Shape = std::tuple<int, int, std::vector<double>>;
 
-  void note(std::string text);
+  void note(std::string text);  // once, however often it is called
+  // Notes the first of a kind in full and how many follow it.
+  void note_each(const char* kind, const std::string& text);
 
   void read_materials();
   int read_image(std::size_t index);
@@ -77,6 +79,7 @@ class GltfReader {
   MeshData& out_;
   std::map<Shape, std::vector<glm::dmat4>> placed_;
   std::vector<int> parents_;                      // of nodes; -1 for roots
+  std::map<std::string, std::pair<std::string, std::size_t>> counted_;  // by kind: the first note, and how many there are
   std::map<int, int> decoded_;                    // image to texture
   std::map<int, std::uint32_t> untextured_;       // material to its copy without a texture
   std::uint64_t texture_bytes_ = 0, visits_ = 0, instances_ = 0;

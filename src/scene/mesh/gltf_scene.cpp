@@ -20,6 +20,10 @@ void GltfReader::note(std::string text) {
   if (std::find(out_.notes.begin(), out_.notes.end(), text) == out_.notes.end()) out_.notes.push_back(std::move(text));
 }
 
+void GltfReader::note_each(const char* kind, const std::string& text) {
+  ++counted_.try_emplace(kind, text, 0).first->second.second;
+}
+
 void GltfReader::read() {
   out_.notes = document_.notes;
   data_.read_buffers();
@@ -31,6 +35,10 @@ void GltfReader::read() {
   // A mesh without instances costs nothing: those of the scene are collected first.
   for (const int root : document_.roots) visit(root, glm::dmat4(1.0), 0);
   for (const auto& [shape, placed] : placed_) read_shape(shape, placed);
+  for (const auto& [kind, counted] : counted_) {
+    const auto& [first, count] = counted;
+    note(first + (count > 1 ? " (and " + std::to_string(count - 1) + " more of the kind)" : ""));
+  }
   if (out_.indices.empty()) fail("has no triangles in its scene", "allowed is at least one triangle");
 }
 
