@@ -232,6 +232,11 @@ class Effect {
   // is freed when they are done.
   Result<void> set_limits(VkExtent2D max_extent, std::uint32_t max_cascades, std::uint32_t max_shadow_resolution);
 
+  // Takes over parameters together with what set_shadow_colors() and set_limits() take from `desc`: all of it or
+  // nothing. The other fields of `desc` must be those of desc().
+  Result<void> set_params(const Params& params, const EffectDesc& desc);
+  [[nodiscard]] const EffectDesc& desc() const;
+
   [[nodiscard]] Progress precompute_progress() const;
   // Records at most `budget` slices of the building of stale tables. Nothing to do: records nothing.
   Result<Progress> record_precompute(VkCommandBuffer cmd, std::uint32_t budget = UINT32_MAX);

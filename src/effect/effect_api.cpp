@@ -98,6 +98,20 @@ Result<void> Effect::set_limits(VkExtent2D max_extent, std::uint32_t max_cascade
   });
 }
 
+Result<void> Effect::set_params(const Params& params, const EffectDesc& desc) {
+  return call(state_, "Effect::set_params", [&](State& s) -> Result<void> {
+    TYNDALL_TRY(check_desc(s.info, desc));
+    TYNDALL_TRY(check_same_desc(s.desc, desc));
+    TYNDALL_TRY(check_params(params));
+    return s.change(desc, params);
+  });
+}
+
+const EffectDesc& Effect::desc() const {
+  static constexpr EffectDesc kDefaults;
+  return state_ ? state_->desc : kDefaults;
+}
+
 const Params& Effect::params() const {
   static constexpr Params kDefaults;
   return state_ ? state_->params : kDefaults;

@@ -51,6 +51,20 @@ Result<void> check_desc(const DeviceInfo& info, const EffectDesc& desc) {
   return {};
 }
 
+Result<void> check_same_desc(const EffectDesc& created, const EffectDesc& wanted) {
+  const auto fixed = [](const char* field) {
+    return Error{ErrorCode::invalid_argument, std::string("EffectDesc::") + field +
+                                                  " cannot be changed, it must be that of Effect::desc()"};
+  };
+  if (wanted.frames_in_flight != created.frames_in_flight) return fixed("frames_in_flight");
+  if (wanted.output_format != created.output_format) return fixed("output_format");
+  if (wanted.sky_depth != created.sky_depth) return fixed("sky_depth");
+  if (wanted.shadow_depth_reversed != created.shadow_depth_reversed) return fixed("shadow_depth_reversed");
+  if (wanted.timings != created.timings) return fixed("timings");
+  if (wanted.counters != created.counters) return fixed("counters");
+  return {};
+}
+
 Result<void> check_device(const gpu::Device& device) {
   for (const gpu::Shader* shader : shaders::effect_shaders) TYNDALL_TRY(gpu::check_shader(device, *shader));
   // No dispatch has more groups in a direction, and every device must allow as many.

@@ -237,7 +237,7 @@ Result<void> Host::create_device(const HostDesc& desc) {
   info.ppEnabledExtensionNames = extensions.data();
   VkResult result = vkCreateDevice(device_.physical_device, &info, nullptr, &device_.device);
   if (result != VK_SUCCESS) return vulkan_error(result, "creating the Vulkan device", rows[index].name.c_str());
-  TYNDALL_TRY(init_device(device_, vkGetInstanceProcAddr));
+  TYNDALL_TRY(init_device(device_, get_instance_proc_addr_));
   vkGetDeviceQueue(device_.device, queue_family_, 0, &queue_);
 
   VkCommandPoolCreateInfo pool_info = {};
@@ -267,6 +267,7 @@ Result<void> Host::create_device(const HostDesc& desc) {
 Result<std::unique_ptr<Host>> Host::create(const HostDesc& desc) {
   std::unique_ptr<Host> host(new Host());
   host->validation_log_ = desc.validation_log;
+  if (desc.get_instance_proc_addr != nullptr) host->get_instance_proc_addr_ = desc.get_instance_proc_addr;
   TYNDALL_TRY(host->create_instance(desc.validation, desc.instance_extensions));
   TYNDALL_TRY(host->create_device(desc));
   return host;
@@ -301,8 +302,6 @@ Result<std::vector<DeviceRow>> Host::list(const std::string& wanted) {
   }
   return rows;
 }
-
-PFN_vkGetInstanceProcAddr Host::get_instance_proc_addr() const { return vkGetInstanceProcAddr; }
 
 Result<void> Host::run(const std::function<Result<void>(VkCommandBuffer)>& record) {
   const std::lock_guard<std::mutex> running(run_mutex_);

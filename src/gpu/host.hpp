@@ -30,6 +30,9 @@ struct HostDesc {
   // Gets every validation message, those about what is left when the device is destroyed included; outlives
   // the Host.
   std::vector<std::string>* validation_log = nullptr;
+  // In place of the loader's vkGetInstanceProcAddr, for the functions of Device and of effects on it. Tests pass one
+  // whose functions fail.
+  PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;
   // For programs with a window: what the windowing system needs, and whether a queue family can present there.
   std::vector<const char*> instance_extensions = {};
   std::vector<const char*> device_extensions = {};
@@ -48,7 +51,7 @@ class Host {
   static Result<std::vector<DeviceRow>> list(const std::string& device = {});
 
   [[nodiscard]] const Device& device() const { return device_; }
-  [[nodiscard]] PFN_vkGetInstanceProcAddr get_instance_proc_addr() const;
+  [[nodiscard]] PFN_vkGetInstanceProcAddr get_instance_proc_addr() const { return get_instance_proc_addr_; }
   [[nodiscard]] std::uint32_t queue_family() const { return queue_family_; }
   // For submissions of the program's own, and for waiting until the device is idle, under the lock.
   [[nodiscard]] VkQueue queue() const { return queue_; }
@@ -78,6 +81,7 @@ class Host {
 
   std::mutex queue_mutex_, run_mutex_;  // of the queue, and of what run() uses
   VkInstance instance_ = VK_NULL_HANDLE;
+  PFN_vkGetInstanceProcAddr get_instance_proc_addr_ = vkGetInstanceProcAddr;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
   Device device_;
   VkQueue queue_ = VK_NULL_HANDLE;

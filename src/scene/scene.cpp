@@ -78,7 +78,9 @@ Result<std::unique_ptr<Scene>> Scene::create(gpu::Host& host, const SceneDesc& d
   TYNDALL_ASSIGN(out->terrain_, Terrain::create(host, scene.terrain, params.planet.radius_m, kColorFormat, kDepthFormat,
                                                  desc.terrain_coarseness));
   out->notes_ = out->terrain_->notes();
-  TYNDALL_TRY(out->make_meshes(scene));
+  TYNDALL_TRY(check_model(scene));
+  TYNDALL_ASSIGN(out->meshes_, out->make_meshes(scene, params.planet.radius_m));
+  if (out->meshes_ != nullptr) add_notes(out->notes_, out->meshes_->notes());
   TYNDALL_TRY(out->create_objects());
   return out;
 }
@@ -103,8 +105,8 @@ Result<void> Scene::create_objects() {
   effect_desc.output_format = OutputFormat::rgba32f;
   effect_desc.max_cascades = scene_.shadows.cascades;
   effect_desc.max_shadow_resolution = scene_.shadows.resolution;
-  colored_air_ = meshes_ != nullptr && meshes_->has_glass();
-  effect_desc.shadow_colors = colored_air_;
+  const bool glass = meshes_ != nullptr && meshes_->has_glass();
+  effect_desc.shadow_colors = glass;
   effect_desc.timings = desc_.timings;
   effect_desc.counters = desc_.counters;
   TYNDALL_ASSIGN(Effect effect, Effect::create(info, effect_desc, params_));
@@ -113,11 +115,16 @@ Result<void> Scene::create_objects() {
   tonemap_ = std::make_unique<post::Tonemap>(std::move(tonemap));
 
   TYNDALL_TRY(check_memory(device, desc_.extent, scene_.shadows.resolution, scene_.shadows.cascades,
-                           meshes_ != nullptr && meshes_->has_glass() ? 12.0 : 4.0,
+                           glass ? 12.0 : 4.0,
                            scene_.scattering.model != ScatteringModel::atmosphere ? 3 * 16.0 : 0.0));  // SkyModel::air
-  TYNDALL_TRY(create_images(desc_.extent));
-  TYNDALL_TRY(create_shadow_maps(scene_.shadows));
-  TYNDALL_TRY(create_shadow_colors(scene_.shadows));
+  TYNDALL_ASSIGN(Targets targets, make_targets(desc_.extent));
+  swap_targets(targets);
+  TYNDALL_ASSIGN(Layered maps, make_shadow_maps(scene_.shadows));
+  shadow_maps_ = std::move(maps.image);
+  shadow_layers_ = std::move(maps.layers);
+  TYNDALL_ASSIGN(Layered colors, make_shadow_colors(scene_.shadows, glass));
+  shadow_colors_ = std::move(colors.image);
+  shadow_color_layers_ = std::move(colors.layers);
   TYNDALL_ASSIGN(linear_, gpu::create_sampler(device, {}));
   TYNDALL_ASSIGN(nearest_, gpu::create_sampler(device, {.filter = VK_FILTER_NEAREST}));
   gpu::SamplerDesc compare;
@@ -140,7 +147,8 @@ Result<void> Scene::create_objects() {
   if (desc_.timings) {
     TYNDALL_ASSIGN(timer_, gpu::Timer::create(device, 1, kMaxTimedPasses));
   }
-  return make_model_ready();
+  TYNDALL_ASSIGN(model_, make_model(scene_));
+  return make_tables_ready();
 }
 
 void Scene::begin_pass(VkCommandBuffer cmd, const char* name) {
@@ -152,6 +160,7 @@ void Scene::end_pass(VkCommandBuffer cmd) {
 }
 
 Result<void> Scene::render(double seconds, bool floor, std::optional<double> step_s) {
+  TYNDALL_TRY(check_tables());
   // Time that does not advance, and pictures that were not measured, leave nothing to adapt from.
   step_s_ = step_s.value_or(last_seconds_ ? seconds - *last_seconds_ : 0.0);
   if (!last_seconds_ || step_s_ <= 0.0) tonemap_->exposure().cut();
@@ -280,7 +289,7 @@ Result<void> Scene::run_effect(VkCommandBuffer cmd) {
   inputs.color = {color_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
   inputs.depth = {depth_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
   inputs.shadow_maps = {shadow_maps_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-  if (light_.has_glass && colored_air_ && params_.scattering.light_shafts) {
+  if (light_.has_glass && params_.scattering.light_shafts) {
     inputs.shadow_colors = {shadow_colors_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
     inputs.shadow_color_depths = true;
   }

@@ -43,7 +43,7 @@ class Scene {
   static Result<std::unique_ptr<Scene>> create(gpu::Host& host, const SceneDesc& desc, const Params& params,
                                                const SceneParams& scene);
 
-  // Take over new parameters; an error leaves things as they were. Another terrain is loaded here, which takes long
+  // Take over new parameters; an error leaves things as they were, the next frame included. Another terrain is loaded here, which takes long
   // for large files, unless set_terrain() has brought it. Back to scattering.model = atmosphere, and other
   // parameters of the air, make the tables ready if they are not, unless with SceneDesc::tables_later.
   Result<void> set_scene(const SceneParams& scene);
@@ -103,13 +103,30 @@ class Scene {
 
  private:
   Result<void> create_objects();
-  Result<void> create_images(VkExtent2D extent);
-  Result<void> create_shadow_maps(const ShadowParams& shadows);
+  // What a picture of some size is drawn into.
+  struct Targets {
+    gpu::Image color, depth, output, display;
+  };
+  // An image with a view of each layer.
+  struct Layered {
+    gpu::Image image;
+    std::vector<gpu::Handle<VkImageView>> layers;
+  };
+  struct Pending;  // what other parameters change
+  [[nodiscard]] Result<Targets> make_targets(VkExtent2D extent) const;
+  [[nodiscard]] Result<Layered> make_layered(const gpu::ImageDesc& desc) const;
+  [[nodiscard]] Result<Layered> make_shadow_maps(const ShadowParams& shadows) const;
+  [[nodiscard]] Result<Layered> make_shadow_colors(const ShadowParams& shadows, bool glass) const;
+  [[nodiscard]] Result<std::unique_ptr<Meshes>> make_meshes(const SceneParams& scene, double radius_m) const;
+  [[nodiscard]] Result<std::unique_ptr<SkyModel>> make_model(const SceneParams& scene) const;
+  Result<void> make_tables_ready();
+  [[nodiscard]] Result<void> check_tables() const;
+  [[nodiscard]] Result<Pending> plan(const SceneParams& scene, const Params& params, std::optional<ElevationSource> source);
+  void swap(Pending& pending) noexcept;
+  // Plans and takes over; an error leaves everything as it was. `source`: of the terrain, if it has been loaded.
+  Result<void> change(const SceneParams& scene, const Params& params, std::optional<ElevationSource> source);
+  void swap_targets(Targets& targets) noexcept;
   [[nodiscard]] bool shadows_are_drawn() const;
-  Result<void> make_model_ready();
-  Result<void> replace_ground(const SceneParams& wanted, double radius_m, ElevationSource source);
-  Result<void> create_shadow_colors(const ShadowParams& shadows);
-  Result<void> make_meshes(const SceneParams& scene);
   Result<void> draw_shadows(VkCommandBuffer cmd);
   Result<void> draw_shadow_colors(VkCommandBuffer cmd);
   Result<void> draw_view(VkCommandBuffer cmd);
@@ -134,10 +151,9 @@ class Scene {
   std::unique_ptr<Effect> effect_;
   std::unique_ptr<SkyModel> model_;  // none: the effect draws the air
   bool tables_ready_ = false;
-  bool colored_air_ = false;  // the effect takes maps of colours
   std::unique_ptr<post::Tonemap> tonemap_;
   gpu::Image color_, depth_, shadow_maps_, shadow_colors_, output_, display_;
-  std::vector<gpu::Handle<VkImageView>> shadow_layers_, shadow_color_layers_;
+  std::vector<gpu::Handle<VkImageView>> shadow_layers_, shadow_color_layers_;  // views of each layer of these
   gpu::Handle<VkSampler> linear_, nearest_, shadow_compare_;
   gpu::Pipeline background_, floor_;
   gpu::Buffer background_constants_;
@@ -158,5 +174,10 @@ class Scene {
   std::vector<PassTime> times_;
   std::vector<std::string> notes_;
 };
+
+// An error where scattering.model cannot draw what `scene` has.
+[[nodiscard]] Result<void> check_model(const SceneParams& scene);
+// Appends what is not there yet.
+void add_notes(std::vector<std::string>& notes, const std::vector<std::string>& more);
 
 }  // namespace tyndall::scene

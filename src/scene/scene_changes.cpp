@@ -1,6 +1,8 @@
 // What of a scene can change between frames: parameters, terrain, the size of the picture, the tables.
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -22,6 +24,31 @@ bool same_meshes(const MeshParams& a, const MeshParams& b) {
   return all(a) == all(b);
 }
 
+bool same(const CascadeFit& a, const CascadeFit& b) {
+  return a.world_from_light == b.world_from_light && a.centre == b.centre && a.half_extent == b.half_extent;
+}
+
+bool same_effect_limits(const EffectDesc& a, const EffectDesc& b) {
+  return a.max_cascades == b.max_cascades && a.max_shadow_resolution == b.max_shadow_resolution &&
+         a.shadow_colors == b.shadow_colors;
+}
+
+}  // namespace
+
+// Everything that other parameters need, made before any of it is taken over.
+struct Scene::Pending {
+  SceneParams scene;
+  Params params;
+  EffectDesc effect;
+  bool other_effect = false;
+  std::optional<Terrain::Planned> terrain;
+  bool other_meshes = false, other_model = false;
+  std::unique_ptr<Meshes> meshes;
+  std::unique_ptr<SkyModel> model;
+  std::optional<Layered> shadow_maps, shadow_colors;
+  std::vector<std::string> notes;
+};
+
 // Models other than the effect draw the terrain and the sky, and nothing else.
 Result<void> check_model(const SceneParams& scene) {
   if (scene.scattering.model == ScatteringModel::atmosphere) return {};
@@ -30,103 +57,90 @@ Result<void> check_model(const SceneParams& scene) {
                "atmosphere with meshes.source or with terrain.source = none"};
 }
 
-bool same(const CascadeFit& a, const CascadeFit& b) {
-  return a.world_from_light == b.world_from_light && a.centre == b.centre && a.half_extent == b.half_extent;
+void add_notes(std::vector<std::string>& notes, const std::vector<std::string>& more) {
+  for (const std::string& note : more) {
+    if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+  }
 }
 
-}  // namespace
-
-Result<void> Scene::create_images(VkExtent2D size) {
+Result<Scene::Targets> Scene::make_targets(VkExtent2D size) const {
   const gpu::Device& device = host_->device();
   const VkExtent3D extent = {size.width, size.height, 1};
   const VkImageUsageFlags written = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
-  TYNDALL_ASSIGN(gpu::Image color,
-                 gpu::create_image(device, {"scene_color", kColorFormat, extent,
-                                            VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
-                                                VK_IMAGE_USAGE_STORAGE_BIT}));
-  TYNDALL_ASSIGN(gpu::Image depth,
-                 gpu::create_image(device, {"scene_depth", kDepthFormat, extent,
-                                            VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT}));
-  TYNDALL_ASSIGN(gpu::Image output, gpu::create_image(device, {"output", kColorFormat, extent, written}));
-  TYNDALL_ASSIGN(display_, gpu::create_image(device, {"display", kColorFormat, extent, written}));
-  color_ = std::move(color);
-  depth_ = std::move(depth);
-  output_ = std::move(output);
-  images_ready_ = false;
-  return {};
+  Targets out;
+  TYNDALL_ASSIGN(out.color, gpu::create_image(device, {"scene_color", kColorFormat, extent,
+                                                       VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                                                           VK_IMAGE_USAGE_STORAGE_BIT}));
+  TYNDALL_ASSIGN(out.depth, gpu::create_image(device, {"scene_depth", kDepthFormat, extent,
+                                                       VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
+                                                           VK_IMAGE_USAGE_SAMPLED_BIT}));
+  TYNDALL_ASSIGN(out.output, gpu::create_image(device, {"output", kColorFormat, extent, written}));
+  TYNDALL_ASSIGN(out.display, gpu::create_image(device, {"display", kColorFormat, extent, written}));
+  return out;
 }
 
-Result<void> Scene::create_shadow_maps(const ShadowParams& shadows) {
-  const gpu::Device& device = host_->device();
-  TYNDALL_ASSIGN(gpu::Image maps,
-                 gpu::create_image(device, {"shadow_maps", kDepthFormat, {shadows.resolution, shadows.resolution, 1},
-                                            VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-                                            shadows.cascades, 1, true}));
-  std::vector<gpu::Handle<VkImageView>> layers;
-  for (std::uint32_t i = 0; i < shadows.cascades; ++i) {
-    TYNDALL_ASSIGN(gpu::Handle<VkImageView> layer, gpu::create_layer_view(device, maps, i));
-    layers.push_back(std::move(layer));
+void Scene::swap_targets(Targets& targets) noexcept {
+  std::swap(color_, targets.color);
+  std::swap(depth_, targets.depth);
+  std::swap(output_, targets.output);
+  std::swap(display_, targets.display);
+  images_ready_ = false;
+}
+
+Result<Scene::Layered> Scene::make_layered(const gpu::ImageDesc& desc) const {
+  Layered out;
+  TYNDALL_ASSIGN(out.image, gpu::create_image(host_->device(), desc));
+  for (std::uint32_t i = 0; i < desc.layers; ++i) {
+    TYNDALL_ASSIGN(gpu::Handle<VkImageView> layer, gpu::create_layer_view(host_->device(), out.image, i));
+    out.layers.push_back(std::move(layer));
   }
-  shadow_layers_ = std::move(layers);
-  shadow_maps_ = std::move(maps);
-  drawn_cascades_.clear();
-  return {};
+  return out;
+}
+
+Result<Scene::Layered> Scene::make_shadow_maps(const ShadowParams& shadows) const {
+  return make_layered({"shadow_maps", kDepthFormat, {shadows.resolution, shadows.resolution, 1},
+                       VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT, shadows.cascades, 1, true});
 }
 
 // Maps of what glass leaves of the light; one clear texel where there is no glass.
-Result<void> Scene::create_shadow_colors(const ShadowParams& shadows) {
-  const gpu::Device& device = host_->device();
-  shadow_color_layers_.clear();
-  if (meshes_ == nullptr || !meshes_->has_glass()) {
-    const std::uint16_t clear[] = {0x3C00, 0x3C00, 0x3C00, 0x3C00};  // ones in half precision
-    TYNDALL_ASSIGN(shadow_colors_, gpu::create_image(device, {"no_shadow_colors", kShadowColorFormat, {1, 1, 1},
-                                                              VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
-                                                              1, 1, true}));
-    return gpu::upload(*host_, shadow_colors_, clear, sizeof clear, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+Result<Scene::Layered> Scene::make_shadow_colors(const ShadowParams& shadows, bool glass) const {
+  if (glass) {
+    return make_layered({"shadow_colors", kShadowColorFormat, {shadows.resolution, shadows.resolution, 1},
+                         VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT, shadows.cascades, 1, true});
   }
-  TYNDALL_ASSIGN(shadow_colors_,
-                 gpu::create_image(device, {"shadow_colors", kShadowColorFormat, {shadows.resolution, shadows.resolution, 1},
-                                            VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-                                            shadows.cascades, 1, true}));
-  for (std::uint32_t i = 0; i < shadows.cascades; ++i) {
-    TYNDALL_ASSIGN(gpu::Handle<VkImageView> layer, gpu::create_layer_view(device, shadow_colors_, i));
-    shadow_color_layers_.push_back(std::move(layer));
-  }
+  const std::uint16_t clear[] = {0x3C00, 0x3C00, 0x3C00, 0x3C00};  // ones in half precision
+  Layered out;
+  TYNDALL_ASSIGN(out.image, gpu::create_image(host_->device(), {"no_shadow_colors", kShadowColorFormat, {1, 1, 1},
+                                                                VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+                                                                1, 1, true}));
+  TYNDALL_TRY(gpu::upload(*host_, out.image, clear, sizeof clear, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL));
+  return out;
+}
+
+// The meshes of `scene`, on the terrain that is in place; none where the terrain is all there is.
+Result<std::unique_ptr<Meshes>> Scene::make_meshes(const SceneParams& scene, double radius_m) const {
+  if (scene.meshes.source == "none" && !terrain_->none()) return std::unique_ptr<Meshes>();
+  return Meshes::create(*host_, scene.meshes, *terrain_, radius_m, kColorFormat, kDepthFormat, kShadowColorFormat);
+}
+
+// The model that draws in place of the effect; none with scattering.model = atmosphere.
+Result<std::unique_ptr<SkyModel>> Scene::make_model(const SceneParams& scene) const {
+  if (scene.scattering.model == ScatteringModel::atmosphere) return std::unique_ptr<SkyModel>();
+  return create_sky_model(*host_, scene, kColorFormat, kDepthFormat);
+}
+
+Result<void> Scene::make_tables_ready() {
+  if (model_ != nullptr || desc_.tables_later || effect_->precompute_progress().complete()) return {};
+  TYNDALL_ASSIGN(const tables::Outcome made, tables::make_ready(*host_, *effect_, desc_.make_tables));
+  notes_.insert(notes_.end(), made.notes.begin(), made.notes.end());
+  tables_ready_ = true;
   return {};
 }
 
-// The meshes that `scene` asks for, on the terrain that is there.
-Result<void> Scene::make_meshes(const SceneParams& scene) {
-  TYNDALL_TRY(check_model(scene));
-  std::unique_ptr<Meshes> made;
-  if (scene.meshes.source != "none" || terrain_->none()) {
-    TYNDALL_ASSIGN(made, Meshes::create(*host_, scene.meshes, *terrain_, params_.planet.radius_m, kColorFormat, kDepthFormat,
-                                        kShadowColorFormat));
-    for (const std::string& note : made->notes()) {
-      if (std::find(notes_.begin(), notes_.end(), note) == notes_.end()) notes_.push_back(note);
-    }
-  }
-  if (effect_ != nullptr && !colored_air_ && made != nullptr && made->has_glass()) {
-    TYNDALL_TRY(effect_->set_shadow_colors(true));
-    colored_air_ = true;
-  }
-  meshes_ = std::move(made);
-  drawn_cascades_.clear();
-  return {};
-}
-
-// The tables, or the model that draws without them.
-Result<void> Scene::make_model_ready() {
-  if (scene_.scattering.model == ScatteringModel::atmosphere) {
-    model_.reset();
-    if (desc_.tables_later || effect_->precompute_progress().complete()) return {};
-    TYNDALL_ASSIGN(const tables::Outcome made, tables::make_ready(*host_, *effect_, desc_.make_tables));
-    notes_.insert(notes_.end(), made.notes.begin(), made.notes.end());
-    tables_ready_ = true;
-    return {};
-  }
-  TYNDALL_ASSIGN(model_, create_sky_model(*host_, scene_, kColorFormat, kDepthFormat));
-  return {};
+// Stale tables would give a wrong picture. They are there only when making them failed, and so did taking that back.
+Result<void> Scene::check_tables() const {
+  if (model_ != nullptr || desc_.tables_later || effect_->precompute_progress().complete()) return {};
+  return Error{ErrorCode::invalid_argument, "the scattering tables are not those of the parameters: set the parameters again"};
 }
 
 Result<Progress> Scene::advance_tables(std::uint32_t budget) {
@@ -138,73 +152,121 @@ Result<Progress> Scene::advance_tables(std::uint32_t budget) {
   return progress;
 }
 
-Result<void> Scene::set_terrain(const TerrainParams& params, double radius_m, ElevationSource source) {
-  SceneParams wanted = scene_;
-  wanted.terrain = params;
-  return replace_ground(wanted, radius_m, std::move(source));
-}
-
-// Terrain and meshes of `wanted` in the place of those that are there.
-Result<void> Scene::replace_ground(const SceneParams& wanted, double radius_m, ElevationSource source) {
-  TYNDALL_TRY(check_model(wanted));
-  TYNDALL_TRY(terrain_->set_source(wanted.terrain, radius_m, std::move(source)));
-  for (const std::string& note : terrain_->notes()) {
-    if (std::find(notes_.begin(), notes_.end(), note) == notes_.end()) notes_.push_back(note);
-  }
-  const TerrainShading shading = scene_.terrain.shading;
-  scene_.terrain = wanted.terrain;
-  scene_.terrain.shading = shading;
-  params_.planet.radius_m = static_cast<float>(radius_m);
-  TYNDALL_TRY(make_meshes(wanted));
-  scene_.meshes = wanted.meshes;
-  return create_shadow_colors(scene_.shadows);
-}
-
-Result<void> Scene::set_scene(const SceneParams& scene) {
+Result<Scene::Pending> Scene::plan(const SceneParams& scene, const Params& params, std::optional<ElevationSource> source) {
   TYNDALL_TRY(check_model(scene));
+  Pending out;
+  out.scene = scene;
+  out.params = params;
+  out.notes = notes_;
+  const double radius_m = params.planet.radius_m;
+  const bool other_ground = source.has_value() || !same_source(scene.terrain, scene_.terrain) ||
+                            params.planet.radius_m != params_.planet.radius_m;
+  if (other_ground) {
+    if (!source) {
+      TYNDALL_ASSIGN(source, Terrain::load_source(host_->device(), scene.terrain, radius_m));
+    }
+    TYNDALL_ASSIGN(out.terrain, terrain_->plan_source(scene.terrain, radius_m, std::move(*source)));
+    add_notes(out.notes, out.terrain->notes);
+  }
+  out.other_meshes = other_ground || !same_meshes(scene.meshes, scene_.meshes);
+  if (out.other_meshes) {
+    // Meshes stand on the ground: the planned one is in place while they are made.
+    struct InPlace {
+      Terrain& terrain;
+      std::optional<Terrain::Planned>& planned;
+      InPlace(Terrain& t, std::optional<Terrain::Planned>& p) : terrain(t), planned(p) { exchange(); }
+      ~InPlace() { exchange(); }
+      InPlace(const InPlace&) = delete;
+      InPlace& operator=(const InPlace&) = delete;
+      void exchange() {
+        if (planned) terrain.swap_source(*planned);
+      }
+    } const in_place(*terrain_, out.terrain);
+    TYNDALL_ASSIGN(out.meshes, make_meshes(scene, radius_m));
+    if (out.meshes != nullptr) add_notes(out.notes, out.meshes->notes());
+  }
+  const std::unique_ptr<Meshes>& meshes = out.other_meshes ? out.meshes : meshes_;
+  const bool glass = meshes != nullptr && meshes->has_glass();
   const bool other_maps = scene.shadows.resolution != scene_.shadows.resolution ||
                           scene.shadows.cascades != scene_.shadows.cascades;
-  const bool other_model = scene.scattering.model != scene_.scattering.model ||
-                           scene.scattering.evaluate != scene_.scattering.evaluate;
-  if (!same_source(scene.terrain, scene_.terrain)) {
-    TYNDALL_ASSIGN(ElevationSource source,
-                   Terrain::load_source(host_->device(), scene.terrain, params_.planet.radius_m));
-    TYNDALL_TRY(replace_ground(scene, params_.planet.radius_m, std::move(source)));
-  }
-  if (!same_meshes(scene.meshes, scene_.meshes)) {
-    TYNDALL_TRY(make_meshes(scene));
-    scene_.meshes = scene.meshes;
-    TYNDALL_TRY(create_shadow_colors(scene_.shadows));
-  }
   if (other_maps) {
-    TYNDALL_TRY(effect_->set_limits(desc_.extent, scene.shadows.cascades, scene.shadows.resolution));
-    TYNDALL_TRY(create_shadow_maps(scene.shadows));
-    TYNDALL_TRY(create_shadow_colors(scene.shadows));
+    TYNDALL_ASSIGN(out.shadow_maps, make_shadow_maps(scene.shadows));
   }
-  const SceneParams before = std::exchange(scene_, scene);
-  if (!other_model) return {};
-  Result<void> ready = make_model_ready();
-  if (!ready) {
-    scene_.scattering.model = before.scattering.model;
-    scene_.scattering.evaluate = before.scattering.evaluate;
+  if (other_maps || out.other_meshes) {
+    TYNDALL_ASSIGN(out.shadow_colors, make_shadow_colors(scene.shadows, glass));
   }
-  return ready;
+  out.other_model = scene.scattering.model != scene_.scattering.model ||
+                    scene.scattering.evaluate != scene_.scattering.evaluate;
+  if (out.other_model) {
+    TYNDALL_ASSIGN(out.model, make_model(scene));
+  }
+  out.effect = effect_->desc();
+  out.effect.max_cascades = scene.shadows.cascades;
+  out.effect.max_shadow_resolution = scene.shadows.resolution;
+  out.effect.shadow_colors = out.effect.shadow_colors || glass;
+  out.other_effect = affected(effect_->params(), params) != 0 || !same_effect_limits(out.effect, effect_->desc());
+  return out;
 }
 
-Result<void> Scene::set_params(const Params& params) {
-  const double radius_m = params.planet.radius_m;
-  if (params.planet.radius_m != params_.planet.radius_m) {
-    TYNDALL_ASSIGN(ElevationSource source, Terrain::load_source(host_->device(), scene_.terrain, radius_m));
-    TYNDALL_TRY(set_terrain(scene_.terrain, radius_m, std::move(source)));
-  }
-  TYNDALL_TRY(effect_->set_params(params));
-  params_ = params;
-  return model_ != nullptr ? Result<void>() : make_model_ready();
+// Exchanges what is there and what is planned: a second call takes it back.
+void Scene::swap(Pending& pending) noexcept {
+  std::swap(scene_, pending.scene);
+  std::swap(params_, pending.params);
+  std::swap(notes_, pending.notes);
+  const auto exchange = [](gpu::Image& image, std::vector<gpu::Handle<VkImageView>>& layers, std::optional<Layered>& other) {
+    if (!other) return;
+    std::swap(image, other->image);
+    std::swap(layers, other->layers);
+  };
+  exchange(shadow_maps_, shadow_layers_, pending.shadow_maps);
+  exchange(shadow_colors_, shadow_color_layers_, pending.shadow_colors);
+  if (pending.terrain) terrain_->swap_source(*pending.terrain);
+  if (pending.other_meshes) std::swap(meshes_, pending.meshes);
+  if (pending.other_model) std::swap(model_, pending.model);
+  if (pending.terrain || pending.other_meshes || pending.shadow_maps) drawn_cascades_.clear();
 }
+
+Result<void> Scene::change(const SceneParams& scene, const Params& params, std::optional<ElevationSource> source) {
+  TYNDALL_ASSIGN(Pending pending, plan(scene, params, std::move(source)));
+  const EffectDesc effect_before = effect_->desc();
+  const Params params_before = effect_->params();
+  if (pending.other_effect) TYNDALL_TRY(effect_->set_params(pending.params, pending.effect));
+  swap(pending);
+  // Making the tables can fail as well. They need the effect as it is to be.
+  struct TakeBack {
+    const std::function<void()>& how;
+    bool wanted = true;
+    ~TakeBack() {
+      if (wanted) how();
+    }
+  };
+  const std::function<void()> how = [&] {
+    swap(pending);
+    static_cast<void>(effect_->set_params(params_before, effect_before));  // otherwise check_tables() says so
+  };
+  TakeBack take_back{how};
+  TYNDALL_TRY(make_tables_ready());
+  take_back.wanted = false;
+  return {};
+}
+
+Result<void> Scene::set_terrain(const TerrainParams& terrain, double radius_m, ElevationSource source) {
+  SceneParams scene = scene_;
+  scene.terrain = terrain;
+  scene.terrain.shading = scene_.terrain.shading;
+  Params params = params_;
+  params.planet.radius_m = static_cast<float>(radius_m);
+  return change(scene, params, std::move(source));
+}
+
+Result<void> Scene::set_scene(const SceneParams& scene) { return change(scene, params_, {}); }
+
+Result<void> Scene::set_params(const Params& params) { return change(scene_, params, {}); }
 
 Result<void> Scene::set_extent(VkExtent2D extent) {
+  TYNDALL_ASSIGN(Targets targets, make_targets(extent));
   TYNDALL_TRY(effect_->set_limits(extent, scene_.shadows.cascades, scene_.shadows.resolution));
-  TYNDALL_TRY(create_images(extent));
+  swap_targets(targets);
   desc_.extent = extent;
   return {};
 }

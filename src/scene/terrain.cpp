@@ -90,7 +90,8 @@ Result<std::unique_ptr<Terrain>> Terrain::create(gpu::Host& host, const TerrainP
   out->coarseness_ = coarseness;
   TYNDALL_ASSIGN(ElevationSource source, load_source(host.device(), params, radius_m));
   TYNDALL_TRY(out->create_objects(color_format, depth_format));
-  TYNDALL_TRY(out->set_source(params, radius_m, std::move(source)));
+  TYNDALL_ASSIGN(Planned planned, out->plan_source(params, radius_m, std::move(source)));
+  out->swap_source(planned);
   return out;
 }
 
@@ -106,22 +107,28 @@ Result<ElevationSource> Terrain::load_source(const gpu::Device& device, const Te
   return ElevationSource::create(elevation);
 }
 
-Result<void> Terrain::set_source(const TerrainParams& params, double radius_m, ElevationSource source) {
+Result<Terrain::Planned> Terrain::plan_source(const TerrainParams& params, double radius_m, ElevationSource source) const {
+  Planned out = {params, radius_m, version_ + 1, nullptr, {}, {}, {}};
   const ElevationAtlas& atlas = source.atlas();
   const VkExtent3D extent = {static_cast<std::uint32_t>(atlas.width), static_cast<std::uint32_t>(atlas.height), 1};
-  TYNDALL_ASSIGN(gpu::Image image,
+  TYNDALL_ASSIGN(out.atlas,
                  gpu::create_image(host_->device(), {"elevation_atlas", VK_FORMAT_R32_SFLOAT, extent,
                                                      VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT}));
-  TYNDALL_TRY(gpu::upload(*host_, image, atlas.texels.data(), atlas.texels.size() * sizeof(float),
+  TYNDALL_TRY(gpu::upload(*host_, out.atlas, atlas.texels.data(), atlas.texels.size() * sizeof(float),
                           VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL));
-  atlas_ = std::move(image);
-  params_ = params;
-  radius_m_ = radius_m;
-  source_ = std::make_shared<const ElevationSource>(std::move(source));
-  notes_ = source_->notes();
-  filled_.clear();
-  ++version_;
-  return {};
+  out.source = std::make_shared<const ElevationSource>(std::move(source));
+  out.notes = out.source->notes();
+  return out;
+}
+
+void Terrain::swap_source(Planned& planned) noexcept {
+  std::swap(params_, planned.params);
+  std::swap(radius_m_, planned.radius_m);
+  std::swap(version_, planned.version);
+  std::swap(source_, planned.source);
+  std::swap(notes_, planned.notes);
+  std::swap(filled_, planned.filled);
+  std::swap(atlas_, planned.atlas);
 }
 
 Result<void> Terrain::create_objects(VkFormat color_format, VkFormat depth_format) {
@@ -144,7 +151,7 @@ Result<void> Terrain::create_objects(VkFormat color_format, VkFormat depth_forma
   TYNDALL_ASSIGN(shadow_pipeline_, gpu::create_graphics_pipeline(device, shadow));
   TYNDALL_ASSIGN(nearest_, gpu::create_sampler(device, {.filter = VK_FILTER_NEAREST}));
 
-  TYNDALL_TRY(create_indices());
+  TYNDALL_ASSIGN(indices_, create_indices(coarseness_));
   TYNDALL_ASSIGN(constants_, gpu::create_buffer(device, "terrain_constants", sizeof(shared::TerrainConstants),
                                                 VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
   TYNDALL_ASSIGN(blocks_, gpu::create_buffer(device, "terrain_blocks", kMaxBlocks * sizeof(TerrainBlock),
@@ -154,24 +161,24 @@ Result<void> Terrain::create_objects(VkFormat color_format, VkFormat depth_forma
   return {};
 }
 
-Result<void> Terrain::create_indices() {
-  const gpu::Device& device = host_->device();
-  const std::vector<std::uint32_t> indices = block_indices(coarseness_);
+Result<gpu::Buffer> Terrain::create_indices(int coarseness) const {
+  const std::vector<std::uint32_t> indices = block_indices(coarseness);
   const VkDeviceSize index_bytes = indices.size() * sizeof(std::uint32_t);
-  TYNDALL_ASSIGN(indices_, gpu::create_buffer(device, "terrain_indices", index_bytes,
-                                              VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                                              gpu::MemoryKind::device));
-  TYNDALL_TRY(gpu::upload(*host_, indices_, indices.data(), index_bytes));
-  return {};
+  TYNDALL_ASSIGN(gpu::Buffer out, gpu::create_buffer(host_->device(), "terrain_indices", index_bytes,
+                                                     VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                                     gpu::MemoryKind::device));
+  TYNDALL_TRY(gpu::upload(*host_, out, indices.data(), index_bytes));
+  return out;
 }
 
 Result<void> Terrain::set_coarseness(int coarseness) {
   if (coarseness == coarseness_) return {};
+  TYNDALL_ASSIGN(indices_, create_indices(coarseness));
   coarseness_ = coarseness;
   heights_ = {};
   filled_.clear();
   ++version_;
-  return create_indices();
+  return {};
 }
 
 Ground Terrain::ground() const {
@@ -199,15 +206,16 @@ Result<void> Terrain::update(const View& view) {
   const auto layers = static_cast<std::uint32_t>(lod_.levels.size());
   const auto samples = static_cast<std::uint32_t>(lod_.level_samples());
   if (heights_.desc.layers < layers || !heights_.image) {
-    filled_.clear();
-    TYNDALL_ASSIGN(heights_, gpu::create_image(device, {"terrain_heights", VK_FORMAT_R32_SFLOAT,
-                                                        {samples, samples, 1},
-                                                        VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-                                                        layers, 1, true}));
+    TYNDALL_ASSIGN(gpu::Image heights, gpu::create_image(device, {"terrain_heights", VK_FORMAT_R32_SFLOAT,
+                                                                  {samples, samples, 1},
+                                                                  VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                                                                  layers, 1, true}));
     TYNDALL_TRY(host_->run([&](VkCommandBuffer cmd) -> Result<void> {
-      gpu::transition(device, cmd, heights_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
+      gpu::transition(device, cmd, heights, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
       return {};
     }));
+    filled_.clear();
+    heights_ = std::move(heights);
   }
   filled_.resize(lod_.levels.size());
   for (std::size_t i = 0; i < lod_.levels.size(); ++i) {

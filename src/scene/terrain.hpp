@@ -37,10 +37,13 @@ class Terrain {
   static Result<std::unique_ptr<Terrain>> create(gpu::Host& host, const TerrainParams& params, double radius_m,
                                                  VkFormat color_format, VkFormat depth_format, int coarseness = 1);
 
-  // Reads or makes what set_source() takes: may take seconds, and may run on a thread of its own.
+  // Reads or makes what plan_source() takes: may take seconds, and may run on a thread of its own.
   static Result<ElevationSource> load_source(const gpu::Device& device, const TerrainParams& params, double radius_m);
-  // Replaces the elevations by those loaded for these parameters and this radius.
-  Result<void> set_source(const TerrainParams& params, double radius_m, ElevationSource source);
+  // Elevations on the device, loaded for these parameters and this radius, to take the place of those that are there.
+  struct Planned;
+  [[nodiscard]] Result<Planned> plan_source(const TerrainParams& params, double radius_m, ElevationSource source) const;
+  // Puts the planned elevations in place, and those that were there into `planned`: a second call takes it back.
+  void swap_source(Planned& planned) noexcept;
   // See TerrainLod.
   Result<void> set_coarseness(int coarseness);
   // Counts the changes of what is drawn.
@@ -79,7 +82,7 @@ class Terrain {
 
  private:
   Result<void> create_objects(VkFormat color_format, VkFormat depth_format);
-  Result<void> create_indices();
+  [[nodiscard]] Result<gpu::Buffer> create_indices(int coarseness) const;
   Result<void> fill_level(std::size_t layer);
   Result<void> draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline,
                     std::span<const gpu::NamedResource> resources, const glm::dmat4& clip_from_world,
@@ -115,6 +118,16 @@ class Terrain {
   gpu::Handle<VkSampler> nearest_;
   std::vector<Range> ranges_;  // the view's, then each cascade's
   std::vector<TerrainBlock> scratch_;
+};
+
+struct Terrain::Planned {
+  TerrainParams params;
+  double radius_m = 0.0;
+  std::uint64_t version = 0;
+  std::shared_ptr<const ElevationSource> source;
+  std::vector<std::string> notes;
+  std::vector<ClipLevel> filled;
+  gpu::Image atlas;
 };
 
 }  // namespace tyndall::scene
