@@ -76,11 +76,12 @@ double integrate_radius(double tangent2, double r0, double s0, double r1, double
 
 }  // namespace
 
-Atmosphere::Atmosphere(const Params& params) {
+Atmosphere::Atmosphere(const Params& params, double lowest_m) {
   const AtmosphereParams& a = params.atmosphere;
   radius_m = params.planet.radius_m;
   height_m = a.height_m;
   top_radius_m = radius_m + height_m;
+  base_radius_m_ = radius_m + std::min(lowest_m, 0.0);
   rayleigh_scale_height_m = a.rayleigh_scale_height_m;
   mie_scale_height_m = a.mie_scale_height_m;
   ground_albedo = params.planet.ground_albedo;
@@ -163,14 +164,15 @@ void Atmosphere::build_table() {
   // The mean density changes over sqrt(scale height / height) of the range of path lengths.
   const double narrow =
       std::sqrt(std::min({1.0, rayleigh_scale_height_m / height_m, mie_scale_height_m / height_m}));
-  nh_ = 128;
+  const double span = top_radius_m - base_radius_m_;
+  nh_ = static_cast<std::size_t>(std::ceil(127.0 * span / height_m)) + 1;
   nx_ = static_cast<std::size_t>(std::clamp(24.0 / narrow, 64.0, 1024.0));
   table_.resize(nh_ * nx_);
   const GaussLegendre<10> rule;
   for (std::size_t ih = 0; ih < nh_; ++ih) {
-    const double h = height_m * static_cast<double>(ih) / static_cast<double>(nh_ - 1);
-    const double r = radius_m + h;
-    const double shortest = height_m - h;
+    const double h = span * static_cast<double>(ih) / static_cast<double>(nh_ - 1);
+    const double r = base_radius_m_ + h;
+    const double shortest = span - h;
     const double longest2 = shortest * (top_radius_m + r);
     const double longest = std::sqrt(longest2);
     for (std::size_t ix = 0; ix < nx_; ++ix) {
@@ -205,7 +207,7 @@ Amounts Atmosphere::exponential_columns(double tangent2, double s, double s_top,
     return std::array<double, 4>{t1 * t2 * t3 * (-1.0 / 6.0), t * t2 * t3 * 0.5, t * t1 * t3 * -0.5,
                                  t * t1 * t2 * (1.0 / 6.0)};
   };
-  const double y = (1.0 - shortest / height_m) * static_cast<double>(nh_ - 1);
+  const double y = (1.0 - shortest / (top_radius_m - base_radius_m_)) * static_cast<double>(nh_ - 1);
   const double x =
       (longest > shortest ? (d - shortest) / (longest - shortest) : 0.0) * static_cast<double>(nx_ - 1);
   std::size_t iy = 0, ix = 0;

@@ -4,6 +4,7 @@
 // ozone. Immutable after construction, hence free to share between threads.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -28,7 +29,8 @@ inline Amounts operator-(const Amounts& a, const Amounts& b) {
 
 class Atmosphere {
  public:
-  explicit Atmosphere(const Params& params);
+  // For points from `lowest_m` [m, <= 0] above sea level upwards; the densities continue below sea level as above it.
+  explicit Atmosphere(const Params& params, double lowest_m = 0.0);
 
   // Lengths in m, coefficients in 1/m at relative density 1.
   double radius_m, top_radius_m, height_m;
@@ -40,10 +42,13 @@ class Atmosphere {
   double opaque_radius_m;
   MiePhaseFunction mie_phase;
 
-  // Relative densities at radius r (ozone left out: it does not scatter).
+  // Relative densities at radius r (ozone left out: it does not scatter). They stay finite however deep the point and
+  // small the scale height: by far nothing gets through what is that dense.
   [[nodiscard]] Amounts density(double r) const {
+    constexpr double kDensest = 60.0;  // exponent
     const double h = r - radius_m;
-    return {std::exp(-h / rayleigh_scale_height_m), std::exp(-h / mie_scale_height_m), 0.0};
+    return {std::exp(std::min(-h / rayleigh_scale_height_m, kDensest)),
+            std::exp(std::min(-h / mie_scale_height_m, kDensest)), 0.0};
   }
   // Relative density of ozone at radius r.
   [[nodiscard]] double ozone_density(double r) const;
@@ -79,10 +84,11 @@ class Atmosphere {
   [[nodiscard]] double find_opaque_radius() const;
 
   // Ozone: density rises linearly from 0 at `low` to 1 at `centre` and falls to 0 at `high` (radii).
+  double base_radius_m_;  // of the lowest points
   double ozone_low_m_, ozone_centre_m_, ozone_high_m_, ozone_half_width_m_;
   bool has_ozone_;
   // table_[ih * nx + ix]: mean densities of Rayleigh and Mie between a point and the top, relative to
-  // the densities at the point, at altitude ih / (nh - 1) * height and path length
+  // the densities at the point, at radius base + ih / (nh - 1) * (top - base) and path length
   // shortest + ix / (nx - 1) * (longest - shortest), longest being the horizontal path.
   struct MeanDensity {
     double rayleigh, mie;

@@ -4,12 +4,12 @@
 
 namespace tyndall::reference {
 
-Line::Line(const Atmosphere& air, const Vec& origin, const Vec& direction)
-    : air_(&air), origin_(origin), direction_(direction) {
+Line::Line(const Atmosphere& air, const Vec& origin, const Vec& direction, double ground_m)
+    : air_(&air), origin_(origin), direction_(direction), ground_m_(ground_m) {
   const double r2 = dot(origin, origin);
   double s = dot(origin, direction);
   tangent2_ = std::max(0.0, r2 - s * s);
-  const double ground2 = air.radius_m * air.radius_m;
+  const double ground2 = ground_m * ground_m;
   hits_ground_ = s < 0.0 && tangent2_ < ground2;
   s_top_ = std::sqrt(std::max(0.0, air.top_radius_m * air.top_radius_m - tangent2_));
   s = std::clamp(s, -s_top_, s_top_);  // rounding at the edge

@@ -21,10 +21,14 @@ struct Interval {
 class Line {
  public:
   // From `origin` inside the atmosphere (or on its edge) in unit direction `direction`, to the ground or
-  // to the top. `air` has to outlive the line.
-  Line(const Atmosphere& air, const Vec& origin, const Vec& direction);
+  // to the top. The ground is a sphere of radius `ground_m`. `air` has to outlive the line.
+  Line(const Atmosphere& air, const Vec& origin, const Vec& direction, double ground_m);
+  // With the ground at sea level, or, below it, at the origin of the line.
+  Line(const Atmosphere& air, const Vec& origin, const Vec& direction)
+      : Line(air, origin, direction, std::min(air.radius_m, length(origin))) {}
 
   [[nodiscard]] bool hits_ground() const { return hits_ground_; }
+  [[nodiscard]] double ground_radius() const { return ground_m_; }
   [[nodiscard]] double start() const { return start_.s; }
   [[nodiscard]] double end() const { return s_end_; }
   [[nodiscard]] Vec position(double s) const { return origin_ + direction_ * (s - start_.s); }
@@ -49,6 +53,7 @@ class Line {
  private:
   const Atmosphere* air_;
   Vec origin_, direction_;
+  double ground_m_;
   double tangent2_ = 0.0, s_top_ = 0.0, s_end_ = 0.0;
   bool hits_ground_ = false;
   LinePoint start_;

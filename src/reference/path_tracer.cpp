@@ -20,6 +20,7 @@ namespace {
 // Enough blocks for a standard error that is itself good to about an eighth.
 constexpr std::uint64_t kBlocksWanted = 32;
 constexpr int kMaxOrders = 256;
+constexpr double kLowestAltitude_m = -11000.0;  // of a camera
 // Blocks that are kept in memory before they are added up.
 constexpr std::size_t kBatchValues = std::size_t{1} << 20;
 
@@ -41,7 +42,9 @@ Plan plan_blocks(std::uint64_t samples) {
 bool within(double value, double low, double high) { return value >= low && value <= high; }
 
 std::string check_query(const Query& q, double radius_m) {
-  if (!std::isfinite(q.altitude_m) || q.altitude_m < 0.0) return "altitude_m, must be finite and at least 0";
+  if (!std::isfinite(q.altitude_m) || q.altitude_m < std::max(kLowestAltitude_m, -0.25 * radius_m)) {
+    return "altitude_m, must be finite, at least -11000 and at least minus a quarter of the planet's radius";
+  }
   if (q.altitude_m > 1e6 * radius_m) return "altitude_m, must be at most a million radii of the planet";
   if (!within(q.sun_zenith_rad, 0.0, std::numbers::pi)) return "sun_zenith_rad, must be in [0; pi]";
   if (q.sky_irradiance) return {};
@@ -219,7 +222,9 @@ std::string check(const Params& params, std::span<const Query> queries, const Op
 
 std::vector<Estimate> compute(const Params& params, std::span<const Query> queries, const Options& options,
                               const Progress& progress) {
-  const Atmosphere air(params);
+  double lowest_m = 0.0;
+  for (const Query& query : queries) lowest_m = std::min(lowest_m, ground_altitude_m(query.altitude_m));
+  const Atmosphere air(params, lowest_m);
   std::vector<Scene> scenes;
   scenes.reserve(queries.size());
   for (const Query& query : queries) scenes.emplace_back(air, query, options);

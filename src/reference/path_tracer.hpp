@@ -21,7 +21,11 @@ using Rgb = std::array<double, 3>;  // one value per channel of atmosphere.wavel
 
 // One ray, or the sky as a horizontal surface sees it.
 struct Query {
-  double altitude_m = 0.0;       // [0; ...) above sea level, inside the atmosphere or in space
+  // Above sea level, inside the atmosphere or in space; at least -11000 m, and at least minus a quarter of the
+  // planet's radius. Below sea level the air continues, the camera ray meets ground at twice the depth of the
+  // camera, and light that arrives from below at any other point comes from ground at that point
+  // (docs/adr/0007-below-sea-level.md).
+  double altitude_m = 0.0;
   double view_zenith_rad = 0.0;  // [0; pi] between the ray and the local vertical; not used for the sky
   double sun_zenith_rad = 0.0;   // [0; pi] between the sun and the local vertical
   double azimuth_rad = 0.0;      // between ray and sun around the local vertical; 0 looks towards the sun

@@ -41,8 +41,8 @@ void add_ground(const Atmosphere& air, const Vertex& v, const Vec& sun, const Rg
 Vertex ground_vertex(const Atmosphere& air, const Line& line) {
   Vertex v;
   v.ground = true;
-  v.position = normalized(line.position(line.end())) * air.radius_m;
-  v.r = air.radius_m;
+  v.position = normalized(line.position(line.end())) * line.ground_radius();
+  v.r = line.ground_radius();
   v.density = air.density(v.r);
   return v;
 }
@@ -251,6 +251,8 @@ void trace_path(const Scene& scene, const Line& first, PathNumbers& numbers, Rgb
 Scene::Scene(const Atmosphere& atmosphere, const Query& query, const Options& options)
     : air(&atmosphere), sky(query.sky_irradiance), visible_ground(options.visible_ground) {
   origin = {0.0, 0.0, atmosphere.radius_m + query.altitude_m};
+  // A sky is seen upwards only.
+  ground_radius_m = atmosphere.radius_m + (sky ? std::min(query.altitude_m, 0.0) : ground_altitude_m(query.altitude_m));
   const double sun_sine = std::sin(query.sun_zenith_rad);
   sun = {sun_sine * std::cos(query.azimuth_rad), sun_sine * std::sin(query.azimuth_rad),
          std::cos(query.sun_zenith_rad)};
@@ -267,7 +269,7 @@ Scene::Scene(const Atmosphere& atmosphere, const Query& query, const Options& op
     if (inside) start = origin + view * (-std::sqrt(top2 - tangent2) - along);
   }
   if (inside) {
-    const Line line(atmosphere, start, view);
+    const Line line(atmosphere, start, view, ground_radius_m);
     Amounts columns = line.total();
     columns.ozone = line.ozone_travelled(line.end());
     for (std::size_t c = 0; c < 3; ++c) transmittance[c] = atmosphere.transmittance(columns, c);
@@ -288,7 +290,7 @@ void trace_block(const Scene& scene, std::uint64_t seed, int log2_count, std::sp
   const std::uint32_t count = 1U << log2_count;
   for (Rgb& mean : means) mean = {};
   std::optional<Line> camera;
-  if (!scene.sky) camera.emplace(*scene.air, scene.origin, scene.view);
+  if (!scene.sky) camera.emplace(*scene.air, scene.origin, scene.view, scene.ground_radius_m);
   for (std::uint32_t i = 0; i < count; ++i) {
     PathNumbers numbers(block, i, generator);
     Rgb weight = {1.0, 1.0, 1.0};

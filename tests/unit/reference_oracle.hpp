@@ -59,10 +59,11 @@ struct Air {
   }
   static double rayleigh_phase(double c) { return 0.75 * (1.0 + c * c) / (4.0 * kPi); }
 
-  // Distance to the ground or to the top; `ground` says which.
-  [[nodiscard]] double reach(const Point& p, const Point& w, bool& ground) const {
+  // Distance to the ground, of radius `solid`, or to the top; `ground` says which.
+  [[nodiscard]] double reach(const Point& p, const Point& w, bool& ground) const { return reach(p, w, ground, radius); }
+  [[nodiscard]] double reach(const Point& p, const Point& w, bool& ground, double solid) const {
     const double b = dot(p, w), c2 = dot(p, p);
-    const double hit = b * b - c2 + radius * radius;
+    const double hit = b * b - c2 + solid * solid;
     ground = b < 0.0 && hit > 0.0;
     return ground ? std::max(0.0, -b - std::sqrt(hit)) : -b + std::sqrt(b * b - c2 + top * top);
   }
@@ -97,12 +98,17 @@ inline Air air_of(const tyndall::Params& p, double rayleigh, double mie_scatteri
           a.mie_phase == tyndall::MiePhase::cornette_shanks};
 }
 
+// Radius of the ground that a camera ray meets: sea level, or from below it the sphere at twice the depth.
+inline double camera_ground(const Air& air, const Point& p) {
+  return air.radius + 2.0 * std::min(0.0, std::sqrt(dot(p, p)) - air.radius);
+}
+
 // Single scattering along a ray from p, relative to the sun: sr^-1. The edge of the shadow is met by small
 // panels alone.
 inline double single_scattering(const Air& air, const Point& p, const Point& w, const Point& sun, int panels,
                                 int sun_panels) {
   bool ground = false;
-  const double length = air.reach(p, w, ground);
+  const double length = air.reach(p, w, ground, camera_ground(air, p));
   const double c = dot(w, sun);
   const double rayleigh = Air::rayleigh_phase(c), mie = air.mie_phase(c);
   // t = length * u^2 packs the nodes near the eye; the depth up to each node is added up on the way.

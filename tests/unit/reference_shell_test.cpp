@@ -71,7 +71,12 @@ TEST(ReferenceShell, SingleScatteringMatchesQuadrature) {
       ray(0.0, 60.0, 93.0, 30.0),       // twilight
       ray(0.0, 80.0, 95.0, 150.0),      // the dark side of twilight
       ray(40000.0, 95.0, 92.0, 60.0),   // into the shadow from above
-      ray(300000.0, 106.0, 50.0, 40.0)  // from space
+      ray(300000.0, 106.0, 50.0, 40.0), // from space
+      ray(-400.0, 20.0, 50.0, 30.0),    // below sea level: upwards,
+      ray(-400.0, 90.3, 70.0, 100.0),   // past the ground beneath and up again,
+      ray(-400.0, 92.0, 60.0, 20.0),    // and down to it
+      ray(-400.0, 80.0, 93.0, 30.0),
+      ray(-2000.0, 70.0, 40.0, 90.0)
   };
   const auto estimates = run(p, queries, 65536, 1);
   for (std::size_t i = 0; i < queries.size(); ++i) {
@@ -89,7 +94,7 @@ TEST(ReferenceShell, SingleScatteringMatchesQuadrature) {
       EXPECT_LT(estimates[i].standard_error[c], 4e-3 * expected) << "ray " << i << " channel " << c;
 
       bool ground = false;
-      const double reach = air.reach(from, view, ground);
+      const double reach = air.reach(from, view, ground, oracle::camera_ground(air, from));
       EXPECT_NEAR(estimates[i].transmittance[c], std::exp(-air.depth(from, view, reach, 2000)), 2e-6);
     }
   }
@@ -104,7 +109,7 @@ BruteForce second_order(const oracle::Air& air, const Query& q, int count) {
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   const oracle::Point eye = camera_of(air, q), view = view_of(q), sun = sun_of(q);
   bool ground = false;
-  const double reach = air.reach(eye, view, ground);
+  const double reach = air.reach(eye, view, ground, oracle::camera_ground(air, eye));
   double sum = 0.0, square = 0.0;
   for (int i = 0; i < count; ++i) {
     const double u = uniform(random), t1 = reach * u * u;  // more of them near the eye
@@ -136,7 +141,8 @@ TEST(ReferenceShell, SecondOrderMatchesBruteForce) {
   p.planet.radius_m = 500000.0F;  // a small planet: its shadow crosses many of these paths
   p.atmosphere.height_m = 60000.0F;
   const std::vector<Query> queries = {ray(0.0, 40.0, 50.0, 100.0), ray(2000.0, 80.0, 97.0, 20.0),
-                                      ray(0.0, 60.0, 96.0, 170.0), ray(20000.0, 100.0, 88.0, 60.0)};
+                                      ray(0.0, 60.0, 96.0, 170.0), ray(20000.0, 100.0, 88.0, 60.0),
+                                      ray(-3000.0, 80.0, 60.0, 90.0), ray(-3000.0, 120.0, 60.0, 90.0)};
   const auto estimates = run(p, queries, 200000, 2, true);
   for (std::size_t i = 0; i < queries.size(); ++i) {
     for (const std::size_t c : {std::size_t{0}, std::size_t{2}}) {
