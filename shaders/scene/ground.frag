@@ -2,6 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
+#include "lib/geometry.glsl"
 #include "scene/mesh_light.glsl"
 
 // The ground counts as farther away by this part when it is compared with meshes, so that a floor at sea level hides it
@@ -25,6 +26,9 @@ void main() {
   vec3 p = mesh.camera_position;
   float b = dot(direction, p) + direction.y * radius;
   float c = dot(p, p) + 2.0 * radius * p.y;
+  // For an eye below sea level the sphere is lower.
+  float ground = ground_below(altitude_of(p, radius), radius);
+  c -= ground * (2.0 * radius + ground);
   // b^2 - c from the ray's nearest approach would lose them far away; there it does not matter.
   float root = b * b - c;
   if (root < 0.0 || b >= 0.0 || c < 0.0) discard;

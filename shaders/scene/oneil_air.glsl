@@ -24,7 +24,7 @@ layout(std430, binding = 6) readonly buffer model_block {
   vec3 eye_up;           // away from the planet's centre
   float eye_cos_sun;     // of the sun's zenith angle at the eye
   vec3 to_sun;
-  float horizon_rad;     // zenith angle of the horizon at sea level
+  float horizon_rad;     // zenith angle of the horizon
   vec3 sun_irradiance;   // above the air
   float air_shown;       // 0: no air
   vec3 north_pole;       // of the sphere's surface
@@ -64,10 +64,7 @@ void oneil_air(vec3 direction, float distance_m, uint ends, out vec3 rayleigh, o
   if (ends == kAtDistance) {
     end = min(distance_m, far);
   } else if (ends == kAtGround) {
-    float ground_far;
-    if (!shell_intersections(altitude, mu, min(altitude, 0.0), R, end, ground_far)) {
-      end = -(R + altitude) * mu;  // touches by a rounding error
-    }
+    end = distance_to_ground(altitude, mu, R);
   }
   if (end <= start) {
     return;

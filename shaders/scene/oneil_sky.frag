@@ -16,11 +16,7 @@ layout(location = 0) out vec4 radiance;
 vec3 sphere_radiance(vec3 direction) {
   float R = medium.planet_radius_m;
   float mu = dot(direction, eye_up);
-  float distance_m;
-  float unused;
-  if (!shell_intersections(eye_altitude_m, mu, min(eye_altitude_m, 0.0), R, distance_m, unused)) {
-    distance_m = -(R + eye_altitude_m) * mu;
-  }
+  float distance_m = distance_to_ground(eye_altitude_m, mu, R);
   vec3 up = normalize(eye_up * (R + eye_altitude_m) + direction * distance_m);
   float cos_sun = dot(up, to_sun);
   float facing = max(-dot(up, direction), 0.02);

@@ -70,8 +70,9 @@ class OneilSky : public SkyModel {
     out.eye_up = to_vec3(up);
     out.eye_cos_sun = static_cast<float>(std::clamp(glm::dot(up, frame.light.direction_to_sun), -1.0, 1.0));
     out.to_sun = to_vec3(frame.light.direction_to_sun);
-    const double above = std::max(altitude, 0.0);
-    out.horizon_rad = static_cast<float>(0.5 * std::numbers::pi + std::acos(radius / (radius + above)));
+    // Of the ground sphere: sea level, or twice the depth of an eye below it.
+    const double ground = radius + 2.0 * std::min(altitude, 0.0);
+    out.horizon_rad = static_cast<float>(0.5 * std::numbers::pi + std::acos(std::clamp(ground / (radius + altitude), -1.0, 1.0)));
     out.sun_irradiance = Vec3(static_cast<float>(frame.light.sun_irradiance));
     out.air_shown = frame.params.scattering.enabled ? 1.0F : 0.0F;
     out.ground_shown = frame.params.scattering.only ? 0.0F : 1.0F;

@@ -123,15 +123,15 @@ void SkyModel::fill_mesh(const ModelFrame& frame) {
     out.angles[i] = static_cast<float>(kHalfTurn * x * (0.3 + 0.7 * x * x));
   }
   // Rows towards the edge of the sky: the horizontal, or, from space, the rim of the air; then to the horizon of
-  // the sphere at sea level. At either stands a pair of rows close together, so that a break there is not
+  // the ground sphere, which lies as far below an eye below sea level as that lies below it. At either stands a pair of rows close together, so that a break there is not
   // smeared over a row, and on neither side of the horizon a vertex in doubt.
-  const double altitude = std::max(altitude_of(frame.view.position, radius), 0.0);
+  const double altitude = altitude_of(frame.view.position, radius);
   const auto dip = [&](double below_m) {  // angle of a sphere's rim below the horizontal
     const double r = radius + altitude;
     return below_m > 0.0 ? std::acos(std::clamp((r - below_m) / r, -1.0, 1.0)) : 0.0;
   };
   const double edge = 0.5 * kHalfTurn + dip(altitude - static_cast<double>(frame.params.atmosphere.height_m));
-  const double horizon = 0.5 * kHalfTurn + dip(altitude);
+  const double horizon = 0.5 * kHalfTurn + dip(std::abs(altitude));
   float* const zenith = out.angles + kColumns + 1;
   for (std::uint32_t i = 0; i <= kRowsAbove; ++i) {
     const double x = 1.0 - static_cast<double>(i) / kRowsAbove;

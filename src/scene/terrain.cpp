@@ -201,7 +201,7 @@ VkDeviceSize Terrain::bytes() const {
 Result<void> Terrain::update(const View& view) {
   if (none()) return {};
   lod_ = plan_terrain(map_from_world(view.position, radius_m_), altitude_of(view.position, radius_m_),
-                      source_->max_height_m(), radius_m_, coarseness_);
+                      source_->max_height_m(), radius_m_, coarseness_, source_->min_height_m());
   const gpu::Device& device = host_->device();
   const auto layers = static_cast<std::uint32_t>(lod_.levels.size());
   const auto samples = static_cast<std::uint32_t>(lod_.level_samples());

@@ -38,13 +38,15 @@ struct Selection {
 }  // namespace
 
 TerrainLod plan_terrain(const glm::dvec2& camera_map, double altitude_m, double max_ground_m, double radius_m,
-                        int coarseness) {
+                        int coarseness, double min_ground_m) {
   TerrainLod out;
   out.coarseness = coarseness;
   out.camera_map = camera_map;
   out.vertical_m = std::max(altitude_m - max_ground_m, 0.0);
   // Arc to the horizon of the camera plus arc to that of the highest summit behind it.
-  const auto horizon_arc = [&](double h) { return radius_m * std::acos(radius_m / (radius_m + std::max(h, 1.0))); };
+  const double lowest = std::min(min_ground_m, 0.0);
+  const double base = radius_m + lowest;
+  const auto horizon_arc = [&](double h) { return radius_m * std::acos(base / (base + std::max(h - lowest, 1.0))); };
   out.reach_m = 1.01 * (horizon_arc(altitude_m) + horizon_arc(max_ground_m)) + 1000.0;
   for (int k = 0; k < 30; ++k) {
     ClipLevel level;

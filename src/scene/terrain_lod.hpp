@@ -46,9 +46,9 @@ struct TerrainBlock {
 };
 
 // The levels that a camera at these map coordinates and altitude needs, out to the horizon of the
-// highest ground.
+// highest ground. `min_ground_m`: where ground lies below sea level, the horizon is farther.
 [[nodiscard]] TerrainLod plan_terrain(const glm::dvec2& camera_map, double altitude_m, double max_ground_m,
-                                      double radius_m, int coarseness = 1);
+                                      double radius_m, int coarseness = 1, double min_ground_m = 0.0);
 
 // The blocks to draw; none finer than `finest_layer`. `visible` is asked with a block's bounding square
 // in map coordinates (least and greatest corner).

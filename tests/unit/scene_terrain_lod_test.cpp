@@ -142,6 +142,14 @@ TEST(SceneTerrainLod, EveryVertexIsInsideItsTextures) {
   }
 }
 
+// An eye above a sea floor sees as far as above ground at sea level.
+TEST(SceneTerrainLod, ThePlanReachesTheHorizonOfGroundBelowSeaLevel) {
+  const TerrainLod lod = plan_terrain({0.0, 0.0}, -200.0, -300.0, kRadius_m, 1, -430.0);
+  EXPECT_GE(lod.reach_m, std::sqrt(2.0 * kRadius_m * 230.0) + std::sqrt(2.0 * kRadius_m * 130.0));
+  const TerrainLod above = plan_terrain({0.0, 0.0}, 1500.0, kSummit_m, kRadius_m, 1, 200.0);
+  EXPECT_EQ(above.reach_m, plan_terrain({0.0, 0.0}, 1500.0, kSummit_m, kRadius_m).reach_m);
+}
+
 TEST(SceneTerrainLod, OnlyVisibleBlocksAndNoneFinerThanAsked) {
   const TerrainLod lod = plan_terrain({0.0, 0.0}, 100.0, kSummit_m, kRadius_m);
   std::vector<TerrainBlock> blocks;
