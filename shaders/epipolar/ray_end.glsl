@@ -12,9 +12,7 @@ float sky_depth_m(vec3 direction) {
   float h = frame.camera_altitude_m;
   float radius = medium.planet_radius_m;
   float mu = dot(direction, frame.camera_up);
-  float near, far;
-  bool hit = ray_hits_ground(h, mu, radius) && shell_intersections(h, mu, min(h, 0.0), radius, near, far);
-  return hit ? max(near, 0.0) * dot(direction, frame.camera_forward) : kSkyDepth;
+  return ray_hits_ground(h, mu, radius) ? distance_to_ground(h, mu, radius) * dot(direction, frame.camera_forward) : kSkyDepth;
 }
 
 // Length [m] inside the homogeneous medium of a ray to such a depth; from kSkyDepth on to the medium's extent.

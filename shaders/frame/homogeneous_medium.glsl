@@ -22,12 +22,10 @@ void clip_to_top(float cos_zenith, out float start, inout float end) {
 bool clip_to_homogeneous(Ray ray, out float start, out float end) {
   end = ray.length_m;
   if (ray.sky) {
-    float near, far;
     float h = frame.camera_altitude_m;
     float radius = medium.planet_radius_m;
-    bool ground = ray_hits_ground(h, ray.cos_zenith, radius) &&
-                  shell_intersections(h, ray.cos_zenith, min(h, 0.0), radius, near, far);
-    end = ground ? max(near, 0.0) : frame.homogeneous.extent_m;
+    end = ray_hits_ground(h, ray.cos_zenith, radius) ? distance_to_ground(h, ray.cos_zenith, radius)
+                                                     : frame.homogeneous.extent_m;
   }
   clip_to_top(ray.cos_zenith, start, end);
   return end > start;

@@ -44,14 +44,17 @@ AirLight tinted(AirLight light, vec3 tint, float length_m) {
   return AirLight(light.single * mean, light.high * mean);
 }
 
-// The ray in the coordinates of the tables: begun where it enters the air, at distance `start`.
+// The ray in the coordinates of the tables: begun where it enters the air, at distance `start`. It ends behind what was drawn,
+// which may lie deeper than the ground sphere.
 TableRay table_ray_of(Ray ray, float start) {
   float radius = medium.planet_radius_m;
   bool below = ray_hits_ground(ray.altitude, ray.cos_zenith, radius);
   float h = altitude_along(ray.altitude, ray.cos_zenith, start, radius);
-  return table_ray(medium, clamp(h, 0.0, medium.atmosphere_height_m),
-                   cos_zenith_along(ray.altitude, ray.cos_zenith, start, radius),
-                   cos_sun_zenith_along(ray, start, radius), ray.cos_view_sun, below);
+  TableRay path = table_ray(medium, min(h, medium.atmosphere_height_m),
+                            cos_zenith_along(ray.altitude, ray.cos_zenith, start, radius),
+                            cos_sun_zenith_along(ray, start, radius), ray.cos_view_sun, below);
+  if (below && !ray.sky) path.end_m = max(path.end_m, ray.length_m - start);
+  return path;
 }
 
 AirLight section_light(TableRay path, float start, float from, float to) {

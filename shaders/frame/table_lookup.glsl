@@ -27,15 +27,7 @@ struct AirLight {
 TableRay table_ray(Medium m, float h, float mu, float mu_s, float nu, bool below) {
   TableRay ray = TableRay(h, mu, mu_s, nu, below, 0.0);
   float R = m.planet_radius_m;
-  if (below) {
-    float near;
-    float far;
-    ray.end_m = -(R + h) * mu;  // at the perigee, for rays that miss the ground by a rounding error
-    if (shell_intersections(h, mu, min(h, 0.0), R, near, far)) ray.end_m = near;
-    ray.end_m = max(ray.end_m, 0.0);
-  } else {
-    ray.end_m = distance_to_top(h, mu, m.atmosphere_height_m, R);
-  }
+  ray.end_m = below ? distance_to_ground(h, mu, R) : distance_to_top(h, mu, m.atmosphere_height_m, R);
   return ray;
 }
 
@@ -46,7 +38,7 @@ TableRay ray_further_on(Medium m, TableRay ray, float distance_m) {
   float h = altitude_along(ray.altitude, ray.cos_zenith, distance_m, R);
   float sun = ((R + ray.altitude) * ray.cos_sun_zenith + distance_m * ray.cos_view_sun) / (R + h);
   TableRay out_ray = ray;
-  out_ray.altitude = clamp(h, 0.0, m.atmosphere_height_m);
+  out_ray.altitude = min(h, m.atmosphere_height_m);
   out_ray.cos_zenith = cos_zenith_along(ray.altitude, ray.cos_zenith, distance_m, R);
   out_ray.cos_sun_zenith = clamp(sun, -1.0, 1.0);
   out_ray.end_m = max(ray.end_m - distance_m, 0.0);
@@ -84,7 +76,7 @@ struct TableCoordinates {
 // `column`: of the whole ray.
 TableCoordinates table_coordinates(TableShape t, Medium m, TableAngle angle, TableRay ray, vec3 column) {
   float h = table_altitude(m, ray.altitude);
-  float u = u_from_altitude(t, m, h);
+  float u = u_from_altitude(t, m, ray.altitude < 0.0 ? ray.altitude : h);
   float v = v_from_view(t, m, h, ray.cos_zenith, ray.below);
   float middle = middle_of_air(m, ray.altitude, ray.cos_zenith, ray.end_m, column);
   float w = w_from_sun(t, ray_further_on(m, ray, middle).cos_sun_zenith);

@@ -51,14 +51,16 @@ float cos_sun_zenith_along(Ray ray, float t, float radius) {
   return clamp((r0 * ray.cos_sun_zenith + t * ray.cos_view_sun) / r, -1.0, 1.0);
 }
 
-// The part of the ray inside the air: false when there is none. Rays to geometry end there, whether or
-// not sea level is in the way; rays to the sky end at the planet or at the top of the air.
+// The part of the ray inside the air: false when there is none. Rays to geometry end there, however deep it
+// lies; rays to the sky end at the planet or at the top of the air.
 bool clip_to_air(Medium medium, Ray ray, out float start, out float end) {
-  bool hits_ground;
-  bool in_air = atmosphere_segment(ray.altitude, ray.cos_zenith, medium.atmosphere_height_m,
-                                   medium.planet_radius_m, start, end, hits_ground);
-  if (!in_air) return false;
-  if (!ray.sky) end = hits_ground ? ray.length_m : min(end, ray.length_m);
+  float radius = medium.planet_radius_m;
+  if (!air_segment(ray.altitude, ray.cos_zenith, medium.atmosphere_height_m, radius, start, end)) return false;
+  float reach = ray.length_m;
+  if (ray.sky && ray_hits_ground(ray.altitude, ray.cos_zenith, radius)) {
+    reach = distance_to_ground(ray.altitude, ray.cos_zenith, radius);
+  }
+  end = min(end, reach);
   return end > start;
 }
 

@@ -72,42 +72,69 @@ float distance_to_top(float h0, float mu, float top, float R) {
   return max(far, 0.0);
 }
 
-// Cosine of the zenith angle of the geometric horizon; 0 at and below sea level.
+// Altitude of the ground sphere for a ray that begins at altitude h: sea level, and for a ray that begins below
+// sea level twice its depth, so that neither the air beneath it nor its horizon changes abruptly at sea level
+// (docs/adr/0007-below-sea-level.md). Beyond a quarter of the radius the sphere stays where it is.
+float ground_below(float h, float R) { return h < 0.0 ? min(h, max(2.0 * h, -0.5 * R)) : 0.0; }
+
+// Cosine of the zenith angle of the horizon of sea level; 0 at and below it. The sun sets behind this horizon.
 float horizon_cos(float h, float R) {
   float above = max(h, 0.0);
   return -sqrt(above * (2.0 * R + above)) / (R + above);
 }
 
-bool ray_hits_ground(float h, float mu, float R) { return mu < horizon_cos(h, R); }
+// Cosine of the zenith angle of the horizon of ground_below(); that of sea level from there upwards.
+float ground_horizon_cos(float h, float R) {
+  float ground = ground_below(h, R);
+  return -sqrt((h - ground) * (2.0 * R + h + ground)) / (R + h);
+}
 
-// The part of a ray, from anywhere, that lies in the atmosphere below `top` and before the ground: distances
-// start <= end [m], and whether it ends on the ground. False if there is none (start = end = 0). From below
-// sea level, rays downwards end where they begin and the others pass.
-bool atmosphere_segment(float h0, float mu, float top, float R, OUT(float) start, OUT(float) end,
-                        OUT(bool) hits_ground) {
+bool ray_hits_ground(float h, float mu, float R) { return mu < ground_horizon_cos(h, R); }
+
+// Distance to the ground of a ray that hits it [m]; of one that misses by a rounding error, to its perigee.
+float distance_to_ground(float h, float mu, float R) {
+  float near;
+  float far;
+  float d = -(R + h) * mu;
+  if (shell_intersections(h, mu, ground_below(h, R), R, near, far)) {
+    d = near;
+  }
+  return max(d, 0.0);
+}
+
+// The part of a ray's line, from its origin on, that lies in the atmosphere below `top`: distances start <= end
+// [m]. The ground is no obstacle. False if there is none (start = end = 0).
+bool air_segment(float h0, float mu, float top, float R, OUT(float) start, OUT(float) end) {
   start = 0.0;
   end = 0.0;
-  hits_ground = ray_hits_ground(h0, mu, R);
   float near;
   float far;
   if (!shell_intersections(h0, mu, top, R, near, far) || far <= 0.0) {
     return false;
-  }
-  if (hits_ground) {
-    float ground_near;
-    float ground_far;
-    float ground = min(h0, 0.0);
-    if (shell_intersections(h0, mu, ground, R, ground_near, ground_far)) {
-      far = max(ground_near, 0.0);
-    } else {
-      far = -(R + h0) * mu;  // touches by a rounding error: at the perigee
-    }
   }
   if (h0 > top) {
     start = max(near, 0.0);
   }
   end = max(far, start);
   return end > start;
+}
+
+// The same before the ground, and whether the ray ends there.
+bool atmosphere_segment(float h0, float mu, float top, float R, OUT(float) start, OUT(float) end,
+                        OUT(bool) hits_ground) {
+  hits_ground = ray_hits_ground(h0, mu, R);
+  if (!air_segment(h0, mu, top, R, start, end)) {
+    return false;
+  }
+  if (hits_ground) {
+    end = max(distance_to_ground(h0, mu, R), start);
+  }
+  if (end > start) {
+    return true;
+  }
+  start = 0.0;
+  end = 0.0;
+  return false;
 }
 
 // 1 where a point sun at cosine mu_s is above the geometric horizon of a point at altitude h, else 0.

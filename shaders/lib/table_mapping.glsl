@@ -18,6 +18,8 @@
 
 // Altitudes nearer to the ground or the top than this are looked up as if they were this far [m].
 const float kTableMargin = 16.0;
+// The lowest altitude of the tables [m]: rays from below are looked up as if they began here.
+const float kLowestTableAltitude = -500.0;
 // The lowest sun, as a cosine: 16 degrees below the horizontal, where rays from high up that begin in twilight
 // have the middle of their air. (The sources end at 11 degrees, of the sun at the ray's beginning.)
 const float kLowestSun = -0.28;
@@ -34,16 +36,29 @@ float unit_from_texel(float c, float n) { return clamp((c * n - 0.5) / (n - 1.0)
 
 float altitude_margin(IN(Medium) m) { return min(kTableMargin, 0.01 * m.atmosphere_height_m); }
 
-// The altitude that stands for h in the tables.
+float lowest_table_altitude(IN(Medium) m) { return max(kLowestTableAltitude, -0.125 * m.planet_radius_m); }
+
+// Texels along altitude that stand for altitudes below sea level, evenly spaced; the next one stands for the margin above it.
+float texels_below_sea(IN(TableShape) t) { return float(min(t.altitudes / 10u, 3u)); }
+
+// The altitude that stands for h in the tables; `margin` away from sea level on either side of it.
 float table_altitude(IN(Medium) m, float h) {
   float margin = altitude_margin(m);
-  return clamp(h, margin, m.atmosphere_height_m - margin);
+  return h < 0.0 ? clamp(h, lowest_table_altitude(m), -margin) : clamp(h, margin, m.atmosphere_height_m - margin);
 }
 
-// Distance from altitude h to the geometric horizon [m].
-float horizon_distance(float h, float R) { return sqrt(h * (2.0 * R + h)); }
+// Distance from altitude h to the horizon of ground_below() [m].
+float horizon_distance(float h, float R) {
+  float ground = ground_below(h, R);
+  return sqrt((h - ground) * (2.0 * R + h + ground));
+}
 
 float u_from_altitude(IN(TableShape) t, IN(Medium) m, float h) {
+  float below = texels_below_sea(t);
+  float n = float(t.altitudes);
+  if (h < 0.0) {
+    return (max(below * (1.0 - h / lowest_table_altitude(m)), 0.0) + 0.5) / n;
+  }
   float margin = altitude_margin(m);
   float height = m.atmosphere_height_m;
   float x = clamp((h - margin) / (height - 2.0 * margin), 0.0, 1.0);
@@ -55,13 +70,18 @@ float u_from_altitude(IN(TableShape) t, IN(Medium) m, float h) {
     float low = horizon_distance(margin, R);
     x = (horizon_distance(table_altitude(m, h), R) - low) / (horizon_distance(height - margin, R) - low);
   }
-  return texel_from_unit(x, float(t.altitudes));
+  return (below + x * (n - 1.0 - below) + 0.5) / n;
 }
 
 float altitude_from_u(IN(TableShape) t, IN(Medium) m, float u) {
   float margin = altitude_margin(m);
   float height = m.atmosphere_height_m;
-  float x = unit_from_texel(u, float(t.altitudes));
+  float below = texels_below_sea(t);
+  float texel = u * float(t.altitudes) - 0.5;
+  if (texel < below - 1.0e-3) {
+    return lowest_table_altitude(m) * min(1.0 - texel / below, 1.0);
+  }
+  float x = clamp((texel - below) / (float(t.altitudes) - 1.0 - below), 0.0, 1.0);
   if (t.parameterization == 1u) {
     float R = m.planet_radius_m;
     float rho = mix(horizon_distance(margin, R), horizon_distance(height - margin, R), x);
@@ -71,6 +91,13 @@ float altitude_from_u(IN(TableShape) t, IN(Medium) m, float u) {
     x = x * x;
   }
   return margin + x * (height - 2.0 * margin);
+}
+
+// Longest way of a ray from altitude h to the top, less that to the horizon [m].
+float distance_from_ground_to_top(IN(Medium) m, float h) {
+  float ground = ground_below(h, m.planet_radius_m);
+  float top = m.atmosphere_height_m;
+  return sqrt((top - ground) * (2.0 * m.planet_radius_m + top + ground));
 }
 
 // Coordinate within one half of the view axis of n texels: x in [0; 1] counts from the horizon.
@@ -86,24 +113,19 @@ float v_from_view(IN(TableShape) t, IN(Medium) m, float h, float mu, bool below)
     return texel_from_unit(0.5 * mu + 0.5, n);
   }
   float R = m.planet_radius_m;
-  float horizon = horizon_cos(h, R);
+  float horizon = ground_horizon_cos(h, R);
   if (t.parameterization == 0u) {
     float x = below ? (horizon - mu) / (horizon + 1.0) : (mu - horizon) / (1.0 - horizon);
     return v_from_half(below, pow(clamp(x, 0.0, 1.0), 0.2), n);
   }
   float rho = horizon_distance(h, R);
   float top = m.atmosphere_height_m;
-  float near;
-  float far;
   if (below) {
-    float d = -(R + h) * mu;
-    if (shell_intersections(h, mu, 0.0, R, near, far)) {
-      d = near;
-    }
+    float d = distance_to_ground(h, mu, R);
     // Texel 0 straight down, the last one at the horizon: counted from the horizon as in the other half.
-    return v_from_half(true, clamp((rho - d) / (rho - h), 0.0, 1.0), n);
+    return v_from_half(true, clamp((rho - d) / (rho - (h - ground_below(h, R))), 0.0, 1.0), n);
   }
-  float longest = rho + horizon_distance(top, R);
+  float longest = rho + distance_from_ground_to_top(m, h);
   float d = distance_to_top(h, mu, top, R);
   return v_from_half(false, clamp((longest - d) / (longest - (top - h)), 0.0, 1.0), n);
 }
@@ -118,7 +140,7 @@ float view_from_v(IN(TableShape) t, IN(Medium) m, float h, float v, OUT(bool) be
   }
   below = v < 0.5;
   float x = clamp(((below ? v : v - 0.5) * n - 0.5) / (0.5 * n - 1.0), 0.0, 1.0);
-  float horizon = horizon_cos(h, R);
+  float horizon = ground_horizon_cos(h, R);
   if (t.parameterization == 0u) {
     float x2 = x * x;
     float fifth = x2 * x2 * x;
@@ -127,9 +149,10 @@ float view_from_v(IN(TableShape) t, IN(Medium) m, float h, float v, OUT(bool) be
   float rho = horizon_distance(h, R);
   float top = m.atmosphere_height_m;
   // Cosine of the ray that reaches the shell of altitude s at distance d: r_s^2 = r^2 + d^2 + 2 r d mu.
-  float shell = below ? 0.0 : top;
-  float longest = below ? rho : rho + horizon_distance(top, R);
-  float shortest = below ? h : top - h;
+  float ground = ground_below(h, R);
+  float shell = below ? ground : top;
+  float longest = below ? rho : rho + distance_from_ground_to_top(m, h);
+  float shortest = below ? h - ground : top - h;
   float d = max(longest - x * (longest - shortest), 1.0e-3);
   float mu = ((shell - h) * (2.0 * R + shell + h) - d * d) / (2.0 * (R + h) * d);
   return below ? clamp(mu, -1.0, horizon) : clamp(mu, horizon, 1.0);

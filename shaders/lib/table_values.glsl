@@ -41,8 +41,8 @@ Guide guide_for_column(IN(Medium) m, vec3 column) {
 float middle_of_air(IN(Medium) m, float h, float mu, float end_m, vec3 column) {
   float R = m.planet_radius_m;
   float H = m.rayleigh_scale_height_m;
-  float end = clamp(altitude_along(h, mu, end_m, R), 0.0, m.atmosphere_height_m);
-  float moment = H * ((R + h + H) * exp(-h / H) - (R + end + H) * exp(-end / H));
+  float end = min(altitude_along(h, mu, end_m, R), m.atmosphere_height_m);
+  float moment = H * ((R + h + H) * exp(min(-h / H, 60.0)) - (R + end + H) * exp(min(-end / H, 60.0)));
   return clamp(moment / max(column.x, 1.0e-30) - (R + h) * mu, 0.0, end_m);
 }
 

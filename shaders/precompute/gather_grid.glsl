@@ -1,6 +1,6 @@
 // The grids on which the orders of scattering are solved, and the look-up of the light that the air scatters
 // (the source function) at any point and direction. Altitudes are spaced by their square root, suns densest
-// near the horizon, source directions evenly in zenith angle and in azimuth from the sun's plane: all smooth
+// near the horizon, those below sea level evenly; source directions evenly in zenith angle and in azimuth from the sun's plane: all smooth
 // there, at the zenith and at the sun's own too.
 #ifndef TYNDALL_GATHER_GRID_GLSL
 #define TYNDALL_GATHER_GRID_GLSL
@@ -12,13 +12,27 @@
 const float kPi = 3.14159265358979;
 const float kSunKnee = 0.2;  // the sun's cosine at which the spacing has quadrupled
 
+float lowest_gather_altitude(Medium m) { return max(kLowestGatherAltitude, -0.25 * m.planet_radius_m); }
+
 float gather_altitude(Medium m, uint i) {
-  float x = float(i) / float(kGatherAltitudes - 1u);
+  if (i < kGatherBelow) return lowest_gather_altitude(m) * (1.0 - float(i) / float(kGatherBelow));
+  float x = float(i - kGatherBelow) / float(kGatherAltitudes - 1u - kGatherBelow);
   return x * x * m.atmosphere_height_m;
 }
 float gather_altitude_index(Medium m, float h) {
-  return sqrt(clamp(h / m.atmosphere_height_m, 0.0, 1.0)) * float(kGatherAltitudes - 1u);
+  float below = float(kGatherBelow);
+  if (h < 0.0) return max(below * (1.0 - h / lowest_gather_altitude(m)), 0.0);
+  return below + sqrt(min(h / m.atmosphere_height_m, 1.0)) * (float(kGatherAltitudes - 1u) - below);
 }
+
+// Light that arrives from below at a point under sea level comes from ground beside it, and its horizon is level:
+// whatever is solved there depends on nothing deeper.
+float gather_ground(float h) { return min(h, 0.0); }
+float gather_ground_distance(Medium m, float h, float mu) {
+  return h > 0.0 ? distance_to_ground(h, mu, m.planet_radius_m) : 0.0;
+}
+// The points whose irradiance lights the ground below a point.
+uint gather_ground_row(uint altitude) { return min(altitude, kGatherBelow) * kGatherSuns; }
 
 // The lowest sun of the grid: some way below the horizon of the top of the air, where it lights nothing.
 float lowest_gather_sun(Medium m) {

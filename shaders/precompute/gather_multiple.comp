@@ -42,9 +42,10 @@ void main() {
   }
   if (below) {
     RayNode end = nodes[base + kEndNode];
-    float index = gather_sun_index(medium, (r0 * mu_s + end.distance_m * nu) / R);
+    float index = gather_sun_index(medium, (r0 * mu_s + end.distance_m * nu) / (R + gather_ground(h)));
     uint s = min(uint(index), kGatherSuns - 2u);
-    vec3 light = mix(irradiance[s].rgb, irradiance[s + 1u].rgb, index - float(s));
+    uint row = gather_ground_row(altitude) + s;
+    vec3 light = mix(irradiance[row].rgb, irradiance[row + 1u].rgb, index - float(s));
     radiance += end.weight_m * light * (medium.ground_albedo / kPi);
   }
   incident[gather_index(altitude, zenith, azimuth, sun)] = vec4(radiance, 0.0);

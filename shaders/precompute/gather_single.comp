@@ -44,7 +44,8 @@ void main() {
   if (below) {
     RayNode end = nodes[base + kEndNode];
     float q = r0 * mu_s + end.distance_m * nu;
-    vec3 light = max(q / R, 0.0) * sun_transmittance_at(medium, 0.0, q);
+    float ground = gather_ground(h);
+    vec3 light = max(q / (R + ground), 0.0) * sun_transmittance_at(medium, ground, q);
     radiance += end.weight_m * light * (medium.ground_albedo / kPi);
   }
   incident[gather_index(altitude, zenith, azimuth, sun)] = vec4(radiance, 0.0);

@@ -63,7 +63,9 @@ void main() {
     mu = gather_zenith(horizon_cos(h, medium.planet_radius_m), half_node, below);
   }
   uint base = (kOfTables == 1 ? view : altitude * views + view) * kNodeStride;
-  float end = distance_to_end(medium, h, mu, below);
+  float R = medium.planet_radius_m;
+  float end = distance_to_top(h, mu, medium.atmosphere_height_m, R);
+  if (below) end = kOfTables == 1 ? distance_to_ground(h, mu, R) : gather_ground_distance(medium, h, mu);
 
   float total = 0.0;
   float tau = 0.0;

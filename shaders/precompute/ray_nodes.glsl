@@ -22,7 +22,7 @@ float walk_distance(float end, float s) { return end * s * s * (3.0 - 2.0 * s); 
 // less where little of the light gets through. tau: so far, in the clearest channel; grows by this step's.
 float effort(Medium m, float h0, float mu, float d, float step_m, inout float tau) {
   float R = m.planet_radius_m;
-  float h = max(altitude_along(h0, mu, d, R), 0.0);
+  float h = altitude_along(h0, mu, d, R);
   float cosine = cos_zenith_along(h0, mu, d, R);
   vec3 extinction = extinction_at(m, h);
   float clearest = min(extinction.x, min(extinction.y, extinction.z));
@@ -31,25 +31,17 @@ float effort(Medium m, float h0, float mu, float d, float step_m, inout float ta
   tau += clearest * step_m;
   float small_scale = min(m.rayleigh_scale_height_m, m.mie_scale_height_m);
   float large_scale = max(m.rayleigh_scale_height_m, m.mie_scale_height_m);
-  float scale = min(small_scale + 0.3333 * h, large_scale);
+  float scale = min(small_scale + 0.3333 * max(h, 0.0), large_scale);
   float along_sun = 1.0 / (0.5 * sqrt(2.0 * R * large_scale));
   return seen * (0.5 * densest + abs(cosine) / scale + along_sun);
-}
-
-float distance_to_end(Medium m, float h, float mu, bool below) {
-  float R = m.planet_radius_m;
-  if (!below) return distance_to_top(h, mu, m.atmosphere_height_m, R);
-  float near;
-  float far;
-  if (shell_intersections(h, mu, 0.0, R, near, far)) return max(near, 0.0);
-  return max(-(R + h) * mu, 0.0);  // grazing, by a rounding error
 }
 
 RayNode ray_node(Medium m, float h0, float mu, float d, float weight_m) {
   float R = m.planet_radius_m;
   RayNode node;
   node.distance_m = d;
-  node.altitude_m = clamp(altitude_along(h0, mu, d, R), 0.0, m.atmosphere_height_m);
+  // Rays that begin above sea level end there: lower is a rounding error.
+  node.altitude_m = clamp(altitude_along(h0, mu, d, R), ground_below(h0, R), m.atmosphere_height_m);
   node.cos_zenith = cos_zenith_along(h0, mu, d, R);
   vec3 density = densities(m, node.altitude_m);
   node.rayleigh = density.x;

@@ -37,7 +37,9 @@ vec3 sky_light(float h, float mu_s) {
 vec3 ground_light(ProbeRay ray) {
   float R = medium.planet_radius_m;
   float q = (R + ray.altitude_m) * ray.cos_sun_zenith + ray.end_m * ray.cos_view_sun;
-  vec3 light = max(q / R, 0.0) * sun_transmittance_at(medium, 0.0, q) + sky_light(0.0, q / R);
+  float ground = ground_below(ray.altitude_m, R);
+  float cos_sun = q / (R + ground);
+  vec3 light = max(cos_sun, 0.0) * sun_transmittance_at(medium, ground, q) + sky_light(ground, cos_sun);
   return light * (medium.ground_albedo * 0.318309886183791);
 }
 

@@ -19,7 +19,9 @@ struct TableShape {
 // The orders of scattering are solved at points of altitude x sun angle. At each, the light that arrives is
 // known in kGatherZeniths x kGatherAzimuths directions (the azimuths are those of one side of the sun's plane,
 // the other is its mirror image), and the light that is scattered at kSourceZeniths x kSourceAzimuths.
-const uint kGatherAltitudes = 40u;
+const uint kGatherAltitudes = 43u;
+const uint kGatherBelow = 3u;  // of these, below sea level
+const float kLowestGatherAltitude = -1000.0;  // [m]
 const uint kGatherSuns = 64u;
 const uint kGatherZeniths = 24u;  // half of them on each side of the horizon
 const uint kGatherAzimuths = 16u;

@@ -95,8 +95,10 @@ shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDe
   const double z = out.camera_position.z;
   const double distance = std::sqrt(x * x + z * z + (radius + y) * (radius + y));
   out.camera_altitude_m = static_cast<float>(camera_altitude_m(inputs, params));
-  const double above = std::max(static_cast<double>(out.camera_altitude_m), 0.0);
-  out.horizon_cos = static_cast<float>(-std::sqrt(above * (2.0 * radius + above)) / (radius + above));
+  const double altitude = out.camera_altitude_m;
+  // ground_below() of shaders/lib/geometry.glsl.
+  const double ground = altitude < 0.0 ? std::min(altitude, std::max(2.0 * altitude, -0.5 * radius)) : 0.0;
+  out.horizon_cos = static_cast<float>(-std::sqrt((altitude - ground) * (2.0 * radius + altitude + ground)) / (radius + altitude));
   out.camera_up = {static_cast<float>(x / distance), static_cast<float>((radius + y) / distance),
                    static_cast<float>(z / distance)};
 

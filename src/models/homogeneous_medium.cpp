@@ -22,11 +22,8 @@ std::array<double, 3> times(const Vec3& v, const Vec3& by) {
 double length_in(const HomogeneousMedium& m, double altitude_m, double cos_zenith) {
   double start = 0.0;
   double end = m.extent_m;
-  double near = 0.0;
-  double far = 0.0;
-  if (glsl64::ray_hits_ground(altitude_m, cos_zenith, m.planet_radius_m) &&
-      glsl64::shell_intersections(altitude_m, cos_zenith, std::min(altitude_m, 0.0), m.planet_radius_m, near, far)) {
-    end = std::max(near, 0.0);
+  if (glsl64::ray_hits_ground(altitude_m, cos_zenith, m.planet_radius_m)) {
+    end = glsl64::distance_to_ground(altitude_m, cos_zenith, m.planet_radius_m);
   }
   // Below the plane height_m: on the near side of where the ray leaves it, or the far side of where it enters.
   const double below = m.height_m - altitude_m;

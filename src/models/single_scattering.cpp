@@ -59,10 +59,11 @@ std::array<double, 3> sunlit_ground(const shared::Medium& medium, const Ray& ray
   }
   if (!on_ground) return {};
   const double r0 = m.planet_radius_m + ray.altitude_m;
+  const double ground_m = glsl64::ground_below(ray.altitude_m, m.planet_radius_m);
   const double cos_sun =
-      std::clamp((r0 * ray.cos_sun_zenith + end * ray.cos_view_sun) / m.planet_radius_m, -1.0, 1.0);
+      std::clamp((r0 * ray.cos_sun_zenith + end * ray.cos_view_sun) / (m.planet_radius_m + ground_m), -1.0, 1.0);
   if (cos_sun <= 0.0) return {};
-  std::array<double, 3> out = sun_transmittance(medium, 0.0, cos_sun);
+  std::array<double, 3> out = sun_transmittance(medium, ground_m, cos_sun);
   for (double& channel : out) channel *= m.ground_albedo * cos_sun / std::numbers::pi;
   return out;
 }

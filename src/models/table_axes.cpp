@@ -16,14 +16,10 @@ glsl64::TableShape wide_shape(const Params& params) {
 
 double centre(std::uint32_t texel, std::uint32_t texels) { return (texel + 0.5) / texels; }
 
-// As in shaders/precompute/ray_nodes.glsl.
+// As in shaders/precompute/ray_nodes.comp.
 double distance_to_end(const glsl64::Medium& m, double h, double mu, bool below) {
   const double R = m.planet_radius_m;
-  if (!below) return glsl64::distance_to_top(h, mu, m.atmosphere_height_m, R);
-  double near = 0.0;
-  double far = 0.0;
-  if (glsl64::shell_intersections(h, mu, 0.0, R, near, far)) return std::max(near, 0.0);
-  return std::max(-(R + h) * mu, 0.0);
+  return below ? glsl64::distance_to_ground(h, mu, R) : glsl64::distance_to_top(h, mu, m.atmosphere_height_m, R);
 }
 
 std::array<double, 3> to_array(const glsl64::vec3& v) { return {v.x, v.y, v.z}; }
@@ -62,7 +58,7 @@ LightTableAxes light_table_axes(const Params& params, std::uint32_t altitudes, s
     axes.altitude_m.push_back(h);
     axes.cos_horizon.push_back(glsl64::light_table_point({centre(i, altitudes), 0.5}, R, top).y);
   }
-  // At sea level the horizon's cosine is 0.
+  // At and below sea level the horizon's cosine is 0.
   for (std::uint32_t i = 0; i < suns; ++i)
     axes.cos_sun_from_horizon.push_back(glsl64::light_table_point({0.0, centre(i, suns)}, R, top).y);
   return axes;

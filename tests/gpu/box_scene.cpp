@@ -27,10 +27,11 @@ double hit_box(const glm::dvec3& low, const glm::dvec3& high, const glm::dvec3& 
   return enter <= leave && leave > 0.0 ? std::max(enter, 0.0) : kNone;
 }
 
-double hit_planet(const glm::dvec3& from, const glm::dvec3& direction) {
+double hit_planet(double altitude_m, const glm::dvec3& from, const glm::dvec3& direction) {
   const glm::dvec3 p = from + glm::dvec3(0.0, kPlanetRadius_m, 0.0);
   const double b = glm::dot(p, direction);
-  const double c = from.x * from.x + from.z * from.z + from.y * (from.y + 2.0 * kPlanetRadius_m);
+  const double c = from.x * from.x + from.z * from.z + from.y * (from.y + 2.0 * kPlanetRadius_m) -
+                   altitude_m * (altitude_m + 2.0 * kPlanetRadius_m);
   const double square = b * b - c;
   if (square < 0.0 || b > 0.0) return kNone;
   return std::max(c / (-b + std::sqrt(square)), 0.0);
@@ -48,10 +49,11 @@ const std::vector<Box> kBuildings = {
 };
 
 double first_hit(const BoxScene& scene, bool ground, const glm::dvec3& from, const glm::dvec3& direction) {
-  double nearest = ground ? hit_planet(from, direction) : kNone;
+  double nearest = ground ? hit_planet(scene.ground_altitude_m, from, direction) : kNone;
   if (!scene.buildings) return nearest;
+  const glm::dvec3 above = from - glm::dvec3(0.0, scene.ground_altitude_m, 0.0);
   for (const Box& box : scene.own_buildings.empty() ? kBuildings : scene.own_buildings) {
-    nearest = std::min(nearest, scene.building_size * hit_box(box.low, box.high, from / scene.building_size, direction));
+    nearest = std::min(nearest, scene.building_size * hit_box(box.low, box.high, above / scene.building_size, direction));
   }
   return nearest;
 }

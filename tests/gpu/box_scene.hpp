@@ -29,6 +29,7 @@ struct BoxScene {
   std::vector<Box> own_buildings;  // in place of the usual ones, unless empty
   double building_size = 1.0;  // times theirs, distances included
   bool ground = true;  // drawn; the planet is there in any case
+  double ground_altitude_m = 0.0;  // of what is drawn, with the buildings on it
   bool ground_casts = true;
   std::uint32_t cascades = 3, first_marched = 0;
   std::uint32_t shadow_resolution = 256;

@@ -44,9 +44,9 @@ struct Place {
   const char* name;
   double altitude_m, pitch_deg, tan_half;
 };
-// On the ground, in the air, and in space with the planet filling a part of the picture.
+// Below sea level, on the ground, in the air, and in space with the planet filling a part of the picture.
 constexpr Place kPlaces[] = {
-    {"ground", 2.0, 20.0, 1.0}, {"air", 9000.0, -5.0, 1.2}, {"space", 400000.0, -20.0, 0.7}};
+    {"below sea level", -430.0, 10.0, 1.0}, {"ground", 2.0, 20.0, 1.0}, {"air", 9000.0, -5.0, 1.2}, {"space", 400000.0, -20.0, 0.7}};
 
 TEST_F(EffectAir, TheSkyIsTheIntegralFromGroundAirAndSpace) {
   for (const Place& place : kPlaces) {
@@ -106,8 +106,9 @@ TEST_F(EffectAir, InScatteringAloneAndOverFiniteSegments) {
           glm::dvec3 inscattered(0.0);
           glm::dvec3 through(1.0);
           if (air) {
-            if (distance > air->end && air->on_ground) continue;  // below sea level: not asked here
-            const double end = distance > 0.0 ? std::min(air->end, distance) : air->end;
+            if (distance > air->end + 2000.0 && air->on_ground) continue;  // too deep for anything to be seen through
+            // What is drawn may lie deeper than the ground sphere.
+            const double end = distance > 0.0 ? (air->on_ground ? distance : std::min(air->end, distance)) : air->end;
             if (end > air->start) {
               inscattered = true_inscattering(params, ray, air->start, end);
               through = true_transmittance(params, ray, end);

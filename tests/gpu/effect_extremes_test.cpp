@@ -1,5 +1,6 @@
 // Every parameter at its ends, in random combinations, seen from everywhere: whatever is allowed gives finite
 // light that is not negative.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -70,7 +71,8 @@ TEST_F(EffectExtremes, WhateverIsAllowedGivesFiniteLight) {
       };
       TestFrame frame = shape;
       const double top = params.atmosphere.height_m;
-      const double altitude = pick({0.0, 0.5, 1000.0, 0.5 * top, top, 1.01 * top, 10.0 * top});
+      const double deepest = std::max(-11000.0, -0.25 * static_cast<double>(params.planet.radius_m));
+      const double altitude = pick({0.0, 0.5, 1000.0, 0.5 * top, top, 1.01 * top, 10.0 * top, -0.5, 0.04 * deepest, deepest});
       frame.view = TestView::at(altitude, pick({0.0, 1.0, 3.14159265}), pick({-1.5707963, -0.1, 0.0, 0.3, 1.5707963}),
                                 pick({0.01, 0.6, 5.0}));
       const double elevation = pick({-1.5707963, -0.1, 0.0, 0.05, 1.0, 1.5707963});

@@ -114,6 +114,37 @@ TEST_F(Epipolar, TheCameraMayStandAnywhere) {
               s.pitch_deg = 10.0;
             }),
        40.0},
+      // Under water level, and a little above it over lower land.
+      {seen("by the Dead Sea",
+            [](BoxScene& s) {
+              s.altitude_m = -428.0;
+              s.ground_altitude_m = -430.0;
+              s.pitch_deg = -1.0;
+            }),
+       40.0},
+      {seen("above the Dead Sea",
+            [](BoxScene& s) {
+              s.altitude_m = -130.0;
+              s.ground_altitude_m = -430.0;
+              s.buildings = false;
+              s.pitch_deg = -1.0;
+            }),
+       48.0},
+      {seen("on a dyke",
+            [](BoxScene& s) {
+              s.altitude_m = 2.0;
+              s.ground_altitude_m = -5.0;
+              s.buildings = false;
+              s.pitch_deg = -2.0;
+            }),
+       48.0},
+      {seen("over a sea floor",
+            [](BoxScene& s) {
+              s.altitude_m = -2000.0;
+              s.ground_altitude_m = -4000.0;
+              s.pitch_deg = -10.0;
+            }),
+       40.0},
       {seen("on a summit",
             [](BoxScene& s) {
               s.altitude_m = 6000.0;

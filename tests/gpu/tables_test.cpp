@@ -29,7 +29,7 @@ struct Errors {
 std::vector<reference::Query> skies(std::initializer_list<double> elevations_deg) {
   std::vector<reference::Query> out;
   for (const double elevation : elevations_deg) {
-    for (const double altitude : {0.0, 1500.0}) {
+    for (const double altitude : {-400.0, 0.0, 1500.0}) {
       reference::Query query;
       query.altitude_m = altitude;
       query.sun_zenith_rad = (90.0 - elevation) * kRadians;
@@ -37,6 +37,13 @@ std::vector<reference::Query> skies(std::initializer_list<double> elevations_deg
       out.push_back(query);
     }
   }
+  return out;
+}
+
+// From the shore of the Dead Sea and a little higher.
+std::vector<reference::Query> below_sea_level(int count) {
+  std::vector<reference::Query> out = random_rays(13, count, 5.0, 90.0);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i].altitude_m = i % 2 == 0 ? -400.0 : -430.0 * out[i].azimuth_rad / kPi;
   return out;
 }
 
@@ -83,6 +90,9 @@ TEST_F(ScatteringTablesTest, AreAsRightAsThePathTracer) {
   EXPECT_LE(day.percentile(0.95), 0.03);
   const Errors twilight = errors(model, params, random_rays(12, 30, -6.0, 0.0), 8000);
   EXPECT_LE(twilight.mean(), 0.03);
+  const Errors low = errors(model, params, below_sea_level(40), 6000);
+  EXPECT_LE(low.mean(), 0.006);
+  EXPECT_LE(low.percentile(0.95), 0.02);
   const Errors sky = errors(model, params, skies({70.0, 30.0, 10.0, 3.0, 0.5}), 15000);
   EXPECT_LE(sky.percentile(1.0), 0.0125);
   const Errors late_sky = errors(model, params, skies({-1.0, -3.0}), 25000);

@@ -31,7 +31,9 @@ Column array_of(const lib::vec3& v) { return {v.x, v.y, v.z}; }
 float altitude_of(float x, float y, float z, float R) { return lib::altitude_of(lib::vec3(x, y, z), R); }
 float altitude_along(float h0, float mu, float d, float R) { return lib::altitude_along(h0, mu, d, R); }
 float distance_to_top(float h0, float mu, float top, float R) { return lib::distance_to_top(h0, mu, top, R); }
+float ground_below(float h, float R) { return lib::ground_below(h, R); }
 float horizon_cos(float h, float R) { return lib::horizon_cos(h, R); }
+float ground_horizon_cos(float h, float R) { return lib::ground_horizon_cos(h, R); }
 bool ray_hits_ground(float h, float mu, float R) { return lib::ray_hits_ground(h, mu, R); }
 float sun_disc_visibility(float h, float mu_s, float R, float angular_radius_rad) {
   return lib::sun_disc_visibility(h, mu_s, R, angular_radius_rad);

@@ -113,11 +113,37 @@ TEST(physics_geometry, segments_of_particular_rays) {
   EXPECT_TRUE(ground);
   EXPECT_TRUE(glsl32::atmosphere_segment(0.0F, 0.0F, kTop, kRadius, start, end, ground));
   EXPECT_NEAR(end, 1.01193e6F, 20.0F);
-  // Below sea level: level and upwards pass.
+  // Below sea level the ground is at twice the depth: level rays pass, and so do those down to its horizon.
   EXPECT_TRUE(glsl32::atmosphere_segment(-300.0F, 0.01F, kTop, kRadius, start, end, ground));
   EXPECT_FALSE(ground);
-  EXPECT_FALSE(glsl32::atmosphere_segment(-300.0F, -0.01F, kTop, kRadius, start, end, ground));
+  EXPECT_TRUE(glsl32::atmosphere_segment(-300.0F, -0.009F, kTop, kRadius, start, end, ground));
+  EXPECT_FALSE(ground);
+  EXPECT_GT(end, 1.0e6F);
+  EXPECT_TRUE(glsl32::atmosphere_segment(-300.0F, -0.01F, kTop, kRadius, start, end, ground));
   EXPECT_TRUE(ground);
+  EXPECT_NEAR(static_cast<double>(true_altitude_along(-300.0F, -0.01F, end, kRadius)), -600.0, 0.1);
+}
+
+// The ground sphere has no step at sea level, and from 500 m below to above it the horizon has none.
+TEST(physics_geometry, the_ground_below_sea_level_begins_at_sea_level) {
+  for (const double h : {-1.0e-3, -0.5, -20.0, -500.0, -11000.0}) {
+    const float altitude = static_cast<float>(h);
+    EXPECT_EQ(glsl32::ground_below(altitude, kRadius), 2.0F * altitude);
+    const double r = 1.0 * kRadius + altitude;
+    const double ground = 1.0 * kRadius + 2.0 * altitude;
+    const double expected = -std::sqrt((r - ground) * (r + ground)) / r;
+    EXPECT_NEAR(glsl32::ground_horizon_cos(altitude, kRadius), expected, 1.0e-6 * std::abs(expected));
+    float start = 0.0F;
+    float end = 0.0F;
+    bool on_ground = false;
+    EXPECT_TRUE(glsl32::atmosphere_segment(altitude, -1.0F, kTop, kRadius, start, end, on_ground));
+    EXPECT_TRUE(on_ground);
+    EXPECT_NEAR(end, -altitude, 1.0e-6 * std::abs(h));
+  }
+  for (const float h : {0.0F, 2.0F, 8000.0F}) {
+    EXPECT_EQ(glsl32::ground_below(h, kRadius), 0.0F);
+    EXPECT_EQ(glsl32::ground_horizon_cos(h, kRadius), glsl32::horizon_cos(h, kRadius));
+  }
 }
 
 TEST(physics_geometry, segments_end_on_their_shells) {

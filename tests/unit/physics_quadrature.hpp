@@ -173,8 +173,9 @@ inline Three single_scattering(const shared::Medium& m, double h0, double mu, do
   if (h0 > top) {
     start = near_crossing(m, h0, mu, top);
   }
-  const double ground = near_crossing(m, h0, mu, 0.0);
-  if (ground > 0.0 || (h0 <= 0.0 && mu < 0.0)) {
+  // The ground of a ray from below sea level is at twice its depth.
+  const double ground = near_crossing(m, h0, mu, 2.0 * std::min(h0, 0.0));
+  if (ground > 0.0 || (h0 == 0.0 && mu < 0.0)) {
     end = std::max(ground, 0.0);
   }
   // Lit where the ray to the sun misses the planet.

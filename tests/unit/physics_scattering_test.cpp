@@ -23,7 +23,7 @@ struct Query {
   double azimuth;
 };
 
-// From the ground to 1.1e6 m, straight up and down, within 1e-6 of the horizon, sun zenith angles to 100
+// From below sea level and the ground to 1.1e6 m, straight up and down, within 1e-6 of the horizon, sun zenith angles to 100
 // degrees. Cosines are representable in float, so that both precisions answer the same question.
 std::vector<Query> queries(const shared::Medium& m, int count) {
   std::mt19937 engine(7);
@@ -37,6 +37,8 @@ std::vector<Query> queries(const shared::Medium& m, int count) {
     double h = 0.0;
     switch (i % 6) {
       case 0:
+        // At sea level and below it.
+        h = i % 12 == 0 ? 0.0 : -450.0 * uniform(0.0, 1.0);
         break;
       case 1:
         h = 3000.0 * std::pow(uniform(0.0, 1.0), 2.0);
@@ -51,7 +53,8 @@ std::vector<Query> queries(const shared::Medium& m, int count) {
         h = 79000.0 * uniform(0.0, 1.0);
     }
     h = static_cast<float>(h);
-    const double horizon = -std::sqrt(h * (2.0 * radius + h)) / (radius + h);
+    const double ground = 2.0 * std::min(h, 0.0);
+    const double horizon = -std::sqrt((h - ground) * (2.0 * radius + h + ground)) / (radius + h);
     const double near_horizon = horizon + (i % 4 < 2 ? 1.0 : -1.0) * std::pow(10.0, uniform(-6.0, -2.0));
     double mu = 0.0;
     switch (i / 6 % 5) {
@@ -166,6 +169,25 @@ TEST(physics_scattering, another_planet) {
   expect_scattering(medium_from_params(params), 600, 16, 1.0e-4, 2.0e-3);
 }
 
+// Where the air is so dense that little gets through.
+TEST(physics_scattering, deep_below_sea_level) {
+  const shared::Medium m = medium_from_params({});
+  Errors in_float;
+  for (const double h : {-800.0, -2000.0, -4000.0}) {
+    for (const double mu : {1.0, 0.25, 0.0, -0.015625, -0.25, -1.0}) {
+      const models::Ray ray = {h, mu, 0.75, mu * 0.75};
+      const brute::Three expected = brute::single_scattering(m, h, mu, 0.75, 0.5 * kPi, 1.0e-6);
+      const shared::ProbeRay p = models::prepare_probe_ray(m, ray);
+      EXPECT_GT(p.end_m, 0.0F);
+      const glsl32::Column b = glsl32::single_scattering(m, p.altitude_m, p.cos_view_zenith, p.cos_sun_zenith,
+                                                         p.cos_view_sun, 0.0F, p.end_m, 16);
+      in_float.add(expected, b[0], b[1], b[2], ray);
+    }
+  }
+  EXPECT_LE(in_float.mean(), 2.0e-4);
+  EXPECT_LE(in_float.worst, 2.0e-3) << in_float.at.altitude_m << " " << in_float.at.cos_view_zenith;
+}
+
 TEST(physics_scattering, transmittance_of_the_answer) {
   const shared::Medium m = medium_from_params({});
   const models::Answer up = models::single_scattering(m, {0.0, 1.0, 0.5, 0.5});
@@ -197,7 +219,7 @@ TEST(physics_scattering, extreme_parameters_stay_finite) {
     params.atmosphere.ozone_centre_m = pick({0.0, 25000.0, 1.0e7});
     params.atmosphere.ozone_half_width_m = pick({1.0, 15000.0, 1.0e7});
     const shared::Medium m = medium_from_params(params);
-    for (const float h : {-100.0F, 0.0F, 500.0F, 50000.0F, 2.0e7F}) {
+    for (const float h : {std::max(-11000.0F, -0.25F * params.planet.radius_m), -100.0F, 0.0F, 500.0F, 50000.0F, 2.0e7F}) {
       for (const float mu : {-1.0F, -0.3F, -1.0e-4F, 0.0F, 0.02F, 1.0F}) {
         for (const float mu_s : {-1.0F, -0.05F, 0.0F, 0.5F, 1.0F}) {
           const float nu = mu * mu_s + std::sqrt((1.0F - mu * mu) * (1.0F - mu_s * mu_s));

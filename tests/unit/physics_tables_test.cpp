@@ -20,7 +20,8 @@ TEST_P(TableMapping, TexelCentresComeBack) {
   for (std::uint32_t i = 0; i < t.altitudes; ++i) {
     const double u = (i + 0.5) / t.altitudes;
     const double h = glsl64::altitude_from_u(t, m, u);
-    EXPECT_GT(h, 0.0);
+    EXPECT_NE(h, 0.0);
+    EXPECT_GE(h, -500.0);
     EXPECT_LT(h, m.atmosphere_height_m);
     EXPECT_NEAR(glsl64::u_from_altitude(t, m, h), u, 1e-9);
     for (std::uint32_t j = 0; j < t.views; ++j) {
@@ -30,7 +31,7 @@ TEST_P(TableMapping, TexelCentresComeBack) {
       ASSERT_GE(mu, -1.0);
       ASSERT_LE(mu, 1.0);
       // Next to the horizon the fifth power leaves the cosine no digits for the way back.
-      const bool grazing = std::abs(mu - glsl64::horizon_cos(h, m.planet_radius_m)) < 1e-7;
+      const bool grazing = std::abs(mu - glsl64::ground_horizon_cos(h, m.planet_radius_m)) < 1e-7;
       EXPECT_NEAR(glsl64::v_from_view(t, m, h, mu, below), v, grazing ? 0.02 : 2e-6) << i << " " << j;
       if (t.parameterization != 2) {
         EXPECT_EQ(below, v < 0.5);
@@ -53,8 +54,8 @@ TEST_P(TableMapping, NothingIsFilteredAcrossTheHorizon) {
   const glsl64::Medium m = earth();
   const glsl64::TableShape t = shape_of(GetParam());
   const double half_texel = 0.5 / t.views;
-  for (const double h : {16.0, 1000.0, 30000.0, 79984.0}) {
-    for (const double mu : {-1.0, -0.3, glsl64::horizon_cos(h, m.planet_radius_m), 0.1, 1.0}) {
+  for (const double h : {-500.0, -100.0, 16.0, 1000.0, 30000.0, 79984.0}) {
+    for (const double mu : {-1.0, -0.3, glsl64::ground_horizon_cos(h, m.planet_radius_m), 0.1, 1.0}) {
       const double below = glsl64::v_from_view(t, m, h, mu, true);
       const double above = glsl64::v_from_view(t, m, h, mu, false);
       EXPECT_GE(below, half_texel - 1e-12);
@@ -63,6 +64,23 @@ TEST_P(TableMapping, NothingIsFilteredAcrossTheHorizon) {
       EXPECT_LE(above, 1.0 - half_texel + 1e-12);
     }
   }
+}
+
+// What is looked up has no step at sea level, and ends where the tables do.
+TEST_P(TableMapping, AltitudesGoOnBelowSeaLevel) {
+  const glsl64::Medium m = earth();
+  const glsl64::TableShape t = shape_of(GetParam());
+  const double sea = glsl64::u_from_altitude(t, m, glsl64::table_altitude(m, 0.0));
+  EXPECT_NEAR(glsl64::u_from_altitude(t, m, -1e-9), sea, 1e-9);
+  double before = sea;
+  for (const double h : {-1.0, -16.0, -100.0, -400.0, -499.0}) {
+    const double u = glsl64::u_from_altitude(t, m, h);
+    EXPECT_LT(u, before);
+    before = u;
+  }
+  EXPECT_NEAR(glsl64::u_from_altitude(t, m, -500.0), 0.5 / t.altitudes, 1e-12);
+  EXPECT_NEAR(glsl64::u_from_altitude(t, m, -11000.0), 0.5 / t.altitudes, 1e-12);
+  EXPECT_EQ(glsl64::table_altitude(m, -11000.0), -500.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, TableMapping, testing::Values(0U, 1U, 2U));
@@ -82,9 +100,22 @@ TEST(TableValues, GuideIsExactForAMixedMediumUnderAFullSun) {
   }
 }
 
+TEST(LightTables, AltitudesGoOnBelowSeaLevel) {
+  const double R = 6.36e6;
+  const double top = 80000.0;
+  for (const double h : {-1000.0, -730.0, -430.0, -1.0, 0.0, 3.0, 500.0, 30000.0}) {
+    for (const double mu : {0.85, 0.3, 0.01, 0.0, -0.01, -0.2}) {
+      const glsl64::vec2 point = glsl64::light_table_point(glsl64::light_table_uv(h, mu, R, top), R, top);
+      EXPECT_NEAR(point.x, h, 1e-6);
+      EXPECT_NEAR(point.y, mu, 1e-9);
+    }
+  }
+  EXPECT_EQ(glsl64::light_table_uv(-11000.0, 0.5, R, top).x, glsl64::light_table_uv(-1000.0, 0.5, R, top).x);
+}
+
 TEST(TableValues, SunsLightIsThatOfTheColumns) {
   const glsl64::Medium m = earth();
-  for (const double h : {0.0, 3000.0, 40000.0}) {
+  for (const double h : {-430.0, 0.0, 3000.0, 40000.0}) {
     for (const double mu : {1.0, 0.3, 0.02, -0.01, -0.05, -0.1}) {
       const double r = m.planet_radius_m + h;
       const glsl64::vec3 found = glsl64::sun_transmittance_at(m, h, r * mu);
