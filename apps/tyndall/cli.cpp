@@ -108,6 +108,14 @@ Result<double> parse_number(std::string_view text, std::string_view option, doub
       concat({"allowed is a number, ", config::number_text(min), " to ", config::number_text(max)}));
 }
 
+Result<void> check_altitude(double altitude_m, const Params& params, std::string_view where) {
+  const double lowest_m = -0.25 * static_cast<double>(params.planet.radius_m);
+  if (altitude_m >= lowest_m) return {};
+  return input_error(concat({"an eye at ", config::number_text(altitude_m), " m is too deep in the planet"}), where,
+                     concat({"allowed is minus a quarter of planet.radius_m at the lowest, ",
+                             config::number_text(lowest_m), " m"}));
+}
+
 void add_common(Arguments& arguments, CommonOptions& options, unsigned which) {
   if ((which & kScene) != 0)
     arguments.positional("SCENE.toml", options.scene_file, false, "scene file; without, the defaults");

@@ -40,6 +40,12 @@ struct Size {
 };
 constexpr std::uint32_t kLargestSize = 16384;  // pixels, each side
 
+// The lowest altitude of an eye [m]: below the deepest sea floor of the Earth.
+constexpr double kLowestAltitude_m = -11000.0;
+// Fails for an eye deeper than a quarter of the planet's radius, where the ground beneath it is not defined any more. `where`
+// names the source in errors.
+[[nodiscard]] Result<void> check_altitude(double altitude_m, const Params& params, std::string_view where);
+
 // `option` names the source in errors ("--size").
 [[nodiscard]] Result<Size> parse_size(std::string_view text, std::string_view option);
 [[nodiscard]] Result<std::uint32_t> parse_count(std::string_view text, std::string_view option,

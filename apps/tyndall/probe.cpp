@@ -74,6 +74,13 @@ int run_probe(Args args) {
   if (Result<void> r = resolve(options); !r) return fail(r.error());
   const Result<ProbeTable> table = read_queries(queries);
   if (!table) return fail(table.error());
+  for (std::size_t row = 0; row < table.value().queries.size(); ++row) {
+    const double altitude_m = table.value().queries[row].altitude_m;
+    if (altitude_m >= 0.0) continue;
+    const std::string where = config::concat({config::one_line(queries, 200), ":",
+                                              std::to_string(table.value().input.lines[row]), ", column 'altitude_m'"});
+    if (Result<void> r = check_altitude(altitude_m, options.settings.effect, where); !r) return fail(r.error());
+  }
   if (!options.output.empty()) {
     std::vector<InputFile> inputs = input_files(options);
     inputs.push_back({"the file of queries", queries});

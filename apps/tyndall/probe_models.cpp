@@ -61,9 +61,7 @@ Result<std::vector<ProbeAnswer>> run_reference(const ProbeSettings& settings,
   std::vector<reference::Query> asked;
   asked.reserve(queries.size());
   for (const ProbeQuery& q : queries) {
-    // The path tracer's planet is solid: below sea level is at sea level.
-    asked.push_back(
-        {std::max(q.altitude_m, 0.0), q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad, q.sky});
+    asked.push_back({q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad, q.sky});
   }
   reference::Options options;
   options.samples = settings.samples;

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <optional>
 
+#include "cli.hpp"
 #include "config/files.hpp"
 #include "config/text.hpp"
 
@@ -24,7 +25,7 @@ struct Column {
 };
 enum ColumnIndex : std::size_t { kAltitude, kViewZenith, kSunZenith, kAzimuth, kColumnCount };
 constexpr Column kColumns[kColumnCount] = {
-    {"altitude_m", -500.0, 1.0e9, "m"},
+    {"altitude_m", kLowestAltitude_m, 1.0e9, "m"},
     {"view_zenith_deg", 0.0, 180.0, "deg, or sky"},
     {"sun_zenith_deg", 0.0, 180.0, "deg"},
     {"azimuth_deg", -360.0, 360.0, "deg"},

@@ -180,7 +180,8 @@ int run_sky(Args args) {
                    "of the sun, clockwise from north");
   arguments.text("--at", sky.place, "LAT,LON", "the place in degrees, north and east positive; with --time");
   arguments.text("--time", sky.time, "ISO8601", "the time there, as 2003-10-17T12:30:30-07:00; 1900 to 2100");
-  arguments.number("--altitude", sky.altitude_m, 0.0, 1.0e9, "of the eye above sea level in m, up to space");
+  arguments.number("--altitude", sky.altitude_m, kLowestAltitude_m, 1.0e9,
+                   "of the eye above sea level in m, from the sea floor up to space");
   arguments.choice("--disc", sky.disc, {"true", "false"}, "draw the sun's disc");
   arguments.choice("--model", sky.model, model_names, "who answers");
   if (const std::optional<int> status = arguments.parse(args)) return *status;
@@ -190,10 +191,13 @@ int run_sky(Args args) {
   if (Result<void> r = check_output(options, {".exr"}); !r) return fail(r.error());
 
   const Params& params = options.settings.effect;
+  if (Result<void> r = check_altitude(sky.altitude_m, params, "--altitude"); !r) return fail(r.error());
   scene::SceneParams& scene = options.settings.scene;
   scene.sun.elevation_deg = static_cast<float>(sun.value().elevation_deg);
   scene.sun.azimuth_deg = static_cast<float>(sun.value().azimuth_deg);
-  scene.camera.altitude_m = static_cast<float>(sky.altitude_m);
+  // The parameter has no values below sea level.
+  if (sky.altitude_m >= 0.0) scene.camera.altitude_m = static_cast<float>(sky.altitude_m);
+  else scene.camera.position_m = {0.0F, static_cast<float>(sky.altitude_m), 0.0F};
   const SkyMap map = {options.size.width, options.size.height, sky.altitude_m,
                       sun.value().elevation_deg * kRadPerDeg, sun.value().azimuth_deg * kRadPerDeg};
   const double irradiance = double{scene.sun.irradiance} * params.scattering.scale;
