@@ -21,10 +21,13 @@ double length(const DVec3& v) { return std::sqrt(dot(v, v)); }
 
 DVec3 row_of(const Mat4& m, int row) { return {entry(m, row, 0), entry(m, row, 1), entry(m, row, 2)}; }
 
-DVec3 column_of(const Mat4& m, int column) { return {entry(m, 0, column), entry(m, 1, column), entry(m, 2, column)}; }
+DVec3 column_of(const Mat4& m, int column) {
+  return {entry(m, 0, column), entry(m, 1, column), entry(m, 2, column)};
+}
 
 double affine_error(const Mat4& m) {
-  return std::max({std::abs(entry(m, 3, 0)), std::abs(entry(m, 3, 1)), std::abs(entry(m, 3, 2)), std::abs(entry(m, 3, 3) - 1.0)});
+  return std::max({std::abs(entry(m, 3, 0)), std::abs(entry(m, 3, 1)), std::abs(entry(m, 3, 2)),
+                   std::abs(entry(m, 3, 3) - 1.0)});
 }
 
 double orthonormal_error(const Mat4& m) {
@@ -63,7 +66,9 @@ Projection projection_of(const Mat4& p) {
   const DVec3 yw = cross(y, w);
   const DVec3 wx = cross(w, x);
   const DVec3 xy = cross(x, y);
-  const auto along = [&](double a, double b, double c) { return -(entry(p, 0, 3) * a + entry(p, 1, 3) * b + entry(p, 3, 3) * c) / determinant; };
+  const auto along = [&](double a, double b, double c) {
+    return -(entry(p, 0, 3) * a + entry(p, 1, 3) * b + entry(p, 3, 3) * c) / determinant;
+  };
   out.centre = {along(yw.x, wx.x, xy.x), along(yw.y, wx.y, xy.y), along(yw.z, wx.z, xy.z)};
   const double w_per_m = -w.z;
   out.forward = w_per_m > 0.0;

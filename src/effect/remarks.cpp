@@ -12,9 +12,30 @@ namespace tyndall {
 namespace {
 
 enum class Kind : std::uint32_t {
-  sun_length, sun_radius, sun_dark, no_cascades, no_shafts, tables, unfinished, depth_bits,
-  view_inverse, view_mirrored, below_sea, far_away, y_up, eye_moved, near_plane, far_plane,
-  cascade_start, cascade_range, cascade_order, cascade_unit, cascade_clip, cascade_elsewhere, cascade_sun, cascade_depth
+  sun_length,
+  sun_radius,
+  sun_dark,
+  no_cascades,
+  no_shafts,
+  tables,
+  unfinished,
+  depth_bits,
+  view_inverse,
+  view_mirrored,
+  below_sea,
+  far_away,
+  y_up,
+  eye_moved,
+  near_plane,
+  far_plane,
+  cascade_start,
+  cascade_range,
+  cascade_order,
+  cascade_unit,
+  cascade_clip,
+  cascade_elsewhere,
+  cascade_sun,
+  cascade_depth
 };
 
 // One line of text in place; what does not fit is cut off.
@@ -35,7 +56,8 @@ class Text {
   void append(const char* part) { append(std::string_view(part)); }
   void append(double number) {
     char digits[32];
-    const std::to_chars_result end = std::to_chars(digits, digits + sizeof digits, number, std::chars_format::general, 4);
+    const std::to_chars_result end =
+        std::to_chars(digits, digits + sizeof digits, number, std::chars_format::general, 4);
     append(std::string_view(digits, static_cast<std::size_t>(end.ptr - digits)));
   }
   void append(std::uint64_t number) {
@@ -68,9 +90,13 @@ class Speaker {
 
 double altitude_of(const DVec3& p, double radius) { return std::hypot(p.x, p.y + radius, p.z) - radius; }
 
-DVec3 wide(const Vec3& v) { return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)}; }
+DVec3 wide(const Vec3& v) {
+  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
 
-DVec3 sum(const DVec3& a, const DVec3& b, double times) { return {a.x + times * b.x, a.y + times * b.y, a.z + times * b.z}; }
+DVec3 sum(const DVec3& a, const DVec3& b, double times) {
+  return {a.x + times * b.x, a.y + times * b.y, a.z + times * b.z};
+}
 
 void remark_on_sun(Speaker& s, const FrameInputs& inputs) {
   const Sun& sun = inputs.sun;
@@ -89,19 +115,21 @@ void remark_on_view(Speaker& s, const FrameInputs& inputs, const FrameState& sta
   const Mat4 inverted = rigid_inverse(m);
   const double altitude = altitude_of(column_of(m, 3), radius);
   const double other = altitude_of(column_of(inverted, 3), radius);
-  // A camera that is level across has a horizontal x axis; the inverse of its matrix has not, unless it looks level as well.
+  // A camera that is level across has a horizontal x axis; the inverse of its matrix has not, unless it looks
+  // level as well.
   const bool level = std::abs(m.m[1]) < 1e-5F;
   const bool other_level = std::abs(inverted.m[1]) < 1e-5F;
   const bool inverse = altitude < -1.0 && other > 1.0 && ((!level && other_level) || altitude < -500.0);
   s.say_if(Kind::view_inverse, inverse, "Camera::world_from_view puts the camera ", altitude,
            " m above sea level, and its inverse ", other,
            " m; expected the camera's place and axes in the world: is it the view matrix, view_from_world?");
-  s.say_if(Kind::below_sea, !inverse && altitude < -500.0, "Camera::world_from_view puts the camera ", -altitude,
-           " m below sea level; expected above -500 m: is y up, and the unit the metre?");
+  s.say_if(Kind::below_sea, !inverse && altitude < -500.0, "Camera::world_from_view puts the camera ",
+           -altitude, " m below sea level; expected above -500 m: is y up, and the unit the metre?");
   s.say_if(Kind::far_away, altitude > 1e9, "Camera::world_from_view puts the camera ", altitude,
            " m above sea level; expected less than 1e9 m: is the unit the metre?");
   s.say_if(Kind::view_mirrored, determinant3(m) < 0.0,
-           "Camera::world_from_view is mirrored, its determinant is -1; expected +1, unless the view is a planar reflection");
+           "Camera::world_from_view is mirrored, its determinant is -1; expected +1, unless the view is a "
+           "planar reflection");
 }
 
 void remark_on_projection(Speaker& s, const FrameInputs& inputs, const FrameState& state) {
@@ -109,18 +137,23 @@ void remark_on_projection(Speaker& s, const FrameInputs& inputs, const FrameStat
   const double sky = static_cast<double>(state.desc.sky_depth);
   const bool mirrored = determinant3(inputs.camera.world_from_view) < 0.0;
   s.say_if(Kind::y_up, p.y_up && !mirrored,
-           "Camera::clip_from_view has y up, as OpenGL's projections have; expected Vulkan's clip space, y down and depth 0 to 1: "
+           "Camera::clip_from_view has y up, as OpenGL's projections have; expected Vulkan's clip space, y "
+           "down and depth 0 to 1: "
            "negate its second row, unless the images are upside down");
-  s.say_if(Kind::eye_moved, length(p.centre) > 0.01, "the rays of Camera::clip_from_view meet at ", p.centre.x, ", ", p.centre.y, ", ",
-           p.centre.z, " m in the view; expected its origin: an eye's offset belongs into world_from_view");
+  s.say_if(Kind::eye_moved, length(p.centre) > 0.01, "the rays of Camera::clip_from_view meet at ",
+           p.centre.x, ", ", p.centre.y, ", ", p.centre.z,
+           " m in the view; expected its origin: an eye's offset belongs into world_from_view");
   const double near_m = distance_at_depth(p, 1.0 - sky);
   const double far_m = distance_at_depth(p, sky);
-  s.say_if(Kind::near_plane, !p.oblique && (near_m < 1e-3 || near_m > 1e4), "Camera::clip_from_view has its near plane at ", near_m,
+  s.say_if(Kind::near_plane, !p.oblique && (near_m < 1e-3 || near_m > 1e4),
+           "Camera::clip_from_view has its near plane at ", near_m,
            " m; expected 0.001 m to 10 km: is the unit the metre?");
-  s.say_if(Kind::far_plane, !p.oblique && (far_m < 4.0 * near_m || far_m < 50.0), "Camera::clip_from_view has its far plane at ", far_m,
-           " m and its near plane at ", near_m, " m; expected the whole scene between them: is depth 0 to 1, and the unit the metre?");
+  s.say_if(Kind::far_plane, !p.oblique && (far_m < 4.0 * near_m || far_m < 50.0),
+           "Camera::clip_from_view has its far plane at ", far_m, " m and its near plane at ", near_m,
+           " m; expected the whole scene between them: is depth 0 to 1, and the unit the metre?");
   const VkFormat format = state.desc.depth_format;
-  const bool short_depth = format == VK_FORMAT_D16_UNORM || format == VK_FORMAT_D16_UNORM_S8_UINT || format == VK_FORMAT_R16_UNORM;
+  const bool short_depth =
+      format == VK_FORMAT_D16_UNORM || format == VK_FORMAT_D16_UNORM_S8_UINT || format == VK_FORMAT_R16_UNORM;
   const double step = (sky == 0.0 ? 0.5 : -0.5) / 65535.0;
   const double sky_m = distance_at_depth(p, sky + step);
   constexpr double kVisible_m = 1e5;
@@ -170,14 +203,17 @@ void remark_on_coverage(Speaker& s, const FrameInputs& inputs, const FrameState&
     elsewhere = elsewhere || f.low[axis] - slack > 1.0 || f.high[axis] + slack < 0.0;
     sizes = std::max(sizes, size);
   }
-  // A map that is much smaller than the view ends at what casts shadows, which may be out of sight; and what is seen from high
-  // up may have no ground to be shadowed.
+  // A map that is much smaller than the view ends at what casts shadows, which may be out of sight; and what
+  // is seen from high up may have no ground to be shadowed.
   constexpr float kHigh_m = 10000.0F;
   elsewhere = elsewhere && sizes < 20.0 && state.frame.camera_altitude_m < kHigh_m;
-  s.say_if(Kind::cascade_clip, clip, "FrameInputs::cascades[first_marched_cascade] puts the view at ", f.low[0], " to ", f.high[0],
-           " of its map; expected texture coordinates, 0 to 1: does shadow_from_world lead to clip space, -1 to 1?");
-  s.say_if(Kind::cascade_elsewhere, elsewhere && !clip, "FrameInputs::cascades[first_marched_cascade] puts the view at u ", f.low[0], " to ",
-           f.high[0], " and v ", f.low[1], " to ", f.high[1],
+  s.say_if(Kind::cascade_clip, clip, "FrameInputs::cascades[first_marched_cascade] puts the view at ",
+           f.low[0], " to ", f.high[0],
+           " of its map; expected texture coordinates, 0 to 1: does shadow_from_world lead to clip space, -1 "
+           "to 1?");
+  s.say_if(Kind::cascade_elsewhere, elsewhere && !clip,
+           "FrameInputs::cascades[first_marched_cascade] puts the view at u ", f.low[0], " to ", f.high[0],
+           " and v ", f.low[1], " to ", f.high[1],
            " of its map; expected the camera and what it sees within 0 to 1: nothing will be shadowed");
 }
 
@@ -202,7 +238,8 @@ void remark_on_cascades(Speaker& s, const FrameInputs& inputs, const FrameState&
       astray = i;
       degrees = off;
     }
-    if (depth_along * (state.desc.shadow_depth_reversed ? -1.0 : 1.0) > 0.0) upside_down = std::min(upside_down, i);
+    if (depth_along * (state.desc.shadow_depth_reversed ? -1.0 : 1.0) > 0.0)
+      upside_down = std::min(upside_down, i);
   }
   const auto number = [](std::size_t i) { return static_cast<std::uint64_t>(i); };
   s.say_if(Kind::cascade_range, empty < count, "FrameInputs::cascades[", number(empty),
@@ -211,15 +248,16 @@ void remark_on_cascades(Speaker& s, const FrameInputs& inputs, const FrameState&
            "] ends before the one in front of it; expected cascades from near to far");
   s.say_if(Kind::cascade_sun, astray < count, "FrameInputs::cascades[", number(astray), "] looks ", degrees,
            " degrees past the sun; expected a map and a depth along Sun::direction_to_sun");
-  s.say_if(Kind::cascade_depth, upside_down < count && astray == count, "FrameInputs::cascades[", number(upside_down), "] has depth ",
-           state.desc.shadow_depth_reversed ? "0" : "1", " nearest to the sun; expected ", state.desc.shadow_depth_reversed ? "1" : "0",
+  s.say_if(Kind::cascade_depth, upside_down < count && astray == count, "FrameInputs::cascades[",
+           number(upside_down), "] has depth ", state.desc.shadow_depth_reversed ? "0" : "1",
+           " nearest to the sun; expected ", state.desc.shadow_depth_reversed ? "1" : "0",
            ": EffectDesc::shadow_depth_reversed is ", state.desc.shadow_depth_reversed ? "on" : "off");
   const double last_m = static_cast<double>(inputs.cascades.back().far_m);
-  s.say_if(Kind::cascade_unit, last_m > 0.0 && last_m < 1.0, "the last of FrameInputs::cascades ends ", last_m,
-           " m from the camera; expected at least 1 m: is the unit the metre?");
+  s.say_if(Kind::cascade_unit, last_m > 0.0 && last_m < 1.0, "the last of FrameInputs::cascades ends ",
+           last_m, " m from the camera; expected at least 1 m: is the unit the metre?");
   const double start_m = static_cast<double>(inputs.cascades[first].near_m);
-  s.say_if(Kind::cascade_start, start_m > 1.0, "FrameInputs::cascades[first_marched_cascade] starts ", start_m,
-           " m from the camera; expected 0: the air before it is taken as lit");
+  s.say_if(Kind::cascade_start, start_m > 1.0, "FrameInputs::cascades[first_marched_cascade] starts ",
+           start_m, " m from the camera; expected 0: the air before it is taken as lit");
   remark_on_coverage(s, inputs, state);
 }
 
@@ -233,17 +271,22 @@ void Remarks::on_frame(const FrameInputs& inputs, const FrameState& state, const
   remark_on_view(s, inputs, state);
   remark_on_projection(s, inputs, state);
   s.say_if(Kind::no_cascades, p.light_shafts && inputs.cascades.empty(),
-           "scattering.light_shafts is on, but FrameInputs::cascades is empty; expected shadow cascades: nothing will be shadowed");
-  s.say_if(Kind::no_shafts, inputs.shadow_colors.view != VK_NULL_HANDLE && (inputs.cascades.empty() || !p.light_shafts),
+           "scattering.light_shafts is on, but FrameInputs::cascades is empty; expected shadow cascades: "
+           "nothing will be shadowed");
+  s.say_if(Kind::no_shafts,
+           inputs.shadow_colors.view != VK_NULL_HANDLE && (inputs.cascades.empty() || !p.light_shafts),
            "there are FrameInputs::shadow_colors, but no light shafts for them: nothing will be coloured");
   if (p.light_shafts && !inputs.cascades.empty()) remark_on_cascades(s, inputs, state);
   const bool needs_tables = p.enabled && !is_homogeneous(p) &&
                             (p.single == SingleScattering::table || p.multiple != MultipleScattering::none);
   s.say_if(Kind::tables, needs_tables && !state.tables_ready,
-           "the scattering tables are not built; expected record_precompute() until its progress is complete: the air is black before");
-  s.say_if(Kind::unfinished, state.unfinished.has_value(), "frame_index ", inputs.frame_index, " takes the constants of frame ",
-           state.unfinished.value_or(0), ", whose commands have not completed or were never submitted; expected at most "
-           "EffectDesc::frames_in_flight (", std::uint64_t{state.desc.frames_in_flight}, ") frames at a time");
+           "the scattering tables are not built; expected record_precompute() until its progress is "
+           "complete: the air is black before");
+  s.say_if(Kind::unfinished, state.unfinished.has_value(), "frame_index ", inputs.frame_index,
+           " takes the constants of frame ", state.unfinished.value_or(0),
+           ", whose commands have not completed or were never submitted; expected at most "
+           "EffectDesc::frames_in_flight (",
+           std::uint64_t{state.desc.frames_in_flight}, ") frames at a time");
 }
 
 }  // namespace tyndall

@@ -15,14 +15,14 @@ struct FrameState {
   const EffectDesc& desc;
   const Params& params;
   const shared::FrameConstants& frame;
-  bool tables_ready = false;                 // built at least once
+  bool tables_ready = false;                // built at least once
   std::optional<std::uint64_t> unfinished;  // index of the frame whose commands may still use the slot
 };
 
 class Remarks {
  public:
-  // Says through `device` what looks wrong in a frame that passes check_frame(). Each kind of remark is made once for a view,
-  // and again only after a frame in which it did not hold. Allocates nothing.
+  // Says through `device` what looks wrong in a frame that passes check_frame(). Each kind of remark is made
+  // once for a view, and again only after a frame in which it did not hold. Allocates nothing.
   void on_frame(const FrameInputs& inputs, const FrameState& state, const DeviceInfo& device);
 
  private:

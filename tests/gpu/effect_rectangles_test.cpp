@@ -1,5 +1,5 @@
-// Pictures that are rectangles of larger images: they are the same bytes as pictures with images of their own, whatever
-// the images hold around them, and nothing is written there.
+// Pictures that are rectangles of larger images: they are the same bytes as pictures with images of their
+// own, whatever the images hold around them, and nothing is written there.
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -46,7 +46,9 @@ TestFrame picture(VkExtent2D extent) {
   TestFrame frame = small_frame();
   frame.extent = extent;
   frame.background = {0.2F, 0.1F, 0.4F};
-  frame.distance_m = [](std::uint32_t x, std::uint32_t y) { return (x / 5 + y / 4) % 3 == 0 ? 0.0 : 3000.0 + 100.0 * x; };
+  frame.distance_m = [](std::uint32_t x, std::uint32_t y) {
+    return (x / 5 + y / 4) % 3 == 0 ? 0.0 : 3000.0 + 100.0 * x;
+  };
   return frame;
 }
 
@@ -62,7 +64,8 @@ TEST_F(EffectRectangles, ArePicturesOfTheirOwn) {
     Params changed = params;
     mode.change(changed);
     ASSERT_OK(effect.value().set_params(changed));
-    // Odd sizes; and once each whole blocks of pixels, a single column, a single row, and a corner of the image.
+    // Odd sizes; and once each whole blocks of pixels, a single column, a single row, and a corner of the
+    // image.
     const bool usual = &mode == &kModes[0];
     for (const VkExtent2D extent : {VkExtent2D{23, 13}, {24, 12}, {1, 9}, {9, 1}, {22, 15}}) {
       if (!usual && extent.width != 23) continue;
@@ -118,10 +121,14 @@ TEST_F(EffectRectangles, OffsetsOutsideTheImagesAreRefused) {
     return text;
   };
   EXPECT_EQ(message([](FrameInputs&) {}), "");
-  EXPECT_NE(message([](FrameInputs& f) { f.color.offset.x = -1; }).find("FrameInputs::color"), std::string::npos);
-  EXPECT_NE(message([](FrameInputs& f) { f.depth.offset.y = -7; }).find("FrameInputs::depth"), std::string::npos);
-  EXPECT_NE(message([](FrameInputs& f) { f.output.offset.x = 2000000000; }).find("FrameInputs::output"), std::string::npos);
-  EXPECT_NE(message([](FrameInputs& f) { f.shadow_maps.offset.x = 1; }).find("shadow_maps"), std::string::npos);
+  EXPECT_NE(message([](FrameInputs& f) { f.color.offset.x = -1; }).find("FrameInputs::color"),
+            std::string::npos);
+  EXPECT_NE(message([](FrameInputs& f) { f.depth.offset.y = -7; }).find("FrameInputs::depth"),
+            std::string::npos);
+  EXPECT_NE(message([](FrameInputs& f) { f.output.offset.x = 2000000000; }).find("FrameInputs::output"),
+            std::string::npos);
+  EXPECT_NE(message([](FrameInputs& f) { f.shadow_maps.offset.x = 1; }).find("shadow_maps"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What the effect says about its inputs: errors for what would draw garbage, remarks for what is hardly meant, each once,
-// and nothing about what is right, whatever the convention.
+// What the effect says about its inputs: errors for what would draw garbage, remarks for what is hardly
+// meant, each once, and nothing about what is right, whatever the convention.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,8 +22,8 @@ VkImageView view_number(std::uintptr_t number) {
   return reinterpret_cast<VkImageView>(number);  // NOLINT(performance-no-int-to-ptr): never used as one
 }
 
-// A camera 1200 m up that looks a little down and to the east of north, under a sun in the south-east; three cascades along
-// the sun, each a square around the view down to its end.
+// A camera 1200 m up that looks a little down and to the east of north, under a sun in the south-east; three
+// cascades along the sun, each a square around the view down to its end.
 struct Case {
   EffectDesc desc;
   Params params;
@@ -78,7 +78,8 @@ void place_cascades(Case& s) {
     c.near_m = s.cascades.empty() ? 0.0F : s.cascades.back().far_m;
     c.far_m = static_cast<float>(end);
     double middle[3];
-    for (int i = 0; i < 3; ++i) middle[i] = static_cast<double>(m[12 + i]) - 0.5 * end * static_cast<double>(m[8 + i]);
+    for (int i = 0; i < 3; ++i)
+      middle[i] = static_cast<double>(m[12 + i]) - 0.5 * end * static_cast<double>(m[8 + i]);
     const auto row = [&](int index, const double* axis, double scale) {
       const double offset = 0.5 - scale * (axis[0] * middle[0] + axis[1] * middle[1] + axis[2] * middle[2]);
       set_row(c.shadow_from_world, index, scale * axis[0], scale * axis[1], scale * axis[2], offset);
@@ -138,7 +139,8 @@ std::string remark_of(const std::function<void(Case&)>& change) {
 }
 
 void expect_words(const std::string& text, const std::vector<std::string>& words) {
-  for (const std::string& word : words) EXPECT_NE(text.find(word), std::string::npos) << "'" << word << "' in: " << text;
+  for (const std::string& word : words)
+    EXPECT_NE(text.find(word), std::string::npos) << "'" << word << "' in: " << text;
   EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 1) << text;
 }
 
@@ -208,7 +210,8 @@ TEST(FrameChecks, NothingIsSaidAboutARightFrame) {
 }
 
 TEST(FrameChecks, WhatDrawsGarbageIsAnError) {
-  const auto expect_error = [](const std::vector<std::string>& words, const std::function<void(Case&)>& change) {
+  const auto expect_error = [](const std::vector<std::string>& words,
+                               const std::function<void(Case&)>& change) {
     expect_words(error_of(change), words);
   };
   expect_error({"clip_from_view", "orthographic", "perspective"}, [](Case& s) {
@@ -222,7 +225,8 @@ TEST(FrameChecks, WhatDrawsGarbageIsAnError) {
     for (const int entry : {10, 11}) s.inputs.camera.clip_from_view.m[entry] *= -1.0F;
   });
   expect_error({"sky_depth is 1", "reversed Z"}, [](Case& s) { s.desc.sky_depth = 1.0F; });
-  expect_error({"sky_depth is 0", "expected 1"}, [](Case& s) { s.inputs.camera.clip_from_view = projection(0.1, false, 1e5); });
+  expect_error({"sky_depth is 0", "expected 1"},
+               [](Case& s) { s.inputs.camera.clip_from_view = projection(0.1, false, 1e5); });
   expect_error({"world_from_view", "0 0 0 1", "transposed"}, [](Case& s) {
     Mat4 turned;
     for (int i = 0; i < 16; ++i) turned.m[i] = s.inputs.camera.world_from_view.m[i % 4 * 4 + i / 4];
@@ -237,20 +241,25 @@ TEST(FrameChecks, WhatDrawsGarbageIsAnError) {
     s.cascades[1].shadow_from_world = turned;
   });
   expect_error({"cascades[2]", "zero"}, [](Case& s) { s.cascades[2].shadow_from_world = Mat4{{}}; });
-  expect_error({"cascades[0]", "zero or cannot be inverted"}, [](Case& s) { set_row(s.cascades[0].shadow_from_world, 2, 0, 0, 0, 0.5); });
+  expect_error({"cascades[0]", "zero or cannot be inverted"},
+               [](Case& s) { set_row(s.cascades[0].shadow_from_world, 2, 0, 0, 0, 0.5); });
   expect_error({"cascades[0]", "not finite"}, [](Case& s) { s.cascades[0].shadow_from_world.m[3] = kNaN; });
   expect_error({"cascades[1]", "near_m <= far_m"}, [](Case& s) { s.cascades[1].far_m = 10.0F; });
   expect_error({"FrameInputs::depth", "layout", "SHADER_READ_ONLY_OPTIMAL"},
                [](Case& s) { s.inputs.depth.layout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL; });
-  expect_error({"FrameInputs::color", "layout"}, [](Case& s) { s.inputs.color.layout = VK_IMAGE_LAYOUT_UNDEFINED; });
-  expect_error({"FrameInputs::shadow_maps", "layout"}, [](Case& s) { s.inputs.shadow_maps.layout = VK_IMAGE_LAYOUT_UNDEFINED; });
-  expect_error({"FrameInputs::output", "color or depth"}, [](Case& s) { s.inputs.output.view = s.inputs.color.view; });
+  expect_error({"FrameInputs::color", "layout"},
+               [](Case& s) { s.inputs.color.layout = VK_IMAGE_LAYOUT_UNDEFINED; });
+  expect_error({"FrameInputs::shadow_maps", "layout"},
+               [](Case& s) { s.inputs.shadow_maps.layout = VK_IMAGE_LAYOUT_UNDEFINED; });
+  expect_error({"FrameInputs::output", "color or depth"},
+               [](Case& s) { s.inputs.output.view = s.inputs.color.view; });
   expect_error({"FrameInputs::view is 1", "EffectDesc::views"}, [](Case& s) { s.inputs.view = 1; });
   expect_error({"FrameInputs::depth", "offset", "-1,0"}, [](Case& s) { s.inputs.depth.offset.x = -1; });
 }
 
 TEST(FrameChecks, WhatIsHardlyMeantIsRemarkedOn) {
-  const auto expect_remark = [](const std::vector<std::string>& words, const std::function<void(Case&)>& change) {
+  const auto expect_remark = [](const std::vector<std::string>& words,
+                                const std::function<void(Case&)>& change) {
     const std::string text = remark_of(change);
     EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
     expect_words(text, words);
@@ -283,15 +292,19 @@ TEST(FrameChecks, WhatIsHardlyMeantIsRemarkedOn) {
     s.params.scattering.light_shafts = false;
     s.inputs.camera.world_from_view.m[13] = 4e9F;
   });
-  expect_remark({"clip_from_view", "y up", "OpenGL"}, [](Case& s) { s.inputs.camera.clip_from_view.m[5] *= -1.0F; });
-  expect_remark({"clip_from_view", "near plane", "metre"}, [](Case& s) { s.inputs.camera.clip_from_view.m[14] = 1e-4F; });
+  expect_remark({"clip_from_view", "y up", "OpenGL"},
+                [](Case& s) { s.inputs.camera.clip_from_view.m[5] *= -1.0F; });
+  expect_remark({"clip_from_view", "near plane", "metre"},
+                [](Case& s) { s.inputs.camera.clip_from_view.m[14] = 1e-4F; });
   // OpenGL's depth, -1 to 1, reversed: at 0 is twice the near plane.
   expect_remark({"clip_from_view", "far plane", "depth 0 to 1"}, [](Case& s) {
     s.inputs.camera.clip_from_view.m[10] = 1.0001F;
     s.inputs.camera.clip_from_view.m[14] = 0.2F;
   });
-  expect_remark({"clip_from_view", "origin", "world_from_view"}, [](Case& s) { s.inputs.camera.clip_from_view.m[12] = 0.032F; });
-  expect_remark({"depth_format", "16 bits", "sky"}, [](Case& s) { s.desc.depth_format = VK_FORMAT_D16_UNORM; });
+  expect_remark({"clip_from_view", "origin", "world_from_view"},
+                [](Case& s) { s.inputs.camera.clip_from_view.m[12] = 0.032F; });
+  expect_remark({"depth_format", "16 bits", "sky"},
+                [](Case& s) { s.desc.depth_format = VK_FORMAT_D16_UNORM; });
   expect_remark({"depth_format", "16 bits", "sky"}, [](Case& s) {
     s.desc.depth_format = VK_FORMAT_D16_UNORM;
     s.desc.sky_depth = 1.0F;
@@ -305,15 +318,20 @@ TEST(FrameChecks, WhatIsHardlyMeantIsRemarkedOn) {
   };
   expect_remark({"cascades[first_marched_cascade]", "clip space", "0 to 1"}, on_each([](Mat4& m) {
                   for (int c = 0; c < 4; ++c) {
-                    for (int r = 0; r < 2; ++r) m.m[4 * c + r] = 2.0F * m.m[4 * c + r] - (c == 3 ? 1.0F : 0.0F);
+                    for (int r = 0; r < 2; ++r)
+                      m.m[4 * c + r] = 2.0F * m.m[4 * c + r] - (c == 3 ? 1.0F : 0.0F);
                   }
                 }));
-  expect_remark({"cascades[first_marched_cascade]", "nothing will be shadowed"}, on_each([](Mat4& m) { m.m[13] += 3.0F; }));
-  expect_remark({"cascades[0]", "past the sun", "direction_to_sun"}, [](Case& s) { s.inputs.sun.direction_to_sun = {0.0F, 1.0F, 0.0F}; });
+  expect_remark({"cascades[first_marched_cascade]", "nothing will be shadowed"},
+                on_each([](Mat4& m) { m.m[13] += 3.0F; }));
+  expect_remark({"cascades[0]", "past the sun", "direction_to_sun"}, [](Case& s) {
+    s.inputs.sun.direction_to_sun = {0.0F, 1.0F, 0.0F};
+  });
   expect_remark({"cascades[0]", "shadow_depth_reversed is off", "expected 0"}, on_each([](Mat4& m) {
                   for (int c = 0; c < 4; ++c) m.m[4 * c + 2] = (c == 3 ? 1.0F : 0.0F) - m.m[4 * c + 2];
                 }));
-  expect_remark({"cascades[0]", "shadow_depth_reversed is on", "expected 1"}, [](Case& s) { s.desc.shadow_depth_reversed = true; });
+  expect_remark({"cascades[0]", "shadow_depth_reversed is on", "expected 1"},
+                [](Case& s) { s.desc.shadow_depth_reversed = true; });
   expect_remark({"cascades[1]", "empty range"}, [](Case& s) { s.cascades[1].near_m = s.cascades[1].far_m; });
   expect_remark({"cascades[0]", "empty range"}, [](Case& s) {
     s.cascades.resize(1);
@@ -330,8 +348,11 @@ TEST(FrameChecks, WhatIsHardlyMeantIsRemarkedOn) {
   });
   expect_remark({"light_shafts", "nothing will be shadowed"}, [](Case& s) { s.cascades.clear(); });
   // The rest.
-  expect_remark({"tables are not built", "record_precompute()", "black"}, [](Case& s) { s.tables_ready = false; });
-  expect_remark({"direction_to_sun", "unit length"}, [](Case& s) { s.inputs.sun.direction_to_sun = {0.96F, 1.2F, 1.28F}; });
+  expect_remark({"tables are not built", "record_precompute()", "black"},
+                [](Case& s) { s.tables_ready = false; });
+  expect_remark({"direction_to_sun", "unit length"}, [](Case& s) {
+    s.inputs.sun.direction_to_sun = {0.96F, 1.2F, 1.28F};
+  });
   expect_remark({"angular_radius_rad", "degrees"}, [](Case& s) { s.inputs.sun.angular_radius_rad = 0.27F; });
   expect_remark({"irradiance is 0", "black"}, [](Case& s) { s.inputs.sun.irradiance = Vec3(0.0F); });
 }
