@@ -8,7 +8,7 @@
 .PHONY: demo check pictures accuracy epipolar-study models-study setup build format tidy clean
 
 PRESET ?= release
-OPERATORS = exponential reinhard reinhard-modified uncharted2 filmic-alu logarithmic adaptive-logarithmic agx pbr-neutral
+OPERATORS = exponential reinhard reinhard-modified uncharted2 filmic-alu logarithmic adaptive-logarithmic agx pbr-neutral exponential-channels
 
 demo: PRESET = release
 demo: TARGETS = tyndall

@@ -16,6 +16,7 @@ const uint kTonemapLogarithmic = 5u;
 const uint kTonemapAdaptiveLogarithmic = 6u;
 const uint kTonemapAgx = 7u;
 const uint kTonemapPbrNeutral = 8u;
+const uint kTonemapExponentialChannels = 9u;
 
 // More than this is this: every curve ends in white long before, and its square is far from overflow.
 const float kTonemapMost = 1.0e9;
@@ -109,6 +110,8 @@ vec3 tonemap_apply(uint operator_index, vec3 c, float white_point, float saturat
   if (operator_index == kTonemapFilmicAlu) return tonemap_filmic_alu(c);
   if (operator_index == kTonemapAgx) return tonemap_agx(c, saturation);
   if (operator_index == kTonemapPbrNeutral) return tonemap_pbr_neutral(c);
+  // O'Neil ("Accurate Atmospheric Scattering", GPU Gems 2, 2005, chapter 16).
+  if (operator_index == kTonemapExponentialChannels) return vec3(1.0) - exp(-c);
   float l = tonemap_luminance(c);
   if (l <= 1.0e-30) return vec3(0.0);
   float mapped = 1.0 - exp(-l);

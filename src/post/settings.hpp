@@ -18,8 +18,9 @@ enum class Operator : std::uint32_t {
   adaptive_logarithmic,
   agx,
   pbr_neutral,
+  exponential_channels,
 };
-constexpr std::uint32_t kOperators = 9;
+constexpr std::uint32_t kOperators = 10;
 
 struct TonemapSettings {
   Operator op = Operator::uncharted2;

@@ -72,6 +72,11 @@ TEST(PostCurves, Exponential) {
   expect_on_luminance(Operator::exponential, [](double l, double) { return -std::expm1(-l); });
 }
 
+// O'Neil (2005): 1 - exp(-fExposure * color).
+TEST(PostCurves, ExponentialOfChannels) {
+  expect_on_channels(Operator::exponential_channels, [](double x, double) { return -std::expm1(-x); });
+}
+
 TEST(PostCurves, Reinhard) {
   expect_on_luminance(Operator::reinhard, [](double l, double) { return 1.0 - 1.0 / (1.0 + l); });
 }

@@ -22,7 +22,7 @@ constexpr Row kRows[] = {
     {"reinhard-modified", "#2ca02c", validate::Mark::dashed}, {"uncharted2", "#d62728", validate::Mark::line},
     {"filmic-alu", "#ff7f0e", validate::Mark::line},        {"logarithmic", "#9467bd", validate::Mark::line},
     {"adaptive-logarithmic", "#9467bd", validate::Mark::dashed}, {"agx", "#8c564b", validate::Mark::dashed},
-    {"pbr-neutral", "#7f7f7f", validate::Mark::dotted},
+    {"pbr-neutral", "#7f7f7f", validate::Mark::dotted},     {"exponential-channels", "#1f77b4", validate::Mark::dotted},
 };
 static_assert(std::size(kRows) == post::kOperators);
 
