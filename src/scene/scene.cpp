@@ -11,6 +11,7 @@
 #include "scene/background_constants.hpp"
 #include "scene/chart.hpp"
 #include "scene/formats.hpp"
+#include "scene/unused_params.hpp"
 #include "scene_shaders.hpp"
 
 namespace tyndall::scene {
@@ -77,7 +78,8 @@ Result<std::unique_ptr<Scene>> Scene::create(gpu::Host& host, const SceneDesc& d
   out->scene_ = scene;
   TYNDALL_ASSIGN(out->terrain_, Terrain::create(host, scene.terrain, params.planet.radius_m, kColorFormat, kDepthFormat,
                                                  desc.terrain_coarseness));
-  out->notes_ = out->terrain_->notes();
+  out->notes_ = unused_params(params, scene);
+  add_notes(out->notes_, out->terrain_->notes());
   TYNDALL_TRY(check_model(scene));
   TYNDALL_ASSIGN(out->meshes_, out->make_meshes(scene, params.planet.radius_m));
   if (out->meshes_ != nullptr) add_notes(out->notes_, out->meshes_->notes());

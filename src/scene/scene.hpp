@@ -88,7 +88,8 @@ class Scene {
   // The ground under the scene, for other threads as well; none: flat at sea level.
   [[nodiscard]] std::shared_ptr<const ElevationSource> elevations() const { return terrain_->source(); }
 
-  // Remarks for the user, one line each: what a file needed, that the camera was lifted, ...
+  // Remarks for the user, one line each: what a file needed, which of the parameters that it was
+  // created with do nothing, that the camera was lifted, ...
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
   // Where the origin of the world is on the Earth, by the elevation file; nothing without one.
   [[nodiscard]] const std::optional<Place>& place() const { return terrain_->place(); }

@@ -1,0 +1,56 @@
+// Parameters that do nothing beside others are named, and scenes that are shipped have none.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "config/scene_file.hpp"
+#include "scene/unused_params.hpp"
+
+namespace tyndall::scene {
+namespace {
+
+std::vector<std::string> unused(std::initializer_list<const char*> assignments) {
+  config::Settings settings;
+  for (const char* const text : assignments) EXPECT_TRUE(config::set(settings, text, "--set").ok()) << text;
+  return unused_params(settings.effect, settings.scene);
+}
+
+using Lines = std::vector<std::string>;
+
+TEST(UnusedParams, DefaultsAndWhatIsUsedHaveNone) {
+  EXPECT_EQ(unused({}), Lines());
+  EXPECT_EQ(unused({"scattering.medium=homogeneous", "homogeneous_medium.density=3", "scattering.downscale=2"}), Lines());
+  EXPECT_EQ(unused({"scattering.model=oneil", "oneil.samples=9", "scattering.evaluate=pixel"}), Lines());
+  EXPECT_EQ(unused({"tonemap.auto_exposure=off", "tonemap.exposure=2"}), Lines());
+}
+
+TEST(UnusedParams, AreNamedWithTheirReason) {
+  EXPECT_EQ(unused({"scattering.model=oneil", "scattering.medium=homogeneous", "homogeneous_medium.density=3"}),
+            Lines({"scattering.medium, homogeneous_medium.density have no effect with scattering.model = oneil"}));
+  EXPECT_EQ(unused({"scattering.model=homogeneous", "scattering.medium=homogeneous"}),
+            Lines({"scattering.medium has no effect with scattering.model = homogeneous"}));
+  EXPECT_EQ(unused({"scattering.technique=brute-force", "scattering.downscale=2"}),
+            Lines({"scattering.downscale has no effect with scattering.technique = brute-force"}));
+  EXPECT_EQ(unused({"scattering.evaluate=pixel"}), Lines({"scattering.evaluate has no effect with scattering.model = atmosphere"}));
+  EXPECT_EQ(unused({"homogeneous_medium.extent_m=50"}),
+            Lines({"homogeneous_medium.extent_m has no effect with scattering.medium = atmosphere"}));
+  EXPECT_EQ(unused({"tonemap.exposure=4"}), Lines({"tonemap.exposure has no effect with tonemap.auto_exposure = true"}));
+  EXPECT_EQ(unused({"atmosphere.mie_scattering=1e-5,1e-5,1e-5"}),
+            Lines({"atmosphere.mie_scattering has no effect with atmosphere.custom_coefficients = false"}));
+  EXPECT_EQ(unused({"tonemap.operator=exponential-channels", "tonemap.saturation=0.5", "tonemap.white_point=2"}).size(), 2U);
+}
+
+TEST(UnusedParams, ShippedScenesHaveNone) {
+  int scenes = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(TYNDALL_SOURCE_DIR "/scenes")) {
+    if (entry.path().extension() != ".toml" || entry.path().parent_path().filename() == "presets") continue;
+    config::Settings settings;
+    ASSERT_TRUE(config::load(settings, entry.path().string()).ok()) << entry.path();
+    EXPECT_EQ(unused_params(settings.effect, settings.scene), Lines()) << entry.path();
+    ++scenes;
+  }
+  EXPECT_GT(scenes, 5);
+}
+
+}  // namespace
+}  // namespace tyndall::scene
