@@ -131,7 +131,7 @@ Result<SunAngles> find_sun(const SkyOptions& options) {
 }
 
 // Fills the image with irradiance times what the source answers, some rows at a time.
-Result<void> fill(image::Image& image, const SkyMap& map, double irradiance, SkySource& source) {
+Result<void> fill(image::Image& image, const SkyMap& map, const std::array<double, 3>& irradiance, SkySource& source) {
   Progress progress("sky");
   const std::uint32_t rows = static_cast<std::uint32_t>(std::max<std::size_t>(kBatchRays / map.width, 1));
   std::vector<models::Ray> rays;
@@ -146,7 +146,7 @@ Result<void> fill(image::Image& image, const SkyMap& map, double irradiance, Sky
     if (!found) return found.error();
     float* out = image.pixel(0, first);
     for (const models::Answer& answer : found.value()) {
-      for (const double channel : answer.radiance) *out++ = static_cast<float>(irradiance * channel);
+      for (std::size_t c = 0; c < 3; ++c) *out++ = static_cast<float>(irradiance[c] * answer.radiance[c]);
     }
   }
   return {};
@@ -200,7 +200,9 @@ int run_sky(Args args) {
   else scene.camera.position_m = {0.0F, static_cast<float>(sky.altitude_m), 0.0F};
   const SkyMap map = {options.size.width, options.size.height, sky.altitude_m,
                       sun.value().elevation_deg * kRadPerDeg, sun.value().azimuth_deg * kRadPerDeg};
-  const double irradiance = double{scene.sun.irradiance} * params.scattering.scale;
+  const double scale = params.scattering.scale;
+  const std::array<double, 3> irradiance = {scene.sun.irradiance.x * scale, scene.sun.irradiance.y * scale,
+                                            scene.sun.irradiance.z * scale};
 
   Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({options.device, false});
   if (!host) return fail(host.error());

@@ -121,7 +121,7 @@ void add_sun(image::Image& image, const SkyMap& map, const SunFace& sun, const s
     const double solid_angle = map.pixel_solid_angle(piece.y);
     float* const pixel = image.pixel(piece.x, piece.y);
     for (std::size_t c = 0; c < 3; ++c) {
-      pixel[c] += static_cast<float>(sun.irradiance * piece.flux[c] / (splitter.total()[c] * solid_angle));
+      pixel[c] += static_cast<float>(sun.irradiance[c] * piece.flux[c] / (splitter.total()[c] * solid_angle));
     }
   }
 }

@@ -25,7 +25,7 @@ struct SkyMap {
 struct SunFace {
   double angular_radius_rad = 0.0;
   std::array<double, 3> limb_exponent = {};  // see scene/sun_disc.hpp
-  double irradiance = 1.0;                   // above the atmosphere
+  std::array<double, 3> irradiance = {1.0, 1.0, 1.0};  // above the atmosphere
 };
 
 // Adds the sun's disc as the air and the horizon let it through. Every pixel gets its mean over the pixel, so

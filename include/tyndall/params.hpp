@@ -29,6 +29,7 @@ struct ParamInfo {
   std::string_view choices;  // enumerations only: the names, separated by '|', in order of value
   Affects affects;
   std::string_view doc;
+  bool grey = false;  // of a vec3: one value may stand for all three
 };
 
 #define ENUM_BEGIN(type) enum class type : std::uint32_t {

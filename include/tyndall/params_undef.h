@@ -7,6 +7,7 @@
 #undef PARAM_FLOAT
 #undef PARAM_UINT
 #undef PARAM_VEC3
+#undef PARAM_COLOR
 #undef PARAM_UVEC4
 #undef PARAM_FLAG
 #undef PARAM_ENUM

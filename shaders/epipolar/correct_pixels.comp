@@ -36,7 +36,7 @@ void put_pixel(uint at) {
   if (kHomogeneous) color *= homogeneous_phase(ray.cos_view_sun);
   if (frame.only == 0u) color += LOAD_COLOR(pixel) * through;
   // Seen against anything: green, as bright as a white surface under the sun.
-  if (epipolar.show_depth_breaks != 0u) color = vec3(0.0, frame.sun_irradiance.g * 0.3, 0.0);
+  if (epipolar.show_depth_breaks != 0u) color = vec3(0.0, dot(frame.sun_irradiance, vec3(0.1)), 0.0);
   STORE_COLOR(pixel, color);
 }
 

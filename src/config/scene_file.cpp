@@ -81,7 +81,7 @@ Result<void> load_value(Settings& settings, const Row& row, const toml::node& no
       parts.push_back(*text);
     }
   } else {
-    const std::optional<std::string> text = vector ? std::nullopt : scalar_text(node, row.info.type);
+    const std::optional<std::string> text = vector && !row.info.grey ? std::nullopt : scalar_text(node, row.info.type);
     if (!text) return wrong_type(row, node, where);
     parts.push_back(*text);
   }

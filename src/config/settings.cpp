@@ -40,7 +40,8 @@ bool is_real(ParamType type) { return type == ParamType::float32 || type == Para
 std::string expected(const Row& row) {
   const std::size_t count = components(row.info.type);
   const std::string_view kind = is_real(row.info.type) ? "number" : "whole number";
-  return count == 1 ? concat({"one ", kind}) : concat({std::to_string(count), " ", kind, "s"});
+  if (count == 1) return concat({"one ", kind});
+  return concat({row.info.grey ? "1 or " : "", std::to_string(count), " ", kind, "s"});
 }
 
 Error bad_value(const Row& row, std::string_view value, std::string_view problem, std::string_view where) {
@@ -126,6 +127,7 @@ const std::vector<Group>& groups() {
 #define PARAM_FLOAT(group, name, def, min, max, unit, affects, doc)
 #define PARAM_UINT(group, name, def, min, max, unit, affects, doc)
 #define PARAM_VEC3(group, name, def, min, max, unit, affects, doc)
+#define PARAM_COLOR(group, name, def, min, max, unit, affects, doc)
 #define PARAM_UVEC4(group, name, def, min, max, unit, affects, doc)
 #define PARAM_FLAG(group, name, def, affects, doc)
 #define PARAM_ENUM(group, name, type, def, affects, doc)
@@ -181,7 +183,8 @@ Result<void> set(Settings& settings, std::string_view key, std::string_view valu
   if (row->info.type == ParamType::string) return store(settings, *row, {std::string(value)}, where);
   const std::string_view text = trimmed(value);
   const std::size_t count = components(row->info.type);
-  if (count == 1) return store(settings, *row, {std::string(text)}, where);
+  const bool grey = row->info.grey && count_parts(text, ',') == 1;
+  if (count == 1 || grey) return store(settings, *row, {std::string(text)}, where);
   if (count_parts(text, ',') != count) {
     return bad_value(*row, text, concat({"is not ", expected(*row), " separated by commas"}), where);
   }
@@ -193,7 +196,8 @@ Result<void> set(Settings& settings, std::string_view key, std::string_view valu
 Result<void> store(Settings& settings, const Row& row, const std::vector<std::string>& parts,
                    std::string_view where) {
   const std::size_t count = components(row.info.type);
-  if (parts.size() != count) {
+  const bool grey = row.info.grey && parts.size() == 1;
+  if (parts.size() != count && !grey) {
     return bad_value(row, concat({std::to_string(parts.size()), " values"}),
                      concat({"is not ", expected(row)}), where);
   }
@@ -213,7 +217,7 @@ Result<void> store(Settings& settings, const Row& row, const std::vector<std::st
     bits[0] = *value;
   } else {
     for (std::size_t i = 0; i < count; ++i) {
-      Result<std::uint32_t> number = number_bits(row, parts[i], where);
+      Result<std::uint32_t> number = number_bits(row, parts[grey ? 0 : i], where);
       if (!number) return std::move(number).error();
       bits[i] = number.value();
     }

@@ -71,7 +71,7 @@ struct Group {
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> radiance_metadata(const Settings& settings);
 
 // Stores one value whose parts are already apart: for readers of other syntaxes. Numbers are given as
-// text; a vector has as many parts as components.
+// text; a vector has as many parts as components, a colour also one for all three.
 [[nodiscard]] Result<void> store(Settings& settings, const Row& row, const std::vector<std::string>& parts,
                                  std::string_view where);
 

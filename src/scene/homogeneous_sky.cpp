@@ -65,7 +65,7 @@ class HomogeneousSky : public SkyModel {
     out.sky_on_ground = narrow(models::homogeneous_sky_irradiance(out.medium, cos_sun));
     out.air_shown = frame.params.scattering.enabled.value != 0 ? 1.0F : 0.0F;
     out.ground_shown = frame.params.scattering.only.value != 0 ? 0.0F : 1.0F;
-    out.sun_irradiance = Vec3(static_cast<float>(frame.light.sun_irradiance));
+    out.sun_irradiance = frame.light.sun_irradiance;
     if (out.in_space != 0) fill_sky_by_sun(out.medium, out.sky_by_sun);
     std::memcpy(constants, &out, sizeof out);
     return {};

@@ -257,7 +257,7 @@ void Meshes::prepare(const View& view, const ShadowParams& shadows, const std::v
   out.camera_forward = to_vec3(view.forward);
   out.direction_to_sun = to_vec3(light.direction_to_sun);
   out.planet_radius_m = static_cast<float>(radius_m_);
-  out.sun_irradiance = Vec3(static_cast<float>(light.sun_irradiance));
+  out.sun_irradiance = light.sun_irradiance;
   out.atmosphere_height_m = static_cast<float>(light.atmosphere_height_m);
   out.ground_albedo = Vec3(kGroundAlbedo);
   out.sky_light = sky_light;

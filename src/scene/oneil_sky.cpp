@@ -73,7 +73,7 @@ class OneilSky : public SkyModel {
     // Of the ground sphere: sea level, or twice the depth of an eye below it.
     const double ground = radius + 2.0 * std::min(altitude, 0.0);
     out.horizon_rad = static_cast<float>(0.5 * std::numbers::pi + std::acos(std::clamp(ground / (radius + altitude), -1.0, 1.0)));
-    out.sun_irradiance = Vec3(static_cast<float>(frame.light.sun_irradiance));
+    out.sun_irradiance = frame.light.sun_irradiance;
     out.air_shown = frame.params.scattering.enabled ? 1.0F : 0.0F;
     out.ground_shown = frame.params.scattering.only ? 0.0F : 1.0F;
     // North is -z at the origin, which lies at 25 degrees of latitude.

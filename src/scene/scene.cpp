@@ -225,7 +225,9 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   const double nearest = std::min(20.0, 0.02 * static_cast<double>(scene_.shadows.distance_m));
   cascades_ = fit_cascades(view_, to_sun_, scene_.shadows, ground, std::max(0.5 * above, nearest));
   light_.direction_to_sun = to_sun_;
-  light_.sun_irradiance = static_cast<double>(scene_.sun.irradiance) * params_.scattering.scale;
+  const Vec3& sunlight = scene_.sun.irradiance;
+  const float scale = params_.scattering.scale;
+  light_.sun_irradiance = {sunlight.x * scale, sunlight.y * scale, sunlight.z * scale};
   light_.atmosphere_height_m = params_.atmosphere.height_m;
   light_.tables = tables_ready_ ? effect_->light_tables() : LightTables{};
   light_.shadow_maps = shadow_maps_.view.get();
@@ -299,7 +301,7 @@ Result<void> Scene::run_effect(VkCommandBuffer cmd) {
   inputs.cascades = {cascades.data(), cascades_.size()};
   inputs.first_marched_cascade = first_marched(scene_.shadows, cascades_);
   inputs.camera = camera_from_view(view_);
-  inputs.sun = {to_vec3(to_sun_), Vec3(scene_.sun.irradiance),
+  inputs.sun = {to_vec3(to_sun_), scene_.sun.irradiance,
                 static_cast<float>(scene_.sun.angular_radius_deg * kRadPerDeg)};
   inputs.output = {output_.view.get(), VK_IMAGE_LAYOUT_GENERAL};
   inputs.frame_index = frame_index_;

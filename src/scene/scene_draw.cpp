@@ -99,7 +99,7 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
   constants.world_from_view = camera_from_view(view_).world_from_view;
   constants.direction_to_sun = to_vec3(to_sun_);
   constants.angular_radius_rad = static_cast<float>(radius_rad);
-  constants.disc_radiance = Vec3(static_cast<float>(light_.sun_irradiance / solid_angle));
+  constants.disc_radiance = to_vec3(glm::dvec3(light_.sun_irradiance.x, light_.sun_irradiance.y, light_.sun_irradiance.z) / solid_angle);
   constants.pixel_angle_rad = static_cast<float>(2.0 * view_.tan_half_height / desc_.extent.height);
   const Vec3& nm = params_.atmosphere.wavelengths_nm;
   constants.limb_exponent = {limb_exponent(nm.x), limb_exponent(nm.y), limb_exponent(nm.z)};
@@ -113,7 +113,7 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
     place.azimuth_deg = scene_.moon.azimuth_deg;
     constants.direction_to_moon = to_vec3(direction_to_sun(place));
     constants.moon_radius_rad = static_cast<float>(scene_.moon.angular_radius_deg * kRadPerDeg);
-    constants.moon_irradiance = Vec3(static_cast<float>(light_.sun_irradiance));
+    constants.moon_irradiance = light_.sun_irradiance;
   }
   std::memcpy(background_constants_.mapped, &constants, sizeof constants);
 

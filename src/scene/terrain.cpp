@@ -269,7 +269,7 @@ Result<void> Terrain::prepare(const View& view, std::uint32_t height_px, const S
   out.planet_radius_m = static_cast<float>(radius_m_);
   out.direction_to_sun = to_vec3(light.direction_to_sun);
   out.atmosphere_height_m = static_cast<float>(light.atmosphere_height_m);
-  out.sun_irradiance = Vec3(static_cast<float>(light.sun_irradiance));
+  out.sun_irradiance = light.sun_irradiance;
   out.pixel_angle_rad = static_cast<float>(2.0 * view.tan_half_height / height_px);
   out.block_cells = static_cast<std::uint32_t>(lod_.block_cells());
   out.camera_position = to_vec3(view.position);

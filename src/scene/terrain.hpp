@@ -17,7 +17,7 @@ namespace tyndall::scene {
 // What shading the ground needs of a frame, apart from the geometry.
 struct TerrainLight {
   glm::dvec3 direction_to_sun = {};
-  double sun_irradiance = 0.0;  // above the atmosphere, times scattering.scale
+  Vec3 sun_irradiance = Vec3(0.0F);  // above the atmosphere, times scattering.scale
   double atmosphere_height_m = 0.0;
   LightTables tables;
   VkImageView shadow_maps = VK_NULL_HANDLE;

@@ -332,7 +332,7 @@ TEST_F(GpuScene, ShadingsTheCascadeViewAndTheSunsDisc) {
   // The disc, wide enough for 450 pixels: its radiance times solid angle is the irradiance, darkened limb or not.
   settings.sun.elevation_deg = settings.camera.pitch_deg = 30.0F;
   settings.sun.azimuth_deg = settings.camera.yaw_deg = 0.0F;
-  settings.sun.irradiance = 3.0F;
+  settings.sun.irradiance = {3.0F, 2.0F, 0.5F};
   settings.sun.angular_radius_deg = 2.0F;
   settings.camera.fov_deg = 6.0F;
   const image::Image disc = draw(*scene, settings);
@@ -349,7 +349,53 @@ TEST_F(GpuScene, ShadingsTheCascadeViewAndTheSunsDisc) {
     }
   }
   // The edge is a ramp of one pixel, where the limb is darkest.
-  for (const double total : sum) EXPECT_NEAR(total, 3.0, 0.03);
+  const double irradiance[3] = {3.0, 2.0, 0.5};
+  for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(sum[c], irradiance[c], 0.01 * irradiance[c]);
+}
+
+// Whoever draws the air: light of one channel comes from the sun's light in that channel, on the ground, in the air, on
+// the moon and on the disc.
+TEST_F(GpuScene, EveryModelTakesTheColourOfTheSun) {
+  const Params params = small_planet();
+  SceneParams scene_params;
+  scene_params.sun.elevation_deg = 12.0F;
+  scene_params.sun.azimuth_deg = 3.0F;
+  scene_params.sun.angular_radius_deg = 2.0F;
+  scene_params.camera.yaw_deg = 0.0F;
+  scene_params.camera.pitch_deg = 0.0F;
+  scene_params.camera.fov_deg = 60.0F;
+  scene_params.moon = {true, 20.0F, -15.0F, 3.0F};
+  scene_params.shadows.resolution = 512;
+  scene_params.shadows.cascades = 1;
+  scene_params.shadows.first_marched = 0;
+  const std::unique_ptr<Scene> scene = make(params, scene_params);
+  ASSERT_NE(scene, nullptr);
+  const Vec3 color(3.0F, 1.5F, 0.25F);
+  const auto expect_colored = [&](const char* what) {
+    scene_params.sun.irradiance = Vec3(1.0F);
+    const image::Image white = draw(*scene, scene_params);
+    scene_params.sun.irradiance = color;
+    const image::Image colored = draw(*scene, scene_params);
+    const float parts[3] = {color.x, color.y, color.z};
+    double worst = 0.0;
+    for (std::size_t i = 0; i < white.rgb.size(); ++i) {
+      const double expected = static_cast<double>(white.rgb[i]) * static_cast<double>(parts[i % 3]);
+      if (expected > 1e-12) worst = std::max(worst, std::abs(static_cast<double>(colored.rgb[i]) / expected - 1.0));
+    }
+    EXPECT_LT(worst, 1e-5) << what;
+    EXPECT_GT(luminance_sum(white), 0.0) << what;
+  };
+  expect_colored("atmosphere");
+  Params medium = params;
+  medium.scattering.medium = MediumKind::homogeneous;
+  ASSERT_OK(scene->set_params(medium));
+  expect_colored("homogeneous medium");
+  for (const ScatteringModel model : {ScatteringModel::homogeneous, ScatteringModel::oneil, ScatteringModel::oneil_table}) {
+    scene_params.scattering.model = model;
+    expect_colored("model");
+  }
+  scene_params.oneil.ground = OneilGround::sphere;
+  expect_colored("sphere");
 }
 
 TEST_F(GpuScene, SmoothGroundUnderAHighSunHasNoAcne) {

@@ -283,6 +283,16 @@ TEST_F(SceneFile, UnreadableFiles) {
   EXPECT_TRUE(load(settings, write("empty.toml", "")).ok());
 }
 
+TEST_F(SceneFile, TheSunIsGreyOrAColour) {
+  Settings settings;
+  ASSERT_TRUE(load(settings, write("grey.toml", "[sun]\nirradiance = 40\n")).ok());
+  EXPECT_EQ(settings.scene.sun.irradiance, Vec3(40.0F));
+  ASSERT_TRUE(load(settings, write("colour.toml", "[sun]\nirradiance = [1.5, 2, 0.25]\n")).ok());
+  EXPECT_EQ(settings.scene.sun.irradiance, Vec3(1.5F, 2.0F, 0.25F));
+  EXPECT_FALSE(load(settings, write("two.toml", "[sun]\nirradiance = [1.5, 2.0]\n")).ok());
+  EXPECT_FALSE(load(settings, write("place.toml", "[camera]\nposition_m = 3.0\n")).ok());
+}
+
 TEST_F(SceneFile, FilesAreFoundBesideTheScene) {
   write("dem.tif", "x");
   Settings settings;

@@ -57,6 +57,20 @@ TEST(ConfigSettings, SetReachesTheMembers) {
   EXPECT_EQ(settings.scene.terrain.seed, 4294967295U);
 }
 
+TEST(ConfigSettings, OneValueOfAColourMeansGrey) {
+  Settings settings;
+  ASSERT_TRUE(set(settings, "sun.irradiance=3.5").ok());
+  EXPECT_EQ(settings.scene.sun.irradiance, Vec3(3.5F));
+  EXPECT_EQ(value_text(*find_row("sun.irradiance"), settings), "3.5,3.5,3.5");
+  ASSERT_TRUE(set(settings, "sun.irradiance=1, 2 ,4").ok());
+  EXPECT_EQ(settings.scene.sun.irradiance, Vec3(1.0F, 2.0F, 4.0F));
+  EXPECT_EQ(failure("sun.irradiance=1,2"),
+            "'sun.irradiance' = '1,2' is not 1 or 3 numbers separated by commas, --set, allowed is 1 or 3 numbers, each 0 to 1e+06 relative");
+  EXPECT_EQ(failure("sun.irradiance=-1"),
+            "'sun.irradiance' = '-1' is out of range, --set, allowed is 1 or 3 numbers, each 0 to 1e+06 relative");
+  EXPECT_FALSE(set(settings, "camera.position_m=1").ok());  // a place is no colour
+}
+
 TEST(ConfigSettings, LimitsThemselvesAreAllowed) {
   Settings settings;
   EXPECT_TRUE(set(settings, "atmosphere.mie_g=0.99").ok());  // float(0.99) is above double 0.99
