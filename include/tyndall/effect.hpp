@@ -209,9 +209,8 @@ class Effect {
   // no Result, default values: null handles, zeros, empty strings and spans.
   Effect(Effect&&) noexcept;
   Effect& operator=(Effect&&) noexcept;
-  // Destroys everything at once. All commands that the effect recorded must have completed before, as for any Vulkan
-  // object that they use; the same holds for the effect that is assigned to. The effect cannot check this: the
-  // validation layers do.
+  // Destroys everything at once. All commands that the effect recorded must have completed before; the same holds for
+  // the effect that is assigned to. With check_inputs, DeviceInfo::message reports it when those of record() have not.
   ~Effect();
 
   // Checks and takes over new parameters: an error names the first that is out of range. Tables that become stale are

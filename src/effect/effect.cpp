@@ -84,6 +84,13 @@ MemoryUsage plan_memory(const gpu::Device& device, const EffectDesc& desc, const
 }
 
 
+Effect::State::~State() {
+  if (info.message == nullptr || !desc.check_inputs || !ring.unfinished()) return;
+  info.message(info.message_user, Severity::warning,
+               "an Effect is destroyed before the commands that it recorded have completed, or without submitting them; "
+               "expected to wait for them first");
+}
+
 Result<void> Effect::State::create_objects() {
   const bool full = desc.output_format == OutputFormat::rgba32f;
   TYNDALL_ASSIGN(no_air, gpu::create_compute_pipeline(

@@ -25,6 +25,11 @@ Result<void> open_device(gpu::Device& device, const DeviceInfo& info);
 [[nodiscard]] MemoryUsage plan_memory(const gpu::Device& device, const EffectDesc& desc, const Params& params);
 
 struct Effect::State {
+  State() = default;
+  ~State();
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
   DeviceInfo info;
   EffectDesc desc;
   Params params;

@@ -1,5 +1,6 @@
 #include "effect/frame_ring.hpp"
 
+#include <algorithm>
 #include <string>
 
 namespace tyndall {
@@ -37,6 +38,10 @@ Result<std::optional<std::uint64_t>> FrameRing::take(std::uint64_t frame_index, 
                    "second camera; "
                    "expected the next frame_index, another view below EffectDesc::views (" +
                    std::to_string(views_) + "), or to wait for the first commands"};
+}
+
+bool FrameRing::unfinished() const {
+  return std::any_of(slots_.begin(), slots_.end(), [this](const Slot& slot) { return busy(slot); });
 }
 
 void FrameRing::record_end(VkCommandBuffer cmd, std::uint64_t frame_index, std::uint32_t view) {

@@ -25,6 +25,8 @@ class FrameRing {
   // the index of another frame whose commands have not, if there is one: they are late, or were never
   // submitted.
   Result<std::optional<std::uint64_t>> take(std::uint64_t frame_index, std::uint32_t view) const;
+  // Whether there are commands that have not completed, because they are late or were never submitted.
+  [[nodiscard]] bool unfinished() const;
   // Behind the last command that reads the slot.
   void record_end(VkCommandBuffer cmd, std::uint64_t frame_index, std::uint32_t view);
 

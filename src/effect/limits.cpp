@@ -57,6 +57,7 @@ Result<void> check_same_desc(const EffectDesc& created, const EffectDesc& wanted
                                                   " cannot be changed, it must be that of Effect::desc()"};
   };
   if (wanted.frames_in_flight != created.frames_in_flight) return fixed("frames_in_flight");
+  if (wanted.views != created.views) return fixed("views");
   if (wanted.output_format != created.output_format) return fixed("output_format");
   if (wanted.sky_depth != created.sky_depth) return fixed("sky_depth");
   if (wanted.shadow_depth_reversed != created.shadow_depth_reversed) return fixed("shadow_depth_reversed");

@@ -149,6 +149,7 @@ class Scene {
   SceneParams scene_;
   std::unique_ptr<Terrain> terrain_;
   std::unique_ptr<Meshes> meshes_;  // none: no meshes, and terrain
+  std::vector<std::string> notes_;  // outlives the effect, whose messages it takes
   std::unique_ptr<Effect> effect_;
   std::unique_ptr<SkyModel> model_;  // none: the effect draws the air
   bool tables_ready_ = false;
@@ -173,7 +174,6 @@ class Scene {
   std::uint64_t drawn_terrain_ = 0;
   image::Image radiance_sum_, display_sum_;  // with camera.samples > 1
   std::vector<PassTime> times_;
-  std::vector<std::string> notes_;
 };
 
 // An error where scattering.model cannot draw what `scene` has.

@@ -1,6 +1,8 @@
 // Every call of the library that can run out of memory does so once, at each of its allocations: the call returns an
 // error, nothing has changed, nothing has leaked, and the same call then succeeds.
+#include <algorithm>
 #include <cstring>
+#include <optional>
 #include <string>
 
 #include "effect_frame.hpp"
@@ -191,6 +193,28 @@ TEST(EffectFaults, ParametersAreRefusedAtEveryAllocation) {
 TEST(EffectFaults, LimitsAreRefusedAtEveryAllocation) {
   refuse_everywhere("set_limits", Built::completely,
                     [](Effect& effect) { return effect.set_limits({128, 48}, 6, 300); }, 15, 0);
+}
+
+// Limits and parameters in one step; what is fixed stays fixed.
+TEST(EffectFaults, ParametersAndLimitsAreRefusedAtEveryAllocation) {
+  EffectDesc desc = small_desc();
+  desc.max_extent = {128, 48};
+  desc.shadow_colors = true;
+  refuse_everywhere("set_params with limits", Built::completely,
+                    [&](Effect& effect) { return effect.set_params(other_params(), desc); }, 60, 10);
+  Effect effect = make(Built::completely);
+  const Observed before = observe(effect);
+  const std::function<void(EffectDesc&)> changes[] = {
+      [](EffectDesc& d) { d.views = 2; }, [](EffectDesc& d) { d.frames_in_flight = 3; },
+      [](EffectDesc& d) { d.timings = false; }, [](EffectDesc& d) { d.counters = false; },
+      [](EffectDesc& d) { d.output_format = OutputFormat::rgba16f; }, [](EffectDesc& d) { d.sky_depth = 1.0F; },
+      [](EffectDesc& d) { d.shadow_depth_reversed = true; }};
+  for (const auto& change : changes) {
+    EffectDesc other = effect.desc();
+    change(other);
+    EXPECT_FALSE(effect.set_params(other_params(), other).ok());
+  }
+  expect_same(before, observe(effect), "fixed fields");
 }
 
 TEST(EffectFaults, ShadowColorsAreRefusedAtEveryAllocation) {
@@ -452,6 +476,47 @@ TEST_F(EffectFaultsOnDevice, ThePictureStays) {
   EXPECT_EQ(draw(effect, images.value(), frame), other);
   EXPECT_GE(refuse_everywhere(effect, images.value(), frame, [](Effect& e) { return e.set_shadow_colors(true); }), 1);
   EXPECT_EQ(draw(effect, images.value(), frame), other);
+}
+
+// Of commands that were recorded and have not run, and of those that have.
+TEST_F(EffectFaultsOnDevice, DestroyingInFlightIsReported) {
+  const TestFrame frame = small_frame();
+  Result<FrameImages> images = FrameImages::create(host(), frame, OutputFormat::rgba32f);
+  ASSERT_OK(images);
+  std::vector<std::string> said;
+  DeviceInfo device = info();
+  device.message_user = &said;
+  device.message = [](void* user, Severity, std::string_view text) {
+    static_cast<std::vector<std::string>*>(user)->emplace_back(text);
+  };
+  Params params = with_technique(Technique::brute_force);
+  params.tables.size = {4, 8, 8, 4};
+  EffectDesc desc = desc_for(frame);
+  desc.check_inputs = true;
+  Result<Effect> made = Effect::create(device, desc, params);
+  ASSERT_OK(made);
+  std::optional<Effect> effect(std::move(made).value());
+  const auto reports = [&] {
+    return std::count_if(said.begin(), said.end(), [](const std::string& s) { return s.find("is destroyed") != std::string::npos; });
+  };
+  draw(*effect, images.value(), frame);
+  FrameInputs inputs = images.value().inputs(frame);
+  inputs.frame_index = 1;
+  Result<void> recorded;
+  // The commands are dropped after recording: an error keeps them from being submitted.
+  EXPECT_FALSE(host().run([&](VkCommandBuffer cmd) -> Result<void> {
+    recorded = effect->record(cmd, inputs);
+    return Error{ErrorCode::invalid_argument, "not submitted"};
+  }).ok());
+  ASSERT_OK(recorded);
+  effect.reset();
+  EXPECT_EQ(reports(), 1);
+  made = Effect::create(device, desc, params);
+  ASSERT_OK(made);
+  effect.emplace(std::move(made).value());
+  draw(*effect, images.value(), frame);
+  effect.reset();
+  EXPECT_EQ(reports(), 1);
 }
 
 }  // namespace
