@@ -25,7 +25,7 @@ struct Horizon {
 Horizon horizon_at(const glm::dvec3& position, double radius_m) {
   Horizon h;
   h.up = scene::up_of(position, radius_m);
-  h.east = glm::normalize(glm::dvec3(1, 0, 0) - h.up * h.up.x);
+  h.east = scene::east_of(h.up);
   h.north = glm::cross(h.up, h.east);
   return h;
 }
@@ -45,7 +45,7 @@ CameraState camera_from_params(const scene::CameraParams& params, double radius_
 }
 
 void camera_to_params(const CameraState& camera, scene::CameraParams& params) {
-  params.position_m = scene::to_vec3(camera.position);
+  params.position_m = {camera.position.x, camera.position.y, camera.position.z};
   params.altitude_m = -1.0F;
   params.yaw_deg = static_cast<float>(camera.yaw_deg);
   params.pitch_deg = static_cast<float>(camera.pitch_deg);

@@ -20,8 +20,8 @@ bool same_value(const config::Row& row, const config::Settings& a, const config:
   if (row.info.type == ParamType::string) {
     return *reinterpret_cast<const std::string*>(at(row, a)) == *reinterpret_cast<const std::string*>(at(row, b));
   }
-  const std::size_t count = row.info.type == ParamType::vec3 ? 3 : row.info.type == ParamType::uvec4 ? 4 : 1;
-  return std::memcmp(at(row, a), at(row, b), 4 * count) == 0;
+  const std::size_t size = row.info.type == ParamType::dvec3 ? sizeof(double) : sizeof(float);
+  return std::memcmp(at(row, a), at(row, b), size * config::component_count(row.info.type)) == 0;
 }
 
 bool same_settings(const config::Settings& a, const config::Settings& b) {

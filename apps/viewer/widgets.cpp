@@ -28,7 +28,7 @@ T* at(const Row& row, Settings& settings) {
 }
 
 int component_count(const Row& row) {
-  return row.info.type == ParamType::vec3 ? 3 : row.info.type == ParamType::uvec4 ? 4 : 1;
+  return static_cast<int>(config::component_count(row.info.type));
 }
 
 // Ranges over several powers of ten are walked evenly in powers.
@@ -60,7 +60,15 @@ bool edit_float(const Row& row, const char* id, float* values, int count) {
   return ImGui::SliderScalarN(id, ImGuiDataType_Float, values, count, &min, &max, count > 1 ? "%.3g" : float_format(row, values[0]), flags);
 }
 
-// `place` tells where the choices are.
+// Places in double precision: metres count however far from the origin they stand.
+bool edit_place(const Row& row, const char* id, double* values) {
+  double largest = 0.0;
+  for (int i = 0; i < 3; ++i) largest = std::max(largest, std::abs(values[i]));
+  const auto speed = static_cast<float>(std::max(0.005 * largest, 0.01));
+  return ImGui::DragScalarN(id, ImGuiDataType_Double, values, 3, speed, &row.info.min, &row.info.max, "%.8g", kSlider);
+}
+
+// `place` says where the choices are.
 bool edit_whole(const Row& row, const char* id, std::uint32_t* values, int count, const std::function<void(std::uint32_t)>& place) {
   const auto min = static_cast<std::uint32_t>(row.info.min);
   const auto max = static_cast<std::uint32_t>(row.info.max);
@@ -147,6 +155,7 @@ void set_to_end(const Row& row, Settings& settings, bool largest) {
     case ParamType::vec3:
       std::fill_n(at<float>(row, settings), count, static_cast<float>(end));
       break;
+    case ParamType::dvec3: std::fill_n(at<double>(row, settings), count, end); break;
     case ParamType::uint32:
     case ParamType::uvec4:
       std::fill_n(at<std::uint32_t>(row, settings), count, static_cast<std::uint32_t>(end));
@@ -202,6 +211,7 @@ bool Widgets::edit(const Row& row, Settings& settings) {
   switch (row.info.type) {
     case ParamType::float32: changed = edit_float(row, id, at<float>(row, settings), 1); break;
     case ParamType::vec3: changed = edit_float(row, id, at<float>(row, settings), 3); break;
+    case ParamType::dvec3: changed = edit_place(row, id, at<double>(row, settings)); break;
     case ParamType::uint32: {
       auto* const value = at<std::uint32_t>(row, settings);
       changed = edit_whole(row, id, value, 1, place_choice);

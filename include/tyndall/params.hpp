@@ -16,7 +16,7 @@ namespace tyndall {
 // What a change of a parameter makes stale, from cheap to dear.
 enum class Affects : std::uint32_t { Frame, Pipeline, Resources, Tables };
 
-enum class ParamType : std::uint32_t { float32, uint32, flag, enumeration, vec3, uvec4, string };
+enum class ParamType : std::uint32_t { float32, uint32, flag, enumeration, vec3, uvec4, string, dvec3 };
 
 // One row of a parameter table. `min` and `max` bound every component of numbers.
 struct ParamInfo {

@@ -8,6 +8,7 @@
 #undef PARAM_UINT
 #undef PARAM_VEC3
 #undef PARAM_COLOR
+#undef PARAM_DVEC3
 #undef PARAM_UVEC4
 #undef PARAM_FLAG
 #undef PARAM_ENUM

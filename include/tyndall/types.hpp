@@ -17,6 +17,15 @@ struct Vec3 {
   constexpr bool operator==(const Vec3&) const = default;
 };
 
+// For places far from the origin of the world, where a float would round to decimetres.
+struct DVec3 {
+  double x = 0.0, y = 0.0, z = 0.0;
+
+  constexpr DVec3() = default;
+  constexpr DVec3(double x_, double y_, double z_) : x(x_), y(y_), z(z_) {}
+  constexpr bool operator==(const DVec3&) const = default;
+};
+
 struct UVec4 {
   std::uint32_t x = 0, y = 0, z = 0, w = 0;
 

@@ -19,6 +19,8 @@ std::string_view type_name(ParamType type) {
       return "enum";
     case ParamType::vec3:
       return "vec3";
+    case ParamType::dvec3:
+      return "dvec3";
     case ParamType::uvec4:
       return "uvec4";
     case ParamType::string:
@@ -42,13 +44,11 @@ std::string_view affects_name(Affects affects) {
 }
 
 bool is_number(ParamType type) {
-  return type == ParamType::float32 || type == ParamType::uint32 || type == ParamType::vec3 ||
-         type == ParamType::uvec4;
+  return is_real(type) || type == ParamType::uint32 || type == ParamType::uvec4;
 }
 
 std::string limit_text(const Row& row, double limit) {
-  const bool real = row.info.type == ParamType::float32 || row.info.type == ParamType::vec3;
-  return real ? number_text(limit) : std::to_string(static_cast<std::int64_t>(limit));
+  return is_real(row.info.type) ? number_text(limit) : std::to_string(static_cast<std::int64_t>(limit));
 }
 
 std::string range_text(const Row& row) {
@@ -60,7 +60,7 @@ std::string range_text(const Row& row) {
 
 std::string json_value(const Row& row, const Settings& settings) {
   const std::string text = value_text(row, settings);
-  if (row.info.type == ParamType::vec3 || row.info.type == ParamType::uvec4) return concat({"[", text, "]"});
+  if (is_vector(row.info.type)) return concat({"[", text, "]"});
   if (row.info.type == ParamType::string || row.info.type == ParamType::enumeration) return quoted_text(text);
   return text;
 }

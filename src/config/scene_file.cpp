@@ -55,6 +55,7 @@ std::optional<std::string> scalar_text(const toml::node& node, ParamType type) {
       return std::nullopt;
     case ParamType::float32:
     case ParamType::vec3:
+    case ParamType::dvec3:
       if (const auto* real = node.as_floating_point()) return number_text(real->get());
       [[fallthrough]];
     case ParamType::uint32:
@@ -72,7 +73,7 @@ Error wrong_type(const Row& row, const toml::node& node, const std::string& wher
 
 Result<void> load_value(Settings& settings, const Row& row, const toml::node& node, std::string_view name) {
   const std::string where = position(name, node.source());
-  const bool vector = row.info.type == ParamType::vec3 || row.info.type == ParamType::uvec4;
+  const bool vector = is_vector(row.info.type);
   std::vector<std::string> parts;
   if (const toml::array* array = node.as_array(); vector && array != nullptr) {
     for (const toml::node& element : *array) {
@@ -306,12 +307,13 @@ std::string toml_number(std::string_view text, bool real) {
 
 std::string toml_value(const Row& row, const Settings& settings) {
   const std::string text = value_text(row, settings);
-  const bool real = row.info.type == ParamType::float32 || row.info.type == ParamType::vec3;
+  const bool real = is_real(row.info.type);
   switch (row.info.type) {
     case ParamType::string:
     case ParamType::enumeration:
       return quoted_text(text);
     case ParamType::vec3:
+    case ParamType::dvec3:
     case ParamType::uvec4: {
       std::string list = "[";
       for (std::size_t i = 0; i < count_parts(text, ','); ++i) {
@@ -335,8 +337,8 @@ void append_path(std::string& out, const scene::CameraPath& path) {
   for (const scene::PathFrame& frame : path.frames) {
     out.append("\n[[path]]\ntime_s = ").append(toml_number(number_text(frame.time_s), true)).append("\n");
     if (frame.position_m) {
-      const auto part = [](float value) { return toml_number(number_text(value), true); };
-      const Vec3& p = *frame.position_m;
+      const auto part = [](double value) { return toml_number(number_text(value), true); };
+      const DVec3& p = *frame.position_m;
       out.append("position_m = [").append(part(p.x)).append(", ").append(part(p.y)).append(", ").append(part(p.z)).append("]\n");
     }
     for (const FrameKey& key : kFrameKeys) {

@@ -30,15 +30,9 @@ T read_bytes(const std::byte* from) {
   return value;
 }
 
-std::size_t components(ParamType type) {
-  return type == ParamType::vec3 ? 3 : type == ParamType::uvec4 ? 4 : 1;
-}
-
-bool is_real(ParamType type) { return type == ParamType::float32 || type == ParamType::vec3; }
-
 // A count of components in words, for "expects 3 numbers".
 std::string expected(const Row& row) {
-  const std::size_t count = components(row.info.type);
+  const std::size_t count = component_count(row.info.type);
   const std::string_view kind = is_real(row.info.type) ? "number" : "whole number";
   if (count == 1) return concat({"one ", kind});
   return concat({row.info.grey ? "1 or " : "", std::to_string(count), " ", kind, "s"});
@@ -49,28 +43,38 @@ Error bad_value(const Row& row, std::string_view value, std::string_view problem
                      concat({"allowed is ", allowed_text(row)}));
 }
 
-// One component of a number as the four bytes that it is stored in.
-Result<std::uint32_t> number_bits(const Row& row, std::string_view text, std::string_view where) {
+// Bytes of one component of a number.
+std::size_t component_size(ParamType type) { return type == ParamType::dvec3 ? sizeof(double) : sizeof(float); }
+
+// One component of a number, which is written to `to` as it is stored.
+Result<void> store_number(const Row& row, std::string_view text, std::string_view where, std::byte* to) {
   NumberError problem = NumberError::none;
-  std::uint32_t bits = 0;
+  std::uint64_t bits = 0;
   bool inside = false;
-  if (is_real(row.info.type)) {
+  if (row.info.type == ParamType::dvec3) {
+    double value = 0.0;
+    problem = read_number(text, value);
+    inside = value >= row.info.min && value <= row.info.max;
+    std::memcpy(&bits, &value, sizeof(value));
+  } else if (is_real(row.info.type)) {
     float value = 0.0F;
     problem = read_number(text, value);
     inside = value >= static_cast<float>(row.info.min) && value <= static_cast<float>(row.info.max);
-    std::memcpy(&bits, &value, sizeof(bits));
+    std::memcpy(&bits, &value, sizeof(value));
   } else {
     std::int64_t value = 0;
     problem = read_integer(text, value);
     inside =
         value >= static_cast<std::int64_t>(row.info.min) && value <= static_cast<std::int64_t>(row.info.max);
-    bits = static_cast<std::uint32_t>(value);
+    const auto whole = static_cast<std::uint32_t>(value);
+    std::memcpy(&bits, &whole, sizeof(whole));
   }
   if (problem == NumberError::not_finite) return bad_value(row, text, "is not a finite number", where);
   if (problem == NumberError::not_a_number)
     return bad_value(row, text, concat({"is not ", expected(row)}), where);
   if (problem == NumberError::too_large || !inside) return bad_value(row, text, "is out of range", where);
-  return bits;
+  std::memcpy(to, &bits, component_size(row.info.type));
+  return {};
 }
 
 std::optional<std::uint32_t> flag_value(std::string_view text) {
@@ -105,6 +109,16 @@ std::vector<std::string> all_keys() {
 
 }  // namespace
 
+std::size_t component_count(ParamType type) {
+  return type == ParamType::vec3 || type == ParamType::dvec3 ? 3 : type == ParamType::uvec4 ? 4 : 1;
+}
+
+bool is_real(ParamType type) {
+  return type == ParamType::float32 || type == ParamType::vec3 || type == ParamType::dvec3;
+}
+
+bool is_vector(ParamType type) { return component_count(type) > 1; }
+
 std::string Row::key() const { return concat({info.group, ".", info.name}); }
 
 const std::vector<Row>& rows() {
@@ -128,6 +142,7 @@ const std::vector<Group>& groups() {
 #define PARAM_UINT(group, name, def, min, max, unit, affects, doc)
 #define PARAM_VEC3(group, name, def, min, max, unit, affects, doc)
 #define PARAM_COLOR(group, name, def, min, max, unit, affects, doc)
+#define PARAM_DVEC3(group, name, def, min, max, unit, affects, doc)
 #define PARAM_UVEC4(group, name, def, min, max, unit, affects, doc)
 #define PARAM_FLAG(group, name, def, affects, doc)
 #define PARAM_ENUM(group, name, type, def, affects, doc)
@@ -182,7 +197,7 @@ Result<void> set(Settings& settings, std::string_view key, std::string_view valu
   if (row == nullptr) return unknown_key(key, where);
   if (row->info.type == ParamType::string) return store(settings, *row, {std::string(value)}, where);
   const std::string_view text = trimmed(value);
-  const std::size_t count = components(row->info.type);
+  const std::size_t count = component_count(row->info.type);
   const bool grey = row->info.grey && count_parts(text, ',') == 1;
   if (count == 1 || grey) return store(settings, *row, {std::string(text)}, where);
   if (count_parts(text, ',') != count) {
@@ -195,7 +210,7 @@ Result<void> set(Settings& settings, std::string_view key, std::string_view valu
 
 Result<void> store(Settings& settings, const Row& row, const std::vector<std::string>& parts,
                    std::string_view where) {
-  const std::size_t count = components(row.info.type);
+  const std::size_t count = component_count(row.info.type);
   const bool grey = row.info.grey && parts.size() == 1;
   if (parts.size() != count && !grey) {
     return bad_value(row, concat({std::to_string(parts.size()), " values"}),
@@ -208,21 +223,20 @@ Result<void> store(Settings& settings, const Row& row, const std::vector<std::st
     *reinterpret_cast<std::string*>(target) = parts[0];
     return {};
   }
-  std::uint32_t bits[4] = {};
+  const std::size_t size = component_size(row.info.type);
+  std::byte bytes[sizeof(DVec3)] = {};  // the largest value
   if (row.info.type == ParamType::flag || row.info.type == ParamType::enumeration) {
     const bool flag = row.info.type == ParamType::flag;
     const std::optional<std::uint32_t> value = flag ? flag_value(parts[0]) : choice_value(row, parts[0]);
     if (!value)
       return bad_value(row, parts[0], flag ? "is neither on nor off" : "is not one of its values", where);
-    bits[0] = *value;
+    std::memcpy(bytes, &*value, sizeof(*value));
   } else {
     for (std::size_t i = 0; i < count; ++i) {
-      Result<std::uint32_t> number = number_bits(row, parts[grey ? 0 : i], where);
-      if (!number) return std::move(number).error();
-      bits[i] = number.value();
+      if (Result<void> read = store_number(row, parts[grey ? 0 : i], where, bytes + i * size); !read) return read;
     }
   }
-  std::memcpy(target, bits, count * sizeof(bits[0]));
+  std::memcpy(target, bytes, count * size);
   return {};
 }
 
@@ -239,11 +253,12 @@ std::string value_text(const Row& row, const Settings& settings) {
     default:
       break;
   }
-  for (std::size_t i = 0; i < components(row.info.type); ++i) {
+  for (std::size_t i = 0; i < component_count(row.info.type); ++i) {
     if (i > 0) text += ',';
-    const std::byte* const at = from + i * sizeof(std::uint32_t);
-    text += is_real(row.info.type) ? number_text(read_bytes<float>(at))
-                                   : std::to_string(read_bytes<std::uint32_t>(at));
+    const std::byte* const at = from + i * component_size(row.info.type);
+    text += row.info.type == ParamType::dvec3 ? number_text(read_bytes<double>(at))
+            : is_real(row.info.type)          ? number_text(read_bytes<float>(at))
+                                              : std::to_string(read_bytes<std::uint32_t>(at));
   }
   return text;
 }
@@ -263,7 +278,7 @@ std::string allowed_text(const Row& row) {
     default:
       break;
   }
-  const std::size_t count = components(row.info.type);
+  const std::size_t count = component_count(row.info.type);
   if (count > 1) text = concat({expected(row), ", each "});
   if (count == 1 && !is_real(row.info.type)) text = "a whole number, ";
   // Limits of whole numbers are written out: "4294967295", not "4.294967295e+09".

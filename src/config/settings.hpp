@@ -38,6 +38,12 @@ struct Group {
   std::string_view title;
 };
 
+// Numbers that a value of this type consists of, and whether they are real ones.
+[[nodiscard]] std::size_t component_count(ParamType type);
+[[nodiscard]] bool is_real(ParamType type);
+// Whether text and files write it as a list of numbers.
+[[nodiscard]] bool is_vector(ParamType type);
+
 // All parameters, the scene's first, in the order of the lists.
 [[nodiscard]] const std::vector<Row>& rows();
 [[nodiscard]] const std::vector<Group>& groups();

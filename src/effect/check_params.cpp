@@ -59,7 +59,8 @@ Result<void> check_params(const Params& params) {
                          ", allowed is 0 (off) or 1 (on)");
         }
         break;
-      case ParamType::string: break;  // of scenes only
+      case ParamType::string:
+      case ParamType::dvec3: break;  // of scenes only
     }
     std::memcpy(numbers, bytes + info.offset, count * sizeof(float));
     for (std::size_t i = 0; i < count; ++i) {

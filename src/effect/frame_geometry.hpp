@@ -6,9 +6,6 @@
 
 namespace tyndall {
 
-struct DVec3 {
-  double x = 0.0, y = 0.0, z = 0.0;
-};
 [[nodiscard]] double dot(const DVec3& a, const DVec3& b);
 [[nodiscard]] DVec3 cross(const DVec3& a, const DVec3& b);
 [[nodiscard]] double length(const DVec3& v);

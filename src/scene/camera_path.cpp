@@ -117,36 +117,30 @@ void set_angle(float& target, const std::optional<double>& value_deg) {
   if (value_deg) target = static_cast<float>(*value_deg - 360.0 * std::floor(*value_deg / 360.0));
 }
 
-glm::dvec3 world_of(const Vec3& p) { return {p.x, p.y, p.z}; }
-
 // The camera's place: the direction from the planet's centre as a curve in space, and the altitude apart.
 void move(CameraParams& camera, const Pose& pose, double radius_m) {
-  const glm::dvec3 at = world_of(camera.position_m);
+  const glm::dvec3 at = to_glm(camera.position_m);
   glm::dvec3 up = up_of(at, radius_m);
   for (int axis = 0; axis < 3; ++axis) {
     const std::optional<double> part = pose.value(
         [&](const PathFrame& frame) -> std::optional<double> {
           if (!frame.position_m) return std::nullopt;
-          return up_of(world_of(*frame.position_m), radius_m)[axis];
+          return up_of(to_glm(*frame.position_m), radius_m)[axis];
         },
         false, parabola_slope);
     if (part) up[axis] = *part;
   }
   const std::optional<double> scaled = pose.value([&](const PathFrame& frame) -> std::optional<double> {
     if (frame.altitude_m) return std::asinh(static_cast<double>(*frame.altitude_m) / kAltitudeScale_m);
-    if (frame.position_m) return std::asinh(altitude_of(world_of(*frame.position_m), radius_m) / kAltitudeScale_m);
+    if (frame.position_m) return std::asinh(altitude_of(to_glm(*frame.position_m), radius_m) / kAltitudeScale_m);
     return std::nullopt;
   });
   double altitude = altitude_of(at, radius_m);
   if (camera.altitude_m >= 0.0F) altitude = static_cast<double>(camera.altitude_m);
   if (scaled) altitude = kAltitudeScale_m * std::sinh(*scaled);
-  // Through the chart: at the surface it has no differences of large numbers.
-  const double horizontal = std::hypot(up.x, up.z);
-  const double arc_m = std::atan2(horizontal, up.y) * radius_m;
-  const double per_part = horizontal > 0.0 ? arc_m / horizontal : 0.0;
-  const glm::dvec3 place = world_from_map(up.x * per_part, up.z * per_part, altitude, radius_m);
-  camera.position_m = {static_cast<float>(place.x), static_cast<float>(place.y), static_cast<float>(place.z)};
-  camera.altitude_m = altitude >= 0.0 ? static_cast<float>(altitude) : -1.0F;  // finer than position_m far out
+  const glm::dvec3 place = at_altitude(glm::dvec3(0.0, -radius_m, 0.0) + up * radius_m, altitude, radius_m);
+  camera.position_m = {place.x, place.y, place.z};
+  camera.altitude_m = -1.0F;
 }
 
 }  // namespace

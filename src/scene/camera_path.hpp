@@ -14,7 +14,7 @@ namespace tyndall::scene {
 // What a keyframe leaves out, the others decide; what all of them leave out is the parameters'.
 struct PathFrame {
   double time_s = 0.0;
-  std::optional<Vec3> position_m;
+  std::optional<DVec3> position_m;
   std::optional<float> altitude_m;  // above sea level, >= 0; replaces that of position_m
   std::optional<float> yaw_deg, pitch_deg, fov_deg;
   std::optional<float> sun_elevation_deg, sun_azimuth_deg;

@@ -24,6 +24,7 @@ constexpr std::string_view file_name(std::string_view identifier) {
 #define PARAM_UINT(group, name, def, min, max, unit, affects, doc)
 #define PARAM_VEC3(group, name, def, min, max, unit, affects, doc)
 #define PARAM_COLOR(group, name, def, min, max, unit, affects, doc)
+#define PARAM_DVEC3(group, name, def, min, max, unit, affects, doc)
 #define PARAM_UVEC4(group, name, def, min, max, unit, affects, doc)
 #define PARAM_FLAG(group, name, def, affects, doc)
 #define PARAM_ENUM(group, name, type, def, affects, doc)
@@ -46,6 +47,8 @@ constexpr ParamInfo kTable[] = {
   {#group, file_name(#name), ParamType::vec3, AT(group, name), min, max, unit, "", Affects::affects, doc},
 #define PARAM_COLOR(group, name, def, min, max, unit, affects, doc) \
   {#group, file_name(#name), ParamType::vec3, AT(group, name), min, max, unit, "", Affects::affects, doc, true},
+#define PARAM_DVEC3(group, name, def, min, max, unit, affects, doc) \
+  {#group, file_name(#name), ParamType::dvec3, AT(group, name), min, max, unit, "", Affects::affects, doc},
 #define PARAM_UVEC4(group, name, def, min, max, unit, affects, doc) \
   {#group, file_name(#name), ParamType::uvec4, AT(group, name), min, max, unit, "", Affects::affects, doc},
 #define PARAM_FLAG(group, name, def, affects, doc) \

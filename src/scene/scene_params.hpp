@@ -24,6 +24,7 @@ namespace tyndall::scene {
 #define PARAM_UINT(group, name, def, min, max, unit, affects, doc) std::uint32_t name = def;
 #define PARAM_VEC3(group, name, def, min, max, unit, affects, doc) Vec3 name = Vec3 def;
 #define PARAM_COLOR(group, name, def, min, max, unit, affects, doc) Vec3 name = Vec3 def;
+#define PARAM_DVEC3(group, name, def, min, max, unit, affects, doc) DVec3 name = DVec3 def;
 #define PARAM_UVEC4(group, name, def, min, max, unit, affects, doc) UVec4 name = UVec4 def;
 #define PARAM_FLAG(group, name, def, affects, doc) Flag name = def;
 #define PARAM_ENUM(group, name, type, def, affects, doc) type name = type::def;
@@ -41,6 +42,7 @@ struct SceneParams {
 #define PARAM_UINT(group, name, def, min, max, unit, affects, doc)
 #define PARAM_VEC3(group, name, def, min, max, unit, affects, doc)
 #define PARAM_COLOR(group, name, def, min, max, unit, affects, doc)
+#define PARAM_DVEC3(group, name, def, min, max, unit, affects, doc)
 #define PARAM_UVEC4(group, name, def, min, max, unit, affects, doc)
 #define PARAM_FLAG(group, name, def, affects, doc)
 #define PARAM_ENUM(group, name, type, def, affects, doc)

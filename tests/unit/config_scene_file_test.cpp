@@ -38,6 +38,7 @@ std::string other_value(const Row& row, const Settings& defaults) {
     case ParamType::uint32:
       return number(0.6);
     case ParamType::vec3:
+    case ParamType::dvec3:
       return row.info.max <= 1.0 ? "0.1,1.5e-07,0.3" : number(0.3) + "," + number(0.7) + "," + number(0.5);
     case ParamType::uvec4:
       return number(1.0) + "," + number(0.5) + "," + number(0.25) + "," + number(0.0);
@@ -115,7 +116,7 @@ TEST_F(SceneFile, APathSurvivesARoundTrip) {
   const Result<void> loaded = load_text(settings, kPath, "p.toml");
   ASSERT_TRUE(loaded.ok()) << loaded.error().message;
   ASSERT_EQ(settings.path.frames.size(), 2U);
-  EXPECT_EQ(settings.path.frames[0].position_m->y, 1500.5F);
+  EXPECT_EQ(settings.path.frames[0].position_m->y, 1500.5);
   EXPECT_EQ(settings.path.frames[0].yaw_deg, 350.1F);
   EXPECT_FALSE(settings.path.frames[0].altitude_m.has_value());
   EXPECT_EQ(settings.path.frames[1].time_s, 12.5);

@@ -8,6 +8,7 @@
 #include <random>
 #include <set>
 
+#include "config/scene_file.hpp"
 #include "config/text.hpp"
 
 namespace tyndall::config {
@@ -79,20 +80,45 @@ TEST(ConfigSettings, LimitsThemselvesAreAllowed) {
 }
 
 TEST(ConfigSettings, FloatsReadBackExactly) {
-  const Row& row = *find_row("camera.position_m");
+  const Row& row = *find_row("atmosphere.rayleigh_scattering");
   std::mt19937 random(7);
   for (int i = 0; i < 20000; ++i) {
     Settings settings;
-    for (float* component : {&settings.scene.camera.position_m.x, &settings.scene.camera.position_m.y,
-                             &settings.scene.camera.position_m.z}) {
+    Vec3& value = settings.effect.atmosphere.rayleigh_scattering;
+    for (float* component : {&value.x, &value.y, &value.z}) {
       do {
-        *component = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
-      } while (!(std::abs(*component) <= 1.0e9F));
+        *component = std::bit_cast<float>(static_cast<std::uint32_t>(random()) & 0x7fffffffU);
+      } while (!(*component <= static_cast<float>(row.info.max)));
     }
     Settings back;
     ASSERT_TRUE(set(back, row.key(), value_text(row, settings), "test").ok()) << value_text(row, settings);
-    ASSERT_EQ(back.scene.camera.position_m, settings.scene.camera.position_m) << value_text(row, settings);
+    ASSERT_EQ(back.effect.atmosphere.rayleigh_scattering, value) << value_text(row, settings);
   }
+}
+
+TEST(ConfigSettings, PlacesReadBackInDoublePrecision) {
+  std::mt19937_64 random(8);
+  for (const char* key : {"camera.position_m", "meshes.position_m"}) {
+    const Row& row = *find_row(key);
+    const auto place = [&](Settings& of) -> DVec3& {
+      return row.info.group == "camera" ? of.scene.camera.position_m : of.scene.meshes.position_m;
+    };
+    for (int i = 0; i < 5000; ++i) {
+      Settings settings;
+      std::uniform_real_distribution<double> any(row.info.min, row.info.max);
+      place(settings) = {any(random), any(random), any(random)};
+      Settings back;
+      ASSERT_TRUE(set(back, row.key(), value_text(row, settings), "test").ok()) << value_text(row, settings);
+      ASSERT_EQ(place(back), place(settings)) << value_text(row, settings);
+      Settings filed;
+      ASSERT_TRUE(load_text(filed, to_toml(settings), "test").ok());
+      ASSERT_EQ(place(filed), place(settings)) << value_text(row, settings);
+    }
+  }
+  // A centimetre at five thousand kilometres, which a float rounds to half a metre.
+  Settings far;
+  ASSERT_TRUE(set(far, "camera.position_m=5000000.01,-2000000.02,0.5").ok());
+  EXPECT_EQ(far.scene.camera.position_m, DVec3(5000000.01, -2000000.02, 0.5));
 }
 
 TEST(ConfigSettings, MessagesSayWhatWhereAndWhatIsAllowed) {

@@ -17,7 +17,7 @@ namespace {
 using namespace desk;
 using config::Row;
 
-int components_of(const Row& row) { return row.info.type == ParamType::vec3 ? 3 : row.info.type == ParamType::uvec4 ? 4 : 1; }
+int components_of(const Row& row) { return static_cast<int>(config::component_count(row.info.type)); }
 
 // A number of the row, as the log has it.
 std::string text_of(const Row& row, double value) {

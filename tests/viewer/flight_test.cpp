@@ -45,7 +45,7 @@ TEST(Window, PlaysTheFlightOfTheScene) {
     scene::SceneParams pose;
     for (double t = 0.0; t < 40.0; t += 0.002) {
       const scene::SceneParams p = scene::pose_at(settings.path, t, settings.scene, settings.effect.planet.radius_m);
-      const double away_m = std::hypot(static_cast<double>(p.camera.position_m.x) - f.x, static_cast<double>(p.camera.position_m.z) - f.z);
+      const double away_m = std::hypot(p.camera.position_m.x - f.x, p.camera.position_m.z - f.z);
       if (away_m >= nearest_m) continue;
       nearest_m = away_m;
       at_s = t;
@@ -98,9 +98,9 @@ TEST(Window, FliesThroughThePicturesOfRender) {
   }
   const auto away_m = [&](double t) {
     const scene::SceneParams pose = scene::pose_at(flight.path, t, flight.scene, flight.effect.planet.radius_m);
-    const Vec3& a = pose.camera.position_m;
-    const Vec3& b = moment.scene.camera.position_m;
-    return std::hypot(static_cast<double>(a.x) - b.x, static_cast<double>(a.y) - b.y, static_cast<double>(a.z) - b.z);
+    const DVec3& a = pose.camera.position_m;
+    const DVec3& b = moment.scene.camera.position_m;
+    return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
   };
   double at_s = 0.0;
   for (double step_s = 0.01, first_s = 0.0, last_s = flight.path.duration_s(); step_s > 1.0e-7; step_s *= 0.1) {

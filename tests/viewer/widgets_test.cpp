@@ -17,7 +17,7 @@ TEST(ViewerWidgets, EveryTooltipHasMeaningRangeUnitAndDefault) {
     EXPECT_NE(text.find(row.info.doc), std::string::npos) << row.key();
     const std::string allowed = row.key() + ": " + config::allowed_text(row) + "\n";
     EXPECT_NE(text.find(allowed), std::string::npos) << text;
-    const bool number = row.info.type == ParamType::float32 || row.info.type == ParamType::vec3;
+    const bool number = config::is_real(row.info.type);
     if (number && !row.info.unit.empty() && row.info.unit != "1") {
       EXPECT_NE(allowed.find(" " + std::string(row.info.unit) + "\n"), std::string::npos) << allowed;
     }
