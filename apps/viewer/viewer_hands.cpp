@@ -77,7 +77,7 @@ void Viewer::follow_path(double seconds) {
 // Elevation of the ground below the camera [m].
 double Viewer::ground_below(const SceneFacts& facts) const {
   return facts.elevations != nullptr
-             ? scene::ground_height(*facts.elevations, scene::map_from_world(camera_.position, facts.radius_m))
+             ? scene::ground_height(*facts.elevations, scene::up_of(camera_.position, facts.radius_m), facts.radius_m)
              : 0.0;
 }
 

@@ -13,12 +13,12 @@ layout(location = 0) in vec2 ndc;
 layout(location = 0) out vec4 radiance;
 
 layout(push_constant) uniform Push {
-  mat4 world_from_ndc;   // directions: (x, y, 1, 0) of the picture to the world, the length along the view's axis 1
+  mat4 local_from_ndc;   // directions: (x, y, 1, 0) of the picture to the local frame, the length along the view's axis 1
   float near_m;
 } push;
 
 void main() {
-  vec3 direction = mat3(push.world_from_ndc) * vec3(ndc, 1.0);
+  vec3 direction = mat3(push.local_from_ndc) * vec3(ndc, 1.0);
   float view_depth_per_m = 1.0 / length(direction);
   direction *= view_depth_per_m;
   // Along the ray: t^2 + 2 b t + c = 0 with c small near the ground, so that no digits are lost.

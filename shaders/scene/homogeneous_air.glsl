@@ -11,7 +11,7 @@ const float kSunsOfSky = 64.0;
 
 layout(std430, binding = 6) readonly buffer model_block {
   Homogeneous medium;
-  vec3 eye_position;  // world [m]
+  vec3 eye_position;  // as all places and directions in the local frame [m]
   float eye_altitude_m;
   vec3 eye_up;
   float eye_cos_sun;

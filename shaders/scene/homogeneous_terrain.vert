@@ -16,5 +16,5 @@ void main() {
   level_layer = v.layer;
   float air_m;
   air_to(v.position - eye_position, false, vertex_extinction, vertex_inscattering, air_m);
-  gl_Position = push.clip_from_world * vec4(v.position, 1.0);
+  gl_Position = push.clip_from_local * vec4(v.position, 1.0);
 }

@@ -5,8 +5,8 @@
 #include "scene/mesh_light.glsl"
 #include "scene/mesh_push.glsl"
 
-layout(location = 0) in vec3 world_position;
-layout(location = 1) in vec3 world_normal;
+layout(location = 0) in vec3 local_position;
+layout(location = 1) in vec3 local_normal;
 layout(location = 2) in vec2 uv;
 layout(location = 3) in vec4 vertex_color;
 layout(location = 4) flat in float handed;
@@ -33,8 +33,8 @@ void main() {
   bool front = gl_FrontFacing == (handed > 0.0);
   vec4 base = texture(base_color, uv) * push.color * vertex_color;
   // The triangle's own normal, on the side of the eye. Taken before any discard: it needs the neighbours.
-  vec3 shape = cross(dFdx(world_position), dFdy(world_position));
-  vec3 to_eye = mesh.camera_position - world_position;
+  vec3 shape = cross(dFdx(local_position), dFdy(local_position));
+  vec3 to_eye = mesh.camera_position - local_position;
   shape = dot(shape, shape) > 0.0 ? normalize(shape) : vec3(0.0, 1.0, 0.0);
   if (dot(shape, to_eye) < 0.0) shape = -shape;
   if (!front && push.double_sided == 0u) discard;
@@ -45,14 +45,14 @@ void main() {
     radiance = vec4(through, 1.0);
     return;
   }
-  vec3 normal = front ? world_normal : -world_normal;
+  vec3 normal = front ? local_normal : -local_normal;
   float length_of_normal = length(normal);
   normal = length_of_normal > 1e-3 ? normal / length_of_normal : shape;
   if (dot(normal, shape) < 0.0) normal = shape;
 
-  SurfaceLight light = surface_light(world_position);
+  SurfaceLight light = surface_light(local_position);
   uint cascade;
-  vec3 near = irradiance(light, world_position, shape, normal, mesh.sky_light, cascade);
+  vec3 near = irradiance(light, local_position, shape, normal, mesh.sky_light, cascade);
   vec3 albedo = base.rgb;
   if (push.kind == kGlass) albedo *= 1.0 - push.transmission;
   if (push.kind == kBlend) albedo *= base.a;
@@ -66,7 +66,7 @@ void main() {
     float against = -dot(normal, mesh.direction_to_sun);
     if (against > 0.0) {
       uint outside;
-      float lit = sun_light_at(world_position, -shape, outside);
+      float lit = sun_light_at(local_position, -shape, outside);
       float lobe = forward_lobe(-dot(normalize(to_eye), mesh.direction_to_sun));
       sum += through * light.sun * (lit * against) * mix(kPerPi, lobe, kForwardShare);
     }

@@ -3,7 +3,7 @@
 #define TYNDALL_MESH_PUSH_GLSL
 
 layout(push_constant) uniform Push {
-  mat4 clip_from_world;
+  mat4 clip_from_local;
   vec4 color;
   float alpha_cutoff;
   float transmission;

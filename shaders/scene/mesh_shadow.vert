@@ -13,5 +13,5 @@ void main() {
   uv = v.uv;
   vertex_color = v.color;
   handed = v.handed;
-  gl_Position = push.clip_from_world * vec4(v.position, 1.0);
+  gl_Position = push.clip_from_local * vec4(v.position, 1.0);
 }

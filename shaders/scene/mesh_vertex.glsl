@@ -5,13 +5,14 @@
 #include "scene/mesh.h"
 #include "scene/mesh_push.glsl"
 
+layout(std430, binding = 0) readonly buffer mesh_block { MeshConstants mesh; };
 layout(std430, binding = 1) readonly buffer vertices_block { uint vertex_words[]; };
 layout(std430, binding = 2) readonly buffer instances_block { MeshInstance instances[]; };
 
 // MeshVertex of src/scene/mesh/mesh_data.hpp: nine words.
 struct MeshVertex {
-  vec3 position;  // world
-  vec3 normal;    // world, unit length
+  vec3 position;  // in the local frame
+  vec3 normal;    // likewise, unit length
   vec2 uv;
   vec4 color;
   float handed;
@@ -25,9 +26,10 @@ MeshVertex mesh_vertex(uint vertex, uint instance) {
   uint word = vertex * 9u;
   MeshInstance placed = instances[instance];
   MeshVertex v;
-  v.position = (placed.world_from_mesh * vec4(vertex_vec3(word), 1.0)).xyz;
+  v.position = (mesh.local_from_site * vec4((placed.site_from_mesh * vec4(vertex_vec3(word), 1.0)).xyz, 1.0)).xyz;
   vec3 n = vertex_vec3(word + 3u);
-  v.normal = normalize(placed.normal_x.xyz * n.x + placed.normal_y.xyz * n.y + placed.normal_z.xyz * n.z);
+  vec3 normal = placed.normal_x.xyz * n.x + placed.normal_y.xyz * n.y + placed.normal_z.xyz * n.z;
+  v.normal = normalize(mat3(mesh.local_from_site) * normal);
   v.uv = vec2(uintBitsToFloat(vertex_words[word + 6u]), uintBitsToFloat(vertex_words[word + 7u]));
   v.color = unpackUnorm4x8(vertex_words[word + 8u]);
   v.handed = placed.normal_x.w;

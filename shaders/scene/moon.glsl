@@ -11,7 +11,7 @@
 // edition, 2000: geometric albedo 0.12).
 const float kMoonAlbedo = 0.12;
 
-// Relief and plains at a point of the moon's surface, 1 on average; detail smaller than `footprint` fades.
+// Relief and plains at a point of the moon's surface (in the world, so that they stay where they are), 1 on average; detail smaller than `footprint` fades.
 float moon_shade(vec3 n, float footprint) {
   float plains = smoothstep(-0.05, 0.25, noise3_sum(n * 1.7, 4, 1.7 * footprint, 77u));
   float craters = noise3_sum(n * 9.0, 4, 9.0 * footprint, 78u);
@@ -22,7 +22,7 @@ vec3 beyond_air(vec3 direction) {
   vec3 light = sun_disc(direction);
   if (moon_radius_rad > 0.0) {
     float angle = 2.0 * asin(min(0.5 * distance(direction, direction_to_moon), 1.0));
-    float forward = dot(direction, -vec3(world_from_view[2]));
+    float forward = dot(direction, -vec3(local_from_view[2]));
     float pixel = pixel_angle_rad * forward * forward;
     float cover = clamp((moon_radius_rad - angle) / pixel + 0.5, 0.0, 1.0);
     if (cover > 0.0) {
@@ -33,7 +33,7 @@ vec3 beyond_air(vec3 direction) {
       vec3 n = normalize(across - direction_to_moon * max(facing, 0.02));
       float sun = max(dot(n, direction_to_sun), 0.0);
       float lit = 2.0 * kMoonAlbedo * sun / max(sun + facing, 1.0e-4);
-      light = mix(light, moon_irradiance * (0.318309886 * lit * moon_shade(n, pixel / moon_radius_rad)), cover);
+      light = mix(light, moon_irradiance * (0.318309886 * lit * moon_shade(mat3(world_from_local) * n, pixel / moon_radius_rad)), cover);
     }
   }
   return light;

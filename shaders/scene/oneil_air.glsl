@@ -27,7 +27,7 @@ layout(std430, binding = 6) readonly buffer model_block {
   float horizon_rad;     // zenith angle of the horizon
   vec3 sun_irradiance;   // above the air
   float air_shown;       // 0: no air
-  vec3 north_pole;       // of the sphere's surface
+  vec3 north_pole;       // of the sphere's surface, in the world
   float ground_shown;    // 0: nothing but the light of the air
   uint sphere_seed;
   uint is_sphere;        // the ground is the sphere, and not the terrain

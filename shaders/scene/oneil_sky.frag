@@ -21,7 +21,7 @@ vec3 sphere_radiance(vec3 direction) {
   float cos_sun = dot(up, to_sun);
   float facing = max(-dot(up, direction), 0.02);
   float footprint_rad = distance_m * pixel_angle_rad / (R * sqrt(facing));
-  vec3 albedo = is_sphere != 0u ? planet_albedo(up, north_pole, footprint_rad, sphere_seed) : kUnseenAlbedo;
+  vec3 albedo = is_sphere != 0u ? planet_albedo(mat3(world_from_local) * up, north_pole, footprint_rad, sphere_seed) : kUnseenAlbedo;
   vec3 sun;
   vec3 sky;
   light_on_ground(0.0, cos_sun, sun, sky);

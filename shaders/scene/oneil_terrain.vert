@@ -17,5 +17,5 @@ void main() {
   level_layer = v.layer;
   vec3 offset = v.position - eye_position;
   oneil_air(normalize(offset), length(offset), kAtDistance, vertex_rayleigh, vertex_mie, vertex_through);
-  gl_Position = push.clip_from_world * vec4(v.position, 1.0);
+  gl_Position = push.clip_from_local * vec4(v.position, 1.0);
 }

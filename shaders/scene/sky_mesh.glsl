@@ -4,7 +4,7 @@
 #define TYNDALL_SKY_MESH_GLSL
 
 layout(std430, binding = 1) readonly buffer mesh_block {
-  mat4 clip_from_world;
+  mat4 clip_from_local;
   vec3 mesh_up;      // away from the planet's centre
   uint mesh_columns;
   vec3 mesh_ahead;   // horizontal, below or above the sun
@@ -17,7 +17,7 @@ layout(std430, binding = 1) readonly buffer mesh_block {
 // Angle of a vertex from the zenith [rad].
 float sky_mesh_zenith(uint index) { return mesh_angles[mesh_columns + 1u + index / (mesh_columns + 1u)]; }
 
-// Unit vector from the camera to vertex `index`, in the world's frame.
+// Unit vector from the camera to vertex `index`, in the local frame.
 vec3 sky_mesh_direction(uint index) {
   uint row = index / (mesh_columns + 1u);
   float azimuth = mesh_angles[index - row * (mesh_columns + 1u)];
@@ -26,6 +26,6 @@ vec3 sky_mesh_direction(uint index) {
 }
 
 // Where a vertex at `offset` from the camera is drawn: at the depth of the sky, wherever it is.
-vec4 sky_mesh_clip(vec3 offset) { return clip_from_world * vec4(offset, 0.0); }
+vec4 sky_mesh_clip(vec3 offset) { return clip_from_local * vec4(offset, 0.0); }
 
 #endif

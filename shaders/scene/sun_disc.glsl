@@ -5,7 +5,7 @@
 #define TYNDALL_SUN_DISC_GLSL
 
 layout(std430, binding = 0) readonly buffer background_block {
-  mat4 world_from_view;
+  mat4 local_from_view;
   vec3 direction_to_sun;
   float angular_radius_rad;
   vec3 disc_radiance;     // mean over the disc
@@ -18,6 +18,7 @@ layout(std430, binding = 0) readonly buffer background_block {
   float moon_radius_rad;  // 0: no moon
   vec3 moon_irradiance;   // of the sun's light on it
   float unused_1;
+  mat4 world_from_local;  // directions
 };
 
 // In a direction of unit length; 0 beside the disc.
@@ -25,7 +26,7 @@ vec3 sun_disc(vec3 direction) {
   // The chord between unit vectors keeps the digits that the arc cosine of a dot product loses.
   float angle = 2.0 * asin(min(0.5 * distance(direction, direction_to_sun), 1.0));
   // Pixels away from the centre of the picture see a smaller angle.
-  float forward = dot(direction, -vec3(world_from_view[2]));
+  float forward = dot(direction, -vec3(local_from_view[2]));
   float pixel = pixel_angle_rad * forward * forward;
   float cover = clamp((angular_radius_rad - angle) / pixel + 0.5, 0.0, 1.0);
   float x = min(angle / angular_radius_rad, 1.0);

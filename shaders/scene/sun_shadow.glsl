@@ -27,7 +27,7 @@ vec3 cascade_place(uint c, vec3 position, vec3 normal) {
   float reach = SHADED.smooth_shadows != 0u ? 2.0 : 1.0;
   vec3 moved = position + normal * (texel_m * reach * sqrt(1.0 - cosine * cosine)) +
                SHADED.direction_to_sun * (0.5 * texel_m);
-  return (SHADED.shadow_from_world[c] * vec4(moved, 1.0)).xyz;
+  return (SHADED.shadow_from_local[c] * vec4(moved, 1.0)).xyz;
 }
 
 // Lit fraction in one cascade.

@@ -1,13 +1,14 @@
 // What the terrain's shaders read of one view (std430; every vec3 or vec2 pair fills 16 bytes). Filled by
-// src/scene/terrain.cpp.
+// src/scene/terrain.cpp. Places and directions are in the local frame of src/scene/local_frame.hpp.
 struct TerrainLevel {
-  ivec2 origin;  // global grid index of the texture's first sample
+  ivec2 origin;  // grid index on the chart of the texture's first sample
+  vec2 first_m;  // its place, as all places on the map from the origin of the local frame: see charts.glsl
   float cell_m;
   float range_m;
 };
 
 struct TerrainConstants {
-  vec2 camera_map;
+  vec2 camera_map;  // below the camera
   float vertical_m;
   float planet_radius_m;
   vec3 direction_to_sun;
@@ -26,7 +27,7 @@ struct TerrainConstants {
   uint show_cascades;
   vec3 camera_forward;
   uint has_glass;        // the maps of colours are there
-  mat4 shadow_from_world[8];
+  mat4 shadow_from_local[8];
   vec4 cascade[8];       // far view depth [m], texel x [m], texel y [m], depth range [m]
   TerrainLevel levels[16];
 };

@@ -11,5 +11,5 @@ void main() {
   TerrainVertex v = terrain_vertex(uint(gl_VertexIndex), uint(gl_InstanceIndex));
   place = vec4(v.texel, v.altitude_m, v.morph);
   level_layer = v.layer;
-  gl_Position = push.clip_from_world * vec4(v.position, 1.0);
+  gl_Position = push.clip_from_local * vec4(v.position, 1.0);
 }

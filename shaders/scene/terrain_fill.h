@@ -28,6 +28,7 @@ struct TerrainFill {
   int texel_mask;
   int layer;
   int unused;
+  vec2 first_m;  // place of first_sample from the origin of the local frame, on the map
 };
 
 #endif

@@ -5,14 +5,16 @@
 #ifndef TYNDALL_TERRAIN_GROUND_GLSL
 #define TYNDALL_TERRAIN_GROUND_GLSL
 
-#include "scene/chart.glsl"
+#include "scene/charts.glsl"
 #include "scene/terrain_shadow.glsl"
 #include "scene/terrain_materials.glsl"
 
 // A place on the ground, as terrain_vertex.glsl has it at the vertices.
 struct GroundPoint {
-  vec3 position;  // world
-  vec2 map_m;
+  vec3 position;   // in the local frame
+  vec3 direction;  // the point of the unit sphere below it, less the one over the local origin
+  vec2 offset_m;   // on the map, from the local origin
+  ivec2 units;     // on the own chart [1/64 m]
   float altitude_m;
   vec2 texel;         // in the level's texture
   vec2 parent_texel;  // in that of the next coarser level
@@ -22,6 +24,28 @@ struct GroundPoint {
 
 void ground_light(float altitude_m, float cos_sun_zenith, out vec3 sun, out vec3 sky);
 
+// What covers the ground, with the normal in the local frame: by each chart whose terrain counts here.
+TerrainMaterial ground_material(GroundPoint point, ChartAxes axes, vec3 normal, float bend, float footprint_m) {
+  float weights[6];
+  uint rest = chart_weights(point.direction, weights);
+  TerrainMaterial ground;
+  ground.albedo = vec3(0.0);
+  ground.normal = vec3(0.0);
+  while (rest != 0u) {
+    uint chart = uint(findLSB(rest));
+    rest &= rest - 1u;
+    bool own = chart == charts.own;
+    ChartAxes a = axes;
+    if (!own) a = chart_axes(chart, point.direction);
+    TerrainMaterial m = terrain_ground(terrain.shading, own ? point.units : chart_units(chart, point.direction), point.altitude_m,
+                                       map_from_local(normal, a), bend, footprint_m, terrain_chart_seed(terrain.seed, chart));
+    ground.albedo += weights[chart] * m.albedo;
+    ground.normal += weights[chart] * local_from_map(m.normal, a);
+  }
+  ground.normal = normalize(ground.normal);
+  return ground;
+}
+
 // Radiance of the ground at a point, towards the eye and before the air takes its part.
 vec3 ground_radiance(GroundPoint point) {
   vec3 shape = surface_shape(point.texel, point.layer);
@@ -30,17 +54,15 @@ vec3 ground_radiance(GroundPoint point) {
 
   vec3 to_eye = terrain.camera_position - point.position;
   float distance_m = length(to_eye);
-  float radius = terrain.planet_radius_m;
-  vec3 up = normalize(point.position + vec3(0.0, radius, 0.0));
-  vec3 smooth_normal = normal_from_gradient(gradient, up);
-  vec3 map_normal = normalize(vec3(-gradient.x, 1.0, -gradient.y));
+  ChartAxes axes = chart_axes(charts.own, point.direction);
+  vec3 up = axes.up;
+  vec3 smooth_normal = normal_from_gradient(gradient, axes);
   float pixel_m = distance_m * terrain.pixel_angle_rad;
   // A pixel's width on the ground, longer where the ground is seen at a slant: the geometric mean.
   float facing = max(dot(smooth_normal, to_eye) / distance_m, 0.05);
   float footprint_m = max(pixel_m / sqrt(facing), 0.01);
-  TerrainMaterial ground = terrain_ground(terrain.shading, terrain_units(point.map_m), point.altitude_m, map_normal,
-                                          shape.z, footprint_m, terrain.seed);
-  vec3 normal = normal_from_gradient(-ground.normal.xz / max(ground.normal.y, 0.05), up);
+  TerrainMaterial ground = ground_material(point, axes, smooth_normal, shape.z, footprint_m);
+  vec3 normal = ground.normal;
 
   uint cascade;
   float lit = sun_light_at(point.position, smooth_normal, cascade);
@@ -59,7 +81,7 @@ vec3 ground_radiance(GroundPoint point) {
 #ifdef SHADOW_COLORS
   if (lit > 0.0) sun *= sun_color_at(point.position, smooth_normal, cascade);
 #endif
-  float visible = sky_visibility(point.map_m, point.altitude_m);
+  float visible = sky_visibility(point.offset_m, point.altitude_m);
   vec3 sky = open_sky * (visible * 0.5 * (1.0 + dot(normal, up)));
   // The rest of the hemisphere is other ground, under the same sky and, on average, a flat ground's sun.
   vec3 sun_on_flat = sun_on_plane * max(dot(up, terrain.direction_to_sun), 0.0);

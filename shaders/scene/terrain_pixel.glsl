@@ -22,9 +22,12 @@ bool ground_of_pixel(ivec2 pixel, out GroundPoint point) {
   vec2 cells = stored.xy - 0.5;  // from the level's first sample, whose index is even
   point.texel = stored.xy;
   point.parent_texel = cells * 0.5 + vec2(level.origin / 2 - parent.origin) + 0.5;
-  point.map_m = (vec2(level.origin) + cells) * level.cell_m;
+  point.offset_m = cells * level.cell_m + level.first_m;
+  int cell_units = int(level.cell_m * kTerrainUnitsPerM + 0.5);
+  point.units = level.origin * cell_units + ivec2(floor(cells * float(cell_units) + 0.5));
   point.altitude_m = stored.z;
-  point.position = world_from_map(point.map_m, point.altitude_m, terrain.planet_radius_m);
+  point.direction = local_direction(point.offset_m);
+  point.position = local_position(point.direction, point.altitude_m);
   return true;
 }
 

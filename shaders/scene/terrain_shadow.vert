@@ -6,5 +6,5 @@
 
 void main() {
   TerrainVertex v = terrain_vertex(uint(gl_VertexIndex), uint(gl_InstanceIndex));
-  gl_Position = push.clip_from_world * vec4(v.position, 1.0);
+  gl_Position = push.clip_from_local * vec4(v.position, 1.0);
 }

@@ -79,6 +79,19 @@ float terrain_raster_height(TERRAIN_SOURCE source, ivec2 units, vec2 map_m, floa
   return clamp(s.height_m, source.raster_min_m - margin_m, source.raster_max_m + margin_m);
 }
 
+// 1 inside of the file, 0 outside of it, in between on its border.
+float terrain_file_share(TERRAIN_SOURCE source, ivec2 units) {
+  float share = 0.0;
+  if (source.kind != 0u) {
+    vec2 map_m = vec2(units) * (1.0 / kTerrainUnitsPerM);
+    vec2 half_m = vec2(source.raster_size) * (0.5 * source.raster_spacing_m);
+    // 0 on the border, 1 where it ends
+    vec2 depth = (half_m - abs(map_m)) / (half_m * (2.0 * kRasterBorder));
+    share = smoothstep(0.0, 1.0, min(depth.x, depth.y));
+  }
+  return share;
+}
+
 // Elevation in m, exaggeration included, at a place (1/64 m), without anything finer than about two spacings.
 float terrain_source_height(TERRAIN_SOURCE source, ivec2 units, float spacing_m) {
   float height_m = 0.0;
@@ -87,9 +100,7 @@ float terrain_source_height(TERRAIN_SOURCE source, ivec2 units, float spacing_m)
   } else {
     vec2 map_m = vec2(units) * (1.0 / kTerrainUnitsPerM);
     vec2 half_m = vec2(source.raster_size) * (0.5 * source.raster_spacing_m);
-    // 0 on the border, 1 where it ends
-    vec2 depth = (half_m - abs(map_m)) / (half_m * (2.0 * kRasterBorder));
-    float inside = smoothstep(0.0, 1.0, min(depth.x, depth.y));
+    float inside = terrain_file_share(source, units);
     if (inside < 1.0) {
       vec2 away = map_m / (4.0 * (half_m.x + half_m.y));
       height_m = (1.0 - inside) * (terrain_height_at(units, spacing_m, source.seed) +
@@ -98,6 +109,18 @@ float terrain_source_height(TERRAIN_SOURCE source, ivec2 units, float spacing_m)
     if (inside > 0.0) height_m += inside * terrain_raster_height(source, units, map_m, spacing_m);
   }
   return height_m * source.exaggeration;
+}
+
+// The same at a place of one of the planet's charts (src/scene/chart.hpp): the source is chart 0's, the others have
+// procedural mountains.
+float terrain_chart_height(TERRAIN_SOURCE source, uint chart, ivec2 units, float spacing_m) {
+  float height_m = 0.0;
+  if (chart == 0u) {
+    height_m = terrain_source_height(source, units, spacing_m);
+  } else {
+    height_m = terrain_height_at(units, spacing_m, terrain_chart_seed(source.seed, chart)) * source.exaggeration;
+  }
+  return height_m;
 }
 
 #endif

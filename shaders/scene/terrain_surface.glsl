@@ -30,18 +30,18 @@ vec3 surface_shape(vec2 texel, uint layer) {
   return mixed / (2.0 * terrain.levels[layer].cell_m);
 }
 
-// Elevation at map coordinates from the finest level with cells of at least `cell_m`.
-float coarse_height(vec2 map_m, float cell_m) {
+// Elevation at a place on the map from the finest level with cells of at least `cell_m`.
+float coarse_height(vec2 offset_m, float cell_m) {
   uint layer = 0u;
   while (layer + 1u < terrain.layers && terrain.levels[layer].cell_m < cell_m) ++layer;
   TerrainLevel level = terrain.levels[layer];
-  ivec2 texel = ivec2(floor(map_m / level.cell_m + 0.5)) - level.origin;
+  ivec2 texel = ivec2(floor((offset_m - level.first_m) / level.cell_m + 0.5));
   return height_at(clamp(texel, ivec2(0), ivec2(textureSize(terrain_heights, 0).xy) - 1), layer);
 }
 
 // The part of the sky's irradiance that the surrounding ground lets through, from the horizon's elevation
 // in eight directions at three distances: the mean of cos^2, exact for a uniform sky.
-float sky_visibility(vec2 map_m, float altitude_m) {
+float sky_visibility(vec2 offset_m, float altitude_m) {
   float visible = 0.0;
   for (int i = 0; i < 8; ++i) {
     float angle = 0.785398 * (float(i) + 0.5);
@@ -49,7 +49,7 @@ float sky_visibility(vec2 map_m, float altitude_m) {
     float tangent = 0.0;
     float reach = 200.0;
     for (int k = 0; k < 3; ++k) {
-      tangent = max(tangent, (coarse_height(map_m + direction * reach, 0.125 * reach) - altitude_m) / reach);
+      tangent = max(tangent, (coarse_height(offset_m + direction * reach, 0.125 * reach) - altitude_m) / reach);
       reach *= 4.0;
     }
     visible += 1.0 / (1.0 + tangent * tangent);

@@ -3,7 +3,7 @@
 #ifndef TYNDALL_TERRAIN_VERTEX_GLSL
 #define TYNDALL_TERRAIN_VERTEX_GLSL
 
-#include "scene/chart.glsl"
+#include "scene/charts.glsl"
 #include "scene/terrain.h"
 
 layout(std430, binding = 0) readonly buffer terrain_block { TerrainConstants terrain; };
@@ -11,13 +11,12 @@ layout(std430, binding = 1) readonly buffer blocks_block { ivec4 blocks[]; };
 layout(binding = 2) uniform sampler2DArray terrain_heights;
 
 layout(push_constant) uniform Push {
-  mat4 clip_from_world;
+  mat4 clip_from_local;
   uint first_block;
 } push;
 
 struct TerrainVertex {
-  vec3 position;   // world
-  vec2 map_m;
+  vec3 position;  // in the local frame
   float altitude_m;
   vec2 texel;        // in the level's texture
   vec2 parent_texel;
@@ -33,7 +32,7 @@ TerrainVertex terrain_vertex(uint vertex, uint instance) {
   ivec2 grid = block.xy + ivec2(vertex % side, vertex / side);
   ivec2 even = grid & ~1;
 
-  vec2 offset = vec2(grid) * level.cell_m - terrain.camera_map;
+  vec2 offset = vec2(grid - level.origin) * level.cell_m + level.first_m - terrain.camera_map;
   float away = sqrt(dot(offset, offset) + terrain.vertical_m * terrain.vertical_m);
   float morph = clamp((away - 0.75 * level.range_m) / (0.2 * level.range_m), 0.0, 1.0);
   if (layer + 1u == terrain.layers) morph = 0.0;
@@ -47,10 +46,9 @@ TerrainVertex terrain_vertex(uint vertex, uint instance) {
   float coarse = morph > 0.0 ? texelFetch(terrain_heights, ivec3(parent_grid, int(parent)), 0).r : own;
   v.altitude_m = mix(own, coarse, morph);
   vec2 slid = mix(vec2(grid), vec2(even), morph);
-  v.map_m = slid * level.cell_m;
   v.texel = slid - vec2(level.origin) + 0.5;
   v.parent_texel = slid * 0.5 - vec2(terrain.levels[parent].origin) + 0.5;
-  v.position = world_from_map(v.map_m, v.altitude_m, terrain.planet_radius_m);
+  v.position = local_position(local_direction((slid - vec2(level.origin)) * level.cell_m + level.first_m), v.altitude_m);
   return v;
 }
 

@@ -6,7 +6,7 @@
 namespace tyndall::scene {
 
 struct BackgroundConstants {
-  Mat4 world_from_view;
+  Mat4 local_from_view;
   Vec3 direction_to_sun;
   float angular_radius_rad;
   Vec3 disc_radiance;
@@ -19,6 +19,7 @@ struct BackgroundConstants {
   float moon_radius_rad;
   Vec3 moon_irradiance;
   float unused_1;
+  Mat4 world_from_local;
 };
 
 }  // namespace tyndall::scene

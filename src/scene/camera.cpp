@@ -13,14 +13,10 @@ constexpr double kRadPerDeg = 0.017453292519943295;
 
 View view_from_params(const CameraParams& camera, double aspect, double radius_m) {
   View view;
-  view.position = {camera.position_m.x, camera.position_m.y, camera.position_m.z};
-  if (camera.altitude_m >= 0.0F) {
-    const glm::dvec2 map = map_from_world(view.position, radius_m);
-    view.position = world_from_map(map.x, map.y, camera.altitude_m, radius_m);
-  }
+  view.position = to_glm(camera.position_m);
+  if (camera.altitude_m >= 0.0F) view.position = at_altitude(view.position, camera.altitude_m, radius_m);
   const glm::dvec3 zenith = up_of(view.position, radius_m);
-  // East along the chart's x axis, made horizontal; north completes the frame.
-  const glm::dvec3 east = glm::normalize(glm::dvec3(1, 0, 0) - zenith * zenith.x);
+  const glm::dvec3 east = east_of(zenith);
   const glm::dvec3 north = glm::cross(zenith, east);
   const double yaw = camera.yaw_deg * kRadPerDeg;
   const double pitch = camera.pitch_deg * kRadPerDeg;
@@ -57,8 +53,8 @@ glm::dmat4 clip_from_view(const View& view) {
 
 }  // namespace
 
-Camera camera_from_view(const View& view) {
-  return {to_mat4(world_from_view(view)), to_mat4(clip_from_view(view))};
+Camera camera_from_view(const View& view, const glm::dmat4& frame_from_world) {
+  return {to_mat4(frame_from_world * world_from_view(view)), to_mat4(clip_from_view(view))};
 }
 
 glm::dmat4 clip_from_world(const View& view) { return clip_from_view(view) * glm::inverse(world_from_view(view)); }

@@ -24,9 +24,10 @@ struct View {
 // Yaw and pitch are relative to the local horizontal and north of the camera's place on the planet.
 // camera.altitude_m >= 0 replaces the altitude of camera.position_m.
 [[nodiscard]] View view_from_params(const CameraParams& camera, double aspect, double radius_m);
-// Right-handed, looking down -z, reversed infinite depth: depth = near / distance.
-[[nodiscard]] Camera camera_from_view(const View& view);
-// The product of the two in double precision: large translations are rounded only once.
+// Right-handed, looking down -z, reversed infinite depth: depth = near / distance. In the frame that `frame_from_world`
+// leads to, which is close to the camera: floats hold no place far from the origin (src/scene/local_frame.hpp).
+[[nodiscard]] Camera camera_from_view(const View& view, const glm::dmat4& frame_from_world = glm::dmat4(1.0));
+// The product of the two in double precision.
 [[nodiscard]] glm::dmat4 clip_from_world(const View& view);
 // Unit vector towards the sun in the frame of the world's origin.
 [[nodiscard]] glm::dvec3 direction_to_sun(const SunParams& sun);

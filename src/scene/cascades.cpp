@@ -63,7 +63,7 @@ Bounds shell_bounds(const glm::dvec3& centre, double sphere_radius, const glm::d
   const double altitude = altitude_of(centre, ground.radius_m);
   const double gap = std::max({altitude - ground.max_m, ground.min_m - altitude, 0.0});
   const double disc = std::sqrt(std::max(sphere_radius * sphere_radius - gap * gap, 0.0));
-  const glm::dvec3 east = glm::normalize(glm::dvec3(1, 0, 0) - zenith * zenith.x);
+  const glm::dvec3 east = east_of(zenith);
   const glm::dvec3 north = glm::cross(zenith, east);
   Bounds bounds;
   caster_reach = 0.0;

@@ -55,11 +55,11 @@ class HomogeneousSky : public SkyModel {
     const glm::dvec3 up = up_of(frame.view.position, radius);
     const double altitude = altitude_of(frame.view.position, radius);
     const double cos_sun = std::clamp(glm::dot(up, frame.light.direction_to_sun), -1.0, 1.0);
-    out.eye_position = to_vec3(frame.view.position);
+    out.eye_position = to_vec3(frame.local.place(frame.view.position));
     out.eye_altitude_m = static_cast<float>(altitude);
-    out.eye_up = to_vec3(up);
+    out.eye_up = to_vec3(frame.local.direction(up));
     out.eye_cos_sun = static_cast<float>(cos_sun);
-    out.to_sun = to_vec3(frame.light.direction_to_sun);
+    out.to_sun = to_vec3(frame.local.direction(frame.light.direction_to_sun));
     out.in_space = altitude > static_cast<double>(frame.params.atmosphere.height_m) ? 1 : 0;
     out.sun_on_ground = narrow(models::homogeneous_sun(out.medium, cos_sun));
     out.sky_on_ground = narrow(models::homogeneous_sky_irradiance(out.medium, cos_sun));

@@ -9,7 +9,7 @@ namespace tyndall::scene::shared {
 
 #include "scene/mesh.h"
 
-static_assert(offsetof(MeshConstants, shadow_from_world) == 64 && offsetof(MeshConstants, sun_irradiance) % 16 == 0);
+static_assert(offsetof(MeshConstants, shadow_from_local) == 64 && offsetof(MeshConstants, sun_irradiance) % 16 == 0);
 static_assert(sizeof(MeshConstants) % 16 == 0 && sizeof(MeshInstance) == 112);
 
 }  // namespace tyndall::scene::shared

@@ -21,7 +21,7 @@ constexpr float kGroundAlbedo = 0.3F;  // of the bare ground, and of what lies u
 
 // As shaders/scene/mesh_push.glsl reads it.
 struct MeshPush {
-  Mat4 clip_from_world;
+  Mat4 clip_from_local;
   float color[4];
   float alpha_cutoff;
   float transmission;
@@ -30,30 +30,30 @@ struct MeshPush {
 };
 
 struct GroundPush {
-  Mat4 world_from_ndc;
+  Mat4 local_from_ndc;
   float near_m;
 };
 
-// East, up and south at a place of the map, turned and scaled.
-glm::dmat4 placement(const MeshParams& params, const Terrain& terrain, double radius_m) {
-  const glm::dvec3 p(params.position_m.x, params.position_m.y, params.position_m.z);
-  const glm::dvec3 origin = world_from_map(p.x, p.z, terrain.height_at({p.x, p.z}) + p.y, radius_m);
-  const glm::dvec3 up = up_of(origin, radius_m);
-  const glm::dvec3 east = glm::normalize(glm::dvec3(1, 0, 0) - up * up.x);
+// East, up and south at a place of the map, turned.
+glm::dmat4 site_of(const MeshParams& params, const Terrain& terrain, double radius_m) {
+  const glm::dvec3 p = to_glm(params.position_m);
+  const glm::dvec3 up = up_of(world_from_map(p.x, p.z, 0.0, radius_m), radius_m);
+  const glm::dvec3 origin = world_from_map(p.x, p.z, terrain.height_at(up) + p.y, radius_m);
+  const glm::dvec3 east = east_of(up);
   const glm::dvec3 south = glm::cross(east, up);
   const double yaw = params.yaw_deg * kRadPerDeg;
   glm::dmat4 out(1.0);
-  out[0] = glm::dvec4((east * std::cos(yaw) + south * std::sin(yaw)) * static_cast<double>(params.scale), 0.0);
-  out[1] = glm::dvec4(up * static_cast<double>(params.scale), 0.0);
-  out[2] = glm::dvec4((south * std::cos(yaw) - east * std::sin(yaw)) * static_cast<double>(params.scale), 0.0);
+  out[0] = glm::dvec4(east * std::cos(yaw) + south * std::sin(yaw), 0.0);
+  out[1] = glm::dvec4(up, 0.0);
+  out[2] = glm::dvec4(south * std::cos(yaw) - east * std::sin(yaw), 0.0);
   out[3] = glm::dvec4(origin, 1.0);
   return out;
 }
 
-shared::MeshInstance placed(const glm::dmat4& world_from_mesh) {
+shared::MeshInstance placed(const glm::dmat4& site_from_mesh) {
   shared::MeshInstance out = {};
-  out.world_from_mesh = to_mat4(world_from_mesh);
-  const glm::dmat3 m(world_from_mesh);
+  out.site_from_mesh = to_mat4(site_from_mesh);
+  const glm::dmat3 m(site_from_mesh);
   // The cofactors: the inverse transpose but for a factor, and defined where a mesh is flattened.
   const glm::dmat3 c(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
   const double handed = glm::determinant(m) < 0.0 ? -1.0 : 1.0;
@@ -94,13 +94,14 @@ Result<void> Meshes::load(const MeshParams& params, const Terrain& terrain) {
   } else {
     TYNDALL_ASSIGN(data_, load_gltf(params.source));
   }
-  world_from_model_ = placement(params, terrain, radius_m_);
+  world_from_site_ = site_of(params, terrain, radius_m_);
+  site_from_model_ = glm::dmat4(glm::dmat3(static_cast<double>(params.scale)));
   lowest_m_ = std::numeric_limits<double>::max();
   highest_m_ = std::numeric_limits<double>::lowest();
   for (std::size_t i = 0; i < corners_.size(); ++i) {
     const glm::dvec3 p((i & 1U) != 0 ? data_.bounds.max.x : data_.bounds.min.x, (i & 2U) != 0 ? data_.bounds.max.y : data_.bounds.min.y,
                        (i & 4U) != 0 ? data_.bounds.max.z : data_.bounds.min.z);
-    corners_[i] = glm::dvec3(world_from_model_ * glm::dvec4(p, 1.0));
+    corners_[i] = glm::dvec3(world_from_site_ * site_from_model_ * glm::dvec4(p, 1.0));
     const double altitude = altitude_of(corners_[i], radius_m_);
     if (!(std::abs(altitude) < 1.0e8)) {
       return Error{ErrorCode::invalid_argument, "the meshes reach farther than a planet, meshes.scale, allowed is a size of up to 10000 km"};
@@ -125,7 +126,7 @@ void Meshes::find_boxes() {
       Box box;
       for (std::uint32_t k = 0; k < part.index_count; ++k) box.add(data_.vertices[data_.indices[part.first_index + k]].position);
       if (mesh.instance_count == 1) {
-        boxes_.push_back(placed_box(world_from_model_ * glm::dmat4(data_.instances[mesh.first_instance]), box));
+        boxes_.push_back(placed_box(site_from_model_ * glm::dmat4(data_.instances[mesh.first_instance]), box));
       } else if (!box.empty()) {
         whole.add(box.min);
         whole.add(box.max);
@@ -133,7 +134,7 @@ void Meshes::find_boxes() {
     }
     if (mesh.instance_count == 1) continue;
     for (std::uint32_t i = 0; i < mesh.instance_count; ++i) {
-      boxes_.push_back(placed_box(world_from_model_ * glm::dmat4(data_.instances[mesh.first_instance + i]), whole));
+      boxes_.push_back(placed_box(site_from_model_ * glm::dmat4(data_.instances[mesh.first_instance + i]), whole));
     }
   }
 }
@@ -194,7 +195,7 @@ Result<void> Meshes::create_buffers() {
   if (!any()) return {};
   std::vector<shared::MeshInstance> instances;
   instances.reserve(data_.instances.size());
-  for (const glm::mat4& m : data_.instances) instances.push_back(placed(world_from_model_ * glm::dmat4(m)));
+  for (const glm::mat4& m : data_.instances) instances.push_back(placed(site_from_model_ * glm::dmat4(m)));
   const VkDeviceSize vertex_bytes = data_.vertices.size() * sizeof(MeshVertex);
   const VkDeviceSize instance_bytes = instances.size() * sizeof(shared::MeshInstance);
   const VkDeviceSize most = device.properties.limits.maxStorageBufferRange;
@@ -250,12 +251,14 @@ VkDeviceSize Meshes::bytes() const {
   return out;
 }
 
-void Meshes::prepare(const View& view, const ShadowParams& shadows, const std::vector<CascadeFit>& cascades,
-                     const TerrainLight& light, float sky_light) {
+void Meshes::prepare(const View& view, const LocalFrame& frame, const ShadowParams& shadows,
+                     const std::vector<CascadeFit>& cascades, const TerrainLight& light, float sky_light) {
   shared::MeshConstants out = {};
-  out.camera_position = to_vec3(view.position);
-  out.camera_forward = to_vec3(view.forward);
-  out.direction_to_sun = to_vec3(light.direction_to_sun);
+  frame_ = frame;
+  out.camera_position = to_vec3(frame.place(view.position));
+  out.camera_forward = to_vec3(frame.direction(view.forward));
+  out.direction_to_sun = to_vec3(frame.direction(light.direction_to_sun));
+  out.local_from_site = to_mat4(frame.local_from_world * world_from_site_);
   out.planet_radius_m = static_cast<float>(radius_m_);
   out.sun_irradiance = light.sun_irradiance;
   out.atmosphere_height_m = static_cast<float>(light.atmosphere_height_m);
@@ -269,7 +272,7 @@ void Meshes::prepare(const View& view, const ShadowParams& shadows, const std::v
   out.has_glass = light.has_glass ? 1U : 0U;
   for (std::size_t i = 0; i < cascades.size(); ++i) {
     const CascadeFit& c = cascades[i];
-    out.shadow_from_world[i] = to_mat4(c.shadow_from_world());
+    out.shadow_from_local[i] = to_mat4(c.shadow_from_world() * frame.world_from_local);
     out.cascade[i] = {static_cast<float>(c.far_m), static_cast<float>(2.0 * c.half_extent.x / shadows.resolution),
                       static_cast<float>(2.0 * c.half_extent.y / shadows.resolution),
                       static_cast<float>(2.0 * c.half_extent.z)};
@@ -303,8 +306,8 @@ Result<void> Meshes::draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline, co
   bound.push_back({});
   device.vk.CmdBindIndexBuffer(cmd, indices_.buffer.get(), 0, VK_INDEX_TYPE_UINT32);
   MeshPush push = {};
-  push.clip_from_world = to_mat4(clip_from_world);
-  const Sides sides = sides_of(clip_from_world);
+  push.clip_from_local = to_mat4(clip_from_world * frame_.world_from_local);
+  const Sides sides = sides_of(clip_from_world * world_from_site_);
   const Box* box = boxes_.data();
   for (const Mesh& mesh : data_.meshes) {
     const Box* const boxes = box;
@@ -350,12 +353,12 @@ Result<void> Meshes::draw_view(VkCommandBuffer cmd, const View& view, const Terr
   const gpu::Device& device = host_->device();
   const gpu::Label label(device, cmd, ground_.name);
   GroundPush push = {};
-  glm::dmat4 world_from_ndc(1.0);
-  world_from_ndc[0] = glm::dvec4(view.right * view.tan_half_width, 0.0);
-  world_from_ndc[1] = glm::dvec4(view.up * -view.tan_half_height, 0.0);
-  world_from_ndc[2] = glm::dvec4(view.forward - view.right * (view.tan_half_width * view.jitter.x) +
-                                     view.up * (view.tan_half_height * view.jitter.y), 0.0);
-  push.world_from_ndc = to_mat4(world_from_ndc);
+  glm::dmat4 local_from_ndc(1.0);
+  local_from_ndc[0] = glm::dvec4(frame_.direction(view.right) * view.tan_half_width, 0.0);
+  local_from_ndc[1] = glm::dvec4(frame_.direction(view.up) * -view.tan_half_height, 0.0);
+  local_from_ndc[2] = glm::dvec4(frame_.direction(view.forward - view.right * (view.tan_half_width * view.jitter.x) +
+                                                  view.up * (view.tan_half_height * view.jitter.y)), 0.0);
+  push.local_from_ndc = to_mat4(local_from_ndc);
   push.near_m = static_cast<float>(kNearPlane_m);
   const std::vector<gpu::NamedResource> bound = resources(&light);
   const std::string_view missing = gpu::bind(device, cmd, ground_, bound, &push);

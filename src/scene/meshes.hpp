@@ -29,7 +29,7 @@ class Meshes {
   [[nodiscard]] VkDeviceSize bytes() const;
 
   // Writes the constants: before the draws are recorded.
-  void prepare(const View& view, const ShadowParams& shadows, const std::vector<CascadeFit>& cascades,
+  void prepare(const View& view, const LocalFrame& frame, const ShadowParams& shadows, const std::vector<CascadeFit>& cascades,
                const TerrainLight& light, float sky_light);
   // Inside a rendering scope with colour and depth: first what hides, then, over what lies behind, clear glass.
   Result<void> draw_view(VkCommandBuffer cmd, const View& view, const TerrainLight& light);
@@ -53,8 +53,12 @@ class Meshes {
   bool bare_ground_ = false;
   bool has_glass_ = false;
   MeshData data_;  // without vertices, indices and texels once they are on the device
-  glm::dmat4 world_from_model_ = glm::dmat4(1.0);
-  // Of meshes that are placed once those of their parts, of others those of their instances; mesh by mesh.
+  // East, up and south where the meshes stand, turned by meshes.yaw_deg: instances are placed in this frame, so that
+  // what is rounded is near its origin.
+  glm::dmat4 world_from_site_ = glm::dmat4(1.0);
+  glm::dmat4 site_from_model_ = glm::dmat4(1.0);
+  LocalFrame frame_;  // of the view
+  // In the site's frame. Of meshes that are placed once those of their parts, of others those of their instances; mesh by mesh.
   std::vector<Box> boxes_;
   std::array<glm::dvec3, 8> corners_ = {};  // of the bounds, in the world
   double lowest_m_ = 0.0, highest_m_ = 0.0;

@@ -56,6 +56,10 @@ class OneilSky : public SkyModel {
                           evaluation, sizeof(Block), color_format, depth_format, spans);
   }
 
+  [[nodiscard]] bool draws_terrain(const SceneParams& scene) const override {
+    return scene.oneil.ground == OneilGround::terrain;
+  }
+
  protected:
   Result<void> fill(const ModelFrame& frame, void* constants) override {
     TYNDALL_TRY(make(medium_from_params(frame.params), oneil_settings(frame.scene.oneil, table_)));
@@ -65,11 +69,11 @@ class OneilSky : public SkyModel {
     Block out = {};
     out.medium = model_.medium;
     out.oneil = model_.constants;
-    out.eye_position = to_vec3(frame.view.position);
+    out.eye_position = to_vec3(frame.local.place(frame.view.position));
     out.eye_altitude_m = static_cast<float>(altitude);
-    out.eye_up = to_vec3(up);
+    out.eye_up = to_vec3(frame.local.direction(up));
     out.eye_cos_sun = static_cast<float>(std::clamp(glm::dot(up, frame.light.direction_to_sun), -1.0, 1.0));
-    out.to_sun = to_vec3(frame.light.direction_to_sun);
+    out.to_sun = to_vec3(frame.local.direction(frame.light.direction_to_sun));
     // Of the ground sphere: sea level, or twice the depth of an eye below it.
     const double ground = radius + 2.0 * std::min(altitude, 0.0);
     out.horizon_rad = static_cast<float>(0.5 * std::numbers::pi + std::acos(std::clamp(ground / (radius + altitude), -1.0, 1.0)));
@@ -89,10 +93,6 @@ class OneilSky : public SkyModel {
     const Variant wanted = {model_.constants.columns, model_.constants.spacing};
     const std::span<const Variant> all = variants();
     return static_cast<std::size_t>(std::find(all.begin(), all.end() - 1, wanted) - all.begin());
-  }
-
-  [[nodiscard]] bool draws_terrain(const ModelFrame& frame) const override {
-    return frame.scene.oneil.ground == OneilGround::terrain;
   }
 
   [[nodiscard]] std::vector<gpu::NamedResource> more_resources() const override {

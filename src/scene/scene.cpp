@@ -208,17 +208,18 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   view_.jitter = jitter;
   to_sun_ = animated_direction_to_sun(scene_.sun, seconds);
 
-  const glm::dvec2 map = map_from_world(view_.position, radius);
-  const double ground_m = terrain_->height_at(map);
+  const bool bare = bare_ground();
+  const double ground_m = bare ? 0.0 : terrain_->height_at(up_of(view_.position, radius));
   const double altitude = altitude_of(view_.position, radius);
   // Meshes are no obstacle: their insides are for cameras. The bare ground is flat, so the near plane is what counts.
-  const double least_m = terrain_->none() ? kNearPlane_m : kLeastHeight_m;
+  const double least_m = bare ? kNearPlane_m : kLeastHeight_m;
   if (altitude < ground_m + least_m) {
-    view_.position = world_from_map(map.x, map.y, ground_m + least_m, radius);
+    view_.position = at_altitude(view_.position, ground_m + least_m, radius);
     if (!std::exchange(lifted_, true)) notes_.push_back("the camera was inside the ground and has been lifted to " +
                      std::to_string(static_cast<int>(std::lround(ground_m + least_m))) + " m");
   }
-  TYNDALL_TRY(terrain_->update(view_));
+  frame_ = local_frame(view_.position, radius);
+  TYNDALL_TRY(terrain_->update(view_, frame_));
   // Nothing can be nearer than half the height above the ground below, but for walls beside the camera.
   const double above = std::max(altitude - ground_m, least_m);
   const Ground ground = meshes_ != nullptr ? meshes_->ground(terrain_->ground(), view_.position) : terrain_->ground();
@@ -237,9 +238,9 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   light_.linear = linear_.get();
   TYNDALL_TRY(terrain_->prepare(view_, desc_.extent.height, scene_.shadows, cascades_, light_, scene_.terrain.shading));
   if (meshes_ != nullptr) {
-    meshes_->prepare(view_, scene_.shadows, cascades_, light_, scene_.meshes.sky_light);
+    meshes_->prepare(view_, frame_, scene_.shadows, cascades_, light_, scene_.meshes.sky_light);
   }
-  if (model_ != nullptr) TYNDALL_TRY(model_->prepare({view_, light_, params_, scene_, desc_.extent}));
+  if (model_ != nullptr) TYNDALL_TRY(model_->prepare({view_, frame_, light_, params_, scene_, desc_.extent}));
 
   const gpu::Device& device = host_->device();
   const auto shadows = [&](VkCommandBuffer cmd) -> Result<void> {
@@ -285,7 +286,7 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
 Result<void> Scene::run_effect(VkCommandBuffer cmd) {
   std::array<Cascade, kMaxCascades> cascades;
   for (std::size_t i = 0; i < cascades_.size(); ++i) {
-    cascades[i] = {to_mat4(cascades_[i].shadow_from_world()), static_cast<float>(cascades_[i].near_m),
+    cascades[i] = {to_mat4(cascades_[i].shadow_from_world() * frame_.world_from_local), static_cast<float>(cascades_[i].near_m),
                    static_cast<float>(cascades_[i].far_m)};
   }
   FrameInputs inputs;
@@ -300,8 +301,8 @@ Result<void> Scene::run_effect(VkCommandBuffer cmd) {
   inputs.shadow_resolution = scene_.shadows.resolution;
   inputs.cascades = {cascades.data(), cascades_.size()};
   inputs.first_marched_cascade = first_marched(scene_.shadows, cascades_);
-  inputs.camera = camera_from_view(view_);
-  inputs.sun = {to_vec3(to_sun_), scene_.sun.irradiance,
+  inputs.camera = camera_from_view(view_, frame_.local_from_world);
+  inputs.sun = {to_vec3(frame_.direction(to_sun_)), scene_.sun.irradiance,
                 static_cast<float>(scene_.sun.angular_radius_deg * kRadPerDeg)};
   inputs.output = {output_.view.get(), VK_IMAGE_LAYOUT_GENERAL};
   inputs.frame_index = frame_index_;

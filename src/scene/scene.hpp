@@ -85,8 +85,8 @@ class Scene {
   [[nodiscard]] Images images() const { return {display_, output_, color_, depth_, shadow_maps_}; }
   [[nodiscard]] VkExtent2D extent() const { return desc_.extent; }
   [[nodiscard]] const View& view() const { return view_; }
-  // The ground under the scene, for other threads as well; none: flat at sea level.
-  [[nodiscard]] std::shared_ptr<const ElevationSource> elevations() const { return terrain_->source(); }
+  // The ground that is drawn, for other threads as well; none: the bare sphere at sea level.
+  [[nodiscard]] std::shared_ptr<const ElevationSource> elevations() const { return bare_ground() ? nullptr : terrain_->source(); }
 
   // Remarks for the user, one line each: what a file needed, which of the parameters that it was
   // created with do nothing, that the camera was lifted, ...
@@ -128,6 +128,8 @@ class Scene {
   Result<void> change(const SceneParams& scene, const Params& params, std::optional<ElevationSource> source);
   void swap_targets(Targets& targets) noexcept;
   [[nodiscard]] bool shadows_are_drawn() const;
+  // Whether no terrain is drawn, by terrain.source or by a model that draws a sphere of its own.
+  [[nodiscard]] bool bare_ground() const;
   Result<void> draw_shadows(VkCommandBuffer cmd);
   Result<void> draw_shadow_colors(VkCommandBuffer cmd);
   Result<void> draw_view(VkCommandBuffer cmd);
@@ -162,6 +164,7 @@ class Scene {
   gpu::Timer timer_;
 
   View view_;
+  LocalFrame frame_;  // that everything is drawn in
   glm::dvec3 to_sun_ = {};
   std::vector<CascadeFit> cascades_;
   TerrainLight light_;

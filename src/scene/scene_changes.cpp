@@ -73,7 +73,7 @@ Result<Scene::Targets> Scene::make_targets(VkExtent2D size) const {
                                                            VK_IMAGE_USAGE_STORAGE_BIT}));
   TYNDALL_ASSIGN(out.depth, gpu::create_image(device, {"scene_depth", kDepthFormat, extent,
                                                        VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
-                                                           VK_IMAGE_USAGE_SAMPLED_BIT}));
+                                                           VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}));
   TYNDALL_ASSIGN(out.output, gpu::create_image(device, {"output", kColorFormat, extent, written}));
   TYNDALL_ASSIGN(out.display, gpu::create_image(device, {"display", kColorFormat, extent, written}));
   return out;
@@ -277,6 +277,10 @@ Result<void> Scene::tone(double step_s) {
     if (desc_.timings) timer_.begin_frame(cmd, 0);
     return tonemap(cmd, true);
   });
+}
+
+bool Scene::bare_ground() const {
+  return terrain_->none() || (model_ != nullptr && !model_->draws_terrain(scene_));
 }
 
 bool Scene::shadows_are_drawn() const {

@@ -96,8 +96,9 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
   const double radius_rad = scene_.sun.angular_radius_deg * kRadPerDeg;
   const double solid_angle = 6.283185307179586 * (1.0 - std::cos(radius_rad));
   BackgroundConstants constants = {};
-  constants.world_from_view = camera_from_view(view_).world_from_view;
-  constants.direction_to_sun = to_vec3(to_sun_);
+  constants.local_from_view = camera_from_view(view_, frame_.local_from_world).world_from_view;
+  constants.world_from_local = to_mat4(frame_.world_from_local);
+  constants.direction_to_sun = to_vec3(frame_.direction(to_sun_));
   constants.angular_radius_rad = static_cast<float>(radius_rad);
   constants.disc_radiance = to_vec3(glm::dvec3(light_.sun_irradiance.x, light_.sun_irradiance.y, light_.sun_irradiance.z) / solid_angle);
   constants.pixel_angle_rad = static_cast<float>(2.0 * view_.tan_half_height / desc_.extent.height);
@@ -111,7 +112,7 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
     SunParams place;
     place.elevation_deg = scene_.moon.elevation_deg;
     place.azimuth_deg = scene_.moon.azimuth_deg;
-    constants.direction_to_moon = to_vec3(direction_to_sun(place));
+    constants.direction_to_moon = to_vec3(frame_.direction(direction_to_sun(place)));
     constants.moon_radius_rad = static_cast<float>(scene_.moon.angular_radius_deg * kRadPerDeg);
     constants.moon_irradiance = light_.sun_irradiance;
   }
@@ -140,7 +141,7 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
   // Times are taken between renderings, because their barriers may not stand inside one.
   begin_pass(cmd, "terrain");
   begin_rendering(device, cmd, desc_.extent, colors, &depth);
-  const ModelFrame frame = {view_, light_, params_, scene_, desc_.extent};
+  const ModelFrame frame = {view_, frame_, light_, params_, scene_, desc_.extent};
   if (model_ != nullptr) {
     TYNDALL_TRY(model_->draw_ground(cmd, *terrain_, frame));
   } else {

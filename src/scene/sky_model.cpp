@@ -23,7 +23,7 @@ constexpr double kHalfTurn = std::numbers::pi;
 
 // What scene/sky_mesh.glsl reads, in std430.
 struct MeshBlock {
-  Mat4 clip_from_world;
+  Mat4 clip_from_local;
   Vec3 up;
   std::uint32_t columns;
   Vec3 ahead;
@@ -110,12 +110,12 @@ void SkyModel::fill_mesh(const ModelFrame& frame) {
   const glm::dvec3 up = up_of(frame.view.position, radius);
   const glm::dvec3 ahead = horizontal(frame.light.direction_to_sun, up);
   MeshBlock out = {};
-  out.clip_from_world = to_mat4(clip_from_world(frame.view));
-  out.up = to_vec3(up);
+  out.clip_from_local = to_mat4(clip_from_world(frame.view) * frame.local.world_from_local);
+  out.up = to_vec3(frame.local.direction(up));
   out.columns = kColumns;
-  out.ahead = to_vec3(ahead);
+  out.ahead = to_vec3(frame.local.direction(ahead));
   out.rows = kRows;
-  out.right = to_vec3(glm::cross(ahead, up));
+  out.right = to_vec3(frame.local.direction(glm::cross(ahead, up)));
 
   // Columns stand closer together towards the sun.
   for (std::uint32_t i = 0; i <= kColumns; ++i) {
@@ -184,13 +184,13 @@ Result<void> SkyModel::prepare(const ModelFrame& frame) {
 }
 
 Result<void> SkyModel::draw_ground(VkCommandBuffer cmd, Terrain& terrain, const ModelFrame& frame) {
-  if (!draws_terrain(frame)) return {};
+  if (!draws_terrain(frame.scene)) return {};
   if (ground_.empty()) return terrain.draw_view(cmd, frame.view);
   return terrain.draw_view(cmd, frame.view, ground_[variant()], own_resources());
 }
 
 Result<void> SkyModel::light_ground(VkCommandBuffer cmd, Terrain& terrain, const ModelFrame& frame, VkImageView color) {
-  if (!draws_terrain(frame)) return {};
+  if (!draws_terrain(frame.scene)) return {};
   std::vector<gpu::NamedResource> more = own_resources();
   for (const gpu::Image& image : air_) more.push_back(gpu::named_image(image.desc.name, image.view.get()));
   return terrain.light_view(cmd, frame.light, color, frame.extent, light_[variant()], more);

@@ -21,6 +21,7 @@ namespace tyndall::scene {
 // What a model reads of a frame. All of it outlives the recording of the frame.
 struct ModelFrame {
   const View& view;
+  const LocalFrame& local;  // in which everything on the device is
   const TerrainLight& light;
   const Params& params;
   const SceneParams& scene;
@@ -50,6 +51,11 @@ class SkyModel {
     return evaluation_ == ModelEvaluation::vertex ? air() : std::span<const gpu::Image>();
   }
   [[nodiscard]] VkDeviceSize bytes() const;
+  // Whether the terrain is the ground; the sky pipeline draws what lies below the horizon otherwise.
+  [[nodiscard]] virtual bool draws_terrain(const SceneParams& scene) const {
+    static_cast<void>(scene);
+    return true;
+  }
 
  protected:
   struct Shaders {
@@ -69,11 +75,6 @@ class SkyModel {
   virtual Result<void> fill(const ModelFrame& frame, void* constants) = 0;
   // Which of the variants that create_objects was given draws the frame that has been filled.
   [[nodiscard]] virtual std::size_t variant() const { return 0; }
-  // Whether the terrain is the ground; the sky pipeline draws what lies below the horizon otherwise.
-  [[nodiscard]] virtual bool draws_terrain(const ModelFrame& frame) const {
-    static_cast<void>(frame);
-    return true;
-  }
   // What the shaders read beyond model_block.
   [[nodiscard]] virtual std::vector<gpu::NamedResource> more_resources() const { return {}; }
 

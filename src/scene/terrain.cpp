@@ -17,7 +17,7 @@ namespace {
 constexpr std::uint32_t kMaxBlocks = 32768;
 
 struct DrawPush {
-  Mat4 clip_from_world;
+  Mat4 clip_from_local;
   std::uint32_t first_block;
 };
 
@@ -66,17 +66,17 @@ bool outside(const CascadeFit& cascade, const glm::dvec3& centre, double radius)
          std::abs(p.z) > cascade.half_extent.z + radius;
 }
 
-// A sphere around the ground over a square of the map.
-void bounding_sphere(const glm::dvec2& low, const glm::dvec2& high, const Ground& ground, glm::dvec3& centre,
+// A sphere around the ground over a square of a chart.
+void bounding_sphere(int chart, const glm::dvec2& low, const glm::dvec2& high, const Ground& ground, glm::dvec3& centre,
                      double& radius) {
   const glm::dvec2 middle = 0.5 * (low + high);
-  centre = world_from_map(middle.x, middle.y, 0.5 * (ground.min_m + ground.max_m), ground.radius_m);
+  centre = world_from_chart(chart, middle.x, middle.y, 0.5 * (ground.min_m + ground.max_m), ground.radius_m);
   radius = 0.0;
   for (int corner = 0; corner < 4; ++corner) {
     const double x = (corner & 1) != 0 ? high.x : low.x;
     const double z = (corner & 2) != 0 ? high.y : low.y;
     for (const double h : {ground.min_m, ground.max_m}) {
-      radius = std::max(radius, glm::distance(centre, world_from_map(x, z, h, ground.radius_m)));
+      radius = std::max(radius, glm::distance(centre, world_from_chart(chart, x, z, h, ground.radius_m)));
     }
   }
 }
@@ -152,6 +152,8 @@ Result<void> Terrain::create_objects(VkFormat color_format, VkFormat depth_forma
   TYNDALL_ASSIGN(nearest_, gpu::create_sampler(device, {.filter = VK_FILTER_NEAREST}));
 
   TYNDALL_ASSIGN(indices_, create_indices(coarseness_));
+  TYNDALL_ASSIGN(charts_, gpu::create_buffer(device, "terrain_charts", sizeof(shared::Charts),
+                                             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
   TYNDALL_ASSIGN(constants_, gpu::create_buffer(device, "terrain_constants", sizeof(shared::TerrainConstants),
                                                 VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
   TYNDALL_ASSIGN(blocks_, gpu::create_buffer(device, "terrain_blocks", kMaxBlocks * sizeof(TerrainBlock),
@@ -186,22 +188,36 @@ Ground Terrain::ground() const {
   return {source_->min_height_m(), source_->max_height_m(), radius_m_, {}};
 }
 
-double ground_height(const ElevationSource& source, const glm::dvec2& map) {
-  return source.height_m(map.x, map.y, kFinestCell_m);
+// As terrain_heights.comp has it.
+double ground_height(const ElevationSource& source, const glm::dvec3& up, double radius_m) {
+  const std::array<double, kChartCount> weights = chart_weights(up);
+  const glm::dvec2 map = chart_from_up(0, up, radius_m);
+  const double file = source.from_file() ? source.file_share(map.x, map.y) : 0.0;
+  double height_m = 0.0;
+  for (int chart = 0; chart < kChartCount; ++chart) {
+    const double weight = (1.0 - file) * weights[static_cast<std::size_t>(chart)] + (chart == 0 ? file : 0.0);
+    if (weight <= 0.0) continue;
+    const glm::dvec2 at = chart == 0 ? map : chart_from_up(chart, up, radius_m);
+    height_m += weight * static_cast<double>(source.height_m(chart, at.x, at.y, kFinestCell_m));
+  }
+  return height_m;
 }
 
-double Terrain::height_at(const glm::dvec2& map) const {
-  return none() ? 0.0 : ground_height(*source_, map);
-}
+double Terrain::height_at(const glm::dvec3& up) const { return none() ? 0.0 : ground_height(*source_, up, radius_m_); }
 
 VkDeviceSize Terrain::bytes() const {
-  return heights_.bytes + atlas_.bytes + fill_constants_.bytes + constants_.bytes + blocks_.bytes + indices_.bytes;
+  return heights_.bytes + atlas_.bytes + fill_constants_.bytes + charts_.bytes + constants_.bytes + blocks_.bytes + indices_.bytes;
 }
 
-Result<void> Terrain::update(const View& view) {
+Result<void> Terrain::update(const View& view, const LocalFrame& frame) {
   if (none()) return {};
-  lod_ = plan_terrain(map_from_world(view.position, radius_m_), altitude_of(view.position, radius_m_),
-                      source_->max_height_m(), radius_m_, coarseness_, source_->min_height_m());
+  frame_ = frame;
+  const shared::Charts charts = charts_of(frame, radius_m_);
+  std::memcpy(charts_.mapped, &charts, sizeof charts);
+  lod_ = plan_terrain(chart_from_up(frame.chart, up_of(view.position, radius_m_), radius_m_),
+                      altitude_of(view.position, radius_m_), source_->max_height_m(), radius_m_, coarseness_, source_->min_height_m());
+  if (frame.chart != filled_chart_) filled_.clear();
+  filled_chart_ = frame.chart;
   const gpu::Device& device = host_->device();
   const auto layers = static_cast<std::uint32_t>(lod_.levels.size());
   const auto samples = static_cast<std::uint32_t>(lod_.level_samples());
@@ -238,12 +254,15 @@ Result<void> Terrain::fill_level(std::size_t layer) {
   constants.texel_count = {lod_.level_samples(), lod_.level_samples()};
   constants.spacing_m = static_cast<float>(level.cell_m);
   constants.layer = static_cast<std::int32_t>(layer);
+  const glm::dvec2 first = glm::dvec2(level.origin) * level.cell_m - frame_.map_m;
+  constants.first_m = {static_cast<float>(first.x), static_cast<float>(first.y)};
   std::memcpy(fill_constants_.mapped, &constants, sizeof constants);
   const gpu::Device& device = host_->device();
   return host_->run([&](VkCommandBuffer cmd) -> Result<void> {
     const gpu::Label label(device, cmd, fill_.name);
     const gpu::NamedResource resources[] = {
         gpu::named_buffer("terrain_fill_block", fill_constants_.buffer.get()),
+        gpu::named_buffer("charts_block", charts_.buffer.get()),
         gpu::named_image("elevation_atlas", atlas_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, nearest_.get()),
         gpu::named_image("elevation_levels", heights_.view.get()),
     };
@@ -264,16 +283,17 @@ Result<void> Terrain::prepare(const View& view, std::uint32_t height_px, const S
   if (none()) return {};
   const Ground whole = ground();
   shared::TerrainConstants out = {};
-  out.camera_map = {static_cast<float>(lod_.camera_map.x), static_cast<float>(lod_.camera_map.y)};
+  const glm::dvec2 camera = lod_.camera_map - frame_.map_m;
+  out.camera_map = {static_cast<float>(camera.x), static_cast<float>(camera.y)};
   out.vertical_m = static_cast<float>(lod_.vertical_m);
   out.planet_radius_m = static_cast<float>(radius_m_);
-  out.direction_to_sun = to_vec3(light.direction_to_sun);
+  out.direction_to_sun = to_vec3(frame_.direction(light.direction_to_sun));
   out.atmosphere_height_m = static_cast<float>(light.atmosphere_height_m);
   out.sun_irradiance = light.sun_irradiance;
   out.pixel_angle_rad = static_cast<float>(2.0 * view.tan_half_height / height_px);
   out.block_cells = static_cast<std::uint32_t>(lod_.block_cells());
-  out.camera_position = to_vec3(view.position);
-  out.camera_forward = to_vec3(view.forward);
+  out.camera_position = to_vec3(frame_.place(view.position));
+  out.camera_forward = to_vec3(frame_.direction(view.forward));
   out.layers = static_cast<std::uint32_t>(lod_.levels.size());
   out.shading = static_cast<std::uint32_t>(shading);
   out.seed = params_.seed;
@@ -285,12 +305,13 @@ Result<void> Terrain::prepare(const View& view, std::uint32_t height_px, const S
   out.has_glass = light.has_glass ? 1U : 0U;
   for (std::size_t i = 0; i < lod_.levels.size(); ++i) {
     const ClipLevel& level = lod_.levels[i];
-    out.levels[i] = {{level.origin.x, level.origin.y}, static_cast<float>(level.cell_m),
-                     static_cast<float>(lod_.range_m(level))};
+    const glm::dvec2 first = glm::dvec2(level.origin) * level.cell_m - frame_.map_m;
+    out.levels[i] = {{level.origin.x, level.origin.y}, {static_cast<float>(first.x), static_cast<float>(first.y)},
+                     static_cast<float>(level.cell_m), static_cast<float>(lod_.range_m(level))};
   }
   for (std::size_t i = 0; i < cascades.size(); ++i) {
     const CascadeFit& c = cascades[i];
-    out.shadow_from_world[i] = to_mat4(c.shadow_from_world());
+    out.shadow_from_local[i] = to_mat4(c.shadow_from_world() * frame_.world_from_local);
     out.cascade[i] = {static_cast<float>(c.far_m), static_cast<float>(2.0 * c.half_extent.x / shadows.resolution),
                       static_cast<float>(2.0 * c.half_extent.y / shadows.resolution),
                       static_cast<float>(2.0 * c.half_extent.z)};
@@ -315,7 +336,7 @@ Result<void> Terrain::prepare(const View& view, std::uint32_t height_px, const S
     return [&](const glm::dvec2& low, const glm::dvec2& high) {
       glm::dvec3 centre;
       double radius = 0.0;
-      bounding_sphere(low, high, whole, centre, radius);
+      bounding_sphere(frame_.chart, low, high, whole, centre, radius);
       return !outside(volume, centre, radius);
     };
   };
@@ -344,7 +365,7 @@ Result<void> Terrain::draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline,
                            std::uint32_t range) {
   const gpu::Device& device = host_->device();
   const gpu::Label label(device, cmd, pipeline.name);
-  const DrawPush push = {to_mat4(clip_from_world), ranges_[range].first};
+  const DrawPush push = {to_mat4(clip_from_world * frame_.world_from_local), ranges_[range].first};
   const std::string_view missing = gpu::bind(device, cmd, pipeline, resources, &push);
   if (!missing.empty()) return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(missing)};
   device.vk.CmdBindIndexBuffer(cmd, indices_.buffer.get(), 0, VK_INDEX_TYPE_UINT32);
@@ -382,6 +403,7 @@ Result<void> Terrain::light_view(VkCommandBuffer cmd, const TerrainLight& light,
 
 std::vector<gpu::NamedResource> Terrain::geometry() const {
   return {gpu::named_buffer("terrain_block", constants_.buffer.get()),
+          gpu::named_buffer("charts_block", charts_.buffer.get()),
           gpu::named_buffer("blocks_block", blocks_.buffer.get()),
           gpu::named_image("terrain_heights", heights_.view.get(), VK_IMAGE_LAYOUT_GENERAL, nearest_.get())};
 }

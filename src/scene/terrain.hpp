@@ -10,6 +10,7 @@
 #include "gpu/pipeline.hpp"
 #include "scene/cascades.hpp"
 #include "scene/elevation/elevation_source.hpp"
+#include "scene/local_frame.hpp"
 #include "scene/terrain_lod.hpp"
 
 namespace tyndall::scene {
@@ -27,8 +28,8 @@ struct TerrainLight {
   VkSampler linear = VK_NULL_HANDLE;
 };
 
-// Elevation of the ground over a place on the map [m], as finely as it is drawn.
-[[nodiscard]] double ground_height(const ElevationSource& source, const glm::dvec2& map);
+// Elevation of the ground [m], as finely as it is drawn, where `up` points from the planet's centre.
+[[nodiscard]] double ground_height(const ElevationSource& source, const glm::dvec3& up, double radius_m);
 
 class Terrain {
  public:
@@ -49,13 +50,14 @@ class Terrain {
   // Counts the changes of what is drawn.
   [[nodiscard]] std::uint64_t version() const { return version_; }
 
-  // Brings the clipmap to the camera: fills the levels that have moved. Synchronous.
-  Result<void> update(const View& view);
+  // Brings the clipmap to the camera: fills the levels that have moved. Synchronous. What is drawn from then on is in
+  // `frame`, the one of the camera's place.
+  Result<void> update(const View& view, const LocalFrame& frame);
 
   [[nodiscard]] bool none() const { return params_.source == "none"; }
   [[nodiscard]] Ground ground() const;
-  // Elevation of the ground over a place on the map [m].
-  [[nodiscard]] double height_at(const glm::dvec2& map) const;
+  // Elevation of the ground where `up` points from the planet's centre [m].
+  [[nodiscard]] double height_at(const glm::dvec3& up) const;
   // The elevations themselves, which stay as they are and may be read from any thread.
   [[nodiscard]] std::shared_ptr<const ElevationSource> source() const { return none() ? nullptr : source_; }
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
@@ -103,7 +105,9 @@ class Terrain {
   std::shared_ptr<const ElevationSource> source_;
   std::vector<std::string> notes_;
   TerrainLod lod_;
+  LocalFrame frame_;
   std::vector<ClipLevel> filled_;
+  int filled_chart_ = 0;
 
   gpu::Pipeline fill_;
   gpu::Pipeline view_pipeline_;
@@ -112,6 +116,7 @@ class Terrain {
   gpu::Image heights_;
   gpu::Image atlas_;
   gpu::Buffer fill_constants_;
+  gpu::Buffer charts_;
   gpu::Buffer constants_;
   gpu::Buffer blocks_;
   gpu::Buffer indices_;

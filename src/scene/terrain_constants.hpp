@@ -23,8 +23,8 @@ using uint = std::uint32_t;
 
 #include "scene/terrain.h"
 
-static_assert(sizeof(TerrainLevel) == 16 && offsetof(TerrainConstants, direction_to_sun) == 16);
-static_assert(offsetof(TerrainConstants, shadow_from_world) % 16 == 0);
+static_assert(sizeof(TerrainLevel) == 24 && offsetof(TerrainConstants, direction_to_sun) == 16);
+static_assert(offsetof(TerrainConstants, shadow_from_local) % 16 == 0);
 static_assert(offsetof(TerrainConstants, levels) % 16 == 0 && sizeof(TerrainConstants) % 16 == 0);
 
 }  // namespace tyndall::scene::shared

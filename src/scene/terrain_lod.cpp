@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace tyndall::scene {
 namespace {
@@ -9,6 +10,27 @@ namespace {
 double distance_to_square(const glm::dvec2& p, const glm::dvec2& low, const glm::dvec2& high, double vertical) {
   const glm::dvec2 nearest = glm::clamp(p, low, high);
   return std::sqrt(glm::dot(p - nearest, p - nearest) + vertical * vertical);
+}
+
+// The largest distance on a chart, azimuthal equidistant, of points that are reach_m away from a place on the planet.
+double reach_on_chart(const glm::dvec2& place, double reach_m, double radius_m) {
+  constexpr int kDirections = 64;
+  const double distance_m = glm::length(place);
+  const double arc = distance_m / radius_m;
+  const double reach = std::min(reach_m / radius_m, std::numbers::pi);
+  double out = reach_m;
+  // Seen from the chart's centre, with the place at the azimuth 0; both sides are alike.
+  for (int i = 0; distance_m > 0.0 && i <= kDirections; ++i) {
+    const double angle = std::numbers::pi * i / kDirections;
+    const double up = std::cos(arc) * std::cos(reach) - std::sin(arc) * std::sin(reach) * std::cos(angle);
+    const double along = std::sin(arc) * std::cos(reach) + std::cos(arc) * std::sin(reach) * std::cos(angle);
+    const double across = std::sin(reach) * std::sin(angle);
+    const double horizontal = std::hypot(along, across);
+    const double away_m = std::atan2(horizontal, up) * radius_m;
+    const double scale = horizontal > 0.0 ? away_m / horizontal : 0.0;
+    out = std::max(out, std::hypot(along * scale - distance_m, across * scale));
+  }
+  return out;
 }
 
 struct Selection {
@@ -47,7 +69,7 @@ TerrainLod plan_terrain(const glm::dvec2& camera_map, double altitude_m, double 
   const double lowest = std::min(min_ground_m, 0.0);
   const double base = radius_m + lowest;
   const auto horizon_arc = [&](double h) { return radius_m * std::acos(base / (base + std::max(h - lowest, 1.0))); };
-  out.reach_m = 1.01 * (horizon_arc(altitude_m) + horizon_arc(max_ground_m)) + 1000.0;
+  out.reach_m = reach_on_chart(camera_map, 1.01 * (horizon_arc(altitude_m) + horizon_arc(max_ground_m)) + 1000.0, radius_m);
   for (int k = 0; k < 30; ++k) {
     ClipLevel level;
     level.level = k;

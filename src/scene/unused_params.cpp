@@ -11,8 +11,11 @@ bool is_default(const ParamInfo& row, const void* structure, const void* default
   const char* const a = static_cast<const char*>(structure) + row.offset;
   const char* const b = static_cast<const char*>(defaults) + row.offset;
   if (row.type == ParamType::string) return *reinterpret_cast<const std::string*>(a) == *reinterpret_cast<const std::string*>(b);
-  const std::size_t count = row.type == ParamType::vec3 ? 3 : row.type == ParamType::uvec4 ? 4 : 1;
-  return std::memcmp(a, b, 4 * count) == 0;
+  const std::size_t size = row.type == ParamType::dvec3   ? sizeof(DVec3)
+                           : row.type == ParamType::vec3  ? sizeof(Vec3)
+                           : row.type == ParamType::uvec4 ? sizeof(UVec4)
+                                                          : sizeof(float);
+  return std::memcmp(a, b, size) == 0;
 }
 
 // "group.name" of all that are not at their defaults.

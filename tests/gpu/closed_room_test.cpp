@@ -58,14 +58,15 @@ class GpuClosedRoom : public GpuTest {
     scene_.terrain.source = terrain;
     scene_.meshes.source = save_room(path_, wall_m);
     // The terrain shall stay below the floor.
-    scene_.meshes.position_m.y = scene_.terrain.source == "none" ? 0.0F : 20.0F;
+    scene_.meshes.position_m.y = scene_.terrain.source == "none" ? 0.0 : 20.0;
     SceneDesc desc;
     desc.extent = kExtent;
     Result<std::unique_ptr<Scene>> scene = Scene::create(host(), desc, params_, scene_);
     EXPECT_OK(scene);
     if (!scene.ok()) return nullptr;
     const std::shared_ptr<const ElevationSource> ground = scene.value()->elevations();
-    floor_m_ = scene_.meshes.position_m.y + (ground != nullptr ? static_cast<float>(ground_height(*ground, {0.0, 0.0})) : 0.0F);
+    floor_m_ = scene_.meshes.position_m.y;
+    if (ground != nullptr) floor_m_ += ground_height(*ground, {0.0, 1.0, 0.0}, params_.planet.radius_m);
     return std::move(scene).value();
   }
   // Looks from one place into opposite corners, below and above, under suns from the zenith to the horizon.
@@ -78,7 +79,7 @@ class GpuClosedRoom : public GpuTest {
       scene_.sun.elevation_deg = elevation;
       scene_.sun.azimuth_deg = azimuth;
       for (const auto& [yaw, pitch] : {std::pair{azimuth + 160.0F, -12.0F}, {235.0F, 18.0F}}) {
-        scene_.camera.position_m = {3.0F, floor_m_ + 2.0F, 2.0F};
+        scene_.camera.position_m = {3.0, floor_m_ + 2.0, 2.0};
         scene_.camera.yaw_deg = yaw;
         scene_.camera.pitch_deg = pitch;
         EXPECT_OK(scene.set_scene(scene_));
@@ -97,7 +98,7 @@ class GpuClosedRoom : public GpuTest {
   Params params_;
   SceneParams scene_;
   std::string path_;
-  float floor_m_ = 0.0F;
+  double floor_m_ = 0.0;
 };
 
 TEST_F(GpuClosedRoom, SurfacesAreDarkOnBareGround) {

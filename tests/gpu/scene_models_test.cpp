@@ -65,7 +65,7 @@ class GpuSceneModels : public GpuTest {
     const glm::dvec3 up = up_of(view.position, radius);
     const models::Ray ray = {altitude_of(view.position, radius), glm::dot(direction, up), glm::dot(to_sun, up),
                              glm::dot(direction, to_sun)};
-    shared::Homogeneous medium = models::homogeneous_from_params(
+    tyndall::shared::Homogeneous medium = models::homogeneous_from_params(
         params_, {scene_.homogeneous.air_length_m, scene_.homogeneous.haze_length_m, scene_.homogeneous.falloff.value != 0});
     medium.sun_radius_rad = static_cast<float>(scene_.sun.angular_radius_deg * std::numbers::pi / 180.0);
     std::array<double, 3> out = models::homogeneous_light(medium, ray).radiance;

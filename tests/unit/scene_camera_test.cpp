@@ -1,16 +1,23 @@
 // The chart that lays the map on the planet, and the camera and sun over it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <numeric>
+#include <random>
 
 #include "scene/camera.hpp"
 #include "scene/chart.hpp"
+#include "scene/local_frame.hpp"
+#include "scene/terrain.hpp"
 
 namespace tyndall::scene {
 namespace {
 
 constexpr double kRadius_m = 6.36e6;
 constexpr double kRad = 0.017453292519943295;
+constexpr double kPi = std::numbers::pi;
 
 TEST(SceneChart, MapAndWorldAreInverse) {
   for (const double distance : {0.0, 1e-3, 1.0, 1e4, 1e6, 1.5e7}) {
@@ -32,6 +39,84 @@ TEST(SceneChart, MapAndWorldAreInverse) {
   const glm::dvec3 quarter = world_from_map(0.5 * 3.141592653589793 * kRadius_m, 0.0, 0.0, kRadius_m);
   EXPECT_NEAR(quarter.x, kRadius_m, 1e-6);
   EXPECT_NEAR(quarter.y, -kRadius_m, 1e-6);
+}
+
+// Every place of the planet is on a chart near its centre, and the weights of charts add up and change slowly.
+TEST(SceneChart, ChartsCoverThePlanet) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> any;
+  for (int i = 0; i < 5000; ++i) {
+    const glm::dvec3 up = glm::normalize(glm::dvec3(any(random), any(random), any(random)));
+    const int nearest = nearest_chart(up);
+    EXPECT_GE(glm::dot(chart_frame(nearest)[1], up), std::sqrt(1.0 / 3.0) - 1e-12);
+    const std::array<double, kChartCount> weights = chart_weights(up);
+    EXPECT_NEAR(std::accumulate(weights.begin(), weights.end(), 0.0), 1.0, 1e-12);
+    EXPECT_EQ(static_cast<int>(std::max_element(weights.begin(), weights.end()) - weights.begin()), nearest);
+    const glm::dvec3 aside = glm::normalize(up + 1e-4 * glm::dvec3(any(random), any(random), any(random)));
+    const std::array<double, kChartCount> beside = chart_weights(aside);
+    for (int chart = 0; chart < kChartCount; ++chart) {
+      const auto index = static_cast<std::size_t>(chart);
+      EXPECT_NEAR(beside[index], weights[index], 0.02) << chart;
+      const glm::dvec2 map = chart_from_up(chart, up, kRadius_m);
+      const glm::dvec3 back = world_from_chart(chart, map.x, map.y, 1000.0, kRadius_m);
+      EXPECT_NEAR(glm::distance(back, glm::dvec3(0, -kRadius_m, 0) + up * (kRadius_m + 1000.0)), 0.0, 1e-5) << chart;
+    }
+  }
+  for (int chart = 0; chart < kChartCount; ++chart) {
+    const glm::dmat3& frame = chart_frame(chart);
+    EXPECT_EQ(glm::cross(frame[0], frame[1]), frame[2]) << chart;  // right-handed like the world
+  }
+}
+
+// Elevation goes over the seams of charts without a step: from the origin over a corner of three of them to the antipode.
+TEST(SceneChart, TheGroundHasNoSteps) {
+  const Result<ElevationSource> source = ElevationSource::create({});
+  ASSERT_TRUE(source.ok());
+  const double corner = std::acos(std::sqrt(1.0 / 3.0));
+  for (const double middle : {0.25 * kPi, corner, 0.75 * kPi, kPi}) {
+    for (int i = -100; i <= 100; ++i) {
+      const auto ground_m = [&](double way_m) {
+        const double arc = middle + way_m / kRadius_m;
+        const double azimuth = middle == corner ? 0.25 * kPi : 0.0;
+        const glm::dvec3 up(std::sin(arc) * std::cos(azimuth), std::cos(arc), std::sin(arc) * std::sin(azimuth));
+        return ground_height(source.value(), up, kRadius_m);
+      };
+      const double way_m = 5000.0 * i;
+      EXPECT_LT(std::abs(ground_m(way_m + 4.0) - ground_m(way_m)), 12.0) << middle << " " << way_m;
+    }
+  }
+}
+
+TEST(SceneLocalFrame, IsBelowTheCameraAndRightHanded) {
+  for (const glm::dvec3& up : {glm::dvec3(0, 1, 0), glm::dvec3(1, 0, 0), glm::dvec3(0, -1, 0),
+                               glm::normalize(glm::dvec3(0.3, 0.7, -0.2)), glm::normalize(glm::dvec3(-1, -1, 1))}) {
+    const glm::dvec3 eye = glm::dvec3(0, -kRadius_m, 0) + up * (kRadius_m + 5000.0);
+    const LocalFrame frame = local_frame(eye, kRadius_m);
+    const glm::dvec3 place = frame.place(eye);
+    EXPECT_LT(std::hypot(place.x, place.z), 800.0);
+    EXPECT_NEAR(place.y, 5000.0, 1.0);
+    EXPECT_NEAR(glm::distance(frame.place({0.0, -kRadius_m, 0.0}), glm::dvec3(0.0, -kRadius_m, 0.0)), 0.0, 1e-6);
+    EXPECT_NEAR(glm::distance(glm::cross(frame.direction({1, 0, 0}), frame.direction({0, 1, 0})), frame.direction({0, 0, 1})), 0.0, 1e-12);
+  }
+  const LocalFrame near = local_frame({300.0, 2.0, -400.0}, kRadius_m);
+  EXPECT_EQ(near.world_from_local, glm::dmat4(1.0));
+}
+
+// East is vertical at two points of the equator, and the map has no direction at the antipode: nothing breaks there.
+TEST(SceneCamera, StandsAnywhere) {
+  CameraParams params;
+  for (const DVec3& at : {DVec3(kRadius_m, -kRadius_m, 0.0), DVec3(-kRadius_m, -kRadius_m, 0.0), DVec3(0.0, -2.0 * kRadius_m, 0.0),
+                          DVec3(0.0, -kRadius_m, kRadius_m), DVec3(0.0, -kRadius_m, 0.0)}) {
+    params.position_m = at;
+    params.altitude_m = 1500.0F;
+    const View view = view_from_params(params, 1.5, kRadius_m);
+    EXPECT_NEAR(altitude_of(view.position, kRadius_m), 1500.0, 1e-6);
+    EXPECT_NEAR(glm::length(view.forward), 1.0, 1e-12);
+    EXPECT_NEAR(glm::distance(glm::cross(view.right, view.up), -view.forward), 0.0, 1e-12);
+    if (at != DVec3(0.0, -kRadius_m, 0.0)) {
+      EXPECT_LT(glm::distance(view.position, to_glm(at)), 1501.0);  // and not at the origin
+    }
+  }
 }
 
 TEST(SceneCamera, LooksWhereYawAndPitchSay) {

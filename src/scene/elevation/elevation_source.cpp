@@ -11,12 +11,14 @@ namespace {
 constexpr std::uint32_t kProcedural = 0;
 constexpr std::uint32_t kFile = 1;
 constexpr double kUnitsPerM = 64.0;
-constexpr double kLargestPlace_m = 3.0e7;  // within the range of 1/64 m in 32 bits
+constexpr double kLargestPlace_m = 1.0e12;
 
 glm::ivec2 units_of(double x_m, double z_m) {
   const auto units = [](double v) {
     const double bounded = std::isnan(v) ? 0.0 : std::clamp(v, -kLargestPlace_m, kLargestPlace_m);
-    return static_cast<int>(std::floor(bounded * kUnitsPerM + 0.5));
+    // Beyond 32 bits they wrap round, as in the shader.
+    const auto whole = static_cast<std::int64_t>(std::floor(bounded * kUnitsPerM + 0.5));
+    return static_cast<int>(static_cast<std::uint32_t>(whole));
   };
   return {units(x_m), units(z_m)};
 }
@@ -147,9 +149,17 @@ Result<ElevationSource> ElevationSource::create(const ElevationDesc& desc) {
 }
 
 float ElevationSource::height_m(double x_m, double z_m, double spacing_m) const {
+  return height_m(0, x_m, z_m, spacing_m);
+}
+
+float ElevationSource::height_m(int chart, double x_m, double z_m, double spacing_m) const {
   const double spacing = std::max(spacing_m, 1.0 / kUnitsPerM);
-  return static_cast<float>(
-      terrain64::terrain_source_height(bind(constants_, atlas_), units_of(x_m, z_m), spacing));
+  return static_cast<float>(terrain64::terrain_chart_height(bind(constants_, atlas_), static_cast<std::uint32_t>(chart),
+                                                            units_of(x_m, z_m), spacing));
+}
+
+double ElevationSource::file_share(double x_m, double z_m) const {
+  return terrain64::terrain_file_share(bind(constants_, atlas_), units_of(x_m, z_m));
 }
 
 }  // namespace tyndall::scene

@@ -20,8 +20,11 @@ using uint = std::uint32_t;
 struct ivec2 {
   std::int32_t x = 0, y = 0;
 };
+struct vec2 {
+  float x = 0.0F, y = 0.0F;
+};
 #include "scene/terrain_fill.h"
-static_assert(sizeof(TerrainSource) == 40 && sizeof(TerrainFill) == 80, "the layouts must agree with std430");
+static_assert(sizeof(TerrainSource) == 40 && sizeof(TerrainFill) == 88, "the layouts must agree with std430");
 }  // namespace fill
 
 struct ElevationDesc {
@@ -47,6 +50,10 @@ class ElevationSource {
   // Elevation of the ground in m, without anything finer than about two of `spacing_m` (at least 1/64 m).
   // Places are taken to the nearest 1/64 m.
   [[nodiscard]] float height_m(double x_m, double z_m, double spacing_m) const;
+  // The same on one of the planet's charts (src/scene/chart.hpp): 0 is the map; the others have mountains of their own.
+  [[nodiscard]] float height_m(int chart, double x_m, double z_m, double spacing_m) const;
+  // 1 at places of the map inside of the elevation file, 0 outside of it, in between on its border.
+  [[nodiscard]] double file_share(double x_m, double z_m) const;
 
   // No elevation is outside these, at any spacing.
   [[nodiscard]] float min_height_m() const { return min_height_m_; }
