@@ -45,6 +45,23 @@ constexpr BufferName kNames[kEpipolarBuffers] = {{"slices", "slice_block", kOfSa
 
 std::size_t index(EpipolarBuffer buffer) { return static_cast<std::size_t>(buffer); }
 
+// Initial samples stand this many times closer in twilight: refinement goes by unshadowed light, which does not contain the
+// planet's shadow.
+constexpr std::uint32_t kStepsWithSunDown = 4;
+
+// Whether the sun is more than two degrees below the horizontal of the camera.
+bool sun_is_down(const FrameInputs& inputs, const Params& params) {
+  constexpr double kSine = -0.0349;
+  if (is_homogeneous(params.scattering)) return false;
+  const Vec3& s = inputs.sun.direction_to_sun;
+  const float* at = inputs.camera.world_from_view.m + 12;
+  const double up[3] = {static_cast<double>(at[0]), static_cast<double>(at[1]) + static_cast<double>(params.planet.radius_m),
+                        static_cast<double>(at[2])};
+  const double along = up[0] * static_cast<double>(s.x) + up[1] * static_cast<double>(s.y) + up[2] * static_cast<double>(s.z);
+  return along < kSine * std::hypot(up[0], up[1], up[2]) *
+                     std::hypot(static_cast<double>(s.x), static_cast<double>(s.y), static_cast<double>(s.z));
+}
+
 std::uint32_t break_capacity(const EffectDesc& desc, const Params& params) {
   const VkDeviceSize pixels = VkDeviceSize{desc.max_extent.width} * desc.max_extent.height;
   const bool all = is_downscaled(params) || params.epipolar.correct_depth_breaks.value != 0;
@@ -143,7 +160,7 @@ shared::EpipolarConstants epipolar_constants(const FrameInputs& inputs, const Ef
   const VkExtent2D reduced = reduced_extent(inputs.extent, params);
   out.reduced_width = reduced.width;
   out.reduced_height = reduced.height;
-  out.initial_step = p.initial_step;
+  out.initial_step = sun_is_down(inputs, params) ? std::max(p.initial_step / kStepsWithSunDown, 1U) : p.initial_step;
   out.epipole_density = p.epipole_density;
   out.threshold = p.refinement_threshold;
   out.optimize_locations = p.optimize_locations.value;

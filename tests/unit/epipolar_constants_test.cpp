@@ -256,6 +256,23 @@ TEST(EpipolarSizes, FollowTheParameters) {
   EXPECT_EQ(size_of(epipolar_sizes(desc, {}), EpipolarBuffer::samples), size_of(usual, EpipolarBuffer::samples));
 }
 
+TEST(EpipolarSteps, InitialSamplesStandCloserInTwilight) {
+  const auto step_at = [](double elevation_deg, const Params& params) {
+    const double e = elevation_deg * std::numbers::pi / 180.0;
+    return with_sun({0.0F, static_cast<float>(std::sin(e)), static_cast<float>(-std::cos(e))}, params).initial_step;
+  };
+  Params params;
+  const std::uint32_t usual = params.epipolar.initial_step;
+  for (const double elevation_deg : {90.0, 6.0, 0.0, -1.9}) EXPECT_EQ(step_at(elevation_deg, params), usual) << elevation_deg;
+  for (const double elevation_deg : {-2.1, -7.0, -18.0}) EXPECT_EQ(step_at(elevation_deg, params), usual / 4) << elevation_deg;
+  params.epipolar.initial_step = 1;
+  EXPECT_EQ(step_at(-7.0, params), 1U);
+  // The sun shines through a homogeneous medium by night too.
+  params = {};
+  params.scattering.medium = MediumKind::homogeneous;
+  EXPECT_EQ(step_at(-7.0, params), usual);
+}
+
 TEST(EpipolarSizes, BuffersHaveNamesOfTheirOwn) {
   std::set<std::string> names;
   for (std::uint32_t i = 0; i < kEpipolarBuffers; ++i) {
