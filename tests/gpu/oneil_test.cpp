@@ -186,6 +186,37 @@ TEST_F(GpuOneilScene, VerticesAreFineEnough) {
   }
 }
 
+// At the limb, where neighbouring rays end in space and on the ground, no pixel stands out: away from the sun too, where
+// the columns of the mesh are far apart.
+TEST_F(GpuOneilScene, NoPixelOfTheLimbSparkles) {
+  DemoPlanet setup;
+  setup.params = Params();
+  setup.params.tables.size = {8, 32, 32, 4};
+  setup.scene.oneil.samples = 8;
+  setup.scene.oneil.spacing = s::OneilSpacing::column;
+  const std::unique_ptr<s::Scene> scene = make(setup, {160, 90});
+  ASSERT_NE(scene, nullptr);
+  std::vector<image::Image> pictures[2];
+  for (const s::ModelEvaluation evaluate : {s::ModelEvaluation::pixel, s::ModelEvaluation::vertex}) {
+    for (const float altitude : {100.0e3F, 400.0e3F}) {
+      const double horizon_deg = std::acos(6.36e6 / (6.36e6 + static_cast<double>(altitude))) * 180.0 / kPi;
+      for (const auto& [yaw, fov] : {std::pair{60.0F, 30.0F}, {240.0F, 30.0F}, {150.0F, 3.0F}}) {
+        s::SceneParams params = setup.scene;
+        params.camera.position_m.y = altitude;
+        params.camera.yaw_deg = yaw;
+        params.camera.pitch_deg = static_cast<float>(-horizon_deg);
+        params.camera.fov_deg = fov;
+        params.scattering.evaluate = evaluate;
+        pictures[evaluate == s::ModelEvaluation::vertex ? 1 : 0].push_back(draw(*scene, params));
+      }
+    }
+  }
+  for (std::size_t i = 0; i < pictures[0].size(); ++i) {
+    // What is left is the interpolation over the ground.
+    EXPECT_LT(largest_difference(pictures[0][i], pictures[1][i]), 0.05 * largest(pictures[0][i])) << i;
+  }
+}
+
 // Thick air, where a ray that touches the ground crosses many optical depths: no seam, and nothing undefined.
 TEST_F(GpuOneilScene, ThickAirHasNoSeamAtTheHorizon) {
   DemoPlanet setup;
