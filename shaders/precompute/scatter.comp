@@ -1,8 +1,9 @@
 // From the light that arrives at a point to the light that its air scatters into every direction, as one
 // Fourier series in azimuth per zenith angle; and the horizontal irradiance there.
 // In: incident light of order n - 1. Out: source of order n (fourth root, per scattering coefficient), the sum
-// of the orders so far (linear; fourth root once complete, with the orders beyond as a geometric series),
-// irradiance of order n - 1, and the sum of the irradiances so far. One group per altitude x sun.
+// of the orders so far (linear; fourth root once complete), irradiance of order n - 1, and the sum of the
+// irradiances so far. The pass after the last order completes the sums: from 3 orders on, it adds the order that
+// the last incident light gives for free, and an estimate of all orders beyond. One group per altitude x sun.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -26,16 +27,23 @@ layout(push_constant) uniform Push {
   uint order;  // n: of the light that is scattered here
 } push;
 
-// Of a geometric series of orders; what conservative scattering in thick air can come near.
-const float kLargestRatio = 0.95;
+// Bound on the ratio of successive orders. Conservative scattering in thick air comes close to 1.
+const float kMaxRatio = 0.95;
 
 shared vec3 light[kGatherZeniths * kModes];
 shared vec3 scattered[kSourceZeniths * kModes];
+shared vec3 partial_now[32];
+shared vec3 partial_before[32];
+shared vec3 ratio;  // of an order to the one before, once that has settled
 
-// The sum of r + r^2 + ... for the ratio of two orders.
-vec3 beyond(vec3 last, vec3 before) {
-  vec3 ratio = min(last / max(before, vec3(1.0e-30)), vec3(kLargestRatio));
-  return ratio / (1.0 - ratio);
+// Returns the sum of all orders after `last`, from the last two. Successive orders are taken for the sum of two geometric
+// series: a slow one, whose ratio is the largest eigenvalue of transport and therefore the same at every point, direction and
+// sun, and one that falls twice as fast. The ratio of the two orders themselves would not do: where the sun is low
+// and the air turbid, light of the first orders is still arriving, and their ratio is far above that of later ones.
+vec3 orders_beyond(vec3 last, vec3 before, vec3 ratio) {
+  vec3 fast = 0.5 * ratio;
+  vec3 scale = 1.0 / ((1.0 - ratio) * (1.0 - fast));
+  return max((last * (ratio + fast - ratio * fast) - before * ratio * fast) * scale, vec3(0.0));
 }
 
 void transform_light(uint lane, uint altitude, uint sun) {
@@ -67,22 +75,66 @@ void scatter_modes(uint lane, uint altitude, float h) {
   }
 }
 
+// Sets `ratio` to the ratio of the last two orders of the source, averaged over all directions, at sea level under the highest
+// sun, where it has settled. The mean of what is scattered is the mean of the light that arrives.
+void find_ratio(uint lane) {
+  uint sun = kGatherSuns - 1u;
+  float horizon = horizon_cos(0.0, medium.planet_radius_m);
+  vec3 now = vec3(0.0);
+  for (uint i = lane; i < kGatherZeniths * kGatherAzimuths; i += 32u) {
+    uint q = i / kGatherAzimuths;
+    float stretch = gather_zenith_stretch(horizon, quadrature.node[q % 12u], q < kGatherZeniths / 2u);
+    float weight = quadrature.weight[q % 12u] * stretch * (0.5 / float(kGatherAzimuths));
+    now += weight * incident[gather_index(0u, q, i % kGatherAzimuths, sun)].rgb;
+  }
+  vec3 before = vec3(0.0);
+  for (uint i = lane; i < kSourceZeniths * kSourceAzimuths; i += 32u) {
+    uint j = i / kSourceAzimuths;
+    uint k = i % kSourceAzimuths;
+    float sine = sin(float(j) * kPi / float(kSourceZeniths - 1u));
+    float weight = (k == 0u || k == kSourceAzimuths - 1u ? 0.25 : 0.5) / float(kSourceAzimuths - 1u);
+    before += (weight * sine * kPi / float(kSourceZeniths - 1u)) * value_from_texel(source[source_index(0u, j, k, sun)].rgb);
+  }
+  partial_now[lane] = now;
+  partial_before[lane] = before;
+  barrier();
+  if (lane == 0u) {
+    for (uint i = 1u; i < 32u; ++i) {
+      now += partial_now[i];
+      before += partial_before[i];
+    }
+    ratio = min(now / max(before, vec3(1.0e-30)), vec3(kMaxRatio));
+  }
+  barrier();
+}
+
+vec3 scattered_towards(uint j, float phi) {
+  vec3 value = vec3(0.0);
+  for (uint m = 0u; m < kModes; ++m) value += scattered[j * kModes + m] * cos(float(m) * phi);
+  return max(value, vec3(0.0));
+}
+
 void store_source(uint lane, uint altitude, uint sun) {
   for (uint i = lane; i < kSourceZeniths * kSourceAzimuths; i += 32u) {
     uint j = i / kSourceAzimuths;
-    float phi = float(i % kSourceAzimuths) * kPi / float(kSourceAzimuths - 1u);
-    vec3 value = vec3(0.0);
-    for (uint m = 0u; m < kModes; ++m) value += scattered[j * kModes + m] * cos(float(m) * phi);
-    value = max(value, vec3(0.0));
     uint index = source_index(altitude, j, i % kSourceAzimuths, sun);
-    vec3 before = value_from_texel(source[index].rgb);
-    vec3 sum = push.order == 2u ? value : sums[index].rgb + value;
-    if (push.order >= shape.orders) {
-      if (push.order > 2u) sum += value * beyond(value, before);
-      sum = texel_from_value(sum);
-    }
+    vec3 value = scattered_towards(j, float(i % kSourceAzimuths) * kPi / float(kSourceAzimuths - 1u));
     source[index] = vec4(texel_from_value(value), 0.0);
-    sums[index] = vec4(sum, 0.0);
+    sums[index] = vec4(push.order == 2u ? value : sums[index].rgb + value, 0.0);
+  }
+}
+
+// Leaves the sources as they are: other groups read them for the ratio.
+void complete_sums(uint lane, uint altitude, uint sun) {
+  for (uint i = lane; i < kSourceZeniths * kSourceAzimuths; i += 32u) {
+    uint j = i / kSourceAzimuths;
+    uint index = source_index(altitude, j, i % kSourceAzimuths, sun);
+    vec3 sum = sums[index].rgb;
+    if (shape.orders > 2u) {
+      vec3 value = scattered_towards(j, float(i % kSourceAzimuths) * kPi / float(kSourceAzimuths - 1u));
+      sum += value + orders_beyond(value, value_from_texel(source[index].rgb), ratio);
+    }
+    sums[index] = vec4(texel_from_value(sum), 0.0);
   }
 }
 
@@ -101,7 +153,7 @@ void store_irradiance(uint altitude, uint sun, float h) {
   if (push.order == 2u) {
     sky[index] = vec4(sum, 0.0);
   } else {
-    if (push.order > shape.orders && push.order > 3u) sum += sum * beyond(sum, before);
+    if (push.order > shape.orders && push.order > 3u) sum += orders_beyond(sum, before, ratio);
     sky[index] += vec4(sum, 0.0);
   }
 }
@@ -113,10 +165,14 @@ void main() {
   float h = gather_altitude(medium, altitude);
   transform_light(lane, altitude, sun);
   barrier();
-  if (push.order <= shape.orders) {
-    scatter_modes(lane, altitude, h);
-    barrier();
+  bool complete = push.order > shape.orders;
+  if (complete && shape.orders > 2u) find_ratio(lane);
+  if (!complete || shape.orders > 2u) scatter_modes(lane, altitude, h);
+  barrier();
+  if (!complete) {
     store_source(lane, altitude, sun);
+  } else {
+    complete_sums(lane, altitude, sun);
   }
   if (lane == 0u) store_irradiance(altitude, sun, h);
 }
