@@ -75,37 +75,41 @@ void scatter_modes(uint lane, uint altitude, float h) {
   }
 }
 
-// Sets `ratio` to the ratio of the last two orders of the source, averaged over all directions, at sea level under the highest
-// sun, where it has settled. The mean of what is scattered is the mean of the light that arrives.
+// Sets `ratio` to the ratio of the last two orders of the source at sea level, averaged over all directions, once it has
+// settled: it rises to that value under the highest sun and falls to it under one on the horizon, and their mean is close.
+// The mean of what is scattered is the mean of the light that arrives.
 void find_ratio(uint lane) {
-  uint sun = kGatherSuns - 1u;
   float horizon = horizon_cos(0.0, medium.planet_radius_m);
-  vec3 now = vec3(0.0);
-  for (uint i = lane; i < kGatherZeniths * kGatherAzimuths; i += 32u) {
-    uint q = i / kGatherAzimuths;
-    float stretch = gather_zenith_stretch(horizon, quadrature.node[q % 12u], q < kGatherZeniths / 2u);
-    float weight = quadrature.weight[q % 12u] * stretch * (0.5 / float(kGatherAzimuths));
-    now += weight * incident[gather_index(0u, q, i % kGatherAzimuths, sun)].rgb;
-  }
-  vec3 before = vec3(0.0);
-  for (uint i = lane; i < kSourceZeniths * kSourceAzimuths; i += 32u) {
-    uint j = i / kSourceAzimuths;
-    uint k = i % kSourceAzimuths;
-    float sine = sin(float(j) * kPi / float(kSourceZeniths - 1u));
-    float weight = (k == 0u || k == kSourceAzimuths - 1u ? 0.25 : 0.5) / float(kSourceAzimuths - 1u);
-    before += (weight * sine * kPi / float(kSourceZeniths - 1u)) * value_from_texel(source[source_index(0u, j, k, sun)].rgb);
-  }
-  partial_now[lane] = now;
-  partial_before[lane] = before;
-  barrier();
-  if (lane == 0u) {
-    for (uint i = 1u; i < 32u; ++i) {
-      now += partial_now[i];
-      before += partial_before[i];
+  if (lane == 0u) ratio = vec3(0.0);
+  for (int end = 0; end < 2; ++end) {
+    uint sun = end == 0 ? kGatherSuns - 1u : uint(gather_sun_index(medium, 0.0) + 0.5);
+    vec3 now = vec3(0.0);
+    for (uint i = lane; i < kGatherZeniths * kGatherAzimuths; i += 32u) {
+      uint q = i / kGatherAzimuths;
+      float stretch = gather_zenith_stretch(horizon, quadrature.node[q % 12u], q < kGatherZeniths / 2u);
+      float weight = quadrature.weight[q % 12u] * stretch * (0.5 / float(kGatherAzimuths));
+      now += weight * incident[gather_index(0u, q, i % kGatherAzimuths, sun)].rgb;
     }
-    ratio = min(now / max(before, vec3(1.0e-30)), vec3(kMaxRatio));
+    vec3 before = vec3(0.0);
+    for (uint i = lane; i < kSourceZeniths * kSourceAzimuths; i += 32u) {
+      uint j = i / kSourceAzimuths;
+      uint k = i % kSourceAzimuths;
+      float step = kPi / float(kSourceZeniths - 1u);
+      float weight = (k == 0u || k == kSourceAzimuths - 1u ? 0.25 : 0.5) / float(kSourceAzimuths - 1u);
+      before += (weight * step * sin(float(j) * step)) * value_from_texel(source[source_index(0u, j, k, sun)].rgb);
+    }
+    partial_now[lane] = now;
+    partial_before[lane] = before;
+    barrier();
+    if (lane == 0u) {
+      for (uint i = 1u; i < 32u; ++i) {
+        now += partial_now[i];
+        before += partial_before[i];
+      }
+      ratio += 0.5 * min(now / max(before, vec3(1.0e-30)), vec3(kMaxRatio));
+    }
+    barrier();
   }
-  barrier();
 }
 
 vec3 scattered_towards(uint j, float phi) {

@@ -35,15 +35,16 @@ float angle_in_triangle(float x, float a, float b) {
 }
 
 // From cosines. Texels of the tables also stand for triples that no geometry has, and interpolation draws on
-// them: there the angle between view and sun is kept, on which the aureole depends, and the view gives way; or
-// the sun where it is high and nearer to the vertical, for then its exact place matters least.
+// them. On the sun's side the angle between view and sun is kept, on which the aureole depends, and the view gives way; or
+// the sun where it is high and nearer to the vertical, for then its exact place matters least. On the other side
+// the light hardly depends on that angle but, in turbid air near the horizon, strongly on the view: that is kept instead.
 const float kHighSun = 0.5;
 SourceAngles source_angles(float mu, float mu_s, float nu) {
   bool move_sun = mu_s > max(kHighSun, abs(mu));
   SourceAngles a = SourceAngles(acos(clamp(mu, -1.0, 1.0)), acos(clamp(mu_s, -1.0, 1.0)), 0.0);
   float spread = sqrt(max((1.0 - mu * mu) * (1.0 - mu_s * mu_s), 1.0e-12));
   float cosine = (nu - mu * mu_s) / spread;
-  if (abs(cosine) > 1.0) {
+  if (abs(cosine) > 1.0 && nu > 0.0) {
     float between = acos(clamp(nu, -1.0, 1.0));
     if (move_sun) {
       a.sun = angle_in_triangle(a.sun, a.view, between);
