@@ -25,6 +25,16 @@ constexpr Group kGroups[] = {
     {"0 to -6 deg", "all", [](const TestRay& r) { return r.band == SunBand::twilight; }},
 };
 
+// Of the rays of the turbid set.
+struct TurbidGroup {
+  const char* sun;
+  bool (*takes)(const TestRay& ray);
+};
+constexpr TurbidGroup kTurbidGroups[] = {
+    {"0 to 10 deg", [](const TestRay& r) { return r.band == SunBand::up; }},
+    {"0 to -6 deg", [](const TestRay& r) { return r.band == SunBand::twilight; }},
+};
+
 struct SkyBand {
   const char* sun;
   double low_deg, high_deg;

@@ -96,4 +96,24 @@ std::vector<TestRay> make_rays(Region region, SunBand band, std::uint32_t count,
   return rays;
 }
 
+std::vector<TestRay> make_horizon_rays(SunBand band, std::uint32_t count, std::uint64_t seed, double radius_m,
+                                       double height_m) {
+  constexpr std::uint64_t kSet = 1000;  // apart from the groups of make_rays
+  std::vector<TestRay> rays;
+  const double scale = height_m / 80000.0;
+  for (const std::array<double, 4>& u : even_points(mixed(seed) + kSet + static_cast<std::uint64_t>(band), count)) {
+    TestRay ray;
+    ray.band = band;
+    ray.sun_elevation_rad = (band == SunBand::up ? 10.0 * u[0] : -6.0 * u[0]) * kRadPerDeg;
+    reference::Query& q = ray.query;
+    q.altitude_m = scale * 1000.0 * u[2] * u[2];
+    const double dip = std::acos(radius_m / (radius_m + q.altitude_m));
+    q.view_zenith_rad = 0.5 * kPi + dip - (0.5 + 4.5 * u[3]) * kRadPerDeg;
+    q.sun_zenith_rad = 0.5 * kPi - ray.sun_elevation_rad;
+    q.azimuth_rad = kPi * u[1];
+    rays.push_back(ray);
+  }
+  return rays;
+}
+
 }  // namespace tyndall::validate

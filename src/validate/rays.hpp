@@ -27,4 +27,9 @@ struct TestRay {
 [[nodiscard]] std::vector<TestRay> make_rays(Region region, SunBand band, std::uint32_t count,
                                              std::uint64_t seed, double radius_m, double height_m);
 
+// `count` rays of low suns near the horizon: from 0 to 1 km, 0.5 to 5 degrees above the geometric horizon, the sun at 0 to 10
+// degrees or at 0 to -6. Evenly spread rays hardly ever meet these.
+[[nodiscard]] std::vector<TestRay> make_horizon_rays(SunBand band, std::uint32_t count, std::uint64_t seed,
+                                                     double radius_m, double height_m);
+
 }  // namespace tyndall::validate

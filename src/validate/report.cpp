@@ -89,6 +89,23 @@ std::string error_tables(const Study& study) {
   return out;
 }
 
+std::string turbid_tables(const Study& study) {
+  std::string out = concat(
+      {"<h2>Turbid air near the horizon under a low sun</h2>\n<p>Rays from 0 to 1 km, 0.5 to 5° above the horizon; the "
+       "reference follows ", std::to_string(kTurbidOrdersFactor * study.options.orders), " orders.</p>\n<table>\n<tr>"
+       "<th class=\"t\">model</th><th>optical depth</th><th>albedo</th><th class=\"t\">sun</th>", kErrorHead});
+  for (std::size_t m = 0; m < study.models.size(); ++m) {
+    for (std::size_t a = 0; a < study.turbid.size(); ++a) {
+      for (const TurbidGroup& group : kTurbidGroups) {
+        out += concat({"<tr>", text_cell(study.models[m].name), cell(fixed(kTurbidAirs[a].optical_depth, 1)),
+                       cell(fixed(kTurbidAirs[a].ground_albedo, 1)), text_cell(group.sun),
+                       error_cells(summarise_turbid(study, m, a, group.takes)), "</tr>\n"});
+      }
+    }
+  }
+  return out + "</table>\n";
+}
+
 std::string worst_tables(const Study& study) {
   std::string out =
       "<p>The rays on which each is furthest off, as <code>tyndall probe</code> takes them.</p>\n";
@@ -256,7 +273,7 @@ std::string to_html(const Study& study, const Origin& origin) {
        "on which the reference is dark, or uncertain by more than 3 %, are left out.</p>\n"});
   out += model_list(study);
   out += "<h2>Errors</h2>\n<div class=\"plots\">\n" + error_plots(study) + "</div>\n" + error_tables(study) +
-         worst_tables(study);
+         worst_tables(study) + turbid_tables(study);
 
   out +=
       "<h2>The sky along the sun's vertical</h2>\n<p>From sea level, from the horizon under the sun (−90°) "

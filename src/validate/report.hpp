@@ -21,7 +21,7 @@ struct Origin {
 // {"command", "version", "device", "rays", "samples", "seed", "orders", "models": [{"name", "orders",
 // "groups":
 // [{"atmosphere", "sun", "region", "rays", "mean", "median", "p95", "worst", "noise", "channels": [{"mean",
-// ...}]}], "sky": [...]}]}.
+// ...}]}], "turbid": [{"optical_depth", "ground_albedo", "sun", as for groups}], "sky": [...]}]}.
 [[nodiscard]] std::string to_json(const Study& study, const Origin& origin);
 
 }  // namespace tyndall::validate

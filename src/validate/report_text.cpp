@@ -33,6 +33,39 @@ std::string json_errors(const ErrorSummary& errors) {
   return out + "]";
 }
 
+std::string json_turbid(const Study& study, std::size_t model) {
+  std::string out;
+  for (std::size_t a = 0; a < study.turbid.size(); ++a) {
+    for (const TurbidGroup& group : kTurbidGroups) {
+      out += concat({out.empty() ? "\n" : ",\n", "   {\"optical_depth\": ", json_number(kTurbidAirs[a].optical_depth),
+                     ", \"ground_albedo\": ", json_number(kTurbidAirs[a].ground_albedo), ", \"sun\": ",
+                     quoted_text(group.sun), ", ", json_errors(summarise_turbid(study, model, a, group.takes)), "}"});
+    }
+  }
+  return out;
+}
+
+std::string markdown_turbid(const Study& study) {
+  std::string out = concat(
+      {"\n## Turbid air near the horizon under a low sun\n\nRays from 0 to 1 km, 0.5 to 5° above the horizon; the reference "
+       "follows ", std::to_string(kTurbidOrdersFactor * study.options.orders), " orders.\nModels that claim all of them.\n\n"
+       "| model | optical depth | albedo | sun | rays | mean | median | 95 % | worst | noise |\n"
+       "|---|--:|--:|---|--:|--:|--:|--:|--:|--:|\n"});
+  for (std::size_t m = 0; m < study.models.size(); ++m) {
+    if (study.models[m].orders != 0) continue;
+    for (std::size_t a = 0; a < study.turbid.size(); ++a) {
+      for (const TurbidGroup& group : kTurbidGroups) {
+        const ErrorSummary e = summarise_turbid(study, m, a, group.takes);
+        out += concat({"| ", study.models[m].name, " | ", fixed(kTurbidAirs[a].optical_depth, 1), " | ",
+                       fixed(kTurbidAirs[a].ground_albedo, 1), " | ", group.sun, " | ",
+                       std::to_string(e.channels[0].count), " | ", percent(e.all.mean), " | ", percent(e.all.median),
+                       " | ", percent(e.all.p95), " | ", percent(e.all.worst), " | ", percent(e.noise), " |\n"});
+      }
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string to_json(const Study& study, const Origin& origin) {
@@ -54,7 +87,7 @@ std::string to_json(const Study& study, const Origin& origin) {
         first = false;
       }
     }
-    out += "\n  ], \"sky\": [";
+    out += concat({"\n  ], \"turbid\": [", json_turbid(study, m), "\n  ], \"sky\": ["});
     first = true;
     for (const SkyBand& band : kSkyBands) {
       out += concat({first ? "\n" : ",\n", "   {\"sun\": ", quoted_text(band.sun), ", ",
@@ -101,6 +134,7 @@ std::string to_markdown(const Study& study, const Origin& origin) {
       }
     }
   }
+  out += markdown_turbid(study);
   out +=
       "\n## Irradiance of the sky at sea level\n\n| model | sun | elevations | mean | worst | noise "
       "|\n|---|---|--:|--:|--:|--:|\n";

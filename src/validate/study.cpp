@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "reference/atmosphere.hpp"
+
 namespace tyndall::validate {
 namespace {
 
@@ -21,10 +23,10 @@ class Asker {
       : options_(options), work_(work), progress_(progress) {}
 
   Result<void> ask(const Params& params, const std::vector<Model>& models, std::uint32_t samples,
-                   Answers& answers) {
+                   Answers& answers, int orders_factor = 1) {
     reference::Options how;
     how.samples = samples;
-    how.orders = options_.orders;
+    how.orders = orders_factor * options_.orders;
     // Every set of questions has random numbers of its own.
     how.seed = options_.seed + 1000 * asked_++;
     how.by_order = true;
@@ -75,6 +77,33 @@ std::vector<RayTest> make_ray_tests(const std::vector<Atmosphere>& atmospheres, 
     for (const TestRay& ray : tests[a].rays) tests[a].answers.queries.push_back(ray.query);
   }
   return tests;
+}
+
+std::vector<RayTest> make_turbid_tests(const Params& params, const Options& options) {
+  std::vector<RayTest> tests(std::size(kTurbidAirs));
+  const std::uint32_t count = options.rays / 4 / static_cast<std::uint32_t>(std::size(kTurbidAirs));
+  for (std::size_t a = 0; a < tests.size(); ++a) {
+    for (const SunBand band : {SunBand::up, SunBand::twilight}) {
+      const std::uint32_t part = std::max(band == SunBand::up ? count - count / 3 : count / 3, 1U);
+      const std::vector<TestRay> made = make_horizon_rays(band, part, options.seed * 16 + a, params.planet.radius_m,
+                                                          params.atmosphere.height_m);
+      tests[a].rays.insert(tests[a].rays.end(), made.begin(), made.end());
+    }
+    for (const TestRay& ray : tests[a].rays) tests[a].answers.queries.push_back(ray.query);
+  }
+  return tests;
+}
+
+// Errors of a model over the rays of a test that a predicate takes.
+ErrorSummary summarise_test(const RayTest& test, std::size_t model, int orders,
+                            const std::function<bool(const TestRay&)>& takes) {
+  std::vector<Comparison> comparisons;
+  for (std::size_t i = 0; i < test.rays.size(); ++i) {
+    const Truth right = truth(test.answers.reference[i], orders);
+    if (takes(test.rays[i]) && is_comparable(right))
+      comparisons.push_back(compare(test.answers.models[model][i], right));
+  }
+  return summarise(comparisons);
 }
 
 std::vector<VerticalTest> make_verticals() {
@@ -133,6 +162,15 @@ std::vector<Atmosphere> atmospheres(const Params& params) {
   return out;
 }
 
+Params turbid_params(const Params& params, const TurbidAir& air) {
+  Params out = params;
+  out.planet.ground_albedo = static_cast<float>(air.ground_albedo);
+  const reference::Atmosphere medium(params);
+  const double depth = medium.mie_extinction[1] * medium.mie_scale_height_m;
+  if (depth > 0.0) out.atmosphere.aerosol_density *= static_cast<float>(air.optical_depth / depth);
+  return out;
+}
+
 Truth truth(const reference::Estimate& estimate, int orders) {
   if (orders <= 0 || static_cast<std::size_t>(orders) >= estimate.order_radiance.size()) {
     return {estimate.radiance, estimate.standard_error};
@@ -168,12 +206,14 @@ Result<Study> run_study(const Params& params, const Options& options, std::vecto
   study.horizon_models = std::move(horizon_models);
   study.atmospheres = atmospheres(params);
   study.rays = make_ray_tests(study.atmospheres, options);
+  study.turbid = make_turbid_tests(params, options);
   study.verticals = make_verticals();
   study.sky = make_sky();
   if (!study.horizon_models.empty()) study.horizons = make_horizons(params);
 
   double work = kSkyFactor * static_cast<double>(study.sky.answers.queries.size());
   for (const RayTest& test : study.rays) work += static_cast<double>(test.rays.size());
+  for (const RayTest& test : study.turbid) work += static_cast<double>(test.rays.size());
   for (const VerticalTest& test : study.verticals) work += static_cast<double>(test.angle_deg.size());
   for (const HorizonTest& test : study.horizons) work += static_cast<double>(test.elevation_deg.size());
   Asker asker(options, work * options.samples, progress);
@@ -212,19 +252,22 @@ Result<Study> run_study(const Params& params, const Options& options, std::vecto
   for (std::size_t a = 1; a < study.rays.size(); ++a) {
     if (Result<void> r = ask_rays(a); !r) return std::move(r).error();
   }
+  for (std::size_t a = 0; a < study.turbid.size(); ++a) {
+    Result<void> turbid = asker.ask(turbid_params(params, kTurbidAirs[a]), study.models, options.samples,
+                                    study.turbid[a].answers, kTurbidOrdersFactor);
+    if (!turbid) return std::move(turbid).error();
+  }
   return study;
 }
 
 ErrorSummary summarise(const Study& study, std::size_t model, std::size_t atmosphere,
                        const std::function<bool(const TestRay&)>& takes) {
-  const RayTest& test = study.rays[atmosphere];
-  std::vector<Comparison> comparisons;
-  for (std::size_t i = 0; i < test.rays.size(); ++i) {
-    const Truth right = truth(test.answers.reference[i], study.models[model].orders);
-    if (takes(test.rays[i]) && is_comparable(right))
-      comparisons.push_back(compare(test.answers.models[model][i], right));
-  }
-  return summarise(comparisons);
+  return summarise_test(study.rays[atmosphere], model, study.models[model].orders, takes);
+}
+
+ErrorSummary summarise_turbid(const Study& study, std::size_t model, std::size_t air,
+                              const std::function<bool(const TestRay&)>& takes) {
+  return summarise_test(study.turbid[air], model, study.models[model].orders, takes);
 }
 
 std::vector<BadRay> worst_rays(const Study& study, std::size_t model, std::size_t count) {

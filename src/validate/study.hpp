@@ -25,7 +25,7 @@ struct Model {
 };
 
 struct Options {
-  std::uint32_t rays = 540;      // over all groups
+  std::uint32_t rays = 540;      // over all groups; the turbid set has a quarter as many more
   std::uint32_t samples = 8000;  // paths per ray; four times as many for the irradiance of the sky
   std::uint64_t seed = 1;
   int orders = 8;  // of the reference
@@ -37,6 +37,17 @@ struct Atmosphere {
 };
 // As given, with five times its aerosol, and without its ozone.
 [[nodiscard]] std::vector<Atmosphere> atmospheres(const Params& params);
+
+// Turbid air near the horizon under low suns: where models of multiple scattering are put to the test.
+struct TurbidAir {
+  double optical_depth;  // of the aerosol, vertical, at the second wavelength
+  double ground_albedo;
+};
+constexpr TurbidAir kTurbidAirs[] = {{0.1, 0.0}, {0.2, 0.2}, {0.3, 0.0}, {0.5, 0.2}};
+// As given, with that amount of aerosol and that ground. Air without aerosol stays without.
+[[nodiscard]] Params turbid_params(const Params& params, const TurbidAir& air);
+// In such air, light is scattered more often: the reference follows it for so many times the orders.
+constexpr int kTurbidOrdersFactor = 3;
 
 // Questions with the answers of everyone.
 struct Answers {
@@ -86,6 +97,7 @@ struct Study {
   std::vector<Model> horizon_models;  // of the horizon test alone; without any it is left out
   std::vector<Atmosphere> atmospheres;
   std::vector<RayTest> rays;  // one per atmosphere
+  std::vector<RayTest> turbid;  // one per entry of kTurbidAirs
   std::vector<VerticalTest> verticals;
   SkyTest sky;
   std::vector<HorizonTest> horizons;
@@ -98,6 +110,9 @@ struct Study {
 // Errors of a model over the rays of one atmosphere that a predicate takes.
 [[nodiscard]] ErrorSummary summarise(const Study& study, std::size_t model, std::size_t atmosphere,
                                      const std::function<bool(const TestRay&)>& takes);
+// Likewise over the rays of one of kTurbidAirs.
+[[nodiscard]] ErrorSummary summarise_turbid(const Study& study, std::size_t model, std::size_t air,
+                                            const std::function<bool(const TestRay&)>& takes);
 // The rays of all atmospheres on which a model is furthest off, worst first.
 struct BadRay {
   std::size_t atmosphere = 0;

@@ -102,6 +102,34 @@ TEST(ValidateRays, AreInTheirGroupsAndEvenlySpread) {
             make_rays(Region::air, SunBand::up, 5, 8, kRadius, kHeight)[4].query.altitude_m);
 }
 
+TEST(ValidateRays, TurbidSetIsNearTheHorizonUnderLowSuns) {
+  for (const SunBand band : {SunBand::up, SunBand::twilight}) {
+    const std::vector<TestRay> rays = make_horizon_rays(band, 50, 5, kRadius, kHeight);
+    ASSERT_EQ(rays.size(), 50U);
+    for (const TestRay& ray : rays) {
+      const double sun_deg = ray.sun_elevation_rad * 180.0 / kPi;
+      EXPECT_TRUE(band == SunBand::up ? sun_deg >= 0.0 && sun_deg <= 10.0 : sun_deg >= -6.0 && sun_deg <= 0.0);
+      EXPECT_TRUE(ray.query.altitude_m >= 0.0 && ray.query.altitude_m <= 1000.0);
+      const double horizon = 0.5 * kPi + std::acos(kRadius / (kRadius + ray.query.altitude_m));
+      const double above_deg = (horizon - ray.query.view_zenith_rad) * 180.0 / kPi;
+      EXPECT_TRUE(above_deg >= 0.5 - 1e-9 && above_deg <= 5.0 + 1e-9) << above_deg;
+    }
+  }
+}
+
+TEST(ValidateRays, TurbidAirHasTheOpticalDepthThatItSays) {
+  Params params;
+  params.atmosphere.aerosol_absorption = 0.3F;
+  for (const TurbidAir& air : kTurbidAirs) {
+    const Params turbid = turbid_params(params, air);
+    const AtmosphereParams& a = turbid.atmosphere;
+    EXPECT_NEAR(2e-5 * (1.0 + a.aerosol_absorption) * a.aerosol_density * a.mie_scale_height_m, air.optical_depth, 1e-6);
+    EXPECT_FLOAT_EQ(turbid.planet.ground_albedo, static_cast<float>(air.ground_albedo));
+  }
+  params.atmosphere.aerosol_density = 0.0F;
+  EXPECT_EQ(turbid_params(params, kTurbidAirs[0]).atmosphere.aerosol_density, 0.0F);
+}
+
 TEST(ValidateRays, TheSunStandsAtThePlaceThatSpaceSees) {
   for (const TestRay& ray : make_rays(Region::space, SunBand::twilight, 100, 3, kRadius, kHeight)) {
     const reference::Query& q = ray.query;
@@ -225,6 +253,12 @@ TEST(ValidateStudy, FindsWhatIsWrongAndNothingElse) {
     EXPECT_GT(wrong.all.mean, 0.15);
     EXPECT_NEAR(wrong.all.worst, 0.5, 0.15);
   }
+  // The turbid set, by the model that claims order 1.
+  ASSERT_EQ(study.value().turbid.size(), std::size(kTurbidAirs));
+  for (std::size_t air = 0; air < std::size(kTurbidAirs); ++air) {
+    const ErrorSummary first = summarise_turbid(study.value(), 0, air, up);
+    EXPECT_LT(first.all.mean, 3.0 * first.noise + 1e-6) << air;
+  }
   EXPECT_LT(summarise_sky(study.value(), 1, 0.001, 90.0).all.mean, 0.05);
   EXPECT_GT(summarise_sky(study.value(), 2, 0.001, 90.0).all.mean, 0.15);
 
@@ -240,6 +274,10 @@ TEST(ValidateStudy, FindsWhatIsWrongAndNothingElse) {
   EXPECT_EQ(html.find("nan"), std::string::npos);
   const std::string page = to_markdown(study.value(), origin);
   EXPECT_LT(page.find("    tyndall validate <&>\n"), page.find("## Models"));
+  EXPECT_NE(page.find("| all | 0.5 | 0.2 | 0 to -6 deg |"), std::string::npos);
+  EXPECT_EQ(page.find("| first | 0.5 | 0.2 |"), std::string::npos);  // claims order 1 alone
+  EXPECT_NE(html.find("Turbid air near the horizon"), std::string::npos);
+  EXPECT_NE(to_json(study.value(), origin).find("\"optical_depth\": 0.3"), std::string::npos);
   EXPECT_EQ(page.find("nan"), std::string::npos);
 
   const Result<Study> again =
