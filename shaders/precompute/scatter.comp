@@ -88,7 +88,7 @@ void find_ratio(uint lane) {
       uint q = i / kGatherAzimuths;
       float stretch = gather_zenith_stretch(horizon, quadrature.node[q % 12u], q < kGatherZeniths / 2u);
       float weight = quadrature.weight[q % 12u] * stretch * (0.5 / float(kGatherAzimuths));
-      now += weight * incident[gather_index(0u, q, i % kGatherAzimuths, sun)].rgb;
+      now += weight * incident[gather_index(kGatherBelow, q, i % kGatherAzimuths, sun)].rgb;
     }
     vec3 before = vec3(0.0);
     for (uint i = lane; i < kSourceZeniths * kSourceAzimuths; i += 32u) {
@@ -96,7 +96,7 @@ void find_ratio(uint lane) {
       uint k = i % kSourceAzimuths;
       float step = kPi / float(kSourceZeniths - 1u);
       float weight = (k == 0u || k == kSourceAzimuths - 1u ? 0.25 : 0.5) / float(kSourceAzimuths - 1u);
-      before += (weight * step * sin(float(j) * step)) * value_from_texel(source[source_index(0u, j, k, sun)].rgb);
+      before += (weight * step * sin(float(j) * step)) * value_from_texel(source[source_index(kGatherBelow, j, k, sun)].rgb);
     }
     partial_now[lane] = now;
     partial_before[lane] = before;
