@@ -163,7 +163,7 @@ TEST_F(CliScenes, MeshFilesThatAreNone) {
       {scratch_.at(""), "Is a directory"},
       {scratch_.write("empty.gltf", ""), "is no glTF file"},
       {scratch_.write("text.gltf", "no meshes"), "is no glTF file"},
-      {scratch_.write("cut.glb", std::string("glTF\2\0\0\0\x40\0\0\0", 12)), "cut.glb cannot be read"},
+      {scratch_.write("cut.glb", std::string("glTF\2\0\0\0\x40\0\0\0", 12)), "cut.glb: is a .glb that states 64 bytes and has 12"},
       {scratch_.write("bare.gltf", R"({"asset":{"version":"2.0"}})"), "no triangles"},
       {scratch_.write("outside.gltf", R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":12,"uri":"none.bin"}]})"), "none.bin"},
   };

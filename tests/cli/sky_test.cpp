@@ -42,7 +42,7 @@ SkyMap map_of(std::uint32_t width, std::uint32_t height, double elevation_deg, d
   return {width, height, altitude_m, elevation_deg * kRadPerDeg, azimuth_deg * kRadPerDeg};
 }
 
-const SunFace kFace = {0.2667 * kRadPerDeg, {0.4, 0.5, 0.6}, 10.0};
+const SunFace kFace = {0.2667 * kRadPerDeg, {0.4, 0.5, 0.6}, {10.0, 10.0, 10.0}};
 
 TEST(CliSkyMap, PixelsCoverTheSphereAndLookWhereTheyShould) {
   double sum = 0.0;
@@ -89,7 +89,7 @@ TEST(CliSkyMap, TheHorizonCutsTheDisc) {
   const auto flux = [&](double elevation_deg, double altitude_m) {
     const SkyMap map = map_of(720, 360, elevation_deg, 10.0, altitude_m);
     image::Image image(map.width, map.height);
-    add_sun(image, map, {0.2667 * kRadPerDeg, {}, 10.0}, medium);
+    add_sun(image, map, {0.2667 * kRadPerDeg, {}, {10.0, 10.0, 10.0}}, medium);
     return integral(image, false)[1];
   };
   EXPECT_NEAR(flux(0.0, 0.0), 5.0, 0.01);  // half of it; a uniform face
@@ -269,7 +269,7 @@ TEST_F(CliSky, WhatIsWrongIsSaid) {
     more.insert(more.begin(), sun.begin(), sun.end());
     return error(more);
   };
-  EXPECT_NE(with_sun({"--altitude", "-3"}).find("--altitude, allowed is a number, 0 to 1e+09"),
+  EXPECT_NE(with_sun({"--altitude", "-11001"}).find("--altitude, allowed is a number, -11000 to 1e+09"),
             std::string::npos);
   EXPECT_NE(with_sun({"--disc", "maybe"}).find("--disc, allowed is true, false"), std::string::npos);
   EXPECT_NE(with_sun({"--model", "reference"}).find("--model, allowed is "), std::string::npos);
