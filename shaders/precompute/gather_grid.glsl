@@ -1,7 +1,6 @@
 // The grids on which the orders of scattering are solved, and the look-up of the light that the air scatters
 // (the source function) at any point and direction. Altitudes are spaced by their square root, suns densest
-// near the horizon, those below sea level evenly; source directions evenly in zenith angle and in azimuth from the sun's plane: all smooth
-// there, at the zenith and at the sun's own too.
+// near the horizon, those below sea level evenly; source directions evenly in azimuth from the sun's plane.
 #ifndef TYNDALL_GATHER_GRID_GLSL
 #define TYNDALL_GATHER_GRID_GLSL
 
@@ -66,6 +65,26 @@ float gather_zenith_stretch(float horizon, float node, bool below) {
   return gather_angle_span(horizon, below) * sqrt(max((1.0 - mu) * (1.0 + mu), 0.0));
 }
 float gather_azimuth(uint k) { return (float(k) + 0.5) * kPi / float(kGatherAzimuths); }
+
+// Zenith angles of the source function, symmetric to the horizontal and densest there: in turbid air the light near the
+// horizon is brightest, and so is what is scattered along it. The index grows with the square of the angle from the horizontal.
+const float kSourceDensity = 0.6;  // spacing at the horizontal over the mean spacing
+float source_zenith(uint j) {
+  float x = 2.0 * float(j) / float(kSourceZeniths - 1u) - 1.0;
+  return 0.5 * kPi * (1.0 + x * (kSourceDensity + (1.0 - kSourceDensity) * abs(x)));
+}
+float source_zenith_index(float angle) {
+  float y = angle / (0.5 * kPi) - 1.0;
+  float x = sign(y) * (sqrt(kSourceDensity * kSourceDensity + 4.0 * (1.0 - kSourceDensity) * abs(y)) - kSourceDensity) /
+            (2.0 * (1.0 - kSourceDensity));
+  return clamp(0.5 * (x + 1.0), 0.0, 1.0) * float(kSourceZeniths - 1u);
+}
+// Weight of a zenith angle in integrals over it, without its sine.
+float source_zenith_weight(uint j) {
+  float x = 2.0 * float(j) / float(kSourceZeniths - 1u) - 1.0;
+  bool end = j == 0u || j == kSourceZeniths - 1u;
+  return kPi / float(kSourceZeniths - 1u) * (kSourceDensity + 2.0 * (1.0 - kSourceDensity) * abs(x)) * (end ? 0.5 : 1.0);
+}
 
 // Index of incident light. Sun-minor: neighbouring invocations treat neighbouring suns.
 uint gather_index(uint altitude, uint zenith, uint azimuth, uint sun) {

@@ -23,7 +23,7 @@ void main() {
   uint altitude = gl_GlobalInvocationID.y;
   if (j >= kSourceZeniths || altitude >= kGatherAltitudes) return;
   float horizon = horizon_cos(gather_altitude(medium, altitude), medium.planet_radius_m);
-  float theta = float(j) * kPi / float(kSourceZeniths - 1u);
+  float theta = source_zenith(j);
   float mu = cos(theta);
   float sine = sin(theta);
   vec2 total = vec2(0.0);

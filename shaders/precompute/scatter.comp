@@ -94,9 +94,8 @@ void find_ratio(uint lane) {
     for (uint i = lane; i < kSourceZeniths * kSourceAzimuths; i += 32u) {
       uint j = i / kSourceAzimuths;
       uint k = i % kSourceAzimuths;
-      float step = kPi / float(kSourceZeniths - 1u);
       float weight = (k == 0u || k == kSourceAzimuths - 1u ? 0.25 : 0.5) / float(kSourceAzimuths - 1u);
-      before += (weight * step * sin(float(j) * step)) * value_from_texel(source[source_index(kGatherBelow, j, k, sun)].rgb);
+      before += (weight * source_zenith_weight(j) * sin(source_zenith(j))) * value_from_texel(source[source_index(kGatherBelow, j, k, sun)].rgb);
     }
     partial_now[lane] = now;
     partial_before[lane] = before;

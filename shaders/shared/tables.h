@@ -25,7 +25,7 @@ const float kLowestGatherAltitude = -1000.0;  // [m]
 const uint kGatherSuns = 64u;
 const uint kGatherZeniths = 24u;  // half of them on each side of the horizon
 const uint kGatherAzimuths = 16u;
-const uint kSourceZeniths = 25u;
+const uint kSourceZeniths = 33u;
 const uint kSourceAzimuths = 17u;
 const uint kModes = 16u;  // of the Fourier series in azimuth
 // Of the integration along a ray, four nodes per panel: finer for light scattered once.
