@@ -129,7 +129,7 @@ TEST_F(Epipolar, TheCameraMayStandAnywhere) {
               s.buildings = false;
               s.pitch_deg = -1.0;
             }),
-       48.0},
+       47.5},
       {seen("on a dyke",
             [](BoxScene& s) {
               s.altitude_m = 2.0;
