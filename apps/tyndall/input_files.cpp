@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "config/files.hpp"
 #include "config/text.hpp"
@@ -31,6 +32,8 @@ std::string decoded_uri(std::string_view uri) {
 
 // Adds what a glTF file refers to. What cannot be read is left to the reader of the model to report.
 void add_references(const std::string& path, std::vector<InputFile>& out) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) return;  // a pipe can be read only once
   constexpr std::uint64_t kLargestDocument = std::uint64_t{64} << 20;
   const Result<std::string> text = config::read_file(path, kLargestDocument);
   if (!text) return;
@@ -44,7 +47,7 @@ void add_references(const std::string& path, std::vector<InputFile>& out) {
       if (!entry.is_object() || uri == entry.end() || !uri->is_string()) continue;
       const std::string name = uri->get<std::string>();
       if (name.starts_with("data:")) continue;
-      out.push_back({concat({"a file of meshes.source"}), (fs::path(path).parent_path() / decoded_uri(name)).string()});
+      out.push_back({"a file of meshes.source", (fs::path(path).parent_path() / decoded_uri(name)).string()});
     }
   }
 }
