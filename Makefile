@@ -5,7 +5,7 @@
 #   make accuracy        measures the numbers of docs/accuracy.md
 #   make epipolar-study  installs Pillow and matplotlib; makes the numbers, plots and pictures of docs/epipolar.md
 #   make models-study    measures and renders what docs/models.md and docs/oneil.md show
-.PHONY: demo check pictures accuracy epipolar-study models-study setup build format tidy clean
+.PHONY: demo check pictures accuracy epipolar-study models-study setup build format format-check tidy clean
 
 PRESET ?= release
 OPERATORS = exponential reinhard reinhard-modified uncharted2 filmic-alu logarithmic adaptive-logarithmic agx pbr-neutral exponential-channels
@@ -73,8 +73,14 @@ build: setup
 	@cmake --preset $(PRESET) --log-level=WARNING
 	@cmake --build --preset $(PRESET) $(if $(TARGETS),--target $(TARGETS))
 
+# Formats the C++ and GLSL sources in place; format-check fails and shows the differences instead.
+SOURCES = git ls-files '*.cpp' '*.hpp' '*.h' '*.inl' '*.glsl' '*.comp' '*.frag' '*.vert'
+
 format:
-	@git ls-files '*.cpp' '*.hpp' '*.h' | xargs clang-format -i
+	@$(SOURCES) | xargs clang-format -i
+
+format-check:
+	@$(SOURCES) | xargs clang-format --dry-run --Werror
 
 tidy: setup
 	@cmake --preset dev > /dev/null
