@@ -111,8 +111,9 @@ int main() {
   const VkImageUsageFlags read = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
   const Image color = make_image(physical, device, VK_FORMAT_R16G16B16A16_SFLOAT, read, VK_IMAGE_ASPECT_COLOR_BIT);
   const Image depth = make_image(physical, device, VK_FORMAT_D32_SFLOAT, read, VK_IMAGE_ASPECT_DEPTH_BIT);
-  const Image output = make_image(physical, device, VK_FORMAT_R32G32B32A32_SFLOAT,
-                                  VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_IMAGE_ASPECT_COLOR_BIT);
+  const Image output =
+      make_image(physical, device, VK_FORMAT_R32G32B32A32_SFLOAT,
+                 VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_IMAGE_ASPECT_COLOR_BIT);
   VkBufferCreateInfo buffer_info = {VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
   buffer_info.size = VkDeviceSize{16} * kExtent.width * kExtent.height;
   buffer_info.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT;

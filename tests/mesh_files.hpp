@@ -15,8 +15,9 @@ using Point = std::array<float, 3>;
 
 class GltfFile {
  public:
-  nlohmann::json root = {{"asset", {{"version", "2.0"}}}, {"scene", 0}, {"scenes", {{{"nodes", nlohmann::json::array()}}}}};
-  std::string bytes;  // of the buffer
+  nlohmann::json root = {
+      {"asset", {{"version", "2.0"}}}, {"scene", 0}, {"scenes", {{{"nodes", nlohmann::json::array()}}}}};
+  std::string bytes;                                      // of the buffer
   nlohmann::json more_buffers = nlohmann::json::array();  // after the first
 
   int view(const void* data, std::size_t size) {
@@ -29,8 +30,11 @@ class GltfFile {
   template <typename T>
   int accessor(const std::vector<T>& values, int component, const char* type, int components, bool normalized = false) {
     const int at = view(values.data(), values.size() * sizeof(T));
-    root["accessors"].push_back({{"bufferView", at}, {"componentType", component}, {"type", type},
-                                 {"count", values.size() / static_cast<std::size_t>(components)}, {"normalized", normalized}});
+    root["accessors"].push_back({{"bufferView", at},
+                                 {"componentType", component},
+                                 {"type", type},
+                                 {"count", values.size() / static_cast<std::size_t>(components)},
+                                 {"normalized", normalized}});
     return static_cast<int>(root["accessors"].size()) - 1;
   }
   int floats(const std::vector<float>& values, int components) {
@@ -61,7 +65,8 @@ class GltfFile {
     const int position = points({a, b, c, d});
     const int uv = floats({0, 1, 1, 1, 1, 0, 0, 0}, 2);
     const int indices = accessor<std::uint16_t>({0, 1, 2, 0, 2, 3}, 5123, "SCALAR", 1);
-    const int made = mesh({{"attributes", {{"POSITION", position}, {"TEXCOORD_0", uv}}}, {"indices", indices}, {"material", material}});
+    const int made = mesh(
+        {{"attributes", {{"POSITION", position}, {"TEXCOORD_0", uv}}}, {"indices", indices}, {"material", material}});
     return node({{"mesh", made}});
   }
   int level_quad(float x0, float z0, float x1, float z1, float y, int material) {
@@ -105,7 +110,8 @@ class GltfFile {
     std::string out;
     for (std::size_t i = 0; i < data.size(); i += 3) {
       std::uint32_t bits = 0;
-      for (std::size_t k = 0; k < 3; ++k) bits = bits << 8U | (i + k < data.size() ? static_cast<std::uint8_t>(data[i + k]) : 0U);
+      for (std::size_t k = 0; k < 3; ++k)
+        bits = bits << 8U | (i + k < data.size() ? static_cast<std::uint8_t>(data[i + k]) : 0U);
       for (std::size_t k = 0; k < 4; ++k) out += i + k > data.size() ? '=' : kDigits[bits >> (18 - 6 * k) & 63U];
     }
     return out;

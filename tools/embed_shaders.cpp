@@ -1,8 +1,8 @@
 // embed_shaders OUT.hpp A.spv B.spv ...: writes a header with one tyndall::gpu::Shader for each module:
 // its words, stage, local size, push-constant size and its bindings by name, with what each is used for.
-// The name of a module is that of its file without the extension, and an array named as OUT lists them all. All bindings must be in set 0 and be
-// named; storage images and buffers must say readonly or writeonly where they are so, because barriers
-// follow from it.
+// The name of a module is that of its file without the extension, and an array named as OUT lists them all. All
+// bindings must be in set 0 and be named; storage images and buffers must say readonly or writeonly where they are so,
+// because barriers follow from it.
 #include <spirv_cross/spirv_cross_c.h>
 
 #include <cstdint>
@@ -76,8 +76,8 @@ std::string bindings_of(const Reflector& r, const std::string& module, std::size
     std::size_t size = 0;
     r.check(spvc_resources_get_resource_list_for_type(resources, kind.resource, &list, &size));
     for (std::size_t i = 0; i < size; ++i) {
-      const bool buffer = kind.resource == SPVC_RESOURCE_TYPE_UNIFORM_BUFFER ||
-                          kind.resource == SPVC_RESOURCE_TYPE_STORAGE_BUFFER;
+      const bool buffer =
+          kind.resource == SPVC_RESOURCE_TYPE_UNIFORM_BUFFER || kind.resource == SPVC_RESOURCE_TYPE_STORAGE_BUFFER;
       std::string name = spvc_compiler_get_name(r.compiler, list[i].id);
       if (name.empty()) name = list[i].name;
       if (name.empty()) throw Failure{module + ": a binding has lost its name"};
@@ -87,13 +87,12 @@ std::string bindings_of(const Reflector& r, const std::string& module, std::size
       if (!used.insert(binding).second) throw Failure{module + ": two bindings have one number"};
       bool reads = true;
       bool writes = false;
-      if (kind.resource == SPVC_RESOURCE_TYPE_STORAGE_BUFFER ||
-          kind.resource == SPVC_RESOURCE_TYPE_STORAGE_IMAGE) {
+      if (kind.resource == SPVC_RESOURCE_TYPE_STORAGE_BUFFER || kind.resource == SPVC_RESOURCE_TYPE_STORAGE_IMAGE) {
         reads = !has_decoration(r, list[i], buffer, SpvDecorationNonReadable);
         writes = !has_decoration(r, list[i], buffer, SpvDecorationNonWritable);
       }
-      out << "    {\"" << name << "\", " << binding << ", " << kind.descriptor << ", "
-          << (reads ? "true" : "false") << ", " << (writes ? "true" : "false") << "},\n";
+      out << "    {\"" << name << "\", " << binding << ", " << kind.descriptor << ", " << (reads ? "true" : "false")
+          << ", " << (writes ? "true" : "false") << "},\n";
       ++count;
     }
   }
@@ -128,8 +127,8 @@ std::string embed(const std::string& path) {
   if (spvc_context_create(&r.context) != SPVC_SUCCESS) throw Failure{"SPIRV-Cross does not start"};
   spvc_parsed_ir ir = nullptr;
   r.check(spvc_context_parse_spirv(r.context, words.data(), words.size(), &ir));
-  r.check(spvc_context_create_compiler(r.context, SPVC_BACKEND_NONE, ir, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP,
-                                       &r.compiler));
+  r.check(
+      spvc_context_create_compiler(r.context, SPVC_BACKEND_NONE, ir, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP, &r.compiler));
   std::size_t binding_count = 0;
   const std::string bindings = bindings_of(r, name, binding_count);
   unsigned local[3] = {1, 1, 1};
@@ -149,9 +148,9 @@ std::string embed(const std::string& path) {
   if (binding_count > 0) {
     out << "inline constexpr tyndall::gpu::Binding " << name << "_bindings[] = {\n" << bindings << "};\n";
   }
-  out << "inline constexpr tyndall::gpu::Shader " << name << " = {\"" << name << "\", " << stage_of(r) << ", "
-      << name << "_words, " << (binding_count > 0 ? name + "_bindings" : "{}") << ", "
-      << push_constant_size(r) << ", {" << local[0] << ", " << local[1] << ", " << local[2] << "}};\n\n";
+  out << "inline constexpr tyndall::gpu::Shader " << name << " = {\"" << name << "\", " << stage_of(r) << ", " << name
+      << "_words, " << (binding_count > 0 ? name + "_bindings" : "{}") << ", " << push_constant_size(r) << ", {"
+      << local[0] << ", " << local[1] << ", " << local[2] << "}};\n\n";
   spvc_context_destroy(r.context);
   return out.str();
 }
@@ -164,9 +163,8 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    std::string text =
-        "// Made by tools/embed_shaders.cpp from the compiled shaders.\n#pragma once\n\n"
-        "#include \"gpu/shader.hpp\"\n\nnamespace tyndall::shaders {\n\n";
+    std::string text = "// Made by tools/embed_shaders.cpp from the compiled shaders.\n#pragma once\n\n"
+                       "#include \"gpu/shader.hpp\"\n\nnamespace tyndall::shaders {\n\n";
     for (int i = 2; i < argc; ++i) text += embed(argv[i]);
     text += "inline constexpr const tyndall::gpu::Shader* " + std::filesystem::path(argv[1]).stem().string() + "[] = {";
     for (int i = 2; i < argc; ++i) text += "&" + std::filesystem::path(argv[i]).stem().string() + ", ";

@@ -75,9 +75,8 @@ std::string Arguments::Implementation::help() const {
     lines.emplace_back(positional.name, positional.help);
   }
   for (const Option& option : options) {
-    lines.emplace_back(
-        option.placeholder.empty() ? option.names : concat({option.names, " ", option.placeholder}),
-        option.help);
+    lines.emplace_back(option.placeholder.empty() ? option.names : concat({option.names, " ", option.placeholder}),
+                       option.help);
   }
   lines.insert(lines.end(), flags.begin(), flags.end());
   lines.emplace_back("-h,--help", "print this");
@@ -101,9 +100,9 @@ std::vector<std::string> Arguments::Implementation::known_names() const {
 Result<void> Arguments::Implementation::store_options() const {
   for (const Option& option : options) {
     if (!option.repeatable && option.values.size() > 1) {
-      return input_error(concat({"'", long_name(option.names), "' is given ",
-                                 std::to_string(option.values.size()), " times"}),
-                         command, "allowed is once");
+      return input_error(
+          concat({"'", long_name(option.names), "' is given ", std::to_string(option.values.size()), " times"}),
+          command, "allowed is once");
     }
     for (const std::string& given : option.values) {
       if (Result<void> stored = option.store(given); !stored) return stored;
@@ -123,9 +122,8 @@ Result<void> Arguments::Implementation::store_positionals() const {
     } else if (!names_only && argument.size() > 1 && argument[0] == '-') {
       const std::string name = argument.substr(0, argument.find('='));
       const std::optional<std::string> near = config::nearest(name, known_names());
-      return input_error(
-          concat({"unknown option '", one_line(name), "'"}), command,
-          near ? concat({"did you mean '", *near, "'?"}) : concat({"'", command, " --help' lists all"}));
+      return input_error(concat({"unknown option '", one_line(name), "'"}), command,
+                         near ? concat({"did you mean '", *near, "'?"}) : concat({"'", command, " --help' lists all"}));
     } else {
       given.push_back(argument);
     }
@@ -167,8 +165,8 @@ void Arguments::text(const std::string& names, std::string& target, const std::s
   });
 }
 
-void Arguments::texts(const std::string& names, std::vector<std::string>& target,
-                      const std::string& placeholder, const std::string& help) {
+void Arguments::texts(const std::string& names, std::vector<std::string>& target, const std::string& placeholder,
+                      const std::string& help) {
   const auto append = [&target](const std::string& given) {
     target.push_back(given);
     return Result<void>();
@@ -187,8 +185,7 @@ void Arguments::count(const std::string& names, std::uint32_t& target, std::uint
   });
 }
 
-void Arguments::number(const std::string& names, double& target, double min, double max,
-                       const std::string& help) {
+void Arguments::number(const std::string& names, double& target, double min, double max, const std::string& help) {
   const std::string shown_help = concat({help, " [", config::number_text(target), "]"});
   value(names, "X", shown_help, [&target, min, max, name = long_name(names)](const std::string& given) {
     const Result<double> read = parse_number(given, name, min, max);
@@ -213,19 +210,17 @@ void Arguments::choice(const std::string& names, std::string& target, const std:
   std::string list;
   for (const std::string& one : allowed) list.append(list.empty() ? "" : ", ").append(one);
   const std::string shown_help = concat({help, ": ", list, " [", target, "]"});
-  value(names, "NAME", shown_help,
-        [&target, allowed, list, name = long_name(names)](const std::string& given) {
-          if (std::find(allowed.begin(), allowed.end(), given) == allowed.end()) {
-            return Result<void>(input_error(concat({"unknown value '", one_line(given), "'"}), name,
-                                            concat({"allowed is ", list})));
-          }
-          target = given;
-          return Result<void>();
-        });
+  value(names, "NAME", shown_help, [&target, allowed, list, name = long_name(names)](const std::string& given) {
+    if (std::find(allowed.begin(), allowed.end(), given) == allowed.end()) {
+      return Result<void>(
+          input_error(concat({"unknown value '", one_line(given), "'"}), name, concat({"allowed is ", list})));
+    }
+    target = given;
+    return Result<void>();
+  });
 }
 
-void Arguments::positional(const std::string& name, std::string& target, bool required,
-                           const std::string& help) {
+void Arguments::positional(const std::string& name, std::string& target, bool required, const std::string& help) {
   implementation_->positionals.push_back({name, help, &target, required});
 }
 
@@ -244,8 +239,7 @@ std::optional<int> Arguments::parse(Args args) {
     if (!name.starts_with('-')) name.insert(0, "--");
     const bool flag = text.find("flag override") != std::string::npos;
     return fail(input_error(concat({"'", name, flag ? "' takes no value" : "' needs a value"}),
-                            implementation_->command,
-                            concat({"'", implementation_->command, " --help' says which"})));
+                            implementation_->command, concat({"'", implementation_->command, " --help' says which"})));
   } catch (const CLI::ParseError& error) {
     return fail(input_error(one_line(error.what(), 300), implementation_->command,
                             concat({"'", implementation_->command, " --help' says what is allowed"})));

@@ -31,8 +31,7 @@ class Arguments {
   void count(const std::string& names, std::uint32_t& target, std::uint32_t min, std::uint32_t max,
              const std::string& help);
   void number(const std::string& names, double& target, double min, double max, const std::string& help);
-  void number(const std::string& names, std::optional<double>& target, double min, double max,
-              const std::string& help);
+  void number(const std::string& names, std::optional<double>& target, double min, double max, const std::string& help);
   void choice(const std::string& names, std::string& target, const std::vector<std::string>& allowed,
               const std::string& help);
   // Any other kind: `store` reads the text and names the option in its error.

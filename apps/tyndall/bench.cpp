@@ -88,7 +88,9 @@ int run_bench(Args args) {
   out["passes"] = nlohmann::ordered_json::array();
   for (const std::string& name : order) {
     const Series& series = passes[name];
-    out["passes"].push_back({{"name", name}, {"median_ms", series.quantile(0.5)}, {"p95_ms", series.quantile(0.95)},
+    out["passes"].push_back({{"name", name},
+                             {"median_ms", series.quantile(0.5)},
+                             {"p95_ms", series.quantile(0.95)},
                              {"in_effect", series.in_effect}});
   }
   out["effect_ms"] = median_or_zero(effect);
@@ -100,15 +102,18 @@ int run_bench(Args args) {
                      {"tree_nodes_visited", counters.tree_nodes_visited},
                      {"shadow_map_fetches", counters.shadow_map_fetches},
                      {"pixels_corrected", counters.pixels_corrected}};
-  out["memory_bytes"] = {{"total", memory.effect_persistent + memory.effect_transient + memory.effect_host + memory.scene},
-                         {"effect_persistent", memory.effect_persistent},
-                         {"effect_transient", memory.effect_transient},
-                         {"effect_host", memory.effect_host},
-                         {"scene", memory.scene}};
-  for (const ResourceMemory& row : memory.effect_resources) out["memory_bytes"]["effect_resources"][row.name] = row.bytes;
+  out["memory_bytes"] = {
+      {"total", memory.effect_persistent + memory.effect_transient + memory.effect_host + memory.scene},
+      {"effect_persistent", memory.effect_persistent},
+      {"effect_transient", memory.effect_transient},
+      {"effect_host", memory.effect_host},
+      {"scene", memory.scene}};
+  for (const ResourceMemory& row : memory.effect_resources)
+    out["memory_bytes"]["effect_resources"][row.name] = row.bytes;
   if (options.json) return print(out.dump(2) + "\n");
   std::string text = out["device"].get<std::string>() + ", " + std::to_string(options.size.width) + "x" +
-                     std::to_string(options.size.height) + ", median of " + std::to_string(options.frames) + " frames\n";
+                     std::to_string(options.size.height) + ", median of " + std::to_string(options.frames) +
+                     " frames\n";
   char line[160];
   for (const std::string& name : order) {
     const Series& series = passes[name];

@@ -31,12 +31,10 @@ struct FramePattern {
 
 // The first "%d" or "%0Nd" at or after `from`.
 std::optional<FramePattern> find_pattern(std::string_view text, std::size_t from = 0) {
-  for (std::size_t start = text.find('%', from); start != std::string_view::npos;
-       start = text.find('%', start + 1)) {
+  for (std::size_t start = text.find('%', from); start != std::string_view::npos; start = text.find('%', start + 1)) {
     const std::string_view rest = text.substr(start + 1);
     if (rest.starts_with('d')) return FramePattern{start, 2, 1};
-    const bool padded =
-        rest.size() >= 3 && rest[0] == '0' && rest[1] >= '1' && rest[1] <= '9' && rest[2] == 'd';
+    const bool padded = rest.size() >= 3 && rest[0] == '0' && rest[1] >= '1' && rest[1] <= '9' && rest[2] == 'd';
     if (padded) return FramePattern{start, 4, static_cast<std::size_t>(rest[1] - '0')};
   }
   return std::nullopt;
@@ -70,8 +68,7 @@ void note(std::string_view message) {
 }
 
 int print(std::string_view text) {
-  const bool written =
-      std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
   return written ? kDone : fail("cannot write, standard output, it has to be open and have room", kFailed);
 }
 
@@ -94,26 +91,23 @@ Result<std::uint32_t> parse_count(std::string_view text, std::string_view option
   if (config::read_integer(text, value) == config::NumberError::none && value >= min && value <= max) {
     return static_cast<std::uint32_t>(value);
   }
-  return input_error(
-      concat({shown(text), " is no count"}), option,
-      concat({"allowed is a whole number, ", std::to_string(min), " to ", std::to_string(max)}));
+  return input_error(concat({shown(text), " is no count"}), option,
+                     concat({"allowed is a whole number, ", std::to_string(min), " to ", std::to_string(max)}));
 }
 
 Result<double> parse_number(std::string_view text, std::string_view option, double min, double max) {
   double value = 0.0;
-  if (config::read_number(text, value) == config::NumberError::none && value >= min && value <= max)
-    return value;
-  return input_error(
-      concat({shown(text), " is not allowed"}), option,
-      concat({"allowed is a number, ", config::number_text(min), " to ", config::number_text(max)}));
+  if (config::read_number(text, value) == config::NumberError::none && value >= min && value <= max) return value;
+  return input_error(concat({shown(text), " is not allowed"}), option,
+                     concat({"allowed is a number, ", config::number_text(min), " to ", config::number_text(max)}));
 }
 
 Result<void> check_altitude(double altitude_m, const Params& params, std::string_view where) {
   const double lowest_m = -0.25 * static_cast<double>(params.planet.radius_m);
   if (altitude_m >= lowest_m) return {};
-  return input_error(concat({"an eye at ", config::number_text(altitude_m), " m is too deep in the planet"}), where,
-                     concat({"allowed is minus a quarter of planet.radius_m at the lowest, ",
-                             config::number_text(lowest_m), " m"}));
+  return input_error(
+      concat({"an eye at ", config::number_text(altitude_m), " m is too deep in the planet"}), where,
+      concat({"allowed is minus a quarter of planet.radius_m at the lowest, ", config::number_text(lowest_m), " m"}));
 }
 
 void add_common(Arguments& arguments, CommonOptions& options, unsigned which) {
@@ -174,9 +168,8 @@ Result<void> check_output(const CommonOptions& options, const std::vector<std::s
     known = known || lower_case(options.output).ends_with(ending);
   }
   if (options.output.empty()) {
-    return input_error(
-        "no output file", "-o",
-        endings.empty() ? "needed is -o FILE" : concat({"needed is -o FILE, with a name in ", list}));
+    return input_error("no output file", "-o",
+                       endings.empty() ? "needed is -o FILE" : concat({"needed is -o FILE, with a name in ", list}));
   }
   if (!known)
     return input_error(concat({"unknown format ", shown(options.output)}), "-o",
@@ -202,15 +195,14 @@ Progress::~Progress() {
 
 void Progress::update(std::uint64_t done, std::uint64_t total) {
   if (!visible_) return;
-  const double fraction =
-      total == 0 ? 1.0 : std::min(1.0, static_cast<double>(done) / static_cast<double>(total));
+  const double fraction = total == 0 ? 1.0 : std::min(1.0, static_cast<double>(done) / static_cast<double>(total));
   const int percent = static_cast<int>(100.0 * fraction);
   if (percent == drawn_percent_) return;
   drawn_percent_ = percent;
   constexpr int kWidth = 40;  // characters
   const int filled = percent * kWidth / 100;
-  const std::string bar = std::string(static_cast<std::size_t>(filled), '#') +
-                          std::string(static_cast<std::size_t>(kWidth - filled), '.');
+  const std::string bar =
+      std::string(static_cast<std::size_t>(filled), '#') + std::string(static_cast<std::size_t>(kWidth - filled), '.');
   std::fprintf(stderr, "\r%s [%s] %3d %%\x1b[K", label_.c_str(), bar.c_str(), percent);
   std::fflush(stderr);
 }

@@ -42,16 +42,15 @@ constexpr std::uint32_t kLargestSize = 16384;  // pixels, each side
 
 // The lowest altitude of an eye [m]: below the deepest sea floor of the Earth.
 constexpr double kLowestAltitude_m = -11000.0;
-// Fails for an eye deeper than a quarter of the planet's radius, where the ground beneath it is not defined any more. `where`
-// names the source in errors.
+// Fails for an eye deeper than a quarter of the planet's radius, where the ground beneath it is not defined any more.
+// `where` names the source in errors.
 [[nodiscard]] Result<void> check_altitude(double altitude_m, const Params& params, std::string_view where);
 
 // `option` names the source in errors ("--size").
 [[nodiscard]] Result<Size> parse_size(std::string_view text, std::string_view option);
-[[nodiscard]] Result<std::uint32_t> parse_count(std::string_view text, std::string_view option,
-                                                std::uint32_t min, std::uint32_t max);
-[[nodiscard]] Result<double> parse_number(std::string_view text, std::string_view option, double min,
-                                          double max);
+[[nodiscard]] Result<std::uint32_t> parse_count(std::string_view text, std::string_view option, std::uint32_t min,
+                                                std::uint32_t max);
+[[nodiscard]] Result<double> parse_number(std::string_view text, std::string_view option, double min, double max);
 
 // Which of the common options a verb has.
 enum CommonOption : unsigned {
@@ -89,8 +88,7 @@ void add_common(Arguments& arguments, CommonOptions& options, unsigned which);
 // Before long work: the output is given, its name ends in one of `endings` (".png"; empty: any), a
 // sequence of more than one frame has exactly one number pattern, no file of it is one that the run reads, and the
 // first file can be written.
-[[nodiscard]] Result<void> check_output(const CommonOptions& options,
-                                        const std::vector<std::string>& endings);
+[[nodiscard]] Result<void> check_output(const CommonOptions& options, const std::vector<std::string>& endings);
 
 // A progress bar on stderr, when that is a terminal; otherwise nothing. Removes itself.
 class Progress {

@@ -48,12 +48,12 @@ std::string verdict(const image::Metrics& metrics, const Limits& limits) {
 std::string report(const image::Metrics& metrics, const image::File& file, bool within, bool json) {
   const double psnr_db = std::isinf(metrics.psnr_db) ? kEqualPsnrDb : metrics.psnr_db;
   if (!json) {
-    std::string text = concat({"rmse ", number_text(metrics.rmse), "\npsnr_db ", number_text(psnr_db),
-                               "\nmean_relative_error ", number_text(metrics.mean_relative_error),
-                               "\nmax_abs ", number_text(metrics.max_abs), "\n"});
+    std::string text =
+        concat({"rmse ", number_text(metrics.rmse), "\npsnr_db ", number_text(psnr_db), "\nmean_relative_error ",
+                number_text(metrics.mean_relative_error), "\nmax_abs ", number_text(metrics.max_abs), "\n"});
     if (metrics.non_finite_a + metrics.non_finite_b > 0) {
-      text += concat({"non_finite ", std::to_string(metrics.non_finite_a), " ",
-                      std::to_string(metrics.non_finite_b), "\n"});
+      text += concat(
+          {"non_finite ", std::to_string(metrics.non_finite_a), " ", std::to_string(metrics.non_finite_b), "\n"});
     }
     return text;
   }
@@ -103,9 +103,10 @@ int run_compare(Args args) {
   arguments.number("--mre-max", limits.mre_max, 0.0, 1.0e6, "largest mean_relative_error allowed");
   arguments.text("--diff", difference_path, "OUT", "write |A - B| x 16 as a PNG or EXR");
   arguments.flag("--json", json, "print the results as JSON");
-  arguments.footer(
-      "Exit status: 0 within --psnr-min and --mre-max; 1 the difference cannot be written; 2 beyond a limit, values that\n"
-      "are not finite, or bad usage; 3 the sizes differ; 4 a file cannot be read, or the two are of different kinds.\n");
+  arguments.footer("Exit status: 0 within --psnr-min and --mre-max; 1 the difference cannot be written; 2 beyond a "
+                   "limit, values that\n"
+                   "are not finite, or bad usage; 3 the sizes differ; 4 a file cannot be read, or the two are of "
+                   "different kinds.\n");
   if (const std::optional<int> status = arguments.parse(args)) return *status;
   if (!difference_path.empty()) {
     if (const Result<image::FileKind> kind = image::kind_of_name(difference_path); !kind) return fail(kind.error());
@@ -118,12 +119,11 @@ int run_compare(Args args) {
   const Result<image::File> b = image::read(path_b);
   if (!b) return fail(b.error().message, kUnreadable);
   if (a.value().kind != b.value().kind) {
-    return fail("A and B are of different kinds, tyndall compare, allowed are two PNG or two EXR",
-                kUnreadable);
+    return fail("A and B are of different kinds, tyndall compare, allowed are two PNG or two EXR", kUnreadable);
   }
   if (a.value().image.width != b.value().image.width || a.value().image.height != b.value().image.height) {
-    return fail(concat({"sizes differ, A is ", size_text(a.value().image), " and B is ",
-                        size_text(b.value().image), ", allowed are equal sizes"}),
+    return fail(concat({"sizes differ, A is ", size_text(a.value().image), " and B is ", size_text(b.value().image),
+                        ", allowed are equal sizes"}),
                 kSizesDiffer);
   }
   for (const auto& [path, file] : {std::pair(path_a, &a.value()), std::pair(path_b, &b.value())}) {
@@ -136,8 +136,7 @@ int run_compare(Args args) {
     }
   }
   const std::string beyond = verdict(metrics, limits);
-  if (const int status = print(report(metrics, a.value(), beyond.empty(), json)); status != kDone)
-    return status;
+  if (const int status = print(report(metrics, a.value(), beyond.empty(), json)); status != kDone) return status;
   return beyond.empty() ? kDone : fail(beyond, kBeyond);
 }
 

@@ -25,8 +25,12 @@ int run_devices(Args args) {
   if (options.json) {
     nlohmann::ordered_json out = nlohmann::ordered_json::array();
     for (const gpu::DeviceRow& row : rows.value()) {
-      out.push_back({{"name", row.name}, {"type", gpu::type_name(row.type)}, {"driver", row.driver},
-                     {"vulkan", version_text(row.api_version)}, {"missing", row.missing}, {"used", row.chosen}});
+      out.push_back({{"name", row.name},
+                     {"type", gpu::type_name(row.type)},
+                     {"driver", row.driver},
+                     {"vulkan", version_text(row.api_version)},
+                     {"missing", row.missing},
+                     {"used", row.chosen}});
     }
     return print(out.dump(2) + "\n");
   }

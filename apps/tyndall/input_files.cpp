@@ -20,7 +20,8 @@ std::string decoded_uri(std::string_view uri) {
   std::string out;
   for (std::size_t i = 0; i < uri.size(); ++i) {
     const std::string digits(uri.substr(i + 1, 2));
-    if (uri[i] == '%' && digits.size() == 2 && digits.find_first_not_of("0123456789abcdefABCDEF") == std::string::npos) {
+    if (uri[i] == '%' && digits.size() == 2 &&
+        digits.find_first_not_of("0123456789abcdefABCDEF") == std::string::npos) {
       out += static_cast<char>(std::stoi(digits, nullptr, 16));
       i += 2;
     } else {

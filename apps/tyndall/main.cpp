@@ -19,20 +19,14 @@ namespace {
 using config::concat;
 
 std::string help_text() {
-  std::string text =
-      "Outdoor light scattering: sky, haze and light shafts.\n\n"
-      "Usage: tyndall VERB [OPTIONS]\n\nVerbs:\n";
+  std::string text = "Outdoor light scattering: sky, haze and light shafts.\n\n"
+                     "Usage: tyndall VERB [OPTIONS]\n\nVerbs:\n";
   for (const Verb& verb : kVerbs) {
     constexpr std::size_t kColumn = 12;
-    text.append("  ")
-        .append(verb.name)
-        .append(kColumn - verb.name.size(), ' ')
-        .append(verb.summary)
-        .append("\n");
+    text.append("  ").append(verb.name).append(kColumn - verb.name.size(), ' ').append(verb.summary).append("\n");
   }
-  return text +
-         "\n'tyndall VERB --help' lists the options of a verb; 'tyndall --version' prints the version.\n"
-         "Exit status: 0 done, 1 it failed at run time, 2 bad usage or bad input.\n";
+  return text + "\n'tyndall VERB --help' lists the options of a verb; 'tyndall --version' prints the version.\n"
+                "Exit status: 0 done, 1 it failed at run time, 2 bad usage or bad input.\n";
 }
 
 int run_verb(const std::string& name, Args args) {
@@ -49,8 +43,7 @@ int run_verb(const std::string& name, Args args) {
       concat({option ? "unknown option '" : "unknown verb '", config::one_line(name), "'"}),
       option ? "before the verb" : "command line",
       near ? concat({"did you mean '", *near, "'?"})
-           : concat(
-                 {option ? "allowed are --help and --version" : "allowed is one of ", option ? "" : list})));
+           : concat({option ? "allowed are --help and --version" : "allowed is one of ", option ? "" : list})));
 }
 
 int run(Args args) {
@@ -75,9 +68,8 @@ int main(int argc, char** argv) {
     const std::vector<std::string> args(argv + (argc > 0 ? 1 : 0), argv + argc);
     return tyndall::cli::run(args);
   } catch (const std::bad_alloc&) {
-    std::fputs(
-        "tyndall: error: not enough memory, this machine, a smaller size or fewer resources are needed\n",
-        stderr);
+    std::fputs("tyndall: error: not enough memory, this machine, a smaller size or fewer resources are needed\n",
+               stderr);
   } catch (const std::exception& exception) {
     std::fprintf(stderr, "tyndall: error: %s\n", exception.what());
   } catch (...) {

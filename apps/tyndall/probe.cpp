@@ -26,8 +26,7 @@ nlohmann::json numbers_as_json(const std::array<double, 3>& numbers) {
   return out;
 }
 
-std::string as_json(const ProbeModel& model, const ProbeSettings& settings,
-                    std::span<const ProbeAnswer> answers) {
+std::string as_json(const ProbeModel& model, const ProbeSettings& settings, std::span<const ProbeAnswer> answers) {
   nlohmann::ordered_json out;
   out["model"] = model.name;
   if (model.random) {
@@ -77,8 +76,8 @@ int run_probe(Args args) {
   for (std::size_t row = 0; row < table.value().queries.size(); ++row) {
     const double altitude_m = table.value().queries[row].altitude_m;
     if (altitude_m >= 0.0) continue;
-    const std::string where = config::concat({config::one_line(queries, 200), ":",
-                                              std::to_string(table.value().input.lines[row]), ", column 'altitude_m'"});
+    const std::string where = config::concat(
+        {config::one_line(queries, 200), ":", std::to_string(table.value().input.lines[row]), ", column 'altitude_m'"});
     if (Result<void> r = check_altitude(altitude_m, options.settings.effect, where); !r) return fail(r.error());
   }
   if (!options.output.empty()) {

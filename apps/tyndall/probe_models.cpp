@@ -16,14 +16,13 @@ namespace tyndall::cli {
 namespace {
 
 // Rays on the GPU; the sky, whose quadrature takes hundreds of rays, on the CPU in double precision.
-Result<std::vector<ProbeAnswer>> run_single(const ProbeSettings& settings,
-                                            std::span<const ProbeQuery> queries) {
+Result<std::vector<ProbeAnswer>> run_single(const ProbeSettings& settings, std::span<const ProbeQuery> queries) {
   const shared::Medium medium = medium_from_params(settings.params);
   std::vector<ProbeAnswer> answers(queries.size());
   std::vector<models::Ray> rays;
   std::vector<std::size_t> places;  // of the rays among the queries
-  const auto sky_count = static_cast<double>(
-      std::count_if(queries.begin(), queries.end(), [](const ProbeQuery& q) { return q.sky; }));
+  const auto sky_count =
+      static_cast<double>(std::count_if(queries.begin(), queries.end(), [](const ProbeQuery& q) { return q.sky; }));
   double sky_done = 0.0;
   const double sky_share = queries.empty() ? 0.0 : sky_count / static_cast<double>(queries.size());
   for (std::size_t i = 0; i < queries.size(); ++i) {
@@ -34,8 +33,7 @@ Result<std::vector<ProbeAnswer>> run_single(const ProbeSettings& settings,
       answers[i].transmittance = models::sun_transmittance(medium, q.altitude_m, cos_sun);
       settings.progress(sky_share * ++sky_done / sky_count);
     } else {
-      rays.push_back(
-          models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad));
+      rays.push_back(models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad));
       places.push_back(i);
     }
   }
@@ -43,8 +41,7 @@ Result<std::vector<ProbeAnswer>> run_single(const ProbeSettings& settings,
   Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({settings.device, false});
   if (!host) return std::move(host).error();
   const auto progress = [&](std::size_t done) {
-    settings.progress(sky_share +
-                      (1.0 - sky_share) * static_cast<double>(done) / static_cast<double>(rays.size()));
+    settings.progress(sky_share + (1.0 - sky_share) * static_cast<double>(done) / static_cast<double>(rays.size()));
   };
   const Result<std::vector<models::Answer>> found =
       models::single_scattering_on_gpu(*host.value(), medium, rays, progress);
@@ -56,8 +53,7 @@ Result<std::vector<ProbeAnswer>> run_single(const ProbeSettings& settings,
   return answers;
 }
 
-Result<std::vector<ProbeAnswer>> run_reference(const ProbeSettings& settings,
-                                               std::span<const ProbeQuery> queries) {
+Result<std::vector<ProbeAnswer>> run_reference(const ProbeSettings& settings, std::span<const ProbeQuery> queries) {
   std::vector<reference::Query> asked;
   asked.reserve(queries.size());
   for (const ProbeQuery& q : queries) {
@@ -81,15 +77,13 @@ Result<std::vector<ProbeAnswer>> run_reference(const ProbeSettings& settings,
   return answers;
 }
 
-Result<std::vector<ProbeAnswer>> run_precomputed(const ProbeSettings& settings,
-                                                 std::span<const ProbeQuery> queries) {
+Result<std::vector<ProbeAnswer>> run_precomputed(const ProbeSettings& settings, std::span<const ProbeQuery> queries) {
   std::vector<ProbeAnswer> answers;
   if (queries.empty()) return answers;
   std::vector<models::PrecomputedQuery> asked;
   asked.reserve(queries.size());
   for (const ProbeQuery& q : queries) {
-    asked.push_back(
-        {models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad), q.sky});
+    asked.push_back({models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad), q.sky});
   }
   Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({settings.device, false});
   if (!host) return std::move(host).error();
@@ -98,8 +92,7 @@ Result<std::vector<ProbeAnswer>> run_precomputed(const ProbeSettings& settings,
   how.progress = [&](Progress built) {
     settings.progress(static_cast<double>(built.done) / static_cast<double>(built.total));
   };
-  Result<models::PrecomputedModel> model =
-      models::PrecomputedModel::create(*host.value(), settings.params, how);
+  Result<models::PrecomputedModel> model = models::PrecomputedModel::create(*host.value(), settings.params, how);
   if (!model) return std::move(model).error();
   for (const std::string& text : model.value().origin().notes) {
     if (settings.note) settings.note(text);
@@ -128,7 +121,9 @@ Result<std::vector<ProbeAnswer>> run_oneil_model(const ProbeSettings& settings, 
     if (q.sky) {
       const double cos_sun = std::cos(q.sun_zenith_rad);
       answers.push_back({models::oneil_sky_irradiance(model, q.altitude_m, cos_sun),
-                         models::oneil_sun_transmittance(model, q.altitude_m, cos_sun), {}, false});
+                         models::oneil_sun_transmittance(model, q.altitude_m, cos_sun),
+                         {},
+                         false});
     } else {
       const models::Answer answer = models::oneil(
           model, models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad));
@@ -148,8 +143,7 @@ Result<std::vector<ProbeAnswer>> run_oneil_table(const ProbeSettings& settings, 
 }
 
 // Closed forms, on the CPU in double precision.
-Result<std::vector<ProbeAnswer>> run_homogeneous(const ProbeSettings& settings,
-                                                 std::span<const ProbeQuery> queries) {
+Result<std::vector<ProbeAnswer>> run_homogeneous(const ProbeSettings& settings, std::span<const ProbeQuery> queries) {
   const shared::Homogeneous medium =
       models::homogeneous_from_params(settings.params, homogeneous_lengths(settings.scene));
   if (settings.note && settings.params.atmosphere.ozone_absorption != Vec3(0.0F)) {
@@ -160,8 +154,8 @@ Result<std::vector<ProbeAnswer>> run_homogeneous(const ProbeSettings& settings,
   for (const ProbeQuery& q : queries) {
     if (q.sky) {
       const double cos_sun = std::cos(q.sun_zenith_rad);
-      answers.push_back({models::homogeneous_sky_irradiance(medium, cos_sun),
-                         models::homogeneous_sun(medium, cos_sun), {}, false});
+      answers.push_back(
+          {models::homogeneous_sky_irradiance(medium, cos_sun), models::homogeneous_sun(medium, cos_sun), {}, false});
       continue;
     }
     const models::Answer answer = models::homogeneous_light(
@@ -180,7 +174,9 @@ Result<std::vector<ProbeAnswer>> run_homogeneous_medium(const ProbeSettings& set
   for (const ProbeQuery& q : queries) {
     if (q.sky) {
       answers.push_back({models::homogeneous_medium_sky(medium, q.altitude_m, std::cos(q.sun_zenith_rad)),
-                         medium.sunlight, {}, false});
+                         medium.sunlight,
+                         {},
+                         false});
       continue;
     }
     const models::Answer answer = models::homogeneous_medium_light(

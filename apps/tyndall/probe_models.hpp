@@ -42,7 +42,7 @@ struct ProbeSettings {
   std::string device;
   tables::CacheDesc table_cache = {};
   std::function<void(const std::string& text)> note;  // gets remarks for the user; may be empty
-  std::function<void(double done)> progress;  // the part done, 0 to 1
+  std::function<void(double done)> progress;          // the part done, 0 to 1
 };
 
 // What the scene's parameters say of the models.

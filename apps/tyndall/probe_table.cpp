@@ -35,8 +35,8 @@ constexpr std::string_view kAnswerColumns[] = {"L_r", "L_g",      "L_b",      "T
 constexpr std::size_t kNumbersWithoutError = 6;
 
 std::string allowed_text(const Column& column) {
-  return concat({"allowed is ", config::number_text(column.min), " to ", config::number_text(column.max), " ",
-                 column.unit});
+  return concat(
+      {"allowed is ", config::number_text(column.min), " to ", config::number_text(column.max), " ", column.unit});
 }
 
 Result<double> read_cell(std::string_view field, const Column& column, std::string_view where) {
@@ -51,12 +51,11 @@ Result<double> read_cell(std::string_view field, const Column& column, std::stri
   return input_error(concat({"'", config::one_line(text), what}), where, allowed_text(column));
 }
 
-Result<std::size_t> find_column(const config::CsvTable& table, const Column& column,
-                                const std::string& path) {
+Result<std::size_t> find_column(const config::CsvTable& table, const Column& column, const std::string& path) {
   const std::vector<std::size_t> found = table.find(column.name);
   if (found.size() == 1) return found.front();
-  const std::string needed = concat({"needed are ", kColumns[0].name, ", ", kColumns[1].name, ", ",
-                                     kColumns[2].name, ", ", kColumns[3].name});
+  const std::string needed =
+      concat({"needed are ", kColumns[0].name, ", ", kColumns[1].name, ", ", kColumns[2].name, ", ", kColumns[3].name});
   return input_error(concat({found.empty() ? "no column '" : "several columns '", column.name, "'"}),
                      config::one_line(path, 200), concat({needed, found.empty() ? "" : ", once each"}));
 }
@@ -99,8 +98,8 @@ Result<ProbeTable> read_queries(const std::string& path) {
       // Naming the place costs more than reading the number: it waits for an error.
       const Result<double> quick = read_cell(cell(column), kColumns[column], {});
       if (!quick) {
-        const std::string where = concat({shown, ":", std::to_string(table.input.lines[row]), ", column '",
-                                          kColumns[column].name, "'"});
+        const std::string where =
+            concat({shown, ":", std::to_string(table.input.lines[row]), ", column '", kColumns[column].name, "'"});
         return read_cell(cell(column), kColumns[column], where).error();
       }
       number = quick.value();

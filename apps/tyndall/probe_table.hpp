@@ -20,7 +20,6 @@ struct ProbeTable {
 
 // The input's columns as they were written, then those of the answers; columns of the input with such a
 // name, as in a table that `probe` has written, give way.
-[[nodiscard]] std::string answers_as_csv(const ProbeTable& table, std::span<const ProbeAnswer> answers,
-                                         bool random);
+[[nodiscard]] std::string answers_as_csv(const ProbeTable& table, std::span<const ProbeAnswer> answers, bool random);
 
 }  // namespace tyndall::cli

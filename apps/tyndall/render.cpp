@@ -13,8 +13,8 @@ namespace tyndall::cli {
 namespace {
 
 // The settings, and what became of them in this frame.
-std::vector<std::pair<std::string, std::string>> metadata_of(const scene::Scene& scene, const config::Settings& settings,
-                                                             image::FileKind kind) {
+std::vector<std::pair<std::string, std::string>> metadata_of(const scene::Scene& scene,
+                                                             const config::Settings& settings, image::FileKind kind) {
   std::vector<std::pair<std::string, std::string>> list =
       kind == image::FileKind::exr ? config::radiance_metadata(settings) : config::metadata(settings);
   list.emplace_back("tyndall.frame.exposure", config::number_text(scene.exposure()));
@@ -39,8 +39,8 @@ Result<void> write_frame(scene::Scene& scene, const std::string& path, const con
 Result<void> find_place(scene::CameraPath& path, const scene::Scene& scene) {
   if (!path.has_dates() || !path.place_text.empty()) return {};
   if (!scene.place()) {
-    return config::input_error("a path with dates has no place, and the elevation file has none on the Earth", "[playback]",
-                               "needed is place = \"LAT,LON\"");
+    return config::input_error("a path with dates has no place, and the elevation file has none on the Earth",
+                               "[playback]", "needed is place = \"LAT,LON\"");
   }
   path.place = *scene.place();
   return {};
@@ -72,11 +72,12 @@ int run_render(Args args) {
     progress.update(frame, options.frames);
     const double seconds = frame * time_step;
     config::Settings now = options.settings;
-    now.scene = scene::pose_at(now.path, seconds, options.settings.scene,
-                               static_cast<double>(now.effect.planet.radius_m));
+    now.scene =
+        scene::pose_at(now.path, seconds, options.settings.scene, static_cast<double>(now.effect.planet.radius_m));
     if (Result<void> r = scene.value()->set_scene(now.scene); !r) return fail(r.error());
     if (Result<void> r = scene.value()->render(seconds); !r) return fail(r.error());
-    if (Result<void> r = write_frame(*scene.value(), frame_path(options.output, frame), now); !r) return fail(r.error());
+    if (Result<void> r = write_frame(*scene.value(), frame_path(options.output, frame), now); !r)
+      return fail(r.error());
   }
   for (const std::string& text : scene.value()->notes()) note(text);
   return kDone;

@@ -125,8 +125,7 @@ Result<SunAngles> find_sun(const SkyOptions& options) {
   if (!place) return place.error();
   const Result<double> time = scene::parse_time(options.time, "--time");
   if (!time) return time.error();
-  const scene::SolarPosition position =
-      scene::solar_position(place.value(), time.value(), options.altitude_m);
+  const scene::SolarPosition position = scene::solar_position(place.value(), time.value(), options.altitude_m);
   return SunAngles{position.elevation_deg, position.azimuth_deg};
 }
 
@@ -174,10 +173,8 @@ int run_sky(Args args) {
   for (const SkyModel& model : kModels) model_names.emplace_back(model.name);
   Arguments arguments("sky");
   add_common(arguments, options, kScene | kSet | kDevice | kSize | kOutput | kJson);
-  arguments.number("--sun-elevation-deg", sky.sun_elevation_deg, -90.0, 90.0,
-                   "of the sun above the horizontal");
-  arguments.number("--sun-azimuth-deg", sky.sun_azimuth_deg, -3600.0, 3600.0,
-                   "of the sun, clockwise from north");
+  arguments.number("--sun-elevation-deg", sky.sun_elevation_deg, -90.0, 90.0, "of the sun above the horizontal");
+  arguments.number("--sun-azimuth-deg", sky.sun_azimuth_deg, -3600.0, 3600.0, "of the sun, clockwise from north");
   arguments.text("--at", sky.place, "LAT,LON", "the place in degrees, north and east positive; with --time");
   arguments.text("--time", sky.time, "ISO8601", "the time there, as 2003-10-17T12:30:30-07:00; 1900 to 2100");
   arguments.number("--altitude", sky.altitude_m, kLowestAltitude_m, 1.0e9,
@@ -196,18 +193,20 @@ int run_sky(Args args) {
   scene.sun.elevation_deg = static_cast<float>(sun.value().elevation_deg);
   scene.sun.azimuth_deg = static_cast<float>(sun.value().azimuth_deg);
   // The parameter has no values below sea level.
-  if (sky.altitude_m >= 0.0) scene.camera.altitude_m = static_cast<float>(sky.altitude_m);
-  else scene.camera.position_m = {0.0F, static_cast<float>(sky.altitude_m), 0.0F};
-  const SkyMap map = {options.size.width, options.size.height, sky.altitude_m,
-                      sun.value().elevation_deg * kRadPerDeg, sun.value().azimuth_deg * kRadPerDeg};
+  if (sky.altitude_m >= 0.0)
+    scene.camera.altitude_m = static_cast<float>(sky.altitude_m);
+  else
+    scene.camera.position_m = {0.0F, static_cast<float>(sky.altitude_m), 0.0F};
+  const SkyMap map = {options.size.width, options.size.height, sky.altitude_m, sun.value().elevation_deg * kRadPerDeg,
+                      sun.value().azimuth_deg * kRadPerDeg};
   const double scale = params.scattering.scale;
   const std::array<double, 3> irradiance = {scene.sun.irradiance.x * scale, scene.sun.irradiance.y * scale,
                                             scene.sun.irradiance.z * scale};
 
   Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({options.device, false});
   if (!host) return fail(host.error());
-  const SkyModel& model = *std::find_if(std::begin(kModels), std::end(kModels),
-                                        [&](const SkyModel& m) { return m.name == sky.model; });
+  const SkyModel& model =
+      *std::find_if(std::begin(kModels), std::end(kModels), [&](const SkyModel& m) { return m.name == sky.model; });
   Result<std::unique_ptr<SkySource>> source = model.make(*host.value(), options.settings);
   if (!source) return fail(source.error());
   image::Image image(map.width, map.height);
@@ -215,10 +214,9 @@ int run_sky(Args args) {
   const std::array<double, 3> diffuse = horizontal_irradiance(image, map);
   if (sky.disc == "true") {
     const Vec3& nm = params.atmosphere.wavelengths_nm;
-    const SunFace face = {
-        scene.sun.angular_radius_deg * kRadPerDeg,
-        {scene::limb_exponent(nm.x), scene::limb_exponent(nm.y), scene::limb_exponent(nm.z)},
-        irradiance};
+    const SunFace face = {scene.sun.angular_radius_deg * kRadPerDeg,
+                          {scene::limb_exponent(nm.x), scene::limb_exponent(nm.y), scene::limb_exponent(nm.z)},
+                          irradiance};
     add_sun(image, map, face, medium_from_params(params));
   }
 
@@ -234,10 +232,13 @@ int run_sky(Args args) {
   }
   constexpr float kLargestHalf = 65504.0F;
   if (const float largest = *std::max_element(image.rgb.begin(), image.rgb.end()); largest > kLargestHalf) {
-    note(concat({"the sun's disc has values up to ", config::number_text(largest),
-                 ", programs that read the map in half precision hold at most 65504; --disc false leaves the disc out"}));
+    note(concat(
+        {"the sun's disc has values up to ", config::number_text(largest),
+         ", programs that read the map in half precision hold at most 65504; --disc false leaves the disc out"}));
   }
-  if (Result<void> r = image::write_exr(options.output, image, metadata, {.content = image::ExrContent::environment_map}); !r) {
+  if (Result<void> r =
+          image::write_exr(options.output, image, metadata, {.content = image::ExrContent::environment_map});
+      !r) {
     return fail(r.error());
   }
   if (!options.json) return kDone;

@@ -56,8 +56,7 @@ class Splitter {
     const double column = 2.0 * kPi / map_.width;
     const double from = map_.sun_azimuth_rad - reach;
     const double to = map_.sun_azimuth_rad + reach;
-    for (auto x = static_cast<std::int64_t>(std::floor(from / column)); static_cast<double>(x) * column < to;
-         ++x) {
+    for (auto x = static_cast<std::int64_t>(std::floor(from / column)); static_cast<double>(x) * column < to; ++x) {
       const double start = std::max(from, static_cast<double>(x) * column);
       const double end = std::min(to, static_cast<double>(x + 1) * column);
       if (end <= start) continue;
@@ -70,8 +69,7 @@ class Splitter {
         const double half_height = std::sin(0.5 * (zenith - sun_zenith_));
         const double half_width = std::sin(0.5 * azimuth);
         const double angle =
-            2.0 *
-            std::asin(std::min(std::sqrt(half_height * half_height + across * half_width * half_width), 1.0));
+            2.0 * std::asin(std::min(std::sqrt(half_height * half_height + across * half_width * half_width), 1.0));
         const double fraction = std::min(angle / sun_.angular_radius_rad, 1.0);
         const double mu = std::sqrt(std::max(1.0 - fraction * fraction, 0.0));
         const double area = std::sin(zenith) * height_rad * step;
@@ -110,8 +108,7 @@ double SkyMap::pixel_solid_angle(std::uint32_t y) const {
 models::Ray SkyMap::ray(std::uint32_t x, std::uint32_t y) const {
   const double zenith = kPi * (y + 0.5) / height;
   const double azimuth = 2.0 * kPi * (x + 0.5) / width;
-  return models::ray_from_angles(altitude_m, zenith, 0.5 * kPi - sun_elevation_rad,
-                                 azimuth - sun_azimuth_rad);
+  return models::ray_from_angles(altitude_m, zenith, 0.5 * kPi - sun_elevation_rad, azimuth - sun_azimuth_rad);
 }
 
 void add_sun(image::Image& image, const SkyMap& map, const SunFace& sun, const shared::Medium& medium) {

@@ -24,7 +24,7 @@ struct SkyMap {
 
 struct SunFace {
   double angular_radius_rad = 0.0;
-  std::array<double, 3> limb_exponent = {};  // see scene/sun_disc.hpp
+  std::array<double, 3> limb_exponent = {};            // see scene/sun_disc.hpp
   std::array<double, 3> irradiance = {1.0, 1.0, 1.0};  // above the atmosphere
 };
 

@@ -33,30 +33,28 @@ constexpr const char* kIndex = "tables.json";
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 Error directory_error(const std::string& directory, const std::string& why) {
-  return Error{ErrorCode::io,
-               concat({"cannot write to '", config::one_line(directory, 200), "', ", why,
-                       ", needed is a directory, or a name for one in a directory that is there"})};
+  return Error{ErrorCode::io, concat({"cannot write to '", config::one_line(directory, 200), "', ", why,
+                                      ", needed is a directory, or a name for one in a directory that is there"})};
 }
 
 // IEEE 754 binary16; the tables hold no NaN and no infinity.
 float float_from_half(std::uint16_t half) {
   const int exponent = (half >> 10U) & 31U;
   const auto mantissa = static_cast<float>(half & 1023U);
-  const float magnitude =
-      exponent == 0 ? std::ldexp(mantissa, -24) : std::ldexp(1024.0F + mantissa, exponent - 25);
+  const float magnitude = exponent == 0 ? std::ldexp(mantissa, -24) : std::ldexp(1024.0F + mantissa, exponent - 25);
   return (half & 0x8000U) != 0 ? -magnitude : magnitude;
 }
 
 Result<std::vector<std::uint16_t>> download(gpu::Host& host, Effect& effect) {
   const gpu::Device& device = host.device();
   const VkDeviceSize size = effect.table_bytes();
-  Result<gpu::Buffer> to = gpu::create_buffer(device, "exported_tables", size,
-                                              VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryKind::readback);
+  Result<gpu::Buffer> to =
+      gpu::create_buffer(device, "exported_tables", size, VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryKind::readback);
   if (!to) return std::move(to).error();
   const Result<void> copied = host.run([&](VkCommandBuffer cmd) -> Result<void> {
     if (Result<void> r = effect.record_save_tables(cmd, to.value().buffer.get()); !r) return r;
-    gpu::barrier(device, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
-                 VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+    gpu::barrier(device, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_HOST_BIT,
+                 VK_ACCESS_HOST_READ_BIT);
     return {};
   });
   if (!copied) return copied.error();
@@ -94,8 +92,7 @@ class Staging {
     std::error_code ignored;
     if (!folder_.empty()) fs::remove_all(folder_, ignored);
     if (lock_ >= 0) ::close(lock_);
-    if (made_directory_ && !directory_.empty() && fs::is_empty(directory_, ignored))
-      fs::remove(directory_, ignored);
+    if (made_directory_ && !directory_.empty() && fs::is_empty(directory_, ignored)) fs::remove(directory_, ignored);
   }
 
   [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
@@ -162,9 +159,8 @@ class Exporter {
       const char* unit;
       std::array<double, 3> models::TableFactors::*factor;
     };
-    constexpr const char* kOfSpecies =
-        " once, radiance over the sun's irradiance above the atmosphere, without the "
-        "phase function: times P(cos_view_sun) it is L / E0";
+    constexpr const char* kOfSpecies = " once, radiance over the sun's irradiance above the atmosphere, without the "
+                                       "phase function: times P(cos_view_sun) it is L / E0";
     const std::string rayleigh = concat({"light scattered by air", kOfSpecies});
     const std::string mie = concat({"light scattered by aerosol", kOfSpecies});
     const Kind kinds[] = {
@@ -173,8 +169,7 @@ class Exporter {
         {TableId::high_orders, "light scattered twice and more, phase functions included: L / E0", "1/sr",
          &models::TableFactors::high_orders},
         {TableId::sun_transmittance,
-         "sunlight that reaches a point: fraction of E0, softened at the horizon by the sun's disc", "1",
-         nullptr},
+         "sunlight that reaches a point: fraction of E0, softened at the horizon by the sun's disc", "1", nullptr},
         {TableId::sky_irradiance, "light of the open sky on a horizontal surface: E / E0", "1", nullptr},
     };
     total_ = 3 * axes_.altitude_m.size() + 2;
@@ -189,8 +184,8 @@ class Exporter {
       table["name"] = name;
       table["quantity"] = kind.quantity;
       table["unit"] = kind.unit;
-      Result<ordered_json> files = kind.factor != nullptr ? scattering_table(name, own, kind.factor)
-                                                          : light_table(name, own, desc.extent);
+      Result<ordered_json> files =
+          kind.factor != nullptr ? scattering_table(name, own, kind.factor) : light_table(name, own, desc.extent);
       if (!files) return std::move(files).error();
       table["axes"] = kind.factor != nullptr ? "scattering" : "light";
       table["files"] = std::move(files).value();
@@ -230,8 +225,7 @@ class Exporter {
       const std::string number = std::to_string(altitude);
       const std::string file = name + "_" + std::string(4 - number.size(), '0') + number + ".exr";
       if (Result<void> r = write_image(file, image); !r) return std::move(r).error();
-      files.push_back(
-          {{"file", file}, {"altitude_index", altitude}, {"altitude_m", axes_.altitude_m[altitude]}});
+      files.push_back({{"file", file}, {"altitude_index", altitude}, {"altitude_m", axes_.altitude_m[altitude]}});
     }
     return files;
   }
@@ -257,8 +251,7 @@ class Exporter {
     out["size"] = {size.x, size.y, size.z, size.w};
     ordered_json& parameters = out["parameters"];
     for (const auto& [name, value] : config::metadata(settings_)) {
-      const config::Row* const row =
-          name.starts_with("tyndall.") ? config::find_row(name.substr(8)) : nullptr;
+      const config::Row* const row = name.starts_with("tyndall.") ? config::find_row(name.substr(8)) : nullptr;
       const bool matters =
           row != nullptr && row->owner == config::Owner::effect && row->info.affects == Affects::Tables;
       if (matters) parameters[row->key()] = value;
@@ -273,8 +266,8 @@ class Exporter {
     ordered_json& scattering = out["axes"]["scattering"];
     scattering["file"] = "altitude";
     scattering["row"] = "view zenith angle, from the top; its values belong to the altitude of the file";
-    scattering["column"] = "sun zenith angle at the middle of the ray's air + " + std::to_string(size.z) +
-                           " * angle between view and sun";
+    scattering["column"] =
+        "sun zenith angle at the middle of the ray's air + " + std::to_string(size.z) + " * angle between view and sun";
     scattering["sun_at_origin"] =
         "with r = radius + altitude and r_m = sqrt(r^2 + d^2 + 2 r d cos_view_zenith), d = middle_of_air_m of the row: "
         "cos_sun_zenith at the ray's origin = (r_m cos_sun_zenith - d cos_view_sun) / r";
@@ -287,8 +280,7 @@ class Exporter {
       const std::size_t first = i * size.y;
       ordered_json view = cosines(std::span(axes_.cos_view_zenith).subspan(first, size.y));
       ordered_json& ends = view["ends_on_ground"] = ordered_json::array();
-      for (std::size_t k = 0; k < size.y; ++k)
-        ends.push_back(static_cast<bool>(axes_.ends_on_ground[first + k]));
+      for (std::size_t k = 0; k < size.y; ++k) ends.push_back(static_cast<bool>(axes_.ends_on_ground[first + k]));
       view["middle_of_air_m"] = std::span(axes_.middle_of_air_m).subspan(first, size.y);
       views.push_back(std::move(view));
     }
@@ -296,12 +288,10 @@ class Exporter {
     scattering["sun_zenith"] = cosines(axes_.cos_sun_zenith);
     scattering["view_sun"] = cosines(axes_.cos_view_sun);
 
-    const models::LightTableAxes light =
-        models::light_table_axes(params_, light_extent_.width, light_extent_.height);
+    const models::LightTableAxes light = models::light_table_axes(params_, light_extent_.width, light_extent_.height);
     ordered_json& lights = out["axes"]["light"];
-    lights["row"] =
-        "sun zenith angle: its cosine is cos_horizon of the column + cos_sun_from_horizon of the row, "
-        "within -1 to 1";
+    lights["row"] = "sun zenith angle: its cosine is cos_horizon of the column + cos_sun_from_horizon of the row, "
+                    "within -1 to 1";
     lights["column"] = "altitude";
     lights["altitude_m"] = light.altitude_m;
     lights["cos_horizon"] = light.cos_horizon;
@@ -324,8 +314,8 @@ class Exporter {
 }  // namespace
 
 const char* table_name(TableId table) {
-  constexpr const char* kNames[kTableCount] = {"single_rayleigh", "single_mie", "high_orders",
-                                               "sun_transmittance", "sky_irradiance"};
+  constexpr const char* kNames[kTableCount] = {"single_rayleigh", "single_mie", "high_orders", "sun_transmittance",
+                                               "sky_irradiance"};
   return kNames[static_cast<std::uint32_t>(table)];
 }
 

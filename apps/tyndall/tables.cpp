@@ -17,17 +17,15 @@ namespace {
 std::string line(const char* name, double value, const char* format) {
   char number[64];
   std::snprintf(number, sizeof number, format, value);
-  return config::concat({"  ", name,
-                         std::string(std::max<std::size_t>(24 - std::string_view(name).size(), 1), ' '),
-                         number, "\n"});
+  return config::concat(
+      {"  ", name, std::string(std::max<std::size_t>(24 - std::string_view(name).size(), 1), ' '), number, "\n"});
 }
 
 std::string as_text(const nlohmann::ordered_json& report) {
   const auto text = [&](const char* key) { return report[key].get<std::string>(); };
   std::string size;
   for (const nlohmann::ordered_json& side : report["size"]) size += (size.empty() ? "" : "x") + side.dump();
-  std::string out =
-      config::concat({text("device"), ", ", size, " texels, ", report["orders"].dump(), " orders\n"});
+  std::string out = config::concat({text("device"), ", ", size, " texels, ", report["orders"].dump(), " orders\n"});
   for (const nlohmann::ordered_json& stage : report["stages"])
     out += line(stage["name"].get<std::string>().c_str(), stage["ms"].get<double>(), "%10.1f ms");
   out += line("all stages", report["stages_ms"].get<double>(), "%10.1f ms");
@@ -35,8 +33,7 @@ std::string as_text(const nlohmann::ordered_json& report) {
   for (const auto& [name, bytes] : report["memory_bytes"].items())
     out += line(name.c_str(), bytes.get<double>() / 1048576.0, "%10.2f MiB");
   if (!report["cache"].is_null()) out += config::concat({"kept in ", text("cache"), "\n"});
-  if (!report["files"].is_null())
-    out += config::concat({report["files"].dump(), " files in ", text("output"), "\n"});
+  if (!report["files"].is_null()) out += config::concat({report["files"].dump(), " files in ", text("output"), "\n"});
   return out;
 }
 
@@ -56,8 +53,7 @@ int run_tables(Args args) {
   if (const std::optional<int> status = arguments.parse(args)) return *status;
   if (Result<void> r = resolve(options); !r) return fail(r.error());
   if (export_wanted) {
-    if (options.output.empty())
-      return fail(config::input_error("no directory is named", "-o", "needed is -o DIR"));
+    if (options.output.empty()) return fail(config::input_error("no directory is named", "-o", "needed is -o DIR"));
     if (Result<void> r = check_export(options.output); !r) return fail(r.error());
   }
 

@@ -23,9 +23,8 @@ using config::concat;
 using validate::Rgb;
 
 // Answers of one of probe's models; a ray that ends on lit ground sees it, as in the reference.
-Result<std::vector<Rgb>> ask_probe(const ProbeModel& model, const std::string& device,
-                                   const scene::SceneParams& scene, const Params& params,
-                                   std::span<const reference::Query> queries) {
+Result<std::vector<Rgb>> ask_probe(const ProbeModel& model, const std::string& device, const scene::SceneParams& scene,
+                                   const Params& params, std::span<const reference::Query> queries) {
   ProbeSettings settings;
   settings.params = params;
   settings.scene = scene;
@@ -59,8 +58,7 @@ Result<std::vector<Rgb>> ask_over_ground(const ProbeModel& model, const std::str
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const reference::Query& q = queries[i];
     if (q.sky_irradiance) continue;
-    const models::Ray ray =
-        models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad);
+    const models::Ray ray = models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad);
     const Rgb ground = models::sunlit_ground(medium, ray);
     const Rgb passed = models::single_scattering(medium, ray, 1).transmittance;
     for (std::size_t c = 0; c < 3; ++c) found.value()[i][c] += passed[c] * ground[c];
@@ -81,9 +79,8 @@ class Tables {
     std::vector<models::PrecomputedQuery> asked;
     asked.reserve(queries.size());
     for (const reference::Query& q : queries) {
-      asked.push_back(
-          {models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad),
-           q.sky_irradiance});
+      asked.push_back({models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad),
+                       q.sky_irradiance});
     }
     const Result<std::vector<models::Answer>> found = model_->answer(asked);
     if (!found) return found.error();
@@ -133,11 +130,10 @@ validate::Model table_model(std::string name, std::string meaning, const std::sh
 // The parameterisations of the tables, for the horizon.
 std::vector<validate::Model> parameterizations(const std::shared_ptr<Tables>& tables) {
   std::vector<validate::Model> out;
-  for (const auto& [name, value] : {std::pair("yusov", TableParameterization::yusov),
-                                    std::pair("bruneton", TableParameterization::bruneton),
-                                    std::pair("linear", TableParameterization::linear)}) {
-    out.push_back(
-        table_model(name, "", tables, [value = value](Params& p) { p.tables.parameterization = value; }));
+  for (const auto& [name, value] :
+       {std::pair("yusov", TableParameterization::yusov), std::pair("bruneton", TableParameterization::bruneton),
+        std::pair("linear", TableParameterization::linear)}) {
+    out.push_back(table_model(name, "", tables, [value = value](Params& p) { p.tables.parameterization = value; }));
   }
   return out;
 }
@@ -145,11 +141,11 @@ std::vector<validate::Model> parameterizations(const std::shared_ptr<Tables>& ta
 // One of probe's models over black ground, which claims `orders` orders (0: is compared with all).
 validate::Model probe_row(std::string name, std::string meaning, int orders, std::string_view model,
                           const std::string& device, const scene::SceneParams& scene) {
-  return {std::move(name), std::move(meaning), orders,
-          [&model = probe_model(model), device, scene](const Params& params,
-                                                       std::span<const reference::Query> queries) {
-            return ask_over_ground(model, device, scene, params, queries);
-          }};
+  return {
+      std::move(name), std::move(meaning), orders,
+      [&model = probe_model(model), device, scene](const Params& params, std::span<const reference::Query> queries) {
+        return ask_over_ground(model, device, scene, params, queries);
+      }};
 }
 
 std::vector<validate::Model> all_models(const std::string& device, const scene::SceneParams& scene,
@@ -168,11 +164,15 @@ std::vector<validate::Model> all_models(const std::string& device, const scene::
       probe_row("single", "light scattered once, integrated for every ray", 1, "single", device, scene),
       probe_row("single, against all orders", "the same: what leaving out multiple scattering costs", 0, "single",
                 device, scene),
-      probe_row("homogeneous", "Hoffman and Preetham: closed forms for one density at every altitude, no ozone, no other sunset "
-                "than the horizontal", 1, "homogeneous", device, everywhere),
+      probe_row("homogeneous",
+                "Hoffman and Preetham: closed forms for one density at every altitude, no ozone, no other sunset "
+                "than the horizontal",
+                1, "homogeneous", device, everywhere),
       probe_row("homogeneous, falling off", "the same with homogeneous.falloff", 1, "homogeneous", device, falling),
-      probe_row("homogeneous medium", "Yusov 2012: scattering.medium = homogeneous, wholly lit: one density out to its extent, "
-                "sunlight that nothing takes from, no sunset", 1, "homogeneous-medium", device, scene),
+      probe_row("homogeneous medium",
+                "Yusov 2012: scattering.medium = homogeneous, wholly lit: one density out to its extent, "
+                "sunlight that nothing takes from, no sunset",
+                1, "homogeneous-medium", device, scene),
       probe_row("oneil", "O'Neil: light scattered once, few points and the scale function, no ozone", 1, "oneil",
                 device, scene),
       probe_row("oneil, points by column", "the same with oneil.spacing = column", 1, "oneil", device, by_column),
@@ -182,13 +182,12 @@ std::vector<validate::Model> all_models(const std::string& device, const scene::
 
 // What makes the same report, but for where files are.
 std::string command_line(const CommonOptions& options, const validate::Options& study) {
-  std::string out = concat({"tyndall validate -o REPORT.html --rays ", std::to_string(study.rays),
-                            " --samples ", std::to_string(study.samples), " --seed ",
-                            std::to_string(study.seed), " --orders ", std::to_string(study.orders)});
+  std::string out = concat({"tyndall validate -o REPORT.html --rays ", std::to_string(study.rays), " --samples ",
+                            std::to_string(study.samples), " --seed ", std::to_string(study.seed), " --orders ",
+                            std::to_string(study.orders)});
   for (const std::string& set : options.sets) out += concat({" --set ", config::one_line(set, 200)});
   if (!options.scene_file.empty()) {
-    out +=
-        concat({" ", config::one_line(std::filesystem::path(options.scene_file).filename().string(), 200)});
+    out += concat({" ", config::one_line(std::filesystem::path(options.scene_file).filename().string(), 200)});
   }
   return out;
 }
@@ -215,16 +214,15 @@ int run_validate(Args args) {
   study_options.orders = static_cast<int>(orders);
   if (Result<void> r = resolve(options); !r) return fail(r.error());
   if (options.output.empty() && markdown.empty() && !options.json) {
-    return fail(
-        config::input_error("no output file", "-o", "needed is -o REPORT.html, --markdown FILE or --json"));
+    return fail(config::input_error("no output file", "-o", "needed is -o REPORT.html, --markdown FILE or --json"));
   }
   if (!options.output.empty()) {
     if (Result<void> r = check_output(options, {".html", ".htm"}); !r) return fail(r.error());
   }
   if (!markdown.empty()) {
     if (!is_markdown(markdown)) {
-      return fail(config::input_error(concat({"unknown format '", config::one_line(markdown), "'"}),
-                                      "--markdown", "allowed is a name in .md"));
+      return fail(config::input_error(concat({"unknown format '", config::one_line(markdown), "'"}), "--markdown",
+                                      "allowed is a name in .md"));
     }
     if (Result<void> r = check_not_input(markdown, "--markdown", input_files(options)); !r) return fail(r.error());
     if (Result<void> r = config::check_writable(markdown); !r) return fail(r.error());
@@ -241,21 +239,18 @@ int run_validate(Args args) {
   {
     Progress progress("validate");
     constexpr std::uint64_t kSteps = 1000;
-    study = validate::run_study(options.settings.effect, study_options, all_models(options.device, options.settings.scene, tables),
-                                parameterizations(tables), [&](double done) {
-                                  progress.update(
-                                      static_cast<std::uint64_t>(done * static_cast<double>(kSteps)), kSteps);
-                                });
+    study = validate::run_study(
+        options.settings.effect, study_options, all_models(options.device, options.settings.scene, tables),
+        parameterizations(tables),
+        [&](double done) { progress.update(static_cast<std::uint64_t>(done * static_cast<double>(kSteps)), kSteps); });
   }
   for (const std::string& text : tables->notes()) note(text);
   if (!study) return fail(study.error());
   if (!options.output.empty()) {
-    if (Result<void> r = config::write_file(options.output, to_html(study.value(), origin)); !r)
-      return fail(r.error());
+    if (Result<void> r = config::write_file(options.output, to_html(study.value(), origin)); !r) return fail(r.error());
   }
   if (!markdown.empty()) {
-    if (Result<void> r = config::write_file(markdown, to_markdown(study.value(), origin)); !r)
-      return fail(r.error());
+    if (Result<void> r = config::write_file(markdown, to_markdown(study.value(), origin)); !r) return fail(r.error());
   }
   return options.json ? print(to_json(study.value(), origin)) : kDone;
 }

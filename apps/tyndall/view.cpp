@@ -11,13 +11,16 @@ int run_view(Args args) {
   viewer::ViewerDesc desc;
   Arguments arguments("view");
   add_common(arguments, options, kScene | kSet | kDevice | kSize);
-  arguments.text("--state", desc.state_file, "FILE", "where F5 saves the state and F9 finds it [~/.local/state/tyndall/view.toml]");
+  arguments.text("--state", desc.state_file, "FILE",
+                 "where F5 saves the state and F9 finds it [~/.local/state/tyndall/view.toml]");
   arguments.text("--screenshots", desc.screenshots, "FOLDER", "where F12 leaves pictures [the working directory]");
   arguments.text("--log", desc.log, "FILE", "write what happens, a line each");
-  arguments.text("--script", desc.script, "WHAT", "for tests: walk, soak=SECONDS, soak-frames=COUNT, lose-surface, lose-device or one-device");
+  arguments.text("--script", desc.script, "WHAT",
+                 "for tests: walk, soak=SECONDS, soak-frames=COUNT, lose-surface, lose-device or one-device");
   bool no_first_steps = false;
   arguments.flag("--no-first-steps", no_first_steps, "do not show the help of the first run");
-  arguments.flag("--validation", desc.validation, "check with the Vulkan validation layer; exit 1 when it has something to say");
+  arguments.flag("--validation", desc.validation,
+                 "check with the Vulkan validation layer; exit 1 when it has something to say");
   if (const std::optional<int> status = arguments.parse(args)) return *status;
   if (Result<void> r = resolve(options); !r) return fail(r.error());
   desc.settings = options.settings;

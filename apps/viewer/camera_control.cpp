@@ -74,7 +74,8 @@ CameraState moved(const CameraState& camera, const Motion& motion, double second
   const double altitude = scene::altitude_of(camera.position, radius_m);
   out.position += way * (speed * seconds);
   const glm::dvec3 centre(0.0, -radius_m, 0.0);
-  out.position = centre + glm::normalize(out.position - centre) * (radius_m + std::max(altitude + climb, -0.5 * radius_m));
+  out.position =
+      centre + glm::normalize(out.position - centre) * (radius_m + std::max(altitude + climb, -0.5 * radius_m));
   const Horizon after = horizon_at(out.position, radius_m);
   // The right-hand direction is horizontal everywhere, so it tells the yaw even when looking straight down.
   const glm::dvec3 now = carried(right, before.up, after.up);
@@ -85,7 +86,8 @@ CameraState moved(const CameraState& camera, const Motion& motion, double second
 CameraState above_ground(const CameraState& camera, double ground_m, double radius_m) {
   CameraState out = camera;
   const double altitude = scene::altitude_of(camera.position, radius_m);
-  const double wanted = std::clamp(altitude, ground_m + kLeastHeight_m, std::max(kHighest_m, ground_m + kLeastHeight_m));
+  const double wanted =
+      std::clamp(altitude, ground_m + kLeastHeight_m, std::max(kHighest_m, ground_m + kLeastHeight_m));
   if (wanted != altitude) out.position += scene::up_of(camera.position, radius_m) * (wanted - altitude);
   return out;
 }

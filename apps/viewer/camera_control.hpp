@@ -9,9 +9,9 @@
 
 namespace tyndall::viewer {
 
-constexpr double kLeastHeight_m = 2.5;     // of the camera above the ground
-constexpr double kHighest_m = 5.0e7;       // above sea level
-constexpr double kSteepest_deg = 89.9;     // view up or down
+constexpr double kLeastHeight_m = 2.5;  // of the camera above the ground
+constexpr double kHighest_m = 5.0e7;    // above sea level
+constexpr double kSteepest_deg = 89.9;  // view up or down
 constexpr double kFovRange_deg[2] = {2.0, 150.0};
 
 // A camera in double precision: steps of centimetres count in orbit too.

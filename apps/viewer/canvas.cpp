@@ -18,9 +18,12 @@ constexpr Row kRows[kShownCount] = {
     {"Scene without air", "The ground and the sun's disc before the air is drawn; times the gain."},
     {"Depth", "Distance from the camera, near dark and far bright, logarithmic. Blue: nothing drawn."},
     {"Shadow map", "Depth from the sun in one cascade; the gain stretches the depths about their middle."},
-    {"Table: single Rayleigh", "Light scattered once by air. Across: altitude; up: view zenith; slice: sun and azimuth."},
-    {"Table: single Mie", "Light scattered once by aerosol. Across: altitude; up: view zenith; slice: sun and azimuth."},
-    {"Table: higher orders", "Light scattered more than once. Across: altitude; up: view zenith; slice: sun and azimuth."},
+    {"Table: single Rayleigh",
+     "Light scattered once by air. Across: altitude; up: view zenith; slice: sun and azimuth."},
+    {"Table: single Mie",
+     "Light scattered once by aerosol. Across: altitude; up: view zenith; slice: sun and azimuth."},
+    {"Table: higher orders",
+     "Light scattered more than once. Across: altitude; up: view zenith; slice: sun and azimuth."},
     {"Table: sunlight", "What the air leaves of the sun's light. Across: altitude; up: sun zenith."},
     {"Table: light of the sky", "Irradiance from the open sky. Across: altitude; up: sun zenith."},
 };
@@ -66,9 +69,12 @@ Result<void> Canvas::create(gpu::Host& host, bool to_host) {
 
 Result<Picture> Canvas::draw(scene::Scene& scene, const View& view) {
   const gpu::Device& device = host_->device();
-  if (image_ == nullptr || image_->desc.extent.width != view.extent.width || image_->desc.extent.height != view.extent.height) {
+  if (image_ == nullptr || image_->desc.extent.width != view.extent.width ||
+      image_->desc.extent.height != view.extent.height) {
     TYNDALL_ASSIGN(gpu::Image image,
-                   gpu::create_image(device, {"canvas", kCanvasFormat, {view.extent.width, view.extent.height, 1},
+                   gpu::create_image(device, {"canvas",
+                                              kCanvasFormat,
+                                              {view.extent.width, view.extent.height, 1},
                                               VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
                                                   VK_IMAGE_USAGE_TRANSFER_SRC_BIT}));
     image_ = std::make_shared<gpu::Image>(std::move(image));
@@ -88,13 +94,15 @@ Result<Picture> Canvas::draw(scene::Scene& scene, const View& view) {
     rendering.colorAttachmentCount = 1;
     rendering.pColorAttachments = &color;
     device.vk.CmdBeginRendering(cmd, &rendering);
-    const VkViewport viewport = {0, 0, static_cast<float>(view.extent.width), static_cast<float>(view.extent.height), 0, 1};
+    const VkViewport viewport = {0, 0, static_cast<float>(view.extent.width), static_cast<float>(view.extent.height),
+                                 0, 1};
     const VkRect2D scissor = {{0, 0}, view.extent};
     device.vk.CmdSetViewport(cmd, 0, 1, &viewport);
     device.vk.CmdSetScissor(cmd, 0, 1, &scissor);
     Result<void> recorded = record(cmd, scene, view);
     device.vk.CmdEndRendering(cmd);
-    gpu::transition(device, cmd, *image_, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    gpu::transition(device, cmd, *image_, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                    VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     return recorded;
   }));
   Picture out;
@@ -103,7 +111,8 @@ Result<Picture> Canvas::draw(scene::Scene& scene, const View& view) {
     out.image = image_;
     return out;
   }
-  TYNDALL_ASSIGN(out.texels, gpu::download(*host_, *image_, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, 0, 4 * sizeof(float)));
+  TYNDALL_ASSIGN(out.texels,
+                 gpu::download(*host_, *image_, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, 0, 4 * sizeof(float)));
   return out;
 }
 
@@ -135,7 +144,8 @@ Result<void> Canvas::record(VkCommandBuffer cmd, scene::Scene& scene, const View
       const struct {
         float near_m, nearest_m, farthest_m;
       } push = {static_cast<float>(scene::kNearPlane_m), 1.0F, 1.0e6F};
-      return draw(cmd, depth_, gpu::named_image("depth_picture", images.depth.view.get(), kRead, nearest_.get()), &push);
+      return draw(cmd, depth_, gpu::named_image("depth_picture", images.depth.view.get(), kRead, nearest_.get()),
+                  &push);
     }
     case Shown::shadow_map: {
       const auto last = static_cast<int>(images.shadow_maps.desc.layers) - 1;

@@ -1,5 +1,5 @@
-// What is shown of one scene: its picture, or one of the images and tables that it was made from, drawn over a canvas of
-// the window's size. Works on the scene's device, on the thread that works on the scene.
+// What is shown of one scene: its picture, or one of the images and tables that it was made from, drawn over a canvas
+// of the window's size. Works on the scene's device, on the thread that works on the scene.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,16 @@
 namespace tyndall::viewer {
 
 enum class Shown : int {
-  picture, radiance, color, depth, shadow_map, single_rayleigh, single_mie, high_orders, sun_transmittance, sky_irradiance
+  picture,
+  radiance,
+  color,
+  depth,
+  shadow_map,
+  single_rayleigh,
+  single_mie,
+  high_orders,
+  sun_transmittance,
+  sky_irradiance
 };
 constexpr int kShownCount = 10;
 [[nodiscard]] const char* name_of(Shown shown);

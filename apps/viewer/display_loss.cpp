@@ -38,7 +38,8 @@ int refused_request(Display*, XErrorEvent* error) {
     gone = true;
     return 0;
   }
-  std::fprintf(stderr, "tyndall: warning: the X server refused request %d with error %d\n", error->request_code, error->error_code);
+  std::fprintf(stderr, "tyndall: warning: the X server refused request %d with error %d\n", error->request_code,
+               error->error_code);
   return 0;
 }
 #endif

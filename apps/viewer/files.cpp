@@ -74,7 +74,8 @@ std::string screenshot_stem(const std::string& folder, const std::vector<std::st
   std::string stem = base.string();
   std::error_code error;
   const auto taken = [&] {
-    return std::any_of(endings.begin(), endings.end(), [&](const std::string& e) { return fs::exists(stem + e, error); });
+    return std::any_of(endings.begin(), endings.end(),
+                       [&](const std::string& e) { return fs::exists(stem + e, error); });
   };
   for (int i = 2; taken(); ++i) stem = base.string() + "-" + std::to_string(i);
   return stem;

@@ -148,7 +148,8 @@ void Gui::menu(config::Settings& settings, const GuiFacts& facts, GuiRequests& r
     requests.save = item("Save the state", "F5") || requests.save;
     requests.restore = item("Restore the state", "F9") || requests.restore;
     requests.screenshot = item("Screenshot", "F12") || requests.screenshot;
-    if (facts.has_path) requests.play = item(facts.flying_path ? "Stop the flight" : "Play the flight", "P") || requests.play;
+    if (facts.has_path)
+      requests.play = item(facts.flying_path ? "Stop the flight" : "Play the flight", "P") || requests.play;
     requests.reload_shaders = item("Rebuild the shaders", "F8") || requests.reload_shaders;
     ImGui::Separator();
     requests.quit = item("Leave", "Esc") || requests.quit;
@@ -172,7 +173,8 @@ void Gui::menu(config::Settings& settings, const GuiFacts& facts, GuiRequests& r
     scene::SceneParams& scene = settings.scene;
     MediumKind& medium = settings.effect.scattering.medium;
     for (const ModelItem& model : kModels) {
-      bool chosen = scene.scattering.model == model.model && (model.model != scene::ScatteringModel::atmosphere || medium == model.medium);
+      bool chosen = scene.scattering.model == model.model &&
+                    (model.model != scene::ScatteringModel::atmosphere || medium == model.medium);
       if (!item(model.name, nullptr, &chosen)) continue;
       scene.scattering.model = model.model;
       if (model.model == scene::ScatteringModel::atmosphere) medium = model.medium;
@@ -221,7 +223,8 @@ void Gui::status(const GuiFacts& facts) {
   // Beside the controls: the right edge is where the other windows are.
   const float width = static_cast<float>(facts.window.width);
   const float left = state.controls ? std::min(360.0F, 0.5F * width) : 0.0F;
-  ImGui::SetNextWindowPos(ImVec2(left + 6.0F, static_cast<float>(facts.window.height) - 6.0F), ImGuiCond_Always, ImVec2(0.0F, 1.0F));
+  ImGui::SetNextWindowPos(ImVec2(left + 6.0F, static_cast<float>(facts.window.height) - 6.0F), ImGuiCond_Always,
+                          ImVec2(0.0F, 1.0F));
   ImGui::SetNextWindowBgAlpha(0.55F);
   if (ImGui::Begin("status", nullptr, kOverlay | ImGuiWindowFlags_NoInputs)) {
     if (facts.creating) ImGui::TextUnformatted("Making the scene ...");
@@ -232,8 +235,8 @@ void Gui::status(const GuiFacts& facts) {
     }
     if (facts.flying_path) ImGui::Text("Flight: %.1f s of %.1f s", facts.path_s, facts.path_end_s);
     const bool far = facts.altitude_m >= 10000.0;
-    ImGui::Text(far ? "%.1f km up, %.1f km/s" : "%.0f m up, %.0f m/s", far ? facts.altitude_m / 1000.0 : facts.altitude_m,
-                far ? facts.speed_m_s / 1000.0 : facts.speed_m_s);
+    ImGui::Text(far ? "%.1f km up, %.1f km/s" : "%.0f m up, %.0f m/s",
+                far ? facts.altitude_m / 1000.0 : facts.altitude_m, far ? facts.speed_m_s / 1000.0 : facts.speed_m_s);
   }
   ImGui::End();
 }
@@ -241,8 +244,9 @@ void Gui::status(const GuiFacts& facts) {
 void Gui::help(const GuiFacts& facts) {
   centre_next(facts);
   ImGui::SetNextWindowBgAlpha(0.92F);
-  if (ImGui::Begin("Keys and mouse", &state.help,
-                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
+  if (ImGui::Begin(
+          "Keys and mouse", &state.help,
+          ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
     help_table();
     ImGui::Separator();
     ImGui::TextUnformatted("Hold the pointer over a control to read what it does; Ctrl and click to type a value.");
@@ -255,8 +259,8 @@ void Gui::first_run(const GuiFacts& facts) {
   // In the middle of what the controls leave free.
   const float width = static_cast<float>(facts.window.width);
   const float taken = state.controls && !state.hidden ? std::min(360.0F, 0.5F * width) : 0.0F;
-  ImGui::SetNextWindowPos(ImVec2(0.5F * (taken + width), 0.5F * static_cast<float>(facts.window.height)), ImGuiCond_Always,
-                          ImVec2(0.5F, 0.5F));
+  ImGui::SetNextWindowPos(ImVec2(0.5F * (taken + width), 0.5F * static_cast<float>(facts.window.height)),
+                          ImGuiCond_Always, ImVec2(0.5F, 0.5F));
   ImGui::SetNextWindowBgAlpha(0.9F);
   if (ImGui::Begin("first steps", nullptr, kOverlay)) {
     ImGui::PushTextWrapPos(std::clamp(0.95F * (width - taken), 220.0F, 520.0F));
@@ -277,7 +281,8 @@ void Gui::first_run(const GuiFacts& facts) {
 void Gui::toasts(const GuiFacts& facts) {
   std::erase_if(toasts_, [&](const Toast& t) { return t.until <= facts.now; });
   if (toasts_.empty()) return;
-  ImGui::SetNextWindowPos(ImVec2(0.5F * static_cast<float>(facts.window.width), 30.0F), ImGuiCond_Always, ImVec2(0.5F, 0.0F));
+  ImGui::SetNextWindowPos(ImVec2(0.5F * static_cast<float>(facts.window.width), 30.0F), ImGuiCond_Always,
+                          ImVec2(0.5F, 0.0F));
   ImGui::SetNextWindowBgAlpha(0.85F);
   if (ImGui::Begin("messages", nullptr, kOverlay | ImGuiWindowFlags_NoInputs)) {
     ImGui::PushTextWrapPos(0.8F * static_cast<float>(facts.window.width));

@@ -24,32 +24,32 @@ struct FrameTimes {
   std::array<float, kCount> gpu = {};    // all passes
   std::array<float, kCount> whole = {};  // from one frame of the scene to the next
   std::size_t next = 0;
-  std::vector<scene::PassTime> passes;   // of the last frame, smoothed
+  std::vector<scene::PassTime> passes;  // of the last frame, smoothed
   void add(const std::vector<scene::PassTime>& times, double whole_ms);
 };
 
 // What the GUI may change besides the settings.
 struct GuiState {
-  bool hidden = false;     // F2
-  bool help = false;       // F1
+  bool hidden = false;  // F2
+  bool help = false;    // F1
   bool first_run = false;
   bool controls = true, performance = false, views = false;
-  int tab = 0;             // of the controls, to be selected next; -1: leave it
+  int tab = 0;  // of the controls, to be selected next; -1: leave it
   PictureOptions picture;
   bool edit_right = false;  // the controls change the right side of a comparison
   float resolution_scale = 1.0F;
   int coarseness = 1;
   bool vsync = true;
   bool full_screen = false;
-  bool playing = true;     // the sun's own motion
+  bool playing = true;  // the sun's own motion
 };
 
 // What was asked for in this frame.
 struct GuiRequests {
   bool save = false, restore = false, screenshot = false, reload_shaders = false, quit = false, play = false;
-  bool copy_to_right = false;   // the right side of the comparison becomes what the left is
-  std::string scene;            // a scene file over the defaults
-  std::string preset;           // a scene file over what there is
+  bool copy_to_right = false;  // the right side of the comparison becomes what the left is
+  std::string scene;           // a scene file over the defaults
+  std::string preset;          // a scene file over what there is
 };
 
 // What the GUI shows of the program.
@@ -60,7 +60,7 @@ struct GuiFacts {
   VkExtent2D window = {}, picture = {};
   Progress tables = {}, pipelines = {};
   bool creating = false;
-  std::string shader_message;   // of the last rebuild that failed
+  std::string shader_message;  // of the last rebuild that failed
   bool slow_device = false;
   bool has_path = false, flying_path = false;
   double path_s = 0.0, path_end_s = 0.0;

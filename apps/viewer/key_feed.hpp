@@ -1,6 +1,7 @@
-// Keys and clicks for the GUI, a frame's worth at a time. A frame on a slow device takes as long as some people need for several keys,
-// and ImGui sees of a key only whether it is down when a frame begins: what is pressed and let go in between would be lost,
-// and text after a Tab would land in the field before it. What must not be seen in one frame waits for the next.
+// Keys and clicks for the GUI, a frame's worth at a time. A frame on a slow device takes as long as some people need
+// for several keys, and ImGui sees of a key only whether it is down when a frame begins: what is pressed and let go in
+// between would be lost, and text after a Tab would land in the field before it. What must not be seen in one frame
+// waits for the next.
 #pragma once
 
 #include <deque>

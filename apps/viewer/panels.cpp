@@ -116,9 +116,9 @@ void Gui::basic(config::Settings& s) {
 }
 
 void Gui::additional(config::Settings& s) {
-  edit(s, {"scattering.single", "scattering.multiple", "scattering.sections", "shadows.cascades",
-           "shadows.show_cascades", "shadows.smooth", "shadows.best_cascade", "shadows.partitioning",
-           "shadows.distance_m"});
+  edit(s,
+       {"scattering.single", "scattering.multiple", "scattering.sections", "shadows.cascades", "shadows.show_cascades",
+        "shadows.smooth", "shadows.best_cascade", "shadows.partitioning", "shadows.distance_m"});
   {
     const Enabled on(epipolar(s));
     edit(s, {"shadows.cascade_processing"});
@@ -157,7 +157,8 @@ void Gui::atmosphere(config::Settings& s) {
            "atmosphere.custom_coefficients"});
   {
     const Enabled on(s.effect.atmosphere.custom_coefficients);
-    for (const char* key : {"atmosphere.rayleigh_scattering", "atmosphere.mie_scattering", "atmosphere.mie_absorption"}) {
+    for (const char* key :
+         {"atmosphere.rayleigh_scattering", "atmosphere.mie_scattering", "atmosphere.mie_absorption"}) {
       widgets.edit(key, s);
       widgets.edit_color(key, s, kScatteringScale);
     }
@@ -165,9 +166,9 @@ void Gui::atmosphere(config::Settings& s) {
   edit(s, {"atmosphere.ozone_absorption"});
   widgets.edit_color("atmosphere.ozone_absorption", s, kOzoneScale);
   for (const config::Row& row : config::rows()) {
-    constexpr std::string_view kAbove[] = {"aerosol_density", "aerosol_absorption", "mie_g", "mie_phase",
-                                           "custom_coefficients", "rayleigh_scattering", "mie_scattering",
-                                           "mie_absorption", "ozone_absorption"};
+    constexpr std::string_view kAbove[] = {"aerosol_density", "aerosol_absorption",  "mie_g",
+                                           "mie_phase",       "custom_coefficients", "rayleigh_scattering",
+                                           "mie_scattering",  "mie_absorption",      "ozone_absorption"};
     const bool shown = std::find(std::begin(kAbove), std::end(kAbove), row.info.name) != std::end(kAbove);
     if (row.info.group == "atmosphere" && !shown) widgets.edit(row, s);
   }

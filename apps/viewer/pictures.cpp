@@ -51,12 +51,14 @@ Result<void> Pictures::take(std::size_t side, Picture picture) {
                     here->desc.extent.height == picture.extent.height;
   if (!fits) {
     TYNDALL_ASSIGN(gpu::Image image,
-                   gpu::create_image(host_->device(), {"window_picture", kCanvasFormat,
+                   gpu::create_image(host_->device(), {"window_picture",
+                                                       kCanvasFormat,
                                                        {picture.extent.width, picture.extent.height, 1},
                                                        VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT}));
     here = std::make_shared<const gpu::Image>(std::move(image));
   }
-  return gpu::upload(*host_, *here, picture.texels.data(), picture.texels.size(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  return gpu::upload(*host_, *here, picture.texels.data(), picture.texels.size(),
+                     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
 }
 
 Result<void> Pictures::record(VkCommandBuffer cmd, VkExtent2D window, bool two, const PictureOptions& options) {
@@ -64,7 +66,8 @@ Result<void> Pictures::record(VkCommandBuffer cmd, VkExtent2D window, bool two, 
   const gpu::Image& left = sides_[0] != nullptr ? *sides_[0] : *nothing_;
   const gpu::Image& right = two && sides_[1] != nullptr ? *sides_[1] : left;
   const bool difference = two && options.difference;
-  const bool as_it_is = options.shown == Shown::picture || options.shown == Shown::depth || options.shown == Shown::shadow_map;
+  const bool as_it_is =
+      options.shown == Shown::picture || options.shown == Shown::depth || options.shown == Shown::shadow_map;
   const struct {
     float divider, line_width, gain;
     std::uint32_t difference;

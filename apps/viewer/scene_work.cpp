@@ -12,7 +12,7 @@ namespace tyndall::viewer {
 namespace {
 
 constexpr std::uint32_t kMostSlices = 64;
-constexpr double kTables_ms = 60.0;      // of one piece of building
+constexpr double kTables_ms = 60.0;  // of one piece of building
 constexpr double kTonePeriod_s = 1.0 / 60.0;
 // Tables are kept when they have stood so long: those that a hand only comes by would fill the cache.
 constexpr double kKeepFirst_s = 1.0;
@@ -77,7 +77,8 @@ bool SceneWork::tone_stale() const {
   if (!params.auto_exposure || !params.light_adaptation || !drawn_ || stale_) return false;
   constexpr float kAdapted = 0.005F;  // relative difference that nobody sees
   const post::Measurement m = scene_->measurement();
-  return m.measured > 0.0F && std::abs(m.luminance - std::max(m.measured, params.least_luminance)) > kAdapted * m.luminance;
+  return m.measured > 0.0F &&
+         std::abs(m.luminance - std::max(m.measured, params.least_luminance)) > kAdapted * m.luminance;
 }
 
 double SceneWork::keep_in_s() const {
@@ -125,7 +126,8 @@ Outcome SceneWork::run(const Wish& wish) {
   }
   out.settings = wanted_;
   const std::vector<std::string>& notes = scene_->notes();
-  out.notes.insert(out.notes.end(), notes.begin() + static_cast<std::ptrdiff_t>(std::min(notes_told_, notes.size())), notes.end());
+  out.notes.insert(out.notes.end(), notes.begin() + static_cast<std::ptrdiff_t>(std::min(notes_told_, notes.size())),
+                   notes.end());
   notes_told_ = notes.size();
   return out;
 }
@@ -257,11 +259,12 @@ void SceneWork::load_terrain() {
   if (!other) return;
   loading_for_ = wanted_.scene.terrain;
   loading_radius_m_ = wanted_.effect.planet.radius_m;
-  loading_ = std::async(std::launch::async, [device = &host_->device(), params = loading_for_, radius = loading_radius_m_] {
-    Result<scene::ElevationSource> source = scene::Terrain::load_source(*device, params, radius);
-    Window::wake();
-    return source;
-  });
+  loading_ =
+      std::async(std::launch::async, [device = &host_->device(), params = loading_for_, radius = loading_radius_m_] {
+        Result<scene::ElevationSource> source = scene::Terrain::load_source(*device, params, radius);
+        Window::wake();
+        return source;
+      });
 }
 
 Result<void> SceneWork::resize(const Wish& wish) {

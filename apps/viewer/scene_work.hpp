@@ -19,20 +19,20 @@ namespace tyndall::viewer {
 // What a scene is to be and to show.
 struct Wish {
   config::Settings settings;
-  VkExtent2D extent = {};   // of the picture
-  int coarseness = 1;       // of the ground
+  VkExtent2D extent = {};  // of the picture
+  int coarseness = 1;      // of the ground
   View view;
-  double seconds = 0.0;     // of the scene's own time
-  bool again = false;       // which has gone on
-  bool rest = false;        // the hands do
-  bool capture = false;     // the picture is wanted as an image
+  double seconds = 0.0;  // of the scene's own time
+  bool again = false;    // which has gone on
+  bool rest = false;     // the hands do
+  bool capture = false;  // the picture is wanted as an image
 };
 
 // What a scene says of itself: a copy, for the GUI while the scene is worked on.
 struct SceneFacts {
   bool can_render = false, building = false;
-  bool working = false;           // a file is read or written beside
-  bool tone_stale = false;        // the eye still adapts
+  bool working = false;     // a file is read or written beside
+  bool tone_stale = false;  // the eye still adapts
   Progress tables = {}, pipelines = {};
   double keep_tables_in_s = -1.0;  // negative: nothing to keep
   std::vector<scene::PassTime> timings;
@@ -62,7 +62,7 @@ struct Outcome {
   bool tables_done = false, tables_kept = false, pipelines_done = false;
   std::optional<Picture> picture;
   std::optional<Capture> capture;
-  std::vector<std::string> notes;    // remarks that have not been told yet
+  std::vector<std::string> notes;  // remarks that have not been told yet
 };
 
 class SceneWork {
@@ -114,15 +114,15 @@ class SceneWork {
   scene::TerrainParams loading_for_;
   double loading_radius_m_ = 0.0;
   std::future<std::string> keeping_;
-  bool unkept_ = false;           // tables that were built and are not in the cache
+  bool unkept_ = false;  // tables that were built and are not in the cache
   bool first_tables_ = true;
   Clock::time_point tables_since_;  // when they were finished
   bool stale_ = true;
   bool tone_wanted_ = false;
-  bool drawn_ = false;            // there is a frame
+  bool drawn_ = false;  // there is a frame
   Clock::time_point drawn_at_;
   Progress pipelines_ = {};
-  std::uint32_t budget_ = 1;      // slices that took less than the time allowed
+  std::uint32_t budget_ = 1;  // slices that took less than the time allowed
   std::size_t notes_told_ = 0;
 };
 

@@ -1,7 +1,7 @@
 #include "screen.hpp"
 
-#include <imgui.h>
 #include <backends/imgui_impl_vulkan.h>
+#include <imgui.h>
 
 #include <algorithm>
 
@@ -70,8 +70,9 @@ Result<void> Screen::create_surface() {
   VkBool32 supported = VK_FALSE;
   vkGetPhysicalDeviceSurfaceSupportKHR(physical, host_->queue_family(), surface_, &supported);
   if (supported != VK_TRUE) {
-    return Error{ErrorCode::unsupported_device, "the Vulkan device '" + host_->device_name() +
-                 "' cannot present to this window, --device, another one may: see 'tyndall devices'"};
+    return Error{ErrorCode::unsupported_device,
+                 "the Vulkan device '" + host_->device_name() +
+                     "' cannot present to this window, --device, another one may: see 'tyndall devices'"};
   }
   std::uint32_t count = 0;
   vkGetPhysicalDeviceSurfaceFormatsKHR(physical, surface_, &count, nullptr);
@@ -98,16 +99,21 @@ Result<void> Screen::create_render_pass() {
   subpass.colorAttachmentCount = 1;
   subpass.pColorAttachments = &reference;
   const VkAccessFlags access = VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
-  const VkSubpassDependency dependency = {VK_SUBPASS_EXTERNAL, 0, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
+  const VkSubpassDependency dependency = {VK_SUBPASS_EXTERNAL,
+                                          0,
                                           VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
-                                          VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT, access, 0};
+                                          VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
+                                          VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT,
+                                          access,
+                                          0};
   VkRenderPassCreateInfo info = {};
   info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO;
   info.attachmentCount = info.subpassCount = info.dependencyCount = 1;
   info.pAttachments = &color;
   info.pSubpasses = &subpass;
   info.pDependencies = &dependency;
-  return checked(vkCreateRenderPass(host_->device().device, &info, nullptr, &render_pass_), "creating", "the render pass");
+  return checked(vkCreateRenderPass(host_->device().device, &info, nullptr, &render_pass_), "creating",
+                 "the render pass");
 }
 
 Result<void> Screen::create_frame_objects() {
@@ -128,7 +134,8 @@ Result<void> Screen::create_frame_objects() {
   TYNDALL_TRY(checked(vkCreateFence(device, &fence, nullptr, &fence_), "creating", "the window's fence"));
   VkSemaphoreCreateInfo semaphore = {};
   semaphore.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
-  TYNDALL_TRY(checked(vkCreateSemaphore(device, &semaphore, nullptr, &acquired_), "creating", "the window's semaphore"));
+  TYNDALL_TRY(
+      checked(vkCreateSemaphore(device, &semaphore, nullptr, &acquired_), "creating", "the window's semaphore"));
   const VkDescriptorPoolSize size = {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 8};
   VkDescriptorPoolCreateInfo descriptors = {};
   descriptors.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
@@ -136,7 +143,8 @@ Result<void> Screen::create_frame_objects() {
   descriptors.maxSets = 8;
   descriptors.poolSizeCount = 1;
   descriptors.pPoolSizes = &size;
-  return checked(vkCreateDescriptorPool(device, &descriptors, nullptr, &descriptors_), "creating", "the GUI's descriptor pool");
+  return checked(vkCreateDescriptorPool(device, &descriptors, nullptr, &descriptors_), "creating",
+                 "the GUI's descriptor pool");
 }
 
 Result<void> Screen::start_gui() {
@@ -269,7 +277,8 @@ Result<bool> Screen::create_swapchain() {
     framebuffer.width = extent.width;
     framebuffer.height = extent.height;
     framebuffer.layers = 1;
-    TYNDALL_TRY(checked(vkCreateFramebuffer(device, &framebuffer, nullptr, &target.framebuffer), "creating", "a framebuffer"));
+    TYNDALL_TRY(
+        checked(vkCreateFramebuffer(device, &framebuffer, nullptr, &target.framebuffer), "creating", "a framebuffer"));
     VkSemaphoreCreateInfo semaphore = {};
     semaphore.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
     TYNDALL_TRY(checked(vkCreateSemaphore(device, &semaphore, nullptr, &target.rendered), "creating", "a semaphore"));
@@ -285,8 +294,8 @@ Result<void> Screen::record(VkCommandBuffer cmd, const Target& target,
   gpu::barrier(device, cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
                VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT);
   const VkImageMemoryBarrier barrier = to_attachment(target.image);
-  vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
-                       0, 0, nullptr, 0, nullptr, 1, &barrier);
+  vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
+                       VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT, 0, 0, nullptr, 0, nullptr, 1, &barrier);
   VkRenderingAttachmentInfo color = {};
   color.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
   color.imageView = target.view;
@@ -337,8 +346,10 @@ Result<Drawn> Screen::draw(const std::function<Result<void>(VkCommandBuffer, VkE
     return Drawn::not_now;
   }
   if (result == VK_ERROR_SURFACE_LOST_KHR) return Drawn::surface_lost;
-  if (result == VK_SUBOPTIMAL_KHR) stale_ = true;
-  else if (result != VK_SUCCESS) return gpu::vulkan_error(result, "acquiring", "the window's next picture");
+  if (result == VK_SUBOPTIMAL_KHR)
+    stale_ = true;
+  else if (result != VK_SUCCESS)
+    return gpu::vulkan_error(result, "acquiring", "the window's next picture");
 
   const Target& target = targets_[index];
   VkCommandBufferBeginInfo begin = {};

@@ -13,17 +13,19 @@ namespace {
 
 // What a soak leaves alone: sizes that take minutes to fill on a device without a GPU, and text.
 bool is_soaked(const config::Row& row) {
-  constexpr std::string_view kNot[] = {"tables.size", "tables.orders", "tables.cache", "tables.cache_limit_mib",
-                                       "shadows.resolution", "epipolar.slices", "epipolar.samples", "camera.samples",
-                                       "camera.position_m", "scattering.model", "scattering.technique"};
+  constexpr std::string_view kNot[] = {
+      "tables.size",        "tables.orders",    "tables.cache",        "tables.cache_limit_mib",
+      "shadows.resolution", "epipolar.slices",  "epipolar.samples",    "camera.samples",
+      "camera.position_m",  "scattering.model", "scattering.technique"};
   if (row.info.type == ParamType::string || row.info.group == "meshes") return false;
   return std::find(std::begin(kNot), std::end(kNot), row.key()) == std::end(kNot);
 }
 
-// What chooses between variants of shaders. A device without a GPU keeps what it has compiled of each, some MiB, so that every
-// combination of them would fill memory for hours without anything being lost.
+// What chooses between variants of shaders. A device without a GPU keeps what it has compiled of each, some MiB, so
+// that every combination of them would fill memory for hours without anything being lost.
 bool chooses_shaders(const config::Row& row) {
-  return row.info.type == ParamType::enumeration || row.info.type == ParamType::flag || row.key() == "scattering.downscale";
+  return row.info.type == ParamType::enumeration || row.info.type == ParamType::flag ||
+         row.key() == "scattering.downscale";
 }
 
 // Each of these choices by itself.

@@ -20,7 +20,8 @@ class Script {
 
   [[nodiscard]] bool on() const { return kind_ != Kind::none && !done_; }
   [[nodiscard]] bool done() const { return done_; }
-  // The next change, when what the one before led to has been drawn; `frames` of the scene so far. What was changed, for the log.
+  // The next change, when what the one before led to has been drawn; `frames` of the scene so far. What was changed,
+  // for the log.
   std::string advance(config::Settings& settings, GuiState& gui, double now, std::uint64_t frames);
 
  private:

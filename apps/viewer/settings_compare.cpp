@@ -30,9 +30,8 @@ bool same_settings(const config::Settings& a, const config::Settings& b) {
 }
 
 bool same_but_for_tone(const config::Settings& a, const config::Settings& b) {
-  return std::all_of(config::rows().begin(), config::rows().end(), [&](const config::Row& row) {
-    return row.info.group == "tonemap" || same_value(row, a, b);
-  });
+  return std::all_of(config::rows().begin(), config::rows().end(),
+                     [&](const config::Row& row) { return row.info.group == "tonemap" || same_value(row, a, b); });
 }
 
 bool same_ground(const scene::TerrainParams& a, const scene::TerrainParams& b) {

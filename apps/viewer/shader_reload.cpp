@@ -103,8 +103,8 @@ ShaderReload::Compiled ShaderReload::compile(const std::string& folder) {
     shaderc::CompileOptions options;
     options.SetTargetEnvironment(shaderc_target_env_vulkan, shaderc_env_version_vulkan_1_2);
     options.SetWarningsAsErrors();
-    options.SetIncluder(std::make_unique<Includer>(
-        std::vector<fs::path>{shaders, shaders / ".." / "include", shaders / ".." / "src"}));
+    options.SetIncluder(
+        std::make_unique<Includer>(std::vector<fs::path>{shaders, shaders / ".." / "include", shaders / ".." / "src"}));
     const std::string define(row.define);
     if (const std::size_t equals = define.find('='); equals != std::string::npos) {
       options.AddMacroDefinition(define.substr(0, equals), define.substr(equals + 1));
@@ -165,7 +165,8 @@ void ShaderReload::revert() {
 Result<void> ShaderReload::start() {
   const std::string folder = shipped_folder("shaders");
   if (folder.empty()) {
-    return Error{ErrorCode::io, "the sources of the shaders are not here, F8, $TYNDALL_DATA names the folder that holds shaders/"};
+    return Error{ErrorCode::io,
+                 "the sources of the shaders are not here, F8, $TYNDALL_DATA names the folder that holds shaders/"};
   }
   compiling_ = std::async(std::launch::async, [this, folder] {
     Compiled compiled = compile(folder);

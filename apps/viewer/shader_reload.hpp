@@ -56,7 +56,7 @@ class ShaderReload {
 
   std::map<std::string, Known, std::less<>> known_;  // by the shader's name; of the thread that compiles
 
-  std::mutex mutex_;  // of words_: threads that make pipelines ask for them
+  std::mutex mutex_;                                 // of words_: threads that make pipelines ask for them
   std::map<std::string, Words, std::less<>> words_;  // of shaders other than the program's
   std::vector<std::map<std::string, Words, std::less<>>> before_, refused_;  // pipelines may be being made from them
   std::future<Compiled> compiling_;

@@ -1,5 +1,6 @@
-// A scene and the thread that works on it, one piece of work after the other, so that the GUI never waits for it. Between
-// two pieces the GUI takes what came of the last one and says what it wishes; meanwhile it has facts() and the last picture.
+// A scene and the thread that works on it, one piece of work after the other, so that the GUI never waits for it.
+// Between two pieces the GUI takes what came of the last one and says what it wishes; meanwhile it has facts() and the
+// last picture.
 #pragma once
 
 #include <future>

@@ -25,8 +25,8 @@ void histogram(const SceneFacts& scene) {
   const post::Measurement& m = scene.measurement;
   float largest = 1.0e-4F;
   for (const float share : m.share) largest = std::max(largest, share);
-  ImGui::PlotHistogram("##histogram", m.share.data(), static_cast<int>(m.share.size()), 0, nullptr, 0.0F, largest * 1.05F,
-                       ImVec2(ImGui::GetContentRegionAvail().x, 60.0F));
+  ImGui::PlotHistogram("##histogram", m.share.data(), static_cast<int>(m.share.size()), 0, nullptr, 0.0F,
+                       largest * 1.05F, ImVec2(ImGui::GetContentRegionAvail().x, 60.0F));
   const ImVec2 min = ImGui::GetItemRectMin();
   const ImVec2 max = ImGui::GetItemRectMax();
   const double first = post::stop_of_bin(0);
@@ -58,7 +58,8 @@ void plot(const char* label, const std::array<float, FrameTimes::kCount>& values
   for (const float value : values) largest = std::max(largest, value);
   const float last = values[(next + FrameTimes::kCount - 1) % FrameTimes::kCount];
   char overlay[48];
-  std::snprintf(overlay, sizeof overlay, "%.1f ms (graph to %.0f)", static_cast<double>(last), static_cast<double>(largest));
+  std::snprintf(overlay, sizeof overlay, "%.1f ms (graph to %.0f)", static_cast<double>(last),
+                static_cast<double>(largest));
   ImGui::PlotLines(label, values.data(), static_cast<int>(FrameTimes::kCount), static_cast<int>(next), overlay, 0.0F,
                    largest * 1.05F, ImVec2(ImGui::GetContentRegionAvail().x - 60.0F, 44.0F));
 }
@@ -67,8 +68,10 @@ void plot(const char* label, const std::array<float, FrameTimes::kCount>& values
 
 void Gui::performance(const GuiFacts& facts) {
   const ImGuiViewport* viewport = ImGui::GetMainViewport();
-  ImGui::SetNextWindowPos(ImVec2(viewport->Size.x, ImGui::GetFrameHeight()), ImGuiCond_FirstUseEver, ImVec2(1.0F, 0.0F));
-  ImGui::SetNextWindowSize(ImVec2(std::min(340.0F, 0.5F * viewport->WorkSize.x), std::clamp(viewport->WorkSize.y - kViewsHeight, 200.0F, 620.0F)),
+  ImGui::SetNextWindowPos(ImVec2(viewport->Size.x, ImGui::GetFrameHeight()), ImGuiCond_FirstUseEver,
+                          ImVec2(1.0F, 0.0F));
+  ImGui::SetNextWindowSize(ImVec2(std::min(340.0F, 0.5F * viewport->WorkSize.x),
+                                  std::clamp(viewport->WorkSize.y - kViewsHeight, 200.0F, 620.0F)),
                            ImGuiCond_FirstUseEver);
   if (ImGui::Begin("Performance", &state.performance, ImGuiWindowFlags_NoSavedSettings)) {
     ImGui::TextWrapped("%s", facts.device.c_str());
@@ -77,7 +80,9 @@ void Gui::performance(const GuiFacts& facts) {
     ImGui::SetNextItemWidth(140.0F);
     ImGui::SliderFloat("Resolution scale", &state.resolution_scale, 0.25F, 2.0F, "%.2f", ImGuiSliderFlags_AlwaysClamp);
     widgets.place("resolution_scale");
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Pixels of the picture per pixel of the window, along a side.\nHalf on devices without a GPU, unless changed.");
+    if (ImGui::IsItemHovered())
+      ImGui::SetTooltip("Pixels of the picture per pixel of the window, along a side.\nHalf on devices without a GPU, "
+                        "unless changed.");
     const char* details[] = {"full", "half", "quarter"};
     int detail = state.coarseness == 4 ? 2 : state.coarseness == 2 ? 1 : 0;
     ImGui::SetNextItemWidth(140.0F);
@@ -89,7 +94,9 @@ void Gui::performance(const GuiFacts& facts) {
       ImGui::EndCombo();
     }
     widgets.place("coarseness");
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Cells of the ground, full, or two or four times as wide.\nA quarter on devices without a GPU, unless changed.");
+    if (ImGui::IsItemHovered())
+      ImGui::SetTooltip("Cells of the ground, full, or two or four times as wide.\nA quarter on devices without a GPU, "
+                        "unless changed.");
     state.coarseness = 1 << detail;
     if (facts.times != nullptr) {
       plot("passes", facts.times->gpu, facts.times->next);
@@ -142,8 +149,9 @@ void Gui::performance(const GuiFacts& facts) {
 
 void Gui::views(const GuiFacts& facts, GuiRequests& requests) {
   const ImGuiViewport* viewport = ImGui::GetMainViewport();
-  ImGui::SetNextWindowPos(ImVec2(viewport->WorkPos.x + viewport->WorkSize.x, viewport->WorkPos.y + viewport->WorkSize.y),
-                          ImGuiCond_FirstUseEver, ImVec2(1.0F, 1.0F));
+  ImGui::SetNextWindowPos(
+      ImVec2(viewport->WorkPos.x + viewport->WorkSize.x, viewport->WorkPos.y + viewport->WorkSize.y),
+      ImGuiCond_FirstUseEver, ImVec2(1.0F, 1.0F));
   ImGui::SetNextWindowSize(ImVec2(std::min(340.0F, 0.5F * viewport->WorkSize.x), kViewsHeight), ImGuiCond_FirstUseEver);
   if (ImGui::Begin("Views and comparison", &state.views, ImGuiWindowFlags_NoSavedSettings)) {
     PictureOptions& p = state.picture;
@@ -163,7 +171,8 @@ void Gui::views(const GuiFacts& facts, GuiRequests& requests) {
     ImGui::SetNextItemWidth(190.0F);
     if (p.shown == Shown::shadow_map) ImGui::SliderInt("Cascade", &p.layer, 0, layers - 1);
     ImGui::SetNextItemWidth(190.0F);
-    if (p.shown >= Shown::single_rayleigh && p.shown <= Shown::high_orders) ImGui::SliderFloat("Slice", &p.slice, 0.0F, 1.0F);
+    if (p.shown >= Shown::single_rayleigh && p.shown <= Shown::high_orders)
+      ImGui::SliderFloat("Slice", &p.slice, 0.0F, 1.0F);
     ImGui::SetNextItemWidth(190.0F);
     if (p.shown != Shown::picture || p.difference) {
       ImGui::SliderFloat("Gain", &p.gain, 0.01F, 1000.0F, "%.3g", ImGuiSliderFlags_Logarithmic);

@@ -14,8 +14,8 @@ bool StepTimes::add(double milliseconds) {
 }
 
 std::string StepTimes::text() const {
-  return std::to_string(count_) + " longest_ms " + std::to_string(longest_ms_) + " over_100_ms " + std::to_string(over_100_) +
-         " over_200_ms " + std::to_string(over_200_);
+  return std::to_string(count_) + " longest_ms " + std::to_string(longest_ms_) + " over_100_ms " +
+         std::to_string(over_100_) + " over_200_ms " + std::to_string(over_200_);
 }
 
 }  // namespace tyndall::viewer

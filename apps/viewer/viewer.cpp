@@ -3,9 +3,9 @@
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
-#include <imgui.h>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_vulkan.h>
+#include <imgui.h>
 
 #include <unistd.h>
 #ifdef __GLIBC__
@@ -28,7 +28,7 @@
 namespace tyndall::viewer {
 namespace {
 
-constexpr double kIdleAfter_s = 0.6;        // without anything from the hands
+constexpr double kIdleAfter_s = 0.6;  // without anything from the hands
 constexpr double kLongestFlightStep_s = 0.25;
 constexpr double kFlightPeriod_s = 1.0 / 60.0;
 constexpr double kSlowPeriod_s = 1.0 / 30.0;  // between frames of the GUI while a device without a GPU draws the scene
@@ -56,7 +56,9 @@ std::size_t allocated_kib() {
 #endif
 }
 
-void say(const Error& error) { std::fprintf(stderr, "tyndall: error: %s\n", config::one_line(error.message, 2000).c_str()); }
+void say(const Error& error) {
+  std::fprintf(stderr, "tyndall: error: %s\n", config::one_line(error.message, 2000).c_str());
+}
 
 }  // namespace
 
@@ -74,12 +76,14 @@ bool Viewer::slow_device() const { return host_->device().properties.deviceType 
 
 std::uint32_t Viewer::validation_messages() const {
   if (host_ == nullptr) return 0;
-  return host_->validation_messages() + (window_host_ != host_ && window_host_ != nullptr ? window_host_->validation_messages() : 0);
+  return host_->validation_messages() +
+         (window_host_ != host_ && window_host_ != nullptr ? window_host_->validation_messages() : 0);
 }
 
 std::string Viewer::validation_text() const {
   if (host_ == nullptr) return "";
-  return host_->validation_text() + (window_host_ != host_ && window_host_ != nullptr ? window_host_->validation_text() : "");
+  return host_->validation_text() +
+         (window_host_ != host_ && window_host_ != nullptr ? window_host_->validation_text() : "");
 }
 
 Result<void> Viewer::start() {
@@ -97,7 +101,8 @@ Result<void> Viewer::start() {
   TYNDALL_TRY(window_.open(desc_.width, desc_.height, "Tyndall"));
   watch_window(window_.handle());
   on_display_loss([this] {
-    say(after_loss({ErrorCode::device_lost, "the connection to the display has broken off", VK_ERROR_SURFACE_LOST_KHR}));
+    say(after_loss(
+        {ErrorCode::device_lost, "the connection to the display has broken off", VK_ERROR_SURFACE_LOST_KHR}));
   });
   TYNDALL_TRY(open_device());
   if (slow_device()) {
@@ -160,7 +165,8 @@ double Viewer::wait_time() const {
     if (stage != nullptr && stage->facts().tone_stale) return 1.0 / 60.0;
   }
   // Threads wake the loop when they are done.
-  if (busy || left_->facts().working || (other_ != nullptr && other_->facts().working) || writing_.valid() || shaders_->working()) {
+  if (busy || left_->facts().working || (other_ != nullptr && other_->facts().working) || writing_.valid() ||
+      shaders_->working()) {
     return 0.25;
   }
   double wait = -1.0;
@@ -366,8 +372,8 @@ void Viewer::tell(const std::string& text) {
 
 Result<void> run(const ViewerDesc& desc) {
 #ifdef __GLIBC__
-  // Threads come and go here and in the drivers: with an arena for each, memory that was freed lies about in all of them.
-  // Large blocks, the tables and pictures of a device without a GPU, go back to the system when they are freed.
+  // Threads come and go here and in the drivers: with an arena for each, memory that was freed lies about in all of
+  // them. Large blocks, the tables and pictures of a device without a GPU, go back to the system when they are freed.
   mallopt(M_ARENA_MAX, 1);
   mallopt(M_MMAP_THRESHOLD, 1 << 20);
 #endif
@@ -394,7 +400,7 @@ Result<void> run(const ViewerDesc& desc) {
   Window::stop();
   if (outcome && messages > 0) {
     return Error{ErrorCode::vulkan, std::to_string(messages) + " messages of the validation layer, the first: " +
-                 config::one_line(text, 1500)};
+                                        config::one_line(text, 1500)};
   }
   return outcome;
 }

@@ -92,7 +92,9 @@ void Viewer::fly(double seconds) {
   height_m_ = altitude - ground_below(left_->facts());
   Motion motion;
   if (!ImGui::GetIO().WantTextInput) {
-    const auto axis = [this](int more, int less) { return (window_.held(more) ? 1.0 : 0.0) - (window_.held(less) ? 1.0 : 0.0); };
+    const auto axis = [this](int more, int less) {
+      return (window_.held(more) ? 1.0 : 0.0) - (window_.held(less) ? 1.0 : 0.0);
+    };
     motion.forward = axis(GLFW_KEY_W, GLFW_KEY_S);
     motion.right = axis(GLFW_KEY_D, GLFW_KEY_A);
     motion.up = axis(GLFW_KEY_E, GLFW_KEY_Q);
@@ -124,7 +126,8 @@ void Viewer::take_camera() {
 void Viewer::put_camera() {
   const CameraState before = camera_from_params(camera_params_, settings_.effect.planet.radius_m);
   const bool moved_at_all = camera_.yaw_deg != before.yaw_deg || camera_.pitch_deg != before.pitch_deg ||
-                            camera_.fov_deg != before.fov_deg || glm::distance(camera_.position, before.position) > 1.0e-4;
+                            camera_.fov_deg != before.fov_deg ||
+                            glm::distance(camera_.position, before.position) > 1.0e-4;
   if (!moved_at_all) return;
   camera_to_params(camera_, settings_.scene.camera);
   camera_params_ = settings_.scene.camera;

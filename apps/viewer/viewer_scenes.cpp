@@ -13,7 +13,8 @@ namespace tyndall::viewer {
 VkExtent2D Viewer::picture_extent() const {
   const VkExtent2D window = window_.size();
   const auto scaled = [this](std::uint32_t side) {
-    return std::clamp(static_cast<std::uint32_t>(std::lround(static_cast<double>(side) * gui_.state.resolution_scale)), 16U, 8192U);
+    return std::clamp(static_cast<std::uint32_t>(std::lround(static_cast<double>(side) * gui_.state.resolution_scale)),
+                      16U, 8192U);
   };
   return {scaled(window.width), scaled(window.height)};
 }
@@ -162,7 +163,8 @@ Result<void> Viewer::take_next() {
   const bool others_busy = left_->busy() || (other_ != nullptr && other_->busy());
   if (next_->busy() || others_busy || !next_picture_) return {};
   // Giving back what the one before held takes longer than a step of the GUI may.
-  retired_ = std::async(std::launch::async, [before = std::shared_ptr<Stage>(std::move(left_))]() mutable { before.reset(); });
+  retired_ =
+      std::async(std::launch::async, [before = std::shared_ptr<Stage>(std::move(left_))]() mutable { before.reset(); });
   left_ = std::move(next_);
   TYNDALL_TRY(pictures_.take(0, std::move(*std::exchange(next_picture_, std::nullopt))));
   ++frames_;
@@ -181,11 +183,12 @@ void Viewer::log_frame(std::size_t side, double took_ms) {
   const CameraState& camera = drawn_camera_[side].camera;
   const scene::SunParams& sun = drawn_camera_[side].sun;
   log(std::string("frame ") + (side == 0 ? "left " : "right ") + std::to_string(frames_) + " " +
-      std::to_string(facts.extent.width) + " " + std::to_string(facts.extent.height) + " ms " + config::number_text(took_ms) +
-      " camera " + config::number_text(camera.position.x) + " " + config::number_text(camera.position.y) + " " +
-      config::number_text(camera.position.z) + " " + config::number_text(camera.yaw_deg) + " " +
-      config::number_text(camera.pitch_deg) + " " + config::number_text(camera.fov_deg) + " sun " +
-      config::number_text(sun.azimuth_deg) + " " + config::number_text(sun.elevation_deg));
+      std::to_string(facts.extent.width) + " " + std::to_string(facts.extent.height) + " ms " +
+      config::number_text(took_ms) + " camera " + config::number_text(camera.position.x) + " " +
+      config::number_text(camera.position.y) + " " + config::number_text(camera.position.z) + " " +
+      config::number_text(camera.yaw_deg) + " " + config::number_text(camera.pitch_deg) + " " +
+      config::number_text(camera.fov_deg) + " sun " + config::number_text(sun.azimuth_deg) + " " +
+      config::number_text(sun.elevation_deg));
   std::string passes = "passes";
   for (const scene::PassTime& pass : facts.timings) {
     passes += " " + pass.name + " " + config::number_text(std::round(100.0 * pass.ms) / 100.0);

@@ -92,52 +92,52 @@ class Viewer {
   Clock::time_point started_ = Clock::now();
   EventLog log_;
   Window window_;
-  // The scenes' device, and the window's. On a device without a GPU the window has one of its own: a queue works through
-  // what it gets in order, and the GUI would wait for whole frames of the scene. The same one otherwise.
+  // The scenes' device, and the window's. On a device without a GPU the window has one of its own: a queue works
+  // through what it gets in order, and the GUI would wait for whole frames of the scene. The same one otherwise.
   std::shared_ptr<gpu::Host> host_, window_host_;
   std::unique_ptr<ShaderReload> shaders_;  // outlives the scenes
   Screen screen_;
   Pictures pictures_;
   Gui gui_;
   bool gui_started_ = false;
-  config::Settings settings_, right_;   // wanted, of the left (or only) and the right side
+  config::Settings settings_, right_;  // wanted, of the left (or only) and the right side
   std::unique_ptr<Stage> left_, other_;
-  std::unique_ptr<Stage> next_;         // with rebuilt shaders, until it can take the place of left_
+  std::unique_ptr<Stage> next_;  // with rebuilt shaders, until it can take the place of left_
   std::optional<Picture> next_picture_;
   FrameTimes times_;
   StepTimes steps_;
 
   CameraState camera_;
-  scene::CameraParams camera_params_;   // as put_camera() wrote them
+  scene::CameraParams camera_params_;  // as put_camera() wrote them
   double speed_m_s_ = 0.0, height_m_ = 0.0;
   bool dragging_view_ = false, dragging_sun_ = false;
   double pointer_[2] = {0.0, 0.0};
-  std::string pointer_seen_;            // for the log
-  double seconds_ = 0.0;                // of the scene's own time
-  bool flying_path_ = false;            // along the path of the scene file
+  std::string pointer_seen_;  // for the log
+  double seconds_ = 0.0;      // of the scene's own time
+  bool flying_path_ = false;  // along the path of the scene file
   double path_s_ = 0.0;
   double last_step_ = 0.0;
   double last_activity_ = 0.0;
-  int frames_to_draw_ = 3;              // of the GUI, until it has settled
-  std::uint64_t frames_ = 0;            // of the scene
-  bool turn_ = false;                   // whose turn it is to be worked on, with two sides
-  bool again_[2] = {false, false};      // the scene's time has gone on
+  int frames_to_draw_ = 3;          // of the GUI, until it has settled
+  std::uint64_t frames_ = 0;        // of the scene
+  bool turn_ = false;               // whose turn it is to be worked on, with two sides
+  bool again_[2] = {false, false};  // the scene's time has gone on
   struct Pose {
     CameraState camera;
     scene::SunParams sun;
-  } drawn_camera_[2];                   // of the frame that is being drawn, or was last
+  } drawn_camera_[2];  // of the frame that is being drawn, or was last
   bool settled_told_ = false;
   double last_present_ = -1.0;
   bool minimised_ = false;
-  bool opened_ = false;                 // the window has shown something
+  bool opened_ = false;  // the window has shown something
   bool first_frame_told_ = false;
   bool two_shown_ = false;
-  std::string present_mode_;            // that was told
+  std::string present_mode_;  // that was told
   std::uint64_t shown_frame_ = 0;
   std::uint32_t shown_width_ = 0;
   bool screenshot_wanted_ = false;
   std::future<Result<std::string>> writing_;
-  std::future<void> retired_;           // a scene that is being given back
+  std::future<void> retired_;  // a scene that is being given back
   std::string shader_message_;
   Script script_;
   double last_memory_ = -100.0;

@@ -27,9 +27,7 @@ T* at(const Row& row, Settings& settings) {
   return reinterpret_cast<T*>(base + row.info.offset);
 }
 
-int component_count(const Row& row) {
-  return static_cast<int>(config::component_count(row.info.type));
-}
+int component_count(const Row& row) { return static_cast<int>(config::component_count(row.info.type)); }
 
 // Ranges over several powers of ten are walked evenly in powers.
 bool is_wide(const Row& row) { return row.info.max - row.info.min > 500.0 && row.info.min >= 0.0; }
@@ -53,11 +51,12 @@ bool edit_float(const Row& row, const char* id, float* values, int count) {
     float largest = 0.0F;
     for (int i = 0; i < count; ++i) largest = std::max(largest, std::abs(values[i]));
     const float speed = tiny ? std::max(0.01F * largest, 1.0e-8F) : std::max(0.005F * largest, 0.01F);
-    return ImGui::DragScalarN(id, ImGuiDataType_Float, values, count, speed, &min, &max, count > 1 ? "%.3g" : float_format(row, values[0]),
-                              kSlider);
+    return ImGui::DragScalarN(id, ImGuiDataType_Float, values, count, speed, &min, &max,
+                              count > 1 ? "%.3g" : float_format(row, values[0]), kSlider);
   }
   const ImGuiSliderFlags flags = kSlider | (is_wide(row) ? ImGuiSliderFlags_Logarithmic : 0);
-  return ImGui::SliderScalarN(id, ImGuiDataType_Float, values, count, &min, &max, count > 1 ? "%.3g" : float_format(row, values[0]), flags);
+  return ImGui::SliderScalarN(id, ImGuiDataType_Float, values, count, &min, &max,
+                              count > 1 ? "%.3g" : float_format(row, values[0]), flags);
 }
 
 // Places in double precision: metres count however far from the origin they stand.
@@ -69,7 +68,8 @@ bool edit_place(const Row& row, const char* id, double* values) {
 }
 
 // `place` says where the choices are.
-bool edit_whole(const Row& row, const char* id, std::uint32_t* values, int count, const std::function<void(std::uint32_t)>& place) {
+bool edit_whole(const Row& row, const char* id, std::uint32_t* values, int count,
+                const std::function<void(std::uint32_t)>& place) {
   const auto min = static_cast<std::uint32_t>(row.info.min);
   const auto max = static_cast<std::uint32_t>(row.info.max);
   if (row.info.group == "shadows" && row.info.name == "resolution") {
@@ -89,13 +89,15 @@ bool edit_whole(const Row& row, const char* id, std::uint32_t* values, int count
   }
   if (max > 100000 || count > 1) {
     const float speed = std::max(0.01F * static_cast<float>(*values), 0.2F);
-    return ImGui::DragScalarN(id, ImGuiDataType_U32, values, count, speed, &min, &max, "%u", ImGuiSliderFlags_AlwaysClamp);
+    return ImGui::DragScalarN(id, ImGuiDataType_U32, values, count, speed, &min, &max, "%u",
+                              ImGuiSliderFlags_AlwaysClamp);
   }
   const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp | (is_wide(row) ? ImGuiSliderFlags_Logarithmic : 0);
   return ImGui::SliderScalar(id, ImGuiDataType_U32, values, &min, &max, "%u", flags);
 }
 
-bool edit_choice(const Row& row, const char* id, std::uint32_t* value, const std::function<void(std::uint32_t)>& place) {
+bool edit_choice(const Row& row, const char* id, std::uint32_t* value,
+                 const std::function<void(std::uint32_t)>& place) {
   bool changed = false;
   const std::string shown(config::part(row.info.choices, '|', *value));
   if (!ImGui::BeginCombo(id, shown.c_str(), ImGuiComboFlags_HeightLarge)) return false;
@@ -113,7 +115,8 @@ bool edit_choice(const Row& row, const char* id, std::uint32_t* value, const std
 
 void clamp_whole(const Row& row, std::uint32_t* values, int count) {
   for (int i = 0; i < count; ++i) {
-    values[i] = std::clamp(values[i], static_cast<std::uint32_t>(row.info.min), static_cast<std::uint32_t>(row.info.max));
+    values[i] =
+        std::clamp(values[i], static_cast<std::uint32_t>(row.info.min), static_cast<std::uint32_t>(row.info.max));
   }
 }
 
@@ -152,14 +155,10 @@ void set_to_end(const Row& row, Settings& settings, bool largest) {
   const int count = component_count(row);
   switch (row.info.type) {
     case ParamType::float32:
-    case ParamType::vec3:
-      std::fill_n(at<float>(row, settings), count, static_cast<float>(end));
-      break;
+    case ParamType::vec3: std::fill_n(at<float>(row, settings), count, static_cast<float>(end)); break;
     case ParamType::dvec3: std::fill_n(at<double>(row, settings), count, end); break;
     case ParamType::uint32:
-    case ParamType::uvec4:
-      std::fill_n(at<std::uint32_t>(row, settings), count, static_cast<std::uint32_t>(end));
-      break;
+    case ParamType::uvec4: std::fill_n(at<std::uint32_t>(row, settings), count, static_cast<std::uint32_t>(end)); break;
     case ParamType::flag: *at<std::uint32_t>(row, settings) = largest ? 1 : 0; break;
     case ParamType::enumeration:
       *at<std::uint32_t>(row, settings) =
@@ -189,7 +188,8 @@ void Widgets::place_components(const Row& row, const std::string& key, float wid
   const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
   const float each = (width - gap * static_cast<float>(count - 1)) / static_cast<float>(count);
   for (int i = 0; i < count; ++i) {
-    places_.push_back({key + "." + std::to_string(i), min.x + static_cast<float>(i) * (each + gap), min.y, each, height});
+    places_.push_back(
+        {key + "." + std::to_string(i), min.x + static_cast<float>(i) * (each + gap), min.y, each, height});
   }
 }
 
@@ -258,12 +258,13 @@ bool Widgets::edit_color(std::string_view key, Settings& settings, float scale) 
   auto* const values = at<float>(*row, settings);
   std::array<float, 3> color = {values[0] / scale, values[1] / scale, values[2] / scale};
   const std::string id = label_of(*row, with_group) + "##" + std::string(key) + "_color";
-  const bool changed = ImGui::ColorEdit3(id.c_str(), color.data(),
-                                         ImGuiColorEditFlags_Float | ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_HDR);
+  const bool changed = ImGui::ColorEdit3(
+      id.c_str(), color.data(), ImGuiColorEditFlags_Float | ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_HDR);
   place(std::string(key) + "_color");
   dragging_ = dragging_ || ImGui::IsItemActive();
   if (ImGui::IsItemHovered()) {
-    show_tooltip(config::concat({"As a colour: full brightness is ", config::number_text(scale), " 1/m. ", row->info.doc}));
+    show_tooltip(
+        config::concat({"As a colour: full brightness is ", config::number_text(scale), " 1/m. ", row->info.doc}));
   }
   if (!changed) return false;
   for (int i = 0; i < 3; ++i) {

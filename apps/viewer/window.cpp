@@ -2,8 +2,8 @@
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
-#include <imgui.h>
 #include <backends/imgui_impl_glfw.h>
+#include <imgui.h>
 
 #include <algorithm>
 
@@ -56,8 +56,9 @@ Result<void> Window::open(std::uint32_t width, std::uint32_t height, const char*
   glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
   window_ = glfwCreateWindow(static_cast<int>(width), static_cast<int>(height), title, nullptr, nullptr);
   if (window_ == nullptr) {
-    return Error{ErrorCode::unsupported_device, "the window cannot be opened (" + glfw_error() +
-                 "), tyndall view, needed is a display; 'tyndall render' makes pictures without one"};
+    return Error{ErrorCode::unsupported_device,
+                 "the window cannot be opened (" + glfw_error() +
+                     "), tyndall view, needed is a display; 'tyndall render' makes pictures without one"};
   }
   glfwSetWindowSizeLimits(window_, 64, 64, GLFW_DONT_CARE, GLFW_DONT_CARE);
   install_callbacks();
@@ -113,8 +114,10 @@ Result<VkSurfaceKHR> Window::create_surface(VkInstance instance) {
   VkSurfaceKHR surface = VK_NULL_HANDLE;
   const VkResult result = glfwCreateWindowSurface(instance, window_, nullptr, &surface);
   if (result == VK_SUCCESS) return surface;
-  return Error{ErrorCode::unsupported_device, "the window has no surface for Vulkan (" + glfw_error() +
-               "), tyndall view, a driver that can present to this display is needed", static_cast<std::int32_t>(result)};
+  return Error{ErrorCode::unsupported_device,
+               "the window has no surface for Vulkan (" + glfw_error() +
+                   "), tyndall view, a driver that can present to this display is needed",
+               static_cast<std::int32_t>(result)};
 }
 
 void Window::wait(double seconds) {
@@ -129,9 +132,7 @@ void Window::wait(double seconds) {
 
 void Window::wake() { glfwPostEmptyEvent(); }
 
-std::vector<Event> Window::take_events() {
-  return std::exchange(events_, {});
-}
+std::vector<Event> Window::take_events() { return std::exchange(events_, {}); }
 
 bool Window::take_activity() { return std::exchange(activity_, false) || !keys_.empty(); }
 
@@ -144,7 +145,8 @@ void Window::start_gui() {
 void Window::begin_gui() {
   const std::vector<KeyEvent> events = keys_.take();
   for (const KeyEvent& event : events) {
-    if (event.kind == KeyEvent::Kind::key) ImGui_ImplGlfw_KeyCallback(window_, event.key, event.scancode, event.action, event.mods);
+    if (event.kind == KeyEvent::Kind::key)
+      ImGui_ImplGlfw_KeyCallback(window_, event.key, event.scancode, event.action, event.mods);
     if (event.kind == KeyEvent::Kind::character) ImGui_ImplGlfw_CharCallback(window_, event.character);
   }
   ImGui_ImplGlfw_NewFrame();

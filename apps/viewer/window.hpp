@@ -19,9 +19,9 @@ enum class Button { left, right };
 struct Event {
   enum class Kind { key, press, release, move, wheel };
   Kind kind = Kind::key;
-  int key = 0;                  // GLFW_KEY_..., pressed
+  int key = 0;  // GLFW_KEY_..., pressed
   Button button = Button::left;
-  double x = 0.0, y = 0.0;      // pointer [px]; of a wheel the notches in y
+  double x = 0.0, y = 0.0;  // pointer [px]; of a wheel the notches in y
 };
 
 class Window {
@@ -71,9 +71,9 @@ class Window {
 
   GLFWwindow* window_ = nullptr;
   std::vector<Event> events_;
-  KeyFeed keys_;              // for the GUI
+  KeyFeed keys_;                      // for the GUI
   bool buttons_[2] = {false, false};  // left and right, as the GUI has seen them
-  std::vector<int> touched_;  // keys pressed since the last forget_keys()
+  std::vector<int> touched_;          // keys pressed since the last forget_keys()
   bool activity_ = true;
   bool full_screen_ = false;
   int windowed_[4] = {0, 0, 640, 360};  // place and size before full screen

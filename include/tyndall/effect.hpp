@@ -67,22 +67,25 @@ enum class OutputFormat : std::uint32_t { rgba16f, rgba32f };
 struct EffectDesc {
   VkExtent2D max_extent = {1920, 1080};  // [1; 16384] px - largest extent that record() will be given
   std::uint32_t frames_in_flight = 2;    // [1; 8] - frames recorded before the first has completed
-  // [1; 8] - pictures of one frame: the eyes of a stereo pair, halves of a split screen, a reflection. Each has constants of
-  // its own, so that all may be recorded before any has completed; they share the rest, and commands run one after the other.
+  // [1; 8] - pictures of one frame: the eyes of a stereo pair, halves of a split screen, a reflection. Each has
+  // constants of its own, so that all may be recorded before any has completed; they share the rest, and commands run
+  // one after the other.
   std::uint32_t views = 1;
   OutputFormat output_format = OutputFormat::rgba16f;
-  float sky_depth = 0.0F;            // 0 or 1 - device depth where nothing was drawn; 0 with reversed Z
-  // Format of FrameInputs::depth, for check_inputs alone: with 16 bits distant ground reads as sky. UNDEFINED: not stated.
+  float sky_depth = 0.0F;  // 0 or 1 - device depth where nothing was drawn; 0 with reversed Z
+  // Format of FrameInputs::depth, for check_inputs alone: with 16 bits distant ground reads as sky. UNDEFINED: not
+  // stated.
   VkFormat depth_format = VK_FORMAT_UNDEFINED;
   bool shadow_depth_reversed = false;  // shadow maps hold 1 nearest to the sun
   // With technique = epipolar: cascades that the air is marched through [1; 8], and texels of a shadow map's side
   // that the trees have room for [1; 16384]; wider maps work, but what is beyond is read texel by texel.
   std::uint32_t max_cascades = 4;
   std::uint32_t max_shadow_resolution = 1024;
-  bool shadow_colors = false;        // frames may have FrameInputs::shadow_colors: pipelines for these are made as well
-  bool timings = false;              // measure each pass with timestamps
-  bool counters = false;             // count what the passes do; see Effect::counters()
-  // Says through DeviceInfo::message what is suspicious in the inputs of a frame: once, and again only after it was right.
+  bool shadow_colors = false;  // frames may have FrameInputs::shadow_colors: pipelines for these are made as well
+  bool timings = false;        // measure each pass with timestamps
+  bool counters = false;       // count what the passes do; see Effect::counters()
+  // Says through DeviceInfo::message what is suspicious in the inputs of a frame: once, and again only after it was
+  // right.
   bool check_inputs = true;
 };
 
@@ -96,7 +99,7 @@ struct MemoryUsage {
 };
 // Memory that an effect would take, asked before it is created. Allocates nothing.
 [[nodiscard]] Result<MemoryUsage> query_memory(const DeviceInfo& device, const EffectDesc& desc,
-                                                const Params& params = {});
+                                               const Params& params = {});
 
 // An image of the caller's and the layout that it is in while the effect runs.
 struct Texture {
@@ -123,31 +126,32 @@ struct Camera {
 
 struct Sun {
   Vec3 direction_to_sun = {0.0F, 1.0F, 0.0F};  // unit length
-  Vec3 irradiance = Vec3(10.0F);     // [>= 0] - above the atmosphere, at normal incidence; times scattering.scale
+  Vec3 irradiance = Vec3(10.0F);  // [>= 0] - above the atmosphere, at normal incidence; times scattering.scale
   float angular_radius_rad = 0.004655F;
 };
 
 // What one frame is made from. All images must be visible to compute shaders when the commands execute.
 struct FrameInputs {
-  VkExtent2D extent = {0, 0};  // [1; max_extent] px - of the picture, a rectangle of color, depth and output from their offsets on
-  Texture color;               // linear radiance of the opaque scene and what is behind the air (disc, stars)
-  Texture depth;               // device depth; sampled as float
-  Texture shadow_maps;         // 2D array of depth images, one layer per cascade; null without cascades
+  VkExtent2D extent = {
+      0, 0};      // [1; max_extent] px - of the picture, a rectangle of color, depth and output from their offsets on
+  Texture color;  // linear radiance of the opaque scene and what is behind the air (disc, stars)
+  Texture depth;  // device depth; sampled as float
+  Texture shadow_maps;  // 2D array of depth images, one layer per cascade; null without cascades
   // 2D array like shadow_maps, same size and layers: what glass leaves of the sun's light, linear, 1 = clear; with
-  // EffectDesc::shadow_colors. Filtered like the shadow comparison and by itself, so that glass should go on for a texel
-  // under its frame; deeper in shadow its colour does not matter. Null: no colour.
+  // EffectDesc::shadow_colors. Filtered like the shadow comparison and by itself, so that glass should go on for a
+  // texel under its frame; deeper in shadow its colour does not matter. Null: no colour.
   Texture shadow_colors;
-  // Alpha of shadow_colors is the depth of the glass nearest to the sun, as shadow_maps would have it, in half floats or better:
-  // the air between sun and glass is not coloured. Without, the colour holds along the whole lit path.
+  // Alpha of shadow_colors is the depth of the glass nearest to the sun, as shadow_maps would have it, in half floats
+  // or better: the air between sun and glass is not coloured. Without, the colour holds along the whole lit path.
   bool shadow_color_depths = false;
-  std::uint32_t shadow_resolution = 0;     // texels - width and height of a layer
-  std::span<const Cascade> cascades;       // at most kMaxCascades, from near to far
+  std::uint32_t shadow_resolution = 0;      // texels - width and height of a layer
+  std::span<const Cascade> cascades;        // at most kMaxCascades, from near to far
   std::uint32_t first_marched_cascade = 0;  // the air is marched from this one on; it must start at the camera
   Camera camera;
   Sun sun;
   Texture output;  // written; its layout must be GENERAL; not the same view as color or depth
-  // Consecutive; selects the in-flight slot. The same index and view again is an error until the commands that were recorded
-  // first have completed: both would be drawn with the second camera.
+  // Consecutive; selects the in-flight slot. The same index and view again is an error until the commands that were
+  // recorded first have completed: both would be drawn with the second camera.
   std::uint64_t frame_index = 0;
   std::uint32_t view = 0;  // below EffectDesc::views
 };
@@ -166,8 +170,8 @@ struct ResourceMemory {
 
 // What the passes of a frame have done.
 struct Counters {
-  std::uint64_t samples_marched = 0;   // rays: epipolar samples, or pixels with brute force
-  std::uint64_t march_steps = 0;       // stretches of rays that were found lit or dark
+  std::uint64_t samples_marched = 0;  // rays: epipolar samples, or pixels with brute force
+  std::uint64_t march_steps = 0;      // stretches of rays that were found lit or dark
   std::uint64_t tree_nodes_visited = 0;
   std::uint64_t shadow_map_fetches = 0;  // comparisons, of four texels each; without those that build trees
   std::uint64_t pixels_corrected = 0;
@@ -220,15 +224,15 @@ class Effect {
   // prepare_pipelines() has made them. record() makes none.
   Result<void> set_params(const Params& params);
   [[nodiscard]] const Params& params() const;
-  // Makes at most `budget` of the pipelines that other parameters would need, so that switching costs nothing. What one set
-  // of parameters needs at once (unwarping in a medium, scaling up) counts as one.
+  // Makes at most `budget` of the pipelines that other parameters would need, so that switching costs nothing. What one
+  // set of parameters needs at once (unwarping in a medium, scaling up) counts as one.
   Result<Progress> prepare_pipelines(std::uint32_t budget = UINT32_MAX);
 
   // Takes over another EffectDesc::shadow_colors; the pipelines that the parameters then need are made here.
   Result<void> set_shadow_colors(bool shadow_colors);
 
-  // Takes over other limits than those of EffectDesc, as set_params() takes over parameters. What commands in flight use
-  // is freed when they are done.
+  // Takes over other limits than those of EffectDesc, as set_params() takes over parameters. What commands in flight
+  // use is freed when they are done.
   Result<void> set_limits(VkExtent2D max_extent, std::uint32_t max_cascades, std::uint32_t max_shadow_resolution);
 
   // Takes over parameters together with what set_shadow_colors() and set_limits() take from `desc`: all of it or

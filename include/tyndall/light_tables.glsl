@@ -4,8 +4,8 @@
 
 // Texels of both tables along altitude; the last stands for the top of the atmosphere.
 const float kLightTableAltitudes = 64.0;
-// Of these, the texels below sea level, evenly spaced from the lowest altitude [m] up; the next one stands for sea level.
-// Deeper points have the light of the lowest.
+// Of these, the texels below sea level, evenly spaced from the lowest altitude [m] up; the next one stands for sea
+// level. Deeper points have the light of the lowest.
 const float kLightTableBelow = 4.0;
 const float kLowestLightAltitude = -1000.0;
 

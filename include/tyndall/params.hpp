@@ -41,8 +41,7 @@ struct ParamInfo {
 #define GROUP_END(group, type) \
   }                            \
   ;
-#define PARAM_FLOAT(group, name, def, min, max, unit, affects, doc) \
-  float name = static_cast<float>(def);
+#define PARAM_FLOAT(group, name, def, min, max, unit, affects, doc) float name = static_cast<float>(def);
 #define PARAM_UINT(group, name, def, min, max, unit, affects, doc) std::uint32_t name = def;
 #define PARAM_VEC3(group, name, def, min, max, unit, affects, doc) Vec3 name = Vec3 def;
 #define PARAM_UVEC4(group, name, def, min, max, unit, affects, doc) UVec4 name = UVec4 def;

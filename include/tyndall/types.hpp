@@ -46,7 +46,7 @@ struct Flag {
   std::uint32_t value = 0;
 
   constexpr Flag() = default;
-  constexpr Flag(bool on) : value(on ? 1U : 0U) {}  // NOLINT(google-explicit-constructor)
+  constexpr Flag(bool on) : value(on ? 1U : 0U) {}        // NOLINT(google-explicit-constructor)
   constexpr operator bool() const { return value != 0; }  // NOLINT(google-explicit-constructor)
 };
 

@@ -1,6 +1,6 @@
-// Blocks of kBlockWidth x 2 pixels: how far away they are, and the list of those whose pixels are done each by itself, which
-// names squares of 2 x 2. Include after declaring medium, frame, epipolar, scene_depth, broken, broken_list, kBlockWidth,
-// picture.glsl and unwarp.glsl.
+// Blocks of kBlockWidth x 2 pixels: how far away they are, and the list of those whose pixels are done each by itself,
+// which names squares of 2 x 2. Include after declaring medium, frame, epipolar, scene_depth, broken, broken_list,
+// kBlockWidth, picture.glsl and unwarp.glsl.
 #ifndef TYNDALL_BLOCK_GLSL
 #define TYNDALL_BLOCK_GLSL
 
@@ -19,7 +19,7 @@ struct Block {
   ivec2 pixel[kBlockPixels];
   float visible_m[kBlockPixels];
   bool sky[kBlockPixels];
-  uint kinds;  // all that were found
+  uint kinds;       // all that were found
   float nearest_m;  // of the scene
   float farthest_m;
 };

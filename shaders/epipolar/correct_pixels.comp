@@ -13,7 +13,10 @@ layout(local_size_x = kMarchGroup) in;
 layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
 layout(std430, binding = 1) readonly buffer frame_block { FrameConstants frame; };
 layout(std430, binding = 2) readonly buffer epipolar_block { EpipolarConstants epipolar; };
-layout(std430, binding = 3) readonly buffer work_block { WorkList work; uint items[]; };
+layout(std430, binding = 3) readonly buffer work_block {
+  WorkList work;
+  uint items[];
+};
 layout(std430, binding = 4) readonly buffer corrected_block { uvec2 corrected[]; };
 layout(binding = 5) uniform sampler2D scene_color;
 layout(binding = 6) uniform sampler2D scene_depth;
@@ -30,8 +33,10 @@ void put_pixel(uint at) {
   vec3 lost;
   vec3 color = unpack_light(corrected[at]) * frame.sun_irradiance;
   if (clip_to_medium(ray, start, end)) {
-    if (kHomogeneous) homogeneous_attenuation(end - start, through, lost);
-    else through = transmittance(medium, column_along(medium, ray.altitude, ray.cos_zenith, end));
+    if (kHomogeneous)
+      homogeneous_attenuation(end - start, through, lost);
+    else
+      through = transmittance(medium, column_along(medium, ray.altitude, ray.cos_zenith, end));
   }
   if (kHomogeneous) color *= homogeneous_phase(ray.cos_view_sun);
   if (frame.only == 0u) color += LOAD_COLOR(pixel) * through;

@@ -13,7 +13,10 @@ layout(local_size_x = kMarchGroup) in;
 layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
 layout(std430, binding = 1) readonly buffer frame_block { FrameConstants frame; };
 layout(std430, binding = 2) readonly buffer epipolar_block { EpipolarConstants epipolar; };
-layout(std430, binding = 3) readonly buffer work_block { WorkList work; uint items[]; };
+layout(std430, binding = 3) readonly buffer work_block {
+  WorkList work;
+  uint items[];
+};
 layout(std430, binding = 4) readonly buffer corrected_block { uvec2 corrected[]; };
 layout(std430, binding = 5) buffer reduced_block { vec4 reduced[]; };
 layout(binding = 6) uniform sampler2D scene_depth;
@@ -30,8 +33,10 @@ void put_pixel(uint at) {
   vec3 through, lost;
   vec3 tau = vec3(0.0);
   bool inside = clip_to_medium(ray, start, end);
-  if (kHomogeneous) tau = frame.homogeneous.extinction * (end - start);
-  else if (inside) tau = optical_depth(medium, column_along(medium, ray.altitude, ray.cos_zenith, end));
+  if (kHomogeneous)
+    tau = frame.homogeneous.extinction * (end - start);
+  else if (inside)
+    tau = optical_depth(medium, column_along(medium, ray.altitude, ray.cos_zenith, end));
   attenuation(tau, through, lost);
   ivec2 place = pixel / kDownscale;
   Sample s;

@@ -33,8 +33,8 @@ void main() {
   uvec4 a = samples[row + left];
   uvec4 b = samples[row + right];
   float part = float(i - left) / float(right - left);
-  // Light that is off the line between theirs is that of air beyond where their rays end. Where that is in shadow, only what is
-  // scattered more than once comes from it, and the source is a mean with less in it.
+  // Light that is off the line between theirs is that of air beyond where their rays end. Where that is in shadow, only
+  // what is scattered more than once comes from it, and the source is a mean with less in it.
   uint coarse_a = coarse[row + left];
   uint coarse_b = coarse[row + right];
   vec2 light = unpack_coarse(coarse[row + i]);

@@ -1,10 +1,10 @@
-// Marching a ray of a slice through the shadow cascades. Include after declaring medium, frame, cascades, epipolar, rows
-// (ShadowRow[]), tree (uvec2[]), shadow_maps, shadow_colors, the tables, and counters.
-// A walk finds stretches that are lit or dark; with the tree whole nodes at a time, without it cell by cell. Where
-// a cell is undecided the map itself is compared, at the same place in both: the tree saves reads and changes
-// nothing. The air is summed over panels on which it is smooth, whatever the shadows: a panel's light is that
-// in its middle times the lit length, plus its slope times the lit length's first moment. With kColors both are
-// weighted by the glass's colour, which is read in every cell that is not dark.
+// Marching a ray of a slice through the shadow cascades. Include after declaring medium, frame, cascades, epipolar,
+// rows (ShadowRow[]), tree (uvec2[]), shadow_maps, shadow_colors, the tables, and counters. A walk finds stretches that
+// are lit or dark; with the tree whole nodes at a time, without it cell by cell. Where a cell is undecided the map
+// itself is compared, at the same place in both: the tree saves reads and changes nothing. The air is summed over
+// panels on which it is smooth, whatever the shadows: a panel's light is that in its middle times the lit length, plus
+// its slope times the lit length's first moment. With kColors both are weighted by the glass's colour, which is read in
+// every cell that is not dark.
 #ifndef TYNDALL_MARCH_GLSL
 #define TYNDALL_MARCH_GLSL
 
@@ -33,24 +33,24 @@ struct March {
 
 // A walk along a row. Distances in cells from the camera.
 struct Walk {
-  vec4 line;             // ShadowRow
+  vec4 line;  // ShadowRow
   float depth;
   int first;
   int extent;
   int count;
   uint cascade;
-  uint tree_base;        // of the row's blocks in `tree`
-  bool full;             // nodes are of two words
-  float slope;           // change of depth per cell
-  float number;          // slope as the tree has it
+  uint tree_base;  // of the row's blocks in `tree`
+  bool full;       // nodes are of two words
+  float slope;     // change of depth per cell
+  float number;    // slope as the tree has it
   float reads_per_cell;
-  float metres;          // of the ray in a cell
+  float metres;  // of the ray in a cell
   float x;
   uint level;
-  float lit;             // within the panel: length, and first moment about its middle
+  float lit;  // within the panel: length, and first moment about its middle
   float moment;
   float middle;
-  vec3 lit_tinted;       // the same, with kColors
+  vec3 lit_tinted;  // the same, with kColors
   vec3 moment_tinted;
   // In a homogeneous medium: transmittance up to `since` and the light so far, and what has lit the ray from there on.
   // Sections are closed where that changes, so that they are the same whatever pieces they were found in.
@@ -113,7 +113,8 @@ void walk_to(inout Walk w, inout LitSections sections, float to) {
       if (kTree) {
         level = w.level;
         uint cell = in_tree ? uint(j) : 0u;
-        vec2 node = load_node(w.full, w.tree_base + (cell / kTreeBlock) * kTreeNodes + node_index(cell % kTreeBlock, level));
+        vec2 node =
+            load_node(w.full, w.tree_base + (cell / kTreeBlock) * kTreeNodes + node_index(cell % kTreeBlock, level));
         dark = in_tree && w.number > node.y;
         undecided = in_tree && w.number > node.x && !dark;
         nodes_visited += in_tree ? 1u : 0u;
@@ -311,13 +312,12 @@ vec3 light_of(March march, Ray ray, TableRay path, float start, float end) {
 
 // Whether the air just before the end of a ray, at a view-space depth, is in shadow.
 bool ends_in_shadow(March march, float depth_m) {
-  bool in_map = epipolar.cascades > epipolar.first_cascade && depth_m <= cascades[max(epipolar.cascades, 1u) - 1u].far_m;
+  bool in_map =
+      epipolar.cascades > epipolar.first_cascade && depth_m <= cascades[max(epipolar.cascades, 1u) - 1u].far_m;
   return in_map && march.end_share >= 0.0 && march.end_share < 0.5;
 }
 
 // The ray of a sample.
-Ray sample_ray(vec2 position, float depth_m) {
-  return ray_to_depth(frame, position, depth_m, depth_m >= kSkyDepth);
-}
+Ray sample_ray(vec2 position, float depth_m) { return ray_to_depth(frame, position, depth_m, depth_m >= kSkyDepth); }
 
 #endif

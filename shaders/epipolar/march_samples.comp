@@ -22,7 +22,10 @@ layout(binding = 7) uniform sampler3D single_mie;
 layout(binding = 8) uniform sampler3D high_orders;
 layout(std430, binding = 9) buffer counter_block { uint counters[]; };
 layout(std430, binding = 10) readonly buffer slice_block { EpipolarSlice slices[]; };
-layout(std430, binding = 11) readonly buffer work_block { WorkList work; uint items[]; };
+layout(std430, binding = 11) readonly buffer work_block {
+  WorkList work;
+  uint items[];
+};
 layout(std430, binding = 12) buffer sample_block { uvec4 samples[]; };
 layout(std430, binding = 13) buffer state_block { vec4 states[]; };
 layout(binding = 14) uniform sampler2D scene_depth;

@@ -12,13 +12,15 @@ float sky_depth_m(vec3 direction) {
   float h = frame.camera_altitude_m;
   float radius = medium.planet_radius_m;
   float mu = dot(direction, frame.camera_up);
-  return ray_hits_ground(h, mu, radius) ? distance_to_ground(h, mu, radius) * dot(direction, frame.camera_forward) : kSkyDepth;
+  return ray_hits_ground(h, mu, radius) ? distance_to_ground(h, mu, radius) * dot(direction, frame.camera_forward)
+                                        : kSkyDepth;
 }
 
 // Length [m] inside the homogeneous medium of a ray to such a depth; from kSkyDepth on to the medium's extent.
 float length_in_homogeneous(vec3 direction, float depth_m) {
   float start;
-  float end = depth_m >= kSkyDepth ? frame.homogeneous.extent_m : depth_m / max(dot(direction, frame.camera_forward), 1e-6);
+  float end =
+      depth_m >= kSkyDepth ? frame.homogeneous.extent_m : depth_m / max(dot(direction, frame.camera_forward), 1e-6);
   clip_to_top(dot(direction, frame.camera_up), start, end);
   return end - start;
 }

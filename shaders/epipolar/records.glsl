@@ -5,8 +5,8 @@
 #ifndef TYNDALL_RECORDS_GLSL
 #define TYNDALL_RECORDS_GLSL
 
-const float kSkyDepth = 1e9;       // [m] of rays that leave the air
-const float kLongest = 1e6;        // [m] Beyond this depth, what is stored is the optical depth itself.
+const float kSkyDepth = 1e9;  // [m] of rays that leave the air
+const float kLongest = 1e6;   // [m] Beyond this depth, what is stored is the optical depth itself.
 
 struct Sample {
   float depth_m;
@@ -56,11 +56,12 @@ Sample unpack_sample(uvec4 packed) {
 
 const float kCoarseUnit = 1e6;  // of light: full precision down to 1e-14
 
-// Light without shadows, for refine_samples.comp: the roots, like those of a sample, of red and blue, between which green
-// changes.
+// Light without shadows, for refine_samples.comp: the roots, like those of a sample, of red and blue, between which
+// green changes.
 uint pack_coarse(vec3 light) { return packHalf2x16(root_for_half(light * kCoarseUnit).xz); }
 
-// Of a marched sample, set by march_samples.comp: the air just before the end of its ray is in shadow. The roots have no sign.
+// Of a marched sample, set by march_samples.comp: the air just before the end of its ray is in shadow. The roots have
+// no sign.
 const uint kDarkEnd = 0x80000000u;
 
 float dark_end(uint coarse) { return (coarse & kDarkEnd) != 0u ? 1.0 : 0.0; }

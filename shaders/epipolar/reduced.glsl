@@ -1,5 +1,5 @@
-// The picture that the light is computed for: the whole one, or with scattering.downscale the reduced one, each of whose
-// pixels is one of the whole picture's. Include after declaring frame and epipolar.
+// The picture that the light is computed for: the whole one, or with scattering.downscale the reduced one, each of
+// whose pixels is one of the whole picture's. Include after declaring frame and epipolar.
 #ifndef TYNDALL_REDUCED_GLSL
 #define TYNDALL_REDUCED_GLSL
 
@@ -13,9 +13,7 @@ ivec2 computed_size() {
 }
 
 // The whole picture's pixel that a reduced one is; the last ones of a row or column may be closer together.
-ivec2 pixel_of_reduced(ivec2 at) {
-  return min(at * kDownscale + kFirstReduced, ivec2(frame.width, frame.height) - 1);
-}
+ivec2 pixel_of_reduced(ivec2 at) { return min(at * kDownscale + kFirstReduced, ivec2(frame.width, frame.height) - 1); }
 
 // The reduced pixel to the left of and above a pixel, from -1 on, and the part of the way to the next.
 ivec2 reduced_before(ivec2 pixel, out vec2 part) {
@@ -27,13 +25,13 @@ ivec2 reduced_before(ivec2 pixel, out vec2 part) {
 uint reduced_index(ivec2 at) { return uint(at.y) * epipolar.reduced_width + uint(at.x); }
 
 // Full floats: source and depth, and behind those of all pixels the densities, which a homogeneous medium does without.
-#define STORE_REDUCED(at, depth_m, blend)                                                             \
-  {                                                                                                   \
-    reduced[reduced_index(at)] = vec4((blend).source, depth_m);                                       \
-    if (!kHomogeneous) {                                                                              \
-      uint behind = epipolar.reduced_width * epipolar.reduced_height;                                 \
-      reduced[behind + reduced_index(at)] = vec4((blend).density, 0.0);                               \
-    }                                                                                                 \
+#define STORE_REDUCED(at, depth_m, blend)                               \
+  {                                                                     \
+    reduced[reduced_index(at)] = vec4((blend).source, depth_m);         \
+    if (!kHomogeneous) {                                                \
+      uint behind = epipolar.reduced_width * epipolar.reduced_height;   \
+      reduced[behind + reduced_index(at)] = vec4((blend).density, 0.0); \
+    }                                                                   \
   }
 
 #endif

@@ -1,10 +1,10 @@
 // Chooses the samples that are marched, and for the others the two that they are interpolated between
-// (Yusov 2013, section 1.3). Marched are samples where the unshadowed light is off the line between its neighbours' by more
-// than kOff times the threshold: first next to each, which finds edges, then halving the steps between, which finds slow bends.
-// One group per slice, and a thread for each run of kRun samples: marked samples are bits, and each sample looks for the nearest
-// to both sides.
-// sources: index of the left source, and of the right one << 16, on the same slice; equal where it is marched.
-// The list of marched samples, slice << 16 | index, keeps the order of each slice.
+// (Yusov 2013, section 1.3). Marched are samples where the unshadowed light is off the line between its neighbours' by
+// more than kOff times the threshold: first next to each, which finds edges, then halving the steps between, which
+// finds slow bends. One group per slice, and a thread for each run of kRun samples: marked samples are bits, and each
+// sample looks for the nearest to both sides. sources: index of the left source, and of the right one << 16, on the
+// same slice; equal where it is marched. The list of marched samples, slice << 16 | index, keeps the order of each
+// slice.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -23,7 +23,10 @@ layout(std430, binding = 2) buffer slice_block { EpipolarSlice slices[]; };
 layout(std430, binding = 3) readonly buffer coarse_block { uint coarse[]; };
 layout(std430, binding = 6) readonly buffer sample_block { uvec4 samples[]; };
 layout(std430, binding = 4) writeonly buffer source_block { uint sources[]; };
-layout(std430, binding = 5) buffer march_list_block { WorkList march; uint march_list[]; };
+layout(std430, binding = 5) buffer march_list_block {
+  WorkList march;
+  uint march_list[];
+};
 
 #include "epipolar/records.glsl"
 #include "epipolar/slices.glsl"
@@ -35,11 +38,11 @@ const uint kRun = 8u;     // samples; a part of a word
 const float kDark = 0.05;
 // Times the threshold: interpolation knows what is off the line, and makes up for most of it.
 const float kOff = 1.5;
-const uint kSparse = 4u;   // of this many samples one counts for the mean
+const uint kSparse = 4u;  // of this many samples one counts for the mean
 const uint kPartials = 8u;
 
-shared uint marked[kWords];   // bit i: sample i
-shared uint before[kWords];   // marked samples in the words before
+shared uint marked[kWords];  // bit i: sample i
+shared uint before[kWords];  // marked samples in the words before
 shared vec2 partial[kThreads];
 shared uint list_start;
 
@@ -64,7 +67,8 @@ float depth_step(uint at) {
   return max(change.x, change.y);
 }
 
-// The last of the first samples of a slice, up to a number of them, that ends at another depth than the one before; 0: none does.
+// The last of the first samples of a slice, up to a number of them, that ends at another depth than the one before; 0:
+// none does.
 uint last_break(uint row, uint count) {
   const float kOtherSurface = 0.8;  // ratio of depths, at most
   float before = uintBitsToFloat(samples[row].x);
@@ -129,7 +133,7 @@ void main() {
       bool near = from < near_samples && distance(sample_position(slice, from), center) < near_epipole;
       bool mark = remainder_of(beyond, near ? fine_step : initial_step) == 0u || i == slice.last;
       bool kink = !mark && (kRefinement == 0u ? depth_step(row + min(i, slice.last - 1u)) > 0.2 * threshold
-                                               : off_line(a, b, c, 0.5, floor_light) > kOff * threshold);
+                                              : off_line(a, b, c, 0.5, floor_light) > kOff * threshold);
       bits |= i <= slice.last && (mark || kink) ? 1u << (i & 31u) : 0u;
       a = b;
       b = c;
@@ -137,8 +141,8 @@ void main() {
     atomicOr(marked[first >> 5u], bits);
   }
   barrier();
-  // Next to the epipole shadows change from sample to sample by an edge, on the face of what is in front of the sun too, whose own
-  // light says nothing about it: all samples up to the last edge are marched there.
+  // Next to the epipole shadows change from sample to sample by an edge, on the face of what is in front of the sun
+  // too, whose own light says nothing about it: all samples up to the last edge are marched there.
   const float kAround = 2.0;  // times as far as initial samples are denser
   if (thread == 0u && epipolar.sun_in_picture != 0u) {
     uint count = min(uint(kAround * near_epipole / max(length(slice.stride), 1e-6)), slice.last) + 1u;
@@ -146,7 +150,8 @@ void main() {
     for (uint i = 0u; i < last; ++i) atomicOr(marked[i >> 5u], 1u << (i & 31u));
   }
   barrier();
-  // What bends slowly has no kink: the middles of steps, of their halves and so on, against what is marked on both sides so far.
+  // What bends slowly has no kink: the middles of steps, of their halves and so on, against what is marked on both
+  // sides so far.
   if (kRefinement == 1u) {
     uint segment = initial_step;
     for (uint from = thread * segment; from < slice.last; from += kThreads * segment) {

@@ -1,7 +1,7 @@
-// The light of the tables for a marched sample, in the modes that take one section from the first lit point, uncoloured: what
-// table_light() of frame/table_light.glsl gives, from fewer look-ups. The light of a part of the ray is that of all beyond its
-// begin less that of all beyond its end; so every end that parts share is looked up once, in one loop over
-// the places, and the column beyond a place is the whole ray's less that before it.
+// The light of the tables for a marched sample, in the modes that take one section from the first lit point,
+// uncoloured: what table_light() of frame/table_light.glsl gives, from fewer look-ups. The light of a part of the ray
+// is that of all beyond its begin less that of all beyond its end; so every end that parts share is looked up once, in
+// one loop over the places, and the column beyond a place is the whole ray's less that before it.
 #ifndef TYNDALL_SAMPLE_LIGHT_GLSL
 #define TYNDALL_SAMPLE_LIGHT_GLSL
 
@@ -41,11 +41,15 @@ vec3 contiguous_light(LitSections lit, TableRay path, float start, float t, floa
     float d = min(place - start, path.end_m);
     vec3 before = column_along(medium, path.altitude, path.cos_zenith, d);
     vec3 through = transmittance(medium, before);
-    AirLight beyond = light_of_column(frame.tables, medium, angle, ray_further_on(medium, path, d), max(column - before, vec3(0.0)));
+    AirLight beyond =
+        light_of_column(frame.tables, medium, angle, ray_further_on(medium, path, d), max(column - before, vec3(0.0)));
     if (kSingle == kTable) light += counts * through * beyond.single;
-    if (kOccluded) light += counts * through * beyond.high;
-    else if (i == 0) high += through * beyond.high;
-    else if (i == 4) high -= through * beyond.high;
+    if (kOccluded)
+      light += counts * through * beyond.high;
+    else if (i == 0)
+      high += through * beyond.high;
+    else if (i == 4)
+      high -= through * beyond.high;
   }
   light = max(light, vec3(0.0));
   return whole ? light + max(high, vec3(0.0)) : light;

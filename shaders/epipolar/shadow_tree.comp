@@ -1,5 +1,5 @@
-// Builds the trees of all rows. A thread makes the nodes of a part of a block, one leaf after the other: its row is loaded once,
-// and only the few nodes above parts are put together across threads.
+// Builds the trees of all rows. A thread makes the nodes of a part of a block, one leaf after the other: its row is
+// loaded once, and only the few nodes above parts are put together across threads.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -19,7 +19,10 @@ layout(std430, binding = 2) readonly buffer row_block { ShadowRow rows[]; };
 layout(std430, binding = 3) writeonly buffer tree_block { uint tree[]; };
 layout(binding = 4) uniform sampler2DArray shadow_depths;
 
-layout(std430, binding = 5) readonly buffer work_block { WorkList work; uint items[]; };  // row << 8 | block
+layout(std430, binding = 5) readonly buffer work_block {
+  WorkList work;
+  uint items[];
+};  // row << 8 | block
 
 // Loaded by main() before anything else (docs/epipolar.md says why).
 FrameConstants frame;

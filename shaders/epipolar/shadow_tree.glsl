@@ -17,8 +17,8 @@ float tree_number(float slope, float resolution, uint format) {
   return format == kUnorm16 ? (0.5 + 0.5 * curve) * 65535.0 : curve;
 }
 
-// The number of a ray, which is above that of a node that knows no least slope. Rays at the epipole are so steep that theirs
-// would be 0 as well, and count as lit.
+// The number of a ray, which is above that of a node that knows no least slope. Rays at the epipole are so steep that
+// theirs would be 0 as well, and count as lit.
 float ray_number(float slope, float resolution, uint format) {
   const float kLeastNumber = 0.01;
   float number = tree_number(slope, resolution, format);
@@ -26,6 +26,8 @@ float ray_number(float slope, float resolution, uint format) {
 }
 
 // Of a node within its block: `cell` is any of its cells.
-uint node_index(uint cell, uint level) { return kTreeNodes - (kTreeNodes >> (level - kTreeLeafLevel)) + (cell >> level); }
+uint node_index(uint cell, uint level) {
+  return kTreeNodes - (kTreeNodes >> (level - kTreeLeafLevel)) + (cell >> level);
+}
 
 #endif

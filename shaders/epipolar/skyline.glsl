@@ -1,12 +1,12 @@
-// The sky beside a skyline, where slices are far apart: between a slice that is in the sky and one that is not, or not any more.
-// Include after unwarp.glsl.
+// The sky beside a skyline, where slices are far apart: between a slice that is in the sky and one that is not, or not
+// any more. Include after unwarp.glsl.
 #ifndef TYNDALL_SKYLINE_GLSL
 #define TYNDALL_SKYLINE_GLSL
 
 // What a slice tells of the sky at a place that it may pass behind the ground.
 struct SkyOnSlice {
-  vec3 source;   // root
-  float away;    // of the samples that tell it [pixels]
+  vec3 source;  // root
+  float away;   // of the samples that tell it [pixels]
   bool any;
 };
 
@@ -27,21 +27,24 @@ SkyOnSlice sky_on_slice(uint id, vec4 origin, vec2 position) {
   left = any_left ? left : right;
   right = any_right ? right : left;
   float part = right > left ? clamp((place - float(left)) / float(right - left), 0.0, 1.0) : 0.0;
-  sky.source = mix(unpack_roots(samples[row + uint(left)]).source, unpack_roots(samples[row + uint(right)]).source, part);
+  sky.source =
+      mix(unpack_roots(samples[row + uint(left)]).source, unpack_roots(samples[row + uint(right)]).source, part);
   float gap = min(abs(place - float(left)), abs(float(right) - place)) - 1.0;  // in samples
   sky.away = max(gap, 0.0) / max(length(origin.zw), 1e-9);
   return sky;
 }
 
-// The source at a place in the sky, from the nearest samples of both slices that are in the sky. A slice tells the less the
-// farther away these are, so that nothing jumps where it comes out of the ground. `otherwise`: where both are in the ground.
+// The source at a place in the sky, from the nearest samples of both slices that are in the sky. A slice tells the less
+// the farther away these are, so that nothing jumps where it comes out of the ground. `otherwise`: where both are in
+// the ground.
 vec3 sky_source(Around a, vec2 position, vec3 otherwise) {
   uint last = epipolar.slices - 1u;
   uint lower = uint(a.lower);
   uint upper = lower < last ? lower + 1u : epipolar.closed != 0u ? 0u : last;
   float part = clamp(slice_coordinate(position, a.side) - a.lower, 0.0, 1.0);
   float reach = epipolar.perimeter / float(epipolar.slices);  // as far as slices are apart
-  SkyOnSlice sky[2] = SkyOnSlice[2](sky_on_slice(min(lower, last), a.origin_lower, position), sky_on_slice(upper, a.origin_upper, position));
+  SkyOnSlice sky[2] = SkyOnSlice[2](sky_on_slice(min(lower, last), a.origin_lower, position),
+                                    sky_on_slice(upper, a.origin_upper, position));
   float sum = 0.0;
   vec3 root = vec3(0.0);
   for (int i = 0; i < 2; ++i) {

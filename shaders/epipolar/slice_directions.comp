@@ -1,7 +1,7 @@
 // The line of each slice in each marched cascade's map, and which parts of its tree are to be built (Yusov 2013,
-// section 1.4). All rays of a slice lie in one plane with the direction to the sun, which the map shows as a line through the
-// camera. Far cascades are crossed by few rays of a slice, and those by the sun move little in the map: only cells that a marched
-// sample's ray comes to are put into the tree.
+// section 1.4). All rays of a slice lie in one plane with the direction to the sun, which the map shows as a line
+// through the camera. Far cascades are crossed by few rays of a slice, and those by the sun move little in the map:
+// only cells that a marched sample's ray comes to are put into the tree.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -15,8 +15,14 @@ layout(std430, binding = 0) readonly buffer frame_block { FrameConstants stored_
 layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants stored_epipolar; };
 layout(std430, binding = 2) readonly buffer slice_block { EpipolarSlice slices[]; };
 layout(std430, binding = 3) writeonly buffer row_block { ShadowRow rows[]; };
-layout(std430, binding = 4) buffer tree_list_block { WorkList trees; uint tree_list[]; };
-layout(std430, binding = 5) readonly buffer march_list_block { WorkList march; uint march_list[]; };
+layout(std430, binding = 4) buffer tree_list_block {
+  WorkList trees;
+  uint tree_list[];
+};
+layout(std430, binding = 5) readonly buffer march_list_block {
+  WorkList march;
+  uint march_list[];
+};
 layout(std430, binding = 6) readonly buffer sample_block { uvec4 samples[]; };
 layout(std140, binding = 7) uniform cascade_block { CascadeConstants cascades[kMostCascades]; };
 

@@ -27,7 +27,8 @@ void main() {
 
   // Short slices are stretched beyond the border, so that samples are no closer than a pixel (of the reduced picture).
   float intervals = float(epipolar.samples - 1u);
-  float stretched = epipolar.optimize_locations != 0u ? max(visible, intervals * float(epipolar.downscale)) : max(visible, 1e-3);
+  float stretched =
+      epipolar.optimize_locations != 0u ? max(visible, intervals * float(epipolar.downscale)) : max(visible, 1e-3);
   EpipolarSlice slice;
   slice.line = vec4(entry, direction * (intervals / stretched));
   slice.stride = direction * (stretched / intervals);

@@ -36,8 +36,8 @@ float depth_at(vec2 position) {
   vec2 place = clamp(position - 0.5, vec2(-0.5), last + 0.5);
   vec2 corner = floor(place);
   vec2 part = place - corner;
-  // The four pixels around: x lower left, y lower right, z upper right, w upper left. Beyond the picture its outermost ones are
-  // repeated, whatever the image holds there.
+  // The four pixels around: x lower left, y lower right, z upper right, w upper left. Beyond the picture its outermost
+  // ones are repeated, whatever the image holds there.
   vec4 d = GATHER_DEPTH(ivec2(corner));
   d = corner.x < 0.0 ? d.yyzz : corner.x >= last.x ? d.xxww : d;
   d = corner.y < 0.0 ? d.xyyx : corner.y >= last.y ? d.wzzw : d;
@@ -63,7 +63,8 @@ void main() {
   s.source = vec3(0.0);
   uint at = id * epipolar.samples + i;
   if (kHomogeneous) {
-    // All that changes along a slice is the length in the medium: the phase functions and the density are left to the pixels.
+    // All that changes along a slice is the length in the medium: the phase functions and the density are left to the
+    // pixels.
     vec3 direction = ray_direction(frame, position);
     s.depth_m = sky ? sky_depth_m(direction) : view_depth(frame, position, depth);
     s.density = vec3(0.0);

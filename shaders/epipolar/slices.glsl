@@ -74,8 +74,9 @@ Side side_behind(vec2 position) {
   bool right = d.x > 0.0;
   bool down = d.y > 0.0;
   vec2 edge = vec2(right ? high.x : low.x, down ? high.y : low.y);
-  vec2 gap = max(vec2(right ? edge.x - position.x : position.x - edge.x, down ? edge.y - position.y : position.y - edge.y),
-                 vec2(0.0));
+  vec2 gap =
+      max(vec2(right ? edge.x - position.x : position.x - edge.x, down ? edge.y - position.y : position.y - edge.y),
+          vec2(0.0));
   Side side;
   side.upright = gap.x * abs(d.y) <= gap.y * abs(d.x);
   side.edge = side.upright ? edge.x : edge.y;
@@ -101,8 +102,6 @@ float slice_coordinate(vec2 position, Side side) {
 
 float slice_coordinate(vec2 position) { return slice_coordinate(position, side_behind(position)); }
 
-vec2 sample_position(EpipolarSlice slice, uint i) {
-  return slice.line.xy + slice.stride * float(i);
-}
+vec2 sample_position(EpipolarSlice slice, uint i) { return slice.line.xy + slice.stride * float(i); }
 
 #endif

@@ -1,6 +1,6 @@
 // Puts the picture together, in blocks of 4 x 2 pixels: where they are at one depth, all eight are blended from
-// the same samples. The others are left to unwarp_pixels.comp. Every pixel is read and written once. With kDownscale it is
-// the reduced picture, whose pixels hold the source, not the light (Yusov 2012, section 6.6).
+// the same samples. The others are left to unwarp_pixels.comp. Every pixel is read and written once. With kDownscale it
+// is the reduced picture, whose pixels hold the source, not the light (Yusov 2012, section 6.6).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -18,7 +18,10 @@ layout(std430, binding = 4) readonly buffer sample_block { uvec4 samples[]; };
 layout(binding = 5) uniform sampler2D scene_color;
 layout(binding = 6) uniform sampler2D scene_depth;
 layout(binding = 7, OUTPUT_FORMAT) uniform writeonly image2D output_color;
-layout(std430, binding = 8) buffer broken_list_block { WorkList broken; uint broken_list[]; };
+layout(std430, binding = 8) buffer broken_list_block {
+  WorkList broken;
+  uint broken_list[];
+};
 
 layout(std430, binding = 9) writeonly buffer reduced_block { vec4 reduced[]; };
 
@@ -28,8 +31,8 @@ layout(std430, binding = 9) writeonly buffer reduced_block { vec4 reduced[]; };
 const int kBlockWidth = int(kUnwarpWidth);
 #include "epipolar/block.glsl"
 
-// Thresholds of refinement within which the pixels of a block are at one depth. Those of the reduced picture are farther apart, and the
-// whole one's pixels are at depths of their own again.
+// Thresholds of refinement within which the pixels of a block are at one depth. Those of the reduced picture are
+// farther apart, and the whole one's pixels are at depths of their own again.
 const float kOneDepth = kDownscale == 1 ? 1.0 : 3.0;
 
 // Optical depth per metre of the pixels' own rays: that of three corners of a block, and affine between.
@@ -67,7 +70,8 @@ void main() {
   vec2 middle = 0.5 * vec2(block.pixel[0] + block.pixel[kBlockPixels - 1]) + 0.5;
   bool scene = block.kinds == kScene;
   float depth_m = scene ? 0.5 * (block.nearest_m + block.farthest_m) : kSkyDepth;
-  bool one_depth = scene ? block.farthest_m - block.nearest_m < kOneDepth * epipolar.threshold * block.farthest_m : block.kinds == kSky;
+  bool one_depth = scene ? block.farthest_m - block.nearest_m < kOneDepth * epipolar.threshold * block.farthest_m
+                         : block.kinds == kSky;
   Around a = around(middle, depth_m);
   bool dense = max(length(a.origin_lower.zw), length(a.origin_upper.zw)) * float(kDownscale) > kDense;
   // Beside the limb air thins out from sample to sample: what goes on in a line beyond them soon is none at all.

@@ -18,8 +18,8 @@ const bool kSparse = kSparsity == 2u && !kHomogeneous;
 const float kBeyond = 0.5;  // of the way between two samples
 // Samples to a pixel from which on a block of four pixels would reach too far beyond its samples.
 const float kDense = 0.75;
-// Ratio of the roots of the densities of four samples (of 1.5 between these) from which on what lies a little beyond them is not
-// told by them.
+// Ratio of the roots of the densities of four samples (of 1.5 between these) from which on what lies a little beyond
+// them is not told by them.
 const float kUneven = 1.2247;
 
 struct Blend {
@@ -31,8 +31,8 @@ struct Blend {
 // The four samples around a place: two on each of two slices, and how near each is in depth.
 struct Around {
   Side side;
-  float lower;  // slice
-  vec2 first;   // sample on each of the two
+  float lower;        // slice
+  vec2 first;         // sample on each of the two
   vec4 origin_lower;  // entry and axis of the two
   vec4 origin_upper;
   vec4 nearness;
@@ -62,8 +62,10 @@ Around around(vec2 position, float depth_m) {
     vec4 origin = slice.line;
     float place = clamp(place_on_slice(origin, position), 0.0, float(slice.last));
     uint first = min(uint(place), slice.last - 1u);
-    if (i == 0) a.origin_lower = origin;
-    else a.origin_upper = origin;
+    if (i == 0)
+      a.origin_lower = origin;
+    else
+      a.origin_upper = origin;
     a.first[i] = float(first);
     for (int k = 0; k < 2; ++k) {
       Sample s = unpack_roots(samples[id * epipolar.samples + first + uint(k)]);

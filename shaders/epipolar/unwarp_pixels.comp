@@ -17,8 +17,14 @@ layout(std430, binding = 4) readonly buffer sample_block { uvec4 samples[]; };
 layout(binding = 5) uniform sampler2D scene_color;
 layout(binding = 6) uniform sampler2D scene_depth;
 layout(binding = 7, OUTPUT_FORMAT) uniform writeonly image2D output_color;
-layout(std430, binding = 8) readonly buffer work_block { WorkList work; uint items[]; };
-layout(std430, binding = 9) buffer break_list_block { WorkList breaks; uint break_list[]; };
+layout(std430, binding = 8) readonly buffer work_block {
+  WorkList work;
+  uint items[];
+};
+layout(std430, binding = 9) buffer break_list_block {
+  WorkList breaks;
+  uint break_list[];
+};
 layout(std430, binding = 10) writeonly buffer reduced_block { vec4 reduced[]; };
 
 #include "frame/picture.glsl"
@@ -27,10 +33,11 @@ layout(std430, binding = 10) writeonly buffer reduced_block { vec4 reduced[]; };
 #include "epipolar/break_list.glsl"
 #include "epipolar/skyline.glsl"
 
-// Whether a ray goes down through all of the air, to graze the planet or to rise again, and not all samples around it end where it
-// does: beside the limb light changes several times over from pixel to pixel, so that those which do are no substitute.
+// Whether a ray goes down through all of the air, to graze the planet or to rise again, and not all samples around it
+// end where it does: beside the limb light changes several times over from pixel to pixel, so that those which do are
+// no substitute.
 bool at_limb(Around a, vec2 position) {
-  const float kGrazing = 4.0;   // below the surface, scale heights
+  const float kGrazing = 4.0;  // below the surface, scale heights
   float scale_heights = frame.camera_altitude_m / medium.rayleigh_scale_height_m;
   if (kHomogeneous || scale_heights < kAllOfAir) return false;
   float cos_zenith = dot(ray_direction(frame, position), frame.camera_up);

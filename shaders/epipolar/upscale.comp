@@ -1,5 +1,5 @@
-// scattering.downscale: from the reduced picture to the whole one, and over its background (Yusov 2012, section 6.8), in
-// blocks of 2 x 2 pixels. Where they and the four reduced pixels around them are at one depth, these are weighted
+// scattering.downscale: from the reduced picture to the whole one, and over its background (Yusov 2012, section 6.8),
+// in blocks of 2 x 2 pixels. Where they and the four reduced pixels around them are at one depth, these are weighted
 // bilinearly; the other blocks are left to upscale_pixels.comp, which tells depths apart.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -19,7 +19,10 @@ layout(std430, binding = 5) readonly buffer reduced_block { vec4 reduced[]; };
 layout(binding = 6) uniform sampler2D scene_color;
 layout(binding = 7) uniform sampler2D scene_depth;
 layout(binding = 8, OUTPUT_FORMAT) uniform writeonly image2D output_color;
-layout(std430, binding = 9) buffer broken_list_block { WorkList broken; uint broken_list[]; };
+layout(std430, binding = 9) buffer broken_list_block {
+  WorkList broken;
+  uint broken_list[];
+};
 
 #include "frame/picture.glsl"
 #include "epipolar/unwarp.glsl"
@@ -60,7 +63,8 @@ void main() {
     vec2 own_part = part + vec2(place_in_block(k)) / float(kDownscale);
     vec3 background = LOAD_COLOR(pixel);
     float own_m = scene ? block.visible_m[k] : kSkyDepth;
-    vec3 color = compose(blend_reduced(near, bilinear_weights(own_part)), position, own_m, block.visible_m[k], block.sky[k], background);
+    vec3 color = compose(blend_reduced(near, bilinear_weights(own_part)), position, own_m, block.visible_m[k],
+                         block.sky[k], background);
     STORE_COLOR(pixel, color);
   }
 }

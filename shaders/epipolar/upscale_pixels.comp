@@ -1,5 +1,6 @@
-// scattering.downscale: the pixels of blocks that differ in depth from what is around them. Each takes the reduced pixels
-// that are as far away as it is, or, where there is none, the slices; those that no sample fits either are listed.
+// scattering.downscale: the pixels of blocks that differ in depth from what is around them. Each takes the reduced
+// pixels that are as far away as it is, or, where there is none, the slices; those that no sample fits either are
+// listed.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -17,8 +18,14 @@ layout(std430, binding = 4) readonly buffer sample_block { uvec4 samples[]; };
 layout(binding = 5) uniform sampler2D scene_color;
 layout(binding = 6) uniform sampler2D scene_depth;
 layout(binding = 7, OUTPUT_FORMAT) uniform writeonly image2D output_color;
-layout(std430, binding = 8) readonly buffer work_block { WorkList work; uint items[]; };
-layout(std430, binding = 9) buffer break_list_block { WorkList breaks; uint break_list[]; };
+layout(std430, binding = 8) readonly buffer work_block {
+  WorkList work;
+  uint items[];
+};
+layout(std430, binding = 9) buffer break_list_block {
+  WorkList breaks;
+  uint break_list[];
+};
 layout(std430, binding = 10) readonly buffer reduced_block { vec4 reduced[]; };
 
 #include "frame/picture.glsl"

@@ -4,8 +4,9 @@
 
 #include "frame/modes.glsl"
 
-// At a place of a cascade's map and a depth in it. Alpha may hold the depth of the glass nearest to the sun (FrameInputs::shadow_color_depths):
-// before it the light is as it was. Without, glass_depth_sign is 0 and nothing lies before.
+// At a place of a cascade's map and a depth in it. Alpha may hold the depth of the glass nearest to the sun
+// (FrameInputs::shadow_color_depths): before it the light is as it was. Without, glass_depth_sign is 0 and nothing lies
+// before.
 vec3 glass_color(vec2 uv, float depth, uint cascade) {
   if (!kColors) return vec3(1.0);
   vec4 glass = textureLod(shadow_colors, vec3(uv, float(cascade)), 0.0);

@@ -1,8 +1,10 @@
 // A medium of constant density in place of the atmosphere (Yusov, "IVB Atmospheric Light Scattering", 2012, section 2):
-// the light that reaches it is the same everywhere, so that the light of a lit stretch [a, b] of a ray is in closed form
+// the light that reaches it is the same everywhere, so that the light of a lit stretch [a, b] of a ray is in closed
+// form
 //   L = E (beta_R p_R + beta_M p_M) / sigma (exp(-sigma a) - exp(-sigma b)),
-// per channel. What depends on the direction alone, all before the bracket, is left out along the ray and applied at the
-// pixel. Include after declaring medium and frame. docs/homogeneous_medium.md has the equations and what they leave out.
+// per channel. What depends on the direction alone, all before the bracket, is left out along the ray and applied at
+// the pixel. Include after declaring medium and frame. docs/homogeneous_medium.md has the equations and what they leave
+// out.
 #ifndef TYNDALL_HOMOGENEOUS_MEDIUM_GLSL
 #define TYNDALL_HOMOGENEOUS_MEDIUM_GLSL
 
@@ -12,7 +14,8 @@ layout(constant_id = 5) const bool kHomogeneous = false;
 
 // The part of [0, end] below the medium's flat top, which is level where the camera is.
 void clip_to_top(float cos_zenith, out float start, inout float end) {
-  float crossing = (frame.homogeneous.height_m - frame.camera_altitude_m) / (abs(cos_zenith) > 1e-9 ? cos_zenith : 1e-9);
+  float crossing =
+      (frame.homogeneous.height_m - frame.camera_altitude_m) / (abs(cos_zenith) > 1e-9 ? cos_zenith : 1e-9);
   start = cos_zenith < 0.0 ? max(crossing, 0.0) : 0.0;
   end = max(cos_zenith < 0.0 ? end : min(end, crossing), start);
 }

@@ -2,8 +2,8 @@
 // scattering.single and scattering.multiple; the truth that faster techniques are compared with.
 // In: colour and depth of the scene, shadow cascades. Out: radiance seen through the air, in the unit of
 // the sun's irradiance per steradian.
-// The shadow map is read once per texel that the ray crosses, so that no shadow boundary is missed; beyond the last cascade the
-// rest of the ray is integrated unshadowed (Yusov 2013, section 1.6, without the epipolar geometry).
+// The shadow map is read once per texel that the ray crosses, so that no shadow boundary is missed; beyond the last
+// cascade the rest of the ray is integrated unshadowed (Yusov 2013, section 1.6, without the epipolar geometry).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -37,7 +37,7 @@ FrameConstants frame;
 #include "frame/picture.glsl"
 #include "frame/table_light.glsl"
 
-const int kReadsPerStep = 8;  // of the shadow map, per evaluation of the air
+const int kReadsPerStep = 8;   // of the shadow map, per evaluation of the air
 const int kMostReads = 60000;  // of one cascade: some CPU devices end a loop after 65 535 rounds
 
 uint reads_done = 0u;

@@ -7,7 +7,7 @@
 const uint kNone = 0u;
 const uint kIntegration = 1u;  // of kSingle
 const uint kTable = 2u;
-const uint kContiguous = 0u;   // of kSections
+const uint kContiguous = 0u;  // of kSections
 const uint kEach = 1u;
 
 layout(constant_id = 0) const uint kSingle = kIntegration;

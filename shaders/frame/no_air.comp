@@ -11,7 +11,8 @@ layout(push_constant) uniform Push {
   uvec2 extent;
   ivec2 color_offset;
   ivec2 output_offset;
-} frame;
+}
+frame;
 
 #include "frame/picture.glsl"
 

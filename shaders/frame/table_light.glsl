@@ -44,8 +44,8 @@ AirLight tinted(AirLight light, vec3 tint, float length_m) {
   return AirLight(light.single * mean, light.high * mean);
 }
 
-// The ray in the coordinates of the tables: begun where it enters the air, at distance `start`. It ends behind what was drawn,
-// which may lie deeper than the ground sphere.
+// The ray in the coordinates of the tables: begun where it enters the air, at distance `start`. It ends behind what was
+// drawn, which may lie deeper than the ground sphere.
 TableRay table_ray_of(Ray ray, float start) {
   float radius = medium.planet_radius_m;
   bool below = ray_hits_ground(ray.altitude, ray.cos_zenith, radius);

@@ -45,8 +45,8 @@ TableRay ray_further_on(Medium m, TableRay ray, float distance_m) {
   return out_ray;
 }
 
-// What is the same all along a ray: how much of the scattered light goes its way, and the slices that its angle to the sun lies
-// between. To be had once, before a loop over the ray's places: some compilers move nothing out of loops.
+// What is the same all along a ray: how much of the scattered light goes its way, and the slices that its angle to the
+// sun lies between. To be had once, before a loop over the ray's places: some compilers move nothing out of loops.
 struct TableAngle {
   vec3 rayleigh;  // scattering x phase function [1 / (m sr)]
   vec3 mie;
@@ -80,7 +80,8 @@ TableCoordinates table_coordinates(TableShape t, Medium m, TableAngle angle, Tab
   float v = v_from_view(t, m, h, ray.cos_zenith, ray.below);
   float middle = middle_of_air(m, ray.altitude, ray.cos_zenith, ray.end_m, column);
   float w = w_from_sun(t, ray_further_on(m, ray, middle).cos_sun_zenith);
-  return TableCoordinates(vec3(u, v, (angle.first + w) / angle.slices), vec3(u, v, (angle.first + 1.0 + w) / angle.slices));
+  return TableCoordinates(vec3(u, v, (angle.first + w) / angle.slices),
+                          vec3(u, v, (angle.first + 1.0 + w) / angle.slices));
 }
 
 vec3 table_value(sampler3D table, TableCoordinates c, float part) {

@@ -5,12 +5,12 @@
 #include "lib/geometry.glsl"
 
 struct Ray {
-  vec3 direction;      // world, unit length
-  float altitude;      // of the camera [m]
-  float cos_zenith;    // at the camera
+  vec3 direction;    // world, unit length
+  float altitude;    // of the camera [m]
+  float cos_zenith;  // at the camera
   float cos_sun_zenith;
   float cos_view_sun;
-  float length_m;      // to what the depth buffer shows; 1e9 for the sky
+  float length_m;  // to what the depth buffer shows; 1e9 for the sky
   bool sky;
 };
 

@@ -29,7 +29,8 @@ vec3 homogeneous_sun(IN(Homogeneous) m, float mu_s) {
   float visible = m.sun_radius_rad > 0.0 ? sun_disc_visibility(0.0, mu_s, m.planet_radius_m, m.sun_radius_rad)
                                          : (mu_s < 0.0 ? 0.0 : 1.0);
   return homogeneous_extinction(m, homogeneous_optical_length(m.air_length_m, mu_s),
-                                homogeneous_optical_length(m.haze_length_m, mu_s)) * visible;
+                                homogeneous_optical_length(m.haze_length_m, mu_s)) *
+         visible;
 }
 
 // (1 - e^(-beta s)) / beta: s where there is nothing.

@@ -12,8 +12,7 @@ vec3 densities(IN(Medium) m, float h) {
     return vec3(0.0);
   }
   float ozone = max(0.0, 1.0 - abs(h - m.ozone_centre_m) / m.ozone_half_width_m);
-  return vec3(exp(min(-h / m.rayleigh_scale_height_m, 60.0)), exp(min(-h / m.mie_scale_height_m, 60.0)),
-              ozone);
+  return vec3(exp(min(-h / m.rayleigh_scale_height_m, 60.0)), exp(min(-h / m.mie_scale_height_m, 60.0)), ozone);
 }
 
 // Mean densities between two points, from those at both: exponential profiles exactly, where altitude is linear

@@ -21,7 +21,8 @@ const uint kOneilTable = 2u;      // altitude times angle
 const uint kOneilUniform = 0u;  // points evenly along the ray, as printed
 const uint kOneilColumn = 1u;   // points where most of the air is that can be seen
 
-// GLSL may give these as constants: of a variable CPU devices go both ways, and the search for places of points is most of the work.
+// GLSL may give these as constants: of a variable CPU devices go both ways, and the search for places of points is most
+// of the work.
 #ifndef ONEIL_COLUMNS
 #define ONEIL_COLUMNS(o) o.columns
 #define ONEIL_SPACING(o) o.spacing
@@ -41,8 +42,7 @@ const uint kOneilColumn = 1u;   // points where most of the air is that can be s
 float oneil_scale(IN(OneilScale) s, float c) {
   float b = 1.0 / (1.0 + s.bend * c);
   float x = (1.0 - c) * b;
-  return s.scale_height_m * (1.0 + s.bend) * b *
-         exp(s.k0 + x * (s.k1 + x * (s.k2 + x * (s.k3 + x * s.k4))));
+  return s.scale_height_m * (1.0 + s.bend) * b * exp(s.k0 + x * (s.k1 + x * (s.k2 + x * (s.k3 + x * s.k4))));
 }
 
 // The same from altitude h >= 0, c >= 0, over a planet of radius R. Seen from the centre the air is as curved
@@ -136,9 +136,9 @@ vec3 oneil_sunlight(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h, float
 }
 
 // A distance in [from, to] of the ray by which `share` of its air between the two has been crossed: the mean of
-// the shares of both species, whose columns from `from` to `to` are `whole`, and a part `even` of the length. Newton's method in a bracket that
-// shrinks; it comes from one side when `guess` lies between the densest air and the answer. To `tolerance` in the
-// share.
+// the shares of both species, whose columns from `from` to `to` are `whole`, and a part `even` of the length. Newton's
+// method in a bracket that shrinks; it comes from one side when `guess` lies between the densest air and the answer. To
+// `tolerance` in the share.
 float oneil_place(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h0, float mu, float hp, float from, float to,
                   vec2 whole, float even, float share, float tolerance, float guess) {
   float R = m.planet_radius_m;
@@ -187,8 +187,7 @@ void oneil_scattering(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h0, fl
   bool reversed = hb < ha - 1.0e-4 * top;  // more than a rounding error: from top to top is not
   rayleigh = vec3(0.0);
   mie = vec3(0.0);
-  through = oneil_transmittance(
-      m, oneil_column_between(m, o, table, q0 + start, ha, q0 + end, hb, hp, reversed));
+  through = oneil_transmittance(m, oneil_column_between(m, o, table, q0 + start, ha, q0 + end, hb, hp, reversed));
 
   float first_end = end;
   float second_start = end;
@@ -237,7 +236,8 @@ void oneil_scattering(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h0, fl
         vec2 density = oneil_densities(m, o, table, h);
         float length_m = span / count;
         if (by_column) {
-          length_m = part_of_air / max((0.5 - 0.5 * even) * (density.x / whole.x + density.y / whole.y) + even / span, 1.0e-30);
+          length_m = part_of_air /
+                     max((0.5 - 0.5 * even) * (density.x / whole.x + density.y / whole.y) + even / span, 1.0e-30);
         }
         vec3 arrives = oneil_transmittance(m, column) * length_m;
         rayleigh += arrives * density.x;

@@ -20,11 +20,9 @@ float exponential_column(float h0, float q0, float scale_height, float R) {
   float r0 = max(R + h0, scale_height);  // only deep inside the planet is it smaller
   float s = sqrt(2.0 * r0 * scale_height);
   float p = q0 / s;
-  float e_above =
-      0.8862269642 + p * (1.1930734838 + p * (0.7531244636 + p * (0.2549023374 + p * 0.04060864678)));
+  float e_above = 0.8862269642 + p * (1.1930734838 + p * (0.7531244636 + p * (0.2549023374 + p * 0.04060864678)));
   float e_below =
-      1.0 +
-      p * (2.4746223286 + p * (2.6420678442 + p * (1.5468079195 + p * (0.5098054906 + p * 0.08121729357))));
+      1.0 + p * (2.4746223286 + p * (2.6420678442 + p * (1.5468079195 + p * (0.5098054906 + p * 0.08121729357))));
   float c_above = 0.3753936665 + p * (0.652352705 + p * 0.4259731527);
   float c_below = 1.0 + p * (0.6341824736 + p * 0.4259731527);
   float path = s * e_above * (c_below + c_above * scale_height / r0) / (e_below * c_below);
@@ -96,8 +94,7 @@ vec3 column_between(IN(Medium) m, float h0, float mu, float da, float ha, float 
   float scale = min(m.rayleigh_scale_height_m, m.mie_scale_height_m);
   bool is_short = abs(hb - ha) < scale && span * span < 2.0 * (R + ha) * scale;
   // Ozone by quadrature where its density is smooth or the altitudes differ by too little to be subtracted.
-  bool smooth_ozone =
-      is_short && (highest - hp < 1.0e-4 * m.ozone_half_width_m || !crosses_ozone_kink(m, hp, highest));
+  bool smooth_ozone = is_short && (highest - hp < 1.0e-4 * m.ozone_half_width_m || !crosses_ozone_kink(m, hp, highest));
 
   float ozone = 0.0;
   if (!smooth_ozone && highest > m.ozone_centre_m - m.ozone_half_width_m) {

@@ -11,8 +11,7 @@ float rayleigh_phase(float nu) { return 0.0596831036594608 * (1.0 + nu * nu); }
 
 // 1 + g^2 - 2 g nu, to full relative precision where it is smallest.
 float henyey_greenstein_base(float nu, float g) {
-  return g >= 0.0 ? (1.0 - g) * (1.0 - g) + 2.0 * g * (1.0 - nu)
-                  : (1.0 + g) * (1.0 + g) - 2.0 * g * (1.0 + nu);
+  return g >= 0.0 ? (1.0 - g) * (1.0 - g) + 2.0 * g * (1.0 - nu) : (1.0 + g) * (1.0 + g) - 2.0 * g * (1.0 + nu);
 }
 
 // Henyey and Greenstein, "Diffuse radiation in the galaxy" (1941).

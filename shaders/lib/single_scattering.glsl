@@ -96,8 +96,8 @@ float panel_length(IN(Medium) m, float h0, float mu, float mu_s, float nu, float
 }
 
 // Adds the light of the lit part [start, end] of the ray.
-vec3 lit_scattering(IN(Medium) m, float h0, float mu, float mu_s, float nu, float start, float end,
-                    float fineness, int max_panels) {
+vec3 lit_scattering(IN(Medium) m, float h0, float mu, float mu_s, float nu, float start, float end, float fineness,
+                    int max_panels) {
   float R = m.planet_radius_m;
   vec3 rayleigh = m.rayleigh_scattering * rayleigh_phase(nu);
   vec3 mie = m.mie_scattering * mie_phase(m, nu);
@@ -136,8 +136,7 @@ vec3 lit_scattering(IN(Medium) m, float h0, float mu, float mu_s, float nu, floa
 
 // Radiance / E0 of the part [start, end] of the ray [m], seen from its origin. `steps` is about the number of
 // panels that a ray through the whole atmosphere takes: 12 for 0.1 %, 4 for about a per cent.
-vec3 single_scattering(IN(Medium) m, float h0, float mu, float mu_s, float nu, float start, float end,
-                       int steps) {
+vec3 single_scattering(IN(Medium) m, float h0, float mu, float mu_s, float nu, float start, float end, int steps) {
   float fineness = 12.0 / float(max(steps, 1));
   int max_panels = 8 + 6 * steps;
   float dark_start;

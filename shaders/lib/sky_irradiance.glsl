@@ -34,8 +34,7 @@ vec3 sky_irradiance_single(IN(Medium) m, float h, float mu_s, int panels, int st
           float nu = clamp(mu * mu_s + sin_zenith * sin_sun * cos(pi * v * v), -1.0, 1.0);
           float azimuth_weight = 2.0 * 2.0 * pi * v * weight[j % 4] / float(panels);
           vec3 unused;
-          irradiance +=
-              zenith_weight * azimuth_weight * single_scattering_to_end(m, h, mu, mu_s, nu, steps, unused);
+          irradiance += zenith_weight * azimuth_weight * single_scattering_to_end(m, h, mu, mu_s, nu, steps, unused);
         }
       }
     }

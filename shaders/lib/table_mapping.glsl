@@ -38,7 +38,8 @@ float altitude_margin(IN(Medium) m) { return min(kTableMargin, 0.01 * m.atmosphe
 
 float lowest_table_altitude(IN(Medium) m) { return max(kLowestTableAltitude, -0.125 * m.planet_radius_m); }
 
-// Texels along altitude that stand for altitudes below sea level, evenly spaced; the next one stands for the margin above it.
+// Texels along altitude that stand for altitudes below sea level, evenly spaced; the next one stands for the margin
+// above it.
 float texels_below_sea(IN(TableShape) t) { return float(min(t.altitudes / 10u, 3u)); }
 
 // The altitude that stands for h in the tables; `margin` away from sea level on either side of it.

@@ -71,8 +71,7 @@ vec3 column_to_sun(IN(Medium) m, float h, float q, OUT(bool) hidden) {
     return outward;
   }
   vec3 across = vec3(exponential_column(perigee, 0.0, m.rayleigh_scale_height_m, R),
-                     exponential_column(perigee, 0.0, m.mie_scale_height_m, R),
-                     ozone_column(m, perigee, 0.0, top));
+                     exponential_column(perigee, 0.0, m.mie_scale_height_m, R), ozone_column(m, perigee, 0.0, top));
   return 2.0 * across - outward;
 }
 

@@ -1,8 +1,8 @@
 // From the histogram to the exposure: the log-average luminance of what counts, towards which the eye adapts.
 // Weights, instead of absolute luminances as in DiligentFX (2019): relative to the bright part of the picture, the
 // luminance that kBrightShare of the samples that are not black stay below. What is 2^kNoneStops darker is black space
-// and does not count, what is 2^kFullStops darker or less counts in full. So a planet before the dark is exposed like one that
-// fills the picture, by day and in twilight.
+// and does not count, what is 2^kFullStops darker or less counts in full. So a planet before the dark is exposed like
+// one that fills the picture, by day and in twilight.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -10,19 +10,18 @@
 
 layout(local_size_x = 256) in;
 
-layout(std430, binding = 0) readonly buffer CountsBlock {
-  LuminanceCounts counts;
-} counts_block;
-layout(std430, binding = 1) buffer ExposureBlock {
-  ExposureState state;
-} exposure_block;
+layout(std430, binding = 0) readonly buffer CountsBlock { LuminanceCounts counts; }
+counts_block;
+layout(std430, binding = 1) buffer ExposureBlock { ExposureState state; }
+exposure_block;
 
 layout(push_constant) uniform Push {
   float seconds;  // since the picture before
   float middle_gray;
   float least_luminance;
   uint cut;  // 1: there is no picture before
-} push;
+}
+push;
 
 const float kBrightShare = 0.95;
 const float kNoneStops = 7.0;
@@ -33,9 +32,7 @@ const float kFirstLuminance = 0.1;    // until a picture has something that coun
 
 shared float bins[kLuminanceBins];
 
-float stop_of(uint bin) {
-  return kLowestStop + kStopsPerBin * float(bin);
-}
+float stop_of(uint bin) { return kLowestStop + kStopsPerBin * float(bin); }
 
 // Stop below which kBrightShare of `total` lies, between the bins.
 float bright_stop(float total) {

@@ -1,5 +1,5 @@
-// The histogram of a picture's luminance, for the exposure and for people. Reads one pixel in stride x stride, staggered
-// so that rows and columns of the picture are all met. Counts are whole numbers: their sum has no order.
+// The histogram of a picture's luminance, for the exposure and for people. Reads one pixel in stride x stride,
+// staggered so that rows and columns of the picture are all met. Counts are whole numbers: their sum has no order.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -9,13 +9,11 @@
 layout(local_size_x = 16, local_size_y = 16) in;
 
 layout(binding = 0, rgba32f) uniform readonly image2D radiance;
-layout(std430, binding = 1) buffer CountsBlock {
-  LuminanceCounts counts;
-} counts_block;
+layout(std430, binding = 1) buffer CountsBlock { LuminanceCounts counts; }
+counts_block;
 
-layout(push_constant) uniform Push {
-  uint stride;
-} push;
+layout(push_constant) uniform Push { uint stride; }
+push;
 
 shared uint bins[kLuminanceBins];
 shared uint black;

@@ -11,16 +11,16 @@ layout(constant_id = 0) const uint kOperator = 3u;
 
 layout(binding = 0, rgba32f) uniform readonly image2D radiance;
 layout(binding = 1, rgba32f) uniform writeonly image2D display;
-layout(std430, binding = 2) readonly buffer ExposureBlock {
-  ExposureState state;
-} exposure_block;
+layout(std430, binding = 2) readonly buffer ExposureBlock { ExposureState state; }
+exposure_block;
 
 layout(push_constant) uniform Push {
   float exposure;
   uint auto_exposure;
   float white_point;
   float saturation;
-} push;
+}
+push;
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);

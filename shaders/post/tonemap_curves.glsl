@@ -1,6 +1,6 @@
-// Tone-mapping operators: each maps scaled linear radiance (Rec. 709, 0 to kTonemapMost) to linear display values, which
-// the caller clamps to 0 to 1. White points are scaled luminances. C++ compiles this too (src/post/curves.cpp), in
-// double precision; docs/tonemapping.md has the formulas and draws them.
+// Tone-mapping operators: each maps scaled linear radiance (Rec. 709, 0 to kTonemapMost) to linear display values,
+// which the caller clamps to 0 to 1. White points are scaled luminances. C++ compiles this too (src/post/curves.cpp),
+// in double precision; docs/tonemapping.md has the formulas and draws them.
 #ifndef TYNDALL_TONEMAP_CURVES_GLSL
 #define TYNDALL_TONEMAP_CURVES_GLSL
 
@@ -22,18 +22,15 @@ const uint kTonemapExponentialChannels = 9u;
 const float kTonemapMost = 1.0e9;
 
 // One channel made fit for the curves. What is negative or no number is black: a comparison with it fails.
-float tonemap_fit(float value) {
-  return value > 0.0 ? min(value, kTonemapMost) : 0.0;
-}
+float tonemap_fit(float value) { return value > 0.0 ? min(value, kTonemapMost) : 0.0; }
 
 vec3 tonemap_scaled(vec3 radiance, float exposure) {
-  return vec3(tonemap_fit(radiance.x * exposure), tonemap_fit(radiance.y * exposure), tonemap_fit(radiance.z * exposure));
+  return vec3(tonemap_fit(radiance.x * exposure), tonemap_fit(radiance.y * exposure),
+              tonemap_fit(radiance.z * exposure));
 }
 
 // Rec. 709 luminance with the weights of the documents (Yusov 2013).
-float tonemap_luminance(vec3 c) {
-  return dot(c, vec3(0.212671, 0.715160, 0.072169));
-}
+float tonemap_luminance(vec3 c) { return dot(c, vec3(0.212671, 0.715160, 0.072169)); }
 
 // What the operators on luminance share: colour keeps its ratios, to the power of the saturation.
 vec3 tonemap_colored(vec3 c, float luminance, float mapped, float saturation) {
@@ -71,12 +68,10 @@ float tonemap_drago(float luminance, float white_point) {
 // AgX of Sobotka (2022) in the approximation of Wrensch ("Minimal AgX Implementation", 2023): primaries drawn in, 16.5
 // stops about middle grey in log2, a polynomial of the sixth degree, and back. Saturation as its look has it.
 vec3 tonemap_agx(vec3 c, float saturation) {
-  mat3 inset = mat3(0.842479062253094, 0.0423282422610123, 0.0423756549057051,
-                    0.0784335999999992, 0.878468636469772, 0.0784336,
-                    0.0792237451477643, 0.0791661274605434, 0.879142973793104);
-  mat3 outset = mat3(1.19687900512017, -0.0528968517574562, -0.0529716355144438,
-                     -0.0980208811401368, 1.15190312990417, -0.0980434501171241,
-                     -0.0990297440797205, -0.0989611768448433, 1.15107367264116);
+  mat3 inset = mat3(0.842479062253094, 0.0423282422610123, 0.0423756549057051, 0.0784335999999992, 0.878468636469772,
+                    0.0784336, 0.0792237451477643, 0.0791661274605434, 0.879142973793104);
+  mat3 outset = mat3(1.19687900512017, -0.0528968517574562, -0.0529716355144438, -0.0980208811401368, 1.15190312990417,
+                     -0.0980434501171241, -0.0990297440797205, -0.0989611768448433, 1.15107367264116);
   float least_ev = -12.47393;
   float most_ev = 4.026069;
   vec3 ev = clamp(log2(max(inset * c, vec3(1.0e-10))), vec3(least_ev), vec3(most_ev));

@@ -34,9 +34,7 @@ float gather_ground_distance(Medium m, float h, float mu) {
 uint gather_ground_row(uint altitude) { return min(altitude, kGatherBelow) * kGatherSuns; }
 
 // The lowest sun of the grid: some way below the horizon of the top of the air, where it lights nothing.
-float lowest_gather_sun(Medium m) {
-  return max(1.6 * horizon_cos(m.atmosphere_height_m, m.planet_radius_m), -1.0);
-}
+float lowest_gather_sun(Medium m) { return max(1.6 * horizon_cos(m.atmosphere_height_m, m.planet_radius_m), -1.0); }
 float gather_sun(Medium m, uint i) {
   float low = lowest_gather_sun(m);
   float from = low / (kSunKnee - low);
@@ -67,7 +65,8 @@ float gather_zenith_stretch(float horizon, float node, bool below) {
 float gather_azimuth(uint k) { return (float(k) + 0.5) * kPi / float(kGatherAzimuths); }
 
 // Zenith angles of the source function, symmetric to the horizontal and densest there: in turbid air the light near the
-// horizon is brightest, and so is what is scattered along it. The index grows with the square of the angle from the horizontal.
+// horizon is brightest, and so is what is scattered along it. The index grows with the square of the angle from the
+// horizontal.
 const float kSourceDensity = 0.6;  // spacing at the horizontal over the mean spacing
 float source_zenith(uint j) {
   float x = 2.0 * float(j) / float(kSourceZeniths - 1u) - 1.0;
@@ -83,7 +82,8 @@ float source_zenith_index(float angle) {
 float source_zenith_weight(uint j) {
   float x = 2.0 * float(j) / float(kSourceZeniths - 1u) - 1.0;
   bool end = j == 0u || j == kSourceZeniths - 1u;
-  return kPi / float(kSourceZeniths - 1u) * (kSourceDensity + 2.0 * (1.0 - kSourceDensity) * abs(x)) * (end ? 0.5 : 1.0);
+  return kPi / float(kSourceZeniths - 1u) * (kSourceDensity + 2.0 * (1.0 - kSourceDensity) * abs(x)) *
+         (end ? 0.5 : 1.0);
 }
 
 // Index of incident light. Sun-minor: neighbouring invocations treat neighbouring suns.

@@ -13,10 +13,14 @@ layout(std430, binding = 3) readonly buffer source_block { vec4 source[]; };
 layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
 layout(std430, binding = 1) readonly buffer node_block { RayNode nodes[]; };
 layout(std430, binding = 2) writeonly buffer incident_block { vec4 incident[]; };
-layout(std430, binding = 5) readonly buffer shape_block { TableShape shape; ZenithQuadrature quadrature; };
+layout(std430, binding = 5) readonly buffer shape_block {
+  TableShape shape;
+  ZenithQuadrature quadrature;
+};
 layout(std430, binding = 4) readonly buffer irradiance_block { vec4 irradiance[]; };  // altitude x sun
 
-layout(push_constant) uniform Push { uint first; } push;
+layout(push_constant) uniform Push { uint first; }
+push;
 
 void main() {
   uint sun = gl_GlobalInvocationID.x;

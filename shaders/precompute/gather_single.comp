@@ -12,11 +12,15 @@
 layout(local_size_x = 64) in;
 
 layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
-layout(std430, binding = 3) readonly buffer shape_block { TableShape shape; ZenithQuadrature quadrature; };
+layout(std430, binding = 3) readonly buffer shape_block {
+  TableShape shape;
+  ZenithQuadrature quadrature;
+};
 layout(std430, binding = 1) readonly buffer node_block { RayNode nodes[]; };
 layout(std430, binding = 2) writeonly buffer incident_block { vec4 incident[]; };
 
-layout(push_constant) uniform Push { uint first; } push;
+layout(push_constant) uniform Push { uint first; }
+push;
 
 void main() {
   uint sun = gl_GlobalInvocationID.x;

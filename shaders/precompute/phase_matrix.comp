@@ -13,7 +13,10 @@
 layout(local_size_x = 8) in;
 
 layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
-layout(std430, binding = 1) readonly buffer shape_block { TableShape shape; ZenithQuadrature quadrature; };
+layout(std430, binding = 1) readonly buffer shape_block {
+  TableShape shape;
+  ZenithQuadrature quadrature;
+};
 layout(std430, binding = 2) writeonly buffer phase_block { vec2 phase[]; };
 
 const uint kAngles = 64u;

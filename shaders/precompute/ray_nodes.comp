@@ -11,10 +11,14 @@ layout(local_size_x = 8, local_size_y = 1) in;
 layout(constant_id = 0) const int kOfTables = 0;  // 1: the rays of the tables, 0: those of the gathering grid
 
 layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
-layout(std430, binding = 1) readonly buffer shape_block { TableShape shape; ZenithQuadrature quadrature; };
+layout(std430, binding = 1) readonly buffer shape_block {
+  TableShape shape;
+  ZenithQuadrature quadrature;
+};
 layout(std430, binding = 2) writeonly buffer node_block { RayNode nodes[]; };
 
-layout(push_constant) uniform Push { uint first; } push;
+layout(push_constant) uniform Push { uint first; }
+push;
 
 // Walks again, laying a boundary wherever another panel's worth of the total effort is reached.
 void lay_nodes(float h, float mu, float end, float total, uint panels, uint base) {

@@ -14,7 +14,10 @@
 layout(local_size_x = 32) in;
 
 layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
-layout(std430, binding = 1) readonly buffer shape_block { TableShape shape; ZenithQuadrature quadrature; };
+layout(std430, binding = 1) readonly buffer shape_block {
+  TableShape shape;
+  ZenithQuadrature quadrature;
+};
 layout(std430, binding = 2) readonly buffer phase_block { vec2 phase[]; };
 layout(std430, binding = 3) readonly buffer incident_block { vec4 incident[]; };
 layout(std430, binding = 4) buffer source_block { vec4 source[]; };
@@ -25,7 +28,8 @@ layout(std430, binding = 7) buffer sky_block { vec4 sky[]; };
 layout(push_constant) uniform Push {
   uint first;  // altitude
   uint order;  // n: of the light that is scattered here
-} push;
+}
+push;
 
 // Bound on the ratio of successive orders. Conservative scattering in thick air comes close to 1.
 const float kMaxRatio = 0.95;
@@ -36,10 +40,11 @@ shared vec3 partial_now[32];
 shared vec3 partial_before[32];
 shared vec3 ratio;  // of an order to the one before, once that has settled
 
-// Returns the sum of all orders after `last`, from the last two. Successive orders are taken for the sum of two geometric
-// series: a slow one, whose ratio is the largest eigenvalue of transport and therefore the same at every point, direction and
-// sun, and one that falls twice as fast. The ratio of the two orders themselves would not do: where the sun is low
-// and the air turbid, light of the first orders is still arriving, and their ratio is far above that of later ones.
+// Returns the sum of all orders after `last`, from the last two. Successive orders are taken for the sum of two
+// geometric series: a slow one, whose ratio is the largest eigenvalue of transport and therefore the same at every
+// point, direction and sun, and one that falls twice as fast. The ratio of the two orders themselves would not do:
+// where the sun is low and the air turbid, light of the first orders is still arriving, and their ratio is far above
+// that of later ones.
 vec3 orders_beyond(vec3 last, vec3 before, vec3 ratio) {
   vec3 fast = 0.5 * ratio;
   vec3 scale = 1.0 / ((1.0 - ratio) * (1.0 - fast));
@@ -75,9 +80,9 @@ void scatter_modes(uint lane, uint altitude, float h) {
   }
 }
 
-// Sets `ratio` to the ratio of the last two orders of the source at sea level, averaged over all directions, once it has
-// settled: it rises to that value under the highest sun and falls to it under one on the horizon, and their mean is close.
-// The mean of what is scattered is the mean of the light that arrives.
+// Sets `ratio` to the ratio of the last two orders of the source at sea level, averaged over all directions, once it
+// has settled: it rises to that value under the highest sun and falls to it under one on the horizon, and their mean is
+// close. The mean of what is scattered is the mean of the light that arrives.
 void find_ratio(uint lane) {
   float horizon = horizon_cos(0.0, medium.planet_radius_m);
   if (lane == 0u) ratio = vec3(0.0);
@@ -95,7 +100,8 @@ void find_ratio(uint lane) {
       uint j = i / kSourceAzimuths;
       uint k = i % kSourceAzimuths;
       float weight = (k == 0u || k == kSourceAzimuths - 1u ? 0.25 : 0.5) / float(kSourceAzimuths - 1u);
-      before += (weight * source_zenith_weight(j) * sin(source_zenith(j))) * value_from_texel(source[source_index(kGatherBelow, j, k, sun)].rgb);
+      before += (weight * source_zenith_weight(j) * sin(source_zenith(j))) *
+                value_from_texel(source[source_index(kGatherBelow, j, k, sun)].rgb);
     }
     partial_now[lane] = now;
     partial_before[lane] = before;

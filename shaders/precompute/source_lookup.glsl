@@ -14,11 +14,9 @@ vec3 source_plane(uint altitude, uint zenith, float zenith_part, uint azimuth, f
                   float sun_part) {
   uint base = source_index(altitude, zenith, azimuth, 0u);
   uint row = kSourceAzimuths * kGatherSuns;
-  vec3 near = mix(source_column(base, sun, sun_part), source_column(base + kGatherSuns, sun, sun_part),
-                  azimuth_part);
+  vec3 near = mix(source_column(base, sun, sun_part), source_column(base + kGatherSuns, sun, sun_part), azimuth_part);
   base += row;
-  vec3 far = mix(source_column(base, sun, sun_part), source_column(base + kGatherSuns, sun, sun_part),
-                 azimuth_part);
+  vec3 far = mix(source_column(base, sun, sun_part), source_column(base + kGatherSuns, sun, sun_part), azimuth_part);
   return mix(near, far, zenith_part);
 }
 
@@ -30,14 +28,12 @@ struct SourceAngles {
 };
 
 // The angle nearest to x that makes a triangle on the sphere with two others.
-float angle_in_triangle(float x, float a, float b) {
-  return clamp(x, abs(a - b), min(a + b, 2.0 * kPi - a - b));
-}
+float angle_in_triangle(float x, float a, float b) { return clamp(x, abs(a - b), min(a + b, 2.0 * kPi - a - b)); }
 
 // From cosines. Texels of the tables also stand for triples that no geometry has, and interpolation draws on
-// them. On the sun's side the angle between view and sun is kept, on which the aureole depends, and the view gives way; or
-// the sun where it is high and nearer to the vertical, for then its exact place matters least. On the other side
-// the light hardly depends on that angle but, in turbid air near the horizon, strongly on the view: that is kept instead.
+// them. On the sun's side the angle between view and sun is kept, on which the aureole depends, and the view gives way;
+// or the sun where it is high and nearer to the vertical, for then its exact place matters least. On the other side the
+// light hardly depends on that angle but, in turbid air near the horizon, strongly on the view: that is kept instead.
 const float kHighSun = 0.5;
 SourceAngles source_angles(float mu, float mu_s, float nu) {
   bool move_sun = mu_s > max(kHighSun, abs(mu));

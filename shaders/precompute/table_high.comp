@@ -15,7 +15,8 @@ layout(std430, binding = 1) readonly buffer shape_block { TableShape shape; };
 layout(std430, binding = 2) readonly buffer node_block { RayNode nodes[]; };
 layout(binding = 4, rgba16f) uniform writeonly image3D high_orders;
 
-layout(push_constant) uniform Push { uint first; } push;  // altitude
+layout(push_constant) uniform Push { uint first; }
+push;  // altitude
 
 void main() {
   uvec3 id = gl_GlobalInvocationID;

@@ -15,7 +15,8 @@ layout(std430, binding = 2) readonly buffer node_block { RayNode nodes[]; };
 layout(binding = 3, rgba16f) uniform writeonly image3D single_rayleigh;
 layout(binding = 4, rgba16f) uniform writeonly image3D single_mie;
 
-layout(push_constant) uniform Push { uint first; } push;  // altitude
+layout(push_constant) uniform Push { uint first; }
+push;  // altitude
 
 void main() {
   uvec3 id = gl_GlobalInvocationID;

@@ -27,8 +27,8 @@ void main() {
   if (ray.end_m > 0.0) {
     vec3 rayleigh;
     vec3 mie;
-    oneil_scattering(medium, oneil, 0u, ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith, ray.cos_view_sun,
-                     0.0, ray.end_m, rayleigh, mie, through);
+    oneil_scattering(medium, oneil, 0u, ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith, ray.cos_view_sun, 0.0,
+                     ray.end_m, rayleigh, mie, through);
     radiance = oneil_radiance(medium, oneil, ray.cos_view_sun, rayleigh, mie);
   }
   results[index] = ProbeResult(radiance, 0.0, through, 0.0);

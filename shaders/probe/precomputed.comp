@@ -62,8 +62,8 @@ void main() {
                            ray.on_ground == 1u, ray.end_m);
   AirLight light = light_to_end(shape, medium, table_angle(shape, medium, path.cos_view_sun), path);
   if (integrate_single == 1u) {
-    light.single = single_scattering(medium, ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith,
-                                     ray.cos_view_sun, 0.0, ray.end_m, int(steps));
+    light.single = single_scattering(medium, ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith, ray.cos_view_sun,
+                                     0.0, ray.end_m, int(steps));
   }
   vec3 through = transmittance(medium, column_along(medium, ray.altitude_m, ray.cos_view_zenith, ray.end_m));
   vec3 radiance = light.single + light.high;

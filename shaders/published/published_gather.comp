@@ -9,7 +9,11 @@ layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
 layout(binding = 1) uniform sampler3D scattered;
 layout(binding = 2, rgba32f) uniform writeonly image3D order_now;
 layout(binding = 3, rgba16f) uniform image3D sum_of_orders;
-layout(push_constant) uniform Push { uint first; uint adds; } push;  // adds: 0 for the first of the orders
+layout(push_constant) uniform Push {
+  uint first;
+  uint adds;
+}
+push;  // adds: 0 for the first of the orders
 
 void main() {
   uvec3 texel = gl_GlobalInvocationID + uvec3(0u, 0u, push.first);

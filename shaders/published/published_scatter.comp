@@ -9,7 +9,8 @@ layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
 layout(std430, binding = 1) readonly buffer direction_block { vec4 directions[]; };
 layout(binding = 2) uniform sampler3D order_before;
 layout(binding = 3, rgba32f) uniform writeonly image3D scattered;
-layout(push_constant) uniform Push { uint first; } push;
+layout(push_constant) uniform Push { uint first; }
+push;
 
 void main() {
   uvec3 texel = gl_GlobalInvocationID + uvec3(0u, 0u, push.first);

@@ -7,7 +7,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
 layout(binding = 1) uniform sampler2D density;
 layout(binding = 2, rgba16f) uniform writeonly image3D single;
-layout(push_constant) uniform Push { uint first; } push;
+layout(push_constant) uniform Push { uint first; }
+push;
 
 void main() {
   uvec3 texel = gl_GlobalInvocationID + uvec3(0u, 0u, push.first);

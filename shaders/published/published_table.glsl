@@ -11,7 +11,7 @@
 const vec4 kSize = vec4(32.0, 128.0, 64.0, 16.0);
 const uvec3 kTexels = uvec3(32u, 128u, 64u * 16u);
 const float kPi = 3.14159265358979;
-const float kMargin = 16.0;       // from the ground and the top [m]
+const float kMargin = 16.0;        // from the ground and the top [m]
 const float kHorizonGuard = 1e-4;  // of view cosines
 
 struct Place {
@@ -88,12 +88,8 @@ Place place_along(Medium m, Place p, float d) {
 }
 
 // Relative densities of air and aerosol.
-vec2 density_at(Medium m, float h) {
-  return exp(-abs(h) / vec2(m.rayleigh_scale_height_m, m.mie_scale_height_m));
-}
+vec2 density_at(Medium m, float h) { return exp(-abs(h) / vec2(m.rayleigh_scale_height_m, m.mie_scale_height_m)); }
 
-vec3 dimmed(Medium m, vec2 column) {
-  return exp(-(m.rayleigh_scattering * column.x + m.mie_extinction * column.y));
-}
+vec3 dimmed(Medium m, vec2 column) { return exp(-(m.rayleigh_scattering * column.x + m.mie_extinction * column.y)); }
 
 #endif

@@ -8,6 +8,7 @@ layout(location = 0) in vec2 ndc;
 layout(location = 0) out vec4 radiance;
 
 void main() {
-  vec3 direction = normalize(mat3(local_from_view) * vec3((ndc.x - jitter.x) * tan_half.x, -(ndc.y - jitter.y) * tan_half.y, -1.0));
+  vec3 direction =
+      normalize(mat3(local_from_view) * vec3((ndc.x - jitter.x) * tan_half.x, -(ndc.y - jitter.y) * tan_half.y, -1.0));
   radiance = vec4(beyond_air(direction), 1.0);
 }

@@ -1,6 +1,7 @@
-// Between maps and the local frame in single precision, without loss of digits: places are given by their offset from the
-// origin of the local frame, and every formula is one of differences, so that the error is a few 1e-7 of that offset.
-// Azimuthal equidistant charts: a place at the arc a from a chart's centre stands at the distance R a from it on the map.
+// Between maps and the local frame in single precision, without loss of digits: places are given by their offset from
+// the origin of the local frame, and every formula is one of differences, so that the error is a few 1e-7 of that
+// offset. Azimuthal equidistant charts: a place at the arc a from a chart's centre stands at the distance R a from it
+// on the map.
 #ifndef TYNDALL_CHARTS_GLSL
 #define TYNDALL_CHARTS_GLSL
 
@@ -44,8 +45,9 @@ Azimuth azimuth_of(float along, float across) {
   a.distance_from_centre = sqrt(along * along + across * across);
   float inverse = a.distance_from_centre > 0.0 ? 1.0 / a.distance_from_centre : 0.0;
   a.sine = across * inverse;
-  a.versine = along > 0.0 ? across * across * inverse / (a.distance_from_centre + along)
-              : a.distance_from_centre > 0.0 ? 1.0 - along * inverse : 0.0;
+  a.versine = along > 0.0                    ? across * across * inverse / (a.distance_from_centre + along)
+              : a.distance_from_centre > 0.0 ? 1.0 - along * inverse
+                                             : 0.0;
   return a;
 }
 
@@ -59,7 +61,9 @@ vec3 local_direction(vec2 offset_m) {
   float rho = azimuth.distance_from_centre;
   float sum_m = rho + c.radius_m;
   // (rho - c.radius_m) / R
-  float arc = sum_m > 0.0 ? (radial_m * (2.0 * c.radius_m + radial_m) + across_m * across_m) / (sum_m * charts.planet_radius_m) : 0.0;
+  float arc = sum_m > 0.0
+                  ? (radial_m * (2.0 * c.radius_m + radial_m) + across_m * across_m) / (sum_m * charts.planet_radius_m)
+                  : 0.0;
   float sine = exact_sin(rho / charts.planet_radius_m);
   float half_sine = exact_sin(0.5 * arc);
   float radial = exact_sin(arc) - sine * c.cosine * azimuth.versine;
@@ -80,16 +84,17 @@ ivec2 chart_units(uint index, vec3 direction) {
   float tangential = dot(direction.xz, turned(c.local_radial));
   Azimuth azimuth = azimuth_of(c.sine * (1.0 + direction.y) + c.cosine * radial, tangential);
   float sine = azimuth.distance_from_centre;
-  float arc = exact_angle(radial + sine * c.cosine * azimuth.versine, 1.0 + direction.y + sine * c.sine * azimuth.versine);
+  float arc =
+      exact_angle(radial + sine * c.cosine * azimuth.versine, 1.0 + direction.y + sine * c.sine * azimuth.versine);
   float way_m = arc * charts.planet_radius_m;
   float rho = c.radius_m + way_m;
   vec2 offset_m = c.radial * (way_m - rho * azimuth.versine) + turned(c.radial) * (rho * azimuth.sine) + c.rest_m;
   return c.units + ivec2(floor(offset_m * 64.0 + 0.5));
 }
 
-// How much each chart's mountains count at a point of the unit sphere: see chart_weights in src/scene/chart.hpp. Returns
-// a bit for each chart that does. To be walked through as `while (rest != 0u)`: a loop over all six charts would cost a
-// device that masks its lanes the work of six.
+// How much each chart's mountains count at a point of the unit sphere: see chart_weights in src/scene/chart.hpp.
+// Returns a bit for each chart that does. To be walked through as `while (rest != 0u)`: a loop over all six charts
+// would cost a device that masks its lanes the work of six.
 uint chart_weights(vec3 direction, out float weights[6]) {
   vec3 n = direction + vec3(0.0, 1.0, 0.0);
   vec3 world = vec3(dot(charts.world_x, n), dot(charts.world_y, n), dot(charts.world_z, n));
@@ -114,7 +119,7 @@ uint chart_weights(vec3 direction, out float weights[6]) {
 // the way from its centre.
 struct ChartAxes {
   vec3 up;
-  vec3 radial;      // away from the chart's centre
+  vec3 radial;  // away from the chart's centre
   vec3 tangential;
   vec2 map_radial;  // `radial` on the map
   float stretch;
@@ -131,7 +136,8 @@ ChartAxes chart_axes(uint index, vec3 direction) {
   float turn = 1.0 - azimuth.versine;
   ChartAxes a;
   a.up = normalize(direction + vec3(0.0, 1.0, 0.0));
-  vec2 level = c.local_radial * (cosine * turn * c.cosine + sine * c.sine) + turned(c.local_radial) * (cosine * azimuth.sine);
+  vec2 level =
+      c.local_radial * (cosine * turn * c.cosine + sine * c.sine) + turned(c.local_radial) * (cosine * azimuth.sine);
   a.radial = normalize(vec3(level.x, cosine * turn * c.sine - sine * c.cosine, level.y));
   a.tangential = cross(a.radial, a.up);
   a.map_radial = c.radial * turn + turned(c.radial) * azimuth.sine;

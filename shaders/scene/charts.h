@@ -18,7 +18,7 @@ struct Charts {
   vec3 world_x;  // the world's axes in the local frame
   float planet_radius_m;
   vec3 world_y;
-  uint own;      // the chart that the terrain's grid lies on
+  uint own;  // the chart that the terrain's grid lies on
   vec3 world_z;
   float unused;
 };

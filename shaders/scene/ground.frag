@@ -13,9 +13,11 @@ layout(location = 0) in vec2 ndc;
 layout(location = 0) out vec4 radiance;
 
 layout(push_constant) uniform Push {
-  mat4 local_from_ndc;   // directions: (x, y, 1, 0) of the picture to the local frame, the length along the view's axis 1
+  mat4
+      local_from_ndc;  // directions: (x, y, 1, 0) of the picture to the local frame, the length along the view's axis 1
   float near_m;
-} push;
+}
+push;
 
 void main() {
   vec3 direction = mat3(push.local_from_ndc) * vec3(ndc, 1.0);

@@ -17,10 +17,10 @@ layout(std430, binding = 6) readonly buffer model_block {
   float eye_cos_sun;
   vec3 to_sun;
   uint in_space;
-  vec3 sun_on_ground;  // relative to that above the atmosphere, once a frame; not from space
-  float air_shown;     // 0 without scattering.enabled
-  vec3 sky_on_ground;  // irradiance, likewise
-  float ground_shown;  // 0 with scattering.only
+  vec3 sun_on_ground;   // relative to that above the atmosphere, once a frame; not from space
+  float air_shown;      // 0 without scattering.enabled
+  vec3 sky_on_ground;   // irradiance, likewise
+  float ground_shown;   // 0 with scattering.only
   vec3 sun_irradiance;  // above the atmosphere
   float unused_model;
   vec4 sky_by_sun[];  // from space: the sky's irradiance by the square root of the sun's cosine, 64 of them

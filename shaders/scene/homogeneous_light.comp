@@ -16,7 +16,8 @@ void ground_light(float altitude_m, float cos_sun_zenith, out vec3 sun, out vec3
     sun = homogeneous_sun(medium, cos_sun_zenith);
     float place = sqrt(clamp(cos_sun_zenith, 0.0, 1.0)) * (kSunsOfSky - 1.0);
     uint below = uint(min(floor(place), kSunsOfSky - 2.0));
-    sky = cos_sun_zenith > 0.0 ? mix(sky_by_sun[below].rgb, sky_by_sun[below + 1u].rgb, place - float(below)) : vec3(0.0);
+    sky =
+        cos_sun_zenith > 0.0 ? mix(sky_by_sun[below].rgb, sky_by_sun[below + 1u].rgb, place - float(below)) : vec3(0.0);
   }
 }
 

@@ -14,7 +14,8 @@ layout(location = 0) out vec4 radiance;
 
 layout(binding = 3) uniform sampler2D base_color;
 
-// 0: surfaces, and glass that diffuses; 1: clear glass, multiplied into the picture; 2: the light that it reflects, added.
+// 0: surfaces, and glass that diffuses; 1: clear glass, multiplied into the picture; 2: the light that it reflects,
+// added.
 layout(constant_id = 0) const uint kLayer = 0u;
 
 const float kPerPi = 0.318309886;

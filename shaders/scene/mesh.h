@@ -1,6 +1,6 @@
-// What the shaders of the meshes and of the bare ground read of one view (std430). Filled by src/scene/meshes.cpp. Places
-// and directions are in the local frame of src/scene/local_frame.hpp. The
-// fields up to `cascade` are those that sun_shadow.glsl needs.
+// What the shaders of the meshes and of the bare ground read of one view (std430). Filled by src/scene/meshes.cpp.
+// Places and directions are in the local frame of src/scene/local_frame.hpp. The fields up to `cascade` are those that
+// sun_shadow.glsl needs.
 struct MeshConstants {
   vec3 camera_position;
   float shadow_resolution;
@@ -10,10 +10,10 @@ struct MeshConstants {
   uint smooth_shadows;
   uint best_cascade;
   uint show_cascades;
-  uint has_glass;        // the maps of colours are there
+  uint has_glass;  // the maps of colours are there
   float planet_radius_m;
   mat4 shadow_from_local[8];
-  vec4 cascade[8];       // far view depth [m], texel x [m], texel y [m], depth range [m]
+  vec4 cascade[8];  // far view depth [m], texel x [m], texel y [m], depth range [m]
   vec3 sun_irradiance;
   float atmosphere_height_m;
   vec3 ground_albedo;

@@ -7,9 +7,10 @@ layout(push_constant) uniform Push {
   vec4 color;
   float alpha_cutoff;
   float transmission;
-  uint kind;          // a SurfaceKind
+  uint kind;  // a SurfaceKind
   uint double_sided;
-} push;
+}
+push;
 
 const uint kOpaque = 0u;
 const uint kMask = 1u;

@@ -19,7 +19,8 @@ struct MeshVertex {
 };
 
 vec3 vertex_vec3(uint word) {
-  return vec3(uintBitsToFloat(vertex_words[word]), uintBitsToFloat(vertex_words[word + 1u]), uintBitsToFloat(vertex_words[word + 2u]));
+  return vec3(uintBitsToFloat(vertex_words[word]), uintBitsToFloat(vertex_words[word + 1u]),
+              uintBitsToFloat(vertex_words[word + 2u]));
 }
 
 MeshVertex mesh_vertex(uint vertex, uint instance) {

@@ -11,7 +11,8 @@
 // edition, 2000: geometric albedo 0.12).
 const float kMoonAlbedo = 0.12;
 
-// Relief and plains at a point of the moon's surface (in the world, so that they stay where they are), 1 on average; detail smaller than `footprint` fades.
+// Relief and plains at a point of the moon's surface (in the world, so that they stay where they are), 1 on average;
+// detail smaller than `footprint` fades.
 float moon_shade(vec3 n, float footprint) {
   float plains = smoothstep(-0.05, 0.25, noise3_sum(n * 1.7, 4, 1.7 * footprint, 77u));
   float craters = noise3_sum(n * 9.0, 4, 9.0 * footprint, 78u);
@@ -33,7 +34,10 @@ vec3 beyond_air(vec3 direction) {
       vec3 n = normalize(across - direction_to_moon * max(facing, 0.02));
       float sun = max(dot(n, direction_to_sun), 0.0);
       float lit = 2.0 * kMoonAlbedo * sun / max(sun + facing, 1.0e-4);
-      light = mix(light, moon_irradiance * (0.318309886 * lit * moon_shade(mat3(world_from_local) * n, pixel / moon_radius_rad)), cover);
+      light =
+          mix(light,
+              moon_irradiance * (0.318309886 * lit * moon_shade(mat3(world_from_local) * n, pixel / moon_radius_rad)),
+              cover);
     }
   }
   return light;

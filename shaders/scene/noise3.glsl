@@ -23,7 +23,8 @@ float noise3(vec3 p, uint seed) {
   float sum = 0.0;
   for (int i = 0; i < 8; ++i) {
     ivec3 step = ivec3(i & 1, (i >> 1) & 1, i >> 2);
-    vec3 gradient = vec3(noise3_hash(uvec3(corner + step) + uvec3(seed, 3u * seed, 7u * seed))) * (2.0 / 4294967295.0) - 1.0;
+    vec3 gradient =
+        vec3(noise3_hash(uvec3(corner + step) + uvec3(seed, 3u * seed, 7u * seed))) * (2.0 / 4294967295.0) - 1.0;
     vec3 side = mix(1.0 - w, w, vec3(step));
     sum += side.x * side.y * side.z * dot(gradient, f - vec3(step));
   }

@@ -21,16 +21,16 @@ layout(std430, binding = 6) readonly buffer model_block {
   Oneil oneil;
   vec3 eye_position;
   float eye_altitude_m;
-  vec3 eye_up;           // away from the planet's centre
-  float eye_cos_sun;     // of the sun's zenith angle at the eye
+  vec3 eye_up;        // away from the planet's centre
+  float eye_cos_sun;  // of the sun's zenith angle at the eye
   vec3 to_sun;
-  float horizon_rad;     // zenith angle of the horizon
-  vec3 sun_irradiance;   // above the air
-  float air_shown;       // 0: no air
-  vec3 north_pole;       // of the sphere's surface, in the world
-  float ground_shown;    // 0: nothing but the light of the air
+  float horizon_rad;    // zenith angle of the horizon
+  vec3 sun_irradiance;  // above the air
+  float air_shown;      // 0: no air
+  vec3 north_pole;      // of the sphere's surface, in the world
+  float ground_shown;   // 0: nothing but the light of the air
   uint sphere_seed;
-  uint is_sphere;        // the ground is the sphere, and not the terrain
+  uint is_sphere;  // the ground is the sphere, and not the terrain
   float unused_model_0;
   float unused_model_1;
   // Irradiance of the sky at sea level / E0 for cosines of the sun's zenith angle from -1 to 1.

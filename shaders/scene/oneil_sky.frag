@@ -21,16 +21,18 @@ vec3 sphere_radiance(vec3 direction) {
   float cos_sun = dot(up, to_sun);
   float facing = max(-dot(up, direction), 0.02);
   float footprint_rad = distance_m * pixel_angle_rad / (R * sqrt(facing));
-  vec3 albedo = is_sphere != 0u ? planet_albedo(mat3(world_from_local) * up, north_pole, footprint_rad, sphere_seed) : kUnseenAlbedo;
+  vec3 albedo = is_sphere != 0u ? planet_albedo(mat3(world_from_local) * up, north_pole, footprint_rad, sphere_seed)
+                                : kUnseenAlbedo;
   vec3 sun;
   vec3 sky;
   light_on_ground(0.0, cos_sun, sun, sky);
   return albedo * 0.318309886 * (sun * max(cos_sun, 0.0) + sky) * sun_irradiance;
 }
 
-// Whether the air has to be found for the pixel where it is found at the vertices otherwise: near the horizon, where what
-// lies on either side differs, and, from space, in the limb. The mesh's edges are arcs of great circles, which leave the
-// circle of zenith angles that their vertices stand on by up to the square of their length over 8 (kSag_rad at 45 degrees).
+// Whether the air has to be found for the pixel where it is found at the vertices otherwise: near the horizon, where
+// what lies on either side differs, and, from space, in the limb. The mesh's edges are arcs of great circles, which
+// leave the circle of zenith angles that their vertices stand on by up to the square of their length over 8 (kSag_rad
+// at 45 degrees).
 bool in_limb(float mu, bool on_ground) {
   const float kSag_rad = 9.0e-4;
   const float kRow_rad = 2.0e-3;  // below the horizon, where light changes like a root
@@ -46,7 +48,8 @@ void main() {
   vec3 through = vertex_through;
   float mu = dot(direction, eye_up);
   bool on_ground = ray_hits_ground(eye_altitude_m, mu, medium.planet_radius_m);
-  if (kPerPixel != 0u || in_limb(mu, on_ground)) oneil_air(direction, 0.0, on_ground ? kAtGround : kInSpace, rayleigh, mie, through);
+  if (kPerPixel != 0u || in_limb(mu, on_ground))
+    oneil_air(direction, 0.0, on_ground ? kAtGround : kInSpace, rayleigh, mie, through);
   vec3 behind = vec3(0.0);
   if (ground_shown != 0.0) behind = on_ground ? sphere_radiance(direction) : beyond_air(direction);
   radiance = vec4(behind * through + air_radiance(direction, rayleigh, mie), 1.0);

@@ -19,8 +19,8 @@ void main() {
   if (kPerPixel == 0u) {
     // The mesh has a row on the horizon and one right below it, so that the break there stays sharp.
     float zenith = sky_mesh_zenith(uint(gl_VertexIndex));
-    oneil_air(normalize(offset), 0.0, zenith > horizon_rad + 2.0e-5 ? kAtGround : kInSpace, vertex_rayleigh,
-              vertex_mie, vertex_through);
+    oneil_air(normalize(offset), 0.0, zenith > horizon_rad + 2.0e-5 ? kAtGround : kInSpace, vertex_rayleigh, vertex_mie,
+              vertex_through);
   }
   gl_Position = sky_mesh_clip(offset);
 }

@@ -5,9 +5,9 @@
 
 layout(std430, binding = 1) readonly buffer mesh_block {
   mat4 clip_from_local;
-  vec3 mesh_up;      // away from the planet's centre
+  vec3 mesh_up;  // away from the planet's centre
   uint mesh_columns;
-  vec3 mesh_ahead;   // horizontal, below or above the sun
+  vec3 mesh_ahead;  // horizontal, below or above the sun
   uint mesh_rows;
   vec3 mesh_right;
   float unused_mesh;

@@ -12,8 +12,8 @@ layout(std430, binding = 0) readonly buffer background_block {
   float pixel_angle_rad;  // of one pixel at the centre of the picture
   vec3 limb_exponent;
   float unused_0;
-  vec2 tan_half;          // of the field of view; y points down in clip space
-  vec2 jitter;            // of the picture, in clip space
+  vec2 tan_half;  // of the field of view; y points down in clip space
+  vec2 jitter;    // of the picture, in clip space
   vec3 direction_to_moon;
   float moon_radius_rad;  // 0: no moon
   vec3 moon_irradiance;   // of the sun's light on it

@@ -9,8 +9,8 @@ layout(binding = SHADOW_MAPS) uniform sampler2DArrayShadow shadow_maps;
 // Texels that the filter reaches over.
 const float kFilterMargin = 3.0;
 
-// How far inside cascade c a place in it is: 0 at the margin, 1 well inside, negative outside. Behind the last cascade's
-// depths, away from the sun, all casters are nearer.
+// How far inside cascade c a place in it is: 0 at the margin, 1 well inside, negative outside. Behind the last
+// cascade's depths, away from the sun, all casters are nearer.
 float cascade_margin(uint c, vec3 uvz) {
   float edge = kFilterMargin / SHADED.shadow_resolution;
   vec2 inside = min(uvz.xy, 1.0 - uvz.xy) - edge;
@@ -25,8 +25,8 @@ vec3 cascade_place(uint c, vec3 position, vec3 normal) {
   float texel_m = max(size.y, size.z);
   float cosine = clamp(dot(normal, SHADED.direction_to_sun), 0.0, 1.0);
   float reach = SHADED.smooth_shadows != 0u ? 2.0 : 1.0;
-  vec3 moved = position + normal * (texel_m * reach * sqrt(1.0 - cosine * cosine)) +
-               SHADED.direction_to_sun * (0.5 * texel_m);
+  vec3 moved =
+      position + normal * (texel_m * reach * sqrt(1.0 - cosine * cosine)) + SHADED.direction_to_sun * (0.5 * texel_m);
   return (SHADED.shadow_from_local[c] * vec4(moved, 1.0)).xyz;
 }
 

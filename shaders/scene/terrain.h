@@ -16,9 +16,9 @@ struct TerrainConstants {
   vec3 sun_irradiance;
   float pixel_angle_rad;
   vec3 camera_position;
-  uint block_cells;      // along a side of a block
+  uint block_cells;  // along a side of a block
   uint layers;
-  uint shading;          // a TerrainShading of scene_params.def
+  uint shading;  // a TerrainShading of scene_params.def
   uint seed;
   uint cascade_count;
   float shadow_resolution;
@@ -26,8 +26,8 @@ struct TerrainConstants {
   uint best_cascade;
   uint show_cascades;
   vec3 camera_forward;
-  uint has_glass;        // the maps of colours are there
+  uint has_glass;  // the maps of colours are there
   mat4 shadow_from_local[8];
-  vec4 cascade[8];       // far view depth [m], texel x [m], texel y [m], depth range [m]
+  vec4 cascade[8];  // far view depth [m], texel x [m], texel y [m], depth range [m]
   TerrainLevel levels[16];
 };

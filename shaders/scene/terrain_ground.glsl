@@ -37,8 +37,9 @@ TerrainMaterial ground_material(GroundPoint point, ChartAxes axes, vec3 normal, 
     bool own = chart == charts.own;
     ChartAxes a = axes;
     if (!own) a = chart_axes(chart, point.direction);
-    TerrainMaterial m = terrain_ground(terrain.shading, own ? point.units : chart_units(chart, point.direction), point.altitude_m,
-                                       map_from_local(normal, a), bend, footprint_m, terrain_chart_seed(terrain.seed, chart));
+    TerrainMaterial m =
+        terrain_ground(terrain.shading, own ? point.units : chart_units(chart, point.direction), point.altitude_m,
+                       map_from_local(normal, a), bend, footprint_m, terrain_chart_seed(terrain.seed, chart));
     ground.albedo += weights[chart] * m.albedo;
     ground.normal += weights[chart] * local_from_map(m.normal, a);
   }
@@ -88,7 +89,8 @@ vec3 ground_radiance(GroundPoint point) {
   vec3 bounced = ground.albedo * (open_sky + sun_on_flat) * (1.0 - visible * 0.5 * (1.0 + dot(normal, up)));
 
   vec3 albedo = ground.albedo;
-  if (terrain.show_cascades != 0u && cascade < terrain.cascade_count) albedo = 0.75 * albedo + 0.25 * cascade_color(cascade);
+  if (terrain.show_cascades != 0u && cascade < terrain.cascade_count)
+    albedo = 0.75 * albedo + 0.25 * cascade_color(cascade);
   return albedo * 0.318309886 * (sun + sky + bounced) * terrain.sun_irradiance;
 }
 

@@ -22,8 +22,8 @@ void main() {
   // A little more than the spacing: a crest as narrow as one cell would be cut into teeth by the grid.
   float spacing_m = 1.25 * fill.spacing_m;
   ivec2 units = (fill.first_sample + t) * sample_units;
-  // The elevation at a place of the planet is that of its chart; between charts, the mean of both. Where the file lies it
-  // alone counts. The same in ground_height() of src/scene/terrain.cpp.
+  // The elevation at a place of the planet is that of its chart; between charts, the mean of both. Where the file lies
+  // it alone counts. The same in ground_height() of src/scene/terrain.cpp.
   vec3 direction = local_direction(fill.first_m + vec2(t) * fill.spacing_m);
   float weights[6];
   uint rest = chart_weights(direction, weights);

@@ -1,6 +1,6 @@
-// The ground in sunlight that has come through the air and under the light of the sky, once for each pixel that shows it.
-// In: what terrain.frag has left. Out, in its place: radiance of the ground itself; what the air adds between it and the
-// eye is the effect's business.
+// The ground in sunlight that has come through the air and under the light of the sky, once for each pixel that shows
+// it. In: what terrain.frag has left. Out, in its place: radiance of the ground itself; what the air adds between it
+// and the eye is the effect's business.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -53,12 +53,11 @@ float terrain_material_weight(float cell_m, float footprint_m) {
 // Adds ribs and gullies that run down `slope`, finer than the elevation shows them: x 1 on crests to -1 in
 // gullies, yz slope of a relief whose typical slope is one. On level ground they wander. coarsest_m: waves of
 // that many metres and more are left to the elevation.
-vec3 terrain_material_ribs(vec2 slope, ivec2 units, int a, int b, int shift, float coarsest_m,
-                           float footprint_m, uint salt) {
-  float wave_m = float(1u << uint(shift)) * inversesqrt(float(a * a + b * b)) *
-                 (1.0 / (kTerrainUnitsPerM * kGullyTurns));
-  float weight =
-      terrain_material_weight(0.6 * wave_m, footprint_m) * clamp(2.0 - 2.0 * wave_m / coarsest_m, 0.0, 1.0);
+vec3 terrain_material_ribs(vec2 slope, ivec2 units, int a, int b, int shift, float coarsest_m, float footprint_m,
+                           uint salt) {
+  float wave_m =
+      float(1u << uint(shift)) * inversesqrt(float(a * a + b * b)) * (1.0 / (kTerrainUnitsPerM * kGullyTurns));
+  float weight = terrain_material_weight(0.6 * wave_m, footprint_m) * clamp(2.0 - 2.0 * wave_m / coarsest_m, 0.0, 1.0);
   vec3 n = vec3(0.0, 0.0, 0.0);
   if (weight > 0.0) {
     vec2 across = vec2(-slope.y, slope.x) * inversesqrt(dot(slope, slope) + 0.01);
@@ -76,8 +75,7 @@ float terrain_cover(float x, float width) { return clamp(x / width + 0.5, 0.0, 1
 // bend: change of its slope over the distance that it resolves, positive in hollows. footprint_m: width of a
 // pixel on the map. About 1700 operations within a few metres, where every octave is visible, 150 to 250 fewer
 // for each that is not.
-TerrainMaterial terrain_material(ivec2 units, float altitude_m, vec3 normal, float bend, float footprint_m,
-                                 uint seed) {
+TerrainMaterial terrain_material(ivec2 units, float altitude_m, vec3 normal, float bend, float footprint_m, uint seed) {
   uint salt = terrain_hash(seed + 0x2c1b3c6du);
   vec2 gradient = vec2(normal.x, normal.z) * (-1.0 / max(normal.y, 0.05));
   vec3 wide = terrain_material_octave(units, 1, 3, 18, footprint_m, salt + 1u);     // 1295 m
@@ -96,9 +94,9 @@ TerrainMaterial terrain_material(ivec2 units, float altitude_m, vec3 normal, flo
   vec3 coarse = terrain_material_ribs(steer, units, 4, 3, 15, 1.0e9, footprint_m, salt + 3u);  // waves of 137 m
   steer += vec2(coarse.y, coarse.z) * 0.35;
   vec3 middle = terrain_material_ribs(steer, units, 3, 1, 13, 1.0e9, footprint_m, salt + 4u);  // waves of 54 m
-  vec3 fine = terrain_material_octave(units, 1, 2, 11, footprint_m, salt + 5u);     // 14 m
-  vec3 grain = terrain_material_octave(units, 3, 2, 10, footprint_m, salt + 6u);    // 4.4 m
-  vec3 pebbles = terrain_material_octave(units, 2, 1, 8, footprint_m, salt + 7u);   // 1.8 m
+  vec3 fine = terrain_material_octave(units, 1, 2, 11, footprint_m, salt + 5u);                // 14 m
+  vec3 grain = terrain_material_octave(units, 3, 2, 10, footprint_m, salt + 6u);               // 4.4 m
+  vec3 pebbles = terrain_material_octave(units, 2, 1, 8, footprint_m, salt + 7u);              // 1.8 m
   float hollow = bend / (0.35 + abs(bend)) - 0.28 * broad.x;
   float large = wide.x * 0.55 + patches.x * 0.45;
   float ragged = coarse.x * 0.22 + middle.x * 0.22 + fine.x * 0.32 + grain.x * 0.25;
@@ -114,8 +112,9 @@ TerrainMaterial terrain_material(ivec2 units, float altitude_m, vec3 normal, flo
   // a pixel, the ground is steeper than its mean: or distant mountains would be all snow.
   float bare_m = clamp((altitude_m - 1500.0) * (1.0 / 900.0), 0.0, 1.0);
   float hidden = clamp(log2(max(footprint_m, 16.0) * 0.0625) * 0.14, 0.0, 1.0);
-  vec2 ribbed = gradient + (vec2(coarse.y, coarse.z) * 0.28 + vec2(middle.y, middle.z) * 0.34) *
-                               (bare_m * clamp(0.75 + large, 0.3, 1.2) * min(1.4 * length(gradient), 1.0)) +
+  vec2 ribbed = gradient +
+                (vec2(coarse.y, coarse.z) * 0.28 + vec2(middle.y, middle.z) * 0.34) *
+                    (bare_m * clamp(0.75 + large, 0.3, 1.2) * min(1.4 * length(gradient), 1.0)) +
                 vec2(broad.y, broad.z) * ((0.22 + 0.14 * bare_m) * min(2.2 * length(gradient), 1.0));
   float steep = length(ribbed) * (1.0 + hidden);
   float rough_steep = steep * (1.0 + 0.25 * ragged + 0.10 * large);
@@ -132,15 +131,17 @@ TerrainMaterial terrain_material(ivec2 units, float altitude_m, vec3 normal, flo
 
   // Which ground, as shares that later layers cover.
   float treeline_m = 1750.0 + 130.0 * sunny;
-  float trees = terrain_cover((treeline_m - altitude_m) / 420.0 + 0.55 * large + 0.6 * ragged - 0.15, edge) *
-                terrain_cover(large * 0.9 + ragged * 0.7 + 1.6 * min(steep, 0.45) + 0.25 * hollow - 0.38 - 0.7 * dry, edge) *
-                terrain_cover(1.25 - rough_steep, 0.3);
+  float trees =
+      terrain_cover((treeline_m - altitude_m) / 420.0 + 0.55 * large + 0.6 * ragged - 0.15, edge) *
+      terrain_cover(large * 0.9 + ragged * 0.7 + 1.6 * min(steep, 0.45) + 0.25 * hollow - 0.38 - 0.7 * dry, edge) *
+      terrain_cover(1.25 - rough_steep, 0.3);
   float barren = terrain_cover(
-      (altitude_m - 2150.0 - 120.0 * sunny) / 500.0 + 0.5 * large + 0.8 * ragged + 0.5 * (steep - 0.5) - 0.5 * hollow, 0.35 + edge);
+      (altitude_m - 2150.0 - 120.0 * sunny) / 500.0 + 0.5 * large + 0.8 * ragged + 0.5 * (steep - 0.5) - 0.5 * hollow,
+      0.35 + edge);
   float scree = max(barren, terrain_cover(rough_steep - 0.66 + 0.10 * large, 0.10 + 0.35 * unresolved));
   // Rock stands out as ribs; what falls from it lies in the gullies between.
-  float rock = terrain_cover(rough_steep - 0.84 + 0.12 * large - 0.25 * hollow + 0.28 * (coarse.x * 0.5 + middle.x * 0.5) +
-                                 0.14 * barren * (fine.x + grain.x),
+  float rock = terrain_cover(rough_steep - 0.84 + 0.12 * large - 0.25 * hollow +
+                                 0.28 * (coarse.x * 0.5 + middle.x * 0.5) + 0.14 * barren * (fine.x + grain.x),
                              0.07 + 0.5 * unresolved);
   // Snow fills gullies, and the wind takes it from crests.
   float snowline_m = 2700.0 + 260.0 * sunny;
@@ -174,8 +175,8 @@ TerrainMaterial terrain_material(ivec2 units, float altitude_m, vec3 normal, flo
   float bare = max(scree * 0.6, rock);
   float relief = mix(mix(0.10, 0.55, trees), mix(0.32, 0.60, rock), bare);
   relief = mix(relief, 0.09, snow);
-  vec2 slope = (ribbed - gradient) * (1.0 - 0.65 * snow) + (vec2(fine.y, fine.z) * 0.5 +
-               vec2(grain.y, grain.z) * 0.5 + vec2(pebbles.y, pebbles.z) * 0.35) * relief;
+  vec2 slope = (ribbed - gradient) * (1.0 - 0.65 * snow) +
+               (vec2(fine.y, fine.z) * 0.5 + vec2(grain.y, grain.z) * 0.5 + vec2(pebbles.y, pebbles.z) * 0.35) * relief;
 
   TerrainMaterial result;
   result.albedo = clamp(albedo, vec3(0.005), vec3(0.93));
@@ -193,8 +194,8 @@ vec3 terrain_height_albedo(float altitude_m) {
 }
 
 // The ground in one of the three modes of terrain.shading.
-TerrainMaterial terrain_ground(uint shading, ivec2 units, float altitude_m, vec3 normal, float bend,
-                               float footprint_m, uint seed) {
+TerrainMaterial terrain_ground(uint shading, ivec2 units, float altitude_m, vec3 normal, float bend, float footprint_m,
+                               uint seed) {
   TerrainMaterial ground;
   ground.normal = normal;
   ground.albedo = kPlainAlbedo;

@@ -84,9 +84,7 @@ uint terrain_hash(uint n) {
 }
 
 // Two numbers in [-1; 1].
-vec2 terrain_random2(uint h) {
-  return vec2(float(h & 0xffffu), float(h >> 16u)) * (1.0 / 32767.5) - vec2(1.0, 1.0);
-}
+vec2 terrain_random2(uint h) { return vec2(float(h & 0xffffu), float(h >> 16u)) * (1.0 / 32767.5) - vec2(1.0, 1.0); }
 
 uvec4 terrain_corners(TerrainCell cell, uint salt) {
   uint x0 = (cell.corner.x & cell.mask) * 0x9e3779b1u;
@@ -100,8 +98,8 @@ uvec4 terrain_corners(TerrainCell cell, uint salt) {
 vec2 terrain_value2(TerrainCell cell, uint salt) {
   uvec4 h = terrain_corners(cell, salt);
   vec2 t = cell.f * cell.f * (vec2(3.0, 3.0) - cell.f * 2.0);
-  return mix(mix(terrain_random2(h.x), terrain_random2(h.y), t.x),
-             mix(terrain_random2(h.z), terrain_random2(h.w), t.x), t.y);
+  return mix(mix(terrain_random2(h.x), terrain_random2(h.y), t.x), mix(terrain_random2(h.z), terrain_random2(h.w), t.x),
+             t.y);
 }
 
 // Gradient noise (Perlin, "Improving noise", 2002): x value, mostly in [-0.7; 0.7]; yz gradient per cell.
@@ -163,10 +161,10 @@ float terrain_gully_profile(float cosine, float blunt) {
 // One gully octave on top of `s`. amplitude: height per wavelength. gentle: squared slope below which
 // gullies fade. Octaves between detail_m and twice that fade in: procedural terrain passes a huge
 // detail_m, elevation files what they cannot resolve themselves.
-void terrain_gully_octave(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, int a, int b, int shift,
-                          float amplitude, float gentle, float spacing_m, float detail_m, uint salt) {
-  float wave_m = float(1u << uint(shift)) * inversesqrt(float(a * a + b * b)) *
-                 (1.0 / (kTerrainUnitsPerM * kGullyTurns));
+void terrain_gully_octave(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, int a, int b, int shift, float amplitude,
+                          float gentle, float spacing_m, float detail_m, uint salt) {
+  float wave_m =
+      float(1u << uint(shift)) * inversesqrt(float(a * a + b * b)) * (1.0 / (kTerrainUnitsPerM * kGullyTurns));
   float per_wave = spacing_m / wave_m;
   float shown = clamp(0.5 / per_wave - 1.0, 0.0, 1.0);
   float wanted = clamp(2.0 - wave_m / detail_m, 0.0, 1.0);
@@ -188,8 +186,8 @@ void terrain_gully_octave(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, int
       profile = mix(profile, terrain_gully_profile(wave.x, 2.5 * per_wave * per_wave) - sunk, shown);
       z = mix(z, wave, shown);
     }
-    float height_m = amplitude * wave_m * wanted *
-                     (steep2 + 0.4 * gentle * s.crest) / ((steep2 + 0.5 * gentle) * (1.0 + 0.3 * steep2 * steep2));
+    float height_m = amplitude * wave_m * wanted * (steep2 + 0.4 * gentle * s.crest) /
+                     ((steep2 + 0.5 * gentle) * (1.0 + 0.3 * steep2 * steep2));
     s.height_m += height_m * profile;
     s.slope -= across * (height_m * z.y * (kTau / wave_m) * 0.5);
     s.crest = s.crest * mix(1.0, clamp(0.6 + 0.7 * z.x, 0.0, 1.4), 0.6);
@@ -197,8 +195,8 @@ void terrain_gully_octave(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, int
 }
 
 // The octaves from 2.4 km to 60 m.
-void terrain_gullies(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, float strength, float spacing_m,
-                     float detail_m, uint salt) {
+void terrain_gullies(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, float strength, float spacing_m, float detail_m,
+                     uint salt) {
   terrain_gully_octave(s, units, warp_m, 1, 2, 18, 0.110 * strength, 0.024, spacing_m, detail_m, salt + 12u);
   terrain_gully_octave(s, units, warp_m, 2, 1, 17, 0.095 * strength, 0.018, spacing_m, detail_m, salt + 13u);
   terrain_gully_octave(s, units, warp_m, 1, 2, 16, 0.080 * strength, 0.014, spacing_m, detail_m, salt + 14u);
@@ -231,8 +229,8 @@ vec2 terrain_country(ivec2 units, uint salt) {
   // Belts of mountains follow the zero lines of a 1050 km noise, uplands lie on one side of them.
   vec2 none = vec2(0.0, 0.0);
   float plates = terrain_gradient_noise(terrain_cell(units, none, 4, 1, 28), salt + 1u).x +
-                 terrain_gradient_noise(terrain_cell(units, none, 1, 2, 26), salt + 7u).x * 0.32;     // 469 km
-  float broken = terrain_gradient_noise(terrain_cell(units, none, 3, 1, 25), salt + 2u).x;             // 166 km
+                 terrain_gradient_noise(terrain_cell(units, none, 1, 2, 26), salt + 7u).x * 0.32;  // 469 km
+  float broken = terrain_gradient_noise(terrain_cell(units, none, 3, 1, 25), salt + 2u).x;         // 166 km
   vec2 away = vec2(units) * (1.0 / (kTerrainUnitsPerM * 110000.0));
   float away2 = dot(away, away);
   float belt = 1.0 - abs(plates - 0.05) * 4.2 + broken * 1.1;

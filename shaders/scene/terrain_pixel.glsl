@@ -1,5 +1,5 @@
-// The ground that a pixel shows, for the passes that light it: what was drawn into the scene's colour is a place, and the
-// pass puts radiance there.
+// The ground that a pixel shows, for the passes that light it: what was drawn into the scene's colour is a place, and
+// the pass puts radiance there.
 #ifndef TYNDALL_TERRAIN_PIXEL_GLSL
 #define TYNDALL_TERRAIN_PIXEL_GLSL
 

@@ -72,8 +72,7 @@ float terrain_raster_height(TERRAIN_SOURCE source, ivec2 units, vec2 map_m, floa
   s.crest = 0.0;
   if (ratio < 1.0) {
     uint salt = terrain_salt(source.seed);
-    terrain_gullies(s, units, terrain_warp(units, salt), kRasterDetail, spacing_m,
-                    2.0 * source.raster_spacing_m, salt);
+    terrain_gullies(s, units, terrain_warp(units, salt), kRasterDetail, spacing_m, 2.0 * source.raster_spacing_m, salt);
   }
   float margin_m = 0.2 * source.raster_spacing_m;
   return clamp(s.height_m, source.raster_min_m - margin_m, source.raster_max_m + margin_m);
@@ -103,8 +102,8 @@ float terrain_source_height(TERRAIN_SOURCE source, ivec2 units, float spacing_m)
     float inside = terrain_file_share(source, units);
     if (inside < 1.0) {
       vec2 away = map_m / (4.0 * (half_m.x + half_m.y));
-      height_m = (1.0 - inside) * (terrain_height_at(units, spacing_m, source.seed) +
-                                   source.outside_offset_m / (1.0 + dot(away, away)));
+      height_m = (1.0 - inside) *
+                 (terrain_height_at(units, spacing_m, source.seed) + source.outside_offset_m / (1.0 + dot(away, away)));
     }
     if (inside > 0.0) height_m += inside * terrain_raster_height(source, units, map_m, spacing_m);
   }

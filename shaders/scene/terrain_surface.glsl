@@ -7,9 +7,7 @@
 layout(std430, binding = 0) readonly buffer terrain_block { TerrainConstants terrain; };
 layout(binding = 2) uniform sampler2DArray terrain_heights;
 
-float height_at(ivec2 texel, uint layer) {
-  return texelFetch(terrain_heights, ivec3(texel, int(layer)), 0).r;
-}
+float height_at(ivec2 texel, uint layer) { return texelFetch(terrain_heights, ivec3(texel, int(layer)), 0).r; }
 
 // xy gradient of the elevation in map coordinates, z how hollow the ground is: change of slope over a cell.
 // Central differences at the four samples around, mixed linearly, so that all is continuous across cells.

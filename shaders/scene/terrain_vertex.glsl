@@ -13,12 +13,13 @@ layout(binding = 2) uniform sampler2DArray terrain_heights;
 layout(push_constant) uniform Push {
   mat4 clip_from_local;
   uint first_block;
-} push;
+}
+push;
 
 struct TerrainVertex {
   vec3 position;  // in the local frame
   float altitude_m;
-  vec2 texel;        // in the level's texture
+  vec2 texel;  // in the level's texture
   vec2 parent_texel;
   float morph;
   uint layer;
@@ -48,7 +49,8 @@ TerrainVertex terrain_vertex(uint vertex, uint instance) {
   vec2 slid = mix(vec2(grid), vec2(even), morph);
   v.texel = slid - vec2(level.origin) + 0.5;
   v.parent_texel = slid * 0.5 - vec2(terrain.levels[parent].origin) + 0.5;
-  v.position = local_position(local_direction((slid - vec2(level.origin)) * level.cell_m + level.first_m), v.altitude_m);
+  v.position =
+      local_position(local_direction((slid - vec2(level.origin)) * level.cell_m + level.first_m), v.altitude_m);
   return v;
 }
 

@@ -4,7 +4,7 @@
 
 const uint kSamplesMarched = 0u;  // rays: epipolar samples, or pixels with brute force
 const uint kMarchSteps = 1u;      // stretches of a ray that were found lit or dark
-const uint kNodesVisited = 2u;       // visited
+const uint kNodesVisited = 2u;    // visited
 const uint kShadowFetches = 3u;   // comparisons with the shadow maps
 const uint kPixelsCorrected = 4u;
 const uint kCounters = 5u;

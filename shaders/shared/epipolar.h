@@ -29,10 +29,10 @@ struct EpipolarConstants {
   float bottom_start;
   float right_start;
   float top_start;
-  uint first_cascade;   // marched
-  uint cascades;        // behind the last marched one
-  uint tree_cells;      // of a row, at most; a multiple of kTreeBlock; 0: no trees
-  uint tree_format;     // MinMaxFormat
+  uint first_cascade;  // marched
+  uint cascades;       // behind the last marched one
+  uint tree_cells;     // of a row, at most; a multiple of kTreeBlock; 0: no trees
+  uint tree_format;    // MinMaxFormat
   // The picture that the light is computed for; `slices` and `samples` are those for it.
   uint downscale;
   uint reduced_width;
@@ -45,7 +45,7 @@ struct EpipolarConstants {
 struct EpipolarSlice {
   vec4 line;  // entry and axis
   vec2 stride;
-  uint last;  // sample: the first at or behind the border
+  uint last;           // sample: the first at or behind the border
   uint first_marched;  // where its samples begin in the list of marched ones
 };
 
@@ -53,17 +53,17 @@ struct EpipolarSlice {
 // texel (along the axis that changes faster) from the camera on.
 struct ShadowRow {
   vec4 line;
-  // x: the first, y: how many are inside the map and within the reach of the cascade, z: how many of these, from the first
-  // on, are in the tree, because rays of marched samples come to them.
+  // x: the first, y: how many are inside the map and within the reach of the cascade, z: how many of these, from the
+  // first on, are in the tree, because rays of marched samples come to them.
   ivec3 cells;
   float depth;  // of the camera
 };
 
-const uint kTreeBlock = 256u;     // cells of a tree
-const uint kTreeLeafLevel = 3u;   // nodes of 8, 16, ... 256 cells: 2 to the power of the level
+const uint kTreeBlock = 256u;    // cells of a tree
+const uint kTreeLeafLevel = 3u;  // nodes of 8, 16, ... 256 cells: 2 to the power of the level
 const uint kTreeTopLevel = 8u;
-const uint kTreeNodes = 64u;      // of a block, with one to spare
-const uint kTreeGroup = 8u;       // blocks that are built together
+const uint kTreeNodes = 64u;  // of a block, with one to spare
+const uint kTreeGroup = 8u;   // blocks that are built together
 
 // Scale heights of air [Rayleigh] above which there is next to none: a camera above them sees a limb.
 const float kAllOfAir = 5.0f;
@@ -72,14 +72,14 @@ const uint kUnwarpWidth = 4u;  // pixels of a block of unwarp.comp; they are 2 h
 
 // What a dispatch of march_samples.comp does; the first three are those of CascadeProcessing.
 const uint kAllCascades = 0u;
-const uint kOneCascade = 1u;    // and adds it to what the one before has left
+const uint kOneCascade = 1u;     // and adds it to what the one before has left
 const uint kCascadesAside = 2u;  // one for each group along y
-const uint kFinish = 3u;        // makes light of what the cascades have left
-const uint kPixels = 4u;        // pixels, as the first
+const uint kFinish = 3u;         // makes light of what the cascades have left
+const uint kPixels = 4u;         // pixels, as the first
 
 const uint kMarchGroup = 64u;  // invocations
-// Groups of an indirect dispatch along an axis, at most: what every device takes. Longer lists go on along y. (A loop in
-// the shaders would do, but CPU devices keep all that lives in a loop in memory: the trees took twice as long.)
+// Groups of an indirect dispatch along an axis, at most: what every device takes. Longer lists go on along y. (A loop
+// in the shaders would do, but CPU devices keep all that lives in a loop in memory: the trees took twice as long.)
 const uint kMostGroups = 65535u;
 
 // The head of a list that is worked through indirectly: arguments of a dispatch, then the number of items.

@@ -23,9 +23,9 @@ struct HomogeneousMedium {
   float phase_least;  // the aerosol's phase function: (1 - |g|)^2
   // Phase functions at right angles to the sun, times scattering, divided by extinction [1/sr].
   vec3 rayleigh_source;
-  float phase_slope;  // 2 |g|
-  vec3 mie_source;    // before the division by (phase_least + phase_slope (1 - |cos|))^1.5
-  float phase_sign;   // of g
+  float phase_slope;   // 2 |g|
+  vec3 mie_source;     // before the division by (phase_least + phase_slope (1 - |cos|))^1.5
+  float phase_sign;    // of g
   float phase_second;  // of cos^2: 1 Cornette-Shanks, 0 Henyey-Greenstein
   float unused_0;
   float unused_1;
@@ -41,10 +41,11 @@ struct FrameConstants {
   float sky_depth;
   vec3 camera_up;  // vertical of the planet at the camera, world
   float near_depth;
-  vec3 ray_origin;  // rays through pixels: ray_origin + x ray_x + y ray_y, world, not of unit length
+  vec3 ray_origin;    // rays through pixels: ray_origin + x ray_x + y ray_y, world, not of unit length
   float horizon_cos;  // cosine of the zenith angle of the planet's horizon
   vec3 ray_x;
-  float glass_depth_sign;  // of depths behind glass less the glass's: 1, -1 with shadow_depth_reversed; 0: no depths in shadow_colors
+  float glass_depth_sign;  // of depths behind glass less the glass's: 1, -1 with shadow_depth_reversed; 0: no depths in
+                           // shadow_colors
   vec3 ray_y;
   float unused_2;
   vec3 direction_to_sun;
@@ -56,7 +57,7 @@ struct FrameConstants {
   uint cascade_count;  // 0: nothing is shadowed
   uint first_marched_cascade;
   uint integration_steps;
-  uint only;     // 1: the output is the in-scattered light alone
+  uint only;  // 1: the output is the in-scattered light alone
   uint shadow_depth_reversed;
   uint unoccluded;  // 1: the higher orders of the whole ray, whatever is in shadow
   // Where the picture begins in the caller's images [pixels].

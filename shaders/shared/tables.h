@@ -20,7 +20,7 @@ struct TableShape {
 // known in kGatherZeniths x kGatherAzimuths directions (the azimuths are those of one side of the sun's plane,
 // the other is its mirror image), and the light that is scattered at kSourceZeniths x kSourceAzimuths.
 const uint kGatherAltitudes = 43u;
-const uint kGatherBelow = 3u;  // of these, below sea level
+const uint kGatherBelow = 3u;                 // of these, below sea level
 const float kLowestGatherAltitude = -1000.0;  // [m]
 const uint kGatherSuns = 64u;
 const uint kGatherZeniths = 24u;  // half of them on each side of the horizon
@@ -36,7 +36,7 @@ const uint kHighNodes = 16u;
 
 // One node of the integration along a ray that depends on altitude and view angle only.
 struct RayNode {
-  vec3 weight_m;   // quadrature weight times the transmittance to the origin; at the ray's end: transmittance
+  vec3 weight_m;  // quadrature weight times the transmittance to the origin; at the ray's end: transmittance
   float distance_m;
   float rayleigh;  // relative densities
   float mie;

@@ -14,8 +14,9 @@ layout(push_constant) uniform Push {
   float divider;     // uv; 1: only the left picture
   float line_width;  // uv
   float gain;
-  uint difference;   // 1: show how much the two differ, times gain
-} push;
+  uint difference;  // 1: show how much the two differ, times gain
+}
+push;
 
 void main() {
   vec3 left = textureLod(left_picture, uv, 0.0).rgb;

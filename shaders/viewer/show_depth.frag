@@ -10,7 +10,8 @@ layout(push_constant) uniform Push {
   float near_m;      // distance = near / depth
   float nearest_m;   // shown black
   float farthest_m;  // shown white
-} push;
+}
+push;
 
 void main() {
   float depth = textureLod(depth_picture, uv, 0.0).r;

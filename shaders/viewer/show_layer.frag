@@ -9,8 +9,9 @@ layout(binding = 0) uniform sampler2DArray layers;
 layout(push_constant) uniform Push {
   float aspect;  // of the window
   float layer;
-  float gain;    // stretches the depths about their middle
-} push;
+  float gain;  // stretches the depths about their middle
+}
+push;
 
 void main() {
   vec2 p = (uv - 0.5) * (push.aspect > 1.0 ? vec2(push.aspect, 1.0) : vec2(1.0, 1.0 / push.aspect)) + 0.5;

@@ -8,8 +8,7 @@ layout(binding = 0) uniform sampler3D table;
 
 layout(push_constant) uniform Push {
   float slice;  // 0 to 1 along the third axis
-} push;
-
-void main() {
-  color = vec4(textureLod(table, vec3(uv.x, 1.0 - uv.y, push.slice), 0.0).rgb, 1.0);
 }
+push;
+
+void main() { color = vec4(textureLod(table, vec3(uv.x, 1.0 - uv.y, push.slice), 0.0).rgb, 1.0); }

@@ -9,43 +9,29 @@ namespace {
 
 std::string_view type_name(ParamType type) {
   switch (type) {
-    case ParamType::float32:
-      return "float";
-    case ParamType::uint32:
-      return "uint";
-    case ParamType::flag:
-      return "flag";
-    case ParamType::enumeration:
-      return "enum";
-    case ParamType::vec3:
-      return "vec3";
-    case ParamType::dvec3:
-      return "dvec3";
-    case ParamType::uvec4:
-      return "uvec4";
-    case ParamType::string:
-      return "string";
+    case ParamType::float32: return "float";
+    case ParamType::uint32: return "uint";
+    case ParamType::flag: return "flag";
+    case ParamType::enumeration: return "enum";
+    case ParamType::vec3: return "vec3";
+    case ParamType::dvec3: return "dvec3";
+    case ParamType::uvec4: return "uvec4";
+    case ParamType::string: return "string";
   }
   return "";
 }
 
 std::string_view affects_name(Affects affects) {
   switch (affects) {
-    case Affects::Frame:
-      return "frame";
-    case Affects::Pipeline:
-      return "pipeline";
-    case Affects::Resources:
-      return "resources";
-    case Affects::Tables:
-      return "tables";
+    case Affects::Frame: return "frame";
+    case Affects::Pipeline: return "pipeline";
+    case Affects::Resources: return "resources";
+    case Affects::Tables: return "tables";
   }
   return "";
 }
 
-bool is_number(ParamType type) {
-  return is_real(type) || type == ParamType::uint32 || type == ParamType::uvec4;
-}
+bool is_number(ParamType type) { return is_real(type) || type == ParamType::uint32 || type == ParamType::uvec4; }
 
 std::string limit_text(const Row& row, double limit) {
   return is_real(row.info.type) ? number_text(limit) : std::to_string(static_cast<std::int64_t>(limit));
@@ -69,17 +55,15 @@ std::string json_value(const Row& row, const Settings& settings) {
 
 std::string to_markdown() {
   const Settings defaults;
-  std::string out =
-      "# Parameters\n\n"
-      "Every parameter under the name that scene files, `--set`, GLSL and image metadata use.\n"
-      "Made by `tyndall params --format markdown`; edit `include/tyndall/params.def` or\n"
-      "`src/scene/scene_params.def` instead. \"Change costs\" says what a change makes stale: the next "
-      "`frame`'s\n"
-      "constants only, a shader `pipeline`, memory (`resources`), or the precomputed `tables`.\n";
+  std::string out = "# Parameters\n\n"
+                    "Every parameter under the name that scene files, `--set`, GLSL and image metadata use.\n"
+                    "Made by `tyndall params --format markdown`; edit `include/tyndall/params.def` or\n"
+                    "`src/scene/scene_params.def` instead. \"Change costs\" says what a change makes stale: the next "
+                    "`frame`'s\n"
+                    "constants only, a shader `pipeline`, memory (`resources`), or the precomputed `tables`.\n";
   for (const Group& group : groups()) {
     out.append("\n## ").append(group.title).append("\n\n");
-    out.append(
-        "| name | type | default | range | unit | change costs | meaning |\n|---|---|---|---|---|---|---|\n");
+    out.append("| name | type | default | range | unit | change costs | meaning |\n|---|---|---|---|---|---|---|\n");
     for (const Row& row : rows()) {
       if (row.info.group != group.name) continue;
       const std::string_view unit = row.info.unit == "1" ? "" : row.info.unit;
@@ -112,8 +96,8 @@ std::string to_json(const Settings& settings) {
       }
       out += "]";
     }
-    out += ", \"unit\": " + quoted_text(row.info.unit) +
-           ", \"affects\": " + quoted_text(affects_name(row.info.affects));
+    out +=
+        ", \"unit\": " + quoted_text(row.info.unit) + ", \"affects\": " + quoted_text(affects_name(row.info.affects));
     out += ", \"doc\": " + quoted_text(row.info.doc) + "}";
   }
   return out + "\n  ]\n}\n";

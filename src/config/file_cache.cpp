@@ -184,8 +184,7 @@ bool FileCache::read(std::string_view key, std::span<std::byte> to) {
   std::string text(text_bytes, '\0');
   if (!open.read(text.data(), text.size())) return unusable("truncated");
   if (checksum(as_bytes(text)) != header.text_checksum) return unusable("damaged");
-  if (std::string_view(text).substr(0, header.version_bytes) != version_)
-    return unusable("of another version");
+  if (std::string_view(text).substr(0, header.version_bytes) != version_) return unusable("of another version");
   if (std::string_view(text).substr(header.version_bytes) != key || header.contents_bytes != to.size())
     return unusable("of something else");
   // Piece by piece, so that each is summed while it is in the processor's cache.
@@ -206,9 +205,8 @@ bool FileCache::read(std::string_view key, std::span<std::byte> to) {
 void FileCache::write(std::string_view key, std::span<const std::byte> contents) {
   note_.clear();
   if (!enabled()) return;
-  const Header header = {
-      kMark,           version_.size(),    key.size(),
-      contents.size(), checksum(contents), checksum(as_bytes(version_ + std::string(key)))};
+  const Header header = {kMark,           version_.size(),    key.size(),
+                         contents.size(), checksum(contents), checksum(as_bytes(version_ + std::string(key)))};
   const std::uint64_t bytes = sizeof header + version_.size() + key.size() + contents.size();
   if (bytes > limit_bytes_) {
     note_ = concat({"nothing is cached in ", one_line(directory_, 200), ": ", std::to_string(bytes),
@@ -245,8 +243,7 @@ void FileCache::make_room(const std::string& kept) const {
   std::uint64_t total = 0;
   std::error_code failed;
   // Other processes may add and remove files meanwhile: what cannot be looked at is passed over.
-  for (std::filesystem::directory_iterator it(directory_, failed), end; !failed && it != end;
-       it.increment(failed)) {
+  for (std::filesystem::directory_iterator it(directory_, failed), end; !failed && it != end; it.increment(failed)) {
     std::error_code gone;
     if (!is_entry_name(it->path().filename().string()) || !it->is_regular_file(gone) || gone) continue;
     const std::uint64_t bytes = it->file_size(gone);

@@ -93,7 +93,8 @@ void remove_leftovers(const std::string& directory) {
     const bool folder = fs::is_directory(it->symlink_status(gone));
     if (!folder && !fs::is_regular_file(it->symlink_status(gone))) continue;
     if (fs::file_time_type::clock::now() - fs::last_write_time(it->path(), gone) < kMinAge || gone) continue;
-    const int descriptor = ::open(it->path().c_str(), (folder ? O_RDONLY | O_DIRECTORY : O_RDWR) | O_CLOEXEC | O_NOFOLLOW);
+    const int descriptor =
+        ::open(it->path().c_str(), (folder ? O_RDONLY | O_DIRECTORY : O_RDWR) | O_CLOEXEC | O_NOFOLLOW);
     if (descriptor < 0) continue;
     if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) fs::remove_all(it->path(), gone);
     ::close(descriptor);

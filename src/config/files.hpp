@@ -50,9 +50,9 @@ class AtomicFile {
   [[nodiscard]] bool copy_to_named();
 
   int descriptor_ = -1;
-  std::string shown_;      // as the caller named it, for messages
-  std::string path_;       // where it goes, links followed
-  std::string temporary_;  // the name before commit; empty for nameless files and devices
+  std::string shown_;           // as the caller named it, for messages
+  std::string path_;            // where it goes, links followed
+  std::string temporary_;       // the name before commit; empty for nameless files and devices
   std::optional<mode_t> mode_;  // of the file that is replaced
   bool nameless_ = false;
 };

@@ -26,20 +26,13 @@ std::string position(std::string_view name, const toml::source_region& source) {
 // "a string", for "is a string".
 std::string_view kind_of(const toml::node& node) {
   switch (node.type()) {
-    case toml::node_type::table:
-      return "a table";
-    case toml::node_type::array:
-      return "an array";
-    case toml::node_type::string:
-      return "a string";
-    case toml::node_type::integer:
-      return "a whole number";
-    case toml::node_type::floating_point:
-      return "a number";
-    case toml::node_type::boolean:
-      return "a boolean";
-    default:
-      return "a date or time";
+    case toml::node_type::table: return "a table";
+    case toml::node_type::array: return "an array";
+    case toml::node_type::string: return "a string";
+    case toml::node_type::integer: return "a whole number";
+    case toml::node_type::floating_point: return "a number";
+    case toml::node_type::boolean: return "a boolean";
+    default: return "a date or time";
   }
 }
 
@@ -106,8 +99,7 @@ bool is_group(std::string_view name) {
   return std::any_of(all.begin(), all.end(), [&](const Group& group) { return group.name == name; });
 }
 
-Result<void> load_table(Settings& settings, std::string_view group, const toml::table& table,
-                        std::string_view name) {
+Result<void> load_table(Settings& settings, std::string_view group, const toml::table& table, std::string_view name) {
   for (const auto& [key, value] : table) {
     const std::string full = concat({group, ".", key.str()});
     // A dot inside a quoted key is not a separator.
@@ -149,7 +141,8 @@ Result<void> load_date(scene::PathFrame& frame, const toml::node& node, const st
     written << time->get();
     frame.date = written.str();
   } else {
-    return input_error(concat({"'date' is ", kind_of(node)}), where, "allowed is a date and time with its offset from UTC");
+    return input_error(concat({"'date' is ", kind_of(node)}), where,
+                       "allowed is a date and time with its offset from UTC");
   }
   Result<double> day = scene::parse_time(frame.date, where);
   if (!day) return std::move(day).error();
@@ -195,7 +188,8 @@ Result<void> load_frame_value(scene::PathFrame& frame, std::string_view key, con
 
 bool has_sun(const scene::PathFrame& frame) { return frame.sun_elevation_deg || frame.sun_azimuth_deg; }
 
-Result<void> load_path(scene::CameraPath& path, const toml::node& node, std::string_view name, const std::string& where) {
+Result<void> load_path(scene::CameraPath& path, const toml::node& node, std::string_view name,
+                       const std::string& where) {
   const toml::array* const frames = node.as_array();
   if (frames == nullptr || !frames->is_homogeneous(toml::node_type::table)) {
     return input_error("'path' is no list of frames", where, "allowed is one table [[path]] for each frame");
@@ -205,13 +199,15 @@ Result<void> load_path(scene::CameraPath& path, const toml::node& node, std::str
     const toml::table& table = *element.as_table();
     const std::string at = position(name, element.source());
     scene::PathFrame frame;
-    if (table.get("time_s") == nullptr) return input_error("a frame of the path has no time", at, "needed is time_s = SECONDS");
+    if (table.get("time_s") == nullptr)
+      return input_error("a frame of the path has no time", at, "needed is time_s = SECONDS");
     for (const auto& [key, value] : table) {
       if (Result<void> read = load_frame_value(frame, key.str(), value, name); !read) return read;
     }
     if (!path.frames.empty() && frame.time_s <= path.frames.back().time_s) {
       return input_error(concat({"the path's time goes from ", number_text(path.frames.back().time_s), " s to ",
-                                 number_text(frame.time_s), " s"}), at, "each frame's time_s has to be greater than that before");
+                                 number_text(frame.time_s), " s"}),
+                         at, "each frame's time_s has to be greater than that before");
     }
     const scene::PathFrame* const first = path.frames.empty() ? nullptr : &path.frames.front();
     if (has_sun(frame) && (frame.julian_day || (first != nullptr && first->julian_day))) {
@@ -223,16 +219,19 @@ Result<void> load_path(scene::CameraPath& path, const toml::node& node, std::str
   return {};
 }
 
-Result<void> load_playback(scene::CameraPath& path, const toml::node& node, std::string_view name, const std::string& where) {
+Result<void> load_playback(scene::CameraPath& path, const toml::node& node, std::string_view name,
+                           const std::string& where) {
   const toml::table* const table = node.as_table();
   if (table == nullptr) return input_error(concat({"'playback' is ", kind_of(node)}), where, "it has to be a table");
   for (const auto& [key, value] : *table) {
     const std::string at = position(name, value.source());
     if (key.str() == "loop") {
-      if (!value.is_boolean()) return input_error(concat({"'loop' is ", kind_of(value)}), at, "allowed is true or false");
+      if (!value.is_boolean())
+        return input_error(concat({"'loop' is ", kind_of(value)}), at, "allowed is true or false");
       path.loop = **value.as_boolean();
     } else if (key.str() == "place") {
-      if (!value.is_string()) return input_error(concat({"'place' is ", kind_of(value)}), at, "allowed is \"LAT,LON\" in degrees");
+      if (!value.is_string())
+        return input_error(concat({"'place' is ", kind_of(value)}), at, "allowed is \"LAT,LON\" in degrees");
       path.place_text = **value.as_string();
       Result<scene::Place> place = scene::parse_place(path.place_text, at);
       if (!place) return std::move(place).error();
@@ -256,7 +255,8 @@ Result<void> check_path(const scene::CameraPath& path, const std::string& where)
   const scene::PathFrame& last = path.frames.back();
   const auto given = [&](const FrameKey& key) { return (last.*key.target).has_value(); };
   if (last.position_m || last.julian_day || std::any_of(std::begin(kFrameKeys), std::end(kFrameKeys), given)) {
-    return input_error("the last frame of a loop is the first again", where, "allowed is time_s alone in the last [[path]]");
+    return input_error("the last frame of a loop is the first again", where,
+                       "allowed is time_s alone in the last [[path]]");
   }
   return {};
 }
@@ -310,8 +310,7 @@ std::string toml_value(const Row& row, const Settings& settings) {
   const bool real = is_real(row.info.type);
   switch (row.info.type) {
     case ParamType::string:
-    case ParamType::enumeration:
-      return quoted_text(text);
+    case ParamType::enumeration: return quoted_text(text);
     case ParamType::vec3:
     case ParamType::dvec3:
     case ParamType::uvec4: {
@@ -322,10 +321,8 @@ std::string toml_value(const Row& row, const Settings& settings) {
       list += "]";
       return list;
     }
-    case ParamType::flag:
-      return text;
-    default:
-      return toml_number(text, real);
+    case ParamType::flag: return text;
+    default: return toml_number(text, real);
   }
 }
 
@@ -339,7 +336,13 @@ void append_path(std::string& out, const scene::CameraPath& path) {
     if (frame.position_m) {
       const auto part = [](double value) { return toml_number(number_text(value), true); };
       const DVec3& p = *frame.position_m;
-      out.append("position_m = [").append(part(p.x)).append(", ").append(part(p.y)).append(", ").append(part(p.z)).append("]\n");
+      out.append("position_m = [")
+          .append(part(p.x))
+          .append(", ")
+          .append(part(p.y))
+          .append(", ")
+          .append(part(p.z))
+          .append("]\n");
     }
     for (const FrameKey& key : kFrameKeys) {
       const std::optional<float>& value = frame.*key.target;
@@ -395,8 +398,6 @@ std::string to_toml(const Settings& settings) {
   return out;
 }
 
-Result<void> save(const Settings& settings, const std::string& path) {
-  return write_file(path, to_toml(settings));
-}
+Result<void> save(const Settings& settings, const std::string& path) { return write_file(path, to_toml(settings)); }
 
 }  // namespace tyndall::config

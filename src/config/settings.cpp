@@ -64,14 +64,12 @@ Result<void> store_number(const Row& row, std::string_view text, std::string_vie
   } else {
     std::int64_t value = 0;
     problem = read_integer(text, value);
-    inside =
-        value >= static_cast<std::int64_t>(row.info.min) && value <= static_cast<std::int64_t>(row.info.max);
+    inside = value >= static_cast<std::int64_t>(row.info.min) && value <= static_cast<std::int64_t>(row.info.max);
     const auto whole = static_cast<std::uint32_t>(value);
     std::memcpy(&bits, &whole, sizeof(whole));
   }
   if (problem == NumberError::not_finite) return bad_value(row, text, "is not a finite number", where);
-  if (problem == NumberError::not_a_number)
-    return bad_value(row, text, concat({"is not ", expected(row)}), where);
+  if (problem == NumberError::not_a_number) return bad_value(row, text, concat({"is not ", expected(row)}), where);
   if (problem == NumberError::too_large || !inside) return bad_value(row, text, "is out of range", where);
   std::memcpy(to, &bits, component_size(row.info.type));
   return {};
@@ -186,8 +184,7 @@ Error unknown_key(std::string_view key, std::string_view where) {
 Result<void> set(Settings& settings, std::string_view assignment, std::string_view where) {
   const std::size_t equals = assignment.find('=');
   if (equals == std::string_view::npos || trimmed(assignment.substr(0, equals)).empty()) {
-    return input_error(concat({"'", one_line(assignment), "' is no assignment"}), where,
-                       "allowed is KEY=VALUE");
+    return input_error(concat({"'", one_line(assignment), "' is no assignment"}), where, "allowed is KEY=VALUE");
   }
   return set(settings, trimmed(assignment.substr(0, equals)), assignment.substr(equals + 1), where);
 }
@@ -208,13 +205,11 @@ Result<void> set(Settings& settings, std::string_view key, std::string_view valu
   return store(settings, *row, parts, where);
 }
 
-Result<void> store(Settings& settings, const Row& row, const std::vector<std::string>& parts,
-                   std::string_view where) {
+Result<void> store(Settings& settings, const Row& row, const std::vector<std::string>& parts, std::string_view where) {
   const std::size_t count = component_count(row.info.type);
   const bool grey = row.info.grey && parts.size() == 1;
   if (parts.size() != count && !grey) {
-    return bad_value(row, concat({std::to_string(parts.size()), " values"}),
-                     concat({"is not ", expected(row)}), where);
+    return bad_value(row, concat({std::to_string(parts.size()), " values"}), concat({"is not ", expected(row)}), where);
   }
   std::byte* const target = address(settings, row);
   if (row.info.type == ParamType::string) {
@@ -228,8 +223,7 @@ Result<void> store(Settings& settings, const Row& row, const std::vector<std::st
   if (row.info.type == ParamType::flag || row.info.type == ParamType::enumeration) {
     const bool flag = row.info.type == ParamType::flag;
     const std::optional<std::uint32_t> value = flag ? flag_value(parts[0]) : choice_value(row, parts[0]);
-    if (!value)
-      return bad_value(row, parts[0], flag ? "is neither on nor off" : "is not one of its values", where);
+    if (!value) return bad_value(row, parts[0], flag ? "is neither on nor off" : "is not one of its values", where);
     std::memcpy(bytes, &*value, sizeof(*value));
   } else {
     for (std::size_t i = 0; i < count; ++i) {
@@ -244,14 +238,10 @@ std::string value_text(const Row& row, const Settings& settings) {
   const std::byte* const from = address(settings, row);
   std::string text;
   switch (row.info.type) {
-    case ParamType::string:
-      return *reinterpret_cast<const std::string*>(from);
-    case ParamType::flag:
-      return read_bytes<std::uint32_t>(from) != 0 ? "true" : "false";
-    case ParamType::enumeration:
-      return std::string(part(row.info.choices, '|', read_bytes<std::uint32_t>(from)));
-    default:
-      break;
+    case ParamType::string: return *reinterpret_cast<const std::string*>(from);
+    case ParamType::flag: return read_bytes<std::uint32_t>(from) != 0 ? "true" : "false";
+    case ParamType::enumeration: return std::string(part(row.info.choices, '|', read_bytes<std::uint32_t>(from)));
+    default: break;
   }
   for (std::size_t i = 0; i < component_count(row.info.type); ++i) {
     if (i > 0) text += ',';
@@ -266,17 +256,14 @@ std::string value_text(const Row& row, const Settings& settings) {
 std::string allowed_text(const Row& row) {
   std::string text;
   switch (row.info.type) {
-    case ParamType::string:
-      return "text in UTF-8";
-    case ParamType::flag:
-      return "true or false";
+    case ParamType::string: return "text in UTF-8";
+    case ParamType::flag: return "true or false";
     case ParamType::enumeration:
       for (std::size_t i = 0; i < count_parts(row.info.choices, '|'); ++i) {
         text.append(i > 0 ? ", " : "").append(part(row.info.choices, '|', i));
       }
       return text;
-    default:
-      break;
+    default: break;
   }
   const std::size_t count = component_count(row.info.type);
   if (count > 1) text = concat({expected(row), ", each "});
@@ -294,10 +281,9 @@ Result<void> check(const Settings& settings) {
   if (Result<void> allowed = check_params(settings.effect); !allowed) return allowed;
   const scene::ShadowParams& shadows = settings.scene.shadows;
   if (shadows.first_marched >= shadows.cascades) {
-    return input_error(
-        concat({"'shadows.first_marched' = ", std::to_string(shadows.first_marched), " is no cascade"}),
-        concat({"with 'shadows.cascades' = ", std::to_string(shadows.cascades)}),
-        concat({"allowed is 0 to ", std::to_string(shadows.cascades - 1)}));
+    return input_error(concat({"'shadows.first_marched' = ", std::to_string(shadows.first_marched), " is no cascade"}),
+                       concat({"with 'shadows.cascades' = ", std::to_string(shadows.cascades)}),
+                       concat({"allowed is 0 to ", std::to_string(shadows.cascades - 1)}));
   }
   const scene::HomogeneousParams& homogeneous = settings.scene.homogeneous;
   if (homogeneous.haze_length_m > homogeneous.air_length_m) {
@@ -309,16 +295,15 @@ Result<void> check(const Settings& settings) {
   const std::string& source = settings.scene.terrain.source;
   const bool file = source != "procedural" && source != "none";
   if (settings.path.has_dates() && settings.path.place_text.empty() && !file) {
-    return input_error("a path with dates has no place", "[playback]",
-                       "needed is place = \"LAT,LON\", or an elevation file with a coordinate system in terrain.source");
+    return input_error(
+        "a path with dates has no place", "[playback]",
+        "needed is place = \"LAT,LON\", or an elevation file with a coordinate system in terrain.source");
   }
   if (settings.scene.tables.cache.empty()) {
-    return input_error("no place for the cache", "'tables.cache' is empty",
-                       "allowed is auto, off or a directory");
+    return input_error("no place for the cache", "'tables.cache' is empty", "allowed is auto, off or a directory");
   }
   if (settings.scene.terrain.source.empty()) {
-    return input_error("no terrain", "'terrain.source' is empty",
-                       "allowed is procedural or an elevation file");
+    return input_error("no terrain", "'terrain.source' is empty", "allowed is procedural or an elevation file");
   }
   return {};
 }
@@ -334,9 +319,10 @@ std::vector<std::pair<std::string, std::string>> metadata(const Settings& settin
 std::vector<std::pair<std::string, std::string>> radiance_metadata(const Settings& settings) {
   std::vector<std::pair<std::string, std::string>> list = metadata(settings);
   const Vec3& nm = settings.effect.atmosphere.wavelengths_nm;
-  list.emplace_back("tyndall.channels",
-                    concat({"R, G, B are the radiance at ", number_text(nm.x), ", ", number_text(nm.y), " and ", number_text(nm.z),
-                            " nm, in the unit of sun.irradiance per steradian; they are shown as if they were linear Rec. 709"}));
+  list.emplace_back(
+      "tyndall.channels",
+      concat({"R, G, B are the radiance at ", number_text(nm.x), ", ", number_text(nm.y), " and ", number_text(nm.z),
+              " nm, in the unit of sun.irradiance per steradian; they are shown as if they were linear Rec. 709"}));
   return list;
 }
 

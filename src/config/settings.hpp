@@ -51,8 +51,7 @@ struct Group {
 [[nodiscard]] const Row* find_row(std::string_view key);
 
 // Sets one parameter from "key=value". `where` names the source in the error ("--set", "a.toml:3").
-[[nodiscard]] Result<void> set(Settings& settings, std::string_view assignment,
-                               std::string_view where = "--set");
+[[nodiscard]] Result<void> set(Settings& settings, std::string_view assignment, std::string_view where = "--set");
 // The same with the key and the text of the value apart.
 [[nodiscard]] Result<void> set(Settings& settings, std::string_view key, std::string_view value,
                                std::string_view where);

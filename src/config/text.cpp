@@ -120,9 +120,7 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
-bool has_control_characters(std::string_view text) {
-  return std::any_of(text.begin(), text.end(), is_control);
-}
+bool has_control_characters(std::string_view text) { return std::any_of(text.begin(), text.end(), is_control); }
 
 std::string concat(std::initializer_list<std::string_view> parts) {
   std::size_t size = 0;

@@ -54,7 +54,6 @@ enum class NumberError : std::uint32_t { none, not_a_number, not_finite, too_lar
 
 // The candidate nearest to `name`, when it is near enough to be a slip of the finger (2 edits, or a
 // third of the length).
-[[nodiscard]] std::optional<std::string> nearest(std::string_view name,
-                                                 std::span<const std::string> candidates);
+[[nodiscard]] std::optional<std::string> nearest(std::string_view name, std::span<const std::string> candidates);
 
 }  // namespace tyndall::config

@@ -47,7 +47,8 @@ Result<void> check_key_depth(std::string_view toml, std::string_view name) {
     if (c == '.') {
       if (++parts > kMaxKeyParts) {
         return input_error(concat({"a key of more than ", std::to_string(kMaxKeyParts), " parts"}),
-                           concat({one_line(name, 200), ":", std::to_string(line)}), "allowed is KEY = VALUE in [TABLES]");
+                           concat({one_line(name, 200), ":", std::to_string(line)}),
+                           "allowed is KEY = VALUE in [TABLES]");
       }
     } else if (c == '\n' || c == '=' || c == ',' || c == '[' || c == ']' || c == '{' || c == '}') {
       parts = 1;

@@ -48,7 +48,8 @@ Result<void> check_layout(const Texture& texture, const char* name) {
 Result<void> check_camera(const Camera& camera, const EffectDesc& desc) {
   constexpr double kRigid = 1e-2;
   if (affine_error(camera.world_from_view) > 1e-4) {
-    return invalid("Camera::world_from_view has a last row other than 0 0 0 1; expected a rigid matrix, column-major: is it transposed?");
+    return invalid("Camera::world_from_view has a last row other than 0 0 0 1; expected a rigid matrix, column-major: "
+                   "is it transposed?");
   }
   if (orthonormal_error(camera.world_from_view) > kRigid) {
     return invalid("Camera::world_from_view is scaled or sheared: the first column is " +
@@ -57,11 +58,13 @@ Result<void> check_camera(const Camera& camera, const EffectDesc& desc) {
   }
   const Projection p = projection_of(camera.clip_from_view);
   if (!p.perspective) {
-    return invalid("Camera::clip_from_view is orthographic, which is not supported; expected a perspective projection, with a "
-                   "last row of 0 0 -1 0");
+    return invalid(
+        "Camera::clip_from_view is orthographic, which is not supported; expected a perspective projection, with a "
+        "last row of 0 0 -1 0");
   }
   if (!p.forward) {
-    return invalid("Camera::clip_from_view looks down +z of the view; expected one that looks down -z, with a last row of 0 0 -1 0");
+    return invalid("Camera::clip_from_view looks down +z of the view; expected one that looks down -z, with a last row "
+                   "of 0 0 -1 0");
   }
   // Depth falls with the distance where the slope is positive.
   const float far_side = p.depth_slope > 0.0 ? 0.0F : 1.0F;
@@ -87,10 +90,12 @@ Result<void> check_cascade(const Cascade& cascade, std::size_t index) {
   const double volume = determinant3(m);
   const double rows = length(row_of(m, 0)) * length(row_of(m, 1)) * length(row_of(m, 2));
   if (!(std::abs(volume) > 1e-4 * rows) || !(rows > 0.0)) {
-    return fault("'s shadow_from_world is zero or cannot be inverted; expected a matrix from the world to (u, v, depth)");
+    return fault(
+        "'s shadow_from_world is zero or cannot be inverted; expected a matrix from the world to (u, v, depth)");
   }
   if (affine_error(m) > 1e-4) {
-    return fault("'s shadow_from_world has a last row other than 0 0 0 1; expected an orthographic shadow map's matrix, column-major: "
+    return fault("'s shadow_from_world has a last row other than 0 0 0 1; expected an orthographic shadow map's "
+                 "matrix, column-major: "
                  "is it transposed, or a perspective one?");
   }
   return {};
@@ -121,7 +126,8 @@ Result<void> check_frame(const FrameInputs& inputs, const EffectDesc& desc, cons
   TYNDALL_TRY(check_layout(inputs.color, "FrameInputs::color"));
   TYNDALL_TRY(check_layout(inputs.depth, "FrameInputs::depth"));
   if (inputs.output.view == inputs.color.view || inputs.output.view == inputs.depth.view) {
-    return invalid("FrameInputs::output is the view of FrameInputs::color or depth; expected an image of its own, because both are read "
+    return invalid("FrameInputs::output is the view of FrameInputs::color or depth; expected an image of its own, "
+                   "because both are read "
                    "while it is written");
   }
   if (inputs.view >= desc.views) {
@@ -136,7 +142,8 @@ Result<void> check_frame(const FrameInputs& inputs, const EffectDesc& desc, cons
   TYNDALL_TRY(check_offset(inputs.output, "FrameInputs::output"));
   for (const Texture& texture : {inputs.shadow_maps, inputs.shadow_colors}) {
     if (texture.offset.x != 0 || texture.offset.y != 0) {
-      return invalid("FrameInputs::shadow_maps or shadow_colors has an offset; shadow maps are used whole, expected 0,0");
+      return invalid(
+          "FrameInputs::shadow_maps or shadow_colors has an offset; shadow maps are used whole, expected 0,0");
     }
   }
   if (inputs.cascades.size() > kMaxCascades) {
@@ -147,7 +154,8 @@ Result<void> check_frame(const FrameInputs& inputs, const EffectDesc& desc, cons
     if (inputs.shadow_maps.view == VK_NULL_HANDLE) return invalid("FrameInputs::shadow_maps has no view");
     if (inputs.shadow_resolution == 0) return invalid("FrameInputs::shadow_resolution is 0");
     if (inputs.shadow_colors.view != VK_NULL_HANDLE && inputs.shadow_colors.view == inputs.shadow_maps.view) {
-      return invalid("FrameInputs::shadow_colors is the view of FrameInputs::shadow_maps, it must be one of colours, or null");
+      return invalid(
+          "FrameInputs::shadow_colors is the view of FrameInputs::shadow_maps, it must be one of colours, or null");
     }
     if (inputs.shadow_colors.view != VK_NULL_HANDLE && !desc.shadow_colors) {
       return invalid("there are FrameInputs::shadow_colors, which need EffectDesc::shadow_colors");

@@ -22,12 +22,12 @@ namespace {
 constexpr VkDeviceSize kBufferAlignment = 256;
 
 // Stands in for the shadow maps of a frame that has none; never read.
-constexpr gpu::ImageDesc kNoShadows = {"no_shadows", VK_FORMAT_D32_SFLOAT, {1, 1, 1},
-                                       VK_IMAGE_USAGE_SAMPLED_BIT, 1, 1, true};
+constexpr gpu::ImageDesc kNoShadows = {"no_shadows", VK_FORMAT_D32_SFLOAT, {1, 1, 1}, VK_IMAGE_USAGE_SAMPLED_BIT, 1, 1,
+                                       true};
 
 // Stands in for the colours of a frame that has none; never read.
-constexpr gpu::ImageDesc kNoColors = {"no_colors", VK_FORMAT_R8G8B8A8_UNORM, {1, 1, 1},
-                                      VK_IMAGE_USAGE_SAMPLED_BIT, 1, 1, true};
+constexpr gpu::ImageDesc kNoColors = {
+    "no_colors", VK_FORMAT_R8G8B8A8_UNORM, {1, 1, 1}, VK_IMAGE_USAGE_SAMPLED_BIT, 1, 1, true};
 
 // A slot of the ring of constants: what one frame in flight reads.
 constexpr VkDeviceSize align(VkDeviceSize size) {
@@ -44,8 +44,8 @@ constexpr VkDeviceSize kCounterBytes = align(shared::kCounters * sizeof(std::uin
 
 // Read as storage by most passes, as uniforms by those that unwarp (docs/epipolar.md says why).
 constexpr VkBufferUsageFlags kConstantsUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
-constexpr VkBufferUsageFlags kCounterUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
-                                             VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+constexpr VkBufferUsageFlags kCounterUsage =
+    VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
 
 // Of no_air.comp.
 struct NoAirPush {
@@ -83,18 +83,18 @@ MemoryUsage plan_memory(const gpu::Device& device, const EffectDesc& desc, const
   return usage;
 }
 
-
 Effect::State::~State() {
   if (info.message == nullptr || !desc.check_inputs || !ring.unfinished()) return;
-  info.message(info.message_user, Severity::warning,
-               "an Effect is destroyed before the commands that it recorded have completed, or without submitting them; "
-               "expected to wait for them first");
+  info.message(
+      info.message_user, Severity::warning,
+      "an Effect is destroyed before the commands that it recorded have completed, or without submitting them; "
+      "expected to wait for them first");
 }
 
 Result<void> Effect::State::create_objects() {
   const bool full = desc.output_format == OutputFormat::rgba32f;
-  TYNDALL_ASSIGN(no_air, gpu::create_compute_pipeline(
-                             device, full ? shaders::no_air_comp_rgba32f : shaders::no_air_comp_rgba16f));
+  TYNDALL_ASSIGN(
+      no_air, gpu::create_compute_pipeline(device, full ? shaders::no_air_comp_rgba32f : shaders::no_air_comp_rgba16f));
   no_air.name = "no_air";
   TYNDALL_TRY(epipolar.create(device, desc));
   TYNDALL_TRY(tables.create(device, FrameRing::slots(desc), desc.timings));
@@ -308,7 +308,8 @@ void Effect::State::copy_counters(VkCommandBuffer cmd, VkDeviceSize offset) {
 Counters Effect::State::read_counters(std::uint64_t frame_index, std::uint32_t view) const {
   if (!desc.counters || view >= desc.views) return {};
   std::uint64_t values[shared::kCounters];
-  std::memcpy(values, static_cast<const std::byte*>(counters_readback.mapped) + kCounterBytes * ring.slot(frame_index, view),
+  std::memcpy(values,
+              static_cast<const std::byte*>(counters_readback.mapped) + kCounterBytes * ring.slot(frame_index, view),
               sizeof values);
   return {values[shared::kSamplesMarched], values[shared::kMarchSteps], values[shared::kNodesVisited],
           values[shared::kShadowFetches], values[shared::kPixelsCorrected]};

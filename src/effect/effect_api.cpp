@@ -17,8 +17,9 @@ template <typename State, typename Body>
 std::invoke_result_t<Body, State&> call(const std::unique_ptr<State>& state, const char* where, Body&& body) noexcept {
   return guarded(where, [&]() -> std::invoke_result_t<Body, State&> {
     if (state) return body(*state);
-    return Error{ErrorCode::invalid_argument, std::string(where) + ": this Effect has been moved from; expected one that "
-                                              "create() returned"};
+    return Error{ErrorCode::invalid_argument, std::string(where) +
+                                                  ": this Effect has been moved from; expected one that "
+                                                  "create() returned"};
   });
 }
 
@@ -29,7 +30,7 @@ std::invoke_result_t<Body, State&> record_with(const std::unique_ptr<State>& sta
   return call(state, where, [&](State& s) -> std::invoke_result_t<Body, State&> {
     if (cmd != VK_NULL_HANDLE) return body(s);
     return Error{ErrorCode::invalid_argument, std::string(where) + ": the command buffer is null; expected one that is "
-                                              "being recorded"};
+                                                                   "being recorded"};
   });
 }
 

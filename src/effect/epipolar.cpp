@@ -50,7 +50,8 @@ Result<void> Epipolar::create_pipelines() {
 
 Result<void> Epipolar::make_of_medium(MediumKind medium, std::uint32_t extinction, Sparsity sparsity) {
   const bool full = desc_.output_format == OutputFormat::rgba32f;
-  const gpu::Constant constants[] = {{0, extinction}, {5, static_cast<std::uint32_t>(medium)}, {9, static_cast<std::uint32_t>(sparsity)}};
+  const gpu::Constant constants[] = {
+      {0, extinction}, {5, static_cast<std::uint32_t>(medium)}, {9, static_cast<std::uint32_t>(sparsity)}};
   const auto variant = static_cast<std::size_t>(sparsity);
   const auto make = [&](gpu::Pipeline& out, const gpu::Shader& shader, const char* name) -> Result<void> {
     if (out.pipeline) return {};
@@ -60,10 +61,11 @@ Result<void> Epipolar::make_of_medium(MediumKind medium, std::uint32_t extinctio
   };
   PerMedium& of = of_medium_[static_cast<std::size_t>(medium)];
   TYNDALL_TRY(make(of.slice_samples, shaders::slice_samples_comp, "slice_samples"));
-  TYNDALL_TRY(make(of.correct_pixels, full ? shaders::correct_pixels_comp_rgba32f : shaders::correct_pixels_comp_rgba16f,
+  TYNDALL_TRY(make(of.correct_pixels,
+                   full ? shaders::correct_pixels_comp_rgba32f : shaders::correct_pixels_comp_rgba16f,
                    "correct_pixels"));
-  TYNDALL_TRY(make(of.unwarp[extinction][variant],
-                   full ? shaders::unwarp_comp_rgba32f : shaders::unwarp_comp_rgba16f, "unwarp"));
+  TYNDALL_TRY(make(of.unwarp[extinction][variant], full ? shaders::unwarp_comp_rgba32f : shaders::unwarp_comp_rgba16f,
+                   "unwarp"));
   return make(of.unwarp_pixels[extinction][variant],
               full ? shaders::unwarp_pixels_comp_rgba32f : shaders::unwarp_pixels_comp_rgba16f, "unwarp_pixels");
 }
@@ -79,11 +81,14 @@ Result<void> Epipolar::make_downscaled(MediumKind medium, std::uint32_t extincti
   };
   PerMedium& of = of_medium_[static_cast<std::size_t>(medium)];
   const std::size_t quarter = downscale / 4;
-  TYNDALL_TRY(make(of.unwarp_reduced[quarter], full ? shaders::unwarp_comp_rgba32f : shaders::unwarp_comp_rgba16f, "unwarp_reduced"));
+  TYNDALL_TRY(make(of.unwarp_reduced[quarter], full ? shaders::unwarp_comp_rgba32f : shaders::unwarp_comp_rgba16f,
+                   "unwarp_reduced"));
   TYNDALL_TRY(make(of.unwarp_reduced_pixels[quarter],
-                   full ? shaders::unwarp_pixels_comp_rgba32f : shaders::unwarp_pixels_comp_rgba16f, "unwarp_reduced_pixels"));
+                   full ? shaders::unwarp_pixels_comp_rgba32f : shaders::unwarp_pixels_comp_rgba16f,
+                   "unwarp_reduced_pixels"));
   TYNDALL_TRY(make(of.correct_reduced[quarter], shaders::correct_reduced_comp, "correct_reduced"));
-  TYNDALL_TRY(make(of.upscale[extinction][quarter], full ? shaders::upscale_comp_rgba32f : shaders::upscale_comp_rgba16f, "upscale"));
+  TYNDALL_TRY(make(of.upscale[extinction][quarter],
+                   full ? shaders::upscale_comp_rgba32f : shaders::upscale_comp_rgba16f, "upscale"));
   return make(of.upscale_pixels[extinction][quarter],
               full ? shaders::upscale_pixels_comp_rgba32f : shaders::upscale_pixels_comp_rgba16f, "upscale_pixels");
 }
@@ -102,8 +107,8 @@ Result<void> Epipolar::make_march(bool tree, bool colors, std::uint32_t mode) {
   gpu::Pipeline& out = march_samples_[tree ? 1 : 0][colors ? 1 : 0][mode];
   if (out.pipeline) return {};
   const std::array<gpu::Constant, 4> m = mode_constants(mode);
-  const gpu::Constant constants[] = {m[0], m[1], m[2], m[3], {3, tree ? 1U : 0U}, {4, colors ? 1U : 0U},
-                                     {8, desc_.counters ? 1U : 0U}};
+  const gpu::Constant constants[] = {
+      m[0], m[1], m[2], m[3], {3, tree ? 1U : 0U}, {4, colors ? 1U : 0U}, {8, desc_.counters ? 1U : 0U}};
   TYNDALL_ASSIGN(out, gpu::create_compute_pipeline(*device_, shaders::march_samples_comp, constants));
   out.name = "march_samples";
   return {};
@@ -119,8 +124,8 @@ Result<void> Epipolar::prepare(const EffectDesc& desc, const Params& params) {
       TYNDALL_TRY(make_of_medium(MediumKind::atmosphere, extinction_index(params), sparsity));
     }
   }
-  if (is_downscaled(params)) TYNDALL_TRY(make_downscaled(params.scattering.medium, extinction_index(params),
-                                                             params.scattering.downscale));
+  if (is_downscaled(params))
+    TYNDALL_TRY(make_downscaled(params.scattering.medium, extinction_index(params), params.scattering.downscale));
   for (const bool colors : {false, true}) {
     if (colors && !desc.shadow_colors) continue;
     TYNDALL_TRY(make_march(uses_trees(params), colors, mode_index(params.scattering)));
@@ -241,7 +246,8 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
     end();
     return {};
   };
-  const auto run_list = [&](const gpu::Pipeline& pipeline, EpipolarBuffer list, const void* push = nullptr) -> Result<void> {
+  const auto run_list = [&](const gpu::Pipeline& pipeline, EpipolarBuffer list,
+                            const void* push = nullptr) -> Result<void> {
     const gpu::Label label(*device_, cmd, pipeline.name);
     work = gpu::named_buffer("work_block", buffers_[index(list)].buffer.get());
     TYNDALL_TRY(begin(pipeline, push));
@@ -275,8 +281,8 @@ Result<void> Epipolar::record(VkCommandBuffer cmd, const FrameInputs& inputs, co
     gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
                  VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
   };
-  empty_lists({EpipolarBuffer::march_list, EpipolarBuffer::broken_list, EpipolarBuffer::break_list,
-               EpipolarBuffer::tree_list});
+  empty_lists(
+      {EpipolarBuffer::march_list, EpipolarBuffer::broken_list, EpipolarBuffer::break_list, EpipolarBuffer::tree_list});
   const auto lists_ready = [&] {
     gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
                  VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT, VK_ACCESS_INDIRECT_COMMAND_READ_BIT);

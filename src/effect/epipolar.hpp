@@ -46,7 +46,7 @@ class Epipolar {
   [[nodiscard]] VkDeviceSize bytes(EpipolarBuffer buffer) const {
     return buffers_[static_cast<std::uint32_t>(buffer)].bytes;
   }
-  [[nodiscard]] VkDeviceSize bytes() const;         // in use
+  [[nodiscard]] VkDeviceSize bytes() const;          // in use
   [[nodiscard]] VkDeviceSize retired_bytes() const;  // waiting for frames in flight
 
  private:
@@ -59,7 +59,7 @@ class Epipolar {
   // Specialised for a medium. The second line is made when asked for.
   struct PerMedium {
     gpu::Pipeline slice_samples, correct_pixels;
-    std::array<std::array<gpu::Pipeline, kSparsities>, 2> unwarp, unwarp_pixels;  // by Extinction and Sparsity
+    std::array<std::array<gpu::Pipeline, kSparsities>, 2> unwarp, unwarp_pixels;          // by Extinction and Sparsity
     std::array<gpu::Pipeline, 2> unwarp_reduced, unwarp_reduced_pixels, correct_reduced;  // by whether to a quarter
     std::array<std::array<gpu::Pipeline, 2>, 2> upscale, upscale_pixels;                  // by Extinction, and that
   };
@@ -78,8 +78,8 @@ class Epipolar {
   Buffers buffers_ = {};
   std::vector<Retired> retired_ = {};
   gpu::Pipeline slice_end_points_, slice_directions_, interpolate_samples_, show_sampling_;
-  std::array<gpu::Pipeline, 2> refine_samples_;  // by Refinement
-  std::array<gpu::Pipeline, 2> shadow_tree_;     // by MinMaxFormat
+  std::array<gpu::Pipeline, 2> refine_samples_;          // by Refinement
+  std::array<gpu::Pipeline, 2> shadow_tree_;             // by MinMaxFormat
   std::array<std::array<PerMode, 2>, 2> march_samples_;  // without and with tree, and colours; made when asked for
   std::array<PerMedium, 2> of_medium_;  // by MediumKind; those of the homogeneous one are made when asked for
 };

@@ -12,8 +12,8 @@ constexpr VkDeviceSize kStateBytes = 16 * sizeof(float);  // of march_state.glsl
 constexpr VkDeviceSize kLightBytes = 8;                   // of pack_light() in records.glsl
 constexpr VkDeviceSize kLeastBytes = 256;                 // of buffers that shaders bind but do not use
 // Pixels with a smaller sum of weights are marched. By default that means that no sample is near in depth; with
-// correct_depth_breaks, that those which are near have little weight, or are a twentieth off. In a reduced picture a sample
-// a sixth nearer or farther will do, which halves what is marched.
+// correct_depth_breaks, that those which are near have little weight, or are a twentieth off. In a reduced picture a
+// sample a sixth nearer or farther will do, which halves what is marched.
 constexpr float kLeastWeight = 1e-2F;
 constexpr float kLeastWeightAll = 0.1F;
 constexpr float kLeastWeightReduced = 1e-3F;
@@ -45,8 +45,8 @@ constexpr BufferName kNames[kEpipolarBuffers] = {{"slices", "slice_block", kOfSa
 
 std::size_t index(EpipolarBuffer buffer) { return static_cast<std::size_t>(buffer); }
 
-// Initial samples stand this many times closer in twilight: refinement goes by unshadowed light, which does not contain the
-// planet's shadow.
+// Initial samples stand this many times closer in twilight: refinement goes by unshadowed light, which does not contain
+// the planet's shadow.
 constexpr std::uint32_t kStepsWithSunDown = 4;
 
 // Whether the sun is more than two degrees below the horizontal of the camera.
@@ -55,9 +55,11 @@ bool sun_is_down(const FrameInputs& inputs, const Params& params) {
   if (is_homogeneous(params.scattering)) return false;
   const Vec3& s = inputs.sun.direction_to_sun;
   const float* at = inputs.camera.world_from_view.m + 12;
-  const double up[3] = {static_cast<double>(at[0]), static_cast<double>(at[1]) + static_cast<double>(params.planet.radius_m),
+  const double up[3] = {static_cast<double>(at[0]),
+                        static_cast<double>(at[1]) + static_cast<double>(params.planet.radius_m),
                         static_cast<double>(at[2])};
-  const double along = up[0] * static_cast<double>(s.x) + up[1] * static_cast<double>(s.y) + up[2] * static_cast<double>(s.z);
+  const double along =
+      up[0] * static_cast<double>(s.x) + up[1] * static_cast<double>(s.y) + up[2] * static_cast<double>(s.z);
   return along < kSine * std::hypot(up[0], up[1], up[2]) *
                      std::hypot(static_cast<double>(s.x), static_cast<double>(s.y), static_cast<double>(s.z));
 }
@@ -120,16 +122,14 @@ EpipolarSizes epipolar_sizes(const EffectDesc& desc, const Params& params) {
   const VkDeviceSize squares = VkDeviceSize{blocks.width} * (shared::kUnwarpWidth / 2) * blocks.height;
   out[index(EpipolarBuffer::broken_list)] = sizeof(shared::WorkList) + squares * 4;
   const VkExtent2D reduced = reduced_extent(desc.max_extent, params);
-  out[index(EpipolarBuffer::reduced)] =
-      is_downscaled(params)
-          ? VkDeviceSize{reduced.width} * reduced.height * (is_homogeneous(params.scattering) ? 16 : 32)
-          : kLeastBytes;
+  out[index(EpipolarBuffer::reduced)] = is_downscaled(params) ? VkDeviceSize{reduced.width} * reduced.height *
+                                                                    (is_homogeneous(params.scattering) ? 16 : 32)
+                                                              : kLeastBytes;
   out[index(EpipolarBuffer::break_list)] = sizeof(shared::WorkList) + breaks * 4;
   out[index(EpipolarBuffer::corrected)] = breaks * kLightBytes;
   const VkDeviceSize number = params.epipolar.min_max_format == MinMaxFormat::float32 ? 8 : 4;
   const VkDeviceSize row_bytes = tree_cells(desc) / shared::kTreeBlock * shared::kTreeNodes * number;
-  out[index(EpipolarBuffer::tree_list)] =
-      sizeof(shared::WorkList) + rows * (tree_cells(desc) / shared::kTreeBlock) * 4;
+  out[index(EpipolarBuffer::tree_list)] = sizeof(shared::WorkList) + rows * (tree_cells(desc) / shared::kTreeBlock) * 4;
   out[index(EpipolarBuffer::tree)] = params.epipolar.min_max_tree ? rows * row_bytes : kLeastBytes;
   const CascadeProcessing processing = params.shadows.cascade_processing;
   const VkDeviceSize turns = processing == CascadeProcessing::multi_pass_instanced ? desc.max_cascades : 1;
@@ -150,8 +150,7 @@ VkDeviceSize epipolar_bytes(const gpu::Device& device, const EffectDesc& desc, c
   return sum;
 }
 
-shared::EpipolarConstants epipolar_constants(const FrameInputs& inputs, const EffectDesc& desc,
-                                             const Params& params) {
+shared::EpipolarConstants epipolar_constants(const FrameInputs& inputs, const EffectDesc& desc, const Params& params) {
   shared::EpipolarConstants out = {};
   const EpipolarParams& p = params.epipolar;
   out.slices = reduced_count(p.slices, params);
@@ -164,7 +163,7 @@ shared::EpipolarConstants epipolar_constants(const FrameInputs& inputs, const Ef
   out.epipole_density = p.epipole_density;
   out.threshold = p.refinement_threshold;
   out.optimize_locations = p.optimize_locations.value;
-  out.least_weight = is_downscaled(params)                           ? kLeastWeightReduced
+  out.least_weight = is_downscaled(params)                             ? kLeastWeightReduced
                      : params.epipolar.correct_depth_breaks.value != 0 ? kLeastWeightAll
                                                                        : kLeastWeight;
   out.break_capacity = break_capacity(desc, params);
@@ -181,14 +180,13 @@ shared::EpipolarConstants epipolar_constants(const FrameInputs& inputs, const Ef
     return sum;
   };
   const Vec3& s = inputs.sun.direction_to_sun;
-  const double length = std::sqrt(static_cast<double>(s.x) * s.x + static_cast<double>(s.y) * s.y +
-                                  static_cast<double>(s.z) * s.z);
+  const double length =
+      std::sqrt(static_cast<double>(s.x) * s.x + static_cast<double>(s.y) * s.y + static_cast<double>(s.z) * s.z);
   const double world[3] = {s.x / length, s.y / length, s.z / length};
   double view[4] = {};
   for (int i = 0; i < 3; ++i) {
     // world_from_view is rigid: its transpose takes directions back.
-    for (int k = 0; k < 3; ++k)
-      view[i] += static_cast<double>(inputs.camera.world_from_view.m[4 * i + k]) * world[k];
+    for (int k = 0; k < 3; ++k) view[i] += static_cast<double>(inputs.camera.world_from_view.m[4 * i + k]) * world[k];
   }
   const double clip_x = row_of(inputs.camera.clip_from_view, 0, view);
   const double clip_y = row_of(inputs.camera.clip_from_view, 1, view);

@@ -38,12 +38,10 @@ using EpipolarSizes = std::array<VkDeviceSize, kEpipolarBuffers>;
 [[nodiscard]] const char* epipolar_buffer_cause(EpipolarBuffer buffer);
 // Its name in the shaders.
 [[nodiscard]] const char* epipolar_block_name(EpipolarBuffer buffer);
-constexpr VkBufferUsageFlags kEpipolarUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
-                                              VK_BUFFER_USAGE_TRANSFER_DST_BIT |
-                                              VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
+constexpr VkBufferUsageFlags kEpipolarUsage =
+    VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
 // Device memory that they take.
-[[nodiscard]] VkDeviceSize epipolar_bytes(const gpu::Device& device, const EffectDesc& desc,
-                                          const Params& params);
+[[nodiscard]] VkDeviceSize epipolar_bytes(const gpu::Device& device, const EffectDesc& desc, const Params& params);
 
 // Cells of the rows of the trees; texels of a map beyond them are read directly.
 [[nodiscard]] std::uint32_t tree_cells(const EffectDesc& desc);
@@ -61,7 +59,8 @@ constexpr VkBufferUsageFlags kEpipolarUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT
 // How much pixels find out by themselves because slices are few.
 enum class Sparsity : std::uint32_t {
   none,
-  skyline,  // of the sky, where not all slices around a pixel are in the sky: optical depth, and light from farther along the slices
+  skyline,  // of the sky, where not all slices around a pixel are in the sky: optical depth, and light from farther
+            // along the slices
   all,      // optical depth in all of the sky and among samples of other depths too
 };
 constexpr std::size_t kSparsities = 3;

@@ -13,8 +13,8 @@ namespace {
 Vec3 column(const Mat4& m, int i) { return {m.m[4 * i], m.m[4 * i + 1], m.m[4 * i + 2]}; }
 
 Vec3 normalized(const Vec3& v) {
-  const double length = std::sqrt(static_cast<double>(v.x) * v.x + static_cast<double>(v.y) * v.y +
-                                  static_cast<double>(v.z) * v.z);
+  const double length =
+      std::sqrt(static_cast<double>(v.x) * v.x + static_cast<double>(v.y) * v.y + static_cast<double>(v.z) * v.z);
   return {static_cast<float>(v.x / length), static_cast<float>(v.y / length), static_cast<float>(v.z / length)};
 }
 
@@ -98,7 +98,8 @@ shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDe
   const double altitude = out.camera_altitude_m;
   // ground_below() of shaders/lib/geometry.glsl.
   const double ground = altitude < 0.0 ? std::min(altitude, std::max(2.0 * altitude, -0.5 * radius)) : 0.0;
-  out.horizon_cos = static_cast<float>(-std::sqrt((altitude - ground) * (2.0 * radius + altitude + ground)) / (radius + altitude));
+  out.horizon_cos =
+      static_cast<float>(-std::sqrt((altitude - ground) * (2.0 * radius + altitude + ground)) / (radius + altitude));
   out.camera_up = {static_cast<float>(x / distance), static_cast<float>((radius + y) / distance),
                    static_cast<float>(z / distance)};
 
@@ -139,8 +140,7 @@ shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDe
   out.shadow_resolution = inputs.shadow_resolution;
   out.width = inputs.extent.width;
   out.height = inputs.extent.height;
-  out.cascade_count =
-      params.scattering.light_shafts ? static_cast<std::uint32_t>(inputs.cascades.size()) : 0;
+  out.cascade_count = params.scattering.light_shafts ? static_cast<std::uint32_t>(inputs.cascades.size()) : 0;
   out.first_marched_cascade = inputs.first_marched_cascade;
   out.integration_steps = params.scattering.integration_steps;
   out.only = params.scattering.only.value;
@@ -158,9 +158,12 @@ shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDe
     const double g = params.atmosphere.mie_g;
     const bool second = params.atmosphere.mie_phase == MiePhase::cornette_shanks;
     const double rayleigh = 3.0 / (16.0 * std::numbers::pi);
-    const double mie = (1.0 - g * g) * (second ? 3.0 / (8.0 * std::numbers::pi * (2.0 + g * g)) : 0.25 / std::numbers::pi);
+    const double mie =
+        (1.0 - g * g) * (second ? 3.0 / (8.0 * std::numbers::pi * (2.0 + g * g)) : 0.25 / std::numbers::pi);
     const auto source = [](double factor, const Vec3& scattering, const Vec3& extinction) {
-      const auto of = [factor](float s, float e) { return static_cast<float>(factor * s / std::max(static_cast<double>(e), 1e-30)); };
+      const auto of = [factor](float s, float e) {
+        return static_cast<float>(factor * s / std::max(static_cast<double>(e), 1e-30));
+      };
       return Vec3(of(scattering.x, extinction.x), of(scattering.y, extinction.y), of(scattering.z, extinction.z));
     };
     out.homogeneous.rayleigh_source = source(rayleigh, out.homogeneous.rayleigh_scattering, out.homogeneous.extinction);

@@ -22,7 +22,8 @@ namespace tyndall {
 }
 // Above the planet's sphere, in double: its centre is millions of metres away.
 [[nodiscard]] double camera_altitude_m(const FrameInputs& inputs, const Params& params);
-[[nodiscard]] shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDesc& desc, const Params& params);
+[[nodiscard]] shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDesc& desc,
+                                                     const Params& params);
 using CascadeArray = std::array<shared::CascadeConstants, shared::kMostCascades>;
 [[nodiscard]] CascadeArray cascade_constants(const FrameInputs& inputs);
 

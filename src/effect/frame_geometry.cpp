@@ -21,13 +21,11 @@ double length(const DVec3& v) { return std::sqrt(dot(v, v)); }
 
 DVec3 row_of(const Mat4& m, int row) { return {entry(m, row, 0), entry(m, row, 1), entry(m, row, 2)}; }
 
-DVec3 column_of(const Mat4& m, int column) {
-  return {entry(m, 0, column), entry(m, 1, column), entry(m, 2, column)};
-}
+DVec3 column_of(const Mat4& m, int column) { return {entry(m, 0, column), entry(m, 1, column), entry(m, 2, column)}; }
 
 double affine_error(const Mat4& m) {
-  return std::max({std::abs(entry(m, 3, 0)), std::abs(entry(m, 3, 1)), std::abs(entry(m, 3, 2)),
-                   std::abs(entry(m, 3, 3) - 1.0)});
+  return std::max(
+      {std::abs(entry(m, 3, 0)), std::abs(entry(m, 3, 1)), std::abs(entry(m, 3, 2)), std::abs(entry(m, 3, 3) - 1.0)});
 }
 
 double orthonormal_error(const Mat4& m) {

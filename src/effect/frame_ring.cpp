@@ -32,8 +32,7 @@ Result<std::optional<std::uint64_t>> FrameRing::take(std::uint64_t frame_index, 
   if (!busy(s)) return std::optional<std::uint64_t>();
   if (s.frame_index != frame_index) return std::optional<std::uint64_t>(s.frame_index);
   return Error{ErrorCode::invalid_argument,
-               "FrameInputs::frame_index " + std::to_string(frame_index) + " with view " +
-                   std::to_string(view) +
+               "FrameInputs::frame_index " + std::to_string(frame_index) + " with view " + std::to_string(view) +
                    " was recorded before, and its commands have not completed: both would be drawn with the "
                    "second camera; "
                    "expected the next frame_index, another view below EffectDesc::views (" +
@@ -48,15 +47,14 @@ void FrameRing::record_end(VkCommandBuffer cmd, std::uint64_t frame_index, std::
   Slot& s = slots_[slot(frame_index, view)];
   if (busy(s)) {
     // Other commands are still to set the event: an event must not be set twice without a barrier.
-    device_->vk.CmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
-                                   VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, nullptr, 0, nullptr, 0, nullptr);
+    device_->vk.CmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0,
+                                   nullptr, 0, nullptr, 0, nullptr);
   } else {
     device_->vk.ResetEvent(device_->device, s.done.get());
   }
   s.frame_index = frame_index;
   s.recorded = true;
-  device_->vk.CmdSetEvent(cmd, s.done.get(),
-                          VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT);
+  device_->vk.CmdSetEvent(cmd, s.done.get(), VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT);
 }
 
 }  // namespace tyndall

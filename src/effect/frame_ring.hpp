@@ -15,9 +15,7 @@ class FrameRing {
  public:
   static Result<FrameRing> create(const gpu::Device& device, const EffectDesc& desc);
 
-  [[nodiscard]] static std::uint32_t slots(const EffectDesc& desc) {
-    return desc.frames_in_flight * desc.views;
-  }
+  [[nodiscard]] static std::uint32_t slots(const EffectDesc& desc) { return desc.frames_in_flight * desc.views; }
   [[nodiscard]] std::uint32_t slot(std::uint64_t frame_index, std::uint32_t view) const {
     return static_cast<std::uint32_t>(frame_index % frames_) * views_ + view;
   }

@@ -11,7 +11,8 @@
 namespace tyndall {
 
 // An error with a message that names `where`, or a short one that every std::string stores without an allocation.
-[[nodiscard]] inline Error guard_error(ErrorCode code, const char* where, const char* what, const char* briefly) noexcept {
+[[nodiscard]] inline Error guard_error(ErrorCode code, const char* where, const char* what,
+                                       const char* briefly) noexcept {
   Error error;
   error.code = code;
   try {

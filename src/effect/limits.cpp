@@ -53,8 +53,8 @@ Result<void> check_desc(const DeviceInfo& info, const EffectDesc& desc) {
 
 Result<void> check_same_desc(const EffectDesc& created, const EffectDesc& wanted) {
   const auto fixed = [](const char* field) {
-    return Error{ErrorCode::invalid_argument, std::string("EffectDesc::") + field +
-                                                  " cannot be changed, it must be that of Effect::desc()"};
+    return Error{ErrorCode::invalid_argument,
+                 std::string("EffectDesc::") + field + " cannot be changed, it must be that of Effect::desc()"};
   };
   if (wanted.frames_in_flight != created.frames_in_flight) return fixed("frames_in_flight");
   if (wanted.views != created.views) return fixed("views");

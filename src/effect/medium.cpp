@@ -12,8 +12,7 @@ constexpr double kDepolarisation = 0.035;
 constexpr double kAerosolScatteringPerM = 2.0e-5;  // at aerosol_density 1, the same at every wavelength
 
 Vec3 scaled(const Vec3& v, double factor) {
-  return {static_cast<float>(v.x * factor), static_cast<float>(v.y * factor),
-          static_cast<float>(v.z * factor)};
+  return {static_cast<float>(v.x * factor), static_cast<float>(v.y * factor), static_cast<float>(v.z * factor)};
 }
 
 }  // namespace
@@ -43,8 +42,7 @@ shared::Medium medium_from_params(const Params& params) {
   if (air.custom_coefficients) {
     const Vec3& scattering = air.mie_scattering;
     const Vec3& absorption = air.mie_absorption;
-    const Vec3 extinction = {scattering.x + absorption.x, scattering.y + absorption.y,
-                             scattering.z + absorption.z};
+    const Vec3 extinction = {scattering.x + absorption.x, scattering.y + absorption.y, scattering.z + absorption.z};
     medium.rayleigh_scattering = air.rayleigh_scattering;
     medium.mie_scattering = scaled(scattering, air.aerosol_density);
     medium.mie_extinction = scaled(extinction, air.aerosol_density);

@@ -24,7 +24,8 @@ constexpr std::uint32_t kModeCount = kAtmosphereModes + 2;
   return (static_cast<std::uint32_t>(p.single) * 2 + (occluded ? 1 : 0)) * 2 + (each ? 1 : 0);
 }
 
-// Its constants: ids 0 single, 1 whether the higher orders are occluded, 2 sections, 5 whether the medium is homogeneous.
+// Its constants: ids 0 single, 1 whether the higher orders are occluded, 2 sections, 5 whether the medium is
+// homogeneous.
 [[nodiscard]] inline std::array<gpu::Constant, 4> mode_constants(std::uint32_t index) {
   if (index >= kAtmosphereModes) {
     const auto integration = static_cast<std::uint32_t>(SingleScattering::integration);

@@ -47,9 +47,9 @@ constexpr ParamInfo kTable[] = {
   {#group, #name, ParamType::uvec4, OFFSET(group, name), min, max, unit, "", Affects::affects, doc},
 #define PARAM_FLAG(group, name, def, affects, doc) \
   {#group, #name, ParamType::flag, OFFSET(group, name), 0, 1, "", "", Affects::affects, doc},
-#define PARAM_ENUM(group, name, type, def, affects, doc)                                    \
-  {#group, #name, ParamType::enumeration, OFFSET(group, name), 0, 0, "", k##type##Choices.substr(1), \
-   Affects::affects, doc},
+#define PARAM_ENUM(group, name, type, def, affects, doc)              \
+  {#group, #name, ParamType::enumeration,     OFFSET(group, name), 0, \
+   0,      "",    k##type##Choices.substr(1), Affects::affects,    doc},
 #include "tyndall/params.def"
 #include "tyndall/params_undef.h"
 };

@@ -90,9 +90,7 @@ class Speaker {
 
 double altitude_of(const DVec3& p, double radius) { return std::hypot(p.x, p.y + radius, p.z) - radius; }
 
-DVec3 wide(const Vec3& v) {
-  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
-}
+DVec3 wide(const Vec3& v) { return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)}; }
 
 DVec3 sum(const DVec3& a, const DVec3& b, double times) {
   return {a.x + times * b.x, a.y + times * b.y, a.z + times * b.z};
@@ -100,8 +98,8 @@ DVec3 sum(const DVec3& a, const DVec3& b, double times) {
 
 void remark_on_sun(Speaker& s, const FrameInputs& inputs) {
   const Sun& sun = inputs.sun;
-  s.say_if(Kind::sun_length, std::abs(length(wide(sun.direction_to_sun)) - 1.0) > 5e-4,
-           "Sun::direction_to_sun is ", length(wide(sun.direction_to_sun)),
+  s.say_if(Kind::sun_length, std::abs(length(wide(sun.direction_to_sun)) - 1.0) > 5e-4, "Sun::direction_to_sun is ",
+           length(wide(sun.direction_to_sun)),
            " long; expected unit length: it is normalised, but is it a direction, and towards the sun?");
   s.say_if(Kind::sun_radius, sun.angular_radius_rad > 0.1F, "Sun::angular_radius_rad is ",
            static_cast<double>(sun.angular_radius_rad), "; expected about 0.0047: is it in degrees?");
@@ -123,8 +121,8 @@ void remark_on_view(Speaker& s, const FrameInputs& inputs, const FrameState& sta
   s.say_if(Kind::view_inverse, inverse, "Camera::world_from_view puts the camera ", altitude,
            " m above sea level, and its inverse ", other,
            " m; expected the camera's place and axes in the world: is it the view matrix, view_from_world?");
-  s.say_if(Kind::below_sea, !inverse && altitude < -500.0, "Camera::world_from_view puts the camera ",
-           -altitude, " m below sea level; expected above -500 m: is y up, and the unit the metre?");
+  s.say_if(Kind::below_sea, !inverse && altitude < -500.0, "Camera::world_from_view puts the camera ", -altitude,
+           " m below sea level; expected above -500 m: is y up, and the unit the metre?");
   s.say_if(Kind::far_away, altitude > 1e9, "Camera::world_from_view puts the camera ", altitude,
            " m above sea level; expected less than 1e9 m: is the unit the metre?");
   s.say_if(Kind::view_mirrored, determinant3(m) < 0.0,
@@ -140,8 +138,8 @@ void remark_on_projection(Speaker& s, const FrameInputs& inputs, const FrameStat
            "Camera::clip_from_view has y up, as OpenGL's projections have; expected Vulkan's clip space, y "
            "down and depth 0 to 1: "
            "negate its second row, unless the images are upside down");
-  s.say_if(Kind::eye_moved, length(p.centre) > 0.01, "the rays of Camera::clip_from_view meet at ",
-           p.centre.x, ", ", p.centre.y, ", ", p.centre.z,
+  s.say_if(Kind::eye_moved, length(p.centre) > 0.01, "the rays of Camera::clip_from_view meet at ", p.centre.x, ", ",
+           p.centre.y, ", ", p.centre.z,
            " m in the view; expected its origin: an eye's offset belongs into world_from_view");
   const double near_m = distance_at_depth(p, 1.0 - sky);
   const double far_m = distance_at_depth(p, sky);
@@ -207,13 +205,13 @@ void remark_on_coverage(Speaker& s, const FrameInputs& inputs, const FrameState&
   // is seen from high up may have no ground to be shadowed.
   constexpr float kHigh_m = 10000.0F;
   elsewhere = elsewhere && sizes < 20.0 && state.frame.camera_altitude_m < kHigh_m;
-  s.say_if(Kind::cascade_clip, clip, "FrameInputs::cascades[first_marched_cascade] puts the view at ",
-           f.low[0], " to ", f.high[0],
+  s.say_if(Kind::cascade_clip, clip, "FrameInputs::cascades[first_marched_cascade] puts the view at ", f.low[0], " to ",
+           f.high[0],
            " of its map; expected texture coordinates, 0 to 1: does shadow_from_world lead to clip space, -1 "
            "to 1?");
   s.say_if(Kind::cascade_elsewhere, elsewhere && !clip,
-           "FrameInputs::cascades[first_marched_cascade] puts the view at u ", f.low[0], " to ", f.high[0],
-           " and v ", f.low[1], " to ", f.high[1],
+           "FrameInputs::cascades[first_marched_cascade] puts the view at u ", f.low[0], " to ", f.high[0], " and v ",
+           f.low[1], " to ", f.high[1],
            " of its map; expected the camera and what it sees within 0 to 1: nothing will be shadowed");
 }
 
@@ -238,8 +236,7 @@ void remark_on_cascades(Speaker& s, const FrameInputs& inputs, const FrameState&
       astray = i;
       degrees = off;
     }
-    if (depth_along * (state.desc.shadow_depth_reversed ? -1.0 : 1.0) > 0.0)
-      upside_down = std::min(upside_down, i);
+    if (depth_along * (state.desc.shadow_depth_reversed ? -1.0 : 1.0) > 0.0) upside_down = std::min(upside_down, i);
   }
   const auto number = [](std::size_t i) { return static_cast<std::uint64_t>(i); };
   s.say_if(Kind::cascade_range, empty < count, "FrameInputs::cascades[", number(empty),
@@ -248,16 +245,16 @@ void remark_on_cascades(Speaker& s, const FrameInputs& inputs, const FrameState&
            "] ends before the one in front of it; expected cascades from near to far");
   s.say_if(Kind::cascade_sun, astray < count, "FrameInputs::cascades[", number(astray), "] looks ", degrees,
            " degrees past the sun; expected a map and a depth along Sun::direction_to_sun");
-  s.say_if(Kind::cascade_depth, upside_down < count && astray == count, "FrameInputs::cascades[",
-           number(upside_down), "] has depth ", state.desc.shadow_depth_reversed ? "0" : "1",
-           " nearest to the sun; expected ", state.desc.shadow_depth_reversed ? "1" : "0",
-           ": EffectDesc::shadow_depth_reversed is ", state.desc.shadow_depth_reversed ? "on" : "off");
+  s.say_if(Kind::cascade_depth, upside_down < count && astray == count, "FrameInputs::cascades[", number(upside_down),
+           "] has depth ", state.desc.shadow_depth_reversed ? "0" : "1", " nearest to the sun; expected ",
+           state.desc.shadow_depth_reversed ? "1" : "0", ": EffectDesc::shadow_depth_reversed is ",
+           state.desc.shadow_depth_reversed ? "on" : "off");
   const double last_m = static_cast<double>(inputs.cascades.back().far_m);
-  s.say_if(Kind::cascade_unit, last_m > 0.0 && last_m < 1.0, "the last of FrameInputs::cascades ends ",
-           last_m, " m from the camera; expected at least 1 m: is the unit the metre?");
+  s.say_if(Kind::cascade_unit, last_m > 0.0 && last_m < 1.0, "the last of FrameInputs::cascades ends ", last_m,
+           " m from the camera; expected at least 1 m: is the unit the metre?");
   const double start_m = static_cast<double>(inputs.cascades[first].near_m);
-  s.say_if(Kind::cascade_start, start_m > 1.0, "FrameInputs::cascades[first_marched_cascade] starts ",
-           start_m, " m from the camera; expected 0: the air before it is taken as lit");
+  s.say_if(Kind::cascade_start, start_m > 1.0, "FrameInputs::cascades[first_marched_cascade] starts ", start_m,
+           " m from the camera; expected 0: the air before it is taken as lit");
   remark_on_coverage(s, inputs, state);
 }
 
@@ -273,8 +270,7 @@ void Remarks::on_frame(const FrameInputs& inputs, const FrameState& state, const
   s.say_if(Kind::no_cascades, p.light_shafts && inputs.cascades.empty(),
            "scattering.light_shafts is on, but FrameInputs::cascades is empty; expected shadow cascades: "
            "nothing will be shadowed");
-  s.say_if(Kind::no_shafts,
-           inputs.shadow_colors.view != VK_NULL_HANDLE && (inputs.cascades.empty() || !p.light_shafts),
+  s.say_if(Kind::no_shafts, inputs.shadow_colors.view != VK_NULL_HANDLE && (inputs.cascades.empty() || !p.light_shafts),
            "there are FrameInputs::shadow_colors, but no light shafts for them: nothing will be coloured");
   if (p.light_shafts && !inputs.cascades.empty()) remark_on_cascades(s, inputs, state);
   const bool needs_tables = p.enabled && !is_homogeneous(p) &&

@@ -39,7 +39,6 @@ static_assert(sizeof(Homogeneous) == 64, "the layout of Homogeneous must agree w
 static_assert(sizeof(RayNode) == 32 && sizeof(TableShape) == 32, "the layouts of tables must agree with std430");
 static_assert(sizeof(EpipolarConstants) == 112 && sizeof(EpipolarSlice) == 32 && sizeof(ShadowRow) == 32,
               "the layouts of epipolar sampling must agree with std430");
-static_assert(sizeof(ProbeRay) == 32 && sizeof(ProbeResult) == 32,
-              "the layouts of probes must agree with std430");
+static_assert(sizeof(ProbeRay) == 32 && sizeof(ProbeResult) == 32, "the layouts of probes must agree with std430");
 
 }  // namespace tyndall::shared

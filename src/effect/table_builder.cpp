@@ -18,8 +18,8 @@ constexpr std::uint32_t kMostSlices = 4096 * 3 + 512;
 Result<void> check_table_buffer(VkBuffer buffer, VkDeviceSize offset) {
   if (buffer == VK_NULL_HANDLE) return Error{ErrorCode::invalid_argument, "the buffer of the tables is null"};
   if (offset % kTexelBytes == 0) return {};
-  return Error{ErrorCode::invalid_argument, "the tables' offset in their buffer is " + std::to_string(offset) +
-                                                ", allowed are multiples of 8"};
+  return Error{ErrorCode::invalid_argument,
+               "the tables' offset in their buffer is " + std::to_string(offset) + ", allowed are multiples of 8"};
 }
 
 VkBufferImageCopy whole_table(const gpu::Image& image, VkDeviceSize offset) {
@@ -131,9 +131,7 @@ void TableBuilder::commit(Pending&& pending) noexcept {
   done_ = 0;
 }
 
-TableImage& TableBuilder::target(TableId id) {
-  return (complete_ ? next_ : tables_)[static_cast<std::uint32_t>(id)];
-}
+TableImage& TableBuilder::target(TableId id) { return (complete_ ? next_ : tables_)[static_cast<std::uint32_t>(id)]; }
 
 std::vector<TableBuilder::Slice> TableBuilder::plan_slices(const Params& params, std::uint32_t stale) {
   std::vector<Slice> out;
@@ -251,10 +249,10 @@ Result<void> TableBuilder::record_slice(VkCommandBuffer cmd, const Slice& slice)
   const gpu::Pipeline& pipeline = pipelines_[slice.stage];
   const gpu::Label label(*device_, cmd, pipeline.name);
   const TableScratch& s = scratch_;
-  const VkBuffer nodes = (slice.stage == grid_nodes || slice.stage == gather_single || slice.stage == gather_multiple
-                              ? s.grid_nodes
-                              : s.ray_nodes)
-                             .buffer.get();
+  const VkBuffer nodes =
+      (slice.stage == grid_nodes || slice.stage == gather_single || slice.stage == gather_multiple ? s.grid_nodes
+                                                                                                   : s.ray_nodes)
+          .buffer.get();
   // Views of tables that this build does not make are missing, and not bound by the stages it runs.
   const auto view = [this](TableId id) { return target(id).image.view.get(); };
   const gpu::NamedResource resources[] = {

@@ -1,4 +1,5 @@
-// What the tables' description (tables.cpp) and their building (table_builder.cpp) share: sizes, sets of tables, and the plan of the scratch memory.
+// What the tables' description (tables.cpp) and their building (table_builder.cpp) share: sizes, sets of tables, and
+// the plan of the scratch memory.
 #pragma once
 
 #include <array>

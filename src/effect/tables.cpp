@@ -14,9 +14,8 @@
 namespace tyndall {
 namespace {
 
-constexpr VkImageUsageFlags kTableUsage =
-    VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
-    VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+constexpr VkImageUsageFlags kTableUsage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                                          VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
 
 bool same(const void* a, const void* b, std::size_t size) { return std::memcmp(a, b, size) == 0; }
 
@@ -82,8 +81,8 @@ std::array<BufferPlan, kScratchBuffers> plan_scratch(std::uint32_t views) {
   constexpr VkDeviceSize ray = (shared::kSingleNodes + shared::kHighNodes + 1) * sizeof(shared::RayNode);
   constexpr VkDeviceSize vec4 = 16;
   constexpr VkDeviceSize source = points * shared::kSourceZeniths * shared::kSourceAzimuths * vec4;
-  constexpr VkDeviceSize phase = VkDeviceSize{8} * shared::kGatherAltitudes * shared::kSourceZeniths *
-                                 shared::kGatherZeniths * shared::kModes;
+  constexpr VkDeviceSize phase =
+      VkDeviceSize{8} * shared::kGatherAltitudes * shared::kSourceZeniths * shared::kGatherZeniths * shared::kModes;
   return {{{"table_constants", &TableScratch::constants, kConstantBytes},
            {"grid_nodes", &TableScratch::grid_nodes, ray * shared::kGatherAltitudes * shared::kGatherZeniths},
            {"ray_nodes", &TableScratch::ray_nodes, ray * views},
@@ -128,8 +127,8 @@ std::uint32_t stale_tables(const Params& built, const Params& wanted) {
   b.mie_phase = a.mie_phase;
   b.ground_albedo = a.ground_albedo;
   const bool air = !same(&a, &b, sizeof a);
-  const bool shape = !(built.tables.size == wanted.tables.size) ||
-                     built.tables.parameterization != wanted.tables.parameterization;
+  const bool shape =
+      !(built.tables.size == wanted.tables.size) || built.tables.parameterization != wanted.tables.parameterization;
   if (air || shape) stale |= kSingleTables;
   if (air) stale |= bit(TableId::sun_transmittance);
   return stale;
@@ -145,9 +144,9 @@ VkDeviceSize table_bytes(const Params& params) {
 
 std::string table_key(const gpu::Device& device, const Params& params) {
   const gpu::Shader* const used[] = {
-      &shaders::sun_light_comp,    &shaders::ray_nodes_comp,       &shaders::phase_matrix_comp,
+      &shaders::sun_light_comp,     &shaders::ray_nodes_comp,       &shaders::phase_matrix_comp,
       &shaders::gather_single_comp, &shaders::gather_multiple_comp, &shaders::scatter_comp,
-      &shaders::table_single_comp, &shaders::table_high_comp,      &shaders::sky_light_comp};
+      &shaders::table_single_comp,  &shaders::table_high_comp,      &shaders::sky_light_comp};
   Hash code;
   for (const gpu::Shader* shader : used) code.add(shader->spirv.data(), shader->spirv.size_bytes());
   const shared::ZenithQuadrature quadrature = zenith_quadrature();

@@ -38,16 +38,16 @@ using TableSet = std::array<TableImage, kTableCount>;
 
 // What a build needs besides its result: freed when it is complete.
 struct TableScratch {
-  gpu::Buffer constants;      // Medium, then TableShape and ZenithQuadrature
-  gpu::Buffer grid_nodes;     // RayNode of the gathering grid
-  gpu::Buffer ray_nodes;      // RayNode of one altitude of the tables
-  gpu::Buffer phase;          // Fourier coefficients of the phase functions
-  gpu::Buffer incident;       // light of one order
-  gpu::Buffer source;         // source function of one order
-  gpu::Buffer sum;            // of the orders
-  gpu::Buffer irradiance;     // of one order
-  gpu::Buffer sky;            // irradiance, sum of the orders
-  std::uint32_t views = 0;    // that ray_nodes has room for
+  gpu::Buffer constants;    // Medium, then TableShape and ZenithQuadrature
+  gpu::Buffer grid_nodes;   // RayNode of the gathering grid
+  gpu::Buffer ray_nodes;    // RayNode of one altitude of the tables
+  gpu::Buffer phase;        // Fourier coefficients of the phase functions
+  gpu::Buffer incident;     // light of one order
+  gpu::Buffer source;       // source function of one order
+  gpu::Buffer sum;          // of the orders
+  gpu::Buffer irradiance;   // of one order
+  gpu::Buffer sky;          // irradiance, sum of the orders
+  std::uint32_t views = 0;  // that ray_nodes has room for
   [[nodiscard]] VkDeviceSize bytes() const;
 };
 [[nodiscard]] VkDeviceSize table_scratch_bytes(const gpu::Device& device, const Params& params);
@@ -88,8 +88,19 @@ class TableBuilder {
   [[nodiscard]] std::span<const PassTiming> stage_times();
 
  private:
-  enum Stage : std::uint32_t { sun_light, grid_nodes, phase_matrix, gather_single, gather_multiple, scatter,
-                               ray_nodes, table_single, table_high, sky_light, kStages };
+  enum Stage : std::uint32_t {
+    sun_light,
+    grid_nodes,
+    phase_matrix,
+    gather_single,
+    gather_multiple,
+    scatter,
+    ray_nodes,
+    table_single,
+    table_high,
+    sky_light,
+    kStages
+  };
   // A dispatch: for the altitudes (or columns) [first; first + count), of one order of scattering.
   struct Slice {
     Stage stage;
@@ -115,12 +126,12 @@ class TableBuilder {
   bool timings_ = false;
   std::array<gpu::Pipeline, kStages> pipelines_ = {};
   TableSet tables_ = {};
-  TableSet next_ = {};        // where `tables_` is in use and stale
+  TableSet next_ = {};  // where `tables_` is in use and stale
   TableScratch scratch_ = {};
-  Params built_ = {};         // of tables_, if complete_
-  Params wanted_ = {};        // of the build
-  bool complete_ = false;     // tables_ have been built once
-  std::uint32_t stale_ = 0;   // what the build makes
+  Params built_ = {};        // of tables_, if complete_
+  Params wanted_ = {};       // of the build
+  bool complete_ = false;    // tables_ have been built once
+  std::uint32_t stale_ = 0;  // what the build makes
   std::vector<Slice> slices_ = {};
   std::uint32_t done_ = 0;
   std::vector<Retired> retired_ = {};

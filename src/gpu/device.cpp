@@ -40,9 +40,8 @@ Error vulkan_error(VkResult result, const char* what, const char* name) {
 
 Result<void> init_device(Device& device, PFN_vkGetInstanceProcAddr get) {
   if (const char* missing = load_functions(device.vk, get, device.instance, device.device)) {
-    return Error{ErrorCode::unsupported_device,
-                 std::string("the Vulkan device lacks ") + missing +
-                     ": Vulkan 1.3 and VK_KHR_push_descriptor are needed"};
+    return Error{ErrorCode::unsupported_device, std::string("the Vulkan device lacks ") + missing +
+                                                    ": Vulkan 1.3 and VK_KHR_push_descriptor are needed"};
   }
   VkPhysicalDeviceMaintenance4Properties buffers = {};
   buffers.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_PROPERTIES;
@@ -65,10 +64,8 @@ std::uint32_t find_memory_type(const Device& device, std::uint32_t bits, VkMemor
   return VK_MAX_MEMORY_TYPES;
 }
 
-#define TYNDALL_DESTROY(type, function)                  \
-  void destroy(const Device& device, type handle) {      \
-    device.vk.function(device.device, handle, device.allocator); \
-  }
+#define TYNDALL_DESTROY(type, function) \
+  void destroy(const Device& device, type handle) { device.vk.function(device.device, handle, device.allocator); }
 TYNDALL_DESTROY(VkBuffer, DestroyBuffer)
 TYNDALL_DESTROY(VkImage, DestroyImage)
 TYNDALL_DESTROY(VkImageView, DestroyImageView)

@@ -36,8 +36,7 @@ struct Device {
 Result<void> init_device(Device& device, PFN_vkGetInstanceProcAddr get);
 
 // Index of a memory type of `bits` with all of `flags`; VK_MAX_MEMORY_TYPES when there is none.
-[[nodiscard]] std::uint32_t find_memory_type(const Device& device, std::uint32_t bits,
-                                             VkMemoryPropertyFlags flags);
+[[nodiscard]] std::uint32_t find_memory_type(const Device& device, std::uint32_t bits, VkMemoryPropertyFlags flags);
 
 void destroy(const Device& device, VkBuffer handle);
 void destroy(const Device& device, VkImage handle);

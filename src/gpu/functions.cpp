@@ -2,11 +2,10 @@
 
 namespace tyndall::gpu {
 
-const char* load_functions(Functions& table, PFN_vkGetInstanceProcAddr get, VkInstance instance,
-                           VkDevice device) {
+const char* load_functions(Functions& table, PFN_vkGetInstanceProcAddr get, VkInstance instance, VkDevice device) {
   const char* missing = nullptr;
-#define X(name)                                                                      \
-  table.name = reinterpret_cast<PFN_vk##name>(get(instance, "vk" #name));            \
+#define X(name)                                                           \
+  table.name = reinterpret_cast<PFN_vk##name>(get(instance, "vk" #name)); \
   if (table.name == nullptr && missing == nullptr) missing = "vk" #name;
   TYNDALL_INSTANCE_FUNCTIONS(X)
 #undef X

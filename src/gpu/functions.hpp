@@ -6,85 +6,85 @@
 
 namespace tyndall::gpu {
 
-#define TYNDALL_INSTANCE_FUNCTIONS(X)    \
-  X(GetDeviceProcAddr)                   \
-  X(GetPhysicalDeviceProperties2)        \
-  X(GetPhysicalDeviceMemoryProperties)   \
-  X(GetPhysicalDeviceFormatProperties)   \
+#define TYNDALL_INSTANCE_FUNCTIONS(X)  \
+  X(GetDeviceProcAddr)                 \
+  X(GetPhysicalDeviceProperties2)      \
+  X(GetPhysicalDeviceMemoryProperties) \
+  X(GetPhysicalDeviceFormatProperties) \
   X(GetPhysicalDeviceQueueFamilyProperties)
 
-#define TYNDALL_DEVICE_FUNCTIONS(X)  \
-  X(AllocateCommandBuffers)          \
-  X(AllocateMemory)                  \
-  X(BeginCommandBuffer)              \
-  X(BindBufferMemory)                \
-  X(BindImageMemory)                 \
-  X(CmdBeginRendering)               \
-  X(CmdBindIndexBuffer)              \
-  X(CmdBindPipeline)                 \
-  X(CmdCopyBuffer)                   \
-  X(CmdCopyBufferToImage)            \
-  X(CmdCopyImageToBuffer)            \
-  X(CmdDispatch)                     \
-  X(CmdDispatchIndirect)             \
-  X(CmdDraw)                         \
-  X(CmdDrawIndexed)                  \
-  X(CmdEndRendering)                 \
-  X(CmdFillBuffer)                   \
-  X(CmdPipelineBarrier)              \
-  X(CmdPushConstants)                \
-  X(CmdPushDescriptorSetKHR)         \
-  X(CmdResetQueryPool)               \
-  X(CmdSetEvent)                     \
-  X(CmdSetScissor)                   \
-  X(CmdSetViewport)                  \
-  X(CmdUpdateBuffer)                 \
-  X(CmdWriteTimestamp)               \
-  X(CreateBuffer)                    \
-  X(CreateCommandPool)               \
-  X(CreateComputePipelines)          \
-  X(CreateDescriptorSetLayout)       \
-  X(CreateEvent)                     \
-  X(CreateFence)                     \
-  X(CreateGraphicsPipelines)         \
-  X(CreateImage)                     \
-  X(CreateImageView)                 \
-  X(CreatePipelineLayout)            \
-  X(CreateQueryPool)                 \
-  X(CreateSampler)                   \
-  X(CreateShaderModule)              \
-  X(DestroyBuffer)                   \
-  X(DestroyCommandPool)              \
-  X(DestroyDescriptorSetLayout)      \
-  X(DestroyEvent)                    \
-  X(DestroyFence)                    \
-  X(DestroyImage)                    \
-  X(DestroyImageView)                \
-  X(DestroyPipeline)                 \
-  X(DestroyPipelineLayout)           \
-  X(DestroyQueryPool)                \
-  X(DestroySampler)                  \
-  X(DestroyShaderModule)             \
-  X(DeviceWaitIdle)                  \
-  X(EndCommandBuffer)                \
-  X(FreeMemory)                      \
-  X(GetBufferMemoryRequirements)     \
+#define TYNDALL_DEVICE_FUNCTIONS(X)    \
+  X(AllocateCommandBuffers)            \
+  X(AllocateMemory)                    \
+  X(BeginCommandBuffer)                \
+  X(BindBufferMemory)                  \
+  X(BindImageMemory)                   \
+  X(CmdBeginRendering)                 \
+  X(CmdBindIndexBuffer)                \
+  X(CmdBindPipeline)                   \
+  X(CmdCopyBuffer)                     \
+  X(CmdCopyBufferToImage)              \
+  X(CmdCopyImageToBuffer)              \
+  X(CmdDispatch)                       \
+  X(CmdDispatchIndirect)               \
+  X(CmdDraw)                           \
+  X(CmdDrawIndexed)                    \
+  X(CmdEndRendering)                   \
+  X(CmdFillBuffer)                     \
+  X(CmdPipelineBarrier)                \
+  X(CmdPushConstants)                  \
+  X(CmdPushDescriptorSetKHR)           \
+  X(CmdResetQueryPool)                 \
+  X(CmdSetEvent)                       \
+  X(CmdSetScissor)                     \
+  X(CmdSetViewport)                    \
+  X(CmdUpdateBuffer)                   \
+  X(CmdWriteTimestamp)                 \
+  X(CreateBuffer)                      \
+  X(CreateCommandPool)                 \
+  X(CreateComputePipelines)            \
+  X(CreateDescriptorSetLayout)         \
+  X(CreateEvent)                       \
+  X(CreateFence)                       \
+  X(CreateGraphicsPipelines)           \
+  X(CreateImage)                       \
+  X(CreateImageView)                   \
+  X(CreatePipelineLayout)              \
+  X(CreateQueryPool)                   \
+  X(CreateSampler)                     \
+  X(CreateShaderModule)                \
+  X(DestroyBuffer)                     \
+  X(DestroyCommandPool)                \
+  X(DestroyDescriptorSetLayout)        \
+  X(DestroyEvent)                      \
+  X(DestroyFence)                      \
+  X(DestroyImage)                      \
+  X(DestroyImageView)                  \
+  X(DestroyPipeline)                   \
+  X(DestroyPipelineLayout)             \
+  X(DestroyQueryPool)                  \
+  X(DestroySampler)                    \
+  X(DestroyShaderModule)               \
+  X(DeviceWaitIdle)                    \
+  X(EndCommandBuffer)                  \
+  X(FreeMemory)                        \
+  X(GetBufferMemoryRequirements)       \
   X(GetDeviceBufferMemoryRequirements) \
-  X(GetDeviceImageMemoryRequirements) \
-  X(GetEventStatus)                  \
-  X(GetImageMemoryRequirements)      \
-  X(GetQueryPoolResults)             \
-  X(MapMemory)                       \
-  X(QueueSubmit)                     \
-  X(ResetCommandBuffer)              \
-  X(ResetEvent)                      \
-  X(ResetFences)                     \
+  X(GetDeviceImageMemoryRequirements)  \
+  X(GetEventStatus)                    \
+  X(GetImageMemoryRequirements)        \
+  X(GetQueryPoolResults)               \
+  X(MapMemory)                         \
+  X(QueueSubmit)                       \
+  X(ResetCommandBuffer)                \
+  X(ResetEvent)                        \
+  X(ResetFences)                       \
   X(WaitForFences)
 
 // Present only where the instance has VK_EXT_debug_utils; check before the call.
-#define TYNDALL_DEBUG_FUNCTIONS(X)   \
-  X(CmdBeginDebugUtilsLabelEXT)      \
-  X(CmdEndDebugUtilsLabelEXT)        \
+#define TYNDALL_DEBUG_FUNCTIONS(X) \
+  X(CmdBeginDebugUtilsLabelEXT)    \
+  X(CmdEndDebugUtilsLabelEXT)      \
   X(SetDebugUtilsObjectNameEXT)
 
 struct Functions {
@@ -96,7 +96,6 @@ struct Functions {
 };
 
 // Fills the table. Returns the name of the first function that the device lacks, or nullptr.
-const char* load_functions(Functions& table, PFN_vkGetInstanceProcAddr get, VkInstance instance,
-                           VkDevice device);
+const char* load_functions(Functions& table, PFN_vkGetInstanceProcAddr get, VkInstance instance, VkDevice device);
 
 }  // namespace tyndall::gpu

@@ -73,7 +73,8 @@ Result<std::vector<VkPhysicalDevice>> enumerate(VkInstance instance) {
   VkResult result = vkEnumeratePhysicalDevices(instance, &count, nullptr);
   std::vector<VkPhysicalDevice> devices(count);
   if (result == VK_SUCCESS) result = vkEnumeratePhysicalDevices(instance, &count, devices.data());
-  if (result == VK_ERROR_INITIALIZATION_FAILED) count = 0;
+  if (result == VK_ERROR_INITIALIZATION_FAILED)
+    count = 0;
   else if (result != VK_SUCCESS && result != VK_INCOMPLETE) {
     return vulkan_error(result, "enumerating", "the Vulkan devices");
   }

@@ -99,8 +99,8 @@ class Host {
 Result<void> upload(Host& host, const Buffer& to, const void* data, VkDeviceSize size);
 Result<void> upload(Host& host, const Image& to, const void* data, VkDeviceSize size, VkImageLayout layout);
 // Copies the first level of one layer of an image in `layout` to the host, rows tightly packed.
-Result<std::vector<std::byte>> download(Host& host, const Image& from, VkImageLayout layout,
-                                        std::uint32_t layer, std::uint32_t bytes_per_texel);
+Result<std::vector<std::byte>> download(Host& host, const Image& from, VkImageLayout layout, std::uint32_t layer,
+                                        std::uint32_t bytes_per_texel);
 Result<std::vector<std::byte>> download(Host& host, const Buffer& from, VkDeviceSize size);
 
 }  // namespace tyndall::gpu

@@ -16,7 +16,8 @@ Result<void> add_bindings(Pipeline& pipeline, const Shader& shader,
     std::uint32_t i = 0;
     while (i < pipeline.binding_count && pipeline.bindings[i].binding != binding.binding) ++i;
     if (i == kMaxBindings) {
-      return Error{ErrorCode::unsupported_device, "more than " + std::to_string(kMaxBindings) + " bindings in " + shader.name};
+      return Error{ErrorCode::unsupported_device,
+                   "more than " + std::to_string(kMaxBindings) + " bindings in " + shader.name};
     }
     if (i == pipeline.binding_count) {
       pipeline.bindings[i] = binding;
@@ -90,8 +91,7 @@ struct Specialization {
 
   explicit Specialization(std::span<const Constant> constants) {
     for (std::size_t i = 0; i < constants.size(); ++i) {
-      entries.push_back({constants[i].id,
-                         static_cast<std::uint32_t>(i * sizeof(Constant) + offsetof(Constant, value)),
+      entries.push_back({constants[i].id, static_cast<std::uint32_t>(i * sizeof(Constant) + offsetof(Constant, value)),
                          sizeof(std::uint32_t)});
     }
     info.mapEntryCount = static_cast<std::uint32_t>(entries.size());
@@ -123,14 +123,18 @@ Result<void> check_shader(const Device& device, const Shader& shader) {
                                                     std::to_string(allowed)};
   };
   const auto count = [&](std::initializer_list<VkDescriptorType> types) {
-    return static_cast<std::uint32_t>(std::count_if(shader.bindings.begin(), shader.bindings.end(), [&](const Binding& b) {
-      return std::find(types.begin(), types.end(), b.type) != types.end();
-    }));
+    return static_cast<std::uint32_t>(
+        std::count_if(shader.bindings.begin(), shader.bindings.end(),
+                      [&](const Binding& b) { return std::find(types.begin(), types.end(), b.type) != types.end(); }));
   };
-  TYNDALL_TRY(exceeds("storage buffers", count({VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}), limits.maxPerStageDescriptorStorageBuffers));
-  TYNDALL_TRY(exceeds("uniform buffers", count({VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}), limits.maxPerStageDescriptorUniformBuffers));
-  TYNDALL_TRY(exceeds("storage images", count({VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}), limits.maxPerStageDescriptorStorageImages));
-  TYNDALL_TRY(exceeds("sampled images", count({VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}),
+  TYNDALL_TRY(exceeds("storage buffers", count({VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}),
+                      limits.maxPerStageDescriptorStorageBuffers));
+  TYNDALL_TRY(exceeds("uniform buffers", count({VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}),
+                      limits.maxPerStageDescriptorUniformBuffers));
+  TYNDALL_TRY(
+      exceeds("storage images", count({VK_DESCRIPTOR_TYPE_STORAGE_IMAGE}), limits.maxPerStageDescriptorStorageImages));
+  TYNDALL_TRY(exceeds("sampled images",
+                      count({VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE}),
                       limits.maxPerStageDescriptorSampledImages));
   TYNDALL_TRY(exceeds("samplers", count({VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_DESCRIPTOR_TYPE_SAMPLER}),
                       limits.maxPerStageDescriptorSamplers));
@@ -139,7 +143,8 @@ Result<void> check_shader(const Device& device, const Shader& shader) {
   if (shader.stage != VK_SHADER_STAGE_COMPUTE_BIT) return {};
   std::uint64_t invocations = 1;
   for (std::size_t i = 0; i < 3; ++i) {
-    TYNDALL_TRY(exceeds("invocations in a direction of a group", shader.local_size[i], limits.maxComputeWorkGroupSize[i]));
+    TYNDALL_TRY(
+        exceeds("invocations in a direction of a group", shader.local_size[i], limits.maxComputeWorkGroupSize[i]));
     invocations *= shader.local_size[i];
   }
   return exceeds("invocations in a group", invocations, limits.maxComputeWorkGroupInvocations);
@@ -160,8 +165,8 @@ Result<Pipeline> create_compute_pipeline(const Device& device, const Shader& sha
   info.stage = stage_info(shader, module.get(), specialization);
   info.layout = out.layout.get();
   VkPipeline pipeline = VK_NULL_HANDLE;
-  const VkResult result = device.vk.CreateComputePipelines(device.device, device.pipeline_cache, 1, &info,
-                                                           device.allocator, &pipeline);
+  const VkResult result =
+      device.vk.CreateComputePipelines(device.device, device.pipeline_cache, 1, &info, device.allocator, &pipeline);
   if (result != VK_SUCCESS) return vulkan_error(result, "creating the pipeline", shader.name);
   out.pipeline = Handle<VkPipeline>(device, pipeline);
   set_name(device, VK_OBJECT_TYPE_PIPELINE, pipeline, shader.name);
@@ -254,8 +259,8 @@ Result<Pipeline> create_graphics_pipeline(const Device& device, const GraphicsDe
   info.pDynamicState = &dynamic;
   info.layout = out.layout.get();
   VkPipeline pipeline = VK_NULL_HANDLE;
-  const VkResult result = device.vk.CreateGraphicsPipelines(device.device, device.pipeline_cache, 1, &info,
-                                                            device.allocator, &pipeline);
+  const VkResult result =
+      device.vk.CreateGraphicsPipelines(device.device, device.pipeline_cache, 1, &info, device.allocator, &pipeline);
   if (result != VK_SUCCESS) return vulkan_error(result, "creating the pipeline", desc.name);
   out.pipeline = Handle<VkPipeline>(device, pipeline);
   set_name(device, VK_OBJECT_TYPE_PIPELINE, pipeline, desc.name);
@@ -290,8 +295,8 @@ std::string_view bind(const Device& device, VkCommandBuffer cmd, const Pipeline&
   return {};
 }
 
-void dispatch(const Device& device, VkCommandBuffer cmd, const Pipeline& pipeline, std::uint32_t x,
-              std::uint32_t y, std::uint32_t z) {
+void dispatch(const Device& device, VkCommandBuffer cmd, const Pipeline& pipeline, std::uint32_t x, std::uint32_t y,
+              std::uint32_t z) {
   const auto groups = [](std::uint32_t n, std::uint32_t local) { return (n + local - 1) / local; };
   device.vk.CmdDispatch(cmd, groups(x, pipeline.local_size[0]), groups(y, pipeline.local_size[1]),
                         groups(z, pipeline.local_size[2]));

@@ -83,7 +83,7 @@ std::string_view bind(const Device& device, VkCommandBuffer cmd, const Pipeline&
                       std::span<const NamedResource> resources, const void* push = nullptr);
 
 // Groups of the pipeline's local size that cover x × y × z invocations.
-void dispatch(const Device& device, VkCommandBuffer cmd, const Pipeline& pipeline, std::uint32_t x,
-              std::uint32_t y = 1, std::uint32_t z = 1);
+void dispatch(const Device& device, VkCommandBuffer cmd, const Pipeline& pipeline, std::uint32_t x, std::uint32_t y = 1,
+              std::uint32_t z = 1);
 
 }  // namespace tyndall::gpu

@@ -26,8 +26,8 @@ std::uint32_t memory_type(const Device& device, std::uint32_t bits, MemoryKind k
   return best != VK_MAX_MEMORY_TYPES ? best : find_memory_type(device, bits, needed);
 }
 
-Result<Handle<VkDeviceMemory>> allocate(const Device& device, const VkMemoryRequirements& requirements,
-                                        MemoryKind kind, const char* name) {
+Result<Handle<VkDeviceMemory>> allocate(const Device& device, const VkMemoryRequirements& requirements, MemoryKind kind,
+                                        const char* name) {
   VkMemoryAllocateInfo info = {};
   info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
   info.allocationSize = requirements.size;
@@ -101,8 +101,8 @@ Result<Handle<VkImageView>> create_layer_view(const Device& device, const Image&
   return create_view(device, image, VK_IMAGE_VIEW_TYPE_2D, layer, 1);
 }
 
-Result<Buffer> create_buffer(const Device& device, const char* name, VkDeviceSize size,
-                             VkBufferUsageFlags usage, MemoryKind kind) {
+Result<Buffer> create_buffer(const Device& device, const char* name, VkDeviceSize size, VkBufferUsageFlags usage,
+                             MemoryKind kind) {
   Buffer out;
   out.size = size;
   const VkBufferCreateInfo info = buffer_create_info(size, usage);
@@ -164,8 +164,7 @@ Result<Handle<VkSampler>> create_sampler(const Device& device, const SamplerDesc
   return Handle<VkSampler>(device, sampler);
 }
 
-void transition(const Device& device, VkCommandBuffer cmd, const Image& image, VkImageLayout from,
-                VkImageLayout to) {
+void transition(const Device& device, VkCommandBuffer cmd, const Image& image, VkImageLayout from, VkImageLayout to) {
   VkImageMemoryBarrier info = {};
   info.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
   info.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT | VK_ACCESS_MEMORY_READ_BIT;

@@ -46,8 +46,8 @@ enum class MemoryKind {
 Result<Image> create_image(const Device& device, const ImageDesc& desc);
 // A view of one layer (2D) of an image.
 Result<Handle<VkImageView>> create_layer_view(const Device& device, const Image& image, std::uint32_t layer);
-Result<Buffer> create_buffer(const Device& device, const char* name, VkDeviceSize size,
-                             VkBufferUsageFlags usage, MemoryKind kind);
+Result<Buffer> create_buffer(const Device& device, const char* name, VkDeviceSize size, VkBufferUsageFlags usage,
+                             MemoryKind kind);
 
 // Bytes of memory that create_image or create_buffer would take, without creating anything.
 [[nodiscard]] VkDeviceSize image_bytes(const Device& device, const ImageDesc& desc);
@@ -68,7 +68,6 @@ Result<Handle<VkSampler>> create_sampler(const Device& device, const SamplerDesc
 
 // Moves a whole image between layouts, waiting for everything before and blocking everything after:
 // for set-up and readback, not between the passes of a frame.
-void transition(const Device& device, VkCommandBuffer cmd, const Image& image, VkImageLayout from,
-                VkImageLayout to);
+void transition(const Device& device, VkCommandBuffer cmd, const Image& image, VkImageLayout from, VkImageLayout to);
 
 }  // namespace tyndall::gpu

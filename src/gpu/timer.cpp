@@ -64,9 +64,8 @@ std::span<const TimedScope> Timer::read(std::uint32_t slot) {
   const std::vector<const char*>& names = names_[slot];
   if (names.empty()) return {};
   const auto count = static_cast<std::uint32_t>(names.size() * 2);
-  const VkResult result =
-      device_->vk.GetQueryPoolResults(device_->device, pool_.get(), slot * scopes_ * 2, count, count * 8,
-                                      ticks_.data(), 8, VK_QUERY_RESULT_64_BIT);
+  const VkResult result = device_->vk.GetQueryPoolResults(device_->device, pool_.get(), slot * scopes_ * 2, count,
+                                                          count * 8, ticks_.data(), 8, VK_QUERY_RESULT_64_BIT);
   if (result != VK_SUCCESS) return {};
   const double ms_per_tick = static_cast<double>(device_->properties.limits.timestampPeriod) * 1e-6;
   for (std::size_t i = 0; i < names.size(); ++i) {

@@ -7,10 +7,10 @@
 #define TYNDALL_CONCAT_2(a, b) a##b
 #define TYNDALL_CONCAT(a, b) TYNDALL_CONCAT_2(a, b)
 
-#define TYNDALL_TRY(expression)                                                                  \
-  do {                                                                                           \
-    auto try_result = (expression);                                                              \
-    if (!try_result.ok()) return std::move(try_result).error();                                  \
+#define TYNDALL_TRY(expression)                                 \
+  do {                                                          \
+    auto try_result = (expression);                             \
+    if (!try_result.ok()) return std::move(try_result).error(); \
   } while (false)
 
 #define TYNDALL_ASSIGN_2(result, declaration, expression) \

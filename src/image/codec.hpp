@@ -13,8 +13,7 @@ namespace tyndall::image {
 [[nodiscard]] Result<File> decode_exr(std::string_view bytes, const std::string& path);
 
 // Refuses what no file can hold: no pixels, too many, rgb of another size, names longer than 79.
-[[nodiscard]] Result<void> check_writable_image(const std::string& path, const Image& image,
-                                                const Metadata& metadata);
+[[nodiscard]] Result<void> check_writable_image(const std::string& path, const Image& image, const Metadata& metadata);
 
 [[nodiscard]] Error read_error(const std::string& path, std::string_view why);
 [[nodiscard]] Error write_error(ErrorCode code, const std::string& path, std::string_view why);

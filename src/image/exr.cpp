@@ -112,8 +112,7 @@ Channels kind_of_channels(const Imf::ChannelList& channels) {
   for (const char* const name : {"R", "G", "B"}) {
     const Imf::Channel* const channel = channels.findChannel(name);
     if (channel == nullptr) throw std::runtime_error("it has neither the channels R, G, B nor Y");
-    if (channel->xSampling != 1 || channel->ySampling != 1)
-      throw std::runtime_error("its channels are subsampled");
+    if (channel->xSampling != 1 || channel->ySampling != 1) throw std::runtime_error("its channels are subsampled");
   }
   return Channels::rgb;
 }
@@ -171,7 +170,8 @@ void read_luminance_chroma(std::string_view bytes, const std::string& path, cons
   const std::size_t width = image.width;
   std::vector<Imf::Rgba> row(width);
   for (int y = window.min.y; y <= window.max.y; ++y) {
-    input.setFrameBuffer(row.data() - window.min.x - static_cast<std::ptrdiff_t>(y) * static_cast<std::ptrdiff_t>(width), 1, width);
+    input.setFrameBuffer(
+        row.data() - window.min.x - static_cast<std::ptrdiff_t>(y) * static_cast<std::ptrdiff_t>(width), 1, width);
     input.readPixels(y);
     for (const Imf::Rgba& pixel : row) image.rgb.insert(image.rgb.end(), {pixel.r, pixel.g, pixel.b});
   }
@@ -188,9 +188,11 @@ Image displayed(const Image& data, const Imath::Box2i& window, const Imath::Box2
   const int left = std::max(window.min.x, display.min.x), right = std::min(window.max.x, display.max.x);
   const int top = std::max(window.min.y, display.min.y), bottom = std::min(window.max.y, display.max.y);
   for (int y = top; y <= bottom && left <= right; ++y) {
-    const float* const from = data.pixel(static_cast<std::uint32_t>(left - window.min.x), static_cast<std::uint32_t>(y - window.min.y));
-    std::copy_n(from, 3 * (static_cast<std::size_t>(right - left) + 1),
-                out.pixel(static_cast<std::uint32_t>(left - display.min.x), static_cast<std::uint32_t>(y - display.min.y)));
+    const float* const from =
+        data.pixel(static_cast<std::uint32_t>(left - window.min.x), static_cast<std::uint32_t>(y - window.min.y));
+    std::copy_n(
+        from, 3 * (static_cast<std::size_t>(right - left) + 1),
+        out.pixel(static_cast<std::uint32_t>(left - display.min.x), static_cast<std::uint32_t>(y - display.min.y)));
   }
   return out;
 }
@@ -219,7 +221,8 @@ File decode(std::string_view bytes, const std::string& path) {
   if (window != display) {
     // Pixels that no data stands behind are bounded more tightly.
     constexpr std::int64_t kMaxEmptyPixels = std::int64_t{1} << 25;
-    check_window(display, std::max(kMaxEmptyPixels, width_of(window) * height_of(window)), "its display window is too large");
+    check_window(display, std::max(kMaxEmptyPixels, width_of(window) * height_of(window)),
+                 "its display window is too large");
     file.image = displayed(file.image, window, display);
     file.note = config::concat({"its pixels cover ", window_text(window), ", its display window ", window_text(display),
                                 ": taken is the display window, black where there are no pixels"});
@@ -272,9 +275,7 @@ Result<void> write_exr(const std::string& path, const Image& image, const Metada
   if (Result<void> fits = check_writable_image(path, image, metadata); !fits) return fits;
   if (options.precision == ExrPrecision::half16) {
     constexpr float kLargestHalf = 65504.0F;
-    const auto too_large = [](float value) {
-      return std::isfinite(value) && std::fabs(value) > kLargestHalf;
-    };
+    const auto too_large = [](float value) { return std::isfinite(value) && std::fabs(value) > kLargestHalf; };
     const auto first = std::find_if(image.rgb.begin(), image.rgb.end(), too_large);
     if (first != image.rgb.end()) {
       return write_error(ErrorCode::invalid_argument, path,

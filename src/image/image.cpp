@@ -47,27 +47,26 @@ Error write_error(ErrorCode code, const std::string& path, std::string_view why)
 Result<FileKind> kind_of_name(const std::string& path) {
   if (ends_with_ignoring_case(path, ".png")) return FileKind::png;
   if (ends_with_ignoring_case(path, ".exr")) return FileKind::exr;
-  return Error{ErrorCode::invalid_argument, config::concat({"unknown image format, ", shown(path),
-                                                            ", allowed is a name in .png or .exr"})};
+  return Error{ErrorCode::invalid_argument,
+               config::concat({"unknown image format, ", shown(path), ", allowed is a name in .png or .exr"})};
 }
 
 Result<void> check_writable_image(const std::string& path, const Image& image, const Metadata& metadata) {
   const bool side_fits =
       image.width > 0 && image.height > 0 && image.width <= kLargestSide && image.height <= kLargestSide;
   if (!side_fits || image.rgb.size() != std::size_t{3} * image.width * image.height) {
-    return write_error(ErrorCode::invalid_argument, path,
-                       config::concat({"the image is ", std::to_string(image.width), "x",
-                                       std::to_string(image.height), ", allowed is 1x1 to ",
-                                       std::to_string(kLargestSide), "x", std::to_string(kLargestSide)}));
+    return write_error(
+        ErrorCode::invalid_argument, path,
+        config::concat({"the image is ", std::to_string(image.width), "x", std::to_string(image.height),
+                        ", allowed is 1x1 to ", std::to_string(kLargestSide), "x", std::to_string(kLargestSide)}));
   }
   for (const auto& [name, value] : metadata) {
     const bool plain = std::all_of(name.begin(), name.end(), [](char c) { return c >= ' ' && c <= '~'; });
     if (!plain || name.empty() || name.size() > kLongestName || !config::is_utf8(value) ||
         value.find('\0') != std::string::npos) {
-      return write_error(
-          ErrorCode::invalid_argument, path,
-          config::concat({"metadata '", config::one_line(name), "', allowed are names of 1 to 79 ",
-                          "characters of ASCII and values in UTF-8"}));
+      return write_error(ErrorCode::invalid_argument, path,
+                         config::concat({"metadata '", config::one_line(name), "', allowed are names of 1 to 79 ",
+                                         "characters of ASCII and values in UTF-8"}));
     }
   }
   return {};
@@ -83,8 +82,7 @@ Result<File> read(const std::string& path) {
     if (bytes.value().starts_with(kExrMagic)) return decode_exr(bytes.value(), path);
     return read_error(path, bytes.value().empty() ? "it is empty" : "it is neither PNG nor EXR");
   } catch (const std::bad_alloc&) {
-    return Error{ErrorCode::out_of_memory,
-                 config::concat({"cannot read ", shown(path), ", not enough memory"})};
+    return Error{ErrorCode::out_of_memory, config::concat({"cannot read ", shown(path), ", not enough memory"})};
   }
 }
 
@@ -107,8 +105,7 @@ std::uint8_t quantize(float encoded, std::uint32_t x, std::uint32_t y, std::uint
     // Triangular noise of two steps' width keeps mean and variance independent of the value. Within
     // half a step of black and white it would be cut off; one step's width is still exact in the mean.
     const bool near_end = steps < 0.5 || steps > 254.5;
-    const double triangular =
-        uniform < 0.5 ? std::sqrt(2.0 * uniform) - 1.0 : 1.0 - std::sqrt(2.0 - 2.0 * uniform);
+    const double triangular = uniform < 0.5 ? std::sqrt(2.0 * uniform) - 1.0 : 1.0 - std::sqrt(2.0 - 2.0 * uniform);
     noise = near_end ? uniform - 0.5 : triangular;
   }
   return static_cast<std::uint8_t>(std::clamp(std::floor(steps + noise + 0.5), 0.0, 255.0));

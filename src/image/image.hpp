@@ -13,7 +13,7 @@
 
 namespace tyndall::image {
 
-constexpr std::uint32_t kLargestSide = 32768;  // pixels, read or written
+constexpr std::uint32_t kLargestSide = 32768;                 // pixels, read or written
 constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 28;  // read; 3.2 GB in memory
 
 struct Image {
@@ -26,9 +26,7 @@ struct Image {
       : width(width_px), height(height_px), rgb(std::size_t{3} * width_px * height_px) {}
 
   // The three components of a pixel. Precondition: x < width, y < height.
-  [[nodiscard]] float* pixel(std::uint32_t x, std::uint32_t y) {
-    return rgb.data() + 3 * (std::size_t{y} * width + x);
-  }
+  [[nodiscard]] float* pixel(std::uint32_t x, std::uint32_t y) { return rgb.data() + 3 * (std::size_t{y} * width + x); }
   [[nodiscard]] const float* pixel(std::uint32_t x, std::uint32_t y) const {
     return rgb.data() + 3 * (std::size_t{y} * width + x);
   }

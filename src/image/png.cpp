@@ -234,8 +234,8 @@ Result<void> write_png(const std::string& path, const Image& image, const Metada
     const std::size_t pixel = first / 3;
     return write_error(ErrorCode::invalid_argument, path,
                        config::concat({std::to_string(bad), " values are not finite, the first at pixel ",
-                                       std::to_string(pixel % image.width), ",",
-                                       std::to_string(pixel / image.width), ", only EXR holds such values"}));
+                                       std::to_string(pixel % image.width), ",", std::to_string(pixel / image.width),
+                                       ", only EXR holds such values"}));
   }
   Result<config::AtomicFile> file = config::AtomicFile::create(path);
   if (!file) return std::move(file).error();
@@ -253,8 +253,7 @@ Result<void> write_png(const std::string& path, const Image& image, const Metada
   const bool done = writer.info != nullptr && write_samples(&writer);
   png_destroy_write_struct(&writer.png, &writer.info);
   if (!done && writer.file_failed) return writer.file_error;
-  if (!done)
-    return write_error(ErrorCode::out_of_memory, path, config::concat({"PNG: ", writer.problem.message}));
+  if (!done) return write_error(ErrorCode::out_of_memory, path, config::concat({"PNG: ", writer.problem.message}));
   return file.value().commit();
 }
 

@@ -51,8 +51,8 @@ using glm::tan;
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
 namespace {
-#include "lib/oneil.glsl"
 #include "lib/homogeneous.glsl"
+#include "lib/oneil.glsl"
 #include "lib/sky_irradiance.glsl"
 #include "lib/table_mapping.glsl"
 #include "lib/table_values.glsl"

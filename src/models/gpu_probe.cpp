@@ -24,11 +24,11 @@ Result<std::vector<Answer>> ask(gpu::Host& host, const gpu::Shader& shader, cons
   const std::size_t batch = std::min(rays.size(), kBatchRays);
   constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   TYNDALL_ASSIGN(const gpu::Pipeline pipeline, gpu::create_compute_pipeline(device, shader));
-  TYNDALL_ASSIGN(const gpu::Buffer medium_buffer, gpu::create_buffer(device, "probe_medium", sizeof medium,
-                                                                     kStorage, gpu::MemoryKind::upload));
-  TYNDALL_ASSIGN(const gpu::Buffer ray_buffer,
-                 gpu::create_buffer(device, "probe_rays", batch * sizeof(shared::ProbeRay), kStorage,
-                                    gpu::MemoryKind::upload));
+  TYNDALL_ASSIGN(const gpu::Buffer medium_buffer,
+                 gpu::create_buffer(device, "probe_medium", sizeof medium, kStorage, gpu::MemoryKind::upload));
+  TYNDALL_ASSIGN(
+      const gpu::Buffer ray_buffer,
+      gpu::create_buffer(device, "probe_rays", batch * sizeof(shared::ProbeRay), kStorage, gpu::MemoryKind::upload));
   TYNDALL_ASSIGN(const gpu::Buffer result_buffer,
                  gpu::create_buffer(device, "probe_results", batch * sizeof(shared::ProbeResult), kStorage,
                                     gpu::MemoryKind::readback));
@@ -45,8 +45,7 @@ Result<std::vector<Answer>> ask(gpu::Host& host, const gpu::Shader& shader, cons
       std::vector<gpu::NamedResource> resources = {
           gpu::named_buffer("medium_block", medium_buffer.buffer.get()),
           gpu::named_buffer("ray_block", ray_buffer.buffer.get(), 0, count * sizeof(shared::ProbeRay)),
-          gpu::named_buffer("result_block", result_buffer.buffer.get(), 0,
-                            count * sizeof(shared::ProbeResult)),
+          gpu::named_buffer("result_block", result_buffer.buffer.get(), 0, count * sizeof(shared::ProbeResult)),
       };
       resources.insert(resources.end(), more.begin(), more.end());
       const std::string_view missing = gpu::bind(device, cmd, pipeline, resources);
@@ -77,10 +76,10 @@ Result<std::vector<Answer>> single_scattering_on_gpu(gpu::Host& host, const shar
 Result<std::vector<Answer>> oneil_on_gpu(gpu::Host& host, const OneilModel& model, std::span<const Ray> rays) {
   constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   const std::size_t table_bytes = model.table.size() * sizeof model.table[0];
-  TYNDALL_ASSIGN(const gpu::Buffer constants, gpu::create_buffer(host.device(), "oneil", sizeof model.constants,
-                                                                 kStorage, gpu::MemoryKind::upload));
-  TYNDALL_ASSIGN(const gpu::Buffer table, gpu::create_buffer(host.device(), "oneil_table", table_bytes, kStorage,
-                                                             gpu::MemoryKind::upload));
+  TYNDALL_ASSIGN(const gpu::Buffer constants,
+                 gpu::create_buffer(host.device(), "oneil", sizeof model.constants, kStorage, gpu::MemoryKind::upload));
+  TYNDALL_ASSIGN(const gpu::Buffer table,
+                 gpu::create_buffer(host.device(), "oneil_table", table_bytes, kStorage, gpu::MemoryKind::upload));
   std::memcpy(constants.mapped, &model.constants, sizeof model.constants);
   std::memcpy(table.mapped, model.table.data(), table_bytes);
   const gpu::NamedResource more[] = {gpu::named_buffer("oneil_block", constants.buffer.get()),

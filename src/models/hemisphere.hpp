@@ -14,7 +14,8 @@ namespace tyndall::models {
 // `radiance`: of the cosines of the view's zenith angle and of the angle between view and sun, as three channels.
 // `zenith_panels`: of two nodes each.
 template <typename Radiance>
-std::array<double, 3> hemisphere_irradiance(double cos_sun_zenith, int zenith_panels, int azimuths, const Radiance& radiance) {
+std::array<double, 3> hemisphere_irradiance(double cos_sun_zenith, int zenith_panels, int azimuths,
+                                            const Radiance& radiance) {
   const double sin_sun = std::sqrt(std::max(1.0 - cos_sun_zenith * cos_sun_zenith, 0.0));
   std::array<double, 3> sum = {};
   for (int i = 0; i < 2 * zenith_panels; ++i) {

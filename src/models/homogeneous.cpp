@@ -49,8 +49,8 @@ shared::Homogeneous homogeneous_from_params(const Params& params, const Homogene
 
 Answer homogeneous_light(const shared::Homogeneous& medium, const Ray& ray) {
   const glsl64::Homogeneous m = widen(medium);
-  const glsl64::HomogeneousPath path = glsl64::homogeneous_path(m, ray.altitude_m, ray.cos_view_zenith,
-                                                                ray.cos_sun_zenith, ray.cos_view_sun, -1.0);
+  const glsl64::HomogeneousPath path =
+      glsl64::homogeneous_path(m, ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith, ray.cos_view_sun, -1.0);
   glsl64::vec3 extinction;
   const glsl64::vec3 radiance = glsl64::homogeneous_inscattering(m, path, ray.cos_view_sun, extinction);
   return {to_array(radiance * glsl64::homogeneous_sun(m, path.mu_s)), to_array(extinction)};

@@ -28,8 +28,7 @@ std::vector<std::array<float, 4>> make_table(const shared::Medium& m, std::uint3
       for (std::size_t s = 0; s < 2; ++s) {
         const double h = top * u * u;
         entry[2 * s] = static_cast<float>(std::exp(-h / heights[s]));
-        entry[2 * s + 1] =
-            static_cast<float>(exponential_column(heights[s], m.planet_radius_m, h, v * v, top));
+        entry[2 * s + 1] = static_cast<float>(exponential_column(heights[s], m.planet_radius_m, h, v * v, top));
       }
       out.push_back(entry);
     }
@@ -111,9 +110,9 @@ std::string describe_errors(const OneilModel& model) {
 
 Answer oneil(const OneilModel& model, const Ray& ray) {
   glsl64::vec3 through;
-  const glsl64::vec3 radiance = glsl64::oneil_to_end(
-      glsl64::widen(model.medium), glsl64::widen(model.constants), model.table.data(), ray.altitude_m,
-      ray.cos_view_zenith, ray.cos_sun_zenith, ray.cos_view_sun, through);
+  const glsl64::vec3 radiance =
+      glsl64::oneil_to_end(glsl64::widen(model.medium), glsl64::widen(model.constants), model.table.data(),
+                           ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith, ray.cos_view_sun, through);
   return {to_array(radiance), to_array(through)};
 }
 
@@ -134,8 +133,8 @@ std::array<double, 3> oneil_sky_irradiance(const OneilModel& model, double altit
       const double zenith = side == 0 ? sun_zenith - offset : sun_zenith + offset;
       for (int j = 0; j < nodes; ++j) {
         const double v = (j + 0.5) / nodes;
-        const double weight = stretch * std::sin(zenith) * std::cos(zenith) * 4.0 * std::numbers::pi * v /
-                              (nodes * nodes);
+        const double weight =
+            stretch * std::sin(zenith) * std::cos(zenith) * 4.0 * std::numbers::pi * v / (nodes * nodes);
         const Ray ray = ray_from_angles(altitude_m, zenith, std::acos(std::clamp(cos_sun_zenith, -1.0, 1.0)),
                                         std::numbers::pi * v * v);
         const Answer answer = oneil(model, ray);
@@ -152,8 +151,8 @@ std::array<double, 3> oneil_sun_transmittance(const OneilModel& model, double al
   if (altitude_m > m.atmosphere_height_m) {
     return oneil(model, {altitude_m, cos_sun_zenith, cos_sun_zenith, 1.0}).transmittance;
   }
-  return to_array(glsl64::oneil_sunlight(m, glsl64::widen(model.constants), model.table.data(), altitude_m,
-                                         cos_sun_zenith));
+  return to_array(
+      glsl64::oneil_sunlight(m, glsl64::widen(model.constants), model.table.data(), altitude_m, cos_sun_zenith));
 }
 
 }  // namespace tyndall::models

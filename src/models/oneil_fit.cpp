@@ -149,8 +149,9 @@ shared::OneilScale fit_scale(double scale_height_m, double radius_m, double top_
       best_bend = bend;
     }
   }
-  return {static_cast<float>(scale_height_m), static_cast<float>(best_bend), static_cast<float>(best.k[0]),
-          static_cast<float>(best.k[1]),      static_cast<float>(best.k[2]), static_cast<float>(best.k[3]),
+  return {static_cast<float>(scale_height_m), static_cast<float>(best_bend),
+          static_cast<float>(best.k[0]),      static_cast<float>(best.k[1]),
+          static_cast<float>(best.k[2]),      static_cast<float>(best.k[3]),
           static_cast<float>(best.k[4]),      0.0F};
 }
 

@@ -51,8 +51,7 @@ Effect& PrecomputedModel::effect() { return *state_->effect; }
 
 const tables::Outcome& PrecomputedModel::origin() const { return state_->origin; }
 
-Result<PrecomputedModel> PrecomputedModel::create(gpu::Host& host, const Params& params,
-                                                  const tables::MakeReady& how) {
+Result<PrecomputedModel> PrecomputedModel::create(gpu::Host& host, const Params& params, const tables::MakeReady& how) {
   const gpu::Device& device = host.device();
   auto state = std::make_unique<State>();
   state->host = &host;
@@ -73,8 +72,7 @@ Result<PrecomputedModel> PrecomputedModel::create(gpu::Host& host, const Params&
   return PrecomputedModel(std::move(state));
 }
 
-Result<std::vector<Answer>> PrecomputedModel::answer(std::span<const PrecomputedQuery> queries,
-                                                     bool visible_ground) {
+Result<std::vector<Answer>> PrecomputedModel::answer(std::span<const PrecomputedQuery> queries, bool visible_ground) {
   std::vector<Answer> out(queries.size());
   if (queries.empty()) return out;
   State& s = *state_;

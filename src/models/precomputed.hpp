@@ -21,8 +21,7 @@ struct PrecomputedQuery {
 
 class PrecomputedModel {
  public:
-  static Result<PrecomputedModel> create(gpu::Host& host, const Params& params,
-                                         const tables::MakeReady& how = {});
+  static Result<PrecomputedModel> create(gpu::Host& host, const Params& params, const tables::MakeReady& how = {});
   PrecomputedModel(PrecomputedModel&&) noexcept;
   PrecomputedModel& operator=(PrecomputedModel&&) noexcept;
   ~PrecomputedModel();

@@ -19,26 +19,23 @@ std::array<double, 3> to_array(const glsl64::vec3& v) { return {v.x, v.y, v.z}; 
 Ray ray_from_angles(double altitude_m, double view_zenith_rad, double sun_zenith_rad, double azimuth_rad) {
   const double cos_view_sun = std::cos(view_zenith_rad) * std::cos(sun_zenith_rad) +
                               std::sin(view_zenith_rad) * std::sin(sun_zenith_rad) * std::cos(azimuth_rad);
-  return {altitude_m, std::cos(view_zenith_rad), std::cos(sun_zenith_rad),
-          std::clamp(cos_view_sun, -1.0, 1.0)};
+  return {altitude_m, std::cos(view_zenith_rad), std::cos(sun_zenith_rad), std::clamp(cos_view_sun, -1.0, 1.0)};
 }
 
 Answer single_scattering(const shared::Medium& medium, const Ray& ray, int steps) {
   glsl64::vec3 transmittance;
   const glsl64::vec3 radiance =
-      glsl64::single_scattering_to_end(glsl64::widen(medium), ray.altitude_m, ray.cos_view_zenith,
-                                       ray.cos_sun_zenith, ray.cos_view_sun, steps, transmittance);
+      glsl64::single_scattering_to_end(glsl64::widen(medium), ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith,
+                                       ray.cos_view_sun, steps, transmittance);
   return {to_array(radiance), to_array(transmittance)};
 }
 
-std::array<double, 3> single_sky_irradiance(const shared::Medium& medium, double altitude_m,
-                                            double cos_sun_zenith) {
-  return to_array(glsl64::sky_irradiance_single(glsl64::widen(medium), altitude_m, cos_sun_zenith, kSkyPanels,
-                                                kSkySteps));
+std::array<double, 3> single_sky_irradiance(const shared::Medium& medium, double altitude_m, double cos_sun_zenith) {
+  return to_array(
+      glsl64::sky_irradiance_single(glsl64::widen(medium), altitude_m, cos_sun_zenith, kSkyPanels, kSkySteps));
 }
 
-std::array<double, 3> sun_transmittance(const shared::Medium& medium, double altitude_m,
-                                        double cos_sun_zenith) {
+std::array<double, 3> sun_transmittance(const shared::Medium& medium, double altitude_m, double cos_sun_zenith) {
   const glsl64::Medium m = glsl64::widen(medium);
   if (glsl64::sun_visibility(altitude_m, cos_sun_zenith, m.planet_radius_m) == 0.0) return {};
   return to_array(glsl64::transmittance(m, glsl64::column_to_top(m, altitude_m, cos_sun_zenith)));
@@ -49,13 +46,12 @@ std::array<double, 3> sunlit_ground(const shared::Medium& medium, const Ray& ray
   double start = 0.0;
   double end = 0.0;
   bool on_ground = false;
-  if (m.ground_albedo == 0.0 ||
-      !glsl64::atmosphere_segment(ray.altitude_m, ray.cos_view_zenith, m.atmosphere_height_m,
-                                  m.planet_radius_m, start, end, on_ground)) {
+  if (m.ground_albedo == 0.0 || !glsl64::atmosphere_segment(ray.altitude_m, ray.cos_view_zenith, m.atmosphere_height_m,
+                                                            m.planet_radius_m, start, end, on_ground)) {
     // On the ground itself a ray downwards has no length, and still sees it.
     end = 0.0;
-    on_ground = m.ground_albedo > 0.0 &&
-                glsl64::ray_hits_ground(ray.altitude_m, ray.cos_view_zenith, m.planet_radius_m);
+    on_ground =
+        m.ground_albedo > 0.0 && glsl64::ray_hits_ground(ray.altitude_m, ray.cos_view_zenith, m.planet_radius_m);
   }
   if (!on_ground) return {};
   const double r0 = m.planet_radius_m + ray.altitude_m;
@@ -78,8 +74,7 @@ shared::ProbeRay prepare_probe_ray(const shared::Medium& medium, const Ray& ray)
   double altitude = ray.altitude_m;
   double cos_view = ray.cos_view_zenith;
   double cos_sun = ray.cos_sun_zenith;
-  if (glsl64::atmosphere_segment(altitude, cos_view, m.atmosphere_height_m, m.planet_radius_m, start, end,
-                                 on_ground)) {
+  if (glsl64::atmosphere_segment(altitude, cos_view, m.atmosphere_height_m, m.planet_radius_m, start, end, on_ground)) {
     if (start > 0.0) {
       const double r0 = m.planet_radius_m + altitude;
       const double r = m.planet_radius_m + m.atmosphere_height_m;

@@ -15,13 +15,11 @@ struct Ray {
   double altitude_m = 0.0;
   double cos_view_zenith = 1.0;
   double cos_sun_zenith = 1.0;
-  double cos_view_sun =
-      1.0;  // between the view direction (away from the camera) and the direction to the sun
+  double cos_view_sun = 1.0;  // between the view direction (away from the camera) and the direction to the sun
 };
 
 // The ray whose view and sun directions differ by the azimuth given. Angles in rad.
-[[nodiscard]] Ray ray_from_angles(double altitude_m, double view_zenith_rad, double sun_zenith_rad,
-                                  double azimuth_rad);
+[[nodiscard]] Ray ray_from_angles(double altitude_m, double view_zenith_rad, double sun_zenith_rad, double azimuth_rad);
 
 struct Answer {
   std::array<double, 3> radiance = {};       // [1/sr]

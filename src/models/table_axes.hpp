@@ -30,8 +30,7 @@ struct LightTableAxes {
   std::vector<double> cos_horizon;  // zenith angle of the horizon, by altitude
   std::vector<double> cos_sun_from_horizon;
 };
-[[nodiscard]] LightTableAxes light_table_axes(const Params& params, std::uint32_t altitudes,
-                                              std::uint32_t suns);
+[[nodiscard]] LightTableAxes light_table_axes(const Params& params, std::uint32_t altitudes, std::uint32_t suns);
 
 // A texel t of the scattering tables means factor * t^4, by altitude and view (as cos_view_zenith):
 struct TableFactors {

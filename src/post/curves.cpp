@@ -38,8 +38,8 @@ std::array<double, 3> tonemapped(const TonemapSettings& settings, double exposur
   const glsl::vec3 scaled = glsl::tonemap_scaled({radiance[0], radiance[1], radiance[2]}, exposure);
   const double white_point = static_cast<double>(settings.white_point);
   const double saturation = static_cast<double>(settings.saturation);
-  const glsl::vec3 mapped = glm::clamp(
-      glsl::tonemap_apply(static_cast<glsl::uint>(settings.op), scaled, white_point, saturation), 0.0, 1.0);
+  const glsl::vec3 mapped =
+      glm::clamp(glsl::tonemap_apply(static_cast<glsl::uint>(settings.op), scaled, white_point, saturation), 0.0, 1.0);
   return {mapped.x, mapped.y, mapped.z};
 }
 

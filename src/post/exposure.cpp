@@ -26,9 +26,7 @@ std::uint32_t stride_of(VkExtent2D extent) {
   return std::max(1U, static_cast<std::uint32_t>(std::ceil(std::sqrt(pixels / kMostSamples))));
 }
 
-Error lacks(std::string_view name) {
-  return {ErrorCode::invalid_argument, "nothing is bound to " + std::string(name)};
-}
+Error lacks(std::string_view name) { return {ErrorCode::invalid_argument, "nothing is bound to " + std::string(name)}; }
 
 }  // namespace
 
@@ -45,8 +43,8 @@ Result<Exposure> Exposure::create(const gpu::Device& device, std::uint32_t frame
       VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
   TYNDALL_ASSIGN(out.counts_, gpu::create_buffer(device, "luminance_counts", sizeof(LuminanceCounts), kUsage,
                                                  gpu::MemoryKind::device));
-  TYNDALL_ASSIGN(out.state_, gpu::create_buffer(device, "exposure_state", sizeof(ExposureState), kUsage,
-                                                gpu::MemoryKind::device));
+  TYNDALL_ASSIGN(out.state_,
+                 gpu::create_buffer(device, "exposure_state", sizeof(ExposureState), kUsage, gpu::MemoryKind::device));
   for (std::uint32_t i = 0; i < std::max(frames_in_flight, 1U); ++i) {
     TYNDALL_ASSIGN(gpu::Buffer result,
                    gpu::create_buffer(device, "exposure_result", sizeof(ExposureState) + sizeof(LuminanceCounts),
@@ -100,8 +98,8 @@ Result<void> Exposure::measure(VkCommandBuffer cmd, VkImageView from, VkExtent2D
   const VkBuffer result = results_[slot].buffer.get();
   device_->vk.CmdCopyBuffer(cmd, state_.buffer.get(), result, 1, &state);
   device_->vk.CmdCopyBuffer(cmd, counts_.buffer.get(), result, 1, &counts);
-  gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
-               VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+  gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_HOST_BIT,
+               VK_ACCESS_HOST_READ_BIT);
   cut_ = false;
   measured_ = true;
   return {};

@@ -17,11 +17,11 @@ constexpr std::size_t kHistogramBins = 256;
 
 // What was found of a picture.
 struct Measurement {
-  float exposure = 0.0F;   // that scales the radiance with auto exposure
-  float luminance = 0.0F;  // that the eye is adapted to
-  float measured = 0.0F;   // log-average of the picture; 0 when all of it is black
-  float counted = 0.0F;    // mean weight of its samples, 0 to 1: black space has none
-  float black = 0.0F;      // share of samples darker than the histogram begins
+  float exposure = 0.0F;                         // that scales the radiance with auto exposure
+  float luminance = 0.0F;                        // that the eye is adapted to
+  float measured = 0.0F;                         // log-average of the picture; 0 when all of it is black
+  float counted = 0.0F;                          // mean weight of its samples, 0 to 1: black space has none
+  float black = 0.0F;                            // share of samples darker than the histogram begins
   std::array<float, kHistogramBins> share = {};  // of the samples in each bin; with `black` they add up to 1
 };
 
@@ -31,8 +31,8 @@ class Exposure {
   static Result<Exposure> create(const gpu::Device& device, std::uint32_t frames_in_flight = 1);
 
   // Records the measurement of `from` (RGBA32F in GENERAL layout) and adapts to it over `seconds` since the picture
-  // before; the first picture, and the first after cut(), is taken at once. What wrote `from` must be visible to compute
-  // shaders; the result is visible to those that follow. `slot`: below frames_in_flight, for read().
+  // before; the first picture, and the first after cut(), is taken at once. What wrote `from` must be visible to
+  // compute shaders; the result is visible to those that follow. `slot`: below frames_in_flight, for read().
   Result<void> measure(VkCommandBuffer cmd, VkImageView from, VkExtent2D extent, const TonemapSettings& settings,
                        double seconds, std::uint32_t slot = 0);
   // The next picture has nothing to do with the one before.

@@ -28,9 +28,9 @@ struct TonemapSettings {
   float white_point = 3.0F;   // scaled luminance that becomes white, > 0; of the operators that have one
   float saturation = 1.0F;    // > 0; of the operators on luminance, and of AgX
   bool auto_exposure = true;
-  bool light_adaptation = true;    // false: every picture is exposed for itself
+  bool light_adaptation = true;     // false: every picture is exposed for itself
   float least_luminance = 1.0e-4F;  // darker pictures are exposed as if they had it: night stays dark
-  float exposure = 1.8F;           // scales the radiance when auto exposure is off
+  float exposure = 1.8F;            // scales the radiance when auto exposure is off
 };
 
 // The operator on linear radiance times `exposure`, as the GPU computes it but in double precision: linear display

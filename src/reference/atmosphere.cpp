@@ -12,8 +12,7 @@ double rayleigh_coefficient(double wavelength_nm) {
   const double n2_1 = kRefractiveIndex * kRefractiveIndex - 1.0;
   const double king = (6.0 + 3.0 * kDepolarisation) / (6.0 - 7.0 * kDepolarisation);
   const double lambda2 = wavelength_nm * wavelength_nm * 1e-18;
-  return 8.0 * std::pow(std::numbers::pi, 3) * n2_1 * n2_1 / (3.0 * kMolecules_m3) * king /
-         (lambda2 * lambda2);
+  return 8.0 * std::pow(std::numbers::pi, 3) * n2_1 * n2_1 / (3.0 * kMolecules_m3) * king / (lambda2 * lambda2);
 }
 
 Rgb rgb(const Vec3& v) { return {v.x, v.y, v.z}; }
@@ -24,8 +23,7 @@ struct GaussLegendre {
   std::array<double, N> node, weight;
   GaussLegendre() {
     for (std::size_t i = 0; i < N; ++i) {
-      double x =
-          std::cos(std::numbers::pi * (static_cast<double>(i) + 0.75) / (static_cast<double>(N) + 0.5));
+      double x = std::cos(std::numbers::pi * (static_cast<double>(i) + 0.75) / (static_cast<double>(N) + 0.5));
       double slope = 1.0;
       for (int iteration = 0; iteration < 100; ++iteration) {
         double p0 = 1.0, p1 = x;
@@ -48,8 +46,7 @@ struct GaussLegendre {
 
 // (1/d) * integral over the path of exp(-(h(u) - h(0)) / scale_height), u in [0; d] from position s >= 0 of
 // the line upwards. Panels end where the density has fallen by these exponents.
-double mean_relative_density(const GaussLegendre<10>& rule, double r, double s, double d,
-                             double scale_height) {
+double mean_relative_density(const GaussLegendre<10>& rule, double r, double s, double d, double scale_height) {
   constexpr std::array<double, 8> kExponents = {0.25, 1.0, 2.5, 5.0, 10.0, 18.0, 28.0, 42.0};
   double sum = 0.0, from = 0.0;
   for (const double exponent : kExponents) {
@@ -135,9 +132,7 @@ double Atmosphere::ozone_density(double r) const {
 double Atmosphere::ozone_column(double tangent2, double s, double s_top) const {
   const double r = std::sqrt(tangent2 + s * s);
   if (!has_ozone_ || r >= ozone_high_m_) return 0.0;
-  const auto position = [&](double radius) {
-    return std::sqrt(std::max(0.0, s * s + (radius - r) * (radius + r)));
-  };
+  const auto position = [&](double radius) { return std::sqrt(std::max(0.0, s * s + (radius - r) * (radius + r))); };
   double column = 0.0, r0 = r, s0 = s;
   if (r0 < ozone_low_m_) {
     if (ozone_low_m_ >= top_radius_m) return 0.0;
@@ -162,8 +157,7 @@ double Atmosphere::ozone_column(double tangent2, double s, double s_top) const {
 
 void Atmosphere::build_table() {
   // The mean density changes over sqrt(scale height / height) of the range of path lengths.
-  const double narrow =
-      std::sqrt(std::min({1.0, rayleigh_scale_height_m / height_m, mie_scale_height_m / height_m}));
+  const double narrow = std::sqrt(std::min({1.0, rayleigh_scale_height_m / height_m, mie_scale_height_m / height_m}));
   const double span = top_radius_m - base_radius_m_;
   nh_ = static_cast<std::size_t>(std::ceil(127.0 * span / height_m)) + 1;
   nx_ = static_cast<std::size_t>(std::clamp(24.0 / narrow, 64.0, 1024.0));
@@ -181,8 +175,7 @@ void Atmosphere::build_table() {
         entry = {1.0, 1.0};  // no path left
         continue;
       }
-      const double d =
-          shortest + (longest - shortest) * static_cast<double>(ix) / static_cast<double>(nx_ - 1);
+      const double d = shortest + (longest - shortest) * static_cast<double>(ix) / static_cast<double>(nx_ - 1);
       const double s = std::max(0.0, 0.5 * (longest2 / d - d));  // (s_top - s)(s_top + s) = longest^2
       entry.rayleigh = mean_relative_density(rule, r, s, d, rayleigh_scale_height_m);
       entry.mie = mean_relative_density(rule, r, s, d, mie_scale_height_m);
@@ -190,8 +183,7 @@ void Atmosphere::build_table() {
   }
 }
 
-Amounts Atmosphere::exponential_columns(double tangent2, double s, double s_top,
-                                        const Amounts& density) const {
+Amounts Atmosphere::exponential_columns(double tangent2, double s, double s_top, const Amounts& density) const {
   const double r = std::sqrt(tangent2 + s * s);
   const double shortest = std::max(0.0, top_radius_m - r);
   const double d = s_top - s;
@@ -208,16 +200,15 @@ Amounts Atmosphere::exponential_columns(double tangent2, double s, double s_top,
                                  t * t1 * t2 * (1.0 / 6.0)};
   };
   const double y = (1.0 - shortest / (top_radius_m - base_radius_m_)) * static_cast<double>(nh_ - 1);
-  const double x =
-      (longest > shortest ? (d - shortest) / (longest - shortest) : 0.0) * static_cast<double>(nx_ - 1);
+  const double x = (longest > shortest ? (d - shortest) / (longest - shortest) : 0.0) * static_cast<double>(nx_ - 1);
   std::size_t iy = 0, ix = 0;
   const std::array<double, 4> wy = weights(std::max(0.0, y), nh_, iy);
   const std::array<double, 4> wx = weights(std::clamp(x, 0.0, static_cast<double>(nx_ - 1)), nx_, ix);
   double rayleigh = 0.0, mie = 0.0;
   for (std::size_t j = 0; j < 4; ++j) {
     const MeanDensity* row = &table_[(iy + j) * nx_ + ix];
-    rayleigh += wy[j] * (wx[0] * row[0].rayleigh + wx[1] * row[1].rayleigh + wx[2] * row[2].rayleigh +
-                         wx[3] * row[3].rayleigh);
+    rayleigh +=
+        wy[j] * (wx[0] * row[0].rayleigh + wx[1] * row[1].rayleigh + wx[2] * row[2].rayleigh + wx[3] * row[3].rayleigh);
     mie += wy[j] * (wx[0] * row[0].mie + wx[1] * row[1].mie + wx[2] * row[2].mie + wx[3] * row[3].mie);
   }
   return {d * density.rayleigh * rayleigh, d * density.mie * mie, 0.0};

@@ -57,15 +57,13 @@ class Atmosphere {
 
   // Columns from position s >= 0 of a line (see geometry.hpp) to the top of the atmosphere, which the
   // line crosses at s_top >= s. `density` are the densities at s.
-  [[nodiscard]] Amounts columns_to_top(double tangent2, double s, double s_top,
-                                       const Amounts& density) const {
+  [[nodiscard]] Amounts columns_to_top(double tangent2, double s, double s_top, const Amounts& density) const {
     Amounts columns = exponential_columns(tangent2, s, s_top, density);
     columns.ozone = ozone_column(tangent2, s, s_top);
     return columns;
   }
   // The same without ozone, which is left 0.
-  [[nodiscard]] Amounts exponential_columns(double tangent2, double s, double s_top,
-                                            const Amounts& density) const;
+  [[nodiscard]] Amounts exponential_columns(double tangent2, double s, double s_top, const Amounts& density) const;
   [[nodiscard]] double ozone_column(double tangent2, double s, double s_top) const;
 
   [[nodiscard]] double transmittance(const Amounts& columns, std::size_t channel) const {

@@ -88,9 +88,8 @@ LinePoint Line::invert(std::size_t channel, double depth) const {
       const double rayleigh = air_->rayleigh_scattering[channel] * p.density.rayleigh;
       const double mie = air_->mie_extinction[channel] * p.density.mie;
       const double slope = (rayleigh + mie) / to_top;
-      const double fall = s / p.r *
-                          (rayleigh / air_->rayleigh_scale_height_m + mie / air_->mie_scale_height_m) /
-                          (rayleigh + mie);
+      const double fall =
+          s / p.r * (rayleigh / air_->rayleigh_scale_height_m + mie / air_->mie_scale_height_m) / (rayleigh + mie);
       double divisor = slope - 0.5 * error * (fall - slope);
       if (divisor < 0.25 * slope) divisor = slope;
       next = s + error / divisor;
@@ -134,8 +133,8 @@ Interval Line::shadow(const Vec& sun, double radius_m) const {
   return {t.from + start_.s, t.to + start_.s};
 }
 
-bool sun_transmittance(const Atmosphere& air, const Vec& position, double r, const Amounts& density,
-                       const Vec& sun, Rgb& transmittance) {
+bool sun_transmittance(const Atmosphere& air, const Vec& position, double r, const Amounts& density, const Vec& sun,
+                       Rgb& transmittance) {
   const double s = dot(position, sun);
   const double tangent2 = std::max(0.0, r * r - s * s);
   if (s < 0.0 && tangent2 < air.radius_m * air.radius_m) return false;

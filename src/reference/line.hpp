@@ -63,7 +63,7 @@ class Line {
 
 // Transmittance from a point in the atmosphere, whose densities are given, to the sun; false where the
 // planet hides it.
-bool sun_transmittance(const Atmosphere& air, const Vec& position, double r, const Amounts& density,
-                       const Vec& sun, Rgb& transmittance);
+bool sun_transmittance(const Atmosphere& air, const Vec& position, double r, const Amounts& density, const Vec& sun,
+                       Rgb& transmittance);
 
 }  // namespace tyndall::reference

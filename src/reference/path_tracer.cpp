@@ -54,8 +54,7 @@ std::string check_query(const Query& q, double radius_m) {
 }
 
 std::string check_options(const Options& options) {
-  if (options.samples < 1 || options.samples > (std::uint64_t{1} << 48))
-    return "samples, must be in [1; 2^48]";
+  if (options.samples < 1 || options.samples > (std::uint64_t{1} << 48)) return "samples, must be in [1; 2^48]";
   if (options.orders < 1 || options.orders > kMaxOrders) return "orders, must be in [1; 256]";
   if (options.threads < 0 || options.threads > 4096) return "threads, must be in [0; 4096]";
   return {};
@@ -72,8 +71,8 @@ std::string problem_of(const Params& params) {
     for (int i = 0; i < (vector ? 3 : 1); ++i) {
       // Bounds in the table are exact decimals; a float may miss them by its rounding.
       if (!within(value[i], info.min - std::abs(info.min) * 1e-6, info.max + std::abs(info.max) * 1e-6)) {
-        return std::string(info.group) + "." + std::string(info.name) + ", must be in [" +
-               std::to_string(info.min) + "; " + std::to_string(info.max) + "]";
+        return std::string(info.group) + "." + std::string(info.name) + ", must be in [" + std::to_string(info.min) +
+               "; " + std::to_string(info.max) + "]";
       }
     }
   }
@@ -139,8 +138,7 @@ class Work {
   void run(std::vector<Accumulator>& sums) {
     const std::uint64_t total = plan_.blocks * scenes_.size();
     const unsigned machine = std::max(1U, std::thread::hardware_concurrency());
-    const std::uint64_t threads =
-        options_.threads > 0 ? static_cast<std::uint64_t>(options_.threads) : machine;
+    const std::uint64_t threads = options_.threads > 0 ? static_cast<std::uint64_t>(options_.threads) : machine;
     const std::uint64_t per_batch = std::max<std::uint64_t>(kBatchValues / orders_, 1);
     for (std::uint64_t first = 0; first < total && !cancelled_; first += per_batch) {
       Batch batch;
@@ -176,8 +174,7 @@ class Work {
       batch.done[i] = 1;
       if (!progress_) continue;
       const std::scoped_lock lock(progress_mutex_);
-      if (!cancelled_ && !progress_(static_cast<double>(++finished_) / static_cast<double>(total)))
-        cancelled_ = true;
+      if (!cancelled_ && !progress_(static_cast<double>(++finished_) / static_cast<double>(total))) cancelled_ = true;
     }
   }
 
@@ -242,15 +239,14 @@ std::vector<Estimate> compute(const Params& params, std::span<const Query> queri
 
 }  // namespace
 
-Result<std::vector<Estimate>> trace(const Params& params, std::span<const Query> queries,
-                                    const Options& options, const Progress& progress) {
+Result<std::vector<Estimate>> trace(const Params& params, std::span<const Query> queries, const Options& options,
+                                    const Progress& progress) {
   std::string bad = check(params, queries, options);
   if (!bad.empty()) return Error{ErrorCode::invalid_argument, std::move(bad), 0};
   return compute(params, queries, options, progress);
 }
 
-Result<Estimate> trace(const Params& params, const Query& query, const Options& options,
-                       const Progress& progress) {
+Result<Estimate> trace(const Params& params, const Query& query, const Options& options, const Progress& progress) {
   const std::span<const Query> one(&query, 1);
   std::string bad = check(params, one, options);
   if (!bad.empty()) return Error{ErrorCode::invalid_argument, std::move(bad), 0};

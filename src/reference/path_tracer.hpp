@@ -66,11 +66,10 @@ using Progress = std::function<bool(double done)>;
 // (seed, i): equal queries in one call are independent estimates.
 // A cancelled call returns what is done: look at Estimate::samples.
 // Errors: invalid_argument for a query, an option or a parameter out of its range.
-Result<std::vector<Estimate>> trace(const Params& params, std::span<const Query> queries,
-                                    const Options& options, const Progress& progress = {});
+Result<std::vector<Estimate>> trace(const Params& params, std::span<const Query> queries, const Options& options,
+                                    const Progress& progress = {});
 
 // The same for one query (index 0).
-Result<Estimate> trace(const Params& params, const Query& query, const Options& options,
-                       const Progress& progress = {});
+Result<Estimate> trace(const Params& params, const Query& query, const Options& options, const Progress& progress = {});
 
 }  // namespace tyndall::reference

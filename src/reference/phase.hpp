@@ -11,9 +11,7 @@
 namespace tyndall::reference {
 
 // Rayleigh without depolarisation.
-inline double rayleigh_phase(double cosine) {
-  return 3.0 / (16.0 * std::numbers::pi) * (1.0 + cosine * cosine);
-}
+inline double rayleigh_phase(double cosine) { return 3.0 / (16.0 * std::numbers::pi) * (1.0 + cosine * cosine); }
 
 // u in [0; 1) -> cosine with density 3/8 (1 + c^2): the real root of c^3 + 3c = 8u - 4, by Cardano
 // in the form without cancellation.

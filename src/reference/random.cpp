@@ -37,8 +37,7 @@ Columns direction_numbers(int dimension, int bits) {
       const auto degree = static_cast<std::size_t>(row.degree);
       m[at] = m[at - degree] ^ (m[at - degree] << row.degree);
       for (int k = 1; k < row.degree; ++k) {
-        if (((row.polynomial >> (row.degree - 1 - k)) & 1U) != 0)
-          m[at] ^= m[at - static_cast<std::size_t>(k)] << k;
+        if (((row.polynomial >> (row.degree - 1 - k)) & 1U) != 0) m[at] ^= m[at - static_cast<std::size_t>(k)] << k;
       }
     }
     v[at] = m[at] << (bits - 1 - j);
@@ -72,8 +71,7 @@ SobolBlock::SobolBlock(int log2_count, Generator& generator)
         scrambled = (scrambled << 1) | (digit ^ flips[node]);
         node = 2 * node + digit;
       }
-      strata_[(static_cast<std::size_t>(dimension) << log2_count) + i] =
-          static_cast<std::uint16_t>(scrambled);
+      strata_[(static_cast<std::size_t>(dimension) << log2_count) + i] = static_cast<std::uint16_t>(scrambled);
     }
   }
 }

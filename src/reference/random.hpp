@@ -76,8 +76,7 @@ class PathNumbers {
       : block_(block), generator_(generator), point_(point) {}
 
   double next() {
-    return dimension_ < SobolBlock::kDimensions ? block_(dimension_++, point_, generator_)
-                                                : generator_.uniform();
+    return dimension_ < SobolBlock::kDimensions ? block_(dimension_++, point_, generator_) : generator_.uniform();
   }
   double random() { return generator_.uniform(); }
 

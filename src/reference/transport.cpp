@@ -85,8 +85,8 @@ LitPart lit_part(const Atmosphere& air, const Line& line, const Vec& sun, double
 
 // Samples where the light that arrives along `line` comes from; multiplies `weight` by contribution over
 // density. Returns false if there is nothing to scatter. `albedo` is that of the ground at its end.
-bool sample_event(const Atmosphere& air, const Line& line, const Vec& sun, double albedo, double u,
-                  Rgb& weight, Vertex& v) {
+bool sample_event(const Atmosphere& air, const Line& line, const Vec& sun, double albedo, double u, Rgb& weight,
+                  Vertex& v) {
   Rgb scattered{}, lost{};  // scattered: 1 - transmittance of each channel; lost: weighted
   double reflected = 0.0;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -142,9 +142,8 @@ bool sample_event(const Atmosphere& air, const Line& line, const Vec& sun, doubl
     const double preference =
         unguided + lit[0].preference(p.s, scattered[c], c) + lit[1].preference(p.s, scattered[c], c);
     density += weight[c] * air.exponential_depth(p.density, c) * through * preference;
-    contribution[c] =
-        weight[c] * through * std::exp(-air.ozone_absorption[c] * columns.ozone) *
-        (air.rayleigh_scattering[c] * p.density.rayleigh + air.mie_scattering[c] * p.density.mie);
+    contribution[c] = weight[c] * through * std::exp(-air.ozone_absorption[c] * columns.ozone) *
+                      (air.rayleigh_scattering[c] * p.density.rayleigh + air.mie_scattering[c] * p.density.mie);
   }
   if (!(density > 0.0)) return false;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -169,8 +168,8 @@ Rgb rayleigh_shares(const Atmosphere& air, const Amounts& density) {
 }
 
 // Adds the light of the sun that a vertex in the air scatters back along `direction`.
-void add_air(const Atmosphere& air, const Vertex& v, const Vec& sun, const Vec& direction,
-             const Rgb& rayleigh_share, const Rgb& weight, Rgb& sums) {
+void add_air(const Atmosphere& air, const Vertex& v, const Vec& sun, const Vec& direction, const Rgb& rayleigh_share,
+             const Rgb& weight, Rgb& sums) {
   Rgb through;
   if (!sun_transmittance(air, v.position, v.r, v.density, sun, through)) return;
   const double cosine = dot(direction, sun);
@@ -217,8 +216,7 @@ Vec cosine_direction(const Vec& normal, double u, double turn) {
   return around(normal, std::sqrt(1.0 - u), std::cos(2.0 * kPi * turn), std::sin(2.0 * kPi * turn));
 }
 
-void trace_path(const Scene& scene, const Line& first, PathNumbers& numbers, Rgb weight,
-                std::span<Rgb> sums) {
+void trace_path(const Scene& scene, const Line& first, PathNumbers& numbers, Rgb weight, std::span<Rgb> sums) {
   const Atmosphere& air = *scene.air;
   std::optional<Line> next;
   const Line* line = &first;

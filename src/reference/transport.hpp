@@ -9,7 +9,8 @@
 
 namespace tyndall::reference {
 
-// Altitude of the ground sphere that a camera ray meets [m]: sea level, or, for a camera below sea level, twice its depth.
+// Altitude of the ground sphere that a camera ray meets [m]: sea level, or, for a camera below sea level, twice its
+// depth.
 inline double ground_altitude_m(double camera_altitude_m) { return 2.0 * std::min(camera_altitude_m, 0.0); }
 
 // A query placed in space: the camera above the planet's pole, the sun in the x-z plane turned by the
@@ -21,7 +22,7 @@ struct Scene {
   [[nodiscard]] bool has_air() const { return has_air_; }
 
   const Atmosphere* air;
-  Vec origin, view, sun;  // origin: where the ray enters the atmosphere, or the camera inside it
+  Vec origin, view, sun;         // origin: where the ray enters the atmosphere, or the camera inside it
   double ground_radius_m = 0.0;  // of the sphere that the camera ray ends at
   bool sky = false;
   bool visible_ground = true;

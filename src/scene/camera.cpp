@@ -44,7 +44,7 @@ glm::dmat4 clip_from_view(const View& view) {
   glm::dmat4 out(0.0);
   out[0][0] = 1.0 / view.tan_half_width;
   out[1][1] = -1.0 / view.tan_half_height;  // Vulkan's y points down
-  out[2][0] = -view.jitter.x;  // times -z, which becomes w
+  out[2][0] = -view.jitter.x;               // times -z, which becomes w
   out[2][1] = -view.jitter.y;
   out[2][3] = -1.0;
   out[3][2] = kNearPlane_m;

@@ -16,9 +16,9 @@ struct View {
   glm::dvec3 right = {1, 0, 0};
   glm::dvec3 up = {0, 1, 0};
   glm::dvec3 forward = {0, 0, -1};
-  double tan_half_width = 1.0;   // of the field of view
+  double tan_half_width = 1.0;  // of the field of view
   double tan_half_height = 1.0;
-  glm::dvec2 jitter = {};        // moves the picture by a part of a pixel, in clip space
+  glm::dvec2 jitter = {};  // moves the picture by a part of a pixel, in clip space
 };
 
 // Yaw and pitch are relative to the local horizontal and north of the camera's place on the planet.

@@ -24,19 +24,20 @@ struct PathFrame {
 
 struct CameraPath {
   std::vector<PathFrame> frames;  // by rising time; none, or two and more
-  bool loop = false;  // the last frame is the first again, and has nothing but its time
-  std::string place_text;  // "LAT,LON"; empty: that of the elevation file, see Scene::place()
+  bool loop = false;              // the last frame is the first again, and has nothing but its time
+  std::string place_text;         // "LAT,LON"; empty: that of the elevation file, see Scene::place()
   Place place;
 
   [[nodiscard]] bool empty() const { return frames.empty(); }
-  [[nodiscard]] bool has_dates() const;    // whether the sun stands by date and place
+  [[nodiscard]] bool has_dates() const;     // whether the sun stands by date and place
   [[nodiscard]] double duration_s() const;  // time of the last frame
 };
 
 // `base` with the camera and the sun as they are `seconds` into the path. All of them change continuously with their
-// first derivatives and never overshoot keyframes; yaw and azimuth turn the short way round; places follow the curve of the
-// planet; altitudes are interpolated by asinh(h/1 km), which is linear near the ground and logarithmic far above. Before the
-// first frame and after the last the path stands still, unless it loops. Where the path moves the sun, sun.animate is off.
+// first derivatives and never overshoot keyframes; yaw and azimuth turn the short way round; places follow the curve of
+// the planet; altitudes are interpolated by asinh(h/1 km), which is linear near the ground and logarithmic far above.
+// Before the first frame and after the last the path stands still, unless it loops. Where the path moves the sun,
+// sun.animate is off.
 [[nodiscard]] SceneParams pose_at(const CameraPath& path, double seconds, const SceneParams& base, double radius_m);
 
 }  // namespace tyndall::scene

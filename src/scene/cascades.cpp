@@ -71,14 +71,13 @@ Bounds shell_bounds(const glm::dvec3& centre, double sphere_radius, const glm::d
     for (int spoke = 0; spoke < (ring == 0 ? 1 : kSpokes); ++spoke) {
       const double arc = disc * ring / kRings / ground.radius_m;
       const double angle = 6.283185307179586 * spoke / kSpokes;
-      const glm::dvec3 up = zenith * std::cos(arc) +
-                            (east * std::cos(angle) + north * std::sin(angle)) * std::sin(arc);
+      const glm::dvec3 up = zenith * std::cos(arc) + (east * std::cos(angle) + north * std::sin(angle)) * std::sin(arc);
       const glm::dvec3 planet(0.0, -ground.radius_m, 0.0);
       for (const double h : {ground.min_m, ground.max_m}) {
         bounds.add(light_from_world * (planet + up * (ground.radius_m + h)));
       }
-      caster_reach = std::max(caster_reach, distance_out(ground.min_m, glm::dot(up, to_sun), ground.max_m,
-                                                         ground.radius_m));
+      caster_reach =
+          std::max(caster_reach, distance_out(ground.min_m, glm::dot(up, to_sun), ground.max_m, ground.radius_m));
     }
   }
   return bounds;
@@ -110,8 +109,8 @@ CascadeFit fit_slice(const View& view, const glm::dmat3& world_from_light, doubl
   double sphere_radius = 0.0;
   slice_sphere(view, near_m, far_m, sphere_centre, sphere_radius);
   double caster_reach = 0.0;
-  const Bounds bounds = shell_bounds(sphere_centre, sphere_radius, light_from_world, world_from_light[2], ground,
-                                     caster_reach);
+  const Bounds bounds =
+      shell_bounds(sphere_centre, sphere_radius, light_from_world, world_from_light[2], ground, caster_reach);
   // Across, what is seen of the shell: both the shell's bounds and the sphere's. Rounded up, the height more
   // coarsely because it changes with the camera's. A margin of a few texels keeps filters inside.
   const glm::dvec3 sphere_light = light_from_world * sphere_centre;
@@ -154,8 +153,9 @@ CascadeFit fit_room(const View& view, const glm::dmat3& world_from_light, const 
   place(fit, middle, glm::dvec2(half) / full_part(shadows), shadows);
   // Towards the sun as far as terrain may stand.
   const glm::dvec3 up = up_of(world_from_light * middle, ground.radius_m);
-  const double reach = ground.casters.empty() ? distance_out(ground.min_m, glm::dot(up, world_from_light[2]), ground.max_m,
-                                                             ground.radius_m) : 0.0;
+  const double reach = ground.casters.empty() ? distance_out(ground.min_m, glm::dot(up, world_from_light[2]),
+                                                             ground.max_m, ground.radius_m)
+                                              : 0.0;
   const double slack = 0.1 * glm::length(half);
   const double z_min = bounds.min.z - kShadowLength * glm::length(half) * 2.0;
   const double z_max = bounds.max.z + reach + slack;
@@ -215,8 +215,8 @@ std::vector<double> split_distances(double near_m, double far_m, std::uint32_t c
   return out;
 }
 
-std::vector<CascadeFit> fit_cascades(const View& view, const glm::dvec3& direction_to_sun,
-                                     const ShadowParams& shadows, const Ground& ground, double first_near_m) {
+std::vector<CascadeFit> fit_cascades(const View& view, const glm::dvec3& direction_to_sun, const ShadowParams& shadows,
+                                     const Ground& ground, double first_near_m) {
   const double altitude = altitude_of(view.position, ground.radius_m);
   // From high up the ground itself is farther than the distance asked for.
   const double far_m = std::max(static_cast<double>(shadows.distance_m), 2.0 * (altitude - ground.min_m));

@@ -17,8 +17,8 @@ namespace tyndall::scene {
 // An orthographic view along the sun's rays. Light space: z towards the sun.
 struct CascadeFit {
   glm::dmat3 world_from_light = glm::dmat3(1.0);
-  glm::dvec3 centre = {};       // light space [m]; z is the plane of depth 0.5
-  glm::dvec3 half_extent = {};  // light space [m]
+  glm::dvec3 centre = {};            // light space [m]; z is the plane of depth 0.5
+  glm::dvec3 half_extent = {};       // light space [m]
   double near_m = 0.0, far_m = 0.0;  // view-space depth that the cascade is for
   double texel_m = 0.0;              // the larger side of a texel
   bool holds_room = false;           // fitted to Ground::room instead of the view

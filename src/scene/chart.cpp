@@ -13,7 +13,8 @@ constexpr double kBlend = 0.08;
 
 std::array<double, kChartCount> cosines_of(const glm::dvec3& up) {
   std::array<double, kChartCount> out = {};
-  for (int chart = 0; chart < kChartCount; ++chart) out[static_cast<std::size_t>(chart)] = glm::dot(up, chart_frame(chart)[1]);
+  for (int chart = 0; chart < kChartCount; ++chart)
+    out[static_cast<std::size_t>(chart)] = glm::dot(up, chart_frame(chart)[1]);
   return out;
 }
 
@@ -72,7 +73,9 @@ glm::dvec3 world_from_map(double x, double z, double altitude_m, double radius_m
   return {x * scale, altitude_m * std::cos(arc) - 2.0 * radius_m * half * half, z * scale};
 }
 
-glm::dvec2 map_from_world(const glm::dvec3& p, double radius_m) { return chart_from_up(0, up_of(p, radius_m), radius_m); }
+glm::dvec2 map_from_world(const glm::dvec3& p, double radius_m) {
+  return chart_from_up(0, up_of(p, radius_m), radius_m);
+}
 
 double altitude_of(const glm::dvec3& p, double radius_m) {
   const double distance = std::hypot(p.x, p.y + radius_m, p.z);

@@ -1,9 +1,9 @@
 // Places on the planet. World: planet centre at (0, -radius, 0), y up at the origin. Double precision throughout.
 //
 // The map lays the ground on the planet: x east and z south [m] are arc lengths from the origin of the world, azimuthal
-// equidistant. It is true to scale at the origin, stretched by 1.11 at 5000 km, and tears at the antipode. So the planet
-// has six such charts, whose centres are the origin, its antipode and the four points between them; each is used where
-// its centre is the nearest, out to 55 degrees, where it is stretched by 1.17. The map is chart 0.
+// equidistant. It is true to scale at the origin, stretched by 1.11 at 5000 km, and tears at the antipode. So the
+// planet has six such charts, whose centres are the origin, its antipode and the four points between them; each is used
+// where its centre is the nearest, out to 55 degrees, where it is stretched by 1.17. The map is chart 0.
 #pragma once
 
 #include <array>

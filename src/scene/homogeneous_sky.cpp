@@ -38,18 +38,19 @@ Vec3 narrow(const std::array<double, 3>& v) {
 class HomogeneousSky : public SkyModel {
  public:
   Result<void> create(gpu::Host& host, ModelEvaluation evaluation, VkFormat color_format, VkFormat depth_format) {
-    return create_objects(host,
-                          {&shaders::homogeneous_terrain_vert, &shaders::homogeneous_terrain_frag,
-                           &shaders::homogeneous_light_comp, 2, &shaders::homogeneous_sky_vert,
-                           &shaders::homogeneous_sky_frag},
-                          evaluation, sizeof(Block), color_format, depth_format);
+    return create_objects(
+        host,
+        {&shaders::homogeneous_terrain_vert, &shaders::homogeneous_terrain_frag, &shaders::homogeneous_light_comp, 2,
+         &shaders::homogeneous_sky_vert, &shaders::homogeneous_sky_frag},
+        evaluation, sizeof(Block), color_format, depth_format);
   }
 
  protected:
   Result<void> fill(const ModelFrame& frame, void* constants) override {
     const HomogeneousParams& own = frame.scene.homogeneous;
     Block out = {};
-    out.medium = models::homogeneous_from_params(frame.params, {own.air_length_m, own.haze_length_m, own.falloff.value != 0});
+    out.medium =
+        models::homogeneous_from_params(frame.params, {own.air_length_m, own.haze_length_m, own.falloff.value != 0});
     out.medium.sun_radius_rad = glm::radians(frame.scene.sun.angular_radius_deg);
     const double radius = frame.params.planet.radius_m;
     const glm::dvec3 up = up_of(frame.view.position, radius);

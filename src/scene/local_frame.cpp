@@ -14,9 +14,9 @@ constexpr double kLargestStep_m = 1024.0;
 
 // The origin's place relative to a chart's centre.
 struct Radial {
-  glm::dvec2 radial = {1, 0};    // unit vector on the map
+  glm::dvec2 radial = {1, 0};  // unit vector on the map
   double arc = 0.0;
-  glm::dvec3 outwards = {};      // the horizontal direction away from the centre, in the world
+  glm::dvec3 outwards = {};  // the horizontal direction away from the centre, in the world
 };
 
 Radial radial_of(int chart, const glm::dvec2& map, double radius_m) {
@@ -50,7 +50,8 @@ LocalFrame local_frame(const glm::dvec3& position, double radius_m) {
   const glm::dvec3 across = glm::cross(at.outwards, zenith);
   const glm::dvec3 x = at.outwards * at.radial.x - across * at.radial.y;
   const glm::dvec3 z = at.outwards * at.radial.y + across * at.radial.x;
-  out.world_from_local = glm::dmat4(glm::dvec4(x, 0.0), glm::dvec4(zenith, 0.0), glm::dvec4(z, 0.0), glm::dvec4(origin, 1.0));
+  out.world_from_local =
+      glm::dmat4(glm::dvec4(x, 0.0), glm::dvec4(zenith, 0.0), glm::dvec4(z, 0.0), glm::dvec4(origin, 1.0));
   const glm::dmat3 local_from_world = glm::transpose(glm::dmat3(x, zenith, z));
   out.local_from_world = glm::dmat4(local_from_world);
   out.local_from_world[3] = glm::dvec4(-(local_from_world * origin), 1.0);

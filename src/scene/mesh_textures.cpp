@@ -92,7 +92,9 @@ Result<gpu::Image> upload_texture(gpu::Host& host, const MeshTexture& texture) {
   const gpu::Device& device = host.device();
   const std::vector<MeshTexture> smaller = mip_levels(texture);
   const auto levels = static_cast<std::uint32_t>(smaller.size()) + 1;
-  gpu::ImageDesc desc = {"mesh_texture", VK_FORMAT_R8G8B8A8_SRGB, {texture.width, texture.height, 1},
+  gpu::ImageDesc desc = {"mesh_texture",
+                         VK_FORMAT_R8G8B8A8_SRGB,
+                         {texture.width, texture.height, 1},
                          VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT};
   desc.levels = levels;
   TYNDALL_ASSIGN(gpu::Image image, gpu::create_image(device, desc));
@@ -107,10 +109,12 @@ Result<gpu::Image> upload_texture(gpu::Host& host, const MeshTexture& texture) {
     copies.push_back(copy);
     size += level(i).rgba.size();
   }
-  TYNDALL_ASSIGN(const gpu::Buffer staging, gpu::create_buffer(device, "staging", size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-                                                               gpu::MemoryKind::upload));
+  TYNDALL_ASSIGN(
+      const gpu::Buffer staging,
+      gpu::create_buffer(device, "staging", size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::MemoryKind::upload));
   for (std::uint32_t i = 0; i < levels; ++i) {
-    std::memcpy(static_cast<std::byte*>(staging.mapped) + copies[i].bufferOffset, level(i).rgba.data(), level(i).rgba.size());
+    std::memcpy(static_cast<std::byte*>(staging.mapped) + copies[i].bufferOffset, level(i).rgba.data(),
+                level(i).rgba.size());
   }
   TYNDALL_TRY(host.run([&](VkCommandBuffer cmd) -> Result<void> {
     gpu::transition(device, cmd, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);

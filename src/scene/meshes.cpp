@@ -60,7 +60,8 @@ shared::MeshInstance placed(const glm::dmat4& site_from_mesh) {
   const double size = std::max({glm::length(c[0]), glm::length(c[1]), glm::length(c[2]), 1e-300});
   const auto column = [&](int i) {
     const glm::dvec3 v = c[i] * (handed / size);
-    return shared::vec4{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), static_cast<float>(handed)};
+    return shared::vec4{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z),
+                        static_cast<float>(handed)};
   };
   out.normal_x = column(0);
   out.normal_y = column(1);
@@ -99,12 +100,14 @@ Result<void> Meshes::load(const MeshParams& params, const Terrain& terrain) {
   lowest_m_ = std::numeric_limits<double>::max();
   highest_m_ = std::numeric_limits<double>::lowest();
   for (std::size_t i = 0; i < corners_.size(); ++i) {
-    const glm::dvec3 p((i & 1U) != 0 ? data_.bounds.max.x : data_.bounds.min.x, (i & 2U) != 0 ? data_.bounds.max.y : data_.bounds.min.y,
+    const glm::dvec3 p((i & 1U) != 0 ? data_.bounds.max.x : data_.bounds.min.x,
+                       (i & 2U) != 0 ? data_.bounds.max.y : data_.bounds.min.y,
                        (i & 4U) != 0 ? data_.bounds.max.z : data_.bounds.min.z);
     corners_[i] = glm::dvec3(world_from_site_ * site_from_model_ * glm::dvec4(p, 1.0));
     const double altitude = altitude_of(corners_[i], radius_m_);
     if (!(std::abs(altitude) < 1.0e8)) {
-      return Error{ErrorCode::invalid_argument, "the meshes reach farther than a planet, meshes.scale, allowed is a size of up to 10000 km"};
+      return Error{ErrorCode::invalid_argument,
+                   "the meshes reach farther than a planet, meshes.scale, allowed is a size of up to 10000 km"};
     }
     lowest_m_ = std::min(lowest_m_, altitude);
     highest_m_ = std::max(highest_m_, altitude);
@@ -124,7 +127,8 @@ void Meshes::find_boxes() {
     for (std::uint32_t i = 0; i < mesh.part_count; ++i) {
       const MeshPart& part = data_.parts[mesh.first_part + i];
       Box box;
-      for (std::uint32_t k = 0; k < part.index_count; ++k) box.add(data_.vertices[data_.indices[part.first_index + k]].position);
+      for (std::uint32_t k = 0; k < part.index_count; ++k)
+        box.add(data_.vertices[data_.indices[part.first_index + k]].position);
       if (mesh.instance_count == 1) {
         boxes_.push_back(placed_box(site_from_model_ * glm::dmat4(data_.instances[mesh.first_instance]), box));
       } else if (!box.empty()) {
@@ -200,15 +204,19 @@ Result<void> Meshes::create_buffers() {
   const VkDeviceSize instance_bytes = instances.size() * sizeof(shared::MeshInstance);
   const VkDeviceSize most = device.properties.limits.maxStorageBufferRange;
   if (vertex_bytes > most || instance_bytes > most) {
-    return Error{ErrorCode::out_of_memory, "the meshes are larger than this device allows, meshes.source, allowed are up to " +
-                 std::to_string(most / sizeof(MeshVertex)) + " vertices and " + std::to_string(most / sizeof(shared::MeshInstance)) + " placed meshes"};
+    return Error{ErrorCode::out_of_memory,
+                 "the meshes are larger than this device allows, meshes.source, allowed are up to " +
+                     std::to_string(most / sizeof(MeshVertex)) + " vertices and " +
+                     std::to_string(most / sizeof(shared::MeshInstance)) + " placed meshes"};
   }
   const auto fill = [&](gpu::Buffer& buffer, const char* name, const void* bytes, VkDeviceSize size,
                         VkBufferUsageFlags usage) -> Result<void> {
-    TYNDALL_ASSIGN(buffer, gpu::create_buffer(device, name, size, usage | VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryKind::device));
+    TYNDALL_ASSIGN(buffer, gpu::create_buffer(device, name, size, usage | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                              gpu::MemoryKind::device));
     return gpu::upload(*host_, buffer, bytes, size);
   };
-  TYNDALL_TRY(fill(vertices_, "mesh_vertices", data_.vertices.data(), vertex_bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
+  TYNDALL_TRY(
+      fill(vertices_, "mesh_vertices", data_.vertices.data(), vertex_bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
   TYNDALL_TRY(fill(indices_, "mesh_indices", data_.indices.data(), data_.indices.size() * sizeof(std::uint32_t),
                    VK_BUFFER_USAGE_INDEX_BUFFER_BIT));
   TYNDALL_TRY(fill(instances_, "mesh_instances", instances.data(), instance_bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
@@ -219,8 +227,9 @@ Result<void> Meshes::create_buffers() {
   const std::uint32_t side = device.properties.limits.maxImageDimension2D;
   for (MeshTexture& texture : data_.textures) {
     if (texture.width > side || texture.height > side) {
-      return Error{ErrorCode::invalid_argument, "a texture of the meshes is larger than this device allows, meshes.source, allowed are up to " +
-                   std::to_string(side) + " texels on a side"};
+      return Error{ErrorCode::invalid_argument,
+                   "a texture of the meshes is larger than this device allows, meshes.source, allowed are up to " +
+                       std::to_string(side) + " texels on a side"};
     }
     TYNDALL_ASSIGN(gpu::Image image, upload_texture(*host_, texture));
     textures_.push_back(std::move(image));
@@ -241,7 +250,8 @@ Ground Meshes::ground(Ground ground, const glm::dvec3& camera) const {
   ground.max_m = std::max(ground.max_m, highest_m_);
   if (bare_ground_) ground.casters = corners_;
   // From a diameter away one looks in at windows and doors.
-  if (glm::distance(camera, 0.5 * (corners_[0] + corners_[7])) < glm::distance(corners_[0], corners_[7])) ground.room = corners_;
+  if (glm::distance(camera, 0.5 * (corners_[0] + corners_[7])) < glm::distance(corners_[0], corners_[7]))
+    ground.room = corners_;
   return ground;
 }
 
@@ -290,8 +300,10 @@ std::vector<gpu::NamedResource> Meshes::resources(const TerrainLight* light) con
   const VkImageLayout read = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
   out.push_back(gpu::named_image("shadow_maps", light->shadow_maps, read, light->shadow_sampler));
   out.push_back(gpu::named_image("shadow_colors", light->shadow_colors, read, light->linear));
-  out.push_back(gpu::named_image("sun_transmittance", light->tables.sun_transmittance, VK_IMAGE_LAYOUT_GENERAL, light->linear));
-  out.push_back(gpu::named_image("sky_irradiance", light->tables.sky_irradiance, VK_IMAGE_LAYOUT_GENERAL, light->linear));
+  out.push_back(
+      gpu::named_image("sun_transmittance", light->tables.sun_transmittance, VK_IMAGE_LAYOUT_GENERAL, light->linear));
+  out.push_back(
+      gpu::named_image("sky_irradiance", light->tables.sky_irradiance, VK_IMAGE_LAYOUT_GENERAL, light->linear));
   return out;
 }
 
@@ -327,7 +339,8 @@ Result<void> Meshes::draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline, co
       push.transmission = material.transmission;
       push.kind = static_cast<std::uint32_t>(material.kind);
       push.double_sided = material.double_sided ? 1U : 0U;
-      const gpu::Image& texture = material.texture < 0 ? textures_.back() : textures_[static_cast<std::size_t>(material.texture)];
+      const gpu::Image& texture =
+          material.texture < 0 ? textures_.back() : textures_[static_cast<std::size_t>(material.texture)];
       bound.back() = gpu::named_image("base_color", texture.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
                                       samplers_.at(material.sampler).get());
       const std::string_view missing = gpu::bind(device, cmd, pipeline, bound, &push);
@@ -357,7 +370,8 @@ Result<void> Meshes::draw_view(VkCommandBuffer cmd, const View& view, const Terr
   local_from_ndc[0] = glm::dvec4(frame_.direction(view.right) * view.tan_half_width, 0.0);
   local_from_ndc[1] = glm::dvec4(frame_.direction(view.up) * -view.tan_half_height, 0.0);
   local_from_ndc[2] = glm::dvec4(frame_.direction(view.forward - view.right * (view.tan_half_width * view.jitter.x) +
-                                                  view.up * (view.tan_half_height * view.jitter.y)), 0.0);
+                                                  view.up * (view.tan_half_height * view.jitter.y)),
+                                 0.0);
   push.local_from_ndc = to_mat4(local_from_ndc);
   push.near_m = static_cast<float>(kNearPlane_m);
   const std::vector<gpu::NamedResource> bound = resources(&light);

@@ -29,8 +29,8 @@ class Meshes {
   [[nodiscard]] VkDeviceSize bytes() const;
 
   // Writes the constants: before the draws are recorded.
-  void prepare(const View& view, const LocalFrame& frame, const ShadowParams& shadows, const std::vector<CascadeFit>& cascades,
-               const TerrainLight& light, float sky_light);
+  void prepare(const View& view, const LocalFrame& frame, const ShadowParams& shadows,
+               const std::vector<CascadeFit>& cascades, const TerrainLight& light, float sky_light);
   // Inside a rendering scope with colour and depth: first what hides, then, over what lies behind, clear glass.
   Result<void> draw_view(VkCommandBuffer cmd, const View& view, const TerrainLight& light);
   Result<void> draw_clear_glass(VkCommandBuffer cmd, const View& view, const TerrainLight& light);
@@ -58,14 +58,15 @@ class Meshes {
   glm::dmat4 world_from_site_ = glm::dmat4(1.0);
   glm::dmat4 site_from_model_ = glm::dmat4(1.0);
   LocalFrame frame_;  // of the view
-  // In the site's frame. Of meshes that are placed once those of their parts, of others those of their instances; mesh by mesh.
+  // In the site's frame. Of meshes that are placed once those of their parts, of others those of their instances; mesh
+  // by mesh.
   std::vector<Box> boxes_;
   std::array<glm::dvec3, 8> corners_ = {};  // of the bounds, in the world
   double lowest_m_ = 0.0, highest_m_ = 0.0;
 
   gpu::Pipeline surfaces_, multiply_, add_, shadow_, shadow_mask_, colors_, ground_;
   gpu::Buffer constants_, vertices_, indices_, instances_;
-  std::vector<gpu::Image> textures_;  // the last is white
+  std::vector<gpu::Image> textures_;                        // the last is white
   std::map<MeshSampler, gpu::Handle<VkSampler>> samplers_;  // of the materials
 };
 

@@ -18,8 +18,8 @@ namespace tyndall::scene {
 namespace {
 
 constexpr std::size_t kSuns = 128;
-constexpr int kSkyNodes = 10;              // of the irradiance of the sky: 200 rays for each sun
-constexpr std::uint32_t kSkySamples = 8;   // on such a ray at most
+constexpr int kSkyNodes = 10;             // of the irradiance of the sky: 200 rays for each sun
+constexpr std::uint32_t kSkySamples = 8;  // on such a ray at most
 
 // model_block of shaders/scene/oneil_air.glsl, in std430.
 struct Block {
@@ -76,7 +76,8 @@ class OneilSky : public SkyModel {
     out.to_sun = to_vec3(frame.local.direction(frame.light.direction_to_sun));
     // Of the ground sphere: sea level, or twice the depth of an eye below it.
     const double ground = radius + 2.0 * std::min(altitude, 0.0);
-    out.horizon_rad = static_cast<float>(0.5 * std::numbers::pi + std::acos(std::clamp(ground / (radius + altitude), -1.0, 1.0)));
+    out.horizon_rad =
+        static_cast<float>(0.5 * std::numbers::pi + std::acos(std::clamp(ground / (radius + altitude), -1.0, 1.0)));
     out.sun_irradiance = frame.light.sun_irradiance;
     out.air_shown = frame.params.scattering.enabled ? 1.0F : 0.0F;
     out.ground_shown = frame.params.scattering.only ? 0.0F : 1.0F;
@@ -102,7 +103,8 @@ class OneilSky : public SkyModel {
  private:
   // The fit or the table, and the light of the sky: when planet, air or settings are others. No frame is in flight.
   Result<void> make(const tyndall::shared::Medium& medium, const models::OneilSettings& settings) {
-    const bool same = table_buffer_.buffer && settings == settings_ && std::memcmp(&medium, &model_.medium, sizeof medium) == 0;
+    const bool same =
+        table_buffer_.buffer && settings == settings_ && std::memcmp(&medium, &model_.medium, sizeof medium) == 0;
     if (same) return {};
     models::OneilModel model = models::make_oneil(medium, settings);
     const VkDeviceSize bytes = model.table.size() * sizeof model.table[0];

@@ -39,17 +39,19 @@ Result<void> check_memory(const gpu::Device& device, VkExtent2D extent, std::uin
   const std::uint32_t side = device.properties.limits.maxImageDimension2D;
   if (extent.width > side || extent.height > side || resolution > side) {
     return Error{ErrorCode::invalid_argument, "a picture or shadow map is larger than this device allows, --size or "
-                 "shadows.resolution, allowed is up to " + std::to_string(side) + " on a side"};
+                                              "shadows.resolution, allowed is up to " +
+                                                  std::to_string(side) + " on a side"};
   }
   // Three colour images, depth, and as much as two of them again on the host for reading back.
   constexpr double kBytesPerPixel = 3 * 16 + 4 + 2 * 16;
-  const double needed = (kBytesPerPixel + more_bytes_per_pixel) * extent.width * extent.height + bytes_per_texel * resolution * resolution * cascades;
+  const double needed = (kBytesPerPixel + more_bytes_per_pixel) * extent.width * extent.height +
+                        bytes_per_texel * resolution * resolution * cascades;
   const double allowed = 0.8 * static_cast<double>(largest);
   if (needed <= allowed) return {};
   const auto gib = [](double bytes) { return std::to_string(static_cast<int>(std::ceil(bytes / 1073741824.0))); };
   return Error{ErrorCode::out_of_memory, "a picture of " + std::to_string(extent.width) + "x" +
-               std::to_string(extent.height) + " with these shadow maps needs " + gib(needed) +
-               " GiB, --size, this device allows " + gib(allowed)};
+                                             std::to_string(extent.height) + " with these shadow maps needs " +
+                                             gib(needed) + " GiB, --size, this device allows " + gib(allowed)};
 }
 
 // Radical inverse of i (Halton, 1960): evenly spread over [0; 1).
@@ -77,7 +79,7 @@ Result<std::unique_ptr<Scene>> Scene::create(gpu::Host& host, const SceneDesc& d
   out->params_ = params;
   out->scene_ = scene;
   TYNDALL_ASSIGN(out->terrain_, Terrain::create(host, scene.terrain, params.planet.radius_m, kColorFormat, kDepthFormat,
-                                                 desc.terrain_coarseness));
+                                                desc.terrain_coarseness));
   out->notes_ = unused_params(params, scene);
   add_notes(out->notes_, out->terrain_->notes());
   TYNDALL_TRY(check_model(scene));
@@ -116,8 +118,7 @@ Result<void> Scene::create_objects() {
   TYNDALL_ASSIGN(post::Tonemap tonemap, post::Tonemap::create(device));
   tonemap_ = std::make_unique<post::Tonemap>(std::move(tonemap));
 
-  TYNDALL_TRY(check_memory(device, desc_.extent, scene_.shadows.resolution, scene_.shadows.cascades,
-                           glass ? 12.0 : 4.0,
+  TYNDALL_TRY(check_memory(device, desc_.extent, scene_.shadows.resolution, scene_.shadows.cascades, glass ? 12.0 : 4.0,
                            scene_.scattering.model != ScatteringModel::atmosphere ? 3 * 16.0 : 0.0));  // SkyModel::air
   TYNDALL_ASSIGN(Targets targets, make_targets(desc_.extent));
   swap_targets(targets);
@@ -173,7 +174,8 @@ Result<void> Scene::render(double seconds, bool floor, std::optional<double> ste
   const std::uint32_t samples = scene_.camera.samples;
   for (std::uint32_t i = 0; i < samples; ++i) {
     // Centred offsets of up to half a pixel; a single picture stays where it is.
-    const glm::dvec2 offset = samples > 1 ? glm::dvec2(halton(i + 1, 2) - 0.5, halton(i + 1, 3) - 0.5) : glm::dvec2(0.0);
+    const glm::dvec2 offset =
+        samples > 1 ? glm::dvec2(halton(i + 1, 2) - 0.5, halton(i + 1, 3) - 0.5) : glm::dvec2(0.0);
     const glm::dvec2 jitter = 2.0 * offset / glm::dvec2(desc_.extent.width, desc_.extent.height);
     TYNDALL_TRY(render_sample(seconds, jitter, i == 0, floor));
     if (samples == 1) break;
@@ -215,8 +217,9 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   const double least_m = bare ? kNearPlane_m : kLeastHeight_m;
   if (altitude < ground_m + least_m) {
     view_.position = at_altitude(view_.position, ground_m + least_m, radius);
-    if (!std::exchange(lifted_, true)) notes_.push_back("the camera was inside the ground and has been lifted to " +
-                     std::to_string(static_cast<int>(std::lround(ground_m + least_m))) + " m");
+    if (!std::exchange(lifted_, true))
+      notes_.push_back("the camera was inside the ground and has been lifted to " +
+                       std::to_string(static_cast<int>(std::lround(ground_m + least_m))) + " m");
   }
   frame_ = local_frame(view_.position, radius);
   TYNDALL_TRY(terrain_->update(view_, frame_));
@@ -277,7 +280,8 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   if (desc_.timings) {
     for (const gpu::TimedScope& scope : timer_.read(0)) times_.push_back({scope.name, scope.milliseconds, false});
     const bool by_effect = model_ == nullptr;
-    for (const PassTiming& pass : by_effect ? effect_->timings(frame_index_) : std::span<const PassTiming>()) times_.push_back({pass.name, pass.gpu_ms, true});
+    for (const PassTiming& pass : by_effect ? effect_->timings(frame_index_) : std::span<const PassTiming>())
+      times_.push_back({pass.name, pass.gpu_ms, true});
   }
   ++frame_index_;
   return {};
@@ -286,8 +290,8 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
 Result<void> Scene::run_effect(VkCommandBuffer cmd) {
   std::array<Cascade, kMaxCascades> cascades;
   for (std::size_t i = 0; i < cascades_.size(); ++i) {
-    cascades[i] = {to_mat4(cascades_[i].shadow_from_world() * frame_.world_from_local), static_cast<float>(cascades_[i].near_m),
-                   static_cast<float>(cascades_[i].far_m)};
+    cascades[i] = {to_mat4(cascades_[i].shadow_from_world() * frame_.world_from_local),
+                   static_cast<float>(cascades_[i].near_m), static_cast<float>(cascades_[i].far_m)};
   }
   FrameInputs inputs;
   inputs.extent = desc_.extent;
@@ -380,7 +384,9 @@ float Scene::exposure() const {
   return scene_.tonemap.auto_exposure ? measurement().exposure : scene_.tonemap.exposure;
 }
 
-Counters Scene::counters() const { return frame_index_ > 0 && model_ == nullptr ? effect_->counters(frame_index_ - 1) : Counters{}; }
+Counters Scene::counters() const {
+  return frame_index_ > 0 && model_ == nullptr ? effect_->counters(frame_index_ - 1) : Counters{};
+}
 
 Scene::Memory Scene::memory() const {
   const MemoryUsage effect = effect_->memory();

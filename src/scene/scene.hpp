@@ -23,7 +23,7 @@ struct SceneDesc {
   VkExtent2D extent = {1280, 720};
   bool timings = false;
   bool counters = false;
-  bool histogram = false;  // measure every picture, not only those that auto exposure needs measured
+  bool histogram = false;              // measure every picture, not only those that auto exposure needs measured
   tables::MakeReady make_tables = {};  // how the effect's tables are made
   bool tables_later = false;           // with advance_tables(), instead of at once
   int terrain_coarseness = 1;          // see TerrainLod
@@ -43,9 +43,9 @@ class Scene {
   static Result<std::unique_ptr<Scene>> create(gpu::Host& host, const SceneDesc& desc, const Params& params,
                                                const SceneParams& scene);
 
-  // Take over new parameters; an error leaves things as they were, the next frame included. Another terrain is loaded here, which takes long
-  // for large files, unless set_terrain() has brought it. Back to scattering.model = atmosphere, and other
-  // parameters of the air, make the tables ready if they are not, unless with SceneDesc::tables_later.
+  // Take over new parameters; an error leaves things as they were, the next frame included. Another terrain is loaded
+  // here, which takes long for large files, unless set_terrain() has brought it. Back to scattering.model = atmosphere,
+  // and other parameters of the air, make the tables ready if they are not, unless with SceneDesc::tables_later.
   Result<void> set_scene(const SceneParams& scene);
   Result<void> set_params(const Params& params);
   // What Terrain::load_source() gave for these parameters and this radius of the planet.
@@ -86,7 +86,9 @@ class Scene {
   [[nodiscard]] VkExtent2D extent() const { return desc_.extent; }
   [[nodiscard]] const View& view() const { return view_; }
   // The ground that is drawn, for other threads as well; none: the bare sphere at sea level.
-  [[nodiscard]] std::shared_ptr<const ElevationSource> elevations() const { return bare_ground() ? nullptr : terrain_->source(); }
+  [[nodiscard]] std::shared_ptr<const ElevationSource> elevations() const {
+    return bare_ground() ? nullptr : terrain_->source();
+  }
 
   // Remarks for the user, one line each: what a file needed, which of the parameters that it was
   // created with do nothing, that the camera was lifted, ...
@@ -122,7 +124,8 @@ class Scene {
   [[nodiscard]] Result<std::unique_ptr<SkyModel>> make_model(const SceneParams& scene) const;
   Result<void> make_tables_ready();
   [[nodiscard]] Result<void> check_tables() const;
-  [[nodiscard]] Result<Pending> plan(const SceneParams& scene, const Params& params, std::optional<ElevationSource> source);
+  [[nodiscard]] Result<Pending> plan(const SceneParams& scene, const Params& params,
+                                     std::optional<ElevationSource> source);
   void swap(Pending& pending) noexcept;
   // Plans and takes over; an error leaves everything as it was. `source`: of the terrain, if it has been loaded.
   Result<void> change(const SceneParams& scene, const Params& params, std::optional<ElevationSource> source);
@@ -172,7 +175,7 @@ class Scene {
   std::optional<double> last_seconds_;  // of the frame before, if it was measured
   double step_s_ = 0.0;
   bool images_ready_ = false;
-  bool lifted_ = false;  // the camera, which has been noted
+  bool lifted_ = false;                     // the camera, which has been noted
   std::vector<CascadeFit> drawn_cascades_;  // what the shadow maps show
   std::uint64_t drawn_terrain_ = 0;
   image::Image radiance_sum_, display_sum_;  // with camera.samples > 1

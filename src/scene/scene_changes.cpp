@@ -53,7 +53,8 @@ struct Scene::Pending {
 Result<void> check_model(const SceneParams& scene) {
   if (scene.scattering.model == ScatteringModel::atmosphere) return {};
   if (scene.meshes.source == "none" && scene.terrain.source != "none") return {};
-  return Error{ErrorCode::invalid_argument, "only the effect draws meshes and bare ground, scattering.model, allowed is "
+  return Error{ErrorCode::invalid_argument,
+               "only the effect draws meshes and bare ground, scattering.model, allowed is "
                "atmosphere with meshes.source or with terrain.source = none"};
 }
 
@@ -66,14 +67,16 @@ void add_notes(std::vector<std::string>& notes, const std::vector<std::string>& 
 Result<Scene::Targets> Scene::make_targets(VkExtent2D size) const {
   const gpu::Device& device = host_->device();
   const VkExtent3D extent = {size.width, size.height, 1};
-  const VkImageUsageFlags written = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+  const VkImageUsageFlags written =
+      VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
   Targets out;
   TYNDALL_ASSIGN(out.color, gpu::create_image(device, {"scene_color", kColorFormat, extent,
-                                                       VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
-                                                           VK_IMAGE_USAGE_STORAGE_BIT}));
-  TYNDALL_ASSIGN(out.depth, gpu::create_image(device, {"scene_depth", kDepthFormat, extent,
-                                                       VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
-                                                           VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT}));
+                                                       VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
+                                                           VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT}));
+  TYNDALL_ASSIGN(out.depth,
+                 gpu::create_image(device, {"scene_depth", kDepthFormat, extent,
+                                            VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                                                VK_IMAGE_USAGE_TRANSFER_SRC_BIT}));
   TYNDALL_ASSIGN(out.output, gpu::create_image(device, {"output", kColorFormat, extent, written}));
   TYNDALL_ASSIGN(out.display, gpu::create_image(device, {"display", kColorFormat, extent, written}));
   return out;
@@ -98,21 +101,36 @@ Result<Scene::Layered> Scene::make_layered(const gpu::ImageDesc& desc) const {
 }
 
 Result<Scene::Layered> Scene::make_shadow_maps(const ShadowParams& shadows) const {
-  return make_layered({"shadow_maps", kDepthFormat, {shadows.resolution, shadows.resolution, 1},
-                       VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT, shadows.cascades, 1, true});
+  return make_layered({"shadow_maps",
+                       kDepthFormat,
+                       {shadows.resolution, shadows.resolution, 1},
+                       VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                       shadows.cascades,
+                       1,
+                       true});
 }
 
 // Maps of what glass leaves of the light; one clear texel where there is no glass.
 Result<Scene::Layered> Scene::make_shadow_colors(const ShadowParams& shadows, bool glass) const {
   if (glass) {
-    return make_layered({"shadow_colors", kShadowColorFormat, {shadows.resolution, shadows.resolution, 1},
-                         VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT, shadows.cascades, 1, true});
+    return make_layered({"shadow_colors",
+                         kShadowColorFormat,
+                         {shadows.resolution, shadows.resolution, 1},
+                         VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                         shadows.cascades,
+                         1,
+                         true});
   }
   const std::uint16_t clear[] = {0x3C00, 0x3C00, 0x3C00, 0x3C00};  // ones in half precision
   Layered out;
-  TYNDALL_ASSIGN(out.image, gpu::create_image(host_->device(), {"no_shadow_colors", kShadowColorFormat, {1, 1, 1},
-                                                                VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
-                                                                1, 1, true}));
+  TYNDALL_ASSIGN(out.image,
+                 gpu::create_image(host_->device(), {"no_shadow_colors",
+                                                     kShadowColorFormat,
+                                                     {1, 1, 1},
+                                                     VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+                                                     1,
+                                                     1,
+                                                     true}));
   TYNDALL_TRY(gpu::upload(*host_, out.image, clear, sizeof clear, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL));
   return out;
 }
@@ -140,7 +158,8 @@ Result<void> Scene::make_tables_ready() {
 // Stale tables would give a wrong picture. They are there only when making them failed, and so did taking that back.
 Result<void> Scene::check_tables() const {
   if (model_ != nullptr || desc_.tables_later || effect_->precompute_progress().complete()) return {};
-  return Error{ErrorCode::invalid_argument, "the scattering tables are not those of the parameters: set the parameters again"};
+  return Error{ErrorCode::invalid_argument,
+               "the scattering tables are not those of the parameters: set the parameters again"};
 }
 
 Result<Progress> Scene::advance_tables(std::uint32_t budget) {
@@ -152,7 +171,8 @@ Result<Progress> Scene::advance_tables(std::uint32_t budget) {
   return progress;
 }
 
-Result<Scene::Pending> Scene::plan(const SceneParams& scene, const Params& params, std::optional<ElevationSource> source) {
+Result<Scene::Pending> Scene::plan(const SceneParams& scene, const Params& params,
+                                   std::optional<ElevationSource> source) {
   TYNDALL_TRY(check_model(scene));
   Pending out;
   out.scene = scene;
@@ -187,16 +207,16 @@ Result<Scene::Pending> Scene::plan(const SceneParams& scene, const Params& param
   }
   const std::unique_ptr<Meshes>& meshes = out.other_meshes ? out.meshes : meshes_;
   const bool glass = meshes != nullptr && meshes->has_glass();
-  const bool other_maps = scene.shadows.resolution != scene_.shadows.resolution ||
-                          scene.shadows.cascades != scene_.shadows.cascades;
+  const bool other_maps =
+      scene.shadows.resolution != scene_.shadows.resolution || scene.shadows.cascades != scene_.shadows.cascades;
   if (other_maps) {
     TYNDALL_ASSIGN(out.shadow_maps, make_shadow_maps(scene.shadows));
   }
   if (other_maps || out.other_meshes) {
     TYNDALL_ASSIGN(out.shadow_colors, make_shadow_colors(scene.shadows, glass));
   }
-  out.other_model = scene.scattering.model != scene_.scattering.model ||
-                    scene.scattering.evaluate != scene_.scattering.evaluate;
+  out.other_model =
+      scene.scattering.model != scene_.scattering.model || scene.scattering.evaluate != scene_.scattering.evaluate;
   if (out.other_model) {
     TYNDALL_ASSIGN(out.model, make_model(scene));
   }
@@ -213,7 +233,8 @@ void Scene::swap(Pending& pending) noexcept {
   std::swap(scene_, pending.scene);
   std::swap(params_, pending.params);
   std::swap(notes_, pending.notes);
-  const auto exchange = [](gpu::Image& image, std::vector<gpu::Handle<VkImageView>>& layers, std::optional<Layered>& other) {
+  const auto exchange = [](gpu::Image& image, std::vector<gpu::Handle<VkImageView>>& layers,
+                           std::optional<Layered>& other) {
     if (!other) return;
     std::swap(image, other->image);
     std::swap(layers, other->layers);
@@ -279,9 +300,7 @@ Result<void> Scene::tone(double step_s) {
   });
 }
 
-bool Scene::bare_ground() const {
-  return terrain_->none() || (model_ != nullptr && !model_->draws_terrain(scene_));
-}
+bool Scene::bare_ground() const { return terrain_->none() || (model_ != nullptr && !model_->draws_terrain(scene_)); }
 
 bool Scene::shadows_are_drawn() const {
   return drawn_terrain_ == terrain_->version() && drawn_cascades_.size() == cascades_.size() &&

@@ -56,8 +56,8 @@ Result<void> Scene::draw_shadows(VkCommandBuffer cmd) {
     const gpu::Label label(device, cmd, "shadow_maps");
     VkClearValue clear = {};
     clear.depthStencil = {1.0F, 0};
-    const VkRenderingAttachmentInfo depth = attachment(shadow_layers_[i].get(), VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
-                                                       VK_ATTACHMENT_LOAD_OP_CLEAR, clear);
+    const VkRenderingAttachmentInfo depth = attachment(
+        shadow_layers_[i].get(), VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_ATTACHMENT_LOAD_OP_CLEAR, clear);
     begin_rendering(device, cmd, {resolution, resolution}, {}, &depth);
     TYNDALL_TRY(terrain_->draw_cascade(cmd, cascades_[i], i));
     if (meshes_ != nullptr) TYNDALL_TRY(meshes_->draw_cascade(cmd, cascades_[i]));
@@ -79,8 +79,8 @@ Result<void> Scene::draw_shadow_colors(VkCommandBuffer cmd) {
   for (std::uint32_t i = 0; i < cascades_.size(); ++i) {
     VkClearValue clear = {};
     clear.color = {{1.0F, 1.0F, 1.0F, 1.0F}};
-    const VkRenderingAttachmentInfo color = attachment(shadow_color_layers_[i].get(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                                                       VK_ATTACHMENT_LOAD_OP_CLEAR, clear);
+    const VkRenderingAttachmentInfo color = attachment(
+        shadow_color_layers_[i].get(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_ATTACHMENT_LOAD_OP_CLEAR, clear);
     begin_rendering(device, cmd, {resolution, resolution}, {&color, 1}, nullptr);
     TYNDALL_TRY(meshes_->draw_colors(cmd, cascades_[i]));
     device.vk.CmdEndRendering(cmd);
@@ -100,7 +100,8 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
   constants.world_from_local = to_mat4(frame_.world_from_local);
   constants.direction_to_sun = to_vec3(frame_.direction(to_sun_));
   constants.angular_radius_rad = static_cast<float>(radius_rad);
-  constants.disc_radiance = to_vec3(glm::dvec3(light_.sun_irradiance.x, light_.sun_irradiance.y, light_.sun_irradiance.z) / solid_angle);
+  constants.disc_radiance =
+      to_vec3(glm::dvec3(light_.sun_irradiance.x, light_.sun_irradiance.y, light_.sun_irradiance.z) / solid_angle);
   constants.pixel_angle_rad = static_cast<float>(2.0 * view_.tan_half_height / desc_.extent.height);
   const Vec3& nm = params_.atmosphere.wavelengths_nm;
   constants.limb_exponent = {limb_exponent(nm.x), limb_exponent(nm.y), limb_exponent(nm.z)};
@@ -129,15 +130,16 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
     for (const gpu::Image& image : air_drawn) {
       gpu::transition(device, cmd, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
       // Read is only where ground has been drawn.
-      colors.push_back(attachment(image.view.get(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_ATTACHMENT_LOAD_OP_DONT_CARE, {}));
+      colors.push_back(
+          attachment(image.view.get(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_ATTACHMENT_LOAD_OP_DONT_CARE, {}));
     }
   }
   const VkRenderingAttachmentInfo depth = attachment(depth_.view.get(), VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
                                                      VK_ATTACHMENT_LOAD_OP_CLEAR, {});  // reversed: 0 is far
-  const VkRenderingAttachmentInfo on_color = attachment(color_.view.get(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                                                        VK_ATTACHMENT_LOAD_OP_LOAD, {});
-  const VkRenderingAttachmentInfo on_depth = attachment(depth_.view.get(), VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
-                                                        VK_ATTACHMENT_LOAD_OP_LOAD, {});
+  const VkRenderingAttachmentInfo on_color =
+      attachment(color_.view.get(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_ATTACHMENT_LOAD_OP_LOAD, {});
+  const VkRenderingAttachmentInfo on_depth =
+      attachment(depth_.view.get(), VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_ATTACHMENT_LOAD_OP_LOAD, {});
   // Times are taken between renderings, because their barriers may not stand inside one.
   begin_pass(cmd, "terrain");
   begin_rendering(device, cmd, desc_.extent, colors, &depth);
@@ -150,7 +152,8 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
   device.vk.CmdEndRendering(cmd);
   end_pass(cmd);
   gpu::transition(device, cmd, color_, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL);
-  const VkImageLayout air_layout = air_drawn.empty() ? VK_IMAGE_LAYOUT_UNDEFINED : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  const VkImageLayout air_layout =
+      air_drawn.empty() ? VK_IMAGE_LAYOUT_UNDEFINED : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
   for (const gpu::Image& image : air) gpu::transition(device, cmd, image, air_layout, VK_IMAGE_LAYOUT_GENERAL);
   begin_pass(cmd, "terrain_light");
   if (model_ != nullptr) {
@@ -160,8 +163,7 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
   }
   end_pass(cmd);
   gpu::transition(device, cmd, color_, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-  gpu::barrier(device, cmd,
-               VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT,
+  gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT,
                VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
                VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT | VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT |
                    VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT,
@@ -174,8 +176,7 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
   } else {
     if (meshes_ != nullptr) TYNDALL_TRY(meshes_->draw_view(cmd, view_, light_));
     const gpu::Label label(device, cmd, background_.name);
-    const gpu::NamedResource resources[] = {
-        gpu::named_buffer("background_block", background_constants_.buffer.get())};
+    const gpu::NamedResource resources[] = {gpu::named_buffer("background_block", background_constants_.buffer.get())};
     const std::string_view missing = gpu::bind(device, cmd, background_, resources);
     if (!missing.empty()) return lacks(missing);
     device.vk.CmdDraw(cmd, 3, 1, 0, 0);

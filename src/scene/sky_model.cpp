@@ -14,9 +14,9 @@ namespace tyndall::scene {
 namespace {
 
 constexpr std::uint32_t kColumns = 128;
-constexpr std::uint32_t kRowsAbove = 64;   // from the zenith to the edge of the sky
+constexpr std::uint32_t kRowsAbove = 64;    // from the zenith to the edge of the sky
 constexpr std::uint32_t kRowsBetween = 48;  // to the planet's horizon
-constexpr std::uint32_t kRowsBelow = 48;   // to the nadir
+constexpr std::uint32_t kRowsBelow = 48;    // to the nadir
 constexpr std::uint32_t kRows = kRowsAbove + kRowsBetween + kRowsBelow;
 constexpr std::uint32_t kIndices = kColumns * kRows * 6;
 constexpr double kHalfTurn = std::numbers::pi;
@@ -123,8 +123,9 @@ void SkyModel::fill_mesh(const ModelFrame& frame) {
     out.angles[i] = static_cast<float>(kHalfTurn * x * (0.3 + 0.7 * x * x));
   }
   // Rows towards the edge of the sky: the horizontal, or, from space, the rim of the air; then to the horizon of
-  // the ground sphere, which lies as far below an eye below sea level as that lies below it. At either stands a pair of rows close together, so that a break there is not
-  // smeared over a row, and on neither side of the horizon a vertex in doubt.
+  // the ground sphere, which lies as far below an eye below sea level as that lies below it. At either stands a pair of
+  // rows close together, so that a break there is not smeared over a row, and on neither side of the horizon a vertex
+  // in doubt.
   const double altitude = altitude_of(frame.view.position, radius);
   const auto dip = [&](double below_m) {  // angle of a sphere's rim below the horizontal
     const double r = radius + altitude;
@@ -159,8 +160,11 @@ Result<void> SkyModel::create_air(VkExtent2D extent) {
   for (std::size_t i = 0; i < air_.size(); ++i) {
     const VkExtent3D& had = air_[i].desc.extent;
     if (air_[i].image && had.width == extent.width && had.height == extent.height) continue;
-    TYNDALL_ASSIGN(air_[i], gpu::create_image(host_->device(), {kNames[i], air_format_, {extent.width, extent.height, 1},
-                                                                VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_STORAGE_BIT}));
+    TYNDALL_ASSIGN(air_[i], gpu::create_image(host_->device(),
+                                              {kNames[i],
+                                               air_format_,
+                                               {extent.width, extent.height, 1},
+                                               VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_STORAGE_BIT}));
   }
   return {};
 }

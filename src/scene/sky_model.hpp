@@ -4,9 +4,9 @@
 //
 // Shaders. Ground: over scene/terrain_vertex.glsl, scene/terrain_point.glsl and, to light it, scene/terrain_pixel.glsl
 // (bindings 0 to 5 and 8, locations 0 and 1 are the terrain's). What the vertices find of the air goes from further
-// locations into images, air_0 and on, which the pass that lights reads; evaluated per pixel, that pass finds it itself,
-// and the ground is drawn as for the effect. Sky: over scene/sky_mesh.glsl and scene/sun_disc.glsl (bindings 0 and 1).
-// The model's own constants are the block `model_block` at binding 6; further resources come at 7 and from 9.
+// locations into images, air_0 and on, which the pass that lights reads; evaluated per pixel, that pass finds it
+// itself, and the ground is drawn as for the effect. Sky: over scene/sky_mesh.glsl and scene/sun_disc.glsl (bindings 0
+// and 1). The model's own constants are the block `model_block` at binding 6; further resources come at 7 and from 9.
 // Specialisation constant 0 is 1 with scattering.evaluate = pixel; a model may have variants by constants of its own.
 #pragma once
 

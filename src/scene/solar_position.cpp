@@ -63,8 +63,7 @@ constexpr Term kR2[] = {{4359, 5.7846, 6283.0758}};
 
 double sum(std::span<const Term> terms, double millennia) {
   double total = 0.0;
-  for (const Term& term : terms)
-    total += term.amplitude * std::cos(term.phase_rad + term.rate_rad * millennia);
+  for (const Term& term : terms) total += term.amplitude * std::cos(term.phase_rad + term.rate_rad * millennia);
   return 1e-8 * total;
 }
 
@@ -84,10 +83,10 @@ Nutation nutation(double centuries) {
   const double node = (125.04452 - 1934.136261 * centuries) * kRadPerDeg;  // of the moon's orbit
   const double sun = (280.4665 + 36000.7698 * centuries) * kRadPerDeg;     // mean longitudes
   const double moon = (218.3165 + 481267.8813 * centuries) * kRadPerDeg;
-  return {kDegPerArcsecond * (-17.20 * std::sin(node) - 1.32 * std::sin(2.0 * sun) -
-                              0.23 * std::sin(2.0 * moon) + 0.21 * std::sin(2.0 * node)),
-          kDegPerArcsecond * (9.20 * std::cos(node) + 0.57 * std::cos(2.0 * sun) +
-                              0.10 * std::cos(2.0 * moon) - 0.09 * std::cos(2.0 * node))};
+  return {kDegPerArcsecond * (-17.20 * std::sin(node) - 1.32 * std::sin(2.0 * sun) - 0.23 * std::sin(2.0 * moon) +
+                              0.21 * std::sin(2.0 * node)),
+          kDegPerArcsecond * (9.20 * std::cos(node) + 0.57 * std::cos(2.0 * sun) + 0.10 * std::cos(2.0 * moon) -
+                              0.09 * std::cos(2.0 * node))};
 }
 
 // Days from 1970-01-01 to a date of the Gregorian calendar.
@@ -163,8 +162,7 @@ std::optional<Civil> read_civil(std::string_view text) {
   const auto hour = reader.number(2);
   const bool colon = reader.one_of(":") != 0;
   const auto minute = reader.number(2);
-  if (!year || !dash_1 || !month || !dash_2 || !day || !separator || !hour || !colon || !minute)
-    return std::nullopt;
+  if (!year || !dash_1 || !month || !dash_2 || !day || !separator || !hour || !colon || !minute) return std::nullopt;
   Civil civil = {*year, *month, *day, *hour, *minute};
   if (reader.one_of(":") != 0) {
     const auto second = reader.number(2);
@@ -229,18 +227,16 @@ SolarPosition solar_position(const Place& place, double julian_day, double altit
   out.distance_au = sum(kR0, t) + t * (sum(kR1, t) + t * sum(kR2, t));
   const Nutation nutated = nutation(centuries);
   const double aberration_deg = -20.4898 * kDegPerArcsecond / out.distance_au;
-  const double lambda =
-      kRadPerDeg * (longitude_rad / kRadPerDeg + 180.0 + nutated.longitude_deg + aberration_deg);
+  const double lambda = kRadPerDeg * (longitude_rad / kRadPerDeg + 180.0 + nutated.longitude_deg + aberration_deg);
   const double beta = -sum(kB0, t);
   const double obliquity_deg =
-      kDegPerArcsecond *
-          (84381.448 + centuries * (-46.8150 + centuries * (-0.00059 + centuries * 0.001813))) +
+      kDegPerArcsecond * (84381.448 + centuries * (-46.8150 + centuries * (-0.00059 + centuries * 0.001813))) +
       nutated.obliquity_deg;
   const double obliquity = kRadPerDeg * obliquity_deg;
-  const double alpha = std::atan2(
-      std::sin(lambda) * std::cos(obliquity) - std::tan(beta) * std::sin(obliquity), std::cos(lambda));
-  const double delta = std::asin(std::sin(beta) * std::cos(obliquity) +
-                                 std::cos(beta) * std::sin(obliquity) * std::sin(lambda));
+  const double alpha =
+      std::atan2(std::sin(lambda) * std::cos(obliquity) - std::tan(beta) * std::sin(obliquity), std::cos(lambda));
+  const double delta =
+      std::asin(std::sin(beta) * std::cos(obliquity) + std::cos(beta) * std::sin(obliquity) * std::sin(lambda));
   out.right_ascension_deg = wrapped_deg(alpha / kRadPerDeg);
   out.declination_deg = delta / kRadPerDeg;
 
@@ -249,8 +245,7 @@ SolarPosition solar_position(const Place& place, double julian_day, double altit
   const double sidereal_deg = 280.46061837 + 360.98564736629 * days +
                               ut_centuries * ut_centuries * (0.000387933 - ut_centuries / 38710000.0) +
                               nutated.longitude_deg * std::cos(obliquity);
-  const double hour_angle =
-      kRadPerDeg * wrapped_deg(sidereal_deg + place.longitude_deg - out.right_ascension_deg);
+  const double hour_angle = kRadPerDeg * wrapped_deg(sidereal_deg + place.longitude_deg - out.right_ascension_deg);
 
   // From the place instead of the centre (3.12): its distances from the axis and from the equator in radii.
   constexpr double kAxes = 0.99664719;  // polar by equatorial radius
@@ -273,10 +268,9 @@ SolarPosition solar_position(const Place& place, double julian_day, double altit
 
 Result<Place> parse_place(std::string_view text, std::string_view where) {
   Place place;
-  const bool read =
-      config::count_parts(text, ',') == 2 &&
-      config::read_number(config::part(text, ',', 0), place.latitude_deg) == config::NumberError::none &&
-      config::read_number(config::part(text, ',', 1), place.longitude_deg) == config::NumberError::none;
+  const bool read = config::count_parts(text, ',') == 2 &&
+                    config::read_number(config::part(text, ',', 0), place.latitude_deg) == config::NumberError::none &&
+                    config::read_number(config::part(text, ',', 1), place.longitude_deg) == config::NumberError::none;
   if (read && std::abs(place.latitude_deg) <= 90.0 && std::abs(place.longitude_deg) <= 360.0) {
     // Maps of the Pacific and many data sets count from 0 to 360.
     place.longitude_deg = std::remainder(place.longitude_deg, 360.0);
@@ -291,13 +285,10 @@ Result<double> parse_time(std::string_view text, std::string_view where) {
     return input_error(concat({"'", one_line(text), "' ", what}), where, allowed);
   };
   const std::optional<Civil> read = read_civil(text);
-  if (!read)
-    return error("is no time", "allowed is a time as 2003-10-17T12:30:30-07:00 or 2003-10-17T19:30:30.5Z");
+  if (!read) return error("is no time", "allowed is a time as 2003-10-17T12:30:30-07:00 or 2003-10-17T19:30:30.5Z");
   const Civil& civil = *read;
-  if (!civil.has_offset)
-    return error("has no offset from UTC", "needed is Z or an offset such as +01:00 at the end");
-  if (civil.year < 1900 || civil.year > 2100)
-    return error("is out of range", "allowed are the years 1900 to 2100");
+  if (!civil.has_offset) return error("has no offset from UTC", "needed is Z or an offset such as +01:00 at the end");
+  if (civil.year < 1900 || civil.year > 2100) return error("is out of range", "allowed are the years 1900 to 2100");
   if (civil.month < 1 || civil.month > 12) return error("has no such month", "allowed is 01 to 12");
   const std::int64_t last = days_in_month(civil.year, civil.month);
   if (civil.day < 1 || civil.day > last) {

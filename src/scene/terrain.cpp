@@ -107,7 +107,8 @@ Result<ElevationSource> Terrain::load_source(const gpu::Device& device, const Te
   return ElevationSource::create(elevation);
 }
 
-Result<Terrain::Planned> Terrain::plan_source(const TerrainParams& params, double radius_m, ElevationSource source) const {
+Result<Terrain::Planned> Terrain::plan_source(const TerrainParams& params, double radius_m,
+                                              ElevationSource source) const {
   Planned out = {params, radius_m, version_ + 1, nullptr, {}, {}, {}};
   const ElevationAtlas& atlas = source.atlas();
   const VkExtent3D extent = {static_cast<std::uint32_t>(atlas.width), static_cast<std::uint32_t>(atlas.height), 1};
@@ -166,9 +167,10 @@ Result<void> Terrain::create_objects(VkFormat color_format, VkFormat depth_forma
 Result<gpu::Buffer> Terrain::create_indices(int coarseness) const {
   const std::vector<std::uint32_t> indices = block_indices(coarseness);
   const VkDeviceSize index_bytes = indices.size() * sizeof(std::uint32_t);
-  TYNDALL_ASSIGN(gpu::Buffer out, gpu::create_buffer(host_->device(), "terrain_indices", index_bytes,
-                                                     VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                                                     gpu::MemoryKind::device));
+  TYNDALL_ASSIGN(
+      gpu::Buffer out,
+      gpu::create_buffer(host_->device(), "terrain_indices", index_bytes,
+                         VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryKind::device));
   TYNDALL_TRY(gpu::upload(*host_, out, indices.data(), index_bytes));
   return out;
 }
@@ -206,7 +208,8 @@ double ground_height(const ElevationSource& source, const glm::dvec3& up, double
 double Terrain::height_at(const glm::dvec3& up) const { return none() ? 0.0 : ground_height(*source_, up, radius_m_); }
 
 VkDeviceSize Terrain::bytes() const {
-  return heights_.bytes + atlas_.bytes + fill_constants_.bytes + charts_.bytes + constants_.bytes + blocks_.bytes + indices_.bytes;
+  return heights_.bytes + atlas_.bytes + fill_constants_.bytes + charts_.bytes + constants_.bytes + blocks_.bytes +
+         indices_.bytes;
 }
 
 Result<void> Terrain::update(const View& view, const LocalFrame& frame) {
@@ -215,17 +218,22 @@ Result<void> Terrain::update(const View& view, const LocalFrame& frame) {
   const shared::Charts charts = charts_of(frame, radius_m_);
   std::memcpy(charts_.mapped, &charts, sizeof charts);
   lod_ = plan_terrain(chart_from_up(frame.chart, up_of(view.position, radius_m_), radius_m_),
-                      altitude_of(view.position, radius_m_), source_->max_height_m(), radius_m_, coarseness_, source_->min_height_m());
+                      altitude_of(view.position, radius_m_), source_->max_height_m(), radius_m_, coarseness_,
+                      source_->min_height_m());
   if (frame.chart != filled_chart_) filled_.clear();
   filled_chart_ = frame.chart;
   const gpu::Device& device = host_->device();
   const auto layers = static_cast<std::uint32_t>(lod_.levels.size());
   const auto samples = static_cast<std::uint32_t>(lod_.level_samples());
   if (heights_.desc.layers < layers || !heights_.image) {
-    TYNDALL_ASSIGN(gpu::Image heights, gpu::create_image(device, {"terrain_heights", VK_FORMAT_R32_SFLOAT,
-                                                                  {samples, samples, 1},
-                                                                  VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-                                                                  layers, 1, true}));
+    TYNDALL_ASSIGN(gpu::Image heights,
+                   gpu::create_image(device, {"terrain_heights",
+                                              VK_FORMAT_R32_SFLOAT,
+                                              {samples, samples, 1},
+                                              VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                                              layers,
+                                              1,
+                                              true}));
     TYNDALL_TRY(host_->run([&](VkCommandBuffer cmd) -> Result<void> {
       gpu::transition(device, cmd, heights, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
       return {};
@@ -263,7 +271,8 @@ Result<void> Terrain::fill_level(std::size_t layer) {
     const gpu::NamedResource resources[] = {
         gpu::named_buffer("terrain_fill_block", fill_constants_.buffer.get()),
         gpu::named_buffer("charts_block", charts_.buffer.get()),
-        gpu::named_image("elevation_atlas", atlas_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, nearest_.get()),
+        gpu::named_image("elevation_atlas", atlas_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                         nearest_.get()),
         gpu::named_image("elevation_levels", heights_.view.get()),
     };
     const std::string_view missing = gpu::bind(device, cmd, fill_, resources);
@@ -306,8 +315,10 @@ Result<void> Terrain::prepare(const View& view, std::uint32_t height_px, const S
   for (std::size_t i = 0; i < lod_.levels.size(); ++i) {
     const ClipLevel& level = lod_.levels[i];
     const glm::dvec2 first = glm::dvec2(level.origin) * level.cell_m - frame_.map_m;
-    out.levels[i] = {{level.origin.x, level.origin.y}, {static_cast<float>(first.x), static_cast<float>(first.y)},
-                     static_cast<float>(level.cell_m), static_cast<float>(lod_.range_m(level))};
+    out.levels[i] = {{level.origin.x, level.origin.y},
+                     {static_cast<float>(first.x), static_cast<float>(first.y)},
+                     static_cast<float>(level.cell_m),
+                     static_cast<float>(lod_.range_m(level))};
   }
   for (std::size_t i = 0; i < cascades.size(); ++i) {
     const CascadeFit& c = cascades[i];
@@ -343,7 +354,8 @@ Result<void> Terrain::prepare(const View& view, std::uint32_t height_px, const S
   select_blocks(lod_, 0, sphere_test(view), scratch_);
   const auto distance = [&](const TerrainBlock& b) {
     const double cell = lod_.levels[static_cast<std::size_t>(b.layer)].cell_m;
-    return glm::distance(glm::dvec2(b.x + lod_.block_cells() / 2, b.z + lod_.block_cells() / 2) * cell, lod_.camera_map);
+    return glm::distance(glm::dvec2(b.x + lod_.block_cells() / 2, b.z + lod_.block_cells() / 2) * cell,
+                         lod_.camera_map);
   };
   std::sort(scratch_.begin(), scratch_.end(),
             [&](const TerrainBlock& a, const TerrainBlock& b) { return distance(a) < distance(b); });
@@ -369,11 +381,14 @@ Result<void> Terrain::draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline,
   const std::string_view missing = gpu::bind(device, cmd, pipeline, resources, &push);
   if (!missing.empty()) return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(missing)};
   device.vk.CmdBindIndexBuffer(cmd, indices_.buffer.get(), 0, VK_INDEX_TYPE_UINT32);
-  if (ranges_[range].count > 0) device.vk.CmdDrawIndexed(cmd, indices_per_block(coarseness_), ranges_[range].count, 0, 0, 0);
+  if (ranges_[range].count > 0)
+    device.vk.CmdDrawIndexed(cmd, indices_per_block(coarseness_), ranges_[range].count, 0, 0, 0);
   return {};
 }
 
-Result<void> Terrain::draw_view(VkCommandBuffer cmd, const View& view) { return draw_view(cmd, view, view_pipeline_, {}); }
+Result<void> Terrain::draw_view(VkCommandBuffer cmd, const View& view) {
+  return draw_view(cmd, view, view_pipeline_, {});
+}
 
 Result<void> Terrain::draw_view(VkCommandBuffer cmd, const View& view, const gpu::Pipeline& pipeline,
                                 std::span<const gpu::NamedResource> more) {
@@ -411,10 +426,12 @@ std::vector<gpu::NamedResource> Terrain::geometry() const {
 std::vector<gpu::NamedResource> Terrain::lit(const TerrainLight& light) const {
   constexpr VkImageLayout kRead = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
   std::vector<gpu::NamedResource> out = geometry();
-  out.insert(out.end(), {gpu::named_image("shadow_maps", light.shadow_maps, kRead, light.shadow_sampler),
-                         gpu::named_image("shadow_colors", light.shadow_colors, kRead, light.linear),
-                         gpu::named_image("sun_transmittance", light.tables.sun_transmittance, VK_IMAGE_LAYOUT_GENERAL, light.linear),
-                         gpu::named_image("sky_irradiance", light.tables.sky_irradiance, VK_IMAGE_LAYOUT_GENERAL, light.linear)});
+  out.insert(
+      out.end(),
+      {gpu::named_image("shadow_maps", light.shadow_maps, kRead, light.shadow_sampler),
+       gpu::named_image("shadow_colors", light.shadow_colors, kRead, light.linear),
+       gpu::named_image("sun_transmittance", light.tables.sun_transmittance, VK_IMAGE_LAYOUT_GENERAL, light.linear),
+       gpu::named_image("sky_irradiance", light.tables.sky_irradiance, VK_IMAGE_LAYOUT_GENERAL, light.linear)});
   return out;
 }
 

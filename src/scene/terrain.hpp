@@ -67,14 +67,13 @@ class Terrain {
 
   // Selects the blocks of a frame and writes the constants: before the draws are recorded.
   Result<void> prepare(const View& view, std::uint32_t height_px, const ShadowParams& shadows,
-                       const std::vector<CascadeFit>& cascades, const TerrainLight& light,
-                       TerrainShading shading);
+                       const std::vector<CascadeFit>& cascades, const TerrainLight& light, TerrainShading shading);
   // Inside a rendering scope with colour and depth. The colour says which ground is seen, until light_view() has made
   // radiance of it, outside of the scope and with the image in GENERAL layout.
   Result<void> draw_view(VkCommandBuffer cmd, const View& view);
   Result<void> light_view(VkCommandBuffer cmd, const TerrainLight& light, VkImageView color, VkExtent2D extent);
-  // The same through pipelines of someone else's, over scene/terrain_vertex.glsl and scene/terrain_pixel.glsl; `more` are
-  // the resources that they read beyond the terrain's.
+  // The same through pipelines of someone else's, over scene/terrain_vertex.glsl and scene/terrain_pixel.glsl; `more`
+  // are the resources that they read beyond the terrain's.
   Result<void> draw_view(VkCommandBuffer cmd, const View& view, const gpu::Pipeline& pipeline,
                          std::span<const gpu::NamedResource> more);
   Result<void> light_view(VkCommandBuffer cmd, const TerrainLight& light, VkImageView color, VkExtent2D extent,
@@ -86,9 +85,8 @@ class Terrain {
   Result<void> create_objects(VkFormat color_format, VkFormat depth_format);
   [[nodiscard]] Result<gpu::Buffer> create_indices(int coarseness) const;
   Result<void> fill_level(std::size_t layer);
-  Result<void> draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline,
-                    std::span<const gpu::NamedResource> resources, const glm::dmat4& clip_from_world,
-                    std::uint32_t range);
+  Result<void> draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline, std::span<const gpu::NamedResource> resources,
+                    const glm::dmat4& clip_from_world, std::uint32_t range);
 
   [[nodiscard]] std::vector<gpu::NamedResource> geometry() const;
   [[nodiscard]] std::vector<gpu::NamedResource> lit(const TerrainLight& light) const;

@@ -69,7 +69,8 @@ TerrainLod plan_terrain(const glm::dvec2& camera_map, double altitude_m, double 
   const double lowest = std::min(min_ground_m, 0.0);
   const double base = radius_m + lowest;
   const auto horizon_arc = [&](double h) { return radius_m * std::acos(base / (base + std::max(h - lowest, 1.0))); };
-  out.reach_m = reach_on_chart(camera_map, 1.01 * (horizon_arc(altitude_m) + horizon_arc(max_ground_m)) + 1000.0, radius_m);
+  out.reach_m =
+      reach_on_chart(camera_map, 1.01 * (horizon_arc(altitude_m) + horizon_arc(max_ground_m)) + 1000.0, radius_m);
   for (int k = 0; k < 30; ++k) {
     ClipLevel level;
     level.level = k;

@@ -27,9 +27,9 @@ struct ClipLevel {
 struct TerrainLod {
   // 1, 2 or 4: so many times fewer cells along a block, a level's reach and its texture, for slow devices.
   int coarseness = 1;
-  glm::dvec2 camera_map = {};  // coordinates of the camera on the chart [m]
-  double vertical_m = 0.0;     // height of the camera above the highest ground, at least 0
-  double reach_m = 0.0;        // how far ground can be seen, on the chart
+  glm::dvec2 camera_map = {};     // coordinates of the camera on the chart [m]
+  double vertical_m = 0.0;        // height of the camera above the highest ground, at least 0
+  double reach_m = 0.0;           // how far ground can be seen, on the chart
   std::vector<ClipLevel> levels;  // from fine to coarse
 
   // Distance out to which a level is drawn.
@@ -40,8 +40,8 @@ struct TerrainLod {
 
 // A block of block_cells() × block_cells() cells, as shaders read it.
 struct TerrainBlock {
-  std::int32_t x = 0, z = 0;   // global grid index of its first vertex
-  std::int32_t layer = 0;      // index into TerrainLod::levels
+  std::int32_t x = 0, z = 0;  // global grid index of its first vertex
+  std::int32_t layer = 0;     // index into TerrainLod::levels
   std::int32_t unused = 0;
 };
 

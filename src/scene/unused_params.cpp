@@ -10,7 +10,8 @@ namespace {
 bool is_default(const ParamInfo& row, const void* structure, const void* defaults) {
   const char* const a = static_cast<const char*>(structure) + row.offset;
   const char* const b = static_cast<const char*>(defaults) + row.offset;
-  if (row.type == ParamType::string) return *reinterpret_cast<const std::string*>(a) == *reinterpret_cast<const std::string*>(b);
+  if (row.type == ParamType::string)
+    return *reinterpret_cast<const std::string*>(a) == *reinterpret_cast<const std::string*>(b);
   const std::size_t size = row.type == ParamType::dvec3   ? sizeof(DVec3)
                            : row.type == ParamType::vec3  ? sizeof(Vec3)
                            : row.type == ParamType::uvec4 ? sizeof(UVec4)
@@ -49,7 +50,10 @@ std::vector<std::string> unused_params(const Params& params, const SceneParams& 
     std::string list;
     int count = 0;
     for (const std::string& key : set) {
-      if (!std::any_of(names.begin(), names.end(), [&](std::string_view name) { return name.ends_with('.') ? key.starts_with(name) : key == name; })) continue;
+      if (!std::any_of(names.begin(), names.end(), [&](std::string_view name) {
+            return name.ends_with('.') ? key.starts_with(name) : key == name;
+          }))
+        continue;
       list += (count++ > 0 ? ", " : "") + key;
     }
     if (count > 0) out.push_back(list + (count > 1 ? " have" : " has") + " no effect with " + std::string(because));
@@ -57,9 +61,13 @@ std::vector<std::string> unused_params(const Params& params, const SceneParams& 
   using Model = ScatteringModel;
   const Model model = scene.scattering.model;
   const bool by_effect = model == Model::atmosphere;
-  const char* const own_name = model == Model::homogeneous ? "homogeneous" : model == Model::oneil ? "oneil" : "oneil-table";
-  check(!by_effect, {"scattering.medium", "scattering.downscale", "scattering.technique", "scattering.single", "scattering.multiple",
-                     "scattering.sections", "scattering.extinction", "homogeneous_medium."}, "scattering.model = " + std::string(own_name));
+  const char* const own_name = model == Model::homogeneous ? "homogeneous"
+                               : model == Model::oneil     ? "oneil"
+                                                           : "oneil-table";
+  check(!by_effect,
+        {"scattering.medium", "scattering.downscale", "scattering.technique", "scattering.single",
+         "scattering.multiple", "scattering.sections", "scattering.extinction", "homogeneous_medium."},
+        "scattering.model = " + std::string(own_name));
   check(by_effect, {"scattering.evaluate", "oneil.", "homogeneous."}, "scattering.model = atmosphere");
   check(model == Model::homogeneous, {"oneil."}, "scattering.model = homogeneous");
   check(model == Model::oneil, {"homogeneous.", "oneil.table_size"}, "scattering.model = oneil");
@@ -69,25 +77,28 @@ std::vector<std::string> unused_params(const Params& params, const SceneParams& 
 
   const bool homogeneous = by_effect && params.scattering.medium == MediumKind::homogeneous;
   check(by_effect && !homogeneous, {"homogeneous_medium."}, "scattering.medium = atmosphere");
-  check(homogeneous, {"scattering.multiple", "scattering.sections", "scattering.extinction"}, "scattering.medium = homogeneous");
-  check(by_effect && params.scattering.technique == Technique::brute_force, {"scattering.downscale", "scattering.extinction"},
-        "scattering.technique = brute-force");
+  check(homogeneous, {"scattering.multiple", "scattering.sections", "scattering.extinction"},
+        "scattering.medium = homogeneous");
+  check(by_effect && params.scattering.technique == Technique::brute_force,
+        {"scattering.downscale", "scattering.extinction"}, "scattering.technique = brute-force");
 
   const bool custom = params.atmosphere.custom_coefficients.value != 0;
   check(!custom, {"atmosphere.rayleigh_scattering", "atmosphere.mie_scattering", "atmosphere.mie_absorption"},
         "atmosphere.custom_coefficients = false");
   check(custom, {"atmosphere.aerosol_absorption"}, "atmosphere.custom_coefficients = true");
-  check(scene.terrain.source == "none", {"terrain.seed", "terrain.exaggeration", "terrain.shading"}, "terrain.source = none");
+  check(scene.terrain.source == "none", {"terrain.seed", "terrain.exaggeration", "terrain.shading"},
+        "terrain.source = none");
 
   using Op = TonemapOperator;
   const Op op = scene.tonemap.operator_;
   check(scene.tonemap.auto_exposure.value != 0, {"tonemap.exposure"}, "tonemap.auto_exposure = true");
-  check(scene.tonemap.auto_exposure.value == 0, {"tonemap.middle_gray", "tonemap.light_adaptation", "tonemap.least_luminance"},
+  check(scene.tonemap.auto_exposure.value == 0,
+        {"tonemap.middle_gray", "tonemap.light_adaptation", "tonemap.least_luminance"},
         "tonemap.auto_exposure = false");
-  check(!is_one_of(op, {Op::reinhard_modified, Op::uncharted2, Op::logarithmic, Op::adaptive_logarithmic}), {"tonemap.white_point"},
-        "this tonemap.operator");
-  check(is_one_of(op, {Op::uncharted2, Op::filmic_alu, Op::pbr_neutral, Op::exponential_channels}), {"tonemap.saturation"},
-        "this tonemap.operator");
+  check(!is_one_of(op, {Op::reinhard_modified, Op::uncharted2, Op::logarithmic, Op::adaptive_logarithmic}),
+        {"tonemap.white_point"}, "this tonemap.operator");
+  check(is_one_of(op, {Op::uncharted2, Op::filmic_alu, Op::pbr_neutral, Op::exponential_channels}),
+        {"tonemap.saturation"}, "this tonemap.operator");
   return out;
 }
 

@@ -27,8 +27,8 @@ Result<bool> load(gpu::Host& host, Effect& effect, config::FileCache& cache, Out
   const std::string key = effect.table_key();
   if (key.empty() || !cache.holds(key)) return false;
   TYNDALL_ASSIGN(const gpu::Buffer staging,
-                 gpu::create_buffer(device, "cached_tables", effect.table_bytes(),
-                                    VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::MemoryKind::upload));
+                 gpu::create_buffer(device, "cached_tables", effect.table_bytes(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                                    gpu::MemoryKind::upload));
   const bool found = cache.read(key, bytes_of(staging));
   if (!cache.note().empty()) outcome.notes.push_back(cache.note());
   if (!found) return false;
@@ -65,12 +65,12 @@ Result<void> advance(gpu::Host& host, Effect& effect, const MakeReady& how, std:
 Result<Keeper> Keeper::fetch(gpu::Host& host, Effect& effect, const CacheDesc& cache) {
   const gpu::Device& device = host.device();
   TYNDALL_ASSIGN(const gpu::Buffer staging,
-                 gpu::create_buffer(device, "cached_tables", effect.table_bytes(),
-                                    VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryKind::readback));
+                 gpu::create_buffer(device, "cached_tables", effect.table_bytes(), VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                    gpu::MemoryKind::readback));
   TYNDALL_TRY(host.run([&](VkCommandBuffer cmd) -> Result<void> {
     if (Result<void> r = effect.record_save_tables(cmd, staging.buffer.get()); !r) return r;
-    gpu::barrier(device, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
-                 VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+    gpu::barrier(device, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_HOST_BIT,
+                 VK_ACCESS_HOST_READ_BIT);
     return {};
   }));
   Keeper out;
@@ -95,8 +95,7 @@ Result<Outcome> make_ready(gpu::Host& host, Effect& effect, const MakeReady& how
   const auto milliseconds = [&] {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   };
-  config::FileCache cache(config::cache_directory(how.cache.place), how.cache.limit_bytes,
-                          TYNDALL_VERSION_STRING);
+  config::FileCache cache(config::cache_directory(how.cache.place), how.cache.limit_bytes, TYNDALL_VERSION_STRING);
   // Being short of memory for the cache is no reason to fail: the build already has its own.
   const auto without_cache = [&](const Error& error) -> Result<void> {
     if (error.code != ErrorCode::out_of_memory) return error;

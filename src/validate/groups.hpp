@@ -18,10 +18,8 @@ constexpr Group kGroups[] = {
     {"up", "all", [](const TestRay& r) { return r.band == SunBand::up; }},
     {"0 to -6 deg", "ground",
      [](const TestRay& r) { return r.band == SunBand::twilight && r.region == Region::ground; }},
-    {"0 to -6 deg", "air",
-     [](const TestRay& r) { return r.band == SunBand::twilight && r.region == Region::air; }},
-    {"0 to -6 deg", "space",
-     [](const TestRay& r) { return r.band == SunBand::twilight && r.region == Region::space; }},
+    {"0 to -6 deg", "air", [](const TestRay& r) { return r.band == SunBand::twilight && r.region == Region::air; }},
+    {"0 to -6 deg", "space", [](const TestRay& r) { return r.band == SunBand::twilight && r.region == Region::space; }},
     {"0 to -6 deg", "all", [](const TestRay& r) { return r.band == SunBand::twilight; }},
 };
 

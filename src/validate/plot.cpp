@@ -25,9 +25,7 @@ class Scale {
     if (!axis_.logarithmic) return (value - axis_.min) / (axis_.max - axis_.min);
     return std::log(std::max(value, 1e-300) / axis_.min) / std::log(axis_.max / axis_.min);
   }
-  [[nodiscard]] double at(double value) const {
-    return from_ + (to_ - from_) * std::clamp(fraction(value), -0.5, 1.5);
-  }
+  [[nodiscard]] double at(double value) const { return from_ + (to_ - from_) * std::clamp(fraction(value), -0.5, 1.5); }
   [[nodiscard]] bool is_outside(double value) const {
     return !(fraction(value) >= -1e-9 && fraction(value) <= 1.0 + 1e-9);
   }
@@ -83,10 +81,9 @@ std::vector<Tick> ticks(const Axis& axis) {
   return out;
 }
 
-std::string text_at(double x, double y, std::string_view anchor, std::string_view text,
-                    std::string_view more = "") {
-  return concat({"<text x=\"", fixed(x, 1), "\" y=\"", fixed(y, 1), "\" text-anchor=\"", anchor, "\"", more,
-                 ">", escaped(text), "</text>\n"});
+std::string text_at(double x, double y, std::string_view anchor, std::string_view text, std::string_view more = "") {
+  return concat({"<text x=\"", fixed(x, 1), "\" y=\"", fixed(y, 1), "\" text-anchor=\"", anchor, "\"", more, ">",
+                 escaped(text), "</text>\n"});
 }
 
 std::string line_from(double x1, double y1, double x2, double y2, std::string_view more) {
@@ -108,8 +105,8 @@ std::string axes(const Plot& plot, const Scale& x, const Scale& y) {
                      tick.text.empty() ? " class=\"small\"" : " class=\"grid\"");
     if (!tick.text.empty()) out += text_at(kLeft - 6.0, y.at(tick.value) + 4.0, "end", tick.text);
   }
-  out += concat({"<rect x=\"", fixed(kLeft, 1), "\" y=\"", fixed(kTop, 1), "\" width=\"",
-                 fixed(right - kLeft, 1), "\" height=\"", fixed(bottom - kTop, 1), "\" class=\"frame\"/>\n"});
+  out += concat({"<rect x=\"", fixed(kLeft, 1), "\" y=\"", fixed(kTop, 1), "\" width=\"", fixed(right - kLeft, 1),
+                 "\" height=\"", fixed(bottom - kTop, 1), "\" class=\"frame\"/>\n"});
   out += text_at(0.5 * (kLeft + right), kHeight - 10.0, "middle", plot.x.label);
   const double middle = 0.5 * (kTop + bottom);
   return out + text_at(14.0, middle, "middle", plot.y.label,
@@ -117,17 +114,14 @@ std::string axes(const Plot& plot, const Scale& x, const Scale& y) {
 }
 
 std::string_view dashes(Mark mark) {
-  return mark == Mark::dashed   ? " stroke-dasharray=\"6 3\""
-         : mark == Mark::dotted ? " stroke-dasharray=\"2 3\""
-                                : "";
+  return mark == Mark::dashed ? " stroke-dasharray=\"6 3\"" : mark == Mark::dotted ? " stroke-dasharray=\"2 3\"" : "";
 }
 
 bool is_line(Mark mark) { return mark == Mark::line || mark == Mark::dashed || mark == Mark::dotted; }
 
 std::string marker(double x, double y, const Series& series) {
   return concat({"<circle cx=\"", fixed(x, 1), "\" cy=\"", fixed(y, 1), "\" r=\"2.2\" ",
-                 series.mark == Mark::circles ? "fill=\"none\" stroke=\"" : "fill=\"", series.colour,
-                 "\"/>\n"});
+                 series.mark == Mark::circles ? "fill=\"none\" stroke=\"" : "fill=\"", series.colour, "\"/>\n"});
 }
 
 std::string drawn(const Series& series, const Axis& y_axis, const Scale& x, const Scale& y) {
@@ -160,8 +154,7 @@ std::string drawn(const Series& series, const Axis& y_axis, const Scale& x, cons
 
 std::string fixed(double value, int decimals) {
   char buffer[400];
-  const auto end =
-      std::to_chars(std::begin(buffer), std::end(buffer), value, std::chars_format::fixed, decimals).ptr;
+  const auto end = std::to_chars(std::begin(buffer), std::end(buffer), value, std::chars_format::fixed, decimals).ptr;
   std::string out(buffer, end);
   // There is no negative nothing in a report.
   if (out.starts_with('-') && out.find_first_not_of("-0.") == std::string::npos) out.erase(0, 1);
@@ -172,20 +165,11 @@ std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : text) {
     switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
+      case '&': out += "&amp;"; break;
+      case '<': out += "&lt;"; break;
+      case '>': out += "&gt;"; break;
+      case '"': out += "&quot;"; break;
+      default: out += c;
     }
   }
   return out;
@@ -210,19 +194,19 @@ void fit_logarithmic(Axis& axis, const std::vector<Series>& series, int decades)
 std::string to_svg(const Plot& plot) {
   const Scale x(plot.x, kLeft, kWidth - kRight);
   const Scale y(plot.y, kHeight - kBottom, kTop);
-  const std::size_t named = static_cast<std::size_t>(std::count_if(
-      plot.series.begin(), plot.series.end(), [](const Series& s) { return !s.label.empty(); }));
+  const std::size_t named = static_cast<std::size_t>(
+      std::count_if(plot.series.begin(), plot.series.end(), [](const Series& s) { return !s.label.empty(); }));
   const std::size_t key_rows = (named + 1) / 2;
   const double height = kHeight + kKeyRow * static_cast<double>(key_rows) + 4.0;
-  std::string out = concat(
-      {"<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 ", fixed(kWidth, 0), " ", fixed(height, 0),
-       "\" role=\"img\" aria-label=\"", escaped(plot.title),
-       "\" font-family=\"sans-serif\" font-size=\"12\" "
-       "fill=\"currentColor\">\n<style>.grid{stroke:currentColor;opacity:.18}.small{stroke:currentColor;"
-       "opacity:.07}.frame{fill:none;stroke:currentColor;opacity:.6}</style>\n<clipPath id=\"box\"><rect "
-       "x=\"",
-       fixed(kLeft, 1), "\" y=\"", fixed(kTop, 1), "\" width=\"", fixed(kWidth - kRight - kLeft, 1),
-       "\" height=\"", fixed(kHeight - kBottom - kTop, 1), "\"/></clipPath>\n"});
+  std::string out =
+      concat({"<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 ", fixed(kWidth, 0), " ", fixed(height, 0),
+              "\" role=\"img\" aria-label=\"", escaped(plot.title),
+              "\" font-family=\"sans-serif\" font-size=\"12\" "
+              "fill=\"currentColor\">\n<style>.grid{stroke:currentColor;opacity:.18}.small{stroke:currentColor;"
+              "opacity:.07}.frame{fill:none;stroke:currentColor;opacity:.6}</style>\n<clipPath id=\"box\"><rect "
+              "x=\"",
+              fixed(kLeft, 1), "\" y=\"", fixed(kTop, 1), "\" width=\"", fixed(kWidth - kRight - kLeft, 1),
+              "\" height=\"", fixed(kHeight - kBottom - kTop, 1), "\"/></clipPath>\n"});
   out += axes(plot, x, y);
   for (const Series& series : plot.series) out += drawn(series, plot.y, x, y);
   std::size_t index = 0;

@@ -54,8 +54,8 @@ void set_sun(reference::Query& query, double turn, double sun_elevation_rad, dou
 
 }  // namespace
 
-std::vector<TestRay> make_rays(Region region, SunBand band, std::uint32_t count, std::uint64_t seed,
-                               double radius_m, double height_m) {
+std::vector<TestRay> make_rays(Region region, SunBand band, std::uint32_t count, std::uint64_t seed, double radius_m,
+                               double height_m) {
   std::vector<TestRay> rays;
   const std::uint64_t group =
       mixed(seed) + kSunBands * static_cast<std::uint64_t>(region) + static_cast<std::uint64_t>(band);
@@ -70,8 +70,7 @@ std::vector<TestRay> make_rays(Region region, SunBand band, std::uint32_t count,
     const double azimuth = kPi * u[1];
     reference::Query& q = ray.query;
     if (region != Region::space) {
-      q.altitude_m =
-          scale * (region == Region::ground ? 2000.0 * u[2] * u[2] : 2000.0 + 68000.0 * u[2] * u[2]);
+      q.altitude_m = scale * (region == Region::ground ? 2000.0 * u[2] * u[2] : 2000.0 + 68000.0 * u[2] * u[2]);
       q.view_zenith_rad = (region == Region::ground ? 90.0 : 180.0) * u[3] * kRadPerDeg;
       q.sun_zenith_rad = 0.5 * kPi - ray.sun_elevation_rad;
       q.azimuth_rad = azimuth;

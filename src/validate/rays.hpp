@@ -24,11 +24,11 @@ struct TestRay {
 // `count` rays of one group. From the ground all directions above the horizontal, from the air all, from
 // space half of them at the ground and half past its limb at less than 60 km. A planet of this radius with an
 // atmosphere of this height [m]; the altitudes are fractions of it made for 80 km.
-[[nodiscard]] std::vector<TestRay> make_rays(Region region, SunBand band, std::uint32_t count,
-                                             std::uint64_t seed, double radius_m, double height_m);
+[[nodiscard]] std::vector<TestRay> make_rays(Region region, SunBand band, std::uint32_t count, std::uint64_t seed,
+                                             double radius_m, double height_m);
 
-// `count` rays of low suns near the horizon: from 0 to 1 km, 0.5 to 5 degrees above the geometric horizon, the sun at 0 to 10
-// degrees or at 0 to -6. Evenly spread rays hardly ever meet these.
+// `count` rays of low suns near the horizon: from 0 to 1 km, 0.5 to 5 degrees above the geometric horizon, the sun at 0
+// to 10 degrees or at 0 to -6. Evenly spread rays hardly ever meet these.
 [[nodiscard]] std::vector<TestRay> make_horizon_rays(SunBand band, std::uint32_t count, std::uint64_t seed,
                                                      double radius_m, double height_m);
 

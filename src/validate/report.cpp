@@ -16,8 +16,7 @@ using config::concat;
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr const char* kChannelNames[] = {"red", "green", "blue"};
 constexpr const char* kChannelColours[] = {"#d62728", "#2ca02c", "#1f77b4"};
-constexpr const char* kModelColours[] = {"#e6850e", "#1f77b4", "#2ca02c", "#9467bd",
-                                         "#8c564b", "#e377c2", "#17becf"};
+constexpr const char* kModelColours[] = {"#e6850e", "#1f77b4", "#2ca02c", "#9467bd", "#8c564b", "#e377c2", "#17becf"};
 constexpr Mark kModelMarks[] = {Mark::dotted, Mark::line, Mark::dashed};
 
 constexpr std::string_view kStyle =
@@ -56,14 +55,12 @@ std::string model_colour(std::size_t m) { return kModelColours[m % std::size(kMo
 Mark model_mark(std::size_t m) { return kModelMarks[m % std::size(kModelMarks)]; }
 
 std::string model_list(const Study& study) {
-  std::string out =
-      "<table>\n<tr><th class=\"t\">model</th><th class=\"t\">what it is</th><th class=\"t\">compared "
-      "with</th></tr>\n";
+  std::string out = "<table>\n<tr><th class=\"t\">model</th><th class=\"t\">what it is</th><th class=\"t\">compared "
+                    "with</th></tr>\n";
   for (const Model& model : study.models) {
-    const std::string orders = model.orders == 1 ? "order 1"
-                               : model.orders == 0
-                                   ? concat({"orders 1 to ", std::to_string(study.options.orders)})
-                                   : concat({"orders 1 to ", std::to_string(model.orders)});
+    const std::string orders = model.orders == 1   ? "order 1"
+                               : model.orders == 0 ? concat({"orders 1 to ", std::to_string(study.options.orders)})
+                                                   : concat({"orders 1 to ", std::to_string(model.orders)});
     out += concat({"<tr>", text_cell(model.name), text_cell(model.meaning), text_cell(orders), "</tr>\n"});
   }
   return out + "</table>\n";
@@ -79,9 +76,8 @@ std::string error_tables(const Study& study) {
     for (std::size_t a = 0; a < study.atmospheres.size(); ++a) {
       for (const Group& group : kGroups) {
         const bool all = std::string_view(group.region) == "all";
-        out += concat({all ? "<tr class=\"all\">" : "<tr>", text_cell(study.atmospheres[a].name),
-                       text_cell(group.sun), text_cell(group.region),
-                       error_cells(summarise(study, m, a, group.takes)), "</tr>\n"});
+        out += concat({all ? "<tr class=\"all\">" : "<tr>", text_cell(study.atmospheres[a].name), text_cell(group.sun),
+                       text_cell(group.region), error_cells(summarise(study, m, a, group.takes)), "</tr>\n"});
       }
     }
     out += "</table>\n";
@@ -92,8 +88,11 @@ std::string error_tables(const Study& study) {
 std::string turbid_tables(const Study& study) {
   std::string out = concat(
       {"<h2>Turbid air near the horizon under a low sun</h2>\n<p>Rays from 0 to 1 km, 0.5 to 5° above the horizon; the "
-       "reference follows ", std::to_string(kTurbidOrdersFactor * study.options.orders), " orders.</p>\n<table>\n<tr>"
-       "<th class=\"t\">model</th><th>optical depth</th><th>albedo</th><th class=\"t\">sun</th>", kErrorHead});
+       "reference follows ",
+       std::to_string(kTurbidOrdersFactor * study.options.orders),
+       " orders.</p>\n<table>\n<tr>"
+       "<th class=\"t\">model</th><th>optical depth</th><th>albedo</th><th class=\"t\">sun</th>",
+       kErrorHead});
   for (std::size_t m = 0; m < study.models.size(); ++m) {
     for (std::size_t a = 0; a < study.turbid.size(); ++a) {
       for (const TurbidGroup& group : kTurbidGroups) {
@@ -107,22 +106,19 @@ std::string turbid_tables(const Study& study) {
 }
 
 std::string worst_tables(const Study& study) {
-  std::string out =
-      "<p>The rays on which each is furthest off, as <code>tyndall probe</code> takes them.</p>\n";
+  std::string out = "<p>The rays on which each is furthest off, as <code>tyndall probe</code> takes them.</p>\n";
   for (std::size_t m = 0; m < study.models.size(); ++m) {
-    out +=
-        concat({"<table>\n<tr><th class=\"t\">", escaped(study.models[m].name),
-                "</th><th>altitude_m</th><th>view_zenith_deg</th><th>sun_zenith_deg</th><th>azimuth_deg</th>"
-                "<th>error, r / g / b</th><th>noise</th></tr>\n"});
+    out += concat({"<table>\n<tr><th class=\"t\">", escaped(study.models[m].name),
+                   "</th><th>altitude_m</th><th>view_zenith_deg</th><th>sun_zenith_deg</th><th>azimuth_deg</th>"
+                   "<th>error, r / g / b</th><th>noise</th></tr>\n"});
     for (const BadRay& bad : worst_rays(study, m, 6)) {
       const reference::Query& q = study.rays[bad.atmosphere].rays[bad.ray].query;
       const Comparison& c = bad.comparison;
-      out +=
-          concat({"<tr>", text_cell(study.atmospheres[bad.atmosphere].name), cell(fixed(q.altitude_m, 1)),
-                  cell(fixed(q.view_zenith_rad * kDegPerRad, 4)),
-                  cell(fixed(q.sun_zenith_rad * kDegPerRad, 4)), cell(fixed(q.azimuth_rad * kDegPerRad, 3)),
-                  cell(concat({percent(c.error[0]), " / ", percent(c.error[1]), " / ", percent(c.error[2])})),
-                  cell(percent(*std::max_element(c.noise.begin(), c.noise.end()))), "</tr>\n"});
+      out += concat({"<tr>", text_cell(study.atmospheres[bad.atmosphere].name), cell(fixed(q.altitude_m, 1)),
+                     cell(fixed(q.view_zenith_rad * kDegPerRad, 4)), cell(fixed(q.sun_zenith_rad * kDegPerRad, 4)),
+                     cell(fixed(q.azimuth_rad * kDegPerRad, 3)),
+                     cell(concat({percent(c.error[0]), " / ", percent(c.error[1]), " / ", percent(c.error[2])})),
+                     cell(percent(*std::max_element(c.noise.begin(), c.noise.end()))), "</tr>\n"});
     }
     out += "</table>\n";
   }
@@ -159,21 +155,18 @@ std::string error_plots(const Study& study) {
                       const double sun_deg = ray.sun_elevation_rad * kDegPerRad;
                       return sun_deg <= 6.0 ? sun_deg : nowhere;
                     }) +
-         error_plot(study, "Error against the view direction (ground and air)",
-                    {"view zenith angle, deg", 0.0, 180.0},
+         error_plot(study, "Error against the view direction (ground and air)", {"view zenith angle, deg", 0.0, 180.0},
                     [=](const TestRay& ray) {
                       return ray.region == Region::space ? nowhere : ray.query.view_zenith_rad * kDegPerRad;
                     }) +
-         error_plot(study, "Error against the altitude (ground and air)", {"altitude, km", 0.0, 70.0},
-                    [=](const TestRay& ray) {
-                      return ray.region == Region::space ? nowhere : ray.query.altitude_m / 1000.0;
-                    });
+         error_plot(
+             study, "Error against the altitude (ground and air)", {"altitude, km", 0.0, 70.0},
+             [=](const TestRay& ray) { return ray.region == Region::space ? nowhere : ray.query.altitude_m / 1000.0; });
 }
 
 // The reference with its error bars and every model, in three channels. Only models that claim all orders are
 // told apart by their dashes in the key; single scattering is drawn for what it leaves out.
-void add_curves(Plot& plot, const std::vector<double>& x, const Answers& answers,
-                const std::vector<Model>& models) {
+void add_curves(Plot& plot, const std::vector<double>& x, const Answers& answers, const std::vector<Model>& models) {
   for (std::size_t m = 0; m < models.size(); ++m) {
     for (std::size_t c = 0; c < 3; ++c) {
       Series series = {c == 1 ? models[m].name : "", kChannelColours[c], model_mark(m), {}};
@@ -184,8 +177,7 @@ void add_curves(Plot& plot, const std::vector<double>& x, const Answers& answers
   for (std::size_t c = 0; c < 3; ++c) {
     Series series = {concat({"reference, ", kChannelNames[c]}), kChannelColours[c], Mark::points, {}};
     for (std::size_t i = 0; i < x.size(); ++i) {
-      series.points.push_back(
-          {x[i], answers.reference[i].radiance[c], answers.reference[i].standard_error[c]});
+      series.points.push_back({x[i], answers.reference[i].radiance[c], answers.reference[i].standard_error[c]});
     }
     plot.series.push_back(std::move(series));
   }
@@ -209,9 +201,8 @@ Answers only(const Answers& answers, const std::vector<std::size_t>& models) {
   return out;
 }
 
-std::string curve_plot(std::string title, Axis x_axis, std::string y_label, int decades,
-                       const std::vector<double>& x, const Answers& answers,
-                       const std::vector<Model>& models) {
+std::string curve_plot(std::string title, Axis x_axis, std::string y_label, int decades, const std::vector<double>& x,
+                       const Answers& answers, const std::vector<Model>& models) {
   Plot plot = {std::move(title), std::move(x_axis), {std::move(y_label)}, {}};
   add_curves(plot, x, answers, models);
   fit_logarithmic(plot.y, plot.series, decades);
@@ -258,46 +249,44 @@ std::string to_html(const Study& study, const Origin& origin) {
   for (const std::size_t m : distinct) drawn.push_back(study.models[m]);
   const auto& options = study.options;
 
-  std::string out = concat(
-      {"<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>Tyndall: models "
-       "against the "
-       "reference</title>\n<style>",
-       kStyle, "</style>\n</head>\n<body>\n<h1>Every model against the reference</h1>\n<p>Made by <code>",
-       escaped(origin.command), "</code> with Tyndall ", escaped(origin.version), " on ",
-       escaped(origin.device), ": the path tracer with ", std::to_string(options.samples), " paths per ray, ",
-       std::to_string(options.orders), " orders of scattering, seed ", std::to_string(options.seed),
-       ".</p>\n<p>An error is that of a channel, relative to the largest channel of the reference on the "
-       "same ray, in per cent. "
-       "“Noise” is the mean standard error of the reference in the same measure: a floor under what can be "
-       "measured. Rays "
-       "on which the reference is dark, or uncertain by more than 3 %, are left out.</p>\n"});
+  std::string out =
+      concat({"<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>Tyndall: models "
+              "against the "
+              "reference</title>\n<style>",
+              kStyle, "</style>\n</head>\n<body>\n<h1>Every model against the reference</h1>\n<p>Made by <code>",
+              escaped(origin.command), "</code> with Tyndall ", escaped(origin.version), " on ", escaped(origin.device),
+              ": the path tracer with ", std::to_string(options.samples), " paths per ray, ",
+              std::to_string(options.orders), " orders of scattering, seed ", std::to_string(options.seed),
+              ".</p>\n<p>An error is that of a channel, relative to the largest channel of the reference on the "
+              "same ray, in per cent. "
+              "“Noise” is the mean standard error of the reference in the same measure: a floor under what can be "
+              "measured. Rays "
+              "on which the reference is dark, or uncertain by more than 3 %, are left out.</p>\n"});
   out += model_list(study);
   out += "<h2>Errors</h2>\n<div class=\"plots\">\n" + error_plots(study) + "</div>\n" + error_tables(study) +
          worst_tables(study) + turbid_tables(study);
 
-  out +=
-      "<h2>The sky along the sun's vertical</h2>\n<p>From sea level, from the horizon under the sun (−90°) "
-      "over the zenith to the horizon "
-      "opposite (90°). Radiance relative to the sun's irradiance; bars are one standard error.</p>\n<div "
-      "class=\"plots\">\n";
+  out += "<h2>The sky along the sun's vertical</h2>\n<p>From sea level, from the horizon under the sun (−90°) "
+         "over the zenith to the horizon "
+         "opposite (90°). Radiance relative to the sun's irradiance; bars are one standard error.</p>\n<div "
+         "class=\"plots\">\n";
   for (const VerticalTest& test : study.verticals) {
     out += curve_plot(concat({"Sun at ", fixed(test.sun_elevation_deg, 0), "°"}),
                       {"angle from the zenith, deg", -90.0, 90.0}, "radiance / E0, 1/sr", 4, test.angle_deg,
                       only(test.answers, distinct), drawn);
   }
   out += "</div>\n<h2>The sky's irradiance through twilight</h2>\n<div class=\"plots\">\n";
-  out += curve_plot("Irradiance of a horizontal surface", {"elevation of the sun, deg", -8.0, 15.0}, "E / E0",
-                    7, study.sky.sun_elevation_deg, only(study.sky.answers, distinct), drawn);
+  out += curve_plot("Irradiance of a horizontal surface", {"elevation of the sun, deg", -8.0, 15.0}, "E / E0", 7,
+                    study.sky.sun_elevation_deg, only(study.sky.answers, distinct), drawn);
   out += orders_plot(study) + "</div>\n" + sky_tables(study);
   if (!study.horizons.empty()) {
-    out +=
-        concat({"<h2>The horizon</h2>\n<p>Parameterisations of the tables, ",
-                fixed(study.horizons[0].altitude_m / 1000.0, 0),
-                " km up, 60° to the side of the sun; 0 is the horizon itself.</p>\n<div class=\"plots\">\n"});
+    out += concat({"<h2>The horizon</h2>\n<p>Parameterisations of the tables, ",
+                   fixed(study.horizons[0].altitude_m / 1000.0, 0),
+                   " km up, 60° to the side of the sun; 0 is the horizon itself.</p>\n<div class=\"plots\">\n"});
     for (const HorizonTest& test : study.horizons) {
       out += curve_plot(concat({"Sun at ", fixed(test.sun_elevation_deg, 0), "°"}),
-                        {"view above the horizon, deg", -4.0, 6.0}, "radiance / E0, 1/sr", 2,
-                        test.elevation_deg, test.answers, study.horizon_models);
+                        {"view above the horizon, deg", -4.0, 6.0}, "radiance / E0, 1/sr", 2, test.elevation_deg,
+                        test.answers, study.horizon_models);
     }
     out += "</div>\n";
   }

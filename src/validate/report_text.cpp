@@ -17,19 +17,17 @@ std::string percent(double value) { return fixed(100.0 * value, 2); }
 std::string json_number(double value) { return std::isfinite(value) ? config::number_text(value) : "null"; }
 
 std::string json_summary(const Summary& s) {
-  return concat({"\"rays\": ", std::to_string(s.count), ", \"mean\": ", json_number(s.mean),
-                 ", \"median\": ", json_number(s.median), ", \"p95\": ", json_number(s.p95),
-                 ", \"worst\": ", json_number(s.worst)});
+  return concat({"\"rays\": ", std::to_string(s.count), ", \"mean\": ", json_number(s.mean), ", \"median\": ",
+                 json_number(s.median), ", \"p95\": ", json_number(s.p95), ", \"worst\": ", json_number(s.worst)});
 }
 
 std::string json_errors(const ErrorSummary& errors) {
   std::string out =
-      concat({"\"rays\": ", std::to_string(errors.channels[0].count),
-              ", \"mean\": ", json_number(errors.all.mean), ", \"median\": ", json_number(errors.all.median),
-              ", \"p95\": ", json_number(errors.all.p95), ", \"worst\": ", json_number(errors.all.worst),
-              ", \"noise\": ", json_number(errors.noise), ", \"channels\": ["});
-  for (std::size_t c = 0; c < 3; ++c)
-    out += concat({c > 0 ? ", {" : "{", json_summary(errors.channels[c]), "}"});
+      concat({"\"rays\": ", std::to_string(errors.channels[0].count), ", \"mean\": ", json_number(errors.all.mean),
+              ", \"median\": ", json_number(errors.all.median), ", \"p95\": ", json_number(errors.all.p95),
+              ", \"worst\": ", json_number(errors.all.worst), ", \"noise\": ", json_number(errors.noise),
+              ", \"channels\": ["});
+  for (std::size_t c = 0; c < 3; ++c) out += concat({c > 0 ? ", {" : "{", json_summary(errors.channels[c]), "}"});
   return out + "]";
 }
 
@@ -46,20 +44,29 @@ std::string json_turbid(const Study& study, std::size_t model) {
 }
 
 std::string markdown_turbid(const Study& study) {
-  std::string out = concat(
-      {"\n## Turbid air near the horizon under a low sun\n\nRays from 0 to 1 km, 0.5 to 5° above the horizon; the reference "
-       "follows ", std::to_string(kTurbidOrdersFactor * study.options.orders), " orders.\nModels that claim all of them.\n\n"
-       "| model | optical depth | albedo | sun | rays | mean | median | 95 % | worst | noise |\n"
-       "|---|--:|--:|---|--:|--:|--:|--:|--:|--:|\n"});
+  std::string out = concat({"\n## Turbid air near the horizon under a low sun\n\nRays from 0 to 1 km, 0.5 to 5° above "
+                            "the horizon; the reference "
+                            "follows ",
+                            std::to_string(kTurbidOrdersFactor * study.options.orders),
+                            " orders.\nModels that claim all of them.\n\n"
+                            "| model | optical depth | albedo | sun | rays | mean | median | 95 % | worst | noise |\n"
+                            "|---|--:|--:|---|--:|--:|--:|--:|--:|--:|\n"});
   for (std::size_t m = 0; m < study.models.size(); ++m) {
     if (study.models[m].orders != 0) continue;
     for (std::size_t a = 0; a < study.turbid.size(); ++a) {
       for (const TurbidGroup& group : kTurbidGroups) {
         const ErrorSummary e = summarise_turbid(study, m, a, group.takes);
-        out += concat({"| ", study.models[m].name, " | ", fixed(kTurbidAirs[a].optical_depth, 1), " | ",
-                       fixed(kTurbidAirs[a].ground_albedo, 1), " | ", group.sun, " | ",
-                       std::to_string(e.channels[0].count), " | ", percent(e.all.mean), " | ", percent(e.all.median),
-                       " | ", percent(e.all.p95), " | ", percent(e.all.worst), " | ", percent(e.noise), " |\n"});
+        out += concat({"| ",  study.models[m].name,
+                       " | ", fixed(kTurbidAirs[a].optical_depth, 1),
+                       " | ", fixed(kTurbidAirs[a].ground_albedo, 1),
+                       " | ", group.sun,
+                       " | ", std::to_string(e.channels[0].count),
+                       " | ", percent(e.all.mean),
+                       " | ", percent(e.all.median),
+                       " | ", percent(e.all.p95),
+                       " | ", percent(e.all.worst),
+                       " | ", percent(e.noise),
+                       " |\n"});
       }
     }
   }
@@ -72,8 +79,7 @@ std::string to_json(const Study& study, const Origin& origin) {
   std::string out = concat(
       {"{\n \"command\": ", quoted_text(origin.command), ",\n \"version\": ", quoted_text(origin.version),
        ",\n \"device\": ", quoted_text(origin.device), ",\n \"rays\": ", std::to_string(study.options.rays),
-       ",\n \"samples\": ", std::to_string(study.options.samples),
-       ",\n \"seed\": ", std::to_string(study.options.seed),
+       ",\n \"samples\": ", std::to_string(study.options.samples), ",\n \"seed\": ", std::to_string(study.options.seed),
        ",\n \"orders\": ", std::to_string(study.options.orders), ",\n \"models\": ["});
   for (std::size_t m = 0; m < study.models.size(); ++m) {
     out += concat({m > 0 ? ",\n" : "\n", "  {\"name\": ", quoted_text(study.models[m].name),
@@ -82,8 +88,8 @@ std::string to_json(const Study& study, const Origin& origin) {
     for (std::size_t a = 0; a < study.atmospheres.size(); ++a) {
       for (const Group& group : kGroups) {
         out += concat({first ? "\n" : ",\n", "   {\"atmosphere\": ", quoted_text(study.atmospheres[a].name),
-                       ", \"sun\": ", quoted_text(group.sun), ", \"region\": ", quoted_text(group.region),
-                       ", ", json_errors(summarise(study, m, a, group.takes)), "}"});
+                       ", \"sun\": ", quoted_text(group.sun), ", \"region\": ", quoted_text(group.region), ", ",
+                       json_errors(summarise(study, m, a, group.takes)), "}"});
         first = false;
       }
     }
@@ -100,8 +106,8 @@ std::string to_json(const Study& study, const Origin& origin) {
 }
 
 std::string to_markdown(const Study& study, const Origin& origin) {
-  std::string out = concat({"# How right the models are\n\nMade by\n\n    ", origin.command,
-                            "\n\nwith Tyndall ", origin.version, " on ", origin.device,
+  std::string out = concat({"# How right the models are\n\nMade by\n\n    ", origin.command, "\n\nwith Tyndall ",
+                            origin.version, " on ", origin.device,
                             ", against the path tracer of [reference.md](../reference.md). An error is that of "
                             "a channel, relative to the "
                             "largest\nchannel of the reference on the same ray; `noise` is the reference's "
@@ -118,32 +124,28 @@ std::string to_markdown(const Study& study, const Origin& origin) {
                                        : concat({"orders 1 to ", std::to_string(model.orders)}),
                    " |\n"});
   }
-  out +=
-      "\n## Radiance of the sky, the air and the limb\n\n| model | atmosphere | sun | rays | mean | median | "
-      "95 % | worst | noise |\n"
-      "|---|---|---|--:|--:|--:|--:|--:|--:|\n";
+  out += "\n## Radiance of the sky, the air and the limb\n\n| model | atmosphere | sun | rays | mean | median | "
+         "95 % | worst | noise |\n"
+         "|---|---|---|--:|--:|--:|--:|--:|--:|\n";
   for (std::size_t m = 0; m < study.models.size(); ++m) {
     for (std::size_t a = 0; a < study.atmospheres.size(); ++a) {
       for (const Group& group : kGroups) {
         if (std::string_view(group.region) != "all") continue;
         const ErrorSummary e = summarise(study, m, a, group.takes);
         out += concat({"| ", study.models[m].name, " | ", study.atmospheres[a].name, " | ", group.sun, " | ",
-                       std::to_string(e.channels[0].count), " | ", percent(e.all.mean), " | ",
-                       percent(e.all.median), " | ", percent(e.all.p95), " | ", percent(e.all.worst), " | ",
-                       percent(e.noise), " |\n"});
+                       std::to_string(e.channels[0].count), " | ", percent(e.all.mean), " | ", percent(e.all.median),
+                       " | ", percent(e.all.p95), " | ", percent(e.all.worst), " | ", percent(e.noise), " |\n"});
       }
     }
   }
   out += markdown_turbid(study);
-  out +=
-      "\n## Irradiance of the sky at sea level\n\n| model | sun | elevations | mean | worst | noise "
-      "|\n|---|---|--:|--:|--:|--:|\n";
+  out += "\n## Irradiance of the sky at sea level\n\n| model | sun | elevations | mean | worst | noise "
+         "|\n|---|---|--:|--:|--:|--:|\n";
   for (std::size_t m = 0; m < study.models.size(); ++m) {
     for (const SkyBand& band : kSkyBands) {
       const ErrorSummary e = summarise_sky(study, m, band.low_deg, band.high_deg);
-      out +=
-          concat({"| ", study.models[m].name, " | ", band.sun, " | ", std::to_string(e.channels[0].count),
-                  " | ", percent(e.all.mean), " | ", percent(e.all.worst), " | ", percent(e.noise), " |\n"});
+      out += concat({"| ", study.models[m].name, " | ", band.sun, " | ", std::to_string(e.channels[0].count), " | ",
+                     percent(e.all.mean), " | ", percent(e.all.worst), " | ", percent(e.noise), " |\n"});
     }
   }
   out += "\n## What each order of scattering adds to the sky's irradiance (550 nm, %)\n\n| sun |";
@@ -155,8 +157,7 @@ std::string to_markdown(const Study& study, const Origin& origin) {
   out += rule + "\n";
   for (std::size_t i = 0; i < study.sky.sun_elevation_deg.size(); ++i) {
     const double sun = study.sky.sun_elevation_deg[i];
-    if (sun != 60.0 && sun != 30.0 && sun != 10.0 && sun != 4.0 && sun != 0.0 && sun != -3.0 && sun != -6.0)
-      continue;
+    if (sun != 60.0 && sun != 30.0 && sun != 10.0 && sun != 4.0 && sun != 0.0 && sun != -3.0 && sun != -6.0) continue;
     out += concat({"| ", fixed(sun, 0), "° |"});
     const reference::Estimate& estimate = study.sky.answers.reference[i];
     for (const Rgb& order : estimate.order_radiance)

@@ -22,8 +22,8 @@ class Asker {
   Asker(const Options& options, double work, const Progress& progress)
       : options_(options), work_(work), progress_(progress) {}
 
-  Result<void> ask(const Params& params, const std::vector<Model>& models, std::uint32_t samples,
-                   Answers& answers, int orders_factor = 1) {
+  Result<void> ask(const Params& params, const std::vector<Model>& models, std::uint32_t samples, Answers& answers,
+                   int orders_factor = 1) {
     reference::Options how;
     how.samples = samples;
     how.orders = orders_factor * options_.orders;
@@ -55,10 +55,9 @@ class Asker {
   double done_ = 0.0;
 };
 
-reference::Query query_of(double altitude_m, double view_zenith_deg, double sun_elevation_deg,
-                          double azimuth_deg) {
-  return {altitude_m, view_zenith_deg * kRadPerDeg, (90.0 - sun_elevation_deg) * kRadPerDeg,
-          azimuth_deg * kRadPerDeg, false};
+reference::Query query_of(double altitude_m, double view_zenith_deg, double sun_elevation_deg, double azimuth_deg) {
+  return {altitude_m, view_zenith_deg * kRadPerDeg, (90.0 - sun_elevation_deg) * kRadPerDeg, azimuth_deg * kRadPerDeg,
+          false};
 }
 
 std::vector<RayTest> make_ray_tests(const std::vector<Atmosphere>& atmospheres, const Options& options) {
@@ -69,8 +68,8 @@ std::vector<RayTest> make_ray_tests(const std::vector<Atmosphere>& atmospheres, 
     const Params& params = atmospheres[a].params;
     for (const Region region : {Region::ground, Region::air, Region::space}) {
       for (const SunBand band : {SunBand::up, SunBand::twilight}) {
-        const std::vector<TestRay> made = make_rays(region, band, count, options.seed * 16 + a,
-                                                    params.planet.radius_m, params.atmosphere.height_m);
+        const std::vector<TestRay> made =
+            make_rays(region, band, count, options.seed * 16 + a, params.planet.radius_m, params.atmosphere.height_m);
         tests[a].rays.insert(tests[a].rays.end(), made.begin(), made.end());
       }
     }
@@ -85,8 +84,8 @@ std::vector<RayTest> make_turbid_tests(const Params& params, const Options& opti
   for (std::size_t a = 0; a < tests.size(); ++a) {
     for (const SunBand band : {SunBand::up, SunBand::twilight}) {
       const std::uint32_t part = std::max(band == SunBand::up ? count - count / 3 : count / 3, 1U);
-      const std::vector<TestRay> made = make_horizon_rays(band, part, options.seed * 16 + a, params.planet.radius_m,
-                                                          params.atmosphere.height_m);
+      const std::vector<TestRay> made =
+          make_horizon_rays(band, part, options.seed * 16 + a, params.planet.radius_m, params.atmosphere.height_m);
       tests[a].rays.insert(tests[a].rays.end(), made.begin(), made.end());
     }
     for (const TestRay& ray : tests[a].rays) tests[a].answers.queries.push_back(ray.query);
@@ -155,8 +154,7 @@ std::vector<HorizonTest> make_horizons(const Params& params) {
 }  // namespace
 
 std::vector<Atmosphere> atmospheres(const Params& params) {
-  std::vector<Atmosphere> out = {
-      {"as given", params}, {"five times the aerosol", params}, {"without ozone", params}};
+  std::vector<Atmosphere> out = {{"as given", params}, {"five times the aerosol", params}, {"without ozone", params}};
   out[1].params.atmosphere.aerosol_density *= 5.0F;
   out[2].params.atmosphere.ozone_absorption = {0.0F, 0.0F, 0.0F};
   return out;
@@ -244,8 +242,7 @@ Result<Study> run_study(const Params& params, const Options& options, std::vecto
     for (const HorizonTest& test : study.horizons) {
       all.queries.insert(all.queries.end(), test.answers.queries.begin(), test.answers.queries.end());
     }
-    if (Result<void> r = asker.ask(params, study.horizon_models, options.samples, all); !r)
-      return std::move(r).error();
+    if (Result<void> r = asker.ask(params, study.horizon_models, options.samples, all); !r) return std::move(r).error();
     next = 0;
     for (HorizonTest& test : study.horizons) take(test.answers);
   }
@@ -282,8 +279,7 @@ std::vector<BadRay> worst_rays(const Study& study, std::size_t model, std::size_
   const auto error = [](const BadRay& r) {
     return *std::max_element(r.comparison.error.begin(), r.comparison.error.end());
   };
-  std::stable_sort(out.begin(), out.end(),
-                   [&](const BadRay& a, const BadRay& b) { return error(a) > error(b); });
+  std::stable_sort(out.begin(), out.end(), [&](const BadRay& a, const BadRay& b) { return error(a) > error(b); });
   out.resize(std::min(out.size(), count));
   return out;
 }

@@ -20,8 +20,7 @@ struct Model {
   std::string meaning;  // one line
   int orders = 0;       // it is compared with the reference's first so many orders; 0: with all
   // Answers every query with radiance / E0, or irradiance / E0 of the sky.
-  std::function<Result<std::vector<Rgb>>(const Params& params, std::span<const reference::Query> queries)>
-      answer;
+  std::function<Result<std::vector<Rgb>>(const Params& params, std::span<const reference::Query> queries)> answer;
 };
 
 struct Options {
@@ -96,7 +95,7 @@ struct Study {
   std::vector<Model> models;
   std::vector<Model> horizon_models;  // of the horizon test alone; without any it is left out
   std::vector<Atmosphere> atmospheres;
-  std::vector<RayTest> rays;  // one per atmosphere
+  std::vector<RayTest> rays;    // one per atmosphere
   std::vector<RayTest> turbid;  // one per entry of kTurbidAirs
   std::vector<VerticalTest> verticals;
   SkyTest sky;
@@ -122,7 +121,6 @@ struct BadRay {
 [[nodiscard]] std::vector<BadRay> worst_rays(const Study& study, std::size_t model, std::size_t count);
 
 // Of the sky's irradiance, over the elevations from `low` to `high` [deg].
-[[nodiscard]] ErrorSummary summarise_sky(const Study& study, std::size_t model, double low_deg,
-                                         double high_deg);
+[[nodiscard]] ErrorSummary summarise_sky(const Study& study, std::size_t model, double low_deg, double high_deg);
 
 }  // namespace tyndall::validate

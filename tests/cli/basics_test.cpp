@@ -30,8 +30,7 @@ TEST(Cli, HelpAndVersion) {
     const Outcome help = run_tyndall(ask);
     EXPECT_EQ(help.status, 0);
     EXPECT_EQ(help.err, "");
-    for (const char* const verb : {"\n  compare ", "\n  params "})
-      EXPECT_NE(help.out.find(verb), std::string::npos);
+    for (const char* const verb : {"\n  compare ", "\n  params "}) EXPECT_NE(help.out.find(verb), std::string::npos);
   }
   const Outcome verb_help = run_tyndall({"params", "--help"});
   EXPECT_EQ(verb_help.status, 0);
@@ -47,8 +46,7 @@ TEST(Cli, BadUsageIsOneLineAndTwo) {
       {{"--json", "params"}, "unknown option '--json', before the verb, allowed are --help and --version"},
       {{"params", "--frmat", "json"}, "unknown option '--frmat', tyndall params, did you mean '--format'?"},
       {{"params", "--format", "yaml"}, "unknown value 'yaml', --format, allowed is toml, json, markdown"},
-      {{"params", "--format"},
-       "'--format' needs a value, tyndall params, 'tyndall params --help' says which"},
+      {{"params", "--format"}, "'--format' needs a value, tyndall params, 'tyndall params --help' says which"},
       {{"params", "--format", "json", "--format", "toml"},
        "'--format' is given 2 times, tyndall params, allowed is once"},
       {{"params", "a.toml", "b.toml"},
@@ -63,25 +61,20 @@ TEST(Cli, BadUsageIsOneLineAndTwo) {
       {{"params", "/nonexistent/scene.toml"},
        "cannot read '/nonexistent/scene.toml', No such file or directory, needed is a readable file"},
       {{"params", "/"}, "cannot read '/', Is a directory, needed is a readable file"},
-      {{"compare", "only-one.png"},
-       "B is missing, tyndall compare, 'tyndall compare --help' says what is needed"},
+      {{"compare", "only-one.png"}, "B is missing, tyndall compare, 'tyndall compare --help' says what is needed"},
       {{"compare", "a", "b", "--json=1"},
        "'--json' takes no value, tyndall compare, 'tyndall compare --help' says which"},
       {{"compare", "a", "b", "--psnr-min", "high"},
        "'high' is not allowed, --psnr-min, allowed is a number, 0 to 1e+06"},
-      {{"compare", "a", "b", "--diff", "d.jpg"},
-       "unknown image format, 'd.jpg', allowed is a name in .png or .exr"},
+      {{"compare", "a", "b", "--diff", "d.jpg"}, "unknown image format, 'd.jpg', allowed is a name in .png or .exr"},
   };
   for (const Refused& refused : cases) expect_error(run_tyndall(refused.arguments), 2, refused.message);
 }
 
 TEST(Cli, MessagesStayOneLineWhateverIsGiven) {
-  for (const std::string& odd :
-       {std::string("a\nb\x1b[31m"), std::string("\xff\xfe"), std::string(100000, 'x')}) {
-    for (const std::vector<std::string>& arguments : {std::vector<std::string>{odd},
-                                                      {"params", odd},
-                                                      {"params", "--" + odd},
-                                                      {"params", "--set", odd + "=1"}}) {
+  for (const std::string& odd : {std::string("a\nb\x1b[31m"), std::string("\xff\xfe"), std::string(100000, 'x')}) {
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{odd}, {"params", odd}, {"params", "--" + odd}, {"params", "--set", odd + "=1"}}) {
       const Outcome outcome = run_tyndall(arguments);
       EXPECT_EQ(outcome.status, 2);
       EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
@@ -94,8 +87,7 @@ TEST(Cli, MessagesStayOneLineWhateverIsGiven) {
 TEST(Cli, ScenesOfEveryKindOfBadness) {
   const Scratch scratch;
   const std::pair<std::string, std::string> scenes[] = {
-      {"[camera]\nyaw_dge = 3\n",
-       "unknown parameter 'camera.yaw_dge', FILE:2, did you mean 'camera.yaw_deg'?"},
+      {"[camera]\nyaw_dge = 3\n", "unknown parameter 'camera.yaw_dge', FILE:2, did you mean 'camera.yaw_deg'?"},
       {"[cmaera]\nyaw_deg = 3\n", "unknown table [cmaera], FILE:1, did you mean [camera]?"},
       {"[camera]\nyaw_deg = '3'\n", "'camera.yaw_deg' is a string, FILE:2, allowed is -3600 to 3600 deg"},
       {"[camera]\nyaw_deg = inf\n",
@@ -122,19 +114,17 @@ TEST(Cli, ParamsRoundTrip) {
   const Outcome defaults = run_tyndall({"params"});
   EXPECT_EQ(defaults.status, 0);
   EXPECT_EQ(run_tyndall({"params", "--format", "toml"}).out, defaults.out);
-  const Outcome changed = run_tyndall(
-      {"params", "--set", "sun.elevation_deg=1.1", "--set", "sun.elevation_deg=-0.1", "--set",
-       "atmosphere.rayleigh_scattering=5.8e-6,13.5e-6,33.3e-6", "--set", "terrain.source=a \"b\".tif"});
+  const Outcome changed =
+      run_tyndall({"params", "--set", "sun.elevation_deg=1.1", "--set", "sun.elevation_deg=-0.1", "--set",
+                   "atmosphere.rayleigh_scattering=5.8e-6,13.5e-6,33.3e-6", "--set", "terrain.source=a \"b\".tif"});
   ASSERT_EQ(changed.status, 0) << changed.err;
   EXPECT_NE(changed.out.find("\nelevation_deg = -0.1\n"), std::string::npos);
   EXPECT_NE(changed.out.find("\nrayleigh_scattering = [5.8e-06, 1.35e-05, 3.33e-05]\n"), std::string::npos);
   const std::string scene = scratch.write("scene.toml", changed.out);
   EXPECT_EQ(run_tyndall({"params", scene}).out, changed.out);
   // --set wins over the scene, wherever it stands.
-  EXPECT_EQ(
-      run_tyndall({"params", "--set", "sun.elevation_deg=-0.1", "--set=terrain.source=a \"b\".tif", scene})
-          .out,
-      changed.out);
+  EXPECT_EQ(run_tyndall({"params", "--set", "sun.elevation_deg=-0.1", "--set=terrain.source=a \"b\".tif", scene}).out,
+            changed.out);
   EXPECT_NE(run_tyndall({"params", "--set", "sun.elevation_deg=6", scene}).out, changed.out);
 }
 

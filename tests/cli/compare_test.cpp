@@ -34,8 +34,7 @@ class CliCompare : public testing::Test {
 };
 
 TEST_F(CliCompare, EqualImages) {
-  const Outcome outcome =
-      run_tyndall({"compare", png("a.png", 100), png("b.png", 100), "--json", "--psnr-min", "90"});
+  const Outcome outcome = run_tyndall({"compare", png("a.png", 100), png("b.png", 100), "--json", "--psnr-min", "90"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const nlohmann::json result = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(result["rmse"], 0.0);
@@ -90,8 +89,7 @@ TEST_F(CliCompare, SizesKindsAndUnreadableFiles) {
   EXPECT_EQ(run_tyndall({"compare", a, scratch_.at("none.png")}).status, 4);
   EXPECT_EQ(run_tyndall({"compare", scratch_.write("text.png", "no image"), a}).status, 4);
   const std::string whole = contents_of(a);
-  const Outcome cut =
-      run_tyndall({"compare", a, scratch_.write("cut.png", whole.substr(0, whole.size() / 2))});
+  const Outcome cut = run_tyndall({"compare", a, scratch_.write("cut.png", whole.substr(0, whole.size() / 2))});
   EXPECT_EQ(cut.status, 4);
   EXPECT_EQ(std::count(cut.err.begin(), cut.err.end(), '\n'), 1) << cut.err;
   EXPECT_EQ(cut.out, "");
@@ -116,7 +114,8 @@ TEST_F(CliCompare, TheDifferenceIsNotWrittenOverAnInput) {
   for (const std::string& path : {b, scratch_.at("same.png"), scratch_.at("link.png"), scratch_.at("./b.png")}) {
     const Outcome outcome = run_tyndall({"compare", a, b, "--diff", path});
     EXPECT_EQ(outcome.status, 2) << path;
-    EXPECT_NE(outcome.err.find("is B of this run, --diff, allowed is a file that is not read"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("is B of this run, --diff, allowed is a file that is not read"), std::string::npos)
+        << outcome.err;
     EXPECT_EQ(contents_of(b), before);
   }
 }

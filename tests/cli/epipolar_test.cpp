@@ -21,7 +21,8 @@ class CliEpipolar : public testing::Test {
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return scratch_.at(name);
   }
-  void expect_close(const std::string& kind, const Arguments& scene, const Arguments& settings, const Arguments& limit) const {
+  void expect_close(const std::string& kind, const Arguments& scene, const Arguments& settings,
+                    const Arguments& limit) const {
     Arguments brute = settings;
     brute.emplace_back("scattering.technique=brute-force");
     Arguments all = {"compare", picture("epipolar" + kind, scene, settings), picture("brute" + kind, scene, brute)};

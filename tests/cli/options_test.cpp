@@ -11,19 +11,19 @@ namespace tyndall::cli {
 namespace {
 
 TEST(CliOptions, Sizes) {
-  for (const auto& [text, width, height] : {std::tuple("1x1", 1U, 1U), std::tuple("1280x720", 1280U, 720U),
-                                            std::tuple("16384x16384", 16384U, 16384U)}) {
+  for (const auto& [text, width, height] :
+       {std::tuple("1x1", 1U, 1U), std::tuple("1280x720", 1280U, 720U), std::tuple("16384x16384", 16384U, 16384U)}) {
     const Result<Size> size = parse_size(text, "--size");
     ASSERT_TRUE(size.ok()) << text;
     EXPECT_EQ(size.value().width, width);
     EXPECT_EQ(size.value().height, height);
   }
-  for (const char* const text : {"0x0", "0x5", "100000x100000", "16385x1", "-1x5", "12", "12x", "x12",
-                                 "1x2x3", "axb", "", "1.5x2", "1e3x2", "18446744073709551617x1"}) {
+  for (const char* const text : {"0x0", "0x5", "100000x100000", "16385x1", "-1x5", "12", "12x", "x12", "1x2x3", "axb",
+                                 "", "1.5x2", "1e3x2", "18446744073709551617x1"}) {
     const Result<Size> size = parse_size(text, "--size");
     ASSERT_FALSE(size.ok()) << text;
-    EXPECT_EQ(size.error().message, std::string("'").append(text) +
-                                        "' is no size, --size, allowed is WIDTHxHEIGHT, 1 to 16384 each");
+    EXPECT_EQ(size.error().message,
+              std::string("'").append(text) + "' is no size, --size, allowed is WIDTHxHEIGHT, 1 to 16384 each");
   }
 }
 
@@ -47,8 +47,7 @@ TEST(CliOptions, Outputs) {
   EXPECT_EQ(message("", 1), "no output file, -o, needed is -o FILE, with a name in .png or .exr");
   EXPECT_EQ(message("a.jpg", 1), "unknown format 'a.jpg', -o, allowed is a name in .png or .exr");
   EXPECT_EQ(message(scratch.at("a.PNG"), 1), "fine");
-  EXPECT_EQ(message("a.png", 2),
-            "2 frames into 'a.png', -o, needed is one place for the number, such as out.%04d.png");
+  EXPECT_EQ(message("a.png", 2), "2 frames into 'a.png', -o, needed is one place for the number, such as out.%04d.png");
   EXPECT_EQ(message("%d.%d.png", 2),
             "2 frames into '%d.%d.png', -o, needed is one place for the number, such as out.%04d.png");
   EXPECT_EQ(message(scratch.at("a.%04d.png"), 2), "fine");
@@ -60,9 +59,9 @@ TEST(CliOptions, EveryCommonOption) {
   CommonOptions options;
   Arguments arguments("params");
   add_common(arguments, options, kScene | kSet | kDevice | kSize | kFrames | kOutput | kJson);
-  const std::vector<std::string> given = {
-      "--set",      "sun.azimuth_deg=-3", "scene.toml", "--set",  "b=2",      "-o",  "out.png",
-      "--size=3x4", "--frames",           "9",          "--json", "--device", "llvm"};
+  const std::vector<std::string> given = {"--set",   "sun.azimuth_deg=-3", "scene.toml", "--set", "b=2",    "-o",
+                                          "out.png", "--size=3x4",         "--frames",   "9",     "--json", "--device",
+                                          "llvm"};
   EXPECT_EQ(arguments.parse(given), std::nullopt);
   EXPECT_EQ(options.scene_file, "scene.toml");
   EXPECT_EQ(options.sets, (std::vector<std::string>{"sun.azimuth_deg=-3", "b=2"}));

@@ -20,7 +20,8 @@ const std::string kHeader = "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_d
 
 class CliProbe : public testing::Test {
  protected:
-  // The table that `probe` prints for these queries, by the model `single` unless told otherwise; empty after a failure, which is reported.
+  // The table that `probe` prints for these queries, by the model `single` unless told otherwise; empty after a
+  // failure, which is reported.
   config::CsvTable ask(const std::string& queries, std::vector<std::string> more = {}) const {
     if (std::find(more.begin(), more.end(), "--model") == more.end()) more.insert(more.end(), {"--model", "single"});
     more.insert(more.begin(), {"probe", "--queries", scratch_.write("q.csv", queries)});
@@ -46,9 +47,9 @@ class CliProbe : public testing::Test {
 TEST_F(CliProbe, EveryFormOfTableIsReadAndItsColumnsPassedOn) {
   // Columns in another order, one more among them, quoted fields with a comma, a quote and a line end, CRLF,
   // a byte order mark, blank lines, no line end at the end.
-  const config::CsvTable table = ask(
-      "\xEF\xBB\xBF\r\nid, azimuth_deg ,\"view_zenith_deg\",sun_zenith_deg,altitude_m\r\n"
-      "\"a,\"\"b\",30,60,+3e1,0\r\n\r\n   \r\n\"two\nlines\",-30, \"60\" ,30.0,0\r\nlast,,sky,30,0");
+  const config::CsvTable table =
+      ask("\xEF\xBB\xBF\r\nid, azimuth_deg ,\"view_zenith_deg\",sun_zenith_deg,altitude_m\r\n"
+          "\"a,\"\"b\",30,60,+3e1,0\r\n\r\n   \r\n\"two\nlines\",-30, \"60\" ,30.0,0\r\nlast,,sky,30,0");
   ASSERT_EQ(table.rows(), 3U);
   EXPECT_EQ(table.header[0], "id");
   EXPECT_EQ(table.header[1], " azimuth_deg ");
@@ -70,7 +71,8 @@ TEST_F(CliProbe, EveryFormOfTableIsReadAndItsColumnsPassedOn) {
 
 TEST_F(CliProbe, SingleIsTheIntegralAndTheSkyItsIrradiance) {
   const shared::Medium medium = medium_from_params({});
-  const config::CsvTable table = ask(kHeader + "0,30,60,0\n8000,95,88,170\n400000,100,40,20\n400000,60,40,20\n3000,sky,70,0\n");
+  const config::CsvTable table =
+      ask(kHeader + "0,30,60,0\n8000,95,88,170\n400000,100,40,20\n400000,60,40,20\n3000,sky,70,0\n");
   const double rays[3][4] = {{0, 30, 60, 0}, {8000, 95, 88, 170}, {400000, 100, 40, 20}};
   const char* const channels = "rgb";
   for (std::size_t c = 0; c < 3; ++c) {
@@ -95,7 +97,8 @@ TEST_F(CliProbe, SingleIsTheIntegralAndTheSkyItsIrradiance) {
 }
 
 TEST_F(CliProbe, ReferenceAgreesWithSingleWithinItsError) {
-  const std::string queries = kHeader + "0,30,60,0\n8000,95,88,170\n3000,sky,70,0\n-400,80,70,90\n-400,93,60,40\n0,100,40,0\n";
+  const std::string queries =
+      kHeader + "0,30,60,0\n8000,95,88,170\n3000,sky,70,0\n-400,80,70,90\n-400,93,60,40\n0,100,40,0\n";
   const std::vector<std::string> one = {"--model", "reference", "--orders", "1", "--samples", "20000"};
   const config::CsvTable reference = ask(queries, one);
   const config::CsvTable single = ask(queries);
@@ -115,8 +118,9 @@ TEST_F(CliProbe, ReferenceAgreesWithSingleWithinItsError) {
   EXPECT_NE(*ask(queries, seeded).text, *reference.text);
   // The ground at the end of a ray shines in the reference, and is black in single scattering.
   const auto lit_ground = [&](const std::string& model) {
-    return number(ask(kHeader + "0,180,40,0\n", {"--model", model, "--samples", "64", "--orders", "1", "--set",
-                                                 "planet.ground_albedo=0.5"}), 0, "L_g");
+    return number(ask(kHeader + "0,180,40,0\n",
+                      {"--model", model, "--samples", "64", "--orders", "1", "--set", "planet.ground_albedo=0.5"}),
+                  0, "L_g");
   };
   EXPECT_EQ(lit_ground("single"), 0.0);
   EXPECT_GT(lit_ground("reference"), 0.05);
@@ -124,9 +128,9 @@ TEST_F(CliProbe, ReferenceAgreesWithSingleWithinItsError) {
 
 TEST_F(CliProbe, ParametersAndScenesApply) {
   const std::string queries = kHeader + "0,30,60,0\n";
-  const config::CsvTable none = ask(queries, {"--set", "atmosphere.custom_coefficients=true", "--set",
-                                              "atmosphere.rayleigh_scattering=0,0,0", "--set", "atmosphere.aerosol_density=0",
-                                              "--set", "atmosphere.ozone_absorption=0,0,0"});
+  const config::CsvTable none =
+      ask(queries, {"--set", "atmosphere.custom_coefficients=true", "--set", "atmosphere.rayleigh_scattering=0,0,0",
+                    "--set", "atmosphere.aerosol_density=0", "--set", "atmosphere.ozone_absorption=0,0,0"});
   EXPECT_EQ(number(none, 0, "L_b"), 0.0);
   EXPECT_EQ(number(none, 0, "T_b"), 1.0);
   const std::string scene = scratch_.write("scene.toml", "[atmosphere]\naerosol_density = 5.0\n");
@@ -161,7 +165,8 @@ TEST_F(CliProbe, BadTablesAreNamedByLineAndColumn) {
       {"altitude_m,view_zenith_deg,sun_zenith_deg\n0,0,0\n",
        "no column 'azimuth_deg', FILE, needed are altitude_m, view_zenith_deg, sun_zenith_deg, azimuth_deg"},
       {"altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg,altitude_m\n",
-       "several columns 'altitude_m', FILE, needed are altitude_m, view_zenith_deg, sun_zenith_deg, azimuth_deg, once each"},
+       "several columns 'altitude_m', FILE, needed are altitude_m, view_zenith_deg, sun_zenith_deg, azimuth_deg, once "
+       "each"},
       {kHeader + "0,0,0,0\n\n0,0,O,0\n",
        "'O' is not a number, FILE:4, column 'sun_zenith_deg', allowed is 0 to 180 deg"},
       {kHeader + "0,0,,0\n", "'' is not a number, FILE:2, column 'sun_zenith_deg', allowed is 0 to 180 deg"},
@@ -174,7 +179,8 @@ TEST_F(CliProbe, BadTablesAreNamedByLineAndColumn) {
       {kHeader + "0,180.001,0,0\n",
        "'180.001' is out of range, FILE:2, column 'view_zenith_deg', allowed is 0 to 180 deg, or sky"},
       {kHeader + "0,0,-0.1,0\n", "'-0.1' is out of range, FILE:2, column 'sun_zenith_deg', allowed is 0 to 180 deg"},
-      {kHeader + "-11001,0,0,0\n", "'-11001' is out of range, FILE:2, column 'altitude_m', allowed is -11000 to 1e+09 m"},
+      {kHeader + "-11001,0,0,0\n",
+       "'-11001' is out of range, FILE:2, column 'altitude_m', allowed is -11000 to 1e+09 m"},
       {kHeader + "1e999,0,0,0\n", "'1e999' is out of range, FILE:2, column 'altitude_m', allowed is -11000 to 1e+09 m"},
       {kHeader + "0,0,0\n", "3 fields, FILE:2, needed are 4, as in the header"},
       {kHeader + "0,0,0,0,0\n", "5 fields, FILE:2, needed are 4, as in the header"},
@@ -205,8 +211,8 @@ TEST_F(CliProbe, EyesFarBelowSeaLevel) {
     }
   }
   for (const char* const model : {"single", "homogeneous", "homogeneous-medium", "reference"}) {
-    const config::CsvTable table = ask(queries, {"--model", model, "--samples", "256", "--orders", "3", "--set",
-                                                 "atmosphere.ozone_absorption=0,0,0"});
+    const config::CsvTable table = ask(
+        queries, {"--model", model, "--samples", "256", "--orders", "3", "--set", "atmosphere.ozone_absorption=0,0,0"});
     for (std::size_t row = 0; row < table.rows(); ++row) {
       for (const char* const column : {"L_r", "L_g", "L_b", "T_r", "T_g", "T_b"}) {
         const double value = number(table, row, column);
@@ -215,10 +221,12 @@ TEST_F(CliProbe, EyesFarBelowSeaLevel) {
     }
   }
   const std::string path = scratch_.write("deep.csv", kHeader + "0,0,0,0\n-2000,0,0,0\n");
-  const Outcome outcome = run_tyndall({"probe", "--queries", path, "--model", "single", "--set", "planet.radius_m=4000"});
+  const Outcome outcome =
+      run_tyndall({"probe", "--queries", path, "--model", "single", "--set", "planet.radius_m=4000"});
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_EQ(outcome.err, "tyndall: error: an eye at -2000 m is too deep in the planet, " + path +
-                             ":3, column 'altitude_m', allowed is minus a quarter of planet.radius_m at the lowest, -1000 m\n");
+  EXPECT_EQ(outcome.err,
+            "tyndall: error: an eye at -2000 m is too deep in the planet, " + path +
+                ":3, column 'altitude_m', allowed is minus a quarter of planet.radius_m at the lowest, -1000 m\n");
 }
 
 TEST_F(CliProbe, BadUsage) {

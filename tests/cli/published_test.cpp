@@ -1,6 +1,7 @@
 // `tyndall probe` against the equations of the documents, evaluated here in double precision from the text alone, for
-// random rays and media: Hoffman and Preetham (2002), O'Neil (2005) with its printed polynomial, his table (2004) against
-// the columns that it stands for, and the homogeneous medium of Yusov (2012). Nothing of the library's own is used.
+// random rays and media: Hoffman and Preetham (2002), O'Neil (2005) with its printed polynomial, his table (2004)
+// against the columns that it stands for, and the homogeneous medium of Yusov (2012). Nothing of the library's own is
+// used.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -47,7 +48,9 @@ struct Coefficients {
 
 // 3 / (16 pi) (1 + cos^2), and what Cornette and Shanks or Henyey and Greenstein wrote, positive g forwards.
 double rayleigh_phase(double c) { return 3.0 / (16.0 * kPi) * (1.0 + c * c); }
-double henyey_greenstein(double c, double g) { return (1.0 - g * g) / (4.0 * kPi * std::pow(1.0 + g * g - 2.0 * g * c, 1.5)); }
+double henyey_greenstein(double c, double g) {
+  return (1.0 - g * g) / (4.0 * kPi * std::pow(1.0 + g * g - 2.0 * g * c, 1.5));
+}
 double cornette_shanks(double c, double g) {
   return 3.0 * (1.0 - g * g) * (1.0 + c * c) / (8.0 * kPi * (2.0 + g * g) * std::pow(1.0 + g * g - 2.0 * g * c, 1.5));
 }
@@ -126,7 +129,8 @@ TEST_F(CliPublished, HoffmanAndPreetham) {
     const double air_m = number(5000.0, 12000.0);
     const double haze_m = number(500.0, 4000.0);
     std::vector<Question> questions;
-    for (int i = 0; i < 100; ++i) questions.push_back({uniform(0.0, 5000.0), uniform(0.0, 89.9), uniform(0.0, 89.9), uniform(0.0, 360.0)});
+    for (int i = 0; i < 100; ++i)
+      questions.push_back({uniform(0.0, 5000.0), uniform(0.0, 89.9), uniform(0.0, 89.9), uniform(0.0, 360.0)});
     const auto length = [](double zenith_m, double deg) {
       return zenith_m / (std::cos(deg * kPi / 180.0) + 0.15 * std::pow(93.885 - deg, -1.253));
     };
@@ -138,7 +142,8 @@ TEST_F(CliPublished, HoffmanAndPreetham) {
           Seen out;
           for (std::size_t c = 0; c < 3; ++c) {
             const double haze_ex = k.mie[c] + k.absorption[c];
-            const double sun = std::exp(-(k.rayleigh[c] * length(air_m, q.sun_deg) + haze_ex * length(haze_m, q.sun_deg)));
+            const double sun =
+                std::exp(-(k.rayleigh[c] * length(air_m, q.sun_deg) + haze_ex * length(haze_m, q.sun_deg)));
             const double both = k.rayleigh[c] + haze_ex;
             const double low_m = length(haze_m, q.view_deg);
             const double high_m = length(air_m, q.view_deg) - low_m;
@@ -153,7 +158,8 @@ TEST_F(CliPublished, HoffmanAndPreetham) {
   }
 }
 
-// Equations 1, 3 and 4 for rays that meet the ground: one density along the whole distance, the sun as it is seen from the ground.
+// Equations 1, 3 and 4 for rays that meet the ground: one density along the whole distance, the sun as it is seen from
+// the ground.
 TEST_F(CliPublished, HoffmanAndPreethamsGround) {
   constexpr double kRadius = 6360000.0;
   for (int medium = 0; medium < 4; ++medium) {
@@ -161,7 +167,8 @@ TEST_F(CliPublished, HoffmanAndPreethamsGround) {
     const double air_m = number(5000.0, 12000.0);
     const double haze_m = number(500.0, 4000.0);
     std::vector<Question> questions;
-    for (int i = 0; i < 100; ++i) questions.push_back({uniform(100.0, 5000.0), uniform(93.0, 180.0), uniform(0.0, 89.0), uniform(0.0, 360.0)});
+    for (int i = 0; i < 100; ++i)
+      questions.push_back({uniform(100.0, 5000.0), uniform(93.0, 180.0), uniform(0.0, 89.0), uniform(0.0, 360.0)});
     const auto length = [](double zenith_m, double deg) {
       return zenith_m / (std::cos(deg * kPi / 180.0) + 0.15 * std::pow(93.885 - deg, -1.253));
     };
@@ -176,10 +183,12 @@ TEST_F(CliPublished, HoffmanAndPreethamsGround) {
           Seen out;
           for (std::size_t c = 0; c < 3; ++c) {
             const double haze_ex = k.mie[c] + k.absorption[c];
-            const double sun = std::exp(-(k.rayleigh[c] * length(air_m, q.sun_deg) + haze_ex * length(haze_m, q.sun_deg)));
+            const double sun =
+                std::exp(-(k.rayleigh[c] * length(air_m, q.sun_deg) + haze_ex * length(haze_m, q.sun_deg)));
             const double ex = k.rayleigh[c] + haze_ex;
             out.transmittance[c] = std::exp(-ex * s);
-            out.radiance[c] = sun / ex * (k.rayleigh[c] * rayleigh_phase(nu) + k.mie[c] * henyey_greenstein(nu, k.g)) * (1.0 - out.transmittance[c]);
+            out.radiance[c] = sun / ex * (k.rayleigh[c] * rayleigh_phase(nu) + k.mie[c] * henyey_greenstein(nu, k.g)) *
+                              (1.0 - out.transmittance[c]);
           }
           return out;
         });
@@ -188,8 +197,8 @@ TEST_F(CliPublished, HoffmanAndPreethamsGround) {
 
 // The sum of chapter 16 for rays that leave the air, with columns from whatever function.
 using Column = std::function<double(double height_m, double scale_height_m, double cos_zenith)>;
-Seen oneil(const Question& q, const Coefficients& k, double radius_m, double top_m, const Rgb& scale_heights_m, int samples,
-           const Column& column) {
+Seen oneil(const Question& q, const Coefficients& k, double radius_m, double top_m, const Rgb& scale_heights_m,
+           int samples, const Column& column) {
   const Direction eye = {radius_m + q.altitude_m, 0.0, 0.0};
   const Direction view = q.view();
   const Direction sun = q.sun();
@@ -225,36 +234,40 @@ TEST_F(CliPublished, ONeilWithThePrintedPolynomial) {
   for (int medium = 0; medium < 4; ++medium) {
     const Coefficients k = coefficients();
     std::vector<Question> questions;
-    for (int i = 0; i < 100; ++i) questions.push_back({uniform(0.0, 150000.0), uniform(0.0, 85.0), uniform(0.0, 85.0), uniform(0.0, 360.0)});
+    for (int i = 0; i < 100; ++i)
+      questions.push_back({uniform(0.0, 150000.0), uniform(0.0, 85.0), uniform(0.0, 85.0), uniform(0.0, 360.0)});
     // In the document's unit, the thickness of the air; the column down to where nothing is left is that to the top.
     const Column printed = [&](double height_m, double scale_height_m, double cos_zenith) {
       const double x = 1.0 - cos_zenith;
-      const double scale = scale_height_m / kTop * std::exp(-0.00287 + x * (0.459 + x * (3.83 + x * (-6.80 + x * 5.25))));
+      const double scale =
+          scale_height_m / kTop * std::exp(-0.00287 + x * (0.459 + x * (3.83 + x * (-6.80 + x * 5.25))));
       return kTop * std::exp(-height_m / scale_height_m) * scale;
     };
     const int samples = 2 + 3 * medium;
-    expect_published(
-        with(k, {"--model", "oneil", "--set", "oneil.scale_function=published", "--set", "oneil.samples=" + std::to_string(samples),
-                 "--set", "planet.radius_m=6360000", "--set", "atmosphere.height_m=159000", "--set",
-                 "atmosphere.rayleigh_scale_height_m=39750", "--set", "atmosphere.mie_scale_height_m=39750"}),
-        questions, [&](const Question& q) {
-          Seen out = oneil(q, k, kRadius, kTop, {kScaleHeight, kScaleHeight, 0.0}, samples, printed);
-          // What is left at the top is subtracted from the whole path too.
-          const Direction eye = {kRadius + q.altitude_m, 0.0, 0.0};
-          const Direction view = q.view();
-          const double b = dot(eye, view);
-          const double end = -b + std::sqrt(b * b - dot(eye, eye) + (kRadius + kTop) * (kRadius + kTop));
-          const Direction top = along(eye, view, end);
-          for (std::size_t c = 0; c < 3; ++c) {
-            const double column = printed(q.altitude_m, kScaleHeight, view.up) - printed(kTop, kScaleHeight, dot(top, view) / (kRadius + kTop));
-            out.transmittance[c] = std::exp(-(k.rayleigh[c] + k.mie[c] + k.absorption[c]) * column);
-          }
-          return out;
-        });
+    expect_published(with(k, {"--model", "oneil", "--set", "oneil.scale_function=published", "--set",
+                              "oneil.samples=" + std::to_string(samples), "--set", "planet.radius_m=6360000", "--set",
+                              "atmosphere.height_m=159000", "--set", "atmosphere.rayleigh_scale_height_m=39750",
+                              "--set", "atmosphere.mie_scale_height_m=39750"}),
+                     questions, [&](const Question& q) {
+                       Seen out = oneil(q, k, kRadius, kTop, {kScaleHeight, kScaleHeight, 0.0}, samples, printed);
+                       // What is left at the top is subtracted from the whole path too.
+                       const Direction eye = {kRadius + q.altitude_m, 0.0, 0.0};
+                       const Direction view = q.view();
+                       const double b = dot(eye, view);
+                       const double end = -b + std::sqrt(b * b - dot(eye, eye) + (kRadius + kTop) * (kRadius + kTop));
+                       const Direction top = along(eye, view, end);
+                       for (std::size_t c = 0; c < 3; ++c) {
+                         const double column = printed(q.altitude_m, kScaleHeight, view.up) -
+                                               printed(kTop, kScaleHeight, dot(top, view) / (kRadius + kTop));
+                         out.transmittance[c] = std::exp(-(k.rayleigh[c] + k.mie[c] + k.absorption[c]) * column);
+                       }
+                       return out;
+                     });
   }
 }
 
-// From space down to the ground: the ray from where it enters the air, columns as printed from each point back towards the camera.
+// From space down to the ground: the ray from where it enters the air, columns as printed from each point back towards
+// the camera.
 TEST_F(CliPublished, ONeilFromSpace) {
   constexpr double kRadius = 6360000.0;
   constexpr double kTop = 159000.0;
@@ -275,9 +288,10 @@ TEST_F(CliPublished, ONeilFromSpace) {
       questions.push_back(q);
     }
     expect_published(
-        with(k, {"--model", "oneil", "--set", "oneil.scale_function=published", "--set", "oneil.samples=" + std::to_string(samples),
-                 "--set", "planet.radius_m=6360000", "--set", "atmosphere.height_m=159000", "--set",
-                 "atmosphere.rayleigh_scale_height_m=39750", "--set", "atmosphere.mie_scale_height_m=39750"}),
+        with(k, {"--model", "oneil", "--set", "oneil.scale_function=published", "--set",
+                 "oneil.samples=" + std::to_string(samples), "--set", "planet.radius_m=6360000", "--set",
+                 "atmosphere.height_m=159000", "--set", "atmosphere.rayleigh_scale_height_m=39750", "--set",
+                 "atmosphere.mie_scale_height_m=39750"}),
         questions, [&](const Question& q) {
           const Direction eye = {kRadius + q.altitude_m, 0.0, 0.0};
           const Direction view = q.view();
@@ -315,11 +329,14 @@ TEST_F(CliPublished, ONeilsTable) {
   constexpr double kTop = 80000.0;
   const Coefficients k = coefficients();
   std::vector<Question> questions;
-  for (int i = 0; i < 60; ++i) questions.push_back({uniform(0.0, 40000.0), uniform(0.0, 85.0), uniform(0.0, 85.0), uniform(0.0, 360.0)});
+  for (int i = 0; i < 60; ++i)
+    questions.push_back({uniform(0.0, 40000.0), uniform(0.0, 85.0), uniform(0.0, 85.0), uniform(0.0, 360.0)});
   // To the top, by Simpson's rule in a coordinate that has most points where the air is dense.
   const Column column = [](double height_m, double scale_height_m, double cos_zenith) {
     const double r = kRadius + height_m;
-    const double end = -r * cos_zenith + std::sqrt(std::max(r * r * (cos_zenith * cos_zenith - 1.0) + (kRadius + kTop) * (kRadius + kTop), 0.0));
+    const double end =
+        -r * cos_zenith +
+        std::sqrt(std::max(r * r * (cos_zenith * cos_zenith - 1.0) + (kRadius + kTop) * (kRadius + kTop), 0.0));
     constexpr int kSteps = 400;
     double sum = 0.0;
     for (int i = 0; i <= kSteps; ++i) {
@@ -331,12 +348,14 @@ TEST_F(CliPublished, ONeilsTable) {
     }
     return sum / (3.0 * kSteps);
   };
-  expect_published(with(k, {"--model", "oneil-table", "--set", "oneil.table_size=512", "--set", "oneil.samples=12"}), questions,
-                   [&](const Question& q) { return oneil(q, k, kRadius, kTop, {7994.0, 1200.0, 0.0}, 12, column); });
+  expect_published(with(k, {"--model", "oneil-table", "--set", "oneil.table_size=512", "--set", "oneil.samples=12"}),
+                   questions, [&](const Question& q) {
+                     return oneil(q, k, kRadius, kTop, {7994.0, 1200.0, 0.0}, 12, column);
+                   });
 }
 
-// The in-scattering integral under the assumptions of section 2, by Simpson's rule, out to the extent, the planet or the
-// flat top.
+// The in-scattering integral under the assumptions of section 2, by Simpson's rule, out to the extent, the planet or
+// the flat top.
 TEST_F(CliPublished, TheHomogeneousMediumOf2012) {
   for (int medium = 0; medium < 4; ++medium) {
     const Coefficients k = coefficients();
@@ -345,12 +364,13 @@ TEST_F(CliPublished, TheHomogeneousMediumOf2012) {
     const double extent_m = number(20000.0, 200000.0);
     const bool hg = medium % 2 == 0;
     std::vector<Question> questions;
-    for (int i = 0; i < 100; ++i) questions.push_back({uniform(0.0, 8000.0), uniform(0.0, 180.0), uniform(0.0, 180.0), uniform(0.0, 360.0)});
+    for (int i = 0; i < 100; ++i)
+      questions.push_back({uniform(0.0, 8000.0), uniform(0.0, 180.0), uniform(0.0, 180.0), uniform(0.0, 360.0)});
     expect_published(
         with(k, {"--model", "homogeneous-medium", "--set", "homogeneous_medium.density=" + text(density), "--set",
-                 "homogeneous_medium.height_m=" + text(height_m), "--set", "homogeneous_medium.extent_m=" + text(extent_m), "--set",
-                 "homogeneous_medium.sunlight=1,0.5,0.25", "--set",
-                 std::string("atmosphere.mie_phase=") + (hg ? "henyey-greenstein" : "cornette-shanks")}),
+                 "homogeneous_medium.height_m=" + text(height_m), "--set",
+                 "homogeneous_medium.extent_m=" + text(extent_m), "--set", "homogeneous_medium.sunlight=1,0.5,0.25",
+                 "--set", std::string("atmosphere.mie_phase=") + (hg ? "henyey-greenstein" : "cornette-shanks")}),
         questions, [&](const Question& q) {
           constexpr double kRadius = 6360000.0;
           const Direction eye = {kRadius + q.altitude_m, 0.0, 0.0};

@@ -110,7 +110,8 @@ TEST_F(CliScenes, ElevationFilesThatAreNone) {
       {scratch_.write("cut.tif", std::string("II*\0\x08\0\0\0", 8)), "cut.tif"},
       {scratch_.write("cut.asc", grid.substr(0, grid.size() / 2)), "cut.asc"},
       {scratch_.write("text.tif", "no elevations"), "text.tif"},
-      {scratch_.write("narrow.asc", "ncols 1\nnrows 4\nxllcorner 0\nyllcorner 0\ncellsize 500\n1\n2\n3\n4\n"), "narrow.asc"},
+      {scratch_.write("narrow.asc", "ncols 1\nnrows 4\nxllcorner 0\nyllcorner 0\ncellsize 500\n1\n2\n3\n4\n"),
+       "narrow.asc"},
       {scratch_.write("holes.asc",
                       "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 500\nNODATA_value -1\n-1 -1\n-1 -1\n"),
        "holes.asc"},
@@ -125,7 +126,8 @@ TEST_F(CliScenes, ElevationFilesThatAreNone) {
 
 TEST_F(CliScenes, OutputsAreNotWrittenOverInputs) {
   const std::string dem = scratch_.write("dem.png", "an elevation file");
-  const std::string gltf = scratch_.write("model.gltf", R"({"images": [{"uri": "wood%20grain.png"}], "buffers": [{"uri": "data:,"}]})");
+  const std::string gltf =
+      scratch_.write("model.gltf", R"({"images": [{"uri": "wood%20grain.png"}], "buffers": [{"uri": "data:,"}]})");
   const std::string texture = scratch_.write("wood grain.png", "a texture");
   const std::string scene = scratch_.write("scene.exr", "[camera]\nyaw_deg = 1.0\n");
   const std::string frame = scratch_.write("out.0003.png", "a frame that is an elevation file");
@@ -139,8 +141,10 @@ TEST_F(CliScenes, OutputsAreNotWrittenOverInputs) {
   refused({"render", scene, "-o", scene}, "is the scene file of this run, -o");
   refused({"render", "--set", "terrain.source=" + frame, "--frames", "5", "-o", scratch_.at("out.%04d.png")},
           "is terrain.source of this run, -o");
-  refused({"sky", scene, "-o", scene, "--sun-elevation-deg", "5", "--sun-azimuth-deg", "5"}, "is the scene file of this run, -o");
-  const std::string queries = scratch_.write("q.csv", "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n0,0,0,0\n");
+  refused({"sky", scene, "-o", scene, "--sun-elevation-deg", "5", "--sun-azimuth-deg", "5"},
+          "is the scene file of this run, -o");
+  const std::string queries =
+      scratch_.write("q.csv", "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n0,0,0,0\n");
   refused({"probe", "--queries", queries, "-o", queries}, "is the file of queries of this run, -o");
   EXPECT_EQ(contents_of(dem), "an elevation file");
   EXPECT_EQ(contents_of(texture), "a texture");
@@ -150,7 +154,8 @@ TEST_F(CliScenes, OutputsAreNotWrittenOverInputs) {
 // Values that are not a range are refused with the other bad input, before a device is opened.
 TEST_F(CliScenes, ValuesThatAreNoRangeAreBadInput) {
   for (const std::string& setting : {std::string("scattering.downscale=3"), std::string("tables.size=32,127,64,16")}) {
-    const Outcome outcome = run_tyndall({"render", "--device", "no such device", "--set", setting, "-o", scratch_.at("a.png")});
+    const Outcome outcome =
+        run_tyndall({"render", "--device", "no such device", "--set", setting, "-o", scratch_.at("a.png")});
     EXPECT_EQ(outcome.status, 2);
     EXPECT_EQ(outcome.err.find("no such device"), std::string::npos) << outcome.err;
     EXPECT_NE(outcome.err.find("allowed is"), std::string::npos) << outcome.err;
@@ -163,9 +168,11 @@ TEST_F(CliScenes, MeshFilesThatAreNone) {
       {scratch_.at(""), "Is a directory"},
       {scratch_.write("empty.gltf", ""), "is no glTF file"},
       {scratch_.write("text.gltf", "no meshes"), "is no glTF file"},
-      {scratch_.write("cut.glb", std::string("glTF\2\0\0\0\x40\0\0\0", 12)), "cut.glb: is a .glb that states 64 bytes and has 12"},
+      {scratch_.write("cut.glb", std::string("glTF\2\0\0\0\x40\0\0\0", 12)),
+       "cut.glb: is a .glb that states 64 bytes and has 12"},
       {scratch_.write("bare.gltf", R"({"asset":{"version":"2.0"}})"), "no triangles"},
-      {scratch_.write("outside.gltf", R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":12,"uri":"none.bin"}]})"), "none.bin"},
+      {scratch_.write("outside.gltf", R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":12,"uri":"none.bin"}]})"),
+       "none.bin"},
   };
   for (const auto& [source, part] : sources) {
     const Outcome outcome = render({"--set", "terrain.source=none", "--set", "meshes.source=" + source});
@@ -174,12 +181,15 @@ TEST_F(CliScenes, MeshFilesThatAreNone) {
     EXPECT_FALSE(std::filesystem::exists(scratch_.at("out.png")));
   }
   // Other models draw the terrain and the sky only.
-  expect_one_line(render({"--set", "meshes.source=hall", "--set", "scattering.model=homogeneous"}), 2, "scattering.model");
+  expect_one_line(render({"--set", "meshes.source=hall", "--set", "scattering.model=homogeneous"}), 2,
+                  "scattering.model");
 }
 
 TEST_F(CliScenes, WithoutADeviceThereIsOneLine) {
-  const Environment none({{"VK_ICD_FILENAMES", scratch_.at("none.json")}, {"VK_DRIVER_FILES", scratch_.at("none.json")}});
-  const std::string queries = scratch_.write("q.csv", "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n0,1,2,3\n");
+  const Environment none(
+      {{"VK_ICD_FILENAMES", scratch_.at("none.json")}, {"VK_DRIVER_FILES", scratch_.at("none.json")}});
+  const std::string queries =
+      scratch_.write("q.csv", "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n0,1,2,3\n");
   expect_one_line(render({}), 1, "driver is needed");
   expect_one_line(run_tyndall({"bench"}), 1, "driver is needed");
   expect_one_line(run_tyndall({"devices"}), 1, "driver is needed");
@@ -187,7 +197,8 @@ TEST_F(CliScenes, WithoutADeviceThereIsOneLine) {
   EXPECT_FALSE(std::filesystem::exists(scratch_.at("out.png")));
   // What needs no device works without: the reference, and the sky.
   EXPECT_EQ(run_tyndall({"probe", "--queries", queries, "--model", "reference", "--samples", "64"}).status, 0);
-  const std::string sky = scratch_.write("sky.csv", "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n0,sky,2,\n");
+  const std::string sky =
+      scratch_.write("sky.csv", "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n0,sky,2,\n");
   EXPECT_EQ(run_tyndall({"probe", "--queries", sky, "--model", "single"}).status, 0);
 }
 
@@ -239,12 +250,13 @@ TEST_F(CliScenes, APictureThatDoesNotFitLeavesWhatWasThere) {
 
 // What each frame of a flight was drawn with stands in its metadata.
 TEST_F(CliScenes, FlightsArePlayed) {
-  const std::string scene = scratch_.write("flight.toml",
-                                           "planet.radius_m = 20000\ntables = { size = [4, 4, 4, 4], orders = 1 }\n"
-                                           "shadows = { cascades = 1, first_marched = 0, resolution = 512 }\n"
-                                           "[[path]]\ntime_s = 0\nyaw_deg = 350\nsun_elevation_deg = 60\n"
-                                           "[[path]]\ntime_s = 2\nyaw_deg = 30\nsun_elevation_deg = 1\n");
-  const Outcome outcome = run_tyndall({"render", scene, "--size", "16x9", "--frames", "3", "--time-step", "1", "-o", scratch_.at("f%d.png")});
+  const std::string scene =
+      scratch_.write("flight.toml", "planet.radius_m = 20000\ntables = { size = [4, 4, 4, 4], orders = 1 }\n"
+                                    "shadows = { cascades = 1, first_marched = 0, resolution = 512 }\n"
+                                    "[[path]]\ntime_s = 0\nyaw_deg = 350\nsun_elevation_deg = 60\n"
+                                    "[[path]]\ntime_s = 2\nyaw_deg = 30\nsun_elevation_deg = 1\n");
+  const Outcome outcome = run_tyndall(
+      {"render", scene, "--size", "16x9", "--frames", "3", "--time-step", "1", "-o", scratch_.at("f%d.png")});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto has = [&](int frame, const std::string& key, const std::string& value) {
     const std::string png = contents_of(scratch_.at("f" + std::to_string(frame) + ".png"));
@@ -263,12 +275,18 @@ TEST_F(CliScenes, ElevationFilesGiveFlightsTheirPlace) {
   std::string grid = "ncols 4\nnrows 4\nxllcorner 35.4\nyllcorner 31.4\ncellsize 0.01\n";
   for (int i = 0; i < 16; ++i) grid += "100" + std::string(i % 4 == 3 ? "\n" : " ");
   const std::string dates = "date = \"2026-06-21T09:30:00Z\"\n";
-  const std::string scene = scratch_.write("flight.toml", "[[path]]\ntime_s = 0\n" + dates + "[[path]]\ntime_s = 2\n" + dates);
+  const std::string scene =
+      scratch_.write("flight.toml", "[[path]]\ntime_s = 0\n" + dates + "[[path]]\ntime_s = 2\n" + dates);
   const std::string file = scratch_.write("g.asc", grid);
   const std::string out = scratch_.at("out.exr");
-  const std::vector<std::string> common = {"render", scene, "-o", out, "--size", "16x9", "--set", "tables.size=4,4,4,4", "--set",
-                                           "tables.orders=1", "--set", "shadows.cascades=1", "--set", "shadows.first_marched=0",
-                                           "--set", "shadows.resolution=512"};
+  const std::vector<std::string> common = {"render", scene,
+                                           "-o",     out,
+                                           "--size", "16x9",
+                                           "--set",  "tables.size=4,4,4,4",
+                                           "--set",  "tables.orders=1",
+                                           "--set",  "shadows.cascades=1",
+                                           "--set",  "shadows.first_marched=0",
+                                           "--set",  "shadows.resolution=512"};
   EXPECT_EQ(run_tyndall(common).status, 2) << "procedural terrain is nowhere";
   std::vector<std::string> placed = common;
   placed.insert(placed.end(), {"--set", "terrain.source=" + file});
@@ -278,7 +296,8 @@ TEST_F(CliScenes, ElevationFilesGiveFlightsTheirPlace) {
   const std::string header = contents_of(out);
   const std::size_t at = header.find("tyndall.sun.elevation_deg");
   ASSERT_NE(at, std::string::npos);
-  const double elevation = std::stod(header.substr(at + std::string("tyndall.sun.elevation_deg").size() + 1 + 7 + 4, 12));
+  const double elevation =
+      std::stod(header.substr(at + std::string("tyndall.sun.elevation_deg").size() + 1 + 7 + 4, 12));
   EXPECT_GT(elevation, 80.0);
   EXPECT_LT(elevation, 83.0);
   // Metres say nothing about the place.
@@ -296,11 +315,13 @@ TEST_F(CliScenes, PresetsAreScenes) {
 }
 
 TEST_F(CliScenes, BenchSaysWhatIsPromised) {
-  const Outcome outcome = run_tyndall({"bench", "--json", "--size", "16x9", "--frames", "2", "--set", "planet.radius_m=20000",
-                                       "--set", "tables.size=4,4,4,4", "--set", "tables.orders=1"});
+  const Outcome outcome =
+      run_tyndall({"bench", "--json", "--size", "16x9", "--frames", "2", "--set", "planet.radius_m=20000", "--set",
+                   "tables.size=4,4,4,4", "--set", "tables.orders=1"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const nlohmann::json report = nlohmann::json::parse(outcome.out);
-  for (const char* const key : {"device", "size", "frames", "passes", "effect_ms", "frame_ms", "floor_ms", "counters", "memory_bytes"}) {
+  for (const char* const key :
+       {"device", "size", "frames", "passes", "effect_ms", "frame_ms", "floor_ms", "counters", "memory_bytes"}) {
     EXPECT_TRUE(report.contains(key)) << key;
   }
   EXPECT_EQ(report["size"], nlohmann::json({16, 9}));
@@ -320,15 +341,16 @@ TEST_F(CliScenes, BenchSaysWhatIsPromised) {
   }
   EXPECT_EQ(report["counters"]["pixels_corrected"], 0);
   std::uint64_t bytes = 0;
-  for (const auto& [name, size] : report["memory_bytes"]["effect_resources"].items()) bytes += size.get<std::uint64_t>();
+  for (const auto& [name, size] : report["memory_bytes"]["effect_resources"].items())
+    bytes += size.get<std::uint64_t>();
   EXPECT_EQ(report["memory_bytes"]["effect_persistent"], bytes);
 }
 
 // The march is done once for each cascade: its time is that of all of them, so that one frame's passes are its effect.
 TEST_F(CliScenes, BenchAddsUpPassesThatAreDoneSeveralTimes) {
-  const Outcome outcome = run_tyndall({"bench", "--json", "--size", "64x36", "--frames", "1", "--set", "planet.radius_m=20000",
-                                       "--set", "tables.size=4,4,4,4", "--set", "tables.orders=1", "--set",
-                                       "shadows.cascade_processing=multi-pass"});
+  const Outcome outcome = run_tyndall({"bench", "--json", "--size", "64x36", "--frames", "1", "--set",
+                                       "planet.radius_m=20000", "--set", "tables.size=4,4,4,4", "--set",
+                                       "tables.orders=1", "--set", "shadows.cascade_processing=multi-pass"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const nlohmann::json report = nlohmann::json::parse(outcome.out);
   double effect_ms = 0.0;

@@ -62,15 +62,13 @@ TEST(CliSkyMap, TheDiscHoldsTheDirectSunAtEverySize) {
   for (const auto& [width, height] :
        {std::pair(2U, 1U), std::pair(16U, 8U), std::pair(333U, 77U), std::pair(2048U, 1024U)}) {
     // In the open, at the seam of the map, at the zenith, and near it.
-    for (const auto& [elevation, azimuth] :
-         {std::pair(30.0, 100.0), std::pair(45.0, 0.0), std::pair(20.0, -720.05), std::pair(90.0, 40.0),
-          std::pair(89.9, 200.0)}) {
+    for (const auto& [elevation, azimuth] : {std::pair(30.0, 100.0), std::pair(45.0, 0.0), std::pair(20.0, -720.05),
+                                             std::pair(90.0, 40.0), std::pair(89.9, 200.0)}) {
       const SkyMap map = map_of(width, height, elevation, azimuth);
       image::Image image(width, height);
       add_sun(image, map, kFace, medium);
       const std::array<double, 3> found = integral(image, false);
-      const std::array<double, 3> passed =
-          models::sun_transmittance(medium, 0.0, std::sin(elevation * kRadPerDeg));
+      const std::array<double, 3> passed = models::sun_transmittance(medium, 0.0, std::sin(elevation * kRadPerDeg));
       for (std::size_t c = 0; c < 3; ++c) {
         // Pixels are floats, and the air is not quite the same over the disc.
         EXPECT_NEAR(found[c], 10.0 * passed[c], 2e-5 * 10.0) << width << ' ' << elevation << ' ' << azimuth;
@@ -137,15 +135,14 @@ TEST_F(CliSky, TheUpperHalfHoldsTheIrradianceOfTheSky) {
   for (const double elevation : {60.0, 15.0, 0.0, -4.0}) {
     for (const double altitude : {0.0, 9000.0}) {
       // The sun's irradiance is 10 and the scale 0.5.
-      const image::File file = make(with_single(
-          {"--size", "180x360", "--sun-elevation-deg", config::number_text(elevation), "--sun-azimuth-deg",
-           "77", "--altitude", config::number_text(altitude), "--disc", "false"}));
+      const image::File file = make(
+          with_single({"--size", "180x360", "--sun-elevation-deg", config::number_text(elevation), "--sun-azimuth-deg",
+                       "77", "--altitude", config::number_text(altitude), "--disc", "false"}));
       const std::array<double, 3> found = integral(file.image, true);
-      const std::array<double, 3> truth = probe(
-          config::number_text(altitude) + ",sky," + config::number_text(90.0 - elevation) + ",", kSingle);
+      const std::array<double, 3> truth =
+          probe(config::number_text(altitude) + ",sky," + config::number_text(90.0 - elevation) + ",", kSingle);
       for (std::size_t c = 0; c < 3; ++c) {
-        EXPECT_NEAR(found[c], 5.0 * truth[c], 0.005 * 5.0 * truth[c])
-            << elevation << ' ' << altitude << ' ' << c;
+        EXPECT_NEAR(found[c], 5.0 * truth[c], 0.005 * 5.0 * truth[c]) << elevation << ' ' << altitude << ' ' << c;
       }
     }
   }
@@ -153,8 +150,8 @@ TEST_F(CliSky, TheUpperHalfHoldsTheIrradianceOfTheSky) {
 
 TEST_F(CliSky, PixelsAreRays) {
   const image::File file =
-      make(with_single({"--size", "36x18", "--sun-elevation-deg", "30", "--sun-azimuth-deg", "40",
-                        "--altitude", "400000", "--set", "sun.irradiance=2", "--set", "scattering.scale=1"}));
+      make(with_single({"--size", "36x18", "--sun-elevation-deg", "30", "--sun-azimuth-deg", "40", "--altitude",
+                        "400000", "--set", "sun.irradiance=2", "--set", "scattering.scale=1"}));
   for (const auto& [x, y] : {std::pair(4U, 11U), std::pair(20U, 17U), std::pair(7U, 5U)}) {
     const std::string ray =
         "400000," + config::number_text(5.0 + 10.0 * y) + ",60," + config::number_text(5.0 + 10.0 * x - 40.0);
@@ -178,8 +175,8 @@ TEST_F(CliSky, PixelsAreRays) {
 }
 
 TEST_F(CliSky, DiscsBeyondHalfPrecisionAreNoted) {
-  const std::vector<std::string> sky = with_single({"sky", "-o", scratch_.at("sky.exr"), "--size", "2048x1024", "--sun-elevation-deg",
-                                                    "60", "--sun-azimuth-deg", "0"});
+  const std::vector<std::string> sky = with_single({"sky", "-o", scratch_.at("sky.exr"), "--size", "2048x1024",
+                                                    "--sun-elevation-deg", "60", "--sun-azimuth-deg", "0"});
   const Outcome noted = run_tyndall(sky);
   EXPECT_EQ(noted.status, 0);
   EXPECT_NE(noted.err.find("tyndall: note: the sun's disc has values up to "), std::string::npos) << noted.err;
@@ -190,15 +187,14 @@ TEST_F(CliSky, DiscsBeyondHalfPrecisionAreNoted) {
 }
 
 TEST_F(CliSky, TheGroundIsThatOfTheReference) {
-  const image::File file = make(with_single(
-      {"--size", "4x6", "--sun-elevation-deg", "40", "--sun-azimuth-deg", "45", "--altitude", "5000",
-       "--disc", "false", "--set", "planet.ground_albedo=0.4", "--set", "sun.irradiance=2,4,0.5"}));
+  const image::File file =
+      make(with_single({"--size", "4x6", "--sun-elevation-deg", "40", "--sun-azimuth-deg", "45", "--altitude", "5000",
+                        "--disc", "false", "--set", "planet.ground_albedo=0.4", "--set", "sun.irradiance=2,4,0.5"}));
   constexpr double kSun[] = {1.0, 2.0, 0.25};  // times the scale of 0.5
   for (const auto& [x, y] : {std::pair(0U, 5U), std::pair(2U, 4U), std::pair(1U, 3U)}) {
-    const std::string ray =
-        "5000," + config::number_text(15.0 + 30.0 * y) + ",50," + config::number_text(90.0 * x);
-    const std::array<double, 3> truth = probe(ray, {"--model", "reference", "--orders", "1", "--samples",
-                                                    "20000", "--set", "planet.ground_albedo=0.4"});
+    const std::string ray = "5000," + config::number_text(15.0 + 30.0 * y) + ",50," + config::number_text(90.0 * x);
+    const std::array<double, 3> truth = probe(
+        ray, {"--model", "reference", "--orders", "1", "--samples", "20000", "--set", "planet.ground_albedo=0.4"});
     for (std::size_t c = 0; c < 3; ++c)
       EXPECT_NEAR(file.image.pixel(x, y)[c], kSun[c] * truth[c], 0.004 * kSun[c] * truth[c]) << x << ' ' << y;
   }
@@ -209,9 +205,18 @@ TEST_F(CliSky, TheDefaultIsThatOfTheReferenceInAllOrders) {
   const std::vector<std::string> tables = {"--set", "tables.size=16,64,32,8"};
   for (const double elevation : {35.0, -2.0}) {
     const std::string sun = config::number_text(90.0 - elevation);
-    std::vector<std::string> arguments = {"--size", "4x6", "--sun-elevation-deg", config::number_text(elevation),
-                                          "--sun-azimuth-deg", "45", "--altitude", "2000", "--disc", "false",
-                                          "--set", "sun.irradiance=2"};
+    std::vector<std::string> arguments = {"--size",
+                                          "4x6",
+                                          "--sun-elevation-deg",
+                                          config::number_text(elevation),
+                                          "--sun-azimuth-deg",
+                                          "45",
+                                          "--altitude",
+                                          "2000",
+                                          "--disc",
+                                          "false",
+                                          "--set",
+                                          "sun.irradiance=2"};
     arguments.insert(arguments.end(), tables.begin(), tables.end());
     const image::File file = make(arguments);
     for (const auto& [x, y] : {std::pair(0U, 0U), std::pair(1U, 1U), std::pair(2U, 2U), std::pair(3U, 3U)}) {
@@ -226,8 +231,8 @@ TEST_F(CliSky, TheDefaultIsThatOfTheReferenceInAllOrders) {
 }
 
 TEST_F(CliSky, TheSunByPlaceAndTime) {
-  const image::File file = make(
-      {"--size", "360x180", "--at", "39.742476,-105.1786", "--time", "2003-10-17T12:30:30-07:00", "--json"});
+  const image::File file =
+      make({"--size", "360x180", "--at", "39.742476,-105.1786", "--time", "2003-10-17T12:30:30-07:00", "--json"});
   const nlohmann::json out = nlohmann::json::parse(out_);
   EXPECT_NEAR(out["sun_elevation_deg"].get<double>(), 39.87205, 0.0005);
   EXPECT_NEAR(out["sun_azimuth_deg"].get<double>(), 194.34024, 0.0005);
@@ -259,8 +264,7 @@ TEST_F(CliSky, WhatIsWrongIsSaid) {
   EXPECT_EQ(error({"--time", "2000-01-01T00:00Z"}), "tyndall: error: --at is missing" + either);
   EXPECT_EQ(error({"--sun-azimuth-deg", "3", "--time", "2000-01-01T00:00Z"}),
             "tyndall: error: the sun is given by angles and by place and time" + either);
-  EXPECT_NE(error({"--at", "91,0", "--time", "2000-01-01T00:00Z"})
-                .find("is out of range, --at, allowed is LAT,LON"),
+  EXPECT_NE(error({"--at", "91,0", "--time", "2000-01-01T00:00Z"}).find("is out of range, --at, allowed is LAT,LON"),
             std::string::npos);
   EXPECT_NE(error({"--at", "1,0", "--time", "2001-02-29T00:00Z"}).find("has no such day, --time, allowed"),
             std::string::npos);

@@ -90,8 +90,8 @@ TEST_F(CliTables, EveryStageHasATime) {
 TEST_F(CliTables, TheExportHoldsWhatTheRendererReads) {
   for (const std::string parameterization : {"yusov", "bruneton", "linear"}) {
     const std::string directory = scratch_.at(parameterization);
-    const std::vector<std::string> set = {"--set", "tables.parameterization=" + parameterization,
-                                          kTwoOrders[0], kTwoOrders[1]};
+    const std::vector<std::string> set = {"--set", "tables.parameterization=" + parameterization, kTwoOrders[0],
+                                          kTwoOrders[1]};
     std::vector<std::string> arguments = set;
     arguments.insert(arguments.end(), {"-o", directory});
     const Outcome outcome = run("tables", arguments);
@@ -164,8 +164,7 @@ TEST_F(CliTables, TheExportHoldsWhatTheRendererReads) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> lights;
     for (std::uint32_t x = 0; x < 64; x += 9) {
       for (std::uint32_t y = 60; y < 256; y += 14) {
-        const double cosine =
-            light["cos_horizon"][x].get<double>() + light["cos_sun_from_horizon"][y].get<double>();
+        const double cosine = light["cos_horizon"][x].get<double>() + light["cos_sun_from_horizon"][y].get<double>();
         if (std::abs(cosine) > 1.0) continue;
         lights.emplace_back(x, y);
         queries += config::number_text(light["altitude_m"][x].get<double>()) + ",sky," +
@@ -193,8 +192,7 @@ TEST_F(CliTables, TheExportHoldsWhatTheRendererReads) {
         };
         const double expected = rayleigh * value(0) + mie * value(1) + value(2);
         EXPECT_NEAR(answers[i]["L"][c].get<double>(), expected, 0.01 * expected + 1e-9)
-            << parameterization << ' ' << t.altitude << ' ' << t.view << ' ' << t.sun << ' ' << t.angle << ' '
-            << c;
+            << parameterization << ' ' << t.altitude << ' ' << t.view << ' ' << t.sun << ' ' << t.angle << ' ' << c;
       }
     }
     for (std::size_t i = 0; i < lights.size(); ++i) {
@@ -203,8 +201,7 @@ TEST_F(CliTables, TheExportHoldsWhatTheRendererReads) {
       for (std::size_t c = 0; c < 3; ++c) {
         const double sky = tables[4][0].pixel(x, y)[c];
         EXPECT_NEAR(answer["L"][c].get<double>(), sky, 0.002 * sky + 1e-9) << x << ' ' << y;
-        if (std::abs(light["cos_sun_from_horizon"][y].get<double>()) < 0.01)
-          continue;  // the disc is not a point there
+        if (std::abs(light["cos_sun_from_horizon"][y].get<double>()) < 0.01) continue;  // the disc is not a point there
         const double sun = tables[3][0].pixel(x, y)[c];
         EXPECT_NEAR(answer["T"][c].get<double>(), sun, 0.002 * sun + 1e-6) << x << ' ' << y;
       }
@@ -264,8 +261,8 @@ class CliTableCache : public CliTables {
  protected:
   // {"from", "ms"}, or null when it fails.
   nlohmann::json sky(std::vector<std::string> more = {}) {
-    more.insert(more.begin(), {"-o", scratch_.at("sky.exr"), "--size", "8x4", "--json", "--sun-elevation-deg",
-                               "20", "--sun-azimuth-deg", "0"});
+    more.insert(more.begin(), {"-o", scratch_.at("sky.exr"), "--size", "8x4", "--json", "--sun-elevation-deg", "20",
+                               "--sun-azimuth-deg", "0"});
     const Outcome outcome = run("sky", more);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     err_ = outcome.err;
@@ -329,12 +326,10 @@ TEST_F(CliTableCache, DamageIsSaidInOneLineAndRepaired) {
   const std::string name = "cache/" + cached()[0];
   std::string bytes = contents_of(scratch_.at(name));
   bytes[bytes.size() / 2] ^= 8;
-  for (const auto& [contents, why] :
-       {std::pair(bytes, "damaged"), std::pair(bytes.substr(0, 100000), "truncated")}) {
+  for (const auto& [contents, why] : {std::pair(bytes, "damaged"), std::pair(bytes.substr(0, 100000), "truncated")}) {
     scratch_.write(name, contents);
     EXPECT_EQ(sky()["from"], "build");
-    EXPECT_EQ(err_,
-              "tyndall: note: the cached file " + scratch_.at(name) + " is " + why + " and is made anew\n");
+    EXPECT_EQ(err_, "tyndall: note: the cached file " + scratch_.at(name) + " is " + why + " and is made anew\n");
     EXPECT_EQ(contents_of(scratch_.at("sky.exr")), good);
   }
   EXPECT_EQ(sky()["from"], "cache");
@@ -343,11 +338,10 @@ TEST_F(CliTableCache, DamageIsSaidInOneLineAndRepaired) {
   const std::string blocked = "tables.cache=" + scratch_.write("blocked", "");
   const std::string queries =
       scratch_.write("q.csv", "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n0,1,2,3\n");
-  const std::vector<std::vector<std::string>> verbs = {
-      {"tables"},
-      {"probe", "--queries", queries},
-      {"render", "--size", "16x9", "-o", scratch_.at("a.png")},
-      {"bench", "--size", "16x9", "--frames", "1"}};
+  const std::vector<std::vector<std::string>> verbs = {{"tables"},
+                                                       {"probe", "--queries", queries},
+                                                       {"render", "--size", "16x9", "-o", scratch_.at("a.png")},
+                                                       {"bench", "--size", "16x9", "--frames", "1"}};
   for (std::vector<std::string> arguments : verbs) {
     arguments.insert(arguments.end(), kSmall.begin(), kSmall.end());
     arguments.insert(arguments.end(), {"--set", blocked});

@@ -25,13 +25,13 @@ TEST_F(CliValidate, ReportsAndPagesAreTheSameEveryTime) {
   const std::string html = scratch_.at("report.html");
   const std::string page = scratch_.at("page.md");
   // Small tables: the report is tested, not their accuracy.
-  const Outcome outcome = run({"-o", html, "--markdown", page, "--json", "--set", "atmosphere.mie_g=0.7", "--set", "tables.size=8,32,32,4"});
+  const Outcome outcome = run(
+      {"-o", html, "--markdown", page, "--json", "--set", "atmosphere.mie_g=0.7", "--set", "tables.size=8,32,32,4"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
   const nlohmann::json json = nlohmann::json::parse(outcome.out);
-  const std::string command =
-      "tyndall validate -o REPORT.html --rays 36 --samples 300 --seed 7 --orders 3 --set "
-      "atmosphere.mie_g=0.7 --set tables.size=8,32,32,4";
+  const std::string command = "tyndall validate -o REPORT.html --rays 36 --samples 300 --seed 7 --orders 3 --set "
+                              "atmosphere.mie_g=0.7 --set tables.size=8,32,32,4";
   EXPECT_EQ(json["command"], command);
   EXPECT_NE(contents_of(html).find(command), std::string::npos);
   EXPECT_NE(contents_of(page).find("    " + command + "\n"), std::string::npos);
@@ -49,7 +49,9 @@ TEST_F(CliValidate, ReportsAndPagesAreTheSameEveryTime) {
   EXPECT_TRUE(found);
   const std::string first_html = contents_of(html);
   const std::string first_page = contents_of(page);
-  ASSERT_EQ(run({"-o", html, "--markdown", page, "--set", "atmosphere.mie_g=0.7", "--set", "tables.size=8,32,32,4"}).status, 0);
+  ASSERT_EQ(
+      run({"-o", html, "--markdown", page, "--set", "atmosphere.mie_g=0.7", "--set", "tables.size=8,32,32,4"}).status,
+      0);
   EXPECT_EQ(contents_of(html), first_html);
   EXPECT_EQ(contents_of(page), first_page);
 }
@@ -61,10 +63,8 @@ TEST_F(CliValidate, WhatIsWrongIsSaid) {
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
     return outcome.err;
   };
-  EXPECT_EQ(error({}),
-            "tyndall: error: no output file, -o, needed is -o REPORT.html, --markdown FILE or --json\n");
-  EXPECT_NE(error({"-o", scratch_.at("a.pdf")}).find("-o, allowed is a name in .html or .htm"),
-            std::string::npos);
+  EXPECT_EQ(error({}), "tyndall: error: no output file, -o, needed is -o REPORT.html, --markdown FILE or --json\n");
+  EXPECT_NE(error({"-o", scratch_.at("a.pdf")}).find("-o, allowed is a name in .html or .htm"), std::string::npos);
   EXPECT_NE(error({"--markdown", scratch_.at("a.txt")}).find("--markdown, allowed is a name in .md"),
             std::string::npos);
   EXPECT_NE(error({"-o", scratch_.at("no/a.html")}, 1).find("No such file or directory"), std::string::npos);

@@ -44,8 +44,8 @@ const std::vector<Box> kBuildings = {
     {{-5200, 0, -14000}, {-4000, 4200, -12500}}, {{300, 0, -16000}, {1900, 4800, -15500}},
     {{3500, 0, -15000}, {4200, 3900, -14000}},   {{-700, 0, -4200}, {-350, 1500, -3900}},
     {{6000, 0, -26000}, {9500, 5000, -24000}},   {{-12000, 0, -29000}, {-7000, 5500, -27000}},
-    {{900, 1500, -5200}, {1500, 1800, -4800}},    // hovers
-    {{-4000, 0, 3000}, {4000, 2500, 4000}},       // behind the camera
+    {{900, 1500, -5200}, {1500, 1800, -4800}},  // hovers
+    {{-4000, 0, 3000}, {4000, 2500, 4000}},     // behind the camera
 };
 
 double first_hit(const BoxScene& scene, bool ground, const glm::dvec3& from, const glm::dvec3& direction) {
@@ -53,7 +53,8 @@ double first_hit(const BoxScene& scene, bool ground, const glm::dvec3& from, con
   if (!scene.buildings) return nearest;
   const glm::dvec3 above = from - glm::dvec3(0.0, scene.ground_altitude_m, 0.0);
   for (const Box& box : scene.own_buildings.empty() ? kBuildings : scene.own_buildings) {
-    nearest = std::min(nearest, scene.building_size * hit_box(box.low, box.high, above / scene.building_size, direction));
+    nearest =
+        std::min(nearest, scene.building_size * hit_box(box.low, box.high, above / scene.building_size, direction));
   }
   return nearest;
 }
@@ -103,7 +104,9 @@ TestFrame frame_of(const BoxScene& scene) {
   for (std::uint32_t i = 0; i < scene.cascades; ++i) {
     Cascade cascade;
     // Each twice as deep as the one before.
-    const auto end = [&](std::uint32_t c) { return scene.far_m * std::ldexp(1.0, static_cast<int>(c) - static_cast<int>(scene.cascades) + 1); };
+    const auto end = [&](std::uint32_t c) {
+      return scene.far_m * std::ldexp(1.0, static_cast<int>(c) - static_cast<int>(scene.cascades) + 1);
+    };
     cascade.near_m = i <= scene.first_marched ? 0.0F : static_cast<float>(end(i - 1));
     cascade.far_m = static_cast<float>(end(i));
     Map map;
@@ -140,10 +143,12 @@ TestFrame frame_of(const BoxScene& scene) {
   if (scene.panes_m > 0.0) {
     frame.shadow_color = [scene, maps](std::uint32_t c, double u, double v) {
       const Map& map = maps[c];
-      const glm::dvec3 place = map.middle + map.right * ((2.0 * u - 1.0) * map.half_m) + map.up * ((2.0 * v - 1.0) * map.half_m);
+      const glm::dvec3 place =
+          map.middle + map.right * ((2.0 * u - 1.0) * map.half_m) + map.up * ((2.0 * v - 1.0) * map.half_m);
       const auto column = static_cast<long>(std::floor(glm::dot(place, map.right) / scene.panes_m));
       const auto row = static_cast<long>(std::floor(glm::dot(place, map.up) / scene.panes_m));
-      constexpr glm::dvec3 kPanes[] = {{1.0, 0.15, 0.1}, {0.1, 0.4, 1.0}, {1.0, 1.0, 1.0}, {1.0, 0.75, 0.1}, {0.1, 0.8, 0.3}};
+      constexpr glm::dvec3 kPanes[] = {
+          {1.0, 0.15, 0.1}, {0.1, 0.4, 1.0}, {1.0, 1.0, 1.0}, {1.0, 0.75, 0.1}, {0.1, 0.8, 0.3}};
       return kPanes[static_cast<std::size_t>((column * 2 + row * 3) % 5 + 5) % 5];
     };
   }

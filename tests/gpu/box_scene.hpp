@@ -19,16 +19,16 @@ struct BoxScene {
   VkExtent2D extent = {160, 90};
   double altitude_m = 1200.0, yaw_deg = 0.0, pitch_deg = 3.0;
   double tan_half_height = 0.42;  // width by the picture's shape
-  // The sun, in the sky or, when `sun_in_view`, at a place of the picture: (-1, -1) is the upper left corner, (1, 1) the
-  // lower right one, of its border and not of the outermost pixels' middles.
+  // The sun, in the sky or, when `sun_in_view`, at a place of the picture: (-1, -1) is the upper left corner, (1, 1)
+  // the lower right one, of its border and not of the outermost pixels' middles.
   bool sun_in_view = false;
   double sun_x = 0.0, sun_y = 0.0;
   bool sun_behind = false;  // opposite to that place
   double sun_elevation_deg = 9.0, sun_azimuth_deg = 12.0;
   bool buildings = true;
   std::vector<Box> own_buildings;  // in place of the usual ones, unless empty
-  double building_size = 1.0;  // times theirs, distances included
-  bool ground = true;  // drawn; the planet is there in any case
+  double building_size = 1.0;      // times theirs, distances included
+  bool ground = true;              // drawn; the planet is there in any case
   double ground_altitude_m = 0.0;  // of what is drawn, with the buildings on it
   bool ground_casts = true;
   std::uint32_t cascades = 3, first_marched = 0;
@@ -44,8 +44,8 @@ struct BoxScene {
 // How far a picture is from the reference, as `tyndall compare` says it of two PNGs: the exposure is that at which
 // the reference's mean luminance becomes middle grey, the curve 1 - exp(-x), then sRGB in 8 bits.
 struct Likeness {
-  double psnr_db = 0.0;              // infinite when equal
-  double mean_relative_error = 0.0;  // of linear radiance
+  double psnr_db = 0.0;               // infinite when equal
+  double mean_relative_error = 0.0;   // of linear radiance
   double worst_relative_error = 0.0;  // of a channel, relative to it or a hundredth of the reference's mean
 };
 [[nodiscard]] Likeness compare(const std::vector<glm::dvec3>& picture, const std::vector<glm::dvec3>& reference,

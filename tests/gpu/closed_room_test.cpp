@@ -1,5 +1,5 @@
-// A closed room without windows, seen from inside. Under a sky that does not reach it (meshes.sky_light = 0) all of it is
-// black, surfaces and air: every bit of light is a leak.
+// A closed room without windows, seen from inside. Under a sky that does not reach it (meshes.sky_light = 0) all of it
+// is black, surfaces and air: every bit of light is a leak.
 #include <unistd.h>
 
 #include <algorithm>
@@ -22,11 +22,14 @@ std::string save_room(const std::string& path, float wall_m) {
   const int grey = file.material({{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.5, 0.5, 1}}}}});
   const auto slab = [&](const Point& a, const Point& b) {
     std::vector<Point> corners;
-    for (int i = 0; i < 8; ++i) corners.push_back({(i & 1) != 0 ? b[0] : a[0], (i & 2) != 0 ? b[1] : a[1], (i & 4) != 0 ? b[2] : a[2]});
+    for (int i = 0; i < 8; ++i)
+      corners.push_back({(i & 1) != 0 ? b[0] : a[0], (i & 2) != 0 ? b[1] : a[1], (i & 4) != 0 ? b[2] : a[2]});
     const int position = file.points(corners);
-    const int indices = file.accessor<std::uint16_t>({0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4,
-                                                      2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6}, 5123, "SCALAR", 1);
-    file.node({{"mesh", file.mesh({{"attributes", {{"POSITION", position}}}, {"indices", indices}, {"material", grey}})}});
+    const int indices = file.accessor<std::uint16_t>(
+        {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6},
+        5123, "SCALAR", 1);
+    file.node(
+        {{"mesh", file.mesh({{"attributes", {{"POSITION", position}}}, {"indices", indices}, {"material", grey}})}});
   };
   const auto [x, y, z] = kInside;
   const float w = wall_m;
@@ -41,7 +44,9 @@ std::string save_room(const std::string& path, float wall_m) {
 
 class GpuClosedRoom : public GpuTest {
  protected:
-  GpuClosedRoom() : path_((std::filesystem::temp_directory_path() / ("tyndall-room-" + std::to_string(::getpid()) + ".glb")).string()) {
+  GpuClosedRoom()
+      : path_((std::filesystem::temp_directory_path() / ("tyndall-room-" + std::to_string(::getpid()) + ".glb"))
+                  .string()) {
     params_.tables.size = {8, 32, 32, 4};
     params_.tables.orders = 2;
     params_.planet.radius_m = 100.0e3F;  // few levels of terrain
@@ -89,8 +94,8 @@ class GpuClosedRoom : public GpuTest {
         if (!radiance.ok()) return;
         const std::vector<float>& rgb = radiance.value().rgb;
         EXPECT_EQ(*std::max_element(rgb.begin(), rgb.end()), 0.0F)
-            << what << ", " << cascades << " cascades to " << distance_m << " m, sun at " << elevation << ", yaw " << yaw << ", "
-            << std::count_if(rgb.begin(), rgb.end(), [](float v) { return v > 0.0F; }) << " values";
+            << what << ", " << cascades << " cascades to " << distance_m << " m, sun at " << elevation << ", yaw "
+            << yaw << ", " << std::count_if(rgb.begin(), rgb.end(), [](float v) { return v > 0.0F; }) << " values";
       }
     }
   }

@@ -98,8 +98,8 @@ TEST_F(ColoredShafts, AreDownscaled) {
       params.epipolar.samples = 128;
       params.scattering.medium = medium;
       params.shadows.cascade_processing = processing;
-      const std::string name = std::string(medium == MediumKind::atmosphere ? "atmosphere" : "homogeneous") + ", processing " +
-                               std::to_string(static_cast<int>(processing));
+      const std::string name = std::string(medium == MediumKind::atmosphere ? "atmosphere" : "homogeneous") +
+                               ", processing " + std::to_string(static_cast<int>(processing));
       const Picture full = draw(params, name);
       for (const std::uint32_t downscale : {2U, 4U}) {
         params.scattering.downscale = downscale;
@@ -147,8 +147,8 @@ TEST_F(ColoredShafts, OneColorScalesTheLight) {
   }
 }
 
-// With the glass's depth the air on the sun's side of it has the sun's own colour: above everything it colours all, below
-// everything nothing, and in between what lies below it; epipolar sampling as brute force.
+// With the glass's depth the air on the sun's side of it has the sun's own colour: above everything it colours all,
+// below everything nothing, and in between what lies below it; epipolar sampling as brute force.
 TEST_F(ColoredShafts, OnlyTheAirBehindTheGlassIsColored) {
   for (const bool reversed : {false, true}) {
     BoxScene scene = colored();
@@ -165,7 +165,8 @@ TEST_F(ColoredShafts, OnlyTheAirBehindTheGlassIsColored) {
     const auto level = [cascades = frame.cascades](double height_m) {
       return [cascades, height_m](std::uint32_t c, double u, double v) {
         glm::dmat4 shadow_from_world;
-        for (int i = 0; i < 16; ++i) shadow_from_world[i / 4][i % 4] = static_cast<double>(cascades[c].shadow_from_world.m[i]);
+        for (int i = 0; i < 16; ++i)
+          shadow_from_world[i / 4][i % 4] = static_cast<double>(cascades[c].shadow_from_world.m[i]);
         const glm::dmat4 world_from_shadow = glm::inverse(shadow_from_world);
         const double near = (world_from_shadow * glm::dvec4(u, v, 0.0, 1.0)).y;
         const double far = (world_from_shadow * glm::dvec4(u, v, 1.0, 1.0)).y;
@@ -180,7 +181,9 @@ TEST_F(ColoredShafts, OnlyTheAirBehindTheGlassIsColored) {
       const Picture everywhere = draw(params, name + ", everywhere", true);
       frame.glass_depth = level(1e6);
       show(frame);
-      EXPECT_LE(compare(draw(params, name + ", glass above all", true), everywhere, scene.extent).worst_relative_error, 1e-6) << name;
+      EXPECT_LE(compare(draw(params, name + ", glass above all", true), everywhere, scene.extent).worst_relative_error,
+                1e-6)
+          << name;
       TestFrame bare = frame;
       bare.shadow_color = nullptr;
       show(bare);

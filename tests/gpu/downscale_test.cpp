@@ -33,10 +33,32 @@ TEST_F(Downscale, IsLikeFullResolution) {
   };
   const Case cases[] = {
       {"towards the sun", [](BoxScene&) {}, 43.0, 38.0},
-      {"sun in view", [](BoxScene& s) { s.sun_in_view = true; s.sun_x = 0.2; s.sun_y = -0.4; s.pitch_deg = 8.0; }, 43.0, 38.0},
-      {"sun behind", [](BoxScene& s) { s.sun_in_view = true; s.sun_behind = true; s.pitch_deg = -6.0; }, 43.0, 38.0},
-      {"nothing but planet and sky", [](BoxScene& s) { s.buildings = s.ground = false; s.cascades = 0; }, 50.0, 44.0},
-      {"an odd size", [](BoxScene& s) { s.extent = {251, 141}; }, 43.0, 38.0},
+      {"sun in view",
+       [](BoxScene& s) {
+         s.sun_in_view = true;
+         s.sun_x = 0.2;
+         s.sun_y = -0.4;
+         s.pitch_deg = 8.0;
+       },
+       43.0, 38.0},
+      {"sun behind",
+       [](BoxScene& s) {
+         s.sun_in_view = true;
+         s.sun_behind = true;
+         s.pitch_deg = -6.0;
+       },
+       43.0, 38.0},
+      {"nothing but planet and sky",
+       [](BoxScene& s) {
+         s.buildings = s.ground = false;
+         s.cascades = 0;
+       },
+       50.0, 44.0},
+      {"an odd size",
+       [](BoxScene& s) {
+         s.extent = {251, 141};
+       },
+       43.0, 38.0},
   };
   for (const MediumKind medium : {MediumKind::atmosphere, MediumKind::homogeneous}) {
     const std::string of = medium == MediumKind::atmosphere ? "atmosphere, " : "homogeneous, ";
@@ -66,11 +88,13 @@ TEST_F(Downscale, OrderOfCascadesChangesNothing) {
     for (const std::uint32_t downscale : {2U, 4U}) {
       Params params = params_of(medium, downscale);
       const Picture at_once = draw(params, "single-pass");
-      for (const CascadeProcessing processing : {CascadeProcessing::multi_pass, CascadeProcessing::multi_pass_instanced}) {
+      for (const CascadeProcessing processing :
+           {CascadeProcessing::multi_pass, CascadeProcessing::multi_pass_instanced}) {
         params.shadows.cascade_processing = processing;
         const Likeness likeness = compare(draw(params, "in turn"), at_once, frame().extent);
         EXPECT_LE(likeness.worst_relative_error, 1e-3) << downscale << " " << static_cast<int>(processing);
-        RecordProperty("worst: in turn, " + std::to_string(downscale) + " " + std::to_string(static_cast<int>(processing)) +
+        RecordProperty("worst: in turn, " + std::to_string(downscale) + " " +
+                           std::to_string(static_cast<int>(processing)) +
                            (medium == MediumKind::atmosphere ? " atmosphere" : " homogeneous"),
                        std::to_string(likeness.worst_relative_error));
       }
@@ -108,10 +132,12 @@ TEST_F(Downscale, PostsOfOnePixelKeepTheirLight) {
       const Picture picture = draw(params_of(medium, downscale), "posts");
       double worst = 0.0;
       for (std::size_t i = 0; i < picture.size(); ++i) {
-        if (post(static_cast<std::uint32_t>(i % scene.extent.width))) worst = std::max(worst, relative_error(picture[i], truth[i]));
+        if (post(static_cast<std::uint32_t>(i % scene.extent.width)))
+          worst = std::max(worst, relative_error(picture[i], truth[i]));
       }
       EXPECT_LE(worst, 0.3) << downscale;
-      RecordProperty("worst of posts: " + std::to_string(downscale) + (medium == MediumKind::atmosphere ? " atmosphere" : " homogeneous"),
+      RecordProperty("worst of posts: " + std::to_string(downscale) +
+                         (medium == MediumKind::atmosphere ? " atmosphere" : " homogeneous"),
                      std::to_string(worst));
     }
   }

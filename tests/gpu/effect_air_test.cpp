@@ -45,8 +45,10 @@ struct Place {
   double altitude_m, pitch_deg, tan_half;
 };
 // Below sea level, on the ground, in the air, and in space with the planet filling a part of the picture.
-constexpr Place kPlaces[] = {
-    {"below sea level", -430.0, 10.0, 1.0}, {"ground", 2.0, 20.0, 1.0}, {"air", 9000.0, -5.0, 1.2}, {"space", 400000.0, -20.0, 0.7}};
+constexpr Place kPlaces[] = {{"below sea level", -430.0, 10.0, 1.0},
+                             {"ground", 2.0, 20.0, 1.0},
+                             {"air", 9000.0, -5.0, 1.2},
+                             {"space", 400000.0, -20.0, 0.7}};
 
 TEST_F(EffectAir, TheSkyIsTheIntegralFromGroundAirAndSpace) {
   for (const Place& place : kPlaces) {
@@ -148,7 +150,7 @@ TEST_F(EffectAir, SwitchesAndScaleDoWhatTheySay) {
     EXPECT_LE(relative_error(quarter[i], 0.25 * only[i]), kFloat);
     EXPECT_LE(relative_error(tinted[i], only[i] * glm::dvec3(1.0, 2.0, 4.0)), kFloat);
     for (int c = 0; c < 3; ++c) {
-      EXPECT_GT(whole[i][c], only[i][c]);                            // background shines through
+      EXPECT_GT(whole[i][c], only[i][c]);                             // background shines through
       EXPECT_LT(whole[i][c], only[i][c] + frame.background.x * 3.0);  // but is dimmed
     }
   }

@@ -46,8 +46,8 @@ class EffectContract : public GpuTest {
     constexpr std::uint32_t kWidth = 32;
     constexpr std::uint32_t kHeight = 256;
     constexpr VkDeviceSize kBytes = kWidth * kHeight * 16;
-    Result<gpu::Buffer> buffer = gpu::create_buffer(device, "texels", kBytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                                                    gpu::MemoryKind::readback);
+    Result<gpu::Buffer> buffer =
+        gpu::create_buffer(device, "texels", kBytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::readback);
     EXPECT_OK(pipeline);
     EXPECT_OK(sampler);
     EXPECT_OK(buffer);
@@ -170,8 +170,9 @@ TEST_F(EffectContract, ParametersOutOfRangeAreRefusedAndTheOldOnesStay) {
     switch (row.type) {
       case ParamType::float32:
       case ParamType::vec3:
-        for (const float value : {kNaN, kInfinity, -kInfinity, std::nextafter(static_cast<float>(row.max), kInfinity) * 1.001F,
-                                  static_cast<float>(row.min) - 1.0F}) {
+        for (const float value :
+             {kNaN, kInfinity, -kInfinity, std::nextafter(static_cast<float>(row.max), kInfinity) * 1.001F,
+              static_cast<float>(row.min) - 1.0F}) {
           outcomes.push_back(with(value));
         }
         break;
@@ -223,9 +224,7 @@ TEST_F(EffectContract, FramesThatCannotBeDrawnAreErrors) {
   EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.shadow_maps.view = VK_NULL_HANDLE; }));
   EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.shadow_colors = f.shadow_maps; }));
   EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.shadow_colors = f.color; }));  // without EffectDesc::shadow_colors
-  EXPECT_TRUE(refused([](FrameInputs& f, Two&) {
-    f.shadow_colors = {f.color.view, VK_IMAGE_LAYOUT_UNDEFINED};
-  }));
+  EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.shadow_colors = {f.color.view, VK_IMAGE_LAYOUT_UNDEFINED}; }));
   EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.shadow_resolution = 0; }));
   EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.first_marched_cascade = 2; }));
   EXPECT_TRUE(refused([&](FrameInputs& f, Two&) { f.cascades = many; }));
@@ -324,9 +323,7 @@ TEST_F(EffectContract, TwoEffectsOnOneDeviceDoNotKnowOfEachOther) {
     return recorded;
   }));
   // Moving an effect takes its frame along; the first goes while the second is in use.
-  {
-    const Effect gone = std::move(a).value();
-  }
+  { const Effect gone = std::move(a).value(); }
   const Result<std::vector<glm::dvec3>> clear = images_a.value().output(host());
   const Result<std::vector<glm::dvec3>> hazy = images_b.value().output(host());
   ASSERT_OK(clear);
@@ -430,9 +427,9 @@ TEST(EffectAllocation, RecordingAllocatesNothing) {
   // Nor does taking tables from a buffer, and giving them.
   Result<Effect> other = Effect::create(info, desc, {});
   ASSERT_OK(other);
-  const Result<gpu::Buffer> saved = gpu::create_buffer(
-      device, "saved", other.value().table_bytes(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-      gpu::MemoryKind::device);
+  const Result<gpu::Buffer> saved =
+      gpu::create_buffer(device, "saved", other.value().table_bytes(),
+                         VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryKind::device);
   ASSERT_OK(saved);
   ASSERT_OK(host.value()->run([&](VkCommandBuffer cmd) -> Result<void> {
     const VkBuffer buffer = saved.value().buffer.get();

@@ -72,7 +72,8 @@ TEST_F(EffectExtremes, WhateverIsAllowedGivesFiniteLight) {
       TestFrame frame = shape;
       const double top = params.atmosphere.height_m;
       const double deepest = std::max(-11000.0, -0.25 * static_cast<double>(params.planet.radius_m));
-      const double altitude = pick({0.0, 0.5, 1000.0, 0.5 * top, top, 1.01 * top, 10.0 * top, -0.5, 0.04 * deepest, deepest});
+      const double altitude =
+          pick({0.0, 0.5, 1000.0, 0.5 * top, top, 1.01 * top, 10.0 * top, -0.5, 0.04 * deepest, deepest});
       frame.view = TestView::at(altitude, pick({0.0, 1.0, 3.14159265}), pick({-1.5707963, -0.1, 0.0, 0.3, 1.5707963}),
                                 pick({0.01, 0.6, 5.0}));
       const double elevation = pick({-1.5707963, -0.1, 0.0, 0.05, 1.0, 1.5707963});
@@ -100,10 +101,10 @@ TEST_F(EffectExtremes, WhateverIsAllowedGivesFiniteLight) {
               << "frame " << i << " pixel " << p << " channel " << c << " is " << image.value()[p][c] << ": radius "
               << params.planet.radius_m << ", height " << params.atmosphere.height_m << ", scale heights "
               << params.atmosphere.rayleigh_scale_height_m << " " << params.atmosphere.mie_scale_height_m
-              << ", altitude " << altitude << ", sun " << elevation << ", cascades " << count << ", distance " << distance
-              << ", custom " << params.atmosphere.custom_coefficients.value << ", pitch " << frame.view.forward.y
-              << ", technique " << static_cast<std::uint32_t>(params.scattering.technique) << ", single "
-              << static_cast<std::uint32_t>(params.scattering.single) << ", multiple "
+              << ", altitude " << altitude << ", sun " << elevation << ", cascades " << count << ", distance "
+              << distance << ", custom " << params.atmosphere.custom_coefficients.value << ", pitch "
+              << frame.view.forward.y << ", technique " << static_cast<std::uint32_t>(params.scattering.technique)
+              << ", single " << static_cast<std::uint32_t>(params.scattering.single) << ", multiple "
               << static_cast<std::uint32_t>(params.scattering.multiple);
         }
       }

@@ -183,16 +183,22 @@ TEST(EffectFaults, CreationIsRefusedAtEveryAllocation) {
 TEST(EffectFaults, ParametersAreRefusedAtEveryAllocation) {
   for (const Built built : {Built::not_at_all, Built::in_part, Built::completely}) {
     const std::string name = "set_params, tables built " + std::to_string(static_cast<int>(built));
-    refuse_everywhere(name, built, [](Effect& effect) { return effect.set_params(other_params()); }, 60, 10);
+    refuse_everywhere(
+        name, built, [](Effect& effect) { return effect.set_params(other_params()); }, 60, 10);
   }
   // Back to what the finished tables are, from a build that is no longer wanted.
-  refuse_everywhere("set_params back", Built::others_in_part,
-                    [](Effect& effect) { return effect.set_params(small_params()); }, 10, 0);
+  refuse_everywhere(
+      "set_params back", Built::others_in_part, [](Effect& effect) { return effect.set_params(small_params()); }, 10,
+      0);
 }
 
 TEST(EffectFaults, LimitsAreRefusedAtEveryAllocation) {
-  refuse_everywhere("set_limits", Built::completely,
-                    [](Effect& effect) { return effect.set_limits({128, 48}, 6, 300); }, 15, 0);
+  refuse_everywhere(
+      "set_limits", Built::completely,
+      [](Effect& effect) {
+        return effect.set_limits({128, 48}, 6, 300);
+      },
+      15, 0);
 }
 
 // Limits and parameters in one step; what is fixed stays fixed.
@@ -200,15 +206,18 @@ TEST(EffectFaults, ParametersAndLimitsAreRefusedAtEveryAllocation) {
   EffectDesc desc = small_desc();
   desc.max_extent = {128, 48};
   desc.shadow_colors = true;
-  refuse_everywhere("set_params with limits", Built::completely,
-                    [&](Effect& effect) { return effect.set_params(other_params(), desc); }, 60, 10);
+  refuse_everywhere(
+      "set_params with limits", Built::completely,
+      [&](Effect& effect) { return effect.set_params(other_params(), desc); }, 60, 10);
   Effect effect = make(Built::completely);
   const Observed before = observe(effect);
-  const std::function<void(EffectDesc&)> changes[] = {
-      [](EffectDesc& d) { d.views = 2; }, [](EffectDesc& d) { d.frames_in_flight = 3; },
-      [](EffectDesc& d) { d.timings = false; }, [](EffectDesc& d) { d.counters = false; },
-      [](EffectDesc& d) { d.output_format = OutputFormat::rgba16f; }, [](EffectDesc& d) { d.sky_depth = 1.0F; },
-      [](EffectDesc& d) { d.shadow_depth_reversed = true; }};
+  const std::function<void(EffectDesc&)> changes[] = {[](EffectDesc& d) { d.views = 2; },
+                                                      [](EffectDesc& d) { d.frames_in_flight = 3; },
+                                                      [](EffectDesc& d) { d.timings = false; },
+                                                      [](EffectDesc& d) { d.counters = false; },
+                                                      [](EffectDesc& d) { d.output_format = OutputFormat::rgba16f; },
+                                                      [](EffectDesc& d) { d.sky_depth = 1.0F; },
+                                                      [](EffectDesc& d) { d.shadow_depth_reversed = true; }};
   for (const auto& change : changes) {
     EffectDesc other = effect.desc();
     change(other);
@@ -218,8 +227,8 @@ TEST(EffectFaults, ParametersAndLimitsAreRefusedAtEveryAllocation) {
 }
 
 TEST(EffectFaults, ShadowColorsAreRefusedAtEveryAllocation) {
-  refuse_everywhere("set_shadow_colors", Built::completely,
-                    [](Effect& effect) { return effect.set_shadow_colors(true); }, 4, 1);
+  refuse_everywhere(
+      "set_shadow_colors", Built::completely, [](Effect& effect) { return effect.set_shadow_colors(true); }, 4, 1);
 }
 
 TEST(EffectFaults, NoOtherCallThrowsAndRecordingAllocatesNothing) {
@@ -286,7 +295,9 @@ TEST(EffectFaults, NullCommandBuffersAndMovedFromEffectsAreErrors) {
     EXPECT_EQ(outcome.error().code, ErrorCode::invalid_argument);
     EXPECT_FALSE(outcome.error().message.empty());
   };
-  const auto of = [](const Result<Progress>& outcome) { return outcome ? Result<void>() : Result<void>(outcome.error()); };
+  const auto of = [](const Result<Progress>& outcome) {
+    return outcome ? Result<void>() : Result<void>(outcome.error());
+  };
   const auto all_recording = [&](VkCommandBuffer cmd) {
     refuses(effect.record(cmd, fake_frame()));
     refuses(of(effect.record_precompute(cmd)));
@@ -472,7 +483,11 @@ TEST_F(EffectFaultsOnDevice, ThePictureStays) {
   build(effect);
   const std::vector<std::byte> other = draw(effect, images.value(), frame);
   EXPECT_NE(other, first);
-  EXPECT_GE(refuse_everywhere(effect, images.value(), frame, [](Effect& e) { return e.set_limits({200, 100}, 4, 200); }), 10);
+  EXPECT_GE(refuse_everywhere(effect, images.value(), frame,
+                              [](Effect& e) {
+                                return e.set_limits({200, 100}, 4, 200);
+                              }),
+            10);
   EXPECT_EQ(draw(effect, images.value(), frame), other);
   EXPECT_GE(refuse_everywhere(effect, images.value(), frame, [](Effect& e) { return e.set_shadow_colors(true); }), 1);
   EXPECT_EQ(draw(effect, images.value(), frame), other);
@@ -497,17 +512,20 @@ TEST_F(EffectFaultsOnDevice, DestroyingInFlightIsReported) {
   ASSERT_OK(made);
   std::optional<Effect> effect(std::move(made).value());
   const auto reports = [&] {
-    return std::count_if(said.begin(), said.end(), [](const std::string& s) { return s.find("is destroyed") != std::string::npos; });
+    return std::count_if(said.begin(), said.end(),
+                         [](const std::string& s) { return s.find("is destroyed") != std::string::npos; });
   };
   draw(*effect, images.value(), frame);
   FrameInputs inputs = images.value().inputs(frame);
   inputs.frame_index = 1;
   Result<void> recorded;
   // The commands are dropped after recording: an error keeps them from being submitted.
-  EXPECT_FALSE(host().run([&](VkCommandBuffer cmd) -> Result<void> {
-    recorded = effect->record(cmd, inputs);
-    return Error{ErrorCode::invalid_argument, "not submitted"};
-  }).ok());
+  EXPECT_FALSE(host()
+                   .run([&](VkCommandBuffer cmd) -> Result<void> {
+                     recorded = effect->record(cmd, inputs);
+                     return Error{ErrorCode::invalid_argument, "not submitted"};
+                   })
+                   .ok());
   ASSERT_OK(recorded);
   effect.reset();
   EXPECT_EQ(reports(), 1);

@@ -126,8 +126,13 @@ Result<FrameImages> FrameImages::create(gpu::Host& host, const TestFrame& frame,
         }
       }
     }
-    TYNDALL_ASSIGN(out.shadows_, gpu::create_image(device, {"shadows", VK_FORMAT_D32_SFLOAT, {n, n, 1}, kInput,
-                                                            static_cast<std::uint32_t>(frame.cascades.size()), 1, true}));
+    TYNDALL_ASSIGN(out.shadows_, gpu::create_image(device, {"shadows",
+                                                            VK_FORMAT_D32_SFLOAT,
+                                                            {n, n, 1},
+                                                            kInput,
+                                                            static_cast<std::uint32_t>(frame.cascades.size()),
+                                                            1,
+                                                            true}));
     TYNDALL_TRY(gpu::upload(host, out.shadows_, shadows.data(), shadows.size() * 4, kRead));
     if (frame.shadow_color) {
       std::vector<float> glass;
@@ -135,12 +140,18 @@ Result<FrameImages> FrameImages::create(gpu::Host& host, const TestFrame& frame,
         for (std::uint32_t y = 0; y < n; ++y) {
           for (std::uint32_t x = 0; x < n; ++x) {
             const glm::vec3 pane = frame.shadow_color(c, (x + 0.5) / n, (y + 0.5) / n);
-            glass.insert(glass.end(), {pane.x, pane.y, pane.z, frame.glass_depth ? frame.glass_depth(c, (x + 0.5) / n, (y + 0.5) / n) : 1.0F});
+            glass.insert(glass.end(), {pane.x, pane.y, pane.z,
+                                       frame.glass_depth ? frame.glass_depth(c, (x + 0.5) / n, (y + 0.5) / n) : 1.0F});
           }
         }
       }
-      TYNDALL_ASSIGN(out.glass_, gpu::create_image(device, {"glass", VK_FORMAT_R32G32B32A32_SFLOAT, {n, n, 1}, kInput,
-                                                            static_cast<std::uint32_t>(frame.cascades.size()), 1, true}));
+      TYNDALL_ASSIGN(out.glass_, gpu::create_image(device, {"glass",
+                                                            VK_FORMAT_R32G32B32A32_SFLOAT,
+                                                            {n, n, 1},
+                                                            kInput,
+                                                            static_cast<std::uint32_t>(frame.cascades.size()),
+                                                            1,
+                                                            true}));
       TYNDALL_TRY(gpu::upload(host, out.glass_, glass.data(), glass.size() * 4, kRead));
     }
   }
@@ -240,8 +251,7 @@ Result<std::vector<glm::dvec3>> EffectKeeper::render(gpu::Host& host, const Para
   wanted.max_cascades = kMaxCascades;
   auto kept = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) {
     return k.desc.output_format == wanted.output_format && k.desc.sky_depth == wanted.sky_depth &&
-           k.desc.shadow_depth_reversed == wanted.shadow_depth_reversed &&
-           k.desc.shadow_colors == wanted.shadow_colors;
+           k.desc.shadow_depth_reversed == wanted.shadow_depth_reversed && k.desc.shadow_colors == wanted.shadow_colors;
   });
   if (kept == kept_.end()) {
     TYNDALL_ASSIGN(Effect effect, Effect::create(info_of(host), wanted, params));
@@ -255,8 +265,10 @@ Result<std::vector<glm::dvec3>> EffectKeeper::render(gpu::Host& host, const Para
 
 Cascade sun_cascade(const glm::dvec3& to_sun, const glm::dvec3& middle, double half_m, double near_m, double far_m) {
   const glm::dvec3 sun = glm::normalize(to_sun);
-  const glm::dvec3 right = glm::normalize(glm::cross(std::abs(sun.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0), sun));
-  const glm::dvec3 rows[3] = {right * (0.5 / half_m), glm::cross(sun, right) * (0.5 / half_m), sun * (-0.5 / (4.0 * half_m))};
+  const glm::dvec3 right =
+      glm::normalize(glm::cross(std::abs(sun.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0), sun));
+  const glm::dvec3 rows[3] = {right * (0.5 / half_m), glm::cross(sun, right) * (0.5 / half_m),
+                              sun * (-0.5 / (4.0 * half_m))};
   Cascade out;
   out.near_m = static_cast<float>(near_m);
   out.far_m = static_cast<float>(far_m);
@@ -274,7 +286,9 @@ TestFrame small_frame() {
   frame.distance_m = [](std::uint32_t x, std::uint32_t) { return x < 5 ? 8000.0 : 0.0; };
   frame.cascades = {sun_cascade(frame.to_sun, frame.view.position, 50000.0, 0.0, 10000.0),
                     sun_cascade(frame.to_sun, frame.view.position, 50000.0, 10000.0, 20000.0)};
-  frame.shadow_depth = [](std::uint32_t, double u, double v) { return std::fmod(8.0 * u + v, 1.0) < 0.5 ? 0.0F : 1.0F; };
+  frame.shadow_depth = [](std::uint32_t, double u, double v) {
+    return std::fmod(8.0 * u + v, 1.0) < 0.5 ? 0.0F : 1.0F;
+  };
   return frame;
 }
 

@@ -94,7 +94,8 @@ class EffectKeeper {
 [[nodiscard]] EffectDesc desc_for(const TestFrame& frame, OutputFormat format = OutputFormat::rgba32f);
 
 // A square map along the sun's direction, depth 0 nearest to the sun.
-[[nodiscard]] Cascade sun_cascade(const glm::dvec3& to_sun, const glm::dvec3& middle, double half_m, double near_m, double far_m);
+[[nodiscard]] Cascade sun_cascade(const glm::dvec3& to_sun, const glm::dvec3& middle, double half_m, double near_m,
+                                  double far_m);
 // A few pixels of ground and sky under two cascades with shadows in them.
 [[nodiscard]] TestFrame small_frame();
 

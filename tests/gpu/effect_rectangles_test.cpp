@@ -121,14 +121,11 @@ TEST_F(EffectRectangles, OffsetsOutsideTheImagesAreRefused) {
     return text;
   };
   EXPECT_EQ(message([](FrameInputs&) {}), "");
-  EXPECT_NE(message([](FrameInputs& f) { f.color.offset.x = -1; }).find("FrameInputs::color"),
-            std::string::npos);
-  EXPECT_NE(message([](FrameInputs& f) { f.depth.offset.y = -7; }).find("FrameInputs::depth"),
-            std::string::npos);
+  EXPECT_NE(message([](FrameInputs& f) { f.color.offset.x = -1; }).find("FrameInputs::color"), std::string::npos);
+  EXPECT_NE(message([](FrameInputs& f) { f.depth.offset.y = -7; }).find("FrameInputs::depth"), std::string::npos);
   EXPECT_NE(message([](FrameInputs& f) { f.output.offset.x = 2000000000; }).find("FrameInputs::output"),
             std::string::npos);
-  EXPECT_NE(message([](FrameInputs& f) { f.shadow_maps.offset.x = 1; }).find("shadow_maps"),
-            std::string::npos);
+  EXPECT_NE(message([](FrameInputs& f) { f.shadow_maps.offset.x = 1; }).find("shadow_maps"), std::string::npos);
 }
 
 }  // namespace

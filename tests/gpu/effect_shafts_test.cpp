@@ -32,8 +32,10 @@ struct Setting {
 };
 // Shafts of tens of kilometres, and of hundreds where space is between the camera and the air: at the same
 // resolution a texel would be longer than the air is high.
-constexpr Setting kSettings[] = {{"ground", 5.0, 15.0, 40.0e3, 20.0},     {"air", 6000.0, -3.0, 60.0e3, 4.0},
-                                 {"below the horizon", 9000.0, 4.0, 60.0e3, -2.0}, {"zenith", 3000.0, 0.0, 40.0e3, 90.0},
+constexpr Setting kSettings[] = {{"ground", 5.0, 15.0, 40.0e3, 20.0},
+                                 {"air", 6000.0, -3.0, 60.0e3, 4.0},
+                                 {"below the horizon", 9000.0, 4.0, 60.0e3, -2.0},
+                                 {"zenith", 3000.0, 0.0, 40.0e3, 90.0},
                                  {"space", 400000.0, -30.0, 900.0e3, 30.0, 4 * kResolution}};
 
 // Cascades of equal depth to `far_m`; the sun stands in the north or south, so that the plane x = 0 holds it.

@@ -11,7 +11,7 @@ namespace tyndall {
 namespace {
 
 constexpr double kRad = std::numbers::pi / 180.0;
-constexpr double kFar_m = 60.0e3;  // where the only cascade ends
+constexpr double kFar_m = 60.0e3;   // where the only cascade ends
 constexpr double kMap_m = 160.0e3;  // its width
 // Against integration: of the small tables, and of differences of two of their values.
 constexpr double kTableTolerance = 0.03;

@@ -1,5 +1,5 @@
-// Epipolar sampling where it is hardest: an occluder in front of the sun, twilight, and scenes with more depth discontinuities than are
-// corrected. The reference is brute force with the same frame and the same shadow maps.
+// Epipolar sampling where it is hardest: an occluder in front of the sun, twilight, and scenes with more depth
+// discontinuities than are corrected. The reference is brute force with the same frame and the same shadow maps.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,7 +21,7 @@ struct Pillar {
   double sun_from_middle;  // in half widths
   double sun_elevation_deg, altitude_m, far_m;
   float aerosol_density;
-  double bound;            // on the relative error of any pixel of its face
+  double bound;  // on the relative error of any pixel of its face
 };
 
 BoxScene scene_of(const Pillar& pillar) {
@@ -40,8 +40,8 @@ BoxScene scene_of(const Pillar& pillar) {
   return scene;
 }
 
-// The sides of the pillar are left out: shadow maps have texels wider than a pixel, and both techniques read them at different
-// places.
+// The sides of the pillar are left out: shadow maps have texels wider than a pixel, and both techniques read them at
+// different places.
 TEST_F(EpipolarErrors, FaceBeforeTheSunHasNoSparks) {
   const Pillar pillars[] = {
       {"sun in the middle", 500.0, 40.0, 0.0, 9.0, 20.0, 2000.0, 1.0F, 0.05},
@@ -84,8 +84,8 @@ TEST_F(EpipolarErrors, FaceBeforeTheSunHasNoSparks) {
   }
 }
 
-// The planet's shadow bends the light of twilight where the unshadowed light is smooth. The sky above the horizon, at the exposure at
-// which it is seen.
+// The planet's shadow bends the light of twilight where the unshadowed light is smooth. The sky above the horizon, at
+// the exposure at which it is seen.
 TEST_F(EpipolarErrors, TwilightSkyIsLikeBruteForce) {
   BoxScene scene;
   scene.name = "twilight";

@@ -1,6 +1,7 @@
-// Epipolar sampling in every mode against brute force: the same frame, the same shadow maps, at fixed exposure. Each case has a floor,
-// some 3 dB below what it reaches but 40 dB where it reaches that; none may have a pixel that is black, negative or not finite. What
-// its counters, marks and corrections say; changes of parameters between frames in flight.
+// Epipolar sampling in every mode against brute force: the same frame, the same shadow maps, at fixed exposure. Each
+// case has a floor, some 3 dB below what it reaches but 40 dB where it reaches that; none may have a pixel that is
+// black, negative or not finite. What its counters, marks and corrections say; changes of parameters between frames in
+// flight.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -16,9 +17,7 @@ const char* name_of(SingleScattering s) {
   return s == SingleScattering::none ? "none" : s == SingleScattering::integration ? "integration" : "table";
 }
 const char* name_of(MultipleScattering m) {
-  return m == MultipleScattering::none       ? "none"
-         : m == MultipleScattering::occluded ? "occluded"
-                                             : "unoccluded";
+  return m == MultipleScattering::none ? "none" : m == MultipleScattering::occluded ? "occluded" : "unoccluded";
 }
 
 TEST_F(Epipolar, EveryModeIsLikeBruteForce) {
@@ -31,8 +30,7 @@ TEST_F(Epipolar, EveryModeIsLikeBruteForce) {
          {MultipleScattering::none, MultipleScattering::occluded, MultipleScattering::unoccluded}) {
       for (const bool shafts : {true, false}) {
         for (const LitSections sections : {LitSections::contiguous, LitSections::each}) {
-          const bool tables_lit =
-              single == SingleScattering::table || multiple == MultipleScattering::occluded;
+          const bool tables_lit = single == SingleScattering::table || multiple == MultipleScattering::occluded;
           if (sections == LitSections::each && !(shafts && tables_lit)) continue;  // the same as contiguous
           Params params = small_params();
           params.scattering.single = single;
@@ -87,8 +85,7 @@ TEST_F(Epipolar, TreesFormatsAndOrderOfCascadesChangeNothing) {
       base.scattering.single = integrated ? SingleScattering::integration : SingleScattering::table;
       base.scattering.multiple = MultipleScattering::occluded;
       base.scattering.sections = integrated ? LitSections::each : LitSections::contiguous;
-      const std::string where =
-          std::string(integrated ? "integrated" : "tables") + (reached ? "" : ", larger map");
+      const std::string where = std::string(integrated ? "integrated" : "tables") + (reached ? "" : ", larger map");
       const Picture picture = draw(base, where);
       // Trees tell nothing that the maps do not. Another order of additions may move a sample's source by a
       // step of its root in half precision.
@@ -104,8 +101,7 @@ TEST_F(Epipolar, TreesFormatsAndOrderOfCascadesChangeNothing) {
       same("no tree", [](Params& p) { p.epipolar.min_max_tree = false; });
       same("float32", [](Params& p) { p.epipolar.min_max_format = MinMaxFormat::float32; });
       same("multi-pass", [](Params& p) { p.shadows.cascade_processing = CascadeProcessing::multi_pass; });
-      same("instanced",
-           [](Params& p) { p.shadows.cascade_processing = CascadeProcessing::multi_pass_instanced; });
+      same("instanced", [](Params& p) { p.shadows.cascade_processing = CascadeProcessing::multi_pass_instanced; });
       same("instanced without tree", [](Params& p) {
         p.shadows.cascade_processing = CascadeProcessing::multi_pass_instanced;
         p.epipolar.min_max_tree = false;
@@ -144,14 +140,12 @@ TEST_F(Epipolar, CountersSayWhatWasDone) {
   EXPECT_EQ(texels.tree_nodes_visited, 0U);
   EXPECT_GT(texels.shadow_map_fetches, 5 * tree.shadow_map_fetches);
   EXPECT_LT(texels.shadow_map_fetches, brute.shadow_map_fetches);
-  RecordProperty("fetches", std::to_string(brute.shadow_map_fetches) + " " +
-                                std::to_string(texels.shadow_map_fetches) + " " +
-                                std::to_string(tree.shadow_map_fetches));
+  RecordProperty("fetches", std::to_string(brute.shadow_map_fetches) + " " + std::to_string(texels.shadow_map_fetches) +
+                                " " + std::to_string(tree.shadow_map_fetches));
 
   // The same rays, however the cascades follow each other.
   params.epipolar.min_max_tree = true;
-  for (const CascadeProcessing processing :
-       {CascadeProcessing::multi_pass, CascadeProcessing::multi_pass_instanced}) {
+  for (const CascadeProcessing processing : {CascadeProcessing::multi_pass, CascadeProcessing::multi_pass_instanced}) {
     params.shadows.cascade_processing = processing;
     draw(params, "in several passes");
     EXPECT_EQ(counters().samples_marched, tree.samples_marched);
@@ -232,7 +226,8 @@ TEST_F(Epipolar, DepthBreaksAreCorrectedAndMarked) {
     const bool always = is_mark(fewest_marked[i]);
     const double error = glm::length(corrected[i] - reference[i]) / glm::length(reference[i]);
     (always ? unlike_all : after) += error / static_cast<double>(always ? fewest : count - fewest);
-    if (!always) before += glm::length(plain[i] - reference[i]) / glm::length(reference[i]) / static_cast<double>(count - fewest);
+    if (!always)
+      before += glm::length(plain[i] - reference[i]) / glm::length(reference[i]) / static_cast<double>(count - fewest);
     // A silhouette: a neighbour of another depth.
     const auto x = static_cast<std::uint32_t>(i % scene.extent.width);
     const auto y = static_cast<std::uint32_t>(i / scene.extent.width);
@@ -243,10 +238,10 @@ TEST_F(Epipolar, DepthBreaksAreCorrectedAndMarked) {
     bool edge = false;
     for (int dy = -4; dy <= 4; ++dy) {
       for (int dx = -4; dx <= 4; ++dx) {
-        const auto px = std::min(x + static_cast<std::uint32_t>(std::max(dx, -static_cast<int>(x))),
-                                 scene.extent.width - 1);
-        const auto py = std::min(y + static_cast<std::uint32_t>(std::max(dy, -static_cast<int>(y))),
-                                 scene.extent.height - 1);
+        const auto px =
+            std::min(x + static_cast<std::uint32_t>(std::max(dx, -static_cast<int>(x))), scene.extent.width - 1);
+        const auto py =
+            std::min(y + static_cast<std::uint32_t>(std::max(dy, -static_cast<int>(y))), scene.extent.height - 1);
         edge = edge || std::abs(depth(px, py) / depth(x, y) - 1.0) > 0.03;
       }
     }
@@ -254,7 +249,8 @@ TEST_F(Epipolar, DepthBreaksAreCorrectedAndMarked) {
   }
   EXPECT_EQ(green, count);
   RecordProperty("corrected", std::to_string(fewest) + " and " + std::to_string(count) + " pixels, mean error " +
-                                  std::to_string(unlike_all) + ", " + std::to_string(before) + " to " + std::to_string(after));
+                                  std::to_string(unlike_all) + ", " + std::to_string(before) + " to " +
+                                  std::to_string(after));
   EXPECT_LT(unlike_all, 0.02);
   EXPECT_LT(after, 0.02);
   EXPECT_LT(after, before);

@@ -48,8 +48,7 @@ class Epipolar : public SharedEffect {
 };
 
 TEST_F(Epipolar, TheSunMayStandAnywhere) {
-  const double pixel =
-      1.0 / 160.0;  // the outermost pixel's middle is half a pixel, this much, from the border
+  const double pixel = 1.0 / 160.0;  // the outermost pixel's middle is half a pixel, this much, from the border
   const double line = 1.0 / 90.0;
   std::vector<View> views = {
       {sun_at("straight ahead", 0.0, 0.0, 6.0), 40.0},
@@ -262,8 +261,8 @@ TEST_F(Epipolar, AnyShadowMapsWillDo) {
   Params params = small_params();
   params.scattering.single = SingleScattering::integration;
   params.scattering.multiple = MultipleScattering::occluded;
-  const auto with = [&](const std::string& name, std::uint32_t cascades, std::uint32_t first,
-                        std::uint32_t resolution, double floor_db) {
+  const auto with = [&](const std::string& name, std::uint32_t cascades, std::uint32_t first, std::uint32_t resolution,
+                        double floor_db) {
     show(seen(name, [=](BoxScene& s) {
       s.extent = {96, 54};
       s.cascades = cascades;
@@ -315,9 +314,9 @@ TEST_F(Epipolar, SlicesAndSamplesAtBothEnds) {
     params.epipolar.slices = slices;
     params.epipolar.samples = samples;
     params.epipolar.optimize_locations = optimised;
-    expect_alike(std::to_string(slices) + " slices, " + std::to_string(samples) + " samples" +
-                     (optimised ? "" : ", all used"),
-                 params, floor_db);
+    expect_alike(
+        std::to_string(slices) + " slices, " + std::to_string(samples) + " samples" + (optimised ? "" : ", all used"),
+        params, floor_db);
   };
   // A picture of boxes whose shafts are finer than so few slices; the default scene at 1280 x 720 has 40 dB with them.
   with(32, 32, true, 36.0);
@@ -340,15 +339,21 @@ TEST_F(Epipolar, FewSlicesWillDoInEveryMode) {
     BoxScene scene;
     scene.extent = extent;
     show(scene);
-    with("integrated", [](Params& p) { p.scattering.single = SingleScattering::integration; }, 37.5);
-    with("higher orders alone", [](Params& p) { p.scattering.single = SingleScattering::none; }, 44.0);
-    with("no shafts", [](Params& p) { p.scattering.light_shafts = false; }, 46.0);
-    with("extinction per pixel", [](Params& p) { p.scattering.extinction = Extinction::per_pixel; }, 37.5);
-    with("correct_depth_breaks", [](Params& p) { p.epipolar.correct_depth_breaks = true; }, 37.0);
+    with(
+        "integrated", [](Params& p) { p.scattering.single = SingleScattering::integration; }, 37.5);
+    with(
+        "higher orders alone", [](Params& p) { p.scattering.single = SingleScattering::none; }, 44.0);
+    with(
+        "no shafts", [](Params& p) { p.scattering.light_shafts = false; }, 46.0);
+    with(
+        "extinction per pixel", [](Params& p) { p.scattering.extinction = Extinction::per_pixel; }, 37.5);
+    with(
+        "correct_depth_breaks", [](Params& p) { p.epipolar.correct_depth_breaks = true; }, 37.0);
     scene.name = "below the horizon";
     scene.sun_elevation_deg = -2.0;
     show(scene);
-    with("sun below the horizon", [](Params&) {}, 37.0);
+    with(
+        "sun below the horizon", [](Params&) {}, 37.0);
     scene = {};
     scene.name = "limb";
     scene.extent = extent;
@@ -358,11 +363,13 @@ TEST_F(Epipolar, FewSlicesWillDoInEveryMode) {
     scene.buildings = scene.ground = false;
     scene.cascades = 0;
     show(scene);
-    with("limb", [](Params&) {}, 44.0);
+    with(
+        "limb", [](Params&) {}, 44.0);
   }
 }
 
-// The sky above buildings and ground: slices come out of the ground one after the other, and no step may be seen where one does.
+// The sky above buildings and ground: slices come out of the ground one after the other, and no step may be seen where
+// one does.
 TEST_F(Epipolar, FewSlicesLeaveNoStepInTheSky) {
   struct Case {
     const char* name;
@@ -406,8 +413,7 @@ TEST_F(Epipolar, FewSlicesLeaveNoStepInTheSky) {
 // bounded by those of brute force.
 TEST_F(Epipolar, SmoothLightHasNoSeams) {
   for (const bool inside : {true, false}) {
-    BoxScene scene =
-        inside ? sun_at("sun in view", 0.31, -0.23, 25.0) : sun_at("sun beside the view", 1.8, -1.5, 25.0);
+    BoxScene scene = inside ? sun_at("sun in view", 0.31, -0.23, 25.0) : sun_at("sun beside the view", 1.8, -1.5, 25.0);
     scene.buildings = scene.ground = false;
     scene.cascades = 0;
     scene.tan_half_height = 0.06;  // the sky bends little from pixel to pixel

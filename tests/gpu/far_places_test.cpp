@@ -86,8 +86,8 @@ class GpuFarPlaces : public GpuTest {
   SceneParams scene_;
 };
 
-// The inside of the hall from where its details are a few pixels wide, with light shafts: at the origin, and elsewhere with
-// the sun at the same place of the sky.
+// The inside of the hall from where its details are a few pixels wide, with light shafts: at the origin, and elsewhere
+// with the sun at the same place of the sky.
 TEST_F(GpuFarPlaces, AMeshLooksTheSameWhereverItStands) {
   scene_.terrain.source = "none";
   scene_.meshes.source = "hall";
@@ -191,7 +191,8 @@ TEST_F(GpuFarPlaces, TheTerrainHasNoEndFromSpace) {
       for (std::size_t i = 0; i < depth.size(); ++i) {
         const double x = 2.0 * (static_cast<double>(i % kExtent.width) + 0.5) / kExtent.width - 1.0;
         const double y = 1.0 - 2.0 * (static_cast<double>(i / kExtent.width) + 0.5) / kExtent.height;
-        const glm::dvec3 ray = view.forward + view.right * (x * view.tan_half_width) + view.up * (y * view.tan_half_height);
+        const glm::dvec3 ray =
+            view.forward + view.right * (x * view.tan_half_width) + view.up * (y * view.tan_half_height);
         const double length = glm::length(ray);
         const glm::dvec3 from_centre = view.position + glm::dvec3(0.0, kRadius_m, 0.0);
         const double nearest_m = glm::length(glm::cross(from_centre, ray)) / length;  // to the planet's centre
@@ -200,7 +201,8 @@ TEST_F(GpuFarPlaces, TheTerrainHasNoEndFromSpace) {
           wrong += nearest_m < kRadius_m - 2000.0 ? 1 : 0;
           continue;
         }
-        const double drawn_m = altitude_of(view.position + ray * (kNearPlane_m / static_cast<double>(depth[i])), kRadius_m);
+        const double drawn_m =
+            altitude_of(view.position + ray * (kNearPlane_m / static_cast<double>(depth[i])), kRadius_m);
         wrong += drawn_m < -1500.0 || drawn_m > 5200.0 ? 1 : 0;
       }
       EXPECT_EQ(wrong, 0U) << place.name << " from " << altitude_m << " m";

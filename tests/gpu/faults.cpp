@@ -59,12 +59,12 @@ void VKAPI_CALL properties(VkPhysicalDevice device, VkPhysicalDeviceProperties2*
 
 PFN_vkVoidFunction VKAPI_CALL device_proc_addr(VkDevice device, const char* name) {
   const std::string_view wanted = name;
-#define X(function)                                                                                            \
-  if (wanted == "vk" #function) {                                                                              \
-    real.function = reinterpret_cast<PFN_vk##function>(real.GetDeviceProcAddr(device, name));                  \
-    if (real.function == nullptr) return nullptr;                                                              \
-    return reinterpret_cast<PFN_vkVoidFunction>(                                                               \
-        Wrapped<&gpu::Functions::function, makes(#function), PFN_vk##function>::call);                         \
+#define X(function)                                                                           \
+  if (wanted == "vk" #function) {                                                             \
+    real.function = reinterpret_cast<PFN_vk##function>(real.GetDeviceProcAddr(device, name)); \
+    if (real.function == nullptr) return nullptr;                                             \
+    return reinterpret_cast<PFN_vkVoidFunction>(                                              \
+        Wrapped<&gpu::Functions::function, makes(#function), PFN_vk##function>::call);        \
   }
   TYNDALL_DEVICE_FUNCTIONS(X)
   TYNDALL_DEBUG_FUNCTIONS(X)
@@ -88,8 +88,8 @@ VkDeviceSize bytes_of(const Info&) {
   return 0;
 }
 template <typename T>
-constexpr bool kOfPipelines = std::is_same_v<T, VkPipeline> || std::is_same_v<T, VkPipelineLayout> ||
-                              std::is_same_v<T, VkDescriptorSetLayout>;
+constexpr bool kOfPipelines =
+    std::is_same_v<T, VkPipeline> || std::is_same_v<T, VkPipelineLayout> || std::is_same_v<T, VkDescriptorSetLayout>;
 
 template <typename T>
 VkResult make(T* out, VkDeviceSize bytes) {
@@ -107,8 +107,8 @@ template <typename Info, typename T>
 VkResult fake(VkDevice, const Info* info, const VkAllocationCallbacks*, T* out) {
   return make(out, bytes_of(*info));
 }
-VkResult fake(VkDevice, VkPipelineCache, std::uint32_t, const VkComputePipelineCreateInfo*, const VkAllocationCallbacks*,
-              VkPipeline* out) {
+VkResult fake(VkDevice, VkPipelineCache, std::uint32_t, const VkComputePipelineCreateInfo*,
+              const VkAllocationCallbacks*, VkPipeline* out) {
   return make(out, 0);
 }
 VkResult fake(VkDevice, VkDeviceMemory of, VkDeviceSize, VkDeviceSize, VkMemoryMapFlags, void** out) {
@@ -193,8 +193,8 @@ void VKAPI_CALL fake_properties(VkPhysicalDevice, VkPhysicalDeviceProperties2* o
 void VKAPI_CALL fake_memory(VkPhysicalDevice, VkPhysicalDeviceMemoryProperties* out) {
   *out = {};
   out->memoryTypeCount = 1;
-  out->memoryTypes[0].propertyFlags = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
-                                      VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  out->memoryTypes[0].propertyFlags =
+      VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
   out->memoryHeapCount = 1;
 }
 VkResult VKAPI_CALL fake_queries(VkDevice, VkQueryPool, std::uint32_t, std::uint32_t, std::size_t, void*, VkDeviceSize,
@@ -206,9 +206,9 @@ PFN_vkVoidFunction VKAPI_CALL fake_device_proc(VkDevice, const char* name) {
   const std::string_view wanted = name;
   if (wanted == "vkCmdPushDescriptorSetKHR") return reinterpret_cast<PFN_vkVoidFunction>(push_descriptors);
   if (wanted == "vkGetQueryPoolResults") return reinterpret_cast<PFN_vkVoidFunction>(fake_queries);
-#define X(function)                                                                                          \
-  if (wanted == "vk" #function) {                                                                            \
-    return reinterpret_cast<PFN_vkVoidFunction>(Fake<&gpu::Functions::function, PFN_vk##function>::call);    \
+#define X(function)                                                                                       \
+  if (wanted == "vk" #function) {                                                                         \
+    return reinterpret_cast<PFN_vkVoidFunction>(Fake<&gpu::Functions::function, PFN_vk##function>::call); \
   }
   TYNDALL_DEVICE_FUNCTIONS(X)
 #undef X

@@ -12,15 +12,15 @@
 #include "gpu/host.hpp"
 #include "tyndall/effect.hpp"
 
-#define ASSERT_OK(expression)                                   \
-  do {                                                          \
-    const auto& ok_result = (expression);                       \
-    ASSERT_TRUE(ok_result.ok()) << ok_result.error().message;   \
+#define ASSERT_OK(expression)                                 \
+  do {                                                        \
+    const auto& ok_result = (expression);                     \
+    ASSERT_TRUE(ok_result.ok()) << ok_result.error().message; \
   } while (false)
-#define EXPECT_OK(expression)                                   \
-  do {                                                          \
-    const auto& ok_result = (expression);                       \
-    EXPECT_TRUE(ok_result.ok()) << ok_result.error().message;   \
+#define EXPECT_OK(expression)                                 \
+  do {                                                        \
+    const auto& ok_result = (expression);                     \
+    EXPECT_TRUE(ok_result.ok()) << ok_result.error().message; \
   } while (false)
 
 namespace tyndall {

@@ -50,7 +50,8 @@ struct Seen {
 Seen quadrature(double density, double cos_view_sun, double start, double end, int steps,
                 const std::function<glm::dvec3(double)>& lit) {
   const double rayleigh = 3.0 / (16.0 * std::numbers::pi) * (1.0 + cos_view_sun * cos_view_sun);
-  const double mie = (1.0 - kG * kG) / (4.0 * std::numbers::pi * std::pow(1.0 + kG * kG - 2.0 * kG * cos_view_sun, 1.5));
+  const double mie =
+      (1.0 - kG * kG) / (4.0 * std::numbers::pi * std::pow(1.0 + kG * kG - 2.0 * kG * cos_view_sun, 1.5));
   const glm::dvec3 sigma = density * (kRayleigh + kMieScattering + kMieAbsorption);
   glm::dvec3 sum(0.0);
   const double step = (end - start) / steps;
@@ -103,7 +104,8 @@ TEST_F(HomogeneousMedium, WithoutShadowsIsTheIntegral) {
         if (ray.altitude_m <= height_m && ray.cos_view > 0.0) end = std::min(end, crossing);
         end = std::max(start, end);
         const Seen s = quadrature(density, ray.cos_view_sun, start, end, 2000, [](double) { return glm::dvec3(1.0); });
-        return s.light * glm::dvec3(0.5, 0.75, 1.0) + s.through * glm::dvec3(frame.background.x, frame.background.y, frame.background.z);
+        return s.light * glm::dvec3(0.5, 0.75, 1.0) +
+               s.through * glm::dvec3(frame.background.x, frame.background.y, frame.background.z);
       };
       const std::string name = "density " + std::to_string(density) + ", top " + std::to_string(height_m);
       params.scattering.technique = Technique::brute_force;
@@ -125,8 +127,8 @@ TEST_F(HomogeneousMedium, WithShadowsIsTheIntegralOverLitSections) {
   Cascade cascade;
   cascade.far_m = 9000.0F;  // behind it everything is lit
   cascade.shadow_from_world = Mat4{{}};
-  cascade.shadow_from_world.m[0] = 1.0F / 20000.0F;  // u from x
-  cascade.shadow_from_world.m[9] = 1.0F / 20000.0F;  // v from z
+  cascade.shadow_from_world.m[0] = 1.0F / 20000.0F;   // u from x
+  cascade.shadow_from_world.m[9] = 1.0F / 20000.0F;   // v from z
   cascade.shadow_from_world.m[6] = -1.0F / 40000.0F;  // depth from y, downwards
   cascade.shadow_from_world.m[12] = cascade.shadow_from_world.m[13] = 0.5F;
   cascade.shadow_from_world.m[14] = 0.7F;
@@ -146,7 +148,8 @@ TEST_F(HomogeneousMedium, WithShadowsIsTheIntegralOverLitSections) {
     make(own_effect_, desc());
     with_colors_ = false;
     if (colored) frame.shadow_color = glass;
-    if (kind == Glass::level) frame.glass_depth = [](std::uint32_t, double, double) { return static_cast<float>(0.7 - kGlass_m / 40000.0); };
+    if (kind == Glass::level)
+      frame.glass_depth = [](std::uint32_t, double, double) { return static_cast<float>(0.7 - kGlass_m / 40000.0); };
     show(frame);
     Params params = with_coefficients(8.0);
     const auto truth = [&](std::uint32_t x, std::uint32_t y) {
@@ -179,7 +182,9 @@ TEST_F(HomogeneousMedium, WithShadowsIsTheIntegralOverLitSections) {
       const Seen s = quadrature(8.0, ray.cos_view_sun, 0.0, end, 20000, lit);
       return s.light + s.through * glm::dvec3(frame.background.x, frame.background.y, frame.background.z);
     };
-    const std::string name = kind == Glass::none ? "bars" : kind == Glass::anywhere ? "coloured bars" : "coloured bars below glass";
+    const std::string name = kind == Glass::none       ? "bars"
+                             : kind == Glass::anywhere ? "coloured bars"
+                                                       : "coloured bars below glass";
     // The map is read at every texel, and what lies between is taken as there: a texel is 300 m.
     params.scattering.integration_steps = 1000;
     const double brute = worst_error(draw(params, name), truth, frame.extent);
@@ -191,13 +196,33 @@ TEST_F(HomogeneousMedium, WithShadowsIsTheIntegralOverLitSections) {
 TEST_F(HomogeneousMedium, EpipolarIsLikeBruteForce) {
   const std::vector<std::pair<std::string, std::function<void(BoxScene&, Params&)>>> cases = {
       {"towards the sun", [](BoxScene&, Params&) {}},
-      {"sun in view", [](BoxScene& s, Params&) { s.sun_in_view = true; s.sun_x = 0.2; s.sun_y = -0.4; s.pitch_deg = 8.0; }},
-      {"sun behind", [](BoxScene& s, Params&) { s.sun_in_view = true; s.sun_behind = true; s.pitch_deg = -6.0; }},
+      {"sun in view",
+       [](BoxScene& s, Params&) {
+         s.sun_in_view = true;
+         s.sun_x = 0.2;
+         s.sun_y = -0.4;
+         s.pitch_deg = 8.0;
+       }},
+      {"sun behind",
+       [](BoxScene& s, Params&) {
+         s.sun_in_view = true;
+         s.sun_behind = true;
+         s.pitch_deg = -6.0;
+       }},
       {"dense", [](BoxScene&, Params& p) { p.homogeneous_medium.density = 8.0F; }},
       {"thin", [](BoxScene&, Params& p) { p.homogeneous_medium.density = 0.05F; }},
       {"below a top", [](BoxScene&, Params& p) { p.homogeneous_medium.height_m = 2500.0F; }},
-      {"above the top", [](BoxScene& s, Params& p) { s.altitude_m = 6000.0; s.pitch_deg = -12.0; p.homogeneous_medium.height_m = 2500.0F; }},
-      {"one cascade", [](BoxScene& s, Params&) { s.cascades = 1; s.shadow_resolution = 512; }},
+      {"above the top",
+       [](BoxScene& s, Params& p) {
+         s.altitude_m = 6000.0;
+         s.pitch_deg = -12.0;
+         p.homogeneous_medium.height_m = 2500.0F;
+       }},
+      {"one cascade",
+       [](BoxScene& s, Params&) {
+         s.cascades = 1;
+         s.shadow_resolution = 512;
+       }},
       {"no shafts", [](BoxScene&, Params& p) { p.scattering.light_shafts = false; }},
       {"no light", [](BoxScene&, Params& p) { p.scattering.single = SingleScattering::none; }},
       {"depth breaks corrected", [](BoxScene&, Params& p) { p.epipolar.correct_depth_breaks = true; }},

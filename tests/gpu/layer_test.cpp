@@ -17,8 +17,8 @@ class GpuLayer : public GpuTest {
     if (HasFatalFailure()) return;
     make(fill_, create_compute_pipeline(host().device(), shaders::fill_comp));
     make(seed_, create_buffer(host().device(), "seed", 4, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryKind::upload));
-    make(values_, create_buffer(host().device(), "values", 64 * 4, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                                MemoryKind::readback));
+    make(values_,
+         create_buffer(host().device(), "values", 64 * 4, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryKind::readback));
     const float seed = 2.0F;
     std::memcpy(seed_.mapped, &seed, sizeof seed);
   }
@@ -127,8 +127,12 @@ TEST_F(GpuLayer, TransfersKeepEveryByte) {
   ASSERT_OK(upload(host(), buffer.value(), bytes.data(), bytes.size()));
   same(download(host(), buffer.value(), bytes.size()), 0, bytes.size());
   // Two layers, odd sizes, rows packed tightly.
-  const ImageDesc desc = {"layers", VK_FORMAT_R8G8_UNORM, {5, 3, 1},
-                          VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT, 2};
+  const ImageDesc desc = {
+      "layers",
+      VK_FORMAT_R8G8_UNORM,
+      {5, 3, 1},
+      VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+      2};
   Result<Image> image = create_image(host().device(), desc);
   ASSERT_OK(image);
   EXPECT_EQ(image.value().bytes, image_bytes(host().device(), desc));

@@ -21,7 +21,9 @@ constexpr double kHeight_m = 20.0;  // of the camera, which looks straight down;
 
 class GpuMeshes : public GpuTest {
  protected:
-  GpuMeshes() : path_((std::filesystem::temp_directory_path() / ("tyndall-meshes-" + std::to_string(::getpid()) + ".glb")).string()) {
+  GpuMeshes()
+      : path_((std::filesystem::temp_directory_path() / ("tyndall-meshes-" + std::to_string(::getpid()) + ".glb"))
+                  .string()) {
     params_.tables.size = {8, 32, 32, 4};
     params_.tables.orders = 2;
     params_.scattering.enabled = false;  // the light of the surfaces themselves
@@ -44,9 +46,10 @@ class GpuMeshes : public GpuTest {
   }
 
   int glass(double r, double g, double b, double roughness) {
-    return file_.material({{"pbrMetallicRoughness", {{"baseColorFactor", {r, g, b, 1}}, {"roughnessFactor", roughness}}},
-                           {"doubleSided", true},
-                           {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1.0}}}}}});
+    return file_.material(
+        {{"pbrMetallicRoughness", {{"baseColorFactor", {r, g, b, 1}}, {"roughnessFactor", roughness}}},
+         {"doubleSided", true},
+         {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1.0}}}}}});
   }
 
   std::unique_ptr<Scene> make(bool with_file = true, VkExtent2D extent = kExtent, bool timings = false) {
@@ -167,12 +170,16 @@ TEST_F(GpuMeshes, HolesLetThroughLightAndSight) {
   // The western half is a hole.
   {
     // Alpha cannot be written by src/image: vertices carry it instead.
-    const int position = file_.points({{-4, 3, 3}, {0, 3, 3}, {0, 3, -3}, {-4, 3, -3}, {0, 3, 3}, {4, 3, 3}, {4, 3, -3}, {0, 3, -3}});
+    const int position =
+        file_.points({{-4, 3, 3}, {0, 3, 3}, {0, 3, -3}, {-4, 3, -3}, {0, 3, 3}, {4, 3, 3}, {4, 3, -3}, {0, 3, -3}});
     const int color = file_.floats({1, 1, 1, 0.2F, 1, 1, 1, 0.2F, 1, 1, 1, 0.2F, 1, 1, 1, 0.2F,
-                                    1, 1, 1, 0.9F, 1, 1, 1, 0.9F, 1, 1, 1, 0.9F, 1, 1, 1, 0.9F}, 4);
+                                    1, 1, 1, 0.9F, 1, 1, 1, 0.9F, 1, 1, 1, 0.9F, 1, 1, 1, 0.9F},
+                                   4);
     const int indices = file_.accessor<std::uint16_t>({0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7}, 5123, "SCALAR", 1);
     const int mask = file_.material({{"alphaMode", "MASK"}, {"doubleSided", true}});
-    file_.node({{"mesh", file_.mesh({{"attributes", {{"POSITION", position}, {"COLOR_0", color}}}, {"indices", indices}, {"material", mask}})}});
+    file_.node({{"mesh", file_.mesh({{"attributes", {{"POSITION", position}, {"COLOR_0", color}}},
+                                     {"indices", indices},
+                                     {"material", mask}})}});
   }
   const image::Image with = draw();
   const image::Image without = draw(false);
@@ -224,7 +231,8 @@ TEST_F(GpuMeshes, WithoutGlassThereAreNoMapsOfColours) {
   ASSERT_NE(plain, nullptr);
   draw(*plain);
   const auto colors = [](const Scene& scene) {
-    return std::count_if(scene.timings().begin(), scene.timings().end(), [](const PassTime& p) { return p.name == "shadow_colors"; });
+    return std::count_if(scene.timings().begin(), scene.timings().end(),
+                         [](const PassTime& p) { return p.name == "shadow_colors"; });
   };
   EXPECT_EQ(colors(*plain), 0);
   const VkDeviceSize before = plain->memory().scene;
@@ -242,7 +250,8 @@ TEST_F(GpuMeshes, MeshesComeAndGoAndOtherModelsRefuseThem) {
   const image::Image bare = draw(*scene);
   file_.level_quad(-2, -2, 2, 2, 0.5F, white_);
   SceneParams changed = scene_;
-  changed.meshes.source = file_.save(std::filesystem::temp_directory_path() / ("tyndall-meshes-" + std::to_string(::getpid()) + ".glb"));
+  changed.meshes.source =
+      file_.save(std::filesystem::temp_directory_path() / ("tyndall-meshes-" + std::to_string(::getpid()) + ".glb"));
   ASSERT_OK(scene->set_scene(changed));
   EXPECT_NE(draw(*scene).rgb, bare.rgb);
   SceneParams wrong = changed;
@@ -357,7 +366,8 @@ TEST_F(GpuMeshes, GlassThatComesLaterColoursTheAir) {
   EXPECT_EQ(draw(*later.value()).rgb, draw(*at_once.value()).rgb);
 }
 
-// Three faces with the same picture, red and blue, three times across: repeated, mirrored and clamped; and one with smooth texels.
+// Three faces with the same picture, red and blue, three times across: repeated, mirrored and clamped; and one with
+// smooth texels.
 TEST_F(GpuMeshes, TexturesAreWrappedAndFilteredAsTheirSamplersSay) {
   image::Image picture(2, 1);
   picture.rgb = {1, 0, 0, 0, 0, 1};
@@ -367,11 +377,14 @@ TEST_F(GpuMeshes, TexturesAreWrappedAndFilteredAsTheirSamplersSay) {
   const auto face = [&](float z, int wrap, int filter) {
     file_.root["samplers"].push_back({{"wrapS", wrap}, {"wrapT", wrap}, {"magFilter", filter}, {"minFilter", filter}});
     file_.root["textures"].push_back({{"source", 0}, {"sampler", file_.root["samplers"].size() - 1}});
-    const int material = file_.material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", file_.root["textures"].size() - 1}}}}}});
+    const int material = file_.material(
+        {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", file_.root["textures"].size() - 1}}}}}});
     const int position = file_.points({{-6, 0.5F, z + 1}, {6, 0.5F, z + 1}, {6, 0.5F, z - 1}, {-6, 0.5F, z - 1}});
     const int uv = file_.floats({0, 0, 3, 0, 3, 0, 0, 0}, 2);
     const int indices = file_.accessor<std::uint16_t>({0, 1, 2, 0, 2, 3}, 5123, "SCALAR", 1);
-    file_.node({{"mesh", file_.mesh({{"attributes", {{"POSITION", position}, {"TEXCOORD_0", uv}}}, {"indices", indices}, {"material", material}})}});
+    file_.node({{"mesh", file_.mesh({{"attributes", {{"POSITION", position}, {"TEXCOORD_0", uv}}},
+                                     {"indices", indices},
+                                     {"material", material}})}});
   };
   face(-5, 10497, 9728);
   face(-2, 33648, 9728);

@@ -26,7 +26,8 @@ TEST_F(GpuOneil, AgreesWithDoublePrecision) {
     rays.push_back(models::ray_from_angles(altitude, std::acos(1.0 - 2.0 * uniform(engine)),
                                            100.0 / 180.0 * kPi * uniform(engine), 2.0 * kPi * uniform(engine)));
   }
-  for (const models::OneilColumns columns : {models::OneilColumns::computed, models::OneilColumns::published, models::OneilColumns::table}) {
+  for (const models::OneilColumns columns :
+       {models::OneilColumns::computed, models::OneilColumns::published, models::OneilColumns::table}) {
     for (const bool by_column : {false, true}) {
       models::OneilSettings settings;
       settings.columns = columns;
@@ -113,13 +114,12 @@ class GpuOneilScene : public GpuTest {
   }
 };
 
-double largest(const image::Image& image) {
-  return *std::max_element(image.rgb.begin(), image.rgb.end());
-}
+double largest(const image::Image& image) { return *std::max_element(image.rgb.begin(), image.rgb.end()); }
 
 double largest_difference(const image::Image& a, const image::Image& b) {
   double out = 0.0;
-  for (std::size_t i = 0; i < a.rgb.size(); ++i) out = std::max(out, static_cast<double>(std::abs(a.rgb[i] - b.rgb[i])));
+  for (std::size_t i = 0; i < a.rgb.size(); ++i)
+    out = std::max(out, static_cast<double>(std::abs(a.rgb[i] - b.rgb[i])));
   return out;
 }
 
@@ -186,8 +186,8 @@ TEST_F(GpuOneilScene, VerticesAreFineEnough) {
   }
 }
 
-// At the limb, where neighbouring rays end in space and on the ground, no pixel stands out: away from the sun too, where
-// the columns of the mesh are far apart.
+// At the limb, where neighbouring rays end in space and on the ground, no pixel stands out: away from the sun too,
+// where the columns of the mesh are far apart.
 TEST_F(GpuOneilScene, NoPixelOfTheLimbSparkles) {
   DemoPlanet setup;
   setup.params = Params();
@@ -282,7 +282,8 @@ TEST_F(GpuOneilScene, MoonIsSeenThroughTheAir) {
     const image::Image b = draw(*scene, without);
     std::array<double, 3> out = {};
     const std::size_t middle = (32 * 96 + 48) * 3;
-    for (std::size_t c = 0; c < 3; ++c) out[c] = static_cast<double>(a.rgb[middle + c]) - static_cast<double>(b.rgb[middle + c]);
+    for (std::size_t c = 0; c < 3; ++c)
+      out[c] = static_cast<double>(a.rgb[middle + c]) - static_cast<double>(b.rgb[middle + c]);
     return out;
   };
   const std::array<double, 3> clear = moonlight(false);

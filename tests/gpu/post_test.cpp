@@ -18,7 +18,9 @@ constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
 using Rgb = std::array<float, 3>;
 using Paint = std::function<Rgb(std::uint32_t x, std::uint32_t y)>;
 
-Rgb grey(double luminance) { return {static_cast<float>(luminance), static_cast<float>(luminance), static_cast<float>(luminance)}; }
+Rgb grey(double luminance) {
+  return {static_cast<float>(luminance), static_cast<float>(luminance), static_cast<float>(luminance)};
+}
 
 // A picture over three stops around `middle`, all of which counts in full.
 Paint mixed(double middle) {
@@ -47,8 +49,11 @@ class GpuPost : public GpuTest {
   void show(VkExtent2D extent, const Paint& paint) {
     const auto make = [&](const char* name) {
       Result<gpu::Image> image = gpu::create_image(
-          host().device(), {name, VK_FORMAT_R32G32B32A32_SFLOAT, {extent.width, extent.height, 1},
-                            VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
+          host().device(),
+          {name,
+           VK_FORMAT_R32G32B32A32_SFLOAT,
+           {extent.width, extent.height, 1},
+           VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
       EXPECT_OK(image);
       return std::move(image).value();
     };
@@ -127,7 +132,8 @@ TEST_F(GpuPost, OperatorsAreThoseOfTheCpu) {
       const std::vector<float> got = display();
       for (std::uint32_t i = 0; i < extent_.width * extent_.height; ++i) {
         const Rgb c = paint(i % extent_.width, i / extent_.width);
-        const std::array<double, 3> expected = tonemapped(settings_, static_cast<double>(settings_.exposure), {c[0], c[1], c[2]});
+        const std::array<double, 3> expected =
+            tonemapped(settings_, static_cast<double>(settings_.exposure), {c[0], c[1], c[2]});
         for (std::size_t k = 0; k < 3; ++k) {
           // A hundredth of a step of 8 bits: what logarithms and powers of single precision are good for.
           ASSERT_NEAR(static_cast<double>(got[4 * i + k]), expected[k], 4e-5)
@@ -170,8 +176,7 @@ TEST_F(GpuPost, ExposureIsMiddleGreyOverTheLogAverage) {
 
 // A part of the pixels of large pictures is read, in all rows and columns: stripes are met as they are.
 TEST_F(GpuPost, LargePicturesAreMeasuredFromAPartOfTheirPixels) {
-  const Paint paints[] = {mixed(0.2),
-                          [](std::uint32_t x, std::uint32_t) { return grey(x % 2 == 0 ? 0.1 : 0.4); },
+  const Paint paints[] = {mixed(0.2), [](std::uint32_t x, std::uint32_t) { return grey(x % 2 == 0 ? 0.1 : 0.4); },
                           [](std::uint32_t, std::uint32_t y) { return grey(y % 2 == 0 ? 0.1 : 0.4); }};
   for (const Paint& paint : paints) {
     show({1280, 360}, paint);
@@ -185,11 +190,14 @@ TEST_F(GpuPost, BlackSpaceDoesNotCount) {
   const Measurement full = measure_alone();
   for (const double dark : {0.0, 1e-9, 0.2 * std::exp2(-10.0)}) {
     for (const std::uint32_t part : {2U, 16U}) {
-      const Paint with_space = [&](std::uint32_t x, std::uint32_t y) { return y % part == 0 ? mixed(0.2)(x, y / part) : grey(dark); };
+      const Paint with_space = [&](std::uint32_t x, std::uint32_t y) {
+        return y % part == 0 ? mixed(0.2)(x, y / part) : grey(dark);
+      };
       show({64, 64 * part}, with_space);
       const Measurement found = measure_alone();
       // The bright part, and with it a weight at the dim end, may move a little.
-      EXPECT_NEAR(static_cast<double>(found.measured), static_cast<double>(full.measured), part == 2U ? 1e-3 : 0.02) << dark << " " << part;
+      EXPECT_NEAR(static_cast<double>(found.measured), static_cast<double>(full.measured), part == 2U ? 1e-3 : 0.02)
+          << dark << " " << part;
       EXPECT_NEAR(static_cast<double>(found.counted), 1.0 / part, 2e-3);
       EXPECT_NEAR(static_cast<double>(found.black), dark < 1e-7 ? 1.0 - 1.0 / part : 0.0, 1e-6);
     }
@@ -250,7 +258,8 @@ TEST_F(GpuPost, FixedExposureIsIndependentOfThePicture) {
     if (!first.empty()) measure(1.0);  // nor of what has been measured
     const std::vector<float> got = display();
     if (first.empty()) first = got;
-    EXPECT_EQ(std::vector<float>(got.begin() + 12, got.begin() + 16), std::vector<float>(first.begin() + 12, first.begin() + 16));
+    EXPECT_EQ(std::vector<float>(got.begin() + 12, got.begin() + 16),
+              std::vector<float>(first.begin() + 12, first.begin() + 16));
   }
 }
 

@@ -98,8 +98,8 @@ TEST_F(GpuProbe, AgreesWithQuadrature) {
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const models::Ray& ray = queries[i].ray;
     // The quadrature's own error is far below what it judges.
-    const brute::Three truth = brute::single_scattering(medium, ray.altitude_m, ray.cos_view_zenith,
-                                                        ray.cos_sun_zenith, queries[i].azimuth, 1e-4);
+    const brute::Three truth = brute::single_scattering(medium, ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith,
+                                                        queries[i].azimuth, 1e-4);
     errors.add(error_of(answers[i].radiance, truth));
   }
   RecordProperty("mean_percent", std::to_string(100.0 * errors.mean));

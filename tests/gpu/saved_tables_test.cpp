@@ -106,8 +106,8 @@ TEST_F(SavedTablesTest, KeysTellApartWhatMatters) {
     if (row.type == ParamType::enumeration && row.choices.find('|') == std::string_view::npos) continue;
     Params params = small_tables();
     // Coefficients of their own count only where they are in use.
-    params.atmosphere.custom_coefficients = row.name == "rayleigh_scattering" || row.name == "mie_scattering" ||
-                                            row.name == "mie_absorption";
+    params.atmosphere.custom_coefficients =
+        row.name == "rayleigh_scattering" || row.name == "mie_scattering" || row.name == "mie_absorption";
     const std::string before = key_of(params);
     auto* const at = reinterpret_cast<char*>(&params) + row.offset;
     std::uint32_t bits = 0;
@@ -160,7 +160,8 @@ class CachedTablesTest : public SavedTablesTest {
   [[nodiscard]] std::vector<std::filesystem::path> files() const {
     std::vector<std::filesystem::path> out;
     std::error_code missing;
-    for (const auto& entry : std::filesystem::directory_iterator(directory_ / "cache", missing)) out.push_back(entry.path());
+    for (const auto& entry : std::filesystem::directory_iterator(directory_ / "cache", missing))
+      out.push_back(entry.path());
     return out;
   }
 
@@ -211,7 +212,8 @@ TEST_F(CachedTablesTest, AreBuiltOnceAndFoundAfterwards) {
 TEST_F(CachedTablesTest, ProbesDoNotKnowTheDifference) {
   std::vector<models::PrecomputedQuery> queries;
   for (const reference::Query& q : random_rays(5, 50, -6.0, 90.0)) {
-    queries.push_back({models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad), false});
+    queries.push_back(
+        {models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad), false});
     queries.push_back({queries.back().ray, true});
   }
   std::vector<std::vector<models::Answer>> answers;

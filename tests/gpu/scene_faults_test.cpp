@@ -1,4 +1,5 @@
-// A scene that is refused other parameters, because memory runs out at any place, draws the picture that it drew before.
+// A scene that is refused other parameters, because memory runs out at any place, draws the picture that it drew
+// before.
 #include <unistd.h>
 
 #include <filesystem>
@@ -102,7 +103,9 @@ TEST_F(SceneFaults, RefusedParametersLeaveThePicture) {
   other.shadows.resolution = 600;
   other.terrain.seed = 7;
   other.meshes.source = pane();
-  EXPECT_GE(refuse_everywhere("set_scene", [&] { return made_->set_scene(other); }, 17), 4);
+  EXPECT_GE(refuse_everywhere(
+                "set_scene", [&] { return made_->set_scene(other); }, 17),
+            4);
   const std::vector<float> with_pane = draw();
   EXPECT_NE(with_pane, first);
 
@@ -111,17 +114,27 @@ TEST_F(SceneFaults, RefusedParametersLeaveThePicture) {
   params.planet.radius_m = 120.0e3F;
   params.tables.size = {4, 8, 12, 4};
   params.epipolar.slices = 600;
-  EXPECT_GE(refuse_everywhere("set_params", [&] { return made_->set_params(params); }, 19), 4);
+  EXPECT_GE(refuse_everywhere(
+                "set_params", [&] { return made_->set_params(params); }, 19),
+            4);
   EXPECT_NE(draw(), with_pane);
 
-  EXPECT_GE(refuse_everywhere("set_extent", [&] { return made_->set_extent({40, 20}); }, 5), 3);
+  EXPECT_GE(refuse_everywhere(
+                "set_extent",
+                [&] {
+                  return made_->set_extent({40, 20});
+                },
+                5),
+            3);
   EXPECT_EQ(draw().size(), 3U * 40U * 20U);
 
   // A model that draws by itself, without meshes.
   SceneParams model = other;
   model.meshes.source = "none";
   model.scattering.model = ScatteringModel::homogeneous;
-  EXPECT_GE(refuse_everywhere("scattering.model", [&] { return made_->set_scene(model); }, 11), 2);
+  EXPECT_GE(refuse_everywhere(
+                "scattering.model", [&] { return made_->set_scene(model); }, 11),
+            2);
   draw();
 }
 

@@ -66,12 +66,14 @@ class GpuSceneModels : public GpuTest {
     const models::Ray ray = {altitude_of(view.position, radius), glm::dot(direction, up), glm::dot(to_sun, up),
                              glm::dot(direction, to_sun)};
     tyndall::shared::Homogeneous medium = models::homogeneous_from_params(
-        params_, {scene_.homogeneous.air_length_m, scene_.homogeneous.haze_length_m, scene_.homogeneous.falloff.value != 0});
+        params_,
+        {scene_.homogeneous.air_length_m, scene_.homogeneous.haze_length_m, scene_.homogeneous.falloff.value != 0});
     medium.sun_radius_rad = static_cast<float>(scene_.sun.angular_radius_deg * std::numbers::pi / 180.0);
     std::array<double, 3> out = models::homogeneous_light(medium, ray).radiance;
     const Vec3& sunlight = scene_.sun.irradiance;
     const std::array<float, 3> irradiance = {sunlight.x, sunlight.y, sunlight.z};
-    for (std::size_t c = 0; c < 3; ++c) out[c] *= static_cast<double>(irradiance[c]) * static_cast<double>(params_.scattering.scale);
+    for (std::size_t c = 0; c < 3; ++c)
+      out[c] *= static_cast<double>(irradiance[c]) * static_cast<double>(params_.scattering.scale);
     return out;
   }
 

@@ -64,7 +64,8 @@ class GpuScene : public GpuTest {
     return scene.ok() ? std::move(scene).value() : nullptr;
   }
 
-  // The radiance of a frame; everything in it is finite, what is displayed is in range, and the effect has nothing to remark.
+  // The radiance of a frame; everything in it is finite, what is displayed is in range, and the effect has nothing to
+  // remark.
   static image::Image draw(Scene& scene) {
     EXPECT_OK(scene.render(0.0));
     Result<image::Image> radiance = scene.radiance();
@@ -129,16 +130,20 @@ TEST_F(GpuScene, EpipolarSamplingOfTerrainIsLikeBruteForce) {
   };
   const View views[] = {
       {"as it is", [](SceneParams&) {}, 40.0},
-      {"low sun in view", [](SceneParams& s) {
+      {"low sun in view",
+       [](SceneParams& s) {
          s.sun.elevation_deg = 3.0F;
          s.sun.azimuth_deg = 340.0F;
          s.camera.pitch_deg = 0.0F;
-       }, 40.0},
-      {"in a valley, the sun at the side", [](SceneParams& s) {
+       },
+       40.0},
+      {"in a valley, the sun at the side",
+       [](SceneParams& s) {
          s.camera.altitude_m = 1500.0F;  // lifted above the ground, where that is higher
          s.camera.pitch_deg = 5.0F;
          s.sun.azimuth_deg = 62.0F;
-       }, 40.0},
+       },
+       40.0},
   };
   constexpr VkExtent2D kExtent = {192, 108};
   std::vector<image::Image> pictures;
@@ -242,7 +247,8 @@ TEST_F(GpuScene, DrawsForViewers) {
   const image::Image whole = draw(*plain);
   EXPECT_EQ(draw(scene).rgb, whole.rgb);
   const auto drawn = [&scene](std::string_view pass) {
-    return std::any_of(scene.timings().begin(), scene.timings().end(), [&](const PassTime& t) { return t.name == pass; });
+    return std::any_of(scene.timings().begin(), scene.timings().end(),
+                       [&](const PassTime& t) { return t.name == pass; });
   };
   EXPECT_TRUE(drawn("shadow_maps"));
   EXPECT_EQ(draw(scene).rgb, whole.rgb);
@@ -390,7 +396,8 @@ TEST_F(GpuScene, EveryModelTakesTheColourOfTheSun) {
   medium.scattering.medium = MediumKind::homogeneous;
   ASSERT_OK(scene->set_params(medium));
   expect_colored("homogeneous medium");
-  for (const ScatteringModel model : {ScatteringModel::homogeneous, ScatteringModel::oneil, ScatteringModel::oneil_table}) {
+  for (const ScatteringModel model :
+       {ScatteringModel::homogeneous, ScatteringModel::oneil, ScatteringModel::oneil_table}) {
     scene_params.scattering.model = model;
     expect_colored("model");
   }

@@ -38,7 +38,8 @@ inline std::string hundredths(double value) {
   return text;
 }
 
-// Device and effect are shared by all tests of this program: to create an effect takes longer than to draw many pictures.
+// Device and effect are shared by all tests of this program: to create an effect takes longer than to draw many
+// pictures.
 class SharedEffect : public testing::Test {
  protected:
   static EffectDesc desc() {
@@ -139,7 +140,7 @@ class SharedEffect : public testing::Test {
     return likeness;
   }
 
-  std::optional<Effect> own_effect_;  // in place of the shared one
+  std::optional<Effect> own_effect_;        // in place of the shared one
   static inline bool with_colors_ = false;  // of the shared one, set before it is made
 
  private:

@@ -61,9 +61,9 @@ class SavedTablesTest : public TableBuilderTest {
     }));
   }
   gpu::Buffer buffer(VkDeviceSize size) {
-    Result<gpu::Buffer> out =
-        gpu::create_buffer(host().device(), "saved", size,
-                           VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryKind::readback);
+    Result<gpu::Buffer> out = gpu::create_buffer(host().device(), "saved", size,
+                                                 VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                                 gpu::MemoryKind::readback);
     EXPECT_OK(out);
     return std::move(out).value();
   }
@@ -82,8 +82,7 @@ class SavedTablesTest : public TableBuilderTest {
   Result<void> load(Effect& effect, const std::vector<std::byte>& bytes, VkDeviceSize offset = 0) {
     const gpu::Buffer from = buffer(offset + bytes.size());
     std::memcpy(static_cast<std::byte*>(from.mapped) + offset, bytes.data(), bytes.size());
-    return host().run(
-        [&](VkCommandBuffer cmd) { return effect.record_load_tables(cmd, from.buffer.get(), offset); });
+    return host().run([&](VkCommandBuffer cmd) { return effect.record_load_tables(cmd, from.buffer.get(), offset); });
   }
 };
 

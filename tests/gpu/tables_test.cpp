@@ -43,7 +43,8 @@ std::vector<reference::Query> skies(std::initializer_list<double> elevations_deg
 // From the shore of the Dead Sea and a little higher.
 std::vector<reference::Query> below_sea_level(int count) {
   std::vector<reference::Query> out = random_rays(13, count, 5.0, 90.0);
-  for (std::size_t i = 0; i < out.size(); ++i) out[i].altitude_m = i % 2 == 0 ? -400.0 : -430.0 * out[i].azimuth_rad / kPi;
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i].altitude_m = i % 2 == 0 ? -400.0 : -430.0 * out[i].azimuth_rad / kPi;
   return out;
 }
 

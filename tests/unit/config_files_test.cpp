@@ -37,7 +37,8 @@ extern "C" int linkat(int from_directory, const char* from, int to_directory, co
 
 // access() decides whether nameless files are used.
 extern "C" int access(const char* path, int mode) noexcept {
-  if (!refuse_nameless || std::string(path) != "/proc/self/fd") return static_cast<int>(::syscall(SYS_access, path, mode));
+  if (!refuse_nameless || std::string(path) != "/proc/self/fd")
+    return static_cast<int>(::syscall(SYS_access, path, mode));
   errno = EACCES;
   return -1;
 }
@@ -185,16 +186,15 @@ TEST_F(Files, DevicesAreWrittenAndNotReplaced) {
   const Result<void> result = write_file(at("full"), "x");
   ASSERT_FALSE(result.ok());
   EXPECT_EQ(result.error().code, ErrorCode::io);
-  EXPECT_NE(result.error().message.find("No space left on device"), std::string::npos)
-      << result.error().message;
+  EXPECT_NE(result.error().message.find("No space left on device"), std::string::npos) << result.error().message;
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
   EXPECT_TRUE(write_file("/dev/null", "x").ok());
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
 }
 
 TEST_F(Files, PlacesThatCannotBeWritten) {
-  for (const std::string& path : {at("none/a"), directory_.string(), at("a/"), std::string(),
-                                  at(std::string(300, 'x')), std::string("a\0b", 3)}) {
+  for (const std::string& path : {at("none/a"), directory_.string(), at("a/"), std::string(), at(std::string(300, 'x')),
+                                  std::string("a\0b", 3)}) {
     const Result<void> checked = check_writable(path);
     ASSERT_FALSE(checked.ok()) << path;
     EXPECT_EQ(checked.error().code, ErrorCode::io);

@@ -27,8 +27,8 @@ class Reflection {
     if (spvc_context_create(&context_) != SPVC_SUCCESS) return;
     spvc_parsed_ir ir = nullptr;
     if (spvc_context_parse_spirv(context_, words.data(), words.size(), &ir) != SPVC_SUCCESS) return;
-    if (spvc_context_create_compiler(context_, SPVC_BACKEND_NONE, ir, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP,
-                                     &compiler_) != SPVC_SUCCESS) {
+    if (spvc_context_create_compiler(context_, SPVC_BACKEND_NONE, ir, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP, &compiler_) !=
+        SPVC_SUCCESS) {
       return;
     }
     spvc_resources resources = nullptr;
@@ -54,8 +54,7 @@ class Reflection {
       spvc_compiler_get_declared_struct_member_size(compiler_, type, i, &size);
       const spvc_type_id member = spvc_type_get_member_type(type, i);
       const spvc_type member_type = spvc_compiler_get_type_handle(compiler_, member);
-      const std::string name =
-          prefix + spvc_compiler_get_member_name(compiler_, spvc_type_get_base_type_id(type), i);
+      const std::string name = prefix + spvc_compiler_get_member_name(compiler_, spvc_type_get_base_type_id(type), i);
       if (spvc_type_get_basetype(member_type) == SPVC_BASETYPE_STRUCT) {
         walk(spvc_type_get_base_type_id(member_type), name + ".", base + offset);
       } else {

@@ -33,21 +33,15 @@ std::string other_value(const Row& row, const Settings& defaults) {
     return std::to_string(static_cast<std::int64_t>(row.info.min + fraction * (row.info.max - row.info.min)));
   };
   switch (row.info.type) {
-    case ParamType::float32:
-      return now == "0.1" ? "0.3" : row.info.min < 0.1 ? "0.1" : number(0.7);
-    case ParamType::uint32:
-      return number(0.6);
+    case ParamType::float32: return now == "0.1" ? "0.3" : row.info.min < 0.1 ? "0.1" : number(0.7);
+    case ParamType::uint32: return number(0.6);
     case ParamType::vec3:
     case ParamType::dvec3:
       return row.info.max <= 1.0 ? "0.1,1.5e-07,0.3" : number(0.3) + "," + number(0.7) + "," + number(0.5);
-    case ParamType::uvec4:
-      return number(1.0) + "," + number(0.5) + "," + number(0.25) + "," + number(0.0);
-    case ParamType::flag:
-      return now == "true" ? "false" : "true";
-    case ParamType::enumeration:
-      return std::string(row.info.choices.substr(row.info.choices.rfind('|') + 1));
-    case ParamType::string:
-      return "a \"quoted\" \\ n\xc3\xa4me.tif";
+    case ParamType::uvec4: return number(1.0) + "," + number(0.5) + "," + number(0.25) + "," + number(0.0);
+    case ParamType::flag: return now == "true" ? "false" : "true";
+    case ParamType::enumeration: return std::string(row.info.choices.substr(row.info.choices.rfind('|') + 1));
+    case ParamType::string: return "a \"quoted\" \\ n\xc3\xa4me.tif";
   }
   return "";
 }
@@ -134,7 +128,9 @@ TEST_F(SceneFile, APathSurvivesARoundTrip) {
   EXPECT_EQ(back.path.frames.size(), 2U);
   EXPECT_EQ(back.path.place_text, "");
   // A loop's last frame has nothing but its time.
-  ASSERT_TRUE(load_text(back, "playback.loop = true\n[[path]]\ntime_s = 0\nyaw_deg = 3\n[[path]]\ntime_s = 1\n", "l.toml").ok());
+  ASSERT_TRUE(
+      load_text(back, "playback.loop = true\n[[path]]\ntime_s = 0\nyaw_deg = 3\n[[path]]\ntime_s = 1\n", "l.toml")
+          .ok());
   EXPECT_TRUE(back.path.loop);
 }
 
@@ -147,13 +143,16 @@ TEST_F(SceneFile, PathsThatAreWrongSayWhereAndWhy) {
       {two + "[[path]]\ntime_s = 5\n",
        "the path's time goes from 5 s to 5 s, s.toml:5, each frame's time_s has to be greater than that before"},
       {two + "yaw_dge = 3\n", "unknown key 'yaw_dge' in [[path]], s.toml:5, did you mean 'yaw_deg'?"},
-      {two + "xyz = 3\n", "unknown key 'xyz' in [[path]], s.toml:5, keys are time_s, position_m, date, altitude_m, yaw_deg, "
-                          "pitch_deg, fov_deg, sun_elevation_deg, sun_azimuth_deg"},
+      {two + "xyz = 3\n",
+       "unknown key 'xyz' in [[path]], s.toml:5, keys are time_s, position_m, date, altitude_m, yaw_deg, "
+       "pitch_deg, fov_deg, sun_elevation_deg, sun_azimuth_deg"},
       {"[[path]]\ntime_s = -1\n", "'time_s' is no time, s.toml:2, allowed is a number, 0 to 1e+06 s"},
       {"[[path]]\ntime_s = nan\n", "'time_s' is no time, s.toml:2, allowed is a number, 0 to 1e+06 s"},
       {"[[path]]\ntime_s = \"0\"\n", "'time_s' is no time, s.toml:2, allowed is a number, 0 to 1e+06 s"},
-      {two + "altitude_m = -1\n", "'altitude_m' is below the sea, s.toml:5, allowed is 0 to 1e+09 m; position_m goes lower"},
-      {two + "position_m = [1, 2]\n", "'camera.position_m' = '2 values' is not 3 numbers, s.toml:5, allowed is 3 numbers, each -1e+09 to 1e+09 m"},
+      {two + "altitude_m = -1\n",
+       "'altitude_m' is below the sea, s.toml:5, allowed is 0 to 1e+09 m; position_m goes lower"},
+      {two + "position_m = [1, 2]\n",
+       "'camera.position_m' = '2 values' is not 3 numbers, s.toml:5, allowed is 3 numbers, each -1e+09 to 1e+09 m"},
       {two + "fov_deg = 200\n", "'camera.fov_deg' = '200' is out of range, s.toml:5, allowed is 1 to 170 deg"},
       {two + "date = \"yesterday\"\n", "yesterday"},
       {two + "date = \"2026-06-21T03:00:00Z\"\nsun_elevation_deg = 3\n",
@@ -166,7 +165,8 @@ TEST_F(SceneFile, PathsThatAreWrongSayWhereAndWhy) {
       {two + "yaw_deg = 3\n[playback]\nloop = true\n",
        "the last frame of a loop is the first again, s.toml:6, allowed is time_s alone in the last [[path]]"},
   };
-  for (const auto& [toml, message] : wrong) EXPECT_NE(failure(toml).find(message), std::string::npos) << toml << failure(toml);
+  for (const auto& [toml, message] : wrong)
+    EXPECT_NE(failure(toml).find(message), std::string::npos) << toml << failure(toml);
 }
 
 TEST_F(SceneFile, PartialFilesKeepTheRestAndLaterWins) {
@@ -187,12 +187,10 @@ TEST_F(SceneFile, PartialFilesKeepTheRestAndLaterWins) {
 TEST(SceneFileMessages, NameTheLineTheKeyAndWhatIsAllowed) {
   EXPECT_EQ(failure("[atmosphere]\n\nmie_gg = 0.5\n"),
             "unknown parameter 'atmosphere.mie_gg', s.toml:3, did you mean 'atmosphere.mie_g'?");
-  EXPECT_EQ(failure("[atmosphre]\nmie_g = 0.5\n"),
-            "unknown table [atmosphre], s.toml:1, did you mean [atmosphere]?");
+  EXPECT_EQ(failure("[atmosphre]\nmie_g = 0.5\n"), "unknown table [atmosphre], s.toml:1, did you mean [atmosphere]?");
   EXPECT_EQ(failure("yaw_deg = 0.5\n"),
             "unknown parameter 'yaw_deg', s.toml:1, did you mean 'camera.yaw_deg' or 'meshes.yaw_deg'?");
-  EXPECT_EQ(failure("fov_deg = 50.0\n"),
-            "unknown parameter 'fov_deg', s.toml:1, did you mean 'camera.fov_deg'?");
+  EXPECT_EQ(failure("fov_deg = 50.0\n"), "unknown parameter 'fov_deg', s.toml:1, did you mean 'camera.fov_deg'?");
   EXPECT_EQ(failure("camera = 0.5\n"), "'camera' is a number, s.toml:1, it has to be a table");
   EXPECT_EQ(failure("[[camera]]\nyaw_deg = 0.5\n"), "'camera' is an array, s.toml:1, it has to be a table");
   EXPECT_EQ(failure("[camera]\nyaw_deg = 'north'\n"),
@@ -203,10 +201,9 @@ TEST(SceneFileMessages, NameTheLineTheKeyAndWhatIsAllowed) {
             "'camera.fov_deg' = 'nan' is not a finite number, s.toml:2, allowed is 1 to 170 deg");
   EXPECT_EQ(failure("[camera]\nfov_deg = 1e300\n"),
             "'camera.fov_deg' = '1e+300' is out of range, s.toml:2, allowed is 1 to 170 deg");
-  EXPECT_EQ(
-      failure("[camera]\nposition_m = [1, 2]\n"),
-      "'camera.position_m' = '2 values' is not 3 numbers, s.toml:2, allowed is 3 numbers, each -1e+09 to "
-      "1e+09 m");
+  EXPECT_EQ(failure("[camera]\nposition_m = [1, 2]\n"),
+            "'camera.position_m' = '2 values' is not 3 numbers, s.toml:2, allowed is 3 numbers, each -1e+09 to "
+            "1e+09 m");
   EXPECT_EQ(failure("[camera]\nposition_m = 1\n"),
             "'camera.position_m' is a whole number, s.toml:2, allowed is 3 numbers, each -1e+09 to 1e+09 m");
   EXPECT_EQ(failure("[camera]\nposition_m = [1, 2, [3]]\n"),
@@ -217,15 +214,12 @@ TEST(SceneFileMessages, NameTheLineTheKeyAndWhatIsAllowed) {
             "'shadows.smooth' is a whole number, s.toml:2, allowed is true or false");
   EXPECT_EQ(failure("[shadows]\nsmooth = 1979-05-27\n"),
             "'shadows.smooth' is a date or time, s.toml:2, allowed is true or false");
-  EXPECT_EQ(
-      failure("[terrain]\nshading = 'shiny'\n"),
-      "'terrain.shading' = 'shiny' is not one of its values, s.toml:2, allowed is materials, height, plain");
+  EXPECT_EQ(failure("[terrain]\nshading = 'shiny'\n"),
+            "'terrain.shading' = 'shiny' is not one of its values, s.toml:2, allowed is materials, height, plain");
   EXPECT_EQ(failure("[terrain]\nsource = \"a\\u0000b\"\n"),
             "'terrain.source' = 'a?b' holds control characters, s.toml:2, allowed is text in UTF-8");
-  EXPECT_EQ(failure("[camera.yaw_deg]\n"),
-            "'camera.yaw_deg' is a table, s.toml:1, allowed is -3600 to 3600 deg");
-  EXPECT_EQ(failure("[camera]\n\"yaw.deg\" = 1\n").substr(0, 45),
-            "unknown parameter 'camera.yaw.deg', s.toml:2,");
+  EXPECT_EQ(failure("[camera.yaw_deg]\n"), "'camera.yaw_deg' is a table, s.toml:1, allowed is -3600 to 3600 deg");
+  EXPECT_EQ(failure("[camera]\n\"yaw.deg\" = 1\n").substr(0, 45), "unknown parameter 'camera.yaw.deg', s.toml:2,");
 }
 
 TEST(SceneFileMessages, BrokenTomlIsOneLineWithItsPlace) {
@@ -245,8 +239,7 @@ TEST(SceneFileMessages, BrokenTomlIsOneLineWithItsPlace) {
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
   }
   EXPECT_NE(failure(std::string(100000, '[')), "(accepted)");
-  EXPECT_EQ(failure("[terrain]\nsource = '\xff'\n"),
-            "not a text file, s.toml, allowed is a scene file: TOML in UTF-8");
+  EXPECT_EQ(failure("[terrain]\nsource = '\xff'\n"), "not a text file, s.toml, allowed is a scene file: TOML in UTF-8");
 }
 
 // Every prefix of a complete scene file loads or is refused with one line; none may crash.
@@ -308,8 +301,7 @@ TEST_F(SceneFile, FilesAreFoundBesideTheScene) {
 
 TEST(Describe, MarkdownHasOneRowPerParameter) {
   const std::string page = to_markdown();
-  for (const Row& row : rows())
-    EXPECT_NE(page.find("| `" + row.key() + "` |"), std::string::npos) << row.key();
+  for (const Row& row : rows()) EXPECT_NE(page.find("| `" + row.key() + "` |"), std::string::npos) << row.key();
 }
 
 // Each part of a dotted key is a table inside the one before: forty thousand overflow the parser's stack.
@@ -318,15 +310,16 @@ TEST(ConfigSceneFile, KeysOfManyPartsAreRefused) {
   for (int i = 0; i < 40000; ++i) dots += ".a";
   std::string spaced = "a";
   for (int i = 0; i < 40000; ++i) spaced += " . \"b\"";
-  for (const std::string& text : {"\n" + dots + " = 1\n", "\n[" + dots + "]\n", "\n[[" + dots + "]]\n", "\n" + spaced + "=1",
-                                  "\ncamera = { " + dots + " = 1 }"}) {
+  for (const std::string& text : {"\n" + dots + " = 1\n", "\n[" + dots + "]\n", "\n[[" + dots + "]]\n",
+                                  "\n" + spaced + "=1", "\ncamera = { " + dots + " = 1 }"}) {
     Settings settings;
     const Result<void> read = load_text(settings, text, "deep.toml");
     ASSERT_FALSE(read.ok());
     EXPECT_EQ(read.error().message, "a key of more than 16 parts, deep.toml:2, allowed is KEY = VALUE in [TABLES]");
   }
   Settings settings;
-  const std::string quoted = "# " + dots + "\n[terrain]\nsource = \"" + dots + "\"\n[meshes]\nsource = '''" + dots + "'''\n";
+  const std::string quoted =
+      "# " + dots + "\n[terrain]\nsource = \"" + dots + "\"\n[meshes]\nsource = '''" + dots + "'''\n";
   const Result<void> read = load_text(settings, quoted, "quoted.toml");
   EXPECT_TRUE(read.ok()) << read.error().message;
 }

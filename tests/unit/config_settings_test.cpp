@@ -65,8 +65,8 @@ TEST(ConfigSettings, OneValueOfAColourMeansGrey) {
   EXPECT_EQ(value_text(*find_row("sun.irradiance"), settings), "3.5,3.5,3.5");
   ASSERT_TRUE(set(settings, "sun.irradiance=1, 2 ,4").ok());
   EXPECT_EQ(settings.scene.sun.irradiance, Vec3(1.0F, 2.0F, 4.0F));
-  EXPECT_EQ(failure("sun.irradiance=1,2"),
-            "'sun.irradiance' = '1,2' is not 1 or 3 numbers separated by commas, --set, allowed is 1 or 3 numbers, each 0 to 1e+06 relative");
+  EXPECT_EQ(failure("sun.irradiance=1,2"), "'sun.irradiance' = '1,2' is not 1 or 3 numbers separated by commas, --set, "
+                                           "allowed is 1 or 3 numbers, each 0 to 1e+06 relative");
   EXPECT_EQ(failure("sun.irradiance=-1"),
             "'sun.irradiance' = '-1' is out of range, --set, allowed is 1 or 3 numbers, each 0 to 1e+06 relative");
   EXPECT_FALSE(set(settings, "camera.position_m=1").ok());  // a place is no colour
@@ -127,18 +127,15 @@ TEST(ConfigSettings, MessagesSayWhatWhereAndWhatIsAllowed) {
   EXPECT_EQ(failure("atmopshere.mie_g=0.5"),
             "unknown parameter 'atmopshere.mie_g', --set, did you mean 'atmosphere.mie_g'?");
   EXPECT_EQ(failure("mie_g=0.5"), "unknown parameter 'mie_g', --set, did you mean 'atmosphere.mie_g'?");
-  EXPECT_EQ(failure("sky.exposure=0.5"),
-            "unknown parameter 'sky.exposure', --set, did you mean 'tonemap.exposure'?");
+  EXPECT_EQ(failure("sky.exposure=0.5"), "unknown parameter 'sky.exposure', --set, did you mean 'tonemap.exposure'?");
   EXPECT_EQ(failure("planet.zzzzzzzzzzzz=1"),
             "unknown parameter 'planet.zzzzzzzzzzzz', --set, 'planet' has radius_m, ground_albedo");
-  EXPECT_EQ(failure("qqqqqqqqqqqqqqqqq=1"),
-            "unknown parameter 'qqqqqqqqqqqqqqqqq', --set, 'tyndall params' lists all");
+  EXPECT_EQ(failure("qqqqqqqqqqqqqqqqq=1"), "unknown parameter 'qqqqqqqqqqqqqqqqq', --set, 'tyndall params' lists all");
   EXPECT_EQ(failure("camera.yaw_deg"), "'camera.yaw_deg' is no assignment, --set, allowed is KEY=VALUE");
   EXPECT_EQ(failure("=3"), "'=3' is no assignment, --set, allowed is KEY=VALUE");
   EXPECT_EQ(failure("camera.fov_deg=wide"),
             "'camera.fov_deg' = 'wide' is not one number, --set, allowed is 1 to 170 deg");
-  EXPECT_EQ(failure("camera.fov_deg="),
-            "'camera.fov_deg' = '' is not one number, --set, allowed is 1 to 170 deg");
+  EXPECT_EQ(failure("camera.fov_deg="), "'camera.fov_deg' = '' is not one number, --set, allowed is 1 to 170 deg");
   EXPECT_EQ(failure("camera.fov_deg=nan"),
             "'camera.fov_deg' = 'nan' is not a finite number, --set, allowed is 1 to 170 deg");
   EXPECT_EQ(failure("camera.fov_deg=-inf"),
@@ -148,21 +145,18 @@ TEST(ConfigSettings, MessagesSayWhatWhereAndWhatIsAllowed) {
   EXPECT_EQ(failure("shadows.cascades=3.5"),
             "'shadows.cascades' = '3.5' is not one whole number, --set, allowed is a whole number, 1 to 8 "
             "cascades");
-  EXPECT_EQ(
-      failure("shadows.cascades=99999999999999999999999"),
-      "'shadows.cascades' = '99999999999999999999999' is out of range, --set, allowed is a whole number, 1 "
-      "to 8 cascades");
-  EXPECT_EQ(
-      failure("camera.position_m=1,2"),
-      "'camera.position_m' = '1,2' is not 3 numbers separated by commas, --set, allowed is 3 numbers, each "
-      "-1e+09 to 1e+09 m");
+  EXPECT_EQ(failure("shadows.cascades=99999999999999999999999"),
+            "'shadows.cascades' = '99999999999999999999999' is out of range, --set, allowed is a whole number, 1 "
+            "to 8 cascades");
+  EXPECT_EQ(failure("camera.position_m=1,2"),
+            "'camera.position_m' = '1,2' is not 3 numbers separated by commas, --set, allowed is 3 numbers, each "
+            "-1e+09 to 1e+09 m");
   EXPECT_EQ(failure("camera.position_m=1,,2"),
             "'camera.position_m' = '' is not 3 numbers, --set, allowed is 3 numbers, each -1e+09 to 1e+09 m");
   EXPECT_EQ(failure("scattering.enabled=yes"),
             "'scattering.enabled' = 'yes' is neither on nor off, --set, allowed is true or false");
-  EXPECT_EQ(
-      failure("terrain.shading=shiny"),
-      "'terrain.shading' = 'shiny' is not one of its values, --set, allowed is materials, height, plain");
+  EXPECT_EQ(failure("terrain.shading=shiny"),
+            "'terrain.shading' = 'shiny' is not one of its values, --set, allowed is materials, height, plain");
   EXPECT_EQ(failure("terrain.source=\xff\xfe"),
             "'terrain.source' = '?\?' is not valid UTF-8, --set, allowed is text in UTF-8");
 }
@@ -191,7 +185,8 @@ TEST(ConfigText, NumbersBeyondTheRangeOfADouble) {
   }
   EXPECT_EQ(read_number("3e-310", value), NumberError::none);  // subnormal
   EXPECT_NEAR(value / 3e-310, 1.0, 1e-12);
-  for (const std::string& huge : {std::string("1e400"), "1" + std::string(400, '0'), "0." + std::string(400, '0') + "1e900"}) {
+  for (const std::string& huge :
+       {std::string("1e400"), "1" + std::string(400, '0'), "0." + std::string(400, '0') + "1e900"}) {
     EXPECT_EQ(read_number(huge, value), NumberError::too_large) << huge;
   }
 }
@@ -219,9 +214,9 @@ TEST(ConfigSettings, CrossChecks) {
   settings.path.frames[1].time_s = 1.0;
   for (scene::PathFrame& frame : settings.path.frames) frame.julian_day = 2460000.0;
   ASSERT_FALSE(check(settings).ok());
-  EXPECT_EQ(check(settings).error().message,
-            "a path with dates has no place, [playback], needed is place = \"LAT,LON\", or an elevation file with a coordinate "
-            "system in terrain.source");
+  EXPECT_EQ(check(settings).error().message, "a path with dates has no place, [playback], needed is place = "
+                                             "\"LAT,LON\", or an elevation file with a coordinate "
+                                             "system in terrain.source");
   settings.scene.terrain.source = "mine.tif";
   EXPECT_TRUE(check(settings).ok());
   settings = Settings();
@@ -241,8 +236,7 @@ TEST(ConfigSettings, MetadataHoldsEverything) {
   const std::vector<std::pair<std::string, std::string>> list = metadata(settings);
   EXPECT_EQ(list.size(), rows().size() + 1);
   EXPECT_EQ(list[0].first, "tyndall.version");
-  EXPECT_NE(std::find(list.begin(), list.end(),
-                      std::pair<std::string, std::string>("tyndall.camera.yaw_deg", "17")),
+  EXPECT_NE(std::find(list.begin(), list.end(), std::pair<std::string, std::string>("tyndall.camera.yaw_deg", "17")),
             list.end());
 }
 

@@ -102,7 +102,8 @@ TEST(EpipolarConstants, TheCamerasPlaceAndTurnCount) {
   const double c = std::cos(std::numbers::pi / 6.0);
   const double columns[4][3] = {{0, 0, 1}, {-s, c, 0}, {-c, -s, 0}, {1e6, 2e3, -3e5}};
   for (int col = 0; col < 4; ++col) {
-    for (int row = 0; row < 3; ++row) inputs.camera.world_from_view.m[4 * col + row] = static_cast<float>(columns[col][row]);
+    for (int row = 0; row < 3; ++row)
+      inputs.camera.world_from_view.m[4 * col + row] = static_cast<float>(columns[col][row]);
   }
   inputs.sun.direction_to_sun = {static_cast<float>(c), static_cast<float>(s), 0.0F};
   const shared::EpipolarConstants out = epipolar_constants(inputs, {}, {});
@@ -117,9 +118,9 @@ TEST(EpipolarConstants, ASunAtRightAnglesIsADirection) {
     int ends;     // sides that lines from there leave through
   };
   const double diagonal = std::atan2(kHeight / kTanHeight, kWidth / kTanWidth);
-  for (const Case& at : {Case{{1, 0, 0}, 1.0, 0.0, 1}, Case{{-1, 0, 0}, -1.0, 0.0, 4}, Case{{0, 1, 0}, 0.0, -1.0, 2},
-                         Case{{0, -1, 0}, 0.0, 1.0, 8},
-                         Case{{1, 1, 0}, std::cos(diagonal), -std::sin(diagonal), 1 | 2}}) {
+  for (const Case& at :
+       {Case{{1, 0, 0}, 1.0, 0.0, 1}, Case{{-1, 0, 0}, -1.0, 0.0, 4}, Case{{0, 1, 0}, 0.0, -1.0, 2},
+        Case{{0, -1, 0}, 0.0, 1.0, 8}, Case{{1, 1, 0}, std::cos(diagonal), -std::sin(diagonal), 1 | 2}}) {
     const shared::EpipolarConstants c = with_sun(at.sun);
     EXPECT_EQ(c.sun_w, 0.0F);
     const double length = std::hypot(static_cast<double>(c.sun_x), static_cast<double>(c.sun_y));
@@ -141,13 +142,13 @@ TEST(EpipolarConstants, SlicesEndWhereLinesFromTheEpipoleLeaveThePicture) {
   constexpr int kBottom = 2;
   constexpr int kRight = 4;
   constexpr int kTop = 8;
-  for (const Case& at : {Case{80.0, 45.0, 15}, Case{1.0, 1.0, 15}, Case{159.0, 89.0, 15},
-                         Case{-20.0, 45.0, kBottom | kRight | kTop}, Case{200.0, 45.0, kLeft | kBottom | kTop},
-                         Case{80.0, -10.0, kLeft | kBottom | kRight}, Case{80.0, 100.0, kLeft | kRight | kTop},
-                         Case{-20.0, -20.0, kBottom | kRight}, Case{200.0, -20.0, kLeft | kBottom},
-                         Case{-20.0, 200.0, kRight | kTop}, Case{200.0, 200.0, kLeft | kTop},
-                         // Between the outermost pixels' middles and the border of the picture: outside.
-                         Case{0.25, 45.0, kBottom | kRight | kTop}, Case{80.0, 89.75, kLeft | kRight | kTop}}) {
+  for (const Case& at :
+       {Case{80.0, 45.0, 15}, Case{1.0, 1.0, 15}, Case{159.0, 89.0, 15}, Case{-20.0, 45.0, kBottom | kRight | kTop},
+        Case{200.0, 45.0, kLeft | kBottom | kTop}, Case{80.0, -10.0, kLeft | kBottom | kRight},
+        Case{80.0, 100.0, kLeft | kRight | kTop}, Case{-20.0, -20.0, kBottom | kRight},
+        Case{200.0, -20.0, kLeft | kBottom}, Case{-20.0, 200.0, kRight | kTop}, Case{200.0, 200.0, kLeft | kTop},
+        // Between the outermost pixels' middles and the border of the picture: outside.
+        Case{0.25, 45.0, kBottom | kRight | kTop}, Case{80.0, 89.75, kLeft | kRight | kTop}}) {
     for (const bool behind : {false, true}) {
       const Vec3 sun = towards(at.x, at.y);
       const shared::EpipolarConstants c = with_sun(behind ? opposite(sun) : sun);
@@ -168,7 +169,8 @@ TEST(EpipolarConstants, OnePixelHasAPerimeterToDivideBy) {
     inputs.sun.direction_to_sun = sun;
     const shared::EpipolarConstants c = epipolar_constants(inputs, {}, {});
     EXPECT_GT(c.perimeter, 0.0F);
-    for (const float number : {c.sun_x, c.sun_y, c.sun_w, c.fallback_x, c.fallback_y}) EXPECT_TRUE(std::isfinite(number));
+    for (const float number : {c.sun_x, c.sun_y, c.sun_w, c.fallback_x, c.fallback_y})
+      EXPECT_TRUE(std::isfinite(number));
   }
 }
 
@@ -184,7 +186,8 @@ TEST(EpipolarConstants, CascadesAreThoseThatAreMarched) {
   EXPECT_EQ(epipolar_constants(inputs, {}, params).first_cascade, 0U);
   EXPECT_EQ(epipolar_constants(inputs, {}, params).cascades, 0U);
   EffectDesc desc;
-  for (const auto& [texels, cells] : {std::pair(1U, 256U), {256U, 256U}, {257U, 512U}, {1024U, 1024U}, {16384U, 16384U}}) {
+  for (const auto& [texels, cells] :
+       {std::pair(1U, 256U), {256U, 256U}, {257U, 512U}, {1024U, 1024U}, {16384U, 16384U}}) {
     desc.max_shadow_resolution = texels;
     EXPECT_EQ(tree_cells(desc), cells);
     EXPECT_EQ(epipolar_constants(inputs, desc, params).tree_cells, cells);
@@ -263,8 +266,10 @@ TEST(EpipolarSteps, InitialSamplesStandCloserInTwilight) {
   };
   Params params;
   const std::uint32_t usual = params.epipolar.initial_step;
-  for (const double elevation_deg : {90.0, 6.0, 0.0, -1.9}) EXPECT_EQ(step_at(elevation_deg, params), usual) << elevation_deg;
-  for (const double elevation_deg : {-2.1, -7.0, -18.0}) EXPECT_EQ(step_at(elevation_deg, params), usual / 4) << elevation_deg;
+  for (const double elevation_deg : {90.0, 6.0, 0.0, -1.9})
+    EXPECT_EQ(step_at(elevation_deg, params), usual) << elevation_deg;
+  for (const double elevation_deg : {-2.1, -7.0, -18.0})
+    EXPECT_EQ(step_at(elevation_deg, params), usual / 4) << elevation_deg;
   params.epipolar.initial_step = 1;
   EXPECT_EQ(step_at(-7.0, params), 1U);
   // The sun shines through a homogeneous medium by night too.
@@ -282,7 +287,8 @@ TEST(EpipolarSizes, BuffersHaveNamesOfTheirOwn) {
 
 TEST(Modes, EveryCombinationHasAPipelineOfItsMeaning) {
   std::set<std::uint32_t> reached;
-  for (const SingleScattering single : {SingleScattering::none, SingleScattering::integration, SingleScattering::table}) {
+  for (const SingleScattering single :
+       {SingleScattering::none, SingleScattering::integration, SingleScattering::table}) {
     for (const MultipleScattering multiple :
          {MultipleScattering::none, MultipleScattering::occluded, MultipleScattering::unoccluded}) {
       for (const LitSections sections : {LitSections::contiguous, LitSections::each}) {

@@ -78,8 +78,7 @@ void place_cascades(Case& s) {
     c.near_m = s.cascades.empty() ? 0.0F : s.cascades.back().far_m;
     c.far_m = static_cast<float>(end);
     double middle[3];
-    for (int i = 0; i < 3; ++i)
-      middle[i] = static_cast<double>(m[12 + i]) - 0.5 * end * static_cast<double>(m[8 + i]);
+    for (int i = 0; i < 3; ++i) middle[i] = static_cast<double>(m[12 + i]) - 0.5 * end * static_cast<double>(m[8 + i]);
     const auto row = [&](int index, const double* axis, double scale) {
       const double offset = 0.5 - scale * (axis[0] * middle[0] + axis[1] * middle[1] + axis[2] * middle[2]);
       set_row(c.shadow_from_world, index, scale * axis[0], scale * axis[1], scale * axis[2], offset);
@@ -210,8 +209,7 @@ TEST(FrameChecks, NothingIsSaidAboutARightFrame) {
 }
 
 TEST(FrameChecks, WhatDrawsGarbageIsAnError) {
-  const auto expect_error = [](const std::vector<std::string>& words,
-                               const std::function<void(Case&)>& change) {
+  const auto expect_error = [](const std::vector<std::string>& words, const std::function<void(Case&)>& change) {
     expect_words(error_of(change), words);
   };
   expect_error({"clip_from_view", "orthographic", "perspective"}, [](Case& s) {
@@ -247,19 +245,16 @@ TEST(FrameChecks, WhatDrawsGarbageIsAnError) {
   expect_error({"cascades[1]", "near_m <= far_m"}, [](Case& s) { s.cascades[1].far_m = 10.0F; });
   expect_error({"FrameInputs::depth", "layout", "SHADER_READ_ONLY_OPTIMAL"},
                [](Case& s) { s.inputs.depth.layout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL; });
-  expect_error({"FrameInputs::color", "layout"},
-               [](Case& s) { s.inputs.color.layout = VK_IMAGE_LAYOUT_UNDEFINED; });
+  expect_error({"FrameInputs::color", "layout"}, [](Case& s) { s.inputs.color.layout = VK_IMAGE_LAYOUT_UNDEFINED; });
   expect_error({"FrameInputs::shadow_maps", "layout"},
                [](Case& s) { s.inputs.shadow_maps.layout = VK_IMAGE_LAYOUT_UNDEFINED; });
-  expect_error({"FrameInputs::output", "color or depth"},
-               [](Case& s) { s.inputs.output.view = s.inputs.color.view; });
+  expect_error({"FrameInputs::output", "color or depth"}, [](Case& s) { s.inputs.output.view = s.inputs.color.view; });
   expect_error({"FrameInputs::view is 1", "EffectDesc::views"}, [](Case& s) { s.inputs.view = 1; });
   expect_error({"FrameInputs::depth", "offset", "-1,0"}, [](Case& s) { s.inputs.depth.offset.x = -1; });
 }
 
 TEST(FrameChecks, WhatIsHardlyMeantIsRemarkedOn) {
-  const auto expect_remark = [](const std::vector<std::string>& words,
-                                const std::function<void(Case&)>& change) {
+  const auto expect_remark = [](const std::vector<std::string>& words, const std::function<void(Case&)>& change) {
     const std::string text = remark_of(change);
     EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
     expect_words(text, words);
@@ -292,8 +287,7 @@ TEST(FrameChecks, WhatIsHardlyMeantIsRemarkedOn) {
     s.params.scattering.light_shafts = false;
     s.inputs.camera.world_from_view.m[13] = 4e9F;
   });
-  expect_remark({"clip_from_view", "y up", "OpenGL"},
-                [](Case& s) { s.inputs.camera.clip_from_view.m[5] *= -1.0F; });
+  expect_remark({"clip_from_view", "y up", "OpenGL"}, [](Case& s) { s.inputs.camera.clip_from_view.m[5] *= -1.0F; });
   expect_remark({"clip_from_view", "near plane", "metre"},
                 [](Case& s) { s.inputs.camera.clip_from_view.m[14] = 1e-4F; });
   // OpenGL's depth, -1 to 1, reversed: at 0 is twice the near plane.
@@ -303,8 +297,7 @@ TEST(FrameChecks, WhatIsHardlyMeantIsRemarkedOn) {
   });
   expect_remark({"clip_from_view", "origin", "world_from_view"},
                 [](Case& s) { s.inputs.camera.clip_from_view.m[12] = 0.032F; });
-  expect_remark({"depth_format", "16 bits", "sky"},
-                [](Case& s) { s.desc.depth_format = VK_FORMAT_D16_UNORM; });
+  expect_remark({"depth_format", "16 bits", "sky"}, [](Case& s) { s.desc.depth_format = VK_FORMAT_D16_UNORM; });
   expect_remark({"depth_format", "16 bits", "sky"}, [](Case& s) {
     s.desc.depth_format = VK_FORMAT_D16_UNORM;
     s.desc.sky_depth = 1.0F;
@@ -318,8 +311,7 @@ TEST(FrameChecks, WhatIsHardlyMeantIsRemarkedOn) {
   };
   expect_remark({"cascades[first_marched_cascade]", "clip space", "0 to 1"}, on_each([](Mat4& m) {
                   for (int c = 0; c < 4; ++c) {
-                    for (int r = 0; r < 2; ++r)
-                      m.m[4 * c + r] = 2.0F * m.m[4 * c + r] - (c == 3 ? 1.0F : 0.0F);
+                    for (int r = 0; r < 2; ++r) m.m[4 * c + r] = 2.0F * m.m[4 * c + r] - (c == 3 ? 1.0F : 0.0F);
                   }
                 }));
   expect_remark({"cascades[first_marched_cascade]", "nothing will be shadowed"},
@@ -348,8 +340,7 @@ TEST(FrameChecks, WhatIsHardlyMeantIsRemarkedOn) {
   });
   expect_remark({"light_shafts", "nothing will be shadowed"}, [](Case& s) { s.cascades.clear(); });
   // The rest.
-  expect_remark({"tables are not built", "record_precompute()", "black"},
-                [](Case& s) { s.tables_ready = false; });
+  expect_remark({"tables are not built", "record_precompute()", "black"}, [](Case& s) { s.tables_ready = false; });
   expect_remark({"direction_to_sun", "unit length"}, [](Case& s) {
     s.inputs.sun.direction_to_sun = {0.96F, 1.2F, 1.28F};
   });

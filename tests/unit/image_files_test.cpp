@@ -61,9 +61,8 @@ class ImageFiles : public testing::Test {
   }
 
   std::filesystem::path directory_;
-  const Metadata metadata_ = {{"tyndall.camera.yaw_deg", "332"},
-                              {"tyndall.terrain.source", "h\xc3\xb6he.tif"},
-                              {"tyndall.empty", ""}};
+  const Metadata metadata_ = {
+      {"tyndall.camera.yaw_deg", "332"}, {"tyndall.terrain.source", "h\xc3\xb6he.tif"}, {"tyndall.empty", ""}};
 };
 
 TEST_F(ImageFiles, ExrKeepsEveryBit) {
@@ -79,8 +78,7 @@ TEST_F(ImageFiles, ExrKeepsEveryBit) {
   EXPECT_EQ(back.value().image.height, 77U);
   EXPECT_EQ(back.value().image.rgb, image.rgb);
   for (const auto& entry : metadata_) {
-    EXPECT_EQ(std::count(back.value().metadata.begin(), back.value().metadata.end(), entry), 1)
-        << entry.first;
+    EXPECT_EQ(std::count(back.value().metadata.begin(), back.value().metadata.end(), entry), 1) << entry.first;
   }
   EXPECT_EQ(count_non_finite(back.value().image), 1U);
   EXPECT_EQ(entries(), 1U);
@@ -114,8 +112,7 @@ TEST_F(ImageFiles, PngKeepsEightBitsAndMetadata) {
   EXPECT_EQ(back.value().image.rgb, image.rgb);
   EXPECT_EQ(back.value().metadata.size(), metadata_.size());
   for (const auto& entry : metadata_) {
-    EXPECT_EQ(std::count(back.value().metadata.begin(), back.value().metadata.end(), entry), 1)
-        << entry.first;
+    EXPECT_EQ(std::count(back.value().metadata.begin(), back.value().metadata.end(), entry), 1) << entry.first;
   }
 }
 
@@ -136,8 +133,7 @@ TEST_F(ImageFiles, TheSameImageGivesTheSameBytes) {
   for (const std::string ending : {".png", ".exr"}) {
     for (const std::string name : {"a", "b"}) {
       const std::string path = at(name + ending);
-      ASSERT_TRUE(
-          (ending == ".png" ? write_png(path, image, metadata_) : write_exr(path, image, metadata_)).ok());
+      ASSERT_TRUE((ending == ".png" ? write_png(path, image, metadata_) : write_exr(path, image, metadata_)).ok());
     }
     EXPECT_EQ(config::read_file(at("a" + ending), 1U << 20U).value(),
               config::read_file(at("b" + ending), 1U << 20U).value());
@@ -150,8 +146,7 @@ TEST_F(ImageFiles, NotFiniteIsReportedByPng) {
   image.pixel(8, 3)[2] = -std::numeric_limits<float>::infinity();
   const Result<void> written = write_png(at("a.png"), image, {});
   ASSERT_FALSE(written.ok());
-  EXPECT_NE(written.error().message.find("2 values are not finite, the first at pixel 7,3"),
-            std::string::npos)
+  EXPECT_NE(written.error().message.find("2 values are not finite, the first at pixel 7,3"), std::string::npos)
       << written.error().message;
   EXPECT_EQ(entries(), 0U);
 }
@@ -242,8 +237,8 @@ void write_windows(const std::string& path, const Imath::Box2i& display, const I
   ASSERT_EQ(red.size(), static_cast<std::size_t>(width * height));
   Imf::FrameBuffer source;
   const auto slice = [&](std::vector<float>& values) {
-    return Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data() - data.min.x - data.min.y * width), sizeof(float),
-                      sizeof(float) * static_cast<std::size_t>(width));
+    return Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data() - data.min.x - data.min.y * width),
+                      sizeof(float), sizeof(float) * static_cast<std::size_t>(width));
   };
   source.insert("R", slice(red));
   source.insert("G", slice(green));
@@ -267,9 +262,9 @@ TEST_F(ImageFiles, ExrIsItsDisplayWindow) {
       EXPECT_EQ(file.value().image.pixel(x, y)[1], inside ? static_cast<float>(y) : 0.0F) << x << ' ' << y;
     }
   }
-  EXPECT_EQ(file.value().note,
-            "its pixels cover 18x7 from 3,2, its display window 16x9 from 0,0: taken is the display window, black where there "
-            "are no pixels");
+  EXPECT_EQ(file.value().note, "its pixels cover 18x7 from 3,2, its display window 16x9 from 0,0: taken is the display "
+                               "window, black where there "
+                               "are no pixels");
   // The same pixels somewhere else are another picture.
   write_windows(at("b.exr"), {{0, 0}, {15, 8}}, {{0, 0}, {15, 8}});
   const Result<File> whole = read(at("b.exr"));
@@ -349,13 +344,16 @@ std::string exr_attribute(const std::string& name, const std::string& type, cons
 TEST_F(ImageFiles, ClaimsAreCheckedAgainstTheLengthOfTheFile) {
   const std::string png = "\x89PNG\r\n\x1a\n";
   const std::string crc(4, 'c');
-  const std::string small = big_endian(13) + "IHDR" + big_endian(1) + big_endian(1) + std::string("\x08\x02\0\0\0", 5) + crc;
+  const std::string small =
+      big_endian(13) + "IHDR" + big_endian(1) + big_endian(1) + std::string("\x08\x02\0\0\0", 5) + crc;
   const std::string exr = std::string("\x76\x2f\x31\x01\x02\0\0\0", 8);
   const std::string tiled = std::string("\x76\x2f\x31\x01\x02\x02\0\0", 8);
   const std::string window = little_endian(0) + little_endian(0) + little_endian(32767) + little_endian(32767);
-  const std::string channel = "R" + std::string(1, '\0') + little_endian(2) + std::string(4, '\0') + little_endian(1) + little_endian(1);
-  std::string rest = exr_attribute("channels", "chlist", channel + '\0') + exr_attribute("dataWindow", "box2i", window) +
-                     exr_attribute("displayWindow", "box2i", window) + exr_attribute("compression", "compression", std::string(1, '\x03')) +
+  const std::string channel =
+      "R" + std::string(1, '\0') + little_endian(2) + std::string(4, '\0') + little_endian(1) + little_endian(1);
+  std::string rest = exr_attribute("channels", "chlist", channel + '\0') +
+                     exr_attribute("dataWindow", "box2i", window) + exr_attribute("displayWindow", "box2i", window) +
+                     exr_attribute("compression", "compression", std::string(1, '\x03')) +
                      exr_attribute("lineOrder", "lineOrder", std::string(1, '\0')) +
                      exr_attribute("pixelAspectRatio", "float", little_endian(0x3f800000)) +
                      exr_attribute("screenWindowCenter", "v2f", std::string(8, '\0')) +
@@ -363,8 +361,9 @@ TEST_F(ImageFiles, ClaimsAreCheckedAgainstTheLengthOfTheFile) {
   const std::string tile = exr_attribute("tiles", "tiledesc", little_endian(1) + little_endian(1) + '\0');
   const std::pair<const char*, std::string> claims[] = {
       {"a text chunk", png + small + big_endian(0x7ffffff0U) + "tEXta"},
-      {"pixels of a PNG", png + big_endian(13) + "IHDR" + big_endian(32768) + big_endian(32768) + std::string("\x10\x02\0\0\0", 5) + crc +
-                              big_endian(4) + "IDAT" + "abcd" + crc + big_endian(0) + "IEND" + crc},
+      {"pixels of a PNG", png + big_endian(13) + "IHDR" + big_endian(32768) + big_endian(32768) +
+                              std::string("\x10\x02\0\0\0", 5) + crc + big_endian(4) + "IDAT" + "abcd" + crc +
+                              big_endian(0) + "IEND" + crc},
       {"a string", exr + "comments" + '\0' + "string" + '\0' + little_endian(0x7ffffff0U) + "abc"},
       {"scan lines", exr + rest + '\0'},
       {"tiles", tiled + rest + tile + '\0'},

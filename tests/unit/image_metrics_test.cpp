@@ -46,8 +46,7 @@ TEST(ImageMetrics, RelativeErrorDoesNotDependOnTheUnit) {
 }
 
 TEST(ImageMetrics, AgainstBlack) {
-  EXPECT_DOUBLE_EQ(compare(image_of({1.0F, 0.0F, 0.0F}), image_of({0.0F, 0.0F, 0.0F})).mean_relative_error,
-                   1.0 / 3.0);
+  EXPECT_DOUBLE_EQ(compare(image_of({1.0F, 0.0F, 0.0F}), image_of({0.0F, 0.0F, 0.0F})).mean_relative_error, 1.0 / 3.0);
 }
 
 TEST(ImageMetrics, NotFiniteIsCountedAndLeftOut) {
@@ -63,8 +62,7 @@ TEST(ImageMetrics, NotFiniteIsCountedAndLeftOut) {
 
 TEST(ImageDither, TheMeanIsExactEverywhere) {
   constexpr std::uint32_t kSide = 128;
-  for (const double steps :
-       {0.0, 0.05, 0.3, 0.5, 0.8, 1.0, 17.25, 100.5, 254.0, 254.4, 254.7, 254.95, 255.0}) {
+  for (const double steps : {0.0, 0.05, 0.3, 0.5, 0.8, 1.0, 17.25, 100.5, 254.0, 254.4, 254.7, 254.95, 255.0}) {
     for (std::uint32_t channel = 0; channel < 3; ++channel) {
       double sum = 0.0;
       int lowest = 255;

@@ -51,7 +51,9 @@ struct Case {
 };
 
 Case random_case(std::mt19937& engine) {
-  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine); };
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(engine);
+  };
   Case out;
   AtmosphereParams& air = out.params.atmosphere;
   air.custom_coefficients = true;
@@ -79,7 +81,9 @@ void expect_close(double value, double truth, const char* what, int i) {
 
 TEST(Homogeneous, TheSkyIsThePrintedTwoShells) {
   std::mt19937 engine(3);
-  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine); };
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(engine);
+  };
   for (int i = 0; i < 5000; ++i) {
     const Case c = random_case(engine);
     const shared::Homogeneous medium = models::homogeneous_from_params(c.params, c.lengths);
@@ -105,7 +109,9 @@ TEST(Homogeneous, TheSkyIsThePrintedTwoShells) {
 
 TEST(Homogeneous, TheGroundIsSeenThroughEquations3And4) {
   std::mt19937 engine(4);
-  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine); };
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(engine);
+  };
   for (int i = 0; i < 5000; ++i) {
     const Case c = random_case(engine);
     const shared::Homogeneous medium = models::homogeneous_from_params(c.params, c.lengths);
@@ -170,7 +176,9 @@ TEST(Homogeneous, LimitsOfDistanceAndDensity) {
 // What the document leaves open: no light from a sun that has set, space around the air, and never a NaN.
 TEST(Homogeneous, NightSpaceAndEveryRayAreDefined) {
   std::mt19937 engine(5);
-  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine); };
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(engine);
+  };
   for (int i = 0; i < 20000; ++i) {
     Case c = random_case(engine);
     c.lengths.falloff = i % 2 == 1;

@@ -96,7 +96,8 @@ Segment segment(const shared::Medium& m, const Point& origin, const Point& view)
 Answer printed(const shared::Medium& m, const Question& q, int samples) {
   const double inner = m.planet_radius_m;
   const double scale = 1.0 / static_cast<double>(m.atmosphere_height_m);
-  const double depth[] = {static_cast<double>(m.rayleigh_scale_height_m) * scale, static_cast<double>(m.mie_scale_height_m) * scale};
+  const double depth[] = {static_cast<double>(m.rayleigh_scale_height_m) * scale,
+                          static_cast<double>(m.mie_scale_height_m) * scale};
   const auto scale_function = [&](int s, double c) {
     const double x = 1.0 - c;
     return depth[s] * std::exp(-0.00287 + x * (0.459 + x * (3.83 + x * (-6.80 + x * 5.25))));
@@ -146,7 +147,8 @@ double error_of(const std::array<double, 3>& value, const std::array<double, 3>&
 }
 
 TEST(Oneil, PrintedEquationsAreASpecialCase) {
-  for (const shared::Medium& m : {demo(), planet(6360.0e3, 80.0e3, 7994.0, 1200.0), planet(1000.0e3, 25.0e3, 6250.0, 6250.0)}) {
+  for (const shared::Medium& m :
+       {demo(), planet(6360.0e3, 80.0e3, 7994.0, 1200.0), planet(1000.0e3, 25.0e3, 6250.0, 6250.0)}) {
     for (const int samples : {2, 5, 16}) {
       OneilSettings settings;
       settings.columns = OneilColumns::published;
@@ -191,9 +193,10 @@ TEST(Oneil, FittedColumnsGiveTheSumsOfIntegratedOnes) {
       const Three sun = brute::column(open, h, cos_sun, brute::far_crossing(open, h, cos_sun, 400.0e3), 1.0e-6);
       const Three tau = brute::optical_depth(m, {eye[0] + sun[0], eye[1] + sun[1], 0.0});
       for (std::size_t c = 0; c < 3; ++c) {
-        truth[c] += std::exp(-tau[c]) * (part.end - part.start) / 5 *
-                    (brute::of(m.rayleigh_scattering)[c] * std::exp(-h / 7994.0) * brute::rayleigh_phase(q.ray.cos_view_sun) +
-                     brute::of(m.mie_scattering)[c] * std::exp(-h / 1200.0) * brute::mie_phase(m, q.ray.cos_view_sun));
+        truth[c] +=
+            std::exp(-tau[c]) * (part.end - part.start) / 5 *
+            (brute::of(m.rayleigh_scattering)[c] * std::exp(-h / 7994.0) * brute::rayleigh_phase(q.ray.cos_view_sun) +
+             brute::of(m.mie_scattering)[c] * std::exp(-h / 1200.0) * brute::mie_phase(m, q.ray.cos_view_sun));
       }
     }
     if (!lit) continue;  // there the points are others: over the lit part only
@@ -233,7 +236,8 @@ TEST(Oneil, ScaleFunctionFitsAnyPlanet) {
       const double k[] = {s.k0, s.k1, s.k2, s.k3, s.k4};
       double sum = 0.0;
       for (int i = 4; i >= 0; --i) sum = sum * x + k[i];
-      const double found = static_cast<double>(s.scale_height_m) * (1.0 + static_cast<double>(s.bend)) * b * std::exp(sum);
+      const double found =
+          static_cast<double>(s.scale_height_m) * (1.0 + static_cast<double>(s.bend)) * b * std::exp(sum);
       EXPECT_NEAR(found / truth, 1.0, p.worst_at_sea_level + 1.0e-6) << p.name << " " << c;
     }
   }
@@ -246,7 +250,8 @@ TEST(Oneil, PrintedPolynomialFitsItsOwnPlanetOnly) {
     const double x = 1.0 - c;
     return 39750.0 * std::exp(static_cast<double>(s.k0) +
                               x * (static_cast<double>(s.k1) +
-                                   x * (static_cast<double>(s.k2) + x * (static_cast<double>(s.k3) + x * static_cast<double>(s.k4)))));
+                                   x * (static_cast<double>(s.k2) +
+                                        x * (static_cast<double>(s.k3) + x * static_cast<double>(s.k4)))));
   };
   EXPECT_NEAR(value(1.0) / exponential_column(39750.0, 6360.0e3, 0.0, 1.0, 159.0e3), 1.016, 0.001);
   for (int i = 0; i <= 100; ++i) {
@@ -288,7 +293,8 @@ TEST(Oneil, ManyPointsGiveTheIntegral) {
       const OneilModel model = make_oneil(m, settings);
       for (const Question& q : random_questions(60, m.atmosphere_height_m, m.planet_radius_m, -0.1)) {
         const Answer truth = single_scattering(m, q.ray);
-        EXPECT_LT(error_of(oneil(model, q.ray).radiance, truth.radiance), 0.005) << q.ray.altitude_m << " " << q.ray.cos_view_zenith;
+        EXPECT_LT(error_of(oneil(model, q.ray).radiance, truth.radiance), 0.005)
+            << q.ray.altitude_m << " " << q.ray.cos_view_zenith;
       }
     }
   }
@@ -327,8 +333,9 @@ TEST(Oneil, NoJumpAcrossTheTop) {
 }
 
 TEST(Oneil, NightIsDarkAndNothingIsUndefined) {
-  const shared::Medium media[] = {demo(), planet(6360.0e3, 80.0e3, 7994.0, 1200.0), planet(2575.0e3, 400.0e3, 40000.0, 25000.0),
-                                  planet(1000.0, 1000.0, 10.0, 1.0e6), planet(1.0e8, 1.0e7, 1.0e6, 10.0)};
+  const shared::Medium media[] = {demo(), planet(6360.0e3, 80.0e3, 7994.0, 1200.0),
+                                  planet(2575.0e3, 400.0e3, 40000.0, 25000.0), planet(1000.0, 1000.0, 10.0, 1.0e6),
+                                  planet(1.0e8, 1.0e7, 1.0e6, 10.0)};
   for (const shared::Medium& m : media) {
     for (const OneilColumns columns : {OneilColumns::computed, OneilColumns::published, OneilColumns::table}) {
       for (const bool by_column : {false, true}) {
@@ -348,7 +355,8 @@ TEST(Oneil, NightIsDarkAndNothingIsUndefined) {
             }
           }
         }
-        const Answer night = oneil(model, ray_from_angles(0.1 * static_cast<double>(m.atmosphere_height_m), 3.0, 3.1, 0.5));
+        const Answer night =
+            oneil(model, ray_from_angles(0.1 * static_cast<double>(m.atmosphere_height_m), 3.0, 3.1, 0.5));
         EXPECT_LT(night.radiance[0], 1.0e-12);
       }
     }

@@ -32,39 +32,21 @@ std::vector<Query> queries(const shared::Medium& m, int count) {
   for (int i = 0; static_cast<int>(out.size()) < count; ++i) {
     double h = 0.0;
     switch (i % 5) {
-      case 0:
-        h = top * uniform(0.0, 1.0);
-        break;
-      case 1:
-        h = top * std::pow(uniform(0.0, 1.0), 4.0);
-        break;
-      case 2:
-        h = top * (1.0 - 0.1 * std::pow(uniform(0.0, 1.0), 4.0)) - 1.0;
-        break;
-      case 3:
-        h = top * 0.99875;
-        break;  // 79.9 km on Earth
-      default:
-        h = 0.0;
+      case 0: h = top * uniform(0.0, 1.0); break;
+      case 1: h = top * std::pow(uniform(0.0, 1.0), 4.0); break;
+      case 2: h = top * (1.0 - 0.1 * std::pow(uniform(0.0, 1.0), 4.0)) - 1.0; break;
+      case 3: h = top * 0.99875; break;  // 79.9 km on Earth
+      default: h = 0.0;
     }
     h = static_cast<float>(h);
     const double horizon = -std::sqrt(h * (2.0 * radius + h)) / (radius + h);
     double mu = 1.0;
     switch (i / 5 % 5) {
-      case 0:
-        mu = uniform(horizon, 1.0);
-        break;
-      case 1:
-        mu = horizon + std::pow(10.0, uniform(-7.0, 0.0));
-        break;
-      case 2:
-        mu = uniform(0.0, 1.0e-3);
-        break;
-      case 3:
-        mu = uniform(horizon, -horizon);
-        break;
-      default:
-        mu = 1.0 - uniform(0.0, 1.0e-5);
+      case 0: mu = uniform(horizon, 1.0); break;
+      case 1: mu = horizon + std::pow(10.0, uniform(-7.0, 0.0)); break;
+      case 2: mu = uniform(0.0, 1.0e-3); break;
+      case 3: mu = uniform(horizon, -horizon); break;
+      default: mu = 1.0 - uniform(0.0, 1.0e-5);
     }
     mu = static_cast<float>(std::min(mu, 1.0));
     if (mu < horizon) {
@@ -116,8 +98,8 @@ void expect_columns(const shared::Medium& m, double tolerance, const char* name)
       }
     }
   }
-  EXPECT_LE(worst_double, tolerance) << name << " in double: h " << at_double.h << " mu " << at_double.mu
-                                     << " d " << at_double.d;
+  EXPECT_LE(worst_double, tolerance) << name << " in double: h " << at_double.h << " mu " << at_double.mu << " d "
+                                     << at_double.d;
   EXPECT_LE(worst_float, tolerance) << name << " in float: h " << at_float.h << " mu " << at_float.mu << " d "
                                     << at_float.d;
   EXPECT_LE(worst_species, kTolerance) << name << ": Rayleigh or aerosol alone, in float";

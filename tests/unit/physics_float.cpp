@@ -51,12 +51,11 @@ Column column_along(const shared::Medium& m, float h, float mu, float d) {
   return array_of(lib::column_along(medium_of(m), h, mu, d));
 }
 float mie_phase(const shared::Medium& m, float nu) { return lib::mie_phase(medium_of(m), nu); }
-Column single_scattering(const shared::Medium& m, float h0, float mu, float mu_s, float nu, float start,
-                         float end, int steps) {
+Column single_scattering(const shared::Medium& m, float h0, float mu, float mu_s, float nu, float start, float end,
+                         int steps) {
   return array_of(lib::single_scattering(medium_of(m), h0, mu, mu_s, nu, start, end, steps));
 }
-Column single_scattering_to_end(const shared::Medium& m, float h0, float mu, float mu_s, float nu,
-                                int steps) {
+Column single_scattering_to_end(const shared::Medium& m, float h0, float mu, float mu_s, float nu, int steps) {
   lib::vec3 transmittance;
   return array_of(lib::single_scattering_to_end(medium_of(m), h0, mu, mu_s, nu, steps, transmittance));
 }

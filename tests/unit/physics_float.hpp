@@ -24,8 +24,8 @@ bool shadow_segment(float h0, float mu, float mu_s, float nu, float R, float& st
 Column column_to_top(const shared::Medium& m, float h, float mu);
 Column column_along(const shared::Medium& m, float h, float mu, float d);
 float mie_phase(const shared::Medium& m, float nu);
-Column single_scattering(const shared::Medium& m, float h0, float mu, float mu_s, float nu, float start,
-                         float end, int steps);
+Column single_scattering(const shared::Medium& m, float h0, float mu, float mu_s, float nu, float start, float end,
+                         int steps);
 Column single_scattering_to_end(const shared::Medium& m, float h0, float mu, float mu_s, float nu, int steps);
 Column sky_irradiance_single(const shared::Medium& m, float h, float mu_s, int panels, int steps);
 

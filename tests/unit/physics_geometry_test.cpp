@@ -18,9 +18,7 @@ constexpr float kTop = 80000.0F;
 
 struct Rng {
   std::mt19937 engine;
-  double operator()(double low, double high) {
-    return std::uniform_real_distribution<double>(low, high)(engine);
-  }
+  double operator()(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine); }
 };
 
 Real true_altitude_along(Real h0, Real mu, Real d, Real radius) {
@@ -38,8 +36,7 @@ TEST(physics_geometry, altitude_of_a_position_near_the_ground) {
     const Real r = std::sqrt(Real(x) * x + Real(z) * z + (Real(y) + kRadius) * (Real(y) + kRadius));
     const Real expected = r - kRadius;
     // A few units in the last place of what is added up.
-    const double sum =
-        (static_cast<double>(x) * x + static_cast<double>(z) * z) / (2.0 * kRadius) + std::abs(y);
+    const double sum = (static_cast<double>(x) * x + static_cast<double>(z) * z) / (2.0 * kRadius) + std::abs(y);
     EXPECT_NEAR(glsl32::altitude_of(x, y, z, kRadius), static_cast<double>(expected), 6.0e-7 * sum + 1.0e-6);
   }
 }
@@ -55,8 +52,7 @@ TEST(physics_geometry, altitude_along_rays) {
     if (expected < -1.0 || expected > kTop) {
       continue;
     }
-    worst =
-        std::max(worst, std::abs(glsl32::altitude_along(h0, mu, d, kRadius) - static_cast<double>(expected)));
+    worst = std::max(worst, std::abs(glsl32::altitude_along(h0, mu, d, kRadius) - static_cast<double>(expected)));
   }
   EXPECT_LT(worst, 0.15);  // the aerosol's scale height is 1200 m
 }
@@ -77,8 +73,7 @@ TEST(physics_geometry, distance_to_the_top_and_back) {
 TEST(physics_geometry, horizon) {
   for (const double h : {0.0, 0.01, 1.7, 100.0, 8000.0, 80000.0, 4.0e5, 3.6e7}) {
     const float altitude = static_cast<float>(h);
-    const Real expected =
-        -std::sqrt(Real(altitude) * (2.0L * kRadius + altitude)) / (Real(kRadius) + altitude);
+    const Real expected = -std::sqrt(Real(altitude) * (2.0L * kRadius + altitude)) / (Real(kRadius) + altitude);
     EXPECT_NEAR(glsl32::horizon_cos(altitude, kRadius), static_cast<double>(expected),
                 2.0e-7 * std::abs(static_cast<double>(expected)));
   }
@@ -204,8 +199,7 @@ TEST(physics_geometry, sun_disc_crosses_the_horizon) {
   for (const float h : {0.0F, 1000.0F, 50000.0F}) {
     const double horizon = std::acos(static_cast<double>(glsl32::horizon_cos(h, kRadius)));
     const auto visible = [&](double elevation) {
-      return glsl32::sun_disc_visibility(h, static_cast<float>(std::cos(horizon - elevation)), kRadius,
-                                         radius);
+      return glsl32::sun_disc_visibility(h, static_cast<float>(std::cos(horizon - elevation)), kRadius, radius);
     };
     EXPECT_NEAR(visible(0.0), 0.5, 1.0e-3);
     EXPECT_EQ(visible(1.02 * radius), 1.0F);

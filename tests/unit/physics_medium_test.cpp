@@ -89,11 +89,8 @@ double sphere_integral(const std::function<double(double)>& phase) {
 TEST(physics_medium, phase_functions_are_normalised) {
   EXPECT_NEAR(sphere_integral(glsl64::rayleigh_phase), 1.0, 1.0e-12);
   for (const double g : {-0.99, -0.5, 0.0, 0.3, 0.76, 0.99}) {
-    EXPECT_NEAR(sphere_integral([g](double nu) { return glsl64::cornette_shanks_phase(nu, g); }), 1.0, 1.0e-8)
-        << g;
-    EXPECT_NEAR(sphere_integral([g](double nu) { return glsl64::henyey_greenstein_phase(nu, g); }), 1.0,
-                1.0e-8)
-        << g;
+    EXPECT_NEAR(sphere_integral([g](double nu) { return glsl64::cornette_shanks_phase(nu, g); }), 1.0, 1.0e-8) << g;
+    EXPECT_NEAR(sphere_integral([g](double nu) { return glsl64::henyey_greenstein_phase(nu, g); }), 1.0, 1.0e-8) << g;
   }
 }
 
@@ -101,8 +98,7 @@ TEST(physics_medium, phase_functions_look_forward_for_positive_g) {
   EXPECT_GT(glsl64::cornette_shanks_phase(1.0, 0.76), 100.0 * glsl64::cornette_shanks_phase(-1.0, 0.76));
   EXPECT_GT(glsl64::henyey_greenstein_phase(-1.0, -0.76), glsl64::henyey_greenstein_phase(1.0, -0.76));
   EXPECT_NEAR(glsl64::cornette_shanks_phase(0.4, 0.0), glsl64::rayleigh_phase(0.4), 1.0e-12);
-  const double mean_cosine =
-      sphere_integral([](double nu) { return nu * glsl64::henyey_greenstein_phase(nu, 0.76); });
+  const double mean_cosine = sphere_integral([](double nu) { return nu * glsl64::henyey_greenstein_phase(nu, 0.76); });
   EXPECT_NEAR(mean_cosine, 0.76, 1.0e-8);
 }
 

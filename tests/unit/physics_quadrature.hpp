@@ -30,19 +30,16 @@ inline double dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y
 // Integral of a three-component function over [a, b] to a relative tolerance of its largest component.
 template <typename Function>
 Three integrate(const Function& f, double a, double b, double tolerance, double floor = 0.0, int depth = 0) {
-  static constexpr double kNodes[8] = {
-      0.991455371120812639206854697526329, 0.949107912342758524526189684047851,
-      0.864864423359769072789712788640926, 0.741531185599394439863864773280788,
-      0.586087235467691130294144691693013, 0.405845151377397166906606412076961,
-      0.207784955007898467600689403773245, 0.0};
-  static constexpr double kKronrod[8] = {
-      0.022935322010529224963732008058970, 0.063092092629978553290700663189204,
-      0.104790010322250183839876322541518, 0.140653259715525918745189590510238,
-      0.169004726639267902826583426598550, 0.190350578064785409913256402421014,
-      0.204432940075298892414161999234649, 0.209482141084727828012999174891714};
-  static constexpr double kGauss[4] = {
-      0.129484966168869693270611432679082, 0.279705391489276667901467771423780,
-      0.381830050505118944950369775488975, 0.417959183673469387755102040816327};
+  static constexpr double kNodes[8] = {0.991455371120812639206854697526329, 0.949107912342758524526189684047851,
+                                       0.864864423359769072789712788640926, 0.741531185599394439863864773280788,
+                                       0.586087235467691130294144691693013, 0.405845151377397166906606412076961,
+                                       0.207784955007898467600689403773245, 0.0};
+  static constexpr double kKronrod[8] = {0.022935322010529224963732008058970, 0.063092092629978553290700663189204,
+                                         0.104790010322250183839876322541518, 0.140653259715525918745189590510238,
+                                         0.169004726639267902826583426598550, 0.190350578064785409913256402421014,
+                                         0.204432940075298892414161999234649, 0.209482141084727828012999174891714};
+  static constexpr double kGauss[4] = {0.129484966168869693270611432679082, 0.279705391489276667901467771423780,
+                                       0.381830050505118944950369775488975, 0.417959183673469387755102040816327};
   const double middle = 0.5 * (a + b);
   const double half = 0.5 * (b - a);
   Three kronrod = {};
@@ -89,8 +86,8 @@ inline std::vector<double> breaks(const shared::Medium& m, double h0, double mu,
   const double ozone = m.ozone_centre_m;
   const double width = m.ozone_half_width_m;
   const double fine = m.mie_scale_height_m;
-  for (const double h : {ozone - width, ozone, ozone + width, 1.0 * m.atmosphere_height_m, 0.0, fine,
-                         3.0 * fine, 8.0 * fine}) {
+  for (const double h :
+       {ozone - width, ozone, ozone + width, 1.0 * m.atmosphere_height_m, 0.0, fine, 3.0 * fine, 8.0 * fine}) {
     const long double r = radius + h;
     const long double discriminant = r0 * mu * r0 * mu - (r0 - r) * (r0 + r);
     if (discriminant >= 0.0) {
@@ -214,16 +211,14 @@ inline Three single_scattering(const shared::Medium& m, double h0, double mu, do
     const double rise = d * (2.0 * origin.y * mu + d);
     const double h = h0 + rise / (r + origin.y);
     const double cos_sun = dot(p, sun) / r;
-    const Three to_sun =
-        column(m, h, cos_sun, std::max(far_crossing(m, h, cos_sun, top), 0.0), 0.1 * tolerance);
+    const Three to_sun = column(m, h, cos_sun, std::max(far_crossing(m, h, cos_sun, top), 0.0), 0.1 * tolerance);
     const Three to_camera = column(m, h0, mu, d, 0.1 * tolerance);
-    const Three tau =
-        optical_depth(m, {to_sun[0] + to_camera[0], to_sun[1] + to_camera[1], to_sun[2] + to_camera[2]});
+    const Three tau = optical_depth(m, {to_sun[0] + to_camera[0], to_sun[1] + to_camera[1], to_sun[2] + to_camera[2]});
     const Three density = densities(m, std::min(h, top));
     Three out;
     for (int c = 0; c < 3; ++c) {
-      out[c] = std::exp(-tau[c]) *
-               (rayleigh[c] * density[0] * rayleigh_phase(nu) + mie[c] * density[1] * mie_phase(m, nu));
+      out[c] =
+          std::exp(-tau[c]) * (rayleigh[c] * density[0] * rayleigh_phase(nu) + mie[c] * density[1] * mie_phase(m, nu));
     }
     return out;
   };

@@ -23,8 +23,8 @@ struct Query {
   double azimuth;
 };
 
-// From below sea level and the ground to 1.1e6 m, straight up and down, within 1e-6 of the horizon, sun zenith angles to 100
-// degrees. Cosines are representable in float, so that both precisions answer the same question.
+// From below sea level and the ground to 1.1e6 m, straight up and down, within 1e-6 of the horizon, sun zenith angles
+// to 100 degrees. Cosines are representable in float, so that both precisions answer the same question.
 std::vector<Query> queries(const shared::Medium& m, int count) {
   std::mt19937 engine(7);
   const auto uniform = [&engine](double low, double high) {
@@ -40,17 +40,10 @@ std::vector<Query> queries(const shared::Medium& m, int count) {
         // At sea level and below it.
         h = i % 12 == 0 ? 0.0 : -450.0 * uniform(0.0, 1.0);
         break;
-      case 1:
-        h = 3000.0 * std::pow(uniform(0.0, 1.0), 2.0);
-        break;
-      case 2:
-        h = 12000.0 * uniform(0.0, 1.0);
-        break;
-      case 3:
-        h = top + 1.0e6 * std::pow(uniform(0.0, 1.0), 2.0);
-        break;
-      default:
-        h = 79000.0 * uniform(0.0, 1.0);
+      case 1: h = 3000.0 * std::pow(uniform(0.0, 1.0), 2.0); break;
+      case 2: h = 12000.0 * uniform(0.0, 1.0); break;
+      case 3: h = top + 1.0e6 * std::pow(uniform(0.0, 1.0), 2.0); break;
+      default: h = 79000.0 * uniform(0.0, 1.0);
     }
     h = static_cast<float>(h);
     const double ground = 2.0 * std::min(h, 0.0);
@@ -58,20 +51,11 @@ std::vector<Query> queries(const shared::Medium& m, int count) {
     const double near_horizon = horizon + (i % 4 < 2 ? 1.0 : -1.0) * std::pow(10.0, uniform(-6.0, -2.0));
     double mu = 0.0;
     switch (i / 6 % 5) {
-      case 0:
-        mu = uniform(-1.0, 1.0);
-        break;
-      case 1:
-        mu = near_horizon;
-        break;
-      case 2:
-        mu = uniform(-0.3, 0.3);
-        break;
-      case 3:
-        mu = i % 3 == 0 ? 1.0 : (i % 3 == 1 ? -1.0 : std::nextafter(static_cast<float>(horizon), 1.0F));
-        break;
-      default:
-        mu = uniform(0.0, 1.0);
+      case 0: mu = uniform(-1.0, 1.0); break;
+      case 1: mu = near_horizon; break;
+      case 2: mu = uniform(-0.3, 0.3); break;
+      case 3: mu = i % 3 == 0 ? 1.0 : (i % 3 == 1 ? -1.0 : std::nextafter(static_cast<float>(horizon), 1.0F)); break;
+      default: mu = uniform(0.0, 1.0);
     }
     if (h > top && i / 6 % 5 != 1) {
       const double limb = (radius + top) / (radius + h);
@@ -120,8 +104,8 @@ void expect_scattering(const shared::Medium& m, int count, int steps, double mea
   Errors in_float;
   for (const Query& q : queries(m, count)) {
     const models::Ray& ray = q.ray;
-    const brute::Three expected = brute::single_scattering(m, ray.altitude_m, ray.cos_view_zenith,
-                                                           ray.cos_sun_zenith, q.azimuth, 1.0e-6);
+    const brute::Three expected =
+        brute::single_scattering(m, ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith, q.azimuth, 1.0e-6);
     const models::Answer a = models::single_scattering(m, ray, steps);
     in_double.add(expected, a.radiance[0], a.radiance[1], a.radiance[2], ray);
     const shared::ProbeRay p = models::prepare_probe_ray(m, ray);
@@ -133,18 +117,14 @@ void expect_scattering(const shared::Medium& m, int count, int steps, double mea
   for (const Errors* e : {&in_double, &in_float}) {
     const char* name = e == &in_double ? "double" : "float";
     EXPECT_LE(e->mean(), mean) << name;
-    EXPECT_LE(e->worst, worst) << name << " h " << e->at.altitude_m << " mu " << e->at.cos_view_zenith
-                               << " mu_s " << e->at.cos_sun_zenith << " nu " << e->at.cos_view_sun;
+    EXPECT_LE(e->worst, worst) << name << " h " << e->at.altitude_m << " mu " << e->at.cos_view_zenith << " mu_s "
+                               << e->at.cos_sun_zenith << " nu " << e->at.cos_view_sun;
   }
 }
 
-TEST(physics_scattering, probe_quality) {
-  expect_scattering(medium_from_params({}), 1500, 16, 1.0e-5, 2.0e-4);
-}
+TEST(physics_scattering, probe_quality) { expect_scattering(medium_from_params({}), 1500, 16, 1.0e-5, 2.0e-4); }
 
-TEST(physics_scattering, renderer_quality) {
-  expect_scattering(medium_from_params({}), 600, 4, 2.0e-4, 5.0e-3);
-}
+TEST(physics_scattering, renderer_quality) { expect_scattering(medium_from_params({}), 600, 4, 2.0e-4, 5.0e-3); }
 
 TEST(physics_scattering, hazy_air) {
   Params params;
@@ -204,8 +184,7 @@ TEST(physics_scattering, transmittance_of_the_answer) {
 TEST(physics_scattering, extreme_parameters_stay_finite) {
   std::mt19937 engine(11);
   const auto pick = [&engine](std::initializer_list<double> values) {
-    return static_cast<float>(
-        values.begin()[std::uniform_int_distribution<std::size_t>(0, values.size() - 1)(engine)]);
+    return static_cast<float>(values.begin()[std::uniform_int_distribution<std::size_t>(0, values.size() - 1)(engine)]);
   };
   for (int i = 0; i < 400; ++i) {
     Params params;
@@ -219,15 +198,16 @@ TEST(physics_scattering, extreme_parameters_stay_finite) {
     params.atmosphere.ozone_centre_m = pick({0.0, 25000.0, 1.0e7});
     params.atmosphere.ozone_half_width_m = pick({1.0, 15000.0, 1.0e7});
     const shared::Medium m = medium_from_params(params);
-    for (const float h : {std::max(-11000.0F, -0.25F * params.planet.radius_m), -100.0F, 0.0F, 500.0F, 50000.0F, 2.0e7F}) {
+    for (const float h :
+         {std::max(-11000.0F, -0.25F * params.planet.radius_m), -100.0F, 0.0F, 500.0F, 50000.0F, 2.0e7F}) {
       for (const float mu : {-1.0F, -0.3F, -1.0e-4F, 0.0F, 0.02F, 1.0F}) {
         for (const float mu_s : {-1.0F, -0.05F, 0.0F, 0.5F, 1.0F}) {
           const float nu = mu * mu_s + std::sqrt((1.0F - mu * mu) * (1.0F - mu_s * mu_s));
           for (const float value : glsl32::single_scattering_to_end(m, h, mu, mu_s, nu, 4)) {
             ASSERT_TRUE(std::isfinite(value) && value >= 0.0F)
                 << value << ": radius " << m.planet_radius_m << " top " << m.atmosphere_height_m << " H "
-                << m.rayleigh_scale_height_m << ' ' << m.mie_scale_height_m << " ozone " << m.ozone_centre_m
-                << " +- " << m.ozone_half_width_m << " h " << h << " mu " << mu << " mu_s " << mu_s;
+                << m.rayleigh_scale_height_m << ' ' << m.mie_scale_height_m << " ozone " << m.ozone_centre_m << " +- "
+                << m.ozone_half_width_m << " h " << h << " mu " << mu << " mu_s " << mu_s;
           }
         }
       }

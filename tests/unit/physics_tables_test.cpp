@@ -119,8 +119,8 @@ TEST(TableValues, SunsLightIsThatOfTheColumns) {
     for (const double mu : {1.0, 0.3, 0.02, -0.01, -0.05, -0.1}) {
       const double r = m.planet_radius_m + h;
       const glsl64::vec3 found = glsl64::sun_transmittance_at(m, h, r * mu);
-      const glsl64::vec3 expected = glsl64::sun_visibility(h, mu, m.planet_radius_m) *
-                                    glsl64::transmittance(m, glsl64::column_to_top(m, h, mu));
+      const glsl64::vec3 expected =
+          glsl64::sun_visibility(h, mu, m.planet_radius_m) * glsl64::transmittance(m, glsl64::column_to_top(m, h, mu));
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 2e-4) << h << " " << mu;
     }
   }

@@ -1,6 +1,6 @@
 // Every tone-mapping operator against its formula as published, written anew here in double precision, and against what
-// such a curve has to do: black stays black, the white point becomes white, more light is never darker, and nothing that
-// a picture can hold becomes no number.
+// such a curve has to do: black stays black, the white point becomes white, more light is never darker, and nothing
+// that a picture can hold becomes no number.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,7 +27,9 @@ TonemapSettings with(Operator op, float white_point = 3.0F, float saturation = 1
   return out;
 }
 
-double grey(const TonemapSettings& settings, double scaled) { return tonemapped(settings, 1.0, {scaled, scaled, scaled})[1]; }
+double grey(const TonemapSettings& settings, double scaled) {
+  return tonemapped(settings, 1.0, {scaled, scaled, scaled})[1];
+}
 
 // The colours that every operator is asked about: dark to far beyond white, grey to pure.
 std::vector<Rgb> colours() {
@@ -48,7 +50,8 @@ void expect_on_luminance(Operator op, const std::function<double(double, double)
         const double l = luminance_of(c);
         const Rgb got = tonemapped(with(op, white_point, saturation), 1.0, c);
         for (std::size_t i = 0; i < 3; ++i) {
-          const double expected = curve(l, static_cast<double>(white_point)) * std::pow(c[i] / l, static_cast<double>(saturation));
+          const double expected =
+              curve(l, static_cast<double>(white_point)) * std::pow(c[i] / l, static_cast<double>(saturation));
           ASSERT_NEAR(got[i], limited(expected), 1e-12) << l << " " << white_point << " " << saturation;
         }
       }
@@ -62,7 +65,8 @@ void expect_on_channels(Operator op, const std::function<double(double, double)>
     for (const Rgb& c : colours()) {
       const Rgb got = tonemapped(with(op, white_point, 0.5F), 1.0, c);
       for (std::size_t i = 0; i < 3; ++i) {
-        ASSERT_NEAR(got[i], limited(curve(c[i], static_cast<double>(white_point))), 1e-12) << c[i] << " " << white_point;
+        ASSERT_NEAR(got[i], limited(curve(c[i], static_cast<double>(white_point))), 1e-12)
+            << c[i] << " " << white_point;
       }
     }
   }
@@ -83,7 +87,8 @@ TEST(PostCurves, Reinhard) {
 
 // Reinhard, Stark, Shirley and Ferwerda (2002), eq. 4.
 TEST(PostCurves, ReinhardModified) {
-  expect_on_luminance(Operator::reinhard_modified, [](double l, double w) { return (l + (l / w) * (l / w)) / (1.0 + l); });
+  expect_on_luminance(Operator::reinhard_modified,
+                      [](double l, double w) { return (l + (l / w) * (l / w)) / (1.0 + l); });
 }
 
 TEST(PostCurves, Logarithmic) {

@@ -48,8 +48,7 @@ TEST(ReferenceEstimate, IndependentOfThreads) {
   for (std::size_t i = 0; i < queries.size(); ++i) {
     EXPECT_TRUE(same_bits(one[i].radiance, five[i].radiance));
     EXPECT_TRUE(same_bits(one[i].standard_error, five[i].standard_error));
-    for (std::size_t n = 0; n < 8; ++n)
-      EXPECT_TRUE(same_bits(one[i].order_radiance[n], five[i].order_radiance[n]));
+    for (std::size_t n = 0; n < 8; ++n) EXPECT_TRUE(same_bits(one[i].order_radiance[n], five[i].order_radiance[n]));
   }
   // A ray's numbers are its own: the rays after it do not matter; the seed does.
   EXPECT_TRUE(same_bits(run(p, {queries[0]}, options)[0].radiance, one[0].radiance));
@@ -76,8 +75,7 @@ void expect_honest_errors(const Query& query) {
     // the claimed variances adds little, except for heavy tails.
     EXPECT_NEAR(variance / claimed, 1.0, 0.4) << "channel " << c;
     int beyond = 0;
-    for (const Estimate& e : estimates)
-      beyond += std::abs(e.radiance[c] - mean) > 2.0 * e.standard_error[c] ? 1 : 0;
+    for (const Estimate& e : estimates) beyond += std::abs(e.radiance[c] - mean) > 2.0 * e.standard_error[c] ? 1 : 0;
     EXPECT_LT(beyond, 28) << "channel " << c;  // 5 % of 200 are 10; a skewed distribution has more
   }
 }
@@ -196,8 +194,7 @@ TEST(ReferenceEstimate, ExtremesStayFinite) {
     for (const double view : {0.0, 45.0, 89.999, 90.0, 90.001, 120.0, 180.0}) {
       for (const double sun : {0.0, 90.0, 95.0, 180.0}) queries.push_back(ray(altitude, view, sun, view));
     }
-    for (const double sun : {0.0, 90.0, 95.0, 180.0})
-      queries.push_back({altitude, 0.0, sun * kDegree, 0.0, true});
+    for (const double sun : {0.0, 90.0, 95.0, 180.0}) queries.push_back({altitude, 0.0, sun * kDegree, 0.0, true});
   }
   Options options;
   options.samples = 64;

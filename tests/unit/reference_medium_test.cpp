@@ -31,8 +31,7 @@ TEST(ReferenceMedium, DerivesCoefficients) {
   const Atmosphere dry(p);
   const double zenith[3] = {0.930, 0.874, 0.747};
   for (std::size_t c = 0; c < 3; ++c) {
-    const Amounts columns =
-        dry.columns_to_top(0.0, dry.radius_m, dry.top_radius_m, dry.density(dry.radius_m));
+    const Amounts columns = dry.columns_to_top(0.0, dry.radius_m, dry.top_radius_m, dry.density(dry.radius_m));
     EXPECT_NEAR(dry.transmittance(columns, c), zenith[c], 6e-4);
   }
 }
@@ -100,8 +99,7 @@ TEST(ReferenceMedium, PhaseFunctionsAreNormalised) {
         mean += 2.0 * oracle::kPi * phase(c) * c * dc;
       });
       EXPECT_NEAR(norm, 1.0, 1e-9);
-      const double expected =
-          kind == MiePhase::henyey_greenstein ? g : 3.0 * g * (4.0 + g * g) / (5.0 * (2.0 + g * g));
+      const double expected = kind == MiePhase::henyey_greenstein ? g : 3.0 * g * (4.0 + g * g) / (5.0 * (2.0 + g * g));
       EXPECT_NEAR(mean, expected, 1e-9);  // Cornette and Shanks (1992), equation 9
     }
   }
@@ -153,8 +151,7 @@ TEST(ReferenceMedium, SamplesFollowTheGlow) {
   for (int i = 0; i < kCount; ++i) {
     const double turn = 2.0 * oracle::kPi * random.uniform();
     // Uniform around the glow's axis, in even steps of the cosine.
-    const Vec w =
-        around(glow.axis, 2.0 * (i + random.uniform()) / kCount - 1.0, std::cos(turn), std::sin(turn));
+    const Vec w = around(glow.axis, 2.0 * (i + random.uniform()) / kCount - 1.0, std::cos(turn), std::sin(turn));
     const double weight = 4.0 * oracle::kPi * glow.density(w) / kCount;
     const Vec v = glow.sample(random.uniform(), turn, [&] { return random.uniform(); });
     EXPECT_GE(dot(v, up), -1e-12);
@@ -244,8 +241,7 @@ TEST(ReferenceMedium, SobolPointsAreStratified) {
   for (int split = 0; split <= kLog2; ++split) {
     std::vector<int> cells(kCount);
     for (std::size_t i = 0; i < kCount; ++i) {
-      const int a = static_cast<int>(x[0][i] * (1 << split)),
-                b = static_cast<int>(x[1][i] * (kCount >> split));
+      const int a = static_cast<int>(x[0][i] * (1 << split)), b = static_cast<int>(x[1][i] * (kCount >> split));
       ++cells[static_cast<std::size_t>(a * (kCount >> split) + b)];
     }
     for (const int n : cells) EXPECT_EQ(n, 1) << "split " << split;

@@ -16,9 +16,7 @@ constexpr double kPi = std::numbers::pi;
 struct Point {
   double x, y, z;
 };
-inline Point along(const Point& p, const Point& w, double t) {
-  return {p.x + w.x * t, p.y + w.y * t, p.z + w.z * t};
-}
+inline Point along(const Point& p, const Point& w, double t) { return {p.x + w.x * t, p.y + w.y * t, p.z + w.z * t}; }
 inline double dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 // Eight-point Gauss-Legendre over each of `panels` equal parts of [a; b].
@@ -69,8 +67,7 @@ struct Air {
   }
   [[nodiscard]] double depth(const Point& p, const Point& w, double length, int panels) const {
     double sum = 0.0;
-    integrate(0.0, length, panels,
-              [&](double t, double dt) { sum += dt * extinction_at(height(along(p, w, t))); });
+    integrate(0.0, length, panels, [&](double t, double dt) { sum += dt * extinction_at(height(along(p, w, t))); });
     return sum;
   }
   // 0 in the planet's shadow.

@@ -22,8 +22,8 @@ Query ray(double altitude_m, double view_deg, double sun_deg, double azimuth_deg
 }
 Query sky(double altitude_m, double sun_deg) { return {altitude_m, 0.0, sun_deg * kDegree, 0.0, true}; }
 
-std::vector<Estimate> run(const Params& p, const std::vector<Query>& queries, std::uint64_t samples,
-                          int orders, bool by_order = false, bool visible_ground = true) {
+std::vector<Estimate> run(const Params& p, const std::vector<Query>& queries, std::uint64_t samples, int orders,
+                          bool by_order = false, bool visible_ground = true) {
   Options options;
   options.samples = samples;
   options.orders = orders;
@@ -49,12 +49,8 @@ oracle::Air default_air(const Params& p, std::size_t channel) {
   return oracle::air_of(p, rayleigh, 2e-5, 2.2e-5, ozone[channel]);
 }
 
-oracle::Point camera_of(const oracle::Air& air, const Query& q) {
-  return {0.0, 0.0, air.radius + q.altitude_m};
-}
-oracle::Point view_of(const Query& q) {
-  return {std::sin(q.view_zenith_rad), 0.0, std::cos(q.view_zenith_rad)};
-}
+oracle::Point camera_of(const oracle::Air& air, const Query& q) { return {0.0, 0.0, air.radius + q.altitude_m}; }
+oracle::Point view_of(const Query& q) { return {std::sin(q.view_zenith_rad), 0.0, std::cos(q.view_zenith_rad)}; }
 oracle::Point sun_of(const Query& q) {
   const double sine = std::sin(q.sun_zenith_rad);
   return {sine * std::cos(q.azimuth_rad), sine * std::sin(q.azimuth_rad), std::cos(q.sun_zenith_rad)};
@@ -63,21 +59,19 @@ oracle::Point sun_of(const Query& q) {
 TEST(ReferenceShell, SingleScatteringMatchesQuadrature) {
   const Params p;
   const std::vector<Query> queries = {
-      ray(0.0, 30.0, 40.0, 60.0),       // day
-      ray(0.0, 89.0, 20.0, 120.0),      // along the horizon
-      ray(1500.0, 93.0, 70.0, 10.0),    // downwards to the ground
-      ray(10000.0, 91.0, 60.0, 5.0),    // through the tangent point, near the sun's azimuth
-      ray(0.0, 85.0, 89.0, 1.0),        // at the setting sun
-      ray(0.0, 60.0, 93.0, 30.0),       // twilight
-      ray(0.0, 80.0, 95.0, 150.0),      // the dark side of twilight
-      ray(40000.0, 95.0, 92.0, 60.0),   // into the shadow from above
-      ray(300000.0, 106.0, 50.0, 40.0), // from space
-      ray(-400.0, 20.0, 50.0, 30.0),    // below sea level: upwards,
-      ray(-400.0, 90.3, 70.0, 100.0),   // past the ground beneath and up again,
-      ray(-400.0, 92.0, 60.0, 20.0),    // and down to it
-      ray(-400.0, 80.0, 93.0, 30.0),
-      ray(-2000.0, 70.0, 40.0, 90.0)
-  };
+      ray(0.0, 30.0, 40.0, 60.0),        // day
+      ray(0.0, 89.0, 20.0, 120.0),       // along the horizon
+      ray(1500.0, 93.0, 70.0, 10.0),     // downwards to the ground
+      ray(10000.0, 91.0, 60.0, 5.0),     // through the tangent point, near the sun's azimuth
+      ray(0.0, 85.0, 89.0, 1.0),         // at the setting sun
+      ray(0.0, 60.0, 93.0, 30.0),        // twilight
+      ray(0.0, 80.0, 95.0, 150.0),       // the dark side of twilight
+      ray(40000.0, 95.0, 92.0, 60.0),    // into the shadow from above
+      ray(300000.0, 106.0, 50.0, 40.0),  // from space
+      ray(-400.0, 20.0, 50.0, 30.0),     // below sea level: upwards,
+      ray(-400.0, 90.3, 70.0, 100.0),    // past the ground beneath and up again,
+      ray(-400.0, 92.0, 60.0, 20.0),     // and down to it
+      ray(-400.0, 80.0, 93.0, 30.0),    ray(-2000.0, 70.0, 40.0, 90.0)};
   const auto estimates = run(p, queries, 65536, 1);
   for (std::size_t i = 0; i < queries.size(); ++i) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -122,8 +116,7 @@ BruteForce second_order(const oracle::Air& air, const Query& q, int count) {
     double value = air.sun_transmittance(b, sun, 6);
     if (value > 0.0) {
       value *= std::exp(-air.depth(eye, view, t1, 5) - air.depth(a, w, t2, 5));
-      value *= air.rayleigh_at(air.height(a)) * 2.0 * reach * u * air.rayleigh_at(air.height(b)) * 2.0 *
-               reach2 * v;
+      value *= air.rayleigh_at(air.height(a)) * 2.0 * reach * u * air.rayleigh_at(air.height(b)) * 2.0 * reach2 * v;
       value *= 4.0 * oracle::kPi * oracle::Air::rayleigh_phase(oracle::dot(view, w)) *
                oracle::Air::rayleigh_phase(oracle::dot(w, sun));
     }
@@ -140,20 +133,17 @@ TEST(ReferenceShell, SecondOrderMatchesBruteForce) {
   p.atmosphere.mie_scattering = p.atmosphere.mie_absorption = Vec3(0.0F);
   p.planet.radius_m = 500000.0F;  // a small planet: its shadow crosses many of these paths
   p.atmosphere.height_m = 60000.0F;
-  const std::vector<Query> queries = {ray(0.0, 40.0, 50.0, 100.0), ray(2000.0, 80.0, 97.0, 20.0),
-                                      ray(0.0, 60.0, 96.0, 170.0), ray(20000.0, 100.0, 88.0, 60.0),
+  const std::vector<Query> queries = {ray(0.0, 40.0, 50.0, 100.0),    ray(2000.0, 80.0, 97.0, 20.0),
+                                      ray(0.0, 60.0, 96.0, 170.0),    ray(20000.0, 100.0, 88.0, 60.0),
                                       ray(-3000.0, 80.0, 60.0, 90.0), ray(-3000.0, 120.0, 60.0, 90.0)};
   const auto estimates = run(p, queries, 200000, 2, true);
   for (std::size_t i = 0; i < queries.size(); ++i) {
     for (const std::size_t c : {std::size_t{0}, std::size_t{2}}) {
-      const double rayleigh =
-          c == 0 ? p.atmosphere.rayleigh_scattering.x : p.atmosphere.rayleigh_scattering.z;
+      const double rayleigh = c == 0 ? p.atmosphere.rayleigh_scattering.x : p.atmosphere.rayleigh_scattering.z;
       const double ozone = c == 0 ? p.atmosphere.ozone_absorption.x : p.atmosphere.ozone_absorption.z;
-      const BruteForce expected =
-          second_order(oracle::air_of(p, rayleigh, 0.0, 0.0, ozone), queries[i], 100000);
+      const BruteForce expected = second_order(oracle::air_of(p, rayleigh, 0.0, 0.0, ozone), queries[i], 100000);
       const double error = std::hypot(expected.error, estimates[i].order_standard_error[1][c]);
-      EXPECT_NEAR(estimates[i].order_radiance[1][c], expected.mean, 4.0 * error)
-          << "ray " << i << " channel " << c;
+      EXPECT_NEAR(estimates[i].order_radiance[1][c], expected.mean, 4.0 * error) << "ray " << i << " channel " << c;
       EXPECT_LT(error, 0.04 * expected.mean) << "ray " << i << " channel " << c;
     }
   }
@@ -167,8 +157,7 @@ TEST(ReferenceShell, OzoneAloneOnlyAbsorbs) {
   const oracle::Air air = oracle::air_of(p, 0.0, 0.0, 0.0, p.atmosphere.ozone_absorption.y);
   const oracle::Point from = {0.0, 0.0, air.radius}, view = view_of(ray(0.0, 80.0, 0.0, 0.0));
   bool ground = false;
-  EXPECT_NEAR(clear[0].transmittance[1],
-              std::exp(-air.depth(from, view, air.reach(from, view, ground), 4000)), 1e-7);
+  EXPECT_NEAR(clear[0].transmittance[1], std::exp(-air.depth(from, view, air.reach(from, view, ground), 4000)), 1e-7);
   for (std::size_t c = 0; c < 3; ++c) {
     EXPECT_EQ(clear[0].radiance[c], 0.0);
     EXPECT_EQ(clear[1].radiance[c], 0.0);
@@ -211,8 +200,7 @@ TEST(ReferenceShell, RaysFromSpace) {
   const auto from = [&](double s) {  // the camera at s on the line, in its own local frame
     const double z = std::sqrt(tangent2 + s * s), view_cosine = s / z;
     const double sun[3] = {std::sin(far.sun_zenith_rad) * std::cos(far.azimuth_rad),
-                           std::sin(far.sun_zenith_rad) * std::sin(far.azimuth_rad),
-                           std::cos(far.sun_zenith_rad)};
+                           std::sin(far.sun_zenith_rad) * std::sin(far.azimuth_rad), std::cos(far.sun_zenith_rad)};
     const double sine = std::sin(far.view_zenith_rad), cosine = std::cos(far.view_zenith_rad);
     const double x = sine * (s - along) / z, up = (r + cosine * (s - along)) / z;  // the local vertical
     const double sun_cosine = sun[0] * x + sun[2] * up;
@@ -259,8 +247,7 @@ TEST(ReferenceShell, SkyIrradianceIsTheIntegralOfTheSky) {
   for (int i = 0; i < kCells; ++i) {
     for (int k = 0; k < kCells; ++k) {
       const double mu = std::sqrt((i + uniform(random)) / kCells);
-      queries.push_back(
-          ray(altitude_m, std::acos(mu) / kDegree, sun_deg, 180.0 * (k + uniform(random)) / kCells));
+      queries.push_back(ray(altitude_m, std::acos(mu) / kDegree, sun_deg, 180.0 * (k + uniform(random)) / kCells));
     }
   }
   const auto rays = run(p, queries, 64, 5);

@@ -32,11 +32,8 @@ Params slab(const std::array<double, 3>& depth, const std::array<double, 3>& alb
   p.atmosphere.mie_g = static_cast<float>(g);
   p.atmosphere.mie_phase = phase;
   const double column_m = kScaleHeight_m * -std::expm1(-kHeight_m / kScaleHeight_m);
-  const auto coefficient = [&](std::size_t c, double share) {
-    return static_cast<float>(depth[c] * share / column_m);
-  };
-  p.atmosphere.mie_scattering = {coefficient(0, albedo[0]), coefficient(1, albedo[1]),
-                                 coefficient(2, albedo[2])};
+  const auto coefficient = [&](std::size_t c, double share) { return static_cast<float>(depth[c] * share / column_m); };
+  p.atmosphere.mie_scattering = {coefficient(0, albedo[0]), coefficient(1, albedo[1]), coefficient(2, albedo[2])};
   p.atmosphere.mie_absorption = {coefficient(0, 1.0 - albedo[0]), coefficient(1, 1.0 - albedo[1]),
                                  coefficient(2, 1.0 - albedo[2])};
   return p;
@@ -50,8 +47,8 @@ Query down(double cosine, double sun_cosine, double azimuth = 0.0) {
 }
 Query sky(double sun_cosine) { return {0.0, 0.0, std::acos(sun_cosine), 0.0, true}; }
 
-std::vector<Estimate> run(const Params& p, const std::vector<Query>& queries, std::uint64_t samples,
-                          int orders, bool by_order = false) {
+std::vector<Estimate> run(const Params& p, const std::vector<Query>& queries, std::uint64_t samples, int orders,
+                          bool by_order = false) {
   Options options;
   options.samples = samples;
   options.orders = orders;
@@ -103,8 +100,7 @@ struct IsotropicSlab {
   [[nodiscard]] double sky_irradiance(int n) const {
     double sum = 0.0;
     for (std::size_t j = 0; j < kLayers; ++j) {
-      sum += 2.0 * kPi * source[static_cast<std::size_t>(n)][j] *
-             (e3(depth - edge(j + 1)) - e3(depth - edge(j)));
+      sum += 2.0 * kPi * source[static_cast<std::size_t>(n)][j] * (e3(depth - edge(j + 1)) - e3(depth - edge(j)));
     }
     return sum;
   }
@@ -131,13 +127,11 @@ TEST(ReferenceSlab, SingleScatteringClosedForm) {
   const auto estimates = run(slab(depth, albedo, g), {up(mu, mu0, 0.7), down(mu, mu0, 0.7)}, 65536, 1);
   const double sines = std::sqrt((1.0 - mu * mu) * (1.0 - mu0 * mu0)) * std::cos(0.7);
   for (std::size_t c = 0; c < 3; ++c) {
-    const auto phase = [&](double x) {
-      return (1.0 - g * g) / (4.0 * kPi * std::pow(1.0 + g * g - 2.0 * g * x, 1.5));
-    };
-    const double through = albedo[c] * phase(mu * mu0 + sines) * mu0 / (mu0 - mu) *
-                           (std::exp(-depth[c] / mu0) - std::exp(-depth[c] / mu));
-    const double back = albedo[c] * phase(-mu * mu0 + sines) * mu0 / (mu0 + mu) *
-                        -std::expm1(-depth[c] * (1.0 / mu0 + 1.0 / mu));
+    const auto phase = [&](double x) { return (1.0 - g * g) / (4.0 * kPi * std::pow(1.0 + g * g - 2.0 * g * x, 1.5)); };
+    const double through =
+        albedo[c] * phase(mu * mu0 + sines) * mu0 / (mu0 - mu) * (std::exp(-depth[c] / mu0) - std::exp(-depth[c] / mu));
+    const double back =
+        albedo[c] * phase(-mu * mu0 + sines) * mu0 / (mu0 + mu) * -std::expm1(-depth[c] * (1.0 / mu0 + 1.0 / mu));
     EXPECT_NEAR(estimates[0].radiance[c] / through, 1.0, 1e-3);
     EXPECT_NEAR(estimates[1].radiance[c] / back, 1.0, 1e-3);
     EXPECT_LT(estimates[0].standard_error[c], 5e-4 * through);
@@ -185,9 +179,7 @@ TEST(ReferenceSlab, IsotropicOrdersOverBlackGround) {
 TEST(ReferenceSlab, IsotropicOrdersOverBrightGround) {
   expect_isotropic({0.05, 0.6, 2.0}, {0.95, 1.0, 0.5}, 0.8, 8, 65536);
 }
-TEST(ReferenceSlab, IsotropicThickLayer) {
-  expect_isotropic({6.0, 6.0, 6.0}, {1.0, 0.99, 0.8}, 0.0, 24, 16384);
-}
+TEST(ReferenceSlab, IsotropicThickLayer) { expect_isotropic({6.0, 6.0, 6.0}, {1.0, 0.99, 0.8}, 0.0, 24, 16384); }
 
 // Helmholtz: exchanging sun and eye leaves radiance / cosine of the sun as it is.
 TEST(ReferenceSlab, Reciprocity) {
@@ -248,8 +240,7 @@ TEST(ReferenceSlab, WhiteFurnaceOfAWholePlanet) {
   p.planet.ground_albedo = 1.0F;
   p.atmosphere.height_m = 8000.0F;
   p.atmosphere.mie_scale_height_m = 2000.0F;
-  for (float* v :
-       {&p.atmosphere.mie_scattering.x, &p.atmosphere.mie_scattering.y, &p.atmosphere.mie_scattering.z}) {
+  for (float* v : {&p.atmosphere.mie_scattering.x, &p.atmosphere.mie_scattering.y, &p.atmosphere.mie_scattering.z}) {
     *v *= 0.1F;
   }
   p.atmosphere.rayleigh_scattering = Vec3(1e-5F, 3e-5F, 1e-4F);
@@ -266,8 +257,7 @@ TEST(ReferenceSlab, WhiteFurnaceOfAWholePlanet) {
     const double shift[3] = {uniform(random), uniform(random), uniform(random)};
     for (int i = 0; i < kRays; ++i) {  // Roberts' additive recurrence in three dimensions
       const auto at = [&](int k, double step) { return std::fmod(shift[k] + i * step, 1.0); };
-      const double disc = at(0, 0.8191725133961645), sun = at(1, 0.6710436067037893),
-                   turn = at(2, 0.5497004779019703);
+      const double disc = at(0, 0.8191725133961645), sun = at(1, 0.6710436067037893), turn = at(2, 0.5497004779019703);
       queries.push_back(
           {height_m, kPi - std::asin(std::sqrt(disc)), std::acos(1.0 - 2.0 * sun), 2.0 * kPi * turn, false});
     }

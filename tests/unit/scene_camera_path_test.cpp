@@ -78,8 +78,8 @@ TEST(ScenePath, PassesThroughItsFramesAndKeepsWhatTheyLeaveOut) {
   EXPECT_EQ(at(path, 0.0, base).sun.elevation_deg, -4.0F);  // until the first that says something of it
 }
 
-// Differences of a step of 1 ms: continuous, and so are those of the differences. A jump in speed would stay as it is when
-// the step is halved; smooth curves halve it.
+// Differences of a step of 1 ms: continuous, and so are those of the differences. A jump in speed would stay as it is
+// when the step is halved; smooth curves halve it.
 TEST(ScenePath, PositionAndAnglesChangeSmoothly) {
   const CameraPath path = from_valley_to_orbit();
   const auto value = [&](double t, int which) {
@@ -93,7 +93,9 @@ TEST(ScenePath, PositionAndAnglesChangeSmoothly) {
   for (int which = 0; which < 4; ++which) {
     for (double key = 10.0; key < 100.0; key += 0.5) {  // all of the frames are among these
       const auto kink = [&](double step) {
-        return std::abs((value(key + step, which) - value(key, which)) - (value(key, which) - value(key - step, which))) / step;
+        return std::abs((value(key + step, which) - value(key, which)) -
+                        (value(key, which) - value(key - step, which))) /
+               step;
       };
       // Of 30 degrees and 6 units of altitude in 10 s and more.
       ASSERT_LT(kink(0.05), 0.25) << which << " at " << key;
@@ -187,7 +189,8 @@ TEST(ScenePath, TheSunByDateAndPlace) {
   base.sun.animate = true;
   for (const double t : {0.0, 5.0, 10.0}) {
     // Halfway in time by symmetry.
-    const double day = *path.frames[0].julian_day + t / 10.0 * (*path.frames[1].julian_day - *path.frames[0].julian_day);
+    const double day =
+        *path.frames[0].julian_day + t / 10.0 * (*path.frames[1].julian_day - *path.frames[0].julian_day);
     const SolarPosition sun = solar_position(path.place, day);
     EXPECT_NEAR(static_cast<double>(at(path, t, base).sun.elevation_deg), sun.elevation_deg, 1e-4);
     EXPECT_NEAR(static_cast<double>(at(path, t, base).sun.azimuth_deg), sun.azimuth_deg, 1e-3);

@@ -68,7 +68,8 @@ TEST(SceneChart, ChartsCoverThePlanet) {
   }
 }
 
-// Elevation goes over the seams of charts without a step: from the origin over a corner of three of them to the antipode.
+// Elevation goes over the seams of charts without a step: from the origin over a corner of three of them to the
+// antipode.
 TEST(SceneChart, TheGroundHasNoSteps) {
   const Result<ElevationSource> source = ElevationSource::create({});
   ASSERT_TRUE(source.ok());
@@ -96,7 +97,9 @@ TEST(SceneLocalFrame, IsBelowTheCameraAndRightHanded) {
     EXPECT_LT(std::hypot(place.x, place.z), 800.0);
     EXPECT_NEAR(place.y, 5000.0, 1.0);
     EXPECT_NEAR(glm::distance(frame.place({0.0, -kRadius_m, 0.0}), glm::dvec3(0.0, -kRadius_m, 0.0)), 0.0, 1e-6);
-    EXPECT_NEAR(glm::distance(glm::cross(frame.direction({1, 0, 0}), frame.direction({0, 1, 0})), frame.direction({0, 0, 1})), 0.0, 1e-12);
+    EXPECT_NEAR(
+        glm::distance(glm::cross(frame.direction({1, 0, 0}), frame.direction({0, 1, 0})), frame.direction({0, 0, 1})),
+        0.0, 1e-12);
   }
   const LocalFrame near = local_frame({300.0, 2.0, -400.0}, kRadius_m);
   EXPECT_EQ(near.world_from_local, glm::dmat4(1.0));
@@ -105,8 +108,9 @@ TEST(SceneLocalFrame, IsBelowTheCameraAndRightHanded) {
 // East is vertical at two points of the equator, and the map has no direction at the antipode: nothing breaks there.
 TEST(SceneCamera, StandsAnywhere) {
   CameraParams params;
-  for (const DVec3& at : {DVec3(kRadius_m, -kRadius_m, 0.0), DVec3(-kRadius_m, -kRadius_m, 0.0), DVec3(0.0, -2.0 * kRadius_m, 0.0),
-                          DVec3(0.0, -kRadius_m, kRadius_m), DVec3(0.0, -kRadius_m, 0.0)}) {
+  for (const DVec3& at :
+       {DVec3(kRadius_m, -kRadius_m, 0.0), DVec3(-kRadius_m, -kRadius_m, 0.0), DVec3(0.0, -2.0 * kRadius_m, 0.0),
+        DVec3(0.0, -kRadius_m, kRadius_m), DVec3(0.0, -kRadius_m, 0.0)}) {
     params.position_m = at;
     params.altitude_m = 1500.0F;
     const View view = view_from_params(params, 1.5, kRadius_m);

@@ -52,7 +52,8 @@ void for_every_setting(const Check& check) {
           const glm::dvec3 sun = sun_at(elevation);
           check(view, sun, shadows, fit_cascades(view, sun, shadows, kGround, first_near(altitude)));
           if (testing::Test::HasFailure()) {
-            FAIL() << "sun at " << elevation << ", camera at " << altitude << ", pitch " << pitch << ", cascades " << count;
+            FAIL() << "sun at " << elevation << ", camera at " << altitude << ", pitch " << pitch << ", cascades "
+                   << count;
           }
         }
       }
@@ -78,24 +79,25 @@ TEST(SceneCascades, SplitsEndInOrderAtTheFarDistance) {
 }
 
 TEST(SceneCascades, AreFiniteOrderedAndMarchedFromTheCamera) {
-  for_every_setting([](const View&, const glm::dvec3&, const ShadowParams& shadows, const std::vector<CascadeFit>& fits) {
-    ASSERT_EQ(fits.size(), shadows.cascades);
-    double end = 0.0;
-    for (const CascadeFit& fit : fits) {
-      const glm::dmat4 matrix = fit.shadow_from_world();
-      for (int c = 0; c < 4; ++c) {
-        for (int r = 0; r < 4; ++r) ASSERT_TRUE(std::isfinite(matrix[c][r]));
-      }
-      EXPECT_GT(std::abs(glm::determinant(glm::dmat3(matrix))), 0.0);
-      EXPECT_GT(fit.texel_m, 0.0);
-      EXPECT_GT(fit.far_m, end);
-      EXPECT_LE(fit.near_m, end);  // no gap
-      end = fit.far_m;
-    }
-    EXPECT_EQ(fits[0].near_m, 0.0);
-    EXPECT_EQ(fits[shadows.first_marched].near_m, 0.0);
-    EXPECT_GE(end, shadows.distance_m);
-  });
+  for_every_setting(
+      [](const View&, const glm::dvec3&, const ShadowParams& shadows, const std::vector<CascadeFit>& fits) {
+        ASSERT_EQ(fits.size(), shadows.cascades);
+        double end = 0.0;
+        for (const CascadeFit& fit : fits) {
+          const glm::dmat4 matrix = fit.shadow_from_world();
+          for (int c = 0; c < 4; ++c) {
+            for (int r = 0; r < 4; ++r) ASSERT_TRUE(std::isfinite(matrix[c][r]));
+          }
+          EXPECT_GT(std::abs(glm::determinant(glm::dmat3(matrix))), 0.0);
+          EXPECT_GT(fit.texel_m, 0.0);
+          EXPECT_GT(fit.far_m, end);
+          EXPECT_LE(fit.near_m, end);  // no gap
+          end = fit.far_m;
+        }
+        EXPECT_EQ(fits[0].near_m, 0.0);
+        EXPECT_EQ(fits[shadows.first_marched].near_m, 0.0);
+        EXPECT_GE(end, shadows.distance_m);
+      });
 }
 
 TEST(SceneCascades, HoldTheGroundOfTheirSliceAndItsCasters) {
@@ -103,36 +105,36 @@ TEST(SceneCascades, HoldTheGroundOfTheirSliceAndItsCasters) {
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   std::size_t receivers = 0;
   std::size_t casters = 0;
-  for_every_setting([&](const View& view, const glm::dvec3& sun, const ShadowParams&,
-                        const std::vector<CascadeFit>& fits) {
-    for (const CascadeFit& fit : fits) {
-      const glm::dmat4 shadow_from_world = fit.shadow_from_world();
-      for (int i = 0; i < 400; ++i) {
-        // A point of the view's slice, at a depth that is spread evenly over the distances' logarithms.
-        const double low = std::max(fit.near_m, 1.0);
-        const double depth = low * std::pow(fit.far_m / low, uniform(engine));
-        const double x = (2.0 * uniform(engine) - 1.0) * view.tan_half_width * depth;
-        const double y = (2.0 * uniform(engine) - 1.0) * view.tan_half_height * depth;
-        const glm::dvec3 p = view.position + view.forward * depth + view.right * x + view.up * y;
-        const double altitude = altitude_of(p, kGround.radius_m);
-        if (altitude < kGround.min_m || altitude > kGround.max_m) continue;
-        ++receivers;
-        const glm::dvec3 uvz(shadow_from_world * glm::dvec4(p, 1.0));
-        for (int k = 0; k < 3; ++k) {
-          ASSERT_GE(uvz[k], 0.0) << "axis " << k << " at altitude " << altitude << ", depth " << depth;
-          ASSERT_LE(uvz[k], 1.0) << "axis " << k << " at altitude " << altitude << ", depth " << depth;
+  for_every_setting(
+      [&](const View& view, const glm::dvec3& sun, const ShadowParams&, const std::vector<CascadeFit>& fits) {
+        for (const CascadeFit& fit : fits) {
+          const glm::dmat4 shadow_from_world = fit.shadow_from_world();
+          for (int i = 0; i < 400; ++i) {
+            // A point of the view's slice, at a depth that is spread evenly over the distances' logarithms.
+            const double low = std::max(fit.near_m, 1.0);
+            const double depth = low * std::pow(fit.far_m / low, uniform(engine));
+            const double x = (2.0 * uniform(engine) - 1.0) * view.tan_half_width * depth;
+            const double y = (2.0 * uniform(engine) - 1.0) * view.tan_half_height * depth;
+            const glm::dvec3 p = view.position + view.forward * depth + view.right * x + view.up * y;
+            const double altitude = altitude_of(p, kGround.radius_m);
+            if (altitude < kGround.min_m || altitude > kGround.max_m) continue;
+            ++receivers;
+            const glm::dvec3 uvz(shadow_from_world * glm::dvec4(p, 1.0));
+            for (int k = 0; k < 3; ++k) {
+              ASSERT_GE(uvz[k], 0.0) << "axis " << k << " at altitude " << altitude << ", depth " << depth;
+              ASSERT_LE(uvz[k], 1.0) << "axis " << k << " at altitude " << altitude << ", depth " << depth;
+            }
+            // Terrain between the point and the sun, as far as the rays stay below the summits.
+            for (const double distance : {1e3, 1e4, 1e5, 3e5}) {
+              const glm::dvec3 caster = p + sun * distance;
+              const double above = altitude_of(caster, kGround.radius_m);
+              if (above < kGround.min_m || above > kGround.max_m) break;
+              ++casters;
+              ASSERT_GE((shadow_from_world * glm::dvec4(caster, 1.0)).z, 0.0) << "caster at " << distance;
+            }
+          }
         }
-        // Terrain between the point and the sun, as far as the rays stay below the summits.
-        for (const double distance : {1e3, 1e4, 1e5, 3e5}) {
-          const glm::dvec3 caster = p + sun * distance;
-          const double above = altitude_of(caster, kGround.radius_m);
-          if (above < kGround.min_m || above > kGround.max_m) break;
-          ++casters;
-          ASSERT_GE((shadow_from_world * glm::dvec4(caster, 1.0)).z, 0.0) << "caster at " << distance;
-        }
-      }
-    }
-  });
+      });
   // The draws do find ground in view, and casters.
   EXPECT_GT(receivers, 10000U);
   EXPECT_GT(casters, 1000U);
@@ -147,7 +149,8 @@ TEST(SceneCascades, OneHoldsARoomAroundTheCamera) {
         for (const double elevation : kElevations_deg) {
           std::vector<glm::dvec3> corners;
           for (int i = 0; i < 8; ++i) {
-            corners.push_back(world_from_map(1193.0 + 13.0 * (i & 1), -706.0 + 11.0 * (i >> 2), 500.0 + 8.0 * (i >> 1 & 1), kGround.radius_m));
+            corners.push_back(world_from_map(1193.0 + 13.0 * (i & 1), -706.0 + 11.0 * (i >> 2),
+                                             500.0 + 8.0 * (i >> 1 & 1), kGround.radius_m));
           }
           Ground ground = kGround;
           ground.room = corners;
@@ -216,16 +219,19 @@ TEST(SceneCascades, TexelsStayWhenTheCameraMovesAndTurns) {
         before = fits;
       }
       // Sizes change in steps, a few times over a walk of 450 m and a turn of 25 degrees.
-      for (const std::set<double>& seen : sizes) EXPECT_LE(seen.size(), 4U) << "sun " << elevation << " at " << altitude;
+      for (const std::set<double>& seen : sizes)
+        EXPECT_LE(seen.size(), 4U) << "sun " << elevation << " at " << altitude;
     }
   }
 }
 
 // Remarks on inputs (src/effect/remarks.hpp) are for mistakes: these cascades and cameras are none.
-void expect_no_remark(const View& view, const glm::dvec3& sun, const ShadowParams& shadows, const std::vector<CascadeFit>& fits) {
+void expect_no_remark(const View& view, const glm::dvec3& sun, const ShadowParams& shadows,
+                      const std::vector<CascadeFit>& fits) {
   std::vector<Cascade> cascades;
   for (const CascadeFit& fit : fits) {
-    cascades.push_back({to_mat4(fit.shadow_from_world()), static_cast<float>(fit.near_m), static_cast<float>(fit.far_m)});
+    cascades.push_back(
+        {to_mat4(fit.shadow_from_world()), static_cast<float>(fit.near_m), static_cast<float>(fit.far_m)});
   }
   const auto view_number = [](std::uintptr_t number) { return reinterpret_cast<VkImageView>(number); };  // NOLINT
   FrameInputs inputs;
@@ -264,7 +270,8 @@ TEST(SceneCascades, TheEffectHasNothingToRemarkAboutThem) {
         ShadowParams shadows;
         const glm::dvec3 sun = sun_at(elevation);
         expect_no_remark(view, sun, shadows, fit_cascades(view, sun, shadows, ground, first_near(altitude)));
-        ASSERT_FALSE(testing::Test::HasFailure()) << "sun at " << elevation << ", camera at " << altitude << ", casters at " << distance_m;
+        ASSERT_FALSE(testing::Test::HasFailure())
+            << "sun at " << elevation << ", camera at " << altitude << ", casters at " << distance_m;
       }
     }
   }

@@ -27,9 +27,15 @@ GltfFile compressed_quad(const char* mode) {
   const auto add = [&](std::size_t stride, std::size_t count, const char* as, const char* filter) {
     const int view = file.view(packed.data(), packed.size());
     const json at = file.root["bufferViews"][static_cast<std::size_t>(view)];
-    json compressed = {{"buffer", 0}, {"byteOffset", at["byteOffset"]}, {"byteLength", at["byteLength"]}, {"byteStride", stride}, {"count", count}, {"mode", as}};
+    json compressed = {{"buffer", 0},
+                       {"byteOffset", at["byteOffset"]},
+                       {"byteLength", at["byteLength"]},
+                       {"byteStride", stride},
+                       {"count", count},
+                       {"mode", as}};
     if (filter != nullptr) compressed["filter"] = filter;
-    file.root["bufferViews"][static_cast<std::size_t>(view)] = {{"buffer", 1}, {"byteLength", stride * count}, {"extensions", {{"EXT_meshopt_compression", compressed}}}};
+    file.root["bufferViews"][static_cast<std::size_t>(view)] = {
+        {"buffer", 1}, {"byteLength", stride * count}, {"extensions", {{"EXT_meshopt_compression", compressed}}}};
     return view;
   };
   const int position = add(12, 4, "ATTRIBUTES", nullptr);
@@ -41,12 +47,14 @@ GltfFile compressed_quad(const char* mode) {
   const int normal = add(4, 4, "ATTRIBUTES", "OCTAHEDRAL");
   file.root["bufferViews"][static_cast<std::size_t>(normal)]["byteStride"] = 4;
   packed.resize(meshopt_encodeIndexBufferBound(6, 4));
-  packed.resize(mode == std::string("TRIANGLES") ? meshopt_encodeIndexBuffer(packed.data(), packed.size(), indices.data(), 6)
-                                                 : meshopt_encodeIndexSequence(packed.data(), packed.size(), indices.data(), 6));
+  packed.resize(mode == std::string("TRIANGLES")
+                    ? meshopt_encodeIndexBuffer(packed.data(), packed.size(), indices.data(), 6)
+                    : meshopt_encodeIndexSequence(packed.data(), packed.size(), indices.data(), 6));
   const int index = add(2, 6, mode, nullptr);
-  file.root["accessors"] = {{{"bufferView", position}, {"componentType", 5126}, {"type", "VEC3"}, {"count", 4}},
-                            {{"bufferView", normal}, {"componentType", 5120}, {"normalized", true}, {"type", "VEC3"}, {"count", 4}},
-                            {{"bufferView", index}, {"componentType", 5123}, {"type", "SCALAR"}, {"count", 6}}};
+  file.root["accessors"] = {
+      {{"bufferView", position}, {"componentType", 5126}, {"type", "VEC3"}, {"count", 4}},
+      {{"bufferView", normal}, {"componentType", 5120}, {"normalized", true}, {"type", "VEC3"}, {"count", 4}},
+      {{"bufferView", index}, {"componentType", 5123}, {"type", "SCALAR"}, {"count", 6}}};
   file.node({{"mesh", file.mesh({{"attributes", {{"POSITION", 0}, {"NORMAL", 1}}}, {"indices", 2}})}});
   file.root["extensionsRequired"] = {"EXT_meshopt_compression", "KHR_mesh_quantization"};
   file.more_buffers = {{{"byteLength", 4 * 12}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}};
@@ -106,8 +114,13 @@ GltfFile draco_quad() {
   file.root["accessors"] = {{{"componentType", 5126}, {"type", "VEC3"}, {"count", 4}},
                             {{"componentType", 5126}, {"type", "VEC2"}, {"count", 4}},
                             {{"componentType", 5125}, {"type", "SCALAR"}, {"count", 6}}};
-  const json compressed = {{"bufferView", view}, {"attributes", {{"POSITION", mesh->attribute(position)->unique_id()}, {"TEXCOORD_0", mesh->attribute(uv)->unique_id()}}}};
-  file.node({{"mesh", file.mesh({{"attributes", {{"POSITION", 0}, {"TEXCOORD_0", 1}}}, {"indices", 2}, {"extensions", {{"KHR_draco_mesh_compression", compressed}}}})}});
+  const json compressed = {
+      {"bufferView", view},
+      {"attributes",
+       {{"POSITION", mesh->attribute(position)->unique_id()}, {"TEXCOORD_0", mesh->attribute(uv)->unique_id()}}}};
+  file.node({{"mesh", file.mesh({{"attributes", {{"POSITION", 0}, {"TEXCOORD_0", 1}}},
+                                 {"indices", 2},
+                                 {"extensions", {{"KHR_draco_mesh_compression", compressed}}}})}});
   file.root["extensionsRequired"] = {"KHR_draco_mesh_compression"};
   return file;
 }
@@ -132,8 +145,10 @@ TEST_F(SceneGltfCompression, DracoCompressionIsRead) {
   };
   changed("/accessors/0/count", 5, "POSITION has 4 elements");
   changed("/accessors/1/componentType", 5123, "TEXCOORD_0 has another type than its accessor");
-  changed("/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression/attributes/POSITION", 7, "attributes.POSITION is 7");
-  changed("/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression/bufferView", 3, "KHR_draco_mesh_compression.bufferView is 3");
+  changed("/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression/attributes/POSITION", 7,
+          "attributes.POSITION is 7");
+  changed("/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression/bufferView", 3,
+          "KHR_draco_mesh_compression.bufferView is 3");
   changed("/bufferViews/0/byteLength", 9, "KHR_draco_mesh_compression cannot be decoded");
 }
 #endif
@@ -155,12 +170,14 @@ TEST_F(SceneGltfCompression, DamagedCompressedDataNeverCrashes) {
 
 #if !defined(TYNDALL_WITH_MESHOPT)
 TEST_F(SceneGltfCompression, MeshoptIsRefusedByNameWithoutTheLibrary) {
-  refuses([](GltfFile& f) { f.root["extensionsRequired"] = {"EXT_meshopt_compression"}; }, "EXT_meshopt_compression, whose decoder this program was built without");
+  refuses([](GltfFile& f) { f.root["extensionsRequired"] = {"EXT_meshopt_compression"}; },
+          "EXT_meshopt_compression, whose decoder this program was built without");
 }
 #endif
 #if !defined(TYNDALL_WITH_DRACO)
 TEST_F(SceneGltfCompression, DracoIsRefusedByNameWithoutTheLibrary) {
-  refuses([](GltfFile& f) { f.root["extensionsRequired"] = {"KHR_draco_mesh_compression"}; }, "KHR_draco_mesh_compression, whose decoder this program was built without");
+  refuses([](GltfFile& f) { f.root["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
+          "KHR_draco_mesh_compression, whose decoder this program was built without");
 }
 #endif
 

@@ -25,19 +25,29 @@ TEST_F(SceneGltf, SamplersAreThoseOfTheFile) {
   GltfFile file = triangle();
   set_picture(file, picture());
   file.root["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}, {"minFilter", 9728}},
-                           {{"minFilter", 9985}}, json::object()};
-  file.root["textures"] = {{{"source", 0}, {"sampler", 0}}, {{"source", 0}, {"sampler", 1}}, {{"source", 0}, {"sampler", 2}}, {{"source", 0}}};
+                           {{"minFilter", 9985}},
+                           json::object()};
+  file.root["textures"] = {{{"source", 0}, {"sampler", 0}},
+                           {{"source", 0}, {"sampler", 1}},
+                           {{"source", 0}, {"sampler", 2}},
+                           {{"source", 0}}};
   for (int i = 1; i < 4; ++i) file.material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", i}}}}}});
   const MeshData data = load(file);
   ASSERT_GE(data.materials.size(), 4U);
   EXPECT_EQ(data.textures.size(), 1U);  // one picture, however it is sampled
-  EXPECT_EQ(data.materials[0].sampler, (MeshSampler{TextureWrap::clamp_to_edge, TextureWrap::mirrored_repeat, false, false, MipFilter::none}));
-  EXPECT_EQ(data.materials[1].sampler, (MeshSampler{TextureWrap::repeat, TextureWrap::repeat, true, true, MipFilter::nearest}));
+  EXPECT_EQ(data.materials[0].sampler,
+            (MeshSampler{TextureWrap::clamp_to_edge, TextureWrap::mirrored_repeat, false, false, MipFilter::none}));
+  EXPECT_EQ(data.materials[1].sampler,
+            (MeshSampler{TextureWrap::repeat, TextureWrap::repeat, true, true, MipFilter::nearest}));
   EXPECT_EQ(data.materials[2].sampler, MeshSampler());
   EXPECT_EQ(data.materials[3].sampler, MeshSampler());
-  for (const auto& [name, value] : {std::pair("wrapS", 33072), std::pair("wrapT", 0), std::pair("magFilter", 9987), std::pair("minFilter", 9730)}) {
-    refuses([&, key = name, number = value](GltfFile& f) { f.root["samplers"] = {{{key, number}}}; },
-            "samplers[0]." + std::string(name) + " is " + std::to_string(value));
+  for (const auto& [name, value] :
+       {std::pair("wrapS", 33072), std::pair("wrapT", 0), std::pair("magFilter", 9987), std::pair("minFilter", 9730)}) {
+    refuses(
+        [&, key = name, number = value](GltfFile& f) {
+          f.root["samplers"] = {{{key, number}}};
+        },
+        "samplers[0]." + std::string(name) + " is " + std::to_string(value));
   }
 }
 
@@ -80,8 +90,10 @@ TEST_F(SceneGltf, MorphTargetsMoveNormalsCoordinatesAndColours) {
 
 TEST_F(SceneGltf, SpecularGlossinessIsDrawnWithItsDiffuseColour) {
   GltfFile file = triangle();
-  file.root["materials"][0] = {{"pbrMetallicRoughness", {{"baseColorFactor", {0, 0, 1, 1}}}},
-                               {"extensions", {{"KHR_materials_pbrSpecularGlossiness", {{"diffuseFactor", {0.5, 0.25, 0, 1}}, {"glossinessFactor", 0.75}}}}}};
+  file.root["materials"][0] = {
+      {"pbrMetallicRoughness", {{"baseColorFactor", {0, 0, 1, 1}}}},
+      {"extensions",
+       {{"KHR_materials_pbrSpecularGlossiness", {{"diffuseFactor", {0.5, 0.25, 0, 1}}, {"glossinessFactor", 0.75}}}}}};
   file.root["extensionsUsed"] = file.root["extensionsRequired"] = {"KHR_materials_pbrSpecularGlossiness"};
   const MeshData data = load(file);
   ASSERT_FALSE(data.materials.empty());
@@ -133,14 +145,16 @@ TEST_F(SceneGltf, ValuesOutsideTheSchemaAreRefusedWithTheirPath) {
   set("/meshes/0/primitives/0/mode", 7, "meshes[0].primitives[0].mode is 7");
   set("/meshes/0/primitives/0/attributes/NORMAL", -1, "meshes[0].primitives[0].attributes.NORMAL is -1");
   set("/meshes/0/primitives", json::object(), "meshes[0].primitives is an object");
-  set("/materials/0/pbrMetallicRoughness/baseColorFactor", {1, 1}, "materials[0].pbrMetallicRoughness.baseColorFactor is an array of 2");
+  set("/materials/0/pbrMetallicRoughness/baseColorFactor", {1, 1},
+      "materials[0].pbrMetallicRoughness.baseColorFactor is an array of 2");
   set("/materials/0/pbrMetallicRoughness/baseColorFactor", {1, 1, "1", 1}, "baseColorFactor[2] is \"1\"");
   set("/materials/0/pbrMetallicRoughness/baseColorFactor", {1.1, 1, 1, 1}, "baseColorFactor[0] is 1.1");
   set("/materials/0/pbrMetallicRoughness/baseColorTexture", {{"index", -1}}, "baseColorTexture.index is -1");
   set("/materials/0/pbrMetallicRoughness", 3, "materials[0].pbrMetallicRoughness is 3");
   set("/materials/0/doubleSided", "yes", "materials[0].doubleSided is \"yes\"");
   set("/materials/0/alphaMode", 2, "materials[0].alphaMode is 2");
-  set("/materials/0/extensions/KHR_materials_transmission", {{"transmissionFactor", "1"}}, "transmissionFactor is \"1\"");
+  set("/materials/0/extensions/KHR_materials_transmission", {{"transmissionFactor", "1"}},
+      "transmissionFactor is \"1\"");
   set("/materials", json::object(), "materials is an object");
   set("/nodes/0/translation", {1, 2}, "nodes[0].translation is an array of 2");
   set("/nodes/0/rotation", {0, 0, 0, 2}, "nodes[0].rotation[3] is 2");
@@ -152,21 +166,34 @@ TEST_F(SceneGltf, ValuesOutsideTheSchemaAreRefusedWithTheirPath) {
   set("/nodes/0/skin", 0, "nodes[0].skin is 0");
   set("/scene", -1, "scene is -1");
   set("/extensionsRequired", "KHR_x", "extensionsRequired is \"KHR_x\"");
-  refuses([](GltfFile& f) { f.root["nodes"][0]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; f.root["nodes"][0]["scale"] = {1, 1, 1}; },
-          "nodes[0] has both a matrix and a scale");
+  refuses(
+      [](GltfFile& f) {
+        f.root["nodes"][0]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+        f.root["nodes"][0]["scale"] = {1, 1, 1};
+      },
+      "nodes[0] has both a matrix and a scale");
   // A texture's transform counts as a whole, too.
-  refuses([&](GltfFile& f) {
-    set_picture(f, picture());
-    f.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"] = {{"scale", {2}}};
-  }, "KHR_texture_transform.scale is an array of 1");
-  refuses([](GltfFile& f) { primitive(f)["attributes"]["COLOR_0"] = f.accessor<std::uint8_t>(std::vector<std::uint8_t>(9, 255), 5121, "VEC3", 3); },
-          "COLOR_0 has integers that are not normalized");
+  refuses(
+      [&](GltfFile& f) {
+        set_picture(f, picture());
+        f.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"] = {
+            {"scale", {2}}};
+      },
+      "KHR_texture_transform.scale is an array of 1");
+  refuses(
+      [](GltfFile& f) {
+        primitive(f)["attributes"]["COLOR_0"] =
+            f.accessor<std::uint8_t>(std::vector<std::uint8_t>(9, 255), 5121, "VEC3", 3);
+      },
+      "COLOR_0 has integers that are not normalized");
   EXPECT_NE(read_bytes("[1, 2]").ok(), true);
 }
 
 TEST_F(SceneGltf, RoundedFactorsAreClamped) {
   GltfFile file = triangle();
-  file.root["materials"][0] = {{"pbrMetallicRoughness", {{"baseColorFactor", {1.0000001192092896, -1e-8, 0.5, 1}}, {"roughnessFactor", 1.0000001}}}};
+  file.root["materials"][0] = {
+      {"pbrMetallicRoughness",
+       {{"baseColorFactor", {1.0000001192092896, -1e-8, 0.5, 1}}, {"roughnessFactor", 1.0000001}}}};
   const MeshData data = load(file);
   ASSERT_FALSE(data.materials.empty());
   EXPECT_EQ(data.materials[0].color, glm::vec4(1.0F, 0.0F, 0.5F, 1.0F));
@@ -174,13 +201,17 @@ TEST_F(SceneGltf, RoundedFactorsAreClamped) {
 }
 
 TEST_F(SceneGltf, NumbersThatAreNotFiniteAreRefusedByName) {
-  for (const auto& [name, components] : {std::pair("NORMAL", 3), std::pair("TEXCOORD_0", 2), std::pair("COLOR_0", 3), std::pair("COLOR_0", 4)}) {
+  for (const auto& [name, components] :
+       {std::pair("NORMAL", 3), std::pair("TEXCOORD_0", 2), std::pair("COLOR_0", 3), std::pair("COLOR_0", 4)}) {
     for (const float bad : {kNaN, std::numeric_limits<float>::infinity()}) {
-      refuses([&, key = name, size = components](GltfFile& f) {
-        std::vector<float> values(3 * static_cast<std::size_t>(size), 0.5F);
-        values.back() = bad;
-        primitive(f)["attributes"][key] = f.floats(values, size);
-      }, "meshes[0].primitives[0].attributes." + std::string(name) + " (accessors[1]) has an element that is not finite, number 2");
+      refuses(
+          [&, key = name, size = components](GltfFile& f) {
+            std::vector<float> values(3 * static_cast<std::size_t>(size), 0.5F);
+            values.back() = bad;
+            primitive(f)["attributes"][key] = f.floats(values, size);
+          },
+          "meshes[0].primitives[0].attributes." + std::string(name) +
+              " (accessors[1]) has an element that is not finite, number 2");
     }
   }
   GltfFile file = triangle();
@@ -219,7 +250,9 @@ TEST_F(SceneGltf, AccessorsWithoutDataAreZerosAndSparseOnesAreRead) {
   const int index_view = file.view(where.data(), where.size() * sizeof(std::uint16_t));
   const std::vector<float> values = {5, 0, 0, 0, 5, 0};
   const int value_view = file.view(values.data(), values.size() * sizeof(float));
-  const json sparse = {{"count", 2}, {"indices", {{"bufferView", index_view}, {"componentType", 5123}}}, {"values", {{"bufferView", value_view}}}};
+  const json sparse = {{"count", 2},
+                       {"indices", {{"bufferView", index_view}, {"componentType", 5123}}},
+                       {"values", {{"bufferView", value_view}}}};
   // Over the corners, and over zeros.
   for (const bool zeros : {false, true}) {
     file.root["accessors"][0]["sparse"] = sparse;
@@ -242,10 +275,13 @@ TEST_F(SceneGltf, AccessorsWithoutDataAreZerosAndSparseOnesAreRead) {
 }
 
 TEST_F(SceneGltf, ExtensionsAreRefusedOrNotedByName) {
-  refuses([](GltfFile& f) { f.root["extensionsRequired"] = {"KHR_texture_basisu"}; }, "requires the extension KHR_texture_basisu");
-  refuses([](GltfFile& f) { f.root["extensionsRequired"] = {"KHR_materials_unlit"}; }, "requires the extension KHR_materials_unlit");
+  refuses([](GltfFile& f) { f.root["extensionsRequired"] = {"KHR_texture_basisu"}; },
+          "requires the extension KHR_texture_basisu");
+  refuses([](GltfFile& f) { f.root["extensionsRequired"] = {"KHR_materials_unlit"}; },
+          "requires the extension KHR_materials_unlit");
   GltfFile file = triangle();
-  file.root["extensionsUsed"] = {"KHR_materials_unlit", "KHR_texture_transform", "KHR_lights_punctual", "KHR_materials_unlit"};
+  file.root["extensionsUsed"] = {"KHR_materials_unlit", "KHR_texture_transform", "KHR_lights_punctual",
+                                 "KHR_materials_unlit"};
   file.root["materials"][0]["emissiveFactor"] = {1, 0, 0};
   file.root["animations"] = json::array({json::object()});
   const MeshData data = load(file);
@@ -260,21 +296,26 @@ TEST_F(SceneGltf, ExtensionsAreRefusedOrNotedByName) {
 
 TEST_F(SceneGltf, SkinsAreDrawnInThePoseOfTheirJoints) {
   GltfFile file = triangle();
-  primitive(file)["attributes"]["JOINTS_0"] = file.accessor<std::uint8_t>({0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}, 5121, "VEC4", 4);
+  primitive(file)["attributes"]["JOINTS_0"] =
+      file.accessor<std::uint8_t>({0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}, 5121, "VEC4", 4);
   primitive(file)["attributes"]["WEIGHTS_0"] = file.floats({1, 0, 0, 0, 1, 0, 0, 0, 0.5, 0.5, 0, 0}, 4);
   primitive(file)["attributes"]["NORMAL"] = file.points({{0, 0, 1}, {0, 0, 1}, {0, 1, 0}});
-  // The second joint is a child of the first and stands at (1, 0, 0) when it is bound; now it is turned by 90 degrees about z.
-  const int child = file.node({{"translation", {1, 0, 0}}, {"rotation", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}}}, false);
+  // The second joint is a child of the first and stands at (1, 0, 0) when it is bound; now it is turned by 90 degrees
+  // about z.
+  const int child =
+      file.node({{"translation", {1, 0, 0}}, {"rotation", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}}}, false);
   const int root = file.node({{"translation", {0, 0, 3}}, {"children", {child}}});
-  const int inverse = file.accessor<float>({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1,
-                                            1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1}, 5126, "MAT4", 16);
+  const int inverse = file.accessor<float>(
+      {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1}, 5126, "MAT4",
+      16);
   file.root["skins"] = {{{"joints", {root, child}}, {"inverseBindMatrices", inverse}}};
   file.root["nodes"][0]["skin"] = 0;
   file.root["nodes"][0]["translation"] = {100, 0, 0};  // does not count
   const MeshData data = load(file);
   const std::vector<glm::vec3> p = positions(data);
   ASSERT_EQ(p.size(), 3U);
-  // (0, 1, 0) relative to the second joint is (-1, 1, 0), which turns to (-1, -1, 0): (0, -1, 3). Its other half is (0, 1, 3).
+  // (0, 1, 0) relative to the second joint is (-1, 1, 0), which turns to (-1, -1, 0): (0, -1, 3). Its other half is (0,
+  // 1, 3).
   const std::vector<glm::vec3> expected = {{0, 0, 3}, {1, 0, 3}, {0, 0, 3}};
   for (std::size_t i = 0; i < 3; ++i) EXPECT_LT(glm::distance(p[i], expected[i]), 1e-5F) << i;
   EXPECT_LT(glm::distance(data.vertices[2].normal, glm::normalize(glm::vec3(-1, 1, 0))), 1e-5F);
@@ -289,10 +330,12 @@ TEST_F(SceneGltf, SkinsAreDrawnInThePoseOfTheirJoints) {
 
 std::string chunk(const std::string& kind, const std::string& body) {
   const auto word = [](std::size_t value) {
-    return std::string{static_cast<char>(value >> 24U), static_cast<char>(value >> 16U), static_cast<char>(value >> 8U), static_cast<char>(value)};
+    return std::string{static_cast<char>(value >> 24U), static_cast<char>(value >> 16U), static_cast<char>(value >> 8U),
+                       static_cast<char>(value)};
   };
   const std::string text = kind + body;
-  return word(body.size()) + text + word(crc32(0, reinterpret_cast<const unsigned char*>(text.data()), static_cast<unsigned>(text.size())));
+  return word(body.size()) + text +
+         word(crc32(0, reinterpret_cast<const unsigned char*>(text.data()), static_cast<unsigned>(text.size())));
 }
 
 // A square PNG of 8-bit grey of some side whose picture data inflates to `size` zeros.
@@ -301,7 +344,8 @@ std::string grey_png(std::uint32_t side, std::size_t size, bool interlaced = fal
   uLongf length = packed.size();
   compress(packed.data(), &length, zeros.data(), size);
   const std::string word = {0, 0, static_cast<char>(side >> 8U), static_cast<char>(side)};
-  return "\x89PNG\r\n\x1a\n" + chunk("IHDR", word + word + std::string("\x08\0\0\0", 4) + std::string(1, interlaced ? '\1' : '\0')) +
+  return "\x89PNG\r\n\x1a\n" +
+         chunk("IHDR", word + word + std::string("\x08\0\0\0", 4) + std::string(1, interlaced ? '\1' : '\0')) +
          chunk("IDAT", std::string(reinterpret_cast<char*>(packed.data()), length)) + chunk("IEND", "");
 }
 
@@ -312,9 +356,7 @@ long peak_kib() {
 }
 
 TEST_F(SceneGltf, DamagedPicturesAreRefusedBeforeTheyCostMemory) {
-  const auto with = [&](const std::string& bytes) {
-    return [&](GltfFile& f) { set_picture(f, bytes); };
-  };
+  const auto with = [&](const std::string& bytes) { return [&](GltfFile& f) { set_picture(f, bytes); }; };
   // 2x2, and the same with too little and too much picture data.
   GltfFile fine = triangle();
   set_picture(fine, grey_png(2, 6));
@@ -334,24 +376,29 @@ TEST_F(SceneGltf, DamagedPicturesAreRefusedBeforeTheyCostMemory) {
   changed[43] = static_cast<char>(changed[43] ^ 1);
   refuses(with(changed), "images[0] is a picture whose checksums are wrong");
   refuses(with(grey_png(2, 6).substr(0, 60)), "images[0] is a picture which");
-  refuses([&](GltfFile& f) {
-    set_picture(f, picture());
-    f.root["bufferViews"].back()["byteOffset"] = 1000;
-  }, "bufferViews[1] ends at byte ");
+  refuses(
+      [&](GltfFile& f) {
+        set_picture(f, picture());
+        f.root["bufferViews"].back()["byteOffset"] = 1000;
+      },
+      "bufferViews[1] ends at byte ");
 }
 
 // The decoder fills the rest of a JPEG that ends early with grey, without a word.
 TEST_F(SceneGltf, JpegsThatEndEarlyAreRefused) {
   std::string jpeg;
   const std::vector<unsigned char> red(std::size_t{3} * 64 * 64, 200);
-  const auto append = [](void* to, void* data, int size) { static_cast<std::string*>(to)->append(static_cast<char*>(data), static_cast<std::size_t>(size)); };
+  const auto append = [](void* to, void* data, int size) {
+    static_cast<std::string*>(to)->append(static_cast<char*>(data), static_cast<std::size_t>(size));
+  };
   ASSERT_NE(stbi_write_jpg_to_func(append, &jpeg, 64, 64, 3, red.data(), 90), 0);
   GltfFile file = triangle();
   set_picture(file, jpeg + "something behind it");
   const MeshData data = load(file);
   ASSERT_EQ(data.textures.size(), 1U);
   EXPECT_NEAR(data.textures[0].rgba[0], 200, 2);
-  refuses([&](GltfFile& f) { set_picture(f, jpeg.substr(0, jpeg.size() - 20)); }, "images[0] is a picture which ends early");
+  refuses([&](GltfFile& f) { set_picture(f, jpeg.substr(0, jpeg.size() - 20)); },
+          "images[0] is a picture which ends early");
   // A header that claims 8000x8000 texels: the height and width follow the marker FF C0, a length and a depth.
   const std::size_t frame = jpeg.find("\xFF\xC0");
   ASSERT_NE(frame, std::string::npos);

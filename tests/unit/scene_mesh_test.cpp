@@ -67,12 +67,13 @@ TEST_F(SceneMesh, TrianglesWithAndWithoutIndicesNormalsAndOfAllModes) {
   const int strip = file.accessor<std::uint16_t>({0, 1, 3, 2}, 5123, "SCALAR", 1);
   const int fan = file.accessor<std::uint16_t>({0, 1, 2, 3}, 5123, "SCALAR", 1);
   const json with = {{"POSITION", position}, {"NORMAL", normal}};
-  for (const int indices : {bytes, shorts, ints}) file.node({{"mesh", file.mesh({{"attributes", with}, {"indices", indices}})}});
+  for (const int indices : {bytes, shorts, ints})
+    file.node({{"mesh", file.mesh({{"attributes", with}, {"indices", indices}})}});
   file.node({{"mesh", file.mesh({{"attributes", with}, {"indices", strip}, {"mode", 5}})}});
   file.node({{"mesh", file.mesh({{"attributes", with}, {"indices", fan}, {"mode", 6}})}});
   file.node({{"mesh", file.mesh({{"attributes", {{"POSITION", position}}}, {"indices", ints}})}});  // flat normals
-  file.node({{"mesh", file.mesh({{"attributes", with}, {"mode", 6}})}});                             // no indices
-  file.node({{"mesh", file.mesh({{"attributes", with}, {"mode", 1}})}});                             // lines
+  file.node({{"mesh", file.mesh({{"attributes", with}, {"mode", 6}})}});                            // no indices
+  file.node({{"mesh", file.mesh({{"attributes", with}, {"mode", 1}})}});                            // lines
   for (const char* const name : {"a.gltf", "a.glb"}) {
     const MeshData data = load(file.save(at(name)));
     ASSERT_EQ(data.parts.size(), 7U);
@@ -102,7 +103,9 @@ TEST_F(SceneMesh, QuantisedAndInterleavedAttributes) {
   const int normals = file.accessor<std::int8_t>({0, 0, -127, 0, 0, -127, 0, 0, -127}, 5120, "VEC3", 3, true);
   const int uv = file.accessor<std::uint16_t>({0, 0, 65535, 0, 0, 65535}, 5123, "VEC2", 2, true);
   const int color = file.accessor<std::uint8_t>({255, 0, 128, 255, 0, 128, 255, 0, 128}, 5121, "VEC3", 3, true);
-  file.node({{"mesh", file.mesh({{"attributes", {{"POSITION", bytes}, {"NORMAL", normals}, {"TEXCOORD_0", uv}, {"COLOR_0", color}}}})}});
+  file.node(
+      {{"mesh", file.mesh({{"attributes",
+                            {{"POSITION", bytes}, {"NORMAL", normals}, {"TEXCOORD_0", uv}, {"COLOR_0", color}}}})}});
   file.node({{"mesh", file.mesh({{"attributes", {{"POSITION", shorts}}}})}});
   // x, y, z and nothing, four floats apart.
   const std::vector<float> loose = {1, 2, 3, 9, 4, 5, 6, 9, 7, 8, 10, 9};
@@ -124,7 +127,10 @@ TEST_F(SceneMesh, NodesPlaceAndRepeatMeshes) {
   GltfFile file = triangle();
   // A child at its parent's side: turned by 90 degrees about y, scaled, moved.
   const int child = file.node({{"mesh", 0}, {"translation", {0, 0, 1}}}, false);
-  file.node({{"children", {child}}, {"rotation", {0, std::sqrt(0.5), 0, std::sqrt(0.5)}}, {"scale", {2, 2, 2}}, {"translation", {10, 0, 0}}});
+  file.node({{"children", {child}},
+             {"rotation", {0, std::sqrt(0.5), 0, std::sqrt(0.5)}},
+             {"scale", {2, 2, 2}},
+             {"translation", {10, 0, 0}}});
   const MeshData data = load(file.save(at("a.gltf")));
   ASSERT_EQ(data.meshes.size(), 1U);
   ASSERT_EQ(data.instances.size(), 2U);
@@ -146,11 +152,15 @@ TEST_F(SceneMesh, MaterialsAndTextures) {
   const std::string bytes((std::istreambuf_iterator<char>(png)), std::istreambuf_iterator<char>());
   GltfFile file = triangle();
   const int inside = file.view(bytes.data(), bytes.size());
-  file.root["images"] = {{{"uri", "red%20blue.png"}}, {{"uri", "data:image/png;base64," + GltfFile::base64(bytes)}},
+  file.root["images"] = {{{"uri", "red%20blue.png"}},
+                         {{"uri", "data:image/png;base64," + GltfFile::base64(bytes)}},
                          {{"bufferView", inside}, {"mimeType", "image/png"}}};
   file.root["textures"] = {{{"source", 0}}, {{"source", 1}}, {{"source", 2}}};
-  const auto textured = [](int texture) { return json{{"baseColorTexture", {{"index", texture}}}, {"baseColorFactor", {0.5, 0.25, 1, 0.75}}}; };
-  file.material({{"pbrMetallicRoughness", textured(0)}, {"alphaMode", "MASK"}, {"alphaCutoff", 0.25}, {"doubleSided", true}});
+  const auto textured = [](int texture) {
+    return json{{"baseColorTexture", {{"index", texture}}}, {"baseColorFactor", {0.5, 0.25, 1, 0.75}}};
+  };
+  file.material(
+      {{"pbrMetallicRoughness", textured(0)}, {"alphaMode", "MASK"}, {"alphaCutoff", 0.25}, {"doubleSided", true}});
   file.material({{"pbrMetallicRoughness", textured(1)}, {"alphaMode", "BLEND"}});
   file.material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 2}}}, {"roughnessFactor", 0.1}}},
                  {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 0.5}}}}}});
@@ -196,22 +206,39 @@ TEST_F(SceneMesh, WrongFilesSayWhatIsWrong) {
   refuses(changed([](GltfFile& f) { f.root["scene"] = 7; }), "scene is 7");
   refuses(changed([](GltfFile& f) { f.root["scenes"][0]["nodes"] = {9}; }), "scenes[0].nodes[0] is 9");
   refuses(changed([](GltfFile& f) { f.root["nodes"][0]["children"] = {0}; }), "in a circle");
-  refuses(changed([](GltfFile& f) { f.root["nodes"][0]["rotation"] = {0, 0, 0, 0}; }), "nodes[0].rotation has no length");
+  refuses(changed([](GltfFile& f) {
+            f.root["nodes"][0]["rotation"] = {0, 0, 0, 0};
+          }),
+          "nodes[0].rotation has no length");
   refuses(changed([](GltfFile& f) { f.root["accessors"][0]["count"] = 4; }), "beyond the end of its bufferView");
   refuses(changed([](GltfFile& f) { f.root["accessors"][0]["count"] = 4000000000U; }), "accessors[0]");
-  refuses(changed([](GltfFile& f) { f.root["accessors"][0]["byteOffset"] = 4000000000U; }), "beyond the end of its bufferView");
-  refuses(changed([](GltfFile& f) { f.root["bufferViews"][0]["byteLength"] = 4000000000U; }), "beyond the end of its buffer");
+  refuses(changed([](GltfFile& f) { f.root["accessors"][0]["byteOffset"] = 4000000000U; }),
+          "beyond the end of its bufferView");
+  refuses(changed([](GltfFile& f) { f.root["bufferViews"][0]["byteLength"] = 4000000000U; }),
+          "beyond the end of its buffer");
   refuses(changed([](GltfFile& f) { f.root["bufferViews"][0]["buffer"] = 3; }), "bufferViews[0].buffer is 3");
   refuses(changed([](GltfFile& f) { f.root["meshes"][0]["primitives"][0]["indices"] = 0; }), "indices of a wrong type");
   refuses(changed([](GltfFile& f) {
             f.root["meshes"][0]["primitives"][0]["indices"] = f.accessor<std::uint16_t>({0, 1, 3}, 5123, "SCALAR", 1);
-          }), "index 3 of 3 vertices");
-  refuses(changed([](GltfFile& f) { f.root["meshes"][0]["primitives"][0]["material"] = 3; }), "meshes[0].primitives[0].material is 3");
-  refuses(changed([](GltfFile& f) { f.root["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = f.points({{0, 0, 1}}); }), "another length than POSITION");
-  refuses(changed([](GltfFile& f) { f.material({{"alphaMode", "PERHAPS"}}); }), "materials[0].alphaMode is \"PERHAPS\"");
-  refuses(changed([](GltfFile& f) { f.material({{"alphaMode", "MASK"}, {"alphaCutoff", -0.5}}); }), "materials[0].alphaCutoff is -0.5");
+          }),
+          "index 3 of 3 vertices");
+  refuses(changed([](GltfFile& f) { f.root["meshes"][0]["primitives"][0]["material"] = 3; }),
+          "meshes[0].primitives[0].material is 3");
+  refuses(changed([](GltfFile& f) {
+            f.root["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = f.points({{0, 0, 1}});
+          }),
+          "another length than POSITION");
+  refuses(changed([](GltfFile& f) {
+            f.material({{"alphaMode", "PERHAPS"}});
+          }),
+          "materials[0].alphaMode is \"PERHAPS\"");
+  refuses(changed([](GltfFile& f) {
+            f.material({{"alphaMode", "MASK"}, {"alphaCutoff", -0.5}});
+          }),
+          "materials[0].alphaCutoff is -0.5");
   const float infinite[] = {0, 0, std::numeric_limits<float>::quiet_NaN()};
-  refuses(changed([&](GltfFile& f) { std::memcpy(f.bytes.data(), infinite, sizeof infinite); }), "meshes[0].primitives[0].attributes.POSITION (accessors[0]) has an element that is not finite");
+  refuses(changed([&](GltfFile& f) { std::memcpy(f.bytes.data(), infinite, sizeof infinite); }),
+          "meshes[0].primitives[0].attributes.POSITION (accessors[0]) has an element that is not finite");
   refuses(changed([](GltfFile& f) { f.root["nodes"][0]["scale"] = {1e30, 1, 1}; }), "farther than a planet");
   const auto textured = [&](const json& images) {
     return changed([&](GltfFile& f) {
@@ -236,14 +263,16 @@ TEST_F(SceneMesh, CutAndDamagedFilesNeverCrash) {
   GltfFile file = triangle();
   const int position = file.points({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
   const int indices = file.accessor<std::uint8_t>({0, 1, 2, 0, 2, 3}, 5121, "SCALAR", 1);
-  const int material = file.material({{"alphaMode", "MASK"}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+  const int material =
+      file.material({{"alphaMode", "MASK"}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
   image::Image picture(4, 4);
   ASSERT_TRUE(image::write_png(at("p.png"), picture, {}).ok());
   std::ifstream png(at("p.png"), std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(png)), std::istreambuf_iterator<char>());
   file.root["images"] = {{{"bufferView", file.view(bytes.data(), bytes.size())}, {"mimeType", "image/png"}}};
   file.root["textures"] = {{{"source", 0}}};
-  file.node({{"mesh", file.mesh({{"attributes", {{"POSITION", position}}}, {"indices", indices}, {"material", material}})}});
+  file.node(
+      {{"mesh", file.mesh({{"attributes", {{"POSITION", position}}}, {"indices", indices}, {"material", material}})}});
   std::mt19937 engine(3);
   std::size_t refused = 0;
   for (const std::string& whole : {file.binary(), file.text()}) {
@@ -256,7 +285,8 @@ TEST_F(SceneMesh, CutAndDamagedFilesNeverCrash) {
       for (int k = 0; k < 1 + i % 3; ++k) {
         char& at_random = damaged[engine() % damaged.size()];
         // Digits for digits: files that parse, with numbers that do not fit.
-        at_random = at_random >= '0' && at_random <= '9' ? static_cast<char>('0' + engine() % 10) : static_cast<char>(engine());
+        at_random =
+            at_random >= '0' && at_random <= '9' ? static_cast<char>('0' + engine() % 10) : static_cast<char>(engine());
       }
       refused += load_gltf(write("w", damaged)).ok() ? 0 : 1;
     }
@@ -296,7 +326,8 @@ TEST_F(SceneMesh, TheHallIsClosedAndSeenFromInside) {
   for (const MeshVertex& v : hall.vertices) ASSERT_NEAR(glm::length(v.normal), 1.0F, 1e-4F);
   const auto material_of = [&](int triangle) -> const MeshMaterial& {
     for (const MeshPart& part : hall.parts) {
-      if (static_cast<std::uint32_t>(triangle) >= part.first_index && static_cast<std::uint32_t>(triangle) < part.first_index + part.index_count) {
+      if (static_cast<std::uint32_t>(triangle) >= part.first_index &&
+          static_cast<std::uint32_t>(triangle) < part.first_index + part.index_count) {
         return hall.materials[part.material];
       }
     }
@@ -312,10 +343,13 @@ TEST_F(SceneMesh, TheHallIsClosedAndSeenFromInside) {
     const glm::dvec3 direction(std::sqrt(1.0 - z * z) * std::cos(angle), z, std::sqrt(1.0 - z * z) * std::sin(angle));
     double distance = 0.0;
     const int hit = first_hit(hall, from, direction, distance);
-    ASSERT_GE(hit, 0) << "a hole: from " << from.x << " " << from.y << " " << from.z << " towards " << direction.x << " " << direction.y << " " << direction.z;
+    ASSERT_GE(hit, 0) << "a hole: from " << from.x << " " << from.y << " " << from.z << " towards " << direction.x
+                      << " " << direction.y << " " << direction.z;
     const MeshMaterial& material = material_of(hit);
     glass += material.transmits() ? 1 : 0;
-    const auto p = [&](int k) { return glm::dvec3(hall.vertices[hall.indices[static_cast<std::size_t>(hit + k)]].position); };
+    const auto p = [&](int k) {
+      return glm::dvec3(hall.vertices[hall.indices[static_cast<std::size_t>(hit + k)]].position);
+    };
     const double facing = glm::dot(glm::cross(p(1) - p(0), p(2) - p(0)), direction);
     if (facing > 0.0 && !material.double_sided) {
       const glm::dvec3 where = from + direction * distance;
@@ -328,7 +362,9 @@ TEST_F(SceneMesh, TheHallIsClosedAndSeenFromInside) {
 // Boxes with a point in sight are never left out; those wholly on the other side of one plane are.
 TEST(SceneMeshCulling, LeavesOutOnlyWhatIsOutOfSight) {
   std::mt19937 engine(6);
-  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine); };
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(engine);
+  };
   int outside = 0;
   for (int i = 0; i < 2000; ++i) {
     // A perspective that looks along -z with an infinite far plane, or a box, as of a cascade; turned and moved.
@@ -344,7 +380,8 @@ TEST(SceneMeshCulling, LeavesOutOnlyWhatIsOutOfSight) {
       clip[3][3] = 1.0;
     }
     const double turn = uniform(0.0, 6.28);
-    const glm::dmat4 view(std::cos(turn), 0, std::sin(turn), 0, 0, 1, 0, 0, -std::sin(turn), 0, std::cos(turn), 0, uniform(-20, 20), uniform(-20, 20), uniform(-20, 20), 1);
+    const glm::dmat4 view(std::cos(turn), 0, std::sin(turn), 0, 0, 1, 0, 0, -std::sin(turn), 0, std::cos(turn), 0,
+                          uniform(-20, 20), uniform(-20, 20), uniform(-20, 20), 1);
     clip = clip * view;
     Box box;
     const glm::dvec3 corner(uniform(-30, 30), uniform(-30, 30), uniform(-30, 30));

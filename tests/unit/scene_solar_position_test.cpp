@@ -15,8 +15,7 @@ double time_of(const std::string& text) {
   return read ? read.value() : 0.0;
 }
 
-SolarPosition sun(double latitude_deg, double longitude_deg, const std::string& time,
-                  double altitude_m = 0.0) {
+SolarPosition sun(double latitude_deg, double longitude_deg, const std::string& time, double altitude_m = 0.0) {
   return solar_position({latitude_deg, longitude_deg}, time_of(time), altitude_m);
 }
 
@@ -100,17 +99,16 @@ TEST(SolarPosition, WhatMustHold) {
     EXPECT_NEAR(solar_position({-90.0, 0.0}, when).elevation_deg, -23.436 - 0.0024, 0.004) << hour;
   }
   // The place turns with the Earth: 15 degrees are an hour, but for the change of the sun's own place.
-  EXPECT_NEAR(sun(40.0, 0.0, "2024-05-01T12:00Z").elevation_deg,
-              sun(40.0, -15.0, "2024-05-01T13:00Z").elevation_deg, 0.02);
-  EXPECT_NEAR(sun(40.0, 180.0, "2024-05-01T03:00Z").azimuth_deg,
-              sun(40.0, -180.0, "2024-05-01T03:00Z").azimuth_deg, 1e-9);
+  EXPECT_NEAR(sun(40.0, 0.0, "2024-05-01T12:00Z").elevation_deg, sun(40.0, -15.0, "2024-05-01T13:00Z").elevation_deg,
+              0.02);
+  EXPECT_NEAR(sun(40.0, 180.0, "2024-05-01T03:00Z").azimuth_deg, sun(40.0, -180.0, "2024-05-01T03:00Z").azimuth_deg,
+              1e-9);
 }
 
 TEST(SolarPosition, DynamicalTime) {
   // Observed values, s (Meeus, table 10.A, and the International Earth Rotation Service).
-  for (const auto& [year, seconds] :
-       {std::pair(1900.0, -2.8), std::pair(1950.0, 29.1), std::pair(1977.0, 47.5), std::pair(2000.0, 63.8),
-        std::pair(2010.0, 66.1)}) {
+  for (const auto& [year, seconds] : {std::pair(1900.0, -2.8), std::pair(1950.0, 29.1), std::pair(1977.0, 47.5),
+                                      std::pair(2000.0, 63.8), std::pair(2010.0, 66.1)}) {
     EXPECT_NEAR(delta_t_s(year), seconds, 1.0) << year;
   }
   // The pieces meet: a second is 0.00001 deg of the sun's way.
@@ -195,8 +193,8 @@ TEST(SolarPosition, Places) {
   EXPECT_EQ(parse_place("0,237.75", "--at").value().longitude_deg, -122.25);
   EXPECT_EQ(parse_place("0,180", "--at").value().longitude_deg, 180.0);
   EXPECT_EQ(parse_place("0,-190", "--at").value().longitude_deg, 170.0);
-  for (const char* const text : {"", "47", "47,", ",8", "47,8,9", "47;8", "91,0", "-90.01,0", "0,360.5",
-                                 "0,-361", "nan,0", "inf,0", "47N,8E"}) {
+  for (const char* const text :
+       {"", "47", "47,", ",8", "47,8,9", "47;8", "91,0", "-90.01,0", "0,360.5", "0,-361", "nan,0", "inf,0", "47N,8E"}) {
     const Result<Place> refused = parse_place(text, "--at");
     ASSERT_FALSE(refused.ok()) << text;
     EXPECT_NE(refused.error().message.find(", --at, allowed is LAT,LON in degrees"), std::string::npos);

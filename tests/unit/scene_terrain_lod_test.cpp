@@ -18,10 +18,10 @@ struct Camera {
   double altitude_m;
   int coarseness = 1;
 };
-const Camera kCameras[] = {{{0.0, 0.0}, 2.0},           {{1234.5, -987.6}, 1500.0}, {{-100003.0, 40000.0}, 6000.0},
-                           {{31.0, 33.0}, 30.0e3},      {{-5.0e5, 7.0e5}, 400.0e3}, {{511.999, 512.0}, 4499.0},
-                           {{2.0e6, -3.0e6}, 12000.0},
-                           {{1234.5, -987.6}, 1500.0, 2}, {{-100003.0, 40000.0}, 6000.0, 4}, {{31.0, 33.0}, 30.0e3, 4}};
+const Camera kCameras[] = {{{0.0, 0.0}, 2.0},          {{1234.5, -987.6}, 1500.0},    {{-100003.0, 40000.0}, 6000.0},
+                           {{31.0, 33.0}, 30.0e3},     {{-5.0e5, 7.0e5}, 400.0e3},    {{511.999, 512.0}, 4499.0},
+                           {{2.0e6, -3.0e6}, 12000.0}, {{1234.5, -987.6}, 1500.0, 2}, {{-100003.0, 40000.0}, 6000.0, 4},
+                           {{31.0, 33.0}, 30.0e3, 4}};
 
 struct Square {
   glm::dvec2 low, high;
@@ -47,7 +47,8 @@ double morph_of(const TerrainLod& lod, const glm::dvec2& p, int layer) {
 
 std::vector<TerrainBlock> all_blocks(const TerrainLod& lod, int finest) {
   std::vector<TerrainBlock> blocks;
-  select_blocks(lod, finest, [](const glm::dvec2&, const glm::dvec2&) { return true; }, blocks);
+  select_blocks(
+      lod, finest, [](const glm::dvec2&, const glm::dvec2&) { return true; }, blocks);
   return blocks;
 }
 
@@ -58,7 +59,8 @@ TEST(SceneTerrainLod, ThePlanReachesTheHorizonAndNests) {
     ASSERT_LE(lod.levels.size(), static_cast<std::size_t>(kMaxLevels));
     // As far as a summit can stand behind the horizon (Pythagoras along the tangent).
     const double horizon = std::sqrt(2.0 * kRadius_m * camera.altitude_m + camera.altitude_m * camera.altitude_m);
-    EXPECT_GT(lod.reach_m, 0.98 * std::atan(horizon / kRadius_m) * kRadius_m + std::sqrt(2.0 * kRadius_m * kSummit_m) * 0.98);
+    EXPECT_GT(lod.reach_m,
+              0.98 * std::atan(horizon / kRadius_m) * kRadius_m + std::sqrt(2.0 * kRadius_m * kSummit_m) * 0.98);
     EXPECT_GE(lod.range_m(lod.levels.back()), lod.reach_m);
     for (std::size_t i = 0; i < lod.levels.size(); ++i) {
       EXPECT_EQ(lod.levels[i].origin.x % 2, 0);
@@ -88,7 +90,8 @@ TEST(SceneTerrainLod, BlocksTileTheReachOnce) {
         const auto holders = std::count_if(squares.begin(), squares.end(), [&](const Square& s) {
           return p.x >= s.low.x && p.x < s.high.x && p.y >= s.low.y && p.y < s.high.y;
         });
-        ASSERT_EQ(holders, 1) << "at " << p.x << " " << p.y << ", camera at " << camera.altitude_m << ", finest " << finest;
+        ASSERT_EQ(holders, 1) << "at " << p.x << " " << p.y << ", camera at " << camera.altitude_m << ", finest "
+                              << finest;
       }
     }
   }
@@ -161,7 +164,8 @@ TEST(SceneTerrainLod, OnlyVisibleBlocksAndNoneFinerThanAsked) {
     EXPECT_GE(block.layer, 2);
   }
   EXPECT_LT(blocks.size(), all_blocks(lod, 2).size());
-  select_blocks(lod, 0, [](const glm::dvec2&, const glm::dvec2&) { return false; }, blocks);
+  select_blocks(
+      lod, 0, [](const glm::dvec2&, const glm::dvec2&) { return false; }, blocks);
   EXPECT_TRUE(blocks.empty());
 }
 

@@ -19,7 +19,8 @@ using Lines = std::vector<std::string>;
 
 TEST(UnusedParams, DefaultsAndWhatIsUsedHaveNone) {
   EXPECT_EQ(unused({}), Lines());
-  EXPECT_EQ(unused({"scattering.medium=homogeneous", "homogeneous_medium.density=3", "scattering.downscale=2"}), Lines());
+  EXPECT_EQ(unused({"scattering.medium=homogeneous", "homogeneous_medium.density=3", "scattering.downscale=2"}),
+            Lines());
   EXPECT_EQ(unused({"scattering.model=oneil", "oneil.samples=9", "scattering.evaluate=pixel"}), Lines());
   EXPECT_EQ(unused({"tonemap.auto_exposure=off", "tonemap.exposure=2"}), Lines());
 }
@@ -31,13 +32,16 @@ TEST(UnusedParams, AreNamedWithTheirReason) {
             Lines({"scattering.medium has no effect with scattering.model = homogeneous"}));
   EXPECT_EQ(unused({"scattering.technique=brute-force", "scattering.downscale=2"}),
             Lines({"scattering.downscale has no effect with scattering.technique = brute-force"}));
-  EXPECT_EQ(unused({"scattering.evaluate=pixel"}), Lines({"scattering.evaluate has no effect with scattering.model = atmosphere"}));
+  EXPECT_EQ(unused({"scattering.evaluate=pixel"}),
+            Lines({"scattering.evaluate has no effect with scattering.model = atmosphere"}));
   EXPECT_EQ(unused({"homogeneous_medium.extent_m=50"}),
             Lines({"homogeneous_medium.extent_m has no effect with scattering.medium = atmosphere"}));
-  EXPECT_EQ(unused({"tonemap.exposure=4"}), Lines({"tonemap.exposure has no effect with tonemap.auto_exposure = true"}));
+  EXPECT_EQ(unused({"tonemap.exposure=4"}),
+            Lines({"tonemap.exposure has no effect with tonemap.auto_exposure = true"}));
   EXPECT_EQ(unused({"atmosphere.mie_scattering=1e-5,1e-5,1e-5"}),
             Lines({"atmosphere.mie_scattering has no effect with atmosphere.custom_coefficients = false"}));
-  EXPECT_EQ(unused({"tonemap.operator=exponential-channels", "tonemap.saturation=0.5", "tonemap.white_point=2"}).size(), 2U);
+  EXPECT_EQ(unused({"tonemap.operator=exponential-channels", "tonemap.saturation=0.5", "tonemap.white_point=2"}).size(),
+            2U);
 }
 
 TEST(UnusedParams, ShippedScenesHaveNone) {

@@ -77,8 +77,7 @@ TEST_F(ElevationFile, DegreesAreStretchedByLatitude) {
   file.height = 100;
   const ElevationRaster r = read(folder_.write(file, hill));
   const double degree_m = kRadius_m * M_PI / 180.0;
-  EXPECT_NEAR(r.width * r.spacing_m, 200.0 * second * degree_m * std::cos(59.986 * M_PI / 180.0),
-              2.5 * r.spacing_m);
+  EXPECT_NEAR(r.width * r.spacing_m, 200.0 * second * degree_m * std::cos(59.986 * M_PI / 180.0), 2.5 * r.spacing_m);
   EXPECT_NEAR(r.height * r.spacing_m, 100.0 * second * degree_m, 2.5 * r.spacing_m);
 }
 
@@ -129,8 +128,7 @@ TEST_F(ElevationFile, VerticalUnitsScaleAndOffset) {
   file.unit = "ft";
   EXPECT_NEAR(at(read(folder_.write(file, hill)), 10, 10), 0.3048 * hill(10, 10), 1e-3);
   file.unit = "US survey foot";
-  EXPECT_NEAR(at(read(folder_.write(file, [](int, int) { return 20000.0; })), 10, 10),
-              20000.0 * 1200.0 / 3937.0, 1e-3);
+  EXPECT_NEAR(at(read(folder_.write(file, [](int, int) { return 20000.0; })), 10, 10), 20000.0 * 1200.0 / 3937.0, 1e-3);
   file.unit = "";
   file.scale = 0.1;
   file.offset = -500.0;
@@ -174,8 +172,7 @@ TEST_F(ElevationFile, LargeFilesAreReadCoarser) {
   file.epsg = 0;
   file.width = 400;
   file.height = 100;
-  const ElevationRaster r =
-      read(folder_.write(file, [](int x, int) { return x % 2 == 0 ? 0.0 : 1000.0; }), 100);
+  const ElevationRaster r = read(folder_.write(file, [](int x, int) { return x % 2 == 0 ? 0.0 : 1000.0; }), 100);
   EXPECT_EQ(r.width, 100);
   EXPECT_EQ(r.height, 25);
   EXPECT_DOUBLE_EQ(r.spacing_m, 400.0);
@@ -290,7 +287,8 @@ TEST_F(ElevationFile, OtherBodiesKeepTheirAngles) {
   const std::string path = folder_.write(earth, hill).string();
   const Result<ElevationRaster> on_mars = read_elevation_file(path, {kMars_m});
   ASSERT_TRUE(on_mars.ok()) << on_mars.error().message;
-  EXPECT_NEAR(on_mars.value().height * on_mars.value().spacing_m, 0.64 * kMars_m * std::acos(-1.0) / 180.0, 2.0 * on_mars.value().spacing_m);
+  EXPECT_NEAR(on_mars.value().height * on_mars.value().spacing_m, 0.64 * kMars_m * std::acos(-1.0) / 180.0,
+              2.0 * on_mars.value().spacing_m);
   EXPECT_TRUE(noted(on_mars.value(), "made for a body of radius 6378 km"));
   ASSERT_TRUE(on_mars.value().centre);
   EXPECT_NEAR(on_mars.value().centre->latitude_deg, 0.0, 1e-9);
@@ -302,10 +300,12 @@ TEST_F(ElevationFile, OtherBodiesKeepTheirAngles) {
   mars.epsg = 0;
   mars.transform = {-32000.0, 1000.0, 0.0, 32000.0, 0.0, -1000.0};
   folder_.write(mars, hill);
-  std::ofstream(folder_.path("mars.prj"))
-      << "PROJCS[\"Mars\",GEOGCS[\"Mars 2000\",DATUM[\"Mars 2000\",SPHEROID[\"Mars 2000\",3396190.0,169.8944]],PRIMEM[\"Meridian\",0.0],"
-         "UNIT[\"Degree\",0.0174532925199433]],PROJECTION[\"Equidistant_Cylindrical\"],PARAMETER[\"False_Easting\",0.0],"
-         "PARAMETER[\"False_Northing\",0.0],PARAMETER[\"Central_Meridian\",0.0],PARAMETER[\"Standard_Parallel_1\",0.0],UNIT[\"Meter\",1.0]]";
+  std::ofstream(folder_.path("mars.prj")) << "PROJCS[\"Mars\",GEOGCS[\"Mars 2000\",DATUM[\"Mars 2000\",SPHEROID[\"Mars "
+                                             "2000\",3396190.0,169.8944]],PRIMEM[\"Meridian\",0.0],"
+                                             "UNIT[\"Degree\",0.0174532925199433]],PROJECTION[\"Equidistant_"
+                                             "Cylindrical\"],PARAMETER[\"False_Easting\",0.0],"
+                                             "PARAMETER[\"False_Northing\",0.0],PARAMETER[\"Central_Meridian\",0.0],"
+                                             "PARAMETER[\"Standard_Parallel_1\",0.0],UNIT[\"Meter\",1.0]]";
   const Result<ElevationRaster> on_earth = read_elevation_file(folder_.path("mars.asc").string(), {kRadius_m});
   ASSERT_TRUE(on_earth.ok()) << on_earth.error().message;
   EXPECT_NEAR(on_earth.value().spacing_m, 1000.0 * kRadius_m / 3396190.0, 10.0);
@@ -343,10 +343,12 @@ TEST_F(ElevationFile, NamesOfGdalsOwnAreRead) {
   ASSERT_EQ(CPLCopyFile(zip.c_str(), plain.string().c_str()), 0);
   EXPECT_EQ(read(zip).heights, read(plain).heights);
   EXPECT_EQ(read("GTIFF_DIR:1:" + plain.string()).heights, read(plain).heights);
-  EXPECT_NE(error("/vsizip/" + folder_.path("archive.zip").string() + "/missing.tif").find("no format"), std::string::npos);
+  EXPECT_NE(error("/vsizip/" + folder_.path("archive.zip").string() + "/missing.tif").find("no format"),
+            std::string::npos);
 }
 
-// What is downloaded must not open connections: a virtual raster that refers to a server, and a description of a service.
+// What is downloaded must not open connections: a virtual raster that refers to a server, and a description of a
+// service.
 TEST_F(ElevationFile, FilesDoNotReachTheNetwork) {
   // A listener that must not hear of anything.
   const int listener = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
@@ -359,23 +361,28 @@ TEST_F(ElevationFile, FilesDoNotReachTheNetwork) {
   ASSERT_EQ(::getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size), 0);
   const std::string server = "http://127.0.0.1:" + std::to_string(ntohs(address.sin_port));
   CPLSetConfigOption("GDAL_HTTP_TIMEOUT", "2");  // of a connection that should not be
-  const auto vrt = [&](const char* name, const std::string& source) {
-    std::ofstream(folder_.path(name)) << "<VRTDataset rasterXSize=\"8\" rasterYSize=\"8\"><VRTRasterBand dataType=\"Float32\" band=\"1\">"
-                                         "<SimpleSource><SourceFilename relativeToVRT=\"0\">"
-                                      << source << "</SourceFilename><SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>";
-    return folder_.path(name);
-  };
-  for (const std::string& source : {"/vsicurl/" + server + "/a.tif", std::string("/vsis3/bucket/a.tif"), "/vsizip//vsicurl/" + server + "/a.zip/a.tif"}) {
+  const auto vrt =
+      [&](const char* name, const std::string& source) {
+        std::ofstream(folder_.path(name))
+            << "<VRTDataset rasterXSize=\"8\" rasterYSize=\"8\"><VRTRasterBand dataType=\"Float32\" band=\"1\">"
+               "<SimpleSource><SourceFilename relativeToVRT=\"0\">"
+            << source << "</SourceFilename><SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>";
+        return folder_.path(name);
+      };
+  for (const std::string& source : {"/vsicurl/" + server + "/a.tif", std::string("/vsis3/bucket/a.tif"),
+                                    "/vsizip//vsicurl/" + server + "/a.zip/a.tif"}) {
     EXPECT_NE(error(vrt("curl.vrt", source)).find("refers to a network file system"), std::string::npos) << source;
   }
   // Through a second virtual raster, which is read only when its samples are.
   const std::string inner = vrt("inner.vrt", "/vsicurl/" + server + "/a.tif").string();
   error(vrt("outer.vrt", inner));
-  std::ofstream(folder_.path("wms.xml")) << "<GDAL_WMS><Service name=\"TMS\"><ServerUrl>" << server << "/${z}/${x}/${y}</ServerUrl></Service>"
-                                            "<DataWindow><UpperLeftX>-20037508.34</UpperLeftX><UpperLeftY>20037508.34</UpperLeftY>"
-                                            "<LowerRightX>20037508.34</LowerRightX><LowerRightY>-20037508.34</LowerRightY><TileLevel>3</TileLevel>"
-                                            "<TileCountX>1</TileCountX><TileCountY>1</TileCountY></DataWindow><Projection>EPSG:3857</Projection>"
-                                            "<BlockSizeX>256</BlockSizeX><BlockSizeY>256</BlockSizeY><BandsCount>3</BandsCount></GDAL_WMS>";
+  std::ofstream(folder_.path("wms.xml"))
+      << "<GDAL_WMS><Service name=\"TMS\"><ServerUrl>" << server
+      << "/${z}/${x}/${y}</ServerUrl></Service>"
+         "<DataWindow><UpperLeftX>-20037508.34</UpperLeftX><UpperLeftY>20037508.34</UpperLeftY>"
+         "<LowerRightX>20037508.34</LowerRightX><LowerRightY>-20037508.34</LowerRightY><TileLevel>3</TileLevel>"
+         "<TileCountX>1</TileCountX><TileCountY>1</TileCountY></DataWindow><Projection>EPSG:3857</Projection>"
+         "<BlockSizeX>256</BlockSizeX><BlockSizeY>256</BlockSizeY><BandsCount>3</BandsCount></GDAL_WMS>";
   EXPECT_NE(error(folder_.path("wms.xml")).find("is in no format that is read"), std::string::npos);
   error(vrt("wms.vrt", folder_.path("wms.xml").string()));
   error(vrt("http.vrt", server + "/a.tif"));
@@ -390,7 +397,8 @@ TEST_F(ElevationFile, FilesDoNotReachTheNetwork) {
   file.name = "local.vrt";
   std::ofstream(folder_.path("local.vrt"))
       << "<VRTDataset rasterXSize=\"64\" rasterYSize=\"64\"><GeoTransform>0, 100, 0, 6400, 0, -100</GeoTransform>"
-         "<VRTRasterBand dataType=\"Float32\" band=\"1\"><SimpleSource><SourceFilename relativeToVRT=\"1\">local.tif</SourceFilename>"
+         "<VRTRasterBand dataType=\"Float32\" band=\"1\"><SimpleSource><SourceFilename "
+         "relativeToVRT=\"1\">local.tif</SourceFilename>"
          "<SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>";
   EXPECT_FLOAT_EQ(at(read(folder_.path("local.vrt")), 5, 7), static_cast<float>(hill(5, 7)));
 }
@@ -405,7 +413,9 @@ TEST_F(ElevationFile, ColourTilesAreDecoded) {
       for (int y = 0; y < 64; ++y) {
         for (int x = 0; x < 64; ++x) samples.push_back(static_cast<unsigned char>(colour(x, y) >> (16 - 8 * b)));
       }
-      EXPECT_EQ(data->GetRasterBand(b + 1)->RasterIO(GF_Write, 0, 0, 64, 64, samples.data(), 64, 64, GDT_Byte, 0, 0, nullptr), CE_None);
+      EXPECT_EQ(
+          data->GetRasterBand(b + 1)->RasterIO(GF_Write, 0, 0, 64, 64, samples.data(), 64, 64, GDT_Byte, 0, 0, nullptr),
+          CE_None);
       data->GetRasterBand(b + 1)->SetColorInterpretation(static_cast<GDALColorInterp>(GCI_RedBand + b));
     }
     const std::string to = folder_.path(name).string();
@@ -414,15 +424,16 @@ TEST_F(ElevationFile, ColourTilesAreDecoded) {
     return std::filesystem::path(to);
   };
   const auto height = [](int x, int y) { return -30.0 + 40.25 * x + 3.5 * y; };
-  const ElevationRaster terrarium =
-      read(tile("terrarium.png", [&](int x, int y) { return static_cast<unsigned>((height(x, y) + 32768.0) * 256.0 + 0.5); }));
+  const ElevationRaster terrarium = read(tile(
+      "terrarium.png", [&](int x, int y) { return static_cast<unsigned>((height(x, y) + 32768.0) * 256.0 + 0.5); }));
   EXPECT_NEAR(at(terrarium, 5, 60), height(5, 60), 0.01);
   EXPECT_TRUE(noted(terrarium, "Terrarium"));
   const ElevationRaster terrain_rgb =
       read(tile("rgb.png", [&](int x, int y) { return static_cast<unsigned>((height(x, y) + 10000.0) * 10.0 + 0.5); }));
   EXPECT_NEAR(at(terrain_rgb, 5, 60), height(5, 60), 0.06);
   EXPECT_TRUE(noted(terrain_rgb, "Terrain-RGB"));
-  EXPECT_NE(error(tile("photo.png", [](int x, int y) { return static_cast<unsigned>(x * 4 * 65536 + y * 1024 + 77); })).find("holds no heights"),
+  EXPECT_NE(error(tile("photo.png", [](int x, int y) { return static_cast<unsigned>(x * 4 * 65536 + y * 1024 + 77); }))
+                .find("holds no heights"),
             std::string::npos);
 }
 

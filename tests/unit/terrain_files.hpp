@@ -32,8 +32,7 @@ struct TestFile {
 
 class TestFolder {
  public:
-  TestFolder()
-      : path_(std::filesystem::temp_directory_path() / ("tyndall_terrain_" + std::to_string(getpid()))) {
+  TestFolder() : path_(std::filesystem::temp_directory_path() / ("tyndall_terrain_" + std::to_string(getpid()))) {
     std::filesystem::create_directories(path_);
     GDALAllRegister();
   }
@@ -62,13 +61,12 @@ class TestFolder {
     }
     std::vector<double> samples(static_cast<std::size_t>(file.width) * file.height);
     for (int y = 0; y < file.height; ++y) {
-      for (int x = 0; x < file.width; ++x)
-        samples[static_cast<std::size_t>(y) * file.width + x] = value(x, y);
+      for (int x = 0; x < file.width; ++x) samples[static_cast<std::size_t>(y) * file.width + x] = value(x, y);
     }
     for (int b = 1; b <= file.bands; ++b) {
       GDALRasterBand& band = *data->GetRasterBand(b);
-      if (band.RasterIO(GF_Write, 0, 0, file.width, file.height, samples.data(), file.width, file.height,
-                        GDT_Float64, 0, 0, nullptr) != CE_None)
+      if (band.RasterIO(GF_Write, 0, 0, file.width, file.height, samples.data(), file.width, file.height, GDT_Float64,
+                        0, 0, nullptr) != CE_None)
         ADD_FAILURE() << "writing samples";
       if (file.unit[0] != '\0') band.SetUnitType(file.unit);
       if (file.scale != 1.0) band.SetScale(file.scale);
@@ -76,8 +74,8 @@ class TestFolder {
       if (file.has_no_data) band.SetNoDataValue(file.no_data);
     }
     const std::filesystem::path to = path(file.name);
-    GDALDataset* copy = drivers.GetDriverByName(file.driver)
-                            ->CreateCopy(to.string().c_str(), data, FALSE, nullptr, nullptr, nullptr);
+    GDALDataset* copy =
+        drivers.GetDriverByName(file.driver)->CreateCopy(to.string().c_str(), data, FALSE, nullptr, nullptr, nullptr);
     EXPECT_NE(copy, nullptr) << file.driver;
     if (copy != nullptr) GDALClose(copy);
     GDALClose(data);
@@ -91,9 +89,9 @@ class TestFolder {
 // The real file that some tests use where it is present.
 inline std::filesystem::path real_file() {
   const char* folder = std::getenv("TYNDALL_DATA_DIR");
-  const std::filesystem::path base =
-      folder != nullptr ? std::filesystem::path(folder)
-                        : std::filesystem::path(TYNDALL_SOURCE_DIR).parent_path() / "shared" / "data";
+  const std::filesystem::path base = folder != nullptr
+                                         ? std::filesystem::path(folder)
+                                         : std::filesystem::path(TYNDALL_SOURCE_DIR).parent_path() / "shared" / "data";
   return base / "mont-blanc.tif";
 }
 

@@ -123,8 +123,8 @@ TEST(TerrainNoise, CoarseSamplesAreMeansOfFineOnes) {
       double squares = 0.0;
       for (int b = 0; b < kFine; ++b) {
         for (int a = 0; a < kFine; ++a) {
-          const double h = height(x + width_m * ((a + 0.5) / kFine - 0.5),
-                                  z + width_m * ((b + 0.5) / kFine - 0.5), width_m / kFine);
+          const double h =
+              height(x + width_m * ((a + 0.5) / kFine - 0.5), z + width_m * ((b + 0.5) / kFine - 0.5), width_m / kFine);
           sum += h;
           squares += h * h;
         }
@@ -184,8 +184,7 @@ TEST(TerrainNoise, DoesNotRepeat) {
     int a, b, shift;
   };
   const auto detail = [](double x, double z) { return height(x, z, 40.0) - height(x, z, 1500.0); };
-  for (const Lattice& lattice :
-       {Lattice{1, 2, 18}, Lattice{2, 1, 17}, Lattice{1, 2, 16}, Lattice{1, 4, 16}}) {
+  for (const Lattice& lattice : {Lattice{1, 2, 18}, Lattice{2, 1, 17}, Lattice{1, 2, 16}, Lattice{1, 4, 16}}) {
     for (const int cells : {1, 2, 3, 7, 16, 64, 256, 1024}) {
       // One cell along the lattice's first axis, in map coordinates.
       const double cell = std::exp2(lattice.shift) / 64.0 / (lattice.a * lattice.a + lattice.b * lattice.b);
@@ -257,8 +256,7 @@ TEST(TerrainMaterials, DistanceAveragesRatherThanSparkles) {
     constexpr int kSide = 30;
     for (int b = 0; b < kSide; ++b) {
       for (int a = 0; a < kSide; ++a) {
-        const terrain64::ivec2 units = {std::lround((x + 20.0 * a) * 64.0),
-                                        std::lround((z + 20.0 * b) * 64.0)};
+        const terrain64::ivec2 units = {std::lround((x + 20.0 * a) * 64.0), std::lround((z + 20.0 * b) * 64.0)};
         near += terrain64::terrain_material(units, 1500.0, normal, 0.0, 2.0, kSeed).albedo.y / (kSide * kSide);
         far += terrain64::terrain_material(units, 1500.0, normal, 0.0, 200.0, kSeed).albedo.y / (kSide * kSide);
       }

@@ -31,17 +31,14 @@ ElevationSource make(const TestFolder& folder, const std::function<double(int, i
 
 double place(int sample) { return (sample + 0.5 - 0.5 * kSamples) * kSpacing_m; }
 
-double waves(int x, int y) {
-  return 1500.0 + 400.0 * std::sin(0.11 * x) + 300.0 * std::cos(0.07 * y + 0.05 * x);
-}
+double waves(int x, int y) { return 1500.0 + 400.0 * std::sin(0.11 * x) + 300.0 * std::cos(0.07 * y + 0.05 * x); }
 
 TEST(ElevationSource, PassesThroughTheSamples) {
   const TestFolder folder;
   const ElevationSource source = make(folder, waves);
   ASSERT_TRUE(source.from_file());
   for (int y = 60; y < 140; y += 7) {
-    for (int x = 60; x < 140; x += 7)
-      EXPECT_NEAR(source.height_m(place(x), place(y), kSpacing_m), waves(x, y), 0.01);
+    for (int x = 60; x < 140; x += 7) EXPECT_NEAR(source.height_m(place(x), place(y), kSpacing_m), waves(x, y), 0.01);
   }
 }
 
@@ -60,8 +57,7 @@ TEST(ElevationSource, IsSmoothBetweenTheSamples) {
 
 TEST(ElevationSource, CoarseSpacingsReadMeans) {
   const TestFolder folder;
-  const ElevationSource source =
-      make(folder, [](int x, int y) { return 1000.0 + ((x + y) % 2 == 0 ? 0.0 : 200.0); });
+  const ElevationSource source = make(folder, [](int x, int y) { return 1000.0 + ((x + y) % 2 == 0 ? 0.0 : 200.0); });
   for (const double spacing_m : {200.0, 400.0, 1600.0})
     EXPECT_NEAR(source.height_m(33.0, -71.0, spacing_m), 1100.0, 0.1);
 }
@@ -90,10 +86,10 @@ TEST(ElevationSource, TurnsIntoMountainsWithoutACliff) {
   double steepest_alone = 0.0;
   for (const double z : {-4000.0, 0.0, 5500.0}) {
     for (double x = 0.0; x < 40000.0; x += 100.0) {
-      steepest = std::max<double>(
-          steepest, std::abs(source.height_m(x + 100.0, z, 100.0) - source.height_m(x, z, 100.0)));
-      steepest_alone = std::max<double>(
-          steepest_alone, std::abs(alone.height_m(x + 100.0, z, 100.0) - alone.height_m(x, z, 100.0)));
+      steepest =
+          std::max<double>(steepest, std::abs(source.height_m(x + 100.0, z, 100.0) - source.height_m(x, z, 100.0)));
+      steepest_alone =
+          std::max<double>(steepest_alone, std::abs(alone.height_m(x + 100.0, z, 100.0) - alone.height_m(x, z, 100.0)));
     }
   }
   EXPECT_LT(steepest, steepest_alone + 60.0);
@@ -131,8 +127,7 @@ TEST(ElevationSource, StrangePlacesDoNoHarm) {
   const TestFolder folder;
   const ElevationSource source = make(folder, waves);
   for (const double x : {1e300, -1e300, std::nan(""), std::numeric_limits<double>::infinity(), 3e7}) {
-    for (const double spacing_m : {0.0, -1.0, 1e-9, 1e7})
-      EXPECT_TRUE(std::isfinite(source.height_m(x, x, spacing_m)));
+    for (const double spacing_m : {0.0, -1.0, 1e-9, 1e7}) EXPECT_TRUE(std::isfinite(source.height_m(x, x, spacing_m)));
   }
 }
 

@@ -123,7 +123,8 @@ TEST(ValidateRays, TurbidAirHasTheOpticalDepthThatItSays) {
   for (const TurbidAir& air : kTurbidAirs) {
     const Params turbid = turbid_params(params, air);
     const AtmosphereParams& a = turbid.atmosphere;
-    EXPECT_NEAR(2e-5 * (1.0 + a.aerosol_absorption) * a.aerosol_density * a.mie_scale_height_m, air.optical_depth, 1e-6);
+    EXPECT_NEAR(2e-5 * (1.0 + a.aerosol_absorption) * a.aerosol_density * a.mie_scale_height_m, air.optical_depth,
+                1e-6);
     EXPECT_FLOAT_EQ(turbid.planet.ground_albedo, static_cast<float>(air.ground_albedo));
   }
   params.atmosphere.aerosol_density = 0.0F;
@@ -179,10 +180,8 @@ void expect_balanced(const std::string& text) {
 TEST(ValidatePlot, ValuesStandWhereTheyShould) {
   Plot plot = {"t <1>", {"x", 0.0, 10.0}, {"y", 1.0, 100.0, true}, {}};
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  plot.series.push_back(
-      {"points", "#000000", Mark::points, {{5.0, 10.0, 1.0}, {nan, 1.0}, {11.0, 10.0}, {5.0, nan}}});
-  plot.series.push_back(
-      {"line", "#ff0000", Mark::dashed, {{0.0, 1.0}, {1.0, nan}, {2.0, 10.0}, {10.0, 0.0}}});
+  plot.series.push_back({"points", "#000000", Mark::points, {{5.0, 10.0, 1.0}, {nan, 1.0}, {11.0, 10.0}, {5.0, nan}}});
+  plot.series.push_back({"line", "#ff0000", Mark::dashed, {{0.0, 1.0}, {1.0, nan}, {2.0, 10.0}, {10.0, 0.0}}});
   const std::string svg = to_svg(plot);
   expect_balanced(svg);
   // The middle of both axes: 66 + (560 - 14 - 66) / 2, 30 + (340 - 46 - 30) / 2; the second circle is the
@@ -190,8 +189,7 @@ TEST(ValidatePlot, ValuesStandWhereTheyShould) {
   EXPECT_NE(svg.find("<circle cx=\"306.0\" cy=\"162.0\""), std::string::npos);
   EXPECT_EQ(std::count(svg.begin(), svg.end(), 'M'), 2);
   std::size_t circles = 0;
-  for (std::size_t at = svg.find("<circle"); at != std::string::npos; at = svg.find("<circle", at + 1))
-    ++circles;
+  for (std::size_t at = svg.find("<circle"); at != std::string::npos; at = svg.find("<circle", at + 1)) ++circles;
   EXPECT_EQ(circles, 2U);
   EXPECT_EQ(svg.find("nan"), std::string::npos);
   EXPECT_NE(svg.find("t &lt;1&gt;"), std::string::npos);
@@ -227,8 +225,7 @@ TEST(ValidateStudy, FindsWhatIsWrongAndNothingElse) {
   options.rays = 72;
   options.samples = 400;
   options.orders = 4;
-  const std::vector<Model> models = {tracer("first", 1, 1.0), tracer("all", 0, 1.0),
-                                     tracer("brighter", 0, 1.5)};
+  const std::vector<Model> models = {tracer("first", 1, 1.0), tracer("all", 0, 1.0), tracer("brighter", 0, 1.5)};
   double progress = 0.0;
   const auto count = [&](double done) {
     EXPECT_GE(done, progress);
@@ -280,8 +277,7 @@ TEST(ValidateStudy, FindsWhatIsWrongAndNothingElse) {
   EXPECT_NE(to_json(study.value(), origin).find("\"optical_depth\": 0.3"), std::string::npos);
   EXPECT_EQ(page.find("nan"), std::string::npos);
 
-  const Result<Study> again =
-      run_study({}, options, models, {tracer("at the horizon", 0, 1.0)}, [](double) {});
+  const Result<Study> again = run_study({}, options, models, {tracer("at the horizon", 0, 1.0)}, [](double) {});
   ASSERT_TRUE(again.ok());
   EXPECT_EQ(to_html(again.value(), origin), html);
   EXPECT_EQ(to_json(again.value(), origin), to_json(study.value(), origin));

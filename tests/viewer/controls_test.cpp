@@ -1,5 +1,5 @@
-// Every control of two panels to both of its ends, by the mouse and the keyboard; memory_test.cpp takes every parameter there by a
-// script.
+// Every control of two panels to both of its ends, by the mouse and the keyboard; memory_test.cpp takes every parameter
+// there by a script.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -57,11 +57,13 @@ bool type_into(Desk& desk, const Row& row, const std::string& place, const std::
 
 bool choose(Desk& desk, const Row& row, std::size_t index, const std::string& text) {
   const std::size_t from = desk.lines();
-  return desk.click(row.key(), 0.2) && desk.click(row.key() + "." + std::to_string(index), 0.2) && was_set(desk, row, text, from);
+  return desk.click(row.key(), 0.2) && desk.click(row.key() + "." + std::to_string(index), 0.2) &&
+         was_set(desk, row, text, from);
 }
 
 bool choose_both_ends(Desk& desk, const Row& row) {
-  if (row.info.type == ParamType::uint32) return choose(desk, row, 4096, "4096") && choose(desk, row, 512, "512") && choose(desk, row, 1024, "1024");
+  if (row.info.type == ParamType::uint32)
+    return choose(desk, row, 4096, "4096") && choose(desk, row, 512, "512") && choose(desk, row, 1024, "1024");
   const std::size_t last = config::count_parts(row.info.choices, '|') - 1;
   const auto name = [&](std::size_t i) { return std::string(config::part(row.info.choices, '|', i)); };
   // From wherever it stands: an end that it stands at is no change.
@@ -74,7 +76,8 @@ bool both_ends(Desk& desk, const Row& row) {
   if (row.info.type == ParamType::enumeration || key == "shadows.resolution") return choose_both_ends(desk, row);
   if (row.info.type == ParamType::flag) {
     const std::size_t from = desk.lines();
-    return desk.click(key, 0.04) && desk.click(key, 0.04) && was_set(desk, row, "true", from) && was_set(desk, row, "false", from);
+    return desk.click(key, 0.04) && desk.click(key, 0.04) && was_set(desk, row, "true", from) &&
+           was_set(desk, row, "false", from);
   }
   // Numbers without a slider are typed: a drag has no end.
   const bool typed = row.info.max > 1.0e6 || row.info.type == ParamType::uvec4 ||
@@ -102,7 +105,8 @@ bool both_ends(Desk& desk, const Row& row) {
   const config::Settings usual;
   if (count == 1 && config::value_text(row, usual) == least) return true;
   from = desk.lines();
-  return desk.click(key, 0.3, 3) && desk.wait_for({" set " + key + "=" + config::value_text(row, usual)}, from, 15.0).has_value();
+  return desk.click(key, 0.3, 3) &&
+         desk.wait_for({" set " + key + "=" + config::value_text(row, usual)}, from, 15.0).has_value();
 }
 
 class Controls : public testing::TestWithParam<const char*> {};
@@ -114,9 +118,10 @@ TEST_P(Controls, GoToBothEnds) {
   Desk desk("controls_" + name, 900, 1000);
   // Small, and with what would be grey otherwise in effect.
   const std::vector<std::string> few = {"--set", "epipolar.slices=64", "--set", "epipolar.samples=64"};
-  ASSERT_TRUE(desk.open(joined(joined(kSmallTables, few), {"--size", "900x1000", "--no-first-steps", "--set", "scattering.light_shafts=off", "--set",
-                                              "scattering.single=integration", "--set", "epipolar.correct_depth_breaks=on", "--set",
-                                              "atmosphere.custom_coefficients=on"})))
+  ASSERT_TRUE(desk.open(joined(joined(kSmallTables, few),
+                               {"--size", "900x1000", "--no-first-steps", "--set", "scattering.light_shafts=off",
+                                "--set", "scattering.single=integration", "--set", "epipolar.correct_depth_breaks=on",
+                                "--set", "atmosphere.custom_coefficients=on"})))
       << desk.errors();
   ASSERT_TRUE(desk.click("menu.Windows"));
   ASSERT_TRUE(desk.click("item.Performance"));
@@ -134,11 +139,12 @@ TEST_P(Controls, GoToBothEnds) {
   EXPECT_EQ(desk.leave(), 0) << desk.errors();
 }
 
-INSTANTIATE_TEST_SUITE_P(Window, Controls, testing::Values("Basic", "Additional", "Tone mapping", "Atmosphere"), [](const auto& tested) {
-  std::string name = tested.param;
-  name.erase(std::remove(name.begin(), name.end(), ' '), name.end());
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Window, Controls, testing::Values("Basic", "Additional", "Tone mapping", "Atmosphere"),
+                         [](const auto& tested) {
+                           std::string name = tested.param;
+                           name.erase(std::remove(name.begin(), name.end(), ' '), name.end());
+                           return name;
+                         });
 
 }  // namespace
 }  // namespace tyndall

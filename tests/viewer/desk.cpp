@@ -85,13 +85,16 @@ std::uint32_t big_endian(const std::string& bytes, std::size_t word) {
 
 bool equipped() { return installed("Xvfb") && installed("xdotool"); }
 
-Desk::Desk(const std::string& name, int width, int height) : folder_(std::string(TYNDALL_VIEWER_ARTEFACTS) + "/" + name) {
+Desk::Desk(const std::string& name, int width, int height)
+    : folder_(std::string(TYNDALL_VIEWER_ARTEFACTS) + "/" + name) {
   fs::remove_all(folder_);
   fs::create_directories(folder_ + "/screen");
   // The server chooses a free display and says which.
   const std::string said = folder_ + "/display";
   const std::string size = std::to_string(width) + "x" + std::to_string(height);
-  server_ = start({"sh", "-c", "exec Xvfb -displayfd 3 -screen 0 " + size + "x24 -fbdir '" + folder_ + "/screen' -nolisten tcp 3>'" + said + "'"},
+  server_ = start({"sh", "-c",
+                   "exec Xvfb -displayfd 3 -screen 0 " + size + "x24 -fbdir '" + folder_ +
+                       "/screen' -nolisten tcp 3>'" + said + "'"},
                   {}, folder_ + "/server.txt");
   for (int i = 0; i < 600 && display_.empty(); ++i) {
     const std::string text = read_text(said);
@@ -123,8 +126,15 @@ void Desk::end_server() {
 
 bool Desk::open(const std::vector<std::string>& arguments, const std::vector<std::string>& environment) {
   if (display_.empty()) return false;
-  std::vector<std::string> words = {TYNDALL_EXECUTABLE, "view", "--log", folder_ + "/log.txt", "--state",
-                                    folder_ + "/state.toml", "--screenshots", folder_, "--set",
+  std::vector<std::string> words = {TYNDALL_EXECUTABLE,
+                                    "view",
+                                    "--log",
+                                    folder_ + "/log.txt",
+                                    "--state",
+                                    folder_ + "/state.toml",
+                                    "--screenshots",
+                                    folder_,
+                                    "--set",
                                     "tables.cache=" TYNDALL_TEST_CACHE};
   if (validation) words.emplace_back("--validation");
   words.insert(words.end(), arguments.begin(), arguments.end());
@@ -153,10 +163,12 @@ bool Desk::open(const std::vector<std::string>& arguments, const std::vector<std
 
 bool Desk::manage() {
   if (!installed("openbox")) return false;
-  manager_ = start({"openbox", "--config-file", "/dev/null"}, {"DISPLAY=" + display_, "HOME=" + folder_}, folder_ + "/manager.txt");
+  manager_ = start({"openbox", "--config-file", "/dev/null"}, {"DISPLAY=" + display_, "HOME=" + folder_},
+                   folder_ + "/manager.txt");
   // It is there when it has told its name.
   for (int i = 0; i < 200; ++i) {
-    if (status_of(start({"xdotool", "get_num_desktops"}, {"DISPLAY=" + display_}, folder_ + "/hands.txt"), 10.0) == 0) return true;
+    if (status_of(start({"xdotool", "get_num_desktops"}, {"DISPLAY=" + display_}, folder_ + "/hands.txt"), 10.0) == 0)
+      return true;
     pause(0.05);
   }
   return false;
@@ -194,7 +206,8 @@ std::size_t Desk::lines() const {
 
 std::optional<std::size_t> Desk::number_of(const std::vector<std::string>& words, std::size_t from, double seconds) {
   const auto has_all = [&words](const std::string& line) {
-    return std::all_of(words.begin(), words.end(), [&line](const std::string& word) { return line.find(word) != std::string::npos; });
+    return std::all_of(words.begin(), words.end(),
+                       [&line](const std::string& word) { return line.find(word) != std::string::npos; });
   };
   for (double waited = 0.0; waited < seconds; waited += kLook_s) {
     // Before the log is read for the last time.
@@ -250,7 +263,8 @@ bool Desk::wait_for_no_place(const std::string& place) {
 }
 
 bool Desk::point_at(const std::string& place, double part) {
-  // Menus find their place within a few frames: it is under the pointer when it still is after the viewer has seen that.
+  // Menus find their place within a few frames: it is under the pointer when it still is after the viewer has seen
+  // that.
   for (int i = 0; i < 20; ++i) {
     if (!wait_for_place(place)) return false;
     const Rect rect = places()[place];

@@ -32,7 +32,8 @@ class Desk {
   // The number of the log's lines so far.
   [[nodiscard]] std::size_t lines() const;
   // The first line from `from` on that contains all of `words`; waits for it.
-  std::optional<std::string> wait_for(const std::vector<std::string>& words, std::size_t from = 0, double seconds = 240.0);
+  std::optional<std::string> wait_for(const std::vector<std::string>& words, std::size_t from = 0,
+                                      double seconds = 240.0);
   // The number of such a line, and the line with a number.
   std::optional<std::size_t> number_of(const std::vector<std::string>& words, std::size_t from, double seconds);
   [[nodiscard]] const std::string& line(std::size_t number) const { return log_[number]; }
@@ -72,7 +73,7 @@ class Desk {
 
   std::string folder_, display_, window_;
   int server_ = -1, viewer_ = -1, manager_ = -1;
-  int pointer_[2] = {-1, -1};  // where point_at() has moved it
+  int pointer_[2] = {-1, -1};             // where point_at() has moved it
   mutable std::vector<std::string> log_;  // its whole lines so far
   mutable std::streamoff log_read_ = 0;   // what they take of the file [bytes]
 };

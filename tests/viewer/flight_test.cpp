@@ -71,7 +71,8 @@ TEST(Window, FliesThroughThePicturesOfRender) {
   NEEDS_A_DESK();
   Desk desk("flight_picture");
   const std::string scene = std::string(TYNDALL_SOURCE_DIR) + "/scenes/flythrough.toml";
-  ASSERT_TRUE(desk.open(joined(joined({"--size", "640x360", "--no-first-steps"}, kSmallTables), {scene}))) << desk.errors();
+  ASSERT_TRUE(desk.open(joined(joined({"--size", "640x360", "--no-first-steps"}, kSmallTables), {scene})))
+      << desk.errors();
   // The ground as finely as `render` has it.
   ASSERT_TRUE(desk.click("menu.Windows"));
   ASSERT_TRUE(desk.click("item.Performance"));
@@ -116,8 +117,8 @@ TEST(Window, FliesThroughThePicturesOfRender) {
   char step[32];
   std::snprintf(step, sizeof step, "%.7f", at_s);
   const std::string rendered = desk.folder() + "/rendered.1.exr";
-  command += std::string(" --set tables.cache=" TYNDALL_TEST_CACHE " --set camera.samples=1 --frames 2 --time-step ") + step + " -o '" +
-             desk.folder() + "/rendered.%d.exr' 2> '" + desk.folder() + "/render.txt'";
+  command += std::string(" --set tables.cache=" TYNDALL_TEST_CACHE " --set camera.samples=1 --frames 2 --time-step ") +
+             step + " -o '" + desk.folder() + "/rendered.%d.exr' 2> '" + desk.folder() + "/render.txt'";
   ASSERT_EQ(std::system(command.c_str()), 0) << command;
   const Result<image::File> wanted = image::read(rendered);
   ASSERT_TRUE(wanted.ok());
@@ -127,12 +128,15 @@ TEST(Window, FliesThroughThePicturesOfRender) {
   RecordProperty("mean_relative_error", std::to_string(difference.mean_relative_error));
 }
 
-// From the ground to space and back to it with the keys, without a turn or a step backwards, and not through the ground.
+// From the ground to space and back to it with the keys, without a turn or a step backwards, and not through the
+// ground.
 TEST(Window, FliesToOrbitAndBackToTheGround) {
   NEEDS_A_DESK();
   Desk desk("orbit");
   ASSERT_TRUE(desk.open(joined(kSmall, kSmallTables))) << desk.errors();
-  const auto altitude_of = [](const Frame& f) { return std::sqrt(f.x * f.x + f.z * f.z + (f.y + 6.36e6) * (f.y + 6.36e6)) - 6.36e6; };
+  const auto altitude_of = [](const Frame& f) {
+    return std::sqrt(f.x * f.x + f.z * f.z + (f.y + 6.36e6) * (f.y + 6.36e6)) - 6.36e6;
+  };
   const std::size_t first = frames(desk).size();
   std::size_t from = desk.lines();
   desk.hands("keydown shift keydown e");

@@ -102,7 +102,8 @@ TEST(Window, FollowsTheHands) {
     EXPECT_EQ(file.value().image.width, 240U);  // half of the window on a device without a GPU
     EXPECT_EQ(file.value().image.height, 135U);
     const auto& rows = file.value().metadata;
-    EXPECT_TRUE(std::any_of(rows.begin(), rows.end(), [](const auto& row) { return row.first == "tyndall.sun.azimuth_deg"; }));
+    EXPECT_TRUE(
+        std::any_of(rows.begin(), rows.end(), [](const auto& row) { return row.first == "tyndall.sun.azimuth_deg"; }));
   }
 
   // F1 and F2 change what is seen; F11 fills the screen and comes back.

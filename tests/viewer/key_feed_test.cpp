@@ -16,12 +16,14 @@ KeyEvent key(int code, int action, int mods = 0) { return {KeyEvent::Kind::key, 
 
 void tap(KeyFeed& feed, int code, int mods = 0) {
   feed.add(key(code, GLFW_PRESS, mods));
-  if (code < GLFW_KEY_ESCAPE && mods == 0) feed.add({KeyEvent::Kind::character, 0, 0, 0, 0, static_cast<unsigned>(code)});
+  if (code < GLFW_KEY_ESCAPE && mods == 0)
+    feed.add({KeyEvent::Kind::character, 0, 0, 0, 0, static_cast<unsigned>(code)});
   feed.add(key(code, GLFW_RELEASE, mods));
 }
 
 void click(KeyFeed& feed) {
-  for (const int action : {GLFW_PRESS, GLFW_RELEASE}) feed.add({KeyEvent::Kind::button, GLFW_MOUSE_BUTTON_LEFT, 0, action, 0, 0, 4.0, 5.0});
+  for (const int action : {GLFW_PRESS, GLFW_RELEASE})
+    feed.add({KeyEvent::Kind::button, GLFW_MOUSE_BUTTON_LEFT, 0, action, 0, 0, 4.0, 5.0});
 }
 
 // What a frame sees: characters, and words for keys that are pressed in it.
@@ -83,7 +85,8 @@ TEST(ViewerKeyFeed, AClickAfterAKeyWaitsForItsFrame) {
   feed.add(key(GLFW_KEY_LEFT_CONTROL, GLFW_PRESS));
   click(feed);
   click(feed);
-  EXPECT_EQ(frames_of(feed), (std::vector<std::string>{"1<enter>", "</enter><ctrl><press>", "</press>", "<press>", "</press>"}));
+  EXPECT_EQ(frames_of(feed),
+            (std::vector<std::string>{"1<enter>", "</enter><ctrl><press>", "</press>", "<press>", "</press>"}));
 }
 
 }  // namespace

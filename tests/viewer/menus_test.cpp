@@ -16,7 +16,8 @@ using namespace desk;
 TEST(Window, TakesPresetsAndVsyncByTheMouse) {
   NEEDS_A_DESK();
   Desk desk("menus");
-  ASSERT_TRUE(desk.open(joined(kSmallTables, {"--size", "480x400", "--no-first-steps", "--set", "camera.fov_deg=33"}))) << desk.errors();
+  ASSERT_TRUE(desk.open(joined(kSmallTables, {"--size", "480x400", "--no-first-steps", "--set", "camera.fov_deg=33"})))
+      << desk.errors();
   for (const char* preset : {"heavy_haze", "high_performance"}) {
     const std::size_t from = desk.lines();
     ASSERT_TRUE(desk.click("menu.Presets"));
@@ -40,14 +41,15 @@ TEST(Window, TakesPresetsAndVsyncByTheMouse) {
   EXPECT_EQ(desk.leave(), 0) << desk.errors();
 }
 
-// On the first start with a state folder a help says how to move, to turn the sun and to make haze, until it is closed; then
-// it has been read for ever.
+// On the first start with a state folder a help says how to move, to turn the sun and to make haze, until it is closed;
+// then it has been read for ever.
 TEST(Window, ShowsTheFirstStepsOnce) {
   NEEDS_A_DESK();
   Desk desk("first_steps");
   const std::vector<std::string> arguments = joined(kSmallTables, {"--size", "640x480"});
   ASSERT_TRUE(desk.open(arguments)) << desk.errors();
-  for (const char* line : {"Move", "Turn the sun", "More haze", "All keys"}) EXPECT_TRUE(desk.wait_for_place(std::string("first_run.") + line)) << line;
+  for (const char* line : {"Move", "Turn the sun", "More haze", "All keys"})
+    EXPECT_TRUE(desk.wait_for_place(std::string("first_run.") + line)) << line;
   desk.picture("first");
   // What it says of the haze is there: the slider, without anything done before.
   EXPECT_TRUE(desk.wait_for_place("atmosphere.aerosol_density"));

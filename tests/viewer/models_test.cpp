@@ -30,7 +30,8 @@ TEST(Window, ComparesTwoModels) {
   ASSERT_TRUE(desk.click("side.right"));
   // Right of the divider another system; the left side stays.
   for (const auto& [name, value] : {std::pair{"Air and haze (Hoffman, Preetham 2002)", "homogeneous"},
-                                    {"Scale function (O'Neil 2005)", "oneil"}, {"Table (O'Neil 2004)", "oneil-table"}}) {
+                                    {"Scale function (O'Neil 2005)", "oneil"},
+                                    {"Table (O'Neil 2004)", "oneil-table"}}) {
     from = desk.lines();
     ASSERT_TRUE(choose(desk, name));
     ASSERT_TRUE(desk.wait_for({std::string("set right scattering.model=") + value}, from)) << value;

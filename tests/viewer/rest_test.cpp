@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 std::size_t files_in(const std::string& folder) {
   std::size_t count = 0;
   std::error_code ignored;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) count += entry.is_regular_file() ? 1 : 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))
+    count += entry.is_regular_file() ? 1 : 0;
   return count;
 }
 
@@ -42,13 +43,14 @@ TEST(Window, SleepsWhenNothingChanges) {
   EXPECT_EQ(desk.leave(), 0) << desk.errors();
 }
 
-// What the viewer starts with is kept at once, what a slider leads to when it has stood for 20 s, and what it only came by
-// not at all.
+// What the viewer starts with is kept at once, what a slider leads to when it has stood for 20 s, and what it only came
+// by not at all.
 TEST(Window, KeepsTablesThatHaveStood) {
   NEEDS_A_DESK();
   Desk desk("kept");
   const std::string cache = desk.folder() + "/cache";
-  ASSERT_TRUE(desk.open(joined(joined({"--size", "640x360", "--no-first-steps"}, kSmallTables), {"--set", "tables.cache=" + cache})))
+  ASSERT_TRUE(desk.open(
+      joined(joined({"--size", "640x360", "--no-first-steps"}, kSmallTables), {"--set", "tables.cache=" + cache})))
       << desk.errors();
   ASSERT_TRUE(desk.wait_for({"tables kept"}));
   const std::size_t first = files_in(cache);

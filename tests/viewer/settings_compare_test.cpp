@@ -12,8 +12,8 @@ TEST(ViewerSettings, WhatIsRefusedGoesBackButNotWhatWasChangedSince) {
   asked.effect.atmosphere.mie_g = 0.5F;
   asked.scene.terrain.source = "nowhere.tif";
   now = asked;
-  now.effect.atmosphere.mie_g = 0.6F;    // changed again
-  now.effect.scattering.scale = 2.0F;    // changed since
+  now.effect.atmosphere.mie_g = 0.6F;  // changed again
+  now.effect.scattering.scale = 2.0F;  // changed since
   go_back(now, asked, had);
   config::Settings wanted = had;
   wanted.effect.atmosphere.mie_g = 0.6F;

@@ -42,7 +42,8 @@ TEST(Window, RebuildsShadersWhileItRuns) {
   EXPECT_NE(failed->find("background.frag"), std::string::npos) << *failed;
   desk.picture("broken");
 
-  const std::string changed = std::regex_replace(text.str(), std::regex("void main\\(\\) \\{"), "void main() {\n  if (gl_FragCoord.x < -1.0) discard;");
+  const std::string changed = std::regex_replace(text.str(), std::regex("void main\\(\\) \\{"),
+                                                 "void main() {\n  if (gl_FragCoord.x < -1.0) discard;");
   ASSERT_NE(changed, text.str());
   std::ofstream(path) << changed;
   from = desk.lines();

@@ -19,7 +19,8 @@ TEST(Window, IsResizedAndIdlesWhenNothingChanges) {
     const int height = 150 + 2 * ((i * 53) % 180);
     const std::size_t from = desk.lines();
     desk.hands("windowsize " + desk.window() + " " + std::to_string(width) + " " + std::to_string(height));
-    ASSERT_TRUE(desk.wait_for({"frame left", " " + std::to_string(width / 2) + " " + std::to_string(height / 2) + " "}, from))
+    ASSERT_TRUE(
+        desk.wait_for({"frame left", " " + std::to_string(width / 2) + " " + std::to_string(height / 2) + " "}, from))
         << i;
   }
   desk.picture("resized");

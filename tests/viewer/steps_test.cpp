@@ -11,8 +11,8 @@ namespace {
 
 using namespace desk;
 
-// The loop of the GUI goes on while the scene takes its time: nothing that a hand does waits for a frame of the scene, for
-// tables, for pipelines or for another scene. Steps of the loop are timed by the viewer itself.
+// The loop of the GUI goes on while the scene takes its time: nothing that a hand does waits for a frame of the scene,
+// for tables, for pipelines or for another scene. Steps of the loop are timed by the viewer itself.
 void works_without_a_freeze(Desk& desk) {
   std::size_t from = desk.lines();
   desk.hands("keydown w");

@@ -56,7 +56,8 @@ std::vector<std::string> joined(std::vector<std::string> a, const std::vector<st
 }
 
 bool compare_two(Desk& desk) {
-  if (!desk.click("menu.Windows") || !desk.click("item.Views and comparison") || !desk.wait_for_place("compare")) return false;
+  if (!desk.click("menu.Windows") || !desk.click("item.Views and comparison") || !desk.wait_for_place("compare"))
+    return false;
   const std::size_t from = desk.lines();
   return desk.click("compare", 0.1) && desk.wait_for({"shown two"}, from).has_value();
 }

@@ -78,24 +78,21 @@ class Published {
     TYNDALL_TRY(pass(shaders::published_density_comp, {1024, 1024, 1}, single_, 0, times_.density));
     TYNDALL_TRY(pass(shaders::published_single_comp, kTexels, single_, 0, times_.single));
     for (std::uint32_t n = 2; n <= kOrders; ++n) {
-      TYNDALL_TRY(
-          pass(shaders::published_scatter_comp, kTexels, n == 2 ? single_ : order_, 0, times_.scatter));
+      TYNDALL_TRY(pass(shaders::published_scatter_comp, kTexels, n == 2 ? single_ : order_, 0, times_.scatter));
       TYNDALL_TRY(pass(shaders::published_gather_comp, kTexels, order_, n - 2, times_.gather));
     }
     return {};
   }
 
-  Result<std::vector<validate::Rgb>> answer(const shared::Medium& medium,
-                                            std::span<const reference::Query> queries) {
+  Result<std::vector<validate::Rgb>> answer(const shared::Medium& medium, std::span<const reference::Query> queries) {
     std::vector<shared::ProbeRay> rays;
     for (const reference::Query& q : queries) {
       rays.push_back(models::prepare_probe_ray(
           medium, models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad)));
     }
     TYNDALL_TRY(fill(rays_, "rays", rays.data(), rays.size() * sizeof rays[0]));
-    TYNDALL_ASSIGN(results_,
-                   gpu::create_buffer(host_.device(), "results", rays.size() * sizeof(shared::ProbeResult),
-                                      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::readback));
+    TYNDALL_ASSIGN(results_, gpu::create_buffer(host_.device(), "results", rays.size() * sizeof(shared::ProbeResult),
+                                                VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::readback));
     Time unused;
     const VkExtent3D extent = {static_cast<std::uint32_t>(rays.size()), 1, 1};
     TYNDALL_TRY(pass(shaders::published_answer_comp, extent, order_, 0, unused));
@@ -119,9 +116,8 @@ class Published {
   }
 
   Result<void> image(gpu::Image& out, VkFormat format, VkExtent3D extent) {
-    TYNDALL_ASSIGN(
-        out, gpu::create_image(host_.device(), {"published", format, extent,
-                                                VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT}));
+    TYNDALL_ASSIGN(out, gpu::create_image(host_.device(), {"published", format, extent,
+                                                           VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT}));
     return host_.run([&](VkCommandBuffer cmd) -> Result<void> {
       gpu::transition(host_.device(), cmd, out, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
       return {};
@@ -129,8 +125,8 @@ class Published {
   }
 
   // One invocation per texel of `extent`; adds the time it takes to `time`.
-  Result<void> pass(const gpu::Shader& shader, VkExtent3D extent, const gpu::Image& before,
-                    std::uint32_t adds, Time& time) {
+  Result<void> pass(const gpu::Shader& shader, VkExtent3D extent, const gpu::Image& before, std::uint32_t adds,
+                    Time& time) {
     const gpu::Device& device = host_.device();
     TYNDALL_ASSIGN(const gpu::Pipeline pipeline, gpu::create_compute_pipeline(device, shader));
     const auto named = [&](const char* name, const gpu::Image& i) {
@@ -153,10 +149,8 @@ class Published {
       const std::uint32_t push[] = {first, adds};
       TYNDALL_TRY(host_.run([&](VkCommandBuffer cmd) -> Result<void> {
         const std::string_view missing = gpu::bind(device, cmd, pipeline, resources, push);
-        if (!missing.empty())
-          return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(missing)};
-        gpu::dispatch(device, cmd, pipeline, extent.width, extent.height,
-                      std::min(kSlice, extent.depth - first));
+        if (!missing.empty()) return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(missing)};
+        gpu::dispatch(device, cmd, pipeline, extent.width, extent.height, std::min(kSlice, extent.depth - first));
         gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
                      VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
         gpu::compute_barrier(device, cmd);
@@ -183,8 +177,7 @@ void print_errors(const char* sun, const char* method, const std::vector<validat
   }
   const validate::ErrorSummary e = validate::summarise(comparisons);
   std::printf("| %s | %s | %zu | %.2f | %.2f | %.2f | %.2f | %.2f |\n", sun, method, e.channels[0].count,
-              100.0 * e.all.mean, 100.0 * e.all.median, 100.0 * e.all.p95, 100.0 * e.all.worst,
-              100.0 * e.noise);
+              100.0 * e.all.mean, 100.0 * e.all.median, 100.0 * e.all.p95, 100.0 * e.all.worst, 100.0 * e.noise);
 }
 
 Result<void> run(std::uint32_t rays, std::uint32_t samples) {
@@ -210,21 +203,18 @@ Result<void> run(std::uint32_t rays, std::uint32_t samples) {
     std::printf("| %s | %.1f | %.1f | %.2f |\n", name, time.wall_s, time.processor_s,
                 time.processor_s / own.processor_s);
   }
-  std::printf(
-      "\n| sun | tables | rays | mean | median | 95 %% | worst | noise "
-      "|\n|---|---|--:|--:|--:|--:|--:|--:|\n");
+  std::printf("\n| sun | tables | rays | mean | median | 95 %% | worst | noise "
+              "|\n|---|---|--:|--:|--:|--:|--:|--:|\n");
   for (const validate::SunBand band : {validate::SunBand::up, validate::SunBand::twilight}) {
     std::vector<reference::Query> queries;
     std::vector<models::PrecomputedQuery> asked;
-    for (const validate::Region region :
-         {validate::Region::ground, validate::Region::air, validate::Region::space}) {
+    for (const validate::Region region : {validate::Region::ground, validate::Region::air, validate::Region::space}) {
       for (const validate::TestRay& ray :
            validate::make_rays(region, band, rays, 1, params.planet.radius_m, params.atmosphere.height_m)) {
         const reference::Query& q = ray.query;
         queries.push_back(q);
         asked.push_back(
-            {models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad),
-             false});
+            {models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad), false});
       }
     }
     reference::Options options;

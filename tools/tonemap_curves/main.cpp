@@ -18,11 +18,16 @@ struct Row {
 };
 // In the order of post::Operator.
 constexpr Row kRows[] = {
-    {"exponential", "#1f77b4", validate::Mark::line},       {"reinhard", "#2ca02c", validate::Mark::line},
-    {"reinhard-modified", "#2ca02c", validate::Mark::dashed}, {"uncharted2", "#d62728", validate::Mark::line},
-    {"filmic-alu", "#ff7f0e", validate::Mark::line},        {"logarithmic", "#9467bd", validate::Mark::line},
-    {"adaptive-logarithmic", "#9467bd", validate::Mark::dashed}, {"agx", "#8c564b", validate::Mark::dashed},
-    {"pbr-neutral", "#7f7f7f", validate::Mark::dotted},     {"exponential-channels", "#1f77b4", validate::Mark::dotted},
+    {"exponential", "#1f77b4", validate::Mark::line},
+    {"reinhard", "#2ca02c", validate::Mark::line},
+    {"reinhard-modified", "#2ca02c", validate::Mark::dashed},
+    {"uncharted2", "#d62728", validate::Mark::line},
+    {"filmic-alu", "#ff7f0e", validate::Mark::line},
+    {"logarithmic", "#9467bd", validate::Mark::line},
+    {"adaptive-logarithmic", "#9467bd", validate::Mark::dashed},
+    {"agx", "#8c564b", validate::Mark::dashed},
+    {"pbr-neutral", "#7f7f7f", validate::Mark::dotted},
+    {"exponential-channels", "#1f77b4", validate::Mark::dotted},
 };
 static_assert(std::size(kRows) == post::kOperators);
 

@@ -19,7 +19,8 @@ bool is_colour_image(GDALDataset& file) {
   constexpr std::array<GDALColorInterp, 3> kColours = {GCI_RedBand, GCI_GreenBand, GCI_BlueBand};
   for (int i = 0; i < 3; ++i) {
     GDALRasterBand& band = *file.GetRasterBand(i + 1);
-    if (band.GetRasterDataType() != GDT_Byte || band.GetColorInterpretation() != kColours[static_cast<std::size_t>(i)]) return false;
+    if (band.GetRasterDataType() != GDT_Byte || band.GetColorInterpretation() != kColours[static_cast<std::size_t>(i)])
+      return false;
   }
   return true;
 }
@@ -39,7 +40,8 @@ Result<Dataset> decode_colours(const std::string& source, GDALDataset& file, std
   const int width = file.GetRasterXSize();
   const int height = file.GetRasterYSize();
   constexpr double kMaxPixels = 1 << 28;
-  if (static_cast<double>(width) * height > kMaxPixels) return elevation_error(source, "is too large for an image of colours");
+  if (static_cast<double>(width) * height > kMaxPixels)
+    return elevation_error(source, "is too large for an image of colours");
   GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName("MEM");
   std::array<Dataset, kEncodings.size()> decoded;
   std::array<bool, kEncodings.size()> possible = {};
@@ -59,13 +61,13 @@ Result<Dataset> decode_colours(const std::string& source, GDALDataset& file, std
       if (!possible[e]) continue;
       const Encoding& encoding = kEncodings[e];
       for (std::size_t i = 0; i < static_cast<std::size_t>(width) * static_cast<std::size_t>(rows); ++i) {
-        const double h = encoding.offset_m + encoding.per_red_m * colours[3 * i] + encoding.per_green_m * colours[3 * i + 1] +
-                         encoding.per_blue_m * colours[3 * i + 2];
+        const double h = encoding.offset_m + encoding.per_red_m * colours[3 * i] +
+                         encoding.per_green_m * colours[3 * i + 1] + encoding.per_blue_m * colours[3 * i + 2];
         possible[e] = possible[e] && h >= kLowest_m && h <= kHighest_m;
         heights[i] = static_cast<float>(h);
       }
-      if (decoded[e]->GetRasterBand(1)->RasterIO(GF_Write, 0, top, width, rows, heights.data(), width, rows, GDT_Float32, 0, 0,
-                                                 nullptr) != CE_None)
+      if (decoded[e]->GetRasterBand(1)->RasterIO(GF_Write, 0, top, width, rows, heights.data(), width, rows,
+                                                 GDT_Float32, 0, 0, nullptr) != CE_None)
         return elevation_error(source, "does not fit into memory");
     }
   }
@@ -77,8 +79,9 @@ Result<Dataset> decode_colours(const std::string& source, GDALDataset& file, std
     if (file.GetSpatialRef() != nullptr) decoded[e]->SetSpatialRef(file.GetSpatialRef());
     return std::move(decoded[e]);
   }
-  return elevation_error(source, "is a colour image that holds no heights; accepted are one band of heights, or tiles encoded as "
-                                 "Terrarium or Terrain-RGB");
+  return elevation_error(
+      source, "is a colour image that holds no heights; accepted are one band of heights, or tiles encoded as "
+              "Terrarium or Terrain-RGB");
 }
 
 Dataset declare_no_data(GDALDataset& file, std::vector<std::string>& notes) {
@@ -87,7 +90,8 @@ Dataset declare_no_data(GDALDataset& file, std::vector<std::string>& notes) {
   static_cast<void>(band.GetNoDataValue(&declared));
   if (declared != 0) return nullptr;
   constexpr std::array<double, 6> kUsual = {-9999.0, -32768.0, -32767.0, -999.0, 32767.0, 9999.0};
-  constexpr double kMinGap = 500.0;  // no land falls by as much between two samples and stays away from all heights between
+  constexpr double kMinGap =
+      500.0;  // no land falls by as much between two samples and stays away from all heights between
   std::array<std::size_t, kUsual.size()> count = {};
   std::array<double, kUsual.size()> gap = {};
   gap.fill(std::numeric_limits<double>::infinity());
@@ -119,7 +123,8 @@ Dataset declare_no_data(GDALDataset& file, std::vector<std::string>& notes) {
     GDALTranslateOptions* const options = GDALTranslateOptionsNew(const_cast<char**>(arguments.data()), nullptr);
     Dataset out(GDALDataset::FromHandle(GDALTranslate("", GDALDataset::ToHandle(&file), options, nullptr)));
     GDALTranslateOptionsFree(options);
-    if (out) notes.push_back(std::to_string(count[k]) + " samples of " + value + ", far from all others, taken as holes");
+    if (out)
+      notes.push_back(std::to_string(count[k]) + " samples of " + value + ", far from all others, taken as holes");
     return out;
   }
   return nullptr;

@@ -28,8 +28,7 @@ constexpr double kAssumedSpacing_m = 30.0;
 constexpr int kFillReach_samples = 100;  // of GDAL's interpolation; larger holes are filled more coarsely
 
 // Metres per unit of the heights; notes what is unknown.
-double vertical_unit_m(GDALRasterBand& band, const OGRSpatialReference* srs,
-                       std::vector<std::string>& notes) {
+double vertical_unit_m(GDALRasterBand& band, const OGRSpatialReference* srs, std::vector<std::string>& notes) {
   struct Unit {
     std::string_view name;
     double metres;
@@ -88,8 +87,10 @@ struct Extent {
 };
 
 Extent extent_of(const std::array<double, 6>& t, int width, int height) {
-  const std::array<double, 4> x = {t[0], t[0] + t[1] * width, t[0] + t[2] * height, t[0] + t[1] * width + t[2] * height};
-  const std::array<double, 4> y = {t[3], t[3] + t[4] * width, t[3] + t[5] * height, t[3] + t[4] * width + t[5] * height};
+  const std::array<double, 4> x = {t[0], t[0] + t[1] * width, t[0] + t[2] * height,
+                                   t[0] + t[1] * width + t[2] * height};
+  const std::array<double, 4> y = {t[3], t[3] + t[4] * width, t[3] + t[5] * height,
+                                   t[3] + t[4] * width + t[5] * height};
   const auto [min_x, max_x] = std::minmax_element(x.begin(), x.end());
   const auto [min_y, max_y] = std::minmax_element(y.begin(), y.end());
   return {*min_x, *max_x, *min_y, *max_y};
@@ -104,9 +105,8 @@ bool look_like_degrees(const std::array<double, 6>& t, const Extent& extent) {
 
 Georeference georeference(GDALDataset& file, TerrainUnits units, std::vector<std::string>& notes) {
   Georeference geo;
-  const bool placed =
-      file.GetGeoTransform(geo.transform.data()) == CE_None &&
-      std::abs(geo.transform[1] * geo.transform[5] - geo.transform[2] * geo.transform[4]) > 0.0;
+  const bool placed = file.GetGeoTransform(geo.transform.data()) == CE_None &&
+                      std::abs(geo.transform[1] * geo.transform[5] - geo.transform[2] * geo.transform[4]) > 0.0;
   const OGRSpatialReference* srs = file.GetSpatialRef();
   if (!placed) {
     notes.push_back("no georeferencing: samples taken as 30 m apart, north up");
@@ -121,8 +121,9 @@ Georeference georeference(GDALDataset& file, TerrainUnits units, std::vector<std
     const bool degrees =
         units == TerrainUnits::automatic ? look_like_degrees(geo.transform, extent) : units == TerrainUnits::degrees;
     if (units == TerrainUnits::automatic) {
-      notes.push_back(degrees ? "no coordinate system: taken as degrees on WGS 84; terrain.units=metres takes them as metres"
-                              : "no coordinate system: taken as metres; terrain.units=degrees takes them as degrees");
+      notes.push_back(
+          degrees ? "no coordinate system: taken as degrees on WGS 84; terrain.units=metres takes them as metres"
+                  : "no coordinate system: taken as metres; terrain.units=degrees takes them as degrees");
     }
     if (degrees) geo.srs.SetWellKnownGeogCS("WGS84");
   }
@@ -146,7 +147,8 @@ Result<void> check_extent(const std::string& source_name, const Georeference& ge
       return elevation_error(source_name, "reaches from latitude " + text(extent.min_y) + " to " + text(extent.max_y) +
                                               "; accepted are -90 to 90 degrees");
     }
-    if ((extent.max_x - extent.min_x - 2.0 * half_x) * per_degree > 360.0 || std::abs(extent.min_x) * per_degree > 720.0) {
+    if ((extent.max_x - extent.min_x - 2.0 * half_x) * per_degree > 360.0 ||
+        std::abs(extent.min_x) * per_degree > 720.0) {
       return elevation_error(source_name, "reaches from longitude " + text(extent.min_x) + " to " + text(extent.max_x) +
                                               "; accepted are at most 360 degrees");
     }
@@ -196,8 +198,8 @@ Result<std::vector<float>> read_band(const std::string& source_name, GDALDataset
                     std::to_string(file_width) + " x " + std::to_string(file_height) + " samples");
   }
   std::vector<float> samples(static_cast<std::size_t>(width) * height);
-  if (band.RasterIO(GF_Read, 0, 0, file_width, file_height, samples.data(), width, height, GDT_Float32, 0, 0,
-                    &how) != CE_None)
+  if (band.RasterIO(GF_Read, 0, 0, file_width, file_height, samples.data(), width, height, GDT_Float32, 0, 0, &how) !=
+      CE_None)
     return elevation_error(source_name, "cannot be read: truncated or damaged" + messages.reason());
   const double sx = static_cast<double>(file_width) / width;
   const double sy = static_cast<double>(file_height) / height;
@@ -217,8 +219,7 @@ Result<std::vector<float>> read_band(const std::string& source_name, GDALDataset
   std::size_t holes = 0;
   for (float& v : samples) {
     const double h = v * scale + offset;
-    const bool hole =
-        !std::isfinite(v) || (has_no_data != 0 && v == no_data_sample) || std::abs(h) > kImpossible_m;
+    const bool hole = !std::isfinite(v) || (has_no_data != 0 && v == no_data_sample) || std::abs(h) > kImpossible_m;
     v = hole ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(h);
     if (hole) ++holes;
   }
@@ -232,8 +233,7 @@ Result<std::vector<float>> read_band(const std::string& source_name, GDALDataset
 void fill(std::vector<float>& samples, int width, int height) {
   if (std::none_of(samples.begin(), samples.end(), [](float v) { return std::isnan(v); })) return;
   std::vector<float> valid(samples.size());
-  std::transform(samples.begin(), samples.end(), valid.begin(),
-                 [](float v) { return std::isnan(v) ? 0.0F : 1.0F; });
+  std::transform(samples.begin(), samples.end(), valid.begin(), [](float v) { return std::isnan(v) ? 0.0F : 1.0F; });
   std::vector<float> filled = samples;
   std::replace_if(
       filled.begin(), filled.end(), [](float v) { return std::isnan(v); }, -1.0e30F);
@@ -241,8 +241,8 @@ void fill(std::vector<float>& samples, int width, int height) {
   const Dataset values = make_memory(width, height, nowhere, filled);
   const Dataset mask = make_memory(width, height, nowhere, valid);
   if (values && mask &&
-      GDALFillNodata(values->GetRasterBand(1), mask->GetRasterBand(1), kFillReach_samples, 0, 0, nullptr,
-                     nullptr, nullptr) == CE_None) {
+      GDALFillNodata(values->GetRasterBand(1), mask->GetRasterBand(1), kFillReach_samples, 0, 0, nullptr, nullptr,
+                     nullptr) == CE_None) {
     for (std::size_t i = 0; i < samples.size(); ++i) {
       if (std::isnan(samples[i]) && std::abs(filled[i]) <= kImpossible_m) samples[i] = filled[i];
     }
@@ -252,7 +252,7 @@ void fill(std::vector<float>& samples, int width, int height) {
 
 // The azimuthal equidistant projection around the middle of the samples.
 struct MapProjection {
-  std::string wkt;  // empty: the file's coordinates are metres already
+  std::string wkt;     // empty: the file's coordinates are metres already
   double scale = 1.0;  // metres on the planet per unit of the projection
   std::optional<Place> centre;
 };
@@ -270,7 +270,8 @@ Result<MapProjection> map_projection(const std::string& source_name, const Geore
     const std::unique_ptr<OGRCoordinateTransformation> to_degrees(
         OGRCreateCoordinateTransformation(&geo.srs, geographic.get()));
     if (!to_degrees || to_degrees->Transform(1, &x, &y) == 0)
-      return elevation_error(source_name, "has a coordinate system that cannot be converted to latitudes and longitudes");
+      return elevation_error(source_name,
+                             "has a coordinate system that cannot be converted to latitudes and longitudes");
   }
   // PROJ refuses to go from one celestial body to another: the sphere has the size of the file's own body, and what
   // it gives is scaled to the planet. Latitudes and longitudes stay as they are.
@@ -283,11 +284,13 @@ Result<MapProjection> map_projection(const std::string& source_name, const Geore
   if (std::abs(file_radius_m - kEarth_m) <= kSameBody * kEarth_m) out.centre = Place{y, std::remainder(x, 360.0)};
   std::array<char, 160> text = {};
   if (!same_body) {
-    std::snprintf(text.data(), text.size(), "made for a body of radius %.0f km; its latitudes and longitudes are laid on this planet of %.0f km",
+    std::snprintf(text.data(), text.size(),
+                  "made for a body of radius %.0f km; its latitudes and longitudes are laid on this planet of %.0f km",
                   file_radius_m / 1000.0, radius_m / 1000.0);
     notes.emplace_back(text.data());
   }
-  std::snprintf(text.data(), text.size(), "+proj=aeqd +lat_0=%.12g +lon_0=%.12g +R=%.12g +units=m +no_defs", y, x, sphere_m);
+  std::snprintf(text.data(), text.size(), "+proj=aeqd +lat_0=%.12g +lon_0=%.12g +R=%.12g +units=m +no_defs", y, x,
+                sphere_m);
   OGRSpatialReference srs;
   char* wkt = nullptr;
   if (srs.importFromProj4(text.data()) == OGRERR_NONE && srs.exportToWkt(&wkt) == OGRERR_NONE) out.wkt = wkt;
@@ -298,7 +301,8 @@ Result<MapProjection> map_projection(const std::string& source_name, const Geore
 
 // Resamples to square cells around the centre, on the map's projection unless there is no coordinate system.
 Result<ElevationRaster> warp(const std::string& source_name, GDALDataset& source, const Georeference& geo,
-                             const ElevationRequest& request, const Messages& messages, std::vector<std::string>& notes) {
+                             const ElevationRequest& request, const Messages& messages,
+                             std::vector<std::string>& notes) {
   const int max_samples = request.max_samples;
   Result<MapProjection> projection = map_projection(source_name, geo, source.GetRasterXSize(), source.GetRasterYSize(),
                                                     request.planet_radius_m, notes);
@@ -311,10 +315,9 @@ Result<ElevationRaster> warp(const std::string& source_name, GDALDataset& source
   std::array<double, 4> extent = {};
   int width = 0;
   int height = 0;
-  const bool suggests =
-      transformer != nullptr &&
-      GDALSuggestedWarpOutput2(GDALDataset::ToHandle(&source), GDALGenImgProjTransform, transformer,
-                               suggested.data(), &width, &height, extent.data(), 0) == CE_None;
+  const bool suggests = transformer != nullptr &&
+                        GDALSuggestedWarpOutput2(GDALDataset::ToHandle(&source), GDALGenImgProjTransform, transformer,
+                                                 suggested.data(), &width, &height, extent.data(), 0) == CE_None;
   if (transformer != nullptr) GDALDestroyGenImgProjTransformer(transformer);
   if (!suggests) return elevation_error(source_name, "cannot be projected onto the terrain's map" + messages.reason());
   const double centre_x = wkt.empty() ? 0.5 * (extent[0] + extent[2]) : 0.0;
@@ -336,9 +339,9 @@ Result<ElevationRaster> warp(const std::string& source_name, GDALDataset& source
   target.transform = {centre_x - 0.5 * raster.width * spacing,  spacing, 0.0,
                       centre_y + 0.5 * raster.height * spacing, 0.0,     -spacing};
   const Dataset memory = make_memory(raster.width, raster.height, target, raster.heights);
-  if (!memory || GDALReprojectImage(GDALDataset::ToHandle(&source), nullptr,
-                                    GDALDataset::ToHandle(memory.get()), wkt.empty() ? nullptr : wkt.c_str(),
-                                    GRA_Bilinear, 0.0, 0.0, nullptr, nullptr, nullptr) != CE_None)
+  if (!memory || GDALReprojectImage(GDALDataset::ToHandle(&source), nullptr, GDALDataset::ToHandle(memory.get()),
+                                    wkt.empty() ? nullptr : wkt.c_str(), GRA_Bilinear, 0.0, 0.0, nullptr, nullptr,
+                                    nullptr) != CE_None)
     return elevation_error(source_name, "cannot be projected onto the terrain's map" + messages.reason());
   memory->FlushCache();
   return raster;
@@ -354,7 +357,8 @@ Result<ElevationRaster> read_elevation_file(const std::string& source_name, cons
   GDALDataset* file = opened.value().get();
   if (file->GetRasterXSize() < 2 || file->GetRasterYSize() < 2)
     return elevation_error(source_name, "has " + std::to_string(file->GetRasterXSize()) + " x " +
-                                            std::to_string(file->GetRasterYSize()) + " samples, at least 2 x 2 are needed");
+                                            std::to_string(file->GetRasterYSize()) +
+                                            " samples, at least 2 x 2 are needed");
   if (GDALDataTypeIsComplex(file->GetRasterBand(1)->GetRasterDataType()) != 0)
     return elevation_error(source_name, "holds complex numbers, real elevations are needed");
 
@@ -365,8 +369,7 @@ Result<ElevationRaster> read_elevation_file(const std::string& source_name, cons
   const Dataset declared = declare_no_data(*file, notes);
   if (declared) file = declared.get();
   if (file->GetRasterCount() > 1)
-    notes.push_back("has " + std::to_string(file->GetRasterCount()) +
-                    " bands, the first is taken as elevation");
+    notes.push_back("has " + std::to_string(file->GetRasterCount()) + " bands, the first is taken as elevation");
   Georeference geo = georeference(*file, request.units, notes);
   Result<void> somewhere = check_extent(source_name, geo, file->GetRasterXSize(), file->GetRasterYSize());
   if (!somewhere.ok()) return std::move(somewhere).error();
@@ -378,9 +381,7 @@ Result<ElevationRaster> read_elevation_file(const std::string& source_name, cons
   fill(samples.value(), width, height);
 
   const Dataset memory = make_memory(width, height, geo, samples.value());
-  if (!memory)
-    return Error{ErrorCode::out_of_memory, "elevation file " + source_name + " does not fit into memory",
-                 0};
+  if (!memory) return Error{ErrorCode::out_of_memory, "elevation file " + source_name + " does not fit into memory", 0};
   Result<ElevationRaster> warped = warp(source_name, *memory, geo, request, messages, notes);
   if (!warped.ok()) return std::move(warped).error();
   ElevationRaster raster = std::move(warped).value();

@@ -30,7 +30,7 @@ struct ElevationRaster {
   double spacing_m = 0.0;      // of samples, both ways
   std::vector<float> heights;  // m above sea level, row-major, north row first
   float min_m = 0.0F, max_m = 0.0F;
-  std::optional<Place> centre;  // latitude and longitude on the Earth, where the file has a coordinate system
+  std::optional<Place> centre;     // latitude and longitude on the Earth, where the file has a coordinate system
   std::vector<std::string> notes;  // one line each: what was assumed or changed in reading
 };
 

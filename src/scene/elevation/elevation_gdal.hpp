@@ -37,8 +37,7 @@ class Messages {
     self->first_ = text;
     std::replace_if(
         self->first_.begin(), self->first_.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-    while (!self->first_.empty() && (self->first_.back() == ' ' || self->first_.back() == '.'))
-      self->first_.pop_back();
+    while (!self->first_.empty() && (self->first_.back() == ' ' || self->first_.back() == '.')) self->first_.pop_back();
   }
 
   std::string first_;
@@ -48,8 +47,8 @@ inline Error elevation_error(std::string_view source, std::string_view what) {
   return Error{ErrorCode::io, "elevation file " + std::string(source) + " " + std::string(what), 0};
 }
 
-// While it lives, GDAL connects to nothing on this thread, unless `source` itself names a network file system. Files that a
-// virtual raster refers to are opened only when samples are read: to be held until then.
+// While it lives, GDAL connects to nothing on this thread, unless `source` itself names a network file system. Files
+// that a virtual raster refers to are opened only when samples are read: to be held until then.
 class NetworkGuard {
  public:
   explicit NetworkGuard(const std::string& source);
@@ -69,11 +68,12 @@ class NetworkGuard {
 
 // Decodes tiles that hold heights in the colours of an 8-bit image, Terrarium or Terrain-RGB, to one band of metres; a
 // note says which. Null for files that are no colour image; an error for pictures that hold no heights.
-[[nodiscard]] Result<Dataset> decode_colours(const std::string& source, GDALDataset& file, std::vector<std::string>& notes);
+[[nodiscard]] Result<Dataset> decode_colours(const std::string& source, GDALDataset& file,
+                                             std::vector<std::string>& notes);
 
-// Returns a virtual raster over `file`, which must outlive it, that declares the sample that evidently stands for "no data"
-// although the file does not say so: -9999 and its like, at least 500 units from every other sample. A note says which.
-// Null when there is none.
+// Returns a virtual raster over `file`, which must outlive it, that declares the sample that evidently stands for "no
+// data" although the file does not say so: -9999 and its like, at least 500 units from every other sample. A note says
+// which. Null when there is none.
 [[nodiscard]] Dataset declare_no_data(GDALDataset& file, std::vector<std::string>& notes);
 
 }  // namespace tyndall::scene

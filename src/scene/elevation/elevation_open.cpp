@@ -15,12 +15,14 @@ namespace {
 // Formats of elevations, and of images that carry them. None of them opens network connections by itself; GDAL's other
 // drivers (WMS, WCS, HTTP, STAC, databases, ...) are not needed and are removed.
 constexpr std::array<const char*, 63> kDrivers = {
-    "AAIGrid", "AIG",     "BAG",    "BMP",     "BT",      "COG",      "CTG",        "DTED",     "EHdr",   "ENVI",  "ERS",
-    "EXR",     "GenBin",  "GFF",    "GMT",     "GPKG",    "GRASSASCIIGrid", "GRIB", "GS7BG",    "GSAG",   "GSBG",  "GTiff",
-    "GXF",     "HDF4",    "HDF4Image", "HDF5", "HDF5Image", "HFA",    "ILWIS",      "ISG",      "ISIS2",  "ISIS3", "JP2OpenJPEG",
-    "JPEG",    "KRO",     "LCP",    "Leveller", "MEM",    "netCDF",   "NGSGEOID",   "NWT_GRC",  "NWT_GRD", "PCIDSK", "PDS",
-    "PDS4",    "PNG",     "RMF",    "ROI_PAC", "RRASTER", "RST",      "S102",       "SAGA",     "SDTS",   "SRTMHGT", "Terragen",
-    "USGSDEM", "VICAR",   "VRT",    "WEBP",    "XYZ",     "Zarr",     "ZMap",       nullptr};
+    "AAIGrid",        "AIG",     "BAG",       "BMP",  "BT",       "COG",     "CTG",      "DTED",
+    "EHdr",           "ENVI",    "ERS",       "EXR",  "GenBin",   "GFF",     "GMT",      "GPKG",
+    "GRASSASCIIGrid", "GRIB",    "GS7BG",     "GSAG", "GSBG",     "GTiff",   "GXF",      "HDF4",
+    "HDF4Image",      "HDF5",    "HDF5Image", "HFA",  "ILWIS",    "ISG",     "ISIS2",    "ISIS3",
+    "JP2OpenJPEG",    "JPEG",    "KRO",       "LCP",  "Leveller", "MEM",     "netCDF",   "NGSGEOID",
+    "NWT_GRC",        "NWT_GRD", "PCIDSK",    "PDS",  "PDS4",     "PNG",     "RMF",      "ROI_PAC",
+    "RRASTER",        "RST",     "S102",      "SAGA", "SDTS",     "SRTMHGT", "Terragen", "USGSDEM",
+    "VICAR",          "VRT",     "WEBP",      "XYZ",  "Zarr",     "ZMap",    nullptr};
 
 bool is_allowed(std::string_view name) {
   for (const char* const driver : kDrivers) {
@@ -46,7 +48,8 @@ bool begins_with(std::string_view text, std::string_view start) { return text.su
 
 // Virtual file systems that stay on this machine.
 bool is_local_vsi(std::string_view name) {
-  for (const std::string_view local : {"/vsizip/", "/vsigzip/", "/vsitar/", "/vsimem/", "/vsisubfile/", "/vsisparse/"}) {
+  for (const std::string_view local :
+       {"/vsizip/", "/vsigzip/", "/vsitar/", "/vsimem/", "/vsisubfile/", "/vsisparse/"}) {
     if (begins_with(name, local)) return true;
   }
   return false;
@@ -65,7 +68,9 @@ bool is_subdataset(const std::string& source) {
   const std::size_t colon = source.find(':');
   if (colon == std::string::npos || colon < 2) return false;
   for (const char c : source.substr(0, colon)) {
-    if (std::isupper(static_cast<unsigned char>(c)) == 0 && std::isdigit(static_cast<unsigned char>(c)) == 0 && c != '_') return false;
+    if (std::isupper(static_cast<unsigned char>(c)) == 0 && std::isdigit(static_cast<unsigned char>(c)) == 0 &&
+        c != '_')
+      return false;
   }
   std::error_code ignored;
   return !std::filesystem::exists(source, ignored);
@@ -94,7 +99,8 @@ Result<void> check_references(const std::string& source) {
   text.assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
   if (text.size() > kMaxText) return elevation_error(source, "is a virtual raster of more than 16 MiB");
   if (!names_network(text)) return {};
-  return elevation_error(source, "is a virtual raster that refers to a network file system; accepted are references to local files");
+  return elevation_error(
+      source, "is a virtual raster that refers to a network file system; accepted are references to local files");
 }
 
 }  // namespace

@@ -59,9 +59,7 @@ ElevationAtlas build_atlas(const ElevationRaster& raster, const std::vector<Bloc
   atlas.width = raster.width + blocks[1].width;
   atlas.height = std::max(raster.height, blocks.back().y + blocks.back().height);
   atlas.texels.assign(static_cast<std::size_t>(atlas.width) * atlas.height, 0.0F);
-  const auto at = [&](int x, int y) -> float& {
-    return atlas.texels[static_cast<std::size_t>(y) * atlas.width + x];
-  };
+  const auto at = [&](int x, int y) -> float& { return atlas.texels[static_cast<std::size_t>(y) * atlas.width + x]; };
   for (int y = 0; y < raster.height; ++y) {
     const auto row = raster.heights.begin() + static_cast<std::ptrdiff_t>(y) * raster.width;
     std::copy(row, row + raster.width, &at(0, y));
@@ -98,10 +96,8 @@ float border_offset(const ElevationRaster& raster, std::uint32_t seed) {
     const double t = 2.0 * (i + 0.5) / kSamplesPerSide - 1.0;
     for (const double depth : {0.84, 1.0}) {
       for (const double side : {-depth, depth}) {
-        sum += file(t, side) -
-               terrain64::terrain_height_at(units_of(t * half_x, side * half_z), spacing_m, seed);
-        sum += file(side, t) -
-               terrain64::terrain_height_at(units_of(side * half_x, t * half_z), spacing_m, seed);
+        sum += file(t, side) - terrain64::terrain_height_at(units_of(t * half_x, side * half_z), spacing_m, seed);
+        sum += file(side, t) - terrain64::terrain_height_at(units_of(side * half_x, t * half_z), spacing_m, seed);
       }
     }
   }
@@ -125,7 +121,8 @@ Result<ElevationSource> ElevationSource::create(const ElevationDesc& desc) {
   double high = procedural.y;
 
   if (desc.source != "procedural") {
-    Result<ElevationRaster> read = read_elevation_file(desc.source, {desc.planet_radius_m, desc.max_samples, desc.units});
+    Result<ElevationRaster> read =
+        read_elevation_file(desc.source, {desc.planet_radius_m, desc.max_samples, desc.units});
     if (!read.ok()) return std::move(read).error();
     const ElevationRaster& raster = read.value();
     const std::vector<Block> blocks = atlas_blocks(raster.width, raster.height);

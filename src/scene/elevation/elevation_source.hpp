@@ -32,7 +32,7 @@ struct ElevationDesc {
   std::uint32_t seed = 1;
   double exaggeration = 1.0;
   double planet_radius_m = 6360000.0;
-  int max_samples = kMaxElevationSamples;  // of a file, on a side; its atlas is 1.5 times as wide
+  int max_samples = kMaxElevationSamples;        // of a file, on a side; its atlas is 1.5 times as wide
   TerrainUnits units = TerrainUnits::automatic;  // of a file without a coordinate system
 };
 

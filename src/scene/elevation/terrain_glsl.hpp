@@ -47,8 +47,7 @@ struct BoundSource : TerrainSource {
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
 namespace {
-#define TERRAIN_RASTER(source, texel) \
-  source.atlas[static_cast<std::size_t>((texel).y) * source.atlas_width + (texel).x]
+#define TERRAIN_RASTER(source, texel) source.atlas[static_cast<std::size_t>((texel).y) * source.atlas_width + (texel).x]
 #define TERRAIN_SOURCE const BoundSource&
 #include "scene/terrain_materials.glsl"
 #include "scene/terrain_source.glsl"

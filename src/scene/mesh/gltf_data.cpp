@@ -42,12 +42,18 @@ std::string base64_decoded(std::string_view text, const std::string& user) {
   int count = 0;
   for (const char c : text) {
     std::uint32_t value = 0;
-    if (c >= 'A' && c <= 'Z') value = static_cast<std::uint32_t>(c - 'A');
-    else if (c >= 'a' && c <= 'z') value = static_cast<std::uint32_t>(c - 'a') + 26;
-    else if (c >= '0' && c <= '9') value = static_cast<std::uint32_t>(c - '0') + 52;
-    else if (c == '+') value = 62;
-    else if (c == '/') value = 63;
-    else fail(user + ".uri has a character that is not base64", "allowed are A-Z, a-z, 0-9, + and /");
+    if (c >= 'A' && c <= 'Z')
+      value = static_cast<std::uint32_t>(c - 'A');
+    else if (c >= 'a' && c <= 'z')
+      value = static_cast<std::uint32_t>(c - 'a') + 26;
+    else if (c >= '0' && c <= '9')
+      value = static_cast<std::uint32_t>(c - '0') + 52;
+    else if (c == '+')
+      value = 62;
+    else if (c == '/')
+      value = 63;
+    else
+      fail(user + ".uri has a character that is not base64", "allowed are A-Z, a-z, 0-9, + and /");
     bits = bits << 6U | value;
     count += 6;
     if (count >= 8) {
@@ -82,7 +88,8 @@ std::string GltfData::resource(const std::string& uri, const std::string& user) 
   const std::string name = percent_decoded(uri, user);
   const std::string shown = user + ".uri '" + config::one_line(name, 200) + "'";
   if (name.find("://") != std::string::npos) fail(shown + " is not a file", "allowed are files and data URIs");
-  if (name.empty() || config::has_control_characters(name)) fail(shown + " is not the name of a file", "allowed are files and data URIs");
+  if (name.empty() || config::has_control_characters(name))
+    fail(shown + " is not the name of a file", "allowed are files and data URIs");
   Result<std::string> read = config::read_file((std::filesystem::path(folder_) / name).string(), kMaxGltfFileBytes);
   if (!read.ok()) {
     const std::string& message = read.error().message;  // with what is needed at its end
@@ -111,7 +118,8 @@ std::span<const unsigned char> GltfData::buffer(std::size_t index) {
     fail(name + " has no data", "allowed is a uri, or the binary chunk of a .glb for buffers[0]");
   }
   if (bytes.size() < described.length) {
-    fail(name + " has " + std::to_string(bytes.size()) + " bytes", "allowed are the " + std::to_string(described.length) + " of its byteLength");
+    fail(name + " has " + std::to_string(bytes.size()) + " bytes",
+         "allowed are the " + std::to_string(described.length) + " of its byteLength");
   }
   return {reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<std::size_t>(described.length)};
 }
@@ -122,7 +130,8 @@ std::span<const unsigned char> GltfData::view(std::size_t index) {
   const auto known = decoded_.find(index);
   if (known != decoded_.end()) return known->second;
   const GltfMeshopt& meshopt = *described.meshopt;
-  return decoded_[index] = decode_meshopt(meshopt, buffer(meshopt.buffer).subspan(meshopt.offset, meshopt.length), at("bufferViews", index));
+  return decoded_[index] = decode_meshopt(meshopt, buffer(meshopt.buffer).subspan(meshopt.offset, meshopt.length),
+                                          at("bufferViews", index));
 }
 
 GltfValues GltfData::described(std::size_t index) const {
@@ -162,9 +171,11 @@ GltfValues GltfData::values_of(std::size_t index, std::vector<unsigned char> byt
   return out;
 }
 
-std::vector<unsigned char> GltfData::with_sparse(const GltfAccessor& accessor, const GltfValues& base, const std::string& user) {
+std::vector<unsigned char> GltfData::with_sparse(const GltfAccessor& accessor, const GltfValues& base,
+                                                 const std::string& user) {
   if (accessor.count > kMaxMeshVertices) {
-    fail(user + " is sparse and has " + std::to_string(accessor.count) + " elements", "allowed are up to " + std::to_string(kMaxMeshVertices));
+    fail(user + " is sparse and has " + std::to_string(accessor.count) + " elements",
+         "allowed are up to " + std::to_string(kMaxMeshVertices));
   }
   const GltfSparse& sparse = *accessor.sparse;
   const std::size_t element = bytes_of(accessor.component) * static_cast<std::size_t>(accessor.components);
@@ -179,7 +190,8 @@ std::vector<unsigned char> GltfData::with_sparse(const GltfAccessor& accessor, c
   for (std::size_t i = 0; i < sparse.count; ++i) {
     const std::int64_t to = indices.whole(i);
     if (to <= last || static_cast<std::size_t>(to) >= accessor.count) {
-      fail(user + " has the sparse index " + std::to_string(to), "allowed are increasing indices below " + std::to_string(accessor.count));
+      fail(user + " has the sparse index " + std::to_string(to),
+           "allowed are increasing indices below " + std::to_string(accessor.count));
     }
     std::memcpy(&out[static_cast<std::size_t>(to) * element], values + i * element, element);
     last = to;

@@ -2,8 +2,8 @@
 // accessors. Nothing that a file says about its own size is trusted.
 #pragma once
 
-#include <cstring>
 #include <algorithm>
+#include <cstring>
 #include <map>
 #include <memory>
 #include <span>
@@ -76,14 +76,16 @@ class GltfData {
   // The elements of an accessor, sparse ones in place. `user` is who names it, for messages.
   [[nodiscard]] GltfValues values(std::size_t index, const std::string& user);
   // Elements as an accessor describes them, from `bytes`.
-  [[nodiscard]] GltfValues values_of(std::size_t index, std::vector<unsigned char> bytes, const std::string& user) const;
+  [[nodiscard]] GltfValues values_of(std::size_t index, std::vector<unsigned char> bytes,
+                                     const std::string& user) const;
   // What a URI refers to: a data URI or a file.
   [[nodiscard]] std::string resource(const std::string& uri, const std::string& user) const;
 
  private:
   [[nodiscard]] std::span<const unsigned char> buffer(std::size_t index);
   [[nodiscard]] GltfValues described(std::size_t index) const;
-  [[nodiscard]] std::vector<unsigned char> with_sparse(const GltfAccessor& accessor, const GltfValues& base, const std::string& user);
+  [[nodiscard]] std::vector<unsigned char> with_sparse(const GltfAccessor& accessor, const GltfValues& base,
+                                                       const std::string& user);
 
   const GltfDocument& document_;
   std::string folder_;

@@ -24,12 +24,12 @@ constexpr bool kHasMeshopt = false;
 #endif
 
 // The bytes of a view: count * stride. Throws GltfFailure, which names `where`.
-[[nodiscard]] std::vector<unsigned char> decode_meshopt(const GltfMeshopt& compressed, std::span<const unsigned char> bytes,
-                                                        const std::string& where);
+[[nodiscard]] std::vector<unsigned char> decode_meshopt(const GltfMeshopt& compressed,
+                                                        std::span<const unsigned char> bytes, const std::string& where);
 
 struct DracoMesh {
   std::size_t points = 0;
-  std::vector<std::uint32_t> corners;                             // three for each triangle, below `points`
+  std::vector<std::uint32_t> corners;                            // three for each triangle, below `points`
   std::map<std::string, std::vector<unsigned char>> attributes;  // by semantic, elements as their accessors describe
 };
 

@@ -67,8 +67,10 @@ void check_extensions(const GltfJson& root, GltfDocument& out) {
   if (kHasMeshopt) supported.insert("EXT_meshopt_compression");
   for (const std::string& name : root.texts("extensionsRequired")) {
     if (supported.contains(name)) continue;
-    const bool left_out = (!kHasDraco && name == "KHR_draco_mesh_compression") || (!kHasMeshopt && name == "EXT_meshopt_compression");
-    fail("requires the extension " + config::one_line(name, 80) + (left_out ? ", whose decoder this program was built without" : ""),
+    const bool left_out =
+        (!kHasDraco && name == "KHR_draco_mesh_compression") || (!kHasMeshopt && name == "EXT_meshopt_compression");
+    fail("requires the extension " + config::one_line(name, 80) +
+             (left_out ? ", whose decoder this program was built without" : ""),
          "allowed are " + joined(supported));
   }
   std::set<std::string> ignored;
@@ -80,12 +82,14 @@ void check_extensions(const GltfJson& root, GltfDocument& out) {
 
 GltfComponent component(const GltfJson& from, const char* name) {
   const std::int64_t type = from.integer(name, 0, kAny);
-  if (type < 5120 || type > 5126 || type == 5124) from.refuse(name, "allowed are 5120, 5121, 5122, 5123, 5125 and 5126");
+  if (type < 5120 || type > 5126 || type == 5124)
+    from.refuse(name, "allowed are 5120, 5121, 5122, 5123, 5125 and 5126");
   return static_cast<GltfComponent>(type);
 }
 
 template <std::size_t N>
-std::size_t choice(const GltfJson& from, const char* name, const std::array<const char*, N>& names, const char* fallback) {
+std::size_t choice(const GltfJson& from, const char* name, const std::array<const char*, N>& names,
+                   const char* fallback) {
   const std::string text = from.text(name, fallback == nullptr ? std::optional<std::string>() : fallback);
   const auto found = std::find(names.begin(), names.end(), text);
   if (found == names.end()) {
@@ -96,7 +100,8 @@ std::size_t choice(const GltfJson& from, const char* name, const std::array<cons
 }
 
 // The range of a buffer that a view or its compressed form names.
-void parse_range(const GltfJson& json, const GltfDocument& out, std::size_t& buffer, std::uint64_t& offset, std::uint64_t& length) {
+void parse_range(const GltfJson& json, const GltfDocument& out, std::size_t& buffer, std::uint64_t& offset,
+                 std::uint64_t& length) {
   buffer = static_cast<std::size_t>(json.index("buffer", "buffers", true));
   offset = static_cast<std::uint64_t>(json.integer("byteOffset", 0, kAny, 0));
   length = static_cast<std::uint64_t>(json.integer("byteLength", 1, kAny));
@@ -112,19 +117,21 @@ GltfMeshopt parse_meshopt(const GltfJson& json, const GltfDocument& out, std::ui
   parse_range(json, out, meshopt.buffer, meshopt.offset, meshopt.length);
   meshopt.stride = static_cast<std::size_t>(json.integer("byteStride", 1, 256));
   meshopt.count = static_cast<std::size_t>(json.integer("count", 1, static_cast<std::int64_t>(kMaxMeshIndices)));
-  meshopt.mode = static_cast<GltfMeshopt::Mode>(choice<3>(json, "mode", {"ATTRIBUTES", "TRIANGLES", "INDICES"}, nullptr));
+  meshopt.mode =
+      static_cast<GltfMeshopt::Mode>(choice<3>(json, "mode", {"ATTRIBUTES", "TRIANGLES", "INDICES"}, nullptr));
   meshopt.filter = static_cast<GltfMeshopt::Filter>(
       choice<4>(json, "filter", {"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"}, "NONE"));
   const std::size_t stride = meshopt.stride;
   using Mode = GltfMeshopt::Mode;
   using Filter = GltfMeshopt::Filter;
   if (meshopt.mode == Mode::attributes ? stride % 4 != 0 : stride != 2 && stride != 4) {
-    json.refuse("byteStride", meshopt.mode == Mode::attributes ? "allowed is a multiple of 4 up to 256" : "allowed are 2 and 4");
+    json.refuse("byteStride",
+                meshopt.mode == Mode::attributes ? "allowed is a multiple of 4 up to 256" : "allowed are 2 and 4");
   }
   if (meshopt.mode == Mode::triangles && meshopt.count % 3 != 0) json.refuse("count", "allowed is a multiple of 3");
   const bool fits = meshopt.filter == Filter::none ||
-                    (meshopt.mode == Mode::attributes &&
-                     (meshopt.filter == Filter::exponential || stride == 8 || (meshopt.filter == Filter::octahedral && stride == 4)));
+                    (meshopt.mode == Mode::attributes && (meshopt.filter == Filter::exponential || stride == 8 ||
+                                                          (meshopt.filter == Filter::octahedral && stride == 4)));
   if (!fits) json.refuse("filter", "allowed is NONE for this mode and byteStride");
   if (meshopt.count * stride != view_length) {
     fail(json.path() + " decodes to " + std::to_string(meshopt.count * stride) + " bytes",
@@ -138,7 +145,8 @@ void parse_views(const GltfJson& root, GltfDocument& out) {
     GltfBuffer buffer;
     if (json.has("uri")) buffer.uri = json.text("uri");
     buffer.length = static_cast<std::uint64_t>(json.integer("byteLength", 1, kAny));
-    if (const auto meshopt = json.extension("EXT_meshopt_compression")) buffer.fallback = kHasMeshopt && meshopt->flag("fallback");
+    if (const auto meshopt = json.extension("EXT_meshopt_compression"))
+      buffer.fallback = kHasMeshopt && meshopt->flag("fallback");
     out.buffers.push_back(std::move(buffer));
   }
   for (const GltfJson& json : root.objects("bufferViews")) {
@@ -153,8 +161,8 @@ void parse_views(const GltfJson& root, GltfDocument& out) {
   }
 }
 
-void check_view_range(const GltfJson& json, const GltfDocument& out, std::size_t view, std::uint64_t offset, std::size_t stride,
-                      std::size_t count, std::size_t element) {
+void check_view_range(const GltfJson& json, const GltfDocument& out, std::size_t view, std::uint64_t offset,
+                      std::size_t stride, std::size_t count, std::size_t element) {
   const std::uint64_t size = out.views[view].length;
   if (offset > size || (count - 1) * stride + element > size - offset) {
     fail(json.path() + " of " + std::to_string(count) + " elements ends at byte " +

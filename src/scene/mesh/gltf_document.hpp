@@ -16,7 +16,8 @@
 
 namespace tyndall::scene {
 
-// What is wrong with a file, and what is allowed; thrown by everything that reads glTF. load_gltf() makes an error of it.
+// What is wrong with a file, and what is allowed; thrown by everything that reads glTF. load_gltf() makes an error of
+// it.
 struct GltfFailure {
   std::string what, allowed;
 };
@@ -26,7 +27,9 @@ struct GltfFailure {
 }
 
 // "accessors[3]"
-inline std::string at(std::string list, std::size_t index) { return std::move(list) + "[" + std::to_string(index) + "]"; }
+inline std::string at(std::string list, std::size_t index) {
+  return std::move(list) + "[" + std::to_string(index) + "]";
+}
 
 enum class GltfComponent : int {
   int8 = 5120,

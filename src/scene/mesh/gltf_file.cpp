@@ -34,7 +34,8 @@ Container split_binary(std::string_view bytes) {
   if (version != 2) fail("is a .glb of version " + std::to_string(version), "allowed is version 2");
   const std::uint32_t length = word(bytes, 8);
   if (length < 12 || length > bytes.size()) {
-    fail("is a .glb that states " + std::to_string(length) + " bytes and has " + std::to_string(bytes.size()), "allowed are all of them");
+    fail("is a .glb that states " + std::to_string(length) + " bytes and has " + std::to_string(bytes.size()),
+         "allowed are all of them");
   }
   Container out;
   out.trailing = length < bytes.size();
@@ -43,7 +44,8 @@ Container split_binary(std::string_view bytes) {
     if (bytes.size() - i < 8) fail("ends within a chunk of a .glb", "allowed are whole chunks");
     const std::uint32_t size = word(bytes, i), kind = word(bytes, i + 4);
     if (size > bytes.size() - i - 8) {
-      fail("has a chunk of " + std::to_string(size) + " bytes, beyond its end", "allowed are up to " + std::to_string(bytes.size() - i - 8));
+      fail("has a chunk of " + std::to_string(size) + " bytes, beyond its end",
+           "allowed are up to " + std::to_string(bytes.size() - i - 8));
     }
     if (number == 0 && kind != kJson) fail("is a .glb without JSON at its start", "allowed is a first chunk of JSON");
     if (number == 0) out.json = bytes.substr(i + 8, size);
@@ -62,8 +64,9 @@ Container split(std::string_view bytes) {
 }
 
 Error error_of(const std::string& path, const std::string& what, const std::string& allowed) {
-  return Error{ErrorCode::invalid_argument, "mesh file " + config::one_line(path, 300) + ": " + config::one_line(what, 400) +
-               ", meshes.source, " + config::one_line(allowed, 300)};
+  return Error{ErrorCode::invalid_argument, "mesh file " + config::one_line(path, 300) + ": " +
+                                                config::one_line(what, 400) + ", meshes.source, " +
+                                                config::one_line(allowed, 300)};
 }
 
 }  // namespace
@@ -82,7 +85,8 @@ Result<MeshData> load_gltf(const std::string& path) {
   } catch (const GltfFailure& failure) {
     return error_of(path, failure.what, failure.allowed);
   } catch (const std::bad_alloc&) {
-    return Error{ErrorCode::out_of_memory, "mesh file " + config::one_line(path, 300) + " does not fit into memory, meshes.source, " + kAllowed};
+    return Error{ErrorCode::out_of_memory,
+                 "mesh file " + config::one_line(path, 300) + " does not fit into memory, meshes.source, " + kAllowed};
   } catch (const std::exception& thrown) {
     return error_of(path, std::string("cannot be read: ") + thrown.what(), kAllowed);
   }

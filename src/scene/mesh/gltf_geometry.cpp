@@ -16,7 +16,8 @@ std::string shown_range(int low, int high) {
 
 // The normal of a triangle; up where it has none.
 glm::vec3 flat_normal(const MeshVertex& a, const MeshVertex& b, const MeshVertex& c) {
-  const glm::dvec3 n = glm::cross(glm::dvec3(b.position) - glm::dvec3(a.position), glm::dvec3(c.position) - glm::dvec3(a.position));
+  const glm::dvec3 n =
+      glm::cross(glm::dvec3(b.position) - glm::dvec3(a.position), glm::dvec3(c.position) - glm::dvec3(a.position));
   const double length = glm::length(n);
   return length > 0.0 ? glm::vec3(n / length) : glm::vec3(0, 1, 0);
 }
@@ -41,7 +42,9 @@ glm::dmat4 GltfVertices::skinned(std::size_t i) const {
   for (const Influence& one : influences) {
     for (int c = 0; c < 4; ++c) {
       const double weight = one.weights.real(i, c);
-      if (weight < 0.0) fail(where + " has a negative weight of a joint at vertex " + std::to_string(i), "allowed are weights of 0 and more");
+      if (weight < 0.0)
+        fail(where + " has a negative weight of a joint at vertex " + std::to_string(i),
+             "allowed are weights of 0 and more");
       if (weight == 0.0) continue;
       const std::uint32_t joint = one.joints.whole(i, c);
       if (joint >= joints->size()) {
@@ -72,7 +75,8 @@ MeshVertex GltfVertices::at(std::size_t i) const {
   }
   // Every input is finite, but sums and products can leave the range of floats.
   for (int c = 0; c < 3; ++c) {
-    if (!(std::abs(p[c]) <= kLargestCoordinate_m)) fail(where + " reaches farther than a planet", "allowed are coordinates of up to 10000 km");
+    if (!(std::abs(p[c]) <= kLargestCoordinate_m))
+      fail(where + " reaches farther than a planet", "allowed are coordinates of up to 10000 km");
   }
   out.position = glm::vec3(p);
   const double length = glm::length(n);
@@ -81,7 +85,8 @@ MeshVertex GltfVertices::at(std::size_t i) const {
     const glm::dvec2 t = glm::dvec2(morphed(uv, &Target::uv, i)) * texture.scale;
     const double cosine = std::cos(texture.rotation_rad), sine = std::sin(texture.rotation_rad);
     out.uv = glm::vec2(texture.offset + glm::dvec2(t.x * cosine + t.y * sine, t.y * cosine - t.x * sine));
-    if (!std::isfinite(out.uv.x) || !std::isfinite(out.uv.y)) fail(where + " has a texture coordinate that is too large", "allowed are 32-bit floats");
+    if (!std::isfinite(out.uv.x) || !std::isfinite(out.uv.y))
+      fail(where + " has a texture coordinate that is too large", "allowed are 32-bit floats");
   }
   if (!color.empty()) {
     const glm::dvec4 x = morphed(color, &Target::color, i);
@@ -103,7 +108,9 @@ void GltfReader::read_shape(const Shape& shape, const std::vector<glm::dmat4>& p
   if (skin >= 0) joints = joint_matrices(static_cast<std::size_t>(skin));
   const std::vector<GltfPrimitive>& primitives = document_.meshes[static_cast<std::size_t>(index)].primitives;
   for (std::size_t i = 0; i < primitives.size(); ++i) {
-    read_primitive(primitives[i], scene::at("meshes", static_cast<std::size_t>(index)) + "." + scene::at("primitives", i), shape, joints);
+    read_primitive(primitives[i],
+                   scene::at("meshes", static_cast<std::size_t>(index)) + "." + scene::at("primitives", i), shape,
+                   joints);
   }
   mesh.part_count = static_cast<std::uint32_t>(out_.parts.size()) - mesh.first_part;
   if (mesh.part_count == 0) return;
@@ -118,7 +125,8 @@ void GltfReader::read_shape(const Shape& shape, const std::vector<glm::dmat4>& p
                          (corner & 4) != 0 ? box.max.z : box.min.z);
       const glm::dvec3 world(transform * glm::dvec4(p, 1.0));
       for (int c = 0; c < 3; ++c) {
-        if (!(std::abs(world[c]) <= kLargestCoordinate_m)) fail("reaches farther than a planet", "allowed are coordinates of up to 10000 km");
+        if (!(std::abs(world[c]) <= kLargestCoordinate_m))
+          fail("reaches farther than a planet", "allowed are coordinates of up to 10000 km");
       }
       out_.bounds.add(world);
     }
@@ -129,16 +137,20 @@ void GltfReader::read_shape(const Shape& shape, const std::vector<glm::dmat4>& p
 void GltfReader::read_primitive(const GltfPrimitive& primitive, const std::string& where, const Shape& shape,
                                 const std::vector<glm::dmat4>& joints) {
   if (primitive.mode < 4) return note("lines and points of the meshes are left out");
-  if (!primitive.attributes.contains("POSITION")) return note_each("position", where + " has no POSITION and is left out");
+  if (!primitive.attributes.contains("POSITION"))
+    return note_each("position", where + " has no POSITION and is left out");
   std::optional<DracoMesh> draco;
   if (primitive.draco) draco = decode_draco(document_, primitive, data_.view(primitive.draco->view), where);
   const DracoMesh* const decoded = draco ? &*draco : nullptr;
   const GltfVertices read = vertices(primitive, where, decoded, shape, joints);
-  const std::vector<std::uint32_t> corners = draco ? std::move(draco->corners) : triangles(primitive, where, read.position.count);
+  const std::vector<std::uint32_t> corners =
+      draco ? std::move(draco->corners) : triangles(primitive, where, read.position.count);
   emit(read, corners, material_of(primitive, !read.uv.empty(), where));
   // Morphed colours are clamped by the specification.
-  if (read.clamped && read.targets.empty()) note_each("color", where + ".attributes.COLOR_0 has values outside 0 to 1, which are clamped");
-  if (read.unweighted) note_each("joints", where + " has vertices whose joints have no weight; they follow the first joint");
+  if (read.clamped && read.targets.empty())
+    note_each("color", where + ".attributes.COLOR_0 has values outside 0 to 1, which are clamped");
+  if (read.unweighted)
+    note_each("joints", where + " has vertices whose joints have no weight; they follow the first joint");
 }
 
 // The values of an attribute, or none.
@@ -151,7 +163,8 @@ GltfValues GltfReader::attribute(const GltfAttributes& attributes, const std::st
   const GltfAccessor& accessor = document_.accessors[index];
   const std::string full = path + " (" + scene::at("accessors", index) + ")";
   if (accessor.components < min_components || accessor.components > max_components) {
-    fail(full + " has " + std::to_string(accessor.components) + " components", "allowed are " + shown_range(min_components, max_components));
+    fail(full + " has " + std::to_string(accessor.components) + " components",
+         "allowed are " + shown_range(min_components, max_components));
   }
   if (count > 0 && accessor.count != count) {
     fail(full + " has another length than POSITION", "allowed are " + std::to_string(count) + " elements");
@@ -172,7 +185,8 @@ GltfVertices GltfReader::vertices(const GltfPrimitive& primitive, const std::str
   const std::size_t count = out.position.count;
   if (count > kMaxMeshVertices) fail("has too many vertices", "allowed are up to " + std::to_string(kMaxMeshVertices));
   if (draco != nullptr && count != draco->points) {
-    fail(path + ".POSITION has " + std::to_string(count) + " elements", "allowed are the " + std::to_string(draco->points) + " of the Draco mesh");
+    fail(path + ".POSITION has " + std::to_string(count) + " elements",
+         "allowed are the " + std::to_string(draco->points) + " of the Draco mesh");
   }
   out.normal = attribute(primitive.attributes, "NORMAL", path, draco, count, 3, 3);
   // Of the set that the base colour names, moved as KHR_texture_transform says.
@@ -202,7 +216,9 @@ GltfVertices GltfReader::vertices(const GltfPrimitive& primitive, const std::str
     GltfVertices::Influence one;
     one.joints = attribute(primitive.attributes, "JOINTS_" + std::to_string(set), path, draco, count, 4, 4);
     one.weights = attribute(primitive.attributes, "WEIGHTS_" + std::to_string(set), path, draco, count, 4, 4);
-    if (one.joints.empty() != one.weights.empty()) fail(path + " has only one of JOINTS_" + std::to_string(set) + " and WEIGHTS_" + std::to_string(set), "allowed are both");
+    if (one.joints.empty() != one.weights.empty())
+      fail(path + " has only one of JOINTS_" + std::to_string(set) + " and WEIGHTS_" + std::to_string(set),
+           "allowed are both");
     if (one.joints.empty()) break;
     if (one.joints.component != GltfComponent::uint8 && one.joints.component != GltfComponent::uint16) {
       fail(path + ".JOINTS_" + std::to_string(set) + " has another type", "allowed are unsigned bytes and shorts");
@@ -216,8 +232,10 @@ GltfVertices GltfReader::vertices(const GltfPrimitive& primitive, const std::str
 void GltfReader::emit(const GltfVertices& vertices, const std::vector<std::uint32_t>& corners, std::uint32_t material) {
   const bool flat = vertices.normal.empty();
   const std::size_t added = flat ? corners.size() : vertices.position.count;
-  if (out_.vertices.size() + added > kMaxMeshVertices) fail("has too many vertices", "allowed are up to " + std::to_string(kMaxMeshVertices));
-  if (out_.indices.size() + corners.size() > kMaxMeshIndices) fail("has too many triangles", "allowed are up to " + std::to_string(kMaxMeshIndices / 3));
+  if (out_.vertices.size() + added > kMaxMeshVertices)
+    fail("has too many vertices", "allowed are up to " + std::to_string(kMaxMeshVertices));
+  if (out_.indices.size() + corners.size() > kMaxMeshIndices)
+    fail("has too many triangles", "allowed are up to " + std::to_string(kMaxMeshIndices / 3));
   MeshPart part;
   part.first_index = static_cast<std::uint32_t>(out_.indices.size());
   part.index_count = static_cast<std::uint32_t>(corners.size());
@@ -231,7 +249,8 @@ void GltfReader::emit(const GltfVertices& vertices, const std::vector<std::uint3
       for (std::size_t k = 0; k < 3; ++k) {
         glm::vec3& normal = out_.vertices[base + corners[t + k]].normal;
         if (normal == glm::vec3(0.0F)) {
-          normal = flat_normal(out_.vertices[base + corners[t]], out_.vertices[base + corners[t + 1]], out_.vertices[base + corners[t + 2]]);
+          normal = flat_normal(out_.vertices[base + corners[t]], out_.vertices[base + corners[t + 1]],
+                               out_.vertices[base + corners[t + 2]]);
         }
       }
     }
@@ -251,7 +270,8 @@ void GltfReader::emit(const GltfVertices& vertices, const std::vector<std::uint3
 }
 
 // Corners of the triangles, three by three, whatever the mode.
-std::vector<std::uint32_t> GltfReader::triangles(const GltfPrimitive& primitive, const std::string& where, std::size_t count) {
+std::vector<std::uint32_t> GltfReader::triangles(const GltfPrimitive& primitive, const std::string& where,
+                                                 std::size_t count) {
   std::vector<std::uint32_t> list;
   if (primitive.indices >= 0) {
     const auto index = static_cast<std::size_t>(primitive.indices);
@@ -259,20 +279,25 @@ std::vector<std::uint32_t> GltfReader::triangles(const GltfPrimitive& primitive,
     const bool whole = accessor.component == GltfComponent::uint8 || accessor.component == GltfComponent::uint16 ||
                        accessor.component == GltfComponent::uint32;
     if (!whole || accessor.components != 1) {
-      fail(where + ".indices (" + scene::at("accessors", index) + ") are indices of a wrong type", "allowed are SCALAR unsigned bytes, shorts and ints");
+      fail(where + ".indices (" + scene::at("accessors", index) + ") are indices of a wrong type",
+           "allowed are SCALAR unsigned bytes, shorts and ints");
     }
     const GltfValues in = data_.values(index, where + ".indices");
     list.reserve(in.count);
     for (std::size_t i = 0; i < in.count; ++i) {
       const std::uint32_t value = in.whole(i);
-      if (value >= count) fail(where + " has index " + std::to_string(value) + " of " + std::to_string(count) + " vertices", "allowed are 0 to " + std::to_string(count - 1));
+      if (value >= count)
+        fail(where + " has index " + std::to_string(value) + " of " + std::to_string(count) + " vertices",
+             "allowed are 0 to " + std::to_string(count - 1));
       list.push_back(value);
     }
   } else {
     for (std::size_t i = 0; i < count; ++i) list.push_back(static_cast<std::uint32_t>(i));
   }
   if (primitive.mode == 4) {
-    if (list.size() % 3 != 0) note_each("corners", where + " has " + std::to_string(list.size()) + " corners, which is no multiple of 3; the last ones are left out");
+    if (list.size() % 3 != 0)
+      note_each("corners", where + " has " + std::to_string(list.size()) +
+                               " corners, which is no multiple of 3; the last ones are left out");
     list.resize(list.size() / 3 * 3);
     return list;
   }

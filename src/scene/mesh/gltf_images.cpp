@@ -63,8 +63,8 @@ bool inflates(const std::vector<std::string_view>& parts, std::uint64_t low, std
   return state == Z_STREAM_END && size >= low;
 }
 
-// What is wrong with a PNG, before anything of the size that it claims is allocated: chunks, checksums, and how much the picture
-// data inflates to.
+// What is wrong with a PNG, before anything of the size that it claims is allocated: chunks, checksums, and how much
+// the picture data inflates to.
 std::optional<std::string> fault_of_png(std::string_view bytes, std::uint64_t width, std::uint64_t height) {
   std::vector<std::string_view> data;
   std::uint64_t bits = 0;
@@ -72,7 +72,8 @@ std::optional<std::string> fault_of_png(std::string_view bytes, std::uint64_t wi
   for (std::size_t i = kPngSignature.size(); !ended;) {
     if (bytes.size() - i < 12) return "which ends early";
     const std::uint32_t length = big_endian(bytes, i);
-    if (length > bytes.size() - i - 12) return "which has a chunk of " + std::to_string(length) + " bytes, beyond its end";
+    if (length > bytes.size() - i - 12)
+      return "which has a chunk of " + std::to_string(length) + " bytes, beyond its end";
     const std::string_view kind = bytes.substr(i + 4, 4);
     const std::string_view body = bytes.substr(i + 8, length);
     const auto sum = crc32(0, reinterpret_cast<const unsigned char*>(kind.data()), length + 4U);
@@ -88,14 +89,16 @@ std::optional<std::string> fault_of_png(std::string_view bytes, std::uint64_t wi
     i += std::size_t{12} + length;
   }
   const std::uint64_t size = height * (1 + (width * bits + 7) / 8);
-  // Interlacing adds at most a filter byte and a byte of padding for each of its rows, of which there are less than 3 * height.
+  // Interlacing adds at most a filter byte and a byte of padding for each of its rows, of which there are less than 3 *
+  // height.
   const std::uint64_t high = interlaced ? size + 6 * height + 64 : size;
-  if (bits == 0 || !inflates(data, interlaced ? width * height * bits / 8 : size, high + 64)) return "whose picture data is damaged";
+  if (bits == 0 || !inflates(data, interlaced ? width * height * bits / 8 : size, high + 64))
+    return "whose picture data is damaged";
   return {};
 }
 
-// What is wrong with a JPEG: one that ends early decodes to a picture with a grey rest, and each block of 8x8 texels takes
-// at least a bit.
+// What is wrong with a JPEG: one that ends early decodes to a picture with a grey rest, and each block of 8x8 texels
+// takes at least a bit.
 std::optional<std::string> fault_of_jpeg(std::string_view bytes, std::uint64_t width, std::uint64_t height) {
   // Segments with a marker and a length each, up to the first scan. In a scan the marker of the end cannot be data.
   std::size_t i = 2;
@@ -121,8 +124,11 @@ void GltfReader::read_materials() {
       const auto index = static_cast<std::size_t>(in.texture.texture);
       const GltfTexture& texture = document_.textures[index];
       out.sampler = texture.sampler;
-      if (texture.image >= 0) out.texture = read_image(static_cast<std::size_t>(texture.image));
-      else note_each("texture", at("textures", index) + " has no PNG or JPEG picture and is left out of " + at("materials", i));
+      if (texture.image >= 0)
+        out.texture = read_image(static_cast<std::size_t>(texture.image));
+      else
+        note_each("texture",
+                  at("textures", index) + " has no PNG or JPEG picture and is left out of " + at("materials", i));
     }
     out_.materials.push_back(std::move(out));
   }
@@ -147,16 +153,21 @@ int GltfReader::read_image(std::size_t index) {
   const auto* const data = reinterpret_cast<const stbi_uc*>(bytes.data());
   if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()) ||
       stbi_info_from_memory(data, static_cast<int>(bytes.size()), &width, &height, &channels) == 0) {
-    fail(name + " is no picture", "allowed are PNG and JPEG of up to " + std::to_string(kMaxTextureSide) + " texels on a side");
+    fail(name + " is no picture",
+         "allowed are PNG and JPEG of up to " + std::to_string(kMaxTextureSide) + " texels on a side");
   }
-  if (width <= 0 || height <= 0 || width > static_cast<int>(kMaxTextureSide) || height > static_cast<int>(kMaxTextureSide)) {
-    fail(name + " has " + std::to_string(width) + "x" + std::to_string(height) + " texels", "allowed are up to " + std::to_string(kMaxTextureSide) + " texels on a side");
+  if (width <= 0 || height <= 0 || width > static_cast<int>(kMaxTextureSide) ||
+      height > static_cast<int>(kMaxTextureSide)) {
+    fail(name + " has " + std::to_string(width) + "x" + std::to_string(height) + " texels",
+         "allowed are up to " + std::to_string(kMaxTextureSide) + " texels on a side");
   }
   texture_bytes_ += 4ULL * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-  if (texture_bytes_ > kMaxTextureBytes) fail("has more texels than there is room for", "allowed are textures of up to 1 GiB together");
+  if (texture_bytes_ > kMaxTextureBytes)
+    fail("has more texels than there is room for", "allowed are textures of up to 1 GiB together");
   const auto w = static_cast<std::uint64_t>(width);
   const auto h = static_cast<std::uint64_t>(height);
-  const std::optional<std::string> fault = bytes.starts_with(kPngSignature) ? fault_of_png(bytes, w, h) : fault_of_jpeg(bytes, w, h);
+  const std::optional<std::string> fault =
+      bytes.starts_with(kPngSignature) ? fault_of_png(bytes, w, h) : fault_of_jpeg(bytes, w, h);
   if (fault) fail(name + " is a picture " + *fault, "allowed is a whole PNG or JPEG picture");
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(data, static_cast<int>(bytes.size()), &width, &height, &channels, 4), stbi_image_free);
@@ -173,9 +184,11 @@ std::uint32_t GltfReader::material_of(const GltfPrimitive& primitive, bool has_c
   if (primitive.material < 0) return static_cast<std::uint32_t>(document_.materials.size());
   const auto index = static_cast<std::uint32_t>(primitive.material);
   if (has_coordinates || out_.materials[index].texture < 0) return index;
-  note_each("coordinates", where + " has no TEXCOORD_" + std::to_string(document_.materials[index].texture.set) + ", which " + at("materials", index) +
-       " names for its texture: it is drawn without the texture");
-  const auto [found, is_new] = untextured_.try_emplace(primitive.material, static_cast<std::uint32_t>(out_.materials.size()));
+  note_each("coordinates", where + " has no TEXCOORD_" + std::to_string(document_.materials[index].texture.set) +
+                               ", which " + at("materials", index) +
+                               " names for its texture: it is drawn without the texture");
+  const auto [found, is_new] =
+      untextured_.try_emplace(primitive.material, static_cast<std::uint32_t>(out_.materials.size()));
   if (is_new) {
     MeshMaterial plain = out_.materials[index];
     plain.texture = -1;

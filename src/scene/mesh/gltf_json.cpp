@@ -38,16 +38,18 @@ std::optional<std::int64_t> whole(const json& value) {
 }
 
 double finite(const json& value, const std::string& path) {
-  if (!value.is_number() || !std::isfinite(value.get<double>())) refuse_value(path, value, "allowed is a finite number");
+  if (!value.is_number() || !std::isfinite(value.get<double>()))
+    refuse_value(path, value, "allowed is a finite number");
   return value.get<double>();
 }
 
 double in_range(const json& value, const std::string& path, double low, double high) {
   const double number = finite(value, path);
   if (number < low - kRounding || number > high + kRounding) {
-    refuse_value(path, value, "allowed is a number " + (high < std::numeric_limits<double>::max()
-                                  ? "from " + config::number_text(low) + " to " + config::number_text(high)
-                                  : "of " + config::number_text(low) + " or more"));
+    refuse_value(path, value,
+                 "allowed is a number " + (high < std::numeric_limits<double>::max()
+                                               ? "from " + config::number_text(low) + " to " + config::number_text(high)
+                                               : "of " + config::number_text(low) + " or more"));
   }
   return std::clamp(number, low, high);
 }
@@ -120,9 +122,11 @@ int GltfJson::checked_index(const json& value, const std::string& path, const ch
   const auto found = root_->find(list);
   const std::size_t count = found != root_->end() && found->is_array() ? found->size() : 0;
   const std::optional<std::int64_t> number = whole(value);
-  if (!number || *number < 0 || static_cast<std::uint64_t>(*number) >= count || *number > std::numeric_limits<int>::max()) {
-    refuse_value(path, value, count == 0 ? "allowed is none, because the file has no " + std::string(list)
-                                         : "allowed is an index from 0 to " + std::to_string(count - 1) + " into " + list);
+  if (!number || *number < 0 || static_cast<std::uint64_t>(*number) >= count ||
+      *number > std::numeric_limits<int>::max()) {
+    refuse_value(path, value,
+                 count == 0 ? "allowed is none, because the file has no " + std::string(list)
+                            : "allowed is an index from 0 to " + std::to_string(count - 1) + " into " + list);
   }
   return static_cast<int>(*number);
 }
@@ -186,7 +190,8 @@ bool GltfJson::bounded(const char* name, double low, double high, std::span<doub
 std::string GltfJson::text(const char* name, std::optional<std::string> fallback) const {
   const json* const value = find(name);
   if (value == nullptr && fallback) return *std::move(fallback);
-  if (value == nullptr || !value->is_string()) refuse(name, value == nullptr ? "allowed is a string" : "allowed is a string");
+  if (value == nullptr || !value->is_string())
+    refuse(name, value == nullptr ? "allowed is a string" : "allowed is a string");
   return value->get<std::string>();
 }
 

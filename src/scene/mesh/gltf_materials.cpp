@@ -80,7 +80,8 @@ GltfMaterial material(const GltfJson& json, std::set<std::string>& undrawn) {
     base_color(*pbr, "baseColorFactor", "baseColorTexture", out);
     out.drawn.roughness = static_cast<float>(pbr->bounded("roughnessFactor", 0.0, 1.0, 1.0));
     const bool metallic = pbr->bounded("metallicFactor", 0.0, 1.0, 1.0) > 0.0;
-    if (metallic && (pbr->has("metallicFactor") || pbr->has("metallicRoughnessTexture"))) undrawn.insert("metallic reflection");
+    if (metallic && (pbr->has("metallicFactor") || pbr->has("metallicRoughnessTexture")))
+      undrawn.insert("metallic reflection");
   }
   if (const auto specular = json.extension("KHR_materials_pbrSpecularGlossiness")) {
     base_color(*specular, "diffuseFactor", "diffuseTexture", out);
@@ -107,7 +108,8 @@ void parse_materials(const GltfJson& root, GltfDocument& out, std::set<std::stri
     GltfImage image;
     if (json.has("uri")) image.uri = json.text("uri");
     image.view = json.index("bufferView", "bufferViews");
-    if (image.uri.has_value() == (image.view >= 0)) fail(json.path() + " is no picture", "allowed is either uri or bufferView");
+    if (image.uri.has_value() == (image.view >= 0))
+      fail(json.path() + " is no picture", "allowed is either uri or bufferView");
     out.images.push_back(std::move(image));
   }
   std::vector<MeshSampler> samplers;

@@ -8,7 +8,8 @@ namespace tyndall::scene {
 
 #ifdef TYNDALL_WITH_MESHOPT
 
-std::vector<unsigned char> decode_meshopt(const GltfMeshopt& in, std::span<const unsigned char> bytes, const std::string& where) {
+std::vector<unsigned char> decode_meshopt(const GltfMeshopt& in, std::span<const unsigned char> bytes,
+                                          const std::string& where) {
   // The codecs shrink by a factor of 64 at most; what claims more is refused before memory is allocated for it.
   constexpr std::size_t kMaxRatio = 64;
   const std::string path = where + ".extensions.EXT_meshopt_compression";
@@ -19,9 +20,15 @@ std::vector<unsigned char> decode_meshopt(const GltfMeshopt& in, std::span<const
   std::vector<unsigned char> out(in.count * in.stride);
   int error = 0;
   switch (in.mode) {
-    case GltfMeshopt::Mode::attributes: error = meshopt_decodeVertexBuffer(out.data(), in.count, in.stride, bytes.data(), bytes.size()); break;
-    case GltfMeshopt::Mode::triangles: error = meshopt_decodeIndexBuffer(out.data(), in.count, in.stride, bytes.data(), bytes.size()); break;
-    case GltfMeshopt::Mode::indices: error = meshopt_decodeIndexSequence(out.data(), in.count, in.stride, bytes.data(), bytes.size()); break;
+    case GltfMeshopt::Mode::attributes:
+      error = meshopt_decodeVertexBuffer(out.data(), in.count, in.stride, bytes.data(), bytes.size());
+      break;
+    case GltfMeshopt::Mode::triangles:
+      error = meshopt_decodeIndexBuffer(out.data(), in.count, in.stride, bytes.data(), bytes.size());
+      break;
+    case GltfMeshopt::Mode::indices:
+      error = meshopt_decodeIndexSequence(out.data(), in.count, in.stride, bytes.data(), bytes.size());
+      break;
   }
   if (error != 0) fail(path + " cannot be decoded", "allowed are the bytes of a meshoptimizer codec");
   switch (in.filter) {
@@ -35,8 +42,10 @@ std::vector<unsigned char> decode_meshopt(const GltfMeshopt& in, std::span<const
 
 #else
 
-std::vector<unsigned char> decode_meshopt(const GltfMeshopt&, std::span<const unsigned char>, const std::string& where) {
-  fail(where + " is compressed by meshoptimizer, whose decoder this program was built without", "allowed are uncompressed views");
+std::vector<unsigned char> decode_meshopt(const GltfMeshopt&, std::span<const unsigned char>,
+                                          const std::string& where) {
+  fail(where + " is compressed by meshoptimizer, whose decoder this program was built without",
+       "allowed are uncompressed views");
 }
 
 #endif

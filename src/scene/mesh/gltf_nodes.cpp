@@ -42,7 +42,8 @@ glm::dmat4 local_transform(const GltfJson& json) {
     for (const char* const other : {"translation", "rotation", "scale"}) {
       if (json.has(other)) fail(json.path() + " has both a matrix and a " + other, "allowed is one of them");
     }
-    if (std::abs(out[0][3]) > 1e-6 || std::abs(out[1][3]) > 1e-6 || std::abs(out[2][3]) > 1e-6 || std::abs(out[3][3] - 1.0) > 1e-6) {
+    if (std::abs(out[0][3]) > 1e-6 || std::abs(out[1][3]) > 1e-6 || std::abs(out[2][3]) > 1e-6 ||
+        std::abs(out[3][3] - 1.0) > 1e-6) {
       json.refuse("matrix", "allowed is a matrix whose fourth row is 0, 0, 0, 1");
     }
     return out;
@@ -67,7 +68,8 @@ GltfMesh mesh(const GltfJson& json) {
   if (out.primitives.empty()) json.refuse("primitives", "allowed is an array of at least one primitive");
   const std::size_t targets = out.primitives[0].targets.size();
   for (const GltfPrimitive& part : out.primitives) {
-    if (part.targets.size() != targets) fail(json.path() + " has primitives with unequal numbers of morph targets", "allowed is one number for all");
+    if (part.targets.size() != targets)
+      fail(json.path() + " has primitives with unequal numbers of morph targets", "allowed is one number for all");
   }
   out.weights = json.numbers("weights");
   if (json.has("weights") && out.weights.size() != targets) {
@@ -87,7 +89,8 @@ GltfNode node(const GltfJson& json, const GltfDocument& document) {
     out.weights = json.numbers("weights");
     const std::size_t targets = out.mesh < 0 ? 0 : document.meshes[static_cast<std::size_t>(out.mesh)].weights.size();
     if (out.weights->size() != targets) {
-      json.refuse("weights", "allowed are " + std::to_string(targets) + " numbers, one for each morph target of its mesh");
+      json.refuse("weights",
+                  "allowed are " + std::to_string(targets) + " numbers, one for each morph target of its mesh");
     }
   }
   return out;
@@ -100,8 +103,10 @@ GltfSkin skin(const GltfJson& json, const GltfDocument& document) {
   out.inverse_bind = json.index("inverseBindMatrices", "accessors");
   if (out.inverse_bind >= 0) {
     const GltfAccessor& accessor = document.accessors[static_cast<std::size_t>(out.inverse_bind)];
-    if (accessor.components != 16 || accessor.component != GltfComponent::float32 || accessor.count < out.joints.size()) {
-      json.refuse("inverseBindMatrices", "allowed is an accessor of at least " + std::to_string(out.joints.size()) + " MAT4 of floats");
+    if (accessor.components != 16 || accessor.component != GltfComponent::float32 ||
+        accessor.count < out.joints.size()) {
+      json.refuse("inverseBindMatrices",
+                  "allowed is an accessor of at least " + std::to_string(out.joints.size()) + " MAT4 of floats");
     }
   }
   return out;

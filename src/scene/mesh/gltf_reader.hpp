@@ -30,8 +30,8 @@ struct GltfVertices {
   std::vector<Influence> influences;  // none: no skin
   const std::vector<glm::dmat4>* joints = nullptr;
   GltfTextureUse texture;
-  std::string where;               // the primitive, for messages
-  mutable bool clamped = false;    // whether a colour was outside 0 to 1
+  std::string where;                // the primitive, for messages
+  mutable bool clamped = false;     // whether a colour was outside 0 to 1
   mutable bool unweighted = false;  // whether a vertex has no joint
 
   [[nodiscard]] MeshVertex at(std::size_t i) const;
@@ -43,7 +43,8 @@ struct GltfVertices {
 
 class GltfReader {
  public:
-  GltfReader(const GltfDocument& document, GltfData& data, MeshData& out) : document_(document), data_(data), out_(out) {}
+  GltfReader(const GltfDocument& document, GltfData& data, MeshData& out)
+      : document_(document), data_(data), out_(out) {}
 
   // Throws GltfFailure.
   void read();
@@ -66,11 +67,12 @@ class GltfReader {
   std::vector<glm::dmat4> joint_matrices(std::size_t skin);
 
   void read_shape(const Shape& shape, const std::vector<glm::dmat4>& placed);
-  void read_primitive(const GltfPrimitive& primitive, const std::string& where, const Shape& shape, const std::vector<glm::dmat4>& joints);
-  GltfValues attribute(const GltfAttributes& attributes, const std::string& name, const std::string& where, const DracoMesh* draco,
-                       std::size_t count, int min_components, int max_components);
-  GltfVertices vertices(const GltfPrimitive& primitive, const std::string& where, const DracoMesh* draco, const Shape& shape,
-                        const std::vector<glm::dmat4>& joints);
+  void read_primitive(const GltfPrimitive& primitive, const std::string& where, const Shape& shape,
+                      const std::vector<glm::dmat4>& joints);
+  GltfValues attribute(const GltfAttributes& attributes, const std::string& name, const std::string& where,
+                       const DracoMesh* draco, std::size_t count, int min_components, int max_components);
+  GltfVertices vertices(const GltfPrimitive& primitive, const std::string& where, const DracoMesh* draco,
+                        const Shape& shape, const std::vector<glm::dmat4>& joints);
   std::vector<std::uint32_t> triangles(const GltfPrimitive& primitive, const std::string& where, std::size_t count);
   void emit(const GltfVertices& vertices, const std::vector<std::uint32_t>& corners, std::uint32_t material);
 
@@ -78,10 +80,11 @@ class GltfReader {
   GltfData& data_;
   MeshData& out_;
   std::map<Shape, std::vector<glm::dmat4>> placed_;
-  std::vector<int> parents_;                      // of nodes; -1 for roots
-  std::map<std::string, std::pair<std::string, std::size_t>> counted_;  // by kind: the first note, and how many there are
-  std::map<int, int> decoded_;                    // image to texture
-  std::map<int, std::uint32_t> untextured_;       // material to its copy without a texture
+  std::vector<int> parents_;  // of nodes; -1 for roots
+  std::map<std::string, std::pair<std::string, std::size_t>>
+      counted_;                              // by kind: the first note, and how many there are
+  std::map<int, int> decoded_;               // image to texture
+  std::map<int, std::uint32_t> untextured_;  // material to its copy without a texture
   std::uint64_t texture_bytes_ = 0, visits_ = 0, instances_ = 0;
 };
 

@@ -11,7 +11,8 @@ constexpr int kMaxNodeDepth = 256;  // of a tree of nodes
 constexpr std::uint64_t kMaxNodeVisits = 1U << 20U;
 
 [[noreturn]] void refuse_tree() {
-  fail("has nodes that are nested too deeply or in a circle", "allowed is a tree of up to " + std::to_string(kMaxNodeDepth) + " levels");
+  fail("has nodes that are nested too deeply or in a circle",
+       "allowed is a tree of up to " + std::to_string(kMaxNodeDepth) + " levels");
 }
 
 }  // namespace
@@ -47,8 +48,10 @@ void GltfReader::visit(int index, const glm::dmat4& parent, int depth) {
   const GltfNode& node = document_.nodes[static_cast<std::size_t>(index)];
   const glm::dmat4 here = parent * node.parent_from_node;
   if (node.mesh >= 0) {
-    if (++instances_ > kMaxMeshInstances) fail("places too many meshes", "allowed are up to " + std::to_string(kMaxMeshInstances));
-    const std::vector<double>& weights = node.weights ? *node.weights : document_.meshes[static_cast<std::size_t>(node.mesh)].weights;
+    if (++instances_ > kMaxMeshInstances)
+      fail("places too many meshes", "allowed are up to " + std::to_string(kMaxMeshInstances));
+    const std::vector<double>& weights =
+        node.weights ? *node.weights : document_.meshes[static_cast<std::size_t>(node.mesh)].weights;
     // The joints alone place a mesh with a skin (glTF 2.0, section 3.7.3.3).
     placed_[Shape(node.mesh, node.skin, weights)].push_back(node.skin < 0 ? here : glm::dmat4(1.0));
   }
@@ -69,7 +72,8 @@ std::vector<glm::dmat4> GltfReader::joint_matrices(std::size_t skin) {
   const GltfSkin& in = document_.skins[skin];
   note("skins are drawn in the pose of the file's nodes; they are not animated");
   GltfValues inverse;
-  if (in.inverse_bind >= 0) inverse = data_.values(static_cast<std::size_t>(in.inverse_bind), at("skins", skin) + ".inverseBindMatrices");
+  if (in.inverse_bind >= 0)
+    inverse = data_.values(static_cast<std::size_t>(in.inverse_bind), at("skins", skin) + ".inverseBindMatrices");
   std::vector<glm::dmat4> out;
   for (std::size_t i = 0; i < in.joints.size(); ++i) {
     glm::dmat4 joint_from_mesh(1.0);

@@ -14,21 +14,21 @@ namespace {
 using Vec = glm::dvec3;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kHalfWidth_m = 6.0;    // of the nave, inside
+constexpr double kHalfWidth_m = 6.0;  // of the nave, inside
 constexpr double kHalfLength_m = 18.0;
 constexpr double kFloor_m = 0.15;
-constexpr double kWall_m = 0.8;         // thickness
-constexpr double kSpring_m = 8.5;       // where the vault begins
-constexpr double kRise_m = 7.0;         // of the vault
+constexpr double kWall_m = 0.8;    // thickness
+constexpr double kSpring_m = 8.5;  // where the vault begins
+constexpr double kRise_m = 7.0;    // of the vault
 constexpr double kBay_m = 6.0;
 constexpr int kBays = 6;
-constexpr double kGlass_m = 0.5;        // of the panes beyond the wall's inner face
-constexpr double kBehind_m = 0.05;      // of the panes that the stone hides, on each side
+constexpr double kGlass_m = 0.5;    // of the panes beyond the wall's inner face
+constexpr double kBehind_m = 0.05;  // of the panes that the stone hides, on each side
 constexpr double kSill_m = 2.6;
 constexpr Lancet kWindow = {1.1, 3.4, 5.3};  // above the sill
 constexpr Vec kRose = {0.0, 9.8, kHalfLength_m};
 constexpr double kRoseRadius_m = 2.6;
-constexpr int kSlices = 32;             // of an opening
+constexpr int kSlices = 32;  // of an opening
 
 enum Material : std::uint32_t { kStone, kTiles, kWood, kRoof, kFirstGlass, kRoseGlass = kFirstGlass + 4, kMaterials };
 
@@ -51,7 +51,8 @@ class Builder {
     quad(material, {a, b, c, d}, {normal, normal, normal, normal}, laid(material, {a, b, c, d}, normal));
   }
 
-  void quad(Material material, const std::array<Vec, 4>& p, const std::array<Vec, 4>& n, const std::array<glm::dvec2, 4>& uv) {
+  void quad(Material material, const std::array<Vec, 4>& p, const std::array<Vec, 4>& n,
+            const std::array<glm::dvec2, 4>& uv) {
     const auto base = static_cast<std::uint32_t>(out_.vertices.size());
     for (std::size_t i = 0; i < 4; ++i) {
       MeshVertex v;
@@ -65,16 +66,22 @@ class Builder {
   }
 
   void box(Material material, const Vec& low, const Vec& high) {
-    const auto p = [&](int i) { return Vec((i & 1) != 0 ? high.x : low.x, (i & 2) != 0 ? high.y : low.y, (i & 4) != 0 ? high.z : low.z); };
-    for (const auto& f : {std::array{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}) {
+    const auto p = [&](int i) {
+      return Vec((i & 1) != 0 ? high.x : low.x, (i & 2) != 0 ? high.y : low.y, (i & 4) != 0 ? high.z : low.z);
+    };
+    for (const auto& f :
+         {std::array{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}) {
       quad(material, p(f[0]), p(f[1]), p(f[2]), p(f[3]));
     }
   }
 
-  void cylinder(Material material, double x, double z, double radius, double low, const std::function<double(double)>& top) {
+  void cylinder(Material material, double x, double z, double radius, double low,
+                const std::function<double(double)>& top) {
     constexpr int kSides = 24;
     for (int i = 0; i < kSides; ++i) {
-      const auto n = [&](int k) { return Vec(std::cos(2.0 * kPi * k / kSides), 0.0, -std::sin(2.0 * kPi * k / kSides)); };
+      const auto n = [&](int k) {
+        return Vec(std::cos(2.0 * kPi * k / kSides), 0.0, -std::sin(2.0 * kPi * k / kSides));
+      };
       const auto p = [&](int k, bool high) {
         Vec out = Vec(x, low, z) + n(k) * radius;
         if (high) out.y = top(out.x);
@@ -111,7 +118,10 @@ class Builder {
     std::array<glm::dvec2, 4> out;
     for (std::size_t i = 0; i < 4; ++i) {
       const Vec& q = p[i];
-      out[i] = (std::abs(n.y) > 0.7 ? glm::dvec2(q.x, q.z) : std::abs(n.x) > std::abs(n.z) ? glm::dvec2(q.z, -q.y) : glm::dvec2(q.x, -q.y)) / size;
+      out[i] = (std::abs(n.y) > 0.7             ? glm::dvec2(q.x, q.z)
+                : std::abs(n.x) > std::abs(n.z) ? glm::dvec2(q.z, -q.y)
+                                                : glm::dvec2(q.x, -q.y)) /
+               size;
     }
     return out;
   }
@@ -132,19 +142,21 @@ struct Opening {
   double middle, half;
   std::function<double(double)> low, high;  // of the distance from the middle
   Material glass;
-  glm::dvec2 picture_low, picture_high;     // distance from the middle and height that the picture spans
+  glm::dvec2 picture_low, picture_high;  // distance from the middle and height that the picture spans
 };
 
-void wall(Builder& b, const Frame& f, double from, double to, const std::function<double(double)>& top, const std::vector<Opening>& openings,
-          int smoothness) {
+void wall(Builder& b, const Frame& f, double from, double to, const std::function<double(double)>& top,
+          const std::vector<Opening>& openings, int smoothness) {
   // A part without opening, from the ground up. Inside it is seen from -out: +along is to the right.
   const auto face = [&](double u0, double u1, double low0, double low1, double high0, double high1) {
     b.quad(kStone, f.at(u0, low0, 0), f.at(u1, low1, 0), f.at(u1, high1, 0), f.at(u0, high0, 0));
-    b.quad(kStone, f.at(u1, low1, kWall_m), f.at(u0, low0, kWall_m), f.at(u0, high0, kWall_m), f.at(u1, high1, kWall_m));
+    b.quad(kStone, f.at(u1, low1, kWall_m), f.at(u0, low0, kWall_m), f.at(u0, high0, kWall_m),
+           f.at(u1, high1, kWall_m));
   };
   // Openings of a wall begin and end at the same heights.
   std::vector<double> rows;
-  if (!openings.empty()) rows = {openings.front().low(openings.front().half), openings.front().high(openings.front().half)};
+  if (!openings.empty())
+    rows = {openings.front().low(openings.front().half), openings.front().high(openings.front().half)};
   const auto solid = [&](double u0, double u1) {
     for (int i = 0; i < smoothness; ++i) {
       const double a = u0 + (u1 - u0) * i / smoothness;
@@ -171,8 +183,10 @@ void wall(Builder& b, const Frame& f, double from, double to, const std::functio
       const double l0 = o.low(x0), l1 = o.low(x1), h0 = o.high(x0), h1 = o.high(x1);
       face(u0, u1, 0, 0, l0, l1);
       face(u0, u1, h0, h1, top(u0), top(u1));
-      b.quad(kStone, f.at(u0, top(u0), 0), f.at(u1, top(u1), 0), f.at(u1, top(u1), kWall_m), f.at(u0, top(u0), kWall_m));
-      b.quad(kStone, f.at(u0, l0, 0), f.at(u1, l1, 0), f.at(u1, l1, kWall_m), f.at(u0, l0, kWall_m));  // the sill faces up
+      b.quad(kStone, f.at(u0, top(u0), 0), f.at(u1, top(u1), 0), f.at(u1, top(u1), kWall_m),
+             f.at(u0, top(u0), kWall_m));
+      b.quad(kStone, f.at(u0, l0, 0), f.at(u1, l1, 0), f.at(u1, l1, kWall_m),
+             f.at(u0, l0, kWall_m));  // the sill faces up
       b.quad(kStone, f.at(u0, h0, kWall_m), f.at(u1, h1, kWall_m), f.at(u1, h1, 0), f.at(u0, h0, 0));  // the arch down
       const auto uv = [&](double x, double y) {
         return glm::dvec2((x - o.picture_low.x) / (o.picture_high.x - o.picture_low.x),
@@ -181,9 +195,11 @@ void wall(Builder& b, const Frame& f, double from, double to, const std::functio
       // The panes go on behind the stone, so that no texel of a map of colours beside them is lit and clear.
       const double wider = 1.0 + kBehind_m / o.half;
       const auto pane = [&](double x, double y) { return f.at(o.middle + x * wider, y, kGlass_m); };
-      b.quad(o.glass, {pane(x1, l1 - kBehind_m), pane(x0, l0 - kBehind_m), pane(x0, h0 + kBehind_m), pane(x1, h1 + kBehind_m)},
+      b.quad(o.glass,
+             {pane(x1, l1 - kBehind_m), pane(x0, l0 - kBehind_m), pane(x0, h0 + kBehind_m), pane(x1, h1 + kBehind_m)},
              {f.out, f.out, f.out, f.out},
-             {uv(x1 * wider, l1 - kBehind_m), uv(x0 * wider, l0 - kBehind_m), uv(x0 * wider, h0 + kBehind_m), uv(x1 * wider, h1 + kBehind_m)});
+             {uv(x1 * wider, l1 - kBehind_m), uv(x0 * wider, l0 - kBehind_m), uv(x0 * wider, h0 + kBehind_m),
+              uv(x1 * wider, h1 + kBehind_m)});
     }
     // The jambs, where the opening begins and ends with some height.
     const double left = o.middle - o.half, right = o.middle + o.half;
@@ -217,7 +233,8 @@ void side_walls(Builder& b) {
       o.high = [](double x) {
         // The height at which the arch is as narrow as |x|: the inverse of half_at.
         const double rise = kWindow.top_m - kWindow.spring_m;
-        const double centre = (rise * rise - kWindow.half_width_m * kWindow.half_width_m) / (2.0 * kWindow.half_width_m);
+        const double centre =
+            (rise * rise - kWindow.half_width_m * kWindow.half_width_m) / (2.0 * kWindow.half_width_m);
         const double radius = kWindow.half_width_m + centre;
         const double d = std::min(std::abs(x) + centre, radius);
         return kSill_m + kWindow.spring_m + std::sqrt(radius * radius - d * d);
@@ -228,7 +245,9 @@ void side_walls(Builder& b) {
       openings.push_back(o);
     }
     // Up behind the vault, whose edge has other corners.
-    wall(b, f, -kHalfLength_m - kIntoGable_m, kHalfLength_m + kIntoGable_m, [](double) { return kSpring_m + kBehindVault_m; }, openings, 1);
+    wall(
+        b, f, -kHalfLength_m - kIntoGable_m, kHalfLength_m + kIntoGable_m,
+        [](double) { return kSpring_m + kBehindVault_m; }, openings, 1);
   }
 }
 
@@ -252,8 +271,14 @@ void vault(Builder& b) {
   constexpr int kSteps = 48;
   const double reach = kHalfLength_m + 0.4;
   const auto place = [](int i, double half) { return -half * std::cos(kPi * i / kSteps); };
-  const auto inner = [&](int i, double z) { const double x = place(i, kHalfWidth_m); return Vec(x, vault_at(x), z); };
-  const auto outer = [&](int i, double z) { const double x = place(i, kHalfWidth_m + kWall_m); return Vec(x, vault_at(x, kWall_m), z); };
+  const auto inner = [&](int i, double z) {
+    const double x = place(i, kHalfWidth_m);
+    return Vec(x, vault_at(x), z);
+  };
+  const auto outer = [&](int i, double z) {
+    const double x = place(i, kHalfWidth_m + kWall_m);
+    return Vec(x, vault_at(x, kWall_m), z);
+  };
   for (int i = 0; i < kSteps; ++i) {
     for (int bay = 0; bay < kBays; ++bay) {
       const double z0 = -kHalfLength_m + kBay_m * bay, z1 = z0 + kBay_m;
@@ -276,7 +301,8 @@ void vault(Builder& b) {
 }
 
 void furniture(Builder& b) {
-  b.box(kTiles, Vec(-kHalfWidth_m - 0.4, 0.0, -kHalfLength_m - 0.4), Vec(kHalfWidth_m + 0.4, kFloor_m, kHalfLength_m + 0.4));
+  b.box(kTiles, Vec(-kHalfWidth_m - 0.4, 0.0, -kHalfLength_m - 0.4),
+        Vec(kHalfWidth_m + 0.4, kFloor_m, kHalfLength_m + 0.4));
   for (int bay = 0; bay <= kBays; ++bay) {
     const double z = -kHalfLength_m + kBay_m * bay;
     for (const double side : {-1.0, 1.0}) {

@@ -29,7 +29,8 @@ std::uint32_t hash(std::uint32_t x) {
 }
 
 std::uint32_t hash(int a, int b, int c = 0) {
-  return hash(static_cast<std::uint32_t>(a) * 0x9e3779b9U ^ hash(static_cast<std::uint32_t>(b) * 0x85ebca6bU ^ hash(static_cast<std::uint32_t>(c))));
+  return hash(static_cast<std::uint32_t>(a) * 0x9e3779b9U ^
+              hash(static_cast<std::uint32_t>(b) * 0x85ebca6bU ^ hash(static_cast<std::uint32_t>(c))));
 }
 
 double unit(std::uint32_t h) { return static_cast<double>(h) / 4294967295.0; }
@@ -48,7 +49,8 @@ Pane pane(const glm::vec3& color, int a, int b, int c = 0) {
 
 std::uint8_t srgb(double linear) {
   const double x = std::clamp(linear, 0.0, 1.0);
-  return static_cast<std::uint8_t>(std::lround(255.0 * (x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055)));
+  return static_cast<std::uint8_t>(
+      std::lround(255.0 * (x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055)));
 }
 
 // Paints what `at(x, y)` says for the middle of every texel [m].
@@ -86,8 +88,8 @@ Pane lancet_pane(const Lancet& window, std::uint32_t design, double x, double y)
   const glm::vec3 third[] = {kAmber, kGreen, kAzure, kAmber};
   const double edge = window.half_at(y) - std::abs(x);
   const int side = x < 0.0 ? -1 : 1;
-  if (edge < 0.03 || std::abs(x) < 0.055) return {};          // frame and mullion
-  if (std::abs(std::remainder(y, 0.9)) < 0.02) return {};     // saddle bars
+  if (edge < 0.03 || std::abs(x) < 0.055) return {};       // frame and mullion
+  if (std::abs(std::remainder(y, 0.9)) < 0.02) return {};  // saddle bars
   if (edge < 0.10) return pane(kPale, static_cast<int>(std::floor(y / 0.45)), side, 1);
   if (edge < 0.24) {
     const int step = static_cast<int>(std::floor(y / 0.225));
@@ -120,7 +122,9 @@ Pane lancet_pane(const Lancet& window, std::uint32_t design, double x, double y)
 Pane rose_pane(double radius_m, double x, double y) {
   const double r = std::hypot(x, y) / radius_m;
   const double angle = (std::atan2(y, x) + kPi) / (2.0 * kPi);
-  const auto sector = [&](int count, double shift) { return static_cast<int>(std::floor(angle * count + shift)) % count; };
+  const auto sector = [&](int count, double shift) {
+    return static_cast<int>(std::floor(angle * count + shift)) % count;
+  };
   // Distance to the spoke between two of `count` sectors [m].
   const auto spoke = [&](int count, double shift) {
     return std::abs(std::remainder(angle * count + shift, 1.0)) / count * 2.0 * kPi * r * radius_m;
@@ -166,7 +170,8 @@ double Lancet::half_at(double y_m) const {
 
 MeshTexture lancet_glass(const Lancet& window, std::uint32_t design) {
   return paint(2.0 * window.half_width_m, window.top_m, kTexel_m, [&](double x, double y) {
-    return leaded([&](double a, double b) { return lancet_pane(window, design % 4U, a, b); }, x - window.half_width_m, window.top_m - y);
+    return leaded([&](double a, double b) { return lancet_pane(window, design % 4U, a, b); }, x - window.half_width_m,
+                  window.top_m - y);
   });
 }
 
@@ -181,7 +186,8 @@ MeshTexture ashlar() {
     const int course = static_cast<int>(std::floor(y / 0.5));
     const double shifted = x + ((course & 1) != 0 ? 0.5 : 0.0);
     const int block = static_cast<int>(std::floor(shifted)) % 4;
-    const double joint = std::min({y - 0.5 * course, 0.5 * (course + 1) - y, shifted - std::floor(shifted), std::floor(shifted) + 1.0 - shifted});
+    const double joint = std::min(
+        {y - 0.5 * course, 0.5 * (course + 1) - y, shifted - std::floor(shifted), std::floor(shifted) + 1.0 - shifted});
     const double tone = 0.86 + 0.14 * unit(hash(course, block, 7));
     const double grain = 0.96 + 0.08 * unit(hash(static_cast<int>(x * 50.0), static_cast<int>(y * 50.0), 8));
     const double light = 0.46 * tone * grain * (joint < 0.012 ? 0.72 : 1.0);

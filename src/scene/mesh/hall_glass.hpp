@@ -12,7 +12,8 @@ struct Lancet {
   [[nodiscard]] double half_at(double y_m) const;
 };
 
-// u runs across, v down from the tip; lead and stone are black, so that they let nothing pass. `design` chooses colours.
+// u runs across, v down from the tip; lead and stone are black, so that they let nothing pass. `design` chooses
+// colours.
 [[nodiscard]] MeshTexture lancet_glass(const Lancet& window, std::uint32_t design);
 // A round window over its bounding square.
 [[nodiscard]] MeshTexture rose_glass(double radius_m);
