@@ -36,7 +36,7 @@ void put_pixel(uint at) {
     if (kHomogeneous)
       homogeneous_attenuation(end - start, through, lost);
     else
-      through = transmittance(medium, column_along(medium, ray.altitude, ray.cos_zenith, end));
+      through = transmittance(medium, density_integral_along(medium, ray.altitude, ray.cos_zenith, end));
   }
   if (kHomogeneous) color *= homogeneous_phase(ray.cos_view_sun);
   if (frame.only == 0u) color += LOAD_COLOR(pixel) * through;

@@ -36,7 +36,7 @@ void put_pixel(uint at) {
   if (kHomogeneous)
     tau = frame.homogeneous.extinction * (end - start);
   else if (inside)
-    tau = optical_depth(medium, column_along(medium, ray.altitude, ray.cos_zenith, end));
+    tau = optical_depth(medium, density_integral_along(medium, ray.altitude, ray.cos_zenith, end));
   attenuation(tau, through, lost);
   ivec2 place = pixel / kDownscale;
   Sample s;

@@ -210,7 +210,7 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
     rayleigh = medium.rayleigh_scattering * rayleigh_phase(ray.cos_view_sun);
     mie = medium.mie_scattering * mie_phase(medium, ray.cos_view_sun);
     // The column up to here, from where the ray enters the air.
-    column = column_along(medium, ray.altitude, ray.cos_zenith, from);
+    column = density_integral_along(medium, ray.altitude, ray.cos_zenith, from);
   }
   float panel_m = (to - from) / float(panels);
   for (int i = 0; i < panels; ++i) {
@@ -236,7 +236,7 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
     vec3 mean = mean_densities(medium, density, density_next, h_next - h);
     float middle = altitude_along(ray.altitude, ray.cos_zenith, t + 0.5 * panel_m, radius);
     float cos_sun = cos_sun_zenith_along(ray, t + 0.5 * panel_m, radius);
-    vec3 total = column + 0.5 * panel_m * mean + column_to_top(medium, middle, cos_sun);
+    vec3 total = column + 0.5 * panel_m * mean + density_integral_to_top(medium, middle, cos_sun);
     vec3 arriving = sun_visibility(middle, cos_sun, radius) * transmittance(medium, total);
     float per_panel = w.metres / max(panel_m * cells_per_m, 1e-20);
     if (kColors) {

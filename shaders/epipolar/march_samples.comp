@@ -32,7 +32,7 @@ layout(binding = 14) uniform sampler2D scene_depth;
 layout(std430, binding = 15) writeonly buffer corrected_block { uvec2 corrected[]; };
 layout(binding = 16) uniform sampler2DArray shadow_colors;
 layout(std430, binding = 17) buffer coarse_block { uint coarse[]; };
-layout(std140, binding = 18) uniform cascade_block { CascadeConstants cascades[kMostCascades]; };
+layout(std140, binding = 18) uniform cascade_block { CascadeConstants cascades[kMaxCascades]; };
 
 // Loaded by main() before anything else (docs/epipolar.md says why).
 Medium medium;

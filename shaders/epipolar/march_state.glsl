@@ -19,7 +19,7 @@ March load_march(uint at) {
   vec4 high = states[i + 1u];
   vec4 light = states[i + 2u];
   March m = nothing_marched();
-  m.lit.light = AirLight(single.rgb, high.rgb);
+  m.lit.light = InScattering(single.rgb, high.rgb);
   m.lit.first = single.a;
   m.lit.total = high.a;
   m.lit.tint = states[i + 3u].rgb;

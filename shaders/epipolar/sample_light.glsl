@@ -29,7 +29,7 @@ vec3 contiguous_light(LitSections lit, TableRay path, float start, float t, floa
   bool beyond_end = end - start < path.end_m;
   uint wanted = (whole || shadowed.x != 0.0 ? 1u : 0u) | (shadowed.y != 0.0 ? 2u : 0u) | (shadowed.z != 0.0 ? 4u : 0u) |
                 (shadowed.w != 0.0 ? 8u : 0u) | (beyond_end && (whole || shadowed_end != 0.0) ? 16u : 0u);
-  vec3 column = column_along(medium, path.altitude, path.cos_zenith, path.end_m);
+  vec3 column = density_integral_along(medium, path.altitude, path.cos_zenith, path.end_m);
   TableAngle angle = table_angle(frame.tables, medium, path.cos_view_sun);
   vec3 light = vec3(0.0);
   vec3 high = vec3(0.0);
@@ -39,10 +39,10 @@ vec3 contiguous_light(LitSections lit, TableRay path, float start, float t, floa
     float place = i == 0 ? places.x : i == 1 ? places.y : i == 2 ? places.z : i == 3 ? places.w : end;
     float counts = i == 0 ? shadowed.x : i == 1 ? shadowed.y : i == 2 ? shadowed.z : i == 3 ? shadowed.w : shadowed_end;
     float d = min(place - start, path.end_m);
-    vec3 before = column_along(medium, path.altitude, path.cos_zenith, d);
+    vec3 before = density_integral_along(medium, path.altitude, path.cos_zenith, d);
     vec3 through = transmittance(medium, before);
-    AirLight beyond =
-        light_of_column(frame.tables, medium, angle, ray_further_on(medium, path, d), max(column - before, vec3(0.0)));
+    InScattering beyond = inscattering_from_integral(frame.tables, medium, angle, ray_further_on(medium, path, d),
+                                                     max(column - before, vec3(0.0)));
     if (kSingle == kTable) light += counts * through * beyond.single;
     if (kOccluded)
       light += counts * through * beyond.high;

@@ -24,7 +24,7 @@ layout(std430, binding = 5) readonly buffer march_list_block {
   uint march_list[];
 };
 layout(std430, binding = 6) readonly buffer sample_block { uvec4 samples[]; };
-layout(std140, binding = 7) uniform cascade_block { CascadeConstants cascades[kMostCascades]; };
+layout(std140, binding = 7) uniform cascade_block { CascadeConstants cascades[kMaxCascades]; };
 
 // Loaded by main() before anything else (docs/epipolar.md says why).
 FrameConstants frame;

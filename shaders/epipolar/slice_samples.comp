@@ -78,13 +78,13 @@ void main() {
   s.depth_m = sky ? sky_depth_m(ray.direction) : ray.length_m * dot(ray.direction, frame.camera_forward);
   vec3 column = vec3(0.0);
   float start, end;
-  if (clip_to_air(medium, ray, start, end)) {
-    column = max(column_along(medium, ray.altitude, ray.cos_zenith, end), vec3(0.0));
+  if (clip_to_atmosphere(medium, ray, start, end)) {
+    column = max(density_integral_along(medium, ray.altitude, ray.cos_zenith, end), vec3(0.0));
   }
   s.density = density_of(optical_depth(medium, column), s.depth_m);
   samples[at] = pack_sample(s);
-  Guide guide = guide_for_column(medium, column);
-  vec3 light = medium.rayleigh_scattering * rayleigh_phase(ray.cos_view_sun) * guide.rayleigh +
-               medium.mie_scattering * mie_phase(medium, ray.cos_view_sun) * guide.mie;
+  NormalisationFactors factors = normalisation_factors(medium, column);
+  vec3 light = medium.rayleigh_scattering * rayleigh_phase(ray.cos_view_sun) * factors.rayleigh +
+               medium.mie_scattering * mie_phase(medium, ray.cos_view_sun) * factors.mie;
   coarse[at] = pack_coarse(light);
 }

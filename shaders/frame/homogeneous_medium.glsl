@@ -36,7 +36,7 @@ bool clip_to_homogeneous(Ray ray, out float start, out float end) {
 
 bool clip_to_medium(Ray ray, out float start, out float end) {
   if (kHomogeneous) return clip_to_homogeneous(ray, start, end);
-  return clip_to_air(medium, ray, start, end);
+  return clip_to_atmosphere(medium, ray, start, end);
 }
 
 // exp(-sigma d) and 1 - exp(-sigma d), the latter without cancellation.
@@ -49,7 +49,7 @@ void homogeneous_attenuation(float length_m, out vec3 through, out vec3 lost) {
 // The factor of the direction [1/sr]: (beta_R p_R + beta_M p_M) / sigma, from constants that tell both phase functions.
 vec3 homogeneous_phase(float cos_view_sun) {
   float second = cos_view_sun * cos_view_sun;
-  float root = inversesqrt(frame.homogeneous.phase_least +
+  float root = inversesqrt(frame.homogeneous.phase_min +
                            frame.homogeneous.phase_slope * (1.0 - frame.homogeneous.phase_sign * cos_view_sun));
   return frame.homogeneous.rayleigh_source * (1.0 + second) +
          frame.homogeneous.mie_source * ((1.0 + frame.homogeneous.phase_second * second) * (root * root * root));

@@ -25,7 +25,7 @@ layout(binding = 7) uniform sampler3D single_mie;
 layout(binding = 8) uniform sampler3D high_orders;
 layout(std430, binding = 9) buffer counter_block { uint counters[]; };
 layout(binding = 10) uniform sampler2DArray shadow_colors;
-layout(std140, binding = 11) uniform cascade_block { CascadeConstants cascades[kMostCascades]; };
+layout(std140, binding = 11) uniform cascade_block { CascadeConstants cascades[kMaxCascades]; };
 
 // Loaded by main() before anything else (docs/epipolar.md says why).
 Medium medium;
@@ -37,8 +37,8 @@ FrameConstants frame;
 #include "frame/picture.glsl"
 #include "frame/table_light.glsl"
 
-const int kReadsPerStep = 8;   // of the shadow map, per evaluation of the air
-const int kMostReads = 60000;  // of one cascade: some CPU devices end a loop after 65 535 rounds
+const int kReadsPerStep = 8;  // of the shadow map, per evaluation of the air
+const int kMaxReads = 60000;  // of one cascade: some CPU devices end a loop after 65 535 rounds
 
 uint reads_done = 0u;
 uint steps_done = 0u;
@@ -90,7 +90,7 @@ void march_cascade(uint cascade, Ray ray, float from, float to, float steps_per_
       float cos_sun = cos_sun_zenith_along(ray, t, radius);
       float lit_reads = lit;
       lit *= sun_visibility(middle, cos_sun, radius) / float(kReadsPerStep);
-      vec3 column = march.column + 0.5 * dt * mean + column_to_top(medium, middle, cos_sun);
+      vec3 column = march.column + 0.5 * dt * mean + density_integral_to_top(medium, middle, cos_sun);
       vec3 arriving = (lit * dt) * transmittance(medium, column);
       if (kColors) arriving *= tint / lit_reads;
       march.rayleigh += mean.x * arriving;
@@ -135,7 +135,7 @@ void walk_cascade(uint cascade, Ray ray, TableRay path, float start, float from,
   vec3 uvz_to = shadow_uvz(shadow_from_world, frame.camera_position + ray.direction * to);
   vec2 texels = abs(uvz_to.xy - uvz_from.xy) * float(frame.shadow_resolution);
   float wanted = max(max(texels.x, texels.y), float(frame.integration_steps));
-  int reads = int(clamp(ceil(wanted), 1.0, float(kMostReads)));
+  int reads = int(clamp(ceil(wanted), 1.0, float(kMaxReads)));
   float step_m = (to - from) / float(reads);
   vec3 duvz = (uvz_to - uvz_from) / float(reads);
   vec3 uvz = uvz_from + 0.5 * duvz;
@@ -188,7 +188,7 @@ vec3 homogeneous_light(Ray ray, float start, float end) {
     vec3 uvz_to = shadow_uvz(shadow_from_world, frame.camera_position + ray.direction * to);
     vec2 texels = abs(uvz_to.xy - uvz_from.xy) * float(frame.shadow_resolution);
     float wanted = max(max(texels.x, texels.y), float(frame.integration_steps));
-    int reads = int(clamp(ceil(wanted), 1.0, float(kMostReads)));
+    int reads = int(clamp(ceil(wanted), 1.0, float(kMaxReads)));
     homogeneous_attenuation((to - t) / float(reads), through, lost);
     vec3 duvz = (uvz_to - uvz_from) / float(reads);
     vec3 uvz = uvz_from + 0.5 * duvz;
@@ -208,7 +208,7 @@ vec3 homogeneous_light(Ray ray, float start, float end) {
 }
 
 // All that the air of [start, end] sends to the eye, as the modes ask.
-vec3 air_light(Ray ray, float start, float end) {
+vec3 inscattering(Ray ray, float start, float end) {
   vec3 light = vec3(0.0);
   if (kHomogeneous) return kSingle == kNone ? light : homogeneous_light(ray, start, end);
   if (kSingle == kIntegration) light += integrated_light(ray, start, end);
@@ -228,12 +228,13 @@ void main() {
   vec3 inscattered = vec3(0.0);
   vec3 through = vec3(1.0);
   if (clip_to_medium(ray, start, end)) {
-    inscattered = air_light(ray, start, end);
+    inscattered = inscattering(ray, start, end);
     vec3 lost;
     if (kHomogeneous) homogeneous_attenuation(end - start, through, lost);
     float from_altitude = altitude_along(ray.altitude, ray.cos_zenith, start, medium.planet_radius_m);
     float from_cosine = cos_zenith_along(ray.altitude, ray.cos_zenith, start, medium.planet_radius_m);
-    if (!kHomogeneous) through = transmittance(medium, column_along(medium, from_altitude, from_cosine, end - start));
+    if (!kHomogeneous)
+      through = transmittance(medium, density_integral_along(medium, from_altitude, from_cosine, end - start));
   }
   vec3 color = inscattered * frame.sun_irradiance;
   if (frame.only == 0u) color += background * through;

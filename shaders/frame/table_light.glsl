@@ -11,15 +11,15 @@
 
 // What a walk along the ray has found. Distances from the ray's origin [m].
 struct LitSections {
-  float first;      // lit point; < 0: none yet
-  float total;      // lit length
-  float since;      // with kEach: start of the lit section that the walk is in; < 0: in the shadow
-  float closed_at;  // with kEach: end of that section, once it is found; close_section() must follow
-  AirLight light;   // with kEach: of the sections that are complete
-  vec3 tint;        // with kColors: integral of the glass's colour over the lit length; with kEach: of the open section
+  float first;         // lit point; < 0: none yet
+  float total;         // lit length
+  float since;         // with kEach: start of the lit section that the walk is in; < 0: in the shadow
+  float closed_at;     // with kEach: end of that section, once it is found; close_section() must follow
+  InScattering light;  // with kEach: of the sections that are complete
+  vec3 tint;  // with kColors: integral of the glass's colour over the lit length; with kEach: of the open section
 };
 
-LitSections nothing_lit() { return LitSections(-1.0, 0.0, -1.0, -1.0, AirLight(vec3(0.0), vec3(0.0)), vec3(0.0)); }
+LitSections nothing_lit() { return LitSections(-1.0, 0.0, -1.0, -1.0, InScattering(vec3(0.0), vec3(0.0)), vec3(0.0)); }
 
 // The stretch [from, to], of which `share` is lit, in that colour.
 void add_stretch(inout LitSections lit, float from, float to, float share, vec3 color) {
@@ -35,13 +35,13 @@ void add_stretch(inout LitSections lit, float from, float to, float share, vec3 
   }
 }
 
-AirLight add(AirLight a, AirLight b) { return AirLight(a.single + b.single, a.high + b.high); }
+InScattering add(InScattering a, InScattering b) { return InScattering(a.single + b.single, a.high + b.high); }
 
 // A section's light is its light without glass times the mean colour over its lit length: tables know no place on it.
-AirLight tinted(AirLight light, vec3 tint, float length_m) {
+InScattering tinted(InScattering light, vec3 tint, float length_m) {
   if (!kColors) return light;
   vec3 mean = tint / max(length_m, 1e-6);
-  return AirLight(light.single * mean, light.high * mean);
+  return InScattering(light.single * mean, light.high * mean);
 }
 
 // The ray in the coordinates of the tables: begun where it enters the air, at distance `start`. It ends behind what was
@@ -57,15 +57,15 @@ TableRay table_ray_of(Ray ray, float start) {
   return path;
 }
 
-AirLight section_light(TableRay path, float start, float from, float to) {
-  return light_between(frame.tables, medium, path, from - start, to - start);
+InScattering section_light(TableRay path, float start, float from, float to) {
+  return inscattering_between(frame.tables, medium, path, from - start, to - start);
 }
 
 // With kEach: adds the light of the section that ended at closed_at.
 void close_section(inout LitSections lit, TableRay path, float start) {
   if (kSections != kEach) return;
   if (lit.since >= 0.0 && lit.closed_at > lit.since) {
-    AirLight section = section_light(path, start, lit.since, lit.closed_at);
+    InScattering section = section_light(path, start, lit.since, lit.closed_at);
     lit.light = add(lit.light, tinted(section, lit.tint, lit.closed_at - lit.since));
   }
   if (kColors && lit.closed_at >= 0.0) lit.tint = vec3(0.0);
@@ -91,7 +91,7 @@ vec3 table_light(LitSections lit, TableRay path, float start, float t, float end
     sections &= sections - 1u;
     float from = i == 0 ? lit.first : i == 1 ? t : start;
     float to = i == 0 ? lit.first + lit.total : end;
-    AirLight section = section_light(path, start, from, to);
+    InScattering section = section_light(path, start, from, to);
     if (i == 0) section = tinted(section, lit.tint, lit.total);
     if (kSingle == kTable && i < 2) light += section.single;
     if (kOccluded ? i < 2 : i == 2) light += section.high;

@@ -19,7 +19,7 @@ struct TableRay {
 };
 
 // What the air of a ray sends to its origin.
-struct AirLight {
+struct InScattering {
   vec3 single;  // scattered once
   vec3 high;    // more than once
 };
@@ -78,7 +78,7 @@ TableCoordinates table_coordinates(TableShape t, Medium m, TableAngle angle, Tab
   float h = table_altitude(m, ray.altitude);
   float u = u_from_altitude(t, m, ray.altitude < 0.0 ? ray.altitude : h);
   float v = v_from_view(t, m, h, ray.cos_zenith, ray.below);
-  float middle = middle_of_air(m, ray.altitude, ray.cos_zenith, ray.end_m, column);
+  float middle = density_weighted_mean_distance(m, ray.altitude, ray.cos_zenith, ray.end_m, column);
   float w = w_from_sun(t, ray_further_on(m, ray, middle).cos_sun_zenith);
   return TableCoordinates(vec3(u, v, (angle.first + w) / angle.slices),
                           vec3(u, v, (angle.first + 1.0 + w) / angle.slices));
@@ -89,33 +89,34 @@ vec3 table_value(sampler3D table, TableCoordinates c, float part) {
 }
 
 // `column`: of the whole ray.
-AirLight light_of_column(TableShape t, Medium m, TableAngle angle, TableRay ray, vec3 column) {
+InScattering inscattering_from_integral(TableShape t, Medium m, TableAngle angle, TableRay ray, vec3 column) {
   TableCoordinates c = table_coordinates(t, m, angle, ray, column);
-  Guide guide = guide_for_column(m, column);
-  AirLight light;
-  light.single = angle.rayleigh * guide.rayleigh * table_value(single_rayleigh, c, angle.part) +
-                 angle.mie * guide.mie * table_value(single_mie, c, angle.part);
-  light.high = guide.high * table_value(high_orders, c, angle.part);
+  NormalisationFactors factors = normalisation_factors(m, column);
+  InScattering light;
+  light.single = angle.rayleigh * factors.rayleigh * table_value(single_rayleigh, c, angle.part) +
+                 angle.mie * factors.mie * table_value(single_mie, c, angle.part);
+  light.high = factors.high * table_value(high_orders, c, angle.part);
   return light;
 }
 
-AirLight light_to_end(TableShape t, Medium m, TableAngle angle, TableRay ray) {
-  return light_of_column(t, m, angle, ray, column_along(m, ray.altitude, ray.cos_zenith, ray.end_m));
+InScattering inscattering_to_end(TableShape t, Medium m, TableAngle angle, TableRay ray) {
+  return inscattering_from_integral(t, m, angle, ray,
+                                    density_integral_along(m, ray.altitude, ray.cos_zenith, ray.end_m));
 }
 
 // The light of the part [from, to] of a ray [m], seen from the ray's origin: L(a) - T(a, b) L(b), dimmed by
 // the air before it.
-AirLight light_between(TableShape t, Medium m, TableRay ray, float from, float to) {
+InScattering inscattering_between(TableShape t, Medium m, TableRay ray, float from, float to) {
   float end = min(to, ray.end_m);
-  AirLight light = AirLight(vec3(0.0), vec3(0.0));
+  InScattering light = InScattering(vec3(0.0), vec3(0.0));
   if (end <= from) return light;
   // A loop, because every copy of the look-up is a heavy piece of code.
   int ends = end < ray.end_m ? 2 : 1;
   TableAngle angle = table_angle(t, m, ray.cos_view_sun);
   for (int i = 0; i < ends; ++i) {
     float d = i == 0 ? from : end;
-    vec3 through = transmittance(m, column_along(m, ray.altitude, ray.cos_zenith, d));
-    AirLight beyond = light_to_end(t, m, angle, ray_further_on(m, ray, d));
+    vec3 through = transmittance(m, density_integral_along(m, ray.altitude, ray.cos_zenith, d));
+    InScattering beyond = inscattering_to_end(t, m, angle, ray_further_on(m, ray, d));
     vec3 share = i == 0 ? through : -through;
     light.single += share * beyond.single;
     light.high += share * beyond.high;

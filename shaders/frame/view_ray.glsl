@@ -53,9 +53,9 @@ float cos_sun_zenith_along(Ray ray, float t, float radius) {
 
 // The part of the ray inside the air: false when there is none. Rays to geometry end there, however deep it
 // lies; rays to the sky end at the planet or at the top of the air.
-bool clip_to_air(Medium medium, Ray ray, out float start, out float end) {
+bool clip_to_atmosphere(Medium medium, Ray ray, out float start, out float end) {
   float radius = medium.planet_radius_m;
-  if (!air_segment(ray.altitude, ray.cos_zenith, medium.atmosphere_height_m, radius, start, end)) return false;
+  if (!segment_below_top(ray.altitude, ray.cos_zenith, medium.atmosphere_height_m, radius, start, end)) return false;
   float reach = ray.length_m;
   if (ray.sky && ray_hits_ground(ray.altitude, ray.cos_zenith, radius)) {
     reach = distance_to_ground(ray.altitude, ray.cos_zenith, radius);

@@ -104,7 +104,7 @@ float distance_to_ground(float h, float mu, float R) {
 
 // The part of a ray's line, from its origin on, that lies in the atmosphere below `top`: distances start <= end
 // [m]. The ground is no obstacle. False if there is none (start = end = 0).
-bool air_segment(float h0, float mu, float top, float R, OUT(float) start, OUT(float) end) {
+bool segment_below_top(float h0, float mu, float top, float R, OUT(float) start, OUT(float) end) {
   start = 0.0;
   end = 0.0;
   float near;
@@ -123,7 +123,7 @@ bool air_segment(float h0, float mu, float top, float R, OUT(float) start, OUT(f
 bool atmosphere_segment(float h0, float mu, float top, float R, OUT(float) start, OUT(float) end,
                         OUT(bool) hits_ground) {
   hits_ground = ray_hits_ground(h0, mu, R);
-  if (!air_segment(h0, mu, top, R, start, end)) {
+  if (!segment_below_top(h0, mu, top, R, start, end)) {
     return false;
   }
   if (hits_ground) {

@@ -18,13 +18,13 @@ const uint kOneilComputed = 0u;   // scale function fitted to planet and scale h
 const uint kOneilPublished = 1u;  // the polynomial and the equations as printed
 const uint kOneilTable = 2u;      // altitude times angle
 
-const uint kOneilUniform = 0u;  // points evenly along the ray, as printed
-const uint kOneilColumn = 1u;   // points where most of the air is that can be seen
+const uint kOneilUniform = 0u;    // points evenly along the ray, as printed
+const uint kOneilByDensity = 1u;  // points where most of the air is that can be seen
 
 // GLSL may give these as constants: of a variable CPU devices go both ways, and the search for places of points is most
 // of the work.
-#ifndef ONEIL_COLUMNS
-#define ONEIL_COLUMNS(o) o.columns
+#ifndef ONEIL_INTEGRAL_METHOD
+#define ONEIL_INTEGRAL_METHOD(o) o.integral_method
 #define ONEIL_SPACING(o) o.spacing
 #endif
 
@@ -70,7 +70,7 @@ vec4 oneil_table(IN(Oneil) o, ONEIL_TABLE table, float h, float c, float top) {
 }
 
 vec2 oneil_densities(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h) {
-  if (ONEIL_COLUMNS(o) == kOneilTable) {
+  if (ONEIL_INTEGRAL_METHOD(o) == kOneilTable) {
     vec4 entry = oneil_table(o, table, h, 1.0, m.atmosphere_height_m);
     return vec2(entry.x, entry.z);
   }
@@ -78,12 +78,12 @@ vec2 oneil_densities(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h) {
 }
 
 // Column outwards from altitude h under c; c >= 0 but with the printed function.
-vec2 oneil_column(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h, float c) {
-  if (ONEIL_COLUMNS(o) == kOneilTable) {
+vec2 oneil_density_integral(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h, float c) {
+  if (ONEIL_INTEGRAL_METHOD(o) == kOneilTable) {
     vec4 entry = oneil_table(o, table, h, c, m.atmosphere_height_m);
     return vec2(entry.y, entry.w);
   }
-  if (ONEIL_COLUMNS(o) == kOneilPublished) {
+  if (ONEIL_INTEGRAL_METHOD(o) == kOneilPublished) {
     return oneil_densities(m, o, table, h) * vec2(oneil_scale(o.rayleigh, c), oneil_scale(o.mie, c));
   }
   float R = m.planet_radius_m;
@@ -94,33 +94,33 @@ vec2 oneil_column(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h, float c
 // Column between two points of a ray at altitudes ha and hb, where the signed distances from its lowest point
 // are qa < qb; that point is at altitude hp. For the printed function `reversed` says that the ray's end is
 // below its beginning: columns are then looked up towards the beginning.
-vec2 oneil_column_between(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float qa, float ha, float qb, float hb,
-                          float hp, bool reversed) {
+vec2 oneil_density_integral_between(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float qa, float ha, float qb,
+                                    float hb, float hp, bool reversed) {
   float R = m.planet_radius_m;
   float ca = clamp(qa / (R + ha), -1.0, 1.0);
   float cb = clamp(qb / (R + hb), -1.0, 1.0);
-  if (ONEIL_COLUMNS(o) == kOneilPublished) {
-    return reversed ? oneil_column(m, o, table, hb, -cb) - oneil_column(m, o, table, ha, -ca)
-                    : oneil_column(m, o, table, ha, ca) - oneil_column(m, o, table, hb, cb);
+  if (ONEIL_INTEGRAL_METHOD(o) == kOneilPublished) {
+    return reversed ? oneil_density_integral(m, o, table, hb, -cb) - oneil_density_integral(m, o, table, ha, -ca)
+                    : oneil_density_integral(m, o, table, ha, ca) - oneil_density_integral(m, o, table, hb, cb);
   }
-  vec2 a = oneil_column(m, o, table, ha, abs(ca));
-  vec2 b = oneil_column(m, o, table, hb, abs(cb));
+  vec2 a = oneil_density_integral(m, o, table, ha, abs(ca));
+  vec2 b = oneil_density_integral(m, o, table, hb, abs(cb));
   vec2 column = a - b;
   if (qb <= 0.0) {
     column = b - a;
   } else if (qa < 0.0) {
-    column = 2.0 * oneil_column(m, o, table, hp, 0.0) - a - b;
+    column = 2.0 * oneil_density_integral(m, o, table, hp, 0.0) - a - b;
   }
   return max(column, vec2(0.0));
 }
 
 // Column from altitude h towards the sun at cosine c; the planet is no obstacle.
-vec2 oneil_sun_column(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h, float c) {
-  if (c >= 0.0 || ONEIL_COLUMNS(o) == kOneilPublished) {
-    return oneil_column(m, o, table, h, c);
+vec2 oneil_sun_density_integral(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h, float c) {
+  if (c >= 0.0 || ONEIL_INTEGRAL_METHOD(o) == kOneilPublished) {
+    return oneil_density_integral(m, o, table, h, c);
   }
   float lowest = max(perigee_altitude(h, c, m.planet_radius_m), 0.0);
-  return 2.0 * oneil_column(m, o, table, lowest, 0.0) - oneil_column(m, o, table, h, -c);
+  return 2.0 * oneil_density_integral(m, o, table, lowest, 0.0) - oneil_density_integral(m, o, table, h, -c);
 }
 
 // On other planets than its own the printed function makes columns negative without bound.
@@ -131,8 +131,8 @@ vec3 oneil_transmittance(IN(Medium) m, vec2 column) {
 // Of the sun's light to altitude h; 0 where the planet hides it, but with the printed function, which grows
 // instead.
 vec3 oneil_sunlight(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h, float c) {
-  float visible = ONEIL_COLUMNS(o) == kOneilPublished ? 1.0 : sun_visibility(h, c, m.planet_radius_m);
-  return visible * oneil_transmittance(m, oneil_sun_column(m, o, table, h, c));
+  float visible = ONEIL_INTEGRAL_METHOD(o) == kOneilPublished ? 1.0 : sun_visibility(h, c, m.planet_radius_m);
+  return visible * oneil_transmittance(m, oneil_sun_density_integral(m, o, table, h, c));
 }
 
 // A distance in [from, to] of the ray by which `share` of its air between the two has been crossed: the mean of
@@ -149,7 +149,7 @@ float oneil_place(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h0, float 
   float d = guess;
   for (int i = 0; i < 12; ++i) {
     float h = min(altitude_along(h0, mu, d, R), m.atmosphere_height_m);
-    vec2 crossed = oneil_column_between(m, o, table, q0 + from, h_from, q0 + d, h, hp, false) / whole;
+    vec2 crossed = oneil_density_integral_between(m, o, table, q0 + from, h_from, q0 + d, h, hp, false) / whole;
     vec2 slope = oneil_densities(m, o, table, h) / whole;
     float missing = share - even * (d - from) / (to - from) - (0.5 - 0.5 * even) * (crossed.x + crossed.y);
     if (abs(missing) < tolerance) {
@@ -187,13 +187,14 @@ void oneil_scattering(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h0, fl
   bool reversed = hb < ha - 1.0e-4 * top;  // more than a rounding error: from top to top is not
   rayleigh = vec3(0.0);
   mie = vec3(0.0);
-  through = oneil_transmittance(m, oneil_column_between(m, o, table, q0 + start, ha, q0 + end, hb, hp, reversed));
+  through =
+      oneil_transmittance(m, oneil_density_integral_between(m, o, table, q0 + start, ha, q0 + end, hb, hp, reversed));
 
   float first_end = end;
   float second_start = end;
   float dark_start;
   float dark_end;
-  if (ONEIL_COLUMNS(o) != kOneilPublished && shadow_segment(h0, mu, mu_s, nu, R, dark_start, dark_end)) {
+  if (ONEIL_INTEGRAL_METHOD(o) != kOneilPublished && shadow_segment(h0, mu, mu_s, nu, R, dark_start, dark_end)) {
     first_end = clamp(dark_start, start, end);
     second_start = clamp(dark_end, start, end);
   }
@@ -203,13 +204,13 @@ void oneil_scattering(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h0, fl
     if (span > 0.0) {
       float to = from + span;
       float count = float(o.samples);
-      bool by_column = ONEIL_SPACING(o) == kOneilColumn && ONEIL_COLUMNS(o) != kOneilPublished;
+      bool by_column = ONEIL_SPACING(o) == kOneilByDensity && ONEIL_INTEGRAL_METHOD(o) != kOneilPublished;
       vec2 whole = vec2(1.0);
       float depth = 0.0;
       if (by_column) {
         float h_from = min(altitude_along(h0, mu, from, R), top);
         float h_to = min(altitude_along(h0, mu, to, R), top);
-        whole = oneil_column_between(m, o, table, q0 + from, h_from, q0 + to, h_to, hp, false);
+        whole = oneil_density_integral_between(m, o, table, q0 + from, h_from, q0 + to, h_to, hp, false);
         by_column = min(whole.x, whole.y) > 1.0e-20;
         vec3 tau = m.rayleigh_scattering * whole.x + m.mie_extinction * whole.y;
         depth = min((tau.x + tau.y + tau.z) / 3.0, 20.0);
@@ -231,8 +232,8 @@ void oneil_scattering(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h0, fl
         }
         float h = min(altitude_along(h0, mu, d, R), top);
         float sun = clamp(((R + h0) * mu_s + d * nu) / (R + h), -1.0, 1.0);
-        vec2 column = oneil_column_between(m, o, table, q0 + start, ha, q0 + d, h, hp, reversed) +
-                      oneil_sun_column(m, o, table, h, sun);
+        vec2 column = oneil_density_integral_between(m, o, table, q0 + start, ha, q0 + d, h, hp, reversed) +
+                      oneil_sun_density_integral(m, o, table, h, sun);
         vec2 density = oneil_densities(m, o, table, h);
         float length_m = span / count;
         if (by_column) {

@@ -16,7 +16,7 @@
 #include "lib/medium.glsl"
 
 // Column to infinity of one exponential species, outwards (q0 = r0 mu >= 0) from altitude h0 [m].
-float exponential_column(float h0, float q0, float scale_height, float R) {
+float exponential_density_integral(float h0, float q0, float scale_height, float R) {
   float r0 = max(R + h0, scale_height);  // only deep inside the planet is it smaller
   float s = sqrt(2.0 * r0 * scale_height);
   float p = q0 / s;
@@ -31,7 +31,7 @@ float exponential_column(float h0, float q0, float scale_height, float R) {
 
 // Ozone column of a piece of a ray on which the density is linear in altitude, outwards from (ha, qa) to
 // (hb, qb), where it is 0 at altitude h_zero and 1 at h_one. Four-point Lobatto quadrature.
-float linear_column(float ha, float qa, float hb, float qb, float h_zero, float h_one, float R) {
+float linear_density_integral(float ha, float qa, float hb, float qb, float h_zero, float h_one, float R) {
   if (hb <= ha) {
     return 0.0;
   }
@@ -48,7 +48,7 @@ float linear_column(float ha, float qa, float hb, float qb, float h_zero, float 
 }
 
 // Ozone column of a path outwards from altitude ha with qa = ra mu >= 0 to altitude hb.
-float ozone_column(IN(Medium) m, float ha, float qa, float hb) {
+float ozone_density_integral(IN(Medium) m, float ha, float qa, float hb) {
   float low = m.ozone_centre_m - m.ozone_half_width_m;
   float high = m.ozone_centre_m + m.ozone_half_width_m;
   float h0 = max(ha, low);
@@ -62,8 +62,8 @@ float ozone_column(IN(Medium) m, float ha, float qa, float hb) {
   float q0 = sqrt(qa_squared + max((h0 - ha) * (2.0 * R + h0 + ha), 0.0));
   float q1 = sqrt(qa_squared + max((h1 - ha) * (2.0 * R + h1 + ha), 0.0));
   float q3 = sqrt(qa_squared + max((h3 - ha) * (2.0 * R + h3 + ha), 0.0));
-  return linear_column(h0, q0, h1, q1, low, m.ozone_centre_m, R) +
-         linear_column(h1, q1, h3, q3, high, m.ozone_centre_m, R);
+  return linear_density_integral(h0, q0, h1, q1, low, m.ozone_centre_m, R) +
+         linear_density_integral(h1, q1, h3, q3, high, m.ozone_centre_m, R);
 }
 
 // Whether the ozone tent has one of its three kinks between altitudes low and high.
@@ -77,7 +77,7 @@ bool crosses_ozone_kink(IN(Medium) m, float low, float high) {
 
 // Column of the three species between altitudes ha and hb, at distances da < db from the origin of the ray
 // (h0, mu), all within the atmosphere.
-vec3 column_between(IN(Medium) m, float h0, float mu, float da, float ha, float db, float hb) {
+vec3 density_integral_between(IN(Medium) m, float h0, float mu, float da, float ha, float db, float hb) {
   float R = m.planet_radius_m;
   float q0 = (R + h0) * mu;
   float qa = q0 + da;
@@ -104,7 +104,7 @@ vec3 column_between(IN(Medium) m, float h0, float mu, float da, float ha, float 
     float to = passes_perigee || qa < 0.0 ? ha : hb;
     int parts = passes_perigee ? 2 : 1;
     for (int part = 0; part < parts; ++part) {
-      ozone += ozone_column(m, from, q, part == 0 ? to : hb);
+      ozone += ozone_density_integral(m, from, q, part == 0 ? to : hb);
     }
   }
 
@@ -119,21 +119,21 @@ vec3 column_between(IN(Medium) m, float h0, float mu, float da, float ha, float 
     return vec3(column.x, column.y, smooth_ozone ? column.z : ozone);
   }
 
-  float rayleigh_a = exponential_column(ha, abs(qa), m.rayleigh_scale_height_m, R);
-  float rayleigh_b = exponential_column(hb, abs(qb), m.rayleigh_scale_height_m, R);
-  float mie_a = exponential_column(ha, abs(qa), m.mie_scale_height_m, R);
-  float mie_b = exponential_column(hb, abs(qb), m.mie_scale_height_m, R);
+  float rayleigh_a = exponential_density_integral(ha, abs(qa), m.rayleigh_scale_height_m, R);
+  float rayleigh_b = exponential_density_integral(hb, abs(qb), m.rayleigh_scale_height_m, R);
+  float mie_a = exponential_density_integral(ha, abs(qa), m.mie_scale_height_m, R);
+  float mie_b = exponential_density_integral(hb, abs(qb), m.mie_scale_height_m, R);
   float rayleigh = (qa < 0.0 ? -rayleigh_a : rayleigh_a) - (qb < 0.0 ? -rayleigh_b : rayleigh_b);
   float mie = (qa < 0.0 ? -mie_a : mie_a) - (qb < 0.0 ? -mie_b : mie_b);
   if (passes_perigee) {
-    rayleigh += 2.0 * exponential_column(hp, 0.0, m.rayleigh_scale_height_m, R);
-    mie += 2.0 * exponential_column(hp, 0.0, m.mie_scale_height_m, R);
+    rayleigh += 2.0 * exponential_density_integral(hp, 0.0, m.rayleigh_scale_height_m, R);
+    mie += 2.0 * exponential_density_integral(hp, 0.0, m.mie_scale_height_m, R);
   }
   return vec3(max(rayleigh, 0.0), max(mie, 0.0), ozone);
 }
 
 // Column from altitude h along cosine mu over the distance d. The part of the path above the top is empty.
-vec3 column_along(IN(Medium) m, float h, float mu, float d) {
+vec3 density_integral_along(IN(Medium) m, float h, float mu, float d) {
   float top = m.atmosphere_height_m;
   float near;
   float far;
@@ -148,10 +148,10 @@ vec3 column_along(IN(Medium) m, float h, float mu, float d) {
   }
   float ha = outside ? top : h;
   float hb = d < far ? min(altitude_along(h, mu, d, m.planet_radius_m), top) : top;
-  return column_between(m, h, mu, da, ha, db, hb);
+  return density_integral_between(m, h, mu, da, ha, db, hb);
 }
 
 // Column from altitude h along cosine mu to the top of the atmosphere; the planet is no obstacle.
-vec3 column_to_top(IN(Medium) m, float h, float mu) { return column_along(m, h, mu, 1.0e30); }
+vec3 density_integral_to_top(IN(Medium) m, float h, float mu) { return density_integral_along(m, h, mu, 1.0e30); }
 
 #endif

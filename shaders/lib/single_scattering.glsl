@@ -122,12 +122,12 @@ vec3 lit_scattering(IN(Medium) m, float h0, float mu, float mu_s, float nu, floa
       float x = d + node[i] * span;
       float h = altitude_along(h0, mu, x, R);
       float sun = clamp(((R + h0) * mu_s + x * nu) / max(R + h, 1.0), -1.0, 1.0);
-      vec3 column = column_along(m, h0, mu, x) + column_to_top(m, h, sun);
+      vec3 column = density_integral_along(m, h0, mu, x) + density_integral_to_top(m, h, sun);
       vec3 density = densities(m, h);
       radiance += weight[i] * span * transmittance(m, column) * (rayleigh * density.x + mie * density.y);
     }
     vec3 crossed =
-        optical_depth(m, column_along(m, altitude_along(h0, mu, d, R), cos_zenith_along(h0, mu, d, R), span));
+        optical_depth(m, density_integral_along(m, altitude_along(h0, mu, d, R), cos_zenith_along(h0, mu, d, R), span));
     tau += max(crossed.x, max(crossed.y, crossed.z));
     d = span < left ? d + span : end;
   }
@@ -168,7 +168,7 @@ vec3 single_scattering_to_end(IN(Medium) m, float h0, float mu, float mu_s, floa
   if (!atmosphere_segment(h0, mu, m.atmosphere_height_m, m.planet_radius_m, start, end, hits_ground)) {
     return vec3(0.0);
   }
-  transmittance_to_end = transmittance(m, column_along(m, h0, mu, end));
+  transmittance_to_end = transmittance(m, density_integral_along(m, h0, mu, end));
   return single_scattering(m, h0, mu, mu_s, nu, start, end, steps);
 }
 

@@ -11,7 +11,7 @@
 
 #include "lib/optical_depth.glsl"
 
-struct Guide {
+struct NormalisationFactors {
   vec3 rayleigh;  // [m]
   vec3 mie;       // [m]
   vec3 high;      // sr times a radiance / E0
@@ -23,10 +23,10 @@ float mean_transmittance(float tau) {
 }
 
 // For the column of a whole ray.
-Guide guide_for_column(IN(Medium) m, vec3 column) {
+NormalisationFactors normalisation_factors(IN(Medium) m, vec3 column) {
   vec3 tau = optical_depth(m, column);
   vec3 mean = vec3(mean_transmittance(tau.x), mean_transmittance(tau.y), mean_transmittance(tau.z));
-  Guide g;
+  NormalisationFactors g;
   g.rayleigh = max(column.x, 1.0e-30) * mean;
   g.mie = max(column.y, 1.0e-30) * mean;
   g.high = m.rayleigh_scattering * g.rayleigh + m.mie_scattering * g.mie;
@@ -38,7 +38,7 @@ Guide guide_for_column(IN(Medium) m, vec3 column) {
 // sun at its origin, the light of the far end would hang on the angle between view and sun, of which there are
 // few texels, and under a sun that the table no longer holds. The integral of density times distance q from the
 // perigee is closed: q dq = r dr.
-float middle_of_air(IN(Medium) m, float h, float mu, float end_m, vec3 column) {
+float density_weighted_mean_distance(IN(Medium) m, float h, float mu, float end_m, vec3 column) {
   float R = m.planet_radius_m;
   float H = m.rayleigh_scale_height_m;
   float end = min(altitude_along(h, mu, end_m, R), m.atmosphere_height_m);
@@ -54,13 +54,14 @@ vec3 value_from_texel(vec3 texel) {
 
 // Column towards the sun from altitude h where the ray to it has q = r cos(zenith) [m]; `hidden` if the
 // planet is in the way. What lies above the top is left in for the exponential species: a 1e-4th of them.
-vec3 column_to_sun(IN(Medium) m, float h, float q, OUT(bool) hidden) {
+vec3 density_integral_to_sun(IN(Medium) m, float h, float q, OUT(bool) hidden) {
   float R = m.planet_radius_m;
   float top = m.atmosphere_height_m;
   float out_q = abs(q);
   hidden = false;
-  vec3 outward = vec3(exponential_column(h, out_q, m.rayleigh_scale_height_m, R),
-                      exponential_column(h, out_q, m.mie_scale_height_m, R), ozone_column(m, h, out_q, top));
+  vec3 outward =
+      vec3(exponential_density_integral(h, out_q, m.rayleigh_scale_height_m, R),
+           exponential_density_integral(h, out_q, m.mie_scale_height_m, R), ozone_density_integral(m, h, out_q, top));
   if (q >= 0.0) {
     return outward;
   }
@@ -70,15 +71,16 @@ vec3 column_to_sun(IN(Medium) m, float h, float q, OUT(bool) hidden) {
   if (hidden) {
     return outward;
   }
-  vec3 across = vec3(exponential_column(perigee, 0.0, m.rayleigh_scale_height_m, R),
-                     exponential_column(perigee, 0.0, m.mie_scale_height_m, R), ozone_column(m, perigee, 0.0, top));
+  vec3 across = vec3(exponential_density_integral(perigee, 0.0, m.rayleigh_scale_height_m, R),
+                     exponential_density_integral(perigee, 0.0, m.mie_scale_height_m, R),
+                     ozone_density_integral(m, perigee, 0.0, top));
   return 2.0 * across - outward;
 }
 
 // Transmittance towards the sun, 0 where the planet hides it.
 vec3 sun_transmittance_at(IN(Medium) m, float h, float q) {
   bool hidden;
-  vec3 column = column_to_sun(m, h, q, hidden);
+  vec3 column = density_integral_to_sun(m, h, q, hidden);
   return hidden ? vec3(0.0) : transmittance(m, column);
 }
 

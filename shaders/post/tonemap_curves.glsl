@@ -1,4 +1,4 @@
-// Tone-mapping operators: each maps scaled linear radiance (Rec. 709, 0 to kTonemapMost) to linear display values,
+// Tone-mapping operators: each maps scaled linear radiance (Rec. 709, 0 to kTonemapMax) to linear display values,
 // which the caller clamps to 0 to 1. White points are scaled luminances. C++ compiles this too (src/post/curves.cpp),
 // in double precision; docs/tonemapping.md has the formulas and draws them.
 #ifndef TYNDALL_TONEMAP_CURVES_GLSL
@@ -19,10 +19,10 @@ const uint kTonemapPbrNeutral = 8u;
 const uint kTonemapExponentialChannels = 9u;
 
 // More than this is this: every curve ends in white long before, and its square is far from overflow.
-const float kTonemapMost = 1.0e9;
+const float kTonemapMax = 1.0e9;
 
 // One channel made fit for the curves. What is negative or no number is black: a comparison with it fails.
-float tonemap_fit(float value) { return value > 0.0 ? min(value, kTonemapMost) : 0.0; }
+float tonemap_fit(float value) { return value > 0.0 ? min(value, kTonemapMax) : 0.0; }
 
 vec3 tonemap_scaled(vec3 radiance, float exposure) {
   return vec3(tonemap_fit(radiance.x * exposure), tonemap_fit(radiance.y * exposure),
@@ -72,10 +72,10 @@ vec3 tonemap_agx(vec3 c, float saturation) {
                     0.0784336, 0.0792237451477643, 0.0791661274605434, 0.879142973793104);
   mat3 outset = mat3(1.19687900512017, -0.0528968517574562, -0.0529716355144438, -0.0980208811401368, 1.15190312990417,
                      -0.0980434501171241, -0.0990297440797205, -0.0989611768448433, 1.15107367264116);
-  float least_ev = -12.47393;
-  float most_ev = 4.026069;
-  vec3 ev = clamp(log2(max(inset * c, vec3(1.0e-10))), vec3(least_ev), vec3(most_ev));
-  vec3 x = (ev - least_ev) / (most_ev - least_ev);
+  float min_ev = -12.47393;
+  float max_ev = 4.026069;
+  vec3 ev = clamp(log2(max(inset * c, vec3(1.0e-10))), vec3(min_ev), vec3(max_ev));
+  vec3 x = (ev - min_ev) / (max_ev - min_ev);
   vec3 curve = 0.1191 + x * (0.4298 + x * (-6.868 + x * (31.96 + x * (-40.14 + x * 15.5))));
   vec3 encoded = x * curve - 0.00232;
   vec3 grey = vec3(dot(encoded, vec3(0.2126, 0.7152, 0.0722)));

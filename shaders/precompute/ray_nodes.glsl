@@ -46,7 +46,7 @@ RayNode ray_node(Medium m, float h0, float mu, float d, float weight_m) {
   vec3 density = densities(m, node.altitude_m);
   node.rayleigh = density.x;
   node.mie = density.y;
-  node.weight_m = weight_m * transmittance(m, column_along(m, h0, mu, d));
+  node.weight_m = weight_m * transmittance(m, density_integral_along(m, h0, mu, d));
   return node;
 }
 

@@ -29,9 +29,9 @@ void main() {
   float mu_s = sun_from_w(shape, (float(id.x) + 0.5) / float(shape.suns));
   float nu = angle_from_q(shape, (float(id.y) + 0.5) / float(shape.angles));
   float end = nodes[base + kEndNode].distance_m;
-  vec3 column = column_along(medium, h, mu, end);
+  vec3 column = density_integral_along(medium, h, mu, end);
   // q0: where the sun stands at the origin, r0 cos(zenith), from where it stands in the middle of the air.
-  float middle = middle_of_air(medium, h, mu, end, column);
+  float middle = density_weighted_mean_distance(medium, h, mu, end, column);
   float q0 = (R + altitude_along(h, mu, middle, R)) * mu_s - middle * nu;
   vec3 radiance = vec3(0.0);
   if (shape.orders > 1u) {
@@ -42,7 +42,7 @@ void main() {
       radiance += node.weight_m * scattering * source_at(medium, node.altitude_m, node.cos_zenith, sun_here, nu);
     }
   }
-  Guide guide = guide_for_column(medium, column);
+  NormalisationFactors factors = normalisation_factors(medium, column);
   ivec3 texel = ivec3(int(push.first), int(id.z), int(id.x + shape.suns * id.y));
-  imageStore(high_orders, texel, vec4(texel_from_value(radiance / max(guide.high, vec3(1.0e-30))), 1.0));
+  imageStore(high_orders, texel, vec4(texel_from_value(radiance / max(factors.high, vec3(1.0e-30))), 1.0));
 }

@@ -29,9 +29,9 @@ void main() {
   float mu_s = sun_from_w(shape, (float(id.x) + 0.5) / float(shape.suns));
   float nu = angle_from_q(shape, (float(id.y) + 0.5) / float(shape.angles));
   float end = nodes[base + kEndNode].distance_m;
-  vec3 column = column_along(medium, h, mu, end);
+  vec3 column = density_integral_along(medium, h, mu, end);
   // q0: where the sun stands at the origin, r0 cos(zenith), from where it stands in the middle of the air.
-  float middle = middle_of_air(medium, h, mu, end, column);
+  float middle = density_weighted_mean_distance(medium, h, mu, end, column);
   float q0 = (R + altitude_along(h, mu, middle, R)) * mu_s - middle * nu;
   vec3 rayleigh = vec3(0.0);
   vec3 mie = vec3(0.0);
@@ -41,8 +41,8 @@ void main() {
     rayleigh += light * node.rayleigh;
     mie += light * node.mie;
   }
-  Guide guide = guide_for_column(medium, column);
+  NormalisationFactors factors = normalisation_factors(medium, column);
   ivec3 texel = ivec3(int(push.first), int(id.z), int(id.x + shape.suns * id.y));
-  imageStore(single_rayleigh, texel, vec4(texel_from_value(rayleigh / guide.rayleigh), 1.0));
-  imageStore(single_mie, texel, vec4(texel_from_value(mie / guide.mie), 1.0));
+  imageStore(single_rayleigh, texel, vec4(texel_from_value(rayleigh / factors.rayleigh), 1.0));
+  imageStore(single_mie, texel, vec4(texel_from_value(mie / factors.mie), 1.0));
 }

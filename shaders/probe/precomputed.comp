@@ -49,7 +49,7 @@ void main() {
   ProbeRay ray = rays[index];
   if (ray.end_m < 0.0) {
     vec3 towards_sun = sun_visibility(ray.altitude_m, ray.cos_sun_zenith, medium.planet_radius_m) *
-                       transmittance(medium, column_to_top(medium, ray.altitude_m, ray.cos_sun_zenith));
+                       transmittance(medium, density_integral_to_top(medium, ray.altitude_m, ray.cos_sun_zenith));
     results[index] = ProbeResult(sky_light(ray.altitude_m, ray.cos_sun_zenith), 0.0, towards_sun, 0.0);
     return;
   }
@@ -60,12 +60,12 @@ void main() {
   }
   TableRay path = TableRay(ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith, ray.cos_view_sun,
                            ray.on_ground == 1u, ray.end_m);
-  AirLight light = light_to_end(shape, medium, table_angle(shape, medium, path.cos_view_sun), path);
+  InScattering light = inscattering_to_end(shape, medium, table_angle(shape, medium, path.cos_view_sun), path);
   if (integrate_single == 1u) {
     light.single = single_scattering(medium, ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith, ray.cos_view_sun,
                                      0.0, ray.end_m, int(steps));
   }
-  vec3 through = transmittance(medium, column_along(medium, ray.altitude_m, ray.cos_view_zenith, ray.end_m));
+  vec3 through = transmittance(medium, density_integral_along(medium, ray.altitude_m, ray.cos_view_zenith, ray.end_m));
   vec3 radiance = light.single + light.high;
   if (ray.on_ground == 1u && visible_ground == 1u) radiance += through * ground_light(ray);
   results[index] = ProbeResult(radiance, 0.0, through, 0.0);

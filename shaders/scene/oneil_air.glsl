@@ -8,7 +8,7 @@ layout(std430, binding = 7) readonly buffer oneil_table_block { vec4 oneil_texel
 // Those of the block's Oneil: src/scene/oneil_sky.cpp chooses the pipeline by them.
 layout(constant_id = 1) const uint kColumnsOfAir = 0u;
 layout(constant_id = 2) const uint kSpacingOfPoints = 0u;
-#define ONEIL_COLUMNS(o) kColumnsOfAir
+#define ONEIL_INTEGRAL_METHOD(o) kColumnsOfAir
 #define ONEIL_SPACING(o) kSpacingOfPoints
 #include "lib/oneil.glsl"
 

@@ -80,7 +80,7 @@ const uint kPixels = 4u;         // pixels, as the first
 const uint kMarchGroup = 64u;  // invocations
 // Groups of an indirect dispatch along an axis, at most: what every device takes. Longer lists go on along y. (A loop
 // in the shaders would do, but CPU devices keep all that lives in a loop in memory: the trees took twice as long.)
-const uint kMostGroups = 65535u;
+const uint kMaxGroups = 65535u;
 
 // The head of a list that is worked through indirectly: arguments of a dispatch, then the number of items.
 struct WorkList {

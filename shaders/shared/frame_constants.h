@@ -3,7 +3,7 @@
 // followed by a four-byte member, every structure is a multiple of 16 bytes.
 #include "shared/tables.h"
 
-const uint kMostCascades = 8u;
+const uint kMaxCascades = 8u;
 
 struct CascadeConstants {
   mat4 shadow_from_world;
@@ -20,11 +20,11 @@ struct HomogeneousMedium {
   vec3 mie_scattering;
   float height_m;  // altitude of the top
   vec3 extinction;
-  float phase_least;  // the aerosol's phase function: (1 - |g|)^2
+  float phase_min;  // the aerosol's phase function: (1 - |g|)^2
   // Phase functions at right angles to the sun, times scattering, divided by extinction [1/sr].
   vec3 rayleigh_source;
   float phase_slope;   // 2 |g|
-  vec3 mie_source;     // before the division by (phase_least + phase_slope (1 - |cos|))^1.5
+  vec3 mie_source;     // before the division by (phase_min + phase_slope (1 - |cos|))^1.5
   float phase_sign;    // of g
   float phase_second;  // of cos^2: 1 Cornette-Shanks, 0 Henyey-Greenstein
   float unused_0;

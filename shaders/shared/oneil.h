@@ -16,11 +16,11 @@ struct OneilScale {
 };
 
 struct Oneil {
-  uint columns;         // where columns come from: a kOneil... constant of shaders/lib/oneil.glsl
-  uint samples;         // points of the in-scattering integral on a ray
-  uint spacing;         // of these points, likewise
-  uint table_size;      // entries along each side of the table
-  uint rayleigh_phase;  // 0: Rayleigh scattering is even in all directions, as in O'Neil's demo
+  uint integral_method;  // where columns come from: a kOneil... constant of shaders/lib/oneil.glsl
+  uint samples;          // points of the in-scattering integral on a ray
+  uint spacing;          // of these points, likewise
+  uint table_size;       // entries along each side of the table
+  uint rayleigh_phase;   // 0: Rayleigh scattering is even in all directions, as in O'Neil's demo
   uint unused_0;
   uint unused_1;
   uint unused_2;

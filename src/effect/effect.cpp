@@ -38,7 +38,7 @@ constexpr VkDeviceSize kCascadeBytes = align(sizeof(CascadeArray));
 constexpr VkDeviceSize kMediumBytes = align(sizeof(shared::Medium));
 constexpr VkDeviceSize kEpipolarBytes = align(sizeof(shared::EpipolarConstants));
 constexpr VkDeviceSize kSlotBytes = kFrameBytes + kCascadeBytes + kMediumBytes + kEpipolarBytes;
-static_assert(shared::kMostCascades == kMaxCascades);
+static_assert(shared::kMaxCascades == kMaxCascades);
 // Counters of a frame, as pairs of words.
 constexpr VkDeviceSize kCounterBytes = align(shared::kCounters * sizeof(std::uint64_t));
 

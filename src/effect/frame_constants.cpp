@@ -168,7 +168,7 @@ shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDe
     };
     out.homogeneous.rayleigh_source = source(rayleigh, out.homogeneous.rayleigh_scattering, out.homogeneous.extinction);
     out.homogeneous.mie_source = source(mie, out.homogeneous.mie_scattering, out.homogeneous.extinction);
-    out.homogeneous.phase_least = static_cast<float>((1.0 - std::abs(g)) * (1.0 - std::abs(g)));
+    out.homogeneous.phase_min = static_cast<float>((1.0 - std::abs(g)) * (1.0 - std::abs(g)));
     out.homogeneous.phase_slope = static_cast<float>(2.0 * std::abs(g));
     out.homogeneous.phase_sign = g < 0.0 ? -1.0F : 1.0F;
     out.homogeneous.phase_second = second ? 1.0F : 0.0F;

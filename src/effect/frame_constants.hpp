@@ -24,7 +24,7 @@ namespace tyndall {
 [[nodiscard]] double camera_altitude_m(const FrameInputs& inputs, const Params& params);
 [[nodiscard]] shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDesc& desc,
                                                      const Params& params);
-using CascadeArray = std::array<shared::CascadeConstants, shared::kMostCascades>;
+using CascadeArray = std::array<shared::CascadeConstants, shared::kMaxCascades>;
 [[nodiscard]] CascadeArray cascade_constants(const FrameInputs& inputs);
 
 // Why a frame cannot be recorded, as an error of one line. Remarks on frames that can be are in remarks.hpp.

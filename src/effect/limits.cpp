@@ -71,9 +71,9 @@ Result<void> check_device(const gpu::Device& device) {
   // No dispatch has more groups in a direction, and every device must allow as many.
   const std::uint32_t* groups = device.properties.limits.maxComputeWorkGroupCount;
   const std::uint32_t least = std::min({groups[0], groups[1], groups[2]});
-  if (least >= shared::kMostGroups) return {};
+  if (least >= shared::kMaxGroups) return {};
   return Error{ErrorCode::unsupported_device, "the device allows dispatches of " + std::to_string(least) + " groups, " +
-                                                  std::to_string(shared::kMostGroups) + " are needed"};
+                                                  std::to_string(shared::kMaxGroups) + " are needed"};
 }
 
 Result<void> check_limits(const gpu::Device& device, const EffectDesc& desc, const Params& params) {

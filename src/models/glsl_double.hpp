@@ -27,7 +27,8 @@ inline OneilScale widen(const shared::OneilScale& s) {
   return {s.scale_height_m, s.bend, s.k0, s.k1, s.k2, s.k3, s.k4, 0.0};
 }
 inline Oneil widen(const shared::Oneil& o) {
-  return {o.columns, o.samples, o.spacing, o.table_size, o.rayleigh_phase, 0, 0, 0, widen(o.rayleigh), widen(o.mie)};
+  return {o.integral_method, o.samples,   o.spacing, o.table_size, o.rayleigh_phase, 0, 0, 0,
+          widen(o.rayleigh), widen(o.mie)};
 }
 
 // The medium as uploaded, widened.

@@ -28,7 +28,8 @@ std::vector<std::array<float, 4>> make_table(const shared::Medium& m, std::uint3
       for (std::size_t s = 0; s < 2; ++s) {
         const double h = top * u * u;
         entry[2 * s] = static_cast<float>(std::exp(-h / heights[s]));
-        entry[2 * s + 1] = static_cast<float>(exponential_column(heights[s], m.planet_radius_m, h, v * v, top));
+        entry[2 * s + 1] =
+            static_cast<float>(exponential_density_integral(heights[s], m.planet_radius_m, h, v * v, top));
       }
       out.push_back(entry);
     }
@@ -40,7 +41,7 @@ std::vector<std::array<float, 4>> make_table(const shared::Medium& m, std::uint3
 ColumnError measure(const OneilModel& model, const glsl64::Medium& m, const glsl64::Oneil& o, bool mie,
                     double highest_m, int altitudes) {
   constexpr int kCosines = 40;
-  const bool table = model.constants.columns == static_cast<std::uint32_t>(OneilColumns::table);
+  const bool table = model.constants.integral_method == static_cast<std::uint32_t>(OneilIntegralMethod::table);
   const double height = mie ? m.mie_scale_height_m : m.rayleigh_scale_height_m;
   const double top = table ? m.atmosphere_height_m : std::numeric_limits<double>::infinity();
   ColumnError out;
@@ -51,8 +52,8 @@ ColumnError measure(const OneilModel& model, const glsl64::Medium& m, const glsl
       // By the square root, as most happens near the horizontal; off the table's own entries.
       const double root = j == kCosines ? 1.0 : (j + 0.37) / kCosines;
       const double c = j == 0 ? 0.0 : root * root;
-      const glsl64::vec2 column = glsl64::oneil_column(m, o, model.table.data(), h, c);
-      const double truth = exponential_column(height, m.planet_radius_m, h, c, top);
+      const glsl64::vec2 column = glsl64::oneil_density_integral(m, o, model.table.data(), h, c);
+      const double truth = exponential_density_integral(height, m.planet_radius_m, h, c, top);
       const double error = std::abs((mie ? column.y : column.x) / truth - 1.0);
       out.worst = std::max(out.worst, error);
       sum += error * error;
@@ -72,19 +73,19 @@ OneilModel make_oneil(const shared::Medium& medium, const OneilSettings& setting
   const double radius_m = medium.planet_radius_m;
   const double top_m = medium.atmosphere_height_m;
   shared::Oneil& o = out.constants;
-  o.columns = static_cast<std::uint32_t>(settings.columns);
+  o.integral_method = static_cast<std::uint32_t>(settings.integral_method);
   o.samples = settings.samples;
   o.spacing = settings.space_by_column ? 1 : 0;
   o.table_size = settings.table_size;
   o.rayleigh_phase = settings.rayleigh_phase ? 1 : 0;
-  if (settings.columns == OneilColumns::published) {
+  if (settings.integral_method == OneilIntegralMethod::published) {
     o.rayleigh = published_scale(rayleigh_m);
     o.mie = published_scale(mie_m);
   } else {
     o.rayleigh = fit_scale(rayleigh_m, radius_m, top_m);
     o.mie = mie_m == rayleigh_m ? o.rayleigh : fit_scale(mie_m, radius_m, top_m);
   }
-  if (settings.columns == OneilColumns::table) {
+  if (settings.integral_method == OneilIntegralMethod::table) {
     out.table = make_table(medium, settings.table_size);
   } else {
     out.table.resize(1);
@@ -99,7 +100,7 @@ OneilModel make_oneil(const shared::Medium& medium, const OneilSettings& setting
 }
 
 std::string describe_errors(const OneilModel& model) {
-  const bool table = model.constants.columns == static_cast<std::uint32_t>(OneilColumns::table);
+  const bool table = model.constants.integral_method == static_cast<std::uint32_t>(OneilIntegralMethod::table);
   char text[256];
   std::snprintf(text, sizeof text,
                 "%s against quadrature: Rayleigh worst %.3g %%, rms %.3g %%; aerosol worst %.3g %%, rms %.3g %%",

@@ -13,14 +13,14 @@
 
 namespace tyndall::models {
 
-enum class OneilColumns : std::uint32_t {
+enum class OneilIntegralMethod : std::uint32_t {
   computed = 0,   // scale function fitted to the planet and to each species
   published = 1,  // the polynomial and the equations as printed
   table = 2,      // the table of 2004
 };
 
 struct OneilSettings {
-  OneilColumns columns = OneilColumns::computed;
+  OneilIntegralMethod integral_method = OneilIntegralMethod::computed;
   std::uint32_t samples = 5;       // [1; 4096] points on a ray
   std::uint32_t table_size = 128;  // [16; 1024] entries along each side
   bool space_by_column = false;    // points where most of the air is; not with the printed equations
@@ -59,7 +59,7 @@ struct OneilModel {
 
 // Column of an exponential species outwards from altitude h to `top_m` by quadrature, to 1e-9, relative to its
 // density at sea level [m]. cosine >= 0; infinite for a top of infinity.
-[[nodiscard]] double exponential_column(double scale_height_m, double radius_m, double altitude_m, double cosine,
-                                        double top_m);
+[[nodiscard]] double exponential_density_integral(double scale_height_m, double radius_m, double altitude_m,
+                                                  double cosine, double top_m);
 
 }  // namespace tyndall::models

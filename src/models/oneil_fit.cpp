@@ -121,7 +121,8 @@ Fit fit_with_bend(double rho, double largest_c, double bend) {
 
 }  // namespace
 
-double exponential_column(double scale_height_m, double radius_m, double altitude_m, double cosine, double top_m) {
+double exponential_density_integral(double scale_height_m, double radius_m, double altitude_m, double cosine,
+                                    double top_m) {
   const double rho = (radius_m + altitude_m) / scale_height_m;
   const double climb = std::min((top_m - altitude_m) / scale_height_m, 42.0);
   if (climb <= 0.0) return 0.0;

@@ -38,7 +38,7 @@ std::array<double, 3> single_sky_irradiance(const shared::Medium& medium, double
 std::array<double, 3> sun_transmittance(const shared::Medium& medium, double altitude_m, double cos_sun_zenith) {
   const glsl64::Medium m = glsl64::widen(medium);
   if (glsl64::sun_visibility(altitude_m, cos_sun_zenith, m.planet_radius_m) == 0.0) return {};
-  return to_array(glsl64::transmittance(m, glsl64::column_to_top(m, altitude_m, cos_sun_zenith)));
+  return to_array(glsl64::transmittance(m, glsl64::density_integral_to_top(m, altitude_m, cos_sun_zenith)));
 }
 
 std::array<double, 3> sunlit_ground(const shared::Medium& medium, const Ray& ray) {

@@ -39,7 +39,8 @@ TableAxes table_axes(const Params& params) {
       axes.ends_on_ground.push_back(below);
       const double mu = axes.cos_view_zenith.back();
       const double end = distance_to_end(m, h, mu, below);
-      axes.middle_of_air_m.push_back(glsl64::middle_of_air(m, h, mu, end, glsl64::column_along(m, h, mu, end)));
+      axes.middle_of_air_m.push_back(
+          glsl64::density_weighted_mean_distance(m, h, mu, end, glsl64::density_integral_along(m, h, mu, end)));
     }
   }
   for (std::uint32_t i = 0; i < shape.suns; ++i)
@@ -73,9 +74,10 @@ std::vector<TableFactors> table_factors(const Params& params, const TableAxes& a
     const double h = axes.altitude_m[i / views];
     const double mu = axes.cos_view_zenith[i];
     const double end = distance_to_end(m, h, mu, axes.ends_on_ground[i]);
-    const glsl64::Guide guide = glsl64::guide_for_column(m, glsl64::column_along(m, h, mu, end));
-    out.push_back({to_array(m.rayleigh_scattering * guide.rayleigh), to_array(m.mie_scattering * guide.mie),
-                   to_array(guide.high)});
+    const glsl64::NormalisationFactors factors =
+        glsl64::normalisation_factors(m, glsl64::density_integral_along(m, h, mu, end));
+    out.push_back({to_array(m.rayleigh_scattering * factors.rayleigh), to_array(m.mie_scattering * factors.mie),
+                   to_array(factors.high)});
   }
   return out;
 }

@@ -59,12 +59,12 @@ class Atmosphere {
   // line crosses at s_top >= s. `density` are the densities at s.
   [[nodiscard]] Amounts columns_to_top(double tangent2, double s, double s_top, const Amounts& density) const {
     Amounts columns = exponential_columns(tangent2, s, s_top, density);
-    columns.ozone = ozone_column(tangent2, s, s_top);
+    columns.ozone = ozone_density_integral(tangent2, s, s_top);
     return columns;
   }
   // The same without ozone, which is left 0.
   [[nodiscard]] Amounts exponential_columns(double tangent2, double s, double s_top, const Amounts& density) const;
-  [[nodiscard]] double ozone_column(double tangent2, double s, double s_top) const;
+  [[nodiscard]] double ozone_density_integral(double tangent2, double s, double s_top) const;
 
   [[nodiscard]] double transmittance(const Amounts& columns, std::size_t channel) const {
     return std::exp(-optical_depth(columns, channel));

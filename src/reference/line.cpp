@@ -40,7 +40,7 @@ Amounts Line::travelled(const LinePoint& p) const {
 }
 
 double Line::ozone_travelled(double s) const {
-  const auto to_top = [&](double at) { return air_->ozone_column(tangent2_, std::abs(at), s_top_); };
+  const auto to_top = [&](double at) { return air_->ozone_density_integral(tangent2_, std::abs(at), s_top_); };
   // The path never climbs above the higher of its two ends.
   if (!air_->reaches_ozone(std::sqrt(tangent2_ + std::max(s * s, start_.s * start_.s)))) return 0.0;
   if (start_.s >= 0.0) return std::max(0.0, to_top(start_.s) - to_top(s));

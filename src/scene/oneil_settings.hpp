@@ -9,7 +9,8 @@ namespace tyndall::scene {
 // table: the table in place of the scale function, whichever that is.
 [[nodiscard]] inline models::OneilSettings oneil_settings(const OneilParams& params, bool table) {
   models::OneilSettings out;
-  out.columns = table ? models::OneilColumns::table : static_cast<models::OneilColumns>(params.scale_function);
+  out.integral_method =
+      table ? models::OneilIntegralMethod::table : static_cast<models::OneilIntegralMethod>(params.scale_function);
   out.samples = params.samples;
   out.table_size = params.table_size;
   out.space_by_column = params.spacing == OneilSpacing::column;

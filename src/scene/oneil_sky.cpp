@@ -48,7 +48,7 @@ class OneilSky : public SkyModel {
 
   Result<void> create(gpu::Host& host, ModelEvaluation evaluation, VkFormat color_format, VkFormat depth_format) {
     std::vector<std::array<gpu::Constant, 2>> constants;
-    for (const Variant& v : variants()) constants.push_back({{{1, v.columns}, {2, v.spacing}}});
+    for (const Variant& v : variants()) constants.push_back({{{1, v.integral_method}, {2, v.spacing}}});
     const std::vector<std::span<const gpu::Constant>> spans(constants.begin(), constants.end());
     return create_objects(host,
                           {&shaders::oneil_terrain_vert, &shaders::oneil_terrain_frag, &shaders::oneil_light_comp, 3,
@@ -91,7 +91,7 @@ class OneilSky : public SkyModel {
   }
 
   [[nodiscard]] std::size_t variant() const override {
-    const Variant wanted = {model_.constants.columns, model_.constants.spacing};
+    const Variant wanted = {model_.constants.integral_method, model_.constants.spacing};
     const std::span<const Variant> all = variants();
     return static_cast<std::size_t>(std::find(all.begin(), all.end() - 1, wanted) - all.begin());
   }
@@ -125,13 +125,13 @@ class OneilSky : public SkyModel {
 
   // What the pipelines are made for; with the printed function points are spaced evenly, whatever is asked for.
   struct Variant {
-    std::uint32_t columns, spacing;
+    std::uint32_t integral_method, spacing;
     bool operator==(const Variant&) const = default;
   };
   [[nodiscard]] std::span<const Variant> variants() const {
-    constexpr auto kComputed = static_cast<std::uint32_t>(models::OneilColumns::computed);
-    constexpr auto kPublished = static_cast<std::uint32_t>(models::OneilColumns::published);
-    constexpr auto kTable = static_cast<std::uint32_t>(models::OneilColumns::table);
+    constexpr auto kComputed = static_cast<std::uint32_t>(models::OneilIntegralMethod::computed);
+    constexpr auto kPublished = static_cast<std::uint32_t>(models::OneilIntegralMethod::published);
+    constexpr auto kTable = static_cast<std::uint32_t>(models::OneilIntegralMethod::table);
     static constexpr Variant kOfFunction[] = {{kComputed, 0}, {kComputed, 1}, {kPublished, 0}};
     static constexpr Variant kOfTable[] = {{kTable, 0}, {kTable, 1}};
     return table_ ? std::span<const Variant>(kOfTable) : std::span<const Variant>(kOfFunction);

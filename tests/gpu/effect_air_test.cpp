@@ -63,7 +63,7 @@ TEST_F(EffectAir, TheSkyIsTheIntegralFromGroundAirAndSpace) {
       for (std::uint32_t y = 0; y < frame.extent.height; ++y) {
         for (std::uint32_t x = 0; x < frame.extent.width; ++x) {
           const RayAngles ray = frame.ray(x, y, params.planet.radius_m);
-          const auto air = air_segment(params, ray);
+          const auto air = segment_below_top(params, ray);
           glm::dvec3 truth(0.25, 0.5, 1.0);
           if (air) {
             truth *= true_transmittance(params, ray, air->end);
@@ -104,7 +104,7 @@ TEST_F(EffectAir, InScatteringAloneAndOverFiniteSegments) {
         for (std::uint32_t x = 0; x < frame.extent.width; ++x) {
           const RayAngles ray = frame.ray(x, y, params.planet.radius_m);
           const double distance = frame.distance_m(x, y);
-          const auto air = air_segment(params, ray);
+          const auto air = segment_below_top(params, ray);
           glm::dvec3 inscattered(0.0);
           glm::dvec3 through(1.0);
           if (air) {
@@ -182,7 +182,7 @@ TEST_F(EffectAir, EverySizeIsCoveredToTheLastPixel) {
     for (std::uint32_t y = 0; y < extent.height; ++y) {
       for (std::uint32_t x = 0; x < extent.width; ++x) {
         const RayAngles ray = frame.ray(x, y, params.planet.radius_m);
-        const auto air = air_segment(params, ray);
+        const auto air = segment_below_top(params, ray);
         ASSERT_TRUE(air.has_value());
         EXPECT_LE(relative_error(image[y * extent.width + x], true_inscattering(params, ray, 0.0, air->end)),
                   kTolerance)
@@ -204,7 +204,7 @@ TEST_F(EffectAir, AwayFromTheOriginTheVerticalTurnsWithThePlanet) {
   for (std::uint32_t y = 0; y < frame.extent.height; ++y) {
     for (std::uint32_t x = 0; x < frame.extent.width; ++x) {
       const RayAngles ray = frame.ray(x, y, params.planet.radius_m);
-      const auto air = air_segment(params, ray);
+      const auto air = segment_below_top(params, ray);
       ASSERT_TRUE(air.has_value());
       EXPECT_LE(relative_error(image[y * frame.extent.width + x], true_inscattering(params, ray, 0.0, air->end)),
                 kTolerance);

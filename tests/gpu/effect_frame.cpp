@@ -320,10 +320,10 @@ glm::dvec3 true_inscattering(const Params& params, const RayAngles& ray, double 
 
 glm::dvec3 true_transmittance(const Params& params, const RayAngles& ray, double end) {
   const glsl64::Medium medium = wide_medium(params);
-  return glsl64::transmittance(medium, glsl64::column_along(medium, ray.altitude_m, ray.cos_view, end));
+  return glsl64::transmittance(medium, glsl64::density_integral_along(medium, ray.altitude_m, ray.cos_view, end));
 }
 
-std::optional<AirSegment> air_segment(const Params& params, const RayAngles& ray) {
+std::optional<AirSegment> segment_below_top(const Params& params, const RayAngles& ray) {
   const glsl64::Medium medium = wide_medium(params);
   AirSegment out = {};
   if (!glsl64::atmosphere_segment(ray.altitude_m, ray.cos_view, medium.atmosphere_height_m, medium.planet_radius_m,

@@ -112,7 +112,7 @@ struct AirSegment {
   double start, end;
   bool on_ground;
 };
-[[nodiscard]] std::optional<AirSegment> air_segment(const Params& params, const RayAngles& ray);
+[[nodiscard]] std::optional<AirSegment> segment_below_top(const Params& params, const RayAngles& ray);
 
 // Largest difference of a channel, relative to the brightest channel of the truth.
 [[nodiscard]] double relative_error(const glm::dvec3& value, const glm::dvec3& truth);

@@ -92,7 +92,7 @@ struct Truth {
 Truth truth_of(const Params& params, const TestFrame& frame, const Setting& setting, Shadow shadow, std::uint32_t x,
                std::uint32_t y) {
   const RayAngles ray = frame.ray(x, y, params.planet.radius_m);
-  const auto air = air_segment(params, ray);
+  const auto air = segment_below_top(params, ray);
   if (!air) return {};
   double end = air->end;
   const double seen = frame.distance_m ? frame.distance_m(x, y) : 0.0;

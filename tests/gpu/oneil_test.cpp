@@ -26,14 +26,15 @@ TEST_F(GpuOneil, AgreesWithDoublePrecision) {
     rays.push_back(models::ray_from_angles(altitude, std::acos(1.0 - 2.0 * uniform(engine)),
                                            100.0 / 180.0 * kPi * uniform(engine), 2.0 * kPi * uniform(engine)));
   }
-  for (const models::OneilColumns columns :
-       {models::OneilColumns::computed, models::OneilColumns::published, models::OneilColumns::table}) {
+  for (const models::OneilIntegralMethod method :
+       {models::OneilIntegralMethod::computed, models::OneilIntegralMethod::published,
+        models::OneilIntegralMethod::table}) {
     for (const bool by_column : {false, true}) {
       models::OneilSettings settings;
-      settings.columns = columns;
+      settings.integral_method = method;
       settings.space_by_column = by_column;
       shared::Medium medium = medium_from_params({});
-      if (columns == models::OneilColumns::published) {  // for the planet that it was made for
+      if (method == models::OneilIntegralMethod::published) {  // for the planet that it was made for
         medium.atmosphere_height_m = 159.0e3F;
         medium.rayleigh_scale_height_m = medium.mie_scale_height_m = 39750.0F;
         medium.rayleigh_scattering = {1.1e-6F, 1.9e-6F, 3.9e-6F};
@@ -59,8 +60,8 @@ TEST_F(GpuOneil, AgreesWithDoublePrecision) {
         worst = std::max(worst, error);
       }
       // Single precision; at the edge of the planet's shadow the ends of a ray's lit part keep few digits.
-      EXPECT_LT(mean, 2.0e-4) << static_cast<int>(columns) << by_column;
-      EXPECT_LT(worst, 0.01) << static_cast<int>(columns) << by_column;
+      EXPECT_LT(mean, 2.0e-4) << static_cast<int>(method) << by_column;
+      EXPECT_LT(worst, 0.01) << static_cast<int>(method) << by_column;
     }
   }
 }

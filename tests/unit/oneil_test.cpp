@@ -151,7 +151,7 @@ TEST(Oneil, PrintedEquationsAreASpecialCase) {
        {demo(), planet(6360.0e3, 80.0e3, 7994.0, 1200.0), planet(1000.0e3, 25.0e3, 6250.0, 6250.0)}) {
     for (const int samples : {2, 5, 16}) {
       OneilSettings settings;
-      settings.columns = OneilColumns::published;
+      settings.integral_method = OneilIntegralMethod::published;
       settings.samples = static_cast<std::uint32_t>(samples);
       const OneilModel model = make_oneil(m, settings);
       for (const Question& q : random_questions(700, m.atmosphere_height_m, m.planet_radius_m, -0.4)) {
@@ -253,13 +253,13 @@ TEST(Oneil, PrintedPolynomialFitsItsOwnPlanetOnly) {
                                    x * (static_cast<double>(s.k2) +
                                         x * (static_cast<double>(s.k3) + x * static_cast<double>(s.k4)))));
   };
-  EXPECT_NEAR(value(1.0) / exponential_column(39750.0, 6360.0e3, 0.0, 1.0, 159.0e3), 1.016, 0.001);
+  EXPECT_NEAR(value(1.0) / exponential_density_integral(39750.0, 6360.0e3, 0.0, 1.0, 159.0e3), 1.016, 0.001);
   for (int i = 0; i <= 100; ++i) {
     const double c = 0.01 * i;
-    EXPECT_NEAR(value(c) / exponential_column(39750.0, 6360.0e3, 0.0, c, 159.0e3), 1.0, 0.026) << c;
+    EXPECT_NEAR(value(c) / exponential_density_integral(39750.0, 6360.0e3, 0.0, c, 159.0e3), 1.0, 0.026) << c;
   }
   OneilSettings settings;
-  settings.columns = OneilColumns::published;
+  settings.integral_method = OneilIntegralMethod::published;
   EXPECT_GT(make_oneil(planet(6360.0e3, 80.0e3, 7994.0, 1200.0), settings).rayleigh.worst, 0.5);
 }
 
@@ -268,7 +268,7 @@ TEST(Oneil, TableConvergesToQuadrature) {
   ColumnError last = {1.0, 1.0};
   for (const std::uint32_t size : {32U, 64U, 128U, 256U}) {
     OneilSettings settings;
-    settings.columns = OneilColumns::table;
+    settings.integral_method = OneilIntegralMethod::table;
     settings.table_size = size;
     const OneilModel model = make_oneil(m, settings);
     EXPECT_LT(model.mie.worst, 0.45 * last.worst) << size;  // the second order would be 0.25
@@ -283,10 +283,10 @@ TEST(Oneil, TableConvergesToQuadrature) {
 
 TEST(Oneil, ManyPointsGiveTheIntegral) {
   const shared::Medium m = planet(6360.0e3, 80.0e3, 7994.0, 1200.0);
-  for (const OneilColumns columns : {OneilColumns::computed, OneilColumns::table}) {
+  for (const OneilIntegralMethod method : {OneilIntegralMethod::computed, OneilIntegralMethod::table}) {
     for (const bool by_column : {false, true}) {
       OneilSettings settings;
-      settings.columns = columns;
+      settings.integral_method = method;
       settings.samples = 600;
       settings.table_size = 256;
       settings.space_by_column = by_column;
@@ -316,10 +316,11 @@ TEST(Oneil, FivePointsWhereTheAirIsAreBetterThanFiveEvenOnes) {
 }
 
 TEST(Oneil, NoJumpAcrossTheTop) {
-  for (const OneilColumns columns : {OneilColumns::computed, OneilColumns::published, OneilColumns::table}) {
+  for (const OneilIntegralMethod method :
+       {OneilIntegralMethod::computed, OneilIntegralMethod::published, OneilIntegralMethod::table}) {
     const shared::Medium m = demo();
     OneilSettings settings;
-    settings.columns = columns;
+    settings.integral_method = method;
     const OneilModel model = make_oneil(m, settings);
     const double top = m.atmosphere_height_m;
     for (int i = 1; i < 60; ++i) {
@@ -337,10 +338,11 @@ TEST(Oneil, NightIsDarkAndNothingIsUndefined) {
                                   planet(2575.0e3, 400.0e3, 40000.0, 25000.0), planet(1000.0, 1000.0, 10.0, 1.0e6),
                                   planet(1.0e8, 1.0e7, 1.0e6, 10.0)};
   for (const shared::Medium& m : media) {
-    for (const OneilColumns columns : {OneilColumns::computed, OneilColumns::published, OneilColumns::table}) {
+    for (const OneilIntegralMethod method :
+         {OneilIntegralMethod::computed, OneilIntegralMethod::published, OneilIntegralMethod::table}) {
       for (const bool by_column : {false, true}) {
         OneilSettings settings;
-        settings.columns = columns;
+        settings.integral_method = method;
         settings.space_by_column = by_column;
         settings.table_size = 32;
         const OneilModel model = make_oneil(m, settings);
@@ -350,7 +352,8 @@ TEST(Oneil, NightIsDarkAndNothingIsUndefined) {
             EXPECT_TRUE(std::isfinite(answer.radiance[c]) && answer.radiance[c] >= 0.0);
             EXPECT_TRUE(std::isfinite(answer.transmittance[c]) && answer.transmittance[c] >= 0.0);
             // Straight away from the sun, looking down: the planet is between.
-            if (columns != OneilColumns::published && q.ray.cos_sun_zenith < -0.999 && q.ray.cos_view_zenith < -0.99) {
+            if (method != OneilIntegralMethod::published && q.ray.cos_sun_zenith < -0.999 &&
+                q.ray.cos_view_zenith < -0.99) {
               EXPECT_EQ(answer.radiance[c], 0.0);
             }
           }

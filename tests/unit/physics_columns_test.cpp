@@ -74,9 +74,9 @@ void expect_columns(const shared::Medium& m, double tolerance, const char* name)
   for (const Query& q : queries(m, 6000)) {
     const double far = brute::far_crossing(m, q.h, q.mu, m.atmosphere_height_m);
     const brute::Three expected = brute::column(m, q.h, q.mu, std::min(q.d, far));
-    const glsl64::vec3 in_double = glsl64::column_along(wide, q.h, q.mu, q.d);
+    const glsl64::vec3 in_double = glsl64::density_integral_along(wide, q.h, q.mu, q.d);
     const glsl32::Column in_float =
-        glsl32::column_along(m, static_cast<float>(q.h), static_cast<float>(q.mu), static_cast<float>(q.d));
+        glsl32::density_integral_along(m, static_cast<float>(q.h), static_cast<float>(q.mu), static_cast<float>(q.d));
     const brute::Three tau = brute::optical_depth(m, expected);
     const brute::Three tau_double = brute::optical_depth(m, {in_double.x, in_double.y, in_double.z});
     const brute::Three tau_float = brute::optical_depth(m, {in_float[0], in_float[1], in_float[2]});
@@ -157,12 +157,12 @@ TEST(physics_columns, from_space) {
       const brute::Three until_near = brute::column(m, h, mu, near);
       const brute::Three expected = brute::column(m, h, mu, far);
       EXPECT_LT(until_near[0], 1.0e-6 * expected[0]);
-      const glsl64::vec3 column = glsl64::column_to_top(wide, h, mu);
+      const glsl64::vec3 column = glsl64::density_integral_to_top(wide, h, mu);
       EXPECT_NEAR(column.x / expected[0], 1.0, 1.0e-5) << h << ' ' << perigee;
       EXPECT_NEAR(column.y / expected[1], 1.0, 1.0e-5) << h << ' ' << perigee;
     }
-    EXPECT_EQ(glsl64::column_to_top(wide, h, 1.0).x, 0.0);
-    EXPECT_EQ(glsl64::column_along(wide, h, -1.0, h - m.atmosphere_height_m - 0.5).x, 0.0);
+    EXPECT_EQ(glsl64::density_integral_to_top(wide, h, 1.0).x, 0.0);
+    EXPECT_EQ(glsl64::density_integral_along(wide, h, -1.0, h - m.atmosphere_height_m - 0.5).x, 0.0);
   }
 }
 
@@ -171,7 +171,7 @@ TEST(physics_columns, occluded_rays_stay_finite) {
   const shared::Medium m = medium_from_params({});
   for (const float h : {-400.0F, 0.0F, 1000.0F, 79000.0F, 1.0e6F}) {
     for (float mu = -1.0F; mu < 0.1F; mu += 0.003F) {
-      for (const float value : glsl32::column_to_top(m, h, mu)) {
+      for (const float value : glsl32::density_integral_to_top(m, h, mu)) {
         ASSERT_TRUE(std::isfinite(value)) << h << ' ' << mu;
         ASSERT_GE(value, 0.0F);
       }
@@ -184,11 +184,11 @@ TEST(physics_columns, transmittance_is_multiplicative) {
   for (const double mu : {-0.04, 0.0, 0.02, 0.5}) {
     const double h = 10000.0;
     const double split = 70000.0;
-    const glsl64::vec3 whole = glsl64::column_along(m, h, mu, 200000.0);
-    const glsl64::vec3 first = glsl64::column_along(m, h, mu, split);
+    const glsl64::vec3 whole = glsl64::density_integral_along(m, h, mu, 200000.0);
+    const glsl64::vec3 first = glsl64::density_integral_along(m, h, mu, split);
     const glsl64::vec3 second =
-        glsl64::column_along(m, glsl64::altitude_along(h, mu, split, m.planet_radius_m),
-                             glsl64::cos_zenith_along(h, mu, split, m.planet_radius_m), 200000.0 - split);
+        glsl64::density_integral_along(m, glsl64::altitude_along(h, mu, split, m.planet_radius_m),
+                                       glsl64::cos_zenith_along(h, mu, split, m.planet_radius_m), 200000.0 - split);
     const glsl64::vec3 a = glsl64::transmittance(m, whole);
     const glsl64::vec3 b = glsl64::transmittance(m, first) * glsl64::transmittance(m, second);
     EXPECT_NEAR(b.x / a.x, 1.0, 2.0e-5);

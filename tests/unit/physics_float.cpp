@@ -44,11 +44,11 @@ bool atmosphere_segment(float h0, float mu, float top, float R, float& start, fl
 bool shadow_segment(float h0, float mu, float mu_s, float nu, float R, float& start, float& end) {
   return lib::shadow_segment(h0, mu, mu_s, nu, R, start, end);
 }
-Column column_to_top(const shared::Medium& m, float h, float mu) {
-  return array_of(lib::column_to_top(medium_of(m), h, mu));
+Column density_integral_to_top(const shared::Medium& m, float h, float mu) {
+  return array_of(lib::density_integral_to_top(medium_of(m), h, mu));
 }
-Column column_along(const shared::Medium& m, float h, float mu, float d) {
-  return array_of(lib::column_along(medium_of(m), h, mu, d));
+Column density_integral_along(const shared::Medium& m, float h, float mu, float d) {
+  return array_of(lib::density_integral_along(medium_of(m), h, mu, d));
 }
 float mie_phase(const shared::Medium& m, float nu) { return lib::mie_phase(medium_of(m), nu); }
 Column single_scattering(const shared::Medium& m, float h0, float mu, float mu_s, float nu, float start, float end,

@@ -21,8 +21,8 @@ bool ray_hits_ground(float h, float mu, float R);
 float sun_disc_visibility(float h, float mu_s, float R, float angular_radius_rad);
 bool atmosphere_segment(float h0, float mu, float top, float R, float& start, float& end, bool& hits_ground);
 bool shadow_segment(float h0, float mu, float mu_s, float nu, float R, float& start, float& end);
-Column column_to_top(const shared::Medium& m, float h, float mu);
-Column column_along(const shared::Medium& m, float h, float mu, float d);
+Column density_integral_to_top(const shared::Medium& m, float h, float mu);
+Column density_integral_along(const shared::Medium& m, float h, float mu, float d);
 float mie_phase(const shared::Medium& m, float nu);
 Column single_scattering(const shared::Medium& m, float h0, float mu, float mu_s, float nu, float start, float end,
                          int steps);

@@ -52,7 +52,7 @@ TEST(physics_medium, vertical_optical_depths_and_transmittances) {
   Params params;
   params.atmosphere.ozone_absorption = Vec3(0.0F);
   const glsl64::Medium m = glsl64::widen(medium_from_params(params));
-  const glsl64::vec3 column = glsl64::column_to_top(m, 0.0, 1.0);
+  const glsl64::vec3 column = glsl64::density_integral_to_top(m, 0.0, 1.0);
   const glsl64::vec3 rayleigh = m.rayleigh_scattering * column.x;
   EXPECT_NEAR(rayleigh.x, 0.0464, 5.0e-5);
   EXPECT_NEAR(rayleigh.y, 0.1084, 5.0e-5);
@@ -64,7 +64,7 @@ TEST(physics_medium, vertical_optical_depths_and_transmittances) {
   EXPECT_NEAR(through.z, 0.747, 5.0e-4);
   // The default tent of ozone, 15 km of half width, holds as much as 15 km at its peak.
   const glsl64::Medium with_ozone = glsl64::widen(medium_from_params({}));
-  EXPECT_NEAR(glsl64::column_to_top(with_ozone, 0.0, 1.0).z, 15000.0, 0.1);
+  EXPECT_NEAR(glsl64::density_integral_to_top(with_ozone, 0.0, 1.0).z, 15000.0, 0.1);
 }
 
 TEST(physics_medium, densities) {

@@ -90,10 +90,10 @@ TEST(TableValues, GuideIsExactForAMixedMediumUnderAFullSun) {
   m.mie_extinction = m.mie_scattering = glsl64::vec3(0.0);
   m.ozone_absorption = glsl64::vec3(0.0);
   // One species without absorption: what is not transmitted has been scattered.
-  const glsl64::vec3 column = glsl64::column_to_top(m, 500.0, 0.1);
-  const glsl64::Guide guide = glsl64::guide_for_column(m, column);
+  const glsl64::vec3 column = glsl64::density_integral_to_top(m, 500.0, 0.1);
+  const glsl64::NormalisationFactors factors = glsl64::normalisation_factors(m, column);
   const glsl64::vec3 expected = glsl64::vec3(1.0) - glsl64::transmittance(m, column);
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(guide.high[c], expected[c], 1e-9);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(factors.high[c], expected[c], 1e-9);
   const glsl64::vec3 value(1e-12, 0.3, 1.0);
   for (int c = 0; c < 3; ++c) {
     EXPECT_NEAR(glsl64::value_from_texel(glsl64::texel_from_value(value))[c] / value[c], 1.0, 1e-12);
@@ -119,8 +119,8 @@ TEST(TableValues, SunsLightIsThatOfTheColumns) {
     for (const double mu : {1.0, 0.3, 0.02, -0.01, -0.05, -0.1}) {
       const double r = m.planet_radius_m + h;
       const glsl64::vec3 found = glsl64::sun_transmittance_at(m, h, r * mu);
-      const glsl64::vec3 expected =
-          glsl64::sun_visibility(h, mu, m.planet_radius_m) * glsl64::transmittance(m, glsl64::column_to_top(m, h, mu));
+      const glsl64::vec3 expected = glsl64::sun_visibility(h, mu, m.planet_radius_m) *
+                                    glsl64::transmittance(m, glsl64::density_integral_to_top(m, h, mu));
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 2e-4) << h << " " << mu;
     }
   }
