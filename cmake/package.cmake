@@ -1,10 +1,10 @@
-# The libraries as a package: find_package(tyndall) gives tyndall::effect, and tyndall::post where it was built.
+# Installs the libraries as a CMake package. find_package(tyndall) provides tyndall::effect, and tyndall::post if it was built.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/tyndall)
 install(TARGETS tyndall_effect EXPORT tyndall)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/tyndall DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 if(TARGET tyndall_post)
-  # Its headers, and those of the Vulkan layer that they need, under a folder of their own: #include "post/tonemap.hpp".
+  # Its headers, and those of the Vulkan layer that they include, are in a separate folder: #include "post/tonemap.hpp".
   install(TARGETS tyndall_post tyndall_gpu EXPORT tyndall)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/post ${PROJECT_SOURCE_DIR}/src/gpu DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tyndall-post
           FILES_MATCHING PATTERN "*.hpp" PATTERN host.hpp EXCLUDE)

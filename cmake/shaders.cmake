@@ -1,8 +1,8 @@
-# tyndall_add_shaders(TARGET <t> NAME <set> SHADERS a.comp b.vert ... [DEFINES name:KEY=VALUE])
-# Compiles each shader (glslc, spirv-opt with names kept, spirv-val), reflects its bindings and
-# embeds both in a header <set>_shaders.hpp, which declares one tyndall::gpu::Shader per shader,
-# named like the file without its directory, dots as underscores (march_per_pixel_comp).
-# A shader given as path@variant:KEY=VALUE is compiled with that macro and named path's name + variant.
+# tyndall_add_shaders(TARGET <target> NAME <set> SHADERS a.comp b.vert path@variant:KEY=VALUE ...)
+# Compiles each shader with glslc and spirv-opt (names are preserved) and checks it with spirv-val. Reflects its bindings, and
+# embeds module and bindings in the header <set>_shaders.hpp. The header declares one tyndall::gpu::Shader per shader, named
+# like the file without its folder and with underscores instead of dots (march_per_pixel_comp).
+# path@variant:KEY=VALUE compiles the shader with that macro and appends the variant to its name.
 find_program(TYNDALL_GLSLC glslc REQUIRED)
 find_program(TYNDALL_SPIRV_OPT spirv-opt REQUIRED)
 find_program(TYNDALL_SPIRV_VAL spirv-val REQUIRED)
@@ -36,7 +36,7 @@ function(tyndall_add_shaders)
       COMMENT "Shader ${source}${variant}"
       VERBATIM)
     list(APPEND modules ${spv})
-    # For programs that compile shaders anew while they run: set|name|source|define.
+    # One row per shader, for programs that compile shaders at run time: set|name|source|define.
     if(defines)
       string(SUBSTRING ${defines} 2 -1 define)
     else()

@@ -1,4 +1,4 @@
-# tyndall_warnings: what every target of ours compiles with. TYNDALL_WERROR is on in the ci preset.
+# tyndall_warnings: the warning options of all our targets. The ci preset sets TYNDALL_WERROR.
 add_library(tyndall_warnings INTERFACE)
 target_compile_options(tyndall_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-align

@@ -1,6 +1,6 @@
-// The whole of an engine's part in embedding Tyndall, in plain Vulkan: a device, three images, one frame.
-// The "engine" here clears its colour to black and its depth to the sky, so the picture is the sky alone;
-// it prints the radiance in the middle of it. Error handling is reduced to leaving with a number.
+// Embeds Tyndall in a minimal engine in plain Vulkan: a device, three images and one frame.
+// The engine clears its colour to black and its depth to the sky, so the picture shows only the sky. The program prints
+// the radiance of a pixel above the horizon. For brevity, an error ends it with a number that names the failed step.
 #include <tyndall/effect.hpp>
 
 #include <cstdio>
@@ -73,7 +73,7 @@ void move(VkCommandBuffer cmd, const Image& image, VkImageAspectFlags aspect, Vk
 }  // namespace
 
 int main() {
-  // 1. A device with what tyndall::requirements() names, and nothing more.
+  // 1. Create a device with the requirements of Tyndall and nothing else.
   const tyndall::Requirements requirements = tyndall::requirements();
   VkApplicationInfo application = {VK_STRUCTURE_TYPE_APPLICATION_INFO};
   application.apiVersion = requirements.api_version;
@@ -107,7 +107,7 @@ int main() {
   VkCommandBuffer cmd;
   need(vkAllocateCommandBuffers(device, &cmd_info, &cmd) == VK_SUCCESS, 24);
 
-  // 2. The engine's images: linear colour, depth, and where the result goes.
+  // 2. Create the engine's images: linear colour, depth and output.
   const VkImageUsageFlags read = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
   const Image color = make_image(physical, device, VK_FORMAT_R16G16B16A16_SFLOAT, read, VK_IMAGE_ASPECT_COLOR_BIT);
   const Image depth = make_image(physical, device, VK_FORMAT_D32_SFLOAT, read, VK_IMAGE_ASPECT_DEPTH_BIT);
@@ -129,13 +129,13 @@ int main() {
   need(vkAllocateMemory(device, &allocate, nullptr, &buffer_memory) == VK_SUCCESS, 26);
   vkBindBufferMemory(device, buffer, buffer_memory, 0);
 
-  // 3. The effect: borrows the device.
+  // 3. Create the effect. It borrows the device.
   tyndall::DeviceInfo info;
   info.instance = instance;
   info.physical_device = physical;
   info.device = device;
   info.get_instance_proc_addr = vkGetInstanceProcAddr;
-  // What looks wrong in the inputs of a frame; this program's are right, so nothing is said.
+  // Receives reports about suspicious inputs. The inputs of this program are valid, so a report is an error.
   info.message = [](void*, tyndall::Severity, std::string_view text) {
     std::fprintf(stderr, "tyndall: %.*s\n", static_cast<int>(text.size()), text.data());
     std::exit(2);
@@ -143,9 +143,9 @@ int main() {
   tyndall::EffectDesc desc;
   desc.max_extent = kExtent;
   desc.output_format = tyndall::OutputFormat::rgba32f;
-  desc.sky_depth = 0.0F;  // reversed Z: cleared to 0
+  desc.sky_depth = 0.0F;  // reversed Z: the far plane is at 0
   tyndall::Params params;
-  params.scattering.light_shafts = false;  // this engine has no shadow maps
+  params.scattering.light_shafts = false;  // because this engine has no shadow maps
   {
     tyndall::Result<tyndall::Effect> effect = tyndall::Effect::create(info, desc, params);
     if (!effect.ok()) {
@@ -153,7 +153,7 @@ int main() {
       return 1;
     }
 
-    // 4. A frame: the engine draws (here: clears), makes its images readable, records the effect.
+    // 4. Record a frame: draw the scene (here: clear the images), make the images readable, and record the effect.
     VkCommandBufferBeginInfo begin = {VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     vkBeginCommandBuffer(cmd, &begin);
     need(effect.value().record_precompute(cmd).ok(), 30);
@@ -176,7 +176,7 @@ int main() {
     inputs.color = {color.view, general};
     inputs.depth = {depth.view, general};
     inputs.output = {output.view, general};
-    inputs.camera.world_from_view.m[13] = 1000.0F;  // 1 km up, looking north (-z), level
+    inputs.camera.world_from_view.m[13] = 1000.0F;  // at an altitude of 1 km, looking north (-z)
     inputs.camera.clip_from_view = {{1.0F, 0, 0, 0, 0, -16.0F / 9.0F, 0, 0, 0, 0, 0, -1, 0, 0, 0.1F, 0}};
     inputs.sun.direction_to_sun = {0.0F, 0.6F, -0.8F};
     inputs.sun.irradiance = tyndall::Vec3(1.0F);
@@ -196,14 +196,14 @@ int main() {
     submit.pCommandBuffers = &cmd;
     need(vkQueueSubmit(queue, 1, &submit, VK_NULL_HANDLE) == VK_SUCCESS, 31);
     vkDeviceWaitIdle(device);
-  }  // the effect goes before the device
+  }  // destroys the effect before the device
 
   float* pixels = nullptr;
   vkMapMemory(device, buffer_memory, 0, VK_WHOLE_SIZE, 0, reinterpret_cast<void**>(&pixels));
   const float* middle = pixels + 4 * (kExtent.width * (kExtent.height / 4) + kExtent.width / 2);
   std::printf("radiance of the sky: %g %g %g\n", static_cast<double>(middle[0]), static_cast<double>(middle[1]),
               static_cast<double>(middle[2]));
-  // Blue, and neither black nor absurd: what the test that runs this example relies on.
+  // The test that runs this example checks that the sky is blue and its radiance plausible.
   const bool sky_is_blue = middle[2] > middle[0] && middle[0] > 1e-3F && middle[2] < 1.0F;
 
   for (const Image& image : {color, depth, output}) {

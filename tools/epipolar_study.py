@@ -1,12 +1,13 @@
-"""The numbers, plots and pictures of docs/epipolar.md: runs `tyndall bench`, `render` and `compare`, and writes
-docs/generated/epipolar.md, docs/images/epipolar_*.svg and docs/images/epipolar_*.png.
+"""Measures the numbers of docs/epipolar.md and makes its plots and pictures, with `tyndall bench`, `render` and `compare`.
 
     tools/epipolar_study.py TYNDALL [SECTION]...
 
-Needs Pillow and matplotlib. Sections: sweeps, pixels, tree, presets, pictures; without, all of them. What a section
-has measured is kept in out/epipolar_study.json, so that the others need not run again.
-Times are medians of three runs of three frames each, in turns with those that they are compared with, and are given in floor
-passes of the same run, because machines are shared and differ.
+Writes docs/generated/epipolar.md, docs/images/epipolar_*.svg and docs/images/epipolar_*.png. Needs Pillow and matplotlib.
+The sections are sweeps, pixels, tree, presets and pictures. Without a section, all of them run. The results of each section
+are stored in out/epipolar_study.json, so that a later run can measure the others alone.
+
+Times are medians of three runs of three frames each. Runs that are compared with each other alternate. Costs are in copy
+baselines of the same run, because the speed of shared machines varies.
 """
 import json
 import pathlib
@@ -26,11 +27,11 @@ from PIL import Image
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 IMAGES = ROOT / "docs/images"
-KEPT = ROOT / "out/epipolar_study.json"
+RESULTS = ROOT / "out/epipolar_study.json"
 SIZE = "1280x720"
 PARALLEL_RENDERS = 2
 TURNS = 3
-FIXED_EXPOSURE = ["--set", "tonemap.auto_exposure=false"]  # the pictures are compared
+FIXED_EXPOSURE = ["--set", "tonemap.auto_exposure=false"]  # because the pictures are compared
 BRUTE_FORCE = {"scattering.technique": "brute-force"}
 SWEEPS = {
     "slices × samples": [{"epipolar.slices": a, "epipolar.samples": b}
@@ -78,7 +79,7 @@ class Study:
         return tuple(out + ["--size", size])
 
     def costs(self, points, frames=3):
-        """points: (settings, size). What each costs, run in turns, because a machine's speed changes with time."""
+        """Returns the cost of each point (settings, size). Runs alternate, because the speed of a machine changes with time."""
         keys = [self.arguments(None, without_defaults(settings), size) for settings, size in points]
         runs = {k: [] for k in keys}
         for _ in range(TURNS):
@@ -87,7 +88,7 @@ class Study:
         return [cost(runs[k]) for k in keys]
 
     def render(self, jobs):
-        """jobs: (scene, settings, kind). Renders those that are new and returns the files of all."""
+        """Renders the jobs (scene, settings, kind) that are new and returns the files of all jobs."""
         keys = [(self.arguments(scene, without_defaults(settings), SIZE), kind) for scene, settings, kind in jobs]
         fresh = [k for k in dict.fromkeys(keys) if k not in self.rendered]
         for k in fresh:
@@ -97,7 +98,7 @@ class Study:
         return [self.rendered[k] for k in keys]
 
     def errors(self, points):
-        """points: (scene, settings, kinds). PSNR of PNG, mean relative error of EXR [%], against brute force."""
+        """Returns the errors of points (scene, settings, kinds) against brute force: PSNR for PNG, mean relative error for EXR [%]."""
         jobs = []
         for scene, settings, kinds in points:
             truth = {k: v for k, v in settings.items() if not k.startswith("epipolar.")} | BRUTE_FORCE
@@ -122,13 +123,13 @@ def cost(runs):
     def median(number):
         return statistics.median(number(run) for run in runs)
 
-    def floors(name):
+    def baselines(name):
         return median(lambda run: next(p["median_ms"] for p in run["passes"] if p["name"] == name) / run["floor_ms"])
 
     first = runs[0]
     effect = first["memory_bytes"]["effect_resources"]
-    return {"floors": median(lambda run: run["effect_ms"] / run["floor_ms"]), "ms": median(lambda run: run["effect_ms"]),
-            "passes": {p["name"]: floors(p["name"]) for p in first["passes"] if p["in_effect"]},
+    return {"baselines": median(lambda run: run["effect_ms"] / run["floor_ms"]), "ms": median(lambda run: run["effect_ms"]),
+            "passes": {p["name"]: baselines(p["name"]) for p in first["passes"] if p["in_effect"]},
             "counters": first["counters"], "mib": sum(v for k, v in effect.items()) / 2**20,
             "resources": effect, "device": first["device"]}
 
@@ -199,12 +200,12 @@ def save_plot(figure, name):
     plt.close(figure)
 
 
-def plot(kept):
+def plot(results):
     plt.rcParams.update({"svg.hashsalt": "tyndall", "font.size": 8})
-    if "sweeps" in kept:
+    if "sweeps" in results:
         figure, axes = plt.subplots(2, 2, figsize=(9, 6))
         for axis, name in zip(axes.flat, SWEEPS):
-            rows = [r for r in kept["sweeps"]["rows"] if r["sweep"] == name]
+            rows = [r for r in results["sweeps"]["rows"] if r["sweep"] == name]
             labels = [short(r["settings"]) for r in rows]
             axis.plot(labels, [r["psnr"] for r in rows], "o-", color="tab:blue")
             axis.set_ylabel("PSNR against brute force [dB]", color="tab:blue")
@@ -212,17 +213,17 @@ def plot(kept):
             axis.set_title(name)
             axis.tick_params(axis="x", rotation=20 if len(rows) > 5 else 0)
             other = axis.twinx()
-            other.plot(labels, [r["cost"]["floors"] for r in rows], "s--", color="tab:red")
-            other.set_ylabel("cost [floor passes]", color="tab:red")
+            other.plot(labels, [r["cost"]["baselines"] for r in rows], "s--", color="tab:red")
+            other.set_ylabel("cost [copy baselines]", color="tab:red")
             other.set_ylim(bottom=0)
         save_plot(figure, "sweeps")
-    if "pixels" in kept:
+    if "pixels" in results:
         figure, axis = plt.subplots(figsize=(7, 3.5))
-        sizes = list(kept["pixels"])
+        sizes = list(results["pixels"])
         base = [0.0] * len(sizes)
         rows = {"slices and samples": [], "shadow_tree + march_samples": [], "unwarp + unwarp_pixels": []}
         for size in sizes:
-            for label, value in zip(rows, grouped(kept["pixels"][size])):
+            for label, value in zip(rows, grouped(results["pixels"][size])):
                 rows[label].append(value)
         for label, values in rows.items():
             axis.bar(sizes, values, bottom=base, label=label, width=0.5)
@@ -233,8 +234,8 @@ def plot(kept):
 
 
 def grouped(c):
-    """Milliseconds: of the passes over samples, of those through shadow maps, of those over pixels."""
-    ms = {k: v * c["ms"] / c["floors"] for k, v in c["passes"].items()}
+    """Returns the milliseconds of the passes over samples, of those that read shadow maps, and of those over pixels."""
+    ms = {k: v * c["ms"] / c["baselines"] for k, v in c["passes"].items()}
     shadow = ms.get("shadow_tree", 0.0) + ms["march_samples"]
     picture = ms["unwarp"] + ms["unwarp_pixels"]
     return sum(ms.values()) - shadow - picture, shadow, picture
@@ -248,7 +249,7 @@ def table(head, rows, text_columns=1):
 
 
 def epipolar_mib(c):
-    """All of the effect's memory but the scattering tables."""
+    """Returns the memory of the effect without the scattering tables."""
     return sum(v for k, v in c["resources"].items() if not is_table(k)) / 2**20
 
 
@@ -256,55 +257,55 @@ def is_table(name):
     return any(part in name for part in ("single_rayleigh", "single_mie", "high_orders", "sun_transmittance", "sky_irradiance"))
 
 
-def page(kept):
+def page(results):
     text = ""
-    if "sweeps" in kept:
-        s = kept["sweeps"]
-        text += (f"Made by `make epipolar-study` on {s['epipolar']['device']}, {SIZE}, default scene. Costs are in floor passes of the "
-                 "same run.\n\n")
+    if "sweeps" in results:
+        s = results["sweeps"]
+        text += (f"Made by `make epipolar-study` on {s['epipolar']['device']}, {SIZE}, default scene. Costs are in copy "
+                 "baselines of the same run.\n\n")
         for name in SWEEPS:
-            rows = [(short(r["settings"]), f"{r['psnr']:.1f}", f"{r['mre']:.2f}", f"{r['cost']['floors']:.1f}",
+            rows = [(short(r["settings"]), f"{r['psnr']:.1f}", f"{r['mre']:.2f}", f"{r['cost']['baselines']:.1f}",
                      r["cost"]["counters"]["samples_marched"], f"{epipolar_mib(r['cost']):.1f}")
                     for r in s["rows"] if r["sweep"] == name]
-            text += table([name, "PSNR [dB]", "mean relative error [%]", "cost [floors]", "samples marched",
-                           "memory but tables [MiB]"], rows)
+            text += table([name, "PSNR [dB]", "mean relative error [%]", "cost [copy baselines]", "samples marched",
+                           "memory without tables [MiB]"], rows)
         a, b = s["epipolar"], s["brute_force"]
         text += "## Epipolar sampling and brute force\n\n"
-        rows = [(n, f"{c['floors']:.1f}", f"{c['ms']:.0f}", *(c["counters"][k] for k in a["counters"]))
+        rows = [(n, f"{c['baselines']:.1f}", f"{c['ms']:.0f}", *(c["counters"][k] for k in a["counters"]))
                 for n, c in (("epipolar", a), ("brute force", b))]
-        rows.append(("brute force / epipolar", f"{b['floors'] / a['floors']:.1f}", f"{b['ms'] / a['ms']:.1f}",
+        rows.append(("brute force / epipolar", f"{b['baselines'] / a['baselines']:.1f}", f"{b['ms'] / a['ms']:.1f}",
                      *(f"{b['counters'][k] / a['counters'][k]:.1f}" if a["counters"][k] and b["counters"][k] else ""
                        for k in a["counters"])))
-        text += table(["technique", "cost [floors]", "ms", *(k.replace("_", " ") for k in a["counters"])], rows)
-        text += table(["pass", "cost [floors]", "part [%]"],
-                      [(f"`{k}`", f"{v:.2f}", f"{100 * v / a['floors']:.0f}") for k, v in a["passes"].items()])
-    if "pixels" in kept:
+        text += table(["technique", "cost [copy baselines]", "ms", *(k.replace("_", " ") for k in a["counters"])], rows)
+        text += table(["pass", "cost [copy baselines]", "of the effect [%]"],
+                      [(f"`{k}`", f"{v:.2f}", f"{100 * v / a['baselines']:.0f}") for k, v in a["passes"].items()])
+    if "pixels" in results:
         text += "## Cost against pixels\n\n"
-        rows = [(size, *(f"{v:.1f}" for v in grouped(c)), f"{c['floors']:.1f}") for size, c in kept["pixels"].items()]
+        rows = [(size, *(f"{v:.1f}" for v in grouped(c)), f"{c['baselines']:.1f}") for size, c in results["pixels"].items()]
         text += table(["picture", "slices and samples [ms]", "tree and marching [ms]", "unwarping [ms]",
-                       "all [floors of that size]"], rows)
-    if "tree" in kept:
+                       "effect [copy baselines of that size]"], rows)
+    if "tree" in results:
         text += "## The tree\n\n"
         rows = []
-        for r in kept["tree"]:
+        for r in results["tree"]:
             w, o = r["with"]["passes"], r["without"]["passes"]
             both = w["shadow_tree"] + w["march_samples"]
             rows.append((f"{r['resolution']}²", f"{w['shadow_tree']:.2f}", f"{w['march_samples']:.2f}",
                          f"{o['march_samples']:.2f}", f"{o['march_samples'] / both:.1f}",
-                         f"{r['without']['floors'] / r['with']['floors']:.1f}",
+                         f"{r['without']['baselines'] / r['with']['baselines']:.1f}",
                          r["with"]["counters"]["shadow_map_fetches"], r["without"]["counters"]["shadow_map_fetches"],
                          "yes" if r["equal"] else "no"))
-        text += table(["maps", "building [floors]", "marching with [floors]", "without [floors]",
-                       "gain, building included", "gain of the whole effect", "map reads with", "without",
+        text += table(["shadow maps", "building the tree [copy baselines]", "marching with it", "marching without it",
+                       "speed-up, building included", "speed-up of the whole effect", "map reads with it", "map reads without it",
                        "same picture"], rows)
-    if "presets" in kept:
+    if "presets" in results:
         text += "## Presets\n\n"
         rows = [(f"`{n}`", *(f"{p['errors'][v]['psnr']:.1f}" for v in VIEWS),
-                 f"{p['cost']['floors']:.1f}", f"{epipolar_mib(p['cost']):.1f}") for n, p in kept["presets"].items()]
-        text += table(["preset", *(f"PSNR, {v} [dB]" for v in VIEWS), "cost [floors]", "memory but tables [MiB]"], rows)
-    if "pictures" in kept:
+                 f"{p['cost']['baselines']:.1f}", f"{epipolar_mib(p['cost']):.1f}") for n, p in results["presets"].items()]
+        text += table(["preset", *(f"PSNR, {v} [dB]" for v in VIEWS), "cost [copy baselines]", "memory without tables [MiB]"], rows)
+    if "pictures" in results:
         text += "## Pictures\n\n"
-        text += table(["view", "PSNR [dB]"], [(k, f"{v:.1f}") for k, v in kept["pictures"].items()])
+        text += table(["view", "PSNR [dB]"], [(k, f"{v:.1f}") for k, v in results["pictures"].items()])
     return text.rstrip("\n") + "\n"
 
 
@@ -312,18 +313,18 @@ def main():
     sections = {"sweeps": sweeps, "pixels": pixels, "tree": tree, "presets": presets, "pictures": pictures}
     if len(sys.argv) < 2 or any(name not in sections for name in sys.argv[2:]):
         sys.exit(__doc__.strip())
-    kept = json.loads(KEPT.read_text(encoding="utf-8")) if sys.argv[2:] and KEPT.exists() else {}
-    KEPT.parent.mkdir(exist_ok=True)
+    results = json.loads(RESULTS.read_text(encoding="utf-8")) if sys.argv[2:] and RESULTS.exists() else {}
+    RESULTS.parent.mkdir(exist_ok=True)
     IMAGES.mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory() as scratch:
         study = Study(str(pathlib.Path(sys.argv[1]).resolve()), scratch)
         for name in sys.argv[2:] or sections:
             start = time.monotonic()
-            kept[name] = sections[name](study)
-            KEPT.write_text(json.dumps(kept), encoding="utf-8")
+            results[name] = sections[name](study)
+            RESULTS.write_text(json.dumps(results), encoding="utf-8")
             print(f"{name}: {time.monotonic() - start:.0f} s", flush=True)
-    plot(kept)
-    (ROOT / "docs/generated/epipolar.md").write_text(page(kept), encoding="utf-8")
+    plot(results)
+    (ROOT / "docs/generated/epipolar.md").write_text(page(results), encoding="utf-8")
 
 
 if __name__ == "__main__":

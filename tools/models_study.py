@@ -1,10 +1,10 @@
-"""Every model on one scene: pictures, cost, and error. `make models-study` runs it.
+"""Measures and renders all models on one scene: pictures, cost and error. `make models-study` runs it.
 
     models_study.py TYNDALL [pictures] [times] [errors] [--validation FILE.json]
 
-writes docs/images/models_*.png and docs/generated/models.md, of all three parts or of those named: the others keep what the
-page has. `times` wants a quiet machine and takes a minute or two. The errors against the path tracer are those of
-`tyndall validate --json`, which is run unless its output is given."""
+Writes docs/images/models_*.png and docs/generated/models.md. Without an argument, all three parts run. Otherwise only the
+named parts run, and the page retains its other columns. `times` takes a minute or two and needs an idle machine. The
+errors come from `tyndall validate --json`, which runs unless its output is given."""
 import json
 import math
 import pathlib
@@ -21,12 +21,12 @@ REGIONS = ("ground", "air", "space")
 SIZE = "480x270"
 COST_SIZE = "640x360"
 COST_FRAMES = 3
-OF_ANY_FRAME = ("shadow_maps", "tonemap", "measure_luminance", "adapt_exposure")  # passes that no model changes
-# What air costs is what frames cost above the bare ground's: shadows are small and the ground is grey, so that
-# the rest does not drown it.
+NOT_OF_A_MODEL = ("shadow_maps", "tonemap", "measure_luminance", "adapt_exposure")  # passes that do not depend on the model
+# The cost of a model is the difference between a frame with and without it. Small shadow maps and grey ground reduce the
+# cost of the rest, and so the noise of that difference.
 COST = ["terrain.shading=plain", "shadows.resolution=512", "shadows.cascades=2"]
 
-# Name of the picture, title, settings, rows of validate that stand for it.
+# Name of the picture, title, settings, row of `validate` with its errors.
 MODELS = [
     ("atmosphere", "`atmosphere`, epipolar", [], "precomputed, order 1 integrated"),
     ("brute_force", "`atmosphere`, every pixel", ["scattering.technique=brute-force"], "precomputed, order 1 integrated"),
@@ -86,7 +86,7 @@ def mean_error(validation, row, atmosphere, region):
 
 
 def render_pictures(tyndall):
-    """Decibels between a model per vertex and per pixel, by title."""
+    """Renders all pictures and returns the PSNR between vertex and pixel evaluation, by title."""
     images = ROOT / "docs" / "images"
     seen = {}
     for name, _, settings, _ in MODELS:
@@ -101,10 +101,10 @@ def render_pictures(tyndall):
 
 
 def measure_times(tyndall):
-    """Milliseconds by title, and the words that say how they were measured."""
+    """Returns milliseconds by title, and the paragraph that describes the measurement."""
     def frame(settings):
         times, effect, device = passes(tyndall, settings)
-        return sum(ms for name, ms in times.items() if name not in OF_ANY_FRAME), effect, device
+        return sum(ms for name, ms in times.items() if name not in NOT_OF_A_MODEL), effect, device
 
     bare = [frame(["scattering.enabled=false"])[0]]
     taken = {}
@@ -112,18 +112,18 @@ def measure_times(tyndall):
         whole, effect, device = frame(settings)
         if count % 3 == 2:
             bare.append(frame(["scattering.enabled=false"])[0])
-        # A model that is drawn with the ground costs what its frame takes longer than one without air.
+        # For a model that is drawn with the ground: the difference between its frame and one without the atmosphere.
         taken[title] = (effect, True) if effect > 0 else (whole - statistics.mean(bare), False)
     spread = statistics.pstdev(bare)
     cells = {title: f"{ms:.0f}" if exact else f"{ms:.0f} ± {spread:.0f}" for title, (ms, exact) in taken.items()}
-    words = (f"Cost: milliseconds that the air adds to a frame of {COST_SIZE} on {device}, median of {COST_FRAMES}, in one run: the passes of the effect,\n"
-             f"or, of models that are drawn with the ground, what the frame takes longer than one without air, {statistics.mean(bare):.0f} ms,\n"
-             "with the standard deviation of that one's times. All light the ground once for each pixel that shows it.")
+    words = (f"Cost: additional milliseconds per frame of {COST_SIZE} on {device}, median of {COST_FRAMES}, all in one run. For `atmosphere` and its\n"
+             "medium it is the sum of the passes of the effect. The other models are drawn with the ground, so it is the difference to a\n"
+             f"frame without the atmosphere ({statistics.mean(bare):.0f} ms), with the standard deviation of the latter.")
     return cells, words
 
 
 def read_page():
-    """What the page has, by title, and its words about the times."""
+    """Returns the rows of the page by title, and its paragraph about the times."""
     if not PAGE.exists():
         return {}, ""
     text = PAGE.read_text()
@@ -132,7 +132,7 @@ def read_page():
         cells = [cell.strip() for cell in line.strip("|").split("|")] if line.startswith("| `") else []
         if len(cells) == 3 + 2 * len(REGIONS):
             rows[cells[0]] = cells
-    words = text[text.index("Cost:"):text.index("\nPer pixel:")] if "Cost:" in text and "\nPer pixel:" in text else ""
+    words = text[text.index("Cost:"):text.index("\n\nPer pixel:")] if "Cost:" in text and "\n\nPer pixel:" in text else ""
     return rows, words
 
 
@@ -157,12 +157,12 @@ def main():
         for _, title, _, row in MODELS:
             rows[title][3:] = [mean_error(validation, row, atmosphere, region)
                                for atmosphere in ("as given", "without ozone") for region in REGIONS]
-    lines = ["# Every model on one scene", "", "Made by `make models-study`. The scene is `scenes/models.toml`.", "", words,
-             f"Per pixel: decibels between the picture and that of the same model for every pixel, at {SIZE}.",
-             "Error: mean against the path tracer, per cent of the ray's brightest channel, sun up, for eyes on the ground, in the air and",
-             "in space, in the medium as given and in the same without ozone, which only `atmosphere` knows; all orders for `atmosphere`,",
-             "the first for the others.", "",
-             "| model | cost, ms | per pixel, dB | ground | air | space | ground, no ozone | air, no ozone | space, no ozone |",
+    lines = ["# All models on one scene", "", "Made by `make models-study` from `scenes/models.toml`.", "", words,
+             f"\nPer pixel: PSNR in dB against the same model evaluated per pixel, at {SIZE}.",
+             "\nError: mean against the path tracer with the sun up, in % of the largest channel of the ray, for eyes near the ground, inside",
+             "the atmosphere and in space. The reference has the given medium, or the same without ozone, which only `atmosphere` models. It",
+             "has all orders for `atmosphere` and order 1 for the other models.", "",
+             "| model | cost, ms | per pixel, dB | ground | atmosphere | space | ground, no ozone | atmosphere, no ozone | space, no ozone |",
              "|---" + "|--:" * (2 + 2 * len(REGIONS)) + "|"]
     lines += ["| " + " | ".join(rows[title]) + " |" for title in titles]
     PAGE.write_text("\n".join(lines) + "\n")

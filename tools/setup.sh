@@ -14,7 +14,7 @@ libdraco-dev libmeshoptimizer-dev libstb-dev libopenexr-dev libpng-dev zlib1g-de
 needs() {
   echo "Tyndall needs: a C++20 compiler, CMake 3.25, Ninja, pkg-config, glslc, SPIRV-Tools, SPIRV-Cross (C API)," >&2
   echo "Vulkan 1.3 headers, loader, a driver and the validation layers, GLM, CLI11, toml++, nlohmann-json," >&2
-  echo "stb, OpenEXR, libpng, zlib, GDAL, GoogleTest, GLFW, Dear ImGui, shaderc; Xvfb, xdotool and openbox for tests of windows." >&2
+  echo "stb, OpenEXR, libpng, zlib, GDAL, GoogleTest, GLFW, ImGui, shaderc; Xvfb, xdotool and openbox for tests of windows." >&2
   echo "Optional: Draco and meshoptimizer, for glTF files that they compress." >&2
   echo "Going on with what is installed." >&2
 }
