@@ -5,14 +5,14 @@
 #include <deque>
 
 #include "cli.hpp"
-#include "config/text.hpp"
+#include "files/text.hpp"
 
 namespace tyndall::cli {
 namespace {
 
-using config::concat;
-using config::input_error;
-using config::one_line;
+using files::concat;
+using files::input_error;
+using files::one_line;
 
 // The last of "-o,--output": what messages call the option.
 std::string long_name(const std::string& names) { return names.substr(names.rfind(',') + 1); }
@@ -121,7 +121,7 @@ Result<void> Arguments::Implementation::store_positionals() const {
       names_only = true;
     } else if (!names_only && argument.size() > 1 && argument[0] == '-') {
       const std::string name = argument.substr(0, argument.find('='));
-      const std::optional<std::string> near = config::nearest(name, known_names());
+      const std::optional<std::string> near = files::nearest(name, known_names());
       return input_error(concat({"unknown option '", one_line(name), "'"}), command,
                          near ? concat({"did you mean '", *near, "'?"}) : concat({"'", command, " --help' lists all"}));
     } else {
@@ -186,7 +186,7 @@ void Arguments::count(const std::string& names, std::uint32_t& target, std::uint
 }
 
 void Arguments::number(const std::string& names, double& target, double min, double max, const std::string& help) {
-  const std::string shown_help = concat({help, " [", config::number_text(target), "]"});
+  const std::string shown_help = concat({help, " [", files::number_text(target), "]"});
   value(names, "X", shown_help, [&target, min, max, name = long_name(names)](const std::string& given) {
     const Result<double> read = parse_number(given, name, min, max);
     if (!read) return Result<void>(read.error());

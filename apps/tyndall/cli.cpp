@@ -8,17 +8,17 @@
 #include <optional>
 
 #include "arguments.hpp"
-#include "config/files.hpp"
 #include "config/scene_file.hpp"
-#include "config/text.hpp"
+#include "files/files.hpp"
+#include "files/text.hpp"
 #include "input_files.hpp"
 
 namespace tyndall::cli {
 namespace {
 
-using config::concat;
-using config::input_error;
-using config::one_line;
+using files::concat;
+using files::input_error;
+using files::one_line;
 
 constexpr std::uint32_t kMostFrames = 1000000;
 constexpr std::size_t kLongestLine = 2000;
@@ -76,9 +76,9 @@ Result<Size> parse_size(std::string_view text, std::string_view option) {
   std::int64_t width = 0;
   std::int64_t height = 0;
   const auto fits = [](std::int64_t side) { return side >= 1 && side <= kLargestSize; };
-  const bool valid = config::count_parts(text, 'x') == 2 &&
-                     config::read_integer(config::part(text, 'x', 0), width) == config::NumberError::none &&
-                     config::read_integer(config::part(text, 'x', 1), height) == config::NumberError::none &&
+  const bool valid = files::count_parts(text, 'x') == 2 &&
+                     files::read_integer(files::part(text, 'x', 0), width) == files::NumberError::none &&
+                     files::read_integer(files::part(text, 'x', 1), height) == files::NumberError::none &&
                      fits(width) && fits(height);
   if (valid) return Size{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
   return input_error(concat({shown(text), " is no size"}), option,
@@ -88,7 +88,7 @@ Result<Size> parse_size(std::string_view text, std::string_view option) {
 Result<std::uint32_t> parse_count(std::string_view text, std::string_view option, std::uint32_t min,
                                   std::uint32_t max) {
   std::int64_t value = 0;
-  if (config::read_integer(text, value) == config::NumberError::none && value >= min && value <= max) {
+  if (files::read_integer(text, value) == files::NumberError::none && value >= min && value <= max) {
     return static_cast<std::uint32_t>(value);
   }
   return input_error(concat({shown(text), " is no count"}), option,
@@ -97,17 +97,17 @@ Result<std::uint32_t> parse_count(std::string_view text, std::string_view option
 
 Result<double> parse_number(std::string_view text, std::string_view option, double min, double max) {
   double value = 0.0;
-  if (config::read_number(text, value) == config::NumberError::none && value >= min && value <= max) return value;
+  if (files::read_number(text, value) == files::NumberError::none && value >= min && value <= max) return value;
   return input_error(concat({shown(text), " is not allowed"}), option,
-                     concat({"allowed is a number, ", config::number_text(min), " to ", config::number_text(max)}));
+                     concat({"allowed is a number, ", files::number_text(min), " to ", files::number_text(max)}));
 }
 
 Result<void> check_altitude(double altitude_m, const Params& params, std::string_view where) {
   const double lowest_m = -0.25 * static_cast<double>(params.planet.radius_m);
   if (altitude_m >= lowest_m) return {};
   return input_error(
-      concat({"an eye at ", config::number_text(altitude_m), " m is too deep in the planet"}), where,
-      concat({"allowed is minus a quarter of planet.radius_m at the lowest, ", config::number_text(lowest_m), " m"}));
+      concat({"an eye at ", files::number_text(altitude_m), " m is too deep in the planet"}), where,
+      concat({"allowed is minus a quarter of planet.radius_m at the lowest, ", files::number_text(lowest_m), " m"}));
 }
 
 void add_common(Arguments& arguments, CommonOptions& options, unsigned which) {
@@ -184,7 +184,7 @@ Result<void> check_output(const CommonOptions& options, const std::vector<std::s
   for (std::uint32_t frame = 0; frame < options.frames; ++frame) {
     if (Result<void> r = check_not_input(frame_path(options.output, frame), "-o", inputs); !r) return r;
   }
-  return config::check_writable(frame_path(options.output, 0));
+  return files::check_writable(frame_path(options.output, 0));
 }
 
 Progress::Progress(std::string_view label) : label_(label), visible_(::isatty(STDERR_FILENO) == 1) {}

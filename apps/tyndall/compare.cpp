@@ -3,7 +3,7 @@
 
 #include "arguments.hpp"
 #include "cli.hpp"
-#include "config/text.hpp"
+#include "files/text.hpp"
 #include "image/image.hpp"
 #include "image/metrics.hpp"
 #include "input_files.hpp"
@@ -11,8 +11,8 @@
 namespace tyndall::cli {
 namespace {
 
-using config::concat;
-using config::number_text;
+using files::concat;
+using files::number_text;
 
 constexpr int kBeyond = 2;
 constexpr int kSizesDiffer = 3;
@@ -127,7 +127,7 @@ int run_compare(Args args) {
                 kSizesDiffer);
   }
   for (const auto& [path, file] : {std::pair(path_a, &a.value()), std::pair(path_b, &b.value())}) {
-    if (!file->note.empty()) note(concat({"'", config::one_line(path, 200), "': ", file->note}));
+    if (!file->note.empty()) note(concat({"'", files::one_line(path, 200), "': ", file->note}));
   }
   const image::Metrics metrics = image::compare(a.value().image, b.value().image);
   if (!difference_path.empty()) {

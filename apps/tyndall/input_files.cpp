@@ -6,14 +6,14 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "config/files.hpp"
-#include "config/text.hpp"
+#include "files/files.hpp"
+#include "files/text.hpp"
 
 namespace tyndall::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using config::concat;
+using files::concat;
 
 // A file's name in a URI, whose special characters stand as %XX (RFC 3986).
 std::string decoded_uri(std::string_view uri) {
@@ -36,7 +36,7 @@ void add_references(const std::string& path, std::vector<InputFile>& out) {
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored)) return;  // a pipe can be read only once
   constexpr std::uint64_t kLargestDocument = std::uint64_t{64} << 20;
-  const Result<std::string> text = config::read_file(path, kLargestDocument);
+  const Result<std::string> text = files::read_file(path, kLargestDocument);
   if (!text) return;
   const nlohmann::json document = nlohmann::json::parse(text.value(), nullptr, false);
   if (!document.is_object()) return;
@@ -75,8 +75,8 @@ Result<void> check_not_input(const std::string& path, std::string_view option, c
   for (const InputFile& input : inputs) {
     struct stat info {};
     if (::stat(input.path.c_str(), &info) != 0 || !same_file(info, output)) continue;
-    return config::input_error(concat({"'", config::one_line(path, 200), "' is ", input.name, " of this run"}), option,
-                               "allowed is a file that is not read");
+    return files::input_error(concat({"'", files::one_line(path, 200), "' is ", input.name, " of this run"}), option,
+                              "allowed is a file that is not read");
   }
   return {};
 }

@@ -9,14 +9,14 @@
 #include <vector>
 
 #include "cli.hpp"
-#include "config/text.hpp"
+#include "files/text.hpp"
 #include "tyndall/version.hpp"
 #include "verbs.hpp"
 
 namespace tyndall::cli {
 namespace {
 
-using config::concat;
+using files::concat;
 
 std::string help_text() {
   std::string text = "Outdoor light scattering: sky, haze and light shafts.\n\n"
@@ -38,9 +38,9 @@ int run_verb(const std::string& name, Args args) {
     list.append(list.empty() ? "" : ", ").append(verb.name);
   }
   const bool option = name.starts_with('-');
-  const std::optional<std::string> near = option ? std::nullopt : config::nearest(name, names);
-  return fail(config::input_error(
-      concat({option ? "unknown option '" : "unknown verb '", config::one_line(name), "'"}),
+  const std::optional<std::string> near = option ? std::nullopt : files::nearest(name, names);
+  return fail(files::input_error(
+      concat({option ? "unknown option '" : "unknown verb '", files::one_line(name), "'"}),
       option ? "before the verb" : "command line",
       near ? concat({"did you mean '", *near, "'?"})
            : concat({option ? "allowed are --help and --version" : "allowed is one of ", option ? "" : list})));

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "cli.hpp"
-#include "scene/scene_params.hpp"
+#include "scene/description/scene_params.hpp"
 #include "tables/make_ready.hpp"
 
 namespace tyndall::cli {

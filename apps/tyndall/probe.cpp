@@ -5,8 +5,8 @@
 
 #include "arguments.hpp"
 #include "cli.hpp"
-#include "config/files.hpp"
-#include "config/text.hpp"
+#include "files/files.hpp"
+#include "files/text.hpp"
 #include "input_files.hpp"
 #include "make_tables.hpp"
 #include "probe_models.hpp"
@@ -66,7 +66,7 @@ int run_probe(Args args) {
   arguments.count("--seed", settings.seed, 0, UINT32_MAX, "reference: of the random numbers");
   if (const std::optional<int> status = arguments.parse(args)) return *status;
   if (queries.empty()) {
-    return fail(config::input_error("no queries", "tyndall probe", "needed is --queries FILE"));
+    return fail(files::input_error("no queries", "tyndall probe", "needed is --queries FILE"));
   }
   const ProbeModel& model = *std::find_if(probe_models().begin(), probe_models().end(),
                                           [&](const ProbeModel& m) { return m.name == model_name; });
@@ -76,15 +76,15 @@ int run_probe(Args args) {
   for (std::size_t row = 0; row < table.value().queries.size(); ++row) {
     const double altitude_m = table.value().queries[row].altitude_m;
     if (altitude_m >= 0.0) continue;
-    const std::string where = config::concat(
-        {config::one_line(queries, 200), ":", std::to_string(table.value().input.lines[row]), ", column 'altitude_m'"});
+    const std::string where = files::concat(
+        {files::one_line(queries, 200), ":", std::to_string(table.value().input.lines[row]), ", column 'altitude_m'"});
     if (Result<void> r = check_altitude(altitude_m, options.settings.effect, where); !r) return fail(r.error());
   }
   if (!options.output.empty()) {
     std::vector<InputFile> inputs = input_files(options);
     inputs.push_back({"the file of queries", queries});
     if (Result<void> r = check_not_input(options.output, "-o", inputs); !r) return fail(r.error());
-    if (Result<void> r = config::check_writable(options.output); !r) return fail(r.error());
+    if (Result<void> r = files::check_writable(options.output); !r) return fail(r.error());
   }
 
   settings.params = options.settings.effect;
@@ -108,7 +108,7 @@ int run_probe(Args args) {
   if (to_file || !options.json) {
     const std::string text = answers_as_csv(table.value(), answers.value(), model.random);
     if (!to_file) return print(text);
-    if (Result<void> r = config::write_file(options.output, text); !r) return fail(r.error());
+    if (Result<void> r = files::write_file(options.output, text); !r) return fail(r.error());
   }
   return options.json ? print(as_json(model, settings, answers.value())) : kDone;
 }

@@ -10,7 +10,7 @@
 #include "models/oneil.hpp"
 #include "models/precomputed.hpp"
 #include "reference/path_tracer.hpp"
-#include "scene/oneil_settings.hpp"
+#include "scene/sky/oneil_settings.hpp"
 
 namespace tyndall::cli {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "models/homogeneous.hpp"
-#include "scene/scene_params.hpp"
+#include "scene/description/scene_params.hpp"
 #include "tables/make_ready.hpp"
 #include "tyndall/params.hpp"
 #include "tyndall/result.hpp"

@@ -5,14 +5,14 @@
 #include <optional>
 
 #include "cli.hpp"
-#include "config/files.hpp"
-#include "config/text.hpp"
+#include "files/files.hpp"
+#include "files/text.hpp"
 
 namespace tyndall::cli {
 namespace {
 
-using config::concat;
-using config::input_error;
+using files::concat;
+using files::input_error;
 
 constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 31U;  // bytes; some ten million rays
 constexpr std::string_view kSky = "sky";
@@ -36,45 +36,45 @@ constexpr std::size_t kNumbersWithoutError = 6;
 
 std::string allowed_text(const Column& column) {
   return concat(
-      {"allowed is ", config::number_text(column.min), " to ", config::number_text(column.max), " ", column.unit});
+      {"allowed is ", files::number_text(column.min), " to ", files::number_text(column.max), " ", column.unit});
 }
 
 Result<double> read_cell(std::string_view field, const Column& column, std::string_view where) {
-  const std::string text = config::csv_value(field);
+  const std::string text = files::csv_value(field);
   double value = 0.0;
-  const config::NumberError read = config::read_number(text, value);
-  if (read == config::NumberError::none && value >= column.min && value <= column.max) return value;
-  const char* const what = read == config::NumberError::none || read == config::NumberError::too_large
+  const files::NumberError read = files::read_number(text, value);
+  if (read == files::NumberError::none && value >= column.min && value <= column.max) return value;
+  const char* const what = read == files::NumberError::none || read == files::NumberError::too_large
                                ? "' is out of range"
-                           : read == config::NumberError::not_finite ? "' is not a finite number"
-                                                                     : "' is not a number";
-  return input_error(concat({"'", config::one_line(text), what}), where, allowed_text(column));
+                           : read == files::NumberError::not_finite ? "' is not a finite number"
+                                                                    : "' is not a number";
+  return input_error(concat({"'", files::one_line(text), what}), where, allowed_text(column));
 }
 
-Result<std::size_t> find_column(const config::CsvTable& table, const Column& column, const std::string& path) {
+Result<std::size_t> find_column(const files::CsvTable& table, const Column& column, const std::string& path) {
   const std::vector<std::size_t> found = table.find(column.name);
   if (found.size() == 1) return found.front();
   const std::string needed =
       concat({"needed are ", kColumns[0].name, ", ", kColumns[1].name, ", ", kColumns[2].name, ", ", kColumns[3].name});
   return input_error(concat({found.empty() ? "no column '" : "several columns '", column.name, "'"}),
-                     config::one_line(path, 200), concat({needed, found.empty() ? "" : ", once each"}));
+                     files::one_line(path, 200), concat({needed, found.empty() ? "" : ", once each"}));
 }
 
 void append_numbers(std::string& out, const std::array<double, 3>& numbers, bool single_precision) {
   for (const double number : numbers) {
     out += ',';
-    out += single_precision ? config::number_text(static_cast<float>(number)) : config::number_text(number);
+    out += single_precision ? files::number_text(static_cast<float>(number)) : files::number_text(number);
   }
 }
 
 }  // namespace
 
 Result<ProbeTable> read_queries(const std::string& path) {
-  const std::string shown = config::one_line(path, 200);
-  Result<std::string> text = config::read_file(path, kLargestFile);
+  const std::string shown = files::one_line(path, 200);
+  Result<std::string> text = files::read_file(path, kLargestFile);
   // A table that cannot be read is bad input, not a failure of this run.
   if (!text) return Error{ErrorCode::invalid_argument, std::move(text).error().message};
-  Result<config::CsvTable> parsed = config::parse_csv(std::move(text).value(), shown);
+  Result<files::CsvTable> parsed = files::parse_csv(std::move(text).value(), shown);
   if (!parsed) return std::move(parsed).error();
   ProbeTable table = {std::move(parsed).value(), {}};
   std::array<std::size_t, kColumnCount> at = {};
@@ -87,11 +87,11 @@ Result<ProbeTable> read_queries(const std::string& path) {
   for (std::size_t row = 0; row < table.input.rows(); ++row) {
     const auto cell = [&](ColumnIndex column) { return table.input.field(row, at[column]); };
     ProbeQuery query;
-    query.sky = config::csv_value(cell(kViewZenith)) == kSky;
+    query.sky = files::csv_value(cell(kViewZenith)) == kSky;
     std::array<double, kColumnCount> numbers = {};
     for (const ColumnIndex column : {kAltitude, kViewZenith, kSunZenith, kAzimuth}) {
       // The sky is not looked at in any direction.
-      if (query.sky && (column == kViewZenith || (column == kAzimuth && config::csv_value(cell(column)).empty()))) {
+      if (query.sky && (column == kViewZenith || (column == kAzimuth && files::csv_value(cell(column)).empty()))) {
         continue;
       }
       double& number = numbers[column];
@@ -116,7 +116,7 @@ Result<ProbeTable> read_queries(const std::string& path) {
 std::string answers_as_csv(const ProbeTable& table, std::span<const ProbeAnswer> answers, bool random) {
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < table.input.header.size(); ++i) {
-    const std::string name = config::csv_value(table.input.header[i]);
+    const std::string name = files::csv_value(table.input.header[i]);
     if (std::find(std::begin(kAnswerColumns), std::end(kAnswerColumns), name) == std::end(kAnswerColumns)) {
       kept.push_back(i);
     }

@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "config/csv.hpp"
+#include "files/csv.hpp"
 #include "probe_models.hpp"
 
 namespace tyndall::cli {
 
 struct ProbeTable {
-  config::CsvTable input;
+  files::CsvTable input;
   std::vector<ProbeQuery> queries;  // one per row
 };
 

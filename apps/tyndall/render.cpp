@@ -3,7 +3,7 @@
 
 #include "arguments.hpp"
 #include "cli.hpp"
-#include "config/text.hpp"
+#include "files/text.hpp"
 #include "gpu/host.hpp"
 #include "image/image.hpp"
 #include "make_tables.hpp"
@@ -17,7 +17,7 @@ std::vector<std::pair<std::string, std::string>> metadata_of(const scene::Scene&
                                                              const config::Settings& settings, image::FileKind kind) {
   std::vector<std::pair<std::string, std::string>> list =
       kind == image::FileKind::exr ? config::radiance_metadata(settings) : config::metadata(settings);
-  list.emplace_back("tyndall.frame.exposure", config::number_text(scene.exposure()));
+  list.emplace_back("tyndall.frame.exposure", files::number_text(scene.exposure()));
   return list;
 }
 
@@ -39,8 +39,8 @@ Result<void> write_frame(scene::Scene& scene, const std::string& path, const con
 Result<void> find_place(scene::CameraPath& path, const scene::Scene& scene) {
   if (!path.has_dates() || !path.place_text.empty()) return {};
   if (!scene.place()) {
-    return config::input_error("a path with dates has no place, and the elevation file has none on the Earth",
-                               "[playback]", "needed is place = \"LAT,LON\"");
+    return files::input_error("a path with dates has no place, and the elevation file has none on the Earth",
+                              "[playback]", "needed is place = \"LAT,LON\"");
   }
   path.place = *scene.place();
   return {};

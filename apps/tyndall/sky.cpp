@@ -6,22 +6,22 @@
 
 #include "arguments.hpp"
 #include "cli.hpp"
-#include "config/text.hpp"
 #include "effect/medium.hpp"
+#include "files/text.hpp"
 #include "gpu/host.hpp"
 #include "image/image.hpp"
 #include "make_tables.hpp"
 #include "models/gpu_probe.hpp"
 #include "models/precomputed.hpp"
-#include "scene/solar_position.hpp"
-#include "scene/sun_disc.hpp"
+#include "scene/description/solar_position.hpp"
+#include "scene/sky/sun_disc.hpp"
 #include "sky_map.hpp"
 
 namespace tyndall::cli {
 namespace {
 
-using config::concat;
-using config::input_error;
+using files::concat;
+using files::input_error;
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr std::size_t kBatchRays = 131072;
@@ -227,13 +227,13 @@ int run_sky(Args args) {
   metadata.emplace_back("tyndall.sky.model", sky.model);
   metadata.emplace_back("tyndall.sky.disc", sky.disc);
   if (!sky.place.empty()) {
-    metadata.emplace_back("tyndall.sky.at", config::one_line(sky.place));
-    metadata.emplace_back("tyndall.sky.time", config::one_line(sky.time));
+    metadata.emplace_back("tyndall.sky.at", files::one_line(sky.place));
+    metadata.emplace_back("tyndall.sky.time", files::one_line(sky.time));
   }
   constexpr float kLargestHalf = 65504.0F;
   if (const float largest = *std::max_element(image.rgb.begin(), image.rgb.end()); largest > kLargestHalf) {
     note(concat(
-        {"the sun's disc has values up to ", config::number_text(largest),
+        {"the sun's disc has values up to ", files::number_text(largest),
          ", programs that read the map in half precision hold at most 65504; --disc false leaves the disc out"}));
   }
   if (Result<void> r =

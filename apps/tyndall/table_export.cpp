@@ -16,9 +16,9 @@
 #include <utility>
 #include <vector>
 
-#include "config/files.hpp"
-#include "config/text.hpp"
 #include "effect/medium.hpp"
+#include "files/files.hpp"
+#include "files/text.hpp"
 #include "image/image.hpp"
 #include "models/table_axes.hpp"
 
@@ -26,14 +26,14 @@ namespace tyndall::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using config::concat;
+using files::concat;
 using nlohmann::ordered_json;
 
 constexpr const char* kIndex = "tables.json";
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 Error directory_error(const std::string& directory, const std::string& why) {
-  return Error{ErrorCode::io, concat({"cannot write to '", config::one_line(directory, 200), "', ", why,
+  return Error{ErrorCode::io, concat({"cannot write to '", files::one_line(directory, 200), "', ", why,
                                       ", needed is a directory, or a name for one in a directory that is there"})};
 }
 
@@ -75,10 +75,10 @@ class Staging {
     out.folder_ = out.directory_ / concat({".tyndall-", std::to_string(::getpid())});
     fs::create_directory(out.folder_, failed);
     if (failed) return directory_error(directory, failed.message());
-    // The lock tells config::remove_leftovers() that this run is alive.
+    // The lock tells files::remove_leftovers() that this run is alive.
     out.lock_ = ::open(out.folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (out.lock_ >= 0) static_cast<void>(::flock(out.lock_, LOCK_EX | LOCK_NB));
-    config::remove_leftovers(directory);
+    files::remove_leftovers(directory);
     return out;
   }
   Staging(Staging&& other) noexcept
@@ -134,7 +134,7 @@ ordered_json floats(const Vec3& v) {
   ordered_json out = ordered_json::array();
   for (const float value : {v.x, v.y, v.z}) {
     double number = 0.0;
-    static_cast<void>(config::read_number(config::number_text(value), number));
+    static_cast<void>(files::read_number(files::number_text(value), number));
     out.push_back(number);
   }
   return out;
@@ -192,7 +192,7 @@ class Exporter {
       tables.push_back(std::move(table));
     }
     const std::string index = describe(device, std::move(tables)).dump(1) + "\n";
-    if (Result<void> r = config::write_file(staging_.at(kIndex), index); !r) return std::move(r).error();
+    if (Result<void> r = files::write_file(staging_.at(kIndex), index); !r) return std::move(r).error();
     names_.emplace_back(kIndex);
     return names_;
   }
@@ -322,12 +322,12 @@ const char* table_name(TableId table) {
 Result<void> check_export(const std::string& directory) {
   std::error_code failed;
   const fs::file_status status = fs::status(directory, failed);
-  if (fs::is_directory(status)) return config::check_writable((fs::path(directory) / kIndex).string());
+  if (fs::is_directory(status)) return files::check_writable((fs::path(directory) / kIndex).string());
   if (fs::exists(status)) return directory_error(directory, "it is a file");
   // As a file it could be made where a directory can.
   fs::path name = directory;
   if (!name.has_filename()) name = name.parent_path();  // a slash at the end
-  return config::check_writable(name.string());
+  return files::check_writable(name.string());
 }
 
 Result<std::size_t> export_tables(const std::string& directory, gpu::Host& host, Effect& effect,

@@ -4,8 +4,8 @@
 
 #include "arguments.hpp"
 #include "cli.hpp"
-#include "config/file_cache.hpp"
-#include "config/text.hpp"
+#include "files/file_cache.hpp"
+#include "files/text.hpp"
 #include "gpu/host.hpp"
 #include "make_tables.hpp"
 #include "models/precomputed.hpp"
@@ -17,7 +17,7 @@ namespace {
 std::string line(const char* name, double value, const char* format) {
   char number[64];
   std::snprintf(number, sizeof number, format, value);
-  return config::concat(
+  return files::concat(
       {"  ", name, std::string(std::max<std::size_t>(24 - std::string_view(name).size(), 1), ' '), number, "\n"});
 }
 
@@ -25,15 +25,15 @@ std::string as_text(const nlohmann::ordered_json& report) {
   const auto text = [&](const char* key) { return report[key].get<std::string>(); };
   std::string size;
   for (const nlohmann::ordered_json& side : report["size"]) size += (size.empty() ? "" : "x") + side.dump();
-  std::string out = config::concat({text("device"), ", ", size, " texels, ", report["orders"].dump(), " orders\n"});
+  std::string out = files::concat({text("device"), ", ", size, " texels, ", report["orders"].dump(), " orders\n"});
   for (const nlohmann::ordered_json& stage : report["stages"])
     out += line(stage["name"].get<std::string>().c_str(), stage["ms"].get<double>(), "%10.1f ms");
   out += line("all stages", report["stages_ms"].get<double>(), "%10.1f ms");
   out += line("with submissions", report["total_ms"].get<double>(), "%10.1f ms");
   for (const auto& [name, bytes] : report["memory_bytes"].items())
     out += line(name.c_str(), bytes.get<double>() / 1048576.0, "%10.2f MiB");
-  if (!report["cache"].is_null()) out += config::concat({"kept in ", text("cache"), "\n"});
-  if (!report["files"].is_null()) out += config::concat({report["files"].dump(), " files in ", text("output"), "\n"});
+  if (!report["cache"].is_null()) out += files::concat({"kept in ", text("cache"), "\n"});
+  if (!report["files"].is_null()) out += files::concat({report["files"].dump(), " files in ", text("output"), "\n"});
   return out;
 }
 
@@ -53,7 +53,7 @@ int run_tables(Args args) {
   if (const std::optional<int> status = arguments.parse(args)) return *status;
   if (Result<void> r = resolve(options); !r) return fail(r.error());
   if (export_wanted) {
-    if (options.output.empty()) return fail(config::input_error("no directory is named", "-o", "needed is -o DIR"));
+    if (options.output.empty()) return fail(files::input_error("no directory is named", "-o", "needed is -o DIR"));
     if (Result<void> r = check_export(options.output); !r) return fail(r.error());
   }
 
@@ -88,8 +88,8 @@ int run_tables(Args args) {
   memory["while_building"] = effect.memory().transient;
   // Where the tables are kept now; null if nowhere.
   report["cache"] = nullptr;
-  const std::string cache = config::cache_directory(how.cache.place);
-  if (!cache.empty() && made.notes.empty()) report["cache"] = config::one_line(cache, 1000);
+  const std::string cache = files::cache_directory(how.cache.place);
+  if (!cache.empty() && made.notes.empty()) report["cache"] = files::one_line(cache, 1000);
   report["output"] = nullptr;
   report["files"] = nullptr;
   if (export_wanted) {
@@ -98,7 +98,7 @@ int run_tables(Args args) {
         export_tables(options.output, *host.value(), effect, options.settings,
                       [&](std::size_t done, std::size_t total) { progress.update(done, total); });
     if (!files) return fail(files.error());
-    report["output"] = config::one_line(options.output, 1000);
+    report["output"] = files::one_line(options.output, 1000);
     report["files"] = files.value();
   }
   return print(options.json ? report.dump(2) + "\n" : as_text(report));

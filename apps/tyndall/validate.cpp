@@ -4,9 +4,9 @@
 
 #include "arguments.hpp"
 #include "cli.hpp"
-#include "config/files.hpp"
-#include "config/text.hpp"
 #include "effect/medium.hpp"
+#include "files/files.hpp"
+#include "files/text.hpp"
 #include "gpu/host.hpp"
 #include "input_files.hpp"
 #include "make_tables.hpp"
@@ -19,7 +19,7 @@
 namespace tyndall::cli {
 namespace {
 
-using config::concat;
+using files::concat;
 using validate::Rgb;
 
 // Answers of one of probe's models; a ray that ends on lit ground sees it, as in the reference.
@@ -185,9 +185,9 @@ std::string command_line(const CommonOptions& options, const validate::Options& 
   std::string out = concat({"tyndall validate -o REPORT.html --rays ", std::to_string(study.rays), " --samples ",
                             std::to_string(study.samples), " --seed ", std::to_string(study.seed), " --orders ",
                             std::to_string(study.orders)});
-  for (const std::string& set : options.sets) out += concat({" --set ", config::one_line(set, 200)});
+  for (const std::string& set : options.sets) out += concat({" --set ", files::one_line(set, 200)});
   if (!options.scene_file.empty()) {
-    out += concat({" ", config::one_line(std::filesystem::path(options.scene_file).filename().string(), 200)});
+    out += concat({" ", files::one_line(std::filesystem::path(options.scene_file).filename().string(), 200)});
   }
   return out;
 }
@@ -214,18 +214,18 @@ int run_validate(Args args) {
   study_options.orders = static_cast<int>(orders);
   if (Result<void> r = resolve(options); !r) return fail(r.error());
   if (options.output.empty() && markdown.empty() && !options.json) {
-    return fail(config::input_error("no output file", "-o", "needed is -o REPORT.html, --markdown FILE or --json"));
+    return fail(files::input_error("no output file", "-o", "needed is -o REPORT.html, --markdown FILE or --json"));
   }
   if (!options.output.empty()) {
     if (Result<void> r = check_output(options, {".html", ".htm"}); !r) return fail(r.error());
   }
   if (!markdown.empty()) {
     if (!is_markdown(markdown)) {
-      return fail(config::input_error(concat({"unknown format '", config::one_line(markdown), "'"}), "--markdown",
-                                      "allowed is a name in .md"));
+      return fail(files::input_error(concat({"unknown format '", files::one_line(markdown), "'"}), "--markdown",
+                                     "allowed is a name in .md"));
     }
     if (Result<void> r = check_not_input(markdown, "--markdown", input_files(options)); !r) return fail(r.error());
-    if (Result<void> r = config::check_writable(markdown); !r) return fail(r.error());
+    if (Result<void> r = files::check_writable(markdown); !r) return fail(r.error());
   }
 
   validate::Origin origin = {command_line(options, study_options), TYNDALL_VERSION_STRING, ""};
@@ -247,10 +247,10 @@ int run_validate(Args args) {
   for (const std::string& text : tables->notes()) note(text);
   if (!study) return fail(study.error());
   if (!options.output.empty()) {
-    if (Result<void> r = config::write_file(options.output, to_html(study.value(), origin)); !r) return fail(r.error());
+    if (Result<void> r = files::write_file(options.output, to_html(study.value(), origin)); !r) return fail(r.error());
   }
   if (!markdown.empty()) {
-    if (Result<void> r = config::write_file(markdown, to_markdown(study.value(), origin)); !r) return fail(r.error());
+    if (Result<void> r = files::write_file(markdown, to_markdown(study.value(), origin)); !r) return fail(r.error());
   }
   return options.json ? print(to_json(study.value(), origin)) : kDone;
 }

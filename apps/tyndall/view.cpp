@@ -2,7 +2,7 @@
 #include "arguments.hpp"
 #include "cli.hpp"
 #include "make_tables.hpp"
-#include "viewer.hpp"
+#include "viewer/viewer.hpp"
 
 namespace tyndall::cli {
 

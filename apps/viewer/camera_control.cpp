@@ -1,10 +1,10 @@
-#include "camera_control.hpp"
+#include "viewer/camera_control.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "scene/camera.hpp"
-#include "scene/chart.hpp"
+#include "scene/description/map_projection.hpp"
+#include "scene/view/camera.hpp"
 
 namespace tyndall::viewer {
 namespace {

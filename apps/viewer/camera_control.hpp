@@ -5,7 +5,7 @@
 
 #include <glm/glm.hpp>
 
-#include "scene/scene_params.hpp"
+#include "scene/description/scene_params.hpp"
 
 namespace tyndall::viewer {
 

@@ -1,6 +1,6 @@
-#include "event_log.hpp"
+#include "viewer/event_log.hpp"
 
-#include "config/files.hpp"
+#include "files/files.hpp"
 
 namespace tyndall::viewer {
 
@@ -28,7 +28,7 @@ void EventLog::places(const std::vector<Place>& places) {
   if (text == places_) return;
   places_ = std::move(text);
   // Whole or not at all: a test may be reading. What cannot be written is for the test to find missing.
-  if (Result<void> written = config::write_file(path_ + ".places", places_); !written) places_.clear();
+  if (Result<void> written = files::write_file(path_ + ".places", places_); !written) places_.clear();
 }
 
 }  // namespace tyndall::viewer

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "widgets.hpp"
+#include "viewer/gui/widgets.hpp"
 
 namespace tyndall::viewer {
 

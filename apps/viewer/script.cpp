@@ -1,12 +1,12 @@
-#include "script.hpp"
+#include "viewer/script.hpp"
 
 #include <algorithm>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "config/text.hpp"
-#include "widgets.hpp"
+#include "files/text.hpp"
+#include "viewer/gui/widgets.hpp"
 
 namespace tyndall::viewer {
 namespace {
@@ -34,8 +34,8 @@ std::vector<std::pair<std::string, std::string>> choices_of_shaders() {
   for (const config::Row& row : config::rows()) {
     if (!is_soaked(row) || !chooses_shaders(row)) continue;
     if (row.info.type == ParamType::enumeration) {
-      for (std::size_t i = 0; i < config::count_parts(row.info.choices, '|'); ++i) {
-        out.emplace_back(row.key(), std::string(config::part(row.info.choices, '|', i)));
+      for (std::size_t i = 0; i < files::count_parts(row.info.choices, '|'); ++i) {
+        out.emplace_back(row.key(), std::string(files::part(row.info.choices, '|', i)));
       }
     } else if (row.info.type == ParamType::flag) {
       out.emplace_back(row.key(), "off");
@@ -56,17 +56,17 @@ std::string random_value(const config::Row& row, std::mt19937& random) {
     return row.info.min + t * (row.info.max - row.info.min);
   };
   switch (row.info.type) {
-    case ParamType::float32: return config::number_text(static_cast<float>(number()));
+    case ParamType::float32: return files::number_text(static_cast<float>(number()));
     case ParamType::uint32: return std::to_string(static_cast<std::uint32_t>(number()));
     case ParamType::flag: return part(random) < 0.5 ? "off" : "on";
     case ParamType::enumeration: {
-      const std::size_t count = config::count_parts(row.info.choices, '|');
+      const std::size_t count = files::count_parts(row.info.choices, '|');
       const auto chosen = std::min(static_cast<std::size_t>(part(random) * static_cast<double>(count)), count - 1);
-      return std::string(config::part(row.info.choices, '|', chosen));
+      return std::string(files::part(row.info.choices, '|', chosen));
     }
     case ParamType::vec3: {
       std::string text;
-      for (int i = 0; i < 3; ++i) text += (i > 0 ? "," : "") + config::number_text(static_cast<float>(number()));
+      for (int i = 0; i < 3; ++i) text += (i > 0 ? "," : "") + files::number_text(static_cast<float>(number()));
       return text;
     }
     default: return {};

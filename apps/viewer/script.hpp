@@ -6,7 +6,7 @@
 #include <string>
 
 #include "config/settings.hpp"
-#include "gui.hpp"
+#include "viewer/gui/gui.hpp"
 
 namespace tyndall::viewer {
 

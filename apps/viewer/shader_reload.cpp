@@ -1,4 +1,4 @@
-#include "shader_reload.hpp"
+#include "viewer/shader_reload.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -9,9 +9,9 @@
 #include <spirv-tools/optimizer.hpp>
 #include <sstream>
 
-#include "files.hpp"
 #include "shader_sources.hpp"
-#include "window.hpp"
+#include "viewer/platform/files.hpp"
+#include "viewer/platform/window.hpp"
 
 namespace tyndall::viewer {
 namespace {

@@ -1,4 +1,4 @@
-#include "step_times.hpp"
+#include "viewer/step_times.hpp"
 
 #include <algorithm>
 

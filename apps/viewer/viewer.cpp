@@ -1,5 +1,5 @@
 // The loop: wait, take what the hands did and what the scenes have become, draw the GUI, show it.
-#include "viewer.hpp"
+#include "viewer/viewer.hpp"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -18,12 +18,12 @@
 #include <cstdlib>
 #include <utility>
 
-#include "config/text.hpp"
-#include "display_loss.hpp"
+#include "files/text.hpp"
 #include "gpu/try.hpp"
-#include "scene/chart.hpp"
-#include "settings_compare.hpp"
-#include "viewer_state.hpp"
+#include "scene/description/map_projection.hpp"
+#include "viewer/platform/display_loss.hpp"
+#include "viewer/scenes/settings_compare.hpp"
+#include "viewer/viewer_state.hpp"
 
 namespace tyndall::viewer {
 namespace {
@@ -57,7 +57,7 @@ std::size_t allocated_kib() {
 }
 
 void say(const Error& error) {
-  std::fprintf(stderr, "tyndall: error: %s\n", config::one_line(error.message, 2000).c_str());
+  std::fprintf(stderr, "tyndall: error: %s\n", files::one_line(error.message, 2000).c_str());
 }
 
 }  // namespace
@@ -399,8 +399,8 @@ Result<void> run(const ViewerDesc& desc) {
   }
   Window::stop();
   if (outcome && messages > 0) {
-    return Error{ErrorCode::vulkan, std::to_string(messages) + " messages of the validation layer, the first: " +
-                                        config::one_line(text, 1500)};
+    return Error{ErrorCode::vulkan, std::to_string(messages) +
+                                        " messages of the validation layer, the first: " + files::one_line(text, 1500)};
   }
   return outcome;
 }

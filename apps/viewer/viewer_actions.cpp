@@ -4,10 +4,10 @@
 #include <imgui.h>
 
 #include "config/scene_file.hpp"
-#include "config/text.hpp"
+#include "files/text.hpp"
 #include "gpu/try.hpp"
 #include "image/image.hpp"
-#include "viewer_state.hpp"
+#include "viewer/viewer_state.hpp"
 
 namespace tyndall::viewer {
 
@@ -122,7 +122,7 @@ Result<void> Viewer::finish_reload() {
   shader_message_ = outcome.message;
   if (!outcome.message.empty()) {
     gui_.toast("The shaders stay as they were:\n" + outcome.message, true, now());
-    log("shaders failed " + config::one_line(outcome.message, 400));
+    log("shaders failed " + files::one_line(outcome.message, 400));
     frames_to_draw_ = 3;
     return {};
   }

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <iterator>
 
-#include "config/text.hpp"
-#include "scene/chart.hpp"
-#include "viewer_state.hpp"
+#include "files/text.hpp"
+#include "scene/description/map_projection.hpp"
+#include "viewer/viewer_state.hpp"
 
 namespace tyndall::viewer {
 namespace {
@@ -41,7 +41,7 @@ void Viewer::handle_events(const std::vector<Event>& events) {
         const double dy = event.y - pointer_[1];
         pointer_[0] = event.x;
         pointer_[1] = event.y;
-        if (log_.on()) pointer_seen_ = "pointer " + config::number_text(event.x) + " " + config::number_text(event.y);
+        if (log_.on()) pointer_seen_ = "pointer " + files::number_text(event.x) + " " + files::number_text(event.y);
         if (dragging_view_) camera_ = turned(camera_, dx, dy, height);
         if (dragging_sun_) settings_.scene.sun = sun_turned(settings_.scene.sun, dx, dy, height);
         break;

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <utility>
 
-#include "config/text.hpp"
+#include "files/text.hpp"
 #include "gpu/try.hpp"
-#include "settings_compare.hpp"
-#include "viewer_state.hpp"
+#include "viewer/scenes/settings_compare.hpp"
+#include "viewer/viewer_state.hpp"
 
 namespace tyndall::viewer {
 
@@ -184,14 +184,14 @@ void Viewer::log_frame(std::size_t side, double took_ms) {
   const scene::SunParams& sun = drawn_camera_[side].sun;
   log(std::string("frame ") + (side == 0 ? "left " : "right ") + std::to_string(frames_) + " " +
       std::to_string(facts.extent.width) + " " + std::to_string(facts.extent.height) + " ms " +
-      config::number_text(took_ms) + " camera " + config::number_text(camera.position.x) + " " +
-      config::number_text(camera.position.y) + " " + config::number_text(camera.position.z) + " " +
-      config::number_text(camera.yaw_deg) + " " + config::number_text(camera.pitch_deg) + " " +
-      config::number_text(camera.fov_deg) + " sun " + config::number_text(sun.azimuth_deg) + " " +
-      config::number_text(sun.elevation_deg));
+      files::number_text(took_ms) + " camera " + files::number_text(camera.position.x) + " " +
+      files::number_text(camera.position.y) + " " + files::number_text(camera.position.z) + " " +
+      files::number_text(camera.yaw_deg) + " " + files::number_text(camera.pitch_deg) + " " +
+      files::number_text(camera.fov_deg) + " sun " + files::number_text(sun.azimuth_deg) + " " +
+      files::number_text(sun.elevation_deg));
   std::string passes = "passes";
   for (const scene::PassTime& pass : facts.timings) {
-    passes += " " + pass.name + " " + config::number_text(std::round(100.0 * pass.ms) / 100.0);
+    passes += " " + pass.name + " " + files::number_text(std::round(100.0 * pass.ms) / 100.0);
   }
   log(passes);
 }

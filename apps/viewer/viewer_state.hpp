@@ -5,16 +5,16 @@
 #include <chrono>
 #include <future>
 
-#include "camera_control.hpp"
-#include "event_log.hpp"
-#include "gui.hpp"
-#include "screen.hpp"
-#include "script.hpp"
-#include "shader_reload.hpp"
-#include "stage.hpp"
-#include "step_times.hpp"
-#include "viewer.hpp"
-#include "window.hpp"
+#include "viewer/camera_control.hpp"
+#include "viewer/event_log.hpp"
+#include "viewer/gui/gui.hpp"
+#include "viewer/platform/swapchain.hpp"
+#include "viewer/platform/window.hpp"
+#include "viewer/scenes/scene_thread.hpp"
+#include "viewer/script.hpp"
+#include "viewer/shader_reload.hpp"
+#include "viewer/step_times.hpp"
+#include "viewer/viewer.hpp"
 
 namespace tyndall::viewer {
 

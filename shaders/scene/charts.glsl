@@ -92,7 +92,7 @@ ivec2 chart_units(uint index, vec3 direction) {
   return c.units + ivec2(floor(offset_m * 64.0 + 0.5));
 }
 
-// How much each chart's mountains count at a point of the unit sphere: see chart_weights in src/scene/chart.hpp.
+// How much each chart's mountains count at a point of the unit sphere: see chart_weights in src/scene/description/map_projection.hpp.
 // Returns a bit for each chart that does. To be walked through as `while (rest != 0u)`: a loop over all six charts
 // would cost a device that masks its lanes the work of six.
 uint chart_weights(vec3 direction, out float weights[6]) {

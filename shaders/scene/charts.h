@@ -1,5 +1,5 @@
-// The charts of the planet around a view, as shaders read them (std430): see src/scene/chart.hpp for the charts and
-// src/scene/local_frame.hpp for the local frame. Filled by src/scene/local_frame.cpp.
+// The charts of the planet around a view, as shaders read them (std430): see src/scene/description/map_projection.hpp
+// for the charts and src/scene/view/local_frame.hpp for the local frame. Filled by src/scene/view/local_frame.cpp.
 
 // The origin of the local frame in one chart.
 struct ChartLink {

@@ -1,4 +1,4 @@
-// Hoffman and Preetham's model in a frame: its constants, filled by src/scene/homogeneous_sky.cpp, and the air
+// Hoffman and Preetham's model in a frame: its constants, filled by src/scene/sky/homogeneous_sky.cpp, and the air
 // between the eye and a place.
 #ifndef TYNDALL_HOMOGENEOUS_AIR_GLSL
 #define TYNDALL_HOMOGENEOUS_AIR_GLSL

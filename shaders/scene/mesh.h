@@ -1,6 +1,6 @@
-// What the shaders of the meshes and of the bare ground read of one view (std430). Filled by src/scene/meshes.cpp.
-// Places and directions are in the local frame of src/scene/local_frame.hpp. The fields up to `cascade` are those that
-// sun_shadow.glsl needs.
+// What the shaders of the meshes and of the bare ground read of one view (std430). Filled by src/scene/mesh/meshes.cpp.
+// Places and directions are in the local frame of src/scene/view/local_frame.hpp. The fields up to `cascade` are those
+// that sun_shadow.glsl needs.
 struct MeshConstants {
   vec3 camera_position;
   float shadow_resolution;

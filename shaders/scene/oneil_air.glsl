@@ -1,11 +1,11 @@
-// The air of O'Neil's model between the eye and what it sees. Binding 6 is filled by src/scene/oneil_sky.cpp, 7
+// The air of O'Neil's model between the eye and what it sees. Binding 6 is filled by src/scene/sky/oneil_sky.cpp, 7
 // is the table of oneil-table.
 #ifndef TYNDALL_ONEIL_AIR_GLSL
 #define TYNDALL_ONEIL_AIR_GLSL
 
 layout(std430, binding = 7) readonly buffer oneil_table_block { vec4 oneil_texels[]; };
 #define ONEIL_TEXEL(table, index) oneil_texels[index]
-// Those of the block's Oneil: src/scene/oneil_sky.cpp chooses the pipeline by them.
+// Those of the block's Oneil: src/scene/sky/oneil_sky.cpp chooses the pipeline by them.
 layout(constant_id = 1) const uint kColumnsOfAir = 0u;
 layout(constant_id = 2) const uint kSpacingOfPoints = 0u;
 #define ONEIL_INTEGRAL_METHOD(o) kColumnsOfAir

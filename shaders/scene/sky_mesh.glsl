@@ -1,4 +1,4 @@
-// The sky mesh of src/scene/sky_model.hpp: a sphere of directions around the camera, whose vertices a model
+// The sky mesh of src/scene/sky/sky_model.hpp: a sphere of directions around the camera, whose vertices a model
 // moves to whatever distance it likes. For vertex shaders.
 #ifndef TYNDALL_SKY_MESH_GLSL
 #define TYNDALL_SKY_MESH_GLSL

@@ -23,7 +23,7 @@ void main() {
   float spacing_m = 1.25 * fill.spacing_m;
   ivec2 units = (fill.first_sample + t) * sample_units;
   // The elevation at a place of the planet is that of its chart; between charts, the mean of both. Where the file lies
-  // it alone counts. The same in ground_height() of src/scene/terrain.cpp.
+  // it alone counts. The same in ground_height() of src/scene/terrain/terrain.cpp.
   vec3 direction = local_direction(fill.first_m + vec2(t) * fill.spacing_m);
   float weights[6];
   uint rest = chart_weights(direction, weights);

@@ -9,7 +9,7 @@
 
 #include "scene/terrain_noise.glsl"
 
-// terrain.shading, as in src/scene/scene_params.def.
+// terrain.shading, as in src/scene/description/scene_params.def.
 const uint kTerrainShadingMaterials = 0u;
 const uint kTerrainShadingHeight = 1u;
 const uint kTerrainShadingPlain = 2u;

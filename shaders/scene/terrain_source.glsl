@@ -110,7 +110,7 @@ float terrain_source_height(TERRAIN_SOURCE source, ivec2 units, float spacing_m)
   return height_m * source.exaggeration;
 }
 
-// The same at a place of one of the planet's charts (src/scene/chart.hpp): the source is chart 0's, the others have
+// The same at a place of one of the planet's charts (src/scene/description/map_projection.hpp): the source is chart 0's, the others have
 // procedural mountains.
 float terrain_chart_height(TERRAIN_SOURCE source, uint chart, ivec2 units, float spacing_m) {
   float height_m = 0.0;

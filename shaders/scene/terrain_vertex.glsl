@@ -1,5 +1,5 @@
 // The vertices of a block of terrain, shared by the view and the shadow maps. The grid slides into the
-// next coarser one as a vertex nears the end of its level's range: see src/scene/terrain_lod.hpp.
+// next coarser one as a vertex nears the end of its level's range: see src/scene/terrain/terrain_lod.hpp.
 #ifndef TYNDALL_TERRAIN_VERTEX_GLSL
 #define TYNDALL_TERRAIN_VERTEX_GLSL
 

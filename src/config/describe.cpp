@@ -1,7 +1,7 @@
 // Markdown and JSON from the joint parameter table.
 #include "config/describe.hpp"
 
-#include "config/text.hpp"
+#include "files/text.hpp"
 #include "tyndall/version.hpp"
 
 namespace tyndall::config {
@@ -34,7 +34,7 @@ std::string_view affects_name(Affects affects) {
 bool is_number(ParamType type) { return is_real(type) || type == ParamType::uint32 || type == ParamType::uvec4; }
 
 std::string limit_text(const Row& row, double limit) {
-  return is_real(row.info.type) ? number_text(limit) : std::to_string(static_cast<std::int64_t>(limit));
+  return is_real(row.info.type) ? files::number_text(limit) : std::to_string(static_cast<std::int64_t>(limit));
 }
 
 std::string range_text(const Row& row) {
@@ -46,8 +46,8 @@ std::string range_text(const Row& row) {
 
 std::string json_value(const Row& row, const Settings& settings) {
   const std::string text = value_text(row, settings);
-  if (is_vector(row.info.type)) return concat({"[", text, "]"});
-  if (row.info.type == ParamType::string || row.info.type == ParamType::enumeration) return quoted_text(text);
+  if (is_vector(row.info.type)) return files::concat({"[", text, "]"});
+  if (row.info.type == ParamType::string || row.info.type == ParamType::enumeration) return files::quoted_text(text);
   return text;
 }
 
@@ -55,12 +55,13 @@ std::string json_value(const Row& row, const Settings& settings) {
 
 std::string to_markdown() {
   const Settings defaults;
-  std::string out = "# Parameters\n\n"
-                    "Every parameter under the name that scene files, `--set`, GLSL and image metadata use.\n"
-                    "Made by `tyndall params --format markdown`; edit `include/tyndall/params.def` or\n"
-                    "`src/scene/scene_params.def` instead. \"Change costs\" says what a change makes stale: the next "
-                    "`frame`'s\n"
-                    "constants only, a shader `pipeline`, memory (`resources`), or the precomputed `tables`.\n";
+  std::string out =
+      "# Parameters\n\n"
+      "Every parameter under the name that scene files, `--set`, GLSL and image metadata use.\n"
+      "Made by `tyndall params --format markdown`; edit `include/tyndall/params.def` or\n"
+      "`src/scene/description/scene_params.def` instead. \"Change costs\" says what a change makes stale: the next "
+      "`frame`'s\n"
+      "constants only, a shader `pipeline`, memory (`resources`), or the precomputed `tables`.\n";
   for (const Group& group : groups()) {
     out.append("\n## ").append(group.title).append("\n\n");
     out.append("| name | type | default | range | unit | change costs | meaning |\n|---|---|---|---|---|---|---|\n");
@@ -78,27 +79,27 @@ std::string to_markdown() {
 
 std::string to_json(const Settings& settings) {
   const Settings defaults;
-  std::string out = "{\n  \"version\": " + quoted_text(TYNDALL_VERSION_STRING) + ",\n  \"parameters\": [";
+  std::string out = "{\n  \"version\": " + files::quoted_text(TYNDALL_VERSION_STRING) + ",\n  \"parameters\": [";
   bool first = true;
   for (const Row& row : rows()) {
     out += first ? "\n    {" : ",\n    {";
     first = false;
-    out += "\"name\": " + quoted_text(row.key()) + ", \"group\": " + quoted_text(row.info.group);
-    out += ", \"type\": " + quoted_text(type_name(row.info.type));
+    out += "\"name\": " + files::quoted_text(row.key()) + ", \"group\": " + files::quoted_text(row.info.group);
+    out += ", \"type\": " + files::quoted_text(type_name(row.info.type));
     out += ", \"default\": " + json_value(row, defaults) + ", \"value\": " + json_value(row, settings);
     if (is_number(row.info.type)) {
       out += ", \"min\": " + limit_text(row, row.info.min) + ", \"max\": " + limit_text(row, row.info.max);
     }
     if (row.info.type == ParamType::enumeration) {
       out += ", \"choices\": [";
-      for (std::size_t i = 0; i < count_parts(row.info.choices, '|'); ++i) {
-        out += (i > 0 ? ", " : "") + quoted_text(part(row.info.choices, '|', i));
+      for (std::size_t i = 0; i < files::count_parts(row.info.choices, '|'); ++i) {
+        out += (i > 0 ? ", " : "") + files::quoted_text(files::part(row.info.choices, '|', i));
       }
       out += "]";
     }
-    out +=
-        ", \"unit\": " + quoted_text(row.info.unit) + ", \"affects\": " + quoted_text(affects_name(row.info.affects));
-    out += ", \"doc\": " + quoted_text(row.info.doc) + "}";
+    out += ", \"unit\": " + files::quoted_text(row.info.unit) +
+           ", \"affects\": " + files::quoted_text(affects_name(row.info.affects));
+    out += ", \"doc\": " + files::quoted_text(row.info.doc) + "}";
   }
   return out + "\n  ]\n}\n";
 }

@@ -10,9 +10,9 @@
 #include <sstream>
 #include <vector>
 
-#include "config/files.hpp"
-#include "config/text.hpp"
 #include "config/toml_limits.hpp"
+#include "files/files.hpp"
+#include "files/text.hpp"
 
 namespace tyndall::config {
 namespace {
@@ -20,7 +20,7 @@ namespace {
 constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 20U;  // bytes; ours are a few thousand
 
 std::string position(std::string_view name, const toml::source_region& source) {
-  return concat({one_line(name, 200), ":", std::to_string(source.begin.line)});
+  return files::concat({files::one_line(name, 200), ":", std::to_string(source.begin.line)});
 }
 
 // "a string", for "is a string".
@@ -49,7 +49,7 @@ std::optional<std::string> scalar_text(const toml::node& node, ParamType type) {
     case ParamType::float32:
     case ParamType::vec3:
     case ParamType::dvec3:
-      if (const auto* real = node.as_floating_point()) return number_text(real->get());
+      if (const auto* real = node.as_floating_point()) return files::number_text(real->get());
       [[fallthrough]];
     case ParamType::uint32:
     case ParamType::uvec4:
@@ -60,8 +60,8 @@ std::optional<std::string> scalar_text(const toml::node& node, ParamType type) {
 }
 
 Error wrong_type(const Row& row, const toml::node& node, const std::string& where) {
-  return input_error(concat({"'", row.key(), "' is ", kind_of(node)}), where,
-                     concat({"allowed is ", allowed_text(row)}));
+  return files::input_error(files::concat({"'", row.key(), "' is ", kind_of(node)}), where,
+                            files::concat({"allowed is ", allowed_text(row)}));
 }
 
 Result<void> load_value(Settings& settings, const Row& row, const toml::node& node, std::string_view name) {
@@ -89,9 +89,10 @@ Error unknown_table(std::string_view group, std::string_view where) {
     names.emplace_back(known.name);
     list.append(list.empty() ? "" : ", ").append(known.name);
   }
-  const std::optional<std::string> near = nearest(group, names);
-  return input_error(concat({"unknown table [", one_line(group), "]"}), where,
-                     near ? concat({"did you mean [", *near, "]?"}) : concat({"tables are ", list}));
+  const std::optional<std::string> near = files::nearest(group, names);
+  return files::input_error(
+      files::concat({"unknown table [", files::one_line(group), "]"}), where,
+      near ? files::concat({"did you mean [", *near, "]?"}) : files::concat({"tables are ", list}));
 }
 
 bool is_group(std::string_view name) {
@@ -101,7 +102,7 @@ bool is_group(std::string_view name) {
 
 Result<void> load_table(Settings& settings, std::string_view group, const toml::table& table, std::string_view name) {
   for (const auto& [key, value] : table) {
-    const std::string full = concat({group, ".", key.str()});
+    const std::string full = files::concat({group, ".", key.str()});
     // A dot inside a quoted key is not a separator.
     const Row* const row = key.str().find('.') == std::string_view::npos ? find_row(full) : nullptr;
     if (row == nullptr) return unknown_key(full, position(name, key.source()));
@@ -128,9 +129,9 @@ Error unknown_name(std::string_view key, std::string_view table, const std::vect
                    std::string_view where) {
   std::string list;
   for (const std::string& name : names) list.append(list.empty() ? "" : ", ").append(name);
-  const std::optional<std::string> near = nearest(key, names);
-  return input_error(concat({"unknown key '", one_line(key), "' in ", table}), where,
-                     near ? concat({"did you mean '", *near, "'?"}) : concat({"keys are ", list}));
+  const std::optional<std::string> near = files::nearest(key, names);
+  return files::input_error(files::concat({"unknown key '", files::one_line(key), "' in ", table}), where,
+                            near ? files::concat({"did you mean '", *near, "'?"}) : files::concat({"keys are ", list}));
 }
 
 Result<void> load_date(scene::PathFrame& frame, const toml::node& node, const std::string& where) {
@@ -141,8 +142,8 @@ Result<void> load_date(scene::PathFrame& frame, const toml::node& node, const st
     written << time->get();
     frame.date = written.str();
   } else {
-    return input_error(concat({"'date' is ", kind_of(node)}), where,
-                       "allowed is a date and time with its offset from UTC");
+    return files::input_error(files::concat({"'date' is ", kind_of(node)}), where,
+                              "allowed is a date and time with its offset from UTC");
   }
   Result<double> day = scene::parse_time(frame.date, where);
   if (!day) return std::move(day).error();
@@ -158,7 +159,7 @@ Result<void> load_frame_value(scene::PathFrame& frame, std::string_view key, con
   if (key == "time_s") {
     const std::optional<double> seconds = node.value<double>();
     if (!node.is_number() || !std::isfinite(*seconds) || *seconds < 0.0 || *seconds > 1.0e6) {
-      return input_error("'time_s' is no time", where, "allowed is a number, 0 to 1e+06 s");
+      return files::input_error("'time_s' is no time", where, "allowed is a number, 0 to 1e+06 s");
     }
     frame.time_s = *seconds;
     return {};
@@ -174,9 +175,10 @@ Result<void> load_frame_value(scene::PathFrame& frame, std::string_view key, con
     const Row& row = *find_row(known.parameter);
     if (Result<void> read = load_value(scratch, row, node, name); !read) return read;
     float value = 0.0F;
-    static_cast<void>(read_number(value_text(row, scratch), value));
+    static_cast<void>(files::read_number(value_text(row, scratch), value));
     if (key == "altitude_m" && value < 0.0F) {
-      return input_error("'altitude_m' is below the sea", where, "allowed is 0 to 1e+09 m; position_m goes lower");
+      return files::input_error("'altitude_m' is below the sea", where,
+                                "allowed is 0 to 1e+09 m; position_m goes lower");
     }
     frame.*known.target = value;
     return {};
@@ -192,7 +194,7 @@ Result<void> load_path(scene::CameraPath& path, const toml::node& node, std::str
                        const std::string& where) {
   const toml::array* const frames = node.as_array();
   if (frames == nullptr || !frames->is_homogeneous(toml::node_type::table)) {
-    return input_error("'path' is no list of frames", where, "allowed is one table [[path]] for each frame");
+    return files::input_error("'path' is no list of frames", where, "allowed is one table [[path]] for each frame");
   }
   path = scene::CameraPath{};
   for (const toml::node& element : *frames) {
@@ -200,38 +202,42 @@ Result<void> load_path(scene::CameraPath& path, const toml::node& node, std::str
     const std::string at = position(name, element.source());
     scene::PathFrame frame;
     if (table.get("time_s") == nullptr)
-      return input_error("a frame of the path has no time", at, "needed is time_s = SECONDS");
+      return files::input_error("a frame of the path has no time", at, "needed is time_s = SECONDS");
     for (const auto& [key, value] : table) {
       if (Result<void> read = load_frame_value(frame, key.str(), value, name); !read) return read;
     }
     if (!path.frames.empty() && frame.time_s <= path.frames.back().time_s) {
-      return input_error(concat({"the path's time goes from ", number_text(path.frames.back().time_s), " s to ",
-                                 number_text(frame.time_s), " s"}),
-                         at, "each frame's time_s has to be greater than that before");
+      return files::input_error(
+          files::concat({"the path's time goes from ", files::number_text(path.frames.back().time_s), " s to ",
+                         files::number_text(frame.time_s), " s"}),
+          at, "each frame's time_s has to be greater than that before");
     }
     const scene::PathFrame* const first = path.frames.empty() ? nullptr : &path.frames.front();
     if (has_sun(frame) && (frame.julian_day || (first != nullptr && first->julian_day))) {
-      return input_error("the sun stands by date and by angles", at, "allowed is one of them in a path");
+      return files::input_error("the sun stands by date and by angles", at, "allowed is one of them in a path");
     }
     path.frames.push_back(std::move(frame));
   }
-  if (path.frames.size() < 2) return input_error("a path of one frame", where, "needed are two or more [[path]]");
+  if (path.frames.size() < 2)
+    return files::input_error("a path of one frame", where, "needed are two or more [[path]]");
   return {};
 }
 
 Result<void> load_playback(scene::CameraPath& path, const toml::node& node, std::string_view name,
                            const std::string& where) {
   const toml::table* const table = node.as_table();
-  if (table == nullptr) return input_error(concat({"'playback' is ", kind_of(node)}), where, "it has to be a table");
+  if (table == nullptr)
+    return files::input_error(files::concat({"'playback' is ", kind_of(node)}), where, "it has to be a table");
   for (const auto& [key, value] : *table) {
     const std::string at = position(name, value.source());
     if (key.str() == "loop") {
       if (!value.is_boolean())
-        return input_error(concat({"'loop' is ", kind_of(value)}), at, "allowed is true or false");
+        return files::input_error(files::concat({"'loop' is ", kind_of(value)}), at, "allowed is true or false");
       path.loop = **value.as_boolean();
     } else if (key.str() == "place") {
       if (!value.is_string())
-        return input_error(concat({"'place' is ", kind_of(value)}), at, "allowed is \"LAT,LON\" in degrees");
+        return files::input_error(files::concat({"'place' is ", kind_of(value)}), at,
+                                  "allowed is \"LAT,LON\" in degrees");
       path.place_text = **value.as_string();
       Result<scene::Place> place = scene::parse_place(path.place_text, at);
       if (!place) return std::move(place).error();
@@ -248,15 +254,15 @@ Result<void> check_path(const scene::CameraPath& path, const std::string& where)
   const auto dated = [](const scene::PathFrame& frame) { return frame.julian_day.has_value(); };
   const bool by_date = std::any_of(path.frames.begin(), path.frames.end(), dated);
   if (by_date && std::any_of(path.frames.begin(), path.frames.end(), has_sun)) {
-    return input_error("the sun stands by date and by angles", where, "allowed is one of them in a path");
+    return files::input_error("the sun stands by date and by angles", where, "allowed is one of them in a path");
   }
   if (!path.loop) return {};
-  if (path.empty()) return input_error("there is no path to loop", where, "needed are two or more [[path]]");
+  if (path.empty()) return files::input_error("there is no path to loop", where, "needed are two or more [[path]]");
   const scene::PathFrame& last = path.frames.back();
   const auto given = [&](const FrameKey& key) { return (last.*key.target).has_value(); };
   if (last.position_m || last.julian_day || std::any_of(std::begin(kFrameKeys), std::end(kFrameKeys), given)) {
-    return input_error("the last frame of a loop is the first again", where,
-                       "allowed is time_s alone in the last [[path]]");
+    return files::input_error("the last frame of a loop is the first again", where,
+                              "allowed is time_s alone in the last [[path]]");
   }
   return {};
 }
@@ -278,7 +284,8 @@ Result<void> load_root(Settings& settings, const toml::table& root, std::string_
       return table != nullptr ? unknown_table(group.str(), where) : unknown_key(group.str(), where);
     }
     if (table == nullptr) {
-      return input_error(concat({"'", group.str(), "' is ", kind_of(node)}), where, "it has to be a table");
+      return files::input_error(files::concat({"'", group.str(), "' is ", kind_of(node)}), where,
+                                "it has to be a table");
     }
     if (Result<void> loaded = load_table(settings, group.str(), *table, name); !loaded) return loaded;
   }
@@ -310,13 +317,13 @@ std::string toml_value(const Row& row, const Settings& settings) {
   const bool real = is_real(row.info.type);
   switch (row.info.type) {
     case ParamType::string:
-    case ParamType::enumeration: return quoted_text(text);
+    case ParamType::enumeration: return files::quoted_text(text);
     case ParamType::vec3:
     case ParamType::dvec3:
     case ParamType::uvec4: {
       std::string list = "[";
-      for (std::size_t i = 0; i < count_parts(text, ','); ++i) {
-        list += (i > 0 ? ", " : "") + toml_number(part(text, ',', i), real);
+      for (std::size_t i = 0; i < files::count_parts(text, ','); ++i) {
+        list += (i > 0 ? ", " : "") + toml_number(files::part(text, ',', i), real);
       }
       list += "]";
       return list;
@@ -330,11 +337,11 @@ void append_path(std::string& out, const scene::CameraPath& path) {
   if (path.empty()) return;
   out.append("\n# How the path below is played\n[playback]\n");
   out.append("loop = ").append(path.loop ? "true" : "false").append("\n");
-  if (!path.place_text.empty()) out.append("place = ").append(quoted_text(path.place_text)).append("\n");
+  if (!path.place_text.empty()) out.append("place = ").append(files::quoted_text(path.place_text)).append("\n");
   for (const scene::PathFrame& frame : path.frames) {
-    out.append("\n[[path]]\ntime_s = ").append(toml_number(number_text(frame.time_s), true)).append("\n");
+    out.append("\n[[path]]\ntime_s = ").append(toml_number(files::number_text(frame.time_s), true)).append("\n");
     if (frame.position_m) {
-      const auto part = [](double value) { return toml_number(number_text(value), true); };
+      const auto part = [](double value) { return toml_number(files::number_text(value), true); };
       const DVec3& p = *frame.position_m;
       out.append("position_m = [")
           .append(part(p.x))
@@ -346,17 +353,17 @@ void append_path(std::string& out, const scene::CameraPath& path) {
     }
     for (const FrameKey& key : kFrameKeys) {
       const std::optional<float>& value = frame.*key.target;
-      if (value) out.append(key.name).append(" = ").append(toml_number(number_text(*value), true)).append("\n");
+      if (value) out.append(key.name).append(" = ").append(toml_number(files::number_text(*value), true)).append("\n");
     }
-    if (!frame.date.empty()) out.append("date = ").append(quoted_text(frame.date)).append("\n");
+    if (!frame.date.empty()) out.append("date = ").append(files::quoted_text(frame.date)).append("\n");
   }
 }
 
 }  // namespace
 
 Result<void> load_text(Settings& settings, std::string_view toml, std::string_view name) {
-  if (!is_utf8(toml)) {
-    return input_error("not a text file", one_line(name, 200), "allowed is a scene file: TOML in UTF-8");
+  if (!files::is_utf8(toml)) {
+    return files::input_error("not a text file", files::one_line(name, 200), "allowed is a scene file: TOML in UTF-8");
   }
   if (Result<void> shallow = check_key_depth(toml, name); !shallow) return shallow;
   try {
@@ -368,13 +375,13 @@ Result<void> load_text(Settings& settings, std::string_view toml, std::string_vi
   } catch (const toml::parse_error& error) {
     std::string_view what = error.description();
     if (what.ends_with('.')) what.remove_suffix(1);
-    return input_error(concat({"not valid TOML: ", one_line(what, 300)}), position(name, error.source()),
-                       "allowed is KEY = VALUE in [TABLES]");
+    return files::input_error(files::concat({"not valid TOML: ", files::one_line(what, 300)}),
+                              position(name, error.source()), "allowed is KEY = VALUE in [TABLES]");
   }
 }
 
 Result<void> load(Settings& settings, const std::string& path) {
-  Result<std::string> text = read_file(path, kLargestFile);
+  Result<std::string> text = files::read_file(path, kLargestFile);
   if (!text) return std::move(text).error();
   Settings loaded = settings;
   if (Result<void> read = load_text(loaded, text.value(), path); !read) return read;
@@ -398,6 +405,8 @@ std::string to_toml(const Settings& settings) {
   return out;
 }
 
-Result<void> save(const Settings& settings, const std::string& path) { return write_file(path, to_toml(settings)); }
+Result<void> save(const Settings& settings, const std::string& path) {
+  return files::write_file(path, to_toml(settings));
+}
 
 }  // namespace tyndall::config

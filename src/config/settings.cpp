@@ -5,7 +5,7 @@
 #include <cstring>
 #include <optional>
 
-#include "config/text.hpp"
+#include "files/text.hpp"
 #include "tyndall/version.hpp"
 
 namespace tyndall::config {
@@ -34,13 +34,13 @@ T read_bytes(const std::byte* from) {
 std::string expected(const Row& row) {
   const std::size_t count = component_count(row.info.type);
   const std::string_view kind = is_real(row.info.type) ? "number" : "whole number";
-  if (count == 1) return concat({"one ", kind});
-  return concat({row.info.grey ? "1 or " : "", std::to_string(count), " ", kind, "s"});
+  if (count == 1) return files::concat({"one ", kind});
+  return files::concat({row.info.grey ? "1 or " : "", std::to_string(count), " ", kind, "s"});
 }
 
 Error bad_value(const Row& row, std::string_view value, std::string_view problem, std::string_view where) {
-  return input_error(concat({"'", row.key(), "' = '", one_line(value), "' ", problem}), where,
-                     concat({"allowed is ", allowed_text(row)}));
+  return files::input_error(files::concat({"'", row.key(), "' = '", files::one_line(value), "' ", problem}), where,
+                            files::concat({"allowed is ", allowed_text(row)}));
 }
 
 // Bytes of one component of a number.
@@ -48,29 +48,30 @@ std::size_t component_size(ParamType type) { return type == ParamType::dvec3 ? s
 
 // One component of a number, which is written to `to` as it is stored.
 Result<void> store_number(const Row& row, std::string_view text, std::string_view where, std::byte* to) {
-  NumberError problem = NumberError::none;
+  files::NumberError problem = files::NumberError::none;
   std::uint64_t bits = 0;
   bool inside = false;
   if (row.info.type == ParamType::dvec3) {
     double value = 0.0;
-    problem = read_number(text, value);
+    problem = files::read_number(text, value);
     inside = value >= row.info.min && value <= row.info.max;
     std::memcpy(&bits, &value, sizeof(value));
   } else if (is_real(row.info.type)) {
     float value = 0.0F;
-    problem = read_number(text, value);
+    problem = files::read_number(text, value);
     inside = value >= static_cast<float>(row.info.min) && value <= static_cast<float>(row.info.max);
     std::memcpy(&bits, &value, sizeof(value));
   } else {
     std::int64_t value = 0;
-    problem = read_integer(text, value);
+    problem = files::read_integer(text, value);
     inside = value >= static_cast<std::int64_t>(row.info.min) && value <= static_cast<std::int64_t>(row.info.max);
     const auto whole = static_cast<std::uint32_t>(value);
     std::memcpy(&bits, &whole, sizeof(whole));
   }
-  if (problem == NumberError::not_finite) return bad_value(row, text, "is not a finite number", where);
-  if (problem == NumberError::not_a_number) return bad_value(row, text, concat({"is not ", expected(row)}), where);
-  if (problem == NumberError::too_large || !inside) return bad_value(row, text, "is out of range", where);
+  if (problem == files::NumberError::not_finite) return bad_value(row, text, "is not a finite number", where);
+  if (problem == files::NumberError::not_a_number)
+    return bad_value(row, text, files::concat({"is not ", expected(row)}), where);
+  if (problem == files::NumberError::too_large || !inside) return bad_value(row, text, "is out of range", where);
   std::memcpy(to, &bits, component_size(row.info.type));
   return {};
 }
@@ -83,8 +84,8 @@ std::optional<std::uint32_t> flag_value(std::string_view text) {
 
 // The index of `text` among the choices; enumerations count from 0 in the order of their names.
 std::optional<std::uint32_t> choice_value(const Row& row, std::string_view text) {
-  for (std::uint32_t i = 0; i < count_parts(row.info.choices, '|'); ++i) {
-    if (part(row.info.choices, '|', i) == text) return i;
+  for (std::uint32_t i = 0; i < files::count_parts(row.info.choices, '|'); ++i) {
+    if (files::part(row.info.choices, '|', i) == text) return i;
   }
   return std::nullopt;
 }
@@ -117,7 +118,7 @@ bool is_real(ParamType type) {
 
 bool is_vector(ParamType type) { return component_count(type) > 1; }
 
-std::string Row::key() const { return concat({info.group, ".", info.name}); }
+std::string Row::key() const { return files::concat({info.group, ".", info.name}); }
 
 const std::vector<Row>& rows() {
   static const std::vector<Row> all = [] {
@@ -145,7 +146,7 @@ const std::vector<Group>& groups() {
 #define PARAM_FLAG(group, name, def, affects, doc)
 #define PARAM_ENUM(group, name, type, def, affects, doc)
 #define PARAM_STRING(group, name, def, unit, affects, doc)
-#include "scene/scene_params.def"
+#include "scene/description/scene_params.def"
 #include "tyndall/params.def"
 #include "tyndall/params_undef.h"
   });
@@ -159,7 +160,7 @@ const Row* find_row(std::string_view key) {
 }
 
 Error unknown_key(std::string_view key, std::string_view where) {
-  const std::string what = concat({"unknown parameter '", one_line(key), "'"});
+  const std::string what = files::concat({"unknown parameter '", files::one_line(key), "'"});
   const std::size_t dot = key.find('.');
   const std::string_view group = dot == std::string_view::npos ? std::string_view() : key.substr(0, dot);
   const std::string_view name = dot == std::string_view::npos ? key : key.substr(dot + 1);
@@ -169,39 +170,40 @@ Error unknown_key(std::string_view key, std::string_view where) {
   for (const Row& row : rows()) {
     if (row.info.name != name) continue;
     ++same_name;
-    near = near ? concat({*near, "' or '", row.key()}) : row.key();
+    near = near ? files::concat({*near, "' or '", row.key()}) : row.key();
   }
-  if (same_name != 1 && same_name != 2) near = nearest(key, all_keys());
-  if (near) return input_error(what, where, concat({"did you mean '", *near, "'?"}));
+  if (same_name != 1 && same_name != 2) near = files::nearest(key, all_keys());
+  if (near) return files::input_error(what, where, files::concat({"did you mean '", *near, "'?"}));
   std::string members;
   for (const Row& row : rows()) {
     if (row.info.group == group) members.append(members.empty() ? "" : ", ").append(row.info.name);
   }
-  if (!members.empty()) return input_error(what, where, concat({"'", group, "' has ", members}));
-  return input_error(what, where, kLost);
+  if (!members.empty()) return files::input_error(what, where, files::concat({"'", group, "' has ", members}));
+  return files::input_error(what, where, kLost);
 }
 
 Result<void> set(Settings& settings, std::string_view assignment, std::string_view where) {
   const std::size_t equals = assignment.find('=');
-  if (equals == std::string_view::npos || trimmed(assignment.substr(0, equals)).empty()) {
-    return input_error(concat({"'", one_line(assignment), "' is no assignment"}), where, "allowed is KEY=VALUE");
+  if (equals == std::string_view::npos || files::trimmed(assignment.substr(0, equals)).empty()) {
+    return files::input_error(files::concat({"'", files::one_line(assignment), "' is no assignment"}), where,
+                              "allowed is KEY=VALUE");
   }
-  return set(settings, trimmed(assignment.substr(0, equals)), assignment.substr(equals + 1), where);
+  return set(settings, files::trimmed(assignment.substr(0, equals)), assignment.substr(equals + 1), where);
 }
 
 Result<void> set(Settings& settings, std::string_view key, std::string_view value, std::string_view where) {
   const Row* const row = find_row(key);
   if (row == nullptr) return unknown_key(key, where);
   if (row->info.type == ParamType::string) return store(settings, *row, {std::string(value)}, where);
-  const std::string_view text = trimmed(value);
+  const std::string_view text = files::trimmed(value);
   const std::size_t count = component_count(row->info.type);
-  const bool grey = row->info.grey && count_parts(text, ',') == 1;
+  const bool grey = row->info.grey && files::count_parts(text, ',') == 1;
   if (count == 1 || grey) return store(settings, *row, {std::string(text)}, where);
-  if (count_parts(text, ',') != count) {
-    return bad_value(*row, text, concat({"is not ", expected(*row), " separated by commas"}), where);
+  if (files::count_parts(text, ',') != count) {
+    return bad_value(*row, text, files::concat({"is not ", expected(*row), " separated by commas"}), where);
   }
   std::vector<std::string> parts;
-  for (std::size_t i = 0; i < count; ++i) parts.emplace_back(part(text, ',', i));
+  for (std::size_t i = 0; i < count; ++i) parts.emplace_back(files::part(text, ',', i));
   return store(settings, *row, parts, where);
 }
 
@@ -209,12 +211,13 @@ Result<void> store(Settings& settings, const Row& row, const std::vector<std::st
   const std::size_t count = component_count(row.info.type);
   const bool grey = row.info.grey && parts.size() == 1;
   if (parts.size() != count && !grey) {
-    return bad_value(row, concat({std::to_string(parts.size()), " values"}), concat({"is not ", expected(row)}), where);
+    return bad_value(row, files::concat({std::to_string(parts.size()), " values"}),
+                     files::concat({"is not ", expected(row)}), where);
   }
   std::byte* const target = address(settings, row);
   if (row.info.type == ParamType::string) {
-    if (!is_utf8(parts[0])) return bad_value(row, parts[0], "is not valid UTF-8", where);
-    if (has_control_characters(parts[0])) return bad_value(row, parts[0], "holds control characters", where);
+    if (!files::is_utf8(parts[0])) return bad_value(row, parts[0], "is not valid UTF-8", where);
+    if (files::has_control_characters(parts[0])) return bad_value(row, parts[0], "holds control characters", where);
     *reinterpret_cast<std::string*>(target) = parts[0];
     return {};
   }
@@ -240,14 +243,15 @@ std::string value_text(const Row& row, const Settings& settings) {
   switch (row.info.type) {
     case ParamType::string: return *reinterpret_cast<const std::string*>(from);
     case ParamType::flag: return read_bytes<std::uint32_t>(from) != 0 ? "true" : "false";
-    case ParamType::enumeration: return std::string(part(row.info.choices, '|', read_bytes<std::uint32_t>(from)));
+    case ParamType::enumeration:
+      return std::string(files::part(row.info.choices, '|', read_bytes<std::uint32_t>(from)));
     default: break;
   }
   for (std::size_t i = 0; i < component_count(row.info.type); ++i) {
     if (i > 0) text += ',';
     const std::byte* const at = from + i * component_size(row.info.type);
-    text += row.info.type == ParamType::dvec3 ? number_text(read_bytes<double>(at))
-            : is_real(row.info.type)          ? number_text(read_bytes<float>(at))
+    text += row.info.type == ParamType::dvec3 ? files::number_text(read_bytes<double>(at))
+            : is_real(row.info.type)          ? files::number_text(read_bytes<float>(at))
                                               : std::to_string(read_bytes<std::uint32_t>(at));
   }
   return text;
@@ -259,18 +263,18 @@ std::string allowed_text(const Row& row) {
     case ParamType::string: return "text in UTF-8";
     case ParamType::flag: return "true or false";
     case ParamType::enumeration:
-      for (std::size_t i = 0; i < count_parts(row.info.choices, '|'); ++i) {
-        text.append(i > 0 ? ", " : "").append(part(row.info.choices, '|', i));
+      for (std::size_t i = 0; i < files::count_parts(row.info.choices, '|'); ++i) {
+        text.append(i > 0 ? ", " : "").append(files::part(row.info.choices, '|', i));
       }
       return text;
     default: break;
   }
   const std::size_t count = component_count(row.info.type);
-  if (count > 1) text = concat({expected(row), ", each "});
+  if (count > 1) text = files::concat({expected(row), ", each "});
   if (count == 1 && !is_real(row.info.type)) text = "a whole number, ";
   // Limits of whole numbers are written out: "4294967295", not "4.294967295e+09".
   const auto limit = [&](double value) {
-    return is_real(row.info.type) ? number_text(value) : std::to_string(static_cast<std::int64_t>(value));
+    return is_real(row.info.type) ? files::number_text(value) : std::to_string(static_cast<std::int64_t>(value));
   };
   text.append(limit(row.info.min)).append(" to ").append(limit(row.info.max));
   if (!row.info.unit.empty() && row.info.unit != "1") text.append(" ").append(row.info.unit);
@@ -281,29 +285,32 @@ Result<void> check(const Settings& settings) {
   if (Result<void> allowed = check_params(settings.effect); !allowed) return allowed;
   const scene::ShadowParams& shadows = settings.scene.shadows;
   if (shadows.first_marched >= shadows.cascades) {
-    return input_error(concat({"'shadows.first_marched' = ", std::to_string(shadows.first_marched), " is no cascade"}),
-                       concat({"with 'shadows.cascades' = ", std::to_string(shadows.cascades)}),
-                       concat({"allowed is 0 to ", std::to_string(shadows.cascades - 1)}));
+    return files::input_error(
+        files::concat({"'shadows.first_marched' = ", std::to_string(shadows.first_marched), " is no cascade"}),
+        files::concat({"with 'shadows.cascades' = ", std::to_string(shadows.cascades)}),
+        files::concat({"allowed is 0 to ", std::to_string(shadows.cascades - 1)}));
   }
   const scene::HomogeneousParams& homogeneous = settings.scene.homogeneous;
   if (homogeneous.haze_length_m > homogeneous.air_length_m) {
-    return input_error(
-        concat({"'homogeneous.haze_length_m' = ", number_text(homogeneous.haze_length_m), " reaches above the air"}),
-        concat({"with 'homogeneous.air_length_m' = ", number_text(homogeneous.air_length_m)}),
-        concat({"allowed is 1 to ", number_text(homogeneous.air_length_m)}));
+    return files::input_error(
+        files::concat({"'homogeneous.haze_length_m' = ", files::number_text(homogeneous.haze_length_m),
+                       " reaches above the air"}),
+        files::concat({"with 'homogeneous.air_length_m' = ", files::number_text(homogeneous.air_length_m)}),
+        files::concat({"allowed is 1 to ", files::number_text(homogeneous.air_length_m)}));
   }
   const std::string& source = settings.scene.terrain.source;
   const bool file = source != "procedural" && source != "none";
   if (settings.path.has_dates() && settings.path.place_text.empty() && !file) {
-    return input_error(
+    return files::input_error(
         "a path with dates has no place", "[playback]",
         "needed is place = \"LAT,LON\", or an elevation file with a coordinate system in terrain.source");
   }
   if (settings.scene.tables.cache.empty()) {
-    return input_error("no place for the cache", "'tables.cache' is empty", "allowed is auto, off or a directory");
+    return files::input_error("no place for the cache", "'tables.cache' is empty",
+                              "allowed is auto, off or a directory");
   }
   if (settings.scene.terrain.source.empty()) {
-    return input_error("no terrain", "'terrain.source' is empty", "allowed is procedural or an elevation file");
+    return files::input_error("no terrain", "'terrain.source' is empty", "allowed is procedural or an elevation file");
   }
   return {};
 }
@@ -311,7 +318,7 @@ Result<void> check(const Settings& settings) {
 std::vector<std::pair<std::string, std::string>> metadata(const Settings& settings) {
   std::vector<std::pair<std::string, std::string>> list = {{"tyndall.version", TYNDALL_VERSION_STRING}};
   for (const Row& row : rows()) {
-    list.emplace_back(concat({"tyndall.", row.key()}), value_text(row, settings));
+    list.emplace_back(files::concat({"tyndall.", row.key()}), value_text(row, settings));
   }
   return list;
 }
@@ -321,8 +328,10 @@ std::vector<std::pair<std::string, std::string>> radiance_metadata(const Setting
   const Vec3& nm = settings.effect.atmosphere.wavelengths_nm;
   list.emplace_back(
       "tyndall.channels",
-      concat({"R, G, B are the radiance at ", number_text(nm.x), ", ", number_text(nm.y), " and ", number_text(nm.z),
-              " nm, in the unit of sun.irradiance per steradian; they are shown as if they were linear Rec. 709"}));
+      files::concat(
+          {"R, G, B are the radiance at ", files::number_text(nm.x), ", ", files::number_text(nm.y), " and ",
+           files::number_text(nm.z),
+           " nm, in the unit of sun.irradiance per steradian; they are shown as if they were linear Rec. 709"}));
   return list;
 }
 

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "scene/camera_path.hpp"
-#include "scene/scene_params.hpp"
+#include "scene/description/camera_path.hpp"
+#include "scene/description/scene_params.hpp"
 #include "tyndall/params.hpp"
 #include "tyndall/result.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "config/text.hpp"
+#include "files/text.hpp"
 
 namespace tyndall::config {
 namespace {
@@ -46,9 +46,9 @@ Result<void> check_key_depth(std::string_view toml, std::string_view name) {
     }
     if (c == '.') {
       if (++parts > kMaxKeyParts) {
-        return input_error(concat({"a key of more than ", std::to_string(kMaxKeyParts), " parts"}),
-                           concat({one_line(name, 200), ":", std::to_string(line)}),
-                           "allowed is KEY = VALUE in [TABLES]");
+        return files::input_error(files::concat({"a key of more than ", std::to_string(kMaxKeyParts), " parts"}),
+                                  files::concat({files::one_line(name, 200), ":", std::to_string(line)}),
+                                  "allowed is KEY = VALUE in [TABLES]");
       }
     } else if (c == '\n' || c == '=' || c == ',' || c == '[' || c == ']' || c == '{' || c == '}') {
       parts = 1;

@@ -21,8 +21,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "config/files.hpp"
-#include "config/text.hpp"
+#include "files/files.hpp"
+#include "files/text.hpp"
 #include "image/codec.hpp"
 #include "image/exr_header.hpp"
 
@@ -70,7 +70,7 @@ struct FileFailure : std::runtime_error {
 
 class BytesOut : public Imf::OStream {
  public:
-  BytesOut(config::AtomicFile& file, const std::string& path) : Imf::OStream(path.c_str()), file_(file) {}
+  BytesOut(files::AtomicFile& file, const std::string& path) : Imf::OStream(path.c_str()), file_(file) {}
 
   void write(const char data[], int size) override {
     require(file_.write(data, static_cast<std::size_t>(size)));
@@ -93,7 +93,7 @@ class BytesOut : public Imf::OStream {
     throw FileFailure(std::move(result).error());
   }
 
-  config::AtomicFile& file_;
+  files::AtomicFile& file_;
   std::uint64_t position_ = 0;
   bool failed_ = false;
   Error error_;
@@ -178,8 +178,8 @@ void read_luminance_chroma(std::string_view bytes, const std::string& path, cons
 }
 
 std::string window_text(const Imath::Box2i& window) {
-  return config::concat({std::to_string(width_of(window)), "x", std::to_string(height_of(window)), " from ",
-                         std::to_string(window.min.x), ",", std::to_string(window.min.y)});
+  return files::concat({std::to_string(width_of(window)), "x", std::to_string(height_of(window)), " from ",
+                        std::to_string(window.min.x), ",", std::to_string(window.min.y)});
 }
 
 // The display window of an image that holds the data window.
@@ -224,8 +224,8 @@ File decode(std::string_view bytes, const std::string& path) {
     check_window(display, std::max(kMaxEmptyPixels, width_of(window) * height_of(window)),
                  "its display window is too large");
     file.image = displayed(file.image, window, display);
-    file.note = config::concat({"its pixels cover ", window_text(window), ", its display window ", window_text(display),
-                                ": taken is the display window, black where there are no pixels"});
+    file.note = files::concat({"its pixels cover ", window_text(window), ", its display window ", window_text(display),
+                               ": taken is the display window, black where there are no pixels"});
   }
   return file;
 }
@@ -266,7 +266,7 @@ Result<File> decode_exr(std::string_view bytes, const std::string& path) {
   } catch (const std::bad_alloc&) {
     return read_error(path, "EXR: not enough memory");
   } catch (const std::exception& exception) {
-    return read_error(path, config::concat({"EXR: ", exception.what()}));
+    return read_error(path, files::concat({"EXR: ", exception.what()}));
   }
 }
 
@@ -278,12 +278,12 @@ Result<void> write_exr(const std::string& path, const Image& image, const Metada
     const auto too_large = [](float value) { return std::isfinite(value) && std::fabs(value) > kLargestHalf; };
     const auto first = std::find_if(image.rgb.begin(), image.rgb.end(), too_large);
     if (first != image.rgb.end()) {
-      return write_error(ErrorCode::invalid_argument, path,
-                         config::concat({"it holds the value ", config::number_text(*first),
-                                         ", 16 bits allow at most 65504: use 32"}));
+      return write_error(
+          ErrorCode::invalid_argument, path,
+          files::concat({"it holds the value ", files::number_text(*first), ", 16 bits allow at most 65504: use 32"}));
     }
   }
-  Result<config::AtomicFile> file = config::AtomicFile::create(path);
+  Result<files::AtomicFile> file = files::AtomicFile::create(path);
   if (!file) return std::move(file).error();
   BytesOut stream(file.value(), path);
   try {
@@ -294,7 +294,7 @@ Result<void> write_exr(const std::string& path, const Image& image, const Metada
     return write_error(ErrorCode::out_of_memory, path, "not enough memory");
   } catch (const std::exception& exception) {
     if (stream.error() != nullptr) return *stream.error();
-    return write_error(ErrorCode::io, path, config::concat({"EXR: ", exception.what()}));
+    return write_error(ErrorCode::io, path, files::concat({"EXR: ", exception.what()}));
   }
   if (stream.error() != nullptr) return *stream.error();
   return file.value().commit();

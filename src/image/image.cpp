@@ -6,8 +6,8 @@
 #include <cmath>
 #include <new>
 
-#include "config/files.hpp"
-#include "config/text.hpp"
+#include "files/files.hpp"
+#include "files/text.hpp"
 #include "image/codec.hpp"
 
 namespace tyndall::image {
@@ -23,7 +23,7 @@ bool ends_with_ignoring_case(const std::string& text, std::string_view ending) {
                     [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
 }
 
-std::string shown(const std::string& path) { return config::concat({"'", config::one_line(path, 200), "'"}); }
+std::string shown(const std::string& path) { return files::concat({"'", files::one_line(path, 200), "'"}); }
 
 // Interleaved gradient noise (Jimenez, "Next Generation Post Processing in Call of Duty: Advanced
 // Warfare", SIGGRAPH 2014): uniform in [0, 1), and evenly spread over every 3 x 3 neighbourhood.
@@ -36,19 +36,19 @@ double gradient_noise(std::uint32_t x, std::uint32_t y) {
 }  // namespace
 
 Error read_error(const std::string& path, std::string_view why) {
-  return Error{ErrorCode::io, config::concat({"cannot read ", shown(path), ", ", config::one_line(why, 300),
-                                              ", allowed is a whole PNG or EXR"})};
+  return Error{ErrorCode::io, files::concat({"cannot read ", shown(path), ", ", files::one_line(why, 300),
+                                             ", allowed is a whole PNG or EXR"})};
 }
 
 Error write_error(ErrorCode code, const std::string& path, std::string_view why) {
-  return Error{code, config::concat({"cannot write ", shown(path), ", ", config::one_line(why, 300)})};
+  return Error{code, files::concat({"cannot write ", shown(path), ", ", files::one_line(why, 300)})};
 }
 
 Result<FileKind> kind_of_name(const std::string& path) {
   if (ends_with_ignoring_case(path, ".png")) return FileKind::png;
   if (ends_with_ignoring_case(path, ".exr")) return FileKind::exr;
   return Error{ErrorCode::invalid_argument,
-               config::concat({"unknown image format, ", shown(path), ", allowed is a name in .png or .exr"})};
+               files::concat({"unknown image format, ", shown(path), ", allowed is a name in .png or .exr"})};
 }
 
 Result<void> check_writable_image(const std::string& path, const Image& image, const Metadata& metadata) {
@@ -57,16 +57,16 @@ Result<void> check_writable_image(const std::string& path, const Image& image, c
   if (!side_fits || image.rgb.size() != std::size_t{3} * image.width * image.height) {
     return write_error(
         ErrorCode::invalid_argument, path,
-        config::concat({"the image is ", std::to_string(image.width), "x", std::to_string(image.height),
-                        ", allowed is 1x1 to ", std::to_string(kLargestSide), "x", std::to_string(kLargestSide)}));
+        files::concat({"the image is ", std::to_string(image.width), "x", std::to_string(image.height),
+                       ", allowed is 1x1 to ", std::to_string(kLargestSide), "x", std::to_string(kLargestSide)}));
   }
   for (const auto& [name, value] : metadata) {
     const bool plain = std::all_of(name.begin(), name.end(), [](char c) { return c >= ' ' && c <= '~'; });
-    if (!plain || name.empty() || name.size() > kLongestName || !config::is_utf8(value) ||
+    if (!plain || name.empty() || name.size() > kLongestName || !files::is_utf8(value) ||
         value.find('\0') != std::string::npos) {
       return write_error(ErrorCode::invalid_argument, path,
-                         config::concat({"metadata '", config::one_line(name), "', allowed are names of 1 to 79 ",
-                                         "characters of ASCII and values in UTF-8"}));
+                         files::concat({"metadata '", files::one_line(name), "', allowed are names of 1 to 79 ",
+                                        "characters of ASCII and values in UTF-8"}));
     }
   }
   return {};
@@ -76,13 +76,13 @@ Result<File> read(const std::string& path) {
   constexpr std::string_view kPngMagic = "\x89PNG\r\n\x1a\n";
   constexpr std::string_view kExrMagic = "\x76\x2f\x31\x01";
   try {
-    Result<std::string> bytes = config::read_file(path, kLargestFile);
+    Result<std::string> bytes = files::read_file(path, kLargestFile);
     if (!bytes) return std::move(bytes).error();
     if (bytes.value().starts_with(kPngMagic)) return decode_png(bytes.value(), path);
     if (bytes.value().starts_with(kExrMagic)) return decode_exr(bytes.value(), path);
     return read_error(path, bytes.value().empty() ? "it is empty" : "it is neither PNG nor EXR");
   } catch (const std::bad_alloc&) {
-    return Error{ErrorCode::out_of_memory, config::concat({"cannot read ", shown(path), ", not enough memory"})};
+    return Error{ErrorCode::out_of_memory, files::concat({"cannot read ", shown(path), ", not enough memory"})};
   }
 }
 

@@ -10,8 +10,8 @@
 #include <new>
 #include <optional>
 
-#include "config/files.hpp"
-#include "config/text.hpp"
+#include "files/files.hpp"
+#include "files/text.hpp"
 #include "image/codec.hpp"
 
 namespace tyndall::image {
@@ -116,7 +116,7 @@ Metadata text_chunks(const Reader& reader) {
 }
 
 struct Writer {
-  config::AtomicFile* file = nullptr;
+  files::AtomicFile* file = nullptr;
   const Image* image = nullptr;
   PngOptions options;
   Problem problem;
@@ -191,7 +191,7 @@ std::vector<png_text> png_texts(const Metadata& metadata) {
 
 Result<File> decode_png(std::string_view bytes, const std::string& path) {
   if (const char* const problem = chunk_problem(bytes); *problem != '\0') {
-    return read_error(path, config::concat({"PNG: ", problem}));
+    return read_error(path, files::concat({"PNG: ", problem}));
   }
   Reader reader;
   reader.bytes = bytes;
@@ -212,7 +212,7 @@ Result<File> decode_png(std::string_view bytes, const std::string& path) {
     std::strcpy(reader.problem.message, "not enough memory");
   }
   png_destroy_read_struct(&reader.png, &reader.info, nullptr);
-  if (!file) return read_error(path, config::concat({"PNG: ", reader.problem.message}));
+  if (!file) return read_error(path, files::concat({"PNG: ", reader.problem.message}));
   for (std::size_t i = 0; i < file->image.rgb.size(); ++i) {
     if (reader.depth == 16) {
       std::uint16_t value = 0;
@@ -233,11 +233,11 @@ Result<void> write_png(const std::string& path, const Image& image, const Metada
     while (std::isfinite(image.rgb[first])) ++first;
     const std::size_t pixel = first / 3;
     return write_error(ErrorCode::invalid_argument, path,
-                       config::concat({std::to_string(bad), " values are not finite, the first at pixel ",
-                                       std::to_string(pixel % image.width), ",", std::to_string(pixel / image.width),
-                                       ", only EXR holds such values"}));
+                       files::concat({std::to_string(bad), " values are not finite, the first at pixel ",
+                                      std::to_string(pixel % image.width), ",", std::to_string(pixel / image.width),
+                                      ", only EXR holds such values"}));
   }
-  Result<config::AtomicFile> file = config::AtomicFile::create(path);
+  Result<files::AtomicFile> file = files::AtomicFile::create(path);
   if (!file) return std::move(file).error();
   std::vector<png_text> texts = png_texts(metadata);
   std::vector<unsigned char> row(std::size_t{3} * image.width);
@@ -253,7 +253,7 @@ Result<void> write_png(const std::string& path, const Image& image, const Metada
   const bool done = writer.info != nullptr && write_samples(&writer);
   png_destroy_write_struct(&writer.png, &writer.info);
   if (!done && writer.file_failed) return writer.file_error;
-  if (!done) return write_error(ErrorCode::out_of_memory, path, config::concat({"PNG: ", writer.problem.message}));
+  if (!done) return write_error(ErrorCode::out_of_memory, path, files::concat({"PNG: ", writer.problem.message}));
   return file.value().commit();
 }
 

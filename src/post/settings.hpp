@@ -7,7 +7,7 @@
 
 namespace tyndall::post {
 
-// Values of TonemapOperator in src/scene/scene_params.def and of shaders/post/tonemap_curves.glsl.
+// Values of TonemapOperator in src/scene/description/scene_params.def and of shaders/post/tonemap_curves.glsl.
 enum class Operator : std::uint32_t {
   exponential,
   reinhard,

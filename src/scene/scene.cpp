@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "gpu/try.hpp"
-#include "scene/background_constants.hpp"
-#include "scene/chart.hpp"
+#include "scene/description/map_projection.hpp"
+#include "scene/description/unused_params.hpp"
 #include "scene/formats.hpp"
-#include "scene/unused_params.hpp"
+#include "scene/sky/background_constants.hpp"
 #include "scene_shaders.hpp"
 
 namespace tyndall::scene {

@@ -12,9 +12,9 @@
 #include "gpu/timer.hpp"
 #include "image/image.hpp"
 #include "post/tonemap.hpp"
-#include "scene/meshes.hpp"
-#include "scene/sky_model.hpp"
-#include "scene/terrain.hpp"
+#include "scene/mesh/meshes.hpp"
+#include "scene/sky/sky_model.hpp"
+#include "scene/terrain/terrain.hpp"
 #include "tables/make_ready.hpp"
 
 namespace tyndall::scene {

@@ -3,10 +3,10 @@
 #include <cstring>
 
 #include "gpu/try.hpp"
-#include "scene/background_constants.hpp"
 #include "scene/formats.hpp"
 #include "scene/scene.hpp"
-#include "scene/sun_disc.hpp"
+#include "scene/sky/background_constants.hpp"
+#include "scene/sky/sun_disc.hpp"
 
 namespace tyndall::scene {
 namespace {

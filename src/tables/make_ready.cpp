@@ -4,7 +4,7 @@
 #include <chrono>
 #include <span>
 
-#include "config/file_cache.hpp"
+#include "files/file_cache.hpp"
 #include "gpu/try.hpp"
 #include "tyndall/version.hpp"
 
@@ -22,7 +22,7 @@ void publish(const gpu::Device& device, VkCommandBuffer cmd) {
 }
 
 // Whether they were there.
-Result<bool> load(gpu::Host& host, Effect& effect, config::FileCache& cache, Outcome& outcome) {
+Result<bool> load(gpu::Host& host, Effect& effect, files::FileCache& cache, Outcome& outcome) {
   const gpu::Device& device = host.device();
   const std::string key = effect.table_key();
   if (key.empty() || !cache.holds(key)) return false;
@@ -47,7 +47,7 @@ Result<void> advance(gpu::Host& host, Effect& effect, const MakeReady& how, std:
   const Progress progress = effect.precompute_progress();
   if (progress.complete()) return {};
   if (progress.done == 0 && !how.build_anew) {
-    config::FileCache cache(config::cache_directory(how.cache.place), how.cache.limit_bytes, TYNDALL_VERSION_STRING);
+    files::FileCache cache(files::cache_directory(how.cache.place), how.cache.limit_bytes, TYNDALL_VERSION_STRING);
     Outcome outcome;
     const Result<bool> loaded = load(host, effect, cache, outcome);
     notes.insert(notes.end(), outcome.notes.begin(), outcome.notes.end());
@@ -83,7 +83,7 @@ Result<Keeper> Keeper::fetch(gpu::Host& host, Effect& effect, const CacheDesc& c
 
 std::string Keeper::write() {
   if (key_.empty()) return {};
-  config::FileCache cache(config::cache_directory(cache_.place), cache_.limit_bytes, TYNDALL_VERSION_STRING);
+  files::FileCache cache(files::cache_directory(cache_.place), cache_.limit_bytes, TYNDALL_VERSION_STRING);
   cache.write(key_, bytes_);
   return cache.note();
 }
@@ -95,7 +95,7 @@ Result<Outcome> make_ready(gpu::Host& host, Effect& effect, const MakeReady& how
   const auto milliseconds = [&] {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   };
-  config::FileCache cache(config::cache_directory(how.cache.place), how.cache.limit_bytes, TYNDALL_VERSION_STRING);
+  files::FileCache cache(files::cache_directory(how.cache.place), how.cache.limit_bytes, TYNDALL_VERSION_STRING);
   // Being short of memory for the cache is no reason to fail: the build already has its own.
   const auto without_cache = [&](const Error& error) -> Result<void> {
     if (error.code != ErrorCode::out_of_memory) return error;

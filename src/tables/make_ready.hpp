@@ -14,7 +14,7 @@
 namespace tyndall::tables {
 
 struct CacheDesc {
-  std::string place = "off";  // as in config::cache_directory
+  std::string place = "off";  // as in files::cache_directory
   std::uint64_t limit_bytes = std::uint64_t{1} << 30U;
 };
 

@@ -4,12 +4,12 @@
 #include <charconv>
 #include <cmath>
 
-#include "config/text.hpp"
+#include "files/text.hpp"
 
 namespace tyndall::validate {
 namespace {
 
-using config::concat;
+using files::concat;
 
 constexpr double kWidth = 560.0, kHeight = 340.0;  // of the picture, in its own units
 constexpr double kLeft = 66.0, kRight = 14.0, kTop = 30.0, kBottom = 46.0;
@@ -53,7 +53,7 @@ std::vector<Tick> ticks(const Axis& axis) {
       const double value = std::pow(10.0, decade);
       const bool named = (decade - first) % every == 0;
       if (value >= axis.min * 0.999 && value <= axis.max * 1.001) {
-        const std::string text = decade >= -2 && decade <= 3 ? config::number_text(static_cast<float>(value))
+        const std::string text = decade >= -2 && decade <= 3 ? files::number_text(static_cast<float>(value))
                                                              : concat({"1e", std::to_string(decade)});
         out.push_back({value, named ? text : ""});
       }

@@ -4,14 +4,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "config/text.hpp"
+#include "files/text.hpp"
 #include "validate/groups.hpp"
 #include "validate/plot.hpp"
 
 namespace tyndall::validate {
 namespace {
 
-using config::concat;
+using files::concat;
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr const char* kChannelNames[] = {"red", "green", "blue"};

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "config/text.hpp"
+#include "files/text.hpp"
 #include "validate/groups.hpp"
 #include "validate/plot.hpp"
 #include "validate/report.hpp"
@@ -9,12 +9,12 @@
 namespace tyndall::validate {
 namespace {
 
-using config::concat;
-using config::quoted_text;
+using files::concat;
+using files::quoted_text;
 
 std::string percent(double value) { return fixed(100.0 * value, 2); }
 
-std::string json_number(double value) { return std::isfinite(value) ? config::number_text(value) : "null"; }
+std::string json_number(double value) { return std::isfinite(value) ? files::number_text(value) : "null"; }
 
 std::string json_summary(const Summary& s) {
   return concat({"\"rays\": ", std::to_string(s.count), ", \"mean\": ", json_number(s.mean), ", \"median\": ",

@@ -6,9 +6,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "config/csv.hpp"
-#include "config/text.hpp"
 #include "effect/medium.hpp"
+#include "files/csv.hpp"
+#include "files/text.hpp"
 #include "models/single_scattering.hpp"
 #include "run_tyndall.hpp"
 
@@ -22,21 +22,21 @@ class CliProbe : public testing::Test {
  protected:
   // The table that `probe` prints for these queries, by the model `single` unless told otherwise; empty after a
   // failure, which is reported.
-  config::CsvTable ask(const std::string& queries, std::vector<std::string> more = {}) const {
+  files::CsvTable ask(const std::string& queries, std::vector<std::string> more = {}) const {
     if (std::find(more.begin(), more.end(), "--model") == more.end()) more.insert(more.end(), {"--model", "single"});
     more.insert(more.begin(), {"probe", "--queries", scratch_.write("q.csv", queries)});
     const Outcome outcome = run_tyndall(more);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(outcome.err, "");
-    Result<config::CsvTable> table = config::parse_csv(outcome.out, "output");
+    Result<files::CsvTable> table = files::parse_csv(outcome.out, "output");
     EXPECT_TRUE(table.ok());
-    return table.ok() ? std::move(table).value() : config::CsvTable();
+    return table.ok() ? std::move(table).value() : files::CsvTable();
   }
-  static double number(const config::CsvTable& table, std::size_t row, const std::string& column) {
+  static double number(const files::CsvTable& table, std::size_t row, const std::string& column) {
     const std::vector<std::size_t> found = table.find(column);
     double value = std::numeric_limits<double>::quiet_NaN();
     if (found.size() == 1 && row < table.rows()) {
-      static_cast<void>(config::read_number(table.field(row, found.front()), value));
+      static_cast<void>(files::read_number(table.field(row, found.front()), value));
     }
     return value;
   }
@@ -47,7 +47,7 @@ class CliProbe : public testing::Test {
 TEST_F(CliProbe, EveryFormOfTableIsReadAndItsColumnsPassedOn) {
   // Columns in another order, one more among them, quoted fields with a comma, a quote and a line end, CRLF,
   // a byte order mark, blank lines, no line end at the end.
-  const config::CsvTable table =
+  const files::CsvTable table =
       ask("\xEF\xBB\xBF\r\nid, azimuth_deg ,\"view_zenith_deg\",sun_zenith_deg,altitude_m\r\n"
           "\"a,\"\"b\",30,60,+3e1,0\r\n\r\n   \r\n\"two\nlines\",-30, \"60\" ,30.0,0\r\nlast,,sky,30,0");
   ASSERT_EQ(table.rows(), 3U);
@@ -71,7 +71,7 @@ TEST_F(CliProbe, EveryFormOfTableIsReadAndItsColumnsPassedOn) {
 
 TEST_F(CliProbe, SingleIsTheIntegralAndTheSkyItsIrradiance) {
   const shared::Medium medium = medium_from_params({});
-  const config::CsvTable table =
+  const files::CsvTable table =
       ask(kHeader + "0,30,60,0\n8000,95,88,170\n400000,100,40,20\n400000,60,40,20\n3000,sky,70,0\n");
   const double rays[3][4] = {{0, 30, 60, 0}, {8000, 95, 88, 170}, {400000, 100, 40, 20}};
   const char* const channels = "rgb";
@@ -100,8 +100,8 @@ TEST_F(CliProbe, ReferenceAgreesWithSingleWithinItsError) {
   const std::string queries =
       kHeader + "0,30,60,0\n8000,95,88,170\n3000,sky,70,0\n-400,80,70,90\n-400,93,60,40\n0,100,40,0\n";
   const std::vector<std::string> one = {"--model", "reference", "--orders", "1", "--samples", "20000"};
-  const config::CsvTable reference = ask(queries, one);
-  const config::CsvTable single = ask(queries);
+  const files::CsvTable reference = ask(queries, one);
+  const files::CsvTable single = ask(queries);
   ASSERT_EQ(reference.header.size(), 13U);
   for (const char* const channel : {"r", "g", "b"}) {
     const std::string l = std::string("L_") + channel;
@@ -128,7 +128,7 @@ TEST_F(CliProbe, ReferenceAgreesWithSingleWithinItsError) {
 
 TEST_F(CliProbe, ParametersAndScenesApply) {
   const std::string queries = kHeader + "0,30,60,0\n";
-  const config::CsvTable none =
+  const files::CsvTable none =
       ask(queries, {"--set", "atmosphere.custom_coefficients=true", "--set", "atmosphere.rayleigh_scattering=0,0,0",
                     "--set", "atmosphere.aerosol_density=0", "--set", "atmosphere.ozone_absorption=0,0,0"});
   EXPECT_EQ(number(none, 0, "L_b"), 0.0);
@@ -211,7 +211,7 @@ TEST_F(CliProbe, EyesFarBelowSeaLevel) {
     }
   }
   for (const char* const model : {"single", "homogeneous", "homogeneous-medium", "reference"}) {
-    const config::CsvTable table = ask(
+    const files::CsvTable table = ask(
         queries, {"--model", model, "--samples", "256", "--orders", "3", "--set", "atmosphere.ozone_absorption=0,0,0"});
     for (std::size_t row = 0; row < table.rows(); ++row) {
       for (const char* const column : {"L_r", "L_g", "L_b", "T_r", "T_g", "T_b"}) {

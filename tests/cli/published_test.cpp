@@ -10,8 +10,8 @@
 #include <numbers>
 #include <random>
 
-#include "config/csv.hpp"
-#include "config/text.hpp"
+#include "files/csv.hpp"
+#include "files/text.hpp"
 #include "run_tyndall.hpp"
 
 namespace tyndall::cli {
@@ -97,7 +97,7 @@ class CliPublished : public testing::Test {
     all.insert(all.end(), arguments.begin(), arguments.end());
     const Outcome outcome = run_tyndall(all);
     ASSERT_EQ(outcome.status, 0) << outcome.err;
-    const Result<config::CsvTable> table = config::parse_csv(outcome.out, "output");
+    const Result<files::CsvTable> table = files::parse_csv(outcome.out, "output");
     ASSERT_TRUE(table.ok());
     ASSERT_EQ(table.value().rows(), questions.size());
     double worst = 0.0;
@@ -108,7 +108,7 @@ class CliPublished : public testing::Test {
           const std::string column = std::string(light ? "L_" : "T_") + "rgb"[c];
           const double published = light ? right.radiance[c] : right.transmittance[c];
           double found = -1.0;
-          static_cast<void>(config::read_number(table.value().field(row, table.value().find(column).front()), found));
+          static_cast<void>(files::read_number(table.value().field(row, table.value().find(column).front()), found));
           EXPECT_NEAR(found, published, kTolerance * published + 1e-12)
               << column << ": altitude " << questions[row].altitude_m << " view " << questions[row].view_deg << " sun "
               << questions[row].sun_deg << " azimuth " << questions[row].azimuth_deg;

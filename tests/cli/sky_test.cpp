@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "config/csv.hpp"
-#include "config/text.hpp"
 #include "effect/medium.hpp"
+#include "files/csv.hpp"
+#include "files/text.hpp"
 #include "image/image.hpp"
 #include "models/single_scattering.hpp"
 #include "run_tyndall.hpp"
@@ -135,12 +135,12 @@ TEST_F(CliSky, TheUpperHalfHoldsTheIrradianceOfTheSky) {
   for (const double elevation : {60.0, 15.0, 0.0, -4.0}) {
     for (const double altitude : {0.0, 9000.0}) {
       // The sun's irradiance is 10 and the scale 0.5.
-      const image::File file = make(
-          with_single({"--size", "180x360", "--sun-elevation-deg", config::number_text(elevation), "--sun-azimuth-deg",
-                       "77", "--altitude", config::number_text(altitude), "--disc", "false"}));
+      const image::File file =
+          make(with_single({"--size", "180x360", "--sun-elevation-deg", files::number_text(elevation),
+                            "--sun-azimuth-deg", "77", "--altitude", files::number_text(altitude), "--disc", "false"}));
       const std::array<double, 3> found = integral(file.image, true);
       const std::array<double, 3> truth =
-          probe(config::number_text(altitude) + ",sky," + config::number_text(90.0 - elevation) + ",", kSingle);
+          probe(files::number_text(altitude) + ",sky," + files::number_text(90.0 - elevation) + ",", kSingle);
       for (std::size_t c = 0; c < 3; ++c) {
         EXPECT_NEAR(found[c], 5.0 * truth[c], 0.005 * 5.0 * truth[c]) << elevation << ' ' << altitude << ' ' << c;
       }
@@ -154,7 +154,7 @@ TEST_F(CliSky, PixelsAreRays) {
                         "400000", "--set", "sun.irradiance=2", "--set", "scattering.scale=1"}));
   for (const auto& [x, y] : {std::pair(4U, 11U), std::pair(20U, 17U), std::pair(7U, 5U)}) {
     const std::string ray =
-        "400000," + config::number_text(5.0 + 10.0 * y) + ",60," + config::number_text(5.0 + 10.0 * x - 40.0);
+        "400000," + files::number_text(5.0 + 10.0 * y) + ",60," + files::number_text(5.0 + 10.0 * x - 40.0);
     const std::array<double, 3> truth = probe(ray, kSingle);
     for (std::size_t c = 0; c < 3; ++c) {
       // The sun itself is in row 5 (zenith angles 50 to 60) or 6, column 3 or 4.
@@ -192,7 +192,7 @@ TEST_F(CliSky, TheGroundIsThatOfTheReference) {
                         "--disc", "false", "--set", "planet.ground_albedo=0.4", "--set", "sun.irradiance=2,4,0.5"}));
   constexpr double kSun[] = {1.0, 2.0, 0.25};  // times the scale of 0.5
   for (const auto& [x, y] : {std::pair(0U, 5U), std::pair(2U, 4U), std::pair(1U, 3U)}) {
-    const std::string ray = "5000," + config::number_text(15.0 + 30.0 * y) + ",50," + config::number_text(90.0 * x);
+    const std::string ray = "5000," + files::number_text(15.0 + 30.0 * y) + ",50," + files::number_text(90.0 * x);
     const std::array<double, 3> truth = probe(
         ray, {"--model", "reference", "--orders", "1", "--samples", "20000", "--set", "planet.ground_albedo=0.4"});
     for (std::size_t c = 0; c < 3; ++c)
@@ -204,11 +204,11 @@ TEST_F(CliSky, TheDefaultIsThatOfTheReferenceInAllOrders) {
   // Rows at 15, 45, 75 and 105 degrees from the zenith; small tables, whose own error is below the tolerance.
   const std::vector<std::string> tables = {"--set", "tables.size=16,64,32,8"};
   for (const double elevation : {35.0, -2.0}) {
-    const std::string sun = config::number_text(90.0 - elevation);
+    const std::string sun = files::number_text(90.0 - elevation);
     std::vector<std::string> arguments = {"--size",
                                           "4x6",
                                           "--sun-elevation-deg",
-                                          config::number_text(elevation),
+                                          files::number_text(elevation),
                                           "--sun-azimuth-deg",
                                           "45",
                                           "--altitude",
@@ -221,7 +221,7 @@ TEST_F(CliSky, TheDefaultIsThatOfTheReferenceInAllOrders) {
     const image::File file = make(arguments);
     for (const auto& [x, y] : {std::pair(0U, 0U), std::pair(1U, 1U), std::pair(2U, 2U), std::pair(3U, 3U)}) {
       const std::string ray =
-          "2000," + config::number_text(15.0 + 30.0 * y) + "," + sun + "," + config::number_text(90.0 * x);
+          "2000," + files::number_text(15.0 + 30.0 * y) + "," + sun + "," + files::number_text(90.0 * x);
       const std::array<double, 3> truth = probe(ray, {"--model", "reference", "--samples", "60000"});
       const double brightest = *std::max_element(truth.begin(), truth.end());
       for (std::size_t c = 0; c < 3; ++c)

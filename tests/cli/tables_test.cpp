@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "config/text.hpp"
+#include "files/text.hpp"
 #include "image/image.hpp"
 #include "run_tyndall.hpp"
 
@@ -151,10 +151,10 @@ TEST_F(CliTables, TheExportHoldsWhatTheRendererReads) {
             const double spread = std::sqrt((1.0 - mu * mu) * (1.0 - mu_s * mu_s));
             if (spread < 1e-3 || std::abs(nu - mu * mu_s) > 0.999 * spread) continue;
             texels.push_back({a, v, s, n});
-            queries += config::number_text(axes["altitude_m"][a].get<double>()) + "," +
-                       config::number_text(views["deg"][v].get<double>()) + "," +
-                       config::number_text(std::acos(mu_s) * 180.0 / kPi) + "," +
-                       config::number_text(std::acos((nu - mu * mu_s) / spread) * 180.0 / kPi) + "\n";
+            queries += files::number_text(axes["altitude_m"][a].get<double>()) + "," +
+                       files::number_text(views["deg"][v].get<double>()) + "," +
+                       files::number_text(std::acos(mu_s) * 180.0 / kPi) + "," +
+                       files::number_text(std::acos((nu - mu * mu_s) / spread) * 180.0 / kPi) + "\n";
           }
         }
       }
@@ -167,8 +167,8 @@ TEST_F(CliTables, TheExportHoldsWhatTheRendererReads) {
         const double cosine = light["cos_horizon"][x].get<double>() + light["cos_sun_from_horizon"][y].get<double>();
         if (std::abs(cosine) > 1.0) continue;
         lights.emplace_back(x, y);
-        queries += config::number_text(light["altitude_m"][x].get<double>()) + ",sky," +
-                   config::number_text(std::acos(cosine) * 180.0 / kPi) + ",\n";
+        queries += files::number_text(light["altitude_m"][x].get<double>()) + ",sky," +
+                   files::number_text(std::acos(cosine) * 180.0 / kPi) + ",\n";
       }
     }
     arguments = set;

@@ -6,7 +6,7 @@
 
 #include "gpu_test.hpp"
 #include "image/metrics.hpp"
-#include "scene/chart.hpp"
+#include "scene/description/map_projection.hpp"
 #include "scene/scene.hpp"
 
 namespace tyndall::scene {

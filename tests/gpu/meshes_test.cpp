@@ -10,7 +10,7 @@
 #include "gpu_test.hpp"
 #include "image/metrics.hpp"
 #include "mesh_files.hpp"
-#include "scene/mesh_textures.hpp"
+#include "scene/mesh/mesh_textures.hpp"
 #include "scene/scene.hpp"
 
 namespace tyndall::scene {

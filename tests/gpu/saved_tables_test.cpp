@@ -8,7 +8,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "config/file_cache.hpp"
+#include "files/file_cache.hpp"
 #include "models/precomputed.hpp"
 #include "table_fixture.hpp"
 #include "table_rays.hpp"
@@ -255,7 +255,7 @@ TEST_F(CachedTablesTest, WhatIsWrongOnDiskIsSaidOnceAndMadeAnew) {
   damaged[good.size() - 1000] ^= 1;
   expect_anew(damaged, "damaged");
   {
-    config::FileCache other(how_.cache.place, how_.cache.limit_bytes, "0.0.0");
+    files::FileCache other(how_.cache.place, how_.cache.limit_bytes, "0.0.0");
     other.write(make(quick_tables(), false).table_key(), built);
   }
   std::string of_other;

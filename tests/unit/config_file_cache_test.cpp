@@ -9,7 +9,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "config/file_cache.hpp"
+#include "files/file_cache.hpp"
 
 namespace tyndall::config {
 namespace {

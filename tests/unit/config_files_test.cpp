@@ -1,5 +1,5 @@
 // Files are written whole or not at all.
-#include "config/files.hpp"
+#include "files/files.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

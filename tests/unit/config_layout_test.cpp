@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "config/files.hpp"
+#include "files/files.hpp"
 #include "tyndall/params.hpp"
 
 namespace tyndall {
@@ -72,7 +72,7 @@ std::size_t size_of(ParamType type) {
 }
 
 TEST(ConfigLayout, GlslAgreesWithCpp) {
-  const Result<std::string> spirv = config::read_file(TYNDALL_LAYOUT_SPV, 1U << 24U);
+  const Result<std::string> spirv = files::read_file(TYNDALL_LAYOUT_SPV, 1U << 24U);
   ASSERT_TRUE(spirv.ok()) << spirv.error().message;
   const Reflection reflection(spirv.value());
   ASSERT_EQ(reflection.members.size(), param_table().size());

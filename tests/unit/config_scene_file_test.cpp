@@ -9,7 +9,7 @@
 #include <fstream>
 
 #include "config/describe.hpp"
-#include "config/files.hpp"
+#include "files/files.hpp"
 
 namespace tyndall::config {
 namespace {

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "config/scene_file.hpp"
-#include "config/text.hpp"
+#include "files/text.hpp"
 
 namespace tyndall::config {
 namespace {

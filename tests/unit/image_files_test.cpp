@@ -20,7 +20,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "config/files.hpp"
+#include "files/files.hpp"
 #include "image/image.hpp"
 #include "image/metrics.hpp"
 
@@ -135,8 +135,8 @@ TEST_F(ImageFiles, TheSameImageGivesTheSameBytes) {
       const std::string path = at(name + ending);
       ASSERT_TRUE((ending == ".png" ? write_png(path, image, metadata_) : write_exr(path, image, metadata_)).ok());
     }
-    EXPECT_EQ(config::read_file(at("a" + ending), 1U << 20U).value(),
-              config::read_file(at("b" + ending), 1U << 20U).value());
+    EXPECT_EQ(files::read_file(at("a" + ending), 1U << 20U).value(),
+              files::read_file(at("b" + ending), 1U << 20U).value());
   }
 }
 
@@ -171,7 +171,7 @@ TEST_F(ImageFiles, WhatCannotBeWritten) {
 }
 
 TEST_F(ImageFiles, AFullDiskLeavesNothingAndTheOldFile) {
-  ASSERT_TRUE(config::write_file(at("a.png"), "old").ok());
+  ASSERT_TRUE(files::write_file(at("a.png"), "old").ok());
   const pid_t child = ::fork();
   if (child == 0) {
     const rlimit limit = {3000, 3000};
@@ -185,15 +185,15 @@ TEST_F(ImageFiles, AFullDiskLeavesNothingAndTheOldFile) {
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   EXPECT_EQ(status, 0);
   EXPECT_EQ(entries(), 1U);
-  EXPECT_EQ(config::read_file(at("a.png"), 100).value(), "old");
+  EXPECT_EQ(files::read_file(at("a.png"), 100).value(), "old");
 }
 
 TEST_F(ImageFiles, MissingOrOfAnotherKind) {
   EXPECT_NE(message_of(at("none.png")).find("No such file or directory"), std::string::npos);
   EXPECT_NE(message_of(directory_.string()).find("Is a directory"), std::string::npos);
-  ASSERT_TRUE(config::write_file(at("empty.png"), "").ok());
+  ASSERT_TRUE(files::write_file(at("empty.png"), "").ok());
   EXPECT_NE(message_of(at("empty.png")).find("it is empty"), std::string::npos);
-  ASSERT_TRUE(config::write_file(at("text.exr"), "hello\n").ok());
+  ASSERT_TRUE(files::write_file(at("text.exr"), "hello\n").ok());
   EXPECT_NE(message_of(at("text.exr")).find("it is neither PNG nor EXR"), std::string::npos);
 }
 
@@ -203,17 +203,17 @@ TEST_F(ImageFiles, DamagedFiles) {
   ASSERT_TRUE(write_png(at("a.png"), image, metadata_).ok());
   ASSERT_TRUE(write_exr(at("a.exr"), image, metadata_).ok());
   for (const std::string name : {"a.png", "a.exr"}) {
-    const std::string whole = config::read_file(at(name), 1U << 20U).value();
+    const std::string whole = files::read_file(at(name), 1U << 20U).value();
     const std::size_t step = whole.size() / 60 + 1;
     int refused = 0;
     for (std::size_t position = 0; position < whole.size(); position += step) {
-      ASSERT_TRUE(config::write_file(at("cut"), whole.substr(0, position)).ok());
+      ASSERT_TRUE(files::write_file(at("cut"), whole.substr(0, position)).ok());
       const std::string cut = message_of(at("cut"));
       EXPECT_NE(cut, "(accepted)") << name << " cut at " << position;
       EXPECT_EQ(cut.find('\n'), std::string::npos);
       std::string changed = whole;
       changed[position] = static_cast<char>(changed[position] ^ 0x55);
-      ASSERT_TRUE(config::write_file(at("changed"), changed).ok());
+      ASSERT_TRUE(files::write_file(at("changed"), changed).ok());
       const std::string damage = message_of(at("changed"));
       EXPECT_EQ(damage.find('\n'), std::string::npos);
       refused += damage != "(accepted)" ? 1 : 0;
@@ -369,7 +369,7 @@ TEST_F(ImageFiles, ClaimsAreCheckedAgainstTheLengthOfTheFile) {
       {"tiles", tiled + rest + tile + '\0'},
   };
   for (const auto& [what, bytes] : claims) {
-    ASSERT_TRUE(config::write_file(at("claim"), bytes).ok());
+    ASSERT_TRUE(files::write_file(at("claim"), bytes).ok());
     const pid_t child = ::fork();
     if (child == 0) {
       const std::string message = message_of(at("claim"));

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "scene/camera_path.hpp"
-#include "scene/chart.hpp"
+#include "scene/description/camera_path.hpp"
+#include "scene/description/map_projection.hpp"
 
 namespace tyndall::scene {
 namespace {

@@ -7,10 +7,10 @@
 #include <numeric>
 #include <random>
 
-#include "scene/camera.hpp"
-#include "scene/chart.hpp"
-#include "scene/local_frame.hpp"
-#include "scene/terrain.hpp"
+#include "scene/description/map_projection.hpp"
+#include "scene/terrain/terrain.hpp"
+#include "scene/view/camera.hpp"
+#include "scene/view/local_frame.hpp"
 
 namespace tyndall::scene {
 namespace {

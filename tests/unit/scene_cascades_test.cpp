@@ -10,8 +10,8 @@
 
 #include "effect/frame_constants.hpp"
 #include "effect/remarks.hpp"
-#include "scene/cascades.hpp"
-#include "scene/chart.hpp"
+#include "scene/description/map_projection.hpp"
+#include "scene/view/cascades.hpp"
 
 namespace tyndall::scene {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "scene/solar_position.hpp"
+#include "scene/description/solar_position.hpp"
 
 namespace tyndall::scene {
 namespace {

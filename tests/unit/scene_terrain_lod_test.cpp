@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "scene/terrain_lod.hpp"
+#include "scene/terrain/terrain_lod.hpp"
 
 namespace tyndall::scene {
 namespace {

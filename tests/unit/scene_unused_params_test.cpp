@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "config/scene_file.hpp"
-#include "scene/unused_params.hpp"
+#include "scene/description/unused_params.hpp"
 
 namespace tyndall::scene {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "camera_control.hpp"
-#include "scene/camera.hpp"
-#include "scene/chart.hpp"
+#include "scene/description/map_projection.hpp"
+#include "scene/view/camera.hpp"
+#include "viewer/camera_control.hpp"
 
 namespace tyndall::viewer {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "config/settings.hpp"
-#include "config/text.hpp"
+#include "files/text.hpp"
 #include "window_tools.hpp"
 
 namespace tyndall {
@@ -22,7 +22,7 @@ int components_of(const Row& row) { return static_cast<int>(config::component_co
 // A number of the row, as the log has it.
 std::string text_of(const Row& row, double value) {
   const bool whole = row.info.type == ParamType::uint32 || row.info.type == ParamType::uvec4;
-  return whole ? std::to_string(static_cast<std::uint32_t>(value)) : config::number_text(static_cast<float>(value));
+  return whole ? std::to_string(static_cast<std::uint32_t>(value)) : files::number_text(static_cast<float>(value));
 }
 
 // Waits until the viewer has set the row, or the component of it, to this text.
@@ -31,7 +31,7 @@ bool was_set(Desk& desk, const Row& row, const std::string& text, std::size_t fr
   while (const std::optional<std::size_t> number = desk.number_of({before}, from, 15.0)) {
     const std::string& line = desk.line(*number);
     const std::string value = line.substr(line.find(before) + before.size());
-    if (components_of(row) == 1 ? value == text : config::part(value, ',', component) == text) return true;
+    if (components_of(row) == 1 ? value == text : files::part(value, ',', component) == text) return true;
     from = *number + 1;
   }
   return false;
@@ -64,8 +64,8 @@ bool choose(Desk& desk, const Row& row, std::size_t index, const std::string& te
 bool choose_both_ends(Desk& desk, const Row& row) {
   if (row.info.type == ParamType::uint32)
     return choose(desk, row, 4096, "4096") && choose(desk, row, 512, "512") && choose(desk, row, 1024, "1024");
-  const std::size_t last = config::count_parts(row.info.choices, '|') - 1;
-  const auto name = [&](std::size_t i) { return std::string(config::part(row.info.choices, '|', i)); };
+  const std::size_t last = files::count_parts(row.info.choices, '|') - 1;
+  const auto name = [&](std::size_t i) { return std::string(files::part(row.info.choices, '|', i)); };
   // From wherever it stands: an end that it stands at is no change.
   (void)(desk.click(row.key(), 0.2) && desk.click(row.key() + ".0", 0.2));
   return choose(desk, row, last, name(last)) && choose(desk, row, 0, name(0));

@@ -11,7 +11,7 @@
 #include "config/scene_file.hpp"
 #include "image/image.hpp"
 #include "image/metrics.hpp"
-#include "scene/camera_path.hpp"
+#include "scene/description/camera_path.hpp"
 #include "scene/elevation/elevation_source.hpp"
 #include "window_tools.hpp"
 

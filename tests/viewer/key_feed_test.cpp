@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "key_feed.hpp"
+#include "viewer/platform/key_feed.hpp"
 
 namespace tyndall::viewer {
 namespace {

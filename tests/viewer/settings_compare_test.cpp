@@ -1,7 +1,7 @@
 // What is refused goes back, and nothing else.
 #include <gtest/gtest.h>
 
-#include "settings_compare.hpp"
+#include "viewer/scenes/settings_compare.hpp"
 
 namespace tyndall::viewer {
 namespace {

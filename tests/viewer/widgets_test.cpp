@@ -4,7 +4,7 @@
 #include <string>
 
 #include "config/settings.hpp"
-#include "widgets.hpp"
+#include "viewer/gui/widgets.hpp"
 
 namespace tyndall::viewer {
 namespace {

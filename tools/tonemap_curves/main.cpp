@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "config/files.hpp"
+#include "files/files.hpp"
 #include "post/settings.hpp"
 #include "validate/plot.hpp"
 
@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
     std::fputs("usage: tonemap_curves FILE.svg\n", stderr);
     return 2;
   }
-  const tyndall::Result<void> written = tyndall::config::write_file(argv[1], tyndall::curves());
+  const tyndall::Result<void> written = tyndall::files::write_file(argv[1], tyndall::curves());
   if (written) return 0;
   std::fprintf(stderr, "tonemap_curves: error: %s\n", written.error().message.c_str());
   return 1;

@@ -19,8 +19,8 @@
 #include <string>
 #include <vector>
 
-#include "scene/scene_params.hpp"
-#include "scene/solar_position.hpp"
+#include "scene/description/scene_params.hpp"
+#include "scene/description/solar_position.hpp"
 #include "tyndall/result.hpp"
 
 namespace tyndall::scene {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "config/files.hpp"
-#include "config/text.hpp"
+#include "files/files.hpp"
+#include "files/text.hpp"
 #include "scene/mesh/gltf_decoders.hpp"
 
 namespace tyndall::scene {
@@ -86,11 +86,11 @@ std::string GltfData::resource(const std::string& uri, const std::string& user) 
     return head.ends_with(";base64") ? base64_decoded(data, user) : percent_decoded(data, user);
   }
   const std::string name = percent_decoded(uri, user);
-  const std::string shown = user + ".uri '" + config::one_line(name, 200) + "'";
+  const std::string shown = user + ".uri '" + files::one_line(name, 200) + "'";
   if (name.find("://") != std::string::npos) fail(shown + " is not a file", "allowed are files and data URIs");
-  if (name.empty() || config::has_control_characters(name))
+  if (name.empty() || files::has_control_characters(name))
     fail(shown + " is not the name of a file", "allowed are files and data URIs");
-  Result<std::string> read = config::read_file((std::filesystem::path(folder_) / name).string(), kMaxGltfFileBytes);
+  Result<std::string> read = files::read_file((std::filesystem::path(folder_) / name).string(), kMaxGltfFileBytes);
   if (!read.ok()) {
     const std::string& message = read.error().message;  // with what is needed at its end
     fail(user + ".uri: " + message.substr(0, message.rfind(", ")), "allowed is a file that can be read");

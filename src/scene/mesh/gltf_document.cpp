@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "config/text.hpp"
+#include "files/text.hpp"
 #include "scene/mesh/gltf_decoders.hpp"
 #include "scene/mesh/gltf_json.hpp"
 
@@ -69,13 +69,13 @@ void check_extensions(const GltfJson& root, GltfDocument& out) {
     if (supported.contains(name)) continue;
     const bool left_out =
         (!kHasDraco && name == "KHR_draco_mesh_compression") || (!kHasMeshopt && name == "EXT_meshopt_compression");
-    fail("requires the extension " + config::one_line(name, 80) +
+    fail("requires the extension " + files::one_line(name, 80) +
              (left_out ? ", whose decoder this program was built without" : ""),
          "allowed are " + joined(supported));
   }
   std::set<std::string> ignored;
   for (const std::string& name : root.texts("extensionsUsed")) {
-    if (!supported.contains(name)) ignored.insert(config::one_line(name, 80));
+    if (!supported.contains(name)) ignored.insert(files::one_line(name, 80));
   }
   if (!ignored.empty()) out.notes.push_back("glTF extensions that are not supported are ignored: " + joined(ignored));
 }

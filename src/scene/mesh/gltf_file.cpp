@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <new>
 
-#include "config/files.hpp"
-#include "config/text.hpp"
+#include "files/files.hpp"
+#include "files/text.hpp"
 #include "scene/mesh/gltf_reader.hpp"
 
 namespace tyndall::scene {
@@ -64,15 +64,15 @@ Container split(std::string_view bytes) {
 }
 
 Error error_of(const std::string& path, const std::string& what, const std::string& allowed) {
-  return Error{ErrorCode::invalid_argument, "mesh file " + config::one_line(path, 300) + ": " +
-                                                config::one_line(what, 400) + ", meshes.source, " +
-                                                config::one_line(allowed, 300)};
+  return Error{ErrorCode::invalid_argument, "mesh file " + files::one_line(path, 300) + ": " +
+                                                files::one_line(what, 400) + ", meshes.source, " +
+                                                files::one_line(allowed, 300)};
 }
 
 }  // namespace
 
 Result<MeshData> load_gltf(const std::string& path) {
-  Result<std::string> bytes = config::read_file(path, kMaxGltfFileBytes);
+  Result<std::string> bytes = files::read_file(path, kMaxGltfFileBytes);
   if (!bytes.ok()) return Error{ErrorCode::io, bytes.error().message + ", meshes.source, " + kAllowed};
   try {
     const Container parts = split(bytes.value());
@@ -86,7 +86,7 @@ Result<MeshData> load_gltf(const std::string& path) {
     return error_of(path, failure.what, failure.allowed);
   } catch (const std::bad_alloc&) {
     return Error{ErrorCode::out_of_memory,
-                 "mesh file " + config::one_line(path, 300) + " does not fit into memory, meshes.source, " + kAllowed};
+                 "mesh file " + files::one_line(path, 300) + " does not fit into memory, meshes.source, " + kAllowed};
   } catch (const std::exception& thrown) {
     return error_of(path, std::string("cannot be read: ") + thrown.what(), kAllowed);
   }

@@ -17,7 +17,7 @@
 #include <memory>
 #include <optional>
 
-#include "config/text.hpp"
+#include "files/text.hpp"
 #include "scene/mesh/gltf_reader.hpp"
 
 namespace tyndall::scene {

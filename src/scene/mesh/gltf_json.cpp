@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "config/text.hpp"
+#include "files/text.hpp"
 
 namespace tyndall::scene {
 namespace {
@@ -16,7 +16,7 @@ constexpr double kRounding = 1.0e-3;  // exporters write 1.0000001 where the ran
 std::string shown(const json& value) {
   if (value.is_object()) return "an object";
   if (value.is_array()) return "an array of " + std::to_string(value.size());
-  return config::one_line(value.dump(-1, ' ', false, json::error_handler_t::replace), 60);
+  return files::one_line(value.dump(-1, ' ', false, json::error_handler_t::replace), 60);
 }
 
 [[noreturn]] void refuse_value(const std::string& path, const json& value, const std::string& allowed) {
@@ -48,8 +48,8 @@ double in_range(const json& value, const std::string& path, double low, double h
   if (number < low - kRounding || number > high + kRounding) {
     refuse_value(path, value,
                  "allowed is a number " + (high < std::numeric_limits<double>::max()
-                                               ? "from " + config::number_text(low) + " to " + config::number_text(high)
-                                               : "of " + config::number_text(low) + " or more"));
+                                               ? "from " + files::number_text(low) + " to " + files::number_text(high)
+                                               : "of " + files::number_text(low) + " or more"));
   }
   return std::clamp(number, low, high);
 }
@@ -149,7 +149,7 @@ std::vector<int> GltfJson::indices(const char* name, const char* list) const {
 std::vector<std::pair<std::string, int>> GltfJson::named_indices(const char* list) const {
   std::vector<std::pair<std::string, int>> out;
   for (const auto& [key, value] : value_->items()) {
-    out.emplace_back(key, checked_index(value, path_ + "." + config::one_line(key, 40), list));
+    out.emplace_back(key, checked_index(value, path_ + "." + files::one_line(key, 40), list));
   }
   return out;
 }

@@ -1,0 +1,78 @@
+// The window's surface as a target for frames: swapchain, one frame at a time, and the GUI drawn last.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <functional>
+#include <vector>
+
+#include "gpu/host.hpp"
+#include "viewer/platform/window.hpp"
+
+namespace tyndall::viewer {
+
+// What drawing a frame came to.
+enum class Drawn {
+  done,
+  not_now,       // the window has no area, or its surface changed under our hands: try again
+  surface_lost,  // recover() makes a new surface
+};
+
+class Screen {
+ public:
+  Screen() = default;
+  Screen(const Screen&) = delete;
+  Screen& operator=(const Screen&) = delete;
+  ~Screen();
+
+  // After ImGui::CreateContext() and ImGui_ImplGlfw_InitForVulkan().
+  Result<void> create(gpu::Host& host, Window& window, bool vsync);
+  Result<void> recover();
+  void set_vsync(bool on);
+  [[nodiscard]] bool vsync() const { return vsync_; }
+
+  // Draws what `picture` records inside a rendering scope over the whole window, and ImGui's draw data on top.
+  Result<Drawn> draw(const std::function<Result<void>(VkCommandBuffer, VkExtent2D)>& picture);
+
+  [[nodiscard]] VkFormat format() const { return format_.format; }
+  [[nodiscard]] VkExtent2D extent() const { return extent_; }
+  [[nodiscard]] const char* present_mode() const;
+
+ private:
+  struct Target {
+    VkImage image = VK_NULL_HANDLE;
+    VkImageView view = VK_NULL_HANDLE;
+    VkFramebuffer framebuffer = VK_NULL_HANDLE;
+    VkSemaphore rendered = VK_NULL_HANDLE;
+  };
+
+  Result<void> create_surface();
+  Result<void> create_render_pass();
+  Result<void> create_frame_objects();
+  Result<void> start_gui();
+  Result<bool> create_swapchain();  // false: the window has no area now
+  void destroy_targets();
+  void wait_idle();
+  Result<void> record(VkCommandBuffer cmd, const Target& target,
+                      const std::function<Result<void>(VkCommandBuffer, VkExtent2D)>& picture);
+
+  gpu::Host* host_ = nullptr;
+  Window* window_ = nullptr;
+  bool vsync_ = true;
+  bool stale_ = true;  // the swapchain is to be made anew
+  bool gui_ = false;
+  VkSurfaceKHR surface_ = VK_NULL_HANDLE;
+  VkSurfaceFormatKHR format_ = {};
+  VkPresentModeKHR mode_ = VK_PRESENT_MODE_FIFO_KHR;
+  VkSwapchainKHR swapchain_ = VK_NULL_HANDLE;
+  VkExtent2D extent_ = {};
+  std::vector<Target> targets_;
+  VkRenderPass render_pass_ = VK_NULL_HANDLE;
+  VkDescriptorPool descriptors_ = VK_NULL_HANDLE;
+  VkCommandPool pool_ = VK_NULL_HANDLE;
+  VkCommandBuffer cmd_ = VK_NULL_HANDLE;
+  VkFence fence_ = VK_NULL_HANDLE;
+  VkSemaphore acquired_ = VK_NULL_HANDLE;
+};
+
+}  // namespace tyndall::viewer

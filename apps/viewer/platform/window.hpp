@@ -1,0 +1,82 @@
+// The window, through GLFW: what has happened since the last frame, and what the surface of Vulkan needs.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <string>
+#include <vector>
+
+#include "tyndall/result.hpp"
+#include "viewer/platform/key_feed.hpp"
+
+struct GLFWwindow;
+
+namespace tyndall::viewer {
+
+enum class Button { left, right };
+
+// One thing that the hands did, in its order.
+struct Event {
+  enum class Kind { key, press, release, move, wheel };
+  Kind kind = Kind::key;
+  int key = 0;  // GLFW_KEY_..., pressed
+  Button button = Button::left;
+  double x = 0.0, y = 0.0;  // pointer [px]; of a wheel the notches in y
+};
+
+class Window {
+ public:
+  Window() = default;
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+  ~Window();
+
+  // An error says that there is no display, and what to do instead.
+  static Result<void> start();
+  static void stop();
+  [[nodiscard]] static std::vector<const char*> instance_extensions();
+  [[nodiscard]] static bool can_present(VkInstance instance, VkPhysicalDevice device, std::uint32_t queue_family);
+
+  Result<void> open(std::uint32_t width, std::uint32_t height, const char* title);
+  Result<VkSurfaceKHR> create_surface(VkInstance instance);
+
+  // Connects ImGui's context with the window; before each of its frames begin_gui() brings it what the hands did.
+  void start_gui();
+  void begin_gui();
+
+  // Waits for events at most `seconds` (negative: for ever; 0: not at all).
+  void wait(double seconds);
+  // Wakes wait(), from any thread.
+  static void wake();
+  // The events since the last call.
+  [[nodiscard]] std::vector<Event> take_events();
+  // Whether something has happened since the last call: events, another size, an exposed window.
+  [[nodiscard]] bool take_activity();
+  // Whether a key is down, or was for a moment since the last forget_keys().
+  [[nodiscard]] bool held(int key) const;
+  void forget_keys() { touched_.clear(); }
+
+  [[nodiscard]] bool closing() const;
+  void close();
+  [[nodiscard]] VkExtent2D size() const;  // of the picture [px]; 0 when minimised
+  [[nodiscard]] bool minimised() const;
+  [[nodiscard]] bool full_screen() const { return full_screen_; }
+  void set_full_screen(bool on);
+  void set_title(const std::string& title);
+  [[nodiscard]] GLFWwindow* handle() const { return window_; }
+
+ private:
+  void install_callbacks();
+  void install_key_callbacks();
+
+  GLFWwindow* window_ = nullptr;
+  std::vector<Event> events_;
+  KeyFeed keys_;                      // for the GUI
+  bool buttons_[2] = {false, false};  // left and right, as the GUI has seen them
+  std::vector<int> touched_;          // keys pressed since the last forget_keys()
+  bool activity_ = true;
+  bool full_screen_ = false;
+  int windowed_[4] = {0, 0, 640, 360};  // place and size before full screen
+};
+
+}  // namespace tyndall::viewer

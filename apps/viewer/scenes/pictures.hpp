@@ -1,0 +1,42 @@
+// What the window shows under the GUI: the canvas of a scene, or two of them compared. Works on the window's device, on
+// the GUI's thread; goes on showing the last canvas while the scene is worked on.
+#pragma once
+
+#include <array>
+
+#include "viewer/scenes/canvas.hpp"
+
+namespace tyndall::viewer {
+
+struct PictureOptions {
+  Shown shown = Shown::picture;
+  int layer = 0;         // of the shadow maps
+  float slice = 0.5F;    // through a table
+  float gain = 1.0F;     // of everything but the picture
+  bool compare = false;  // with the other scene
+  bool difference = false;
+  float divider = 0.5F;  // of the window's width
+};
+
+// What the canvases of a window of this size are to show.
+[[nodiscard]] View view_of(const PictureOptions& options, VkExtent2D window);
+
+class Pictures {
+ public:
+  Result<void> create(gpu::Host& host, VkFormat format);
+  // Takes a canvas, 0: left or only, 1: right.
+  Result<void> take(std::size_t side, Picture picture);
+  void forget(std::size_t side) { sides_.at(side) = {}; }
+  [[nodiscard]] bool has(std::size_t side) const { return sides_.at(side) != nullptr; }
+  // Inside a rendering scope over the window.
+  Result<void> record(VkCommandBuffer cmd, VkExtent2D window, bool two, const PictureOptions& options);
+
+ private:
+  gpu::Host* host_ = nullptr;
+  gpu::Pipeline present_;
+  gpu::Handle<VkSampler> sampler_;
+  std::array<std::shared_ptr<const gpu::Image>, 2> sides_;
+  std::shared_ptr<const gpu::Image> nothing_;  // one dark texel, until there is a picture
+};
+
+}  // namespace tyndall::viewer

@@ -1,0 +1,331 @@
+#include "viewer/scenes/scene_work.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "gpu/try.hpp"
+#include "viewer/platform/window.hpp"
+#include "viewer/scenes/settings_compare.hpp"
+
+namespace tyndall::viewer {
+namespace {
+
+constexpr std::uint32_t kMostSlices = 64;
+constexpr double kTables_ms = 60.0;  // of one piece of building
+constexpr double kTonePeriod_s = 1.0 / 60.0;
+// Tables are kept when they have stood so long: those that a hand only comes by would fill the cache.
+constexpr double kKeepFirst_s = 1.0;
+constexpr double kKeep_s = 20.0;
+
+template <typename T>
+bool is_done(const std::future<T>& future) {
+  return future.valid() && future.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+SceneWork::~SceneWork() {
+  if (loading_.valid()) loading_.wait();
+  if (keeping_.valid()) keeping_.wait();
+}
+
+Outcome SceneWork::create(gpu::Host& host, const scene::SceneDesc& desc, const Wish& wish, bool to_host) {
+  host_ = &host;
+  desc_ = desc;
+  desc_.extent = wish.extent;
+  desc_.terrain_coarseness = wish.coarseness;
+  desc_.tables_later = true;
+  wanted_ = applied_ = wish.settings;
+  applied_.scene.camera.samples = 1;  // there is one picture on the device
+  Outcome out;
+  out.settings = wanted_;
+  const Result<void> done = [&]() -> Result<void> {
+    TYNDALL_TRY(canvas_.create(host, to_host));
+    TYNDALL_ASSIGN(scene_, scene::Scene::create(host, desc_, applied_.effect, applied_.scene));
+    // The first step looks into the cache: with tables there, the scene comes with its first frame.
+    if (building()) {
+      TYNDALL_TRY(scene_->advance_tables(1));
+      unkept_ = building();
+    }
+    if (ready()) TYNDALL_TRY(draw(wish, out));
+    return {};
+  }();
+  if (!done) {
+    out.error = done.error();
+    out.over = true;
+    scene_.reset();
+    return out;
+  }
+  out.notes = scene_->notes();
+  notes_told_ = out.notes.size();
+  return out;
+}
+
+bool SceneWork::building() const {
+  return scene_ != nullptr && applied_.scene.scattering.model == scene::ScatteringModel::atmosphere &&
+         !scene_->tables_progress().complete();
+}
+
+bool SceneWork::tone_stale() const {
+  if (tone_wanted_) return true;
+  const scene::TonemapParams& params = applied_.scene.tonemap;
+  if (!params.auto_exposure || !params.light_adaptation || !drawn_ || stale_) return false;
+  constexpr float kAdapted = 0.005F;  // relative difference that nobody sees
+  const post::Measurement m = scene_->measurement();
+  return m.measured > 0.0F &&
+         std::abs(m.luminance - std::max(m.measured, params.least_luminance)) > kAdapted * m.luminance;
+}
+
+double SceneWork::keep_in_s() const {
+  if (!unkept_ || keeping_.valid() || building() || desc_.make_tables.cache.place == "off") return -1.0;
+  return std::max((first_tables_ ? kKeepFirst_s : kKeep_s) - seconds_since(tables_since_), 0.0);
+}
+
+bool SceneWork::follows(const Wish& wish) const {
+  return wish.extent.width == desc_.extent.width && wish.extent.height == desc_.extent.height &&
+         wish.coarseness == desc_.terrain_coarseness && same_settings(wish.settings, wanted_);
+}
+
+bool SceneWork::shows(const Wish& wish) const { return drawn_ && !stale_ && follows(wish); }
+
+bool SceneWork::wants(const Wish& wish) const {
+  if (scene_ == nullptr) return false;
+  if (is_done(loading_) || is_done(keeping_)) return true;
+  if (!follows(wish) || building()) return true;
+  if (!ready()) return false;
+  if (stale_ || wish.again || wish.capture || !same_view(wish.view, drawn_view_)) return true;
+  if (tone_stale() && seconds_since(drawn_at_) >= kTonePeriod_s) return true;
+  return wish.rest && (keep_in_s() == 0.0 || !pipelines_.complete() || pipelines_.total == 0);
+}
+
+Outcome SceneWork::run(const Wish& wish) {
+  Outcome out;
+  out.asked = wish.settings;
+  // First of all, and of the frame that is seen: in flight there is always another one due.
+  if (wish.capture && drawn_) {
+    if (Result<void> captured = capture(out); !captured) {
+      out.error = captured.error();
+      out.over = true;
+    }
+    out.settings = wanted_;
+    return out;
+  }
+  Result<void> done = take_terrain();
+  if (done) done = follow_settings(wish.settings);
+  if (!done) out.error = done.error();
+  done = resize(wish);
+  if (done) done = next(wish, out);
+  if (!done) {
+    out.error = done.error();
+    out.over = true;
+  }
+  out.settings = wanted_;
+  const std::vector<std::string>& notes = scene_->notes();
+  out.notes.insert(out.notes.end(), notes.begin() + static_cast<std::ptrdiff_t>(std::min(notes_told_, notes.size())),
+                   notes.end());
+  notes_told_ = notes.size();
+  return out;
+}
+
+Result<void> SceneWork::next(const Wish& wish, Outcome& out) {
+  if (is_done(keeping_)) {
+    const std::string note = keeping_.get();
+    out.tables_kept = note.empty();
+    if (!out.tables_kept) out.notes.push_back(note);
+  }
+  if (building()) TYNDALL_TRY(advance_tables(out));
+  if (!ready()) return {};
+  if (stale_ || wish.again || !same_view(wish.view, drawn_view_)) return draw(wish, out);
+  if (tone_stale()) return draw(wish, out);
+  if (!wish.rest || out.tables) return {};
+  if (keep_in_s() == 0.0) return keep_tables();
+  if (!pipelines_.complete() || pipelines_.total == 0) {
+    TYNDALL_ASSIGN(pipelines_, scene_->effect().prepare_pipelines(1));
+    out.pipelines_done = pipelines_.complete();
+  }
+  return {};
+}
+
+// Builds tables for about kTables_ms.
+Result<void> SceneWork::advance_tables(Outcome& out) {
+  const Clock::time_point start = Clock::now();
+  const std::uint32_t budget = budget_;
+  const bool fresh = scene_->tables_progress().done == 0;
+  TYNDALL_ASSIGN(const Progress progress, scene_->advance_tables(budget));
+  const double took_ms = 1000.0 * seconds_since(start);
+  if (took_ms > kTables_ms) budget_ = std::max(budget_ / 2, 1U);
+  if (took_ms < 0.4 * kTables_ms) budget_ = std::min(budget_ * 2, kMostSlices);
+  out.tables = true;
+  if (!progress.complete()) return {};
+  // More at once than was asked for: they came from the cache.
+  if (fresh && progress.total > budget) unkept_ = false;
+  out.tables_done = stale_ = true;
+  tables_since_ = Clock::now();
+  return {};
+}
+
+// Since this scene was drawn last.
+double SceneWork::step_s() {
+  const Clock::time_point before = std::exchange(drawn_at_, Clock::now());
+  return std::clamp(std::chrono::duration<double>(drawn_at_ - before).count(), 1.0e-3, 1.0);
+}
+
+// The frame drawn last as images.
+Result<void> SceneWork::capture(Outcome& out) {
+  TYNDALL_ASSIGN(image::Image display, scene_->display());
+  TYNDALL_ASSIGN(image::Image radiance, scene_->radiance());
+  out.capture = Capture{std::move(display), std::move(radiance), drawn_settings_};
+  return {};
+}
+
+Result<void> SceneWork::draw(const Wish& wish, Outcome& out) {
+  if (stale_ || wish.again) {
+    const Clock::time_point start = Clock::now();
+    stale_ = tone_wanted_ = false;
+    TYNDALL_TRY(scene_->render(wish.seconds, false, step_s()));
+    out.frame = drawn_ = true;
+    drawn_settings_ = wanted_;
+    out.frame_ms = 1000.0 * seconds_since(start);
+  } else if (tone_stale()) {
+    tone_wanted_ = false;
+    TYNDALL_TRY(scene_->tone(step_s()));
+    out.tone = true;
+    drawn_settings_.scene.tonemap = wanted_.scene.tonemap;
+  }
+  TYNDALL_ASSIGN(out.picture, canvas_.draw(*scene_, wish.view));
+  drawn_view_ = wish.view;
+  return {};
+}
+
+// Writes on a thread of its own; next() says when it is done.
+Result<void> SceneWork::keep_tables() {
+  unkept_ = first_tables_ = false;
+  TYNDALL_ASSIGN(tables::Keeper keeper, tables::Keeper::fetch(*host_, scene_->effect(), desc_.make_tables.cache));
+  keeping_ = std::async(std::launch::async, [kept = std::move(keeper)]() mutable {
+    std::string note = kept.write();
+    Window::wake();
+    return note;
+  });
+  return {};
+}
+
+// A terrain that has been read.
+Result<void> SceneWork::take_terrain() {
+  if (!is_done(loading_)) return {};
+  Result<scene::ElevationSource> source = loading_.get();
+  if (!source) {
+    // As before the change.
+    wanted_.scene.terrain.source = applied_.scene.terrain.source;
+    wanted_.scene.terrain.seed = applied_.scene.terrain.seed;
+    wanted_.scene.terrain.exaggeration = applied_.scene.terrain.exaggeration;
+    wanted_.effect.planet.radius_m = applied_.effect.planet.radius_m;
+    return source.error();
+  }
+  TYNDALL_TRY(scene_->set_terrain(loading_for_, loading_radius_m_, std::move(source).value()));
+  const scene::TerrainShading shading = applied_.scene.terrain.shading;
+  applied_.scene.terrain = loading_for_;
+  applied_.scene.terrain.shading = shading;
+  stale_ = true;
+  // The radius of the air follows that of the ground.
+  Params params = applied_.effect;
+  params.planet.radius_m = static_cast<float>(loading_radius_m_);
+  TYNDALL_TRY(scene_->set_params(params));
+  applied_.effect = params;
+  const config::Settings wanted = std::exchange(wanted_, applied_);
+  return follow_settings(wanted);
+}
+
+// `settings` with the ground that has been loaded.
+config::Settings SceneWork::loaded(config::Settings settings) const {
+  settings.scene.terrain.source = applied_.scene.terrain.source;
+  settings.scene.terrain.seed = applied_.scene.terrain.seed;
+  settings.scene.terrain.exaggeration = applied_.scene.terrain.exaggeration;
+  // Only the effect draws without terrain; another model follows when there is one.
+  if (settings.scene.terrain.source == "none") settings.scene.scattering.model = scene::ScatteringModel::atmosphere;
+  settings.effect.planet.radius_m = applied_.effect.planet.radius_m;
+  settings.scene.camera.samples = 1;
+  return settings;
+}
+
+void SceneWork::load_terrain() {
+  if (loading_.valid()) return;  // take_terrain() comes back here
+  const bool other = !same_ground(wanted_.scene.terrain, applied_.scene.terrain) ||
+                     wanted_.effect.planet.radius_m != applied_.effect.planet.radius_m;
+  if (!other) return;
+  loading_for_ = wanted_.scene.terrain;
+  loading_radius_m_ = wanted_.effect.planet.radius_m;
+  loading_ =
+      std::async(std::launch::async, [device = &host_->device(), params = loading_for_, radius = loading_radius_m_] {
+        Result<scene::ElevationSource> source = scene::Terrain::load_source(*device, params, radius);
+        Window::wake();
+        return source;
+      });
+}
+
+Result<void> SceneWork::resize(const Wish& wish) {
+  if (wish.extent.width != desc_.extent.width || wish.extent.height != desc_.extent.height) {
+    TYNDALL_TRY(scene_->set_extent(wish.extent));
+    desc_.extent = wish.extent;
+    stale_ = true;
+  }
+  if (wish.coarseness != desc_.terrain_coarseness) {
+    TYNDALL_TRY(scene_->set_terrain_coarseness(wish.coarseness));
+    desc_.terrain_coarseness = wish.coarseness;
+    stale_ = true;
+  }
+  return {};
+}
+
+Result<void> SceneWork::follow_settings(const config::Settings& wanted) {
+  if (same_settings(wanted, wanted_)) return {};
+  TYNDALL_TRY(config::check(wanted));
+  const config::Settings next = loaded(wanted);
+  const bool only_tone = same_but_for_tone(wanted, wanted_);
+  if (affected(applied_.effect, next.effect) != 0) {
+    TYNDALL_TRY(scene_->set_params(next.effect));
+    applied_.effect = next.effect;
+    if (building()) {
+      unkept_ = true;
+      first_tables_ = false;
+    }
+  }
+  wanted_.effect = wanted.effect;
+  if (Result<void> set = scene_->set_scene(next.scene); !set) {
+    stale_ = true;
+    return set;
+  }
+  (only_tone ? tone_wanted_ : stale_) = true;
+  applied_.scene = next.scene;
+  wanted_ = wanted;
+  load_terrain();
+  return {};
+}
+
+SceneFacts SceneWork::facts() const {
+  SceneFacts f;
+  if (scene_ == nullptr) return f;
+  f.can_render = ready();
+  f.building = building();
+  f.working = loading_.valid() || keeping_.valid();
+  f.tables = scene_->tables_progress();
+  f.pipelines = pipelines_;
+  f.keep_tables_in_s = keep_in_s();
+  f.extent = scene_->extent();
+  f.shadow_layers = static_cast<int>(scene_->images().shadow_maps.desc.layers);
+  f.elevations = scene_->elevations();
+  f.radius_m = applied_.effect.planet.radius_m;
+  f.memory = scene_->memory();
+  if (!drawn_) return f;
+  f.tone_stale = tone_stale();
+  f.timings = scene_->timings();
+  f.measurement = scene_->measurement();
+  f.exposure = scene_->exposure();
+  return f;
+}
+
+}  // namespace tyndall::viewer

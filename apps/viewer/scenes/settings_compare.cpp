@@ -1,0 +1,53 @@
+#include "viewer/scenes/settings_compare.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "files/text.hpp"
+
+namespace tyndall::viewer {
+namespace {
+
+const std::byte* at(const config::Row& row, const config::Settings& settings) {
+  const auto* base = row.owner == config::Owner::effect ? reinterpret_cast<const std::byte*>(&settings.effect)
+                                                        : reinterpret_cast<const std::byte*>(&settings.scene);
+  return base + row.info.offset;
+}
+
+}  // namespace
+
+bool same_value(const config::Row& row, const config::Settings& a, const config::Settings& b) {
+  if (row.info.type == ParamType::string) {
+    return *reinterpret_cast<const std::string*>(at(row, a)) == *reinterpret_cast<const std::string*>(at(row, b));
+  }
+  const std::size_t size = row.info.type == ParamType::dvec3 ? sizeof(double) : sizeof(float);
+  return std::memcmp(at(row, a), at(row, b), size * config::component_count(row.info.type)) == 0;
+}
+
+bool same_settings(const config::Settings& a, const config::Settings& b) {
+  return std::all_of(config::rows().begin(), config::rows().end(),
+                     [&](const config::Row& row) { return same_value(row, a, b); });
+}
+
+bool same_but_for_tone(const config::Settings& a, const config::Settings& b) {
+  return std::all_of(config::rows().begin(), config::rows().end(),
+                     [&](const config::Row& row) { return row.info.group == "tonemap" || same_value(row, a, b); });
+}
+
+bool same_ground(const scene::TerrainParams& a, const scene::TerrainParams& b) {
+  return a.source == b.source && a.seed == b.seed && a.exaggeration == b.exaggeration && a.units == b.units;
+}
+
+void go_back(config::Settings& settings, const config::Settings& asked, const config::Settings& had) {
+  for (const config::Row& row : config::rows()) {
+    if (same_value(row, asked, had) || !same_value(row, settings, asked)) continue;
+    (void)config::set(settings, row.key(), config::value_text(row, had), row.key());  // it was there before
+  }
+}
+
+void make_consistent(config::Settings& settings) {
+  scene::ShadowParams& shadows = settings.scene.shadows;
+  shadows.first_marched = std::min(shadows.first_marched, shadows.cascades - 1);
+}
+
+}  // namespace tyndall::viewer

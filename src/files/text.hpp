@@ -1,0 +1,59 @@
+// Numbers, names and messages as text: what parameter files, the command line and reports share.
+// Numbers are written with the fewest digits that read back to the same value, and read without a
+// locale. Nothing here prints or throws (other than for lack of memory).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "tyndall/result.hpp"
+
+namespace tyndall::files {
+
+// Shortest decimal text that reads back to the same value ("0.76", "5.8e-06", "nan", "-inf").
+[[nodiscard]] std::string number_text(float value);
+[[nodiscard]] std::string number_text(double value);
+
+enum class NumberError : std::uint32_t { none, not_a_number, not_finite, too_large };
+
+// Reads the whole of `text` (blanks around it are ignored) as a decimal number.
+[[nodiscard]] NumberError read_number(std::string_view text, float& value);
+[[nodiscard]] NumberError read_number(std::string_view text, double& value);
+// Whole numbers only: "3.0" and "3e2" are not_a_number; what an int64 cannot hold is too_large.
+[[nodiscard]] NumberError read_integer(std::string_view text, std::int64_t& value);
+
+[[nodiscard]] std::string_view trimmed(std::string_view text);
+// The parts of `text` between separators; one empty part for an empty text.
+[[nodiscard]] std::size_t count_parts(std::string_view text, char separator);
+[[nodiscard]] std::string_view part(std::string_view text, char separator, std::size_t index);
+
+[[nodiscard]] bool is_utf8(std::string_view text);
+// True when `text` holds a byte below 0x20 or the byte 0x7f.
+[[nodiscard]] bool has_control_characters(std::string_view text);
+
+[[nodiscard]] std::string concat(std::initializer_list<std::string_view> parts);
+
+// The error of bad input: "what, where, allowed".
+[[nodiscard]] Error input_error(std::string_view what, std::string_view where, std::string_view allowed);
+
+// `text` made fit for a message: one line, control characters and invalid bytes as '?', shortened
+// to at most `limit` bytes.
+[[nodiscard]] std::string one_line(std::string_view text, std::size_t limit = 80);
+
+// `text` as a JSON string (also a TOML basic string) with its quotes. Precondition: valid UTF-8.
+[[nodiscard]] std::string quoted_text(std::string_view text);
+
+// Number of insertions, deletions, replacements and swaps of neighbours that turn a into b
+// (Damerau 1964, restricted form).
+[[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
+
+// The candidate nearest to `name`, when it is near enough to be a slip of the finger (2 edits, or a
+// third of the length).
+[[nodiscard]] std::optional<std::string> nearest(std::string_view name, std::span<const std::string> candidates);
+
+}  // namespace tyndall::files

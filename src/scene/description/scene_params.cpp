@@ -1,0 +1,78 @@
+// The table of the scene's parameters, made from scene_params.def.
+#include "scene/description/scene_params.hpp"
+
+#include <type_traits>
+
+namespace tyndall::scene {
+namespace {
+
+static_assert(std::is_standard_layout_v<SceneParams>, "the table holds offsets into it");
+
+// An identifier that would be a keyword ends in an underscore, which is not part of the name.
+constexpr std::string_view file_name(std::string_view identifier) {
+  if (identifier.ends_with('_')) identifier.remove_suffix(1);
+  return identifier;
+}
+
+// "name|name|...": the choices of each enumeration, in order of value.
+#define ENUM_BEGIN(type) constexpr std::string_view k##type##Choices = ""
+#define ENUM_VALUE(type, identifier, value, text) "|" text
+#define ENUM_END(type) ;
+#define GROUP_BEGIN(group, type, title)
+#define GROUP_END(group, type)
+#define PARAM_FLOAT(group, name, def, min, max, unit, affects, doc)
+#define PARAM_UINT(group, name, def, min, max, unit, affects, doc)
+#define PARAM_VEC3(group, name, def, min, max, unit, affects, doc)
+#define PARAM_COLOR(group, name, def, min, max, unit, affects, doc)
+#define PARAM_DVEC3(group, name, def, min, max, unit, affects, doc)
+#define PARAM_UVEC4(group, name, def, min, max, unit, affects, doc)
+#define PARAM_FLAG(group, name, def, affects, doc)
+#define PARAM_ENUM(group, name, type, def, affects, doc)
+#define PARAM_STRING(group, name, def, unit, affects, doc)
+#include "scene/description/scene_params.def"
+#include "tyndall/params_undef.h"
+
+constexpr ParamInfo kTable[] = {
+#define ENUM_BEGIN(type)
+#define ENUM_VALUE(type, identifier, value, text)
+#define ENUM_END(type)
+#define GROUP_BEGIN(group, type, title)
+#define GROUP_END(group, type)
+#define AT(group, name) offsetof(SceneParams, group.name)
+#define PARAM_FLOAT(group, name, def, min, max, unit, affects, doc) \
+  {#group, file_name(#name), ParamType::float32, AT(group, name), min, max, unit, "", Affects::affects, doc},
+#define PARAM_UINT(group, name, def, min, max, unit, affects, doc) \
+  {#group, file_name(#name), ParamType::uint32, AT(group, name), min, max, unit, "", Affects::affects, doc},
+#define PARAM_VEC3(group, name, def, min, max, unit, affects, doc) \
+  {#group, file_name(#name), ParamType::vec3, AT(group, name), min, max, unit, "", Affects::affects, doc},
+#define PARAM_COLOR(group, name, def, min, max, unit, affects, doc) \
+  {#group, file_name(#name), ParamType::vec3, AT(group, name), min, max, unit, "", Affects::affects, doc, true},
+#define PARAM_DVEC3(group, name, def, min, max, unit, affects, doc) \
+  {#group, file_name(#name), ParamType::dvec3, AT(group, name), min, max, unit, "", Affects::affects, doc},
+#define PARAM_UVEC4(group, name, def, min, max, unit, affects, doc) \
+  {#group, file_name(#name), ParamType::uvec4, AT(group, name), min, max, unit, "", Affects::affects, doc},
+#define PARAM_FLAG(group, name, def, affects, doc) \
+  {#group, file_name(#name), ParamType::flag, AT(group, name), 0, 1, "", "", Affects::affects, doc},
+#define PARAM_ENUM(group, name, type, def, affects, doc) \
+  {#group,                                               \
+   file_name(#name),                                     \
+   ParamType::enumeration,                               \
+   AT(group, name),                                      \
+   0,                                                    \
+   0,                                                    \
+   "",                                                   \
+   k##type##Choices.substr(1),                           \
+   Affects::affects,                                     \
+   doc},
+#define PARAM_STRING(group, name, def, unit, affects, doc) \
+  {#group, file_name(#name), ParamType::string, AT(group, name), 0, 0, unit, "", Affects::affects, doc},
+#include "scene/description/scene_params.def"
+#include "tyndall/params_undef.h"
+};
+#undef AT
+
+}  // namespace
+
+std::span<const ParamInfo> scene_param_table() { return kTable; }
+
+}  // namespace tyndall::scene

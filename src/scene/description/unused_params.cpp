@@ -1,0 +1,105 @@
+#include "scene/description/unused_params.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <string_view>
+
+namespace tyndall::scene {
+namespace {
+
+bool is_default(const ParamInfo& row, const void* structure, const void* defaults) {
+  const char* const a = static_cast<const char*>(structure) + row.offset;
+  const char* const b = static_cast<const char*>(defaults) + row.offset;
+  if (row.type == ParamType::string)
+    return *reinterpret_cast<const std::string*>(a) == *reinterpret_cast<const std::string*>(b);
+  const std::size_t size = row.type == ParamType::dvec3   ? sizeof(DVec3)
+                           : row.type == ParamType::vec3  ? sizeof(Vec3)
+                           : row.type == ParamType::uvec4 ? sizeof(UVec4)
+                                                          : sizeof(float);
+  return std::memcmp(a, b, size) == 0;
+}
+
+// "group.name" of all that are not at their defaults.
+std::vector<std::string> changed(const Params& params, const SceneParams& scene) {
+  static const Params kParams;
+  static const SceneParams kScene;
+  std::vector<std::string> out;
+  const auto add = [&](std::span<const ParamInfo> table, const void* structure, const void* defaults) {
+    for (const ParamInfo& row : table) {
+      if (!is_default(row, structure, defaults)) out.push_back(std::string(row.group) + "." + std::string(row.name));
+    }
+  };
+  add(scene_param_table(), &scene, &kScene);
+  add(param_table(), &params, &kParams);
+  return out;
+}
+
+template <typename T>
+bool is_one_of(T value, std::initializer_list<T> list) {
+  return std::find(list.begin(), list.end(), value) != list.end();
+}
+
+}  // namespace
+
+std::vector<std::string> unused_params(const Params& params, const SceneParams& scene) {
+  const std::vector<std::string> set = changed(params, scene);
+  std::vector<std::string> out;
+  // `names`: parameters, or groups that end in a point. They do nothing `when`, for the reason `because`.
+  const auto check = [&](bool when, std::initializer_list<std::string_view> names, std::string_view because) {
+    if (!when) return;
+    std::string list;
+    int count = 0;
+    for (const std::string& key : set) {
+      if (!std::any_of(names.begin(), names.end(), [&](std::string_view name) {
+            return name.ends_with('.') ? key.starts_with(name) : key == name;
+          }))
+        continue;
+      list += (count++ > 0 ? ", " : "") + key;
+    }
+    if (count > 0) out.push_back(list + (count > 1 ? " have" : " has") + " no effect with " + std::string(because));
+  };
+  using Model = ScatteringModel;
+  const Model model = scene.scattering.model;
+  const bool by_effect = model == Model::atmosphere;
+  const char* const own_name = model == Model::homogeneous ? "homogeneous"
+                               : model == Model::oneil     ? "oneil"
+                                                           : "oneil-table";
+  check(!by_effect,
+        {"scattering.medium", "scattering.downscale", "scattering.technique", "scattering.single",
+         "scattering.multiple", "scattering.sections", "scattering.extinction", "homogeneous_medium."},
+        "scattering.model = " + std::string(own_name));
+  check(by_effect, {"scattering.evaluate", "oneil.", "homogeneous."}, "scattering.model = atmosphere");
+  check(model == Model::homogeneous, {"oneil."}, "scattering.model = homogeneous");
+  check(model == Model::oneil, {"homogeneous.", "oneil.table_size"}, "scattering.model = oneil");
+  check(model == Model::oneil && scene.oneil.scale_function == OneilScaleFunction::published, {"oneil.spacing"},
+        "oneil.scale_function = published");
+  check(model == Model::oneil_table, {"homogeneous.", "oneil.scale_function"}, "scattering.model = oneil-table");
+
+  const bool homogeneous = by_effect && params.scattering.medium == MediumKind::homogeneous;
+  check(by_effect && !homogeneous, {"homogeneous_medium."}, "scattering.medium = atmosphere");
+  check(homogeneous, {"scattering.multiple", "scattering.sections", "scattering.extinction"},
+        "scattering.medium = homogeneous");
+  check(by_effect && params.scattering.technique == Technique::brute_force,
+        {"scattering.downscale", "scattering.extinction"}, "scattering.technique = brute-force");
+
+  const bool custom = params.atmosphere.custom_coefficients.value != 0;
+  check(!custom, {"atmosphere.rayleigh_scattering", "atmosphere.mie_scattering", "atmosphere.mie_absorption"},
+        "atmosphere.custom_coefficients = false");
+  check(custom, {"atmosphere.aerosol_absorption"}, "atmosphere.custom_coefficients = true");
+  check(scene.terrain.source == "none", {"terrain.seed", "terrain.exaggeration", "terrain.shading"},
+        "terrain.source = none");
+
+  using Op = TonemapOperator;
+  const Op op = scene.tonemap.operator_;
+  check(scene.tonemap.auto_exposure.value != 0, {"tonemap.exposure"}, "tonemap.auto_exposure = true");
+  check(scene.tonemap.auto_exposure.value == 0,
+        {"tonemap.middle_gray", "tonemap.light_adaptation", "tonemap.least_luminance"},
+        "tonemap.auto_exposure = false");
+  check(!is_one_of(op, {Op::reinhard_modified, Op::uncharted2, Op::logarithmic, Op::adaptive_logarithmic}),
+        {"tonemap.white_point"}, "this tonemap.operator");
+  check(is_one_of(op, {Op::uncharted2, Op::filmic_alu, Op::pbr_neutral, Op::exponential_channels}),
+        {"tonemap.saturation"}, "this tonemap.operator");
+  return out;
+}
+
+}  // namespace tyndall::scene

@@ -1,0 +1,21 @@
+// O'Neil's model as the scene's parameters ask for it.
+#pragma once
+
+#include "models/oneil.hpp"
+#include "scene/description/scene_params.hpp"
+
+namespace tyndall::scene {
+
+// table: the table in place of the scale function, whichever that is.
+[[nodiscard]] inline models::OneilSettings oneil_settings(const OneilParams& params, bool table) {
+  models::OneilSettings out;
+  out.integral_method =
+      table ? models::OneilIntegralMethod::table : static_cast<models::OneilIntegralMethod>(params.scale_function);
+  out.samples = params.samples;
+  out.table_size = params.table_size;
+  out.space_by_column = params.spacing == OneilSpacing::column;
+  out.rayleigh_phase = params.rayleigh_phase.value != 0;
+  return out;
+}
+
+}  // namespace tyndall::scene

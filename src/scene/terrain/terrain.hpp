@@ -1,0 +1,136 @@
+// The terrain on the GPU: fills the clipmap of elevations around the camera, and draws it for the view
+// and for the shadow cascades.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "gpu/host.hpp"
+#include "gpu/pipeline.hpp"
+#include "scene/elevation/elevation_source.hpp"
+#include "scene/terrain/terrain_lod.hpp"
+#include "scene/view/cascades.hpp"
+#include "scene/view/local_frame.hpp"
+
+namespace tyndall::scene {
+
+// What shading the ground needs of a frame, apart from the geometry.
+struct TerrainLight {
+  glm::dvec3 direction_to_sun = {};
+  Vec3 sun_irradiance = Vec3(0.0F);  // above the atmosphere, times scattering.scale
+  double atmosphere_height_m = 0.0;
+  LightTables tables;
+  VkImageView shadow_maps = VK_NULL_HANDLE;
+  VkSampler shadow_sampler = VK_NULL_HANDLE;
+  VkImageView shadow_colors = VK_NULL_HANDLE;  // one white texel without glass
+  bool has_glass = false;
+  VkSampler linear = VK_NULL_HANDLE;
+};
+
+// Elevation of the ground [m], as finely as it is drawn, where `up` points from the planet's centre.
+[[nodiscard]] double ground_height(const ElevationSource& source, const glm::dvec3& up, double radius_m);
+
+class Terrain {
+ public:
+  // With terrain.source = none there is nothing to draw, and the ground is at sea level.
+  // `coarseness` as in TerrainLod.
+  static Result<std::unique_ptr<Terrain>> create(gpu::Host& host, const TerrainParams& params, double radius_m,
+                                                 VkFormat color_format, VkFormat depth_format, int coarseness = 1);
+
+  // Reads or makes what plan_source() takes: may take seconds, and may run on a thread of its own.
+  static Result<ElevationSource> load_source(const gpu::Device& device, const TerrainParams& params, double radius_m);
+  // Elevations on the device, loaded for these parameters and this radius, to take the place of those that are there.
+  struct Planned;
+  [[nodiscard]] Result<Planned> plan_source(const TerrainParams& params, double radius_m, ElevationSource source) const;
+  // Puts the planned elevations in place, and those that were there into `planned`: a second call takes it back.
+  void swap_source(Planned& planned) noexcept;
+  // See TerrainLod.
+  Result<void> set_coarseness(int coarseness);
+  // Counts the changes of what is drawn.
+  [[nodiscard]] std::uint64_t version() const { return version_; }
+
+  // Brings the clipmap to the camera: fills the levels that have moved. Synchronous. What is drawn from then on is in
+  // `frame`, the one of the camera's place.
+  Result<void> update(const View& view, const LocalFrame& frame);
+
+  [[nodiscard]] bool none() const { return params_.source == "none"; }
+  [[nodiscard]] Ground ground() const;
+  // Elevation of the ground where `up` points from the planet's centre [m].
+  [[nodiscard]] double height_at(const glm::dvec3& up) const;
+  // The elevations themselves, which stay as they are and may be read from any thread.
+  [[nodiscard]] std::shared_ptr<const ElevationSource> source() const { return none() ? nullptr : source_; }
+  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
+  // Where the origin of the world is on the Earth, by the elevation file; nothing without one.
+  [[nodiscard]] const std::optional<Place>& place() const { return source_->place(); }
+  [[nodiscard]] VkDeviceSize bytes() const;
+
+  // Selects the blocks of a frame and writes the constants: before the draws are recorded.
+  Result<void> prepare(const View& view, std::uint32_t height_px, const ShadowParams& shadows,
+                       const std::vector<CascadeFit>& cascades, const TerrainLight& light, TerrainShading shading);
+  // Inside a rendering scope with colour and depth. The colour says which ground is seen, until light_view() has made
+  // radiance of it, outside of the scope and with the image in GENERAL layout.
+  Result<void> draw_view(VkCommandBuffer cmd, const View& view);
+  Result<void> light_view(VkCommandBuffer cmd, const TerrainLight& light, VkImageView color, VkExtent2D extent);
+  // The same through pipelines of someone else's, over scene/terrain_vertex.glsl and scene/terrain_pixel.glsl; `more`
+  // are the resources that they read beyond the terrain's.
+  Result<void> draw_view(VkCommandBuffer cmd, const View& view, const gpu::Pipeline& pipeline,
+                         std::span<const gpu::NamedResource> more);
+  Result<void> light_view(VkCommandBuffer cmd, const TerrainLight& light, VkImageView color, VkExtent2D extent,
+                          const gpu::Pipeline& pipeline, std::span<const gpu::NamedResource> more);
+  // Inside a rendering scope with the layer of a shadow map.
+  Result<void> draw_cascade(VkCommandBuffer cmd, const CascadeFit& cascade, std::uint32_t index);
+
+ private:
+  Result<void> create_objects(VkFormat color_format, VkFormat depth_format);
+  [[nodiscard]] Result<gpu::Buffer> create_indices(int coarseness) const;
+  Result<void> fill_level(std::size_t layer);
+  Result<void> draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline, std::span<const gpu::NamedResource> resources,
+                    const glm::dmat4& clip_from_world, std::uint32_t range);
+
+  [[nodiscard]] std::vector<gpu::NamedResource> geometry() const;
+  [[nodiscard]] std::vector<gpu::NamedResource> lit(const TerrainLight& light) const;
+
+  struct Range {
+    std::uint32_t first = 0, count = 0;
+  };
+
+  gpu::Host* host_ = nullptr;
+  TerrainParams params_;
+  double radius_m_ = 0.0;
+  int coarseness_ = 1;
+  std::uint64_t version_ = 0;
+  std::shared_ptr<const ElevationSource> source_;
+  std::vector<std::string> notes_;
+  TerrainLod lod_;
+  LocalFrame frame_;
+  std::vector<ClipLevel> filled_;
+  int filled_chart_ = 0;
+
+  gpu::Pipeline fill_;
+  gpu::Pipeline view_pipeline_;
+  gpu::Pipeline light_;
+  gpu::Pipeline shadow_pipeline_;
+  gpu::Image heights_;
+  gpu::Image atlas_;
+  gpu::Buffer fill_constants_;
+  gpu::Buffer charts_;
+  gpu::Buffer constants_;
+  gpu::Buffer blocks_;
+  gpu::Buffer indices_;
+  gpu::Handle<VkSampler> nearest_;
+  std::vector<Range> ranges_;  // the view's, then each cascade's
+  std::vector<TerrainBlock> scratch_;
+};
+
+struct Terrain::Planned {
+  TerrainParams params;
+  double radius_m = 0.0;
+  std::uint64_t version = 0;
+  std::shared_ptr<const ElevationSource> source;
+  std::vector<std::string> notes;
+  std::vector<ClipLevel> filled;
+  gpu::Image atlas;
+};
+
+}  // namespace tyndall::scene
