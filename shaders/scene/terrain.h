@@ -1,8 +1,8 @@
 // What the terrain's shaders read of one view (std430; every vec3 or vec2 pair fills 16 bytes). Filled by
 // src/scene/terrain/terrain.cpp. Places and directions are in the local frame of src/scene/view/local_frame.hpp.
 struct TerrainLevel {
-  ivec2 origin;  // grid index on the chart of the texture's first sample
-  vec2 first_m;  // its place, as all places on the map from the origin of the local frame: see charts.glsl
+  ivec2 origin;  // grid index on the map projection of the texture's first sample
+  vec2 first_m;  // its place, as all places on the map from the origin of the local frame: see map_projections.glsl
   float cell_m;
   float range_m;
 };

@@ -3,7 +3,7 @@
 #ifndef TYNDALL_TERRAIN_VERTEX_GLSL
 #define TYNDALL_TERRAIN_VERTEX_GLSL
 
-#include "scene/charts.glsl"
+#include "scene/map_projections.glsl"
 #include "scene/terrain.h"
 
 layout(std430, binding = 0) readonly buffer terrain_block { TerrainConstants terrain; };

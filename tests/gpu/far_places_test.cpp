@@ -33,8 +33,8 @@ struct Place {
 
 const Place kPlaces[] = {{"origin", 0.0, 0.0},
                          {"200 km", 1.8017, 60.0},
-                         {"5000 km, between two charts", 45.0439, 90.0},
-                         {"corner of three charts", 54.7356, 135.0},
+                         {"5000 km, between two map_projections", 45.0439, 90.0},
+                         {"corner of three map_projections", 54.7356, 135.0},
                          {"east, where east is vertical", 90.0, 90.0},
                          {"north", 90.0, 0.0},
                          {"far side", 179.5, 20.0},

@@ -1,4 +1,4 @@
-// The chart that lays the map on the planet, and the camera and sun over it.
+// The map projection that lays the map on the planet, and the camera and sun over it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ constexpr double kRadius_m = 6.36e6;
 constexpr double kRad = 0.017453292519943295;
 constexpr double kPi = std::numbers::pi;
 
-TEST(SceneChart, MapAndWorldAreInverse) {
+TEST(SceneMapProjection, MapAndWorldAreInverse) {
   for (const double distance : {0.0, 1e-3, 1.0, 1e4, 1e6, 1.5e7}) {
     for (const double angle : {0.0, 0.7, 2.9, 4.0, 6.0}) {
       for (const double altitude : {-400.0, 0.0, 8848.0, 4e5}) {
@@ -41,36 +41,38 @@ TEST(SceneChart, MapAndWorldAreInverse) {
   EXPECT_NEAR(quarter.y, -kRadius_m, 1e-6);
 }
 
-// Every place of the planet is on a chart near its centre, and the weights of charts add up and change slowly.
-TEST(SceneChart, ChartsCoverThePlanet) {
+// Every place of the planet is on a map projection near its centre, and the weights of map projections add up and
+// change slowly.
+TEST(SceneMapProjection, MapProjectionsCoverThePlanet) {
   std::mt19937 random(5);
   std::normal_distribution<double> any;
   for (int i = 0; i < 5000; ++i) {
     const glm::dvec3 up = glm::normalize(glm::dvec3(any(random), any(random), any(random)));
-    const int nearest = nearest_chart(up);
-    EXPECT_GE(glm::dot(chart_frame(nearest)[1], up), std::sqrt(1.0 / 3.0) - 1e-12);
-    const std::array<double, kChartCount> weights = chart_weights(up);
+    const int nearest = nearest_projection(up);
+    EXPECT_GE(glm::dot(projection_frame(nearest)[1], up), std::sqrt(1.0 / 3.0) - 1e-12);
+    const std::array<double, kMapProjectionCount> weights = projection_weights(up);
     EXPECT_NEAR(std::accumulate(weights.begin(), weights.end(), 0.0), 1.0, 1e-12);
     EXPECT_EQ(static_cast<int>(std::max_element(weights.begin(), weights.end()) - weights.begin()), nearest);
     const glm::dvec3 aside = glm::normalize(up + 1e-4 * glm::dvec3(any(random), any(random), any(random)));
-    const std::array<double, kChartCount> beside = chart_weights(aside);
-    for (int chart = 0; chart < kChartCount; ++chart) {
-      const auto index = static_cast<std::size_t>(chart);
-      EXPECT_NEAR(beside[index], weights[index], 0.02) << chart;
-      const glm::dvec2 map = chart_from_up(chart, up, kRadius_m);
-      const glm::dvec3 back = world_from_chart(chart, map.x, map.y, 1000.0, kRadius_m);
-      EXPECT_NEAR(glm::distance(back, glm::dvec3(0, -kRadius_m, 0) + up * (kRadius_m + 1000.0)), 0.0, 1e-5) << chart;
+    const std::array<double, kMapProjectionCount> beside = projection_weights(aside);
+    for (int projection = 0; projection < kMapProjectionCount; ++projection) {
+      const auto index = static_cast<std::size_t>(projection);
+      EXPECT_NEAR(beside[index], weights[index], 0.02) << projection;
+      const glm::dvec2 map = projection_from_up(projection, up, kRadius_m);
+      const glm::dvec3 back = world_from_projection(projection, map.x, map.y, 1000.0, kRadius_m);
+      EXPECT_NEAR(glm::distance(back, glm::dvec3(0, -kRadius_m, 0) + up * (kRadius_m + 1000.0)), 0.0, 1e-5)
+          << projection;
     }
   }
-  for (int chart = 0; chart < kChartCount; ++chart) {
-    const glm::dmat3& frame = chart_frame(chart);
-    EXPECT_EQ(glm::cross(frame[0], frame[1]), frame[2]) << chart;  // right-handed like the world
+  for (int projection = 0; projection < kMapProjectionCount; ++projection) {
+    const glm::dmat3& frame = projection_frame(projection);
+    EXPECT_EQ(glm::cross(frame[0], frame[1]), frame[2]) << projection;  // right-handed like the world
   }
 }
 
-// Elevation goes over the seams of charts without a step: from the origin over a corner of three of them to the
-// antipode.
-TEST(SceneChart, TheGroundHasNoSteps) {
+// Elevation goes over the seams of map projections without a step: from the origin over a corner of three of them to
+// the antipode.
+TEST(SceneMapProjection, TheGroundHasNoSteps) {
   const Result<ElevationSource> source = ElevationSource::create({});
   ASSERT_TRUE(source.ok());
   const double corner = std::acos(std::sqrt(1.0 / 3.0));

@@ -7,21 +7,21 @@
 namespace tyndall::scene {
 namespace {
 
-// Difference of the cosines of the distances from two centres over which one chart's terrain gives way to the other's.
-// The same in shaders/scene/map_projections.glsl.
+// Difference of the cosines of the distances from two centres over which one map projection's terrain gives way to the
+// other's. The same in shaders/scene/map_projections.glsl.
 constexpr double kBlend = 0.08;
 
-std::array<double, kChartCount> cosines_of(const glm::dvec3& up) {
-  std::array<double, kChartCount> out = {};
-  for (int chart = 0; chart < kChartCount; ++chart)
-    out[static_cast<std::size_t>(chart)] = glm::dot(up, chart_frame(chart)[1]);
+std::array<double, kMapProjectionCount> cosines_of(const glm::dvec3& up) {
+  std::array<double, kMapProjectionCount> out = {};
+  for (int projection = 0; projection < kMapProjectionCount; ++projection)
+    out[static_cast<std::size_t>(projection)] = glm::dot(up, projection_frame(projection)[1]);
   return out;
 }
 
 }  // namespace
 
-const glm::dmat3& chart_frame(int chart) {
-  static const std::array<glm::dmat3, kChartCount> frames = {{
+const glm::dmat3& projection_frame(int projection) {
+  static const std::array<glm::dmat3, kMapProjectionCount> frames = {{
       {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
       {{0, -1, 0}, {1, 0, 0}, {0, 0, 1}},
       {{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}},
@@ -29,16 +29,16 @@ const glm::dmat3& chart_frame(int chart) {
       {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}},
       {{1, 0, 0}, {0, -1, 0}, {0, 0, -1}},
   }};
-  return frames[static_cast<std::size_t>(chart)];
+  return frames[static_cast<std::size_t>(projection)];
 }
 
-int nearest_chart(const glm::dvec3& up) {
-  const std::array<double, kChartCount> cosines = cosines_of(up);
+int nearest_projection(const glm::dvec3& up) {
+  const std::array<double, kMapProjectionCount> cosines = cosines_of(up);
   return static_cast<int>(std::max_element(cosines.begin(), cosines.end()) - cosines.begin());
 }
 
-std::array<double, kChartCount> chart_weights(const glm::dvec3& up) {
-  std::array<double, kChartCount> out = cosines_of(up);
+std::array<double, kMapProjectionCount> projection_weights(const glm::dvec3& up) {
+  std::array<double, kMapProjectionCount> out = cosines_of(up);
   const double nearest = *std::max_element(out.begin(), out.end());
   double sum = 0.0;
   for (double& weight : out) {
@@ -50,15 +50,15 @@ std::array<double, kChartCount> chart_weights(const glm::dvec3& up) {
   return out;
 }
 
-glm::dvec3 world_from_chart(int chart, double x, double z, double altitude_m, double radius_m) {
+glm::dvec3 world_from_projection(int projection, double x, double z, double altitude_m, double radius_m) {
   const glm::dvec3 p = world_from_map(x, z, altitude_m, radius_m);
-  if (chart == 0) return p;
+  if (projection == 0) return p;
   const glm::dvec3 centre(0.0, -radius_m, 0.0);
-  return centre + chart_frame(chart) * (p - centre);
+  return centre + projection_frame(projection) * (p - centre);
 }
 
-glm::dvec2 chart_from_up(int chart, const glm::dvec3& up, double radius_m) {
-  const glm::dvec3 p = glm::transpose(chart_frame(chart)) * up;
+glm::dvec2 projection_from_up(int projection, const glm::dvec3& up, double radius_m) {
+  const glm::dvec3 p = glm::transpose(projection_frame(projection)) * up;
   const double horizontal = std::hypot(p.x, p.z);
   const double arc_m = std::atan2(horizontal, p.y) * radius_m;
   if (horizontal == 0.0) return {arc_m, 0.0};
@@ -74,7 +74,7 @@ glm::dvec3 world_from_map(double x, double z, double altitude_m, double radius_m
 }
 
 glm::dvec2 map_from_world(const glm::dvec3& p, double radius_m) {
-  return chart_from_up(0, up_of(p, radius_m), radius_m);
+  return projection_from_up(0, up_of(p, radius_m), radius_m);
 }
 
 double altitude_of(const glm::dvec3& p, double radius_m) {

@@ -2,8 +2,9 @@
 //
 // The map lays the ground on the planet: x east and z south [m] are arc lengths from the origin of the world, azimuthal
 // equidistant. It is true to scale at the origin, stretched by 1.11 at 5000 km, and tears at the antipode. So the
-// planet has six such charts, whose centres are the origin, its antipode and the four points between them; each is used
-// where its centre is the nearest, out to 55 degrees, where it is stretched by 1.17. The map is chart 0.
+// planet has six such map projections, whose centres are the origin, its antipode and the four points between them;
+// each is used where its centre is the nearest, out to 55 degrees, where it is stretched by 1.17. The map is map
+// projection 0.
 #pragma once
 
 #include <array>
@@ -13,19 +14,20 @@
 
 namespace tyndall::scene {
 
-constexpr int kChartCount = 6;  // origin, east, west, south, north, antipode
+constexpr int kMapProjectionCount = 6;  // origin, east, west, south, north, antipode
 
-// Columns: east, up and south at a chart's centre, in the world.
-[[nodiscard]] const glm::dmat3& chart_frame(int chart);
-// The chart whose centre is the nearest to where `up` points from the planet's centre.
-[[nodiscard]] int nearest_chart(const glm::dvec3& up);
-// How much each chart's terrain counts there: together one, and more than one of them only within 0.06 rad of where two
-// centres are equally near.
-[[nodiscard]] std::array<double, kChartCount> chart_weights(const glm::dvec3& up);
-// World position of the point at altitude_m over map coordinates (x, z) of a chart, and the coordinates of the point in
-// the direction `up` from the planet's centre. At a chart's antipode, which has no place of its own, a point due east.
-[[nodiscard]] glm::dvec3 world_from_chart(int chart, double x, double z, double altitude_m, double radius_m);
-[[nodiscard]] glm::dvec2 chart_from_up(int chart, const glm::dvec3& up, double radius_m);
+// Columns: east, up and south at a map projection's centre, in the world.
+[[nodiscard]] const glm::dmat3& projection_frame(int projection);
+// The map projection whose centre is the nearest to where `up` points from the planet's centre.
+[[nodiscard]] int nearest_projection(const glm::dvec3& up);
+// How much each map projection's terrain counts there: together one, and more than one of them only within 0.06 rad of
+// where two centres are equally near.
+[[nodiscard]] std::array<double, kMapProjectionCount> projection_weights(const glm::dvec3& up);
+// World position of the point at altitude_m over map coordinates (x, z) of a map projection, and the coordinates of the
+// point in the direction `up` from the planet's centre. At a map projection's antipode, which has no place of its own,
+// a point due east.
+[[nodiscard]] glm::dvec3 world_from_projection(int projection, double x, double z, double altitude_m, double radius_m);
+[[nodiscard]] glm::dvec2 projection_from_up(int projection, const glm::dvec3& up, double radius_m);
 
 // The same of the map.
 [[nodiscard]] glm::dvec3 world_from_map(double x, double z, double altitude_m, double radius_m);

@@ -149,10 +149,10 @@ float ElevationSource::height_m(double x_m, double z_m, double spacing_m) const 
   return height_m(0, x_m, z_m, spacing_m);
 }
 
-float ElevationSource::height_m(int chart, double x_m, double z_m, double spacing_m) const {
+float ElevationSource::height_m(int projection, double x_m, double z_m, double spacing_m) const {
   const double spacing = std::max(spacing_m, 1.0 / kUnitsPerM);
-  return static_cast<float>(terrain64::terrain_chart_height(bind(constants_, atlas_), static_cast<std::uint32_t>(chart),
-                                                            units_of(x_m, z_m), spacing));
+  return static_cast<float>(terrain64::terrain_projection_height(
+      bind(constants_, atlas_), static_cast<std::uint32_t>(projection), units_of(x_m, z_m), spacing));
 }
 
 double ElevationSource::file_share(double x_m, double z_m) const {

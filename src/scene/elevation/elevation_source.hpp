@@ -50,9 +50,9 @@ class ElevationSource {
   // Elevation of the ground in m, without anything finer than about two of `spacing_m` (at least 1/64 m).
   // Places are taken to the nearest 1/64 m.
   [[nodiscard]] float height_m(double x_m, double z_m, double spacing_m) const;
-  // The same on one of the planet's charts (src/scene/description/map_projection.hpp): 0 is the map; the others have
-  // mountains of their own.
-  [[nodiscard]] float height_m(int chart, double x_m, double z_m, double spacing_m) const;
+  // The same on one of the planet's map projections (src/scene/description/map_projection.hpp): 0 is the map; the
+  // others have mountains of their own.
+  [[nodiscard]] float height_m(int projection, double x_m, double z_m, double spacing_m) const;
   // 1 at places of the map inside of the elevation file, 0 outside of it, in between on its border.
   [[nodiscard]] double file_share(double x_m, double z_m) const;
 

@@ -66,17 +66,17 @@ bool outside(const CascadeFit& cascade, const glm::dvec3& centre, double radius)
          std::abs(p.z) > cascade.half_extent.z + radius;
 }
 
-// A sphere around the ground over a square of a chart.
-void bounding_sphere(int chart, const glm::dvec2& low, const glm::dvec2& high, const Ground& ground, glm::dvec3& centre,
-                     double& radius) {
+// A sphere around the ground over a square of a map projection.
+void bounding_sphere(int projection, const glm::dvec2& low, const glm::dvec2& high, const Ground& ground,
+                     glm::dvec3& centre, double& radius) {
   const glm::dvec2 middle = 0.5 * (low + high);
-  centre = world_from_chart(chart, middle.x, middle.y, 0.5 * (ground.min_m + ground.max_m), ground.radius_m);
+  centre = world_from_projection(projection, middle.x, middle.y, 0.5 * (ground.min_m + ground.max_m), ground.radius_m);
   radius = 0.0;
   for (int corner = 0; corner < 4; ++corner) {
     const double x = (corner & 1) != 0 ? high.x : low.x;
     const double z = (corner & 2) != 0 ? high.y : low.y;
     for (const double h : {ground.min_m, ground.max_m}) {
-      radius = std::max(radius, glm::distance(centre, world_from_chart(chart, x, z, h, ground.radius_m)));
+      radius = std::max(radius, glm::distance(centre, world_from_projection(projection, x, z, h, ground.radius_m)));
     }
   }
 }
@@ -153,8 +153,8 @@ Result<void> Terrain::create_objects(VkFormat color_format, VkFormat depth_forma
   TYNDALL_ASSIGN(nearest_, gpu::create_sampler(device, {.filter = VK_FILTER_NEAREST}));
 
   TYNDALL_ASSIGN(indices_, create_indices(coarseness_));
-  TYNDALL_ASSIGN(charts_, gpu::create_buffer(device, "terrain_charts", sizeof(shared::Charts),
-                                             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
+  TYNDALL_ASSIGN(map_projections_, gpu::create_buffer(device, "terrain_projections", sizeof(shared::MapProjections),
+                                                      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
   TYNDALL_ASSIGN(constants_, gpu::create_buffer(device, "terrain_constants", sizeof(shared::TerrainConstants),
                                                 VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
   TYNDALL_ASSIGN(blocks_, gpu::create_buffer(device, "terrain_blocks", kMaxBlocks * sizeof(TerrainBlock),
@@ -192,15 +192,15 @@ Ground Terrain::ground() const {
 
 // As terrain_heights.comp has it.
 double ground_height(const ElevationSource& source, const glm::dvec3& up, double radius_m) {
-  const std::array<double, kChartCount> weights = chart_weights(up);
-  const glm::dvec2 map = chart_from_up(0, up, radius_m);
+  const std::array<double, kMapProjectionCount> weights = projection_weights(up);
+  const glm::dvec2 map = projection_from_up(0, up, radius_m);
   const double file = source.from_file() ? source.file_share(map.x, map.y) : 0.0;
   double height_m = 0.0;
-  for (int chart = 0; chart < kChartCount; ++chart) {
-    const double weight = (1.0 - file) * weights[static_cast<std::size_t>(chart)] + (chart == 0 ? file : 0.0);
+  for (int projection = 0; projection < kMapProjectionCount; ++projection) {
+    const double weight = (1.0 - file) * weights[static_cast<std::size_t>(projection)] + (projection == 0 ? file : 0.0);
     if (weight <= 0.0) continue;
-    const glm::dvec2 at = chart == 0 ? map : chart_from_up(chart, up, radius_m);
-    height_m += weight * static_cast<double>(source.height_m(chart, at.x, at.y, kFinestCell_m));
+    const glm::dvec2 at = projection == 0 ? map : projection_from_up(projection, up, radius_m);
+    height_m += weight * static_cast<double>(source.height_m(projection, at.x, at.y, kFinestCell_m));
   }
   return height_m;
 }
@@ -208,20 +208,20 @@ double ground_height(const ElevationSource& source, const glm::dvec3& up, double
 double Terrain::height_at(const glm::dvec3& up) const { return none() ? 0.0 : ground_height(*source_, up, radius_m_); }
 
 VkDeviceSize Terrain::bytes() const {
-  return heights_.bytes + atlas_.bytes + fill_constants_.bytes + charts_.bytes + constants_.bytes + blocks_.bytes +
-         indices_.bytes;
+  return heights_.bytes + atlas_.bytes + fill_constants_.bytes + map_projections_.bytes + constants_.bytes +
+         blocks_.bytes + indices_.bytes;
 }
 
 Result<void> Terrain::update(const View& view, const LocalFrame& frame) {
   if (none()) return {};
   frame_ = frame;
-  const shared::Charts charts = charts_of(frame, radius_m_);
-  std::memcpy(charts_.mapped, &charts, sizeof charts);
-  lod_ = plan_terrain(chart_from_up(frame.chart, up_of(view.position, radius_m_), radius_m_),
+  const shared::MapProjections map_projections = map_projections_of(frame, radius_m_);
+  std::memcpy(map_projections_.mapped, &map_projections, sizeof map_projections);
+  lod_ = plan_terrain(projection_from_up(frame.projection, up_of(view.position, radius_m_), radius_m_),
                       altitude_of(view.position, radius_m_), source_->max_height_m(), radius_m_, coarseness_,
                       source_->min_height_m());
-  if (frame.chart != filled_chart_) filled_.clear();
-  filled_chart_ = frame.chart;
+  if (frame.projection != filled_projection_) filled_.clear();
+  filled_projection_ = frame.projection;
   const gpu::Device& device = host_->device();
   const auto layers = static_cast<std::uint32_t>(lod_.levels.size());
   const auto samples = static_cast<std::uint32_t>(lod_.level_samples());
@@ -270,7 +270,7 @@ Result<void> Terrain::fill_level(std::size_t layer) {
     const gpu::Label label(device, cmd, fill_.name);
     const gpu::NamedResource resources[] = {
         gpu::named_buffer("terrain_fill_block", fill_constants_.buffer.get()),
-        gpu::named_buffer("charts_block", charts_.buffer.get()),
+        gpu::named_buffer("map_projections_block", map_projections_.buffer.get()),
         gpu::named_image("elevation_atlas", atlas_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
                          nearest_.get()),
         gpu::named_image("elevation_levels", heights_.view.get()),
@@ -347,7 +347,7 @@ Result<void> Terrain::prepare(const View& view, std::uint32_t height_px, const S
     return [&](const glm::dvec2& low, const glm::dvec2& high) {
       glm::dvec3 centre;
       double radius = 0.0;
-      bounding_sphere(frame_.chart, low, high, whole, centre, radius);
+      bounding_sphere(frame_.projection, low, high, whole, centre, radius);
       return !outside(volume, centre, radius);
     };
   };
@@ -418,7 +418,7 @@ Result<void> Terrain::light_view(VkCommandBuffer cmd, const TerrainLight& light,
 
 std::vector<gpu::NamedResource> Terrain::geometry() const {
   return {gpu::named_buffer("terrain_block", constants_.buffer.get()),
-          gpu::named_buffer("charts_block", charts_.buffer.get()),
+          gpu::named_buffer("map_projections_block", map_projections_.buffer.get()),
           gpu::named_buffer("blocks_block", blocks_.buffer.get()),
           gpu::named_image("terrain_heights", heights_.view.get(), VK_IMAGE_LAYOUT_GENERAL, nearest_.get())};
 }

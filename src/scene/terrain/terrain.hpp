@@ -105,7 +105,7 @@ class Terrain {
   TerrainLod lod_;
   LocalFrame frame_;
   std::vector<ClipLevel> filled_;
-  int filled_chart_ = 0;
+  int filled_projection_ = 0;
 
   gpu::Pipeline fill_;
   gpu::Pipeline view_pipeline_;
@@ -114,7 +114,7 @@ class Terrain {
   gpu::Image heights_;
   gpu::Image atlas_;
   gpu::Buffer fill_constants_;
-  gpu::Buffer charts_;
+  gpu::Buffer map_projections_;
   gpu::Buffer constants_;
   gpu::Buffer blocks_;
   gpu::Buffer indices_;

@@ -12,14 +12,15 @@ double distance_to_square(const glm::dvec2& p, const glm::dvec2& low, const glm:
   return std::sqrt(glm::dot(p - nearest, p - nearest) + vertical * vertical);
 }
 
-// The largest distance on a chart, azimuthal equidistant, of points that are reach_m away from a place on the planet.
-double reach_on_chart(const glm::dvec2& place, double reach_m, double radius_m) {
+// The largest distance on a map projection, azimuthal equidistant, of points that are reach_m away from a place on the
+// planet.
+double reach_on_projection(const glm::dvec2& place, double reach_m, double radius_m) {
   constexpr int kDirections = 64;
   const double distance_m = glm::length(place);
   const double arc = distance_m / radius_m;
   const double reach = std::min(reach_m / radius_m, std::numbers::pi);
   double out = reach_m;
-  // Seen from the chart's centre, with the place at the azimuth 0; both sides are alike.
+  // Seen from the map projection's centre, with the place at the azimuth 0; both sides are alike.
   for (int i = 0; distance_m > 0.0 && i <= kDirections; ++i) {
     const double angle = std::numbers::pi * i / kDirections;
     const double up = std::cos(arc) * std::cos(reach) - std::sin(arc) * std::sin(reach) * std::cos(angle);
@@ -70,7 +71,7 @@ TerrainLod plan_terrain(const glm::dvec2& camera_map, double altitude_m, double 
   const double base = radius_m + lowest;
   const auto horizon_arc = [&](double h) { return radius_m * std::acos(base / (base + std::max(h - lowest, 1.0))); };
   out.reach_m =
-      reach_on_chart(camera_map, 1.01 * (horizon_arc(altitude_m) + horizon_arc(max_ground_m)) + 1000.0, radius_m);
+      reach_on_projection(camera_map, 1.01 * (horizon_arc(altitude_m) + horizon_arc(max_ground_m)) + 1000.0, radius_m);
   for (int k = 0; k < 30; ++k) {
     ClipLevel level;
     level.level = k;

@@ -27,9 +27,9 @@ struct ClipLevel {
 struct TerrainLod {
   // 1, 2 or 4: so many times fewer cells along a block, a level's reach and its texture, for slow devices.
   int coarseness = 1;
-  glm::dvec2 camera_map = {};     // coordinates of the camera on the chart [m]
+  glm::dvec2 camera_map = {};     // coordinates of the camera on the map projection [m]
   double vertical_m = 0.0;        // height of the camera above the highest ground, at least 0
-  double reach_m = 0.0;           // how far ground can be seen, on the chart
+  double reach_m = 0.0;           // how far ground can be seen, on the map projection
   std::vector<ClipLevel> levels;  // from fine to coarse
 
   // Distance out to which a level is drawn.
@@ -45,8 +45,8 @@ struct TerrainBlock {
   std::int32_t unused = 0;
 };
 
-// The levels that a camera at these coordinates on a chart and at this altitude needs, out to the horizon of the
-// highest ground. `min_ground_m`: where ground lies below sea level, the horizon is farther.
+// The levels that a camera at these coordinates on a map projection and at this altitude needs, out to the horizon of
+// the highest ground. `min_ground_m`: where ground lies below sea level, the horizon is farther.
 [[nodiscard]] TerrainLod plan_terrain(const glm::dvec2& camera_map, double altitude_m, double max_ground_m,
                                       double radius_m, int coarseness = 1, double min_ground_m = 0.0);
 

@@ -12,15 +12,15 @@ namespace {
 constexpr double kUnitsPerM = 64.0;
 constexpr double kLargestStep_m = 1024.0;
 
-// The origin's place relative to a chart's centre.
+// The origin's place relative to a map projection's centre.
 struct Radial {
   glm::dvec2 radial = {1, 0};  // unit vector on the map
   double arc = 0.0;
   glm::dvec3 outwards = {};  // the horizontal direction away from the centre, in the world
 };
 
-Radial radial_of(int chart, const glm::dvec2& map, double radius_m) {
-  const glm::dmat3& axes = chart_frame(chart);
+Radial radial_of(int projection, const glm::dvec2& map, double radius_m) {
+  const glm::dmat3& axes = projection_frame(projection);
   Radial out;
   const double distance = glm::length(map);
   if (distance > 0.0) out.radial = map / distance;
@@ -40,12 +40,12 @@ std::int32_t wrapped(double units) {
 LocalFrame local_frame(const glm::dvec3& position, double radius_m) {
   LocalFrame out;
   const glm::dvec3 up = up_of(position, radius_m);
-  out.chart = nearest_chart(up);
+  out.projection = nearest_projection(up);
   const double step = std::min(kLargestStep_m, std::exp2(std::floor(std::log2(radius_m / 64.0))));
-  out.map_m = glm::round(chart_from_up(out.chart, up, radius_m) / step) * step;
-  // The chart's axes, turned by the smallest rotation from its centre to the origin.
-  const Radial at = radial_of(out.chart, out.map_m, radius_m);
-  const glm::dvec3 origin = world_from_chart(out.chart, out.map_m.x, out.map_m.y, 0.0, radius_m);
+  out.map_m = glm::round(projection_from_up(out.projection, up, radius_m) / step) * step;
+  // The map projection's axes, turned by the smallest rotation from its centre to the origin.
+  const Radial at = radial_of(out.projection, out.map_m, radius_m);
+  const glm::dvec3 origin = world_from_projection(out.projection, out.map_m.x, out.map_m.y, 0.0, radius_m);
   const glm::dvec3 zenith = up_of(origin, radius_m);
   const glm::dvec3 across = glm::cross(at.outwards, zenith);
   const glm::dvec3 x = at.outwards * at.radial.x - across * at.radial.y;
@@ -58,16 +58,16 @@ LocalFrame local_frame(const glm::dvec3& position, double radius_m) {
   return out;
 }
 
-shared::Charts charts_of(const LocalFrame& frame, double radius_m) {
-  shared::Charts out = {};
+shared::MapProjections map_projections_of(const LocalFrame& frame, double radius_m) {
+  shared::MapProjections out = {};
   const glm::dvec3 up(frame.world_from_local[1]);
-  for (int chart = 0; chart < kChartCount; ++chart) {
-    const glm::dvec2 map = chart == frame.chart ? frame.map_m : chart_from_up(chart, up, radius_m);
-    const Radial at = radial_of(chart, map, radius_m);
+  for (int projection = 0; projection < kMapProjectionCount; ++projection) {
+    const glm::dvec2 map = projection == frame.projection ? frame.map_m : projection_from_up(projection, up, radius_m);
+    const Radial at = radial_of(projection, map, radius_m);
     const glm::dvec2 units = glm::floor(map * kUnitsPerM);
     const glm::dvec2 rest = map - units / kUnitsPerM;
     const glm::dvec3 outwards = frame.direction(at.outwards);
-    shared::ChartLink& link = out.links[chart];
+    shared::ProjectionLink& link = out.links[projection];
     link.units = {wrapped(units.x), wrapped(units.y)};
     link.rest_m = {static_cast<float>(rest.x), static_cast<float>(rest.y)};
     link.radial = {static_cast<float>(at.radial.x), static_cast<float>(at.radial.y)};
@@ -80,7 +80,7 @@ shared::Charts charts_of(const LocalFrame& frame, double radius_m) {
   out.world_y = to_vec3(frame.direction({0, 1, 0}));
   out.world_z = to_vec3(frame.direction({0, 0, 1}));
   out.planet_radius_m = static_cast<float>(radius_m);
-  out.own = static_cast<std::uint32_t>(frame.chart);
+  out.own = static_cast<std::uint32_t>(frame.projection);
   return out;
 }
 

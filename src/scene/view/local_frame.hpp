@@ -12,7 +12,7 @@
 namespace tyndall::scene {
 
 struct LocalFrame {
-  int chart = 0;          // the chart of the terrain's grid
+  int projection = 0;     // the map projection of the terrain's grid
   glm::dvec2 map_m = {};  // the origin of the frame in it
   glm::dmat4 world_from_local = glm::dmat4(1.0);
   glm::dmat4 local_from_world = glm::dmat4(1.0);
@@ -25,6 +25,6 @@ struct LocalFrame {
 
 // The frame of a camera at a world position.
 [[nodiscard]] LocalFrame local_frame(const glm::dvec3& position, double radius_m);
-[[nodiscard]] shared::Charts charts_of(const LocalFrame& frame, double radius_m);
+[[nodiscard]] shared::MapProjections map_projections_of(const LocalFrame& frame, double radius_m);
 
 }  // namespace tyndall::scene

@@ -7,8 +7,9 @@
 
 namespace tyndall::scene::shared {
 
-#include "scene/charts.h"
+#include "scene/map_projections.h"
 
-static_assert(sizeof(ChartLink) == 48 && offsetof(Charts, world_x) == 288 && sizeof(Charts) == 336);
+static_assert(sizeof(ProjectionLink) == 48 && offsetof(MapProjections, world_x) == 288 &&
+              sizeof(MapProjections) == 336);
 
 }  // namespace tyndall::scene::shared

@@ -1,13 +1,13 @@
 // Between maps and the local frame in single precision, without loss of digits: places are given by their offset from
 // the origin of the local frame, and every formula is one of differences, so that the error is a few 1e-7 of that
-// offset. Azimuthal equidistant charts: a place at the arc a from a chart's centre stands at the distance R a from it
-// on the map.
-#ifndef TYNDALL_CHARTS_GLSL
-#define TYNDALL_CHARTS_GLSL
+// offset. Azimuthal equidistant map projections: a place at the arc a from a map projection's centre stands at the
+// distance R a from it on the map.
+#ifndef TYNDALL_MAP_PROJECTIONS_GLSL
+#define TYNDALL_MAP_PROJECTIONS_GLSL
 
-#include "scene/charts.h"
+#include "scene/map_projections.h"
 
-layout(std430, binding = 13) readonly buffer charts_block { Charts charts; };
+layout(std430, binding = 13) readonly buffer map_projections_block { MapProjections map_projections; };
 
 const float kHalfTurn = 3.14159265;
 
@@ -32,8 +32,8 @@ float exact_angle(float sine, float cosine) {
 // A quarter turn from east to south.
 vec2 turned(vec2 v) { return vec2(-v.y, v.x); }
 
-// What turns with the azimuth around a chart's centre, from the radial and tangential offset of a place from a point at
-// `along` - x on the axis: 1 - cos and sin of the azimuth between the two.
+// What turns with the azimuth around a map projection's centre, from the radial and tangential offset of a place from a
+// point at `along` - x on the axis: 1 - cos and sin of the azimuth between the two.
 struct Azimuth {
   float distance_from_centre;
   float versine;
@@ -51,20 +51,20 @@ Azimuth azimuth_of(float along, float across) {
   return a;
 }
 
-// The point of the unit sphere over a place on the own chart, less the one over the origin of the local frame.
+// The point of the unit sphere over a place on the own map projection, less the one over the origin of the local frame.
 // offset_m: of the place from that origin, on the map.
 vec3 local_direction(vec2 offset_m) {
-  ChartLink c = charts.links[charts.own];
+  ProjectionLink c = map_projections.links[map_projections.own];
   float radial_m = dot(offset_m, c.radial);
   float across_m = dot(offset_m, turned(c.radial));
   Azimuth azimuth = azimuth_of(c.radius_m + radial_m, across_m);
   float rho = azimuth.distance_from_centre;
   float sum_m = rho + c.radius_m;
   // (rho - c.radius_m) / R
-  float arc = sum_m > 0.0
-                  ? (radial_m * (2.0 * c.radius_m + radial_m) + across_m * across_m) / (sum_m * charts.planet_radius_m)
-                  : 0.0;
-  float sine = exact_sin(rho / charts.planet_radius_m);
+  float arc = sum_m > 0.0 ? (radial_m * (2.0 * c.radius_m + radial_m) + across_m * across_m) /
+                                (sum_m * map_projections.planet_radius_m)
+                          : 0.0;
+  float sine = exact_sin(rho / map_projections.planet_radius_m);
   float half_sine = exact_sin(0.5 * arc);
   float radial = exact_sin(arc) - sine * c.cosine * azimuth.versine;
   float tangential = sine * azimuth.sine;
@@ -74,30 +74,30 @@ vec3 local_direction(vec2 offset_m) {
 
 // The place in the local frame at an altitude over a point of the unit sphere.
 vec3 local_position(vec3 direction, float altitude_m) {
-  return direction * (charts.planet_radius_m + altitude_m) + vec3(0.0, altitude_m, 0.0);
+  return direction * (map_projections.planet_radius_m + altitude_m) + vec3(0.0, altitude_m, 0.0);
 }
 
-// The place on chart c over a point of the unit sphere [1/64 m].
-ivec2 chart_units(uint index, vec3 direction) {
-  ChartLink c = charts.links[index];
+// The place on map projection c over a point of the unit sphere [1/64 m].
+ivec2 projection_units(uint index, vec3 direction) {
+  ProjectionLink c = map_projections.links[index];
   float radial = dot(direction.xz, c.local_radial);
   float tangential = dot(direction.xz, turned(c.local_radial));
   Azimuth azimuth = azimuth_of(c.sine * (1.0 + direction.y) + c.cosine * radial, tangential);
   float sine = azimuth.distance_from_centre;
   float arc =
       exact_angle(radial + sine * c.cosine * azimuth.versine, 1.0 + direction.y + sine * c.sine * azimuth.versine);
-  float way_m = arc * charts.planet_radius_m;
+  float way_m = arc * map_projections.planet_radius_m;
   float rho = c.radius_m + way_m;
   vec2 offset_m = c.radial * (way_m - rho * azimuth.versine) + turned(c.radial) * (rho * azimuth.sine) + c.rest_m;
   return c.units + ivec2(floor(offset_m * 64.0 + 0.5));
 }
 
-// How much each chart's mountains count at a point of the unit sphere: see chart_weights in src/scene/description/map_projection.hpp.
-// Returns a bit for each chart that does. To be walked through as `while (rest != 0u)`: a loop over all six charts
-// would cost a device that masks its lanes the work of six.
-uint chart_weights(vec3 direction, out float weights[6]) {
+// How much each map projection's mountains count at a point of the unit sphere: see projection_weights in
+// src/scene/description/map_projection.hpp. Returns a bit for each map projection that does. To be walked through as
+// `while (rest != 0u)`: a loop over all six map projections would cost a device that masks its lanes the work of six.
+uint projection_weights(vec3 direction, out float weights[6]) {
   vec3 n = direction + vec3(0.0, 1.0, 0.0);
-  vec3 world = vec3(dot(charts.world_x, n), dot(charts.world_y, n), dot(charts.world_z, n));
+  vec3 world = vec3(dot(map_projections.world_x, n), dot(map_projections.world_y, n), dot(map_projections.world_z, n));
   float cosines[6] = float[6](world.y, world.x, -world.x, world.z, -world.z, -world.y);
   float nearest = -1.0;
   for (int i = 0; i < 6; ++i) nearest = max(nearest, cosines[i]);
@@ -115,26 +115,26 @@ uint chart_weights(vec3 direction, out float weights[6]) {
   return counting;
 }
 
-// A chart's axes at a place, in the local frame: unit vectors, and how much longer the chart is than the planet across
-// the way from its centre.
-struct ChartAxes {
+// A map projection's axes at a place, in the local frame: unit vectors, and how much longer the map projection is than
+// the planet across the way from its centre.
+struct ProjectionAxes {
   vec3 up;
-  vec3 radial;  // away from the chart's centre
+  vec3 radial;  // away from the map projection's centre
   vec3 tangential;
   vec2 map_radial;  // `radial` on the map
   float stretch;
 };
 
-// index: the chart; direction: the point of the unit sphere less the one over the local origin.
-ChartAxes chart_axes(uint index, vec3 direction) {
-  ChartLink c = charts.links[index];
+// index: the map projection; direction: the point of the unit sphere less the one over the local origin.
+ProjectionAxes projection_axes(uint index, vec3 direction) {
+  ProjectionLink c = map_projections.links[index];
   float radial = dot(direction.xz, c.local_radial);
   float tangential = dot(direction.xz, turned(c.local_radial));
   Azimuth azimuth = azimuth_of(c.sine * (1.0 + direction.y) + c.cosine * radial, tangential);
   float sine = azimuth.distance_from_centre;
   float cosine = c.cosine * (1.0 + direction.y) - c.sine * radial;
   float turn = 1.0 - azimuth.versine;
-  ChartAxes a;
+  ProjectionAxes a;
   a.up = normalize(direction + vec3(0.0, 1.0, 0.0));
   vec2 level =
       c.local_radial * (cosine * turn * c.cosine + sine * c.sine) + turned(c.local_radial) * (cosine * azimuth.sine);
@@ -146,17 +146,17 @@ ChartAxes chart_axes(uint index, vec3 direction) {
 }
 
 // The surface's normal in the local frame, from the gradient of the elevation on the map.
-vec3 normal_from_gradient(vec2 gradient, ChartAxes a) {
+vec3 normal_from_gradient(vec2 gradient, ProjectionAxes a) {
   return normalize(a.up - a.radial * dot(gradient, a.map_radial) -
                    a.tangential * (dot(gradient, turned(a.map_radial)) * a.stretch));
 }
 
 // Between the local frame and directions x east, y up, z south on the map.
-vec3 map_from_local(vec3 v, ChartAxes a) {
+vec3 map_from_local(vec3 v, ProjectionAxes a) {
   vec2 level = a.map_radial * dot(v, a.radial) + turned(a.map_radial) * dot(v, a.tangential);
   return vec3(level.x, dot(v, a.up), level.y);
 }
-vec3 local_from_map(vec3 v, ChartAxes a) {
+vec3 local_from_map(vec3 v, ProjectionAxes a) {
   return a.radial * dot(v.xz, a.map_radial) + a.up * v.y + a.tangential * dot(v.xz, turned(a.map_radial));
 }
 
