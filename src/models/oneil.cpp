@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "effect/medium.hpp"
 #include "models/glsl_double.hpp"
 #include "models/oneil_fit.hpp"
 
@@ -64,6 +65,8 @@ ColumnError measure(const OneilModel& model, const glsl64::Medium& m, const glsl
 }
 
 }  // namespace
+
+shared::Medium oneil_medium(const Params& params) { return medium_from_params(params); }
 
 OneilModel make_oneil(const shared::Medium& medium, const OneilSettings& settings) {
   OneilModel out = {};

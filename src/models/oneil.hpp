@@ -10,6 +10,7 @@
 
 #include "effect/shared.hpp"
 #include "models/single_scattering.hpp"
+#include "tyndall/params.hpp"
 
 namespace tyndall::models {
 
@@ -42,6 +43,9 @@ struct OneilModel {
   // Over all cosines at sea level, and over altitudes as well: to three scale heights.
   ColumnError rayleigh_at_sea_level, mie_at_sea_level, rayleigh, mie;
 };
+
+// Returns the atmosphere of the parameters, as make_oneil() reads it.
+[[nodiscard]] shared::Medium oneil_medium(const Params& params);
 
 // Fits the scale functions or fills the table, and measures their errors: takes milliseconds.
 [[nodiscard]] OneilModel make_oneil(const shared::Medium& medium, const OneilSettings& settings);

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "scene/terrain/terrain_constants.hpp"
+#include "scene/view/shader_types.hpp"
 
 namespace tyndall::scene::shared {
 

@@ -8,7 +8,6 @@
 #include <span>
 #include <vector>
 
-#include "effect/medium.hpp"
 #include "gpu/try.hpp"
 #include "scene/description/map_projection.hpp"
 #include "scene/sky/oneil_settings.hpp"
@@ -62,7 +61,7 @@ class OneilSky : public SkyModel {
 
  protected:
   Result<void> fill(const ModelFrame& frame, void* constants) override {
-    TYNDALL_TRY(make(medium_from_params(frame.params), oneil_settings(frame.scene.oneil, table_)));
+    TYNDALL_TRY(make(models::oneil_medium(frame.params), oneil_settings(frame.scene.oneil, table_)));
     const double radius = frame.params.planet.radius_m;
     const glm::dvec3 up = up_of(frame.view.position, radius);
     const double altitude = altitude_of(frame.view.position, radius);

@@ -2,24 +2,10 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 
-#include "tyndall/types.hpp"
+#include "scene/view/shader_types.hpp"
 
 namespace tyndall::scene::shared {
-
-struct ivec2 {
-  std::int32_t x = 0, y = 0;
-};
-struct vec2 {
-  float x = 0.0F, y = 0.0F;
-};
-struct vec4 {
-  float x = 0.0F, y = 0.0F, z = 0.0F, w = 0.0F;
-};
-using vec3 = Vec3;
-using mat4 = Mat4;
-using uint = std::uint32_t;
 
 #include "scene/terrain.h"
 
