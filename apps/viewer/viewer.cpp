@@ -113,8 +113,8 @@ Result<void> Viewer::start() {
   right_ = settings_;
   take_camera();
   drawn_camera_[0] = {camera_, settings_.scene.sun};
-  left_ = std::make_unique<Stage>();
-  make_stage(*left_);
+  left_ = std::make_unique<SceneThread>();
+  start_scene(*left_);
   TYNDALL_TRY(open_window_device());
 
   ImGui::CreateContext();
@@ -123,8 +123,8 @@ Result<void> Viewer::start() {
   gui_.start();
   gui_.state.first_run = desc_.first_steps && viewer::first_run(desc_.state_file);
   gui_.state.vsync = true;
-  TYNDALL_TRY(screen_.create(*window_host_, window_, true));
-  TYNDALL_TRY(pictures_.create(*window_host_, screen_.format()));
+  TYNDALL_TRY(swapchain_.create(*window_host_, window_, true));
+  TYNDALL_TRY(pictures_.create(*window_host_, swapchain_.format()));
   log("started " + host_->device_name());
   return {};
 }
@@ -161,8 +161,8 @@ double Viewer::wait_time() const {
   const bool busy = left_->busy() || (other_ != nullptr && other_->busy()) || next_ != nullptr;
   const bool moving = flying() || flying_path_ || settings_.scene.sun.animate;
   if (moving) return slow_device() ? kSlowPeriod_s : kFlightPeriod_s;
-  for (const Stage* stage : {left_.get(), other_.get()}) {
-    if (stage != nullptr && stage->facts().tone_stale) return 1.0 / 60.0;
+  for (const SceneThread* thread : {left_.get(), other_.get()}) {
+    if (thread != nullptr && thread->facts().tone_stale) return 1.0 / 60.0;
   }
   // Threads wake the loop when they are done.
   if (busy || left_->facts().working || (other_ != nullptr && other_->facts().working) || writing_.valid() ||
@@ -198,7 +198,7 @@ Result<void> Viewer::loop() {
     }
     if (minimised_) {
       window_.wait(0.5);
-      TYNDALL_TRY(take_outcomes());
+      TYNDALL_TRY(take_results());
       continue;
     }
     const double wait = wait_time();
@@ -221,7 +221,7 @@ Result<void> Viewer::loop() {
 
 Result<void> Viewer::step() {
   finish_tasks();
-  TYNDALL_TRY(take_outcomes());
+  TYNDALL_TRY(take_results());
   const double before = std::exchange(last_step_, now());
   const double elapsed = std::min(last_step_ - before, kLongestFlightStep_s);
   begin_gui();
@@ -247,13 +247,13 @@ GuiFacts Viewer::gui_facts() const {
   facts.times = &times_;
   facts.device = host_->device_name();
   facts.state_file = desc_.state_file;
-  facts.present_mode = screen_.present_mode();
+  facts.present_mode = swapchain_.present_mode();
   facts.window = window_.size();
   facts.picture = picture_extent();
   facts.creating = left_->creating() || (other_ != nullptr && other_->creating());
   facts.pipelines = left_->facts().pipelines;
-  for (const Stage* stage : {left_.get(), other_.get()}) {
-    if (stage != nullptr && stage->facts().building) facts.tables = stage->facts().tables;
+  for (const SceneThread* thread : {left_.get(), other_.get()}) {
+    if (thread != nullptr && thread->facts().building) facts.tables = thread->facts().tables;
   }
   facts.shader_message = shader_message_;
   facts.slow_device = slow_device();
@@ -282,7 +282,7 @@ void Viewer::draw_gui() {
   // After the places that the pointer has been seen among.
   if (!pointer_seen_.empty()) log(std::exchange(pointer_seen_, {}));
   if (gui_.state.full_screen != window_.full_screen()) window_.set_full_screen(gui_.state.full_screen);
-  screen_.set_vsync(gui_.state.vsync);
+  swapchain_.set_vsync(gui_.state.vsync);
   do_requests(requests);
 }
 
@@ -302,7 +302,7 @@ void Viewer::begin_gui() {
 
 void Viewer::run_script() {
   if (script_.done()) window_.close();
-  if (!script_.on() || left_->busy() || left_->facts().working || !left_->shows(wish_of(*left_))) return;
+  if (!script_.on() || left_->busy() || left_->facts().working || !left_->shows(request_of(*left_))) return;
   log("script " + script_.advance(settings_, gui_.state, now(), frames_));
   frames_to_draw_ = std::max(frames_to_draw_, 1);
   if (now() - last_memory_ < 2.0) return;
@@ -315,7 +315,7 @@ void Viewer::run_script() {
 
 Result<void> Viewer::present() {
   const bool two = gui_.state.picture.compare && pictures_.has(1);
-  TYNDALL_ASSIGN(const Drawn drawn, screen_.draw([&](VkCommandBuffer cmd, VkExtent2D window) -> Result<void> {
+  TYNDALL_ASSIGN(const Drawn drawn, swapchain_.draw([&](VkCommandBuffer cmd, VkExtent2D window) -> Result<void> {
     return pictures_.record(cmd, window, two, gui_.state.picture);
   }));
   last_present_ = now();
@@ -327,13 +327,13 @@ Result<void> Viewer::present() {
   if (drawn == Drawn::surface_lost || (desc_.script == "lose-surface" && something)) {
     if (desc_.script == "lose-surface") desc_.script.clear();
     log("surface lost");
-    TYNDALL_TRY(screen_.recover());
+    TYNDALL_TRY(swapchain_.recover());
     frames_to_draw_ = 3;
   }
   if (drawn == Drawn::not_now) frames_to_draw_ = std::max(frames_to_draw_, 2);
   if (drawn != Drawn::done) return {};
-  if (present_mode_ != screen_.present_mode()) {
-    present_mode_ = screen_.present_mode();
+  if (present_mode_ != swapchain_.present_mode()) {
+    present_mode_ = swapchain_.present_mode();
     log("present_mode " + present_mode_);
   }
   if (!opened_) {
@@ -341,11 +341,11 @@ Result<void> Viewer::present() {
     opened_ = true;
     log("opened");
   }
-  if (something && (frames_ != shown_frame_ || screen_.extent().width != shown_width_)) {
+  if (something && (frames_ != shown_frame_ || swapchain_.extent().width != shown_width_)) {
     shown_frame_ = frames_;
-    shown_width_ = screen_.extent().width;
-    log("shown " + std::to_string(frames_) + " in " + std::to_string(screen_.extent().width) + " " +
-        std::to_string(screen_.extent().height));
+    shown_width_ = swapchain_.extent().width;
+    log("shown " + std::to_string(frames_) + " in " + std::to_string(swapchain_.extent().width) + " " +
+        std::to_string(swapchain_.extent().height));
   }
   if (two != two_shown_) {
     two_shown_ = two;

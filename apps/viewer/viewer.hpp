@@ -1,4 +1,5 @@
-// `tyndall view`: the interactive viewer. One thread draws the GUI; each scene has another, see stage.hpp.
+// `tyndall view`: the interactive viewer. One thread draws the GUI; each scene has another, see
+// scenes/scene_thread.hpp.
 #pragma once
 
 #include <string>

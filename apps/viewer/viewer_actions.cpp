@@ -134,8 +134,8 @@ Result<void> Viewer::finish_reload() {
   // Tables that changed shaders make are not those of the cache.
   desc_.make_tables.build_anew = outcome.tables_differ;
   if (outcome.tables_differ) desc_.make_tables.cache.place = "off";
-  next_ = std::make_unique<Stage>();
-  make_stage(*next_);
+  next_ = std::make_unique<SceneThread>();
+  start_scene(*next_);
   return {};
 }
 

@@ -19,28 +19,28 @@ VkExtent2D Viewer::picture_extent() const {
   return {scaled(window.width), scaled(window.height)};
 }
 
-Wish Viewer::wish_of(const Stage& stage) const {
-  const bool left = &stage != other_.get();
-  Wish wish;
-  wish.settings = left ? settings_ : right_;
-  wish.extent = picture_extent();
-  wish.coarseness = gui_.state.coarseness;
-  wish.view = view_of(gui_.state.picture, window_.size());
-  wish.seconds = seconds_;
-  wish.again = again_[left ? 0 : 1];
-  wish.rest = &stage == left_.get() && resting();
-  wish.capture = &stage == left_.get() && screenshot_wanted_ && !writing_.valid();
-  return wish;
+SceneRequest Viewer::request_of(const SceneThread& thread) const {
+  const bool left = &thread != other_.get();
+  SceneRequest request;
+  request.settings = left ? settings_ : right_;
+  request.extent = picture_extent();
+  request.coarseness = gui_.state.coarseness;
+  request.view = view_of(gui_.state.picture, window_.size());
+  request.seconds = seconds_;
+  request.again = again_[left ? 0 : 1];
+  request.rest = &thread == left_.get() && resting();
+  request.capture = &thread == left_.get() && screenshot_wanted_ && !writing_.valid();
+  return request;
 }
 
-void Viewer::make_stage(Stage& stage) {
+void Viewer::start_scene(SceneThread& thread) {
   scene::SceneDesc desc;
   desc.timings = true;
   desc.histogram = true;
   desc.make_tables = desc_.make_tables;
   desc.keep_shadows = true;
   desc.in_parts = window_host_ == host_;  // the window's frames come in between
-  stage.start(*host_, desc, wish_of(stage), slow_device() && desc_.script != "one-device");
+  thread.start(*host_, desc, request_of(thread), slow_device() && desc_.script != "one-device");
 }
 
 // The settings as they are wanted now, and the scenes that they need.
@@ -57,29 +57,29 @@ void Viewer::follow() {
   right_.scene.sun = settings_.scene.sun;
   make_consistent(right_);
   if (other_ != nullptr) return;
-  other_ = std::make_unique<Stage>();
-  make_stage(*other_);
+  other_ = std::make_unique<SceneThread>();
+  start_scene(*other_);
 }
 
 // One piece of work at a time, left and right in turn, so that they do not take the machine from each other.
 void Viewer::launch_work() {
-  Stage* stages[2] = {left_.get(), other_.get()};
-  for (const Stage* stage : stages) {
-    if (stage != nullptr && stage->busy() && !stage->creating()) return;
+  SceneThread* threads[2] = {left_.get(), other_.get()};
+  for (const SceneThread* thread : threads) {
+    if (thread != nullptr && thread->busy() && !thread->creating()) return;
   }
   if (next_ != nullptr && next_->busy() && !next_->creating()) return;
-  if (next_ != nullptr && !next_->busy() && next_->wants(wish_of(*next_))) return next_->launch(wish_of(*next_));
+  if (next_ != nullptr && !next_->busy() && next_->wants(request_of(*next_))) return next_->launch(request_of(*next_));
   for (int i = 0; i < 2; ++i) {
     turn_ = !turn_;
     const int side = turn_ ? 0 : 1;
-    Stage* const stage = stages[side];
-    if (stage == nullptr || stage->busy()) continue;
-    const Wish wish = wish_of(*stage);
-    if (!stage->wants(wish)) continue;
+    SceneThread* const thread = threads[side];
+    if (thread == nullptr || thread->busy()) continue;
+    const SceneRequest request = request_of(*thread);
+    if (!thread->wants(request)) continue;
     again_[side] = false;
     drawn_camera_[side] = {camera_, settings_.scene.sun};
-    if (!wish.rest) settled_told_ = false;
-    stage->launch(wish);
+    if (!request.rest) settled_told_ = false;
+    thread->launch(request);
     return;
   }
   if (!settled_told_ && left_->facts().can_render && !left_->busy() && other_ == nullptr) {
@@ -90,25 +90,25 @@ void Viewer::launch_work() {
 
 // Whether a piece of work could begin now.
 bool Viewer::work_is_due() const {
-  for (const Stage* stage : {left_.get(), other_.get(), next_.get()}) {
-    if (stage != nullptr && stage->busy() && !stage->creating()) return false;
+  for (const SceneThread* thread : {left_.get(), other_.get(), next_.get()}) {
+    if (thread != nullptr && thread->busy() && !thread->creating()) return false;
   }
-  for (const Stage* stage : {left_.get(), other_.get(), next_.get()}) {
-    if (stage != nullptr && !stage->busy() && stage->wants(wish_of(*stage))) return true;
+  for (const SceneThread* thread : {left_.get(), other_.get(), next_.get()}) {
+    if (thread != nullptr && !thread->busy() && thread->wants(request_of(*thread))) return true;
   }
   return false;
 }
 
-Result<void> Viewer::take_outcomes() {
+Result<void> Viewer::take_results() {
   TYNDALL_TRY(take_next());
-  if (std::optional<Outcome> outcome = left_->poll()) TYNDALL_TRY(take_outcome(0, *outcome));
+  if (std::optional<SceneResult> outcome = left_->poll()) TYNDALL_TRY(take_result(0, *outcome));
   if (other_ == nullptr) return {};
-  if (std::optional<Outcome> outcome = other_->poll()) TYNDALL_TRY(take_outcome(1, *outcome));
+  if (std::optional<SceneResult> outcome = other_->poll()) TYNDALL_TRY(take_result(1, *outcome));
   return {};
 }
 
-Result<void> Viewer::take_outcome(std::size_t side, Outcome& outcome) {
-  const Stage& stage = side == 0 ? *left_ : *other_;
+Result<void> Viewer::take_result(std::size_t side, SceneResult& outcome) {
+  const SceneThread& thread = side == 0 ? *left_ : *other_;
   for (const std::string& note : outcome.notes) tell(note);
   if (outcome.error) {
     if (lost(*outcome.error) || (outcome.over && side == 0)) return *outcome.error;
@@ -132,7 +132,7 @@ Result<void> Viewer::take_outcome(std::size_t side, Outcome& outcome) {
   }
   if (outcome.frame) {
     if (side == 0) {
-      times_.add(stage.facts().timings, outcome.frame_ms);
+      times_.add(thread.facts().timings, outcome.frame_ms);
       ++frames_;
     }
     log_frame(side, outcome.frame_ms);
@@ -148,7 +148,7 @@ Result<void> Viewer::take_outcome(std::size_t side, Outcome& outcome) {
 // A scene with rebuilt shaders takes the place of the one before when it can be drawn.
 Result<void> Viewer::take_next() {
   if (next_ == nullptr) return {};
-  if (std::optional<Outcome> outcome = next_->poll()) {
+  if (std::optional<SceneResult> outcome = next_->poll()) {
     if (outcome->error && outcome->over) {
       next_.reset();
       shaders_->revert();
@@ -163,8 +163,8 @@ Result<void> Viewer::take_next() {
   const bool others_busy = left_->busy() || (other_ != nullptr && other_->busy());
   if (next_->busy() || others_busy || !next_picture_) return {};
   // Giving back what the one before held takes longer than a step of the GUI may.
-  retired_ =
-      std::async(std::launch::async, [before = std::shared_ptr<Stage>(std::move(left_))]() mutable { before.reset(); });
+  retired_ = std::async(std::launch::async,
+                        [before = std::shared_ptr<SceneThread>(std::move(left_))]() mutable { before.reset(); });
   left_ = std::move(next_);
   TYNDALL_TRY(pictures_.take(0, std::move(*std::exchange(next_picture_, std::nullopt))));
   ++frames_;

@@ -67,14 +67,14 @@ class Viewer {
   void take_camera();
   void put_camera();
 
-  void make_stage(Stage& stage);
-  [[nodiscard]] Wish wish_of(const Stage& stage) const;
+  void start_scene(SceneThread& thread);
+  [[nodiscard]] SceneRequest request_of(const SceneThread& thread) const;
   [[nodiscard]] VkExtent2D picture_extent() const;
   void follow();
   void launch_work();
   [[nodiscard]] bool work_is_due() const;
-  Result<void> take_outcomes();
-  Result<void> take_outcome(std::size_t side, Outcome& outcome);
+  Result<void> take_results();
+  Result<void> take_result(std::size_t side, SceneResult& outcome);
   Result<void> take_next();
   void log_frame(std::size_t side, double took_ms);
 
@@ -96,13 +96,13 @@ class Viewer {
   // through what it gets in order, and the GUI would wait for whole frames of the scene. The same one otherwise.
   std::shared_ptr<gpu::Host> host_, window_host_;
   std::unique_ptr<ShaderReload> shaders_;  // outlives the scenes
-  Screen screen_;
+  Swapchain swapchain_;
   Pictures pictures_;
   Gui gui_;
   bool gui_started_ = false;
   config::Settings settings_, right_;  // wanted, of the left (or only) and the right side
-  std::unique_ptr<Stage> left_, other_;
-  std::unique_ptr<Stage> next_;  // with rebuilt shaders, until it can take the place of left_
+  std::unique_ptr<SceneThread> left_, other_;
+  std::unique_ptr<SceneThread> next_;  // with rebuilt shaders, until it can take the place of left_
   std::optional<Picture> next_picture_;
   FrameTimes times_;
   StepTimes steps_;

@@ -39,7 +39,7 @@ VkImageMemoryBarrier to_attachment(VkImage image) {
 
 }  // namespace
 
-Screen::~Screen() {
+Swapchain::~Swapchain() {
   if (host_ == nullptr) return;
   const VkDevice device = host_->device().device;
   wait_idle();
@@ -54,7 +54,7 @@ Screen::~Screen() {
   if (surface_ != VK_NULL_HANDLE) vkDestroySurfaceKHR(host_->device().instance, surface_, nullptr);
 }
 
-Result<void> Screen::create(gpu::Host& host, Window& window, bool vsync) {
+Result<void> Swapchain::create(gpu::Host& host, Window& window, bool vsync) {
   host_ = &host;
   window_ = &window;
   vsync_ = vsync;
@@ -64,7 +64,7 @@ Result<void> Screen::create(gpu::Host& host, Window& window, bool vsync) {
   return start_gui();
 }
 
-Result<void> Screen::create_surface() {
+Result<void> Swapchain::create_surface() {
   TYNDALL_ASSIGN(surface_, window_->create_surface(host_->device().instance));
   const VkPhysicalDevice physical = host_->device().physical_device;
   VkBool32 supported = VK_FALSE;
@@ -83,7 +83,7 @@ Result<void> Screen::create_surface() {
   return {};
 }
 
-Result<void> Screen::create_render_pass() {
+Result<void> Swapchain::create_render_pass() {
   VkAttachmentDescription color = {};
   color.format = format_.format;
   color.samples = VK_SAMPLE_COUNT_1_BIT;
@@ -116,7 +116,7 @@ Result<void> Screen::create_render_pass() {
                  "the render pass");
 }
 
-Result<void> Screen::create_frame_objects() {
+Result<void> Swapchain::create_frame_objects() {
   const VkDevice device = host_->device().device;
   VkCommandPoolCreateInfo pool = {};
   pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
@@ -147,7 +147,7 @@ Result<void> Screen::create_frame_objects() {
                  "the GUI's descriptor pool");
 }
 
-Result<void> Screen::start_gui() {
+Result<void> Swapchain::start_gui() {
   ImGui_ImplVulkan_InitInfo info = {};
   info.Instance = host_->device().instance;
   info.PhysicalDevice = host_->device().physical_device;
@@ -168,7 +168,7 @@ Result<void> Screen::start_gui() {
   return {};
 }
 
-Result<void> Screen::recover() {
+Result<void> Swapchain::recover() {
   const VkDevice device = host_->device().device;
   wait_idle();
   destroy_targets();
@@ -180,12 +180,12 @@ Result<void> Screen::recover() {
   return create_surface();
 }
 
-void Screen::set_vsync(bool on) {
+void Swapchain::set_vsync(bool on) {
   stale_ = stale_ || on != vsync_;
   vsync_ = on;
 }
 
-const char* Screen::present_mode() const {
+const char* Swapchain::present_mode() const {
   switch (mode_) {
     case VK_PRESENT_MODE_IMMEDIATE_KHR: return "immediate";
     case VK_PRESENT_MODE_MAILBOX_KHR: return "mailbox";
@@ -194,12 +194,12 @@ const char* Screen::present_mode() const {
   }
 }
 
-void Screen::wait_idle() {
+void Swapchain::wait_idle() {
   const std::unique_lock<std::mutex> locked = host_->lock();
   vkDeviceWaitIdle(host_->device().device);
 }
 
-void Screen::destroy_targets() {
+void Swapchain::destroy_targets() {
   const VkDevice device = host_->device().device;
   for (const Target& target : targets_) {
     if (target.framebuffer != VK_NULL_HANDLE) vkDestroyFramebuffer(device, target.framebuffer, nullptr);
@@ -209,7 +209,7 @@ void Screen::destroy_targets() {
   targets_.clear();
 }
 
-Result<bool> Screen::create_swapchain() {
+Result<bool> Swapchain::create_swapchain() {
   const VkDevice device = host_->device().device;
   const VkPhysicalDevice physical = host_->device().physical_device;
   VkSurfaceCapabilitiesKHR caps = {};
@@ -287,8 +287,8 @@ Result<bool> Screen::create_swapchain() {
   return true;
 }
 
-Result<void> Screen::record(VkCommandBuffer cmd, const Target& target,
-                            const std::function<Result<void>(VkCommandBuffer, VkExtent2D)>& picture) {
+Result<void> Swapchain::record(VkCommandBuffer cmd, const Target& target,
+                               const std::function<Result<void>(VkCommandBuffer, VkExtent2D)>& picture) {
   const gpu::Device& device = host_->device();
   // What the scene has written, in commands of its own.
   gpu::barrier(device, cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
@@ -327,7 +327,7 @@ Result<void> Screen::record(VkCommandBuffer cmd, const Target& target,
   return drawn;
 }
 
-Result<Drawn> Screen::draw(const std::function<Result<void>(VkCommandBuffer, VkExtent2D)>& picture) {
+Result<Drawn> Swapchain::draw(const std::function<Result<void>(VkCommandBuffer, VkExtent2D)>& picture) {
   if (window_->minimised()) return Drawn::not_now;
   const VkExtent2D window = window_->size();
   if (window.width != extent_.width || window.height != extent_.height) stale_ = true;

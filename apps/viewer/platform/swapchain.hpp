@@ -18,12 +18,12 @@ enum class Drawn {
   surface_lost,  // recover() makes a new surface
 };
 
-class Screen {
+class Swapchain {
  public:
-  Screen() = default;
-  Screen(const Screen&) = delete;
-  Screen& operator=(const Screen&) = delete;
-  ~Screen();
+  Swapchain() = default;
+  Swapchain(const Swapchain&) = delete;
+  Swapchain& operator=(const Swapchain&) = delete;
+  ~Swapchain();
 
   // After ImGui::CreateContext() and ImGui_ImplGlfw_InitForVulkan().
   Result<void> create(gpu::Host& host, Window& window, bool vsync);

@@ -8,8 +8,8 @@
 namespace tyndall::viewer {
 
 template <typename Piece>
-void Stage::begin(Piece piece) {
-  std::promise<Outcome> promise;
+void SceneThread::begin(Piece piece) {
+  std::promise<SceneResult> promise;
   running_ = promise.get_future();
   thread_ = std::jthread([promise = std::move(promise), piece = std::move(piece)]() mutable {
     promise.set_value(piece());
@@ -17,17 +17,17 @@ void Stage::begin(Piece piece) {
   });
 }
 
-void Stage::start(gpu::Host& host, const scene::SceneDesc& desc, const Wish& wish, bool to_host) {
-  begin([work = work_.get(), &host, desc, wish, to_host] { return work->create(host, desc, wish, to_host); });
+void SceneThread::start(gpu::Host& host, const scene::SceneDesc& desc, const SceneRequest& request, bool to_host) {
+  begin([work = work_.get(), &host, desc, request, to_host] { return work->create(host, desc, request, to_host); });
 }
 
-void Stage::launch(const Wish& wish) {
-  begin([work = work_.get(), wish] { return work->run(wish); });
+void SceneThread::launch(const SceneRequest& request) {
+  begin([work = work_.get(), request] { return work->run(request); });
 }
 
-std::optional<Outcome> Stage::poll() {
+std::optional<SceneResult> SceneThread::poll() {
   if (!running_.valid() || running_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return std::nullopt;
-  Outcome out = running_.get();
+  SceneResult out = running_.get();
   made_ = work_->exists();
   facts_ = work_->facts();
   return out;

@@ -12,22 +12,22 @@
 
 namespace tyndall::viewer {
 
-class Stage {
+class SceneThread {
  public:
   // Begins to create the scene.
-  void start(gpu::Host& host, const scene::SceneDesc& desc, const Wish& wish, bool to_host);
-  Stage() = default;
-  Stage(const Stage&) = delete;
-  Stage& operator=(const Stage&) = delete;
+  void start(gpu::Host& host, const scene::SceneDesc& desc, const SceneRequest& request, bool to_host);
+  SceneThread() = default;
+  SceneThread(const SceneThread&) = delete;
+  SceneThread& operator=(const SceneThread&) = delete;
 
   // What has been finished, once.
-  std::optional<Outcome> poll();
+  std::optional<SceneResult> poll();
   [[nodiscard]] bool busy() const { return running_.valid(); }
   [[nodiscard]] bool creating() const { return busy() && !made_; }
   // Whether a piece of work is due, and whether the last frame is that of the wish; only when not busy.
-  [[nodiscard]] bool wants(const Wish& wish) const { return made_ && work_->wants(wish); }
-  [[nodiscard]] bool shows(const Wish& wish) const { return made_ && work_->shows(wish); }
-  void launch(const Wish& wish);
+  [[nodiscard]] bool wants(const SceneRequest& request) const { return made_ && work_->wants(request); }
+  [[nodiscard]] bool shows(const SceneRequest& request) const { return made_ && work_->shows(request); }
+  void launch(const SceneRequest& request);
   // After the last finished piece.
   [[nodiscard]] const SceneFacts& facts() const { return facts_; }
 
@@ -37,7 +37,7 @@ class Stage {
 
   std::unique_ptr<SceneWork> work_ = std::make_unique<SceneWork>();
   bool made_ = false;
-  std::future<Outcome> running_;
+  std::future<SceneResult> running_;
   SceneFacts facts_;
   std::jthread thread_;  // the last member: it ends before the others do
 };

@@ -34,15 +34,16 @@ SceneWork::~SceneWork() {
   if (keeping_.valid()) keeping_.wait();
 }
 
-Outcome SceneWork::create(gpu::Host& host, const scene::SceneDesc& desc, const Wish& wish, bool to_host) {
+SceneResult SceneWork::create(gpu::Host& host, const scene::SceneDesc& desc, const SceneRequest& request,
+                              bool to_host) {
   host_ = &host;
   desc_ = desc;
-  desc_.extent = wish.extent;
-  desc_.terrain_coarseness = wish.coarseness;
+  desc_.extent = request.extent;
+  desc_.terrain_coarseness = request.coarseness;
   desc_.tables_later = true;
-  wanted_ = applied_ = wish.settings;
+  wanted_ = applied_ = request.settings;
   applied_.scene.camera.samples = 1;  // there is one picture on the device
-  Outcome out;
+  SceneResult out;
   out.settings = wanted_;
   const Result<void> done = [&]() -> Result<void> {
     TYNDALL_TRY(canvas_.create(host, to_host));
@@ -52,7 +53,7 @@ Outcome SceneWork::create(gpu::Host& host, const scene::SceneDesc& desc, const W
       TYNDALL_TRY(scene_->advance_tables(1));
       unkept_ = building();
     }
-    if (ready()) TYNDALL_TRY(draw(wish, out));
+    if (ready()) TYNDALL_TRY(draw(request, out));
     return {};
   }();
   if (!done) {
@@ -86,28 +87,28 @@ double SceneWork::keep_in_s() const {
   return std::max((first_tables_ ? kKeepFirst_s : kKeep_s) - seconds_since(tables_since_), 0.0);
 }
 
-bool SceneWork::follows(const Wish& wish) const {
-  return wish.extent.width == desc_.extent.width && wish.extent.height == desc_.extent.height &&
-         wish.coarseness == desc_.terrain_coarseness && same_settings(wish.settings, wanted_);
+bool SceneWork::follows(const SceneRequest& request) const {
+  return request.extent.width == desc_.extent.width && request.extent.height == desc_.extent.height &&
+         request.coarseness == desc_.terrain_coarseness && same_settings(request.settings, wanted_);
 }
 
-bool SceneWork::shows(const Wish& wish) const { return drawn_ && !stale_ && follows(wish); }
+bool SceneWork::shows(const SceneRequest& request) const { return drawn_ && !stale_ && follows(request); }
 
-bool SceneWork::wants(const Wish& wish) const {
+bool SceneWork::wants(const SceneRequest& request) const {
   if (scene_ == nullptr) return false;
   if (is_done(loading_) || is_done(keeping_)) return true;
-  if (!follows(wish) || building()) return true;
+  if (!follows(request) || building()) return true;
   if (!ready()) return false;
-  if (stale_ || wish.again || wish.capture || !same_view(wish.view, drawn_view_)) return true;
+  if (stale_ || request.again || request.capture || !same_view(request.view, drawn_view_)) return true;
   if (tone_stale() && seconds_since(drawn_at_) >= kTonePeriod_s) return true;
-  return wish.rest && (keep_in_s() == 0.0 || !pipelines_.complete() || pipelines_.total == 0);
+  return request.rest && (keep_in_s() == 0.0 || !pipelines_.complete() || pipelines_.total == 0);
 }
 
-Outcome SceneWork::run(const Wish& wish) {
-  Outcome out;
-  out.asked = wish.settings;
+SceneResult SceneWork::run(const SceneRequest& request) {
+  SceneResult out;
+  out.asked = request.settings;
   // First of all, and of the frame that is seen: in flight there is always another one due.
-  if (wish.capture && drawn_) {
+  if (request.capture && drawn_) {
     if (Result<void> captured = capture(out); !captured) {
       out.error = captured.error();
       out.over = true;
@@ -116,10 +117,10 @@ Outcome SceneWork::run(const Wish& wish) {
     return out;
   }
   Result<void> done = take_terrain();
-  if (done) done = follow_settings(wish.settings);
+  if (done) done = follow_settings(request.settings);
   if (!done) out.error = done.error();
-  done = resize(wish);
-  if (done) done = next(wish, out);
+  done = resize(request);
+  if (done) done = next(request, out);
   if (!done) {
     out.error = done.error();
     out.over = true;
@@ -132,7 +133,7 @@ Outcome SceneWork::run(const Wish& wish) {
   return out;
 }
 
-Result<void> SceneWork::next(const Wish& wish, Outcome& out) {
+Result<void> SceneWork::next(const SceneRequest& request, SceneResult& out) {
   if (is_done(keeping_)) {
     const std::string note = keeping_.get();
     out.tables_kept = note.empty();
@@ -140,9 +141,9 @@ Result<void> SceneWork::next(const Wish& wish, Outcome& out) {
   }
   if (building()) TYNDALL_TRY(advance_tables(out));
   if (!ready()) return {};
-  if (stale_ || wish.again || !same_view(wish.view, drawn_view_)) return draw(wish, out);
-  if (tone_stale()) return draw(wish, out);
-  if (!wish.rest || out.tables) return {};
+  if (stale_ || request.again || !same_view(request.view, drawn_view_)) return draw(request, out);
+  if (tone_stale()) return draw(request, out);
+  if (!request.rest || out.tables) return {};
   if (keep_in_s() == 0.0) return keep_tables();
   if (!pipelines_.complete() || pipelines_.total == 0) {
     TYNDALL_ASSIGN(pipelines_, scene_->effect().prepare_pipelines(1));
@@ -152,7 +153,7 @@ Result<void> SceneWork::next(const Wish& wish, Outcome& out) {
 }
 
 // Builds tables for about kTables_ms.
-Result<void> SceneWork::advance_tables(Outcome& out) {
+Result<void> SceneWork::advance_tables(SceneResult& out) {
   const Clock::time_point start = Clock::now();
   const std::uint32_t budget = budget_;
   const bool fresh = scene_->tables_progress().done == 0;
@@ -176,18 +177,18 @@ double SceneWork::step_s() {
 }
 
 // The frame drawn last as images.
-Result<void> SceneWork::capture(Outcome& out) {
+Result<void> SceneWork::capture(SceneResult& out) {
   TYNDALL_ASSIGN(image::Image display, scene_->display());
   TYNDALL_ASSIGN(image::Image radiance, scene_->radiance());
   out.capture = Capture{std::move(display), std::move(radiance), drawn_settings_};
   return {};
 }
 
-Result<void> SceneWork::draw(const Wish& wish, Outcome& out) {
-  if (stale_ || wish.again) {
+Result<void> SceneWork::draw(const SceneRequest& request, SceneResult& out) {
+  if (stale_ || request.again) {
     const Clock::time_point start = Clock::now();
     stale_ = tone_wanted_ = false;
-    TYNDALL_TRY(scene_->render(wish.seconds, false, step_s()));
+    TYNDALL_TRY(scene_->render(request.seconds, false, step_s()));
     out.frame = drawn_ = true;
     drawn_settings_ = wanted_;
     out.frame_ms = 1000.0 * seconds_since(start);
@@ -197,8 +198,8 @@ Result<void> SceneWork::draw(const Wish& wish, Outcome& out) {
     out.tone = true;
     drawn_settings_.scene.tonemap = wanted_.scene.tonemap;
   }
-  TYNDALL_ASSIGN(out.picture, canvas_.draw(*scene_, wish.view));
-  drawn_view_ = wish.view;
+  TYNDALL_ASSIGN(out.picture, canvas_.draw(*scene_, request.view));
+  drawn_view_ = request.view;
   return {};
 }
 
@@ -267,15 +268,15 @@ void SceneWork::load_terrain() {
       });
 }
 
-Result<void> SceneWork::resize(const Wish& wish) {
-  if (wish.extent.width != desc_.extent.width || wish.extent.height != desc_.extent.height) {
-    TYNDALL_TRY(scene_->set_extent(wish.extent));
-    desc_.extent = wish.extent;
+Result<void> SceneWork::resize(const SceneRequest& request) {
+  if (request.extent.width != desc_.extent.width || request.extent.height != desc_.extent.height) {
+    TYNDALL_TRY(scene_->set_extent(request.extent));
+    desc_.extent = request.extent;
     stale_ = true;
   }
-  if (wish.coarseness != desc_.terrain_coarseness) {
-    TYNDALL_TRY(scene_->set_terrain_coarseness(wish.coarseness));
-    desc_.terrain_coarseness = wish.coarseness;
+  if (request.coarseness != desc_.terrain_coarseness) {
+    TYNDALL_TRY(scene_->set_terrain_coarseness(request.coarseness));
+    desc_.terrain_coarseness = request.coarseness;
     stale_ = true;
   }
   return {};

@@ -1,5 +1,5 @@
 // The work on one scene: follows what is wished for, builds tables in slices, draws frames and their canvas. Everything
-// that a scene takes time for is here; stage.hpp runs it on a thread beside the GUI's.
+// that a scene takes time for is here; scene_thread.hpp runs it on a thread beside the GUI's.
 #pragma once
 
 #include <chrono>
@@ -17,7 +17,7 @@
 namespace tyndall::viewer {
 
 // What a scene is to be and to show.
-struct Wish {
+struct SceneRequest {
   config::Settings settings;
   VkExtent2D extent = {};  // of the picture
   int coarseness = 1;      // of the ground
@@ -51,7 +51,7 @@ struct Capture {
 };
 
 // What came of a piece of work.
-struct Outcome {
+struct SceneResult {
   std::optional<Error> error;        // for the user
   bool over = false;                 // after that the scene does not go on; otherwise with what it had
   config::Settings settings;         // taken over, or being taken over
@@ -73,13 +73,13 @@ class SceneWork {
   ~SceneWork();
 
   // Creates the scene, and draws it when its tables are in the cache. `to_host`: see Canvas.
-  Outcome create(gpu::Host& host, const scene::SceneDesc& desc, const Wish& wish, bool to_host);
+  SceneResult create(gpu::Host& host, const scene::SceneDesc& desc, const SceneRequest& request, bool to_host);
   // Whether there is something to do for the wish now.
-  [[nodiscard]] bool wants(const Wish& wish) const;
+  [[nodiscard]] bool wants(const SceneRequest& request) const;
   // Whether the last frame is that of the wish, but for the tables that are still being built and the eye that adapts.
-  [[nodiscard]] bool shows(const Wish& wish) const;
+  [[nodiscard]] bool shows(const SceneRequest& request) const;
   // The next piece.
-  Outcome run(const Wish& wish);
+  SceneResult run(const SceneRequest& request);
 
   [[nodiscard]] bool exists() const { return scene_ != nullptr; }
   [[nodiscard]] SceneFacts facts() const;
@@ -88,16 +88,16 @@ class SceneWork {
   using Clock = std::chrono::steady_clock;
 
   Result<void> take_terrain();
-  Result<void> resize(const Wish& wish);
+  Result<void> resize(const SceneRequest& request);
   Result<void> follow_settings(const config::Settings& wanted);
   void load_terrain();
   [[nodiscard]] config::Settings loaded(config::Settings settings) const;
-  Result<void> next(const Wish& wish, Outcome& out);
-  Result<void> advance_tables(Outcome& out);
-  Result<void> draw(const Wish& wish, Outcome& out);
-  Result<void> capture(Outcome& out);
+  Result<void> next(const SceneRequest& request, SceneResult& out);
+  Result<void> advance_tables(SceneResult& out);
+  Result<void> draw(const SceneRequest& request, SceneResult& out);
+  Result<void> capture(SceneResult& out);
   Result<void> keep_tables();
-  [[nodiscard]] bool follows(const Wish& wish) const;
+  [[nodiscard]] bool follows(const SceneRequest& request) const;
   [[nodiscard]] bool building() const;
   [[nodiscard]] bool ready() const { return scene_ != nullptr && scene_->can_render(); }
   [[nodiscard]] bool tone_stale() const;
