@@ -57,8 +57,9 @@ room(src/models VULKAN src/tables src/effect src/gpu shaders/lib shaders/shared 
 
 # The demo engine. It is a client of the effect's public interface.
 room(src/scene/elevation src/scene/description shaders/scene include/tyndall)
-room(src/scene/view src/scene/description shaders/scene include/tyndall)
-room(src/scene/terrain VULKAN src/scene/elevation src/scene/view src/scene/description shaders/scene src/gpu include/tyndall)
+room(src/scene/view VULKAN src/scene/description shaders/scene include/tyndall/effect.hpp include/tyndall)
+room(src/scene/terrain VULKAN src/scene/elevation src/scene/view src/scene/description shaders/scene src/gpu include/tyndall/effect.hpp
+  include/tyndall)
 room(src/scene/mesh VULKAN src/scene/terrain src/scene/view src/scene/description shaders/scene src/gpu src/files include/tyndall)
 room(src/scene/sky VULKAN src/scene/terrain src/scene/view src/scene/description src/models src/gpu include/tyndall)
 room(src/scene VULKAN src/scene/sky src/scene/mesh src/scene/terrain src/scene/view src/scene/elevation src/scene/description

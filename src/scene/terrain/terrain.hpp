@@ -12,6 +12,7 @@
 #include "scene/terrain/terrain_lod.hpp"
 #include "scene/view/cascades.hpp"
 #include "scene/view/local_frame.hpp"
+#include "tyndall/effect.hpp"
 
 namespace tyndall::scene {
 

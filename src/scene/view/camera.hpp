@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 
 #include "scene/description/scene_params.hpp"
-#include "tyndall/types.hpp"
+#include "tyndall/effect.hpp"
 
 namespace tyndall::scene {
 
