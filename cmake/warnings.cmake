@@ -2,7 +2,7 @@
 add_library(tyndall_warnings INTERFACE)
 target_compile_options(tyndall_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-align
-  -Woverloaded-virtual -Wimplicit-fallthrough -Wno-restrict
+  -Woverloaded-virtual -Wimplicit-fallthrough $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
   $<$<BOOL:${TYNDALL_WERROR}>:-Werror>)
 if(TYNDALL_SANITIZE)
   add_compile_options(-fsanitize=${TYNDALL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)

@@ -1,6 +1,7 @@
-// The fixture of every test on a device: a Host with validation and synchronisation validation. A message of
-// the validation layer fails the test, whether it comes while the test runs or when its objects and device
-// are destroyed; so does a machine without the layer or without a device, because `make check` installs both.
+// The fixture of tests on a device: a Host with validation and synchronisation validation, which all tests of a program
+// share because creating a device takes longer than many of them. A message of the validation layer fails the test that
+// caused it; a message at the destruction of the device, about objects that were left behind, fails the program. A
+// machine without the layer or without a device fails as well, because `make check` installs both.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -25,22 +26,53 @@
 
 namespace tyndall {
 
+// Destroys the shared device after the last test. Run a single test (--gtest_filter) to find out which one has left
+// objects behind.
+class SharedHost : public testing::Environment {
+ public:
+  Result<void> make() {
+    if (host_ != nullptr) return {};
+    Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({"", true, &messages_});
+    if (!host.ok()) return host.error();
+    host_ = std::move(host).value();
+    return {};
+  }
+  void TearDown() override {
+    host_.reset();
+    report_messages();
+  }
+  void report_messages() {
+    for (const std::string& message : messages_) ADD_FAILURE() << message;
+    messages_.clear();
+  }
+  [[nodiscard]] gpu::Host& host() { return *host_; }
+  [[nodiscard]] bool made() const { return host_ != nullptr; }
+
+ private:
+  std::vector<std::string> messages_;  // outlives the host
+  std::unique_ptr<gpu::Host> host_;
+};
+// Registered before main(), as GoogleTest requires.
+inline SharedHost* const shared_host =
+    static_cast<SharedHost*>(testing::AddGlobalTestEnvironment(std::make_unique<SharedHost>().release()));
+
 class GpuTest : public testing::Test {
  protected:
   void SetUp() override {
-    Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({"", true, &messages_});
-    ASSERT_TRUE(host.ok()) << "the GPU tests need a Vulkan 1.3 device and the Khronos validation layer: "
-                           << host.error().message;
-    host_ = std::move(host).value();
+    const Result<void> made = shared_host->make();
+    ASSERT_TRUE(made.ok()) << "the GPU tests need a Vulkan 1.3 device and the Khronos validation layer: "
+                           << made.error().message;
   }
 
   void TearDown() override {
-    host_.reset();
-    for (const std::string& message : messages_) ADD_FAILURE() << message;
+    if (!shared_host->made()) return;
+    const std::unique_lock<std::mutex> lock = host().lock();
+    vkDeviceWaitIdle(host().device().device);
+    shared_host->report_messages();
   }
 
-  [[nodiscard]] gpu::Host& host() { return *host_; }
-  [[nodiscard]] DeviceInfo info() const { return device_info(*host_); }
+  [[nodiscard]] static gpu::Host& host() { return shared_host->host(); }
+  [[nodiscard]] static DeviceInfo info() { return device_info(host()); }
 
   static DeviceInfo device_info(const gpu::Host& host) {
     const gpu::Device& device = host.device();
@@ -51,10 +83,6 @@ class GpuTest : public testing::Test {
     out.get_instance_proc_addr = host.get_instance_proc_addr();
     return out;
   }
-
- private:
-  std::vector<std::string> messages_;  // outlives the host
-  std::unique_ptr<gpu::Host> host_;
 };
 
 }  // namespace tyndall
