@@ -17,15 +17,16 @@ namespace {
 std::atomic<std::size_t> allocations = 0;
 }  // namespace
 
-// Counts every allocation of the program; what the device does on its own side uses malloc.
-void* operator new(std::size_t size) {
+// Counts every allocation of the program; what the device allocates for itself comes from malloc. Not inlined, because
+// GCC 12 takes the parts that it inlines for mismatched pairs of allocation and release.
+[[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   void* const made = std::malloc(size > 0 ? size : 1);
   if (made == nullptr) throw std::bad_alloc();
   return made;
 }
-void operator delete(void* pointer) noexcept { std::free(pointer); }
-void operator delete(void* pointer, std::size_t) noexcept { std::free(pointer); }
+[[gnu::noinline]] void operator delete(void* pointer) noexcept { std::free(pointer); }
+[[gnu::noinline]] void operator delete(void* pointer, std::size_t) noexcept { std::free(pointer); }
 
 namespace tyndall {
 namespace {
