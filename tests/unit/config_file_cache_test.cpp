@@ -11,7 +11,7 @@
 
 #include "files/file_cache.hpp"
 
-namespace tyndall::config {
+namespace tyndall::files {
 namespace {
 
 namespace fs = std::filesystem;
@@ -195,4 +195,4 @@ TEST_F(ConfigFileCache, Directories) {
 }
 
 }  // namespace
-}  // namespace tyndall::config
+}  // namespace tyndall::files

@@ -43,7 +43,7 @@ extern "C" int access(const char* path, int mode) noexcept {
   return -1;
 }
 
-namespace tyndall::config {
+namespace tyndall::files {
 namespace {
 
 class Files : public testing::Test {
@@ -244,4 +244,4 @@ TEST_F(Files, ReadingKeepsToItsLimit) {
 }
 
 }  // namespace
-}  // namespace tyndall::config
+}  // namespace tyndall::files

@@ -180,14 +180,14 @@ TEST(ConfigText, NumbersBeyondTheRangeOfADouble) {
   for (const std::string& tiny : {std::string("1e-400"), std::string("-4.9e-330"), "0." + std::string(400, '0') + "1",
                                   "1" + std::string(400, '0') + "e-900"}) {
     value = 1.0;
-    EXPECT_EQ(read_number(tiny, value), NumberError::none) << tiny;
+    EXPECT_EQ(files::read_number(tiny, value), files::NumberError::none) << tiny;
     EXPECT_EQ(value, 0.0) << tiny;
   }
-  EXPECT_EQ(read_number("3e-310", value), NumberError::none);  // subnormal
+  EXPECT_EQ(files::read_number("3e-310", value), files::NumberError::none);  // subnormal
   EXPECT_NEAR(value / 3e-310, 1.0, 1e-12);
   for (const std::string& huge :
        {std::string("1e400"), "1" + std::string(400, '0'), "0." + std::string(400, '0') + "1e900"}) {
-    EXPECT_EQ(read_number(huge, value), NumberError::too_large) << huge;
+    EXPECT_EQ(files::read_number(huge, value), files::NumberError::too_large) << huge;
   }
 }
 
@@ -241,22 +241,22 @@ TEST(ConfigSettings, MetadataHoldsEverything) {
 }
 
 TEST(ConfigText, EditDistance) {
-  EXPECT_EQ(edit_distance("", "abc"), 3U);
-  EXPECT_EQ(edit_distance("kitten", "sitting"), 3U);
-  EXPECT_EQ(edit_distance("ab", "ba"), 1U);
-  EXPECT_EQ(edit_distance("same", "same"), 0U);
+  EXPECT_EQ(files::edit_distance("", "abc"), 3U);
+  EXPECT_EQ(files::edit_distance("kitten", "sitting"), 3U);
+  EXPECT_EQ(files::edit_distance("ab", "ba"), 1U);
+  EXPECT_EQ(files::edit_distance("same", "same"), 0U);
 }
 
 TEST(ConfigText, Utf8) {
-  EXPECT_TRUE(is_utf8("gr\xc3\xbc\xc3\x9f \xe2\x82\xac \xf0\x9f\x8c\x84"));
-  EXPECT_FALSE(is_utf8("\xc3"));              // cut off
-  EXPECT_FALSE(is_utf8("\xc0\x80"));          // overlong
-  EXPECT_FALSE(is_utf8("\xed\xa0\x80"));      // surrogate
-  EXPECT_FALSE(is_utf8("\xf4\x90\x80\x80"));  // beyond U+10FFFF
-  EXPECT_FALSE(is_utf8("\x80"));
-  EXPECT_EQ(one_line("a\nb\xff\xc3\xbc"), "a?b?\xc3\xbc");
-  EXPECT_EQ(one_line("abcdef", 3), "abc...");
-  EXPECT_EQ(quoted_text("a\"b\\c\n"), "\"a\\\"b\\\\c\\u000a\"");
+  EXPECT_TRUE(files::is_utf8("gr\xc3\xbc\xc3\x9f \xe2\x82\xac \xf0\x9f\x8c\x84"));
+  EXPECT_FALSE(files::is_utf8("\xc3"));              // cut off
+  EXPECT_FALSE(files::is_utf8("\xc0\x80"));          // overlong
+  EXPECT_FALSE(files::is_utf8("\xed\xa0\x80"));      // surrogate
+  EXPECT_FALSE(files::is_utf8("\xf4\x90\x80\x80"));  // beyond U+10FFFF
+  EXPECT_FALSE(files::is_utf8("\x80"));
+  EXPECT_EQ(files::one_line("a\nb\xff\xc3\xbc"), "a?b?\xc3\xbc");
+  EXPECT_EQ(files::one_line("abcdef", 3), "abc...");
+  EXPECT_EQ(files::quoted_text("a\"b\\c\n"), "\"a\\\"b\\\\c\\u000a\"");
 }
 
 }  // namespace
