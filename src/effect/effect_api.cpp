@@ -3,8 +3,8 @@
 
 #include "effect/effect_state.hpp"
 #include "effect/frame_constants.hpp"
-#include "effect/guard.hpp"
 #include "effect/limits.hpp"
+#include "gpu/guard.hpp"
 #include "gpu/try.hpp"
 
 namespace tyndall {

@@ -311,7 +311,13 @@ Result<void> Host::run(const std::function<Result<void>(VkCommandBuffer)>& recor
   begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
   VkResult result = device_.vk.BeginCommandBuffer(cmd_, &begin);
   if (result != VK_SUCCESS) return vulkan_error(result, "beginning", "a command buffer");
-  Result<void> recorded = record(cmd_);
+  Result<void> recorded;
+  try {
+    recorded = record(cmd_);
+  } catch (...) {
+    device_.vk.EndCommandBuffer(cmd_);  // otherwise the next call could not begin
+    throw;
+  }
   result = device_.vk.EndCommandBuffer(cmd_);
   if (!recorded.ok()) return recorded;
   if (result != VK_SUCCESS) return vulkan_error(result, "ending", "a command buffer");
@@ -326,6 +332,11 @@ Result<void> Host::run(const std::function<Result<void>(VkCommandBuffer)>& recor
   if (result != VK_SUCCESS) return vulkan_error(result, "submitting", "a command buffer");
   const VkFence fence = fence_.get();
   result = device_.vk.WaitForFences(device_.device, 1, &fence, VK_TRUE, UINT64_MAX);
+  if (result != VK_SUCCESS) {
+    // A wait that ran out of memory leaves the commands running, and the caller would free what they use.
+    const std::unique_lock<std::mutex> locked = lock();
+    result = device_.vk.DeviceWaitIdle(device_.device);
+  }
   if (result != VK_SUCCESS) return vulkan_error(result, "waiting for", "the device");
   device_.vk.ResetFences(device_.device, 1, &fence);
   return {};

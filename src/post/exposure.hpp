@@ -37,6 +37,17 @@ class Exposure {
                        double seconds, std::uint32_t slot = 0);
   // The next picture has nothing to do with the one before.
   void cut() { cut_ = true; }
+  // What the next measurement starts from, as far as the host knows it. A caller that drops the commands of measure()
+  // puts back what was there before them.
+  struct Start {
+    bool cut = true;
+    bool measured = false;
+  };
+  [[nodiscard]] Start start() const { return {cut_, measured_}; }
+  void put_back(const Start& start) {
+    cut_ = start.cut;
+    measured_ = start.measured;
+  }
 
   // Of the measurement recorded last for the slot, once its commands have completed.
   [[nodiscard]] Measurement read(std::uint32_t slot = 0) const;

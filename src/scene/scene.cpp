@@ -7,6 +7,7 @@
 #include <cstring>
 #include <utility>
 
+#include "gpu/guard.hpp"
 #include "gpu/try.hpp"
 #include "scene/description/map_projection.hpp"
 #include "scene/description/unused_params.hpp"
@@ -73,23 +74,25 @@ Result<void> lacks(std::string_view name) {
 
 Result<std::unique_ptr<Scene>> Scene::create(gpu::Host& host, const SceneDesc& desc, const Params& params,
                                              const SceneParams& scene) {
-  auto out = std::make_unique<Scene>();
-  out->host_ = &host;
-  out->desc_ = desc;
-  out->params_ = params;
-  out->scene_ = scene;
-  TYNDALL_ASSIGN(out->terrain_, Terrain::create(host, scene.terrain, params.planet.radius_m, kColorFormat, kDepthFormat,
-                                                desc.terrain_coarseness));
-  out->notes_ = unused_params(params, scene);
-  add_notes(out->notes_, out->terrain_->notes());
-  TYNDALL_TRY(check_model(scene));
-  TYNDALL_ASSIGN(out->meshes_, out->make_meshes(scene, params.planet.radius_m));
-  if (out->meshes_ != nullptr) add_notes(out->notes_, out->meshes_->notes());
-  TYNDALL_TRY(out->create_objects());
-  return out;
+  return within_memory("creating the scene", [&]() -> Result<std::unique_ptr<Scene>> {
+    auto out = std::make_unique<Scene>();
+    out->host_ = &host;
+    out->desc_ = desc;
+    out->params_ = params;
+    out->scene_ = scene;
+    TYNDALL_ASSIGN(out->terrain_, Terrain::create(host, scene.terrain, params.planet.radius_m, kColorFormat,
+                                                  kDepthFormat, desc.terrain_coarseness));
+    out->notes_ = unused_params(params, scene);
+    add_notes(out->notes_, out->terrain_->notes());
+    TYNDALL_TRY(check_model(scene));
+    TYNDALL_ASSIGN(out->meshes_, out->make_meshes(scene, params.planet.radius_m));
+    if (out->meshes_ != nullptr) add_notes(out->notes_, out->meshes_->notes());
+    TYNDALL_TRY(out->create_objects());
+    return out;
+  });
 }
 
-Result<void> Scene::create_objects() {
+Result<std::unique_ptr<Effect>> Scene::make_effect(const EffectDesc& desc) {
   const gpu::Device& device = host_->device();
   DeviceInfo info;
   info.instance = device.instance;
@@ -98,11 +101,38 @@ Result<void> Scene::create_objects() {
   info.get_instance_proc_addr = host_->get_instance_proc_addr();
   info.message = [](void* user, Severity, std::string_view text) {
     auto* notes = static_cast<std::vector<std::string>*>(user);
-    if (std::find(notes->begin(), notes->end(), text) == notes->end()) notes->emplace_back(text);
+    if (std::find(notes->begin(), notes->end(), text) != notes->end()) return;
+    try {
+      notes->emplace_back(text);
+    } catch (const std::bad_alloc&) {  // a callback of the library must not throw: the remark is lost
+      return;
+    }
   };
   info.message_user = &notes_;
   info.replace_shader = device.replace_shader;
   info.replace_shader_user = device.replace_shader_user;
+  TYNDALL_ASSIGN(Effect effect, Effect::create(info, desc, params_));
+  return std::make_unique<Effect>(std::move(effect));
+}
+
+Result<void> Scene::replace_lost_effect() {
+  if (!effect_lost_) return {};
+  EffectDesc desc = effect_->desc();
+  desc.max_extent = desc_.extent;
+  desc.max_cascades = scene_.shadows.cascades;
+  desc.max_shadow_resolution = scene_.shadows.resolution;
+  TYNDALL_ASSIGN(std::unique_ptr<Effect> made, make_effect(desc));
+  const std::size_t notes = notes_.size();
+  effect_ = std::move(made);
+  notes_.resize(notes);  // without the remark that its commands have not run
+  tables_ready_ = false;
+  TYNDALL_TRY(make_tables_ready());
+  effect_lost_ = false;
+  return {};
+}
+
+Result<void> Scene::create_objects() {
+  const gpu::Device& device = host_->device();
   EffectDesc effect_desc;
   effect_desc.max_extent = desc_.extent;
   effect_desc.frames_in_flight = 1;
@@ -113,8 +143,7 @@ Result<void> Scene::create_objects() {
   effect_desc.shadow_colors = glass;
   effect_desc.timings = desc_.timings;
   effect_desc.counters = desc_.counters;
-  TYNDALL_ASSIGN(Effect effect, Effect::create(info, effect_desc, params_));
-  effect_ = std::make_unique<Effect>(std::move(effect));
+  TYNDALL_ASSIGN(effect_, make_effect(effect_desc));
   TYNDALL_ASSIGN(post::Tonemap tonemap, post::Tonemap::create(device));
   tonemap_ = std::make_unique<post::Tonemap>(std::move(tonemap));
 
@@ -163,7 +192,18 @@ void Scene::end_pass(VkCommandBuffer cmd) {
 }
 
 Result<void> Scene::render(double seconds, bool floor, std::optional<double> step_s) {
-  TYNDALL_TRY(check_tables());
+  const post::Exposure::Start start = tonemap_->exposure().start();
+  const std::optional<double> last_seconds = last_seconds_;
+  Result<void> drawn = within_memory("drawing the scene", [&] { return draw_frame(seconds, floor, step_s); });
+  if (!drawn) {
+    tonemap_->exposure().put_back(start);
+    last_seconds_ = last_seconds;
+  }
+  return drawn;
+}
+
+Result<void> Scene::draw_frame(double seconds, bool floor, std::optional<double> step_s) {
+  TYNDALL_TRY(replace_lost_effect());
   // Time that does not advance, and pictures that were not measured, leave nothing to adapt from.
   step_s_ = step_s.value_or(last_seconds_ ? seconds - *last_seconds_ : 0.0);
   if (!last_seconds_ || step_s_ <= 0.0) tonemap_->exposure().cut();
@@ -217,9 +257,11 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   const double least_m = bare ? kNearPlane_m : kLeastHeight_m;
   if (altitude < ground_m + least_m) {
     view_.position = at_altitude(view_.position, ground_m + least_m, radius);
-    if (!std::exchange(lifted_, true))
+    if (!lifted_) {
       notes_.push_back("the camera was inside the ground and has been lifted to " +
                        std::to_string(static_cast<int>(std::lround(ground_m + least_m))) + " m");
+    }
+    lifted_ = true;
   }
   frame_ = local_frame(view_.position, radius);
   TYNDALL_TRY(terrain_->update(view_, frame_));
@@ -245,37 +287,7 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   }
   if (model_ != nullptr) TYNDALL_TRY(model_->prepare({view_, frame_, light_, params_, scene_, desc_.extent}));
 
-  const gpu::Device& device = host_->device();
-  const auto shadows = [&](VkCommandBuffer cmd) -> Result<void> {
-    if (desc_.timings) timer_.begin_frame(cmd, 0);
-    if (!images_ready_) {
-      gpu::transition(device, cmd, output_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
-      gpu::transition(device, cmd, display_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
-    }
-    images_ready_ = true;
-    // Jitter moves the picture, not the cascades.
-    return first && !(desc_.keep_shadows && shadows_are_drawn()) ? draw_shadows(cmd) : Result<void>();
-  };
-  const auto view = [&](VkCommandBuffer cmd) { return draw_view(cmd); };
-  const auto air = [&](VkCommandBuffer cmd) -> Result<void> {
-    TYNDALL_TRY(model_ != nullptr ? copy_color(cmd) : run_effect(cmd));
-    TYNDALL_TRY(tonemap(cmd, first));
-    return floor ? run_floor(cmd) : Result<void>();
-  };
-  const auto whole = [&](VkCommandBuffer cmd) -> Result<void> {
-    TYNDALL_TRY(shadows(cmd));
-    TYNDALL_TRY(view(cmd));
-    return air(cmd);
-  };
-  if (desc_.in_parts) {
-    TYNDALL_TRY(host_->run(shadows));
-    TYNDALL_TRY(host_->run(view));
-    TYNDALL_TRY(host_->run(air));
-  } else {
-    TYNDALL_TRY(host_->run(whole));
-  }
-  drawn_cascades_ = cascades_;
-  drawn_terrain_ = terrain_->version();
+  TYNDALL_TRY(run_passes(first, floor));
   times_.clear();
   if (desc_.timings) {
     for (const gpu::TimedScope& scope : timer_.read(0)) times_.push_back({scope.name, scope.milliseconds, false});
@@ -285,32 +297,6 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   }
   ++frame_index_;
   return {};
-}
-
-Result<void> Scene::run_effect(VkCommandBuffer cmd) {
-  std::array<Cascade, kMaxCascades> cascades;
-  for (std::size_t i = 0; i < cascades_.size(); ++i) {
-    cascades[i] = {to_mat4(cascades_[i].shadow_from_world() * frame_.world_from_local),
-                   static_cast<float>(cascades_[i].near_m), static_cast<float>(cascades_[i].far_m)};
-  }
-  FrameInputs inputs;
-  inputs.extent = desc_.extent;
-  inputs.color = {color_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-  inputs.depth = {depth_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-  inputs.shadow_maps = {shadow_maps_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-  if (light_.has_glass && params_.scattering.light_shafts) {
-    inputs.shadow_colors = {shadow_colors_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-    inputs.shadow_color_depths = true;
-  }
-  inputs.shadow_resolution = scene_.shadows.resolution;
-  inputs.cascades = {cascades.data(), cascades_.size()};
-  inputs.first_marched_cascade = first_marched(scene_.shadows, cascades_);
-  inputs.camera = camera_from_view(view_, frame_.local_from_world);
-  inputs.sun = {to_vec3(frame_.direction(to_sun_)), scene_.sun.irradiance,
-                static_cast<float>(scene_.sun.angular_radius_deg * kRadPerDeg)};
-  inputs.output = {output_.view.get(), VK_IMAGE_LAYOUT_GENERAL};
-  inputs.frame_index = frame_index_;
-  return effect_->record(cmd, inputs);
 }
 
 // With a model the scene's colour holds the air already.
@@ -374,9 +360,13 @@ Result<image::Image> Scene::read_back(const gpu::Image& image) {
   return out;
 }
 
-Result<image::Image> Scene::radiance() { return average(output_, radiance_sum_); }
+Result<image::Image> Scene::radiance() {
+  return within_memory("reading the radiance", [&] { return average(output_, radiance_sum_); });
+}
 
-Result<image::Image> Scene::display() { return average(display_, display_sum_); }
+Result<image::Image> Scene::display() {
+  return within_memory("reading the picture", [&] { return average(display_, display_sum_); });
+}
 
 post::Measurement Scene::measurement() const { return tonemap_->exposure().read(); }
 

@@ -46,12 +46,13 @@ class Scene {
   // Take over new parameters; an error leaves things as they were, the next frame included. Another terrain is loaded
   // here, which takes long for large files, unless set_terrain() has brought it. Back to scattering.model = atmosphere,
   // and other parameters of the air, make the tables ready if they are not, unless with SceneDesc::tables_later.
+  // No function throws std::bad_alloc: running out of memory is an error.
   Result<void> set_scene(const SceneParams& scene);
   Result<void> set_params(const Params& params);
   // What Terrain::load_source() gave for these parameters and this radius of the planet.
   Result<void> set_terrain(const TerrainParams& params, double radius_m, ElevationSource source);
   Result<void> set_extent(VkExtent2D extent);
-  Result<void> set_terrain_coarseness(int coarseness) { return terrain_->set_coarseness(coarseness); }
+  Result<void> set_terrain_coarseness(int coarseness);
 
   // One step towards the tables that the parameters ask for, from the cache or `budget` slices of the build. Until
   // they are complete, frames are drawn with those that were; without any, render() fails.
@@ -60,7 +61,8 @@ class Scene {
   [[nodiscard]] bool can_render() const { return model_ != nullptr || tables_ready_; }
   Effect& effect() { return *effect_; }
 
-  // Renders the frame that is `seconds` into the sequence. `floor` adds the pass that costs the least. `step_s`: time
+  // Renders the frame that is `seconds` into the sequence. After an error the next call draws what this one would have
+  // drawn. `floor` adds the pass that costs the least. `step_s`: time
   // in which the eye adapts to this frame; without, the time since the frame before. The first frame, and one after no
   // time at all, is exposed for itself.
   Result<void> render(double seconds, bool floor = false, std::optional<double> step_s = {});
@@ -106,6 +108,9 @@ class Scene {
 
  private:
   Result<void> create_objects();
+  [[nodiscard]] Result<std::unique_ptr<Effect>> make_effect(const EffectDesc& desc);
+  // Makes the effect again after commands that it recorded were dropped: it counts them as done.
+  Result<void> replace_lost_effect();
   // What a picture of some size is drawn into.
   struct Targets {
     gpu::Image color, depth, output, display;
@@ -123,7 +128,6 @@ class Scene {
   [[nodiscard]] Result<std::unique_ptr<Meshes>> make_meshes(const SceneParams& scene, double radius_m) const;
   [[nodiscard]] Result<std::unique_ptr<SkyModel>> make_model(const SceneParams& scene) const;
   Result<void> make_tables_ready();
-  [[nodiscard]] Result<void> check_tables() const;
   [[nodiscard]] Result<Pending> plan(const SceneParams& scene, const Params& params,
                                      std::optional<ElevationSource> source);
   void swap(Pending& pending) noexcept;
@@ -141,7 +145,10 @@ class Scene {
   Result<void> tonemap(VkCommandBuffer cmd, bool first);
   Result<void> run_floor(VkCommandBuffer cmd);
   Result<void> copy_to(VkCommandBuffer cmd, const gpu::Image& to);
+  Result<void> draw_frame(double seconds, bool floor, std::optional<double> step_s);
   Result<void> render_sample(double seconds, const glm::dvec2& jitter, bool first, bool floor);
+  // Records and submits one sample of a frame.
+  Result<void> run_passes(bool first, bool floor);
   Result<void> accumulate(const gpu::Image& image, image::Image& sum);
   Result<image::Image> average(const gpu::Image& image, const image::Image& sum);
   Result<image::Image> read_back(const gpu::Image& image);
@@ -175,6 +182,7 @@ class Scene {
   std::optional<double> last_seconds_;  // of the frame before, if it was measured
   double step_s_ = 0.0;
   bool images_ready_ = false;
+  bool effect_lost_ = false;                // see replace_lost_effect()
   bool lifted_ = false;                     // the camera, which has been noted
   std::vector<CascadeFit> drawn_cascades_;  // what the shadow maps show
   std::uint64_t drawn_terrain_ = 0;

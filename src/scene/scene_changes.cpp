@@ -1,11 +1,11 @@
 // What of a scene can change between frames: parameters, terrain, the size of the picture, the tables.
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <optional>
 #include <tuple>
 #include <utility>
 
+#include "gpu/guard.hpp"
 #include "gpu/try.hpp"
 #include "scene/formats.hpp"
 #include "scene/scene.hpp"
@@ -150,25 +150,28 @@ Result<std::unique_ptr<SkyModel>> Scene::make_model(const SceneParams& scene) co
 Result<void> Scene::make_tables_ready() {
   if (model_ != nullptr || desc_.tables_later || effect_->precompute_progress().complete()) return {};
   TYNDALL_ASSIGN(const tables::Outcome made, tables::make_ready(*host_, *effect_, desc_.make_tables));
-  notes_.insert(notes_.end(), made.notes.begin(), made.notes.end());
   tables_ready_ = true;
+  // From here on nothing may fail: the tables that were there are gone. Without memory for the notes there are none.
+  static_cast<void>(within_memory("notes", [&]() -> Result<void> {
+    notes_.insert(notes_.end(), made.notes.begin(), made.notes.end());
+    return {};
+  }));
   return {};
 }
 
-// Stale tables would give a wrong picture. They are there only when making them failed, and so did taking that back.
-Result<void> Scene::check_tables() const {
-  if (model_ != nullptr || desc_.tables_later || effect_->precompute_progress().complete()) return {};
-  return Error{ErrorCode::invalid_argument,
-               "the scattering tables are not those of the parameters: set the parameters again"};
-}
-
 Result<Progress> Scene::advance_tables(std::uint32_t budget) {
-  if (!effect_->precompute_progress().complete()) {
-    TYNDALL_TRY(tables::advance(*host_, *effect_, desc_.make_tables, budget, notes_));
-  }
-  const Progress progress = effect_->precompute_progress();
-  tables_ready_ = tables_ready_ || progress.complete();
-  return progress;
+  return within_memory("making the scattering tables", [&]() -> Result<Progress> {
+    TYNDALL_TRY(replace_lost_effect());
+    const Progress before = effect_->precompute_progress();
+    if (!before.complete()) {
+      Result<void> advanced = tables::advance(*host_, *effect_, desc_.make_tables, budget, notes_);
+      effect_lost_ = !advanced.ok() && effect_->precompute_progress().done != before.done;
+      TYNDALL_TRY(std::move(advanced));
+    }
+    const Progress progress = effect_->precompute_progress();
+    tables_ready_ = tables_ready_ || progress.complete();
+    return progress;
+  });
 }
 
 Result<Scene::Pending> Scene::plan(const SceneParams& scene, const Params& params,
@@ -248,56 +251,79 @@ void Scene::swap(Pending& pending) noexcept {
 }
 
 Result<void> Scene::change(const SceneParams& scene, const Params& params, std::optional<ElevationSource> source) {
+  TYNDALL_TRY(replace_lost_effect());
   TYNDALL_ASSIGN(Pending pending, plan(scene, params, std::move(source)));
   const EffectDesc effect_before = effect_->desc();
   const Params params_before = effect_->params();
   if (pending.other_effect) TYNDALL_TRY(effect_->set_params(pending.params, pending.effect));
-  swap(pending);
-  // Making the tables can fail as well. They need the effect as it is to be.
-  struct TakeBack {
-    const std::function<void()>& how;
-    bool wanted = true;
-    ~TakeBack() {
-      if (wanted) how();
+  // Making the tables can fail as well, by an error or an exception. They need the effect as it is to be.
+  struct Exchanged {
+    Scene& scene;
+    Pending& pending;
+    const EffectDesc& effect_before;
+    const Params& params_before;
+    bool taken_back = true;
+    ~Exchanged() {
+      if (!taken_back) return;
+      scene.swap(pending);
+      const Result<void> set = scene.effect_->set_params(params_before, effect_before);
+      // When the last commands of new tables are dropped, nothing is left of those tables or of the ones before them.
+      const bool stale =
+          scene.model_ == nullptr && !scene.desc_.tables_later && !scene.effect_->precompute_progress().complete();
+      if (!set || stale) scene.effect_lost_ = true;
     }
-  };
-  const std::function<void()> how = [&] {
-    swap(pending);
-    static_cast<void>(effect_->set_params(params_before, effect_before));  // otherwise check_tables() says so
-  };
-  TakeBack take_back{how};
+  } exchanged{*this, pending, effect_before, params_before};
+  swap(pending);
   TYNDALL_TRY(make_tables_ready());
-  take_back.wanted = false;
+  exchanged.taken_back = false;
   return {};
 }
 
 Result<void> Scene::set_terrain(const TerrainParams& terrain, double radius_m, ElevationSource source) {
-  SceneParams scene = scene_;
-  scene.terrain = terrain;
-  scene.terrain.shading = scene_.terrain.shading;
-  Params params = params_;
-  params.planet.radius_m = static_cast<float>(radius_m);
-  return change(scene, params, std::move(source));
+  return within_memory("changing the terrain", [&] {
+    SceneParams scene = scene_;
+    scene.terrain = terrain;
+    scene.terrain.shading = scene_.terrain.shading;
+    Params params = params_;
+    params.planet.radius_m = static_cast<float>(radius_m);
+    return change(scene, params, std::move(source));
+  });
 }
 
-Result<void> Scene::set_scene(const SceneParams& scene) { return change(scene, params_, {}); }
+Result<void> Scene::set_scene(const SceneParams& scene) {
+  return within_memory("changing the scene", [&] { return change(scene, params_, {}); });
+}
 
-Result<void> Scene::set_params(const Params& params) { return change(scene_, params, {}); }
+Result<void> Scene::set_params(const Params& params) {
+  return within_memory("changing the scene", [&] { return change(scene_, params, {}); });
+}
 
 Result<void> Scene::set_extent(VkExtent2D extent) {
-  TYNDALL_ASSIGN(Targets targets, make_targets(extent));
-  TYNDALL_TRY(effect_->set_limits(extent, scene_.shadows.cascades, scene_.shadows.resolution));
-  swap_targets(targets);
-  desc_.extent = extent;
-  return {};
+  return within_memory("changing the size of the picture", [&]() -> Result<void> {
+    TYNDALL_TRY(replace_lost_effect());
+    TYNDALL_ASSIGN(Targets targets, make_targets(extent));
+    TYNDALL_TRY(effect_->set_limits(extent, scene_.shadows.cascades, scene_.shadows.resolution));
+    swap_targets(targets);
+    desc_.extent = extent;
+    return {};
+  });
+}
+
+Result<void> Scene::set_terrain_coarseness(int coarseness) {
+  return within_memory("changing the terrain", [&] { return terrain_->set_coarseness(coarseness); });
 }
 
 Result<void> Scene::tone(double step_s) {
-  step_s_ = step_s;
-  return host_->run([&](VkCommandBuffer cmd) -> Result<void> {
-    if (desc_.timings) timer_.begin_frame(cmd, 0);
-    return tonemap(cmd, true);
+  const post::Exposure::Start start = tonemap_->exposure().start();
+  Result<void> toned = within_memory("tone mapping", [&] {
+    step_s_ = step_s;
+    return host_->run([&](VkCommandBuffer cmd) -> Result<void> {
+      if (desc_.timings) timer_.begin_frame(cmd, 0);
+      return tonemap(cmd, true);
+    });
   });
+  if (!toned) tonemap_->exposure().put_back(start);
+  return toned;
 }
 
 bool Scene::bare_ground() const { return terrain_->none() || (model_ != nullptr && !model_->draws_terrain(scene_)); }

@@ -1,4 +1,5 @@
-// What of a scene is drawn: the shadow maps, the maps of colours, and the view.
+// The passes of a frame: the shadow maps, the maps of colours, the view, and the effect.
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -189,6 +190,74 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
   gpu::transition(device, cmd, depth_, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
                   VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
   return {};
+}
+
+Result<void> Scene::run_passes(bool first, bool floor) {
+  const gpu::Device& device = host_->device();
+  // Jitter moves the picture, not the cascades.
+  const bool other_shadows = first && !(desc_.keep_shadows && shadows_are_drawn());
+  const auto shadows = [&](VkCommandBuffer cmd) -> Result<void> {
+    if (desc_.timings) timer_.begin_frame(cmd, 0);
+    if (!images_ready_) {
+      gpu::transition(device, cmd, output_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
+      gpu::transition(device, cmd, display_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
+    }
+    return other_shadows ? draw_shadows(cmd) : Result<void>();
+  };
+  const auto view = [&](VkCommandBuffer cmd) { return draw_view(cmd); };
+  const auto air = [&](VkCommandBuffer cmd) -> Result<void> {
+    TYNDALL_TRY(model_ != nullptr ? copy_color(cmd) : run_effect(cmd));
+    TYNDALL_TRY(tonemap(cmd, first));
+    return floor ? run_floor(cmd) : Result<void>();
+  };
+  const auto whole = [&](VkCommandBuffer cmd) -> Result<void> {
+    TYNDALL_TRY(shadows(cmd));
+    TYNDALL_TRY(view(cmd));
+    return air(cmd);
+  };
+  // What an error leaves: shadow maps that show nothing in particular, and images whose layout is not known.
+  std::vector<CascadeFit> drawn = cascades_;
+  if (other_shadows) drawn_cascades_.clear();
+  if (desc_.in_parts) {
+    TYNDALL_TRY(host_->run(shadows));
+    TYNDALL_TRY(host_->run(view));
+    TYNDALL_TRY(host_->run(air));
+  } else {
+    TYNDALL_TRY(host_->run(whole));
+  }
+  effect_lost_ = false;
+  images_ready_ = true;
+  drawn_cascades_.swap(drawn);
+  drawn_terrain_ = terrain_->version();
+  return {};
+}
+
+Result<void> Scene::run_effect(VkCommandBuffer cmd) {
+  std::array<Cascade, kMaxCascades> cascades;
+  for (std::size_t i = 0; i < cascades_.size(); ++i) {
+    cascades[i] = {to_mat4(cascades_[i].shadow_from_world() * frame_.world_from_local),
+                   static_cast<float>(cascades_[i].near_m), static_cast<float>(cascades_[i].far_m)};
+  }
+  FrameInputs inputs;
+  inputs.extent = desc_.extent;
+  inputs.color = {color_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+  inputs.depth = {depth_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+  inputs.shadow_maps = {shadow_maps_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+  if (light_.has_glass && params_.scattering.light_shafts) {
+    inputs.shadow_colors = {shadow_colors_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+    inputs.shadow_color_depths = true;
+  }
+  inputs.shadow_resolution = scene_.shadows.resolution;
+  inputs.cascades = {cascades.data(), cascades_.size()};
+  inputs.first_marched_cascade = first_marched(scene_.shadows, cascades_);
+  inputs.camera = camera_from_view(view_, frame_.local_from_world);
+  inputs.sun = {to_vec3(frame_.direction(to_sun_)), scene_.sun.irradiance,
+                static_cast<float>(scene_.sun.angular_radius_deg * kRadPerDeg)};
+  inputs.output = {output_.view.get(), VK_IMAGE_LAYOUT_GENERAL};
+  inputs.frame_index = frame_index_;
+  Result<void> recorded = effect_->record(cmd, inputs);
+  effect_lost_ = recorded.ok();  // until the commands have run
+  return recorded;
 }
 
 }  // namespace tyndall::scene

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "files/file_cache.hpp"
+#include "gpu/guard.hpp"
 #include "gpu/try.hpp"
 #include "tyndall/version.hpp"
 
@@ -124,12 +125,13 @@ Result<Outcome> make_ready(gpu::Host& host, Effect& effect, const MakeReady& how
   outcome.origin = Origin::build;
   outcome.milliseconds = milliseconds();
   if (!cache.enabled()) return outcome;
-  Result<Keeper> keeper = Keeper::fetch(host, effect, how.cache);
-  if (!keeper) {
-    TYNDALL_TRY(without_cache(keeper.error()));
-  } else if (const std::string note = keeper.value().write(); !note.empty()) {
-    outcome.notes.push_back(note);
-  }
+  // The tables are complete, and those before them are gone: whatever ends the caching for want of memory is a note.
+  const Result<void> cached = within_memory("caching the tables", [&]() -> Result<void> {
+    TYNDALL_ASSIGN(Keeper keeper, Keeper::fetch(host, effect, how.cache));
+    if (const std::string note = keeper.write(); !note.empty()) outcome.notes.push_back(note);
+    return {};
+  });
+  if (!cached) TYNDALL_TRY(without_cache(cached.error()));
   return outcome;
 }
 

@@ -1,11 +1,16 @@
 #include "faults.hpp"
 
+#include <dlfcn.h>
+
 #include <cstdlib>
 #include <cstring>
 #include <map>
 #include <new>
+#include <set>
 #include <string_view>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "gpu/functions.hpp"
 
@@ -22,6 +27,14 @@ bool fails(Kind kind) {
   if (left-- > 0) return false;
   has_failed = true;
   return true;
+}
+
+// Destructors of nlohmann::json allocate, and end the program where they cannot. The name of the function that called
+// operator new is known where the program exports its symbols.
+bool is_of_json(const void* caller) {
+  Dl_info info = {};
+  return dladdr(caller, &info) != 0 && info.dli_sname != nullptr &&
+         std::string_view(info.dli_sname).find("nlohmann") != std::string_view::npos;
 }
 
 constexpr bool starts_with(std::string_view text, std::string_view start) {
@@ -43,6 +56,9 @@ struct Wrapped<kMember, kMakes, R(VKAPI_PTR*)(Args...)> {
   static R VKAPI_CALL call(Args... args) {
     if constexpr (kMakes && std::is_same_v<R, VkResult>) {
       if (fails(Kind::vulkan)) return kError;
+    }
+    if constexpr (std::is_same_v<PFN_vkQueueSubmit, R(VKAPI_PTR*)(Args...)>) {
+      if (fails(Kind::submission)) return kError;
     }
     struct InDriver {
       InDriver() { ++in_driver; }
@@ -79,6 +95,12 @@ std::uint64_t next_object = 1;
 std::size_t pipeline_objects = 0;
 std::size_t hash = 0;
 
+// Events that the commands being recorded would set, and those that are set.
+bool recording = false;
+std::vector<VkEvent> to_set;
+std::set<VkEvent> set_events;
+
+VkDeviceSize bytes_of(const VkMemoryAllocateInfo& info) { return info.allocationSize; }
 VkDeviceSize bytes_of(const VkBufferCreateInfo& info) { return (info.size + 255) / 256 * 256; }
 VkDeviceSize bytes_of(const VkImageCreateInfo& info) {
   return VkDeviceSize{16} * info.extent.width * info.extent.height * info.extent.depth * info.arrayLayers;
@@ -114,8 +136,9 @@ VkResult fake(VkDevice, VkPipelineCache, std::uint32_t, const VkComputePipelineC
 VkResult fake(VkDevice, VkDeviceMemory of, VkDeviceSize, VkDeviceSize, VkMemoryMapFlags, void** out) {
   if (fails(Kind::vulkan)) return kError;
   ++in_driver;
-  void*& mapped = memory[reinterpret_cast<std::uint64_t>(of)];
-  if (mapped == nullptr) mapped = std::calloc(1, 1 << 20);
+  const auto number = reinterpret_cast<std::uint64_t>(of);
+  void*& mapped = memory[number];
+  if (mapped == nullptr) mapped = std::calloc(1, live.at(number));
   --in_driver;
   *out = mapped;
   return VK_SUCCESS;
@@ -148,9 +171,30 @@ template <typename T>
 void mix(const T& value) {
   if constexpr (std::is_integral_v<T>) hash = (hash ^ static_cast<std::size_t>(value)) * 0x100000001b3U;
 }
-void mix(VkBuffer buffer) { mix(reinterpret_cast<std::uint64_t>(buffer)); }
-void mix(VkImage image) { mix(reinterpret_cast<std::uint64_t>(image)); }
-void mix(VkPipeline pipeline) { mix(reinterpret_cast<std::uint64_t>(pipeline)); }
+void mix_bytes(const void* from, std::size_t size) {
+  const char* bytes = static_cast<const char*>(from);
+  for (std::size_t i = 0; i + sizeof(std::uint64_t) <= size; i += sizeof(std::uint64_t)) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes + i, sizeof word);
+    mix(word);
+  }
+  for (std::size_t i = size / sizeof(std::uint64_t) * sizeof(std::uint64_t); i < size; ++i) mix(bytes[i]);
+}
+// Objects count by their sizes and by where they first appear, and not by their numbers: others of the same kind may
+// have taken their places.
+std::map<std::uint64_t, std::size_t> appeared;
+template <typename T>
+void mix_object(T object) {
+  const auto number = reinterpret_cast<std::uint64_t>(object);
+  ++in_driver;
+  mix(appeared.try_emplace(number, appeared.size()).first->second);
+  --in_driver;
+  if (const auto found = live.find(number); found != live.end()) mix(found->second);
+}
+void mix(VkImageView view) { mix_object(view); }
+void mix(VkBuffer buffer) { mix_object(buffer); }
+void mix(VkImage image) { mix_object(image); }
+void mix(VkPipeline pipeline) { mix_object(pipeline); }
 
 template <auto kMember, typename Function>
 struct Fake;
@@ -172,8 +216,69 @@ void VKAPI_CALL push_descriptors(VkCommandBuffer, VkPipelineBindPoint, VkPipelin
   for (std::uint32_t i = 0; i < count; ++i) {
     mix(writes[i].pBufferInfo->buffer);
     mix(writes[i].pBufferInfo->offset);
-    mix(reinterpret_cast<std::uint64_t>(writes[i].pImageInfo->imageView));
+    mix(writes[i].pImageInfo->imageView);
   }
+}
+
+void VKAPI_CALL push_constants(VkCommandBuffer, VkPipelineLayout, VkShaderStageFlags, std::uint32_t, std::uint32_t size,
+                               const void* values) {
+  mix_bytes(values, size);
+}
+void VKAPI_CALL begin_rendering(VkCommandBuffer, const VkRenderingInfo* info) {
+  for (std::uint32_t i = 0; i < info->colorAttachmentCount; ++i) mix(info->pColorAttachments[i].imageView);
+  if (info->pDepthAttachment != nullptr) mix(info->pDepthAttachment->imageView);
+}
+
+// Command buffers and events. Commands that are recorded outside of a command buffer that was begun take effect at
+// once, others when they are submitted; nothing runs longer than that.
+VkResult VKAPI_CALL allocate_command_buffers(VkDevice, const VkCommandBufferAllocateInfo* info, VkCommandBuffer* out) {
+  if (fails(Kind::vulkan)) return kError;
+  for (std::uint32_t i = 0; i < info->commandBufferCount; ++i) out[i] = reinterpret_cast<VkCommandBuffer>(next_object);
+  return VK_SUCCESS;
+}
+VkResult VKAPI_CALL begin_command_buffer(VkCommandBuffer, const VkCommandBufferBeginInfo*) {
+  if (recording) std::abort();  // begun before, and not ended
+  if (fails(Kind::vulkan)) return kError;
+  recording = true;
+  to_set.clear();
+  return VK_SUCCESS;
+}
+VkResult VKAPI_CALL end_command_buffer(VkCommandBuffer) {
+  recording = false;
+  return fails(Kind::submission) ? kError : VK_SUCCESS;
+}
+void VKAPI_CALL set_event(VkCommandBuffer, VkEvent event, VkPipelineStageFlags) {
+  ++in_driver;
+  if (recording) {
+    to_set.push_back(event);
+  } else {
+    set_events.insert(event);
+  }
+  --in_driver;
+}
+VkResult VKAPI_CALL reset_event(VkDevice, VkEvent event) {
+  set_events.erase(event);
+  return VK_SUCCESS;
+}
+VkResult VKAPI_CALL event_status(VkDevice, VkEvent event) {
+  return set_events.contains(event) ? VK_EVENT_SET : VK_EVENT_RESET;
+}
+VkResult VKAPI_CALL submit(VkQueue, std::uint32_t, const VkSubmitInfo*, VkFence) {
+  if (fails(Kind::submission)) return kError;
+  ++in_driver;
+  set_events.insert(to_set.begin(), to_set.end());
+  to_set.clear();
+  --in_driver;
+  // What the commands may read, in no order.
+  const std::size_t before = std::exchange(hash, 0);
+  std::size_t sum = 0;
+  for (const auto& [number, bytes] : memory) {
+    mix_bytes(bytes, live.at(number));
+    sum += std::exchange(hash, 0);
+  }
+  hash = before;
+  mix(sum);
+  return VK_SUCCESS;
 }
 
 void VKAPI_CALL fake_properties(VkPhysicalDevice, VkPhysicalDeviceProperties2* out) {
@@ -196,6 +301,7 @@ void VKAPI_CALL fake_memory(VkPhysicalDevice, VkPhysicalDeviceMemoryProperties* 
   out->memoryTypes[0].propertyFlags =
       VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
   out->memoryHeapCount = 1;
+  out->memoryHeaps[0].size = VkDeviceSize{1} << 40;
 }
 VkResult VKAPI_CALL fake_queries(VkDevice, VkQueryPool, std::uint32_t, std::uint32_t, std::size_t, void*, VkDeviceSize,
                                  VkQueryResultFlags) {
@@ -204,8 +310,22 @@ VkResult VKAPI_CALL fake_queries(VkDevice, VkQueryPool, std::uint32_t, std::uint
 
 PFN_vkVoidFunction VKAPI_CALL fake_device_proc(VkDevice, const char* name) {
   const std::string_view wanted = name;
-  if (wanted == "vkCmdPushDescriptorSetKHR") return reinterpret_cast<PFN_vkVoidFunction>(push_descriptors);
-  if (wanted == "vkGetQueryPoolResults") return reinterpret_cast<PFN_vkVoidFunction>(fake_queries);
+  const std::pair<std::string_view, PFN_vkVoidFunction> own[] = {
+      {"vkCmdPushDescriptorSetKHR", reinterpret_cast<PFN_vkVoidFunction>(push_descriptors)},
+      {"vkCmdPushConstants", reinterpret_cast<PFN_vkVoidFunction>(push_constants)},
+      {"vkCmdBeginRendering", reinterpret_cast<PFN_vkVoidFunction>(begin_rendering)},
+      {"vkCmdSetEvent", reinterpret_cast<PFN_vkVoidFunction>(set_event)},
+      {"vkResetEvent", reinterpret_cast<PFN_vkVoidFunction>(reset_event)},
+      {"vkGetEventStatus", reinterpret_cast<PFN_vkVoidFunction>(event_status)},
+      {"vkGetQueryPoolResults", reinterpret_cast<PFN_vkVoidFunction>(fake_queries)},
+      {"vkAllocateCommandBuffers", reinterpret_cast<PFN_vkVoidFunction>(allocate_command_buffers)},
+      {"vkBeginCommandBuffer", reinterpret_cast<PFN_vkVoidFunction>(begin_command_buffer)},
+      {"vkEndCommandBuffer", reinterpret_cast<PFN_vkVoidFunction>(end_command_buffer)},
+      {"vkQueueSubmit", reinterpret_cast<PFN_vkVoidFunction>(submit)},
+  };
+  for (const auto& [function, address] : own) {
+    if (wanted == function) return address;
+  }
 #define X(function)                                                                                       \
   if (wanted == "vk" #function) {                                                                         \
     return reinterpret_cast<PFN_vkVoidFunction>(Fake<&gpu::Functions::function, PFN_vk##function>::call); \
@@ -236,7 +356,10 @@ bool disarm() {
   return has_failed;
 }
 
-bool host_allocation_fails() { return fails(Kind::host); }
+bool host_allocation_fails(const void* caller) {
+  if (left == 0 && armed_kind == Kind::host && in_driver == 0 && is_of_json(caller)) return false;
+  return fails(Kind::host);
+}
 
 void set_properties(std::function<void(VkPhysicalDeviceProperties2&)> change) { change_properties = std::move(change); }
 
@@ -254,6 +377,10 @@ PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance instance, const 
   return vkGetInstanceProcAddr(instance, name);
 }
 
+PFN_vkVoidFunction VKAPI_CALL get_fake_proc_addr(VkInstance instance, const char* name) {
+  return fake_instance_proc(instance, name);
+}
+
 DeviceInfo fake_device() {
   DeviceInfo out;
   out.instance = reinterpret_cast<VkInstance>(std::uintptr_t{1});
@@ -266,12 +393,15 @@ DeviceInfo fake_device() {
 std::size_t live_objects() { return live.size() - pipeline_objects; }
 std::size_t live_pipeline_objects() { return pipeline_objects; }
 std::size_t command_hash() { return hash; }
-void forget_commands() { hash = 0; }
+void forget_commands() {
+  hash = 0;
+  appeared.clear();
+}
 
 }  // namespace tyndall::faults
 
 [[gnu::noinline]] void* operator new(std::size_t size) {
-  if (tyndall::faults::host_allocation_fails()) throw std::bad_alloc();
+  if (tyndall::faults::host_allocation_fails(__builtin_return_address(0))) throw std::bad_alloc();
   void* const made = std::malloc(size > 0 ? size : 1);
   if (made == nullptr) throw std::bad_alloc();
   return made;
