@@ -102,7 +102,7 @@ TEST_F(Downscale, OrderOfCascadesChangesNothing) {
   }
 }
 
-TEST_F(Downscale, CountersSayWhatWasSaved) {
+TEST_F(Downscale, CountersReportTheSavedWork) {
   show(wide());
   draw(params_of(MediumKind::homogeneous, 1), "full");
   const Counters full = counters();
@@ -143,7 +143,7 @@ TEST_F(Downscale, PostsOfOnePixelKeepTheirLight) {
   }
 }
 
-TEST_F(Downscale, OthersThanOneTwoAndFourAreRefused) {
+TEST_F(Downscale, OnlyFactorsOneTwoAndFourAreAccepted) {
   for (const std::uint32_t downscale : {0U, 3U, 5U, 8U}) {
     Params params = small_params();
     params.scattering.downscale = downscale;
@@ -153,7 +153,7 @@ TEST_F(Downscale, OthersThanOneTwoAndFourAreRefused) {
   }
 }
 
-TEST_F(Downscale, MemoryIsKnownBeforehand) {
+TEST_F(Downscale, QueriedMemoryIsAllocatedMemory) {
   for (const std::uint32_t downscale : {1U, 2U, 4U}) {
     const Params params = params_of(MediumKind::homogeneous, downscale);
     ASSERT_OK(effect().set_params(params));

@@ -19,7 +19,7 @@ class EffectChanges : public GpuTest {
 };
 
 // Pipelines that are made when asked for give what those made at creation give, and can be made beforehand.
-TEST_F(EffectChanges, PipelinesAreMadeWhenAskedFor) {
+TEST_F(EffectChanges, MissingPipelinesAreCreatedOnRequest) {
   const TestFrame frame = small_frame();
   Result<FrameImages> images = FrameImages::create(host(), frame, OutputFormat::rgba32f);
   ASSERT_OK(images);

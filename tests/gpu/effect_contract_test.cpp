@@ -74,7 +74,7 @@ class EffectContract : public GpuTest {
   }
 };
 
-TEST_F(EffectContract, MemoryIsKnownBeforehand) {
+TEST_F(EffectContract, QueriedMemoryIsAllocatedMemory) {
   // All that memory depends on differs between the three.
   EffectDesc descs[3];
   Params params[3];
@@ -299,7 +299,7 @@ TEST_F(EffectContract, RecordingTwiceGivesTheSameBytes) {
   }
 }
 
-TEST_F(EffectContract, TwoEffectsOnOneDeviceDoNotKnowOfEachOther) {
+TEST_F(EffectContract, TwoEffectsOnOneDeviceAreIndependent) {
   const TestFrame frame = small_frame();
   Params thin = precise_params();
   thin.scattering.technique = Technique::epipolar;
@@ -333,7 +333,7 @@ TEST_F(EffectContract, TwoEffectsOnOneDeviceDoNotKnowOfEachOther) {
   EXPECT_EQ(hazy.value(), thick_alone.value());
 }
 
-TEST_F(EffectContract, TablesInSlicesAreTablesInOneGo) {
+TEST_F(EffectContract, TablesBuiltInStepsMatchTablesBuiltAtOnce) {
   Params params;
   params.tables.size = {8, 16, 16, 4};
   params.tables.orders = 2;

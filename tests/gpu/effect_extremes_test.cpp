@@ -53,7 +53,7 @@ Params random_params(std::mt19937& engine) {
 
 class EffectExtremes : public GpuTest {};
 
-TEST_F(EffectExtremes, WhateverIsAllowedGivesFiniteLight) {
+TEST_F(EffectExtremes, EveryAllowedParameterGivesFiniteRadiance) {
   std::mt19937 engine(42);
   TestFrame shape;
   shape.extent = {4, 4};

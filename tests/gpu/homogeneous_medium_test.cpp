@@ -262,7 +262,7 @@ TEST_F(HomogeneousMedium, TreesAndOrderOfCascadesChangeNothing) {
   same("single integration", [](Params& p) { p.scattering.single = SingleScattering::integration; });
 }
 
-TEST_F(HomogeneousMedium, NothingIsScatteredByNothing) {
+TEST_F(HomogeneousMedium, ZeroCoefficientsScatterNothing) {
   BoxScene scene;
   show(scene);
   Params params = homogeneous_params();

@@ -113,7 +113,7 @@ TEST_F(GpuLayer, TimersMeasureWhatTheyEnclose) {
   EXPECT_TRUE(timer.value().read(0).empty());  // nothing was recorded there
 }
 
-TEST_F(GpuLayer, TransfersKeepEveryByte) {
+TEST_F(GpuLayer, TransfersPreserveEveryByte) {
   std::vector<std::uint8_t> bytes(5 * 3 * 4);
   for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(7 * i);
   const auto same = [&](const Result<std::vector<std::byte>>& got, std::size_t from, std::size_t size) {
@@ -141,7 +141,7 @@ TEST_F(GpuLayer, TransfersKeepEveryByte) {
   same(download(host(), image.value(), VK_IMAGE_LAYOUT_GENERAL, 1, 2), 30, 30);
 }
 
-TEST_F(GpuLayer, TheHarnessHearsTheValidationLayer) {
+TEST_F(GpuLayer, ValidationMessagesAreReceived) {
   // What every other test relies on: a mistake is reported. In a host of its own, so that this test passes.
   std::vector<std::string> heard;
   {

@@ -214,7 +214,7 @@ TEST_F(GpuPost, BlackSpaceDoesNotCount) {
   EXPECT_EQ(measure(100.0).luminance, full.luminance);
 }
 
-TEST_F(GpuPost, OneBrightPixelDoesNotJump) {
+TEST_F(GpuPost, OneBrightPixelDoesNotChangeTheExposure) {
   for (const VkExtent2D extent : {VkExtent2D{160, 90}, VkExtent2D{640, 480}}) {
     show(extent, mixed(0.2));
     const Measurement without = measure_alone();
@@ -263,7 +263,7 @@ TEST_F(GpuPost, FixedExposureIsIndependentOfThePicture) {
   }
 }
 
-TEST_F(GpuPost, TheHistogramSaysWhatIsThere) {
+TEST_F(GpuPost, TheHistogramMatchesThePicture) {
   show({64, 32}, [](std::uint32_t x, std::uint32_t) {
     if (x < 16) return grey(0.25);
     if (x < 32) return grey(3.0);
@@ -305,7 +305,7 @@ TEST_F(GpuPost, TheSamePicturesGiveTheSameBytes) {
   }
 }
 
-TEST_F(GpuPost, WhatIsMissingIsSaid) {
+TEST_F(GpuPost, MissingMeasurementsAndWrongOperatorsAreErrors) {
   show({8, 8}, mixed(0.2));
   ASSERT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
     const Result<void> unmeasured = tonemap_->record(cmd, picture_.view.get(), display_.view.get(), extent_, settings_);

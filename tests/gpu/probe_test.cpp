@@ -108,7 +108,7 @@ TEST_F(GpuProbe, AgreesWithQuadrature) {
   EXPECT_LE(errors.worst, kWorstError);
 }
 
-TEST_F(GpuProbe, AnswersInOrderAcrossBatches) {
+TEST_F(GpuProbe, ResultsAreInOrderAcrossBatches) {
   const shared::Medium medium = medium_from_params({});
   std::vector<models::Ray> rays;
   for (int i = 0; i < 40000; ++i) rays.push_back(models::ray_from_angles(200.0 * (i % 390), 0.1, 0.5, 0.0));

@@ -1,4 +1,4 @@
-// What the hands do to camera and sun, without a window: pure functions against geometry.
+// What mouse and keys do to camera and sun, without a window: pure functions against geometry.
 #include <gtest/gtest.h>
 
 #include <cmath>

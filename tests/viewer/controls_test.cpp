@@ -49,9 +49,9 @@ std::string keys_of(const std::string& number) {
 // Ctrl and click opens a number for typing.
 bool type_into(Desk& desk, const Row& row, const std::string& place, const std::string& text, std::size_t component) {
   const std::size_t from = desk.lines();
-  desk.hands("keydown ctrl");
+  desk.input("keydown ctrl");
   const bool clicked = desk.click(place, 0.3);
-  desk.hands("keyup ctrl " + keys_of(text));
+  desk.input("keyup ctrl " + keys_of(text));
   return clicked && was_set(desk, row, text, from, component);
 }
 

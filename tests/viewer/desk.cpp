@@ -64,7 +64,7 @@ bool has_ended(int child) {
 }
 
 int status_of(int child, double seconds) {
-  constexpr double kStep_s = 0.005;  // hands take some milliseconds
+  constexpr double kStep_s = 0.005;  // real input takes some milliseconds
   for (double waited = 0.0; waited < seconds; waited += kStep_s) {
     int status = 0;
     if (::waitpid(child, &status, WNOHANG) == child) return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
@@ -156,8 +156,8 @@ bool Desk::open(const std::vector<std::string>& arguments, const std::vector<std
     text >> window_;
   }
   if (window_.empty()) return false;
-  hands("windowmove --sync " + window_ + " 0 0");
-  hands("windowfocus " + window_);
+  input("windowmove --sync " + window_ + " 0 0");
+  input("windowfocus " + window_);
   return true;
 }
 
@@ -167,19 +167,19 @@ bool Desk::manage() {
                    folder_ + "/manager.txt");
   // It is there when it has told its name.
   for (int i = 0; i < 200; ++i) {
-    if (status_of(start({"xdotool", "get_num_desktops"}, {"DISPLAY=" + display_}, folder_ + "/hands.txt"), 10.0) == 0)
+    if (status_of(start({"xdotool", "get_num_desktops"}, {"DISPLAY=" + display_}, folder_ + "/input.txt"), 10.0) == 0)
       return true;
     pause(0.05);
   }
   return false;
 }
 
-void Desk::hands(const std::string& commands) {
+void Desk::input(const std::string& commands) {
   std::vector<std::string> words = {"xdotool"};
   std::istringstream text(commands);
   for (std::string word; text >> word;) words.push_back(word);
   // "--sync" waits for ever when there is nothing left to do.
-  status_of(start(words, {"DISPLAY=" + display_}, folder_ + "/hands.txt"), 10.0);
+  status_of(start(words, {"DISPLAY=" + display_}, folder_ + "/input.txt"), 10.0);
 }
 
 std::string Desk::log_text() const { return read_text(folder_ + "/log.txt"); }
@@ -274,7 +274,7 @@ bool Desk::point_at(const std::string& place, double part) {
     const std::size_t from = lines();
     pointer_[0] = x;
     pointer_[1] = y;
-    hands("mousemove " + std::to_string(x) + " " + std::to_string(y));
+    input("mousemove " + std::to_string(x) + " " + std::to_string(y));
     if (!wait_for({"pointer " + std::to_string(x) + " " + std::to_string(y)}, from)) return false;
   }
   return false;
@@ -284,10 +284,10 @@ bool Desk::click(const std::string& place, double part, int button) {
   if (!point_at(place, part)) return false;
   const std::string side = button == 1 ? "left" : "right";
   std::size_t from = lines();
-  hands("mousedown " + std::to_string(button));
+  input("mousedown " + std::to_string(button));
   if (!wait_for({"press " + side}, from)) return false;
   from = lines();
-  hands("mouseup " + std::to_string(button));
+  input("mouseup " + std::to_string(button));
   return wait_for({"release " + side}, from).has_value();
 }
 
@@ -310,8 +310,8 @@ double Desk::cpu_s() const {
 }
 
 int Desk::leave() {
-  hands("key --window " + window_ + " Escape");
-  hands("key Escape");
+  input("key --window " + window_ + " Escape");
+  input("key Escape");
   return wait_for_end(120.0);
 }
 

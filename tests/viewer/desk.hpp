@@ -1,5 +1,5 @@
-// A desk for tests of the viewer: an X server without a screen (Xvfb), the viewer in a window on it, and hands
-// (xdotool) that press real keys and move a real pointer. Everything waits for what the viewer's log says.
+// A desk for tests of the viewer: an X server without a screen (Xvfb), the viewer in a window on it, and real key
+// presses and pointer movements (xdotool). Everything waits for what the viewer's log says.
 #pragma once
 
 #include <ios>
@@ -27,8 +27,8 @@ class Desk {
   bool validation = true;
   // Starts a window manager (openbox), which takes what needs one, as minimising does; false where there is none.
   bool manage();
-  // Commands of xdotool, split at blanks.
-  void hands(const std::string& commands);
+  // Runs commands of xdotool, split at blanks.
+  void input(const std::string& commands);
   // The number of the log's lines so far.
   [[nodiscard]] std::size_t lines() const;
   // The first line from `from` on that contains all of `words`; waits for it.

@@ -31,7 +31,7 @@ TEST(Window, PlaysTheFlightOfTheScene) {
   config::Settings settings;
   ASSERT_TRUE(config::load(settings, scene).ok());
   std::size_t from = desk.lines();
-  desk.hands("key p");
+  desk.input("key p");
   ASSERT_TRUE(desk.wait_for({"path begins"}, from));
   double last_s = -1.0;
   for (int i = 0; i < 5; ++i) {
@@ -61,7 +61,7 @@ TEST(Window, PlaysTheFlightOfTheScene) {
   EXPECT_GT(last_s, 0.0);
   desk.picture("flying");
   from = desk.lines();
-  desk.hands("key w");
+  desk.input("key w");
   ASSERT_TRUE(desk.wait_for({"path stops"}, from));
   EXPECT_EQ(desk.leave(), 0) << desk.errors();
 }
@@ -79,11 +79,11 @@ TEST(Window, FliesThroughThePicturesOfRender) {
   ASSERT_TRUE(desk.click("coarseness", 0.2));
   ASSERT_TRUE(desk.click("coarseness.0", 0.2));
   std::size_t from = desk.lines();
-  desk.hands("key p");
+  desk.input("key p");
   ASSERT_TRUE(desk.wait_for({"path begins"}, from));
   from = desk.lines();
   ASSERT_TRUE(desk.wait_for({"frame left"}, from));
-  desk.hands("key F12");
+  desk.input("key F12");
   const std::optional<std::string> shot = desk.wait_for({" screenshot "}, from);
   ASSERT_TRUE(shot);
   EXPECT_EQ(desk.leave(), 0) << desk.errors();
@@ -139,12 +139,12 @@ TEST(Window, FliesToOrbitAndBackToTheGround) {
   };
   const std::size_t first = frames(desk).size();
   std::size_t from = desk.lines();
-  desk.hands("keydown shift keydown e");
+  desk.input("keydown shift keydown e");
   while (altitude_of(last_frame(desk)) < 4.0e5) {
     ASSERT_TRUE(desk.wait_for({"frame left"}, from));
     from = desk.lines();
   }
-  desk.hands("keyup e keyup shift");
+  desk.input("keyup e keyup shift");
   ASSERT_TRUE(desk.wait_for({"settled"}, from));
   desk.picture("orbit");
   std::vector<Frame> way = frames(desk);
@@ -156,10 +156,10 @@ TEST(Window, FliesToOrbitAndBackToTheGround) {
   const Result<scene::ElevationSource> ground = scene::ElevationSource::create({});
   ASSERT_TRUE(ground.ok());
   from = desk.lines();
-  desk.hands("keydown q");
+  desk.input("keydown q");
   // Down until that goes no further.
   ASSERT_TRUE(desk.settles_after({"frame left"}, from));
-  desk.hands("keyup q");
+  desk.input("keyup q");
   way = frames(desk);
   for (const Frame& f : way) {
     // Far less than the planet's radius from the origin, map and world are the same but for its curve.

@@ -46,7 +46,7 @@ std::vector<std::string> frames_of(KeyFeed& feed) {
   return out;
 }
 
-TEST(ViewerKeyFeed, ATapIsDownForAFrame) {
+TEST(ViewerKeyFeed, ATappedKeyIsDownForOneFrame) {
   KeyFeed feed;
   tap(feed, GLFW_KEY_ENTER);
   EXPECT_EQ(frames_of(feed), (std::vector<std::string>{"<enter>", "</enter>"}));

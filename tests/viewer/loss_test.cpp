@@ -12,7 +12,7 @@ namespace {
 
 using namespace desk;
 
-TEST(Window, ALostSurfaceIsMadeAnewAndALostDeviceSavesTheState) {
+TEST(Window, RecreatesALostSurfaceAndSavesTheStateOfALostDevice) {
   NEEDS_A_DESK();
   {
     Desk desk("lost_surface");
@@ -21,7 +21,7 @@ TEST(Window, ALostSurfaceIsMadeAnewAndALostDeviceSavesTheState) {
     ASSERT_TRUE(desk.open(arguments)) << desk.errors();
     ASSERT_TRUE(desk.wait_for({"surface lost"}));
     const std::size_t from = desk.lines();
-    desk.hands("key w");
+    desk.input("key w");
     EXPECT_TRUE(desk.wait_for({"frame left"}, from));
     EXPECT_EQ(desk.leave(), 0) << desk.errors();
   }
@@ -43,8 +43,8 @@ TEST(Window, SavesTheStateWhenTheDisplayIsLost) {
   for (const char* what : {"destroyed", "killed", "server"}) {
     Desk desk(std::string("lost_display_") + what);
     ASSERT_TRUE(desk.open(joined(joined(kSmall, kSmallTables), {"--set", "sun.azimuth_deg=123"}))) << desk.errors();
-    if (what == std::string("destroyed")) desk.hands("windowclose " + desk.window());
-    if (what == std::string("killed")) desk.hands("windowkill " + desk.window());
+    if (what == std::string("destroyed")) desk.input("windowclose " + desk.window());
+    if (what == std::string("killed")) desk.input("windowkill " + desk.window());
     if (what == std::string("server")) desk.end_server();
     EXPECT_EQ(desk.wait_for_end(60.0), 1) << what;
     const std::string said = desk.errors();

@@ -41,7 +41,7 @@ TEST(Window, TakesEveryParameterToBothEnds) {
   }
 }
 
-TEST(Window, KeepsItsMemoryThroughRandomChanges) {
+TEST(Window, MemoryStaysBoundedThroughRandomChanges) {
   NEEDS_A_DESK();
   // Two minutes, or so many frames.
   const char* frames = std::getenv("TYNDALL_SOAK_FRAMES");

@@ -13,7 +13,7 @@ namespace {
 using namespace desk;
 
 // Presets change what they name and leave the rest; VSync chooses how the window presents.
-TEST(Window, TakesPresetsAndVsyncByTheMouse) {
+TEST(Window, AppliesPresetsAndVsyncFromTheMenus) {
   NEEDS_A_DESK();
   Desk desk("menus");
   ASSERT_TRUE(desk.open(joined(kSmallTables, {"--size", "480x400", "--no-first-steps", "--set", "camera.fov_deg=33"})))

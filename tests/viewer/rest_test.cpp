@@ -45,7 +45,7 @@ TEST(Window, SleepsWhenNothingChanges) {
 
 // What the viewer starts with is kept at once, what a slider leads to when it has stood for 20 s, and what it only came
 // by not at all.
-TEST(Window, KeepsTablesThatHaveStood) {
+TEST(Window, CachesTablesOnceParametersAreStable) {
   NEEDS_A_DESK();
   Desk desk("kept");
   const std::string cache = desk.folder() + "/cache";

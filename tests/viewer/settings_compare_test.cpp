@@ -6,7 +6,7 @@
 namespace tyndall::viewer {
 namespace {
 
-TEST(ViewerSettings, WhatIsRefusedGoesBackButNotWhatWasChangedSince) {
+TEST(ViewerSettings, RefusedSettingsAreRevertedButLaterChangesStay) {
   config::Settings had, asked, now;
   asked.effect.tables.size = {4, 4, 4, 4096};
   asked.effect.atmosphere.mie_g = 0.5F;

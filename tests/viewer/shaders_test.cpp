@@ -26,7 +26,7 @@ TEST(Window, RebuildsShadersWhileItRuns) {
   }
   ASSERT_TRUE(desk.open(kSmall, {"TYNDALL_DATA=" + data.string()})) << desk.errors();
   std::size_t from = desk.lines();
-  desk.hands("key F8");
+  desk.input("key F8");
   ASSERT_TRUE(desk.wait_for({"shaders same"}, from)) << desk.log_text();
 
   const fs::path path = data / "shaders/scene/background.frag";
@@ -36,7 +36,7 @@ TEST(Window, RebuildsShadersWhileItRuns) {
   source.close();
   std::ofstream(path) << text.str() << "\nvoid broken( {\n";
   from = desk.lines();
-  desk.hands("key F8");
+  desk.input("key F8");
   const std::optional<std::string> failed = desk.wait_for({"shaders failed"}, from);
   ASSERT_TRUE(failed);
   EXPECT_NE(failed->find("background.frag"), std::string::npos) << *failed;
@@ -47,7 +47,7 @@ TEST(Window, RebuildsShadersWhileItRuns) {
   ASSERT_NE(changed, text.str());
   std::ofstream(path) << changed;
   from = desk.lines();
-  desk.hands("key F8");
+  desk.input("key F8");
   ASSERT_TRUE(desk.wait_for({"shaders rebuilt"}, from));
   desk.picture("rebuilt");
   EXPECT_EQ(desk.leave(), 0) << desk.errors();

@@ -18,15 +18,15 @@ TEST(Window, IsResizedAndIdlesWhenNothingChanges) {
     const int width = 200 + 2 * ((i * 37) % 280);
     const int height = 150 + 2 * ((i * 53) % 180);
     const std::size_t from = desk.lines();
-    desk.hands("windowsize " + desk.window() + " " + std::to_string(width) + " " + std::to_string(height));
+    desk.input("windowsize " + desk.window() + " " + std::to_string(width) + " " + std::to_string(height));
     ASSERT_TRUE(
         desk.wait_for({"frame left", " " + std::to_string(width / 2) + " " + std::to_string(height / 2) + " "}, from))
         << i;
   }
   desk.picture("resized");
   // Minimised and back: nothing is drawn meanwhile, and then it goes on.
-  desk.hands("windowunmap --sync " + desk.window());
-  desk.hands("windowmap --sync " + desk.window());
+  desk.input("windowunmap --sync " + desk.window());
+  desk.input("windowmap --sync " + desk.window());
   // At rest: every pipeline made, the eye adapted, then no step of the loop any more.
   ASSERT_TRUE(desk.wait_for({"pipelines"}));
   ASSERT_TRUE(desk.wait_for({"resting"}));
@@ -41,22 +41,22 @@ TEST(Window, IsMinimisedAndRestored) {
   ASSERT_TRUE(desk.open(kSmall)) << desk.errors();
   for (int i = 0; i < 3; ++i) {
     std::size_t from = desk.lines();
-    desk.hands("windowminimize " + desk.window());
+    desk.input("windowminimize " + desk.window());
     ASSERT_TRUE(desk.wait_for({"minimised"}, from));
     from = desk.lines();
-    desk.hands("windowactivate " + desk.window());
+    desk.input("windowactivate " + desk.window());
     ASSERT_TRUE(desk.wait_for({"restored"}, from));
     from = desk.lines();
-    desk.hands("key w");
+    desk.input("key w");
     ASSERT_TRUE(desk.wait_for({"frame left"}, from)) << i;
   }
   // Between full screen and window, by the manager's rules.
   std::size_t from = desk.lines();
-  desk.hands("key F11");
+  desk.input("key F11");
   ASSERT_TRUE(desk.wait_for({"shown", " in 800 600"}, from));
   desk.picture("full_screen");
   from = desk.lines();
-  desk.hands("key F11");
+  desk.input("key F11");
   ASSERT_TRUE(desk.wait_for({"shown", " in 480 270"}, from));
   desk.picture("back");
   EXPECT_EQ(desk.leave(), 0) << desk.errors();

@@ -15,12 +15,12 @@ using namespace desk;
 // for tables, for pipelines or for another scene. Steps of the loop are timed by the viewer itself.
 void works_without_a_freeze(Desk& desk) {
   std::size_t from = desk.lines();
-  desk.hands("keydown w");
+  desk.input("keydown w");
   for (int i = 0; i < 3; ++i) {
     ASSERT_TRUE(desk.wait_for({"frame left"}, from));
     from = desk.lines();
   }
-  desk.hands("keyup w");
+  desk.input("keyup w");
   // The air: other tables.
   ASSERT_TRUE(pull(desk, "atmosphere.aerosol_density", {0.3, 0.35, 0.4, 0.45, 0.5}));
   ASSERT_TRUE(desk.wait_for({"set atmosphere.aerosol_density"}, from));
@@ -63,11 +63,11 @@ TEST(Window, SharesOneDeviceWithTheScenes) {
   arguments.insert(arguments.end(), {"--script", "one-device"});
   ASSERT_TRUE(desk.open(arguments)) << desk.errors();
   std::size_t from = desk.lines();
-  desk.hands("keydown w");
+  desk.input("keydown w");
   ASSERT_TRUE(desk.wait_for({"frame left"}, from));
-  desk.hands("keyup w");
+  desk.input("keyup w");
   from = desk.lines();
-  desk.hands("windowsize " + desk.window() + " 400 300");
+  desk.input("windowsize " + desk.window() + " 400 300");
   ASSERT_TRUE(desk.wait_for({"frame left", " 200 150 "}, from));
   ASSERT_TRUE(desk.click("menu.Windows"));
   ASSERT_TRUE(desk.click("item.Views and comparison"));
@@ -76,7 +76,7 @@ TEST(Window, SharesOneDeviceWithTheScenes) {
   ASSERT_TRUE(desk.wait_for({"shown two"}, from));
   desk.picture("two");
   from = desk.lines();
-  desk.hands("key F11");
+  desk.input("key F11");
   ASSERT_TRUE(desk.wait_for({"frame right", " 400 300 "}, from));
   desk.picture("full_screen");
   EXPECT_EQ(desk.leave(), 0) << desk.errors();

@@ -32,13 +32,13 @@ Frame last_frame(const Desk& desk) {
 bool pull(Desk& desk, const std::string& key, const std::vector<double>& ways) {
   if (!desk.point_at(key, 0.25)) return false;
   std::size_t at = desk.lines();
-  desk.hands("mousedown 1");
+  desk.input("mousedown 1");
   if (!desk.wait_for({"press left"}, at)) return false;
   for (const double part : ways) {
     if (!desk.point_at(key, part)) return false;
   }
   at = desk.lines();
-  desk.hands("mouseup 1");
+  desk.input("mouseup 1");
   return desk.wait_for({"release left"}, at).has_value();
 }
 

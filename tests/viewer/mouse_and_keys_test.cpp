@@ -13,18 +13,18 @@ namespace {
 
 using namespace desk;
 
-TEST(Window, FollowsTheHands) {
+TEST(Window, FollowsMouseAndKeys) {
   NEEDS_A_DESK();
-  Desk desk("hands");
+  Desk desk("mouse_and_keys");
   ASSERT_TRUE(desk.open(kSmall)) << desk.errors();
   desk.picture("1_open");
   const Frame start = last_frame(desk);
 
   // W flies forward: north-west and down from where the default camera stands.
   std::size_t from = desk.lines();
-  desk.hands("keydown w");
+  desk.input("keydown w");
   ASSERT_TRUE(desk.wait_for({"frame left"}, from));
-  desk.hands("keyup w");
+  desk.input("keyup w");
   ASSERT_TRUE(desk.wait_for({"settled"}, desk.lines()));
   Frame f = last_frame(desk);
   EXPECT_LT(f.x, start.x - 1.0);
@@ -34,23 +34,23 @@ TEST(Window, FollowsTheHands) {
   // Each of the other keys does something, and Shift more of it.
   for (const char* key : {"s", "a", "d", "q", "e"}) {
     from = desk.lines();
-    desk.hands(std::string("key ") + key);
+    desk.input(std::string("key ") + key);
     EXPECT_TRUE(desk.settles_after({"frame left"}, from)) << key;
   }
 
   // A drag with the left button looks, with the right button turns the sun; both on the picture, beside the controls.
   const auto drag = [&desk](int button, int x0, int y0, int x1, int y1) {
     std::size_t at = desk.lines();
-    desk.hands("mousemove " + std::to_string(x0) + " " + std::to_string(y0));
+    desk.input("mousemove " + std::to_string(x0) + " " + std::to_string(y0));
     ASSERT_TRUE(desk.wait_for({"pointer " + std::to_string(x0) + " " + std::to_string(y0)}, at));
     at = desk.lines();
-    desk.hands("mousedown " + std::to_string(button));
+    desk.input("mousedown " + std::to_string(button));
     ASSERT_TRUE(desk.wait_for({"press"}, at));
     at = desk.lines();
-    desk.hands("mousemove " + std::to_string(x1) + " " + std::to_string(y1));
+    desk.input("mousemove " + std::to_string(x1) + " " + std::to_string(y1));
     ASSERT_TRUE(desk.wait_for({"frame left"}, at));
     at = desk.lines();
-    desk.hands("mouseup " + std::to_string(button));
+    desk.input("mouseup " + std::to_string(button));
     ASSERT_TRUE(desk.settles_after({"release"}, at));
   };
   Frame before = last_frame(desk);
@@ -66,14 +66,14 @@ TEST(Window, FollowsTheHands) {
   EXPECT_GT(f.elevation, before.elevation + 10.0);
   EXPECT_EQ(f.yaw, before.yaw);
   from = desk.lines();
-  desk.hands("click 4");
+  desk.input("click 4");
   ASSERT_TRUE(desk.settles_after({"frame left"}, from));
   EXPECT_LT(last_frame(desk).fov, f.fov);
   desk.picture("2_flown");
 
   // F5 keeps everything; what is done after it is undone by F9.
   from = desk.lines();
-  desk.hands("key F5");
+  desk.input("key F5");
   ASSERT_TRUE(desk.wait_for({"saved"}, from));
   const Frame saved = last_frame(desk);
   config::Settings state;
@@ -81,18 +81,18 @@ TEST(Window, FollowsTheHands) {
   EXPECT_NEAR(state.scene.sun.azimuth_deg, saved.azimuth, 1.0e-3);
   EXPECT_NEAR(state.scene.camera.yaw_deg, saved.yaw, 1.0e-3);
   from = desk.lines();
-  desk.hands("key w");
+  desk.input("key w");
   ASSERT_TRUE(desk.settles_after({"frame left"}, from));
   EXPECT_NE(last_frame(desk).x, saved.x);
   from = desk.lines();
-  desk.hands("key F9");
+  desk.input("key F9");
   ASSERT_TRUE(desk.settles_after({"loaded"}, from));
   EXPECT_NEAR(last_frame(desk).x, saved.x, 0.01);
   EXPECT_NEAR(last_frame(desk).yaw, saved.yaw, 1.0e-3);
 
   // F12: both pictures, of the right size, with the parameters in them.
   from = desk.lines();
-  desk.hands("key F12");
+  desk.input("key F12");
   const std::optional<std::string> shot = desk.wait_for({" screenshot "}, from);
   ASSERT_TRUE(shot);
   const std::string stem = shot->substr(shot->find(" screenshot ") + 12);
@@ -107,21 +107,21 @@ TEST(Window, FollowsTheHands) {
   }
 
   // F1 and F2 change what is seen; F11 fills the screen and comes back.
-  desk.hands("key F1");
+  desk.input("key F1");
   ASSERT_TRUE(desk.wait_for({"key 290"}, from));
   desk.picture("3_help");
-  desk.hands("key F1");
-  desk.hands("key F2");
+  desk.input("key F1");
+  desk.input("key F2");
   ASSERT_TRUE(desk.wait_for({"key 291"}, from));
   desk.picture("4_without_gui");
-  desk.hands("key F2");
+  desk.input("key F2");
   from = desk.lines();
-  desk.hands("key F11");
+  desk.input("key F11");
   ASSERT_TRUE(desk.wait_for({"frame left", " 400 300 "}, from));
   ASSERT_TRUE(desk.wait_for({"shown", " in 800 600"}, from));
   desk.picture("5_full_screen");
   from = desk.lines();
-  desk.hands("key F11");
+  desk.input("key F11");
   ASSERT_TRUE(desk.wait_for({"frame left", " 240 135 "}, from));
   EXPECT_EQ(desk.leave(), 0) << desk.errors();
 }
