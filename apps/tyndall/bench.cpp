@@ -1,5 +1,6 @@
 // `tyndall bench`: GPU milliseconds per pass of the demo scene, after a warm-up.
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -22,7 +23,7 @@ struct Series {
   [[nodiscard]] double quantile(double q) const {
     std::vector<double> sorted = ms;
     std::sort(sorted.begin(), sorted.end());
-    const auto rank = static_cast<std::size_t>(q * static_cast<double>(sorted.size() - 1) + 0.5);
+    const auto rank = static_cast<std::size_t>(std::lround(q * static_cast<double>(sorted.size() - 1)));
     return sorted[std::min(rank, sorted.size() - 1)];
   }
 };

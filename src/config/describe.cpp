@@ -45,7 +45,7 @@ std::string range_text(const Row& row) {
 }
 
 std::string json_value(const Row& row, const Settings& settings) {
-  const std::string text = value_text(row, settings);
+  std::string text = value_text(row, settings);
   if (is_vector(row.info.type)) return files::concat({"[", text, "]"});
   if (row.info.type == ParamType::string || row.info.type == ParamType::enumeration) return files::quoted_text(text);
   return text;

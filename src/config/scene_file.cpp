@@ -313,7 +313,7 @@ std::string toml_number(std::string_view text, bool real) {
 }
 
 std::string toml_value(const Row& row, const Settings& settings) {
-  const std::string text = value_text(row, settings);
+  std::string text = value_text(row, settings);
   const bool real = is_real(row.info.type);
   switch (row.info.type) {
     case ParamType::string:

@@ -132,9 +132,9 @@ struct Writer {
 // Apart from on_write, so that no object is alive where libpng jumps.
 bool write_bytes(Writer* writer, const unsigned char* data, std::size_t size) {
   Result<void> result = writer->file->write(data, size);
-  if (!result) writer->file_error = std::move(result).error();
   writer->file_failed = !result;
-  return result.ok();
+  if (!result) writer->file_error = std::move(result).error();
+  return !writer->file_failed;
 }
 
 void on_write(png_structp png, png_bytep data, png_size_t size) {

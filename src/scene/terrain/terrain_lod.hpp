@@ -33,7 +33,10 @@ struct TerrainLod {
   std::vector<ClipLevel> levels;  // from fine to coarse
 
   // Distance out to which a level is drawn.
-  [[nodiscard]] double range_m(const ClipLevel& level) const { return kRangeCells / coarseness * level.cell_m; }
+  [[nodiscard]] double range_m(const ClipLevel& level) const {
+    const int cells = kRangeCells / coarseness;
+    return cells * level.cell_m;
+  }
   [[nodiscard]] int block_cells() const { return kBlockCells / coarseness; }
   [[nodiscard]] int level_samples() const { return kLevelSamples / coarseness; }
 };
