@@ -26,7 +26,8 @@ nlohmann::json numbers_as_json(const std::array<double, 3>& numbers) {
   return out;
 }
 
-std::string as_json(const ProbeModel& model, const ProbeSettings& settings, std::span<const ProbeAnswer> answers) {
+std::string as_json(const scene::ModelInfo& model, const ProbeSettings& settings,
+                    std::span<const ProbeAnswer> answers) {
   nlohmann::ordered_json out;
   out["model"] = model.name;
   if (model.random) {
@@ -51,9 +52,9 @@ int run_probe(Args args) {
   CommonOptions options;
   ProbeSettings settings;
   std::string queries;
-  std::string model_name = probe_models().front().name;
+  std::string model_name(scene::model_registry().front().name);
   std::vector<std::string> model_names;
-  for (const ProbeModel& model : probe_models()) model_names.emplace_back(model.name);
+  for (const scene::ModelInfo& model : scene::model_registry()) model_names.emplace_back(model.name);
 
   Arguments arguments("probe");
   add_common(arguments, options, kScene | kSet | kDevice | kOutput | kJson);
@@ -68,8 +69,9 @@ int run_probe(Args args) {
   if (queries.empty()) {
     return fail(files::input_error("no queries", "tyndall probe", "needed is --queries FILE"));
   }
-  const ProbeModel& model = *std::find_if(probe_models().begin(), probe_models().end(),
-                                          [&](const ProbeModel& m) { return m.name == model_name; });
+  const std::span<const scene::ModelInfo> models = scene::model_registry();
+  const scene::ModelInfo& model = *std::find_if(models.begin(), models.end(),
+                                                [&](const scene::ModelInfo& info) { return info.name == model_name; });
   if (Result<void> r = resolve(options); !r) return fail(r.error());
   const Result<ProbeTable> table = read_queries(queries);
   if (!table) return fail(table.error());
@@ -100,7 +102,7 @@ int run_probe(Args args) {
     settings.progress = [&](double done) {
       progress.update(static_cast<std::uint64_t>(done * static_cast<double>(kSteps)), kSteps);
     };
-    answers = model.run(settings, table.value().queries);
+    answers = ask_model(model.id, settings, table.value().queries);
   }
   for (const std::string& text : notes) note(text);
   if (!answers) return fail(answers.error());

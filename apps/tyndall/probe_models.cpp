@@ -16,24 +16,24 @@ namespace tyndall::cli {
 namespace {
 
 // Rays on the GPU; the sky, whose quadrature takes hundreds of rays, on the CPU in double precision.
-Result<std::vector<ProbeAnswer>> run_single(const ProbeSettings& settings, std::span<const ProbeQuery> queries) {
+Result<std::vector<ProbeAnswer>> run_single(const ProbeSettings& settings, std::span<const RayQuery> queries) {
   const shared::Medium medium = medium_from_params(settings.params);
   std::vector<ProbeAnswer> answers(queries.size());
   std::vector<models::Ray> rays;
   std::vector<std::size_t> places;  // of the rays among the queries
-  const auto sky_count =
-      static_cast<double>(std::count_if(queries.begin(), queries.end(), [](const ProbeQuery& q) { return q.sky; }));
+  const auto sky_count = static_cast<double>(
+      std::count_if(queries.begin(), queries.end(), [](const RayQuery& q) { return q.sky_irradiance; }));
   double sky_done = 0.0;
   const double sky_share = queries.empty() ? 0.0 : sky_count / static_cast<double>(queries.size());
   for (std::size_t i = 0; i < queries.size(); ++i) {
-    const ProbeQuery& q = queries[i];
-    if (q.sky) {
+    const RayQuery& q = queries[i];
+    if (q.sky_irradiance) {
       const double cos_sun = std::cos(q.sun_zenith_rad);
       answers[i].radiance = models::single_sky_irradiance(medium, q.altitude_m, cos_sun);
       answers[i].transmittance = models::sun_transmittance(medium, q.altitude_m, cos_sun);
       settings.progress(sky_share * ++sky_done / sky_count);
     } else {
-      rays.push_back(models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad));
+      rays.push_back(models::ray_from_query(q));
       places.push_back(i);
     }
   }
@@ -53,18 +53,13 @@ Result<std::vector<ProbeAnswer>> run_single(const ProbeSettings& settings, std::
   return answers;
 }
 
-Result<std::vector<ProbeAnswer>> run_reference(const ProbeSettings& settings, std::span<const ProbeQuery> queries) {
-  std::vector<reference::Query> asked;
-  asked.reserve(queries.size());
-  for (const ProbeQuery& q : queries) {
-    asked.push_back({q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad, q.sky});
-  }
+Result<std::vector<ProbeAnswer>> run_reference(const ProbeSettings& settings, std::span<const RayQuery> queries) {
   reference::Options options;
   options.samples = settings.samples;
   options.orders = static_cast<int>(settings.orders);
   options.seed = settings.seed;
   const Result<std::vector<reference::Estimate>> found =
-      reference::trace(settings.params, asked, options, [&](double done) {
+      reference::trace(settings.params, queries, options, [&](double done) {
         settings.progress(done);
         return true;
       });
@@ -77,14 +72,9 @@ Result<std::vector<ProbeAnswer>> run_reference(const ProbeSettings& settings, st
   return answers;
 }
 
-Result<std::vector<ProbeAnswer>> run_precomputed(const ProbeSettings& settings, std::span<const ProbeQuery> queries) {
+Result<std::vector<ProbeAnswer>> run_precomputed(const ProbeSettings& settings, std::span<const RayQuery> queries) {
   std::vector<ProbeAnswer> answers;
   if (queries.empty()) return answers;
-  std::vector<models::PrecomputedQuery> asked;
-  asked.reserve(queries.size());
-  for (const ProbeQuery& q : queries) {
-    asked.push_back({models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad), q.sky});
-  }
   Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({settings.device, false});
   if (!host) return std::move(host).error();
   tables::MakeReady how;
@@ -97,7 +87,7 @@ Result<std::vector<ProbeAnswer>> run_precomputed(const ProbeSettings& settings, 
   for (const std::string& text : model.value().origin().notes) {
     if (settings.note) settings.note(text);
   }
-  const Result<std::vector<models::Answer>> found = model.value().answer(asked);
+  const Result<std::vector<models::Answer>> found = model.value().answer(queries);
   if (!found) return found.error();
   answers.reserve(queries.size());
   for (const models::Answer& answer : found.value()) {
@@ -106,95 +96,66 @@ Result<std::vector<ProbeAnswer>> run_precomputed(const ProbeSettings& settings, 
   return answers;
 }
 
-// On the CPU in double precision: the functions that the shaders draw with.
-Result<std::vector<ProbeAnswer>> run_oneil_model(const ProbeSettings& settings, std::span<const ProbeQuery> queries,
-                                                 bool table) {
+// Answers queries one after the other on the CPU. `sky` and `ray` are functions of a query that return models::Answer.
+template <typename Sky, typename Ray>
+std::vector<ProbeAnswer> answer_each(const ProbeSettings& settings, std::span<const RayQuery> queries, const Sky& sky,
+                                     const Ray& ray) {
+  std::vector<ProbeAnswer> out;
+  out.reserve(queries.size());
+  for (const RayQuery& query : queries) {
+    const models::Answer answer = query.sky_irradiance ? sky(query) : ray(query);
+    out.push_back({answer.radiance, answer.transmittance, {}, false});
+    settings.progress(static_cast<double>(out.size()) / static_cast<double>(queries.size()));
+  }
+  return out;
+}
+
+void note_missing_ozone(const ProbeSettings& settings, const char* model) {
+  if (!settings.note || settings.params.atmosphere.ozone_absorption == Vec3(0.0F)) return;
+  settings.note(std::string(model) + " has no ozone: atmosphere.ozone_absorption is left out");
+}
+
+// In double precision: the functions that the shaders draw with.
+Result<std::vector<ProbeAnswer>> run_oneil(const ProbeSettings& settings, std::span<const RayQuery> queries,
+                                           bool table) {
   const models::OneilModel model =
       models::make_oneil(medium_from_params(settings.params), scene::oneil_settings(settings.scene.oneil, table));
   if (settings.note) settings.note(models::describe_errors(model));
-  if (settings.note && settings.params.atmosphere.ozone_absorption != Vec3(0.0F)) {
-    settings.note("O'Neil's model has no ozone: atmosphere.ozone_absorption is left out");
-  }
-  std::vector<ProbeAnswer> answers;
-  answers.reserve(queries.size());
-  for (const ProbeQuery& q : queries) {
-    if (q.sky) {
-      const double cos_sun = std::cos(q.sun_zenith_rad);
-      answers.push_back({models::oneil_sky_irradiance(model, q.altitude_m, cos_sun),
-                         models::oneil_sun_transmittance(model, q.altitude_m, cos_sun),
-                         {},
-                         false});
-    } else {
-      const models::Answer answer = models::oneil(
-          model, models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad));
-      answers.push_back({answer.radiance, answer.transmittance, {}, false});
-    }
-    settings.progress(static_cast<double>(answers.size()) / static_cast<double>(queries.size()));
-  }
-  return answers;
+  note_missing_ozone(settings, "O'Neil's model");
+  const auto sky = [&](const RayQuery& q) -> models::Answer {
+    const double cos_sun = std::cos(q.sun_zenith_rad);
+    return {models::oneil_sky_irradiance(model, q.altitude_m, cos_sun),
+            models::oneil_sun_transmittance(model, q.altitude_m, cos_sun)};
+  };
+  const auto ray = [&](const RayQuery& q) { return models::oneil(model, models::ray_from_query(q)); };
+  return answer_each(settings, queries, sky, ray);
 }
 
-Result<std::vector<ProbeAnswer>> run_oneil(const ProbeSettings& settings, std::span<const ProbeQuery> queries) {
-  return run_oneil_model(settings, queries, false);
-}
-
-Result<std::vector<ProbeAnswer>> run_oneil_table(const ProbeSettings& settings, std::span<const ProbeQuery> queries) {
-  return run_oneil_model(settings, queries, true);
-}
-
-// Closed forms, on the CPU in double precision.
-Result<std::vector<ProbeAnswer>> run_homogeneous(const ProbeSettings& settings, std::span<const ProbeQuery> queries) {
+// Closed forms in double precision.
+Result<std::vector<ProbeAnswer>> run_homogeneous(const ProbeSettings& settings, std::span<const RayQuery> queries) {
   const shared::Homogeneous medium =
       models::homogeneous_from_params(settings.params, homogeneous_lengths(settings.scene));
-  if (settings.note && settings.params.atmosphere.ozone_absorption != Vec3(0.0F)) {
-    settings.note("the homogeneous model has no ozone: atmosphere.ozone_absorption is left out");
-  }
-  std::vector<ProbeAnswer> answers;
-  answers.reserve(queries.size());
-  for (const ProbeQuery& q : queries) {
-    if (q.sky) {
-      const double cos_sun = std::cos(q.sun_zenith_rad);
-      answers.push_back(
-          {models::homogeneous_sky_irradiance(medium, cos_sun), models::homogeneous_sun(medium, cos_sun), {}, false});
-      continue;
-    }
-    const models::Answer answer = models::homogeneous_light(
-        medium, models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad));
-    answers.push_back({answer.radiance, answer.transmittance, {}, false});
-  }
-  return answers;
+  note_missing_ozone(settings, "the homogeneous model");
+  const auto sky = [&](const RayQuery& q) -> models::Answer {
+    const double cos_sun = std::cos(q.sun_zenith_rad);
+    return {models::homogeneous_sky_irradiance(medium, cos_sun), models::homogeneous_sun(medium, cos_sun)};
+  };
+  const auto ray = [&](const RayQuery& q) { return models::homogeneous_light(medium, models::ray_from_query(q)); };
+  return answer_each(settings, queries, sky, ray);
 }
 
-// The medium of scattering.medium = homogeneous, wholly lit, on the CPU in double precision.
+// The medium of scattering.medium = homogeneous, wholly lit, in double precision.
 Result<std::vector<ProbeAnswer>> run_homogeneous_medium(const ProbeSettings& settings,
-                                                        std::span<const ProbeQuery> queries) {
+                                                        std::span<const RayQuery> queries) {
   const models::HomogeneousMedium medium = models::homogeneous_medium_from_params(settings.params);
-  std::vector<ProbeAnswer> answers;
-  answers.reserve(queries.size());
-  for (const ProbeQuery& q : queries) {
-    if (q.sky) {
-      answers.push_back({models::homogeneous_medium_sky(medium, q.altitude_m, std::cos(q.sun_zenith_rad)),
-                         medium.sunlight,
-                         {},
-                         false});
-      continue;
-    }
-    const models::Answer answer = models::homogeneous_medium_light(
-        medium, models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad));
-    answers.push_back({answer.radiance, answer.transmittance, {}, false});
-  }
-  return answers;
+  const auto sky = [&](const RayQuery& q) -> models::Answer {
+    return {models::homogeneous_medium_sky(medium, q.altitude_m, std::cos(q.sun_zenith_rad)), medium.sunlight};
+  };
+  const auto ray = [&](const RayQuery& q) {
+    return models::homogeneous_medium_light(medium, models::ray_from_query(q));
+  };
+  return answer_each(settings, queries, sky, ray);
 }
-
-constexpr ProbeModel kModels[] = {
-    {"precomputed", false, run_precomputed},
-    {"single", false, run_single},
-    {"homogeneous", false, run_homogeneous},
-    {"homogeneous-medium", false, run_homogeneous_medium},
-    {"oneil", false, run_oneil},
-    {"oneil-table", false, run_oneil_table},
-    {"reference", true, run_reference},
-};
 
 }  // namespace
 
@@ -203,6 +164,19 @@ models::HomogeneousLengths homogeneous_lengths(const scene::SceneParams& scene) 
   return {own.air_length_m, own.haze_length_m, own.falloff.value != 0};
 }
 
-std::span<const ProbeModel> probe_models() { return kModels; }
+Result<std::vector<ProbeAnswer>> ask_model(scene::ModelId model, const ProbeSettings& settings,
+                                           std::span<const RayQuery> queries) {
+  using Id = scene::ModelId;
+  switch (model) {
+    case Id::precomputed: return run_precomputed(settings, queries);
+    case Id::single: return run_single(settings, queries);
+    case Id::homogeneous: return run_homogeneous(settings, queries);
+    case Id::homogeneous_medium: return run_homogeneous_medium(settings, queries);
+    case Id::oneil: return run_oneil(settings, queries, false);
+    case Id::oneil_table: return run_oneil(settings, queries, true);
+    case Id::reference: return run_reference(settings, queries);
+  }
+  return std::vector<ProbeAnswer>();
+}
 
 }  // namespace tyndall::cli

@@ -9,21 +9,14 @@
 #include <vector>
 
 #include "models/homogeneous.hpp"
+#include "rays/ray_query.hpp"
+#include "scene/description/model_registry.hpp"
 #include "scene/description/scene_params.hpp"
 #include "tables/make_ready.hpp"
 #include "tyndall/params.hpp"
 #include "tyndall/result.hpp"
 
 namespace tyndall::cli {
-
-// One row of the query table. Angles in rad.
-struct ProbeQuery {
-  bool sky = false;  // asks for the horizontal irradiance of the sky; no view direction then
-  double altitude_m = 0.0;
-  double view_zenith_rad = 0.0;
-  double sun_zenith_rad = 0.0;
-  double azimuth_rad = 0.0;  // between view and sun
-};
 
 struct ProbeAnswer {
   std::array<double, 3> radiance = {};  // L / E0 [1/sr]; for the sky E / E0
@@ -48,11 +41,8 @@ struct ProbeSettings {
 // What the scene's parameters say of the models.
 [[nodiscard]] models::HomogeneousLengths homogeneous_lengths(const scene::SceneParams& scene);
 
-struct ProbeModel {
-  const char* name;
-  bool random;  // has a standard error
-  Result<std::vector<ProbeAnswer>> (*run)(const ProbeSettings& settings, std::span<const ProbeQuery> queries);
-};
-[[nodiscard]] std::span<const ProbeModel> probe_models();
+// Answers the queries with one of the models.
+[[nodiscard]] Result<std::vector<ProbeAnswer>> ask_model(scene::ModelId model, const ProbeSettings& settings,
+                                                         std::span<const RayQuery> queries);
 
 }  // namespace tyndall::cli

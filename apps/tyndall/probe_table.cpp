@@ -86,12 +86,13 @@ Result<ProbeTable> read_queries(const std::string& path) {
   table.queries.reserve(table.input.rows());
   for (std::size_t row = 0; row < table.input.rows(); ++row) {
     const auto cell = [&](ColumnIndex column) { return table.input.field(row, at[column]); };
-    ProbeQuery query;
-    query.sky = files::csv_value(cell(kViewZenith)) == kSky;
+    RayQuery query;
+    query.sky_irradiance = files::csv_value(cell(kViewZenith)) == kSky;
     std::array<double, kColumnCount> numbers = {};
     for (const ColumnIndex column : {kAltitude, kViewZenith, kSunZenith, kAzimuth}) {
       // The sky is not looked at in any direction.
-      if (query.sky && (column == kViewZenith || (column == kAzimuth && files::csv_value(cell(column)).empty()))) {
+      if (query.sky_irradiance &&
+          (column == kViewZenith || (column == kAzimuth && files::csv_value(cell(column)).empty()))) {
         continue;
       }
       double& number = numbers[column];

@@ -12,7 +12,7 @@ namespace tyndall::cli {
 
 struct ProbeTable {
   files::CsvTable input;
-  std::vector<ProbeQuery> queries;  // one per row
+  std::vector<RayQuery> queries;  // one per row
 };
 
 // Every mistake in the file is bad input, and named by line and column.

@@ -13,6 +13,7 @@
 #include "make_tables.hpp"
 #include "models/gpu_probe.hpp"
 #include "models/precomputed.hpp"
+#include "scene/description/model_registry.hpp"
 #include "scene/description/solar_position.hpp"
 #include "scene/sky/sun_disc.hpp"
 #include "sky_map.hpp"
@@ -38,7 +39,7 @@ struct SkyOptions {
 class SkySource {
  public:
   virtual ~SkySource() = default;
-  virtual Result<std::vector<models::Answer>> answer(std::span<const models::Ray> rays) = 0;
+  virtual Result<std::vector<models::Answer>> answer(std::span<const RayQuery> queries) = 0;
   // Where its tables came from; nullptr without tables.
   [[nodiscard]] virtual const tables::Outcome* tables() const { return nullptr; }
 };
@@ -48,7 +49,10 @@ class SingleSource final : public SkySource {
  public:
   SingleSource(gpu::Host& host, const Params& params) : host_(host), medium_(medium_from_params(params)) {}
 
-  Result<std::vector<models::Answer>> answer(std::span<const models::Ray> rays) override {
+  Result<std::vector<models::Answer>> answer(std::span<const RayQuery> queries) override {
+    std::vector<models::Ray> rays;
+    rays.reserve(queries.size());
+    for (const RayQuery& query : queries) rays.push_back(models::ray_from_query(query));
     Result<std::vector<models::Answer>> found = models::single_scattering_on_gpu(host_, medium_, rays);
     if (!found || medium_.ground_albedo == 0.0F) return found;
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -69,10 +73,7 @@ class PrecomputedSource final : public SkySource {
  public:
   explicit PrecomputedSource(models::PrecomputedModel model) : model_(std::move(model)) {}
 
-  Result<std::vector<models::Answer>> answer(std::span<const models::Ray> rays) override {
-    std::vector<models::PrecomputedQuery> queries;
-    queries.reserve(rays.size());
-    for (const models::Ray& ray : rays) queries.push_back({ray, false});
+  Result<std::vector<models::Answer>> answer(std::span<const RayQuery> queries) override {
     return model_.answer(queries);
   }
   [[nodiscard]] const tables::Outcome* tables() const override { return &model_.origin(); }
@@ -95,11 +96,13 @@ Result<std::unique_ptr<SkySource>> make_precomputed(gpu::Host& host, const confi
   return std::unique_ptr<SkySource>(std::make_unique<PrecomputedSource>(std::move(model).value()));
 }
 
+// The models of the registry that make maps.
 struct SkyModel {
-  const char* name;
+  scene::ModelId id;
   MakeSource make;
+  [[nodiscard]] std::string_view name() const { return scene::model_info(id).name; }
 };
-constexpr SkyModel kModels[] = {{"precomputed", make_precomputed}, {"single", make_single}};
+constexpr SkyModel kModels[] = {{scene::ModelId::precomputed, make_precomputed}, {scene::ModelId::single, make_single}};
 
 // The sun's elevation and azimuth by one of the two ways, in deg.
 struct SunAngles {
@@ -133,15 +136,15 @@ Result<SunAngles> find_sun(const SkyOptions& options) {
 Result<void> fill(image::Image& image, const SkyMap& map, const std::array<double, 3>& irradiance, SkySource& source) {
   Progress progress("sky");
   const std::uint32_t rows = static_cast<std::uint32_t>(std::max<std::size_t>(kBatchRays / map.width, 1));
-  std::vector<models::Ray> rays;
+  std::vector<RayQuery> queries;
   for (std::uint32_t first = 0; first < map.height; first += rows) {
     progress.update(first, map.height);
     const std::uint32_t last = std::min(first + rows, map.height);
-    rays.clear();
+    queries.clear();
     for (std::uint32_t y = first; y < last; ++y) {
-      for (std::uint32_t x = 0; x < map.width; ++x) rays.push_back(map.ray(x, y));
+      for (std::uint32_t x = 0; x < map.width; ++x) queries.push_back(map.query(x, y));
     }
-    const Result<std::vector<models::Answer>> found = source.answer(rays);
+    const Result<std::vector<models::Answer>> found = source.answer(queries);
     if (!found) return found.error();
     float* out = image.pixel(0, first);
     for (const models::Answer& answer : found.value()) {
@@ -168,9 +171,9 @@ int run_sky(Args args) {
   CommonOptions options;
   options.size = {2048, 1024};
   SkyOptions sky;
-  sky.model = kModels[0].name;
+  sky.model = kModels[0].name();
   std::vector<std::string> model_names;
-  for (const SkyModel& model : kModels) model_names.emplace_back(model.name);
+  for (const SkyModel& model : kModels) model_names.emplace_back(model.name());
   Arguments arguments("sky");
   add_common(arguments, options, kScene | kSet | kDevice | kSize | kOutput | kJson);
   arguments.number("--sun-elevation-deg", sky.sun_elevation_deg, -90.0, 90.0, "of the sun above the horizontal");
@@ -206,7 +209,7 @@ int run_sky(Args args) {
   Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({options.device, false});
   if (!host) return fail(host.error());
   const SkyModel& model =
-      *std::find_if(std::begin(kModels), std::end(kModels), [&](const SkyModel& m) { return m.name == sky.model; });
+      *std::find_if(std::begin(kModels), std::end(kModels), [&](const SkyModel& m) { return m.name() == sky.model; });
   Result<std::unique_ptr<SkySource>> source = model.make(*host.value(), options.settings);
   if (!source) return fail(source.error());
   image::Image image(map.width, map.height);

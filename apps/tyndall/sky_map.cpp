@@ -105,10 +105,10 @@ double SkyMap::pixel_solid_angle(std::uint32_t y) const {
   return 2.0 * kPi / width * 2.0 * std::sin(0.5 * (top + bottom)) * std::sin(0.5 * (bottom - top));
 }
 
-models::Ray SkyMap::ray(std::uint32_t x, std::uint32_t y) const {
+RayQuery SkyMap::query(std::uint32_t x, std::uint32_t y) const {
   const double zenith = kPi * (y + 0.5) / height;
   const double azimuth = 2.0 * kPi * (x + 0.5) / width;
-  return models::ray_from_angles(altitude_m, zenith, 0.5 * kPi - sun_elevation_rad, azimuth - sun_azimuth_rad);
+  return {altitude_m, zenith, 0.5 * kPi - sun_elevation_rad, azimuth - sun_azimuth_rad, false};
 }
 
 void add_sun(image::Image& image, const SkyMap& map, const SunFace& sun, const shared::Medium& medium) {

@@ -19,7 +19,7 @@ struct SkyMap {
   // Of pixels of this row [sr].
   [[nodiscard]] double pixel_solid_angle(std::uint32_t y) const;
   // Precondition: x < width, y < height.
-  [[nodiscard]] models::Ray ray(std::uint32_t x, std::uint32_t y) const;
+  [[nodiscard]] RayQuery query(std::uint32_t x, std::uint32_t y) const;
 };
 
 struct SunFace {

@@ -22,20 +22,20 @@ namespace {
 using files::concat;
 using validate::Rgb;
 
-// Answers of one of probe's models; a ray that ends on lit ground sees it, as in the reference.
-Result<std::vector<Rgb>> ask_probe(const ProbeModel& model, const std::string& device, const scene::SceneParams& scene,
-                                   const Params& params, std::span<const reference::Query> queries) {
+// One of the models that `probe` has, with the scene's parameters.
+struct AskedModel {
+  scene::ModelId id;
+  std::string device;
+  scene::SceneParams scene;
+};
+
+Result<std::vector<Rgb>> ask_probe(const AskedModel& model, const Params& params, std::span<const RayQuery> queries) {
   ProbeSettings settings;
   settings.params = params;
-  settings.scene = scene;
-  settings.device = device;
+  settings.scene = model.scene;
+  settings.device = model.device;
   settings.progress = [](double) {};
-  std::vector<ProbeQuery> asked;
-  asked.reserve(queries.size());
-  for (const reference::Query& q : queries) {
-    asked.push_back({q.sky_irradiance, q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad});
-  }
-  const Result<std::vector<ProbeAnswer>> answers = model.run(settings, asked);
+  const Result<std::vector<ProbeAnswer>> answers = ask_model(model.id, settings, queries);
   if (!answers) return answers.error();
   std::vector<Rgb> out;
   out.reserve(answers.value().size());
@@ -43,22 +43,16 @@ Result<std::vector<Rgb>> ask_probe(const ProbeModel& model, const std::string& d
   return out;
 }
 
-const ProbeModel& probe_model(std::string_view name) {
-  return *std::find_if(probe_models().begin(), probe_models().end(),
-                       [&](const ProbeModel& m) { return m.name == name; });
-}
-
-// A model whose ground is black, with the ground that the sun lights directly added.
-Result<std::vector<Rgb>> ask_over_ground(const ProbeModel& model, const std::string& device,
-                                         const scene::SceneParams& scene, const Params& params,
-                                         std::span<const reference::Query> queries) {
-  Result<std::vector<Rgb>> found = ask_probe(model, device, scene, params, queries);
+// Adds the ground that the sun lights directly to a model whose ground is black: in the reference, a ray that ends on
+// lit ground sees it.
+Result<std::vector<Rgb>> ask_over_ground(const AskedModel& model, const Params& params,
+                                         std::span<const RayQuery> queries) {
+  Result<std::vector<Rgb>> found = ask_probe(model, params, queries);
   if (!found || params.planet.ground_albedo == 0.0F) return found;
   const shared::Medium medium = medium_from_params(params);
   for (std::size_t i = 0; i < queries.size(); ++i) {
-    const reference::Query& q = queries[i];
-    if (q.sky_irradiance) continue;
-    const models::Ray ray = models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad);
+    if (queries[i].sky_irradiance) continue;
+    const models::Ray ray = models::ray_from_query(queries[i]);
     const Rgb ground = models::sunlit_ground(medium, ray);
     const Rgb passed = models::single_scattering(medium, ray, 1).transmittance;
     for (std::size_t c = 0; c < 3; ++c) found.value()[i][c] += passed[c] * ground[c];
@@ -74,15 +68,9 @@ class Tables {
   // About the cache, each but once.
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
 
-  Result<std::vector<Rgb>> ask(const Params& params, std::span<const reference::Query> queries) {
+  Result<std::vector<Rgb>> ask(const Params& params, std::span<const RayQuery> queries) {
     if (Result<void> r = build(params); !r) return std::move(r).error();
-    std::vector<models::PrecomputedQuery> asked;
-    asked.reserve(queries.size());
-    for (const reference::Query& q : queries) {
-      asked.push_back({models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad),
-                       q.sky_irradiance});
-    }
-    const Result<std::vector<models::Answer>> found = model_->answer(asked);
+    const Result<std::vector<models::Answer>> found = model_->answer(queries);
     if (!found) return found.error();
     std::vector<Rgb> out;
     out.reserve(found.value().size());
@@ -120,7 +108,7 @@ class Tables {
 validate::Model table_model(std::string name, std::string meaning, const std::shared_ptr<Tables>& tables,
                             const std::function<void(Params&)>& change) {
   return {std::move(name), std::move(meaning), 0,
-          [tables, change](const Params& params, std::span<const reference::Query> queries) {
+          [tables, change](const Params& params, std::span<const RayQuery> queries) {
             Params changed = params;
             change(changed);
             return tables->ask(changed, queries);
@@ -138,46 +126,46 @@ std::vector<validate::Model> parameterizations(const std::shared_ptr<Tables>& ta
   return out;
 }
 
-// One of probe's models over black ground, which claims `orders` orders (0: is compared with all).
-validate::Model probe_row(std::string name, std::string meaning, int orders, std::string_view model,
-                          const std::string& device, const scene::SceneParams& scene) {
-  return {
-      std::move(name), std::move(meaning), orders,
-      [&model = probe_model(model), device, scene](const Params& params, std::span<const reference::Query> queries) {
-        return ask_over_ground(model, device, scene, params, queries);
-      }};
-}
+// A row of the report that one of the models of the registry answers, with parameters of the scene that `change` sets.
+struct ProbeRow {
+  const char* name;
+  const char* meaning;  // nullptr: that of the registry
+  scene::ModelId id;
+  int orders;  // of the reference that it is compared with; 0: all
+  void (*change)(scene::SceneParams& scene);
+};
+constexpr ProbeRow kProbeRows[] = {
+    {"single", nullptr, scene::ModelId::single, 1, [](scene::SceneParams&) {}},
+    {"single, against all orders", "the same: what leaving out multiple scattering costs", scene::ModelId::single, 0,
+     [](scene::SceneParams&) {}},
+    {"homogeneous", nullptr, scene::ModelId::homogeneous, 1,
+     [](scene::SceneParams& scene) { scene.homogeneous.falloff = false; }},
+    {"homogeneous, falling off", "the same with homogeneous.falloff", scene::ModelId::homogeneous, 1,
+     [](scene::SceneParams& scene) { scene.homogeneous.falloff = true; }},
+    {"homogeneous medium", nullptr, scene::ModelId::homogeneous_medium, 1, [](scene::SceneParams&) {}},
+    {"oneil", nullptr, scene::ModelId::oneil, 1, [](scene::SceneParams&) {}},
+    {"oneil, points by column", "the same with oneil.spacing = column", scene::ModelId::oneil, 1,
+     [](scene::SceneParams& scene) { scene.oneil.spacing = scene::OneilSpacing::column; }},
+    {"oneil-table", nullptr, scene::ModelId::oneil_table, 1, [](scene::SceneParams&) {}},
+};
 
 std::vector<validate::Model> all_models(const std::string& device, const scene::SceneParams& scene,
                                         const std::shared_ptr<Tables>& tables) {
-  scene::SceneParams by_column = scene;
-  by_column.oneil.spacing = scene::OneilSpacing::column;
-  scene::SceneParams everywhere = scene;
-  everywhere.homogeneous.falloff = false;
-  scene::SceneParams falling = scene;
-  falling.homogeneous.falloff = true;
-  return {
-      table_model("precomputed", "all orders, from the renderer's tables", tables,
+  const scene::ModelInfo& precomputed = scene::model_info(scene::ModelId::precomputed);
+  std::vector<validate::Model> out = {
+      table_model(std::string(precomputed.name), std::string(precomputed.meaning), tables,
                   [](Params& p) { p.scattering.single = SingleScattering::table; }),
       table_model("precomputed, order 1 integrated", "the same with scattering.single = integration", tables,
-                  [](Params& p) { p.scattering.single = SingleScattering::integration; }),
-      probe_row("single", "light scattered once, integrated for every ray", 1, "single", device, scene),
-      probe_row("single, against all orders", "the same: what leaving out multiple scattering costs", 0, "single",
-                device, scene),
-      probe_row("homogeneous",
-                "Hoffman and Preetham: closed forms for one density at every altitude, no ozone, no other sunset "
-                "than the horizontal",
-                1, "homogeneous", device, everywhere),
-      probe_row("homogeneous, falling off", "the same with homogeneous.falloff", 1, "homogeneous", device, falling),
-      probe_row("homogeneous medium",
-                "Yusov 2012: scattering.medium = homogeneous, wholly lit: one density out to its extent, "
-                "sunlight that nothing takes from, no sunset",
-                1, "homogeneous-medium", device, scene),
-      probe_row("oneil", "O'Neil: light scattered once, few points and the scale function, no ozone", 1, "oneil",
-                device, scene),
-      probe_row("oneil, points by column", "the same with oneil.spacing = column", 1, "oneil", device, by_column),
-      probe_row("oneil-table", "the same as oneil with the table of 2004", 1, "oneil-table", device, scene),
-  };
+                  [](Params& p) { p.scattering.single = SingleScattering::integration; })};
+  for (const ProbeRow& row : kProbeRows) {
+    AskedModel model = {row.id, device, scene};
+    row.change(model.scene);
+    out.push_back({row.name, row.meaning != nullptr ? row.meaning : std::string(scene::model_info(row.id).meaning),
+                   row.orders, [model](const Params& params, std::span<const RayQuery> queries) {
+                     return ask_over_ground(model, params, queries);
+                   }});
+  }
+  return out;
 }
 
 // What makes the same report, but for where files are.

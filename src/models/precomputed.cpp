@@ -1,5 +1,6 @@
 #include "models/precomputed.hpp"
 
+#include <cmath>
 #include <cstring>
 #include <string>
 
@@ -23,11 +24,11 @@ struct Setup {
   std::uint32_t unused;
 };
 
-shared::ProbeRay probe_ray(const shared::Medium& medium, const PrecomputedQuery& query) {
-  if (!query.sky_irradiance) return prepare_probe_ray(medium, query.ray);
+shared::ProbeRay probe_ray(const shared::Medium& medium, const RayQuery& query) {
+  if (!query.sky_irradiance) return prepare_probe_ray(medium, ray_from_query(query));
   shared::ProbeRay out = {};
-  out.altitude_m = static_cast<float>(query.ray.altitude_m);
-  out.cos_sun_zenith = static_cast<float>(query.ray.cos_sun_zenith);
+  out.altitude_m = static_cast<float>(query.altitude_m);
+  out.cos_sun_zenith = static_cast<float>(std::cos(query.sun_zenith_rad));
   out.end_m = -1.0F;
   return out;
 }
@@ -72,7 +73,7 @@ Result<PrecomputedModel> PrecomputedModel::create(gpu::Host& host, const Params&
   return PrecomputedModel(std::move(state));
 }
 
-Result<std::vector<Answer>> PrecomputedModel::answer(std::span<const PrecomputedQuery> queries, bool visible_ground) {
+Result<std::vector<Answer>> PrecomputedModel::answer(std::span<const RayQuery> queries, bool visible_ground) {
   std::vector<Answer> out(queries.size());
   if (queries.empty()) return out;
   State& s = *state_;
@@ -86,7 +87,7 @@ Result<std::vector<Answer>> PrecomputedModel::answer(std::span<const Precomputed
   setup.visible_ground = visible_ground ? 1 : 0;
   std::vector<shared::ProbeRay> rays;
   rays.reserve(queries.size());
-  for (const PrecomputedQuery& query : queries) rays.push_back(probe_ray(medium, query));
+  for (const RayQuery& query : queries) rays.push_back(probe_ray(medium, query));
 
   constexpr VkBufferUsageFlags kUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   const auto filled = [&](const char* name, const void* data, std::size_t size) -> Result<gpu::Buffer> {

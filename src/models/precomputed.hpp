@@ -14,11 +14,6 @@
 
 namespace tyndall::models {
 
-struct PrecomputedQuery {
-  Ray ray;
-  bool sky_irradiance = false;  // of a horizontal surface facing up, instead of a radiance
-};
-
 class PrecomputedModel {
  public:
   static Result<PrecomputedModel> create(gpu::Host& host, const Params& params, const tables::MakeReady& how = {});
@@ -29,7 +24,7 @@ class PrecomputedModel {
   // One answer per query. Radiance / E0 [1/sr] of air and, with `visible_ground`, of the ground at the ray's
   // end; for the sky E / E0 and the transmittance towards the sun. scattering.single of the parameters says
   // whether order 1 is integrated.
-  Result<std::vector<Answer>> answer(std::span<const PrecomputedQuery> queries, bool visible_ground = true);
+  Result<std::vector<Answer>> answer(std::span<const RayQuery> queries, bool visible_ground = true);
 
   // Where its tables came from.
   [[nodiscard]] const tables::Outcome& origin() const;

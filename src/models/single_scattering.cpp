@@ -16,6 +16,10 @@ std::array<double, 3> to_array(const glsl64::vec3& v) { return {v.x, v.y, v.z}; 
 
 }  // namespace
 
+Ray ray_from_query(const RayQuery& query) {
+  return ray_from_angles(query.altitude_m, query.view_zenith_rad, query.sun_zenith_rad, query.azimuth_rad);
+}
+
 Ray ray_from_angles(double altitude_m, double view_zenith_rad, double sun_zenith_rad, double azimuth_rad) {
   const double cos_view_sun = std::cos(view_zenith_rad) * std::cos(sun_zenith_rad) +
                               std::sin(view_zenith_rad) * std::sin(sun_zenith_rad) * std::cos(azimuth_rad);

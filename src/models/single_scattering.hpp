@@ -6,6 +6,7 @@
 #include <array>
 
 #include "effect/shared.hpp"
+#include "rays/ray_query.hpp"
 
 namespace tyndall::models {
 
@@ -20,6 +21,8 @@ struct Ray {
 
 // The ray whose view and sun directions differ by the azimuth given. Angles in rad.
 [[nodiscard]] Ray ray_from_angles(double altitude_m, double view_zenith_rad, double sun_zenith_rad, double azimuth_rad);
+
+[[nodiscard]] Ray ray_from_query(const RayQuery& query);
 
 struct Answer {
   std::array<double, 3> radiance = {};       // [1/sr]

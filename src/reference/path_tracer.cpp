@@ -41,7 +41,7 @@ Plan plan_blocks(std::uint64_t samples) {
 
 bool within(double value, double low, double high) { return value >= low && value <= high; }
 
-std::string check_query(const Query& q, double radius_m) {
+std::string check_query(const RayQuery& q, double radius_m) {
   if (!std::isfinite(q.altitude_m) || q.altitude_m < std::max(kLowestAltitude_m, -0.25 * radius_m)) {
     return "altitude_m, must be finite, at least -11000 and at least minus a quarter of the planet's radius";
   }
@@ -207,7 +207,7 @@ Estimate finish(const Accumulator& sums, const Scene& scene, const Options& opti
 }
 
 // Empty if everything is within its range.
-std::string check(const Params& params, std::span<const Query> queries, const Options& options) {
+std::string check(const Params& params, std::span<const RayQuery> queries, const Options& options) {
   if (const std::string bad = problem_of(params); !bad.empty()) return "parameter " + bad;
   if (const std::string bad = check_options(options); !bad.empty()) return "path tracer, " + bad;
   for (std::size_t i = 0; i < queries.size(); ++i) {
@@ -217,14 +217,14 @@ std::string check(const Params& params, std::span<const Query> queries, const Op
   return {};
 }
 
-std::vector<Estimate> compute(const Params& params, std::span<const Query> queries, const Options& options,
+std::vector<Estimate> compute(const Params& params, std::span<const RayQuery> queries, const Options& options,
                               const Progress& progress) {
   double lowest_m = 0.0;
-  for (const Query& query : queries) lowest_m = std::min(lowest_m, ground_altitude_m(query.altitude_m));
+  for (const RayQuery& query : queries) lowest_m = std::min(lowest_m, ground_altitude_m(query.altitude_m));
   const Atmosphere air(params, lowest_m);
   std::vector<Scene> scenes;
   scenes.reserve(queries.size());
-  for (const Query& query : queries) scenes.emplace_back(air, query, options);
+  for (const RayQuery& query : queries) scenes.emplace_back(air, query, options);
   const Plan plan = plan_blocks(options.samples);
   std::vector<Accumulator> sums(queries.size(), Accumulator(static_cast<std::size_t>(options.orders)));
   Work(scenes, options, plan, progress).run(sums);
@@ -239,15 +239,15 @@ std::vector<Estimate> compute(const Params& params, std::span<const Query> queri
 
 }  // namespace
 
-Result<std::vector<Estimate>> trace(const Params& params, std::span<const Query> queries, const Options& options,
+Result<std::vector<Estimate>> trace(const Params& params, std::span<const RayQuery> queries, const Options& options,
                                     const Progress& progress) {
   std::string bad = check(params, queries, options);
   if (!bad.empty()) return Error{ErrorCode::invalid_argument, std::move(bad), 0};
   return compute(params, queries, options, progress);
 }
 
-Result<Estimate> trace(const Params& params, const Query& query, const Options& options, const Progress& progress) {
-  const std::span<const Query> one(&query, 1);
+Result<Estimate> trace(const Params& params, const RayQuery& query, const Options& options, const Progress& progress) {
+  const std::span<const RayQuery> one(&query, 1);
   std::string bad = check(params, one, options);
   if (!bad.empty()) return Error{ErrorCode::invalid_argument, std::move(bad), 0};
   return compute(params, one, options, progress).front();

@@ -12,25 +12,13 @@
 #include <span>
 #include <vector>
 
+#include "rays/ray_query.hpp"
 #include "tyndall/params.hpp"
 #include "tyndall/result.hpp"
 
 namespace tyndall::reference {
 
 using Rgb = std::array<double, 3>;  // one value per channel of atmosphere.wavelengths_nm
-
-// One ray, or the sky as a horizontal surface sees it.
-struct Query {
-  // Above sea level, inside the atmosphere or in space; at least -11000 m, and at least minus a quarter of the
-  // planet's radius. Below sea level the air continues, the camera ray meets ground at twice the depth of the
-  // camera, and light that arrives from below at any other point comes from ground at that point
-  // (docs/adr/0007-below-sea-level.md).
-  double altitude_m = 0.0;
-  double view_zenith_rad = 0.0;  // [0; pi] between the ray and the local vertical; not used for the sky
-  double sun_zenith_rad = 0.0;   // [0; pi] between the sun and the local vertical
-  double azimuth_rad = 0.0;      // between ray and sun around the local vertical; 0 looks towards the sun
-  bool sky_irradiance = false;   // true: the diffuse irradiance of a horizontal surface facing up
-};
 
 struct Options {
   // Paths per query, >= 1. Rounded to a number of equal blocks, see Estimate::samples.
@@ -62,14 +50,16 @@ struct Estimate {
 // Called now and then, by one thread at a time, with the part done in [0; 1]; false cancels the call.
 using Progress = std::function<bool(double done)>;
 
+// Below sea level the atmosphere continues, the camera ray meets ground at twice the depth of the camera, and light that
+// arrives from below at any other point comes from ground at that point (docs/adr/0007-below-sea-level.md).
 // One estimate per query, in their order. Query i uses random numbers of its own, a function of
 // (seed, i): equal queries in one call are independent estimates.
 // A cancelled call returns what is done: look at Estimate::samples.
 // Errors: invalid_argument for a query, an option or a parameter out of its range.
-Result<std::vector<Estimate>> trace(const Params& params, std::span<const Query> queries, const Options& options,
+Result<std::vector<Estimate>> trace(const Params& params, std::span<const RayQuery> queries, const Options& options,
                                     const Progress& progress = {});
 
 // The same for one query (index 0).
-Result<Estimate> trace(const Params& params, const Query& query, const Options& options, const Progress& progress = {});
+Result<Estimate> trace(const Params& params, const RayQuery& query, const Options& options, const Progress& progress = {});
 
 }  // namespace tyndall::reference

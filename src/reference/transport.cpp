@@ -246,7 +246,7 @@ void trace_path(const Scene& scene, const Line& first, PathNumbers& numbers, Rgb
 
 }  // namespace
 
-Scene::Scene(const Atmosphere& atmosphere, const Query& query, const Options& options)
+Scene::Scene(const Atmosphere& atmosphere, const RayQuery& query, const Options& options)
     : air(&atmosphere), sky(query.sky_irradiance), visible_ground(options.visible_ground) {
   origin = {0.0, 0.0, atmosphere.radius_m + query.altitude_m};
   // A sky is seen upwards only.

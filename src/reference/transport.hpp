@@ -16,7 +16,7 @@ inline double ground_altitude_m(double camera_altitude_m) { return 2.0 * std::mi
 // A query placed in space: the camera above the planet's pole, the sun in the x-z plane turned by the
 // azimuth.
 struct Scene {
-  Scene(const Atmosphere& air, const Query& query, const Options& options);
+  Scene(const Atmosphere& air, const RayQuery& query, const Options& options);
 
   // Whether there is anything to sample; if not, the answer is `ground` alone.
   [[nodiscard]] bool has_air() const { return has_air_; }

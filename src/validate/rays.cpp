@@ -40,7 +40,7 @@ std::vector<std::array<double, 4>> even_points(std::uint64_t seed, std::uint32_t
 // Turns the sun's direction as the place nearest the ground sees it into the eye's frame. The ray leaves the
 // eye at zenith angle z and arrives at the place under the local zenith angle z - turn, having gone `turn`
 // around the planet; sun and ray differ by `azimuth` at the place.
-void set_sun(reference::Query& query, double turn, double sun_elevation_rad, double azimuth) {
+void set_sun(RayQuery& query, double turn, double sun_elevation_rad, double azimuth) {
   // In the plane of the ray: x along its heading, y up, z to the side.
   const double x = std::cos(sun_elevation_rad) * std::cos(azimuth);
   const double y = std::sin(sun_elevation_rad);
@@ -68,7 +68,7 @@ std::vector<TestRay> make_rays(Region region, SunBand band, std::uint32_t count,
     ray.band = band;
     ray.sun_elevation_rad = (band == SunBand::up ? 90.0 * u[0] : -6.0 * u[0]) * kRadPerDeg;
     const double azimuth = kPi * u[1];
-    reference::Query& q = ray.query;
+    RayQuery& q = ray.query;
     if (region != Region::space) {
       q.altitude_m = scale * (region == Region::ground ? 2000.0 * u[2] * u[2] : 2000.0 + 68000.0 * u[2] * u[2]);
       q.view_zenith_rad = (region == Region::ground ? 90.0 : 180.0) * u[3] * kRadPerDeg;
@@ -104,7 +104,7 @@ std::vector<TestRay> make_horizon_rays(SunBand band, std::uint32_t count, std::u
     TestRay ray;
     ray.band = band;
     ray.sun_elevation_rad = (band == SunBand::up ? 10.0 * u[0] : -6.0 * u[0]) * kRadPerDeg;
-    reference::Query& q = ray.query;
+    RayQuery& q = ray.query;
     q.altitude_m = scale * 1000.0 * u[2] * u[2];
     const double dip = std::acos(radius_m / (radius_m + q.altitude_m));
     q.view_zenith_rad = 0.5 * kPi + dip - (0.5 + 4.5 * u[3]) * kRadPerDeg;

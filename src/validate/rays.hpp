@@ -14,7 +14,7 @@ constexpr std::uint32_t kRegions = 3;
 constexpr std::uint32_t kSunBands = 2;
 
 struct TestRay {
-  reference::Query query;
+  RayQuery query;
   Region region = Region::ground;
   SunBand band = SunBand::up;
   // Of the sun where the ray begins, or from space where it comes nearest to the ground.

@@ -112,7 +112,7 @@ std::string worst_tables(const Study& study) {
                    "</th><th>altitude_m</th><th>view_zenith_deg</th><th>sun_zenith_deg</th><th>azimuth_deg</th>"
                    "<th>error, r / g / b</th><th>noise</th></tr>\n"});
     for (const BadRay& bad : worst_rays(study, m, 6)) {
-      const reference::Query& q = study.rays[bad.atmosphere].rays[bad.ray].query;
+      const RayQuery& q = study.rays[bad.atmosphere].rays[bad.ray].query;
       const Comparison& c = bad.comparison;
       out += concat({"<tr>", text_cell(study.atmospheres[bad.atmosphere].name), cell(fixed(q.altitude_m, 1)),
                      cell(fixed(q.view_zenith_rad * kDegPerRad, 4)), cell(fixed(q.sun_zenith_rad * kDegPerRad, 4)),

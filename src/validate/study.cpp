@@ -55,7 +55,7 @@ class Asker {
   double done_ = 0.0;
 };
 
-reference::Query query_of(double altitude_m, double view_zenith_deg, double sun_elevation_deg, double azimuth_deg) {
+RayQuery query_of(double altitude_m, double view_zenith_deg, double sun_elevation_deg, double azimuth_deg) {
   return {altitude_m, view_zenith_deg * kRadPerDeg, (90.0 - sun_elevation_deg) * kRadPerDeg, azimuth_deg * kRadPerDeg,
           false};
 }
@@ -126,7 +126,7 @@ SkyTest make_sky() {
   for (const double sun : {90.0, 75.0, 60.0, 45.0, 30.0, 20.0, 15.0, 10.0, 8.0,  6.0,  4.0, 3.0,
                            2.0,  1.0,  0.0,  -1.0, -2.0, -3.0, -4.0, -5.0, -6.0, -7.0, -8.0}) {
     test.sun_elevation_deg.push_back(sun);
-    reference::Query query = query_of(0.0, 0.0, sun, 0.0);
+    RayQuery query = query_of(0.0, 0.0, sun, 0.0);
     query.sky_irradiance = true;
     test.answers.queries.push_back(query);
   }

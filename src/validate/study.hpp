@@ -20,7 +20,7 @@ struct Model {
   std::string meaning;  // one line
   int orders = 0;       // it is compared with the reference's first so many orders; 0: with all
   // Answers every query with radiance / E0, or irradiance / E0 of the sky.
-  std::function<Result<std::vector<Rgb>>(const Params& params, std::span<const reference::Query> queries)> answer;
+  std::function<Result<std::vector<Rgb>>(const Params& params, std::span<const RayQuery> queries)> answer;
 };
 
 struct Options {
@@ -50,7 +50,7 @@ constexpr int kTurbidOrdersFactor = 3;
 
 // Questions with the answers of everyone.
 struct Answers {
-  std::vector<reference::Query> queries;
+  std::vector<RayQuery> queries;
   std::vector<reference::Estimate> reference;  // with orders
   std::vector<std::vector<Rgb>> models;        // [model][query]
 };

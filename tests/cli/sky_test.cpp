@@ -50,11 +50,12 @@ TEST(CliSkyMap, PixelsCoverTheSphereAndLookWhereTheyShould) {
   for (std::uint32_t y = 0; y < map.height; ++y) sum += map.width * map.pixel_solid_angle(y);
   EXPECT_NEAR(sum, 4.0 * kPi, 1e-12);
   // Zenith angle 55, azimuth 125 are the centre of column 12 (120 to 130) and row 5 (50 to 60).
-  EXPECT_NEAR(map.ray(12, 5).cos_view_sun, 1.0, 1e-12);
-  EXPECT_NEAR(map.ray(30, 12).cos_view_sun, -1.0, 1e-12);
-  EXPECT_NEAR(map.ray(0, 0).cos_view_zenith, std::cos(5.0 * kRadPerDeg), 1e-12);
+  EXPECT_NEAR(models::ray_from_query(map.query(12, 5)).cos_view_sun, 1.0, 1e-12);
+  EXPECT_NEAR(models::ray_from_query(map.query(30, 12)).cos_view_sun, -1.0, 1e-12);
+  EXPECT_NEAR(models::ray_from_query(map.query(0, 0)).cos_view_zenith, std::cos(5.0 * kRadPerDeg), 1e-12);
   // 10 deg clockwise is the next column to the right.
-  EXPECT_NEAR(map.ray(13, 5).cos_view_sun, map.ray(11, 5).cos_view_sun, 1e-12);
+  EXPECT_NEAR(models::ray_from_query(map.query(13, 5)).cos_view_sun,
+              models::ray_from_query(map.query(11, 5)).cos_view_sun, 1e-12);
 }
 
 TEST(CliSkyMap, TheDiscHoldsTheDirectSunAtEverySize) {

@@ -210,11 +210,12 @@ TEST_F(CachedTablesTest, AreBuiltOnceAndFoundAfterwards) {
 }
 
 TEST_F(CachedTablesTest, ProbesDoNotKnowTheDifference) {
-  std::vector<models::PrecomputedQuery> queries;
-  for (const reference::Query& q : random_rays(5, 50, -6.0, 90.0)) {
-    queries.push_back(
-        {models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad), false});
-    queries.push_back({queries.back().ray, true});
+  std::vector<RayQuery> queries;
+  for (const RayQuery& q : random_rays(5, 50, -6.0, 90.0)) {
+    queries.push_back(q);
+    queries.back().sky_irradiance = false;
+    queries.push_back(q);
+    queries.back().sky_irradiance = true;
   }
   std::vector<std::vector<models::Answer>> answers;
   for (const tables::Origin origin : {tables::Origin::build, tables::Origin::cache}) {

@@ -13,12 +13,12 @@ namespace tyndall {
 constexpr double kPi = 3.14159265358979;
 constexpr double kRadians = kPi / 180.0;
 
-inline std::vector<reference::Query> random_rays(std::uint32_t seed, int count, double lowest_sun, double highest_sun) {
+inline std::vector<RayQuery> random_rays(std::uint32_t seed, int count, double lowest_sun, double highest_sun) {
   std::mt19937 engine(seed);
   const auto uniform = [&] { return static_cast<double>(engine()) / 4294967296.0; };
-  std::vector<reference::Query> out;
+  std::vector<RayQuery> out;
   for (int i = 0; i < count; ++i) {
-    reference::Query query;
+    RayQuery query;
     const double u = uniform();
     query.altitude_m = 70000.0 * (i % 2 == 0 ? u : u * u * u);
     query.view_zenith_rad = std::acos(1.0 - 2.0 * uniform());

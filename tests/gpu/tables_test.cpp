@@ -26,11 +26,11 @@ struct Errors {
   }
 };
 
-std::vector<reference::Query> skies(std::initializer_list<double> elevations_deg) {
-  std::vector<reference::Query> out;
+std::vector<RayQuery> skies(std::initializer_list<double> elevations_deg) {
+  std::vector<RayQuery> out;
   for (const double elevation : elevations_deg) {
     for (const double altitude : {-400.0, 0.0, 1500.0}) {
-      reference::Query query;
+      RayQuery query;
       query.altitude_m = altitude;
       query.sun_zenith_rad = (90.0 - elevation) * kRadians;
       query.sky_irradiance = true;
@@ -41,8 +41,8 @@ std::vector<reference::Query> skies(std::initializer_list<double> elevations_deg
 }
 
 // From the shore of the Dead Sea and a little higher.
-std::vector<reference::Query> below_sea_level(int count) {
-  std::vector<reference::Query> out = random_rays(13, count, 5.0, 90.0);
+std::vector<RayQuery> below_sea_level(int count) {
+  std::vector<RayQuery> out = random_rays(13, count, 5.0, 90.0);
   for (std::size_t i = 0; i < out.size(); ++i)
     out[i].altitude_m = i % 2 == 0 ? -400.0 : -430.0 * out[i].azimuth_rad / kPi;
   return out;
@@ -73,18 +73,13 @@ constexpr TurbidRay kTurbidRays[] = {
 class ScatteringTablesTest : public GpuTest {
  protected:
   // How the model answers queries, against `samples` paths of eight orders each.
-  static Errors errors(models::PrecomputedModel& model, const Params& params,
-                       const std::vector<reference::Query>& queries, std::uint64_t samples) {
+  static Errors errors(models::PrecomputedModel& model, const Params& params, const std::vector<RayQuery>& queries,
+                       std::uint64_t samples) {
     reference::Options options;
     options.samples = samples;
     options.visible_ground = false;
     const Result<std::vector<reference::Estimate>> truth = reference::trace(params, queries, options);
-    std::vector<models::PrecomputedQuery> asked;
-    for (const reference::Query& q : queries) {
-      asked.push_back({models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad),
-                       q.sky_irradiance});
-    }
-    const Result<std::vector<models::Answer>> answers = model.answer(asked, false);
+    const Result<std::vector<models::Answer>> answers = model.answer(queries, false);
     Errors out;
     EXPECT_OK(truth);
     EXPECT_OK(answers);
@@ -135,11 +130,10 @@ TEST_F(ScatteringTablesTest, AreRightInTurbidAirNearTheHorizonUnderALowSun) {
   params.tables.size = {32, 64, 32, 16};
   Result<models::PrecomputedModel> built = models::PrecomputedModel::create(host(), params);
   ASSERT_OK(built);
-  std::vector<models::PrecomputedQuery> queries;
+  std::vector<RayQuery> queries;
   for (const TurbidRay& ray : kTurbidRays) {
-    queries.push_back({models::ray_from_angles(ray.altitude_m, ray.view_zenith_deg * kRadians,
-                                               ray.sun_zenith_deg * kRadians, ray.azimuth_deg * kRadians),
-                       false});
+    queries.push_back({ray.altitude_m, ray.view_zenith_deg * kRadians, ray.sun_zenith_deg * kRadians,
+                       ray.azimuth_deg * kRadians, false});
   }
   const Result<std::vector<models::Answer>> answers = built.value().answer(queries, false);
   ASSERT_OK(answers);

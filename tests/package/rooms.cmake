@@ -50,10 +50,11 @@ room(src/scene/description src/files include/tyndall)
 room(src/config src/scene/description src/files include/tyndall)
 
 # Models of scattering, and the reference that they are compared with. The reference shares nothing with the others.
-room(src/reference include/tyndall)
-room(src/validate src/reference src/files include/tyndall)
+room(src/rays)
+room(src/reference src/rays include/tyndall)
+room(src/validate src/reference src/rays src/files include/tyndall)
 room(src/tables VULKAN src/gpu src/files include/tyndall/effect.hpp include/tyndall)
-room(src/models VULKAN src/tables src/effect src/gpu shaders/lib shaders/shared include/tyndall/effect.hpp include/tyndall)
+room(src/models VULKAN src/rays src/tables src/effect src/gpu shaders/lib shaders/shared include/tyndall/effect.hpp include/tyndall)
 
 # The demo engine. It is a client of the effect's public interface.
 room(src/scene/elevation src/scene/description shaders/scene include/tyndall)
@@ -69,10 +70,11 @@ room(src/scene VULKAN src/scene/sky src/scene/mesh src/scene/terrain src/scene/v
 room(apps/viewer/platform VULKAN src/gpu include/tyndall)
 room(apps/viewer/scenes VULKAN apps/viewer/platform src/config src/scene src/scene/terrain src/scene/elevation src/scene/view
   src/scene/description src/tables src/image src/files src/gpu include/tyndall/effect.hpp include/tyndall)
-room(apps/viewer/gui VULKAN apps/viewer/scenes apps/viewer/platform src/config src/files include/tyndall)
+room(apps/viewer/gui VULKAN apps/viewer/scenes apps/viewer/platform src/config src/scene src/scene/description src/files
+  include/tyndall)
 room(apps/viewer VULKAN apps/viewer/gui apps/viewer/scenes apps/viewer/platform src/config src/scene src/scene/view
   src/scene/description src/tables src/image src/files src/gpu include/tyndall)
-room(apps/tyndall VULKAN apps/viewer src/validate src/reference src/models src/scene src/scene/sky src/scene/description src/config
+room(apps/tyndall VULKAN apps/viewer src/validate src/reference src/rays src/models src/scene src/scene/sky src/scene/description src/config
   src/tables src/image src/files src/effect src/gpu include/tyndall/effect.hpp include/tyndall)
 
 # room_of(PATH VAR): the room that a path relative to SOURCE belongs to.

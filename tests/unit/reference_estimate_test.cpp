@@ -17,11 +17,11 @@ using namespace tyndall::reference;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-Query ray(double altitude_m, double view_deg, double sun_deg, double azimuth_deg) {
+RayQuery ray(double altitude_m, double view_deg, double sun_deg, double azimuth_deg) {
   return {altitude_m, view_deg * kDegree, sun_deg * kDegree, azimuth_deg * kDegree, false};
 }
 
-std::vector<Estimate> run(const Params& p, const std::vector<Query>& queries, const Options& options,
+std::vector<Estimate> run(const Params& p, const std::vector<RayQuery>& queries, const Options& options,
                           const Progress& progress = {}) {
   const auto result = trace(p, queries, options, progress);
   if (!result.ok()) {
@@ -36,7 +36,7 @@ bool same_bits(const Rgb& a, const Rgb& b) { return std::memcmp(a.data(), b.data
 TEST(ReferenceEstimate, IndependentOfThreads) {
   Params p;
   p.planet.ground_albedo = 0.2F;
-  const std::vector<Query> queries = {
+  const std::vector<RayQuery> queries = {
       ray(0.0, 60.0, 40.0, 20.0), {100.0, 0.0, 80.0 * kDegree, 0.0, true}, ray(0.0, 80.0, 96.0, 100.0)};
   Options options;
   options.samples = 5000;
@@ -57,13 +57,13 @@ TEST(ReferenceEstimate, IndependentOfThreads) {
 }
 
 // Many independent estimates of one ray: their spread has to be what their standard errors say.
-void expect_honest_errors(const Query& query) {
+void expect_honest_errors(const RayQuery& query) {
   constexpr std::size_t kRepeats = 200;
   Options options;
   options.samples = 2048;
   options.orders = 5;
   options.threads = 2;
-  const auto estimates = run(Params{}, std::vector<Query>(kRepeats, query), options);
+  const auto estimates = run(Params{}, std::vector<RayQuery>(kRepeats, query), options);
   for (std::size_t c = 0; c < 3; ++c) {
     double mean = 0.0, variance = 0.0, claimed = 0.0;
     for (const Estimate& e : estimates) {
@@ -86,7 +86,7 @@ TEST(ReferenceEstimate, HonestErrorsOfTheSky) { expect_honest_errors({0.0, 0.0, 
 TEST(ReferenceEstimate, OrdersAddUp) {
   Params p;
   p.planet.ground_albedo = 0.5F;
-  const std::vector<Query> queries = {ray(2000.0, 120.0, 30.0, 50.0), ray(0.0, 50.0, 70.0, 10.0)};
+  const std::vector<RayQuery> queries = {ray(2000.0, 120.0, 30.0, 50.0), ray(0.0, 50.0, 70.0, 10.0)};
   Options options;
   options.samples = 20000;
   options.by_order = true;
@@ -126,7 +126,7 @@ TEST(ReferenceEstimate, ReportsProgressAndCancels) {
   options.samples = 20000;
   options.orders = 2;
   options.threads = 2;
-  const std::vector<Query> queries(3, ray(0.0, 20.0, 30.0, 0.0));
+  const std::vector<RayQuery> queries(3, ray(0.0, 20.0, 30.0, 0.0));
   double last = 0.0;
   const auto whole = run(Params{}, queries, options, [&](double done) {
     EXPECT_GT(done, last);
@@ -140,8 +140,8 @@ TEST(ReferenceEstimate, ReportsProgressAndCancels) {
 }
 
 TEST(ReferenceEstimate, RefusesBadInput) {
-  const Query good = ray(0.0, 20.0, 30.0, 0.0);
-  const auto refused = [](const Params& p, const Query& q, const Options& o, const char* about) {
+  const RayQuery good = ray(0.0, 20.0, 30.0, 0.0);
+  const auto refused = [](const Params& p, const RayQuery& q, const Options& o, const char* about) {
     tyndall::Error error{ErrorCode::io, "accepted", 0};
     if (const auto result = trace(p, q, o); !result.ok()) error = result.error();
     EXPECT_EQ(error.code, ErrorCode::invalid_argument) << about;
@@ -189,7 +189,7 @@ TEST(ReferenceEstimate, ExtremesStayFinite) {
   worlds[4].atmosphere.custom_coefficients = true;
   worlds[4].atmosphere.rayleigh_scattering = tyndall::Vec3(1.0F, 0.0F, 1e-12F);
   worlds[4].atmosphere.mie_scattering = worlds[4].atmosphere.mie_absorption = tyndall::Vec3(0.0F, 0.0F, 1.0F);
-  std::vector<Query> queries;
+  std::vector<RayQuery> queries;
   for (const double altitude : {-11000.0, -400.0, 0.0, 100.0, 20000.0, 80000.0, 5e6, 1e9}) {
     for (const double view : {0.0, 45.0, 89.999, 90.0, 90.001, 120.0, 180.0}) {
       for (const double sun : {0.0, 90.0, 95.0, 180.0}) queries.push_back(ray(altitude, view, sun, view));
@@ -201,8 +201,8 @@ TEST(ReferenceEstimate, ExtremesStayFinite) {
   options.orders = 6;
   options.threads = 2;
   for (const Params& p : worlds) {
-    std::vector<Query> here = queries;
-    for (Query& q : here) q.altitude_m = std::max(q.altitude_m, -0.25 * static_cast<double>(p.planet.radius_m));
+    std::vector<RayQuery> here = queries;
+    for (RayQuery& q : here) q.altitude_m = std::max(q.altitude_m, -0.25 * static_cast<double>(p.planet.radius_m));
     const auto estimates = run(p, here, options);
     for (std::size_t i = 0; i < queries.size(); ++i) {
       for (std::size_t c = 0; c < 3; ++c) {

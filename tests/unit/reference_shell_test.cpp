@@ -17,12 +17,12 @@ using namespace tyndall::reference;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-Query ray(double altitude_m, double view_deg, double sun_deg, double azimuth_deg) {
+RayQuery ray(double altitude_m, double view_deg, double sun_deg, double azimuth_deg) {
   return {altitude_m, view_deg * kDegree, sun_deg * kDegree, azimuth_deg * kDegree, false};
 }
-Query sky(double altitude_m, double sun_deg) { return {altitude_m, 0.0, sun_deg * kDegree, 0.0, true}; }
+RayQuery sky(double altitude_m, double sun_deg) { return {altitude_m, 0.0, sun_deg * kDegree, 0.0, true}; }
 
-std::vector<Estimate> run(const Params& p, const std::vector<Query>& queries, std::uint64_t samples, int orders,
+std::vector<Estimate> run(const Params& p, const std::vector<RayQuery>& queries, std::uint64_t samples, int orders,
                           bool by_order = false, bool visible_ground = true) {
   Options options;
   options.samples = samples;
@@ -49,16 +49,16 @@ oracle::Air default_air(const Params& p, std::size_t channel) {
   return oracle::air_of(p, rayleigh, 2e-5, 2.2e-5, ozone[channel]);
 }
 
-oracle::Point camera_of(const oracle::Air& air, const Query& q) { return {0.0, 0.0, air.radius + q.altitude_m}; }
-oracle::Point view_of(const Query& q) { return {std::sin(q.view_zenith_rad), 0.0, std::cos(q.view_zenith_rad)}; }
-oracle::Point sun_of(const Query& q) {
+oracle::Point camera_of(const oracle::Air& air, const RayQuery& q) { return {0.0, 0.0, air.radius + q.altitude_m}; }
+oracle::Point view_of(const RayQuery& q) { return {std::sin(q.view_zenith_rad), 0.0, std::cos(q.view_zenith_rad)}; }
+oracle::Point sun_of(const RayQuery& q) {
   const double sine = std::sin(q.sun_zenith_rad);
   return {sine * std::cos(q.azimuth_rad), sine * std::sin(q.azimuth_rad), std::cos(q.sun_zenith_rad)};
 }
 
 TEST(ReferenceShell, SingleScatteringMatchesQuadrature) {
   const Params p;
-  const std::vector<Query> queries = {
+  const std::vector<RayQuery> queries = {
       ray(0.0, 30.0, 40.0, 60.0),        // day
       ray(0.0, 89.0, 20.0, 120.0),       // along the horizon
       ray(1500.0, 93.0, 70.0, 10.0),     // downwards to the ground
@@ -98,7 +98,7 @@ TEST(ReferenceShell, SingleScatteringMatchesQuadrature) {
 struct BruteForce {
   double mean = 0.0, error = 0.0;
 };
-BruteForce second_order(const oracle::Air& air, const Query& q, int count) {
+BruteForce second_order(const oracle::Air& air, const RayQuery& q, int count) {
   std::mt19937_64 random(99);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   const oracle::Point eye = camera_of(air, q), view = view_of(q), sun = sun_of(q);
@@ -133,7 +133,7 @@ TEST(ReferenceShell, SecondOrderMatchesBruteForce) {
   p.atmosphere.mie_scattering = p.atmosphere.mie_absorption = Vec3(0.0F);
   p.planet.radius_m = 500000.0F;  // a small planet: its shadow crosses many of these paths
   p.atmosphere.height_m = 60000.0F;
-  const std::vector<Query> queries = {ray(0.0, 40.0, 50.0, 100.0),    ray(2000.0, 80.0, 97.0, 20.0),
+  const std::vector<RayQuery> queries = {ray(0.0, 40.0, 50.0, 100.0),    ray(2000.0, 80.0, 97.0, 20.0),
                                       ray(0.0, 60.0, 96.0, 170.0),    ray(20000.0, 100.0, 88.0, 60.0),
                                       ray(-3000.0, 80.0, 60.0, 90.0), ray(-3000.0, 120.0, 60.0, 90.0)};
   const auto estimates = run(p, queries, 200000, 2, true);
@@ -166,7 +166,7 @@ TEST(ReferenceShell, OzoneAloneOnlyAbsorbs) {
   Params more, none;
   more.atmosphere.ozone_absorption = Vec3(5e-6F, 5e-6F, 5e-6F);
   none.atmosphere.ozone_absorption = Vec3(0.0F);
-  const std::vector<Query> queries = {ray(0.0, 70.0, 88.0, 90.0)};
+  const std::vector<RayQuery> queries = {ray(0.0, 70.0, 88.0, 90.0)};
   const auto with = run(more, queries, 20000, 4), without = run(none, queries, 20000, 4);
   for (std::size_t c = 0; c < 3; ++c) {
     EXPECT_LT(with[0].radiance[c], 0.9 * without[0].radiance[c]);
@@ -193,7 +193,7 @@ TEST(ReferenceShell, RaysFromSpace) {
   EXPECT_EQ(run(p, {sky(90000.0, 179.0)}, 1000, 3)[0].transmittance[1], 0.0);
 
   // The same ray from three places on it: in space, at the edge and just inside.
-  const Query far = ray(1000000.0, 150.0, 40.0, 70.0);
+  const RayQuery far = ray(1000000.0, 150.0, 40.0, 70.0);
   const double r = radius + far.altitude_m, along = r * std::cos(far.view_zenith_rad);
   const double tangent2 = r * r - along * along;
   const double entry = -std::sqrt(top * top - tangent2);
@@ -205,7 +205,7 @@ TEST(ReferenceShell, RaysFromSpace) {
     const double x = sine * (s - along) / z, up = (r + cosine * (s - along)) / z;  // the local vertical
     const double sun_cosine = sun[0] * x + sun[2] * up;
     const double level = sun[0] * up - sun[2] * x;  // towards the ray's side
-    return Query{z - radius, std::acos(view_cosine), std::acos(sun_cosine), std::atan2(sun[1], level), false};
+    return RayQuery{z - radius, std::acos(view_cosine), std::acos(sun_cosine), std::atan2(sun[1], level), false};
   };
   const auto same = run(p, {far, from(entry - 1.0), from(entry + 1e-3)}, 50000, 4);
   for (std::size_t i = 1; i < same.size(); ++i) {
@@ -221,7 +221,7 @@ TEST(ReferenceShell, RaysFromSpace) {
 TEST(ReferenceShell, VisibleGround) {
   Params p;
   p.planet.ground_albedo = 0.4F;
-  const std::vector<Query> queries = {ray(3000.0, 130.0, 50.0, 30.0), ray(0.0, 60.0, 50.0, 30.0)};
+  const std::vector<RayQuery> queries = {ray(3000.0, 130.0, 50.0, 30.0), ray(0.0, 60.0, 50.0, 30.0)};
   const auto with = run(p, queries, 50000, 4), without = run(p, queries, 50000, 4, false, false);
   // What the ground sends: the sun's light and the sky's, both reflected, through the air.
   const auto below = run(p, {sky(0.0, 50.0)}, 50000, 3);
@@ -243,7 +243,7 @@ TEST(ReferenceShell, SkyIrradianceIsTheIntegralOfTheSky) {
   constexpr int kCells = 40;
   std::mt19937_64 random(4);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  std::vector<Query> queries;
+  std::vector<RayQuery> queries;
   for (int i = 0; i < kCells; ++i) {
     for (int k = 0; k < kCells; ++k) {
       const double mu = std::sqrt((i + uniform(random)) / kCells);

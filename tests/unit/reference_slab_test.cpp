@@ -39,15 +39,15 @@ Params slab(const std::array<double, 3>& depth, const std::array<double, 3>& alb
   return p;
 }
 
-Query up(double cosine, double sun_cosine, double azimuth = 0.0) {
+RayQuery up(double cosine, double sun_cosine, double azimuth = 0.0) {
   return {0.0, std::acos(cosine), std::acos(sun_cosine), azimuth, false};
 }
-Query down(double cosine, double sun_cosine, double azimuth = 0.0) {
+RayQuery down(double cosine, double sun_cosine, double azimuth = 0.0) {
   return {kHeight_m, kPi - std::acos(cosine), std::acos(sun_cosine), azimuth, false};
 }
-Query sky(double sun_cosine) { return {0.0, 0.0, std::acos(sun_cosine), 0.0, true}; }
+RayQuery sky(double sun_cosine) { return {0.0, 0.0, std::acos(sun_cosine), 0.0, true}; }
 
-std::vector<Estimate> run(const Params& p, const std::vector<Query>& queries, std::uint64_t samples, int orders,
+std::vector<Estimate> run(const Params& p, const std::vector<RayQuery>& queries, std::uint64_t samples, int orders,
                           bool by_order = false) {
   Options options;
   options.samples = samples;
@@ -208,7 +208,7 @@ TEST(ReferenceSlab, ConservesEnergy) {
     // Gauss-Legendre in the cosine (8 nodes) times 12 equal steps of azimuth (even, so half of the circle).
     const double node[4] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
     const double weight[4] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
-    std::vector<Query> queries;
+    std::vector<RayQuery> queries;
     std::vector<double> weights;
     for (int i = 0; i < 8; ++i) {
       const double mu = 0.5 * (1.0 + (i < 4 ? node[i] : -node[i - 4]));
@@ -252,7 +252,7 @@ TEST(ReferenceSlab, WhiteFurnaceOfAWholePlanet) {
   constexpr int kBatches = 16, kRays = 250;
   std::mt19937_64 random(17);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  std::vector<Query> queries;
+  std::vector<RayQuery> queries;
   for (int batch = 0; batch < kBatches; ++batch) {
     const double shift[3] = {uniform(random), uniform(random), uniform(random)};
     for (int i = 0; i < kRays; ++i) {  // Roberts' additive recurrence in three dimensions

@@ -67,7 +67,7 @@ TEST(ValidateRays, AreInTheirGroupsAndEvenlySpread) {
       ASSERT_EQ(rays.size(), 200U);
       int halves[3] = {};
       for (const TestRay& ray : rays) {
-        const reference::Query& q = ray.query;
+        const RayQuery& q = ray.query;
         const double sun_deg = ray.sun_elevation_rad * 180.0 / kPi;
         EXPECT_GE(sun_deg, band == SunBand::up ? 0.0 : -6.0);
         EXPECT_LE(sun_deg, band == SunBand::up ? 90.0 : 0.0);
@@ -133,7 +133,7 @@ TEST(ValidateRays, TurbidAirHasTheOpticalDepthThatItSays) {
 
 TEST(ValidateRays, TheSunStandsAtThePlaceThatSpaceSees) {
   for (const TestRay& ray : make_rays(Region::space, SunBand::twilight, 100, 3, kRadius, kHeight)) {
-    const reference::Query& q = ray.query;
+    const RayQuery& q = ray.query;
     // In the eye's frame: x along the heading, y up. Forward to the ground, or to the perigee.
     const double r = kRadius + q.altitude_m;
     const double vx = std::sin(q.view_zenith_rad);
@@ -205,7 +205,7 @@ TEST(ValidatePlot, ValuesStandWhereTheyShould) {
 // The reference itself with other random numbers, brighter by a factor.
 Model tracer(std::string name, int orders, double factor) {
   return {std::move(name), "the reference & <itself>", orders,
-          [=](const Params& params, std::span<const reference::Query> queries) -> Result<std::vector<Rgb>> {
+          [=](const Params& params, std::span<const RayQuery> queries) -> Result<std::vector<Rgb>> {
             reference::Options options;
             options.samples = 400;
             options.orders = orders == 0 ? 4 : orders;
@@ -288,7 +288,7 @@ TEST(ValidateStudy, AFailingModelEndsIt) {
   options.rays = 18;
   options.samples = 2;
   const Model broken = {"broken", "", 0,
-                        [](const Params&, std::span<const reference::Query>) -> Result<std::vector<Rgb>> {
+                        [](const Params&, std::span<const RayQuery>) -> Result<std::vector<Rgb>> {
                           return Error{ErrorCode::device_lost, "gone"};
                         }};
   const Result<Study> study = run_study({}, options, {broken}, {}, [](double) {});

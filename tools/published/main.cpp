@@ -84,11 +84,10 @@ class Published {
     return {};
   }
 
-  Result<std::vector<validate::Rgb>> answer(const shared::Medium& medium, std::span<const reference::Query> queries) {
+  Result<std::vector<validate::Rgb>> answer(const shared::Medium& medium, std::span<const RayQuery> queries) {
     std::vector<shared::ProbeRay> rays;
-    for (const reference::Query& q : queries) {
-      rays.push_back(models::prepare_probe_ray(
-          medium, models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad)));
+    for (const RayQuery& q : queries) {
+      rays.push_back(models::prepare_probe_ray(medium, models::ray_from_query(q)));
     }
     TYNDALL_TRY(fill(rays_, "rays", rays.data(), rays.size() * sizeof rays[0]));
     TYNDALL_ASSIGN(results_, gpu::create_buffer(host_.device(), "results", rays.size() * sizeof(shared::ProbeResult),
@@ -206,15 +205,11 @@ Result<void> run(std::uint32_t rays, std::uint32_t samples) {
   std::printf("\n| sun | tables | rays | mean | median | 95 %% | worst | noise "
               "|\n|---|---|--:|--:|--:|--:|--:|--:|\n");
   for (const validate::SunBand band : {validate::SunBand::up, validate::SunBand::twilight}) {
-    std::vector<reference::Query> queries;
-    std::vector<models::PrecomputedQuery> asked;
+    std::vector<RayQuery> queries;
     for (const validate::Region region : {validate::Region::ground, validate::Region::air, validate::Region::space}) {
       for (const validate::TestRay& ray :
            validate::make_rays(region, band, rays, 1, params.planet.radius_m, params.atmosphere.height_m)) {
-        const reference::Query& q = ray.query;
-        queries.push_back(q);
-        asked.push_back(
-            {models::ray_from_angles(q.altitude_m, q.view_zenith_rad, q.sun_zenith_rad, q.azimuth_rad), false});
+        queries.push_back(ray.query);
       }
     }
     reference::Options options;
@@ -222,7 +217,7 @@ Result<void> run(std::uint32_t rays, std::uint32_t samples) {
     const char* sun = band == validate::SunBand::up ? "up" : "0 to -6 deg";
     TYNDALL_ASSIGN(const std::vector<reference::Estimate> truths, reference::trace(params, queries, options));
     TYNDALL_ASSIGN(const std::vector<validate::Rgb> theirs, published.answer(medium, queries));
-    TYNDALL_ASSIGN(const std::vector<models::Answer> answers, ours.answer(asked));
+    TYNDALL_ASSIGN(const std::vector<models::Answer> answers, ours.answer(queries));
     std::vector<validate::Rgb> mine;
     for (const models::Answer& answer : answers) mine.push_back(answer.radiance);
     print_errors(sun, "published", theirs, truths);

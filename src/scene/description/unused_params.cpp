@@ -4,6 +4,8 @@
 #include <cstring>
 #include <string_view>
 
+#include "scene/description/model_registry.hpp"
+
 namespace tyndall::scene {
 namespace {
 
@@ -61,13 +63,10 @@ std::vector<std::string> unused_params(const Params& params, const SceneParams& 
   using Model = ScatteringModel;
   const Model model = scene.scattering.model;
   const bool by_effect = model == Model::atmosphere;
-  const char* const own_name = model == Model::homogeneous ? "homogeneous"
-                               : model == Model::oneil     ? "oneil"
-                                                           : "oneil-table";
   check(!by_effect,
         {"scattering.medium", "scattering.downscale", "scattering.technique", "scattering.single",
          "scattering.multiple", "scattering.sections", "scattering.extinction", "homogeneous_medium."},
-        "scattering.model = " + std::string(own_name));
+        "scattering.model = " + std::string(drawn_model(params, scene).name));
   check(by_effect, {"scattering.evaluate", "oneil.", "homogeneous."}, "scattering.model = atmosphere");
   check(model == Model::homogeneous, {"oneil."}, "scattering.model = homogeneous");
   check(model == Model::oneil, {"homogeneous.", "oneil.table_size"}, "scattering.model = oneil");
