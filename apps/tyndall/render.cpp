@@ -17,7 +17,7 @@ std::vector<std::pair<std::string, std::string>> metadata_of(const scene::Scene&
                                                              const config::Settings& settings, image::FileKind kind) {
   std::vector<std::pair<std::string, std::string>> list =
       kind == image::FileKind::exr ? config::radiance_metadata(settings) : config::metadata(settings);
-  list.emplace_back("tyndall.frame.exposure", files::number_text(scene.exposure()));
+  list.emplace_back("tyndall.frame.exposure", files::number_text(scene.exposure().scale));
   return list;
 }
 

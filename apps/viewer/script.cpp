@@ -1,6 +1,7 @@
 #include "viewer/script.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -74,6 +75,20 @@ std::string random_value(const config::Row& row, std::mt19937& random) {
 }
 
 }  // namespace
+
+Script::Script(const std::string& text, const config::Settings& start) : start_(start) {
+  constexpr std::string_view kSoak = "soak=";
+  constexpr std::string_view kSoakFrames = "soak-frames=";
+  if (text == "walk") kind_ = Kind::walk;
+  if (text.starts_with(kSoak)) {
+    kind_ = Kind::soak;
+    seconds_ = std::strtod(text.c_str() + kSoak.size(), nullptr);
+  }
+  if (text.starts_with(kSoakFrames)) {
+    kind_ = Kind::soak;
+    frames_ = std::strtoull(text.c_str() + kSoakFrames.size(), nullptr, 10);
+  }
+}
 
 std::string Script::advance(config::Settings& settings, GuiState& gui, double now, std::uint64_t frames) {
   if (!on()) return {};

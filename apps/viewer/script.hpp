@@ -6,7 +6,7 @@
 #include <string>
 
 #include "config/settings.hpp"
-#include "viewer/gui/gui.hpp"
+#include "viewer/gui/gui_state.hpp"
 
 namespace tyndall::viewer {
 
@@ -14,9 +14,8 @@ class Script {
  public:
   enum class Kind { none, walk, soak };
   Script() = default;
-  // A soak ends after so many seconds or, where that is not 0, so many frames of the scene.
-  Script(Kind kind, double seconds, std::uint64_t frames, const config::Settings& start)
-      : kind_(kind), seconds_(seconds), frames_(frames), start_(start) {}
+  // Reads ViewerDesc::script: "walk", "soak=SECONDS" or "soak-frames=COUNT"; any other text gives no script.
+  Script(const std::string& text, const config::Settings& start);
 
   [[nodiscard]] bool on() const { return kind_ != Kind::none && !done_; }
   [[nodiscard]] bool done() const { return done_; }

@@ -368,10 +368,9 @@ Result<image::Image> Scene::display() {
   return within_memory("reading the picture", [&] { return average(display_, display_sum_); });
 }
 
-post::Measurement Scene::measurement() const { return tonemap_->exposure().read(); }
-
-float Scene::exposure() const {
-  return scene_.tonemap.auto_exposure ? measurement().exposure : scene_.tonemap.exposure;
+Scene::Exposure Scene::exposure() const {
+  const post::Measurement measurement = tonemap_->exposure().read();
+  return {scene_.tonemap.auto_exposure ? measurement.exposure : scene_.tonemap.exposure, measurement};
 }
 
 Counters Scene::counters() const {

@@ -54,10 +54,10 @@ class Scene {
   Result<void> set_extent(VkExtent2D extent);
   Result<void> set_terrain_coarseness(int coarseness);
 
-  // One step towards the tables that the parameters ask for, from the cache or `budget` slices of the build. Until
-  // they are complete, frames are drawn with those that were; without any, render() fails.
+  // One step towards the tables that the parameters ask for (see Effect::precompute_progress()), from the cache or
+  // `budget` slices of the build. Until they are complete, frames are drawn with those that were; without any, render()
+  // fails.
   Result<Progress> advance_tables(std::uint32_t budget);
-  [[nodiscard]] Progress tables_progress() const { return effect_->precompute_progress(); }
   [[nodiscard]] bool can_render() const { return model_ != nullptr || tables_ready_; }
   Effect& effect() { return *effect_; }
 
@@ -74,9 +74,11 @@ class Scene {
   // Of the frame rendered last: radiance, or display values 0 to 1 after tone mapping (both linear).
   Result<image::Image> radiance();
   Result<image::Image> display();
-  // What scaled the radiance, and what was measured of it: with auto exposure or SceneDesc::histogram.
-  [[nodiscard]] float exposure() const;
-  [[nodiscard]] post::Measurement measurement() const;
+  struct Exposure {
+    float scale = 1.0F;             // of the radiance
+    post::Measurement measurement;  // with auto exposure or SceneDesc::histogram
+  };
+  [[nodiscard]] Exposure exposure() const;
   [[nodiscard]] const std::vector<PassTime>& timings() const { return times_; }
 
   // The images of the frame rendered last, on the device. `display` and `output` (radiance) are in GENERAL layout,
@@ -85,8 +87,6 @@ class Scene {
     const gpu::Image &display, &output, &color, &depth, &shadow_maps;
   };
   [[nodiscard]] Images images() const { return {display_, output_, color_, depth_, shadow_maps_}; }
-  [[nodiscard]] VkExtent2D extent() const { return desc_.extent; }
-  [[nodiscard]] const View& view() const { return view_; }
   // The ground that is drawn, for other threads as well; none: the bare sphere at sea level.
   [[nodiscard]] std::shared_ptr<const ElevationSource> elevations() const {
     return bare_ground() ? nullptr : terrain_->source();

@@ -7,15 +7,12 @@
 
 #include "gpu/guard.hpp"
 #include "gpu/try.hpp"
+#include "scene/description/terrain_key.hpp"
 #include "scene/formats.hpp"
 #include "scene/scene.hpp"
 
 namespace tyndall::scene {
 namespace {
-
-bool same_source(const TerrainParams& a, const TerrainParams& b) {
-  return a.source == b.source && a.seed == b.seed && a.exaggeration == b.exaggeration && a.units == b.units;
-}
 
 bool same_meshes(const MeshParams& a, const MeshParams& b) {
   const auto all = [](const MeshParams& m) {
@@ -182,8 +179,8 @@ Result<Scene::Pending> Scene::plan(const SceneParams& scene, const Params& param
   out.params = params;
   out.notes = notes_;
   const double radius_m = params.planet.radius_m;
-  const bool other_ground = source.has_value() || !same_source(scene.terrain, scene_.terrain) ||
-                            params.planet.radius_m != params_.planet.radius_m;
+  const bool other_ground = source.has_value() || terrain_key(scene.terrain, params.planet) !=
+                                                      terrain_key(scene_.terrain, params_.planet);
   if (other_ground) {
     if (!source) {
       TYNDALL_ASSIGN(source, Terrain::load_source(host_->device(), scene.terrain, radius_m));

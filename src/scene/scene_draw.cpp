@@ -46,6 +46,36 @@ Result<void> lacks(std::string_view name) {
   return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(name)};
 }
 
+// Returns what background.frag reads: the sun's disc, the moon and how to turn a pixel into a direction.
+BackgroundConstants background_constants(const ModelFrame& frame, const glm::dvec3& to_sun) {
+  const View& view = frame.view;
+  const double radius_rad = frame.scene.sun.angular_radius_deg * kRadPerDeg;
+  const double solid_angle = 6.283185307179586 * (1.0 - std::cos(radius_rad));
+  const Vec3& sun = frame.light.sun_irradiance;
+  BackgroundConstants out = {};
+  out.local_from_view = camera_from_view(view, frame.local.local_from_world).world_from_view;
+  out.world_from_local = to_mat4(frame.local.world_from_local);
+  out.direction_to_sun = to_vec3(frame.local.direction(to_sun));
+  out.angular_radius_rad = static_cast<float>(radius_rad);
+  out.disc_radiance = to_vec3(glm::dvec3(sun.x, sun.y, sun.z) / solid_angle);
+  out.pixel_angle_rad = static_cast<float>(2.0 * view.tan_half_height / frame.extent.height);
+  const Vec3& nm = frame.params.atmosphere.wavelengths_nm;
+  out.limb_exponent = {limb_exponent(nm.x), limb_exponent(nm.y), limb_exponent(nm.z)};
+  out.tan_half[0] = static_cast<float>(view.tan_half_width);
+  out.tan_half[1] = static_cast<float>(view.tan_half_height);
+  out.jitter[0] = static_cast<float>(view.jitter.x);
+  out.jitter[1] = static_cast<float>(view.jitter.y);
+  if (frame.scene.moon.visible) {
+    SunParams moon;
+    moon.elevation_deg = frame.scene.moon.elevation_deg;
+    moon.azimuth_deg = frame.scene.moon.azimuth_deg;
+    out.direction_to_moon = to_vec3(frame.local.direction(direction_to_sun(moon)));
+    out.moon_radius_rad = static_cast<float>(frame.scene.moon.angular_radius_deg * kRadPerDeg);
+    out.moon_irradiance = sun;
+  }
+  return out;
+}
+
 }  // namespace
 
 Result<void> Scene::draw_shadows(VkCommandBuffer cmd) {
@@ -94,30 +124,8 @@ Result<void> Scene::draw_shadow_colors(VkCommandBuffer cmd) {
 
 Result<void> Scene::draw_view(VkCommandBuffer cmd) {
   const gpu::Device& device = host_->device();
-  const double radius_rad = scene_.sun.angular_radius_deg * kRadPerDeg;
-  const double solid_angle = 6.283185307179586 * (1.0 - std::cos(radius_rad));
-  BackgroundConstants constants = {};
-  constants.local_from_view = camera_from_view(view_, frame_.local_from_world).world_from_view;
-  constants.world_from_local = to_mat4(frame_.world_from_local);
-  constants.direction_to_sun = to_vec3(frame_.direction(to_sun_));
-  constants.angular_radius_rad = static_cast<float>(radius_rad);
-  constants.disc_radiance =
-      to_vec3(glm::dvec3(light_.sun_irradiance.x, light_.sun_irradiance.y, light_.sun_irradiance.z) / solid_angle);
-  constants.pixel_angle_rad = static_cast<float>(2.0 * view_.tan_half_height / desc_.extent.height);
-  const Vec3& nm = params_.atmosphere.wavelengths_nm;
-  constants.limb_exponent = {limb_exponent(nm.x), limb_exponent(nm.y), limb_exponent(nm.z)};
-  constants.tan_half[0] = static_cast<float>(view_.tan_half_width);
-  constants.tan_half[1] = static_cast<float>(view_.tan_half_height);
-  constants.jitter[0] = static_cast<float>(view_.jitter.x);
-  constants.jitter[1] = static_cast<float>(view_.jitter.y);
-  if (scene_.moon.visible) {
-    SunParams place;
-    place.elevation_deg = scene_.moon.elevation_deg;
-    place.azimuth_deg = scene_.moon.azimuth_deg;
-    constants.direction_to_moon = to_vec3(frame_.direction(direction_to_sun(place)));
-    constants.moon_radius_rad = static_cast<float>(scene_.moon.angular_radius_deg * kRadPerDeg);
-    constants.moon_irradiance = light_.sun_irradiance;
-  }
+  const ModelFrame frame = {view_, frame_, light_, params_, scene_, desc_.extent};
+  const BackgroundConstants constants = background_constants(frame, to_sun_);
   std::memcpy(background_constants_.mapped, &constants, sizeof constants);
 
   gpu::transition(device, cmd, color_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
@@ -144,7 +152,6 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
   // Times are taken between renderings, because their barriers may not stand inside one.
   begin_pass(cmd, "terrain");
   begin_rendering(device, cmd, desc_.extent, colors, &depth);
-  const ModelFrame frame = {view_, frame_, light_, params_, scene_, desc_.extent};
   if (model_ != nullptr) {
     TYNDALL_TRY(model_->draw_ground(cmd, *terrain_, frame));
   } else {

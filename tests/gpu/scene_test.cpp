@@ -236,7 +236,7 @@ TEST_F(GpuScene, DrawsForViewers) {
   Scene& scene = *made.value();
   EXPECT_FALSE(scene.can_render());
   int steps = 0;
-  for (Result<Progress> progress = scene.tables_progress(); !progress.value().complete(); ++steps) {
+  for (Result<Progress> progress = scene.effect().precompute_progress(); !progress.value().complete(); ++steps) {
     progress = scene.advance_tables(4);
     ASSERT_OK(progress);
   }

@@ -1,10 +1,13 @@
-// The frame of the GUI: menu, windows, overlays.
 #include "viewer/gui/gui.hpp"
 
 #include <imgui.h>
 
 #include <algorithm>
 #include <utility>
+
+#include "scene/description/model_registry.hpp"
+#include "viewer/gui/control_panels.hpp"
+#include "viewer/gui/status_panels.hpp"
 
 namespace tyndall::viewer {
 namespace {
@@ -16,45 +19,31 @@ constexpr ImGuiWindowFlags kOverlay = ImGuiWindowFlags_NoDecoration | ImGuiWindo
                                       ImGuiWindowFlags_NoNav | ImGuiWindowFlags_AlwaysAutoResize;
 
 struct HelpLine {
-  const char* hands;
-  const char* what;
+  const char* input;
+  const char* effect;
 };
 constexpr HelpLine kHelp[] = {
     {"W A S D", "fly forward, left, back, right"},
-    {"E, Q", "up, down"},
+    {"E, Q", "fly up, down"},
     {"Shift", "faster; speed grows with the height above the ground"},
     {"Left drag", "look around"},
     {"Right drag", "turn the sun"},
     {"Wheel", "field of view"},
-    {"P", "play the flight of the scene file"},
+    {"P", "play or stop the camera path of the scene file"},
     {"F1", "this help"},
     {"F2", "hide or show the panels"},
     {"F5, F9", "save and restore the whole state"},
     {"F8", "rebuild the shaders from their sources"},
     {"F11", "full screen"},
     {"F12", "screenshot, PNG and EXR"},
-    {"Esc", "leave"},
+    {"Esc", "quit"},
 };
 
 constexpr HelpLine kFirstSteps[] = {
     {"W A S D, and E Q for up and down; Shift is faster. Drag with the left button to look.", "Move"},
-    {"drag with the right button.", "Turn the sun"},
-    {"the slider \"Aerosol density\", on top of the controls.", "More haze"},
-    {"F1.", "All keys"},
-};
-
-// The systems of docs/models.md.
-struct ModelItem {
-  const char* name;
-  scene::ScatteringModel model;
-  MediumKind medium = MediumKind::atmosphere;
-};
-constexpr ModelItem kModels[] = {
-    {"Atmosphere, all orders, shafts (Yusov 2013)", scene::ScatteringModel::atmosphere},
-    {"Homogeneous medium, shafts (Yusov 2012)", scene::ScatteringModel::atmosphere, MediumKind::homogeneous},
-    {"Air and haze (Hoffman, Preetham 2002)", scene::ScatteringModel::homogeneous},
-    {"Scale function (O'Neil 2005)", scene::ScatteringModel::oneil},
-    {"Table (O'Neil 2004)", scene::ScatteringModel::oneil_table},
+    {"Drag with the right button.", "Turn the sun"},
+    {"Move the slider \"Aerosol density\" at the top of the controls.", "More haze"},
+    {"F1 lists them.", "All keys"},
 };
 
 void help_table() {
@@ -62,9 +51,9 @@ void help_table() {
   for (const HelpLine& line : kHelp) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
-    ImGui::TextColored(ImVec4(1.0F, 0.8F, 0.35F, 1.0F), "%s", line.hands);
+    ImGui::TextColored(ImVec4(1.0F, 0.8F, 0.35F, 1.0F), "%s", line.input);
     ImGui::TableNextColumn();
-    ImGui::TextUnformatted(line.what);
+    ImGui::TextUnformatted(line.effect);
   }
   ImGui::EndTable();
 }
@@ -75,22 +64,6 @@ void centre_next(const GuiFacts& facts) {
 }
 
 }  // namespace
-
-void FrameTimes::add(const std::vector<scene::PassTime>& times, double whole_ms) {
-  double sum = 0.0;
-  for (const scene::PassTime& time : times) sum += time.ms;
-  gpu[next] = static_cast<float>(sum);
-  whole[next] = static_cast<float>(whole_ms);
-  next = (next + 1) % kCount;
-  const bool same = passes.size() == times.size() &&
-                    std::equal(passes.begin(), passes.end(), times.begin(),
-                               [](const scene::PassTime& a, const scene::PassTime& b) { return a.name == b.name; });
-  if (!same) {
-    passes = times;
-    return;
-  }
-  for (std::size_t i = 0; i < passes.size(); ++i) passes[i].ms += 0.2 * (times[i].ms - passes[i].ms);
-}
 
 void Gui::start() {
   scenes_ = shipped_scenes("scenes");
@@ -110,7 +83,7 @@ void Gui::start() {
 }
 
 void Gui::toast(std::string text, bool bad, double now) {
-  // The same again only lasts longer.
+  // A message that is shown already only lasts longer.
   std::erase_if(toasts_, [&](const Toast& t) { return t.text == text; });
   if (toasts_.size() > 5) toasts_.erase(toasts_.begin());
   toasts_.push_back({std::move(text), now + (bad ? kBadToast_s : kToast_s), bad});
@@ -121,9 +94,9 @@ void Gui::draw(config::Settings& left, config::Settings& right, const GuiFacts& 
   if (!state.hidden) {
     config::Settings& side = state.picture.compare && state.edit_right ? right : left;
     menu(side, facts, requests);
-    if (state.controls) controls(side, requests);
-    if (state.performance) performance(facts);
-    if (state.views) views(facts, requests);
+    if (state.controls) draw_controls(state, widgets, side);
+    if (state.performance) draw_performance(state, widgets, facts);
+    if (state.views) draw_views(state, widgets, facts, requests);
     status(facts);
   }
   if (state.picture.compare) divider(facts);
@@ -132,77 +105,86 @@ void Gui::draw(config::Settings& left, config::Settings& right, const GuiFacts& 
   toasts(facts);
 }
 
+bool Gui::begin_menu(const char* name) {
+  const bool open = ImGui::BeginMenu(name);
+  widgets.place(std::string("menu.") + name);
+  return open;
+}
+
+bool Gui::item(const char* name, const char* key, bool* on) {
+  const bool chosen = on != nullptr ? ImGui::MenuItem(name, key, on) : ImGui::MenuItem(name, key);
+  widgets.place(std::string("item.") + name);
+  return chosen;
+}
+
 void Gui::menu(config::Settings& settings, const GuiFacts& facts, GuiRequests& requests) {
   if (!ImGui::BeginMainMenuBar()) return;
-  const auto begin = [this](const char* name) {
-    const bool open = ImGui::BeginMenu(name);
-    widgets.place(std::string("menu.") + name);
-    return open;
-  };
-  const auto item = [this](const char* name, const char* key, bool* on = nullptr) {
-    const bool chosen = on != nullptr ? ImGui::MenuItem(name, key, on) : ImGui::MenuItem(name, key);
-    widgets.place(std::string("item.") + name);
-    return chosen;
-  };
-  if (begin("File")) {
-    requests.save = item("Save the state", "F5") || requests.save;
-    requests.restore = item("Restore the state", "F9") || requests.restore;
-    requests.screenshot = item("Screenshot", "F12") || requests.screenshot;
-    if (facts.has_path)
-      requests.play = item(facts.flying_path ? "Stop the flight" : "Play the flight", "P") || requests.play;
-    requests.reload_shaders = item("Rebuild the shaders", "F8") || requests.reload_shaders;
-    ImGui::Separator();
-    requests.quit = item("Leave", "Esc") || requests.quit;
-    ImGui::EndMenu();
-  }
-  if (begin("Scenes")) {
-    for (const SceneFile& scene : scenes_) {
-      if (item(scene.name.c_str(), nullptr)) requests.scene = scene.path;
-    }
-    if (scenes_.empty()) ImGui::TextDisabled("no scenes found; $TYNDALL_DATA names their place");
-    ImGui::EndMenu();
-  }
-  if (begin("Presets")) {
-    for (const SceneFile& preset : presets_) {
-      if (item(preset.name.c_str(), nullptr)) requests.preset = preset.path;
-    }
-    if (presets_.empty()) ImGui::TextDisabled("no presets found; $TYNDALL_DATA names their place");
-    ImGui::EndMenu();
-  }
-  if (begin("Model")) {
-    scene::SceneParams& scene = settings.scene;
-    MediumKind& medium = settings.effect.scattering.medium;
-    for (const ModelItem& model : kModels) {
-      bool chosen = scene.scattering.model == model.model &&
-                    (model.model != scene::ScatteringModel::atmosphere || medium == model.medium);
-      if (!item(model.name, nullptr, &chosen)) continue;
-      scene.scattering.model = model.model;
-      if (model.model == scene::ScatteringModel::atmosphere) medium = model.medium;
-    }
-    ImGui::Separator();
-    const bool apart = scene.scattering.model != scene::ScatteringModel::atmosphere;
-    bool pixel = scene.scattering.evaluate == scene::ModelEvaluation::pixel;
-    ImGui::BeginDisabled(!apart);
-    if (item("For every pixel", nullptr, &pixel)) {
-      scene.scattering.evaluate = pixel ? scene::ModelEvaluation::pixel : scene::ModelEvaluation::vertex;
-    }
-    ImGui::EndDisabled();
-    if (state.picture.compare) ImGui::TextDisabled(state.edit_right ? "of the right side" : "of the left side");
-    ImGui::EndMenu();
-  }
-  if (begin("Windows")) {
+  file_menu(facts, requests);
+  scene_menus(requests);
+  model_menu(settings);
+  if (begin_menu("Windows")) {
     item("Controls", nullptr, &state.controls);
     item("Performance", nullptr, &state.performance);
     item("Views and comparison", nullptr, &state.views);
     item("Full screen", "F11", &state.full_screen);
     ImGui::EndMenu();
   }
-  if (begin("Help")) {
+  if (begin_menu("Help")) {
     item("Keys and mouse", "F1", &state.help);
     item("First steps", nullptr, &state.first_run);
     ImGui::EndMenu();
   }
   ImGui::EndMainMenuBar();
+}
+
+void Gui::file_menu(const GuiFacts& facts, GuiRequests& requests) {
+  if (!begin_menu("File")) return;
+  requests.save = item("Save the state", "F5") || requests.save;
+  requests.restore = item("Restore the state", "F9") || requests.restore;
+  requests.screenshot = item("Screenshot", "F12") || requests.screenshot;
+  if (facts.flight.has_path) {
+    requests.play =
+        item(facts.flight.path_playing ? "Stop the camera path" : "Play the camera path", "P") || requests.play;
+  }
+  requests.reload_shaders = item("Rebuild the shaders", "F8") || requests.reload_shaders;
+  ImGui::Separator();
+  requests.quit = item("Quit", "Esc") || requests.quit;
+  ImGui::EndMenu();
+}
+
+void Gui::scene_menus(GuiRequests& requests) {
+  const auto list = [this](const std::vector<SceneFile>& files, const char* none, std::string& chosen) {
+    for (const SceneFile& file : files) {
+      if (item(file.name.c_str(), nullptr)) chosen = file.path;
+    }
+    if (files.empty()) ImGui::TextDisabled("%s", none);
+    ImGui::EndMenu();
+  };
+  if (begin_menu("Scenes")) list(scenes_, "no scenes found; set $TYNDALL_DATA to their folder", requests.scene);
+  if (begin_menu("Presets")) list(presets_, "no presets found; set $TYNDALL_DATA to their folder", requests.preset);
+}
+
+void Gui::model_menu(config::Settings& settings) {
+  if (!begin_menu("Model")) return;
+  scene::SceneParams& scene = settings.scene;
+  const scene::ModelInfo& current = scene::drawn_model(settings.effect, scene);
+  for (const scene::ModelInfo& model : scene::model_registry()) {
+    bool chosen = model.id == current.id;
+    if (!model.drawn_by || !item(model.title, nullptr, &chosen)) continue;
+    scene.scattering.model = model.drawn_by->model;
+    if (model.drawn_by->model == scene::ScatteringModel::atmosphere) {
+      settings.effect.scattering.medium = model.drawn_by->medium;
+    }
+  }
+  ImGui::Separator();
+  bool pixel = scene.scattering.evaluate == scene::ModelEvaluation::pixel;
+  ImGui::BeginDisabled(scene.scattering.model == scene::ScatteringModel::atmosphere);
+  if (item("For every pixel", nullptr, &pixel)) {
+    scene.scattering.evaluate = pixel ? scene::ModelEvaluation::pixel : scene::ModelEvaluation::vertex;
+  }
+  ImGui::EndDisabled();
+  if (state.picture.compare) ImGui::TextDisabled(state.edit_right ? "of the right side" : "of the left side");
+  ImGui::EndMenu();
 }
 
 void Gui::divider(const GuiFacts& facts) {
@@ -220,23 +202,25 @@ void Gui::divider(const GuiFacts& facts) {
 }
 
 void Gui::status(const GuiFacts& facts) {
-  // Beside the controls: the right edge is where the other windows are.
+  // Beside the controls, since the other windows are at the right edge.
   const float width = static_cast<float>(facts.window.width);
   const float left = state.controls ? std::min(360.0F, 0.5F * width) : 0.0F;
   ImGui::SetNextWindowPos(ImVec2(left + 6.0F, static_cast<float>(facts.window.height) - 6.0F), ImGuiCond_Always,
                           ImVec2(0.0F, 1.0F));
   ImGui::SetNextWindowBgAlpha(0.55F);
   if (ImGui::Begin("status", nullptr, kOverlay | ImGuiWindowFlags_NoInputs)) {
-    if (facts.creating) ImGui::TextUnformatted("Making the scene ...");
+    if (facts.creating) ImGui::TextUnformatted("Creating the scene ...");
     if (!facts.tables.complete()) {
-      ImGui::Text("Light of this atmosphere: %u of %u", facts.tables.done, facts.tables.total);
+      ImGui::Text("Scattering tables: %u of %u", facts.tables.done, facts.tables.total);
       ImGui::ProgressBar(static_cast<float>(facts.tables.done) / static_cast<float>(std::max(facts.tables.total, 1U)),
                          ImVec2(180.0F, 6.0F), "");
     }
-    if (facts.flying_path) ImGui::Text("Flight: %.1f s of %.1f s", facts.path_s, facts.path_end_s);
-    const bool far = facts.altitude_m >= 10000.0;
-    ImGui::Text(far ? "%.1f km up, %.1f km/s" : "%.0f m up, %.0f m/s",
-                far ? facts.altitude_m / 1000.0 : facts.altitude_m, far ? facts.speed_m_s / 1000.0 : facts.speed_m_s);
+    const FlightFacts& flight = facts.flight;
+    if (flight.path_playing) ImGui::Text("Camera path: %.1f s of %.1f s", flight.path_s, flight.path_end_s);
+    const bool far = flight.altitude_m >= 10000.0;
+    const double unit = far ? 1000.0 : 1.0;
+    ImGui::Text(far ? "Altitude %.1f km, speed %.1f km/s" : "Altitude %.0f m, speed %.0f m/s", flight.altitude_m / unit,
+                flight.speed_m_s / unit);
   }
   ImGui::End();
 }
@@ -249,14 +233,14 @@ void Gui::help(const GuiFacts& facts) {
           ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
     help_table();
     ImGui::Separator();
-    ImGui::TextUnformatted("Hold the pointer over a control to read what it does; Ctrl and click to type a value.");
-    ImGui::Text("The state is kept in %s", facts.state_file.c_str());
+    ImGui::TextUnformatted("Hold the pointer over a control to read what it does. Ctrl and click to type a value.");
+    ImGui::Text("The state is saved in %s", facts.state_file.c_str());
   }
   ImGui::End();
 }
 
 void Gui::first_run(const GuiFacts& facts) {
-  // In the middle of what the controls leave free.
+  // In the middle of the area that the controls leave free.
   const float width = static_cast<float>(facts.window.width);
   const float taken = state.controls && !state.hidden ? std::min(360.0F, 0.5F * width) : 0.0F;
   ImGui::SetNextWindowPos(ImVec2(0.5F * (taken + width), 0.5F * static_cast<float>(facts.window.height)),
@@ -265,10 +249,10 @@ void Gui::first_run(const GuiFacts& facts) {
   if (ImGui::Begin("first steps", nullptr, kOverlay)) {
     ImGui::PushTextWrapPos(std::clamp(0.95F * (width - taken), 220.0F, 520.0F));
     for (const HelpLine& line : kFirstSteps) {
-      ImGui::TextColored(ImVec4(1.0F, 0.8F, 0.35F, 1.0F), "%s:", line.what);
+      ImGui::TextColored(ImVec4(1.0F, 0.8F, 0.35F, 1.0F), "%s:", line.effect);
       ImGui::SameLine(110.0F);
-      ImGui::TextUnformatted(line.hands);
-      widgets.place(std::string("first_run.") + line.what);
+      ImGui::TextUnformatted(line.input);
+      widgets.place(std::string("first_run.") + line.effect);
     }
     ImGui::PopTextWrapPos();
     ImGui::Spacing();

@@ -1,11 +1,10 @@
-// The windows that show what the program does: times, memory, device; and the views of what the picture is made from.
+#include "viewer/gui/status_panels.hpp"
+
 #include <imgui.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-
-#include "viewer/gui/gui.hpp"
 
 namespace tyndall::viewer {
 namespace {
@@ -20,9 +19,9 @@ void text_bytes(const char* name, VkDeviceSize bytes) {
   ImGui::Text("%8.2f MiB", static_cast<double>(bytes) / 1048576.0);
 }
 
-// Shares of the picture by luminance in stops, and where the eye is.
+// Plots the shares of the picture by luminance in stops, and marks the measured and the adapted luminance.
 void histogram(const SceneFacts& scene) {
-  const post::Measurement& m = scene.measurement;
+  const post::Measurement& m = scene.exposure.measurement;
   float largest = 1.0e-4F;
   for (const float share : m.share) largest = std::max(largest, share);
   ImGui::PlotHistogram("##histogram", m.share.data(), static_cast<int>(m.share.size()), 0, nullptr, 0.0F,
@@ -44,8 +43,8 @@ void histogram(const SceneFacts& scene) {
   ImGui::SameLine();
   ImGui::SetCursorPosX(ImGui::GetContentRegionMax().x - 40.0F);
   ImGui::TextDisabled("2^%.0f", last);
-  ImGui::Text("Exposure %.4g (%+.2f stops)", static_cast<double>(scene.exposure),
-              std::log2(std::max(static_cast<double>(scene.exposure), 1.0e-12)));
+  ImGui::Text("Exposure %.4g (%+.2f stops)", static_cast<double>(scene.exposure.scale),
+              std::log2(std::max(static_cast<double>(scene.exposure.scale), 1.0e-12)));
   ImGui::TextColored(ImVec4(0.47F, 0.78F, 1.0F, 1.0F), "Picture %.4g", static_cast<double>(m.measured));
   ImGui::SameLine();
   ImGui::TextColored(ImVec4(1.0F, 0.78F, 0.35F, 1.0F), "Eye %.4g", static_cast<double>(m.luminance));
@@ -64,9 +63,65 @@ void plot(const char* label, const std::array<float, FrameTimes::kCount>& values
                    largest * 1.05F, ImVec2(ImGui::GetContentRegionAvail().x - 60.0F, 44.0F));
 }
 
+// The two controls that trade detail for time.
+void edit_detail(GuiState& state, Widgets& widgets) {
+  ImGui::SetNextItemWidth(140.0F);
+  ImGui::SliderFloat("Resolution scale", &state.resolution_scale, 0.25F, 2.0F, "%.2f", ImGuiSliderFlags_AlwaysClamp);
+  widgets.place("resolution_scale");
+  if (ImGui::IsItemHovered()) {
+    ImGui::SetTooltip(
+        "Pixels of the picture per pixel of the window along a side.\nDefault: 1, or 0.5 on devices without a GPU.");
+  }
+  const char* details[] = {"full", "half", "quarter"};
+  int detail = state.coarseness == 4 ? 2 : state.coarseness == 2 ? 1 : 0;
+  ImGui::SetNextItemWidth(140.0F);
+  if (ImGui::BeginCombo("Detail of the ground", details[detail])) {
+    for (int i = 0; i < 3; ++i) {
+      if (ImGui::Selectable(details[i], i == detail)) detail = i;
+      widgets.place("coarseness." + std::to_string(i));
+    }
+    ImGui::EndCombo();
+  }
+  widgets.place("coarseness");
+  if (ImGui::IsItemHovered()) {
+    ImGui::SetTooltip("Resolution of the terrain's grid.\nDefault: full, or a quarter on devices without a GPU.");
+  }
+  state.coarseness = 1 << detail;
+}
+
+void show_times(const FrameTimes& times) {
+  plot("passes", times.gpu, times.next);
+  plot("frame", times.whole, times.next);
+  if (!ImGui::BeginTable("passes", 2, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp)) return;
+  const auto row = [](const char* indent, const char* name, double ms) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::Text("%s%s", indent, name);
+    ImGui::TableNextColumn();
+    ImGui::Text("%8.2f ms", ms);
+  };
+  double effect = 0.0;
+  for (const scene::PassTime& pass : times.passes) {
+    row(pass.in_effect ? "  " : "", pass.name.c_str(), pass.ms);
+    if (pass.in_effect) effect += pass.ms;
+  }
+  row("", "light scattering in all", effect);
+  ImGui::EndTable();
+}
+
+void show_memory(const scene::Scene::Memory& memory) {
+  if (!ImGui::BeginTable("memory", 2, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp)) return;
+  for (const ResourceMemory& resource : memory.effect_resources) text_bytes(resource.name, resource.bytes);
+  text_bytes("effect, persistent", memory.effect_persistent);
+  text_bytes("effect, while tables are built", memory.effect_transient);
+  text_bytes("effect, host", memory.effect_host);
+  text_bytes("scene: pictures, shadows, terrain", memory.scene);
+  ImGui::EndTable();
+}
+
 }  // namespace
 
-void Gui::performance(const GuiFacts& facts) {
+void draw_performance(GuiState& state, Widgets& widgets, const GuiFacts& facts) {
   const ImGuiViewport* viewport = ImGui::GetMainViewport();
   ImGui::SetNextWindowPos(ImVec2(viewport->Size.x, ImGui::GetFrameHeight()), ImGuiCond_FirstUseEver,
                           ImVec2(1.0F, 0.0F));
@@ -77,66 +132,17 @@ void Gui::performance(const GuiFacts& facts) {
     ImGui::TextWrapped("%s", facts.device.c_str());
     ImGui::Text("Window %u x %u, picture %u x %u, %s", facts.window.width, facts.window.height, facts.picture.width,
                 facts.picture.height, facts.present_mode.c_str());
-    ImGui::SetNextItemWidth(140.0F);
-    ImGui::SliderFloat("Resolution scale", &state.resolution_scale, 0.25F, 2.0F, "%.2f", ImGuiSliderFlags_AlwaysClamp);
-    widgets.place("resolution_scale");
-    if (ImGui::IsItemHovered())
-      ImGui::SetTooltip("Pixels of the picture per pixel of the window, along a side.\nHalf on devices without a GPU, "
-                        "unless changed.");
-    const char* details[] = {"full", "half", "quarter"};
-    int detail = state.coarseness == 4 ? 2 : state.coarseness == 2 ? 1 : 0;
-    ImGui::SetNextItemWidth(140.0F);
-    if (ImGui::BeginCombo("Detail of the ground", details[detail])) {
-      for (int i = 0; i < 3; ++i) {
-        if (ImGui::Selectable(details[i], i == detail)) detail = i;
-        widgets.place("coarseness." + std::to_string(i));
-      }
-      ImGui::EndCombo();
-    }
-    widgets.place("coarseness");
-    if (ImGui::IsItemHovered())
-      ImGui::SetTooltip("Cells of the ground, full, or two or four times as wide.\nA quarter on devices without a GPU, "
-                        "unless changed.");
-    state.coarseness = 1 << detail;
-    if (facts.times != nullptr) {
-      plot("passes", facts.times->gpu, facts.times->next);
-      plot("frame", facts.times->whole, facts.times->next);
-      if (ImGui::BeginTable("passes", 2, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp)) {
-        double effect = 0.0;
-        for (const scene::PassTime& pass : facts.times->passes) {
-          ImGui::TableNextRow();
-          ImGui::TableNextColumn();
-          ImGui::Text("%s%s", pass.in_effect ? "  " : "", pass.name.c_str());
-          ImGui::TableNextColumn();
-          ImGui::Text("%8.2f ms", pass.ms);
-          if (pass.in_effect) effect += pass.ms;
-        }
-        ImGui::TableNextRow();
-        ImGui::TableNextColumn();
-        ImGui::TextUnformatted("light in the air, together");
-        ImGui::TableNextColumn();
-        ImGui::Text("%8.2f ms", effect);
-        ImGui::EndTable();
-      }
-    }
-    const bool light_open = ImGui::CollapsingHeader("Histogram and exposure", ImGuiTreeNodeFlags_DefaultOpen);
+    edit_detail(state, widgets);
+    if (facts.times != nullptr) show_times(*facts.times);
+    const bool exposure_open = ImGui::CollapsingHeader("Histogram and exposure", ImGuiTreeNodeFlags_DefaultOpen);
     widgets.place("histogram");
-    if (light_open && facts.scene != nullptr && facts.scene->can_render) histogram(*facts.scene);
+    if (exposure_open && facts.scene != nullptr && facts.scene->can_render) histogram(*facts.scene);
     const bool memory_open = ImGui::CollapsingHeader("Memory");
     widgets.place("memory");
-    if (memory_open && facts.scene != nullptr) {
-      const scene::Scene::Memory& memory = facts.scene->memory;
-      if (ImGui::BeginTable("memory", 2, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp)) {
-        for (const ResourceMemory& resource : memory.effect_resources) text_bytes(resource.name, resource.bytes);
-        text_bytes("effect, persistent", memory.effect_persistent);
-        text_bytes("effect, while tables are built", memory.effect_transient);
-        text_bytes("effect, host", memory.effect_host);
-        text_bytes("scene: pictures, shadows, ground", memory.scene);
-        ImGui::EndTable();
-      }
-    }
-    if (!facts.pipelines.complete()) {
-      ImGui::TextDisabled("Shader variants made ahead: %u of %u", facts.pipelines.done, facts.pipelines.total);
+    if (memory_open && facts.scene != nullptr) show_memory(facts.scene->memory);
+    if (facts.scene != nullptr && !facts.scene->pipelines.complete()) {
+      const Progress& pipelines = facts.scene->pipelines;
+      ImGui::TextDisabled("Pipelines created ahead: %u of %u", pipelines.done, pipelines.total);
     }
     if (!facts.shader_message.empty()) {
       ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0F, 0.45F, 0.35F, 1.0F));
@@ -147,7 +153,7 @@ void Gui::performance(const GuiFacts& facts) {
   ImGui::End();
 }
 
-void Gui::views(const GuiFacts& facts, GuiRequests& requests) {
+void draw_views(GuiState& state, Widgets& widgets, const GuiFacts& facts, GuiRequests& requests) {
   const ImGuiViewport* viewport = ImGui::GetMainViewport();
   ImGui::SetNextWindowPos(
       ImVec2(viewport->WorkPos.x + viewport->WorkSize.x, viewport->WorkPos.y + viewport->WorkSize.y),
@@ -186,7 +192,8 @@ void Gui::views(const GuiFacts& facts, GuiRequests& requests) {
       ImGui::SameLine();
       ImGui::Checkbox("Difference", &p.difference);
       widgets.place("compare.difference");
-      ImGui::TextWrapped("Choose in the controls which side they change. Camera and sun are common to both.");
+      ImGui::TextWrapped(
+          "The controls change the side that is selected there. Both sides share the camera and the sun.");
     }
   }
   ImGui::End();

@@ -42,14 +42,14 @@ Result<void> Window::start() {
 
 void Window::stop() { glfwTerminate(); }
 
-std::vector<const char*> Window::instance_extensions() {
+void Window::require_presentation(gpu::HostDesc& desc) {
   std::uint32_t count = 0;
   const char** names = glfwGetRequiredInstanceExtensions(&count);
-  return names != nullptr ? std::vector<const char*>(names, names + count) : std::vector<const char*>();
-}
-
-bool Window::can_present(VkInstance instance, VkPhysicalDevice device, std::uint32_t queue_family) {
-  return glfwGetPhysicalDevicePresentationSupport(instance, device, queue_family) == GLFW_TRUE;
+  if (names != nullptr) desc.instance_extensions.assign(names, names + count);
+  desc.device_extensions = {VK_KHR_SWAPCHAIN_EXTENSION_NAME};
+  desc.can_present = [](VkInstance instance, VkPhysicalDevice device, std::uint32_t queue_family) {
+    return glfwGetPhysicalDevicePresentationSupport(instance, device, queue_family) == GLFW_TRUE;
+  };
 }
 
 Result<void> Window::open(std::uint32_t width, std::uint32_t height, const char* title) {
@@ -195,7 +195,5 @@ void Window::set_full_screen(bool on) {
   full_screen_ = on;
   activity_ = true;
 }
-
-void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
 
 }  // namespace tyndall::viewer

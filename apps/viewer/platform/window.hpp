@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "gpu/host.hpp"
 #include "tyndall/result.hpp"
 #include "viewer/platform/key_feed.hpp"
 
@@ -34,8 +35,8 @@ class Window {
   // An error says that there is no display, and what to do instead.
   static Result<void> start();
   static void stop();
-  [[nodiscard]] static std::vector<const char*> instance_extensions();
-  [[nodiscard]] static bool can_present(VkInstance instance, VkPhysicalDevice device, std::uint32_t queue_family);
+  // Adds what presenting to a window needs to the description of a device.
+  static void require_presentation(gpu::HostDesc& desc);
 
   Result<void> open(std::uint32_t width, std::uint32_t height, const char* title);
   Result<VkSurfaceKHR> create_surface(VkInstance instance);
@@ -62,7 +63,6 @@ class Window {
   [[nodiscard]] bool minimised() const;
   [[nodiscard]] bool full_screen() const { return full_screen_; }
   void set_full_screen(bool on);
-  void set_title(const std::string& title);
   [[nodiscard]] GLFWwindow* handle() const { return window_; }
 
  private:

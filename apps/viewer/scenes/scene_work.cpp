@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "gpu/try.hpp"
+#include "scene/description/terrain_key.hpp"
 #include "viewer/platform/window.hpp"
 #include "viewer/scenes/settings_compare.hpp"
 
@@ -21,6 +22,14 @@ constexpr double kKeep_s = 20.0;
 template <typename T>
 bool is_done(const std::future<T>& future) {
   return future.valid() && future.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
+scene::TerrainKey key_of(const config::Settings& settings) {
+  return scene::terrain_key(settings.scene.terrain, settings.effect.planet);
+}
+
+void set_terrain_key(const scene::TerrainKey& key, config::Settings& settings) {
+  scene::set_terrain_key(key, settings.scene.terrain, settings.effect.planet);
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -69,7 +78,7 @@ SceneResult SceneWork::create(gpu::Host& host, const scene::SceneDesc& desc, con
 
 bool SceneWork::building() const {
   return scene_ != nullptr && applied_.scene.scattering.model == scene::ScatteringModel::atmosphere &&
-         !scene_->tables_progress().complete();
+         !scene_->effect().precompute_progress().complete();
 }
 
 bool SceneWork::tone_stale() const {
@@ -77,7 +86,7 @@ bool SceneWork::tone_stale() const {
   const scene::TonemapParams& params = applied_.scene.tonemap;
   if (!params.auto_exposure || !params.light_adaptation || !drawn_ || stale_) return false;
   constexpr float kAdapted = 0.005F;  // relative difference that nobody sees
-  const post::Measurement m = scene_->measurement();
+  const post::Measurement m = scene_->exposure().measurement;
   return m.measured > 0.0F &&
          std::abs(m.luminance - std::max(m.measured, params.least_luminance)) > kAdapted * m.luminance;
 }
@@ -156,7 +165,7 @@ Result<void> SceneWork::next(const SceneRequest& request, SceneResult& out) {
 Result<void> SceneWork::advance_tables(SceneResult& out) {
   const Clock::time_point start = Clock::now();
   const std::uint32_t budget = budget_;
-  const bool fresh = scene_->tables_progress().done == 0;
+  const bool fresh = scene_->effect().precompute_progress().done == 0;
   TYNDALL_ASSIGN(const Progress progress, scene_->advance_tables(budget));
   const double took_ms = 1000.0 * seconds_since(start);
   if (took_ms > kTables_ms) budget_ = std::max(budget_ / 2, 1U);
@@ -220,52 +229,38 @@ Result<void> SceneWork::take_terrain() {
   if (!is_done(loading_)) return {};
   Result<scene::ElevationSource> source = loading_.get();
   if (!source) {
-    // As before the change.
-    wanted_.scene.terrain.source = applied_.scene.terrain.source;
-    wanted_.scene.terrain.seed = applied_.scene.terrain.seed;
-    wanted_.scene.terrain.exaggeration = applied_.scene.terrain.exaggeration;
-    wanted_.effect.planet.radius_m = applied_.effect.planet.radius_m;
+    set_terrain_key(key_of(applied_), wanted_);
     return source.error();
   }
-  TYNDALL_TRY(scene_->set_terrain(loading_for_, loading_radius_m_, std::move(source).value()));
-  const scene::TerrainShading shading = applied_.scene.terrain.shading;
-  applied_.scene.terrain = loading_for_;
-  applied_.scene.terrain.shading = shading;
+  const double radius_m = loading_for_.effect.planet.radius_m;
+  TYNDALL_TRY(scene_->set_terrain(loading_for_.scene.terrain, radius_m, std::move(source).value()));
+  set_terrain_key(key_of(loading_for_), applied_);
   stale_ = true;
-  // The radius of the air follows that of the ground.
-  Params params = applied_.effect;
-  params.planet.radius_m = static_cast<float>(loading_radius_m_);
-  TYNDALL_TRY(scene_->set_params(params));
-  applied_.effect = params;
+  // The radius of the atmosphere follows that of the ground.
+  TYNDALL_TRY(scene_->set_params(applied_.effect));
   const config::Settings wanted = std::exchange(wanted_, applied_);
   return follow_settings(wanted);
 }
 
 // `settings` with the ground that has been loaded.
 config::Settings SceneWork::loaded(config::Settings settings) const {
-  settings.scene.terrain.source = applied_.scene.terrain.source;
-  settings.scene.terrain.seed = applied_.scene.terrain.seed;
-  settings.scene.terrain.exaggeration = applied_.scene.terrain.exaggeration;
+  set_terrain_key(key_of(applied_), settings);
   // Only the effect draws without terrain; another model follows when there is one.
   if (settings.scene.terrain.source == "none") settings.scene.scattering.model = scene::ScatteringModel::atmosphere;
-  settings.effect.planet.radius_m = applied_.effect.planet.radius_m;
   settings.scene.camera.samples = 1;
   return settings;
 }
 
 void SceneWork::load_terrain() {
   if (loading_.valid()) return;  // take_terrain() comes back here
-  const bool other = !same_ground(wanted_.scene.terrain, applied_.scene.terrain) ||
-                     wanted_.effect.planet.radius_m != applied_.effect.planet.radius_m;
-  if (!other) return;
-  loading_for_ = wanted_.scene.terrain;
-  loading_radius_m_ = wanted_.effect.planet.radius_m;
-  loading_ =
-      std::async(std::launch::async, [device = &host_->device(), params = loading_for_, radius = loading_radius_m_] {
-        Result<scene::ElevationSource> source = scene::Terrain::load_source(*device, params, radius);
-        Window::wake();
-        return source;
-      });
+  if (key_of(wanted_) == key_of(applied_)) return;
+  loading_for_ = wanted_;
+  loading_ = std::async(std::launch::async, [device = &host_->device(), params = wanted_.scene.terrain,
+                                             radius = wanted_.effect.planet.radius_m] {
+    Result<scene::ElevationSource> source = scene::Terrain::load_source(*device, params, radius);
+    Window::wake();
+    return source;
+  });
 }
 
 Result<void> SceneWork::resize(const SceneRequest& request) {
@@ -313,10 +308,10 @@ SceneFacts SceneWork::facts() const {
   f.can_render = ready();
   f.building = building();
   f.working = loading_.valid() || keeping_.valid();
-  f.tables = scene_->tables_progress();
+  f.tables = scene_->effect().precompute_progress();
   f.pipelines = pipelines_;
   f.keep_tables_in_s = keep_in_s();
-  f.extent = scene_->extent();
+  f.extent = desc_.extent;
   f.shadow_layers = static_cast<int>(scene_->images().shadow_maps.desc.layers);
   f.elevations = scene_->elevations();
   f.radius_m = applied_.effect.planet.radius_m;
@@ -324,7 +319,6 @@ SceneFacts SceneWork::facts() const {
   if (!drawn_) return f;
   f.tone_stale = tone_stale();
   f.timings = scene_->timings();
-  f.measurement = scene_->measurement();
   f.exposure = scene_->exposure();
   return f;
 }

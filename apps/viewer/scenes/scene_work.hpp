@@ -36,8 +36,7 @@ struct SceneFacts {
   Progress tables = {}, pipelines = {};
   double keep_tables_in_s = -1.0;  // negative: nothing to keep
   std::vector<scene::PassTime> timings;
-  post::Measurement measurement;
-  float exposure = 1.0F;
+  scene::Scene::Exposure exposure;
   scene::Scene::Memory memory;
   VkExtent2D extent = {};
   int shadow_layers = 1;
@@ -111,8 +110,7 @@ class SceneWork {
   Canvas canvas_;
   View drawn_view_;
   std::future<Result<scene::ElevationSource>> loading_;
-  scene::TerrainParams loading_for_;
-  double loading_radius_m_ = 0.0;
+  config::Settings loading_for_;
   std::future<std::string> keeping_;
   bool unkept_ = false;  // tables that were built and are not in the cache
   bool first_tables_ = true;

@@ -34,10 +34,6 @@ bool same_but_for_tone(const config::Settings& a, const config::Settings& b) {
                      [&](const config::Row& row) { return row.info.group == "tonemap" || same_value(row, a, b); });
 }
 
-bool same_ground(const scene::TerrainParams& a, const scene::TerrainParams& b) {
-  return a.source == b.source && a.seed == b.seed && a.exaggeration == b.exaggeration && a.units == b.units;
-}
-
 void go_back(config::Settings& settings, const config::Settings& asked, const config::Settings& had) {
   for (const config::Row& row : config::rows()) {
     if (same_value(row, asked, had) || !same_value(row, settings, asked)) continue;

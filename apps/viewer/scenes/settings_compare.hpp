@@ -9,7 +9,6 @@ namespace tyndall::viewer {
 [[nodiscard]] bool same_settings(const config::Settings& a, const config::Settings& b);
 // Whether nothing but tonemap.* differs.
 [[nodiscard]] bool same_but_for_tone(const config::Settings& a, const config::Settings& b);
-[[nodiscard]] bool same_ground(const scene::TerrainParams& a, const scene::TerrainParams& b);
 // Takes from `had` what is still as in `asked`, which could not be had: what was changed since then stays.
 void go_back(config::Settings& settings, const config::Settings& asked, const config::Settings& had);
 // Makes what ranges alone cannot say hold: shadows.first_marched below shadows.cascades.

@@ -1,0 +1,44 @@
+// The Vulkan devices of the viewer: that of the scenes, and that of the window. On a device without a GPU the window
+// has a device of its own, because a queue works through its submissions in order and the GUI would wait for whole
+// frames of the scene. Otherwise both are the same.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "gpu/host.hpp"
+
+namespace tyndall::viewer {
+
+class Devices {
+ public:
+  struct Desc {
+    std::string name;  // of the device, as in --device
+    bool validation = false;
+    bool one_device = false;  // use one device whatever it is
+  };
+
+  // Opens the device of the scenes.
+  Result<void> open_scene_device(const Desc& desc);
+  // Opens the window's device, unless it is that of the scenes. Apart, because the first scene can be created
+  // meanwhile.
+  Result<void> open_window_device();
+
+  [[nodiscard]] gpu::Host& scene() const { return *scene_; }
+  [[nodiscard]] gpu::Host& window() const { return *window_; }
+  [[nodiscard]] bool are_one() const { return window_ == scene_; }
+  // Returns whether scenes are drawn without a GPU.
+  [[nodiscard]] bool slow() const;
+  // Of the validation layer, on both devices.
+  [[nodiscard]] std::uint32_t validation_messages() const;
+  [[nodiscard]] std::string validation_text() const;
+
+ private:
+  [[nodiscard]] gpu::HostDesc host_desc() const;
+
+  Desc desc_;
+  std::shared_ptr<gpu::Host> scene_, window_;
+};
+
+}  // namespace tyndall::viewer

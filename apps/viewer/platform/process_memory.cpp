@@ -1,0 +1,40 @@
+#include "viewer/platform/process_memory.hpp"
+
+#include <unistd.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+#include <cstdio>
+
+namespace tyndall::viewer {
+
+void configure_malloc() {
+#ifdef __GLIBC__
+  // With an arena for each thread, freed memory would stay in all of them. Large blocks are the tables and pictures of
+  // a device without a GPU.
+  mallopt(M_ARENA_MAX, 1);
+  mallopt(M_MMAP_THRESHOLD, 1 << 20);
+#endif
+}
+
+long resident_kib() {
+  long pages = 0;
+  long resident = 0;
+  if (std::FILE* file = std::fopen("/proc/self/statm", "r"); file != nullptr) {
+    if (std::fscanf(file, "%ld %ld", &pages, &resident) != 2) resident = 0;
+    std::fclose(file);
+  }
+  return resident * (sysconf(_SC_PAGESIZE) / 1024);
+}
+
+std::size_t allocated_kib() {
+#if defined(__GLIBC__) && (__GLIBC__ > 2 || __GLIBC_MINOR__ >= 33)
+  const struct mallinfo2 info = mallinfo2();
+  return (info.uordblks + info.hblkhd) / 1024;
+#else
+  return 0;
+#endif
+}
+
+}  // namespace tyndall::viewer

@@ -1,0 +1,36 @@
+#include "viewer/screenshot.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include "image/image.hpp"
+#include "viewer/platform/files.hpp"
+#include "viewer/platform/window.hpp"
+
+namespace tyndall::viewer {
+
+Screenshot::~Screenshot() {
+  if (writing_.valid()) writing_.wait();
+}
+
+void Screenshot::write(Capture capture, const std::string& folder) {
+  requested_ = false;
+  const std::string stem = screenshot_stem(folder, {".png", ".exr"});
+  writing_ = std::async(std::launch::async, [stem, shot = std::move(capture)]() -> Result<std::string> {
+    Result<void> written = image::write_png(stem + ".png", shot.display, config::metadata(shot.settings));
+    if (written) {
+      written = image::write_exr(stem + ".exr", shot.radiance, config::radiance_metadata(shot.settings),
+                                 {.content = image::ExrContent::radiance});
+    }
+    Window::wake();
+    if (!written) return written.error();
+    return stem;
+  });
+}
+
+std::optional<Result<std::string>> Screenshot::take_written() {
+  if (!writing_.valid() || writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return std::nullopt;
+  return writing_.get();
+}
+
+}  // namespace tyndall::viewer

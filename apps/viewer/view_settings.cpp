@@ -1,0 +1,54 @@
+#include "viewer/view_settings.hpp"
+
+#include <utility>
+
+#include "config/scene_file.hpp"
+#include "gpu/try.hpp"
+#include "viewer/platform/files.hpp"
+#include "viewer/scenes/settings_compare.hpp"
+
+namespace tyndall::viewer {
+
+void ViewSettings::synchronise(bool compare) {
+  make_consistent(left);
+  if (!compare) return;
+  right.scene.camera = left.scene.camera;
+  right.scene.sun = left.scene.sun;
+  make_consistent(right);
+}
+
+void ViewSettings::copy_to_right(bool new_comparison) {
+  right = left;
+  Technique& technique = right.effect.scattering.technique;
+  if (new_comparison && technique == Technique::epipolar) technique = Technique::brute_force;
+}
+
+void ViewSettings::take_back(const PairResult& result) {
+  for (std::size_t side = 0; side < result.refused.size(); ++side) {
+    if (!result.refused[side]) continue;
+    config::Settings& settings = side == 0 ? left : right;
+    const scene::CameraParams camera = settings.scene.camera;
+    const scene::SunParams sun = settings.scene.sun;
+    go_back(settings, result.refused[side]->requested, result.refused[side]->current);
+    settings.scene.camera = camera;
+    settings.scene.sun = sun;
+  }
+}
+
+Result<void> ViewSettings::save() const {
+  if (!make_folder_of(state_file)) {
+    return Error{ErrorCode::io, "the folder of '" + state_file + "' cannot be made, F5, --state names another file"};
+  }
+  return config::save(left, state_file);
+}
+
+Result<void> ViewSettings::load(const std::string& path, bool over_defaults) {
+  config::Settings loaded = over_defaults ? config::Settings() : left;
+  loaded.scene.tables = left.scene.tables;
+  TYNDALL_TRY(config::load(loaded, path));
+  TYNDALL_TRY(config::check(loaded));
+  left = std::move(loaded);
+  return {};
+}
+
+}  // namespace tyndall::viewer
