@@ -50,16 +50,16 @@ struct Estimate {
 // Called now and then, by one thread at a time, with the part done in [0; 1]; false cancels the call.
 using Progress = std::function<bool(double done)>;
 
-// Below sea level the atmosphere continues, the camera ray meets ground at twice the depth of the camera, and light that
-// arrives from below at any other point comes from ground at that point (docs/adr/0007-below-sea-level.md).
-// One estimate per query, in their order. Query i uses random numbers of its own, a function of
-// (seed, i): equal queries in one call are independent estimates.
-// A cancelled call returns what is done: look at Estimate::samples.
-// Errors: invalid_argument for a query, an option or a parameter out of its range.
+// Below sea level the atmosphere continues, the camera ray meets ground at twice the depth of the camera, and light
+// that arrives from below at any other point comes from ground at that point (docs/adr/0007-below-sea-level.md). One
+// estimate per query, in their order. Query i uses random numbers of its own, a function of (seed, i): equal queries in
+// one call are independent estimates. A cancelled call returns what is done: look at Estimate::samples. Errors:
+// invalid_argument for a query, an option or a parameter out of its range.
 Result<std::vector<Estimate>> trace(const Params& params, std::span<const RayQuery> queries, const Options& options,
                                     const Progress& progress = {});
 
 // The same for one query (index 0).
-Result<Estimate> trace(const Params& params, const RayQuery& query, const Options& options, const Progress& progress = {});
+Result<Estimate> trace(const Params& params, const RayQuery& query, const Options& options,
+                       const Progress& progress = {});
 
 }  // namespace tyndall::reference

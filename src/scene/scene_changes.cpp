@@ -179,8 +179,8 @@ Result<Scene::Pending> Scene::plan(const SceneParams& scene, const Params& param
   out.params = params;
   out.notes = notes_;
   const double radius_m = params.planet.radius_m;
-  const bool other_ground = source.has_value() || terrain_key(scene.terrain, params.planet) !=
-                                                      terrain_key(scene_.terrain, params_.planet);
+  const bool other_ground =
+      source.has_value() || terrain_key(scene.terrain, params.planet) != terrain_key(scene_.terrain, params_.planet);
   if (other_ground) {
     if (!source) {
       TYNDALL_ASSIGN(source, Terrain::load_source(host_->device(), scene.terrain, radius_m));

@@ -134,8 +134,8 @@ TEST(ReferenceShell, SecondOrderMatchesBruteForce) {
   p.planet.radius_m = 500000.0F;  // a small planet: its shadow crosses many of these paths
   p.atmosphere.height_m = 60000.0F;
   const std::vector<RayQuery> queries = {ray(0.0, 40.0, 50.0, 100.0),    ray(2000.0, 80.0, 97.0, 20.0),
-                                      ray(0.0, 60.0, 96.0, 170.0),    ray(20000.0, 100.0, 88.0, 60.0),
-                                      ray(-3000.0, 80.0, 60.0, 90.0), ray(-3000.0, 120.0, 60.0, 90.0)};
+                                         ray(0.0, 60.0, 96.0, 170.0),    ray(20000.0, 100.0, 88.0, 60.0),
+                                         ray(-3000.0, 80.0, 60.0, 90.0), ray(-3000.0, 120.0, 60.0, 90.0)};
   const auto estimates = run(p, queries, 200000, 2, true);
   for (std::size_t i = 0; i < queries.size(); ++i) {
     for (const std::size_t c : {std::size_t{0}, std::size_t{2}}) {

@@ -287,8 +287,7 @@ TEST(ValidateStudy, AFailingModelEndsIt) {
   Options options;
   options.rays = 18;
   options.samples = 2;
-  const Model broken = {"broken", "", 0,
-                        [](const Params&, std::span<const RayQuery>) -> Result<std::vector<Rgb>> {
+  const Model broken = {"broken", "", 0, [](const Params&, std::span<const RayQuery>) -> Result<std::vector<Rgb>> {
                           return Error{ErrorCode::device_lost, "gone"};
                         }};
   const Result<Study> study = run_study({}, options, {broken}, {}, [](double) {});

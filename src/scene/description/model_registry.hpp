@@ -1,5 +1,5 @@
-// The models of light scattering: the one list that `probe`, `validate`, `sky`, the viewer's menu and remarks about unused
-// parameters read. How each of them is computed or drawn is found by its id.
+// The models of light scattering: the one list that `probe`, `validate`, `sky`, the viewer's menu and remarks about
+// unused parameters read. How each of them is computed or drawn is found by its id.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
-// The parameters that a terrain is loaded for. When one of them changes, the terrain is stale; all other parameters take
-// effect without loading it again.
+// The parameters that a terrain is loaded for. When one of them changes, the terrain is stale; all other parameters
+// take effect without loading it again.
 #pragma once
 
 #include <cstdint>
