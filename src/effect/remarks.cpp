@@ -34,6 +34,9 @@ enum class Kind : std::uint32_t {
   cascade_unit,
   cascade_clip,
   cascade_elsewhere,
+  camera_outside,
+  cascade_narrow,
+  cascade_gap,
   cascade_sun,
   cascade_depth
 };
@@ -107,18 +110,77 @@ void remark_on_sun(Speaker& s, const FrameInputs& inputs) {
            "Sun::irradiance is 0; expected light: the air will be black");
 }
 
-void remark_on_view(Speaker& s, const FrameInputs& inputs, const FrameState& state) {
+DVec3 minus(const DVec3& a, const DVec3& b) { return sum(a, b, -1.0); }
+
+// Returns how far the camera's x axis is from horizontal, by the world's y axis or by the planet's zenith at the
+// camera, whichever is nearer: 0 for a camera without roll.
+double roll_of(const Mat4& m, double radius) {
+  const DVec3 x = column_of(m, 0);
+  const DVec3 p = column_of(m, 3);
+  const DVec3 up = {p.x, p.y + radius, p.z};
+  return std::min(std::abs(x.y), std::abs(dot(x, up)) / length(up));
+}
+
+// Returns whether the camera turns about one axis of the world only.
+bool turns_about_an_axis(const Mat4& m) {
+  for (int column = 0; column < 3; ++column) {
+    for (int row = 0; row < 3; ++row) {
+      if (std::abs(m.m[4 * column + row]) > 1.0F - 1e-6F) return true;
+    }
+  }
+  return false;
+}
+
+// Returns where a place is in a shadow map: (u, v, depth).
+DVec3 in_map(const Cascade& cascade, const DVec3& place) {
+  const Mat4& m = cascade.shadow_from_world;
+  return sum({dot(row_of(m, 0), place), dot(row_of(m, 1), place), dot(row_of(m, 2), place)}, column_of(m, 3), 1.0);
+}
+
+bool inside(const DVec3& in_map) {
+  return in_map.x > 0.0 && in_map.x < 1.0 && in_map.y > 0.0 && in_map.y < 1.0 && in_map.z > 0.0 && in_map.z < 1.0;
+}
+
+// Returns whether a camera, and the middle of what it sees, are inside the first marched cascade.
+bool is_in_cascade(const Mat4& world_from_view, const FrameInputs& inputs) {
+  const Cascade& c = inputs.cascades[inputs.first_marched_cascade];
+  const DVec3 camera = column_of(world_from_view, 3);
+  const double reach_m = -0.5 * static_cast<double>(c.far_m);
+  return inside(in_map(c, camera)) && inside(in_map(c, sum(camera, column_of(world_from_view, 2), reach_m)));
+}
+
+// Returns whether the camera looks like the inverse of one: like a matrix from the world to the view. No single sign
+// is certain, so that each leaves out what right cameras do.
+bool looks_inverted(const FrameInputs& inputs, const FrameState& state, const Mat4* before) {
   const Mat4& m = inputs.camera.world_from_view;
   const double radius = static_cast<double>(state.params.planet.radius_m);
   const Mat4 inverted = rigid_inverse(m);
   const double altitude = altitude_of(column_of(m, 3), radius);
   const double other = altitude_of(column_of(inverted, 3), radius);
-  // A camera that is level across has a horizontal x axis; the inverse of its matrix has not, unless it looks
-  // level as well.
-  const bool level = std::abs(m.m[1]) < 1e-5F;
-  const bool other_level = std::abs(inverted.m[1]) < 1e-5F;
-  const bool inverse = altitude < -1.0 && other > 1.0 && ((!level && other_level) || altitude < -500.0);
-  s.say_if(Kind::view_inverse, inverse, "Camera::world_from_view puts the camera ", altitude,
+  if (altitude < -500.0 && other > 1.0) return true;
+  // Few cameras roll; the inverse of one that does not is rolled unless it turns about one axis only.
+  if (!turns_about_an_axis(m) && roll_of(m, radius) > 1e-3 && roll_of(inverted, radius) < 1e-5) return true;
+  const bool marched = state.params.scattering.light_shafts && !inputs.cascades.empty() && other > 0.0;
+  if (marched && !is_in_cascade(m, inputs) &&
+      !inside(in_map(inputs.cascades[inputs.first_marched_cascade], column_of(m, 3))) &&
+      is_in_cascade(inverted, inputs)) {
+    return true;
+  }
+  // A camera that turns in its place: its inverse swings around the origin, and not only above the sea.
+  if (before == nullptr || altitude > 0.0 || other < 0.0) return false;
+  const DVec3 place = column_of(inverted, 3);
+  const double turned = length(minus(column_of(m, 2), column_of(*before, 2)));
+  const double moved = length(minus(place, column_of(rigid_inverse(*before), 3)));
+  return turned > 1e-3 && moved < 1e-5 * (length(place) + 1.0) &&
+         length(minus(column_of(m, 3), column_of(*before, 3))) > 100.0 * moved + 0.1;
+}
+
+void remark_on_view(Speaker& s, const FrameInputs& inputs, const FrameState& state, bool inverse) {
+  const Mat4& m = inputs.camera.world_from_view;
+  const double radius = static_cast<double>(state.params.planet.radius_m);
+  const double altitude = altitude_of(column_of(m, 3), radius);
+  const double other = altitude_of(column_of(rigid_inverse(m), 3), radius);
+  s.say_if(Kind::view_inverse, inverse, "Camera::world_from_view looks like its inverse: it puts the camera ", altitude,
            " m above sea level, and its inverse ", other,
            " m; expected the camera's place and axes in the world: is it the view matrix, view_from_world?");
   s.say_if(Kind::below_sea, !inverse && altitude < -500.0, "Camera::world_from_view puts the camera ", -altitude,
@@ -160,72 +222,129 @@ void remark_on_projection(Speaker& s, const FrameInputs& inputs, const FrameStat
            " m reads as sky; expected D32_SFLOAT or D24, or a far plane near that distance");
 }
 
-// The part of the view that the first marched cascade is for, in its map.
+// The part of the view that a cascade is for, in its map.
 struct Footprint {
   double low[2] = {1e300, 1e300};
   double high[2] = {-1e300, -1e300};
+  double size = 0.0;        // the larger side
+  double reached_m = -1.0;  // depth down to which the middle of the view is in the map; -1: not at all
 };
 
-Footprint footprint(const Cascade& cascade, const FrameInputs& inputs, const shared::FrameConstants& frame) {
+// A slice of the view, between two depths.
+Footprint footprint(const Cascade& cascade, double near_m, double far_m, const FrameInputs& inputs,
+                    const shared::FrameConstants& frame) {
+  constexpr int kDepths = 16;
   const DVec3 camera = column_of(inputs.camera.world_from_view, 3);
   const DVec3 forward = wide(frame.camera_forward);
-  const double reach_m = std::min(static_cast<double>(cascade.far_m), 1e6);
   Footprint out;
   for (int i = 0; i < 5; ++i) {
-    DVec3 place = camera;
-    if (i < 4) {
-      DVec3 ray = sum(wide(frame.ray_origin), wide(frame.ray_x), i % 2 == 0 ? 0.0 : frame.width);
-      ray = sum(ray, wide(frame.ray_y), i < 2 ? 0.0 : frame.height);
-      place = sum(camera, ray, reach_m / std::max(dot(ray, forward), 1e-6));
-    }
-    for (int axis = 0; axis < 2; ++axis) {
-      const double at = dot(row_of(cascade.shadow_from_world, axis), place) +
-                        static_cast<double>(cascade.shadow_from_world.m[12 + axis]);
-      out.low[axis] = std::min(out.low[axis], at);
-      out.high[axis] = std::max(out.high[axis], at);
+    const double across = i == 4 ? 0.5 : i % 2;
+    const double down = i == 4 ? 0.5 : i / 2;
+    DVec3 ray = sum(wide(frame.ray_origin), wide(frame.ray_x), across * frame.width);
+    ray = sum(ray, wide(frame.ray_y), down * frame.height);
+    for (int step = 0; step <= kDepths; ++step) {
+      const double depth_m = near_m + (far_m - near_m) * step / kDepths;
+      const DVec3 at = in_map(cascade, sum(camera, ray, depth_m / std::max(dot(ray, forward), 1e-6)));
+      const double uv[2] = {at.x, at.y};
+      for (int axis = 0; axis < 2; ++axis) {
+        out.low[axis] = std::min(out.low[axis], uv[axis]);
+        out.high[axis] = std::max(out.high[axis], uv[axis]);
+      }
+      const bool in = std::min(at.x, at.y) > -0.02 && std::max(at.x, at.y) < 1.02;
+      if (i == 4 && in) out.reached_m = depth_m;
     }
   }
+  out.size = std::max(out.high[0] - out.low[0], out.high[1] - out.low[1]);
   return out;
 }
 
+// What a map does not cover may be what nothing shadows: air above the terrain, or a map may end where what casts
+// shadows ends. Only what no such map does is remarked on.
 void remark_on_coverage(Speaker& s, const FrameInputs& inputs, const FrameState& state) {
-  const Footprint f = footprint(inputs.cascades[inputs.first_marched_cascade], inputs, state.frame);
-  // A map of clip space is around (0, 0), and reaches from -1 to 1.
-  bool clip = std::min(f.low[0], f.low[1]) < -0.3;
-  bool elsewhere = false;
-  double sizes = 0.0;  // of the view in the map
-  for (int axis = 0; axis < 2; ++axis) {
-    clip = clip && f.low[axis] > -1.3 && f.high[axis] < 1.3 && std::abs(f.low[axis] + f.high[axis]) < 0.8;
-    const double size = f.high[axis] - f.low[axis];
-    const double slack = 0.25 * size + 0.02;
-    elsewhere = elsewhere || f.low[axis] - slack > 1.0 || f.high[axis] + slack < 0.0;
-    sizes = std::max(sizes, size);
+  constexpr float kHigh_m = 10000.0F;  // from higher up there may be no ground in sight to be shadowed
+  constexpr float kLow_m = 200.0F;     // so low, shadows reach the camera
+  constexpr double kMuchSmaller = 20.0;
+  const std::size_t first = inputs.first_marched_cascade;
+  const std::size_t count = inputs.cascades.size();
+  const DVec3 camera = column_of(inputs.camera.world_from_view, 3);
+  std::size_t clip = count, elsewhere = count, outside = count, narrow = 0;
+  Footprint of_clip, of_elsewhere;
+  double out_by = 0.0, reached_m = 0.0;
+  bool growing = true;
+  double size_before_m = 0.0;
+  for (std::size_t i = first; i < count; ++i) {
+    const Cascade& c = inputs.cascades[i];
+    const double near_m = i > first ? static_cast<double>(inputs.cascades[i - 1].far_m) : 0.0;
+    const double far_m = std::min(static_cast<double>(c.far_m), 1e6);
+    if (far_m <= near_m) continue;
+    const Footprint f = footprint(c, near_m, far_m, inputs, state.frame);
+    // A map of clip space is around (0, 0), and reaches from -1 to 1.
+    bool is_clip = std::min(f.low[0], f.low[1]) < -0.3;
+    bool misses = false;
+    for (int axis = 0; axis < 2; ++axis) {
+      is_clip = is_clip && f.low[axis] > -1.3 && f.high[axis] < 1.3 && std::abs(f.low[axis] + f.high[axis]) < 0.8;
+      const double slack = 0.25 * (f.high[axis] - f.low[axis]) + 0.02;
+      misses = misses || f.low[axis] - slack > 1.0 || f.high[axis] + slack < 0.0;
+    }
+    misses = misses && f.size < kMuchSmaller && state.frame.camera_altitude_m < kHigh_m;
+    if (is_clip && clip == count) {
+      clip = i;
+      of_clip = f;
+    }
+    if (misses && !is_clip && elsewhere == count) {
+      elsewhere = i;
+      of_elsewhere = f;
+    }
+    if (i == first && !misses && !is_clip && f.size <= 1.0 && state.frame.camera_altitude_m < kLow_m) {
+      const DVec3 at = in_map(c, camera);
+      out_by = std::max({-at.x, at.x - 1.0, -at.y, at.y - 1.0});
+      if (out_by > 0.5) outside = i;
+    }
+    // Maps that are drawn for the view grow with it from cascade to cascade; those that end where what casts shadows
+    // ends do not.
+    const double size_m = 1.0 / length(row_of(c.shadow_from_world, 0));
+    growing = growing && size_m > 1.2 * size_before_m;
+    size_before_m = size_m;
+    if (f.reached_m < near_m + 0.5 * (far_m - near_m) && (i > first || f.reached_m >= 0.0)) ++narrow;
+    if (i == first) reached_m = f.reached_m;
   }
-  // A map that is much smaller than the view ends at what casts shadows, which may be out of sight; and what
-  // is seen from high up may have no ground to be shadowed.
-  constexpr float kHigh_m = 10000.0F;
-  elsewhere = elsewhere && sizes < 20.0 && state.frame.camera_altitude_m < kHigh_m;
-  s.say_if(Kind::cascade_clip, clip, "FrameInputs::cascades[first_marched_cascade] puts the view at ", f.low[0], " to ",
-           f.high[0],
+  // What is above or below the ground need not be in a map, so that only level views say something.
+  const double radius = static_cast<double>(state.params.planet.radius_m);
+  const DVec3 zenith = {camera.x, camera.y + radius, camera.z};
+  const bool level = std::abs(dot(wide(state.frame.camera_forward), zenith)) < 0.03 * length(zenith) &&
+                     state.frame.camera_altitude_m < kLow_m;
+  const bool all_narrow = level && count - first > 1 && growing && narrow == count - first;
+  const auto number = [](std::size_t i) { return static_cast<std::uint64_t>(i); };
+  s.say_if(Kind::cascade_clip, clip < count, "FrameInputs::cascades[", number(clip), "] puts the view at ",
+           of_clip.low[0], " to ", of_clip.high[0],
            " of its map; expected texture coordinates, 0 to 1: does shadow_from_world lead to clip space, -1 "
            "to 1?");
-  s.say_if(Kind::cascade_elsewhere, elsewhere && !clip,
-           "FrameInputs::cascades[first_marched_cascade] puts the view at u ", f.low[0], " to ", f.high[0], " and v ",
-           f.low[1], " to ", f.high[1],
-           " of its map; expected the camera and what it sees within 0 to 1: nothing will be shadowed");
+  s.say_if(Kind::cascade_elsewhere, elsewhere < count && !all_narrow, "FrameInputs::cascades[", number(elsewhere),
+           "] puts its part of the view at u ", of_elsewhere.low[0], " to ", of_elsewhere.high[0], " and v ",
+           of_elsewhere.low[1], " to ", of_elsewhere.high[1],
+           " of its map; expected it within 0 to 1: nothing will be shadowed there");
+  s.say_if(Kind::camera_outside, outside < count, "FrameInputs::cascades[", number(outside),
+           "], the first that is marched, leaves the camera outside of its map by ", out_by,
+           " of the map's width; expected the camera inside: is shadow_from_world of this frame, and from the world?");
+  s.say_if(Kind::cascade_narrow, all_narrow,
+           "the maps of FrameInputs::cascades reach less far than their ranges, the first to ", reached_m, " of ",
+           static_cast<double>(inputs.cascades[first].far_m),
+           " m; expected maps that hold the view down to far_m: are near_m and far_m depths in the view, in metres?");
 }
 
-void remark_on_cascades(Speaker& s, const FrameInputs& inputs, const FrameState& state) {
+void remark_on_cascades(Speaker& s, const FrameInputs& inputs, const FrameState& state, bool inverse) {
   const std::size_t first = inputs.first_marched_cascade;
   const std::size_t count = inputs.cascades.size();
   const double sun_m = length(wide(inputs.sun.direction_to_sun));
   const DVec3 sun = sum({}, wide(inputs.sun.direction_to_sun), 1.0 / sun_m);
-  std::size_t empty = count, unordered = count, astray = count, upside_down = count;
+  std::size_t empty = count, unordered = count, apart = count, astray = count, upside_down = count;
   double degrees = 0.0;
   for (std::size_t i = first; i < count; ++i) {
     const Cascade& c = inputs.cascades[i];
     if (!(c.far_m > c.near_m)) empty = std::min(empty, i);
     if (i > first && c.far_m <= inputs.cascades[i - 1].far_m) unordered = std::min(unordered, i);
+    const bool both = c.far_m > c.near_m && i > first && inputs.cascades[i - 1].far_m > inputs.cascades[i - 1].near_m;
+    if (both && c.near_m > 1.001F * inputs.cascades[i - 1].far_m) apart = std::min(apart, i);
     // All that falls on one texel lies along the light.
     const DVec3 light = cross(row_of(c.shadow_from_world, 0), row_of(c.shadow_from_world, 1));
     const DVec3 depth = row_of(c.shadow_from_world, 2);
@@ -243,6 +362,11 @@ void remark_on_cascades(Speaker& s, const FrameInputs& inputs, const FrameState&
            "] has an empty range of depths; expected near_m below far_m: nothing will be shadowed there");
   s.say_if(Kind::cascade_order, unordered < count, "FrameInputs::cascades[", number(unordered),
            "] ends before the one in front of it; expected cascades from near to far");
+  s.say_if(
+      Kind::cascade_gap, apart < count, "FrameInputs::cascades[", number(apart), "] starts at ",
+      apart < count ? static_cast<double>(inputs.cascades[apart].near_m) : 0.0, " m, and the one before it ends at ",
+      apart < count ? static_cast<double>(inputs.cascades[apart - 1].far_m) : 0.0,
+      " m; expected ranges that meet or overlap: what lies between is looked up in a map that was not drawn for it");
   s.say_if(Kind::cascade_sun, astray < count, "FrameInputs::cascades[", number(astray), "] looks ", degrees,
            " degrees past the sun; expected a map and a depth along Sun::direction_to_sun");
   s.say_if(Kind::cascade_depth, upside_down < count && astray == count, "FrameInputs::cascades[", number(upside_down),
@@ -255,24 +379,30 @@ void remark_on_cascades(Speaker& s, const FrameInputs& inputs, const FrameState&
   const double start_m = static_cast<double>(inputs.cascades[first].near_m);
   s.say_if(Kind::cascade_start, start_m > 1.0, "FrameInputs::cascades[first_marched_cascade] starts ", start_m,
            " m from the camera; expected 0: the air before it is taken as lit");
-  remark_on_coverage(s, inputs, state);
+  if (!inverse) remark_on_coverage(s, inputs, state);  // one fault, one remark
 }
 
 }  // namespace
 
 void Remarks::on_frame(const FrameInputs& inputs, const FrameState& state, const DeviceInfo& device) {
   if (device.message == nullptr) return;
-  Speaker s(device, said_[std::min(inputs.view, kMaxViews - 1)]);
+  const std::uint32_t view = std::min(inputs.view, kMaxViews - 1);
+  Speaker s(device, said_[view]);
   const ScatteringParams& p = state.params.scattering;
   remark_on_sun(s, inputs);
-  remark_on_view(s, inputs, state);
+  // Seen twice in a row, or in the first frame: a camera that rolls passes through all positions.
+  Before& before = before_[view];
+  const bool suspect = looks_inverted(inputs, state, before.known ? &before.world_from_view : nullptr);
+  const bool inverse = suspect && (before.suspect || !before.known);
+  before = {true, suspect, inputs.camera.world_from_view};
+  remark_on_view(s, inputs, state, inverse);
   remark_on_projection(s, inputs, state);
   s.say_if(Kind::no_cascades, p.light_shafts && inputs.cascades.empty(),
            "scattering.light_shafts is on, but FrameInputs::cascades is empty; expected shadow cascades: "
            "nothing will be shadowed");
   s.say_if(Kind::no_shafts, inputs.shadow_colors.view != VK_NULL_HANDLE && (inputs.cascades.empty() || !p.light_shafts),
            "there are FrameInputs::shadow_colors, but no light shafts for them: nothing will be coloured");
-  if (p.light_shafts && !inputs.cascades.empty()) remark_on_cascades(s, inputs, state);
+  if (p.light_shafts && !inputs.cascades.empty()) remark_on_cascades(s, inputs, state, inverse);
   const bool needs_tables = p.enabled && !is_homogeneous(p) &&
                             (p.single == SingleScattering::table || p.multiple != MultipleScattering::none);
   s.say_if(Kind::tables, needs_tables && !state.tables_ready,

@@ -21,12 +21,19 @@ struct FrameState {
 
 class Remarks {
  public:
-  // Says through `device` what looks wrong in a frame that passes check_frame(). Each kind of remark is made
+  // Reports through `device` what looks wrong in a frame that passes check_frame(). Each kind of remark is made
   // once for a view, and again only after a frame in which it did not hold. Allocates nothing.
   void on_frame(const FrameInputs& inputs, const FrameState& state, const DeviceInfo& device);
 
  private:
   std::array<std::uint64_t, kMaxViews> said_ = {};  // bit: kind
+  // The camera of the frame before, and whether it looked like the inverse of one.
+  struct Before {
+    bool known = false;
+    bool suspect = false;
+    Mat4 world_from_view;
+  };
+  std::array<Before, kMaxViews> before_;
 };
 
 }  // namespace tyndall

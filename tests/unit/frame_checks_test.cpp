@@ -66,6 +66,31 @@ Mat4 camera_at(double x, double y, double z, double yaw, double pitch) {
   return m;
 }
 
+// Turns a camera about its own axis.
+Mat4 rolled(const Mat4& m, double roll) {
+  Mat4 out = m;
+  const double c = std::cos(roll), s = std::sin(roll);
+  for (int r = 0; r < 3; ++r) {
+    const double x = static_cast<double>(m.m[r]), y = static_cast<double>(m.m[4 + r]);
+    out.m[r] = static_cast<float>(c * x + s * y);
+    out.m[4 + r] = static_cast<float>(c * y - s * x);
+  }
+  return out;
+}
+
+Mat4 inverse_of(const Mat4& m) {
+  Mat4 out;
+  for (int r = 0; r < 3; ++r) {
+    double offset = 0.0;
+    for (int c = 0; c < 3; ++c) {
+      out.m[4 * c + r] = m.m[4 * r + c];
+      offset -= static_cast<double>(m.m[4 * r + c]) * static_cast<double>(m.m[12 + c]);
+    }
+    out.m[12 + r] = static_cast<float>(offset);
+  }
+  return out;
+}
+
 void place_cascades(Case& s) {
   const double to_sun[3] = {0.48, 0.6, 0.64};
   const double right[3] = {0.8, 0.0, -0.6};
@@ -266,18 +291,7 @@ TEST(FrameChecks, WhatIsHardlyMeantIsRemarkedOn) {
   expect_remark({"world_from_view", "inverse", "view_from_world"}, [](Case& s) {
     s.inputs.cascades = {};
     s.params.scattering.light_shafts = false;
-    // Of a camera 12 m above the sea, near the origin and far from it.
-    const Mat4 m = camera_at(5.0, 12.0, 30.0, 0.4, 0.2);
-    Mat4 inverse;
-    for (int r = 0; r < 3; ++r) {
-      float offset = 0.0F;
-      for (int c = 0; c < 3; ++c) {
-        inverse.m[4 * c + r] = m.m[4 * r + c];
-        offset -= m.m[4 * r + c] * m.m[12 + c];
-      }
-      inverse.m[12 + r] = offset;
-    }
-    s.inputs.camera.world_from_view = inverse;
+    s.inputs.camera.world_from_view = inverse_of(camera_at(5.0, 12.0, 30.0, 0.4, 0.2));
   });
   expect_remark({"world_from_view", "below sea level", "y up"}, [](Case& s) {
     s.params.scattering.light_shafts = false;
@@ -309,13 +323,12 @@ TEST(FrameChecks, WhatIsHardlyMeantIsRemarkedOn) {
       for (Cascade& c : s.cascades) change(c.shadow_from_world);
     };
   };
-  expect_remark({"cascades[first_marched_cascade]", "clip space", "0 to 1"}, on_each([](Mat4& m) {
+  expect_remark({"cascades[0]", "clip space", "0 to 1"}, on_each([](Mat4& m) {
                   for (int c = 0; c < 4; ++c) {
                     for (int r = 0; r < 2; ++r) m.m[4 * c + r] = 2.0F * m.m[4 * c + r] - (c == 3 ? 1.0F : 0.0F);
                   }
                 }));
-  expect_remark({"cascades[first_marched_cascade]", "nothing will be shadowed"},
-                on_each([](Mat4& m) { m.m[13] += 3.0F; }));
+  expect_remark({"cascades[0]", "nothing will be shadowed there"}, on_each([](Mat4& m) { m.m[13] += 3.0F; }));
   expect_remark({"cascades[0]", "past the sun", "direction_to_sun"}, [](Case& s) {
     s.inputs.sun.direction_to_sun = {0.0F, 1.0F, 0.0F};
   });
@@ -333,6 +346,31 @@ TEST(FrameChecks, WhatIsHardlyMeantIsRemarkedOn) {
     s.cascades[2].near_m = 0.0F;
     s.cascades[2].far_m = 5000.0F;
   });
+  expect_remark({"cascades[2]", "starts at 9000 m", "ends at 8000 m"}, [](Case& s) { s.cascades[2].near_m = 9000.0F; });
+  // A map beside the view of its cascade alone.
+  expect_remark({"cascades[1]", "its part of the view", "shadowed there"},
+                [](Case& s) { s.cascades[1].shadow_from_world.m[12] += 3.0F; });
+  // Near the ground, the camera beside a map that holds what it sees.
+  expect_remark({"cascades[0]", "camera outside", "this frame"}, [](Case& s) {
+    s.inputs.camera.world_from_view.m[13] = 50.0F;
+    place_cascades(s);
+    set_row(s.cascades[0].shadow_from_world, 0, 2.4e-4, 0.0, -1.8e-4, -0.55 - 2.4e-4 * 300.0 - 1.8e-4 * 500.0);
+  });
+  // Ranges in other units than the maps were drawn for.
+  expect_remark({"reach less far than their ranges", "far_m"}, [](Case& s) {
+    s.inputs.camera.world_from_view = camera_at(300.0, 20.0, -500.0, 0.4, -0.01);
+    place_cascades(s);
+    for (Cascade& c : s.cascades) {
+      c.near_m *= 10.0F;
+      c.far_m *= 10.0F;
+    }
+  });
+  expect_remark({"cascades[1]", "clip space"}, [](Case& s) {
+    Mat4& m = s.cascades[1].shadow_from_world;
+    for (int c = 0; c < 4; ++c) {
+      for (int r = 0; r < 2; ++r) m.m[4 * c + r] = 2.0F * m.m[4 * c + r] - (c == 3 ? 1.0F : 0.0F);
+    }
+  });
   expect_remark({"cascades", "starts 40 m"}, [](Case& s) { s.cascades[0].near_m = 40.0F; });
   expect_remark({"cascades", "metre"}, [](Case& s) {
     s.cascades.resize(1);
@@ -346,6 +384,83 @@ TEST(FrameChecks, WhatIsHardlyMeantIsRemarkedOn) {
   });
   expect_remark({"angular_radius_rad", "degrees"}, [](Case& s) { s.inputs.sun.angular_radius_rad = 0.27F; });
   expect_remark({"irradiance is 0", "black"}, [](Case& s) { s.inputs.sun.irradiance = Vec3(0.0F); });
+}
+
+// Places, headings and pitches all over, with and without cascades; every camera without roll that turns about more
+// than one axis is known by its inverse, in the first frame.
+TEST(FrameChecks, InvertedViewsAreRemarkedOn) {
+  int seen = 0, all = 0;
+  for (const double distance : {0.0, 30.0, 5000.0, 2.0e5}) {
+    for (const double height : {2.0, 150.0, 9000.0}) {
+      for (const double yaw : {0.3, 1.2, 2.6, 4.0, 5.9}) {
+        for (const double pitch : {-1.1, -0.2, -0.01, 0.1, 0.7}) {
+          const Mat4 right = camera_at(distance, height, -0.7 * distance, yaw, pitch);
+          for (const bool wrong : {false, true}) {
+            const std::string text = remark_of([&](Case& s) {
+              s.params.scattering.light_shafts = false;
+              s.inputs.camera.world_from_view = wrong ? inverse_of(right) : right;
+            });
+            if (!wrong) {
+              EXPECT_EQ(text, "") << distance << " " << height << " " << yaw << " " << pitch;
+            } else {
+              ++all;
+              seen += text.find("looks like its inverse") != std::string::npos ? 1 : 0;
+              EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 1) << text;
+            }
+          }
+        }
+      }
+    }
+  }
+  EXPECT_EQ(seen, all);
+  // With cascades even of a camera that rolls, or that turns about one axis.
+  for (const double roll : {0.0, 0.4}) {
+    const std::string text = remark_of([&](Case& s) {
+      s.inputs.camera.world_from_view =
+          rolled(camera_at(20000.0, 1200.0, -9000.0, 0.9, roll == 0.0 ? 0.0 : -0.2), roll);
+      place_cascades(s);
+      s.inputs.camera.world_from_view = inverse_of(s.inputs.camera.world_from_view);
+    });
+    expect_words(text, {"looks like its inverse"});
+  }
+}
+
+// A camera that rolls and turns in its place, without cascades: the second frame shows that its inverse swings.
+TEST(FrameChecks, AnInvertedViewThatRollsIsRemarkedOnWhenItTurns) {
+  for (const bool wrong : {false, true}) {
+    Remarks remarks;
+    std::size_t texts = 0;
+    for (int frame = 0; frame < 40; ++frame) {
+      Case s = right();
+      s.params.scattering.light_shafts = false;
+      const Mat4 m = rolled(camera_at(40.0, 90.0, -10.0, 0.1 * frame, -0.3 + 0.01 * frame), 0.5);
+      s.inputs.camera.world_from_view = wrong ? inverse_of(m) : m;
+      texts += remarks_of(remarks, s).size();
+    }
+    EXPECT_EQ(texts > 0, wrong);
+  }
+}
+
+// Cameras that roll, orbit the origin, stand on their side or fly through a loop are right.
+TEST(FrameChecks, UnusualCamerasAreNotRemarkedOn) {
+  Remarks remarks;
+  for (int frame = 0; frame < 2000; ++frame) {
+    Case s = right();
+    s.params.scattering.light_shafts = false;
+    const double t = 0.01 * frame;
+    const double roll = frame < 1000 ? 3.0 * std::sin(1.7 * t) : 1.5707963267948966;
+    const double yaw = 2.0 * std::sin(t) + 0.3, pitch = 1.2 * std::cos(0.7 * t);
+    Mat4 m = camera_at(100.0 * std::cos(t), 500.0 + 100.0 * std::sin(t), 30.0 * t, yaw, pitch);
+    if (frame % 2 == 1) {  // in orbit around the origin
+      m = camera_at(0.0, 0.0, 0.0, yaw, -0.4);
+      for (int r = 0; r < 3; ++r) m.m[12 + r] = 500.0F * m.m[8 + r];
+    }
+    s.inputs.camera.world_from_view = rolled(m, frame % 2 == 1 ? 0.0 : roll);
+    s.desc.views = 2;
+    s.inputs.view = static_cast<std::uint32_t>(frame % 2);
+    const std::vector<std::string> texts = remarks_of(remarks, s);
+    EXPECT_EQ(texts.size(), 0U) << frame << ": " << (texts.empty() ? "" : texts[0]);
+  }
 }
 
 TEST(FrameChecks, ARemarkIsMadeOnceUntilItWasRightInBetween) {
