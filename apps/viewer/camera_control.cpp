@@ -77,7 +77,7 @@ CameraState moved(const CameraState& camera, const Motion& motion, double second
   out.position =
       centre + glm::normalize(out.position - centre) * (radius_m + std::max(altitude + climb, -0.5 * radius_m));
   const Horizon after = horizon_at(out.position, radius_m);
-  // The right-hand direction is horizontal everywhere, so it tells the yaw even when looking straight down.
+  // The direction to the right is always horizontal, so it defines the yaw even when looking straight down.
   const glm::dvec3 now = carried(right, before.up, after.up);
   out.yaw_deg = wrapped(std::atan2(-glm::dot(now, after.north), glm::dot(now, after.east)) * kDegPerRad);
   return out;
@@ -87,7 +87,7 @@ CameraState above_ground(const CameraState& camera, double ground_m, double radi
   CameraState out = camera;
   const double altitude = scene::altitude_of(camera.position, radius_m);
   const double wanted =
-      std::clamp(altitude, ground_m + kLeastHeight_m, std::max(kHighest_m, ground_m + kLeastHeight_m));
+      std::clamp(altitude, ground_m + kMinHeight_m, std::max(kMaxAltitude_m, ground_m + kMinHeight_m));
   if (wanted != altitude) out.position += scene::up_of(camera.position, radius_m) * (wanted - altitude);
   return out;
 }
@@ -98,7 +98,7 @@ CameraState turned(const CameraState& camera, double dx_px, double dy_px, double
   // Far from the horizon a turn of the yaw moves the picture less.
   const double slant = std::max(std::cos(camera.pitch_deg / kDegPerRad), 0.25);
   out.yaw_deg = wrapped(camera.yaw_deg - dx_px * deg_per_px / slant);
-  out.pitch_deg = std::clamp(camera.pitch_deg + dy_px * deg_per_px, -kSteepest_deg, kSteepest_deg);
+  out.pitch_deg = std::clamp(camera.pitch_deg + dy_px * deg_per_px, -kMaxPitch_deg, kMaxPitch_deg);
   return out;
 }
 

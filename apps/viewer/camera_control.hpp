@@ -1,6 +1,6 @@
-// How the hands move the camera and the sun: pure functions of the state before. Angles in deg, lengths in m.
-// The camera flies over a curved planet: "up" is away from the planet's centre wherever it is, and its direction is
-// carried along the way, so that nothing jumps from the ground to orbit.
+// How user input moves the camera and the sun: pure functions of the previous state. Angles in deg, lengths in m. The
+// camera flies over a curved planet: "up" always points away from the planet's centre, and the direction of view is
+// transported along the path, so that the view is continuous from the ground to orbit.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -9,43 +9,45 @@
 
 namespace tyndall::viewer {
 
-constexpr double kLeastHeight_m = 2.5;  // of the camera above the ground
-constexpr double kHighest_m = 5.0e7;    // above sea level
-constexpr double kSteepest_deg = 89.9;  // view up or down
+constexpr double kMinHeight_m = 2.5;      // of the camera above the ground
+constexpr double kMaxAltitude_m = 5.0e7;  // above sea level
+constexpr double kMaxPitch_deg = 89.9;    // view up or down
 constexpr double kFovRange_deg[2] = {2.0, 150.0};
 
-// A camera in double precision: steps of centimetres count in orbit too.
+// A camera in double precision, which resolves centimetres in orbit too.
 struct CameraState {
   glm::dvec3 position = {};  // world [m]
-  double yaw_deg = 0.0;      // as in CameraParams: to the local horizontal and north
+  double yaw_deg = 0.0;      // as in CameraParams: relative to the local horizontal and north
   double pitch_deg = 0.0;
   double fov_deg = 45.0;
 };
 
 [[nodiscard]] CameraState camera_from_params(const scene::CameraParams& params, double radius_m);
-// Writes position, direction and field of view; altitude_m becomes -1, "as position_m has it".
+// Writes position, direction and field of view. altitude_m becomes -1: the altitude is that of position_m.
 void camera_to_params(const CameraState& camera, scene::CameraParams& params);
 
-// What the keys ask for, each -1 to 1 along the camera's right, the local up, and the direction of view.
+// The motion that keys request, each component from -1 to 1: to the camera's right, up, and along the direction of
+// view.
 struct Motion {
   double right = 0.0, up = 0.0, forward = 0.0;
   bool fast = false;
   [[nodiscard]] bool any() const { return right != 0.0 || up != 0.0 || forward != 0.0; }
 };
 
-// Speed at a height above the ground [m/s]: walking pace of a giant at the ground, planets in orbit.
+// Returns the speed [m/s] at a height above the ground: it grows from some metres a second at the ground to the scale
+// of the planet in orbit.
 [[nodiscard]] double flight_speed(double height_m, bool fast);
 
-// The camera after `seconds` at `speed` [m/s].
+// Returns the camera after `seconds` at `speed` [m/s].
 [[nodiscard]] CameraState moved(const CameraState& camera, const Motion& motion, double seconds, double speed,
                                 double radius_m);
-// Lifted to kLeastHeight_m above ground of this elevation, and kept below kHighest_m.
+// Returns the camera at least kMinHeight_m above ground of this elevation, and at most kMaxAltitude_m above sea level.
 [[nodiscard]] CameraState above_ground(const CameraState& camera, double ground_m, double radius_m);
-// Turned by a drag in pixels of a window so many pixels high: what is under the pointer stays there.
+// Returns the camera turned by a drag in pixels, in a window of this height: the point under the pointer stays there.
 [[nodiscard]] CameraState turned(const CameraState& camera, double dx_px, double dy_px, double height_px);
-// Notches of the wheel, away from the hand positive: nearer.
+// Returns the camera zoomed by notches of the wheel; positive notches, away from the user, narrow the field of view.
 [[nodiscard]] CameraState zoomed(const CameraState& camera, double notches);
-// The sun after such a drag: right turns it clockwise seen from above, up lifts it.
+// Returns the sun after such a drag: to the right turns it clockwise seen from above, upwards raises it.
 [[nodiscard]] scene::SunParams sun_turned(const scene::SunParams& sun, double dx_px, double dy_px, double height_px);
 
 }  // namespace tyndall::viewer

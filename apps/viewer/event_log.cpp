@@ -27,7 +27,7 @@ void EventLog::places(const std::vector<Place>& places) {
   }
   if (text == places_) return;
   places_ = std::move(text);
-  // Whole or not at all: a test may be reading. What cannot be written is for the test to find missing.
+  // The file is replaced as a whole, since a test may be reading it. If that fails, the test finds it missing.
   if (Result<void> written = files::write_file(path_ + ".places", places_); !written) places_.clear();
 }
 

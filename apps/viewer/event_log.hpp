@@ -1,4 +1,4 @@
-// What happens in the viewer, a line each, for tests and for reports of trouble: "0.532 frame 3 640 360".
+// A log of events in the viewer, one on each line, for tests and for bug reports: "0.532 frame 3 640 360".
 #pragma once
 
 #include <cstdio>
@@ -17,11 +17,11 @@ class EventLog {
   ~EventLog() {
     if (file_ != nullptr) std::fclose(file_);
   }
-  // False when the file cannot be written.
+  // Opens the file; returns false when it cannot be written.
   bool open(const std::string& path);
   [[nodiscard]] bool on() const { return file_ != nullptr; }
   void line(double seconds, const std::string& text);
-  // Writes where everything stands that can be clicked to PATH.places, when that has changed.
+  // Writes the places of everything that can be clicked to PATH.places, if they have changed.
   void places(const std::vector<Place>& places);
 
  private:

@@ -72,7 +72,7 @@ SceneRequest ScenePair::request_of(const SceneThread* thread) const {
 
 void ScenePair::update() {
   if (request_.compare && right_ == nullptr) {
-    // A thread is the right one only once it is `right_`: its first request is made by hand.
+    // request_of() recognises the right thread by `right_`, which is not set yet.
     SceneRequest request = request_of(nullptr);
     request.settings = request_.settings[1];
     right_ = start_thread(request);
@@ -137,7 +137,7 @@ Result<void> ScenePair::take_result(std::size_t side, SceneResult& result, PairR
       out.right_ended = true;
       return {};
     }
-    out.refused.at(side) = {std::move(result.asked), std::move(result.settings)};
+    out.refused.at(side) = {std::move(result.requested), std::move(result.settings)};
   }
   if (result.picture) {
     TYNDALL_TRY(pictures_.take(side, std::move(*result.picture)));
@@ -152,7 +152,7 @@ Result<void> ScenePair::take_result(std::size_t side, SceneResult& result, PairR
   }
   if (result.tables) redraw_->request(1);
   if (result.tables_done) notices_->log("tables");
-  if (result.tables_kept) notices_->log("tables kept");
+  if (result.tables_stored) notices_->log("tables stored");
   if (result.pipelines_done) notices_->log("pipelines");
   if (result.capture) out.capture = std::move(result.capture);
   return {};

@@ -12,7 +12,8 @@
 namespace tyndall::viewer {
 namespace {
 
-// What a soak leaves alone: sizes that take minutes to fill on a device without a GPU, and text.
+// Returns whether a soak changes the parameter. It leaves out sizes that take minutes on a device without a GPU, and
+// text.
 bool is_soaked(const config::Row& row) {
   constexpr std::string_view kNot[] = {
       "tables.size",        "tables.orders",    "tables.cache",        "tables.cache_limit_mib",
@@ -22,14 +23,14 @@ bool is_soaked(const config::Row& row) {
   return std::find(std::begin(kNot), std::end(kNot), row.key()) == std::end(kNot);
 }
 
-// What chooses between variants of shaders. A device without a GPU keeps what it has compiled of each, some MiB, so
-// that every combination of them would fill memory for hours without anything being lost.
+// Returns whether the parameter selects a variant of shaders. A device without a GPU caches every compiled variant,
+// some MiB each, so that all combinations together would fill the memory for hours without being a leak.
 bool chooses_shaders(const config::Row& row) {
   return row.info.type == ParamType::enumeration || row.info.type == ParamType::flag ||
          row.key() == "scattering.downscale";
 }
 
-// Each of these choices by itself.
+// Returns each of these choices on its own.
 std::vector<std::pair<std::string, std::string>> choices_of_shaders() {
   std::vector<std::pair<std::string, std::string>> out;
   for (const config::Row& row : config::rows()) {
@@ -52,7 +53,7 @@ std::vector<std::pair<std::string, std::string>> choices_of_shaders() {
 std::string random_value(const config::Row& row, std::mt19937& random) {
   std::uniform_real_distribution<double> part(0.0, 1.0);
   const auto number = [&] {
-    // In the lower tenth of wide ranges more often than not, where the values of daily use are.
+    // Wide ranges are sampled mostly in their lowest tenth, where the usual values are.
     const double t = row.info.max - row.info.min > 1000.0 ? 0.1 * part(random) * part(random) : part(random);
     return row.info.min + t * (row.info.max - row.info.min);
   };
@@ -100,7 +101,7 @@ std::string Script::advance(config::Settings& settings, GuiState& gui, double no
   return "done after " + std::to_string(changes_) + " changes and " + std::to_string(frames) + " frames";
 }
 
-// Each parameter from where it was to its least and its largest value, and back, one frame each.
+// Sets each parameter to its smallest value, its largest value and back, with a frame for each.
 std::string Script::walk(config::Settings& settings) {
   const std::vector<config::Row>& rows = config::rows();
   while (next_ / 3 < rows.size() && rows[next_ / 3].info.type == ParamType::string) next_ += 3;
@@ -117,7 +118,7 @@ std::string Script::walk(config::Settings& settings) {
 }
 
 std::string Script::soak(config::Settings& settings, GuiState& gui) {
-  // First every shader that will be asked for, then at random: memory stands still from there on.
+  // First selects every shader once, then changes parameters at random; from then on memory must not grow.
   static const std::vector<std::pair<std::string, std::string>> choices = choices_of_shaders();
   if (next_ < choices.size()) {
     settings = start_;
@@ -125,7 +126,7 @@ std::string Script::soak(config::Settings& settings, GuiState& gui) {
     (void)config::set(settings, key, value, "soak");
     return key + "=" + value;
   }
-  // Back to the beginning now and then, so that no corner holds the soak for its whole time.
+  // Returns to the start now and then, so that the soak does not stay in one corner of the parameters.
   if (changes_++ % 24 == 0) {
     settings = start_;
     gui.resolution_scale = 0.25F + 0.01F * static_cast<float>(changes_ % 7);

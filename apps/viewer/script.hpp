@@ -1,4 +1,4 @@
-// Changes without hands, for tests and soaks: every parameter to both ends of its range, or parameters at random.
+// Changes without user input, for tests and soaks: every parameter to both ends of its range, or random parameters.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ class Script {
 
   [[nodiscard]] bool on() const { return kind_ != Kind::none && !done_; }
   [[nodiscard]] bool done() const { return done_; }
-  // The next change, when what the one before led to has been drawn; `frames` of the scene so far. What was changed,
-  // for the log.
+  // Makes the next change; call it when the previous one has been drawn. `frames`: of the scene so far. Returns what
+  // was changed, for the log.
   std::string advance(config::Settings& settings, GuiState& gui, double now, std::uint64_t frames);
 
  private:

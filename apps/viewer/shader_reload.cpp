@@ -27,7 +27,7 @@ bool read(const fs::path& path, std::string& text) {
   return true;
 }
 
-// Looks in the folders that the build looks in.
+// Finds included files in the folders that the build searches.
 class Includer : public shaderc::CompileOptions::IncluderInterface {
  public:
   explicit Includer(std::vector<fs::path> folders) : folders_(std::move(folders)) {}
@@ -62,8 +62,8 @@ shaderc_shader_kind kind_of(VkShaderStageFlagBits stage) {
   }
 }
 
-// What the program has taken down of a shader at build time, and cannot learn anew: binding numbers and the size of
-// groups. Reads the decorations of the module (SPIR-V 1.6, 3.32: OpDecorate 71, OpExecutionMode 16).
+// Returns whether a module has the binding numbers and the workgroup size that the program recorded at build time.
+// Reads the decorations of the module (SPIR-V 1.6, 3.32: OpDecorate 71, OpExecutionMode 16).
 bool fits(const gpu::Shader& shader, const std::vector<std::uint32_t>& words) {
   constexpr std::uint32_t kDecorate = 71, kBinding = 33, kExecutionMode = 16, kLocalSize = 17;
   std::set<std::uint32_t> found, known;
@@ -115,7 +115,7 @@ ShaderReload::Compiled ShaderReload::compile(const std::string& folder) {
       out.message = path.string() + " cannot be read";
       return out;
     }
-    // What is read of it, included files and all. The same as the last time is not compiled again.
+    // The source with all included files. If it has not changed since the last time, it is not compiled again.
     const shaderc::PreprocessedSourceCompilationResult source =
         compiler.PreprocessGlsl(text, kind_of(row.shader->stage), path.string().c_str(), options);
     std::string whole(source.cbegin(), source.cend());
@@ -131,7 +131,7 @@ ShaderReload::Compiled ShaderReload::compile(const std::string& folder) {
       out.message = result.GetErrorMessage();
       return out;
     }
-    // As the build does it: names stay, because bindings are found by them.
+    // Optimises as the build does: names stay, because bindings are found by them.
     const Words raw(result.cbegin(), result.cend());
     Words words;
     spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_2);
@@ -145,7 +145,7 @@ ShaderReload::Compiled ShaderReload::compile(const std::string& folder) {
       continue;
     }
     if (!fits(*row.shader, words)) {
-      out.message = path.string() + ": bindings or the size of groups have changed, which needs a build of the program";
+      out.message = path.string() + ": bindings or the workgroup size have changed; rebuild the program";
       return out;
     }
     known = {std::move(whole), words, true};
@@ -176,8 +176,8 @@ Result<void> ShaderReload::start() {
   return {};
 }
 
-Result<ShaderReload::Outcome> ShaderReload::finish() {
-  Outcome out;
+Result<ShaderReload::Rebuilt> ShaderReload::finish() {
+  Rebuilt out;
   if (!compiling_.valid() || compiling_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return out;
   Compiled compiled = compiling_.get();
   out.finished = true;

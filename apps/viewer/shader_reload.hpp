@@ -1,6 +1,6 @@
-// F8: compiles every shader anew from its source, as the build did, on a thread of its own. A shader that comes out
-// other than the one in the program takes its place in pipelines made from then on; if one does not compile,
-// nothing changes and the compiler's message is told.
+// Reloads shaders (F8): compiles every shader from its source on another thread, as the build does. Pipelines that are
+// created afterwards use the shaders that differ from those in the program. If one does not compile, nothing changes,
+// and the compiler's message is reported.
 #pragma once
 
 #include <cstdint>
@@ -18,12 +18,12 @@ namespace tyndall::viewer {
 
 class ShaderReload {
  public:
-  struct Outcome {
-    bool finished = false;       // since the last call
-    std::string message;         // what is wrong with the sources; empty: nothing
+  struct Rebuilt {
+    bool finished = false;       // a rebuild has finished since the last call
+    std::string message;         // the compiler's error; empty: none
     std::size_t changed = 0;     // shaders that differ from those of the last rebuild, or from the program's
-    std::size_t restored = 0;    // that are the program's again
-    bool tables_differ = false;  // the tables that the shaders now make are not those of the program
+    std::size_t restored = 0;    // shaders that are equal to the program's again
+    bool tables_differ = false;  // the new shaders make other tables than those of the program
   };
 
   ShaderReload() = default;
@@ -31,11 +31,11 @@ class ShaderReload {
   ShaderReload& operator=(const ShaderReload&) = delete;
   ~ShaderReload();
 
-  // An error when there are no sources here.
+  // Starts to compile. Returns an error when the sources are not found.
   Result<void> start();
   [[nodiscard]] bool working() const { return compiling_.valid(); }
-  Result<Outcome> finish();
-  // Back to the shaders before the last rebuild, when no pipelines can be made from these.
+  Result<Rebuilt> finish();
+  // Returns to the shaders before the last rebuild, when pipelines cannot be created from the new ones.
   void revert();
   // For DeviceInfo::replace_shader; `user` is a ShaderReload.
   static std::span<const std::uint32_t> replace(void* user, std::string_view name);
@@ -46,19 +46,20 @@ class ShaderReload {
     std::string message;
     std::map<std::string, Words, std::less<>> changed;
   };
-  // What came of a source that compiles and fits.
+  // The result of a source that compiles and fits the program.
   struct Known {
-    std::string source;  // with what it includes; empty: nothing is known
-    Words words;         // where they are not the program's
+    std::string source;  // with the files that it includes; empty: not compiled yet
+    Words words;         // where they differ from the program's
     bool differs = false;
   };
   Compiled compile(const std::string& folder);
 
-  std::map<std::string, Known, std::less<>> known_;  // by the shader's name; of the thread that compiles
+  std::map<std::string, Known, std::less<>> known_;  // by the shader's name; used only by the compiling thread
 
-  std::mutex mutex_;                                 // of words_: threads that make pipelines ask for them
-  std::map<std::string, Words, std::less<>> words_;  // of shaders other than the program's
-  std::vector<std::map<std::string, Words, std::less<>>> before_, refused_;  // pipelines may be being made from them
+  std::mutex mutex_;                                 // guards words_, which threads that create pipelines read
+  std::map<std::string, Words, std::less<>> words_;  // of shaders that differ from the program's
+  std::vector<std::map<std::string, Words, std::less<>>> before_,
+      refused_;  // not freed, because pipelines may be created from them
   std::future<Compiled> compiling_;
 };
 

@@ -1,4 +1,4 @@
-// How long the steps of the GUI's loop take: what a hand waits for at most, apart from what the system takes.
+// The duration of the steps of the GUI's loop, which is the longest time that user input has to wait.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,9 @@ namespace tyndall::viewer {
 
 class StepTimes {
  public:
-  // Whether it is the longest so far.
+  // Adds a step and returns whether it is the longest so far.
   bool add(double milliseconds);
-  // "N longest_ms X over_100_ms A over_200_ms B".
+  // Returns "N longest_ms X over_100_ms A over_200_ms B".
   [[nodiscard]] std::string text() const;
   // From here on.
   void reset() { *this = {}; }

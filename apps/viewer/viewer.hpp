@@ -1,4 +1,4 @@
-// `tyndall view`: the interactive viewer. One thread draws the GUI; each scene has another, see
+// `tyndall view`: the interactive viewer. One thread draws the GUI; each scene has a thread of its own, see
 // scenes/scene_thread.hpp.
 #pragma once
 
@@ -14,20 +14,20 @@ namespace tyndall::viewer {
 struct ViewerDesc {
   config::Settings settings;
   std::uint32_t width = 1280, height = 720;  // of the window [px]
-  std::string device;                        // as everywhere
+  std::string device;                        // as --device names it
   tables::MakeReady make_tables;
   std::string state_file;   // F5, F9; empty: default_state_file()
   std::string screenshots;  // folder; empty: the working directory
-  std::string log;          // where what happens is written, a line each; empty: nowhere
+  std::string log;          // file for the event log; empty: none
   bool validation = false;
-  // For tests: "walk" takes every parameter to both ends, "soak=SECONDS" or "soak-frames=COUNT" changes them at random;
-  // then it leaves. "lose-surface" and "lose-device" act as if that had happened after some frames; "one-device" draws
-  // the window and the scenes on one device, whatever it is.
+  // For tests: "walk" sets every parameter to both ends of its range; "soak=SECONDS" or "soak-frames=COUNT" changes
+  // random parameters; then the viewer quits. "lose-surface" and "lose-device" simulate these losses after the first
+  // frame; "one-device" draws the window and the scenes on one device, whatever it is.
   std::string script;
-  bool first_steps = true;  // show them when this is the first run
+  bool first_steps = true;  // show the first steps if this is the first run
 };
 
-// Returns when the window is closed. An error is one line for the user.
+// Runs the viewer until its window is closed. An error is one line for the user.
 Result<void> run(const ViewerDesc& desc);
 
 }  // namespace tyndall::viewer

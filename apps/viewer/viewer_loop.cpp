@@ -337,23 +337,23 @@ void Viewer::start_reload() {
 
 // New shaders need new pipelines: a new scene, which takes the place of the left one when it has been drawn.
 Result<void> Viewer::finish_reload() {
-  TYNDALL_ASSIGN(const ShaderReload::Outcome outcome, shaders_.finish());
-  if (!outcome.finished) return {};
-  shader_message_ = outcome.message;
-  if (!outcome.message.empty()) {
-    gui_.toast("The shaders stay as they were:\n" + outcome.message, true, now());
-    notices_.log("shaders failed " + files::one_line(outcome.message, 400));
+  TYNDALL_ASSIGN(const ShaderReload::Rebuilt rebuilt, shaders_.finish());
+  if (!rebuilt.finished) return {};
+  shader_message_ = rebuilt.message;
+  if (!rebuilt.message.empty()) {
+    gui_.toast("The shaders stay as they were:\n" + rebuilt.message, true, now());
+    notices_.log("shaders failed " + files::one_line(rebuilt.message, 400));
     redraw_.request(3);
     return {};
   }
-  if (outcome.changed == 0 && outcome.restored == 0) {
+  if (rebuilt.changed == 0 && rebuilt.restored == 0) {
     notices_.note("The shaders are as their sources");
     notices_.log("shaders same");
     return {};
   }
   // Tables that changed shaders make are not those of the cache.
-  desc_.make_tables.build_anew = outcome.tables_differ;
-  if (outcome.tables_differ) desc_.make_tables.cache.place = "off";
+  desc_.make_tables.build_anew = rebuilt.tables_differ;
+  if (rebuilt.tables_differ) desc_.make_tables.cache.place = "off";
   pair_.request(pair_request());
   pair_.start_replacement(desc_.make_tables);
   return {};

@@ -1,4 +1,3 @@
-// Markdown and JSON from the joint parameter table.
 #include "config/describe.hpp"
 
 #include "files/text.hpp"
@@ -57,7 +56,7 @@ std::string to_markdown() {
   const Settings defaults;
   std::string out =
       "# Parameters\n\n"
-      "Every parameter under the name that scene files, `--set`, GLSL and image metadata use.\n"
+      "Every parameter, by the name that scene files, `--set`, GLSL and image metadata use.\n"
       "Made by `tyndall params --format markdown`; edit `include/tyndall/params.def` or\n"
       "`src/scene/description/scene_params.def` instead. \"Change costs\" says what a change makes stale: the next "
       "`frame`'s\n"

@@ -1,4 +1,4 @@
-// The parameter list as documents: what `tyndall params` prints.
+// Formats the list of parameters, as `tyndall params` prints it.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace tyndall::config {
 
-// One table per group: name, type, default, range, unit, what a change makes stale, meaning.
+// Returns Markdown with one table for each group: name, type, default, range, unit, what a change makes stale, meaning.
 [[nodiscard]] std::string to_markdown();
 
-// {"version", "parameters": [{"name", "group", "type", "default", "value", "min", "max", "unit",
+// Returns JSON: {"version", "parameters": [{"name", "group", "type", "default", "value", "min", "max", "unit",
 // "choices", "affects", "doc"}]}: `value` is that of `settings`; min, max only for numbers, choices only
 // for enumerations. Numbers are numbers, vectors are arrays.
 [[nodiscard]] std::string to_json(const Settings& settings);

@@ -1,4 +1,4 @@
-// Reading TOML through toml++ (kept to this file), writing it by hand from the table.
+// Reads TOML with toml++, which no other source includes, and writes it from the table of parameters.
 #include "config/scene_file.hpp"
 
 #include <toml++/toml.h>

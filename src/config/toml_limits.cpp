@@ -8,7 +8,8 @@
 namespace tyndall::config {
 namespace {
 
-// The position behind a string that begins at `start` with a quotation mark; the end of the text when it is not closed.
+// Returns the position after the string that starts at `start` with a quotation mark, or the end of the text if it does
+// not end.
 std::size_t end_of_string(std::string_view text, std::size_t start) {
   const char quote = text[start];
   const std::string_view triple = text.substr(start, 3);

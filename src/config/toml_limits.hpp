@@ -1,4 +1,4 @@
-// Limits that a TOML text must keep before the parser gets it.
+// Limits of a TOML text, which are checked before it is parsed.
 #pragma once
 
 #include <string_view>

@@ -1,4 +1,4 @@
-// One pass over the text, character by character only inside quotes.
+// Parses in one pass, and character by character only inside quotes.
 #include "files/csv.hpp"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ class Reader {
   [[nodiscard]] bool at_end() const { return position_ >= text_.size(); }
   [[nodiscard]] std::size_t line() const { return line_; }
 
-  // Appends the fields of the next record. A blank line gives none.
+  // Appends the fields of the next record. A blank line has none.
   Result<void> record(std::vector<std::string_view>& fields) {
     if (skip_blank_line()) return {};
     for (;;) {
@@ -46,7 +46,7 @@ class Reader {
     return true;
   }
 
-  // Past a quoted field's closing quote; nothing when the field is not quoted.
+  // Moves past the closing quote of a quoted field; does nothing when the field is not quoted.
   Result<void> pass_quoted() {
     const std::size_t first = text_.find_first_not_of(" \t", position_);
     if (first == std::string_view::npos || text_[first] != '"') return {};
@@ -61,7 +61,7 @@ class Reader {
                                                    text_.begin() + static_cast<std::ptrdiff_t>(quote), '\n'));
       position_ = quote + 1;
       if (at_end() || text_[position_] != '"') break;
-      ++position_;  // a doubled quote stands for one
+      ++position_;  // two quotes stand for one
     }
     const std::size_t next = text_.find_first_not_of(" \t\r", position_);
     if (next != std::string_view::npos && text_[next] != ',' && text_[next] != '\n') {

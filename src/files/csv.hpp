@@ -1,6 +1,6 @@
-// Tables of comma-separated values (RFC 4180): a header line and rows of as many fields. Fields are views of
-// the text as it was written, quotes included, so that columns can be passed on unchanged. A byte order mark,
-// CRLF line ends, blank lines and a missing last line end are all accepted.
+// Tables of comma-separated values (RFC 4180): a header line, then rows with one field for each of its columns. Fields
+// are views of the text as written, with their quotes, so that columns can be copied to the output unchanged. A byte
+// order mark, CRLF line ends, blank lines and a missing last line end are accepted.
 #pragma once
 
 #include <cstddef>
@@ -15,23 +15,23 @@
 namespace tyndall::files {
 
 struct CsvTable {
-  std::unique_ptr<const std::string> text;  // what the views below look at
-  std::vector<std::string_view> header;     // as written
+  std::unique_ptr<const std::string> text;  // owns the characters of the views below
+  std::vector<std::string_view> header;     // as written, with quotes
   std::vector<std::string_view> fields;     // row after row
-  std::vector<std::size_t> lines;           // where each row begins, the first line of the file being 1
+  std::vector<std::size_t> lines;           // line number of the start of each row, from 1
 
   [[nodiscard]] std::size_t rows() const { return lines.size(); }
   [[nodiscard]] std::string_view field(std::size_t row, std::size_t column) const {
     return fields[row * header.size() + column];
   }
-  // Indices of the columns with this name.
+  // Returns the indices of the columns with this name.
   [[nodiscard]] std::vector<std::size_t> find(std::string_view name) const;
 };
 
-// `name` stands for the text in errors.
+// Parses a table. Errors call the text `name`.
 [[nodiscard]] Result<CsvTable> parse_csv(std::string text, std::string_view name);
 
-// What a field says: without quotes and the blanks around it.
+// Returns the value of a field: without its quotes and without the blanks around it.
 [[nodiscard]] std::string csv_value(std::string_view field);
 
 }  // namespace tyndall::files

@@ -1,5 +1,5 @@
-// A file: header, version text, key, contents. Numbers are those of this machine; another's byte order shows
-// in the mark.
+// The layout of a file is: header, version text, key, contents. Numbers have the byte order of this machine, which the
+// mark reveals.
 #include "files/file_cache.hpp"
 
 #include <fcntl.h>
@@ -35,8 +35,8 @@ struct Header {
 
 std::span<const std::byte> as_bytes(std::string_view text) { return std::as_bytes(std::span(text)); }
 
-// The checksum of `total` bytes that come in pieces, each a multiple of 32 bytes but the last. Four lanes of
-// multiply and rotate over words, so that memory is the limit; then the finish of SplitMix64.
+// Computes a checksum of `total` bytes that arrive in pieces; all but the last are multiples of 32 bytes long. Four
+// lanes of multiply and rotate over words run at the speed of memory; the finish is that of SplitMix64.
 class Checksum {
  public:
   explicit Checksum(std::uint64_t total)
@@ -82,15 +82,15 @@ class OpenFile {
     if (descriptor_ >= 0) ::close(descriptor_);
   }
 
-  // Whether there was no such file: another process may have thrown it away.
+  // Returns whether there was no such file; another process may have removed it.
   [[nodiscard]] bool missing() const { return missing_; }
-  // Of a regular file; of anything else nothing.
+  // Returns the size of a regular file; nothing for any other kind.
   [[nodiscard]] std::optional<std::uint64_t> size() const {
     struct stat info {};
     if (descriptor_ < 0 || ::fstat(descriptor_, &info) != 0 || !S_ISREG(info.st_mode)) return std::nullopt;
     return static_cast<std::uint64_t>(info.st_size);
   }
-  // Whether all of it could be read.
+  // Reads exactly `size` bytes; returns false when there are fewer.
   [[nodiscard]] bool read(void* to, std::size_t size) const {
     for (auto* at = static_cast<std::byte*>(to); size > 0;) {
       const ssize_t got = ::read(descriptor_, at, size);
@@ -115,7 +115,7 @@ std::string hexadecimal(std::uint64_t value) {
   return out;
 }
 
-// Whether a file may be one of ours: the directory is the user's, and may hold others.
+// Returns whether a file may be part of the cache; the directory is the user's and may contain others.
 bool is_entry_name(std::string_view name) {
   return name.size() == 16 + kEnding.size() && name.ends_with(kEnding) &&
          name.substr(0, 16).find_first_not_of("0123456789abcdef") == std::string_view::npos;
@@ -164,7 +164,7 @@ bool FileCache::read(std::string_view key, std::span<std::byte> to) {
   if (!holds(key)) return false;
   const std::string file = path(key);
   const auto unusable = [&](std::string_view why) {
-    note_ = concat({"the cached file ", one_line(file, 200), " is ", why, " and is made anew"});
+    note_ = concat({"the cached file ", one_line(file, 200), " is ", why, " and is rebuilt"});
     return false;
   };
   const OpenFile open(file);
@@ -187,7 +187,7 @@ bool FileCache::read(std::string_view key, std::span<std::byte> to) {
   if (std::string_view(text).substr(0, header.version_bytes) != version_) return unusable("of another version");
   if (std::string_view(text).substr(header.version_bytes) != key || header.contents_bytes != to.size())
     return unusable("of something else");
-  // Piece by piece, so that each is summed while it is in the processor's cache.
+  // In pieces, so that each is summed while it is still in the processor's cache.
   Checksum sum(to.size());
   std::vector<std::byte> piece(std::min(kPiece, to.size()));
   for (std::size_t at = 0; at < to.size(); at += piece.size()) {
@@ -197,7 +197,7 @@ bool FileCache::read(std::string_view key, std::span<std::byte> to) {
     std::memcpy(to.data() + at, next.data(), next.size());
   }
   if (sum.finish() != header.contents_checksum) return unusable("damaged");
-  // Used now: the last to be thrown away.
+  // Marks the file as used, so that it is removed last.
   static_cast<void>(::utimensat(AT_FDCWD, file.c_str(), nullptr, 0));
   return true;
 }
@@ -214,7 +214,8 @@ void FileCache::write(std::string_view key, std::span<const std::byte> contents)
     return;
   }
   std::error_code failed;
-  std::filesystem::create_directories(directory_, failed);  // AtomicFile tells when it is not there
+  std::filesystem::create_directories(directory_,
+                                      failed);  // if it fails, AtomicFile reports that the directory is missing
   const std::string file = path(key);
   const auto store = [&]() -> Result<void> {
     Result<AtomicFile> out = AtomicFile::create(file);
@@ -233,7 +234,7 @@ void FileCache::write(std::string_view key, std::span<const std::byte> contents)
   make_room(file);
 }
 
-void FileCache::make_room(const std::string& kept) const {
+void FileCache::make_room(const std::string& new_file) const {
   struct Entry {
     std::filesystem::path path;
     std::filesystem::file_time_type used;
@@ -242,7 +243,7 @@ void FileCache::make_room(const std::string& kept) const {
   std::vector<Entry> entries;
   std::uint64_t total = 0;
   std::error_code failed;
-  // Other processes may add and remove files meanwhile: what cannot be looked at is passed over.
+  // Other processes may add and remove files meanwhile: files that cannot be examined are skipped.
   for (std::filesystem::directory_iterator it(directory_, failed), end; !failed && it != end; it.increment(failed)) {
     std::error_code gone;
     if (!is_entry_name(it->path().filename().string()) || !it->is_regular_file(gone) || gone) continue;
@@ -250,7 +251,7 @@ void FileCache::make_room(const std::string& kept) const {
     const std::filesystem::file_time_type used = it->last_write_time(gone);
     if (gone) continue;
     total += bytes;
-    if (it->path() != kept) entries.push_back({it->path(), used, bytes});
+    if (it->path() != new_file) entries.push_back({it->path(), used, bytes});
   }
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.used < b.used; });
   for (const Entry& entry : entries) {

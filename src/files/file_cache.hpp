@@ -1,7 +1,7 @@
-// Results that are dear to make, kept on disk between runs: one file per key in one directory. Files appear
-// whole or not at all, so that any number of processes may share the directory, and are checked when they are
-// read: what is truncated, damaged, of another version or of another key is as good as missing. Trouble with
-// the cache never fails a run: it is told in a line. Errors and notes name files. One thread per object.
+// A cache on disk for results that are expensive to compute: one file for each key, all in one directory. A file
+// appears complete or not at all, so any number of processes may share the directory. Files are checked when they are
+// read: one that is truncated, damaged, of another version or of another key counts as missing. A failure of the cache
+// never fails a run; note() describes it in one line. Use each object from one thread only.
 #pragma once
 
 #include <cstdint>
@@ -16,34 +16,34 @@ namespace tyndall::files {
 
 class FileCache {
  public:
-  // No cache: reads find nothing and writes keep nothing.
+  // Creates a disabled cache: reads find nothing, and writes store nothing.
   FileCache() = default;
-  // A directory, made when something is first kept. All its files together stay below `limit_bytes`: those
-  // not used for longest go first. `version` tells files of this program from those of others that wrote
-  // under the same keys.
+  // Creates a cache in a directory, which is created when something is first stored. The files together stay below
+  // `limit_bytes`; the least recently used ones are removed first. `version` distinguishes the files of this program
+  // from those that other versions stored under the same keys.
   FileCache(std::string directory, std::uint64_t limit_bytes, std::string version);
 
   [[nodiscard]] bool enabled() const { return !directory_.empty(); }
   [[nodiscard]] const std::string& directory() const { return directory_; }
 
-  // Whether there is a file under the key, which read() may yet refuse.
+  // Returns whether there is a file for the key; read() may still reject it.
   [[nodiscard]] bool holds(std::string_view key) const;
-  // What was kept under the key, if it has `size` bytes. Marks it as used.
+  // Returns what was stored under the key, if it has `size` bytes, and marks it as used.
   [[nodiscard]] std::optional<std::string> read(std::string_view key, std::uint64_t size);
-  // The same, to memory of the caller's of that size: written once and in order, never read, so that memory
-  // of a device will do. What it holds after `false` is not to be used.
+  // Reads into memory of the caller's, which is written once, in order, and never read, so that it may be device
+  // memory. After `false` its contents are undefined.
   [[nodiscard]] bool read(std::string_view key, std::span<std::byte> to);
-  // Keeps it, in place of what was there.
+  // Stores the contents under the key, replacing what was there.
   void write(std::string_view key, std::span<const std::byte> contents);
 
-  // Why the last read or write did not do what was asked: one line; empty when it did, or nothing was there.
+  // Returns one line that says why the last read or write failed; empty if it succeeded or if nothing was stored.
   [[nodiscard]] const std::string& note() const { return note_; }
 
-  // The file of a key.
+  // Returns the path of a key's file.
   [[nodiscard]] std::string path(std::string_view key) const;
 
  private:
-  void make_room(const std::string& kept) const;
+  void make_room(const std::string& new_file) const;
 
   std::string directory_;
   std::uint64_t limit_bytes_ = 0;
@@ -51,11 +51,11 @@ class FileCache {
   std::string note_;
 };
 
-// Where `place` is: "off" nowhere (empty), "auto" $XDG_CACHE_HOME/tyndall or else $HOME/.cache/tyndall (empty
-// when neither is an absolute path), anything else a directory of that name.
+// Returns the directory that tables.cache names: nothing for "off"; for "auto" $XDG_CACHE_HOME/tyndall, else
+// $HOME/.cache/tyndall, or nothing when neither is an absolute path; otherwise the name itself.
 [[nodiscard]] std::string cache_directory(std::string_view place);
 
-// Of the bytes, for finding damage; not against intent.
+// Returns a checksum that detects damage, but not deliberate changes.
 [[nodiscard]] std::uint64_t checksum(std::span<const std::byte> bytes);
 
 }  // namespace tyndall::files

@@ -38,7 +38,7 @@ std::string directory_of(const std::string& path) {
   return parent.empty() ? "." : parent;
 }
 
-// A name in `directory` that no other run uses; short, so that it fits where the target's name does.
+// Returns a name in `directory` that no other run uses. It is short, so that it fits where the target's name does.
 std::string temporary_name(const std::string& directory, int attempt) {
   return concat({directory, "/.tyndall-", std::to_string(::getpid()), "-", std::to_string(attempt), ".tmp"});
 }
@@ -48,8 +48,8 @@ constexpr mode_t kNewFileMode = 0666;  // less the umask
 
 constexpr std::string_view kTemporaryPrefix = ".tyndall-";
 
-// The file that writing to `path` creates or replaces: symbolic links are followed, also those whose target does
-// not exist yet. Empty for a chain of links that has no end.
+// Returns the file that writing to `path` creates or replaces. Symbolic links are followed, even those whose target
+// does not exist yet. Returns an empty text for an endless chain of links.
 std::string followed(const std::string& path) {
   constexpr int kMaxLinks = 40;  // as the kernel allows
   std::filesystem::path target = path;
@@ -63,7 +63,7 @@ std::string followed(const std::string& path) {
   return "";
 }
 
-// Copies a file from its beginning; false (with errno) when it cannot be read or written.
+// Copies a file from its beginning; returns false, with errno set, when it cannot be read or written.
 bool copy_contents(int from, int to) {
   char piece[1 << 16];
   off_t position = 0;
@@ -84,7 +84,7 @@ bool copy_contents(int from, int to) {
 
 void remove_leftovers(const std::string& directory) {
   namespace fs = std::filesystem;
-  // Whoever writes takes the lock of a temporary file right after creating it. Younger ones are left alone.
+  // A writer locks its temporary file right after creating it; in between, only the file's age protects it.
   constexpr auto kMinAge = std::chrono::minutes(1);
   std::error_code failed;
   for (fs::directory_iterator it(directory, failed), end; !failed && it != end; it.increment(failed)) {
@@ -112,13 +112,13 @@ Result<std::string> read_file(const std::string& path, std::uint64_t limit) {
   } else if (S_ISDIR(info.st_mode)) {
     failure = EISDIR;
   }
-  // Pipes and devices do not say how much is to come; some never end.
+  // Pipes and devices have no known size; some never end.
   constexpr std::uint64_t kLargestStream = std::uint64_t{256} << 20U;
   if (!S_ISREG(info.st_mode)) limit = std::min(limit, kLargestStream);
   constexpr std::size_t kChunk = std::size_t{1} << 20U;
   std::size_t used = 0;
   while (failure == 0 && used <= limit) {
-    // Regular files are read in one piece, with a byte more to see the end.
+    // Regular files are read in one piece, with one byte more to detect the end.
     const std::uint64_t expected = static_cast<std::uint64_t>(std::max<off_t>(info.st_size, 0)) + 1;
     const std::uint64_t wanted = used < expected ? expected - used : kChunk;
     contents.resize(used + static_cast<std::size_t>(std::min<std::uint64_t>(wanted, limit + 1 - used)));
@@ -234,7 +234,7 @@ Result<void> AtomicFile::seek(std::uint64_t position) {
 
 Result<void> AtomicFile::commit() {
   if (nameless_) {
-    // A nameless file cannot take the place of another: it gets a temporary name first.
+    // An unnamed file cannot replace another one: it gets a temporary name first.
     const std::string source = concat({"/proc/self/fd/", std::to_string(descriptor_)});
     const std::string directory = directory_of(path_);
     int linked = -1;
@@ -271,7 +271,7 @@ Result<void> write_file(const std::string& path, std::string_view contents) {
 }
 
 Result<void> check_writable(const std::string& path) {
-  // A pipe must not be opened for a test: its reader would see the end.
+  // A pipe must not be opened for a check: its reader would see it end.
   struct stat info {};
   if (::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode)) return {};
   const Result<AtomicFile> file = AtomicFile::create(path);

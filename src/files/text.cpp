@@ -17,13 +17,13 @@ std::string shortest_text(T value) {
   return std::string(buffer, end.ptr);
 }
 
-// from_chars knows no plus sign.
+// Removes a plus sign, which from_chars does not accept.
 std::string_view without_plus(std::string_view text) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-' && text[1] != '+') text.remove_prefix(1);
   return text;
 }
 
-// The power of ten of the first digit that is not 0 in a decimal number that from_chars accepts.
+// Returns the power of ten of the first nonzero digit of a decimal number that from_chars accepts.
 std::int64_t order_of_magnitude(std::string_view text) {
   constexpr std::int64_t kLargestExponent = std::int64_t{1} << 40;
   const std::size_t e = std::min(text.find_first_of("eE"), text.size());
@@ -50,7 +50,7 @@ NumberError read_real(std::string_view text, T& value) {
     return NumberError::not_a_number;
   }
   if (end.ec == std::errc::result_out_of_range) {
-    // from_chars does not report which end of the range was left. A number too small for T is zero.
+    // from_chars does not report at which end the number leaves the range. A number too small for T is zero.
     if (order_of_magnitude(text) > 0) return NumberError::too_large;
     read = T{};
   }
@@ -59,7 +59,7 @@ NumberError read_real(std::string_view text, T& value) {
   return NumberError::none;
 }
 
-// Length of the valid UTF-8 sequence that starts at `text`, 0 when there is none.
+// Returns the length of the valid UTF-8 sequence at the start of `text`, 0 when there is none.
 std::size_t utf8_sequence(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned lead = byte(0);
@@ -170,7 +170,7 @@ std::string quoted_text(std::string_view text) {
 }
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  // Three rows of the dynamic programme: two above, one above, current.
+  // Three rows of the dynamic programming table: the current one and the two above.
   std::vector<std::size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
@@ -189,7 +189,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 std::optional<std::string> nearest(std::string_view name, std::span<const std::string> candidates) {
-  constexpr std::size_t kLongestName = 200;  // the distance costs the product of the lengths
+  constexpr std::size_t kLongestName = 200;  // the time grows with the product of the lengths
   if (name.empty() || name.size() > kLongestName) return std::nullopt;
   std::size_t best = std::max<std::size_t>(2, name.size() / 3) + 1;
   std::optional<std::string> found;

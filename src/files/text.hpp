@@ -1,6 +1,6 @@
-// Numbers, names and messages as text: what parameter files, the command line and reports share.
-// Numbers are written with the fewest digits that read back to the same value, and read without a
-// locale. Nothing here prints or throws (other than for lack of memory).
+// Converts numbers, names and messages to and from text, for parameter files, the command line and reports. Numbers are
+// written with the fewest digits that read back to the same value; the locale has no influence. Nothing here prints,
+// and nothing throws except for lack of memory.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace tyndall::files {
 
-// Shortest decimal text that reads back to the same value ("0.76", "5.8e-06", "nan", "-inf").
+// Returns the shortest decimal text that reads back to the same value ("0.76", "5.8e-06", "nan", "-inf").
 [[nodiscard]] std::string number_text(float value);
 [[nodiscard]] std::string number_text(double value);
 
@@ -28,12 +28,12 @@ enum class NumberError : std::uint32_t { none, not_a_number, not_finite, too_lar
 [[nodiscard]] NumberError read_integer(std::string_view text, std::int64_t& value);
 
 [[nodiscard]] std::string_view trimmed(std::string_view text);
-// The parts of `text` between separators; one empty part for an empty text.
+// Count and return the parts of `text` between separators; an empty text has one empty part.
 [[nodiscard]] std::size_t count_parts(std::string_view text, char separator);
 [[nodiscard]] std::string_view part(std::string_view text, char separator, std::size_t index);
 
 [[nodiscard]] bool is_utf8(std::string_view text);
-// True when `text` holds a byte below 0x20 or the byte 0x7f.
+// Returns whether `text` contains a byte below 0x20 or the byte 0x7f.
 [[nodiscard]] bool has_control_characters(std::string_view text);
 
 [[nodiscard]] std::string concat(std::initializer_list<std::string_view> parts);
@@ -41,19 +41,19 @@ enum class NumberError : std::uint32_t { none, not_a_number, not_finite, too_lar
 // The error of bad input: "what, where, allowed".
 [[nodiscard]] Error input_error(std::string_view what, std::string_view where, std::string_view allowed);
 
-// `text` made fit for a message: one line, control characters and invalid bytes as '?', shortened
-// to at most `limit` bytes.
+// Returns `text` in a form that is safe in a message: on one line, with '?' for control characters and invalid bytes,
+// and shortened to at most `limit` bytes.
 [[nodiscard]] std::string one_line(std::string_view text, std::size_t limit = 80);
 
-// `text` as a JSON string (also a TOML basic string) with its quotes. Precondition: valid UTF-8.
+// Returns `text` as a JSON string, which is also a TOML basic string, with its quotes. Precondition: valid UTF-8.
 [[nodiscard]] std::string quoted_text(std::string_view text);
 
-// Number of insertions, deletions, replacements and swaps of neighbours that turn a into b
-// (Damerau 1964, restricted form).
+// Returns the number of insertions, deletions, replacements and swaps of neighbours that turn a into b (Damerau 1964,
+// restricted form).
 [[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
 
-// The candidate nearest to `name`, when it is near enough to be a slip of the finger (2 edits, or a
-// third of the length).
+// Returns the candidate that is nearest to `name`, if it is near enough to be a typing error: 2 edits, or a third of
+// the length.
 [[nodiscard]] std::optional<std::string> nearest(std::string_view name, std::span<const std::string> candidates);
 
 }  // namespace tyndall::files

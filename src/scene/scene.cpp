@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::uint32_t kMaxTimedPasses = 24;
 constexpr double kRadPerDeg = 0.017453292519943295;
-constexpr double kLeastHeight_m = 2.0;  // of the camera above the ground
+constexpr double kMinHeight_m = 2.0;  // of the camera above the ground
 
 // Refuses pictures and shadow maps that the device has no room for, before anything is created.
 Result<void> check_memory(const gpu::Device& device, VkExtent2D extent, std::uint32_t resolution,
@@ -254,7 +254,7 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   const double ground_m = bare ? 0.0 : terrain_->height_at(up_of(view_.position, radius));
   const double altitude = altitude_of(view_.position, radius);
   // Meshes are no obstacle: their insides are for cameras. The bare ground is flat, so the near plane is what counts.
-  const double least_m = bare ? kNearPlane_m : kLeastHeight_m;
+  const double least_m = bare ? kNearPlane_m : kMinHeight_m;
   if (altitude < ground_m + least_m) {
     view_.position = at_altitude(view_.position, ground_m + least_m, radius);
     if (!lifted_) {
@@ -299,7 +299,7 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   return {};
 }
 
-// With a model the scene's colour holds the air already.
+// With a model, the scene's colour already contains the atmosphere.
 Result<void> Scene::copy_color(VkCommandBuffer cmd) {
   begin_pass(cmd, "copy");
   TYNDALL_TRY(copy_to(cmd, output_));

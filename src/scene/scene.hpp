@@ -1,6 +1,5 @@
-// The demo engine: terrain, shadow cascades, sun and camera, rendered into colour and depth, and then
-// seen through the air by tyndall::Effect. It is a client of include/tyndall and nothing else of the
-// library, like any engine would be. Renders one frame at a time and waits for it.
+// The demo engine: renders terrain, meshes, sun and shadow cascades into colour and depth, and applies tyndall::Effect.
+// Like any engine, it uses only the public interface of the library. It renders one frame at a time and waits for it.
 #pragma once
 
 #include <memory>
@@ -23,12 +22,12 @@ struct SceneDesc {
   VkExtent2D extent = {1280, 720};
   bool timings = false;
   bool counters = false;
-  bool histogram = false;              // measure every picture, not only those that auto exposure needs measured
+  bool histogram = false;              // measure every picture, not only those that auto exposure needs
   tables::MakeReady make_tables = {};  // how the effect's tables are made
-  bool tables_later = false;           // with advance_tables(), instead of at once
+  bool tables_later = false;           // make the tables with advance_tables() instead of at once
   int terrain_coarseness = 1;          // see TerrainLod
-  bool keep_shadows = false;           // do not draw shadow maps anew that would come out the same
-  bool in_parts = false;               // submit a frame part by part: between them others have their turn on the queue
+  bool keep_shadows = false;           // reuse shadow maps that would not change
+  bool in_parts = false;               // submit a frame in parts, so that others get their turn on the queue
 };
 
 struct PassTime {
@@ -39,23 +38,23 @@ struct PassTime {
 
 class Scene {
  public:
-  // Loads the terrain, builds the tables unless they are cached: takes seconds.
+  // Loads the terrain and builds the tables unless they are cached. Takes seconds.
   static Result<std::unique_ptr<Scene>> create(gpu::Host& host, const SceneDesc& desc, const Params& params,
                                                const SceneParams& scene);
 
-  // Take over new parameters; an error leaves things as they were, the next frame included. Another terrain is loaded
-  // here, which takes long for large files, unless set_terrain() has brought it. Back to scattering.model = atmosphere,
-  // and other parameters of the air, make the tables ready if they are not, unless with SceneDesc::tables_later.
-  // No function throws std::bad_alloc: running out of memory is an error.
+  // Set new parameters. An error leaves everything as it was, the next frame included. A different terrain is loaded,
+  // which takes long for large files, unless set_terrain() has provided it. A change back to scattering.model =
+  // atmosphere, or of parameters of the atmosphere, makes the tables, unless SceneDesc::tables_later is set. No
+  // function throws std::bad_alloc: running out of memory is an error.
   Result<void> set_scene(const SceneParams& scene);
   Result<void> set_params(const Params& params);
-  // What Terrain::load_source() gave for these parameters and this radius of the planet.
+  // Sets a terrain that Terrain::load_source() has loaded for these parameters and this radius of the planet.
   Result<void> set_terrain(const TerrainParams& params, double radius_m, ElevationSource source);
   Result<void> set_extent(VkExtent2D extent);
   Result<void> set_terrain_coarseness(int coarseness);
 
-  // One step towards the tables that the parameters ask for (see Effect::precompute_progress()), from the cache or
-  // `budget` slices of the build. Until they are complete, frames are drawn with those that were; without any, render()
+  // Makes one step towards the tables of the parameters (see Effect::precompute_progress()): reads them from the cache,
+  // or builds `budget` slices of them. Until they are complete, frames use the previous tables; without any, render()
   // fails.
   Result<Progress> advance_tables(std::uint32_t budget);
   [[nodiscard]] bool can_render() const { return model_ != nullptr || tables_ready_; }
@@ -67,11 +66,11 @@ class Scene {
   // time at all, is exposed for itself.
   Result<void> render(double seconds, bool floor = false, std::optional<double> step_s = {});
 
-  // Exposes and tone maps the frame rendered last anew, `step_s` after the last time: for adaptation, and when nothing
-  // but tonemap.* has changed.
+  // Exposes and tone maps the last rendered frame again, `step_s` after the last time: for adaptation, and when only
+  // tonemap.* has changed.
   Result<void> tone(double step_s);
 
-  // Of the frame rendered last: radiance, or display values 0 to 1 after tone mapping (both linear).
+  // Return the last rendered frame: its radiance, or display values from 0 to 1 after tone mapping. Both are linear.
   Result<image::Image> radiance();
   Result<image::Image> display();
   struct Exposure {
@@ -81,28 +80,28 @@ class Scene {
   [[nodiscard]] Exposure exposure() const;
   [[nodiscard]] const std::vector<PassTime>& timings() const { return times_; }
 
-  // The images of the frame rendered last, on the device. `display` and `output` (radiance) are in GENERAL layout,
+  // The images of the last rendered frame, on the device. `display` and `output` (radiance) are in GENERAL layout,
   // the others in SHADER_READ_ONLY_OPTIMAL; shadow_maps is an array with one layer per cascade.
   struct Images {
     const gpu::Image &display, &output, &color, &depth, &shadow_maps;
   };
   [[nodiscard]] Images images() const { return {display_, output_, color_, depth_, shadow_maps_}; }
-  // The ground that is drawn, for other threads as well; none: the bare sphere at sea level.
+  // Returns the ground that is drawn, which any thread may read; nullptr for the bare sphere at sea level.
   [[nodiscard]] std::shared_ptr<const ElevationSource> elevations() const {
     return bare_ground() ? nullptr : terrain_->source();
   }
 
-  // Remarks for the user, one line each: what a file needed, which of the parameters that it was
-  // created with do nothing, that the camera was lifted, ...
+  // Returns remarks for the user, one line each: what was assumed about a file, which parameters have no effect, that
+  // the camera was lifted above the ground.
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
-  // Where the origin of the world is on the Earth, by the elevation file; nothing without one.
+  // Returns where the origin of the world is on the Earth, if an elevation file says so.
   [[nodiscard]] const std::optional<Place>& place() const { return terrain_->place(); }
   struct Memory {
     VkDeviceSize effect_persistent = 0, effect_transient = 0, effect_host = 0;
-    std::vector<ResourceMemory> effect_resources;  // what effect_persistent consists of
+    std::vector<ResourceMemory> effect_resources;  // the parts of effect_persistent
     VkDeviceSize scene = 0;
   };
-  // Of the frame rendered last, with SceneDesc::counters.
+  // Returns the counters of the last rendered frame; needs SceneDesc::counters.
   [[nodiscard]] Counters counters() const;
   [[nodiscard]] Memory memory() const;
 
@@ -111,7 +110,7 @@ class Scene {
   [[nodiscard]] Result<std::unique_ptr<Effect>> make_effect(const EffectDesc& desc);
   // Makes the effect again after commands that it recorded were dropped: it counts them as done.
   Result<void> replace_lost_effect();
-  // What a picture of some size is drawn into.
+  // The images that a picture of one size is drawn into.
   struct Targets {
     gpu::Image color, depth, output, display;
   };
@@ -120,7 +119,7 @@ class Scene {
     gpu::Image image;
     std::vector<gpu::Handle<VkImageView>> layers;
   };
-  struct Pending;  // what other parameters change
+  struct Pending;  // prepared changes
   [[nodiscard]] Result<Targets> make_targets(VkExtent2D extent) const;
   [[nodiscard]] Result<Layered> make_layered(const gpu::ImageDesc& desc) const;
   [[nodiscard]] Result<Layered> make_shadow_maps(const ShadowParams& shadows) const;
@@ -131,11 +130,11 @@ class Scene {
   [[nodiscard]] Result<Pending> plan(const SceneParams& scene, const Params& params,
                                      std::optional<ElevationSource> source);
   void swap(Pending& pending) noexcept;
-  // Plans and takes over; an error leaves everything as it was. `source`: of the terrain, if it has been loaded.
+  // Plans and applies a change; an error leaves everything as it was. `source`: the terrain's, if it has been loaded.
   Result<void> change(const SceneParams& scene, const Params& params, std::optional<ElevationSource> source);
   void swap_targets(Targets& targets) noexcept;
   [[nodiscard]] bool shadows_are_drawn() const;
-  // Whether no terrain is drawn, by terrain.source or by a model that draws a sphere of its own.
+  // Returns whether no terrain is drawn, because of terrain.source or because a model draws a sphere of its own.
   [[nodiscard]] bool bare_ground() const;
   Result<void> draw_shadows(VkCommandBuffer cmd);
   Result<void> draw_shadow_colors(VkCommandBuffer cmd);
@@ -160,10 +159,10 @@ class Scene {
   Params params_;
   SceneParams scene_;
   std::unique_ptr<Terrain> terrain_;
-  std::unique_ptr<Meshes> meshes_;  // none: no meshes, and terrain
-  std::vector<std::string> notes_;  // outlives the effect, whose messages it takes
+  std::unique_ptr<Meshes> meshes_;  // nullptr: there are no meshes, and there is terrain
+  std::vector<std::string> notes_;  // outlives the effect, which writes to it
   std::unique_ptr<Effect> effect_;
-  std::unique_ptr<SkyModel> model_;  // none: the effect draws the air
+  std::unique_ptr<SkyModel> model_;  // nullptr: the effect draws the atmosphere
   bool tables_ready_ = false;
   std::unique_ptr<post::Tonemap> tonemap_;
   gpu::Image color_, depth_, shadow_maps_, shadow_colors_, output_, display_;
@@ -174,7 +173,7 @@ class Scene {
   gpu::Timer timer_;
 
   View view_;
-  LocalFrame frame_;  // that everything is drawn in
+  LocalFrame frame_;  // of everything that is drawn
   glm::dvec3 to_sun_ = {};
   std::vector<CascadeFit> cascades_;
   TerrainLight light_;
@@ -183,16 +182,16 @@ class Scene {
   double step_s_ = 0.0;
   bool images_ready_ = false;
   bool effect_lost_ = false;                // see replace_lost_effect()
-  bool lifted_ = false;                     // the camera, which has been noted
-  std::vector<CascadeFit> drawn_cascades_;  // what the shadow maps show
+  bool lifted_ = false;                     // the camera has been lifted, and a note says so
+  std::vector<CascadeFit> drawn_cascades_;  // of the shadow maps as they are
   std::uint64_t drawn_terrain_ = 0;
   image::Image radiance_sum_, display_sum_;  // with camera.samples > 1
   std::vector<PassTime> times_;
 };
 
-// An error where scattering.model cannot draw what `scene` has.
+// Returns an error where scattering.model cannot draw the contents of `scene`.
 [[nodiscard]] Result<void> check_model(const SceneParams& scene);
-// Appends what is not there yet.
+// Appends the notes that are not in the list yet.
 void add_notes(std::vector<std::string>& notes, const std::vector<std::string>& more);
 
 }  // namespace tyndall::scene

@@ -1,4 +1,4 @@
-// What of a scene can change between frames: parameters, terrain, the size of the picture, the tables.
+// Changes of a scene between frames: parameters, terrain, the size of the picture, the tables.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -32,7 +32,7 @@ bool same_effect_limits(const EffectDesc& a, const EffectDesc& b) {
 
 }  // namespace
 
-// Everything that other parameters need, made before any of it is taken over.
+// Everything that new parameters need. It is all created before any of it is applied.
 struct Scene::Pending {
   SceneParams scene;
   Params params;
@@ -46,7 +46,7 @@ struct Scene::Pending {
   std::vector<std::string> notes;
 };
 
-// Models other than the effect draw the terrain and the sky, and nothing else.
+// Models other than the effect draw only the terrain and the sky.
 Result<void> check_model(const SceneParams& scene) {
   if (scene.scattering.model == ScatteringModel::atmosphere) return {};
   if (scene.meshes.source == "none" && scene.terrain.source != "none") return {};
@@ -107,7 +107,7 @@ Result<Scene::Layered> Scene::make_shadow_maps(const ShadowParams& shadows) cons
                        true});
 }
 
-// Maps of what glass leaves of the light; one clear texel where there is no glass.
+// Creates the maps of the light that glass transmits; one clear texel where there is no glass.
 Result<Scene::Layered> Scene::make_shadow_colors(const ShadowParams& shadows, bool glass) const {
   if (glass) {
     return make_layered({"shadow_colors",
@@ -132,13 +132,13 @@ Result<Scene::Layered> Scene::make_shadow_colors(const ShadowParams& shadows, bo
   return out;
 }
 
-// The meshes of `scene`, on the terrain that is in place; none where the terrain is all there is.
+// Creates the meshes of `scene` on the current terrain; nullptr if there is only terrain.
 Result<std::unique_ptr<Meshes>> Scene::make_meshes(const SceneParams& scene, double radius_m) const {
   if (scene.meshes.source == "none" && !terrain_->none()) return std::unique_ptr<Meshes>();
   return Meshes::create(*host_, scene.meshes, *terrain_, radius_m, kColorFormat, kDepthFormat, kShadowColorFormat);
 }
 
-// The model that draws in place of the effect; none with scattering.model = atmosphere.
+// Creates the model that draws instead of the effect; nullptr with scattering.model = atmosphere.
 Result<std::unique_ptr<SkyModel>> Scene::make_model(const SceneParams& scene) const {
   if (scene.scattering.model == ScatteringModel::atmosphere) return std::unique_ptr<SkyModel>();
   return create_sky_model(*host_, scene, kColorFormat, kDepthFormat);
@@ -146,7 +146,7 @@ Result<std::unique_ptr<SkyModel>> Scene::make_model(const SceneParams& scene) co
 
 Result<void> Scene::make_tables_ready() {
   if (model_ != nullptr || desc_.tables_later || effect_->precompute_progress().complete()) return {};
-  TYNDALL_ASSIGN(const tables::Outcome made, tables::make_ready(*host_, *effect_, desc_.make_tables));
+  TYNDALL_ASSIGN(const auto made, tables::make_ready(*host_, *effect_, desc_.make_tables));
   tables_ready_ = true;
   // From here on nothing may fail: the tables that were there are gone. Without memory for the notes there are none.
   static_cast<void>(within_memory("notes", [&]() -> Result<void> {
@@ -190,7 +190,7 @@ Result<Scene::Pending> Scene::plan(const SceneParams& scene, const Params& param
   }
   out.other_meshes = other_ground || !same_meshes(scene.meshes, scene_.meshes);
   if (out.other_meshes) {
-    // Meshes stand on the ground: the planned one is in place while they are made.
+    // Meshes are placed on the ground, so the planned terrain is installed while they are created.
     struct InPlace {
       Terrain& terrain;
       std::optional<Terrain::Planned>& planned;
@@ -228,7 +228,7 @@ Result<Scene::Pending> Scene::plan(const SceneParams& scene, const Params& param
   return out;
 }
 
-// Exchanges what is there and what is planned: a second call takes it back.
+// Exchanges the current state and the planned one; a second call undoes the first.
 void Scene::swap(Pending& pending) noexcept {
   std::swap(scene_, pending.scene);
   std::swap(params_, pending.params);
@@ -253,7 +253,7 @@ Result<void> Scene::change(const SceneParams& scene, const Params& params, std::
   const EffectDesc effect_before = effect_->desc();
   const Params params_before = effect_->params();
   if (pending.other_effect) TYNDALL_TRY(effect_->set_params(pending.params, pending.effect));
-  // Making the tables can fail as well, by an error or an exception. They need the effect as it is to be.
+  // Making the tables can fail as well, by an error or an exception, and it needs the effect with the new parameters.
   struct Exchanged {
     Scene& scene;
     Pending& pending;

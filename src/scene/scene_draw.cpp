@@ -138,7 +138,7 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
     air_drawn = model_->attachments();
     for (const gpu::Image& image : air_drawn) {
       gpu::transition(device, cmd, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-      // Read is only where ground has been drawn.
+      // Only texels where ground has been drawn are read.
       colors.push_back(
           attachment(image.view.get(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_ATTACHMENT_LOAD_OP_DONT_CARE, {}));
     }
@@ -149,7 +149,7 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
       attachment(color_.view.get(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_ATTACHMENT_LOAD_OP_LOAD, {});
   const VkRenderingAttachmentInfo on_depth =
       attachment(depth_.view.get(), VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_ATTACHMENT_LOAD_OP_LOAD, {});
-  // Times are taken between renderings, because their barriers may not stand inside one.
+  // Timestamps are written between rendering scopes, because their barriers are not allowed inside one.
   begin_pass(cmd, "terrain");
   begin_rendering(device, cmd, desc_.extent, colors, &depth);
   if (model_ != nullptr) {

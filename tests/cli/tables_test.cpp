@@ -329,7 +329,7 @@ TEST_F(CliTableCache, DamageIsSaidInOneLineAndRepaired) {
   for (const auto& [contents, why] : {std::pair(bytes, "damaged"), std::pair(bytes.substr(0, 100000), "truncated")}) {
     scratch_.write(name, contents);
     EXPECT_EQ(sky()["from"], "build");
-    EXPECT_EQ(err_, "tyndall: note: the cached file " + scratch_.at(name) + " is " + why + " and is made anew\n");
+    EXPECT_EQ(err_, "tyndall: note: the cached file " + scratch_.at(name) + " is " + why + " and is rebuilt\n");
     EXPECT_EQ(contents_of(scratch_.at("sky.exr")), good);
   }
   EXPECT_EQ(sky()["from"], "cache");

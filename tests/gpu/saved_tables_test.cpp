@@ -186,7 +186,7 @@ TEST_F(CachedTablesTest, AreBuiltOnceAndFoundAfterwards) {
   EXPECT_EQ(calls, 0U);
   EXPECT_EQ(bytes_, built);
 
-  // What the tables do not depend on changes nothing; what they do is made anew.
+  // What the tables do not depend on changes nothing; what they do is rebuilt.
   Params params = quick_tables();
   params.scattering.scale = 2.0F;
   EXPECT_EQ(ready(params).origin, tables::Origin::cache);
@@ -247,7 +247,7 @@ TEST_F(CachedTablesTest, WhatIsWrongOnDiskIsSaidOnceAndMadeAnew) {
     const tables::Outcome outcome = ready();
     EXPECT_EQ(outcome.origin, tables::Origin::build);
     ASSERT_EQ(outcome.notes.size(), 1U) << why;
-    EXPECT_EQ(outcome.notes[0], "the cached file " + file.string() + " is " + why + " and is made anew");
+    EXPECT_EQ(outcome.notes[0], "the cached file " + file.string() + " is " + why + " and is rebuilt");
     EXPECT_EQ(bytes_, built);
   };
   expect_anew(good.substr(0, good.size() / 2), "truncated");

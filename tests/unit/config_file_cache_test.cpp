@@ -83,7 +83,7 @@ TEST_F(ConfigFileCache, WhatIsNotWholeIsRefusedInOneLine) {
     return cache.note();
   };
   const auto says = [&](const std::string& why) {
-    return "the cached file " + file + " is " + why + " and is made anew";
+    return "the cached file " + file + " is " + why + " and is rebuilt";
   };
   for (const std::size_t length : {0U, 1U, 47U, 48U, 60U, 1000U})
     EXPECT_EQ(note(good.substr(0, length)), says("truncated"));

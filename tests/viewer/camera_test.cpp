@@ -86,9 +86,9 @@ TEST(ViewerCamera, ClimbsFromTheGroundToOrbitWithoutAJump) {
 
 TEST(ViewerCamera, StaysAboveTheGroundAndBelowTheSky) {
   const CameraState low = above_ground(camera_at(100.0), 1500.0, kRadius_m);
-  EXPECT_NEAR(scene::altitude_of(low.position, kRadius_m), 1500.0 + kLeastHeight_m, 1.0e-3);
+  EXPECT_NEAR(scene::altitude_of(low.position, kRadius_m), 1500.0 + kMinHeight_m, 1.0e-3);
   const CameraState high = above_ground(camera_at(1.0e9), 0.0, kRadius_m);
-  EXPECT_NEAR(scene::altitude_of(high.position, kRadius_m), kHighest_m, 1.0);
+  EXPECT_NEAR(scene::altitude_of(high.position, kRadius_m), kMaxAltitude_m, 1.0);
   const CameraState free = camera_at(3000.0);
   EXPECT_EQ(above_ground(free, 1500.0, kRadius_m).position, free.position);
 }
@@ -99,8 +99,8 @@ TEST(ViewerCamera, LooksWhereTheDragPullsIt) {
   EXPECT_NEAR(right.yaw_deg, 10.0 - 100.0 * 45.0 / 500.0, 1.0e-9);
   EXPECT_EQ(right.pitch_deg, 0.0);
   EXPECT_NEAR(turned(camera, 0.0, 50.0, 500.0).pitch_deg, 4.5, 1.0e-9);
-  EXPECT_EQ(turned(camera, 0.0, 1.0e6, 500.0).pitch_deg, kSteepest_deg);
-  EXPECT_EQ(turned(camera, 0.0, -1.0e6, 500.0).pitch_deg, -kSteepest_deg);
+  EXPECT_EQ(turned(camera, 0.0, 1.0e6, 500.0).pitch_deg, kMaxPitch_deg);
+  EXPECT_EQ(turned(camera, 0.0, -1.0e6, 500.0).pitch_deg, -kMaxPitch_deg);
   EXPECT_GE(turned(camera, 1000.0, 0.0, 500.0).yaw_deg, 0.0);
   EXPECT_LT(zoomed(camera, 3.0).fov_deg, 45.0);
   EXPECT_EQ(zoomed(camera, 1000.0).fov_deg, kFovRange_deg[0]);

@@ -29,7 +29,7 @@ TEST(Window, SleepsWhenNothingChanges) {
   NEEDS_A_DESK();
   Desk desk("rest");
   ASSERT_TRUE(desk.open(joined(kSmall, kSmallTables))) << desk.errors();
-  // Every pipeline made, the eye adapted, the tables kept; then no step of the loop any more.
+  // Every pipeline made, the eye adapted, the tables stored; then no step of the loop any more.
   ASSERT_TRUE(desk.wait_for({"pipelines"}));
   ASSERT_TRUE(desk.wait_for({"resting"}));
   std::this_thread::sleep_for(std::chrono::seconds(1));
@@ -52,7 +52,7 @@ TEST(Window, CachesTablesOnceParametersAreStable) {
   ASSERT_TRUE(desk.open(
       joined(joined({"--size", "640x360", "--no-first-steps"}, kSmallTables), {"--set", "tables.cache=" + cache})))
       << desk.errors();
-  ASSERT_TRUE(desk.wait_for({"tables kept"}));
+  ASSERT_TRUE(desk.wait_for({"tables stored"}));
   const std::size_t first = files_in(cache);
   EXPECT_GE(first, 1U);
 
@@ -64,7 +64,7 @@ TEST(Window, CachesTablesOnceParametersAreStable) {
   from = desk.lines();
   ASSERT_TRUE(pull(desk, "atmosphere.aerosol_density", {0.4}));
   ASSERT_TRUE(desk.wait_for({"set atmosphere.aerosol_density"}, from));
-  const std::optional<std::string> kept = desk.wait_for({"tables kept"}, from);
+  const std::optional<std::string> kept = desk.wait_for({"tables stored"}, from);
   ASSERT_TRUE(kept);
   // From the last time that tables were finished.
   double finished_s = 0.0;

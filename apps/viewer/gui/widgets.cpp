@@ -29,7 +29,7 @@ T* at(const Row& row, Settings& settings) {
 
 int component_count(const Row& row) { return static_cast<int>(config::component_count(row.info.type)); }
 
-// Ranges over several powers of ten are walked evenly in powers.
+// Returns whether the range spans several powers of ten, so that the slider is logarithmic.
 bool is_wide(const Row& row) { return row.info.max - row.info.min > 500.0 && row.info.min >= 0.0; }
 
 bool is_boundless(const Row& row) { return row.info.max > 1.0e6; }
@@ -45,7 +45,7 @@ const char* float_format(const Row& row, float value) {
 bool edit_float(const Row& row, const char* id, float* values, int count) {
   const auto min = static_cast<float>(row.info.min);
   const auto max = static_cast<float>(row.info.max);
-  // Coefficients and places: no slider is fine enough, so a drag moves by a part of the value.
+  // For coefficients and positions no slider is fine enough: a drag changes them by a fraction of the value.
   const bool tiny = count == 3 && row.info.max <= 1.0;
   if (is_boundless(row) || tiny) {
     float largest = 0.0F;
@@ -59,7 +59,7 @@ bool edit_float(const Row& row, const char* id, float* values, int count) {
                               count > 1 ? "%.3g" : float_format(row, values[0]), flags);
 }
 
-// Places in double precision: metres count however far from the origin they stand.
+// Positions are edited in double precision, so that metres count at any distance from the origin.
 bool edit_place(const Row& row, const char* id, double* values) {
   double largest = 0.0;
   for (int i = 0; i < 3; ++i) largest = std::max(largest, std::abs(values[i]));
@@ -67,13 +67,13 @@ bool edit_place(const Row& row, const char* id, double* values) {
   return ImGui::DragScalarN(id, ImGuiDataType_Double, values, 3, speed, &row.info.min, &row.info.max, "%.8g", kSlider);
 }
 
-// `place` says where the choices are.
+// `place` records the places of the choices.
 bool edit_whole(const Row& row, const char* id, std::uint32_t* values, int count,
                 const std::function<void(std::uint32_t)>& place) {
   const auto min = static_cast<std::uint32_t>(row.info.min);
   const auto max = static_cast<std::uint32_t>(row.info.max);
   if (row.info.group == "shadows" && row.info.name == "resolution") {
-    // As the demo of Yusov (2013) has it; other sizes through scene files.
+    // The sizes of the demo of Yusov (2013); scene files allow others.
     bool changed = false;
     if (ImGui::BeginCombo(id, std::to_string(*values).c_str())) {
       for (std::uint32_t size = 512; size <= 4096; size *= 2) {
@@ -130,7 +130,7 @@ void show_tooltip(const std::string& text) {
 
 }  // namespace
 
-// A word by itself says too little among controls of other groups: "Sun elevation".
+// A single word would be ambiguous among the controls of other groups, so the group's name is added: "Sun elevation".
 std::string label_of(const Row& row, bool with_group) {
   std::string text(row.info.name);
   for (const std::string_view unit : {"_m", "_deg", "_nm", "_mib"}) {
@@ -146,7 +146,7 @@ std::string tooltip_of(const Row& row) {
   static const Settings kDefaults;
   std::string text = files::concat({row.info.doc, "\n\n", row.key(), ": ", config::allowed_text(row)});
   text += "\nDefault " + config::value_text(row, kDefaults) + ". Right click resets.";
-  if (row.info.affects == Affects::Tables) text += "\nThe scattering tables are built anew, which takes a while.";
+  if (row.info.affects == Affects::Tables) text += "\nA change rebuilds the scattering tables, which takes a while.";
   return text;
 }
 
@@ -179,7 +179,7 @@ void Widgets::place(std::string name) {
   if (ImGui::IsItemVisible()) places_.push_back({std::move(name), min.x, min.y, max.x - min.x, max.y - min.y});
 }
 
-// KEY.0 and so on: they share the width.
+// Records the places KEY.0, KEY.1 and so on of the components, which divide the width evenly.
 void Widgets::place_components(const Row& row, const std::string& key, float width) {
   const int count = component_count(row);
   if (count == 1 || !ImGui::IsItemVisible()) return;
@@ -203,7 +203,7 @@ bool Widgets::edit(const Row& row, Settings& settings) {
   ImGui::PushID(key.c_str());
   bool changed = false;
   const std::string label = label_of(row, with_group);
-  // The label stands to the right, as wide as it needs; the widget takes the rest.
+  // The label is on the right and takes the space that it needs; the widget takes the rest.
   const float width = ImGui::GetContentRegionAvail().x * 0.52F;
   if (row.info.type != ParamType::flag) ImGui::SetNextItemWidth(width);
   const char* const id = label.c_str();

@@ -1,4 +1,4 @@
-// One widget for one parameter, made from its row in the table: kind, range, unit, choices and meaning.
+// Widgets for parameters, made from their rows in the table: kind, range, unit, choices and meaning.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace tyndall::viewer {
 
-// Where something that can be clicked stands in the window [px]: for tests that use the real mouse.
+// The rectangle of something that can be clicked, in window coordinates [px]: for tests that use a real pointer.
 struct Place {
   std::string name;
   float x = 0.0F, y = 0.0F, width = 0.0F, height = 0.0F;
@@ -17,19 +17,19 @@ struct Place {
 
 class Widgets {
  public:
-  bool with_group = true;  // in the labels, where they are one word
+  bool with_group = true;  // add the group's name to labels of one word
 
-  // The values before the edit; forget the places of the last frame.
+  // Forgets the places of the last frame.
   void begin_frame();
-  // Draws the widget of a parameter and changes `settings`. True when it did.
+  // Draws the widget of a parameter. Returns whether the user has changed `settings` with it.
   bool edit(const config::Row& row, config::Settings& settings);
   bool edit(std::string_view key, config::Settings& settings);
-  // Three coefficients as a colour, full brightness being `scale` [1/m].
+  // Draws three coefficients as a colour; `scale` [1/m] is shown at full brightness.
   bool edit_color(std::string_view key, config::Settings& settings, float scale);
-  // Remembers where the last item of ImGui stands.
+  // Records the place of ImGui's last item.
   void place(std::string name);
   [[nodiscard]] const std::vector<Place>& places() const { return places_; }
-  // Whether a widget is held: what is dear to follow can wait until it is let go.
+  // Returns whether a widget is being dragged: expensive changes can wait until it is released.
   [[nodiscard]] bool dragging() const { return dragging_; }
 
  private:
@@ -39,12 +39,12 @@ class Widgets {
   bool dragging_ = false;
 };
 
-// "Refinement threshold", from refinement_threshold; the unit is left to the format.
+// Returns the label of a parameter, such as "Refinement threshold" for refinement_threshold, without its unit.
 [[nodiscard]] std::string label_of(const config::Row& row, bool with_group);
-// Meaning, key, what is allowed and in which unit, the default.
+// Returns the tooltip: meaning, key, allowed values with their unit, and default.
 [[nodiscard]] std::string tooltip_of(const config::Row& row);
-// Sets a parameter to an end of its range: numbers to their least or largest value, choices to the first or last.
-// Nothing for text.
+// Sets a parameter to an end of its range: numbers to their smallest or largest value, choices to the first or last.
+// Does nothing for text.
 void set_to_end(const config::Row& row, config::Settings& settings, bool largest);
 
 }  // namespace tyndall::viewer

@@ -1,5 +1,5 @@
-// What X11 ends programs for by itself: a connection that breaks off, and requests for a window that somebody else has
-// destroyed. Elsewhere there is nothing to do, and the surface tells.
+// Handles the events for which Xlib would end the program: a lost connection to the X server, and requests for a window
+// that another program has destroyed. Other platforms report such losses through the surface.
 #pragma once
 
 #include <functional>
@@ -8,11 +8,11 @@ struct GLFWwindow;
 
 namespace tyndall::viewer {
 
-// `last_words` are spoken when the connection is gone; the program ends with status 1 after them. After glfwInit().
-void on_display_loss(std::function<void()> last_words);
-// Listens for the end of this window.
+// Sets what is called when the connection is lost; the program then exits with status 1. Call it after glfwInit().
+void on_display_loss(std::function<void()> handler);
+// Watches for the destruction of this window.
 void watch_window(GLFWwindow* window);
-// Whether the window that is watched is gone.
+// Returns whether the watched window has been destroyed.
 [[nodiscard]] bool window_is_gone();
 
 }  // namespace tyndall::viewer

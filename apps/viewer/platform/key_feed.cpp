@@ -10,7 +10,7 @@ namespace {
 
 bool modifies(int key) { return key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER; }
 
-// Keys that write a character do nothing else, but for those held together with Ctrl.
+// Returns whether the key only writes a character; together with Ctrl it may do something else.
 bool writes(const KeyEvent& event) { return event.key < GLFW_KEY_ESCAPE && (event.mods & GLFW_MOD_CONTROL) == 0; }
 
 }  // namespace
@@ -18,7 +18,7 @@ bool writes(const KeyEvent& event) { return event.key < GLFW_KEY_ESCAPE && (even
 std::vector<KeyEvent> KeyFeed::take() {
   using Kind = KeyEvent::Kind;
   std::vector<KeyEvent> out;
-  bool edited = false;  // there is a key or a click that decides where what follows goes
+  bool edited = false;  // a key or a click decides where the following text goes
   for (; !waiting_.empty(); waiting_.pop_front()) {
     const KeyEvent& event = waiting_.front();
     if (event.kind == Kind::character && edited) break;

@@ -1,7 +1,7 @@
-// Keys and clicks for the GUI, a frame's worth at a time. A frame on a slow device takes as long as some people need
-// for several keys, and ImGui sees of a key only whether it is down when a frame begins: what is pressed and let go in
-// between would be lost, and text after a Tab would land in the field before it. What must not be seen in one frame
-// waits for the next.
+// A queue of keys and clicks, which passes them to the GUI in portions that fit one frame. A frame on a slow device may
+// last as long as several key presses, and ImGui sees only whether a key is down when a frame begins: a key that is
+// pressed and released within a frame would be lost, and text after a Tab would go to the previous field. Events that
+// must not share a frame wait for the next one.
 #pragma once
 
 #include <deque>
@@ -12,7 +12,7 @@ namespace tyndall::viewer {
 struct KeyEvent {
   enum class Kind { key, character, button };
   Kind kind = Kind::key;
-  int key = 0, scancode = 0, action = 0, mods = 0;  // as GLFW has them; of a button its number in `key`
+  int key = 0, scancode = 0, action = 0, mods = 0;  // as in GLFW; for a button, `key` is its number
   unsigned character = 0;                           // UTF-32
   double x = 0.0, y = 0.0;                          // of the pointer [px], for a button
 };
@@ -20,7 +20,7 @@ struct KeyEvent {
 class KeyFeed {
  public:
   void add(const KeyEvent& event) { waiting_.push_back(event); }
-  // Those for the next frame, in their order.
+  // Removes and returns the events for the next frame, in order.
   [[nodiscard]] std::vector<KeyEvent> take();
   [[nodiscard]] bool empty() const { return waiting_.empty(); }
 

@@ -1,4 +1,4 @@
-// The window's surface as a target for frames: swapchain, one frame at a time, and the GUI drawn last.
+// The swapchain of the window. One frame is in flight at a time; the GUI is drawn last.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -11,10 +11,10 @@
 
 namespace tyndall::viewer {
 
-// What drawing a frame came to.
+// The result of drawing a frame.
 enum class Drawn {
   done,
-  not_now,       // the window has no area, or its surface changed under our hands: try again
+  not_now,       // the window has no area, or its surface has just changed: try again
   surface_lost,  // recover() makes a new surface
 };
 
@@ -31,7 +31,8 @@ class Swapchain {
   void set_vsync(bool on);
   [[nodiscard]] bool vsync() const { return vsync_; }
 
-  // Draws what `picture` records inside a rendering scope over the whole window, and ImGui's draw data on top.
+  // Calls `picture` to record into a rendering scope over the whole window, draws ImGui's draw data on top, and
+  // presents.
   Result<Drawn> draw(const std::function<Result<void>(VkCommandBuffer, VkExtent2D)>& picture);
 
   [[nodiscard]] VkFormat format() const { return format_.format; }
@@ -59,7 +60,7 @@ class Swapchain {
   gpu::Host* host_ = nullptr;
   Window* window_ = nullptr;
   bool vsync_ = true;
-  bool stale_ = true;  // the swapchain is to be made anew
+  bool stale_ = true;  // the swapchain has to be recreated
   bool gui_ = false;
   VkSurfaceKHR surface_ = VK_NULL_HANDLE;
   VkSurfaceFormatKHR format_ = {};

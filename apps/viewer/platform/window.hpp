@@ -1,4 +1,4 @@
-// The window, through GLFW: what has happened since the last frame, and what the surface of Vulkan needs.
+// The window, through GLFW: the input events since the last frame, and the Vulkan surface.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -16,13 +16,13 @@ namespace tyndall::viewer {
 
 enum class Button { left, right };
 
-// One thing that the hands did, in its order.
+// An input event.
 struct Event {
   enum class Kind { key, press, release, move, wheel };
   Kind kind = Kind::key;
   int key = 0;  // GLFW_KEY_..., pressed
   Button button = Button::left;
-  double x = 0.0, y = 0.0;  // pointer [px]; of a wheel the notches in y
+  double x = 0.0, y = 0.0;  // pointer [px]; for a wheel, y is the number of notches
 };
 
 class Window {
@@ -32,7 +32,7 @@ class Window {
   Window& operator=(const Window&) = delete;
   ~Window();
 
-  // An error says that there is no display, and what to do instead.
+  // Initialises and terminates GLFW. The error of a missing display says what to do instead.
   static Result<void> start();
   static void stop();
   // Adds what presenting to a window needs to the description of a device.
@@ -41,19 +41,19 @@ class Window {
   Result<void> open(std::uint32_t width, std::uint32_t height, const char* title);
   Result<VkSurfaceKHR> create_surface(VkInstance instance);
 
-  // Connects ImGui's context with the window; before each of its frames begin_gui() brings it what the hands did.
+  // Connects ImGui's context with the window. begin_gui() passes the input to it; call it before each of its frames.
   void start_gui();
   void begin_gui();
 
-  // Waits for events at most `seconds` (negative: for ever; 0: not at all).
+  // Waits for events for at most `seconds` (negative: without limit; 0: not at all).
   void wait(double seconds);
   // Wakes wait(), from any thread.
   static void wake();
-  // The events since the last call.
+  // Returns the events since the last call.
   [[nodiscard]] std::vector<Event> take_events();
-  // Whether something has happened since the last call: events, another size, an exposed window.
+  // Returns whether something has happened since the last call: an event, a change of size, an exposed window.
   [[nodiscard]] bool take_activity();
-  // Whether a key is down, or was for a moment since the last forget_keys().
+  // Returns whether a key is down, or was pressed since the last forget_keys().
   [[nodiscard]] bool held(int key) const;
   void forget_keys() { touched_.clear(); }
 

@@ -13,19 +13,19 @@ struct Row {
   const char* meaning;
 };
 constexpr Row kRows[kShownCount] = {
-    {"Picture", "What is seen, tone mapped."},
-    {"Radiance", "What is seen, before exposure and tone mapping; times the gain."},
-    {"Scene without air", "The ground and the sun's disc before the air is drawn; times the gain."},
-    {"Depth", "Distance from the camera, near dark and far bright, logarithmic. Blue: nothing drawn."},
-    {"Shadow map", "Depth from the sun in one cascade; the gain stretches the depths about their middle."},
+    {"Picture", "The final picture, tone mapped."},
+    {"Radiance", "The radiance before exposure and tone mapping, times the gain."},
+    {"Scene without atmosphere", "The terrain and the sun's disc before the atmosphere is applied, times the gain."},
+    {"Depth", "Distance from the camera on a logarithmic scale, dark is near. Blue: nothing was drawn."},
+    {"Shadow map", "Depth in one shadow cascade; the gain stretches the depths around their middle."},
     {"Table: single Rayleigh",
-     "Light scattered once by air. Across: altitude; up: view zenith; slice: sun and azimuth."},
+     "Light scattered once by molecules. Across: altitude; up: view zenith; slice: sun and azimuth."},
     {"Table: single Mie",
      "Light scattered once by aerosol. Across: altitude; up: view zenith; slice: sun and azimuth."},
     {"Table: higher orders",
      "Light scattered more than once. Across: altitude; up: view zenith; slice: sun and azimuth."},
-    {"Table: sunlight", "What the air leaves of the sun's light. Across: altitude; up: sun zenith."},
-    {"Table: light of the sky", "Irradiance from the open sky. Across: altitude; up: sun zenith."},
+    {"Table: sun transmittance", "Transmittance towards the sun. Across: altitude; up: sun zenith."},
+    {"Table: sky irradiance", "Irradiance from an unobstructed sky. Across: altitude; up: sun zenith."},
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What is shown of one scene: its picture, or one of the images and tables that it was made from, drawn over a canvas
-// of the window's size. Works on the scene's device, on the thread that works on the scene.
+// Draws what is shown of one scene, its picture or one of the images and tables that it is made from, into a canvas of
+// the window's size. Runs on the scene's device and on the scene's thread.
 #pragma once
 
 #include <cstddef>
@@ -30,7 +30,7 @@ constexpr int kShownCount = 10;
 [[nodiscard]] const char* name_of(Shown shown);
 [[nodiscard]] const char* meaning_of(Shown shown);
 
-// What a canvas depends on besides the scene.
+// The inputs of a canvas besides the scene.
 struct View {
   Shown shown = Shown::picture;
   int layer = 0;         // of the shadow maps
@@ -40,7 +40,8 @@ struct View {
 };
 [[nodiscard]] bool same_view(const View& a, const View& b);
 
-// A finished canvas: linear, 0 to 1 or radiance. On the window's device, or as texels (RGBA32F) to be taken there.
+// A finished canvas: linear values from 0 to 1, or radiance. It is an image on the window's device, or texels (RGBA32F)
+// to be uploaded there.
 struct Picture {
   VkExtent2D extent = {0, 0};
   std::shared_ptr<const gpu::Image> image;  // in SHADER_READ_ONLY_OPTIMAL
@@ -50,7 +51,7 @@ constexpr VkFormat kCanvasFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
 
 class Canvas {
  public:
-  // `to_host`: as texels.
+  // Creates the pipelines. `to_host`: return canvases as texels.
   Result<void> create(gpu::Host& host, bool to_host);
   Result<Picture> draw(scene::Scene& scene, const View& view);
 
@@ -66,7 +67,7 @@ class Canvas {
   gpu::Handle<VkSampler> nearest_, linear_;
 };
 
-// A sampler for RGBA32F: linear where the device filters it.
+// Creates a sampler for RGBA32F, which filters linearly if the device can.
 Result<gpu::Handle<VkSampler>> create_float_sampler(const gpu::Device& device);
 
 }  // namespace tyndall::viewer

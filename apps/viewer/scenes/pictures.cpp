@@ -13,7 +13,7 @@ View view_of(const PictureOptions& options, VkExtent2D window) {
   View view;
   view.extent = window;
   view.shown = options.shown;
-  // Only what is shown depends on: other values would have it drawn anew for nothing.
+  // Contains only what the shown view depends on, so that other changes do not cause a redraw.
   if (options.shown == Shown::shadow_map) {
     view.layer = options.layer;
     view.stretch = options.gain;

@@ -1,5 +1,5 @@
-// What the window shows under the GUI: the canvas of a scene, or two of them compared. Works on the window's device, on
-// the GUI's thread; goes on showing the last canvas while the scene is worked on.
+// Draws the canvas of a scene, or a comparison of two, into the window below the GUI. Runs on the window's device and
+// on the GUI's thread; shows the last canvas while the scene is being drawn.
 #pragma once
 
 #include <array>
@@ -12,23 +12,23 @@ struct PictureOptions {
   Shown shown = Shown::picture;
   int layer = 0;         // of the shadow maps
   float slice = 0.5F;    // through a table
-  float gain = 1.0F;     // of everything but the picture
+  float gain = 1.0F;     // of all views but the picture
   bool compare = false;  // with the other scene
   bool difference = false;
   float divider = 0.5F;  // of the window's width
 };
 
-// What the canvases of a window of this size are to show.
+// Returns what the canvases of a window of this size are to show.
 [[nodiscard]] View view_of(const PictureOptions& options, VkExtent2D window);
 
 class Pictures {
  public:
   Result<void> create(gpu::Host& host, VkFormat format);
-  // Takes a canvas, 0: left or only, 1: right.
+  // Sets the canvas of a side. 0: left or only, 1: right.
   Result<void> take(std::size_t side, Picture picture);
   void forget(std::size_t side) { sides_.at(side) = {}; }
   [[nodiscard]] bool has(std::size_t side) const { return sides_.at(side) != nullptr; }
-  // Inside a rendering scope over the window.
+  // Records the drawing into a rendering scope over the window.
   Result<void> record(VkCommandBuffer cmd, VkExtent2D window, bool two, const PictureOptions& options);
 
  private:

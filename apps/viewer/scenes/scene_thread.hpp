@@ -1,6 +1,6 @@
-// A scene and the thread that works on it, one piece of work after the other, so that the GUI never waits for it.
-// Between two pieces the GUI takes what came of the last one and says what it wishes; meanwhile it has facts() and the
-// last picture.
+// Runs the work on a scene on a thread of its own, one piece after the other, so that the GUI never waits for it.
+// Between two pieces the GUI takes the result of the last one and sends the next request; meanwhile it has facts() and
+// the last picture.
 #pragma once
 
 #include <future>
@@ -14,21 +14,21 @@ namespace tyndall::viewer {
 
 class SceneThread {
  public:
-  // Begins to create the scene.
+  // Starts to create the scene.
   void start(gpu::Host& host, const scene::SceneDesc& desc, const SceneRequest& request, bool to_host);
   SceneThread() = default;
   SceneThread(const SceneThread&) = delete;
   SceneThread& operator=(const SceneThread&) = delete;
 
-  // What has been finished, once.
+  // Returns the result of a finished piece, once.
   std::optional<SceneResult> poll();
   [[nodiscard]] bool busy() const { return running_.valid(); }
   [[nodiscard]] bool creating() const { return busy() && !made_; }
-  // Whether a piece of work is due, and whether the last frame is that of the wish; only when not busy.
+  // Return whether a piece of work is due for the request, and whether the last frame shows it. Only when not busy.
   [[nodiscard]] bool wants(const SceneRequest& request) const { return made_ && work_->wants(request); }
   [[nodiscard]] bool shows(const SceneRequest& request) const { return made_ && work_->shows(request); }
   void launch(const SceneRequest& request);
-  // After the last finished piece.
+  // Returns the state after the last finished piece.
   [[nodiscard]] const SceneFacts& facts() const { return facts_; }
 
  private:

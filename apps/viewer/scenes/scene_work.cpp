@@ -12,10 +12,11 @@
 namespace tyndall::viewer {
 namespace {
 
-constexpr std::uint32_t kMostSlices = 64;
-constexpr double kTables_ms = 60.0;  // of one piece of building
+constexpr std::uint32_t kMaxSlices = 64;
+constexpr double kTables_ms = 60.0;  // intended duration of building a piece
 constexpr double kTonePeriod_s = 1.0 / 60.0;
-// Tables are kept when they have stood so long: those that a hand only comes by would fill the cache.
+// Tables are stored only once the parameters have been stable for this long, so that dragging a slider does not fill
+// the cache.
 constexpr double kKeepFirst_s = 1.0;
 constexpr double kKeep_s = 20.0;
 
@@ -51,13 +52,13 @@ SceneResult SceneWork::create(gpu::Host& host, const scene::SceneDesc& desc, con
   desc_.terrain_coarseness = request.coarseness;
   desc_.tables_later = true;
   wanted_ = applied_ = request.settings;
-  applied_.scene.camera.samples = 1;  // there is one picture on the device
+  applied_.scene.camera.samples = 1;  // averages are not supported on the device
   SceneResult out;
   out.settings = wanted_;
   const Result<void> done = [&]() -> Result<void> {
     TYNDALL_TRY(canvas_.create(host, to_host));
     TYNDALL_ASSIGN(scene_, scene::Scene::create(host, desc_, applied_.effect, applied_.scene));
-    // The first step looks into the cache: with tables there, the scene comes with its first frame.
+    // The first step searches the cache: if the tables are there, the first frame is drawn at once.
     if (building()) {
       TYNDALL_TRY(scene_->advance_tables(1));
       unkept_ = building();
@@ -85,7 +86,7 @@ bool SceneWork::tone_stale() const {
   if (tone_wanted_) return true;
   const scene::TonemapParams& params = applied_.scene.tonemap;
   if (!params.auto_exposure || !params.light_adaptation || !drawn_ || stale_) return false;
-  constexpr float kAdapted = 0.005F;  // relative difference that nobody sees
+  constexpr float kAdapted = 0.005F;  // relative difference that is not visible
   const post::Measurement m = scene_->exposure().measurement;
   return m.measured > 0.0F &&
          std::abs(m.luminance - std::max(m.measured, params.least_luminance)) > kAdapted * m.luminance;
@@ -115,8 +116,8 @@ bool SceneWork::wants(const SceneRequest& request) const {
 
 SceneResult SceneWork::run(const SceneRequest& request) {
   SceneResult out;
-  out.asked = request.settings;
-  // First of all, and of the frame that is seen: in flight there is always another one due.
+  out.requested = request.settings;
+  // A capture comes first and is of the frame that is shown; during a flight the next frame is always due.
   if (request.capture && drawn_) {
     if (Result<void> captured = capture(out); !captured) {
       out.error = captured.error();
@@ -145,8 +146,8 @@ SceneResult SceneWork::run(const SceneRequest& request) {
 Result<void> SceneWork::next(const SceneRequest& request, SceneResult& out) {
   if (is_done(keeping_)) {
     const std::string note = keeping_.get();
-    out.tables_kept = note.empty();
-    if (!out.tables_kept) out.notes.push_back(note);
+    out.tables_stored = note.empty();
+    if (!out.tables_stored) out.notes.push_back(note);
   }
   if (building()) TYNDALL_TRY(advance_tables(out));
   if (!ready()) return {};
@@ -169,23 +170,23 @@ Result<void> SceneWork::advance_tables(SceneResult& out) {
   TYNDALL_ASSIGN(const Progress progress, scene_->advance_tables(budget));
   const double took_ms = 1000.0 * seconds_since(start);
   if (took_ms > kTables_ms) budget_ = std::max(budget_ / 2, 1U);
-  if (took_ms < 0.4 * kTables_ms) budget_ = std::min(budget_ * 2, kMostSlices);
+  if (took_ms < 0.4 * kTables_ms) budget_ = std::min(budget_ * 2, kMaxSlices);
   out.tables = true;
   if (!progress.complete()) return {};
-  // More at once than was asked for: they came from the cache.
+  // More slices than the budget: the tables came from the cache.
   if (fresh && progress.total > budget) unkept_ = false;
   out.tables_done = stale_ = true;
   tables_since_ = Clock::now();
   return {};
 }
 
-// Since this scene was drawn last.
+// Returns the time since this scene was last drawn.
 double SceneWork::step_s() {
   const Clock::time_point before = std::exchange(drawn_at_, Clock::now());
   return std::clamp(std::chrono::duration<double>(drawn_at_ - before).count(), 1.0e-3, 1.0);
 }
 
-// The frame drawn last as images.
+// Returns the last drawn frame as images.
 Result<void> SceneWork::capture(SceneResult& out) {
   TYNDALL_ASSIGN(image::Image display, scene_->display());
   TYNDALL_ASSIGN(image::Image radiance, scene_->radiance());
@@ -212,19 +213,19 @@ Result<void> SceneWork::draw(const SceneRequest& request, SceneResult& out) {
   return {};
 }
 
-// Writes on a thread of its own; next() says when it is done.
+// Stores the tables on another thread; next() notices when it is done.
 Result<void> SceneWork::keep_tables() {
   unkept_ = first_tables_ = false;
   TYNDALL_ASSIGN(tables::Keeper keeper, tables::Keeper::fetch(*host_, scene_->effect(), desc_.make_tables.cache));
-  keeping_ = std::async(std::launch::async, [kept = std::move(keeper)]() mutable {
-    std::string note = kept.write();
+  keeping_ = std::async(std::launch::async, [store = std::move(keeper)]() mutable {
+    std::string note = store.write();
     Window::wake();
     return note;
   });
   return {};
 }
 
-// A terrain that has been read.
+// Installs a terrain that has been loaded.
 Result<void> SceneWork::take_terrain() {
   if (!is_done(loading_)) return {};
   Result<scene::ElevationSource> source = loading_.get();
@@ -242,10 +243,10 @@ Result<void> SceneWork::take_terrain() {
   return follow_settings(wanted);
 }
 
-// `settings` with the ground that has been loaded.
+// Returns `settings` with the terrain that is loaded.
 config::Settings SceneWork::loaded(config::Settings settings) const {
   set_terrain_key(key_of(applied_), settings);
-  // Only the effect draws without terrain; another model follows when there is one.
+  // Only the effect draws without terrain; another model is used once there is one.
   if (settings.scene.terrain.source == "none") settings.scene.scattering.model = scene::ScatteringModel::atmosphere;
   settings.scene.camera.samples = 1;
   return settings;

@@ -1,5 +1,5 @@
-// The work on one scene: follows what is wished for, builds tables in slices, draws frames and their canvas. Everything
-// that a scene takes time for is here; scene_thread.hpp runs it on a thread beside the GUI's.
+// The work on one scene: applies requests, builds tables in slices, draws frames and their canvas. It contains
+// everything that takes time; scene_thread.hpp runs it beside the GUI's thread.
 #pragma once
 
 #include <chrono>
@@ -16,25 +16,25 @@
 
 namespace tyndall::viewer {
 
-// What a scene is to be and to show.
+// What a scene is to contain and to show.
 struct SceneRequest {
   config::Settings settings;
   VkExtent2D extent = {};  // of the picture
   int coarseness = 1;      // of the ground
   View view;
   double seconds = 0.0;  // of the scene's own time
-  bool again = false;    // which has gone on
-  bool rest = false;     // the hands do
-  bool capture = false;  // the picture is wanted as an image
+  bool again = false;    // the time has advanced: draw another frame
+  bool rest = false;     // the user is idle
+  bool capture = false;  // return the picture as images
 };
 
-// What a scene says of itself: a copy, for the GUI while the scene is worked on.
+// The state of a scene, as a copy for the GUI while the scene is being worked on.
 struct SceneFacts {
   bool can_render = false, building = false;
-  bool working = false;     // a file is read or written beside
-  bool tone_stale = false;  // the eye still adapts
+  bool working = false;     // a file is being read or written
+  bool tone_stale = false;  // auto exposure has not settled
   Progress tables = {}, pipelines = {};
-  double keep_tables_in_s = -1.0;  // negative: nothing to keep
+  double keep_tables_in_s = -1.0;  // negative: nothing to store
   std::vector<scene::PassTime> timings;
   scene::Scene::Exposure exposure;
   scene::Scene::Memory memory;
@@ -49,19 +49,19 @@ struct Capture {
   config::Settings settings;
 };
 
-// What came of a piece of work.
+// The result of a piece of work.
 struct SceneResult {
   std::optional<Error> error;        // for the user
-  bool over = false;                 // after that the scene does not go on; otherwise with what it had
-  config::Settings settings;         // taken over, or being taken over
-  config::Settings asked;            // of the wish
+  bool over = false;                 // the scene has ended; otherwise it continues with its previous settings
+  config::Settings settings;         // applied, or being applied
+  config::Settings requested;        // of the request
   bool frame = false, tone = false;  // was drawn
-  double frame_ms = 0.0;             // until it was there, waiting for the machine included
+  double frame_ms = 0.0;             // wall time, including the time spent waiting for the processor
   bool tables = false;               // slices were built
-  bool tables_done = false, tables_kept = false, pipelines_done = false;
+  bool tables_done = false, tables_stored = false, pipelines_done = false;
   std::optional<Picture> picture;
   std::optional<Capture> capture;
-  std::vector<std::string> notes;  // remarks that have not been told yet
+  std::vector<std::string> notes;  // remarks that have not been reported yet
 };
 
 class SceneWork {
@@ -71,13 +71,13 @@ class SceneWork {
   SceneWork& operator=(const SceneWork&) = delete;
   ~SceneWork();
 
-  // Creates the scene, and draws it when its tables are in the cache. `to_host`: see Canvas.
+  // Creates the scene, and draws it if its tables are in the cache. `to_host`: see Canvas.
   SceneResult create(gpu::Host& host, const scene::SceneDesc& desc, const SceneRequest& request, bool to_host);
-  // Whether there is something to do for the wish now.
+  // Returns whether there is something to do for the request now.
   [[nodiscard]] bool wants(const SceneRequest& request) const;
-  // Whether the last frame is that of the wish, but for the tables that are still being built and the eye that adapts.
+  // Returns whether the last frame shows the request, apart from tables that are being built and from adaptation.
   [[nodiscard]] bool shows(const SceneRequest& request) const;
-  // The next piece.
+  // Does the next piece of work.
   SceneResult run(const SceneRequest& request);
 
   [[nodiscard]] bool exists() const { return scene_ != nullptr; }
@@ -112,15 +112,15 @@ class SceneWork {
   std::future<Result<scene::ElevationSource>> loading_;
   config::Settings loading_for_;
   std::future<std::string> keeping_;
-  bool unkept_ = false;  // tables that were built and are not in the cache
+  bool unkept_ = false;  // tables were built that are not in the cache
   bool first_tables_ = true;
-  Clock::time_point tables_since_;  // when they were finished
+  Clock::time_point tables_since_;  // when the tables were finished
   bool stale_ = true;
   bool tone_wanted_ = false;
-  bool drawn_ = false;  // there is a frame
+  bool drawn_ = false;  // a frame has been drawn
   Clock::time_point drawn_at_;
   Progress pipelines_ = {};
-  std::uint32_t budget_ = 1;  // slices that took less than the time allowed
+  std::uint32_t budget_ = 1;  // slices of tables for one piece of work
   std::size_t notes_told_ = 0;
 };
 

@@ -34,10 +34,11 @@ bool same_but_for_tone(const config::Settings& a, const config::Settings& b) {
                      [&](const config::Row& row) { return row.info.group == "tonemap" || same_value(row, a, b); });
 }
 
-void go_back(config::Settings& settings, const config::Settings& asked, const config::Settings& had) {
+void go_back(config::Settings& settings, const config::Settings& requested, const config::Settings& current) {
   for (const config::Row& row : config::rows()) {
-    if (same_value(row, asked, had) || !same_value(row, settings, asked)) continue;
-    (void)config::set(settings, row.key(), config::value_text(row, had), row.key());  // it was there before
+    if (same_value(row, requested, current) || !same_value(row, settings, requested)) continue;
+    (void)config::set(settings, row.key(), config::value_text(row, current),
+                      row.key());  // cannot fail: it was set before
   }
 }
 

@@ -1,5 +1,5 @@
-// A flight of the camera with the time of day: keyframes, and the scene's parameters at any time of it. Pure functions,
-// the same for pictures in files and in the window.
+// A camera path with the time of day: keyframes, and the parameters of the scene at any time of the path. Pure
+// functions, used alike for pictures in files and in the window.
 #pragma once
 
 #include <optional>
@@ -11,33 +11,35 @@
 
 namespace tyndall::scene {
 
-// What a keyframe leaves out, the others decide; what all of them leave out is the parameters'.
+// A keyframe. What it leaves out is interpolated between the others; what all of them leave out comes from the
+// parameters.
 struct PathFrame {
   double time_s = 0.0;
   std::optional<DVec3> position_m;
   std::optional<float> altitude_m;  // above sea level, >= 0; replaces that of position_m
   std::optional<float> yaw_deg, pitch_deg, fov_deg;
   std::optional<float> sun_elevation_deg, sun_azimuth_deg;
-  std::string date;  // ISO 8601 with the offset from UTC; places the sun, with CameraPath::place; empty: not given
+  std::string
+      date;  // ISO 8601 with the offset from UTC; with CameraPath::place it gives the sun's position; empty: not given
   std::optional<double> julian_day;  // of `date`
 };
 
 struct CameraPath {
-  std::vector<PathFrame> frames;  // by rising time; none, or two and more
-  bool loop = false;              // the last frame is the first again, and has nothing but its time
-  std::string place_text;         // "LAT,LON"; empty: that of the elevation file, see Scene::place()
+  std::vector<PathFrame> frames;  // in the order of time; none, or at least two
+  bool loop = false;              // the last frame is equal to the first and has only a time
+  std::string place_text;         // "LAT,LON"; empty: the place of the elevation file, see Scene::place()
   Place place;
 
   [[nodiscard]] bool empty() const { return frames.empty(); }
-  [[nodiscard]] bool has_dates() const;     // whether the sun stands by date and place
+  [[nodiscard]] bool has_dates() const;     // whether the sun's position follows from date and place
   [[nodiscard]] double duration_s() const;  // time of the last frame
 };
 
-// `base` with the camera and the sun as they are `seconds` into the path. All of them change continuously with their
-// first derivatives and never overshoot keyframes; yaw and azimuth turn the short way round; places follow the curve of
-// the planet; altitudes are interpolated by asinh(h/1 km), which is linear near the ground and logarithmic far above.
-// Before the first frame and after the last the path stands still, unless it loops. Where the path moves the sun,
-// sun.animate is off.
+// Returns `base` with the camera and the sun as they are `seconds` into the path. All quantities and their first
+// derivatives are continuous and never overshoot the keyframes. Yaw and azimuth turn the shorter way; positions follow
+// the curvature of the planet; altitudes are interpolated in asinh(h/1 km), which is linear near the ground and
+// logarithmic far above it. Before the first frame and after the last the pose is constant, unless the path loops. If
+// the path moves the sun, sun.animate is off.
 [[nodiscard]] SceneParams pose_at(const CameraPath& path, double seconds, const SceneParams& base, double radius_m);
 
 }  // namespace tyndall::scene

@@ -1,4 +1,5 @@
-// Places on the planet. World: planet centre at (0, -radius, 0), y up at the origin. Double precision throughout.
+// Positions on the planet. World: the planet's centre is at (0, -radius, 0), y points up at the origin. Double
+// precision.
 //
 // The map lays the ground on the planet: x east and z south [m] are arc lengths from the origin of the world, azimuthal
 // equidistant. It is true to scale at the origin, stretched by 1.11 at 5000 km, and tears at the antipode. So the

@@ -1,4 +1,3 @@
-// The table of the scene's parameters, made from scene_params.def.
 #include "scene/description/scene_params.hpp"
 
 #include <type_traits>
@@ -8,7 +7,7 @@ namespace {
 
 static_assert(std::is_standard_layout_v<SceneParams>, "the table holds offsets into it");
 
-// An identifier that would be a keyword ends in an underscore, which is not part of the name.
+// Returns the name of a parameter: identifiers that would be keywords end in an underscore, which is not part of it.
 constexpr std::string_view file_name(std::string_view identifier) {
   if (identifier.ends_with('_')) identifier.remove_suffix(1);
   return identifier;

@@ -1,6 +1,6 @@
-// SceneParams: every setting of the demo scene (camera, sun, terrain, shadows, tone mapping), made
-// from the one list in scene_params.def in the same way as tyndall::Params, and the table that
-// describes them. Angles are degrees here, as in files; the scene converts.
+// SceneParams: every setting of the demo scene (camera, sun, terrain, shadows, tone mapping), generated from the list
+// in scene_params.def in the same way as tyndall::Params, and the table that describes them. Angles are in degrees, as
+// in files; the scene converts them.
 #pragma once
 
 #include <cstdint>
@@ -51,8 +51,8 @@ struct SceneParams {
 #include "tyndall/params_undef.h"
 };
 
-// The rows that describe SceneParams, in the order of scene_params.def. Offsets are from the start of
-// SceneParams; a row of type string stands at a std::string.
+// Returns the rows that describe SceneParams, in the order of scene_params.def. Offsets are from the start of
+// SceneParams; at the offset of a row of type string there is a std::string.
 [[nodiscard]] std::span<const ParamInfo> scene_param_table();
 
 }  // namespace tyndall::scene

@@ -21,7 +21,7 @@ bool is_default(const ParamInfo& row, const void* structure, const void* default
   return std::memcmp(a, b, size) == 0;
 }
 
-// "group.name" of all that are not at their defaults.
+// Returns "group.name" for every parameter that does not have its default value.
 std::vector<std::string> changed(const Params& params, const SceneParams& scene) {
   static const Params kParams;
   static const SceneParams kScene;
@@ -46,7 +46,7 @@ bool is_one_of(T value, std::initializer_list<T> list) {
 std::vector<std::string> unused_params(const Params& params, const SceneParams& scene) {
   const std::vector<std::string> set = changed(params, scene);
   std::vector<std::string> out;
-  // `names`: parameters, or groups that end in a point. They do nothing `when`, for the reason `because`.
+  // Reports which of `names` were set although they have no effect: parameters, or groups, which end in a full stop.
   const auto check = [&](bool when, std::initializer_list<std::string_view> names, std::string_view because) {
     if (!when) return;
     std::string list;

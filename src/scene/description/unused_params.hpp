@@ -1,4 +1,4 @@
-// Parameters that were set but do nothing because of what others say.
+// Finds parameters that were set but have no effect because of other parameters.
 #pragma once
 
 #include <string>
@@ -8,8 +8,9 @@
 
 namespace tyndall::scene {
 
-// One line for each reason, as "A and B have no effect with C = D". Only values that differ from their defaults count.
-// What obviously belongs to something that is switched off (epipolar.* with brute force, ...) is not listed.
+// Returns one line for each reason, as "A, B have no effect with C = D". Only values that differ from their defaults
+// count. Parameters that obviously belong to something that is switched off (epipolar.* with brute force) are not
+// listed.
 [[nodiscard]] std::vector<std::string> unused_params(const Params& params, const SceneParams& scene);
 
 }  // namespace tyndall::scene

@@ -308,7 +308,7 @@ Result<ElevationRaster> warp(const std::string& source_name, GDALDataset& source
                                                     request.planet_radius_m, notes);
   if (!projection.ok()) return std::move(projection).error();
   const std::string& wkt = projection.value().wkt;
-  // Extent and spacing that keep the resolution.
+  // The extent and the spacing that preserve the resolution.
   void* transformer = GDALCreateGenImgProjTransformer(GDALDataset::ToHandle(&source), nullptr, nullptr,
                                                       wkt.empty() ? nullptr : wkt.c_str(), FALSE, 0.0, 1);
   std::array<double, 6> suggested = {};

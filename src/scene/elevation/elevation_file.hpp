@@ -1,8 +1,8 @@
-// Elevation files of any format and projection that GDAL reads, as a square-celled raster around the
-// centre of the file, azimuthal equidistant on a sphere, as the terrain's map is. Latitudes and longitudes
-// are carried over from the file's ellipsoid to the sphere as they are.
+// Reads elevation files of any format and projection that GDAL supports into a raster of square cells around the centre
+// of the file, in the azimuthal equidistant projection on a sphere that the terrain uses. Latitudes and longitudes are
+// copied from the file's ellipsoid to the sphere without conversion.
 //
-// What the file leaves out is assumed, and said in `notes`:
+// What the file does not say is assumed, and `notes` report it:
 // - no georeferencing (e.g. a 16-bit PNG): samples 30 m apart, north up, heights in metres;
 // - a geotransform without a coordinate system: as ElevationRequest::units says; automatic takes degrees on WGS 84
 //   if it lies within ±360 and ±90 with samples less than one degree apart and does not begin at 0,0, else metres;
@@ -11,8 +11,8 @@
 // honoured. NaN, infinite and impossible heights (beyond ±20 km) are holes too; holes are filled from
 // their borders. Undeclared samples of -9999 and the like are holes when they lie far from all others. Of several
 // bands the first is read, but colour tiles (Terrarium, Terrain-RGB) are decoded and other colour images refused. Files
-// larger than max_samples on a side are read at a lower resolution. A file of another celestial body keeps its
-// latitudes and longitudes.
+// larger than max_samples on a side are read at a lower resolution. The latitudes and
+// longitudes of a file of another celestial body are used as they are.
 #pragma once
 
 #include <optional>
@@ -28,10 +28,10 @@ namespace tyndall::scene {
 struct ElevationRaster {
   int width = 0, height = 0;   // samples, each at least 2
   double spacing_m = 0.0;      // of samples, both ways
-  std::vector<float> heights;  // m above sea level, row-major, north row first
+  std::vector<float> heights;  // [m] above sea level, row-major, the northernmost row first
   float min_m = 0.0F, max_m = 0.0F;
   std::optional<Place> centre;     // latitude and longitude on the Earth, where the file has a coordinate system
-  std::vector<std::string> notes;  // one line each: what was assumed or changed in reading
+  std::vector<std::string> notes;  // one line each: assumptions and changes
 };
 
 constexpr int kMaxElevationSamples = 8192;
@@ -42,7 +42,7 @@ struct ElevationRequest {
   TerrainUnits units = TerrainUnits::automatic;
 };
 
-// Reads what `source` names: a file, or a name of GDAL's own (/vsizip/..., /vsicurl/..., NETCDF:...).
+// Reads `source`: a file, or one of GDAL's own names (/vsizip/..., /vsicurl/..., NETCDF:...).
 // Errors: no such file, a directory, empty, in no format that is read, truncated, smaller than 2 x 2 samples,
 // complex numbers, nothing but holes, latitudes beyond 90 degrees, extents that no planet has, a picture.
 // Prints nothing. Memory: about 12 bytes per sample of the result.

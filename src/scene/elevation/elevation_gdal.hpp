@@ -19,7 +19,7 @@ struct DatasetCloser {
 };
 using Dataset = std::unique_ptr<GDALDataset, DatasetCloser>;
 
-// Takes GDAL's messages while it lives, on this thread: nothing goes to stderr, the first failure is kept.
+// Captures GDAL's messages on this thread during its lifetime: nothing goes to stderr, and the first failure is stored.
 class Messages {
  public:
   Messages() { CPLPushErrorHandlerEx(&Messages::take, this); }

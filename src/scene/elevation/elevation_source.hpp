@@ -1,8 +1,8 @@
-// The ground's elevation, from procedural mountains or from an elevation file: the CPU's view of what
-// shaders/scene/terrain_heights.comp computes, from the same text, and the data that it needs.
-// Map coordinates: m along the sphere from the origin of the world, azimuthal equidistant, x east, z south. A
-// file's centre is at the origin; around it, over 20 % of its width, it turns into procedural terrain.
-// Immutable after creation, so any thread may read.
+// The elevation of the ground, from procedural mountains or from an elevation file: the CPU side of
+// shaders/scene/terrain_heights.comp, compiled from the same source, and the data that the shader needs. Map
+// coordinates are metres along the sphere from the origin of the world, azimuthal equidistant, x east, z south. The
+// centre of a file is at the origin; around the file it blends into procedural terrain over 20 % of its width.
+// Immutable after creation, so any thread may read it.
 #pragma once
 
 #include <cstdint>
@@ -47,20 +47,20 @@ class ElevationSource {
  public:
   static Result<ElevationSource> create(const ElevationDesc& desc);
 
-  // Elevation of the ground in m, without anything finer than about two of `spacing_m` (at least 1/64 m).
-  // Places are taken to the nearest 1/64 m.
+  // Returns the elevation of the ground [m], without detail finer than about two of `spacing_m` (at least 1/64 m).
+  // Positions are rounded to 1/64 m.
   [[nodiscard]] float height_m(double x_m, double z_m, double spacing_m) const;
   // The same on one of the planet's map projections (src/scene/description/map_projection.hpp): 0 is the map; the
   // others have mountains of their own.
   [[nodiscard]] float height_m(int projection, double x_m, double z_m, double spacing_m) const;
-  // 1 at places of the map inside of the elevation file, 0 outside of it, in between on its border.
+  // Returns the weight of the elevation file: 1 inside of it, 0 outside, in between on its border.
   [[nodiscard]] double file_share(double x_m, double z_m) const;
 
-  // No elevation is outside these, at any spacing.
+  // Bounds of the elevations at every spacing.
   [[nodiscard]] float min_height_m() const { return min_height_m_; }
   [[nodiscard]] float max_height_m() const { return max_height_m_; }
 
-  // Where the origin of the world is on the Earth, by the file; nothing for procedural terrain.
+  // Returns where the origin of the world is on the Earth, if the file says so.
   [[nodiscard]] const std::optional<Place>& place() const { return place_; }
 
   [[nodiscard]] bool from_file() const { return constants_.kind != 0; }

@@ -68,7 +68,7 @@ MeshVertex GltfVertices::at(std::size_t i) const {
   if (!influences.empty()) {
     const glm::dmat4 m = skinned(i);
     p = glm::dvec3(m * glm::dvec4(p, 1.0));
-    // Normals turn with the cofactors, which keep their direction where the matrix is flat.
+    // Normals are transformed by the cofactor matrix, which is correct for singular matrices too.
     const glm::dmat3 c(glm::cross(glm::dvec3(m[1]), glm::dvec3(m[2])), glm::cross(glm::dvec3(m[2]), glm::dvec3(m[0])),
                        glm::cross(glm::dvec3(m[0]), glm::dvec3(m[1])));
     n = c * n;

@@ -1,5 +1,5 @@
-// Meshes on the GPU, beside the terrain or instead of it, and the bare ground where there is no terrain. Drawn into
-// the view, into the shadow cascades and, where light passes through them, into the maps of colours.
+// Meshes on the GPU, in addition to the terrain or without it, and the bare ground where there is no terrain. They are
+// drawn into the view, into the shadow cascades and, if they transmit light, into the maps of shadow colours.
 #pragma once
 
 #include <array>
@@ -15,26 +15,27 @@ namespace tyndall::scene {
 
 class Meshes {
  public:
-  // Loads or makes what `params` names; the meshes stand on `terrain`.
+  // Loads or generates the meshes that `params` names, and places them on `terrain`.
   static Result<std::unique_ptr<Meshes>> create(gpu::Host& host, const MeshParams& params, const Terrain& terrain,
                                                 double radius_m, VkFormat color_format, VkFormat depth_format,
                                                 VkFormat shadow_color_format);
 
   [[nodiscard]] bool any() const { return !data_.instances.empty(); }
-  // Whether light passes through some of them: the maps of colours are wanted.
+  // Returns whether some of them transmit light, so that maps of shadow colours are needed.
   [[nodiscard]] bool has_glass() const { return has_glass_; }
-  // `ground` with the meshes' heights and, without terrain, with them as the only casters.
+  // Returns `ground` with the heights of the meshes and, without terrain, with the meshes as the only casters.
   [[nodiscard]] Ground ground(Ground ground, const glm::dvec3& camera) const;
   [[nodiscard]] const std::vector<std::string>& notes() const { return data_.notes; }
   [[nodiscard]] VkDeviceSize bytes() const;
 
-  // Writes the constants: before the draws are recorded.
+  // Writes the constants. Call it before recording the draws.
   void prepare(const View& view, const LocalFrame& frame, const ShadowParams& shadows,
                const std::vector<CascadeFit>& cascades, const TerrainLight& light, float sky_light);
-  // Inside a rendering scope with colour and depth: first what hides, then, over what lies behind, clear glass.
+  // Record the drawing into a rendering scope with colour and depth: first opaque surfaces, later clear glass over
+  // them.
   Result<void> draw_view(VkCommandBuffer cmd, const View& view, const TerrainLight& light);
   Result<void> draw_clear_glass(VkCommandBuffer cmd, const View& view, const TerrainLight& light);
-  // With a layer of the shadow maps; with a layer of the maps of colours, cleared to one.
+  // Record the drawing into a layer of the shadow maps, and into a layer of the maps of shadow colours, cleared to one.
   Result<void> draw_cascade(VkCommandBuffer cmd, const CascadeFit& cascade);
   Result<void> draw_colors(VkCommandBuffer cmd, const CascadeFit& cascade);
 
@@ -52,14 +53,13 @@ class Meshes {
   double radius_m_ = 0.0;
   bool bare_ground_ = false;
   bool has_glass_ = false;
-  MeshData data_;  // without vertices, indices and texels once they are on the device
-  // East, up and south where the meshes stand, turned by meshes.yaw_deg: instances are placed in this frame, so that
-  // what is rounded is near its origin.
+  MeshData data_;  // vertices, indices and texels are dropped after the upload
+  // East, up and south at the position of the meshes, turned by meshes.yaw_deg. Instances are placed in this frame,
+  // near its origin, so that rounding is small.
   glm::dmat4 world_from_site_ = glm::dmat4(1.0);
   glm::dmat4 site_from_model_ = glm::dmat4(1.0);
   LocalFrame frame_;  // of the view
-  // In the site's frame. Of meshes that are placed once those of their parts, of others those of their instances; mesh
-  // by mesh.
+  // Bounds in the site's frame, mesh by mesh: of the parts of meshes that are placed once, of the instances of others.
   std::vector<Box> boxes_;
   std::array<glm::dvec3, 8> corners_ = {};  // of the bounds, in the world
   double lowest_m_ = 0.0, highest_m_ = 0.0;

@@ -1,4 +1,4 @@
-// What background.frag reads, in std430.
+// The constants that background.frag reads, in std430.
 #pragma once
 
 #include "tyndall/types.hpp"

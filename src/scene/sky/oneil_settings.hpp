@@ -1,4 +1,4 @@
-// O'Neil's model as the scene's parameters ask for it.
+// The settings of O'Neil's model from the parameters of the scene.
 #pragma once
 
 #include "models/oneil.hpp"
@@ -6,7 +6,7 @@
 
 namespace tyndall::scene {
 
-// table: the table in place of the scale function, whichever that is.
+// `table`: use the table of 2004 instead of a scale function.
 [[nodiscard]] inline models::OneilSettings oneil_settings(const OneilParams& params, bool table) {
   models::OneilSettings out;
   out.integral_method =

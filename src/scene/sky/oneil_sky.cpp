@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kSuns = 128;
 constexpr int kSkyNodes = 10;             // of the irradiance of the sky: 200 rays for each sun
-constexpr std::uint32_t kSkySamples = 8;  // on such a ray at most
+constexpr std::uint32_t kSkySamples = 8;  // maximum on such a ray
 
 // model_block of shaders/scene/oneil_air.glsl, in std430.
 struct Block {
@@ -100,7 +100,8 @@ class OneilSky : public SkyModel {
   }
 
  private:
-  // The fit or the table, and the light of the sky: when planet, air or settings are others. No frame is in flight.
+  // Makes the fit or the table and the irradiance of the sky when the planet, the atmosphere or the settings have
+  // changed. No frame may be in flight.
   Result<void> make(const tyndall::shared::Medium& medium, const models::OneilSettings& settings) {
     const bool same =
         table_buffer_.buffer && settings == settings_ && std::memcmp(&medium, &model_.medium, sizeof medium) == 0;
@@ -122,7 +123,7 @@ class OneilSky : public SkyModel {
     return {};
   }
 
-  // What the pipelines are made for; with the printed function points are spaced evenly, whatever is asked for.
+  // The specialisation of a pipeline. With the published function, points are always spaced uniformly.
   struct Variant {
     std::uint32_t integral_method, spacing;
     bool operator==(const Variant&) const = default;

@@ -122,7 +122,7 @@ void SkyModel::fill_mesh(const ModelFrame& frame) {
     const double x = 2.0 * i / kColumns - 1.0;
     out.angles[i] = static_cast<float>(kHalfTurn * x * (0.3 + 0.7 * x * x));
   }
-  // Rows towards the edge of the sky: the horizontal, or, from space, the rim of the air; then to the horizon of
+  // Rows towards the edge of the sky: the horizontal, or, from space, the rim of the atmosphere; then to the horizon of
   // the ground sphere, which lies as far below an eye below sea level as that lies below it. At either stands a pair of
   // rows close together, so that a break there is not smeared over a row, and on neither side of the horizon a vertex
   // in doubt.

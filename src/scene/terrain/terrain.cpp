@@ -35,7 +35,7 @@ std::vector<std::uint32_t> block_indices(int coarseness) {
     for (std::uint32_t x = 0; x < cells; ++x) {
       const std::uint32_t a = z * side + x;
       // The diagonal alternates, so that ridges in either direction are cut alike; even vertices, to
-      // which odd ones slide, keep their diagonals.
+      // which odd ones morph, always have the same diagonals.
       if (((x ^ z) & 1U) == 0) {
         out.insert(out.end(), {a, a + side, a + side + 1, a, a + side + 1, a + 1});
       } else {

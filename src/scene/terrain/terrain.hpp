@@ -29,57 +29,58 @@ struct TerrainLight {
   VkSampler linear = VK_NULL_HANDLE;
 };
 
-// Elevation of the ground [m], as finely as it is drawn, where `up` points from the planet's centre.
+// Returns the elevation of the ground [m], in the finest detail that is drawn, in the direction `up` from the planet's
+// centre.
 [[nodiscard]] double ground_height(const ElevationSource& source, const glm::dvec3& up, double radius_m);
 
 class Terrain {
  public:
-  // With terrain.source = none there is nothing to draw, and the ground is at sea level.
+  // Creates the terrain. With terrain.source = none there is nothing to draw, and the ground is at sea level.
   // `coarseness` as in TerrainLod.
   static Result<std::unique_ptr<Terrain>> create(gpu::Host& host, const TerrainParams& params, double radius_m,
                                                  VkFormat color_format, VkFormat depth_format, int coarseness = 1);
 
-  // Reads or makes what plan_source() takes: may take seconds, and may run on a thread of its own.
+  // Reads or generates the elevations for plan_source(). May take seconds; may run on another thread.
   static Result<ElevationSource> load_source(const gpu::Device& device, const TerrainParams& params, double radius_m);
-  // Elevations on the device, loaded for these parameters and this radius, to take the place of those that are there.
+  // Uploads elevations that were loaded for these parameters and this radius, to replace the current ones.
   struct Planned;
   [[nodiscard]] Result<Planned> plan_source(const TerrainParams& params, double radius_m, ElevationSource source) const;
-  // Puts the planned elevations in place, and those that were there into `planned`: a second call takes it back.
+  // Exchanges the current elevations with the planned ones; a second call undoes the first.
   void swap_source(Planned& planned) noexcept;
   // See TerrainLod.
   Result<void> set_coarseness(int coarseness);
-  // Counts the changes of what is drawn.
+  // Returns a number that increases with every change of what is drawn.
   [[nodiscard]] std::uint64_t version() const { return version_; }
 
-  // Brings the clipmap to the camera: fills the levels that have moved. Synchronous. What is drawn from then on is in
-  // `frame`, the one of the camera's place.
+  // Moves the clipmap to the camera and fills the levels that have changed. Synchronous. From then on everything is
+  // drawn in `frame`, which belongs to the camera's position.
   Result<void> update(const View& view, const LocalFrame& frame);
 
   [[nodiscard]] bool none() const { return params_.source == "none"; }
   [[nodiscard]] Ground ground() const;
-  // Elevation of the ground where `up` points from the planet's centre [m].
+  // Returns the elevation of the ground [m] in the direction `up` from the planet's centre.
   [[nodiscard]] double height_at(const glm::dvec3& up) const;
-  // The elevations themselves, which stay as they are and may be read from any thread.
+  // Returns the elevations, which are immutable and may be read from any thread.
   [[nodiscard]] std::shared_ptr<const ElevationSource> source() const { return none() ? nullptr : source_; }
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
-  // Where the origin of the world is on the Earth, by the elevation file; nothing without one.
+  // Returns where the origin of the world is on the Earth, if an elevation file says so.
   [[nodiscard]] const std::optional<Place>& place() const { return source_->place(); }
   [[nodiscard]] VkDeviceSize bytes() const;
 
-  // Selects the blocks of a frame and writes the constants: before the draws are recorded.
+  // Selects the blocks of a frame and writes the constants. Call it before recording the draws.
   Result<void> prepare(const View& view, std::uint32_t height_px, const ShadowParams& shadows,
                        const std::vector<CascadeFit>& cascades, const TerrainLight& light, TerrainShading shading);
-  // Inside a rendering scope with colour and depth. The colour says which ground is seen, until light_view() has made
-  // radiance of it, outside of the scope and with the image in GENERAL layout.
+  // Records the drawing of the ground into a rendering scope with colour and depth. The colour identifies the point of
+  // the ground; light_view(), outside of the scope and with the image in GENERAL layout, replaces it by radiance.
   Result<void> draw_view(VkCommandBuffer cmd, const View& view);
   Result<void> light_view(VkCommandBuffer cmd, const TerrainLight& light, VkImageView color, VkExtent2D extent);
-  // The same through pipelines of someone else's, over scene/terrain_vertex.glsl and scene/terrain_pixel.glsl; `more`
-  // are the resources that they read beyond the terrain's.
+  // The same with pipelines of the caller's, built on scene/terrain_vertex.glsl and scene/terrain_pixel.glsl. `more`:
+  // the resources that they read besides the terrain's.
   Result<void> draw_view(VkCommandBuffer cmd, const View& view, const gpu::Pipeline& pipeline,
                          std::span<const gpu::NamedResource> more);
   Result<void> light_view(VkCommandBuffer cmd, const TerrainLight& light, VkImageView color, VkExtent2D extent,
                           const gpu::Pipeline& pipeline, std::span<const gpu::NamedResource> more);
-  // Inside a rendering scope with the layer of a shadow map.
+  // Records the drawing into a layer of the shadow map, inside its rendering scope.
   Result<void> draw_cascade(VkCommandBuffer cmd, const CascadeFit& cascade, std::uint32_t index);
 
  private:
@@ -120,7 +121,7 @@ class Terrain {
   gpu::Buffer blocks_;
   gpu::Buffer indices_;
   gpu::Handle<VkSampler> nearest_;
-  std::vector<Range> ranges_;  // the view's, then each cascade's
+  std::vector<Range> ranges_;  // of the view, then of each cascade
   std::vector<TerrainBlock> scratch_;
 };
 

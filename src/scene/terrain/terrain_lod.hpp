@@ -1,8 +1,7 @@
-// Level of detail of the terrain: a clipmap of elevations around the camera, drawn as a quadtree of
-// square blocks whose vertices slide into the next level's grid with distance (Strugar, "Continuous
-// Distance-Dependent Level of Detail for Rendering Heightmaps", 2009), so that no cracks can open.
-// Pure functions on the CPU. Level k has cells of kFinestCell_m * 2^k; grid indices are global, so that
-// blocks of all levels nest and cells never move.
+// Level of detail of the terrain: a clipmap of elevations around the camera, drawn as a quadtree of square blocks. With
+// distance, vertices morph into the grid of the next level, so that there are no cracks (Strugar, "Continuous
+// Distance-Dependent Level of Detail for Rendering Heightmaps", 2009). Pure functions on the CPU. Level k has cells of
+// kFinestCell_m * 2^k. Grid indices are global, so that blocks of all levels nest and cells never move.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +13,7 @@ namespace tyndall::scene {
 
 constexpr double kFinestCell_m = 4.0;
 constexpr int kBlockCells = 64;      // cells along a block's side
-constexpr int kRangeCells = 448;     // a level is drawn out to this many of its cells
+constexpr int kRangeCells = 448;     // a level is drawn to a distance of this many of its cells
 constexpr int kLevelSamples = 1280;  // samples along a side of a level's elevation texture
 constexpr int kMaxLevels = 16;
 
@@ -25,14 +24,14 @@ struct ClipLevel {
 };
 
 struct TerrainLod {
-  // 1, 2 or 4: so many times fewer cells along a block, a level's reach and its texture, for slow devices.
+  // 1, 2 or 4: divides the cells along a block, a level's reach and the size of its texture, for slow devices.
   int coarseness = 1;
   glm::dvec2 camera_map = {};     // coordinates of the camera on the map projection [m]
   double vertical_m = 0.0;        // height of the camera above the highest ground, at least 0
   double reach_m = 0.0;           // how far ground can be seen, on the map projection
   std::vector<ClipLevel> levels;  // from fine to coarse
 
-  // Distance out to which a level is drawn.
+  // Returns the distance up to which a level is drawn.
   [[nodiscard]] double range_m(const ClipLevel& level) const {
     const int cells = kRangeCells / coarseness;
     return cells * level.cell_m;
@@ -41,20 +40,20 @@ struct TerrainLod {
   [[nodiscard]] int level_samples() const { return kLevelSamples / coarseness; }
 };
 
-// A block of block_cells() × block_cells() cells, as shaders read it.
+// A block of block_cells() × block_cells() cells, in the layout that shaders read.
 struct TerrainBlock {
   std::int32_t x = 0, z = 0;  // global grid index of its first vertex
   std::int32_t layer = 0;     // index into TerrainLod::levels
   std::int32_t unused = 0;
 };
 
-// The levels that a camera at these coordinates on a map projection and at this altitude needs, out to the horizon of
-// the highest ground. `min_ground_m`: where ground lies below sea level, the horizon is farther.
+// Plans the levels for a camera at these coordinates on a map projection and at this altitude, up to the horizon of the
+// highest ground. `min_ground_m`: where ground lies below sea level, the horizon is farther away.
 [[nodiscard]] TerrainLod plan_terrain(const glm::dvec2& camera_map, double altitude_m, double max_ground_m,
                                       double radius_m, int coarseness = 1, double min_ground_m = 0.0);
 
-// The blocks to draw; none finer than `finest_layer`. `visible` is asked with a block's bounding square
-// in map coordinates (least and greatest corner).
+// Selects the blocks to draw, none finer than `finest_layer`. `visible` receives a block's bounding square in map
+// coordinates (minimum and maximum corner).
 void select_blocks(const TerrainLod& lod, int finest_layer,
                    const std::function<bool(const glm::dvec2&, const glm::dvec2&)>& visible,
                    std::vector<TerrainBlock>& out);

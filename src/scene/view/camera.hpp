@@ -1,4 +1,4 @@
-// The camera and the sun of the scene: from parameters in degrees to matrices and directions.
+// Turns the parameters of the camera and the sun, in degrees, into matrices and directions.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -18,7 +18,7 @@ struct View {
   glm::dvec3 forward = {0, 0, -1};
   double tan_half_width = 1.0;  // of the field of view
   double tan_half_height = 1.0;
-  glm::dvec2 jitter = {};  // moves the picture by a part of a pixel, in clip space
+  glm::dvec2 jitter = {};  // shifts the picture by a fraction of a pixel, in clip space
 };
 
 // Yaw and pitch are relative to the local horizontal and north of the camera's place on the planet.

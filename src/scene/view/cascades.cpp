@@ -112,7 +112,7 @@ CascadeFit fit_slice(const View& view, const glm::dmat3& world_from_light, doubl
   const Bounds bounds =
       shell_bounds(sphere_centre, sphere_radius, light_from_world, world_from_light[2], ground, caster_reach);
   // Across, what is seen of the shell: both the shell's bounds and the sphere's. Rounded up, the height more
-  // coarsely because it changes with the camera's. A margin of a few texels keeps filters inside.
+  // coarsely because it changes with the camera's. A margin of a few texels is for filters.
   const glm::dvec3 sphere_light = light_from_world * sphere_centre;
   glm::dvec3 low = glm::max(bounds.min, sphere_light - sphere_radius);
   glm::dvec3 high = glm::max(glm::min(bounds.max, sphere_light + sphere_radius), low);
@@ -218,7 +218,7 @@ std::vector<double> split_distances(double near_m, double far_m, std::uint32_t c
 std::vector<CascadeFit> fit_cascades(const View& view, const glm::dvec3& direction_to_sun, const ShadowParams& shadows,
                                      const Ground& ground, double first_near_m) {
   const double altitude = altitude_of(view.position, ground.radius_m);
-  // From high up the ground itself is farther than the distance asked for.
+  // From high altitudes the ground is farther away than the requested distance.
   const double far_m = std::max(static_cast<double>(shadows.distance_m), 2.0 * (altitude - ground.min_m));
   const double near_m = std::clamp(first_near_m, kNearPlane_m, 0.5 * far_m);
   const std::vector<double> ends = split_distances(near_m, far_m, shadows.cascades, shadows.partitioning);

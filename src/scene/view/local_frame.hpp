@@ -1,8 +1,8 @@
-// The frame that a view is drawn in. Floats are fine to centimetres only within a hundred kilometres of their origin,
-// so what goes to the device, the effect included, is relative to a point of the planet's surface below the camera:
-// origin there, y up, planet centre at (0, -radius, 0), as the library's world has it. Everything on the host stays in
-// the world, in double precision. The origin moves in steps, so that what is rounded does not change with every step of
-// the camera; at the origin of the world both frames are the same.
+// The coordinate frame that a view is drawn in. Single precision resolves centimetres only within a hundred kilometres
+// of the origin. Everything on the device, the effect included, is therefore relative to a point on the planet's
+// surface below the camera: the origin is there, y points up and the planet's centre is at (0, -radius, 0), as in the
+// library's world. Everything on the host stays in the world frame, in double precision. The origin moves in steps, so
+// that rounding does not change with every movement of the camera. At the origin of the world both frames are equal.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -12,8 +12,8 @@
 namespace tyndall::scene {
 
 struct LocalFrame {
-  int projection = 0;     // the map projection of the terrain's grid
-  glm::dvec2 map_m = {};  // the origin of the frame in it
+  int projection = 0;     // map projection that the terrain's grid uses
+  glm::dvec2 map_m = {};  // the frame's origin in that projection
   glm::dmat4 world_from_local = glm::dmat4(1.0);
   glm::dmat4 local_from_world = glm::dmat4(1.0);
 
@@ -23,7 +23,7 @@ struct LocalFrame {
   }
 };
 
-// The frame of a camera at a world position.
+// Returns the frame of a camera at a position in the world.
 [[nodiscard]] LocalFrame local_frame(const glm::dvec3& position, double radius_m);
 [[nodiscard]] shared::MapProjections map_projections_of(const LocalFrame& frame, double radius_m);
 
