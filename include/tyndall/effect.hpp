@@ -1,20 +1,21 @@
-// Tyndall records outdoor light scattering into your command buffer: sky, aerial perspective and light
-// shafts, from your colour, depth and shadow cascades, as compute dispatches.
+// Tyndall records outdoor light scattering into your command buffer, as compute dispatches: sky, aerial perspective and
+// light shafts, from your colour, depth and shadow cascades.
 //
-// Conventions: SI units; right-handed world, x east, y up, z south; y = 0 at sea level below the origin,
-// planet centre at (0, -planet.radius_m, 0); matrices are column-major; directions to the sun point
-// TOWARDS it. Radiance is in the caller's unit: that of sun.irradiance, per steradian.
-// Ownership: everything in DeviceInfo and FrameInputs is borrowed. The effect transitions none of the
-// caller's images, allocates nothing while recording, starts no threads and keeps no global state.
-// Threads: one Effect, one thread at a time; different Effects are independent.
-// Errors come back as Result; nothing throws, prints or exits, and no callback of DeviceInfo may throw. A function that
-// returns an error has changed nothing: frames are drawn as before, memory() and the progress of the tables are what
-// they were, and the same call can be repeated.
+// Conventions: SI units. World space is right-handed: x east, y up, z south; y = 0 at sea level below the origin,
+// planet centre at (0, -planet.radius_m, 0). Matrices are column-major. Radiance has the caller's unit: that of
+// Sun::irradiance, per steradian.
+// Ownership: everything in DeviceInfo and FrameInputs is borrowed. The effect never transitions the caller's images,
+// allocates nothing while recording, starts no threads and has no global state.
+// Threads: use an Effect from one thread at a time. Different effects are independent.
+// Errors: functions return a Result. They never throw, print or exit, and the callbacks of DeviceInfo must not throw. A
+// function that returns an error has changed nothing, and the same call can be repeated.
+// Submission: submit the commands of every record function that succeeded, in the order of recording. The effect counts
+// them as done; after dropping them, create it again.
 //
-// A frame:   effect.set_params(params);                       // when they changed
-//            effect.record_precompute(cmd);                   // until progress is complete
-//            ... draw shadow cascades and the opaque scene ...
-//            effect.record(cmd, inputs);                      // output = scene seen through the air
+// A frame:   effect.set_params(params);            // after they have changed
+//            effect.record_precompute(cmd);        // until its progress is complete
+//            ... draw the shadow cascades and the opaque scene ...
+//            effect.record(cmd, inputs);           // output = the scene seen through the atmosphere
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -36,7 +37,7 @@ constexpr std::uint32_t kMaxViews = 8;
 
 enum class Severity : std::uint32_t { info, warning };
 
-// The device that the effect works on, borrowed for the effect's whole life.
+// The Vulkan device, borrowed for the effect's whole life.
 struct DeviceInfo {
   VkInstance instance = VK_NULL_HANDLE;
   VkPhysicalDevice physical_device = VK_NULL_HANDLE;
@@ -44,17 +45,17 @@ struct DeviceInfo {
   PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;
   const VkAllocationCallbacks* allocator = nullptr;
   VkPipelineCache pipeline_cache = VK_NULL_HANDLE;
-  // Plain-language remarks about suspicious inputs; see EffectDesc::check_inputs.
+  // Receives remarks on suspicious inputs; see EffectDesc::check_inputs.
   void (*message)(void* user, Severity severity, std::string_view text) = nullptr;
   void* message_user = nullptr;
-  // For work on the shaders while a program runs: SPIR-V to use in place of the built-in shader of that name, valid
-  // until the pipelines are made, or an empty span. Its bindings must be those of the built-in one. Tables that
-  // other shaders made do not belong under table_key().
+  // For shader development: returns SPIR-V to use in place of the built-in shader of that name, or an empty span. The
+  // code must stay valid until the pipelines are made, and have the same bindings. Do not cache the tables that such
+  // shaders make under table_key().
   std::span<const std::uint32_t> (*replace_shader)(void* user, std::string_view name) = nullptr;
   void* replace_shader_user = nullptr;
 };
 
-// What a device must have been created with: Vulkan 1.3 and these extensions, no optional feature.
+// What a device must be created with: Vulkan 1.3 and these extensions; no optional feature.
 struct Requirements {
   std::uint32_t api_version;
   std::span<const char* const> device_extensions;
@@ -63,97 +64,93 @@ struct Requirements {
 
 enum class OutputFormat : std::uint32_t { rgba16f, rgba32f };
 
-// What is fixed when the effect is created.
+// Settings of an effect. set_limits(), set_shadow_colors() and set_params() change some of them later.
 struct EffectDesc {
-  VkExtent2D max_extent = {1920, 1080};  // [1; 16384] px - largest extent that record() will be given
-  std::uint32_t frames_in_flight = 2;    // [1; 8] - frames recorded before the first has completed
-  // [1; 8] - pictures of one frame: the eyes of a stereo pair, halves of a split screen, a reflection. Each has
-  // constants of its own, so that all may be recorded before any has completed; they share the rest, and commands run
-  // one after the other.
+  VkExtent2D max_extent = {1920, 1080};  // [1; 16384] px - largest FrameInputs::extent
+  std::uint32_t frames_in_flight = 2;    // [1; 8] - frames recorded before the first completes
+  // [1; 8] - pictures of one frame: eyes of a stereo pair, a split screen, a reflection. All may be recorded before any
+  // completes. They share buffers, so their commands run one after the other.
   std::uint32_t views = 1;
   OutputFormat output_format = OutputFormat::rgba16f;
-  float sky_depth = 0.0F;  // 0 or 1 - device depth where nothing was drawn; 0 with reversed Z
-  // Format of FrameInputs::depth, for check_inputs alone: with 16 bits distant ground reads as sky. UNDEFINED: not
-  // stated.
+  float sky_depth = 0.0F;  // 0 or 1 - depth where nothing was drawn; 0 with reversed Z
+  // Format of FrameInputs::depth, used by check_inputs only: with 16 bits, distant ground reads as sky.
   VkFormat depth_format = VK_FORMAT_UNDEFINED;
-  bool shadow_depth_reversed = false;  // shadow maps hold 1 nearest to the sun
-  // With technique = epipolar: cascades that the air is marched through [1; 8], and texels of a shadow map's side
-  // that the trees have room for [1; 16384]; wider maps work, but what is beyond is read texel by texel.
+  bool shadow_depth_reversed = false;  // 1 is nearest to the sun in shadow maps
+  // [1; 8] - cascades marched, and [1; 16384] texels - side of a shadow map that the min/max trees have room for; both
+  // for epipolar sampling. Wider maps work, but the rest of them is read texel by texel.
   std::uint32_t max_cascades = 4;
   std::uint32_t max_shadow_resolution = 1024;
-  bool shadow_colors = false;  // frames may have FrameInputs::shadow_colors: pipelines for these are made as well
+  bool shadow_colors = false;  // frames may have FrameInputs::shadow_colors; needs more pipelines
   bool timings = false;        // measure each pass with timestamps
   bool counters = false;       // count what the passes do; see Effect::counters()
-  // Says through DeviceInfo::message what is suspicious in the inputs of a frame: once, and again only after it was
-  // right.
+  // Reports suspicious inputs of a frame through DeviceInfo::message: once, and again only after they were right.
   bool check_inputs = true;
 };
 
-// Bytes. `persistent` is there for the effect's whole life; `transient` is freed when tables have been built
-// and the frames that were in flight then are done (until it is, a rebuild also keeps the tables that are in
-// use); `host` is host-visible. Equal to what create() allocates.
+// Bytes of device memory, equal to what create() allocates. `persistent` is in use for the effect's whole life.
+// `transient` is freed when the tables are built and the frames then in flight have completed. `host` is host-visible.
+// While tables are rebuilt, `transient` includes the new ones, and the old ones stay in use.
 struct MemoryUsage {
   VkDeviceSize persistent = 0;
   VkDeviceSize transient = 0;
   VkDeviceSize host = 0;
 };
-// Memory that an effect would take, asked before it is created. Allocates nothing.
+// Returns the memory that an effect would use. Allocates nothing.
 [[nodiscard]] Result<MemoryUsage> query_memory(const DeviceInfo& device, const EffectDesc& desc,
                                                const Params& params = {});
 
-// An image of the caller's and the layout that it is in while the effect runs.
+// An image of the caller, and its layout while the effect runs.
 struct Texture {
   VkImageView view = VK_NULL_HANDLE;
   VkImageLayout layout = VK_IMAGE_LAYOUT_GENERAL;  // one in which it can be sampled
-  // [>= 0] px - where the rectangle of FrameInputs::extent begins, for color, depth and output: each may be larger than
-  // the rectangle, and only the rectangle is read or written. Shadow maps are used whole: theirs must be 0.
+  // [>= 0] px - where the rectangle of FrameInputs::extent begins in color, depth and output, which may be larger.
+  // Nothing outside the rectangle is read or written. Must be 0 for shadow maps.
   VkOffset2D offset = {0, 0};
 };
 
 // One orthographic shadow map, a layer of FrameInputs::shadow_maps.
 struct Cascade {
-  Mat4 shadow_from_world;  // affine, to (u, v, depth), each 0 to 1 inside the map; along the sun's direction
-  float near_m = 0.0F;     // [m] - view-space depths that this cascade is meant for
-  float far_m = 0.0F;
+  Mat4 shadow_from_world;  // affine, along the sun's rays, to (u, v, depth), each 0 to 1 inside the map
+  float near_m = 0.0F;     // [m] - depths in the view that the map was drawn for
+  float far_m = 0.0F;      // the cascade is used from the far_m of the one before to its own
 };
 
-// Perspective only. What would draw garbage is an error: a world_from_view that is transposed, scaled or sheared, a
-// projection that is orthographic, looks down +z or contradicts EffectDesc::sky_depth.
+// A perspective camera. Errors: a world_from_view that is transposed, scaled or sheared; a projection that is
+// orthographic, looks down +z, or contradicts EffectDesc::sky_depth.
 struct Camera {
   Mat4 world_from_view;  // rigid; the view looks down -z, x right, y up
-  Mat4 clip_from_view;   // Vulkan clip space, depth 0 to 1; infinite and reversed projections welcome
+  Mat4 clip_from_view;   // to Vulkan clip space, depth 0 to 1; may be infinite, reversed or off-centre
 };
 
 struct Sun {
-  Vec3 direction_to_sun = {0.0F, 1.0F, 0.0F};  // unit length
+  Vec3 direction_to_sun = {0.0F, 1.0F, 0.0F};  // unit length, towards the sun
   Vec3 irradiance = Vec3(10.0F);  // [>= 0] - above the atmosphere, at normal incidence; times scattering.scale
   float angular_radius_rad = 0.004655F;
 };
 
-// What one frame is made from. All images must be visible to compute shaders when the commands execute.
+// The inputs of one frame. All images must be visible to compute shaders when the commands execute.
 struct FrameInputs {
-  VkExtent2D extent = {
-      0, 0};      // [1; max_extent] px - of the picture, a rectangle of color, depth and output from their offsets on
-  Texture color;  // linear radiance of the opaque scene and what is behind the air (disc, stars)
-  Texture depth;  // device depth; sampled as float
-  Texture shadow_maps;  // 2D array of depth images, one layer per cascade; null without cascades
-  // 2D array like shadow_maps, same size and layers: what glass leaves of the sun's light, linear, 1 = clear; with
-  // EffectDesc::shadow_colors. Filtered like the shadow comparison and by itself, so that glass should go on for a
-  // texel under its frame; deeper in shadow its colour does not matter. Null: no colour.
+  VkExtent2D extent = {0, 0};  // [1; max_extent] px - of the picture
+  Texture color;               // linear radiance of the opaque scene and of what is behind the atmosphere (disc, stars)
+  Texture depth;               // device depth; sampled as float
+  Texture shadow_maps;         // 2D array of depth images, one layer per cascade; null without cascades
+  // 2D array of the same size and layers: transmittance of glass towards the sun, linear, 1 = clear; null for none.
+  // Needs EffectDesc::shadow_colors. It is filtered like the shadow comparison, so draw glass one texel wider than its
+  // opening. The colour does not matter where the shadow map is in shadow.
   Texture shadow_colors;
-  // Alpha of shadow_colors is the depth of the glass nearest to the sun, as shadow_maps would have it, in half floats
-  // or better: the air between sun and glass is not coloured. Without, the colour holds along the whole lit path.
+  // Alpha of shadow_colors is the depth of the glass nearest to the sun, in the convention of shadow_maps and at least
+  // in half floats: light is not coloured between sun and glass. Otherwise colour applies along the whole lit path.
   bool shadow_color_depths = false;
   std::uint32_t shadow_resolution = 0;      // texels - width and height of a layer
   std::span<const Cascade> cascades;        // at most kMaxCascades, from near to far
-  std::uint32_t first_marched_cascade = 0;  // the air is marched from this one on; it must start at the camera
+  std::uint32_t first_marched_cascade = 0;  // light shafts start with this one, which must include the camera
   Camera camera;
   Sun sun;
-  Texture output;  // written; its layout must be GENERAL; not the same view as color or depth
-  // Consecutive; selects the in-flight slot. The same index and view again is an error until the commands that were
-  // recorded first have completed: both would be drawn with the second camera.
+  Texture output;  // written, in layout GENERAL; must not be the view of color or depth
+  // Consecutive; selects the slot of constants. An error while the commands recorded with the same index and view have
+  // not completed.
   std::uint64_t frame_index = 0;
-  std::uint32_t view = 0;  // below EffectDesc::views
+  std::uint32_t view = 0;  // [0; EffectDesc::views)
 };
 
 struct Progress {
@@ -168,12 +165,12 @@ struct ResourceMemory {
   VkDeviceSize bytes;
 };
 
-// What the passes of a frame have done.
+// Work done by the passes of a frame.
 struct Counters {
-  std::uint64_t samples_marched = 0;  // rays: epipolar samples, or pixels with brute force
-  std::uint64_t march_steps = 0;      // stretches of rays that were found lit or dark
+  std::uint64_t samples_marched = 0;  // rays marched: epipolar samples, or pixels with brute force
+  std::uint64_t march_steps = 0;      // segments of rays classified as lit or shadowed
   std::uint64_t tree_nodes_visited = 0;
-  std::uint64_t shadow_map_fetches = 0;  // comparisons, of four texels each; without those that build trees
+  std::uint64_t shadow_map_fetches = 0;  // comparisons of four texels, without those that build the trees
   std::uint64_t pixels_corrected = 0;
 };
 
@@ -182,23 +179,22 @@ struct PassTiming {
   double gpu_ms;
 };
 
-// Small tables for shading the opaque scene by the light that the air leaves and sends: RGBA16F images
-// in GENERAL layout, to be sampled linearly and clamped at light_table_uv() of tyndall/light_tables.glsl.
-// Multiply by sun.irradiance * scattering.scale. Valid once record_precompute() is complete; its commands
-// write them in COMPUTE_SHADER / SHADER_WRITE.
+// Look-up tables for shading the opaque scene: RGBA16F images in layout GENERAL, to be sampled linearly and clamped at
+// light_table_uv() of tyndall/light_tables.glsl, times sun.irradiance * scattering.scale. Valid once
+// record_precompute() is complete, whose commands write them in COMPUTE_SHADER / SHADER_WRITE.
 struct LightTables {
-  VkImageView sun_transmittance = VK_NULL_HANDLE;  // of the sun's light to a point, 0 below the horizon
+  VkImageView sun_transmittance = VK_NULL_HANDLE;  // from the sun to a point; 0 below the horizon
   VkImageView sky_irradiance = VK_NULL_HANDLE;     // on a horizontal surface under an open sky
 };
 
-// A scattering table: a 3D image, RGBA16F in GENERAL layout, with tables.size as its extent: altitude, view zenith
-// angle, and sun zenith angle (fast) with the angle between view and sun (slow) along the third axis.
+// A scattering table: an RGBA16F 3D image in layout GENERAL, with tables.size as its extent. Axes: altitude; view
+// zenith angle; sun zenith angle (fast) and the angle between view and sun (slow) along the third.
 struct Table {
   VkImage image = VK_NULL_HANDLE;
   VkImageView view = VK_NULL_HANDLE;
   VkExtent3D extent = {0, 0, 0};
 };
-// What the texels hold is told in shaders/lib/table_values.glsl, where they lie in shaders/lib/table_mapping.glsl.
+// shaders/lib/table_values.glsl defines the texels' values, and shaders/lib/table_mapping.glsl their coordinates.
 struct ScatteringTables {
   Table single_rayleigh;
   Table single_mie;
@@ -207,78 +203,74 @@ struct ScatteringTables {
 
 class Effect {
  public:
-  // Creates all memory, and the pipelines that `params` need. The tables are not built yet: see record_precompute().
+  // Allocates all memory and makes the pipelines that `params` need. Tables are built by record_precompute().
   static Result<Effect> create(const DeviceInfo& device, const EffectDesc& desc, const Params& params);
-  // An Effect that was moved from can be destroyed or assigned to. Its functions return an error, or, where they return
-  // no Result, default values: null handles, zeros, empty strings and spans.
+  // A moved-from Effect can be destroyed or assigned to. Its functions return an error, or, without a Result, null
+  // handles, zeros, empty strings and empty spans.
   Effect(Effect&&) noexcept;
+  // Destroys the previous effect, as the destructor does.
   Effect& operator=(Effect&&) noexcept;
-  // Destroys everything at once. All commands that the effect recorded must have completed before; the same holds for
-  // the effect that is assigned to. With check_inputs, DeviceInfo::message reports it when those of record() have not.
+  // Destroys everything at once: all recorded commands must have completed. With check_inputs, frames that have not are
+  // reported.
   ~Effect();
 
-  // Checks and takes over new parameters: an error names the first that is out of range. Tables that become stale are
-  // rebuilt by record_precompute(), for which memory is allocated here; the finished ones stay in use until then. Views
-  // of light_tables() and scattering_tables() change when record_precompute() reports the build complete.
-  // Pipelines that were not needed before are made here, which takes about 0.1 s each on a CPU device, unless
-  // prepare_pipelines() has made them. record() makes none.
+  // Takes over new parameters. An error names the first that is out of range. Allocates the memory for tables that
+  // become stale; the old tables stay in use until record_precompute() has completed the new ones, and only then do the
+  // views of light_tables() and scattering_tables() change. Makes missing pipelines, about 0.1 s each on a CPU device.
   Result<void> set_params(const Params& params);
+  // Returns the parameters in use.
   [[nodiscard]] const Params& params() const;
-  // Makes at most `budget` of the pipelines that other parameters would need, so that switching costs nothing. What one
-  // set of parameters needs at once (unwarping in a medium, scaling up) counts as one.
+  // Makes at most `budget` of the pipelines that other parameters would need, so that switching costs nothing.
+  // Pipelines that are needed together count as one.
   Result<Progress> prepare_pipelines(std::uint32_t budget = UINT32_MAX);
 
-  // Takes over another EffectDesc::shadow_colors; the pipelines that the parameters then need are made here.
+  // Changes EffectDesc::shadow_colors, and makes the pipelines that the parameters then need.
   Result<void> set_shadow_colors(bool shadow_colors);
-
-  // Takes over other limits than those of EffectDesc, as set_params() takes over parameters. What commands in flight
-  // use is freed when they are done.
+  // Changes these limits of EffectDesc. Frees memory once the commands in flight have completed.
   Result<void> set_limits(VkExtent2D max_extent, std::uint32_t max_cascades, std::uint32_t max_shadow_resolution);
-
-  // Takes over parameters together with what set_shadow_colors() and set_limits() take from `desc`: all of it or
-  // nothing. The other fields of `desc` must be those of desc().
+  // Changes parameters and the above settings in one step: all or nothing. The other fields of `desc` must equal
+  // those of desc().
   Result<void> set_params(const Params& params, const EffectDesc& desc);
+  // Returns the settings in use.
   [[nodiscard]] const EffectDesc& desc() const;
 
+  // Returns how many slices of the tables have been recorded.
   [[nodiscard]] Progress precompute_progress() const;
-  // Records at most `budget` slices of the building of stale tables. Nothing to do: records nothing.
+  // Records at most `budget` slices of the stale tables. Records nothing when all are complete.
   Result<Progress> record_precompute(VkCommandBuffer cmd, std::uint32_t budget = UINT32_MAX);
 
-  // Finished tables can be kept, on disk for instance, and loaded instead of being built again.
-  // table_key() is printable text of several lines: two effects whose keys are equal have the same tables, byte for
-  // byte. It names the medium, the tables' shape, their shaders, the library's version, the device and its driver.
-  // It is empty when the host is out of memory.
-  // table_bytes() is the size of all tables of params(): one after another, texel by texel without padding, in the
-  // order single_rayleigh, single_mie, high_orders, sun_transmittance, sky_irradiance.
+  // Returns a key for caching finished tables: printable text of several lines. Equal keys mean equal tables, byte for
+  // byte: the key names medium, table shape, shaders, library version, device and driver. Empty when the host is out of
+  // memory.
   [[nodiscard]] std::string table_key() const;
+  // Returns the size of all tables [bytes]: single_rayleigh, single_mie, high_orders, sun_transmittance and
+  // sky_irradiance, one after another, without padding.
   [[nodiscard]] VkDeviceSize table_bytes() const;
-  // Records the copy of the tables to `buffer` (VK_BUFFER_USAGE_TRANSFER_DST_BIT) from `offset` on, a multiple of 8
-  // [bytes]; an error unless precompute_progress() is complete. After it the buffer is written by TRANSFER /
-  // TRANSFER_WRITE: before the host reads it, make that visible to HOST / HOST_READ and wait for the commands.
+  // Records a copy of the finished tables to `buffer` (TRANSFER_DST) at `offset` [bytes], a multiple of 8. An error
+  // unless precompute_progress() is complete. The copy is a TRANSFER / TRANSFER_WRITE.
   Result<void> record_save_tables(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset = 0);
-  // Records the loading of what such a buffer (VK_BUFFER_USAGE_TRANSFER_SRC_BIT) holds, saved under the same
-  // table_key(), in place of what is left to be built: precompute_progress() is then complete. Nothing to do: records
-  // nothing. Before it make the buffer visible to TRANSFER / TRANSFER_READ, and keep it until the commands have
-  // completed; after it synchronise as after record_precompute(). What the buffer holds is not checked: that
-  // is for who kept it.
+  // Records loading tables that were saved under the same table_key(), in place of building them. The progress is then
+  // complete. `buffer` (TRANSFER_SRC) must be visible to TRANSFER / TRANSFER_READ and exist until the commands have
+  // completed. Synchronise as after record_precompute(). The contents are not checked. Records nothing when complete.
   Result<void> record_load_tables(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset = 0);
 
-  // Records the effect: output = color seen through the air, plus the light that the air scatters.
-  // Before it, make the inputs visible to COMPUTE_SHADER / SHADER_READ in the layouts that they state;
-  // after it, the output is written by COMPUTE_SHADER / SHADER_WRITE.
+  // Records the effect: output = color * transmittance + in-scattered light. Inputs must be visible to COMPUTE_SHADER /
+  // SHADER_READ in the layouts that they state. Writes output in COMPUTE_SHADER / SHADER_WRITE.
   Result<void> record(VkCommandBuffer cmd, const FrameInputs& inputs);
 
+  // Return the tables in use. Views change only when record_precompute() or record_load_tables() completes new ones.
   [[nodiscard]] LightTables light_tables() const;
   [[nodiscard]] ScatteringTables scattering_tables() const;
+  // Returns the memory in use now.
   [[nodiscard]] MemoryUsage memory() const;
-  // The resources that memory().persistent consists of; the span is valid until the next call.
+  // Returns the resources that make up memory().persistent. The span is valid until the next call.
   std::span<const ResourceMemory> resources();
-  // What a frame whose commands have completed has done; zeros without EffectDesc::counters.
+  // Returns the counters of a frame whose commands have completed; zeros without EffectDesc::counters.
   [[nodiscard]] Counters counters(std::uint64_t frame_index, std::uint32_t view = 0) const;
-  // Times of the passes of a frame whose commands have completed, with EffectDesc::timings. The span is
-  // valid until the next call.
+  // Returns the times of the passes of a frame whose commands have completed; empty without EffectDesc::timings. The
+  // span is valid until the next call.
   std::span<const PassTiming> timings(std::uint64_t frame_index, std::uint32_t view = 0);
-  // Times of the stages of the last build of tables, all of whose commands have completed; likewise.
+  // Returns the times of the stages of the last build of tables, once its commands have completed.
   std::span<const PassTiming> precompute_timings();
 
  private:

@@ -1,5 +1,5 @@
-// Result<T>: a value or an Error. Everything that a caller can cause comes back this way; the
-// library never throws, prints or exits.
+// Result<T>: a value or an Error. The library reports every failure that a caller can cause as an Error; it never
+// throws, prints or exits.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,16 @@ namespace tyndall {
 
 enum class ErrorCode : std::uint32_t {
   invalid_argument,    // the caller passed something outside the documented range
-  unsupported_device,  // the device lacks what requirements() asks for
+  unsupported_device,  // the device lacks something that requirements() lists
   out_of_memory,       // host or device memory is exhausted
-  device_lost,         // the device is gone; destroy everything and start again
-  vulkan,              // any other VkResult, see Error::vk_result
+  device_lost,         // the device is lost; destroy everything and start again
+  vulkan,              // any other VkResult; see Error::vk_result
   io,                  // a file could not be read or written
 };
 
 struct Error {
   ErrorCode code = ErrorCode::invalid_argument;
-  std::string message;         // what, where, what is allowed: one line, no full stop, no newline
+  std::string message;         // one line, without a full stop or newline at the end
   std::int32_t vk_result = 0;  // the VkResult behind it; 0 when there is none
 };
 

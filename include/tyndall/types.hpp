@@ -1,5 +1,5 @@
-// Plain value types of the public interface. No mathematics library is needed to use them:
-// an engine's own vectors and matrices convert with std::bit_cast.
+// Value types of the public interface. They need no mathematics library: an engine's own vectors and matrices convert
+// with std::bit_cast.
 // Conventions: right-handed world, x east, y up, z south, metres; matrices are column-major and
 // multiply column vectors (clip = projection * view * world).
 #pragma once
@@ -17,7 +17,7 @@ struct Vec3 {
   constexpr bool operator==(const Vec3&) const = default;
 };
 
-// For places far from the origin of the world, where a float would round to decimetres.
+// For positions far from the origin of the world, where a float would round to decimetres.
 struct DVec3 {
   double x = 0.0, y = 0.0, z = 0.0;
 
