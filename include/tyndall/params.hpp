@@ -1,6 +1,6 @@
-// Params: every setting of the effect, made from the one list in params.def, and a table that
-// describes each (name, type, unit, range, default, meaning) for interfaces that are generated.
-// Values are SI; angles in files and parameters whose names end in _deg are degrees.
+// Params: all settings of the effect, generated from the list in params.def, and a table that describes each of them
+// (name, type, unit, range, meaning) for command lines, files and user interfaces.
+// Values are in SI units. Angles in files, and parameters whose names end in _deg, are in degrees.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace tyndall {
 
-// What a change of a parameter makes stale, from cheap to dear.
+// What a change of a parameter makes stale, from cheap to expensive.
 enum class Affects : std::uint32_t { Frame, Pipeline, Resources, Tables };
 
 enum class ParamType : std::uint32_t { float32, uint32, flag, enumeration, vec3, uvec4, string, dvec3 };
@@ -29,7 +29,7 @@ struct ParamInfo {
   std::string_view choices;  // enumerations only: the names, separated by '|', in order of value
   Affects affects;
   std::string_view doc;
-  bool grey = false;  // of a vec3: one value may stand for all three
+  bool grey = false;  // of a vec3: one value may be given for all three
 };
 
 #define ENUM_BEGIN(type) enum class type : std::uint32_t {
@@ -66,10 +66,10 @@ struct Params {
 #include "tyndall/params_undef.h"
 };
 
-// The rows that describe Params, in the order of params.def. Offsets are from the start of Params.
+// Returns the rows that describe Params, in the order of params.def. Offsets are from the start of Params.
 [[nodiscard]] std::span<const ParamInfo> param_table();
 
-// What has to be redone when `before` becomes `after`: a mask of bits 1 << Affects.
+// Returns what is stale when `before` becomes `after`: a mask of bits 1 << Affects.
 [[nodiscard]] std::uint32_t affected(const Params& before, const Params& after);
 
 // Returns an error (invalid_argument) that names the first parameter that is out of range, not finite, or not one
