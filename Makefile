@@ -1,11 +1,12 @@
 # The two commands. Everything else is CMake: see CONTRIBUTING.md.
 #   make demo            installs what is missing, builds the program, renders the demo scene to out/demo.png
 #   make check           installs what is missing, builds everything with warnings as errors, runs every test
+#   make doxygen         writes the reference of the public headers to build/doxygen/html
 #   make pictures        renders the pictures of the documentation
 #   make accuracy        measures the numbers of docs/accuracy.md
 #   make epipolar-study  installs Pillow and matplotlib; makes the numbers, plots and pictures of docs/epipolar.md
 #   make models-study    measures and renders what docs/models.md and docs/oneil.md show
-.PHONY: demo check pictures accuracy epipolar-study models-study setup build format format-check tidy clean
+.PHONY: demo check doxygen pictures accuracy epipolar-study models-study setup build format format-check tidy clean
 
 PRESET ?= release
 OPERATORS = exponential reinhard reinhard-modified uncharted2 filmic-alu logarithmic adaptive-logarithmic agx pbr-neutral exponential-channels
@@ -20,6 +21,12 @@ demo: build
 check: PRESET = ci
 check: build
 	@ctest --preset ci --no-tests=error -j "$$(nproc)"
+
+# The reference of the public headers, in build/doxygen/html.
+doxygen:
+	@tools/setup.sh
+	@mkdir -p build
+	@doxygen Doxyfile
 
 pictures: PRESET = release
 pictures: TARGETS = tyndall
