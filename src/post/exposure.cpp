@@ -84,9 +84,9 @@ Result<void> Exposure::measure(VkCommandBuffer cmd, VkImageView from, VkExtent2D
 
   const struct {
     float seconds, middle_gray, least_luminance;
-    std::uint32_t cut;
+    std::uint32_t reset;
   } push = {static_cast<float>(settings.light_adaptation ? std::clamp(seconds, 0.0, kForever_s) : kForever_s),
-            settings.middle_gray, settings.least_luminance, cut_ ? 1U : 0U};
+            settings.middle_gray, settings.least_luminance, reset_ ? 1U : 0U};
   missing = gpu::bind(*device_, cmd, adapt_, resources, &push);
   if (!missing.empty()) return lacks(missing);
   device_->vk.CmdDispatch(cmd, 1, 1, 1);
@@ -100,7 +100,7 @@ Result<void> Exposure::measure(VkCommandBuffer cmd, VkImageView from, VkExtent2D
   device_->vk.CmdCopyBuffer(cmd, counts_.buffer.get(), result, 1, &counts);
   gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_HOST_BIT,
                VK_ACCESS_HOST_READ_BIT);
-  cut_ = false;
+  reset_ = false;
   measured_ = true;
   return {};
 }

@@ -31,21 +31,21 @@ class Exposure {
   static Result<Exposure> create(const gpu::Device& device, std::uint32_t frames_in_flight = 1);
 
   // Records the measurement of `from` (RGBA32F in GENERAL layout) and adapts to it over `seconds` since the picture
-  // before; the first picture, and the first after cut(), is taken at once. What wrote `from` must be visible to
-  // compute shaders; the result is visible to those that follow. `slot`: below frames_in_flight, for read().
+  // before; the first picture, and the first after reset_history(), is taken at once. What wrote `from` must be visible
+  // to compute shaders; the result is visible to those that follow. `slot`: below frames_in_flight, for read().
   Result<void> measure(VkCommandBuffer cmd, VkImageView from, VkExtent2D extent, const TonemapSettings& settings,
                        double seconds, std::uint32_t slot = 0);
   // The next picture has nothing to do with the one before.
-  void cut() { cut_ = true; }
+  void reset_history() { reset_ = true; }
   // What the next measurement starts from, as far as the host knows it. A caller that drops the commands of measure()
   // puts back what was there before them.
   struct Start {
-    bool cut = true;
+    bool reset = true;
     bool measured = false;
   };
-  [[nodiscard]] Start start() const { return {cut_, measured_}; }
+  [[nodiscard]] Start start() const { return {reset_, measured_}; }
   void put_back(const Start& start) {
-    cut_ = start.cut;
+    reset_ = start.reset;
     measured_ = start.measured;
   }
 
@@ -61,7 +61,7 @@ class Exposure {
   gpu::Pipeline measure_, adapt_;
   gpu::Buffer counts_, state_;
   std::vector<gpu::Buffer> results_;  // one a slot: the state, then the counts
-  bool cut_ = true;
+  bool reset_ = true;
   bool measured_ = false;
 };
 

@@ -172,7 +172,7 @@ Result<void> Scene::create_objects() {
   background.depth_compare = VK_COMPARE_OP_GREATER_OR_EQUAL;
   background.depth_write = false;
   TYNDALL_ASSIGN(background_, gpu::create_graphics_pipeline(device, background));
-  TYNDALL_ASSIGN(floor_, gpu::create_compute_pipeline(device, shaders::floor_comp));
+  TYNDALL_ASSIGN(copy_baseline_, gpu::create_compute_pipeline(device, shaders::copy_baseline_comp));
   TYNDALL_ASSIGN(background_constants_,
                  gpu::create_buffer(device, "background_constants", sizeof(BackgroundConstants),
                                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
@@ -191,10 +191,10 @@ void Scene::end_pass(VkCommandBuffer cmd) {
   if (desc_.timings) timer_.end(cmd);
 }
 
-Result<void> Scene::render(double seconds, bool floor, std::optional<double> step_s) {
+Result<void> Scene::render(double seconds, bool copy_baseline, std::optional<double> step_s) {
   const post::Exposure::Start start = tonemap_->exposure().start();
   const std::optional<double> last_seconds = last_seconds_;
-  Result<void> drawn = within_memory("drawing the scene", [&] { return draw_frame(seconds, floor, step_s); });
+  Result<void> drawn = within_memory("drawing the scene", [&] { return draw_frame(seconds, copy_baseline, step_s); });
   if (!drawn) {
     tonemap_->exposure().put_back(start);
     last_seconds_ = last_seconds;
@@ -202,11 +202,11 @@ Result<void> Scene::render(double seconds, bool floor, std::optional<double> ste
   return drawn;
 }
 
-Result<void> Scene::draw_frame(double seconds, bool floor, std::optional<double> step_s) {
+Result<void> Scene::draw_frame(double seconds, bool copy_baseline, std::optional<double> step_s) {
   TYNDALL_TRY(replace_lost_effect());
   // Time that does not advance, and pictures that were not measured, leave nothing to adapt from.
   step_s_ = step_s.value_or(last_seconds_ ? seconds - *last_seconds_ : 0.0);
-  if (!last_seconds_ || step_s_ <= 0.0) tonemap_->exposure().cut();
+  if (!last_seconds_ || step_s_ <= 0.0) tonemap_->exposure().reset_history();
   last_seconds_ = seconds;
   if (!scene_.tonemap.auto_exposure && !desc_.histogram) last_seconds_.reset();
   radiance_sum_ = {};
@@ -217,7 +217,7 @@ Result<void> Scene::draw_frame(double seconds, bool floor, std::optional<double>
     const glm::dvec2 offset =
         samples > 1 ? glm::dvec2(halton(i + 1, 2) - 0.5, halton(i + 1, 3) - 0.5) : glm::dvec2(0.0);
     const glm::dvec2 jitter = 2.0 * offset / glm::dvec2(desc_.extent.width, desc_.extent.height);
-    TYNDALL_TRY(render_sample(seconds, jitter, i == 0, floor));
+    TYNDALL_TRY(render_sample(seconds, jitter, i == 0, copy_baseline));
     if (samples == 1) break;
     TYNDALL_TRY(accumulate(output_, radiance_sum_));
     TYNDALL_TRY(accumulate(display_, display_sum_));
@@ -243,7 +243,7 @@ Result<image::Image> Scene::average(const gpu::Image& image, const image::Image&
   return out;
 }
 
-Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool first, bool floor) {
+Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool first, bool copy_baseline) {
   const double radius = params_.planet.radius_m;
   const double aspect = static_cast<double>(desc_.extent.width) / desc_.extent.height;
   view_ = view_from_params(scene_.camera, aspect, radius);
@@ -287,7 +287,7 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   }
   if (model_ != nullptr) TYNDALL_TRY(model_->prepare({view_, frame_, light_, params_, scene_, desc_.extent}));
 
-  TYNDALL_TRY(run_passes(first, floor));
+  TYNDALL_TRY(run_passes(first, copy_baseline));
   times_.clear();
   if (desc_.timings) {
     for (const gpu::TimedScope& scope : timer_.read(0)) times_.push_back({scope.name, scope.milliseconds, false});
@@ -329,7 +329,7 @@ Result<void> Scene::tonemap(VkCommandBuffer cmd, bool first) {
   return {};
 }
 
-Result<void> Scene::run_floor(VkCommandBuffer cmd) {
+Result<void> Scene::run_copy_baseline(VkCommandBuffer cmd) {
   gpu::compute_barrier(host_->device(), cmd);
   begin_pass(cmd, "floor");
   TYNDALL_TRY(copy_to(cmd, display_));
@@ -345,9 +345,9 @@ Result<void> Scene::copy_to(VkCommandBuffer cmd, const gpu::Image& to) {
       gpu::named_image("scene_depth", depth_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, nearest_.get()),
       gpu::named_image("output_color", to.view.get()),
   };
-  const std::string_view missing = gpu::bind(device, cmd, floor_, resources);
+  const std::string_view missing = gpu::bind(device, cmd, copy_baseline_, resources);
   if (!missing.empty()) return lacks(missing);
-  gpu::dispatch(device, cmd, floor_, desc_.extent.width, desc_.extent.height);
+  gpu::dispatch(device, cmd, copy_baseline_, desc_.extent.width, desc_.extent.height);
   return {};
 }
 

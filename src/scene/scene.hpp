@@ -61,10 +61,10 @@ class Scene {
   Effect& effect() { return *effect_; }
 
   // Renders the frame that is `seconds` into the sequence. After an error the next call draws what this one would have
-  // drawn. `floor` adds the pass that costs the least. `step_s`: time
+  // drawn. `copy_baseline` also times a pass that only copies the picture, which no effect can undercut. `step_s`: time
   // in which the eye adapts to this frame; without, the time since the frame before. The first frame, and one after no
   // time at all, is exposed for itself.
-  Result<void> render(double seconds, bool floor = false, std::optional<double> step_s = {});
+  Result<void> render(double seconds, bool copy_baseline = false, std::optional<double> step_s = {});
 
   // Exposes and tone maps the last rendered frame again, `step_s` after the last time: for adaptation, and when only
   // tonemap.* has changed.
@@ -142,12 +142,12 @@ class Scene {
   Result<void> run_effect(VkCommandBuffer cmd);
   Result<void> copy_color(VkCommandBuffer cmd);
   Result<void> tonemap(VkCommandBuffer cmd, bool first);
-  Result<void> run_floor(VkCommandBuffer cmd);
+  Result<void> run_copy_baseline(VkCommandBuffer cmd);
   Result<void> copy_to(VkCommandBuffer cmd, const gpu::Image& to);
-  Result<void> draw_frame(double seconds, bool floor, std::optional<double> step_s);
-  Result<void> render_sample(double seconds, const glm::dvec2& jitter, bool first, bool floor);
+  Result<void> draw_frame(double seconds, bool copy_baseline, std::optional<double> step_s);
+  Result<void> render_sample(double seconds, const glm::dvec2& jitter, bool first, bool copy_baseline);
   // Records and submits one sample of a frame.
-  Result<void> run_passes(bool first, bool floor);
+  Result<void> run_passes(bool first, bool copy_baseline);
   Result<void> accumulate(const gpu::Image& image, image::Image& sum);
   Result<image::Image> average(const gpu::Image& image, const image::Image& sum);
   Result<image::Image> read_back(const gpu::Image& image);
@@ -168,7 +168,7 @@ class Scene {
   gpu::Image color_, depth_, shadow_maps_, shadow_colors_, output_, display_;
   std::vector<gpu::Handle<VkImageView>> shadow_layers_, shadow_color_layers_;  // views of each layer of these
   gpu::Handle<VkSampler> linear_, nearest_, shadow_compare_;
-  gpu::Pipeline background_, floor_;
+  gpu::Pipeline background_, copy_baseline_;
   gpu::Buffer background_constants_;
   gpu::Timer timer_;
 

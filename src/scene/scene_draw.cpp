@@ -199,7 +199,7 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
   return {};
 }
 
-Result<void> Scene::run_passes(bool first, bool floor) {
+Result<void> Scene::run_passes(bool first, bool copy_baseline) {
   const gpu::Device& device = host_->device();
   // Jitter moves the picture, not the cascades.
   const bool other_shadows = first && !(desc_.keep_shadows && shadows_are_drawn());
@@ -215,7 +215,7 @@ Result<void> Scene::run_passes(bool first, bool floor) {
   const auto air = [&](VkCommandBuffer cmd) -> Result<void> {
     TYNDALL_TRY(model_ != nullptr ? copy_color(cmd) : run_effect(cmd));
     TYNDALL_TRY(tonemap(cmd, first));
-    return floor ? run_floor(cmd) : Result<void>();
+    return copy_baseline ? run_copy_baseline(cmd) : Result<void>();
   };
   const auto whole = [&](VkCommandBuffer cmd) -> Result<void> {
     TYNDALL_TRY(shadows(cmd));
