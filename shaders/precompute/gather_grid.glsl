@@ -1,6 +1,5 @@
-// The grids on which the orders of scattering are solved, and the look-up of the light that the air scatters
-// (the source function) at any point and direction. Altitudes are spaced by their square root, suns densest
-// near the horizon, those below sea level evenly; source directions evenly in azimuth from the sun's plane.
+// The grids on which the orders of scattering are solved. Altitudes are uniform in their square root, and those below
+// sea level in depth. Suns are densest near the horizon. Source directions are uniform in azimuth from the sun's plane.
 #ifndef TYNDALL_GATHER_GRID_GLSL
 #define TYNDALL_GATHER_GRID_GLSL
 
@@ -9,7 +8,7 @@
 #include "shared/tables.h"
 
 const float kPi = 3.14159265358979;
-const float kSunKnee = 0.2;  // the sun's cosine at which the spacing has quadrupled
+const float kSunKnee = 0.2;  // cosine of the sun's zenith angle at which the spacing is four times that at the horizon
 
 float lowest_gather_altitude(Medium m) { return max(kLowestGatherAltitude, -0.25 * m.planet_radius_m); }
 
@@ -24,16 +23,16 @@ float gather_altitude_index(Medium m, float h) {
   return below + sqrt(min(h / m.atmosphere_height_m, 1.0)) * (float(kGatherAltitudes - 1u) - below);
 }
 
-// Light that arrives from below at a point under sea level comes from ground beside it, and its horizon is level:
-// whatever is solved there depends on nothing deeper.
+// Returns the altitude of the ground for the points of the grid. Below sea level it is the altitude of the point
+// itself, so that the solution at one altitude does not depend on deeper ones (docs/adr/0007-below-sea-level.md).
 float gather_ground(float h) { return min(h, 0.0); }
 float gather_ground_distance(Medium m, float h, float mu) {
   return h > 0.0 ? distance_to_ground(h, mu, m.planet_radius_m) : 0.0;
 }
-// The points whose irradiance lights the ground below a point.
+// Returns the first of the points (altitude x sun) whose irradiance lights the ground below a point.
 uint gather_ground_row(uint altitude) { return min(altitude, kGatherBelow) * kGatherSuns; }
 
-// The lowest sun of the grid: some way below the horizon of the top of the air, where it lights nothing.
+// Returns the cosine of the lowest sun of the grid, which is below the horizon of the top of the atmosphere.
 float lowest_gather_sun(Medium m) { return max(1.6 * horizon_cos(m.atmosphere_height_m, m.planet_radius_m), -1.0); }
 float gather_sun(Medium m, uint i) {
   float low = lowest_gather_sun(m);
@@ -50,9 +49,9 @@ float gather_sun_index(Medium m, float mu_s) {
   return clamp((s - from) / (to - from), 0.0, 1.0) * float(kGatherSuns - 1u);
 }
 
-// Cosine of a direction of incident light, from a node in [0; 1] of one side of the horizon: in proportion to
-// the angle, so that the aureole of a sun at any height falls between several nodes; and what the weight of the
-// node is to be multiplied by.
+// The zenith angles of incident light, from quadrature nodes in [0; 1] on either side of the horizon. They are
+// proportional to the angle, so that several nodes cover the aureole of a sun at any height. gather_zenith() returns
+// the cosine, gather_zenith_stretch() the factor of the quadrature weight.
 float gather_angle_span(float horizon, bool below) { return below ? kPi - acos(horizon) : acos(horizon); }
 float gather_zenith(float horizon, float node, bool below) {
   float offset = node * gather_angle_span(horizon, below);
@@ -64,9 +63,9 @@ float gather_zenith_stretch(float horizon, float node, bool below) {
 }
 float gather_azimuth(uint k) { return (float(k) + 0.5) * kPi / float(kGatherAzimuths); }
 
-// Zenith angles of the source function, symmetric to the horizontal and densest there: in turbid air the light near the
-// horizon is brightest, and so is what is scattered along it. The index grows with the square of the angle from the
-// horizontal.
+// Zenith angles of the source function. They are symmetric to the horizontal and densest there, because in turbid air
+// the light is brightest near the horizon and is scattered along it. The angle from the horizontal is a quadratic
+// function of the index.
 const float kSourceDensity = 0.6;  // spacing at the horizontal over the mean spacing
 float source_zenith(uint j) {
   float x = 2.0 * float(j) / float(kSourceZeniths - 1u) - 1.0;
@@ -78,7 +77,8 @@ float source_zenith_index(float angle) {
             (2.0 * (1.0 - kSourceDensity));
   return clamp(0.5 * (x + 1.0), 0.0, 1.0) * float(kSourceZeniths - 1u);
 }
-// Weight of a zenith angle in integrals over it, without its sine.
+
+// Returns the weight of a zenith angle in integrals over it, without its sine.
 float source_zenith_weight(uint j) {
   float x = 2.0 * float(j) / float(kSourceZeniths - 1u) - 1.0;
   bool end = j == 0u || j == kSourceZeniths - 1u;
@@ -86,7 +86,8 @@ float source_zenith_weight(uint j) {
          (end ? 0.5 : 1.0);
 }
 
-// Index of incident light. Sun-minor: neighbouring invocations treat neighbouring suns.
+// Indices of incident light and of the source function. The sun varies fastest, because neighbouring invocations
+// process neighbouring suns.
 uint gather_index(uint altitude, uint zenith, uint azimuth, uint sun) {
   return ((altitude * kGatherZeniths + zenith) * kGatherAzimuths + azimuth) * kGatherSuns + sun;
 }

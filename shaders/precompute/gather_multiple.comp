@@ -1,6 +1,6 @@
-// Light of one order >= 2 that arrives at the points of the gathering grid from each of its directions: the
-// source function of that order integrated along the ray, and the ground lit by the order before.
-// Out: incident (gather_index). One invocation per sun x azimuth x (zenith of an altitude).
+// Integrates the source function of one order >= 2 along the rays that arrive at the points of the gathering grid, and
+// adds the ground lit by the order before. Writes the incident light (gather_index). One invocation per sun x azimuth x
+// (zenith of an altitude).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -1,6 +1,6 @@
-// Light that arrives, scattered once or reflected once, at the points of the gathering grid from each of its
-// directions: radiance / E0 with the exact phase functions, so that the aureole of the sun enters order 2 as
-// it is. Out: incident (gather_index). One invocation per sun x azimuth x (zenith of an altitude).
+// Integrates the light that is scattered or reflected once along the rays that arrive at the points of the gathering
+// grid. The phase functions are exact, so that order 2 receives the full aureole of the sun. Writes the incident light
+// (gather_index), radiance / E0. One invocation per sun x azimuth x (zenith of an altitude).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -1,9 +1,9 @@
-// Fourier coefficients in azimuth of the phase functions between the directions of incident and of scattered
-// light, as in the discrete-ordinate method (Chandrasekhar, "Radiative Transfer", 1950, chapter VI; Stamnes
+// Computes the Fourier coefficients in azimuth of the phase functions between the directions of incident and of
+// scattered light, as in the discrete-ordinate method (Chandrasekhar, "Radiative Transfer", 1950, chapter VI; Stamnes
 // et al., "Numerically stable algorithm for discrete-ordinate-method radiative transfer", 1988).
-// Out: phase[((altitude * source zeniths + j) * gather zeniths + q) * modes + m], x: Rayleigh, y: aerosol,
+// Writes phase[((altitude * source zeniths + j) * gather zeniths + q) * modes + m], x: Rayleigh, y: aerosol:
 //   2 * integral from 0 to pi of P cos(m phi) d phi times the quadrature weight of q [1].
-// The aerosol's row is scaled to conserve energy: over q, the entries of mode 0 add up to 1.
+// Each row is scaled to conserve energy: the entries of mode 0 add up to 1 over q.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

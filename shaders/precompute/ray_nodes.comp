@@ -1,5 +1,5 @@
-// The nodes of the integration along each ray of the tables, or of the gathering grid. One invocation per
-// altitude and view angle. Out: nodes, kNodeStride per ray: of one altitude of the tables, or of all of the grid.
+// Computes the quadrature nodes along each ray of one altitude of the tables, or of the whole gathering grid. Writes
+// kNodeStride nodes per ray. One invocation per altitude and view angle.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -20,7 +20,7 @@ layout(std430, binding = 2) writeonly buffer node_block { RayNode nodes[]; };
 layout(push_constant) uniform Push { uint first; }
 push;
 
-// Walks again, laying a boundary wherever another panel's worth of the total effort is reached.
+// Divides the ray into panels of equal effort, and writes the nodes of each.
 void lay_nodes(float h, float mu, float end, float total, uint panels, uint base) {
   float bounds[kSinglePanels + 1u];
   bounds[0] = 0.0;

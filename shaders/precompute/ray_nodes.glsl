@@ -1,6 +1,6 @@
-// The integration along a ray that starts at altitude h: panels of equal effort, four Gauss-Legendre nodes
-// each. Nodes depend on altitude and view angle only, hence serve every position of the sun. Of each ray there
-// are kSingleNodes for light scattered once, kHighNodes for the smoother higher orders, and the ray's end.
+// The quadrature along a ray that starts at altitude h: panels of equal effort with four Gauss-Legendre nodes each.
+// The nodes depend on altitude and view angle only, and serve every position of the sun. Each ray has kSingleNodes
+// nodes for light scattered once, kHighNodes for the smoother higher orders, and its end.
 #ifndef TYNDALL_RAY_NODES_GLSL
 #define TYNDALL_RAY_NODES_GLSL
 
@@ -11,15 +11,15 @@ const uint kFirstHighNode = kSingleNodes;
 const uint kEndNode = kSingleNodes + kHighNodes;
 const uint kNodeStride = kEndNode + 1u;
 
-// Of the search for the panels: steps along the ray, and the distance over which sunlight near the terminator
-// changes, as a fraction of sqrt(2 r H).
+// Number of steps along the ray in the search for the panels.
 const int kWalkSteps = 192;
 
-// Distance along a ray of length `end` for s in [0; 1], dense at both ends.
+// Returns the distance along a ray of length `end` for s in [0; 1], dense at both ends.
 float walk_distance(float end, float s) { return end * s * s * (3.0 - 2.0 * s); }
 
-// Effort per metre at distance d: how fast the integrand changes with optical depth, altitude and distance,
-// less where little of the light gets through. tau: so far, in the clearest channel; grows by this step's.
+// Returns the effort per metre at distance d: the rate at which the integrand changes with optical depth, altitude and
+// distance, reduced where the transmittance is low. tau is the optical depth so far in the clearest channel; this
+// step's is added to it.
 float effort(Medium m, float h0, float mu, float d, float step_m, inout float tau) {
   float R = m.planet_radius_m;
   float h = altitude_along(h0, mu, d, R);

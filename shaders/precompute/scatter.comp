@@ -1,9 +1,8 @@
-// From the light that arrives at a point to the light that its air scatters into every direction, as one
-// Fourier series in azimuth per zenith angle; and the horizontal irradiance there.
-// In: incident light of order n - 1. Out: source of order n (fourth root, per scattering coefficient), the sum
-// of the orders so far (linear; fourth root once complete), irradiance of order n - 1, and the sum of the
-// irradiances so far. The pass after the last order completes the sums: from 3 orders on, it adds the order that
-// the last incident light gives for free, and an estimate of all orders beyond. One group per altitude x sun.
+// Scatters the incident light of order n - 1 at the points of the gathering grid into every direction, as one Fourier
+// series in azimuth per zenith angle. Writes the source function of order n (fourth root, per scattering coefficient),
+// its sum over the orders so far (linear; fourth root once complete), the horizontal irradiance of order n - 1, and its
+// sum. The pass after the last order completes the sums. From 3 orders on, it adds the order that follows from the last
+// incident light, and an estimate of all orders beyond. One group per altitude x sun.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -27,7 +26,7 @@ layout(std430, binding = 7) buffer sky_block { vec4 sky[]; };
 
 layout(push_constant) uniform Push {
   uint first;  // altitude
-  uint order;  // n: of the light that is scattered here
+  uint order;  // n, that of the source function
 }
 push;
 
@@ -147,7 +146,7 @@ void complete_sums(uint lane, uint altitude, uint sun) {
   }
 }
 
-// Of the light that arrives, on a horizontal surface that faces up.
+// Writes the irradiance of the incident light on a horizontal surface that faces up.
 void store_irradiance(uint altitude, uint sun, float h) {
   float horizon = horizon_cos(h, medium.planet_radius_m);
   vec3 sum = vec3(0.0);

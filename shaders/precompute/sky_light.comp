@@ -1,6 +1,6 @@
-// Irradiance of the sky on a horizontal surface, per irradiance of the sun above the atmosphere: all orders,
-// as the points of the gathering grid receive them.
-// In: sky (altitude x sun). Out: rgb (LightTables::sky_irradiance). One invocation per texel.
+// Interpolates the irradiance of the sky on a horizontal surface, per irradiance of the sun above the atmosphere, from
+// the points of the gathering grid (altitude x sun). It contains all orders. Writes LightTables::sky_irradiance. One
+// invocation per texel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -28,7 +28,7 @@ void main() {
   float sun = gather_sun_index(medium, point.y);
   uint a = min(uint(altitude), kGatherAltitudes - 2u);
   uint s = min(uint(sun), kGatherSuns - 2u);
-  // Fourth roots are interpolated: twilight falls like an exponential.
+  // Fourth roots are interpolated because twilight decreases exponentially.
   vec3 low = between_suns(a * kGatherSuns + s, sun - float(s));
   vec3 high = between_suns((a + 1u) * kGatherSuns + s, sun - float(s));
   imageStore(sky_irradiance_table, texel, vec4(value_from_texel(mix(low, high, altitude - float(a))), 1.0));

@@ -27,13 +27,14 @@ struct SourceAngles {
   float azimuth;
 };
 
-// The angle nearest to x that makes a triangle on the sphere with two others.
+// Returns the angle nearest to x that forms a triangle on the sphere with a and b.
 float angle_in_triangle(float x, float a, float b) { return clamp(x, abs(a - b), min(a + b, 2.0 * kPi - a - b)); }
 
-// From cosines. Texels of the tables also stand for triples that no geometry has, and interpolation draws on
-// them. On the sun's side the angle between view and sun is kept, on which the aureole depends, and the view gives way;
-// or the sun where it is high and nearer to the vertical, for then its exact place matters least. On the other side the
-// light hardly depends on that angle but, in turbid air near the horizon, strongly on the view: that is kept instead.
+// Returns the angles from their cosines. Some texels of the tables stand for triples that form no triangle, and
+// interpolation reads them. On the sun's side the angle between view and sun is preserved, because the aureole depends
+// on it, and the view is moved; or the sun where it is high and nearer to the vertical, where its exact position
+// matters least. On the other side the light hardly depends on that angle, but in turbid air near the horizon it
+// depends strongly on the view, which is preserved instead.
 const float kHighSun = 0.5;
 SourceAngles source_angles(float mu, float mu_s, float nu) {
   bool move_sun = mu_s > max(kHighSun, abs(mu));
@@ -52,8 +53,8 @@ SourceAngles source_angles(float mu, float mu_s, float nu) {
   return a;
 }
 
-// Light scattered at altitude h into the direction opposite to a view ray of cosine mu, under a sun at mu_s,
-// with nu between view ray and sun; per scattering coefficient [1/sr].
+// Returns the light scattered at altitude h into the direction opposite to a view ray of cosine mu, under a sun at
+// mu_s, with nu between view ray and sun, per scattering coefficient [1/sr].
 vec3 source_at(Medium m, float h, float mu, float mu_s, float nu) {
   SourceAngles angles = source_angles(mu, mu_s, nu);
   float azimuth = angles.azimuth / kPi * float(kSourceAzimuths - 1u);

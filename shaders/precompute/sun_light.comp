@@ -12,7 +12,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
 layout(binding = 1, rgba16f) uniform writeonly image2D sun_transmittance;
 
-// The table is made for the sun's mean angular radius; only the few texels at the horizon depend on it.
+// Mean angular radius of the sun [rad]. Only the few texels at the horizon depend on it.
 const float kSunAngularRadius = 0.004655;
 
 void main() {

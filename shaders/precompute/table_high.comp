@@ -1,5 +1,6 @@
-// The table of the orders of scattering >= 2, phase functions included (lib/table_values.glsl).
-// In: the sum of their source functions. One invocation per sun x angle x view of one altitude.
+// Integrates the sum of the source functions of the orders >= 2 along the ray of each texel, and writes the table of
+// the higher orders, phase functions included (lib/table_values.glsl). One invocation per sun x angle x view of one
+// altitude.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -30,7 +31,7 @@ void main() {
   float nu = angle_from_q(shape, (float(id.y) + 0.5) / float(shape.angles));
   float end = nodes[base + kEndNode].distance_m;
   vec3 column = density_integral_along(medium, h, mu, end);
-  // q0: where the sun stands at the origin, r0 cos(zenith), from where it stands in the middle of the air.
+  // The sun axis refers to the mean distance. q0 is r cos(sun zenith) at the beginning of the ray.
   float middle = density_weighted_mean_distance(medium, h, mu, end, column);
   float q0 = (R + altitude_along(h, mu, middle, R)) * mu_s - middle * nu;
   vec3 radiance = vec3(0.0);

@@ -1,5 +1,4 @@
-// What the tables' description (tables.cpp) and their building (table_builder.cpp) share: sizes, sets of tables, and
-// the plan of the scratch memory.
+// Declarations that tables.cpp and table_builder.cpp share: sizes, sets of tables, and the plan of the scratch memory.
 #pragma once
 
 #include <array>
@@ -37,7 +36,7 @@ constexpr std::size_t kScratchBuffers = 9;
 [[nodiscard]] std::array<BufferPlan, kScratchBuffers> plan_scratch(std::uint32_t views);
 constexpr VkBufferUsageFlags kScratchUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 
-// Gauss-Legendre nodes and weights on [0; 1], by Newton's method on the Legendre polynomial.
+// Computes Gauss-Legendre nodes and weights on [0; 1] by Newton's method on the Legendre polynomial.
 [[nodiscard]] shared::ZenithQuadrature zenith_quadrature();
 
 [[nodiscard]] inline VkDeviceSize texel_bytes(const VkExtent3D& extent) {

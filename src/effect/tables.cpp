@@ -1,4 +1,4 @@
-// What the tables are: sizes, memory, which of them parameters change, and what tells them apart in a cache.
+// Sizes and memory of the tables, the tables that a change of parameters makes stale, and the key of the cache.
 #include "effect/tables.hpp"
 
 #include <cmath>
@@ -19,11 +19,11 @@ constexpr VkImageUsageFlags kTableUsage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_
 
 bool same(const void* a, const void* b, std::size_t size) { return std::memcmp(a, b, size) == 0; }
 
-// To be raised when the bytes of the tables change although shaders, constants and version stay: another plan
-// of the slices, another order of the tables in a buffer.
+// To be raised when the bytes of the tables change although shaders, constants and version do not, for example by
+// another list of slices or another order of the tables in a buffer.
 constexpr int kTableRevision = 1;
 
-// FNV-1a (Fowler, Noll, Vo): for telling inputs apart, not against intent.
+// FNV-1a (Fowler, Noll, Vo). Distinguishes inputs; it is not secure against intent.
 class Hash {
  public:
   void add(const void* data, std::size_t size) {
@@ -40,7 +40,7 @@ void append_hexadecimal(std::string& out, std::uint64_t value, int digits) {
   for (int shift = 4 * (digits - 1); shift >= 0; shift -= 4) out += "0123456789abcdef"[(value >> shift) & 15U];
 }
 
-// The bits of a structure of 32-bit words: floats are told apart exactly.
+// Appends the bits of a structure of 32-bit words, so that floats are compared exactly.
 void append_words(std::string& out, const void* data, std::size_t size) {
   for (std::size_t at = 0; at < size; at += sizeof(std::uint32_t)) {
     std::uint32_t word = 0;
@@ -122,7 +122,7 @@ std::uint32_t stale_tables(const Params& built, const Params& wanted) {
   const shared::TableShape shape_b = table_shape(wanted);
   std::uint32_t stale = 0;
   if (!same(&a, &b, sizeof a) || !same(&shape_a, &shape_b, sizeof shape_a)) stale |= kHighTables;
-  // Light scattered once is stored without phase function, and no ground has a part in it.
+  // The tables of single scattering contain neither the phase function nor light from the ground.
   b.mie_g = a.mie_g;
   b.mie_phase = a.mie_phase;
   b.ground_albedo = a.ground_albedo;
@@ -159,7 +159,7 @@ std::string table_key(const gpu::Device& device, const Params& params) {
   append_hexadecimal(key, p.vendorID, 8);
   append_hexadecimal(key, p.deviceID, 8);
   key += std::string(" ") + p.deviceName + "\ndriver ";
-  // The version alone does not tell builds of a driver apart; what it gives its pipeline caches does.
+  // The version alone does not distinguish builds of a driver; the UUID of its pipeline cache does.
   append_hexadecimal(key, p.driverVersion, 8);
   key += ' ';
   for (const std::uint8_t byte : p.pipelineCacheUUID) append_hexadecimal(key, byte, 2);

@@ -1,5 +1,5 @@
-// The scattering tables: what they are made of, and the building of them in slices.
-// How the orders of scattering are solved is described in docs/tables.md.
+// The scattering tables and their construction in slices. docs/tables.md describes how the orders of scattering are
+// solved.
 #pragma once
 
 #include <array>
@@ -20,23 +20,23 @@ namespace tyndall {
 enum class TableId : std::uint32_t { single_rayleigh, single_mie, high_orders, sun_transmittance, sky_irradiance };
 constexpr std::uint32_t kTableCount = 5;
 
-// An image in GENERAL layout, once it has been recorded into for the first time.
+// An image of a table. It is in GENERAL layout once a command that writes it has been recorded.
 struct TableImage {
   gpu::Image image;
   bool ready = false;
 };
 using TableSet = std::array<TableImage, kTableCount>;
 
-// An error where the device's limits do not allow tables of this size.
+// Returns an error if the limits of the device do not allow tables of this size.
 [[nodiscard]] Result<void> check_table_size(const gpu::Device& device, const Params& params);
 [[nodiscard]] gpu::ImageDesc table_desc(TableId table, const Params& params);
-// Which tables (bits 1 << TableId) differ between two sets of parameters.
+// Returns the tables (bits 1 << TableId) that differ between two sets of parameters.
 [[nodiscard]] std::uint32_t stale_tables(const Params& built, const Params& wanted);
 // See Effect::table_key() and Effect::table_bytes().
 [[nodiscard]] std::string table_key(const gpu::Device& device, const Params& params);
 [[nodiscard]] VkDeviceSize table_bytes(const Params& params);
 
-// What a build needs besides its result: freed when it is complete.
+// The scratch memory of a build, freed when the build is complete.
 struct TableScratch {
   gpu::Buffer constants;    // Medium, then TableShape and ZenithQuadrature
   gpu::Buffer grid_nodes;   // RayNode of the gathering grid
@@ -52,39 +52,39 @@ struct TableScratch {
 };
 [[nodiscard]] VkDeviceSize table_scratch_bytes(const gpu::Device& device, const Params& params);
 
-// Builds tables; owns pipelines and, while it builds, scratch memory and the unfinished tables. Objects that
-// commands in flight may still use are kept until `frames_in_flight` more frames have been recorded.
+// Builds the tables. Owns the pipelines and, during a build, the scratch memory and the unfinished tables. Objects that
+// commands in flight may still use are destroyed after `frames_in_flight` more frames have been recorded.
 class TableBuilder {
  public:
-  // What other parameters change, allocated beforehand; defined below.
+  // The allocated result of plan(); defined below.
   struct Pending;
 
-  // Makes the pipelines. There are no tables before the first commit().
+  // Creates the pipelines. There are no tables before the first commit().
   Result<void> create(const gpu::Device& device, std::uint32_t frames_in_flight, bool timings);
 
-  // Allocates what building the tables of other parameters needs, and changes nothing: their images where the sizes
-  // differ, the scratch memory, the list of slices.
+  // Allocates everything that the build for other parameters needs (images of another size, scratch memory, the list of
+  // slices), and changes nothing else.
   Result<Pending> plan(const Params& params);
-  // Takes over what was planned last: starts over for the tables that differ from the finished ones.
+  // Takes over the result of the last plan(), and starts the build of the tables that differ from the finished ones.
   void commit(Pending&& pending) noexcept;
   // Records at most `budget` slices.
   Result<void> record(VkCommandBuffer cmd, std::uint32_t budget);
-  // Copies the finished tables to a buffer, in the order of TableId and without padding; an error while some
-  // are stale.
+  // Copies the finished tables to a buffer, in the order of TableId and without padding. Returns an error while some of
+  // them are stale.
   Result<void> record_save(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset);
-  // Copies what is stale from such a buffer, in place of the rest of the build; nothing if nothing is.
+  // Copies the stale tables, if any, from such a buffer, in place of the rest of the build.
   Result<void> record_load(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset);
-  // Once per frame: moves new images out of the undefined layout, and frees what no frame uses any more.
+  // To be called once per frame. Moves new images out of the undefined layout, and frees objects that no frame uses.
   void begin_frame(VkCommandBuffer cmd);
 
   [[nodiscard]] Progress progress() const { return {done_, static_cast<std::uint32_t>(slices_.size())}; }
-  // Whether tables have been built once; stale ones stay in use until others are.
+  // Returns true once tables have been built. Stale tables stay in use until the next build is complete.
   [[nodiscard]] bool ready() const { return complete_; }
-  // The finished tables; before the first build is complete, those that it fills.
+  // Returns a finished table; before the first build is complete, the table that it fills.
   [[nodiscard]] const gpu::Image& table(TableId id) const { return tables_[static_cast<std::uint32_t>(id)].image; }
   [[nodiscard]] VkDeviceSize persistent_bytes() const;
   [[nodiscard]] VkDeviceSize transient_bytes() const;
-  // Times of the stages of the last build, once its commands have completed; needs `timings`.
+  // Returns the times of the stages of the last build, once its commands have completed. Needs `timings`.
   [[nodiscard]] std::span<const PassTiming> stage_times();
 
  private:
@@ -101,7 +101,7 @@ class TableBuilder {
     sky_light,
     kStages
   };
-  // A dispatch: for the altitudes (or columns) [first; first + count), of one order of scattering.
+  // A dispatch for the altitudes [first; first + count) and one order of scattering.
   struct Slice {
     Stage stage;
     std::uint32_t first, count, order;
@@ -126,12 +126,12 @@ class TableBuilder {
   bool timings_ = false;
   std::array<gpu::Pipeline, kStages> pipelines_ = {};
   TableSet tables_ = {};
-  TableSet next_ = {};  // where `tables_` is in use and stale
+  TableSet next_ = {};  // the new tables, if `tables_` is in use and stale
   TableScratch scratch_ = {};
   Params built_ = {};        // of tables_, if complete_
   Params wanted_ = {};       // of the build
   bool complete_ = false;    // tables_ have been built once
-  std::uint32_t stale_ = 0;  // what the build makes
+  std::uint32_t stale_ = 0;  // tables that the build writes
   std::vector<Slice> slices_ = {};
   std::uint32_t done_ = 0;
   std::vector<Retired> retired_ = {};
@@ -139,18 +139,18 @@ class TableBuilder {
   std::array<PassTiming, kStages> times_ = {};
 };
 
-// The work that commit() takes over, with everything allocated for it.
+// The work that commit() takes over, with everything allocated.
 struct TableBuilder::Pending {
   enum class Kind : std::uint32_t {
-    nothing,  // the tables, or the build that is running, are those of the parameters
-    cancel,   // the finished tables are, and a build is running
+    nothing,  // the tables, or the running build, already match the parameters
+    cancel,   // the finished tables match the parameters, and the running build is not needed
     build
   };
   Kind kind = Kind::nothing;
   Params wanted = {};
   std::uint32_t stale = 0;
-  TableSet images = {};       // of stale tables whose image does not have the size
-  TableScratch scratch = {};  // if `views` is not 0, in place of what is there
+  TableSet images = {};       // of stale tables whose image has another size
+  TableScratch scratch = {};  // replaces the present one if `views` is not 0
   std::vector<Slice> slices = {};
 };
 
