@@ -1,44 +1,44 @@
-// A spherical planet of radius R seen from near its surface: altitudes, horizons, shells.
-// A ray is given by the altitude h0 of its origin and the cosine mu of its angle from the local vertical; d
-// is the distance along it. World: planet centre at (0, -R, 0), y up.
+// Geometry of a spherical planet of radius R as seen from near its surface: altitudes, horizons and shells.
+// A ray is given by the altitude h0 of its origin and the cosine mu of its angle from the local vertical; d is the
+// distance along the ray. In world space the planet's centre is at (0, -R, 0) and y points up.
 #ifndef TYNDALL_LIB_GEOMETRY
 #define TYNDALL_LIB_GEOMETRY
 
 #include "lib/portable.glsl"
 
-// Altitude of the world position p above sea level [m].
+// Returns the altitude of the world position p above sea level [m].
 float altitude_of(vec3 p, float R) {
   float horizontal_squared = p.x * p.x + p.z * p.z;
   float y = p.y + R;
   return (horizontal_squared + p.y * (2.0 * R + p.y)) / (sqrt(horizontal_squared + y * y) + R);
 }
 
-// Unit vector away from the planet's centre at the world position p.
+// Returns the unit vector that points away from the planet's centre at the world position p.
 vec3 up_at(vec3 p, float R) { return normalize(vec3(p.x, p.y + R, p.z)); }
 
-// Altitude at distance d (of either sign) along the ray: r^2 - r0^2 = d (2 r0 mu + d).
+// Returns the altitude at distance d along the ray; d may be negative. From r^2 - r0^2 = d (2 r0 mu + d).
 float altitude_along(float h0, float mu, float d, float R) {
   float r0 = R + h0;
   float rise = d * (2.0 * r0 * mu + d);
   return h0 + rise / (sqrt(max(r0 * r0 + rise, 0.0)) + r0);
 }
 
-// Cosine of the ray's angle from the local vertical at distance d.
+// Returns the cosine of the ray's angle from the local vertical at distance d.
 float cos_zenith_along(float h0, float mu, float d, float R) {
   float r0 = R + h0;
   float r = R + altitude_along(h0, mu, d, R);
   return clamp((r0 * mu + d) / max(r, 1.0), -1.0, 1.0);
 }
 
-// Altitude of the point of the ray's whole line that is nearest to the planet's centre.
+// Returns the altitude of the perigee: the point of the ray's infinite line that is nearest to the planet's centre.
 float perigee_altitude(float h0, float mu, float R) {
   float r0 = R + h0;
   float q0 = r0 * mu;
   return h0 - q0 * q0 / (r0 + r0 * sqrt(max((1.0 - mu) * (1.0 + mu), 0.0)));
 }
 
-// Distances at which the ray's whole line crosses the shell of altitude hs; false (near = far = 0) if it
-// misses. Both roots are free of cancellation; negative ones lie behind the origin.
+// Computes the distances at which the ray's infinite line crosses the shell of altitude hs. Returns false, with near =
+// far = 0, if it misses the shell. Neither root suffers from cancellation. A negative distance lies behind the origin.
 bool shell_intersections(float h0, float mu, float hs, float R, OUT(float) near, OUT(float) far) {
   near = 0.0;
   far = 0.0;
@@ -46,7 +46,7 @@ bool shell_intersections(float h0, float mu, float hs, float R, OUT(float) near,
   float rise = (hs - h0) * (2.0 * R + hs + h0);
   float q_squared = q0 * q0 + rise;
   if (rise < 0.0) {
-    // From outside: by the perigee, whose altitude keeps its digits where q0^2 + rise cancels.
+    // The origin is outside the shell. The perigee altitude is precise even where q0^2 + rise cancels.
     float hp = perigee_altitude(h0, mu, R);
     q_squared = (hs - hp) * (2.0 * R + hs + hp);
   }
@@ -64,7 +64,8 @@ bool shell_intersections(float h0, float mu, float hs, float R, OUT(float) near,
   return true;
 }
 
-// Distance at which a ray from inside the shell of altitude `top` leaves it; 0 from outside, looking away.
+// Returns the distance at which a ray from inside the shell of altitude `top` leaves the shell. For an origin outside,
+// the result is the far crossing, or 0 if the shell lies behind the ray.
 float distance_to_top(float h0, float mu, float top, float R) {
   float near;
   float far;
@@ -72,18 +73,21 @@ float distance_to_top(float h0, float mu, float top, float R) {
   return max(far, 0.0);
 }
 
-// Altitude of the ground sphere for a ray that begins at altitude h: sea level, and for a ray that begins below
-// sea level twice its depth, so that neither the air beneath it nor its horizon changes abruptly at sea level
-// (docs/adr/0007-below-sea-level.md). Beyond a quarter of the radius the sphere stays where it is.
+// Returns the altitude of the ground sphere for a ray that begins at altitude h. From above sea level, the ground is
+// sea level. From below sea level, it lies at twice the depth, so that neither the atmosphere below the ray nor its
+// horizon changes abruptly at sea level (docs/adr/0007-below-sea-level.md). The sphere is never lower than half the
+// planet's radius.
 float ground_below(float h, float R) { return h < 0.0 ? min(h, max(2.0 * h, -0.5 * R)) : 0.0; }
 
-// Cosine of the zenith angle of the horizon of sea level; 0 at and below it. The sun sets behind this horizon.
+// Returns the cosine of the zenith angle of the sea-level horizon; 0 at and below sea level. The sun sets behind this
+// horizon.
 float horizon_cos(float h, float R) {
   float above = max(h, 0.0);
   return -sqrt(above * (2.0 * R + above)) / (R + above);
 }
 
-// Cosine of the zenith angle of the horizon of ground_below(); that of sea level from there upwards.
+// Returns the cosine of the zenith angle of the horizon of ground_below(). Above sea level this is the sea-level
+// horizon.
 float ground_horizon_cos(float h, float R) {
   float ground = ground_below(h, R);
   return -sqrt((h - ground) * (2.0 * R + h + ground)) / (R + h);
@@ -91,7 +95,8 @@ float ground_horizon_cos(float h, float R) {
 
 bool ray_hits_ground(float h, float mu, float R) { return mu < ground_horizon_cos(h, R); }
 
-// Distance to the ground of a ray that hits it [m]; of one that misses by a rounding error, to its perigee.
+// Returns the distance to the ground [m] for a ray that hits it. A ray that misses the ground by a rounding error gets
+// the distance to its perigee.
 float distance_to_ground(float h, float mu, float R) {
   float near;
   float far;
@@ -102,8 +107,8 @@ float distance_to_ground(float h, float mu, float R) {
   return max(d, 0.0);
 }
 
-// The part of a ray's line, from its origin on, that lies in the atmosphere below `top`: distances start <= end
-// [m]. The ground is no obstacle. False if there is none (start = end = 0).
+// Computes the part of the ray that lies below `top`, as distances start <= end [m]. The ground does not end the ray.
+// Returns false, with start = end = 0, if there is no such part.
 bool segment_below_top(float h0, float mu, float top, float R, OUT(float) start, OUT(float) end) {
   start = 0.0;
   end = 0.0;
@@ -119,7 +124,7 @@ bool segment_below_top(float h0, float mu, float top, float R, OUT(float) start,
   return end > start;
 }
 
-// The same before the ground, and whether the ray ends there.
+// Computes the part of the ray that lies below `top` and before the ground, and whether the ray ends on the ground.
 bool atmosphere_segment(float h0, float mu, float top, float R, OUT(float) start, OUT(float) end,
                         OUT(bool) hits_ground) {
   hits_ground = ray_hits_ground(h0, mu, R);
@@ -137,13 +142,14 @@ bool atmosphere_segment(float h0, float mu, float top, float R, OUT(float) start
   return false;
 }
 
-// 1 where a point sun at cosine mu_s is above the geometric horizon of a point at altitude h, else 0.
+// Returns 1 if a point-sized sun at zenith cosine mu_s is above the sea-level horizon of a point at altitude h, else 0.
 float sun_visibility(float h, float mu_s, float R) { return mu_s < horizon_cos(h, R) ? 0.0 : 1.0; }
 
-// Fraction of the sun's disc above the geometric horizon, for surfaces; the horizon is taken as straight.
+// Returns the fraction of the sun's disc that is above the sea-level horizon. The horizon is treated as a straight
+// line.
 float sun_disc_visibility(float h, float mu_s, float R, float angular_radius_rad) {
   float mu_h = horizon_cos(h, R);
-  // Angle above the horizon to first order, which is enough within a disc of a few degrees.
+  // The angle above the horizon to first order, which is enough for a disc of a few degrees.
   float elevation = (mu_s - mu_h) / sqrt(max(1.0 - mu_h * mu_h, 1.0e-6));
   float x = clamp(elevation / max(angular_radius_rad, 1.0e-6), -1.0, 1.0);
   return clamp(0.5 + (x * sqrt(max(1.0 - x * x, 0.0)) + asin(x)) * 0.318309886183791, 0.0, 1.0);

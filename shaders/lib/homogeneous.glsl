@@ -1,8 +1,9 @@
-// Hoffman and Preetham, "Photorealistic Real-Time Outdoor Light Scattering" (Game Developer, 2002): the numbers
-// of equations are theirs. Air and haze have the density of the ground everywhere, and paths through the whole
-// layer have its optical length. docs/models.md says what is assumed where the document is silent.
-// Radiance is relative to the sun's irradiance above the atmosphere [1/sr]. h, mu, mu_s: altitude of the eye,
-// cosines of the zenith angles of ray and sun there; nu: cosine between ray and sun.
+// The model of Hoffman and Preetham, "Photorealistic Real-Time Outdoor Light Scattering" (Game Developer, 2002).
+// Equation numbers refer to that article. Air and haze have their ground density everywhere; a path through a whole
+// layer has the optical length of the real layer. docs/models.md lists our assumptions where the article is silent.
+// Radiance is relative to the sun's irradiance above the atmosphere [1/sr]. h is the altitude of the eye, mu and mu_s
+// are the cosines of the zenith angles of the ray and the sun at the eye, and nu is the cosine of the angle between
+// them.
 #ifndef TYNDALL_LIB_HOMOGENEOUS
 #define TYNDALL_LIB_HOMOGENEOUS
 
@@ -11,20 +12,20 @@
 #include "lib/portable.glsl"
 #include "shared/homogeneous.h"
 
-// Equation 5: optical length of a layer from the ground, for its length to the zenith. Below the horizontal it
-// is that of the horizontal: the equation is fitted to the sky.
+// Returns the optical length of a layer from the ground, given its vertical length (equation 5). The equation is fitted
+// to the sky, so directions below the horizontal get the length of the horizontal.
 float homogeneous_optical_length(float zenith_length_m, float mu) {
   float above = clamp(mu, 0.0, 1.0);
   float zenith_deg = acos(above) * 57.2957795130823;
   return zenith_length_m / (above + 0.15 * pow(93.885 - zenith_deg, -1.253));
 }
 
-// Extinction of `air_m` of air and `haze_m` of haze.
+// Returns the transmittance of `air_m` metres of air and `haze_m` metres of haze.
 vec3 homogeneous_extinction(IN(Homogeneous) m, float air_m, float haze_m) {
   return exp(-(m.air_scattering * air_m + m.haze_extinction * haze_m));
 }
 
-// The sun's light on the ground, across its direction, relative to that above the atmosphere.
+// Returns the direct sunlight at the ground on a surface that faces the sun, relative to that above the atmosphere.
 vec3 homogeneous_sun(IN(Homogeneous) m, float mu_s) {
   float visible = m.sun_radius_rad > 0.0 ? sun_disc_visibility(0.0, mu_s, m.planet_radius_m, m.sun_radius_rad)
                                          : (mu_s < 0.0 ? 0.0 : 1.0);
@@ -33,7 +34,7 @@ vec3 homogeneous_sun(IN(Homogeneous) m, float mu_s) {
          visible;
 }
 
-// (1 - e^(-beta s)) / beta: s where there is nothing.
+// Returns (1 - exp(-beta s)) / beta, which is s for beta = 0.
 float homogeneous_attenuated_length(float beta, float s) {
   float x = beta * s;
   return x > 0.01 ? (1.0 - exp(-x)) / beta : s * (1.0 - x * (0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0))));
@@ -44,16 +45,16 @@ vec3 homogeneous_attenuated_lengths(vec3 beta, float s) {
               homogeneous_attenuated_length(beta.z, s));
 }
 
-// What a ray passes: `near_air_m` of air, then haze_m of both, then what is left of air_m.
+// The medium along a path: first `near_air_m` of air alone, then `haze_m` of air and haze, then the rest of `air_m`.
 struct HomogeneousPath {
   float air_m;
   float haze_m;  // at most air_m
   float near_air_m;
-  float mu_s;  // where the sunlight is taken from
+  float mu_s;  // cosine of the sun's zenith angle for the sunlight on this path
 };
 
-// Light scattered into a ray, per unit of the sun's light on the ground; `extinction` of the whole path.
-// Without near_air_m this is the sky equation of the two shells, and with air_m = haze_m equation 4.
+// Returns the in-scattered radiance per unit of sunlight at the ground, and the transmittance of the whole path in
+// `extinction`. With near_air_m = 0 this is the two-shell sky equation; with air_m = haze_m as well, it is equation 4.
 vec3 homogeneous_inscattering(IN(Homogeneous) m, IN(HomogeneousPath) path, float nu, OUT(vec3) extinction) {
   float far_air_m = max(path.air_m - path.haze_m - path.near_air_m, 0.0);
   vec3 air = m.air_scattering * rayleigh_phase(nu);
@@ -67,14 +68,15 @@ vec3 homogeneous_inscattering(IN(Homogeneous) m, IN(HomogeneousPath) path, float
          through_both * air * homogeneous_attenuated_lengths(m.air_scattering, far_air_m);
 }
 
-// Optical length of one layer along a ray that ends on a surface `end_m` away, density falling with altitude:
-// seen from the lower end the whole layer has the length of equation 5, of which the ray takes its part.
+// Returns the optical length of one layer along a ray to a surface `end_m` away, with a density that falls with
+// altitude. From the lower end upwards, the whole layer has the length of equation 5; the ray gets its part of that.
 float homogeneous_falling_length(float zenith_length_m, float low_m, float mu_up, float end_m) {
   float whole = homogeneous_optical_length(zenith_length_m, mu_up);
   return exp(min(-low_m / zenith_length_m, 0.0)) * homogeneous_attenuated_length(1.0 / whole, end_m);
 }
 
-// The same for a ray that leaves the layer; `near` is the part before the ray's lowest point.
+// Returns the optical length of one layer along a ray that leaves the layer. `near` is the part before the ray's lowest
+// point.
 float homogeneous_leaving_length(float zenith_length_m, float h, float mu, float perigee_m, OUT(float) near) {
   float here = exp(min(-h / zenith_length_m, 0.0)) * homogeneous_optical_length(zenith_length_m, abs(mu));
   near = 0.0;
@@ -86,8 +88,9 @@ float homogeneous_leaving_length(float zenith_length_m, float h, float mu, float
   return near + to_perigee;
 }
 
-// The path of a ray from an eye anywhere to a surface `end_m` away, or, with end_m < 0, to the ground at sea level or
-// out into space. Published are eyes near the ground; from above the atmosphere the ray begins where it enters.
+// Returns the path of a ray from an eye at any altitude to a surface `end_m` away. With end_m < 0 the ray goes to the
+// ground at sea level or out into space. The article only describes eyes near the ground; from above the atmosphere,
+// our ray begins where it enters.
 HomogeneousPath homogeneous_path(IN(Homogeneous) m, float h, float mu, float mu_s, float nu, float end_m) {
   float R = m.planet_radius_m;
   HomogeneousPath path;
@@ -108,7 +111,7 @@ HomogeneousPath homogeneous_path(IN(Homogeneous) m, float h, float mu, float mu_
   }
   float perigee_d = -(R + h) * mu;
   if (h > m.atmosphere_height_m) {
-    // In space: by the sun at the ray's lowest point.
+    // The eye is in space: use the sunlight at the ray's lowest point.
     float lowest = end >= 0.0 ? end : max(perigee_d, 0.0);
     float r = R + altitude_along(h, mu, lowest, R);
     path.mu_s = clamp(((R + h) * mu_s + lowest * nu) / max(r, 1.0), -1.0, 1.0);
@@ -120,7 +123,7 @@ HomogeneousPath homogeneous_path(IN(Homogeneous) m, float h, float mu, float mu_
       path.haze_m = length_m;
       return path;
     }
-    // From the lower end upwards.
+    // Evaluate the ray from its lower end upwards.
     float high_m = h > m.atmosphere_height_m ? m.atmosphere_height_m : h;
     float end_altitude = altitude_along(h, mu, end, R);
     bool down = end_altitude < high_m;

@@ -1,12 +1,13 @@
-// Densities, extinction and transmittance of the medium. A column is the integral of the three relative
-// densities (x: Rayleigh, y: aerosol, z: ozone) along a path [m].
+// Densities, extinction and transmittance of the participating medium. A density integral is the integral of the three
+// relative densities (x: Rayleigh, y: aerosol, z: ozone) along a path [m].
 #ifndef TYNDALL_LIB_MEDIUM
 #define TYNDALL_LIB_MEDIUM
 
 #include "lib/portable.glsl"
 #include "shared/medium.h"
 
-// Densities relative to sea level (ozone: to the peak of its tent-shaped layer); zero above the top.
+// Returns the densities at altitude h, relative to sea level (ozone: to the peak of its tent-shaped layer). They are
+// zero above the top of the atmosphere.
 vec3 densities(IN(Medium) m, float h) {
   if (h > m.atmosphere_height_m) {
     return vec3(0.0);
@@ -15,13 +16,13 @@ vec3 densities(IN(Medium) m, float h) {
   return vec3(exp(min(-h / m.rayleigh_scale_height_m, 60.0)), exp(min(-h / m.mie_scale_height_m, 60.0)), ozone);
 }
 
-// Mean densities between two points, from those at both: exponential profiles exactly, where altitude is linear
-// between them; `climb` is their difference in altitude [m].
+// Returns the mean densities between two points with the densities a and b. `climb` is their difference in altitude
+// [m]. Exact for exponential profiles where altitude is linear between the points.
 vec3 mean_densities(IN(Medium) m, vec3 a, vec3 b, float climb) {
   float rayleigh = climb / m.rayleigh_scale_height_m;
   float mie = climb / m.mie_scale_height_m;
   vec3 mean = 0.5 * (a + b);
-  // Level: the difference of nearly equal numbers would lose its digits, and the mean is good to 1e-5.
+  // On a nearly level path a - b would cancel; the arithmetic mean is then accurate to 1e-5.
   if (abs(rayleigh) > 0.01) {
     mean.x = (a.x - b.x) / rayleigh;
   }
@@ -31,14 +32,14 @@ vec3 mean_densities(IN(Medium) m, vec3 a, vec3 b, float climb) {
   return mean;
 }
 
-// Optical depth of a column, per channel.
-vec3 optical_depth(IN(Medium) m, vec3 column) {
-  return m.rayleigh_scattering * column.x + m.mie_extinction * column.y + m.ozone_absorption * column.z;
+// Returns the optical depth per channel for a density integral.
+vec3 optical_depth(IN(Medium) m, vec3 integral) {
+  return m.rayleigh_scattering * integral.x + m.mie_extinction * integral.y + m.ozone_absorption * integral.z;
 }
 
-// Extinction coefficient at altitude h [1/m].
+// Returns the extinction coefficient at altitude h [1/m].
 vec3 extinction_at(IN(Medium) m, float h) { return optical_depth(m, densities(m, h)); }
 
-vec3 transmittance(IN(Medium) m, vec3 column) { return exp(-optical_depth(m, column)); }
+vec3 transmittance(IN(Medium) m, vec3 integral) { return exp(-optical_depth(m, integral)); }
 
 #endif

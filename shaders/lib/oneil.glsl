@@ -1,11 +1,12 @@
-// O'Neil, "Accurate Atmospheric Scattering", GPU Gems 2 (2005), chapter 16: light scattered once, by the midpoint
-// rule with few points on the ray, and with columns of air that are not integrated but come from a function of
-// altitude and angle: the scale function, or the table that preceded it (O'Neil 2004). Two species with a scale
-// height each; no ozone. x of a vec2 is Rayleigh, y the aerosol; columns in m of air as at sea level.
+// The model of O'Neil, "Accurate Atmospheric Scattering", GPU Gems 2 (2005), chapter 16: single scattering by the
+// midpoint rule with few points on the ray. Density integrals are not computed numerically; they come from a function
+// of altitude and angle: the scale function, or the table that preceded it (O'Neil 2004). There are two species, each
+// with a scale height, and no ozone. In a vec2, x is Rayleigh and y is the aerosol. Density integrals are in metres of
+// sea-level density.
 //
-// As printed, one polynomial answers for every angle, downwards as well. Here (kOneilComputed) it is fitted to
-// the planet, and asked for outward rays only: the column of a ray that comes down is that of its way back, and
-// one that passes its lowest point is put together from two. docs/oneil.md has the equations.
+// In the published form, one polynomial covers all angles, including downward ones. Our form (kOneilComputed) is fitted
+// to the planet and is evaluated for outward rays only: a downward ray uses the integral of the reversed ray, and a ray
+// through its lowest point adds two outward ones. docs/oneil.md has the equations.
 #ifndef TYNDALL_LIB_ONEIL
 #define TYNDALL_LIB_ONEIL
 
@@ -14,21 +15,21 @@
 #include "lib/single_scattering.glsl"
 #include "shared/oneil.h"
 
-const uint kOneilComputed = 0u;   // scale function fitted to planet and scale heights
-const uint kOneilPublished = 1u;  // the polynomial and the equations as printed
-const uint kOneilTable = 2u;      // altitude times angle
+const uint kOneilComputed = 0u;   // scale function, fitted to the planet and the scale heights
+const uint kOneilPublished = 1u;  // polynomial and equations as published
+const uint kOneilTable = 2u;      // table over altitude and angle
 
-const uint kOneilUniform = 0u;    // points evenly along the ray, as printed
-const uint kOneilByDensity = 1u;  // points where most of the air is that can be seen
+const uint kOneilUniform = 0u;    // evenly spaced points along the ray, as published
+const uint kOneilByDensity = 1u;  // points where most of the visible medium is
 
-// GLSL may give these as constants: of a variable CPU devices go both ways, and the search for places of points is most
-// of the work.
+// Shaders may define these as constants. Branches on a variable are slow on CPU devices, which execute both sides, and
+// the search for the sample points takes most of the time.
 #ifndef ONEIL_INTEGRAL_METHOD
 #define ONEIL_INTEGRAL_METHOD(o) o.integral_method
 #define ONEIL_SPACING(o) o.spacing
 #endif
 
-// The table: GLSL reads a buffer by ONEIL_TEXEL, C++ passes a pointer.
+// The table: GLSL reads a buffer through ONEIL_TEXEL, C++ passes a pointer.
 #ifndef ONEIL_TABLE
 #define ONEIL_TABLE uint
 #endif
@@ -36,25 +37,26 @@ const uint kOneilByDensity = 1u;  // points where most of the air is that can be
 #define ONEIL_TEXEL(table, index) vec4(0.0)
 #endif
 
-// Column from sea level outwards to infinity [m] under the cosine c to the vertical. bend stretches the axis
-// where thin air on a large planet makes the function steep; 0 is the printed form, and c may be negative
-// then.
+// Returns the density integral from sea level to infinity [m] for a zenith cosine c. `bend` stretches the axis where a
+// thin atmosphere on a large planet makes the function steep. bend = 0 is the published form, for which c may be
+// negative.
 float oneil_scale(IN(OneilScale) s, float c) {
   float b = 1.0 / (1.0 + s.bend * c);
   float x = (1.0 - c) * b;
   return s.scale_height_m * (1.0 + s.bend) * b * exp(s.k0 + x * (s.k1 + x * (s.k2 + x * (s.k3 + x * s.k4))));
 }
 
-// The same from altitude h >= 0, c >= 0, over a planet of radius R. Seen from the centre the air is as curved
-// as at sea level once lengths along the horizon shrink by sqrt(r / R); what is left out is of the order of the
-// scale height over R.
+// Returns the density integral from altitude h >= 0 to infinity for c >= 0, over a planet of radius R. The atmosphere
+// above h looks like that above sea level when lengths along the horizon are scaled by sqrt(r / R); the error is of the
+// order of the scale height over R.
 float oneil_outward(IN(OneilScale) s, float h, float c, float R) {
   float stretch = sqrt(1.0 + h / R);
   return exp(min(-h / s.scale_height_m, 60.0)) * stretch * oneil_scale(s, c * stretch);
 }
 
-// Entry of the table: x density and y column of Rayleigh scattering, zw of the aerosol. Altitude and cosine are
-// spread by their square roots over it, because both matter most near 0. Columns end at the top.
+// Returns the table's entry: x is the density and y the density integral of Rayleigh scattering, z and w are those of
+// the aerosol. Both axes are spaced by the square root, because altitude and cosine matter most near 0. The integrals
+// end at the top of the atmosphere.
 vec4 oneil_table(IN(Oneil) o, ONEIL_TABLE table, float h, float c, float top) {
   float last = float(o.table_size - 1u);
   float u = sqrt(clamp(h / top, 0.0, 1.0)) * last;
@@ -77,7 +79,7 @@ vec2 oneil_densities(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h) {
   return vec2(exp(min(-h / o.rayleigh.scale_height_m, 60.0)), exp(min(-h / o.mie.scale_height_m, 60.0)));
 }
 
-// Column outwards from altitude h under c; c >= 0 but with the printed function.
+// Returns the density integral outwards from altitude h at zenith cosine c. Only the published function accepts c < 0.
 vec2 oneil_density_integral(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h, float c) {
   if (ONEIL_INTEGRAL_METHOD(o) == kOneilTable) {
     vec4 entry = oneil_table(o, table, h, c, m.atmosphere_height_m);
@@ -91,30 +93,52 @@ vec2 oneil_density_integral(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float 
   return vec2(oneil_outward(o.rayleigh, above, c, R), oneil_outward(o.mie, above, c, R));
 }
 
-// Column between two points of a ray at altitudes ha and hb, where the signed distances from its lowest point
-// are qa < qb; that point is at altitude hp. For the printed function `reversed` says that the ray's end is
-// below its beginning: columns are then looked up towards the beginning.
-vec2 oneil_density_integral_between(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float qa, float ha, float qb,
-                                    float hb, float hp, bool reversed) {
-  float R = m.planet_radius_m;
-  float ca = clamp(qa / (R + ha), -1.0, 1.0);
-  float cb = clamp(qb / (R + hb), -1.0, 1.0);
-  if (ONEIL_INTEGRAL_METHOD(o) == kOneilPublished) {
-    return reversed ? oneil_density_integral(m, o, table, hb, -cb) - oneil_density_integral(m, o, table, ha, -ca)
-                    : oneil_density_integral(m, o, table, ha, ca) - oneil_density_integral(m, o, table, hb, cb);
-  }
-  vec2 a = oneil_density_integral(m, o, table, ha, abs(ca));
-  vec2 b = oneil_density_integral(m, o, table, hb, abs(cb));
-  vec2 column = a - b;
-  if (qb <= 0.0) {
-    column = b - a;
-  } else if (qa < 0.0) {
-    column = 2.0 * oneil_density_integral(m, o, table, hp, 0.0) - a - b;
-  }
-  return max(column, vec2(0.0));
+// A ray: altitude of its origin, cosines of the view and sun zenith angles there, cosine of the angle between view
+// direction and sun.
+struct OneilRay {
+  float h0;
+  float mu;
+  float mu_s;
+  float nu;
+};
+
+// A point of a ray: its altitude, and its signed distance from the ray's perigee.
+struct OneilPoint {
+  float q;
+  float h;
+};
+
+OneilPoint oneil_point(IN(Medium) m, IN(OneilRay) ray, float d) {
+  OneilPoint point;
+  point.q = (m.planet_radius_m + ray.h0) * ray.mu + d;
+  point.h = min(altitude_along(ray.h0, ray.mu, d, m.planet_radius_m), m.atmosphere_height_m);
+  return point;
 }
 
-// Column from altitude h towards the sun at cosine c; the planet is no obstacle.
+// Returns the density integral between two points of a ray, a before b. The ray's perigee is at altitude hp. `reversed`
+// is for the published function only: the end of the ray is below its beginning, so the integrals are evaluated towards
+// the beginning.
+vec2 oneil_density_integral_between(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, IN(OneilPoint) a, IN(OneilPoint) b,
+                                    float hp, bool reversed) {
+  float R = m.planet_radius_m;
+  float ca = clamp(a.q / (R + a.h), -1.0, 1.0);
+  float cb = clamp(b.q / (R + b.h), -1.0, 1.0);
+  if (ONEIL_INTEGRAL_METHOD(o) == kOneilPublished) {
+    return reversed ? oneil_density_integral(m, o, table, b.h, -cb) - oneil_density_integral(m, o, table, a.h, -ca)
+                    : oneil_density_integral(m, o, table, a.h, ca) - oneil_density_integral(m, o, table, b.h, cb);
+  }
+  vec2 from_a = oneil_density_integral(m, o, table, a.h, abs(ca));
+  vec2 from_b = oneil_density_integral(m, o, table, b.h, abs(cb));
+  vec2 integral = from_a - from_b;
+  if (b.q <= 0.0) {
+    integral = from_b - from_a;
+  } else if (a.q < 0.0) {
+    integral = 2.0 * oneil_density_integral(m, o, table, hp, 0.0) - from_a - from_b;
+  }
+  return max(integral, vec2(0.0));
+}
+
+// Returns the density integral from altitude h towards the sun at zenith cosine c, ignoring the planet.
 vec2 oneil_sun_density_integral(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h, float c) {
   if (c >= 0.0 || ONEIL_INTEGRAL_METHOD(o) == kOneilPublished) {
     return oneil_density_integral(m, o, table, h, c);
@@ -123,35 +147,67 @@ vec2 oneil_sun_density_integral(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, fl
   return 2.0 * oneil_density_integral(m, o, table, lowest, 0.0) - oneil_density_integral(m, o, table, h, -c);
 }
 
-// On other planets than its own the printed function makes columns negative without bound.
-vec3 oneil_transmittance(IN(Medium) m, vec2 column) {
-  return exp(min(-(m.rayleigh_scattering * column.x + m.mie_extinction * column.y), vec3(40.0)));
+// Returns the transmittance. It is bounded because the published function, on planets other than its own, yields
+// arbitrarily negative density integrals.
+vec3 oneil_transmittance(IN(Medium) m, vec2 integral) {
+  return exp(min(-(m.rayleigh_scattering * integral.x + m.mie_extinction * integral.y), vec3(40.0)));
 }
 
-// Of the sun's light to altitude h; 0 where the planet hides it, but with the printed function, which grows
-// instead.
+// Returns the transmittance of sunlight down to altitude h. It is 0 in the planet's shadow, except with the published
+// function, which has no shadow.
 vec3 oneil_sunlight(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h, float c) {
   float visible = ONEIL_INTEGRAL_METHOD(o) == kOneilPublished ? 1.0 : sun_visibility(h, c, m.planet_radius_m);
   return visible * oneil_transmittance(m, oneil_sun_density_integral(m, o, table, h, c));
 }
 
-// A distance in [from, to] of the ray by which `share` of its air between the two has been crossed: the mean of
-// the shares of both species, whose columns from `from` to `to` are `whole`, and a part `even` of the length. Newton's
-// method in a bracket that shrinks; it comes from one side when `guess` lies between the densest air and the answer. To
-// `tolerance` in the share.
-float oneil_place(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h0, float mu, float hp, float from, float to,
-                  vec2 whole, float even, float share, float tolerance, float guess) {
-  float R = m.planet_radius_m;
-  float q0 = (R + h0) * mu;
-  float h_from = min(altitude_along(h0, mu, from, R), m.atmosphere_height_m);
-  float low = from;
-  float high = to;
+// A sunlit part of a ray, for the distribution of the sample points.
+struct OneilPart {
+  float from;  // distances from the ray's origin [m]
+  float to;
+  float perigee;    // altitude of the ray's perigee
+  vec2 integral;    // density integral of the part
+  float even;       // weight of the length in the distribution; the medium has the rest
+  float depth;      // optical depth of the part, mean of the channels
+  bool by_density;  // false: the points are evenly spaced
+};
+
+OneilPart oneil_part(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, IN(OneilRay) ray, float from, float to) {
+  OneilPart part;
+  part.from = from;
+  part.to = to;
+  part.perigee = perigee_altitude(ray.h0, ray.mu, m.planet_radius_m);
+  part.integral = vec2(1.0);
+  // In twilight the dense lower atmosphere is dark, so some points are spread evenly over the length.
+  part.even = clamp(0.5 - 4.0 * ray.mu_s, 0.0, 0.7);
+  part.depth = 0.0;
+  part.by_density = ONEIL_SPACING(o) == kOneilByDensity && ONEIL_INTEGRAL_METHOD(o) != kOneilPublished;
+  if (part.by_density) {
+    part.integral = oneil_density_integral_between(m, o, table, oneil_point(m, ray, from), oneil_point(m, ray, to),
+                                                   part.perigee, false);
+    part.by_density = min(part.integral.x, part.integral.y) > 1.0e-20;
+    vec3 tau = m.rayleigh_scattering * part.integral.x + m.mie_extinction * part.integral.y;
+    part.depth = min((tau.x + tau.y + tau.z) / 3.0, 20.0);
+  }
+  return part;
+}
+
+// Returns the distance at which `fraction` of the part has been crossed. The fraction is a mean of the fraction of the
+// length, weighted by part.even, and that of both species' density integrals. Uses Newton's method in a shrinking
+// bracket, which converges from one side if `guess` lies between the densest point and the solution. `tolerance` is the
+// accepted error of the fraction.
+float oneil_distance_at_fraction(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, IN(OneilRay) ray, IN(OneilPart) part,
+                                 float fraction, float tolerance, float guess) {
+  OneilPoint start = oneil_point(m, ray, part.from);
+  float low = part.from;
+  float high = part.to;
+  float length_m = part.to - part.from;
   float d = guess;
   for (int i = 0; i < 12; ++i) {
-    float h = min(altitude_along(h0, mu, d, R), m.atmosphere_height_m);
-    vec2 crossed = oneil_density_integral_between(m, o, table, q0 + from, h_from, q0 + d, h, hp, false) / whole;
-    vec2 slope = oneil_densities(m, o, table, h) / whole;
-    float missing = share - even * (d - from) / (to - from) - (0.5 - 0.5 * even) * (crossed.x + crossed.y);
+    OneilPoint here = oneil_point(m, ray, d);
+    vec2 crossed = oneil_density_integral_between(m, o, table, start, here, part.perigee, false) / part.integral;
+    vec2 slope = oneil_densities(m, o, table, here.h) / part.integral;
+    float missing =
+        fraction - part.even * (d - part.from) / length_m - (0.5 - 0.5 * part.even) * (crossed.x + crossed.y);
     if (abs(missing) < tolerance) {
       break;
     }
@@ -160,134 +216,122 @@ float oneil_place(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h0, float 
     } else {
       high = d;
     }
-    float next = d + missing / max((0.5 - 0.5 * even) * (slope.x + slope.y) + even / (to - from), 1.0e-30);
+    float next = d + missing / max((0.5 - 0.5 * part.even) * (slope.x + slope.y) + part.even / length_m, 1.0e-30);
     d = next > low && next < high ? next : 0.5 * (low + high);
   }
   return d;
 }
 
-// Share of the air before which a fraction `seen` of what an eye sees of it lies, if the air between the eye and all
-// of it has this optical depth.
-float oneil_seen(float seen, float depth) {
+// Returns the fraction of the medium that lies before the point at which the fraction `seen` of the visible light has
+// been collected. `depth` is the optical depth of the whole path.
+float oneil_fraction_before(float seen, float depth) {
   return depth > 0.01 ? -log(max(1.0 - seen, 0.0) + seen * exp(-depth)) / depth : seen;
 }
 
-// Light of the part [start, end] of the ray (h0, mu, mu_s, nu: see single_scattering), which begins and ends in
-// the air, but for the phase functions: radiance / E0 is rayleigh times p_R(nu) plus mie times p_M(nu); and the
-// transmittance of that part. The points are spread over what the sun reaches (as printed: evenly over the
-// part).
-void oneil_scattering(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h0, float mu, float mu_s, float nu,
-                      float start, float end, OUT(vec3) rayleigh, OUT(vec3) mie, OUT(vec3) through) {
+// Single scattering along a ray without the phase functions: radiance / E0 = rayleigh * p_R(nu) + mie * p_M(nu).
+struct OneilLight {
+  vec3 rayleigh;
+  vec3 mie;
+  vec3 transmittance;
+};
+
+// Computes single scattering on the part [start, end] of the ray, which must lie within the atmosphere. The sample
+// points are distributed over the sunlit medium; in the published form, evenly over the part.
+OneilLight oneil_scattering(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, IN(OneilRay) ray, float start, float end) {
   float R = m.planet_radius_m;
-  float top = m.atmosphere_height_m;
-  float q0 = (R + h0) * mu;
-  float hp = perigee_altitude(h0, mu, R);
-  float ha = min(altitude_along(h0, mu, start, R), top);
-  float hb = min(altitude_along(h0, mu, end, R), top);
-  bool reversed = hb < ha - 1.0e-4 * top;  // more than a rounding error: from top to top is not
-  rayleigh = vec3(0.0);
-  mie = vec3(0.0);
-  through =
-      oneil_transmittance(m, oneil_density_integral_between(m, o, table, q0 + start, ha, q0 + end, hb, hp, reversed));
+  float hp = perigee_altitude(ray.h0, ray.mu, R);
+  OneilPoint a = oneil_point(m, ray, start);
+  OneilPoint b = oneil_point(m, ray, end);
+  bool reversed = b.h < a.h - 1.0e-4 * m.atmosphere_height_m;  // more than a rounding error, as from top to top
+  OneilLight light;
+  light.rayleigh = vec3(0.0);
+  light.mie = vec3(0.0);
+  light.transmittance = oneil_transmittance(m, oneil_density_integral_between(m, o, table, a, b, hp, reversed));
 
   float first_end = end;
   float second_start = end;
   float dark_start;
   float dark_end;
-  if (ONEIL_INTEGRAL_METHOD(o) != kOneilPublished && shadow_segment(h0, mu, mu_s, nu, R, dark_start, dark_end)) {
+  if (ONEIL_INTEGRAL_METHOD(o) != kOneilPublished &&
+      shadow_segment(ray.h0, ray.mu, ray.mu_s, ray.nu, R, dark_start, dark_end)) {
     first_end = clamp(dark_start, start, end);
     second_start = clamp(dark_end, start, end);
   }
-  for (int part = 0; part < 2; ++part) {
-    float from = part == 0 ? start : second_start;
-    float span = (part == 0 ? first_end : end) - from;
+  float count = float(o.samples);
+  for (int side = 0; side < 2; ++side) {
+    float from = side == 0 ? start : second_start;
+    float span = (side == 0 ? first_end : end) - from;
     if (span > 0.0) {
-      float to = from + span;
-      float count = float(o.samples);
-      bool by_column = ONEIL_SPACING(o) == kOneilByDensity && ONEIL_INTEGRAL_METHOD(o) != kOneilPublished;
-      vec2 whole = vec2(1.0);
-      float depth = 0.0;
-      if (by_column) {
-        float h_from = min(altitude_along(h0, mu, from, R), top);
-        float h_to = min(altitude_along(h0, mu, to, R), top);
-        whole = oneil_density_integral_between(m, o, table, q0 + from, h_from, q0 + to, h_to, hp, false);
-        by_column = min(whole.x, whole.y) > 1.0e-20;
-        vec3 tau = m.rayleigh_scattering * whole.x + m.mie_extinction * whole.y;
-        depth = min((tau.x + tau.y + tau.z) / 3.0, 20.0);
-      }
-      // In twilight the dense air below gets no light: there they are spread over the whole ray as well.
-      float even = clamp(0.5 - 4.0 * mu_s, 0.0, 0.7);
-      float densest = clamp(-q0, from, to);
+      OneilPart part = oneil_part(m, o, table, ray, from, from + span);
+      float densest = clamp(-((R + ray.h0) * ray.mu), from, part.to);
       float last = densest;
       for (uint i = 0u; i < o.samples; ++i) {
-        // Away from the densest air, so that each place starts from the one before.
-        float place = (float(densest < to ? i : o.samples - 1u - i) + 0.5) / count;
-        float d = from + place * span;
-        float part_of_air = 1.0 / count;
-        if (by_column) {
-          float share = oneil_seen(place, depth);
-          part_of_air = oneil_seen(place + 0.5 / count, depth) - oneil_seen(place - 0.5 / count, depth);
-          d = oneil_place(m, o, table, h0, mu, hp, from, to, whole, even, share, 0.02 * part_of_air, last);
-          last = d < densest && densest < to ? densest : d;
+        // Go away from the densest point, so that each search starts at the previous result.
+        float seen = (float(densest < part.to ? i : o.samples - 1u - i) + 0.5) / count;
+        float d = from + seen * span;
+        float fraction = 1.0 / count;
+        if (part.by_density) {
+          fraction = oneil_fraction_before(seen + 0.5 / count, part.depth) -
+                     oneil_fraction_before(seen - 0.5 / count, part.depth);
+          d = oneil_distance_at_fraction(m, o, table, ray, part, oneil_fraction_before(seen, part.depth),
+                                         0.02 * fraction, last);
+          last = d < densest && densest < part.to ? densest : d;
         }
-        float h = min(altitude_along(h0, mu, d, R), top);
-        float sun = clamp(((R + h0) * mu_s + d * nu) / (R + h), -1.0, 1.0);
-        vec2 column = oneil_density_integral_between(m, o, table, q0 + start, ha, q0 + d, h, hp, reversed) +
-                      oneil_sun_density_integral(m, o, table, h, sun);
-        vec2 density = oneil_densities(m, o, table, h);
+        OneilPoint here = oneil_point(m, ray, d);
+        float sun = clamp(((R + ray.h0) * ray.mu_s + d * ray.nu) / (R + here.h), -1.0, 1.0);
+        vec2 integral = oneil_density_integral_between(m, o, table, a, here, hp, reversed) +
+                        oneil_sun_density_integral(m, o, table, here.h, sun);
+        vec2 density = oneil_densities(m, o, table, here.h);
         float length_m = span / count;
-        if (by_column) {
-          length_m = part_of_air /
-                     max((0.5 - 0.5 * even) * (density.x / whole.x + density.y / whole.y) + even / span, 1.0e-30);
+        if (part.by_density) {
+          vec2 relative = density / part.integral;
+          length_m = fraction / max((0.5 - 0.5 * part.even) * (relative.x + relative.y) + part.even / span, 1.0e-30);
         }
-        vec3 arrives = oneil_transmittance(m, column) * length_m;
-        rayleigh += arrives * density.x;
-        mie += arrives * density.y;
+        vec3 arriving = oneil_transmittance(m, integral) * length_m;
+        light.rayleigh += arriving * density.x;
+        light.mie += arriving * density.y;
       }
     }
   }
-  rayleigh *= m.rayleigh_scattering;
-  mie *= m.mie_scattering;
+  light.rayleigh *= m.rayleigh_scattering;
+  light.mie *= m.mie_scattering;
+  return light;
 }
 
-// Radiance / E0 [1/sr] from what oneil_scattering found.
+// Returns radiance / E0 [1/sr]: applies the phase functions to the result of oneil_scattering.
 vec3 oneil_radiance(IN(Medium) m, IN(Oneil) o, float nu, vec3 rayleigh, vec3 mie) {
-  float even = 0.0795774715459477;
-  return rayleigh * (o.rayleigh_phase != 0u ? rayleigh_phase(nu) : even) + mie * mie_phase(m, nu);
+  float uniform_phase = 0.0795774715459477;
+  return rayleigh * (o.rayleigh_phase != 0u ? rayleigh_phase(nu) : uniform_phase) + mie * mie_phase(m, nu);
 }
 
-// Moves a ray from above the top to where it enters the air; end is measured from there then.
-void oneil_enter(float top, float R, INOUT(float) h0, INOUT(float) mu, INOUT(float) mu_s, float nu, float start,
-                 INOUT(float) end) {
+// Returns the ray from the point at distance `start` [m], where it enters the atmosphere from above the top. A ray that
+// begins inside (start = 0) is returned as it is.
+OneilRay oneil_enter(IN(Medium) m, IN(OneilRay) ray, float start) {
+  OneilRay entered = ray;
   if (start > 0.0) {
-    float r0 = R + h0;
-    float lowest = perigee_altitude(h0, mu, R);
-    mu = -sqrt(clamp((top - lowest) * (2.0 * R + top + lowest), 0.0, (R + top) * (R + top))) / (R + top);
-    mu_s = clamp((r0 * mu_s + start * nu) / (R + top), -1.0, 1.0);
-    h0 = top;
-    end -= start;
+    float R = m.planet_radius_m;
+    float top = m.atmosphere_height_m;
+    float perigee = perigee_altitude(ray.h0, ray.mu, R);
+    entered.mu = -sqrt(clamp((top - perigee) * (2.0 * R + top + perigee), 0.0, (R + top) * (R + top))) / (R + top);
+    entered.mu_s = clamp(((R + ray.h0) * ray.mu_s + start * ray.nu) / (R + top), -1.0, 1.0);
+    entered.h0 = top;
   }
+  return entered;
 }
 
-// Radiance / E0 [1/sr] of a ray to its end in the ground or at the top, and the transmittance there.
-vec3 oneil_to_end(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h0, float mu, float mu_s, float nu,
-                  OUT(vec3) through) {
+// Returns radiance / E0 [1/sr] of a ray up to the ground or the top of the atmosphere, and the transmittance to that
+// end.
+vec3 oneil_to_end(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, IN(OneilRay) ray, OUT(vec3) path_transmittance) {
   float start;
   float end;
   bool hits_ground;
-  through = vec3(1.0);
-  float top = m.atmosphere_height_m;
-  if (!atmosphere_segment(h0, mu, top, m.planet_radius_m, start, end, hits_ground)) {
+  path_transmittance = vec3(1.0);
+  if (!atmosphere_segment(ray.h0, ray.mu, m.atmosphere_height_m, m.planet_radius_m, start, end, hits_ground)) {
     return vec3(0.0);
   }
-  float altitude = h0;
-  float view = mu;
-  float sun = mu_s;
-  oneil_enter(top, m.planet_radius_m, altitude, view, sun, nu, start, end);
-  vec3 rayleigh;
-  vec3 mie;
-  oneil_scattering(m, o, table, altitude, view, sun, nu, 0.0, end, rayleigh, mie, through);
-  return oneil_radiance(m, o, nu, rayleigh, mie);
+  OneilLight light = oneil_scattering(m, o, table, oneil_enter(m, ray, start), 0.0, start > 0.0 ? end - start : end);
+  path_transmittance = light.transmittance;
+  return oneil_radiance(m, o, ray.nu, light.rayleigh, light.mie);
 }
 
 #endif

@@ -1,23 +1,24 @@
-// Columns of the medium along rays, in closed form: no table and no marching. Where a ray passes below sea
-// level the densities continue; occlusion is the caller's business.
+// Density integrals along rays in closed form, without a table and without marching. The density profiles continue
+// below sea level. Occlusion by the planet is left to the caller.
 //
-// Exponential species. With q the signed distance from the ray's perigee (q0 = r0 mu at its origin) and y the
-// altitude gained, the column to infinity is exp(-h0 / H) * integral of exp(-y(q) / H) dq. To first order
-// y = (q^2 - q0^2) / (2 r0), so with s = sqrt(2 r0 H) and p = q / s it is exp(-h0 / H) s E(p0), where
-// E(p) = exp(p^2) * integral from p of exp(-t^2) dt = sqrt(pi) / 2 erfcx(p); the next order in H / r0
-// multiplies it by 1 + c(p0) H / r0, where c is the mean of (p^2 - p0^2)^2 / 2 under exp(-p^2) beyond p0:
-// from 3/8 (horizontal) to 1 (vertical). Both are replaced by rational functions fitted to them (relative
-// errors 5e-8 and 1.1e-3). What is left out is of order 0.2 (H / r0)^2: 1e-4 for the worst planet meant (H =
-// 20 km on r = 1000 km), 3e-7 on Earth.
+// Exponential species: let q be the signed distance from the ray's perigee (q0 = r0 mu at its origin) and y the
+// altitude gained. The density integral to infinity is exp(-h0 / H) times the integral of exp(-y(q) / H) dq.
+// To first order y = (q^2 - q0^2) / (2 r0). With s = sqrt(2 r0 H) and p = q / s, the integral is exp(-h0 / H) s E(p0),
+// where E(p) = exp(p^2) * integral from p of exp(-t^2) dt = sqrt(pi) / 2 erfcx(p).
+// The next order in H / r0 multiplies this by 1 + c(p0) H / r0, where c is the mean of (p^2 - p0^2)^2 / 2, weighted by
+// exp(-p^2), beyond p0. It runs from 3/8 (horizontal) to 1 (vertical).
+// Rational functions are fitted to E and c, with relative errors of 5e-8 and 1.1e-3. The remaining error is of order
+// 0.2 (H / r0)^2: 1e-4 for the worst supported planet (H = 20 km, r = 1000 km) and 3e-7 on Earth.
 #ifndef TYNDALL_LIB_OPTICAL_DEPTH
 #define TYNDALL_LIB_OPTICAL_DEPTH
 
 #include "lib/geometry.glsl"
 #include "lib/medium.glsl"
 
-// Column to infinity of one exponential species, outwards (q0 = r0 mu >= 0) from altitude h0 [m].
+// Returns the density integral of one exponential species from altitude h0 to infinity [m], for an outward ray (q0 = r0
+// mu >= 0).
 float exponential_density_integral(float h0, float q0, float scale_height, float R) {
-  float r0 = max(R + h0, scale_height);  // only deep inside the planet is it smaller
+  float r0 = max(R + h0, scale_height);  // smaller only deep inside the planet
   float s = sqrt(2.0 * r0 * scale_height);
   float p = q0 / s;
   float e_above = 0.8862269642 + p * (1.1930734838 + p * (0.7531244636 + p * (0.2549023374 + p * 0.04060864678)));
@@ -29,8 +30,8 @@ float exponential_density_integral(float h0, float q0, float scale_height, float
   return exp(min(-h0 / scale_height, 60.0)) * path;
 }
 
-// Ozone column of a piece of a ray on which the density is linear in altitude, outwards from (ha, qa) to
-// (hb, qb), where it is 0 at altitude h_zero and 1 at h_one. Four-point Lobatto quadrature.
+// Returns the density integral of ozone along an outward piece of a ray from (ha, qa) to (hb, qb), on which the density
+// is linear in altitude: 0 at h_zero and 1 at h_one. Uses four-point Lobatto quadrature.
 float linear_density_integral(float ha, float qa, float hb, float qb, float h_zero, float h_one, float R) {
   if (hb <= ha) {
     return 0.0;
@@ -47,7 +48,7 @@ float linear_density_integral(float ha, float qa, float hb, float qb, float h_ze
   return span * mean_altitude / (h_one - h_zero);
 }
 
-// Ozone column of a path outwards from altitude ha with qa = ra mu >= 0 to altitude hb.
+// Returns the density integral of ozone along an outward path from altitude ha, with qa = ra mu >= 0, to altitude hb.
 float ozone_density_integral(IN(Medium) m, float ha, float qa, float hb) {
   float low = m.ozone_centre_m - m.ozone_half_width_m;
   float high = m.ozone_centre_m + m.ozone_half_width_m;
@@ -66,7 +67,7 @@ float ozone_density_integral(IN(Medium) m, float ha, float qa, float hb) {
          linear_density_integral(h1, q1, h3, q3, high, m.ozone_centre_m, R);
 }
 
-// Whether the ozone tent has one of its three kinks between altitudes low and high.
+// Returns whether one of the three kinks of the ozone profile lies between the altitudes low and high.
 bool crosses_ozone_kink(IN(Medium) m, float low, float high) {
   float low_distance = low - m.ozone_centre_m;
   float high_distance = high - m.ozone_centre_m;
@@ -75,8 +76,8 @@ bool crosses_ozone_kink(IN(Medium) m, float low, float high) {
          (low_distance < w && high_distance > w);
 }
 
-// Column of the three species between altitudes ha and hb, at distances da < db from the origin of the ray
-// (h0, mu), all within the atmosphere.
+// Returns the density integrals of the three species between the altitudes ha and hb, at distances da < db from the
+// origin of the ray (h0, mu). The whole interval must lie within the atmosphere.
 vec3 density_integral_between(IN(Medium) m, float h0, float mu, float da, float ha, float db, float hb) {
   float R = m.planet_radius_m;
   float q0 = (R + h0) * mu;
@@ -93,12 +94,12 @@ vec3 density_integral_between(IN(Medium) m, float h0, float mu, float da, float 
   float span = db - da;
   float scale = min(m.rayleigh_scale_height_m, m.mie_scale_height_m);
   bool is_short = abs(hb - ha) < scale && span * span < 2.0 * (R + ha) * scale;
-  // Ozone by quadrature where its density is smooth or the altitudes differ by too little to be subtracted.
+  // Integrate ozone numerically where its profile is smooth, or where subtracting the altitudes would cancel.
   bool smooth_ozone = is_short && (highest - hp < 1.0e-4 * m.ozone_half_width_m || !crosses_ozone_kink(m, hp, highest));
 
   float ozone = 0.0;
   if (!smooth_ozone && highest > m.ozone_centre_m - m.ozone_half_width_m) {
-    // Outwards: from the lower end, or from the perigee to each end.
+    // Split into outward paths: from the lower end, or from the perigee to each end.
     float from = passes_perigee ? hp : qa >= 0.0 ? ha : hb;
     float q = passes_perigee ? 0.0 : abs(qa >= 0.0 ? qa : qb);
     float to = passes_perigee || qa < 0.0 ? ha : hb;
@@ -109,14 +110,14 @@ vec3 density_integral_between(IN(Medium) m, float h0, float mu, float da, float 
   }
 
   if (is_short) {
-    // The closed form would be a small difference of large numbers. Three-point Gauss-Legendre.
+    // The closed form would subtract nearly equal numbers. Use three-point Gauss-Legendre quadrature instead.
     float middle = 0.5 * (da + db);
     float offset = 0.387298334620742 * span;
     vec3 centre = densities(m, min(altitude_along(h0, mu, middle, R), m.atmosphere_height_m));
     vec3 sides = densities(m, min(altitude_along(h0, mu, middle - offset, R), m.atmosphere_height_m)) +
                  densities(m, min(altitude_along(h0, mu, middle + offset, R), m.atmosphere_height_m));
-    vec3 column = (8.0 * centre + 5.0 * sides) * (span / 18.0);
-    return vec3(column.x, column.y, smooth_ozone ? column.z : ozone);
+    vec3 integral = (8.0 * centre + 5.0 * sides) * (span / 18.0);
+    return vec3(integral.x, integral.y, smooth_ozone ? integral.z : ozone);
   }
 
   float rayleigh_a = exponential_density_integral(ha, abs(qa), m.rayleigh_scale_height_m, R);
@@ -132,7 +133,8 @@ vec3 density_integral_between(IN(Medium) m, float h0, float mu, float da, float 
   return vec3(max(rayleigh, 0.0), max(mie, 0.0), ozone);
 }
 
-// Column from altitude h along cosine mu over the distance d. The part of the path above the top is empty.
+// Returns the density integrals from altitude h along cosine mu over the distance d. The part of the path above the top
+// of the atmosphere contributes nothing.
 vec3 density_integral_along(IN(Medium) m, float h, float mu, float d) {
   float top = m.atmosphere_height_m;
   float near;
@@ -151,7 +153,7 @@ vec3 density_integral_along(IN(Medium) m, float h, float mu, float d) {
   return density_integral_between(m, h, mu, da, ha, db, hb);
 }
 
-// Column from altitude h along cosine mu to the top of the atmosphere; the planet is no obstacle.
+// Returns the density integrals from altitude h along cosine mu to the top of the atmosphere, ignoring the planet.
 vec3 density_integral_to_top(IN(Medium) m, float h, float mu) { return density_integral_along(m, h, mu, 1.0e30); }
 
 #endif

@@ -1,18 +1,19 @@
-// Light scattered once: radiance / E0 [1/sr] of the air along a ray, lit by a point sun, over black ground.
-// The ray is split where it enters and leaves the planet's shadow (a half-infinite cylinder), found from
-// altitudes, and each lit part is cut into panels on which the integrand is resolved: by altitude against the
-// scale heights, by optical depth from the camera and, near the terminator, by the altitude of the sun ray's
-// perigee. Each panel takes four-point Gauss-Legendre quadrature of closed-form transmittances. A ray is (h0,
-// mu, mu_s, nu): altitude, cosines of the view and sun zenith angles at its origin, cosine between view
-// direction and sun.
+// Single scattering along a ray, lit by a point-sized sun, over black ground: radiance / E0 [1/sr].
+// The ray is split where it enters and leaves the planet's shadow, a half-infinite cylinder. Each lit part is divided
+// into panels that resolve the integrand: in altitude relative to the scale heights, in optical depth from the camera
+// and, near the terminator, in the perigee altitude of the sun ray. Each panel uses four-point Gauss-Legendre
+// quadrature with closed-form transmittances.
+// A ray is (h0, mu, mu_s, nu): the altitude of its origin, the cosines of the view and sun zenith angles there, and the
+// cosine of the angle between the view direction and the sun.
 #ifndef TYNDALL_LIB_SINGLE_SCATTERING
 #define TYNDALL_LIB_SINGLE_SCATTERING
 
 #include "lib/optical_depth.glsl"
 #include "lib/phase.glsl"
 
-// The part of the ray's whole line that lies in the planet's shadow: distances start <= end, or false.
-// r^2 - z^2 < R^2 with z = r0 mu_s + d nu < 0, as a quadratic in d without any squared radius.
+// Computes the part of the ray's infinite line that lies in the planet's shadow, as distances start <= end. Returns
+// false if there is none. Solves r^2 - z^2 < R^2 with z = r0 mu_s + d nu < 0 as a quadratic in d, without squared
+// radii.
 bool shadow_segment(float h0, float mu, float mu_s, float nu, float R, OUT(float) start, OUT(float) end) {
   start = 0.0;
   end = 0.0;
@@ -37,9 +38,9 @@ bool shadow_segment(float h0, float mu, float mu_s, float nu, float R, OUT(float
       low = root - b > 0.0 ? c / (root - b) : 0.0;
     }
   } else if (c >= 0.0) {
-    return false;  // along the axis of the cylinder, outside of it
+    return false;  // parallel to the cylinder's axis and outside of it
   }
-  // Behind the planet only: z < 0.
+  // The shadow exists only behind the planet, where z < 0.
   if (nu > 0.0) {
     high = min(high, -z0 / nu);
   } else if (nu < 0.0) {
@@ -52,8 +53,9 @@ bool shadow_segment(float h0, float mu, float mu_s, float nu, float R, OUT(float
   return high > low;
 }
 
-// Length of the next panel from distance d. `fineness` is 1 for the panels of a probe and smaller for finer
-// ones. tau_from_start: optical depth already crossed in this lit part, in the densest channel.
+// Returns the length of the next panel, which begins at distance d. fineness = 1 gives the panels that `probe` uses;
+// smaller values give shorter ones. tau_from_start is the optical depth already crossed in this lit part, in the
+// densest channel.
 float panel_length(IN(Medium) m, float h0, float mu, float mu_s, float nu, float d, float fineness,
                    float tau_from_start) {
   float R = m.planet_radius_m;
@@ -63,7 +65,7 @@ float panel_length(IN(Medium) m, float h0, float mu, float mu_s, float nu, float
   float small_scale = min(m.rayleigh_scale_height_m, m.mie_scale_height_m);
   float large_scale = max(m.rayleigh_scale_height_m, m.mie_scale_height_m);
 
-  // Altitude: a step of the smaller scale height near the ground, growing geometrically.
+  // Limit by altitude: a fraction of the smaller scale height near the ground, growing geometrically upwards.
   float step_h = fineness * (small_scale + 0.3333 * max(h, 0.0));
   if (mu_d < 0.0) {
     step_h = step_h / (1.0 + 0.3333 * fineness);
@@ -72,14 +74,14 @@ float panel_length(IN(Medium) m, float h0, float mu, float mu_s, float nu, float
   float steepness = abs(mu_d);
   float span = 2.0 * step_h / (steepness + sqrt(steepness * steepness + 2.0 * step_h / r));
 
-  // Optical depth from the camera, with the extinction of the panel's lower end.
+  // Limit by optical depth from the camera, with the extinction at the panel's lower end.
   float h_dense = mu_d < 0.0 ? h - min(steepness * span, step_h) : h;
   vec3 extinction = extinction_at(m, h_dense);
   float densest = max(extinction.x, max(extinction.y, extinction.z));
   span = min(span, fineness * 1.5 * (1.0 + 0.25 * tau_from_start) / max(densest, 1.0e-30));
 
-  // The sun's transmittance: by its optical depth, by z around the horizontal, and below the horizontal by
-  // the altitude of the sun ray's perigee.
+  // Limit by the change of the sun's transmittance: by its optical depth, by z near the horizontal and, below the
+  // horizontal, by the perigee altitude of the sun ray.
   float z = r * clamp(((R + h0) * mu_s + d * nu) / r, -1.0, 1.0);
   float axis_scale = sqrt(2.0 * r * small_scale);
   float sun_slope = max(densest * steepness * r / (abs(z) + axis_scale), 1.0e-30);
@@ -95,9 +97,10 @@ float panel_length(IN(Medium) m, float h0, float mu, float mu_s, float nu, float
   return span;
 }
 
-// Adds the light of the lit part [start, end] of the ray.
-vec3 lit_scattering(IN(Medium) m, float h0, float mu, float mu_s, float nu, float start, float end, float fineness,
-                    int max_panels) {
+// Returns the single scattering of the lit part [start, end] of the ray. `steps` is as in single_scattering().
+vec3 lit_scattering(IN(Medium) m, float h0, float mu, float mu_s, float nu, float start, float end, int steps) {
+  float fineness = 12.0 / float(max(steps, 1));
+  int max_panels = 8 + 6 * steps;
   float R = m.planet_radius_m;
   vec3 rayleigh = m.rayleigh_scattering * rayleigh_phase(nu);
   vec3 mie = m.mie_scattering * mie_phase(m, nu);
@@ -122,9 +125,9 @@ vec3 lit_scattering(IN(Medium) m, float h0, float mu, float mu_s, float nu, floa
       float x = d + node[i] * span;
       float h = altitude_along(h0, mu, x, R);
       float sun = clamp(((R + h0) * mu_s + x * nu) / max(R + h, 1.0), -1.0, 1.0);
-      vec3 column = density_integral_along(m, h0, mu, x) + density_integral_to_top(m, h, sun);
+      vec3 integral = density_integral_along(m, h0, mu, x) + density_integral_to_top(m, h, sun);
       vec3 density = densities(m, h);
-      radiance += weight[i] * span * transmittance(m, column) * (rayleigh * density.x + mie * density.y);
+      radiance += weight[i] * span * transmittance(m, integral) * (rayleigh * density.x + mie * density.y);
     }
     vec3 crossed =
         optical_depth(m, density_integral_along(m, altitude_along(h0, mu, d, R), cos_zenith_along(h0, mu, d, R), span));
@@ -134,11 +137,9 @@ vec3 lit_scattering(IN(Medium) m, float h0, float mu, float mu_s, float nu, floa
   return radiance;
 }
 
-// Radiance / E0 of the part [start, end] of the ray [m], seen from its origin. `steps` is about the number of
-// panels that a ray through the whole atmosphere takes: 12 for 0.1 %, 4 for about a per cent.
+// Returns radiance / E0 of the part [start, end] of the ray [m] as seen from its origin. `steps` is roughly the number
+// of panels for a ray through the whole atmosphere: 12 gives an error of 0.1 %, 4 about one per cent.
 vec3 single_scattering(IN(Medium) m, float h0, float mu, float mu_s, float nu, float start, float end, int steps) {
-  float fineness = 12.0 / float(max(steps, 1));
-  int max_panels = 8 + 6 * steps;
   float dark_start;
   float dark_end;
   float first_end = end;
@@ -152,13 +153,13 @@ vec3 single_scattering(IN(Medium) m, float h0, float mu, float mu_s, float nu, f
     float a = part == 0 ? start : second_start;
     float b = part == 0 ? first_end : end;
     if (b > a) {
-      radiance += lit_scattering(m, h0, mu, mu_s, nu, a, b, fineness, max_panels);
+      radiance += lit_scattering(m, h0, mu, mu_s, nu, a, b, steps);
     }
   }
   return radiance;
 }
 
-// The same to the end of the ray in the ground or at the top of the atmosphere, and the transmittance there.
+// Returns radiance / E0 of the ray up to the ground or the top of the atmosphere, and the transmittance to that end.
 vec3 single_scattering_to_end(IN(Medium) m, float h0, float mu, float mu_s, float nu, int steps,
                               OUT(vec3) transmittance_to_end) {
   float start;

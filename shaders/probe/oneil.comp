@@ -23,13 +23,12 @@ void main() {
   }
   ProbeRay ray = rays[index];
   vec3 radiance = vec3(0.0);
-  vec3 through = vec3(1.0);
+  vec3 path_transmittance = vec3(1.0);
   if (ray.end_m > 0.0) {
-    vec3 rayleigh;
-    vec3 mie;
-    oneil_scattering(medium, oneil, 0u, ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith, ray.cos_view_sun, 0.0,
-                     ray.end_m, rayleigh, mie, through);
-    radiance = oneil_radiance(medium, oneil, ray.cos_view_sun, rayleigh, mie);
+    OneilRay path = OneilRay(ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith, ray.cos_view_sun);
+    OneilLight light = oneil_scattering(medium, oneil, 0u, path, 0.0, ray.end_m);
+    radiance = oneil_radiance(medium, oneil, ray.cos_view_sun, light.rayleigh, light.mie);
+    path_transmittance = light.transmittance;
   }
-  results[index] = ProbeResult(radiance, 0.0, through, 0.0);
+  results[index] = ProbeResult(radiance, 0.0, path_transmittance, 0.0);
 }

@@ -1,15 +1,15 @@
-// The air of O'Neil's model between the eye and what it sees. Binding 6 is filled by src/scene/sky/oneil_sky.cpp, 7
+// The air of O'Neil's model between the eye and what it sees. Binding 6 is filled by src/scene/oneil_sky.cpp, 7
 // is the table of oneil-table.
 #ifndef TYNDALL_ONEIL_AIR_GLSL
 #define TYNDALL_ONEIL_AIR_GLSL
 
 layout(std430, binding = 7) readonly buffer oneil_table_block { vec4 oneil_texels[]; };
 #define ONEIL_TEXEL(table, index) oneil_texels[index]
-// Those of the block's Oneil: src/scene/sky/oneil_sky.cpp chooses the pipeline by them.
-layout(constant_id = 1) const uint kColumnsOfAir = 0u;
-layout(constant_id = 2) const uint kSpacingOfPoints = 0u;
-#define ONEIL_INTEGRAL_METHOD(o) kColumnsOfAir
-#define ONEIL_SPACING(o) kSpacingOfPoints
+// Those of the block's Oneil: src/scene/oneil_sky.cpp chooses the pipeline by them.
+layout(constant_id = 1) const uint kIntegralMethod = 0u;
+layout(constant_id = 2) const uint kSampleSpacing = 0u;
+#define ONEIL_INTEGRAL_METHOD(o) kIntegralMethod
+#define ONEIL_SPACING(o) kSampleSpacing
 #include "lib/oneil.glsl"
 
 layout(constant_id = 0) const uint kPerPixel = 0u;
@@ -44,38 +44,34 @@ const uint kInSpace = 2u;
 
 // Light of the ray into `direction` but for the phase functions, and what it lets through; all relative to the
 // sun's irradiance. Before the air, behind it and past it there is none.
-void oneil_air(vec3 direction, float distance_m, uint ends, out vec3 rayleigh, out vec3 mie, out vec3 through) {
-  rayleigh = vec3(0.0);
-  mie = vec3(0.0);
-  through = vec3(1.0);
+OneilLight oneil_light(vec3 direction, float distance_m, uint ends) {
+  OneilLight none = OneilLight(vec3(0.0), vec3(0.0), vec3(1.0));
   float R = medium.planet_radius_m;
   float top = medium.atmosphere_height_m;
-  float altitude = eye_altitude_m;
-  float mu = clamp(dot(direction, eye_up), -1.0, 1.0);
-  float mu_s = eye_cos_sun;
-  float nu = clamp(dot(direction, to_sun), -1.0, 1.0);
+  OneilRay ray = OneilRay(eye_altitude_m, clamp(dot(direction, eye_up), -1.0, 1.0), eye_cos_sun,
+                          clamp(dot(direction, to_sun), -1.0, 1.0));
   float near;
   float far;
-  if (air_shown == 0.0 || !shell_intersections(altitude, mu, top, R, near, far) || far <= 0.0) {
-    return;
+  if (air_shown == 0.0 || !shell_intersections(ray.h0, ray.mu, top, R, near, far) || far <= 0.0) {
+    return none;
   }
-  float start = altitude > top ? max(near, 0.0) : 0.0;
+  float start = ray.h0 > top ? max(near, 0.0) : 0.0;
   float end = far;
   if (ends == kAtDistance) {
     end = min(distance_m, far);
   } else if (ends == kAtGround) {
-    end = distance_to_ground(altitude, mu, R);
+    end = distance_to_ground(ray.h0, ray.mu, R);
   }
   if (end <= start) {
-    return;
+    return none;
   }
-  oneil_enter(top, R, altitude, mu, mu_s, nu, start, end);
-  oneil_scattering(medium, oneil, 0u, altitude, mu, mu_s, nu, 0.0, end, rayleigh, mie, through);
+  return oneil_scattering(medium, oneil, 0u, oneil_enter(medium, ray, start), 0.0, start > 0.0 ? end - start : end);
 }
 
 // Radiance of what oneil_air found: here enter the phase functions, for every pixel.
-vec3 air_radiance(vec3 direction, vec3 rayleigh, vec3 mie) {
-  return oneil_radiance(medium, oneil, clamp(dot(direction, to_sun), -1.0, 1.0), rayleigh, mie) * sun_irradiance;
+vec3 oneil_inscattering(vec3 direction, OneilLight light) {
+  float nu = clamp(dot(direction, to_sun), -1.0, 1.0);
+  return oneil_radiance(medium, oneil, nu, light.rayleigh, light.mie) * sun_irradiance;
 }
 
 // Light on the ground, relative to the sun's above the air: across the sun's direction, and of the open sky.

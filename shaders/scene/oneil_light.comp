@@ -20,16 +20,15 @@ void main() {
   GroundPoint point;
   if (!ground_of_pixel(pixel, point)) return;
   vec3 offset = point.position - eye_position;
-  vec3 rayleigh;
-  vec3 mie;
-  vec3 through;
+  OneilLight light;
   if (kPerPixel != 0u) {
-    oneil_air(normalize(offset), length(offset), kAtDistance, rayleigh, mie, through);
+    light = oneil_light(normalize(offset), length(offset), kAtDistance);
   } else {
-    rayleigh = imageLoad(air_0, pixel).rgb;
-    mie = imageLoad(air_1, pixel).rgb;
-    through = imageLoad(air_2, pixel).rgb;
+    light.rayleigh = imageLoad(air_0, pixel).rgb;
+    light.mie = imageLoad(air_1, pixel).rgb;
+    light.transmittance = imageLoad(air_2, pixel).rgb;
   }
   vec3 ground = ground_shown != 0.0 ? ground_radiance(point) : vec3(0.0);
-  imageStore(scene_color, pixel, vec4(ground * through + air_radiance(normalize(offset), rayleigh, mie), 1.0));
+  imageStore(scene_color, pixel,
+             vec4(ground * light.transmittance + oneil_inscattering(normalize(offset), light), 1.0));
 }

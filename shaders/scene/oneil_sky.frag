@@ -9,7 +9,7 @@
 layout(location = 0) in vec3 offset;
 layout(location = 1) in vec3 vertex_rayleigh;
 layout(location = 2) in vec3 vertex_mie;
-layout(location = 3) in vec3 vertex_through;
+layout(location = 3) in vec3 vertex_transmittance;
 layout(location = 0) out vec4 radiance;
 
 // Radiance of the sphere in this direction, before the air takes its part.
@@ -43,14 +43,11 @@ bool in_limb(float mu, bool on_ground) {
 
 void main() {
   vec3 direction = normalize(offset);
-  vec3 rayleigh = vertex_rayleigh;
-  vec3 mie = vertex_mie;
-  vec3 through = vertex_through;
+  OneilLight light = OneilLight(vertex_rayleigh, vertex_mie, vertex_transmittance);
   float mu = dot(direction, eye_up);
   bool on_ground = ray_hits_ground(eye_altitude_m, mu, medium.planet_radius_m);
-  if (kPerPixel != 0u || in_limb(mu, on_ground))
-    oneil_air(direction, 0.0, on_ground ? kAtGround : kInSpace, rayleigh, mie, through);
+  if (kPerPixel != 0u || in_limb(mu, on_ground)) light = oneil_light(direction, 0.0, on_ground ? kAtGround : kInSpace);
   vec3 behind = vec3(0.0);
   if (ground_shown != 0.0) behind = on_ground ? sphere_radiance(direction) : beyond_air(direction);
-  radiance = vec4(behind * through + air_radiance(direction, rayleigh, mie), 1.0);
+  radiance = vec4(behind * light.transmittance + oneil_inscattering(direction, light), 1.0);
 }

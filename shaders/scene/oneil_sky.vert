@@ -9,18 +9,20 @@
 layout(location = 0) out vec3 offset;  // from the eye
 layout(location = 1) out vec3 vertex_rayleigh;
 layout(location = 2) out vec3 vertex_mie;
-layout(location = 3) out vec3 vertex_through;
+layout(location = 3) out vec3 vertex_transmittance;
 
 void main() {
   offset = sky_mesh_direction(uint(gl_VertexIndex)) * 1000.0;
   vertex_rayleigh = vec3(0.0);
   vertex_mie = vec3(0.0);
-  vertex_through = vec3(1.0);
+  vertex_transmittance = vec3(1.0);
   if (kPerPixel == 0u) {
     // The mesh has a row on the horizon and one right below it, so that the break there stays sharp.
     float zenith = sky_mesh_zenith(uint(gl_VertexIndex));
-    oneil_air(normalize(offset), 0.0, zenith > horizon_rad + 2.0e-5 ? kAtGround : kInSpace, vertex_rayleigh, vertex_mie,
-              vertex_through);
+    OneilLight light = oneil_light(normalize(offset), 0.0, zenith > horizon_rad + 2.0e-5 ? kAtGround : kInSpace);
+    vertex_rayleigh = light.rayleigh;
+    vertex_mie = light.mie;
+    vertex_transmittance = light.transmittance;
   }
   gl_Position = sky_mesh_clip(offset);
 }

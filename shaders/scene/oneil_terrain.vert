@@ -9,13 +9,16 @@ layout(location = 0) out vec4 place;  // texel of the level, altitude [m], morph
 layout(location = 1) flat out uint level_layer;
 layout(location = 2) out vec3 vertex_rayleigh;
 layout(location = 3) out vec3 vertex_mie;
-layout(location = 4) out vec3 vertex_through;
+layout(location = 4) out vec3 vertex_transmittance;
 
 void main() {
   TerrainVertex v = terrain_vertex(uint(gl_VertexIndex), uint(gl_InstanceIndex));
   place = vec4(v.texel, v.altitude_m, v.morph);
   level_layer = v.layer;
   vec3 offset = v.position - eye_position;
-  oneil_air(normalize(offset), length(offset), kAtDistance, vertex_rayleigh, vertex_mie, vertex_through);
+  OneilLight light = oneil_light(normalize(offset), length(offset), kAtDistance);
+  vertex_rayleigh = light.rayleigh;
+  vertex_mie = light.mie;
+  vertex_transmittance = light.transmittance;
   gl_Position = push.clip_from_local * vec4(v.position, 1.0);
 }

@@ -113,11 +113,15 @@ std::string describe_errors(const OneilModel& model) {
 }
 
 Answer oneil(const OneilModel& model, const Ray& ray) {
-  glsl64::vec3 through;
-  const glsl64::vec3 radiance =
-      glsl64::oneil_to_end(glsl64::widen(model.medium), glsl64::widen(model.constants), model.table.data(),
-                           ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith, ray.cos_view_sun, through);
-  return {to_array(radiance), to_array(through)};
+  glsl64::OneilRay path;
+  path.h0 = ray.altitude_m;
+  path.mu = ray.cos_view_zenith;
+  path.mu_s = ray.cos_sun_zenith;
+  path.nu = ray.cos_view_sun;
+  glsl64::vec3 transmittance;
+  const glsl64::vec3 radiance = glsl64::oneil_to_end(glsl64::widen(model.medium), glsl64::widen(model.constants),
+                                                     model.table.data(), path, transmittance);
+  return {to_array(radiance), to_array(transmittance)};
 }
 
 std::array<double, 3> oneil_sky_irradiance(const OneilModel& model, double altitude_m, double cos_sun_zenith,
