@@ -1,5 +1,6 @@
-// What the passes of a frame have done, for `bench`: 64-bit counts in pairs of words, low one first. Include
-// after declaring  buffer counter_block { uint counters[]; }  Costs nothing unless EffectDesc::counters is set.
+// Counters of the work of a frame's passes, for `bench`. Each is a 64-bit number in two words, low word first. Include
+// after declaring  buffer counter_block { uint counters[]; }  The counters cost nothing unless EffectDesc::counters is
+// set.
 #ifndef TYNDALL_COUNTERS_GLSL
 #define TYNDALL_COUNTERS_GLSL
 

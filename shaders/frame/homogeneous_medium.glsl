@@ -1,10 +1,9 @@
-// A medium of constant density in place of the atmosphere (Yusov, "IVB Atmospheric Light Scattering", 2012, section 2):
-// the light that reaches it is the same everywhere, so that the light of a lit stretch [a, b] of a ray is in closed
-// form
-//   L = E (beta_R p_R + beta_M p_M) / sigma (exp(-sigma a) - exp(-sigma b)),
-// per channel. What depends on the direction alone, all before the bracket, is left out along the ray and applied at
-// the pixel. Include after declaring medium and frame. docs/homogeneous_medium.md has the equations and what they leave
-// out.
+// A medium of constant density in place of the atmosphere (Yusov, "IVB Atmospheric Light Scattering", 2012, section 2).
+// The same light reaches every point of it, so the light of a lit stretch [a, b] of a ray has the closed form
+//   L = E (beta_R p_R + beta_M p_M) / sigma (exp(-sigma a) - exp(-sigma b))
+// per channel. The factors before the bracket depend on the direction only. They are left out along the ray and applied
+// once per pixel. docs/homogeneous_medium.md has the equations and their limits.
+// Include after declaring `medium` and `frame`.
 #ifndef TYNDALL_HOMOGENEOUS_MEDIUM_GLSL
 #define TYNDALL_HOMOGENEOUS_MEDIUM_GLSL
 
@@ -12,7 +11,7 @@
 
 layout(constant_id = 5) const bool kHomogeneous = false;
 
-// The part of [0, end] below the medium's flat top, which is level where the camera is.
+// Clips [0, end] to the part below the medium's top, which is a horizontal plane.
 void clip_to_top(float cos_zenith, out float start, inout float end) {
   float crossing =
       (frame.homogeneous.height_m - frame.camera_altitude_m) / (abs(cos_zenith) > 1e-9 ? cos_zenith : 1e-9);
@@ -20,8 +19,8 @@ void clip_to_top(float cos_zenith, out float start, inout float end) {
   end = max(cos_zenith < 0.0 ? end : min(end, crossing), start);
 }
 
-// The part of the ray inside the medium [m]; false when there is none. Rays end at what was drawn, at the planet, or
-// at the medium's extent.
+// Computes the part of the ray inside the medium [m]; returns false if there is none. A ray ends at the scene's
+// surface, at the planet, or at the medium's extent.
 bool clip_to_homogeneous(Ray ray, out float start, out float end) {
   end = ray.length_m;
   if (ray.sky) {
@@ -39,14 +38,14 @@ bool clip_to_medium(Ray ray, out float start, out float end) {
   return clip_to_atmosphere(medium, ray, start, end);
 }
 
-// exp(-sigma d) and 1 - exp(-sigma d), the latter without cancellation.
+// Computes exp(-sigma d), and 1 - exp(-sigma d) without cancellation.
 void homogeneous_attenuation(float length_m, out vec3 through, out vec3 lost) {
   vec3 tau = frame.homogeneous.extinction * length_m;
   through = exp(-tau);
   lost = mix(1.0 - through, tau - 0.5 * tau * tau, lessThan(tau, vec3(2e-3)));
 }
 
-// The factor of the direction [1/sr]: (beta_R p_R + beta_M p_M) / sigma, from constants that tell both phase functions.
+// Returns the factor that depends on the direction only [1/sr]: (beta_R p_R + beta_M p_M) / sigma.
 vec3 homogeneous_phase(float cos_view_sun) {
   float second = cos_view_sun * cos_view_sun;
   float root = inversesqrt(frame.homogeneous.phase_min +

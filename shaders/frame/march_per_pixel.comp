@@ -1,9 +1,9 @@
-// Brute force: the light of every pixel's ray by itself, with the shadow test at every texel, in all modes of
-// scattering.single and scattering.multiple; the truth that faster techniques are compared with.
-// In: colour and depth of the scene, shadow cascades. Out: radiance seen through the air, in the unit of
-// the sun's irradiance per steradian.
-// The shadow map is read once per texel that the ray crosses, so that no shadow boundary is missed; beyond the last
-// cascade the rest of the ray is integrated unshadowed (Yusov 2013, section 1.6, without the epipolar geometry).
+// The brute-force technique: marches every pixel's ray and tests the shadow at every texel, in all modes of
+// scattering.single and scattering.multiple. It is the reference that faster techniques are compared with.
+// In: colour and depth of the scene, shadow cascades. Out: radiance seen through the medium, in units of the sun's
+// irradiance per steradian.
+// The shadow map is read once per texel that the ray crosses, so that no shadow boundary is missed. Beyond the last
+// cascade the ray is integrated without shadows (Yusov 2013, section 1.6, without the epipolar geometry).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -27,7 +27,7 @@ layout(std430, binding = 9) buffer counter_block { uint counters[]; };
 layout(binding = 10) uniform sampler2DArray shadow_colors;
 layout(std140, binding = 11) uniform cascade_block { CascadeConstants cascades[kMaxCascades]; };
 
-// Loaded by main() before anything else (docs/epipolar.md says why).
+// main() loads both before anything else; docs/epipolar.md gives the reason.
 Medium medium;
 FrameConstants frame;
 
@@ -37,35 +37,35 @@ FrameConstants frame;
 #include "frame/picture.glsl"
 #include "frame/table_light.glsl"
 
-const int kReadsPerStep = 8;  // of the shadow map, per evaluation of the air
-const int kMaxReads = 60000;  // of one cascade: some CPU devices end a loop after 65 535 rounds
+const int kReadsPerStep = 8;  // shadow-map reads per evaluation of the medium
+const int kMaxReads = 60000;  // per cascade: some CPU devices end a loop after 65 535 iterations
 
 uint reads_done = 0u;
 uint steps_done = 0u;
 
-// What the march has gathered: density columns from the camera [m], and per species the integral of
-// density times transmittance from the sun to the eye [m].
+// The state of the march: density integrals from the camera [m], and per species the integral of density times the
+// transmittance from the sun to the eye [m].
 struct March {
   vec3 column;
   vec3 rayleigh;
   vec3 mie;
 };
 
-// Steps through [from, to] inside one cascade. `ray` holds altitudes and cosines at the camera.
+// Marches [from, to] inside one cascade. `ray` holds altitudes and cosines at the camera.
 void march_cascade(uint cascade, Ray ray, float from, float to, float steps_per_m, inout March march) {
   float radius = medium.planet_radius_m;
   vec3 uvz_from = shadow_uvz(cascades[cascade].shadow_from_world, frame.camera_position + ray.direction * from);
   vec3 uvz_to = shadow_uvz(cascades[cascade].shadow_from_world, frame.camera_position + ray.direction * to);
   vec2 texels = abs(uvz_to.xy - uvz_from.xy) * float(frame.shadow_resolution);
-  // A ray towards the sun stays in one texel, yet crosses air of changing density: no group of reads may climb
-  // more than half the aerosol's scale height.
+  // A ray towards the sun stays in one texel but crosses many densities: limit the climb per group of reads to half the
+  // aerosol's scale height.
   float h_from = altitude_along(ray.altitude, ray.cos_zenith, from, radius);
   float h_to = altitude_along(ray.altitude, ray.cos_zenith, to, radius);
   float wanted = max(max(max(texels.x, texels.y) / float(kReadsPerStep), (to - from) * steps_per_m),
                      abs(h_to - h_from) / (0.5 * medium.mie_scale_height_m));
-  // The air changes slowly, shadows abruptly: the map is read at every texel, the air once in a group of
-  // texels. Within so short a stretch the light that arrives is linear, and its product with the lit fraction
-  // errs by less than the map's own resolution does.
+  // The density varies slowly, shadows abruptly: read the map at every texel, but the density once per group of texels.
+  // Within a group the arriving light is nearly linear, and multiplying it by the mean lit fraction errs by less than
+  // the map's own resolution.
   int groups = int(clamp(ceil(wanted), 1.0, 2.0 * float(frame.shadow_resolution)));
   float dt = (to - from) / float(groups);
   vec3 duvz = (uvz_to - uvz_from) / float(groups * kReadsPerStep);
@@ -104,11 +104,11 @@ void march_cascade(uint cascade, Ray ray, float from, float to, float steps_per_
   reads_done += uint(groups * kReadsPerStep);
 }
 
-// Light scattered once, integrated over [start, end] of the ray.
+// Returns the single scattering over [start, end] of the ray.
 vec3 integrated_light(Ray ray, float start, float end) {
   March march = March(vec3(0.0), vec3(0.0), vec3(0.0));
   float t = start;
-  // View-space depth grows in proportion to the distance along the ray.
+  // View-space depth is proportional to the distance along the ray.
   float depth_per_m = max(dot(ray.direction, frame.camera_forward), 1e-6);
   float last = frame.cascade_count > 0u ? cascades[frame.cascade_count - 1u].far_m / depth_per_m : 0.0;
   float steps_per_m = float(frame.integration_steps) / max(min(last, end) - start, 1.0);
@@ -128,7 +128,7 @@ vec3 integrated_light(Ray ray, float start, float end) {
   return light;
 }
 
-// Reads the map at every texel between two distances inside one cascade, for the light of the tables.
+// Reads the map at every texel between two distances inside one cascade, for in-scattering from the tables.
 void walk_cascade(uint cascade, Ray ray, TableRay path, float start, float from, float to, inout LitSections lit) {
   mat4 shadow_from_world = cascades[cascade].shadow_from_world;
   vec3 uvz_from = shadow_uvz(shadow_from_world, frame.camera_position + ray.direction * from);
@@ -154,7 +154,7 @@ void walk_cascade(uint cascade, Ray ray, TableRay path, float start, float from,
   reads_done += uint(reads);
 }
 
-// The light of the tables of [start, end]: cut by the shadow maps as far as they reach.
+// Returns the in-scattering from the tables over [start, end], shadowed as far as the maps reach.
 vec3 shadowed_table_light(Ray ray, float start, float end) {
   TableRay path = table_ray_of(ray, start);
   LitSections lit = nothing_lit();
@@ -168,12 +168,12 @@ vec3 shadowed_table_light(Ray ray, float start, float end) {
         t = to;
       }
     }
-    if (end - t <= 1e-3) t = end;  // what was too short for a cascade is not beyond the last one
+    if (end - t <= 1e-3) t = end;  // a remainder too short for a cascade is not beyond the last one
   }
   return table_light(lit, path, start, t, end);
 }
 
-// The closed form of a homogeneous medium over the lit parts of [start, end].
+// Returns the in-scattering of a homogeneous medium over the lit parts of [start, end], in closed form.
 vec3 homogeneous_light(Ray ray, float start, float end) {
   vec3 light = vec3(0.0);
   vec3 before = vec3(1.0);
@@ -202,12 +202,12 @@ vec3 homogeneous_light(Ray ray, float start, float end) {
     reads_done += uint(reads);
     t = to;
   }
-  if (end - t <= 1e-3) return light * homogeneous_phase(ray.cos_view_sun);  // what was too short for a cascade
+  if (end - t <= 1e-3) return light * homogeneous_phase(ray.cos_view_sun);  // remainder too short for a cascade
   homogeneous_attenuation(end - t, through, lost);
   return (light + before * lost) * homogeneous_phase(ray.cos_view_sun);
 }
 
-// All that the air of [start, end] sends to the eye, as the modes ask.
+// Returns the in-scattering over [start, end] in the selected modes.
 vec3 inscattering(Ray ray, float start, float end) {
   vec3 light = vec3(0.0);
   if (kHomogeneous) return kSingle == kNone ? light : homogeneous_light(ray, start, end);

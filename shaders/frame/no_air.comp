@@ -1,4 +1,4 @@
-// scattering.enabled = false: the output is the background.
+// Copies the scene's colour: scattering.enabled = false.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -1,7 +1,7 @@
-// The light of a ray by the scattering tables, with the shadow maps' shafts: what `single = table` and
-// `multiple = occluded` take. Include after the declarations of medium, frame and the tables.
-// Sources: Yusov, "High Performance Outdoor Light Scattering Using Epipolar Sampling" (2013), section 2.4, for
-// one contiguous section from the first lit point; each lit section by itself is ours.
+// In-scattering from the scattering tables with shadows, for scattering.single = table and scattering.multiple =
+// occluded. Include after declaring `medium`, `frame` and the tables.
+// kContiguous is the method of Yusov, "High Performance Outdoor Light Scattering Using Epipolar Sampling" (2013),
+// section 2.4: one contiguous section from the first lit point. kEach evaluates every lit section; it is ours.
 #ifndef TYNDALL_TABLE_LIGHT_GLSL
 #define TYNDALL_TABLE_LIGHT_GLSL
 
@@ -9,19 +9,19 @@
 #include "frame/table_lookup.glsl"
 #include "frame/view_ray.glsl"
 
-// What a walk along the ray has found. Distances from the ray's origin [m].
+// The lit sections found so far along a ray. Distances are from the ray's origin [m].
 struct LitSections {
-  float first;         // lit point; < 0: none yet
+  float first;         // distance to the first lit point; < 0: none yet
   float total;         // lit length
-  float since;         // with kEach: start of the lit section that the walk is in; < 0: in the shadow
-  float closed_at;     // with kEach: end of that section, once it is found; close_section() must follow
-  InScattering light;  // with kEach: of the sections that are complete
-  vec3 tint;  // with kColors: integral of the glass's colour over the lit length; with kEach: of the open section
+  float since;         // kEach: start of the current lit section; < 0: in shadow
+  float closed_at;     // kEach: end of that section once found; close_section() must follow
+  InScattering light;  // kEach: in-scattering of the completed sections
+  vec3 tint;  // kColors: integral of the glass colour over the lit length; with kEach, over the current section
 };
 
 LitSections nothing_lit() { return LitSections(-1.0, 0.0, -1.0, -1.0, InScattering(vec3(0.0), vec3(0.0)), vec3(0.0)); }
 
-// The stretch [from, to], of which `share` is lit, in that colour.
+// Adds the stretch [from, to], of which `lit_fraction` is lit with this colour.
 void add_stretch(inout LitSections lit, float from, float to, float share, vec3 color) {
   if (kSections == kContiguous) {
     if (share > 0.0 && lit.first < 0.0) lit.first = to - share * (to - from);
@@ -37,15 +37,16 @@ void add_stretch(inout LitSections lit, float from, float to, float share, vec3 
 
 InScattering add(InScattering a, InScattering b) { return InScattering(a.single + b.single, a.high + b.high); }
 
-// A section's light is its light without glass times the mean colour over its lit length: tables know no place on it.
+// Returns a section's light tinted by the mean glass colour over its lit length: the tables cannot resolve positions
+// within a section.
 InScattering tinted(InScattering light, vec3 tint, float length_m) {
   if (!kColors) return light;
   vec3 mean = tint / max(length_m, 1e-6);
   return InScattering(light.single * mean, light.high * mean);
 }
 
-// The ray in the coordinates of the tables: begun where it enters the air, at distance `start`. It ends behind what was
-// drawn, which may lie deeper than the ground sphere.
+// Returns the ray for table look-ups, from distance `start`, where it enters the atmosphere. It ends at the scene's
+// surface even if that is below the ground sphere.
 TableRay table_ray_of(Ray ray, float start) {
   float radius = medium.planet_radius_m;
   bool below = ray_hits_ground(ray.altitude, ray.cos_zenith, radius);
@@ -61,7 +62,7 @@ InScattering section_light(TableRay path, float start, float from, float to) {
   return inscattering_between(frame.tables, medium, path, from - start, to - start);
 }
 
-// With kEach: adds the light of the section that ended at closed_at.
+// Adds the in-scattering of the section that ends at closed_at. Does nothing without kEach.
 void close_section(inout LitSections lit, TableRay path, float start) {
   if (kSections != kEach) return;
   if (lit.since >= 0.0 && lit.closed_at > lit.since) {
@@ -73,16 +74,16 @@ void close_section(inout LitSections lit, TableRay path, float start) {
   lit.closed_at = -1.0;
 }
 
-// The light that the tables give: of the lit part, which was found up to distance t, of the rest of the ray to
-// `end`, which nothing shadows, and of the whole ray where shadows do not count. A loop over these sections.
+// Returns the in-scattering from the tables: of the lit part, which was found up to distance t; of the rest up to
+// `end`, which is not shadowed; and of the whole ray in the modes that ignore shadows.
 vec3 table_light(LitSections lit, TableRay path, float start, float t, float end) {
   vec3 light = vec3(0.0);
   if (kSections == kEach) {
     if (kSingle == kTable) light += lit.light.single;
     if (kOccluded) light += lit.light.high;
   }
-  // Sections: 0 what is lit, 1 the rest, 2 the whole. A set, so that rays side by side do not wait for what only
-  // some of them have.
+  // The sections to look up, as a bit set: 0 the lit part, 1 the rest, 2 the whole ray. A set keeps neighbouring rays
+  // from waiting for sections that only some of them have.
   uint sections = frame.unoccluded != 0u ? 4u : 0u;
   if (kLitTables && kSections == kContiguous && lit.total > 1e-3) sections |= 1u;
   if (kLitTables && end - t > 1e-3) sections |= 2u;

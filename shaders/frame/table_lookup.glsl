@@ -8,7 +8,7 @@
 #include "lib/table_mapping.glsl"
 #include "lib/table_values.glsl"
 
-// A ray from a point within the air to its end: the ground if `below`, else the top of the atmosphere.
+// A ray from a point within the atmosphere to its end: the ground if `below`, else the top of the atmosphere.
 struct TableRay {
   float altitude;
   float cos_zenith;
@@ -18,10 +18,10 @@ struct TableRay {
   float end_m;
 };
 
-// What the air of a ray sends to its origin.
+// In-scattered radiance at the origin of a ray.
 struct InScattering {
-  vec3 single;  // scattered once
-  vec3 high;    // more than once
+  vec3 single;  // order 1
+  vec3 high;    // orders 2 and higher
 };
 
 TableRay table_ray(Medium m, float h, float mu, float mu_s, float nu, bool below) {
@@ -31,8 +31,8 @@ TableRay table_ray(Medium m, float h, float mu, float mu_s, float nu, bool below
   return ray;
 }
 
-// The same ray from a point further along, on the same side of the horizon: pairs of look-ups must agree on
-// it, or their difference breaks at the horizon.
+// Returns the same ray from a point further along, on the same side of the horizon. A pair of look-ups must agree on
+// the side, or their difference jumps at the horizon.
 TableRay ray_further_on(Medium m, TableRay ray, float distance_m) {
   float R = m.planet_radius_m;
   float h = altitude_along(ray.altitude, ray.cos_zenith, distance_m, R);
@@ -45,14 +45,14 @@ TableRay ray_further_on(Medium m, TableRay ray, float distance_m) {
   return out_ray;
 }
 
-// What is the same all along a ray: how much of the scattered light goes its way, and the slices that its angle to the
-// sun lies between. To be had once, before a loop over the ray's places: some compilers move nothing out of loops.
+// The terms that are constant along a ray: scattering times phase function, and the two slices of the angle axis.
+// Compute them once, before a loop over points of the ray; some compilers do not hoist them.
 struct TableAngle {
   vec3 rayleigh;  // scattering x phase function [1 / (m sr)]
   vec3 mie;
   float slices;
   float first;
-  float part;  // of the way to the next
+  float part;  // weight of the second slice
 };
 
 TableAngle table_angle(TableShape t, Medium m, float nu) {
@@ -66,14 +66,14 @@ TableAngle table_angle(TableShape t, Medium m, float nu) {
   return a;
 }
 
-// Texture coordinates of altitude, view and sun, on both slices of the angle: the third
-// texture axis holds the suns of one angle after the other, and filtering stays within one.
+// Texture coordinates of altitude, view and sun in both slices of the angle axis. The third texture axis stores the
+// suns of one angle after the other; filtering stays within one angle.
 struct TableCoordinates {
   vec3 near;
   vec3 far;
 };
 
-// `column`: of the whole ray.
+// Returns the texture coordinates. `column` is the density integral of the whole ray.
 TableCoordinates table_coordinates(TableShape t, Medium m, TableAngle angle, TableRay ray, vec3 column) {
   float h = table_altitude(m, ray.altitude);
   float u = u_from_altitude(t, m, ray.altitude < 0.0 ? ray.altitude : h);
@@ -88,7 +88,7 @@ vec3 table_value(sampler3D table, TableCoordinates c, float part) {
   return value_from_texel(mix(textureLod(table, c.near, 0.0).rgb, textureLod(table, c.far, 0.0).rgb, part));
 }
 
-// `column`: of the whole ray.
+// Returns the in-scattering of a whole ray with the density integral `column`.
 InScattering inscattering_from_integral(TableShape t, Medium m, TableAngle angle, TableRay ray, vec3 column) {
   TableCoordinates c = table_coordinates(t, m, angle, ray, column);
   NormalisationFactors factors = normalisation_factors(m, column);
@@ -104,13 +104,13 @@ InScattering inscattering_to_end(TableShape t, Medium m, TableAngle angle, Table
                                     density_integral_along(m, ray.altitude, ray.cos_zenith, ray.end_m));
 }
 
-// The light of the part [from, to] of a ray [m], seen from the ray's origin: L(a) - T(a, b) L(b), dimmed by
-// the air before it.
+// Returns the in-scattering of the part [from, to] of a ray [m] as seen from its origin: L(from) - T(from, to) L(to),
+// attenuated by the medium before `from`.
 InScattering inscattering_between(TableShape t, Medium m, TableRay ray, float from, float to) {
   float end = min(to, ray.end_m);
   InScattering light = InScattering(vec3(0.0), vec3(0.0));
   if (end <= from) return light;
-  // A loop, because every copy of the look-up is a heavy piece of code.
+  // A loop, because each inlined copy of the look-up is large.
   int ends = end < ray.end_m ? 2 : 1;
   TableAngle angle = table_angle(t, m, ray.cos_view_sun);
   for (int i = 0; i < ends; ++i) {

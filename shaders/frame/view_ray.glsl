@@ -1,4 +1,4 @@
-// The ray through a pixel, in the coordinates that the physics of lib/ works with.
+// The ray through a pixel, in the coordinates of shaders/lib.
 #ifndef TYNDALL_VIEW_RAY_GLSL
 #define TYNDALL_VIEW_RAY_GLSL
 
@@ -10,11 +10,11 @@ struct Ray {
   float cos_zenith;  // at the camera
   float cos_sun_zenith;
   float cos_view_sun;
-  float length_m;  // to what the depth buffer shows; 1e9 for the sky
+  float length_m;  // distance to the scene's surface; 1e9 for the sky
   bool sky;
 };
 
-// View-space depth [m] of what the depth buffer shows at a place of the picture [pixels].
+// Returns the view-space depth [m] of a depth-buffer value at a position [pixels].
 float view_depth(FrameConstants frame, vec2 position, float depth) {
   vec2 ndc = 2.0 * position / vec2(float(frame.width), float(frame.height)) - 1.0;
   vec4 p = frame.view_from_clip * vec4(ndc, depth, 1.0);
@@ -25,8 +25,7 @@ vec3 ray_direction(FrameConstants frame, vec2 position) {
   return normalize(frame.ray_origin + position.x * frame.ray_x + position.y * frame.ray_y);
 }
 
-// The ray through a place of the picture [pixels; a pixel's middle is at + 0.5], ending at a view-space depth,
-// or nowhere.
+// Returns the ray through a position [pixels; pixel centres are at + 0.5] to a view-space depth, or to the sky.
 Ray ray_to_depth(FrameConstants frame, vec2 position, float depth_m, bool sky) {
   Ray ray;
   ray.direction = ray_direction(frame, position);
@@ -44,15 +43,15 @@ Ray view_ray(FrameConstants frame, ivec2 pixel, float depth) {
   return ray_to_depth(frame, position, view_depth(frame, position, depth), depth == frame.sky_depth);
 }
 
-// Cosine of the sun's zenith angle at distance t along the ray.
+// Returns the cosine of the sun's zenith angle at distance t along the ray.
 float cos_sun_zenith_along(Ray ray, float t, float radius) {
   float r0 = radius + ray.altitude;
   float r = radius + altitude_along(ray.altitude, ray.cos_zenith, t, radius);
   return clamp((r0 * ray.cos_sun_zenith + t * ray.cos_view_sun) / r, -1.0, 1.0);
 }
 
-// The part of the ray inside the air: false when there is none. Rays to geometry end there, however deep it
-// lies; rays to the sky end at the planet or at the top of the air.
+// Computes the part of the ray inside the atmosphere; returns false if there is none. A ray to geometry ends there,
+// even below the ground sphere. A ray to the sky ends at the planet or at the top of the atmosphere.
 bool clip_to_atmosphere(Medium medium, Ray ray, out float start, out float end) {
   float radius = medium.planet_radius_m;
   if (!segment_below_top(ray.altitude, ray.cos_zenith, medium.atmosphere_height_m, radius, start, end)) return false;
@@ -64,7 +63,7 @@ bool clip_to_atmosphere(Medium medium, Ray ray, out float start, out float end) 
   return end > start;
 }
 
-// Texture coordinates and depth of a world position in a shadow map.
+// Returns texture coordinates and depth of a world position in a shadow map.
 vec3 shadow_uvz(mat4 shadow_from_world, vec3 position) {
   vec4 p = shadow_from_world * vec4(position, 1.0);
   return p.xyz / p.w;

@@ -1,14 +1,14 @@
-// Where a ray stands in the scattering tables, and back. Each of the four axes has a pair of functions between
-// its quantity and a coordinate in [0; 1] over the texels; three parameterisations of each:
-//   yusov    - Yusov, "High Performance Outdoor Light Scattering Using Epipolar Sampling" (2013), section 2:
-//              square root of altitude, fifth root of the distance from the horizon in cosine, Bruneton's
-//              arctangent for the sun; even in the angle between view and sun, where he takes its power 3/2:
-//              that leaves 30 degrees between the texels around 90, and triples the errors of twilight;
-//   bruneton - Bruneton and Neyret, "Precomputed Atmospheric Scattering" (2008), section 4: distances to the
-//              horizon and to the boundary, an exponential for the sun, linear in the cosine to the sun;
-//   linear   - in altitude and the three cosines.
-// In the first two the view axis has one half for rays that end on the ground and one for those that leave the
-// air (`below` tells which), and filtering never crosses the horizon.
+// The mapping between a ray and its place in the scattering tables. Each of the four axes has a pair of functions that
+// convert between its quantity and a coordinate in [0; 1] over the texels. There are three parameterisations:
+//   yusov    - Yusov, "High Performance Outdoor Light Scattering Using Epipolar Sampling" (2013), section 2: the square
+// root of altitude, the fifth root of the distance from the horizon in cosine, and Bruneton's arctangent for the sun.
+// Our axis for the angle between view and sun is linear in the angle. Yusov raises it to the power 3/2, which leaves 30
+// degrees between the texels around 90 degrees and triples the errors of twilight;
+//   bruneton - Bruneton and Neyret, "Precomputed Atmospheric Scattering" (2008), section 4: the distances to the
+// horizon and to the boundary, an exponential for the sun, and the cosine of the angle to the sun;
+//   linear   - altitude and the three cosines.
+// In the first two, one half of the view axis is for rays that end on the ground (`below`) and the other for rays that
+// leave the atmosphere. Filtering never crosses the horizon.
 #ifndef TYNDALL_LIB_TABLE_MAPPING
 #define TYNDALL_LIB_TABLE_MAPPING
 
@@ -16,21 +16,22 @@
 #include "shared/medium.h"
 #include "shared/tables.h"
 
-// Altitudes nearer to the ground or the top than this are looked up as if they were this far [m].
+// Rays that begin nearer than this to the ground or the top are looked up at this distance from it [m].
 const float kTableMargin = 16.0;
-// The lowest altitude of the tables [m]: rays from below are looked up as if they began here.
+// The lowest altitude of the tables [m]. Rays that begin below it are looked up as if they began there.
 const float kLowestTableAltitude = -500.0;
-// The lowest sun, as a cosine: 16 degrees below the horizontal, where rays from high up that begin in twilight
-// have the middle of their air. (The sources end at 11 degrees, of the sun at the ray's beginning.)
+// The cosine of the lowest sun: 16 degrees below the horizontal. The density-weighted mean distance of a ray that
+// begins high up in twilight can be under so low a sun. (The gathering grid ends at a sun of 11 degrees below, at the
+// ray's beginning.)
 const float kLowestSun = -0.28;
-// The yusov mapping of the sun: the arctangent of so many times its cosine, and its least and largest.
+// The yusov mapping of the sun: the arctangent of kSunShape times the cosine, which lies in [kSunFrom; kSunTo].
 const float kSunShape = 5.3496235;  // tan(1.26 * 1.1)
 const float kSunFrom = -0.982145272;
 const float kSunTo = 1.386;
-// The bruneton mapping of the sun.
+// The decay rate of the bruneton mapping of the sun.
 const float kSunFade = 3.0;
 
-// A value x in [0; 1] that is to lie on texel centres at 0 and 1, as a texture coordinate over n texels.
+// Returns the texture coordinate over n texels for x in [0; 1], where 0 and 1 map to texel centres.
 float texel_from_unit(float x, float n) { return (x * (n - 1.0) + 0.5) / n; }
 float unit_from_texel(float c, float n) { return clamp((c * n - 0.5) / (n - 1.0), 0.0, 1.0); }
 
@@ -38,17 +39,17 @@ float altitude_margin(IN(Medium) m) { return min(kTableMargin, 0.01 * m.atmosphe
 
 float lowest_table_altitude(IN(Medium) m) { return max(kLowestTableAltitude, -0.125 * m.planet_radius_m); }
 
-// Texels along altitude that stand for altitudes below sea level, evenly spaced; the next one stands for the margin
-// above it.
+// Returns the number of texels along the altitude axis that stand for altitudes below sea level. They are evenly
+// spaced. The next texel stands for the margin above sea level.
 float texels_below_sea(IN(TableShape) t) { return float(min(t.altitudes / 10u, 3u)); }
 
-// The altitude that stands for h in the tables; `margin` away from sea level on either side of it.
+// Returns the altitude at which the tables are looked up for h. It is `margin` away from sea level on either side.
 float table_altitude(IN(Medium) m, float h) {
   float margin = altitude_margin(m);
   return h < 0.0 ? clamp(h, lowest_table_altitude(m), -margin) : clamp(h, margin, m.atmosphere_height_m - margin);
 }
 
-// Distance from altitude h to the horizon of ground_below() [m].
+// Returns the distance from altitude h to the horizon of ground_below() [m].
 float horizon_distance(float h, float R) {
   float ground = ground_below(h, R);
   return sqrt((h - ground) * (2.0 * R + h + ground));
@@ -66,7 +67,7 @@ float u_from_altitude(IN(TableShape) t, IN(Medium) m, float h) {
   if (t.parameterization == 0u) {
     x = sqrt(x);
   } else if (t.parameterization == 1u) {
-    // Distance to the horizon: sqrt(r^2 - R^2), between those of the lowest and the highest texel.
+    // The distance to the horizon, sqrt(r^2 - R^2), relative to those of the lowest and highest texels.
     float R = m.planet_radius_m;
     float low = horizon_distance(margin, R);
     x = (horizon_distance(table_altitude(m, h), R) - low) / (horizon_distance(height - margin, R) - low);
@@ -94,20 +95,20 @@ float altitude_from_u(IN(TableShape) t, IN(Medium) m, float u) {
   return margin + x * (height - 2.0 * margin);
 }
 
-// Longest way of a ray from altitude h to the top, less that to the horizon [m].
+// Returns the longest path of a ray from altitude h to the top, minus the distance to the horizon [m].
 float distance_from_ground_to_top(IN(Medium) m, float h) {
   float ground = ground_below(h, m.planet_radius_m);
   float top = m.atmosphere_height_m;
   return sqrt((top - ground) * (2.0 * m.planet_radius_m + top + ground));
 }
 
-// Coordinate within one half of the view axis of n texels: x in [0; 1] counts from the horizon.
+// Returns the coordinate within one half of the view axis of n texels. x in [0; 1] is counted from the horizon.
 float v_from_half(bool below, float x, float n) {
   float v = (0.5 + x * (0.5 * n - 1.0)) / n;
   return below ? v : 0.5 + v;
 }
 
-// h is an altitude as from table_altitude.
+// h must be an altitude from table_altitude().
 float v_from_view(IN(TableShape) t, IN(Medium) m, float h, float mu, bool below) {
   float n = float(t.views);
   if (t.parameterization == 2u) {
@@ -123,7 +124,7 @@ float v_from_view(IN(TableShape) t, IN(Medium) m, float h, float mu, bool below)
   float top = m.atmosphere_height_m;
   if (below) {
     float d = distance_to_ground(h, mu, R);
-    // Texel 0 straight down, the last one at the horizon: counted from the horizon as in the other half.
+    // The first texel looks straight down, the last one at the horizon: x is counted from the horizon as above it.
     return v_from_half(true, clamp((rho - d) / (rho - (h - ground_below(h, R))), 0.0, 1.0), n);
   }
   float longest = rho + distance_from_ground_to_top(m, h);
@@ -149,7 +150,7 @@ float view_from_v(IN(TableShape) t, IN(Medium) m, float h, float v, OUT(bool) be
   }
   float rho = horizon_distance(h, R);
   float top = m.atmosphere_height_m;
-  // Cosine of the ray that reaches the shell of altitude s at distance d: r_s^2 = r^2 + d^2 + 2 r d mu.
+  // The cosine of the ray that reaches the shell of altitude s at distance d, from r_s^2 = r^2 + d^2 + 2 r d mu.
   float ground = ground_below(h, R);
   float shell = below ? ground : top;
   float longest = below ? rho : rho + distance_from_ground_to_top(m, h);
@@ -194,7 +195,7 @@ float angle_from_q(IN(TableShape) t, float q) {
   return t.parameterization == 0u ? cos(x * 3.14159265358979) : 2.0 * x - 1.0;
 }
 
-// The cosine to the sun that view and sun zenith angles allow, nearest to nu.
+// Returns the cosine of the angle between view and sun that is nearest to nu and possible for these zenith angles.
 float possible_angle(float mu, float mu_s, float nu) {
   float spread = sqrt(max((1.0 - mu) * (1.0 + mu) * (1.0 - mu_s) * (1.0 + mu_s), 0.0));
   return clamp(nu, mu * mu_s - spread, mu * mu_s + spread);

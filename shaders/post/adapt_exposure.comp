@@ -1,8 +1,8 @@
-// From the histogram to the exposure: the log-average luminance of what counts, towards which the eye adapts.
-// Weights, instead of absolute luminances as in DiligentFX (2019): relative to the bright part of the picture, the
-// luminance that kBrightShare of the samples that are not black stay below. What is 2^kNoneStops darker is black space
-// and does not count, what is 2^kFullStops darker or less counts in full. So a planet before the dark is exposed like
-// one that fills the picture, by day and in twilight.
+// Computes the exposure from the histogram. The eye adapts to a weighted log-average luminance.
+// The weights are relative to the bright part of the picture, not absolute luminances as in DiligentFX (2019). The
+// bright part is the luminance below which a fraction kBrightShare of the non-black samples lies. Samples that are
+// kNoneStops darker count as black space and have no weight; from kFullStops darker upwards, samples have full weight.
+// A planet against black space is thus exposed like one that fills the picture, by day and in twilight.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -16,25 +16,25 @@ layout(std430, binding = 1) buffer ExposureBlock { ExposureState state; }
 exposure_block;
 
 layout(push_constant) uniform Push {
-  float seconds;  // since the picture before
+  float seconds;  // since the previous picture
   float middle_gray;
   float least_luminance;
-  uint cut;  // 1: there is no picture before
+  uint cut;  // 1: history reset, there is no previous picture
 }
 push;
 
 const float kBrightShare = 0.95;
 const float kNoneStops = 7.0;
 const float kFullStops = 5.0;
-const float kRate = 1.0;              // of the adaptation [1/s], as in Yusov (2013)
-const float kFullRateCounted = 1e-3;  // mean weight from which on the eye adapts at this rate
-const float kFirstLuminance = 0.1;    // until a picture has something that counts (Yusov 2013)
+const float kRate = 1.0;              // adaptation rate [1/s], as in Yusov (2013)
+const float kFullRateCounted = 1e-3;  // mean weight above which the eye adapts at the full rate
+const float kFirstLuminance = 0.1;    // until a picture has weight (Yusov 2013)
 
 shared float bins[kLuminanceBins];
 
 float stop_of(uint bin) { return kLowestStop + kStopsPerBin * float(bin); }
 
-// Stop below which kBrightShare of `total` lies, between the bins.
+// Returns the stop below which a fraction kBrightShare of `total` lies, interpolated between bins.
 float bright_stop(float total) {
   float below = 0.0;
   for (uint i = 0u; i < kLuminanceBins; ++i) {
@@ -52,7 +52,7 @@ void main() {
   bins[index] = float(counts_block.counts.bins[index]);
   barrier();
   if (index != 0u) return;
-  // In order, by one invocation: the same sum on every run.
+  // A single invocation sums in order, so that every run gives the same result.
   float lit = 0.0;
   for (uint i = 0u; i < kLuminanceBins; ++i) lit += bins[i];
   float all = lit + float(counts_block.counts.black);

@@ -1,5 +1,6 @@
-// The histogram of a picture's luminance, for the exposure and for people. Reads one pixel in stride x stride,
-// staggered so that rows and columns of the picture are all met. Counts are whole numbers: their sum has no order.
+// Builds the luminance histogram of a picture, for the exposure and for the viewer's display. Reads one pixel of each
+// stride x stride block, staggered so that every row and column is covered. Counts are integers, so the order of
+// addition does not matter.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -18,7 +19,7 @@ push;
 shared uint bins[kLuminanceBins];
 shared uint black;
 
-const int kSamplesOnSide = 4;  // of one invocation
+const int kSamplesOnSide = 4;  // per invocation
 
 void main() {
   uint index = gl_LocalInvocationIndex;
@@ -32,7 +33,7 @@ void main() {
     ivec2 at = first + 16 * ivec2(i % kSamplesOnSide, i / kSamplesOnSide);
     ivec2 pixel = at * stride + at.yx % stride;
     if (pixel.x >= size.x || pixel.y >= size.y) continue;
-    // Channels that are no numbers or infinite do not reach the sum.
+    // tonemap_scaled() replaces NaN and infinite channels.
     float luminance = tonemap_luminance(tonemap_scaled(imageLoad(radiance, pixel).rgb, 1.0));
     float place = (log2(max(luminance, 1.0e-30)) - kLowestStop) / kStopsPerBin;
     if (place < 0.0) {

@@ -1,5 +1,5 @@
-// Exposure and tone mapping, one read and one write per pixel.
-// In: linear radiance. Out: linear display values, 0 to 1.
+// Applies exposure and tone mapping with one read and one write per pixel. In: linear radiance. Out: linear display
+// values in [0; 1].
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

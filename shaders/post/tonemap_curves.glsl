@@ -1,6 +1,6 @@
-// Tone-mapping operators: each maps scaled linear radiance (Rec. 709, 0 to kTonemapMax) to linear display values,
-// which the caller clamps to 0 to 1. White points are scaled luminances. C++ compiles this too (src/post/curves.cpp),
-// in double precision; docs/tonemapping.md has the formulas and draws them.
+// Tone-mapping operators. Each maps scaled linear radiance (Rec. 709, 0 to kTonemapMax) to linear display values, which
+// the caller clamps to [0; 1]. White points are scaled luminances. C++ compiles this file in double precision
+// (src/post/curves.cpp). docs/tonemapping.md has the formulas and plots.
 #ifndef TYNDALL_TONEMAP_CURVES_GLSL
 #define TYNDALL_TONEMAP_CURVES_GLSL
 
@@ -18,10 +18,10 @@ const uint kTonemapAgx = 7u;
 const uint kTonemapPbrNeutral = 8u;
 const uint kTonemapExponentialChannels = 9u;
 
-// More than this is this: every curve ends in white long before, and its square is far from overflow.
+// The largest input. Every curve reaches white far below it, and its square does not overflow.
 const float kTonemapMax = 1.0e9;
 
-// One channel made fit for the curves. What is negative or no number is black: a comparison with it fails.
+// Returns a channel clamped to [0; kTonemapMax]. NaN becomes 0 because the comparison fails.
 float tonemap_fit(float value) { return value > 0.0 ? min(value, kTonemapMax) : 0.0; }
 
 vec3 tonemap_scaled(vec3 radiance, float exposure) {
@@ -29,17 +29,17 @@ vec3 tonemap_scaled(vec3 radiance, float exposure) {
               tonemap_fit(radiance.z * exposure));
 }
 
-// Rec. 709 luminance with the weights of the documents (Yusov 2013).
+// Returns the Rec. 709 luminance with the weights of Yusov (2013).
 float tonemap_luminance(vec3 c) { return dot(c, vec3(0.212671, 0.715160, 0.072169)); }
 
-// What the operators on luminance share: colour keeps its ratios, to the power of the saturation.
+// Applies a mapped luminance to a colour: its channel ratios are raised to the power of the saturation.
 vec3 tonemap_colored(vec3 c, float luminance, float mapped, float saturation) {
   vec3 ratio = c / luminance;
   if (saturation != 1.0) ratio = pow(ratio, vec3(saturation));
   return mapped * ratio;
 }
 
-// Filmic curve of Hable ("Uncharted 2: HDR Lighting", GDC 2010).
+// The filmic curve of Hable ("Uncharted 2: HDR Lighting", GDC 2010).
 vec3 tonemap_hable(vec3 x) {
   float a = 0.15;
   float b = 0.50;
@@ -50,23 +50,24 @@ vec3 tonemap_hable(vec3 x) {
   return (x * (a * x + c * b) + d * e) / (x * (a * x + b) + d * f) - e / f;
 }
 
-// Hejl and Burgess-Dawson ("Filmic Tonemapping for Real-time Rendering", SIGGRAPH course, 2010). The fit holds the
-// display's gamma of 2.2, which is undone.
+// The filmic curve of Hejl and Burgess-Dawson ("Filmic Tonemapping for Real-time Rendering", SIGGRAPH course, 2010).
+// The fit includes the display's gamma of 2.2, which is undone here.
 vec3 tonemap_filmic_alu(vec3 c) {
   vec3 x = max(c - 0.004, vec3(0.0));
   vec3 encoded = (x * (6.2 * x + 0.5)) / (x * (6.2 * x + 1.7) + 0.06);
   return pow(encoded, vec3(2.2));
 }
 
-// Drago, Myszkowski, Annen and Chiba ("Adaptive Logarithmic Mapping for Displaying High Contrast Scenes", 2003),
-// eq. 4 with bias 0.85; the power is ln(0.85)/ln(0.5).
+// The operator of Drago, Myszkowski, Annen and Chiba ("Adaptive Logarithmic Mapping for Displaying High Contrast
+// Scenes", 2003), equation 4 with bias 0.85; the exponent is ln(0.85) / ln(0.5).
 float tonemap_drago(float luminance, float white_point) {
   float base = log(2.0 + 8.0 * pow(luminance / white_point, 0.23446525363702297));
   return log(1.0 + luminance) * 2.302585092994046 / (log(1.0 + white_point) * base);
 }
 
-// AgX of Sobotka (2022) in the approximation of Wrensch ("Minimal AgX Implementation", 2023): primaries drawn in, 16.5
-// stops about middle grey in log2, a polynomial of the sixth degree, and back. Saturation as its look has it.
+// AgX of Sobotka (2022), approximated as in Wrensch ("Minimal AgX Implementation", 2023): inset primaries, log2 over
+// 16.5 stops around middle grey, a polynomial of degree six, and the inverse of the inset. Saturation is applied as in
+// AgX's look.
 vec3 tonemap_agx(vec3 c, float saturation) {
   mat3 inset = mat3(0.842479062253094, 0.0423282422610123, 0.0423756549057051, 0.0784335999999992, 0.878468636469772,
                     0.0784336, 0.0792237451477643, 0.0791661274605434, 0.879142973793104);
@@ -83,8 +84,9 @@ vec3 tonemap_agx(vec3 c, float saturation) {
   return pow(max(encoded, vec3(0.0)), vec3(2.2));
 }
 
-// Khronos PBR neutral (2024): colours below 0.8 as they are but for the reflection of 4 % at the surface, above them
-// compressed and turned to white. Scaled up as in DiligentFX (2024), which takes 0.3 for middle grey instead of 0.18.
+// Khronos PBR Neutral (2024): colours below 0.8 only lose the 4 % that the surface reflects; brighter ones are
+// compressed and desaturated. The input is scaled as in DiligentFX (2024), which uses 0.3 for middle grey instead of
+// 0.18.
 vec3 tonemap_pbr_neutral(vec3 c) {
   float start = 0.8 - 0.04;
   float desaturation = 0.15;
@@ -99,7 +101,7 @@ vec3 tonemap_pbr_neutral(vec3 c) {
   return mix(base * (new_peak / peak), vec3(new_peak), white);
 }
 
-// `c` comes from tonemap_scaled.
+// Applies the selected operator. `c` comes from tonemap_scaled().
 vec3 tonemap_apply(uint operator_index, vec3 c, float white_point, float saturation) {
   if (operator_index == kTonemapUncharted2) return tonemap_hable(2.0 * c) / tonemap_hable(vec3(white_point));
   if (operator_index == kTonemapFilmicAlu) return tonemap_filmic_alu(c);

@@ -1,7 +1,7 @@
 #version 460
-// O'Neil's model along given rays, as the scene's shaders evaluate it. One invocation per ray. rays: made by
-// prepare_probe_ray (src/models/single_scattering.hpp); results: radiance / E0 [1/sr] over black ground, and
-// the transmittance to the ray's end.
+// O'Neil's model along given rays, with the code of the scene's shaders. One invocation per ray. rays: see
+// prepare_probe_ray (src/models/single_scattering.hpp). results: radiance / E0 [1/sr] over black ground, and the
+// transmittance to the ray's end.
 #extension GL_GOOGLE_include_directive : require
 
 layout(std430, binding = 4) readonly buffer oneil_table_block { vec4 oneil_texels[]; };

@@ -1,7 +1,7 @@
-// Radiance along given rays as the renderer reads it from the scattering tables, and the sky's irradiance:
-// `tyndall probe --model precomputed`. One invocation per ray. rays: made by prepare_probe_ray
-// (src/models/single_scattering.hpp), a negative length asks for the irradiance of a horizontal surface;
-// results: radiance / E0 [1/sr] (sky: E / E0), and the transmittance to the ray's end.
+// Radiance along given rays from the scattering tables as the renderer reads them, and the sky's irradiance: `tyndall
+// probe --model precomputed`. One invocation per ray. rays: see prepare_probe_ray (src/models/single_scattering.hpp); a
+// negative length requests the irradiance on a horizontal surface. results: radiance / E0 [1/sr] (sky: E / E0), and the
+// transmittance to the ray's end.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -18,8 +18,8 @@ layout(std430, binding = 2) writeonly buffer result_block { ProbeResult results[
 layout(std430, binding = 3) readonly buffer setup_block {
   TableShape shape;
   uint integrate_single;  // 1: order 1 by integration, the tables for the rest
-  uint steps;             // of that, see single_scattering
-  uint visible_ground;    // 1: light reflected where the ray ends belongs to it
+  uint steps;             // of that integration, see single_scattering()
+  uint visible_ground;    // 1: includes the light that the ground reflects at the ray's end
 };
 layout(binding = 4) uniform sampler3D single_rayleigh;
 layout(binding = 5) uniform sampler3D single_mie;
@@ -33,7 +33,7 @@ vec3 sky_light(float h, float mu_s) {
   return textureLod(sky_irradiance, uv, 0.0).rgb;
 }
 
-// Sent up by the ground where the ray ends.
+// Returns the radiance reflected by the ground at the ray's end.
 vec3 ground_light(ProbeRay ray) {
   float R = medium.planet_radius_m;
   float q = (R + ray.altitude_m) * ray.cos_sun_zenith + ray.end_m * ray.cos_view_sun;

@@ -1,7 +1,7 @@
 #version 460
-// Radiance of the light scattered once along given rays, by numerical integration: `tyndall probe --model
-// single`. One invocation per ray. rays: made by prepare_probe_ray (src/models/single_scattering.hpp);
-// results: radiance / E0 [1/sr] over black ground, and the transmittance to the ray's end.
+// Single scattering along given rays by numerical integration: `tyndall probe --model single`. One invocation per ray.
+// rays: see prepare_probe_ray (src/models/single_scattering.hpp). results: radiance / E0 [1/sr] over black ground, and
+// the transmittance to the ray's end.
 #extension GL_GOOGLE_include_directive : require
 
 #include "lib/single_scattering.glsl"
@@ -9,7 +9,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(constant_id = 0) const int kSteps = 16;  // see single_scattering
+layout(constant_id = 0) const int kSteps = 16;  // see single_scattering()
 
 layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
 layout(std430, binding = 1) readonly buffer ray_block { ProbeRay rays[]; };

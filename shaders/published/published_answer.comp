@@ -1,4 +1,4 @@
-// What the published tables say of given rays. One invocation per ray; rays and results as in shaders/probe.
+// Looks up given rays in the published tables. One invocation per ray; rays and results are as in shaders/probe.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "published/published_table.glsl"

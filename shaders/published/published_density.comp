@@ -1,5 +1,5 @@
-// Columns of air and aerosol to the top of the atmosphere [m], 1e20 where the planet is in the way: 200 steps of the
-// trapezoid rule, linear in altitude and cosine. One invocation per texel.
+// Density integrals of air molecules and aerosol to the top of the atmosphere [m]; 1e20 where the planet is in the way.
+// Uses 200 steps of the trapezoidal rule. The table is linear in altitude and cosine. One invocation per texel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "published/published_table.glsl"

@@ -1,5 +1,5 @@
-// One order along the ray: 64 steps of the trapezoid rule; and its sum with the orders before. One invocation per
-// texel.
+// Integrates one order of scattering along the ray with 64 steps of the trapezoidal rule, and adds it to the previous
+// orders. One invocation per texel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "published/published_table.glsl"

@@ -1,5 +1,5 @@
-// Light that a point scatters towards the eye, of one order: the order before, in 128 directions. One invocation per
-// texel.
+// Computes the light of one order that a point scatters towards the eye, from the previous order in 128 directions. One
+// invocation per texel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "published/published_table.glsl"

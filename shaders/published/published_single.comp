@@ -1,4 +1,4 @@
-// Light scattered once: 100 steps of the trapezoid rule. One invocation per texel.
+// Integrates single scattering along the ray with 100 steps of the trapezoidal rule. One invocation per texel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "published/published_table.glsl"

@@ -1,6 +1,7 @@
 // The scattering table of the published method, for comparison with ours: Yusov, "High Performance Outdoor Light
-// Scattering Using Epipolar Sampling" (2013), section 2, after Bruneton and Neyret (2008), written from its
-// description. 32 x 128 x 64 x 16 (altitude, view, sun, angle between them), phase functions included.
+// Scattering Using Epipolar Sampling" (2013), section 2, after Bruneton and Neyret (2008). Written from the published
+// description. The size is 32 x 128 x 64 x 16 (altitude, view, sun, angle between them); phase functions are included
+// in the values.
 #ifndef TYNDALL_PUBLISHED_TABLE_GLSL
 #define TYNDALL_PUBLISHED_TABLE_GLSL
 
@@ -11,8 +12,8 @@
 const vec4 kSize = vec4(32.0, 128.0, 64.0, 16.0);
 const uvec3 kTexels = uvec3(32u, 128u, 64u * 16u);
 const float kPi = 3.14159265358979;
-const float kMargin = 16.0;        // from the ground and the top [m]
-const float kHorizonGuard = 1e-4;  // of view cosines
+const float kMargin = 16.0;        // distance from the ground and from the top [m]
+const float kHorizonGuard = 1e-4;  // in view cosines
 
 struct Place {
   float altitude;
@@ -23,7 +24,7 @@ struct Place {
 
 vec3 texel_centre(vec3 c, vec3 size) { return (c * (size - 1.0) + 0.5) / size; }
 
-// `above` says on which side of the horizon the look-up is.
+// `above` selects the side of the horizon.
 vec4 table_coordinates(Medium m, Place p, bool above) {
   float h = clamp(p.altitude, kMargin, m.atmosphere_height_m - kMargin);
   float u = sqrt((h - kMargin) / (m.atmosphere_height_m - 2.0 * kMargin));
@@ -46,8 +47,8 @@ vec3 table_value(sampler3D table, vec4 c) {
   return mix(near, far, slice - first);
 }
 
-// What the texel stands for, and the unit vectors of view and sun (y up; not quite unit where no geometry has the
-// three angles, so that their products stay exact).
+// Returns the point for which the texel stands, and the unit vectors of view and sun with y up. Where no geometry has
+// the three angles, the vectors are not exactly of unit length, so that their dot products stay exact.
 Place table_place(Medium m, uvec3 texel, out bool above, out vec3 view, out vec3 to_sun) {
   vec3 c = vec3(float(texel.x), float(texel.z % 64u), float(texel.z / 64u)) / (kSize.xzw - 1.0);
   Place p;
@@ -70,7 +71,7 @@ Place table_place(Medium m, uvec3 texel, out bool above, out vec3 view, out vec3
   return p;
 }
 
-// To the ground or the top of the air [m].
+// Returns the distance to the ground or to the top of the atmosphere [m].
 float ray_length(Medium m, Place p, bool above) {
   float near;
   float far;
@@ -87,7 +88,7 @@ Place place_along(Medium m, Place p, float d) {
   return out_place;
 }
 
-// Relative densities of air and aerosol.
+// Returns the relative densities of air molecules and aerosol.
 vec2 density_at(Medium m, float h) { return exp(-abs(h) / vec2(m.rayleigh_scale_height_m, m.mie_scale_height_m)); }
 
 vec3 dimmed(Medium m, vec2 column) { return exp(-(m.rayleigh_scattering * column.x + m.mie_extinction * column.y)); }

@@ -1,6 +1,6 @@
-// What the frame passes need of one frame: derived on the CPU by src/effect/frame_constants.cpp, never
-// set by the caller. In storage buffers (std430) and uniform ones (std140; docs/epipolar.md says which): every vec3 is
-// followed by a four-byte member, every structure is a multiple of 16 bytes.
+// The constants of one frame. src/effect/frame_constants.cpp derives them; the caller never sets them. They are read
+// from storage buffers (std430) and uniform buffers (std140; docs/epipolar.md says which). The layouts agree because
+// every vec3 is followed by a four-byte member and every structure is a multiple of 16 bytes.
 #include "shared/tables.h"
 
 const uint kMaxCascades = 8u;
@@ -13,20 +13,20 @@ struct CascadeConstants {
   float unused_1;
 };
 
-// scattering.medium = homogeneous, every coefficient resolved.
+// The medium of scattering.medium = homogeneous, with derived coefficients.
 struct HomogeneousMedium {
   vec3 rayleigh_scattering;  // [1/m]
-  float extent_m;            // of rays on which nothing is drawn
+  float extent_m;            // length of rays to the sky
   vec3 mie_scattering;
   float height_m;  // altitude of the top
   vec3 extinction;
-  float phase_min;  // the aerosol's phase function: (1 - |g|)^2
-  // Phase functions at right angles to the sun, times scattering, divided by extinction [1/sr].
+  float phase_min;  // (1 - |g|)^2 of the aerosol's phase function
+  // Phase functions at a right angle to the sun, times scattering, divided by extinction [1/sr].
   vec3 rayleigh_source;
   float phase_slope;   // 2 |g|
   vec3 mie_source;     // before the division by (phase_min + phase_slope (1 - |cos|))^1.5
-  float phase_sign;    // of g
-  float phase_second;  // of cos^2: 1 Cornette-Shanks, 0 Henyey-Greenstein
+  float phase_sign;    // sign of g
+  float phase_second;  // coefficient of cos^2: 1 Cornette-Shanks, 0 Henyey-Greenstein
   float unused_0;
   float unused_1;
   float unused_2;
@@ -41,16 +41,17 @@ struct FrameConstants {
   float sky_depth;
   vec3 camera_up;  // vertical of the planet at the camera, world
   float near_depth;
-  vec3 ray_origin;    // rays through pixels: ray_origin + x ray_x + y ray_y, world, not of unit length
+  vec3 ray_origin;    // rays through pixels are ray_origin + x ray_x + y ray_y, in world space, not normalised
   float horizon_cos;  // cosine of the zenith angle of the planet's horizon
   vec3 ray_x;
-  float glass_depth_sign;  // of depths behind glass less the glass's: 1, -1 with shadow_depth_reversed; 0: no depths in
-                           // shadow_colors
+  // Sign of (depth behind glass - depth of the glass): 1, or -1 with shadow_depth_reversed; 0: shadow_colors has no
+  // depth.
+  float glass_depth_sign;
   vec3 ray_y;
   float unused_2;
   vec3 direction_to_sun;
   float cos_sun_angular_radius;
-  vec3 sun_irradiance;  // times scattering.scale
+  vec3 sun_irradiance;  // includes scattering.scale
   uint shadow_resolution;
   uint width;
   uint height;
@@ -59,8 +60,8 @@ struct FrameConstants {
   uint integration_steps;
   uint only;  // 1: the output is the in-scattered light alone
   uint shadow_depth_reversed;
-  uint unoccluded;  // 1: the higher orders of the whole ray, whatever is in shadow
-  // Where the picture begins in the caller's images [pixels].
+  uint unoccluded;  // 1: higher orders ignore shadows
+  // The upper left corners of the frame's rectangle in the caller's images [pixels].
   ivec2 color_offset;
   ivec2 depth_offset;
   ivec2 output_offset;

@@ -1,7 +1,7 @@
-// The participating medium with every derived coefficient resolved: what the shaders integrate.
-// Compiled by GLSL (std430) and by C++ (src/effect/shared.hpp in float, src/models/glsl_double.hpp in
-// double); each vec3 is followed by a float, so that the layouts agree without padding.
-// Lengths in m, coefficients in 1/m at sea level (ozone: at the peak of its layer).
+// The participating medium with all derived coefficients, as the shaders integrate it.
+// Compiled as GLSL (std430) and as C++ (src/effect/shared.hpp in float, src/models/glsl_double.hpp in double). Each
+// vec3 is followed by a float, so that the layouts agree without padding.
+// Lengths are in m, coefficients in 1/m at sea level (ozone: at the peak of its layer).
 #ifndef TYNDALL_SHARED_MEDIUM
 #define TYNDALL_SHARED_MEDIUM
 

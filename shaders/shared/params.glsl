@@ -1,7 +1,7 @@
-// GLSL's view of the parameter list: the structure Params with one member per group, and the values
-// of the enumerations as constants (MiePhase_cornette_shanks). Every member is built of four-byte
-// numbers (a vec3 is a float[3], flags and enumerations are uint), so that in std430 the layout is
-// that of tyndall::Params byte for byte. Units and ranges stand in include/tyndall/params.def.
+// The parameter list as GLSL: the structure Params with one member per group, and the values of the enumerations as
+// constants (MiePhase_cornette_shanks). Every member consists of four-byte numbers (a vec3 is a float[3]; flags and
+// enumerations are uint), so that the std430 layout equals that of tyndall::Params byte for byte. Units and ranges are
+// in include/tyndall/params.def.
 #ifndef TYNDALL_PARAMS_GLSL
 #define TYNDALL_PARAMS_GLSL
 

@@ -1,6 +1,6 @@
-// What shaders/probe reads and writes, one of each per ray. Made by prepare_probe_ray (src/models), in double
-// precision, because the horizon, the entry into the air and its end are where single precision would decide
-// wrongly.
+// The input and output of shaders/probe, one of each per ray. prepare_probe_ray() (src/models) computes the input in
+// double precision, because single precision can be wrong about the horizon and about where a ray enters and leaves the
+// atmosphere.
 #ifndef TYNDALL_SHARED_PROBE
 #define TYNDALL_SHARED_PROBE
 

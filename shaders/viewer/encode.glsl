@@ -1,4 +1,4 @@
-// From linear 0 to 1 to the window's 8 bits: the sRGB curve (IEC 61966-2-1), and noise of half a step against bands.
+// Encodes linear values in [0; 1] for an 8-bit window: the sRGB curve (IEC 61966-2-1), dithered against banding.
 #ifndef TYNDALL_VIEWER_ENCODE_GLSL
 #define TYNDALL_VIEWER_ENCODE_GLSL
 
@@ -8,7 +8,8 @@ vec3 encoded(vec3 linear) {
   return mix(12.92 * c, curve, greaterThan(c, vec3(0.0031308)));
 }
 
-// Even noise in [0; 1) by pixel (Jimenez, "Next Generation Post Processing in Call of Duty", 2014, slide 123).
+// Returns evenly distributed noise in [0; 1) for a pixel (Jimenez, "Next Generation Post Processing in Call of Duty",
+// 2014, slide 123).
 float noise_at(vec2 pixel) { return fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715)))); }
 
 vec4 window_color(vec3 linear, vec2 pixel) {

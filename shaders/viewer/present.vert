@@ -1,4 +1,4 @@
-// One triangle over the window; uv 0 to 1 inside it.
+// A triangle that covers the window; uv runs from 0 to 1 across the window.
 #version 460
 
 layout(location = 0) out vec2 uv;

@@ -1,4 +1,4 @@
-// What is shown, or two of it side by side: left of the divider one setting, right of it the other.
+// Shows one picture, or two side by side: one setting left of the divider, another right of it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -14,7 +14,7 @@ layout(push_constant) uniform Push {
   float divider;     // uv; 1: only the left picture
   float line_width;  // uv
   float gain;
-  uint difference;  // 1: show how much the two differ, times gain
+  uint difference;  // 1: show the absolute difference times gain
 }
 push;
 

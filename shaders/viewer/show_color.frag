@@ -1,4 +1,4 @@
-// An image of the scene as it is, over the whole window.
+// Shows an image of the scene unchanged over the whole window.
 #version 460
 
 layout(location = 0) in vec2 uv;

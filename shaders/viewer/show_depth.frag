@@ -1,4 +1,4 @@
-// The depth buffer as distance, on a logarithmic scale from near (dark) to far (bright); where nothing is: blue.
+// Shows the depth buffer as distance on a logarithmic scale, from near (dark) to far (bright). The background is blue.
 #version 460
 
 layout(location = 0) in vec2 uv;

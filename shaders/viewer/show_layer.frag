@@ -1,4 +1,4 @@
-// One layer of the shadow maps, square, in the middle of the window: near to the sun dark.
+// Shows one layer of the shadow maps as a square in the middle of the window. Depths near the sun are dark.
 #version 460
 
 layout(location = 0) in vec2 uv;
@@ -9,7 +9,7 @@ layout(binding = 0) uniform sampler2DArray layers;
 layout(push_constant) uniform Push {
   float aspect;  // of the window
   float layer;
-  float gain;  // stretches the depths about their middle
+  float gain;  // stretches the depths around 0.5
 }
 push;
 

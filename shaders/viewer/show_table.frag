@@ -1,4 +1,4 @@
-// A slice through a table of the air: 3D, one layer of the third axis.
+// Shows a 2D slice of a scattering table: one layer of the third axis.
 #version 460
 
 layout(location = 0) in vec2 uv;
