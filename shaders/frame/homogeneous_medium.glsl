@@ -39,10 +39,10 @@ bool clip_to_medium(Ray ray, out float start, out float end) {
 }
 
 // Computes exp(-sigma d), and 1 - exp(-sigma d) without cancellation.
-void homogeneous_attenuation(float length_m, out vec3 through, out vec3 lost) {
+void homogeneous_attenuation(float length_m, out vec3 transmittance, out vec3 opacity) {
   vec3 tau = frame.homogeneous.extinction * length_m;
-  through = exp(-tau);
-  lost = mix(1.0 - through, tau - 0.5 * tau * tau, lessThan(tau, vec3(2e-3)));
+  transmittance = exp(-tau);
+  opacity = mix(1.0 - transmittance, tau - 0.5 * tau * tau, lessThan(tau, vec3(2e-3)));
 }
 
 // Returns the factor that depends on the direction only [1/sr]: (beta_R p_R + beta_M p_M) / sigma.

@@ -46,7 +46,7 @@ uint steps_done = 0u;
 // The state of the march: density integrals from the camera [m], and per species the integral of density times the
 // transmittance from the sun to the eye [m].
 struct March {
-  vec3 column;
+  vec3 integral;
   vec3 rayleigh;
   vec3 mie;
 };
@@ -76,9 +76,9 @@ void march_cascade(uint cascade, Ray ray, float from, float to, float steps_per_
     float lit = 0.0;
     vec3 tint = vec3(0.0);
     for (int k = 0; k < kReadsPerStep; ++k) {
-      float share = texture(shadow_maps, vec4(uvz.xy, float(cascade), clamp(uvz.z, 0.0, 1.0)));
-      lit += share;
-      if (kColors) tint += share * glass_color(uvz.xy, uvz.z, cascade);
+      float lit_fraction = texture(shadow_maps, vec4(uvz.xy, float(cascade), clamp(uvz.z, 0.0, 1.0)));
+      lit += lit_fraction;
+      if (kColors) tint += lit_fraction * glass_color(uvz.xy, uvz.z, cascade);
       uvz += duvz;
     }
     float next_altitude = altitude_along(ray.altitude, ray.cos_zenith, from + (float(i) + 1.0) * dt, radius);
@@ -86,17 +86,17 @@ void march_cascade(uint cascade, Ray ray, float from, float to, float steps_per_
     vec3 mean = mean_densities(medium, density, next_density, next_altitude - altitude);
     if (lit > 0.0) {
       float t = from + (float(i) + 0.5) * dt;
-      float middle = altitude_along(ray.altitude, ray.cos_zenith, t, radius);
+      float altitude_here = altitude_along(ray.altitude, ray.cos_zenith, t, radius);
       float cos_sun = cos_sun_zenith_along(ray, t, radius);
       float lit_reads = lit;
-      lit *= sun_visibility(middle, cos_sun, radius) / float(kReadsPerStep);
-      vec3 column = march.column + 0.5 * dt * mean + density_integral_to_top(medium, middle, cos_sun);
-      vec3 arriving = (lit * dt) * transmittance(medium, column);
+      lit *= sun_visibility(altitude_here, cos_sun, radius) / float(kReadsPerStep);
+      vec3 integral = march.integral + 0.5 * dt * mean + density_integral_to_top(medium, altitude_here, cos_sun);
+      vec3 arriving = (lit * dt) * transmittance(medium, integral);
       if (kColors) arriving *= tint / lit_reads;
       march.rayleigh += mean.x * arriving;
       march.mie += mean.y * arriving;
     }
-    march.column += mean * dt;
+    march.integral += mean * dt;
     altitude = next_altitude;
     density = next_density;
   }
@@ -142,9 +142,9 @@ void walk_cascade(uint cascade, Ray ray, TableRay path, float start, float from,
   int i = 0;
   while (i < reads) {
     for (; i < reads && lit.closed_at < 0.0; ++i) {
-      float share = texture(shadow_maps, vec4(uvz.xy, float(cascade), clamp(uvz.z, 0.0, 1.0)));
+      float lit_fraction = texture(shadow_maps, vec4(uvz.xy, float(cascade), clamp(uvz.z, 0.0, 1.0)));
       float here = from + float(i) * step_m;
-      add_stretch(lit, here, here + step_m, share, glass_color(uvz.xy, uvz.z, cascade));
+      add_stretch(lit, here, here + step_m, lit_fraction, glass_color(uvz.xy, uvz.z, cascade));
       uvz += duvz;
     }
     if (kSections == kEach && i >= reads && lit.since >= 0.0 && lit.closed_at < 0.0) lit.closed_at = to;
@@ -177,7 +177,7 @@ vec3 shadowed_table_light(Ray ray, float start, float end) {
 vec3 homogeneous_light(Ray ray, float start, float end) {
   vec3 light = vec3(0.0);
   vec3 before = vec3(1.0);
-  vec3 through, lost;
+  vec3 transmittance, opacity;
   float t = start;
   float depth_per_m = max(dot(ray.direction, frame.camera_forward), 1e-6);
   for (uint c = frame.first_marched_cascade; c < frame.cascade_count; ++c) {
@@ -189,13 +189,13 @@ vec3 homogeneous_light(Ray ray, float start, float end) {
     vec2 texels = abs(uvz_to.xy - uvz_from.xy) * float(frame.shadow_resolution);
     float wanted = max(max(texels.x, texels.y), float(frame.integration_steps));
     int reads = int(clamp(ceil(wanted), 1.0, float(kMaxReads)));
-    homogeneous_attenuation((to - t) / float(reads), through, lost);
+    homogeneous_attenuation((to - t) / float(reads), transmittance, opacity);
     vec3 duvz = (uvz_to - uvz_from) / float(reads);
     vec3 uvz = uvz_from + 0.5 * duvz;
     for (int i = 0; i < reads; ++i) {
-      float share = texture(shadow_maps, vec4(uvz.xy, float(c), clamp(uvz.z, 0.0, 1.0)));
-      light += share * glass_color(uvz.xy, uvz.z, c) * before * lost;
-      before *= through;
+      float lit_fraction = texture(shadow_maps, vec4(uvz.xy, float(c), clamp(uvz.z, 0.0, 1.0)));
+      light += lit_fraction * glass_color(uvz.xy, uvz.z, c) * before * opacity;
+      before *= transmittance;
       uvz += duvz;
     }
     steps_done += uint(reads);
@@ -203,8 +203,8 @@ vec3 homogeneous_light(Ray ray, float start, float end) {
     t = to;
   }
   if (end - t <= 1e-3) return light * homogeneous_phase(ray.cos_view_sun);  // remainder too short for a cascade
-  homogeneous_attenuation(end - t, through, lost);
-  return (light + before * lost) * homogeneous_phase(ray.cos_view_sun);
+  homogeneous_attenuation(end - t, transmittance, opacity);
+  return (light + before * opacity) * homogeneous_phase(ray.cos_view_sun);
 }
 
 // Returns the in-scattering over [start, end] in the selected modes.
@@ -226,18 +226,19 @@ void main() {
   Ray ray = view_ray(frame, pixel, depth);
   float start, end;
   vec3 inscattered = vec3(0.0);
-  vec3 through = vec3(1.0);
+  vec3 path_transmittance = vec3(1.0);
   if (clip_to_medium(ray, start, end)) {
     inscattered = inscattering(ray, start, end);
-    vec3 lost;
-    if (kHomogeneous) homogeneous_attenuation(end - start, through, lost);
+    vec3 opacity;
+    if (kHomogeneous) homogeneous_attenuation(end - start, path_transmittance, opacity);
     float from_altitude = altitude_along(ray.altitude, ray.cos_zenith, start, medium.planet_radius_m);
     float from_cosine = cos_zenith_along(ray.altitude, ray.cos_zenith, start, medium.planet_radius_m);
     if (!kHomogeneous)
-      through = transmittance(medium, density_integral_along(medium, from_altitude, from_cosine, end - start));
+      path_transmittance =
+          transmittance(medium, density_integral_along(medium, from_altitude, from_cosine, end - start));
   }
   vec3 color = inscattered * frame.sun_irradiance;
-  if (frame.only == 0u) color += background * through;
+  if (frame.only == 0u) color += background * path_transmittance;
   STORE_COLOR(pixel, color);
   count(kSamplesMarched, 1u);
   count(kMarchSteps, steps_done);

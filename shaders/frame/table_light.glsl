@@ -22,13 +22,13 @@ struct LitSections {
 LitSections nothing_lit() { return LitSections(-1.0, 0.0, -1.0, -1.0, InScattering(vec3(0.0), vec3(0.0)), vec3(0.0)); }
 
 // Adds the stretch [from, to], of which `lit_fraction` is lit with this colour.
-void add_stretch(inout LitSections lit, float from, float to, float share, vec3 color) {
+void add_stretch(inout LitSections lit, float from, float to, float lit_fraction, vec3 color) {
   if (kSections == kContiguous) {
-    if (share > 0.0 && lit.first < 0.0) lit.first = to - share * (to - from);
-    lit.total += share * (to - from);
-    if (kColors) lit.tint += share * (to - from) * color;
+    if (lit_fraction > 0.0 && lit.first < 0.0) lit.first = to - lit_fraction * (to - from);
+    lit.total += lit_fraction * (to - from);
+    if (kColors) lit.tint += lit_fraction * (to - from) * color;
   } else {
-    bool bright = share >= 0.5;
+    bool bright = lit_fraction >= 0.5;
     if (bright && lit.since < 0.0) lit.since = from;
     if (!bright && lit.since >= 0.0) lit.closed_at = from;
     if (kColors && bright) lit.tint += (to - from) * color;

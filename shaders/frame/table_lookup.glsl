@@ -73,13 +73,13 @@ struct TableCoordinates {
   vec3 far;
 };
 
-// Returns the texture coordinates. `column` is the density integral of the whole ray.
-TableCoordinates table_coordinates(TableShape t, Medium m, TableAngle angle, TableRay ray, vec3 column) {
+// Returns the texture coordinates. `integral` is the density integral of the whole ray.
+TableCoordinates table_coordinates(TableShape t, Medium m, TableAngle angle, TableRay ray, vec3 integral) {
   float h = table_altitude(m, ray.altitude);
   float u = u_from_altitude(t, m, ray.altitude < 0.0 ? ray.altitude : h);
   float v = v_from_view(t, m, h, ray.cos_zenith, ray.below);
-  float middle = density_weighted_mean_distance(m, ray.altitude, ray.cos_zenith, ray.end_m, column);
-  float w = w_from_sun(t, ray_further_on(m, ray, middle).cos_sun_zenith);
+  float mean_m = density_weighted_mean_distance(m, ray.altitude, ray.cos_zenith, ray.end_m, integral);
+  float w = w_from_sun(t, ray_further_on(m, ray, mean_m).cos_sun_zenith);
   return TableCoordinates(vec3(u, v, (angle.first + w) / angle.slices),
                           vec3(u, v, (angle.first + 1.0 + w) / angle.slices));
 }
@@ -88,10 +88,10 @@ vec3 table_value(sampler3D table, TableCoordinates c, float part) {
   return value_from_texel(mix(textureLod(table, c.near, 0.0).rgb, textureLod(table, c.far, 0.0).rgb, part));
 }
 
-// Returns the in-scattering of a whole ray with the density integral `column`.
-InScattering inscattering_from_integral(TableShape t, Medium m, TableAngle angle, TableRay ray, vec3 column) {
-  TableCoordinates c = table_coordinates(t, m, angle, ray, column);
-  NormalisationFactors factors = normalisation_factors(m, column);
+// Returns the in-scattering of a whole ray with the density integral `integral`.
+InScattering inscattering_from_integral(TableShape t, Medium m, TableAngle angle, TableRay ray, vec3 integral) {
+  TableCoordinates c = table_coordinates(t, m, angle, ray, integral);
+  NormalisationFactors factors = normalisation_factors(m, integral);
   InScattering light;
   light.single = angle.rayleigh * factors.rayleigh * table_value(single_rayleigh, c, angle.part) +
                  angle.mie * factors.mie * table_value(single_mie, c, angle.part);
@@ -115,11 +115,11 @@ InScattering inscattering_between(TableShape t, Medium m, TableRay ray, float fr
   TableAngle angle = table_angle(t, m, ray.cos_view_sun);
   for (int i = 0; i < ends; ++i) {
     float d = i == 0 ? from : end;
-    vec3 through = transmittance(m, density_integral_along(m, ray.altitude, ray.cos_zenith, d));
+    vec3 path_transmittance = transmittance(m, density_integral_along(m, ray.altitude, ray.cos_zenith, d));
     InScattering beyond = inscattering_to_end(t, m, angle, ray_further_on(m, ray, d));
-    vec3 share = i == 0 ? through : -through;
-    light.single += share * beyond.single;
-    light.high += share * beyond.high;
+    vec3 weight = i == 0 ? path_transmittance : -path_transmittance;
+    light.single += weight * beyond.single;
+    light.high += weight * beyond.high;
   }
   light.single = max(light.single, vec3(0.0));
   light.high = max(light.high, vec3(0.0));

@@ -35,13 +35,13 @@ void main() {
     if (pixel.x >= size.x || pixel.y >= size.y) continue;
     // tonemap_scaled() replaces NaN and infinite channels.
     float luminance = tonemap_luminance(tonemap_scaled(imageLoad(radiance, pixel).rgb, 1.0));
-    float place = (log2(max(luminance, 1.0e-30)) - kLowestStop) / kStopsPerBin;
-    if (place < 0.0) {
+    float position = (log2(max(luminance, 1.0e-30)) - kLowestStop) / kStopsPerBin;
+    if (position < 0.0) {
       atomicAdd(black, kSampleParts);
     } else {
-      place = min(place, float(kLuminanceBins - 1u));
-      uint bin = min(uint(place), kLuminanceBins - 2u);
-      uint upper = uint((place - float(bin)) * float(kSampleParts) + 0.5);
+      position = min(position, float(kLuminanceBins - 1u));
+      uint bin = min(uint(position), kLuminanceBins - 2u);
+      uint upper = uint((position - float(bin)) * float(kSampleParts) + 0.5);
       atomicAdd(bins[bin], kSampleParts - upper);
       atomicAdd(bins[bin + 1u], upper);
     }

@@ -65,8 +65,9 @@ void main() {
     light.single = single_scattering(medium, ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith, ray.cos_view_sun,
                                      0.0, ray.end_m, int(steps));
   }
-  vec3 through = transmittance(medium, density_integral_along(medium, ray.altitude_m, ray.cos_view_zenith, ray.end_m));
+  vec3 path_transmittance =
+      transmittance(medium, density_integral_along(medium, ray.altitude_m, ray.cos_view_zenith, ray.end_m));
   vec3 radiance = light.single + light.high;
-  if (ray.on_ground == 1u && visible_ground == 1u) radiance += through * ground_light(ray);
-  results[index] = ProbeResult(radiance, 0.0, through, 0.0);
+  if (ray.on_ground == 1u && visible_ground == 1u) radiance += path_transmittance * ground_light(ray);
+  results[index] = ProbeResult(radiance, 0.0, path_transmittance, 0.0);
 }

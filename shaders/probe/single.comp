@@ -23,6 +23,6 @@ void main() {
   ProbeRay ray = rays[index];
   vec3 radiance = single_scattering(medium, ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith, ray.cos_view_sun,
                                     0.0, ray.end_m, kSteps);
-  vec3 column = density_integral_along(medium, ray.altitude_m, ray.cos_view_zenith, ray.end_m);
-  results[index] = ProbeResult(radiance, 0.0, transmittance(medium, column), 0.0);
+  vec3 integral = density_integral_along(medium, ray.altitude_m, ray.cos_view_zenith, ray.end_m);
+  results[index] = ProbeResult(radiance, 0.0, transmittance(medium, integral), 0.0);
 }

@@ -17,7 +17,7 @@ void main() {
   ProbeRay ray = rays[index];
   vec3 radiance = vec3(0.0);
   if (ray.end_m > 0.0) {
-    Place start = Place(ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith, ray.cos_view_sun);
+    Point start = Point(ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith, ray.cos_view_sun);
     vec4 c = table_coordinates(medium, start, ray.on_ground == 0u);
     radiance = table_value(single, c) + table_value(sum_of_orders, c);
   }

@@ -11,17 +11,17 @@ layout(binding = 1, rg32f) uniform writeonly image2D density;
 void main() {
   vec2 uv = (vec2(gl_GlobalInvocationID.xy) + 0.5) / vec2(imageSize(density));
   float top = medium.atmosphere_height_m;
-  Place start = Place(clamp(uv.x * top, 10.0, top - 10.0), 2.0 * uv.y - 1.0, 0.0, 0.0);
-  vec2 column = vec2(1e20);
+  Point start = Point(clamp(uv.x * top, 10.0, top - 10.0), 2.0 * uv.y - 1.0, 0.0, 0.0);
+  vec2 integral = vec2(1e20);
   if (!ray_hits_ground(start.altitude, start.view, medium.planet_radius_m)) {
     float step_m = ray_length(medium, start, true) / 200.0;
     vec2 before = density_at(medium, start.altitude);
-    column = vec2(0.0);
+    integral = vec2(0.0);
     for (int i = 1; i <= 200; ++i) {
-      vec2 now = density_at(medium, place_along(medium, start, float(i) * step_m).altitude);
-      column += 0.5 * step_m * (before + now);
+      vec2 now = density_at(medium, point_along(medium, start, float(i) * step_m).altitude);
+      integral += 0.5 * step_m * (before + now);
       before = now;
     }
   }
-  imageStore(density, ivec2(gl_GlobalInvocationID.xy), vec4(column, 0.0, 0.0));
+  imageStore(density, ivec2(gl_GlobalInvocationID.xy), vec4(integral, 0.0, 0.0));
 }

@@ -20,18 +20,18 @@ void main() {
   bool above;
   vec3 view;
   vec3 to_sun;
-  Place start = table_place(medium, texel, above, view, to_sun);
+  Point start = table_point(medium, texel, above, view, to_sun);
   float step_m = ray_length(medium, start, above) / 64.0;
-  vec2 column = vec2(0.0);
+  vec2 integral = vec2(0.0);
   vec2 density_before = density_at(medium, start.altitude);
   vec3 before;
   vec3 radiance = vec3(0.0);
   for (int i = 0; i <= 64; ++i) {
-    Place here = place_along(medium, start, float(i) * step_m);
+    Point here = point_along(medium, start, float(i) * step_m);
     vec2 now = density_at(medium, here.altitude);
-    if (i > 0) column += 0.5 * step_m * (density_before + now);
+    if (i > 0) integral += 0.5 * step_m * (density_before + now);
     density_before = now;
-    vec3 light = dimmed(medium, column) * table_value(scattered, table_coordinates(medium, here, above));
+    vec3 light = transmittance(medium, integral) * table_value(scattered, table_coordinates(medium, here, above));
     if (i > 0) radiance += 0.5 * step_m * (before + light);
     before = light;
   }

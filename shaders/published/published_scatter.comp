@@ -17,15 +17,15 @@ void main() {
   bool above;
   vec3 view;
   vec3 to_sun;
-  Place here = table_place(medium, texel, above, view, to_sun);
+  Point here = table_point(medium, texel, above, view, to_sun);
   vec2 amount = density_at(medium, here.altitude);
   float horizon = horizon_cos(here.altitude, medium.planet_radius_m);
   vec3 sum = vec3(0.0);
   uint count = uint(directions.length());
   for (uint i = 0u; i < count; ++i) {
     vec3 from = directions[i].xyz;
-    Place sample_place = Place(here.altitude, from.y, here.sun, dot(from, to_sun));
-    vec3 light = table_value(order_before, table_coordinates(medium, sample_place, from.y > horizon));
+    Point sample_point = Point(here.altitude, from.y, here.sun, dot(from, to_sun));
+    vec3 light = table_value(order_before, table_coordinates(medium, sample_point, from.y > horizon));
     float nu = dot(from, view);
     sum += light * (amount.x * medium.rayleigh_scattering * rayleigh_phase(nu) +
                     amount.y * medium.mie_scattering * mie_phase(medium, nu));

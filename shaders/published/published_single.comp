@@ -15,21 +15,21 @@ void main() {
   bool above;
   vec3 view;
   vec3 to_sun;
-  Place start = table_place(medium, texel, above, view, to_sun);
+  Point start = table_point(medium, texel, above, view, to_sun);
   float step_m = ray_length(medium, start, above) / 100.0;
-  vec2 column = vec2(0.0);
+  vec2 integral = vec2(0.0);
   vec2 density_before = density_at(medium, start.altitude);
   vec3 rayleigh_before;
   vec3 mie_before;
   vec3 rayleigh = vec3(0.0);
   vec3 mie = vec3(0.0);
   for (int i = 0; i <= 100; ++i) {
-    Place here = place_along(medium, start, float(i) * step_m);
+    Point here = point_along(medium, start, float(i) * step_m);
     vec2 now = density_at(medium, here.altitude);
-    if (i > 0) column += 0.5 * step_m * (density_before + now);
+    if (i > 0) integral += 0.5 * step_m * (density_before + now);
     density_before = now;
     vec2 uv = vec2(here.altitude / medium.atmosphere_height_m, 0.5 * here.sun + 0.5);
-    vec3 light = dimmed(medium, column + textureLod(density, uv, 0.0).rg);
+    vec3 light = transmittance(medium, integral + textureLod(density, uv, 0.0).rg);
     if (i > 0) {
       rayleigh += 0.5 * step_m * (rayleigh_before + light * now.x);
       mie += 0.5 * step_m * (mie_before + light * now.y);

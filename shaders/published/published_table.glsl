@@ -15,7 +15,7 @@ const float kPi = 3.14159265358979;
 const float kMargin = 16.0;        // distance from the ground and from the top [m]
 const float kHorizonGuard = 1e-4;  // in view cosines
 
-struct Place {
+struct Point {
   float altitude;
   float view;  // cosines of the zenith angles
   float sun;
@@ -25,7 +25,7 @@ struct Place {
 vec3 texel_centre(vec3 c, vec3 size) { return (c * (size - 1.0) + 0.5) / size; }
 
 // `above` selects the side of the horizon.
-vec4 table_coordinates(Medium m, Place p, bool above) {
+vec4 table_coordinates(Medium m, Point p, bool above) {
   float h = clamp(p.altitude, kMargin, m.atmosphere_height_m - kMargin);
   float u = sqrt((h - kMargin) / (m.atmosphere_height_m - 2.0 * kMargin));
   float horizon = horizon_cos(h, m.planet_radius_m);
@@ -49,9 +49,9 @@ vec3 table_value(sampler3D table, vec4 c) {
 
 // Returns the point for which the texel stands, and the unit vectors of view and sun with y up. Where no geometry has
 // the three angles, the vectors are not exactly of unit length, so that their dot products stay exact.
-Place table_place(Medium m, uvec3 texel, out bool above, out vec3 view, out vec3 to_sun) {
+Point table_point(Medium m, uvec3 texel, out bool above, out vec3 view, out vec3 to_sun) {
   vec3 c = vec3(float(texel.x), float(texel.z % 64u), float(texel.z / 64u)) / (kSize.xzw - 1.0);
-  Place p;
+  Point p;
   p.altitude = c.x * c.x * (m.atmosphere_height_m - 2.0 * kMargin) + kMargin;
   float horizon = horizon_cos(p.altitude, m.planet_radius_m);
   above = texel.y >= 64u;
@@ -72,25 +72,27 @@ Place table_place(Medium m, uvec3 texel, out bool above, out vec3 view, out vec3
 }
 
 // Returns the distance to the ground or to the top of the atmosphere [m].
-float ray_length(Medium m, Place p, bool above) {
+float ray_length(Medium m, Point p, bool above) {
   float near;
   float far;
   if (!above && shell_intersections(p.altitude, p.view, 0.0, m.planet_radius_m, near, far)) return max(near, 0.0);
   return distance_to_top(p.altitude, p.view, m.atmosphere_height_m, m.planet_radius_m);
 }
 
-Place place_along(Medium m, Place p, float d) {
+Point point_along(Medium m, Point p, float d) {
   float R = m.planet_radius_m;
-  Place out_place = p;
-  out_place.altitude = altitude_along(p.altitude, p.view, d, R);
-  out_place.view = cos_zenith_along(p.altitude, p.view, d, R);
-  out_place.sun = ((R + p.altitude) * p.sun + d * p.between) / (R + out_place.altitude);
-  return out_place;
+  Point out_point = p;
+  out_point.altitude = altitude_along(p.altitude, p.view, d, R);
+  out_point.view = cos_zenith_along(p.altitude, p.view, d, R);
+  out_point.sun = ((R + p.altitude) * p.sun + d * p.between) / (R + out_point.altitude);
+  return out_point;
 }
 
 // Returns the relative densities of air molecules and aerosol.
 vec2 density_at(Medium m, float h) { return exp(-abs(h) / vec2(m.rayleigh_scale_height_m, m.mie_scale_height_m)); }
 
-vec3 dimmed(Medium m, vec2 column) { return exp(-(m.rayleigh_scattering * column.x + m.mie_extinction * column.y)); }
+vec3 transmittance(Medium m, vec2 integral) {
+  return exp(-(m.rayleigh_scattering * integral.x + m.mie_extinction * integral.y));
+}
 
 #endif

@@ -1,4 +1,4 @@
-// What lies behind the air: the sun's disc, and a moon if there is one, on black.
+// The background: the sun's disc, and the moon if there is one, on black.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -1,5 +1,5 @@
-// The least that any full-screen effect can cost: reads depth and colour, writes colour. `bench` times it
-// in the same run as the effect.
+// The copy baseline: reads depth and colour and writes colour, the least that a full-screen effect can cost. `bench`
+// times it in the same run as the effect.
 #version 460
 
 layout(local_size_x = 8, local_size_y = 8) in;

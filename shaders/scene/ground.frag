@@ -1,12 +1,12 @@
-// The planet's bare sphere at sea level, where there is no terrain: a plain ground that takes shadows.
+// The planet as a bare sphere at sea level, for scenes without terrain. It receives shadows.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
 #include "lib/geometry.glsl"
 #include "scene/mesh_light.glsl"
 
-// The ground counts as farther away by this part when it is compared with meshes, so that a floor at sea level hides it
-// however depths are rounded. Seen from a height h that is as if it lay lower by kBehindMeshes * h.
+// In the depth test against meshes, the ground counts as farther away by this fraction. A floor at sea level then hides
+// the ground however depths are rounded. From a height h, the ground looks as if it were lower by kBehindMeshes * h.
 const float kBehindMeshes = 5.0e-4;
 
 layout(location = 0) in vec2 ndc;
@@ -23,7 +23,7 @@ void main() {
   vec3 direction = mat3(push.local_from_ndc) * vec3(ndc, 1.0);
   float view_depth_per_m = 1.0 / length(direction);
   direction *= view_depth_per_m;
-  // Along the ray: t^2 + 2 b t + c = 0 with c small near the ground, so that no digits are lost.
+  // Along the ray: t^2 + 2 b t + c = 0. c is small near the ground, so nothing cancels.
   float radius = mesh.planet_radius_m;
   vec3 p = mesh.camera_position;
   float b = dot(direction, p) + direction.y * radius;
@@ -31,7 +31,7 @@ void main() {
   // For an eye below sea level the sphere is lower.
   float ground = ground_below(altitude_of(p, radius), radius);
   c -= ground * (2.0 * radius + ground);
-  // b^2 - c from the ray's nearest approach would lose them far away; there it does not matter.
+  // Far away b^2 - c loses precision, but there it does not matter.
   float root = b * b - c;
   if (root < 0.0 || b >= 0.0 || c < 0.0) discard;
   float t = c / (sqrt(root) - b);

@@ -1,5 +1,5 @@
-// Hoffman and Preetham's model in a frame: its constants, filled by src/scene/sky/homogeneous_sky.cpp, and the air
-// between the eye and a place.
+// Hoffman and Preetham's model in a frame: its constants, which src/scene/homogeneous_sky.cpp fills, and the medium
+// between the eye and a point.
 #ifndef TYNDALL_HOMOGENEOUS_AIR_GLSL
 #define TYNDALL_HOMOGENEOUS_AIR_GLSL
 
@@ -11,23 +11,23 @@ const float kSunsOfSky = 64.0;
 
 layout(std430, binding = 6) readonly buffer model_block {
   Homogeneous medium;
-  vec3 eye_position;  // as all places and directions in the local frame [m]
+  vec3 eye_position;  // this and all points and directions are in the local frame [m]
   float eye_altitude_m;
   vec3 eye_up;
   float eye_cos_sun;
   vec3 to_sun;
   uint in_space;
-  vec3 sun_on_ground;   // relative to that above the atmosphere, once a frame; not from space
+  vec3 sun_on_ground;   // relative to that above the atmosphere; for eyes inside the atmosphere only
   float air_shown;      // 0 without scattering.enabled
-  vec3 sky_on_ground;   // irradiance, likewise
+  vec3 sky_on_ground;   // irradiance, for eyes inside the atmosphere only
   float ground_shown;   // 0 with scattering.only
   vec3 sun_irradiance;  // above the atmosphere
   float unused_model;
-  vec4 sky_by_sun[];  // from space: the sky's irradiance by the square root of the sun's cosine, 64 of them
+  vec4 sky_by_sun[];  // sky irradiance for eyes in space, at 64 square roots of the sun's cosine
 };
 
-// Extinction and in-scattered radiance from the eye to `offset` from it, which is a surface or, with sky, only a
-// direction. `air_m`: the air's optical length on the way.
+// Computes transmittance (`extinction`) and in-scattered radiance from the eye to `offset`, which is a surface or, with
+// `sky`, a direction. `air_m` is the optical length of the air on the way.
 void air_to(vec3 offset, bool sky, out vec3 extinction, out vec3 inscattering, out float air_m) {
   float distance_m = length(offset);
   vec3 direction = offset / max(distance_m, 1e-6);

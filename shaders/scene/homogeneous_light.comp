@@ -1,11 +1,11 @@
-// The ground through Hoffman and Preetham's air, once for each pixel that shows it: equation 1.
+// Lights the ground seen through Hoffman and Preetham's medium, once per visible pixel: equation 1.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
 #include "scene/terrain_pixel.glsl"
 #include "scene/homogeneous_air.glsl"
 
-// What the vertices found; not read with scattering.evaluate = pixel.
+// The results at the vertices; not read with scattering.evaluate = pixel.
 layout(binding = 9, rgba32f) readonly uniform image2D air_0;
 layout(binding = 10, rgba32f) readonly uniform image2D air_1;
 

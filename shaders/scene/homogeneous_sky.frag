@@ -1,4 +1,4 @@
-// The sky of Hoffman and Preetham's model, and sun and moon through it.
+// The sky of Hoffman and Preetham's model, with sun and moon behind it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -18,7 +18,7 @@ void main() {
     float air_m;
     air_to(direction, true, extinction, inscattering, air_m);
   }
-  // Behind the planet there is no sun, whether or not ground is drawn there.
+  // The planet hides the sun, whether or not ground is drawn there.
   bool open = !ray_hits_ground(eye_altitude_m, dot(direction, eye_up), medium.planet_radius_m);
   radiance = vec4((open ? beyond_air(direction) * ground_shown * extinction : vec3(0.0)) + inscattering, 1.0);
 }

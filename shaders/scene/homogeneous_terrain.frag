@@ -1,4 +1,4 @@
-// Which ground is seen, and the air before it as the vertices have it: homogeneous_light.comp puts them together.
+// Writes the visible ground point and the interpolated vertex results; homogeneous_light.comp combines them.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

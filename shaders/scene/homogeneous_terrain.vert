@@ -1,4 +1,4 @@
-// Terrain in Hoffman and Preetham's air: extinction and in-scattering at every vertex.
+// Terrain in Hoffman and Preetham's model: transmittance and in-scattering at every vertex.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

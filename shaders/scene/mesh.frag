@@ -1,4 +1,4 @@
-// Meshes as the camera sees them. Out: radiance of the surface itself, or what it lets pass of the picture behind it.
+// Meshes seen by the camera. Out: the radiance of the surface, or the factor that it leaves of the picture behind it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -14,14 +14,14 @@ layout(location = 0) out vec4 radiance;
 
 layout(binding = 3) uniform sampler2D base_color;
 
-// 0: surfaces, and glass that diffuses; 1: clear glass, multiplied into the picture; 2: the light that it reflects,
-// added.
+// 0: opaque surfaces and diffusing glass. 1: clear glass, multiplied into the picture. 2: the light that clear glass
+// reflects, added.
 layout(constant_id = 0) const uint kLayer = 0u;
 
 const float kPerPi = 0.318309886;
 
-// Sunlight that comes through diffusing glass: a part of it evenly, the rest near its old direction, in a lobe of
-// some 20 degrees with the integral 1 (Henyey-Greenstein, g = 0.85).
+// Sunlight through diffusing glass: a part is scattered uniformly, the rest into a lobe of some 20 degrees around its
+// old direction (Henyey-Greenstein, g = 0.85, integral 1).
 const float kForward = 0.85;
 const float kForwardShare = 0.3;
 float forward_lobe(float cosine) {
@@ -33,7 +33,7 @@ float forward_lobe(float cosine) {
 void main() {
   bool front = gl_FrontFacing == (handed > 0.0);
   vec4 base = texture(base_color, uv) * push.color * vertex_color;
-  // The triangle's own normal, on the side of the eye. Taken before any discard: it needs the neighbours.
+  // The triangle's normal on the side of the eye. Computed before any discard, because derivatives need neighbours.
   vec3 shape = cross(dFdx(local_position), dFdy(local_position));
   vec3 to_eye = mesh.camera_position - local_position;
   shape = dot(shape, shape) > 0.0 ? normalize(shape) : vec3(0.0, 1.0, 0.0);

@@ -1,4 +1,4 @@
-// Meshes as the camera sees them.
+// Meshes seen by the camera.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

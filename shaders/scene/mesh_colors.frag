@@ -1,4 +1,4 @@
-// What glass leaves of the sun's light, multiplied into a map of colours; alpha keeps the least depth.
+// The transmittance of glass, multiplied into a colour map. Alpha stores the smallest depth.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -12,7 +12,7 @@ layout(location = 0) out vec4 left;
 layout(binding = 3) uniform sampler2D base_color;
 
 void main() {
-  // Of closed bodies one side counts: the one towards the sun. (The maps are mirrored: v runs up.)
+  // Of a closed body only the side towards the sun counts. (The maps are mirrored: v runs up.)
   bool front = gl_FrontFacing != (handed > 0.0);
   if (!front && push.double_sided == 0u) discard;
   left = vec4(passing(texture(base_color, uv) * push.color * vertex_color), gl_FragCoord.z);

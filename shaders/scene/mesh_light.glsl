@@ -1,4 +1,4 @@
-// Light on meshes and on the bare ground: the sun through the air and through glass, and the sky.
+// Light on meshes and on the bare ground: the sun through the atmosphere and through glass, and the sky.
 #ifndef TYNDALL_MESH_LIGHT_GLSL
 #define TYNDALL_MESH_LIGHT_GLSL
 
@@ -25,7 +25,7 @@ SurfaceLight surface_light(vec3 position) {
   SurfaceLight light;
   vec3 from_centre = position + vec3(0.0, mesh.planet_radius_m, 0.0);
   light.up = normalize(from_centre);
-  // The height above the sphere, without the digits that the radius swallows.
+  // The altitude in a form that does not cancel against the radius.
   float altitude = (dot(position, position) + 2.0 * mesh.planet_radius_m * position.y) /
                    (length(from_centre) + mesh.planet_radius_m);
   float cos_sun = dot(light.up, mesh.direction_to_sun);
@@ -36,7 +36,7 @@ SurfaceLight surface_light(vec3 position) {
   return light;
 }
 
-// Irradiance on one side of a surface. `shape`: the normal of the triangle, `normal` that to shade with.
+// Returns the irradiance on one side of a surface. `shape` is the triangle's normal, `normal` the shading normal.
 vec3 irradiance(SurfaceLight light, vec3 position, vec3 shape, vec3 normal, float sky_light, out uint cascade) {
   float up = 0.5 * (1.0 + dot(normal, light.up));
   vec3 sum = sky_light * (light.sky * up + light.bounced * (1.0 - up));

@@ -1,4 +1,4 @@
-// What a draw of one part of a mesh is told: the view and the part's material.
+// The push constants for drawing one part of a mesh: the view and the part's material.
 #ifndef TYNDALL_MESH_PUSH_GLSL
 #define TYNDALL_MESH_PUSH_GLSL
 
@@ -17,7 +17,7 @@ const uint kMask = 1u;
 const uint kBlend = 2u;
 const uint kGlass = 3u;
 
-// What passes of the light from the other side, for a base colour.
+// Returns the transmittance of the surface for a base colour.
 vec3 passing(vec4 base) {
   if (push.kind == kGlass) return base.rgb * push.transmission;
   if (push.kind == kBlend) return (1.0 - base.a) * mix(vec3(1.0), base.rgb, base.a);

@@ -1,4 +1,4 @@
-// The holes of alpha-tested meshes in the shadow maps.
+// Discards the holes of alpha-tested meshes in the shadow maps.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -1,4 +1,4 @@
-// Meshes as the sun sees them.
+// Meshes seen by the sun.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

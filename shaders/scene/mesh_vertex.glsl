@@ -1,4 +1,4 @@
-// The vertices of the meshes, shared by the view and the shadow maps.
+// The vertices of meshes, for the view and for the shadow maps.
 #ifndef TYNDALL_MESH_VERTEX_GLSL
 #define TYNDALL_MESH_VERTEX_GLSL
 
@@ -9,7 +9,7 @@ layout(std430, binding = 0) readonly buffer mesh_block { MeshConstants mesh; };
 layout(std430, binding = 1) readonly buffer vertices_block { uint vertex_words[]; };
 layout(std430, binding = 2) readonly buffer instances_block { MeshInstance instances[]; };
 
-// MeshVertex of src/scene/mesh/mesh_data.hpp: nine words.
+// MeshVertex of src/scene/mesh/mesh_data.hpp: nine words per vertex.
 struct MeshVertex {
   vec3 position;  // in the local frame
   vec3 normal;    // likewise, unit length

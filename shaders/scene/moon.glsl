@@ -1,18 +1,18 @@
-// What lies beyond the air: the sun's disc and, before it, a moon that the sun lights. A sphere that scatters
-// back like dust, by the law of Lommel and Seeliger: a full moon is as bright at its rim as in its middle. Its
-// plains are dark patches of noise.
+// The background beyond the atmosphere: the sun's disc and in front of it a sunlit moon. The moon is a sphere that
+// scatters by the law of Lommel and Seeliger, so that a full moon is as bright at its rim as in its middle. Its plains
+// are dark patches of noise.
 #ifndef TYNDALL_MOON_GLSL
 #define TYNDALL_MOON_GLSL
 
 #include "scene/noise3.glsl"
 #include "scene/sun_disc.glsl"
 
-// Reflects at full moon as much as a white Lambertian disc of this albedo (Allen's Astrophysical Quantities, 4th
-// edition, 2000: geometric albedo 0.12).
+// At full moon it reflects like a white Lambertian disc of this albedo (Allen's Astrophysical Quantities, 4th edition,
+// 2000: geometric albedo 0.12).
 const float kMoonAlbedo = 0.12;
 
-// Relief and plains at a point of the moon's surface (in the world, so that they stay where they are), 1 on average;
-// detail smaller than `footprint` fades.
+// Returns the relative albedo at a point of the moon's surface; the mean is 1. n is in world space, so that features
+// stay in place. Detail smaller than `footprint` fades.
 float moon_shade(vec3 n, float footprint) {
   float plains = smoothstep(-0.05, 0.25, noise3_sum(n * 1.7, 4, 1.7 * footprint, 77u));
   float craters = noise3_sum(n * 9.0, 4, 9.0 * footprint, 78u);
@@ -27,7 +27,7 @@ vec3 beyond_air(vec3 direction) {
     float pixel = pixel_angle_rad * forward * forward;
     float cover = clamp((moon_radius_rad - angle) / pixel + 0.5, 0.0, 1.0);
     if (cover > 0.0) {
-      // The point of the sphere that is seen, as if from far away.
+      // The visible point of the sphere, as seen from far away.
       vec3 across = (direction - direction_to_moon * dot(direction, direction_to_moon)) / sin(moon_radius_rad);
       float off = min(dot(across, across), 1.0);
       float facing = sqrt(1.0 - off);

@@ -1,5 +1,5 @@
-// Noise over space, for surfaces of spheres: gradient noise on the integer lattice (Perlin, "Improving noise",
-// 2002) with hashed gradients (Jarzynski, Olano, "Hash functions for GPU rendering", 2020: pcg3d).
+// 3D noise for the surfaces of spheres: gradient noise on the integer lattice (Perlin, "Improving noise", 2002) with
+// hashed gradients (Jarzynski, Olano, "Hash functions for GPU rendering", 2020: pcg3d).
 #ifndef TYNDALL_NOISE3_GLSL
 #define TYNDALL_NOISE3_GLSL
 
@@ -15,7 +15,7 @@ uvec3 noise3_hash(uvec3 v) {
   return v;
 }
 
-// About -0.7 to 0.7, 0 on average; cells of size 1.
+// Returns noise of about -0.7 to 0.7 with mean 0. Cells have size 1.
 float noise3(vec3 p, uint seed) {
   ivec3 corner = ivec3(floor(p));
   vec3 f = p - vec3(corner);
@@ -31,7 +31,7 @@ float noise3(vec3 p, uint seed) {
   return sum;
 }
 
-// Octaves of it, each half as large and half as strong; those smaller than two footprints fade.
+// Returns a sum of octaves, each of half the size and half the amplitude. Octaves smaller than two footprints fade.
 float noise3_sum(vec3 p, int octaves, float footprint, uint seed) {
   float sum = 0.0;
   float strength = 1.0;

@@ -1,11 +1,11 @@
-// The air of O'Neil's model between the eye and what it sees. Binding 6 is filled by src/scene/oneil_sky.cpp, 7
-// is the table of oneil-table.
+// The medium of O'Neil's model between the eye and a point. src/scene/oneil_sky.cpp fills binding 6; binding 7 is the
+// table of oneil-table.
 #ifndef TYNDALL_ONEIL_AIR_GLSL
 #define TYNDALL_ONEIL_AIR_GLSL
 
 layout(std430, binding = 7) readonly buffer oneil_table_block { vec4 oneil_texels[]; };
 #define ONEIL_TEXEL(table, index) oneil_texels[index]
-// Those of the block's Oneil: src/scene/oneil_sky.cpp chooses the pipeline by them.
+// The fields of the block's Oneil as constants: src/scene/oneil_sky.cpp selects the pipeline by them.
 layout(constant_id = 1) const uint kIntegralMethod = 0u;
 layout(constant_id = 2) const uint kSampleSpacing = 0u;
 #define ONEIL_INTEGRAL_METHOD(o) kIntegralMethod
@@ -22,28 +22,28 @@ layout(std430, binding = 6) readonly buffer model_block {
   vec3 eye_position;
   float eye_altitude_m;
   vec3 eye_up;        // away from the planet's centre
-  float eye_cos_sun;  // of the sun's zenith angle at the eye
+  float eye_cos_sun;  // cosine of the sun's zenith angle at the eye
   vec3 to_sun;
   float horizon_rad;    // zenith angle of the horizon
-  vec3 sun_irradiance;  // above the air
-  float air_shown;      // 0: no air
-  vec3 north_pole;      // of the sphere's surface, in the world
-  float ground_shown;   // 0: nothing but the light of the air
+  vec3 sun_irradiance;  // above the atmosphere
+  float air_shown;      // 0: no scattering
+  vec3 north_pole;      // of the sphere's surface, in world space
+  float ground_shown;   // 0: only the in-scattered light
   uint sphere_seed;
-  uint is_sphere;  // the ground is the sphere, and not the terrain
+  uint is_sphere;  // 1: the ground is the sphere instead of the terrain
   float unused_model_0;
   float unused_model_1;
-  // Irradiance of the sky at sea level / E0 for cosines of the sun's zenith angle from -1 to 1.
+  // Sky irradiance at sea level / E0 for cosines of the sun's zenith angle from -1 to 1.
   vec4 sky_by_sun[kSunsOfSky];
 };
 
-// Where a ray ends.
+// The end of a ray.
 const uint kAtDistance = 0u;
-const uint kAtGround = 1u;  // the sphere at sea level, which it meets
+const uint kAtGround = 1u;  // the sphere at sea level, which the ray hits
 const uint kInSpace = 2u;
 
-// Light of the ray into `direction` but for the phase functions, and what it lets through; all relative to the
-// sun's irradiance. Before the air, behind it and past it there is none.
+// Returns single scattering along the ray, without phase functions, and its transmittance, relative to the sun's
+// irradiance. A ray that misses the atmosphere, or ends before it, gets no light.
 OneilLight oneil_light(vec3 direction, float distance_m, uint ends) {
   OneilLight none = OneilLight(vec3(0.0), vec3(0.0), vec3(1.0));
   float R = medium.planet_radius_m;
@@ -68,13 +68,14 @@ OneilLight oneil_light(vec3 direction, float distance_m, uint ends) {
   return oneil_scattering(medium, oneil, 0u, oneil_enter(medium, ray, start), 0.0, start > 0.0 ? end - start : end);
 }
 
-// Radiance of what oneil_air found: here enter the phase functions, for every pixel.
+// Returns the radiance for the result of oneil_light(). The phase functions are evaluated here, per pixel.
 vec3 oneil_inscattering(vec3 direction, OneilLight light) {
   float nu = clamp(dot(direction, to_sun), -1.0, 1.0);
   return oneil_radiance(medium, oneil, nu, light.rayleigh, light.mie) * sun_irradiance;
 }
 
-// Light on the ground, relative to the sun's above the air: across the sun's direction, and of the open sky.
+// Computes the light on the ground, relative to the sun's above the atmosphere: sunlight on a surface that faces the
+// sun, and the irradiance of the open sky.
 void light_on_ground(float altitude_m, float cos_sun_zenith, out vec3 sun, out vec3 sky) {
   sun = vec3(1.0);
   sky = vec3(0.0);

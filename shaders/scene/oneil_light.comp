@@ -1,12 +1,11 @@
-// The ground through O'Neil's air, once for each pixel that shows it: what it sends, attenuated, and the light that the
-// air adds.
+// Lights the ground seen through O'Neil's medium, once per visible pixel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
 #include "scene/terrain_pixel.glsl"
 #include "scene/oneil_air.glsl"
 
-// What the vertices found; not read with scattering.evaluate = pixel.
+// The results at the vertices; not read with scattering.evaluate = pixel.
 layout(binding = 9, rgba32f) readonly uniform image2D air_0;
 layout(binding = 10, rgba32f) readonly uniform image2D air_1;
 layout(binding = 11, rgba32f) readonly uniform image2D air_2;

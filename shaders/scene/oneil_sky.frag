@@ -1,4 +1,4 @@
-// The sky of O'Neil's model, what lies beyond it seen through it, and below the horizon the planet as a sphere.
+// The sky of O'Neil's model with the background behind it; below the horizon, the planet as a sphere.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -12,7 +12,7 @@ layout(location = 2) in vec3 vertex_mie;
 layout(location = 3) in vec3 vertex_transmittance;
 layout(location = 0) out vec4 radiance;
 
-// Radiance of the sphere in this direction, before the air takes its part.
+// Returns the radiance of the sphere in this direction, without the medium in front of it.
 vec3 sphere_radiance(vec3 direction) {
   float R = medium.planet_radius_m;
   float mu = dot(direction, eye_up);
@@ -29,13 +29,13 @@ vec3 sphere_radiance(vec3 direction) {
   return albedo * 0.318309886 * (sun * max(cos_sun, 0.0) + sky) * sun_irradiance;
 }
 
-// Whether the air has to be found for the pixel where it is found at the vertices otherwise: near the horizon, where
-// what lies on either side differs, and, from space, in the limb. The mesh's edges are arcs of great circles, which
-// leave the circle of zenith angles that their vertices stand on by up to the square of their length over 8 (kSag_rad
-// at 45 degrees).
+// Returns whether the medium must be evaluated per pixel even when it is evaluated at the vertices otherwise. That is
+// so near the horizon, where both sides differ, and in the limb seen from space. The mesh's edges are arcs of great
+// circles, which deviate from the circle of constant zenith angle through their vertices by up to the square of their
+// length over 8 (kSag_rad at 45 degrees).
 bool in_limb(float mu, bool on_ground) {
   const float kSag_rad = 9.0e-4;
-  const float kRow_rad = 2.0e-3;  // below the horizon, where light changes like a root
+  const float kRow_rad = 2.0e-3;  // below the horizon, where the radiance changes like a square root
   bool in_space = eye_altitude_m > medium.atmosphere_height_m;
   float beside = mu - cos(horizon_rad);
   return (in_space && !on_ground) || abs(beside) < (kSag_rad + kRow_rad) * sin(horizon_rad);

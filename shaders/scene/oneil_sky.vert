@@ -1,5 +1,5 @@
-// The sky mesh in O'Neil's model: the integral along the ray through each vertex, out of the air or, below
-// the horizon, to the sphere of the planet.
+// The sky mesh in O'Neil's model: single scattering along the ray through each vertex, out of the atmosphere or, below
+// the horizon, to the planet's sphere.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -17,7 +17,7 @@ void main() {
   vertex_mie = vec3(0.0);
   vertex_transmittance = vec3(1.0);
   if (kPerPixel == 0u) {
-    // The mesh has a row on the horizon and one right below it, so that the break there stays sharp.
+    // The mesh has one row on the horizon and one just below it, so that the edge there stays sharp.
     float zenith = sky_mesh_zenith(uint(gl_VertexIndex));
     OneilLight light = oneil_light(normalize(offset), 0.0, zenith > horizon_rad + 2.0e-5 ? kAtGround : kInSpace);
     vertex_rayleigh = light.rayleigh;

@@ -1,4 +1,4 @@
-// Terrain in O'Neil's air: the integral from the eye to every vertex.
+// Terrain in O'Neil's model: single scattering from the eye to every vertex.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -1,11 +1,11 @@
-// The surface of a planet seen from space: seas, land by climate, and ice at the poles, from noise alone.
-// Albedos are diffuse, at 680, 550 and 440 nm.
+// The surface of a planet seen from space, from noise alone: seas, land by climate, and polar ice. Albedos are diffuse,
+// at 680, 550 and 440 nm.
 #ifndef TYNDALL_PLANET_SURFACE_GLSL
 #define TYNDALL_PLANET_SURFACE_GLSL
 
 #include "scene/noise3.glsl"
 
-// Of ground that shows between the terrain's edge and the horizon.
+// The albedo of ground between the terrain's edge and the horizon.
 const vec3 kUnseenAlbedo = vec3(0.09, 0.09, 0.06);
 
 const vec3 kSeaAlbedo = vec3(0.018, 0.034, 0.062);
@@ -16,7 +16,7 @@ const vec3 kDesertAlbedo = vec3(0.330, 0.260, 0.165);
 const vec3 kBarrenAlbedo = vec3(0.190, 0.170, 0.150);
 const vec3 kIceAlbedo = vec3(0.72, 0.77, 0.80);
 
-// n: unit vector from the planet's centre. footprint: width of a pixel there [rad].
+// Returns the albedo. n is the unit vector from the planet's centre, footprint the width of a pixel there [rad].
 vec3 planet_albedo(vec3 n, vec3 north, float footprint, uint seed) {
   vec3 warp = vec3(noise3(n * 2.1, seed + 40u), noise3(n * 2.1 + 7.3, seed + 41u), noise3(n * 2.1 - 5.1, seed + 42u));
   float height = noise3_sum((n + 0.25 * warp) * 1.6, 12, 1.6 * footprint, seed) - 0.03;
@@ -25,7 +25,7 @@ vec3 planet_albedo(vec3 n, vec3 north, float footprint, uint seed) {
   float edge = 0.004 + 1.6 * footprint;
 
   vec3 sea = mix(kSeaAlbedo, kShelfAlbedo, smoothstep(-0.09, 0.0, height));
-  // Deserts along the thirtieth parallels, woods at the equator and beyond the forty-fifth.
+  // Deserts lie along the thirtieth parallels, forests at the equator and beyond the forty-fifth.
   float belt = exp(-pow((latitude - 0.45) / 0.16, 2.0));
   float dry = clamp(0.35 + 0.75 * belt - 1.1 * wet, 0.0, 1.0);
   vec3 land = mix(kWoodAlbedo, kPlainsAlbedo, smoothstep(0.15, 0.5, dry));

@@ -1,5 +1,5 @@
-// The sky mesh of src/scene/sky/sky_model.hpp: a sphere of directions around the camera, whose vertices a model
-// moves to whatever distance it likes. For vertex shaders.
+// The sky mesh of src/scene/sky_model.hpp, for vertex shaders: a sphere of directions around the camera. A model may
+// place each vertex at any distance.
 #ifndef TYNDALL_SKY_MESH_GLSL
 #define TYNDALL_SKY_MESH_GLSL
 
@@ -11,13 +11,13 @@ layout(std430, binding = 1) readonly buffer mesh_block {
   uint mesh_rows;
   vec3 mesh_right;
   float unused_mesh;
-  float mesh_angles[];  // azimuths from mesh_ahead of the columns + 1 lines, then zenith angles of the rows + 1 [rad]
+  float mesh_angles[];  // azimuths from mesh_ahead of columns + 1 lines, then zenith angles of rows + 1 lines [rad]
 };
 
-// Angle of a vertex from the zenith [rad].
+// Returns the zenith angle of a vertex [rad].
 float sky_mesh_zenith(uint index) { return mesh_angles[mesh_columns + 1u + index / (mesh_columns + 1u)]; }
 
-// Unit vector from the camera to vertex `index`, in the local frame.
+// Returns the unit vector from the camera to vertex `index` in the local frame.
 vec3 sky_mesh_direction(uint index) {
   uint row = index / (mesh_columns + 1u);
   float azimuth = mesh_angles[index - row * (mesh_columns + 1u)];
@@ -25,7 +25,7 @@ vec3 sky_mesh_direction(uint index) {
   return mesh_up * cos(zenith) + (mesh_ahead * cos(azimuth) + mesh_right * sin(azimuth)) * sin(zenith);
 }
 
-// Where a vertex at `offset` from the camera is drawn: at the depth of the sky, wherever it is.
+// Returns the clip position of a vertex at `offset` from the camera. Its depth is that of the sky at any distance.
 vec4 sky_mesh_clip(vec3 offset) { return clip_from_local * vec4(offset, 0.0); }
 
 #endif

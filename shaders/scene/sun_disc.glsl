@@ -1,6 +1,6 @@
-// The sun's disc as seen from above the air. Radiance, so that the mean over the disc times its
-// solid angle is the irradiance above the atmosphere. Limb darkening: I = I0 mu^alpha with alpha by
-// wavelength (Hestroffer, Magnan, "Wavelength dependency of the Solar limb darkening", 1998, eq. 4).
+// The sun's disc as seen from above the atmosphere. Its mean radiance times its solid angle is the irradiance above the
+// atmosphere. Limb darkening: I = I0 mu^alpha with alpha by wavelength (Hestroffer, Magnan, "Wavelength dependency of
+// the Solar limb darkening", 1998, equation 4).
 #ifndef TYNDALL_SUN_DISC_GLSL
 #define TYNDALL_SUN_DISC_GLSL
 
@@ -12,20 +12,20 @@ layout(std430, binding = 0) readonly buffer background_block {
   float pixel_angle_rad;  // of one pixel at the centre of the picture
   vec3 limb_exponent;
   float unused_0;
-  vec2 tan_half;  // of the field of view; y points down in clip space
-  vec2 jitter;    // of the picture, in clip space
+  vec2 tan_half;  // tangents of half the field of view; y points down in clip space
+  vec2 jitter;    // subpixel offset of the picture in clip space
   vec3 direction_to_moon;
   float moon_radius_rad;  // 0: no moon
-  vec3 moon_irradiance;   // of the sun's light on it
+  vec3 moon_irradiance;   // irradiance of the sun at the moon
   float unused_1;
   mat4 world_from_local;  // directions
 };
 
-// In a direction of unit length; 0 beside the disc.
+// Returns the radiance in a direction of unit length; 0 beside the disc.
 vec3 sun_disc(vec3 direction) {
-  // The chord between unit vectors keeps the digits that the arc cosine of a dot product loses.
+  // The chord between unit vectors is precise where the arc cosine of a dot product is not.
   float angle = 2.0 * asin(min(0.5 * distance(direction, direction_to_sun), 1.0));
-  // Pixels away from the centre of the picture see a smaller angle.
+  // A pixel away from the centre of the picture spans a smaller angle.
   float forward = dot(direction, -vec3(local_from_view[2]));
   float pixel = pixel_angle_rad * forward * forward;
   float cover = clamp((angular_radius_rad - angle) / pixel + 0.5, 0.0, 1.0);

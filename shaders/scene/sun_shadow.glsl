@@ -1,16 +1,16 @@
-// Sunlight on surfaces from the cascades: choice of the cascade, bias, filter, and the colour of glass that the light
-// has come through. The includer defines SHADED, a block with the fields named below, SHADOW_MAPS, the binding of the
-// maps, and, where it wants the colour, SHADOW_COLORS, the binding of the maps of colours.
+// Sunlight on surfaces from the shadow cascades: selection of the cascade, bias, filter, and the colour of glass in the
+// light's path. The including file defines SHADED, a block with the fields used below; SHADOW_MAPS, the binding of the
+// shadow maps; and optionally SHADOW_COLORS, the binding of the colour maps.
 #ifndef TYNDALL_SUN_SHADOW_GLSL
 #define TYNDALL_SUN_SHADOW_GLSL
 
 layout(binding = SHADOW_MAPS) uniform sampler2DArrayShadow shadow_maps;
 
-// Texels that the filter reaches over.
+// The reach of the filter in texels.
 const float kFilterMargin = 3.0;
 
-// How far inside cascade c a place in it is: 0 at the margin, 1 well inside, negative outside. Behind the last
-// cascade's depths, away from the sun, all casters are nearer.
+// Returns how far inside cascade c a point is: 0 at the margin, 1 well inside, negative outside. Beyond the depth range
+// of the last cascade, away from the sun, all casters are nearer, so the point counts as inside.
 float cascade_margin(uint c, vec3 uvz) {
   float edge = kFilterMargin / SHADED.shadow_resolution;
   vec2 inside = min(uvz.xy, 1.0 - uvz.xy) - edge;
@@ -18,8 +18,8 @@ float cascade_margin(uint c, vec3 uvz) {
   return min(min(inside.x, inside.y) / 0.05, deep_enough ? 1.0 : -1.0);
 }
 
-// The place in cascade c of a receiver, moved along its normal by about the filter's footprint, so that it does not
-// shadow itself (Holbert, "Normal Offset Shadows", 2011).
+// Returns a receiver's position in cascade c. The receiver is moved along its normal by about the filter's footprint to
+// avoid self-shadowing (Holbert, "Normal Offset Shadows", 2011).
 vec3 cascade_place(uint c, vec3 position, vec3 normal) {
   vec4 size = SHADED.cascade[c];
   float texel_m = max(size.y, size.z);
@@ -30,14 +30,14 @@ vec3 cascade_place(uint c, vec3 position, vec3 normal) {
   return (SHADED.shadow_from_local[c] * vec4(moved, 1.0)).xyz;
 }
 
-// Lit fraction in one cascade.
+// Returns the lit fraction according to one cascade.
 float cascade_light(uint c, vec3 position, vec3 normal, out float margin) {
   vec3 uvz = cascade_place(c, position, normal);
   margin = cascade_margin(c, uvz);
   if (margin < 0.0) return 1.0;
   uvz.z = clamp(uvz.z, 0.0, 1.0);
   if (SHADED.smooth_shadows == 0u) return texture(shadow_maps, vec4(uvz.xy, float(c), uvz.z));
-  // Nine bilinear comparisons with the weights of a tent three texels wide.
+  // Nine bilinear comparisons, weighted by a tent three texels wide.
   float texel = 1.0 / SHADED.shadow_resolution;
   float light = 0.0;
   for (int y = -1; y <= 1; ++y) {
@@ -49,7 +49,7 @@ float cascade_light(uint c, vec3 position, vec3 normal, out float margin) {
   return light / 16.0;
 }
 
-// Lit fraction of a surface point, and the cascade that answered (cascade_count: none did).
+// Returns the lit fraction of a surface point. `answered` is the cascade that was used; cascade_count means none.
 float sun_light_at(vec3 position, vec3 normal, out uint answered) {
   answered = SHADED.cascade_count;
   float view_depth = dot(position - SHADED.camera_position, SHADED.camera_forward);
@@ -59,7 +59,7 @@ float sun_light_at(vec3 position, vec3 normal, out uint answered) {
     float light = cascade_light(c, position, normal, margin);
     if (margin < 0.0) continue;
     answered = c;
-    // Towards its edge a cascade gives way to the next, so that no line shows.
+    // Blend into the next cascade near the edge, so that no line shows.
     if (margin < 1.0 && c + 1u < SHADED.cascade_count) {
       float next_margin;
       float next = cascade_light(c + 1u, position, normal, next_margin);
@@ -75,14 +75,14 @@ float sun_light_at(vec3 position, vec3 normal, out uint answered) {
 #ifdef SHADOW_COLORS
 layout(binding = SHADOW_COLORS) uniform sampler2DArray shadow_colors;
 
-// What glass leaves of the light of one place in a map. Alpha is the depth of the glass nearest to the sun: what lies
-// before it is not coloured by it. Half floats round depths to 1/4096.
+// Returns the colour of the light at a point of a map. Alpha is the depth of the glass nearest to the sun; light in
+// front of that glass is not coloured. The tolerance covers half-float depths, which are rounded to 1/4096.
 vec3 glass_color(vec3 place, float depth) {
   vec4 glass = texture(shadow_colors, place);
   return depth + 0.0005 > glass.a ? glass.rgb : vec3(1.0);
 }
 
-// What glass leaves of the sun's light at a surface point for which `cascade` has answered.
+// Returns the colour of the sunlight at a surface point for which sun_light_at() used `cascade`.
 vec3 sun_color_at(vec3 position, vec3 normal, uint cascade) {
   if (SHADED.has_glass == 0u || cascade >= SHADED.cascade_count) return vec3(1.0);
   vec3 uvz = cascade_place(cascade, position, normal);

@@ -1,5 +1,5 @@
-// Which ground is seen: terrain_light.comp lights it. Triangles are about as small as pixels, and a device shades at
-// least four pixels of each, a CPU sixteen; so nothing that costs is done here.
+// Writes the visible ground point; terrain_light.comp lights it. Triangles are about as small as pixels, and a device
+// shades at least four pixels of each (a CPU device sixteen), so this shader must be cheap.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -1,8 +1,9 @@
-// What the terrain's shaders read of one view (std430; every vec3 or vec2 pair fills 16 bytes). Filled by
-// src/scene/terrain/terrain.cpp. Places and directions are in the local frame of src/scene/view/local_frame.hpp.
+// The constants of one view for the terrain's shaders (std430; every vec3 or pair of vec2 fills 16 bytes).
+// src/scene/terrain.cpp fills them. Points and directions are in the local frame of src/scene/local_frame.hpp.
 struct TerrainLevel {
-  ivec2 origin;  // grid index on the map projection of the texture's first sample
-  vec2 first_m;  // its place, as all places on the map from the origin of the local frame: see map_projections.glsl
+  ivec2 origin;  // grid index on the chart of the texture's first sample
+  vec2
+      first_m;  // its position on the map, relative to the origin of the local frame as all map positions (charts.glsl)
   float cell_m;
   float range_m;
 };
@@ -26,7 +27,7 @@ struct TerrainConstants {
   uint best_cascade;
   uint show_cascades;
   vec3 camera_forward;
-  uint has_glass;  // the maps of colours are there
+  uint has_glass;  // 1: the colour maps exist
   mat4 shadow_from_local[8];
   vec4 cascade[8];  // far view depth [m], texel x [m], texel y [m], depth range [m]
   TerrainLevel levels[16];

@@ -1,4 +1,4 @@
-// Terrain as the camera sees it.
+// Terrain seen by the camera.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

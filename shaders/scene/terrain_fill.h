@@ -1,6 +1,6 @@
-// What terrain_heights.comp reads: the source of elevations and the part of a clipmap level to fill.
-// Compiled by GLSL (std430) and by C++ (src/scene/elevation/elevation_source.hpp): every member is four
-// bytes, vectors of two are at multiples of eight.
+// The input of terrain_heights.comp: the source of elevations and the part of a clipmap level to fill. Compiled as GLSL
+// (std430) and as C++ (src/scene/elevation/elevation_source.hpp): every member has four bytes, and vectors of two are
+// at multiples of eight.
 #ifndef TYNDALL_TERRAIN_FILL_H
 #define TYNDALL_TERRAIN_FILL_H
 
@@ -9,16 +9,16 @@ struct TerrainSource {
   float raster_spacing_m;  // its centre is at the origin of the map
   float raster_min_m;      // lowest and highest sample
   float raster_max_m;
-  float outside_offset_m;  // raises the procedural terrain around the file to the level of its border
+  float outside_offset_m;  // raises the procedural terrain around the file to the level of the file's border
   uint kind;               // 0 procedural, 1 file
   uint seed;
   float exaggeration;
   int raster_levels;  // levels of detail in the atlas, see terrain_source.glsl
 };
 
-// Texel texel_offset + t of the layer, t in [0; texel_count), is the sample first_sample + t of the level,
-// at (first_sample + t) * spacing_m on the map; texel numbers are taken modulo texel_mask + 1, a power of two
-// (for levels that wrap round), or as they are with texel_mask = -1.
+// Texel texel_offset + t of the layer, with t in [0; texel_count), is sample first_sample + t of the level, at
+// (first_sample + t) * spacing_m on the map. Texel numbers are taken modulo texel_mask + 1, a power of two, for levels
+// that wrap around. With texel_mask = -1 they are used as they are.
 struct TerrainFill {
   TerrainSource source;
   ivec2 first_sample;
@@ -28,7 +28,7 @@ struct TerrainFill {
   int texel_mask;
   int layer;
   int unused;
-  vec2 first_m;  // place of first_sample from the origin of the local frame, on the map
+  vec2 first_m;  // map position of first_sample relative to the origin of the local frame
 };
 
 #endif

@@ -1,6 +1,6 @@
-// The ground in sunlight that has come through the air and under the light of the sky, once for each pixel that shows
-// it. In: what terrain.frag has left. Out, in its place: radiance of the ground itself; what the air adds between it
-// and the eye is the effect's business.
+// Lights the ground by attenuated sunlight and by the sky, once per visible pixel. In: the ground points that
+// terrain.frag wrote. Out, in the same image: the radiance of the ground itself; the effect adds the medium between
+// ground and eye.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

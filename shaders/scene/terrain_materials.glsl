@@ -1,9 +1,9 @@
-// What covers the ground: albedo and fine relief of meadow, forest, scree, rock and snow, from altitude,
-// slope and noise alone, so that nothing has to be stored. Functions only; compiles as GLSL and as C++
+// Ground cover: albedo and fine relief of meadow, forest, scree, rock and snow, computed from altitude, slope and
+// noise, so that nothing has to be stored. Functions only; compiles as GLSL and as C++
 // (src/scene/elevation/terrain_glsl.hpp).
-// Albedo is linear, diffuse, at 680, 550 and 440 nm. Normals are in the map's frame: x east, y up,
-// z south, on the tangent plane at that place of the map. Every octave of noise fades before it gets
-// smaller than two footprints, and what it would have made ragged is then blended over the same width.
+// Albedo is linear and diffuse, at 680, 550 and 440 nm. Normals are in the map's frame: x east, y up, z south, on the
+// tangent plane at that point of the map. Every octave of noise fades before it gets smaller than two footprints; edges
+// that it would have made ragged are then blended over the same width.
 #ifndef TYNDALL_TERRAIN_MATERIALS_GLSL
 #define TYNDALL_TERRAIN_MATERIALS_GLSL
 
@@ -14,8 +14,8 @@ const uint kTerrainShadingMaterials = 0u;
 const uint kTerrainShadingHeight = 1u;
 const uint kTerrainShadingPlain = 2u;
 
-// Albedos from the usual field spectra (e.g. Baldridge et al., "The ASTER spectral library", 2009),
-// rounded: living plants are dark at 440 and 680 nm, where chlorophyll absorbs.
+// Albedos are rounded from common field spectra (e.g. Baldridge et al., "The ASTER spectral library", 2009). Living
+// plants are dark at 440 and 680 nm, where chlorophyll absorbs.
 const vec3 kMeadowAlbedo = vec3(0.062, 0.098, 0.036);
 const vec3 kDryGrassAlbedo = vec3(0.118, 0.112, 0.058);
 const vec3 kForestAlbedo = vec3(0.024, 0.039, 0.019);
@@ -29,10 +29,10 @@ const vec3 kPlainAlbedo = vec3(0.30, 0.30, 0.30);
 
 struct TerrainMaterial {
   vec3 albedo;
-  vec3 normal;  // unit length, with the fine relief added
+  vec3 normal;  // unit length, includes the fine relief
 };
 
-// Adds one octave: x value in about [-1, 1], yz slope of a relief whose typical slope is one.
+// Returns one octave: x is a value in about [-1, 1], yz the slope of a relief whose typical slope is one.
 vec3 terrain_material_octave(ivec2 units, int a, int b, int shift, float footprint_m, uint salt) {
   float cell_m = float(1u << uint(shift)) * inversesqrt(4096.0 * float(a * a + b * b));
   float weight = clamp(cell_m / footprint_m * 0.4 - 0.8, 0.0, 1.0);
@@ -45,14 +45,14 @@ vec3 terrain_material_octave(ivec2 units, int a, int b, int shift, float footpri
   return n;
 }
 
-// Weight of detail of a wavelength, or of a lattice's cell, at a footprint.
+// Returns the weight of detail of a wavelength, or of a lattice's cell size, at a footprint.
 float terrain_material_weight(float cell_m, float footprint_m) {
   return clamp(cell_m / footprint_m * 0.4 - 0.8, 0.0, 1.0);
 }
 
-// Adds ribs and gullies that run down `slope`, finer than the elevation shows them: x 1 on crests to -1 in
-// gullies, yz slope of a relief whose typical slope is one. On level ground they wander. coarsest_m: waves of
-// that many metres and more are left to the elevation.
+// Returns ribs and gullies that run down `slope`, finer than the elevation resolves: x runs from 1 on crests to -1 in
+// gullies, yz is the slope of a relief whose typical slope is one. On level ground they meander. Waves of coarsest_m
+// metres and longer are left to the elevation.
 vec3 terrain_material_ribs(vec2 slope, ivec2 units, int a, int b, int shift, float coarsest_m, float footprint_m,
                            uint salt) {
   float wave_m =
@@ -68,19 +68,19 @@ vec3 terrain_material_ribs(vec2 slope, ivec2 units, int a, int b, int shift, flo
   return n;
 }
 
-// Share of a cover whose edge lies where `x` is zero; `width` in the unit of x.
+// Returns the fraction of a cover whose edge lies at x = 0. `width` has the unit of x.
 float terrain_cover(float x, float width) { return clamp(x / width + 0.5, 0.0, 1.0); }
 
-// units: place on the map, see terrain_units. altitude_m: above sea level. normal: of the large relief.
-// bend: change of its slope over the distance that it resolves, positive in hollows. footprint_m: width of a
-// pixel on the map. About 1700 operations within a few metres, where every octave is visible, 150 to 250 fewer
-// for each that is not.
+// Returns the cover of the ground. units: position on the map, see terrain_units(). altitude_m: above sea level.
+// normal: of the large relief. bend: change of its slope over the distance that it resolves, positive in hollows.
+// footprint_m: width of a pixel on the map. Takes about 1700 operations within a few metres, where every octave is
+// visible, and 150 to 250 fewer for each octave that is not.
 TerrainMaterial terrain_material(ivec2 units, float altitude_m, vec3 normal, float bend, float footprint_m, uint seed) {
   uint salt = terrain_hash(seed + 0x2c1b3c6du);
   vec2 gradient = vec2(normal.x, normal.z) * (-1.0 / max(normal.y, 0.05));
   vec3 wide = terrain_material_octave(units, 1, 3, 18, footprint_m, salt + 1u);     // 1295 m
   vec3 patches = terrain_material_octave(units, 2, 1, 16, footprint_m, salt + 2u);  // 458 m
-  // Far away the elevation's cells span several pixels: about two of these stand in for what they lack.
+  // Far away the elevation's cells span several pixels. About two of these octaves replace the missing detail.
   float cells_m = 24.0 * footprint_m;
   vec3 broad = terrain_material_ribs(gradient, units, 2, 1, 19, cells_m, footprint_m, salt + 10u);  // 4.9 km
   broad += terrain_material_ribs(gradient + vec2(broad.y, broad.z) * 0.3, units, 1, 3, 18, cells_m, footprint_m,
@@ -89,7 +89,7 @@ TerrainMaterial terrain_material(ivec2 units, float altitude_m, vec3 normal, flo
                                  salt + 12u);  // 0.76 km
   broad += terrain_material_ribs(gradient + vec2(broad.y, broad.z) * 0.3, units, 1, 4, 16, cells_m, footprint_m,
                                  salt + 13u);  // 0.33 km
-  // Level ground has no downhill: there the patches' relief steers the ribs.
+  // Level ground has no downhill direction; there the relief of the patches steers the ribs.
   vec2 steer = gradient + vec2(patches.y, patches.z) * 0.12;
   vec3 coarse = terrain_material_ribs(steer, units, 4, 3, 15, 1.0e9, footprint_m, salt + 3u);  // waves of 137 m
   steer += vec2(coarse.y, coarse.z) * 0.35;
@@ -100,16 +100,16 @@ TerrainMaterial terrain_material(ivec2 units, float altitude_m, vec3 normal, flo
   float hollow = bend / (0.35 + abs(bend)) - 0.28 * broad.x;
   float large = wide.x * 0.55 + patches.x * 0.45;
   float ragged = coarse.x * 0.22 + middle.x * 0.22 + fine.x * 0.32 + grain.x * 0.25;
-  // What the footprint leaves unresolved of `ragged`, as the width of an even distribution with the same
-  // variance: edges are that much softer.
+  // The part of `ragged` that the footprint cannot resolve, as the width of a uniform distribution of the same
+  // variance. Edges are softened by it.
   float lost_coarse = 1.0 - terrain_material_weight(82.0, footprint_m);
   float lost_middle = 1.0 - terrain_material_weight(32.0, footprint_m);
   float lost_fine = 1.0 - terrain_material_weight(14.0, footprint_m);
   float unresolved = sqrt(0.30 * lost_coarse + 0.30 * lost_middle + 0.25 * lost_fine);
   float edge = 0.05 + 0.75 * unresolved;
 
-  // Tangent of the slope, with the ribs that the elevation is too coarse for. Where even large relief is below
-  // a pixel, the ground is steeper than its mean: or distant mountains would be all snow.
+  // The tangent of the slope with the ribs that the elevation is too coarse for. Where even large relief is below a
+  // pixel, the ground is steeper than its mean; without this, distant mountains would be all snow.
   float bare_m = clamp((altitude_m - 1500.0) * (1.0 / 900.0), 0.0, 1.0);
   float hidden = clamp(log2(max(footprint_m, 16.0) * 0.0625) * 0.14, 0.0, 1.0);
   vec2 ribbed = gradient +
@@ -118,9 +118,9 @@ TerrainMaterial terrain_material(ivec2 units, float altitude_m, vec3 normal, flo
                 vec2(broad.y, broad.z) * ((0.22 + 0.14 * bare_m) * min(2.2 * length(gradient), 1.0));
   float steep = length(ribbed) * (1.0 + hidden);
   float rough_steep = steep * (1.0 + 0.25 * ragged + 0.10 * large);
-  float sunny = clamp(normal.z * 1.6, -1.0, 1.0);  // south faces lose their snow sooner
+  float sunny = clamp(normal.z * 1.6, -1.0, 1.0);  // south faces lose their snow earlier
 
-  // Wet and dry countries, 939 and 130 km; the origin's is wet.
+  // Wet and dry regions of 939 and 130 km; that of the origin is wet.
   vec2 none = vec2(0.0, 0.0);
   vec2 away = vec2(units) * (1.0 / (kTerrainUnitsPerM * 160000.0));
   float away2 = dot(away, away);
@@ -129,7 +129,7 @@ TerrainMaterial terrain_material(ivec2 units, float altitude_m, vec3 normal, flo
               0.9 / (1.0 + away2 * away2);
   dry = clamp(0.30 + 0.8 * dry + 0.10 * large + (altitude_m - 900.0) * 0.0003 - 0.25 * hollow, 0.0, 1.0);
 
-  // Which ground, as shares that later layers cover.
+  // The fractions of the covers; later ones lie on top.
   float treeline_m = 1750.0 + 130.0 * sunny;
   float trees =
       terrain_cover((treeline_m - altitude_m) / 420.0 + 0.55 * large + 0.6 * ragged - 0.15, edge) *
@@ -139,11 +139,11 @@ TerrainMaterial terrain_material(ivec2 units, float altitude_m, vec3 normal, flo
       (altitude_m - 2150.0 - 120.0 * sunny) / 500.0 + 0.5 * large + 0.8 * ragged + 0.5 * (steep - 0.5) - 0.5 * hollow,
       0.35 + edge);
   float scree = max(barren, terrain_cover(rough_steep - 0.66 + 0.10 * large, 0.10 + 0.35 * unresolved));
-  // Rock stands out as ribs; what falls from it lies in the gullies between.
+  // Rock stands out as ribs; debris lies in the gullies between them.
   float rock = terrain_cover(rough_steep - 0.84 + 0.12 * large - 0.25 * hollow +
                                  0.28 * (coarse.x * 0.5 + middle.x * 0.5) + 0.14 * barren * (fine.x + grain.x),
                              0.07 + 0.5 * unresolved);
-  // Snow fills gullies, and the wind takes it from crests.
+  // Snow fills gullies, and the wind removes it from crests.
   float snowline_m = 2700.0 + 260.0 * sunny;
   float snow_depth = (altitude_m - snowline_m) / 450.0 + 0.45 * large + 0.35 * ragged + 0.9 * hollow -
                      0.60 * (coarse.x * 0.55 + middle.x * 0.45);
@@ -161,7 +161,7 @@ TerrainMaterial terrain_material(ivec2 units, float altitude_m, vec3 normal, flo
   albedo = mix(albedo, kForestAlbedo * (1.0 + 0.45 * fine.x + 0.35 * grain.x + 0.1 * ragged), trees);
   albedo = mix(albedo, kScreeAlbedo * (1.0 + 0.16 * speckle - 0.10 * middle.x + 0.10 * pebbles.x), scree);
 
-  // Rock: kinds change over kilometres, beds over tens of metres of altitude (tilted by the wide noise).
+  // The kind of rock changes over kilometres, its beds over tens of metres of altitude (tilted by the wide noise).
   float kind = large + 0.35 * wide.x;
   vec3 stone = mix(kGraniteAlbedo, kLimestoneAlbedo, terrain_cover(kind - 0.15, 0.5));
   stone = mix(stone, kSchistAlbedo, terrain_cover(-kind - 0.45, 0.5));
@@ -171,7 +171,7 @@ TerrainMaterial terrain_material(ivec2 units, float altitude_m, vec3 normal, flo
   albedo = mix(albedo, stone * (0.94 + 0.16 * beds + 0.14 * middle.x + 0.22 * speckle), rock);
   albedo = mix(albedo, kSnowAlbedo * (1.0 + 0.02 * ragged), snow);
 
-  // Fine relief: typical slope of each octave by cover; ribs on bare ground only, half filled by snow.
+  // The fine relief: a typical slope for each octave and cover. Ribs exist on bare ground only, half filled by snow.
   float bare = max(scree * 0.6, rock);
   float relief = mix(mix(0.10, 0.55, trees), mix(0.32, 0.60, rock), bare);
   relief = mix(relief, 0.09, snow);

@@ -1,20 +1,20 @@
-// Elevation of the procedural mountains: a pure function of the place on the map, the sample spacing and
-// a seed. Functions only; compiles as GLSL in single precision and as C++ in double
-// (src/scene/elevation/terrain_glsl.hpp), so literals have a dot and nothing assigns to a swizzle.
+// Elevation of the procedural mountains: a pure function of the map position, the sample spacing and a seed. Functions
+// only; compiles as GLSL in single precision and as C++ in double precision (src/scene/elevation/terrain_glsl.hpp), so
+// literals have a dot and nothing assigns to a swizzle.
 //
-// Places are whole numbers of 1/64 m, x east and z south of the origin. Octave k of the noise lives on
-// the lattice that the integer matrix (a -b; b a) / 2^shift makes of them: rotated by atan(b/a), with cells
-// of 2^shift / (64 sqrt(a^2 + b^2)) m. Cell numbers and fractions come from integer arithmetic, so the
-// noise is as precise 2000 km away as at the origin, and no lattice repeats within 16 000 km.
+// Positions are integers in units of 1/64 m, x east and z south of the origin. Octave k of the noise has its own
+// lattice, the image of the positions under the integer matrix (a -b; b a) / 2^shift: rotated by atan(b/a), with cells
+// of 2^shift / (64 sqrt(a^2 + b^2)) m. Cell numbers and fractions come from integer arithmetic, so the noise is as
+// precise 2000 km away as at the origin, and no lattice repeats within 16 000 km.
 //
-// The shape: belts of mountains over continents; in them valleys along the zero lines of a 36 km noise, ridges
-// along those of a 14.7 km noise and massifs of 7 km between; and then gullies that run down whatever slope
-// the coarser octaves left, each octave branching off the previous one. Gullies are steered by a smooth slope
-// that turns no faster than their own waves: where it did, they would fold into walls. A gully octave is a
-// sum of plane waves around jittered lattice points, as in sparse Gabor noise
-// (Lagae et al., "Procedural noise using sparse Gabor convolution", 2009), with the wave vector across
-// the local slope; the sum is normalised to a phase (Tricard et al., "Procedural phasor noise", 2019).
-// The wave is even about its points, so turning the slope by half a turn at a crest changes nothing.
+// The largest shapes are belts of mountains on continents. Valleys follow the zero lines of a 36 km noise, ridges those
+// of a 14.7 km noise, and massifs of 7 km lie between. Gullies run down the slope of the coarser octaves; each gully
+// octave branches off the previous one. The slope that steers them is smooth and turns no faster than their own waves;
+// otherwise they would fold into walls.
+// A gully octave is a sum of plane waves around jittered lattice points, as in sparse Gabor noise (Lagae et al.,
+// "Procedural noise using sparse Gabor convolution", 2009), with the wave vector across the local slope. The sum is
+// normalised to a phase (Tricard et al., "Procedural phasor noise", 2019). The wave is even about its points, so
+// turning the slope by half a turn at a crest changes nothing.
 #ifndef TYNDALL_TERRAIN_NOISE_GLSL
 #define TYNDALL_TERRAIN_NOISE_GLSL
 
@@ -25,30 +25,30 @@ const float kTerrainMinM = 200.0;   // never reached
 const float kTerrainMaxM = 5000.0;  // never reached
 const float kTau = 6.283185307;
 
-// Wavelengths of a gully octave per lattice cell, and how far its points stray, in cells.
+// Wavelengths of a gully octave per lattice cell, and the largest displacement of its points in cells.
 const float kGullyTurns = 0.75;
 const float kGullyJitter = 0.5;
-// Squared strength of a wave at which normalising it to a phase begins to let go.
+// The squared amplitude of a wave below which its normalisation to a phase fades.
 const float kGullyCalm = 0.12;
 
-// A place within one lattice.
+// A position within one lattice.
 struct TerrainCell {
   uvec2 corner;  // number of the cell
   uint mask;     // valid bits of cell numbers
-  vec2 f;        // place in the cell, [0; 1)
+  vec2 f;        // position in the cell, [0; 1)
 };
 
-// What the octaves so far have built.
+// The terrain that the octaves so far have built.
 struct TerrainSurface {
   float height_m;
-  vec2 slope;   // smooth gradient by which finer gullies are steered, m/m
+  vec2 slope;   // smooth gradient that steers finer gullies, m/m
   float crest;  // [0; 1] 1 on crests, 0 on valley floors
 };
 
-// Lowest and highest elevation that terrain_height can give, m.
+// Returns bounds of the elevation that terrain_height() can return [m].
 vec2 terrain_height_bounds() { return vec2(kTerrainMinM, kTerrainMaxM); }
 
-// Nearest place to a point of the map; exact only where a float is (use integers further away).
+// Returns the nearest position to a point of the map. Far from the origin, floats are too coarse; use integers there.
 ivec2 terrain_units(vec2 map_m) { return ivec2(floor(map_m * kTerrainUnitsPerM + vec2(0.5, 0.5))); }
 
 TerrainCell terrain_cell(ivec2 units, vec2 warp_m, int a, int b, int shift) {
@@ -69,13 +69,13 @@ TerrainCell terrain_cell(ivec2 units, vec2 warp_m, int a, int b, int shift) {
   return cell;
 }
 
-// A gradient per cell of a lattice as a gradient per metre of the map.
+// Converts a gradient per cell of a lattice to a gradient per metre of the map.
 vec2 terrain_map_slope(vec2 d, int a, int b, int shift) {
   float per_m = kTerrainUnitsPerM / float(1u << uint(shift));
   return vec2(float(a) * d.x + float(b) * d.y, float(a) * d.y - float(b) * d.x) * per_m;
 }
 
-// Integer finaliser of the multiply-xorshift family; constants from C. Wellons' search (public domain).
+// An integer finaliser of the multiply-xorshift family, with the constants of C. Wellons' search (public domain).
 uint terrain_hash(uint n) {
   uint h = n;
   h = (h ^ (h >> 16u)) * 0x7feb352du;
@@ -83,7 +83,7 @@ uint terrain_hash(uint n) {
   return h ^ (h >> 16u);
 }
 
-// Two numbers in [-1; 1].
+// Returns two numbers in [-1; 1].
 vec2 terrain_random2(uint h) { return vec2(float(h & 0xffffu), float(h >> 16u)) * (1.0 / 32767.5) - vec2(1.0, 1.0); }
 
 uvec4 terrain_corners(TerrainCell cell, uint salt) {
@@ -94,7 +94,7 @@ uvec4 terrain_corners(TerrainCell cell, uint salt) {
   return uvec4(terrain_hash(x0 + y0), terrain_hash(x1 + y0), terrain_hash(x0 + y1), terrain_hash(x1 + y1));
 }
 
-// Two independent value noises in [-1; 1].
+// Returns two independent value noises in [-1; 1].
 vec2 terrain_value2(TerrainCell cell, uint salt) {
   uvec4 h = terrain_corners(cell, salt);
   vec2 t = cell.f * cell.f * (vec2(3.0, 3.0) - cell.f * 2.0);
@@ -102,7 +102,8 @@ vec2 terrain_value2(TerrainCell cell, uint salt) {
              t.y);
 }
 
-// Gradient noise (Perlin, "Improving noise", 2002): x value, mostly in [-0.7; 0.7]; yz gradient per cell.
+// Returns gradient noise (Perlin, "Improving noise", 2002): x is the value, mostly in [-0.7; 0.7], yz the gradient per
+// cell.
 vec3 terrain_gradient_noise(TerrainCell cell, uint salt) {
   uvec4 h = terrain_corners(cell, salt);
   vec2 f = cell.f;
@@ -123,7 +124,7 @@ vec3 terrain_gradient_noise(TerrainCell cell, uint salt) {
   return vec3(v, d.x, d.y) * 1.4;
 }
 
-// Cosine and sine of an angle in turns, within 0.0012.
+// Returns cosine and sine of an angle in turns, with an error below 0.0012.
 vec2 terrain_phasor(float turns) {
   float x = turns - floor(turns + 0.5);
   float y = 0.25 - abs(x);
@@ -132,8 +133,8 @@ vec2 terrain_phasor(float turns) {
   return vec2(c * (0.775 + 0.225 * abs(c)), s * (0.775 + 0.225 * abs(s)));
 }
 
-// Cosine and sine of the phase of gullies that run at right angles to `across` (map frame; its length,
-// at most one, scales the wave number).
+// Returns cosine and sine of the phase of gullies that run at right angles to `across` (map frame). The length of
+// `across`, at most one, scales the wave number.
 vec2 terrain_gully(vec2 across, ivec2 units, vec2 warp_m, int a, int b, int shift, uint salt) {
   TerrainCell cell = terrain_cell(units, warp_m, a, b, shift);
   uvec4 h = terrain_corners(cell, salt);
@@ -146,21 +147,21 @@ vec2 terrain_gully(vec2 across, ivec2 units, vec2 warp_m, int a, int b, int shif
   vec2 z01 = terrain_phasor(dot(k, f - vec2(0.0, 1.0) - terrain_random2(h.z) * kGullyJitter));
   vec2 z11 = terrain_phasor(dot(k, f - vec2(1.0, 1.0) - terrain_random2(h.w) * kGullyJitter));
   vec2 sum = mix(mix(z00, z10, t.x), mix(z01, z11, t.x), t.y);
-  // Where the waves cancel, crest and floor lie next to each other: too eager a normalisation makes a wall
-  // of what is between them.
+  // Where the waves cancel, crest and floor are adjacent. Full normalisation would turn the slope between them into a
+  // wall.
   return sum * inversesqrt(dot(sum, sum) + kGullyCalm);
 }
 
-// Cross-section of a gully from the cosine of its phase: sharp crests, rounded floors, mean zero.
-// `blunt` rounds the crests to what the spacing can show.
+// Returns the cross-section of a gully for the cosine of its phase: sharp crests, rounded floors, mean zero. `blunt`
+// rounds the crests to what the spacing can resolve.
 float terrain_gully_profile(float cosine, float blunt) {
   // The mean of sqrt(sin^2(phase / 2) + blunt) is sqrt(0.405 + blunt) within 0.02.
   return 2.0 * (sqrt(0.405 + blunt) - sqrt(max(0.5 - 0.5 * cosine, 0.0) + 0.001 + blunt));
 }
 
-// One gully octave on top of `s`. amplitude: height per wavelength. gentle: squared slope below which
-// gullies fade. Octaves between detail_m and twice that fade in: procedural terrain passes a huge
-// detail_m, elevation files what they cannot resolve themselves.
+// Adds one gully octave to `s`. amplitude is the height per wavelength; gullies fade where the squared slope is below
+// `gentle`. Octaves between detail_m and twice detail_m fade in: procedural terrain passes a huge detail_m, elevation
+// files pass their own resolution.
 void terrain_gully_octave(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, int a, int b, int shift, float amplitude,
                           float gentle, float spacing_m, float detail_m, uint salt) {
   float wave_m =
@@ -170,13 +171,13 @@ void terrain_gully_octave(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, int
   float wanted = clamp(2.0 - wave_m / detail_m, 0.0, 1.0);
   if (wanted > 0.0) {
     float steep2 = dot(s.slope, s.slope);
-    // On crests, where the slope turns round, the wave number goes to zero rather than its direction jump.
-    // `still`, from 1 there to 0 on steep slopes, raises the mean of the wave: fitted to 2e5 places, within
-    // 0.07. What the spacing does not show is replaced by that mean, so that all spacings agree on average.
+    // On crests, where the slope reverses, the wave number goes to zero; otherwise its direction would jump. `still`
+    // runs from 1 there to 0 on steep slopes and raises the mean of the wave (fitted to 2e5 points, within 0.07). Waves
+    // that the spacing cannot resolve are replaced by that mean, so that all spacings agree on average.
     float turn2 = gentle;
     float still = turn2 / (steep2 + turn2);
     vec2 across = vec2(-s.slope.y, s.slope.x) * inversesqrt(steep2 + turn2);
-    // On valley floors that rise is taken out again, or it would draw a bank along them.
+    // On valley floors the raised mean is removed again, or it would form a bank along them.
     vec2 z = vec2(0.07 + still * (0.22 + 0.65 * still), 0.0);
     float rise = still * (0.22 + 0.7 * still * still);
     float sunk = rise * (1.0 - min(1.5 * s.crest, 1.0));
@@ -194,7 +195,7 @@ void terrain_gully_octave(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, int
   }
 }
 
-// The octaves from 2.4 km to 60 m.
+// Adds the gully octaves from 2.4 km to 60 m.
 void terrain_gullies(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, float strength, float spacing_m, float detail_m,
                      uint salt) {
   terrain_gully_octave(s, units, warp_m, 1, 2, 18, 0.110 * strength, 0.024, spacing_m, detail_m, salt + 12u);
@@ -205,28 +206,28 @@ void terrain_gullies(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, float st
   terrain_gully_octave(s, units, warp_m, 3, 1, 14, 0.054 * strength, 0.012, spacing_m, detail_m, salt + 17u);
 }
 
-// Bends the map so that nothing runs along a lattice, m.
+// Returns a displacement of the map [m], so that no feature is aligned with a lattice.
 vec2 terrain_warp(ivec2 units, uint salt) {
   return terrain_value2(terrain_cell(units, vec2(0.0, 0.0), 2, 1, 21), salt + 3u) * 2000.0 +  // 14.7 km
          terrain_value2(terrain_cell(units, vec2(0.0, 0.0), 1, 3, 19), salt + 4u) * 200.0;    // 2.6 km
 }
 
-// Keeps a height strictly within the bounds without a kink; heights from 450 to 4400 m stay as they are.
+// Limits a height smoothly to within the bounds; heights from 450 to 4400 m are unchanged.
 float terrain_soft_limit(float height_m) {
   float over = max(height_m - 4400.0, 0.0);
   float under = max(450.0 - height_m, 0.0);
   return clamp(height_m, 450.0, 4400.0) + 600.0 * over / (over + 600.0) - 250.0 * under / (under + 250.0);
 }
 
-// The seed of the mountains of one of the planet's map projections (src/scene/description/map_projection.hpp).
-uint terrain_projection_seed(uint seed, uint projection) { return seed + projection * 0x9e3779b9u; }
+// Returns the seed of the mountains of one of the planet's charts (src/scene/chart.hpp).
+uint terrain_chart_seed(uint seed, uint chart) { return seed + chart * 0x9e3779b9u; }
 
 uint terrain_salt(uint seed) { return terrain_hash(seed + 0x51ed2712u); }
 
-// How mountainous the country is: x 0 lowland to 1 high mountains, y 0 plain to 1 upland. The origin always
-// lies in high mountains.
+// Returns how mountainous the region is: x from 0 (lowland) to 1 (high mountains), y from 0 (plain) to 1 (upland). The
+// origin always lies in high mountains.
 vec2 terrain_country(ivec2 units, uint salt) {
-  // Belts of mountains follow the zero lines of a 1050 km noise, uplands lie on one side of them.
+  // Belts of mountains follow the zero lines of a 1050 km noise; uplands lie on one side of them.
   vec2 none = vec2(0.0, 0.0);
   float plates = terrain_gradient_noise(terrain_cell(units, none, 4, 1, 28), salt + 1u).x +
                  terrain_gradient_noise(terrain_cell(units, none, 1, 2, 26), salt + 7u).x * 0.32;  // 469 km
@@ -239,7 +240,7 @@ vec2 terrain_country(ivec2 units, uint salt) {
   return vec2(range, upland);
 }
 
-// Elevation in m at a place (1/64 m), without anything finer than about two spacings.
+// Returns the elevation in m at a position (1/64 m). Detail below about two spacings is left out.
 float terrain_height_at(ivec2 units, float spacing_m, uint seed) {
   uint salt = terrain_salt(seed);
   vec2 country = terrain_country(units, salt);
@@ -247,7 +248,7 @@ float terrain_height_at(ivec2 units, float spacing_m, uint seed) {
   float high = range * range * (3.0 - 2.0 * range);
   float relief_m = 220.0 + 260.0 * country.y + 2600.0 * high;
 
-  // Main valleys: zero lines of `line`, and ridges of half their wavelength between them.
+  // Main valleys follow the zero lines of `line`; ridges of half their wavelength lie between them.
   vec2 warp_m = terrain_warp(units, salt);
   vec3 line = terrain_gradient_noise(terrain_cell(units, warp_m * 1.2, 3, 2, 23), salt + 5u);  // 36 km
   vec2 line_d = terrain_map_slope(vec2(line.y, line.z), 3, 2, 23);
@@ -258,15 +259,15 @@ float terrain_height_at(ivec2 units, float spacing_m, uint seed) {
   vec2 off_d = line_d * (line.x * root);
   float rise = 1.5 * off / (off + 0.32);
   float rise_d = 0.48 / ((off + 0.32) * (off + 0.32));
-  // Main ridges along the zero lines of the swell, rounded over about 2 km.
+  // Main ridges follow the zero lines of the swell, rounded over about 2 km.
   float spine = sqrt(swell.x * swell.x + 0.012);
   float body = 1.03 - 1.0 * spine;
   TerrainSurface s;
   s.height_m = 400.0 + 250.0 * range + 330.0 * high + 380.0 * country.y + relief_m * rise * body;
   s.slope = (off_d * (rise_d * body) + swell_d * (-rise * swell.x / spine)) * relief_m;
 
-  // Side valleys and the massifs between them. No gullies yet: what steers waves of this length turns within
-  // one of them, and where it does they would fold into walls.
+  // Side valleys and the massifs between them. These have no gullies: the slope that steers waves of this length would
+  // turn within one wavelength, and they would fold into walls.
   vec3 side = terrain_gradient_noise(terrain_cell(units, warp_m * 0.8, 2, 1, 20), salt + 9u);  // 7.3 km
   vec2 side_d = terrain_map_slope(vec2(side.y, side.z), 2, 1, 20);
   float side_m = 0.62 * relief_m * (0.25 + 0.75 * rise) * clamp(7327.0 / spacing_m - 1.0, 0.0, 1.0);
@@ -277,7 +278,7 @@ float terrain_height_at(ivec2 units, float spacing_m, uint seed) {
   float gain = sqrt(relief_m * (1.0 / 3000.0));
   // 5.3 km
   terrain_gully_octave(s, units, warp_m, 4, 1, 20, 0.140 * gain, 0.030, spacing_m, 1.0e9, salt + 11u);
-  // Where all that is level, finer gullies would have nothing to run down: knolls.
+  // Knolls, so that finer gullies have something to run down where the terrain so far is level.
   vec3 knoll = terrain_gradient_noise(terrain_cell(units, warp_m, 1, 2, 18), salt + 10u);  // 1.8 km
   float knoll_m = 190.0 * gain * (0.3 + 0.7 * rise) * clamp(1832.0 / spacing_m - 1.0, 0.0, 1.0);
   s.height_m += knoll_m * knoll.x;
@@ -286,7 +287,7 @@ float terrain_height_at(ivec2 units, float spacing_m, uint seed) {
   return terrain_soft_limit(s.height_m);
 }
 
-// The same at a point of the map in m: x east, y south.
+// Returns the elevation at a point of the map in m: x east, y south.
 float terrain_height(vec2 map_m, float spacing_m, uint seed) {
   return terrain_height_at(terrain_units(map_m), spacing_m, seed);
 }

@@ -1,5 +1,5 @@
-// The ground that a pixel shows, for the passes that light it: what was drawn into the scene's colour is a place, and
-// the pass puts radiance there.
+// The visible ground of a pixel, for the passes that light it. The scene's colour image holds packed ground points,
+// which these passes replace by radiance.
 #ifndef TYNDALL_TERRAIN_PIXEL_GLSL
 #define TYNDALL_TERRAIN_PIXEL_GLSL
 
@@ -10,7 +10,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(binding = 8, rgba32f) uniform image2D scene_color;
 
-// False where there is no ground, and outside the picture.
+// Returns false outside the picture and where no ground is visible.
 bool ground_of_pixel(ivec2 pixel, out GroundPoint point) {
   ivec2 size = imageSize(scene_color);
   if (pixel.x >= size.x || pixel.y >= size.y) return false;

@@ -1,12 +1,12 @@
-// A place on the ground in four floats, as the terrain is drawn and as it is lit: texel of the level's texture,
-// altitude [m], and level and morph together, below zero where there is ground. Texels keep the digits that a place on
-// the map would lose far from the origin.
+// A ground point packed into four floats: the texel of the level's texture, altitude [m], and level and morph in one
+// number, which is negative where there is ground. Texels are precise where a map position far from the origin would
+// not be.
 #ifndef TYNDALL_TERRAIN_POINT_GLSL
 #define TYNDALL_TERRAIN_POINT_GLSL
 
 vec4 pack_ground_point(vec2 texel, float altitude_m, uint layer, float morph) {
-  // Between whole numbers, so that rounding does not lead to another level. What is interpolated over a triangle that
-  // is seen edge-on may lie beyond its vertices.
+  // The sum stays away from whole numbers, so that rounding cannot change the level. The clamp is needed because a
+  // value interpolated over a triangle seen edge-on may lie beyond those of its vertices.
   return vec4(texel, altitude_m, -(2.0 * float(layer) + 0.5 + clamp(morph, 0.0, 1.0)));
 }
 

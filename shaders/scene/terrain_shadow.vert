@@ -1,4 +1,4 @@
-// Terrain as the sun sees it: depth only.
+// Terrain seen by the sun: depth only.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -1,27 +1,28 @@
-// Elevation from either source, procedural or an elevation file, at any place and sample spacing.
-// Functions only; compiles as GLSL and as C++ like terrain_noise.glsl. The includer defines
-// TERRAIN_RASTER(source, texel), which reads the file's atlas at an ivec2.
+// Elevation from a source, procedural or an elevation file, at any point and sample spacing. Functions only; compiles
+// as GLSL and as C++, like terrain_noise.glsl. The including file defines TERRAIN_RASTER(source, texel), which reads
+// the file's atlas at an ivec2.
 //
-// The atlas holds the file's samples, north row first, at (0, 0), and every further level of detail, a
-// 2 x 2 mean of the one before with sizes rounded up, in a column at its right, from the top down.
+// The atlas holds the file's samples at (0, 0), north row first. Every further level of detail is a 2 x 2 mean of the
+// previous one with sizes rounded up. These levels form a column to the right, from the top down.
 #ifndef TYNDALL_TERRAIN_SOURCE_GLSL
 #define TYNDALL_TERRAIN_SOURCE_GLSL
 
 #include "scene/terrain_fill.h"
 #include "scene/terrain_noise.glsl"
 
-// How a source is passed; C++ passes the atlas with it.
+// The type of a source; C++ passes the atlas along with it.
 #ifndef TERRAIN_SOURCE
 #define TERRAIN_SOURCE TerrainSource
 #endif
 
-// Share of the file's width over which it turns into procedural terrain at each border.
+// The fraction of the file's width over which it blends into procedural terrain at each border.
 const float kRasterBorder = 0.2;
-// Strength of the gullies added below a file's own resolution, relative to procedural mountains.
+// The strength of the gullies added below a file's own resolution, relative to procedural mountains.
 const float kRasterDetail = 0.5;
 
-// Weights of four samples for a place `t` between the middle two (Catmull and Rom, "A class of local
-// interpolating splines", 1974), and their derivatives by t: through the samples, with continuous slopes.
+// Returns the weights of four samples for a point `t` between the middle two; terrain_spline_slope() returns their
+// derivatives by t (Catmull and Rom, "A class of local interpolating splines", 1974). The curve passes through the
+// samples with continuous slopes.
 vec4 terrain_spline(float t) {
   return vec4(t * (t * (1.0 - 0.5 * t) - 0.5), t * t * (1.5 * t - 2.5) + 1.0, t * (t * (2.0 - 1.5 * t) + 0.5),
               t * t * (0.5 * t - 0.5));
@@ -30,7 +31,7 @@ vec4 terrain_spline_slope(float t) {
   return vec4(t * (2.0 - 1.5 * t) - 0.5, t * (4.5 * t - 5.0), t * (4.0 - 4.5 * t) + 0.5, t * (1.5 * t - 1.0));
 }
 
-// The file at a place of the map in m, from level of detail `lod`: x elevation, yz gradient.
+// Returns the file at a map position in m, from level of detail `lod`: x is elevation, yz the gradient.
 vec3 terrain_raster(TERRAIN_SOURCE source, vec2 map_m, int lod) {
   ivec2 corner = ivec2(0, 0);
   ivec2 size = source.raster_size;
@@ -61,7 +62,7 @@ vec3 terrain_raster(TERRAIN_SOURCE source, vec2 map_m, int lod) {
   return vec3(sum.x, sum.y / texel_m, sum.z / texel_m);
 }
 
-// The file with gullies below its own resolution: in proportion to its slope, so that water stays flat.
+// Returns the file's elevation with gullies added below its resolution, in proportion to its slope: water stays flat.
 float terrain_raster_height(TERRAIN_SOURCE source, ivec2 units, vec2 map_m, float spacing_m) {
   float ratio = spacing_m / source.raster_spacing_m;
   int lod = clamp(int(floor(log2(ratio) + 0.5)), 0, source.raster_levels - 1);
@@ -78,20 +79,20 @@ float terrain_raster_height(TERRAIN_SOURCE source, ivec2 units, vec2 map_m, floa
   return clamp(s.height_m, source.raster_min_m - margin_m, source.raster_max_m + margin_m);
 }
 
-// 1 inside of the file, 0 outside of it, in between on its border.
+// Returns the weight of the file: 1 inside, 0 outside, and a smooth transition along its border.
 float terrain_file_share(TERRAIN_SOURCE source, ivec2 units) {
   float share = 0.0;
   if (source.kind != 0u) {
     vec2 map_m = vec2(units) * (1.0 / kTerrainUnitsPerM);
     vec2 half_m = vec2(source.raster_size) * (0.5 * source.raster_spacing_m);
-    // 0 on the border, 1 where it ends
+    // 0 on the border, 1 where the transition ends.
     vec2 depth = (half_m - abs(map_m)) / (half_m * (2.0 * kRasterBorder));
     share = smoothstep(0.0, 1.0, min(depth.x, depth.y));
   }
   return share;
 }
 
-// Elevation in m, exaggeration included, at a place (1/64 m), without anything finer than about two spacings.
+// Returns the elevation in m, exaggeration included, at a point (1/64 m). Detail below about two spacings is left out.
 float terrain_source_height(TERRAIN_SOURCE source, ivec2 units, float spacing_m) {
   float height_m = 0.0;
   if (source.kind == 0u) {
@@ -110,15 +111,14 @@ float terrain_source_height(TERRAIN_SOURCE source, ivec2 units, float spacing_m)
   return height_m * source.exaggeration;
 }
 
-// The same at a place of one of the planet's map projections (src/scene/description/map_projection.hpp): the source is
-// map projection 0's, the others have procedural mountains.
-float terrain_projection_height(TERRAIN_SOURCE source, uint projection, ivec2 units, float spacing_m) {
+// Returns the elevation at a point of one of the planet's charts (src/scene/chart.hpp): the source belongs to chart 0,
+// the other charts have procedural mountains.
+float terrain_chart_height(TERRAIN_SOURCE source, uint chart, ivec2 units, float spacing_m) {
   float height_m = 0.0;
-  if (projection == 0u) {
+  if (chart == 0u) {
     height_m = terrain_source_height(source, units, spacing_m);
   } else {
-    height_m =
-        terrain_height_at(units, spacing_m, terrain_projection_seed(source.seed, projection)) * source.exaggeration;
+    height_m = terrain_height_at(units, spacing_m, terrain_chart_seed(source.seed, chart)) * source.exaggeration;
   }
   return height_m;
 }

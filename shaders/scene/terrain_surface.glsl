@@ -1,4 +1,4 @@
-// What the clipmap says of the ground at a pixel: its shape and how much of the sky it sees.
+// The shape of the ground at a pixel, and how much of the sky it sees, from the clipmap.
 #ifndef TYNDALL_TERRAIN_SURFACE_GLSL
 #define TYNDALL_TERRAIN_SURFACE_GLSL
 
@@ -9,8 +9,9 @@ layout(binding = 2) uniform sampler2DArray terrain_heights;
 
 float height_at(ivec2 texel, uint layer) { return texelFetch(terrain_heights, ivec3(texel, int(layer)), 0).r; }
 
-// xy gradient of the elevation in map coordinates, z how hollow the ground is: change of slope over a cell.
-// Central differences at the four samples around, mixed linearly, so that all is continuous across cells.
+// Returns the gradient of the elevation in map coordinates (xy), and the change of slope over a cell (z), which is
+// positive in hollows. Central differences at the four surrounding samples are interpolated linearly, so that the
+// result is continuous across cells.
 vec3 surface_shape(vec2 texel, uint layer) {
   vec2 base = floor(texel - 0.5);
   vec2 f = texel - 0.5 - base;
@@ -28,7 +29,7 @@ vec3 surface_shape(vec2 texel, uint layer) {
   return mixed / (2.0 * terrain.levels[layer].cell_m);
 }
 
-// Elevation at a place on the map from the finest level with cells of at least `cell_m`.
+// Returns the elevation at a map position from the finest level with cells of at least `cell_m`.
 float coarse_height(vec2 offset_m, float cell_m) {
   uint layer = 0u;
   while (layer + 1u < terrain.layers && terrain.levels[layer].cell_m < cell_m) ++layer;
@@ -37,8 +38,8 @@ float coarse_height(vec2 offset_m, float cell_m) {
   return height_at(clamp(texel, ivec2(0), ivec2(textureSize(terrain_heights, 0).xy) - 1), layer);
 }
 
-// The part of the sky's irradiance that the surrounding ground lets through, from the horizon's elevation
-// in eight directions at three distances: the mean of cos^2, exact for a uniform sky.
+// Returns the fraction of the sky's irradiance that the surrounding ground lets pass, from the horizon's elevation in
+// eight directions at three distances: the mean of cos^2, exact for a uniform sky.
 float sky_visibility(vec2 offset_m, float altitude_m) {
   float visible = 0.0;
   for (int i = 0; i < 8; ++i) {
