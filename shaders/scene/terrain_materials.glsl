@@ -71,6 +71,66 @@ vec3 terrain_material_ribs(vec2 slope, ivec2 units, int a, int b, int shift, flo
 // Returns the fraction of a cover whose edge lies at x = 0. `width` has the unit of x.
 float terrain_cover(float x, float width) { return clamp(x / width + 0.5, 0.0, 1.0); }
 
+// The octaves of noise at a point, from coarse to fine: x is a value or a position on a rib, yz a slope.
+struct TerrainDetail {
+  vec3 wide;     // 1295 m
+  vec3 patches;  // 458 m
+  vec3 broad;    // ribs of 4.9 to 0.33 km
+  vec3 coarse;   // ribs of 137 m
+  vec3 middle;   // ribs of 54 m
+  vec3 fine;     // 14 m
+  vec3 grain;    // 4.4 m
+  vec3 pebbles;  // 1.8 m
+};
+
+TerrainDetail terrain_detail(ivec2 units, vec2 gradient, float footprint_m, uint salt) {
+  TerrainDetail d;
+  d.wide = terrain_material_octave(units, 1, 3, 18, footprint_m, salt + 1u);
+  d.patches = terrain_material_octave(units, 2, 1, 16, footprint_m, salt + 2u);
+  // Far away the elevation's cells span several pixels. About two of these octaves replace the missing detail.
+  float cells_m = 24.0 * footprint_m;
+  d.broad = terrain_material_ribs(gradient, units, 2, 1, 19, cells_m, footprint_m, salt + 10u);  // 4.9 km
+  d.broad += terrain_material_ribs(gradient + vec2(d.broad.y, d.broad.z) * 0.3, units, 1, 3, 18, cells_m, footprint_m,
+                                   salt + 11u);  // 1.7 km
+  d.broad += terrain_material_ribs(gradient + vec2(d.broad.y, d.broad.z) * 0.3, units, 3, 2, 17, cells_m, footprint_m,
+                                   salt + 12u);  // 0.76 km
+  d.broad += terrain_material_ribs(gradient + vec2(d.broad.y, d.broad.z) * 0.3, units, 1, 4, 16, cells_m, footprint_m,
+                                   salt + 13u);  // 0.33 km
+  // Level ground has no downhill direction; there the relief of the patches steers the ribs.
+  vec2 steer = gradient + vec2(d.patches.y, d.patches.z) * 0.12;
+  d.coarse = terrain_material_ribs(steer, units, 4, 3, 15, 1.0e9, footprint_m, salt + 3u);
+  steer += vec2(d.coarse.y, d.coarse.z) * 0.35;
+  d.middle = terrain_material_ribs(steer, units, 3, 1, 13, 1.0e9, footprint_m, salt + 4u);
+  d.fine = terrain_material_octave(units, 1, 2, 11, footprint_m, salt + 5u);
+  d.grain = terrain_material_octave(units, 3, 2, 10, footprint_m, salt + 6u);
+  d.pebbles = terrain_material_octave(units, 2, 1, 8, footprint_m, salt + 7u);
+  return d;
+}
+
+// Returns how dry the region is, from 0 to 1. Wet and dry regions measure 939 and 130 km; that of the origin is wet.
+// `hollow` is positive in hollows.
+float terrain_dryness(ivec2 units, float altitude_m, float large, float hollow, uint salt) {
+  vec2 none = vec2(0.0, 0.0);
+  vec2 away = vec2(units) * (1.0 / (kTerrainUnitsPerM * 160000.0));
+  float away2 = dot(away, away);
+  float dry = terrain_gradient_noise(terrain_cell(units, none, 2, 1, 27), salt + 8u).x * 1.7 +
+              terrain_gradient_noise(terrain_cell(units, none, 1, 4, 25), salt + 9u).x * 0.7 -
+              0.9 / (1.0 + away2 * away2);
+  return clamp(0.30 + 0.8 * dry + 0.10 * large + (altitude_m - 900.0) * 0.0003 - 0.25 * hollow, 0.0, 1.0);
+}
+
+// Returns the albedo of bare rock. The kind of rock changes over kilometres, its beds over tens of metres of altitude
+// (tilted by the wide noise).
+vec3 terrain_rock_albedo(IN(TerrainDetail) d, float altitude_m, float large, float steep, float footprint_m) {
+  float kind = large + 0.35 * d.wide.x;
+  vec3 stone = mix(kGraniteAlbedo, kLimestoneAlbedo, terrain_cover(kind - 0.15, 0.5));
+  stone = mix(stone, kSchistAlbedo, terrain_cover(-kind - 0.45, 0.5));
+  float bed = (altitude_m + 60.0 * d.wide.x + 10.0 * d.coarse.x + 4.0 * d.middle.x) * (1.0 / 46.0);
+  float bed_seen = clamp(46.0 / (footprint_m * max(steep, 0.2) * 4.0) - 0.5, 0.0, 1.0);
+  float beds = (terrain_phasor(bed).x * 0.6 + terrain_phasor(bed * 2.7).x * 0.4) * bed_seen;
+  return stone * (0.94 + 0.16 * beds + 0.14 * d.middle.x + 0.22 * (d.fine.x + d.grain.x));
+}
+
 // Returns the cover of the ground. units: position on the map, see terrain_units(). altitude_m: above sea level.
 // normal: of the large relief. bend: change of its slope over the distance that it resolves, positive in hollows.
 // footprint_m: width of a pixel on the map. Takes about 1700 operations within a few metres, where every octave is
@@ -78,28 +138,10 @@ float terrain_cover(float x, float width) { return clamp(x / width + 0.5, 0.0, 1
 TerrainMaterial terrain_material(ivec2 units, float altitude_m, vec3 normal, float bend, float footprint_m, uint seed) {
   uint salt = terrain_hash(seed + 0x2c1b3c6du);
   vec2 gradient = vec2(normal.x, normal.z) * (-1.0 / max(normal.y, 0.05));
-  vec3 wide = terrain_material_octave(units, 1, 3, 18, footprint_m, salt + 1u);     // 1295 m
-  vec3 patches = terrain_material_octave(units, 2, 1, 16, footprint_m, salt + 2u);  // 458 m
-  // Far away the elevation's cells span several pixels. About two of these octaves replace the missing detail.
-  float cells_m = 24.0 * footprint_m;
-  vec3 broad = terrain_material_ribs(gradient, units, 2, 1, 19, cells_m, footprint_m, salt + 10u);  // 4.9 km
-  broad += terrain_material_ribs(gradient + vec2(broad.y, broad.z) * 0.3, units, 1, 3, 18, cells_m, footprint_m,
-                                 salt + 11u);  // 1.7 km
-  broad += terrain_material_ribs(gradient + vec2(broad.y, broad.z) * 0.3, units, 3, 2, 17, cells_m, footprint_m,
-                                 salt + 12u);  // 0.76 km
-  broad += terrain_material_ribs(gradient + vec2(broad.y, broad.z) * 0.3, units, 1, 4, 16, cells_m, footprint_m,
-                                 salt + 13u);  // 0.33 km
-  // Level ground has no downhill direction; there the relief of the patches steers the ribs.
-  vec2 steer = gradient + vec2(patches.y, patches.z) * 0.12;
-  vec3 coarse = terrain_material_ribs(steer, units, 4, 3, 15, 1.0e9, footprint_m, salt + 3u);  // waves of 137 m
-  steer += vec2(coarse.y, coarse.z) * 0.35;
-  vec3 middle = terrain_material_ribs(steer, units, 3, 1, 13, 1.0e9, footprint_m, salt + 4u);  // waves of 54 m
-  vec3 fine = terrain_material_octave(units, 1, 2, 11, footprint_m, salt + 5u);                // 14 m
-  vec3 grain = terrain_material_octave(units, 3, 2, 10, footprint_m, salt + 6u);               // 4.4 m
-  vec3 pebbles = terrain_material_octave(units, 2, 1, 8, footprint_m, salt + 7u);              // 1.8 m
-  float hollow = bend / (0.35 + abs(bend)) - 0.28 * broad.x;
-  float large = wide.x * 0.55 + patches.x * 0.45;
-  float ragged = coarse.x * 0.22 + middle.x * 0.22 + fine.x * 0.32 + grain.x * 0.25;
+  TerrainDetail d = terrain_detail(units, gradient, footprint_m, salt);
+  float hollow = bend / (0.35 + abs(bend)) - 0.28 * d.broad.x;
+  float large = d.wide.x * 0.55 + d.patches.x * 0.45;
+  float ragged = d.coarse.x * 0.22 + d.middle.x * 0.22 + d.fine.x * 0.32 + d.grain.x * 0.25;
   // The part of `ragged` that the footprint cannot resolve, as the width of a uniform distribution of the same
   // variance. Edges are softened by it.
   float lost_coarse = 1.0 - terrain_material_weight(82.0, footprint_m);
@@ -113,21 +155,14 @@ TerrainMaterial terrain_material(ivec2 units, float altitude_m, vec3 normal, flo
   float bare_m = clamp((altitude_m - 1500.0) * (1.0 / 900.0), 0.0, 1.0);
   float hidden = clamp(log2(max(footprint_m, 16.0) * 0.0625) * 0.14, 0.0, 1.0);
   vec2 ribbed = gradient +
-                (vec2(coarse.y, coarse.z) * 0.28 + vec2(middle.y, middle.z) * 0.34) *
+                (vec2(d.coarse.y, d.coarse.z) * 0.28 + vec2(d.middle.y, d.middle.z) * 0.34) *
                     (bare_m * clamp(0.75 + large, 0.3, 1.2) * min(1.4 * length(gradient), 1.0)) +
-                vec2(broad.y, broad.z) * ((0.22 + 0.14 * bare_m) * min(2.2 * length(gradient), 1.0));
+                vec2(d.broad.y, d.broad.z) * ((0.22 + 0.14 * bare_m) * min(2.2 * length(gradient), 1.0));
   float steep = length(ribbed) * (1.0 + hidden);
   float rough_steep = steep * (1.0 + 0.25 * ragged + 0.10 * large);
   float sunny = clamp(normal.z * 1.6, -1.0, 1.0);  // south faces lose their snow earlier
 
-  // Wet and dry regions of 939 and 130 km; that of the origin is wet.
-  vec2 none = vec2(0.0, 0.0);
-  vec2 away = vec2(units) * (1.0 / (kTerrainUnitsPerM * 160000.0));
-  float away2 = dot(away, away);
-  float dry = terrain_gradient_noise(terrain_cell(units, none, 2, 1, 27), salt + 8u).x * 1.7 +
-              terrain_gradient_noise(terrain_cell(units, none, 1, 4, 25), salt + 9u).x * 0.7 -
-              0.9 / (1.0 + away2 * away2);
-  dry = clamp(0.30 + 0.8 * dry + 0.10 * large + (altitude_m - 900.0) * 0.0003 - 0.25 * hollow, 0.0, 1.0);
+  float dry = terrain_dryness(units, altitude_m, large, hollow, salt);
 
   // The fractions of the covers; later ones lie on top.
   float treeline_m = 1750.0 + 130.0 * sunny;
@@ -141,42 +176,37 @@ TerrainMaterial terrain_material(ivec2 units, float altitude_m, vec3 normal, flo
   float scree = max(barren, terrain_cover(rough_steep - 0.66 + 0.10 * large, 0.10 + 0.35 * unresolved));
   // Rock stands out as ribs; debris lies in the gullies between them.
   float rock = terrain_cover(rough_steep - 0.84 + 0.12 * large - 0.25 * hollow +
-                                 0.28 * (coarse.x * 0.5 + middle.x * 0.5) + 0.14 * barren * (fine.x + grain.x),
+                                 0.28 * (d.coarse.x * 0.5 + d.middle.x * 0.5) + 0.14 * barren * (d.fine.x + d.grain.x),
                              0.07 + 0.5 * unresolved);
   // Snow fills gullies, and the wind removes it from crests.
   float snowline_m = 2700.0 + 260.0 * sunny;
   float snow_depth = (altitude_m - snowline_m) / 450.0 + 0.45 * large + 0.35 * ragged + 0.9 * hollow -
-                     0.60 * (coarse.x * 0.55 + middle.x * 0.45);
+                     0.60 * (d.coarse.x * 0.55 + d.middle.x * 0.45);
   float snow_hold = 0.66 + 0.24 * clamp((altitude_m - snowline_m) / 900.0, 0.0, 1.5);
   float snow = terrain_cover(snow_depth, 0.08 + edge + 2.0 * hidden) *
-               terrain_cover(snow_hold - steep * (1.0 + 0.30 * (fine.x + grain.x)) + 0.12 * large + 0.30 * hollow -
-                                 0.22 * (coarse.x * 0.5 + middle.x * 0.5),
+               terrain_cover(snow_hold - steep * (1.0 + 0.30 * (d.fine.x + d.grain.x)) + 0.12 * large + 0.30 * hollow -
+                                 0.22 * (d.coarse.x * 0.5 + d.middle.x * 0.5),
                              0.07 + 0.5 * unresolved);
 
   vec3 meadow = mix(kMeadowAlbedo, kDryGrassAlbedo,
                     clamp((altitude_m - 1100.0) / 1300.0 + 0.35 * large + 0.25 * ragged + 0.9 * dry, 0.0, 1.0));
   meadow = mix(meadow, kSteppeAlbedo, clamp(2.0 * dry - 0.9, 0.0, 1.0));
-  float speckle = fine.x + grain.x;
-  vec3 albedo = meadow * (1.0 + 0.18 * patches.x + 0.20 * (speckle + 0.6 * pebbles.x) + 0.08 * middle.x);
-  albedo = mix(albedo, kForestAlbedo * (1.0 + 0.45 * fine.x + 0.35 * grain.x + 0.1 * ragged), trees);
-  albedo = mix(albedo, kScreeAlbedo * (1.0 + 0.16 * speckle - 0.10 * middle.x + 0.10 * pebbles.x), scree);
+  float speckle = d.fine.x + d.grain.x;
+  vec3 albedo = meadow * (1.0 + 0.18 * d.patches.x + 0.20 * (speckle + 0.6 * d.pebbles.x) + 0.08 * d.middle.x);
+  albedo = mix(albedo, kForestAlbedo * (1.0 + 0.45 * d.fine.x + 0.35 * d.grain.x + 0.1 * ragged), trees);
+  albedo = mix(albedo, kScreeAlbedo * (1.0 + 0.16 * speckle - 0.10 * d.middle.x + 0.10 * d.pebbles.x), scree);
 
-  // The kind of rock changes over kilometres, its beds over tens of metres of altitude (tilted by the wide noise).
-  float kind = large + 0.35 * wide.x;
-  vec3 stone = mix(kGraniteAlbedo, kLimestoneAlbedo, terrain_cover(kind - 0.15, 0.5));
-  stone = mix(stone, kSchistAlbedo, terrain_cover(-kind - 0.45, 0.5));
-  float bed = (altitude_m + 60.0 * wide.x + 10.0 * coarse.x + 4.0 * middle.x) * (1.0 / 46.0);
-  float bed_seen = clamp(46.0 / (footprint_m * max(steep, 0.2) * 4.0) - 0.5, 0.0, 1.0);
-  float beds = (terrain_phasor(bed).x * 0.6 + terrain_phasor(bed * 2.7).x * 0.4) * bed_seen;
-  albedo = mix(albedo, stone * (0.94 + 0.16 * beds + 0.14 * middle.x + 0.22 * speckle), rock);
+  albedo = mix(albedo, terrain_rock_albedo(d, altitude_m, large, steep, footprint_m), rock);
   albedo = mix(albedo, kSnowAlbedo * (1.0 + 0.02 * ragged), snow);
 
   // The fine relief: a typical slope for each octave and cover. Ribs exist on bare ground only, half filled by snow.
   float bare = max(scree * 0.6, rock);
   float relief = mix(mix(0.10, 0.55, trees), mix(0.32, 0.60, rock), bare);
   relief = mix(relief, 0.09, snow);
-  vec2 slope = (ribbed - gradient) * (1.0 - 0.65 * snow) +
-               (vec2(fine.y, fine.z) * 0.5 + vec2(grain.y, grain.z) * 0.5 + vec2(pebbles.y, pebbles.z) * 0.35) * relief;
+  vec2 slope =
+      (ribbed - gradient) * (1.0 - 0.65 * snow) +
+      (vec2(d.fine.y, d.fine.z) * 0.5 + vec2(d.grain.y, d.grain.z) * 0.5 + vec2(d.pebbles.y, d.pebbles.z) * 0.35) *
+          relief;
 
   TerrainMaterial result;
   result.albedo = clamp(albedo, vec3(0.005), vec3(0.93));
@@ -184,7 +214,7 @@ TerrainMaterial terrain_material(ivec2 units, float altitude_m, vec3 normal, flo
   return result;
 }
 
-// Colours by altitude, as on a physical map: green lowlands, yellow, brown, grey, white.
+// Returns a colour by altitude, as on a physical map: green lowlands, then yellow, brown, grey and white.
 vec3 terrain_height_albedo(float altitude_m) {
   vec3 c = mix(vec3(0.10, 0.22, 0.08), vec3(0.20, 0.30, 0.10), clamp(altitude_m / 600.0, 0.0, 1.0));
   c = mix(c, vec3(0.42, 0.38, 0.16), clamp((altitude_m - 600.0) / 700.0, 0.0, 1.0));
@@ -193,7 +223,7 @@ vec3 terrain_height_albedo(float altitude_m) {
   return mix(c, vec3(0.80, 0.81, 0.83), clamp((altitude_m - 2900.0) / 1300.0, 0.0, 1.0));
 }
 
-// The ground in one of the three modes of terrain.shading.
+// Returns the ground in the selected mode of terrain.shading.
 TerrainMaterial terrain_ground(uint shading, ivec2 units, float altitude_m, vec3 normal, float bend, float footprint_m,
                                uint seed) {
   TerrainMaterial ground;

@@ -159,16 +159,23 @@ float terrain_gully_profile(float cosine, float blunt) {
   return 2.0 * (sqrt(0.405 + blunt) - sqrt(max(0.5 - 0.5 * cosine, 0.0) + 0.001 + blunt));
 }
 
+// A point to be given gullies, and which of their octaves it needs.
+struct TerrainPoint {
+  ivec2 units;      // position on the map
+  vec2 warp_m;      // its displacement, see terrain_warp()
+  float spacing_m;  // of the samples
+  float detail_m;   // octaves between this wavelength and twice this fade in; huge for procedural terrain
+};
+
 // Adds one gully octave to `s`. amplitude is the height per wavelength; gullies fade where the squared slope is below
-// `gentle`. Octaves between detail_m and twice detail_m fade in: procedural terrain passes a huge detail_m, elevation
-// files pass their own resolution.
-void terrain_gully_octave(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, int a, int b, int shift, float amplitude,
-                          float gentle, float spacing_m, float detail_m, uint salt) {
+// `gentle`.
+void terrain_gully_octave(INOUT(TerrainSurface) s, IN(TerrainPoint) point, int a, int b, int shift, float amplitude,
+                          float gentle, uint salt) {
   float wave_m =
       float(1u << uint(shift)) * inversesqrt(float(a * a + b * b)) * (1.0 / (kTerrainUnitsPerM * kGullyTurns));
-  float per_wave = spacing_m / wave_m;
+  float per_wave = point.spacing_m / wave_m;
   float shown = clamp(0.5 / per_wave - 1.0, 0.0, 1.0);
-  float wanted = clamp(2.0 - wave_m / detail_m, 0.0, 1.0);
+  float wanted = clamp(2.0 - wave_m / point.detail_m, 0.0, 1.0);
   if (wanted > 0.0) {
     float steep2 = dot(s.slope, s.slope);
     // On crests, where the slope reverses, the wave number goes to zero; otherwise its direction would jump. `still`
@@ -183,7 +190,7 @@ void terrain_gully_octave(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, int
     float sunk = rise * (1.0 - min(1.5 * s.crest, 1.0));
     float profile = rise - sunk;
     if (shown > 0.0) {
-      vec2 wave = terrain_gully(across, units, warp_m, a, b, shift, salt);
+      vec2 wave = terrain_gully(across, point.units, point.warp_m, a, b, shift, salt);
       profile = mix(profile, terrain_gully_profile(wave.x, 2.5 * per_wave * per_wave) - sunk, shown);
       z = mix(z, wave, shown);
     }
@@ -196,14 +203,13 @@ void terrain_gully_octave(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, int
 }
 
 // Adds the gully octaves from 2.4 km to 60 m.
-void terrain_gullies(INOUT(TerrainSurface) s, ivec2 units, vec2 warp_m, float strength, float spacing_m, float detail_m,
-                     uint salt) {
-  terrain_gully_octave(s, units, warp_m, 1, 2, 18, 0.110 * strength, 0.024, spacing_m, detail_m, salt + 12u);
-  terrain_gully_octave(s, units, warp_m, 2, 1, 17, 0.095 * strength, 0.018, spacing_m, detail_m, salt + 13u);
-  terrain_gully_octave(s, units, warp_m, 1, 2, 16, 0.080 * strength, 0.014, spacing_m, detail_m, salt + 14u);
-  terrain_gully_octave(s, units, warp_m, 1, 4, 16, 0.066 * strength, 0.012, spacing_m, detail_m, salt + 15u);
-  terrain_gully_octave(s, units, warp_m, 2, 3, 15, 0.060 * strength, 0.012, spacing_m, detail_m, salt + 16u);
-  terrain_gully_octave(s, units, warp_m, 3, 1, 14, 0.054 * strength, 0.012, spacing_m, detail_m, salt + 17u);
+void terrain_gullies(INOUT(TerrainSurface) s, IN(TerrainPoint) point, float strength, uint salt) {
+  terrain_gully_octave(s, point, 1, 2, 18, 0.110 * strength, 0.024, salt + 12u);
+  terrain_gully_octave(s, point, 2, 1, 17, 0.095 * strength, 0.018, salt + 13u);
+  terrain_gully_octave(s, point, 1, 2, 16, 0.080 * strength, 0.014, salt + 14u);
+  terrain_gully_octave(s, point, 1, 4, 16, 0.066 * strength, 0.012, salt + 15u);
+  terrain_gully_octave(s, point, 2, 3, 15, 0.060 * strength, 0.012, salt + 16u);
+  terrain_gully_octave(s, point, 3, 1, 14, 0.054 * strength, 0.012, salt + 17u);
 }
 
 // Returns a displacement of the map [m], so that no feature is aligned with a lattice.
@@ -275,15 +281,20 @@ float terrain_height_at(ivec2 units, float spacing_m, uint seed) {
   s.slope += side_d * side_m;
   s.crest = rise * clamp(0.55 + 1.2 * side.x, 0.0, 1.0) * high;
 
+  TerrainPoint point;
+  point.units = units;
+  point.warp_m = warp_m;
+  point.spacing_m = spacing_m;
+  point.detail_m = 1.0e9;
   float gain = sqrt(relief_m * (1.0 / 3000.0));
   // 5.3 km
-  terrain_gully_octave(s, units, warp_m, 4, 1, 20, 0.140 * gain, 0.030, spacing_m, 1.0e9, salt + 11u);
+  terrain_gully_octave(s, point, 4, 1, 20, 0.140 * gain, 0.030, salt + 11u);
   // Knolls, so that finer gullies have something to run down where the terrain so far is level.
   vec3 knoll = terrain_gradient_noise(terrain_cell(units, warp_m, 1, 2, 18), salt + 10u);  // 1.8 km
   float knoll_m = 190.0 * gain * (0.3 + 0.7 * rise) * clamp(1832.0 / spacing_m - 1.0, 0.0, 1.0);
   s.height_m += knoll_m * knoll.x;
   s.slope += terrain_map_slope(vec2(knoll.y, knoll.z), 1, 2, 18) * knoll_m;
-  terrain_gullies(s, units, warp_m, 0.35 + 0.65 * gain, spacing_m, 1.0e9, salt);
+  terrain_gullies(s, point, 0.35 + 0.65 * gain, salt);
   return terrain_soft_limit(s.height_m);
 }
 

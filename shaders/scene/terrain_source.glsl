@@ -73,7 +73,12 @@ float terrain_raster_height(TERRAIN_SOURCE source, ivec2 units, vec2 map_m, floa
   s.crest = 0.0;
   if (ratio < 1.0) {
     uint salt = terrain_salt(source.seed);
-    terrain_gullies(s, units, terrain_warp(units, salt), kRasterDetail, spacing_m, 2.0 * source.raster_spacing_m, salt);
+    TerrainPoint point;
+    point.units = units;
+    point.warp_m = terrain_warp(units, salt);
+    point.spacing_m = spacing_m;
+    point.detail_m = 2.0 * source.raster_spacing_m;
+    terrain_gullies(s, point, kRasterDetail, salt);
   }
   float margin_m = 0.2 * source.raster_spacing_m;
   return clamp(s.height_m, source.raster_min_m - margin_m, source.raster_max_m + margin_m);
