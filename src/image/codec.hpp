@@ -1,4 +1,4 @@
-// Private to src/image: decoding of whole files in memory, and the checks both writers share.
+// Private to src/image: decoders for whole files in memory, and the checks that both writers share.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace tyndall::image {
 
-// The pixels and metadata of a file's bytes; `path` is for messages.
+// Decode the pixels and metadata of a file's bytes; `path` is for messages.
 [[nodiscard]] Result<File> decode_png(std::string_view bytes, const std::string& path);
 [[nodiscard]] Result<File> decode_exr(std::string_view bytes, const std::string& path);
 
-// Refuses what no file can hold: no pixels, too many, rgb of another size, names longer than 79.
+// Rejects images that no file can hold: no pixels, too many, wrong size of rgb, names longer than 79 characters.
 [[nodiscard]] Result<void> check_writable_image(const std::string& path, const Image& image, const Metadata& metadata);
 
 [[nodiscard]] Error read_error(const std::string& path, std::string_view why);

@@ -1,4 +1,4 @@
-// EXR through OpenEXR's C++ interface. OpenEXR reports errors by exceptions, which end here.
+// EXR files through OpenEXR's C++ interface. Its exceptions are converted to errors here.
 #include <ImathBox.h>
 #include <ImfChannelList.h>
 #include <ImfChromaticities.h>
@@ -31,7 +31,7 @@ namespace {
 
 constexpr int kRowsAtOnce = 64;
 
-// A file in memory.
+// A file in memory as an OpenEXR stream.
 class BytesIn : public Imf::IStream {
  public:
   BytesIn(std::string_view bytes, const std::string& path) : Imf::IStream(path.c_str()), bytes_(bytes) {}
@@ -39,7 +39,7 @@ class BytesIn : public Imf::IStream {
   bool isMemoryMapped() const override { return true; }
   char* readMemoryMapped(int size) override {
     const char* const start = take(size);
-    return const_cast<char*>(start);  // OpenEXR's interface; it only reads
+    return const_cast<char*>(start);  // required by OpenEXR's interface, which only reads
   }
   bool read(char target[], int size) override {
     std::memcpy(target, take(size), static_cast<std::size_t>(size));
@@ -62,7 +62,7 @@ class BytesIn : public Imf::IStream {
   std::size_t position_ = 0;
 };
 
-// The atomic file's own error, on its way out through OpenEXR.
+// Carries an error of the atomic file through OpenEXR as an exception.
 struct FileFailure : std::runtime_error {
   explicit FileFailure(Error failed) : std::runtime_error(failed.message), error(std::move(failed)) {}
   Error error;
@@ -82,7 +82,7 @@ class BytesOut : public Imf::OStream {
     require(file_.seek(position));
     position_ = position;
   }
-  // OpenEXR's destructors write the table of offsets and swallow exceptions: kept for the caller.
+  // The first write error. OpenEXR's destructors write the offset table and swallow exceptions.
   [[nodiscard]] const Error* error() const { return failed_ ? &error_ : nullptr; }
 
  private:
@@ -99,7 +99,7 @@ class BytesOut : public Imf::OStream {
   Error error_;
 };
 
-// How the channels of a file become red, green and blue.
+// The conversion of a file's channels to red, green and blue.
 enum class Channels : std::uint32_t { rgb, grey, luminance_chroma };
 
 Channels kind_of_channels(const Imf::ChannelList& channels) {
@@ -126,7 +126,7 @@ Metadata string_attributes(const Imf::Header& header) {
   return metadata;
 }
 
-// One channel of the rows that start at `rows`, which are those from `top` of the data window.
+// Returns a slice for one channel of the rows stored at `rows`, which begin at row `top` of the data window.
 template <typename T>
 Imf::Slice slice(Imf::PixelType type, T* rows, const Imath::Box2i& window, int top, std::size_t stride) {
   const std::ptrdiff_t x_stride = static_cast<std::ptrdiff_t>(stride * sizeof(T));
@@ -144,7 +144,7 @@ void check_window(const Imath::Box2i& window, std::int64_t max_pixels, const cha
   if (!fits) throw std::runtime_error(problem);
 }
 
-// Appends the rows of the data window as the file is read: a header that lies about them does no harm.
+// Appends the rows of the data window in blocks as the file is read, so that a false header allocates little.
 void read_rows(Imf::InputFile& input, const Imath::Box2i& window, bool grey, Image& image) {
   for (int top = window.min.y; top <= window.max.y; top += kRowsAtOnce) {
     const int bottom = std::min(top + kRowsAtOnce - 1, window.max.y);
@@ -163,7 +163,7 @@ void read_rows(Imf::InputFile& input, const Imath::Box2i& window, bool grey, Ima
   }
 }
 
-// Luminance and subsampled chroma, which OpenEXR makes RGB of in half precision.
+// Reads luminance and subsampled chroma, which OpenEXR converts to RGB in half precision.
 void read_luminance_chroma(std::string_view bytes, const std::string& path, const Imath::Box2i& window, Image& image) {
   BytesIn stream(bytes, path);
   Imf::RgbaInputFile input(stream);
@@ -182,7 +182,7 @@ std::string window_text(const Imath::Box2i& window) {
                         std::to_string(window.min.x), ",", std::to_string(window.min.y)});
 }
 
-// The display window of an image that holds the data window.
+// Returns the display window of an image that holds the data window.
 Image displayed(const Image& data, const Imath::Box2i& window, const Imath::Box2i& display) {
   Image out(static_cast<std::uint32_t>(width_of(display)), static_cast<std::uint32_t>(height_of(display)));
   const int left = std::max(window.min.x, display.min.x), right = std::min(window.max.x, display.max.x);
@@ -219,7 +219,7 @@ File decode(std::string_view bytes, const std::string& path) {
     read_rows(input, window, channels == Channels::grey, file.image);
   }
   if (window != display) {
-    // Pixels that no data stands behind are bounded more tightly.
+    // Pixels without data have a tighter limit.
     constexpr std::int64_t kMaxEmptyPixels = std::int64_t{1} << 25;
     check_window(display, std::max(kMaxEmptyPixels, width_of(window) * height_of(window)),
                  "its display window is too large");

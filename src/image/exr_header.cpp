@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* kCutOff = "the file is cut off";
 
-// Reads little-endian values and zero-terminated names from the front.
+// Reads little-endian values and zero-terminated names in sequence.
 class Reader {
  public:
   explicit Reader(std::string_view bytes) : rest_(bytes) {}
@@ -41,7 +41,7 @@ class Reader {
   std::string_view rest_;
 };
 
-// The attributes of one part that say how many pieces its pixels are stored in.
+// The attributes of one part that determine into how many pieces its pixels are divided.
 struct Layout {
   std::int64_t width = 0, height = 0;
   std::uint8_t compression = 0;
@@ -63,13 +63,13 @@ void read_attribute(Layout& layout, std::string_view name, std::string_view valu
   }
 }
 
-// Pieces, at the full resolution.
+// Returns the number of pieces at full resolution.
 std::int64_t piece_count(const Layout& layout) {
   const auto pieces = [](std::int64_t size, std::int64_t each) { return (size + each - 1) / each; };
   if (layout.tile_width > 0 && layout.tile_height > 0) {
     return pieces(layout.width, layout.tile_width) * pieces(layout.height, layout.tile_height);
   }
-  // Scan lines together in one piece, by compression: none, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA, DWAB.
+  // Scan lines per piece, by compression: none, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA, DWAB.
   constexpr std::int64_t kLines[] = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
   return pieces(layout.height, layout.compression < std::size(kLines) ? kLines[layout.compression] : 256);
 }
@@ -104,7 +104,7 @@ std::string exr_header_problem(std::string_view bytes) {
     if (layout.width < 1 || layout.height < 1) return "its data window is empty";
     pieces += piece_count(layout);
   }
-  // Each piece has its offset in a table, 8 bytes, and a header of at least 8 bytes.
+  // Each piece has an 8-byte offset in a table and a header of at least 8 bytes.
   constexpr std::int64_t kLeastBytes = 16;
   return pieces > static_cast<std::int64_t>(bytes.size()) / kLeastBytes ? kCutOff : "";
 }

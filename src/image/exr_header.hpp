@@ -1,5 +1,5 @@
-// Private to src/image: what the header of an EXR claims, checked against the file's length before OpenEXR allocates
-// anything for it.
+// Private to src/image: checks the claims of an EXR header against the file's length, before OpenEXR allocates memory
+// for them.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace tyndall::image {
 
-// Returns why the header of an EXR cannot be true, empty when it can: attributes that reach beyond the file, more scan
-// lines or tiles than the file has room for. `bytes` is the whole file. The layout is that of "OpenEXR File Layout"
+// Returns why the header of an EXR must be wrong, or an empty string: attributes that reach beyond the file, or more
+// scan lines or tiles than the file can hold. `bytes` is the whole file. The layout is that of "OpenEXR File Layout"
 // (openexr.com), versions 1 and 2.
 [[nodiscard]] std::string exr_header_problem(std::string_view bytes);
 

@@ -1,4 +1,4 @@
-// What both file kinds share: choosing the kind, checks, quantisation.
+// Code for both file kinds: choosing the kind, checks, quantisation.
 #include "image/image.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace tyndall::image {
 namespace {
 
-// What a 32768 x 16384 EXR in float RGB takes without compression, in bytes.
+// The size of a 32768 x 16384 EXR in float RGB without compression, in bytes.
 constexpr std::uint64_t kLargestFile = std::uint64_t{6} << 30U;
 constexpr std::size_t kLongestName = 79;
 
@@ -25,8 +25,8 @@ bool ends_with_ignoring_case(const std::string& text, std::string_view ending) {
 
 std::string shown(const std::string& path) { return files::concat({"'", files::one_line(path, 200), "'"}); }
 
-// Interleaved gradient noise (Jimenez, "Next Generation Post Processing in Call of Duty: Advanced
-// Warfare", SIGGRAPH 2014): uniform in [0, 1), and evenly spread over every 3 x 3 neighbourhood.
+// Interleaved gradient noise (Jimenez, "Next Generation Post Processing in Call of Duty: Advanced Warfare", SIGGRAPH
+// 2014): uniform in [0, 1), and evenly distributed over every 3 x 3 neighbourhood.
 double gradient_noise(std::uint32_t x, std::uint32_t y) {
   const double phase = 0.06711056 * x + 0.00583715 * y;
   const double value = 52.9829189 * (phase - std::floor(phase));
@@ -100,10 +100,10 @@ std::uint8_t quantize(float encoded, std::uint32_t x, std::uint32_t y, std::uint
   const double steps = 255.0 * std::clamp(static_cast<double>(encoded), 0.0, 1.0);
   double noise = 0.0;
   if (dither) {
-    // The channels take distant parts of the pattern, so that the noise is not grey.
+    // The channels use distant parts of the pattern, so that the noise is not grey.
     const double uniform = gradient_noise(x + 5113 * channel, y + 3571 * channel);
-    // Triangular noise of two steps' width keeps mean and variance independent of the value. Within
-    // half a step of black and white it would be cut off; one step's width is still exact in the mean.
+    // Triangular noise two steps wide makes mean and variance independent of the value. Within half a step of black and
+    // white it would be clipped; noise one step wide still has the exact mean there.
     const bool near_end = steps < 0.5 || steps > 254.5;
     const double triangular = uniform < 0.5 ? std::sqrt(2.0 * uniform) - 1.0 : 1.0 - std::sqrt(2.0 - 2.0 * uniform);
     noise = near_end ? uniform - 0.5 : triangular;

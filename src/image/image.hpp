@@ -1,6 +1,6 @@
-// Images in memory and on disk: EXR for linear radiance, PNG for pictures.
-// Pixels are float RGB, row by row from the top left. Nothing here prints or throws; errors are one
-// line that names the file. Files are written whole or not at all.
+// Images in memory and on disk: EXR for linear radiance, PNG for pictures. Pixels are float RGB, row by row from the
+// top left. Nothing here prints or throws; an error is one line that names the file. Files are written completely or
+// not at all.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 namespace tyndall::image {
 
 constexpr std::uint32_t kLargestSide = 32768;                 // pixels, read or written
-constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 28;  // read; 3.2 GB in memory
+constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 28;  // for reading; 3.2 GB in memory
 
 struct Image {
   std::uint32_t width = 0;
@@ -25,23 +25,23 @@ struct Image {
   Image(std::uint32_t width_px, std::uint32_t height_px)
       : width(width_px), height(height_px), rgb(std::size_t{3} * width_px * height_px) {}
 
-  // The three components of a pixel. Precondition: x < width, y < height.
+  // Returns the three components of a pixel. Precondition: x < width, y < height.
   [[nodiscard]] float* pixel(std::uint32_t x, std::uint32_t y) { return rgb.data() + 3 * (std::size_t{y} * width + x); }
   [[nodiscard]] const float* pixel(std::uint32_t x, std::uint32_t y) const {
     return rgb.data() + 3 * (std::size_t{y} * width + x);
   }
 };
 
-// Names and values in UTF-8, in order: string attributes of an EXR, text chunks of a PNG. Names are at
-// most 79 characters of ASCII (what PNG allows).
+// Names and values in UTF-8, in order: string attributes of an EXR, text chunks of a PNG. Names have at most 79 ASCII
+// characters, as PNG requires.
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 
 enum class FileKind : std::uint32_t { png, exr };
 
-// The kind that a file name asks for by its ending (.png, .exr, in either case).
+// Returns the kind for a file name's extension (.png or .exr, in either case).
 [[nodiscard]] Result<FileKind> kind_of_name(const std::string& path);
 
-// What the values of a picture are that goes into a PNG.
+// The meaning of the values that are written to a PNG.
 enum class Encoding : std::uint32_t {
   linear,  // linear light, 0 black to 1 white: the sRGB curve is applied
   srgb,    // already encoded, 0 to 1
@@ -49,22 +49,22 @@ enum class Encoding : std::uint32_t {
 
 struct PngOptions {
   Encoding encoding = Encoding::linear;
-  // Noise of at most one step of 8 bits, the same in every run, so that smooth skies do not band. The
-  // mean over neighbours is the exact value; 0 and 1 stay exact. Off: rounded to the nearest step.
+  // Adds noise of at most one 8-bit step, equal in every run, against banding in smooth skies. The mean over neighbours
+  // is exact, and 0 and 1 stay exact. Without it, values are rounded to the nearest step.
   bool dither = true;
 };
 
-// 8-bit sRGB PNG with the metadata as text chunks. Values beyond 0..1 are clamped.
-// Fails (invalid_argument) when a value is not finite: there is no way to store it.
+// Writes an 8-bit sRGB PNG with the metadata as text chunks. Values outside [0; 1] are clamped. Fails with
+// invalid_argument if a value is not finite, because PNG cannot store it.
 [[nodiscard]] Result<void> write_png(const std::string& path, const Image& image, const Metadata& metadata,
                                      const PngOptions& options = {});
 
 enum class ExrPrecision : std::uint32_t { half16, float32 };
 
-// What the channels of an EXR hold, which its header then says by OpenEXR's standard attributes.
+// The meaning of an EXR's channels, which decides the standard attributes of its header.
 enum class ExrContent : std::uint32_t {
-  data,            // numbers that are no colours: no attribute
-  radiance,        // to be shown as linear Rec. 709: `chromaticities`
+  data,            // numbers that are not colours: no attribute
+  radiance,        // linear Rec. 709: `chromaticities`
   environment_map  // radiance by latitude and longitude: `chromaticities` and `envmap`
 };
 
@@ -73,37 +73,37 @@ struct ExrOptions {
   ExrContent content = ExrContent::data;
 };
 
-// EXR with channels R, G, B, ZIP compression and the metadata as string attributes. Values that are not
-// finite are stored as they are (count_non_finite() finds them). Fails (invalid_argument) when a finite
-// value is beyond what half16 holds (65504).
+// Writes an EXR with channels R, G, B, ZIP compression and the metadata as string attributes. Values that are not
+// finite are stored as they are (count_non_finite() finds them). Fails with invalid_argument if a finite value exceeds
+// the range of half16 (65504).
 [[nodiscard]] Result<void> write_exr(const std::string& path, const Image& image, const Metadata& metadata,
                                      const ExrOptions& options = {});
 
-// An image file as read.
+// The content of an image file.
 struct File {
   FileKind kind = FileKind::png;  // by content, not by name
-  Image image;                    // PNG: its own encoded values, scaled to 0..1; EXR: linear values
+  Image image;                    // PNG: encoded values, scaled to [0; 1]; EXR: linear values
   Metadata metadata;              // PNG: text chunks; EXR: string attributes
-  // What the reader should know of the pixels, one line, empty for most files: an EXR whose data window is not its
-  // display window, luminance and chroma made to RGB.
+  // A one-line remark on the pixels, empty for most files: the data window of an EXR differs from its display window,
+  // or luminance and chroma were converted to RGB.
   std::string note;
 };
 
-// Reads a PNG (any depth and colour type; grey becomes RGB, transparency is dropped) or an EXR (scan
-// lines or tiles; channels R, G, B of any type, Y alone as grey, or Y, RY and BY as luminance and chroma; of several
-// parts the first). The image of an EXR is its display window: black where the data window has no pixels, without
-// what lies outside.
-// Errors: io for what is missing, damaged, of another kind or larger than kMaxPixels; out_of_memory. What the header
-// of a file claims is checked against its length first, so that small files cost little memory.
+// Reads a PNG (any depth and colour type; grey becomes RGB, transparency is dropped) or an EXR (scan lines or tiles;
+// channels R, G, B of any type, Y alone as grey, or Y, RY and BY as luminance and chroma; the first of several parts).
+// The image of an EXR is its display window. Pixels outside the data window are black, and data outside the display
+// window is dropped.
+// Errors: io for files that are missing, damaged, of another kind or larger than kMaxPixels; out_of_memory. The
+// header's claims are checked against the file's length first, so that small files cannot use much memory.
 [[nodiscard]] Result<File> read(const std::string& path);
 
-// How many values are NaN or infinite.
+// Returns the number of values that are NaN or infinite.
 [[nodiscard]] std::size_t count_non_finite(const Image& image);
 
-// sRGB transfer curve (IEC 61966-2-1): linear 0..1 to encoded 0..1.
+// Applies the sRGB transfer curve (IEC 61966-2-1): linear [0; 1] to encoded [0; 1].
 [[nodiscard]] float srgb_from_linear(float linear);
 
-// The 8-bit step for an encoded value at a pixel and channel: what write_png stores. Not for NaN.
+// Returns the 8-bit value that write_png stores for an encoded value at a pixel and channel. Not for NaN.
 [[nodiscard]] std::uint8_t quantize(float encoded, std::uint32_t x, std::uint32_t y, std::uint32_t channel,
                                     bool dither);
 

@@ -1,5 +1,5 @@
-// PNG through libpng. libpng reports errors by longjmp, so the functions that call it hold no objects
-// with destructors; those live with their callers.
+// PNG files through libpng. libpng reports errors by longjmp, so the functions that call it hold no objects with
+// destructors; their callers own these.
 #include <png.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kMessageSize = 200;
 
-// Where libpng's callbacks leave what went wrong.
+// The first error that a libpng callback reports.
 struct Problem {
   char message[kMessageSize] = "";
 };
@@ -39,12 +39,12 @@ struct Reader {
   png_structp png = nullptr;
   png_infop info = nullptr;
   std::uint32_t width = 0, height = 0;
-  unsigned char* samples = nullptr;  // RGB, 8 or 16 bits in the machine's order
+  unsigned char* samples = nullptr;  // RGB, 8 or 16 bits in native byte order
   int depth = 8;
 };
 
-// Returns why the chunks of a PNG cannot be true, empty when they can: libpng allocates what a chunk claims before it
-// finds that the file ends.
+// Returns why the chunks of a PNG must be wrong, or an empty string. libpng would allocate the claimed size of a chunk
+// before it notices the end of the file.
 const char* chunk_problem(std::string_view bytes) {
   constexpr std::size_t kSignature = 8, kAround = 12;  // length, kind and checksum of a chunk
   std::size_t at = kSignature;
@@ -69,7 +69,7 @@ bool read_samples(Reader* reader) {
   if (setjmp(png_jmpbuf(reader->png)) != 0) return false;
   png_set_read_fn(reader->png, reader, on_read);
   png_set_user_limits(reader->png, kLargestSide, kLargestSide);
-  constexpr png_alloc_size_t kMaxChunk = 8U << 20U;  // bytes of one chunk of text or a profile, decompressed
+  constexpr png_alloc_size_t kMaxChunk = 8U << 20U;  // bytes of one decompressed text chunk or profile
   png_set_chunk_malloc_max(reader->png, kMaxChunk);
   png_read_info(reader->png, reader->info);
   reader->width = png_get_image_width(reader->png, reader->info);
@@ -88,11 +88,11 @@ bool read_samples(Reader* reader) {
   if (row_size != std::size_t{3} * reader->width * static_cast<std::size_t>(reader->depth) / 8) {
     png_error(reader->png, "its pixels have an unknown layout");
   }
-  // Deflate makes at most 1032 bytes of one.
+  // Deflate expands by at most a factor of 1032.
   constexpr std::size_t kMaxRatio = 1032;
   if (reader->height > reader->bytes.size() * kMaxRatio / row_size + 1) png_error(reader->png, "the file is cut off");
   if (std::uint64_t{reader->width} * reader->height > kMaxPixels) png_error(reader->png, "it is too large");
-  // Zeroed pages cost nothing until data arrives.
+  // Zeroed pages use no memory until data arrives.
   reader->samples = static_cast<unsigned char*>(std::calloc(reader->height, row_size));
   if (reader->samples == nullptr) png_error(reader->png, "not enough memory");
   for (int pass = 0; pass < passes; ++pass) {
@@ -129,7 +129,7 @@ struct Writer {
   unsigned char* row = nullptr;
 };
 
-// Apart from on_write, so that no object is alive where libpng jumps.
+// Separate from on_write, so that no object is alive where libpng jumps.
 bool write_bytes(Writer* writer, const unsigned char* data, std::size_t size) {
   Result<void> result = writer->file->write(data, size);
   writer->file_failed = !result;
@@ -171,7 +171,7 @@ bool write_samples(Writer* writer) {
   return true;
 }
 
-// tEXt where the value is ASCII, iTXt (UTF-8) where it is not. libpng copies the strings.
+// Returns tEXt for ASCII values and iTXt (UTF-8) for others. libpng copies the strings.
 std::vector<png_text> png_texts(const Metadata& metadata) {
   std::vector<png_text> texts;
   for (const auto& [name, value] : metadata) {

@@ -1,6 +1,6 @@
-// shaders/lib compiled as C++ in double precision: tyndall::glsl64 holds Medium and every function of the
+// shaders/lib compiled as C++ in double precision. The namespace tyndall::glsl64 holds Medium and every function of the
 // library (geometry, medium, phase, optical_depth, single_scattering, sky_irradiance, homogeneous, oneil), with vec3 =
-// glm::dvec3. Conventions are those of the GLSL files. For .cpp files only: it defines functions of internal
+// glm::dvec3. Conventions are those of the GLSL files. Include it in .cpp files only: it defines functions of internal
 // linkage.
 #pragma once
 
@@ -31,7 +31,7 @@ inline Oneil widen(const shared::Oneil& o) {
           widen(o.rayleigh), widen(o.mie)};
 }
 
-// The medium as uploaded, widened.
+// Returns the uploaded medium in double precision.
 inline Medium widen(const shared::Medium& m) {
   const auto wide = [](const Vec3& v) { return vec3(v.x, v.y, v.z); };
   Medium out = {};

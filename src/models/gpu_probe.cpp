@@ -10,11 +10,11 @@
 namespace tyndall::models {
 namespace {
 
-constexpr std::size_t kBatchRays = 16384;  // well below a second of work on a CPU device
+constexpr std::size_t kBatchRays = 16384;  // takes well below a second on a CPU device
 
 std::array<double, 3> widened(const Vec3& v) { return {v.x, v.y, v.z}; }
 
-// Asks one of shaders/probe, which reads `more` beside the medium, the rays and the results.
+// Dispatches one of shaders/probe, which reads `more` besides the medium, the rays and the results.
 Result<std::vector<Answer>> ask(gpu::Host& host, const gpu::Shader& shader, const shared::Medium& medium,
                                 std::span<const gpu::NamedResource> more, std::span<const Ray> rays,
                                 const std::function<void(std::size_t)>& progress) {
@@ -41,7 +41,7 @@ Result<std::vector<Answer>> ask(gpu::Host& host, const gpu::Shader& shader, cons
     const std::size_t count = std::min(batch, rays.size() - first);
     for (std::size_t i = 0; i < count; ++i) prepared[i] = prepare_probe_ray(medium, rays[first + i]);
     TYNDALL_TRY(host.run([&](VkCommandBuffer cmd) -> Result<void> {
-      // The shader takes the number of rays from the size of their block.
+      // The shader derives the number of rays from the size of their buffer.
       std::vector<gpu::NamedResource> resources = {
           gpu::named_buffer("medium_block", medium_buffer.buffer.get()),
           gpu::named_buffer("ray_block", ray_buffer.buffer.get(), 0, count * sizeof(shared::ProbeRay)),

@@ -1,5 +1,5 @@
-// The models as the GPU answers them: rays go up, shaders/probe answers each with one invocation. Rays are
-// prepared and results taken back in batches, so that any number of them fits the device.
+// Evaluates the models on the GPU with shaders/probe, one invocation per ray. Rays are processed in batches, so that
+// any number of them fits on the device.
 #pragma once
 
 #include <functional>
@@ -12,13 +12,13 @@
 
 namespace tyndall::models {
 
-// Light scattered once over black ground, by shaders/probe/single.comp in single precision: one answer per
-// ray, in their order. `progress` is told how many are done.
+// Evaluates single scattering over black ground with shaders/probe/single.comp in single precision. Returns one answer
+// per ray, in order. `progress` receives the number of completed rays.
 Result<std::vector<Answer>> single_scattering_on_gpu(gpu::Host& host, const shared::Medium& medium,
                                                      std::span<const Ray> rays,
                                                      const std::function<void(std::size_t)>& progress = {});
 
-// The same of O'Neil's model, by shaders/probe/oneil.comp.
+// Evaluates O'Neil's model with shaders/probe/oneil.comp.
 Result<std::vector<Answer>> oneil_on_gpu(gpu::Host& host, const OneilModel& model, std::span<const Ray> rays);
 
 }  // namespace tyndall::models

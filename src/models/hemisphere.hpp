@@ -1,4 +1,4 @@
-// Irradiance on level ground from a sky that is a function of the ray, in double precision.
+// Irradiance on level ground under a sky that is a function of the ray, in double precision.
 #pragma once
 
 #include <algorithm>
@@ -9,10 +9,11 @@
 
 namespace tyndall::models {
 
-// The sum of `radiance` times cosine over the upper hemisphere. Even steps of the azimuth, which is periodic, and Gauss
-// nodes in x with zenith angle (1 - x^2) 90 deg: close together at the horizon, where a sky changes fastest.
-// `radiance`: of the cosines of the view's zenith angle and of the angle between view and sun, as three channels.
-// `zenith_panels`: of two nodes each.
+// Integrates `radiance` times cosine over the upper hemisphere. Steps of the azimuth are even because the function is
+// periodic. Zenith angles are at Gauss nodes of x, with zenith angle (1 - x^2) 90 degrees: dense near the horizon,
+// where a sky changes fastest.
+// `radiance` takes the cosines of the view zenith angle and of the angle between view and sun, and returns three
+// channels. `zenith_panels` is the number of panels of two nodes each.
 template <typename Radiance>
 std::array<double, 3> hemisphere_irradiance(double cos_sun_zenith, int zenith_panels, int azimuths,
                                             const Radiance& radiance) {
@@ -22,7 +23,7 @@ std::array<double, 3> hemisphere_irradiance(double cos_sun_zenith, int zenith_pa
     const double node = (i % 2 == 0 ? -1.0 : 1.0) / std::numbers::sqrt3;
     const double x = (i / 2 + 0.5 + 0.5 * node) / zenith_panels;
     const double zenith = 0.5 * std::numbers::pi * (1.0 - x * x);
-    const double weight = std::numbers::pi * x / (2.0 * zenith_panels);  // |d zenith / d x| times the node's
+    const double weight = std::numbers::pi * x / (2.0 * zenith_panels);  // |d zenith / d x| times the node's weight
     const double mu = std::cos(zenith);
     const double sine = std::sin(zenith);
     for (int k = 0; k < azimuths; ++k) {

@@ -18,14 +18,14 @@ std::array<double, 3> times(const Vec3& v, const Vec3& by) {
           static_cast<double>(v.z) * static_cast<double>(by.z)};
 }
 
-// The length of a ray in the medium.
+// Returns the length of a ray within the medium.
 double length_in(const HomogeneousMedium& m, double altitude_m, double cos_zenith) {
   double start = 0.0;
   double end = m.extent_m;
   if (glsl64::ray_hits_ground(altitude_m, cos_zenith, m.planet_radius_m)) {
     end = glsl64::distance_to_ground(altitude_m, cos_zenith, m.planet_radius_m);
   }
-  // Below the plane height_m: on the near side of where the ray leaves it, or the far side of where it enters.
+  // Clip to below the plane at height_m: an upward ray ends there, a downward ray from above begins there.
   const double below = m.height_m - altitude_m;
   if (cos_zenith > 0.0) end = std::min(end, below / cos_zenith);
   if (cos_zenith < 0.0) start = std::max(below / cos_zenith, 0.0);
@@ -60,7 +60,7 @@ Answer homogeneous_medium_light(const HomogeneousMedium& m, const Ray& ray) {
   Answer out;
   for (std::size_t c = 0; c < 3; ++c) {
     const double tau = m.extinction[c] * length;
-    // (1 - exp(-tau)) / sigma; the length itself where there is nothing.
+    // (1 - exp(-tau)) / sigma, which is the length itself without extinction.
     const double lit = m.extinction[c] > 0.0 ? -std::expm1(-tau) / m.extinction[c] : length;
     out.radiance[c] = m.sunlight[c] * (m.rayleigh_scattering[c] * rayleigh + m.mie_scattering[c] * mie) * lit;
     out.transmittance[c] = std::exp(-tau);

@@ -1,6 +1,6 @@
-// The homogeneous medium of Yusov (2012) where nothing is in shadow, in double precision: the model
-// `homogeneous-medium` of `probe` and `validate`, and what the renderer's scattering.medium = homogeneous is tested
-// against. docs/homogeneous_medium.md has the equations. Pure functions, safe from any thread.
+// The homogeneous medium of Yusov (2012) without shadows, in double precision: the model `homogeneous-medium` of
+// `probe` and `validate`, and the reference for tests of scattering.medium = homogeneous. docs/homogeneous_medium.md
+// has the equations. Pure functions, safe from any thread.
 #pragma once
 
 #include <array>
@@ -15,21 +15,22 @@ struct HomogeneousMedium {
   std::array<double, 3> rayleigh_scattering = {};
   std::array<double, 3> mie_scattering = {};
   std::array<double, 3> extinction = {};
-  std::array<double, 3> sunlight = {};  // that arrives, relative to the sun's irradiance above the atmosphere
+  std::array<double, 3> sunlight =
+      {};  // at every point of the medium, relative to the sun's irradiance above the atmosphere
   double g = 0.0;
   bool cornette_shanks = true;  // or Henyey-Greenstein
   double planet_radius_m = 0.0;
-  double extent_m = 0.0;  // of rays that do not meet the planet
-  double height_m = 0.0;  // of the flat top
+  double extent_m = 0.0;  // length of rays that do not hit the planet
+  double height_m = 0.0;  // altitude of the flat top
 };
 
 [[nodiscard]] HomogeneousMedium homogeneous_medium_from_params(const Params& params);
 
-// Radiance / E0 and transmittance along a ray to the planet, to the medium's top or to its extent, over black ground.
-// The sun lights the medium from wherever it stands, from below the horizon too.
+// Returns radiance / E0 and transmittance along a ray to the planet, to the medium's top or to its extent, over black
+// ground. The sun lights the medium from any direction, even from below the horizon.
 [[nodiscard]] Answer homogeneous_medium_light(const HomogeneousMedium& medium, const Ray& ray);
 
-// Horizontal irradiance / E0 of what comes from above.
+// Returns the horizontal irradiance / E0 of the light from above.
 [[nodiscard]] std::array<double, 3> homogeneous_medium_sky(const HomogeneousMedium& medium, double altitude_m,
                                                            double cos_sun_zenith);
 

@@ -15,7 +15,7 @@ namespace {
 
 std::array<double, 3> to_array(const glsl64::vec3& v) { return {v.x, v.y, v.z}; }
 
-// One row per cosine: see oneil_table in shaders/lib/oneil.glsl.
+// Builds the table, one row per cosine: see oneil_table() in shaders/lib/oneil.glsl.
 std::vector<std::array<float, 4>> make_table(const shared::Medium& m, std::uint32_t size) {
   std::vector<std::array<float, 4>> out;
   out.reserve(static_cast<std::size_t>(size) * size);
@@ -38,7 +38,7 @@ std::vector<std::array<float, 4>> make_table(const shared::Medium& m, std::uint3
   return out;
 }
 
-// Of the model's outward columns of one species, at these altitudes.
+// Measures the errors of the model's outward density integrals of one species, up to an altitude.
 ColumnError measure(const OneilModel& model, const glsl64::Medium& m, const glsl64::Oneil& o, bool mie,
                     double highest_m, int altitudes) {
   constexpr int kCosines = 40;
@@ -50,7 +50,7 @@ ColumnError measure(const OneilModel& model, const glsl64::Medium& m, const glsl
   for (int i = 0; i < altitudes; ++i) {
     const double h = altitudes > 1 ? highest_m * i / (altitudes - 1) : 0.0;
     for (int j = 0; j <= kCosines; ++j) {
-      // By the square root, as most happens near the horizontal; off the table's own entries.
+      // Spaced by the square root, because most variation is near the horizontal; between the table's own entries.
       const double root = j == kCosines ? 1.0 : (j + 0.37) / kCosines;
       const double c = j == 0 ? 0.0 : root * root;
       const glsl64::vec2 column = glsl64::oneil_density_integral(m, o, model.table.data(), h, c);
@@ -126,7 +126,7 @@ Answer oneil(const OneilModel& model, const Ray& ray) {
 
 std::array<double, 3> oneil_sky_irradiance(const OneilModel& model, double altitude_m, double cos_sun_zenith,
                                            int nodes) {
-  // As sky_irradiance_single in shaders/lib: the zenith angle is split at the sun's, and the nodes crowd
+  // As in sky_irradiance_single() of shaders/lib, the zenith angle is split at the sun and the nodes are concentrated
   // around it.
   const double sun_zenith = std::acos(std::clamp(cos_sun_zenith, 0.0, 1.0));
   const double half_pi = 0.5 * std::numbers::pi;

@@ -11,12 +11,12 @@ namespace {
 constexpr int kTerms = 5;
 constexpr int kNodes = 64;
 
-// Eight-point Gauss-Legendre on [-1; 1], the positive half.
+// Eight-point Gauss-Legendre rule on [-1; 1], the positive half.
 constexpr double kNode[] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
 constexpr double kWeight[] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
 
-// Column to infinity over the scale height, from a radius of rho scale heights. c may exceed 1 a little: the
-// altitude along the ray, sqrt(rho^2 + 2 rho c d + d^2) - rho, goes on smoothly there.
+// Returns the density integral to infinity over the scale height, from a radius of rho scale heights. c may slightly
+// exceed 1: the altitude along the ray, sqrt(rho^2 + 2 rho c d + d^2) - rho, is still smooth there.
 double column_to(double rho, double c, double distance) {
   constexpr int kPanels = 24;
   const double panel = 1.0 / kPanels;
@@ -25,7 +25,7 @@ double column_to(double rho, double c, double distance) {
     for (int j = 0; j < 8; ++j) {
       const double x = (j < 4 ? -1.0 : 1.0) * kNode[j % 4];
       const double u = (i + 0.5 + 0.5 * x) * panel;
-      const double d = distance * u * u;  // crowds the nodes where the air is dense
+      const double d = distance * u * u;  // concentrates the nodes where the density is high
       const double rise = d * (2.0 * rho * c + d);
       const double climb = rise / (std::sqrt(rho * rho + rise) + rho);
       sum += 0.5 * panel * kWeight[j % 4] * 2.0 * distance * u * std::exp(-climb);
@@ -34,7 +34,7 @@ double column_to(double rho, double c, double distance) {
   return sum;
 }
 
-// Distance at which a ray has climbed by `climb`, all in scale heights.
+// Returns the distance at which a ray has climbed by `climb`, all in scale heights.
 double distance_of_climb(double rho, double c, double climb) {
   const double rise = climb * (2.0 * rho + climb);
   return rise / (rho * c + std::sqrt(rho * rho * c * c + rise));
@@ -45,8 +45,8 @@ struct Fit {
   double worst = std::numeric_limits<double>::infinity();
 };
 
-// Solves the normal equations of a polynomial through (x, y) in the Chebyshev basis of [low; high] scaled to
-// [-1; 1], where they are well conditioned, and turns it into powers of x.
+// Solves the normal equations of a polynomial through (x, y) in the Chebyshev basis of [low; high] scaled to [-1; 1],
+// where they are well conditioned, and converts it to powers of x.
 std::array<double, kTerms> least_squares(const std::array<double, kNodes>& x, const std::array<double, kNodes>& y,
                                          double low, double high) {
   std::array<std::array<double, kTerms + 1>, kTerms> a = {};
@@ -137,7 +137,7 @@ shared::OneilScale published_scale(double scale_height_m) {
 shared::OneilScale fit_scale(double scale_height_m, double radius_m, double top_m) {
   const double rho = radius_m / scale_height_m;
   const double largest_c = std::sqrt(1.0 + top_m / radius_m);  // see oneil_outward
-  // The column at the horizontal over that at the zenith: the natural size of the bend.
+  // The ratio of the density integrals at the horizontal and at the zenith is the natural scale of the bend.
   const double steepness = column_to(rho, 0.0, distance_of_climb(rho, 0.0, 42.0));
   double best_bend = steepness;
   Fit best;

@@ -1,4 +1,4 @@
-// How shaders/lib/oneil.glsl reads its table in C++, whatever precision it is compiled in.
+// Access to the table of shaders/lib/oneil.glsl from C++, in any precision.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
-// What the renderer's scattering tables answer for given rays: the model `precomputed` of `probe` and
-// `validate`. Makes the tables of a set of parameters ready on a device once and reads them there, with the
-// renderer's own shader code. One thread at a time.
+// Evaluates the renderer's scattering tables for given rays: the model `precomputed` of `probe` and `validate`.
+// Prepares the tables of a set of parameters on a device once and reads them with the renderer's own shader code. Use
+// from one thread at a time.
 #pragma once
 
 #include <memory>
@@ -21,14 +21,14 @@ class PrecomputedModel {
   PrecomputedModel& operator=(PrecomputedModel&&) noexcept;
   ~PrecomputedModel();
 
-  // One answer per query. Radiance / E0 [1/sr] of air and, with `visible_ground`, of the ground at the ray's
-  // end; for the sky E / E0 and the transmittance towards the sun. scattering.single of the parameters says
+  // Returns one answer per query: radiance / E0 [1/sr] of the atmosphere and, with `visible_ground`, of the ground at
+  // the ray's end; for the sky, E / E0 and the transmittance towards the sun. The parameter scattering.single decides
   // whether order 1 is integrated.
   Result<std::vector<Answer>> answer(std::span<const RayQuery> queries, bool visible_ground = true);
 
-  // Where its tables came from.
+  // Where the tables came from.
   [[nodiscard]] const tables::Outcome& origin() const;
-  // The effect that holds the tables: times of the stages, memory, images for export.
+  // The effect that holds the tables, for build times, memory use, and images to export.
   [[nodiscard]] Effect& effect();
 
  private:

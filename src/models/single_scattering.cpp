@@ -52,7 +52,7 @@ std::array<double, 3> sunlit_ground(const shared::Medium& medium, const Ray& ray
   bool on_ground = false;
   if (m.ground_albedo == 0.0 || !glsl64::atmosphere_segment(ray.altitude_m, ray.cos_view_zenith, m.atmosphere_height_m,
                                                             m.planet_radius_m, start, end, on_ground)) {
-    // On the ground itself a ray downwards has no length, and still sees it.
+    // A downward ray that begins on the ground has length 0 and still sees the ground.
     end = 0.0;
     on_ground =
         m.ground_albedo > 0.0 && glsl64::ray_hits_ground(ray.altitude_m, ray.cos_view_zenith, m.planet_radius_m);

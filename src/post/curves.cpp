@@ -1,4 +1,4 @@
-// shaders/post/tonemap_curves.glsl as C++ in double precision.
+// shaders/post/tonemap_curves.glsl compiled as C++ in double precision.
 #include <glm/glm.hpp>
 
 #include "post/settings.hpp"

@@ -17,10 +17,10 @@ static_assert(kLuminanceBins == kHistogramBins);
 static_assert(sizeof(ExposureState) == 32 && sizeof(LuminanceCounts) == 4 + 4 * kHistogramBins,
               "the layouts of the exposure must agree with std430");
 
-constexpr std::uint32_t kMostSamples = 1U << 18U;  // read of a picture, about
+constexpr std::uint32_t kMostSamples = 1U << 18U;  // approximate number of samples per picture
 constexpr double kForever_s = 1.0e9;
 
-// Every how manieth pixel is read in both directions.
+// Returns the distance between samples in both directions [pixels].
 std::uint32_t stride_of(VkExtent2D extent) {
   const double pixels = static_cast<double>(extent.width) * extent.height;
   return std::max(1U, static_cast<std::uint32_t>(std::ceil(std::sqrt(pixels / kMostSamples))));
@@ -62,7 +62,7 @@ Result<void> Exposure::measure(VkCommandBuffer cmd, VkImageView from, VkExtent2D
   const gpu::NamedResource resources[] = {gpu::named_image("radiance", from),
                                           gpu::named_buffer("counts_block", counts_.buffer.get()),
                                           gpu::named_buffer("exposure_block", state_.buffer.get())};
-  // The picture before may still be mapped with the state, and its counts be copied.
+  // The previous picture may still read the state for tone mapping, and copy its counts.
   constexpr VkPipelineStageFlags kBoth = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
   constexpr VkAccessFlags kWrites = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
   constexpr VkAccessFlags kAll = kWrites | VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT;
@@ -75,7 +75,7 @@ Result<void> Exposure::measure(VkCommandBuffer cmd, VkImageView from, VkExtent2D
   const std::uint32_t stride = stride_of(extent);
   std::string_view missing = gpu::bind(*device_, cmd, measure_, resources, &stride);
   if (!missing.empty()) return lacks(missing);
-  constexpr std::uint32_t kSamplesOnSide = 64;  // of a group
+  constexpr std::uint32_t kSamplesOnSide = 64;  // per group
   const auto groups = [&](std::uint32_t pixels) {
     return (pixels + stride * kSamplesOnSide - 1) / (stride * kSamplesOnSide);
   };

@@ -1,5 +1,5 @@
-// Exposure from the picture itself: log-average luminance, adaptation in time, and the histogram behind it, on the GPU.
-// Knows nothing of scattering. The same pictures give the same bytes on every run.
+// Automatic exposure: log-average luminance, adaptation over time and the luminance histogram, on the GPU. Independent
+// of scattering. The same pictures give the same bytes on every run.
 #pragma once
 
 #include <array>
@@ -12,30 +12,30 @@
 namespace tyndall::post {
 
 constexpr std::size_t kHistogramBins = 256;
-// log2 of the luminance (radiance in the picture's unit) at which a bin of the histogram stands.
+// Returns log2 of the luminance (in the picture's unit of radiance) at the centre of a histogram bin.
 [[nodiscard]] double stop_of_bin(std::size_t bin);
 
-// What was found of a picture.
+// The measurement of one picture.
 struct Measurement {
-  float exposure = 0.0F;                         // that scales the radiance with auto exposure
-  float luminance = 0.0F;                        // that the eye is adapted to
-  float measured = 0.0F;                         // log-average of the picture; 0 when all of it is black
-  float counted = 0.0F;                          // mean weight of its samples, 0 to 1: black space has none
-  float black = 0.0F;                            // share of samples darker than the histogram begins
-  std::array<float, kHistogramBins> share = {};  // of the samples in each bin; with `black` they add up to 1
+  float exposure = 0.0F;                         // scale of the radiance with auto exposure
+  float luminance = 0.0F;                        // to which the eye is adapted
+  float measured = 0.0F;                         // log-average of the picture; 0 if it is black
+  float counted = 0.0F;                          // mean weight of the samples, 0 to 1: black space has none
+  float black = 0.0F;                            // fraction of samples darker than the histogram
+  std::array<float, kHistogramBins> share = {};  // fraction of samples in each bin; all and `black` add up to 1
 };
 
 class Exposure {
  public:
-  // `frames_in_flight`: measurements that can be read while others are recorded.
+  // `frames_in_flight`: how many measurements may be pending while others are recorded.
   static Result<Exposure> create(const gpu::Device& device, std::uint32_t frames_in_flight = 1);
 
-  // Records the measurement of `from` (RGBA32F in GENERAL layout) and adapts to it over `seconds` since the picture
-  // before; the first picture, and the first after reset_history(), is taken at once. What wrote `from` must be visible
-  // to compute shaders; the result is visible to those that follow. `slot`: below frames_in_flight, for read().
+  // Records the measurement of `from` (RGBA32F in GENERAL layout), and adapts to it over the `seconds` since the
+  // previous picture. The first picture, and the first after cut(), takes effect at once. Writes to `from` must be
+  // visible to compute shaders; the result is visible to later ones. `slot` is below frames_in_flight, for read().
   Result<void> measure(VkCommandBuffer cmd, VkImageView from, VkExtent2D extent, const TonemapSettings& settings,
                        double seconds, std::uint32_t slot = 0);
-  // The next picture has nothing to do with the one before.
+  // Resets the history: the next picture is unrelated to the previous one.
   void reset_history() { reset_ = true; }
   // What the next measurement starts from, as far as the host knows it. A caller that drops the commands of measure()
   // puts back what was there before them.
@@ -49,7 +49,7 @@ class Exposure {
     measured_ = start.measured;
   }
 
-  // Of the measurement recorded last for the slot, once its commands have completed.
+  // Returns the measurement recorded last for the slot. Its commands must have completed.
   [[nodiscard]] Measurement read(std::uint32_t slot = 0) const;
 
   [[nodiscard]] bool measured() const { return measured_; }
@@ -60,7 +60,7 @@ class Exposure {
   const gpu::Device* device_ = nullptr;
   gpu::Pipeline measure_, adapt_;
   gpu::Buffer counts_, state_;
-  std::vector<gpu::Buffer> results_;  // one a slot: the state, then the counts
+  std::vector<gpu::Buffer> results_;  // one per slot: the state, then the counts
   bool reset_ = true;
   bool measured_ = false;
 };

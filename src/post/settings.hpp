@@ -1,4 +1,4 @@
-// What exposure and tone mapping can be told, and their operators as functions of a colour. Nothing of a device.
+// The settings of exposure and tone mapping, and the operators as functions of a colour. Independent of devices.
 #pragma once
 
 #include <array>
@@ -24,17 +24,17 @@ constexpr std::uint32_t kOperators = 10;
 
 struct TonemapSettings {
   Operator op = Operator::uncharted2;
-  float middle_gray = 0.18F;  // the luminance that the adapted one becomes before the curve; with auto exposure
-  float white_point = 3.0F;   // scaled luminance that becomes white, > 0; of the operators that have one
-  float saturation = 1.0F;    // > 0; of the operators on luminance, and of AgX
+  float middle_gray = 0.18F;  // value of the adapted luminance before the curve; with auto exposure
+  float white_point = 3.0F;   // scaled luminance that becomes white, > 0; for operators with a white point
+  float saturation = 1.0F;    // > 0; for operators on luminance, and for AgX
   bool auto_exposure = true;
-  bool light_adaptation = true;     // false: every picture is exposed for itself
-  float least_luminance = 1.0e-4F;  // darker pictures are exposed as if they had it: night stays dark
-  float exposure = 1.8F;            // scales the radiance when auto exposure is off
+  bool light_adaptation = true;     // false: every picture is exposed independently
+  float least_luminance = 1.0e-4F;  // minimum of the luminance that determines the exposure: night stays dark
+  float exposure = 1.8F;            // scale of the radiance without auto exposure
 };
 
-// The operator on linear radiance times `exposure`, as the GPU computes it but in double precision: linear display
-// values 0 to 1. Negative radiance and what is no number is black.
+// Applies the operator to linear radiance times `exposure`, as the GPU does but in double precision. Returns linear
+// display values in [0; 1]. Negative radiance and NaN are black.
 [[nodiscard]] std::array<double, 3> tonemapped(const TonemapSettings& settings, double exposure,
                                                const std::array<double, 3>& radiance);
 

@@ -1,6 +1,6 @@
-// From linear radiance to displayable values: exposure and a tone-mapping operator, as an effect of its
-// own that knows nothing of scattering. Records compute dispatches on a borrowed device.
-// Output is linear 0 to 1 in Rec. 709 primaries; encoding as sRGB and dithering belong to the file.
+// Exposure and tone mapping: converts linear radiance to displayable values. An effect of its own, independent of
+// scattering, which records compute dispatches on a borrowed device. The output is linear [0; 1] in Rec. 709 primaries;
+// sRGB encoding and dithering happen when a file is written.
 #pragma once
 
 #include "post/exposure.hpp"
@@ -11,8 +11,8 @@ class Tonemap {
  public:
   static Result<Tonemap> create(const gpu::Device& device, std::uint32_t frames_in_flight = 1);
 
-  // `from` and `to` are RGBA32F in GENERAL layout, of the same extent; barriers are the caller's. With auto exposure,
-  // exposure().measure() comes before: an error when it never did.
+  // Records the pass. `from` and `to` are RGBA32F in GENERAL layout and of the same extent; barriers are up to the
+  // caller. With auto exposure, exposure().measure() must have been recorded before, else this fails.
   Result<void> record(VkCommandBuffer cmd, VkImageView from, VkImageView to, VkExtent2D extent,
                       const TonemapSettings& settings) const;
 

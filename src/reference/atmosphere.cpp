@@ -6,7 +6,7 @@
 namespace tyndall::reference {
 namespace {
 
-// Rayleigh scattering coefficient of air, 1/m (Penndorf 1957; the constants are the documents').
+// Returns the Rayleigh scattering coefficient of air, 1/m (Penndorf 1957, with the constants of Yusov 2013).
 double rayleigh_coefficient(double wavelength_nm) {
   constexpr double kRefractiveIndex = 1.0003, kMolecules_m3 = 2.545e25, kDepolarisation = 0.035;
   const double n2_1 = kRefractiveIndex * kRefractiveIndex - 1.0;
@@ -44,8 +44,8 @@ struct GaussLegendre {
   }
 };
 
-// (1/d) * integral over the path of exp(-(h(u) - h(0)) / scale_height), u in [0; d] from position s >= 0 of
-// the line upwards. Panels end where the density has fallen by these exponents.
+// Returns (1/d) * integral over the path of exp(-(h(u) - h(0)) / scale_height), with u in [0; d] upwards from position
+// s >= 0 of the line. Panels end where the density has fallen by these exponents.
 double mean_relative_density(const GaussLegendre<10>& rule, double r, double s, double d, double scale_height) {
   constexpr std::array<double, 8> kExponents = {0.25, 1.0, 2.5, 5.0, 10.0, 18.0, 28.0, 42.0};
   double sum = 0.0, from = 0.0;
@@ -65,7 +65,7 @@ double mean_relative_density(const GaussLegendre<10>& rule, double r, double s, 
   return sum / d;
 }
 
-// Integral of (r - base) ds between two positions of a line, r being the distance to the centre.
+// Returns the integral of (r - base) ds between two positions of a line, where r is the distance to the centre.
 double integrate_radius(double tangent2, double r0, double s0, double r1, double s1, double base) {
   const double turned = tangent2 > 0.0 ? tangent2 * std::log((s1 + r1) / (s0 + r0)) : 0.0;
   return 0.5 * (s1 * r1 - s0 * r0 + turned) - base * (s1 - s0);
@@ -111,7 +111,7 @@ Atmosphere::Atmosphere(const Params& params, double lowest_m) {
 }
 
 double Atmosphere::find_opaque_radius() const {
-  constexpr double kDepth = 1.5;  // of the channel in the middle, along the whole grazing ray
+  constexpr double kDepth = 1.5;  // of the middle channel, along the whole grazing ray
   double low = radius_m, high = top_radius_m;
   for (int i = 0; i < 40; ++i) {
     const double r = 0.5 * (low + high);
@@ -156,7 +156,7 @@ double Atmosphere::ozone_density_integral(double tangent2, double s, double s_to
 }
 
 void Atmosphere::build_table() {
-  // The mean density changes over sqrt(scale height / height) of the range of path lengths.
+  // The mean density varies over sqrt(scale height / height) of the range of path lengths.
   const double narrow = std::sqrt(std::min({1.0, rayleigh_scale_height_m / height_m, mie_scale_height_m / height_m}));
   const double span = top_radius_m - base_radius_m_;
   nh_ = static_cast<std::size_t>(std::ceil(127.0 * span / height_m)) + 1;
@@ -172,7 +172,7 @@ void Atmosphere::build_table() {
     for (std::size_t ix = 0; ix < nx_; ++ix) {
       MeanDensity& entry = table_[ih * nx_ + ix];
       if (ih == nh_ - 1) {
-        entry = {1.0, 1.0};  // no path left
+        entry = {1.0, 1.0};  // a path of length 0
         continue;
       }
       const double d = shortest + (longest - shortest) * static_cast<double>(ix) / static_cast<double>(nx_ - 1);
@@ -190,7 +190,7 @@ Amounts Atmosphere::exponential_columns(double tangent2, double s, double s_top,
   if (!(d > 0.0) || !(shortest > 0.0)) return {};
   const double longest = std::sqrt(shortest * (top_radius_m + r));
 
-  // Cubic Lagrange interpolation over 4 x 4 nodes; the stencil is shifted inwards at the edges.
+  // Cubic Lagrange interpolation over 4 x 4 nodes. The stencil is shifted inwards at the edges.
   const auto weights = [](double at, std::size_t count, std::size_t& first) {
     const auto node = static_cast<std::size_t>(at);  // at >= 0
     first = std::min(node > 0 ? node - 1 : 0, count - 4);

@@ -1,6 +1,6 @@
-// Vectors and straight lines around the planet's centre, in double precision.
-// A line is known by its tangent radius (the least distance to the centre, as a square) and a position
-// s on it, in metres from the tangent point: r = sqrt(tangent2 + s^2), and s = r cos(zenith angle).
+// Vectors and straight lines around the planet's centre, in double precision. A line is given by its tangent radius
+// (the smallest distance to the centre, as a square) and a position s on it, in metres from the tangent point: r =
+// sqrt(tangent2 + s^2), and s = r cos(zenith angle).
 #pragma once
 
 #include <algorithm>
@@ -18,8 +18,8 @@ inline double dot(const Vec& a, const Vec& b) { return a.x * b.x + a.y * b.y + a
 inline double length(const Vec& a) { return std::sqrt(dot(a, a)); }
 inline Vec normalized(const Vec& a) { return a * (1.0 / length(a)); }
 
-// The direction at angle acos(cosine) from unit vector `axis`, turned by the angle whose cosine and
-// sine are given. Basis without branches after Duff et al., Building an Orthonormal Basis, Revisited (2017).
+// Returns the direction at the angle acos(cosine) from the unit vector `axis`, rotated around it by the angle with the
+// given cosine and sine. The basis is branchless after Duff et al., "Building an Orthonormal Basis, Revisited" (2017).
 inline Vec around(const Vec& axis, double cosine, double cos_turn, double sin_turn) {
   const double sine = std::sqrt(std::max(0.0, (1.0 - cosine) * (1.0 + cosine)));
   const double sign = std::copysign(1.0, axis.z);

@@ -1,5 +1,5 @@
-// Guidance of the path tracer in twilight: where the sun has set, light comes from above the horizon on the
-// sun's side, and part of the sampled directions goes there.
+// Importance sampling of twilight: after sunset, light comes from above the horizon on the sun's side, so a part of the
+// sampled directions goes there.
 #pragma once
 
 #include <algorithm>
@@ -10,10 +10,10 @@
 
 namespace tyndall::reference {
 
-// A lobe around the horizontal direction towards the sun, its lower half folded upwards.
+// A lobe around the horizontal direction towards the sun, with its lower half mirrored upwards.
 struct Glow {
   Vec up, axis;
-  double share = 0.0;  // of the directions; 0 while the sun is up
+  double share = 0.0;  // fraction of the directions; 0 while the sun is up
 
   // `vertical` is the unit vector away from the planet's centre.
   Glow(const Vec& vertical, const Vec& sun) : up(vertical) {
@@ -24,13 +24,13 @@ struct Glow {
     share = 0.35;
   }
 
-  // u in [0; 1), turn in radians; `random()` yields further numbers in [0; 1).
+  // Samples a direction. u is in [0; 1), turn in radians; `random()` yields further numbers in [0; 1).
   template <typename Random>
   [[nodiscard]] Vec sample(double u, double turn, Random&& random) const {
     const Vec w = around(axis, kLobe.sample(u, random), std::cos(turn), std::sin(turn));
     return w + up * (-2.0 * std::min(0.0, dot(w, up)));
   }
-  // Per steradian; integrates to 1 unless share is 0.
+  // Returns the probability density per steradian. It integrates to 1 unless share is 0.
   [[nodiscard]] double density(const Vec& w) const {
     return share > 0.0 && dot(w, up) >= 0.0 ? 2.0 * kLobe(dot(w, axis)) : 0.0;
   }

@@ -12,7 +12,7 @@ Line::Line(const Atmosphere& air, const Vec& origin, const Vec& direction, doubl
   const double ground2 = ground_m * ground_m;
   hits_ground_ = s < 0.0 && tangent2_ < ground2;
   s_top_ = std::sqrt(std::max(0.0, air.top_radius_m * air.top_radius_m - tangent2_));
-  s = std::clamp(s, -s_top_, s_top_);  // rounding at the edge
+  s = std::clamp(s, -s_top_, s_top_);  // removes rounding errors at the edge
   start_ = point(s);
   if (s < 0.0) {
     s_end_ = hits_ground_ ? std::max(s, -std::sqrt(ground2 - tangent2_)) : s_top_;
@@ -41,7 +41,7 @@ Amounts Line::travelled(const LinePoint& p) const {
 
 double Line::ozone_travelled(double s) const {
   const auto to_top = [&](double at) { return air_->ozone_density_integral(tangent2_, std::abs(at), s_top_); };
-  // The path never climbs above the higher of its two ends.
+  // The path is never higher than the higher of its two ends.
   if (!air_->reaches_ozone(std::sqrt(tangent2_ + std::max(s * s, start_.s * start_.s)))) return 0.0;
   if (start_.s >= 0.0) return std::max(0.0, to_top(start_.s) - to_top(s));
   if (s <= 0.0) return std::max(0.0, to_top(s) - to_top(start_.s));
@@ -50,7 +50,7 @@ double Line::ozone_travelled(double s) const {
 
 LinePoint Line::invert(std::size_t channel, double depth) const {
   const double from_start = air_->exponential_depth(start_.to_top, channel);
-  // target: depth to the top at the solution; it lies at distance |s| in [low; high] from the tangent point.
+  // target: depth to the top at the solution, whose distance |s| from the tangent point is in [low; high].
   const LinePoint* known = &start_;
   double low = std::max(start_.s, 0.0), high = s_top_;
   double target = from_start - depth;
@@ -93,7 +93,7 @@ LinePoint Line::invert(std::size_t channel, double depth) const {
       double divisor = slope - 0.5 * error * (fall - slope);
       if (divisor < 0.25 * slope) divisor = slope;
       next = s + error / divisor;
-      // The step's own error is of third order: what is left after this one does not matter.
+      // The step's own error is of third order, so the error after this step is negligible.
       close = std::abs(error) < 1e-3 && std::abs(error) * to_top < tolerance;
       if (!(next > low && next < high)) next = close ? std::clamp(next, low, high) : 0.5 * (low + high);
     } else {
@@ -110,7 +110,7 @@ Interval Line::shadow(const Vec& sun, double radius_m) const {
   const double reach = s_end_ - start_.s;
   const double along = dot(direction_, sun), depth = dot(origin_, sun);
   Interval t{0.0, reach};
-  // Behind the planet's centre plane ...
+  // Behind the planet's centre plane,
   if (along > 0.0) {
     t.to = std::min(t.to, -depth / along);
   } else if (along < 0.0) {
@@ -119,7 +119,7 @@ Interval Line::shadow(const Vec& sun, double radius_m) const {
     return {};
   }
   if (!(t.from < t.to)) return {};
-  // ... and within the radius of the axis.
+  // and within the radius around the axis.
   const double a = (1.0 - along) * (1.0 + along);
   const double b = start_.s - depth * along;
   const double c = dot(origin_, origin_) - depth * depth - radius_m * radius_m;

@@ -1,5 +1,5 @@
-// trace(): checks, cuts the work into blocks, spreads the blocks over threads, and adds them up in a
-// fixed order so that the sums do not depend on who computed what.
+// trace(): checks its input, divides the work into blocks, distributes the blocks over threads, and adds them in a
+// fixed order, so that the sums do not depend on the scheduling.
 #include "reference/path_tracer.hpp"
 
 #include <algorithm>
@@ -17,11 +17,11 @@
 namespace tyndall::reference {
 namespace {
 
-// Enough blocks for a standard error that is itself good to about an eighth.
+// With this many blocks the standard error is itself accurate to about an eighth.
 constexpr std::uint64_t kBlocksWanted = 32;
 constexpr int kMaxOrders = 256;
 constexpr double kLowestAltitude_m = -11000.0;  // of a camera
-// Blocks that are kept in memory before they are added up.
+// The largest number of block values in memory before they are added.
 constexpr std::size_t kBatchValues = std::size_t{1} << 20;
 
 struct Plan {
@@ -60,7 +60,7 @@ std::string check_options(const Options& options) {
   return {};
 }
 
-// The path tracer reads these two groups only; the table knows their ranges.
+// The path tracer only reads these two groups. The parameter table has their ranges.
 std::string problem_of(const Params& params) {
   const char* base = reinterpret_cast<const char*>(&params);
   for (const ParamInfo& info : param_table()) {
@@ -69,7 +69,7 @@ std::string problem_of(const Params& params) {
     if (!vector && info.type != ParamType::float32) continue;
     const float* value = reinterpret_cast<const float*>(base + info.offset);  // NOLINT
     for (int i = 0; i < (vector ? 3 : 1); ++i) {
-      // Bounds in the table are exact decimals; a float may miss them by its rounding.
+      // Bounds in the table are exact decimals; a float may exceed them by its rounding.
       if (!within(value[i], info.min - std::abs(info.min) * 1e-6, info.max + std::abs(info.max) * 1e-6)) {
         return std::string(info.group) + "." + std::string(info.name) + ", must be in [" + std::to_string(info.min) +
                "; " + std::to_string(info.max) + "]";
@@ -84,7 +84,7 @@ class Accumulator {
  public:
   explicit Accumulator(std::size_t orders) : orders_(orders), mean_(orders + 1), spread_(orders + 1) {}
 
-  // `block` holds a value per order; the last entry of the sums is their total.
+  // `block` holds one value per order. The last entry of the sums is the total.
   void add(std::span<const Rgb> block) {
     ++count_;
     const double weight = 1.0 / static_cast<double>(count_);
@@ -119,7 +119,7 @@ class Accumulator {
   std::vector<Rgb> mean_, spread_;
 };
 
-// A batch of consecutive (query, block) pairs, their results side by side.
+// A batch of consecutive (query, block) pairs with their results.
 struct Batch {
   std::uint64_t first = 0, count = 0;
   std::vector<Rgb> means;
@@ -206,7 +206,7 @@ Estimate finish(const Accumulator& sums, const Scene& scene, const Options& opti
   return estimate;
 }
 
-// Empty if everything is within its range.
+// Returns an empty string if everything is in range, else what is wrong.
 std::string check(const Params& params, std::span<const RayQuery> queries, const Options& options) {
   if (const std::string bad = problem_of(params); !bad.empty()) return "parameter " + bad;
   if (const std::string bad = check_options(options); !bad.empty()) return "path tracer, " + bad;

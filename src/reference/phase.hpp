@@ -1,5 +1,5 @@
-// Phase functions, per steradian and normalised to 1 over the sphere, and exact sampling of each.
-// `cosine` is that of the angle between the directions of flight before and after: +1 is straight on.
+// Phase functions per steradian, normalised to 1 over the sphere, and exact sampling of each. `cosine` is that of the
+// angle between the directions of flight before and after scattering: +1 is straight ahead.
 #pragma once
 
 #include <algorithm>
@@ -10,18 +10,18 @@
 
 namespace tyndall::reference {
 
-// Rayleigh without depolarisation.
+// Returns the Rayleigh phase function without depolarisation.
 inline double rayleigh_phase(double cosine) { return 3.0 / (16.0 * std::numbers::pi) * (1.0 + cosine * cosine); }
 
-// u in [0; 1) -> cosine with density 3/8 (1 + c^2): the real root of c^3 + 3c = 8u - 4, by Cardano
-// in the form without cancellation.
+// Maps u in [0; 1) to a cosine with density 3/8 (1 + c^2): the real root of c^3 + 3c = 8u - 4, by Cardano's formula in
+// a form without cancellation.
 inline double sample_rayleigh(double u) {
   const double z = std::abs(4.0 * u - 2.0);
   const double a = std::cbrt(z + std::sqrt(z * z + 1.0));
   return std::copysign(a - 1.0 / a, u - 0.5);
 }
 
-// The aerosol's phase function with its constants worked out once.
+// The aerosol's phase function with precomputed constants.
 class MiePhaseFunction {
  public:
   MiePhaseFunction() = default;
@@ -39,8 +39,8 @@ class MiePhaseFunction {
     return cornette_shanks_ ? value * (1.0 + cosine * cosine) : value;
   }
 
-  // u in [0; 1) -> cosine; `random()` yields further numbers in [0; 1). Cornette-Shanks is
-  // Henyey-Greenstein times (1 + c^2) / 2 <= 1, hence exact by rejection; 2/3 or more are accepted.
+  // Maps u in [0; 1) to a cosine; `random()` yields further numbers in [0; 1). Cornette-Shanks is Henyey-Greenstein
+  // times (1 + c^2) / 2 <= 1, so rejection sampling is exact; at least 2/3 of the candidates are accepted.
   template <typename Random>
   [[nodiscard]] double sample(double u, Random&& random) const {
     double cosine = henyey_greenstein_cosine(u);

@@ -3,8 +3,8 @@
 namespace tyndall::reference {
 namespace {
 
-// Primitive polynomials and initial direction numbers of Joe and Kuo, Constructing Sobol sequences
-// with better two-dimensional projections (2008), dimensions 2 to 8; the first is van der Corput's.
+// Primitive polynomials and initial direction numbers of Joe and Kuo, "Constructing Sobol sequences with better
+// two-dimensional projections" (2008), dimensions 2 to 8. The first dimension is van der Corput's sequence.
 struct SobolRow {
   int degree;
   std::uint32_t polynomial;
@@ -22,7 +22,7 @@ constexpr std::array<SobolRow, SobolBlock::kDimensions - 1> kRows = {{
 
 using Columns = std::array<std::uint32_t, SobolBlock::kMaxLog2Count>;
 
-// Column j of the generating matrix, as a fraction of `bits` bits.
+// Returns the columns of the generating matrix as fractions of `bits` bits.
 Columns direction_numbers(int dimension, int bits) {
   Columns v{};
   for (int j = 0; j < bits; ++j) v[static_cast<std::size_t>(j)] = 1U << (bits - 1 - j);
@@ -52,7 +52,7 @@ SobolBlock::SobolBlock(int log2_count, Generator& generator)
       width_(1.0 / static_cast<double>(1U << log2_count)),
       strata_(static_cast<std::size_t>(kDimensions) << log2_count) {
   const std::uint32_t count = 1U << log2_count;
-  std::vector<std::uint8_t> flips(count);  // a node of the binary tree of prefixes each: 1 swaps its halves
+  std::vector<std::uint8_t> flips(count);  // one per node of the binary tree of prefixes: 1 swaps its halves
   for (int dimension = 0; dimension < kDimensions; ++dimension) {
     const Columns columns = direction_numbers(dimension, log2_count);
     for (std::uint32_t i = 0; i < count; i += 64) {

@@ -1,6 +1,5 @@
-// Random numbers: a generator, and the scrambled Sobol points that the first few dimensions of each
-// path use. Every block of samples has a seed and a scrambling of its own, so that blocks are
-// independent and the spread between them is an honest standard error.
+// Random numbers: a generator, and scrambled Sobol points for the first dimensions of each path. Every block of samples
+// has its own seed and scrambling, so blocks are independent and their spread gives a valid standard error.
 #pragma once
 
 #include <array>
@@ -9,7 +8,7 @@
 
 namespace tyndall::reference {
 
-// Steele, Lea, Flood, Fast splittable pseudorandom number generators (2014): SplitMix64's finaliser.
+// The finaliser of SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014).
 inline std::uint64_t mix64(std::uint64_t z) {
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
@@ -21,7 +20,7 @@ inline std::uint64_t hash_seed(std::uint64_t seed, std::uint64_t query, std::uin
   return mix64(mix64(mix64(seed + kGolden) + query * kGolden + 1) + block * kGolden + 2);
 }
 
-// Blackman and Vigna, Scrambled linear pseudorandom number generators (2018): xoshiro256++.
+// xoshiro256++ (Blackman and Vigna, "Scrambled linear pseudorandom number generators", 2018).
 class Generator {
  public:
   explicit Generator(std::uint64_t seed) {
@@ -41,15 +40,15 @@ class Generator {
     return result;
   }
 
-  // [0; 1)
+  // Returns a number in [0; 1).
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
 
  private:
   std::array<std::uint64_t, 4> state_{};
 };
 
-// 2^log2_count Sobol points with Owen's nested uniform scrambling (Owen 1995): each point is uniform,
-// and every dimension puts exactly one point in each of 2^log2_count strata.
+// 2^log2_count Sobol points with nested uniform scrambling (Owen 1995): each point is uniform, and in every dimension
+// each of 2^log2_count strata contains exactly one point.
 class SobolBlock {
  public:
   static constexpr int kDimensions = 8;
@@ -57,7 +56,7 @@ class SobolBlock {
 
   SobolBlock(int log2_count, Generator& generator);
 
-  // Coordinate of a point, in [0; 1). Precondition: dimension < kDimensions, point < 2^log2_count.
+  // Returns a coordinate of a point, in [0; 1). Precondition: dimension < kDimensions, point < 2^log2_count.
   double operator()(int dimension, std::uint32_t point, Generator& generator) const {
     const std::size_t index = (static_cast<std::size_t>(dimension) << log2_count_) + point;
     return (strata_[index] + generator.uniform()) * width_;
@@ -69,7 +68,7 @@ class SobolBlock {
   std::vector<std::uint16_t> strata_;
 };
 
-// The coordinates of one path, in the order in which it asks: Sobol first, then random.
+// The random coordinates of one path, in order of use: first Sobol, then random ones.
 class PathNumbers {
  public:
   PathNumbers(const SobolBlock& block, std::uint32_t point, Generator& generator)

@@ -1,9 +1,8 @@
-// Paths start at the camera. At every vertex the sun is connected (next event estimation); the next
-// distance is sampled inside the atmosphere by inverting the optical depth of one channel, the next
-// direction from one phase function. All channels are weighted by the balance heuristic over the
-// choices that could have been made (Veach 1997; Wilkie et al., Hero wavelength spectral sampling, 2014),
-// with the channel chosen in proportion to what it will scatter, so that the sum of the three throughputs
-// never grows but for the factor of the lit part.
+// Paths start at the camera. At every vertex the sun is connected (next event estimation). The next distance is sampled
+// inside the atmosphere by inverting the optical depth of one channel, the next direction from one phase function.
+// All channels are weighted by the balance heuristic over the possible choices (Veach 1997; Wilkie et al., "Hero
+// wavelength spectral sampling", 2014). The channel is chosen in proportion to what it will scatter, so that the sum of
+// the three throughputs grows by no more than the factor of the lit part.
 #include "reference/transport.hpp"
 
 #include <cmath>
@@ -17,8 +16,8 @@ namespace tyndall::reference {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-// Shares of the distance samples on a line through the planet's shadow that are kept to what the sun
-// reaches at all, and to what it reaches without being dimmed much (Atmosphere::opaque_radius_m).
+// On a line through the planet's shadow, the fractions of the distance samples that are restricted to the part the sun
+// reaches, and to the part it reaches with little attenuation (Atmosphere::opaque_radius_m).
 constexpr std::array<double, 2> kLitShares = {0.2, 0.2};
 
 double sum(const Rgb& v) { return v[0] + v[1] + v[2]; }
@@ -30,7 +29,7 @@ struct Vertex {
   Amounts density;
 };
 
-// The light of the sun that a Lambertian ground of reflected throughput `weight` returns.
+// Adds the sunlight that a Lambertian ground reflects; `weight` is the throughput after reflection.
 void add_ground(const Atmosphere& air, const Vertex& v, const Vec& sun, const Rgb& weight, Rgb& sums) {
   Rgb through;
   const double cosine = dot(v.position, sun) / v.r;
@@ -47,22 +46,22 @@ Vertex ground_vertex(const Atmosphere& air, const Line& line) {
   return v;
 }
 
-// The part of a line outside the shadow of a sphere, with its probabilities for each channel in terms of
-// 1 - transmittance (without ozone) from the start of the line.
+// The part of a line outside the shadow of a sphere, with its probabilities per channel in units of 1 - transmittance
+// (without ozone) from the start of the line.
 struct LitPart {
-  double share = 0.0;  // of the samples that are kept to this part
+  double share = 0.0;  // fraction of the samples that are restricted to this part
   Interval shadow;
   Rgb before{};      // up to the shadow
   Rgb shadow_end{};  // up to the end of the shadow
   Rgb lit{};         // probability of the part
 
-  // How much likelier a position is for being sampled from this part.
+  // Returns the factor by which sampling this part raises the probability of a position.
   [[nodiscard]] double preference(double s, double all, std::size_t channel) const {
     return share > 0.0 && !(s > shadow.from && s < shadow.to) ? share * all / lit[channel] : 0.0;
   }
 };
 
-// The share is 0 if the line misses the shadow or if there is nothing outside it to prefer.
+// The share is 0 if the line misses the shadow, or if there is no part outside to prefer.
 LitPart lit_part(const Atmosphere& air, const Line& line, const Vec& sun, double radius_m, const Rgb& all,
                  double share) {
   LitPart part;
@@ -77,17 +76,17 @@ LitPart lit_part(const Atmosphere& air, const Line& line, const Vec& sun, double
     if (begins_lit) part.before[c] = std::max(0.0, -std::expm1(-air.exponential_depth(entry, c)));
     part.shadow_end[c] = ends_lit ? std::min(all[c], -std::expm1(-air.exponential_depth(exit, c))) : all[c];
     part.lit[c] = part.before[c] + all[c] - part.shadow_end[c];
-    // Rounding of the difference forbids to single out less than this.
+    // Rounding of the difference does not allow to single out a smaller part.
     if (all[c] > 0.0 && !(part.lit[c] > 1e-9 * all[c])) part.share = 0.0;
   }
   return part;
 }
 
-// Samples where the light that arrives along `line` comes from; multiplies `weight` by contribution over
-// density. Returns false if there is nothing to scatter. `albedo` is that of the ground at its end.
+// Samples the point from which light arrives along `line`, and multiplies `weight` by contribution over density.
+// Returns false if there is nothing to scatter. `albedo` is that of the ground at the line's end.
 bool sample_event(const Atmosphere& air, const Line& line, const Vec& sun, double albedo, double u, Rgb& weight,
                   Vertex& v) {
-  Rgb scattered{}, lost{};  // scattered: 1 - transmittance of each channel; lost: weighted
+  Rgb scattered{}, lost{};  // scattered: 1 - transmittance per channel; lost: weighted
   double reflected = 0.0;
   for (std::size_t c = 0; c < 3; ++c) {
     const double through = std::expm1(-std::max(0.0, air.exponential_depth(line.total(), c)));
@@ -109,14 +108,14 @@ bool sample_event(const Atmosphere& air, const Line& line, const Vec& sun, doubl
   u = (u - reflect_share) / (1.0 - reflect_share);
   if (!(all_lost > 0.0)) return false;
 
-  // The channel to invert, in proportion to what each will lose on this line.
+  // Choose the channel to invert in proportion to the light that each will lose on this line.
   u *= all_lost;
   std::size_t channel = 0;
   while (channel < 2 && u >= lost[channel]) u -= lost[channel++];
   if (!(lost[channel] > 0.0)) return false;  // rounding at the end of the last channel
   u = std::min(u / lost[channel], std::nextafter(1.0, 0.0));
 
-  // Where the planet's shadow falls on this line, part of the samples goes to what the sun lights.
+  // Where the planet's shadow falls on this line, reserve part of the samples for what the sun lights.
   std::array<LitPart, 2> lit = {lit_part(air, line, sun, air.radius_m, scattered, kLitShares[0]),
                                 lit_part(air, line, sun, air.opaque_radius_m, scattered, kLitShares[1])};
   const double unguided = 1.0 - lit[0].share - lit[1].share;
@@ -156,7 +155,7 @@ bool sample_event(const Atmosphere& air, const Line& line, const Vec& sun, doubl
   return true;
 }
 
-// Share of Rayleigh scattering in all scattering at a vertex, for each channel.
+// Returns the fraction of Rayleigh scattering in all scattering at a vertex, per channel.
 Rgb rayleigh_shares(const Atmosphere& air, const Amounts& density) {
   Rgb share;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -167,7 +166,7 @@ Rgb rayleigh_shares(const Atmosphere& air, const Amounts& density) {
   return share;
 }
 
-// Adds the light of the sun that a vertex in the air scatters back along `direction`.
+// Adds the sunlight that a vertex in the atmosphere scatters back along `direction`.
 void add_air(const Atmosphere& air, const Vertex& v, const Vec& sun, const Vec& direction, const Rgb& rayleigh_share,
              const Rgb& weight, Rgb& sums) {
   Rgb through;
@@ -179,7 +178,7 @@ void add_air(const Atmosphere& air, const Vertex& v, const Vec& sun, const Vec& 
   }
 }
 
-// Samples the direction that the path goes on to from a vertex in the air.
+// Samples the direction in which the path continues from a vertex in the atmosphere.
 Vec sample_direction(const Atmosphere& air, const Vertex& v, const Vec& sun, const Vec& direction,
                      const Rgb& rayleigh_share, PathNumbers& numbers, Rgb& weight) {
   double rayleigh_weight = 0.0;
@@ -222,7 +221,7 @@ void trace_path(const Scene& scene, const Line& first, PathNumbers& numbers, Rgb
   const Line* line = &first;
   Vec direction = first.direction();
   for (std::size_t order = 0; order < sums.size(); ++order) {
-    // The directly lit ground at the end of the first line is known without sampling (Scene::ground).
+    // The directly lit ground at the end of the first line needs no sampling (Scene::ground).
     const bool seen = order == 0;
     const bool last = order + 1 == sums.size();
     const double albedo = seen && (!scene.visible_ground || last) ? 0.0 : air.ground_albedo;
@@ -249,7 +248,7 @@ void trace_path(const Scene& scene, const Line& first, PathNumbers& numbers, Rgb
 Scene::Scene(const Atmosphere& atmosphere, const RayQuery& query, const Options& options)
     : air(&atmosphere), sky(query.sky_irradiance), visible_ground(options.visible_ground) {
   origin = {0.0, 0.0, atmosphere.radius_m + query.altitude_m};
-  // A sky is seen upwards only.
+  // Sky irradiance only collects directions upwards.
   ground_radius_m = atmosphere.radius_m + (sky ? std::min(query.altitude_m, 0.0) : ground_altitude_m(query.altitude_m));
   const double sun_sine = std::sin(query.sun_zenith_rad);
   sun = {sun_sine * std::cos(query.azimuth_rad), sun_sine * std::sin(query.azimuth_rad),

@@ -16,13 +16,13 @@ std::span<std::byte> bytes_of(const gpu::Buffer& buffer) {
   return {static_cast<std::byte*>(buffer.mapped), static_cast<std::size_t>(buffer.size)};
 }
 
-// Whatever reads the tables next, in any stage.
+// Makes the tables visible to any stage that reads them next.
 void publish(const gpu::Device& device, VkCommandBuffer cmd) {
   gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
                VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_READ_BIT);
 }
 
-// Whether they were there.
+// Returns whether the cache had them.
 Result<bool> load(gpu::Host& host, Effect& effect, files::FileCache& cache, Outcome& outcome) {
   const gpu::Device& device = host.device();
   const std::string key = effect.table_key();
@@ -97,7 +97,7 @@ Result<Outcome> make_ready(gpu::Host& host, Effect& effect, const MakeReady& how
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   };
   files::FileCache cache(files::cache_directory(how.cache.place), how.cache.limit_bytes, TYNDALL_VERSION_STRING);
-  // Being short of memory for the cache is no reason to fail: the build already has its own.
+  // A lack of memory for the cache is not an error: the build has its own memory.
   const auto without_cache = [&](const Error& error) -> Result<void> {
     if (error.code != ErrorCode::out_of_memory) return error;
     outcome.notes.push_back("the cache of the tables is not used: " + error.message);

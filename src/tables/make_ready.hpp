@@ -1,6 +1,5 @@
-// Makes the tables of an effect ready: from the cache on disk if they are there, otherwise by building them,
-// after which they are kept there. What every program here does before it asks for light; an engine can do
-// the same with the public interface.
+// Prepares the tables of an effect: loads them from the cache on disk, or builds them and stores them there. Every
+// program here does this before it needs light; an engine can do the same with the public interface.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +18,7 @@ struct CacheDesc {
 };
 
 enum class Origin {
-  unchanged,  // they were ready
+  unchanged,  // they were already complete
   cache,
   build,
 };
@@ -28,29 +27,28 @@ struct MakeReady {
   CacheDesc cache;
   std::function<void(Progress)> progress;  // of a build, between its slices; may be empty
   std::uint32_t slice_budget = 8;          // slices per submission
-  bool build_anew = false;                 // do not look into the cache, but keep the result there
+  bool build_anew = false;                 // ignore cached tables, but store the result
 };
 
 struct Outcome {
   Origin origin = Origin::unchanged;
-  double milliseconds = 0.0;       // until they could be used, keeping them not included
-  std::vector<std::string> notes;  // about trouble with the cache, one line each; it never fails a run
+  double milliseconds = 0.0;       // until the tables were usable, without the time to store them
+  std::vector<std::string> notes;  // remarks on cache errors, one line each; these never fail a run
 };
 
 // Records, submits and waits until the tables of effect.params() are complete.
 Result<Outcome> make_ready(gpu::Host& host, Effect& effect, const MakeReady& how);
 
-// One step of the same, for programs that draw meanwhile: loads the tables from the cache, or else builds at most
-// `budget` slices. Keeps nothing in the cache: see keep(). Remarks are added to `notes`.
+// Makes one step towards complete tables, for programs that draw meanwhile: loads them from the cache, or builds at
+// most `budget` slices. Does not store them in the cache: see keep(). Adds remarks to `notes`.
 Result<void> advance(gpu::Host& host, Effect& effect, const MakeReady& how, std::uint32_t budget,
                      std::vector<std::string>& notes);
 
-// Finished tables on their way into the cache. fetch() reads them back from the device; write() may run on a
-// thread of its own.
+// Copies finished tables into the cache. fetch() reads them back from the device; write() may run on another thread.
 class Keeper {
  public:
   static Result<Keeper> fetch(gpu::Host& host, Effect& effect, const CacheDesc& cache);
-  // The remark about trouble, or nothing.
+  // Returns a remark about an error, or an empty string.
   [[nodiscard]] std::string write();
 
  private:

@@ -1,4 +1,4 @@
-// The groups of rays that the tables of a report have as rows.
+// The groups of rays that form the rows of a report's tables.
 #pragma once
 
 #include "validate/study.hpp"
@@ -23,7 +23,7 @@ constexpr Group kGroups[] = {
     {"0 to -6 deg", "all", [](const TestRay& r) { return r.band == SunBand::twilight; }},
 };
 
-// Of the rays of the turbid set.
+// A group of rays of the turbid set.
 struct TurbidGroup {
   const char* sun;
   bool (*takes)(const TestRay& ray);

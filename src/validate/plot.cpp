@@ -15,12 +15,12 @@ constexpr double kWidth = 560.0, kHeight = 340.0;  // of the picture, in its own
 constexpr double kLeft = 66.0, kRight = 14.0, kTop = 30.0, kBottom = 46.0;
 constexpr double kKeyRow = 16.0;
 
-// Where values fall in the picture.
+// The mapping from values to positions in the picture.
 class Scale {
  public:
   Scale(const Axis& axis, double from, double to) : axis_(axis), from_(from), to_(to) {}
 
-  // 0 to 1 within the axis.
+  // Returns 0 to 1 within the axis.
   [[nodiscard]] double fraction(double value) const {
     if (!axis_.logarithmic) return (value - axis_.min) / (axis_.max - axis_.min);
     return std::log(std::max(value, 1e-300) / axis_.min) / std::log(axis_.max / axis_.min);
@@ -40,7 +40,7 @@ class Scale {
 
 struct Tick {
   double value;
-  std::string text;  // none: a small one
+  std::string text;  // none: a minor tick
 };
 
 std::vector<Tick> ticks(const Axis& axis) {
@@ -72,7 +72,7 @@ std::vector<Tick> ticks(const Axis& axis) {
       break;
     }
   }
-  // Angles divide by 15 and 30 rather than by 20 and 50.
+  // Use multiples of 15 and 30 for angles instead of 20 and 50.
   if (axis.label.find("deg") != std::string::npos && step > 10.0) step = step <= 20.0 ? 15.0 : 30.0;
   const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
   for (double i = std::ceil(axis.min / step - 1e-9); i * step <= axis.max + 1e-9 * step; ++i) {
@@ -156,7 +156,7 @@ std::string fixed(double value, int decimals) {
   char buffer[400];
   const auto end = std::to_chars(std::begin(buffer), std::end(buffer), value, std::chars_format::fixed, decimals).ptr;
   std::string out(buffer, end);
-  // There is no negative nothing in a report.
+  // Avoid "-0.00".
   if (out.starts_with('-') && out.find_first_not_of("-0.") == std::string::npos) out.erase(0, 1);
   return out;
 }

@@ -19,8 +19,8 @@ std::uint64_t mixed(std::uint64_t x) {
   return x ^ (x >> 31U);
 }
 
-// Points of the cube [0; 1)^4, of which every coordinate falls once into each of `count` equal parts (Latin
-// hypercube, McKay, Beckman and Conover 1979).
+// Returns points in the cube [0; 1)^4 such that, in every coordinate, each of `count` equal parts contains one point
+// (Latin hypercube, McKay, Beckman and Conover 1979).
 std::vector<std::array<double, 4>> even_points(std::uint64_t seed, std::uint32_t count) {
   std::vector<std::array<double, 4>> points(count);
   std::uint64_t state = mixed(seed);
@@ -37,15 +37,15 @@ std::vector<std::array<double, 4>> even_points(std::uint64_t seed, std::uint32_t
   return points;
 }
 
-// Turns the sun's direction as the place nearest the ground sees it into the eye's frame. The ray leaves the
-// eye at zenith angle z and arrives at the place under the local zenith angle z - turn, having gone `turn`
-// around the planet; sun and ray differ by `azimuth` at the place.
+// Converts the sun's direction from the frame of the point nearest to the ground to the eye's frame. The ray leaves the
+// eye at zenith angle z and arrives at that point under the local zenith angle z - turn, having gone `turn` around the
+// planet. `azimuth` is the one between sun and ray at the point.
 void set_sun(RayQuery& query, double turn, double sun_elevation_rad, double azimuth) {
   // In the plane of the ray: x along its heading, y up, z to the side.
   const double x = std::cos(sun_elevation_rad) * std::cos(azimuth);
   const double y = std::sin(sun_elevation_rad);
   const double side = std::cos(sun_elevation_rad) * std::sin(azimuth);
-  // The eye's vertical lies `turn` behind the place's.
+  // The eye's vertical lies `turn` behind that of the point.
   const double eye_x = x * std::cos(turn) + y * std::sin(turn);
   const double eye_y = y * std::cos(turn) - x * std::sin(turn);
   query.sun_zenith_rad = std::acos(std::clamp(eye_y, -1.0, 1.0));
@@ -78,7 +78,7 @@ std::vector<TestRay> make_rays(Region region, SunBand band, std::uint32_t count,
       q.altitude_m = scale * 100000.0 * std::pow(200.0, u[2]);
       const double r = radius_m + q.altitude_m;
       if (i % 2 == 0) {
-        // To the ground, evenly by the angle from the nadir; at the ground the ray falls in under `fall`.
+        // Towards the ground, evenly in the nadir angle. `fall` is the ray's angle of incidence there.
         const double nadir = std::asin(radius_m / r) * u[3];
         const double fall = std::asin(std::min(r * std::sin(nadir) / radius_m, 1.0));
         q.view_zenith_rad = kPi - nadir;
@@ -97,7 +97,7 @@ std::vector<TestRay> make_rays(Region region, SunBand band, std::uint32_t count,
 
 std::vector<TestRay> make_horizon_rays(SunBand band, std::uint32_t count, std::uint64_t seed, double radius_m,
                                        double height_m) {
-  constexpr std::uint64_t kSet = 1000;  // apart from the groups of make_rays
+  constexpr std::uint64_t kSet = 1000;  // distinct from the groups of make_rays
   std::vector<TestRay> rays;
   const double scale = height_m / 80000.0;
   for (const std::array<double, 4>& u : even_points(mixed(seed) + kSet + static_cast<std::uint64_t>(band), count)) {

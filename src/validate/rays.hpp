@@ -17,18 +17,18 @@ struct TestRay {
   RayQuery query;
   Region region = Region::ground;
   SunBand band = SunBand::up;
-  // Of the sun where the ray begins, or from space where it comes nearest to the ground.
+  // The sun's elevation where the ray begins or, from space, where it is nearest to the ground.
   double sun_elevation_rad = 0.0;
 };
 
-// `count` rays of one group. From the ground all directions above the horizontal, from the air all, from
-// space half of them at the ground and half past its limb at less than 60 km. A planet of this radius with an
-// atmosphere of this height [m]; the altitudes are fractions of it made for 80 km.
+// Returns `count` rays of one group. From the ground, they point above the horizon; from the air, in all directions;
+// from space, half of them hit the ground and half pass its limb below 60 km. `radius_m` and `height_m` are those of
+// planet and atmosphere [m]; altitudes made for a height of 80 km are scaled to it.
 [[nodiscard]] std::vector<TestRay> make_rays(Region region, SunBand band, std::uint32_t count, std::uint64_t seed,
                                              double radius_m, double height_m);
 
-// `count` rays of low suns near the horizon: from 0 to 1 km, 0.5 to 5 degrees above the geometric horizon, the sun at 0
-// to 10 degrees or at 0 to -6. Evenly spread rays hardly ever meet these.
+// Returns `count` rays near the horizon under low suns: from 0 to 1 km, 0.5 to 5 degrees above the geometric horizon,
+// with the sun at 0 to 10 degrees or at 0 to -6 degrees. Evenly spread rays rarely include these.
 [[nodiscard]] std::vector<TestRay> make_horizon_rays(SunBand band, std::uint32_t count, std::uint64_t seed,
                                                      double radius_m, double height_m);
 

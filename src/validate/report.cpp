@@ -33,7 +33,7 @@ std::string percent(double value) { return fixed(100.0 * value, 2); }
 std::string cell(std::string_view text) { return concat({"<td>", text, "</td>"}); }
 std::string text_cell(std::string_view text) { return concat({"<td class=\"t\">", escaped(text), "</td>"}); }
 
-// "0.10 / 0.20 / 0.30" of the three channels.
+// Returns "0.10 / 0.20 / 0.30" for the three channels.
 std::string channels_cell(const ErrorSummary& errors, double Summary::*value) {
   return cell(concat({percent(errors.channels[0].*value), " / ", percent(errors.channels[1].*value), " / ",
                       percent(errors.channels[2].*value)}));
@@ -125,7 +125,7 @@ std::string worst_tables(const Study& study) {
   return out;
 }
 
-// The largest channel's error of every ray against something about it; a dot each.
+// Plots the largest channel's error of every ray over a property of the ray, one dot each.
 std::string error_plot(const Study& study, std::string title, Axis x,
                        const std::function<double(const TestRay&)>& abscissa) {
   Plot plot = {std::move(title), std::move(x), {"error, %"}, {}};
@@ -164,8 +164,8 @@ std::string error_plots(const Study& study) {
              [=](const TestRay& ray) { return ray.region == Region::space ? nowhere : ray.query.altitude_m / 1000.0; });
 }
 
-// The reference with its error bars and every model, in three channels. Only models that claim all orders are
-// told apart by their dashes in the key; single scattering is drawn for what it leaves out.
+// Plots the reference with error bars and every model, in three channels. In the legend, only models of all orders are
+// distinguished by dashes; single scattering is drawn to show what it leaves out.
 void add_curves(Plot& plot, const std::vector<double>& x, const Answers& answers, const std::vector<Model>& models) {
   for (std::size_t m = 0; m < models.size(); ++m) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -183,7 +183,7 @@ void add_curves(Plot& plot, const std::vector<double>& x, const Answers& answers
   }
 }
 
-// Models that answer the same, as single scattering compared in two ways, are drawn once.
+// Models with equal answers (single scattering is compared in two ways) are drawn once.
 std::vector<std::size_t> distinct_models(const Study& study) {
   std::vector<std::size_t> out;
   for (std::size_t m = 0; m < study.models.size(); ++m) {

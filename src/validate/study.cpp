@@ -11,12 +11,12 @@ namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kMostNoise = 0.03;      // of the reference's largest channel
-constexpr std::uint32_t kSkyFactor = 4;  // more paths for the irradiance of the sky
+constexpr std::uint32_t kSkyFactor = 4;  // more paths for the sky's irradiance
 constexpr double kVerticalSuns_deg[] = {45.0, 6.0, 0.0, -4.0};
 constexpr double kHorizonSuns_deg[] = {20.0, 0.0};
 constexpr double kHorizonAltitude_m = 2000.0;
 
-// Runs the questions of a study in order and keeps count of the work.
+// Runs the queries of a study in order and reports progress.
 class Asker {
  public:
   Asker(const Options& options, double work, const Progress& progress)
@@ -27,7 +27,7 @@ class Asker {
     reference::Options how;
     how.samples = samples;
     how.orders = orders_factor * options_.orders;
-    // Every set of questions has random numbers of its own.
+    // Every set of queries has its own random numbers.
     how.seed = options_.seed + 1000 * asked_++;
     how.by_order = true;
     const double share = static_cast<double>(samples) * static_cast<double>(answers.queries.size());
@@ -93,7 +93,7 @@ std::vector<RayTest> make_turbid_tests(const Params& params, const Options& opti
   return tests;
 }
 
-// Errors of a model over the rays of a test that a predicate takes.
+// Summarises a model's errors over the rays of a test that a predicate selects.
 ErrorSummary summarise_test(const RayTest& test, std::size_t model, int orders,
                             const std::function<bool(const TestRay&)>& takes) {
   std::vector<Comparison> comparisons;
@@ -111,7 +111,7 @@ std::vector<VerticalTest> make_verticals() {
     VerticalTest test;
     test.sun_elevation_deg = sun;
     for (int angle = -90; angle <= 90; angle += 5) {
-      // The horizon itself is of measure nothing.
+      // Avoid the horizon itself, where the result is undefined.
       const double angle_deg = std::clamp(static_cast<double>(angle), -89.5, 89.5);
       test.angle_deg.push_back(angle_deg);
       test.answers.queries.push_back(query_of(0.0, std::abs(angle_deg), sun, angle_deg < 0.0 ? 0.0 : 180.0));
@@ -218,7 +218,7 @@ Result<Study> run_study(const Params& params, const Options& options, std::vecto
   const auto ask_rays = [&](std::size_t a) {
     return asker.ask(study.atmospheres[a].params, study.models, options.samples, study.rays[a].answers);
   };
-  // Atmosphere by atmosphere: a model may keep the tables of the last one.
+  // Go atmosphere by atmosphere: a model may hold the tables of the last one.
   if (Result<void> r = ask_rays(0); !r) return std::move(r).error();
   Answers all;
   for (const VerticalTest& test : study.verticals) {

@@ -1,4 +1,4 @@
-// All that a report says, as numbers: the models' and the reference's answers to the same questions.
+// The numbers of a report: the results of the models and of the reference for the same rays.
 #pragma once
 
 #include <functional>
@@ -12,20 +12,20 @@
 
 namespace tyndall::validate {
 
-// The part of the work done, 0 to 1.
+// Called with the completed fraction of the work, 0 to 1.
 using Progress = std::function<void(double done)>;
 
 struct Model {
   std::string name;     // as in reports
   std::string meaning;  // one line
-  int orders = 0;       // it is compared with the reference's first so many orders; 0: with all
-  // Answers every query with radiance / E0, or irradiance / E0 of the sky.
+  int orders = 0;       // the number of the reference's orders to compare with; 0: all
+  // Returns radiance / E0, or the sky's irradiance / E0, for every query.
   std::function<Result<std::vector<Rgb>>(const Params& params, std::span<const RayQuery> queries)> answer;
 };
 
 struct Options {
-  std::uint32_t rays = 540;      // over all groups; the turbid set has a quarter as many more
-  std::uint32_t samples = 8000;  // paths per ray; four times as many for the irradiance of the sky
+  std::uint32_t rays = 540;      // over all groups; the turbid set has a quarter of this in addition
+  std::uint32_t samples = 8000;  // paths per ray; four times as many for the sky's irradiance
   std::uint64_t seed = 1;
   int orders = 8;  // of the reference
 };
@@ -34,33 +34,33 @@ struct Atmosphere {
   std::string name;
   Params params;
 };
-// As given, with five times its aerosol, and without its ozone.
+// Returns the given atmosphere, the same with five times its aerosol, and the same without ozone.
 [[nodiscard]] std::vector<Atmosphere> atmospheres(const Params& params);
 
-// Turbid air near the horizon under low suns: where models of multiple scattering are put to the test.
+// A turbid atmosphere, for rays near the horizon under low suns: the hardest case for multiple scattering.
 struct TurbidAir {
   double optical_depth;  // of the aerosol, vertical, at the second wavelength
   double ground_albedo;
 };
 constexpr TurbidAir kTurbidAirs[] = {{0.1, 0.0}, {0.2, 0.2}, {0.3, 0.0}, {0.5, 0.2}};
-// As given, with that amount of aerosol and that ground. Air without aerosol stays without.
+// Returns the parameters with that amount of aerosol and that ground albedo. Without aerosol they are unchanged.
 [[nodiscard]] Params turbid_params(const Params& params, const TurbidAir& air);
-// In such air, light is scattered more often: the reference follows it for so many times the orders.
+// Turbid atmospheres need more orders of scattering: the reference follows this many times as many.
 constexpr int kTurbidOrdersFactor = 3;
 
-// Questions with the answers of everyone.
+// Queries with the results of the reference and of all models.
 struct Answers {
   std::vector<RayQuery> queries;
   std::vector<reference::Estimate> reference;  // with orders
   std::vector<std::vector<Rgb>> models;        // [model][query]
 };
 
-// What a model is compared with: the reference's first `orders` orders (0: all), and its standard error.
+// The value that a model is compared with: the sum of the reference's first `orders` orders (0: all).
 struct Truth {
   Rgb value, standard_error;
 };
 [[nodiscard]] Truth truth(const reference::Estimate& estimate, int orders);
-// Nothing where the reference is dark, or so noisy (more than 3 %) that it says nothing.
+// Returns false where the reference is dark, or has a standard error above 3 %.
 [[nodiscard]] bool is_comparable(const Truth& truth);
 [[nodiscard]] Comparison compare(const Rgb& model, const Truth& truth);
 
@@ -69,7 +69,7 @@ struct RayTest {
   Answers answers;
 };
 
-// Along the vertical through the sun at sea level: angles from the zenith, negative on the sun's side.
+// Rays in the vertical plane of the sun at sea level: angles from the zenith, negative on the sun's side.
 struct VerticalTest {
   double sun_elevation_deg = 0.0;
   std::vector<double> angle_deg;
@@ -82,7 +82,7 @@ struct SkyTest {
   Answers answers;
 };
 
-// The sky just above and below the horizon at an altitude, in the sun's vertical, by some models.
+// The sky just above and below the horizon in the sun's vertical plane, at an altitude, for some models.
 struct HorizonTest {
   double altitude_m = 0.0;
   double sun_elevation_deg = 0.0;
@@ -93,7 +93,7 @@ struct HorizonTest {
 struct Study {
   Options options;
   std::vector<Model> models;
-  std::vector<Model> horizon_models;  // of the horizon test alone; without any it is left out
+  std::vector<Model> horizon_models;  // for the horizon test only, which is left out if there are none
   std::vector<Atmosphere> atmospheres;
   std::vector<RayTest> rays;    // one per atmosphere
   std::vector<RayTest> turbid;  // one per entry of kTurbidAirs
@@ -102,17 +102,17 @@ struct Study {
   std::vector<HorizonTest> horizons;
 };
 
-// Asks everyone. Deterministic for the options and the models' device.
+// Runs the reference and all models. Deterministic for given options and device.
 [[nodiscard]] Result<Study> run_study(const Params& params, const Options& options, std::vector<Model> models,
                                       std::vector<Model> horizon_models, const Progress& progress);
 
-// Errors of a model over the rays of one atmosphere that a predicate takes.
+// Summarises a model's errors over the rays of one atmosphere that a predicate selects.
 [[nodiscard]] ErrorSummary summarise(const Study& study, std::size_t model, std::size_t atmosphere,
                                      const std::function<bool(const TestRay&)>& takes);
-// Likewise over the rays of one of kTurbidAirs.
+// Summarises a model's errors over the selected rays of one of kTurbidAirs.
 [[nodiscard]] ErrorSummary summarise_turbid(const Study& study, std::size_t model, std::size_t air,
                                             const std::function<bool(const TestRay&)>& takes);
-// The rays of all atmospheres on which a model is furthest off, worst first.
+// The rays of all atmospheres with a model's largest errors, worst first.
 struct BadRay {
   std::size_t atmosphere = 0;
   std::size_t ray = 0;  // of rays[atmosphere]
@@ -120,7 +120,7 @@ struct BadRay {
 };
 [[nodiscard]] std::vector<BadRay> worst_rays(const Study& study, std::size_t model, std::size_t count);
 
-// Of the sky's irradiance, over the elevations from `low` to `high` [deg].
+// Summarises a model's errors of the sky's irradiance for sun elevations from `low` to `high` [deg].
 [[nodiscard]] ErrorSummary summarise_sky(const Study& study, std::size_t model, double low_deg, double high_deg);
 
 }  // namespace tyndall::validate
