@@ -105,8 +105,8 @@ std::string exr_header_problem(std::string_view bytes) {
     pieces += piece_count(layout);
   }
   // Each piece has an 8-byte offset in a table and a header of at least 8 bytes.
-  constexpr std::int64_t kLeastBytes = 16;
-  return pieces > static_cast<std::int64_t>(bytes.size()) / kLeastBytes ? kCutOff : "";
+  constexpr std::int64_t kMinBytes = 16;
+  return pieces > static_cast<std::int64_t>(bytes.size()) / kMinBytes ? kCutOff : "";
 }
 
 }  // namespace tyndall::image

@@ -17,13 +17,13 @@ static_assert(kLuminanceBins == kHistogramBins);
 static_assert(sizeof(ExposureState) == 32 && sizeof(LuminanceCounts) == 4 + 4 * kHistogramBins,
               "the layouts of the exposure must agree with std430");
 
-constexpr std::uint32_t kMostSamples = 1U << 18U;  // approximate number of samples per picture
+constexpr std::uint32_t kMaxSamples = 1U << 18U;  // approximate number of samples per picture
 constexpr double kForever_s = 1.0e9;
 
 // Returns the distance between samples in both directions [pixels].
 std::uint32_t stride_of(VkExtent2D extent) {
   const double pixels = static_cast<double>(extent.width) * extent.height;
-  return std::max(1U, static_cast<std::uint32_t>(std::ceil(std::sqrt(pixels / kMostSamples))));
+  return std::max(1U, static_cast<std::uint32_t>(std::ceil(std::sqrt(pixels / kMaxSamples))));
 }
 
 Error lacks(std::string_view name) { return {ErrorCode::invalid_argument, "nothing is bound to " + std::string(name)}; }

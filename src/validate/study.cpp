@@ -10,7 +10,7 @@ namespace tyndall::validate {
 namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-constexpr double kMostNoise = 0.03;      // of the reference's largest channel
+constexpr double kMaxNoise = 0.03;       // of the reference's largest channel
 constexpr std::uint32_t kSkyFactor = 4;  // more paths for the sky's irradiance
 constexpr double kVerticalSuns_deg[] = {45.0, 6.0, 0.0, -4.0};
 constexpr double kHorizonSuns_deg[] = {20.0, 0.0};
@@ -186,7 +186,7 @@ Truth truth(const reference::Estimate& estimate, int orders) {
 bool is_comparable(const Truth& truth) {
   const double largest = *std::max_element(truth.value.begin(), truth.value.end());
   const double noise = *std::max_element(truth.standard_error.begin(), truth.standard_error.end());
-  return largest > 0.0 && noise <= kMostNoise * largest;
+  return largest > 0.0 && noise <= kMaxNoise * largest;
 }
 
 Comparison compare(const Rgb& model, const Truth& truth) {
