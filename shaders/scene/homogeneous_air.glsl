@@ -1,4 +1,4 @@
-// Hoffman and Preetham's model in a frame: its constants, which src/scene/homogeneous_sky.cpp fills, and the medium
+// Hoffman and Preetham's model in a frame: its constants, which src/scene/sky/homogeneous_sky.cpp fills, and the medium
 // between the eye and a point.
 #ifndef TYNDALL_HOMOGENEOUS_AIR_GLSL
 #define TYNDALL_HOMOGENEOUS_AIR_GLSL

@@ -1,11 +1,11 @@
-// The medium of O'Neil's model between the eye and a point. src/scene/oneil_sky.cpp fills binding 6; binding 7 is the
+// The medium of O'Neil's model between the eye and a point. src/scene/sky/oneil_sky.cpp fills binding 6; binding 7 is the
 // table of oneil-table.
 #ifndef TYNDALL_ONEIL_AIR_GLSL
 #define TYNDALL_ONEIL_AIR_GLSL
 
 layout(std430, binding = 7) readonly buffer oneil_table_block { vec4 oneil_texels[]; };
 #define ONEIL_TEXEL(table, index) oneil_texels[index]
-// The fields of the block's Oneil as constants: src/scene/oneil_sky.cpp selects the pipeline by them.
+// The fields of the block's Oneil as constants: src/scene/sky/oneil_sky.cpp selects the pipeline by them.
 layout(constant_id = 1) const uint kIntegralMethod = 0u;
 layout(constant_id = 2) const uint kSampleSpacing = 0u;
 #define ONEIL_INTEGRAL_METHOD(o) kIntegralMethod

@@ -1,9 +1,10 @@
 // The constants of one view for the terrain's shaders (std430; every vec3 or pair of vec2 fills 16 bytes).
-// src/scene/terrain.cpp fills them. Points and directions are in the local frame of src/scene/local_frame.hpp.
+// src/scene/terrain/terrain.cpp fills them. Points and directions are in the local frame of
+// src/scene/view/local_frame.hpp.
 struct TerrainLevel {
-  ivec2 origin;  // grid index on the chart of the texture's first sample
-  vec2
-      first_m;  // its position on the map, relative to the origin of the local frame as all map positions (charts.glsl)
+  ivec2 origin;  // grid index on the projection of the texture's first sample
+  vec2 first_m;  // its position on the map, relative to the origin of the local frame as all map positions
+                 // (map_projections.glsl)
   float cell_m;
   float range_m;
 };

@@ -5,7 +5,7 @@
 #ifndef TYNDALL_TERRAIN_GROUND_GLSL
 #define TYNDALL_TERRAIN_GROUND_GLSL
 
-#include "scene/charts.glsl"
+#include "scene/map_projections.glsl"
 #include "scene/terrain_shadow.glsl"
 #include "scene/terrain_materials.glsl"
 
@@ -14,7 +14,7 @@ struct GroundPoint {
   vec3 position;   // in the local frame
   vec3 direction;  // the point of the unit sphere below it, minus the one over the local origin
   vec2 offset_m;   // on the map, from the local origin
-  ivec2 units;     // on the own chart [1/64 m]
+  ivec2 units;     // on the own projection [1/64 m]
   float altitude_m;
   vec2 texel;         // in the level's texture
   vec2 parent_texel;  // in that of the next coarser level
@@ -24,24 +24,25 @@ struct GroundPoint {
 
 void ground_light(float altitude_m, float cos_sun_zenith, out vec3 sun, out vec3 sky);
 
-// Returns the ground's material, with its normal in the local frame. Blends the charts whose terrain counts here.
-TerrainMaterial ground_material(GroundPoint point, ChartAxes axes, vec3 normal, float bend, float footprint_m) {
+// Returns the ground's material, with its normal in the local frame. Blends the map projections whose terrain counts
+// here.
+TerrainMaterial ground_material(GroundPoint point, ProjectionAxes axes, vec3 normal, float bend, float footprint_m) {
   float weights[6];
-  uint rest = chart_weights(point.direction, weights);
+  uint rest = projection_weights(point.direction, weights);
   TerrainMaterial ground;
   ground.albedo = vec3(0.0);
   ground.normal = vec3(0.0);
   while (rest != 0u) {
-    uint chart = uint(findLSB(rest));
+    uint projection = uint(findLSB(rest));
     rest &= rest - 1u;
-    bool own = chart == charts.own;
-    ChartAxes a = axes;
-    if (!own) a = chart_axes(chart, point.direction);
-    TerrainMaterial m =
-        terrain_ground(terrain.shading, own ? point.units : chart_units(chart, point.direction), point.altitude_m,
-                       map_from_local(normal, a), bend, footprint_m, terrain_chart_seed(terrain.seed, chart));
-    ground.albedo += weights[chart] * m.albedo;
-    ground.normal += weights[chart] * local_from_map(m.normal, a);
+    bool own = projection == map_projections.own;
+    ProjectionAxes a = axes;
+    if (!own) a = projection_axes(projection, point.direction);
+    TerrainMaterial m = terrain_ground(
+        terrain.shading, own ? point.units : projection_units(projection, point.direction), point.altitude_m,
+        map_from_local(normal, a), bend, footprint_m, terrain_projection_seed(terrain.seed, projection));
+    ground.albedo += weights[projection] * m.albedo;
+    ground.normal += weights[projection] * local_from_map(m.normal, a);
   }
   ground.normal = normalize(ground.normal);
   return ground;
@@ -55,7 +56,7 @@ vec3 ground_radiance(GroundPoint point) {
 
   vec3 to_eye = terrain.camera_position - point.position;
   float distance_m = length(to_eye);
-  ChartAxes axes = chart_axes(charts.own, point.direction);
+  ProjectionAxes axes = projection_axes(map_projections.own, point.direction);
   vec3 up = axes.up;
   vec3 smooth_normal = normal_from_gradient(gradient, axes);
   float pixel_m = distance_m * terrain.pixel_angle_rad;

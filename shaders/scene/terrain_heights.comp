@@ -10,7 +10,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 1) uniform sampler2D elevation_atlas;
 #define TERRAIN_RASTER(source, texel) texelFetch(elevation_atlas, texel, 0).r
 #include "scene/terrain_source.glsl"
-#include "scene/charts.glsl"
+#include "scene/map_projections.glsl"
 
 layout(std430, binding = 0) readonly buffer terrain_fill_block { TerrainFill fill; };
 layout(binding = 2, r32f) uniform writeonly image2DArray elevation_levels;
@@ -22,23 +22,25 @@ void main() {
   // Slightly more than the spacing: the grid would give a jagged edge to a crest as narrow as one cell.
   float spacing_m = 1.25 * fill.spacing_m;
   ivec2 units = (fill.first_sample + t) * sample_units;
-  // The elevation at a point of the planet is that of its chart; between charts it is their weighted mean. Where the
-  // file lies, only the file counts. ground_height() of src/scene/terrain.cpp does the same.
+  // The elevation at a point of the planet is that of its map projection; between map projections it is their weighted
+  // mean. Where the file lies, only the file counts. ground_height() of src/scene/terrain/terrain.cpp does the same.
   vec3 direction = local_direction(fill.first_m + vec2(t) * fill.spacing_m);
   float weights[6];
-  uint rest = chart_weights(direction, weights);
-  ivec2 map_units = charts.own == 0u ? units : ivec2(0);
+  uint rest = projection_weights(direction, weights);
+  ivec2 map_units = map_projections.own == 0u ? units : ivec2(0);
   bool by_map = weights[0] > 0.0 || fill.source.kind != 0u;
-  if (by_map && charts.own != 0u) map_units = chart_units(0u, direction);
+  if (by_map && map_projections.own != 0u) map_units = projection_units(0u, direction);
   float file = fill.source.kind != 0u ? terrain_file_share(fill.source, map_units) : 0.0;
   if (file > 0.0) rest = file < 1.0 ? rest | 1u : 1u;
   float height_m = 0.0;
   while (rest != 0u) {
-    uint chart = uint(findLSB(rest));
+    uint projection = uint(findLSB(rest));
     rest &= rest - 1u;
-    float weight = (1.0 - file) * weights[chart] + (chart == 0u ? file : 0.0);
-    ivec2 at = chart == 0u ? map_units : chart == charts.own ? units : chart_units(chart, direction);
-    height_m += weight * terrain_chart_height(fill.source, chart, at, spacing_m);
+    float weight = (1.0 - file) * weights[projection] + (projection == 0u ? file : 0.0);
+    ivec2 at = projection == 0u                    ? map_units
+               : projection == map_projections.own ? units
+                                                   : projection_units(projection, direction);
+    height_m += weight * terrain_projection_height(fill.source, projection, at, spacing_m);
   }
   ivec2 texel = (fill.texel_offset + t) & fill.texel_mask;
   imageStore(elevation_levels, ivec3(texel, fill.layer), vec4(height_m, 0.0, 0.0, 0.0));

@@ -225,8 +225,8 @@ float terrain_soft_limit(float height_m) {
   return clamp(height_m, 450.0, 4400.0) + 600.0 * over / (over + 600.0) - 250.0 * under / (under + 250.0);
 }
 
-// Returns the seed of the mountains of one of the planet's charts (src/scene/chart.hpp).
-uint terrain_chart_seed(uint seed, uint chart) { return seed + chart * 0x9e3779b9u; }
+// Returns the seed of the mountains of one of the planet's map projections (src/scene/description/map_projection.hpp).
+uint terrain_projection_seed(uint seed, uint projection) { return seed + projection * 0x9e3779b9u; }
 
 uint terrain_salt(uint seed) { return terrain_hash(seed + 0x51ed2712u); }
 

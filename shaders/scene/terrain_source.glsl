@@ -116,14 +116,15 @@ float terrain_source_height(TERRAIN_SOURCE source, ivec2 units, float spacing_m)
   return height_m * source.exaggeration;
 }
 
-// Returns the elevation at a point of one of the planet's charts (src/scene/chart.hpp): the source belongs to chart 0,
-// the other charts have procedural mountains.
-float terrain_chart_height(TERRAIN_SOURCE source, uint chart, ivec2 units, float spacing_m) {
+// Returns the elevation at a point of one of the planet's map projections (src/scene/description/map_projection.hpp):
+// the source belongs to map projection 0, the other map projections have procedural mountains.
+float terrain_projection_height(TERRAIN_SOURCE source, uint projection, ivec2 units, float spacing_m) {
   float height_m = 0.0;
-  if (chart == 0u) {
+  if (projection == 0u) {
     height_m = terrain_source_height(source, units, spacing_m);
   } else {
-    height_m = terrain_height_at(units, spacing_m, terrain_chart_seed(source.seed, chart)) * source.exaggeration;
+    height_m =
+        terrain_height_at(units, spacing_m, terrain_projection_seed(source.seed, projection)) * source.exaggeration;
   }
   return height_m;
 }

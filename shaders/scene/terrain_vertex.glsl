@@ -1,9 +1,9 @@
 // The vertices of a block of terrain, for the view and for the shadow maps. The grid morphs into the next coarser one
-// near the end of its level's range: see src/scene/terrain_lod.hpp.
+// near the end of its level's range: see src/scene/terrain/terrain_lod.hpp.
 #ifndef TYNDALL_TERRAIN_VERTEX_GLSL
 #define TYNDALL_TERRAIN_VERTEX_GLSL
 
-#include "scene/charts.glsl"
+#include "scene/map_projections.glsl"
 #include "scene/terrain.h"
 
 layout(std430, binding = 0) readonly buffer terrain_block { TerrainConstants terrain; };

@@ -10,6 +10,7 @@
 
 #include "effect/shared.hpp"
 #include "models/single_scattering.hpp"
+#include "tyndall/params.hpp"
 
 namespace tyndall::models {
 
@@ -42,6 +43,9 @@ struct OneilModel {
   // Errors over all cosines: at sea level, and over altitudes up to three scale heights.
   ColumnError rayleigh_at_sea_level, mie_at_sea_level, rayleigh, mie;
 };
+
+// Returns the atmosphere of the parameters, as make_oneil() reads it.
+[[nodiscard]] shared::Medium oneil_medium(const Params& params);
 
 // Fits the scale functions or fills the table, and measures their errors. Takes milliseconds.
 [[nodiscard]] OneilModel make_oneil(const shared::Medium& medium, const OneilSettings& settings);
