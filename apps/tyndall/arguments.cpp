@@ -43,7 +43,7 @@ struct Arguments::Implementation {
 
   explicit Implementation(const std::string& verb_name) : verb(verb_name), command("tyndall " + verb_name) {
     app.allow_extras();
-    app.set_help_flag("-h,--help", "print this");
+    app.set_help_flag("-h,--help", "print this help");
   }
 
   // Options stay where they are: CLI11 holds their addresses.
@@ -79,7 +79,7 @@ std::string Arguments::Implementation::help() const {
                        option.help);
   }
   lines.insert(lines.end(), flags.begin(), flags.end());
-  lines.emplace_back("-h,--help", "print this");
+  lines.emplace_back("-h,--help", "print this help");
   std::string text = concat({"Usage: ", command, usage, " [OPTIONS]\n\n", summary_of(verb), "\n\n"});
   for (const auto& [left, right] : lines) {
     constexpr std::size_t kColumn = 26;
@@ -101,8 +101,8 @@ Result<void> Arguments::Implementation::store_options() const {
   for (const Option& option : options) {
     if (!option.repeatable && option.values.size() > 1) {
       return input_error(
-          concat({"'", long_name(option.names), "' is given ", std::to_string(option.values.size()), " times"}),
-          command, "allowed is once");
+          concat({"option '", long_name(option.names), "' given ", std::to_string(option.values.size()), " times"}),
+          command, "expected it at most once");
     }
     for (const std::string& given : option.values) {
       if (Result<void> stored = option.store(given); !stored) return stored;
@@ -123,7 +123,7 @@ Result<void> Arguments::Implementation::store_positionals() const {
       const std::string name = argument.substr(0, argument.find('='));
       const std::optional<std::string> near = files::nearest(name, known_names());
       return input_error(concat({"unknown option '", one_line(name), "'"}), command,
-                         near ? concat({"did you mean '", *near, "'?"}) : concat({"'", command, " --help' lists all"}));
+                         near ? concat({"did you mean '", *near, "'?"}) : concat({"see '", command, " --help'"}));
     } else {
       given.push_back(argument);
     }
@@ -131,15 +131,15 @@ Result<void> Arguments::Implementation::store_positionals() const {
   for (const std::string& argument : given) {
     if (next == positionals.size()) {
       return input_error(concat({"unexpected argument '", one_line(argument), "'"}), command,
-                         concat({"'", command, " --help' lists what is allowed"}));
+                         concat({"see '", command, " --help'"}));
     }
     if (argument.empty())
-      return input_error("'' names no file", command, concat({"needed is ", positionals[next].name}));
+      return input_error("empty file name ''", command, concat({"expected ", positionals[next].name}));
     *positionals[next++].target = argument;
   }
   if (next < positionals.size() && positionals[next].required) {
-    return input_error(concat({positionals[next].name, " is missing"}), command,
-                       concat({"'", command, " --help' says what is needed"}));
+    return input_error(concat({"missing argument ", positionals[next].name}), command,
+                       concat({"see '", command, " --help'"}));
   }
   return {};
 }
@@ -213,7 +213,7 @@ void Arguments::choice(const std::string& names, std::string& target, const std:
   value(names, "NAME", shown_help, [&target, allowed, list, name = long_name(names)](const std::string& given) {
     if (std::find(allowed.begin(), allowed.end(), given) == allowed.end()) {
       return Result<void>(
-          input_error(concat({"unknown value '", one_line(given), "'"}), name, concat({"allowed is ", list})));
+          input_error(concat({"unknown value '", one_line(given), "'"}), name, concat({"expected one of ", list})));
     }
     target = given;
     return Result<void>();
@@ -238,11 +238,11 @@ std::optional<int> Arguments::parse(Args args) {
     std::string name = text.substr(0, text.find_first_of(": "));
     if (!name.starts_with('-')) name.insert(0, "--");
     const bool flag = text.find("flag override") != std::string::npos;
-    return fail(input_error(concat({"'", name, flag ? "' takes no value" : "' needs a value"}),
-                            implementation_->command, concat({"'", implementation_->command, " --help' says which"})));
+    return fail(input_error(concat({flag ? "unexpected value for '" : "missing value for '", name, "'"}),
+                            implementation_->command, concat({"see '", implementation_->command, " --help'"})));
   } catch (const CLI::ParseError& error) {
     return fail(input_error(one_line(error.what(), 300), implementation_->command,
-                            concat({"'", implementation_->command, " --help' says what is allowed"})));
+                            concat({"see '", implementation_->command, " --help'"})));
   }
   if (const Result<void> stored = implementation_->store_positionals(); !stored) return fail(stored.error());
   if (const Result<void> stored = implementation_->store_options(); !stored) return fail(stored.error());

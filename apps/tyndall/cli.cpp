@@ -69,7 +69,7 @@ void note(std::string_view message) {
 
 int print(std::string_view text) {
   const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
-  return written ? kDone : fail("cannot write, standard output, it has to be open and have room", kFailed);
+  return written ? kDone : fail("standard output: cannot write; expected an open stream with free space", kFailed);
 }
 
 Result<Size> parse_size(std::string_view text, std::string_view option) {
@@ -81,8 +81,8 @@ Result<Size> parse_size(std::string_view text, std::string_view option) {
                      files::read_integer(files::part(text, 'x', 1), height) == files::NumberError::none &&
                      fits(width) && fits(height);
   if (valid) return Size{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
-  return input_error(concat({shown(text), " is no size"}), option,
-                     concat({"allowed is WIDTHxHEIGHT, 1 to ", std::to_string(kLargestSize), " each"}));
+  return input_error(concat({"invalid size ", shown(text)}), option,
+                     concat({"expected WIDTHxHEIGHT, each 1 to ", std::to_string(kLargestSize)}));
 }
 
 Result<std::uint32_t> parse_count(std::string_view text, std::string_view option, std::uint32_t min,
@@ -91,33 +91,33 @@ Result<std::uint32_t> parse_count(std::string_view text, std::string_view option
   if (files::read_integer(text, value) == files::NumberError::none && value >= min && value <= max) {
     return static_cast<std::uint32_t>(value);
   }
-  return input_error(concat({shown(text), " is no count"}), option,
-                     concat({"allowed is a whole number, ", std::to_string(min), " to ", std::to_string(max)}));
+  return input_error(concat({"invalid count ", shown(text)}), option,
+                     concat({"expected a whole number, ", std::to_string(min), " to ", std::to_string(max)}));
 }
 
 Result<double> parse_number(std::string_view text, std::string_view option, double min, double max) {
   double value = 0.0;
   if (files::read_number(text, value) == files::NumberError::none && value >= min && value <= max) return value;
-  return input_error(concat({shown(text), " is not allowed"}), option,
-                     concat({"allowed is a number, ", files::number_text(min), " to ", files::number_text(max)}));
+  return input_error(concat({"invalid number ", shown(text)}), option,
+                     concat({"expected a number, ", files::number_text(min), " to ", files::number_text(max)}));
 }
 
 Result<void> check_altitude(double altitude_m, const Params& params, std::string_view where) {
   const double lowest_m = -0.25 * static_cast<double>(params.planet.radius_m);
   if (altitude_m >= lowest_m) return {};
   return input_error(
-      concat({"an eye at ", files::number_text(altitude_m), " m is too deep in the planet"}), where,
-      concat({"allowed is minus a quarter of planet.radius_m at the lowest, ", files::number_text(lowest_m), " m"}));
+      concat({"an eye at ", files::number_text(altitude_m), " m is too deep inside the planet"}), where,
+      concat({"expected at least minus a quarter of planet.radius_m, ", files::number_text(lowest_m), " m"}));
 }
 
 void add_common(Arguments& arguments, CommonOptions& options, unsigned which) {
   if ((which & kScene) != 0)
-    arguments.positional("SCENE.toml", options.scene_file, false, "scene file; without, the defaults");
+    arguments.positional("SCENE.toml", options.scene_file, false, "scene file [default parameters]");
   if ((which & kSet) != 0) {
     arguments.texts("--set", options.sets, "KEY=VALUE",
-                    "set a parameter; may be repeated, later wins, wins over the scene");
+                    "set a parameter; may be repeated; overrides the scene file and earlier --set");
   }
-  if ((which & kOutput) != 0) arguments.text("-o,--output", options.output, "FILE", "where the result goes");
+  if ((which & kOutput) != 0) arguments.text("-o,--output", options.output, "FILE", "output file");
   if ((which & kSize) != 0) {
     arguments.value("--size", "WxH",
                     concat({"size of the picture in pixels [", std::to_string(options.size.width), "x",
@@ -168,17 +168,18 @@ Result<void> check_output(const CommonOptions& options, const std::vector<std::s
     known = known || lower_case(options.output).ends_with(ending);
   }
   if (options.output.empty()) {
-    return input_error("no output file", "-o",
-                       endings.empty() ? "needed is -o FILE" : concat({"needed is -o FILE, with a name in ", list}));
+    return input_error(
+        "no output file", "-o",
+        endings.empty() ? "expected -o FILE" : concat({"expected -o FILE with a name that ends in ", list}));
   }
   if (!known)
     return input_error(concat({"unknown format ", shown(options.output)}), "-o",
-                       concat({"allowed is a name in ", list}));
+                       concat({"expected a name that ends in ", list}));
   const std::optional<FramePattern> pattern = find_pattern(options.output);
   const bool single = pattern && !find_pattern(options.output, pattern->start + pattern->length);
   if (options.frames > 1 && !single) {
-    return input_error(concat({std::to_string(options.frames), " frames into ", shown(options.output)}), "-o",
-                       "needed is one place for the number, such as out.%04d.png");
+    return input_error(concat({std::to_string(options.frames), " frames in one file ", shown(options.output)}), "-o",
+                       "expected one frame number in the name, as in out.%04d.png");
   }
   const std::vector<InputFile> inputs = input_files(options);
   for (std::uint32_t frame = 0; frame < options.frames; ++frame) {

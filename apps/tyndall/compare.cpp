@@ -31,16 +31,16 @@ std::string size_text(const image::Image& image) {
 // What is beyond its limit, empty when nothing is.
 std::string verdict(const image::Metrics& metrics, const Limits& limits) {
   if (metrics.non_finite_a + metrics.non_finite_b > 0) {
-    return concat({"values are not finite, ", std::to_string(metrics.non_finite_a), " in A and ",
-                   std::to_string(metrics.non_finite_b), " in B, allowed is none"});
+    return concat({"tyndall compare: ", std::to_string(metrics.non_finite_a), " values in A and ",
+                   std::to_string(metrics.non_finite_b), " in B are not finite; expected none"});
   }
   if (limits.psnr_min && metrics.psnr_db < *limits.psnr_min) {
-    return concat({"psnr_db is ", number_text(metrics.psnr_db), ", --psnr-min, allowed is at least ",
+    return concat({"--psnr-min: psnr_db is ", number_text(metrics.psnr_db), "; expected at least ",
                    number_text(*limits.psnr_min)});
   }
   if (limits.mre_max && metrics.mean_relative_error > *limits.mre_max) {
-    return concat({"mean_relative_error is ", number_text(metrics.mean_relative_error),
-                   ", --mre-max, allowed is at most ", number_text(*limits.mre_max)});
+    return concat({"--mre-max: mean_relative_error is ", number_text(metrics.mean_relative_error),
+                   "; expected at most ", number_text(*limits.mre_max)});
   }
   return "";
 }
@@ -99,8 +99,8 @@ int run_compare(Args args) {
   Arguments arguments("compare");
   arguments.positional("A", path_a, true, "image, PNG or EXR");
   arguments.positional("B", path_b, true, "the reference, of the same kind and size");
-  arguments.number("--psnr-min", limits.psnr_min, 0.0, 1.0e6, "least psnr_db allowed (peak 1)");
-  arguments.number("--mre-max", limits.mre_max, 0.0, 1.0e6, "largest mean_relative_error allowed");
+  arguments.number("--psnr-min", limits.psnr_min, 0.0, 1.0e6, "smallest accepted psnr_db (peak 1)");
+  arguments.number("--mre-max", limits.mre_max, 0.0, 1.0e6, "largest accepted mean_relative_error");
   arguments.text("--diff", difference_path, "OUT", "write |A - B| x 16 as a PNG or EXR");
   arguments.flag("--json", json, "print the results as JSON");
   arguments.footer("Exit status: 0 within --psnr-min and --mre-max; 1 the difference cannot be written; 2 beyond a "
@@ -119,11 +119,11 @@ int run_compare(Args args) {
   const Result<image::File> b = image::read(path_b);
   if (!b) return fail(b.error().message, kUnreadable);
   if (a.value().kind != b.value().kind) {
-    return fail("A and B are of different kinds, tyndall compare, allowed are two PNG or two EXR", kUnreadable);
+    return fail("tyndall compare: A and B are of different kinds; expected two PNG or two EXR files", kUnreadable);
   }
   if (a.value().image.width != b.value().image.width || a.value().image.height != b.value().image.height) {
-    return fail(concat({"sizes differ, A is ", size_text(a.value().image), " and B is ", size_text(b.value().image),
-                        ", allowed are equal sizes"}),
+    return fail(concat({"tyndall compare: A is ", size_text(a.value().image), " and B is ", size_text(b.value().image),
+                        "; expected equal sizes"}),
                 kSizesDiffer);
   }
   for (const auto& [path, file] : {std::pair(path_a, &a.value()), std::pair(path_b, &b.value())}) {

@@ -76,7 +76,7 @@ Result<void> check_not_input(const std::string& path, std::string_view option, c
     struct stat info {};
     if (::stat(input.path.c_str(), &info) != 0 || !same_file(info, output)) continue;
     return files::input_error(concat({"'", files::one_line(path, 200), "' is ", input.name, " of this run"}), option,
-                              "allowed is a file that is not read");
+                              "expected a file that is not an input");
   }
   return {};
 }

@@ -26,7 +26,7 @@ std::string help_text() {
     text.append("  ").append(verb.name).append(kColumn - verb.name.size(), ' ').append(verb.summary).append("\n");
   }
   return text + "\n'tyndall VERB --help' lists the options of a verb; 'tyndall --version' prints the version.\n"
-                "Exit status: 0 done, 1 it failed at run time, 2 bad usage or bad input.\n";
+                "Exit status: 0 success, 1 failure at run time, 2 bad usage or bad input.\n";
 }
 
 int run_verb(const std::string& name, Args args) {
@@ -43,11 +43,11 @@ int run_verb(const std::string& name, Args args) {
       concat({option ? "unknown option '" : "unknown verb '", files::one_line(name), "'"}),
       option ? "before the verb" : "command line",
       near ? concat({"did you mean '", *near, "'?"})
-           : concat({option ? "allowed are --help and --version" : "allowed is one of ", option ? "" : list})));
+           : concat({option ? "expected --help or --version" : "expected one of ", option ? "" : list})));
 }
 
 int run(Args args) {
-  if (args.empty()) return fail("no verb is given, command line, 'tyndall --help' lists them", kBadUsage);
+  if (args.empty()) return fail("command line: missing verb; see 'tyndall --help'", kBadUsage);
   const std::string& first = args[0];
   if (first == "--version" || first == "-V") return print("tyndall " TYNDALL_VERSION_STRING "\n");
   if (first == "--help" || first == "-h" || (first == "help" && args.size() == 1)) return print(help_text());
@@ -68,8 +68,7 @@ int main(int argc, char** argv) {
     const std::vector<std::string> args(argv + (argc > 0 ? 1 : 0), argv + argc);
     return tyndall::cli::run(args);
   } catch (const std::bad_alloc&) {
-    std::fputs("tyndall: error: not enough memory, this machine, a smaller size or fewer resources are needed\n",
-               stderr);
+    std::fputs("tyndall: error: this machine: not enough memory; expected a smaller size or fewer resources\n", stderr);
   } catch (const std::exception& exception) {
     std::fprintf(stderr, "tyndall: error: %s\n", exception.what());
   } catch (...) {

@@ -11,7 +11,7 @@ int run_params(Args args) {
   std::string format = "toml";
   Arguments arguments("params");
   add_common(arguments, common, kScene | kSet);
-  arguments.choice("--format", format, {"toml", "json", "markdown"}, "form of the list");
+  arguments.choice("--format", format, {"toml", "json", "markdown"}, "format of the list");
   if (const std::optional<int> status = arguments.parse(args)) return *status;
   if (const Result<void> resolved = resolve(common); !resolved) return fail(resolved.error());
   if (format == "json") return print(config::to_json(common.settings));

@@ -61,13 +61,13 @@ int run_probe(Args args) {
   arguments.text("--queries", queries, "FILE",
                  "rays as CSV: altitude_m, view_zenith_deg (or sky), sun_zenith_deg, azimuth_deg");
   arguments.choice("--model", model_name, model_names,
-                   "who answers (single: over black ground; reference: with the ground's reflection)");
+                   "model (single: over black ground; reference: with light from the ground)");
   arguments.count("--orders", settings.orders, 1, kMostOrders, "reference: orders of scattering");
   arguments.count("--samples", settings.samples, 1, UINT32_MAX, "reference: paths per ray");
-  arguments.count("--seed", settings.seed, 0, UINT32_MAX, "reference: of the random numbers");
+  arguments.count("--seed", settings.seed, 0, UINT32_MAX, "reference: seed of the random numbers");
   if (const std::optional<int> status = arguments.parse(args)) return *status;
   if (queries.empty()) {
-    return fail(files::input_error("no queries", "tyndall probe", "needed is --queries FILE"));
+    return fail(files::input_error("missing queries", "tyndall probe", "expected --queries FILE"));
   }
   const std::span<const scene::ModelInfo> models = scene::model_registry();
   const scene::ModelInfo& model = *std::find_if(models.begin(), models.end(),
@@ -79,7 +79,7 @@ int run_probe(Args args) {
     const double altitude_m = table.value().queries[row].altitude_m;
     if (altitude_m >= 0.0) continue;
     const std::string where = files::concat(
-        {files::one_line(queries, 200), ":", std::to_string(table.value().input.lines[row]), ", column 'altitude_m'"});
+        {files::one_line(queries, 200), ":", std::to_string(table.value().input.lines[row]), ": column 'altitude_m'"});
     if (Result<void> r = check_altitude(altitude_m, options.settings.effect, where); !r) return fail(r.error());
   }
   if (!options.output.empty()) {

@@ -36,7 +36,7 @@ constexpr std::size_t kNumbersWithoutError = 6;
 
 std::string allowed_text(const Column& column) {
   return concat(
-      {"allowed is ", files::number_text(column.min), " to ", files::number_text(column.max), " ", column.unit});
+      {"expected ", files::number_text(column.min), " to ", files::number_text(column.max), " ", column.unit});
 }
 
 Result<double> read_cell(std::string_view field, const Column& column, std::string_view where) {
@@ -55,7 +55,7 @@ Result<std::size_t> find_column(const files::CsvTable& table, const Column& colu
   const std::vector<std::size_t> found = table.find(column.name);
   if (found.size() == 1) return found.front();
   const std::string needed =
-      concat({"needed are ", kColumns[0].name, ", ", kColumns[1].name, ", ", kColumns[2].name, ", ", kColumns[3].name});
+      concat({"expected ", kColumns[0].name, ", ", kColumns[1].name, ", ", kColumns[2].name, ", ", kColumns[3].name});
   return input_error(concat({found.empty() ? "no column '" : "several columns '", column.name, "'"}),
                      files::one_line(path, 200), concat({needed, found.empty() ? "" : ", once each"}));
 }
@@ -100,7 +100,7 @@ Result<ProbeTable> read_queries(const std::string& path) {
       const Result<double> quick = read_cell(cell(column), kColumns[column], {});
       if (!quick) {
         const std::string where =
-            concat({shown, ":", std::to_string(table.input.lines[row]), ", column '", kColumns[column].name, "'"});
+            concat({shown, ":", std::to_string(table.input.lines[row]), ": column '", kColumns[column].name, "'"});
         return read_cell(cell(column), kColumns[column], where).error();
       }
       number = quick.value();

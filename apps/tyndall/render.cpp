@@ -39,8 +39,8 @@ Result<void> write_frame(scene::Scene& scene, const std::string& path, const con
 Result<void> find_place(scene::CameraPath& path, const scene::Scene& scene) {
   if (!path.has_dates() || !path.place_text.empty()) return {};
   if (!scene.place()) {
-    return files::input_error("a path with dates has no place, and the elevation file has none on the Earth",
-                              "[playback]", "needed is place = \"LAT,LON\"");
+    return files::input_error("a path with dates has no place, and the elevation file has no coordinates on Earth",
+                              "[playback]", "expected place = \"LAT,LON\"");
   }
   path.place = *scene.place();
   return {};
@@ -53,7 +53,7 @@ int run_render(Args args) {
   double time_step = 1.0 / 30.0;
   Arguments arguments("render");
   add_common(arguments, options, kScene | kSet | kDevice | kSize | kFrames | kOutput);
-  arguments.number("--time-step", time_step, 0.0, 1.0e6, "seconds from one frame of a sequence to the next");
+  arguments.number("--time-step", time_step, 0.0, 1.0e6, "seconds between the frames of a sequence");
   if (const std::optional<int> status = arguments.parse(args)) return *status;
   if (Result<void> r = resolve(options); !r) return fail(r.error());
   if (Result<void> r = check_output(options, {".png", ".exr"}); !r) return fail(r.error());

@@ -113,17 +113,17 @@ Result<SunAngles> find_sun(const SkyOptions& options) {
   const bool any_angle = options.sun_elevation_deg || options.sun_azimuth_deg;
   const bool any_place = !options.place.empty() || !options.time.empty();
   constexpr std::string_view kNeeded =
-      "needed is either --sun-elevation-deg E --sun-azimuth-deg A or --at LAT,LON --time ISO8601";
+      "expected either --sun-elevation-deg E --sun-azimuth-deg A or --at LAT,LON --time ISO8601";
   const auto error = [&](std::string_view what) { return input_error(what, "tyndall sky", kNeeded); };
-  if (any_angle && any_place) return error("the sun is given by angles and by place and time");
-  if (!any_angle && !any_place) return error("the sun is not given");
+  if (any_angle && any_place) return error("the sun is given both by angles and by place and time");
+  if (!any_angle && !any_place) return error("missing position of the sun");
   if (any_angle) {
-    if (!options.sun_elevation_deg) return error("--sun-elevation-deg is missing");
-    if (!options.sun_azimuth_deg) return error("--sun-azimuth-deg is missing");
+    if (!options.sun_elevation_deg) return error("missing option --sun-elevation-deg");
+    if (!options.sun_azimuth_deg) return error("missing option --sun-azimuth-deg");
     return SunAngles{*options.sun_elevation_deg, *options.sun_azimuth_deg};
   }
-  if (options.place.empty()) return error("--at is missing");
-  if (options.time.empty()) return error("--time is missing");
+  if (options.place.empty()) return error("missing option --at");
+  if (options.time.empty()) return error("missing option --time");
   const Result<scene::Place> place = scene::parse_place(options.place, "--at");
   if (!place) return place.error();
   const Result<double> time = scene::parse_time(options.time, "--time");
@@ -176,14 +176,16 @@ int run_sky(Args args) {
   for (const SkyModel& model : kModels) model_names.emplace_back(model.name());
   Arguments arguments("sky");
   add_common(arguments, options, kScene | kSet | kDevice | kSize | kOutput | kJson);
-  arguments.number("--sun-elevation-deg", sky.sun_elevation_deg, -90.0, 90.0, "of the sun above the horizontal");
-  arguments.number("--sun-azimuth-deg", sky.sun_azimuth_deg, -3600.0, 3600.0, "of the sun, clockwise from north");
-  arguments.text("--at", sky.place, "LAT,LON", "the place in degrees, north and east positive; with --time");
-  arguments.text("--time", sky.time, "ISO8601", "the time there, as 2003-10-17T12:30:30-07:00; 1900 to 2100");
+  arguments.number("--sun-elevation-deg", sky.sun_elevation_deg, -90.0, 90.0,
+                   "elevation of the sun above the horizontal");
+  arguments.number("--sun-azimuth-deg", sky.sun_azimuth_deg, -3600.0, 3600.0,
+                   "azimuth of the sun, clockwise from north");
+  arguments.text("--at", sky.place, "LAT,LON", "place in degrees, north and east positive; requires --time");
+  arguments.text("--time", sky.time, "ISO8601", "time at the place, as in 2003-10-17T12:30:30-07:00; 1900 to 2100");
   arguments.number("--altitude", sky.altitude_m, kLowestAltitude_m, 1.0e9,
-                   "of the eye above sea level in m, from the sea floor up to space");
+                   "altitude of the eye above sea level in m, from the sea floor to space");
   arguments.choice("--disc", sky.disc, {"true", "false"}, "draw the sun's disc");
-  arguments.choice("--model", sky.model, model_names, "who answers");
+  arguments.choice("--model", sky.model, model_names, "model of the sky");
   if (const std::optional<int> status = arguments.parse(args)) return *status;
   const Result<SunAngles> sun = find_sun(sky);
   if (!sun) return fail(sun.error());
@@ -235,9 +237,8 @@ int run_sky(Args args) {
   }
   constexpr float kLargestHalf = 65504.0F;
   if (const float largest = *std::max_element(image.rgb.begin(), image.rgb.end()); largest > kLargestHalf) {
-    note(concat(
-        {"the sun's disc has values up to ", files::number_text(largest),
-         ", programs that read the map in half precision hold at most 65504; --disc false leaves the disc out"}));
+    note(concat({"the sun's disc has values up to ", files::number_text(largest),
+                 "; programs that read the map in half precision are limited to 65504; --disc false omits the disc"}));
   }
   if (Result<void> r =
           image::write_exr(options.output, image, metadata, {.content = image::ExrContent::environment_map});

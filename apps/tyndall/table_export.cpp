@@ -33,8 +33,8 @@ constexpr const char* kIndex = "tables.json";
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 Error directory_error(const std::string& directory, const std::string& why) {
-  return Error{ErrorCode::io, concat({"cannot write to '", files::one_line(directory, 200), "', ", why,
-                                      ", needed is a directory, or a name for one in a directory that is there"})};
+  return Error{ErrorCode::io, concat({"'", files::one_line(directory, 200), "': cannot write: ", why,
+                                      "; expected a directory, or a new name in an existing one"})};
 }
 
 // IEEE 754 binary16; the tables hold no NaN and no infinity.

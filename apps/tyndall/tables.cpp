@@ -32,7 +32,7 @@ std::string as_text(const nlohmann::ordered_json& report) {
   out += line("with submissions", report["total_ms"].get<double>(), "%10.1f ms");
   for (const auto& [name, bytes] : report["memory_bytes"].items())
     out += line(name.c_str(), bytes.get<double>() / 1048576.0, "%10.2f MiB");
-  if (!report["cache"].is_null()) out += files::concat({"kept in ", text("cache"), "\n"});
+  if (!report["cache"].is_null()) out += files::concat({"stored in ", text("cache"), "\n"});
   if (!report["files"].is_null()) out += files::concat({report["files"].dump(), " files in ", text("output"), "\n"});
   return out;
 }
@@ -44,7 +44,8 @@ int run_tables(Args args) {
   bool export_wanted = false;
   Arguments arguments("tables");
   add_common(arguments, options, kScene | kSet | kDevice | kJson);
-  arguments.value("-o,--output", "DIR", "export the tables: EXR files and tables.json; made if it is missing",
+  arguments.value("-o,--output", "DIR",
+                  "export the tables as EXR files and tables.json to this directory, which is created if missing",
                   [&](const std::string& text) {
                     options.output = text;
                     export_wanted = true;
@@ -53,7 +54,7 @@ int run_tables(Args args) {
   if (const std::optional<int> status = arguments.parse(args)) return *status;
   if (Result<void> r = resolve(options); !r) return fail(r.error());
   if (export_wanted) {
-    if (options.output.empty()) return fail(files::input_error("no directory is named", "-o", "needed is -o DIR"));
+    if (options.output.empty()) return fail(files::input_error("empty directory name", "-o", "expected -o DIR"));
     if (Result<void> r = check_export(options.output); !r) return fail(r.error());
   }
 

@@ -168,7 +168,7 @@ std::vector<validate::Model> all_models(const std::string& device, const scene::
   return out;
 }
 
-// What makes the same report, but for where files are.
+// Returns the command line that produces the same report, without the locations of files.
 std::string command_line(const CommonOptions& options, const validate::Options& study) {
   std::string out = concat({"tyndall validate -o REPORT.html --rays ", std::to_string(study.rays), " --samples ",
                             std::to_string(study.samples), " --seed ", std::to_string(study.seed), " --orders ",
@@ -192,17 +192,17 @@ int run_validate(Args args) {
   std::string markdown;
   Arguments arguments("validate");
   add_common(arguments, options, kScene | kSet | kDevice | kOutput | kJson);
-  arguments.text("--markdown", markdown, "FILE", "write the summary as Markdown too (docs/generated/accuracy.md)");
+  arguments.text("--markdown", markdown, "FILE", "also write the summary as Markdown (docs/generated/accuracy.md)");
   arguments.count("--rays", study_options.rays, 18, 1000000, "rays of the error tables");
   arguments.count("--samples", study_options.samples, 2, 1000000000, "paths per ray of the reference");
-  arguments.count("--seed", seed, 0, UINT32_MAX, "of the rays and the paths");
+  arguments.count("--seed", seed, 0, UINT32_MAX, "seed of the rays and the paths");
   arguments.count("--orders", orders, 1, 256, "orders of scattering of the reference");
   if (const std::optional<int> status = arguments.parse(args)) return *status;
   study_options.seed = seed;
   study_options.orders = static_cast<int>(orders);
   if (Result<void> r = resolve(options); !r) return fail(r.error());
   if (options.output.empty() && markdown.empty() && !options.json) {
-    return fail(files::input_error("no output file", "-o", "needed is -o REPORT.html, --markdown FILE or --json"));
+    return fail(files::input_error("no output file", "-o", "expected -o REPORT.html, --markdown FILE or --json"));
   }
   if (!options.output.empty()) {
     if (Result<void> r = check_output(options, {".html", ".htm"}); !r) return fail(r.error());
@@ -210,7 +210,7 @@ int run_validate(Args args) {
   if (!markdown.empty()) {
     if (!is_markdown(markdown)) {
       return fail(files::input_error(concat({"unknown format '", files::one_line(markdown), "'"}), "--markdown",
-                                     "allowed is a name in .md"));
+                                     "expected a name that ends in .md"));
     }
     if (Result<void> r = check_not_input(markdown, "--markdown", input_files(options)); !r) return fail(r.error());
     if (Result<void> r = files::check_writable(markdown); !r) return fail(r.error());

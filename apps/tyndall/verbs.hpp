@@ -27,18 +27,17 @@ struct Verb {
   std::string_view summary;
 };
 
-// What `tyndall --help` lists, in its order.
+// The verbs in the order of `tyndall --help`.
 inline constexpr Verb kVerbs[] = {
     {"render", run_render, "render one frame or a sequence to PNG or EXR"},
-    {"view", run_view, "fly over the scene in a window, with every control under the hand"},
-    {"probe", run_probe, "radiance and transmittance for given rays, by any of the models"},
-    {"tables", run_tables,
-     "build the scattering tables anew (those in the cache too), say how long it took, export them"},
-    {"sky", run_sky, "the sky as an environment map, for a sun given by angles or by place and time"},
-    {"validate", run_validate, "every model against the reference, as a report with tables and plots"},
+    {"view", run_view, "fly over the scene in a window with live controls for every parameter"},
+    {"probe", run_probe, "compute radiance and transmittance of given rays with any of the models"},
+    {"tables", run_tables, "rebuild the scattering tables (and their cached copy), report the times, export them"},
+    {"sky", run_sky, "render the sky as an environment map, with the sun by angles or by place and time"},
+    {"validate", run_validate, "compare every model with the reference in a report with tables and plots"},
     {"bench", run_bench, "measure GPU milliseconds per pass"},
-    {"compare", run_compare, "say how much two images differ"},
-    {"devices", run_devices, "list the Vulkan devices and say which one would be used"},
+    {"compare", run_compare, "measure the difference of two images"},
+    {"devices", run_devices, "list the Vulkan devices and the one that would be used"},
     {"params", run_params, "list every parameter: name, type, default, range, unit, meaning"},
 };
 

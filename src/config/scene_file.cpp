@@ -61,7 +61,7 @@ std::optional<std::string> scalar_text(const toml::node& node, ParamType type) {
 
 Error wrong_type(const Row& row, const toml::node& node, const std::string& where) {
   return files::input_error(files::concat({"'", row.key(), "' is ", kind_of(node)}), where,
-                            files::concat({"allowed is ", allowed_text(row)}));
+                            files::concat({"expected ", allowed_text(row)}));
 }
 
 Result<void> load_value(Settings& settings, const Row& row, const toml::node& node, std::string_view name) {
@@ -143,7 +143,7 @@ Result<void> load_date(scene::PathFrame& frame, const toml::node& node, const st
     frame.date = written.str();
   } else {
     return files::input_error(files::concat({"'date' is ", kind_of(node)}), where,
-                              "allowed is a date and time with its offset from UTC");
+                              "expected a date and time with its offset from UTC");
   }
   Result<double> day = scene::parse_time(frame.date, where);
   if (!day) return std::move(day).error();
@@ -159,7 +159,7 @@ Result<void> load_frame_value(scene::PathFrame& frame, std::string_view key, con
   if (key == "time_s") {
     const std::optional<double> seconds = node.value<double>();
     if (!node.is_number() || !std::isfinite(*seconds) || *seconds < 0.0 || *seconds > 1.0e6) {
-      return files::input_error("'time_s' is no time", where, "allowed is a number, 0 to 1e+06 s");
+      return files::input_error("'time_s' is no time", where, "expected a number, 0 to 1e+06 s");
     }
     frame.time_s = *seconds;
     return {};
@@ -177,8 +177,7 @@ Result<void> load_frame_value(scene::PathFrame& frame, std::string_view key, con
     float value = 0.0F;
     static_cast<void>(files::read_number(value_text(row, scratch), value));
     if (key == "altitude_m" && value < 0.0F) {
-      return files::input_error("'altitude_m' is below the sea", where,
-                                "allowed is 0 to 1e+09 m; position_m goes lower");
+      return files::input_error("'altitude_m' is below the sea", where, "expected 0 to 1e+09 m; position_m goes lower");
     }
     frame.*known.target = value;
     return {};
@@ -194,7 +193,7 @@ Result<void> load_path(scene::CameraPath& path, const toml::node& node, std::str
                        const std::string& where) {
   const toml::array* const frames = node.as_array();
   if (frames == nullptr || !frames->is_homogeneous(toml::node_type::table)) {
-    return files::input_error("'path' is no list of frames", where, "allowed is one table [[path]] for each frame");
+    return files::input_error("'path' is no list of frames", where, "expected one table [[path]] for each frame");
   }
   path = scene::CameraPath{};
   for (const toml::node& element : *frames) {
@@ -202,7 +201,7 @@ Result<void> load_path(scene::CameraPath& path, const toml::node& node, std::str
     const std::string at = position(name, element.source());
     scene::PathFrame frame;
     if (table.get("time_s") == nullptr)
-      return files::input_error("a frame of the path has no time", at, "needed is time_s = SECONDS");
+      return files::input_error("a frame of the path has no time", at, "expected time_s = SECONDS");
     for (const auto& [key, value] : table) {
       if (Result<void> read = load_frame_value(frame, key.str(), value, name); !read) return read;
     }
@@ -214,12 +213,11 @@ Result<void> load_path(scene::CameraPath& path, const toml::node& node, std::str
     }
     const scene::PathFrame* const first = path.frames.empty() ? nullptr : &path.frames.front();
     if (has_sun(frame) && (frame.julian_day || (first != nullptr && first->julian_day))) {
-      return files::input_error("the sun stands by date and by angles", at, "allowed is one of them in a path");
+      return files::input_error("the sun stands by date and by angles", at, "expected one of them in a path");
     }
     path.frames.push_back(std::move(frame));
   }
-  if (path.frames.size() < 2)
-    return files::input_error("a path of one frame", where, "needed are two or more [[path]]");
+  if (path.frames.size() < 2) return files::input_error("a path of one frame", where, "expected two or more [[path]]");
   return {};
 }
 
@@ -232,12 +230,12 @@ Result<void> load_playback(scene::CameraPath& path, const toml::node& node, std:
     const std::string at = position(name, value.source());
     if (key.str() == "loop") {
       if (!value.is_boolean())
-        return files::input_error(files::concat({"'loop' is ", kind_of(value)}), at, "allowed is true or false");
+        return files::input_error(files::concat({"'loop' is ", kind_of(value)}), at, "expected true or false");
       path.loop = **value.as_boolean();
     } else if (key.str() == "place") {
       if (!value.is_string())
         return files::input_error(files::concat({"'place' is ", kind_of(value)}), at,
-                                  "allowed is \"LAT,LON\" in degrees");
+                                  "expected \"LAT,LON\" in degrees");
       path.place_text = **value.as_string();
       Result<scene::Place> place = scene::parse_place(path.place_text, at);
       if (!place) return std::move(place).error();
@@ -254,15 +252,15 @@ Result<void> check_path(const scene::CameraPath& path, const std::string& where)
   const auto dated = [](const scene::PathFrame& frame) { return frame.julian_day.has_value(); };
   const bool by_date = std::any_of(path.frames.begin(), path.frames.end(), dated);
   if (by_date && std::any_of(path.frames.begin(), path.frames.end(), has_sun)) {
-    return files::input_error("the sun stands by date and by angles", where, "allowed is one of them in a path");
+    return files::input_error("the sun stands by date and by angles", where, "expected one of them in a path");
   }
   if (!path.loop) return {};
-  if (path.empty()) return files::input_error("there is no path to loop", where, "needed are two or more [[path]]");
+  if (path.empty()) return files::input_error("there is no path to loop", where, "expected two or more [[path]]");
   const scene::PathFrame& last = path.frames.back();
   const auto given = [&](const FrameKey& key) { return (last.*key.target).has_value(); };
   if (last.position_m || last.julian_day || std::any_of(std::begin(kFrameKeys), std::end(kFrameKeys), given)) {
     return files::input_error("the last frame of a loop is the first again", where,
-                              "allowed is time_s alone in the last [[path]]");
+                              "expected time_s alone in the last [[path]]");
   }
   return {};
 }
@@ -363,7 +361,7 @@ void append_path(std::string& out, const scene::CameraPath& path) {
 
 Result<void> load_text(Settings& settings, std::string_view toml, std::string_view name) {
   if (!files::is_utf8(toml)) {
-    return files::input_error("not a text file", files::one_line(name, 200), "allowed is a scene file: TOML in UTF-8");
+    return files::input_error("not a text file", files::one_line(name, 200), "expected a scene file: TOML in UTF-8");
   }
   if (Result<void> shallow = check_key_depth(toml, name); !shallow) return shallow;
   try {
@@ -376,7 +374,7 @@ Result<void> load_text(Settings& settings, std::string_view toml, std::string_vi
     std::string_view what = error.description();
     if (what.ends_with('.')) what.remove_suffix(1);
     return files::input_error(files::concat({"not valid TOML: ", files::one_line(what, 300)}),
-                              position(name, error.source()), "allowed is KEY = VALUE in [TABLES]");
+                              position(name, error.source()), "expected KEY = VALUE in [TABLES]");
   }
 }
 

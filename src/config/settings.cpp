@@ -11,7 +11,7 @@
 namespace tyndall::config {
 namespace {
 
-constexpr std::string_view kLost = "'tyndall params' lists all";
+constexpr std::string_view kLost = "see 'tyndall params'";
 
 std::byte* address(Settings& settings, const Row& row) {
   std::byte* const base = row.owner == Owner::effect ? reinterpret_cast<std::byte*>(&settings.effect)
@@ -40,7 +40,7 @@ std::string expected(const Row& row) {
 
 Error bad_value(const Row& row, std::string_view value, std::string_view problem, std::string_view where) {
   return files::input_error(files::concat({"'", row.key(), "' = '", files::one_line(value), "' ", problem}), where,
-                            files::concat({"allowed is ", allowed_text(row)}));
+                            files::concat({"expected ", allowed_text(row)}));
 }
 
 // Bytes of one component of a number.
@@ -185,8 +185,8 @@ Error unknown_key(std::string_view key, std::string_view where) {
 Result<void> set(Settings& settings, std::string_view assignment, std::string_view where) {
   const std::size_t equals = assignment.find('=');
   if (equals == std::string_view::npos || files::trimmed(assignment.substr(0, equals)).empty()) {
-    return files::input_error(files::concat({"'", files::one_line(assignment), "' is no assignment"}), where,
-                              "allowed is KEY=VALUE");
+    return files::input_error(files::concat({"invalid assignment '", files::one_line(assignment), "'"}), where,
+                              "expected KEY=VALUE");
   }
   return set(settings, files::trimmed(assignment.substr(0, equals)), assignment.substr(equals + 1), where);
 }
@@ -285,32 +285,29 @@ Result<void> check(const Settings& settings) {
   if (Result<void> allowed = check_params(settings.effect); !allowed) return allowed;
   const scene::ShadowParams& shadows = settings.scene.shadows;
   if (shadows.first_marched >= shadows.cascades) {
-    return files::input_error(
-        files::concat({"'shadows.first_marched' = ", std::to_string(shadows.first_marched), " is no cascade"}),
-        files::concat({"with 'shadows.cascades' = ", std::to_string(shadows.cascades)}),
-        files::concat({"allowed is 0 to ", std::to_string(shadows.cascades - 1)}));
+    return files::input_error(files::concat({std::to_string(shadows.first_marched),
+                                             " is not below shadows.cascades = ", std::to_string(shadows.cascades)}),
+                              "shadows.first_marched",
+                              files::concat({"expected 0 to ", std::to_string(shadows.cascades - 1)}));
   }
   const scene::HomogeneousParams& homogeneous = settings.scene.homogeneous;
   if (homogeneous.haze_length_m > homogeneous.air_length_m) {
     return files::input_error(
-        files::concat({"'homogeneous.haze_length_m' = ", files::number_text(homogeneous.haze_length_m),
-                       " reaches above the air"}),
-        files::concat({"with 'homogeneous.air_length_m' = ", files::number_text(homogeneous.air_length_m)}),
-        files::concat({"allowed is 1 to ", files::number_text(homogeneous.air_length_m)}));
+        files::concat({files::number_text(homogeneous.haze_length_m), " exceeds homogeneous.air_length_m"}),
+        "homogeneous.haze_length_m", files::concat({"expected 1 to ", files::number_text(homogeneous.air_length_m)}));
   }
   const std::string& source = settings.scene.terrain.source;
   const bool file = source != "procedural" && source != "none";
   if (settings.path.has_dates() && settings.path.place_text.empty() && !file) {
     return files::input_error(
         "a path with dates has no place", "[playback]",
-        "needed is place = \"LAT,LON\", or an elevation file with a coordinate system in terrain.source");
+        "expected place = \"LAT,LON\", or an elevation file with a coordinate system in terrain.source");
   }
   if (settings.scene.tables.cache.empty()) {
-    return files::input_error("no place for the cache", "'tables.cache' is empty",
-                              "allowed is auto, off or a directory");
+    return files::input_error("empty value", "tables.cache", "expected auto, off or a directory");
   }
   if (settings.scene.terrain.source.empty()) {
-    return files::input_error("no terrain", "'terrain.source' is empty", "allowed is procedural or an elevation file");
+    return files::input_error("empty value", "terrain.source", "expected procedural or an elevation file");
   }
   return {};
 }

@@ -49,7 +49,7 @@ Result<void> check_key_depth(std::string_view toml, std::string_view name) {
       if (++parts > kMaxKeyParts) {
         return files::input_error(files::concat({"a key of more than ", std::to_string(kMaxKeyParts), " parts"}),
                                   files::concat({files::one_line(name, 200), ":", std::to_string(line)}),
-                                  "allowed is KEY = VALUE in [TABLES]");
+                                  "expected KEY = VALUE in [TABLES]");
       }
     } else if (c == '\n' || c == '=' || c == ',' || c == '[' || c == ']' || c == '{' || c == '}') {
       parts = 1;

@@ -55,7 +55,7 @@ class Reader {
     for (;;) {
       const std::size_t quote = text_.find('"', position_);
       if (quote == std::string_view::npos) {
-        return input_error("a quoted field does not end", where, "needed is a closing '\"'");
+        return input_error("a quoted field does not end", where, "expected a closing '\"'");
       }
       line_ += static_cast<std::size_t>(std::count(text_.begin() + static_cast<std::ptrdiff_t>(position_),
                                                    text_.begin() + static_cast<std::ptrdiff_t>(quote), '\n'));
@@ -65,7 +65,7 @@ class Reader {
     }
     const std::size_t next = text_.find_first_not_of(" \t\r", position_);
     if (next != std::string_view::npos && text_[next] != ',' && text_[next] != '\n') {
-      return input_error("text after a closing quote", where, "allowed is a comma or the end of the line");
+      return input_error("text after a closing quote", where, "expected a comma or the end of the line");
     }
     return {};
   }
@@ -102,7 +102,7 @@ Result<CsvTable> parse_csv(std::string text, std::string_view name) {
   table.text = std::make_unique<const std::string>(std::move(text));
   std::string_view rest = *table.text;
   if (rest.find('\0') != std::string_view::npos) {
-    return input_error("not a text file", name, "allowed is comma-separated text");
+    return input_error("not a text file", name, "expected comma-separated text");
   }
   if (rest.starts_with(kByteOrderMark)) rest.remove_prefix(kByteOrderMark.size());
   Reader reader(rest, name);
@@ -110,7 +110,7 @@ Result<CsvTable> parse_csv(std::string text, std::string_view name) {
     if (Result<void> read = reader.record(table.header); !read) return std::move(read).error();
   }
   if (table.header.empty()) {
-    return input_error("no header line", name, "needed is a line with the names of the columns");
+    return input_error("no header line", name, "expected a line with the names of the columns");
   }
   while (!reader.at_end()) {
     const std::size_t before = table.fields.size();
@@ -121,7 +121,7 @@ Result<CsvTable> parse_csv(std::string text, std::string_view name) {
     if (count != table.header.size()) {
       return input_error(concat({std::to_string(count), count == 1 ? " field" : " fields"}),
                          concat({name, ":", std::to_string(line)}),
-                         concat({"needed are ", std::to_string(table.header.size()), ", as in the header"}));
+                         concat({"expected ", std::to_string(table.header.size()), ", as in the header"}));
     }
     table.lines.push_back(line);
   }

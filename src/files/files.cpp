@@ -25,12 +25,12 @@ std::string shown(std::string_view path) { return concat({"'", one_line(path, kL
 
 std::string reason(int code) { return std::generic_category().message(code); }
 
-Error io_error(std::string_view what, std::string_view path, std::string_view rest) {
-  return Error{ErrorCode::io, concat({what, " ", shown(path), ", ", rest})};
+Error io_error(std::string_view what, std::string_view path, std::string_view why) {
+  return Error{ErrorCode::io, concat({shown(path), ": ", what, ": ", why})};
 }
 
 Error read_error(const std::string& path, int code) {
-  return io_error("cannot read", path, concat({reason(code), ", needed is a readable file"}));
+  return io_error("cannot read", path, concat({reason(code), "; expected a readable file"}));
 }
 
 std::string directory_of(const std::string& path) {
@@ -131,7 +131,8 @@ Result<std::string> read_file(const std::string& path, std::uint64_t limit) {
   ::close(descriptor);
   if (failure != 0) return read_error(path, failure);
   if (used > limit)
-    return io_error("cannot read", path, concat({"at most ", std::to_string(limit), " bytes are allowed"}));
+    return io_error("cannot read", path,
+                    concat({"the file is too large; expected at most ", std::to_string(limit), " bytes"}));
   contents.resize(used);
   return contents;
 }
@@ -140,15 +141,15 @@ Result<AtomicFile> AtomicFile::create(const std::string& path) {
   AtomicFile file;
   file.shown_ = path;
   file.path_ = path;
-  if (path.empty()) return io_error("cannot write", path, "no file is named");
+  if (path.empty()) return io_error("cannot write", path, "the name is empty; expected a file name");
   if (path.find('\0') != std::string::npos) {
-    return io_error("cannot write", path, "names hold no zero bytes");
+    return io_error("cannot write", path, "the name contains a zero byte; expected a file name");
   }
   struct stat info {};
   const bool exists = ::stat(path.c_str(), &info) == 0;
   if (!exists && errno != ENOENT) return file.error("cannot write");
-  if (path.back() == '/') return io_error("cannot write", path, "it names a directory");
-  if (exists && S_ISDIR(info.st_mode)) return io_error("cannot write", path, "it is a directory");
+  if (path.back() == '/') return io_error("cannot write", path, "it names a directory; expected a file");
+  if (exists && S_ISDIR(info.st_mode)) return io_error("cannot write", path, "it is a directory; expected a file");
   if (exists && !S_ISREG(info.st_mode)) {
     file.descriptor_ = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
     if (file.descriptor_ < 0) return file.error("cannot write");
@@ -156,7 +157,7 @@ Result<AtomicFile> AtomicFile::create(const std::string& path) {
   }
   if (exists && ::access(path.c_str(), W_OK) != 0) return file.error("cannot write");
   file.path_ = followed(path);
-  if (file.path_.empty()) return io_error("cannot write", path, "its symbolic links have no end");
+  if (file.path_.empty()) return io_error("cannot write", path, "its symbolic links form a loop; expected a file");
   const std::string directory = directory_of(file.path_);
   if (::access("/proc/self/fd", X_OK) == 0) {
     file.descriptor_ = ::open(directory.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, kNewFileMode);
@@ -212,7 +213,7 @@ void AtomicFile::discard() {
 }
 
 Error AtomicFile::error(std::string_view what) const {
-  return io_error(what, shown_, concat({reason(errno), ", needed is a place with room that can be written"}));
+  return io_error(what, shown_, concat({reason(errno), "; expected a writable location with free space"}));
 }
 
 Result<void> AtomicFile::write(const void* data, std::size_t size) {

@@ -131,8 +131,8 @@ std::string concat(std::initializer_list<std::string_view> parts) {
   return text;
 }
 
-Error input_error(std::string_view what, std::string_view where, std::string_view allowed) {
-  return Error{ErrorCode::invalid_argument, concat({what, ", ", where, ", ", allowed})};
+Error input_error(std::string_view what, std::string_view where, std::string_view expected) {
+  return Error{ErrorCode::invalid_argument, concat({where, ": ", what, "; ", expected})};
 }
 
 std::string one_line(std::string_view text, std::size_t limit) {

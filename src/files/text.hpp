@@ -38,8 +38,9 @@ enum class NumberError : std::uint32_t { none, not_a_number, not_finite, too_lar
 
 [[nodiscard]] std::string concat(std::initializer_list<std::string_view> parts);
 
-// The error of bad input: "what, where, allowed".
-[[nodiscard]] Error input_error(std::string_view what, std::string_view where, std::string_view allowed);
+// Returns the error of bad input, "WHERE: WHAT; EXPECTED": the source, what is wrong, and what is accepted, as in
+// "expected 0 to 1" or "did you mean 'x'?".
+[[nodiscard]] Error input_error(std::string_view what, std::string_view where, std::string_view expected);
 
 // Returns `text` in a form that is safe in a message: on one line, with '?' for control characters and invalid bytes,
 // and shortened to at most `limit` bytes.

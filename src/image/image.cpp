@@ -36,19 +36,19 @@ double gradient_noise(std::uint32_t x, std::uint32_t y) {
 }  // namespace
 
 Error read_error(const std::string& path, std::string_view why) {
-  return Error{ErrorCode::io, files::concat({"cannot read ", shown(path), ", ", files::one_line(why, 300),
-                                             ", allowed is a whole PNG or EXR"})};
+  return Error{ErrorCode::io, files::concat({shown(path), ": cannot read: ", files::one_line(why, 300),
+                                             "; expected a complete PNG or EXR"})};
 }
 
 Error write_error(ErrorCode code, const std::string& path, std::string_view why) {
-  return Error{code, files::concat({"cannot write ", shown(path), ", ", files::one_line(why, 300)})};
+  return Error{code, files::concat({shown(path), ": cannot write: ", files::one_line(why, 300)})};
 }
 
 Result<FileKind> kind_of_name(const std::string& path) {
   if (ends_with_ignoring_case(path, ".png")) return FileKind::png;
   if (ends_with_ignoring_case(path, ".exr")) return FileKind::exr;
   return Error{ErrorCode::invalid_argument,
-               files::concat({"unknown image format, ", shown(path), ", allowed is a name in .png or .exr"})};
+               files::concat({shown(path), ": unknown image format; expected a name that ends in .png or .exr"})};
 }
 
 Result<void> check_writable_image(const std::string& path, const Image& image, const Metadata& metadata) {
@@ -58,14 +58,14 @@ Result<void> check_writable_image(const std::string& path, const Image& image, c
     return write_error(
         ErrorCode::invalid_argument, path,
         files::concat({"the image is ", std::to_string(image.width), "x", std::to_string(image.height),
-                       ", allowed is 1x1 to ", std::to_string(kLargestSide), "x", std::to_string(kLargestSide)}));
+                       "; expected 1x1 to ", std::to_string(kLargestSide), "x", std::to_string(kLargestSide)}));
   }
   for (const auto& [name, value] : metadata) {
     const bool plain = std::all_of(name.begin(), name.end(), [](char c) { return c >= ' ' && c <= '~'; });
     if (!plain || name.empty() || name.size() > kLongestName || !files::is_utf8(value) ||
         value.find('\0') != std::string::npos) {
       return write_error(ErrorCode::invalid_argument, path,
-                         files::concat({"metadata '", files::one_line(name), "', allowed are names of 1 to 79 ",
+                         files::concat({"metadata '", files::one_line(name), "' is invalid; expected names of 1 to 79 ",
                                         "characters of ASCII and values in UTF-8"}));
     }
   }
@@ -82,7 +82,7 @@ Result<File> read(const std::string& path) {
     if (bytes.value().starts_with(kExrMagic)) return decode_exr(bytes.value(), path);
     return read_error(path, bytes.value().empty() ? "it is empty" : "it is neither PNG nor EXR");
   } catch (const std::bad_alloc&) {
-    return Error{ErrorCode::out_of_memory, files::concat({"cannot read ", shown(path), ", not enough memory"})};
+    return Error{ErrorCode::out_of_memory, files::concat({shown(path), ": cannot read: not enough memory"})};
   }
 }
 

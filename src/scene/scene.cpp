@@ -39,9 +39,10 @@ Result<void> check_memory(const gpu::Device& device, VkExtent2D extent, std::uin
   }
   const std::uint32_t side = device.properties.limits.maxImageDimension2D;
   if (extent.width > side || extent.height > side || resolution > side) {
-    return Error{ErrorCode::invalid_argument, "a picture or shadow map is larger than this device allows, --size or "
-                                              "shadows.resolution, allowed is up to " +
-                                                  std::to_string(side) + " on a side"};
+    return Error{
+        ErrorCode::invalid_argument,
+        "--size or shadows.resolution: a picture or shadow map is larger than this device supports; expected up to " +
+            std::to_string(side) + " on a side"};
   }
   // Three colour images, depth, and as much as two of them again on the host for reading back.
   constexpr double kBytesPerPixel = 3 * 16 + 4 + 2 * 16;

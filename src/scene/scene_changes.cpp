@@ -50,9 +50,8 @@ struct Scene::Pending {
 Result<void> check_model(const SceneParams& scene) {
   if (scene.scattering.model == ScatteringModel::atmosphere) return {};
   if (scene.meshes.source == "none" && scene.terrain.source != "none") return {};
-  return Error{ErrorCode::invalid_argument,
-               "only the effect draws meshes and bare ground, scattering.model, allowed is "
-               "atmosphere with meshes.source or with terrain.source = none"};
+  return Error{ErrorCode::invalid_argument, "scattering.model: only the effect draws meshes and bare ground; expected "
+                                            "atmosphere with meshes.source or with terrain.source = none"};
 }
 
 void add_notes(std::vector<std::string>& notes, const std::vector<std::string>& more) {

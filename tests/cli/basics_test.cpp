@@ -41,32 +41,31 @@ TEST(Cli, HelpAndVersion) {
 
 TEST(Cli, BadUsageIsOneLineAndTwo) {
   const Refused cases[] = {
-      {{}, "no verb is given, command line, 'tyndall --help' lists them"},
-      {{"parms"}, "unknown verb 'parms', command line, did you mean 'params'?"},
-      {{"--json", "params"}, "unknown option '--json', before the verb, allowed are --help and --version"},
-      {{"params", "--frmat", "json"}, "unknown option '--frmat', tyndall params, did you mean '--format'?"},
-      {{"params", "--format", "yaml"}, "unknown value 'yaml', --format, allowed is toml, json, markdown"},
-      {{"params", "--format"}, "'--format' needs a value, tyndall params, 'tyndall params --help' says which"},
+      {{}, "command line: missing verb; see 'tyndall --help'"},
+      {{"parms"}, "command line: unknown verb 'parms'; did you mean 'params'?"},
+      {{"--json", "params"}, "before the verb: unknown option '--json'; expected --help or --version"},
+      {{"params", "--frmat", "json"}, "tyndall params: unknown option '--frmat'; did you mean '--format'?"},
+      {{"params", "--format", "yaml"}, "--format: unknown value 'yaml'; expected one of toml, json, markdown"},
+      {{"params", "--format"}, "tyndall params: missing value for '--format'; see 'tyndall params --help'"},
       {{"params", "--format", "json", "--format", "toml"},
-       "'--format' is given 2 times, tyndall params, allowed is once"},
-      {{"params", "a.toml", "b.toml"},
-       "unexpected argument 'b.toml', tyndall params, 'tyndall params --help' lists what is allowed"},
-      {{"params", ""}, "'' names no file, tyndall params, needed is SCENE.toml"},
+       "tyndall params: option '--format' given 2 times; expected it at most once"},
+      {{"params", "a.toml", "b.toml"}, "tyndall params: unexpected argument 'b.toml'; see 'tyndall params --help'"},
+      {{"params", ""}, "tyndall params: empty file name ''; expected SCENE.toml"},
       {{"params", "--set", "atmosphere.mie_gg=1"},
-       "unknown parameter 'atmosphere.mie_gg', --set, did you mean 'atmosphere.mie_g'?"},
+       "--set: unknown parameter 'atmosphere.mie_gg'; did you mean 'atmosphere.mie_g'?"},
       {{"params", "--set", "camera.fov_deg=nan"},
-       "'camera.fov_deg' = 'nan' is not a finite number, --set, allowed is 1 to 170 deg"},
+       "--set: 'camera.fov_deg' = 'nan' is not a finite number; expected 1 to 170 deg"},
       {{"params", "--set", "shadows.cascades=2", "--set", "shadows.first_marched=5"},
-       "'shadows.first_marched' = 5 is no cascade, with 'shadows.cascades' = 2, allowed is 0 to 1"},
+       "shadows.first_marched: 5 is not below shadows.cascades = 2; expected 0 to 1"},
       {{"params", "/nonexistent/scene.toml"},
-       "cannot read '/nonexistent/scene.toml', No such file or directory, needed is a readable file"},
-      {{"params", "/"}, "cannot read '/', Is a directory, needed is a readable file"},
-      {{"compare", "only-one.png"}, "B is missing, tyndall compare, 'tyndall compare --help' says what is needed"},
+       "'/nonexistent/scene.toml': cannot read: No such file or directory; expected a readable file"},
+      {{"params", "/"}, "'/': cannot read: Is a directory; expected a readable file"},
+      {{"compare", "only-one.png"}, "tyndall compare: missing argument B; see 'tyndall compare --help'"},
       {{"compare", "a", "b", "--json=1"},
-       "'--json' takes no value, tyndall compare, 'tyndall compare --help' says which"},
-      {{"compare", "a", "b", "--psnr-min", "high"},
-       "'high' is not allowed, --psnr-min, allowed is a number, 0 to 1e+06"},
-      {{"compare", "a", "b", "--diff", "d.jpg"}, "unknown image format, 'd.jpg', allowed is a name in .png or .exr"},
+       "tyndall compare: unexpected value for '--json'; see 'tyndall compare --help'"},
+      {{"compare", "a", "b", "--psnr-min", "high"}, "--psnr-min: invalid number 'high'; expected a number, 0 to 1e+06"},
+      {{"compare", "a", "b", "--diff", "d.jpg"},
+       "'d.jpg': unknown image format; expected a name that ends in .png or .exr"},
   };
   for (const Refused& refused : cases) expect_error(run_tyndall(refused.arguments), 2, refused.message);
 }
@@ -87,15 +86,15 @@ TEST(Cli, MessagesStayOneLineWhateverIsGiven) {
 TEST(Cli, ScenesOfEveryKindOfBadness) {
   const Scratch scratch;
   const std::pair<std::string, std::string> scenes[] = {
-      {"[camera]\nyaw_dge = 3\n", "unknown parameter 'camera.yaw_dge', FILE:2, did you mean 'camera.yaw_deg'?"},
-      {"[cmaera]\nyaw_deg = 3\n", "unknown table [cmaera], FILE:1, did you mean [camera]?"},
-      {"[camera]\nyaw_deg = '3'\n", "'camera.yaw_deg' is a string, FILE:2, allowed is -3600 to 3600 deg"},
+      {"[camera]\nyaw_dge = 3\n", "FILE:2: unknown parameter 'camera.yaw_dge'; did you mean 'camera.yaw_deg'?"},
+      {"[cmaera]\nyaw_deg = 3\n", "FILE:1: unknown table [cmaera]; did you mean [camera]?"},
+      {"[camera]\nyaw_deg = '3'\n", "FILE:2: 'camera.yaw_deg' is a string; expected -3600 to 3600 deg"},
       {"[camera]\nyaw_deg = inf\n",
-       "'camera.yaw_deg' = 'inf' is not a finite number, FILE:2, allowed is -3600 to 3600 deg"},
+       "FILE:2: 'camera.yaw_deg' = 'inf' is not a finite number; expected -3600 to 3600 deg"},
       {std::string("\x7f"
                    "ELF\x80\xff",
                    6),
-       "not a text file, FILE, allowed is a scene file: TOML in UTF-8"},
+       "FILE: not a text file; expected a scene file: TOML in UTF-8"},
   };
   for (const auto& [text, message] : scenes) {
     const std::string path = scratch.write("scene.toml", text);
@@ -155,7 +154,7 @@ TEST(Cli, ParamsAsJsonIsTheWholeTable) {
 TEST(Cli, AFullStandardOutputIsAFailure) {
   const Outcome outcome = run_tyndall({"params"}, "/dev/full");
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_EQ(outcome.err, "tyndall: error: cannot write, standard output, it has to be open and have room\n");
+  EXPECT_EQ(outcome.err, "tyndall: error: standard output: cannot write; expected an open stream with free space\n");
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ TEST(CliOptions, Sizes) {
     const Result<Size> size = parse_size(text, "--size");
     ASSERT_FALSE(size.ok()) << text;
     EXPECT_EQ(size.error().message,
-              std::string("'").append(text) + "' is no size, --size, allowed is WIDTHxHEIGHT, 1 to 16384 each");
+              std::string("--size: invalid size '").append(text) + "'; expected WIDTHxHEIGHT, each 1 to 16384");
   }
 }
 
@@ -44,12 +44,13 @@ TEST(CliOptions, Outputs) {
     const Result<void> checked = check_output(options, {".png", ".exr"});
     return checked ? std::string("fine") : checked.error().message;
   };
-  EXPECT_EQ(message("", 1), "no output file, -o, needed is -o FILE, with a name in .png or .exr");
-  EXPECT_EQ(message("a.jpg", 1), "unknown format 'a.jpg', -o, allowed is a name in .png or .exr");
+  EXPECT_EQ(message("", 1), "-o: no output file; expected -o FILE with a name that ends in .png or .exr");
+  EXPECT_EQ(message("a.jpg", 1), "-o: unknown format 'a.jpg'; expected a name that ends in .png or .exr");
   EXPECT_EQ(message(scratch.at("a.PNG"), 1), "fine");
-  EXPECT_EQ(message("a.png", 2), "2 frames into 'a.png', -o, needed is one place for the number, such as out.%04d.png");
+  EXPECT_EQ(message("a.png", 2),
+            "-o: 2 frames in one file 'a.png'; expected one frame number in the name, as in out.%04d.png");
   EXPECT_EQ(message("%d.%d.png", 2),
-            "2 frames into '%d.%d.png', -o, needed is one place for the number, such as out.%04d.png");
+            "-o: 2 frames in one file '%d.%d.png'; expected one frame number in the name, as in out.%04d.png");
   EXPECT_EQ(message(scratch.at("a.%04d.png"), 2), "fine");
   EXPECT_NE(message(scratch.at("none/a.png"), 1).find("No such file or directory"), std::string::npos);
   EXPECT_TRUE(std::filesystem::is_empty(scratch.at("")));

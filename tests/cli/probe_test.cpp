@@ -160,33 +160,30 @@ TEST_F(CliProbe, WritesAFileOrJson) {
 
 TEST_F(CliProbe, BadTablesAreNamedByLineAndColumn) {
   const std::pair<std::string, std::string> tables[] = {
-      {"", "no header line, FILE, needed is a line with the names of the columns"},
-      {"\r\n \n", "no header line, FILE, needed is a line with the names of the columns"},
+      {"", "FILE: no header line; expected a line with the names of the columns"},
+      {"\r\n \n", "FILE: no header line; expected a line with the names of the columns"},
       {"altitude_m,view_zenith_deg,sun_zenith_deg\n0,0,0\n",
-       "no column 'azimuth_deg', FILE, needed are altitude_m, view_zenith_deg, sun_zenith_deg, azimuth_deg"},
+       "FILE: no column 'azimuth_deg'; expected altitude_m, view_zenith_deg, sun_zenith_deg, azimuth_deg"},
       {"altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg,altitude_m\n",
-       "several columns 'altitude_m', FILE, needed are altitude_m, view_zenith_deg, sun_zenith_deg, azimuth_deg, once "
+       "FILE: several columns 'altitude_m'; expected altitude_m, view_zenith_deg, sun_zenith_deg, azimuth_deg, once "
        "each"},
-      {kHeader + "0,0,0,0\n\n0,0,O,0\n",
-       "'O' is not a number, FILE:4, column 'sun_zenith_deg', allowed is 0 to 180 deg"},
-      {kHeader + "0,0,,0\n", "'' is not a number, FILE:2, column 'sun_zenith_deg', allowed is 0 to 180 deg"},
+      {kHeader + "0,0,0,0\n\n0,0,O,0\n", "FILE:4: column 'sun_zenith_deg': 'O' is not a number; expected 0 to 180 deg"},
+      {kHeader + "0,0,,0\n", "FILE:2: column 'sun_zenith_deg': '' is not a number; expected 0 to 180 deg"},
       {kHeader + "0,Sky,0,0\n",
-       "'Sky' is not a number, FILE:2, column 'view_zenith_deg', allowed is 0 to 180 deg, or sky"},
+       "FILE:2: column 'view_zenith_deg': 'Sky' is not a number; expected 0 to 180 deg, or sky"},
       {kHeader + "nan,0,0,0\n",
-       "'nan' is not a finite number, FILE:2, column 'altitude_m', allowed is -11000 to 1e+09 m"},
-      {kHeader + "0,0,0,inf\n",
-       "'inf' is not a finite number, FILE:2, column 'azimuth_deg', allowed is -360 to 360 deg"},
+       "FILE:2: column 'altitude_m': 'nan' is not a finite number; expected -11000 to 1e+09 m"},
+      {kHeader + "0,0,0,inf\n", "FILE:2: column 'azimuth_deg': 'inf' is not a finite number; expected -360 to 360 deg"},
       {kHeader + "0,180.001,0,0\n",
-       "'180.001' is out of range, FILE:2, column 'view_zenith_deg', allowed is 0 to 180 deg, or sky"},
-      {kHeader + "0,0,-0.1,0\n", "'-0.1' is out of range, FILE:2, column 'sun_zenith_deg', allowed is 0 to 180 deg"},
-      {kHeader + "-11001,0,0,0\n",
-       "'-11001' is out of range, FILE:2, column 'altitude_m', allowed is -11000 to 1e+09 m"},
-      {kHeader + "1e999,0,0,0\n", "'1e999' is out of range, FILE:2, column 'altitude_m', allowed is -11000 to 1e+09 m"},
-      {kHeader + "0,0,0\n", "3 fields, FILE:2, needed are 4, as in the header"},
-      {kHeader + "0,0,0,0,0\n", "5 fields, FILE:2, needed are 4, as in the header"},
-      {kHeader + "0,0,0,\"0\n0,0,0,0\n", "a quoted field does not end, FILE:2, needed is a closing '\"'"},
-      {kHeader + "0,0,0,\"0\"1\n", "text after a closing quote, FILE:2, allowed is a comma or the end of the line"},
-      {kHeader + std::string("0,0,0,0\0\n", 9), "not a text file, FILE, allowed is comma-separated text"},
+       "FILE:2: column 'view_zenith_deg': '180.001' is out of range; expected 0 to 180 deg, or sky"},
+      {kHeader + "0,0,-0.1,0\n", "FILE:2: column 'sun_zenith_deg': '-0.1' is out of range; expected 0 to 180 deg"},
+      {kHeader + "-11001,0,0,0\n", "FILE:2: column 'altitude_m': '-11001' is out of range; expected -11000 to 1e+09 m"},
+      {kHeader + "1e999,0,0,0\n", "FILE:2: column 'altitude_m': '1e999' is out of range; expected -11000 to 1e+09 m"},
+      {kHeader + "0,0,0\n", "FILE:2: 3 fields; expected 4, as in the header"},
+      {kHeader + "0,0,0,0,0\n", "FILE:2: 5 fields; expected 4, as in the header"},
+      {kHeader + "0,0,0,\"0\n0,0,0,0\n", "FILE:2: a quoted field does not end; expected a closing '\"'"},
+      {kHeader + "0,0,0,\"0\"1\n", "FILE:2: text after a closing quote; expected a comma or the end of the line"},
+      {kHeader + std::string("0,0,0,0\0\n", 9), "FILE: not a text file; expected comma-separated text"},
   };
   for (const auto& [text, message] : tables) {
     const std::string path = scratch_.write("bad.csv", text);
@@ -225,22 +222,23 @@ TEST_F(CliProbe, EyesFarBelowSeaLevel) {
       run_tyndall({"probe", "--queries", path, "--model", "single", "--set", "planet.radius_m=4000"});
   EXPECT_EQ(outcome.status, 2);
   EXPECT_EQ(outcome.err,
-            "tyndall: error: an eye at -2000 m is too deep in the planet, " + path +
-                ":3, column 'altitude_m', allowed is minus a quarter of planet.radius_m at the lowest, -1000 m\n");
+            "tyndall: error: " + path +
+                ":3: column 'altitude_m': an eye at -2000 m is too deep inside the planet; expected at least minus a "
+                "quarter of planet.radius_m, -1000 m\n");
 }
 
 TEST_F(CliProbe, BadUsage) {
   const std::string queries = scratch_.write("q.csv", kHeader + "0,30,60,0\n");
   const std::pair<std::vector<std::string>, std::string> cases[] = {
-      {{}, "no queries, tyndall probe, needed is --queries FILE"},
+      {{}, "tyndall probe: missing queries; expected --queries FILE"},
       {{"--queries", "/nonexistent.csv"},
-       "cannot read '/nonexistent.csv', No such file or directory, needed is a readable file"},
-      {{"--queries", "/"}, "cannot read '/', Is a directory, needed is a readable file"},
-      {{"--queries", queries, "--orders", "0"}, "'0' is no count, --orders, allowed is a whole number, 1 to 256"},
-      {{"--queries", queries, "--orders", "257"}, "'257' is no count, --orders, allowed is a whole number, 1 to 256"},
+       "'/nonexistent.csv': cannot read: No such file or directory; expected a readable file"},
+      {{"--queries", "/"}, "'/': cannot read: Is a directory; expected a readable file"},
+      {{"--queries", queries, "--orders", "0"}, "--orders: invalid count '0'; expected a whole number, 1 to 256"},
+      {{"--queries", queries, "--orders", "257"}, "--orders: invalid count '257'; expected a whole number, 1 to 256"},
       {{"--queries", queries, "--samples", "0"},
-       "'0' is no count, --samples, allowed is a whole number, 1 to 4294967295"},
-      {{"--queries", queries, "--seed", "-1"}, "'-1' is no count, --seed, allowed is a whole number, 0 to 4294967295"},
+       "--samples: invalid count '0'; expected a whole number, 1 to 4294967295"},
+      {{"--queries", queries, "--seed", "-1"}, "--seed: invalid count '-1'; expected a whole number, 0 to 4294967295"},
   };
   for (const auto& [more, message] : cases) {
     std::vector<std::string> arguments = {"probe"};
@@ -252,7 +250,7 @@ TEST_F(CliProbe, BadUsage) {
   // A model that is not there names those that are.
   const Outcome model = run_tyndall({"probe", "--queries", queries, "--model", "onil"});
   EXPECT_EQ(model.status, 2);
-  EXPECT_EQ(model.err.rfind("tyndall: error: unknown value 'onil', --model, allowed is ", 0), 0U) << model.err;
+  EXPECT_EQ(model.err.rfind("tyndall: error: --model: unknown value 'onil'; expected one of ", 0), 0U) << model.err;
   for (const char* const name : {"precomputed", "single", "reference"}) {
     EXPECT_NE(model.err.find(name), std::string::npos) << name;
   }

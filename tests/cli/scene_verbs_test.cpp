@@ -74,7 +74,7 @@ TEST_F(CliScenes, ScenesThatCannotBeRead) {
       arguments.push_back(scene);
       return run_tyndall(arguments);
     };
-    expect_one_line(with("/nonexistent.toml"), 2, "cannot read '/nonexistent.toml'");
+    expect_one_line(with("/nonexistent.toml"), 2, "'/nonexistent.toml': cannot read");
     expect_one_line(with("/"), 2, "Is a directory");
     expect_one_line(with(cut), 2, "not valid TOML");
     expect_one_line(with(binary), 2, "not a text file");
@@ -85,12 +85,12 @@ TEST_F(CliScenes, ScenesThatCannotBeRead) {
 
 TEST_F(CliScenes, SizesCountsAndOutputs) {
   for (const char* const size : {"0x0", "100000x100000", "16x", "16385x1"}) {
-    expect_one_line(run_tyndall({"render", "--size", size, "-o", scratch_.at("a.png")}), 2, "is no size");
-    expect_one_line(run_tyndall({"bench", "--size", size}), 2, "is no size");
+    expect_one_line(run_tyndall({"render", "--size", size, "-o", scratch_.at("a.png")}), 2, "invalid size");
+    expect_one_line(run_tyndall({"bench", "--size", size}), 2, "invalid size");
   }
-  expect_one_line(render({"--frames", "0"}), 2, "'0' is no count");
+  expect_one_line(render({"--frames", "0"}), 2, "invalid count '0'");
   expect_one_line(render({"--frames", "2"}), 2, "2 frames into");
-  expect_one_line(run_tyndall({"bench", "--frames", "0"}), 2, "'0' is no count");
+  expect_one_line(run_tyndall({"bench", "--frames", "0"}), 2, "invalid count '0'");
   expect_one_line(run_tyndall({"render"}), 2, "no output file");
   expect_one_line(run_tyndall({"render", "-o", scratch_.at("a.jpg")}), 2, "unknown format");
   expect_one_line(run_tyndall({"render", "-o", scratch_.at("none/a.png")}), 1, "No such file or directory");
@@ -166,8 +166,8 @@ TEST_F(CliScenes, MeshFilesThatAreNone) {
   const std::pair<std::string, std::string> sources[] = {
       {"/nonexistent.glb", "/nonexistent.glb"},
       {scratch_.at(""), "Is a directory"},
-      {scratch_.write("empty.gltf", ""), "is no glTF file"},
-      {scratch_.write("text.gltf", "no meshes"), "is no glTF file"},
+      {scratch_.write("empty.gltf", ""), "is not a glTF file"},
+      {scratch_.write("text.gltf", "no meshes"), "is not a glTF file"},
       {scratch_.write("cut.glb", std::string("glTF\2\0\0\0\x40\0\0\0", 12)),
        "cut.glb: is a .glb that states 64 bytes and has 12"},
       {scratch_.write("bare.gltf", R"({"asset":{"version":"2.0"}})"), "no triangles"},
@@ -240,7 +240,7 @@ TEST_F(CliScenes, APictureThatDoesNotFitLeavesWhatWasThere) {
   const Outcome outcome = render(quick);
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &unlimited), 0);
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_NE(outcome.err.find("tyndall: error: cannot write"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find(": cannot write: "), std::string::npos) << outcome.err;
   EXPECT_EQ(contents_of(before), "before");
   EXPECT_EQ(files(), 2U);
   // With room it is replaced.

@@ -245,14 +245,14 @@ TEST_F(CliTables, WhatIsWrongIsSaid) {
   expect_one_line(run("tables", {"-o", file}), 1, "it is a file");
   expect_one_line(run("tables", {"-o", file + "/below"}), 1, "cannot write");
   expect_one_line(run("tables", {"-o", scratch_.at("none/below")}), 1, "No such file or directory");
-  expect_one_line(run("tables", {"-o", ""}), 2, "no directory is named, -o, needed is -o DIR");
+  expect_one_line(run("tables", {"-o", ""}), 2, "-o: empty directory name; expected -o DIR");
   expect_one_line(run_tyndall({"tables", "-o"}), 2, "-o");
   expect_one_line(run("tables", {"--size", "3x4"}), 2, "--size");
   expect_one_line(run("tables", {"--device", "none such"}), 2, "no Vulkan device 'none such'");
   expect_one_line(run_tyndall({"tables", "--set", "tables.size=8,15,8,8"}), 2, "tables.size");
   expect_one_line(run_tyndall({"tables", "--set", "tables.size=4096,4096,4096,4096"}), 2, "tables.size");
   expect_one_line(run_tyndall({"tables", "--set", "tables.cache="}), 2,
-                  "'tables.cache' is empty, allowed is auto, off or a directory");
+                  "tables.cache: empty value; expected auto, off or a directory");
   expect_one_line(run_tyndall({"tables", "--set", "tables.cache_limit_mib=0"}), 2, "tables.cache_limit_mib");
   EXPECT_EQ(names(scratch_.at("")), std::vector<std::string>{"file"});
 }

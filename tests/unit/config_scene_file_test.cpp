@@ -137,33 +137,33 @@ TEST_F(SceneFile, APathSurvivesARoundTrip) {
 TEST_F(SceneFile, PathsThatAreWrongSayWhereAndWhy) {
   const std::string two = "[[path]]\ntime_s = 0\n[[path]]\ntime_s = 5\n";
   const std::pair<std::string, std::string> wrong[] = {
-      {"path = 3", "'path' is no list of frames, s.toml:1, allowed is one table [[path]] for each frame"},
-      {"[[path]]\ntime_s = 0\n", "a path of one frame, s.toml:1, needed are two or more [[path]]"},
-      {"[[path]]\nyaw_deg = 0\n", "a frame of the path has no time, s.toml:1, needed is time_s = SECONDS"},
+      {"path = 3", "s.toml:1: 'path' is no list of frames; expected one table [[path]] for each frame"},
+      {"[[path]]\ntime_s = 0\n", "s.toml:1: a path of one frame; expected two or more [[path]]"},
+      {"[[path]]\nyaw_deg = 0\n", "s.toml:1: a frame of the path has no time; expected time_s = SECONDS"},
       {two + "[[path]]\ntime_s = 5\n",
-       "the path's time goes from 5 s to 5 s, s.toml:5, each frame's time_s has to be greater than that before"},
-      {two + "yaw_dge = 3\n", "unknown key 'yaw_dge' in [[path]], s.toml:5, did you mean 'yaw_deg'?"},
+       "s.toml:5: the path's time goes from 5 s to 5 s; each frame's time_s has to be greater than that before"},
+      {two + "yaw_dge = 3\n", "s.toml:5: unknown key 'yaw_dge' in [[path]]; did you mean 'yaw_deg'?"},
       {two + "xyz = 3\n",
-       "unknown key 'xyz' in [[path]], s.toml:5, keys are time_s, position_m, date, altitude_m, yaw_deg, "
+       "s.toml:5: unknown key 'xyz' in [[path]]; keys are time_s, position_m, date, altitude_m, yaw_deg, "
        "pitch_deg, fov_deg, sun_elevation_deg, sun_azimuth_deg"},
-      {"[[path]]\ntime_s = -1\n", "'time_s' is no time, s.toml:2, allowed is a number, 0 to 1e+06 s"},
-      {"[[path]]\ntime_s = nan\n", "'time_s' is no time, s.toml:2, allowed is a number, 0 to 1e+06 s"},
-      {"[[path]]\ntime_s = \"0\"\n", "'time_s' is no time, s.toml:2, allowed is a number, 0 to 1e+06 s"},
+      {"[[path]]\ntime_s = -1\n", "s.toml:2: 'time_s' is no time; expected a number, 0 to 1e+06 s"},
+      {"[[path]]\ntime_s = nan\n", "s.toml:2: 'time_s' is no time; expected a number, 0 to 1e+06 s"},
+      {"[[path]]\ntime_s = \"0\"\n", "s.toml:2: 'time_s' is no time; expected a number, 0 to 1e+06 s"},
       {two + "altitude_m = -1\n",
-       "'altitude_m' is below the sea, s.toml:5, allowed is 0 to 1e+09 m; position_m goes lower"},
+       "s.toml:5: 'altitude_m' is below the sea; expected 0 to 1e+09 m; position_m goes lower"},
       {two + "position_m = [1, 2]\n",
-       "'camera.position_m' = '2 values' is not 3 numbers, s.toml:5, allowed is 3 numbers, each -1e+09 to 1e+09 m"},
-      {two + "fov_deg = 200\n", "'camera.fov_deg' = '200' is out of range, s.toml:5, allowed is 1 to 170 deg"},
+       "s.toml:5: 'camera.position_m' = '2 values' is not 3 numbers; expected 3 numbers, each -1e+09 to 1e+09 m"},
+      {two + "fov_deg = 200\n", "s.toml:5: 'camera.fov_deg' = '200' is out of range; expected 1 to 170 deg"},
       {two + "date = \"yesterday\"\n", "yesterday"},
       {two + "date = \"2026-06-21T03:00:00Z\"\nsun_elevation_deg = 3\n",
-       "the sun stands by date and by angles, s.toml:3, allowed is one of them in a path"},
-      {two + "[playback]\nloops = true\n", "unknown key 'loops' in [playback], s.toml:6, did you mean 'loop'?"},
-      {two + "[playback]\nloop = 1\n", "'loop' is a whole number, s.toml:6, allowed is true or false"},
+       "s.toml:3: the sun stands by date and by angles; expected one of them in a path"},
+      {two + "[playback]\nloops = true\n", "s.toml:6: unknown key 'loops' in [playback]; did you mean 'loop'?"},
+      {two + "[playback]\nloop = 1\n", "s.toml:6: 'loop' is a whole number; expected true or false"},
       {two + "[playback]\nplace = \"north\"\n", "s.toml:6"},
-      {"[playback]\nloop = true\n", "there is no path to loop, s.toml:1, needed are two or more [[path]]"},
-      {"playback = 3", "'playback' is a whole number, s.toml:1, it has to be a table"},
+      {"[playback]\nloop = true\n", "s.toml:1: there is no path to loop; expected two or more [[path]]"},
+      {"playback = 3", "s.toml:1: 'playback' is a whole number; it has to be a table"},
       {two + "yaw_deg = 3\n[playback]\nloop = true\n",
-       "the last frame of a loop is the first again, s.toml:6, allowed is time_s alone in the last [[path]]"},
+       "s.toml:6: the last frame of a loop is the first again; expected time_s alone in the last [[path]]"},
   };
   for (const auto& [toml, message] : wrong)
     EXPECT_NE(failure(toml).find(message), std::string::npos) << toml << failure(toml);
@@ -186,39 +186,38 @@ TEST_F(SceneFile, PartialFilesKeepTheRestAndLaterWins) {
 
 TEST(SceneFileMessages, NameTheLineTheKeyAndWhatIsAllowed) {
   EXPECT_EQ(failure("[atmosphere]\n\nmie_gg = 0.5\n"),
-            "unknown parameter 'atmosphere.mie_gg', s.toml:3, did you mean 'atmosphere.mie_g'?");
-  EXPECT_EQ(failure("[atmosphre]\nmie_g = 0.5\n"), "unknown table [atmosphre], s.toml:1, did you mean [atmosphere]?");
+            "s.toml:3: unknown parameter 'atmosphere.mie_gg'; did you mean 'atmosphere.mie_g'?");
+  EXPECT_EQ(failure("[atmosphre]\nmie_g = 0.5\n"), "s.toml:1: unknown table [atmosphre]; did you mean [atmosphere]?");
   EXPECT_EQ(failure("yaw_deg = 0.5\n"),
-            "unknown parameter 'yaw_deg', s.toml:1, did you mean 'camera.yaw_deg' or 'meshes.yaw_deg'?");
-  EXPECT_EQ(failure("fov_deg = 50.0\n"), "unknown parameter 'fov_deg', s.toml:1, did you mean 'camera.fov_deg'?");
-  EXPECT_EQ(failure("camera = 0.5\n"), "'camera' is a number, s.toml:1, it has to be a table");
-  EXPECT_EQ(failure("[[camera]]\nyaw_deg = 0.5\n"), "'camera' is an array, s.toml:1, it has to be a table");
+            "s.toml:1: unknown parameter 'yaw_deg'; did you mean 'camera.yaw_deg' or 'meshes.yaw_deg'?");
+  EXPECT_EQ(failure("fov_deg = 50.0\n"), "s.toml:1: unknown parameter 'fov_deg'; did you mean 'camera.fov_deg'?");
+  EXPECT_EQ(failure("camera = 0.5\n"), "s.toml:1: 'camera' is a number; it has to be a table");
+  EXPECT_EQ(failure("[[camera]]\nyaw_deg = 0.5\n"), "s.toml:1: 'camera' is an array; it has to be a table");
   EXPECT_EQ(failure("[camera]\nyaw_deg = 'north'\n"),
-            "'camera.yaw_deg' is a string, s.toml:2, allowed is -3600 to 3600 deg");
+            "s.toml:2: 'camera.yaw_deg' is a string; expected -3600 to 3600 deg");
   EXPECT_EQ(failure("[camera]\nfov_deg = 171\n"),
-            "'camera.fov_deg' = '171' is out of range, s.toml:2, allowed is 1 to 170 deg");
+            "s.toml:2: 'camera.fov_deg' = '171' is out of range; expected 1 to 170 deg");
   EXPECT_EQ(failure("[camera]\nfov_deg = nan\n"),
-            "'camera.fov_deg' = 'nan' is not a finite number, s.toml:2, allowed is 1 to 170 deg");
+            "s.toml:2: 'camera.fov_deg' = 'nan' is not a finite number; expected 1 to 170 deg");
   EXPECT_EQ(failure("[camera]\nfov_deg = 1e300\n"),
-            "'camera.fov_deg' = '1e+300' is out of range, s.toml:2, allowed is 1 to 170 deg");
+            "s.toml:2: 'camera.fov_deg' = '1e+300' is out of range; expected 1 to 170 deg");
   EXPECT_EQ(failure("[camera]\nposition_m = [1, 2]\n"),
-            "'camera.position_m' = '2 values' is not 3 numbers, s.toml:2, allowed is 3 numbers, each -1e+09 to "
+            "s.toml:2: 'camera.position_m' = '2 values' is not 3 numbers; expected 3 numbers, each -1e+09 to "
             "1e+09 m");
   EXPECT_EQ(failure("[camera]\nposition_m = 1\n"),
-            "'camera.position_m' is a whole number, s.toml:2, allowed is 3 numbers, each -1e+09 to 1e+09 m");
+            "s.toml:2: 'camera.position_m' is a whole number; expected 3 numbers, each -1e+09 to 1e+09 m");
   EXPECT_EQ(failure("[camera]\nposition_m = [1, 2, [3]]\n"),
-            "'camera.position_m' is an array, s.toml:2, allowed is 3 numbers, each -1e+09 to 1e+09 m");
+            "s.toml:2: 'camera.position_m' is an array; expected 3 numbers, each -1e+09 to 1e+09 m");
   EXPECT_EQ(failure("[shadows]\ncascades = 3.0\n"),
-            "'shadows.cascades' is a number, s.toml:2, allowed is a whole number, 1 to 8 cascades");
-  EXPECT_EQ(failure("[shadows]\nsmooth = 1\n"),
-            "'shadows.smooth' is a whole number, s.toml:2, allowed is true or false");
+            "s.toml:2: 'shadows.cascades' is a number; expected a whole number, 1 to 8 cascades");
+  EXPECT_EQ(failure("[shadows]\nsmooth = 1\n"), "s.toml:2: 'shadows.smooth' is a whole number; expected true or false");
   EXPECT_EQ(failure("[shadows]\nsmooth = 1979-05-27\n"),
-            "'shadows.smooth' is a date or time, s.toml:2, allowed is true or false");
+            "s.toml:2: 'shadows.smooth' is a date or time; expected true or false");
   EXPECT_EQ(failure("[terrain]\nshading = 'shiny'\n"),
-            "'terrain.shading' = 'shiny' is not one of its values, s.toml:2, allowed is materials, height, plain");
+            "s.toml:2: 'terrain.shading' = 'shiny' is not one of its values; expected materials, height, plain");
   EXPECT_EQ(failure("[terrain]\nsource = \"a\\u0000b\"\n"),
-            "'terrain.source' = 'a?b' holds control characters, s.toml:2, allowed is text in UTF-8");
-  EXPECT_EQ(failure("[camera.yaw_deg]\n"), "'camera.yaw_deg' is a table, s.toml:1, allowed is -3600 to 3600 deg");
+            "s.toml:2: 'terrain.source' = 'a?b' holds control characters; expected text in UTF-8");
+  EXPECT_EQ(failure("[camera.yaw_deg]\n"), "s.toml:1: 'camera.yaw_deg' is a table; expected -3600 to 3600 deg");
   EXPECT_EQ(failure("[camera]\n\"yaw.deg\" = 1\n").substr(0, 45), "unknown parameter 'camera.yaw.deg', s.toml:2,");
 }
 
@@ -239,7 +238,7 @@ TEST(SceneFileMessages, BrokenTomlIsOneLineWithItsPlace) {
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
   }
   EXPECT_NE(failure(std::string(100000, '[')), "(accepted)");
-  EXPECT_EQ(failure("[terrain]\nsource = '\xff'\n"), "not a text file, s.toml, allowed is a scene file: TOML in UTF-8");
+  EXPECT_EQ(failure("[terrain]\nsource = '\xff'\n"), "s.toml: not a text file; expected a scene file: TOML in UTF-8");
 }
 
 // Every prefix of a complete scene file loads or is refused with one line; none may crash.
@@ -315,7 +314,7 @@ TEST(ConfigSceneFile, KeysOfManyPartsAreRefused) {
     Settings settings;
     const Result<void> read = load_text(settings, text, "deep.toml");
     ASSERT_FALSE(read.ok());
-    EXPECT_EQ(read.error().message, "a key of more than 16 parts, deep.toml:2, allowed is KEY = VALUE in [TABLES]");
+    EXPECT_EQ(read.error().message, "deep.toml:2: a key of more than 16 parts; expected KEY = VALUE in [TABLES]");
   }
   Settings settings;
   const std::string quoted =

@@ -65,10 +65,10 @@ TEST(ConfigSettings, OneValueOfAColourMeansGrey) {
   EXPECT_EQ(value_text(*find_row("sun.irradiance"), settings), "3.5,3.5,3.5");
   ASSERT_TRUE(set(settings, "sun.irradiance=1, 2 ,4").ok());
   EXPECT_EQ(settings.scene.sun.irradiance, Vec3(1.0F, 2.0F, 4.0F));
-  EXPECT_EQ(failure("sun.irradiance=1,2"), "'sun.irradiance' = '1,2' is not 1 or 3 numbers separated by commas, --set, "
-                                           "allowed is 1 or 3 numbers, each 0 to 1e+06 relative");
+  EXPECT_EQ(failure("sun.irradiance=1,2"), "--set: 'sun.irradiance' = '1,2' is not 1 or 3 numbers separated by commas; "
+                                           "expected 1 or 3 numbers, each 0 to 1e+06 relative");
   EXPECT_EQ(failure("sun.irradiance=-1"),
-            "'sun.irradiance' = '-1' is out of range, --set, allowed is 1 or 3 numbers, each 0 to 1e+06 relative");
+            "--set: 'sun.irradiance' = '-1' is out of range; expected 1 or 3 numbers, each 0 to 1e+06 relative");
   EXPECT_FALSE(set(settings, "camera.position_m=1").ok());  // a place is no colour
 }
 
@@ -76,7 +76,7 @@ TEST(ConfigSettings, LimitsThemselvesAreAllowed) {
   Settings settings;
   EXPECT_TRUE(set(settings, "atmosphere.mie_g=0.99").ok());  // float(0.99) is above double 0.99
   EXPECT_EQ(failure("atmosphere.mie_g=0.9900001"),
-            "'atmosphere.mie_g' = '0.9900001' is out of range, --set, allowed is -0.99 to 0.99");
+            "--set: 'atmosphere.mie_g' = '0.9900001' is out of range; expected -0.99 to 0.99");
 }
 
 TEST(ConfigSettings, FloatsReadBackExactly) {
@@ -123,42 +123,42 @@ TEST(ConfigSettings, PlacesReadBackInDoublePrecision) {
 
 TEST(ConfigSettings, MessagesSayWhatWhereAndWhatIsAllowed) {
   EXPECT_EQ(failure("atmosphere.mie_gg=0.5"),
-            "unknown parameter 'atmosphere.mie_gg', --set, did you mean 'atmosphere.mie_g'?");
+            "--set: unknown parameter 'atmosphere.mie_gg'; did you mean 'atmosphere.mie_g'?");
   EXPECT_EQ(failure("atmopshere.mie_g=0.5"),
-            "unknown parameter 'atmopshere.mie_g', --set, did you mean 'atmosphere.mie_g'?");
-  EXPECT_EQ(failure("mie_g=0.5"), "unknown parameter 'mie_g', --set, did you mean 'atmosphere.mie_g'?");
-  EXPECT_EQ(failure("sky.exposure=0.5"), "unknown parameter 'sky.exposure', --set, did you mean 'tonemap.exposure'?");
+            "--set: unknown parameter 'atmopshere.mie_g'; did you mean 'atmosphere.mie_g'?");
+  EXPECT_EQ(failure("mie_g=0.5"), "--set: unknown parameter 'mie_g'; did you mean 'atmosphere.mie_g'?");
+  EXPECT_EQ(failure("sky.exposure=0.5"), "--set: unknown parameter 'sky.exposure'; did you mean 'tonemap.exposure'?");
   EXPECT_EQ(failure("planet.zzzzzzzzzzzz=1"),
-            "unknown parameter 'planet.zzzzzzzzzzzz', --set, 'planet' has radius_m, ground_albedo");
-  EXPECT_EQ(failure("qqqqqqqqqqqqqqqqq=1"), "unknown parameter 'qqqqqqqqqqqqqqqqq', --set, 'tyndall params' lists all");
-  EXPECT_EQ(failure("camera.yaw_deg"), "'camera.yaw_deg' is no assignment, --set, allowed is KEY=VALUE");
-  EXPECT_EQ(failure("=3"), "'=3' is no assignment, --set, allowed is KEY=VALUE");
+            "--set: unknown parameter 'planet.zzzzzzzzzzzz'; 'planet' has radius_m, ground_albedo");
+  EXPECT_EQ(failure("qqqqqqqqqqqqqqqqq=1"), "--set: unknown parameter 'qqqqqqqqqqqqqqqqq'; see 'tyndall params'");
+  EXPECT_EQ(failure("camera.yaw_deg"), "--set: invalid assignment 'camera.yaw_deg'; expected KEY=VALUE");
+  EXPECT_EQ(failure("=3"), "--set: invalid assignment '=3'; expected KEY=VALUE");
   EXPECT_EQ(failure("camera.fov_deg=wide"),
-            "'camera.fov_deg' = 'wide' is not one number, --set, allowed is 1 to 170 deg");
-  EXPECT_EQ(failure("camera.fov_deg="), "'camera.fov_deg' = '' is not one number, --set, allowed is 1 to 170 deg");
+            "--set: 'camera.fov_deg' = 'wide' is not one number; expected 1 to 170 deg");
+  EXPECT_EQ(failure("camera.fov_deg="), "--set: 'camera.fov_deg' = '' is not one number; expected 1 to 170 deg");
   EXPECT_EQ(failure("camera.fov_deg=nan"),
-            "'camera.fov_deg' = 'nan' is not a finite number, --set, allowed is 1 to 170 deg");
+            "--set: 'camera.fov_deg' = 'nan' is not a finite number; expected 1 to 170 deg");
   EXPECT_EQ(failure("camera.fov_deg=-inf"),
-            "'camera.fov_deg' = '-inf' is not a finite number, --set, allowed is 1 to 170 deg");
+            "--set: 'camera.fov_deg' = '-inf' is not a finite number; expected 1 to 170 deg");
   EXPECT_EQ(failure("camera.fov_deg=1e999"),
-            "'camera.fov_deg' = '1e999' is out of range, --set, allowed is 1 to 170 deg");
+            "--set: 'camera.fov_deg' = '1e999' is out of range; expected 1 to 170 deg");
   EXPECT_EQ(failure("shadows.cascades=3.5"),
-            "'shadows.cascades' = '3.5' is not one whole number, --set, allowed is a whole number, 1 to 8 "
+            "--set: 'shadows.cascades' = '3.5' is not one whole number; expected a whole number, 1 to 8 "
             "cascades");
   EXPECT_EQ(failure("shadows.cascades=99999999999999999999999"),
-            "'shadows.cascades' = '99999999999999999999999' is out of range, --set, allowed is a whole number, 1 "
+            "--set: 'shadows.cascades' = '99999999999999999999999' is out of range; expected a whole number, 1 "
             "to 8 cascades");
   EXPECT_EQ(failure("camera.position_m=1,2"),
-            "'camera.position_m' = '1,2' is not 3 numbers separated by commas, --set, allowed is 3 numbers, each "
+            "--set: 'camera.position_m' = '1,2' is not 3 numbers separated by commas; expected 3 numbers, each "
             "-1e+09 to 1e+09 m");
   EXPECT_EQ(failure("camera.position_m=1,,2"),
-            "'camera.position_m' = '' is not 3 numbers, --set, allowed is 3 numbers, each -1e+09 to 1e+09 m");
+            "--set: 'camera.position_m' = '' is not 3 numbers; expected 3 numbers, each -1e+09 to 1e+09 m");
   EXPECT_EQ(failure("scattering.enabled=yes"),
-            "'scattering.enabled' = 'yes' is neither on nor off, --set, allowed is true or false");
+            "--set: 'scattering.enabled' = 'yes' is neither on nor off; expected true or false");
   EXPECT_EQ(failure("terrain.shading=shiny"),
-            "'terrain.shading' = 'shiny' is not one of its values, --set, allowed is materials, height, plain");
+            "--set: 'terrain.shading' = 'shiny' is not one of its values; expected materials, height, plain");
   EXPECT_EQ(failure("terrain.source=\xff\xfe"),
-            "'terrain.source' = '?\?' is not valid UTF-8, --set, allowed is text in UTF-8");
+            "--set: 'terrain.source' = '?\?' is not valid UTF-8; expected text in UTF-8");
 }
 
 TEST(ConfigSettings, AFailedSetChangesNothing) {
@@ -198,7 +198,7 @@ TEST(ConfigSettings, CrossChecks) {
   settings.scene.shadows.first_marched = 2;
   ASSERT_FALSE(check(settings).ok());
   EXPECT_EQ(check(settings).error().message,
-            "'shadows.first_marched' = 2 is no cascade, with 'shadows.cascades' = 2, allowed is 0 to 1");
+            "shadows.first_marched: 2 is not below shadows.cascades = 2; expected 0 to 1");
   settings = Settings();
   settings.effect.scattering.downscale = 3;
   ASSERT_FALSE(check(settings).ok());
@@ -214,7 +214,7 @@ TEST(ConfigSettings, CrossChecks) {
   settings.path.frames[1].time_s = 1.0;
   for (scene::PathFrame& frame : settings.path.frames) frame.julian_day = 2460000.0;
   ASSERT_FALSE(check(settings).ok());
-  EXPECT_EQ(check(settings).error().message, "a path with dates has no place, [playback], needed is place = "
+  EXPECT_EQ(check(settings).error().message, "[playback]: a path with dates has no place; expected place = "
                                              "\"LAT,LON\", or an elevation file with a coordinate "
                                              "system in terrain.source");
   settings.scene.terrain.source = "mine.tif";
@@ -226,8 +226,7 @@ TEST(ConfigSettings, CrossChecks) {
   settings.scene.homogeneous.haze_length_m = 9000.0F;
   ASSERT_FALSE(check(settings).ok());
   EXPECT_EQ(check(settings).error().message,
-            "'homogeneous.haze_length_m' = 9000 reaches above the air, with 'homogeneous.air_length_m' = 8400, allowed "
-            "is 1 to 8400");
+            "homogeneous.haze_length_m: 9000 exceeds homogeneous.air_length_m; expected 1 to 8400");
 }
 
 TEST(ConfigSettings, MetadataHoldsEverything) {

@@ -167,7 +167,7 @@ TEST_F(ImageFiles, WhatCannotBeWritten) {
   EXPECT_TRUE(kind_of_name("A.PNG").ok());
   EXPECT_EQ(kind_of_name("x.y.exr").value(), FileKind::exr);
   EXPECT_EQ(kind_of_name("out.jpg").error().message,
-            "unknown image format, 'out.jpg', allowed is a name in .png or .exr");
+            "'out.jpg': unknown image format; expected a name that ends in .png or .exr");
 }
 
 TEST_F(ImageFiles, AFullDiskLeavesNothingAndTheOldFile) {

@@ -49,7 +49,7 @@ class SceneMesh : public testing::Test {
     EXPECT_NE(read.error().message.find(part), std::string::npos) << read.error().message;
     EXPECT_NE(read.error().message.find("bad.gltf"), std::string::npos) << read.error().message;
     EXPECT_EQ(read.error().message.find('\n'), std::string::npos);
-    EXPECT_NE(read.error().message.find("allowed"), std::string::npos) << read.error().message;
+    EXPECT_NE(read.error().message.find("; expected "), std::string::npos) << read.error().message;
   }
 
  private:
@@ -187,8 +187,8 @@ TEST_F(SceneMesh, MaterialsAndTextures) {
 }
 
 TEST_F(SceneMesh, WrongFilesSayWhatIsWrong) {
-  refuses("", "is no glTF file");
-  refuses("not glTF at all", "is no glTF file");
+  refuses("", "is not a glTF file");
+  refuses("not glTF at all", "is not a glTF file");
   refuses("{", "cannot be read");
   refuses("{}", "asset is missing");
   refuses(std::string("glTF\2\0\0\0", 8), "ends within the header");
@@ -247,7 +247,7 @@ TEST_F(SceneMesh, WrongFilesSayWhatIsWrong) {
       f.material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
     });
   };
-  refuses(textured({{{"uri", "missing.png"}}}), "images[0].uri: cannot read");
+  refuses(textured({{{"uri", "missing.png"}}}), "missing.png': cannot read");
   refuses(textured({{{"uri", "data:image/png;base64,QUJDREVGRw=="}}}), "is no picture");
   refuses(textured({{{"bufferView", 9}, {"mimeType", "image/png"}}}), "images[0].bufferView is 9");
   refuses(textured(json::array({json::object()})), "images[0] is no picture");

@@ -140,14 +140,14 @@ TEST(SolarPosition, TimesAreRefused) {
     return read ? std::string("fine") : read.error().message;
   };
   EXPECT_EQ(message("2023-02-29T00:00Z"),
-            "'2023-02-29T00:00Z' has no such day, --time, allowed is 01 to 28 in that month");
+            "--time: '2023-02-29T00:00Z' has no such day; expected 01 to 28 in that month");
   EXPECT_EQ(message("2100-02-29T00:00Z"),
-            "'2100-02-29T00:00Z' has no such day, --time, allowed is 01 to 28 in that month");
+            "--time: '2100-02-29T00:00Z' has no such day; expected 01 to 28 in that month");
   EXPECT_EQ(message("2024-06-01T12:00"),
-            "'2024-06-01T12:00' has no offset from UTC, --time, needed is Z or an offset such as +01:00 at "
+            "--time: '2024-06-01T12:00' has no offset from UTC; expected Z or an offset such as +01:00 at "
             "the end");
   EXPECT_EQ(message("1899-12-31T23:59Z"),
-            "'1899-12-31T23:59Z' is out of range, --time, allowed are the years 1900 to 2100");
+            "--time: '1899-12-31T23:59Z' is out of range; expected the years 1900 to 2100");
   for (const char* const text : {"",
                                  "now",
                                  "2024-06-01",
@@ -197,7 +197,7 @@ TEST(SolarPosition, Places) {
        {"", "47", "47,", ",8", "47,8,9", "47;8", "91,0", "-90.01,0", "0,360.5", "0,-361", "nan,0", "inf,0", "47N,8E"}) {
     const Result<Place> refused = parse_place(text, "--at");
     ASSERT_FALSE(refused.ok()) << text;
-    EXPECT_NE(refused.error().message.find(", --at, allowed is LAT,LON in degrees"), std::string::npos);
+    EXPECT_NE(refused.error().message.find("; expected LAT,LON in degrees"), std::string::npos);
   }
 }
 

@@ -57,8 +57,8 @@ Result<void> Window::open(std::uint32_t width, std::uint32_t height, const char*
   window_ = glfwCreateWindow(static_cast<int>(width), static_cast<int>(height), title, nullptr, nullptr);
   if (window_ == nullptr) {
     return Error{ErrorCode::unsupported_device,
-                 "the window cannot be opened (" + glfw_error() +
-                     "), tyndall view, needed is a display; 'tyndall render' makes pictures without one"};
+                 "tyndall view: the window cannot be opened (" + glfw_error() +
+                     "); expected a display; 'tyndall render' makes pictures without one"};
   }
   glfwSetWindowSizeLimits(window_, 64, 64, GLFW_DONT_CARE, GLFW_DONT_CARE);
   install_callbacks();

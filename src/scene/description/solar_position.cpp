@@ -277,7 +277,7 @@ Result<Place> parse_place(std::string_view text, std::string_view where) {
     return place;
   }
   return input_error(concat({"'", one_line(text), read ? "' is out of range" : "' is no place"}), where,
-                     "allowed is LAT,LON in degrees, -90 to 90 northwards and -360 to 360 eastwards");
+                     "expected LAT,LON in degrees, -90 to 90 northwards and -360 to 360 eastwards");
 }
 
 Result<double> parse_time(std::string_view text, std::string_view where) {
@@ -285,20 +285,20 @@ Result<double> parse_time(std::string_view text, std::string_view where) {
     return input_error(concat({"'", one_line(text), "' ", what}), where, allowed);
   };
   const std::optional<Civil> read = read_civil(text);
-  if (!read) return error("is no time", "allowed is a time as 2003-10-17T12:30:30-07:00 or 2003-10-17T19:30:30.5Z");
+  if (!read) return error("is no time", "expected a time as 2003-10-17T12:30:30-07:00 or 2003-10-17T19:30:30.5Z");
   const Civil& civil = *read;
-  if (!civil.has_offset) return error("has no offset from UTC", "needed is Z or an offset such as +01:00 at the end");
-  if (civil.year < 1900 || civil.year > 2100) return error("is out of range", "allowed are the years 1900 to 2100");
-  if (civil.month < 1 || civil.month > 12) return error("has no such month", "allowed is 01 to 12");
+  if (!civil.has_offset) return error("has no offset from UTC", "expected Z or an offset such as +01:00 at the end");
+  if (civil.year < 1900 || civil.year > 2100) return error("is out of range", "expected the years 1900 to 2100");
+  if (civil.month < 1 || civil.month > 12) return error("has no such month", "expected 01 to 12");
   const std::int64_t last = days_in_month(civil.year, civil.month);
   if (civil.day < 1 || civil.day > last) {
-    return error("has no such day", concat({"allowed is 01 to ", std::to_string(last), " in that month"}));
+    return error("has no such day", concat({"expected 01 to ", std::to_string(last), " in that month"}));
   }
   // ISO 8601 has 24:00:00 for the end of a day, and a second 60 where a leap second is inserted.
   const bool end_of_day = civil.hour == 24 && civil.minute == 0 && civil.second == 0 && civil.fraction_s == 0.0;
   const bool leap_second = civil.minute == 59 && civil.second == 60;
   if ((civil.hour > 23 && !end_of_day) || civil.minute > 59 || (civil.second > 59 && !leap_second)) {
-    return error("has no such time of day", "allowed is 00:00:00 to 24:00:00, with a fraction");
+    return error("has no such time of day", "expected 00:00:00 to 24:00:00, with a fraction");
   }
   const std::int64_t seconds = 60 * (60 * civil.hour + civil.minute - civil.offset_minutes) + civil.second;
   return 2440587.5 + static_cast<double>(days_from_civil(civil.year, civil.month, civil.day)) +

@@ -19,7 +19,7 @@ std::string percent_decoded(std::string_view text, const std::string& user) {
     if (c >= '0' && c <= '9') return static_cast<unsigned>(c - '0');
     if (c >= 'a' && c <= 'f') return static_cast<unsigned>(c - 'a') + 10;
     if (c >= 'A' && c <= 'F') return static_cast<unsigned>(c - 'A') + 10;
-    fail(user + ".uri has a % without two hexadecimal digits", "allowed are URIs such as my%20file.bin");
+    fail(user + ".uri has a % without two hexadecimal digits", "expected URIs such as my%20file.bin");
   };
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -53,7 +53,7 @@ std::string base64_decoded(std::string_view text, const std::string& user) {
     else if (c == '/')
       value = 63;
     else
-      fail(user + ".uri has a character that is not base64", "allowed are A-Z, a-z, 0-9, + and /");
+      fail(user + ".uri has a character that is not base64", "expected A-Z, a-z, 0-9, + and /");
     bits = bits << 6U | value;
     count += 6;
     if (count >= 8) {
@@ -69,7 +69,7 @@ void check_finite(const GltfValues& values, const std::string& user) {
   for (std::size_t i = 0; i < values.count; ++i) {
     for (int c = 0; c < values.components; ++c) {
       if (!std::isfinite(values.real(i, c))) {
-        fail(user + " has an element that is not finite, number " + std::to_string(i), "allowed are finite numbers");
+        fail(user + " has an element that is not finite, number " + std::to_string(i), "expected finite numbers");
       }
     }
   }
@@ -80,20 +80,20 @@ void check_finite(const GltfValues& values, const std::string& user) {
 std::string GltfData::resource(const std::string& uri, const std::string& user) const {
   if (uri.starts_with("data:")) {
     const std::size_t comma = uri.find(',');
-    if (comma == std::string::npos) fail(user + ".uri is a data URI without data", "allowed is data:MIME;base64,DATA");
+    if (comma == std::string::npos) fail(user + ".uri is a data URI without data", "expected data:MIME;base64,DATA");
     const std::string_view data = std::string_view(uri).substr(comma + 1);
     const std::string_view head = std::string_view(uri).substr(0, comma);
     return head.ends_with(";base64") ? base64_decoded(data, user) : percent_decoded(data, user);
   }
   const std::string name = percent_decoded(uri, user);
   const std::string shown = user + ".uri '" + files::one_line(name, 200) + "'";
-  if (name.find("://") != std::string::npos) fail(shown + " is not a file", "allowed are files and data URIs");
+  if (name.find("://") != std::string::npos) fail(shown + " is not a file", "expected files and data URIs");
   if (name.empty() || files::has_control_characters(name))
-    fail(shown + " is not the name of a file", "allowed are files and data URIs");
+    fail(shown + " is not the name of a file", "expected files and data URIs");
   Result<std::string> read = files::read_file((std::filesystem::path(folder_) / name).string(), kMaxGltfFileBytes);
   if (!read.ok()) {
-    const std::string& message = read.error().message;  // with what is needed at its end
-    fail(user + ".uri: " + message.substr(0, message.rfind(", ")), "allowed is a file that can be read");
+    const std::string& message = read.error().message;  // ends with what is expected
+    fail(user + ".uri: " + message.substr(0, message.rfind("; ")), "expected a file that can be read");
   }
   return std::move(read).value();
 }
@@ -115,11 +115,11 @@ std::span<const unsigned char> GltfData::buffer(std::size_t index) {
   } else if (index == 0 && !chunk_.empty()) {
     bytes = chunk_;
   } else {
-    fail(name + " has no data", "allowed is a uri, or the binary chunk of a .glb for buffers[0]");
+    fail(name + " has no data", "expected a uri, or the binary chunk of a .glb for buffers[0]");
   }
   if (bytes.size() < described.length) {
     fail(name + " has " + std::to_string(bytes.size()) + " bytes",
-         "allowed are the " + std::to_string(described.length) + " of its byteLength");
+         "expected the " + std::to_string(described.length) + " of its byteLength");
   }
   return {reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<std::size_t>(described.length)};
 }
@@ -175,7 +175,7 @@ std::vector<unsigned char> GltfData::with_sparse(const GltfAccessor& accessor, c
                                                  const std::string& user) {
   if (accessor.count > kMaxMeshVertices) {
     fail(user + " is sparse and has " + std::to_string(accessor.count) + " elements",
-         "allowed are up to " + std::to_string(kMaxMeshVertices));
+         "expected up to " + std::to_string(kMaxMeshVertices));
   }
   const GltfSparse& sparse = *accessor.sparse;
   const std::size_t element = bytes_of(accessor.component) * static_cast<std::size_t>(accessor.components);
@@ -191,7 +191,7 @@ std::vector<unsigned char> GltfData::with_sparse(const GltfAccessor& accessor, c
     const std::int64_t to = indices.whole(i);
     if (to <= last || static_cast<std::size_t>(to) >= accessor.count) {
       fail(user + " has the sparse index " + std::to_string(to),
-           "allowed are increasing indices below " + std::to_string(accessor.count));
+           "expected increasing indices below " + std::to_string(accessor.count));
     }
     std::memcpy(&out[static_cast<std::size_t>(to) * element], values + i * element, element);
     last = to;

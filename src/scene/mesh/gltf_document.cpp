@@ -54,10 +54,10 @@ std::optional<std::pair<std::int64_t, std::int64_t>> version_of(const std::strin
 void check_version(const GltfJson& root) {
   const GltfJson asset = root.object("asset");
   const auto version = version_of(asset.text("version"));
-  if (!version || version->first != 2) asset.refuse("version", "allowed is \"2.0\"");
+  if (!version || version->first != 2) asset.refuse("version", "expected \"2.0\"");
   if (!asset.has("minVersion")) return;
   const auto min = version_of(asset.text("minVersion"));
-  if (!min || *min > std::pair<std::int64_t, std::int64_t>(2, 0)) asset.refuse("minVersion", "allowed is \"2.0\"");
+  if (!min || *min > std::pair<std::int64_t, std::int64_t>(2, 0)) asset.refuse("minVersion", "expected \"2.0\"");
 }
 
 void check_extensions(const GltfJson& root, GltfDocument& out) {
@@ -71,7 +71,7 @@ void check_extensions(const GltfJson& root, GltfDocument& out) {
         (!kHasDraco && name == "KHR_draco_mesh_compression") || (!kHasMeshopt && name == "EXT_meshopt_compression");
     fail("requires the extension " + files::one_line(name, 80) +
              (left_out ? ", whose decoder this program was built without" : ""),
-         "allowed are " + joined(supported));
+         "expected " + joined(supported));
   }
   std::set<std::string> ignored;
   for (const std::string& name : root.texts("extensionsUsed")) {
@@ -82,8 +82,7 @@ void check_extensions(const GltfJson& root, GltfDocument& out) {
 
 GltfComponent component(const GltfJson& from, const char* name) {
   const std::int64_t type = from.integer(name, 0, kAny);
-  if (type < 5120 || type > 5126 || type == 5124)
-    from.refuse(name, "allowed are 5120, 5121, 5122, 5123, 5125 and 5126");
+  if (type < 5120 || type > 5126 || type == 5124) from.refuse(name, "expected 5120, 5121, 5122, 5123, 5125 and 5126");
   return static_cast<GltfComponent>(type);
 }
 
@@ -94,7 +93,7 @@ std::size_t choice(const GltfJson& from, const char* name, const std::array<cons
   const auto found = std::find(names.begin(), names.end(), text);
   if (found == names.end()) {
     std::set<std::string> allowed(names.begin(), names.end());
-    from.refuse(name, "allowed are " + joined(allowed));
+    from.refuse(name, "expected " + joined(allowed));
   }
   return static_cast<std::size_t>(found - names.begin());
 }
@@ -108,7 +107,7 @@ void parse_range(const GltfJson& json, const GltfDocument& out, std::size_t& buf
   const std::uint64_t size = out.buffers[buffer].length;
   if (offset > size || length > size - offset) {
     fail(json.path() + " ends at byte " + std::to_string(offset + length) + ", beyond the end of its buffer",
-         "allowed are the " + std::to_string(size) + " bytes of " + at("buffers", buffer));
+         "expected the " + std::to_string(size) + " bytes of " + at("buffers", buffer));
   }
 }
 
@@ -126,16 +125,16 @@ GltfMeshopt parse_meshopt(const GltfJson& json, const GltfDocument& out, std::ui
   using Filter = GltfMeshopt::Filter;
   if (meshopt.mode == Mode::attributes ? stride % 4 != 0 : stride != 2 && stride != 4) {
     json.refuse("byteStride",
-                meshopt.mode == Mode::attributes ? "allowed is a multiple of 4 up to 256" : "allowed are 2 and 4");
+                meshopt.mode == Mode::attributes ? "expected a multiple of 4 up to 256" : "expected 2 and 4");
   }
-  if (meshopt.mode == Mode::triangles && meshopt.count % 3 != 0) json.refuse("count", "allowed is a multiple of 3");
+  if (meshopt.mode == Mode::triangles && meshopt.count % 3 != 0) json.refuse("count", "expected a multiple of 3");
   const bool fits = meshopt.filter == Filter::none ||
                     (meshopt.mode == Mode::attributes && (meshopt.filter == Filter::exponential || stride == 8 ||
                                                           (meshopt.filter == Filter::octahedral && stride == 4)));
-  if (!fits) json.refuse("filter", "allowed is NONE for this mode and byteStride");
+  if (!fits) json.refuse("filter", "expected NONE for this mode and byteStride");
   if (meshopt.count * stride != view_length) {
     fail(json.path() + " decodes to " + std::to_string(meshopt.count * stride) + " bytes",
-         "allowed are the " + std::to_string(view_length) + " of the view's byteLength");
+         "expected the " + std::to_string(view_length) + " of the view's byteLength");
   }
   return meshopt;
 }
@@ -153,7 +152,7 @@ void parse_views(const GltfJson& root, GltfDocument& out) {
     GltfView view;
     parse_range(json, out, view.buffer, view.offset, view.length);
     view.stride = static_cast<std::size_t>(json.integer("byteStride", 4, 252, 0));
-    if (view.stride % 4 != 0) json.refuse("byteStride", "allowed is a multiple of 4 from 4 to 252");
+    if (view.stride % 4 != 0) json.refuse("byteStride", "expected a multiple of 4 from 4 to 252");
     if (const auto meshopt = json.extension("EXT_meshopt_compression"); kHasMeshopt && meshopt) {
       view.meshopt = parse_meshopt(*meshopt, out, view.length);
     }
@@ -167,7 +166,7 @@ void check_view_range(const GltfJson& json, const GltfDocument& out, std::size_t
   if (offset > size || (count - 1) * stride + element > size - offset) {
     fail(json.path() + " of " + std::to_string(count) + " elements ends at byte " +
              std::to_string(offset + (count - 1) * stride + element) + ", beyond the end of its bufferView",
-         "allowed are the " + std::to_string(size) + " bytes of " + at("bufferViews", view));
+         "expected the " + std::to_string(size) + " bytes of " + at("bufferViews", view));
   }
 }
 
@@ -181,7 +180,7 @@ GltfSparse parse_sparse(const GltfJson& json, const GltfDocument& out, const Glt
   sparse.index_component = component(indices, "componentType");
   if (sparse.index_component != GltfComponent::uint8 && sparse.index_component != GltfComponent::uint16 &&
       sparse.index_component != GltfComponent::uint32) {
-    indices.refuse("componentType", "allowed are 5121, 5123 and 5125");
+    indices.refuse("componentType", "expected 5121, 5123 and 5125");
   }
   sparse.value_view = static_cast<std::size_t>(values.index("bufferView", "bufferViews", true));
   sparse.value_offset = static_cast<std::uint64_t>(values.integer("byteOffset", 0, kAny, 0));
@@ -209,7 +208,7 @@ void parse_accessors(const GltfJson& root, GltfDocument& out) {
       const std::size_t stride = out.views[view].stride == 0 ? element : out.views[view].stride;
       if (stride < element) {
         fail(json.path() + " has elements of " + std::to_string(element) + " bytes",
-             "allowed are up to the " + std::to_string(stride) + " of " + at("bufferViews", view) + ".byteStride");
+             "expected up to the " + std::to_string(stride) + " of " + at("bufferViews", view) + ".byteStride");
       }
       check_view_range(json, out, view, accessor.offset, stride, accessor.count, element);
     }
@@ -233,7 +232,7 @@ std::size_t bytes_of(GltfComponent component) {
 }
 
 GltfDocument parse_gltf(std::string_view text) {
-  if (too_deep(text)) fail("is nested too deeply", "allowed are " + std::to_string(kMaxJsonDepth) + " levels");
+  if (too_deep(text)) fail("is nested too deeply", "expected " + std::to_string(kMaxJsonDepth) + " levels");
   const nlohmann::json json = nlohmann::json::parse(text);
   const GltfJson root(json);
   GltfDocument out;

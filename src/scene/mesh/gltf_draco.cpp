@@ -32,17 +32,17 @@ DracoMesh decode_draco(const GltfDocument& document, const GltfPrimitive& primit
   draco::Decoder decoder;
   auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
   if (!decoded.ok())
-    fail(path + " cannot be decoded: " + decoded.status().error_msg_string(), "allowed is a whole Draco mesh");
+    fail(path + " cannot be decoded: " + decoded.status().error_msg_string(), "expected a whole Draco mesh");
   const std::unique_ptr<draco::Mesh> mesh = std::move(decoded).value();
   DracoMesh out;
   out.points = mesh->num_points();
   if (out.points == 0 || out.points > kMaxMeshVertices || mesh->num_faces() > kMaxMeshIndices / 3) {
     fail(path + " has " + std::to_string(out.points) + " vertices",
-         "allowed are 1 to " + std::to_string(kMaxMeshVertices));
+         "expected 1 to " + std::to_string(kMaxMeshVertices));
   }
   for (draco::FaceIndex f(0); f < mesh->num_faces(); ++f) {
     for (const draco::PointIndex& corner : mesh->face(f)) {
-      if (corner.value() >= out.points) fail(path + " is damaged", "allowed are corners that are vertices");
+      if (corner.value() >= out.points) fail(path + " is damaged", "expected corners that are vertices");
       out.corners.push_back(corner.value());
     }
   }
@@ -51,13 +51,13 @@ DracoMesh decode_draco(const GltfDocument& document, const GltfPrimitive& primit
     const draco::PointAttribute* const attribute = mesh->GetAttributeByUniqueId(number);
     const std::string name = path + ".attributes." + semantic;
     if (attribute == nullptr)
-      fail(name + " is " + std::to_string(number), "allowed are the numbers of attributes in the Draco mesh");
+      fail(name + " is " + std::to_string(number), "expected the numbers of attributes in the Draco mesh");
     if (attribute->data_type() != data_type(accessor.component) || attribute->num_components() != accessor.components) {
-      fail(name + " has another type than its accessor", "allowed are equal types");
+      fail(name + " has another type than its accessor", "expected equal types");
     }
     if (accessor.count != out.points) {
       fail(name + " has " + std::to_string(out.points) + " elements",
-           "allowed are the " + std::to_string(accessor.count) + " of its accessor");
+           "expected the " + std::to_string(accessor.count) + " of its accessor");
     }
     const std::size_t element = bytes_of(accessor.component) * static_cast<std::size_t>(accessor.components);
     std::vector<unsigned char>& values = out.attributes[semantic];
@@ -65,7 +65,7 @@ DracoMesh decode_draco(const GltfDocument& document, const GltfPrimitive& primit
     for (std::size_t i = 0; i < out.points; ++i) {
       const draco::AttributeValueIndex value =
           attribute->mapped_index(draco::PointIndex(static_cast<std::uint32_t>(i)));
-      if (value.value() >= attribute->size()) fail(name + " is damaged", "allowed is a value for each vertex");
+      if (value.value() >= attribute->size()) fail(name + " is damaged", "expected a value for each vertex");
       attribute->GetValue(value, values.data() + i * element);
     }
   }
@@ -76,8 +76,7 @@ DracoMesh decode_draco(const GltfDocument& document, const GltfPrimitive& primit
 
 DracoMesh decode_draco(const GltfDocument&, const GltfPrimitive&, std::span<const unsigned char>,
                        const std::string& where) {
-  fail(where + " is compressed by Draco, whose decoder this program was built without",
-       "allowed are uncompressed meshes");
+  fail(where + " is compressed by Draco, whose decoder this program was built without", "expected uncompressed meshes");
 }
 
 #endif

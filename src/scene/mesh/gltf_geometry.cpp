@@ -44,12 +44,12 @@ glm::dmat4 GltfVertices::skinned(std::size_t i) const {
       const double weight = one.weights.real(i, c);
       if (weight < 0.0)
         fail(where + " has a negative weight of a joint at vertex " + std::to_string(i),
-             "allowed are weights of 0 and more");
+             "expected weights of 0 and more");
       if (weight == 0.0) continue;
       const std::uint32_t joint = one.joints.whole(i, c);
       if (joint >= joints->size()) {
         fail(where + " has joint " + std::to_string(joint) + " at vertex " + std::to_string(i),
-             "allowed are 0 to " + std::to_string(joints->size() - 1));
+             "expected 0 to " + std::to_string(joints->size() - 1));
       }
       out += weight * (*joints)[joint];
       sum += weight;
@@ -76,7 +76,7 @@ MeshVertex GltfVertices::at(std::size_t i) const {
   // Every input is finite, but sums and products can leave the range of floats.
   for (int c = 0; c < 3; ++c) {
     if (!(std::abs(p[c]) <= kLargestCoordinate_m))
-      fail(where + " reaches farther than a planet", "allowed are coordinates of up to 10000 km");
+      fail(where + " reaches farther than a planet", "expected coordinates of up to 10000 km");
   }
   out.position = glm::vec3(p);
   const double length = glm::length(n);
@@ -86,7 +86,7 @@ MeshVertex GltfVertices::at(std::size_t i) const {
     const double cosine = std::cos(texture.rotation_rad), sine = std::sin(texture.rotation_rad);
     out.uv = glm::vec2(texture.offset + glm::dvec2(t.x * cosine + t.y * sine, t.y * cosine - t.x * sine));
     if (!std::isfinite(out.uv.x) || !std::isfinite(out.uv.y))
-      fail(where + " has a texture coordinate that is too large", "allowed are 32-bit floats");
+      fail(where + " has a texture coordinate that is too large", "expected 32-bit floats");
   }
   if (!color.empty()) {
     const glm::dvec4 x = morphed(color, &Target::color, i);
@@ -126,7 +126,7 @@ void GltfReader::read_shape(const Shape& shape, const std::vector<glm::dmat4>& p
       const glm::dvec3 world(transform * glm::dvec4(p, 1.0));
       for (int c = 0; c < 3; ++c) {
         if (!(std::abs(world[c]) <= kLargestCoordinate_m))
-          fail("reaches farther than a planet", "allowed are coordinates of up to 10000 km");
+          fail("reaches farther than a planet", "expected coordinates of up to 10000 km");
       }
       out_.bounds.add(world);
     }
@@ -164,10 +164,10 @@ GltfValues GltfReader::attribute(const GltfAttributes& attributes, const std::st
   const std::string full = path + " (" + scene::at("accessors", index) + ")";
   if (accessor.components < min_components || accessor.components > max_components) {
     fail(full + " has " + std::to_string(accessor.components) + " components",
-         "allowed are " + shown_range(min_components, max_components));
+         "expected " + shown_range(min_components, max_components));
   }
   if (count > 0 && accessor.count != count) {
-    fail(full + " has another length than POSITION", "allowed are " + std::to_string(count) + " elements");
+    fail(full + " has another length than POSITION", "expected " + std::to_string(count) + " elements");
   }
   if (draco != nullptr) {
     const auto compressed = draco->attributes.find(name);
@@ -183,10 +183,10 @@ GltfVertices GltfReader::vertices(const GltfPrimitive& primitive, const std::str
   const std::string path = where + ".attributes";
   out.position = attribute(primitive.attributes, "POSITION", path, draco, 0, 3, 3);
   const std::size_t count = out.position.count;
-  if (count > kMaxMeshVertices) fail("has too many vertices", "allowed are up to " + std::to_string(kMaxMeshVertices));
+  if (count > kMaxMeshVertices) fail("has too many vertices", "expected up to " + std::to_string(kMaxMeshVertices));
   if (draco != nullptr && count != draco->points) {
     fail(path + ".POSITION has " + std::to_string(count) + " elements",
-         "allowed are the " + std::to_string(draco->points) + " of the Draco mesh");
+         "expected the " + std::to_string(draco->points) + " of the Draco mesh");
   }
   out.normal = attribute(primitive.attributes, "NORMAL", path, draco, count, 3, 3);
   // Of the set that the base colour names, moved as KHR_texture_transform says.
@@ -195,7 +195,7 @@ GltfVertices GltfReader::vertices(const GltfPrimitive& primitive, const std::str
   out.uv = attribute(primitive.attributes, uv, path, draco, count, 2, 2);
   out.color = attribute(primitive.attributes, "COLOR_0", path, draco, count, 3, 4);
   if (!out.color.empty() && out.color.component != GltfComponent::float32 && !out.color.normalized) {
-    fail(path + ".COLOR_0 has integers that are not normalized", "allowed is \"normalized\": true, or floats");
+    fail(path + ".COLOR_0 has integers that are not normalized", "expected \"normalized\": true, or floats");
   }
   const std::vector<double>& weights = std::get<2>(shape);
   for (std::size_t i = 0; i < primitive.targets.size(); ++i) {
@@ -218,14 +218,14 @@ GltfVertices GltfReader::vertices(const GltfPrimitive& primitive, const std::str
     one.weights = attribute(primitive.attributes, "WEIGHTS_" + std::to_string(set), path, draco, count, 4, 4);
     if (one.joints.empty() != one.weights.empty())
       fail(path + " has only one of JOINTS_" + std::to_string(set) + " and WEIGHTS_" + std::to_string(set),
-           "allowed are both");
+           "expected both");
     if (one.joints.empty()) break;
     if (one.joints.component != GltfComponent::uint8 && one.joints.component != GltfComponent::uint16) {
-      fail(path + ".JOINTS_" + std::to_string(set) + " has another type", "allowed are unsigned bytes and shorts");
+      fail(path + ".JOINTS_" + std::to_string(set) + " has another type", "expected unsigned bytes and shorts");
     }
     out.influences.push_back(std::move(one));
   }
-  if (out.influences.empty()) fail(path + " has no JOINTS_0 and WEIGHTS_0", "allowed are both in a mesh with a skin");
+  if (out.influences.empty()) fail(path + " has no JOINTS_0 and WEIGHTS_0", "expected both in a mesh with a skin");
   return out;
 }
 
@@ -233,9 +233,9 @@ void GltfReader::emit(const GltfVertices& vertices, const std::vector<std::uint3
   const bool flat = vertices.normal.empty();
   const std::size_t added = flat ? corners.size() : vertices.position.count;
   if (out_.vertices.size() + added > kMaxMeshVertices)
-    fail("has too many vertices", "allowed are up to " + std::to_string(kMaxMeshVertices));
+    fail("has too many vertices", "expected up to " + std::to_string(kMaxMeshVertices));
   if (out_.indices.size() + corners.size() > kMaxMeshIndices)
-    fail("has too many triangles", "allowed are up to " + std::to_string(kMaxMeshIndices / 3));
+    fail("has too many triangles", "expected up to " + std::to_string(kMaxMeshIndices / 3));
   MeshPart part;
   part.first_index = static_cast<std::uint32_t>(out_.indices.size());
   part.index_count = static_cast<std::uint32_t>(corners.size());
@@ -280,7 +280,7 @@ std::vector<std::uint32_t> GltfReader::triangles(const GltfPrimitive& primitive,
                        accessor.component == GltfComponent::uint32;
     if (!whole || accessor.components != 1) {
       fail(where + ".indices (" + scene::at("accessors", index) + ") are indices of a wrong type",
-           "allowed are SCALAR unsigned bytes, shorts and ints");
+           "expected SCALAR unsigned bytes, shorts and ints");
     }
     const GltfValues in = data_.values(index, where + ".indices");
     list.reserve(in.count);
@@ -288,7 +288,7 @@ std::vector<std::uint32_t> GltfReader::triangles(const GltfPrimitive& primitive,
       const std::uint32_t value = in.whole(i);
       if (value >= count)
         fail(where + " has index " + std::to_string(value) + " of " + std::to_string(count) + " vertices",
-             "allowed are 0 to " + std::to_string(count - 1));
+             "expected 0 to " + std::to_string(count - 1));
       list.push_back(value);
     }
   } else {

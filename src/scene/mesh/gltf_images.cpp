@@ -154,24 +154,24 @@ int GltfReader::read_image(std::size_t index) {
   if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()) ||
       stbi_info_from_memory(data, static_cast<int>(bytes.size()), &width, &height, &channels) == 0) {
     fail(name + " is no picture",
-         "allowed are PNG and JPEG of up to " + std::to_string(kMaxTextureSide) + " texels on a side");
+         "expected PNG and JPEG of up to " + std::to_string(kMaxTextureSide) + " texels on a side");
   }
   if (width <= 0 || height <= 0 || width > static_cast<int>(kMaxTextureSide) ||
       height > static_cast<int>(kMaxTextureSide)) {
     fail(name + " has " + std::to_string(width) + "x" + std::to_string(height) + " texels",
-         "allowed are up to " + std::to_string(kMaxTextureSide) + " texels on a side");
+         "expected up to " + std::to_string(kMaxTextureSide) + " texels on a side");
   }
   texture_bytes_ += 4ULL * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
   if (texture_bytes_ > kMaxTextureBytes)
-    fail("has more texels than there is room for", "allowed are textures of up to 1 GiB together");
+    fail("has more texels than there is room for", "expected textures of up to 1 GiB together");
   const auto w = static_cast<std::uint64_t>(width);
   const auto h = static_cast<std::uint64_t>(height);
   const std::optional<std::string> fault =
       bytes.starts_with(kPngSignature) ? fault_of_png(bytes, w, h) : fault_of_jpeg(bytes, w, h);
-  if (fault) fail(name + " is a picture " + *fault, "allowed is a whole PNG or JPEG picture");
+  if (fault) fail(name + " is a picture " + *fault, "expected a whole PNG or JPEG picture");
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(data, static_cast<int>(bytes.size()), &width, &height, &channels, 4), stbi_image_free);
-  if (pixels == nullptr) fail(name + " is a picture that is damaged", "allowed is a whole PNG or JPEG picture");
+  if (pixels == nullptr) fail(name + " is a picture that is damaged", "expected a whole PNG or JPEG picture");
   MeshTexture out;
   out.width = static_cast<std::uint32_t>(width);
   out.height = static_cast<std::uint32_t>(height);

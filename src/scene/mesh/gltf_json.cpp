@@ -38,8 +38,7 @@ std::optional<std::int64_t> whole(const json& value) {
 }
 
 double finite(const json& value, const std::string& path) {
-  if (!value.is_number() || !std::isfinite(value.get<double>()))
-    refuse_value(path, value, "allowed is a finite number");
+  if (!value.is_number() || !std::isfinite(value.get<double>())) refuse_value(path, value, "expected a finite number");
   return value.get<double>();
 }
 
@@ -47,9 +46,9 @@ double in_range(const json& value, const std::string& path, double low, double h
   const double number = finite(value, path);
   if (number < low - kRounding || number > high + kRounding) {
     refuse_value(path, value,
-                 "allowed is a number " + (high < std::numeric_limits<double>::max()
-                                               ? "from " + files::number_text(low) + " to " + files::number_text(high)
-                                               : "of " + files::number_text(low) + " or more"));
+                 "expected a number " + (high < std::numeric_limits<double>::max()
+                                             ? "from " + files::number_text(low) + " to " + files::number_text(high)
+                                             : "of " + files::number_text(low) + " or more"));
   }
   return std::clamp(number, low, high);
 }
@@ -58,7 +57,7 @@ double in_range(const json& value, const std::string& path, double low, double h
 
 GltfJson::GltfJson(const json& root, const json& value, std::string path)
     : root_(&root), value_(&value), path_(std::move(path)) {
-  if (!value.is_object()) refuse_value(path_.empty() ? "the root of its JSON" : path_, value, "allowed is an object");
+  if (!value.is_object()) refuse_value(path_.empty() ? "the root of its JSON" : path_, value, "expected an object");
 }
 
 const json* GltfJson::find(const char* name) const {
@@ -68,7 +67,7 @@ const json* GltfJson::find(const char* name) const {
 
 const json* GltfJson::array(const char* name) const {
   const json* const value = find(name);
-  if (value != nullptr && !value->is_array()) refuse_value(path(name), *value, "allowed is an array");
+  if (value != nullptr && !value->is_array()) refuse_value(path(name), *value, "expected an array");
   return value;
 }
 
@@ -80,7 +79,7 @@ void GltfJson::refuse(const char* name, const std::string& allowed) const {
 
 GltfJson GltfJson::object(const char* name) const {
   const json* const value = find(name);
-  if (value == nullptr) refuse(name, "allowed is an object");
+  if (value == nullptr) refuse(name, "expected an object");
   return {*root_, *value, path(name)};
 }
 
@@ -110,11 +109,11 @@ std::int64_t GltfJson::integer(const char* name, std::int64_t min, std::int64_t 
                                   : "an integer from " + std::to_string(min) + " to " + std::to_string(max);
   const json* const value = find(name);
   if (value == nullptr) {
-    if (!fallback) refuse(name, "allowed is " + allowed);
+    if (!fallback) refuse(name, "expected " + allowed);
     return *fallback;
   }
   const std::optional<std::int64_t> number = whole(*value);
-  if (!number || *number < min || *number > max) refuse(name, "allowed is " + allowed);
+  if (!number || *number < min || *number > max) refuse(name, "expected " + allowed);
   return *number;
 }
 
@@ -125,8 +124,8 @@ int GltfJson::checked_index(const json& value, const std::string& path, const ch
   if (!number || *number < 0 || static_cast<std::uint64_t>(*number) >= count ||
       *number > std::numeric_limits<int>::max()) {
     refuse_value(path, value,
-                 count == 0 ? "allowed is none, because the file has no " + std::string(list)
-                            : "allowed is an index from 0 to " + std::to_string(count - 1) + " into " + list);
+                 count == 0 ? "expected none, because the file has no " + std::string(list)
+                            : "expected an index from 0 to " + std::to_string(count - 1) + " into " + list);
   }
   return static_cast<int>(*number);
 }
@@ -134,7 +133,7 @@ int GltfJson::checked_index(const json& value, const std::string& path, const ch
 int GltfJson::index(const char* name, const char* list, bool required) const {
   const json* const value = find(name);
   if (value != nullptr) return checked_index(*value, path(name), list);
-  if (required) refuse(name, std::string("allowed is an index into ") + list);
+  if (required) refuse(name, std::string("expected an index into ") + list);
   return -1;
 }
 
@@ -181,7 +180,7 @@ bool GltfJson::bounded(const char* name, double low, double high, std::span<doub
   const json* const values = find(name);
   if (values == nullptr) return false;
   if (!values->is_array() || values->size() != out.size()) {
-    refuse(name, "allowed is an array of " + std::to_string(out.size()) + " numbers");
+    refuse(name, "expected an array of " + std::to_string(out.size()) + " numbers");
   }
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = in_range((*values)[i], at(path(name), i), low, high);
   return true;
@@ -191,7 +190,7 @@ std::string GltfJson::text(const char* name, std::optional<std::string> fallback
   const json* const value = find(name);
   if (value == nullptr && fallback) return *std::move(fallback);
   if (value == nullptr || !value->is_string())
-    refuse(name, value == nullptr ? "allowed is a string" : "allowed is a string");
+    refuse(name, value == nullptr ? "expected a string" : "expected a string");
   return value->get<std::string>();
 }
 
@@ -200,7 +199,7 @@ std::vector<std::string> GltfJson::texts(const char* name) const {
   const json* const values = array(name);
   if (values == nullptr) return out;
   for (std::size_t i = 0; i < values->size(); ++i) {
-    if (!(*values)[i].is_string()) refuse_value(at(path(name), i), (*values)[i], "allowed is a string");
+    if (!(*values)[i].is_string()) refuse_value(at(path(name), i), (*values)[i], "expected a string");
     out.push_back((*values)[i].get<std::string>());
   }
   return out;
@@ -208,7 +207,7 @@ std::vector<std::string> GltfJson::texts(const char* name) const {
 
 bool GltfJson::flag(const char* name) const {
   const json* const value = find(name);
-  if (value != nullptr && !value->is_boolean()) refuse(name, "allowed are true and false");
+  if (value != nullptr && !value->is_boolean()) refuse(name, "expected true and false");
   return value != nullptr && value->get<bool>();
 }
 

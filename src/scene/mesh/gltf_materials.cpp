@@ -11,7 +11,7 @@ TextureWrap wrap(const GltfJson& json, const char* name) {
     case 10497: return TextureWrap::repeat;
     case 33071: return TextureWrap::clamp_to_edge;
     case 33648: return TextureWrap::mirrored_repeat;
-    default: json.refuse(name, "allowed are 10497, 33071 and 33648");
+    default: json.refuse(name, "expected 10497, 33071 and 33648");
   }
 }
 
@@ -21,7 +21,7 @@ MeshSampler sampler(const GltfJson& json) {
   out.wrap_u = wrap(json, "wrapS");
   out.wrap_v = wrap(json, "wrapT");
   const std::int64_t mag = json.integer("magFilter", 9728, std::numeric_limits<std::int64_t>::max(), 9729);
-  if (mag > 9729) json.refuse("magFilter", "allowed are 9728 and 9729");
+  if (mag > 9729) json.refuse("magFilter", "expected 9728 and 9729");
   out.mag_linear = mag == 9729;
   switch (json.integer("minFilter", 0, std::numeric_limits<std::int64_t>::max(), 9987)) {
     case 9728: out.min_linear = false, out.mip = MipFilter::none; break;
@@ -30,7 +30,7 @@ MeshSampler sampler(const GltfJson& json) {
     case 9985: out.min_linear = true, out.mip = MipFilter::nearest; break;
     case 9986: out.min_linear = false, out.mip = MipFilter::linear; break;
     case 9987: out.min_linear = true, out.mip = MipFilter::linear; break;
-    default: json.refuse("minFilter", "allowed are 9728, 9729 and 9984 to 9987");
+    default: json.refuse("minFilter", "expected 9728, 9729 and 9984 to 9987");
   }
   return out;
 }
@@ -65,7 +65,7 @@ void alpha_mode(const GltfJson& json, MeshMaterial& out) {
   } else if (mode == "BLEND") {
     out.kind = SurfaceKind::blend;
   } else if (mode != "OPAQUE") {
-    json.refuse("alphaMode", "allowed are OPAQUE, MASK and BLEND");
+    json.refuse("alphaMode", "expected OPAQUE, MASK and BLEND");
   }
   const double cutoff = json.bounded("alphaCutoff", 0.0, std::numeric_limits<double>::max(), 0.5);
   out.alpha_cutoff = static_cast<float>(std::min(cutoff, 2.0));  // above 1 nothing is left of the surface
@@ -109,7 +109,7 @@ void parse_materials(const GltfJson& root, GltfDocument& out, std::set<std::stri
     if (json.has("uri")) image.uri = json.text("uri");
     image.view = json.index("bufferView", "bufferViews");
     if (image.uri.has_value() == (image.view >= 0))
-      fail(json.path() + " is no picture", "allowed is either uri or bufferView");
+      fail(json.path() + " is no picture", "expected either uri or bufferView");
     out.images.push_back(std::move(image));
   }
   std::vector<MeshSampler> samplers;

@@ -15,7 +15,7 @@ std::vector<unsigned char> decode_meshopt(const GltfMeshopt& in, std::span<const
   const std::string path = where + ".extensions.EXT_meshopt_compression";
   if (in.count * in.stride / kMaxRatio > bytes.size()) {
     fail(path + " claims " + std::to_string(in.count * in.stride) + " bytes from " + std::to_string(bytes.size()),
-         "allowed are " + std::to_string(kMaxRatio) + " times as many");
+         "expected " + std::to_string(kMaxRatio) + " times as many");
   }
   std::vector<unsigned char> out(in.count * in.stride);
   int error = 0;
@@ -30,7 +30,7 @@ std::vector<unsigned char> decode_meshopt(const GltfMeshopt& in, std::span<const
       error = meshopt_decodeIndexSequence(out.data(), in.count, in.stride, bytes.data(), bytes.size());
       break;
   }
-  if (error != 0) fail(path + " cannot be decoded", "allowed are the bytes of a meshoptimizer codec");
+  if (error != 0) fail(path + " cannot be decoded", "expected the bytes of a meshoptimizer codec");
   switch (in.filter) {
     case GltfMeshopt::Filter::none: break;
     case GltfMeshopt::Filter::octahedral: meshopt_decodeFilterOct(out.data(), in.count, in.stride); break;
@@ -45,7 +45,7 @@ std::vector<unsigned char> decode_meshopt(const GltfMeshopt& in, std::span<const
 std::vector<unsigned char> decode_meshopt(const GltfMeshopt&, std::span<const unsigned char>,
                                           const std::string& where) {
   fail(where + " is compressed by meshoptimizer, whose decoder this program was built without",
-       "allowed are uncompressed views");
+       "expected uncompressed views");
 }
 
 #endif

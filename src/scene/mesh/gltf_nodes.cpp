@@ -23,7 +23,7 @@ GltfPrimitive primitive(const GltfJson& json) {
   out.mode = static_cast<int>(json.integer("mode", 0, 6, 4));
   for (const GltfJson& target : json.objects("targets")) out.targets.push_back(attributes(target));
   if (const auto draco = json.extension("KHR_draco_mesh_compression"); kHasDraco && draco) {
-    if (out.mode != 4 && out.mode != 5) json.refuse("mode", "allowed are 4 and 5 with KHR_draco_mesh_compression");
+    if (out.mode != 4 && out.mode != 5) json.refuse("mode", "expected 4 and 5 with KHR_draco_mesh_compression");
     GltfDraco compressed;
     compressed.view = static_cast<std::size_t>(draco->index("bufferView", "bufferViews", true));
     const GltfJson numbers = draco->object("attributes");
@@ -40,11 +40,11 @@ glm::dmat4 local_transform(const GltfJson& json) {
   glm::dmat4 out(1.0);
   if (json.numbers("matrix", std::span<double>(&out[0][0], 16))) {
     for (const char* const other : {"translation", "rotation", "scale"}) {
-      if (json.has(other)) fail(json.path() + " has both a matrix and a " + other, "allowed is one of them");
+      if (json.has(other)) fail(json.path() + " has both a matrix and a " + other, "expected one of them");
     }
     if (std::abs(out[0][3]) > 1e-6 || std::abs(out[1][3]) > 1e-6 || std::abs(out[2][3]) > 1e-6 ||
         std::abs(out[3][3] - 1.0) > 1e-6) {
-      json.refuse("matrix", "allowed is a matrix whose fourth row is 0, 0, 0, 1");
+      json.refuse("matrix", "expected a matrix whose fourth row is 0, 0, 0, 1");
     }
     return out;
   }
@@ -54,7 +54,7 @@ glm::dmat4 local_transform(const GltfJson& json) {
   json.numbers("scale", std::span<double>(&scale.x, 3));
   json.bounded("rotation", -1.0, 1.0, std::span<double>(&rotation.x, 4));
   const double length = glm::length(rotation);
-  if (!(length > 1e-3)) fail(json.path("rotation") + " has no length", "allowed is a unit quaternion");
+  if (!(length > 1e-3)) fail(json.path("rotation") + " has no length", "expected a unit quaternion");
   rotation /= length;
   const glm::dmat3 turned = glm::mat3_cast(glm::dquat(rotation.w, rotation.x, rotation.y, rotation.z));
   for (int c = 0; c < 3; ++c) out[c] = glm::dvec4(turned[c] * scale[c], 0.0);
@@ -65,15 +65,15 @@ glm::dmat4 local_transform(const GltfJson& json) {
 GltfMesh mesh(const GltfJson& json) {
   GltfMesh out;
   for (const GltfJson& part : json.objects("primitives")) out.primitives.push_back(primitive(part));
-  if (out.primitives.empty()) json.refuse("primitives", "allowed is an array of at least one primitive");
+  if (out.primitives.empty()) json.refuse("primitives", "expected an array of at least one primitive");
   const std::size_t targets = out.primitives[0].targets.size();
   for (const GltfPrimitive& part : out.primitives) {
     if (part.targets.size() != targets)
-      fail(json.path() + " has primitives with unequal numbers of morph targets", "allowed is one number for all");
+      fail(json.path() + " has primitives with unequal numbers of morph targets", "expected one number for all");
   }
   out.weights = json.numbers("weights");
   if (json.has("weights") && out.weights.size() != targets) {
-    json.refuse("weights", "allowed are " + std::to_string(targets) + " numbers, one for each morph target");
+    json.refuse("weights", "expected " + std::to_string(targets) + " numbers, one for each morph target");
   }
   out.weights.resize(targets, 0.0);
   return out;
@@ -89,8 +89,7 @@ GltfNode node(const GltfJson& json, const GltfDocument& document) {
     out.weights = json.numbers("weights");
     const std::size_t targets = out.mesh < 0 ? 0 : document.meshes[static_cast<std::size_t>(out.mesh)].weights.size();
     if (out.weights->size() != targets) {
-      json.refuse("weights",
-                  "allowed are " + std::to_string(targets) + " numbers, one for each morph target of its mesh");
+      json.refuse("weights", "expected " + std::to_string(targets) + " numbers, one for each morph target of its mesh");
     }
   }
   return out;
@@ -99,14 +98,14 @@ GltfNode node(const GltfJson& json, const GltfDocument& document) {
 GltfSkin skin(const GltfJson& json, const GltfDocument& document) {
   GltfSkin out;
   out.joints = json.indices("joints", "nodes");
-  if (out.joints.empty()) json.refuse("joints", "allowed is an array of at least one node");
+  if (out.joints.empty()) json.refuse("joints", "expected an array of at least one node");
   out.inverse_bind = json.index("inverseBindMatrices", "accessors");
   if (out.inverse_bind >= 0) {
     const GltfAccessor& accessor = document.accessors[static_cast<std::size_t>(out.inverse_bind)];
     if (accessor.components != 16 || accessor.component != GltfComponent::float32 ||
         accessor.count < out.joints.size()) {
       json.refuse("inverseBindMatrices",
-                  "allowed is an accessor of at least " + std::to_string(out.joints.size()) + " MAT4 of floats");
+                  "expected an accessor of at least " + std::to_string(out.joints.size()) + " MAT4 of floats");
     }
   }
   return out;

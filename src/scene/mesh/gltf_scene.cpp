@@ -12,7 +12,7 @@ constexpr std::uint64_t kMaxNodeVisits = 1U << 20U;
 
 [[noreturn]] void refuse_tree() {
   fail("has nodes that are nested too deeply or in a circle",
-       "allowed is a tree of up to " + std::to_string(kMaxNodeDepth) + " levels");
+       "expected a tree of up to " + std::to_string(kMaxNodeDepth) + " levels");
 }
 
 }  // namespace
@@ -40,7 +40,7 @@ void GltfReader::read() {
     const auto& [first, count] = counted;
     note(first + (count > 1 ? " (and " + std::to_string(count - 1) + " more of the kind)" : ""));
   }
-  if (out_.indices.empty()) fail("has no triangles in its scene", "allowed is at least one triangle");
+  if (out_.indices.empty()) fail("has no triangles in its scene", "expected at least one triangle");
 }
 
 void GltfReader::visit(int index, const glm::dmat4& parent, int depth) {
@@ -49,7 +49,7 @@ void GltfReader::visit(int index, const glm::dmat4& parent, int depth) {
   const glm::dmat4 here = parent * node.parent_from_node;
   if (node.mesh >= 0) {
     if (++instances_ > kMaxMeshInstances)
-      fail("places too many meshes", "allowed are up to " + std::to_string(kMaxMeshInstances));
+      fail("places too many meshes", "expected up to " + std::to_string(kMaxMeshInstances));
     const std::vector<double>& weights =
         node.weights ? *node.weights : document_.meshes[static_cast<std::size_t>(node.mesh)].weights;
     // The joints alone place a mesh with a skin (glTF 2.0, section 3.7.3.3).

@@ -107,7 +107,7 @@ Result<void> Meshes::load(const MeshParams& params, const Terrain& terrain) {
     const double altitude = altitude_of(corners_[i], radius_m_);
     if (!(std::abs(altitude) < 1.0e8)) {
       return Error{ErrorCode::invalid_argument,
-                   "the meshes reach farther than a planet, meshes.scale, allowed is a size of up to 10000 km"};
+                   "meshes.scale: the meshes reach farther than a planet; expected a size of up to 10000 km"};
     }
     lowest_m_ = std::min(lowest_m_, altitude);
     highest_m_ = std::max(highest_m_, altitude);
@@ -205,7 +205,7 @@ Result<void> Meshes::create_buffers() {
   const VkDeviceSize most = device.properties.limits.maxStorageBufferRange;
   if (vertex_bytes > most || instance_bytes > most) {
     return Error{ErrorCode::out_of_memory,
-                 "the meshes are larger than this device allows, meshes.source, allowed are up to " +
+                 "meshes.source: the meshes are larger than this device supports; expected up to " +
                      std::to_string(most / sizeof(MeshVertex)) + " vertices and " +
                      std::to_string(most / sizeof(shared::MeshInstance)) + " placed meshes"};
   }
@@ -228,7 +228,7 @@ Result<void> Meshes::create_buffers() {
   for (MeshTexture& texture : data_.textures) {
     if (texture.width > side || texture.height > side) {
       return Error{ErrorCode::invalid_argument,
-                   "a texture of the meshes is larger than this device allows, meshes.source, allowed are up to " +
+                   "meshes.source: a texture of the meshes is larger than this device supports; expected up to " +
                        std::to_string(side) + " texels on a side"};
     }
     TYNDALL_ASSIGN(gpu::Image image, upload_texture(*host_, texture));

@@ -224,7 +224,7 @@ Result<std::unique_ptr<SkyModel>> create_sky_model(gpu::Host& host, const SceneP
     case ScatteringModel::atmosphere: break;
   }
   return Error{ErrorCode::invalid_argument,
-               "'scattering.model' = 'atmosphere' is not a sky model, scattering.model, allowed are the others"};
+               "scattering.model: 'atmosphere' is not a sky model; expected one of the others"};
 }
 
 }  // namespace tyndall::scene
