@@ -83,7 +83,7 @@ TEST_F(CliTables, EveryStageHasATime) {
   EXPECT_EQ(text.status, 0);
   for (const nlohmann::json& stage : report["stages"])
     EXPECT_NE(text.out.find("  " + stage["name"].get<std::string>()), std::string::npos);
-  EXPECT_NE(text.out.find("\nkept in " + scratch_.at("cache") + "\n"), std::string::npos);
+  EXPECT_NE(text.out.find("\nstored in " + scratch_.at("cache") + "\n"), std::string::npos);
 }
 
 // What stands in the files is what `probe` answers for the rays that tables.json names.
