@@ -1,4 +1,4 @@
-// CLI11 splits the arguments into options and values; reading the values and all messages are ours.
+// CLI11 splits the arguments into options and values. Parsing the values and all messages are our own.
 #include "arguments.hpp"
 
 #include <CLI/CLI.hpp>
@@ -14,7 +14,7 @@ using files::concat;
 using files::input_error;
 using files::one_line;
 
-// The last of "-o,--output": what messages call the option.
+// Returns the last name of "-o,--output", which messages use.
 std::string long_name(const std::string& names) { return names.substr(names.rfind(',') + 1); }
 
 std::string_view summary_of(std::string_view verb) {
@@ -28,12 +28,12 @@ std::string_view summary_of(std::string_view verb) {
 
 struct Arguments::Implementation {
   struct Option {
-    std::string names;        // as declared: "-o,--output"; of a positional its name
-    std::string placeholder;  // for the value; empty for flags
+    std::string names;        // as declared: "-o,--output"; the name of a positional argument
+    std::string placeholder;  // of the value; empty for flags
     std::string help;
     bool repeatable = false;
     std::function<Result<void>(const std::string&)> store;
-    std::vector<std::string> values;  // CLI11 writes here
+    std::vector<std::string> values;  // filled by CLI11
   };
   struct Positional {
     std::string name, help;
@@ -46,7 +46,7 @@ struct Arguments::Implementation {
     app.set_help_flag("-h,--help", "print this help");
   }
 
-  // Options stay where they are: CLI11 holds their addresses.
+  // Options must not move: CLI11 holds their addresses.
   void add(Option option) {
     options.push_back(std::move(option));
     CLI::Option* const added = app.add_option(options.back().names, options.back().values);
@@ -111,7 +111,7 @@ Result<void> Arguments::Implementation::store_options() const {
   return {};
 }
 
-// CLI11 leaves over what is no option of ours: the positionals, and mistakes.
+// Stores the arguments that CLI11 does not recognise as options: positional ones. Reports unknown options.
 Result<void> Arguments::Implementation::store_positionals() const {
   std::size_t next = 0;
   bool names_only = false;  // after "--"
@@ -228,12 +228,12 @@ void Arguments::footer(const std::string& text) { implementation_->footer = text
 
 std::optional<int> Arguments::parse(Args args) {
   try {
-    // CLI11 takes the arguments last first.
+    // CLI11 expects the arguments in reverse order.
     implementation_->app.parse(std::vector<std::string>(args.rbegin(), args.rend()));
   } catch (const CLI::CallForHelp&) {
     return print(implementation_->help());
   } catch (const CLI::ArgumentMismatch& mismatch) {
-    // "--size: 1 required WxH missing" or "--json was given a disallowed flag override".
+    // The message is "--size: 1 required WxH missing" or "--json was given a disallowed flag override".
     const std::string text = mismatch.what();
     std::string name = text.substr(0, text.find_first_of(": "));
     if (!name.starts_with('-')) name.insert(0, "--");

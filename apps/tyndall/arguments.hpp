@@ -1,6 +1,6 @@
-// The arguments of one verb: declare options, then parse. Wraps CLI11, which is seen by arguments.cpp
-// alone, and turns everything that can be wrong into our one-line errors.
-// Targets are borrowed and must outlive parse(); they keep their value when the option is not given.
+// The arguments of one verb: declare options, then parse. Wraps CLI11, which only arguments.cpp includes, and turns
+// every mistake into a one-line error. Targets are borrowed and must outlive parse(). A target keeps its value if its
+// option is not given.
 #pragma once
 
 #include <cstdint>
@@ -17,13 +17,13 @@ namespace tyndall::cli {
 
 class Arguments {
  public:
-  // Takes the verb's name; help shows its summary from kVerbs.
+  // `verb` is the verb's name; the help shows its summary from kVerbs.
   explicit Arguments(const std::string& verb);
   Arguments(const Arguments&) = delete;
   Arguments& operator=(const Arguments&) = delete;
   ~Arguments();
 
-  // `names`: "--size" or "-o,--output". `value`: what stands for the value in the help.
+  // `names` is "--size" or "-o,--output". `value` is the placeholder of the value in the help.
   void flag(const std::string& names, bool& target, const std::string& help);
   void text(const std::string& names, std::string& target, const std::string& value, const std::string& help);
   void texts(const std::string& names, std::vector<std::string>& target, const std::string& value,
@@ -34,16 +34,16 @@ class Arguments {
   void number(const std::string& names, std::optional<double>& target, double min, double max, const std::string& help);
   void choice(const std::string& names, std::string& target, const std::vector<std::string>& allowed,
               const std::string& help);
-  // Any other kind: `store` reads the text and names the option in its error.
+  // Adds an option of any other type. `store` parses the text; its error names the option.
   void value(const std::string& names, const std::string& placeholder, const std::string& help,
              std::function<Result<void>(const std::string&)> store);
   void positional(const std::string& name, std::string& target, bool required, const std::string& help);
 
-  // Text below the list of options in the help, in whole lines.
+  // Adds text below the list of options in the help, in whole lines.
   void footer(const std::string& text);
 
-  // The exit status when there is nothing more to do: after --help (0) or an error (2), both of them
-  // printed. Nothing when the verb is to go on.
+  // Returns the exit status if the verb has to stop: after --help (0) or after an error (2), both of which are printed.
+  // Returns nothing if the verb is to continue.
   [[nodiscard]] std::optional<int> parse(Args args);
 
  private:

@@ -1,4 +1,4 @@
-// `tyndall bench`: GPU milliseconds per pass of the demo scene, after a warm-up.
+// `tyndall bench`: measures GPU milliseconds per pass of the demo scene, after a warm-up.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -6,6 +6,7 @@
 
 #include "arguments.hpp"
 #include "cli.hpp"
+#include "files/text.hpp"
 #include "gpu/host.hpp"
 #include "make_tables.hpp"
 #include "scene/scene.hpp"
@@ -19,7 +20,7 @@ struct Series {
   std::vector<double> ms;
   bool in_effect = false;
 
-  // Nearest-rank quantile.
+  // Returns the nearest-rank quantile.
   [[nodiscard]] double quantile(double q) const {
     std::vector<double> sorted = ms;
     std::sort(sorted.begin(), sorted.end());
@@ -29,6 +30,26 @@ struct Series {
 };
 
 double median_or_zero(const Series& series) { return series.ms.empty() ? 0.0 : series.quantile(0.5); }
+
+std::string as_text(const nlohmann::ordered_json& report) {
+  std::string text = files::concat({report["device"].get<std::string>(), ", ", report["size"][0].dump(), "x",
+                                    report["size"][1].dump(), ", median of ", report["frames"].dump(), " frames\n"});
+  char line[160];
+  for (const nlohmann::ordered_json& pass : report["passes"]) {
+    std::snprintf(line, sizeof line, "  %-20s %10.3f ms  p95 %10.3f ms%s\n", pass["name"].get<std::string>().c_str(),
+                  pass["median_ms"].get<double>(), pass["p95_ms"].get<double>(),
+                  pass["in_effect"].get<bool>() ? "  (effect)" : "");
+    text += line;
+  }
+  std::snprintf(line, sizeof line, "  effect %.3f ms, frame %.3f ms, floor %.3f ms\n",
+                report["effect_ms"].get<double>(), report["frame_ms"].get<double>(), report["floor_ms"].get<double>());
+  text += line;
+  for (const auto& [name, value] : report["counters"].items()) {
+    std::snprintf(line, sizeof line, "  %-20s %10llu\n", name.c_str(), value.get<unsigned long long>());
+    text += line;
+  }
+  return text;
+}
 
 }  // namespace
 
@@ -63,7 +84,7 @@ int run_bench(Args args) {
     if (frame < kWarmUpFrames) continue;
     double effect_ms = 0.0;
     double frame_ms = 0.0;
-    std::map<std::string, double> of_frame;  // a pass may be done several times
+    std::map<std::string, double> of_frame;  // a pass may run several times
     for (const scene::PassTime& pass : scene.value()->timings()) {
       if (pass.name == "floor") {
         floor.ms.push_back(pass.ms);
@@ -112,24 +133,7 @@ int run_bench(Args args) {
   for (const ResourceMemory& row : memory.effect_resources)
     out["memory_bytes"]["effect_resources"][row.name] = row.bytes;
   if (options.json) return print(out.dump(2) + "\n");
-  std::string text = out["device"].get<std::string>() + ", " + std::to_string(options.size.width) + "x" +
-                     std::to_string(options.size.height) + ", median of " + std::to_string(options.frames) +
-                     " frames\n";
-  char line[160];
-  for (const std::string& name : order) {
-    const Series& series = passes[name];
-    std::snprintf(line, sizeof line, "  %-20s %10.3f ms  p95 %10.3f ms%s\n", name.c_str(), series.quantile(0.5),
-                  series.quantile(0.95), series.in_effect ? "  (effect)" : "");
-    text += line;
-  }
-  std::snprintf(line, sizeof line, "  effect %.3f ms, frame %.3f ms, floor %.3f ms\n", median_or_zero(effect),
-                median_or_zero(frame_total), median_or_zero(floor));
-  text += line;
-  for (const auto& [name, value] : out["counters"].items()) {
-    std::snprintf(line, sizeof line, "  %-20s %10llu\n", name.c_str(), static_cast<unsigned long long>(value));
-    text += line;
-  }
-  return print(text);
+  return print(as_text(out));
 }
 
 }  // namespace tyndall::cli

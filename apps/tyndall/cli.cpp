@@ -1,4 +1,4 @@
-// The shared parts of the verbs: messages, common options, progress.
+// Implements cli.hpp: messages, common options, progress.
 #include "cli.hpp"
 
 #include <unistd.h>
@@ -24,12 +24,12 @@ constexpr std::uint32_t kMostFrames = 1000000;
 constexpr std::size_t kLongestLine = 2000;
 
 struct FramePattern {
-  std::size_t start = 0;   // of the percent sign
-  std::size_t length = 0;  // up to and with the d
+  std::size_t start = 0;   // position of the percent sign
+  std::size_t length = 0;  // including the d
   std::size_t digits = 1;
 };
 
-// The first "%d" or "%0Nd" at or after `from`.
+// Returns the first "%d" or "%0Nd" at or after `from`.
 std::optional<FramePattern> find_pattern(std::string_view text, std::size_t from = 0) {
   for (std::size_t start = text.find('%', from); start != std::string_view::npos; start = text.find('%', start + 1)) {
     const std::string_view rest = text.substr(start + 1);
@@ -141,7 +141,7 @@ Result<void> resolve(CommonOptions& options) {
   options.settings = config::Settings();
   if (!options.scene_file.empty()) {
     if (Result<void> loaded = config::load(options.settings, options.scene_file); !loaded) {
-      // A scene file that cannot be read is bad input, not a failure of this run.
+      // An unreadable scene file is bad input, not a failure at run time.
       return Error{ErrorCode::invalid_argument, std::move(loaded).error().message};
     }
   }

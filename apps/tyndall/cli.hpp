@@ -1,5 +1,5 @@
-// What the verbs share: exit statuses, the error line, output, values as text, and the options that
-// mean the same everywhere. Part of the executable: this may print, the libraries may not.
+// Code for all verbs: exit statuses, error messages, output, parsing of values, and common options. Only the executable
+// includes this; it may print, the libraries may not.
 #pragma once
 
 #include <cstdint>
@@ -17,21 +17,21 @@ class Arguments;
 
 // Exit statuses of every verb (`compare` adds its own).
 constexpr int kDone = 0;
-constexpr int kFailed = 1;    // at run time: device, memory, input and output
+constexpr int kFailed = 1;    // failure at run time: device, memory, input and output
 constexpr int kBadUsage = 2;  // bad usage or bad input
 
-// Prints "tyndall: error: MESSAGE" on stderr, as one line; the status that belongs to the error's code:
-// kBadUsage for invalid_argument, kFailed for the rest.
+// Prints "tyndall: error: MESSAGE" on stderr, as one line. Returns the exit status for the error's code: kBadUsage for
+// invalid_argument, kFailed for the rest.
 int fail(const Error& error);
-// For what is read from files that the user names: whatever cannot be read is bad input (kBadUsage).
+// The same for errors of input files that the user names: unreadable files count as bad input (kBadUsage).
 int fail_input(const Error& error);
-// The same with the status given.
+// The same with a given status.
 int fail(std::string_view message, int status);
 
-// Prints "tyndall: note: MESSAGE" on stderr, as one line: what the user should know of a run that goes on.
+// Prints "tyndall: note: MESSAGE" on stderr, as one line: a remark on a run that continues.
 void note(std::string_view message);
 
-// Writes to stdout and flushes; kDone, or kFailed (after the error line) when stdout does not take it.
+// Writes to stdout and flushes. Returns kDone, or kFailed (after an error message) if stdout fails.
 int print(std::string_view text);
 
 struct Size {
@@ -42,20 +42,20 @@ constexpr std::uint32_t kLargestSize = 16384;  // pixels, each side
 
 // The lowest altitude of an eye [m]: below the deepest sea floor of the Earth.
 constexpr double kLowestAltitude_m = -11000.0;
-// Fails for an eye deeper than a quarter of the planet's radius, where the ground beneath it is not defined any more.
-// `where` names the source in errors.
+// Fails for an eye deeper than a quarter of the planet's radius, where the ground below it is undefined. `where` is the
+// source for the error message.
 [[nodiscard]] Result<void> check_altitude(double altitude_m, const Params& params, std::string_view where);
 
-// `option` names the source in errors ("--size").
+// Parse a value. `option` is the source for the error message ("--size").
 [[nodiscard]] Result<Size> parse_size(std::string_view text, std::string_view option);
 [[nodiscard]] Result<std::uint32_t> parse_count(std::string_view text, std::string_view option, std::uint32_t min,
                                                 std::uint32_t max);
 [[nodiscard]] Result<double> parse_number(std::string_view text, std::string_view option, double min, double max);
 
-// Which of the common options a verb has.
+// Flags for the common options that a verb has.
 enum CommonOption : unsigned {
   kScene = 1U << 0U,   // [SCENE.toml]
-  kSet = 1U << 1U,     // --set KEY=VALUE, repeated
+  kSet = 1U << 1U,     // --set KEY=VALUE, may be repeated
   kDevice = 1U << 2U,  // --device
   kSize = 1U << 3U,    // --size WxH
   kFrames = 1U << 4U,  // --frames N
@@ -64,9 +64,9 @@ enum CommonOption : unsigned {
 };
 
 struct CommonOptions {
-  std::string scene_file;         // empty: the defaults
-  std::vector<std::string> sets;  // as given, in order
-  std::string device;             // index or part of a name; empty: the best
+  std::string scene_file;         // empty: default parameters
+  std::vector<std::string> sets;  // in the order given
+  std::string device;             // index or part of a name; empty: the best device
   Size size;
   std::uint32_t frames = 1;
   std::string output;  // empty: not given
@@ -77,27 +77,27 @@ struct CommonOptions {
 // Adds the options of `which` (CommonOption bits) to the verb's arguments.
 void add_common(Arguments& arguments, CommonOptions& options, unsigned which);
 
-// After parsing: settings = defaults, then the scene file, then every --set; checked together. Errors are
-// bad input whatever their cause (a scene file that cannot be read included).
+// Computes the settings after parsing: the defaults, then the scene file, then every --set; checked together. All
+// errors count as bad input, including unreadable scene files.
 [[nodiscard]] Result<void> resolve(CommonOptions& options);
 
-// A sequence's file name: the one "%d" or "%04d" (any width up to %09d) of `pattern` becomes the number. A
-// pattern without is returned as it is.
+// Returns the file name of a frame of a sequence: the "%d" or "%04d" (any width up to %09d) in `pattern` becomes the
+// number. A pattern without one is returned as it is.
 [[nodiscard]] std::string frame_path(const std::string& pattern, std::uint32_t frame);
 
-// Before long work: the output is given, its name ends in one of `endings` (".png"; empty: any), a
-// sequence of more than one frame has exactly one number pattern, no file of it is one that the run reads, and the
-// first file can be written.
+// Checks the output before long work: it is given, its name ends in one of `endings` (".png"; empty: any), a sequence
+// of several frames has exactly one number pattern, no output file is an input of the run, and the first file can be
+// written.
 [[nodiscard]] Result<void> check_output(const CommonOptions& options, const std::vector<std::string>& endings);
 
-// A progress bar on stderr, when that is a terminal; otherwise nothing. Removes itself.
+// A progress bar on stderr if that is a terminal; otherwise it prints nothing. It erases itself at the end.
 class Progress {
  public:
   explicit Progress(std::string_view label);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   ~Progress();
-  // Draws at most as often as the picture changes.
+  // Draws only if the displayed percentage changes.
   void update(std::uint64_t done, std::uint64_t total);
 
  private:

@@ -1,4 +1,4 @@
-// `tyndall compare`: error measures between two images of one kind. B is the reference.
+// `tyndall compare`: measures the difference of two images of the same kind. B is the reference.
 #include <cmath>
 
 #include "arguments.hpp"
@@ -17,7 +17,7 @@ using files::number_text;
 constexpr int kBeyond = 2;
 constexpr int kSizesDiffer = 3;
 constexpr int kUnreadable = 4;
-constexpr double kEqualPsnrDb = 999.0;  // stands for infinity: JSON has none
+constexpr double kEqualPsnrDb = 999.0;  // replaces infinity, which JSON does not have
 
 struct Limits {
   std::optional<double> psnr_min;
@@ -28,7 +28,7 @@ std::string size_text(const image::Image& image) {
   return concat({std::to_string(image.width), "x", std::to_string(image.height)});
 }
 
-// What is beyond its limit, empty when nothing is.
+// Returns which value exceeds its limit, or an empty string.
 std::string verdict(const image::Metrics& metrics, const Limits& limits) {
   if (metrics.non_finite_a + metrics.non_finite_b > 0) {
     return concat({"tyndall compare: ", std::to_string(metrics.non_finite_a), " values in A and ",

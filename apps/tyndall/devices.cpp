@@ -1,4 +1,4 @@
-// `tyndall devices`: the Vulkan devices, which one would be used, and what the others lack.
+// `tyndall devices`: lists the Vulkan devices, the one that would be used, and what the others lack.
 #include <nlohmann/json.hpp>
 
 #include "arguments.hpp"

@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using files::concat;
 
-// A file's name in a URI, whose special characters stand as %XX (RFC 3986).
+// Returns the file name for a URI, whose special characters are written as %XX (RFC 3986).
 std::string decoded_uri(std::string_view uri) {
   std::string out;
   for (std::size_t i = 0; i < uri.size(); ++i) {
@@ -31,10 +31,10 @@ std::string decoded_uri(std::string_view uri) {
   return out;
 }
 
-// Adds what a glTF file refers to. What cannot be read is left to the reader of the model to report.
+// Adds the files that a glTF file refers to. Unreadable files are skipped; the model's reader reports them.
 void add_references(const std::string& path, std::vector<InputFile>& out) {
   std::error_code ignored;
-  if (!fs::is_regular_file(path, ignored)) return;  // a pipe can be read only once
+  if (!fs::is_regular_file(path, ignored)) return;  // a pipe can only be read once
   constexpr std::uint64_t kLargestDocument = std::uint64_t{64} << 20;
   const Result<std::string> text = files::read_file(path, kLargestDocument);
   if (!text) return;

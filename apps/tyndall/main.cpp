@@ -1,5 +1,5 @@
-// The command line `tyndall`: finds the verb and hands it the rest. Nothing that goes wrong ends in
-// anything but one line on stderr and an exit status.
+// The command line `tyndall`: finds the verb and passes the rest on. Every failure ends in one line on stderr and an
+// exit status.
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -62,7 +62,7 @@ int run(Args args) {
 }  // namespace tyndall::cli
 
 int main(int argc, char** argv) {
-  // A file that grows beyond a limit is a failed write, with a message, and not the end.
+  // Exceeding a file size limit must be an ordinary write error, not a signal that ends the program.
   std::signal(SIGXFSZ, SIG_IGN);
   try {
     const std::vector<std::string> args(argv + (argc > 0 ? 1 : 0), argv + argc);

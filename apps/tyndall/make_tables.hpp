@@ -1,4 +1,4 @@
-// How the verbs make tables: with the cache that the settings name, and a progress bar while they are built.
+// Table builds of the verbs: with the cache that the settings name, and with a progress bar.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@
 namespace tyndall::cli {
 
 [[nodiscard]] tables::CacheDesc table_cache(const scene::SceneParams& scene);
-// The same with the bar, which is gone when the tables are complete.
+// The same with a progress bar, which disappears when the tables are complete.
 [[nodiscard]] tables::MakeReady make_tables(const scene::SceneParams& scene);
 
 }  // namespace tyndall::cli

@@ -1,4 +1,4 @@
-// `tyndall params`: every parameter, as a scene file, JSON or Markdown.
+// `tyndall params`: prints every parameter as a scene file, JSON or Markdown.
 #include "arguments.hpp"
 #include "cli.hpp"
 #include "config/describe.hpp"

@@ -1,4 +1,4 @@
-// `tyndall probe`: what a model says for given rays. docs/probe.md describes the tables.
+// `tyndall probe`: evaluates a model for given rays. docs/probe.md describes the tables.
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint32_t kMostOrders = 256;  // of the path tracer
 
-// JSON knows no infinity: the standard error of a single block of paths becomes null.
+// JSON has no infinity: the standard error of a single block of paths becomes null.
 nlohmann::json numbers_as_json(const std::array<double, 3>& numbers) {
   nlohmann::json out = nlohmann::json::array();
   for (const double number : numbers) {

@@ -15,12 +15,13 @@
 namespace tyndall::cli {
 namespace {
 
-// Rays on the GPU; the sky, whose quadrature takes hundreds of rays, on the CPU in double precision.
+// Evaluates rays on the GPU. The sky's irradiance, whose quadrature takes hundreds of rays, is computed on the CPU in
+// double precision.
 Result<std::vector<ProbeAnswer>> run_single(const ProbeSettings& settings, std::span<const RayQuery> queries) {
   const shared::Medium medium = medium_from_params(settings.params);
   std::vector<ProbeAnswer> answers(queries.size());
   std::vector<models::Ray> rays;
-  std::vector<std::size_t> places;  // of the rays among the queries
+  std::vector<std::size_t> places;  // indices of the rays among the queries
   const auto sky_count = static_cast<double>(
       std::count_if(queries.begin(), queries.end(), [](const RayQuery& q) { return q.sky_irradiance; }));
   double sky_done = 0.0;
@@ -37,7 +38,7 @@ Result<std::vector<ProbeAnswer>> run_single(const ProbeSettings& settings, std::
       places.push_back(i);
     }
   }
-  if (rays.empty()) return answers;  // needs no device
+  if (rays.empty()) return answers;  // no device needed
   Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({settings.device, false});
   if (!host) return std::move(host).error();
   const auto progress = [&](std::size_t done) {
@@ -144,7 +145,7 @@ Result<std::vector<ProbeAnswer>> run_homogeneous(const ProbeSettings& settings, 
   return answer_each(settings, queries, sky, ray);
 }
 
-// The medium of scattering.medium = homogeneous, wholly lit, in double precision.
+// Evaluates the medium of scattering.medium = homogeneous without shadows, on the CPU in double precision.
 Result<std::vector<ProbeAnswer>> run_homogeneous_medium(const ProbeSettings& settings,
                                                         std::span<const RayQuery> queries) {
   const models::HomogeneousMedium medium = models::homogeneous_medium_from_params(settings.params);

@@ -1,4 +1,4 @@
-// The models that `probe` asks: one row each, and every one answers the same questions.
+// The models of `probe`: one row each, all with the same interface.
 #pragma once
 
 #include <array>
@@ -20,25 +20,25 @@ namespace tyndall::cli {
 
 struct ProbeAnswer {
   std::array<double, 3> radiance = {};  // L / E0 [1/sr]; for the sky E / E0
-  // To the end of the ray; for the sky that of the sun's light, 0 where the planet hides the sun.
+  // To the end of the ray; for the sky: of sunlight, 0 if the planet hides the sun.
   std::array<double, 3> transmittance = {};
-  std::array<double, 3> standard_error = {};  // of the radiance; models without noise leave it
-  bool single_precision = false;              // the numbers are floats, and are written as such
+  std::array<double, 3> standard_error = {};  // of the radiance; zero for models without noise
+  bool single_precision = false;              // the numbers are floats, and are printed as such
 };
 
 struct ProbeSettings {
   Params params;
-  scene::SceneParams scene;  // for the models that have parameters of their own
+  scene::SceneParams scene;  // for models with their own parameters
   std::uint32_t orders = 8;
   std::uint32_t samples = 100000;
   std::uint32_t seed = 1;
   std::string device;
   tables::CacheDesc table_cache = {};
-  std::function<void(const std::string& text)> note;  // gets remarks for the user; may be empty
-  std::function<void(double done)> progress;          // the part done, 0 to 1
+  std::function<void(const std::string& text)> note;  // receives remarks for the user; may be empty
+  std::function<void(double done)> progress;          // receives the completed fraction, 0 to 1
 };
 
-// What the scene's parameters say of the models.
+// Returns the optical lengths that the scene's parameters set for the homogeneous model.
 [[nodiscard]] models::HomogeneousLengths homogeneous_lengths(const scene::SceneParams& scene);
 
 // Answers the queries with one of the models.

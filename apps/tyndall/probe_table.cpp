@@ -14,7 +14,7 @@ namespace {
 using files::concat;
 using files::input_error;
 
-constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 31U;  // bytes; some ten million rays
+constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 31U;  // bytes; about ten million rays
 constexpr std::string_view kSky = "sky";
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
@@ -72,7 +72,7 @@ void append_numbers(std::string& out, const std::array<double, 3>& numbers, bool
 Result<ProbeTable> read_queries(const std::string& path) {
   const std::string shown = files::one_line(path, 200);
   Result<std::string> text = files::read_file(path, kLargestFile);
-  // A table that cannot be read is bad input, not a failure of this run.
+  // An unreadable table is bad input, not a failure at run time.
   if (!text) return Error{ErrorCode::invalid_argument, std::move(text).error().message};
   Result<files::CsvTable> parsed = files::parse_csv(std::move(text).value(), shown);
   if (!parsed) return std::move(parsed).error();
@@ -96,7 +96,7 @@ Result<ProbeTable> read_queries(const std::string& path) {
         continue;
       }
       double& number = numbers[column];
-      // Naming the place costs more than reading the number: it waits for an error.
+      // Composing the location takes longer than parsing the number, so it is done only for errors.
       const Result<double> quick = read_cell(cell(column), kColumns[column], {});
       if (!quick) {
         const std::string where =

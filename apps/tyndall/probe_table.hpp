@@ -1,4 +1,4 @@
-// The tables of `probe`: queries in, the same columns and the answers out.
+// The tables of `probe`: queries in, the same columns and the results out.
 #pragma once
 
 #include <span>
@@ -15,11 +15,11 @@ struct ProbeTable {
   std::vector<RayQuery> queries;  // one per row
 };
 
-// Every mistake in the file is bad input, and named by line and column.
+// Reads the queries. Every mistake in the file is bad input; the error names line and column.
 [[nodiscard]] Result<ProbeTable> read_queries(const std::string& path);
 
-// The input's columns as they were written, then those of the answers; columns of the input with such a
-// name, as in a table that `probe` has written, give way.
+// Returns the input's columns unchanged, followed by the result columns. Input columns with the name of a result
+// column, as in a table that `probe` has written, are dropped.
 [[nodiscard]] std::string answers_as_csv(const ProbeTable& table, std::span<const ProbeAnswer> answers, bool random);
 
 }  // namespace tyndall::cli

@@ -1,4 +1,4 @@
-// `tyndall render`: one frame, or a sequence, of the demo scene.
+// `tyndall render`: renders one frame or a sequence of the demo scene.
 #include <cmath>
 
 #include "arguments.hpp"
@@ -12,7 +12,7 @@
 namespace tyndall::cli {
 namespace {
 
-// The settings, and what became of them in this frame.
+// Returns the settings and the frame's exposure.
 std::vector<std::pair<std::string, std::string>> metadata_of(const scene::Scene& scene,
                                                              const config::Settings& settings, image::FileKind kind) {
   std::vector<std::pair<std::string, std::string>> list =
@@ -35,7 +35,7 @@ Result<void> write_frame(scene::Scene& scene, const std::string& path, const con
   return image::write_png(path, display.value(), metadata_of(scene, settings, kind.value()));
 }
 
-// A flight by date takes its place from the elevation file when the scene file gives none.
+// Sets the place of a flight by date from the elevation file if the scene file has none.
 Result<void> find_place(scene::CameraPath& path, const scene::Scene& scene) {
   if (!path.has_dates() || !path.place_text.empty()) return {};
   if (!scene.place()) {

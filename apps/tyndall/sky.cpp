@@ -1,4 +1,4 @@
-// `tyndall sky`: the sky as an environment map. docs/sky.md describes the picture.
+// `tyndall sky`: renders the sky as an environment map. docs/sky.md describes the picture.
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -35,16 +35,16 @@ struct SkyOptions {
   std::string model;
 };
 
-// Answers rays with radiance / E0 of the air and the ground behind it.
+// Evaluates rays: radiance / E0 of the atmosphere and the ground behind it.
 class SkySource {
  public:
   virtual ~SkySource() = default;
   virtual Result<std::vector<models::Answer>> answer(std::span<const RayQuery> queries) = 0;
-  // Where its tables came from; nullptr without tables.
+  // Returns the origin of the tables; nullptr without tables.
   [[nodiscard]] virtual const tables::Outcome* tables() const { return nullptr; }
 };
 
-// Light scattered once, and the ground in the sun's light.
+// Single scattering, and the ground in direct sunlight.
 class SingleSource final : public SkySource {
  public:
   SingleSource(gpu::Host& host, const Params& params) : host_(host), medium_(medium_from_params(params)) {}
@@ -68,7 +68,7 @@ class SingleSource final : public SkySource {
   shared::Medium medium_;
 };
 
-// All orders of scattering from the tables, and the ground in the light of sun and sky.
+// All orders of scattering from the tables, and the ground under sun and sky.
 class PrecomputedSource final : public SkySource {
  public:
   explicit PrecomputedSource(models::PrecomputedModel model) : model_(std::move(model)) {}
@@ -104,7 +104,7 @@ struct SkyModel {
 };
 constexpr SkyModel kModels[] = {{scene::ModelId::precomputed, make_precomputed}, {scene::ModelId::single, make_single}};
 
-// The sun's elevation and azimuth by one of the two ways, in deg.
+// The sun's elevation and azimuth [deg].
 struct SunAngles {
   double elevation_deg, azimuth_deg;
 };
@@ -132,7 +132,7 @@ Result<SunAngles> find_sun(const SkyOptions& options) {
   return SunAngles{position.elevation_deg, position.azimuth_deg};
 }
 
-// Fills the image with irradiance times what the source answers, some rows at a time.
+// Fills the image with the source's radiance times the irradiance, in batches of rows.
 Result<void> fill(image::Image& image, const SkyMap& map, const std::array<double, 3>& irradiance, SkySource& source) {
   Progress progress("sky");
   const std::uint32_t rows = static_cast<std::uint32_t>(std::max<std::size_t>(kBatchRays / map.width, 1));
@@ -197,7 +197,7 @@ int run_sky(Args args) {
   scene::SceneParams& scene = options.settings.scene;
   scene.sun.elevation_deg = static_cast<float>(sun.value().elevation_deg);
   scene.sun.azimuth_deg = static_cast<float>(sun.value().azimuth_deg);
-  // The parameter has no values below sea level.
+  // camera.altitude_m does not accept values below sea level.
   if (sky.altitude_m >= 0.0)
     scene.camera.altitude_m = static_cast<float>(sky.altitude_m);
   else

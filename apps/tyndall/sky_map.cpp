@@ -9,9 +9,9 @@ namespace tyndall::cli {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kSamplesPerRadius = 24.0;  // across the disc; 0.05 % of a pixel that it fills
+constexpr double kSamplesPerRadius = 24.0;  // per radius of the disc; error 0.05 % for a pixel that the disc fills
 
-// A piece of the disc within one pixel.
+// The part of the disc within one pixel.
 struct Piece {
   std::uint32_t x, y;
   std::array<double, 3> flux;  // relative
@@ -37,7 +37,7 @@ class Splitter {
   }
 
   [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
-  // What all pieces would hold without air and horizon.
+  // Returns the sum over all pieces without atmosphere and horizon.
   [[nodiscard]] const std::array<double, 3>& total() const { return total_; }
 
  private:
@@ -45,7 +45,7 @@ class Splitter {
     return std::max(1, static_cast<int>(std::ceil(length_rad * kSamplesPerRadius / sun_.angular_radius_rad)));
   }
 
-  // The part of the disc at this zenith angle: azimuths within `reach` of the sun's.
+  // Adds the part of the disc at this zenith angle: azimuths within `reach` of the sun's.
   void split_chord(std::uint32_t y, double zenith, double height_rad) {
     const double across = std::sin(zenith) * std::sin(sun_zenith_);
     const double along = std::cos(sun_.angular_radius_rad) - std::cos(zenith) * std::cos(sun_zenith_);
@@ -65,7 +65,7 @@ class Splitter {
       Piece piece = {wrapped(x), y, {}};
       for (int i = 0; i < count; ++i) {
         const double azimuth = start + (i + 0.5) * step - map_.sun_azimuth_rad;
-        // By half angles, which keeps the digits of small distances.
+        // Use half angles, which are precise for small distances.
         const double half_height = std::sin(0.5 * (zenith - sun_zenith_));
         const double half_width = std::sin(0.5 * azimuth);
         const double angle =
@@ -101,7 +101,7 @@ class Splitter {
 double SkyMap::pixel_solid_angle(std::uint32_t y) const {
   const double top = kPi * y / height;
   const double bottom = kPi * (y + 1.0) / height;
-  // cos(top) - cos(bottom), without the difference of like numbers.
+  // cos(top) - cos(bottom) in a form that does not cancel.
   return 2.0 * kPi / width * 2.0 * std::sin(0.5 * (top + bottom)) * std::sin(0.5 * (bottom - top));
 }
 

@@ -1,6 +1,6 @@
-// The sky as a latitude-longitude map: which ray each pixel looks along, and the sun's disc in it.
-// The top row looks to the zenith and the bottom row to the nadir; the left edge is north, and the azimuth
-// grows clockwise (east, south, west) to the right. A pixel stands for the direction of its centre.
+// The sky as a latitude-longitude map: the ray of each pixel, and the sun's disc. The top row looks to the zenith and
+// the bottom row to the nadir. The left edge is north, and the azimuth increases clockwise (east, south, west) to the
+// right. A pixel stands for the direction of its centre.
 #pragma once
 
 #include "effect/shared.hpp"
@@ -16,9 +16,9 @@ struct SkyMap {
   double sun_elevation_rad = 0.0;
   double sun_azimuth_rad = 0.0;  // clockwise from north
 
-  // Of pixels of this row [sr].
+  // Returns the solid angle of a pixel of this row [sr].
   [[nodiscard]] double pixel_solid_angle(std::uint32_t y) const;
-  // Precondition: x < width, y < height.
+  // Returns the ray of a pixel. Precondition: x < width, y < height.
   [[nodiscard]] RayQuery query(std::uint32_t x, std::uint32_t y) const;
 };
 
@@ -28,8 +28,8 @@ struct SunFace {
   std::array<double, 3> irradiance = {1.0, 1.0, 1.0};  // above the atmosphere
 };
 
-// Adds the sun's disc as the air and the horizon let it through. Every pixel gets its mean over the pixel, so
-// that the map holds the sun's whole irradiance at any size.
+// Adds the sun's disc as attenuated by the atmosphere and cut off by the horizon. Every pixel gets the mean over its
+// area, so that the map contains the sun's full irradiance at any size.
 void add_sun(image::Image& image, const SkyMap& map, const SunFace& sun, const shared::Medium& medium);
 
 }  // namespace tyndall::cli

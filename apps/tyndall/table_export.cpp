@@ -37,7 +37,7 @@ Error directory_error(const std::string& directory, const std::string& why) {
                                       "; expected a directory, or a new name in an existing one"})};
 }
 
-// IEEE 754 binary16; the tables hold no NaN and no infinity.
+// Converts IEEE 754 binary16. The tables contain no NaN and no infinity.
 float float_from_half(std::uint16_t half) {
   const int exponent = (half >> 10U) & 31U;
   const auto mantissa = static_cast<float>(half & 1023U);
@@ -63,7 +63,7 @@ Result<std::vector<std::uint16_t>> download(gpu::Host& host, Effect& effect) {
   return out;
 }
 
-// A folder inside the directory, in which files wait until all are there.
+// A folder inside the directory that holds the files until all are complete.
 class Staging {
  public:
   static Result<Staging> create(const std::string& directory) {
@@ -75,7 +75,7 @@ class Staging {
     out.folder_ = out.directory_ / concat({".tyndall-", std::to_string(::getpid())});
     fs::create_directory(out.folder_, failed);
     if (failed) return directory_error(directory, failed.message());
-    // The lock tells files::remove_leftovers() that this run is alive.
+    // The lock shows files::remove_leftovers() that this run is alive.
     out.lock_ = ::open(out.folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (out.lock_ >= 0) static_cast<void>(::flock(out.lock_, LOCK_EX | LOCK_NB));
     files::remove_leftovers(directory);
@@ -97,8 +97,8 @@ class Staging {
 
   [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
 
-  // All files at once, as far as a file system allows: the index goes first and comes last, so that at no
-  // time it stands beside files that it does not describe.
+  // Moves all files at once, as far as a file system allows. The old index is removed first and the new one added last,
+  // so that an index never stands beside files that it does not describe.
   [[nodiscard]] Result<void> publish(const std::vector<std::string>& files) const {
     std::error_code failed;
     for (const std::string& file : files) {
@@ -129,7 +129,7 @@ ordered_json cosines(std::span<const double> values) {
   return out;
 }
 
-// With the digits of a float.
+// Returns numbers with the precision of a float.
 ordered_json floats(const Vec3& v) {
   ordered_json out = ordered_json::array();
   for (const float value : {v.x, v.y, v.z}) {
@@ -151,7 +151,7 @@ class Exporter {
         axes_(models::table_axes(params_)),
         factors_(models::table_factors(params_, axes_)) {}
 
-  // `texels` as record_save_tables orders them. The names of the files, the index last.
+  // Writes the files. `texels` are in the order of record_save_tables. Returns the names of the files, the index last.
   Result<std::vector<std::string>> write(std::span<const std::uint16_t> texels, const std::string& device) {
     struct Kind {
       TableId id;
@@ -204,7 +204,7 @@ class Exporter {
     return image::write_exr(staging_.at(name), image, config::metadata(settings_));
   }
 
-  // One picture per altitude.
+  // Writes one picture per altitude.
   Result<ordered_json> scattering_table(const std::string& name, std::span<const std::uint16_t> texels,
                                         std::array<double, 3> models::TableFactors::*factor) {
     const UVec4& size = params_.tables.size;
@@ -324,9 +324,9 @@ Result<void> check_export(const std::string& directory) {
   const fs::file_status status = fs::status(directory, failed);
   if (fs::is_directory(status)) return files::check_writable((fs::path(directory) / kIndex).string());
   if (fs::exists(status)) return directory_error(directory, "it is a file");
-  // As a file it could be made where a directory can.
+  // The directory can be created if a file of the same name could be.
   fs::path name = directory;
-  if (!name.has_filename()) name = name.parent_path();  // a slash at the end
+  if (!name.has_filename()) name = name.parent_path();  // a trailing slash
   return files::check_writable(name.string());
 }
 

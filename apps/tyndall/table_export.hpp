@@ -1,4 +1,4 @@
-// The tables as files: physical values as EXR, and tables.json, which says what each file, row and column is.
+// Exports the tables: physical values as EXR files, and tables.json, which describes each file, row and column.
 // docs/tables.md describes them.
 #pragma once
 
@@ -12,15 +12,14 @@
 
 namespace tyndall::cli {
 
-// As in files and reports: the name of the table's view in the public interface.
+// Returns the name of a table in files and reports, which is that of its view in the public interface.
 [[nodiscard]] const char* table_name(TableId table);
 
-// Whether the directory is there or can be made, and takes files: for a check before long work.
+// Checks before long work that the directory exists or can be created, and is writable.
 [[nodiscard]] Result<void> check_export(const std::string& directory);
 
-// Writes the finished tables of an effect whose parameters are settings.effect; the number of files. They
-// appear in the directory when all of them are written, in place of those of an earlier export; after an
-// error, what was there is there.
+// Writes the finished tables of an effect whose parameters are settings.effect. Returns the number of files. They
+// replace those of an earlier export when all of them are complete; after an error, the old files are still there.
 [[nodiscard]] Result<std::size_t> export_tables(
     const std::string& directory, gpu::Host& host, Effect& effect, const config::Settings& settings,
     const std::function<void(std::size_t done, std::size_t total)>& progress);

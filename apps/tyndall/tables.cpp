@@ -1,4 +1,4 @@
-// `tyndall tables`: builds the scattering tables, says how long each stage took, exports them.
+// `tyndall tables`: builds the scattering tables, reports the time of each stage, and exports them.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -87,7 +87,7 @@ int run_tables(Args args) {
     memory[table_name(id)] = gpu::image_bytes(host.value()->device(), table_desc(id, params));
   }
   memory["while_building"] = effect.memory().transient;
-  // Where the tables are kept now; null if nowhere.
+  // The directory that now holds the tables; null if none.
   report["cache"] = nullptr;
   const std::string cache = files::cache_directory(how.cache.place);
   if (!cache.empty() && made.notes.empty()) report["cache"] = files::one_line(cache, 1000);

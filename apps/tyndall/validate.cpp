@@ -1,4 +1,4 @@
-// `tyndall validate`: every model against the path tracer, as a report.
+// `tyndall validate`: compares every model with the path tracer and writes a report.
 #include <algorithm>
 #include <filesystem>
 
@@ -60,12 +60,12 @@ Result<std::vector<Rgb>> ask_over_ground(const AskedModel& model, const Params& 
   return found;
 }
 
-// The tables of the last parameters that were asked for, kept for the next question.
+// Evaluates the scattering tables, and stores those of the latest parameters for the next call.
 class Tables {
  public:
   Tables(std::string device, tables::CacheDesc cache) : device_(std::move(device)) { how_.cache = std::move(cache); }
 
-  // About the cache, each but once.
+  // Returns remarks on the cache, each only once.
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
 
   Result<std::vector<Rgb>> ask(const Params& params, std::span<const RayQuery> queries) {
@@ -115,7 +115,7 @@ validate::Model table_model(std::string name, std::string meaning, const std::sh
           }};
 }
 
-// The parameterisations of the tables, for the horizon.
+// Returns the parameterisations of the tables, for the horizon test.
 std::vector<validate::Model> parameterizations(const std::shared_ptr<Tables>& tables) {
   std::vector<validate::Model> out;
   for (const auto& [name, value] :

@@ -1,5 +1,5 @@
-// The verbs of the command line, one .cpp each. A verb gets the arguments after its name and returns
-// the exit status; it prints results on stdout (cli.hpp's print) and at most one error line.
+// The verbs of the command line, one .cpp each. A verb receives the arguments after its name and returns the exit
+// status. It prints results on stdout with print() of cli.hpp, and at most one error message.
 #pragma once
 
 #include <span>

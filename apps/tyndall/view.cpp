@@ -1,4 +1,4 @@
-// `tyndall view`: the interactive viewer (apps/viewer).
+// `tyndall view`: starts the interactive viewer (apps/viewer).
 #include "arguments.hpp"
 #include "cli.hpp"
 #include "make_tables.hpp"
