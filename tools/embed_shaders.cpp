@@ -1,8 +1,7 @@
-// embed_shaders OUT.hpp A.spv B.spv ...: writes a header with one tyndall::gpu::Shader for each module:
-// its words, stage, local size, push-constant size and its bindings by name, with what each is used for.
-// The name of a module is that of its file without the extension, and an array named as OUT lists them all. All
-// bindings must be in set 0 and be named; storage images and buffers must say readonly or writeonly where they are so,
-// because barriers follow from it.
+// embed_shaders OUT.hpp A.spv B.spv ...: writes a header with one tyndall::gpu::Shader per module: its words, stage,
+// local size, push-constant size, and its bindings by name with the access to each. A module is named after its file
+// without the extension, and an array named after OUT lists all modules. All bindings must be in set 0 and have names.
+// Storage images and buffers must be declared readonly or writeonly where they are so, because barriers follow from it.
 #include <spirv_cross/spirv_cross_c.h>
 
 #include <cstdint>

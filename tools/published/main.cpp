@@ -1,8 +1,8 @@
-// published_tables: the published way of building the scattering tables beside ours, on the same device, with
-// the same rays and the same path tracer: what each costs and how far off it is. Prints Markdown
-// (docs/generated/published.md). The method is Yusov's (2013, section 2), transcribed from its description in
-// shaders/published; ozone, which it does not know, is off.
-//   published_tables [RAYS_PER_GROUP] [PATHS_PER_RAY]
+// published_tables: builds the scattering tables with the published method and with ours, on the same device, and
+// compares cost and accuracy with the same rays and the same path tracer. Prints Markdown
+// (docs/generated/published.md). The method is that of Yusov (2013, section 2), written from its description in
+// shaders/published. It has no ozone, so ozone is off.
+// published_tables [RAYS_PER_GROUP] [PATHS_PER_RAY]
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -27,7 +27,7 @@ constexpr std::uint32_t kDirections = 128;
 constexpr VkExtent3D kTexels = {32, 128, 64 * 16};
 constexpr std::uint32_t kSlice = 64;  // texels along the third axis, per submission
 
-// By the clock, and of the processor: on a CPU device the latter tells more where other work is going on.
+// Wall-clock time and processor time. On a CPU device, processor time is less sensitive to other load.
 struct Time {
   double wall_s = 0.0, processor_s = 0.0;
   Time& operator+=(const Time& t) {
@@ -58,7 +58,7 @@ class Published {
     const gpu::Device& device = host_.device();
     TYNDALL_ASSIGN(linear_, gpu::create_sampler(device, {}));
     TYNDALL_TRY(fill(medium_, "medium", &medium, sizeof medium));
-    // The source draws from an unseeded generator; any set will do.
+    // The published method uses an unseeded generator; any set of directions will do.
     std::mt19937 random(1);
     std::uniform_real_distribution<float> uniform(0.0F, 1.0F);
     std::vector<float> directions;
@@ -123,7 +123,7 @@ class Published {
     });
   }
 
-  // One invocation per texel of `extent`; adds the time it takes to `time`.
+  // Runs one invocation per texel of `extent`, and adds its duration to `time`.
   Result<void> pass(const gpu::Shader& shader, VkExtent3D extent, const gpu::Image& before, std::uint32_t adds,
                     Time& time) {
     const gpu::Device& device = host_.device();

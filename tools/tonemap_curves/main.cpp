@@ -1,6 +1,6 @@
-// Draws the tone-mapping operators for docs/tonemapping.md, at the default settings: grey of a scaled luminance against
-// the display value, as sRGB encodes it.
-//     tonemap_curves FILE.svg
+// Plots the tone-mapping operators for docs/tonemapping.md at the default settings: display value, encoded as sRGB,
+// over scaled luminance of a grey.
+// tonemap_curves FILE.svg
 #include <cmath>
 #include <cstdio>
 
