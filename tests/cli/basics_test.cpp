@@ -1,4 +1,4 @@
-// The executable as scripts see it: exit statuses, one line per error, help, params.
+// The executable's interface for scripts: exit statuses, one line per error, help, params.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -121,7 +121,7 @@ TEST(Cli, ParamsRoundTrip) {
   EXPECT_NE(changed.out.find("\nrayleigh_scattering = [5.8e-06, 1.35e-05, 3.33e-05]\n"), std::string::npos);
   const std::string scene = scratch.write("scene.toml", changed.out);
   EXPECT_EQ(run_tyndall({"params", scene}).out, changed.out);
-  // --set wins over the scene, wherever it stands.
+  // --set overrides the scene, in any order of the arguments.
   EXPECT_EQ(run_tyndall({"params", "--set", "sun.elevation_deg=-0.1", "--set=terrain.source=a \"b\".tif", scene}).out,
             changed.out);
   EXPECT_NE(run_tyndall({"params", "--set", "sun.elevation_deg=6", scene}).out, changed.out);

@@ -1,4 +1,4 @@
-// `tyndall compare` on images made here.
+// `tyndall compare` on small generated images.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 
 class CliCompare : public testing::Test {
  protected:
-  // A PNG whose values are `level` of 255 everywhere, and `level + 1` in every fourth row.
+  // Writes a PNG whose values are `level` of 255, and `level + 1` in every fourth row.
   std::string png(const std::string& name, int level, std::uint32_t width = 16) const {
     image::Image picture(width, 16);
     for (std::size_t i = 0; i < picture.rgb.size(); ++i) {

@@ -1,5 +1,5 @@
-// What is promised of epipolar sampling, at the size it is promised for: 1280 x 720, the default scene, fixed exposure,
-// against brute force with the same shadows.
+// The promised accuracy of epipolar sampling at 1280 x 720: the default scene, fixed exposure, compared with brute
+// force with the same shadows.
 #include <gtest/gtest.h>
 
 #include "run_tyndall.hpp"
@@ -11,7 +11,7 @@ class CliEpipolar : public testing::Test {
  protected:
   using Arguments = std::vector<std::string>;
 
-  // Of a scene, or of the defaults.
+  // Renders a scene, or the defaults.
   std::string picture(const std::string& name, const Arguments& scene, const Arguments& settings) const {
     Arguments all = {"render"};
     all.insert(all.end(), scene.begin(), scene.end());

@@ -1,4 +1,4 @@
-// The options that the verbs share, below the executable.
+// The options common to all verbs, tested without the executable.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// `tyndall probe` as scripts see it: the tables, the numbers, and everything that can be wrong with a table.
+// `tyndall probe`: tables, results, and every mistake in a table.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,8 +20,8 @@ const std::string kHeader = "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_d
 
 class CliProbe : public testing::Test {
  protected:
-  // The table that `probe` prints for these queries, by the model `single` unless told otherwise; empty after a
-  // failure, which is reported.
+  // Returns the table that `probe` prints for these queries, with the model `single` by default. Empty after a failure,
+  // which is reported.
   files::CsvTable ask(const std::string& queries, std::vector<std::string> more = {}) const {
     if (std::find(more.begin(), more.end(), "--model") == more.end()) more.insert(more.end(), {"--model", "single"});
     more.insert(more.begin(), {"probe", "--queries", scratch_.write("q.csv", queries)});
@@ -45,8 +45,8 @@ class CliProbe : public testing::Test {
 };
 
 TEST_F(CliProbe, EveryFormOfTableIsReadAndItsColumnsPassedOn) {
-  // Columns in another order, one more among them, quoted fields with a comma, a quote and a line end, CRLF,
-  // a byte order mark, blank lines, no line end at the end.
+  // Columns in another order, an extra column, quoted fields with a comma, a quote and a line end, CRLF, a byte order
+  // mark, blank lines, no line end at the end of the file.
   const files::CsvTable table =
       ask("\xEF\xBB\xBF\r\nid, azimuth_deg ,\"view_zenith_deg\",sun_zenith_deg,altitude_m\r\n"
           "\"a,\"\"b\",30,60,+3e1,0\r\n\r\n   \r\n\"two\nlines\",-30, \"60\" ,30.0,0\r\nlast,,sky,30,0");
@@ -61,10 +61,10 @@ TEST_F(CliProbe, EveryFormOfTableIsReadAndItsColumnsPassedOn) {
   ASSERT_EQ(table.header.size(), 11U);
   for (const char* const column : {"L_r", "L_g", "L_b", "T_r", "T_g", "T_b"}) {
     EXPECT_GT(number(table, 0, column), 0.0);
-    // The air is the same on both sides of the sun.
+    // The atmosphere is symmetric about the sun's plane.
     EXPECT_EQ(number(table, 0, column), number(table, 1, column)) << column;
   }
-  // What was answered before gives way, and may be asked again.
+  // Result columns of an earlier run are replaced, so that a result can be used as a query table.
   const std::string again = std::string(*table.text);
   EXPECT_EQ(*ask(again).text, again);
 }
@@ -82,14 +82,14 @@ TEST_F(CliProbe, SingleIsTheIntegralAndTheSkyItsIrradiance) {
       const double* ray = rays[row];
       const models::Answer truth = models::single_scattering(
           medium, models::ray_from_angles(ray[0], ray[1] * kRadPerDeg, ray[2] * kRadPerDeg, ray[3] * kRadPerDeg));
-      // Single precision on the device: see tests/gpu/probe_test.cpp for the whole range.
+      // The device computes in single precision; tests/gpu/probe_test.cpp covers the whole range.
       EXPECT_NEAR(number(table, row, l), truth.radiance[c], 2e-3 * truth.radiance[c]) << row;
       EXPECT_NEAR(number(table, row, t), truth.transmittance[c], 2e-3 * truth.transmittance[c]) << row;
     }
-    // Into space: nothing is in the way.
+    // This ray goes into space, where nothing scatters.
     EXPECT_EQ(number(table, 3, l), 0.0);
     EXPECT_EQ(number(table, 3, t), 1.0);
-    // Written with every digit of the double that it is.
+    // Doubles are printed with all digits.
     const double cos_sun = std::cos(70.0 * kRadPerDeg);
     EXPECT_EQ(number(table, 4, l), models::single_sky_irradiance(medium, 3000.0, cos_sun)[c]);
     EXPECT_EQ(number(table, 4, t), models::sun_transmittance(medium, 3000.0, cos_sun)[c]);
@@ -116,7 +116,7 @@ TEST_F(CliProbe, ReferenceAgreesWithSingleWithinItsError) {
   std::vector<std::string> seeded = one;
   seeded.insert(seeded.end(), {"--seed", "2"});
   EXPECT_NE(*ask(queries, seeded).text, *reference.text);
-  // The ground at the end of a ray shines in the reference, and is black in single scattering.
+  // The ground at the end of a ray is lit in the reference, and black in single scattering.
   const auto lit_ground = [&](const std::string& model) {
     return number(ask(kHeader + "0,180,40,0\n",
                       {"--model", model, "--samples", "64", "--orders", "1", "--set", "planet.ground_albedo=0.5"}),
@@ -135,7 +135,7 @@ TEST_F(CliProbe, ParametersAndScenesApply) {
   EXPECT_EQ(number(none, 0, "T_b"), 1.0);
   const std::string scene = scratch_.write("scene.toml", "[atmosphere]\naerosol_density = 5.0\n");
   EXPECT_LT(number(ask(queries, {scene}), 0, "T_r"), number(ask(queries), 0, "T_r"));
-  // What a picture of the scene is scaled by is not part of the answer.
+  // The radiance scale of a scene does not apply to probe.
   EXPECT_EQ(*ask(queries, {"--set", "scattering.scale=2"}).text, *ask(queries).text);
 }
 
@@ -149,7 +149,7 @@ TEST_F(CliProbe, WritesAFileOrJson) {
   EXPECT_EQ(document["model"], "single");
   ASSERT_EQ(document["answers"].size(), 2U);
   EXPECT_GT(document["answers"][0]["L"][2].get<double>(), 0.0);
-  // One block of samples has no standard error: infinite in a table, null in JSON.
+  // A single block of samples has no standard error: infinite in a table, null in JSON.
   const std::vector<std::string> rough = {"probe", "--queries", queries, "--model", "reference", "--samples", "1"};
   std::vector<std::string> rough_json = rough;
   rough_json.emplace_back("--json");
@@ -197,7 +197,7 @@ TEST_F(CliProbe, BadTablesAreNamedByLineAndColumn) {
   EXPECT_FALSE(std::filesystem::exists(scratch_.at("r.csv")));
 }
 
-// From the sea floor every model gives numbers, and a planet has to be large enough for it.
+// Every model gives finite results for an eye at the sea floor. The planet must be large enough for that depth.
 TEST_F(CliProbe, EyesFarBelowSeaLevel) {
   std::string queries = kHeader;
   for (const char* const altitude : {"-430", "-11000"}) {
@@ -247,7 +247,7 @@ TEST_F(CliProbe, BadUsage) {
     EXPECT_EQ(outcome.status, 2) << message;
     EXPECT_EQ(outcome.err, "tyndall: error: " + message + "\n");
   }
-  // A model that is not there names those that are.
+  // The error for an unknown model lists the known ones.
   const Outcome model = run_tyndall({"probe", "--queries", queries, "--model", "onil"});
   EXPECT_EQ(model.status, 2);
   EXPECT_EQ(model.err.rfind("tyndall: error: --model: unknown value 'onil'; expected one of ", 0), 0U) << model.err;
@@ -265,7 +265,7 @@ TEST_F(CliProbe, OutputsThatCannotBeWritten) {
     EXPECT_EQ(outcome.err.rfind("tyndall: error: cannot ", 0), 0U) << outcome.err;
   }
   EXPECT_EQ(run_tyndall({"probe", "--queries", queries, "--model", "single"}, "/dev/full").status, 1);
-  // An existing result survives a run that fails.
+  // A failed run leaves an existing result untouched.
   const std::string kept = scratch_.write("kept.csv", "kept");
   EXPECT_EQ(run_tyndall({"probe", "--queries", queries, "-o", kept, "--device", "no such"}).status, 2);
   EXPECT_EQ(contents_of(kept), "kept");
@@ -273,7 +273,7 @@ TEST_F(CliProbe, OutputsThatCannotBeWritten) {
 
 TEST_F(CliProbe, AMillionLines) {
   std::string text = kHeader;
-  // Looking away from the air costs the device little, so this is the table's own time and memory.
+  // Rays that miss the atmosphere take little time on the device, so this measures the table's own time and memory.
   for (int i = 0; i < 1000000; ++i) text += "100000,1,30," + std::to_string(i % 360) + "\n";
   const std::string out = scratch_.at("r.csv");
   const Outcome outcome =

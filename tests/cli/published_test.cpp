@@ -1,7 +1,6 @@
-// `tyndall probe` against the equations of the documents, evaluated here in double precision from the text alone, for
-// random rays and media: Hoffman and Preetham (2002), O'Neil (2005) with its printed polynomial, his table (2004)
-// against the columns that it stands for, and the homogeneous medium of Yusov (2012). Nothing of the library's own is
-// used.
+// `tyndall probe` against the equations of the publications, evaluated here in double precision without any code of the
+// library, for random rays and media: Hoffman and Preetham (2002), O'Neil (2005) with his published polynomial,
+// O'Neil's table (2004) against the integrals that it stores, and the homogeneous medium of Yusov (2012).
 #include <gtest/gtest.h>
 
 #include <array>
@@ -46,7 +45,8 @@ struct Coefficients {
   double g = 0.0;
 };
 
-// 3 / (16 pi) (1 + cos^2), and what Cornette and Shanks or Henyey and Greenstein wrote, positive g forwards.
+// 3 / (16 pi) (1 + cos^2), and the functions of Cornette and Shanks and of Henyey and Greenstein; positive g scatters
+// forward.
 double rayleigh_phase(double c) { return 3.0 / (16.0 * kPi) * (1.0 + c * c); }
 double henyey_greenstein(double c, double g) {
   return (1.0 - g * g) / (4.0 * kPi * std::pow(1.0 + g * g - 2.0 * g * c, 1.5));
@@ -59,7 +59,7 @@ class CliPublished : public testing::Test {
  protected:
   std::mt19937 engine_{2002};
   double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
-  // Numbers that survive being floats, which parameters are.
+  // Returns random numbers that floats represent exactly, because parameters are floats.
   double number(double low, double high) { return static_cast<double>(static_cast<float>(uniform(low, high))); }
   Coefficients coefficients() {
     Coefficients c;
@@ -86,7 +86,7 @@ class CliPublished : public testing::Test {
     }
     return more;
   }
-  // Asks, and holds every answer against `truth`.
+  // Runs probe and compares every result with `truth`.
   void expect_published(const std::vector<std::string>& arguments, const std::vector<Question>& questions,
                         const std::function<Seen(const Question&)>& truth) {
     std::string csv = "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n";
@@ -122,7 +122,7 @@ class CliPublished : public testing::Test {
   Scratch scratch_;
 };
 
-// Equation 5 for the optical lengths, and the sky of two shells.
+// Equation 5 for the optical lengths, and the sky equation of two shells.
 TEST_F(CliPublished, HoffmanAndPreetham) {
   for (int medium = 0; medium < 4; ++medium) {
     const Coefficients k = coefficients();
@@ -158,8 +158,8 @@ TEST_F(CliPublished, HoffmanAndPreetham) {
   }
 }
 
-// Equations 1, 3 and 4 for rays that meet the ground: one density along the whole distance, the sun as it is seen from
-// the ground.
+// Equations 1, 3 and 4 for rays that hit the ground: constant density along the whole distance, and the sun as seen
+// from the ground.
 TEST_F(CliPublished, HoffmanAndPreethamsGround) {
   constexpr double kRadius = 6360000.0;
   for (int medium = 0; medium < 4; ++medium) {
@@ -195,7 +195,7 @@ TEST_F(CliPublished, HoffmanAndPreethamsGround) {
   }
 }
 
-// The sum of chapter 16 for rays that leave the air, with columns from whatever function.
+// The sum of chapter 16 for rays that leave the atmosphere, with density integrals from any function.
 using Column = std::function<double(double height_m, double scale_height_m, double cos_zenith)>;
 Seen oneil(const Question& q, const Coefficients& k, double radius_m, double top_m, const Rgb& scale_heights_m,
            int samples, const Column& column) {
@@ -230,13 +230,13 @@ Seen oneil(const Question& q, const Coefficients& k, double radius_m, double top
 TEST_F(CliPublished, ONeilWithThePrintedPolynomial) {
   constexpr double kRadius = 6360000.0;
   constexpr double kTop = 159000.0;
-  constexpr double kScaleHeight = 39750.0;  // a quarter of the thickness, for which the polynomial is
+  constexpr double kScaleHeight = 39750.0;  // a quarter of the thickness, for which the polynomial was made
   for (int medium = 0; medium < 4; ++medium) {
     const Coefficients k = coefficients();
     std::vector<Question> questions;
     for (int i = 0; i < 100; ++i)
       questions.push_back({uniform(0.0, 150000.0), uniform(0.0, 85.0), uniform(0.0, 85.0), uniform(0.0, 360.0)});
-    // In the document's unit, the thickness of the air; the column down to where nothing is left is that to the top.
+    // In the publication's unit, the thickness of the atmosphere. Its integral to infinity is used for that to the top.
     const Column printed = [&](double height_m, double scale_height_m, double cos_zenith) {
       const double x = 1.0 - cos_zenith;
       const double scale =
@@ -250,7 +250,7 @@ TEST_F(CliPublished, ONeilWithThePrintedPolynomial) {
                               "--set", "atmosphere.mie_scale_height_m=39750"}),
                      questions, [&](const Question& q) {
                        Seen out = oneil(q, k, kRadius, kTop, {kScaleHeight, kScaleHeight, 0.0}, samples, printed);
-                       // What is left at the top is subtracted from the whole path too.
+                       // The remainder above the top is also subtracted from the whole path.
                        const Direction eye = {kRadius + q.altitude_m, 0.0, 0.0};
                        const Direction view = q.view();
                        const double b = dot(eye, view);
@@ -266,8 +266,8 @@ TEST_F(CliPublished, ONeilWithThePrintedPolynomial) {
   }
 }
 
-// From space down to the ground: the ray from where it enters the air, columns as printed from each point back towards
-// the camera.
+// From space to the ground: the ray begins where it enters the atmosphere, and the published integrals go from each
+// point back towards the camera.
 TEST_F(CliPublished, ONeilFromSpace) {
   constexpr double kRadius = 6360000.0;
   constexpr double kTop = 159000.0;
@@ -283,7 +283,7 @@ TEST_F(CliPublished, ONeilFromSpace) {
     while (questions.size() < 60) {
       const Question q = {uniform(200000.0, 8000000.0), uniform(100.0, 180.0), uniform(0.0, 60.0), uniform(0.0, 360.0)};
       const double r = kRadius + q.altitude_m;
-      // Rays down to the ground, where it is day.
+      // Only rays that hit the ground on the day side.
       if (r * std::sin(q.view_deg * kPi / 180.0) > 0.98 * kRadius) continue;
       questions.push_back(q);
     }
@@ -303,7 +303,7 @@ TEST_F(CliPublished, ONeilFromSpace) {
           const auto cosine = [](const Direction& p, const Direction& d) { return dot(p, d) / std::sqrt(dot(p, p)); };
           const Direction back = {-view.up, -view.across, -view.aside};
           const Direction start = along(eye, view, near);
-          // exp(-4): what is left of the air where drawing ends.
+          // exp(-4) is the density at the top, where drawing ends.
           const double offset = std::exp(-kTop / kScaleHeight) * scale(cosine(start, back));
           const double nu = dot(view, sun);
           Seen out;
@@ -331,7 +331,7 @@ TEST_F(CliPublished, ONeilsTable) {
   std::vector<Question> questions;
   for (int i = 0; i < 60; ++i)
     questions.push_back({uniform(0.0, 40000.0), uniform(0.0, 85.0), uniform(0.0, 85.0), uniform(0.0, 360.0)});
-  // To the top, by Simpson's rule in a coordinate that has most points where the air is dense.
+  // Integrates to the top by Simpson's rule in a coordinate that concentrates points where the density is high.
   const Column column = [](double height_m, double scale_height_m, double cos_zenith) {
     const double r = kRadius + height_m;
     const double end =
@@ -354,8 +354,8 @@ TEST_F(CliPublished, ONeilsTable) {
                    });
 }
 
-// The in-scattering integral under the assumptions of section 2, by Simpson's rule, out to the extent, the planet or
-// the flat top.
+// The in-scattering integral under the assumptions of section 2, by Simpson's rule, to the extent, the planet or the
+// flat top.
 TEST_F(CliPublished, TheHomogeneousMediumOf2012) {
   for (int medium = 0; medium < 4; ++medium) {
     const Coefficients k = coefficients();

@@ -1,4 +1,4 @@
-// Runs the built executable and collects its exit status and what it prints.
+// Runs the built executable, and collects its exit status and output.
 #pragma once
 
 #include <fcntl.h>
@@ -14,16 +14,16 @@
 
 namespace tyndall::cli {
 
-// The user's cache is not for tests: they have one of their own, which all of them share and later runs find.
+// Tests must not use the user's cache. They share one of their own, which later runs reuse.
 inline const int kOwnCache = ::setenv("XDG_CACHE_HOME", TYNDALL_TEST_CACHE, 1);
 
 struct Outcome {
-  int status = -1;  // exit status; 1000 + the signal's number when a signal ended it
+  int status = -1;  // exit status; 1000 + the signal's number if a signal ended the process
   std::string out;
   std::string err;
 };
 
-// A directory of its own, removed at the end.
+// A temporary directory that is removed at the end.
 class Scratch {
  public:
   Scratch() {
@@ -50,7 +50,7 @@ inline std::string contents_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-// `stdout_path`: where stdout goes instead of being collected ("/dev/full").
+// Runs tyndall. `stdout_path` redirects stdout to a file, such as "/dev/full", instead of collecting it.
 inline Outcome run_tyndall(const std::vector<std::string>& arguments, const std::string& stdout_path = "") {
   const Scratch scratch;
   const std::string out = stdout_path.empty() ? scratch.at("out") : stdout_path;

@@ -1,5 +1,4 @@
-// `render`, `bench` and `devices` with everything that can be wrong: one line, the right status, nothing left
-// behind.
+// `render`, `bench` and `devices` with all kinds of errors: one line, the right status, and no files left behind.
 #include <gtest/gtest.h>
 
 #include <sys/resource.h>
@@ -13,7 +12,7 @@
 namespace tyndall::cli {
 namespace {
 
-// Sets environment variables of the runs that follow, and puts back what was there.
+// Sets environment variables for subsequent runs, and restores the old values at the end.
 class Environment {
  public:
   Environment(std::initializer_list<std::pair<const char*, std::string>> values) {
@@ -48,7 +47,7 @@ class CliScenes : public testing::Test {
     EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
     EXPECT_EQ(outcome.out, "");
   }
-  // Names of what is in the folder.
+  // Returns the number of files in the folder.
   [[nodiscard]] std::size_t files() const {
     std::size_t count = 0;
     for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(scratch_.at(""))) ++count;
@@ -102,7 +101,7 @@ TEST_F(CliScenes, SizesCountsAndOutputs) {
 TEST_F(CliScenes, ElevationFilesThatAreNone) {
   std::string grid = "ncols 8\nnrows 8\nxllcorner 0\nyllcorner 0\ncellsize 500\n";
   for (int i = 0; i < 64; ++i) grid += std::to_string(100 * (i % 7)) + (i % 8 == 7 ? "\n" : " ");
-  // A TIFF's first bytes promise a directory that never comes.
+  // The first bytes of a TIFF, without the directory that they refer to.
   const std::pair<std::string, std::string> sources[] = {
       {"/nonexistent.tif", "does not exist"},
       {scratch_.at(""), "is a directory"},
@@ -151,7 +150,7 @@ TEST_F(CliScenes, OutputsAreNotWrittenOverInputs) {
   EXPECT_EQ(contents_of(frame), "a frame that is an elevation file");
 }
 
-// Values that are not a range are refused with the other bad input, before a device is opened.
+// Values outside their sets are rejected like other bad input, before a device is opened.
 TEST_F(CliScenes, ValuesThatAreNoRangeAreBadInput) {
   for (const std::string& setting : {std::string("scattering.downscale=3"), std::string("tables.size=32,127,64,16")}) {
     const Outcome outcome =
@@ -180,7 +179,7 @@ TEST_F(CliScenes, MeshFilesThatAreNone) {
     expect_one_line(outcome, outcome.status, part);
     EXPECT_FALSE(std::filesystem::exists(scratch_.at("out.png")));
   }
-  // Other models draw the terrain and the sky only.
+  // Models other than the effect only draw terrain and sky.
   expect_one_line(render({"--set", "meshes.source=hall", "--set", "scattering.model=homogeneous"}), 2,
                   "scattering.model");
 }
@@ -195,7 +194,7 @@ TEST_F(CliScenes, WithoutADeviceThereIsOneLine) {
   expect_one_line(run_tyndall({"devices"}), 1, "driver is needed");
   expect_one_line(run_tyndall({"probe", "--queries", queries}), 1, "driver is needed");
   EXPECT_FALSE(std::filesystem::exists(scratch_.at("out.png")));
-  // What needs no device works without: the reference, and the sky.
+  // Verbs that need no device work without one: the reference, and the sky.
   EXPECT_EQ(run_tyndall({"probe", "--queries", queries, "--model", "reference", "--samples", "64"}).status, 0);
   const std::string sky =
       scratch_.write("sky.csv", "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n0,sky,2,\n");
@@ -221,7 +220,7 @@ TEST_F(CliScenes, DevicesAreListedAndWrongOnesNamed) {
   EXPECT_EQ(files(), 0U);
 }
 
-// A limit on the size of files stands for a disk that fills up while the picture is written.
+// A limit on the file size simulates a disk that fills up while the picture is written.
 TEST_F(CliScenes, APictureThatDoesNotFitLeavesWhatWasThere) {
   const std::string before = scratch_.write("out.png", "before");
   std::string grid = "ncols 4\nnrows 4\nxllcorner 0\nyllcorner 0\ncellsize 500\n";
@@ -243,12 +242,12 @@ TEST_F(CliScenes, APictureThatDoesNotFitLeavesWhatWasThere) {
   EXPECT_NE(outcome.err.find(": cannot write: "), std::string::npos) << outcome.err;
   EXPECT_EQ(contents_of(before), "before");
   EXPECT_EQ(files(), 2U);
-  // With room it is replaced.
+  // With enough space the file is replaced.
   EXPECT_EQ(render(quick).status, 0);
   EXPECT_EQ(contents_of(before).substr(1, 3), "PNG");
 }
 
-// What each frame of a flight was drawn with stands in its metadata.
+// The metadata of each frame of a flight has the frame's own parameters.
 TEST_F(CliScenes, FlightsArePlayed) {
   const std::string scene =
       scratch_.write("flight.toml", "planet.radius_m = 20000\ntables = { size = [4, 4, 4, 4], orders = 1 }\n"
@@ -269,8 +268,8 @@ TEST_F(CliScenes, FlightsArePlayed) {
   EXPECT_TRUE(has(1, "frame.exposure", ""));
 }
 
-// Scenes are read before the device is looked for: it is enough that the device is what is wrong.
-// A flight by date over an elevation file takes its place from the file.
+// Scenes are read before a device is selected, so a wrong device suffices here. A flight by date over an elevation file
+// takes its place from the file.
 TEST_F(CliScenes, ElevationFilesGiveFlightsTheirPlace) {
   std::string grid = "ncols 4\nnrows 4\nxllcorner 35.4\nyllcorner 31.4\ncellsize 0.01\n";
   for (int i = 0; i < 16; ++i) grid += "100" + std::string(i % 4 == 3 ? "\n" : " ");
@@ -292,7 +291,8 @@ TEST_F(CliScenes, ElevationFilesGiveFlightsTheirPlace) {
   placed.insert(placed.end(), {"--set", "terrain.source=" + file});
   const Outcome outcome = run_tyndall(placed);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  // Half past eleven by the sun in Jerusalem on the longest day: 81.8 deg up, as `sky --at 31.42,35.42` has it too.
+  // Half past eleven by the sun in Jerusalem on the longest day: 81.8 degrees up, as `sky --at 31.42,35.42` also
+  // computes.
   const std::string header = contents_of(out);
   const std::size_t at = header.find("tyndall.sun.elevation_deg");
   ASSERT_NE(at, std::string::npos);
@@ -300,7 +300,7 @@ TEST_F(CliScenes, ElevationFilesGiveFlightsTheirPlace) {
       std::stod(header.substr(at + std::string("tyndall.sun.elevation_deg").size() + 1 + 7 + 4, 12));
   EXPECT_GT(elevation, 80.0);
   EXPECT_LT(elevation, 83.0);
-  // Metres say nothing about the place.
+  // Coordinates in metres do not define a place.
   placed.insert(placed.end(), {"--set", "terrain.units=metres"});
   EXPECT_EQ(run_tyndall(placed).status, 2);
 }
@@ -346,7 +346,7 @@ TEST_F(CliScenes, BenchSaysWhatIsPromised) {
   EXPECT_EQ(report["memory_bytes"]["effect_persistent"], bytes);
 }
 
-// The march is done once for each cascade: its time is that of all of them, so that one frame's passes are its effect.
+// Marching runs once per cascade. Its reported time is the sum, so that the passes of a frame add up to the effect.
 TEST_F(CliScenes, BenchAddsUpPassesThatAreDoneSeveralTimes) {
   const Outcome outcome = run_tyndall({"bench", "--json", "--size", "64x36", "--frames", "1", "--set",
                                        "planet.radius_m=20000", "--set", "tables.size=4,4,4,4", "--set",

@@ -1,5 +1,4 @@
-// `tyndall sky` as scripts see it, and the map and the sun's disc below it: where things are, and that no
-// light is lost.
+// `tyndall sky`, and the map and the sun's disc in it: directions, and conservation of light.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +20,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kRadPerDeg = kPi / 180.0;
 
-// Over the whole sphere, or its upper half times the cosine.
+// Integrates over the whole sphere, or over its upper half times the cosine.
 std::array<double, 3> integral(const image::Image& image, bool horizontal) {
   SkyMap map;
   map.width = image.width;
@@ -62,7 +61,7 @@ TEST(CliSkyMap, TheDiscHoldsTheDirectSunAtEverySize) {
   const shared::Medium medium = medium_from_params({});
   for (const auto& [width, height] :
        {std::pair(2U, 1U), std::pair(16U, 8U), std::pair(333U, 77U), std::pair(2048U, 1024U)}) {
-    // In the open, at the seam of the map, at the zenith, and near it.
+    // Inside the map, at its seam, at the zenith, and near the zenith.
     for (const auto& [elevation, azimuth] : {std::pair(30.0, 100.0), std::pair(45.0, 0.0), std::pair(20.0, -720.05),
                                              std::pair(90.0, 40.0), std::pair(89.9, 200.0)}) {
       const SkyMap map = map_of(width, height, elevation, azimuth);
@@ -71,7 +70,7 @@ TEST(CliSkyMap, TheDiscHoldsTheDirectSunAtEverySize) {
       const std::array<double, 3> found = integral(image, false);
       const std::array<double, 3> passed = models::sun_transmittance(medium, 0.0, std::sin(elevation * kRadPerDeg));
       for (std::size_t c = 0; c < 3; ++c) {
-        // Pixels are floats, and the air is not quite the same over the disc.
+        // Pixels are floats, and the transmittance varies slightly over the disc.
         EXPECT_NEAR(found[c], 10.0 * passed[c], 2e-5 * 10.0) << width << ' ' << elevation << ' ' << azimuth;
       }
     }
@@ -91,11 +90,11 @@ TEST(CliSkyMap, TheHorizonCutsTheDisc) {
     add_sun(image, map, {0.2667 * kRadPerDeg, {}, {10.0, 10.0, 10.0}}, medium);
     return integral(image, false)[1];
   };
-  EXPECT_NEAR(flux(0.0, 0.0), 5.0, 0.01);  // half of it; a uniform face
+  EXPECT_NEAR(flux(0.0, 0.0), 5.0, 0.01);  // half of it, for a uniform disc
   // A chord at half the radius leaves 1/2 + (x sqrt(1 - x^2) + asin x) / pi.
   EXPECT_NEAR(flux(0.13335, 0.0), 10.0 * (0.5 + (0.5 * std::sqrt(0.75) + std::asin(0.5)) / kPi), 0.02);
   EXPECT_EQ(flux(-0.27, 0.0), 0.0);
-  // From above, the horizon lies deeper.
+  // From a greater altitude the horizon is lower.
   EXPECT_NEAR(flux(-0.27, 1000.0), 10.0, 1e-4);
   EXPECT_NEAR(flux(-10.0, 400000.0), 10.0, 1e-4);
   EXPECT_EQ(flux(-30.0, 400000.0), 0.0);
@@ -135,7 +134,7 @@ std::vector<std::string> with_single(std::vector<std::string> arguments) {
 TEST_F(CliSky, TheUpperHalfHoldsTheIrradianceOfTheSky) {
   for (const double elevation : {60.0, 15.0, 0.0, -4.0}) {
     for (const double altitude : {0.0, 9000.0}) {
-      // The sun's irradiance is 10 and the scale 0.5.
+      // The sun's irradiance is 10 and the scale is 0.5.
       const image::File file =
           make(with_single({"--size", "180x360", "--sun-elevation-deg", files::number_text(elevation),
                             "--sun-azimuth-deg", "77", "--altitude", files::number_text(altitude), "--disc", "false"}));
@@ -158,7 +157,7 @@ TEST_F(CliSky, PixelsAreRays) {
         "400000," + files::number_text(5.0 + 10.0 * y) + ",60," + files::number_text(5.0 + 10.0 * x - 40.0);
     const std::array<double, 3> truth = probe(ray, kSingle);
     for (std::size_t c = 0; c < 3; ++c) {
-      // The sun itself is in row 5 (zenith angles 50 to 60) or 6, column 3 or 4.
+      // The sun is in row 5 (zenith angles 50 to 60) or 6, and in column 3 or 4.
       EXPECT_NEAR(file.image.pixel(x, y)[c], 2.0 * truth[c], 2e-5 * truth[c]) << x << ' ' << y;
     }
   }
@@ -202,7 +201,7 @@ TEST_F(CliSky, TheGroundIsThatOfTheReference) {
 }
 
 TEST_F(CliSky, TheDefaultIsThatOfTheReferenceInAllOrders) {
-  // Rows at 15, 45, 75 and 105 degrees from the zenith; small tables, whose own error is below the tolerance.
+  // Rows at 15, 45, 75 and 105 degrees from the zenith. The error of these small tables is below the tolerance.
   const std::vector<std::string> tables = {"--set", "tables.size=16,64,32,8"};
   for (const double elevation : {35.0, -2.0}) {
     const std::string sun = files::number_text(90.0 - elevation);
@@ -237,7 +236,7 @@ TEST_F(CliSky, TheSunByPlaceAndTime) {
   const nlohmann::json out = nlohmann::json::parse(out_);
   EXPECT_NEAR(out["sun_elevation_deg"].get<double>(), 39.87205, 0.0005);
   EXPECT_NEAR(out["sun_azimuth_deg"].get<double>(), 194.34024, 0.0005);
-  // The brightest pixel is the sun's.
+  // The brightest pixel contains the sun.
   std::size_t best = 0;
   for (std::size_t i = 0; i < file.image.rgb.size() / 3; ++i) {
     if (file.image.rgb[3 * i] > file.image.rgb[3 * best]) best = i;

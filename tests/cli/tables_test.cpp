@@ -1,5 +1,5 @@
-// `tyndall tables` as scripts see it: its report, what it exports, and everything that can be wrong; and the
-// cache of the tables, which all verbs share.
+// `tyndall tables`: its report, its export, and all kinds of errors; and the cache of the tables, which all verbs
+// share.
 #include <gtest/gtest.h>
 
 #include <sys/resource.h>
@@ -25,7 +25,7 @@ const std::vector<std::string> kTwoOrders = {"--set", "tables.orders=2"};
 
 class CliTables : public testing::Test {
  protected:
-  // One verb with small tables and a cache of its own.
+  // Runs a verb with small tables and a separate cache.
   [[nodiscard]] Outcome run(const std::string& verb, std::vector<std::string> more = {}) const {
     more.insert(more.begin(), kSmall.begin(), kSmall.end());
     more.insert(more.begin(), verb);
@@ -86,7 +86,7 @@ TEST_F(CliTables, EveryStageHasATime) {
   EXPECT_NE(text.out.find("\nstored in " + scratch_.at("cache") + "\n"), std::string::npos);
 }
 
-// What stands in the files is what `probe` answers for the rays that tables.json names.
+// The exported values equal the results of `probe` for the rays that tables.json describes.
 TEST_F(CliTables, TheExportHoldsWhatTheRendererReads) {
   for (const std::string parameterization : {"yusov", "bruneton", "linear"}) {
     const std::string directory = scratch_.at(parameterization);
@@ -107,7 +107,7 @@ TEST_F(CliTables, TheExportHoldsWhatTheRendererReads) {
     ASSERT_EQ(axes["sun_zenith"]["cosine"].size(), 12U);
     ASSERT_EQ(axes["view_sun"]["cosine"].size(), 6U);
 
-    // All files, and no others.
+    // Exactly these files are exported.
     std::vector<std::string> files = {"tables.json"};
     std::vector<std::vector<image::Image>> tables;
     for (const nlohmann::json& table : index["tables"]) {
@@ -132,17 +132,17 @@ TEST_F(CliTables, TheExportHoldsWhatTheRendererReads) {
       for (std::uint32_t v = 0; v < 16; ++v) {
         const double mu = views["cosine"][v];
         EXPECT_NEAR(std::cos(views["deg"][v].get<double>() * kPi / 180.0), mu, 1e-12);
-        // At the very horizon the side that a ray is on is a matter of rounding.
+        // At the horizon itself, rounding decides on which side a ray is.
         if (v == 0 || v == 15 || views["ends_on_ground"][v - 1] != views["ends_on_ground"][v] ||
             views["ends_on_ground"][v + 1] != views["ends_on_ground"][v]) {
           continue;
         }
-        // Without the darkest sun: as finely as devices filter, the next and much brighter one has a part in
-        // it.
+        // Leave out the darkest sun: devices filter with limited precision, so the next and much brighter sun
+        // contributes to it.
         for (std::uint32_t s = 1; s < 12; ++s) {
           for (std::uint32_t n = 0; n < 6; ++n) {
             const double nu = axes["view_sun"]["cosine"][n];
-            // The sun of the axis is that at the middle of the ray's air, the query's that at its origin.
+            // The sun axis refers to the density-weighted mean distance along the ray, the query to the ray's origin.
             const double r = 6360000.0 + axes["altitude_m"][a].get<double>();
             const double d = views["middle_of_air_m"][v];
             const double r_middle = std::sqrt(r * r + d * d + 2.0 * r * d * mu);
@@ -217,7 +217,7 @@ TEST_F(CliTables, AnExportIsWholeOrNotThere) {
     rlimit small = unlimited;
     small.rlim_cur = bytes;
     EXPECT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
-    // Without the cache, which the limit would keep from being written.
+    // Without the cache, which the limit would prevent from being written.
     Outcome outcome = run_tyndall(
         {"tables", "-o", directory, kSmall[0], kSmall[1], kSmall[2], kSmall[3], "--set", "tables.cache=off"});
     EXPECT_EQ(::setrlimit(RLIMIT_FSIZE, &unlimited), 0);
@@ -234,7 +234,7 @@ TEST_F(CliTables, AnExportIsWholeOrNotThere) {
   EXPECT_EQ(names(directory), before);
   EXPECT_EQ(contents_of(directory + "/tables.json"), index);
   EXPECT_EQ(contents_of(directory + "/high_orders_0002.exr"), table);
-  // Again, into the same directory: the same bytes.
+  // A second export to the same directory writes the same bytes.
   ASSERT_EQ(run("tables", {"-o", directory + "/"}).status, 0);
   EXPECT_EQ(contents_of(directory + "/tables.json"), index);
   EXPECT_EQ(contents_of(directory + "/high_orders_0002.exr"), table);
@@ -259,7 +259,7 @@ TEST_F(CliTables, WhatIsWrongIsSaid) {
 
 class CliTableCache : public CliTables {
  protected:
-  // {"from", "ms"}, or null when it fails.
+  // Returns {"from", "ms"}, or null after a failure.
   nlohmann::json sky(std::vector<std::string> more = {}) {
     more.insert(more.begin(), {"-o", scratch_.at("sky.exr"), "--size", "8x4", "--json", "--sun-elevation-deg", "20",
                                "--sun-azimuth-deg", "0"});
@@ -277,7 +277,7 @@ TEST_F(CliTableCache, AllVerbsShareIt) {
   ASSERT_EQ(cached().size(), 1U);
   EXPECT_EQ(sky()["from"], "cache");
   const std::string built = contents_of(scratch_.at("sky.exr"));
-  // A file that is found is not written again: it stays the same file.
+  // A cached file that is used is not rewritten.
   struct stat before {};
   const std::string path = scratch_.at("cache/" + cached()[0]);
   ASSERT_EQ(::stat(path.c_str(), &before), 0);
@@ -290,12 +290,12 @@ TEST_F(CliTableCache, AllVerbsShareIt) {
   struct stat after {};
   ASSERT_EQ(::stat(path.c_str(), &after), 0);
   EXPECT_EQ(after.st_ino, before.st_ino);
-  // `tables` builds whatever there is, and keeps it.
+  // `tables` always builds, and stores the result.
   EXPECT_EQ(run("tables").status, 0);
   ASSERT_EQ(cached().size(), 1U);
   ASSERT_EQ(::stat(path.c_str(), &after), 0);
   EXPECT_NE(after.st_ino, before.st_ino);
-  // Another medium, or another shape, is another file.
+  // Another medium or another table size uses another file.
   EXPECT_EQ(sky({"--set", "atmosphere.mie_g=0.7"})["from"], "build");
   EXPECT_EQ(sky({"--set", "tables.parameterization=linear"})["from"], "build");
   EXPECT_EQ(cached().size(), 3U);
@@ -334,7 +334,7 @@ TEST_F(CliTableCache, DamageIsSaidInOneLineAndRepaired) {
   }
   EXPECT_EQ(sky()["from"], "cache");
   EXPECT_EQ(err_, "");
-  // A cache that cannot be written is a line as well, for every verb.
+  // A cache that cannot be written also gives one line, for every verb.
   const std::string blocked = "tables.cache=" + scratch_.write("blocked", "");
   const std::string queries =
       scratch_.write("q.csv", "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n0,1,2,3\n");
@@ -366,7 +366,7 @@ TEST_F(CliTableCache, ProcessesShareIt) {
     EXPECT_EQ(outcome.err, "");
     EXPECT_EQ(outcome.out, outcomes[0].out);
   }
-  EXPECT_EQ(cached().size(), 1U);  // and nothing temporary
+  EXPECT_EQ(cached().size(), 1U);  // and no temporary file
 }
 
 }  // namespace

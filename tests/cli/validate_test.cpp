@@ -1,4 +1,4 @@
-// `tyndall validate` as scripts see it, at its smallest.
+// `tyndall validate` with few rays.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ class CliValidate : public testing::Test {
 TEST_F(CliValidate, ReportsAndPagesAreTheSameEveryTime) {
   const std::string html = scratch_.at("report.html");
   const std::string page = scratch_.at("page.md");
-  // Small tables: the report is tested, not their accuracy.
+  // Small tables are enough to test the report.
   const Outcome outcome = run(
       {"-o", html, "--markdown", page, "--json", "--set", "atmosphere.mie_g=0.7", "--set", "tables.size=8,32,32,4"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -42,7 +42,7 @@ TEST_F(CliValidate, ReportsAndPagesAreTheSameEveryTime) {
     for (const nlohmann::json& group : model["groups"]) {
       if (group["sun"] != "up" || group["region"] != "all") continue;
       found = true;
-      // Single scattering is right; what is left is the noise of 300 paths.
+      // Single scattering is exact, so the difference is the noise of 300 paths.
       EXPECT_LT(group["mean"].get<double>(), 2.0 * group["noise"].get<double>() + 0.002);
     }
   }

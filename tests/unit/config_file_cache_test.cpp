@@ -1,4 +1,4 @@
-// The cache on disk: what is kept comes back, and nothing else ever does.
+// The cache on disk returns what was stored, and never anything else.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -89,7 +89,7 @@ TEST_F(ConfigFileCache, WhatIsNotWholeIsRefusedInOneLine) {
     EXPECT_EQ(note(good.substr(0, length)), says("truncated"));
   EXPECT_EQ(note(good.substr(0, good.size() - 1)), says("truncated"));
   EXPECT_EQ(note(good + "x"), says("damaged"));
-  // One bit anywhere.
+  // Flip one bit anywhere.
   for (std::size_t at = 0; at < good.size(); ++at) {
     std::string flipped = good;
     flipped[at] = static_cast<char>(flipped[at] ^ 4);
@@ -105,7 +105,7 @@ TEST_F(ConfigFileCache, WhatIsNotWholeIsRefusedInOneLine) {
   FileCache newer = open(1U << 20U, "v2");
   EXPECT_FALSE(newer.read("key", 1000));
   EXPECT_EQ(newer.note(), says("of another version"));
-  // Made anew, it is good again.
+  // Rewriting the entry repairs it.
   newer.write("key", bytes_of(contents));
   EXPECT_EQ(newer.read("key", 1000), contents);
   // Another key's file under this key's name.
@@ -121,13 +121,13 @@ TEST_F(ConfigFileCache, TheOldestGoWhenThereIsNoRoom) {
     cache.write(key, bytes_of(contents));
     ::usleep(20000);
   }
-  EXPECT_TRUE(cache.read("a", 3000));  // used last, now
+  EXPECT_TRUE(cache.read("a", 3000));  // now the most recently used
   cache.write("d", bytes_of(contents));
   EXPECT_TRUE(cache.read("a", 3000));
   EXPECT_FALSE(cache.read("b", 3000));
   EXPECT_TRUE(cache.read("c", 3000));
   EXPECT_TRUE(cache.read("d", 3000));
-  // What is no file of ours stays.
+  // Foreign files are not deleted.
   overwrite((root_ / "a/b/notes.txt").string(), pattern(20000, 5));
   overwrite((root_ / "a/b/their.cache").string(), pattern(20000, 5));
   cache.write("e", bytes_of(contents));
@@ -163,7 +163,7 @@ TEST_F(ConfigFileCache, SeveralProcessesShareIt) {
       bool good = true;
       for (int i = 0; i < 30; ++i) {
         const std::optional<std::string> read = cache.read("shared", contents.size());
-        // Absent or whole, never damaged.
+        // Each read finds no entry or a complete one.
         good = good && cache.note().empty() && (!read || *read == contents);
         cache.write("shared", bytes_of(contents));
         good = good && cache.note().empty();
@@ -177,7 +177,7 @@ TEST_F(ConfigFileCache, SeveralProcessesShareIt) {
     ASSERT_EQ(::waitpid(child, &status, 0), child);
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
   }
-  // No temporary files are left.
+  // No temporary files remain.
   EXPECT_EQ(std::distance(fs::directory_iterator(root_ / "a/b"), fs::directory_iterator()), 1);
 }
 

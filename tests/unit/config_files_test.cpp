@@ -1,4 +1,4 @@
-// Files are written whole or not at all.
+// Files are written completely or not at all.
 #include "files/files.hpp"
 
 #include <fcntl.h>
@@ -18,7 +18,7 @@
 
 namespace {
 
-// Stand for file systems (CIFS, FUSE, WSL drives) that refuse these calls.
+// Simulate file systems (CIFS, FUSE, WSL drives) that reject these calls.
 bool refuse_modes = false, refuse_links = false, refuse_nameless = false;
 
 }  // namespace
@@ -35,7 +35,7 @@ extern "C" int linkat(int from_directory, const char* from, int to_directory, co
   return -1;
 }
 
-// access() decides whether nameless files are used.
+// access() decides whether unnamed temporary files are used.
 extern "C" int access(const char* path, int mode) noexcept {
   if (!refuse_nameless || std::string(path) != "/proc/self/fd")
     return static_cast<int>(::syscall(SYS_access, path, mode));
@@ -148,7 +148,7 @@ TEST_F(Files, LeftoversOfKilledRunsAreRemoved) {
   const auto age = [&](const std::string& name) {
     std::filesystem::last_write_time(at(name), std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
   };
-  // A run that is killed before it commits, where there are no nameless files.
+  // A run that is killed before it commits, on a file system without unnamed temporary files.
   const pid_t child = ::fork();
   if (child == 0) {
     refuse_nameless = true;
@@ -208,7 +208,7 @@ TEST_F(Files, PlacesThatCannotBeWritten) {
 TEST_F(Files, AFullDiskLeavesNothing) {
   const pid_t child = ::fork();
   if (child == 0) {
-    // A limit on the size of files stands for a disk that fills while writing.
+    // A limit on the file size simulates a full disk.
     const rlimit limit = {4096, 4096};
     ::signal(SIGXFSZ, SIG_IGN);
     ::setrlimit(RLIMIT_FSIZE, &limit);

@@ -1,4 +1,4 @@
-// Scene files: round trips, partial files, and a clear line for everything that can be wrong.
+// Scene files: round trips, partial files, and a clear message for every error.
 #include "config/scene_file.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ std::string all_text(const Settings& settings) {
   return text;
 }
 
-// A value other than the default, valid for the row.
+// Returns a valid value for the row that differs from the default.
 std::string other_value(const Row& row, const Settings& defaults) {
   const std::string now = value_text(row, defaults);
   const auto number = [&](double fraction) {
@@ -122,12 +122,12 @@ TEST_F(SceneFile, APathSurvivesARoundTrip) {
   ASSERT_TRUE(again.ok()) << again.error().message;
   EXPECT_EQ(to_toml(back), to_toml(settings));
   EXPECT_EQ(back.path.frames[0].julian_day, settings.path.frames[0].julian_day);
-  // Without frames nothing is written; another path replaces the whole.
+  // Without frames nothing is written. Another path replaces the whole path.
   EXPECT_EQ(to_toml(Settings()).find("path"), std::string::npos);
   ASSERT_TRUE(load_text(back, "[[path]]\ntime_s = 0\n[[path]]\ntime_s = 1\nyaw_deg = 3\n", "q.toml").ok());
   EXPECT_EQ(back.path.frames.size(), 2U);
   EXPECT_EQ(back.path.place_text, "");
-  // A loop's last frame has nothing but its time.
+  // The last frame of a loop only has a time.
   ASSERT_TRUE(
       load_text(back, "playback.loop = true\n[[path]]\ntime_s = 0\nyaw_deg = 3\n[[path]]\ntime_s = 1\n", "l.toml")
           .ok());
@@ -241,7 +241,7 @@ TEST(SceneFileMessages, BrokenTomlIsOneLineWithItsPlace) {
   EXPECT_EQ(failure("[terrain]\nsource = '\xff'\n"), "s.toml: not a text file; expected a scene file: TOML in UTF-8");
 }
 
-// Every prefix of a complete scene file loads or is refused with one line; none may crash.
+// Every prefix of a complete scene file is loaded or rejected with one line, without a crash.
 TEST(SceneFileMessages, EveryTruncationIsHandled) {
   const std::string whole = to_toml(Settings());
   int refused = 0;
@@ -303,7 +303,8 @@ TEST(Describe, MarkdownHasOneRowPerParameter) {
   for (const Row& row : rows()) EXPECT_NE(page.find("| `" + row.key() + "` |"), std::string::npos) << row.key();
 }
 
-// Each part of a dotted key is a table inside the one before: forty thousand overflow the parser's stack.
+// Each part of a dotted key is a table inside the previous one: forty thousand of them would overflow the parser's
+// stack.
 TEST(ConfigSceneFile, KeysOfManyPartsAreRefused) {
   std::string dots = "a";
   for (int i = 0; i < 40000; ++i) dots += ".a";

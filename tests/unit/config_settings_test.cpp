@@ -26,7 +26,7 @@ TEST(ConfigSettings, KeysAreUniqueAndDefaultsAreAllowed) {
     EXPECT_TRUE(seen.insert(row.key()).second) << row.key();
     EXPECT_FALSE(row.info.doc.empty()) << row.key();
     EXPECT_EQ(row.info.name.back() == '_', false) << row.key();
-    // The default's own text has to be accepted: in range, a known choice, the right count.
+    // The text of the default must be accepted: in range, a known choice, the right count.
     Settings settings;
     const Result<void> result = set(settings, row.key(), value_text(row, settings), "default");
     EXPECT_TRUE(result.ok()) << result.error().message;
@@ -69,7 +69,7 @@ TEST(ConfigSettings, OneValueOfAColourMeansGrey) {
                                            "expected 1 or 3 numbers, each 0 to 1e+06 relative");
   EXPECT_EQ(failure("sun.irradiance=-1"),
             "--set: 'sun.irradiance' = '-1' is out of range; expected 1 or 3 numbers, each 0 to 1e+06 relative");
-  EXPECT_FALSE(set(settings, "camera.position_m=1").ok());  // a place is no colour
+  EXPECT_FALSE(set(settings, "camera.position_m=1").ok());  // a single value is only accepted for colours
 }
 
 TEST(ConfigSettings, LimitsThemselvesAreAllowed) {
@@ -115,7 +115,7 @@ TEST(ConfigSettings, PlacesReadBackInDoublePrecision) {
       ASSERT_EQ(place(filed), place(settings)) << value_text(row, settings);
     }
   }
-  // A centimetre at five thousand kilometres, which a float rounds to half a metre.
+  // One centimetre at five thousand kilometres, which a float would round to half a metre.
   Settings far;
   ASSERT_TRUE(set(far, "camera.position_m=5000000.01,-2000000.02,0.5").ok());
   EXPECT_EQ(far.scene.camera.position_m, DVec3(5000000.01, -2000000.02, 0.5));

@@ -1,5 +1,5 @@
-// The geometry of epipolar sampling that is computed on the CPU: the sun's place in the picture, the sides on which
-// slices end, the memory that the parameters ask for, and the numbering of the modes.
+// The geometry of epipolar sampling on the CPU: the sun's position in the picture, the sides at which slices end, the
+// memory for given parameters, and the numbering of the modes.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -18,7 +18,8 @@ constexpr double kHeight = 90.0;
 constexpr double kTanWidth = 0.8;
 constexpr double kTanHeight = 0.45;
 
-// A camera at the origin of the world that looks north, level: its view space is the world. Infinite reversed depth.
+// A level camera at the origin of the world that looks north: its view space equals world space. Infinite reversed
+// depth.
 FrameInputs level_view() {
   FrameInputs inputs;
   inputs.extent = {static_cast<std::uint32_t>(kWidth), static_cast<std::uint32_t>(kHeight)};
@@ -30,7 +31,7 @@ FrameInputs level_view() {
   return inputs;
 }
 
-// The direction that is seen at a place of the picture [pixels].
+// Returns the direction seen at a position of the picture [pixels].
 Vec3 towards(double x, double y) {
   return {static_cast<float>((2.0 * x / kWidth - 1.0) * kTanWidth),
           static_cast<float>(-(2.0 * y / kHeight - 1.0) * kTanHeight), -1.0F};
@@ -48,15 +49,15 @@ std::array<float, 4> side_starts(const shared::EpipolarConstants& c) {
   return {c.left_start, c.bottom_start, c.right_start, c.top_start};
 }
 
-// Sides on which slices end, as bits: 1 left, 2 bottom, 4 right, 8 top.
+// Returns the sides at which slices end, as bits: 1 left, 2 bottom, 4 right, 8 top.
 int sides(const shared::EpipolarConstants& c) {
   int out = 0;
   for (int i = 0; i < 4; ++i) out |= side_starts(c)[i] >= 0.0F ? 1 << i : 0;
   return out;
 }
 
-// The sides in use follow each other without a gap or an overlap, each next to the one before in the picture, and
-// make up the perimeter.
+// Expects that the sides in use follow each other without gap or overlap, are neighbours in the picture, and make up
+// the perimeter.
 void expect_chain(const shared::EpipolarConstants& c) {
   const double lengths[4] = {kHeight - 1.0, kWidth - 1.0, kHeight - 1.0, kWidth - 1.0};
   int count = 0;
@@ -85,7 +86,7 @@ void expect_chain(const shared::EpipolarConstants& c) {
 TEST(EpipolarConstants, TheEpipoleIsWhereTheSunIsSeen) {
   for (const auto& [x, y] : {std::pair(80.0, 45.0), {3.25, 71.5}, {159.5, 0.5}, {-400.0, 30.0}, {250.0, 900.0}}) {
     const Vec3 sun = towards(x, y);
-    // Of whatever length, and behind the camera the point opposite to it.
+    // The length of the direction does not matter. Behind the camera, the epipole is the point opposite to the sun.
     for (const Vec3& s : {sun, Vec3{7.0F * sun.x, 7.0F * sun.y, 7.0F * sun.z}, opposite(sun)}) {
       const shared::EpipolarConstants c = with_sun(s);
       ASSERT_GT(c.sun_w, 0.0F);
@@ -97,7 +98,7 @@ TEST(EpipolarConstants, TheEpipoleIsWhereTheSunIsSeen) {
 
 TEST(EpipolarConstants, TheCamerasPlaceAndTurnCount) {
   FrameInputs inputs = level_view();
-  // To the east, tilted up by 30 degrees; places do not matter for what is infinitely far away.
+  // To the east, tilted up by 30 degrees. The camera's position does not matter for infinitely distant points.
   const double s = 0.5;
   const double c = std::cos(std::numbers::pi / 6.0);
   const double columns[4][3] = {{0, 0, 1}, {-s, c, 0}, {-c, -s, 0}, {1e6, 2e3, -3e5}};
@@ -114,8 +115,8 @@ TEST(EpipolarConstants, TheCamerasPlaceAndTurnCount) {
 TEST(EpipolarConstants, ASunAtRightAnglesIsADirection) {
   struct Case {
     Vec3 sun;
-    double x, y;  // of the epipole's direction in the picture
-    int ends;     // sides that lines from there leave through
+    double x, y;  // direction of the epipole in the picture
+    int ends;     // sides through which lines from there leave
   };
   const double diagonal = std::atan2(kHeight / kTanHeight, kWidth / kTanWidth);
   for (const Case& at :
@@ -147,7 +148,7 @@ TEST(EpipolarConstants, SlicesEndWhereLinesFromTheEpipoleLeaveThePicture) {
         Case{200.0, 45.0, kLeft | kBottom | kTop}, Case{80.0, -10.0, kLeft | kBottom | kRight},
         Case{80.0, 100.0, kLeft | kRight | kTop}, Case{-20.0, -20.0, kBottom | kRight},
         Case{200.0, -20.0, kLeft | kBottom}, Case{-20.0, 200.0, kRight | kTop}, Case{200.0, 200.0, kLeft | kTop},
-        // Between the outermost pixels' middles and the border of the picture: outside.
+        // Positions between the centres of the outermost pixels and the border of the picture are outside.
         Case{0.25, 45.0, kBottom | kRight | kTop}, Case{80.0, 89.75, kLeft | kRight | kTop}}) {
     for (const bool behind : {false, true}) {
       const Vec3 sun = towards(at.x, at.y);
@@ -155,7 +156,7 @@ TEST(EpipolarConstants, SlicesEndWhereLinesFromTheEpipoleLeaveThePicture) {
       EXPECT_EQ(sides(c), at.ends) << at.x << " " << at.y;
       EXPECT_EQ(c.sun_in_picture != 0, at.ends == 15);
       expect_chain(c);
-      // Away from the epipole leads into the picture.
+      // The direction away from the epipole leads into the picture.
       EXPECT_GE(static_cast<double>(c.fallback_x) * (80.0 - at.x), 0.0);
       EXPECT_GE(static_cast<double>(c.fallback_y) * (45.0 - at.y), 0.0);
     }
@@ -208,7 +209,7 @@ TEST(EpipolarSizes, FollowTheParameters) {
   const Params defaults;
   const EpipolarSizes usual = epipolar_sizes(desc, defaults);
   for (const VkDeviceSize size : usual) EXPECT_GT(size, 0U);
-  // What the project promises at the defaults, for pictures of 1280 x 720 as for larger ones.
+  // The promised limit for the defaults, for pictures of 1280 x 720 and larger.
   EXPECT_LE(total(usual), VkDeviceSize{64} << 20);
 
   Params params;
@@ -272,7 +273,7 @@ TEST(EpipolarSteps, InitialSamplesStandCloserInTwilight) {
     EXPECT_EQ(step_at(elevation_deg, params), usual / 4) << elevation_deg;
   params.epipolar.initial_step = 1;
   EXPECT_EQ(step_at(-7.0, params), 1U);
-  // The sun shines through a homogeneous medium by night too.
+  // The sun lights a homogeneous medium at night too.
   params = {};
   params.scattering.medium = MediumKind::homogeneous;
   EXPECT_EQ(step_at(-7.0, params), usual);
@@ -317,7 +318,7 @@ TEST(Modes, EveryCombinationHasAPipelineOfItsMeaning) {
       }
     }
   }
-  // No pipeline is made that nothing reaches.
+  // No unreachable pipeline is created.
   for (std::uint32_t i = 0; i < kModeCount; ++i) EXPECT_EQ(mode_exists(i), reached.contains(i)) << i;
 }
 

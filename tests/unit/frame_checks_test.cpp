@@ -1,5 +1,5 @@
-// What the effect says about its inputs: errors for what would draw garbage, remarks for what is hardly
-// meant, each once, and nothing about what is right, whatever the convention.
+// The effect's checks of its inputs: errors for inputs that cannot be drawn, remarks for those that are probably
+// mistakes, each reported once, and nothing for correct inputs of any convention.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,8 +22,8 @@ VkImageView view_number(std::uintptr_t number) {
   return reinterpret_cast<VkImageView>(number);  // NOLINT(performance-no-int-to-ptr): never used as one
 }
 
-// A camera 1200 m up that looks a little down and to the east of north, under a sun in the south-east; three
-// cascades along the sun, each a square around the view down to its end.
+// A camera at 1200 m that looks slightly down and to the north-east, under a sun in the south-east. Three cascades
+// along the sun, each a square that covers the view up to its far distance.
 struct Case {
   EffectDesc desc;
   Params params;
@@ -135,7 +135,7 @@ std::string error_of(const std::function<void(Case&)>& change) {
   return outcome.ok() ? "" : outcome.error().message;
 }
 
-// The remarks of a checker that may have seen other frames.
+// Returns the remarks of a checker that may have seen other frames.
 std::vector<std::string> remarks_of(Remarks& remarks, const Case& s) {
   const FrameInputs inputs = s.frame();
   const Result<void> outcome = check_frame(inputs, s.desc, s.params);
@@ -152,7 +152,7 @@ std::vector<std::string> remarks_of(Remarks& remarks, const Case& s) {
   return texts;
 }
 
-// What is said about a frame, one line each.
+// Returns the remarks about a frame, one per line.
 std::string remark_of(const std::function<void(Case&)>& change) {
   Case s = right();
   change(s);
@@ -196,7 +196,7 @@ TEST(FrameChecks, NothingIsSaidAboutARightFrame) {
   silent("scaled as a whole", [](Case& s) {
     for (float& entry : s.inputs.camera.clip_from_view.m) entry *= 100.0F;
   });
-  // Swapchains of phones are turned in the projection.
+  // Phones rotate the swapchain in the projection.
   silent("turned by a quarter", [](Case& s) {
     Mat4& p = s.inputs.camera.clip_from_view;
     p.m[0] = p.m[5] = 0.0F;
@@ -284,7 +284,7 @@ TEST(FrameChecks, WhatIsHardlyMeantIsRemarkedOn) {
     EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
     expect_words(text, words);
   };
-  // The camera.
+  // Camera.
   expect_remark({"world_from_view", "mirrored", "+1"}, [](Case& s) {
     for (int i = 0; i < 3; ++i) s.inputs.camera.world_from_view.m[i] *= -1.0F;
   });
@@ -304,7 +304,7 @@ TEST(FrameChecks, WhatIsHardlyMeantIsRemarkedOn) {
   expect_remark({"clip_from_view", "y up", "OpenGL"}, [](Case& s) { s.inputs.camera.clip_from_view.m[5] *= -1.0F; });
   expect_remark({"clip_from_view", "near plane", "metre"},
                 [](Case& s) { s.inputs.camera.clip_from_view.m[14] = 1e-4F; });
-  // OpenGL's depth, -1 to 1, reversed: at 0 is twice the near plane.
+  // OpenGL's depth of -1 to 1, reversed: depth 0 is at twice the near plane.
   expect_remark({"clip_from_view", "far plane", "depth 0 to 1"}, [](Case& s) {
     s.inputs.camera.clip_from_view.m[10] = 1.0001F;
     s.inputs.camera.clip_from_view.m[14] = 0.2F;
@@ -377,7 +377,7 @@ TEST(FrameChecks, WhatIsHardlyMeantIsRemarkedOn) {
     s.cascades[0].far_m = 0.5F;
   });
   expect_remark({"light_shafts", "nothing will be shadowed"}, [](Case& s) { s.cascades.clear(); });
-  // The rest.
+  // Other inputs.
   expect_remark({"tables are not built", "record_precompute()", "black"}, [](Case& s) { s.tables_ready = false; });
   expect_remark({"direction_to_sun", "unit length"}, [](Case& s) {
     s.inputs.sun.direction_to_sun = {0.96F, 1.2F, 1.28F};
@@ -471,7 +471,7 @@ TEST(FrameChecks, ARemarkIsMadeOnceUntilItWasRightInBetween) {
   EXPECT_EQ(remarks_of(remarks, good).size(), 0U);
   EXPECT_EQ(remarks_of(remarks, wrong).size(), 1U);
   for (int i = 0; i < 3; ++i) EXPECT_EQ(remarks_of(remarks, wrong).size(), 0U);
-  // Another fault is another remark; another view has remarks of its own.
+  // Another mistake gives another remark. Another view has its own remarks.
   wrong.inputs.sun.irradiance = Vec3(0.0F);
   EXPECT_EQ(remarks_of(remarks, wrong).size(), 1U);
   wrong.desc.views = 2;

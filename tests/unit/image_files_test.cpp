@@ -1,4 +1,4 @@
-// EXR and PNG on disk: what goes in comes out, and damaged files are one clear line.
+// EXR and PNG files: round trips, and one clear line for damaged files.
 #include <ImfChannelList.h>
 #include <ImfChromaticitiesAttribute.h>
 #include <ImfEnvmap.h>
@@ -27,7 +27,7 @@
 namespace tyndall::image {
 namespace {
 
-// A smooth picture with values from 0 to `top`, another in each channel.
+// Returns a smooth picture with values from 0 to `top` that differ between channels.
 Image ramp(std::uint32_t width, std::uint32_t height, float top) {
   Image image(width, height);
   for (std::uint32_t y = 0; y < height; ++y) {
@@ -197,7 +197,7 @@ TEST_F(ImageFiles, MissingOrOfAnotherKind) {
   EXPECT_NE(message_of(at("text.exr")).find("it is neither PNG nor EXR"), std::string::npos);
 }
 
-// Cut off at many places and with many bytes changed: either read, or one line. Never a crash.
+// Files cut off at many positions and with many bytes changed are either read or give one line, without a crash.
 TEST_F(ImageFiles, DamagedFiles) {
   const Image image = ramp(70, 90, 1.0F);
   ASSERT_TRUE(write_png(at("a.png"), image, metadata_).ok());
@@ -222,7 +222,7 @@ TEST_F(ImageFiles, DamagedFiles) {
   }
 }
 
-// A file of a data window of its own: every pixel holds its coordinates in the plane of the display window.
+// Writes a file with its own data window. Every pixel holds its coordinates in the plane of the display window.
 void write_windows(const std::string& path, const Imath::Box2i& display, const Imath::Box2i& data) {
   Imf::Header header(display, data);
   for (const char* const name : {"R", "G", "B"}) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
@@ -249,7 +249,7 @@ void write_windows(const std::string& path, const Imath::Box2i& display, const I
 }
 
 TEST_F(ImageFiles, ExrIsItsDisplayWindow) {
-  // Data beyond the right edge, and none on the left of column 3 and above row 2.
+  // Data beyond the right edge, and none left of column 3 and above row 2.
   write_windows(at("a.exr"), {{0, 0}, {15, 8}}, {{3, 2}, {20, 8}});
   const Result<File> file = read(at("a.exr"));
   ASSERT_TRUE(file.ok()) << file.error().message;
@@ -265,13 +265,13 @@ TEST_F(ImageFiles, ExrIsItsDisplayWindow) {
   EXPECT_EQ(file.value().note, "its pixels cover 18x7 from 3,2, its display window 16x9 from 0,0: taken is the display "
                                "window, black where there "
                                "are no pixels");
-  // The same pixels somewhere else are another picture.
+  // The same pixels at another position are another picture.
   write_windows(at("b.exr"), {{0, 0}, {15, 8}}, {{0, 0}, {15, 8}});
   const Result<File> whole = read(at("b.exr"));
   ASSERT_TRUE(whole.ok());
   EXPECT_EQ(whole.value().note, "");
   EXPECT_LT(compare(file.value().image, whole.value().image).psnr_db, 40.0);
-  // Nothing of it in sight, and a frame that is far larger than what the file holds.
+  // No data inside the display window, and a frame far larger than the data.
   write_windows(at("c.exr"), {{0, 0}, {3, 3}}, {{100, 100}, {103, 103}});
   const Result<File> outside = read(at("c.exr"));
   ASSERT_TRUE(outside.ok());
@@ -340,7 +340,7 @@ std::string exr_attribute(const std::string& name, const std::string& type, cons
   return name + '\0' + type + '\0' + little_endian(static_cast<std::uint32_t>(value.size())) + value;
 }
 
-// Files of a few bytes whose headers claim gigabytes are refused without spending the memory.
+// Files of a few bytes whose headers claim gigabytes are rejected without using the memory.
 TEST_F(ImageFiles, ClaimsAreCheckedAgainstTheLengthOfTheFile) {
   const std::string png = "\x89PNG\r\n\x1a\n";
   const std::string crc(4, 'c');

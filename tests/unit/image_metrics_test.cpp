@@ -1,4 +1,4 @@
-// Error measures against values found by hand, and the statistics of the dither.
+// Error measures against values computed by hand, and the statistics of dithering.
 #include "image/metrics.hpp"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ TEST(ImageMetrics, RelativeErrorDoesNotDependOnTheUnit) {
   for (float& value : a2.rgb) value *= 1024.0F;
   for (float& value : b2.rgb) value *= 1024.0F;
   EXPECT_NEAR(compare(a, b).mean_relative_error, compare(a2, b2).mean_relative_error, 1e-12);
-  // The floor keeps values of a ten-millionth of the mean from counting as wrong by a factor.
+  // The floor prevents values of a ten-millionth of the mean from counting as wrong by a factor.
   EXPECT_NEAR(compare(a, b).mean_relative_error, (0.5 / 1.5 + 0.2) / 6.0, 1e-4);
 }
 
@@ -93,7 +93,7 @@ TEST(ImageDither, BlackWhiteAndBeyondAreExact) {
   }
 }
 
-// A ramp of one step over 512 pixels must not show as one edge: averages over blocks follow it.
+// A ramp of one step over 512 pixels must not show as an edge: averages over blocks follow it.
 TEST(ImageDither, SlowRampsDoNotBand) {
   constexpr std::uint32_t kBlock = 16;
   for (std::uint32_t block = 0; block < 32; ++block) {

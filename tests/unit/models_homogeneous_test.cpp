@@ -1,6 +1,6 @@
-// Hoffman and Preetham's model against their equations as printed (2002), evaluated here from the text alone, in
-// double precision. The print's Henyey-Greenstein function has (1 - g)^2 where the normalised one has 1 - g^2, and
-// counts g from the other side; with that read as 1 - g^2 and -g it is what is compared.
+// Hoffman and Preetham's model against their published equations (2002), evaluated here independently in double
+// precision. The published Henyey-Greenstein function has (1 - g)^2 where the normalised one has 1 - g^2, and its g has
+// the opposite sign; we compare with 1 - g^2 and -g.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,7 +16,7 @@ namespace {
 
 using Rgb = std::array<double, 3>;
 constexpr double kPi = std::numbers::pi;
-constexpr double kTolerance = 1e-3;  // promised; the inputs are floats
+constexpr double kTolerance = 1e-3;  // the promised tolerance; the inputs are floats
 
 double at(const Vec3& v, std::size_t c) { return c == 0 ? v.x : c == 1 ? v.y : v.z; }
 
@@ -26,7 +26,7 @@ double printed_length(double zenith_m, double theta_deg) {
 }
 
 struct Printed {
-  double air, haze, haze_ex, g;  // one channel; g in the document's sense
+  double air, haze, haze_ex, g;  // one channel; g with the publication's sign
   double f_air(double cos_theta) const { return 3.0 / (16.0 * kPi) * (1.0 + cos_theta * cos_theta); }
   double f_haze(double cos_theta) const {
     return (1.0 - g * g) / (4.0 * kPi * std::pow(1.0 + g * g + 2.0 * g * cos_theta, 1.5));
@@ -37,7 +37,7 @@ struct Printed {
     const double ex = air + haze_ex;
     return e_sun * (air * f_air(cos_theta) + haze * f_haze(cos_theta)) / ex * (1.0 - std::exp(-ex * s));
   }
-  // The two shells.
+  // The sky equation of two shells.
   double sky(double e_sun, double air_m, double haze_m, double cos_theta) const {
     const double ex = air + haze_ex;
     return near_ground(e_sun, haze_m, cos_theta) +
@@ -74,7 +74,7 @@ Printed printed(const Case& c, std::size_t channel) {
           -static_cast<double>(air.mie_g)};
 }
 
-// Relative, down to what is as good as dark.
+// Compares relative to the true value, with an absolute limit for nearly black values.
 void expect_close(double value, double truth, const char* what, int i) {
   EXPECT_NEAR(value, truth, kTolerance * std::abs(truth) + 1e-30) << what << ", input " << i;
 }
@@ -90,7 +90,7 @@ TEST(Homogeneous, TheSkyIsThePrintedTwoShells) {
     const double view_deg = uniform(0.0, 90.0);
     const double sun_deg = uniform(0.0, 90.0);
     const double azimuth = uniform(0.0, 2.0 * kPi);
-    const double altitude_m = i % 2 == 0 ? 0.0 : uniform(0.0, 70000.0);  // where the eye is does not matter
+    const double altitude_m = i % 2 == 0 ? 0.0 : uniform(0.0, 70000.0);  // the eye's altitude does not matter
     const models::Ray ray = models::ray_from_angles(altitude_m, view_deg * kPi / 180.0, sun_deg * kPi / 180.0, azimuth);
     const models::Answer answer = models::homogeneous_light(medium, ray);
     const double cos_theta = std::sin(view_deg * kPi / 180.0) * std::sin(sun_deg * kPi / 180.0) * std::cos(azimuth) +
@@ -121,7 +121,7 @@ TEST(Homogeneous, TheGroundIsSeenThroughEquations3And4) {
     const double azimuth = uniform(0.0, 2.0 * kPi);
     const models::Answer answer =
         models::homogeneous_light(medium, models::ray_from_angles(altitude_m, view, sun_deg * kPi / 180.0, azimuth));
-    // To the sphere, by the law of cosines.
+    // Distance to the sphere by the law of cosines.
     const double radius = medium.planet_radius_m;
     const double r = radius + altitude_m;
     const double s = -r * std::cos(view) - std::sqrt(radius * radius - r * r * std::sin(view) * std::sin(view));
@@ -139,14 +139,14 @@ TEST(Homogeneous, TheGroundIsSeenThroughEquations3And4) {
 TEST(Homogeneous, LimitsOfDistanceAndDensity) {
   Params params;
   const models::HomogeneousLengths lengths;
-  // On the ground, looking down: no distance.
+  // On the ground, looking down: distance 0.
   models::Answer answer = models::homogeneous_light(models::homogeneous_from_params(params, lengths),
                                                     models::ray_from_angles(0.0, kPi, 0.5, 0.0));
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_EQ(answer.radiance[k], 0.0);
     EXPECT_EQ(answer.transmittance[k], 1.0);
   }
-  // So far through so much that nothing passes: the in-scattering of an endless ray.
+  // So far and so dense that nothing is transmitted: the in-scattering of an infinite ray.
   params.atmosphere.custom_coefficients = true;
   params.atmosphere.rayleigh_scattering = {0.5F, 0.5F, 0.5F};
   params.atmosphere.mie_scattering = params.atmosphere.mie_absorption = {0.0F, 0.0F, 0.0F};
@@ -158,7 +158,7 @@ TEST(Homogeneous, LimitsOfDistanceAndDensity) {
     EXPECT_NEAR(answer.radiance[k] / (e_sun * 3.0 / (16.0 * kPi) * 2.0), 1.0, 1e-6);
     EXPECT_EQ(answer.transmittance[k], 0.0);
   }
-  // Nothing there, and, continuously, next to nothing.
+  // No medium and, continuously, almost none.
   for (const float beta : {1e-9F, 1e-12F, 1e-30F, 0.0F}) {
     params.atmosphere.rayleigh_scattering = {beta, beta, beta};
     for (const double view : {0.0, 1.5, 1.6, kPi}) {
@@ -173,7 +173,7 @@ TEST(Homogeneous, LimitsOfDistanceAndDensity) {
   }
 }
 
-// What the document leaves open: no light from a sun that has set, space around the air, and never a NaN.
+// Cases that the publication leaves open: no light from a set sun, space around the atmosphere, and no NaN.
 TEST(Homogeneous, NightSpaceAndEveryRayAreDefined) {
   std::mt19937 engine(5);
   const auto uniform = [&](double low, double high) {
@@ -204,7 +204,8 @@ TEST(Homogeneous, NightSpaceAndEveryRayAreDefined) {
   EXPECT_EQ(models::homogeneous_sun(medium, -0.001), (Rgb{0.0, 0.0, 0.0}));
 }
 
-// With densities that fall off: the published answers at the ground, clear space far up, and the whole layer below.
+// With densities that fall with altitude: the published results at the ground, transparent space high up, and the whole
+// layer below.
 TEST(Homogeneous, FalloffAgreesAtTheGroundAndThinsOut) {
   models::HomogeneousLengths lengths;
   const shared::Homogeneous published = models::homogeneous_from_params({}, lengths);
@@ -223,7 +224,7 @@ TEST(Homogeneous, FalloffAgreesAtTheGroundAndThinsOut) {
     last = sky;
   }
   EXPECT_LT(last, 1e-4);
-  // From orbit straight down: the optical lengths to the zenith.
+  // Straight down from orbit: the vertical optical lengths.
   const models::Answer down = models::homogeneous_light(falling, models::ray_from_angles(400000.0, kPi, 0.6, 1.0));
   for (std::size_t k = 0; k < 3; ++k) {
     const double tau = at(falling.air_scattering, k) * 8400.0 + at(falling.haze_extinction, k) * 1250.0;

@@ -1,5 +1,5 @@
-// O'Neil's model against the equations of GPU Gems 2, chapter 16, written down again here with vectors and without
-// shaders/lib; its scale function and its table against quadrature.
+// O'Neil's model against the equations of GPU Gems 2, chapter 16, implemented here with vectors and without
+// shaders/lib; its scale function and its table against numerical integration.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ shared::Medium planet(double radius_m, double top_m, double rayleigh_m, double m
   return m;
 }
 
-// The demo's planet: one unit is 636 km.
+// The planet of O'Neil's demo, with 636 km per unit.
 shared::Medium demo() {
   shared::Medium m = planet(6360.0e3, 159.0e3, 39750.0, 39750.0);
   const double thickness = 159.0e3;
@@ -52,7 +52,7 @@ std::vector<Question> random_questions(int count, double top_m, double radius_m,
   std::vector<Question> out;
   while (out.size() < static_cast<std::size_t>(count)) {
     const double altitude = (out.size() % 3 == 2 ? 1.0 + 9.0 * uniform(engine) : 0.95 * uniform(engine)) * top_m;
-    // From space: within the planet's disc and the air around it.
+    // From space: within the planet's disc and the atmosphere around it.
     const double rim = altitude > top_m ? std::asin((radius_m + top_m) / (radius_m + altitude)) : kPi;
     const double view = kPi - rim * std::sqrt(uniform(engine));
     const double sun = std::acos(lowest_sun + (1.0 - lowest_sun) * uniform(engine));
@@ -91,8 +91,8 @@ Segment segment(const shared::Medium& m, const Point& origin, const Point& view)
   return out;
 }
 
-// The equations as printed: in units of the atmosphere's thickness and of the printed constants, by the sky's
-// listing for rays that leave the air, and by the text's reversed look-ups for those that end on the ground.
+// The published equations: in units of the atmosphere's thickness and with the published constants, by the sky's
+// listing for rays that leave the atmosphere, and by the text's reversed look-ups for those that end on the ground.
 Answer printed(const shared::Medium& m, const Question& q, int samples) {
   const double inner = m.planet_radius_m;
   const double scale = 1.0 / static_cast<double>(m.atmosphere_height_m);
@@ -138,7 +138,7 @@ Answer printed(const shared::Medium& m, const Question& q, int samples) {
   return out;
 }
 
-// Difference of the worst channel, relative to the brightest.
+// Returns the largest difference of a channel, relative to the brightest channel.
 double error_of(const std::array<double, 3>& value, const std::array<double, 3>& truth) {
   double worst = 0.0;
   for (std::size_t c = 0; c < 3; ++c) worst = std::max(worst, std::abs(value[c] - truth[c]));
@@ -156,7 +156,7 @@ TEST(Oneil, PrintedEquationsAreASpecialCase) {
       const OneilModel model = make_oneil(m, settings);
       for (const Question& q : random_questions(700, m.atmosphere_height_m, m.planet_radius_m, -0.4)) {
         const Answer truth = printed(m, q, samples);
-        // Elsewhere than on its own planet the polynomial amplifies some rays beyond all bounds.
+        // On other planets the polynomial amplifies some rays without bound.
         if (*std::max_element(truth.transmittance.begin(), truth.transmittance.end()) > 1.0e6) continue;
         const Answer answer = oneil(model, q.ray);
         EXPECT_LT(error_of(answer.radiance, truth.radiance), 0.001) << q.ray.altitude_m << " " << q.ray.cos_view_zenith;
@@ -166,12 +166,12 @@ TEST(Oneil, PrintedEquationsAreASpecialCase) {
   }
 }
 
-// The same sums over columns that are integrated: what is left is the error of the fit, times the optical depth.
+// The same sums with numerical density integrals: the difference is the error of the fit, times the optical depth.
 TEST(Oneil, FittedColumnsGiveTheSumsOfIntegratedOnes) {
   const shared::Medium m = planet(6360.0e3, 120.0e3, 7994.0, 1200.0);
   OneilSettings settings;
   const OneilModel model = make_oneil(m, settings);
-  shared::Medium open = m;  // columns to infinity, or nearly
+  shared::Medium open = m;  // integrals practically to infinity
   open.atmosphere_height_m = 400.0e3F;
   const double R = m.planet_radius_m;
   int compared = 0;
@@ -199,7 +199,7 @@ TEST(Oneil, FittedColumnsGiveTheSumsOfIntegratedOnes) {
              brute::of(m.mie_scattering)[c] * std::exp(-h / 1200.0) * brute::mie_phase(m, q.ray.cos_view_sun));
       }
     }
-    if (!lit) continue;  // there the points are others: over the lit part only
+    if (!lit) continue;  // there the points differ: they cover the lit part only
     EXPECT_LT(error_of(oneil(model, q.ray).radiance, truth), 0.001) << q.ray.altitude_m << " " << q.ray.cos_view_zenith;
     ++compared;
   }
@@ -211,7 +211,7 @@ struct Planet {
   double radius_m, top_m, height_m, worst_at_sea_level, worst;
 };
 
-// Bounds: what is reached, rounded up.
+// The bounds are the measured errors, rounded up.
 TEST(Oneil, ScaleFunctionFitsAnyPlanet) {
   for (const Planet& p : {Planet{"demo", 6360.0e3, 159.0e3, 39750.0, 1.0e-4, 3.0e-4},
                           Planet{"Earth, air", 6360.0e3, 80.0e3, 7994.0, 1.5e-4, 1.5e-4},
@@ -225,7 +225,7 @@ TEST(Oneil, ScaleFunctionFitsAnyPlanet) {
     EXPECT_LT(model.rayleigh_at_sea_level.worst, p.worst_at_sea_level) << p.name;
     EXPECT_LT(model.rayleigh.worst, p.worst) << p.name;
     EXPECT_LE(model.rayleigh.rms, model.rayleigh.worst) << p.name;
-    // What it says of itself, against quadrature that shares nothing with it.
+    // The errors that the model reports, against an independent numerical integration.
     shared::Medium open = m;
     open.atmosphere_height_m = static_cast<float>(40.0 * p.height_m);
     const shared::OneilScale& s = model.constants.rayleigh;
@@ -243,7 +243,7 @@ TEST(Oneil, ScaleFunctionFitsAnyPlanet) {
   }
 }
 
-// As technique has it: +1.6 % at the zenith and within 2.5 % down to the horizontal, of columns that end at the top.
+// The known errors: +1.6 % at the zenith and within 2.5 % down to the horizontal, for integrals that end at the top.
 TEST(Oneil, PrintedPolynomialFitsItsOwnPlanetOnly) {
   const shared::OneilScale s = published_scale(39750.0);
   const auto value = [&](double c) {
@@ -271,7 +271,7 @@ TEST(Oneil, TableConvergesToQuadrature) {
     settings.integral_method = OneilIntegralMethod::table;
     settings.table_size = size;
     const OneilModel model = make_oneil(m, settings);
-    EXPECT_LT(model.mie.worst, 0.45 * last.worst) << size;  // the second order would be 0.25
+    EXPECT_LT(model.mie.worst, 0.45 * last.worst) << size;  // second-order convergence would give 0.25
     EXPECT_LT(model.mie.rms, 0.45 * last.rms) << size;
     last = model.mie;
     if (size == 128) {
@@ -324,7 +324,7 @@ TEST(Oneil, NoJumpAcrossTheTop) {
     const OneilModel model = make_oneil(m, settings);
     const double top = m.atmosphere_height_m;
     for (int i = 1; i < 60; ++i) {
-      const double view = kPi / 2.0 + 0.01 + i * 0.025;  // downwards; upwards there is nothing but a sliver
+      const double view = kPi / 2.0 + 0.01 + i * 0.025;  // downwards; upwards there is almost no medium
       const Answer below = oneil(model, ray_from_angles(top - 0.5, view, 1.0, 0.6));
       const Answer above = oneil(model, ray_from_angles(top + 0.5, view, 1.0, 0.6));
       EXPECT_LT(error_of(above.radiance, below.radiance), 0.002) << view;
@@ -351,7 +351,7 @@ TEST(Oneil, NightIsDarkAndNothingIsUndefined) {
           for (std::size_t c = 0; c < 3; ++c) {
             EXPECT_TRUE(std::isfinite(answer.radiance[c]) && answer.radiance[c] >= 0.0);
             EXPECT_TRUE(std::isfinite(answer.transmittance[c]) && answer.transmittance[c] >= 0.0);
-            // Straight away from the sun, looking down: the planet is between.
+            // Away from the sun and down, the planet is in between.
             if (method != OneilIntegralMethod::published && q.ray.cos_sun_zenith < -0.999 &&
                 q.ray.cos_view_zenith < -0.99) {
               EXPECT_EQ(answer.radiance[c], 0.0);

@@ -1,5 +1,5 @@
-// The closed-form columns of shaders/lib/optical_depth.glsl, in double and in single precision, against
-// adaptive quadrature along thousands of rays that pass above the ground: optical depth within 0.1 %.
+// The closed-form density integrals of shaders/lib/optical_depth.glsl, in double and in single precision, against
+// adaptive quadrature along thousands of rays above the ground: optical depth within 0.1 %.
 #include <cmath>
 #include <random>
 
@@ -19,8 +19,8 @@ struct Query {
   double h, mu, d;
 };
 
-// Rays that the planet does not hide: from the ground, from everywhere in the air and from just below the
-// top, in all directions and near the horizon; to the top and over parts of the way down to a ten-thousandth.
+// Returns rays that the planet does not hide: from the ground, from anywhere in the atmosphere and from just below the
+// top, in all directions and near the horizon; to the top, and over fractions of the way down to a ten-thousandth.
 std::vector<Query> queries(const shared::Medium& m, int count) {
   std::mt19937 engine(5);
   const auto uniform = [&engine](double low, double high) {
@@ -166,7 +166,7 @@ TEST(physics_columns, from_space) {
   }
 }
 
-// Below the horizon the answer may be anything large, but it must be a number: it is multiplied by zero.
+// Below the horizon the result may be any large number, but must be finite: it is multiplied by zero.
 TEST(physics_columns, occluded_rays_stay_finite) {
   const shared::Medium m = medium_from_params({});
   for (const float h : {-400.0F, 0.0F, 1000.0F, 79000.0F, 1.0e6F}) {

@@ -21,7 +21,7 @@ using vec4 = glm::vec4;
 
 namespace {
 
-// The same members in the same order, as the shaders see them.
+// The structures have the same members in the same order, as in the shaders.
 lib::Medium medium_of(const shared::Medium& m) { return std::bit_cast<lib::Medium>(m); }
 
 Column array_of(const lib::vec3& v) { return {v.x, v.y, v.z}; }

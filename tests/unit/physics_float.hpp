@@ -1,6 +1,5 @@
-// shaders/lib compiled in single precision, as the GPU runs it: every literal and every operation is float
-// (physics_float.cpp is built with -fsingle-precision-constant). Arguments and results are float, in plain
-// types.
+// shaders/lib compiled in single precision, as on the GPU: every literal and every operation is float
+// (physics_float.cpp is built with -fsingle-precision-constant). Arguments and results are floats in plain types.
 #pragma once
 
 #include <array>

@@ -35,7 +35,7 @@ TEST(physics_geometry, altitude_of_a_position_near_the_ground) {
     const float y = static_cast<float>(rng(-500.0, 9000.0));
     const Real r = std::sqrt(Real(x) * x + Real(z) * z + (Real(y) + kRadius) * (Real(y) + kRadius));
     const Real expected = r - kRadius;
-    // A few units in the last place of what is added up.
+    // Within a few units in the last place of the summands.
     const double sum = (static_cast<double>(x) * x + static_cast<double>(z) * z) / (2.0 * kRadius) + std::abs(y);
     EXPECT_NEAR(glsl32::altitude_of(x, y, z, kRadius), static_cast<double>(expected), 6.0e-7 * sum + 1.0e-6);
   }
@@ -94,7 +94,7 @@ TEST(physics_geometry, segments_of_particular_rays) {
   EXPECT_TRUE(glsl32::atmosphere_segment(5000.0F, -1.0F, kTop, kRadius, start, end, ground));
   EXPECT_NEAR(end, 5000.0F, 0.1F);
   EXPECT_TRUE(ground);
-  // From space: down through all of the air, past it, away from it.
+  // From space: down through the whole atmosphere, past it, and away from it.
   EXPECT_TRUE(glsl32::atmosphere_segment(1.0e6F, -1.0F, kTop, kRadius, start, end, ground));
   EXPECT_NEAR(start, 920000.0F, 1.0F);
   EXPECT_NEAR(end, 1.0e6F, 1.0F);
@@ -103,12 +103,12 @@ TEST(physics_geometry, segments_of_particular_rays) {
   EXPECT_FALSE(glsl32::atmosphere_segment(1.0e6F, 1.0F, kTop, kRadius, start, end, ground));
   EXPECT_EQ(start, 0.0F);
   EXPECT_EQ(end, 0.0F);
-  // On the ground: downwards there is nothing, level there is the sky.
+  // On the ground: a downward ray has length 0, a level ray reaches the sky.
   EXPECT_FALSE(glsl32::atmosphere_segment(0.0F, -0.5F, kTop, kRadius, start, end, ground));
   EXPECT_TRUE(ground);
   EXPECT_TRUE(glsl32::atmosphere_segment(0.0F, 0.0F, kTop, kRadius, start, end, ground));
   EXPECT_NEAR(end, 1.01193e6F, 20.0F);
-  // Below sea level the ground is at twice the depth: level rays pass, and so do those down to its horizon.
+  // Below sea level the ground is at twice the depth. Level rays pass it, and so do those down to its horizon.
   EXPECT_TRUE(glsl32::atmosphere_segment(-300.0F, 0.01F, kTop, kRadius, start, end, ground));
   EXPECT_FALSE(ground);
   EXPECT_TRUE(glsl32::atmosphere_segment(-300.0F, -0.009F, kTop, kRadius, start, end, ground));
@@ -119,7 +119,7 @@ TEST(physics_geometry, segments_of_particular_rays) {
   EXPECT_NEAR(static_cast<double>(true_altitude_along(-300.0F, -0.01F, end, kRadius)), -600.0, 0.1);
 }
 
-// The ground sphere has no step at sea level, and from 500 m below to above it the horizon has none.
+// The ground sphere has no step at sea level, and its horizon none from 500 m below to 500 m above.
 TEST(physics_geometry, the_ground_below_sea_level_begins_at_sea_level) {
   for (const double h : {-1.0e-3, -0.5, -20.0, -500.0, -11000.0}) {
     const float altitude = static_cast<float>(h);
@@ -154,7 +154,7 @@ TEST(physics_geometry, segments_end_on_their_shells) {
       continue;
     }
     const double reached = static_cast<double>(true_altitude_along(h0, mu, end, kRadius));
-    // Positions themselves are rounded: to half a unit in the last place of a distance.
+    // Positions are rounded to half a unit in the last place of a distance.
     const double rounding = 2.0e-7 * (std::abs(end) + h0) + 0.1;
     EXPECT_NEAR(reached, ground ? 0.0 : kTop, rounding) << h0 << ' ' << mu;
     if (h0 > kTop) {
@@ -163,7 +163,7 @@ TEST(physics_geometry, segments_end_on_their_shells) {
   }
 }
 
-// The shadow's ends lie on the cylinder behind the planet: the sun ray from there grazes sea level.
+// The ends of the shadow lie on the cylinder behind the planet: the sun ray from there grazes sea level.
 TEST(physics_geometry, shadow_ends_where_the_sun_ray_grazes_the_ground) {
   Rng rng{std::mt19937(5)};
   int ends = 0;
@@ -183,7 +183,7 @@ TEST(physics_geometry, shadow_ends_where_the_sun_ray_grazes_the_ground) {
       const Real z = (Real(kRadius) + h0) * mu_s + Real(d) * nu;
       const Real h = true_altitude_along(h0, mu, d, kRadius);
       if (d <= 0.0F || h < 0.0L || h > kTop || std::abs(z) < 10.0L) {
-        continue;  // behind the camera, outside the air, or the plane through the terminator
+        continue;  // behind the camera, outside the atmosphere, or on the plane through the terminator
       }
       const Real r = Real(kRadius) + h;
       worst = std::max(worst, std::abs(static_cast<double>(std::sqrt(r * r - z * z) - kRadius)));

@@ -62,7 +62,7 @@ TEST(physics_medium, vertical_optical_depths_and_transmittances) {
   EXPECT_NEAR(through.x, 0.930, 5.0e-4);
   EXPECT_NEAR(through.y, 0.874, 5.0e-4);
   EXPECT_NEAR(through.z, 0.747, 5.0e-4);
-  // The default tent of ozone, 15 km of half width, holds as much as 15 km at its peak.
+  // The default ozone layer, with a half width of 15 km, has the content of 15 km at its peak.
   const glsl64::Medium with_ozone = glsl64::widen(medium_from_params({}));
   EXPECT_NEAR(glsl64::density_integral_to_top(with_ozone, 0.0, 1.0).z, 15000.0, 0.1);
 }
@@ -77,7 +77,7 @@ TEST(physics_medium, densities) {
   EXPECT_NEAR(glsl64::densities(m, 32500.0).z, 0.5, 1.0e-12);
   EXPECT_NEAR(glsl64::densities(m, 7994.0).x, std::exp(-1.0), 1.0e-12);
   EXPECT_EQ(glsl64::densities(m, 80001.0).x, 0.0);
-  // Far below sea level the densities stay finite.
+  // Far below sea level the densities are finite.
   EXPECT_TRUE(std::isfinite(glsl64::densities(m, -1.0e6).y));
 }
 

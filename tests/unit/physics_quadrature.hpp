@@ -1,5 +1,5 @@
-// The physics again, written without shaders/lib: positions as vectors in double precision, densities of
-// their own, adaptive Gauss-Kronrod quadrature. What the tests of shaders/lib judge by.
+// An independent implementation of the physics without shaders/lib: positions as vectors in double precision, its own
+// densities, adaptive Gauss-Kronrod quadrature. It is the reference for the tests of shaders/lib.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@ inline Point along(const Point& p, const Point& direction, double d) {
 }
 inline double dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-// Integral of a three-component function over [a, b] to a relative tolerance of its largest component.
+// Integrates a three-component function over [a, b] to a relative tolerance of its largest component.
 template <typename Function>
 Three integrate(const Function& f, double a, double b, double tolerance, double floor = 0.0, int depth = 0) {
   static constexpr double kNodes[8] = {0.991455371120812639206854697526329, 0.949107912342758524526189684047851,
@@ -77,8 +77,8 @@ inline Three densities(const shared::Medium& m, double h) {
   return {std::exp(-h / m.rayleigh_scale_height_m), std::exp(-h / m.mie_scale_height_m), std::max(tent, 0.0)};
 }
 
-// Distances, in order, at which the line from radius r0 with cosine mu crosses the shells where the integrand
-// has a kink, and its perigee, within (0, d); with 0 and d themselves.
+// Returns 0, d and the distances between them, in order, at which the line from radius r0 with cosine mu crosses shells
+// where the integrand has a kink, and its perigee.
 inline std::vector<double> breaks(const shared::Medium& m, double h0, double mu, double d) {
   const long double radius = m.planet_radius_m;
   const long double r0 = radius + h0;
@@ -102,7 +102,7 @@ inline std::vector<double> breaks(const shared::Medium& m, double h0, double mu,
   return out;
 }
 
-// Columns of the three densities over distance d from altitude h0, each to its own relative precision.
+// Returns the integrals of the three densities over distance d from altitude h0, each to its own relative precision.
 inline Three column(const shared::Medium& m, double h0, double mu, double d, double tolerance = 1.0e-8) {
   const double radius = m.planet_radius_m;
   const double r0 = radius + h0;
@@ -121,7 +121,7 @@ inline Three column(const shared::Medium& m, double h0, double mu, double d, dou
   return sum;
 }
 
-// Distance from (h0, mu) to the farther crossing of the shell of altitude h; negative if there is none.
+// Returns the distance from (h0, mu) to the farther crossing of the shell of altitude h; negative if there is none.
 inline double far_crossing(const shared::Medium& m, double h0, double mu, double h) {
   const long double r0 = static_cast<long double>(m.planet_radius_m) + h0;
   const long double r = static_cast<long double>(m.planet_radius_m) + h;
@@ -153,7 +153,7 @@ inline double mie_phase(const shared::Medium& m, double nu) {
   return 3.0 / (8.0 * std::numbers::pi) * (1.0 - g * g) * (1.0 + nu * nu) / ((2.0 + g * g) * base);
 }
 
-// Radiance / E0 of light scattered once, from altitude h0 over black ground, to the relative tolerance given.
+// Returns radiance / E0 of single scattering from altitude h0 over black ground, to the given relative tolerance.
 inline Three single_scattering(const shared::Medium& m, double h0, double mu, double mu_s, double azimuth,
                                double tolerance) {
   const double radius = m.planet_radius_m;
@@ -170,12 +170,12 @@ inline Three single_scattering(const shared::Medium& m, double h0, double mu, do
   if (h0 > top) {
     start = near_crossing(m, h0, mu, top);
   }
-  // The ground of a ray from below sea level is at twice its depth.
+  // For a ray from below sea level, the ground is at twice its depth.
   const double ground = near_crossing(m, h0, mu, 2.0 * std::min(h0, 0.0));
   if (ground > 0.0 || (h0 == 0.0 && mu < 0.0)) {
     end = std::max(ground, 0.0);
   }
-  // Lit where the ray to the sun misses the planet.
+  // A point is lit if the ray to the sun misses the planet.
   const auto lit = [&](double d) {
     const Point p = along(origin, view, d);
     const double z = dot(p, sun);

@@ -1,5 +1,5 @@
-// Light scattered once: shaders/lib/single_scattering.glsl and sky_irradiance.glsl, in double and in single
-// precision, against brute quadrature. Errors are relative to the ray's brightest channel.
+// Single scattering: shaders/lib/single_scattering.glsl and sky_irradiance.glsl, in double and in single precision,
+// against brute-force quadrature. Errors are relative to the ray's brightest channel.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -23,8 +23,8 @@ struct Query {
   double azimuth;
 };
 
-// From below sea level and the ground to 1.1e6 m, straight up and down, within 1e-6 of the horizon, sun zenith angles
-// to 100 degrees. Cosines are representable in float, so that both precisions answer the same question.
+// Returns rays from below sea level to 1.1e6 m: straight up and down, within 1e-6 of the horizon, with sun zenith
+// angles to 100 degrees. Floats represent the cosines exactly, so that both precisions evaluate the same rays.
 std::vector<Query> queries(const shared::Medium& m, int count) {
   std::mt19937 engine(7);
   const auto uniform = [&engine](double low, double high) {
@@ -149,7 +149,7 @@ TEST(physics_scattering, another_planet) {
   expect_scattering(medium_from_params(params), 600, 16, 1.0e-4, 2.0e-3);
 }
 
-// Where the air is so dense that little gets through.
+// Where the atmosphere is so dense that little light is transmitted.
 TEST(physics_scattering, deep_below_sea_level) {
   const shared::Medium m = medium_from_params({});
   Errors in_float;
@@ -180,7 +180,7 @@ TEST(physics_scattering, transmittance_of_the_answer) {
   EXPECT_EQ(missed.transmittance[2], 1.0);
 }
 
-// Every corner of the parameters' ranges: no number may be lost, however odd the planet.
+// Every corner of the parameters' ranges: results must be finite, however odd the planet.
 TEST(physics_scattering, extreme_parameters_stay_finite) {
   std::mt19937 engine(11);
   const auto pick = [&engine](std::initializer_list<double> values) {
@@ -221,7 +221,7 @@ TEST(physics_scattering, nothing_is_lit_deep_in_the_shadow) {
   EXPECT_EQ(night.radiance[2], 0.0);
 }
 
-// The angles convert to the cosines of a spherical triangle.
+// The angles are converted to the cosines of a spherical triangle.
 TEST(physics_scattering, ray_from_angles) {
   const models::Ray towards = models::ray_from_angles(10.0, 1.0, 1.0, 0.0);
   EXPECT_NEAR(towards.cos_view_sun, 1.0, 1.0e-15);

@@ -1,5 +1,5 @@
-// The mappings between rays and texels of the scattering tables (shaders/lib/table_mapping.glsl) are each
-// other's inverses, and what the texels hold (shaders/lib/table_values.glsl) has the limits it should.
+// The mappings between rays and texels of the scattering tables (shaders/lib/table_mapping.glsl) are inverses of each
+// other, and the texel values (shaders/lib/table_values.glsl) have the right limits.
 #include <gtest/gtest.h>
 
 #include "effect/medium.hpp"
@@ -30,7 +30,7 @@ TEST_P(TableMapping, TexelCentresComeBack) {
       const double mu = glsl64::view_from_v(t, m, h, v, below);
       ASSERT_GE(mu, -1.0);
       ASSERT_LE(mu, 1.0);
-      // Next to the horizon the fifth power leaves the cosine no digits for the way back.
+      // Next to the horizon, the fifth power leaves too little precision in the cosine for the way back.
       const bool grazing = std::abs(mu - glsl64::ground_horizon_cos(h, m.planet_radius_m)) < 1e-7;
       EXPECT_NEAR(glsl64::v_from_view(t, m, h, mu, below), v, grazing ? 0.02 : 2e-6) << i << " " << j;
       if (t.parameterization != 2) {
@@ -40,7 +40,7 @@ TEST_P(TableMapping, TexelCentresComeBack) {
   }
   for (std::uint32_t i = 0; i < t.suns; ++i) {
     const double w = (i + 0.5) / t.suns;
-    // The published lowest sun lies a little inside the first texel.
+    // The published lowest sun lies slightly inside the first texel.
     EXPECT_NEAR(glsl64::w_from_sun(t, glsl64::sun_from_w(t, w)), w, i == 0 ? 1e-3 : 1e-6);
   }
   for (std::uint32_t i = 0; i < t.angles; ++i) {
@@ -66,7 +66,7 @@ TEST_P(TableMapping, NothingIsFilteredAcrossTheHorizon) {
   }
 }
 
-// What is looked up has no step at sea level, and ends where the tables do.
+// Look-ups have no step at sea level, and are clamped at the limits of the tables.
 TEST_P(TableMapping, AltitudesGoOnBelowSeaLevel) {
   const glsl64::Medium m = earth();
   const glsl64::TableShape t = shape_of(GetParam());
@@ -89,7 +89,7 @@ TEST(TableValues, GuideIsExactForAMixedMediumUnderAFullSun) {
   glsl64::Medium m = earth();
   m.mie_extinction = m.mie_scattering = glsl64::vec3(0.0);
   m.ozone_absorption = glsl64::vec3(0.0);
-  // One species without absorption: what is not transmitted has been scattered.
+  // For one species without absorption, the opacity equals the scattered fraction.
   const glsl64::vec3 column = glsl64::density_integral_to_top(m, 500.0, 0.1);
   const glsl64::NormalisationFactors factors = glsl64::normalisation_factors(m, column);
   const glsl64::vec3 expected = glsl64::vec3(1.0) - glsl64::transmittance(m, column);

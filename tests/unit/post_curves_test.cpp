@@ -1,6 +1,6 @@
-// Every tone-mapping operator against its formula as published, written anew here in double precision, and against what
-// such a curve has to do: black stays black, the white point becomes white, more light is never darker, and nothing
-// that a picture can hold becomes no number.
+// Every tone-mapping operator against its published formula, implemented here in double precision, and against general
+// requirements: black stays black, the white point becomes white, more light is never darker, and no possible input
+// gives NaN.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ double grey(const TonemapSettings& settings, double scaled) {
   return tonemapped(settings, 1.0, {scaled, scaled, scaled})[1];
 }
 
-// The colours that every operator is asked about: dark to far beyond white, grey to pure.
+// Returns the test colours: dark to far beyond white, grey to saturated.
 std::vector<Rgb> colours() {
   std::vector<Rgb> out;
   for (double scale = 1e-5; scale < 1e5; scale *= 2.3) {
@@ -42,7 +42,8 @@ std::vector<Rgb> colours() {
   return out;
 }
 
-// An operator on luminance: `curve` of L and the white point, colours to the power of the saturation.
+// Tests an operator on luminance: `curve` is a function of L and the white point; colours are raised to the power of
+// the saturation.
 void expect_on_luminance(Operator op, const std::function<double(double, double)>& curve) {
   for (const float white_point : {0.5F, 3.0F, 20.0F}) {
     for (const float saturation : {0.3F, 1.0F, 1.7F}) {
@@ -59,7 +60,7 @@ void expect_on_luminance(Operator op, const std::function<double(double, double)
   }
 }
 
-// An operator on channels, which neither saturation nor, unless it has one, the white point changes.
+// Tests an operator on channels, which ignores the saturation and, unless it has one, the white point.
 void expect_on_channels(Operator op, const std::function<double(double, double)>& curve) {
   for (const float white_point : {0.5F, 3.0F, 20.0F}) {
     for (const Rgb& c : colours()) {
@@ -103,7 +104,7 @@ TEST(PostCurves, AdaptiveLogarithmic) {
   });
 }
 
-// Hable (2010): quotient of two quadratics, less its value at 0.
+// Hable (2010): a quotient of two quadratic functions, minus its value at 0.
 TEST(PostCurves, Uncharted2) {
   const auto hable = [](double x) {
     const double at_0 = 0.2 * 0.02 / (0.2 * 0.3);
@@ -119,8 +120,8 @@ TEST(PostCurves, FilmicAlu) {
   });
 }
 
-// The polynomial stands for the sigmoid of Sobotka's AgX: through (10/16.5, 0.5) with slope 2, powers 3 and 3.25 below
-// and above; 16.5 stops, 10 of them below 0.18. It is off by up to 0.006 of the encoded value.
+// The polynomial approximates the sigmoid of Sobotka's AgX: through (10/16.5, 0.5) with slope 2 and powers 3 and 3.25
+// below and above; 16.5 stops, 10 of them below 0.18. It deviates by up to 0.006 of the encoded value.
 TEST(PostCurves, AgxFollowsTheSigmoidOfItsAuthor) {
   const double pivot = 10.0 / 16.5;
   const auto sigmoid = [&](double x) {
@@ -137,8 +138,8 @@ TEST(PostCurves, AgxFollowsTheSigmoidOfItsAuthor) {
   }
 }
 
-// Its matrices: what the first draws together the second draws apart again. The rows of the published ones add up to 1
-// within 2e-4, which the power of 2.2 makes 5e-4 of grey.
+// The second matrix inverts the first. The rows of the published ones add up to 1 within 2e-4, which the power of 2.2
+// turns into 5e-4 for grey.
 TEST(PostCurves, AgxKeepsGreyAndHues) {
   constexpr double kGrey = 5e-4;
   for (const double x : {0.001, 0.18, 1.0, 10.0, 100.0}) {
@@ -153,13 +154,13 @@ TEST(PostCurves, AgxKeepsGreyAndHues) {
     const Rgb less = tonemapped(with(Operator::agx, 3.0F, 0.6F), 1.0, {0.3, 0.2, 0.1});
     EXPECT_GT(more[0] - more[2], less[0] - less[2]);
   }
-  // Very bright pure colours go to white, as film does.
+  // Very bright saturated colours become white, as on film.
   const Rgb red = tonemapped(with(Operator::agx), 1.0, {1e4, 0.0, 0.0});
   EXPECT_GT(red[1], 0.2);
 }
 
-// Khronos PBR neutral: below 0.8 a colour is itself less 4 % of white, in the shadows less of it; above, its largest
-// channel is compressed hyperbolically and it turns to white.
+// Khronos PBR Neutral: below 0.8, a colour loses 4 % of white, and less in the shadows. Above, its largest channel is
+// compressed hyperbolically and it becomes white.
 TEST(PostCurves, PbrNeutral) {
   constexpr double kMiddle = 0.18 / 0.3;  // its input is scaled so that middle grey is 0.3
   for (const Rgb& c : colours()) {
@@ -189,7 +190,7 @@ TEST(PostCurves, BlackStaysBlackAndMoreLightIsNotDarker) {
         ASSERT_GE(now, before - 1e-12) << i << " at " << x;
         before = now;
       }
-      // The polynomial of AgX ends at 0.9986, to the power of 2.2.
+      // The polynomial of AgX ends at 0.9986 before the power of 2.2.
       EXPECT_GT(before, static_cast<Operator>(i) == Operator::agx ? 0.995 : 0.9999) << i;
     }
   }
@@ -202,7 +203,7 @@ TEST(PostCurves, TheWhitePointBecomesWhite) {
       EXPECT_NEAR(grey(with(op, white_point), w), 1.0, 1e-12);
       EXPECT_LT(grey(with(op, white_point), 0.95 * w), 1.0);
     }
-    // Before this curve the documents double.
+    // Yusov (2013) doubles the input of this curve.
     EXPECT_NEAR(grey(with(Operator::uncharted2, white_point), 0.5 * w), 1.0, 1e-12);
     EXPECT_LT(grey(with(Operator::uncharted2, white_point), 0.45 * w), 1.0);
   }
@@ -224,7 +225,7 @@ TEST(PostCurves, NothingBecomesNoNumber) {
           }
         }
       }
-      // What is no light adds none.
+      // Negative values and NaN add nothing.
       EXPECT_EQ(tonemapped(settings, 1.0, {nan, -1.0, 0.25}), tonemapped(settings, 1.0, {0.0, 0.0, 0.25}));
     }
   }

@@ -1,4 +1,4 @@
-// What the path tracer says about its results: reproducibility, honest standard errors, orders, refusals.
+// The properties of the path tracer's results: reproducibility, valid standard errors, orders, rejected input.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -50,13 +50,13 @@ TEST(ReferenceEstimate, IndependentOfThreads) {
     EXPECT_TRUE(same_bits(one[i].standard_error, five[i].standard_error));
     for (std::size_t n = 0; n < 8; ++n) EXPECT_TRUE(same_bits(one[i].order_radiance[n], five[i].order_radiance[n]));
   }
-  // A ray's numbers are its own: the rays after it do not matter; the seed does.
+  // A ray's random numbers depend on the seed, but not on the rays after it.
   EXPECT_TRUE(same_bits(run(p, {queries[0]}, options)[0].radiance, one[0].radiance));
   options.seed = 2;
   EXPECT_FALSE(same_bits(run(p, queries, options)[0].radiance, one[0].radiance));
 }
 
-// Many independent estimates of one ray: their spread has to be what their standard errors say.
+// Compares the spread of many independent estimates of one ray with their standard errors.
 void expect_honest_errors(const RayQuery& query) {
   constexpr std::size_t kRepeats = 200;
   Options options;
@@ -71,8 +71,8 @@ void expect_honest_errors(const RayQuery& query) {
       claimed += e.standard_error[c] * e.standard_error[c] / kRepeats;
     }
     for (const Estimate& e : estimates) variance += std::pow(e.radiance[c] - mean, 2) / (kRepeats - 1.0);
-    // kRepeats * variance / claimed follows chi-square with 199 degrees of freedom: sigma 10 %; the mean of
-    // the claimed variances adds little, except for heavy tails.
+    // kRepeats * variance / claimed follows a chi-square distribution with 199 degrees of freedom, with a sigma of 10
+    // %. The mean of the claimed variances adds little, except for heavy tails.
     EXPECT_NEAR(variance / claimed, 1.0, 0.4) << "channel " << c;
     int beyond = 0;
     for (const Estimate& e : estimates) beyond += std::abs(e.radiance[c] - mean) > 2.0 * e.standard_error[c] ? 1 : 0;
@@ -173,7 +173,7 @@ TEST(ReferenceEstimate, RefusesBadInput) {
   EXPECT_TRUE(run({}, {}, few).empty());
 }
 
-// Everything at the edges of its range at once: finite, not negative.
+// All parameters at the limits of their ranges: finite and not negative.
 TEST(ReferenceEstimate, ExtremesStayFinite) {
   std::vector<Params> worlds(5);
   worlds[0].planet.radius_m = 1000.0F;

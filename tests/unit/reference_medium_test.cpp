@@ -1,4 +1,4 @@
-// The path tracer's medium: coefficients, columns, phase functions and their sampling, lines.
+// The path tracer's medium: coefficients, density integrals, phase functions and their sampling, lines.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,8 +20,8 @@ using namespace tyndall::reference;
 TEST(ReferenceMedium, DerivesCoefficients) {
   Params p;
   const Atmosphere air(p);
-  // technique.md section 1; the sea-level zenith transmittance there is (0.925, 0.861, 0.747) with an ozone
-  // of another profile, (0.930, 0.874, 0.747) without.
+  // Known values. The sea-level zenith transmittance is (0.925, 0.861, 0.747) with another ozone profile, (0.930,
+  // 0.874, 0.747) without ozone.
   EXPECT_NEAR(air.rayleigh_scattering[0], 5.8045e-6, 1e-10);
   EXPECT_NEAR(air.rayleigh_scattering[1], 1.35629e-5, 1e-10);
   EXPECT_NEAR(air.rayleigh_scattering[2], 3.31126e-5, 1e-10);
@@ -40,7 +40,7 @@ TEST(ReferenceMedium, TakesCustomCoefficients) {
   Params p;
   p.atmosphere.custom_coefficients = true;
   p.atmosphere.aerosol_density = 2.0F;
-  p.atmosphere.aerosol_absorption = 7.0F;  // must not count
+  p.atmosphere.aerosol_absorption = 7.0F;  // must be ignored
   p.atmosphere.mie_scattering = Vec3(1e-5F, 2e-5F, 4e-5F);
   p.atmosphere.mie_absorption = Vec3(1e-6F, 0.0F, 3e-6F);
   const Atmosphere air(p);
@@ -50,7 +50,7 @@ TEST(ReferenceMedium, TakesCustomCoefficients) {
   EXPECT_NEAR(air.mie_extinction[2], 8.6e-5, 1e-11);
 }
 
-// Columns of one species at a time, against quadrature from the definition.
+// Compares the density integrals of one species at a time with quadrature of the definition.
 void expect_columns(const Params& params, double tolerance) {
   const Atmosphere air(params);
   const oracle::Air rayleigh = oracle::air_of(params, 1.0, 0.0, 0.0, 0.0);
@@ -65,7 +65,7 @@ void expect_columns(const Params& params, double tolerance) {
     const double s_top = std::sqrt(air.top_radius_m * air.top_radius_m - tangent2);
     const Amounts columns = air.columns_to_top(tangent2, s, s_top, air.density(r));
     const oracle::Point from = {0.0, 0.0, r}, towards = {std::sqrt(1.0 - cosine * cosine), 0.0, cosine};
-    // An error counts in units of the column, or of the vertical column where there is little left.
+    // Errors are relative to the integral, or to the vertical integral where the former is small.
     const auto error = [&](double got, const oracle::Air& of, double scale) {
       const double expected = of.depth(from, towards, s_top - s, 4000);
       return std::abs(got - expected) / std::max(expected, 0.1 * scale);
@@ -84,8 +84,8 @@ TEST(ReferenceMedium, ColumnsMatchQuadratureElsewhere) {
   p.atmosphere.height_m = 50000.0F;
   p.atmosphere.rayleigh_scale_height_m = 30000.0F;
   p.atmosphere.mie_scale_height_m = 300.0F;
-  p.atmosphere.ozone_centre_m = 5000.0F;       // the layer is cut by the ground ...
-  p.atmosphere.ozone_half_width_m = 90000.0F;  // ... and by the top
+  p.atmosphere.ozone_centre_m = 5000.0F;       // the ground cuts the layer
+  p.atmosphere.ozone_half_width_m = 90000.0F;  // and so does the top
   expect_columns(p, 5e-6);
 }
 
@@ -105,7 +105,7 @@ TEST(ReferenceMedium, PhaseFunctionsAreNormalised) {
   }
 }
 
-// Pearson's chi-square of sampled cosines in 40 equally wide bins against the integral of the phase function.
+// Returns Pearson's chi-square of sampled cosines in 40 bins of equal width against the integral of the phase function.
 template <typename Phase, typename Sample>
 double chi_square(Phase&& phase, Sample&& sample) {
   constexpr int kBins = 40, kCount = 200000;
@@ -129,7 +129,7 @@ double chi_square(Phase&& phase, Sample&& sample) {
 TEST(ReferenceMedium, SamplesFollowThePhaseFunctions) {
   Generator random(11);
   const auto uniform = [&] { return random.uniform(); };
-  constexpr double kLimit = 78.0;  // 39 degrees of freedom: exceeded once in 4000 times
+  constexpr double kLimit = 78.0;  // 39 degrees of freedom: exceeded once in 4000 runs
   EXPECT_LT(chi_square(rayleigh_phase, [&] { return sample_rayleigh(uniform()); }), kLimit);
   for (const MiePhase kind : {MiePhase::cornette_shanks, MiePhase::henyey_greenstein}) {
     for (const double g : {-0.4, 0.0, 0.76, 0.9}) {
@@ -145,7 +145,7 @@ TEST(ReferenceMedium, SamplesFollowTheGlow) {
   const Glow glow(up, sun);
   ASSERT_GT(glow.share, 0.0);
   EXPECT_EQ(Glow(up, up).share, 0.0);
-  // Moments of the direction: from the density over uniform directions, and from samples.
+  // Moments of the direction, from the density over uniform directions and from samples.
   constexpr int kCount = 400000;
   double norm = 0.0, expected[3] = {}, sampled[3] = {};
   for (int i = 0; i < kCount; ++i) {
@@ -237,7 +237,7 @@ TEST(ReferenceMedium, SobolPointsAreStratified) {
     }
     for (const int n : strata) EXPECT_EQ(n, 1) << "dimension " << d;
   }
-  // The first two are a (0, 8, 2) net: one point in every elementary interval of area 1/256.
+  // The first two dimensions form a (0, 8, 2) net: one point in every elementary interval of area 1/256.
   for (int split = 0; split <= kLog2; ++split) {
     std::vector<int> cells(kCount);
     for (std::size_t i = 0; i < kCount; ++i) {

@@ -1,5 +1,5 @@
-// What the path tracer's tests compare with: plain numerical integration in the same spherical-shell
-// atmosphere, written from the definitions alone (no table, no closed form, no code of src/reference).
+// Numerical integration for the tests of the path tracer: the same spherical-shell atmosphere, implemented from the
+// definitions alone, without a table, a closed form or any code of src/reference.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ struct Point {
 inline Point along(const Point& p, const Point& w, double t) { return {p.x + w.x * t, p.y + w.y * t, p.z + w.z * t}; }
 inline double dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-// Eight-point Gauss-Legendre over each of `panels` equal parts of [a; b].
+// Integrates by an eight-point Gauss-Legendre rule over each of `panels` equal parts of [a; b].
 template <typename F>
 void integrate(double a, double b, int panels, F&& add) {
   constexpr std::array<double, 4> kNode = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
@@ -29,7 +29,7 @@ void integrate(double a, double b, int panels, F&& add) {
   const double half = 0.5 * (b - a) / panels;
   for (int i = 0; i < panels; ++i) {
     const double middle = a + (2 * i + 1) * half;
-    for (int k = 7; k >= 0; --k) {  // from the left
+    for (int k = 7; k >= 0; --k) {  // in ascending order
       const int j = k > 3 ? k - 4 : 3 - k;
       const double node = k > 3 ? -kNode[static_cast<std::size_t>(j)] : kNode[static_cast<std::size_t>(j)];
       add(middle + half * node, half * kWeight[static_cast<std::size_t>(j)]);
@@ -37,7 +37,7 @@ void integrate(double a, double b, int panels, F&& add) {
   }
 }
 
-// The air of given Params, with the coefficients of one channel passed in.
+// The atmosphere of given Params. Functions take the coefficients of one channel.
 struct Air {
   double radius, top, rayleigh_height, mie_height;
   double rayleigh, mie_scattering, mie_extinction, ozone, ozone_centre, ozone_half_width;
@@ -57,7 +57,7 @@ struct Air {
   }
   static double rayleigh_phase(double c) { return 0.75 * (1.0 + c * c) / (4.0 * kPi); }
 
-  // Distance to the ground, of radius `solid`, or to the top; `ground` says which.
+  // Returns the distance to the ground, a sphere of radius `solid`, or to the top; `ground` is set accordingly.
   [[nodiscard]] double reach(const Point& p, const Point& w, bool& ground) const { return reach(p, w, ground, radius); }
   [[nodiscard]] double reach(const Point& p, const Point& w, bool& ground, double solid) const {
     const double b = dot(p, w), c2 = dot(p, p);
@@ -70,7 +70,7 @@ struct Air {
     integrate(0.0, length, panels, [&](double t, double dt) { sum += dt * extinction_at(height(along(p, w, t))); });
     return sum;
   }
-  // 0 in the planet's shadow.
+  // Returns the transmittance to the sun, 0 in the planet's shadow.
   [[nodiscard]] double sun_transmittance(const Point& p, const Point& sun, int panels) const {
     bool ground = false;
     const double length = reach(p, sun, ground);
@@ -95,20 +95,21 @@ inline Air air_of(const tyndall::Params& p, double rayleigh, double mie_scatteri
           a.mie_phase == tyndall::MiePhase::cornette_shanks};
 }
 
-// Radius of the ground that a camera ray meets: sea level, or from below it the sphere at twice the depth.
+// Returns the radius of the ground that a camera ray can hit: sea level or, from below it, the sphere at twice the
+// depth.
 inline double camera_ground(const Air& air, const Point& p) {
   return air.radius + 2.0 * std::min(0.0, std::sqrt(dot(p, p)) - air.radius);
 }
 
-// Single scattering along a ray from p, relative to the sun: sr^-1. The edge of the shadow is met by small
-// panels alone.
+// Returns single scattering along a ray from p, relative to the sun [1/sr]. Small panels resolve the edge of the
+// shadow.
 inline double single_scattering(const Air& air, const Point& p, const Point& w, const Point& sun, int panels,
                                 int sun_panels) {
   bool ground = false;
   const double length = air.reach(p, w, ground, camera_ground(air, p));
   const double c = dot(w, sun);
   const double rayleigh = Air::rayleigh_phase(c), mie = air.mie_phase(c);
-  // t = length * u^2 packs the nodes near the eye; the depth up to each node is added up on the way.
+  // t = length * u^2 concentrates the nodes near the eye. The optical depth is accumulated from node to node.
   double sum = 0.0, depth = 0.0, before = 0.0;
   integrate(0.0, 1.0, panels, [&](double u, double du) {
     const double t = length * u * u;

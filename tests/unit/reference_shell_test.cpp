@@ -1,5 +1,5 @@
-// The path tracer in the round: single scattering against quadrature, second order against brute force,
-// ozone, rays from space, the visible ground.
+// The path tracer on a spherical planet: single scattering against quadrature, second order against brute force, ozone,
+// rays from space, the visible ground.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -38,7 +38,7 @@ std::vector<Estimate> run(const Params& p, const std::vector<RayQuery>& queries,
   return result.value();
 }
 
-// The coefficients of the default atmosphere, from their definition.
+// Returns the coefficients of the default atmosphere from their definition.
 oracle::Air default_air(const Params& p, std::size_t channel) {
   const double wavelength_m[3] = {680e-9, 550e-9, 440e-9};
   const double n2_1 = 1.0003 * 1.0003 - 1.0;
@@ -69,7 +69,7 @@ TEST(ReferenceShell, SingleScatteringMatchesQuadrature) {
       ray(40000.0, 95.0, 92.0, 60.0),    // into the shadow from above
       ray(300000.0, 106.0, 50.0, 40.0),  // from space
       ray(-400.0, 20.0, 50.0, 30.0),     // below sea level: upwards,
-      ray(-400.0, 90.3, 70.0, 100.0),    // past the ground beneath and up again,
+      ray(-400.0, 90.3, 70.0, 100.0),    // past the ground and up again,
       ray(-400.0, 92.0, 60.0, 20.0),     // and down to it
       ray(-400.0, 80.0, 93.0, 30.0),    ray(-2000.0, 70.0, 40.0, 90.0)};
   const auto estimates = run(p, queries, 65536, 1);
@@ -94,7 +94,7 @@ TEST(ReferenceShell, SingleScatteringMatchesQuadrature) {
   }
 }
 
-// Two scatterings with everything sampled uniformly: slow, but nothing in it can be wrong quietly.
+// Two scattering events with uniform sampling of everything: slow, but simple enough to be trusted.
 struct BruteForce {
   double mean = 0.0, error = 0.0;
 };
@@ -178,7 +178,7 @@ TEST(ReferenceShell, RaysFromSpace) {
   Params p;
   p.planet.ground_albedo = 0.3F;
   const double radius = p.planet.radius_m, top = radius + p.atmosphere.height_m;
-  // Past the atmosphere, away from it, and from its very edge outwards: nothing, unweakened.
+  // Rays past the atmosphere, away from it, and outwards from its edge: no radiance, transmittance 1.
   const auto missed = run(p,
                           {ray(400000.0, 90.0, 30.0, 0.0), ray(400000.0, 10.0, 30.0, 0.0),
                            ray(80000.0, 60.0, 30.0, 0.0), sky(90000.0, 20.0)},
@@ -192,7 +192,7 @@ TEST(ReferenceShell, RaysFromSpace) {
   }
   EXPECT_EQ(run(p, {sky(90000.0, 179.0)}, 1000, 3)[0].transmittance[1], 0.0);
 
-  // The same ray from three places on it: in space, at the edge and just inside.
+  // The same ray from three of its points: in space, at the edge and just inside.
   const RayQuery far = ray(1000000.0, 150.0, 40.0, 70.0);
   const double r = radius + far.altitude_m, along = r * std::cos(far.view_zenith_rad);
   const double tangent2 = r * r - along * along;
@@ -223,12 +223,12 @@ TEST(ReferenceShell, VisibleGround) {
   p.planet.ground_albedo = 0.4F;
   const std::vector<RayQuery> queries = {ray(3000.0, 130.0, 50.0, 30.0), ray(0.0, 60.0, 50.0, 30.0)};
   const auto with = run(p, queries, 50000, 4), without = run(p, queries, 50000, 4, false, false);
-  // What the ground sends: the sun's light and the sky's, both reflected, through the air.
+  // The light of the ground is that of sun and sky, reflected and attenuated.
   const auto below = run(p, {sky(0.0, 50.0)}, 50000, 3);
   for (std::size_t c = 0; c < 3; ++c) {
     const double lit = below[0].transmittance[c] * std::cos(50.0 * kDegree) + below[0].radiance[c];
     const double expected = 0.4 / oracle::kPi * lit * with[0].transmittance[c];
-    // The sun stands slightly lower or higher where the ray meets the ground, 3.6 km away.
+    // The sun is slightly lower or higher where the ray hits the ground, 3.6 km away.
     EXPECT_NEAR((with[0].radiance[c] - without[0].radiance[c]) / expected, 1.0, 6e-3);
     const double sigma = std::hypot(with[1].standard_error[c], without[1].standard_error[c]);
     EXPECT_NEAR(with[1].radiance[c], without[1].radiance[c], 4.0 * sigma);  // no ground there
@@ -238,7 +238,7 @@ TEST(ReferenceShell, VisibleGround) {
 TEST(ReferenceShell, SkyIrradianceIsTheIntegralOfTheSky) {
   const Params p;
   const double sun_deg = 60.0, altitude_m = 500.0;
-  // One ray at a random place of each of 40 x 40 cells: squares of the cosine, so that its weight is in the
+  // One ray at a random position in each of 40 x 40 cells: squares of the cosine, so that the cosine weight is in the
   // nodes, times azimuths.
   constexpr int kCells = 40;
   std::mt19937_64 random(4);

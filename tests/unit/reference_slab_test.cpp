@@ -1,6 +1,6 @@
-// The path tracer over a planet so large that its air is a plane-parallel layer, where exact answers exist:
-// the closed form of single scattering, the integral equation of isotropic scattering, reciprocity, and
-// conservation of energy. Then conservation on a small planet, where nothing is flat.
+// The path tracer on a planet so large that its atmosphere is a plane-parallel layer with known solutions: the closed
+// form of single scattering, the integral equation of isotropic scattering, reciprocity, and conservation of energy.
+// Then conservation of energy on a small planet.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ using namespace tyndall::reference;
 constexpr double kPi = std::numbers::pi;
 constexpr float kHeight_m = 1000.0F, kScaleHeight_m = 200.0F;
 
-// A layer of aerosol alone with the given optical depths and single scattering albedos.
+// Returns a layer of aerosol only, with the given optical depths and single scattering albedos.
 Params slab(const std::array<double, 3>& depth, const std::array<double, 3>& albedo, double g = 0.0,
             MiePhase phase = MiePhase::henyey_greenstein) {
   Params p;
@@ -139,7 +139,7 @@ TEST(ReferenceSlab, SingleScatteringClosedForm) {
   }
 }
 
-// Every order of a layer, thin to thick, over black and bright ground.
+// Compares every order of a layer, thin to thick, over black and bright ground.
 void expect_isotropic(const std::array<double, 3>& depth, const std::array<double, 3>& albedo, double ground,
                       int orders, std::uint64_t samples) {
   Params p = slab(depth, albedo);
@@ -160,7 +160,7 @@ void expect_isotropic(const std::array<double, 3>& depth, const std::array<doubl
         total += expected.back();
       }
       for (int n = 0; n < orders; ++n) {
-        // The last term is for the least of the orders, whose errors are not normally distributed.
+        // The last term allows for the smallest orders, whose errors are not normally distributed.
         const auto at = static_cast<std::size_t>(n);
         EXPECT_NEAR(e.order_radiance[at][c], expected[at],
                     4.5 * e.order_standard_error[at][c] + 1e-3 * expected[at] + 2e-5 * total)
@@ -181,7 +181,7 @@ TEST(ReferenceSlab, IsotropicOrdersOverBrightGround) {
 }
 TEST(ReferenceSlab, IsotropicThickLayer) { expect_isotropic({6.0, 6.0, 6.0}, {1.0, 0.99, 0.8}, 0.0, 24, 16384); }
 
-// Helmholtz: exchanging sun and eye leaves radiance / cosine of the sun as it is.
+// Helmholtz reciprocity: radiance / cosine of the sun is unchanged when sun and eye are exchanged.
 TEST(ReferenceSlab, Reciprocity) {
   for (const MiePhase phase : {MiePhase::cornette_shanks, MiePhase::henyey_greenstein}) {
     Params p = slab({0.3, 1.0, 3.0}, {0.9, 1.0, 0.8}, 0.76, phase);
@@ -199,13 +199,13 @@ TEST(ReferenceSlab, Reciprocity) {
   }
 }
 
-// Without absorption, what the sun puts in leaves upwards or reaches the ground.
+// Without absorption, the sunlight leaves upwards or reaches the ground.
 TEST(ReferenceSlab, ConservesEnergy) {
   const std::array<double, 3> depth = {0.2, 0.7, 1.5};
   const double mu0 = 0.55;
   for (const MiePhase phase : {MiePhase::cornette_shanks, MiePhase::henyey_greenstein}) {
     const Params p = slab(depth, {1.0, 1.0, 1.0}, 0.6, phase);
-    // Gauss-Legendre in the cosine (8 nodes) times 12 equal steps of azimuth (even, so half of the circle).
+    // Gauss-Legendre in the cosine (8 nodes) times 12 equal steps of azimuth (symmetric, so half of the circle).
     const double node[4] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
     const double weight[4] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
     std::vector<RayQuery> queries;
@@ -232,8 +232,8 @@ TEST(ReferenceSlab, ConservesEnergy) {
   }
 }
 
-// A small round planet with white ground and air that does not absorb: whatever the sun sends into its disc
-// comes out again, over all directions and all places. Covers the night side with its guided sampling.
+// A small spherical planet with white ground and a medium that does not absorb: all sunlight that enters its disc must
+// come out, integrated over all directions and positions. Covers the night side with its importance sampling.
 TEST(ReferenceSlab, WhiteFurnaceOfAWholePlanet) {
   Params p = slab({0.1, 0.4, 1.0}, {1.0, 1.0, 1.0}, 0.4, MiePhase::cornette_shanks);
   p.planet.radius_m = 10000.0F;
@@ -248,7 +248,7 @@ TEST(ReferenceSlab, WhiteFurnaceOfAWholePlanet) {
   const double radius = p.planet.radius_m, top = radius + p.atmosphere.height_m;
   const auto height_m = static_cast<double>(p.atmosphere.height_m);
 
-  // Rays that are uniform over directions and over the disc, as seen from where they enter.
+  // Rays uniform over directions and over the disc, as seen from where they enter.
   constexpr int kBatches = 16, kRays = 250;
   std::mt19937_64 random(17);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -265,8 +265,8 @@ TEST(ReferenceSlab, WhiteFurnaceOfAWholePlanet) {
   const auto estimates = run(p, queries, 32, 50);
 
   for (std::size_t c = 0; c < 3; ++c) {
-    // Sunlight that goes straight through the air beside the planet: by the transmittance of the same rays,
-    // whose ends in space are those with an impact parameter beyond the radius.
+    // Sunlight that passes the planet without scattering: the transmittance of those of these rays whose impact
+    // parameter exceeds the radius.
     double mean = 0.0, square = 0.0;
     for (int batch = 0; batch < kBatches; ++batch) {
       double sum = 0.0;

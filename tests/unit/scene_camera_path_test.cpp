@@ -1,5 +1,5 @@
-// The flight of the camera: through its keyframes, smooth between them, the short way round, along the planet's curve
-// and from the ground to orbit without a jump or a dive.
+// The flight of the camera: through its keyframes, smooth between them, turning the shorter way, along the planet's
+// curve, and from the ground to orbit without a jump or a dive.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -72,14 +72,14 @@ TEST(ScenePath, PassesThroughItsFramesAndKeepsWhatTheyLeaveOut) {
     EXPECT_NEAR(now.camera.yaw_deg, key.yaw_deg.value_or(now.camera.yaw_deg), 1e-4F);
     EXPECT_NEAR(now.sun.elevation_deg, key.sun_elevation_deg.value_or(now.sun.elevation_deg), 1e-5F);
   }
-  // It stands still before and after.
+  // The camera rests before the first and after the last frame.
   EXPECT_EQ(place(at(path, -3.0)), place(at(path, 0.0)));
   EXPECT_EQ(place(at(path, 1e5)), place(at(path, 100.0)));
-  EXPECT_EQ(at(path, 0.0, base).sun.elevation_deg, -4.0F);  // until the first that says something of it
+  EXPECT_EQ(at(path, 0.0, base).sun.elevation_deg, -4.0F);  // until the first frame that sets it
 }
 
-// Differences of a step of 1 ms: continuous, and so are those of the differences. A jump in speed would stay as it is
-// when the step is halved; smooth curves halve it.
+// Differences over a step of 1 ms are continuous, and so are the differences of those. A jump in speed would not change
+// when the step is halved; on smooth curves it halves.
 TEST(ScenePath, PositionAndAnglesChangeSmoothly) {
   const CameraPath path = from_valley_to_orbit();
   const auto value = [&](double t, int which) {
@@ -91,13 +91,13 @@ TEST(ScenePath, PositionAndAnglesChangeSmoothly) {
     return yaw > 180.0 ? yaw - 360.0 : yaw;
   };
   for (int which = 0; which < 4; ++which) {
-    for (double key = 10.0; key < 100.0; key += 0.5) {  // all of the frames are among these
+    for (double key = 10.0; key < 100.0; key += 0.5) {  // includes all frames
       const auto kink = [&](double step) {
         return std::abs((value(key + step, which) - value(key, which)) -
                         (value(key, which) - value(key - step, which))) /
                step;
       };
-      // Of 30 degrees and 6 units of altitude in 10 s and more.
+      // Relative to changes of 30 degrees and 6 units of altitude in at least 10 s.
       ASSERT_LT(kink(0.05), 0.25) << which << " at " << key;
       ASSERT_LT(kink(0.025), 0.6 * kink(0.05) + 0.02) << which << " at " << key;
     }
@@ -119,9 +119,9 @@ TEST(ScenePath, NeverBelowOrAboveItsFrames) {
     ASSERT_GE(now, before * (1.0 - 1e-6)) << t;
     before = now;
   }
-  // Halfway up it is far nearer to the ground than to orbit.
+  // In the middle of the ascent it is much nearer to the ground than to orbit.
   EXPECT_LT(altitude(at(path, 12.5)), 40000.0);
-  // The place stays that of the parameters.
+  // The position above the planet is that of the parameters.
   EXPECT_NEAR(place(at(path, 3.0)).x, 0.0, 1e-3);
 }
 
@@ -146,7 +146,7 @@ TEST(ScenePath, FollowsTheCurveOfThePlanet) {
   CameraPath path;
   path.frames = {frame(0.0), frame(10.0)};
   path.frames[0].position_m = DVec3(0.0, 100.0, 0.0);
-  // A quarter round the planet, 100 m above it.
+  // A quarter of the way around the planet, 100 m above it.
   path.frames[1].position_m = DVec3((kRadius_m + 100.0), (-kRadius_m), 0.0);
   for (double t = 0.0; t <= 10.0; t += 0.1) {
     const SceneParams now = at(path, t);
@@ -170,7 +170,7 @@ TEST(ScenePath, LoopsWithoutASeam) {
     EXPECT_NEAR(at(path, t).camera.yaw_deg, at(path, t + 1200.0).camera.yaw_deg, 1e-3F);
     EXPECT_EQ(at(path, t).camera.fov_deg, 30.0F);
   }
-  // The same speed before the seam as after it, 120 degrees in 5 s and in 3 s: it goes on turning.
+  // The speed is the same on both sides of the seam, 120 degrees in 5 s and in 3 s: the camera turns on.
   const auto yaw = [&](double t) { return static_cast<double>(at(path, t).camera.yaw_deg); };
   const double speed_after = (yaw(2.02) - yaw(2.0)) / 0.02;
   const double speed_before = (yaw(14.0) + 360.0 - yaw(13.98)) / 0.02;
@@ -188,7 +188,7 @@ TEST(ScenePath, TheSunByDateAndPlace) {
   SceneParams base;
   base.sun.animate = true;
   for (const double t : {0.0, 5.0, 10.0}) {
-    // Halfway in time by symmetry.
+    // In the middle of the interval, by symmetry.
     const double day =
         *path.frames[0].julian_day + t / 10.0 * (*path.frames[1].julian_day - *path.frames[0].julian_day);
     const SolarPosition sun = solar_position(path.place, day);

@@ -1,4 +1,4 @@
-// The map projection that lays the map on the planet, and the camera and sun over it.
+// The projection of the map onto the planet, and camera and sun above it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -70,8 +70,8 @@ TEST(SceneMapProjection, MapProjectionsCoverThePlanet) {
   }
 }
 
-// Elevation goes over the seams of map projections without a step: from the origin over a corner of three of them to
-// the antipode.
+// Elevation has no step at the seams of map projections: from the origin over a corner of three of them to the
+// antipode.
 TEST(SceneMapProjection, TheGroundHasNoSteps) {
   const Result<ElevationSource> source = ElevationSource::create({});
   ASSERT_TRUE(source.ok());
@@ -107,7 +107,7 @@ TEST(SceneLocalFrame, IsBelowTheCameraAndRightHanded) {
   EXPECT_EQ(near.world_from_local, glm::dmat4(1.0));
 }
 
-// East is vertical at two points of the equator, and the map has no direction at the antipode: nothing breaks there.
+// East is vertical at two points of the equator, and the map has no direction at the antipode; both must be handled.
 TEST(SceneCamera, StandsAnywhere) {
   CameraParams params;
   for (const DVec3& at :
@@ -141,7 +141,7 @@ TEST(SceneCamera, LooksWhereYawAndPitchSay) {
     EXPECT_NEAR(view.tan_half_width, 1.5 * view.tan_half_height, 1e-12);
     EXPECT_NEAR(view.tan_half_height, std::tan(0.5 * params.fov_deg * kRad), 1e-6);
   }
-  // Far from the origin the horizon is the local one, and altitude_m replaces the altitude alone.
+  // Far from the origin, the local horizon is used, and altitude_m only replaces the altitude.
   params.position_m = {3.0e6F, -500.0F, 1.0e6F};
   params.altitude_m = 1234.0F;
   params.pitch_deg = 0.0F;
@@ -166,10 +166,10 @@ TEST(SceneCamera, DepthIsReversedWithAnInfiniteFarPlane) {
   EXPECT_NEAR(ndc(kNearPlane_m, 0, 0).z, 1.0, 1e-9);
   for (const double depth : {1.0, 100.0, 1e5, 1e8}) {
     EXPECT_NEAR(ndc(depth, 0, 0).z * depth, kNearPlane_m, 1e-6) << depth;
-    // x to the right and y downwards, as in Vulkan.
+    // x points right and y down, as in Vulkan.
     EXPECT_NEAR(glm::distance(glm::dvec2(ndc(depth, 0.5, 0.25)), glm::dvec2(0.5, -0.25)), 0.0, 1e-6) << depth;
   }
-  // The public structure says the same, rounded to single precision.
+  // The public structure has the same values, rounded to single precision.
   const Camera camera = camera_from_view(view);
   EXPECT_EQ(camera.world_from_view.m[12], 4000.0F);
   EXPECT_EQ(camera.clip_from_view.m[11], -1.0F);
@@ -184,7 +184,7 @@ TEST(SceneCamera, TheSunStandsAtItsAngles) {
   EXPECT_NEAR(glm::distance(direction_to_sun(sun), glm::dvec3(std::sqrt(0.75), 0.5, 0.0)), 0.0, 1e-7);
   sun.azimuth_deg = 0.0F;
   EXPECT_NEAR(direction_to_sun(sun).z, -std::sqrt(0.75), 1e-7);  // north
-  // It stands still unless told to move, then turns at its speed about the axis (0.5, 0.3, 0).
+  // The sun does not move unless animated; then it rotates at its speed about the axis (0.5, 0.3, 0).
   EXPECT_EQ(animated_direction_to_sun(sun, 100.0), direction_to_sun(sun));
   sun.animate = true;
   sun.animate_speed_deg = 10.0F;

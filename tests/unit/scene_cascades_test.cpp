@@ -1,6 +1,6 @@
-// The fit of shadow cascades, for suns from below the horizon to the zenith and cameras from the ground to space:
-// the part of the view that terrain can shadow is inside, casters towards the sun are within the depth range, and
-// texels stay where they are when the camera moves.
+// The fit of shadow cascades, for suns from below the horizon to the zenith and cameras from the ground to space: a
+// cascade contains the part of the view that terrain can shadow, its depth range contains the casters towards the sun,
+// and its texels do not move with the camera.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -110,7 +110,7 @@ TEST(SceneCascades, HoldTheGroundOfTheirSliceAndItsCasters) {
         for (const CascadeFit& fit : fits) {
           const glm::dmat4 shadow_from_world = fit.shadow_from_world();
           for (int i = 0; i < 400; ++i) {
-            // A point of the view's slice, at a depth that is spread evenly over the distances' logarithms.
+            // A point of the cascade's slice of the view, at depths spread evenly over the logarithm of the distance.
             const double low = std::max(fit.near_m, 1.0);
             const double depth = low * std::pow(fit.far_m / low, uniform(engine));
             const double x = (2.0 * uniform(engine) - 1.0) * view.tan_half_width * depth;
@@ -124,7 +124,7 @@ TEST(SceneCascades, HoldTheGroundOfTheirSliceAndItsCasters) {
               ASSERT_GE(uvz[k], 0.0) << "axis " << k << " at altitude " << altitude << ", depth " << depth;
               ASSERT_LE(uvz[k], 1.0) << "axis " << k << " at altitude " << altitude << ", depth " << depth;
             }
-            // Terrain between the point and the sun, as far as the rays stay below the summits.
+            // Terrain between the point and the sun, as far as the rays are below the summits.
             for (const double distance : {1e3, 1e4, 1e5, 3e5}) {
               const glm::dvec3 caster = p + sun * distance;
               const double above = altitude_of(caster, kGround.radius_m);
@@ -135,12 +135,12 @@ TEST(SceneCascades, HoldTheGroundOfTheirSliceAndItsCasters) {
           }
         }
       });
-  // The draws do find ground in view, and casters.
+  // The random draws include visible ground and casters.
   EXPECT_GT(receivers, 10000U);
   EXPECT_GT(casters, 1000U);
 }
 
-// Whatever the view, one cascade holds a room around the camera well inside of its map, and finer ones come before it.
+// For every view, one cascade contains a room around the camera well inside its map, and finer cascades come before it.
 TEST(SceneCascades, OneHoldsARoomAroundTheCamera) {
   std::size_t rooms = 0;
   for (const bool bare : {false, true}) {
@@ -176,7 +176,7 @@ TEST(SceneCascades, OneHoldsARoomAroundTheCamera) {
           const auto at = static_cast<std::uint32_t>(room - fits.data());
           EXPECT_EQ(first_marched(shadows, fits), std::min(at, shadows.first_marched));
           for (std::size_t i = 0; i < at; ++i) EXPECT_LT(fits[i].texel_m, room->texel_m);
-          EXPECT_LT(room->texel_m, 0.035);  // 18.8 m of diagonal in 1024 texels
+          EXPECT_LT(room->texel_m, 0.035);  // a diagonal of 18.8 m in 1024 texels
           for (const glm::dvec3& p : corners) {
             EXPECT_LE(glm::distance(p, view.position), room->far_m + 1e-9);
             const glm::dvec3 uvz(room->shadow_from_world() * glm::dvec4(p, 1.0));
@@ -212,20 +212,20 @@ TEST(SceneCascades, TexelsStayWhenTheCameraMovesAndTurns) {
           for (int axis = 0; axis < 2; ++axis) {
             const double texel = 2.0 * fits[i].half_extent[axis] / shadows.resolution;
             const double moved = (fits[i].centre[axis] - before[i].centre[axis]) / texel;
-            // Whole texels; what remains is the rounding of planet-sized coordinates.
+            // Moves are whole texels, apart from the rounding of planet-sized coordinates.
             ASSERT_NEAR(moved, std::round(moved), 1e-6) << "cascade " << i << " step " << step;
           }
         }
         before = fits;
       }
-      // Sizes change in steps, a few times over a walk of 450 m and a turn of 25 degrees.
+      // Sizes change in steps, a few times during a walk of 450 m and a turn of 25 degrees.
       for (const std::set<double>& seen : sizes)
         EXPECT_LE(seen.size(), 4U) << "sun " << elevation << " at " << altitude;
     }
   }
 }
 
-// Remarks on inputs (src/effect/remarks.hpp) are for mistakes: these cascades and cameras are none.
+// Remarks on inputs (src/effect/remarks.hpp) are for mistakes; these cascades and cameras are correct.
 void expect_no_remark(const View& view, const glm::dvec3& sun, const ShadowParams& shadows,
                       const std::vector<CascadeFit>& fits) {
   std::vector<Cascade> cascades;

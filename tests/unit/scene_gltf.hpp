@@ -1,4 +1,4 @@
-// A fixture for tests of glTF files: small files, loaded from a folder of the test's own.
+// A fixture for tests of glTF files: small files, loaded from a temporary folder.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ class SceneGltf : public testing::Test {
     for (const std::string& note : data.notes) found += note.find(part) != std::string::npos ? 1 : 0;
     EXPECT_EQ(found, 1U) << part << ", notes: " << json(data.notes).dump();
   }
-  // A file with one mesh, one material and one node.
+  // Returns a file with one mesh, one material and one node.
   static GltfFile triangle() {
     GltfFile file;
     const int material = file.material({{"pbrMetallicRoughness", json::object()}});
@@ -62,7 +62,7 @@ class SceneGltf : public testing::Test {
     return file;
   }
   static json& primitive(GltfFile& file) { return file.root["meshes"][0]["primitives"][0]; }
-  // A picture in a view of the file, as the base colour of materials[0].
+  // Adds a picture in a buffer view of the file as the base colour of materials[0].
   static void set_picture(GltfFile& file, const std::string& bytes) {
     file.root["images"] = {{{"bufferView", file.view(bytes.data(), bytes.size())}, {"mimeType", "image/png"}}};
     file.root["textures"] = {{{"source", 0}}};

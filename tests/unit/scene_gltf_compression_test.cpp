@@ -17,7 +17,7 @@ namespace {
 class SceneGltfCompression : public SceneGltf {};
 
 #ifdef TYNDALL_WITH_MESHOPT
-// Two triangles in compressed views, whose own buffer has no data. With normals through a filter.
+// Returns two triangles in compressed views, whose fallback buffer has no data. The normals use a filter.
 GltfFile compressed_quad(const char* mode) {
   GltfFile file;
   const std::vector<float> corners = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};

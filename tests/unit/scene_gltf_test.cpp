@@ -1,5 +1,5 @@
-// What glTF files say is what is drawn, or a line says what is not: samplers, morph targets, skins and sparse data; and
-// the schema, whose violations are refused with the path of the value.
+// glTF files are drawn as specified, or a note names what is not: samplers, morph targets, skins and sparse data.
+// Violations of the schema are rejected with the path of the value.
 #include <sys/resource.h>
 #include <zlib.h>
 
@@ -8,7 +8,7 @@
 
 #include "scene_gltf.hpp"
 
-// For JPEG files to read.
+// To write JPEG files for these tests.
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
 #pragma GCC diagnostic push
@@ -34,7 +34,7 @@ TEST_F(SceneGltf, SamplersAreThoseOfTheFile) {
   for (int i = 1; i < 4; ++i) file.material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", i}}}}}});
   const MeshData data = load(file);
   ASSERT_GE(data.materials.size(), 4U);
-  EXPECT_EQ(data.textures.size(), 1U);  // one picture, however it is sampled
+  EXPECT_EQ(data.textures.size(), 1U);  // one picture for all samplers
   EXPECT_EQ(data.materials[0].sampler,
             (MeshSampler{TextureWrap::clamp_to_edge, TextureWrap::mirrored_repeat, false, false, MipFilter::none}));
   EXPECT_EQ(data.materials[1].sampler,
@@ -56,10 +56,10 @@ TEST_F(SceneGltf, MorphTargetsHaveTheirDefaultWeights) {
   const int up = file.points({{0, 0, 4}, {0, 0, 4}, {0, 0, 4}});
   const int aside = file.points({{8, 0, 0}, {8, 0, 0}, {8, 0, 0}});
   primitive(file)["targets"] = {{{"POSITION", up}}, {{"POSITION", aside}}};
-  EXPECT_EQ(load(file).bounds.max, glm::dvec3(1, 1, 0));  // without weights the targets do not count
+  EXPECT_EQ(load(file).bounds.max, glm::dvec3(1, 1, 0));  // without weights the targets have no effect
   file.root["meshes"][0]["weights"] = {0.5, 0.0};
   EXPECT_EQ(load(file).bounds.min, glm::dvec3(0, 0, 2));
-  // A node's weights replace those of its mesh, which other nodes keep.
+  // A node's weights replace those of its mesh, which other nodes still use.
   file.node({{"mesh", 0}, {"weights", {0.0, 1.0}}});
   const MeshData data = load(file);
   EXPECT_EQ(data.meshes.size(), 2U);
@@ -122,7 +122,7 @@ TEST_F(SceneGltf, VersionsThatAreNotReadAreRefused) {
   expect_note(longer.value(), "bytes after the end");
 }
 
-// Types, lengths and ranges of the schema, of which the reader once skipped what did not fit.
+// Types, lengths and ranges of the schema. An earlier reader silently skipped values that did not fit.
 TEST_F(SceneGltf, ValuesOutsideTheSchemaAreRefusedWithTheirPath) {
   const auto set = [&](const char* pointer, const json& value, const std::string& part) {
     refuses([&](GltfFile& f) { f.root[json::json_pointer(pointer)] = value; }, part);
@@ -172,7 +172,7 @@ TEST_F(SceneGltf, ValuesOutsideTheSchemaAreRefusedWithTheirPath) {
         f.root["nodes"][0]["scale"] = {1, 1, 1};
       },
       "nodes[0] has both a matrix and a scale");
-  // A texture's transform counts as a whole, too.
+  // A texture's transform is checked as a whole, too.
   refuses(
       [&](GltfFile& f) {
         set_picture(f, picture());
@@ -253,7 +253,7 @@ TEST_F(SceneGltf, AccessorsWithoutDataAreZerosAndSparseOnesAreRead) {
   const json sparse = {{"count", 2},
                        {"indices", {{"bufferView", index_view}, {"componentType", 5123}}},
                        {"values", {{"bufferView", value_view}}}};
-  // Over the corners, and over zeros.
+  // Sparse values over the corners, and over zeros.
   for (const bool zeros : {false, true}) {
     file.root["accessors"][0]["sparse"] = sparse;
     if (zeros) file.root["accessors"][0].erase("bufferView");
@@ -288,7 +288,7 @@ TEST_F(SceneGltf, ExtensionsAreRefusedOrNotedByName) {
   expect_note(data, "not supported are ignored: KHR_lights_punctual, KHR_materials_unlit");
   expect_note(data, "animations");
   expect_note(data, "emission");
-  // A texture that only an extension fills.
+  // A texture whose image only an extension defines.
   set_picture(file, picture());
   file.root["textures"] = {{{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}}};
   expect_note(load(file), "textures[0] has no PNG or JPEG picture");
@@ -300,8 +300,7 @@ TEST_F(SceneGltf, SkinsAreDrawnInThePoseOfTheirJoints) {
       file.accessor<std::uint8_t>({0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}, 5121, "VEC4", 4);
   primitive(file)["attributes"]["WEIGHTS_0"] = file.floats({1, 0, 0, 0, 1, 0, 0, 0, 0.5, 0.5, 0, 0}, 4);
   primitive(file)["attributes"]["NORMAL"] = file.points({{0, 0, 1}, {0, 0, 1}, {0, 1, 0}});
-  // The second joint is a child of the first and stands at (1, 0, 0) when it is bound; now it is turned by 90 degrees
-  // about z.
+  // The second joint is a child of the first, at (1, 0, 0) in the bind pose; here it is rotated by 90 degrees about z.
   const int child =
       file.node({{"translation", {1, 0, 0}}, {"rotation", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}}}, false);
   const int root = file.node({{"translation", {0, 0, 3}}, {"children", {child}}});
@@ -310,12 +309,12 @@ TEST_F(SceneGltf, SkinsAreDrawnInThePoseOfTheirJoints) {
       16);
   file.root["skins"] = {{{"joints", {root, child}}, {"inverseBindMatrices", inverse}}};
   file.root["nodes"][0]["skin"] = 0;
-  file.root["nodes"][0]["translation"] = {100, 0, 0};  // does not count
+  file.root["nodes"][0]["translation"] = {100, 0, 0};  // ignored
   const MeshData data = load(file);
   const std::vector<glm::vec3> p = positions(data);
   ASSERT_EQ(p.size(), 3U);
-  // (0, 1, 0) relative to the second joint is (-1, 1, 0), which turns to (-1, -1, 0): (0, -1, 3). Its other half is (0,
-  // 1, 3).
+  // (0, 1, 0) relative to the second joint is (-1, 1, 0), rotated to (-1, -1, 0): (0, -1, 3). The other half of its
+  // weight gives (0, 1, 3).
   const std::vector<glm::vec3> expected = {{0, 0, 3}, {1, 0, 3}, {0, 0, 3}};
   for (std::size_t i = 0; i < 3; ++i) EXPECT_LT(glm::distance(p[i], expected[i]), 1e-5F) << i;
   EXPECT_LT(glm::distance(data.vertices[2].normal, glm::normalize(glm::vec3(-1, 1, 0))), 1e-5F);
@@ -338,7 +337,7 @@ std::string chunk(const std::string& kind, const std::string& body) {
          word(crc32(0, reinterpret_cast<const unsigned char*>(text.data()), static_cast<unsigned>(text.size())));
 }
 
-// A square PNG of 8-bit grey of some side whose picture data inflates to `size` zeros.
+// Returns a square PNG of 8-bit grey whose picture data inflate to `size` zeros.
 std::string grey_png(std::uint32_t side, std::size_t size, bool interlaced = false) {
   std::vector<unsigned char> zeros(size), packed(compressBound(size));
   uLongf length = packed.size();
@@ -357,7 +356,7 @@ long peak_kib() {
 
 TEST_F(SceneGltf, DamagedPicturesAreRefusedBeforeTheyCostMemory) {
   const auto with = [&](const std::string& bytes) { return [&](GltfFile& f) { set_picture(f, bytes); }; };
-  // 2x2, and the same with too little and too much picture data.
+  // A picture of 2x2, and the same with too few and too many picture data.
   GltfFile fine = triangle();
   set_picture(fine, grey_png(2, 6));
   EXPECT_EQ(load(fine).textures.size(), 1U);
@@ -384,7 +383,7 @@ TEST_F(SceneGltf, DamagedPicturesAreRefusedBeforeTheyCostMemory) {
       "bufferViews[1] ends at byte ");
 }
 
-// The decoder fills the rest of a JPEG that ends early with grey, without a word.
+// The decoder silently fills the rest of a truncated JPEG with grey.
 TEST_F(SceneGltf, JpegsThatEndEarlyAreRefused) {
   std::string jpeg;
   const std::vector<unsigned char> red(std::size_t{3} * 64 * 64, 200);
@@ -399,7 +398,7 @@ TEST_F(SceneGltf, JpegsThatEndEarlyAreRefused) {
   EXPECT_NEAR(data.textures[0].rgba[0], 200, 2);
   refuses([&](GltfFile& f) { set_picture(f, jpeg.substr(0, jpeg.size() - 20)); },
           "images[0] is a picture which ends early");
-  // A header that claims 8000x8000 texels: the height and width follow the marker FF C0, a length and a depth.
+  // A header that claims 8000x8000 texels: height and width follow the marker FF C0, a length and a depth.
   const std::size_t frame = jpeg.find("\xFF\xC0");
   ASSERT_NE(frame, std::string::npos);
   std::string claims = jpeg;

@@ -1,5 +1,5 @@
-// Meshes from glTF files: what is written is what is read, and of what is wrong a line says what; and the hall, whose
-// walls let no light in but through glass.
+// Meshes from glTF files: round trips, and one clear line for errors; and the hall, which light enters only through
+// glass.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -31,7 +31,7 @@ class SceneMesh : public testing::Test {
     std::ofstream(at(name), std::ios::binary) << bytes;
     return at(name);
   }
-  // A file with one mesh and one node.
+  // Returns a file with one mesh and one node.
   static GltfFile triangle() {
     GltfFile file;
     const int position = file.points({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
@@ -97,7 +97,7 @@ TEST_F(SceneMesh, TrianglesWithAndWithoutIndicesNormalsAndOfAllModes) {
 
 TEST_F(SceneMesh, QuantisedAndInterleavedAttributes) {
   GltfFile file;
-  // Positions in bytes, shorts normalised; normals in bytes; colours in bytes and shorts.
+  // Positions as bytes, normalised shorts; normals as bytes; colours as bytes and shorts.
   const int bytes = file.accessor<std::int8_t>({0, 0, 0, 127, 0, 0, 0, -127, 0}, 5120, "VEC3", 3);
   const int shorts = file.accessor<std::int16_t>({0, 0, 0, 32767, 0, 0, 0, -32767, 0}, 5122, "VEC3", 3, true);
   const int normals = file.accessor<std::int8_t>({0, 0, -127, 0, 0, -127, 0, 0, -127}, 5120, "VEC3", 3, true);
@@ -107,7 +107,7 @@ TEST_F(SceneMesh, QuantisedAndInterleavedAttributes) {
       {{"mesh", file.mesh({{"attributes",
                             {{"POSITION", bytes}, {"NORMAL", normals}, {"TEXCOORD_0", uv}, {"COLOR_0", color}}}})}});
   file.node({{"mesh", file.mesh({{"attributes", {{"POSITION", shorts}}}})}});
-  // x, y, z and nothing, four floats apart.
+  // x, y, z and padding, four floats apart.
   const std::vector<float> loose = {1, 2, 3, 9, 4, 5, 6, 9, 7, 8, 10, 9};
   const int view = file.view(loose.data(), loose.size() * sizeof(float));
   file.root["bufferViews"][static_cast<std::size_t>(view)]["byteStride"] = 16;
@@ -125,7 +125,7 @@ TEST_F(SceneMesh, QuantisedAndInterleavedAttributes) {
 
 TEST_F(SceneMesh, NodesPlaceAndRepeatMeshes) {
   GltfFile file = triangle();
-  // A child at its parent's side: turned by 90 degrees about y, scaled, moved.
+  // A child beside its parent: rotated by 90 degrees about y, scaled, moved.
   const int child = file.node({{"mesh", 0}, {"translation", {0, 0, 1}}}, false);
   file.node({{"children", {child}},
              {"rotation", {0, std::sqrt(0.5), 0, std::sqrt(0.5)}},
@@ -258,7 +258,7 @@ TEST_F(SceneMesh, WrongFilesSayWhatIsWrong) {
   EXPECT_FALSE(load_gltf("/").ok());
 }
 
-// Whatever comes: an answer, and no fault that a sanitizer would see.
+// Every input gives a mesh or an error, without a fault that a sanitizer would report.
 TEST_F(SceneMesh, CutAndDamagedFilesNeverCrash) {
   GltfFile file = triangle();
   const int position = file.points({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
@@ -284,7 +284,7 @@ TEST_F(SceneMesh, CutAndDamagedFilesNeverCrash) {
       std::string damaged = whole;
       for (int k = 0; k < 1 + i % 3; ++k) {
         char& at_random = damaged[engine() % damaged.size()];
-        // Digits for digits: files that parse, with numbers that do not fit.
+        // Replace digits by digits: files that parse, with wrong numbers.
         at_random =
             at_random >= '0' && at_random <= '9' ? static_cast<char>('0' + engine() % 10) : static_cast<char>(engine());
       }
@@ -294,7 +294,7 @@ TEST_F(SceneMesh, CutAndDamagedFilesNeverCrash) {
   EXPECT_GT(refused, 400U);
 }
 
-// The first triangle that a ray meets, or -1.
+// Returns the first triangle that a ray hits, or -1.
 int first_hit(const MeshData& data, const glm::dvec3& from, const glm::dvec3& direction, double& nearest) {
   int hit = -1;
   nearest = std::numeric_limits<double>::max();
@@ -359,7 +359,7 @@ TEST_F(SceneMesh, TheHallIsClosedAndSeenFromInside) {
   EXPECT_GT(glass, 60);
 }
 
-// Boxes with a point in sight are never left out; those wholly on the other side of one plane are.
+// Boxes with a visible point are never left out; boxes entirely on the outer side of one plane are.
 TEST(SceneMeshCulling, LeavesOutOnlyWhatIsOutOfSight) {
   std::mt19937 engine(6);
   const auto uniform = [&](double low, double high) {
@@ -367,7 +367,7 @@ TEST(SceneMeshCulling, LeavesOutOnlyWhatIsOutOfSight) {
   };
   int outside = 0;
   for (int i = 0; i < 2000; ++i) {
-    // A perspective that looks along -z with an infinite far plane, or a box, as of a cascade; turned and moved.
+    // A perspective along -z with an infinite far plane, or a box as for a cascade; rotated and moved.
     glm::dmat4 clip(0.0);
     clip[0][0] = uniform(0.5, 3.0);
     clip[1][1] = uniform(0.5, 3.0);
@@ -394,7 +394,7 @@ TEST(SceneMeshCulling, LeavesOutOnlyWhatIsOutOfSight) {
       const glm::dvec4 seen = clip * glm::dvec4(p, 1.0);
       EXPECT_FALSE(std::abs(seen.x) <= seen.w && std::abs(seen.y) <= seen.w) << i;
     }
-    // Behind the camera, or beside the cascade: nothing of a small box is in sight.
+    // Behind the camera or beside the cascade, no point of a small box is visible.
     Box point;
     point.add(corner);
     const glm::dvec4 seen = clip * glm::dvec4(corner, 1.0);
@@ -402,7 +402,7 @@ TEST(SceneMeshCulling, LeavesOutOnlyWhatIsOutOfSight) {
   }
   EXPECT_GT(outside, 400);
   EXPECT_LT(outside, 1900);
-  // A placed box holds its corners, mirrored and turned as they may be.
+  // A transformed box contains its corners, also when mirrored and rotated.
   const glm::dmat4 place(0, 2, 0, 0, -3, 0, 0, 0, 0, 0, -1, 0, 5, 6, 7, 1);
   Box box;
   box.add(glm::dvec3(-1, -2, -3));

@@ -1,4 +1,4 @@
-// The sun by place and time against published positions, and against what must hold of it.
+// The sun by place and time, against published positions and against general properties.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ SolarPosition sun(double latitude_deg, double longitude_deg, const std::string& 
   return solar_position({latitude_deg, longitude_deg}, time_of(time), altitude_m);
 }
 
-// Apparent ecliptic longitude from right ascension and declination: tan(lambda) = y / x on the ecliptic.
+// Returns the apparent ecliptic longitude from right ascension and declination: tan(lambda) = y / x on the ecliptic.
 double longitude_deg(const SolarPosition& p, double obliquity_deg) {
   const double rad = std::acos(-1.0) / 180.0;
   const double x = std::cos(p.declination_deg * rad) * std::cos(p.right_ascension_deg * rad);
@@ -28,8 +28,8 @@ double longitude_deg(const SolarPosition& p, double obliquity_deg) {
   return std::atan2(y * std::cos(obliquity_deg * rad) + z * std::sin(obliquity_deg * rad), x) / rad;
 }
 
-// Reda and Andreas (2003), table A5.1: Golden, Colorado. Zenith angle with refraction 50.11162, which there
-// is 0.016332 for 820 mbar and 11 degC.
+// Reda and Andreas (2003), table A5.1: Golden, Colorado. The zenith angle with refraction is 50.11162; refraction there
+// is 0.016332 for 820 mbar and 11 degrees Celsius.
 TEST(SolarPosition, WorkedExampleOfTheReport) {
   const SolarPosition p = sun(39.742476, -105.1786, "2003-10-17T12:30:30-07:00", 1830.14);
   EXPECT_NEAR(90.0 - p.elevation_deg, 50.11162 + 0.016332, 2e-4);
@@ -69,7 +69,7 @@ TEST(SolarPosition, EquinoxesAndSolstices) {
 }
 
 TEST(SolarPosition, WhatMustHold) {
-  // Noon by the sun is midway between equal elevations, up to the change of declination.
+  // Solar noon is midway between equal elevations, up to the change of declination.
   double best = -90.0;
   double noon = 0.0;
   const double day = time_of("2021-06-21T00:00Z");
@@ -85,12 +85,12 @@ TEST(SolarPosition, WhatMustHold) {
   const double before = solar_position({48.0, 11.0}, noon - 0.2).elevation_deg;
   EXPECT_NEAR(before, solar_position({48.0, 11.0}, noon + 0.2).elevation_deg, 0.1);
 
-  // At the equinox it rises in the east and sets in the west, and passes the zenith of the equator.
+  // At the equinox the sun rises in the east, sets in the west, and passes the zenith of the equator.
   EXPECT_NEAR(sun(30.0, 0.0, "2024-03-20T06:07:30Z").azimuth_deg, 90.0, 0.3);
   EXPECT_NEAR(sun(30.0, 0.0, "2024-03-20T18:07:30Z").azimuth_deg, 270.0, 0.3);
   EXPECT_GT(sun(0.0, 0.0, "2024-03-20T12:07:30Z").elevation_deg, 89.7);
 
-  // Midnight sun in the north, polar night in the south; from the poles it only creeps.
+  // Midnight sun in the north, polar night in the south; at the poles the elevation changes slowly.
   for (int hour = 0; hour < 24; ++hour) {
     const double when = day + hour / 24.0;
     EXPECT_GT(solar_position({69.6, 18.9}, when).elevation_deg, 2.0) << hour;
@@ -98,7 +98,7 @@ TEST(SolarPosition, WhatMustHold) {
     EXPECT_NEAR(solar_position({90.0, 0.0}, when).elevation_deg, 23.436, 0.004) << hour;
     EXPECT_NEAR(solar_position({-90.0, 0.0}, when).elevation_deg, -23.436 - 0.0024, 0.004) << hour;
   }
-  // The place turns with the Earth: 15 degrees are an hour, but for the change of the sun's own place.
+  // The place rotates with the Earth: 15 degrees per hour, apart from the sun's own motion.
   EXPECT_NEAR(sun(40.0, 0.0, "2024-05-01T12:00Z").elevation_deg, sun(40.0, -15.0, "2024-05-01T13:00Z").elevation_deg,
               0.02);
   EXPECT_NEAR(sun(40.0, 180.0, "2024-05-01T03:00Z").azimuth_deg, sun(40.0, -180.0, "2024-05-01T03:00Z").azimuth_deg,
@@ -106,12 +106,12 @@ TEST(SolarPosition, WhatMustHold) {
 }
 
 TEST(SolarPosition, DynamicalTime) {
-  // Observed values, s (Meeus, table 10.A, and the International Earth Rotation Service).
+  // Observed values in s (Meeus, table 10.A, and the International Earth Rotation Service).
   for (const auto& [year, seconds] : {std::pair(1900.0, -2.8), std::pair(1950.0, 29.1), std::pair(1977.0, 47.5),
                                       std::pair(2000.0, 63.8), std::pair(2010.0, 66.1)}) {
     EXPECT_NEAR(delta_t_s(year), seconds, 1.0) << year;
   }
-  // The pieces meet: a second is 0.00001 deg of the sun's way.
+  // The pieces are continuous; one second changes the sun's longitude by 0.00001 degrees.
   for (const double year : {1920.0, 1941.0, 1961.0, 1986.0, 2005.0, 2050.0}) {
     EXPECT_NEAR(delta_t_s(year - 1e-9), delta_t_s(year), 1.0) << year;
   }

@@ -1,4 +1,4 @@
-// The quadtree of terrain blocks: without overlap or hole, watertight where levels meet, inside the textures.
+// The quadtree of terrain blocks: no overlap, no hole, no crack between levels, and always inside the textures.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ double distance_of(const TerrainLod& lod, const glm::dvec2& p) {
   return std::hypot(glm::distance(p, lod.camera_map), lod.vertical_m);
 }
 
-// What shaders/scene/terrain_vertex.glsl makes of a vertex: 0 in its own grid, 1 in the next coarser one.
+// Returns the morph of a vertex as in shaders/scene/terrain_vertex.glsl: 0 in its own grid, 1 in the next coarser one.
 double morph_of(const TerrainLod& lod, const glm::dvec2& p, int layer) {
   const double range = lod.range_m(lod.levels[static_cast<std::size_t>(layer)]);
   if (layer + 1 == static_cast<int>(lod.levels.size())) return 0.0;
@@ -57,7 +57,7 @@ TEST(SceneTerrainLod, ThePlanReachesTheHorizonAndNests) {
     const TerrainLod lod = plan_terrain(camera.map, camera.altitude_m, kSummit_m, kRadius_m, camera.coarseness);
     ASSERT_FALSE(lod.levels.empty());
     ASSERT_LE(lod.levels.size(), static_cast<std::size_t>(kMaxLevels));
-    // As far as a summit can stand behind the horizon (Pythagoras along the tangent).
+    // A summit behind the horizon is visible up to this distance (Pythagoras along the tangent).
     const double horizon = std::sqrt(2.0 * kRadius_m * camera.altitude_m + camera.altitude_m * camera.altitude_m);
     EXPECT_GT(lod.reach_m,
               0.98 * std::atan(horizon / kRadius_m) * kRadius_m + std::sqrt(2.0 * kRadius_m * kSummit_m) * 0.98);
@@ -83,7 +83,7 @@ TEST(SceneTerrainLod, BlocksTileTheReachOnce) {
       for (const TerrainBlock& block : all_blocks(lod, finest)) squares.push_back(square_of(lod, block));
       ASSERT_FALSE(squares.empty());
       for (int i = 0; i < 2000; ++i) {
-        // Near and far alike; some exactly on the lines between blocks.
+        // Near and far; some exactly on the lines between blocks.
         const double distance = lod.reach_m * std::pow(1e-5, uniform(engine)) * 0.9999;
         const double angle = 6.283185307 * uniform(engine);
         const glm::dvec2 p = lod.camera_map + distance * glm::dvec2(std::cos(angle), std::sin(angle));
@@ -110,8 +110,8 @@ TEST(SceneTerrainLod, LevelsMeetWithoutCracks) {
           const glm::dvec2 low = glm::max(fine.low, coarse.low);
           const glm::dvec2 high = glm::min(fine.high, coarse.high);
           if (low.x > high.x || low.y > high.y) continue;
-          // They share an edge or a corner: one level apart, the finer one wholly slid into the coarser grid,
-          // and the coarser one not yet sliding.
+          // Blocks that share an edge or a corner are one level apart; there the finer one has fully morphed into the
+          // coarser grid, and the coarser one has not begun to morph.
           ASSERT_EQ(coarse.layer, fine.layer + 1);
           for (const double f : {0.0, 0.25, 0.5, 1.0}) {
             const glm::dvec2 p = glm::mix(low, high, f);

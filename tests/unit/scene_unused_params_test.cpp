@@ -1,4 +1,4 @@
-// Parameters that do nothing beside others are named, and scenes that are shipped have none.
+// Parameters that have no effect beside others are named, and shipped scenes have none of these.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// Elevation files: formats, projections, units, holes, sizes, and everything that can be wrong with them.
+// Elevation files: formats, projections, units, holes, sizes, and all kinds of errors.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -53,8 +53,8 @@ class ElevationFile : public ::testing::Test {
 };
 
 TEST_F(ElevationFile, UtmBecomesTheMap) {
-  // On the central meridian UTM is aligned with the map and 0.9996 times as large; the sphere is 0.3 %
-  // smaller than the ellipsoid.
+  // On the central meridian, UTM is aligned with the map and 0.9996 times as large; the sphere is 0.3 % smaller than
+  // the ellipsoid.
   const ElevationRaster r = read(folder_.write({}, hill));
   EXPECT_NEAR(r.width, 64, 2);
   EXPECT_NEAR(r.height, 64, 2);
@@ -68,7 +68,7 @@ TEST_F(ElevationFile, UtmBecomesTheMap) {
 }
 
 TEST_F(ElevationFile, DegreesAreStretchedByLatitude) {
-  // 1 arc second at 60° north: cells half as wide as high.
+  // 1 arc second at 60 degrees north: cells are half as wide as high.
   TestFile file;
   file.epsg = 4326;
   const double second = 1.0 / 3600.0;
@@ -196,7 +196,7 @@ TEST_F(ElevationFile, SrtmTile) {
   const double third = 1.0 / 1200.0;
   file.transform = {6.0 - third / 2.0, third, 0.0, 46.0 + third / 2.0, 0.0, -third};
   const ElevationRaster r = read(folder_.write(file, [](int x, int y) { return x + y; }));
-  // The corners lie 240 m further from the equator than the middle of the edge: parallels are curved.
+  // The corners are 240 m further from the equator than the middle of the edge, because parallels are curved.
   EXPECT_NEAR(r.height * r.spacing_m, 1201.0 * third * 111002.0 + 240.0, 2.0 * r.spacing_m);
 }
 
@@ -237,7 +237,7 @@ TEST_F(ElevationFile, TruncatedFiles) {
   }
 }
 
-// Esri grids of old tools hold -9999 where there are no data, and do not say so.
+// Old tools wrote -9999 into Esri grids where data are missing, without declaring it.
 TEST_F(ElevationFile, UndeclaredHolesAreFound) {
   for (const double hole : {-9999.0, -32767.0, -999.0}) {
     TestFile file;
@@ -246,10 +246,10 @@ TEST_F(ElevationFile, UndeclaredHolesAreFound) {
     const ElevationRaster r = read(folder_.write(file, hilly));
     EXPECT_GT(r.min_m, 900.0F) << hole;
     EXPECT_TRUE(noted(r, "far from all others, taken as holes")) << hole;
-    // Also where the file is read at a lower resolution, whose means would mix them with heights.
+    // The same at a lower resolution, where means would mix them with heights.
     EXPECT_GT(read(folder_.path("undeclared.tif"), 16).min_m, 900.0F) << hole;
   }
-  // A trench whose depths reach -9999 is one.
+  // A trench with real depths down to -9999 is read as one.
   TestFile trench;
   trench.name = "trench.tif";
   const ElevationRaster r = read(folder_.write(trench, [](int x, int) { return -8000.0 - 199.9 * std::min(x, 10); }));
@@ -272,12 +272,12 @@ TEST_F(ElevationFile, UnitsOfCoordinatesCanBeStated) {
   ASSERT_TRUE(degrees.ok()) << degrees.error().message;
   EXPECT_GT(degrees.value().spacing_m, 20000.0);
   EXPECT_TRUE(noted(read(path), "terrain.units=metres takes them as metres"));
-  // A survey that begins at 0,0 is local without being told.
+  // A survey that begins at 0,0 is recognised as local.
   file.transform = {0.0, 0.5, 0.0, 32.0, 0.0, -0.5};
   EXPECT_DOUBLE_EQ(read(folder_.write(file, hill)).spacing_m, 0.5);
 }
 
-// A file of the Earth on Mars, and one of Mars on the Earth: latitudes and longitudes stay as they are.
+// A file of the Earth on Mars, and one of Mars on the Earth: latitudes and longitudes are unchanged.
 TEST_F(ElevationFile, OtherBodiesKeepTheirAngles) {
   constexpr double kMars_m = 3389500.0;
   TestFile earth;
@@ -329,7 +329,7 @@ TEST_F(ElevationFile, PlacesThatNoPlanetHasAreRefused) {
   file.epsg = 0;
   file.transform = {500000.0, 1e-9, 0.0, 5000000.0, 0.0, -1e-9};
   EXPECT_NE(error(folder_.write(file, hill)).find("at least 0.001 m"), std::string::npos);
-  // Half a sample beyond the pole is how cell centres are placed on it.
+  // Files with cell centres on the pole extend half a sample beyond it.
   file.epsg = 4326;
   file.transform = {7.0, 0.1, 0.0, 90.05, 0.0, -0.1};
   read(folder_.write(file, hill));
@@ -347,10 +347,9 @@ TEST_F(ElevationFile, NamesOfGdalsOwnAreRead) {
             std::string::npos);
 }
 
-// What is downloaded must not open connections: a virtual raster that refers to a server, and a description of a
-// service.
+// Downloaded files must not open connections: a virtual raster that refers to a server, and a description of a service.
 TEST_F(ElevationFile, FilesDoNotReachTheNetwork) {
-  // A listener that must not hear of anything.
+  // A listener that must receive no connection.
   const int listener = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in address = {};
   address.sin_family = AF_INET;
@@ -360,7 +359,7 @@ TEST_F(ElevationFile, FilesDoNotReachTheNetwork) {
   ASSERT_EQ(::listen(listener, 8), 0);
   ASSERT_EQ(::getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size), 0);
   const std::string server = "http://127.0.0.1:" + std::to_string(ntohs(address.sin_port));
-  CPLSetConfigOption("GDAL_HTTP_TIMEOUT", "2");  // of a connection that should not be
+  CPLSetConfigOption("GDAL_HTTP_TIMEOUT", "2");  // limits a connection that should not happen
   const auto vrt =
       [&](const char* name, const std::string& source) {
         std::ofstream(folder_.path(name))
@@ -373,7 +372,7 @@ TEST_F(ElevationFile, FilesDoNotReachTheNetwork) {
                                     "/vsizip//vsicurl/" + server + "/a.zip/a.tif"}) {
     EXPECT_NE(error(vrt("curl.vrt", source)).find("refers to a network file system"), std::string::npos) << source;
   }
-  // Through a second virtual raster, which is read only when its samples are.
+  // Through a second virtual raster, which is opened only when its samples are read.
   const std::string inner = vrt("inner.vrt", "/vsicurl/" + server + "/a.tif").string();
   error(vrt("outer.vrt", inner));
   std::ofstream(folder_.path("wms.xml"))

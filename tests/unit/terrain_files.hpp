@@ -1,4 +1,4 @@
-// Elevation files made for tests, in a folder that goes away with the object.
+// Elevation files for tests, in a folder that is removed with the object.
 #pragma once
 
 #include <array>
@@ -45,7 +45,8 @@ class TestFolder {
 
   [[nodiscard]] std::filesystem::path path(const char* name) const { return path_ / name; }
 
-  // Writes value(column, row) into every band; formats that cannot be created are copied from memory.
+  // Writes value(column, row) into every band. Files of formats that GDAL cannot create directly are copied from
+  // memory.
   std::filesystem::path write(const TestFile& file, const std::function<double(int, int)>& value) const {
     GDALDriverManager& drivers = *GetGDALDriverManager();
     GDALDataset* data =
@@ -86,7 +87,7 @@ class TestFolder {
   std::filesystem::path path_;
 };
 
-// The real file that some tests use where it is present.
+// Returns the path of the real file that some tests use if present.
 inline std::filesystem::path real_file() {
   const char* folder = std::getenv("TYNDALL_DATA_DIR");
   const std::filesystem::path base = folder != nullptr

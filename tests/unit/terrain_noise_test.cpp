@@ -1,5 +1,5 @@
-// The procedural mountains: repeatable, the same in single precision, within bounds, band-limited, without
-// cliffs and without repetition.
+// The procedural mountains: reproducible, equal in single precision, within bounds, band-limited, without cliffs and
+// without repetition.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -109,7 +109,7 @@ TEST(TerrainNoise, OriginLiesInMountainsForEverySeed) {
 TEST(TerrainNoise, CoarseSamplesAreMeansOfFineOnes) {
   for (const double spacing_m : {240.0, 2000.0}) {
     constexpr int kFine = 24;
-    const double width_m = 2.0 * spacing_m;  // the shortest wave that samples can hold
+    const double width_m = 2.0 * spacing_m;  // the shortest wave that the samples can represent
     Places place(100e3);
     double bias = 0.0;
     double error = 0.0;
@@ -157,7 +157,7 @@ TEST(TerrainNoise, HasNoCliffs) {
   EXPECT_LT(slope.back(), 8.0);
 }
 
-// A jump would keep its size as the step shrinks: halve every steep step until it is 1/64 m long.
+// A jump does not shrink with the step: halve every steep step until it is 1/64 m long.
 TEST(TerrainNoise, IsContinuous) {
   Places place(300e3);
   double largest = 0.0;
@@ -178,7 +178,7 @@ TEST(TerrainNoise, IsContinuous) {
   EXPECT_LT(largest, 1.0);
 }
 
-// What is left when the large shapes are taken away must not come back a whole number of lattice cells later.
+// The terrain without its large shapes must not repeat after a whole number of lattice cells.
 TEST(TerrainNoise, DoesNotRepeat) {
   struct Lattice {
     int a, b, shift;
@@ -190,7 +190,7 @@ TEST(TerrainNoise, DoesNotRepeat) {
       const double cell = std::exp2(lattice.shift) / 64.0 / (lattice.a * lattice.a + lattice.b * lattice.b);
       const double dx = cells * cell * lattice.a;
       const double dz = -cells * cell * lattice.b;
-      if (std::hypot(dx, dz) < 4000.0) continue;  // neighbours are alike, as they should be
+      if (std::hypot(dx, dz) < 4000.0) continue;  // neighbours are similar anyway
       Places place(60e3);
       std::vector<double> here;
       std::vector<double> there;
@@ -244,7 +244,7 @@ TEST(TerrainMaterials, AlbedosArePhysicalAndFollowAltitude) {
 }
 
 TEST(TerrainMaterials, DistanceAveragesRatherThanSparkles) {
-  // Over a square of 600 m the mean of near looks is the far look.
+  // Over a square of 600 m, the mean of the near appearance equals the far appearance.
   Places place(200e3);
   double worst = 0.0;
   for (int i = 0; i < 40; ++i) {

@@ -1,5 +1,5 @@
-// Elevation files as the ground: through the samples, smooth, level where the file is level, and without a
-// cliff where procedural terrain takes over.
+// Elevation files as terrain: through the samples, smooth, level where the file is level, and without a cliff where
+// procedural terrain begins.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 constexpr int kSamples = 200;
 constexpr double kSpacing_m = 100.0;
 
-// A source over a file without coordinate system, whose samples therefore stay where they are.
+// Returns a source for a file without a coordinate system, whose samples are therefore not resampled.
 ElevationSource make(const TestFolder& folder, const std::function<double(int, int)>& value,
                      double exaggeration = 1.0) {
   TestFile file;
@@ -45,7 +45,7 @@ TEST(ElevationSource, PassesThroughTheSamples) {
 TEST(ElevationSource, IsSmoothBetweenTheSamples) {
   const TestFolder folder;
   const ElevationSource source = make(folder, waves);
-  // Slopes from both sides of a sample agree.
+  // Slopes on both sides of a sample are equal.
   for (int x = 70; x < 130; x += 11) {
     const double at = place(x);
     const double here = source.height_m(at, 40.0, kSpacing_m);
@@ -79,7 +79,7 @@ TEST(ElevationSource, WaterStaysLevelAndSlopesGetDetail) {
 
 TEST(ElevationSource, TurnsIntoMountainsWithoutACliff) {
   const TestFolder folder;
-  // 2 km above everything: the surroundings must come up to meet it.
+  // 2 km above all procedural terrain, which must rise to meet it.
   const ElevationSource source = make(folder, [](int x, int y) { return 2000.0 + waves(x, y); });
   const ElevationSource alone = ElevationSource::create({}).value();
   double steepest = 0.0;
@@ -93,7 +93,7 @@ TEST(ElevationSource, TurnsIntoMountainsWithoutACliff) {
     }
   }
   EXPECT_LT(steepest, steepest_alone + 60.0);
-  // Far away the ground is the procedural one again.
+  // Far away the terrain is procedural.
   EXPECT_NEAR(source.height_m(1.5e6, 2e5, 500.0), alone.height_m(1.5e6, 2e5, 500.0), 30.0);
 }
 

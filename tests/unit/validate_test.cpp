@@ -1,5 +1,4 @@
-// The parts of a report: statistics, rays, plots, and a whole study with models that are known to be right or
-// wrong by a given amount.
+// The parts of a report: statistics, rays, plots, and a whole study with models whose errors are known.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -81,7 +80,7 @@ TEST(ValidateRays, AreInTheirGroupsAndEvenlySpread) {
           EXPECT_TRUE(q.altitude_m >= 2000.0 && q.altitude_m <= 70000.0);
         } else {
           EXPECT_TRUE(q.altitude_m >= 1e5 && q.altitude_m <= 2.001e7);
-          // All of them meet the air.
+          // All of them hit the atmosphere.
           EXPECT_LE((kRadius + q.altitude_m) * std::sin(q.view_zenith_rad), kRadius + 60001.0);
           EXPECT_GT(q.view_zenith_rad, 0.5 * kPi);
         }
@@ -134,7 +133,7 @@ TEST(ValidateRays, TurbidAirHasTheOpticalDepthThatItSays) {
 TEST(ValidateRays, TheSunStandsAtThePlaceThatSpaceSees) {
   for (const TestRay& ray : make_rays(Region::space, SunBand::twilight, 100, 3, kRadius, kHeight)) {
     const RayQuery& q = ray.query;
-    // In the eye's frame: x along the heading, y up. Forward to the ground, or to the perigee.
+    // In the eye's frame: x along the heading, y up. Go forward to the ground or to the perigee.
     const double r = kRadius + q.altitude_m;
     const double vx = std::sin(q.view_zenith_rad);
     const double vy = std::cos(q.view_zenith_rad);
@@ -184,8 +183,7 @@ TEST(ValidatePlot, ValuesStandWhereTheyShould) {
   plot.series.push_back({"line", "#ff0000", Mark::dashed, {{0.0, 1.0}, {1.0, nan}, {2.0, 10.0}, {10.0, 0.0}}});
   const std::string svg = to_svg(plot);
   expect_balanced(svg);
-  // The middle of both axes: 66 + (560 - 14 - 66) / 2, 30 + (340 - 46 - 30) / 2; the second circle is the
-  // key's.
+  // The middle of both axes: 66 + (560 - 14 - 66) / 2, 30 + (340 - 46 - 30) / 2. The second circle is in the legend.
   EXPECT_NE(svg.find("<circle cx=\"306.0\" cy=\"162.0\""), std::string::npos);
   EXPECT_EQ(std::count(svg.begin(), svg.end(), 'M'), 2);
   std::size_t circles = 0;
@@ -202,7 +200,7 @@ TEST(ValidatePlot, ValuesStandWhereTheyShould) {
   EXPECT_LT(axis.min, axis.max);
 }
 
-// The reference itself with other random numbers, brighter by a factor.
+// Returns the reference with other random numbers, brighter by a factor.
 Model tracer(std::string name, int orders, double factor) {
   return {std::move(name), "the reference & <itself>", orders,
           [=](const Params& params, std::span<const RayQuery> queries) -> Result<std::vector<Rgb>> {
@@ -242,15 +240,15 @@ TEST(ValidateStudy, FindsWhatIsWrongAndNothingElse) {
     for (std::size_t m = 0; m < 2; ++m) {
       const ErrorSummary e = summarise(study.value(), m, a, up);
       EXPECT_GE(e.channels[0].count, 6U);  // some are too noisy with so few paths
-      // Noise of both: 0.8 of a standard error each, and both of the same size.
+      // The noise of both: 0.8 standard errors each, of equal size.
       EXPECT_LT(e.all.mean, 3.0 * e.noise + 1e-6) << m << ' ' << a;
     }
-    // Half too bright, on average over channels that are mostly below the largest.
+    // 50 % too bright, on average over channels that are mostly below the largest.
     const ErrorSummary wrong = summarise(study.value(), 2, a, up);
     EXPECT_GT(wrong.all.mean, 0.15);
     EXPECT_NEAR(wrong.all.worst, 0.5, 0.15);
   }
-  // The turbid set, by the model that claims order 1.
+  // The turbid set, with the model of order 1.
   ASSERT_EQ(study.value().turbid.size(), std::size(kTurbidAirs));
   for (std::size_t air = 0; air < std::size(kTurbidAirs); ++air) {
     const ErrorSummary first = summarise_turbid(study.value(), 0, air, up);
@@ -264,7 +262,7 @@ TEST(ValidateStudy, FindsWhatIsWrongAndNothingElse) {
   expect_balanced(html);
   EXPECT_NE(html.find("tyndall validate &lt;&amp;&gt;"), std::string::npos);
   EXPECT_NE(html.find("a device"), std::string::npos);
-  // Nothing is fetched and nothing runs.
+  // The page loads nothing and runs no script.
   for (const char* const foreign : {"<script", "<img", "<link", "src=", "href=", "url(h", "@import"}) {
     EXPECT_EQ(html.find(foreign), std::string::npos) << foreign;
   }
@@ -272,7 +270,7 @@ TEST(ValidateStudy, FindsWhatIsWrongAndNothingElse) {
   const std::string page = to_markdown(study.value(), origin);
   EXPECT_LT(page.find("    tyndall validate <&>\n"), page.find("## Models"));
   EXPECT_NE(page.find("| all | 0.5 | 0.2 | 0 to -6 deg |"), std::string::npos);
-  EXPECT_EQ(page.find("| first | 0.5 | 0.2 |"), std::string::npos);  // claims order 1 alone
+  EXPECT_EQ(page.find("| first | 0.5 | 0.2 |"), std::string::npos);  // compared with order 1 only
   EXPECT_NE(html.find("Turbid air near the horizon"), std::string::npos);
   EXPECT_NE(to_json(study.value(), origin).find("\"optical_depth\": 0.3"), std::string::npos);
   EXPECT_EQ(page.find("nan"), std::string::npos);

@@ -1,4 +1,4 @@
-// Uses the library without a device: what can be asked before there is one, and the error for having none.
+// Uses the library without a device: queries that need none, and the error for a missing device.
 #include <tyndall/effect.hpp>
 #include <tyndall/version.hpp>
 

@@ -1,4 +1,4 @@
-// Uses tone mapping alone, without the effect: what can be asked without a device.
+// Uses tone mapping without the effect and without a device.
 #include <post/tonemap.hpp>
 
 #include <cmath>
