@@ -1,6 +1,6 @@
-// Between maps and the local frame in single precision, without loss of digits: places are given by their offset from
-// the origin of the local frame, and every formula is one of differences, so that the error is a few 1e-7 of that
-// offset. Azimuthal equidistant map projections: a place at the arc a from a map projection's centre stands at the
+// Conversions between the planet's maps and the local frame in single precision without cancellation: positions are
+// offsets from the origin of the local frame, and all formulas use differences, so that errors are a few 1e-7 of the
+// offset. The maps are azimuthal equidistant projections: a point at the arc a from a projection's centre is at the
 // distance R a from it on the map.
 #ifndef TYNDALL_MAP_PROJECTIONS_GLSL
 #define TYNDALL_MAP_PROJECTIONS_GLSL
@@ -11,7 +11,8 @@ layout(std430, binding = 13) readonly buffer map_projections_block { MapProjecti
 
 const float kHalfTurn = 3.14159265;
 
-// Sine to 1e-7 of its value: Vulkan promises no more than 2^-11 for its own, kilometres on a planet.
+// Returns the sine with a relative error of 1e-7. Vulkan only guarantees an error of 2^-11, which is kilometres on a
+// planet.
 float exact_sin(float x) {
   float turns = floor(x / (2.0 * kHalfTurn) + 0.5);
   float y = x - turns * (2.0 * kHalfTurn);
@@ -20,7 +21,7 @@ float exact_sin(float x) {
   return y * (1.0 + s * (-1.0 / 6.0 + s * (1.0 / 120.0 + s * (-1.0 / 5040.0 + s * (1.0 / 362880.0 - s / 39916800.0)))));
 }
 
-// Angle of (cosine, sine), between -pi and pi, as exactly: by the tangent of an eighth of it.
+// Returns the angle of (cosine, sine) in [-pi; pi] with the same precision, from the tangent of an eighth of it.
 float exact_angle(float sine, float cosine) {
   float tangent = cosine > -0.5 ? sine / (1.0 + cosine) : (1.0 - cosine) / (abs(sine) > 1e-12 ? sine : 1e-12);
   tangent /= 1.0 + sqrt(1.0 + tangent * tangent);
@@ -29,11 +30,11 @@ float exact_angle(float sine, float cosine) {
   return 8.0 * tangent * (1.0 - s * (1.0 / 3.0 - s * (1.0 / 5.0 - s * (1.0 / 7.0 - s * (1.0 / 9.0 - s / 11.0)))));
 }
 
-// A quarter turn from east to south.
+// Returns the vector rotated by a quarter turn from east to south.
 vec2 turned(vec2 v) { return vec2(-v.y, v.x); }
 
-// What turns with the azimuth around a map projection's centre, from the radial and tangential offset of a place from a
-// point at `along` - x on the axis: 1 - cos and sin of the azimuth between the two.
+// The azimuth of a point around a projection's centre, relative to a reference point at distance `along` - x on the
+// axis, from the radial and tangential offsets between the two: 1 - cos and sin of that azimuth.
 struct Azimuth {
   float distance_from_centre;
   float versine;
@@ -51,8 +52,8 @@ Azimuth azimuth_of(float along, float across) {
   return a;
 }
 
-// The point of the unit sphere over a place on the own map projection, less the one over the origin of the local frame.
-// offset_m: of the place from that origin, on the map.
+// Returns the point of the unit sphere for a position on the projection of the terrain's grid, minus the one for the
+// origin of the local frame. offset_m: the position relative to that origin, on the map.
 vec3 local_direction(vec2 offset_m) {
   ProjectionLink c = map_projections.links[map_projections.own];
   float radial_m = dot(offset_m, c.radial);
@@ -72,12 +73,12 @@ vec3 local_direction(vec2 offset_m) {
   return vec3(level.x, -2.0 * half_sine * half_sine - sine * c.sine * azimuth.versine, level.y);
 }
 
-// The place in the local frame at an altitude over a point of the unit sphere.
+// Returns the position in the local frame at an altitude over a point of the unit sphere.
 vec3 local_position(vec3 direction, float altitude_m) {
   return direction * (map_projections.planet_radius_m + altitude_m) + vec3(0.0, altitude_m, 0.0);
 }
 
-// The place on map projection c over a point of the unit sphere [1/64 m].
+// Returns the position on the projection `index` for a point of the unit sphere [1/64 m].
 ivec2 projection_units(uint index, vec3 direction) {
   ProjectionLink c = map_projections.links[index];
   float radial = dot(direction.xz, c.local_radial);
@@ -92,9 +93,9 @@ ivec2 projection_units(uint index, vec3 direction) {
   return c.units + ivec2(floor(offset_m * 64.0 + 0.5));
 }
 
-// How much each map projection's mountains count at a point of the unit sphere: see projection_weights in
-// src/scene/description/map_projection.hpp. Returns a bit for each map projection that does. To be walked through as
-// `while (rest != 0u)`: a loop over all six map projections would cost a device that masks its lanes the work of six.
+// Computes the weight of each projection's terrain at a point of the unit sphere: see projection_weights in
+// src/scene/description/map_projection.hpp. Returns a bit for each projection with a positive weight. Iterate as `while
+// (rest != 0u)`: devices with masked lanes would execute all six iterations of a loop over all projections.
 uint projection_weights(vec3 direction, out float weights[6]) {
   vec3 n = direction + vec3(0.0, 1.0, 0.0);
   vec3 world = vec3(dot(map_projections.world_x, n), dot(map_projections.world_y, n), dot(map_projections.world_z, n));
@@ -115,8 +116,8 @@ uint projection_weights(vec3 direction, out float weights[6]) {
   return counting;
 }
 
-// A map projection's axes at a place, in the local frame: unit vectors, and how much longer the map projection is than
-// the planet across the way from its centre.
+// The axes of a projection at a point, as unit vectors in the local frame, and how much the projection stretches
+// lengths at right angles to the direction from its centre.
 struct ProjectionAxes {
   vec3 up;
   vec3 radial;  // away from the map projection's centre
@@ -125,7 +126,7 @@ struct ProjectionAxes {
   float stretch;
 };
 
-// index: the map projection; direction: the point of the unit sphere less the one over the local origin.
+// Returns the axes of projection `index`. direction: the point of the unit sphere minus the one for the local origin.
 ProjectionAxes projection_axes(uint index, vec3 direction) {
   ProjectionLink c = map_projections.links[index];
   float radial = dot(direction.xz, c.local_radial);
@@ -145,13 +146,13 @@ ProjectionAxes projection_axes(uint index, vec3 direction) {
   return a;
 }
 
-// The surface's normal in the local frame, from the gradient of the elevation on the map.
+// Returns the surface's normal in the local frame for a gradient of the elevation on the map.
 vec3 normal_from_gradient(vec2 gradient, ProjectionAxes a) {
   return normalize(a.up - a.radial * dot(gradient, a.map_radial) -
                    a.tangential * (dot(gradient, turned(a.map_radial)) * a.stretch));
 }
 
-// Between the local frame and directions x east, y up, z south on the map.
+// Convert directions between the local frame and the map: x east, y up, z south.
 vec3 map_from_local(vec3 v, ProjectionAxes a) {
   vec2 level = a.map_radial * dot(v, a.radial) + turned(a.map_radial) * dot(v, a.tangential);
   return vec3(level.x, dot(v, a.up), level.y);

@@ -121,7 +121,7 @@ float terrain_dryness(ivec2 units, float altitude_m, float large, float hollow, 
 
 // Returns the albedo of bare rock. The kind of rock changes over kilometres, its beds over tens of metres of altitude
 // (tilted by the wide noise).
-vec3 terrain_rock_albedo(IN(TerrainDetail) d, float altitude_m, float large, float steep, float footprint_m) {
+vec3 terrain_rock_albedo(TerrainDetail d, float altitude_m, float large, float steep, float footprint_m) {
   float kind = large + 0.35 * d.wide.x;
   vec3 stone = mix(kGraniteAlbedo, kLimestoneAlbedo, terrain_cover(kind - 0.15, 0.5));
   stone = mix(stone, kSchistAlbedo, terrain_cover(-kind - 0.45, 0.5));

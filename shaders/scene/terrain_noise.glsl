@@ -169,7 +169,7 @@ struct TerrainPoint {
 
 // Adds one gully octave to `s`. amplitude is the height per wavelength; gullies fade where the squared slope is below
 // `gentle`.
-void terrain_gully_octave(INOUT(TerrainSurface) s, IN(TerrainPoint) point, int a, int b, int shift, float amplitude,
+void terrain_gully_octave(INOUT(TerrainSurface) s, TerrainPoint point, int a, int b, int shift, float amplitude,
                           float gentle, uint salt) {
   float wave_m =
       float(1u << uint(shift)) * inversesqrt(float(a * a + b * b)) * (1.0 / (kTerrainUnitsPerM * kGullyTurns));
@@ -203,7 +203,7 @@ void terrain_gully_octave(INOUT(TerrainSurface) s, IN(TerrainPoint) point, int a
 }
 
 // Adds the gully octaves from 2.4 km to 60 m.
-void terrain_gullies(INOUT(TerrainSurface) s, IN(TerrainPoint) point, float strength, uint salt) {
+void terrain_gullies(INOUT(TerrainSurface) s, TerrainPoint point, float strength, uint salt) {
   terrain_gully_octave(s, point, 1, 2, 18, 0.110 * strength, 0.024, salt + 12u);
   terrain_gully_octave(s, point, 2, 1, 17, 0.095 * strength, 0.018, salt + 13u);
   terrain_gully_octave(s, point, 1, 2, 16, 0.080 * strength, 0.014, salt + 14u);

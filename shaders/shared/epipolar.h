@@ -1,88 +1,89 @@
-// What the passes of epipolar sampling share. Compiled by GLSL (std430) and by C++ (src/effect/shared.hpp).
-// Places in the picture are in pixels, from its upper left corner; a pixel's middle is at + 0.5. The border is
-// the rectangle of the outermost pixels' middles; its sides are 0 left (downwards), 1 bottom (to the right),
-// 2 right (upwards) and 3 top (to the left).
+// The structures shared by the passes of epipolar sampling. Compiled as GLSL (std430) and as C++
+// (src/effect/shared.hpp). Positions in the picture are in pixels from its upper left corner; pixel centres are at +
+// 0.5. The border is the rectangle through the centres of the outermost pixels. Its sides are 0 left (downwards), 1
+// bottom (to the right), 2 right (upwards) and 3 top (to the left).
 #ifndef TYNDALL_SHARED_EPIPOLAR
 #define TYNDALL_SHARED_EPIPOLAR
 
 struct EpipolarConstants {
   uint slices;
-  uint samples;  // of each slice
+  uint samples;  // per slice
   uint initial_step;
   uint epipole_density;
   float threshold;
   uint optimize_locations;
-  float least_weight;  // a pixel with a smaller sum of weights is marched by itself
+  float least_weight;  // a pixel with a smaller sum of weights is marched separately
   uint show_depth_breaks;
-  // The epipole: where the sun stands in the picture or, behind the camera, the point opposite to it, is
-  // (sun_x, sun_y) / sun_w; sun_w >= 0, and 0 for a sun at right angles to the view.
+  // The epipole is (sun_x, sun_y) / sun_w: the image of the sun or, if the sun is behind the camera, of the opposite
+  // point. sun_w >= 0; it is 0 for a sun at a right angle to the view.
   float sun_x;
   float sun_y;
   float sun_w;
   uint sun_in_picture;
-  float fallback_x;  // direction away from the epipole, where it coincides with a place on the border
+  float fallback_x;  // direction away from the epipole where it coincides with a position on the border
   float fallback_y;
-  float perimeter;  // of the sides on which slices end [pixels]
-  uint closed;      // 1: slices end on all four, and the last is next to the first
-  // Where each side begins along the perimeter; < 0: no slice ends there.
+  float perimeter;  // of the sides at which slices end [pixels]
+  uint closed;      // 1: slices end at all four sides, and the last is next to the first
+  // The start of each side along the perimeter; < 0: no slice ends there.
   float left_start;
   float bottom_start;
   float right_start;
   float top_start;
   uint first_cascade;  // marched
-  uint cascades;       // behind the last marched one
-  uint tree_cells;     // of a row, at most; a multiple of kTreeBlock; 0: no trees
+  uint cascades;       // index after the last marched one
+  uint tree_cells;     // largest number per slice line, a multiple of kTreeBlock; 0: no trees
   uint tree_format;    // MinMaxFormat
-  // The picture that the light is computed for; `slices` and `samples` are those for it.
+  // The picture for which in-scattering is computed; `slices` and `samples` are for its size.
   uint downscale;
   uint reduced_width;
   uint reduced_height;
-  uint break_capacity;  // of the list of pixels to be marched; a multiple of kMarchGroup
+  uint break_capacity;  // capacity of the list of pixels to be marched; a multiple of kMarchGroup
 };
 
-// A slice: sample i lies at line.xy + stride x i, i <= last; a place p of the picture falls on sample
-// dot(p - line.xy, line.zw). (Vectors, because CPU devices load one in half the time of its numbers.)
+// A slice: sample i is at line.xy + stride i, for i <= last. A position p of the picture projects to sample dot(p -
+// line.xy, line.zw). (These are vectors because CPU devices load a vector in half the time of its components.)
 struct EpipolarSlice {
   vec4 line;  // entry and axis
   vec2 stride;
-  uint last;           // sample: the first at or behind the border
-  uint first_marched;  // where its samples begin in the list of marched ones
+  uint last;           // the first sample at or beyond the border
+  uint first_marched;  // start of its samples in the list of marched ones
 };
 
-// The line of a slice in a cascade's map: texture coordinates line.xy + x line.zw, where x counts cells of one
-// texel (along the axis that changes faster) from the camera on.
+// The slice line in a cascade's map: texture coordinates line.xy + x line.zw, where x counts cells of one texel (along
+// the axis that changes faster) from the camera.
 struct ShadowRow {
   vec4 line;
-  // x: the first, y: how many are inside the map and within the reach of the cascade, z: how many of these, from the
-  // first on, are in the tree, because rays of marched samples come to them.
+  // x: the first cell; y: the number of cells inside the map and within the reach of the cascade; z: how many of these,
+  // from the first on, are in the tree because rays of marched samples reach them.
   ivec3 cells;
-  float depth;  // of the camera
+  float depth;  // depth of the camera
 };
 
-const uint kTreeBlock = 256u;    // cells of a tree
+const uint kTreeBlock = 256u;    // cells per tree
 const uint kTreeLeafLevel = 3u;  // nodes of 8, 16, ... 256 cells: 2 to the power of the level
 const uint kTreeTopLevel = 8u;
-const uint kTreeNodes = 64u;  // of a block, with one to spare
-const uint kTreeGroup = 8u;   // blocks that are built together
+const uint kTreeNodes = 64u;  // per block, including one unused
+const uint kTreeGroup = 8u;   // blocks built by one workgroup
 
-// Scale heights of air [Rayleigh] above which there is next to none: a camera above them sees a limb.
+// The number of Rayleigh scale heights above which there is almost no medium: a camera above them sees a limb.
 const float kAllOfAir = 5.0f;
 
-const uint kUnwarpWidth = 4u;  // pixels of a block of unwarp.comp; they are 2 high
+const uint kUnwarpWidth = 4u;  // width in pixels of a block of unwarp.comp; the height is 2
 
-// What a dispatch of march_samples.comp does; the first three are those of CascadeProcessing.
+// The kinds of dispatches of march_samples.comp. The first three are those of CascadeProcessing.
 const uint kAllCascades = 0u;
-const uint kOneCascade = 1u;     // and adds it to what the one before has left
-const uint kCascadesAside = 2u;  // one for each group along y
-const uint kFinish = 3u;         // makes light of what the cascades have left
-const uint kPixels = 4u;         // pixels, as the first
+const uint kOneCascade = 1u;     // one cascade, added to the results of the previous ones
+const uint kCascadesAside = 2u;  // one cascade per workgroup along y
+const uint kFinish = 3u;         // computes in-scattering from the results of all cascades
+const uint kPixels = 4u;         // pixels, all cascades
 
-const uint kMarchGroup = 64u;  // invocations
-// Groups of an indirect dispatch along an axis, at most: what every device takes. Longer lists go on along y. (A loop
-// in the shaders would do, but CPU devices keep all that lives in a loop in memory: the trees took twice as long.)
+const uint kMarchGroup = 64u;  // invocations per workgroup
+// The largest number of workgroups of an indirect dispatch along an axis, which every device supports. Longer lists
+// continue along y. (A loop in the shader would be slower: CPU devices store everything that lives across iterations in
+// memory, and the trees took twice as long.)
 const uint kMaxGroups = 65535u;
 
-// The head of a list that is worked through indirectly: arguments of a dispatch, then the number of items.
+// The head of a list that is processed by an indirect dispatch: the dispatch arguments, then the number of items.
 struct WorkList {
   uint groups_x;
   uint groups_y;
