@@ -20,7 +20,7 @@ using files::concat;
 using files::input_error;
 using files::one_line;
 
-constexpr std::uint32_t kMostFrames = 1000000;
+constexpr std::uint32_t kMaxFrames = 1000000;
 constexpr std::size_t kLongestLine = 2000;
 
 struct FramePattern {
@@ -129,7 +129,7 @@ void add_common(Arguments& arguments, CommonOptions& options, unsigned which) {
                       return Result<void>();
                     });
   }
-  if ((which & kFrames) != 0) arguments.count("--frames", options.frames, 1, kMostFrames, "number of frames");
+  if ((which & kFrames) != 0) arguments.count("--frames", options.frames, 1, kMaxFrames, "number of frames");
   if ((which & kDevice) != 0) {
     arguments.text("--device", options.device, "NAME",
                    "Vulkan device, by index or part of its name (see tyndall devices)");

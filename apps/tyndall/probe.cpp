@@ -15,7 +15,7 @@
 namespace tyndall::cli {
 namespace {
 
-constexpr std::uint32_t kMostOrders = 256;  // of the path tracer
+constexpr std::uint32_t kMaxOrders = 256;  // of the path tracer
 
 // JSON has no infinity: the standard error of a single block of paths becomes null.
 nlohmann::json numbers_as_json(const std::array<double, 3>& numbers) {
@@ -62,7 +62,7 @@ int run_probe(Args args) {
                  "rays as CSV: altitude_m, view_zenith_deg (or sky), sun_zenith_deg, azimuth_deg");
   arguments.choice("--model", model_name, model_names,
                    "model (single: over black ground; reference: with light from the ground)");
-  arguments.count("--orders", settings.orders, 1, kMostOrders, "reference: orders of scattering");
+  arguments.count("--orders", settings.orders, 1, kMaxOrders, "reference: orders of scattering");
   arguments.count("--samples", settings.samples, 1, UINT32_MAX, "reference: paths per ray");
   arguments.count("--seed", settings.seed, 0, UINT32_MAX, "reference: seed of the random numbers");
   if (const std::optional<int> status = arguments.parse(args)) return *status;

@@ -41,9 +41,9 @@ void main() {
   if (!front && push.double_sided == 0u) discard;
   if (push.kind == kMask && base.a < push.alpha_cutoff) discard;
 
-  vec3 through = passing(base);
+  vec3 transmitted = passing(base);
   if (kLayer == 1u) {
-    radiance = vec4(through, 1.0);
+    radiance = vec4(transmitted, 1.0);
     return;
   }
   vec3 normal = front ? local_normal : -local_normal;
@@ -63,13 +63,13 @@ void main() {
     // Seen from behind, the other side is the outside, under the whole sky.
     vec3 far = (front ? mesh.sky_light : 1.0) * light.sky * 0.5 * (1.0 - dot(normal, light.up));
     far += (front ? mesh.sky_light : 1.0) * light.bounced * 0.5 * (1.0 + dot(normal, light.up));
-    sum += through * kPerPi * far;
+    sum += transmitted * kPerPi * far;
     float against = -dot(normal, mesh.direction_to_sun);
     if (against > 0.0) {
       uint outside;
       float lit = sun_light_at(local_position, -shape, outside);
       float lobe = forward_lobe(-dot(normalize(to_eye), mesh.direction_to_sun));
-      sum += through * light.sun * (lit * against) * mix(kPerPi, lobe, kForwardShare);
+      sum += transmitted * light.sun * (lit * against) * mix(kPerPi, lobe, kForwardShare);
     }
   }
   radiance = vec4(sum * mesh.sun_irradiance, 1.0);

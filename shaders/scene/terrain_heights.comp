@@ -30,7 +30,7 @@ void main() {
   ivec2 map_units = map_projections.own == 0u ? units : ivec2(0);
   bool by_map = weights[0] > 0.0 || fill.source.kind != 0u;
   if (by_map && map_projections.own != 0u) map_units = projection_units(0u, direction);
-  float file = fill.source.kind != 0u ? terrain_file_share(fill.source, map_units) : 0.0;
+  float file = fill.source.kind != 0u ? terrain_file_weight(fill.source, map_units) : 0.0;
   if (file > 0.0) rest = file < 1.0 ? rest | 1u : 1u;
   float height_m = 0.0;
   while (rest != 0u) {

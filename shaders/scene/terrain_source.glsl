@@ -85,16 +85,16 @@ float terrain_raster_height(TERRAIN_SOURCE source, ivec2 units, vec2 map_m, floa
 }
 
 // Returns the weight of the file: 1 inside, 0 outside, and a smooth transition along its border.
-float terrain_file_share(TERRAIN_SOURCE source, ivec2 units) {
-  float share = 0.0;
+float terrain_file_weight(TERRAIN_SOURCE source, ivec2 units) {
+  float weight = 0.0;
   if (source.kind != 0u) {
     vec2 map_m = vec2(units) * (1.0 / kTerrainUnitsPerM);
     vec2 half_m = vec2(source.raster_size) * (0.5 * source.raster_spacing_m);
     // 0 on the border, 1 where the transition ends.
     vec2 depth = (half_m - abs(map_m)) / (half_m * (2.0 * kRasterBorder));
-    share = smoothstep(0.0, 1.0, min(depth.x, depth.y));
+    weight = smoothstep(0.0, 1.0, min(depth.x, depth.y));
   }
-  return share;
+  return weight;
 }
 
 // Returns the elevation in m, exaggeration included, at a point (1/64 m). Detail below about two spacings is left out.
@@ -105,7 +105,7 @@ float terrain_source_height(TERRAIN_SOURCE source, ivec2 units, float spacing_m)
   } else {
     vec2 map_m = vec2(units) * (1.0 / kTerrainUnitsPerM);
     vec2 half_m = vec2(source.raster_size) * (0.5 * source.raster_spacing_m);
-    float inside = terrain_file_share(source, units);
+    float inside = terrain_file_weight(source, units);
     if (inside < 1.0) {
       vec2 away = map_m / (4.0 * (half_m.x + half_m.y));
       height_m = (1.0 - inside) *

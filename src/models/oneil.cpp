@@ -39,13 +39,13 @@ std::vector<std::array<float, 4>> make_table(const shared::Medium& m, std::uint3
 }
 
 // Measures the errors of the model's outward density integrals of one species, up to an altitude.
-ColumnError measure(const OneilModel& model, const glsl64::Medium& m, const glsl64::Oneil& o, bool mie,
-                    double highest_m, int altitudes) {
+IntegralError measure(const OneilModel& model, const glsl64::Medium& m, const glsl64::Oneil& o, bool mie,
+                      double highest_m, int altitudes) {
   constexpr int kCosines = 40;
   const bool table = model.constants.integral_method == static_cast<std::uint32_t>(OneilIntegralMethod::table);
   const double height = mie ? m.mie_scale_height_m : m.rayleigh_scale_height_m;
   const double top = table ? m.atmosphere_height_m : std::numeric_limits<double>::infinity();
-  ColumnError out;
+  IntegralError out;
   double sum = 0.0;
   for (int i = 0; i < altitudes; ++i) {
     const double h = altitudes > 1 ? highest_m * i / (altitudes - 1) : 0.0;
@@ -53,9 +53,9 @@ ColumnError measure(const OneilModel& model, const glsl64::Medium& m, const glsl
       // Spaced by the square root, because most variation is near the horizontal; between the table's own entries.
       const double root = j == kCosines ? 1.0 : (j + 0.37) / kCosines;
       const double c = j == 0 ? 0.0 : root * root;
-      const glsl64::vec2 column = glsl64::oneil_density_integral(m, o, model.table.data(), h, c);
+      const glsl64::vec2 integral = glsl64::oneil_density_integral(m, o, model.table.data(), h, c);
       const double truth = exponential_density_integral(height, m.planet_radius_m, h, c, top);
-      const double error = std::abs((mie ? column.y : column.x) / truth - 1.0);
+      const double error = std::abs((mie ? integral.y : integral.x) / truth - 1.0);
       out.worst = std::max(out.worst, error);
       sum += error * error;
     }
@@ -78,7 +78,7 @@ OneilModel make_oneil(const shared::Medium& medium, const OneilSettings& setting
   shared::Oneil& o = out.constants;
   o.integral_method = static_cast<std::uint32_t>(settings.integral_method);
   o.samples = settings.samples;
-  o.spacing = settings.space_by_column ? 1 : 0;
+  o.spacing = settings.space_by_density ? 1 : 0;
   o.table_size = settings.table_size;
   o.rayleigh_phase = settings.rayleigh_phase ? 1 : 0;
   if (settings.integral_method == OneilIntegralMethod::published) {

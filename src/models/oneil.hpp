@@ -24,14 +24,14 @@ struct OneilSettings {
   OneilIntegralMethod integral_method = OneilIntegralMethod::computed;
   std::uint32_t samples = 5;       // [1; 4096] sample points per ray
   std::uint32_t table_size = 128;  // [16; 1024] entries along each side
-  bool space_by_column = false;    // sample points where most of the medium is; not with the published equations
+  bool space_by_density = false;   // sample points where most of the medium is; not with the published equations
   bool rayleigh_phase = true;      // false: Rayleigh scattering is isotropic
 
   bool operator==(const OneilSettings&) const = default;
 };
 
 // Relative errors of the density integrals of outward rays, per species.
-struct ColumnError {
+struct IntegralError {
   double worst = 0.0, rms = 0.0;
 };
 
@@ -41,7 +41,7 @@ struct OneilModel {
   shared::Oneil constants;
   std::vector<std::array<float, 4>> table;  // constants.table_size squared entries; one entry of zeros if not used
   // Errors over all cosines: at sea level, and over altitudes up to three scale heights.
-  ColumnError rayleigh_at_sea_level, mie_at_sea_level, rayleigh, mie;
+  IntegralError rayleigh_at_sea_level, mie_at_sea_level, rayleigh, mie;
 };
 
 // Returns the atmosphere of the parameters, as make_oneil() reads it.

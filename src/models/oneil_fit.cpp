@@ -17,7 +17,7 @@ constexpr double kWeight[] = {0.3626837833783620, 0.3137066458778873, 0.22238103
 
 // Returns the density integral to infinity over the scale height, from a radius of rho scale heights. c may slightly
 // exceed 1: the altitude along the ray, sqrt(rho^2 + 2 rho c d + d^2) - rho, is still smooth there.
-double column_to(double rho, double c, double distance) {
+double integral_to(double rho, double c, double distance) {
   constexpr int kPanels = 24;
   const double panel = 1.0 / kPanels;
   double sum = 0.0;
@@ -104,9 +104,9 @@ Fit fit_with_bend(double rho, double largest_c, double bend) {
     const double t = std::cos(std::numbers::pi * (i + 0.5) / kNodes);
     const double at = 0.5 * (low + high) + 0.5 * (high - low) * t;
     const double c = (1.0 - at) / (1.0 + bend * at);  // the map is its own inverse
-    const double column = column_to(rho, c, distance_of_climb(rho, c, 42.0));
+    const double integral = integral_to(rho, c, distance_of_climb(rho, c, 42.0));
     x[static_cast<std::size_t>(i)] = at;
-    y[static_cast<std::size_t>(i)] = std::log(column * (1.0 + bend * c) / (1.0 + bend));
+    y[static_cast<std::size_t>(i)] = std::log(integral * (1.0 + bend * c) / (1.0 + bend));
   }
   Fit out;
   out.k = least_squares(x, y, low, high);
@@ -127,7 +127,7 @@ double exponential_density_integral(double scale_height_m, double radius_m, doub
   const double climb = std::min((top_m - altitude_m) / scale_height_m, 42.0);
   if (climb <= 0.0) return 0.0;
   return scale_height_m * std::exp(-altitude_m / scale_height_m) *
-         column_to(rho, cosine, distance_of_climb(rho, cosine, climb));
+         integral_to(rho, cosine, distance_of_climb(rho, cosine, climb));
 }
 
 shared::OneilScale published_scale(double scale_height_m) {
@@ -138,7 +138,7 @@ shared::OneilScale fit_scale(double scale_height_m, double radius_m, double top_
   const double rho = radius_m / scale_height_m;
   const double largest_c = std::sqrt(1.0 + top_m / radius_m);  // see oneil_outward
   // The ratio of the density integrals at the horizontal and at the zenith is the natural scale of the bend.
-  const double steepness = column_to(rho, 0.0, distance_of_climb(rho, 0.0, 42.0));
+  const double steepness = integral_to(rho, 0.0, distance_of_climb(rho, 0.0, 42.0));
   double best_bend = steepness;
   Fit best;
   constexpr int kTried = 48;

@@ -117,8 +117,8 @@ double Atmosphere::find_opaque_radius() const {
     const double r = 0.5 * (low + high);
     const double s_top = std::sqrt((top_radius_m - r) * (top_radius_m + r));
     Rgb depth;
-    const Amounts columns = exponential_columns(r * r, 0.0, s_top, density(r));
-    for (std::size_t c = 0; c < 3; ++c) depth[c] = 2.0 * exponential_depth(columns, c);
+    const Amounts integrals = exponential_density_integrals(r * r, 0.0, s_top, density(r));
+    for (std::size_t c = 0; c < 3; ++c) depth[c] = 2.0 * exponential_depth(integrals, c);
     std::sort(depth.begin(), depth.end());
     (depth[1] > kDepth ? low : high) = r;
   }
@@ -133,7 +133,7 @@ double Atmosphere::ozone_density_integral(double tangent2, double s, double s_to
   const double r = std::sqrt(tangent2 + s * s);
   if (!has_ozone_ || r >= ozone_high_m_) return 0.0;
   const auto position = [&](double radius) { return std::sqrt(std::max(0.0, s * s + (radius - r) * (radius + r))); };
-  double column = 0.0, r0 = r, s0 = s;
+  double integral = 0.0, r0 = r, s0 = s;
   if (r0 < ozone_low_m_) {
     if (ozone_low_m_ >= top_radius_m) return 0.0;
     s0 = position(ozone_low_m_);
@@ -143,16 +143,16 @@ double Atmosphere::ozone_density_integral(double tangent2, double s, double s_to
     const bool cut = ozone_centre_m_ >= top_radius_m;
     const double r1 = cut ? top_radius_m : ozone_centre_m_;
     const double s1 = cut ? s_top : position(r1);
-    column += integrate_radius(tangent2, r0, s0, r1, s1, ozone_low_m_);
-    if (cut) return column / ozone_half_width_m_;
+    integral += integrate_radius(tangent2, r0, s0, r1, s1, ozone_low_m_);
+    if (cut) return integral / ozone_half_width_m_;
     r0 = r1;
     s0 = s1;
   }
   const bool cut = ozone_high_m_ >= top_radius_m;
   const double r1 = cut ? top_radius_m : ozone_high_m_;
   const double s1 = cut ? s_top : position(r1);
-  column -= integrate_radius(tangent2, r0, s0, r1, s1, ozone_high_m_);
-  return std::max(0.0, column / ozone_half_width_m_);
+  integral -= integrate_radius(tangent2, r0, s0, r1, s1, ozone_high_m_);
+  return std::max(0.0, integral / ozone_half_width_m_);
 }
 
 void Atmosphere::build_table() {
@@ -183,7 +183,8 @@ void Atmosphere::build_table() {
   }
 }
 
-Amounts Atmosphere::exponential_columns(double tangent2, double s, double s_top, const Amounts& density) const {
+Amounts Atmosphere::exponential_density_integrals(double tangent2, double s, double s_top,
+                                                  const Amounts& density) const {
   const double r = std::sqrt(tangent2 + s * s);
   const double shortest = std::max(0.0, top_radius_m - r);
   const double d = s_top - s;

@@ -57,24 +57,26 @@ class Atmosphere {
 
   // Returns the density integrals from position s >= 0 of a line (geometry.hpp) to the top of the atmosphere, which the
   // line crosses at s_top >= s. `density` holds the densities at s.
-  [[nodiscard]] Amounts columns_to_top(double tangent2, double s, double s_top, const Amounts& density) const {
-    Amounts columns = exponential_columns(tangent2, s, s_top, density);
-    columns.ozone = ozone_density_integral(tangent2, s, s_top);
-    return columns;
+  [[nodiscard]] Amounts density_integrals_to_top(double tangent2, double s, double s_top,
+                                                 const Amounts& density) const {
+    Amounts integrals = exponential_density_integrals(tangent2, s, s_top, density);
+    integrals.ozone = ozone_density_integral(tangent2, s, s_top);
+    return integrals;
   }
   // Returns the same without ozone, which stays 0.
-  [[nodiscard]] Amounts exponential_columns(double tangent2, double s, double s_top, const Amounts& density) const;
+  [[nodiscard]] Amounts exponential_density_integrals(double tangent2, double s, double s_top,
+                                                      const Amounts& density) const;
   [[nodiscard]] double ozone_density_integral(double tangent2, double s, double s_top) const;
 
-  [[nodiscard]] double transmittance(const Amounts& columns, std::size_t channel) const {
-    return std::exp(-optical_depth(columns, channel));
+  [[nodiscard]] double transmittance(const Amounts& integrals, std::size_t channel) const {
+    return std::exp(-optical_depth(integrals, channel));
   }
-  [[nodiscard]] double optical_depth(const Amounts& columns, std::size_t channel) const {
-    return exponential_depth(columns, channel) + ozone_absorption[channel] * columns.ozone;
+  [[nodiscard]] double optical_depth(const Amounts& integrals, std::size_t channel) const {
+    return exponential_depth(integrals, channel) + ozone_absorption[channel] * integrals.ozone;
   }
   // Returns the optical depth without ozone. Given densities instead of integrals: the extinction coefficient.
-  [[nodiscard]] double exponential_depth(const Amounts& columns, std::size_t channel) const {
-    return rayleigh_scattering[channel] * columns.rayleigh + mie_extinction[channel] * columns.mie;
+  [[nodiscard]] double exponential_depth(const Amounts& integrals, std::size_t channel) const {
+    return rayleigh_scattering[channel] * integrals.rayleigh + mie_extinction[channel] * integrals.mie;
   }
 
  private:

@@ -29,7 +29,7 @@ LinePoint Line::point(double s) const {
   p.s = s;
   p.r = std::sqrt(tangent2_ + s * s);
   p.density = air_->density(p.r);
-  p.to_top = air_->exponential_columns(tangent2_, std::abs(s), s_top_, p.density);
+  p.to_top = air_->exponential_density_integrals(tangent2_, std::abs(s), s_top_, p.density);
   return p;
 }
 
@@ -139,12 +139,12 @@ bool sun_transmittance(const Atmosphere& air, const Vec& position, double r, con
   const double tangent2 = std::max(0.0, r * r - s * s);
   if (s < 0.0 && tangent2 < air.radius_m * air.radius_m) return false;
   const double s_top = std::sqrt(std::max(0.0, air.top_radius_m * air.top_radius_m - tangent2));
-  Amounts columns = air.columns_to_top(tangent2, std::abs(s), s_top, density);
+  Amounts integrals = air.density_integrals_to_top(tangent2, std::abs(s), s_top, density);
   if (s < 0.0) {
-    const Amounts tangent = air.columns_to_top(tangent2, 0.0, s_top, air.density(std::sqrt(tangent2)));
-    columns = tangent + tangent - columns;
+    const Amounts tangent = air.density_integrals_to_top(tangent2, 0.0, s_top, air.density(std::sqrt(tangent2)));
+    integrals = tangent + tangent - integrals;
   }
-  for (std::size_t c = 0; c < 3; ++c) transmittance[c] = air.transmittance(columns, c);
+  for (std::size_t c = 0; c < 3; ++c) transmittance[c] = air.transmittance(integrals, c);
   return true;
 }
 

@@ -18,7 +18,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 // On a line through the planet's shadow, the fractions of the distance samples that are restricted to the part the sun
 // reaches, and to the part it reaches with little attenuation (Atmosphere::opaque_radius_m).
-constexpr std::array<double, 2> kLitShares = {0.2, 0.2};
+constexpr std::array<double, 2> kLitFractions = {0.2, 0.2};
 
 double sum(const Rgb& v) { return v[0] + v[1] + v[2]; }
 
@@ -31,10 +31,10 @@ struct Vertex {
 
 // Adds the sunlight that a Lambertian ground reflects; `weight` is the throughput after reflection.
 void add_ground(const Atmosphere& air, const Vertex& v, const Vec& sun, const Rgb& weight, Rgb& sums) {
-  Rgb through;
+  Rgb transmittance;
   const double cosine = dot(v.position, sun) / v.r;
-  if (cosine <= 0.0 || !sun_transmittance(air, v.position, v.r, v.density, sun, through)) return;
-  for (std::size_t c = 0; c < 3; ++c) sums[c] += weight[c] * through[c] * cosine / kPi;
+  if (cosine <= 0.0 || !sun_transmittance(air, v.position, v.r, v.density, sun, transmittance)) return;
+  for (std::size_t c = 0; c < 3; ++c) sums[c] += weight[c] * transmittance[c] * cosine / kPi;
 }
 
 Vertex ground_vertex(const Atmosphere& air, const Line& line) {
@@ -49,7 +49,7 @@ Vertex ground_vertex(const Atmosphere& air, const Line& line) {
 // The part of a line outside the shadow of a sphere, with its probabilities per channel in units of 1 - transmittance
 // (without ozone) from the start of the line.
 struct LitPart {
-  double share = 0.0;  // fraction of the samples that are restricted to this part
+  double fraction = 0.0;  // fraction of the samples that are restricted to this part
   Interval shadow;
   Rgb before{};      // up to the shadow
   Rgb shadow_end{};  // up to the end of the shadow
@@ -57,17 +57,17 @@ struct LitPart {
 
   // Returns the factor by which sampling this part raises the probability of a position.
   [[nodiscard]] double preference(double s, double all, std::size_t channel) const {
-    return share > 0.0 && !(s > shadow.from && s < shadow.to) ? share * all / lit[channel] : 0.0;
+    return fraction > 0.0 && !(s > shadow.from && s < shadow.to) ? fraction * all / lit[channel] : 0.0;
   }
 };
 
-// The share is 0 if the line misses the shadow, or if there is no part outside to prefer.
+// The fraction is 0 if the line misses the shadow, or if there is no part outside to prefer.
 LitPart lit_part(const Atmosphere& air, const Line& line, const Vec& sun, double radius_m, const Rgb& all,
-                 double share) {
+                 double fraction) {
   LitPart part;
   part.shadow = line.shadow(sun, radius_m);
   if (!(part.shadow.from < part.shadow.to)) return part;
-  part.share = share;
+  part.fraction = fraction;
   const bool begins_lit = part.shadow.from > line.start(), ends_lit = part.shadow.to < line.end();
   Amounts entry, exit;
   if (begins_lit) entry = line.travelled(line.point(part.shadow.from));
@@ -77,7 +77,7 @@ LitPart lit_part(const Atmosphere& air, const Line& line, const Vec& sun, double
     part.shadow_end[c] = ends_lit ? std::min(all[c], -std::expm1(-air.exponential_depth(exit, c))) : all[c];
     part.lit[c] = part.before[c] + all[c] - part.shadow_end[c];
     // Rounding of the difference does not allow to single out a smaller part.
-    if (all[c] > 0.0 && !(part.lit[c] > 1e-9 * all[c])) part.share = 0.0;
+    if (all[c] > 0.0 && !(part.lit[c] > 1e-9 * all[c])) part.fraction = 0.0;
   }
   return part;
 }
@@ -86,67 +86,67 @@ LitPart lit_part(const Atmosphere& air, const Line& line, const Vec& sun, double
 // Returns false if there is nothing to scatter. `albedo` is that of the ground at the line's end.
 bool sample_event(const Atmosphere& air, const Line& line, const Vec& sun, double albedo, double u, Rgb& weight,
                   Vertex& v) {
-  Rgb scattered{}, lost{};  // scattered: 1 - transmittance per channel; lost: weighted
+  Rgb scattered{}, weighted{};  // scattered: 1 - transmittance per channel; weighted: the same times `weight`
   double reflected = 0.0;
   for (std::size_t c = 0; c < 3; ++c) {
-    const double through = std::expm1(-std::max(0.0, air.exponential_depth(line.total(), c)));
-    scattered[c] = -through;
-    lost[c] = weight[c] * scattered[c];
-    if (line.hits_ground()) reflected += weight[c] * albedo * (1.0 + through);
+    const double negative_opacity = std::expm1(-std::max(0.0, air.exponential_depth(line.total(), c)));
+    scattered[c] = -negative_opacity;
+    weighted[c] = weight[c] * scattered[c];
+    if (line.hits_ground()) reflected += weight[c] * albedo * (1.0 + negative_opacity);
   }
-  const double all_lost = sum(lost);
-  if (!(all_lost + reflected > 0.0)) return false;
+  const double total_weight = sum(weighted);
+  if (!(total_weight + reflected > 0.0)) return false;
 
-  const double reflect_share = reflected / (all_lost + reflected);
+  const double reflect_share = reflected / (total_weight + reflected);
   if (u < reflect_share) {
-    Amounts columns = line.total();
-    columns.ozone = line.ozone_travelled(line.end());
-    for (std::size_t c = 0; c < 3; ++c) weight[c] *= albedo * air.transmittance(columns, c) / reflect_share;
+    Amounts integrals = line.total();
+    integrals.ozone = line.ozone_travelled(line.end());
+    for (std::size_t c = 0; c < 3; ++c) weight[c] *= albedo * air.transmittance(integrals, c) / reflect_share;
     v = ground_vertex(air, line);
     return true;
   }
   u = (u - reflect_share) / (1.0 - reflect_share);
-  if (!(all_lost > 0.0)) return false;
+  if (!(total_weight > 0.0)) return false;
 
   // Choose the channel to invert in proportion to the light that each will lose on this line.
-  u *= all_lost;
+  u *= total_weight;
   std::size_t channel = 0;
-  while (channel < 2 && u >= lost[channel]) u -= lost[channel++];
-  if (!(lost[channel] > 0.0)) return false;  // rounding at the end of the last channel
-  u = std::min(u / lost[channel], std::nextafter(1.0, 0.0));
+  while (channel < 2 && u >= weighted[channel]) u -= weighted[channel++];
+  if (!(weighted[channel] > 0.0)) return false;  // rounding at the end of the last channel
+  u = std::min(u / weighted[channel], std::nextafter(1.0, 0.0));
 
   // Where the planet's shadow falls on this line, reserve part of the samples for what the sun lights.
-  std::array<LitPart, 2> lit = {lit_part(air, line, sun, air.radius_m, scattered, kLitShares[0]),
-                                lit_part(air, line, sun, air.opaque_radius_m, scattered, kLitShares[1])};
-  const double unguided = 1.0 - lit[0].share - lit[1].share;
+  std::array<LitPart, 2> lit = {lit_part(air, line, sun, air.radius_m, scattered, kLitFractions[0]),
+                                lit_part(air, line, sun, air.opaque_radius_m, scattered, kLitFractions[1])};
+  const double unguided = 1.0 - lit[0].fraction - lit[1].fraction;
   double reached;  // 1 - transmittance at the sample
   if (u < unguided) {
     reached = u / unguided * scattered[channel];
   } else {
     u -= unguided;
-    const LitPart& part = u < lit[0].share ? lit[0] : lit[1];
-    if (u >= lit[0].share) u -= lit[0].share;
-    reached = u / part.share * part.lit[channel];
+    const LitPart& part = u < lit[0].fraction ? lit[0] : lit[1];
+    if (u >= lit[0].fraction) u -= lit[0].fraction;
+    reached = u / part.fraction * part.lit[channel];
     if (reached > part.before[channel]) reached += part.shadow_end[channel] - part.before[channel];
   }
   const LinePoint p = line.invert(channel, -std::log1p(-std::min(reached, scattered[channel])));
-  Amounts columns = line.travelled(p);
-  columns.ozone = line.ozone_travelled(p.s);
+  Amounts integrals = line.travelled(p);
+  integrals.ozone = line.ozone_travelled(p.s);
 
   double density = 0.0;  // sum over channels of probability times probability density
   Rgb contribution{};
   for (std::size_t c = 0; c < 3; ++c) {
     if (weight[c] <= 0.0) continue;
-    const double through = std::exp(-air.exponential_depth(columns, c));
+    const double transmittance = std::exp(-air.exponential_depth(integrals, c));
     const double preference =
         unguided + lit[0].preference(p.s, scattered[c], c) + lit[1].preference(p.s, scattered[c], c);
-    density += weight[c] * air.exponential_depth(p.density, c) * through * preference;
-    contribution[c] = weight[c] * through * std::exp(-air.ozone_absorption[c] * columns.ozone) *
+    density += weight[c] * air.exponential_depth(p.density, c) * transmittance * preference;
+    contribution[c] = weight[c] * transmittance * std::exp(-air.ozone_absorption[c] * integrals.ozone) *
                       (air.rayleigh_scattering[c] * p.density.rayleigh + air.mie_scattering[c] * p.density.mie);
   }
   if (!(density > 0.0)) return false;
   for (std::size_t c = 0; c < 3; ++c) {
-    weight[c] = contribution[c] * all_lost / density / (1.0 - reflect_share);
+    weight[c] = contribution[c] * total_weight / density / (1.0 - reflect_share);
   }
   v.ground = false;
   v.position = line.position(p.s);
@@ -156,47 +156,47 @@ bool sample_event(const Atmosphere& air, const Line& line, const Vec& sun, doubl
 }
 
 // Returns the fraction of Rayleigh scattering in all scattering at a vertex, per channel.
-Rgb rayleigh_shares(const Atmosphere& air, const Amounts& density) {
-  Rgb share;
+Rgb rayleigh_fractions(const Atmosphere& air, const Amounts& density) {
+  Rgb fraction;
   for (std::size_t c = 0; c < 3; ++c) {
     const double rayleigh = air.rayleigh_scattering[c] * density.rayleigh;
     const double both = rayleigh + air.mie_scattering[c] * density.mie;
-    share[c] = both > 0.0 ? rayleigh / both : 0.0;
+    fraction[c] = both > 0.0 ? rayleigh / both : 0.0;
   }
-  return share;
+  return fraction;
 }
 
 // Adds the sunlight that a vertex in the atmosphere scatters back along `direction`.
-void add_air(const Atmosphere& air, const Vertex& v, const Vec& sun, const Vec& direction, const Rgb& rayleigh_share,
+void add_air(const Atmosphere& air, const Vertex& v, const Vec& sun, const Vec& direction, const Rgb& rayleigh_fraction,
              const Rgb& weight, Rgb& sums) {
-  Rgb through;
-  if (!sun_transmittance(air, v.position, v.r, v.density, sun, through)) return;
+  Rgb transmittance;
+  if (!sun_transmittance(air, v.position, v.r, v.density, sun, transmittance)) return;
   const double cosine = dot(direction, sun);
   const double rayleigh = rayleigh_phase(cosine), mie = air.mie_phase(cosine);
   for (std::size_t c = 0; c < 3; ++c) {
-    sums[c] += weight[c] * through[c] * (rayleigh_share[c] * rayleigh + (1.0 - rayleigh_share[c]) * mie);
+    sums[c] += weight[c] * transmittance[c] * (rayleigh_fraction[c] * rayleigh + (1.0 - rayleigh_fraction[c]) * mie);
   }
 }
 
 // Samples the direction in which the path continues from a vertex in the atmosphere.
 Vec sample_direction(const Atmosphere& air, const Vertex& v, const Vec& sun, const Vec& direction,
-                     const Rgb& rayleigh_share, PathNumbers& numbers, Rgb& weight) {
+                     const Rgb& rayleigh_fraction, PathNumbers& numbers, Rgb& weight) {
   double rayleigh_weight = 0.0;
-  for (std::size_t c = 0; c < 3; ++c) rayleigh_weight += weight[c] * rayleigh_share[c];
-  const double share = rayleigh_weight / sum(weight);
+  for (std::size_t c = 0; c < 3; ++c) rayleigh_weight += weight[c] * rayleigh_fraction[c];
+  const double fraction = rayleigh_weight / sum(weight);
   const Glow glow(v.position * (1.0 / v.r), sun);
   double u = numbers.next();
   const double turn = 2.0 * kPi * numbers.next();
   Vec next;
-  if (u < glow.share) {
-    next = glow.sample(u / glow.share, turn, [&] { return numbers.random(); });
+  if (u < glow.fraction) {
+    next = glow.sample(u / glow.fraction, turn, [&] { return numbers.random(); });
   } else {
-    u = (u - glow.share) / (1.0 - glow.share);
+    u = (u - glow.fraction) / (1.0 - glow.fraction);
     double cosine;
-    if (u < share) {
-      cosine = sample_rayleigh(u / share);
+    if (u < fraction) {
+      cosine = sample_rayleigh(u / fraction);
     } else {
-      u = std::min((u - share) / (1.0 - share), std::nextafter(1.0, 0.0));
+      u = std::min((u - fraction) / (1.0 - fraction), std::nextafter(1.0, 0.0));
       cosine = air.mie_phase.sample(u, [&] { return numbers.random(); });
     }
     next = around(direction, cosine, std::cos(turn), std::sin(turn));
@@ -204,9 +204,9 @@ Vec sample_direction(const Atmosphere& air, const Vertex& v, const Vec& sun, con
   const double cosine = dot(direction, next);
   const double rayleigh = rayleigh_phase(cosine), mie = air.mie_phase(cosine);
   const double density =
-      (1.0 - glow.share) * (share * rayleigh + (1.0 - share) * mie) + glow.share * glow.density(next);
+      (1.0 - glow.fraction) * (fraction * rayleigh + (1.0 - fraction) * mie) + glow.fraction * glow.density(next);
   for (std::size_t c = 0; c < 3; ++c) {
-    weight[c] *= (rayleigh_share[c] * rayleigh + (1.0 - rayleigh_share[c]) * mie) / density;
+    weight[c] *= (rayleigh_fraction[c] * rayleigh + (1.0 - rayleigh_fraction[c]) * mie) / density;
   }
   return next;
 }
@@ -233,10 +233,10 @@ void trace_path(const Scene& scene, const Line& first, PathNumbers& numbers, Rgb
       const double u = numbers.next();
       direction = cosine_direction(v.position * (1.0 / v.r), u, numbers.next());
     } else {
-      const Rgb rayleigh_share = rayleigh_shares(air, v.density);
-      add_air(air, v, scene.sun, direction, rayleigh_share, weight, sums[order]);
+      const Rgb rayleigh_fraction = rayleigh_fractions(air, v.density);
+      add_air(air, v, scene.sun, direction, rayleigh_fraction, weight, sums[order]);
       if (last) return;
-      direction = sample_direction(air, v, scene.sun, direction, rayleigh_share, numbers, weight);
+      direction = sample_direction(air, v, scene.sun, direction, rayleigh_fraction, numbers, weight);
     }
     next.emplace(air, v.position, direction);
     line = &*next;
@@ -267,9 +267,9 @@ Scene::Scene(const Atmosphere& atmosphere, const RayQuery& query, const Options&
   }
   if (inside) {
     const Line line(atmosphere, start, view, ground_radius_m);
-    Amounts columns = line.total();
-    columns.ozone = line.ozone_travelled(line.end());
-    for (std::size_t c = 0; c < 3; ++c) transmittance[c] = atmosphere.transmittance(columns, c);
+    Amounts integrals = line.total();
+    integrals.ozone = line.ozone_travelled(line.end());
+    for (std::size_t c = 0; c < 3; ++c) transmittance[c] = atmosphere.transmittance(integrals, c);
     if (sky && line.hits_ground()) transmittance = {};
     if (!sky && visible_ground && line.hits_ground() && atmosphere.ground_albedo > 0.0) {
       Rgb weight;

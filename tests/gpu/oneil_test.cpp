@@ -29,10 +29,10 @@ TEST_F(GpuOneil, AgreesWithDoublePrecision) {
   for (const models::OneilIntegralMethod method :
        {models::OneilIntegralMethod::computed, models::OneilIntegralMethod::published,
         models::OneilIntegralMethod::table}) {
-    for (const bool by_column : {false, true}) {
+    for (const bool by_density : {false, true}) {
       models::OneilSettings settings;
       settings.integral_method = method;
-      settings.space_by_column = by_column;
+      settings.space_by_density = by_density;
       shared::Medium medium = medium_from_params({});
       if (method == models::OneilIntegralMethod::published) {  // for the planet that it was made for
         medium.atmosphere_height_m = 159.0e3F;
@@ -60,8 +60,8 @@ TEST_F(GpuOneil, AgreesWithDoublePrecision) {
         worst = std::max(worst, error);
       }
       // Single precision; at the edge of the planet's shadow the ends of a ray's lit part keep few digits.
-      EXPECT_LT(mean, 2.0e-4) << static_cast<int>(method) << by_column;
-      EXPECT_LT(worst, 0.01) << static_cast<int>(method) << by_column;
+      EXPECT_LT(mean, 2.0e-4) << static_cast<int>(method) << by_density;
+      EXPECT_LT(worst, 0.01) << static_cast<int>(method) << by_density;
     }
   }
 }

@@ -265,7 +265,7 @@ TEST(Oneil, PrintedPolynomialFitsItsOwnPlanetOnly) {
 
 TEST(Oneil, TableConvergesToQuadrature) {
   const shared::Medium m = planet(6360.0e3, 80.0e3, 7994.0, 1200.0);
-  ColumnError last = {1.0, 1.0};
+  IntegralError last = {1.0, 1.0};
   for (const std::uint32_t size : {32U, 64U, 128U, 256U}) {
     OneilSettings settings;
     settings.integral_method = OneilIntegralMethod::table;
@@ -284,12 +284,12 @@ TEST(Oneil, TableConvergesToQuadrature) {
 TEST(Oneil, ManyPointsGiveTheIntegral) {
   const shared::Medium m = planet(6360.0e3, 80.0e3, 7994.0, 1200.0);
   for (const OneilIntegralMethod method : {OneilIntegralMethod::computed, OneilIntegralMethod::table}) {
-    for (const bool by_column : {false, true}) {
+    for (const bool by_density : {false, true}) {
       OneilSettings settings;
       settings.integral_method = method;
       settings.samples = 600;
       settings.table_size = 256;
-      settings.space_by_column = by_column;
+      settings.space_by_density = by_density;
       const OneilModel model = make_oneil(m, settings);
       for (const Question& q : random_questions(60, m.atmosphere_height_m, m.planet_radius_m, -0.1)) {
         const Answer truth = single_scattering(m, q.ray);
@@ -303,13 +303,13 @@ TEST(Oneil, ManyPointsGiveTheIntegral) {
 TEST(Oneil, FivePointsWhereTheAirIsAreBetterThanFiveEvenOnes) {
   const shared::Medium m = planet(6360.0e3, 80.0e3, 7994.0, 1200.0);
   double sum[2] = {};
-  for (const bool by_column : {false, true}) {
+  for (const bool by_density : {false, true}) {
     OneilSettings settings;
-    settings.space_by_column = by_column;
+    settings.space_by_density = by_density;
     const OneilModel model = make_oneil(m, settings);
     for (const Question& q : random_questions(300, m.atmosphere_height_m, m.planet_radius_m, 0.05)) {
       const Answer truth = single_scattering(m, q.ray);
-      if (truth.radiance[2] > 0.0) sum[by_column ? 1 : 0] += error_of(oneil(model, q.ray).radiance, truth.radiance);
+      if (truth.radiance[2] > 0.0) sum[by_density ? 1 : 0] += error_of(oneil(model, q.ray).radiance, truth.radiance);
     }
   }
   EXPECT_LT(sum[1], 0.3 * sum[0]);
@@ -340,10 +340,10 @@ TEST(Oneil, NightIsDarkAndNothingIsUndefined) {
   for (const shared::Medium& m : media) {
     for (const OneilIntegralMethod method :
          {OneilIntegralMethod::computed, OneilIntegralMethod::published, OneilIntegralMethod::table}) {
-      for (const bool by_column : {false, true}) {
+      for (const bool by_density : {false, true}) {
         OneilSettings settings;
         settings.integral_method = method;
-        settings.space_by_column = by_column;
+        settings.space_by_density = by_density;
         settings.table_size = 32;
         const OneilModel model = make_oneil(m, settings);
         for (const Question& q : random_questions(200, m.atmosphere_height_m, m.planet_radius_m, -1.0)) {

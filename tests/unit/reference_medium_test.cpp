@@ -31,7 +31,8 @@ TEST(ReferenceMedium, DerivesCoefficients) {
   const Atmosphere dry(p);
   const double zenith[3] = {0.930, 0.874, 0.747};
   for (std::size_t c = 0; c < 3; ++c) {
-    const Amounts columns = dry.columns_to_top(0.0, dry.radius_m, dry.top_radius_m, dry.density(dry.radius_m));
+    const Amounts columns =
+        dry.density_integrals_to_top(0.0, dry.radius_m, dry.top_radius_m, dry.density(dry.radius_m));
     EXPECT_NEAR(dry.transmittance(columns, c), zenith[c], 6e-4);
   }
 }
@@ -63,7 +64,7 @@ void expect_columns(const Params& params, double tolerance) {
     const double h = air.height_m * u * u * u, cosine = i % 2 == 0 ? v : v * v * v * v;
     const double r = air.radius_m + h, s = r * cosine, tangent2 = r * r - s * s;
     const double s_top = std::sqrt(air.top_radius_m * air.top_radius_m - tangent2);
-    const Amounts columns = air.columns_to_top(tangent2, s, s_top, air.density(r));
+    const Amounts columns = air.density_integrals_to_top(tangent2, s, s_top, air.density(r));
     const oracle::Point from = {0.0, 0.0, r}, towards = {std::sqrt(1.0 - cosine * cosine), 0.0, cosine};
     // Errors are relative to the integral, or to the vertical integral where the former is small.
     const auto error = [&](double got, const oracle::Air& of, double scale) {
@@ -143,8 +144,8 @@ TEST(ReferenceMedium, SamplesFollowTheGlow) {
   Generator random(13);
   const Vec up = normalized({0.3, -0.2, 0.9}), sun = normalized({0.9, 0.1, -0.5});
   const Glow glow(up, sun);
-  ASSERT_GT(glow.share, 0.0);
-  EXPECT_EQ(Glow(up, up).share, 0.0);
+  ASSERT_GT(glow.fraction, 0.0);
+  EXPECT_EQ(Glow(up, up).fraction, 0.0);
   // Moments of the direction, from the density over uniform directions and from samples.
   constexpr int kCount = 400000;
   double norm = 0.0, expected[3] = {}, sampled[3] = {};

@@ -156,7 +156,7 @@ float ElevationSource::height_m(int projection, double x_m, double z_m, double s
 }
 
 double ElevationSource::file_share(double x_m, double z_m) const {
-  return terrain64::terrain_file_share(bind(constants_, atlas_), units_of(x_m, z_m));
+  return terrain64::terrain_file_weight(bind(constants_, atlas_), units_of(x_m, z_m));
 }
 
 }  // namespace tyndall::scene

@@ -13,7 +13,7 @@ namespace tyndall::scene {
       table ? models::OneilIntegralMethod::table : static_cast<models::OneilIntegralMethod>(params.scale_function);
   out.samples = params.samples;
   out.table_size = params.table_size;
-  out.space_by_column = params.spacing == OneilSpacing::column;
+  out.space_by_density = params.spacing == OneilSpacing::column;
   out.rayleigh_phase = params.rayleigh_phase.value != 0;
   return out;
 }
