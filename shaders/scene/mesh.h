@@ -1,6 +1,6 @@
-// The constants of one view for the shaders of meshes and of the bare ground (std430). src/scene/mesh/meshes.cpp fills them.
-// Points and directions are in the local frame of src/scene/view/local_frame.hpp. sun_shadow.glsl reads the fields up to
-// `cascade`.
+// The constants of one view for the shaders of meshes and of the bare ground (std430). src/scene/mesh/meshes.cpp fills
+// them. Points and directions are in the local frame of src/scene/view/local_frame.hpp. sun_shadow.glsl reads the
+// fields up to `cascade`.
 struct MeshConstants {
   vec3 camera_position;
   float shadow_resolution;

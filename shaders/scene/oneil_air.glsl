@@ -1,5 +1,5 @@
-// The medium of O'Neil's model between the eye and a point. src/scene/sky/oneil_sky.cpp fills binding 6; binding 7 is the
-// table of oneil-table.
+// The medium of O'Neil's model between the eye and a point. src/scene/sky/oneil_sky.cpp fills binding 6; binding 7 is
+// the table of oneil-table.
 #ifndef TYNDALL_ONEIL_AIR_GLSL
 #define TYNDALL_ONEIL_AIR_GLSL
 

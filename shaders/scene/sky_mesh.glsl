@@ -1,5 +1,5 @@
-// The sky mesh of src/scene/sky/sky_model.hpp, for vertex shaders: a sphere of directions around the camera. A model may
-// place each vertex at any distance.
+// The sky mesh of src/scene/sky/sky_model.hpp, for vertex shaders: a sphere of directions around the camera. A model
+// may place each vertex at any distance.
 #ifndef TYNDALL_SKY_MESH_GLSL
 #define TYNDALL_SKY_MESH_GLSL
 
