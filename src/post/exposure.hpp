@@ -31,8 +31,9 @@ class Exposure {
   static Result<Exposure> create(const gpu::Device& device, std::uint32_t frames_in_flight = 1);
 
   // Records the measurement of `from` (RGBA32F in GENERAL layout), and adapts to it over the `seconds` since the
-  // previous picture. The first picture, and the first after cut(), takes effect at once. Writes to `from` must be
-  // visible to compute shaders; the result is visible to later ones. `slot` is below frames_in_flight, for read().
+  // previous picture. The first picture, and the first after reset_history(), takes effect at once. Writes to `from`
+  // must be visible to compute shaders; the result is visible to later ones. `slot` is below frames_in_flight, for
+  // read().
   Result<void> measure(VkCommandBuffer cmd, VkImageView from, VkExtent2D extent, const TonemapSettings& settings,
                        double seconds, std::uint32_t slot = 0);
   // Resets the history: the next picture is unrelated to the previous one.
