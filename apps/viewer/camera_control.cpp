@@ -21,7 +21,7 @@ struct Horizon {
   glm::dvec3 up, east, north;
 };
 
-// As scene::view_from_params has it.
+// The same conversion as in scene::view_from_params().
 Horizon horizon_at(const glm::dvec3& position, double radius_m) {
   Horizon h;
   h.up = scene::up_of(position, radius_m);
@@ -30,7 +30,7 @@ Horizon horizon_at(const glm::dvec3& position, double radius_m) {
   return h;
 }
 
-// `v` turned by the smallest rotation that takes `from` to `to` (unit vectors that are not opposite).
+// Returns `v` turned by the smallest rotation from `from` to `to`, which are unit vectors and not opposite.
 glm::dvec3 carried(const glm::dvec3& v, const glm::dvec3& from, const glm::dvec3& to) {
   const glm::dvec3 axis = glm::cross(from, to);
   const double cosine = glm::dot(from, to);
@@ -69,7 +69,7 @@ CameraState moved(const CameraState& camera, const Motion& motion, double second
   glm::dvec3 way = right * motion.right + before.up * motion.up + forward * motion.forward;
   if (glm::length(way) > 1.0) way = glm::normalize(way);
   CameraState out = camera;
-  // A straight step leaves the horizontal by the planet's curve; the part along the ground follows it instead.
+  // A straight step would leave the ground of a curved planet, so the horizontal part follows the curvature.
   const double climb = glm::dot(way, before.up) * speed * seconds;
   const double altitude = scene::altitude_of(camera.position, radius_m);
   out.position += way * (speed * seconds);
@@ -95,7 +95,7 @@ CameraState above_ground(const CameraState& camera, double ground_m, double radi
 CameraState turned(const CameraState& camera, double dx_px, double dy_px, double height_px) {
   CameraState out = camera;
   const double deg_per_px = camera.fov_deg / std::max(height_px, 1.0);
-  // Far from the horizon a turn of the yaw moves the picture less.
+  // Away from the horizon a change of yaw moves the picture less.
   const double slant = std::max(std::cos(camera.pitch_deg / kDegPerRad), 0.25);
   out.yaw_deg = wrapped(camera.yaw_deg - dx_px * deg_per_px / slant);
   out.pitch_deg = std::clamp(camera.pitch_deg + dy_px * deg_per_px, -kMaxPitch_deg, kMaxPitch_deg);

@@ -23,7 +23,7 @@ std::string position(std::string_view name, const toml::source_region& source) {
   return files::concat({files::one_line(name, 200), ":", std::to_string(source.begin.line)});
 }
 
-// "a string", for "is a string".
+// Returns the kind of a node with its article, such as "a string".
 std::string_view kind_of(const toml::node& node) {
   switch (node.type()) {
     case toml::node_type::table: return "a table";
@@ -36,7 +36,7 @@ std::string_view kind_of(const toml::node& node) {
   }
 }
 
-// The text of one scalar in the form that store() reads, when its TOML type suits the parameter.
+// Returns the text of a scalar in the form that store() reads, if its TOML type suits the parameter.
 std::optional<std::string> scalar_text(const toml::node& node, ParamType type) {
   switch (type) {
     case ParamType::string:
@@ -111,7 +111,7 @@ Result<void> load_table(Settings& settings, std::string_view group, const toml::
   return {};
 }
 
-// The keys of a frame of [[path]] that are parameters at a time, and where they go.
+// The keys of a [[path]] frame that are parameters, and the members that store them.
 struct FrameKey {
   std::string_view name, parameter;
   std::optional<float> scene::PathFrame::*target;
@@ -151,7 +151,7 @@ Result<void> load_date(scene::PathFrame& frame, const toml::node& node, const st
   return {};
 }
 
-// Numbers are read as the parameters that they stand for, with their ranges.
+// Reads numbers like the parameters of the same name, with the same ranges.
 Result<void> load_frame_value(scene::PathFrame& frame, std::string_view key, const toml::node& node,
                               std::string_view name) {
   const std::string where = position(name, node.source());
@@ -247,7 +247,7 @@ Result<void> load_playback(scene::CameraPath& path, const toml::node& node, std:
   return {};
 }
 
-// What [[path]] and [playback] have to agree in.
+// Checks that [[path]] and [playback] are consistent.
 Result<void> check_path(const scene::CameraPath& path, const std::string& where) {
   const auto dated = [](const scene::PathFrame& frame) { return frame.julian_day.has_value(); };
   const bool by_date = std::any_of(path.frames.begin(), path.frames.end(), dated);
@@ -270,7 +270,7 @@ Result<void> load_root(Settings& settings, const toml::table& root, std::string_
   for (const auto& [group, node] : root) {
     const std::string where = position(name, group.source());
     if (group.str() == "path" || group.str() == "playback") {
-      // The key of an array of tables has the place of its last table.
+      // The key of an array of tables has the position of its last table.
       path_at = position(name, node.source());
       Result<void> loaded = group.str() == "path" ? load_path(settings.path, node, name, path_at)
                                                   : load_playback(settings.path, node, name, path_at);
@@ -290,7 +290,7 @@ Result<void> load_root(Settings& settings, const toml::table& root, std::string_
   return path_at.empty() ? Result<void>() : check_path(settings.path, path_at);
 }
 
-// A parameter that names a file, given relative to the scene file, becomes a path from here.
+// Makes file names that are relative to the scene file relative to the working directory.
 void find_files_beside(Settings& settings, const Settings& before, const std::string& scene_path) {
   const std::filesystem::path directory = std::filesystem::path(scene_path).parent_path();
   for (const Row& row : rows()) {
@@ -304,7 +304,7 @@ void find_files_beside(Settings& settings, const Settings& before, const std::st
   }
 }
 
-// A number as TOML writes it: a real one has a point or an exponent.
+// Returns a number as TOML writes it: real numbers have a point or an exponent.
 std::string toml_number(std::string_view text, bool real) {
   const bool plain = text.find_first_of(".e") == std::string_view::npos;
   return std::string(text) + (real && plain ? ".0" : "");

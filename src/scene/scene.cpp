@@ -22,7 +22,7 @@ constexpr std::uint32_t kMaxTimedPasses = 24;
 constexpr double kRadPerDeg = 0.017453292519943295;
 constexpr double kMinHeight_m = 2.0;  // of the camera above the ground
 
-// Refuses pictures and shadow maps that the device has no room for, before anything is created.
+// Refuses pictures and shadow maps that do not fit the device's memory, before anything is created.
 Result<void> check_memory(const gpu::Device& device, VkExtent2D extent, std::uint32_t resolution,
                           std::uint32_t cascades, double bytes_per_texel, double more_bytes_per_pixel) {
   VkDeviceSize largest = 0;
@@ -56,7 +56,7 @@ Result<void> check_memory(const gpu::Device& device, VkExtent2D extent, std::uin
                                              gib(needed) + " GiB, --size, this device allows " + gib(allowed)};
 }
 
-// Radical inverse of i (Halton, 1960): evenly spread over [0; 1).
+// Returns the radical inverse of i (Halton, 1960), which is evenly distributed over [0; 1).
 double halton(std::uint32_t i, std::uint32_t base) {
   double out = 0.0;
   double digit = 1.0;
@@ -214,7 +214,7 @@ Result<void> Scene::draw_frame(double seconds, bool copy_baseline, std::optional
   display_sum_ = {};
   const std::uint32_t samples = scene_.camera.samples;
   for (std::uint32_t i = 0; i < samples; ++i) {
-    // Centred offsets of up to half a pixel; a single picture stays where it is.
+    // Centred offsets of up to half a pixel; a single picture is not shifted.
     const glm::dvec2 offset =
         samples > 1 ? glm::dvec2(halton(i + 1, 2) - 0.5, halton(i + 1, 3) - 0.5) : glm::dvec2(0.0);
     const glm::dvec2 jitter = 2.0 * offset / glm::dvec2(desc_.extent.width, desc_.extent.height);
@@ -254,7 +254,8 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   const bool bare = bare_ground();
   const double ground_m = bare ? 0.0 : terrain_->height_at(up_of(view_.position, radius));
   const double altitude = altitude_of(view_.position, radius);
-  // Meshes are no obstacle: their insides are for cameras. The bare ground is flat, so the near plane is what counts.
+  // Meshes do not stop the camera, which may be inside of them. On the bare ground only the near plane limits the
+  // height.
   const double least_m = bare ? kNearPlane_m : kMinHeight_m;
   if (altitude < ground_m + least_m) {
     view_.position = at_altitude(view_.position, ground_m + least_m, radius);
@@ -266,7 +267,7 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   }
   frame_ = local_frame(view_.position, radius);
   TYNDALL_TRY(terrain_->update(view_, frame_));
-  // Nothing can be nearer than half the height above the ground below, but for walls beside the camera.
+  // Nothing is nearer than half the height above the ground, except for walls beside the camera.
   const double above = std::max(altitude - ground_m, least_m);
   const Ground ground = meshes_ != nullptr ? meshes_->ground(terrain_->ground(), view_.position) : terrain_->ground();
   const double nearest = std::min(20.0, 0.02 * static_cast<double>(scene_.shadows.distance_m));
@@ -338,7 +339,7 @@ Result<void> Scene::run_copy_baseline(VkCommandBuffer cmd) {
   return {};
 }
 
-// The scene's colour as it is, by the least pass.
+// Records the copy baseline: copies the scene's colour.
 Result<void> Scene::copy_to(VkCommandBuffer cmd, const gpu::Image& to) {
   const gpu::Device& device = host_->device();
   const gpu::NamedResource resources[] = {

@@ -100,7 +100,7 @@ Result<void> Scene::draw_shadows(VkCommandBuffer cmd) {
   return draw_shadow_colors(cmd);
 }
 
-// What glass leaves of the light, cascade by cascade.
+// Records the maps of the light that glass transmits, one cascade after the other.
 Result<void> Scene::draw_shadow_colors(VkCommandBuffer cmd) {
   if (meshes_ == nullptr || !meshes_->has_glass()) return {};
   const gpu::Device& device = host_->device();

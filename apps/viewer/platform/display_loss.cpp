@@ -19,14 +19,14 @@ std::function<void()>& last_words() {
   return words;
 }
 
-// All of it belongs to the thread of the GUI, the only one that talks to Xlib.
+// Only the GUI's thread, the only one that uses Xlib, reads and writes these variables.
 bool gone = false;
 
 #ifdef TYNDALL_HAS_X11
 Window watched = 0;
 
 int end_of_connection(Display*) {
-  // Once: saving may not come back here.
+  // Called once: a failure while saving must not return here.
   if (const std::function<void()> words = std::exchange(last_words(), nullptr)) words();
   std::fflush(nullptr);
   std::_Exit(1);
@@ -51,7 +51,7 @@ void on_display_loss(std::function<void()> words) { last_words() = std::move(wor
 void watch_window(GLFWwindow* window) {
   gone = false;
 #ifdef TYNDALL_HAS_X11
-  // GLFW loads Xlib when it runs on X11, and has this function when it can.
+  // GLFW loads Xlib and provides this function only when it runs on X11.
   void* const xlib = ::dlopen("libX11.so.6", RTLD_LAZY | RTLD_NOLOAD);
   const auto window_of = reinterpret_cast<Window (*)(GLFWwindow*)>(::dlsym(RTLD_DEFAULT, "glfwGetX11Window"));
   if (xlib == nullptr || window_of == nullptr) return;

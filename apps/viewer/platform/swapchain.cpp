@@ -15,7 +15,7 @@ Result<void> checked(VkResult result, const char* what, const char* name) {
   return gpu::vulkan_error(result, what, name);
 }
 
-// 8 bits, not sRGB: the shaders encode and the GUI's colours are encoded already.
+// Prefers 8 bits without sRGB conversion: the shaders encode their output, and the GUI's colours are encoded already.
 VkSurfaceFormatKHR choose_format(const std::vector<VkSurfaceFormatKHR>& formats) {
   for (const VkFormat wanted : {VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_R8G8B8A8_UNORM}) {
     for (const VkSurfaceFormatKHR& format : formats) {
@@ -290,7 +290,7 @@ Result<bool> Swapchain::create_swapchain() {
 Result<void> Swapchain::record(VkCommandBuffer cmd, const Target& target,
                                const std::function<Result<void>(VkCommandBuffer, VkExtent2D)>& picture) {
   const gpu::Device& device = host_->device();
-  // What the scene has written, in commands of its own.
+  // Makes the scene's writes, which other commands made, visible.
   gpu::barrier(device, cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
                VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT);
   const VkImageMemoryBarrier barrier = to_attachment(target.image);

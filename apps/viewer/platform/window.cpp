@@ -138,7 +138,7 @@ bool Window::take_activity() { return std::exchange(activity_, false) || !keys_.
 
 void Window::start_gui() {
   ImGui_ImplGlfw_InitForVulkan(window_, true);
-  // Of what that has put before the callbacks of ours, keys go another way.
+  // ImGui has installed callbacks that call ours; keys are passed to it through KeyFeed instead.
   install_key_callbacks();
 }
 
@@ -150,7 +150,7 @@ void Window::begin_gui() {
     if (event.kind == KeyEvent::Kind::character) ImGui_ImplGlfw_CharCallback(window_, event.character);
   }
   ImGui_ImplGlfw_NewFrame();
-  // That took the pointer as it is now.
+  // NewFrame() has read the current pointer.
   ImGuiIO& io = ImGui::GetIO();
   for (const KeyEvent& event : events) {
     if (event.kind != KeyEvent::Kind::button) continue;

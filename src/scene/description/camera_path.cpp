@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kAltitudeScale_m = 1000.0;
 
-// Values at rising times. For a loop of period_s the last knot stands one period after the first.
+// Values at increasing times. In a loop of period_s the last knot is one period after the first.
 struct Knots {
   std::vector<double> times_s, values;
 };
@@ -27,10 +27,10 @@ double monotone_slope(double h0, double d0, double h1, double d1) {
   return (w0 + w1) / (w0 / d0 + w1 / d1);
 }
 
-// Slope at the middle of three knots of a curve in space: that of the parabola through them.
+// Returns the slope at the middle of three knots of a curve in space: that of the parabola through them.
 double parabola_slope(double h0, double d0, double h1, double d1) { return (h1 * d0 + h0 * d1) / (h0 + h1); }
 
-// Cubic Hermite curve through the knots at time t. `loop`: the knots repeat, values rising by last - first a period.
+// Evaluates a cubic Hermite curve at time t. `loop`: the knots repeat, and values increase by last - first per period.
 double interpolate(const Knots& knots, double t, bool loop, double (*slope_of)(double, double, double, double)) {
   const std::vector<double>& x = knots.times_s;
   const std::vector<double>& y = knots.values;
@@ -51,7 +51,7 @@ double interpolate(const Knots& knots, double t, bool loop, double (*slope_of)(d
          y[i + 1] * square(u) * (3.0 - 2.0 * u) - h * slope(i + 1) * square(u) * (1.0 - u);
 }
 
-// The frames that have a value of `get`, which gives a number or nothing.
+// Returns the frames for which `get` returns a number.
 template <typename Get>
 Knots knots_of(const CameraPath& path, Get get) {
   Knots out;
@@ -72,14 +72,14 @@ std::optional<double> wide(const std::optional<float>& value) {
   return value ? std::optional(static_cast<double>(*value)) : std::nullopt;
 }
 
-// Each angle by whole turns nearest to the one before.
+// Adds whole turns to each angle, so that it is nearest to the previous one.
 void unwrap(std::vector<double>& angles_deg) {
   for (std::size_t i = 1; i < angles_deg.size(); ++i) {
     angles_deg[i] += 360.0 * std::round((angles_deg[i - 1] - angles_deg[i]) / 360.0);
   }
 }
 
-// A loop's time from its first knot on.
+// Returns the time of a loop, counted from its first knot.
 double time_in(const Knots& knots, double seconds, const CameraPath& path) {
   if (!path.loop) return seconds;
   const double first = knots.times_s.front();
@@ -112,12 +112,13 @@ void set(float& target, const std::optional<double>& value) {
   if (value) target = static_cast<float>(*value);
 }
 
-// In [0; 360).
+// Returns an angle in [0; 360).
 void set_angle(float& target, const std::optional<double>& value_deg) {
   if (value_deg) target = static_cast<float>(*value_deg - 360.0 * std::floor(*value_deg / 360.0));
 }
 
-// The camera's place: the direction from the planet's centre as a curve in space, and the altitude apart.
+// Interpolates the position of the camera: the direction from the planet's centre as a curve in space, and the
+// altitude.
 void move(CameraParams& camera, const Pose& pose, double radius_m) {
   const glm::dvec3 at = to_glm(camera.position_m);
   glm::dvec3 up = up_of(at, radius_m);

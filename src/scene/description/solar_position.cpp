@@ -89,7 +89,7 @@ Nutation nutation(double centuries) {
                               0.09 * std::cos(2.0 * node))};
 }
 
-// Days from 1970-01-01 to a date of the Gregorian calendar.
+// Returns the days from 1970-01-01 to a date of the Gregorian calendar.
 std::int64_t days_from_civil(std::int64_t year, std::int64_t month, std::int64_t day) {
   // Years begin in March, so that the leap day comes last.
   const std::int64_t y = month <= 2 ? year - 1 : year;
@@ -102,12 +102,12 @@ std::int64_t days_in_month(std::int64_t year, std::int64_t month) {
   return days_from_civil(next_year, month == 12 ? 1 : month + 1, 1) - days_from_civil(year, month, 1);
 }
 
-// Takes the front of a text piece by piece.
+// Reads a text from its front, piece by piece.
 class Reader {
  public:
   explicit Reader(std::string_view text) : rest_(text) {}
 
-  // Exactly `digits` digits.
+  // Reads exactly `digits` digits.
   std::optional<std::int64_t> number(std::size_t digits) {
     if (rest_.size() < digits) return std::nullopt;
     std::int64_t value = 0;
@@ -118,14 +118,14 @@ class Reader {
     rest_.remove_prefix(digits);
     return value;
   }
-  // One of these characters, which is returned; 0 otherwise.
+  // Reads one of these characters and returns it; returns 0 if none of them follows.
   char one_of(std::string_view characters) {
     if (rest_.empty() || characters.find(rest_.front()) == std::string_view::npos) return '\0';
     const char found = rest_.front();
     rest_.remove_prefix(1);
     return found;
   }
-  // Digits behind a decimal point, at least one: the fraction.
+  // Reads at least one digit after a decimal point and returns the fraction.
   std::optional<double> fraction() {
     double value = 0.0;
     double weight = 0.1;
@@ -150,7 +150,7 @@ struct Civil {
   bool has_offset = false;
 };
 
-// The form alone; nothing when it is not met.
+// Checks the form only; returns nothing if the text does not have it.
 std::optional<Civil> read_civil(std::string_view text) {
   Reader reader(text);
   const auto year = reader.number(4);
@@ -240,14 +240,14 @@ SolarPosition solar_position(const Place& place, double julian_day, double altit
   out.right_ascension_deg = wrapped_deg(alpha / kRadPerDeg);
   out.declination_deg = delta / kRadPerDeg;
 
-  // How far the Earth has turned (3.9 to 3.11).
+  // The rotation of the Earth (3.9 to 3.11).
   const double ut_centuries = days / kDaysPerCentury;
   const double sidereal_deg = 280.46061837 + 360.98564736629 * days +
                               ut_centuries * ut_centuries * (0.000387933 - ut_centuries / 38710000.0) +
                               nutated.longitude_deg * std::cos(obliquity);
   const double hour_angle = kRadPerDeg * wrapped_deg(sidereal_deg + place.longitude_deg - out.right_ascension_deg);
 
-  // From the place instead of the centre (3.12): its distances from the axis and from the equator in radii.
+  // Parallax (3.12), from the place's distances from the axis and from the equatorial plane in radii.
   constexpr double kAxes = 0.99664719;  // polar by equatorial radius
   const double phi = kRadPerDeg * place.latitude_deg;
   const double reduced = std::atan2(kAxes * std::sin(phi), std::cos(phi));

@@ -1,4 +1,4 @@
-// Heights that are stored in unusual ways: in colours, or beside samples that mean "no data" without saying so.
+// Decodes heights that are stored in colours, and finds samples that mean "no data" although the file does not say so.
 #include <gdal_utils.h>
 
 #include <array>

@@ -27,7 +27,7 @@ constexpr double kImpossible_m = 20000.0;
 constexpr double kAssumedSpacing_m = 30.0;
 constexpr int kFillReach_samples = 100;  // of GDAL's interpolation; larger holes are filled more coarsely
 
-// Metres per unit of the heights; notes what is unknown.
+// Returns the metres per unit of the heights, and notes unknown units.
 double vertical_unit_m(GDALRasterBand& band, const OGRSpatialReference* srs, std::vector<std::string>& notes) {
   struct Unit {
     std::string_view name;
@@ -75,13 +75,13 @@ double vertical_unit_m(GDALRasterBand& band, const OGRSpatialReference* srs, std
   return 1.0;
 }
 
-// Where the samples lie. Without a coordinate system `srs` is empty and the transform is in metres.
+// The georeference of the samples. Without a coordinate system `srs` is empty and the transform is in metres.
 struct Georeference {
   std::array<double, 6> transform = {};
   OGRSpatialReference srs;
 };
 
-// The corners of the raster in the file's coordinates: least and greatest.
+// Returns the minimum and maximum corner of the raster in the file's coordinates.
 struct Extent {
   double min_x, max_x, min_y, max_y;
 };
@@ -96,7 +96,7 @@ Extent extent_of(const std::array<double, 6>& t, int width, int height) {
   return {*min_x, *max_x, *min_y, *max_y};
 }
 
-// Whether coordinates without a coordinate system are probably degrees. A survey that begins at 0,0 is local.
+// Returns whether coordinates without a coordinate system are probably degrees. A survey that begins at 0,0 is local.
 bool look_like_degrees(const std::array<double, 6>& t, const Extent& extent) {
   const bool local = extent.min_x == 0.0 && extent.min_y == 0.0;
   return !local && std::max(std::abs(extent.min_x), std::abs(extent.max_x)) <= 360.0 &&
@@ -131,7 +131,7 @@ Georeference georeference(GDALDataset& file, TerrainUnits units, std::vector<std
   return geo;
 }
 
-// Refuses places that no planet has. PROJ answers some of them with infinities, others with a wrong scale.
+// Refuses coordinates outside of a planet. PROJ returns infinities for some of them, and a wrong scale for others.
 Result<void> check_extent(const std::string& source_name, const Georeference& geo, int width, int height) {
   const Extent extent = extent_of(geo.transform, width, height);
   const auto text = [](double value) {
@@ -180,7 +180,7 @@ Dataset make_memory(int width, int height, const Georeference& geo, std::vector<
   return memory;
 }
 
-// The first band at no more than max_samples, in metres, holes as NaN; adapts the transform to the size.
+// Reads the first band with at most max_samples on a side, in metres, holes as NaN. Adapts the transform to the size.
 Result<std::vector<float>> read_band(const std::string& source_name, GDALDataset& file, int max_samples,
                                      Georeference& geo, int& width, int& height, const Messages& messages,
                                      std::vector<std::string>& notes) {
@@ -229,7 +229,7 @@ Result<std::vector<float>> read_band(const std::string& source_name, GDALDataset
   return samples;
 }
 
-// GDAL's interpolation for small holes, ours for what it leaves.
+// Fills small holes by GDAL's interpolation, and the remaining ones by our own.
 void fill(std::vector<float>& samples, int width, int height) {
   if (std::none_of(samples.begin(), samples.end(), [](float v) { return std::isnan(v); })) return;
   std::vector<float> valid(samples.size());
@@ -250,7 +250,7 @@ void fill(std::vector<float>& samples, int width, int height) {
   fill_holes(samples, width, height);
 }
 
-// The azimuthal equidistant projection around the middle of the samples.
+// Returns the azimuthal equidistant projection around the middle of the samples.
 struct MapProjection {
   std::string wkt;     // empty: the file's coordinates are metres already
   double scale = 1.0;  // metres on the planet per unit of the projection
@@ -299,7 +299,7 @@ Result<MapProjection> map_projection(const std::string& source_name, const Geore
   return out;
 }
 
-// Resamples to square cells around the centre, on the map's projection unless there is no coordinate system.
+// Resamples to square cells around the centre, in the map's projection if there is a coordinate system.
 Result<ElevationRaster> warp(const std::string& source_name, GDALDataset& source, const Georeference& geo,
                              const ElevationRequest& request, const Messages& messages,
                              std::vector<std::string>& notes) {

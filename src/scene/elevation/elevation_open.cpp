@@ -1,4 +1,4 @@
-// Opening elevation files: which names, which drivers.
+// Opens elevation files: decides which names and which drivers are allowed.
 #include <cpl_conv.h>
 
 #include <array>
@@ -46,7 +46,7 @@ void register_drivers() {
 
 bool begins_with(std::string_view text, std::string_view start) { return text.substr(0, start.size()) == start; }
 
-// Virtual file systems that stay on this machine.
+// Virtual file systems that do not use a network.
 bool is_local_vsi(std::string_view name) {
   for (const std::string_view local :
        {"/vsizip/", "/vsigzip/", "/vsitar/", "/vsimem/", "/vsisubfile/", "/vsisparse/"}) {
@@ -55,7 +55,7 @@ bool is_local_vsi(std::string_view name) {
   return false;
 }
 
-// Whether a text names a virtual file system that goes over a network.
+// Returns whether a text names a virtual file system that uses a network.
 bool names_network(std::string_view text) {
   for (std::size_t at = text.find("/vsi"); at != std::string_view::npos; at = text.find("/vsi", at + 1)) {
     if (!is_local_vsi(text.substr(at))) return true;
@@ -86,7 +86,7 @@ Result<void> check_path(const std::string& source) {
   return {};
 }
 
-// A virtual raster is a text that refers to other files.
+// Returns whether a file is a virtual raster, which is a text that refers to other files.
 Result<void> check_references(const std::string& source) {
   constexpr std::size_t kMaxText = std::size_t{16} << 20;
   std::ifstream file(source, std::ios::binary);

@@ -16,7 +16,7 @@ constexpr double kLargestPlace_m = 1.0e12;
 glm::ivec2 units_of(double x_m, double z_m) {
   const auto units = [](double v) {
     const double bounded = std::isnan(v) ? 0.0 : std::clamp(v, -kLargestPlace_m, kLargestPlace_m);
-    // Beyond 32 bits they wrap round, as in the shader.
+    // Values beyond 32 bits wrap around, as in the shader.
     const auto whole = static_cast<std::int64_t>(std::floor(bounded * kUnitsPerM + 0.5));
     return static_cast<int>(static_cast<std::uint32_t>(whole));
   };
@@ -43,7 +43,7 @@ struct Block {
   int x = 0, y = 0, width = 0, height = 0;
 };
 
-// Where the levels of detail lie in the atlas: halved until one is a single sample wide or high.
+// Places the levels of detail in the atlas: each is half the size, until one is a single sample wide or high.
 std::vector<Block> atlas_blocks(int width, int height) {
   std::vector<Block> blocks = {{0, 0, width, height}};
   while (std::min(blocks.back().width, blocks.back().height) > 1) {
@@ -80,7 +80,7 @@ ElevationAtlas build_atlas(const ElevationRaster& raster, const std::vector<Bloc
   return atlas;
 }
 
-// By how much the border of the file lies above the procedural terrain there, on average.
+// Returns the mean height of the file's border above the procedural terrain there.
 float border_offset(const ElevationRaster& raster, std::uint32_t seed) {
   constexpr int kSamplesPerSide = 64;
   const double half_x = 0.5 * raster.width * raster.spacing_m;

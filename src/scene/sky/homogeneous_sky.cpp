@@ -73,7 +73,8 @@ class HomogeneousSky : public SkyModel {
   }
 
  private:
-  // From space the ground is seen under every sun at once: thousands of rays, so only when the medium is another.
+  // Fills the table of the sky's irradiance by the sun's zenith angle, which views from space need. It takes thousands
+  // of rays, so it is updated only when the medium changes.
   void fill_sky_by_sun(const tyndall::shared::Homogeneous& medium, float (&to)[kSuns][4]) {
     if (std::memcmp(&medium, &known_, sizeof medium) != 0) {
       for (std::size_t i = 0; i < kSuns; ++i) {

@@ -73,7 +73,7 @@ class OneilSky : public SkyModel {
     out.eye_up = to_vec3(frame.local.direction(up));
     out.eye_cos_sun = static_cast<float>(std::clamp(glm::dot(up, frame.light.direction_to_sun), -1.0, 1.0));
     out.to_sun = to_vec3(frame.local.direction(frame.light.direction_to_sun));
-    // Of the ground sphere: sea level, or twice the depth of an eye below it.
+    // Radius of the ground sphere: sea level, or twice the depth of an eye below it.
     const double ground = radius + 2.0 * std::min(altitude, 0.0);
     out.horizon_rad =
         static_cast<float>(0.5 * std::numbers::pi + std::acos(std::clamp(ground / (radius + altitude), -1.0, 1.0)));

@@ -21,7 +21,7 @@ constexpr std::uint32_t kRows = kRowsAbove + kRowsBetween + kRowsBelow;
 constexpr std::uint32_t kIndices = kColumns * kRows * 6;
 constexpr double kHalfTurn = std::numbers::pi;
 
-// What scene/sky_mesh.glsl reads, in std430.
+// The constants that scene/sky_mesh.glsl reads, in std430.
 struct MeshBlock {
   Mat4 clip_from_local;
   Vec3 up;
@@ -46,7 +46,7 @@ std::vector<std::uint32_t> mesh_indices() {
   return out;
 }
 
-// A horizontal unit vector near `wanted`, or any if that is vertical.
+// Returns a horizontal unit vector near `wanted`, or any horizontal one if that is vertical.
 glm::dvec3 horizontal(const glm::dvec3& wanted, const glm::dvec3& up) {
   for (const glm::dvec3& v : {wanted, glm::dvec3(0, 0, -1), glm::dvec3(1, 0, 0)}) {
     const glm::dvec3 flat = v - up * glm::dot(v, up);
@@ -117,7 +117,7 @@ void SkyModel::fill_mesh(const ModelFrame& frame) {
   out.rows = kRows;
   out.right = to_vec3(frame.local.direction(glm::cross(ahead, up)));
 
-  // Columns stand closer together towards the sun.
+  // Columns are closer together towards the sun.
   for (std::uint32_t i = 0; i <= kColumns; ++i) {
     const double x = 2.0 * i / kColumns - 1.0;
     out.angles[i] = static_cast<float>(kHalfTurn * x * (0.3 + 0.7 * x * x));

@@ -46,7 +46,7 @@ std::vector<std::uint32_t> block_indices(int coarseness) {
   return out;
 }
 
-// Whether a sphere is outside the view, by its four side planes.
+// Returns whether a sphere is outside of the four side planes of the view.
 bool outside(const View& view, const glm::dvec3& centre, double radius) {
   const glm::dvec3 d = centre - view.position;
   const double z = glm::dot(d, view.forward);
@@ -54,7 +54,7 @@ bool outside(const View& view, const glm::dvec3& centre, double radius) {
   const double x = std::abs(glm::dot(d, view.right));
   const double y = std::abs(glm::dot(d, view.up));
   const auto beyond = [&](double side, double tangent) {
-    // Half a pixel of jitter, at any size, is less than the slack.
+    // The margin is larger than half a pixel of jitter at any size.
     return (side - z * tangent * 1.02) / std::sqrt(1.0 + tangent * tangent) > radius + 1.0;
   };
   return beyond(x, view.tan_half_width) || beyond(y, view.tan_half_height);
@@ -66,7 +66,7 @@ bool outside(const CascadeFit& cascade, const glm::dvec3& centre, double radius)
          std::abs(p.z) > cascade.half_extent.z + radius;
 }
 
-// A sphere around the ground over a square of a map projection.
+// Computes a sphere around the ground over a square of a map projection.
 void bounding_sphere(int projection, const glm::dvec2& low, const glm::dvec2& high, const Ground& ground,
                      glm::dvec3& centre, double& radius) {
   const glm::dvec2 middle = 0.5 * (low + high);
@@ -190,7 +190,7 @@ Ground Terrain::ground() const {
   return {source_->min_height_m(), source_->max_height_m(), radius_m_, {}};
 }
 
-// As terrain_heights.comp has it.
+// The same formula as in terrain_heights.comp.
 double ground_height(const ElevationSource& source, const glm::dvec3& up, double radius_m) {
   const std::array<double, kMapProjectionCount> weights = projection_weights(up);
   const glm::dvec2 map = projection_from_up(0, up, radius_m);

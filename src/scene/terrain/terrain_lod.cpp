@@ -20,7 +20,7 @@ double reach_on_projection(const glm::dvec2& place, double reach_m, double radiu
   const double arc = distance_m / radius_m;
   const double reach = std::min(reach_m / radius_m, std::numbers::pi);
   double out = reach_m;
-  // Seen from the map projection's centre, with the place at the azimuth 0; both sides are alike.
+  // As seen from the map projection's centre, with the place at the azimuth 0; both sides are symmetric.
   for (int i = 0; distance_m > 0.0 && i <= kDirections; ++i) {
     const double angle = std::numbers::pi * i / kDirections;
     const double up = std::cos(arc) * std::cos(reach) - std::sin(arc) * std::sin(reach) * std::cos(angle);
@@ -40,7 +40,7 @@ struct Selection {
   const std::function<bool(const glm::dvec2&, const glm::dvec2&)>& visible;
   std::vector<TerrainBlock>& out;
 
-  // Takes the block at block coordinates (bx, bz) of a layer, or the finer blocks that it consists of.
+  // Selects the block at block coordinates (bx, bz) of a layer, or the finer blocks that it consists of.
   void visit(int layer, int bx, int bz) const {
     const ClipLevel& level = lod.levels[static_cast<std::size_t>(layer)];
     const double size = lod.block_cells() * level.cell_m;

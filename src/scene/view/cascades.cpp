@@ -22,23 +22,23 @@ double distance_out(double h, double mu, double top, double radius_m) {
   return std::min(distance, kLongest_m);
 }
 
-// Rounds up to a power of 2^(1/steps): sizes change rarely, and by little.
+// Rounds up to a power of 2^(1/steps), so that sizes change rarely and by small steps.
 double round_up(double value, double steps) {
   return std::exp2(std::ceil(std::log2(std::max(value, 1.0)) * steps - 1e-9) / steps);
 }
 
 glm::dmat3 light_frame(const glm::dvec3& to_sun) {
   glm::dvec3 x = glm::cross(glm::dvec3(0, 1, 0), to_sun);
-  // A sun in the zenith has no azimuth: any horizontal axis will do.
+  // A sun at the zenith has no azimuth: any horizontal axis serves.
   x = glm::length(x) > 1e-6 ? glm::normalize(x) : glm::dvec3(1, 0, 0);
   const glm::dvec3 y = glm::normalize(glm::cross(to_sun, x));
   return {glm::normalize(glm::cross(y, to_sun)), y, to_sun};
 }
 
-// The smallest sphere around the slice of the view from depth n to f.
+// Returns the smallest sphere around the part of the view between the depths n and f.
 void slice_sphere(const View& view, double n, double f, glm::dvec3& centre, double& radius) {
   const double k2 = view.tan_half_width * view.tan_half_width + view.tan_half_height * view.tan_half_height;
-  // On the axis, equally far from the near and the far corners, but not beyond the far plane.
+  // The centre is on the axis, at equal distances from the near and the far corners, but not beyond the far plane.
   const double c = std::min(0.5 * (n + f) * (1.0 + k2), f);
   centre = view.position + view.forward * c;
   radius = std::sqrt(std::max((f - c) * (f - c) + f * f * k2, (c - n) * (c - n) + n * n * k2));
@@ -87,7 +87,7 @@ Bounds shell_bounds(const glm::dvec3& centre, double sphere_radius, const glm::d
 // a twentieth of its width, inside of the texels that the filter and the receivers' offset reach over.
 double full_part(const ShadowParams& shadows) { return 1.0 - 2.0 * (0.05 + 6.0 / shadows.resolution); }
 
-// Centre and size of a map in whole texels.
+// Rounds the centre and the size of a map to whole texels.
 void place(CascadeFit& fit, const glm::dvec2& middle, const glm::dvec2& half_extent, const ShadowParams& shadows) {
   fit.half_extent.x = half_extent.x;
   fit.half_extent.y = half_extent.y;
@@ -97,7 +97,7 @@ void place(CascadeFit& fit, const glm::dvec2& middle, const glm::dvec2& half_ext
   fit.centre.y = std::round(middle.y / texel.y) * texel.y;
 }
 
-// The cascade of the view between two depths.
+// Returns the cascade of the view between two depths.
 CascadeFit fit_slice(const View& view, const glm::dmat3& world_from_light, double near_m, double far_m,
                      const ShadowParams& shadows, const Ground& ground) {
   CascadeFit fit;
@@ -135,7 +135,7 @@ CascadeFit fit_slice(const View& view, const glm::dmat3& world_from_light, doubl
   return fit;
 }
 
-// The cascade of all of a room. It counts in full wherever the room is, whatever the view.
+// Returns the cascade of a whole room. It has full weight everywhere in the room, for every view.
 CascadeFit fit_room(const View& view, const glm::dmat3& world_from_light, const ShadowParams& shadows,
                     const Ground& ground) {
   constexpr double kShadowLength = 16.0;  // of the shadows behind the room, in its diameters
@@ -164,7 +164,7 @@ CascadeFit fit_room(const View& view, const glm::dmat3& world_from_light, const 
   return fit;
 }
 
-// Puts the room's cascade in the place of the first that is coarser.
+// Replaces the first coarser cascade by the room's.
 void insert_room(const View& view, const ShadowParams& shadows, const Ground& ground, std::vector<CascadeFit>& fits) {
   CascadeFit room = fit_room(view, fits[0].world_from_light, shadows, ground);
   std::size_t at = 0;
@@ -177,7 +177,7 @@ void insert_room(const View& view, const ShadowParams& shadows, const Ground& gr
   if (at > 0) room.far_m = std::max(room.far_m, 1.01 * fits[at - 1].far_m);
   if (at + 1 == fits.size()) room.far_m = std::max(room.far_m, fits[at].far_m);
   fits[at] = room;
-  // What the replaced cascade saw outside of the room is left to the next.
+  // The next cascade covers what the replaced one covered outside of the room.
   for (std::size_t i = at + 1; i < fits.size(); ++i) {
     const double near_m = i == at + 1 ? replaced_near_m : fits[i].near_m > 0.0 ? fits[i - 1].far_m : 0.0;
     const double far_m = std::max(fits[i].far_m, 1.25 * fits[i - 1].far_m);

@@ -12,7 +12,7 @@ namespace {
 constexpr double kUnitsPerM = 64.0;
 constexpr double kLargestStep_m = 1024.0;
 
-// The origin's place relative to a map projection's centre.
+// Returns the position of the origin relative to the centre of a map projection.
 struct Radial {
   glm::dvec2 radial = {1, 0};  // unit vector on the map
   double arc = 0.0;
@@ -30,7 +30,7 @@ Radial radial_of(int projection, const glm::dvec2& map, double radius_m) {
   return out;
 }
 
-// A number of 1/64 m as the shaders' integers wrap round.
+// Returns a number of 1/64 m, wrapped around like the shaders' integers.
 std::int32_t wrapped(double units) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(static_cast<std::int64_t>(units)));
 }
