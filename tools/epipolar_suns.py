@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Compares epipolar sampling with brute force under many suns, at the exposure that each picture gets.
+"""Compares epipolar sampling with brute force under many suns, each picture at its own exposure.
 
     tools/epipolar_suns.py TYNDALL [--suns 4,-7] [--size WxH] [--aerosol X] [--views NAME;...] [--psnr-min X]
                            [--reference DIR] [--pictures DIR] [--set KEY=VALUE]...
 
-Renders every view under every sun with both techniques, one process and one sequence for each technique, and prints a
-table of PSNR and of the largest error of the tone-mapped pictures. --pictures keeps the pictures and their differences
-times 16; --reference keeps the pictures of brute force and uses those that are there already. The exit status is 2 if
-a picture is below --psnr-min. Needs nothing but Python.
+Renders every view under every sun with both techniques, in one process and one sequence per technique. Prints a table of
+the PSNR and the largest error of the tone-mapped pictures. --pictures stores the pictures and their differences times 16.
+--reference stores the pictures of brute force and reuses those that are present. The exit status is 2 if a picture is
+below --psnr-min. Needs only Python.
 """
 import argparse
 import json
@@ -19,13 +19,13 @@ import tempfile
 SUNS = [90, 60, 30, 15, 8, 4, 2, 1, 0, -1, -2, -3, -4, -5, -6, -7, -8, -9, -10, -12, -14, -16, -18]
 SUN_AZIMUTH = 5.4
 PLACES = {"valley": (-13000.0, 1350.0, 14000.0), "8 km": (0.0, 8000.0, 0.0)}
-# Yaw of the view from the sun's azimuth. The sun is outside the picture beside it, and behind the camera opposite to it.
+# Yaw of the view relative to the azimuth of the sun. `beside` leaves the sun outside the picture, `opposite` behind the camera.
 DIRECTIONS = {"towards": 0.0, "beside": 60.0, "opposite": 180.0}
 VIEWS = [f"{place}, {direction}" for place in PLACES for direction in DIRECTIONS]
 
 
 def pitch_towards(sun):
-    """Shows the sun and, as long as both fit, the horizon."""
+    """Returns the pitch at which the picture shows the sun and, if both fit, the horizon."""
     return max(8.0, min(sun - 10.0, 60.0))
 
 
@@ -73,7 +73,7 @@ def main():
     options = parser.parse_args()
     suns = [float(s) for s in options.suns.split(",")]
     views = options.views.split(";")
-    frames = [(sun, view) for view in views for sun in suns]  # the terrain follows the camera; moving it takes time
+    frames = [(sun, view) for view in views for sun in suns]  # sun by sun in one view, because moving the terrain takes time
     with tempfile.TemporaryDirectory() as scratch:
         pictures = options.pictures or pathlib.Path(scratch) / "pictures"
         reference = options.reference or pathlib.Path(scratch) / "reference"
