@@ -22,6 +22,9 @@ using glm::pow;
 #define IN(type) const type&
 #define OUT(type) type&
 #define INOUT(type) type&
+#ifdef __clang__
+#pragma clang diagnostic ignored "-Wkeyword-macro"
+#endif
 #define float double
 namespace {
 #include "post/tonemap_curves.glsl"

@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -62,7 +63,7 @@ TEST_F(ConfigFileCache, WhatIsKeptComesBack) {
     EXPECT_EQ(open().read("key", size), contents) << size;
     std::vector<std::byte> memory(size);
     EXPECT_TRUE(open().read("key", std::span(memory)));
-    EXPECT_EQ(std::memcmp(memory.data(), contents.data(), size), 0);
+    EXPECT_TRUE(std::ranges::equal(memory, bytes_of(contents)));
   }
   EXPECT_FALSE(cache.read("another", 100000));
   cache.write("another", bytes_of("x"));

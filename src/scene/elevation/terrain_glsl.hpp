@@ -33,6 +33,9 @@ using glm::normalize;
 using glm::smoothstep;
 using glm::sqrt;
 
+#ifdef __clang__
+#pragma clang diagnostic ignored "-Wkeyword-macro"
+#endif
 #define float double
 #define INOUT(type) type&
 #undef TYNDALL_TERRAIN_FILL_H
