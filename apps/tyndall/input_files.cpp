@@ -8,6 +8,7 @@
 
 #include "files/files.hpp"
 #include "files/text.hpp"
+#include "scene/elevation/elevation_file.hpp"
 
 namespace tyndall::cli {
 namespace {
@@ -53,6 +54,15 @@ void add_references(const std::string& path, std::vector<InputFile>& out) {
   }
 }
 
+// Adds the files that an elevation file refers to.
+void add_rasters(const std::string& source, std::vector<InputFile>& out) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(source, ignored)) return;  // nothing to read, or a name of GDAL's own
+  for (std::string& path : scene::elevation_file_list(source)) {
+    if (path != source) out.push_back({"a file of terrain.source", std::move(path)});
+  }
+}
+
 bool same_file(const struct stat& a, const struct stat& b) { return a.st_dev == b.st_dev && a.st_ino == b.st_ino; }
 
 }  // namespace
@@ -66,6 +76,7 @@ std::vector<InputFile> input_files(const CommonOptions& options) {
     }
   }
   add_references(options.settings.scene.meshes.source, out);
+  add_rasters(options.settings.scene.terrain.source, out);
   return out;
 }
 

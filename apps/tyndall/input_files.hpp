@@ -13,8 +13,8 @@ struct InputFile {
   std::string path;
 };
 
-// Returns the files that the settings of a run name: the scene file, terrain.source, meshes.source, and the buffers and
-// images that a glTF file refers to. Call after resolve().
+// Returns the files that the settings of a run name: the scene file, terrain.source, meshes.source, the buffers and
+// images that a glTF file refers to, and the files that an elevation file refers to. Call after resolve().
 [[nodiscard]] std::vector<InputFile> input_files(const CommonOptions& options);
 
 // Returns an error if writing to `path` would replace one of `inputs`, which is decided by device and inode, not by

@@ -137,6 +137,21 @@ TEST_F(CliScenes, OutputsAreNotWrittenOverInputs) {
   };
   refused({"render", "--set", "terrain.source=" + dem, "-o", dem}, "is terrain.source of this run, -o");
   refused({"render", "--set", "meshes.source=" + gltf, "-o", texture}, "is a file of meshes.source of this run, -o");
+  // A virtual raster of a virtual raster of a grid.
+  const std::string grid =
+      scratch_.write("grid.png", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 500\n1 2\n3 4\n");
+  const auto raster_of = [](const std::string& file) {
+    return "<VRTDataset rasterXSize=\"2\" rasterYSize=\"2\"><VRTRasterBand dataType=\"Float32\" band=\"1\">"
+           "<SimpleSource><SourceFilename relativeToVRT=\"1\">" +
+           file +
+           "</SourceFilename><SourceBand>1</SourceBand>"
+           "</SimpleSource></VRTRasterBand></VRTDataset>";
+  };
+  const std::string inner = scratch_.write("inner.png", raster_of("grid.png"));
+  const std::string outer = scratch_.write("outer.vrt", raster_of("inner.png"));
+  for (const std::string& file : {grid, inner}) {
+    refused({"render", "--set", "terrain.source=" + outer, "-o", file}, "is a file of terrain.source of this run, -o");
+  }
   refused({"render", scene, "-o", scene}, "is the scene file of this run, -o");
   refused({"render", "--set", "terrain.source=" + frame, "--frames", "5", "-o", scratch_.at("out.%04d.png")},
           "is terrain.source of this run, -o");

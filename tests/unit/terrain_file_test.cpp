@@ -446,5 +446,29 @@ TEST_F(ElevationFile, RealMassif) {
   EXPECT_LT(r.max_m, 4811.0F);
 }
 
+TEST_F(ElevationFile, FilesOfAVirtualRasterAreListed) {
+  const auto vrt = [&](const char* name, const std::string& of) {
+    const std::filesystem::path path = folder_.path(name);
+    std::ofstream(path)
+        << "<VRTDataset rasterXSize=\"64\" rasterYSize=\"64\"><VRTRasterBand dataType=\"Float32\" band=\"1\">"
+           "<SimpleSource><SourceFilename relativeToVRT=\"1\">"
+        << of << "</SourceFilename><SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>";
+    return path.string();
+  };
+  const std::string file = folder_.write({}, hill).string();
+  const std::string inner = vrt("inner.png", "test.tif");
+  const std::string outer = vrt("outer.vrt", "inner.png");
+  std::vector<std::string> listed = elevation_file_list(outer);
+  std::sort(listed.begin(), listed.end());
+  std::vector<std::string> expected = {file, inner, outer};
+  std::sort(expected.begin(), expected.end());
+  EXPECT_EQ(listed, expected);
+  EXPECT_EQ(elevation_file_list(file), std::vector<std::string>{file});
+  // What cannot be opened lists itself only.
+  const std::string dangling = vrt("dangling.vrt", "none.tif");
+  EXPECT_EQ(elevation_file_list(dangling).front(), dangling);
+  EXPECT_EQ(elevation_file_list("/nonexistent.vrt"), std::vector<std::string>{"/nonexistent.vrt"});
+}
+
 }  // namespace
 }  // namespace tyndall::scene

@@ -48,4 +48,8 @@ struct ElevationRequest {
 // Prints nothing. Memory: about 12 bytes per sample of the result.
 Result<ElevationRaster> read_elevation_file(const std::string& source, const ElevationRequest& request = {});
 
+// Returns `source` and the other files that reading it reads, as far as its format lists them: auxiliary files, and
+// what a virtual raster refers to.
+[[nodiscard]] std::vector<std::string> elevation_file_list(const std::string& source);
+
 }  // namespace tyndall::scene

@@ -1,12 +1,15 @@
 // Opens elevation files: decides which names and which drivers are allowed.
 #include <cpl_conv.h>
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
+#include "scene/elevation/elevation_file.hpp"
 #include "scene/elevation/elevation_gdal.hpp"
 
 namespace tyndall::scene {
@@ -86,16 +89,23 @@ Result<void> check_path(const std::string& source) {
   return {};
 }
 
-// Returns whether a file is a virtual raster, which is a text that refers to other files.
-Result<void> check_references(const std::string& source) {
-  constexpr std::size_t kMaxText = std::size_t{16} << 20;
+// Returns whether a file is a virtual raster, a text that refers to other files.
+bool is_virtual_raster(const std::string& source) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(source, ignored)) return false;
   std::ifstream file(source, std::ios::binary);
   std::string text(64, '\0');
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(file.gcount()));
-  if (text.find("<VRTDataset") == std::string::npos) return {};
-  file.clear();
-  file.seekg(0);
+  return text.find("<VRTDataset") != std::string::npos;
+}
+
+// Refuses virtual rasters that refer to a network file system.
+Result<void> check_references(const std::string& source) {
+  constexpr std::size_t kMaxText = std::size_t{16} << 20;
+  if (!is_virtual_raster(source)) return {};
+  std::ifstream file(source, std::ios::binary);
+  std::string text;
   text.assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
   if (text.size() > kMaxText) return elevation_error(source, "is a virtual raster of more than 16 MiB");
   if (!names_network(text)) return {};
@@ -133,6 +143,28 @@ Result<Dataset> open_elevation(const std::string& source, const Messages& messag
     return elevation_error(source, "holds no raster; a file with one raster is needed");
   }
   return file;
+}
+
+std::vector<std::string> elevation_file_list(const std::string& source) {
+  const Messages messages;
+  const NetworkGuard guard(source);
+  std::vector<std::string> out;
+  // Virtual rasters may refer to others, which list their own files only.
+  std::vector<std::string> left = {source};
+  constexpr std::size_t kMaxFiles = 10000;
+  while (!left.empty() && out.size() < kMaxFiles) {
+    const std::string name = std::move(left.back());
+    left.pop_back();
+    if (std::find(out.begin(), out.end(), name) != out.end()) continue;
+    out.push_back(name);
+    if (name != source && !is_virtual_raster(name)) continue;
+    const Result<Dataset> file = open_elevation(name, messages);
+    if (!file) continue;
+    char** const files = file.value()->GetFileList();
+    for (char** f = files; f != nullptr && *f != nullptr; ++f) left.emplace_back(*f);
+    CSLDestroy(files);
+  }
+  return out;
 }
 
 }  // namespace tyndall::scene
