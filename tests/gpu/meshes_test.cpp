@@ -166,7 +166,7 @@ TEST_F(GpuMeshes, AFloorAtSeaLevelHidesTheBareGround) {
   }
 }
 
-TEST_F(GpuMeshes, HolesLetThroughLightAndSight) {
+TEST_F(GpuMeshes, HolesPassLightAndShowWhatIsBehind) {
   // The western half is a hole.
   {
     // Alpha cannot be written by src/image: vertices carry it instead.
@@ -225,7 +225,7 @@ TEST_F(GpuMeshes, DiffusingGlassGlowsAndHidesWhatIsBehind) {
   EXPECT_NEAR(p[0] / p[1], 0.2 / 0.9, 0.03);
 }
 
-TEST_F(GpuMeshes, WithoutGlassThereAreNoMapsOfColours) {
+TEST_F(GpuMeshes, ColourMapsExistOnlyWithGlass) {
   file_.level_quad(-2, -2, 2, 2, 0.5F, white_);
   std::unique_ptr<Scene> plain = make(true, kExtent, true);
   ASSERT_NE(plain, nullptr);

@@ -17,7 +17,7 @@
 namespace tyndall {
 namespace {
 
-TEST_F(SavedTablesTest, ComeBackAsTheyWere) {
+TEST_F(SavedTablesTest, LoadedTablesEqualSavedTables) {
   Effect built = make(small_tables(), true);
   EXPECT_EQ(built.table_bytes(), 8U * (3U * 6 * 16 * 12 * 4 + 2U * 64 * 256));
   const std::vector<std::byte> bytes = save(built);
@@ -66,7 +66,7 @@ TEST_F(SavedTablesTest, ComeBackAsTheyWere) {
   EXPECT_EQ(save(loaded), bytes);
 }
 
-TEST_F(SavedTablesTest, NothingHalfDoneIsSaved) {
+TEST_F(SavedTablesTest, UnfinishedTablesAreNotSaved) {
   Effect effect = make(small_tables(), false);
   const gpu::Buffer to = buffer(effect.table_bytes() + 8);
   const auto refused = [&](VkBuffer buffer, VkDeviceSize offset) {
@@ -93,7 +93,7 @@ TEST_F(SavedTablesTest, NothingHalfDoneIsSaved) {
   EXPECT_FALSE(load(effect, std::vector<std::byte>(8), 4).ok());
 }
 
-TEST_F(SavedTablesTest, KeysTellApartWhatMatters) {
+TEST_F(SavedTablesTest, KeysDifferWhereTablesDiffer) {
   Effect effect = make(small_tables(), false);
   const auto key_of = [&](const Params& params) {
     EXPECT_OK(effect.set_params(params));
@@ -209,7 +209,7 @@ TEST_F(CachedTablesTest, AreBuiltOnceAndFoundAfterwards) {
   EXPECT_EQ(files().size(), 2U);
 }
 
-TEST_F(CachedTablesTest, ProbesDoNotKnowTheDifference) {
+TEST_F(CachedTablesTest, ProbesReadTheSameFromCachedTables) {
   std::vector<RayQuery> queries;
   for (const RayQuery& q : random_rays(5, 50, -6.0, 90.0)) {
     queries.push_back(q);
@@ -232,7 +232,7 @@ TEST_F(CachedTablesTest, ProbesDoNotKnowTheDifference) {
   }
 }
 
-TEST_F(CachedTablesTest, WhatIsWrongOnDiskIsSaidOnceAndMadeAnew) {
+TEST_F(CachedTablesTest, DamagedFilesAreReportedOnceAndRebuilt) {
   ready();
   const std::vector<std::byte> built = bytes_;
   ASSERT_EQ(files().size(), 1U);
@@ -276,7 +276,7 @@ TEST_F(CachedTablesTest, WhatIsWrongOnDiskIsSaidOnceAndMadeAnew) {
   EXPECT_EQ(outcome.notes[0].rfind("nothing is cached: ", 0), 0U) << outcome.notes[0];
 }
 
-TEST_F(CachedTablesTest, KeepToTheirLimit) {
+TEST_F(CachedTablesTest, StayWithinTheSizeLimit) {
   Params params = quick_tables();
   const VkDeviceSize size = make(params, false).table_bytes();
   how_.cache.limit_bytes = 2 * size + 10000;

@@ -4,7 +4,7 @@
 namespace tyndall {
 namespace {
 
-TEST_F(TableBuilderTest, SlicesAndRepetitionsGiveTheSameBytes) {
+TEST_F(TableBuilderTest, StepsAndRepetitionsGiveTheSameBytes) {
   TableBuilder at_once;
   TableBuilder sliced;
   ASSERT_OK(create(at_once, false, small_tables()));
@@ -20,7 +20,7 @@ TEST_F(TableBuilderTest, SlicesAndRepetitionsGiveTheSameBytes) {
   EXPECT_GT(total_ms, 0.0);
 }
 
-TEST_F(TableBuilderTest, OldTablesServeUntilTheNewOnesAreWhole) {
+TEST_F(TableBuilderTest, OldTablesAreUsedUntilNewOnesAreComplete) {
   TableBuilder builder;
   Params params = small_tables();
   ASSERT_OK(create(builder, false, params));
