@@ -19,7 +19,6 @@ namespace tyndall::scene {
 namespace {
 
 constexpr std::uint32_t kMaxTimedPasses = 24;
-constexpr double kRadPerDeg = 0.017453292519943295;
 constexpr double kMinHeight_m = 2.0;  // of the camera above the ground
 
 // Refuses pictures and shadow maps that do not fit the device's memory, before anything is created.

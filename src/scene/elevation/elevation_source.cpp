@@ -87,8 +87,8 @@ float border_offset(const ElevationRaster& raster, std::uint32_t seed) {
   const double half_z = 0.5 * raster.height * raster.spacing_m;
   const double spacing_m = std::max(half_x, half_z) / kSamplesPerSide;
   const auto file = [&](double u, double v) {  // u, v in [-1; 1]
-    const int x = static_cast<int>((0.5 + 0.5 * u) * (raster.width - 1) + 0.5);
-    const int y = static_cast<int>((0.5 + 0.5 * v) * (raster.height - 1) + 0.5);
+    const int x = static_cast<int>(std::lround((0.5 + 0.5 * u) * (raster.width - 1)));
+    const int y = static_cast<int>(std::lround((0.5 + 0.5 * v) * (raster.height - 1)));
     return raster.heights[static_cast<std::size_t>(y) * raster.width + x];
   };
   double sum = 0.0;
