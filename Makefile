@@ -1,14 +1,16 @@
 # The two commands. Everything else is CMake: see CONTRIBUTING.md.
 #   make demo            installs what is missing, builds the program, renders the demo scene to out/demo.png
-#   make check           installs what is missing, builds everything with warnings as errors, runs every test
+#   make check           installs what is missing, checks the formatting, builds everything with warnings as errors, runs
+#                        clang-tidy and every test
 #   make doxygen         writes the reference of the public headers to build/doxygen/html
 #   make pictures        renders the pictures of the documentation
 #   make accuracy        measures the numbers of docs/accuracy.md
 #   make epipolar-study  installs Pillow and matplotlib; makes the numbers, plots and pictures of docs/epipolar.md
 #   make models-study    measures and renders what docs/models.md and docs/oneil.md show
-.PHONY: demo check doxygen pictures accuracy epipolar-study models-study setup build format format-check tidy clean
+.PHONY: demo check doxygen pictures accuracy epipolar-study models-study setup build format format-check tidy tidy-all sanitize-short sanitize clean
 
 PRESET ?= release
+CLANG_PACKAGES = clang clang-tidy clang-format libclang-rt-dev llvm
 OPERATORS = exponential reinhard reinhard-modified uncharted2 filmic-alu logarithmic adaptive-logarithmic agx pbr-neutral exponential-channels
 
 demo: PRESET = release
@@ -18,8 +20,11 @@ demo: build
 	@build/release/bin/tyndall render scenes/demo.toml -o out/demo.png
 	@echo "The picture is at out/demo.png"
 
+# The fast checks come first, so that they fail first.
 check: PRESET = ci
-check: build
+check: PACKAGES = $(CLANG_PACKAGES)
+check: format-check build
+	@tools/tidy.py build/release $(TIDY_FOLDERS)
 	@ctest --preset ci --no-tests=error -j "$$(nproc)"
 
 # The reference of the public headers, in build/doxygen/html.
@@ -74,7 +79,7 @@ models-study: build
 	done
 
 setup:
-	@tools/setup.sh
+	@tools/setup.sh $(PACKAGES)
 
 build: setup
 	@cmake --preset $(PRESET) --log-level=WARNING
@@ -83,15 +88,41 @@ build: setup
 # Formats the C++ and GLSL sources in place; format-check fails and shows the differences instead.
 SOURCES = git ls-files '*.cpp' '*.hpp' '*.h' '*.inl' '*.glsl' '*.comp' '*.frag' '*.vert'
 
-format:
+format: PACKAGES = $(CLANG_PACKAGES)
+format: setup
 	@$(SOURCES) | xargs clang-format -i
 
-format-check:
+format-check: PACKAGES = $(CLANG_PACKAGES)
+format-check: setup
 	@$(SOURCES) | xargs clang-format --dry-run --Werror
 
-tidy: setup
-	@cmake --preset dev > /dev/null
-	@git ls-files 'src/*.cpp' 'apps/*.cpp' | xargs clang-tidy -p build/dev
+# clang-tidy over the sources that have changed since they were last found clean: the folders that are known to be clean in
+# `make check` and `make tidy`; `make tidy-all` adds the others and the slow checks, among them the static analyser.
+TIDY_FOLDERS = apps examples $(addprefix src/,config effect files gpu image models post reference)
+TIDY_SLOW = clang-analyzer-*,bugprone-branch-clone,bugprone-unchecked-optional-access,performance-unnecessary-value-param,misc-unused-parameters
+
+tidy tidy-all: PRESET = ci
+tidy tidy-all: PACKAGES = $(CLANG_PACKAGES)
+tidy: build
+	@tools/tidy.py build/release $(TIDY_FOLDERS)
+
+tidy-all: build
+	@tools/tidy.py build/release --checks '$(TIDY_SLOW)' apps examples src tests tools
+
+# Builds with clang and its sanitizers, and runs the tests with the label "sanitizers" or, as `make sanitize`, all of them.
+# The first of the two builds is also the build with a second compiler: its warnings are errors.
+define run-sanitizers
+for preset in asan-ubsan tsan; do \
+  cmake --preset $$preset --log-level=WARNING && \
+  cmake --build --preset $$preset $(if $(SANITIZE_ALL),,--target sanitizers) && \
+  ctest --preset $$preset --no-tests=error -j "$$(nproc)" $(if $(SANITIZE_ALL),,-L sanitizers) || exit 1; \
+done
+endef
+
+sanitize-short sanitize: PACKAGES = $(CLANG_PACKAGES)
+sanitize: SANITIZE_ALL = 1
+sanitize-short sanitize: setup
+	@$(run-sanitizers)
 
 clean:
 	rm -rf build out
