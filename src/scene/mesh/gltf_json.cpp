@@ -189,8 +189,7 @@ bool GltfJson::bounded(const char* name, double low, double high, std::span<doub
 std::string GltfJson::text(const char* name, std::optional<std::string> fallback) const {
   const json* const value = find(name);
   if (value == nullptr && fallback) return *std::move(fallback);
-  if (value == nullptr || !value->is_string())
-    refuse(name, value == nullptr ? "expected a string" : "expected a string");
+  if (value == nullptr || !value->is_string()) refuse(name, "expected a string");
   return value->get<std::string>();
 }
 
