@@ -1,5 +1,5 @@
 // The arguments of one verb: declare options, then parse. Wraps CLI11, which only arguments.cpp includes, and turns
-// every mistake into a one-line error. Targets are borrowed and must outlive parse(). A target keeps its value if its
+// every mistake into a one-line error. Targets are borrowed and must outlive parse(). A target is unchanged if its
 // option is not given.
 #pragma once
 

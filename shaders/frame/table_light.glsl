@@ -82,8 +82,8 @@ vec3 table_light(LitSections lit, TableRay path, float start, float t, float end
     if (kSingle == kTable) light += lit.light.single;
     if (kOccluded) light += lit.light.high;
   }
-  // The sections to look up, as a bit set: 0 the lit part, 1 the rest, 2 the whole ray. A set keeps neighbouring rays
-  // from waiting for sections that only some of them have.
+  // The sections to look up, as a bit set: 0 the lit part, 1 the rest, 2 the whole ray. With a set, neighbouring rays
+  // do not wait for sections that only some of them have.
   uint sections = frame.unoccluded != 0u ? 4u : 0u;
   if (kLitTables && kSections == kContiguous && lit.total > 1e-3) sections |= 1u;
   if (kLitTables && end - t > 1e-3) sections |= 2u;

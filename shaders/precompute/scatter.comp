@@ -42,7 +42,7 @@ shared vec3 ratio;  // of an order to the one before, once that has settled
 // Returns the sum of all orders after `last`, from the last two. Successive orders are taken for the sum of two
 // geometric series: a slow one, whose ratio is the largest eigenvalue of transport and therefore the same at every
 // point, direction and sun, and one that falls twice as fast. The ratio of the two orders themselves would not do:
-// where the sun is low and the air turbid, light of the first orders is still arriving, and their ratio is far above
+// where the sun is low and the aerosol dense, light of the first orders is still arriving, and their ratio is far above
 // that of later ones.
 vec3 orders_beyond(vec3 last, vec3 before, vec3 ratio) {
   vec3 fast = 0.5 * ratio;

@@ -27,7 +27,7 @@ layout(std430, binding = 6) readonly buffer model_block {
 };
 
 // Computes transmittance (`extinction`) and in-scattered radiance from the eye to `offset`, which is a surface or, with
-// `sky`, a direction. `air_m` is the optical length of the air on the way.
+// `sky`, a direction. `air_m` is the optical length of air along the ray.
 void air_to(vec3 offset, bool sky, out vec3 extinction, out vec3 inscattering, out float air_m) {
   float distance_m = length(offset);
   vec3 direction = offset / max(distance_m, 1e-6);

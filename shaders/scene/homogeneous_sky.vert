@@ -1,4 +1,4 @@
-// The sky mesh in Hoffman and Preetham's model. Each vertex is placed at the distance of the air's optical length.
+// The sky mesh in Hoffman and Preetham's model. The distance of a vertex is the optical length of air in its direction.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

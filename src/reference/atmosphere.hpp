@@ -38,7 +38,7 @@ class Atmosphere {
   Rgb rayleigh_scattering, mie_scattering, mie_extinction, ozone_absorption;
   double ground_albedo;
   // Light that passes the planet's centre closer than this radius is mostly absorbed. Where a sphere of this radius
-  // hides the sun, the sun is practically set. It only guides the sampling.
+  // hides the sun, the sun is practically set. Only the sampling uses it.
   double opaque_radius_m;
   MiePhaseFunction mie_phase;
 

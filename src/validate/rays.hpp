@@ -21,9 +21,9 @@ struct TestRay {
   double sun_elevation_rad = 0.0;
 };
 
-// Returns `count` rays of one group. From the ground, they point above the horizon; from the air, in all directions;
-// from space, half of them hit the ground and half pass its limb below 60 km. `radius_m` and `height_m` are those of
-// planet and atmosphere [m]; altitudes made for a height of 80 km are scaled to it.
+// Returns `count` rays of one group. From the ground, they point above the horizon; inside the atmosphere, in all
+// directions; from space, half of them hit the ground and half pass its limb below 60 km. `radius_m` and `height_m` are
+// those of planet and atmosphere [m]; altitudes made for a height of 80 km are scaled to it.
 [[nodiscard]] std::vector<TestRay> make_rays(Region region, SunBand band, std::uint32_t count, std::uint64_t seed,
                                              double radius_m, double height_m);
 

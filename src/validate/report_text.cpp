@@ -113,7 +113,7 @@ std::string to_markdown(const Study& study, const Origin& origin) {
                             "largest\nchannel of the reference on the same ray; `noise` is the reference's "
                             "own mean standard error in the "
                             "same measure. All in per cent.\nRays are spread over all directions: from the "
-                            "ground (0 to 2 km), from the air (2 to "
+                            "ground (0 to 2 km), inside the atmosphere (2 to "
                             "70 km) and from space (100 to 20 000 km), with the\nsun above the horizon and "
                             "from 0 to −6° below it.\n\n## Models\n\n"
                             "| model | what it is | compared with |\n|---|---|---|\n"});
@@ -124,7 +124,7 @@ std::string to_markdown(const Study& study, const Origin& origin) {
                                        : concat({"orders 1 to ", std::to_string(model.orders)}),
                    " |\n"});
   }
-  out += "\n## Radiance of the sky, the air and the limb\n\n| model | atmosphere | sun | rays | mean | median | "
+  out += "\n## Radiance of the sky, the atmosphere and the limb\n\n| model | atmosphere | sun | rays | mean | median | "
          "95 % | worst | noise |\n"
          "|---|---|---|--:|--:|--:|--:|--:|--:|\n";
   for (std::size_t m = 0; m < study.models.size(); ++m) {
