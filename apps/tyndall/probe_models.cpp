@@ -97,7 +97,8 @@ Result<std::vector<ProbeAnswer>> run_precomputed(const ProbeSettings& settings, 
   return answers;
 }
 
-// Answers queries one after the other on the CPU. `sky` and `ray` are functions of a query that return models::Answer.
+// Evaluates queries one after the other on the CPU. `sky` and `ray` are functions of a query that return
+// models::Answer.
 template <typename Sky, typename Ray>
 std::vector<ProbeAnswer> answer_each(const ProbeSettings& settings, std::span<const RayQuery> queries, const Sky& sky,
                                      const Ray& ray) {
@@ -116,7 +117,7 @@ void note_missing_ozone(const ProbeSettings& settings, const char* model) {
   settings.note(std::string(model) + " has no ozone: atmosphere.ozone_absorption is left out");
 }
 
-// In double precision: the functions that the shaders draw with.
+// Evaluates O'Neil's model in double precision, with the functions that the shaders use.
 Result<std::vector<ProbeAnswer>> run_oneil(const ProbeSettings& settings, std::span<const RayQuery> queries,
                                            bool table) {
   const models::OneilModel model =
@@ -132,7 +133,7 @@ Result<std::vector<ProbeAnswer>> run_oneil(const ProbeSettings& settings, std::s
   return answer_each(settings, queries, sky, ray);
 }
 
-// Closed forms in double precision.
+// Evaluates the closed forms in double precision.
 Result<std::vector<ProbeAnswer>> run_homogeneous(const ProbeSettings& settings, std::span<const RayQuery> queries) {
   const shared::Homogeneous medium =
       models::homogeneous_from_params(settings.params, homogeneous_lengths(settings.scene));

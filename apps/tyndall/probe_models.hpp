@@ -41,7 +41,7 @@ struct ProbeSettings {
 // Returns the optical lengths that the scene's parameters set for the homogeneous model.
 [[nodiscard]] models::HomogeneousLengths homogeneous_lengths(const scene::SceneParams& scene);
 
-// Answers the queries with one of the models.
+// Evaluates the queries with one of the models.
 [[nodiscard]] Result<std::vector<ProbeAnswer>> ask_model(scene::ModelId model, const ProbeSettings& settings,
                                                          std::span<const RayQuery> queries);
 

@@ -90,7 +90,7 @@ Result<ProbeTable> read_queries(const std::string& path) {
     query.sky_irradiance = files::csv_value(cell(kViewZenith)) == kSky;
     std::array<double, kColumnCount> numbers = {};
     for (const ColumnIndex column : {kAltitude, kViewZenith, kSunZenith, kAzimuth}) {
-      // The sky is not looked at in any direction.
+      // The sky's irradiance has no view direction.
       if (query.sky_irradiance &&
           (column == kViewZenith || (column == kAzimuth && files::csv_value(cell(column)).empty()))) {
         continue;

@@ -22,7 +22,7 @@ namespace {
 using files::concat;
 using validate::Rgb;
 
-// One of the models that `probe` has, with the scene's parameters.
+// Evaluates one of the models of `probe` with the scene's parameters.
 struct AskedModel {
   scene::ModelId id;
   std::string device;
@@ -43,8 +43,8 @@ Result<std::vector<Rgb>> ask_probe(const AskedModel& model, const Params& params
   return out;
 }
 
-// Adds the ground that the sun lights directly to a model whose ground is black: in the reference, a ray that ends on
-// lit ground sees it.
+// Evaluates a model with black ground and adds the directly sunlit ground, which the reference includes at the end of a
+// ray.
 Result<std::vector<Rgb>> ask_over_ground(const AskedModel& model, const Params& params,
                                          std::span<const RayQuery> queries) {
   Result<std::vector<Rgb>> found = ask_probe(model, params, queries);
@@ -126,7 +126,7 @@ std::vector<validate::Model> parameterizations(const std::shared_ptr<Tables>& ta
   return out;
 }
 
-// A row of the report that one of the models of the registry answers, with parameters of the scene that `change` sets.
+// A row of the report for one of the registry's models. `change` sets parameters of the scene.
 struct ProbeRow {
   const char* name;
   const char* meaning;  // nullptr: that of the registry

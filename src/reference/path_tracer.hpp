@@ -48,8 +48,9 @@ struct Estimate {
 using Progress = std::function<bool(double done)>;
 
 // Returns one estimate per query, in order. Query i has its own random numbers, a function of (seed, i), so equal
-// queries in one call give independent estimates.
-// A cancelled call returns what is complete: see Estimate::samples.
+// queries in one call give independent estimates. A cancelled call returns what is complete: see Estimate::samples.
+// Below sea level the atmosphere continues, and the camera ray hits ground at twice the depth of the camera. Light that
+// arrives from below at any other point comes from ground at that point (docs/adr/0007-below-sea-level.md).
 // Errors: invalid_argument for a query, option or parameter out of range.
 Result<std::vector<Estimate>> trace(const Params& params, std::span<const RayQuery> queries, const Options& options,
                                     const Progress& progress = {});
