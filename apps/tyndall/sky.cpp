@@ -165,6 +165,21 @@ std::array<double, 3> horizontal_irradiance(const image::Image& image, const Sky
   return sum;
 }
 
+// Returns what the map says about itself: how it is projected, and what it shows.
+image::Metadata sky_metadata(const config::Settings& settings, const SkyOptions& sky) {
+  image::Metadata metadata = config::radiance_metadata(settings);
+  metadata.emplace_back(
+      "tyndall.sky.projection",
+      "latitude-longitude: zenith at the top, north at the left edge, azimuth clockwise to the right");
+  metadata.emplace_back("tyndall.sky.model", sky.model);
+  metadata.emplace_back("tyndall.sky.disc", sky.disc);
+  if (!sky.place.empty()) {
+    metadata.emplace_back("tyndall.sky.at", files::one_line(sky.place));
+    metadata.emplace_back("tyndall.sky.time", files::one_line(sky.time));
+  }
+  return metadata;
+}
+
 }  // namespace
 
 int run_sky(Args args) {
@@ -225,16 +240,7 @@ int run_sky(Args args) {
     add_sun(image, map, face, medium_from_params(params));
   }
 
-  image::Metadata metadata = config::radiance_metadata(options.settings);
-  metadata.emplace_back(
-      "tyndall.sky.projection",
-      "latitude-longitude: zenith at the top, north at the left edge, azimuth clockwise to the right");
-  metadata.emplace_back("tyndall.sky.model", sky.model);
-  metadata.emplace_back("tyndall.sky.disc", sky.disc);
-  if (!sky.place.empty()) {
-    metadata.emplace_back("tyndall.sky.at", files::one_line(sky.place));
-    metadata.emplace_back("tyndall.sky.time", files::one_line(sky.time));
-  }
+  const image::Metadata metadata = sky_metadata(options.settings, sky);
   constexpr float kLargestHalf = 65504.0F;
   if (const float largest = *std::max_element(image.rgb.begin(), image.rgb.end()); largest > kLargestHalf) {
     note(concat({"the sun's disc has values up to ", files::number_text(largest),
