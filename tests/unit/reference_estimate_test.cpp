@@ -14,6 +14,7 @@ namespace {
 using tyndall::ErrorCode;
 using tyndall::Params;
 using namespace tyndall::reference;
+using tyndall::RayQuery;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 

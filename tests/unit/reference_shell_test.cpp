@@ -14,6 +14,7 @@ namespace {
 using tyndall::Params;
 using tyndall::Vec3;
 using namespace tyndall::reference;
+using tyndall::RayQuery;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 

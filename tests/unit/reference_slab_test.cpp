@@ -15,6 +15,7 @@ using tyndall::MiePhase;
 using tyndall::Params;
 using tyndall::Vec3;
 using namespace tyndall::reference;
+using tyndall::RayQuery;
 
 constexpr double kPi = std::numbers::pi;
 constexpr float kHeight_m = 1000.0F, kScaleHeight_m = 200.0F;
