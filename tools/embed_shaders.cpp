@@ -1,7 +1,8 @@
-// embed_shaders OUT.hpp A.spv B.spv ...: writes a header with one tyndall::gpu::Shader per module: its words, stage,
-// local size, push-constant size, and its bindings by name with the access to each. A module is named after its file
-// without the extension, and an array named after OUT lists all modules. All bindings must be in set 0 and have names.
-// Storage images and buffers must be declared readonly or writeonly where they are so, because barriers follow from it.
+// embed_shaders OUT.hpp A.spv B.spv ...: writes a header with one tyndall::gpu::Shader for each module: its words,
+// stage, local size, push-constant size, the ids of its specialisation constants, and its bindings by name with whether
+// each is read and written. A module is named after its file without the extension; an array named after OUT lists them
+// all. All bindings must be in set 0 and have names. Storage images and buffers must be declared readonly or writeonly
+// where they are, because barriers follow from it.
 #include <spirv_cross/spirv_cross_c.h>
 
 #include <cstdint>
@@ -98,6 +99,16 @@ std::string bindings_of(const Reflector& r, const std::string& module, std::size
   return out.str();
 }
 
+// The ids of the specialisation constants that the optimised module still has, in ascending order.
+std::set<unsigned> constants_of(const Reflector& r) {
+  const spvc_specialization_constant* list = nullptr;
+  std::size_t count = 0;
+  r.check(spvc_compiler_get_specialization_constants(r.compiler, &list, &count));
+  std::set<unsigned> out;
+  for (std::size_t i = 0; i < count; ++i) out.insert(list[i].constant_id);
+  return out;
+}
+
 std::size_t push_constant_size(const Reflector& r) {
   spvc_resources resources = nullptr;
   r.check(spvc_compiler_create_shader_resources(r.compiler, &resources));
@@ -147,9 +158,16 @@ std::string embed(const std::string& path) {
   if (binding_count > 0) {
     out << "inline constexpr tyndall::gpu::Binding " << name << "_bindings[] = {\n" << bindings << "};\n";
   }
+  const std::set<unsigned> constants = constants_of(r);
+  if (!constants.empty()) {
+    out << "inline constexpr std::uint32_t " << name << "_constants[] = {";
+    for (const unsigned id : constants) out << id << ", ";
+    out << "};\n";
+  }
   out << "inline constexpr tyndall::gpu::Shader " << name << " = {\"" << name << "\", " << stage_of(r) << ", " << name
       << "_words, " << (binding_count > 0 ? name + "_bindings" : "{}") << ", " << push_constant_size(r) << ", {"
-      << local[0] << ", " << local[1] << ", " << local[2] << "}};\n\n";
+      << local[0] << ", " << local[1] << ", " << local[2] << "}, " << (constants.empty() ? "{}" : name + "_constants")
+      << "};\n\n";
   spvc_context_destroy(r.context);
   return out.str();
 }

@@ -221,7 +221,6 @@ class Effect {
   // Returns the parameters in use.
   [[nodiscard]] const Params& params() const;
   // Makes at most `budget` of the pipelines that other parameters would need, so that switching costs nothing.
-  // Pipelines that are needed together count as one.
   Result<Progress> prepare_pipelines(std::uint32_t budget = UINT32_MAX);
 
   // Changes EffectDesc::shadow_colors, and makes the pipelines that the parameters then need.

@@ -16,8 +16,9 @@
 #include "frame/table_light.glsl"
 #include "epipolar/sample_light.glsl"
 #include "epipolar/shadow_tree.glsl"
+#include "shared/constant_ids.h"
 
-layout(constant_id = 3) const bool kTree = true;
+layout(constant_id = kTreeId) const bool kTree = true;
 const bool kPanels = kSingle == kIntegration && !kHomogeneous;
 
 uint steps_done = 0u;

@@ -3,7 +3,7 @@
 #ifndef TYNDALL_MARCH_STATE_GLSL
 #define TYNDALL_MARCH_STATE_GLSL
 
-const uint kStateVectors = 4u;  // kStateBytes of src/effect/epipolar_plan.cpp
+const uint kStateVectors = 4u;  // kStateBytes of src/effect/resources.cpp
 
 void store_march(uint at, March m) {
   uint i = at * kStateVectors;

@@ -3,7 +3,9 @@
 #ifndef TYNDALL_REDUCED_GLSL
 #define TYNDALL_REDUCED_GLSL
 
-layout(constant_id = 6) const int kDownscale = 1;
+#include "shared/constant_ids.h"
+
+layout(constant_id = kDownscaleId) const int kDownscale = 1;
 
 // Of the first in the whole picture. Even, so that every block of 2 x 2 lies between the same four reduced pixels.
 const int kFirstReduced = kDownscale == 4 ? 2 : 0;

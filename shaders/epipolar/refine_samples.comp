@@ -11,18 +11,19 @@
 #include "shared/medium.h"
 #include "shared/frame_constants.h"
 #include "shared/epipolar.h"
+#include "shared/constant_ids.h"
 
 const uint kThreads = 32u;
 
 layout(local_size_x = kThreads) in;
-layout(constant_id = 0) const uint kRefinement = 1u;  // 0 by depth, 1 by in-scattering
+layout(constant_id = kRefinementId) const uint kRefinement = 1u;  // 0 by depth, 1 by in-scattering
 
 layout(std430, binding = 0) readonly buffer frame_block { FrameConstants frame; };
 layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants epipolar; };
 layout(std430, binding = 2) buffer slice_block { EpipolarSlice slices[]; };
 layout(std430, binding = 3) readonly buffer coarse_block { uint coarse[]; };
 layout(std430, binding = 6) readonly buffer sample_block { uvec4 samples[]; };
-layout(std430, binding = 4) writeonly buffer source_block { uint sources[]; };
+layout(std430, binding = 4) writeonly buffer interpolation_sources_block { uint sources[]; };
 layout(std430, binding = 5) buffer march_list_block {
   WorkList march;
   uint march_list[];

@@ -6,12 +6,13 @@
 #include "shared/medium.h"
 #include "shared/frame_constants.h"
 #include "shared/epipolar.h"
+#include "shared/constant_ids.h"
 
 const uint kPartLevel = 6u;                    // of a part's topmost node
 const uint kParts = kTreeBlock >> kPartLevel;  // of a block
 
 layout(local_size_x = kTreeGroup * kParts) in;
-layout(constant_id = 0) const uint kFormat = 0u;  // MinMaxFormat
+layout(constant_id = kFormatId) const uint kFormat = 0u;  // MinMaxFormat
 
 layout(std430, binding = 0) readonly buffer frame_block { FrameConstants stored_frame; };
 layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants stored_epipolar; };

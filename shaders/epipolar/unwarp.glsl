@@ -8,9 +8,10 @@
 #include "lib/optical_depth.glsl"
 #include "epipolar/ray_end.glsl"
 #include "epipolar/slices.glsl"
+#include "shared/constant_ids.h"
 
-layout(constant_id = 0) const uint kExtinction = 0u;  // 0 epipolar, 1 per pixel
-layout(constant_id = 9) const uint kSparsity = 0u;    // of src/effect/epipolar_plan.hpp
+layout(constant_id = kExtinctionId) const uint kExtinction = 0u;  // 0 epipolar, 1 per pixel
+layout(constant_id = kSparsityId) const uint kSparsity = 0u;      // Sparsity of src/effect/frame_steps.hpp
 
 const bool kSkyline = kSparsity >= 1u && !kHomogeneous;
 const bool kSparse = kSparsity == 2u && !kHomogeneous;

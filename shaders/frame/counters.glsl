@@ -4,9 +4,10 @@
 #ifndef TYNDALL_COUNTERS_GLSL
 #define TYNDALL_COUNTERS_GLSL
 
+#include "shared/constant_ids.h"
 #include "shared/counters.h"
 
-layout(constant_id = 8) const bool kCount = false;
+layout(constant_id = kCountId) const bool kCount = false;
 
 void count(uint which, uint n) {
   if (!kCount) return;

@@ -8,8 +8,9 @@
 #define TYNDALL_HOMOGENEOUS_MEDIUM_GLSL
 
 #include "frame/view_ray.glsl"
+#include "shared/constant_ids.h"
 
-layout(constant_id = 5) const bool kHomogeneous = false;
+layout(constant_id = kHomogeneousId) const bool kHomogeneous = false;
 
 // Clips [0, end] to the part below the medium's top, which is a horizontal plane.
 void clip_to_top(float cos_zenith, out float start, inout float end) {

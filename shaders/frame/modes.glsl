@@ -1,8 +1,9 @@
-// The modes of scattering as specialisation constants, so that no mode pays for another: CPU devices execute every
-// branch. The values are those of include/tyndall/params.def; the ids are those of ModeConstants in
-// src/effect/modes.hpp.
+// Which parts of the light are computed. These are specialisation constants so that no mode pays for another one (CPU
+// devices execute every branch). The values are those of include/tyndall/params.def.
 #ifndef TYNDALL_MODES_GLSL
 #define TYNDALL_MODES_GLSL
+
+#include "shared/constant_ids.h"
 
 const uint kNone = 0u;
 const uint kIntegration = 1u;  // values of kSingle
@@ -10,10 +11,10 @@ const uint kTable = 2u;
 const uint kContiguous = 0u;  // values of kSections
 const uint kEach = 1u;
 
-layout(constant_id = 0) const uint kSingle = kIntegration;
-layout(constant_id = 1) const bool kOccluded = false;  // shadows also apply to the higher orders
-layout(constant_id = 2) const uint kSections = kContiguous;
-layout(constant_id = 4) const bool kColors = false;  // shadow_colors tints the sunlight
+layout(constant_id = kSingleId) const uint kSingle = kIntegration;
+layout(constant_id = kOccludedId) const bool kOccluded = false;  // shadows also apply to the higher orders
+layout(constant_id = kSectionsId) const uint kSections = kContiguous;
+layout(constant_id = kColorsId) const bool kColors = false;  // shadow_colors tints the sunlight
 
 // Whether shadows apply to in-scattering from the tables.
 const bool kLitTables = kSingle == kTable || kOccluded;

@@ -6,9 +6,11 @@
 #include "lib/table_mapping.glsl"
 #include "precompute/ray_nodes.glsl"
 #include "precompute/gather_grid.glsl"
+#include "shared/constant_ids.h"
 
 layout(local_size_x = 8, local_size_y = 1) in;
-layout(constant_id = 0) const int kOfTables = 0;  // 1: the rays of the tables, 0: those of the gathering grid
+layout(constant_id = kRaysOfTablesId) const
+    int kOfTables = 0;  // 1: the rays of the tables, 0: those of the gathering grid
 
 layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
 layout(std430, binding = 1) readonly buffer shape_block {

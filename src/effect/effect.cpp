@@ -1,5 +1,6 @@
-// The insides of the effect: creation, changes of settings and the recording of a frame. Reads from top to bottom
-// like the frame itself; the numbers come from frame_constants.cpp, the checks from check.cpp and limits.cpp.
+// The effect: its creation, changes of its settings, and the recording of a frame. The steps of a frame are in
+// frame_steps.cpp, its constants in frame_constants.cpp and epipolar_constants.cpp, the checks in check.cpp and
+// limits.cpp.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -8,11 +9,11 @@
 #include <utility>
 
 #include "effect/effect_state.hpp"
+#include "effect/epipolar_constants.hpp"
 #include "effect/frame_constants.hpp"
+#include "effect/frame_steps.hpp"
 #include "effect/limits.hpp"
 #include "effect/medium.hpp"
-#include "effect/modes.hpp"
-#include "effect_shaders.hpp"
 #include "gpu/try.hpp"
 
 namespace tyndall {
@@ -29,15 +30,18 @@ constexpr gpu::ImageDesc kNoShadows = {"no_shadows", VK_FORMAT_D32_SFLOAT, {1, 1
 constexpr gpu::ImageDesc kNoColors = {
     "no_colors", VK_FORMAT_R8G8B8A8_UNORM, {1, 1, 1}, VK_IMAGE_USAGE_SAMPLED_BIT, 1, 1, true};
 
-// A slot of the ring of constants: what one frame in flight reads.
 constexpr VkDeviceSize align(VkDeviceSize size) {
   return (size + kBufferAlignment - 1) / kBufferAlignment * kBufferAlignment;
 }
+// A slot of the ring of constants holds what one frame in flight reads.
 constexpr VkDeviceSize kFrameBytes = align(sizeof(shared::FrameConstants));
 constexpr VkDeviceSize kCascadeBytes = align(sizeof(CascadeArray));
 constexpr VkDeviceSize kMediumBytes = align(sizeof(shared::Medium));
 constexpr VkDeviceSize kEpipolarBytes = align(sizeof(shared::EpipolarConstants));
-constexpr VkDeviceSize kSlotBytes = kFrameBytes + kCascadeBytes + kMediumBytes + kEpipolarBytes;
+constexpr VkDeviceSize kCascadeOffset = kFrameBytes;
+constexpr VkDeviceSize kMediumOffset = kCascadeOffset + kCascadeBytes;
+constexpr VkDeviceSize kEpipolarOffset = kMediumOffset + kMediumBytes;
+constexpr VkDeviceSize kSlotBytes = kEpipolarOffset + kEpipolarBytes;
 static_assert(shared::kMaxCascades == kMaxCascades);
 // Counters of a frame, as pairs of words.
 constexpr VkDeviceSize kCounterBytes = align(shared::kCounters * sizeof(std::uint64_t));
@@ -46,12 +50,6 @@ constexpr VkDeviceSize kCounterBytes = align(shared::kCounters * sizeof(std::uin
 constexpr VkBufferUsageFlags kConstantsUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
 constexpr VkBufferUsageFlags kCounterUsage =
     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
-
-// Of no_air.comp.
-struct NoAirPush {
-  VkExtent2D extent;
-  VkOffset2D color_offset, output_offset;
-};
 
 }  // namespace
 
@@ -74,7 +72,7 @@ MemoryUsage plan_memory(const gpu::Device& device, const EffectDesc& desc, const
     usage.persistent += gpu::image_bytes(device, table_desc(static_cast<TableId>(i), params));
   }
   usage.persistent += gpu::buffer_bytes(device, kCounterBytes * FrameRing::slots(desc), kCounterUsage);
-  usage.persistent += epipolar_bytes(device, desc, params);
+  usage.persistent += frame_buffer_bytes(device, desc, params);
   usage.transient = table_scratch_bytes(device, params);
   usage.host = gpu::buffer_bytes(device, kSlotBytes * FrameRing::slots(desc), kConstantsUsage);
   if (desc.counters) {
@@ -92,12 +90,9 @@ Effect::State::~State() {
 }
 
 Result<void> Effect::State::create_objects() {
-  const bool full = desc.output_format == OutputFormat::rgba32f;
-  TYNDALL_ASSIGN(
-      no_air, gpu::create_compute_pipeline(device, full ? shaders::no_air_comp_rgba32f : shaders::no_air_comp_rgba16f));
-  no_air.name = "no_air";
-  TYNDALL_TRY(epipolar.create(device, desc));
-  TYNDALL_TRY(tables.create(device, FrameRing::slots(desc), desc.timings));
+  pipelines.create(device);
+  buffers.create(device);
+  TYNDALL_TRY(tables.create(device, pipelines, FrameRing::slots(desc), desc.timings));
   TYNDALL_TRY(change(desc, params));
   TYNDALL_ASSIGN(no_shadows, gpu::create_image(device, kNoShadows));
   TYNDALL_ASSIGN(no_colors, gpu::create_image(device, kNoColors));
@@ -140,37 +135,19 @@ Result<void> Effect::State::create_samplers() {
   return {};
 }
 
-Result<void> Effect::State::make_march_per_pixel(bool colors, std::uint32_t mode) {
-  gpu::Pipeline& out = march_per_pixel[colors ? 1 : 0][mode];
-  if (out.pipeline) return {};
-  const bool full = desc.output_format == OutputFormat::rgba32f;
-  const gpu::Shader& shader = full ? shaders::march_per_pixel_comp_rgba32f : shaders::march_per_pixel_comp_rgba16f;
-  const std::array<gpu::Constant, 4> m = mode_constants(mode);
-  const gpu::Constant of_march[] = {m[0], m[1], m[2], m[3], {4, colors ? 1U : 0U}, {8, desc.counters ? 1U : 0U}};
-  TYNDALL_ASSIGN(out, gpu::create_compute_pipeline(device, shader, of_march));
-  out.name = "march_per_pixel";
-  return {};
-}
-
-Result<void> Effect::State::make_pipelines(const EffectDesc& d, const Params& p) {
-  if (!p.scattering.enabled) return {};
-  if (p.scattering.technique == Technique::epipolar) return epipolar.prepare(d, p);
-  if (d.shadow_colors) TYNDALL_TRY(make_march_per_pixel(true, mode_index(p.scattering)));
-  return make_march_per_pixel(false, mode_index(p.scattering));
-}
-
 Result<Effect::State::Pending> Effect::State::plan(const EffectDesc& d, const Params& p) {
   TYNDALL_TRY(check_limits(device, d, p));
-  TYNDALL_TRY(make_pipelines(d, p));
+  TYNDALL_TRY(pipelines.make(pipelines_of_frames(d, p)));
   Pending pending = {d, p, {}, {}};
-  TYNDALL_ASSIGN(pending.epipolar, epipolar.plan(d, p));
+  TYNDALL_ASSIGN(pending.buffers, buffers.plan(d, p));
   TYNDALL_ASSIGN(pending.tables, tables.plan(p));
   return pending;
 }
 
 void Effect::State::commit(Pending&& pending) noexcept {
-  epipolar.commit(std::move(pending.epipolar));
+  buffers.commit(std::move(pending.buffers), FrameRing::slots(desc) + 1);
   tables.commit(std::move(pending.tables));
+  if (desc.shadow_colors != pending.desc.shadow_colors) all_pipelines.clear();
   desc = pending.desc;
   params = pending.params;
 }
@@ -182,127 +159,94 @@ Result<void> Effect::State::change(const EffectDesc& d, const Params& p) {
 }
 
 Result<Progress> Effect::State::prepare_pipelines(std::uint32_t budget) {
+  if (all_pipelines.empty()) all_pipelines = all_frame_pipelines(desc);
+  TYNDALL_TRY(pipelines.make(all_pipelines, budget));
   Progress progress;
-  for (std::uint32_t mode = 0; mode < kModeCount; ++mode) {
-    if (!mode_exists(mode)) continue;
-    for (const bool colors : {false, true}) {
-      if (colors && !desc.shadow_colors) continue;
-      ++progress.total;
-      const bool made = static_cast<bool>(march_per_pixel[colors ? 1 : 0][mode].pipeline);
-      if (!made && budget > 0) {
-        TYNDALL_TRY(make_march_per_pixel(colors, mode));
-        --budget;
-      } else if (!made) {
-        continue;
-      }
-      ++progress.done;
-    }
-  }
-  TYNDALL_TRY(epipolar.prepare_others(budget, progress));
+  progress.total = static_cast<std::uint32_t>(all_pipelines.size());
+  for (const PipelineKey& key : all_pipelines) progress.done += pipelines.find(key) != nullptr ? 1 : 0;
   return progress;
-}
-
-// Labels, binds by name and dispatches one pass over `size` invocations.
-Result<void> Effect::State::run(VkCommandBuffer cmd, const gpu::Pipeline& pipeline,
-                                std::span<const gpu::NamedResource> resources, const void* push, VkExtent3D size) {
-  const gpu::Label label(device, cmd, pipeline.name);
-  const std::string_view missing = gpu::bind(device, cmd, pipeline, resources, push);
-  if (!missing.empty()) {
-    return Error{ErrorCode::invalid_argument,
-                 std::string("nothing is bound to ") + std::string(missing) + " of " + pipeline.name};
-  }
-  gpu::dispatch(device, cmd, pipeline, size.width, size.height, size.depth);
-  return {};
 }
 
 void Effect::State::prepare_images(VkCommandBuffer cmd) {
   tables.begin_frame(cmd);
-  epipolar.begin_frame();
+  buffers.begin_frame();
   if (images_ready) return;
   gpu::transition(device, cmd, no_shadows, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
   gpu::transition(device, cmd, no_colors, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
   images_ready = true;
 }
 
-Result<void> Effect::State::record(VkCommandBuffer cmd, const FrameInputs& inputs) {
-  State& s = *this;
-  TYNDALL_TRY(check_frame(inputs, s.desc, s.params));
-  TYNDALL_ASSIGN(const std::optional<std::uint64_t> unfinished, s.ring.take(inputs.frame_index, inputs.view));
-  const std::uint32_t slot = s.ring.slot(inputs.frame_index, inputs.view);
-  const VkDeviceSize frame_offset = kSlotBytes * slot;
-  const VkDeviceSize cascade_offset = frame_offset + kFrameBytes;
-  const VkDeviceSize medium_offset = cascade_offset + kCascadeBytes;
-  const shared::FrameConstants frame = frame_constants(inputs, s.desc, s.params);
-  if (s.desc.check_inputs) s.remarks.on_frame(inputs, {s.desc, s.params, frame, s.tables.ready(), unfinished}, s.info);
+void Effect::State::write_constants(const FrameInputs& inputs, const shared::FrameConstants& frame,
+                                    std::uint32_t slot) {
   const CascadeArray cascades = cascade_constants(inputs);
-  const shared::Medium medium = medium_from_params(s.params);
-  std::memcpy(s.mapped(frame_offset), &frame, sizeof frame);
-  std::memcpy(s.mapped(cascade_offset), &cascades, sizeof cascades);
-  std::memcpy(s.mapped(medium_offset), &medium, sizeof medium);
+  const shared::Medium medium = medium_from_params(params);
+  const shared::EpipolarConstants slices = epipolar_constants(inputs, desc, params);
+  const VkDeviceSize offset = kSlotBytes * slot;
+  std::memcpy(mapped(offset), &frame, sizeof frame);
+  std::memcpy(mapped(offset + kCascadeOffset), &cascades, sizeof cascades);
+  std::memcpy(mapped(offset + kMediumOffset), &medium, sizeof medium);
+  std::memcpy(mapped(offset + kEpipolarOffset), &slices, sizeof slices);
+}
 
-  const VkDeviceSize epipolar_offset = medium_offset + kMediumBytes;
-  const shared::EpipolarConstants slices = epipolar_constants(inputs, s.desc, s.params);
-  std::memcpy(s.mapped(epipolar_offset), &slices, sizeof slices);
+BoundResources Effect::State::bind_resources(const FrameInputs& inputs, std::uint32_t slot) const {
+  BoundResources out;
+  const VkDeviceSize offset = kSlotBytes * slot;
+  const VkBuffer ring_buffer = constants.buffer.get();
+  out.set(Resource::frame, ring_buffer, offset, sizeof(shared::FrameConstants));
+  out.set(Resource::cascades, ring_buffer, offset + kCascadeOffset, sizeof(CascadeArray));
+  out.set(Resource::medium, ring_buffer, offset + kMediumOffset, sizeof(shared::Medium));
+  out.set(Resource::epipolar, ring_buffer, offset + kEpipolarOffset, sizeof(shared::EpipolarConstants));
 
-  if (s.desc.timings) s.timer.begin_frame(cmd, slot);
-  s.prepare_images(cmd);
-  const VkDeviceSize counter_offset = kCounterBytes * slot;
-  if (s.desc.counters) s.clear_counters(cmd, counter_offset);
-  const Texture none = {s.no_shadows.view.get(), VK_IMAGE_LAYOUT_GENERAL};
-  const Texture& shadows = inputs.cascades.empty() ? none : inputs.shadow_maps;
-  const bool colored = has_colors(inputs, s.params);
-  const Texture& colors = colored ? inputs.shadow_colors : Texture{s.no_colors.view.get(), VK_IMAGE_LAYOUT_GENERAL};
-  const auto table = [&s](const char* name, TableId id) {
-    return gpu::named_image(name, s.tables.table(id).view.get(), VK_IMAGE_LAYOUT_GENERAL, s.linear.get());
+  const auto image = [&out](Resource resource, const Texture& texture, VkSampler sampler) {
+    out.set(resource, texture.view, texture.layout, sampler);
   };
-  const gpu::NamedResource resources[] = {
-      gpu::named_buffer("medium_block", s.constants.buffer.get(), medium_offset, sizeof medium),
-      gpu::named_buffer("frame_block", s.constants.buffer.get(), frame_offset, sizeof frame),
-      gpu::named_buffer("cascade_block", s.constants.buffer.get(), cascade_offset, sizeof cascades),
-      gpu::named_buffer("epipolar_block", s.constants.buffer.get(), epipolar_offset, sizeof slices),
-      gpu::named_buffer("counter_block", s.counters.buffer.get(), counter_offset, kCounterBytes),
-      gpu::named_image("scene_color", inputs.color.view, inputs.color.layout, s.nearest.get()),
-      gpu::named_image("scene_depth", inputs.depth.view, inputs.depth.layout, s.nearest.get()),
-      gpu::named_image("shadow_maps", shadows.view, shadows.layout, s.shadow_compare.get()),
-      gpu::named_image("shadow_depths", shadows.view, shadows.layout, s.shadow_plain.get()),
-      gpu::named_image("shadow_colors", colors.view, colors.layout, s.shadow_tint.get()),
-      table("single_rayleigh", TableId::single_rayleigh),
-      table("single_mie", TableId::single_mie),
-      table("high_orders", TableId::high_orders),
-      gpu::named_image("output_color", inputs.output.view, inputs.output.layout),
+  const Texture& shadows =
+      inputs.cascades.empty() ? Texture{no_shadows.view.get(), VK_IMAGE_LAYOUT_GENERAL} : inputs.shadow_maps;
+  const Texture& colors =
+      has_colors(inputs, params) ? inputs.shadow_colors : Texture{no_colors.view.get(), VK_IMAGE_LAYOUT_GENERAL};
+  image(Resource::scene_color, inputs.color, nearest.get());
+  image(Resource::scene_depth, inputs.depth, nearest.get());
+  image(Resource::shadow_maps, shadows, shadow_compare.get());
+  image(Resource::shadow_depths, shadows, shadow_plain.get());
+  image(Resource::shadow_colors, colors, shadow_tint.get());
+  image(Resource::output_color, inputs.output, VK_NULL_HANDLE);
+
+  const auto table = [&](Resource resource, TableId id) {
+    out.set(resource, tables.table(id).view.get(), VK_IMAGE_LAYOUT_GENERAL, linear.get());
   };
-  gpu::Timer* passes = s.desc.timings ? &s.timer : nullptr;
-  if (s.params.scattering.enabled && s.params.scattering.technique == Technique::epipolar) {
-    TYNDALL_TRY(s.epipolar.record(cmd, inputs, s.params, resources, passes));
-  } else {
-    const gpu::Pipeline& pipeline =
-        s.params.scattering.enabled ? s.march_per_pixel[colored ? 1 : 0][mode_index(s.params.scattering)] : s.no_air;
-    if (passes != nullptr) passes->begin(cmd, pipeline.name);
-    const NoAirPush push = {inputs.extent, inputs.color.offset, inputs.output.offset};
-    TYNDALL_TRY(s.run(cmd, pipeline, resources, &push, {inputs.extent.width, inputs.extent.height, 1}));
-    if (passes != nullptr) passes->end(cmd);
+  table(Resource::single_rayleigh, TableId::single_rayleigh);
+  table(Resource::single_mie, TableId::single_mie);
+  table(Resource::high_orders, TableId::high_orders);
+
+  out.set(Resource::counters, counters.buffer.get(), kCounterBytes * slot, kCounterBytes);
+  out.set(Resource::counters_readback, counters_readback.buffer.get(), kCounterBytes * slot, kCounterBytes);
+  for (std::size_t i = 0; i < kFrameBuffers; ++i) {
+    out.set(frame_buffer(i), buffers[frame_buffer(i)].buffer.get());
   }
-  if (s.desc.counters) s.copy_counters(cmd, counter_offset);
-  s.ring.record_end(cmd, inputs.frame_index, inputs.view);
+  return out;
+}
+
+Result<void> Effect::State::record(VkCommandBuffer cmd, const FrameInputs& inputs) {
+  TYNDALL_TRY(check_frame(inputs, desc, params));
+  TYNDALL_ASSIGN(const std::optional<std::uint64_t> unfinished, ring.take(inputs.frame_index, inputs.view));
+  const std::uint32_t slot = ring.slot(inputs.frame_index, inputs.view);
+  const shared::FrameConstants frame = frame_constants(inputs, desc, params);
+  if (desc.check_inputs) remarks.on_frame(inputs, {desc, params, frame, tables.ready(), unfinished}, info);
+  write_constants(inputs, frame, slot);
+
+  if (desc.timings) timer.begin_frame(cmd, slot);
+  prepare_images(cmd);
+  const BoundResources resources = bind_resources(inputs, slot);
+  StepRecorder recorder(device, cmd, pipelines, resources, desc.timings ? &timer : nullptr);
+  // The frame before used the same buffers, and its commands need not have completed.
+  constexpr VkAccessFlags kFrameBefore = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT |
+                                         VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT |
+                                         VK_ACCESS_INDIRECT_COMMAND_READ_BIT;
+  recorder.assume(Resource::counters, kFrameBefore);
+  for (std::size_t i = 0; i < kFrameBuffers; ++i) recorder.assume(frame_buffer(i), kFrameBefore);
+  for (const Step& step : frame_steps(desc, params, frame_shape(inputs))) TYNDALL_TRY(recorder.record(step));
+  ring.record_end(cmd, inputs.frame_index, inputs.view);
   return {};
-}
-
-void Effect::State::clear_counters(VkCommandBuffer cmd, VkDeviceSize offset) {
-  gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT,
-               VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_READ_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
-               VK_ACCESS_TRANSFER_WRITE_BIT);
-  device.vk.CmdFillBuffer(cmd, counters.buffer.get(), offset, kCounterBytes, 0);
-  gpu::barrier(device, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
-               VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
-}
-
-void Effect::State::copy_counters(VkCommandBuffer cmd, VkDeviceSize offset) {
-  gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
-               VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT);
-  const VkBufferCopy region = {offset, offset, kCounterBytes};
-  device.vk.CmdCopyBuffer(cmd, counters.buffer.get(), counters_readback.buffer.get(), 1, &region);
-  gpu::barrier(device, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_HOST_BIT,
-               VK_ACCESS_HOST_READ_BIT);
 }
 
 Counters Effect::State::read_counters(std::uint64_t frame_index, std::uint32_t view) const {
@@ -325,16 +269,16 @@ std::span<const ResourceMemory> Effect::State::list_resources() {
   row(no_shadows.desc.name, no_shadows.bytes);
   row(no_colors.desc.name, no_colors.bytes);
   row("counters", counters.bytes);
-  for (std::uint32_t i = 0; i < kEpipolarBuffers; ++i) {
-    const auto buffer = static_cast<EpipolarBuffer>(i);
-    if (epipolar.bytes(buffer) > 0) row(epipolar_buffer_name(buffer), epipolar.bytes(buffer));
+  for (std::size_t i = 0; i < kFrameBuffers; ++i) {
+    const gpu::Buffer& buffer = buffers[frame_buffer(i)];
+    if (buffer.bytes > 0) row(name_of(frame_buffer(i)), buffer.bytes);
   }
   return {resource_rows.data(), used};
 }
 
 MemoryUsage Effect::State::memory() const {
-  return {tables.persistent_bytes() + no_shadows.bytes + no_colors.bytes + counters.bytes + epipolar.bytes(),
-          tables.transient_bytes() + epipolar.retired_bytes(), constants.bytes + counters_readback.bytes};
+  return {tables.persistent_bytes() + no_shadows.bytes + no_colors.bytes + counters.bytes + buffers.bytes(),
+          tables.transient_bytes() + buffers.retired_bytes(), constants.bytes + counters_readback.bytes};
 }
 
 std::span<const PassTiming> Effect::State::read_timings(std::uint64_t frame_index, std::uint32_t view) {

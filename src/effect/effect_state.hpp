@@ -5,12 +5,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
-#include "effect/epipolar.hpp"
+#include "effect/frame_buffers.hpp"
 #include "effect/frame_ring.hpp"
+#include "effect/pipeline_cache.hpp"
 #include "effect/remarks.hpp"
+#include "effect/step_recorder.hpp"
 #include "effect/tables.hpp"
-#include "gpu/pipeline.hpp"
 #include "gpu/resource.hpp"
 #include "gpu/timer.hpp"
 #include "tyndall/effect.hpp"
@@ -35,9 +37,9 @@ struct Effect::State {
   Params params;
   gpu::Device device;
 
-  std::array<std::array<gpu::Pipeline, kModeCount>, 2> march_per_pixel;  // without and with colours; made when needed
-  gpu::Pipeline no_air;
-  Epipolar epipolar;
+  PipelineCache pipelines;
+  std::vector<PipelineKey> all_pipelines;  // that any parameters may need with `desc`; filled when first requested
+  FrameBuffers buffers;
   TableBuilder tables;
   gpu::Image no_shadows, no_colors;
   gpu::Buffer constants;
@@ -52,7 +54,7 @@ struct Effect::State {
   Remarks remarks;
   gpu::Timer timer;
   std::array<PassTiming, kMaxTimedPasses> timings = {};
-  std::array<ResourceMemory, kTableCount + kEpipolarBuffers + 3> resource_rows = {};
+  std::array<ResourceMemory, kTableCount + kFrameBuffers + 3> resource_rows = {};
 
   bool images_ready = false;  // the first recording moves them out of the undefined layout
 
@@ -60,7 +62,7 @@ struct Effect::State {
   struct Pending {
     EffectDesc desc;
     Params params;
-    Epipolar::Pending epipolar;
+    FrameBuffers::Pending buffers;
     TableBuilder::Pending tables;
   };
 
@@ -87,14 +89,10 @@ struct Effect::State {
 
  private:
   Result<void> create_samplers();
-  Result<void> make_march_per_pixel(bool colors, std::uint32_t mode);
-  // The pipelines that record() needs with these settings, where missing. They are expensive to make.
-  Result<void> make_pipelines(const EffectDesc& desc, const Params& params);
   void prepare_images(VkCommandBuffer cmd);
-  void clear_counters(VkCommandBuffer cmd, VkDeviceSize offset);
-  void copy_counters(VkCommandBuffer cmd, VkDeviceSize offset);
-  Result<void> run(VkCommandBuffer cmd, const gpu::Pipeline& pipeline, std::span<const gpu::NamedResource> resources,
-                   const void* push, VkExtent3D size);
+  // Writes the constants of a frame into its slot of the ring.
+  void write_constants(const FrameInputs& inputs, const shared::FrameConstants& frame, std::uint32_t slot);
+  [[nodiscard]] BoundResources bind_resources(const FrameInputs& inputs, std::uint32_t slot) const;
 };
 
 }  // namespace tyndall

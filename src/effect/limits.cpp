@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <string>
 
-#include "effect/epipolar_plan.hpp"
+#include "effect/resources.hpp"
+#include "effect/shared.hpp"
 #include "effect/table_plan.hpp"
 #include "effect_shaders.hpp"
 #include "gpu/pipeline.hpp"
@@ -89,10 +90,10 @@ Result<void> check_limits(const gpu::Device& device, const EffectDesc& desc, con
   for (const BufferPlan& plan : plan_scratch(params.tables.size.y)) {
     TYNDALL_TRY(check_buffer(device, plan.name, plan.bytes, "tables.size"));
   }
-  const EpipolarSizes sizes = epipolar_sizes(desc, params);
-  for (std::size_t i = 0; i < kEpipolarBuffers; ++i) {
-    const auto buffer = static_cast<EpipolarBuffer>(i);
-    TYNDALL_TRY(check_buffer(device, epipolar_buffer_name(buffer), sizes[i], epipolar_buffer_cause(buffer)));
+  const FrameBufferSizes sizes = frame_buffer_sizes(desc, params);
+  for (std::size_t i = 0; i < kFrameBuffers; ++i) {
+    const ResourceInfo& info = info_of(frame_buffer(i));
+    TYNDALL_TRY(check_buffer(device, info.name, sizes.bytes[i], info.cause));
   }
   return {};
 }

@@ -24,6 +24,7 @@ struct ivec3 {
   std::int32_t x, y, z;
 };
 
+#include "shared/constant_ids.h"
 #include "shared/counters.h"
 #include "shared/epipolar.h"
 #include "shared/frame_constants.h"

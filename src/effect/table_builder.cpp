@@ -1,19 +1,18 @@
-// Building the tables in slices, and copying them to and from buffers.
+// Builds the tables step by step, and copies them to and from buffers. The steps themselves are in table_steps.cpp.
 #include <algorithm>
 #include <string>
 #include <utility>
 
 #include "effect/medium.hpp"
 #include "effect/table_plan.hpp"
+#include "effect/table_steps.hpp"
 #include "effect/tables.hpp"
-#include "effect_shaders.hpp"
 #include "gpu/try.hpp"
 
 namespace tyndall {
 namespace {
 
-constexpr std::uint32_t kAltitudesPerSlice = 8;  // of the gathering grid
-constexpr std::uint32_t kMostSlices = 4096 * 3 + 512;
+constexpr std::uint32_t kMaxSteps = 4096 * 3 + 512;
 
 Result<void> check_table_buffer(VkBuffer buffer, VkDeviceSize offset) {
   if (buffer == VK_NULL_HANDLE) return Error{ErrorCode::invalid_argument, "the buffer of the tables is null"};
@@ -32,34 +31,19 @@ VkBufferImageCopy whole_table(const gpu::Image& image, VkDeviceSize offset) {
 
 }  // namespace
 
-Result<void> TableBuilder::create(const gpu::Device& device, std::uint32_t frames_in_flight, bool timings) {
+Result<void> TableBuilder::create(const gpu::Device& device, PipelineCache& pipelines, std::uint32_t frames_in_flight,
+                                  bool timings) {
   device_ = &device;
+  pipelines_ = &pipelines;
   frames_in_flight_ = frames_in_flight;
   timings_ = timings;
-  constexpr gpu::Constant kOfGrid[] = {{0, 0}};
-  constexpr gpu::Constant kOfTables[] = {{0, 1}};
-  struct Row {
-    Stage stage;
-    const char* name;
-    const gpu::Shader& shader;
-    std::span<const gpu::Constant> constants = {};
-  };
-  const Row rows[] = {{sun_light, "sun_light", shaders::sun_light_comp},
-                      {grid_nodes, "grid_nodes", shaders::ray_nodes_comp, kOfGrid},
-                      {phase_matrix, "phase_matrix", shaders::phase_matrix_comp},
-                      {gather_single, "gather_single", shaders::gather_single_comp},
-                      {gather_multiple, "gather_multiple", shaders::gather_multiple_comp},
-                      {scatter, "scatter", shaders::scatter_comp},
-                      {ray_nodes, "ray_nodes", shaders::ray_nodes_comp, kOfTables},
-                      {table_single, "table_single", shaders::table_single_comp},
-                      {table_high, "table_high", shaders::table_high_comp},
-                      {sky_light, "sky_light", shaders::sky_light_comp}};
-  for (const Row& row : rows) {
-    TYNDALL_ASSIGN(pipelines_[row.stage], gpu::create_compute_pipeline(device, row.shader, row.constants));
-    pipelines_[row.stage].name = row.name;
-  }
+  // A complete build at the defaults has every step.
+  std::vector<PipelineKey> keys;
+  for (const Step& step : table_steps({}, kAllTables)) keys.push_back(step.pipeline);
+  TYNDALL_TRY(pipelines.make(keys));
   if (timings) {
-    TYNDALL_ASSIGN(timer_, gpu::Timer::create(device, 1, kMostSlices));
+    TYNDALL_ASSIGN(timer_, gpu::Timer::create(device, 1, kMaxSteps));
+    for (const char* name : table_step_names()) times_.push_back({name, 0.0});
   }
   return {};
 }
@@ -76,7 +60,7 @@ Result<TableScratch> TableBuilder::create_scratch(std::uint32_t views) const {
 
 Result<TableBuilder::Pending> TableBuilder::plan(const Params& params) {
   Pending out;
-  const bool building = done_ < slices_.size();
+  const bool building = done_ < steps_.size();
   // For what commit() retires, and for what the end of the build does, when nothing may be allocated.
   retired_.reserve(retired_.size() + 2);
   if (building && stale_tables(wanted_, params) == 0) return out;
@@ -100,7 +84,7 @@ Result<TableBuilder::Pending> TableBuilder::plan(const Params& params) {
   if (scratch_.views != params.tables.size.y) {
     TYNDALL_ASSIGN(out.scratch, create_scratch(params.tables.size.y));
   }
-  out.slices = plan_slices(params, out.stale);
+  out.steps = table_steps(params, out.stale);
   return out;
 }
 
@@ -108,7 +92,7 @@ void TableBuilder::commit(Pending&& pending) noexcept {
   if (pending.kind == Pending::Kind::nothing) return;
   if (pending.kind == Pending::Kind::cancel) {
     retire(std::exchange(next_, {}), std::exchange(scratch_, {}));
-    slices_.resize(done_);
+    steps_.resize(done_);
     return;
   }
   TableSet old = {};
@@ -127,40 +111,11 @@ void TableBuilder::commit(Pending&& pending) noexcept {
   if (replaced) retire(std::move(old), std::move(old_scratch));
   wanted_ = pending.wanted;
   stale_ = pending.stale;
-  slices_ = std::move(pending.slices);
+  steps_ = std::move(pending.steps);
   done_ = 0;
 }
 
 TableImage& TableBuilder::target(TableId id) { return (complete_ ? next_ : tables_)[static_cast<std::uint32_t>(id)]; }
-
-std::vector<TableBuilder::Slice> TableBuilder::plan_slices(const Params& params, std::uint32_t stale) {
-  std::vector<Slice> out;
-  const auto cut = [&out](Stage stage, std::uint32_t count, std::uint32_t per_slice, std::uint32_t order) {
-    for (std::uint32_t first = 0; first < count; first += per_slice) {
-      out.push_back({stage, first, std::min(per_slice, count - first), order});
-    }
-  };
-  if ((stale & bit(TableId::sun_transmittance)) != 0) cut(sun_light, 1, 1, 0);
-  const bool high = (stale & kHighTables) != 0;
-  const bool single = (stale & kSingleTables) != 0;
-  if (high) {
-    const std::uint32_t altitudes = shared::kGatherAltitudes;
-    cut(grid_nodes, altitudes, altitudes, 0);
-    cut(phase_matrix, altitudes, altitudes, 0);
-    // The last turn scatters nothing any more: it adds the last order's irradiance.
-    for (std::uint32_t order = 2; order <= params.tables.orders + 1; ++order) {
-      cut(order == 2 ? gather_single : gather_multiple, altitudes, kAltitudesPerSlice, order);
-      cut(scatter, altitudes, kAltitudesPerSlice, order);
-    }
-    cut(sky_light, 1, 1, 0);
-  }
-  for (std::uint32_t altitude = 0; altitude < params.tables.size.x; ++altitude) {
-    out.push_back({ray_nodes, altitude, 1, 0});
-    if (single) out.push_back({table_single, altitude, 1, 0});
-    if (high) out.push_back({table_high, altitude, 1, 0});
-  }
-  return out;
-}
 
 void TableBuilder::upload_constants(VkCommandBuffer cmd) {
   const shared::Medium medium = medium_from_params(wanted_);
@@ -221,79 +176,55 @@ Result<void> TableBuilder::record_load(VkCommandBuffer cmd, VkBuffer buffer, VkD
   // From here on as if compute shaders had written them: what waits for a build waits for this as well.
   gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
                VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
-  done_ = static_cast<std::uint32_t>(slices_.size());
+  done_ = static_cast<std::uint32_t>(steps_.size());
   finish();
   return {};
 }
 
 Result<void> TableBuilder::record(VkCommandBuffer cmd, std::uint32_t budget) {
-  if (done_ >= slices_.size() || budget == 0) return {};
+  if (done_ >= steps_.size() || budget == 0) return {};
   if (done_ == 0) {
     if (timings_) timer_.begin_frame(cmd, 0);
     upload_constants(cmd);
     make_images_ready(cmd);
   }
-  for (; budget > 0 && done_ < slices_.size(); --budget, ++done_) {
-    gpu::compute_barrier(*device_, cmd);
-    const Slice& slice = slices_[done_];
-    if (timings_) timer_.begin(cmd, pipelines_[slice.stage].name);
-    TYNDALL_TRY(record_slice(cmd, slice));
-    if (timings_) timer_.end(cmd);
+  const BoundResources resources = bind_resources();
+  StepRecorder recorder(*device_, cmd, *pipelines_, resources, timings_ ? &timer_ : nullptr);
+  // Earlier calls may have recorded steps that are still to be waited for.
+  for (std::size_t i = 0; i < kResources; ++i) {
+    const auto resource = static_cast<Resource>(i);
+    const Lifetime lifetime = info_of(resource).lifetime;
+    if (lifetime == Lifetime::build || lifetime == Lifetime::tables) {
+      recorder.assume(resource, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
+    }
   }
+  for (; budget > 0 && done_ < steps_.size(); --budget, ++done_) TYNDALL_TRY(recorder.record(steps_[done_]));
   gpu::compute_barrier(*device_, cmd);
-  if (done_ == slices_.size()) finish();
+  if (done_ == steps_.size()) finish();
   return {};
 }
 
-Result<void> TableBuilder::record_slice(VkCommandBuffer cmd, const Slice& slice) {
-  const gpu::Pipeline& pipeline = pipelines_[slice.stage];
-  const gpu::Label label(*device_, cmd, pipeline.name);
+// Tables that this build does not make have no view, and no step binds them.
+BoundResources TableBuilder::bind_resources() {
   const TableScratch& s = scratch_;
-  const VkBuffer nodes =
-      (slice.stage == grid_nodes || slice.stage == gather_single || slice.stage == gather_multiple ? s.grid_nodes
-                                                                                                   : s.ray_nodes)
-          .buffer.get();
-  // Views of tables that this build does not make are missing, and not bound by the stages it runs.
-  const auto view = [this](TableId id) { return target(id).image.view.get(); };
-  const gpu::NamedResource resources[] = {
-      gpu::named_buffer("medium_block", s.constants.buffer.get(), 0, sizeof(shared::Medium)),
-      gpu::named_buffer("shape_block", s.constants.buffer.get(), kShapeOffset, sizeof(ShapeBlock)),
-      gpu::named_buffer("node_block", nodes),
-      gpu::named_buffer("phase_block", s.phase.buffer.get()),
-      gpu::named_buffer("incident_block", s.incident.buffer.get()),
-      gpu::named_buffer("source_block", s.source.buffer.get()),
-      gpu::named_buffer("sum_block", s.sum.buffer.get()),
-      gpu::named_buffer("irradiance_block", s.irradiance.buffer.get()),
-      gpu::named_buffer("sky_block", s.sky.buffer.get()),
-      gpu::named_image("single_rayleigh", view(TableId::single_rayleigh)),
-      gpu::named_image("single_mie", view(TableId::single_mie)),
-      gpu::named_image("high_orders", view(TableId::high_orders)),
-      gpu::named_image("sun_transmittance", view(TableId::sun_transmittance)),
-      gpu::named_image("sky_irradiance_table", view(TableId::sky_irradiance)),
-  };
-  const std::uint32_t push[] = {slice.first, slice.order};
-  const std::string_view missing = gpu::bind(*device_, cmd, pipeline, resources, push);
-  if (!missing.empty()) {
-    return Error{ErrorCode::invalid_argument,
-                 std::string("nothing is bound to ") + std::string(missing) + " of " + pipeline.name};
-  }
-  const UVec4& size = wanted_.tables.size;
-  VkExtent3D extent = {size.z, size.w, size.y};  // of the tables: sun, angle, view
-  switch (slice.stage) {
-    case sun_light: extent = kSunLightExtent; break;
-    case sky_light: extent = kSkyLightExtent; break;
-    case grid_nodes: extent = {shared::kGatherZeniths, slice.count, 1}; break;
-    case ray_nodes: extent = {size.y, 1, 1}; break;
-    case phase_matrix: extent = {shared::kSourceZeniths, slice.count, 1}; break;
-    case gather_single:
-    case gather_multiple:
-      extent = {shared::kGatherSuns, shared::kGatherAzimuths, slice.count * shared::kGatherZeniths};
-      break;
-    case scatter: extent = {shared::kGatherSuns * pipeline.local_size[0], slice.count, 1}; break;
-    default: break;
-  }
-  gpu::dispatch(*device_, cmd, pipeline, extent.width, extent.height, extent.depth);
-  return {};
+  BoundResources out;
+  out.set(Resource::medium, s.constants.buffer.get(), 0, sizeof(shared::Medium));
+  out.set(Resource::shape, s.constants.buffer.get(), kShapeOffset, sizeof(ShapeBlock));
+  out.set(Resource::grid_nodes, s.grid_nodes.buffer.get());
+  out.set(Resource::ray_nodes, s.ray_nodes.buffer.get());
+  out.set(Resource::phase, s.phase.buffer.get());
+  out.set(Resource::incident, s.incident.buffer.get());
+  out.set(Resource::source, s.source.buffer.get());
+  out.set(Resource::sum, s.sum.buffer.get());
+  out.set(Resource::irradiance, s.irradiance.buffer.get());
+  out.set(Resource::sky, s.sky.buffer.get());
+  const auto table = [&](Resource resource, TableId id) { out.set(resource, target(id).image.view.get()); };
+  table(Resource::single_rayleigh, TableId::single_rayleigh);
+  table(Resource::single_mie, TableId::single_mie);
+  table(Resource::high_orders, TableId::high_orders);
+  table(Resource::sun_transmittance, TableId::sun_transmittance);
+  table(Resource::sky_irradiance_table, TableId::sky_irradiance);
+  return out;
 }
 
 void TableBuilder::finish() noexcept {
@@ -339,7 +270,7 @@ VkDeviceSize TableBuilder::transient_bytes() const {
 
 std::span<const PassTiming> TableBuilder::stage_times() {
   if (!timings_) return {};
-  for (std::uint32_t i = 0; i < kStages; ++i) times_[i] = {pipelines_[i].name, 0.0};
+  for (PassTiming& time : times_) time.gpu_ms = 0.0;
   for (const gpu::TimedScope& scope : timer_.read(0)) {
     for (PassTiming& time : times_) {
       if (time.name == scope.name) time.gpu_ms += scope.milliseconds;

@@ -1,14 +1,16 @@
 // Sizes and memory of the tables, the tables that a change of parameters makes stale, and the key of the cache.
 #include "effect/tables.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "effect/medium.hpp"
 #include "effect/table_plan.hpp"
-#include "effect_shaders.hpp"
+#include "effect/table_steps.hpp"
 #include "tyndall/version.hpp"
 
 namespace tyndall {
@@ -143,10 +145,12 @@ VkDeviceSize table_bytes(const Params& params) {
 }
 
 std::string table_key(const gpu::Device& device, const Params& params) {
-  const gpu::Shader* const used[] = {
-      &shaders::sun_light_comp,     &shaders::ray_nodes_comp,       &shaders::phase_matrix_comp,
-      &shaders::gather_single_comp, &shaders::gather_multiple_comp, &shaders::scatter_comp,
-      &shaders::table_single_comp,  &shaders::table_high_comp,      &shaders::sky_light_comp};
+  // The shaders of a complete build, each once.
+  std::vector<const gpu::Shader*> used;
+  for (const Step& step : table_steps({}, kAllTables)) {
+    const gpu::Shader* shader = step.pipeline.shader;
+    if (std::find(used.begin(), used.end(), shader) == used.end()) used.push_back(shader);
+  }
   Hash code;
   for (const gpu::Shader* shader : used) code.add(shader->spirv.data(), shader->spirv.size_bytes());
   const shared::ZenithQuadrature quadrature = zenith_quadrature();

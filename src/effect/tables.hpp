@@ -9,8 +9,9 @@
 #include <vector>
 
 #include "effect/frame_constants.hpp"
+#include "effect/pipeline_cache.hpp"
 #include "effect/shared.hpp"
-#include "gpu/pipeline.hpp"
+#include "effect/step_recorder.hpp"
 #include "gpu/resource.hpp"
 #include "gpu/timer.hpp"
 #include "tyndall/effect.hpp"
@@ -52,22 +53,24 @@ struct TableScratch {
 };
 [[nodiscard]] VkDeviceSize table_scratch_bytes(const gpu::Device& device, const Params& params);
 
-// Builds the tables. Owns the pipelines and, during a build, the scratch memory and the unfinished tables. Objects that
+// Builds the tables. Owns them and, during a build, the scratch memory and the unfinished tables. Objects that
 // commands in flight may still use are destroyed after `frames_in_flight` more frames have been recorded.
 class TableBuilder {
  public:
   // The allocated result of plan(); defined below.
   struct Pending;
 
-  // Creates the pipelines. There are no tables before the first commit().
-  Result<void> create(const gpu::Device& device, std::uint32_t frames_in_flight, bool timings);
+  // Creates the pipelines of all steps in a cache that must outlive the builder. There are no tables before the first
+  // commit().
+  Result<void> create(const gpu::Device& device, PipelineCache& pipelines, std::uint32_t frames_in_flight,
+                      bool timings);
 
   // Allocates everything that the build for other parameters needs (images of another size, scratch memory, the list of
-  // slices), and changes nothing else.
+  // steps), and changes nothing else.
   Result<Pending> plan(const Params& params);
   // Takes over the result of the last plan(), and starts the build of the tables that differ from the finished ones.
   void commit(Pending&& pending) noexcept;
-  // Records at most `budget` slices.
+  // Records at most `budget` steps.
   Result<void> record(VkCommandBuffer cmd, std::uint32_t budget);
   // Copies the finished tables to a buffer, in the order of TableId and without padding. Returns an error while some of
   // them are stale.
@@ -77,7 +80,7 @@ class TableBuilder {
   // To be called once per frame. Moves new images out of the undefined layout, and frees objects that no frame uses.
   void begin_frame(VkCommandBuffer cmd);
 
-  [[nodiscard]] Progress progress() const { return {done_, static_cast<std::uint32_t>(slices_.size())}; }
+  [[nodiscard]] Progress progress() const { return {done_, static_cast<std::uint32_t>(steps_.size())}; }
   // Returns true once tables have been built. Stale tables stay in use until the next build is complete.
   [[nodiscard]] bool ready() const { return complete_; }
   // Returns a finished table; before the first build is complete, the table that it fills.
@@ -88,35 +91,16 @@ class TableBuilder {
   [[nodiscard]] std::span<const PassTiming> stage_times();
 
  private:
-  enum Stage : std::uint32_t {
-    sun_light,
-    grid_nodes,
-    phase_matrix,
-    gather_single,
-    gather_multiple,
-    scatter,
-    ray_nodes,
-    table_single,
-    table_high,
-    sky_light,
-    kStages
-  };
-  // A dispatch for the altitudes [first; first + count) and one order of scattering.
-  struct Slice {
-    Stage stage;
-    std::uint32_t first, count, order;
-  };
   struct Retired {
     TableSet tables;
     TableScratch scratch;
     std::uint32_t frames_left;
   };
 
-  [[nodiscard]] static std::vector<Slice> plan_slices(const Params& params, std::uint32_t stale);
   [[nodiscard]] Result<TableScratch> create_scratch(std::uint32_t views) const;
   void upload_constants(VkCommandBuffer cmd);
   void make_images_ready(VkCommandBuffer cmd);
-  Result<void> record_slice(VkCommandBuffer cmd, const Slice& slice);
+  [[nodiscard]] BoundResources bind_resources();
   void finish() noexcept;
   void retire(TableSet tables, TableScratch scratch) noexcept;
   TableImage& target(TableId id);
@@ -124,7 +108,7 @@ class TableBuilder {
   const gpu::Device* device_ = nullptr;
   std::uint32_t frames_in_flight_ = 0;
   bool timings_ = false;
-  std::array<gpu::Pipeline, kStages> pipelines_ = {};
+  const PipelineCache* pipelines_ = nullptr;
   TableSet tables_ = {};
   TableSet next_ = {};  // the new tables, if `tables_` is in use and stale
   TableScratch scratch_ = {};
@@ -132,11 +116,11 @@ class TableBuilder {
   Params wanted_ = {};       // of the build
   bool complete_ = false;    // tables_ have been built once
   std::uint32_t stale_ = 0;  // tables that the build writes
-  std::vector<Slice> slices_ = {};
+  std::vector<Step> steps_ = {};
   std::uint32_t done_ = 0;
   std::vector<Retired> retired_ = {};
   gpu::Timer timer_ = {};
-  std::array<PassTiming, kStages> times_ = {};
+  std::vector<PassTiming> times_ = {};  // one for each name of a step
 };
 
 // The work that commit() takes over, with everything allocated.
@@ -151,7 +135,7 @@ struct TableBuilder::Pending {
   std::uint32_t stale = 0;
   TableSet images = {};       // of stale tables whose image has another size
   TableScratch scratch = {};  // replaces the present one if `views` is not 0
-  std::vector<Slice> slices = {};
+  std::vector<Step> steps = {};
 };
 
 }  // namespace tyndall

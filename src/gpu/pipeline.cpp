@@ -267,22 +267,16 @@ Result<Pipeline> create_graphics_pipeline(const Device& device, const GraphicsDe
   return out;
 }
 
-std::string_view bind(const Device& device, VkCommandBuffer cmd, const Pipeline& pipeline,
-                      std::span<const NamedResource> resources, const void* push) {
+void bind(const Device& device, VkCommandBuffer cmd, const Pipeline& pipeline,
+          std::span<const Descriptor* const> descriptors, const void* push) {
   std::array<VkWriteDescriptorSet, kMaxBindings> writes = {};
   for (std::uint32_t i = 0; i < pipeline.binding_count; ++i) {
-    const Binding& binding = pipeline.bindings[i];
-    const NamedResource* found = nullptr;
-    for (const NamedResource& resource : resources) {
-      if (resource.name == binding.name) found = &resource;
-    }
-    if (found == nullptr) return binding.name;
     writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-    writes[i].dstBinding = binding.binding;
+    writes[i].dstBinding = pipeline.bindings[i].binding;
     writes[i].descriptorCount = 1;
-    writes[i].descriptorType = binding.type;
-    writes[i].pImageInfo = &found->image;
-    writes[i].pBufferInfo = &found->buffer;
+    writes[i].descriptorType = pipeline.bindings[i].type;
+    writes[i].pImageInfo = &descriptors[i]->image;
+    writes[i].pBufferInfo = &descriptors[i]->buffer;
   }
   device.vk.CmdBindPipeline(cmd, pipeline.bind_point, pipeline.pipeline.get());
   if (pipeline.binding_count > 0) {
@@ -292,6 +286,18 @@ std::string_view bind(const Device& device, VkCommandBuffer cmd, const Pipeline&
   if (push != nullptr && pipeline.push_bytes > 0) {
     device.vk.CmdPushConstants(cmd, pipeline.layout.get(), pipeline.push_stages, 0, pipeline.push_bytes, push);
   }
+}
+
+std::string_view bind(const Device& device, VkCommandBuffer cmd, const Pipeline& pipeline,
+                      std::span<const NamedResource> resources, const void* push) {
+  std::array<const Descriptor*, kMaxBindings> descriptors = {};
+  for (std::uint32_t i = 0; i < pipeline.binding_count; ++i) {
+    for (const NamedResource& resource : resources) {
+      if (resource.name == pipeline.bindings[i].name) descriptors[i] = &resource;
+    }
+    if (descriptors[i] == nullptr) return pipeline.bindings[i].name;
+  }
+  bind(device, cmd, pipeline, std::span(descriptors).first(pipeline.binding_count), push);
   return {};
 }
 

@@ -1,5 +1,5 @@
-// Pipelines from embedded shaders: push-descriptor layouts follow from the reflected bindings, and
-// resources are bound by name. Specialisation constants choose variants; none is compiled at record time.
+// Pipelines from embedded shaders: push-descriptor layouts follow from the reflected bindings, and resources are bound
+// by name. Specialisation constants select variants. Recording makes no pipelines.
 #pragma once
 
 #include <array>
@@ -13,20 +13,24 @@ namespace tyndall::gpu {
 
 constexpr std::uint32_t kMaxBindings = 20;  // every device can push 32 descriptors
 
-// A resource under the name that shaders know it by.
-struct NamedResource {
-  std::string_view name;
+// What a binding refers to: a buffer or an image.
+struct Descriptor {
   VkDescriptorImageInfo image = {};
   VkDescriptorBufferInfo buffer = {};
 };
+
+// A resource under the name that shaders know it by.
+struct NamedResource : Descriptor {
+  std::string_view name;
+};
 [[nodiscard]] inline NamedResource named_buffer(std::string_view name, VkBuffer buffer, VkDeviceSize offset = 0,
                                                 VkDeviceSize size = VK_WHOLE_SIZE) {
-  return {name, {}, {buffer, offset, size}};
+  return {{{}, {buffer, offset, size}}, name};
 }
 [[nodiscard]] inline NamedResource named_image(std::string_view name, VkImageView view,
                                                VkImageLayout layout = VK_IMAGE_LAYOUT_GENERAL,
                                                VkSampler sampler = VK_NULL_HANDLE) {
-  return {name, {sampler, view, layout}, {}};
+  return {{{sampler, view, layout}, {}}, name};
 }
 
 // A specialisation constant of four bytes.
@@ -77,6 +81,10 @@ struct GraphicsDesc {
 Result<Pipeline> create_graphics_pipeline(const Device& device, const GraphicsDesc& desc,
                                           std::span<const Constant> constants = {});
 
+// Binds the pipeline and a descriptor for each of its bindings, in the order of Pipeline::bindings. Allocates nothing.
+// Precondition: as many descriptors as bindings, none of them null.
+void bind(const Device& device, VkCommandBuffer cmd, const Pipeline& pipeline,
+          std::span<const Descriptor* const> descriptors, const void* push);
 // Binds the pipeline and each of its bindings from `resources` by name. Allocates nothing.
 // Returns the name of a binding that `resources` lacks, or an empty view.
 std::string_view bind(const Device& device, VkCommandBuffer cmd, const Pipeline& pipeline,

@@ -1,5 +1,5 @@
-// A compiled shader with what its SPIR-V says of itself. tools/embed_shaders.cpp makes these tables at
-// build time; bindings are found by name, so the GLSL is the only declaration of them.
+// A compiled shader and what its SPIR-V declares. tools/embed_shaders.cpp generates these tables when the project is
+// built. Resources are bound by name, so that a binding is declared in GLSL alone.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -14,17 +14,18 @@ struct Binding {
   std::string_view name;
   std::uint32_t binding;
   VkDescriptorType type;
-  bool reads;
-  bool writes;
+  bool reads;   // the shader may read it
+  bool writes;  // the shader may write it; barriers follow from both
 };
 
 struct Shader {
-  const char* name;  // file name with dots as underscores; also the debug label and the timer's name
+  const char* name;  // the file's name, dots replaced by underscores
   VkShaderStageFlagBits stage;
   std::span<const std::uint32_t> spirv;
   std::span<const Binding> bindings;
   std::uint32_t push_constant_bytes;
-  std::uint32_t local_size[3];  // compute only
+  std::uint32_t local_size[3];               // compute only
+  std::span<const std::uint32_t> constants;  // ids of its specialisation constants, ascending
 };
 
 }  // namespace tyndall::gpu

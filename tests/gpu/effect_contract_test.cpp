@@ -115,7 +115,7 @@ TEST_F(EffectContract, QueriedMemoryIsAllocatedMemory) {
       sum += resource.bytes;
     }
     EXPECT_EQ(sum, taken.persistent) << i;
-    EXPECT_EQ(names.contains("shadow_tree"), params[i].scattering.technique == Technique::epipolar);
+    EXPECT_EQ(names.contains("min_max_tree"), params[i].scattering.technique == Technique::epipolar);
     EXPECT_TRUE(names.contains("single_rayleigh"));
     // The same is known of what set_params() will ask for.
     for (const Params& other : params) {

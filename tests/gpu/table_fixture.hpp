@@ -21,13 +21,18 @@ inline Params small_tables() {
 
 class TableBuilderTest : public GpuTest {
  protected:
+  void TearDown() override {
+    pipelines_ = {};
+    GpuTest::TearDown();
+  }
   static Result<void> change(TableBuilder& builder, const Params& params) {
     TYNDALL_ASSIGN(TableBuilder::Pending pending, builder.plan(params));
     builder.commit(std::move(pending));
     return {};
   }
   Result<void> create(TableBuilder& builder, bool timings, const Params& params) {
-    TYNDALL_TRY(builder.create(host().device(), 1, timings));
+    pipelines_.create(host().device());
+    TYNDALL_TRY(builder.create(host().device(), pipelines_, 1, timings));
     return change(builder, params);
   }
   void build(TableBuilder& builder, std::uint32_t budget) {
@@ -40,6 +45,9 @@ class TableBuilderTest : public GpuTest {
     EXPECT_OK(out);
     return out ? std::move(out).value() : std::vector<std::byte>();
   }
+
+ private:
+  PipelineCache pipelines_;
 };
 
 // What an engine does to keep tables, with the library alone.

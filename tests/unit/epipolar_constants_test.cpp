@@ -1,14 +1,13 @@
-// The geometry of epipolar sampling on the CPU: the sun's position in the picture, the sides at which slices end, the
-// memory for given parameters, and the numbering of the modes.
+// The geometry of epipolar sampling that is computed on the CPU: where the sun is in the picture, the sides on which
+// slices end, and the memory that the parameters need.
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <set>
 
-#include "effect/epipolar_plan.hpp"
-#include "effect/modes.hpp"
+#include "effect/epipolar_constants.hpp"
+#include "effect/resources.hpp"
 
 namespace tyndall {
 namespace {
@@ -195,69 +194,67 @@ TEST(EpipolarConstants, CascadesAreThoseThatAreMarched) {
   }
 }
 
-VkDeviceSize size_of(const EpipolarSizes& sizes, EpipolarBuffer buffer) {
-  return sizes[static_cast<std::size_t>(buffer)];
-}
-VkDeviceSize total(const EpipolarSizes& sizes) {
+VkDeviceSize total(const FrameBufferSizes& sizes) {
   VkDeviceSize sum = 0;
-  for (const VkDeviceSize size : sizes) sum += size;
+  for (const VkDeviceSize size : sizes.bytes) sum += size;
   return sum;
 }
 
-TEST(EpipolarSizes, FollowTheParameters) {
+TEST(FrameBufferSizes, FollowTheParameters) {
   EffectDesc desc;
   const Params defaults;
-  const EpipolarSizes usual = epipolar_sizes(desc, defaults);
-  for (const VkDeviceSize size : usual) EXPECT_GT(size, 0U);
+  const FrameBufferSizes usual = frame_buffer_sizes(desc, defaults);
+  for (const VkDeviceSize size : usual.bytes) EXPECT_GT(size, 0U);
   // The promised limit for the defaults, for pictures of 1280 x 720 and larger.
   EXPECT_LE(total(usual), VkDeviceSize{64} << 20);
 
   Params params;
   params.scattering.technique = Technique::brute_force;
-  EXPECT_EQ(total(epipolar_sizes(desc, params)), 0U);
+  EXPECT_EQ(total(frame_buffer_sizes(desc, params)), 0U);
 
   params = {};
   params.epipolar.slices *= 2;
-  const EpipolarSizes twice = epipolar_sizes(desc, params);
-  for (const EpipolarBuffer buffer : {EpipolarBuffer::slices, EpipolarBuffer::rows, EpipolarBuffer::samples,
-                                      EpipolarBuffer::coarse, EpipolarBuffer::sources, EpipolarBuffer::tree}) {
-    EXPECT_EQ(size_of(twice, buffer), 2 * size_of(usual, buffer)) << epipolar_buffer_name(buffer);
+  const FrameBufferSizes twice = frame_buffer_sizes(desc, params);
+  for (const Resource buffer :
+       {Resource::slices, Resource::slice_lines, Resource::samples, Resource::coarse_inscattering,
+        Resource::interpolation_sources, Resource::min_max_tree}) {
+    EXPECT_EQ(twice[buffer], 2 * usual[buffer]) << name_of(buffer);
   }
   params = {};
   params.epipolar.samples *= 2;
-  const EpipolarSizes longer = epipolar_sizes(desc, params);
-  EXPECT_EQ(size_of(longer, EpipolarBuffer::samples), 2 * size_of(usual, EpipolarBuffer::samples));
-  EXPECT_EQ(size_of(longer, EpipolarBuffer::tree), size_of(usual, EpipolarBuffer::tree));
+  const FrameBufferSizes longer = frame_buffer_sizes(desc, params);
+  EXPECT_EQ(longer[Resource::samples], 2 * usual[Resource::samples]);
+  EXPECT_EQ(longer[Resource::min_max_tree], usual[Resource::min_max_tree]);
 
   params = {};
   params.epipolar.min_max_format = MinMaxFormat::float32;
-  EXPECT_EQ(size_of(epipolar_sizes(desc, params), EpipolarBuffer::tree), 2 * size_of(usual, EpipolarBuffer::tree));
+  EXPECT_EQ(frame_buffer_sizes(desc, params)[Resource::min_max_tree], 2 * usual[Resource::min_max_tree]);
   params.epipolar.min_max_tree = false;
-  EXPECT_LT(size_of(epipolar_sizes(desc, params), EpipolarBuffer::tree), 1024U);
+  EXPECT_LT(frame_buffer_sizes(desc, params)[Resource::min_max_tree], 1024U);
 
   params = {};
   params.shadows.cascade_processing = CascadeProcessing::multi_pass;
-  const VkDeviceSize one = size_of(epipolar_sizes(desc, params), EpipolarBuffer::states);
-  EXPECT_GT(one, size_of(usual, EpipolarBuffer::states));
+  const VkDeviceSize one = frame_buffer_sizes(desc, params)[Resource::march_states];
+  EXPECT_GT(one, usual[Resource::march_states]);
   params.shadows.cascade_processing = CascadeProcessing::multi_pass_instanced;
-  EXPECT_EQ(size_of(epipolar_sizes(desc, params), EpipolarBuffer::states), desc.max_cascades * one);
+  EXPECT_EQ(frame_buffer_sizes(desc, params)[Resource::march_states], desc.max_cascades * one);
 
   const VkDeviceSize pixels = VkDeviceSize{desc.max_extent.width} * desc.max_extent.height;
-  EXPECT_GE(size_of(usual, EpipolarBuffer::corrected), pixels / 8 * 8);
-  EXPECT_LT(size_of(usual, EpipolarBuffer::corrected), pixels * 2);
+  EXPECT_GE(usual[Resource::corrected_inscattering], pixels / 8 * 8);
+  EXPECT_LT(usual[Resource::corrected_inscattering], pixels * 2);
   params = {};
   params.epipolar.correct_depth_breaks = true;
-  const EpipolarSizes all = epipolar_sizes(desc, params);
-  EXPECT_GE(size_of(all, EpipolarBuffer::corrected), pixels * 8);
-  EXPECT_GE(size_of(all, EpipolarBuffer::break_list), pixels * 4);
-  EXPECT_LT(size_of(usual, EpipolarBuffer::reduced), 1024U);
+  const FrameBufferSizes all = frame_buffer_sizes(desc, params);
+  EXPECT_GE(all[Resource::corrected_inscattering], pixels * 8);
+  EXPECT_GE(all[Resource::correction_list], pixels * 4);
+  EXPECT_LT(usual[Resource::downscaled_inscattering], 1024U);
   params = {};
   params.scattering.downscale = 2;
-  EXPECT_GE(size_of(epipolar_sizes(desc, params), EpipolarBuffer::reduced), pixels / 4 * 16);
+  EXPECT_GE(frame_buffer_sizes(desc, params)[Resource::downscaled_inscattering], pixels / 4 * 16);
   desc.max_cascades *= 2;
-  EXPECT_EQ(size_of(epipolar_sizes(desc, {}), EpipolarBuffer::tree), 2 * size_of(usual, EpipolarBuffer::tree));
-  EXPECT_EQ(size_of(epipolar_sizes(desc, {}), EpipolarBuffer::rows), 2 * size_of(usual, EpipolarBuffer::rows));
-  EXPECT_EQ(size_of(epipolar_sizes(desc, {}), EpipolarBuffer::samples), size_of(usual, EpipolarBuffer::samples));
+  EXPECT_EQ(frame_buffer_sizes(desc, {})[Resource::min_max_tree], 2 * usual[Resource::min_max_tree]);
+  EXPECT_EQ(frame_buffer_sizes(desc, {})[Resource::slice_lines], 2 * usual[Resource::slice_lines]);
+  EXPECT_EQ(frame_buffer_sizes(desc, {})[Resource::samples], usual[Resource::samples]);
 }
 
 TEST(EpipolarSteps, InitialSamplesStandCloserInTwilight) {
@@ -277,49 +274,6 @@ TEST(EpipolarSteps, InitialSamplesStandCloserInTwilight) {
   params = {};
   params.scattering.medium = MediumKind::homogeneous;
   EXPECT_EQ(step_at(-7.0, params), usual);
-}
-
-TEST(EpipolarSizes, BuffersHaveNamesOfTheirOwn) {
-  std::set<std::string> names;
-  for (std::uint32_t i = 0; i < kEpipolarBuffers; ++i) {
-    EXPECT_TRUE(names.insert(epipolar_buffer_name(static_cast<EpipolarBuffer>(i))).second) << i;
-  }
-}
-
-TEST(Modes, EveryCombinationHasAPipelineOfItsMeaning) {
-  std::set<std::uint32_t> reached;
-  for (const SingleScattering single :
-       {SingleScattering::none, SingleScattering::integration, SingleScattering::table}) {
-    for (const MultipleScattering multiple :
-         {MultipleScattering::none, MultipleScattering::occluded, MultipleScattering::unoccluded}) {
-      for (const LitSections sections : {LitSections::contiguous, LitSections::each}) {
-        ScatteringParams params;
-        params.single = single;
-        params.multiple = multiple;
-        params.sections = sections;
-        const std::uint32_t index = mode_index(params);
-        ASSERT_LT(index, kModeCount);
-        EXPECT_TRUE(mode_exists(index)) << index;
-        reached.insert(index);
-        const auto constants = mode_constants(index);
-        const bool occluded = multiple == MultipleScattering::occluded;
-        EXPECT_EQ(constants[0].value, static_cast<std::uint32_t>(single));
-        EXPECT_EQ(constants[1].value, occluded ? 1U : 0U);
-        const bool lit_tables = single == SingleScattering::table || occluded;
-        EXPECT_EQ(constants[2].value, lit_tables && sections == LitSections::each ? 1U : 0U);
-        EXPECT_EQ(constants[3].value, 0U);
-
-        params.medium = MediumKind::homogeneous;
-        const std::uint32_t homogeneous = mode_index(params);
-        ASSERT_LT(homogeneous, kModeCount);
-        reached.insert(homogeneous);
-        EXPECT_EQ(mode_constants(homogeneous)[0].value == 0U, single == SingleScattering::none);
-        EXPECT_EQ(mode_constants(homogeneous)[3].value, 1U);
-      }
-    }
-  }
-  // No unreachable pipeline is created.
-  for (std::uint32_t i = 0; i < kModeCount; ++i) EXPECT_EQ(mode_exists(i), reached.contains(i)) << i;
 }
 
 }  // namespace

@@ -1,0 +1,22 @@
+// The specialisation constants of all compute shaders of the effect: one id means one thing everywhere.
+// GLSL declares a constant by its id here, C++ (src/effect/step.hpp) sets it under the same name. What the values
+// mean stands beside the declaration in GLSL.
+#ifndef TYNDALL_SHARED_CONSTANT_IDS
+#define TYNDALL_SHARED_CONSTANT_IDS
+
+const uint kSingleId = 0u;            // SingleScattering of include/tyndall/params.def
+const uint kOccludedId = 1u;          // 1: shadows occlude the higher orders of scattering
+const uint kSectionsId = 2u;          // LitSections
+const uint kTreeId = 3u;              // 1: shadows are found through the min/max tree
+const uint kColorsId = 4u;            // 1: the light is coloured by shadow_colors
+const uint kHomogeneousId = 5u;       // MediumKind
+const uint kDownscaleId = 6u;         // scattering.downscale: 1, 2 or 4
+const uint kExtinctionId = 7u;        // Extinction
+const uint kCountId = 8u;             // 1: the passes count what they do
+const uint kSparsityId = 9u;          // Sparsity of src/effect/frame_steps.hpp
+const uint kRefinementId = 10u;       // Refinement
+const uint kFormatId = 11u;           // MinMaxFormat
+const uint kRaysOfTablesId = 12u;     // 1: the rays are those of the tables, 0: those of the gathering grid
+const uint kSpecialisationIds = 13u;  // how many there are
+
+#endif

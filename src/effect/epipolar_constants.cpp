@@ -1,0 +1,140 @@
+#include "effect/epipolar_constants.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "effect/modes.hpp"
+#include "effect/resources.hpp"
+
+namespace tyndall {
+namespace {
+
+// Pixels whose sum of weights is smaller are marched. The default means that no sample is near in depth. With
+// correct_depth_breaks it means that the near ones have little weight, or differ by a twentieth in depth. At half or a
+// quarter of the resolution a difference of a sixth is accepted, which halves the number of marched pixels.
+constexpr float kMinWeight = 1e-2F;
+constexpr float kMinWeightCorrected = 0.1F;
+constexpr float kMinWeightDownscaled = 1e-3F;
+// Initial samples are this many times closer together in twilight: refinement compares unshadowed light, which does not
+// contain the planet's shadow.
+constexpr std::uint32_t kStepsWithSunDown = 4;
+
+// Returns whether the sun is more than two degrees below the horizontal plane of the camera.
+bool sun_is_down(const FrameInputs& inputs, const Params& params) {
+  constexpr double kSine = -0.0349;
+  if (is_homogeneous(params.scattering)) return false;
+  const Vec3& s = inputs.sun.direction_to_sun;
+  const float* at = inputs.camera.world_from_view.m + 12;
+  const double up[3] = {static_cast<double>(at[0]),
+                        static_cast<double>(at[1]) + static_cast<double>(params.planet.radius_m),
+                        static_cast<double>(at[2])};
+  const double along =
+      up[0] * static_cast<double>(s.x) + up[1] * static_cast<double>(s.y) + up[2] * static_cast<double>(s.z);
+  return along < kSine * std::hypot(up[0], up[1], up[2]) *
+                     std::hypot(static_cast<double>(s.x), static_cast<double>(s.y), static_cast<double>(s.z));
+}
+
+// The epipole: the direction to the sun, taken through the camera's matrices in double precision.
+void set_epipole(shared::EpipolarConstants& out, const FrameInputs& inputs) {
+  const auto row_of = [](const Mat4& m, int row, const double* v) {
+    double sum = 0.0;
+    for (int col = 0; col < 4; ++col) sum += static_cast<double>(m.m[4 * col + row]) * v[col];
+    return sum;
+  };
+  const Vec3& s = inputs.sun.direction_to_sun;
+  const double length =
+      std::sqrt(static_cast<double>(s.x) * s.x + static_cast<double>(s.y) * s.y + static_cast<double>(s.z) * s.z);
+  const double world[3] = {s.x / length, s.y / length, s.z / length};
+  double view[4] = {};
+  for (int i = 0; i < 3; ++i) {
+    // world_from_view is rigid: its transpose takes directions back.
+    for (int k = 0; k < 3; ++k) view[i] += static_cast<double>(inputs.camera.world_from_view.m[4 * i + k]) * world[k];
+  }
+  const double clip_x = row_of(inputs.camera.clip_from_view, 0, view);
+  const double clip_y = row_of(inputs.camera.clip_from_view, 1, view);
+  const double clip_w = row_of(inputs.camera.clip_from_view, 3, view);
+  const double width = inputs.extent.width;
+  const double height = inputs.extent.height;
+  double x = 0.5 * (clip_x + clip_w) * width;
+  double y = 0.5 * (clip_y + clip_w) * height;
+  double w = clip_w;
+  if (w < 0.0) {
+    x = -x;
+    y = -y;
+    w = -w;
+  }
+  const double size = std::max({std::abs(x), std::abs(y), w * std::max(width, height), 1e-300});
+  x /= size;
+  y /= size;
+  w /= size;
+  if (w < 1e-12) w = 0.0;  // parallel slices
+  out.sun_x = static_cast<float>(x);
+  out.sun_y = static_cast<float>(y);
+  out.sun_w = static_cast<float>(w);
+}
+
+// The sides of the border that lines from the epipole reach from within the picture, in the order of
+// shared/epipolar.h, and where each begins along the perimeter. The rounded epipole that the shaders have decides.
+void set_border(shared::EpipolarConstants& out, const FrameInputs& inputs) {
+  const double width = inputs.extent.width;
+  const double height = inputs.extent.height;
+  const double px = static_cast<double>(out.sun_x);
+  const double py = static_cast<double>(out.sun_y);
+  const double pw = static_cast<double>(out.sun_w);
+  const bool ends[4] = {px - 0.5 * pw > 0.0, (height - 0.5) * pw - py > 0.0, (width - 0.5) * pw - px > 0.0,
+                        py - 0.5 * pw > 0.0};
+  const double lengths[4] = {height - 1.0, width - 1.0, height - 1.0, width - 1.0};
+  const bool closed = ends[0] && ends[1] && ends[2] && ends[3];
+  out.closed = closed ? 1 : 0;
+  out.sun_in_picture = closed ? 1 : 0;
+  int first = 0;
+  if (!closed) {
+    while (first < 3 && !(ends[first] && !ends[(first + 3) % 4])) ++first;
+  }
+  double along = 0.0;
+  float* const starts[4] = {&out.left_start, &out.bottom_start, &out.right_start, &out.top_start};
+  for (int i = 0; i < 4; ++i) {
+    const int side = (first + i) % 4;
+    *starts[side] = ends[side] ? static_cast<float>(along) : -1.0F;
+    if (ends[side]) along += lengths[side];
+  }
+  out.perimeter = static_cast<float>(std::max(along, 1e-3));
+  // From an epipole on the border, into the picture.
+  const double to_x = 0.5 * width * pw - px;
+  const double to_y = 0.5 * height * pw - py;
+  const double to = std::hypot(to_x, to_y);
+  out.fallback_x = to > 1e-12 ? static_cast<float>(to_x / to) : 1.0F;
+  out.fallback_y = to > 1e-12 ? static_cast<float>(to_y / to) : 0.0F;
+}
+
+}  // namespace
+
+shared::EpipolarConstants epipolar_constants(const FrameInputs& inputs, const EffectDesc& desc, const Params& params) {
+  shared::EpipolarConstants out = {};
+  const EpipolarParams& p = params.epipolar;
+  out.slices = downscaled_count(p.slices, params);
+  out.samples = downscaled_count(p.samples, params);
+  out.downscale = params.scattering.downscale;
+  const VkExtent2D reduced = downscaled_extent(inputs.extent, params);
+  out.reduced_width = reduced.width;
+  out.reduced_height = reduced.height;
+  out.initial_step = sun_is_down(inputs, params) ? std::max(p.initial_step / kStepsWithSunDown, 1U) : p.initial_step;
+  out.epipole_density = p.epipole_density;
+  out.threshold = p.refinement_threshold;
+  out.optimize_locations = p.optimize_locations.value;
+  out.least_weight = is_downscaled(params)                             ? kMinWeightDownscaled
+                     : params.epipolar.correct_depth_breaks.value != 0 ? kMinWeightCorrected
+                                                                       : kMinWeight;
+  out.break_capacity = correction_capacity(desc, params);
+  out.show_depth_breaks = p.show_depth_breaks.value;
+  out.tree_cells = p.min_max_tree.value != 0 ? tree_cells(desc) : 0;
+  out.tree_format = static_cast<std::uint32_t>(p.min_max_format);
+  out.cascades = params.scattering.light_shafts ? static_cast<std::uint32_t>(inputs.cascades.size()) : 0;
+  out.first_cascade = std::min(inputs.first_marched_cascade, out.cascades);
+
+  set_epipole(out, inputs);
+  set_border(out, inputs);
+  return out;
+}
+
+}  // namespace tyndall

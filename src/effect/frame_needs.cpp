@@ -1,0 +1,106 @@
+// What frames need before any of them is recorded, found by making the steps of all frames that settings allow.
+#include <algorithm>
+
+#include "effect/frame_steps.hpp"
+
+namespace tyndall {
+namespace {
+
+// Calls body(steps) for frames that differ in everything that steps depend on besides the settings.
+template <typename Body>
+void for_each_shape(const EffectDesc& desc, const Params& params, Body&& body) {
+  for (const VkExtent2D extent : {VkExtent2D{1, 1}, VkExtent2D{16384, 16384}}) {
+    for (const std::uint32_t cascades : {0U, desc.max_cascades}) {
+      for (const bool colors : {false, true}) {
+        if (colors && !desc.shadow_colors) continue;
+        body(frame_steps(desc, params, {extent, cascades, 0, colors}));
+      }
+    }
+  }
+}
+
+void add_pipelines(std::vector<PipelineKey>& out, const EffectDesc& desc, const Params& params) {
+  for_each_shape(desc, params, [&](const FrameSteps& steps) {
+    for (const Step& step : steps) {
+      if (!step.dispatches()) continue;
+      if (std::find(out.begin(), out.end(), step.pipeline) == out.end()) out.push_back(step.pipeline);
+    }
+  });
+}
+
+}  // namespace
+
+ResourceSet resources_of_frames(const EffectDesc& desc, const Params& params) {
+  Params enabled = params;
+  enabled.scattering.enabled = true;
+  ResourceSet out;
+  for_each_shape(desc, enabled, [&](const FrameSteps& steps) {
+    for (const Step& step : steps) {
+      for (const Use& use : uses_of(step)) out.set(index_of(use.resource));
+    }
+  });
+  return out;
+}
+
+std::vector<PipelineKey> pipelines_of_frames(const EffectDesc& desc, const Params& params) {
+  std::vector<PipelineKey> out;
+  add_pipelines(out, desc, params);
+  return out;
+}
+
+std::vector<PipelineKey> all_frame_pipelines(const EffectDesc& desc) {
+  std::vector<PipelineKey> out;
+  const auto add = [&](const Params& params) { add_pipelines(out, desc, params); };
+  // No shader has constants of two of these groups, besides the medium: the groups need not be combined.
+  // FrameSteps.AllPipelinesAreFound of tests/unit/frame_steps_test.cpp combines them nevertheless.
+  Params p;
+  p.epipolar.show_sampling = true;
+  add(p);
+  p.scattering.enabled = false;
+  add(p);
+  for (const Refinement refinement : {Refinement::depth, Refinement::inscattering}) {
+    for (const MinMaxFormat format : {MinMaxFormat::unorm16, MinMaxFormat::float32}) {
+      p = {};
+      p.epipolar.refinement = refinement;
+      p.epipolar.min_max_format = format;
+      add(p);
+    }
+  }
+  for (const MediumKind medium : {MediumKind::atmosphere, MediumKind::homogeneous}) {
+    for (const Extinction extinction : {Extinction::epipolar, Extinction::per_pixel}) {
+      for (const std::uint32_t downscale : {1U, 2U, 4U}) {
+        for (const std::uint32_t slices : {64U, 256U, 512U}) {  // one for each Sparsity
+          p = {};
+          p.scattering.medium = medium;
+          p.scattering.extinction = extinction;
+          p.scattering.downscale = downscale;
+          p.epipolar.slices = slices;
+          add(p);
+        }
+      }
+    }
+    for (const SingleScattering single :
+         {SingleScattering::none, SingleScattering::integration, SingleScattering::table}) {
+      for (const MultipleScattering multiple :
+           {MultipleScattering::none, MultipleScattering::occluded, MultipleScattering::unoccluded}) {
+        for (const LitSections sections : {LitSections::contiguous, LitSections::each}) {
+          for (const Technique technique : {Technique::epipolar, Technique::brute_force}) {
+            for (const bool tree : {false, true}) {
+              p = {};
+              p.scattering.medium = medium;
+              p.scattering.single = single;
+              p.scattering.multiple = multiple;
+              p.scattering.sections = sections;
+              p.scattering.technique = technique;
+              p.epipolar.min_max_tree = tree;
+              add(p);
+            }
+          }
+        }
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace tyndall

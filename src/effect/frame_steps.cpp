@@ -1,0 +1,224 @@
+// One frame from top to bottom. Read frame_steps() and epipolar_steps() first: they are the table of contents of
+// E. Yusov, "High Performance Outdoor Light Scattering Using Epipolar Sampling" (2013), whose sections are named.
+// To add a pass, add its shader to CMakeLists.txt, its buffers to resources.def, and a line here.
+#include "effect/frame_steps.hpp"
+
+#include "effect/modes.hpp"
+#include "effect_shaders.hpp"
+
+namespace tyndall {
+namespace {
+
+// Collects the steps of one frame.
+struct Frame {
+  const EffectDesc& desc;
+  const Params& params;
+  const FrameShape& shape;
+  Specialisation constants = {};
+  FrameSteps steps = {};
+
+  // The variant of a shader that writes the format of the output.
+  [[nodiscard]] const gpu::Shader& variant(const gpu::Shader& rgba16f, const gpu::Shader& rgba32f) const {
+    return desc.output_format == OutputFormat::rgba32f ? rgba32f : rgba16f;
+  }
+  void dispatch(const char* name, const gpu::Shader& shader, VkExtent3D invocations,
+                std::array<std::uint32_t, 2> push = {}) {
+    Step step;
+    step.name = name;
+    step.pipeline = pipeline_key(shader, constants);
+    step.invocations = invocations;
+    step.push = push;
+    steps.add(step);
+  }
+  void dispatch_over(Resource list, const char* name, const gpu::Shader& shader,
+                     std::array<std::uint32_t, 2> push = {}) {
+    Step step;
+    step.name = name;
+    step.kind = Step::Kind::dispatch_indirect;
+    step.chosen = list;
+    step.pipeline = pipeline_key(shader, constants);
+    step.push = push;
+    steps.add(step);
+  }
+  void reset(Resource list, std::uint32_t groups_z = 1) {
+    Step step;
+    step.name = "reset_list";
+    step.kind = Step::Kind::reset_list;
+    step.chosen = list;
+    step.push[0] = groups_z;
+    steps.add(step);
+  }
+  void other(Step::Kind kind, const char* name, Resource chosen, Resource target = Resource::none) {
+    Step step;
+    step.name = name;
+    step.kind = kind;
+    step.chosen = chosen;
+    step.target = target;
+    steps.add(step);
+  }
+
+  // Whether marching looks at the shadow maps at all.
+  [[nodiscard]] bool marches_shadows() const {
+    const ScatteringParams& s = params.scattering;
+    return s.single != SingleScattering::none || (!is_homogeneous(s) && s.multiple == MultipleScattering::occluded);
+  }
+  // Cascades that shadow the light.
+  [[nodiscard]] std::uint32_t marched_cascades() const {
+    const std::uint32_t cascades = params.scattering.light_shafts ? shape.cascades : 0;
+    return cascades > shape.first_marched_cascade && marches_shadows() ? cascades - shape.first_marched_cascade : 0;
+  }
+  [[nodiscard]] bool uses_tree() const {
+    return params.epipolar.min_max_tree && params.scattering.light_shafts && marches_shadows();
+  }
+};
+
+// The values of all specialisation constants. A constant without a meaning in a mode is 0, so that the mode has one
+// pipeline.
+Specialisation specialisation(const Frame& frame) {
+  const ScatteringParams& s = frame.params.scattering;
+  const bool homogeneous = is_homogeneous(s);
+  const bool occluded = !homogeneous && s.multiple == MultipleScattering::occluded;
+  const bool shadowed_tables = !homogeneous && (s.single == SingleScattering::table || occluded);
+  SingleScattering single = s.single;
+  if (homogeneous && single == SingleScattering::table) single = SingleScattering::integration;
+  Specialisation out;
+  const auto set = [&out](std::uint32_t id, auto value) { out[id] = static_cast<std::uint8_t>(value); };
+  set(shared::kSingleId, single);
+  set(shared::kOccludedId, occluded);
+  set(shared::kSectionsId, shadowed_tables ? s.sections : LitSections{});
+  set(shared::kTreeId, frame.uses_tree());
+  set(shared::kColorsId, frame.shape.shadow_colors && frame.marched_cascades() > 0);
+  set(shared::kHomogeneousId, homogeneous);
+  set(shared::kDownscaleId, s.downscale);
+  set(shared::kExtinctionId, homogeneous ? Extinction{} : s.extinction);
+  set(shared::kCountId, frame.desc.counters);
+  set(shared::kSparsityId, sparsity(frame.shape.extent, frame.params));
+  set(shared::kRefinementId, frame.params.epipolar.refinement);
+  set(shared::kFormatId, frame.params.epipolar.min_max_format);
+  return out;
+}
+
+// March the listed samples through the cascades, all in one pass, one after the other or side by side (section 1.8).
+void march_cascades(Frame& f, CascadeProcessing processing) {
+  const gpu::Shader& march = shaders::march_samples_comp;
+  const std::uint32_t cascades = f.marched_cascades();
+  if (processing == CascadeProcessing::multi_pass) {
+    for (std::uint32_t i = 0; i < cascades; ++i) {
+      f.dispatch_over(Resource::march_list, "march_samples", march, {shared::kOneCascade, i});
+    }
+  } else {
+    f.dispatch_over(Resource::march_list, "march_samples", march, {static_cast<std::uint32_t>(processing), 0});
+  }
+  if (processing == CascadeProcessing::single_pass) return;
+  const bool instanced = processing == CascadeProcessing::multi_pass_instanced;
+  f.dispatch_over(Resource::march_list, "march_samples", march, {shared::kFinish, instanced ? cascades : 1});
+}
+
+// Pixels whose depth is unlike that of all samples around them are marched one by one (section 1.7).
+void march_and_correct(Frame& f, const char* name, const gpu::Shader& correct) {
+  f.dispatch_over(Resource::correction_list, "march_samples", shaders::march_samples_comp, {shared::kPixels, 0});
+  f.dispatch_over(Resource::correction_list, name, correct);
+}
+
+// From slices to pixels (section 1.7): blocks of pixels at one depth first, then the pixels of the listed blocks, then
+// the pixels that no sample fits.
+void unwarp_steps(Frame& f) {
+  const VkExtent2D blocks = unwarp_blocks(f.shape.extent);
+  f.dispatch("unwarp", f.variant(shaders::unwarp_comp_rgba16f, shaders::unwarp_comp_rgba32f),
+             {blocks.width, blocks.height, 1});
+  f.dispatch_over(Resource::discontinuity_blocks, "unwarp_pixels",
+                  f.variant(shaders::unwarp_pixels_comp_rgba16f, shaders::unwarp_pixels_comp_rgba32f));
+  march_and_correct(f, "correct_pixels",
+                    f.variant(shaders::correct_pixels_comp_rgba16f, shaders::correct_pixels_comp_rgba32f));
+}
+
+// scattering.downscale: the same for a buffer of half or a quarter of the resolution (Yusov, "IVB Atmospheric Light
+// Scattering", 2012, sections 6.6 and 6.7), then bilateral upscaling of it (section 6.8).
+void downscaled_steps(Frame& f) {
+  const VkExtent2D blocks = unwarp_blocks(downscaled_extent(f.shape.extent, f.params));
+  const std::uint8_t extinction = f.constants[shared::kExtinctionId];
+  f.constants[shared::kExtinctionId] = 0;  // matters only where light is composed with the background
+  f.dispatch("unwarp_reduced", f.variant(shaders::unwarp_comp_rgba16f, shaders::unwarp_comp_rgba32f),
+             {blocks.width, blocks.height, 1});
+  f.dispatch_over(Resource::discontinuity_blocks, "unwarp_reduced_pixels",
+                  f.variant(shaders::unwarp_pixels_comp_rgba16f, shaders::unwarp_pixels_comp_rgba32f));
+  march_and_correct(f, "correct_reduced", shaders::correct_reduced_comp);
+  f.constants[shared::kExtinctionId] = extinction;
+  f.reset(Resource::discontinuity_blocks);
+  f.reset(Resource::correction_list);
+  f.dispatch("upscale", f.variant(shaders::upscale_comp_rgba16f, shaders::upscale_comp_rgba32f),
+             {(f.shape.extent.width + 1) / 2, (f.shape.extent.height + 1) / 2, 1});
+  f.dispatch_over(Resource::discontinuity_blocks, "upscale_pixels",
+                  f.variant(shaders::upscale_pixels_comp_rgba16f, shaders::upscale_pixels_comp_rgba32f));
+  march_and_correct(f, "correct_pixels",
+                    f.variant(shaders::correct_pixels_comp_rgba16f, shaders::correct_pixels_comp_rgba32f));
+}
+
+void epipolar_steps(Frame& f) {
+  const std::uint32_t slices = downscaled_count(f.params.epipolar.slices, f.params);
+  const std::uint32_t samples = downscaled_count(f.params.epipolar.samples, f.params);
+  const std::uint32_t cascades = f.marched_cascades();
+  const CascadeProcessing processing =
+      cascades > 0 ? f.params.shadows.cascade_processing : CascadeProcessing::single_pass;
+
+  f.reset(Resource::march_list, processing == CascadeProcessing::multi_pass_instanced ? cascades : 1);
+  f.reset(Resource::discontinuity_blocks);
+  f.reset(Resource::correction_list);
+  if (cascades > 0) f.reset(Resource::tree_blocks);
+
+  f.dispatch("slice_end_points", shaders::slice_end_points_comp, {slices, 1, 1});  // 1.2
+  f.dispatch("slice_samples", shaders::slice_samples_comp, {samples, slices, 1});  // 1.2, with 1.3's light
+  f.dispatch("refine_samples", shaders::refine_samples_comp,                       // 1.3
+             {slices * shaders::refine_samples_comp.local_size[0], 1, 1});
+  if (cascades > 0) f.dispatch("slice_directions", shaders::slice_directions_comp, {slices, cascades, 1});  // 1.4
+  if (cascades > 0 && f.uses_tree()) f.dispatch_over(Resource::tree_blocks, "shadow_tree", shaders::shadow_tree_comp);
+  march_cascades(f, processing);                                                               // 1.6, 1.8
+  f.dispatch("interpolate_samples", shaders::interpolate_samples_comp, {samples, slices, 1});  // 1.3
+  is_downscaled(f.params) ? downscaled_steps(f) : unwarp_steps(f);                             // 1.7
+  if (f.params.epipolar.show_sampling) {
+    // The marched samples are drawn over the interpolated ones.
+    const gpu::Shader& show = f.variant(shaders::show_sampling_comp_rgba16f, shaders::show_sampling_comp_rgba32f);
+    for (const std::uint32_t marched : {0U, 1U}) f.dispatch("show_sampling", show, {samples, slices, 1}, {marched, 0});
+  }
+}
+
+}  // namespace
+
+FrameShape frame_shape(const FrameInputs& inputs) {
+  return {inputs.extent, static_cast<std::uint32_t>(inputs.cascades.size()), inputs.first_marched_cascade,
+          inputs.shadow_colors.view != VK_NULL_HANDLE};
+}
+
+FrameSteps frame_steps(const EffectDesc& desc, const Params& params, const FrameShape& shape) {
+  Frame f = {desc, params, shape};
+  f.constants = specialisation(f);
+  const VkExtent3D pixels = {shape.extent.width, shape.extent.height, 1};
+  if (desc.counters) f.other(Step::Kind::clear, "clear_counters", Resource::counters);
+  if (!params.scattering.enabled) {
+    f.dispatch("no_air", f.variant(shaders::no_air_comp_rgba16f, shaders::no_air_comp_rgba32f), pixels);
+  } else if (params.scattering.technique == Technique::brute_force) {
+    f.dispatch("march_per_pixel",
+               f.variant(shaders::march_per_pixel_comp_rgba16f, shaders::march_per_pixel_comp_rgba32f), pixels);
+  } else {
+    epipolar_steps(f);
+  }
+  if (desc.counters) {
+    f.other(Step::Kind::copy, "copy_counters", Resource::counters, Resource::counters_readback);
+    f.other(Step::Kind::host_read, "read_counters", Resource::counters_readback);
+  }
+  return f.steps;
+}
+
+Sparsity sparsity(VkExtent2D extent, const Params& params) {
+  constexpr std::uint32_t kMany = 512;
+  constexpr std::uint32_t kFew = 256;
+  // Distance of slices along the border from which on seams are visible; light from a single slice reaches about as far
+  // from the skyline.
+  constexpr std::uint32_t kVisiblePixels = 4;
+  const std::uint32_t slices = params.epipolar.slices;
+  if (slices >= kMany || is_downscaled(params) || is_homogeneous(params.scattering)) return Sparsity::none;
+  if (slices * kVisiblePixels > 2 * (extent.width + extent.height)) return Sparsity::none;
+  return slices < kFew ? Sparsity::all : Sparsity::skyline;
+}
+
+}  // namespace tyndall

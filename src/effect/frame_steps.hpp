@@ -1,0 +1,57 @@
+// The steps of a frame, as a pure function of the parameters, the limits of the effect and the inputs that are present.
+// The method is described in docs/epipolar.md.
+#pragma once
+
+#include <bitset>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "effect/step.hpp"
+#include "tyndall/effect.hpp"
+
+namespace tyndall {
+
+// What the steps depend on besides parameters and limits.
+struct FrameShape {
+  VkExtent2D extent = {1, 1};
+  std::uint32_t cascades = 0;
+  std::uint32_t first_marched_cascade = 0;
+  bool shadow_colors = false;
+};
+[[nodiscard]] FrameShape frame_shape(const FrameInputs& inputs);
+
+// A list without allocations, because it is made for every frame.
+class FrameSteps {
+ public:
+  static constexpr std::size_t kMax = 64;
+
+  void add(const Step& step) { list_[count_++] = step; }
+  [[nodiscard]] const Step* begin() const { return list_.data(); }
+  [[nodiscard]] const Step* end() const { return list_.data() + count_; }
+  [[nodiscard]] std::size_t size() const { return count_; }
+
+ private:
+  std::array<Step, kMax> list_ = {};
+  std::size_t count_ = 0;
+};
+[[nodiscard]] FrameSteps frame_steps(const EffectDesc& desc, const Params& params, const FrameShape& shape);
+
+// How much pixels compute by themselves because slices are few.
+enum class Sparsity : std::uint32_t {
+  none,
+  skyline,  // sky pixels whose slices are not all in the sky: the density integral, and light from samples farther away
+  all       // also the density integral of all sky pixels, and of pixels among samples of other depths
+};
+[[nodiscard]] Sparsity sparsity(VkExtent2D extent, const Params& params);
+
+using ResourceSet = std::bitset<kResources>;
+// What frames of any shape use with these settings. Independent of scattering.enabled, so that turning scattering off
+// and on allocates nothing.
+[[nodiscard]] ResourceSet resources_of_frames(const EffectDesc& desc, const Params& params);
+// The pipelines of frames of any shape with these settings.
+[[nodiscard]] std::vector<PipelineKey> pipelines_of_frames(const EffectDesc& desc, const Params& params);
+// The pipelines of frames of any shape with any parameters.
+[[nodiscard]] std::vector<PipelineKey> all_frame_pipelines(const EffectDesc& desc);
+
+}  // namespace tyndall

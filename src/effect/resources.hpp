@@ -1,0 +1,82 @@
+// The images and buffers that the steps of the effect work on. A resource has one name: it is the name in C++, the name
+// in memory reports and debuggers, and the name of its binding in GLSL, where buffer blocks append "_block" to it.
+// resources.def is the list. The sizes of the buffers are pure functions of the settings.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "tyndall/effect.hpp"
+
+namespace tyndall {
+
+enum class Resource : std::uint8_t {
+#define RESOURCE(name, lifetime, format, resolution) name,
+#define FRAME_BUFFER(name, format, resolution, cause) name,
+#include "effect/resources.def"
+#undef RESOURCE
+#undef FRAME_BUFFER
+  none
+};
+constexpr std::size_t kResources = static_cast<std::size_t>(Resource::none);
+[[nodiscard]] constexpr std::size_t index_of(Resource resource) { return static_cast<std::size_t>(resource); }
+
+// Who owns a resource and how long its contents are valid.
+enum class Lifetime : std::uint8_t {
+  constants,  // written by the host
+  caller,     // an input or the output of a frame
+  tables,     // filled by a build, read by frames
+  frame,      // written and read within one frame; the next frame reuses the memory
+  build,      // written and read within one build of the tables, and freed when it is complete
+  chosen      // a placeholder for a resource that the step chooses
+};
+
+struct ResourceInfo {
+  const char* name;
+  Lifetime lifetime;
+  const char* format;      // of a texel or an element, for the documentation
+  const char* resolution;  // how many of them there are, for the documentation
+  const char* cause;       // for frame buffers: the settings that the size follows from, as messages name them
+};
+
+inline constexpr ResourceInfo kResourceInfo[kResources] = {
+#define RESOURCE(name, lifetime, format, resolution) {#name, Lifetime::lifetime, format, resolution, ""},
+#define FRAME_BUFFER(name, format, resolution, cause) {#name, Lifetime::frame, format, resolution, cause},
+#include "effect/resources.def"
+#undef RESOURCE
+#undef FRAME_BUFFER
+};
+[[nodiscard]] constexpr const ResourceInfo& info_of(Resource resource) { return kResourceInfo[index_of(resource)]; }
+[[nodiscard]] constexpr const char* name_of(Resource resource) { return info_of(resource).name; }
+
+// The buffers of epipolar sampling, which the effect allocates one by one.
+constexpr std::size_t kFirstFrameBuffer = index_of(Resource::slices);
+constexpr std::size_t kFrameBuffers = index_of(Resource::downscaled_inscattering) + 1 - kFirstFrameBuffer;
+[[nodiscard]] constexpr Resource frame_buffer(std::size_t i) { return static_cast<Resource>(kFirstFrameBuffer + i); }
+constexpr VkBufferUsageFlags kFrameBufferUsage =
+    VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
+
+// Bytes of each frame buffer, in the order of resources.def. 0: no step uses it with these settings.
+struct FrameBufferSizes {
+  std::array<VkDeviceSize, kFrameBuffers> bytes = {};
+  [[nodiscard]] VkDeviceSize operator[](Resource resource) const {
+    return bytes[index_of(resource) - kFirstFrameBuffer];
+  }
+};
+[[nodiscard]] FrameBufferSizes frame_buffer_sizes(const EffectDesc& desc, const Params& params);
+
+// Pixels that have room in correction_list.
+[[nodiscard]] std::uint32_t correction_capacity(const EffectDesc& desc, const Params& params);
+// Cells of a slice line that have room in the min/max tree. Texels of a map beyond them are read directly.
+[[nodiscard]] std::uint32_t tree_cells(const EffectDesc& desc);
+
+// Slices, or samples of a slice, at the resolution that the light is computed for.
+[[nodiscard]] std::uint32_t downscaled_count(std::uint32_t count, const Params& params);
+[[nodiscard]] VkExtent2D downscaled_extent(VkExtent2D extent, const Params& params);
+// Blocks of unwarp.comp over a picture.
+[[nodiscard]] VkExtent2D unwarp_blocks(VkExtent2D extent);
+
+}  // namespace tyndall

@@ -1,0 +1,52 @@
+// Records steps into a command buffer: the barrier, the label, the timing, the bindings and the command of each.
+#pragma once
+
+#include <array>
+
+#include "effect/pipeline_cache.hpp"
+#include "effect/step.hpp"
+#include "gpu/timer.hpp"
+
+namespace tyndall {
+
+// What the resources are in one frame or build. Those that no step uses remain null.
+struct BoundResources {
+  std::array<gpu::Descriptor, kResources> list = {};
+
+  void set(Resource resource, VkBuffer buffer, VkDeviceSize offset = 0, VkDeviceSize size = VK_WHOLE_SIZE) {
+    list[index_of(resource)].buffer = {buffer, offset, size};
+  }
+  void set(Resource resource, VkImageView view, VkImageLayout layout = VK_IMAGE_LAYOUT_GENERAL,
+           VkSampler sampler = VK_NULL_HANDLE) {
+    list[index_of(resource)].image = {sampler, view, layout};
+  }
+  [[nodiscard]] const gpu::Descriptor& operator[](Resource resource) const { return list[index_of(resource)]; }
+};
+
+// Allocates nothing, except for the message of an error.
+class StepRecorder {
+ public:
+  // `timer`: times the dispatches; may be null. All arguments must outlive the recorder.
+  StepRecorder(const gpu::Device& device, VkCommandBuffer cmd, const PipelineCache& pipelines,
+               const BoundResources& resources, gpu::Timer* timer)
+      : device_(device), cmd_(cmd), pipelines_(pipelines), resources_(resources), timer_(timer) {}
+
+  // Adds what earlier commands may have done with a resource.
+  void assume(Resource resource, VkAccessFlags access) { hazards_.assume(resource, access); }
+  // An error if a pipeline or a resource is missing.
+  Result<void> record(const Step& step);
+
+ private:
+  Result<void> dispatch(const Step& step);
+  void transfer(const Step& step);
+  void barrier_before(const Step& step);
+
+  const gpu::Device& device_;
+  VkCommandBuffer cmd_;
+  const PipelineCache& pipelines_;
+  const BoundResources& resources_;
+  gpu::Timer* timer_;
+  HazardTracker hazards_;
+};
+
+}  // namespace tyndall

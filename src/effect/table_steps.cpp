@@ -1,0 +1,87 @@
+#include "effect/table_steps.hpp"
+
+#include <algorithm>
+
+#include "effect/table_plan.hpp"
+#include "effect_shaders.hpp"
+
+namespace tyndall {
+namespace {
+
+constexpr std::uint32_t kAltitudesPerStep = 8;  // of the gathering grid
+
+constexpr const char* kSunLight = "sun_light";
+constexpr const char* kGridNodes = "grid_nodes";
+constexpr const char* kPhaseMatrix = "phase_matrix";
+constexpr const char* kGatherSingle = "gather_single";
+constexpr const char* kGatherMultiple = "gather_multiple";
+constexpr const char* kScatter = "scatter";
+constexpr const char* kSkyLight = "sky_light";
+constexpr const char* kRayNodes = "ray_nodes";
+constexpr const char* kTableSingle = "table_single";
+constexpr const char* kTableHigh = "table_high";
+constexpr const char* kNames[] = {kSunLight, kGridNodes, kPhaseMatrix, kGatherSingle, kGatherMultiple,
+                                  kScatter,  kSkyLight,  kRayNodes,    kTableSingle,  kTableHigh};
+
+Step step_of(const char* name, const gpu::Shader& shader, Resource nodes, VkExtent3D invocations,
+             std::array<std::uint32_t, 2> push = {}) {
+  Specialisation constants;
+  constants[shared::kRaysOfTablesId] = nodes == Resource::ray_nodes ? 1 : 0;
+  Step step;
+  step.name = name;
+  step.pipeline = pipeline_key(shader, constants);
+  step.chosen = nodes;
+  step.invocations = invocations;
+  step.push = push;
+  return step;
+}
+
+}  // namespace
+
+std::vector<Step> table_steps(const Params& params, std::uint32_t stale) {
+  const bool high = (stale & kHighTables) != 0;
+  const bool single = (stale & kSingleTables) != 0;
+  std::vector<Step> out;
+  if ((stale & bit(TableId::sun_transmittance)) != 0) {
+    out.push_back(step_of(kSunLight, shaders::sun_light_comp, Resource::none, kSunLightExtent));
+  }
+  if (high) {
+    // The orders of scattering, solved on the gathering grid.
+    constexpr std::uint32_t altitudes = shared::kGatherAltitudes;
+    out.push_back(
+        step_of(kGridNodes, shaders::ray_nodes_comp, Resource::grid_nodes, {shared::kGatherZeniths, altitudes, 1}));
+    out.push_back(
+        step_of(kPhaseMatrix, shaders::phase_matrix_comp, Resource::none, {shared::kSourceZeniths, altitudes, 1}));
+    // The last turn scatters nothing any more: it adds the irradiance of the last order.
+    for (std::uint32_t order = 2; order <= params.tables.orders + 1; ++order) {
+      for (std::uint32_t first = 0; first < altitudes; first += kAltitudesPerStep) {
+        const std::uint32_t count = std::min(kAltitudesPerStep, altitudes - first);
+        out.push_back(
+            step_of(order == 2 ? kGatherSingle : kGatherMultiple,
+                    order == 2 ? shaders::gather_single_comp : shaders::gather_multiple_comp, Resource::grid_nodes,
+                    {shared::kGatherSuns, shared::kGatherAzimuths, count * shared::kGatherZeniths}, {first, order}));
+      }
+      for (std::uint32_t first = 0; first < altitudes; first += kAltitudesPerStep) {
+        const std::uint32_t count = std::min(kAltitudesPerStep, altitudes - first);
+        const gpu::Shader& scatter = shaders::scatter_comp;
+        out.push_back(step_of(kScatter, scatter, Resource::none,
+                              {shared::kGatherSuns * scatter.local_size[0], count, 1}, {first, order}));
+      }
+    }
+    out.push_back(step_of(kSkyLight, shaders::sky_light_comp, Resource::none, kSkyLightExtent));
+  }
+  // The tables, altitude by altitude: sun, angle, view.
+  const UVec4& size = params.tables.size;
+  const VkExtent3D texels = {size.z, size.w, size.y};
+  for (std::uint32_t altitude = 0; altitude < size.x; ++altitude) {
+    const std::array<std::uint32_t, 2> push = {altitude, 0};
+    out.push_back(step_of(kRayNodes, shaders::ray_nodes_comp, Resource::ray_nodes, {size.y, 1, 1}, push));
+    if (single) out.push_back(step_of(kTableSingle, shaders::table_single_comp, Resource::ray_nodes, texels, push));
+    if (high) out.push_back(step_of(kTableHigh, shaders::table_high_comp, Resource::ray_nodes, texels, push));
+  }
+  return out;
+}
+
+std::span<const char* const> table_step_names() { return kNames; }
+
+}  // namespace tyndall
