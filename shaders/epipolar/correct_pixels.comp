@@ -17,7 +17,7 @@ layout(std430, binding = 3) readonly buffer work_block {
   WorkList work;
   uint items[];
 };
-layout(std430, binding = 4) readonly buffer corrected_block { uvec2 corrected[]; };
+layout(std430, binding = 4) readonly buffer corrected_inscattering_block { uvec2 corrected[]; };
 layout(binding = 5) uniform sampler2D scene_color;
 layout(binding = 6) uniform sampler2D scene_depth;
 layout(binding = 7, OUTPUT_FORMAT) uniform writeonly image2D output_color;

@@ -17,8 +17,8 @@ layout(std430, binding = 3) readonly buffer work_block {
   WorkList work;
   uint items[];
 };
-layout(std430, binding = 4) readonly buffer corrected_block { uvec2 corrected[]; };
-layout(std430, binding = 5) buffer reduced_block { vec4 reduced[]; };
+layout(std430, binding = 4) readonly buffer corrected_inscattering_block { uvec2 corrected[]; };
+layout(std430, binding = 5) buffer downscaled_inscattering_block { vec4 reduced[]; };
 layout(binding = 6) uniform sampler2D scene_depth;
 
 #include "epipolar/records.glsl"

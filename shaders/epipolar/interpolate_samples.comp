@@ -7,10 +7,10 @@
 layout(local_size_x = 32, local_size_y = 2) in;
 
 layout(std430, binding = 0) readonly buffer epipolar_block { EpipolarConstants stored_epipolar; };
-layout(std430, binding = 1) readonly buffer slice_block { EpipolarSlice slices[]; };
+layout(std430, binding = 1) readonly buffer slices_block { EpipolarSlice slices[]; };
 layout(std430, binding = 2) readonly buffer interpolation_sources_block { uint sources[]; };
-layout(std430, binding = 3) buffer sample_block { uvec4 samples[]; };
-layout(std430, binding = 4) readonly buffer coarse_block { uint coarse[]; };
+layout(std430, binding = 3) buffer samples_block { uvec4 samples[]; };
+layout(std430, binding = 4) readonly buffer coarse_inscattering_block { uint coarse[]; };
 
 // Loaded by main() before anything else (docs/epipolar.md says why).
 EpipolarConstants epipolar;

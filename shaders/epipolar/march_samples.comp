@@ -14,25 +14,25 @@ layout(local_size_x = kMarchGroup) in;
 layout(std430, binding = 0) readonly buffer medium_block { Medium stored_medium; };
 layout(std430, binding = 1) readonly buffer frame_block { FrameConstants stored_frame; };
 layout(std430, binding = 2) readonly buffer epipolar_block { EpipolarConstants stored_epipolar; };
-layout(std430, binding = 3) readonly buffer row_block { ShadowRow rows[]; };
-layout(std430, binding = 4) readonly buffer tree_block { uvec2 tree[]; };
+layout(std430, binding = 3) readonly buffer slice_lines_block { ShadowRow rows[]; };
+layout(std430, binding = 4) readonly buffer min_max_tree_block { uvec2 tree[]; };
 layout(binding = 5) uniform sampler2DArrayShadow shadow_maps;
 layout(binding = 6) uniform sampler3D single_rayleigh;
 layout(binding = 7) uniform sampler3D single_mie;
 layout(binding = 8) uniform sampler3D high_orders;
-layout(std430, binding = 9) buffer counter_block { uint counters[]; };
-layout(std430, binding = 10) readonly buffer slice_block { EpipolarSlice slices[]; };
+layout(std430, binding = 9) buffer counters_block { uint counters[]; };
+layout(std430, binding = 10) readonly buffer slices_block { EpipolarSlice slices[]; };
 layout(std430, binding = 11) readonly buffer work_block {
   WorkList work;
   uint items[];
 };
-layout(std430, binding = 12) buffer sample_block { uvec4 samples[]; };
-layout(std430, binding = 13) buffer state_block { vec4 states[]; };
+layout(std430, binding = 12) buffer samples_block { uvec4 samples[]; };
+layout(std430, binding = 13) buffer march_states_block { vec4 states[]; };
 layout(binding = 14) uniform sampler2D scene_depth;
-layout(std430, binding = 15) writeonly buffer corrected_block { uvec2 corrected[]; };
+layout(std430, binding = 15) writeonly buffer corrected_inscattering_block { uvec2 corrected[]; };
 layout(binding = 16) uniform sampler2DArray shadow_colors;
-layout(std430, binding = 17) buffer coarse_block { uint coarse[]; };
-layout(std140, binding = 18) uniform cascade_block { CascadeConstants cascades[kMaxCascades]; };
+layout(std430, binding = 17) buffer coarse_inscattering_block { uint coarse[]; };
+layout(std140, binding = 18) uniform cascades_block { CascadeConstants cascades[kMaxCascades]; };
 
 // Loaded by main() before anything else (docs/epipolar.md says why).
 Medium medium;

@@ -1,5 +1,5 @@
 // What a ray has gathered, between passes that march one cascade each. Include after declaring
-//   buffer state_block { vec4 states[]; };
+//   buffer march_states_block { vec4 states[]; };
 #ifndef TYNDALL_MARCH_STATE_GLSL
 #define TYNDALL_MARCH_STATE_GLSL
 

@@ -20,9 +20,9 @@ layout(constant_id = kRefinementId) const uint kRefinement = 1u;  // 0 by depth,
 
 layout(std430, binding = 0) readonly buffer frame_block { FrameConstants frame; };
 layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants epipolar; };
-layout(std430, binding = 2) buffer slice_block { EpipolarSlice slices[]; };
-layout(std430, binding = 3) readonly buffer coarse_block { uint coarse[]; };
-layout(std430, binding = 6) readonly buffer sample_block { uvec4 samples[]; };
+layout(std430, binding = 2) buffer slices_block { EpipolarSlice slices[]; };
+layout(std430, binding = 3) readonly buffer coarse_inscattering_block { uint coarse[]; };
+layout(std430, binding = 6) readonly buffer samples_block { uvec4 samples[]; };
 layout(std430, binding = 4) writeonly buffer interpolation_sources_block { uint sources[]; };
 layout(std430, binding = 5) buffer march_list_block {
   WorkList march;

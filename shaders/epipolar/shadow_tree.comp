@@ -16,8 +16,8 @@ layout(constant_id = kFormatId) const uint kFormat = 0u;  // MinMaxFormat
 
 layout(std430, binding = 0) readonly buffer frame_block { FrameConstants stored_frame; };
 layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants stored_epipolar; };
-layout(std430, binding = 2) readonly buffer row_block { ShadowRow rows[]; };
-layout(std430, binding = 3) writeonly buffer tree_block { uint tree[]; };
+layout(std430, binding = 2) readonly buffer slice_lines_block { ShadowRow rows[]; };
+layout(std430, binding = 3) writeonly buffer min_max_tree_block { uint tree[]; };
 layout(binding = 4) uniform sampler2DArray shadow_depths;
 
 layout(std430, binding = 5) readonly buffer work_block {

@@ -10,7 +10,7 @@ layout(local_size_x = 32, local_size_y = 2) in;
 
 layout(std430, binding = 0) readonly buffer frame_block { FrameConstants frame; };
 layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants epipolar; };
-layout(std430, binding = 2) readonly buffer slice_block { EpipolarSlice slices[]; };
+layout(std430, binding = 2) readonly buffer slices_block { EpipolarSlice slices[]; };
 layout(std430, binding = 3) readonly buffer interpolation_sources_block { uint sources[]; };
 layout(binding = 4, OUTPUT_FORMAT) uniform writeonly image2D output_color;
 

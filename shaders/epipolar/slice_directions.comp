@@ -13,9 +13,9 @@ layout(local_size_x = 64) in;
 
 layout(std430, binding = 0) readonly buffer frame_block { FrameConstants stored_frame; };
 layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants stored_epipolar; };
-layout(std430, binding = 2) readonly buffer slice_block { EpipolarSlice slices[]; };
-layout(std430, binding = 3) writeonly buffer row_block { ShadowRow rows[]; };
-layout(std430, binding = 4) buffer tree_list_block {
+layout(std430, binding = 2) readonly buffer slices_block { EpipolarSlice slices[]; };
+layout(std430, binding = 3) writeonly buffer slice_lines_block { ShadowRow rows[]; };
+layout(std430, binding = 4) buffer tree_blocks_block {
   WorkList trees;
   uint tree_list[];
 };
@@ -23,8 +23,8 @@ layout(std430, binding = 5) readonly buffer march_list_block {
   WorkList march;
   uint march_list[];
 };
-layout(std430, binding = 6) readonly buffer sample_block { uvec4 samples[]; };
-layout(std140, binding = 7) uniform cascade_block { CascadeConstants cascades[kMaxCascades]; };
+layout(std430, binding = 6) readonly buffer samples_block { uvec4 samples[]; };
+layout(std140, binding = 7) uniform cascades_block { CascadeConstants cascades[kMaxCascades]; };
 
 // Loaded by main() before anything else (docs/epipolar.md says why).
 FrameConstants frame;

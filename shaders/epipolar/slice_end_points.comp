@@ -10,7 +10,7 @@ layout(local_size_x = 64) in;
 
 layout(std430, binding = 0) readonly buffer frame_block { FrameConstants frame; };
 layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants epipolar; };
-layout(std430, binding = 2) writeonly buffer slice_block { EpipolarSlice slices[]; };
+layout(std430, binding = 2) writeonly buffer slices_block { EpipolarSlice slices[]; };
 
 #include "epipolar/slices.glsl"
 

@@ -16,9 +16,9 @@ layout(local_size_x = 32, local_size_y = 2) in;
 layout(std430, binding = 0) readonly buffer medium_block { Medium stored_medium; };
 layout(std140, binding = 1) uniform frame_block { FrameConstants frame; };
 layout(std140, binding = 2) uniform epipolar_block { EpipolarConstants epipolar; };
-layout(std430, binding = 3) readonly buffer slice_block { EpipolarSlice slices[]; };
-layout(std430, binding = 4) writeonly buffer sample_block { uvec4 samples[]; };
-layout(std430, binding = 5) writeonly buffer coarse_block { uint coarse[]; };
+layout(std430, binding = 3) readonly buffer slices_block { EpipolarSlice slices[]; };
+layout(std430, binding = 4) writeonly buffer samples_block { uvec4 samples[]; };
+layout(std430, binding = 5) writeonly buffer coarse_inscattering_block { uint coarse[]; };
 layout(binding = 6) uniform sampler2D scene_depth;
 
 // Loaded by main() before anything else (docs/epipolar.md says why).

@@ -13,17 +13,17 @@ layout(local_size_x = 64) in;  // along rows, as images lie in memory
 layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
 layout(std140, binding = 1) uniform frame_block { FrameConstants frame; };
 layout(std140, binding = 2) uniform epipolar_block { EpipolarConstants epipolar; };
-layout(std430, binding = 3) readonly buffer slice_block { EpipolarSlice slices[]; };
-layout(std430, binding = 4) readonly buffer sample_block { uvec4 samples[]; };
+layout(std430, binding = 3) readonly buffer slices_block { EpipolarSlice slices[]; };
+layout(std430, binding = 4) readonly buffer samples_block { uvec4 samples[]; };
 layout(binding = 5) uniform sampler2D scene_color;
 layout(binding = 6) uniform sampler2D scene_depth;
 layout(binding = 7, OUTPUT_FORMAT) uniform writeonly image2D output_color;
-layout(std430, binding = 8) buffer broken_list_block {
+layout(std430, binding = 8) buffer discontinuity_blocks_block {
   WorkList broken;
   uint broken_list[];
 };
 
-layout(std430, binding = 9) writeonly buffer reduced_block { vec4 reduced[]; };
+layout(std430, binding = 9) writeonly buffer downscaled_inscattering_block { vec4 reduced[]; };
 
 #include "frame/picture.glsl"
 #include "epipolar/unwarp.glsl"

@@ -12,8 +12,8 @@ layout(local_size_x = kMarchGroup) in;
 layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
 layout(std140, binding = 1) uniform frame_block { FrameConstants frame; };
 layout(std140, binding = 2) uniform epipolar_block { EpipolarConstants epipolar; };
-layout(std430, binding = 3) readonly buffer slice_block { EpipolarSlice slices[]; };
-layout(std430, binding = 4) readonly buffer sample_block { uvec4 samples[]; };
+layout(std430, binding = 3) readonly buffer slices_block { EpipolarSlice slices[]; };
+layout(std430, binding = 4) readonly buffer samples_block { uvec4 samples[]; };
 layout(binding = 5) uniform sampler2D scene_color;
 layout(binding = 6) uniform sampler2D scene_depth;
 layout(binding = 7, OUTPUT_FORMAT) uniform writeonly image2D output_color;
@@ -21,11 +21,11 @@ layout(std430, binding = 8) readonly buffer work_block {
   WorkList work;
   uint items[];
 };
-layout(std430, binding = 9) buffer break_list_block {
+layout(std430, binding = 9) buffer correction_list_block {
   WorkList breaks;
   uint break_list[];
 };
-layout(std430, binding = 10) writeonly buffer reduced_block { vec4 reduced[]; };
+layout(std430, binding = 10) writeonly buffer downscaled_inscattering_block { vec4 reduced[]; };
 
 #include "frame/picture.glsl"
 #include "epipolar/unwarp.glsl"

@@ -1,5 +1,5 @@
 // Counters of the work of a frame's passes, for `bench`. Each is a 64-bit number in two words, low word first. Include
-// after declaring  buffer counter_block { uint counters[]; }  The counters cost nothing unless EffectDesc::counters is
+// after declaring  buffer counters_block { uint counters[]; }  The counters cost nothing unless EffectDesc::counters is
 // set.
 #ifndef TYNDALL_COUNTERS_GLSL
 #define TYNDALL_COUNTERS_GLSL

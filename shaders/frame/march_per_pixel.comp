@@ -23,9 +23,9 @@ layout(binding = 5, OUTPUT_FORMAT) uniform writeonly image2D output_color;
 layout(binding = 6) uniform sampler3D single_rayleigh;
 layout(binding = 7) uniform sampler3D single_mie;
 layout(binding = 8) uniform sampler3D high_orders;
-layout(std430, binding = 9) buffer counter_block { uint counters[]; };
+layout(std430, binding = 9) buffer counters_block { uint counters[]; };
 layout(binding = 10) uniform sampler2DArray shadow_colors;
-layout(std140, binding = 11) uniform cascade_block { CascadeConstants cascades[kMaxCascades]; };
+layout(std140, binding = 11) uniform cascades_block { CascadeConstants cascades[kMaxCascades]; };
 
 // main() loads both before anything else; docs/epipolar.md gives the reason.
 Medium medium;

@@ -16,31 +16,10 @@ struct ShaderResources {
   std::size_t count = 0;
 };
 
-struct OldName {
-  std::string_view binding;
-  Resource resource;
-};
-constexpr OldName kOldNames[] = {{"cascade", Resource::cascades},
-                                 {"counter", Resource::counters},
-                                 {"slice", Resource::slices},
-                                 {"row", Resource::slice_lines},
-                                 {"sample", Resource::samples},
-                                 {"coarse", Resource::coarse_inscattering},
-                                 {"broken_list", Resource::discontinuity_blocks},
-                                 {"break_list", Resource::correction_list},
-                                 {"corrected", Resource::corrected_inscattering},
-                                 {"tree_list", Resource::tree_blocks},
-                                 {"tree", Resource::min_max_tree},
-                                 {"state", Resource::march_states},
-                                 {"reduced", Resource::downscaled_inscattering}};
-
 // Returns Resource::none for a binding without a resource.
 constexpr Resource resource_of(std::string_view binding) {
   constexpr std::string_view kSuffix = "_block";
   if (binding.ends_with(kSuffix)) binding.remove_suffix(kSuffix.size());
-  for (const OldName& old : kOldNames) {
-    if (binding == old.binding) return old.resource;
-  }
   for (std::size_t i = 0; i < kResources; ++i) {
     if (binding == kResourceInfo[i].name) return static_cast<Resource>(i);
   }
