@@ -86,6 +86,8 @@ class Scene {
     const gpu::Image &display, &output, &color, &depth, &shadow_maps;
   };
   [[nodiscard]] Images images() const { return {display_, output_, color_, depth_, shadow_maps_}; }
+  // Returns the camera of the last rendered frame.
+  [[nodiscard]] const View& view() const { return view_; }
   // Returns the ground that is drawn, which any thread may read; nullptr for the bare sphere at sea level.
   [[nodiscard]] std::shared_ptr<const ElevationSource> elevations() const {
     return bare_ground() ? nullptr : terrain_->source();

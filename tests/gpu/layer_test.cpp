@@ -76,7 +76,7 @@ TEST_F(GpuLayer, ABindingThatIsMissingIsNamed) {
     const NamedResource other[] = {named_buffer("seed_bloc", seed_.buffer.get()),
                                    named_buffer("value_block", values_.buffer.get())};
     EXPECT_EQ(bind(host().device(), cmd, fill_, other, &steps), "seed_block");
-    EXPECT_EQ(bind(host().device(), cmd, fill_, {}, &steps).empty(), false);
+    EXPECT_EQ(gpu::bind(host().device(), cmd, fill_, std::span<const gpu::NamedResource>(), &steps).empty(), false);
     return {};
   }));
 }

@@ -142,7 +142,7 @@ class SceneFaults : public testing::Test {
     const Scene::Memory memory = scene.memory();
     out.scene_bytes = memory.scene;
     out.effect_bytes = memory.effect_persistent;
-    out.progress = scene.tables_progress();
+    out.progress = scene.effect().precompute_progress();
     out.notes = scene.notes();
     return out;
   }
