@@ -1,6 +1,5 @@
-// The list of pixels that are marched by themselves. When there are more than it has room for, none of them is marched:
-// which ones come first differs from run to run. Include after declaring breaks (WorkList), break_list (uint[]) and
-// epipolar.
+// The list of pixels to be marched. If there are more than its capacity, none of them is marched, because the order in
+// the list varies from run to run. Include after declaring breaks (WorkList), break_list (uint[]) and epipolar.
 #ifndef TYNDALL_BREAK_LIST_GLSL
 #define TYNDALL_BREAK_LIST_GLSL
 

@@ -1,4 +1,4 @@
-// Puts the light that was marched for single pixels over their background, or only marks them.
+// Composes the marched in-scattering of listed pixels with their background, or marks these pixels.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -40,7 +40,7 @@ void put_pixel(uint at) {
   }
   if (kHomogeneous) color *= homogeneous_phase(ray.cos_view_sun);
   if (frame.only == 0u) color += LOAD_COLOR(pixel) * through;
-  // Seen against anything: green, as bright as a white surface under the sun.
+  // The mark is green and as bright as a white surface in sunlight, so that it is visible on any background.
   if (epipolar.show_depth_breaks != 0u) color = vec3(0.0, dot(frame.sun_irradiance, vec3(0.1)), 0.0);
   STORE_COLOR(pixel, color);
 }

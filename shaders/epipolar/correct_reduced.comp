@@ -1,4 +1,5 @@
-// Makes records of the light that was marched for reduced pixels which no sample fits (Yusov 2012, section 6.7).
+// Stores the marched in-scattering of listed pixels of the half- or quarter-resolution buffer (Yusov 2012, section
+// 6.7).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -1,4 +1,5 @@
-// The sources of the samples that were not marched, between those of two that were (Yusov 2013, section 1.3).
+// Interpolates the mean source functions of samples that are not marched between two marched ones (Yusov 2013, section
+// 1.3).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -12,14 +13,15 @@ layout(std430, binding = 2) readonly buffer interpolation_sources_block { uint s
 layout(std430, binding = 3) buffer samples_block { uvec4 samples[]; };
 layout(std430, binding = 4) readonly buffer coarse_inscattering_block { uint coarse[]; };
 
-// Loaded by main() before anything else (docs/epipolar.md says why).
+// main() loads this before anything else (see docs/epipolar.md).
 EpipolarConstants epipolar;
 
 #include "epipolar/records.glsl"
 
-// Of the root of the source, for each part of the light that comes from the dark.
+// Relative decrease of the square root of the source function per fraction of in-scattering from behind shadowed end
+// points.
 const float kLostInShadow = 0.35;
-const float kMostBeyond = 0.1;  // beyond samples of another depth
+const float kMostBeyond = 0.1;  // beyond samples at a different depth
 
 void main() {
   epipolar = stored_epipolar;
@@ -33,15 +35,17 @@ void main() {
   uvec4 a = samples[row + left];
   uvec4 b = samples[row + right];
   float part = float(i - left) / float(right - left);
-  // Light that is off the line between theirs is that of air beyond where their rays end. Where that is in shadow, only
-  // what is scattered more than once comes from it, and the source is a mean with less in it.
+  // If the in-scattering is not on the line between the two, the ray ends in front of or behind theirs. If they have
+  // shadowed end points, the additional part of the medium contributes only higher orders, which reduces the mean
+  // source function.
   uint coarse_a = coarse[row + left];
   uint coarse_b = coarse[row + right];
   vec2 light = unpack_coarse(coarse[row + i]);
   vec2 beyond = (light - mix(unpack_coarse(coarse_a), unpack_coarse(coarse_b), part)) / max(light, vec2(1e-30));
   float dark = mix(dark_end(coarse_a), dark_end(coarse_b), part);
   float scale = 1.0 - kLostInShadow * dark * clamp(0.5 * (beyond.x + beyond.y), -kMostBeyond, kMostBeyond);
-  // Roots of the sources: three halves of y and z, whose fourth is of the density.
+  // The square roots of source functions take three halves of y and z. The fourth half belongs to the extinction
+  // coefficient.
   samples[row + i].y = packHalf2x16(mix(unpackHalf2x16(a.y), unpackHalf2x16(b.y), part) * scale);
   float blue = mix(unpackHalf2x16(a.z).x, unpackHalf2x16(b.z).x, part) * scale;
   samples[row + i].z = (packHalf2x16(vec2(blue, 0.0)) & 0xFFFFu) | (samples[row + i].z & 0xFFFF0000u);

@@ -1,5 +1,5 @@
-// Where a ray ends for the purposes of interpolation: at what the depth buffer shows, at the planet where
-// nothing was drawn, or in the sky. Include after the declarations of medium and frame.
+// The end of a ray for interpolation: the surface in the depth buffer, the planet where nothing was drawn, or the sky.
+// Include after the declarations of medium and frame.
 #ifndef TYNDALL_RAY_END_GLSL
 #define TYNDALL_RAY_END_GLSL
 
@@ -7,7 +7,8 @@
 #include "frame/homogeneous_medium.glsl"
 #include "epipolar/records.glsl"
 
-// View-space depth [m] of the end of a ray to the sky: kSkyDepth, or where the planet is in the way.
+// Returns the view-space depth [m] of the end of a ray to the sky: kSkyDepth, or the depth of the planet if it is in
+// the way.
 float sky_depth_m(vec3 direction) {
   float h = frame.camera_altitude_m;
   float radius = medium.planet_radius_m;
@@ -16,7 +17,8 @@ float sky_depth_m(vec3 direction) {
                                         : kSkyDepth;
 }
 
-// Length [m] inside the homogeneous medium of a ray to such a depth; from kSkyDepth on to the medium's extent.
+// Returns the length [m] inside the homogeneous medium of a ray to such a depth. From kSkyDepth on the ray ends at the
+// boundary of the medium.
 float length_in_homogeneous(vec3 direction, float depth_m) {
   float start;
   float end =

@@ -1,12 +1,12 @@
-// A sample as the picture is put together from it: view-space depth of where its ray ends; optical depth per
-// megametre of that depth; and the source, the light that the air sends divided by what it takes away, L / (1 - T),
-// relative to the sun's irradiance. What is interpolated is the source, which changes slowly, and not the light,
-// which follows every change of depth. Kept as square roots in half precision: good to 5e-4 over eighteen decades.
+// A sample: the view-space depth of the end of its ray, the mean extinction coefficient up to that depth per megametre,
+// and the mean source function L / (1 - T) relative to the sun's irradiance. The mean source function is interpolated
+// because it changes slowly, while in-scattering follows every change of depth. Both are stored as square roots in half
+// precision, with a relative error of 5e-4 over eighteen decades.
 #ifndef TYNDALL_RECORDS_GLSL
 #define TYNDALL_RECORDS_GLSL
 
-const float kSkyDepth = 1e9;  // [m] of rays that leave the air
-const float kLongest = 1e6;   // [m] Beyond this depth, what is stored is the optical depth itself.
+const float kSkyDepth = 1e9;  // [m] of rays that leave the atmosphere
+const float kLongest = 1e6;   // [m]; beyond this depth, the stored value is the optical depth itself
 
 struct Sample {
   float depth_m;
@@ -18,7 +18,7 @@ float depth_in_megametres(float depth_m) { return max(min(depth_m, kLongest), 0.
 
 vec3 density_of(vec3 optical_depth, float depth_m) { return optical_depth / depth_in_megametres(depth_m); }
 
-// exp(-tau) and 1 - exp(-tau), the latter without cancellation.
+// Computes exp(-tau), and 1 - exp(-tau) without cancellation.
 void attenuation(vec3 tau, out vec3 through, out vec3 lost) {
   through = exp(-tau);
   lost = mix(1.0 - through, tau - 0.5 * tau * tau, lessThan(tau, vec3(2e-3)));
@@ -35,7 +35,7 @@ uvec4 pack_sample(Sample s) {
                packHalf2x16(density.yz));
 }
 
-// With roots of density and source.
+// Returns a sample with the square roots of its extinction coefficient and source function.
 Sample unpack_roots(uvec4 packed) {
   vec2 a = unpackHalf2x16(packed.y);
   vec2 b = unpackHalf2x16(packed.z);
@@ -54,19 +54,18 @@ Sample unpack_sample(uvec4 packed) {
   return s;
 }
 
-const float kCoarseUnit = 1e6;  // of light: full precision down to 1e-14
+const float kCoarseUnit = 1e6;  // in-scattering has full precision down to 1e-14
 
-// Light without shadows, for refine_samples.comp: the roots, like those of a sample, of red and blue, between which
-// green changes.
+// Coarse unshadowed in-scattering for refine_samples.comp: the square roots of red and blue. Green lies between them.
 uint pack_coarse(vec3 light) { return packHalf2x16(root_for_half(light * kCoarseUnit).xz); }
 
-// Of a marched sample, set by march_samples.comp: the air just before the end of its ray is in shadow. The roots have
-// no sign.
+// Set by march_samples.comp if the ray of a marched sample has a shadowed end point. The sign bit is free because roots
+// are never negative.
 const uint kDarkEnd = 0x80000000u;
 
 float dark_end(uint coarse) { return (coarse & kDarkEnd) != 0u ? 1.0 : 0.0; }
 
-// Light of a pixel that was marched by itself: the roots in half precision, as those of samples.
+// In-scattering of a pixel that was marched separately: square roots in half precision, as in samples.
 uvec2 pack_light(vec3 light) {
   vec3 root = root_for_half(light * kCoarseUnit);
   return uvec2(packHalf2x16(root.xy), packHalf2x16(vec2(root.z, 0.0)));

@@ -1,5 +1,6 @@
-// The picture that the light is computed for: the whole one, or with scattering.downscale the reduced one, each of
-// whose pixels is one of the whole picture's. Include after declaring frame and epipolar.
+// The picture for which in-scattering is computed: the full-resolution picture, or with scattering.downscale the half-
+// or quarter-resolution buffer, each pixel of which coincides with a pixel of the full resolution. Include after
+// declaring frame and epipolar.
 #ifndef TYNDALL_REDUCED_GLSL
 #define TYNDALL_REDUCED_GLSL
 
@@ -7,17 +8,18 @@
 
 layout(constant_id = kDownscaleId) const int kDownscale = 1;
 
-// Of the first in the whole picture. Even, so that every block of 2 x 2 lies between the same four reduced pixels.
+// The position of the first buffer pixel in the full resolution. It is even, so that the pixels of every 2 x 2 block
+// lie between the same four buffer pixels.
 const int kFirstReduced = kDownscale == 4 ? 2 : 0;
 
 ivec2 computed_size() {
   return kDownscale == 1 ? ivec2(frame.width, frame.height) : ivec2(epipolar.reduced_width, epipolar.reduced_height);
 }
 
-// The whole picture's pixel that a reduced one is; the last ones of a row or column may be closer together.
+// Returns the full-resolution pixel of a buffer pixel. The last ones of a row or column may be closer together.
 ivec2 pixel_of_reduced(ivec2 at) { return min(at * kDownscale + kFirstReduced, ivec2(frame.width, frame.height) - 1); }
 
-// The reduced pixel to the left of and above a pixel, from -1 on, and the part of the way to the next.
+// Returns the buffer pixel to the left of and above a pixel, at least -1, and the fraction of the way to the next one.
 ivec2 reduced_before(ivec2 pixel, out vec2 part) {
   ivec2 at = (pixel - kFirstReduced) >> (kDownscale / 2);
   part = vec2(pixel - kFirstReduced - at * kDownscale) / float(kDownscale);
@@ -26,7 +28,8 @@ ivec2 reduced_before(ivec2 pixel, out vec2 part) {
 
 uint reduced_index(ivec2 at) { return uint(at.y) * epipolar.reduced_width + uint(at.x); }
 
-// Full floats: source and depth, and behind those of all pixels the densities, which a homogeneous medium does without.
+// The buffer stores 32-bit floats: source functions and depths of all pixels, followed by extinction coefficients,
+// which a homogeneous medium does not need.
 #define STORE_REDUCED(at, depth_m, blend)                               \
   {                                                                     \
     reduced[reduced_index(at)] = vec4((blend).source, depth_m);         \

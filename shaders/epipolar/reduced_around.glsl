@@ -1,10 +1,11 @@
-// The four reduced pixels around a pixel of the whole picture. Include after declaring reduced and unwarp.glsl.
+// The four pixels of the half- or quarter-resolution buffer around a full-resolution pixel. Include after declaring
+// reduced and unwarp.glsl.
 #ifndef TYNDALL_REDUCED_AROUND_GLSL
 #define TYNDALL_REDUCED_AROUND_GLSL
 
 #include "epipolar/reduced.glsl"
 
-// `part`: of the way from the first to the last. Where the picture ends there are fewer than four.
+// `part` is the fraction of the way from the first to the last. At the border of the picture there are fewer than four.
 void reduced_around(ivec2 pixel, out vec2 part, out Sample around[4]) {
   ivec2 at = reduced_before(pixel, part);
   ivec2 most = ivec2(epipolar.reduced_width, epipolar.reduced_height) - 1;

@@ -1,5 +1,5 @@
-// Builds the trees of all rows. A thread makes the nodes of a part of a block, one leaf after the other: its row is
-// loaded once, and only the few nodes above parts are put together across threads.
+// Builds the 1D min/max trees of all slice lines. A thread builds the nodes of a part of a block, one leaf after the
+// other. It loads its slice line once, and only the few nodes above the parts are combined across threads.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -8,8 +8,8 @@
 #include "shared/epipolar.h"
 #include "shared/constant_ids.h"
 
-const uint kPartLevel = 6u;                    // of a part's topmost node
-const uint kParts = kTreeBlock >> kPartLevel;  // of a block
+const uint kPartLevel = 6u;                    // level of a part's topmost node
+const uint kParts = kTreeBlock >> kPartLevel;  // parts per block
 
 layout(local_size_x = kTreeGroup * kParts) in;
 layout(constant_id = kFormatId) const uint kFormat = 0u;  // MinMaxFormat
@@ -23,16 +23,16 @@ layout(binding = 4) uniform sampler2DArray shadow_depths;
 layout(std430, binding = 5) readonly buffer work_block {
   WorkList work;
   uint items[];
-};  // row << 8 | block
+};  // slice line << 8 | block
 
-// Loaded by main() before anything else (docs/epipolar.md says why).
+// main() loads this before anything else (see docs/epipolar.md).
 FrameConstants frame;
 EpipolarConstants epipolar;
 
 #include "epipolar/shadow_tree.glsl"
 #include "epipolar/work_list.glsl"
 
-const uint kCells = 1u << kTreeLeafLevel;  // of a leaf
+const uint kCells = 1u << kTreeLeafLevel;  // per leaf
 const uint kPartLeaves = 1u << (kPartLevel - kTreeLeafLevel);
 const float kAlwaysLit = 1e30;
 
@@ -40,7 +40,7 @@ shared vec2 part_nodes[kTreeGroup * kParts];
 
 vec2 both(vec2 a, vec2 b) { return vec2(min(a.x, b.x), max(a.y, b.y)); }
 
-// Least and greatest depth that the comparisons in the middles of cell x and the next can meet.
+// Returns the minimum and maximum depth that comparisons between the middles of cell x and the next can read.
 vec2 pair_depths(ShadowRow row, int x, uint cascade) {
   vec2 uv = row.line.xy + (float(x) + 0.5) * row.line.zw;
   vec4 a = textureGather(shadow_depths, vec3(uv, float(cascade)));
@@ -51,16 +51,17 @@ vec2 pair_depths(ShadowRow row, int x, uint cascade) {
   return frame.shadow_depth_reversed != 0u ? vec2(1.0 - depths.y, 1.0 - depths.x) : depths;
 }
 
-// Least and greatest slope of rays that may meet these depths anywhere from cell x to the end of the next.
+// Returns the minimum and maximum slope of rays that may meet these depths between the start of cell x and the end of
+// the next.
 vec2 pair_slopes(vec2 depths, int x, float camera) {
-  // Rounding of the ray's depth, which is the sum of the camera's and that of the way.
+  // The rounding error of the depth of the ray, which is the sum of the camera's depth and the change along the ray.
   float slack = 4e-7 * (1.0 + abs(camera));
   vec2 rise = vec2(depths.x - slack, depths.y + slack) - camera;
-  // The slope that is safe is that to the nearer or the farther end.
+  // The conservative slope is that to the nearer or to the farther end.
   vec2 per_cell = 1.0 / vec2(max(float(x), 1e-9), float(x) + 2.0);
   float low = rise.x * (rise.x >= 0.0 ? per_cell.y : per_cell.x);
   float high = rise.y * (rise.y >= 0.0 ? per_cell.x : per_cell.y);
-  // Where nothing casts a shadow, nothing is dark however deep.
+  // Without a caster there is no shadow at any depth.
   return vec2(depths.x >= 1.0 ? kAlwaysLit : low, depths.y >= 1.0 ? kAlwaysLit : high);
 }
 
@@ -83,13 +84,13 @@ void store_node(uint at, vec2 n) {
   }
 }
 
-// What both() takes no notice of.
+// The neutral value of both().
 vec2 no_cells() { return kFormat == kUnorm16 ? vec2(65535.0, 0.0) : vec2(2.0, -2.0); }
 
-// Makes the nodes of a part of a block; the last of them.
+// Builds the nodes of a part of a block and returns the last of them.
 vec2 build_part(uint base, ShadowRow row, uint cascade, uint block, uint part) {
   float camera = frame.shadow_depth_reversed != 0u ? 1.0 - row.depth : row.depth;
-  vec2 first_half[kPartLevel - kTreeLeafLevel];  // of the node in the making, by its children's level
+  vec2 first_half[kPartLevel - kTreeLeafLevel];  // the pending node of each level of children
   vec2 n = no_cells();
   for (uint leaf = 0u; leaf < kPartLeaves; ++leaf) {
     uint cell = (part << kPartLevel) + leaf * kCells;

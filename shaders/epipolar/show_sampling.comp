@@ -1,4 +1,4 @@
-// Marks the samples in the picture: marched ones by four bright red pixels, interpolated ones by a dark red one.
+// Marks samples in the picture: marched ones by four bright red pixels, interpolated ones by one dark red pixel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -14,7 +14,7 @@ layout(std430, binding = 2) readonly buffer slices_block { EpipolarSlice slices[
 layout(std430, binding = 3) readonly buffer interpolation_sources_block { uint sources[]; };
 layout(binding = 4, OUTPUT_FORMAT) uniform writeonly image2D output_color;
 
-layout(push_constant) uniform Push { uint marched; };  // 0: the interpolated ones; 1, in a later pass: the marched
+layout(push_constant) uniform Push { uint marched; };  // 0: interpolated samples; 1, in a later pass: marched samples
 
 #include "frame/picture.glsl"
 #include "epipolar/slices.glsl"

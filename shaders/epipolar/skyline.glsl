@@ -1,12 +1,12 @@
-// The sky beside a skyline, where slices are far apart: between a slice that is in the sky and one that is not, or not
-// any more. Include after unwarp.glsl.
+// The sky next to a skyline at low slice counts, between a slice in the sky and one that is behind the ground there.
+// Include after unwarp.glsl.
 #ifndef TYNDALL_SKYLINE_GLSL
 #define TYNDALL_SKYLINE_GLSL
 
-// What a slice tells of the sky at a place that it may pass behind the ground.
+// The contribution of a slice to a position in the sky. The slice may be behind the ground there.
 struct SkyOnSlice {
-  vec3 source;  // root
-  float away;   // of the samples that tell it [pixels]
+  vec3 source;  // square root
+  float away;   // distance to the samples that contribute [pixels]
   bool any;
 };
 
@@ -34,15 +34,15 @@ SkyOnSlice sky_on_slice(uint id, vec4 origin, vec2 position) {
   return sky;
 }
 
-// The source at a place in the sky, from the nearest samples of both slices that are in the sky. A slice tells the less
-// the farther away these are, so that nothing jumps where it comes out of the ground. `otherwise`: where both are in
-// the ground.
+// Returns the source function at a position in the sky, from the nearest samples of both slices in the sky. The weight
+// of a slice decreases with their distance, so that there is no seam where it leaves the ground. Returns `otherwise` if
+// both slices are behind the ground.
 vec3 sky_source(Around a, vec2 position, vec3 otherwise) {
   uint last = epipolar.slices - 1u;
   uint lower = uint(a.lower);
   uint upper = lower < last ? lower + 1u : epipolar.closed != 0u ? 0u : last;
   float part = clamp(slice_coordinate(position, a.side) - a.lower, 0.0, 1.0);
-  float reach = epipolar.perimeter / float(epipolar.slices);  // as far as slices are apart
+  float reach = epipolar.perimeter / float(epipolar.slices);  // the distance between slices
   SkyOnSlice sky[2] = SkyOnSlice[2](sky_on_slice(min(lower, last), a.origin_lower, position),
                                     sky_on_slice(upper, a.origin_upper, position));
   float sum = 0.0;

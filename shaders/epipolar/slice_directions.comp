@@ -1,7 +1,7 @@
-// The line of each slice in each marched cascade's map, and which parts of its tree are to be built (Yusov 2013,
-// section 1.4). All rays of a slice lie in one plane with the direction to the sun, which the map shows as a line
-// through the camera. Far cascades are crossed by few rays of a slice, and those by the sun move little in the map:
-// only cells that a marched sample's ray comes to are put into the tree.
+// Computes the slice line of each slice in the shadow map of each marched cascade, and the parts of its tree to be
+// built (Yusov 2013, section 1.4). All rays of a slice lie in a plane that contains the direction to the sun. In the
+// map the plane is a line through the camera. Few rays of a slice cross distant cascades, and rays near the sun hardly
+// move in the map. The tree therefore contains only cells that the ray of a marched sample reaches.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -26,7 +26,7 @@ layout(std430, binding = 5) readonly buffer march_list_block {
 layout(std430, binding = 6) readonly buffer samples_block { uvec4 samples[]; };
 layout(std140, binding = 7) uniform cascades_block { CascadeConstants cascades[kMaxCascades]; };
 
-// Loaded by main() before anything else (docs/epipolar.md says why).
+// main() loads this before anything else (see docs/epipolar.md).
 FrameConstants frame;
 EpipolarConstants epipolar;
 
@@ -34,7 +34,7 @@ EpipolarConstants epipolar;
 #include "epipolar/work_list.glsl"
 #include "frame/view_ray.glsl"
 
-// Cells per metre of view depth along the ray through a place, and their direction.
+// Returns cells per metre of view depth along the ray through a position, and their direction.
 vec2 texels_per_depth(mat4 shadow_from_world, vec2 position) {
   vec3 d = frame.ray_origin + position.x * frame.ray_x + position.y * frame.ray_y;
   float depth = max(dot(d, frame.camera_forward), 1e-12 * length(d));
@@ -43,7 +43,7 @@ vec2 texels_per_depth(mat4 shadow_from_world, vec2 position) {
 
 float begin_of(uint cascade) { return cascade > epipolar.first_cascade ? cascades[cascade - 1u].far_m : 0.0; }
 
-// How far rays of a slice's marched samples come in a cascade [cells from the camera].
+// Returns how far rays of marched samples of a slice reach in a cascade [cells from the camera].
 float reach_of(EpipolarSlice slice, uint id, uint cascade) {
   float begin = begin_of(cascade);
   float far_m = cascades[cascade].far_m;
@@ -67,13 +67,13 @@ ShadowRow row_of(EpipolarSlice slice, uint cascade, float reach_cells) {
   float scale = max(abs(far.x), abs(far.y));
   vec2 step_uv = scale > 1e-12 ? far / (scale * resolution) : vec2(1.0 / resolution, 0.0);
 
-  // Cells inside the map.
+  // The cells inside the map.
   vec2 slope = vec2(abs(step_uv.x) > 1e-12 ? step_uv.x : 1e-12, abs(step_uv.y) > 1e-12 ? step_uv.y : 1e-12);
   vec2 a = -camera.xy / slope;
   vec2 b = (1.0 - camera.xy) / slope;
   float inside = max(max(min(a.x, b.x), min(a.y, b.y)), 0.0);
   float outside = min(max(a.x, b.x), max(a.y, b.y));
-  // Cells that rays of this slice cross in this cascade: along a slice, cells per depth grow steadily.
+  // The cells that rays of this slice cross in this cascade. Cells per metre of depth grow monotonically along a slice.
   float first = max(inside, begin_of(cascade) * max(abs(near.x), abs(near.y)) - 1.0);
   float last = min(outside, cascades[cascade].far_m * scale + 1.0);
 
@@ -97,7 +97,7 @@ void main() {
   ShadowRow row = row_of(slice, cascade, epipolar.tree_cells > 0u ? reach_of(slice, id, cascade) : 0.0);
   uint row_id = gl_GlobalInvocationID.y * epipolar.slices + id;
   rows[row_id] = row;
-  // The blocks of the tree that have cells.
+  // The blocks of the tree that contain cells.
   uint blocks = (uint(row.cells.z) + kTreeBlock - 1u) / kTreeBlock;
   uint at = atomicAdd(trees.count, blocks);
   uint groups = (at + blocks + kTreeGroup - 1u) / kTreeGroup;

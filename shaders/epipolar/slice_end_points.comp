@@ -1,4 +1,5 @@
-// Where each slice begins and ends in the picture, and how its samples are spread (Yusov 2013, section 1.2).
+// Computes the start and end of each slice in the picture and the distribution of its samples (Yusov 2013, section
+// 1.2).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -25,7 +26,8 @@ void main() {
   if (epipolar.sun_in_picture != 0u) visible = distance(exit, epipole());
   vec2 entry = exit - direction * visible;
 
-  // Short slices are stretched beyond the border, so that samples are no closer than a pixel (of the reduced picture).
+  // Short slices are extended beyond the border, so that samples are at least a pixel apart (of the computed
+  // resolution).
   float intervals = float(epipolar.samples - 1u);
   float stretched =
       epipolar.optimize_locations != 0u ? max(visible, intervals * float(epipolar.downscale)) : max(visible, 1e-3);

@@ -1,6 +1,6 @@
-// The samples of all slices: where their rays end, what the air takes away on the way there, and, coarsely, the
-// light that it would send without shadows: what a medium mixed evenly along the ray gives, in closed form.
-// It follows every change of depth and direction, which is all that refinement needs of it.
+// Computes the samples of all slices: the end and the optical depth of their rays, and coarse unshadowed in-scattering.
+// The latter is that of a medium distributed evenly along the ray, in closed form. It follows every change of depth and
+// direction, which is sufficient for refinement.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -21,23 +21,24 @@ layout(std430, binding = 4) writeonly buffer samples_block { uvec4 samples[]; };
 layout(std430, binding = 5) writeonly buffer coarse_inscattering_block { uint coarse[]; };
 layout(binding = 6) uniform sampler2D scene_depth;
 
-// Loaded by main() before anything else (docs/epipolar.md says why).
+// main() loads this before anything else (see docs/epipolar.md).
 Medium medium;
 
 #include "frame/picture.glsl"
 #include "epipolar/ray_end.glsl"
 #include "epipolar/slices.glsl"
 
-// Device depth at a place between pixels: on one surface that of the surface there, because device depth is affine in
-// the picture; across a break that of the nearest pixel, because a mixture would be the depth of nothing.
+// Returns device depth at a position between pixels. On one surface it is the depth of the surface, because device
+// depth is affine in the picture. At a depth discontinuity it is that of the nearest pixel, because averaging yields a
+// depth where there is no surface.
 float depth_at(vec2 position) {
-  const float kSameSurface = 0.9;  // least ratio of view depths
+  const float kSameSurface = 0.9;  // minimum ratio of view depths
   vec2 last = vec2(float(frame.width), float(frame.height)) - 1.0;
   vec2 place = clamp(position - 0.5, vec2(-0.5), last + 0.5);
   vec2 corner = floor(place);
   vec2 part = place - corner;
-  // The four pixels around: x lower left, y lower right, z upper right, w upper left. Beyond the picture its outermost
-  // ones are repeated, whatever the image holds there.
+  // The four surrounding pixels: x lower left, y lower right, z upper right, w upper left. Beyond the picture the
+  // outermost pixels are repeated.
   vec4 d = GATHER_DEPTH(ivec2(corner));
   d = corner.x < 0.0 ? d.yyzz : corner.x >= last.x ? d.xxww : d;
   d = corner.y < 0.0 ? d.xyyx : corner.y >= last.y ? d.wzzw : d;
@@ -63,8 +64,8 @@ void main() {
   s.source = vec3(0.0);
   uint at = id * epipolar.samples + i;
   if (kHomogeneous) {
-    // All that changes along a slice is the length in the medium: the phase functions and the density are left to the
-    // pixels.
+    // Along a slice, only the length in the medium changes. Pixels apply the phase functions and the extinction
+    // coefficient.
     vec3 direction = ray_direction(frame, position);
     s.depth_m = sky ? sky_depth_m(direction) : view_depth(frame, position, depth);
     s.density = vec3(0.0);

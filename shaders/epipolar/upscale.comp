@@ -1,6 +1,7 @@
-// scattering.downscale: from the reduced picture to the whole one, and over its background (Yusov 2012, section 6.8),
-// in blocks of 2 x 2 pixels. Where they and the four reduced pixels around them are at one depth, these are weighted
-// bilinearly; the other blocks are left to upscale_pixels.comp, which tells depths apart.
+// With scattering.downscale, upsamples the half- or quarter-resolution buffer to the full resolution and composes it
+// with the background (Yusov 2012, section 6.8), in blocks of 2 x 2 pixels. If the block and the four buffer pixels
+// around it are at one depth, these are weighted bilinearly. Other blocks are left to upscale_pixels.comp, which
+// compares depths.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -8,7 +9,7 @@
 #include "shared/frame_constants.h"
 #include "shared/epipolar.h"
 
-layout(local_size_x = 64) in;  // along rows, as images lie in memory
+layout(local_size_x = 64) in;  // along rows, as in the memory layout of images
 
 layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
 layout(std140, binding = 1) uniform frame_block { FrameConstants frame; };
@@ -30,8 +31,8 @@ layout(std430, binding = 9) buffer discontinuity_blocks_block {
 const int kBlockWidth = 2;
 #include "epipolar/block.glsl"
 
-// Thresholds of refinement within which depths are those of one slope: it is even between the reduced pixels, whatever
-// depth_nearness() says of their distances.
+// Multiple of the refinement threshold within which depths belong to one slope. A slope is even between buffer pixels,
+// regardless of depth_nearness().
 const float kOneSlope = 8.0;
 
 void main() {

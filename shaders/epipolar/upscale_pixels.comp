@@ -1,6 +1,5 @@
-// scattering.downscale: the pixels of blocks that differ in depth from what is around them. Each takes the reduced
-// pixels that are as far away as it is, or, where there is none, the slices; those that no sample fits either are
-// listed.
+// With scattering.downscale, composes the pixels of blocks at a depth discontinuity. Each uses the buffer pixels at its
+// depth, or the slices if there is none. Pixels that fit no sample are listed.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -33,7 +32,7 @@ layout(std430, binding = 10) readonly buffer downscaled_inscattering_block { vec
 #include "epipolar/reduced_around.glsl"
 #include "epipolar/break_list.glsl"
 
-// Below this sum of weights a pixel goes back to the slices.
+// A pixel with a smaller sum of weights is interpolated from the slices.
 const float kLeastUpscaled = 0.1;
 
 void upscale_pixel(uint block, uint k) {

@@ -1,5 +1,4 @@
-// Lists that are worked through by an indirect dispatch: how many groups of it a list takes, and which item of it
-// an invocation has.
+// Lists for indirect dispatches: the number of workgroups for a list, and the item of an invocation.
 #ifndef TYNDALL_WORK_LIST_GLSL
 #define TYNDALL_WORK_LIST_GLSL
 
