@@ -1,10 +1,10 @@
-// Marching a ray of a slice through the shadow cascades. Include after declaring medium, frame, cascades, epipolar,
-// rows (ShadowRow[]), tree (uvec2[]), shadow_maps, shadow_colors, the tables, and counters. A walk finds stretches that
-// are lit or dark; with the tree whole nodes at a time, without it cell by cell. Where a cell is undecided the map
-// itself is compared, at the same place in both: the tree saves reads and changes nothing. The air is summed over
-// panels on which it is smooth, whatever the shadows: a panel's light is that in its middle times the lit length, plus
-// its slope times the lit length's first moment. With kColors both are weighted by the glass's colour, which is read in
-// every cell that is not dark.
+// Marches a ray of a slice through the shadow cascades. Include after declaring medium, frame, cascades, epipolar, rows
+// (ShadowRow[]), tree (uvec2[]), shadow_maps, shadow_colors, the tables, and counters. The ray advances in sections
+// that are lit or in shadow: whole nodes with the tree, single cells without it. An undecided cell is compared in the
+// shadow map itself, at the same position in both cases, so the tree saves reads without changing the result. The
+// medium is integrated over panels on which it is smooth. The in-scattering of a panel is the value at its middle times
+// the lit length, plus its slope times the first moment of the lit length. With kColors both are weighted by the colour
+// of glass, which is read in every cell that is not in shadow.
 #ifndef TYNDALL_MARCH_GLSL
 #define TYNDALL_MARCH_GLSL
 
@@ -25,14 +25,14 @@ uint steps_done = 0u;
 uint nodes_visited = 0u;
 uint reads_done = 0u;
 
-// What cascades have added to the light of a ray, in any order.
+// The sum of what cascades contribute to the in-scattering of a ray, in any order.
 struct March {
   LitSections lit;  // single = table, multiple = occluded
   vec3 light;       // single = integration; in a homogeneous medium before homogeneous_phase()
-  float end_share;  // of the light at the end of the farthest cascade marched; -1: none marched
+  float end_share;  // lit fraction at the end of the farthest marched cascade; -1: none marched
 };
 
-// A walk along a row. Distances in cells from the camera.
+// The state of a ray along a slice line. Distances are in cells from the camera.
 struct Walk {
   vec4 line;  // ShadowRow
   float depth;
@@ -40,30 +40,31 @@ struct Walk {
   int extent;
   int count;
   uint cascade;
-  uint tree_base;  // of the row's blocks in `tree`
-  bool full;       // nodes are of two words
+  uint tree_base;  // index in `tree` of the blocks of the slice line
+  bool full;       // nodes have two words
   float slope;     // change of depth per cell
-  float number;    // slope as the tree has it
+  float number;    // slope in the numbers of the tree
   float reads_per_cell;
-  float metres;  // of the ray in a cell
+  float metres;  // length of the ray per cell
   float x;
   uint level;
-  float lit;  // within the panel: length, and first moment about its middle
+  float lit;  // lit length within the panel, and its first moment about the middle
   float moment;
   float middle;
   vec3 lit_tinted;  // the same, with kColors
   vec3 moment_tinted;
-  // In a homogeneous medium: transmittance up to `since` and the light so far, and what has lit the ray from there on.
-  // Sections are closed where that changes, so that they are the same whatever pieces they were found in.
+  // In a homogeneous medium: the transmittance up to `since`, the in-scattering up to there, and the light that has lit
+  // the ray since. A section ends where that light changes, so that the result does not depend on how sections were
+  // found.
   vec3 through;
   vec3 light;
   vec3 shine;
   float since;
-  float share;  // of the last run
+  float share;  // lit fraction of the last section
 };
 
 vec2 load_node(bool full, uint at) {
-  // One load for both: CPU devices execute those of all branches.
+  // One load serves both formats, because CPU devices execute the loads of all branches.
   uvec2 words = tree[full ? at : at >> 1u];
   uint halves = (at & 1u) != 0u ? words.y : words.x;
   return full ? uintBitsToFloat(words) : vec2(float(halves & 0xFFFFu), float(halves >> 16u));
@@ -99,12 +100,12 @@ void add_run(inout Walk w, inout LitSections sections, float to, float share, ve
 
 bool section_closed(LitSections sections) { return kLitTables && kSections == kEach && sections.closed_at >= 0.0; }
 
-// Goes on to `to`, or until a lit section is complete.
+// Advances to `to`, or until a lit section is complete.
 void walk_to(inout Walk w, inout LitSections sections, float to) {
   while (w.x < to && !section_closed(sections)) {
     bool undecided = false;
     bool read = false;
-    float stop = to;  // of what is read
+    float stop = to;  // end of the section that is read
     while (w.x < to && !read && !section_closed(sections)) {
       int j = int(w.x) - w.first;
       bool inside = j >= 0 && j < w.extent;
@@ -122,11 +123,11 @@ void walk_to(inout Walk w, inout LitSections sections, float to) {
       }
       undecided = undecided || (inside && !in_tree);
       int next = ((j >> level) + 1) << level;
-      // A node may reach behind what was put into the tree.
+      // A node may extend beyond the cells in the tree.
       int known = in_tree ? w.count : w.extent;
       float end = inside ? float(w.first + min(next, known)) : j < 0 ? float(w.first) : to;
       stop = end > w.x ? min(end, to) : to;
-      // What is lit through glass is read too.
+      // Cells that may be lit through glass are read, too.
       read = undecided || (kColors && inside && !dark);
       if (!read) {
         add_run(w, sections, stop, dark ? 0.0 : 1.0, vec3(1.0));
@@ -135,7 +136,7 @@ void walk_to(inout Walk w, inout LitSections sections, float to) {
         w.level = level - 1u;
         read = false;
       }
-      // One level up where a node of that level begins.
+      // Go up one level where a node of that level begins.
       if (kTree && !undecided && in_tree && (next & ((2 << level) - 1)) == 0) w.level = min(level + 1u, kTreeTopLevel);
     }
     if (read) {
@@ -156,7 +157,7 @@ void walk_to(inout Walk w, inout LitSections sections, float to) {
   }
 }
 
-// Through [from, to] of a ray of a slice, in one cascade.
+// Marches the section [from, to] of a ray of a slice in one cascade.
 void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start, float from, float to,
                    inout March march) {
   float resolution = float(frame.shadow_resolution);
@@ -191,7 +192,7 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
   w.share = 1.0;
   w.through = kHomogeneous ? exp(-frame.homogeneous.extinction * (from - start)) : vec3(1.0);
 
-  // One panel for all of it where only lit lengths are asked for.
+  // A single panel suffices if only lit lengths are needed.
   int panels = 1;
   float radius = medium.planet_radius_m;
   float h = 0.0;
@@ -205,12 +206,13 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
     density = densities(medium, h);
     vec3 extinction = extinction_at(medium, min(h, h_end));
     float densest = max(extinction.r, max(extinction.g, extinction.b));
-    // Panels: half of the aerosol's scale height, a fifth of an optical depth, a share of the cascade at most.
+    // A panel spans at most half of the aerosol's scale height, a fifth of an optical depth and a twelfth of the
+    // section.
     float wanted = max(max(abs(h_end - h) / (0.5 * medium.mie_scale_height_m), (to - from) * densest / 0.2), 12.0);
     panels = int(clamp(ceil(wanted), 1.0, 256.0));
     rayleigh = medium.rayleigh_scattering * rayleigh_phase(ray.cos_view_sun);
     mie = medium.mie_scattering * mie_phase(medium, ray.cos_view_sun);
-    // The column up to here, from where the ray enters the air.
+    // The density integral up to here, from where the ray enters the atmosphere.
     column = density_integral_along(medium, ray.altitude, ray.cos_zenith, from);
   }
   float panel_m = (to - from) / float(panels);
@@ -247,7 +249,7 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
                                  mie * max(mean.y * lit_m + (density_next.y - density.y) * moment, vec3(0.0)));
     } else {
       float lit_m = w.lit * w.metres;
-      float moment = w.moment * per_panel;  // [m], of a coordinate of one panel
+      float moment = w.moment * per_panel;  // [m]; the coordinate is in units of a panel
       march.light += arriving * (rayleigh * max(mean.x * lit_m + (density_next.x - density.x) * moment, 0.0) +
                                  mie * max(mean.y * lit_m + (density_next.y - density.y) * moment, 0.0));
     }
@@ -276,7 +278,7 @@ March add(March a, March b) {
   return m;
 }
 
-// Distances between which a ray is in a cascade; nothing where to <= from.
+// Computes the distances between which a ray is in a cascade. The section is empty if to <= from.
 void cascade_range(uint cascade, Ray ray, float start, float end, out float from, out float to) {
   float depth_per_m = max(dot(ray.direction, frame.camera_forward), 1e-6);
   from = start;
@@ -284,7 +286,7 @@ void cascade_range(uint cascade, Ray ray, float start, float end, out float from
   to = clamp(cascades[cascade].far_m / depth_per_m, from, end);
 }
 
-// All the light of a ray, from what its cascades have added.
+// Returns the total in-scattering of a ray from the contributions of its cascades.
 vec3 light_of(March march, Ray ray, TableRay path, float start, float end) {
   float depth_per_m = max(dot(ray.direction, frame.camera_forward), 1e-6);
   float t = start;
@@ -311,14 +313,14 @@ vec3 light_of(March march, Ray ray, TableRay path, float start, float end) {
   return light;
 }
 
-// Whether the air just before the end of a ray, at a view-space depth, is in shadow.
+// Returns whether a ray that ends at a view-space depth has a shadowed end point.
 bool ends_in_shadow(March march, float depth_m) {
   bool in_map =
       epipolar.cascades > epipolar.first_cascade && depth_m <= cascades[max(epipolar.cascades, 1u) - 1u].far_m;
   return in_map && march.end_share >= 0.0 && march.end_share < 0.5;
 }
 
-// The ray of a sample.
+// Returns the ray of a sample.
 Ray sample_ray(vec2 position, float depth_m) { return ray_to_depth(frame, position, depth_m, depth_m >= kSkyDepth); }
 
 #endif

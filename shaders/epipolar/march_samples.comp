@@ -1,7 +1,7 @@
-// Marches the chosen samples: through all cascades at once, or through one and leaving what was gathered to a
-// last pass (Yusov 2013, section 1.6; cascades: 1.8); or pixels that no sample fits in depth (section 1.7), in
-// the rows of the slice that is nearest to each. One shader for all, because a pipeline of each for every mode
-// would be dear to create.
+// Marches the selected samples through all cascades at once, or through one cascade with the state stored for a last
+// pass (Yusov 2013, sections 1.6 and 1.8). Marches also the pixels that fit no sample in depth (section 1.7), along the
+// slice line of the nearest slice. There is one shader for all modes, because creating a pipeline for each would be
+// expensive.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -34,7 +34,7 @@ layout(binding = 16) uniform sampler2DArray shadow_colors;
 layout(std430, binding = 17) buffer coarse_inscattering_block { uint coarse[]; };
 layout(std140, binding = 18) uniform cascades_block { CascadeConstants cascades[kMaxCascades]; };
 
-// Loaded by main() before anything else (docs/epipolar.md says why).
+// main() loads these before anything else (see docs/epipolar.md).
 Medium medium;
 FrameConstants frame;
 EpipolarConstants epipolar;
@@ -98,7 +98,7 @@ void march_item(uint at) {
     if (processing == kOneCascade && turn > 0u) march = add(load_march(state), march);
     store_march(state, march);
   } else {
-    // `turn` states to add up, for kFinish.
+    // kFinish adds up `turn` states.
     for (uint i = 0u; i < (processing == kFinish ? turn : 0u); ++i) {
       march = add(march, load_march(i * epipolar.slices * epipolar.samples + at));
     }
@@ -110,7 +110,7 @@ void march_item(uint at) {
       attenuation(optical_depth_at(s.density, s.depth_m), through, lost);
       if (kHomogeneous) homogeneous_attenuation(end - start, through, lost);
       s.source = light / max(lost, vec3(1e-20));
-      // Beside a medium that a ray misses others are lit.
+      // The neighbours of a ray that misses the medium may hit it, and are lit.
       if (kHomogeneous && kSingle != kNone && !in_air) s.source = vec3(1.0);
       samples[sample_at] = pack_sample(s);
       if (ends_in_shadow(march, s.depth_m)) coarse[sample_at] |= kDarkEnd;
@@ -126,7 +126,7 @@ void main() {
   medium = stored_medium;
   frame = stored_frame;
   epipolar = stored_epipolar;
-  // The list of samples has groups for every cascade aside; other turns need only one of them.
+  // The dispatch has workgroups for every cascade side by side. The other modes need those of one cascade.
   bool turn_here = processing == kCascadesAside || gl_WorkGroupID.z == 0u;
   uint at = list_item(kMarchGroup);
   bool overflown = processing == kPixels && work.count > epipolar.break_capacity;  // break_list.glsl

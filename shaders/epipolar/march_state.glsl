@@ -1,5 +1,5 @@
-// What a ray has gathered, between passes that march one cascade each. Include after declaring
-//   buffer march_states_block { vec4 states[]; };
+// The state of a ray between passes that march one cascade each. Include after declaring march_states_block with `vec4
+// states[]`.
 #ifndef TYNDALL_MARCH_STATE_GLSL
 #define TYNDALL_MARCH_STATE_GLSL
 

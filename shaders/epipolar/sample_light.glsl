@@ -1,21 +1,22 @@
-// The light of the tables for a marched sample, in the modes that take one section from the first lit point,
-// uncoloured: what table_light() of frame/table_light.glsl gives, from fewer look-ups. The light of a part of the ray
-// is that of all beyond its begin less that of all beyond its end; so every end that parts share is looked up once, in
-// one loop over the places, and the column beyond a place is the whole ray's less that before it.
+// In-scattering from the tables for a marched sample, in the modes with one section from the first lit point and
+// without colours. The result is that of table_light() in frame/table_light.glsl, with fewer look-ups. The
+// in-scattering of a section is that beyond its start minus that beyond its end. Ends that sections share are looked up
+// once, in a loop over the positions. The density integral beyond a position is that of the whole ray minus that before
+// the position.
 #ifndef TYNDALL_SAMPLE_LIGHT_GLSL
 #define TYNDALL_SAMPLE_LIGHT_GLSL
 
 #include "frame/table_light.glsl"
 
-// Of the lit part, which was found up to distance t, of the rest of the ray to `end`, which nothing shadows, and
-// of the whole ray where shadows do not count.
+// Returns the in-scattering of the lit section found up to distance t, of the unshadowed rest of the ray to `end`, and
+// of the whole ray for orders that ignore shadows.
 vec3 contiguous_light(LitSections lit, TableRay path, float start, float t, float end) {
   const float kNear = 1e-3;  // [m]
   float lit_from = lit.first;
   float lit_to = lit.first + lit.total;
   bool any_lit = kLitTables && lit.total > kNear;
   bool any_rest = kLitTables && end - t > kNear;
-  // What all beyond each place counts, of the shadowed light and of that of the whole ray.
+  // The coefficients of in-scattering beyond each position, for the shadowed part and for the whole ray.
   bool whole = frame.unoccluded != 0u;
   bool to_rest = any_lit && any_rest && t - lit_to < kNear;
   vec4 places = vec4(start, lit_from, lit_to, t);
