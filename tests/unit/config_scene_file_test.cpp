@@ -218,7 +218,8 @@ TEST(SceneFileMessages, NameTheLineTheKeyAndWhatIsAllowed) {
   EXPECT_EQ(failure("[terrain]\nsource = \"a\\u0000b\"\n"),
             "s.toml:2: 'terrain.source' = 'a?b' holds control characters; expected text in UTF-8");
   EXPECT_EQ(failure("[camera.yaw_deg]\n"), "s.toml:1: 'camera.yaw_deg' is a table; expected -3600 to 3600 deg");
-  EXPECT_EQ(failure("[camera]\n\"yaw.deg\" = 1\n").substr(0, 45), "unknown parameter 'camera.yaw.deg', s.toml:2,");
+  EXPECT_EQ(failure("[camera]\n\"yaw.deg\" = 1\n").substr(0, 45),
+            "s.toml:2: unknown parameter 'camera.yaw.deg';");
 }
 
 TEST(SceneFileMessages, BrokenTomlIsOneLineWithItsPlace) {
@@ -233,8 +234,8 @@ TEST(SceneFileMessages, BrokenTomlIsOneLineWithItsPlace) {
                                      "\x01\x02\x03\x04"};
   for (const std::string_view text : broken) {
     const std::string message = failure(text);
-    EXPECT_EQ(message.rfind("not valid TOML: ", 0), 0U) << message;
-    EXPECT_NE(message.find(", s.toml:"), std::string::npos) << message;
+    EXPECT_EQ(message.rfind("s.toml:", 0), 0U) << message;
+    EXPECT_NE(message.find(": not valid TOML: "), std::string::npos) << message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
   }
   EXPECT_NE(failure(std::string(100000, '[')), "(accepted)");
@@ -266,7 +267,7 @@ TEST_F(SceneFile, UnreadableFiles) {
   const Result<void> missing = load(settings, (directory_ / "none.toml").string());
   ASSERT_FALSE(missing.ok());
   EXPECT_EQ(missing.error().code, ErrorCode::io);
-  EXPECT_NE(missing.error().message.find("none.toml', No such file or directory"), std::string::npos);
+  EXPECT_NE(missing.error().message.find("none.toml': cannot read: No such file or directory"), std::string::npos);
   const Result<void> directory = load(settings, directory_.string());
   ASSERT_FALSE(directory.ok());
   EXPECT_NE(directory.error().message.find("Is a directory"), std::string::npos);
