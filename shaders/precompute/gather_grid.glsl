@@ -32,6 +32,9 @@ float gather_ground_distance(Medium m, float h, float mu) {
 // Returns the first of the points (altitude x sun) whose irradiance lights the ground below a point.
 uint gather_ground_row(uint altitude) { return min(altitude, kGatherBelow) * kGatherSuns; }
 
+// Element of the irradiance of one order at a point (altitude x sun): the last three orders are stored.
+uint irradiance_row(uint order, uint point) { return order % 3u * (kGatherAltitudes * kGatherSuns) + point; }
+
 // Returns the cosine of the lowest sun of the grid, which is below the horizon of the top of the atmosphere.
 float lowest_gather_sun(Medium m) { return max(1.6 * horizon_cos(m.atmosphere_height_m, m.planet_radius_m), -1.0); }
 float gather_sun(Medium m, uint i) {
@@ -76,14 +79,6 @@ float source_zenith_index(float angle) {
   float x = sign(y) * (sqrt(kSourceDensity * kSourceDensity + 4.0 * (1.0 - kSourceDensity) * abs(y)) - kSourceDensity) /
             (2.0 * (1.0 - kSourceDensity));
   return clamp(0.5 * (x + 1.0), 0.0, 1.0) * float(kSourceZeniths - 1u);
-}
-
-// Returns the weight of a zenith angle in integrals over it, without its sine.
-float source_zenith_weight(uint j) {
-  float x = 2.0 * float(j) / float(kSourceZeniths - 1u) - 1.0;
-  bool end = j == 0u || j == kSourceZeniths - 1u;
-  return kPi / float(kSourceZeniths - 1u) * (kSourceDensity + 2.0 * (1.0 - kSourceDensity) * abs(x)) *
-         (end ? 0.5 : 1.0);
 }
 
 // Indices of incident light and of the source function. The sun varies fastest, because neighbouring invocations

@@ -17,9 +17,12 @@ layout(std430, binding = 5) readonly buffer shape_block {
   TableShape shape;
   ZenithQuadrature quadrature;
 };
-layout(std430, binding = 4) readonly buffer irradiance_block { vec4 irradiance[]; };  // altitude x sun
+layout(std430, binding = 4) readonly buffer irradiance_block { vec4 irradiance[]; };  // order x altitude x sun
 
-layout(push_constant) uniform Push { uint first; }
+layout(push_constant) uniform Push {
+  uint first;  // altitude
+  uint order;  // one more than that of the light that arrives
+}
 push;
 
 void main() {
@@ -48,7 +51,7 @@ void main() {
     RayNode end = nodes[base + kEndNode];
     float index = gather_sun_index(medium, (r0 * mu_s + end.distance_m * nu) / (R + gather_ground(h)));
     uint s = min(uint(index), kGatherSuns - 2u);
-    uint row = gather_ground_row(altitude) + s;
+    uint row = irradiance_row(push.order - 2u, gather_ground_row(altitude) + s);
     vec3 light = mix(irradiance[row].rgb, irradiance[row + 1u].rgb, index - float(s));
     radiance += end.weight_m * light * (medium.ground_albedo / kPi);
   }

@@ -1,14 +1,15 @@
 // Scatters the incident light of order n - 1 at the points of the gathering grid into every direction, as one Fourier
 // series in azimuth per zenith angle. Writes the source function of order n (fourth root, per scattering coefficient),
 // its sum over the orders so far (linear; fourth root once complete), the horizontal irradiance of order n - 1, and its
-// sum. The pass after the last order completes the sums. From 3 orders on, it adds the order that follows from the last
-// incident light, and an estimate of all orders beyond. One group per altitude x sun.
+// sum. From 3 orders on, the source function of the last order is written as the terms from which the late orders
+// continue (late_source.glsl), and these complete the sums; otherwise, the pass after the last order does. One group
+// per altitude x sun.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
 #include "lib/medium.glsl"
 #include "lib/table_values.glsl"
-#include "precompute/gather_grid.glsl"
+#include "precompute/late_source.glsl"
 
 layout(local_size_x = 32) in;
 
@@ -30,25 +31,8 @@ layout(push_constant) uniform Push {
 }
 push;
 
-// Bound on the ratio of successive orders. Conservative scattering in thick air comes close to 1.
-const float kMaxRatio = 0.95;
-
 shared vec3 light[kGatherZeniths * kModes];
 shared vec3 scattered[kSourceZeniths * kModes];
-shared vec3 partial_now[32];
-shared vec3 partial_before[32];
-shared vec3 ratio;  // of an order to the one before, once that has settled
-
-// Returns the sum of all orders after `last`, from the last two. Successive orders are taken for the sum of two
-// geometric series: a slow one, whose ratio is the largest eigenvalue of transport and therefore the same at every
-// point, direction and sun, and one that falls twice as fast. The ratio of the two orders themselves would not do:
-// where the sun is low and the aerosol dense, light of the first orders is still arriving, and their ratio is far above
-// that of later ones.
-vec3 orders_beyond(vec3 last, vec3 before, vec3 ratio) {
-  vec3 fast = 0.5 * ratio;
-  vec3 scale = 1.0 / ((1.0 - ratio) * (1.0 - fast));
-  return max((last * (ratio + fast - ratio * fast) - before * ratio * fast) * scale, vec3(0.0));
-}
 
 void transform_light(uint lane, uint altitude, uint sun) {
   for (uint i = lane; i < kGatherZeniths * kModes; i += 32u) {
@@ -62,11 +46,7 @@ void transform_light(uint lane, uint altitude, uint sun) {
   }
 }
 
-void scatter_modes(uint lane, uint altitude, float h) {
-  vec3 density = densities(medium, h);
-  vec3 rayleigh = medium.rayleigh_scattering * density.x;
-  vec3 mie = medium.mie_scattering * density.y;
-  vec3 share = mie / max(rayleigh + mie, vec3(1.0e-30));
+void scatter_modes(uint lane, uint altitude, vec3 share) {
   for (uint i = lane; i < kSourceZeniths * kModes; i += 32u) {
     uint j = i / kModes;
     uint m = i % kModes;
@@ -79,43 +59,6 @@ void scatter_modes(uint lane, uint altitude, float h) {
   }
 }
 
-// Sets `ratio` to the ratio of the last two orders of the source at sea level, averaged over all directions, once it
-// has settled: it rises to that value under the highest sun and falls to it under one on the horizon, and their mean is
-// close. The mean of what is scattered is the mean of the light that arrives.
-void find_ratio(uint lane) {
-  float horizon = horizon_cos(0.0, medium.planet_radius_m);
-  if (lane == 0u) ratio = vec3(0.0);
-  for (int end = 0; end < 2; ++end) {
-    uint sun = end == 0 ? kGatherSuns - 1u : uint(gather_sun_index(medium, 0.0) + 0.5);
-    vec3 now = vec3(0.0);
-    for (uint i = lane; i < kGatherZeniths * kGatherAzimuths; i += 32u) {
-      uint q = i / kGatherAzimuths;
-      float stretch = gather_zenith_stretch(horizon, quadrature.node[q % 12u], q < kGatherZeniths / 2u);
-      float weight = quadrature.weight[q % 12u] * stretch * (0.5 / float(kGatherAzimuths));
-      now += weight * incident[gather_index(kGatherBelow, q, i % kGatherAzimuths, sun)].rgb;
-    }
-    vec3 before = vec3(0.0);
-    for (uint i = lane; i < kSourceZeniths * kSourceAzimuths; i += 32u) {
-      uint j = i / kSourceAzimuths;
-      uint k = i % kSourceAzimuths;
-      float weight = (k == 0u || k == kSourceAzimuths - 1u ? 0.25 : 0.5) / float(kSourceAzimuths - 1u);
-      before += (weight * source_zenith_weight(j) * sin(source_zenith(j))) *
-                value_from_texel(source[source_index(kGatherBelow, j, k, sun)].rgb);
-    }
-    partial_now[lane] = now;
-    partial_before[lane] = before;
-    barrier();
-    if (lane == 0u) {
-      for (uint i = 1u; i < 32u; ++i) {
-        now += partial_now[i];
-        before += partial_before[i];
-      }
-      ratio += 0.5 * min(now / max(before, vec3(1.0e-30)), vec3(kMaxRatio));
-    }
-    barrier();
-  }
-}
-
 vec3 scattered_towards(uint j, float phi) {
   vec3 value = vec3(0.0);
   for (uint m = 0u; m < kModes; ++m) value += scattered[j * kModes + m] * cos(float(m) * phi);
@@ -123,26 +66,29 @@ vec3 scattered_towards(uint j, float phi) {
 }
 
 void store_source(uint lane, uint altitude, uint sun) {
+  bool late = push.order == shape.orders && shape.orders > 2u;
   for (uint i = lane; i < kSourceZeniths * kSourceAzimuths; i += 32u) {
     uint j = i / kSourceAzimuths;
     uint index = source_index(altitude, j, i % kSourceAzimuths, sun);
     vec3 value = scattered_towards(j, float(i % kSourceAzimuths) * kPi / float(kSourceAzimuths - 1u));
-    source[index] = vec4(texel_from_value(value), 0.0);
+    if (!late) source[index] = vec4(texel_from_value(value), 0.0);
     sums[index] = vec4(push.order == 2u ? value : sums[index].rgb + value, 0.0);
+  }
+  if (!late) return;
+  for (uint i = lane; i < kSourceZeniths * kLateTerms; i += 32u) {
+    uint j = i / kLateTerms;
+    uint m = i % kLateTerms;
+    vec3 term = scattered[j * kModes + m];
+    if (m == 0u) term = texel_from_value(term);
+    if (m == 1u) term /= max(scattered[j * kModes], vec3(1.0e-30));
+    source[late_source_index(altitude, j, m, sun)] = vec4(term, 0.0);
   }
 }
 
-// Leaves the sources as they are: other groups read them for the ratio.
 void complete_sums(uint lane, uint altitude, uint sun) {
   for (uint i = lane; i < kSourceZeniths * kSourceAzimuths; i += 32u) {
-    uint j = i / kSourceAzimuths;
-    uint index = source_index(altitude, j, i % kSourceAzimuths, sun);
-    vec3 sum = sums[index].rgb;
-    if (shape.orders > 2u) {
-      vec3 value = scattered_towards(j, float(i % kSourceAzimuths) * kPi / float(kSourceAzimuths - 1u));
-      sum += value + orders_beyond(value, value_from_texel(source[index].rgb), ratio);
-    }
-    sums[index] = vec4(texel_from_value(sum), 0.0);
+    uint index = source_index(altitude, i / kSourceAzimuths, i % kSourceAzimuths, sun);
+    sums[index] = vec4(texel_from_value(sums[index].rgb), 0.0);
   }
 }
 
@@ -155,14 +101,12 @@ void store_irradiance(uint altitude, uint sun, float h) {
     float weight = quadrature.weight[q - 12u] * gather_zenith_stretch(horizon, node, false);
     sum += light[q * kModes] * (2.0 * kPi * weight * max(gather_zenith(horizon, node, false), 0.0));
   }
-  uint index = altitude * kGatherSuns + sun;
-  vec3 before = irradiance[index].rgb;
-  irradiance[index] = vec4(sum, 0.0);
+  uint point = altitude * kGatherSuns + sun;
+  irradiance[irradiance_row(push.order - 1u, point)] = vec4(sum, 0.0);
   if (push.order == 2u) {
-    sky[index] = vec4(sum, 0.0);
+    sky[point] = vec4(sum, 0.0);
   } else {
-    if (push.order > shape.orders && push.order > 3u) sum += orders_beyond(sum, before, ratio);
-    sky[index] += vec4(sum, 0.0);
+    sky[point] += vec4(sum, 0.0);
   }
 }
 
@@ -174,8 +118,7 @@ void main() {
   transform_light(lane, altitude, sun);
   barrier();
   bool complete = push.order > shape.orders;
-  if (complete && shape.orders > 2u) find_ratio(lane);
-  if (!complete || shape.orders > 2u) scatter_modes(lane, altitude, h);
+  if (!complete) scatter_modes(lane, altitude, aerosol_part(medium, h));
   barrier();
   if (!complete) {
     store_source(lane, altitude, sun);

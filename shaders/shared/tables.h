@@ -28,6 +28,10 @@ const uint kGatherAzimuths = 16u;
 const uint kSourceZeniths = 33u;
 const uint kSourceAzimuths = 17u;
 const uint kModes = 16u;  // of the Fourier series in azimuth
+// The late orders are those after `orders` of TableShape.
+const uint kLateOrders = 6u;    // the number of them that are solved; the rest is estimated
+const uint kLateModes = 2u;     // terms of their Fourier series that follow the height of the sun along a ray
+const uint kLateAzimuths = 2u;  // azimuths in which these terms are integrated
 // Panels of four nodes for the integration along a ray. Single scattering needs more of them.
 const uint kSinglePanels = 6u;
 const uint kHighPanels = 4u;

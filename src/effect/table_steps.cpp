@@ -16,12 +16,14 @@ constexpr const char* kPhaseMatrix = "phase_matrix";
 constexpr const char* kGatherSingle = "gather_single";
 constexpr const char* kGatherMultiple = "gather_multiple";
 constexpr const char* kScatter = "scatter";
+constexpr const char* kGatherLate = "gather_late";
+constexpr const char* kScatterLate = "scatter_late";
 constexpr const char* kSkyLight = "sky_light";
 constexpr const char* kRayNodes = "ray_nodes";
 constexpr const char* kTableSingle = "table_single";
 constexpr const char* kTableHigh = "table_high";
-constexpr const char* kNames[] = {kSunLight, kGridNodes, kPhaseMatrix, kGatherSingle, kGatherMultiple,
-                                  kScatter,  kSkyLight,  kRayNodes,    kTableSingle,  kTableHigh};
+constexpr const char* kNames[] = {kSunLight,   kGridNodes,   kPhaseMatrix, kGatherSingle, kGatherMultiple, kScatter,
+                                  kGatherLate, kScatterLate, kSkyLight,    kRayNodes,     kTableSingle,    kTableHigh};
 
 Step step_of(const char* name, const gpu::Shader& shader, Resource nodes, VkExtent3D invocations,
              std::array<std::uint32_t, 2> push = {}) {
@@ -52,8 +54,10 @@ std::vector<Step> table_steps(const Params& params, std::uint32_t stale) {
         step_of(kGridNodes, shaders::ray_nodes_comp, Resource::grid_nodes, {shared::kGatherZeniths, altitudes, 1}));
     out.push_back(
         step_of(kPhaseMatrix, shaders::phase_matrix_comp, Resource::none, {shared::kSourceZeniths, altitudes, 1}));
-    // The last turn scatters nothing any more: it adds the irradiance of the last order.
-    for (std::uint32_t order = 2; order <= params.tables.orders + 1; ++order) {
+    const std::uint32_t orders = params.tables.orders;
+    const bool late = orders > 2;
+    // Without late orders, the last turn scatters nothing: it adds the irradiance of the last order.
+    for (std::uint32_t order = 2; order <= (late ? orders : orders + 1); ++order) {
       for (std::uint32_t first = 0; first < altitudes; first += kAltitudesPerStep) {
         const std::uint32_t count = std::min(kAltitudesPerStep, altitudes - first);
         out.push_back(
@@ -67,6 +71,12 @@ std::vector<Step> table_steps(const Params& params, std::uint32_t stale) {
         out.push_back(step_of(kScatter, scatter, Resource::none,
                               {shared::kGatherSuns * scatter.local_size[0], count, 1}, {first, order}));
       }
+    }
+    for (std::uint32_t order = orders + 1; late && order <= orders + shared::kLateOrders; ++order) {
+      out.push_back(step_of(kGatherLate, shaders::gather_late_comp, Resource::grid_nodes,
+                            {shared::kGatherSuns, shared::kGatherZeniths, altitudes}, {0, order}));
+      out.push_back(step_of(kScatterLate, shaders::scatter_late_comp, Resource::none,
+                            {shared::kGatherSuns, shared::kSourceZeniths, altitudes}, {0, order}));
     }
     out.push_back(step_of(kSkyLight, shaders::sky_light_comp, Resource::none, kSkyLightExtent));
   }

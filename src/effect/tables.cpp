@@ -92,7 +92,7 @@ std::array<BufferPlan, kScratchBuffers> plan_scratch(std::uint32_t views) {
            {"incident", &TableScratch::incident, points * shared::kGatherZeniths * shared::kGatherAzimuths * vec4},
            {"source", &TableScratch::source, source},
            {"sum", &TableScratch::sum, source},
-           {"irradiance", &TableScratch::irradiance, points * vec4},
+           {"irradiance", &TableScratch::irradiance, 3 * points * vec4},
            {"sky", &TableScratch::sky, points * vec4}}};
 }
 

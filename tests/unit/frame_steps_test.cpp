@@ -374,6 +374,27 @@ TEST(Resources, HaveNamesOfTheirOwn) {
   for (const ResourceInfo& info : kResourceInfo) EXPECT_TRUE(names.insert(info.name).second) << info.name;
 }
 
+// From 3 orders on, late orders follow those of `tables.orders`, and no pass of `scatter` completes the sums.
+TEST(TableSteps, LateOrdersFollowFromThreeOrdersOn) {
+  for (std::uint32_t orders = 1; orders <= 5; ++orders) {
+    Params params;
+    params.tables.orders = orders;
+    std::vector<std::uint32_t> gathered, scattered;
+    std::uint32_t last_full = 0;
+    for (const Step& step : table_steps(params, kAllTables)) {
+      const std::string name = step.name;
+      if (name == "gather_late") gathered.push_back(step.push[1]);
+      if (name == "scatter_late") scattered.push_back(step.push[1]);
+      if (name == "scatter") last_full = step.push[1];
+    }
+    std::vector<std::uint32_t> expected;
+    for (std::uint32_t i = 1; orders > 2 && i <= shared::kLateOrders; ++i) expected.push_back(orders + i);
+    EXPECT_EQ(gathered, expected) << orders;
+    EXPECT_EQ(scattered, expected) << orders;
+    EXPECT_EQ(last_full, orders > 2 ? orders : orders + 1);
+  }
+}
+
 TEST(TableSteps, WriteWhatIsStaleAndReadOnlyWhatWasWritten) {
   Params params;
   params.tables.size = {5, 6, 7, 8};

@@ -1,0 +1,114 @@
+// Integrates the source function of a late order along the rays of the gathering grid, and adds the ground lit by the
+// order before. Reads the source function and writes the incident light as Fourier terms in azimuth (late_source.glsl).
+// The height of the sun changes along a ray, which couples the terms. Terms 0 and 1 include this: they are evaluated in
+// two azimuths, 45 and 135 degrees. The others are small, and use the height of the sun at the beginning of the ray.
+// One invocation per sun x zenith x altitude.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "lib/table_values.glsl"
+#include "precompute/late_source.glsl"
+#include "precompute/ray_nodes.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
+layout(std430, binding = 1) readonly buffer node_block { RayNode nodes[]; };
+layout(std430, binding = 2) writeonly buffer incident_block { vec4 incident[]; };
+layout(std430, binding = 3) readonly buffer source_block { vec4 source[]; };
+layout(std430, binding = 4) readonly buffer irradiance_block { vec4 irradiance[]; };
+layout(std430, binding = 5) readonly buffer shape_block {
+  TableShape shape;
+  ZenithQuadrature quadrature;
+};
+
+layout(push_constant) uniform Push {
+  uint first;  // altitude
+  uint order;  // of the light that the pass scatter_late makes of this
+}
+push;
+
+const float kCosine[kLateAzimuths] =
+    float[kLateAzimuths](0.707106781186548, -0.707106781186548);  // of the two azimuths
+
+// Terms 0 and 1 between two suns, as they are stored.
+struct FirstTerms {
+  vec3 mean;
+  vec3 ratio;
+};
+
+FirstTerms between_suns(uint altitude, uint zenith, uint sun, float part) {
+  uint mean = late_source_index(altitude, zenith, 0u, sun);
+  uint ratio = late_source_index(altitude, zenith, 1u, sun);
+  return FirstTerms(mix(source[mean].rgb, source[mean + 1u].rgb, part),
+                    mix(source[ratio].rgb, source[ratio + 1u].rgb, part));
+}
+
+FirstTerms mix_terms(FirstTerms a, FirstTerms b, float part) {
+  return FirstTerms(mix(a.mean, b.mean, part), mix(a.ratio, b.ratio, part));
+}
+
+vec3 term_at(uint m, uint altitude, uint zenith, uint sun) {
+  return source[late_source_index(altitude, zenith, m, sun)].rgb;
+}
+
+void main() {
+  uint sun = gl_GlobalInvocationID.x;
+  uint zenith = gl_GlobalInvocationID.y;
+  uint altitude = gl_GlobalInvocationID.z + push.first;
+  if (sun >= kGatherSuns || zenith >= kGatherZeniths || altitude >= kGatherAltitudes) return;
+  uint modes = late_modes(shape, push.order - 1u);
+  uint base = (altitude * kGatherZeniths + zenith) * kNodeStride;
+  float R = medium.planet_radius_m;
+  float h = gather_altitude(medium, altitude);
+  float r0 = R + h;
+  float mu_s = gather_sun(medium, sun);
+  bool below = zenith < kGatherZeniths / 2u;
+  float mu = gather_zenith(horizon_cos(h, R), quadrature.node[zenith % 12u], below);
+  float spread = sqrt(max((1.0 - mu * mu) * (1.0 - mu_s * mu_s), 0.0));
+  vec3 radiance[kLateAzimuths] = vec3[kLateAzimuths](vec3(0.0), vec3(0.0));
+  vec3 terms[kLateTerms];
+  for (uint m = 0u; m < kLateTerms; ++m) terms[m] = vec3(0.0);
+  for (uint i = 0u; i < kHighNodes; ++i) {
+    RayNode node = nodes[base + kFirstHighNode + i];
+    vec3 weight = node.weight_m * (medium.rayleigh_scattering * node.rayleigh + medium.mie_scattering * node.mie);
+    float a_index = gather_altitude_index(medium, node.altitude_m);
+    uint a = min(uint(a_index), kGatherAltitudes - 2u);
+    float a_part = a_index - float(a);
+    float z_index = source_zenith_index(acos(clamp(node.cos_zenith, -1.0, 1.0)));
+    uint z = min(uint(z_index), kSourceZeniths - 2u);
+    float z_part = z_index - float(z);
+    for (uint k = 0u; k < kLateAzimuths; ++k) {
+      float nu = mu * mu_s + spread * kCosine[k];
+      float sun_here = clamp((r0 * mu_s + node.distance_m * nu) / (R + node.altitude_m), -1.0, 1.0);
+      float s_index = gather_sun_index(medium, sun_here);
+      uint s = min(uint(s_index), kGatherSuns - 2u);
+      float part = s_index - float(s);
+      FirstTerms low = mix_terms(between_suns(a, z, s, part), between_suns(a, z + 1u, s, part), z_part);
+      FirstTerms high = mix_terms(between_suns(a + 1u, z, s, part), between_suns(a + 1u, z + 1u, s, part), z_part);
+      FirstTerms here = mix_terms(low, high, a_part);
+      float across = sqrt(max((1.0 - node.cos_zenith * node.cos_zenith) * (1.0 - sun_here * sun_here), 1.0e-12));
+      float cosine = clamp((nu - node.cos_zenith * sun_here) / across, -1.0, 1.0);
+      radiance[k] += weight * value_from_texel(here.mean) * max(1.0 + here.ratio * cosine, vec3(0.0));
+    }
+    for (uint m = kLateModes; m < modes; ++m) {
+      vec3 low = mix(term_at(m, a, z, sun), term_at(m, a, z + 1u, sun), z_part);
+      vec3 high = mix(term_at(m, a + 1u, z, sun), term_at(m, a + 1u, z + 1u, sun), z_part);
+      terms[m] += weight * mix(low, high, a_part);
+    }
+  }
+  if (below) {
+    RayNode end = nodes[base + kEndNode];
+    for (uint k = 0u; k < kLateAzimuths; ++k) {
+      float nu = mu * mu_s + spread * kCosine[k];
+      float index = gather_sun_index(medium, (r0 * mu_s + end.distance_m * nu) / (R + gather_ground(h)));
+      uint s = min(uint(index), kGatherSuns - 2u);
+      uint row = irradiance_row(push.order - 2u, gather_ground_row(altitude) + s);
+      vec3 light = mix(irradiance[row].rgb, irradiance[row + 1u].rgb, index - float(s));
+      radiance[k] += end.weight_m * light * (medium.ground_albedo / kPi);
+    }
+  }
+  terms[0] = 0.5 * (radiance[0] + radiance[1]);
+  terms[1] = (radiance[0] - radiance[1]) / (kCosine[0] - kCosine[1]);
+  for (uint m = 0u; m < modes; ++m) incident[late_incident_index(altitude, zenith, m, sun)] = vec4(terms[m], 0.0);
+}

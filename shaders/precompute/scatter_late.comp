@@ -1,0 +1,104 @@
+// Scatters the incident light of a late order: writes the source function of the next order as Fourier terms in
+// azimuth, and adds it and the horizontal irradiance to their sums (late_source.glsl). The last turn completes the sums
+// by an estimate of all orders beyond: a geometric series with one ratio per channel. One invocation per sun x source
+// zenith x altitude.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "lib/table_values.glsl"
+#include "precompute/late_source.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
+layout(std430, binding = 1) readonly buffer shape_block {
+  TableShape shape;
+  ZenithQuadrature quadrature;
+};
+layout(std430, binding = 2) readonly buffer phase_block { vec2 phase[]; };
+layout(std430, binding = 3) readonly buffer incident_block { vec4 incident[]; };
+layout(std430, binding = 4) buffer source_block { vec4 source[]; };
+layout(std430, binding = 5) buffer sum_block { vec4 sums[]; };
+layout(std430, binding = 6) buffer irradiance_block { vec4 irradiance[]; };
+layout(std430, binding = 7) buffer sky_block { vec4 sky[]; };
+
+layout(push_constant) uniform Push {
+  uint first;  // altitude
+  uint order;  // of the source function that is made here
+}
+push;
+
+// Bound on the ratio of successive orders. Conservative scattering in thick air comes close to 1.
+const float kMaxRatio = 0.95;
+
+// Returns the ratio of successive orders, which after many scatterings is the largest eigenvalue of transport and
+// therefore the same at every point, direction and sun. The irradiance at sea level approaches it from below under the
+// highest sun and from above under one on the horizon; the mean of both is returned.
+vec3 settled_ratio() {
+  vec3 sum = vec3(0.0);
+  for (int end = 0; end < 2; ++end) {
+    uint sun = end == 0 ? kGatherSuns - 1u : uint(gather_sun_index(medium, 0.0) + 0.5);
+    uint point = kGatherBelow * kGatherSuns + sun;
+    vec3 now = irradiance[irradiance_row(push.order - 2u, point)].rgb;
+    vec3 before = irradiance[irradiance_row(push.order - 3u, point)].rgb;
+    sum += 0.5 * min(now / max(before, vec3(1.0e-30)), vec3(kMaxRatio));
+  }
+  return sum;
+}
+
+void main() {
+  uint sun = gl_GlobalInvocationID.x;
+  uint zenith = gl_GlobalInvocationID.y;
+  uint altitude = gl_GlobalInvocationID.z + push.first;
+  if (sun >= kGatherSuns || zenith >= kSourceZeniths || altitude >= kGatherAltitudes) return;
+  float h = gather_altitude(medium, altitude);
+  vec3 share = aerosol_part(medium, h);
+  bool last = push.order == shape.orders + kLateOrders;
+  vec3 beyond = vec3(0.0);
+  if (last) {
+    vec3 ratio = settled_ratio();
+    beyond = ratio / (1.0 - ratio);
+  }
+  vec3 terms[kLateTerms];
+  for (uint m = 0u; m < kLateTerms; ++m) terms[m] = vec3(0.0);
+  uint modes = late_modes(shape, push.order - 1u);
+  for (uint q = 0u; q < kGatherZeniths; ++q) {
+    for (uint m = 0u; m < modes; ++m) {
+      vec2 p = phase[((altitude * kSourceZeniths + zenith) * kGatherZeniths + q) * kModes + m];
+      vec3 light = incident[late_incident_index(altitude, q, m, sun)].rgb;
+      terms[m] += light * (p.x * (1.0 - share) + p.y * share);
+    }
+  }
+  vec3 sums_of[kLateTerms];
+  for (uint m = 0u; m < kLateTerms; ++m) {
+    uint sum_index = late_sum_index(altitude, zenith, m, sun);
+    vec3 sum = terms[m];
+    if (push.order > shape.orders + 1u) sum += source[sum_index].rgb;
+    sums_of[m] = sum + terms[m] * beyond;
+    source[sum_index] = vec4(sum, 0.0);
+    vec3 stored = m == 0u ? texel_from_value(terms[0]) : m == 1u ? terms[1] / max(terms[0], vec3(1.0e-30)) : terms[m];
+    source[late_source_index(altitude, zenith, m, sun)] = vec4(stored, 0.0);
+  }
+  if (last) {
+    for (uint k = 0u; k < kSourceAzimuths; ++k) {
+      float phi = float(k) * kPi / float(kSourceAzimuths - 1u);
+      vec3 value = vec3(0.0);
+      for (uint m = 0u; m < kLateTerms; ++m) value += sums_of[m] * cos(float(m) * phi);
+      uint index = source_index(altitude, zenith, k, sun);
+      sums[index] = vec4(texel_from_value(sums[index].rgb + max(value, vec3(0.0))), 0.0);
+    }
+  }
+  if (zenith == 0u) {
+    float horizon = horizon_cos(h, medium.planet_radius_m);
+    vec3 sum = vec3(0.0);
+    for (uint q = kGatherZeniths / 2u; q < kGatherZeniths; ++q) {
+      float node = quadrature.node[q - 12u];
+      float weight = quadrature.weight[q - 12u] * gather_zenith_stretch(horizon, node, false);
+      sum += incident[late_incident_index(altitude, q, 0u, sun)].rgb *
+             (2.0 * kPi * weight * max(gather_zenith(horizon, node, false), 0.0));
+    }
+    uint point = altitude * kGatherSuns + sun;
+    irradiance[irradiance_row(push.order - 1u, point)] = vec4(sum, 0.0);
+    sky[point] += vec4(sum * (1.0 + beyond), 0.0);
+  }
+}
