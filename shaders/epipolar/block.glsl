@@ -24,12 +24,16 @@ struct Block {
   float farthest_m;
 };
 
-void look_at_pixel(inout Block block, int k, float depth) {
+bool below_horizon(ivec2 pixel) {
+  vec2 position = vec2(pixel) + 0.5;
+  vec3 direction = frame.ray_origin + position.x * frame.ray_x + position.y * frame.ray_y;
+  return dot(direction, frame.camera_up) < frame.horizon_cos * length(direction);
+}
+
+void look_at_pixel(inout Block block, int k, float depth, bool planet) {
   vec2 position = vec2(block.pixel[k]) + 0.5;
   bool sky = depth == frame.sky_depth;
   float visible_m = view_depth(frame, position, depth);
-  vec3 direction = frame.ray_origin + position.x * frame.ray_x + position.y * frame.ray_y;
-  bool planet = dot(direction, frame.camera_up) < frame.horizon_cos * length(direction);
   block.sky[k] = sky;
   block.visible_m[k] = visible_m;
   block.kinds |= !sky ? kScene : planet ? kPlanet : kSky;
@@ -62,7 +66,15 @@ void look_at_block(inout Block block) {
   } else {
     for (int k = 0; k < kBlockPixels; ++k) depth[k] = LOAD_DEPTH(block.pixel[k]);
   }
-  for (int k = 0; k < kBlockPixels; ++k) look_at_pixel(block, k, depth[k]);
+  // The horizon is straight in a block: it passes between the ends of a row or not at all.
+  for (int row = 0; row < 2; ++row) {
+    int first = row * kBlockWidth;
+    bool left = below_horizon(block.pixel[first]);
+    bool right = below_horizon(block.pixel[first + kBlockWidth - 1]);
+    for (int i = 0; i < kBlockWidth; ++i) {
+      look_at_pixel(block, first + i, depth[first + i], 2 * i < kBlockWidth ? left : right);
+    }
+  }
 }
 
 void list_broken(ivec2 corner) {

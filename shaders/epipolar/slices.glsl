@@ -100,6 +100,18 @@ float slice_coordinate(vec2 position, Side side) {
   return clamp((side.offset + side.sign * exit) * (count / epipolar.perimeter), 0.0, count);
 }
 
+// How much slice_coordinate() changes, at most, within a distance from a place along both axes of the picture.
+float slices_within(vec2 position, Side side, vec2 reach) {
+  vec2 d = direction_from_epipole(position);
+  float sun = side.upright ? epipolar.sun_x : epipolar.sun_y;
+  d = side.upright ? d : d.yx;
+  reach = side.upright ? reach : reach.yx;
+  float across = max(abs(d.x), 1e-9);
+  float widening = abs(side.edge * epipolar.sun_w - sun) / across;  // from here to the border
+  float count = float(epipolar.closed != 0u ? epipolar.slices : epipolar.slices - 1u);
+  return widening * (reach.y + reach.x * abs(d.y) / across) * (count / epipolar.perimeter);
+}
+
 float slice_coordinate(vec2 position) { return slice_coordinate(position, side_behind(position)); }
 
 vec2 sample_position(EpipolarSlice slice, uint i) { return slice.line.xy + slice.stride * float(i); }

@@ -17,8 +17,6 @@ const bool kSkyline = kSparsity >= 1u && !kHomogeneous;
 const bool kSparse = kSparsity == 2u && !kHomogeneous;
 
 const float kBeyond = 0.5;  // of the way between two samples
-// Samples to a pixel from which on a block of four pixels would reach too far beyond its samples.
-const float kDense = 0.75;
 // Ratio of the roots of the densities of four samples (of 1.5 between these) from which on what lies a little beyond
 // them is not told by them.
 const float kUneven = 1.2247;
@@ -85,13 +83,22 @@ bool uneven(Around a) {
   return any(greaterThan(most, kUneven * least));
 }
 
+// How much the light changes among the four samples, as a fraction of the greatest (of roots).
+float contrast(Around a) {
+  vec3 least = min(min(a.source[0], a.source[1]), min(a.source[2], a.source[3]));
+  vec3 most = max(max(a.source[0], a.source[1]), max(a.source[2], a.source[3]));
+  vec3 change = (most - least) / max(most, vec3(1e-20));
+  return max(change.r, max(change.g, change.b));
+}
+
 float least_nearness(Around a) { return min(min(a.nearness.x, a.nearness.y), min(a.nearness.z, a.nearness.w)); }
 
 // Whether not all four end at about the depth that was asked for.
 bool lopsided(Around a) { return least_nearness(a) < 0.5; }
 
-// At a place that is as far away, and no farther than a pixel from that of around().
-Blend blend(Around a, vec2 position) {
+// The same with roots of the source and the density, at a place that is as far away, and no farther than a pixel from
+// that of around().
+Blend blend_roots(Around a, vec2 position) {
   float part = slice_coordinate(position, a.side) - a.lower;
   // The last slice of all sides is next to the first.
   float all = float(epipolar.slices);
@@ -111,6 +118,11 @@ Blend blend(Around a, vec2 position) {
   b.density = w.x * a.density[0] + w.y * a.density[1] + w.z * a.density[2] + w.w * a.density[3];
   b.source = max(b.source, vec3(0.0));
   b.density = max(b.density, vec3(0.0));
+  return b;
+}
+
+Blend blend(Around a, vec2 position) {
+  Blend b = blend_roots(a, position);
   b.source *= b.source;
   b.density *= b.density;
   return b;
