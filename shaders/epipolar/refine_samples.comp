@@ -68,6 +68,14 @@ float depth_step(uint at) {
   return max(change.x, change.y);
 }
 
+// Whether a sample ends at another surface than one of its neighbours.
+bool at_depth_break(uint at) {
+  float depth = uintBitsToFloat(samples[at].x);
+  vec2 others = uintBitsToFloat(uvec2(samples[at - 1u].x, samples[at + 1u].x));
+  vec2 ratio = min(others, depth) / max(max(others, depth), 1e-3);
+  return min(ratio.x, ratio.y) < epipolar.depth_break;
+}
+
 // The last of the first samples of a slice, up to a number of them, that ends at another depth than the one before; 0:
 // none does.
 uint last_break(uint row, uint count) {
@@ -140,6 +148,11 @@ void main() {
       b = c;
     }
     atomicOr(marked[first >> 5u], bits);
+  }
+  if (epipolar.depth_break > 0.0) {
+    for (uint i = 1u + thread; i < slice.last; i += kThreads) {
+      if (at_depth_break(row + i)) atomicOr(marked[i >> 5u], 1u << (i & 31u));
+    }
   }
   barrier();
   // Next to the epipole shadows change from sample to sample by an edge, on the face of what is in front of the sun

@@ -31,10 +31,11 @@ layout(std430, binding = 9) writeonly buffer downscaled_inscattering_block { vec
 const int kBlockWidth = int(kUnwarpWidth);
 #include "epipolar/block.glsl"
 
-// Relative error of the light's root in a block that is not seen: in the smooth sky a quarter of a step of a display
-// with 8 bits, on the ground two thirds.
-const float kEvenSky = 0.002;
-const float kEvenGround = 0.006;
+// Samples to a pixel from which on a block on the ground would reach too far beyond its samples.
+const float kDense = 0.75;
+// Relative error of the light's root in a block of the sky that is not seen: a quarter of a step of a display with 8
+// bits.
+const float kEven = 0.002;
 // Thresholds of refinement within which the pixels of a block are at one depth. Those of the reduced picture are
 // farther apart, and the whole one's pixels are at depths of their own again.
 const float kOneDepth = kDownscale == 1 ? 1.0 : 3.0;
@@ -114,11 +115,17 @@ void main() {
   bool one_depth = scene ? block.farthest_m - block.nearest_m < kOneDepth * epipolar.threshold * block.farthest_m
                          : block.kinds == kSky;
   Around a = around(middle, depth_m);
-  // Beyond kBeyond the blend no longer follows the light: a block that reaches farther shows where the light changes.
-  bool dense = (reach_in_samples(a, middle) - kBeyond) * contrast(a) > (scene ? kEvenGround : kEvenSky);
+  // In twilight the pixels of the sky need not be alike: those nearest to the ground have the smallest weights.
+  float lowered = 0.8 * (epipolar.least_weight_sky - epipolar.least_weight);
+  float least_weight = scene ? epipolar.least_weight : epipolar.least_weight_sky + lowered;
+  // Beyond kBeyond the blend no longer follows the light: a block of the sky that reaches farther shows as a bar where
+  // the light changes.
+  bool too_far = (reach_in_samples(a, middle) - kBeyond) * contrast(a) > kEven;
+  bool dense = max(length(a.origin_lower.zw), length(a.origin_upper.zw)) * float(kDownscale) > kDense;
+  dense = scene ? dense : too_far;
   // Beside the limb air thins out from sample to sample: what goes on in a line beyond them soon is none at all.
   dense = dense || uneven(a);
-  if (!one_depth || dense || (kSkyline && !scene && lopsided(a)) || blend(a, middle).weight < epipolar.least_weight) {
+  if (!one_depth || dense || (kSkyline && !scene && lopsided(a)) || blend(a, middle).weight < least_weight) {
     list_broken(corner);
     return;
   }

@@ -69,7 +69,7 @@ void unwarp_pixel(uint block, uint k) {
   } else {
     STORE_REDUCED(place, depth_m, b);
   }
-  if (b.weight < epipolar.least_weight || at_limb(a, position)) list_break(pixel);
+  if (b.weight < (sky ? epipolar.least_weight_sky : epipolar.least_weight) || at_limb(a, position)) list_break(pixel);
 }
 
 void main() {

@@ -15,6 +15,11 @@ namespace {
 constexpr float kMinWeight = 1e-2F;
 constexpr float kMinWeightCorrected = 0.1F;
 constexpr float kMinWeightDownscaled = 1e-3F;
+// In twilight the sky grows darker from pixel to pixel towards the ground: a pixel of the sky with less than half of
+// its samples in the sky is marched. The unshadowed light does not contain the planet's shadow, so that the samples on
+// both sides of a depth discontinuity are marched, too.
+constexpr float kMinWeightTwilight = 0.5F;
+constexpr float kTwilightDepthBreak = 0.8F;
 // Initial samples are this many times closer together in twilight: refinement compares unshadowed light, which does not
 // contain the planet's shadow.
 constexpr std::uint32_t kStepsWithSunDown = 4;
@@ -126,6 +131,9 @@ shared::EpipolarConstants epipolar_constants(const FrameInputs& inputs, const Ef
                      : params.epipolar.correct_depth_breaks.value != 0 ? kMinWeightCorrected
                                                                        : kMinWeight;
   out.break_capacity = correction_capacity(desc, params);
+  const bool twilight = sun_is_down(inputs, params) && !is_downscaled(params);
+  out.least_weight_sky = twilight ? std::max(out.least_weight, kMinWeightTwilight) : out.least_weight;
+  out.depth_break = twilight ? kTwilightDepthBreak : 0.0F;
   out.show_depth_breaks = p.show_depth_breaks.value;
   out.tree_cells = p.min_max_tree.value != 0 ? tree_cells(desc) : 0;
   out.tree_format = static_cast<std::uint32_t>(p.min_max_format);
