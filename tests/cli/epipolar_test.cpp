@@ -51,5 +51,29 @@ TEST_F(CliEpipolar, TheFewestSlicesAreAsCloseAsPromised) {
   expect_close(".png", {}, {"epipolar.slices=32", "epipolar.samples=32"}, {"--psnr-min", "40"});
 }
 
+// Each picture has its own exposure. tools/epipolar_suns.py measures more suns and views.
+TEST_F(CliEpipolar, TwilightIsAsCloseAsPromised) {
+  std::string scene = "[tonemap]\nauto_exposure = true\nlight_adaptation = false\n";
+  const std::vector<int> suns = {4, -7, -9, -12};
+  for (std::size_t i = 0; i < suns.size(); ++i) {
+    scene += "[[path]]\ntime_s = " + std::to_string(i) +
+             ".0\nposition_m = [0.0, 8000.0, 0.0]\nyaw_deg = 5.4\npitch_deg = 8.0\nsun_azimuth_deg = 5.4\n" +
+             "sun_elevation_deg = " + std::to_string(suns[i]) + ".0\n";
+  }
+  const std::string file = scratch_.write("suns.toml", scene);
+  for (const std::string technique : {"epipolar", "brute-force"}) {
+    const Outcome outcome =
+        run_tyndall({"render", file, "--size", "320x180", "--frames", std::to_string(suns.size()), "--time-step", "1",
+                     "--set", "scattering.technique=" + technique, "-o", scratch_.at(technique + "%d.png")});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+  }
+  for (std::size_t i = 0; i < suns.size(); ++i) {
+    const std::string name = std::to_string(i) + ".png";
+    const Outcome outcome = run_tyndall(
+        {"compare", scratch_.at("epipolar" + name), scratch_.at("brute-force" + name), "--psnr-min", "52.5"});
+    EXPECT_EQ(outcome.status, 0) << "sun at " << suns[i] << " degrees: " << outcome.err << outcome.out;
+  }
+}
+
 }  // namespace
 }  // namespace tyndall::cli
