@@ -84,10 +84,9 @@ class Scene {
   // the others in SHADER_READ_ONLY_OPTIMAL; shadow_maps is an array with one layer per cascade.
   struct Images {
     const gpu::Image &display, &output, &color, &depth, &shadow_maps;
+    const View& view;  // the camera that they were drawn from
   };
-  [[nodiscard]] Images images() const { return {display_, output_, color_, depth_, shadow_maps_}; }
-  // Returns the camera of the last rendered frame.
-  [[nodiscard]] const View& view() const { return view_; }
+  [[nodiscard]] Images images() const { return {display_, output_, color_, depth_, shadow_maps_, view_}; }
   // Returns the ground that is drawn, which any thread may read; nullptr for the bare sphere at sea level.
   [[nodiscard]] std::shared_ptr<const ElevationSource> elevations() const {
     return bare_ground() ? nullptr : terrain_->source();

@@ -146,7 +146,7 @@ TEST_F(GpuFarPlaces, TheGroundIsDrawnWhereTheCameraStands) {
     const std::size_t middle = kExtent.height / 2 * kExtent.width + kExtent.width / 2;
     const double distance_m = kNearPlane_m / static_cast<double>(depth[middle]);
     EXPECT_NEAR(distance_m, 60.0, 2.0) << place.name;
-    EXPECT_NEAR(altitude_of(scene->view().position, kRadius_m), ground_m + 60.0, 1e-3) << place.name;
+    EXPECT_NEAR(altitude_of(scene->images().view.position, kRadius_m), ground_m + 60.0, 1e-3) << place.name;
   }
 }
 
@@ -186,7 +186,7 @@ TEST_F(GpuFarPlaces, TheTerrainHasNoEndFromSpace) {
       stand(place.at(altitude_m));
       scene_.camera.pitch_deg = altitude_m > 2.0e6 ? -90.0F : -45.0F;
       const std::vector<float> depth = depths(*scene);
-      const View& view = scene->view();
+      const View& view = scene->images().view;
       std::size_t wrong = 0;
       for (std::size_t i = 0; i < depth.size(); ++i) {
         const double x = 2.0 * (static_cast<double>(i % kExtent.width) + 0.5) / kExtent.width - 1.0;
@@ -218,11 +218,11 @@ TEST_F(GpuFarPlaces, TheSphereOfOneilsModelIsTheGround) {
   const std::unique_ptr<Scene> scene = make();
   ASSERT_NE(scene, nullptr);
   draw(*scene);
-  EXPECT_NEAR(scene->view().position.y, 100.0, 1e-9);
+  EXPECT_NEAR(scene->images().view.position.y, 100.0, 1e-9);
   EXPECT_EQ(scene->elevations(), nullptr);
   scene_.oneil.ground = OneilGround::terrain;
   draw(*scene);
-  EXPECT_GT(scene->view().position.y, 300.0);
+  EXPECT_GT(scene->images().view.position.y, 300.0);
   EXPECT_NE(scene->elevations(), nullptr);
 }
 

@@ -130,7 +130,7 @@ TEST_F(GpuMeshes, AFloorAtSeaLevelHidesTheBareGround) {
           scene_.camera.pitch_deg = pitch_deg;
           EXPECT_OK(scene->set_scene(scene_));
           image::Image image = draw(*scene);
-          out.push_back({scene->view(), std::move(image)});
+          out.push_back({scene->images().view, std::move(image)});
         }
       }
     }

@@ -218,8 +218,7 @@ TEST(SceneFileMessages, NameTheLineTheKeyAndWhatIsAllowed) {
   EXPECT_EQ(failure("[terrain]\nsource = \"a\\u0000b\"\n"),
             "s.toml:2: 'terrain.source' = 'a?b' holds control characters; expected text in UTF-8");
   EXPECT_EQ(failure("[camera.yaw_deg]\n"), "s.toml:1: 'camera.yaw_deg' is a table; expected -3600 to 3600 deg");
-  EXPECT_EQ(failure("[camera]\n\"yaw.deg\" = 1\n").substr(0, 45),
-            "s.toml:2: unknown parameter 'camera.yaw.deg';");
+  EXPECT_EQ(failure("[camera]\n\"yaw.deg\" = 1\n").substr(0, 45), "s.toml:2: unknown parameter 'camera.yaw.deg';");
 }
 
 TEST(SceneFileMessages, BrokenTomlIsOneLineWithItsPlace) {
