@@ -1,7 +1,7 @@
 # The two commands. Everything else is CMake: see CONTRIBUTING.md.
 #   make demo            installs what is missing, builds the program, renders the demo scene to out/demo.png
 #   make check           installs what is missing, checks the formatting, builds everything with warnings as errors, runs
-#                        clang-tidy and every test
+#                        every test
 #   make doxygen         writes the reference of the public headers to build/doxygen/html
 #   make pictures        renders the pictures of the documentation
 #   make accuracy        measures the numbers of docs/accuracy.md
@@ -24,7 +24,6 @@ demo: build
 check: PRESET = ci
 check: PACKAGES = $(CLANG_PACKAGES)
 check: format-check build
-	@tools/tidy.py build/release $(TIDY_FOLDERS)
 	@ctest --preset ci --no-tests=error -j "$$(nproc)"
 
 # The reference of the public headers, in build/doxygen/html.
