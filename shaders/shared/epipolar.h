@@ -38,7 +38,7 @@ struct EpipolarConstants {
   uint reduced_width;
   uint reduced_height;
   uint break_capacity;  // capacity of the list of pixels to be marched; a multiple of kMarchGroup
-  // Both exceed 0 and least_weight only in twilight, when the sky is much brighter than the air in front of the ground.
+  // Both exceed 0 and least_weight only in twilight, when the sky is much brighter than the ground below it.
   float least_weight_sky;  // least_weight for pixels of the sky
   float depth_break;       // ratio of the depths of neighbouring samples below which both are marched; 0: never
   uint unused_0;
