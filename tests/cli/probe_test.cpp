@@ -262,7 +262,7 @@ TEST_F(CliProbe, OutputsThatCannotBeWritten) {
     const Outcome outcome = run_tyndall({"probe", "--queries", queries, "--model", "single", "-o", output});
     EXPECT_EQ(outcome.status, 1) << output;
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-    EXPECT_EQ(outcome.err.rfind("tyndall: error: cannot ", 0), 0U) << outcome.err;
+    EXPECT_NE(outcome.err.find(": cannot "), std::string::npos) << outcome.err;
   }
   EXPECT_EQ(run_tyndall({"probe", "--queries", queries, "--model", "single"}, "/dev/full").status, 1);
   // A failed run leaves an existing result untouched.
