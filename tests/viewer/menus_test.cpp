@@ -16,7 +16,7 @@ using namespace desk;
 TEST(Window, AppliesPresetsAndVsyncFromTheMenus) {
   NEEDS_A_DESK();
   Desk desk("menus");
-  ASSERT_TRUE(desk.open(joined(kSmallTables, {"--size", "480x400", "--no-first-steps", "--set", "camera.fov_deg=33"})))
+  ASSERT_TRUE(desk.open(joined(kSmallTables, {"--size", "800x600", "--no-first-steps", "--set", "camera.fov_deg=33"})))
       << desk.errors();
   for (const char* preset : {"heavy_haze", "high_performance"}) {
     const std::size_t from = desk.lines();
