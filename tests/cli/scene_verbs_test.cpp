@@ -88,7 +88,7 @@ TEST_F(CliScenes, SizesCountsAndOutputs) {
     expect_one_line(run_tyndall({"bench", "--size", size}), 2, "invalid size");
   }
   expect_one_line(render({"--frames", "0"}), 2, "invalid count '0'");
-  expect_one_line(render({"--frames", "2"}), 2, "2 frames into");
+  expect_one_line(render({"--frames", "2"}), 2, "2 frames in one file");
   expect_one_line(run_tyndall({"bench", "--frames", "0"}), 2, "invalid count '0'");
   expect_one_line(run_tyndall({"render"}), 2, "no output file");
   expect_one_line(run_tyndall({"render", "-o", scratch_.at("a.jpg")}), 2, "unknown format");
@@ -135,8 +135,9 @@ TEST_F(CliScenes, OutputsAreNotWrittenOverInputs) {
     EXPECT_EQ(outcome.status, 2) << outcome.err;
     EXPECT_NE(outcome.err.find(why), std::string::npos) << outcome.err;
   };
-  refused({"render", "--set", "terrain.source=" + dem, "-o", dem}, "is terrain.source of this run, -o");
-  refused({"render", "--set", "meshes.source=" + gltf, "-o", texture}, "is a file of meshes.source of this run, -o");
+  refused({"render", "--set", "terrain.source=" + dem, "-o", dem}, "is terrain.source of this run; expected");
+  refused({"render", "--set", "meshes.source=" + gltf, "-o", texture},
+          "is a file of meshes.source of this run; expected");
   // A virtual raster of a virtual raster of a grid.
   const std::string grid =
       scratch_.write("grid.png", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 500\n1 2\n3 4\n");
@@ -150,16 +151,17 @@ TEST_F(CliScenes, OutputsAreNotWrittenOverInputs) {
   const std::string inner = scratch_.write("inner.png", raster_of("grid.png"));
   const std::string outer = scratch_.write("outer.vrt", raster_of("inner.png"));
   for (const std::string& file : {grid, inner}) {
-    refused({"render", "--set", "terrain.source=" + outer, "-o", file}, "is a file of terrain.source of this run, -o");
+    refused({"render", "--set", "terrain.source=" + outer, "-o", file},
+            "is a file of terrain.source of this run; expected");
   }
-  refused({"render", scene, "-o", scene}, "is the scene file of this run, -o");
+  refused({"render", scene, "-o", scene}, "is the scene file of this run; expected");
   refused({"render", "--set", "terrain.source=" + frame, "--frames", "5", "-o", scratch_.at("out.%04d.png")},
-          "is terrain.source of this run, -o");
+          "is terrain.source of this run; expected");
   refused({"sky", scene, "-o", scene, "--sun-elevation-deg", "5", "--sun-azimuth-deg", "5"},
-          "is the scene file of this run, -o");
+          "is the scene file of this run; expected");
   const std::string queries =
       scratch_.write("q.csv", "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n0,0,0,0\n");
-  refused({"probe", "--queries", queries, "-o", queries}, "is the file of queries of this run, -o");
+  refused({"probe", "--queries", queries, "-o", queries}, "is the file of queries of this run; expected");
   EXPECT_EQ(contents_of(dem), "an elevation file");
   EXPECT_EQ(contents_of(texture), "a texture");
   EXPECT_EQ(contents_of(frame), "a frame that is an elevation file");
