@@ -22,7 +22,7 @@ demo: build
 
 # The fast checks come first, so that they fail first.
 check: PRESET = ci
-check: PACKAGES = $(CLANG_PACKAGES)
+check: PACKAGES = clang-format
 check: format-check build
 	@ctest --preset ci --no-tests=error -j "$$(nproc)"
 
@@ -84,19 +84,19 @@ build: setup
 	@cmake --preset $(PRESET) --log-level=WARNING
 	@cmake --build --preset $(PRESET) $(if $(TARGETS),--target $(TARGETS))
 
-# Formats the C++ and GLSL sources in place; format-check fails and shows the differences instead.
+# `make format` formats the C++ and GLSL sources in place. `make format-check` fails if a source is not formatted.
 SOURCES = git ls-files '*.cpp' '*.hpp' '*.h' '*.inl' '*.glsl' '*.comp' '*.frag' '*.vert'
 
-format: PACKAGES = $(CLANG_PACKAGES)
+format: PACKAGES = clang-format
 format: setup
 	@$(SOURCES) | xargs clang-format -i
 
-format-check: PACKAGES = $(CLANG_PACKAGES)
+format-check: PACKAGES = clang-format
 format-check: setup
 	@$(SOURCES) | xargs clang-format --dry-run --Werror
 
-# clang-tidy over the sources that have changed since they were last found clean: the folders that are known to be clean in
-# `make check` and `make tidy`; `make tidy-all` adds the others and the slow checks, among them the static analyser.
+# Runs clang-tidy over the sources that have changed since they were last found clean. `make tidy` checks TIDY_FOLDERS.
+# `make tidy-all` adds the other folders and the slow checks, among them the static analyser.
 TIDY_FOLDERS = apps examples $(addprefix src/,config effect files gpu image models post reference)
 TIDY_SLOW = clang-analyzer-*,bugprone-branch-clone,bugprone-unchecked-optional-access,performance-unnecessary-value-param,misc-unused-parameters
 

@@ -52,7 +52,7 @@ void main() {
   uint altitude = gl_GlobalInvocationID.z + push.first;
   if (sun >= kGatherSuns || zenith >= kSourceZeniths || altitude >= kGatherAltitudes) return;
   float h = gather_altitude(medium, altitude);
-  vec3 share = aerosol_part(medium, h);
+  vec3 aerosol = aerosol_part(medium, h);
   bool last = push.order == shape.orders + kLateOrders;
   vec3 beyond = vec3(0.0);
   if (last) {
@@ -66,7 +66,7 @@ void main() {
     for (uint m = 0u; m < modes; ++m) {
       vec2 p = phase[((altitude * kSourceZeniths + zenith) * kGatherZeniths + q) * kModes + m];
       vec3 light = incident[late_incident_index(altitude, q, m, sun)].rgb;
-      terms[m] += light * (p.x * (1.0 - share) + p.y * share);
+      terms[m] += light * (p.x * (1.0 - aerosol) + p.y * aerosol);
     }
   }
   vec3 sums_of[kLateTerms];
