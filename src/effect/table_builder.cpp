@@ -1,6 +1,7 @@
 // Builds the tables step by step, and copies them to and from buffers. The steps themselves are in table_steps.cpp.
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "effect/medium.hpp"
@@ -43,7 +44,7 @@ Result<void> TableBuilder::create(const gpu::Device& device, PipelineCache& pipe
   TYNDALL_TRY(pipelines.make(keys));
   if (timings) {
     TYNDALL_ASSIGN(timer_, gpu::Timer::create(device, 1, kMaxSteps));
-    for (const char* name : table_step_names()) times_.push_back({name, 0.0});
+    times_.reserve(table_step_names().size());
   }
   return {};
 }
@@ -270,11 +271,17 @@ VkDeviceSize TableBuilder::transient_bytes() const {
 
 std::span<const PassTiming> TableBuilder::stage_times() {
   if (!timings_) return {};
-  for (PassTiming& time : times_) time.gpu_ms = 0.0;
-  for (const gpu::TimedScope& scope : timer_.read(0)) {
-    for (PassTiming& time : times_) {
-      if (time.name == scope.name) time.gpu_ms += scope.milliseconds;
+  const std::span<const gpu::TimedScope> scopes = timer_.read(0);
+  times_.clear();
+  for (const char* const name : table_step_names()) {
+    PassTiming time = {name, 0.0};
+    bool found = false;
+    for (const gpu::TimedScope& scope : scopes) {
+      if (std::string_view(time.name) != scope.name) continue;
+      time.gpu_ms += scope.milliseconds;
+      found = true;
     }
+    if (found) times_.push_back(time);
   }
   return times_;
 }

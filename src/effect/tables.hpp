@@ -87,7 +87,8 @@ class TableBuilder {
   [[nodiscard]] const gpu::Image& table(TableId id) const { return tables_[static_cast<std::uint32_t>(id)].image; }
   [[nodiscard]] VkDeviceSize persistent_bytes() const;
   [[nodiscard]] VkDeviceSize transient_bytes() const;
-  // Returns the times of the stages of the last build, once its commands have completed. Needs `timings`.
+  // Returns the times of the stages that the last build had, in their order, once its commands have completed. Needs
+  // `timings`.
   [[nodiscard]] std::span<const PassTiming> stage_times();
 
  private:
@@ -120,7 +121,7 @@ class TableBuilder {
   std::uint32_t done_ = 0;
   std::vector<Retired> retired_ = {};
   gpu::Timer timer_ = {};
-  std::vector<PassTiming> times_ = {};  // one for each name of a step
+  std::vector<PassTiming> times_ = {};  // what stage_times() returned last
 };
 
 // The work that commit() takes over, with everything allocated.
