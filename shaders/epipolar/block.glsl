@@ -1,27 +1,28 @@
-// Blocks of kBlockWidth x 2 pixels: how far away they are, and the list of those whose pixels are done each by itself,
-// which names squares of 2 x 2. Include after declaring medium, frame, epipolar, scene_depth, broken, broken_list,
-// kBlockWidth, picture.glsl and unwarp.glsl.
+// Blocks of kBlockWidth x 2 pixels: their depths, and the list of blocks whose pixels are composed one by one. The list
+// stores squares of 2 x 2 pixels. Include after declaring medium, frame, epipolar, scene_depth, broken, broken_list and
+// kBlockWidth, and after picture.glsl and unwarp.glsl.
 #ifndef TYNDALL_BLOCK_GLSL
 #define TYNDALL_BLOCK_GLSL
 
 #include "epipolar/work_list.glsl"
 
+// What pixels show, as bits.
 const uint kScene = 1u;
-const uint kPlanet = 2u;  // where nothing was drawn
+const uint kPlanet = 2u;  // nothing was drawn, and the ray hits the planet
 const uint kSky = 4u;
 
 const int kBlockPixels = 2 * kBlockWidth;
 
-// Pixel k of a block is at its corner plus this.
-ivec2 place_in_block(int k) { return ivec2(k % kBlockWidth, k / kBlockWidth); }
+// Returns the offset of pixel k from the corner of its block.
+ivec2 offset_in_block(int k) { return ivec2(k % kBlockWidth, k / kBlockWidth); }
 
 struct Block {
   ivec2 pixel[kBlockPixels];
   float visible_m[kBlockPixels];
   bool sky[kBlockPixels];
-  uint kinds;       // all that were found
-  float nearest_m;  // of the scene
-  float farthest_m;
+  uint kinds;        // of all pixels
+  float nearest_m;   // minimum depth of the pixels that show the scene
+  float farthest_m;  // maximum depth of these
 };
 
 bool below_horizon(ivec2 pixel) {
@@ -30,7 +31,8 @@ bool below_horizon(ivec2 pixel) {
   return dot(direction, frame.camera_up) < frame.horizon_cos * length(direction);
 }
 
-void look_at_pixel(inout Block block, int k, float depth, bool planet) {
+// Adds pixel k, at a device depth. `planet`: its ray hits the planet if nothing was drawn.
+void add_pixel(inout Block block, int k, float depth, bool planet) {
   vec2 position = vec2(block.pixel[k]) + 0.5;
   bool sky = depth == frame.sky_depth;
   float visible_m = view_depth(frame, position, depth);
@@ -41,14 +43,14 @@ void look_at_pixel(inout Block block, int k, float depth, bool planet) {
   block.farthest_m = sky ? block.farthest_m : max(block.farthest_m, visible_m);
 }
 
-// Fills in the rest from the pixels' places.
-void look_at_block(inout Block block) {
+// Reads the depths of a block and fills in everything except `pixel`, which the caller has set.
+void read_block(inout Block block) {
   block.kinds = 0u;
   block.nearest_m = kSkyDepth;
   block.farthest_m = 0.0;
   float depth[kBlockPixels];
   if (kDownscale == 1) {
-    // In squares of 2 x 2.
+    // A gather returns a square of 2 x 2 depths.
     for (int k = 0; k < kBlockWidth; k += 2) {
       vec4 d = GATHER_DEPTH(block.pixel[0] + ivec2(k, 0));
       depth[k] = d.w;
@@ -56,7 +58,7 @@ void look_at_block(inout Block block) {
       depth[kBlockWidth + k] = d.x;
       depth[kBlockWidth + k + 1] = d.y;
     }
-    // A block that reaches beyond the picture holds its last pixels again, not what lies beyond.
+    // In a block that extends beyond the picture, the last pixels inside are repeated.
     ivec2 inside = ivec2(frame.width, frame.height) - block.pixel[0];
     for (int k = 1; k < kBlockWidth; ++k) {
       depth[k] = k < inside.x ? depth[k] : depth[k - 1];
@@ -66,17 +68,18 @@ void look_at_block(inout Block block) {
   } else {
     for (int k = 0; k < kBlockPixels; ++k) depth[k] = LOAD_DEPTH(block.pixel[k]);
   }
-  // The horizon is straight in a block: it passes between the ends of a row or not at all.
+  // The horizon is straight within a block, so testing both ends of a row is enough.
   for (int row = 0; row < 2; ++row) {
     int first = row * kBlockWidth;
     bool left = below_horizon(block.pixel[first]);
     bool right = below_horizon(block.pixel[first + kBlockWidth - 1]);
     for (int i = 0; i < kBlockWidth; ++i) {
-      look_at_pixel(block, first + i, depth[first + i], 2 * i < kBlockWidth ? left : right);
+      add_pixel(block, first + i, depth[first + i], 2 * i < kBlockWidth ? left : right);
     }
   }
 }
 
+// Adds a block to the list.
 void list_broken(ivec2 corner) {
   const uint squares = uint(kBlockWidth) / 2u;
   uint at = atomicAdd(broken.count, squares);

@@ -29,17 +29,17 @@ void put_pixel(uint at) {
   ivec2 pixel = ivec2(items[at] & 0xFFFFu, items[at] >> 16u);
   Ray ray = view_ray(frame, pixel, LOAD_DEPTH(pixel));
   float start, end;
-  vec3 through = vec3(1.0);
-  vec3 lost;
+  vec3 transmitted = vec3(1.0);
+  vec3 opacity;
   vec3 color = unpack_light(corrected[at]) * frame.sun_irradiance;
   if (clip_to_medium(ray, start, end)) {
     if (kHomogeneous)
-      homogeneous_attenuation(end - start, through, lost);
+      homogeneous_attenuation(end - start, transmitted, opacity);
     else
-      through = transmittance(medium, density_integral_along(medium, ray.altitude, ray.cos_zenith, end));
+      transmitted = transmittance(medium, density_integral_along(medium, ray.altitude, ray.cos_zenith, end));
   }
   if (kHomogeneous) color *= homogeneous_phase(ray.cos_view_sun);
-  if (frame.only == 0u) color += LOAD_COLOR(pixel) * through;
+  if (frame.only == 0u) color += LOAD_COLOR(pixel) * transmitted;
   // The mark is green and as bright as a white surface in sunlight, so that it is visible on any background.
   if (epipolar.show_depth_breaks != 0u) color = vec3(0.0, dot(frame.sun_irradiance, vec3(0.1)), 0.0);
   STORE_COLOR(pixel, color);

@@ -31,19 +31,19 @@ void put_pixel(uint at) {
   ivec2 pixel = ivec2(items[at] & 0xFFFFu, items[at] >> 16u);
   Ray ray = view_ray(frame, pixel, LOAD_DEPTH(pixel));
   float start, end;
-  vec3 through, lost;
+  vec3 transmittance, opacity;
   vec3 tau = vec3(0.0);
   bool inside = clip_to_medium(ray, start, end);
   if (kHomogeneous)
     tau = frame.homogeneous.extinction * (end - start);
   else if (inside)
     tau = optical_depth(medium, density_integral_along(medium, ray.altitude, ray.cos_zenith, end));
-  attenuation(tau, through, lost);
+  attenuation(tau, transmittance, opacity);
   ivec2 place = pixel / kDownscale;
   Sample s;
   s.depth_m = reduced[reduced_index(place)].a;
-  s.density = density_of(tau, s.depth_m);
-  s.source = unpack_light(corrected[at]) / max(lost, vec3(1e-20));
+  s.extinction = extinction_of(tau, s.depth_m);
+  s.source = unpack_light(corrected[at]) / max(opacity, vec3(1e-20));
   if (kHomogeneous && !inside) s.source = vec3(1.0);
   STORE_REDUCED(place, s.depth_m, s);
 }

@@ -21,7 +21,7 @@ EpipolarConstants epipolar;
 // Relative decrease of the square root of the source function per fraction of in-scattering from behind shadowed end
 // points.
 const float kLostInShadow = 0.35;
-const float kMostBeyond = 0.1;  // beyond samples at a different depth
+const float kMaxBeyond = 0.1;  // beyond samples at a different depth
 
 void main() {
   epipolar = stored_epipolar;
@@ -42,8 +42,8 @@ void main() {
   uint coarse_b = coarse[row + right];
   vec2 light = unpack_coarse(coarse[row + i]);
   vec2 beyond = (light - mix(unpack_coarse(coarse_a), unpack_coarse(coarse_b), part)) / max(light, vec2(1e-30));
-  float dark = mix(dark_end(coarse_a), dark_end(coarse_b), part);
-  float scale = 1.0 - kLostInShadow * dark * clamp(0.5 * (beyond.x + beyond.y), -kMostBeyond, kMostBeyond);
+  float dark = mix(shadowed_end(coarse_a), shadowed_end(coarse_b), part);
+  float scale = 1.0 - kLostInShadow * dark * clamp(0.5 * (beyond.x + beyond.y), -kMaxBeyond, kMaxBeyond);
   // The square roots of source functions take three halves of y and z. The fourth half belongs to the extinction
   // coefficient.
   samples[row + i].y = packHalf2x16(mix(unpackHalf2x16(a.y), unpackHalf2x16(b.y), part) * scale);

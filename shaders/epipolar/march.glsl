@@ -56,7 +56,7 @@ struct Walk {
   // In a homogeneous medium: the transmittance up to `since`, the in-scattering up to there, and the light that has lit
   // the ray since. A section ends where that light changes, so that the result does not depend on how sections were
   // found.
-  vec3 through;
+  vec3 transmittance;
   vec3 light;
   vec3 shine;
   float since;
@@ -71,10 +71,10 @@ vec2 load_node(bool full, uint at) {
 }
 
 void close_homogeneous(inout Walk w) {
-  vec3 through, lost;
-  homogeneous_attenuation((w.x - w.since) * w.metres, through, lost);
-  w.light += w.shine * w.through * lost;
-  w.through *= through;
+  vec3 transmittance, opacity;
+  homogeneous_attenuation((w.x - w.since) * w.metres, transmittance, opacity);
+  w.light += w.shine * w.transmittance * opacity;
+  w.transmittance *= transmittance;
   w.since = w.x;
 }
 
@@ -190,7 +190,7 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
   w.shine = vec3(0.0);
   w.since = w.x;
   w.share = 1.0;
-  w.through = kHomogeneous ? exp(-frame.homogeneous.extinction * (from - start)) : vec3(1.0);
+  w.transmittance = kHomogeneous ? exp(-frame.homogeneous.extinction * (from - start)) : vec3(1.0);
 
   // A single panel suffices if only lit lengths are needed.
   int panels = 1;
@@ -295,9 +295,9 @@ vec3 light_of(March march, Ray ray, TableRay path, float start, float end) {
   }
   vec3 light = march.light;
   if (kHomogeneous) {
-    vec3 through, lost;
-    homogeneous_attenuation(end - t, through, lost);
-    if (kSingle != kNone) light += exp(-frame.homogeneous.extinction * (t - start)) * lost;
+    vec3 transmittance, opacity;
+    homogeneous_attenuation(end - t, transmittance, opacity);
+    if (kSingle != kNone) light += exp(-frame.homogeneous.extinction * (t - start)) * opacity;
     return light;
   }
   if (kPanels) {
@@ -314,7 +314,7 @@ vec3 light_of(March march, Ray ray, TableRay path, float start, float end) {
 }
 
 // Returns whether a ray that ends at a view-space depth has a shadowed end point.
-bool ends_in_shadow(March march, float depth_m) {
+bool has_shadowed_end(March march, float depth_m) {
   bool in_map =
       epipolar.cascades > epipolar.first_cascade && depth_m <= cascades[max(epipolar.cascades, 1u) - 1u].far_m;
   return in_map && march.end_share >= 0.0 && march.end_share < 0.5;

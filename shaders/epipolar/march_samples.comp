@@ -106,14 +106,14 @@ void march_item(uint at) {
     if (pixels) {
       corrected[at] = pack_light(light);
     } else {
-      vec3 through, lost;
-      attenuation(optical_depth_at(s.density, s.depth_m), through, lost);
-      if (kHomogeneous) homogeneous_attenuation(end - start, through, lost);
-      s.source = light / max(lost, vec3(1e-20));
+      vec3 transmittance, opacity;
+      attenuation(optical_depth_at(s.extinction, s.depth_m), transmittance, opacity);
+      if (kHomogeneous) homogeneous_attenuation(end - start, transmittance, opacity);
+      s.source = light / max(opacity, vec3(1e-20));
       // The neighbours of a ray that misses the medium may hit it, and are lit.
       if (kHomogeneous && kSingle != kNone && !in_air) s.source = vec3(1.0);
       samples[sample_at] = pack_sample(s);
-      if (ends_in_shadow(march, s.depth_m)) coarse[sample_at] |= kDarkEnd;
+      if (has_shadowed_end(march, s.depth_m)) coarse[sample_at] |= kShadowedEnd;
     }
   }
   bool counts = processing == kAllCascades || (processing == kOneCascade && turn == 0u) ||

@@ -10,29 +10,29 @@ const float kLongest = 1e6;   // [m]; beyond this depth, the stored value is the
 
 struct Sample {
   float depth_m;
-  vec3 density;  // optical depth per megametre
+  vec3 extinction;  // optical depth per megametre
   vec3 source;
 };
 
 float depth_in_megametres(float depth_m) { return max(min(depth_m, kLongest), 0.01) * 1e-6; }
 
-vec3 density_of(vec3 optical_depth, float depth_m) { return optical_depth / depth_in_megametres(depth_m); }
+vec3 extinction_of(vec3 optical_depth, float depth_m) { return optical_depth / depth_in_megametres(depth_m); }
 
 // Computes exp(-tau), and 1 - exp(-tau) without cancellation.
-void attenuation(vec3 tau, out vec3 through, out vec3 lost) {
-  through = exp(-tau);
-  lost = mix(1.0 - through, tau - 0.5 * tau * tau, lessThan(tau, vec3(2e-3)));
+void attenuation(vec3 tau, out vec3 transmittance, out vec3 opacity) {
+  transmittance = exp(-tau);
+  opacity = mix(1.0 - transmittance, tau - 0.5 * tau * tau, lessThan(tau, vec3(2e-3)));
 }
 
-vec3 optical_depth_at(vec3 density, float depth_m) { return density * depth_in_megametres(depth_m); }
+vec3 optical_depth_at(vec3 extinction, float depth_m) { return extinction * depth_in_megametres(depth_m); }
 
 vec3 root_for_half(vec3 x) { return min(sqrt(max(x, vec3(0.0))), vec3(65504.0)); }
 
 uvec4 pack_sample(Sample s) {
   vec3 source = root_for_half(s.source);
-  vec3 density = root_for_half(s.density);
-  return uvec4(floatBitsToUint(s.depth_m), packHalf2x16(source.xy), packHalf2x16(vec2(source.z, density.x)),
-               packHalf2x16(density.yz));
+  vec3 extinction = root_for_half(s.extinction);
+  return uvec4(floatBitsToUint(s.depth_m), packHalf2x16(source.xy), packHalf2x16(vec2(source.z, extinction.x)),
+               packHalf2x16(extinction.yz));
 }
 
 // Returns a sample with the square roots of its extinction coefficient and source function.
@@ -43,14 +43,14 @@ Sample unpack_roots(uvec4 packed) {
   Sample s;
   s.depth_m = uintBitsToFloat(packed.x);
   s.source = vec3(a, b.x);
-  s.density = vec3(b.y, c);
+  s.extinction = vec3(b.y, c);
   return s;
 }
 
 Sample unpack_sample(uvec4 packed) {
   Sample s = unpack_roots(packed);
   s.source *= s.source;
-  s.density *= s.density;
+  s.extinction *= s.extinction;
   return s;
 }
 
@@ -61,9 +61,9 @@ uint pack_coarse(vec3 light) { return packHalf2x16(root_for_half(light * kCoarse
 
 // Set by march_samples.comp if the ray of a marched sample has a shadowed end point. The sign bit is free because roots
 // are never negative.
-const uint kDarkEnd = 0x80000000u;
+const uint kShadowedEnd = 0x80000000u;
 
-float dark_end(uint coarse) { return (coarse & kDarkEnd) != 0u ? 1.0 : 0.0; }
+float shadowed_end(uint coarse) { return (coarse & kShadowedEnd) != 0u ? 1.0 : 0.0; }
 
 // In-scattering of a pixel that was marched separately: square roots in half precision, as in samples.
 uvec2 pack_light(vec3 light) {

@@ -30,13 +30,13 @@ uint reduced_index(ivec2 at) { return uint(at.y) * epipolar.reduced_width + uint
 
 // The buffer stores 32-bit floats: source functions and depths of all pixels, followed by extinction coefficients,
 // which a homogeneous medium does not need.
-#define STORE_REDUCED(at, depth_m, blend)                               \
-  {                                                                     \
-    reduced[reduced_index(at)] = vec4((blend).source, depth_m);         \
-    if (!kHomogeneous) {                                                \
-      uint behind = epipolar.reduced_width * epipolar.reduced_height;   \
-      reduced[behind + reduced_index(at)] = vec4((blend).density, 0.0); \
-    }                                                                   \
+#define STORE_REDUCED(at, depth_m, blend)                                  \
+  {                                                                        \
+    reduced[reduced_index(at)] = vec4((blend).source, depth_m);            \
+    if (!kHomogeneous) {                                                   \
+      uint behind = epipolar.reduced_width * epipolar.reduced_height;      \
+      reduced[behind + reduced_index(at)] = vec4((blend).extinction, 0.0); \
+    }                                                                      \
   }
 
 #endif

@@ -15,7 +15,7 @@ void reduced_around(ivec2 pixel, out vec2 part, out Sample around[4]) {
     around[k].source = source.rgb;
     around[k].depth_m = source.a;
     uint behind = epipolar.reduced_width * epipolar.reduced_height;
-    around[k].density = kHomogeneous ? vec3(0.0) : reduced[behind + index].rgb;
+    around[k].extinction = kHomogeneous ? vec3(0.0) : reduced[behind + index].rgb;
   }
 }
 
@@ -27,7 +27,8 @@ Blend blend_reduced(Sample around[4], vec4 w) {
   Blend b;
   b.weight = 1.0;
   b.source = w.x * around[0].source + w.y * around[1].source + w.z * around[2].source + w.w * around[3].source;
-  b.density = w.x * around[0].density + w.y * around[1].density + w.z * around[2].density + w.w * around[3].density;
+  b.extinction =
+      w.x * around[0].extinction + w.y * around[1].extinction + w.z * around[2].extinction + w.w * around[3].extinction;
   return b;
 }
 

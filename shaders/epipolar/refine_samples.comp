@@ -1,10 +1,13 @@
-// Chooses the samples that are marched, and for the others the two that they are interpolated between
-// (Yusov 2013, section 1.3). Marched are samples where the unshadowed light is off the line between its neighbours' by
-// more than kOff times the threshold: first next to each, which finds edges, then halving the steps between, which
-// finds slow bends. One group per slice, and a thread for each run of kRun samples: marked samples are bits, and each
-// sample looks for the nearest to both sides. sources: index of the left source, and of the right one << 16, on the
-// same slice; equal where it is marched. The list of marched samples, slice << 16 | index, keeps the order of each
-// slice.
+// Selects the samples to be marched, and the two interpolation sources of every other sample (Yusov 2013, section 1.3).
+// A sample is marched if its coarse unshadowed in-scattering deviates from the line between two others by more than
+// kTolerance times the threshold. The first pass compares each sample with its neighbours, which finds edges. The
+// second pass compares the middle of each step, of its halves and so on with the marked samples on both sides, which
+// finds gradual changes.
+//
+// A workgroup processes one slice, and a thread kRun consecutive samples at a time. Marked samples are bits, which are
+// searched for the nearest ones on both sides. `sources` stores the index of the left source and, shifted by 16 bits,
+// of the right one, on the same slice; both are the sample itself if it is marched. The list of marched samples, slice
+// << 16 | index, preserves the order within each slice.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -34,33 +37,36 @@ layout(std430, binding = 5) buffer march_list_block {
 #include "epipolar/work_list.glsl"
 
 const uint kWords = 64u;  // for 2048 samples
-const uint kRun = 8u;     // samples; a part of a word
-// Light below this part of the slice's mean makes no break: it is too dark to be seen beside the rest.
+const uint kRun = 8u;     // samples, all in one word
+// Deviations are relative to at least this fraction of the mean in-scattering of the slice. Deviations in darker parts
+// are invisible next to the rest.
 const float kDark = 0.05;
-// Times the threshold: interpolation knows what is off the line, and makes up for most of it.
-const float kOff = 1.5;
-const uint kSparse = 4u;  // of this many samples one counts for the mean
-const uint kPartials = 8u;
+// Tolerated deviation in units of the threshold. It exceeds 1 because interpolate_samples.comp corrects most of the
+// deviation.
+const float kTolerance = 1.5;
+const uint kMeanStride = 4u;  // every fourth sample is enough for the mean
+const uint kPartials = 8u;    // threads of the second step of the sum
 
 shared uint marked[kWords];  // bit i: sample i
-shared uint before[kWords];  // marked samples in the words before
+shared uint before[kWords];  // number of marked samples in all previous words
 shared vec2 partial[kThreads];
 shared uint list_start;
 
-// How far light b is off the line between a and c, a part of the way from a.
-float off_line(vec2 a, vec2 b, vec2 c, float part, vec2 floor_light) {
+// Returns the relative deviation of b from the line between a and c, at a fraction `part` of the way from a.
+float deviation(vec2 a, vec2 b, vec2 c, float part, vec2 floor_light) {
   vec2 off = abs(mix(a, c, part) - b) / max(max(a, max(b, c)), floor_light);
   return max(off.x, off.y);
 }
 
-float off_line(uint row, uint left, uint i, uint right, vec2 floor_light) {
-  return off_line(unpack_coarse(coarse[row + left]), unpack_coarse(coarse[row + i]), unpack_coarse(coarse[row + right]),
-                  float(i - left) / float(right - left), floor_light);
+float deviation(uint row, uint left, uint i, uint right, vec2 floor_light) {
+  return deviation(unpack_coarse(coarse[row + left]), unpack_coarse(coarse[row + i]),
+                   unpack_coarse(coarse[row + right]), float(i - left) / float(right - left), floor_light);
 }
 
-// Of samples and steps up to 2048. (CPU devices divide integers one by one.)
+// Returns i % divisor for numbers up to 2048. (CPU devices divide integers lane by lane.)
 uint remainder_of(uint i, uint divisor) { return i - uint((float(i) + 0.5) / float(divisor)) * divisor; }
 
+// Returns the largest relative change of depth from a sample to its neighbours.
 float depth_step(uint at) {
   float depth = uintBitsToFloat(samples[at].x);
   vec2 others = uintBitsToFloat(uvec2(samples[at - 1u].x, samples[at + 1u].x));
@@ -68,7 +74,8 @@ float depth_step(uint at) {
   return max(change.x, change.y);
 }
 
-// Whether a sample ends at another surface than one of its neighbours.
+// Returns whether there is a depth discontinuity between a sample and one of its neighbours, as EpipolarConstants
+// defines it for twilight.
 bool at_depth_break(uint at) {
   float depth = uintBitsToFloat(samples[at].x);
   vec2 others = uintBitsToFloat(uvec2(samples[at - 1u].x, samples[at + 1u].x));
@@ -76,10 +83,9 @@ bool at_depth_break(uint at) {
   return min(ratio.x, ratio.y) < epipolar.depth_break;
 }
 
-// The last of the first samples of a slice, up to a number of them, that ends at another depth than the one before; 0:
-// none does.
+// Returns the index of the last sample before `count` that follows a depth discontinuity; 0 if there is none.
 uint last_break(uint row, uint count) {
-  const float kOtherSurface = 0.8;  // ratio of depths, at most
+  const float kOtherSurface = 0.8;  // a smaller ratio of depths is a discontinuity
   float before = uintBitsToFloat(samples[row].x);
   uint found = 0u;
   for (uint i = 1u; i < count; ++i) {
@@ -90,6 +96,7 @@ uint last_break(uint row, uint count) {
   return found;
 }
 
+// Returns the nearest marked sample at or before sample i. The first sample of a slice is always marked.
 uint left_marked(uint i) {
   uint word = i >> 5u;
   uint bits = marked[word] & (0xFFFFFFFFu >> (31u - (i & 31u)));
@@ -97,6 +104,7 @@ uint left_marked(uint i) {
   return word * 32u + uint(findMSB(bits));
 }
 
+// Returns the nearest marked sample at or after sample i. The last sample of a slice is always marked.
 uint right_marked(uint i) {
   uint word = i >> 5u;
   uint bits = marked[word] & (0xFFFFFFFFu << (i & 31u));
@@ -111,7 +119,8 @@ void main() {
   uint row = id * epipolar.samples;
   for (uint w = thread; w < kWords; w += kThreads) marked[w] = 0u;
   vec2 sum = vec2(0.0);
-  for (uint i = thread * kSparse; i <= slice.last; i += kThreads * kSparse) sum += unpack_coarse(coarse[row + i]);
+  for (uint i = thread * kMeanStride; i <= slice.last; i += kThreads * kMeanStride)
+    sum += unpack_coarse(coarse[row + i]);
   partial[thread] = sum;
   barrier();
   if (thread < kPartials) {
@@ -121,13 +130,13 @@ void main() {
   barrier();
   sum = vec2(0.0);
   for (uint i = 0u; i < kPartials; ++i) sum += partial[i];
-  vec2 floor_light = max(sum * (kDark / float(slice.last / kSparse + 1u)), vec2(1e-30));
+  vec2 floor_light = max(sum * (kDark / float(slice.last / kMeanStride + 1u)), vec2(1e-30));
 
-  // Once, not in the loops: a device without a GPU loads from buffers for each invocation.
+  // Loaded before the loops, because CPU devices load from buffers lane by lane.
   const uint initial_step = epipolar.initial_step;
   const float threshold = epipolar.threshold;
   const vec2 center = epipole();
-  // Of samples, those that may be near the epipole.
+  // Only the first samples of a slice can be near the epipole.
   const uint near_samples = epipolar.sun_in_picture != 0u ? (epipolar.samples + 19u) / 20u : 0u;
   uint fine_step = max(initial_step / epipolar.epipole_density, 1u);
   float near_epipole = 0.05 * float(max(frame.width, frame.height));
@@ -142,7 +151,7 @@ void main() {
       bool near = from < near_samples && distance(sample_position(slice, from), center) < near_epipole;
       bool mark = remainder_of(beyond, near ? fine_step : initial_step) == 0u || i == slice.last;
       bool kink = !mark && (kRefinement == 0u ? depth_step(row + min(i, slice.last - 1u)) > 0.2 * threshold
-                                              : off_line(a, b, c, 0.5, floor_light) > kOff * threshold);
+                                              : deviation(a, b, c, 0.5, floor_light) > kTolerance * threshold);
       bits |= i <= slice.last && (mark || kink) ? 1u << (i & 31u) : 0u;
       a = b;
       b = c;
@@ -155,17 +164,16 @@ void main() {
     }
   }
   barrier();
-  // Next to the epipole shadows change from sample to sample by an edge, on the face of what is in front of the sun
-  // too, whose own light says nothing about it: all samples up to the last edge are marched there.
-  const float kAround = 2.0;  // times as far as initial samples are denser
+  // Next to the epipole, shadows change from sample to sample beside an edge, also on the dark face of an object in
+  // front of the sun. Unshadowed in-scattering gives no hint of it, so all samples up to the last edge are marched.
+  const float kAround = 2.0;  // in units of near_epipole
   if (thread == 0u && epipolar.sun_in_picture != 0u) {
     uint count = min(uint(kAround * near_epipole / max(length(slice.stride), 1e-6)), slice.last) + 1u;
     uint last = last_break(row, count);
     for (uint i = 0u; i < last; ++i) atomicOr(marked[i >> 5u], 1u << (i & 31u));
   }
   barrier();
-  // What bends slowly has no kink: the middles of steps, of their halves and so on, against what is marked on both
-  // sides so far.
+  // Gradual changes: the middles of steps, of their halves and so on, compared with the nearest marked samples.
   if (kRefinement == 1u) {
     uint segment = initial_step;
     for (uint from = thread * segment; from < slice.last; from += kThreads * segment) {
@@ -174,7 +182,7 @@ void main() {
         for (uint i = from + part; i < end; i += 2u * part) {
           uint left = left_marked(i);
           uint right = right_marked(i);
-          if (left != right && off_line(row, left, i, right, floor_light) > kOff * threshold) {
+          if (left != right && deviation(row, left, i, right, floor_light) > kTolerance * threshold) {
             atomicOr(marked[i >> 5u], 1u << (i & 31u));
           }
         }

@@ -41,16 +41,16 @@ vec3 contiguous_light(LitSections lit, TableRay path, float start, float t, floa
     float counts = i == 0 ? shadowed.x : i == 1 ? shadowed.y : i == 2 ? shadowed.z : i == 3 ? shadowed.w : shadowed_end;
     float d = min(place - start, path.end_m);
     vec3 before = density_integral_along(medium, path.altitude, path.cos_zenith, d);
-    vec3 through = transmittance(medium, before);
+    vec3 transmitted = transmittance(medium, before);
     InScattering beyond = inscattering_from_integral(frame.tables, medium, angle, ray_further_on(medium, path, d),
                                                      max(column - before, vec3(0.0)));
-    if (kSingle == kTable) light += counts * through * beyond.single;
+    if (kSingle == kTable) light += counts * transmitted * beyond.single;
     if (kOccluded)
-      light += counts * through * beyond.high;
+      light += counts * transmitted * beyond.high;
     else if (i == 0)
-      high += through * beyond.high;
+      high += transmitted * beyond.high;
     else if (i == 4)
-      high -= through * beyond.high;
+      high -= transmitted * beyond.high;
   }
   light = max(light, vec3(0.0));
   return whole ? light + max(high, vec3(0.0)) : light;

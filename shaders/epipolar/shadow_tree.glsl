@@ -20,9 +20,9 @@ float tree_number(float slope, float resolution, uint format) {
 // Returns the number of a ray. It is greater than that of a node without a minimum slope. Rays at the epipole are so
 // steep that their number would be 0 as well, and count as lit.
 float ray_number(float slope, float resolution, uint format) {
-  const float kLeastNumber = 0.01;
+  const float kMinNumber = 0.01;
   float number = tree_number(slope, resolution, format);
-  return format == kUnorm16 ? max(number, kLeastNumber) : number;
+  return format == kUnorm16 ? max(number, kMinNumber) : number;
 }
 
 // Returns the index of a node within its block; `cell` is any of its cells.

@@ -15,7 +15,7 @@ bool in_sky(uint at) { return uintBitsToFloat(samples[at].x) >= kSkyDepth; }
 SkyOnSlice sky_on_slice(uint id, vec4 origin, vec2 position) {
   uint row = id * epipolar.samples;
   int last = int(slices[id].last);
-  float place = clamp(place_on_slice(origin, position), 0.0, float(last));
+  float place = clamp(position_on_slice(origin, position), 0.0, float(last));
   int left = int(place);
   int right = min(left + 1, last);
   while (left >= 0 && !in_sky(row + uint(left))) --left;

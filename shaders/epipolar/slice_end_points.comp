@@ -19,7 +19,7 @@ void main() {
   uint id = gl_GlobalInvocationID.x;
   if (id >= epipolar.slices) return;
   float steps = float(epipolar.closed != 0u ? epipolar.slices : epipolar.slices - 1u);
-  vec2 exit = border_place(epipolar.perimeter * float(id) / steps);
+  vec2 exit = border_position(epipolar.perimeter * float(id) / steps);
   vec2 direction = away_from_epipole(exit);
   bool across;
   float visible = distance_to_border(exit, -direction, across);

@@ -68,11 +68,11 @@ void main() {
     // coefficient.
     vec3 direction = ray_direction(frame, position);
     s.depth_m = sky ? sky_depth_m(direction) : view_depth(frame, position, depth);
-    s.density = vec3(0.0);
-    vec3 through, lost;
-    homogeneous_attenuation(length_in_homogeneous(direction, s.depth_m), through, lost);
+    s.extinction = vec3(0.0);
+    vec3 transmittance, opacity;
+    homogeneous_attenuation(length_in_homogeneous(direction, s.depth_m), transmittance, opacity);
     samples[at] = pack_sample(s);
-    coarse[at] = pack_coarse(lost);
+    coarse[at] = pack_coarse(opacity);
     return;
   }
   Ray ray = ray_to_depth(frame, position, view_depth(frame, position, depth), sky);
@@ -82,7 +82,7 @@ void main() {
   if (clip_to_atmosphere(medium, ray, start, end)) {
     column = max(density_integral_along(medium, ray.altitude, ray.cos_zenith, end), vec3(0.0));
   }
-  s.density = density_of(optical_depth(medium, column), s.depth_m);
+  s.extinction = extinction_of(optical_depth(medium, column), s.depth_m);
   samples[at] = pack_sample(s);
   NormalisationFactors factors = normalisation_factors(medium, column);
   vec3 light = medium.rayleigh_scattering * rayleigh_phase(ray.cos_view_sun) * factors.rayleigh +

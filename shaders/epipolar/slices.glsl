@@ -1,13 +1,12 @@
-// Where slices and samples lie in the picture. Include after declaring
-//   buffer epipolar_block { EpipolarConstants epipolar; };  and  frame
-// After Yusov, "High Performance Outdoor Light Scattering Using Epipolar Sampling" (2013), section 1.2, with two
-// differences: the slices end only on sides that rays from the epipole reach from within the picture, evenly
-// spread over their pixels; and the epipole is homogeneous, so that a sun at right angles to the view is nothing
-// special.
+// The positions of slices and samples in the picture, after Yusov, "High Performance Outdoor Light Scattering Using
+// Epipolar Sampling" (2013), section 1.2. There are two differences. Slices end only on the sides of the border where
+// lines from the epipole leave the picture, and they are evenly spaced along these sides. The epipole is given in
+// homogeneous coordinates, so a sun at a right angle to the view needs no special case. Include after declaring
+// epipolar (EpipolarConstants) and frame.
 #ifndef TYNDALL_SLICES_GLSL
 #define TYNDALL_SLICES_GLSL
 
-// Away from the epipole, of any length above 1e-20.
+// Returns a direction that points away from the epipole. Its length is arbitrary but exceeds 1e-20.
 vec2 direction_from_epipole(vec2 position) {
   vec2 d = position * epipolar.sun_w - vec2(epipolar.sun_x, epipolar.sun_y);
   return max(abs(d.x), abs(d.y)) > 1e-20 ? d : vec2(epipolar.fallback_x, epipolar.fallback_y);
@@ -23,49 +22,52 @@ vec2 epipole() { return vec2(epipolar.sun_x, epipolar.sun_y) / epipolar.sun_w; }
 vec2 border_low() { return vec2(0.5); }
 vec2 border_high() { return vec2(float(frame.width), float(frame.height)) - 0.5; }
 
-// Distance from a place in the picture along a direction to the border.
+// Returns the distance from a position along a direction to the border. `across`: the line leaves the picture on the
+// left or right side.
 float distance_to_border(vec2 position, vec2 direction, out bool across) {
   vec2 gap = vec2(direction.x > 0.0 ? border_high().x - position.x : position.x - border_low().x,
                   direction.y > 0.0 ? border_high().y - position.y : position.y - border_low().y);
   vec2 t = max(gap, vec2(0.0)) / max(abs(direction), vec2(1e-12));
-  across = t.x <= t.y;  // leaves through the left or right side
+  across = t.x <= t.y;
   return min(t.x, t.y);
 }
 
-// Place on the border at a distance along the perimeter.
-vec2 border_place(float along) {
+// Returns the position on the border at a distance along the perimeter.
+vec2 border_position(float along) {
   vec2 low = border_low();
   vec2 high = border_high();
   vec2 size = high - low;
-  vec2 place = low;
-  // The side that holds it, or for want of one by rounding, ends closest before it.
-  float least_beyond = 1e30;
+  vec2 position = low;
+  // The side that contains it. Because of rounding there may be none; then the side that ends closest before it.
+  float min_beyond = 1e30;
   vec4 starts = vec4(epipolar.left_start, epipolar.bottom_start, epipolar.right_start, epipolar.top_start);
   for (int side = 0; side < 4; ++side) {
     float start = starts[side];
     float x = along - start;
     float length_px = side == 0 || side == 2 ? size.y : size.x;
     float beyond = max(x - length_px, 0.0);
-    if (start >= 0.0 && x >= 0.0 && beyond <= least_beyond) {
-      least_beyond = beyond;
+    if (start >= 0.0 && x >= 0.0 && beyond <= min_beyond) {
+      min_beyond = beyond;
       x = min(x, length_px);
-      place = side == 0   ? vec2(low.x, low.y + x)
-              : side == 1 ? vec2(low.x + x, high.y)
-              : side == 2 ? vec2(high.x, high.y - x)
-                          : vec2(high.x - x, low.y);
+      position = side == 0   ? vec2(low.x, low.y + x)
+                 : side == 1 ? vec2(low.x + x, high.y)
+                 : side == 2 ? vec2(high.x, high.y - x)
+                             : vec2(high.x - x, low.y);
     }
   }
-  return place;
+  return position;
 }
 
-// The side of the border that a line from the epipole through a place ends on: the border's coordinate across it,
-// and how the slices are numbered along it.
+// The side of the border where a line from the epipole leaves the picture. The distance along the perimeter is offset +
+// sign * c, where c is the coordinate along the side (y if `upright`, otherwise x).
 struct Side {
   bool upright;  // left or right
-  float edge;
-  float sign;    // of the numbering along the picture's axis
-  float offset;  // of a place at 0 of that axis along the perimeter
+  float edge;    // the coordinate of the side on the other axis
+  float sign;
+  float offset;
 };
+
+// Returns the side where the line from the epipole through a position leaves the picture.
 
 Side side_behind(vec2 position) {
   vec2 d = direction_from_epipole(position);
@@ -88,10 +90,10 @@ Side side_behind(vec2 position) {
   return side;
 }
 
-// The slices around the line from the epipole through a place: the lower one plus the part of the way to the next.
-// `side`: where the line ends, or that of a neighbouring pixel.
+// Returns the position of a line from the epipole among the slices: the index of the slice below it plus the fraction
+// of the way to the next slice. `side`: the side where the line ends, or that of a neighbouring pixel.
 float slice_coordinate(vec2 position, Side side) {
-  const float kLevel = 1e-9;  // to a side, or less: a line that meets it nowhere
+  const float kLevel = 1e-9;  // a line with a smaller component across the side is parallel to it
   vec2 d = direction_from_epipole(position);
   vec2 at = side.upright ? position : position.yx;
   d = side.upright ? d : d.yx;
@@ -100,14 +102,15 @@ float slice_coordinate(vec2 position, Side side) {
   return clamp((side.offset + side.sign * exit) * (count / epipolar.perimeter), 0.0, count);
 }
 
-// How much slice_coordinate() changes, at most, within a distance from a place along both axes of the picture.
+// Returns the largest change of slice_coordinate() within a distance `reach` along both axes [pixels].
 float slices_within(vec2 position, Side side, vec2 reach) {
   vec2 d = direction_from_epipole(position);
   float sun = side.upright ? epipolar.sun_x : epipolar.sun_y;
   d = side.upright ? d : d.yx;
   reach = side.upright ? reach : reach.yx;
   float across = max(abs(d.x), 1e-9);
-  float widening = abs(side.edge * epipolar.sun_w - sun) / across;  // from here to the border
+  // The ratio of the distances between slices at the border and here.
+  float widening = abs(side.edge * epipolar.sun_w - sun) / across;
   float count = float(epipolar.closed != 0u ? epipolar.slices : epipolar.slices - 1u);
   return widening * (reach.y + reach.x * abs(d.y) / across) * (count / epipolar.perimeter);
 }

@@ -1,5 +1,5 @@
-// Puts the picture, or the reduced one, together where the pixels of a block differ in depth, each by itself, and lists
-// those that no sample fits.
+// Composes the pixels of blocks that unwarp.comp has listed, each with the samples at its own depth. Pixels that fit no
+// sample are listed to be marched. With kDownscale, the output is the half- or quarter-resolution buffer.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -33,18 +33,18 @@ layout(std430, binding = 10) writeonly buffer downscaled_inscattering_block { ve
 #include "epipolar/break_list.glsl"
 #include "epipolar/skyline.glsl"
 
-// Whether a ray goes down through all of the air, to graze the planet or to rise again, and not all samples around it
-// end where it does: beside the limb light changes several times over from pixel to pixel, so that those which do are
-// no substitute.
+// Returns whether a pixel is next to the limb as seen from above the atmosphere and must be marched: its ray grazes the
+// planet, and the samples around it do not all end on the same side of the limb. In-scattering changes there by a large
+// factor from pixel to pixel, so the remaining samples are no substitute.
 bool at_limb(Around a, vec2 position) {
-  const float kGrazing = 4.0;  // below the surface, scale heights
+  const float kGrazing = 4.0;  // depth of the tangent point below the surface, at most [scale heights]
   float scale_heights = frame.camera_altitude_m / medium.rayleigh_scale_height_m;
   if (kHomogeneous || scale_heights < kAllOfAir) return false;
   float cos_zenith = dot(ray_direction(frame, position), frame.camera_up);
   float sin_zenith = sqrt(max(1.0 - cos_zenith * cos_zenith, 0.0));
   float dip = (1.0 - sin_zenith) * (medium.planet_radius_m + frame.camera_altitude_m) / medium.rayleigh_scale_height_m;
   bool grazes = cos_zenith < 0.0 && dip > kAllOfAir && dip < scale_heights + kGrazing;
-  return grazes && lopsided(a);
+  return grazes && depths_differ(a);
 }
 
 void unwarp_pixel(uint block, uint k) {
@@ -58,18 +58,19 @@ void unwarp_pixel(uint block, uint k) {
   float depth_m = sky ? sky_depth_m(ray_direction(frame, position)) : visible_m;
   Around a = around(position, depth_m);
   Blend b = blend(a, position);
-  // What only one of two slices tells ends in a seam; most of that is optical depth.
-  // What only one of two slices tells would end in a step where the other begins to.
-  bool skyline = kSkyline && depth_m >= kSkyDepth && lopsided(a);
+  // Next to a skyline, only one of the two slices may contribute. Its influence would end with a visible seam, most of
+  // which is optical depth.
+  bool skyline = kSkyline && depth_m >= kSkyDepth && depths_differ(a);
   if (skyline) b.source = sky_source(a, position, b.source);
-  if (skyline || kSparse) b.density = density_of(max(own_optical_depth(position, visible_m, sky), vec3(0.0)), depth_m);
+  if (skyline || kSparse)
+    b.extinction = extinction_of(max(own_optical_depth(position, visible_m, sky), vec3(0.0)), depth_m);
   if (kDownscale == 1) {
     vec3 background = LOAD_COLOR(pixel);
     STORE_COLOR(pixel, compose(b, position, depth_m, visible_m, sky, background));
   } else {
     STORE_REDUCED(place, depth_m, b);
   }
-  if (b.weight < (sky ? epipolar.least_weight_sky : epipolar.least_weight) || at_limb(a, position)) list_break(pixel);
+  if (b.weight < (sky ? epipolar.min_weight_sky : epipolar.min_weight) || at_limb(a, position)) list_break(pixel);
 }
 
 void main() {

@@ -40,8 +40,8 @@ void main() {
   ivec2 size = ivec2(frame.width, frame.height);
   if (corner.x >= size.x || corner.y >= size.y) return;
   Block block;
-  for (int k = 0; k < kBlockPixels; ++k) block.pixel[k] = min(corner + place_in_block(k), size - 1);
-  look_at_block(block);
+  for (int k = 0; k < kBlockPixels; ++k) block.pixel[k] = min(corner + offset_in_block(k), size - 1);
+  read_block(block);
   Sample near[4];
   vec2 part;
   reduced_around(corner, part, near);
@@ -61,7 +61,7 @@ void main() {
   for (int k = 0; k < kBlockPixels; ++k) {
     ivec2 pixel = block.pixel[k];
     vec2 position = vec2(pixel) + 0.5;
-    vec2 own_part = part + vec2(place_in_block(k)) / float(kDownscale);
+    vec2 own_part = part + vec2(offset_in_block(k)) / float(kDownscale);
     vec3 background = LOAD_COLOR(pixel);
     float own_m = scene ? block.visible_m[k] : kSkyDepth;
     vec3 color = compose(blend_reduced(near, bilinear_weights(own_part)), position, own_m, block.visible_m[k],

@@ -33,7 +33,7 @@ layout(std430, binding = 10) readonly buffer downscaled_inscattering_block { vec
 #include "epipolar/break_list.glsl"
 
 // A pixel with a smaller sum of weights is interpolated from the slices.
-const float kLeastUpscaled = 0.1;
+const float kMinUpscaledWeight = 0.1;
 
 void upscale_pixel(uint block, uint k) {
   ivec2 pixel = ivec2((block & 0xFFFFu) + (k & 1u), (block >> 16u) + (k >> 1u));
@@ -51,10 +51,10 @@ void upscale_pixel(uint block, uint k) {
   float sum = w.x + w.y + w.z + w.w;
   Blend b = blend_reduced(near, w / max(sum, 1e-9));
   Blend of_slices = blend(around(position, depth_m), position);
-  if (sum < kLeastUpscaled) b = of_slices;
+  if (sum < kMinUpscaledWeight) b = of_slices;
   vec3 background = LOAD_COLOR(pixel);
   STORE_COLOR(pixel, compose(b, position, depth_m, visible_m, sky, background));
-  if (sum < kLeastUpscaled && b.weight < epipolar.least_weight) list_break(pixel);
+  if (sum < kMinUpscaledWeight && b.weight < epipolar.min_weight) list_break(pixel);
 }
 
 void main() {

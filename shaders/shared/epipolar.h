@@ -12,7 +12,7 @@ struct EpipolarConstants {
   uint epipole_density;
   float threshold;
   uint optimize_locations;
-  float least_weight;  // a pixel with a smaller sum of weights is marched separately
+  float min_weight;  // a pixel with a smaller sum of weights is marched separately
   uint show_depth_breaks;
   // The epipole is (sun_x, sun_y) / sun_w: the image of the sun or, if the sun is behind the camera, of the opposite
   // point. sun_w >= 0; it is 0 for a sun at a right angle to the view.
@@ -38,9 +38,9 @@ struct EpipolarConstants {
   uint reduced_width;
   uint reduced_height;
   uint break_capacity;  // capacity of the list of pixels to be marched; a multiple of kMarchGroup
-  // Both exceed 0 and least_weight only in twilight, when the sky is much brighter than the ground below it.
-  float least_weight_sky;  // least_weight for pixels of the sky
-  float depth_break;       // ratio of the depths of neighbouring samples below which both are marched; 0: never
+  // Both exceed 0 and min_weight only in twilight, when the sky is much brighter than the ground below it.
+  float min_weight_sky;  // min_weight for pixels of the sky
+  float depth_break;     // ratio of the depths of neighbouring samples below which both are marched; 0: never
   uint unused_0;
   uint unused_1;
 };

@@ -77,9 +77,9 @@ Result<void> check_params(const Params& params) {
                    " view angles, allowed is an even number: half of them lie on each side of the horizon");
   }
   // Above this no device of today holds a table; the product of four sizes could also overflow.
-  constexpr double kMostTexels = 134217728.0;
+  constexpr double kMaxTexels = 134217728.0;
   const double texels = static_cast<double>(size.x) * size.y * size.z * size.w;
-  if (texels > kMostTexels) {
+  if (texels > kMaxTexels) {
     return invalid("tables.size asks for " + std::to_string(texels * 24.0 / 1048576.0) +
                    " MiB of tables, allowed is 3072 MiB");
   }

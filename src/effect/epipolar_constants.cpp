@@ -127,12 +127,12 @@ shared::EpipolarConstants epipolar_constants(const FrameInputs& inputs, const Ef
   out.epipole_density = p.epipole_density;
   out.threshold = p.refinement_threshold;
   out.optimize_locations = p.optimize_locations.value;
-  out.least_weight = is_downscaled(params)                             ? kMinWeightDownscaled
-                     : params.epipolar.correct_depth_breaks.value != 0 ? kMinWeightCorrected
-                                                                       : kMinWeight;
+  out.min_weight = is_downscaled(params)                             ? kMinWeightDownscaled
+                   : params.epipolar.correct_depth_breaks.value != 0 ? kMinWeightCorrected
+                                                                     : kMinWeight;
   out.break_capacity = correction_capacity(desc, params);
   const bool twilight = sun_is_down(inputs, params) && !is_downscaled(params);
-  out.least_weight_sky = twilight ? std::max(out.least_weight, kMinWeightTwilight) : out.least_weight;
+  out.min_weight_sky = twilight ? std::max(out.min_weight, kMinWeightTwilight) : out.min_weight;
   out.depth_break = twilight ? kTwilightDepthBreak : 0.0F;
   out.show_depth_breaks = p.show_depth_breaks.value;
   out.tree_cells = p.min_max_tree.value != 0 ? tree_cells(desc) : 0;
