@@ -161,7 +161,7 @@ TEST(EffectFaults, NoOtherCallThrowsAndRecordingAllocatesNothing) {
   allocates_nothing("record_precompute", [&] { return effect.record_precompute(kCommands).ok(); });
   allocates_nothing("reports", [&] {
     return effect.precompute_progress().complete() && effect.memory().persistent > 0 && !effect.resources().empty() &&
-           effect.timings(0).empty() && effect.precompute_timings().size() > 1 && effect.table_bytes() > 0;
+           effect.timings(0).empty() && effect.precompute_timings().empty() && effect.table_bytes() > 0;
   });
 }
 
