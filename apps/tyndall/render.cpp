@@ -62,6 +62,7 @@ int run_render(Args args) {
   if (!host) return fail(host.error());
   scene::SceneDesc desc;
   desc.extent = {options.size.width, options.size.height};
+  desc.pipeline_threads = gpu::Host::pipeline_threads();
   desc.make_tables = make_tables(options.settings.scene);
   Result<std::unique_ptr<scene::Scene>> scene =
       scene::Scene::create(*host.value(), desc, options.settings.effect, options.settings.scene);

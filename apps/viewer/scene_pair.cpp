@@ -46,8 +46,8 @@ std::unique_ptr<SceneThread> ScenePair::start_thread(const SceneRequest& request
   scene::SceneDesc desc;
   desc.timings = true;
   desc.histogram = true;
+  desc.pipeline_threads = gpu::Host::pipeline_threads();
   desc.make_tables = make_tables_;
-  desc.keep_shadows = true;
   desc.in_parts = one_device_;  // so that the window's frames get their turn on the queue
   auto thread = std::make_unique<SceneThread>();
   thread->start(*host_, desc, request, !one_device_);

@@ -90,7 +90,7 @@ Effect::State::~State() {
 }
 
 Result<void> Effect::State::create_objects() {
-  pipelines.create(device);
+  pipelines.create(device, desc.pipeline_threads);
   buffers.create(device);
   TYNDALL_TRY(tables.create(device, pipelines, FrameRing::slots(desc), desc.timings));
   TYNDALL_TRY(change(desc, params));

@@ -48,6 +48,9 @@ Result<void> check_desc(const DeviceInfo& info, const EffectDesc& desc) {
   if (desc.output_format != OutputFormat::rgba16f && desc.output_format != OutputFormat::rgba32f) {
     return invalid("EffectDesc::output_format must be rgba16f or rgba32f");
   }
+  if (desc.pipeline_threads == 0 || desc.pipeline_threads > 64) {
+    return invalid("EffectDesc::pipeline_threads must be 1 to 64");
+  }
   if (desc.sky_depth != 0.0F && desc.sky_depth != 1.0F) return invalid("EffectDesc::sky_depth must be 0 or 1");
   return {};
 }
@@ -64,6 +67,7 @@ Result<void> check_same_desc(const EffectDesc& created, const EffectDesc& wanted
   if (wanted.shadow_depth_reversed != created.shadow_depth_reversed) return fixed("shadow_depth_reversed");
   if (wanted.timings != created.timings) return fixed("timings");
   if (wanted.counters != created.counters) return fixed("counters");
+  if (wanted.pipeline_threads != created.pipeline_threads) return fixed("pipeline_threads");
   return {};
 }
 

@@ -2,30 +2,75 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <exception>
+#include <optional>
+#include <thread>
 #include <utility>
 
+#include "gpu/guard.hpp"
 #include "gpu/try.hpp"
 
 namespace tyndall {
+namespace {
+
+Result<gpu::Pipeline> create_pipeline(const gpu::Device& device, const PipelineKey& key) {
+  std::array<gpu::Constant, shared::kSpecialisationIds> constants = {};
+  std::size_t count = 0;
+  for (const std::uint32_t id : key.shader->constants) constants[count++] = {id, key.constants[id]};
+  return gpu::create_compute_pipeline(device, *key.shader, std::span(constants).first(count));
+}
+
+// Runs `work` on the calling thread and on up to `others` more: as many as can be started.
+template <typename Work>
+void run_on_threads(std::size_t others, const Work& work) {
+  std::vector<std::jthread> threads;
+  threads.reserve(others);
+  for (std::size_t i = 0; i < others; ++i) {
+    try {
+      threads.emplace_back(work);
+    } catch (const std::exception&) {
+      break;
+    }
+  }
+  work();
+}
+
+}  // namespace
 
 Result<std::uint32_t> PipelineCache::make(std::span<const PipelineKey> keys, std::uint32_t budget) {
-  std::uint32_t made = 0;
+  std::vector<PipelineKey> missing;
   for (const PipelineKey& key : keys) {
-    if (made == budget) break;
-    if (find(key) != nullptr) continue;
-    std::array<gpu::Constant, shared::kSpecialisationIds> constants = {};
-    std::size_t count = 0;
-    for (const std::uint32_t id : key.shader->constants) constants[count++] = {id, key.constants[id]};
-    // Room first: an error must leave both lists of the same length.
-    if (keys_.size() == keys_.capacity()) keys_.reserve(2 * keys_.size() + 16);
-    pipelines_.reserve(keys_.capacity());
-    TYNDALL_ASSIGN(gpu::Pipeline pipeline,
-                   gpu::create_compute_pipeline(*device_, *key.shader, std::span(constants).first(count)));
-    keys_.push_back(key);
-    pipelines_.push_back(std::move(pipeline));
-    ++made;
+    if (missing.size() == budget) break;
+    if (find(key) == nullptr && std::find(missing.begin(), missing.end(), key) == missing.end()) missing.push_back(key);
   }
-  return made;
+  if (missing.empty()) return 0;
+  // Room first: nothing may fail between the creation of a pipeline and its place in the lists.
+  keys_.reserve(keys_.size() + missing.size());
+  pipelines_.reserve(keys_.capacity());
+  std::vector<std::optional<Result<gpu::Pipeline>>> made(missing.size());
+
+  std::atomic<std::size_t> next = 0;
+  std::atomic<bool> failed = false;
+  run_on_threads(std::min<std::size_t>(threads_, missing.size()) - 1, [&]() noexcept {
+    for (std::size_t i = next++; i < missing.size() && !failed; i = next++) {
+      made[i] = guarded("creating a pipeline", [&] { return create_pipeline(*device_, missing[i]); });
+      if (!made[i]->ok()) failed = true;
+    }
+  });
+
+  std::optional<Error> error;
+  for (std::size_t i = 0; i < missing.size(); ++i) {
+    if (!made[i]) continue;
+    if (!made[i]->ok()) {
+      if (!error) error = made[i]->error();
+      continue;
+    }
+    keys_.push_back(missing[i]);
+    pipelines_.push_back(std::move(*made[i]).value());
+  }
+  if (error) return *std::move(error);
+  return static_cast<std::uint32_t>(missing.size());
 }
 
 const gpu::Pipeline* PipelineCache::find(const PipelineKey& key) const {

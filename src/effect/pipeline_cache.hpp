@@ -11,10 +11,14 @@ namespace tyndall {
 
 class PipelineCache {
  public:
-  void create(const gpu::Device& device) { device_ = &device; }
+  // `threads`: how many make() uses at most, the calling one included.
+  void create(const gpu::Device& device, std::uint32_t threads) {
+    device_ = &device;
+    threads_ = threads;
+  }
 
   // Makes the pipelines that are missing, at most `budget` of them, and returns how many were made. Each takes about
-  // 0.1 s on a CPU device. After an error those that were made before it remain.
+  // 0.05 s on a CPU device. After an error those that were made remain.
   Result<std::uint32_t> make(std::span<const PipelineKey> keys, std::uint32_t budget = UINT32_MAX);
   // Returns null for a pipeline that was not made. Neither allocates nor locks. The pointer is valid until the next
   // make().
@@ -22,6 +26,7 @@ class PipelineCache {
 
  private:
   const gpu::Device* device_ = nullptr;
+  std::uint32_t threads_ = 1;
   std::vector<PipelineKey> keys_;  // apart from the pipelines, so that a search touches little memory
   std::vector<gpu::Pipeline> pipelines_;
 };

@@ -2,11 +2,13 @@
 // Preference: discrete before integrated before virtual before CPU; among equals the first listed.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "gpu/resource.hpp"
@@ -60,6 +62,10 @@ class Host {
   void set_replace_shader(std::span<const std::uint32_t> (*replace)(void* user, std::string_view name), void* user) {
     device_.replace_shader = replace;
     device_.replace_shader_user = user;
+  }
+  // Returns how many threads the programs create pipelines with; see EffectDesc::pipeline_threads.
+  [[nodiscard]] static std::uint32_t pipeline_threads() {
+    return std::clamp(std::thread::hardware_concurrency(), 1U, 8U);
   }
   [[nodiscard]] std::string device_name() const { return device_.properties.deviceName; }
 

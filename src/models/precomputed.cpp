@@ -65,6 +65,7 @@ Result<PrecomputedModel> PrecomputedModel::create(gpu::Host& host, const Params&
   desc.max_extent = {16, 16};
   desc.frames_in_flight = 1;
   desc.timings = true;
+  desc.pipeline_threads = gpu::Host::pipeline_threads();
   TYNDALL_ASSIGN(Effect effect, Effect::create(info, desc, params));
   state->effect = std::make_unique<Effect>(std::move(effect));
   TYNDALL_ASSIGN(state->pipeline, gpu::create_compute_pipeline(device, shaders::precomputed_comp));

@@ -143,6 +143,7 @@ Result<void> Scene::create_objects() {
   effect_desc.shadow_colors = glass;
   effect_desc.timings = desc_.timings;
   effect_desc.counters = desc_.counters;
+  effect_desc.pipeline_threads = desc_.pipeline_threads;
   TYNDALL_ASSIGN(effect_, make_effect(effect_desc));
   TYNDALL_ASSIGN(post::Tonemap tonemap, post::Tonemap::create(device));
   tonemap_ = std::make_unique<post::Tonemap>(std::move(tonemap));
@@ -265,7 +266,7 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
     lifted_ = true;
   }
   frame_ = local_frame(view_.position, radius);
-  TYNDALL_TRY(terrain_->update(view_, frame_));
+  if (!bare) TYNDALL_TRY(terrain_->update(view_, frame_));
   // Nothing is nearer than half the height above the ground, except for walls beside the camera.
   const double above = std::max(altitude - ground_m, least_m);
   const Ground ground = meshes_ != nullptr ? meshes_->ground(terrain_->ground(), view_.position) : terrain_->ground();
@@ -282,7 +283,10 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   light_.shadow_colors = shadow_colors_.view.get();
   light_.has_glass = meshes_ != nullptr && meshes_->has_glass();
   light_.linear = linear_.get();
-  TYNDALL_TRY(terrain_->prepare(view_, desc_.extent.height, scene_.shadows, cascades_, light_, scene_.terrain.shading));
+  if (!bare) {
+    TYNDALL_TRY(
+        terrain_->prepare(view_, desc_.extent.height, scene_.shadows, cascades_, light_, scene_.terrain.shading));
+  }
   if (meshes_ != nullptr) {
     meshes_->prepare(view_, frame_, scene_.shadows, cascades_, light_, scene_.meshes.sky_light);
   }

@@ -26,7 +26,8 @@ struct SceneDesc {
   tables::MakeReady make_tables = {};  // how the effect's tables are made
   bool tables_later = false;           // make the tables with advance_tables() instead of at once
   int terrain_coarseness = 1;          // see TerrainLod
-  bool keep_shadows = false;           // reuse shadow maps that would not change
+  bool keep_shadows = true;            // reuse shadow maps that would not change
+  std::uint32_t pipeline_threads = 1;  // see EffectDesc
   bool in_parts = false;               // submit a frame in parts, so that others get their turn on the queue
 };
 

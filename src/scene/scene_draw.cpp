@@ -201,8 +201,9 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
 
 Result<void> Scene::run_passes(bool first, bool copy_baseline) {
   const gpu::Device& device = host_->device();
+  const bool shadows_are_read = model_ == nullptr || model_->draws_terrain(scene_);
   // Jitter moves the picture, not the cascades.
-  const bool other_shadows = first && !(desc_.keep_shadows && shadows_are_drawn());
+  const bool other_shadows = shadows_are_read && first && !(desc_.keep_shadows && shadows_are_drawn());
   const auto shadows = [&](VkCommandBuffer cmd) -> Result<void> {
     if (desc_.timings) timer_.begin_frame(cmd, 0);
     if (!images_ready_) {
@@ -223,7 +224,7 @@ Result<void> Scene::run_passes(bool first, bool copy_baseline) {
     return air(cmd);
   };
   // What an error leaves: shadow maps that show nothing in particular, and images whose layout is not known.
-  std::vector<CascadeFit> drawn = cascades_;
+  std::vector<CascadeFit> drawn = shadows_are_read ? cascades_ : std::vector<CascadeFit>();
   if (other_shadows) drawn_cascades_.clear();
   if (desc_.in_parts) {
     TYNDALL_TRY(host_->run(shadows));

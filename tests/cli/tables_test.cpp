@@ -79,7 +79,7 @@ TEST_F(CliTables, EveryStageHasATime) {
   EXPECT_GT(report["memory_bytes"]["while_building"], 0);
   EXPECT_EQ(report["cache"], scratch_.at("cache"));
   EXPECT_TRUE(report["files"].is_null());
-  const Outcome text = run("tables");
+  const Outcome text = run("tables", kTwoOrders);
   EXPECT_EQ(text.status, 0);
   for (const nlohmann::json& stage : report["stages"])
     EXPECT_NE(text.out.find("  " + stage["name"].get<std::string>()), std::string::npos);

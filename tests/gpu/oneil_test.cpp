@@ -100,6 +100,7 @@ class GpuOneilScene : public GpuTest {
   std::unique_ptr<s::Scene> make(const DemoPlanet& setup, VkExtent2D extent = {96, 64}) {
     s::SceneDesc desc;
     desc.extent = extent;
+    desc.terrain_coarseness = 4;
     Result<std::unique_ptr<s::Scene>> scene = s::Scene::create(host(), desc, setup.params, setup.scene);
     EXPECT_OK(scene);
     return scene.ok() ? std::move(scene).value() : nullptr;

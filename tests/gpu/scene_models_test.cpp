@@ -40,6 +40,7 @@ class GpuSceneModels : public GpuTest {
       SceneDesc desc;
       desc.extent = extent;
       desc.timings = true;
+      desc.terrain_coarseness = 4;
       Result<std::unique_ptr<Scene>> made = Scene::create(host(), desc, params_, scene_);
       EXPECT_OK(made);
       if (!made.ok()) return {};

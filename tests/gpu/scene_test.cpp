@@ -56,9 +56,11 @@ class GpuScene : public GpuTest {
     GpuTest::TearDown();
   }
 
-  std::unique_ptr<Scene> make(const Params& params, const SceneParams& scene_params, VkExtent2D extent = kSmall) {
+  std::unique_ptr<Scene> make(const Params& params, const SceneParams& scene_params, VkExtent2D extent = kSmall,
+                              int terrain_coarseness = 4) {
     SceneDesc desc;
     desc.extent = extent;
+    desc.terrain_coarseness = terrain_coarseness;
     Result<std::unique_ptr<Scene>> scene = Scene::create(host(), desc, params, scene_params);
     EXPECT_OK(scene);
     return scene.ok() ? std::move(scene).value() : nullptr;
@@ -150,7 +152,7 @@ TEST_F(GpuScene, EpipolarSamplingOfTerrainIsLikeBruteForce) {
   for (const Technique technique : {Technique::brute_force, Technique::epipolar}) {
     Params params = with_small_tables();
     params.scattering.technique = technique;
-    const std::unique_ptr<Scene> scene = make(params, {}, kExtent);
+    const std::unique_ptr<Scene> scene = make(params, {}, kExtent, 1);
     ASSERT_NE(scene, nullptr);
     for (const View& view : views) {
       SceneParams settings;
@@ -180,6 +182,7 @@ TEST_F(GpuScene, TablesFromTheCacheDrawTheSamePicture) {
       std::filesystem::temp_directory_path() / ("tyndall-scene-cache-" + std::to_string(::getpid()));
   SceneDesc desc;
   desc.extent = kSmall;
+  desc.terrain_coarseness = 4;
   desc.make_tables.cache.place = cache.string();
   bool built = false;
   desc.make_tables.progress = [&](Progress) { built = true; };
@@ -229,7 +232,6 @@ TEST_F(GpuScene, DrawsForViewers) {
   SceneDesc desc;
   desc.extent = kSmall;
   desc.tables_later = true;
-  desc.keep_shadows = true;
   desc.timings = true;
   Result<std::unique_ptr<Scene>> made = Scene::create(host(), desc, small_planet(), {});
   ASSERT_OK(made);
@@ -242,7 +244,7 @@ TEST_F(GpuScene, DrawsForViewers) {
   }
   EXPECT_GT(steps, 2);
   ASSERT_TRUE(scene.can_render());
-  const std::unique_ptr<Scene> plain = make(small_planet(), {});
+  const std::unique_ptr<Scene> plain = make(small_planet(), {}, kSmall, 1);
   ASSERT_NE(plain, nullptr);
   const image::Image whole = draw(*plain);
   EXPECT_EQ(draw(scene).rgb, whole.rgb);
@@ -420,7 +422,7 @@ TEST_F(GpuScene, SmoothGroundUnderAHighSunHasNoAcne) {
   settings.camera = {{0.0F, 3000.0F, 0.0F}, -1.0F, 0.0F, -9.0F, 3.0F, 1};
   settings.sun.elevation_deg = 60.0F;
   settings.sun.azimuth_deg = 270.0F;
-  const std::unique_ptr<Scene> scene = make(params, settings);
+  const std::unique_ptr<Scene> scene = make(params, settings, kSmall, 1);
   ASSERT_NE(scene, nullptr);
   // The same without shadows: the cascades end at twice the camera's height, in front of all that is seen.
   SceneParams open_settings = settings;
