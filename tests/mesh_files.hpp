@@ -1,4 +1,4 @@
-// Makes small glTF files for tests, with everything in one buffer.
+// Writes small glTF files for tests, with one buffer each.
 #pragma once
 
 #include <array>
@@ -17,8 +17,8 @@ class GltfFile {
  public:
   nlohmann::json root = {
       {"asset", {{"version", "2.0"}}}, {"scene", 0}, {"scenes", {{{"nodes", nlohmann::json::array()}}}}};
-  std::string bytes;                                      // of the buffer
-  nlohmann::json more_buffers = nlohmann::json::array();  // after the first
+  std::string bytes;                                      // contents of the buffer
+  nlohmann::json more_buffers = nlohmann::json::array();  // additional buffers
 
   int view(const void* data, std::size_t size) {
     bytes.resize((bytes.size() + 3) / 4 * 4);
@@ -26,7 +26,7 @@ class GltfFile {
     bytes.append(static_cast<const char*>(data), size);
     return static_cast<int>(root["bufferViews"].size()) - 1;
   }
-  // `component`: the type's number in glTF.
+  // `component`: number of the component type in glTF.
   template <typename T>
   int accessor(const std::vector<T>& values, int component, const char* type, int components, bool normalized = false) {
     const int at = view(values.data(), values.size() * sizeof(T));
@@ -60,7 +60,8 @@ class GltfFile {
     if (in_scene) root["scenes"][0]["nodes"].push_back(index);
     return index;
   }
-  // a, b, c, d counter-clockwise; with texture coordinates: a is the picture's lower left corner.
+  // Adds a quad with corners in counter-clockwise order and texture coordinates; `a` is the lower left corner of the
+  // picture.
   int quad(const Point& a, const Point& b, const Point& c, const Point& d, int material) {
     const int position = points({a, b, c, d});
     const int uv = floats({0, 1, 1, 1, 1, 0, 0, 0}, 2);

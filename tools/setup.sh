@@ -1,7 +1,7 @@
 #!/bin/sh
 # Installs the Debian packages that are missing, with apt-get (and sudo when not root). On a system without
-# apt-get, or where installing is not possible, says which tools are needed and goes on with what there is.
-# Arguments: packages that are needed besides.
+# apt-get, or where installing is not possible, it prints the required tools and continues.
+# Arguments: additional packages.
 set -u
 
 packages="build-essential cmake ninja-build pkg-config ccache python3

@@ -1,5 +1,5 @@
-// How user input moves the camera and the sun: pure functions of the previous state. Angles in deg, lengths in m. The
-// camera flies over a curved planet: "up" always points away from the planet's centre, and the direction of view is
+// Movement of the camera and the sun by user input: pure functions of the previous state. Angles in deg, lengths in m.
+// The camera flies over a curved planet: "up" always points away from the planet's centre, and the direction of view is
 // transported along the path, so that the view is continuous from the ground to orbit.
 #pragma once
 

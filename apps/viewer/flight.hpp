@@ -20,7 +20,7 @@ class Flight {
   void handle_pointer(const Event& event, config::Settings& settings);
   // Advances the path, if it is played, and then the flight by keys. `seconds`: since the last call.
   void advance(double seconds, const SceneFacts& facts, config::Settings& settings);
-  // Takes the camera of the settings where something else than the flight has changed it.
+  // Takes over the camera of the settings if something other than the flight has changed it.
   void take_camera(const config::Settings& settings);
 
   // Plays the path of the settings, or stops it.

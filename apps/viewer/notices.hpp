@@ -1,4 +1,4 @@
-// What the viewer says: to the user as toasts and on the console, and to the event log.
+// Messages of the viewer: to the user as toasts and on the console, and to the event log.
 #pragma once
 
 #include <chrono>

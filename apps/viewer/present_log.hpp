@@ -10,7 +10,7 @@ namespace tyndall::viewer {
 
 class PresentLog {
  public:
-  // What a presented frame of the GUI showed.
+  // The contents of a presented frame of the GUI.
   struct Frame {
     std::uint64_t scene_frames = 0;  // drawn so far; 0: no picture yet
     VkExtent2D window = {};

@@ -10,7 +10,7 @@ constexpr double kRestAfter_s = 0.6;
 constexpr double kFlightPeriod_s = 1.0 / 60.0;
 constexpr double kSlowPeriod_s = 1.0 / 30.0;  // between frames of the GUI while a device without a GPU draws the scene
 constexpr double kAdaptionPeriod_s = 1.0 / 60.0;
-constexpr double kPollPeriod_s = 0.25;  // threads wake the loop when they are done; this is for those that cannot
+constexpr double kPollPeriod_s = 0.25;  // for threads that cannot wake the loop when they have finished
 
 }  // namespace
 

@@ -4,7 +4,7 @@
 
 namespace tyndall::viewer {
 
-// What the loop has to take into account besides drawing.
+// The state on which the schedule depends.
 struct LoopState {
   double now = 0.0;
   bool slow_device = false;  // scenes are drawn without a GPU

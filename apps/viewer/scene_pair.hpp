@@ -16,22 +16,22 @@
 
 namespace tyndall::viewer {
 
-// What the scenes are to be and to show.
+// The requested contents of the scenes.
 struct PairRequest {
   std::array<config::Settings, 2> settings;  // of the left and the right scene
   bool compare = false;                      // show both
   VkExtent2D extent = {};                    // of each picture
   int coarseness = 1;                        // of the ground
   View view;
-  double seconds = 0.0;  // the scenes' own time
-  bool resting = false;  // the user is
+  double seconds = 0.0;  // time of the scenes
+  bool resting = false;  // the user is idle
   bool capture = false;  // return the left picture as images
   CameraState camera;    // for the event log
 };
 
-// What the scenes have finished since the last call.
+// The work that the scenes have finished since the last call.
 struct PairResult {
-  // Settings that a scene could not take over, and those that it still has.
+  // Settings that a scene refused, and its current settings.
   struct Refused {
     config::Settings requested, current;
   };
@@ -49,16 +49,16 @@ class ScenePair {
   ScenePair& operator=(const ScenePair&) = delete;
   ~ScenePair();
 
-  // Begins to create the left scene. `one_device`: the window's frames are drawn on the device of the scenes.
+  // Begins to create the left scene. `one_device`: the window uses the device of the scenes.
   void start(gpu::Host& host, bool one_device, const tables::MakeReady& make_tables, PairRequest request);
-  // Creates what shows the pictures in a window of this format.
+  // Creates the pipelines that draw the pictures into a window of this format.
   Result<void> create_pictures(gpu::Host& window_host, VkFormat format) {
     return pictures_.create(window_host, format);
   }
-  // Begins to create a scene that takes the place of the left one, with other ways of making tables.
+  // Begins to create a scene that will replace the left one, with other settings for building tables.
   void start_replacement(const tables::MakeReady& make_tables);
 
-  // Sets what the next pieces of work are for.
+  // Sets the request for the next pieces of work.
   void request(PairRequest request) { request_ = std::move(request); }
   // Requests new frames although no parameter has changed.
   void request_frames() { again_ = {true, true}; }
@@ -66,7 +66,7 @@ class ScenePair {
   void note_input() { settled_logged_ = false; }
   // Creates or ends the right scene and launches the next piece of work.
   void update();
-  // Takes over what has been finished. An error ends the viewer.
+  // Returns the finished work. An error ends the viewer.
   Result<PairResult> take_results();
   // Records the pictures into a rendering scope over the window.
   Result<void> record(VkCommandBuffer cmd, VkExtent2D window, const PictureOptions& options);
@@ -77,7 +77,7 @@ class ScenePair {
   [[nodiscard]] bool creating() const;
   // Returns whether the left scene shows what was requested and nothing is under way.
   [[nodiscard]] bool settled() const;
-  // Fills in what the loop has to know of the scenes.
+  // Fills in the state of the scenes for the loop.
   void describe(LoopState& state) const;
   [[nodiscard]] std::uint64_t frames() const { return frames_; }  // drawn by the left scene
   [[nodiscard]] const FrameTimes& times() const { return times_; }
@@ -111,7 +111,7 @@ class ScenePair {
   std::future<void> retired_;  // destroys a left scene that was replaced
   FrameTimes times_;
   std::uint64_t frames_ = 0;
-  bool left_first_ = false;  // in the order of work, which alternates
+  bool left_first_ = false;  // the left scene is next; the order alternates
   std::array<bool, 2> again_ = {false, false};
   std::array<Pose, 2> drawn_poses_;  // of the frames that are being drawn, or were drawn last
   bool settled_logged_ = false;

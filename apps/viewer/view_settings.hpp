@@ -13,18 +13,17 @@ struct ViewSettings {
   config::Settings left, right;
   std::string state_file;
 
-  // Corrects what ranges alone cannot say, and lets both sides share the camera and the sun when they are compared.
+  // Corrects inconsistent settings, and makes both sides of a comparison share the camera and the sun.
   void synchronise(bool compare);
   // Makes the right side a copy of the left. For a new comparison its technique is brute force, which is the comparison
   // that is needed most often.
   void copy_to_right(bool new_comparison);
-  // Returns to what the scenes have where they could not take over the settings. Camera and sun stay as the user moves
-  // them.
+  // Reverts settings that the scenes have refused. The camera and the sun are not reverted.
   void take_back(const PairResult& result);
   // Saves the left settings to the state file.
   [[nodiscard]] Result<void> save() const;
-  // Loads a scene file over the defaults or over the left settings. Where tables are cached depends on this machine,
-  // not on the scene, and stays. An error leaves everything as it was.
+  // Loads a scene file over the defaults or over the left settings. The location of the table cache is retained,
+  // because it depends on the machine and not on the scene. An error changes nothing.
   [[nodiscard]] Result<void> load(const std::string& path, bool over_defaults);
 };
 

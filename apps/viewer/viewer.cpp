@@ -22,7 +22,7 @@ Result<void> run(const ViewerDesc& desc) {
     done = viewer.start();
     if (done) done = viewer.loop();
     if (!done) done = viewer.after_loss(done.error());
-    // The error is known; when the display is lost only now, it still has to be printed.
+    // The error must also be printed if the display is lost only now.
     on_display_loss([done] {
       if (!done) print_error(done.error());
     });

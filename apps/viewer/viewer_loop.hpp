@@ -1,5 +1,5 @@
-// The loop of the viewer: waits for input, takes what the scenes have finished, draws the GUI and presents it. Connects
-// the parts of the viewer; what they do is in their own files.
+// The loop of the viewer: waits for input, receives the results of the scenes, draws the GUI and presents it. It only
+// connects the parts of the viewer, which are in their own files.
 #pragma once
 
 #include <string>
@@ -73,7 +73,7 @@ class Viewer {
   Script script_;
   PresentLog present_log_;
   StepTimes steps_;
-  double seconds_ = 0.0;  // the scene's own time
+  double seconds_ = 0.0;  // time of the scene
   double last_step_ = 0.0;
   double last_memory_log_ = -100.0;
   bool minimised_ = false;

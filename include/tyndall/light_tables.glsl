@@ -1,4 +1,4 @@
-// Where to sample the tables of tyndall::LightTables. Include it in your own shaders.
+// Texture coordinates for the tables of tyndall::LightTables. Include this file in your own shaders.
 #ifndef TYNDALL_LIGHT_TABLES_GLSL
 #define TYNDALL_LIGHT_TABLES_GLSL
 

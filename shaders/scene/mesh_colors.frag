@@ -12,7 +12,7 @@ layout(location = 0) out vec4 left;
 layout(binding = 3) uniform sampler2D base_color;
 
 void main() {
-  // Of a closed body only the side towards the sun counts. (The maps are mirrored: v runs up.)
+  // Only the sunward side of a closed body is drawn. (The maps are mirrored because v points up.)
   bool front = gl_FrontFacing != (handed > 0.0);
   if (!front && push.double_sided == 0u) discard;
   left = vec4(passing(texture(base_color, uv) * push.color * vertex_color), gl_FragCoord.z);

@@ -30,7 +30,7 @@ T read_bytes(const std::byte* from) {
   return value;
 }
 
-// A count of components in words, for "expects 3 numbers".
+// Returns the expected number of components in words, as in "expects 3 numbers".
 std::string expected(const Row& row) {
   const std::size_t count = component_count(row.info.type);
   const std::string_view kind = is_real(row.info.type) ? "number" : "whole number";
@@ -43,10 +43,10 @@ Error bad_value(const Row& row, std::string_view value, std::string_view problem
                             files::concat({"expected ", allowed_text(row)}));
 }
 
-// Bytes of one component of a number.
+// Returns the size of one component of a number [bytes].
 std::size_t component_size(ParamType type) { return type == ParamType::dvec3 ? sizeof(double) : sizeof(float); }
 
-// One component of a number, which is written to `to` as it is stored.
+// Parses one component of a number and writes its stored form to `to`.
 Result<void> store_number(const Row& row, std::string_view text, std::string_view where, std::byte* to) {
   files::NumberError problem = files::NumberError::none;
   std::uint64_t bits = 0;
@@ -82,7 +82,7 @@ std::optional<std::uint32_t> flag_value(std::string_view text) {
   return std::nullopt;
 }
 
-// The index of `text` among the choices; enumerations count from 0 in the order of their names.
+// Returns the index of `text` among the choices. Enumerations count from 0 in the order of their names.
 std::optional<std::uint32_t> choice_value(const Row& row, std::string_view text) {
   for (std::uint32_t i = 0; i < files::count_parts(row.info.choices, '|'); ++i) {
     if (files::part(row.info.choices, '|', i) == text) return i;
@@ -90,7 +90,7 @@ std::optional<std::uint32_t> choice_value(const Row& row, std::string_view text)
   return std::nullopt;
 }
 
-// A group that both lists have a part of stands where the last has it.
+// Removes repeated groups. A group that is in both lists is placed where the second list has it.
 std::vector<Group> without_repetitions(const std::vector<Group>& groups) {
   std::vector<Group> out;
   for (const Group& group : groups) {
@@ -164,7 +164,7 @@ Error unknown_key(std::string_view key, std::string_view where) {
   const std::size_t dot = key.find('.');
   const std::string_view group = dot == std::string_view::npos ? std::string_view() : key.substr(0, dot);
   const std::string_view name = dot == std::string_view::npos ? key : key.substr(dot + 1);
-  // The nearest whole key, unless the name as it stands belongs to one other group, or to two.
+  // The nearest complete key, unless the name exists in one or more other groups.
   std::optional<std::string> near;
   int same_name = 0;
   for (const Row& row : rows()) {

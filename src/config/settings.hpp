@@ -1,5 +1,5 @@
-// Settings: all parameters of one run, those of the library and those of the demo scene, and what every interface does
-// with them by name: list them, set them from text, format and check them. A key is "group.name" (camera.yaw_deg).
+// Settings: all parameters of one run, those of the library and those of the demo scene, and functions to list, set,
+// format and check them by name. A key is "group.name" (camera.yaw_deg).
 // Values have the same text everywhere: 0.76 | 5.8e-6,13.5e-6,33.1e-6 | true, false, on, off, 1, 0 | the names of an
 // enumeration. Errors are ErrorCode::invalid_argument.
 #pragma once

@@ -1,5 +1,5 @@
-// The geometry of epipolar sampling that the shaders are given: the epipole, and where slices end on the border of the
-// picture. A pure function.
+// Computes the constants of the epipolar shaders, a pure function of inputs and settings: among them the epipole, and
+// the sides of the picture on which slices end.
 #pragma once
 
 #include "effect/shared.hpp"

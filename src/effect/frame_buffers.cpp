@@ -23,7 +23,7 @@ Result<FrameBuffers::Pending> FrameBuffers::plan(const EffectDesc& desc, const P
     TYNDALL_ASSIGN(pending.buffers[i], gpu::create_buffer(*device_, name_of(frame_buffer(i)), sizes.bytes[i],
                                                           kFrameBufferUsage, gpu::MemoryKind::device));
   }
-  retired_.reserve(retired_.size() + kFrameBuffers);  // so that commit() need not allocate
+  retired_.reserve(retired_.size() + kFrameBuffers);  // commit() must not allocate
   return pending;
 }
 

@@ -1,4 +1,4 @@
-// The buffers of epipolar sampling: their allocation for other settings, and their release when no frame uses them.
+// The buffers of epipolar sampling: allocates them for new settings, and frees them when no frame uses them any more.
 #pragma once
 
 #include <array>
@@ -10,31 +10,31 @@
 
 namespace tyndall {
 
-// Device memory that the frame buffers take with these settings.
+// Returns the device memory of the frame buffers with these settings [bytes].
 [[nodiscard]] VkDeviceSize frame_buffer_bytes(const gpu::Device& device, const EffectDesc& desc, const Params& params);
 
 class FrameBuffers {
  public:
-  // Buffers for other settings, in place of those whose size changes.
+  // New buffers for those whose size changes with the settings.
   struct Pending {
     std::array<gpu::Buffer, kFrameBuffers> buffers = {};
     std::array<bool, kFrameBuffers> replaced = {};
   };
 
   void create(const gpu::Device& device) { device_ = &device; }
-  // Allocates what other settings need and changes nothing.
+  // Allocates the buffers for new settings, and changes nothing.
   Result<Pending> plan(const EffectDesc& desc, const Params& params);
-  // Takes over what was planned last. The buffers that it replaces are freed by the `frames`-th call of begin_frame()
-  // from now on, because commands in flight may use them.
+  // Replaces buffers by those of the last plan(). The old ones are freed by the `frames`-th following call of
+  // begin_frame(), because commands in flight may use them until then.
   void commit(Pending&& pending, std::uint32_t frames) noexcept;
   void begin_frame();
 
-  // Null where no step uses the buffer. Only for frame buffers.
+  // Returns a frame buffer, whose handle is null if no step uses it.
   [[nodiscard]] const gpu::Buffer& operator[](Resource resource) const {
     return buffers_[index_of(resource) - kFirstFrameBuffer];
   }
-  [[nodiscard]] VkDeviceSize bytes() const;          // in use
-  [[nodiscard]] VkDeviceSize retired_bytes() const;  // waiting for frames in flight
+  [[nodiscard]] VkDeviceSize bytes() const;          // of the current buffers
+  [[nodiscard]] VkDeviceSize retired_bytes() const;  // of old ones that frames in flight may use
 
  private:
   struct Retired {

@@ -50,7 +50,7 @@ Mat4 rigid_inverse(const Mat4& m) {
 }
 
 Projection projection_of(const Mat4& p) {
-  // The centre of projection is where clip x, y and w are all 0; parallel rays meet nowhere.
+  // At the centre of projection, x, y and w of clip space are all 0. A projection with parallel rays has none.
   constexpr double kParallel = 1e-9;
   Projection out;
   const DVec3 x = row_of(p, 0);
@@ -81,7 +81,7 @@ Projection projection_of(const Mat4& p) {
 double distance_at_depth(const Projection& p, double depth) {
   const double off = depth - p.depth_far;
   const double distance = p.depth_slope / off;
-  // In single precision the depth of a plane far away is that of infinity.
+  // In single precision, a distant plane has the same depth as infinity.
   if (std::abs(off) < 1e-6 || !(distance > 0.0)) return std::numeric_limits<double>::infinity();
   return distance;
 }

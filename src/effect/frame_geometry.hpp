@@ -1,5 +1,5 @@
-// What the matrices of a frame say about themselves, in double precision: which conventions they follow, and
-// where the camera and the view lie in a shadow map. For the checks of inputs.
+// Analyses the matrices of a frame for the checks of inputs, in double precision: which conventions they follow, and
+// the position of the camera and the view in a shadow map.
 #pragma once
 
 #include "tyndall/effect.hpp"
@@ -9,33 +9,32 @@ namespace tyndall {
 [[nodiscard]] double dot(const DVec3& a, const DVec3& b);
 [[nodiscard]] DVec3 cross(const DVec3& a, const DVec3& b);
 [[nodiscard]] double length(const DVec3& v);
-// Rows and columns of the upper left 3 x 3.
+// Return rows and columns of the upper left 3 x 3 matrix.
 [[nodiscard]] DVec3 row_of(const Mat4& m, int row);
 [[nodiscard]] DVec3 column_of(const Mat4& m, int column);
 
-// 0 for a last row of (0, 0, 0, 1), else the largest difference from it.
+// Returns the largest difference of the last row from (0, 0, 0, 1).
 [[nodiscard]] double affine_error(const Mat4& m);
-// Of the first three columns: how far their lengths are from 1, or the cosine between two of them, whichever
-// is larger.
+// Returns the deviation of the first three columns from orthonormality: the largest difference of a length from 1, or
+// the largest cosine between two of them, whichever is larger.
 [[nodiscard]] double orthonormal_error(const Mat4& m);
 [[nodiscard]] double determinant3(const Mat4& m);
-// Of a matrix without scale: its transpose about the translation.
+// Returns the inverse of a rigid matrix.
 [[nodiscard]] Mat4 rigid_inverse(const Mat4& m);
 
-// Of clip_from_view, with w scaled so that it is the distance from the centre of projection where that is
-// possible.
+// Properties of clip_from_view. If possible, w is scaled so that it is the distance from the centre of projection.
 struct Projection {
   bool perspective = false;
-  DVec3 centre;            // [m], in view space: the eye, which should be at its origin
+  DVec3 centre;            // centre of projection in view space [m], which should be the origin
   bool forward = false;    // looks down -z
   double depth_far = 0.0;  // device depth on the axis: depth_far + depth_slope / distance
   double depth_slope = 0.0;
-  bool oblique = false;  // the near plane is not at right angles to the axis
+  bool oblique = false;  // the near plane is not perpendicular to the axis
   bool y_up = false;     // the picture's y points upwards, or x to the left
 };
 [[nodiscard]] Projection projection_of(const Mat4& clip_from_view);
-// Distance on the axis at which the device depth is reached [m]; infinite for depth_far itself, and where
-// there is none.
+// Returns the distance on the axis with this device depth [m]. Infinite for depth_far, and if there is no such
+// distance.
 [[nodiscard]] double distance_at_depth(const Projection& p, double depth);
 
 }  // namespace tyndall

@@ -22,7 +22,7 @@ Result<FrameRing> FrameRing::create(const gpu::Device& device, const EffectDesc&
   return out;
 }
 
-// A lost device has completed everything that it ever will.
+// Returns whether the commands of a slot may still run. On a lost device, none do.
 bool FrameRing::busy(const Slot& slot) const {
   return slot.recorded && device_->vk.GetEventStatus(device_->device, slot.done.get()) == VK_EVENT_RESET;
 }
@@ -46,7 +46,7 @@ bool FrameRing::unfinished() const {
 void FrameRing::record_end(VkCommandBuffer cmd, std::uint64_t frame_index, std::uint32_t view) {
   Slot& s = slots_[slot(frame_index, view)];
   if (busy(s)) {
-    // Other commands are still to set the event: an event must not be set twice without a barrier.
+    // Earlier commands may still set the event, and an event must not be set twice without a barrier.
     device_->vk.CmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0,
                                    nullptr, 0, nullptr, 0, nullptr);
   } else {

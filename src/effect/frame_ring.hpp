@@ -1,5 +1,4 @@
-// The slots of the ring of constants: one for each view of each frame in flight, and whether commands may
-// still read it.
+// The slots of the ring of constants, one per view of a frame in flight. Tracks whether commands may still read them.
 #pragma once
 
 #include <cstdint>
@@ -19,18 +18,18 @@ class FrameRing {
   [[nodiscard]] std::uint32_t slot(std::uint64_t frame_index, std::uint32_t view) const {
     return static_cast<std::uint32_t>(frame_index % frames_) * views_ + view;
   }
-  // Before a slot is written: an error if the commands of the same frame and view have not completed. Returns
-  // the index of another frame whose commands have not, if there is one: they are late, or were never
-  // submitted.
+  // To be called before a slot is written. Returns an error if the commands that last used the slot for the same frame
+  // and view have not completed. Returns the index of the frame if they are those of another frame; its commands are
+  // late or were never submitted.
   Result<std::optional<std::uint64_t>> take(std::uint64_t frame_index, std::uint32_t view) const;
-  // Whether there are commands that have not completed, because they are late or were never submitted.
+  // Returns whether some commands have not completed, because they are late or were never submitted.
   [[nodiscard]] bool unfinished() const;
-  // Behind the last command that reads the slot.
+  // Records the event of a slot. To be called after the last command that reads the slot.
   void record_end(VkCommandBuffer cmd, std::uint64_t frame_index, std::uint32_t view);
 
  private:
   struct Slot {
-    gpu::Handle<VkEvent> done;  // set by the commands, reset when others are recorded
+    gpu::Handle<VkEvent> done;  // set by the commands, reset when the next ones are recorded
     std::uint64_t frame_index = 0;
     bool recorded = false;
   };

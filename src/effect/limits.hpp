@@ -1,5 +1,4 @@
-// What can be refused before anything is created: descriptions out of range, and settings that the device's limits do
-// not allow.
+// Checks before objects are created: of the ranges of descriptions, and of the device's limits.
 #pragma once
 
 #include "gpu/device.hpp"
@@ -7,13 +6,13 @@
 
 namespace tyndall {
 
-// The first field that is missing or out of range, as an error.
+// Returns an error for the first field that is missing or out of range.
 [[nodiscard]] Result<void> check_desc(const DeviceInfo& info, const EffectDesc& desc);
-// An error where a field differs that is fixed when the effect is created.
+// Returns an error if a field differs that cannot change after the effect has been created.
 [[nodiscard]] Result<void> check_same_desc(const EffectDesc& created, const EffectDesc& wanted);
-// An error where the device's limits do not suffice for the shaders of the effect and their dispatches.
+// Returns an error if the device's limits do not suffice for the shaders of the effect and their dispatches.
 [[nodiscard]] Result<void> check_device(const gpu::Device& device);
-// An error where a buffer or an image that these settings need is larger than the device allows.
+// Returns an error if these settings need a larger buffer or image than the device allows.
 [[nodiscard]] Result<void> check_limits(const gpu::Device& device, const EffectDesc& desc, const Params& params);
 
 }  // namespace tyndall

@@ -1,4 +1,4 @@
-// The table of the library's parameters and the comparison of two sets, both made from params.def.
+// The table of the library's parameters and the comparison of two sets, both generated from params.def.
 #include "tyndall/params.hpp"
 
 #include <array>
@@ -7,7 +7,7 @@
 namespace tyndall {
 namespace {
 
-// "name|name|...": the choices of each enumeration, in order of value.
+// The choices of each enumeration in order of value, as "name|name|...".
 #define ENUM_BEGIN(type) constexpr std::string_view k##type##Choices = ""
 #define ENUM_VALUE(type, identifier, value, text) "|" text
 #define ENUM_END(type) ;

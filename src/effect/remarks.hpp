@@ -1,4 +1,4 @@
-// Remarks on inputs that can be recorded but are hardly meant: EffectDesc::check_inputs.
+// Remarks on inputs that are valid but probably unintended: EffectDesc::check_inputs.
 #pragma once
 
 #include <array>
@@ -10,24 +10,24 @@
 
 namespace tyndall {
 
-// What remarks are made from, besides the inputs.
+// The state of the effect on which remarks depend.
 struct FrameState {
   const EffectDesc& desc;
   const Params& params;
   const shared::FrameConstants& frame;
-  bool tables_ready = false;                // built at least once
+  bool tables_ready = false;                // the tables have been built at least once
   std::optional<std::uint64_t> unfinished;  // index of the frame whose commands may still use the slot
 };
 
 class Remarks {
  public:
-  // Reports through `device` what looks wrong in a frame that passes check_frame(). Each kind of remark is made
-  // once for a view, and again only after a frame in which it did not hold. Allocates nothing.
+  // Reports probable mistakes in a frame that has passed check_frame() through `device`. Each kind of remark is made
+  // once per view, and repeated only after a frame in which it did not apply. Allocates nothing.
   void on_frame(const FrameInputs& inputs, const FrameState& state, const DeviceInfo& device);
 
  private:
-  std::array<std::uint64_t, kMaxViews> said_ = {};  // bit: kind
-  // The camera of the frame before, and whether it looked like the inverse of one.
+  std::array<std::uint64_t, kMaxViews> said_ = {};  // a bit per kind
+  // The camera of the previous frame, and whether it appeared to be inverted.
   struct Before {
     bool known = false;
     bool suspect = false;

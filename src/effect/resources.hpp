@@ -1,6 +1,6 @@
-// The images and buffers that the steps of the effect work on. A resource has one name: it is the name in C++, the name
-// in memory reports and debuggers, and the name of its binding in GLSL, where buffer blocks append "_block" to it.
-// resources.def is the list. The sizes of the buffers are pure functions of the settings.
+// The images and buffers of the effect. A resource has the same name in C++, in memory reports and debuggers, and as a
+// binding in GLSL, where buffer blocks append "_block". resources.def is the list. The sizes of buffers are pure
+// functions of the settings.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -24,7 +24,7 @@ enum class Resource : std::uint8_t {
 constexpr std::size_t kResources = static_cast<std::size_t>(Resource::none);
 [[nodiscard]] constexpr std::size_t index_of(Resource resource) { return static_cast<std::size_t>(resource); }
 
-// Who owns a resource and how long its contents are valid.
+// The owner of a resource, and how long its contents are valid.
 enum class Lifetime : std::uint8_t {
   constants,  // written by the host
   caller,     // an input or the output of a frame
@@ -38,8 +38,8 @@ struct ResourceInfo {
   const char* name;
   Lifetime lifetime;
   const char* format;      // of a texel or an element, for the documentation
-  const char* resolution;  // how many of them there are, for the documentation
-  const char* cause;       // for frame buffers: the settings that the size follows from, as messages name them
+  const char* resolution;  // number of texels or elements, for the documentation
+  const char* cause;       // of frame buffers: the settings that determine the size, for messages
 };
 
 inline constexpr ResourceInfo kResourceInfo[kResources] = {
@@ -59,7 +59,7 @@ constexpr std::size_t kFrameBuffers = index_of(Resource::downscaled_inscattering
 constexpr VkBufferUsageFlags kFrameBufferUsage =
     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
 
-// Bytes of each frame buffer, in the order of resources.def. 0: no step uses it with these settings.
+// The size of each frame buffer in the order of resources.def [bytes]. 0: no step uses it with these settings.
 struct FrameBufferSizes {
   std::array<VkDeviceSize, kFrameBuffers> bytes = {};
   [[nodiscard]] VkDeviceSize operator[](Resource resource) const {
@@ -68,15 +68,15 @@ struct FrameBufferSizes {
 };
 [[nodiscard]] FrameBufferSizes frame_buffer_sizes(const EffectDesc& desc, const Params& params);
 
-// Pixels that have room in correction_list.
+// Returns the capacity of correction_list in pixels.
 [[nodiscard]] std::uint32_t correction_capacity(const EffectDesc& desc, const Params& params);
-// Cells of a slice line that have room in the min/max tree. Texels of a map beyond them are read directly.
+// Returns the maximum number of cells of a slice line in the min/max tree. Other texels of a map are read directly.
 [[nodiscard]] std::uint32_t tree_cells(const EffectDesc& desc);
 
-// Slices, or samples of a slice, at the resolution that the light is computed for.
+// Returns the number of slices, or of samples per slice, for the resolution at which in-scattering is computed.
 [[nodiscard]] std::uint32_t downscaled_count(std::uint32_t count, const Params& params);
 [[nodiscard]] VkExtent2D downscaled_extent(VkExtent2D extent, const Params& params);
-// Blocks of unwarp.comp over a picture.
+// Returns the number of blocks of unwarp.comp along both axes of a picture.
 [[nodiscard]] VkExtent2D unwarp_blocks(VkExtent2D extent);
 
 }  // namespace tyndall

@@ -26,7 +26,7 @@ constexpr Resource resource_of(std::string_view binding) {
   return Resource::none;
 }
 
-// The resources of every shader, looked up by name while the library is compiled.
+// The resources of every shader, looked up by name at compile time.
 constexpr auto kShaderResources = [] {
   std::array<ShaderResources, kShaders> out = {};
   for (std::size_t i = 0; i < kShaders; ++i) {
@@ -37,7 +37,7 @@ constexpr auto kShaderResources = [] {
   return out;
 }();
 
-// A shader that fails this has a binding whose name is not in resources.def.
+// This fails if a shader has a binding whose name is not in resources.def.
 static_assert([] {
   for (const ShaderResources& shader : kShaderResources) {
     for (std::size_t i = 0; i < shader.count; ++i) {
@@ -119,7 +119,7 @@ HazardTracker::Barrier HazardTracker::before(const Uses& uses) {
     }
   }
   if (barrier.from != 0) {
-    // Passes after this one read and write too: what is visible to one shader is visible to all.
+    // The barrier covers all shader accesses, so that it also serves later passes.
     constexpr VkAccessFlags kShader = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
     if ((barrier.to_access & kShader) != 0) barrier.to_access |= kShader;
     barrier.to = stages_of(barrier.to_access);

@@ -1,7 +1,6 @@
-// A step of the effect as data: which shader runs with which specialisation constants, over how much work, and what it
-// reads and writes. frame_steps.cpp and table_steps.cpp make lists of steps. Pipelines, barriers, debug labels,
-// timings and memory follow from these lists. No Vulkan object is needed to make or to
-// examine one.
+// A step of the effect as data: the shader, its specialisation constants, the size of its dispatch, and the resources
+// that it reads and writes. frame_steps.cpp and table_steps.cpp create lists of steps. Pipelines, barriers, debug
+// labels, timings and memory follow from these lists. No Vulkan objects are needed to create or examine a step.
 #pragma once
 
 #include <array>
@@ -15,7 +14,7 @@
 
 namespace tyndall {
 
-// Values of the specialisation constants, by the ids of shaders/shared/constant_ids.h.
+// Values of the specialisation constants, indexed by the ids of shaders/shared/constant_ids.h.
 struct Specialisation {
   std::array<std::uint8_t, shared::kSpecialisationIds> values = {};
 
@@ -24,7 +23,7 @@ struct Specialisation {
   bool operator==(const Specialisation&) const = default;
 };
 
-// What a pipeline is found by: the shader, and the values of those constants that the shader has. Others are 0.
+// Identifies a pipeline: the shader and the values of its constants. Constants that the shader does not have are 0.
 struct PipelineKey {
   const gpu::Shader* shader = nullptr;
   Specialisation constants;
@@ -41,9 +40,9 @@ struct Step {
     copy,               // from `chosen` to `target`
     host_read           // records no command: makes `chosen` visible to the host
   };
-  const char* name = "";  // of the pass: its debug label, its timing and its row in the documentation
+  const char* name = "";  // of the pass, in debug labels, timings and documentation
   Kind kind = Kind::dispatch;
-  Resource chosen = Resource::none;  // also what the bindings `work` and `node` stand for
+  Resource chosen = Resource::none;  // also the resource of the bindings `work` and `node`
   Resource target = Resource::none;
   PipelineKey pipeline;
   std::array<std::uint32_t, 2> push = {};  // push constants
@@ -52,7 +51,7 @@ struct Step {
   [[nodiscard]] bool dispatches() const { return kind == Kind::dispatch || kind == Kind::dispatch_indirect; }
 };
 
-// What a step does with a resource: VK_ACCESS_* flags.
+// The accesses of a step to a resource, as VK_ACCESS_* flags.
 struct Use {
   Resource resource = Resource::none;
   VkAccessFlags access = 0;
@@ -65,14 +64,15 @@ struct Uses {
   [[nodiscard]] const Use* begin() const { return list.data(); }
   [[nodiscard]] const Use* end() const { return list.data() + count; }
 };
-// Reads and writes follow from the bindings of the shader and whether GLSL declares them readonly or writeonly.
+// Returns the accesses of a step. They follow from the bindings of the shader, and from the qualifiers `readonly` and
+// `writeonly` in GLSL.
 [[nodiscard]] Uses uses_of(const Step& step);
-// The resources of the bindings of a shader, in the order of gpu::Shader::bindings.
+// Returns the resources of a shader's bindings, in the order of gpu::Shader::bindings.
 [[nodiscard]] std::span<const Resource> bound_resources(const gpu::Shader& shader);
 
 constexpr VkAccessFlags kWriteAccess = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
 
-// Finds the barriers between steps: before a step, everything that it reads or overwrites has to be complete and
+// Determines the barriers between steps. Before a step, all accesses that conflict with it must be complete and
 // visible. One memory barrier serves all resources of a step.
 class HazardTracker {
  public:
@@ -83,17 +83,17 @@ class HazardTracker {
     VkAccessFlags to_access = 0;
   };
 
-  // Adds what commands before the first step may have done with a resource.
+  // Adds possible accesses of earlier commands to a resource. To be called before the first step.
   void assume(Resource resource, VkAccessFlags access);
-  // Returns the barrier that has to precede a step, and takes note of the barrier and of the step.
+  // Returns the barrier that must precede a step, and updates the state for both.
   [[nodiscard]] Barrier before(const Uses& uses);
 
  private:
   struct State {
     VkAccessFlags written = 0;  // the last writes
-    VkAccessFlags visible = 0;  // accesses that see them
+    VkAccessFlags visible = 0;  // accesses to which they are visible
     VkAccessFlags read = 0;     // reads since then
-    VkAccessFlags ordered = 0;  // writes that wait for these reads
+    VkAccessFlags ordered = 0;  // writes that are ordered after these reads
   };
   std::array<State, kResources> states_ = {};
 };

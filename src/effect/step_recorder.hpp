@@ -1,4 +1,4 @@
-// Records steps into a command buffer: the barrier, the label, the timing, the bindings and the command of each.
+// Records steps into a command buffer: the barrier, label, timing, bindings and command of each step.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace tyndall {
 
-// What the resources are in one frame or build. Those that no step uses remain null.
+// The Vulkan objects of the resources in one frame or build. Those that no step uses are null.
 struct BoundResources {
   std::array<gpu::Descriptor, kResources> list = {};
 
@@ -26,14 +26,14 @@ struct BoundResources {
 // Allocates nothing, except for the message of an error.
 class StepRecorder {
  public:
-  // `timer`: times the dispatches; may be null. All arguments must outlive the recorder.
+  // `timer`: measures the dispatches; may be null. All arguments must outlive the recorder.
   StepRecorder(const gpu::Device& device, VkCommandBuffer cmd, const PipelineCache& pipelines,
                const BoundResources& resources, gpu::Timer* timer)
       : device_(device), cmd_(cmd), pipelines_(pipelines), resources_(resources), timer_(timer) {}
 
-  // Adds what earlier commands may have done with a resource.
+  // See HazardTracker::assume().
   void assume(Resource resource, VkAccessFlags access) { hazards_.assume(resource, access); }
-  // An error if a pipeline or a resource is missing.
+  // Records a step. Returns an error if a pipeline or a resource is missing.
   Result<void> record(const Step& step);
 
  private:

@@ -1,4 +1,4 @@
-// Declarations that tables.cpp and table_builder.cpp share: sizes, sets of tables, and the plan of the scratch memory.
+// Declarations shared by tables.cpp and table_builder.cpp: sizes, sets of tables, and the layout of scratch memory.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ constexpr VkDeviceSize kConstantBytes = kShapeOffset + sizeof(ShapeBlock);
 
 constexpr std::uint32_t bit(TableId id) { return 1U << static_cast<std::uint32_t>(id); }
 constexpr std::uint32_t kSingleTables = bit(TableId::single_rayleigh) | bit(TableId::single_mie);
-// Built together, from the same sums.
+// These tables are built together from the same sums.
 constexpr std::uint32_t kHighTables = bit(TableId::high_orders) | bit(TableId::sky_irradiance);
 constexpr std::uint32_t kAllTables = (1U << kTableCount) - 1U;
 

@@ -56,7 +56,7 @@ std::vector<Step> table_steps(const Params& params, std::uint32_t stale) {
         step_of(kPhaseMatrix, shaders::phase_matrix_comp, Resource::none, {shared::kSourceZeniths, altitudes, 1}));
     const std::uint32_t orders = params.tables.orders;
     const bool late = orders > 2;
-    // Without late orders, the last turn scatters nothing: it adds the irradiance of the last order.
+    // Without late orders, the last iteration scatters nothing, but adds the irradiance of the last order.
     for (std::uint32_t order = 2; order <= (late ? orders : orders + 1); ++order) {
       for (std::uint32_t first = 0; first < altitudes; first += kAltitudesPerStep) {
         const std::uint32_t count = std::min(kAltitudesPerStep, altitudes - first);
@@ -80,7 +80,7 @@ std::vector<Step> table_steps(const Params& params, std::uint32_t stale) {
     }
     out.push_back(step_of(kSkyLight, shaders::sky_light_comp, Resource::none, kSkyLightExtent));
   }
-  // The tables, altitude by altitude: sun, angle, view.
+  // The tables are filled altitude by altitude. Their other axes are sun, angle and view.
   const UVec4& size = params.tables.size;
   const VkExtent3D texels = {size.z, size.w, size.y};
   for (std::uint32_t altitude = 0; altitude < size.x; ++altitude) {

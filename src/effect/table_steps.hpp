@@ -1,4 +1,4 @@
-// The steps of a build of the scattering tables, as a pure function of the parameters and of which tables are stale.
+// The steps of a build of the scattering tables, as a pure function of the parameters and the set of stale tables.
 // docs/tables.md describes the method.
 #pragma once
 
@@ -11,11 +11,12 @@
 
 namespace tyndall {
 
-// `stale`: bits 1 << TableId. A step is one dispatch, over a few altitudes or columns: what Effect::record_precompute()
-// counts as a slice. The push constants are the first altitude or column, and the order of scattering.
+// Returns the steps that build the `stale` tables (bits 1 << TableId). A step is one dispatch over a few altitudes or
+// columns, which Effect::record_precompute() counts as a slice. The push constants are the first altitude or column and
+// the order of scattering.
 [[nodiscard]] std::vector<Step> table_steps(const Params& params, std::uint32_t stale);
 
-// The names of all steps, in the order in which a build runs them.
+// Returns the names of all steps in the order of a build.
 [[nodiscard]] std::span<const char* const> table_step_names();
 
 }  // namespace tyndall

@@ -33,7 +33,7 @@ using TableSet = std::array<TableImage, kTableCount>;
 [[nodiscard]] gpu::ImageDesc table_desc(TableId table, const Params& params);
 // Returns the tables (bits 1 << TableId) that differ between two sets of parameters.
 [[nodiscard]] std::uint32_t stale_tables(const Params& built, const Params& wanted);
-// See Effect::table_key() and Effect::table_bytes().
+// Return Effect::table_key() and Effect::table_bytes().
 [[nodiscard]] std::string table_key(const gpu::Device& device, const Params& params);
 [[nodiscard]] VkDeviceSize table_bytes(const Params& params);
 
@@ -48,7 +48,7 @@ struct TableScratch {
   gpu::Buffer sum;          // of the orders
   gpu::Buffer irradiance;   // of one order
   gpu::Buffer sky;          // irradiance, sum of the orders
-  std::uint32_t views = 0;  // that ray_nodes has room for
+  std::uint32_t views = 0;  // capacity of ray_nodes
   [[nodiscard]] VkDeviceSize bytes() const;
 };
 [[nodiscard]] VkDeviceSize table_scratch_bytes(const gpu::Device& device, const Params& params);
@@ -115,13 +115,13 @@ class TableBuilder {
   TableScratch scratch_ = {};
   Params built_ = {};        // of tables_, if complete_
   Params wanted_ = {};       // of the build
-  bool complete_ = false;    // tables_ have been built once
+  bool complete_ = false;    // tables_ have been built at least once
   std::uint32_t stale_ = 0;  // tables that the build writes
   std::vector<Step> steps_ = {};
   std::uint32_t done_ = 0;
   std::vector<Retired> retired_ = {};
   gpu::Timer timer_ = {};
-  std::vector<PassTiming> times_ = {};  // what stage_times() returned last
+  std::vector<PassTiming> times_ = {};  // the last result of stage_times()
 };
 
 // The work that commit() takes over, with everything allocated.

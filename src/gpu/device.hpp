@@ -1,6 +1,6 @@
-// Device: a borrowed Vulkan device with its function table, and the owning handles made on it.
-// Nothing here creates or destroys the device itself (src/gpu/host.hpp does, for our own programs).
-// A Device must outlive every object made with it and must not move; one thread at a time.
+// A borrowed Vulkan device with its function table, and handles that own objects of this device. The device itself is
+// created and destroyed by the caller (in our own programs by src/gpu/host.hpp). A Device must not move and must
+// outlive every object created with it. It is used by one thread at a time.
 #pragma once
 
 #include <cstdint>
@@ -24,18 +24,18 @@ struct Device {
   VkDeviceSize max_buffer_bytes = 0;
   VkDeviceSize max_allocation_bytes = 0;
   VkPhysicalDeviceMemoryProperties memory = {};
-  // SPIR-V to use in place of the built-in shader of that name, or an empty span; see DeviceInfo::replace_shader.
+  // Returns SPIR-V to use instead of the built-in shader of that name, or an empty span (DeviceInfo::replace_shader).
   std::span<const std::uint32_t> (*replace_shader)(void* user, std::string_view name) = nullptr;
   void* replace_shader_user = nullptr;
 };
 
-// An Error for a VkResult, saying which call on which object failed.
+// Returns the error for a VkResult. The message reads: `what` of `name` failed.
 [[nodiscard]] Error vulkan_error(VkResult result, const char* what, const char* name);
 
-// Fills the table, the properties and the memory types. Fails where the device lacks a function.
+// Fills in the function table, the properties and the memory types. Fails if the device lacks a function.
 Result<void> init_device(Device& device, PFN_vkGetInstanceProcAddr get);
 
-// Index of a memory type of `bits` with all of `flags`; VK_MAX_MEMORY_TYPES when there is none.
+// Returns the index of a memory type of `bits` with all of `flags`, or VK_MAX_MEMORY_TYPES if there is none.
 [[nodiscard]] std::uint32_t find_memory_type(const Device& device, std::uint32_t bits, VkMemoryPropertyFlags flags);
 
 void destroy(const Device& device, VkBuffer handle);
@@ -84,14 +84,14 @@ class Handle {
   T value_ = T{};
 };
 
-// Names an object for validation messages and captures; does nothing without VK_EXT_debug_utils.
+// Names an object for validation messages and captures. Does nothing without VK_EXT_debug_utils.
 void set_name(const Device& device, VkObjectType type, std::uint64_t handle, const char* name);
 template <typename T>
 void set_name(const Device& device, VkObjectType type, T handle, const char* name) {
   set_name(device, type, reinterpret_cast<std::uint64_t>(handle), name);
 }
 
-// Labels the commands recorded while it lives.
+// Labels the commands that are recorded during its lifetime.
 class Label {
  public:
   Label(const Device& device, VkCommandBuffer cmd, const char* name);
@@ -104,10 +104,10 @@ class Label {
   VkCommandBuffer cmd_;
 };
 
-// The one form of barrier between passes: everything before, in `from`, is visible to `to`.
+// Records a global memory barrier. All passes use this form, without barriers of single images and buffers.
 void barrier(const Device& device, VkCommandBuffer cmd, VkPipelineStageFlags from, VkAccessFlags from_access,
              VkPipelineStageFlags to, VkAccessFlags to_access);
-// Compute writes become visible to compute reads and writes.
+// Records a barrier that makes the writes of compute shaders visible to reads and writes of later ones.
 void compute_barrier(const Device& device, VkCommandBuffer cmd);
 
 }  // namespace tyndall::gpu

@@ -1,5 +1,5 @@
-// Turns exceptions into errors. Each public function of the library runs its body in guarded(), and those of scenes run
-// theirs in within_memory(); nothing below them handles exceptions.
+// Turns exceptions into errors. Every public function of the library runs its body in guarded(), and every public
+// function of scenes in within_memory(). No code below them handles exceptions.
 #pragma once
 
 #include <new>
@@ -24,7 +24,7 @@ namespace tyndall {
   return error;
 }
 
-// Returns what `body` returns, a Result, or an error in place of an exception.
+// Runs `body` and returns its Result, or an error if it throws.
 template <typename Body>
 std::invoke_result_t<Body> guarded(const char* where, Body&& body) noexcept {
   try {
@@ -37,7 +37,7 @@ std::invoke_result_t<Body> guarded(const char* where, Body&& body) noexcept {
   }
 }
 
-// The same for std::bad_alloc alone; other exceptions pass.
+// Runs `body` and returns its Result, or an error if it throws std::bad_alloc. Other exceptions propagate.
 template <typename Body>
 std::invoke_result_t<Body> within_memory(const char* where, Body&& body) {
   try {

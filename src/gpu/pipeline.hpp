@@ -1,5 +1,5 @@
-// Pipelines from embedded shaders: push-descriptor layouts follow from the reflected bindings, and resources are bound
-// by name. Specialisation constants select variants. Recording makes no pipelines.
+// Pipelines from embedded shaders. Push-descriptor layouts follow from the reflected bindings, and resources are bound
+// by name. Specialisation constants select variants. Pipelines are never created while commands are recorded.
 #pragma once
 
 #include <array>
@@ -11,15 +11,15 @@
 
 namespace tyndall::gpu {
 
-constexpr std::uint32_t kMaxBindings = 20;  // every device can push 32 descriptors
+constexpr std::uint32_t kMaxBindings = 20;  // every device supports at least 32 push descriptors
 
-// What a binding refers to: a buffer or an image.
+// The resource of a binding: a buffer or an image.
 struct Descriptor {
   VkDescriptorImageInfo image = {};
   VkDescriptorBufferInfo buffer = {};
 };
 
-// A resource under the name that shaders know it by.
+// A resource with the name of its binding in GLSL.
 struct NamedResource : Descriptor {
   std::string_view name;
 };
@@ -52,20 +52,20 @@ struct Pipeline {
   std::uint32_t local_size[3] = {1, 1, 1};
 };
 
-// An error where the device's limits do not suffice for a shader: its bindings, push constants and group size.
+// Returns an error if the bindings, push constants or workgroup size of a shader exceed the limits of the device.
 [[nodiscard]] Result<void> check_shader(const Device& device, const Shader& shader);
 
 Result<Pipeline> create_compute_pipeline(const Device& device, const Shader& shader,
                                          std::span<const Constant> constants = {});
 
-// How a fragment's colour joins what is there: in its place, added, multiplied with it; multiply_min: the colour
-// multiplied, of alpha the lesser.
+// How the colour of a fragment is combined with the attachment. `multiply_min` multiplies the colours and stores the
+// smaller alpha.
 enum class Blend { none, add, multiply, multiply_min };
 
-constexpr std::uint32_t kMaxColors = 4;  // what every device has
+constexpr std::uint32_t kMaxColors = 4;  // colour attachments; every device supports as many
 
-// What a graphics pipeline of ours can differ in; everything is triangles from buffers read in the
-// vertex shader, drawn with dynamic rendering.
+// The variable state of a graphics pipeline. All pipelines draw triangles with dynamic rendering, and their vertex
+// shaders read the vertices from buffers.
 struct GraphicsDesc {
   const char* name;
   const Shader* vertex;
@@ -81,16 +81,16 @@ struct GraphicsDesc {
 Result<Pipeline> create_graphics_pipeline(const Device& device, const GraphicsDesc& desc,
                                           std::span<const Constant> constants = {});
 
-// Binds the pipeline and a descriptor for each of its bindings, in the order of Pipeline::bindings. Allocates nothing.
-// Precondition: as many descriptors as bindings, none of them null.
+// Binds the pipeline and one descriptor per binding, in the order of Pipeline::bindings. Allocates nothing.
+// Precondition: there are as many descriptors as bindings, and none is null.
 void bind(const Device& device, VkCommandBuffer cmd, const Pipeline& pipeline,
           std::span<const Descriptor* const> descriptors, const void* push);
-// Binds the pipeline and each of its bindings from `resources` by name. Allocates nothing.
-// Returns the name of a binding that `resources` lacks, or an empty view.
+// Binds the pipeline and looks up the resource of each binding by name. Allocates nothing. Returns the name of a
+// binding that `resources` lacks, or an empty view.
 std::string_view bind(const Device& device, VkCommandBuffer cmd, const Pipeline& pipeline,
                       std::span<const NamedResource> resources, const void* push = nullptr);
 
-// Groups of the pipeline's local size that cover x × y × z invocations.
+// Records a dispatch of enough workgroups for x × y × z invocations.
 void dispatch(const Device& device, VkCommandBuffer cmd, const Pipeline& pipeline, std::uint32_t x, std::uint32_t y = 1,
               std::uint32_t z = 1);
 

@@ -154,8 +154,8 @@ Result<Handle<VkSampler>> create_sampler(const Device& device, const SamplerDesc
   info.addressModeV = desc.address_v.value_or(desc.address);
   info.compareEnable = desc.compare ? VK_TRUE : VK_FALSE;
   info.compareOp = desc.compare_op;
-  // Above 0, so that minification can be distinguished from magnification, but rounded to the first level (Vulkan 1.3,
-  // VkSamplerCreateInfo, on GL_NEAREST and GL_LINEAR).
+  // A maximum of 0.25 selects the first level only, but still distinguishes minification from magnification (Vulkan
+  // 1.3, VkSamplerCreateInfo, on GL_NEAREST and GL_LINEAR).
   info.maxLod = desc.first_level_only ? 0.25F : VK_LOD_CLAMP_NONE;
   info.borderColor = desc.border;
   VkSampler sampler = VK_NULL_HANDLE;

@@ -1,4 +1,4 @@
-// Images and buffers with their memory. One allocation each: the few dozen of a frame do not need more.
+// Images and buffers with their memory. Each has its own allocation, which suffices for the few dozen of a frame.
 #pragma once
 
 #include <optional>
@@ -15,13 +15,13 @@ struct ImageDesc {
   VkImageUsageFlags usage;
   std::uint32_t layers = 1;
   std::uint32_t levels = 1;
-  bool array = false;  // the view is of an array even with one layer
+  bool array = false;  // create an array view even if there is only one layer
 };
 
 struct Image {
   Handle<VkDeviceMemory> memory;
   Handle<VkImage> image;
-  Handle<VkImageView> view;  // all layers and levels; an array view when layers > 1 or desc.array
+  Handle<VkImageView> view;  // all layers and levels; an array view if layers > 1 or desc.array
   ImageDesc desc = {};
   VkDeviceSize bytes = 0;
 };
@@ -29,45 +29,45 @@ struct Image {
 struct Buffer {
   Handle<VkDeviceMemory> memory;
   Handle<VkBuffer> buffer;
-  void* mapped = nullptr;  // host-visible buffers stay mapped
-  VkDeviceSize size = 0;   // bytes that the caller asked for
-  VkDeviceSize bytes = 0;  // bytes of memory that it takes
+  void* mapped = nullptr;  // address of a host-visible buffer, which is always mapped
+  VkDeviceSize size = 0;   // requested size [bytes]
+  VkDeviceSize bytes = 0;  // allocated memory [bytes]
 };
 
 enum class MemoryKind {
-  device,    // fastest for the device
-  upload,    // host writes, coherent
-  readback,  // host reads, coherent, cached where possible
+  device,    // device-local if possible
+  upload,    // written by the host; coherent
+  readback,  // read by the host; coherent, and cached if possible
 };
 
 [[nodiscard]] VkImageCreateInfo image_create_info(const ImageDesc& desc);
 [[nodiscard]] VkImageAspectFlags aspect_of(VkFormat format);
 
 Result<Image> create_image(const Device& device, const ImageDesc& desc);
-// A view of one layer (2D) of an image.
+// Creates a 2D view of one layer.
 Result<Handle<VkImageView>> create_layer_view(const Device& device, const Image& image, std::uint32_t layer);
 Result<Buffer> create_buffer(const Device& device, const char* name, VkDeviceSize size, VkBufferUsageFlags usage,
                              MemoryKind kind);
 
-// Bytes of memory that create_image or create_buffer would take, without creating anything.
+// Returns the memory that create_image() or create_buffer() would allocate [bytes], without creating anything.
 [[nodiscard]] VkDeviceSize image_bytes(const Device& device, const ImageDesc& desc);
 [[nodiscard]] VkDeviceSize buffer_bytes(const Device& device, VkDeviceSize size, VkBufferUsageFlags usage);
 
 struct SamplerDesc {
   VkFilter filter = VK_FILTER_LINEAR;
-  std::optional<VkFilter> min_filter = {};  // where the image is minified; `filter` if none
+  std::optional<VkFilter> min_filter = {};  // for minification; default: `filter`
   VkSamplerAddressMode address = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-  std::optional<VkSamplerAddressMode> address_v = {};  // in the second direction; `address` if none
+  std::optional<VkSamplerAddressMode> address_v = {};  // for the second coordinate; default: `address`
   VkBorderColor border = VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE;
-  bool between_levels = false;  // mixes the two nearest mip levels
+  bool between_levels = false;  // interpolate between mip levels
   bool first_level_only = false;
   bool compare = false;
   VkCompareOp compare_op = VK_COMPARE_OP_LESS_OR_EQUAL;
 };
 Result<Handle<VkSampler>> create_sampler(const Device& device, const SamplerDesc& desc);
 
-// Moves a whole image between layouts, waiting for everything before and blocking everything after:
-// for set-up and readback, not between the passes of a frame.
+// Records a layout transition of a whole image with a full barrier. For set-up and readback; between the passes of a
+// frame this would be too slow.
 void transition(const Device& device, VkCommandBuffer cmd, const Image& image, VkImageLayout from, VkImageLayout to);
 
 }  // namespace tyndall::gpu

@@ -1,5 +1,5 @@
-// A compiled shader and what its SPIR-V declares. tools/embed_shaders.cpp generates these tables when the project is
-// built. Resources are bound by name, so that a binding is declared in GLSL alone.
+// A compiled shader and the declarations of its SPIR-V. tools/embed_shaders.cpp generates these tables during the
+// build. Resources are bound by name, so a binding is declared only in GLSL.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -15,11 +15,11 @@ struct Binding {
   std::uint32_t binding;
   VkDescriptorType type;
   bool reads;   // the shader may read it
-  bool writes;  // the shader may write it; barriers follow from both
+  bool writes;  // the shader may write it; both determine the barriers
 };
 
 struct Shader {
-  const char* name;  // the file's name, dots replaced by underscores
+  const char* name;  // name of the file, with underscores instead of dots
   VkShaderStageFlagBits stage;
   std::span<const std::uint32_t> spirv;
   std::span<const Binding> bindings;

@@ -31,8 +31,7 @@ void Timer::begin_frame(VkCommandBuffer cmd, std::uint32_t slot) {
 
 namespace {
 
-// What is timed must begin after everything before and be complete at its end: passes that overlapped
-// would have no times of their own.
+// Records a full barrier. A timed pass must not overlap with others, otherwise its duration would be meaningless.
 void settle(const Device& device, VkCommandBuffer cmd) {
   barrier(device, cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
           VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
@@ -47,7 +46,7 @@ void Timer::begin(VkCommandBuffer cmd, const char* name) {
   settle(*device_, cmd);
   const auto query = static_cast<std::uint32_t>((slot_ * scopes_ + names.size()) * 2);
   device_->vk.CmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, pool_.get(), query);
-  settle(*device_, cmd);  // some CPU devices take the time only when the next barrier makes them
+  settle(*device_, cmd);  // some CPU devices execute the timestamp only at the next barrier
   names.push_back(name);
 }
 

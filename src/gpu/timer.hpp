@@ -1,4 +1,4 @@
-// GPU timestamps by pass name, for the passes of one command buffer at a time and slot.
+// Measures the durations of the passes of a command buffer with GPU timestamps.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,11 @@ struct TimedScope {
   double milliseconds;
 };
 
-// Results of a slot may be read once its command buffer has completed. Recording allocates nothing.
+// Each command buffer in flight has a slot. The results of a slot can be read once its command buffer has completed.
+// Recording allocates nothing.
 class Timer {
  public:
-  // `slots`: command buffers in flight; `scopes`: the most passes that one records.
+  // `slots`: number of command buffers in flight; `scopes`: maximum number of timed passes in one of them.
   static Result<Timer> create(const Device& device, std::uint32_t slots, std::uint32_t scopes);
 
   void begin_frame(VkCommandBuffer cmd, std::uint32_t slot);
@@ -25,7 +26,7 @@ class Timer {
   void begin(VkCommandBuffer cmd, const char* name);
   void end(VkCommandBuffer cmd);
 
-  // Times of the slot's last command buffer, in the order recorded; valid until the next call.
+  // Returns the durations in the last command buffer of the slot, in the order of recording. Valid until the next call.
   std::span<const TimedScope> read(std::uint32_t slot);
 
  private:
@@ -33,7 +34,7 @@ class Timer {
   Handle<VkQueryPool> pool_;
   std::uint32_t scopes_ = 0;
   std::uint32_t slot_ = 0;
-  bool open_ = false;  // between begin and end of a pass that is timed
+  bool open_ = false;  // between begin() and end() of a timed pass
   std::vector<std::vector<const char*>> names_;
   std::vector<TimedScope> results_;
   std::vector<std::uint64_t> ticks_;

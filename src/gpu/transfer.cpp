@@ -1,4 +1,4 @@
-// Synchronous copies between host and device through staging buffers: for set-up and readback.
+// Synchronous copies between host and device through staging buffers, for set-up and readback.
 #include <cstring>
 
 #include "gpu/host.hpp"

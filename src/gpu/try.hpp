@@ -1,5 +1,5 @@
-// Early return on errors: TYNDALL_TRY(result expression) for Result<void>,
-// TYNDALL_ASSIGN(declaration, result expression) for Result<T>.
+// Macros for an early return on errors: TYNDALL_TRY(expression) for Result<void>, and TYNDALL_ASSIGN(declaration,
+// expression) for Result<T>.
 #pragma once
 
 #include "tyndall/result.hpp"

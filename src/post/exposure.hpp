@@ -38,8 +38,8 @@ class Exposure {
                        double seconds, std::uint32_t slot = 0);
   // Resets the history: the next picture is unrelated to the previous one.
   void reset_history() { reset_ = true; }
-  // What the next measurement starts from, as far as the host knows it. A caller that drops the commands of measure()
-  // puts back what was there before them.
+  // The state from which the next measurement starts, as far as the host has it. A caller that does not submit the
+  // commands of measure() must restore the previous state.
   struct Start {
     bool reset = true;
     bool measured = false;

@@ -1,4 +1,5 @@
-// The question that `probe` and `validate` ask every model and the reference: how much light arrives along a ray.
+// A query of `probe` and `validate` to a model or the reference: the radiance along a ray, or the irradiance of the
+// sky.
 #pragma once
 
 namespace tyndall {

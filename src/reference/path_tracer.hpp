@@ -28,7 +28,7 @@ struct Options {
   std::uint64_t seed = 1;
   int threads = 0;        // 0: one per hardware thread
   bool by_order = false;  // fill Estimate::order_*
-  // Whether the ground at the end of a ray contributes to its radiance. If false, only in-scattered light does,
+  // True if the ground at the end of a ray contributes to its radiance. Otherwise only in-scattered light does,
   // including light that the ground reflected before; transmittance then applies to whatever is behind the atmosphere.
   bool visible_ground = true;
 };

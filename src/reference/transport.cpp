@@ -115,7 +115,7 @@ bool sample_event(const Atmosphere& air, const Line& line, const Vec& sun, doubl
   if (!(weighted[channel] > 0.0)) return false;  // rounding at the end of the last channel
   u = std::min(u / weighted[channel], std::nextafter(1.0, 0.0));
 
-  // Where the planet's shadow falls on this line, reserve part of the samples for what the sun lights.
+  // If part of this line is in the planet's shadow, reserve some samples for the sunlit part.
   std::array<LitPart, 2> lit = {lit_part(air, line, sun, air.radius_m, scattered, kLitFractions[0]),
                                 lit_part(air, line, sun, air.opaque_radius_m, scattered, kLitFractions[1])};
   const double unguided = 1.0 - lit[0].fraction - lit[1].fraction;

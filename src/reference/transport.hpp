@@ -17,7 +17,7 @@ inline double ground_altitude_m(double camera_altitude_m) { return 2.0 * std::mi
 struct Scene {
   Scene(const Atmosphere& air, const RayQuery& query, const Options& options);
 
-  // Whether there is anything to sample; if not, `ground` is the result.
+  // Returns whether there is anything to sample. If not, `ground` is the result.
   [[nodiscard]] bool has_air() const { return has_air_; }
 
   const Atmosphere* air;

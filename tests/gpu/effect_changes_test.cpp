@@ -1,4 +1,4 @@
-// What an effect takes over after its creation: parameters that need other pipelines, and other limits.
+// Changes after the creation of an effect: parameters that need other pipelines, and other limits.
 #include <cmath>
 
 #include "effect_frame.hpp"
@@ -18,7 +18,7 @@ class EffectChanges : public GpuTest {
   }
 };
 
-// Pipelines that are made when asked for give what those made at creation give, and can be made beforehand.
+// Pipelines that are created on demand give the same picture as those created with the effect, and can be prepared.
 TEST_F(EffectChanges, MissingPipelinesAreCreatedOnRequest) {
   const TestFrame frame = small_frame();
   Result<FrameImages> images = FrameImages::create(host(), frame, OutputFormat::rgba32f);
@@ -27,7 +27,7 @@ TEST_F(EffectChanges, MissingPipelinesAreCreatedOnRequest) {
   ASSERT_OK(effect);
   const Result<Progress> none = effect.value().prepare_pipelines(0);
   ASSERT_OK(none);
-  const std::uint32_t first = none.value().done;  // those made at creation, and the one that the parameters need
+  const std::uint32_t first = none.value().done;  // created with the effect, and one for the new parameters
   ASSERT_OK(effect.value().set_params(with_technique(Technique::brute_force)));
   const Result<Progress> both = effect.value().prepare_pipelines(0);
   ASSERT_OK(both);
@@ -39,7 +39,7 @@ TEST_F(EffectChanges, MissingPipelinesAreCreatedOnRequest) {
   ASSERT_OK(all);
   EXPECT_TRUE(all.value().complete());
   EXPECT_EQ(all.value().total, some.value().total);
-  // Nothing is left to be made, whatever the parameters: the count stays what it is.
+  // All pipelines exist now, so no parameters increase the count.
   for (const MediumKind medium : {MediumKind::atmosphere, MediumKind::homogeneous}) {
     for (const std::uint32_t downscale : {1U, 2U, 4U}) {
       Params params = with_technique(Technique::epipolar);
@@ -53,13 +53,13 @@ TEST_F(EffectChanges, MissingPipelinesAreCreatedOnRequest) {
   EXPECT_EQ(after.value().done, all.value().total);
 }
 
-// Limits can change: what the effect then takes is what it takes when created with them, and it draws the same.
+// After a change of limits, the effect has the memory and the picture of one that was created with these limits.
 TEST_F(EffectChanges, LimitsChange) {
   const TestFrame frame = small_frame();
   Result<FrameImages> images = FrameImages::create(host(), frame, OutputFormat::rgba32f);
   ASSERT_OK(images);
   Params params = with_technique(Technique::epipolar);
-  params.scattering.single = SingleScattering::integration;  // no tables are needed
+  params.scattering.single = SingleScattering::integration;  // needs no tables
   params.scattering.multiple = MultipleScattering::none;
   const EffectDesc desc = desc_for(frame);
   EffectDesc small = desc;
@@ -75,7 +75,7 @@ TEST_F(EffectChanges, LimitsChange) {
   std::vector<std::byte> bytes[2];
   for (int i = 0; i < 2; ++i) {
     Effect& effect = i == 0 ? grown.value() : whole.value();
-    for (std::uint64_t k = 0; k < 4; ++k) {  // until what the first limits needed is given back
+    for (std::uint64_t k = 0; k < 4; ++k) {  // until the buffers of the first limits are freed
       FrameInputs inputs = images.value().inputs(frame);
       inputs.frame_index = k;
       ASSERT_OK(host().run([&](VkCommandBuffer cmd) { return effect.record(cmd, inputs); }));

@@ -1,5 +1,5 @@
-// Every parameter at its ends, in random combinations, seen from everywhere: whatever is allowed gives finite
-// light that is not negative.
+// Random combinations of parameters at the ends of their ranges, seen from everywhere, give finite light that is not
+// negative.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -10,7 +10,7 @@
 namespace tyndall {
 namespace {
 
-// Each number to its least, its greatest or its default value.
+// Sets each number to its minimum, its maximum or its default value.
 Params random_params(std::mt19937& engine) {
   Params params;
   const auto pick = [&](double least, double greatest, double normal) {
@@ -43,9 +43,9 @@ Params random_params(std::mt19937& engine) {
       std::memcpy(at, &value, sizeof value);
     }
   }
-  // 1000 steps in each of a thousand pixels say no more than 200 do, and take minutes.
+  // More than 200 steps would take minutes and test nothing more.
   params.scattering.integration_steps = std::min(params.scattering.integration_steps, 200U);
-  // Likewise millions of samples for 16 pixels; epipolar_views_test.cpp has both ends of these ranges.
+  // So would millions of samples for 16 pixels. epipolar_views_test.cpp tests both ends of these ranges.
   params.epipolar.slices = std::min(params.epipolar.slices, 33U);
   params.epipolar.samples = std::min(params.epipolar.samples, 33U);
   return params;

@@ -18,7 +18,7 @@ namespace tyndall::faults {
 namespace {
 
 thread_local Kind armed_kind = Kind::vulkan;
-thread_local long left = -1;  // calls before the one that fails; < 0: none does
+thread_local long left = -1;  // number of calls before the one that fails; < 0: none fails
 thread_local bool has_failed = false;
 thread_local int in_driver = 0;
 
@@ -29,8 +29,8 @@ bool fails(Kind kind) {
   return true;
 }
 
-// Destructors of nlohmann::json allocate, and end the program where they cannot. The name of the function that called
-// operator new is known where the program exports its symbols.
+// Returns whether a destructor of nlohmann::json allocates, which would terminate the program if it failed. The name of
+// the function that called operator new is known because the program exports its symbols.
 bool is_of_json(const void* caller) {
   Dl_info info = {};
   return dladdr(caller, &info) != 0 && info.dli_sname != nullptr &&
@@ -88,14 +88,14 @@ PFN_vkVoidFunction VKAPI_CALL device_proc_addr(VkDevice device, const char* name
   return real.GetDeviceProcAddr(device, name);
 }
 
-// The fake device. Numbers of objects are never used twice.
+// The state of the fake device. Objects are numbers, which are never reused.
 std::map<std::uint64_t, VkDeviceSize> live;  // bytes of buffers and images
 std::map<std::uint64_t, void*> memory;
 std::uint64_t next_object = 1;
 std::size_t pipeline_objects = 0;
 std::size_t hash = 0;
 
-// Events that the commands being recorded would set, and those that are set.
+// Events that the recorded commands will set, and events that are set.
 bool recording = false;
 std::vector<VkEvent> to_set;
 std::set<VkEvent> set_events;
@@ -116,7 +116,7 @@ constexpr bool kOfPipelines =
 template <typename T>
 VkResult make(T* out, VkDeviceSize bytes) {
   if (fails(Kind::vulkan)) return kError;
-  ++in_driver;  // its own memory is the driver's
+  ++in_driver;  // its allocations are those of the driver
   live[next_object] = bytes;
   --in_driver;
   if constexpr (kOfPipelines<T>) ++pipeline_objects;
@@ -124,7 +124,7 @@ VkResult make(T* out, VkDeviceSize bytes) {
   return VK_SUCCESS;
 }
 
-// What the functions do, by the types of their arguments.
+// The functions of the device, grouped by the types of their arguments.
 template <typename Info, typename T>
 VkResult fake(VkDevice, const Info* info, const VkAllocationCallbacks*, T* out) {
   return make(out, bytes_of(*info));
@@ -150,7 +150,7 @@ VkResult fake(VkDevice, T, VkDeviceMemory, VkDeviceSize) {  // binds
 template <typename T, typename = std::enable_if_t<std::is_pointer_v<T>>>
 void fake(VkDevice, T object, const VkAllocationCallbacks*) {
   const auto number = reinterpret_cast<std::uint64_t>(object);
-  if (live.erase(number) != 1) std::abort();  // destroyed twice, or never made
+  if (live.erase(number) != 1) std::abort();  // destroyed twice, or never created
   if constexpr (kOfPipelines<T>) --pipeline_objects;
   if (const auto found = memory.find(number); found != memory.end()) {
     std::free(found->second);
@@ -166,7 +166,8 @@ template <typename Query>
 void fake(VkDevice, const Query* query, VkMemoryRequirements2* out) {
   require(out->memoryRequirements, bytes_of(*query->pCreateInfo));
 }
-// Commands, and what nothing here depends on. Pointers are not part of the hash: what they point at need not last.
+// Commands, and other functions that the tests do not depend on. Pointers are not hashed, because their targets may be
+// temporary.
 template <typename T>
 void mix(const T& value) {
   if constexpr (std::is_integral_v<T>) hash = (hash ^ static_cast<std::size_t>(value)) * 0x100000001b3U;
@@ -180,8 +181,8 @@ void mix_bytes(const void* from, std::size_t size) {
   }
   for (std::size_t i = size / sizeof(std::uint64_t) * sizeof(std::uint64_t); i < size; ++i) mix(bytes[i]);
 }
-// Objects count by their sizes and by where they first appear, and not by their numbers: others of the same kind may
-// have taken their places.
+// Objects are hashed by their sizes and the order of their first appearance, not by their numbers, because they may
+// have been replaced by equal ones.
 std::map<std::uint64_t, std::size_t> appeared;
 template <typename T>
 void mix_object(T object) {
@@ -210,7 +211,7 @@ struct Fake<kMember, R(VKAPI_PTR*)(Args...)> {
     }
   }
 };
-// The descriptors that a pass is given are the frame's inputs and the effect's own objects.
+// Hashes the descriptors of a pass.
 void VKAPI_CALL push_descriptors(VkCommandBuffer, VkPipelineBindPoint, VkPipelineLayout, std::uint32_t,
                                  std::uint32_t count, const VkWriteDescriptorSet* writes) {
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -229,15 +230,15 @@ void VKAPI_CALL begin_rendering(VkCommandBuffer, const VkRenderingInfo* info) {
   if (info->pDepthAttachment != nullptr) mix(info->pDepthAttachment->imageView);
 }
 
-// Command buffers and events. Commands that are recorded outside of a command buffer that was begun take effect at
-// once, others when they are submitted; nothing runs longer than that.
+// Command buffers and events. Commands take effect immediately on submission, or when they are recorded if no command
+// buffer has been begun.
 VkResult VKAPI_CALL allocate_command_buffers(VkDevice, const VkCommandBufferAllocateInfo* info, VkCommandBuffer* out) {
   if (fails(Kind::vulkan)) return kError;
   for (std::uint32_t i = 0; i < info->commandBufferCount; ++i) out[i] = reinterpret_cast<VkCommandBuffer>(next_object);
   return VK_SUCCESS;
 }
 VkResult VKAPI_CALL begin_command_buffer(VkCommandBuffer, const VkCommandBufferBeginInfo*) {
-  if (recording) std::abort();  // begun before, and not ended
+  if (recording) std::abort();  // begun twice
   if (fails(Kind::vulkan)) return kError;
   recording = true;
   to_set.clear();
@@ -269,7 +270,7 @@ VkResult VKAPI_CALL submit(VkQueue, std::uint32_t, const VkSubmitInfo*, VkFence)
   set_events.insert(to_set.begin(), to_set.end());
   to_set.clear();
   --in_driver;
-  // What the commands may read, in no order.
+  // The memory that the commands may read, independent of its order.
   const std::size_t before = std::exchange(hash, 0);
   std::size_t sum = 0;
   for (const auto& [number, bytes] : memory) {

@@ -1,5 +1,5 @@
-// Failures at a chosen place: the n-th call that creates a Vulkan object or memory, or the n-th `operator new`, which
-// faults.cpp replaces in programs that link it. Of the thread that arms them.
+// Fault injection: lets the n-th call fail that creates a Vulkan object or memory, or the n-th call of `operator new`,
+// which faults.cpp replaces in programs that link it. Applies to the thread that arms it.
 #pragma once
 
 #include <cstddef>
@@ -15,25 +15,26 @@ enum class Kind {
   host,
 };
 
-// Lets one call fail: the one after the next `n`. What a Vulkan function does by itself is not counted.
+// Lets the call after the next `n` calls fail. Allocations inside Vulkan functions are not counted.
 void arm(Kind kind, long n);
-// Returns whether a call has failed since.
+// Returns whether a call has failed since arm().
 bool disarm();
 
-// vkGetInstanceProcAddr() of functions that can fail. For one device at a time.
+// A vkGetInstanceProcAddr() whose functions can fail. For one device at a time.
 PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance instance, const char* name);
-// Changes what these functions report of the device; an empty function changes nothing.
+// Changes the properties that these functions report. An empty function changes nothing.
 void set_properties(std::function<void(VkPhysicalDeviceProperties2&)> change);
 
-// A device without a driver: its objects are numbers, its commands do nothing. Fast enough to fail everywhere.
+// Returns a device without a driver: its objects are numbers, and its commands do nothing. It is fast enough to fail at
+// every call.
 DeviceInfo fake_device();
-// vkGetInstanceProcAddr() of that device, for HostDesc.
+// The vkGetInstanceProcAddr() of that device, for HostDesc.
 PFN_vkVoidFunction VKAPI_CALL get_fake_proc_addr(VkInstance instance, const char* name);
-// Objects of it that have not been destroyed; pipelines and their layouts apart.
+// Returns the number of its objects that have not been destroyed, without pipelines and their layouts.
 std::size_t live_objects();
 std::size_t live_pipeline_objects();
-// A number that all commands recorded so far on it determine, with their arguments and with what mapped memory held
-// when they were submitted; and back to the first.
+// Returns a hash of all commands recorded so far, of their arguments, and of mapped memory when they were submitted.
+// Then resets the hash.
 std::size_t command_hash();
 void forget_commands();
 

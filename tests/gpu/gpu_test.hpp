@@ -1,7 +1,7 @@
-// The fixture of tests on a device: a Host with validation and synchronisation validation, which all tests of a program
-// share because creating a device takes longer than many of them. A message of the validation layer fails the test that
-// caused it; a message at the destruction of the device, about objects that were left behind, fails the program. A
-// machine without the layer or without a device fails as well, because `make check` installs both.
+// The fixture of tests on a device: a Host with validation and synchronisation validation. All tests of a program share
+// it, because creating a device takes longer than many tests. A message of the validation layer fails the test that
+// caused it. A message about leaked objects at the destruction of the device fails the program. So does a machine
+// without the layer or without a device, because `make check` installs both.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -26,8 +26,8 @@
 
 namespace tyndall {
 
-// Destroys the shared device after the last test. Run a single test (--gtest_filter) to find out which one has left
-// objects behind.
+// Destroys the shared device after the last test. Run single tests (--gtest_filter) to find out which one leaks
+// objects.
 class SharedHost : public testing::Environment {
  public:
   Result<void> make() {

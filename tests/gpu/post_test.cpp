@@ -1,5 +1,5 @@
-// Exposure and tone mapping on a device, without a scene: the operators against those of the CPU, the exposure against
-// sums over all pixels, and adaptation against its closed form.
+// Exposure and tone mapping on a device without a scene. Operators are compared with those of the CPU, the exposure
+// with sums over all pixels, and adaptation with its closed form.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -22,7 +22,7 @@ Rgb grey(double luminance) {
   return {static_cast<float>(luminance), static_cast<float>(luminance), static_cast<float>(luminance)};
 }
 
-// A picture over three stops around `middle`, all of which counts in full.
+// Returns a picture of three stops around `middle`, all of which have full weight.
 Paint mixed(double middle) {
   return [middle](std::uint32_t x, std::uint32_t y) {
     return grey(middle * std::exp2(1.5 * std::sin(0.37 * x) * std::cos(0.23 * y + 0.1 * x)));
@@ -45,7 +45,7 @@ class GpuPost : public GpuTest {
     GpuTest::TearDown();
   }
 
-  // Makes `paint` the picture that follows.
+  // Sets the picture.
   void show(VkExtent2D extent, const Paint& paint) {
     const auto make = [&](const char* name) {
       Result<gpu::Image> image = gpu::create_image(
@@ -94,7 +94,7 @@ class GpuPost : public GpuTest {
     return out;
   }
 
-  // Over all pixels, in double precision.
+  // Returns the logarithmic mean over all pixels in double precision.
   [[nodiscard]] double log_average(const Paint& paint) const {
     double sum = 0.0;
     for (std::uint32_t y = 0; y < extent_.height; ++y) {
@@ -135,7 +135,7 @@ TEST_F(GpuPost, OperatorsAreThoseOfTheCpu) {
         const std::array<double, 3> expected =
             tonemapped(settings_, static_cast<double>(settings_.exposure), {c[0], c[1], c[2]});
         for (std::size_t k = 0; k < 3; ++k) {
-          // A hundredth of a step of 8 bits: what logarithms and powers of single precision are good for.
+          // A hundredth of an 8-bit step, the error of logarithms and powers in single precision.
           ASSERT_NEAR(static_cast<double>(got[4 * i + k]), expected[k], 4e-5)
               << op << " of " << c[0] << " " << c[1] << " " << c[2] << ", saturation " << saturation;
         }
@@ -161,20 +161,21 @@ TEST_F(GpuPost, ExposureIsMiddleGreyOverTheLogAverage) {
       EXPECT_EQ(found.black, 0.0F);
     }
   }
-  // What the picture is mapped with.
+  // The picture is mapped with this exposure.
   const std::vector<float> got = display();
   const Measurement found = tonemap_->exposure().read();
   const Rgb c = {1.2F * mixed(30.0)(5, 1)[0], mixed(30.0)(5, 1)[1], 0.4F * mixed(30.0)(5, 1)[2]};
   const auto expected = tonemapped(settings_, static_cast<double>(found.exposure), {c[0], c[1], c[2]});
   EXPECT_NEAR(static_cast<double>(got[4 * (203 + 5)]), expected[0], 4e-5);
-  // Other middle grey, other exposure; darker than the least luminance is as if it were that.
+  // The exposure is proportional to middle grey. Luminances below least_luminance are treated as equal to it.
   settings_.middle_gray = 0.36F;
   EXPECT_NEAR(static_cast<double>(measure_alone().exposure), 2.0 * static_cast<double>(found.exposure), 1e-3);
   settings_.least_luminance = 100.0F;
   EXPECT_FLOAT_EQ(measure_alone().exposure, 0.36F / 100.0F);
 }
 
-// A part of the pixels of large pictures is read, in all rows and columns: stripes are met as they are.
+// Only a part of the pixels of large pictures is read, but from all rows and columns, so that stripes are measured
+// correctly.
 TEST_F(GpuPost, LargePicturesAreMeasuredFromAPartOfTheirPixels) {
   const Paint paints[] = {mixed(0.2), [](std::uint32_t x, std::uint32_t) { return grey(x % 2 == 0 ? 0.1 : 0.4); },
                           [](std::uint32_t, std::uint32_t y) { return grey(y % 2 == 0 ? 0.1 : 0.4); }};
@@ -195,21 +196,21 @@ TEST_F(GpuPost, BlackSpaceDoesNotCount) {
       };
       show({64, 64 * part}, with_space);
       const Measurement found = measure_alone();
-      // The bright part, and with it a weight at the dim end, may move a little.
+      // The bright part, and with it the weight of the darkest bin, may change slightly.
       EXPECT_NEAR(static_cast<double>(found.measured), static_cast<double>(full.measured), part == 2U ? 1e-3 : 0.02)
           << dark << " " << part;
       EXPECT_NEAR(static_cast<double>(found.counted), 1.0 / part, 2e-3);
       EXPECT_NEAR(static_cast<double>(found.black), dark < 1e-7 ? 1.0 - 1.0 / part : 0.0, 1e-6);
     }
   }
-  // Nothing at all: the first guess, and later what was before.
+  // A black picture gives the initial exposure, and later the previous one.
   show({64, 64}, [](std::uint32_t, std::uint32_t) { return grey(0.0); });
   const Measurement nothing = measure_alone();
   EXPECT_EQ(nothing.measured, 0.0F);
   EXPECT_EQ(nothing.luminance, 0.1F);
   EXPECT_EQ(nothing.black, 1.0F);
   show({64, 64}, mixed(0.2));
-  EXPECT_EQ(measure(0.01).luminance, full.luminance);  // taken at once: there was nothing to adapt from
+  EXPECT_EQ(measure(0.01).luminance, full.luminance);  // immediately, because there is no previous exposure
   show({64, 64}, [](std::uint32_t, std::uint32_t) { return grey(0.0); });
   EXPECT_EQ(measure(100.0).luminance, full.luminance);
 }
@@ -223,7 +224,7 @@ TEST_F(GpuPost, OneBrightPixelDoesNotChangeTheExposure) {
       show(extent, [&](std::uint32_t x, std::uint32_t y) { return x == at && y == 41 ? grey(7e4) : mixed(0.2)(x, y); });
       largest = std::max(largest, std::abs(static_cast<double>(measure_alone().measured / without.measured) - 1.0));
     }
-    // ln(7e4/0.2) of 14 400 samples; in larger pictures one pixel may stand for two.
+    // ln(7e4/0.2) of 14 400 samples. In larger pictures one pixel may represent two.
     EXPECT_LT(largest, 1e-3);
   }
 }
@@ -241,7 +242,7 @@ TEST_F(GpuPost, AdaptationDoesNotDependOnTheFrameRate) {
     EXPECT_NEAR(static_cast<double>(found.luminance), expected, 1e-3 * expected) << rate;
     EXPECT_NEAR(static_cast<double>(found.measured), kBright, 1e-3 * kBright);
   }
-  // No time, no change; a long time, and without adaptation, at once.
+  // The exposure does not change in no time, and changes completely after a long time or without adaptation.
   show({32, 16}, [&](std::uint32_t, std::uint32_t) { return grey(kDim); });
   const float before = tonemap_->exposure().read(1).luminance;
   EXPECT_FLOAT_EQ(measure(0.0).luminance, before);
@@ -255,7 +256,7 @@ TEST_F(GpuPost, FixedExposureIsIndependentOfThePicture) {
   std::vector<float> first;
   for (const double rest : {0.001, 50.0}) {
     show({32, 16}, [&](std::uint32_t x, std::uint32_t) { return grey(x == 3 ? 0.2 : rest); });
-    if (!first.empty()) measure(1.0);  // nor of what has been measured
+    if (!first.empty()) measure(1.0);  // measured luminance has no influence either
     const std::vector<float> got = display();
     if (first.empty()) first = got;
     EXPECT_EQ(std::vector<float>(got.begin() + 12, got.begin() + 16),
@@ -267,7 +268,7 @@ TEST_F(GpuPost, TheHistogramMatchesThePicture) {
   show({64, 32}, [](std::uint32_t x, std::uint32_t) {
     if (x < 16) return grey(0.25);
     if (x < 32) return grey(3.0);
-    if (x < 40) return grey(1e12);  // beyond its end
+    if (x < 40) return grey(1e12);  // above the range of the histogram
     return x < 48 ? Rgb{kNoNumber, -1.0F, 0.0F} : x < 56 ? Rgb{kInfinity, 1.0F, 1.0F} : grey(0.0);
   });
   const Measurement found = measure_alone();

@@ -1,4 +1,4 @@
-// Frames drawn by one effect, which all tests of a program share, and the comparison of techniques.
+// Draws frames with one effect, which all tests of a program share, and compares techniques.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +16,8 @@ namespace tyndall {
 
 using Picture = std::vector<glm::dvec3>;
 
-// Of small pictures, with samples as far apart as the defaults put them in large ones, and tables that are built in
-// a moment: both techniques take the same.
+// Returns parameters for small pictures. Samples have the same distance as with the defaults in large pictures. The
+// tables are built quickly, and both techniques use the same ones.
 inline Params small_params() {
   Params params;
   params.tables.size = {8, 32, 16, 8};
@@ -38,7 +38,7 @@ inline std::string hundredths(double value) {
   return text;
 }
 
-// Device and effect are shared by all tests of this program: to create an effect takes longer than to draw many
+// All tests of a program share a device and an effect, because creating an effect takes longer than drawing many
 // pictures.
 class SharedEffect : public testing::Test {
  protected:
@@ -97,7 +97,7 @@ class SharedEffect : public testing::Test {
   }
   Effect& effect() { return own_effect_ ? *own_effect_ : *effect_; }
 
-  // The frame whose images are drawn from until the next call.
+  // Sets the frame for the following calls of draw().
   void show(const BoxScene& scene) { show(frame_of(scene)); }
   void show(const TestFrame& frame) {
     frame_ = frame;
@@ -108,7 +108,7 @@ class SharedEffect : public testing::Test {
   [[nodiscard]] const TestFrame& frame() const { return frame_; }
   FrameImages& images() { return *images_; }
 
-  // Every pixel is checked. Black is allowed where nothing is to be seen.
+  // Draws the frame. Checks that every pixel is finite and, unless `may_be_black`, not black.
   Picture draw(const Params& params, const std::string& name, bool may_be_black = false) {
     const std::size_t pixels = static_cast<std::size_t>(frame_.extent.width) * frame_.extent.height;
     Picture picture(pixels, glm::dvec3(-1.0));
@@ -128,7 +128,7 @@ class SharedEffect : public testing::Test {
   }
   Counters counters() { return effect().counters(0); }
 
-  // Draws both and holds the floor.
+  // Draws the frame with both techniques and checks the PSNR.
   Likeness expect_alike(const std::string& name, const Params& params, double floor_db) {
     const Picture reference = draw(by_brute_force(params), name + ", brute force", params.scattering.only);
     const Picture picture = draw(params, name, params.scattering.only);
@@ -140,8 +140,8 @@ class SharedEffect : public testing::Test {
     return likeness;
   }
 
-  std::optional<Effect> own_effect_;        // in place of the shared one
-  static inline bool with_colors_ = false;  // of the shared one, set before it is made
+  std::optional<Effect> own_effect_;        // used instead of the shared one
+  static inline bool with_colors_ = false;  // of the shared effect; must be set before it is created
 
  private:
   TestFrame frame_;

@@ -1,4 +1,4 @@
-// A small effect on the fake device, and what must be the same about it after a call that was refused.
+// A small effect on the fake device, and its state that a failed call must not change.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ inline Params small_params() {
   return params;
 }
 
-// Other tables, other buffers and other pipelines.
+// Returns parameters with other tables, buffers and pipelines.
 inline Params other_params() {
   Params params = small_params();
   params.tables.size = {4, 8, 12, 4};
@@ -61,7 +61,7 @@ inline FrameInputs fake_frame() {
   return inputs;
 }
 
-// What must be the same after a call that was refused.
+// The state that a failed call must not change.
 struct Observed {
   std::size_t frame_commands = 0;
   std::size_t objects = 0;
@@ -100,9 +100,9 @@ inline void expect_same(const Observed& a, const Observed& b, const std::string&
   EXPECT_EQ(a.light, b.light) << where;
 }
 
-enum class Built { not_at_all, in_part, completely, others_in_part };  // what tables there are
+enum class Built { not_at_all, in_part, completely, others_in_part };  // state of the tables
 
-// An effect of the fake device. Frames have been recorded until nothing waits to be freed.
+// Creates an effect on the fake device, and records frames until no objects wait to be freed.
 inline Effect make(Built built) {
   Result<Effect> made = Effect::create(faults::fake_device(), small_desc(), small_params());
   EXPECT_OK(made);

@@ -1,4 +1,4 @@
-// How the scattering tables are built: in slices, beside frames that read the old ones.
+// The scattering tables are built in slices while frames read the old ones.
 #include "table_fixture.hpp"
 
 namespace tyndall {
@@ -30,7 +30,7 @@ TEST_F(TableBuilderTest, OldTablesAreUsedUntilNewOnesAreComplete) {
   const VkImageView single = builder.table(TableId::single_mie).view.get();
   const std::vector<std::byte> before = bytes(builder, TableId::high_orders);
 
-  // The ground has no part in light scattered once: only the higher orders are built again.
+  // Single scattering does not depend on the ground, so only the higher orders are rebuilt.
   params.planet.ground_albedo = 0.5F;
   ASSERT_OK(change(builder, params));
   EXPECT_LT(builder.progress().total, whole);
@@ -44,7 +44,7 @@ TEST_F(TableBuilderTest, OldTablesAreUsedUntilNewOnesAreComplete) {
   EXPECT_NE(bytes(builder, TableId::high_orders), before);
   EXPECT_EQ(builder.table(TableId::single_mie).view.get(), single);
 
-  // What no frame uses any more is freed.
+  // Tables that no frame uses any more are freed.
   for (int frame = 0; frame < 3; ++frame) {
     ASSERT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
       builder.begin_frame(cmd);
@@ -53,7 +53,7 @@ TEST_F(TableBuilderTest, OldTablesAreUsedUntilNewOnesAreComplete) {
   }
   EXPECT_EQ(builder.transient_bytes(), 0U);
 
-  // A change that is taken back before it is complete leaves the tables as they are.
+  // A change that is undone before its build is complete does not affect the tables.
   const std::vector<std::byte> now = bytes(builder, TableId::high_orders);
   Params other = params;
   other.atmosphere.aerosol_density = 2.0F;

@@ -1,4 +1,4 @@
-// Tables of a few texels on a device: built, and saved and loaded as an engine does it.
+// Small tables on a device: builds them, and saves and loads them in the same way as an engine.
 #pragma once
 
 #include <cstring>
@@ -11,7 +11,7 @@
 
 namespace tyndall {
 
-// Small and quick; what is tested with it does not depend on the size.
+// Returns parameters with small tables, for tests that do not depend on their size.
 inline Params small_tables() {
   Params params;
   params.tables.size = {6, 16, 12, 4};
@@ -50,7 +50,7 @@ class TableBuilderTest : public GpuTest {
   PipelineCache pipelines_;
 };
 
-// What an engine does to keep tables, with the library alone.
+// Saves and loads tables through the public interface, as an engine does.
 class SavedTablesTest : public TableBuilderTest {
  protected:
   Effect make(const Params& params, bool built) {

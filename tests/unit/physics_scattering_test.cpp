@@ -149,7 +149,7 @@ TEST(physics_scattering, another_planet) {
   expect_scattering(medium_from_params(params), 600, 16, 1.0e-4, 2.0e-3);
 }
 
-// Where the atmosphere is so dense that little light is transmitted.
+// Deep below sea level, the atmosphere is so dense that little light is transmitted.
 TEST(physics_scattering, deep_below_sea_level) {
   const shared::Medium m = medium_from_params({});
   Errors in_float;

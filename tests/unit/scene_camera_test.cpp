@@ -41,7 +41,7 @@ TEST(SceneMapProjection, MapAndWorldAreInverse) {
   EXPECT_NEAR(quarter.y, -kRadius_m, 1e-6);
 }
 
-// Every place of the planet is on a map projection near its centre, and the weights of map projections add up and
+// Every position of the planet is near the centre of a map projection. The weights of projections add up to one and
 // change slowly.
 TEST(SceneMapProjection, MapProjectionsCoverThePlanet) {
   std::mt19937 random(5);

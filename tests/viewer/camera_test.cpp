@@ -1,4 +1,4 @@
-// What mouse and keys do to camera and sun, without a window: pure functions against geometry.
+// Control of camera and sun by mouse and keys, without a window: pure functions compared with geometry.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,12 +28,12 @@ TEST(ViewerCamera, FliesAlongItsDirections) {
   const auto way = [&](const Motion& motion) {
     return moved(camera, motion, 0.5, 20.0, kRadius_m).position - camera.position;
   };
-  // 10 m: the planet's curve is below a millimetre there.
+  // Over 10 m, the curvature of the planet is below a millimetre.
   EXPECT_LT(glm::length(way({.forward = 1.0}) - 10.0 * view.forward), 2.0e-3);
   EXPECT_LT(glm::length(way({.forward = -1.0}) + 10.0 * view.forward), 2.0e-3);
   EXPECT_LT(glm::length(way({.right = 1.0}) - 10.0 * view.right), 2.0e-3);
   EXPECT_LT(glm::length(way({.up = 1.0}) - 10.0 * scene::up_of(camera.position, kRadius_m)), 2.0e-3);
-  EXPECT_NEAR(glm::length(way({.right = 1.0, .forward = 1.0})), 10.0, 2.0e-3);  // not faster across
+  EXPECT_NEAR(glm::length(way({.right = 1.0, .forward = 1.0})), 10.0, 2.0e-3);  // not faster diagonally
   EXPECT_FALSE(Motion{}.any());
 }
 
@@ -49,8 +49,8 @@ TEST(ViewerCamera, SpeedGrowsWithHeightAndShift) {
   EXPECT_LT(seconds, 60.0);
 }
 
-// All the way around the planet the direction of view keeps its angle to the horizon, no step turns the view by more
-// than the planet turns under it, and a great circle closes.
+// Around the whole planet, the direction of view has a constant angle to the horizon, no step rotates the view by more
+// than the planet's curvature, and the great circle closes.
 TEST(ViewerCamera, GoesAroundThePlanetWithoutAJump) {
   CameraState camera = camera_at(10000.0, 77.0, 0.0);
   const CameraState start = camera;
@@ -62,7 +62,7 @@ TEST(ViewerCamera, GoesAroundThePlanetWithoutAJump) {
     const scene::View after = view_of(camera);
     ASSERT_NEAR(scene::altitude_of(camera.position, kRadius_m), 10000.0, 1.0);
     ASSERT_EQ(camera.pitch_deg, 0.0);
-    // The turn of a step is that of the planet: a step is 2 pi / 4000; the float parameters add their grain.
+    // A step is 2 pi / 4000 of the planet. The rest is the rounding of parameters to single precision.
     ASSERT_LT(glm::length(after.forward - before.forward), 1.1 * 6.2832 / kSteps) << i;
     ASSERT_LT(glm::length(after.right - before.right), 0.1 * 6.2832 / kSteps) << i;
   }

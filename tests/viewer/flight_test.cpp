@@ -1,4 +1,4 @@
-// The flight of a scene file in the viewer: the poses and the pictures are those of `tyndall render`.
+// Flights in the viewer: along the path of a scene file, with the poses and pictures of `tyndall render`, and to space.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 
 using namespace desk;
 
-// P plays the flight of the scene file: every frame is a pose of the path, later ones later, until a hand takes over.
+// P plays the flight of the scene file. Every frame has a pose of the path, in their order, until the user moves.
 TEST(Window, PlaysTheFlightOfTheScene) {
   NEEDS_A_DESK();
   Desk desk("flight");
@@ -39,7 +39,7 @@ TEST(Window, PlaysTheFlightOfTheScene) {
     const std::optional<std::string> line = desk.wait_for({"frame left"}, from);
     ASSERT_TRUE(line);
     const Frame f = frame_of(*line);
-    // The time of the path whose pose is nearest.
+    // Find the time of the path with the nearest pose.
     double nearest_m = 1.0e9;
     double at_s = 0.0;
     scene::SceneParams pose;
@@ -66,14 +66,14 @@ TEST(Window, PlaysTheFlightOfTheScene) {
   EXPECT_EQ(desk.leave(), 0) << desk.errors();
 }
 
-// A screenshot in flight is the picture that `tyndall render` makes of the same moment.
+// A screenshot during the flight equals the picture of `tyndall render` for the same time.
 TEST(Window, FliesThroughThePicturesOfRender) {
   NEEDS_A_DESK();
   Desk desk("flight_picture");
   const std::string scene = std::string(TYNDALL_SOURCE_DIR) + "/scenes/flythrough.toml";
   ASSERT_TRUE(desk.open(joined(joined({"--size", "640x360", "--no-first-steps"}, kSmallTables), {scene})))
       << desk.errors();
-  // The ground as finely as `render` has it.
+  // The terrain has the same level of detail as in `render`.
   ASSERT_TRUE(desk.click("menu.Windows"));
   ASSERT_TRUE(desk.click("item.Performance"));
   ASSERT_TRUE(desk.click("coarseness", 0.2));
@@ -90,7 +90,7 @@ TEST(Window, FliesThroughThePicturesOfRender) {
 
   const Result<image::File> seen = image::read(shot->substr(shot->find(" screenshot ") + 12) + ".exr");
   ASSERT_TRUE(seen.ok());
-  // The moment of the flight, by the place: speeds are such that a millimetre is a few microseconds.
+  // Find the time of the flight from the position. At this speed, a millimetre is a few microseconds.
   config::Settings flight, moment;
   ASSERT_TRUE(config::load(flight, scene).ok());
   for (const auto& [key, value] : seen.value().metadata) {
@@ -128,8 +128,8 @@ TEST(Window, FliesThroughThePicturesOfRender) {
   RecordProperty("mean_relative_error", std::to_string(difference.mean_relative_error));
 }
 
-// From the ground to space and back to it with the keys, without a turn or a step backwards, and not through the
-// ground.
+// With the keys, the camera flies from the ground to space and back, without turning, without moving backwards, and not
+// through the ground.
 TEST(Window, FliesToOrbitAndBackToTheGround) {
   NEEDS_A_DESK();
   Desk desk("orbit");
@@ -157,12 +157,12 @@ TEST(Window, FliesToOrbitAndBackToTheGround) {
   ASSERT_TRUE(ground.ok());
   from = desk.lines();
   desk.input("keydown q");
-  // Down until that goes no further.
+  // Fly down until the ground stops the camera.
   ASSERT_TRUE(desk.settles_after({"frame left"}, from));
   desk.input("keyup q");
   way = frames(desk);
   for (const Frame& f : way) {
-    // Far less than the planet's radius from the origin, map and world are the same but for its curve.
+    // Near the origin, map and world coordinates differ only by the curvature of the planet.
     const double ground_m = ground.value().height_m(f.x, f.z, 4.0);
     EXPECT_GT(altitude_of(f), ground_m + 2.0) << f.x << " " << f.z;
   }

@@ -1,4 +1,4 @@
-// Keys come to the GUI in frames in which nothing is lost.
+// The key feed distributes key events over frames of the GUI so that none is lost.
 #include <gtest/gtest.h>
 
 #define GLFW_INCLUDE_NONE
@@ -26,7 +26,7 @@ void click(KeyFeed& feed) {
     feed.add({KeyEvent::Kind::button, GLFW_MOUSE_BUTTON_LEFT, 0, action, 0, 0, 4.0, 5.0});
 }
 
-// What a frame sees: characters, and words for keys that are pressed in it.
+// Returns the events of each frame: characters, and names of the keys that are pressed in it.
 std::vector<std::string> frames_of(KeyFeed& feed) {
   std::vector<std::string> out;
   while (!feed.empty()) {

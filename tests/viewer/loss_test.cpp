@@ -1,4 +1,4 @@
-// A lost surface and a lost device.
+// Loss of the surface, of the device and of the display.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -37,7 +37,7 @@ TEST(Window, RecreatesALostSurfaceAndSavesTheStateOfALostDevice) {
   EXPECT_EQ(state.scene.sun.azimuth_deg, 123.0F);
 }
 
-// From outside: the window destroyed, the viewer's connection closed, the X server ended.
+// The window is destroyed, the connection of the viewer is closed, or the X server ends.
 TEST(Window, SavesTheStateWhenTheDisplayIsLost) {
   NEEDS_A_DESK();
   for (const char* what : {"destroyed", "killed", "server"}) {

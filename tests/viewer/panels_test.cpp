@@ -1,4 +1,4 @@
-// Panels, menus, views and the comparison, by the mouse.
+// Panels, menus, views and the comparison, used with the mouse.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -19,7 +19,7 @@ TEST(Window, OpensEveryPanelAndComparesByTheMouse) {
     EXPECT_TRUE(desk.wait_for_place(key_of(tab))) << tab;
     desk.picture(std::string("tab_") + tab);
   }
-  // A slider to both of its ends with the real mouse.
+  // The mouse moves a slider to both of its ends.
   std::size_t from = desk.lines();
   ASSERT_TRUE(pull(desk, "scattering.scale", {-0.02}));
   ASSERT_TRUE(desk.wait_for({"set scattering.scale=0.01"}, from));
@@ -32,7 +32,7 @@ TEST(Window, OpensEveryPanelAndComparesByTheMouse) {
   ASSERT_TRUE(desk.wait_for({"frame left"}, from));
   desk.picture("sampling");
 
-  // Windows from the menu, and a comparison: the other side is drawn too.
+  // The menu opens windows, and a comparison in which the other side is also drawn.
   for (const char* item : {"item.Performance", "item.Views and comparison"}) {
     ASSERT_TRUE(desk.click("menu.Windows"));
     ASSERT_TRUE(desk.click(item)) << item;
@@ -42,13 +42,13 @@ TEST(Window, OpensEveryPanelAndComparesByTheMouse) {
   ASSERT_TRUE(desk.click("compare", 0.1));
   ASSERT_TRUE(desk.wait_for({"shown two"}, from));
   desk.picture("comparison");
-  // Every view of what the picture is made from.
+  // Every view of intermediate results.
   for (int i = 1; i < 10; ++i) {
     ASSERT_TRUE(desk.click("shown", 0.3));
     ASSERT_TRUE(desk.click("shown." + std::to_string(i), 0.3)) << i;
     desk.picture("view_" + std::to_string(i));
   }
-  // A scene from the menu.
+  // The menu opens a scene.
   from = desk.lines();
   ASSERT_TRUE(desk.click("menu.Scenes"));
   ASSERT_TRUE(desk.click("item.noon"));

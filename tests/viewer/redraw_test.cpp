@@ -1,4 +1,4 @@
-// When the viewer draws its GUI again, and how long its loop sleeps: without a window or a scene.
+// The schedule of redraws: when the viewer draws its GUI, and how long its loop sleeps. Needs no window or scene.
 #include "viewer/redraw.hpp"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 namespace tyndall::viewer {
 namespace {
 
-// A schedule whose GUI has settled and whose user did something at the time 1 s.
+// Returns a schedule whose GUI has settled, with the last input at 1 s.
 Redraw settled() {
   Redraw redraw;
   redraw.note_input(1.0);

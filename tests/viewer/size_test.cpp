@@ -1,4 +1,4 @@
-// The window resized, minimised, on the full screen, at rest.
+// The window is resized, minimised, shown on the full screen, and at rest.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -24,16 +24,16 @@ TEST(Window, IsResizedAndIdlesWhenNothingChanges) {
         << i;
   }
   desk.picture("resized");
-  // Minimised and back: nothing is drawn meanwhile, and then it goes on.
+  // Nothing is drawn while the window is unmapped. Afterwards drawing continues.
   desk.input("windowunmap --sync " + desk.window());
   desk.input("windowmap --sync " + desk.window());
-  // At rest: every pipeline made, the eye adapted, then no step of the loop any more.
+  // At rest, after all pipelines have been created and the exposure has adapted, the loop stops.
   ASSERT_TRUE(desk.wait_for({"pipelines"}));
   ASSERT_TRUE(desk.wait_for({"resting"}));
   EXPECT_EQ(desk.leave(), 0) << desk.errors();
 }
 
-// Minimised nothing is drawn, and then it goes on; a window manager is what minimises.
+// Nothing is drawn while the window is minimised. Minimising requires a window manager.
 TEST(Window, IsMinimisedAndRestored) {
   NEEDS_A_DESK();
   Desk desk("minimised");
@@ -50,7 +50,7 @@ TEST(Window, IsMinimisedAndRestored) {
     desk.input("key w");
     ASSERT_TRUE(desk.wait_for({"frame left"}, from)) << i;
   }
-  // Between full screen and window, by the manager's rules.
+  // Switches between full screen and window under a window manager.
   std::size_t from = desk.lines();
   desk.input("key F11");
   ASSERT_TRUE(desk.wait_for({"shown", " in 800 600"}, from));

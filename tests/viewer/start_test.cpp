@@ -1,4 +1,4 @@
-// From the start to the first frame, and what is said where that cannot be.
+// The time from the start to the first frame, and errors at the start.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,8 +33,8 @@ TEST(Window, SaysWhatToDoWithoutADisplay) {
   EXPECT_NE(line.find("xvfb-run"), std::string::npos);
 }
 
-// The first frame within three seconds on two cores without a GPU, when the tables are in the cache: the best of three,
-// because the machine may be busy with something else.
+// With cached tables, the first frame is shown within three seconds on two cores without a GPU. The best of three runs
+// counts, because the machine may be busy.
 TEST(Window, ShowsItsFirstFrameWithinThreeSeconds) {
   NEEDS_A_DESK();
   double best_s = 1.0e9;
@@ -43,12 +43,12 @@ TEST(Window, ShowsItsFirstFrameWithinThreeSeconds) {
     desk.validation = false;
     const auto begin = std::chrono::steady_clock::now();
     ASSERT_TRUE(desk.open({"--no-first-steps"})) << desk.errors();
-    // open() looks for the window as well: the log has when the frame was there, from after the arguments were read.
+    // open() also waits for the window. The log has the time of the first frame since the arguments were read.
     const std::optional<std::string> ready = desk.wait_for({" ready "});
     ASSERT_TRUE(ready);
     const double own_s = std::strtod(ready->c_str(), nullptr);
     const double whole_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    // The first time the tables may have to be built.
+    // At the first run, the tables may have to be built.
     if (i > 0) best_s = std::min(best_s, own_s);
     ASSERT_LE(own_s, whole_s);
     desk.picture("first");

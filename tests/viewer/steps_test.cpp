@@ -1,4 +1,4 @@
-// No step of the loop of the GUI takes long, whatever the scene does meanwhile.
+// No iteration of the GUI's loop takes long, whatever the scene thread does.
 #include <gtest/gtest.h>
 
 #include <sstream>
@@ -11,8 +11,8 @@ namespace {
 
 using namespace desk;
 
-// The loop of the GUI goes on while the scene takes its time: nothing that a hand does waits for a frame of the scene,
-// for tables, for pipelines or for another scene. Steps of the loop are timed by the viewer itself.
+// The loop of the GUI runs while the scene works: no input waits for a frame of the scene, for tables, pipelines or
+// another scene. The viewer itself measures the iterations.
 void works_without_a_freeze(Desk& desk) {
   std::size_t from = desk.lines();
   desk.input("keydown w");
@@ -21,7 +21,7 @@ void works_without_a_freeze(Desk& desk) {
     from = desk.lines();
   }
   desk.input("keyup w");
-  // The air: other tables.
+  // Parameters of the atmosphere need other tables.
   ASSERT_TRUE(pull(desk, "atmosphere.aerosol_density", {0.3, 0.35, 0.4, 0.45, 0.5}));
   ASSERT_TRUE(desk.wait_for({"set atmosphere.aerosol_density"}, from));
   from = desk.lines();
@@ -31,7 +31,7 @@ void works_without_a_freeze(Desk& desk) {
   ASSERT_TRUE(pull(desk, "shadows.cascades", {0.1, 0.6}));
   ASSERT_TRUE(desk.wait_for({"set shadows.cascades"}, from));
   ASSERT_TRUE(desk.wait_for({"frame left"}, from));
-  // Another technique, with pipelines that have not been made.
+  // Another technique, whose pipelines have not been created.
   from = desk.lines();
   ASSERT_TRUE(compare_two(desk));
   ASSERT_TRUE(desk.wait_for({"frame right"}, from));
@@ -55,7 +55,7 @@ TEST(Window, NeverFreezes) {
   works_without_a_freeze(desk);
 }
 
-// As on devices with a GPU: the window and the scenes on one device, from two threads.
+// The window and the scenes share one device from two threads, as they do on a GPU.
 TEST(Window, SharesOneDeviceWithTheScenes) {
   NEEDS_A_DESK();
   Desk desk("one_device");

@@ -1,4 +1,4 @@
-// What the controls say, and their ends.
+// Labels, tooltips and ranges of the controls.
 #include <gtest/gtest.h>
 
 #include <string>

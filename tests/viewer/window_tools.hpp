@@ -1,4 +1,4 @@
-// What the tests of the window have in common: a frame as the log tells it, drags of sliders.
+// Functions shared by the tests of the window: they parse frames from the log and drag sliders.
 #pragma once
 
 #include <string>
@@ -11,31 +11,31 @@
 
 namespace tyndall::desk {
 
-// The numbers of a line of the log after "frame left N width height ms T camera x y z yaw pitch fov sun az el".
+// The numbers of a line of the log: "frame left N width height ms T camera x y z yaw pitch fov sun az el".
 struct Frame {
   int number = 0, width = 0, height = 0;
   double x = 0.0, y = 0.0, z = 0.0, yaw = 0.0, pitch = 0.0, fov = 0.0, azimuth = 0.0, elevation = 0.0;
 };
 
 [[nodiscard]] Frame frame_of(const std::string& line);
-// All frames of the left side so far, and the last.
+// Return all frames of the left side so far, and the last one.
 [[nodiscard]] std::vector<Frame> frames(const Desk& desk);
 [[nodiscard]] Frame last_frame(const Desk& desk);
 
-// Drags a slider from a quarter of its width through these parts of it.
+// Drags a slider from a quarter of its width to each of these fractions of it.
 [[nodiscard]] bool pull(Desk& desk, const std::string& key, const std::vector<double>& ways);
 
-// Something that only this panel of controls has.
+// Returns the key of a control that only this panel has.
 [[nodiscard]] std::string key_of(const std::string& panel);
 
-// Opens the window of views and switches the comparison on, until two pictures are shown.
+// Opens the window of views, switches the comparison on, and waits until two pictures are shown.
 [[nodiscard]] bool compare_two(Desk& desk);
 
 inline const std::vector<std::string> kSmall = {"--size", "480x270", "--no-first-steps"};
-// With tables that are built within a second or two.
+// Arguments for tables that are built within a second or two.
 inline const std::vector<std::string> kSmallTables = {"--set", "tables.size=8,16,16,4", "--set", "tables.orders=2"};
 
-// The arguments of `a`, then those of `b`.
+// Returns the arguments of `a` followed by those of `b`.
 [[nodiscard]] std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b);
 
 }  // namespace tyndall::desk

@@ -1,6 +1,6 @@
-// The window "Controls": basic and additional settings, tone mapping, the atmosphere, and every parameter. What a
-// control looks like comes from the table of parameters; the panels choose which are shown and when they have an
-// effect.
+// The window "Controls": basic and additional settings, tone mapping, the atmosphere, and every parameter. The
+// appearance of a control follows from the table of parameters. The panels select the controls, and grey out those that
+// have no effect.
 #pragma once
 
 #include "config/settings.hpp"

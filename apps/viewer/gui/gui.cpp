@@ -83,7 +83,7 @@ void Gui::start() {
 }
 
 void Gui::toast(std::string text, bool bad, double now) {
-  // A message that is shown already only lasts longer.
+  // If the message is already visible, only its time is extended.
   std::erase_if(toasts_, [&](const Toast& t) { return t.text == text; });
   if (toasts_.size() > 5) toasts_.erase(toasts_.begin());
   toasts_.push_back({std::move(text), now + (bad ? kBadToast_s : kToast_s), bad});

@@ -1,5 +1,5 @@
-// The GUI: menu, windows and overlays over the picture. What a parameter's control looks like comes from its row in the
-// table of parameters.
+// The GUI: menu, windows and overlays over the picture. The appearance of a control follows from its row in the table
+// of parameters.
 #pragma once
 
 #include <string>

@@ -9,7 +9,7 @@
 
 namespace tyndall::viewer {
 
-// What the GUI may change besides the settings.
+// The state that the GUI may change besides the settings.
 struct GuiState {
   bool hidden = false;  // F2
   bool help = false;    // F1
@@ -25,7 +25,7 @@ struct GuiState {
   bool playing = true;  // the sun's animation
 };
 
-// What the user has requested in this frame.
+// The requests of the user in this frame.
 struct GuiRequests {
   bool save = false, restore = false, screenshot = false, reload_shaders = false, quit = false, play = false;
   bool copy_to_right = false;  // make the right side of the comparison a copy of the left
@@ -40,7 +40,7 @@ struct FlightFacts {
   double path_s = 0.0, path_end_s = 0.0;
 };
 
-// What the GUI shows of the program.
+// The state of the program that the GUI shows.
 struct GuiFacts {
   const SceneFacts* scene = nullptr;  // of the left side
   const FrameTimes* times = nullptr;

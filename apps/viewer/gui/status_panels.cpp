@@ -9,7 +9,7 @@
 namespace tyndall::viewer {
 namespace {
 
-constexpr float kViewsHeight = 190.0F;  // of the window below that of the times
+constexpr float kViewsHeight = 190.0F;  // height of the window "Views and comparison"
 
 void text_bytes(const char* name, VkDeviceSize bytes) {
   ImGui::TableNextRow();

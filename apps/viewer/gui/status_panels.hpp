@@ -1,5 +1,5 @@
-// The windows that show what the program does: "Performance" with times, memory and exposure, and "Views and
-// comparison" with the images and tables that the picture is made from.
+// The windows "Performance", with times, memory and exposure, and "Views and comparison", with intermediate images and
+// tables.
 #pragma once
 
 #include "viewer/gui/gui_state.hpp"

@@ -30,7 +30,7 @@ class Devices {
   [[nodiscard]] bool are_one() const { return window_ == scene_; }
   // Returns whether scenes are drawn without a GPU.
   [[nodiscard]] bool slow() const;
-  // Of the validation layer, on both devices.
+  // Returns the number of messages of the validation layer on both devices.
   [[nodiscard]] std::uint32_t validation_messages() const;
   [[nodiscard]] std::string validation_text() const;
 

@@ -1,5 +1,5 @@
-// Draws what is shown of one scene, its picture or one of the images and tables that it is made from, into a canvas of
-// the window's size. Runs on the scene's device and on the scene's thread.
+// Draws the picture of a scene, or one of its intermediate images and tables, into a canvas of the window's size. Runs
+// on the device and the thread of the scene.
 #pragma once
 
 #include <cstddef>

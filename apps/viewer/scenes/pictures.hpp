@@ -18,7 +18,7 @@ struct PictureOptions {
   float divider = 0.5F;  // of the window's width
 };
 
-// Returns what the canvases of a window of this size are to show.
+// Returns the view that the canvases of a window of this size must show.
 [[nodiscard]] View view_of(const PictureOptions& options, VkExtent2D window);
 
 class Pictures {

@@ -18,8 +18,9 @@ struct Knots {
 
 double square(double x) { return x * x; }
 
-// Slope at the middle of three knots: the weighted harmonic mean of Fritsch and Butland ("A method for constructing
-// local monotone piecewise cubic interpolants", 1984), 0 at an extremum: the curve never leaves the range of its knots.
+// Returns the slope at the middle of three knots: the weighted harmonic mean of Fritsch and Butland ("A method for
+// constructing local monotone piecewise cubic interpolants", 1984), 0 at an extremum. The curve never leaves the range
+// of its knots.
 double monotone_slope(double h0, double d0, double h1, double d1) {
   if (d0 * d1 <= 0.0) return 0.0;
   const double w0 = 2.0 * h1 + h0;
@@ -72,7 +73,7 @@ std::optional<double> wide(const std::optional<float>& value) {
   return value ? std::optional(static_cast<double>(*value)) : std::nullopt;
 }
 
-// Adds whole turns to each angle, so that it is nearest to the previous one.
+// Adds full rotations to each angle, so that it is nearest to the previous one.
 void unwrap(std::vector<double>& angles_deg) {
   for (std::size_t i = 1; i < angles_deg.size(); ++i) {
     angles_deg[i] += 360.0 * std::round((angles_deg[i - 1] - angles_deg[i]) / 360.0);

@@ -11,8 +11,7 @@
 
 namespace tyndall::scene {
 
-// A keyframe. What it leaves out is interpolated between the others; what all of them leave out comes from the
-// parameters.
+// A keyframe. A missing value is interpolated between other keyframes. If no keyframe has it, the parameter is used.
 struct PathFrame {
   double time_s = 0.0;
   std::optional<DVec3> position_m;
@@ -36,8 +35,8 @@ struct CameraPath {
 };
 
 // Returns `base` with the camera and the sun as they are `seconds` into the path. All quantities and their first
-// derivatives are continuous and never overshoot the keyframes. Yaw and azimuth turn the shorter way; positions follow
-// the curvature of the planet; altitudes are interpolated in asinh(h/1 km), which is linear near the ground and
+// derivatives are continuous and never overshoot the keyframes. Yaw and azimuth rotate the shorter way; positions
+// follow the curvature of the planet; altitudes are interpolated in asinh(h/1 km), which is linear near the ground and
 // logarithmic far above it. Before the first frame and after the last the pose is constant, unless the path loops. If
 // the path moves the sun, sun.animate is off.
 [[nodiscard]] SceneParams pose_at(const CameraPath& path, double seconds, const SceneParams& base, double radius_m);

@@ -1,5 +1,5 @@
-// The models of light scattering: the one list that `probe`, `validate`, `sky`, the viewer's menu and remarks about
-// unused parameters read. How each of them is computed or drawn is found by its id.
+// The list of all models of light scattering, used by `probe`, `validate`, `sky`, the menu of the viewer, and remarks
+// on unused parameters. Code that computes or draws a model is selected by its id.
 #pragma once
 
 #include <optional>
@@ -28,12 +28,12 @@ struct DrawnBy {
 
 struct ModelInfo {
   ModelId id;
-  std::string_view name;     // of --model
+  std::string_view name;     // for --model
   std::string_view meaning;  // one line, for reports
-  int orders;                // of scattering that it computes; 0: all
-  bool random;               // its answers have a standard error
+  int orders;                // number of orders of scattering; 0: all
+  bool random;               // its results have a standard error
   std::optional<DrawnBy> drawn_by;
-  const char* title;  // in menus; nullptr where the scene is not drawn by it
+  const char* title;  // in menus; nullptr if it cannot draw the scene
 };
 
 // Returns all models in the order of ModelId.

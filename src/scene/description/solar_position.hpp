@@ -16,8 +16,7 @@ struct Place {
 };
 
 struct SolarPosition {
-  // Along a straight line from the place: with parallax and without refraction, which lifts the sun by some 0.5 deg at
-  // the horizon and 0.1 deg at 10 deg.
+  // With parallax and without refraction, which raises the sun by about 0.5 deg at the horizon and 0.1 deg at 10 deg.
   double elevation_deg = 0.0;  // above the horizontal
   double azimuth_deg = 0.0;    // clockwise from north, [0; 360)
   // Apparent, from the centre of the Earth: for the equator and equinox of the date.

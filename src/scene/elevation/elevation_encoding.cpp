@@ -1,4 +1,4 @@
-// Decodes heights that are stored in colours, and finds samples that mean "no data" although the file does not say so.
+// Decodes heights that are stored as colours, and detects "no data" samples that the file does not declare.
 #include <gdal_utils.h>
 
 #include <array>
@@ -90,8 +90,7 @@ Dataset declare_no_data(GDALDataset& file, std::vector<std::string>& notes) {
   static_cast<void>(band.GetNoDataValue(&declared));
   if (declared != 0) return nullptr;
   constexpr std::array<double, 6> kUsual = {-9999.0, -32768.0, -32767.0, -999.0, 32767.0, 9999.0};
-  constexpr double kMinGap =
-      500.0;  // no land falls by as much between two samples and stays away from all heights between
+  constexpr double kMinGap = 500.0;  // units; real heights have no such gap
   std::array<std::size_t, kUsual.size()> count = {};
   std::array<double, kUsual.size()> gap = {};
   gap.fill(std::numeric_limits<double>::infinity());

@@ -273,8 +273,8 @@ Result<MapProjection> map_projection(const std::string& source_name, const Geore
       return elevation_error(source_name,
                              "has a coordinate system that cannot be converted to latitudes and longitudes");
   }
-  // PROJ refuses to go from one celestial body to another: the sphere has the size of the file's own body, and what
-  // it gives is scaled to the planet. Latitudes and longitudes stay as they are.
+  // PROJ does not convert between celestial bodies. The sphere therefore has the size of the file's body, and the
+  // result is scaled to the planet. Latitudes and longitudes are unchanged.
   constexpr double kSameBody = 0.005;
   const double file_radius_m = geo.srs.GetSemiMajor();
   const bool same_body = std::abs(file_radius_m - radius_m) <= kSameBody * file_radius_m;
@@ -308,7 +308,7 @@ Result<ElevationRaster> warp(const std::string& source_name, GDALDataset& source
                                                     request.planet_radius_m, notes);
   if (!projection.ok()) return std::move(projection).error();
   const std::string& wkt = projection.value().wkt;
-  // The extent and the spacing that preserve the resolution.
+  // Determine the extent and the spacing that preserve the resolution.
   void* transformer = GDALCreateGenImgProjTransformer(GDALDataset::ToHandle(&source), nullptr, nullptr,
                                                       wkt.empty() ? nullptr : wkt.c_str(), FALSE, 0.0, 1);
   std::array<double, 6> suggested = {};

@@ -2,17 +2,18 @@
 // of the file, in the azimuthal equidistant projection on a sphere that the terrain uses. Latitudes and longitudes are
 // copied from the file's ellipsoid to the sphere without conversion.
 //
-// What the file does not say is assumed, and `notes` report it:
+// Missing properties of a file are assumed and reported in `notes`:
 // - no georeferencing (e.g. a 16-bit PNG): samples 30 m apart, north up, heights in metres;
-// - a geotransform without a coordinate system: as ElevationRequest::units says; automatic takes degrees on WGS 84
-//   if it lies within ±360 and ±90 with samples less than one degree apart and does not begin at 0,0, else metres;
-// - no vertical unit: that of the vertical coordinate system if there is one, else metres.
-// The band's scale, offset, unit (metres, feet, US survey feet, and decimal multiples) and no-data value are
-// honoured. NaN, infinite and impossible heights (beyond ±20 km) are holes too; holes are filled from
-// their borders. Undeclared samples of -9999 and the like are holes when they lie far from all others. Of several
-// bands the first is read, but colour tiles (Terrarium, Terrain-RGB) are decoded and other colour images refused. Files
-// larger than max_samples on a side are read at a lower resolution. The latitudes and
-// longitudes of a file of another celestial body are used as they are.
+// - a geotransform without a coordinate system: see ElevationRequest::units. `automatic` assumes degrees on WGS 84 if
+//   the extent is within ±360 and ±90, samples are less than one degree apart and it does not begin at 0,0; otherwise
+//   metres;
+// - no vertical unit: that of the vertical coordinate system if there is one, otherwise metres.
+// The band's scale, offset, unit (metres, feet, US survey feet, and decimal multiples) and no-data value are used. NaN,
+// infinite and impossible heights (beyond ±20 km) are holes, too. Holes are filled from their borders. Undeclared
+// samples of -9999 and similar values are holes if they are far from all other values. If there are several bands, the
+// first is read, but colour tiles (Terrarium, Terrain-RGB) are decoded and other colour images are refused. Files with
+// more than max_samples on a side are read at a lower resolution. The latitudes and longitudes of a file of another
+// celestial body are used unchanged.
 #pragma once
 
 #include <optional>
@@ -42,14 +43,14 @@ struct ElevationRequest {
   TerrainUnits units = TerrainUnits::automatic;
 };
 
-// Reads `source`: a file, or one of GDAL's own names (/vsizip/..., /vsicurl/..., NETCDF:...).
-// Errors: no such file, a directory, empty, in no format that is read, truncated, smaller than 2 x 2 samples,
-// complex numbers, nothing but holes, latitudes beyond 90 degrees, extents that no planet has, a picture.
-// Prints nothing. Memory: about 12 bytes per sample of the result.
+// Reads `source`: a file, or a name of GDAL (/vsizip/..., /vsicurl/..., NETCDF:...). Errors: the file does not exist,
+// is a directory, is empty or truncated, has an unsupported format, fewer than 2 x 2 samples, complex numbers, only
+// holes, latitudes beyond 90 degrees or an impossible extent, or is a picture. Prints nothing. Needs about 12 bytes of
+// memory per sample of the result.
 Result<ElevationRaster> read_elevation_file(const std::string& source, const ElevationRequest& request = {});
 
-// Returns `source` and the other files that reading it reads, as far as its format lists them: auxiliary files, and
-// what a virtual raster refers to.
+// Returns `source` and all other files that are read with it, as far as its format lists them: auxiliary files and the
+// sources of a virtual raster.
 [[nodiscard]] std::vector<std::string> elevation_file_list(const std::string& source);
 
 }  // namespace tyndall::scene

@@ -5,9 +5,9 @@
 
 namespace tyndall::scene {
 
-// Replaces every NaN by a smooth continuation of what surrounds it: means over ever larger cells, taken
-// linearly between their centres ("pull-push", Gortler et al., "The lumigraph", 1996). Row-major; at least
-// one value must be finite.
+// Replaces every NaN by a smooth continuation of its surroundings: means over increasingly large cells, interpolated
+// linearly between their centres ("pull-push", Gortler et al., "The lumigraph", 1996). The values are row-major. At
+// least one must be finite.
 void fill_holes(std::vector<float>& values, int width, int height);
 
 }  // namespace tyndall::scene

@@ -1,4 +1,4 @@
-// Private to src/scene/elevation: what the files that speak to GDAL share.
+// Private to src/scene/elevation: declarations shared by the files that use GDAL.
 #pragma once
 
 #include <cpl_error.h>
@@ -27,7 +27,7 @@ class Messages {
   Messages(const Messages&) = delete;
   Messages& operator=(const Messages&) = delete;
 
-  // The failure in brackets, or nothing.
+  // Returns the failure in parentheses, or an empty string.
   [[nodiscard]] std::string reason() const { return first_.empty() ? "" : " (" + first_ + ")"; }
 
  private:
@@ -47,8 +47,8 @@ inline Error elevation_error(std::string_view source, std::string_view what) {
   return Error{ErrorCode::io, "elevation file " + std::string(source) + " " + std::string(what), 0};
 }
 
-// While it lives, GDAL connects to nothing on this thread, unless `source` itself names a network file system. Files
-// that a virtual raster refers to are opened only when samples are read: to be held until then.
+// During its lifetime, GDAL opens no network connections on this thread, unless `source` itself names a network file
+// system. It must live until the samples have been read, because virtual rasters open their sources only then.
 class NetworkGuard {
  public:
   explicit NetworkGuard(const std::string& source);
@@ -60,20 +60,20 @@ class NetworkGuard {
   bool closed_;
 };
 
-// Opens a file for reading with one of the drivers that hold elevations and read local files. Also accepted are names
-// of GDAL's own: /vsizip/FILE.zip/NAME, /vsicurl/URL, NETCDF:FILE:VARIABLE. Only a name that itself begins with a
-// network file system (/vsicurl/ and the like) leads to network access: virtual rasters (VRT) that refer to one are
-// refused. Call with a NetworkGuard.
+// Opens a file for reading with one of the drivers for local elevation files. Names of GDAL are also accepted:
+// /vsizip/FILE.zip/NAME, /vsicurl/URL, NETCDF:FILE:VARIABLE. The network is only used if the name itself begins with a
+// network file system such as /vsicurl/; virtual rasters (VRT) that refer to one are refused. Requires a NetworkGuard.
 [[nodiscard]] Result<Dataset> open_elevation(const std::string& source, const Messages& messages);
 
-// Decodes tiles that hold heights in the colours of an 8-bit image, Terrarium or Terrain-RGB, to one band of metres; a
-// note says which. Null for files that are no colour image; an error for pictures that hold no heights.
+// Decodes tiles with heights in the colours of an 8-bit image (Terrarium or Terrain-RGB) to one band in metres, and
+// adds a note with the encoding. Returns null for files that are not colour images, and an error for pictures without
+// heights.
 [[nodiscard]] Result<Dataset> decode_colours(const std::string& source, GDALDataset& file,
                                              std::vector<std::string>& notes);
 
-// Returns a virtual raster over `file`, which must outlive it, that declares the sample that evidently stands for "no
-// data" although the file does not say so: -9999 and its like, at least 500 units from every other sample. A note says
-// which. Null when there is none.
+// Returns a virtual raster over `file` that declares an undeclared "no data" value: -9999 or a similar value that is at
+// least 500 units from every other sample. Adds a note with the value. Returns null if there is none. `file` must
+// outlive the result.
 [[nodiscard]] Dataset declare_no_data(GDALDataset& file, std::vector<std::string>& notes);
 
 }  // namespace tyndall::scene

@@ -1,4 +1,4 @@
-// Opens elevation files: decides which names and which drivers are allowed.
+// Opens elevation files. Restricts the allowed names and drivers.
 #include <cpl_conv.h>
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 namespace tyndall::scene {
 namespace {
 
-// Formats of elevations, and of images that carry them. None of them opens network connections by itself; GDAL's other
-// drivers (WMS, WCS, HTTP, STAC, databases, ...) are not needed and are removed.
+// Formats of elevation files, and of images that may contain elevations. None of these drivers opens network
+// connections by itself. GDAL's other drivers (WMS, WCS, HTTP, STAC, databases, ...) are not needed and are removed.
 constexpr std::array<const char*, 63> kDrivers = {
     "AAIGrid",        "AIG",     "BAG",       "BMP",  "BT",       "COG",     "CTG",      "DTED",
     "EHdr",           "ENVI",    "ERS",       "EXR",  "GenBin",   "GFF",     "GMT",      "GPKG",
@@ -34,7 +34,7 @@ bool is_allowed(std::string_view name) {
   return false;
 }
 
-// Removes the other drivers from the process: the sources of a virtual raster are opened with whatever is registered.
+// Removes all other drivers from the process, because a virtual raster opens its sources with any registered driver.
 void register_drivers() {
   GDALAllRegister();
   GDALDriverManager& manager = *GetGDALDriverManager();
@@ -49,7 +49,7 @@ void register_drivers() {
 
 bool begins_with(std::string_view text, std::string_view start) { return text.substr(0, start.size()) == start; }
 
-// Virtual file systems that do not use a network.
+// Returns whether a name belongs to a virtual file system that does not use a network.
 bool is_local_vsi(std::string_view name) {
   for (const std::string_view local :
        {"/vsizip/", "/vsigzip/", "/vsitar/", "/vsimem/", "/vsisubfile/", "/vsisparse/"}) {
@@ -66,7 +66,8 @@ bool names_network(std::string_view text) {
   return false;
 }
 
-// "NETCDF:file.nc:variable": the driver's name, a colon, and no such file.
+// Returns whether a source names a part of a file, such as "NETCDF:file.nc:variable": it begins with the name of a
+// driver and a colon, and there is no file with this name.
 bool is_subdataset(const std::string& source) {
   const std::size_t colon = source.find(':');
   if (colon == std::string::npos || colon < 2) return false;

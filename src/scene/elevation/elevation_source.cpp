@@ -43,7 +43,8 @@ struct Block {
   int x = 0, y = 0, width = 0, height = 0;
 };
 
-// Places the levels of detail in the atlas: each is half the size, until one is a single sample wide or high.
+// Returns the positions of the levels of detail in the atlas. Each level has half the size of the previous one, until
+// one is a single sample wide or high.
 std::vector<Block> atlas_blocks(int width, int height) {
   std::vector<Block> blocks = {{0, 0, width, height}};
   while (std::min(blocks.back().width, blocks.back().height) > 1) {

@@ -36,8 +36,8 @@ struct ElevationDesc {
   TerrainUnits units = TerrainUnits::automatic;  // of a file without a coordinate system
 };
 
-// One R32F image with a file's samples and their coarser levels, laid out as terrain_source.glsl says.
-// Procedural terrain has one texel.
+// An R32F image with the samples of a file and its coarser levels, in the layout of terrain_source.glsl. For procedural
+// terrain it has one texel.
 struct ElevationAtlas {
   int width = 1, height = 1;
   std::vector<float> texels = {0.0F};
@@ -50,10 +50,10 @@ class ElevationSource {
   // Returns the elevation of the ground [m], without detail finer than about two of `spacing_m` (at least 1/64 m).
   // Positions are rounded to 1/64 m.
   [[nodiscard]] float height_m(double x_m, double z_m, double spacing_m) const;
-  // The same on one of the planet's map projections (src/scene/description/map_projection.hpp): 0 is the map; the
-  // others have mountains of their own.
+  // Returns the elevation on one of the planet's map projections (src/scene/description/map_projection.hpp). Projection
+  // 0 is the map, and the others have different procedural mountains.
   [[nodiscard]] float height_m(int projection, double x_m, double z_m, double spacing_m) const;
-  // Returns the weight of the elevation file: 1 inside of it, 0 outside, in between on its border.
+  // Returns the weight of the elevation file: 1 inside, 0 outside, and a value between at its border.
   [[nodiscard]] double file_share(double x_m, double z_m) const;
 
   // Bounds of the elevations at every spacing.
@@ -64,10 +64,9 @@ class ElevationSource {
   [[nodiscard]] const std::optional<Place>& place() const { return place_; }
 
   [[nodiscard]] bool from_file() const { return constants_.kind != 0; }
-  // For TerrainFill::source and for the image elevation_atlas.
+  // Returns the constants for TerrainFill::source, and the data of the image elevation_atlas.
   [[nodiscard]] const fill::TerrainSource& constants() const { return constants_; }
   [[nodiscard]] const ElevationAtlas& atlas() const { return atlas_; }
-  // The host copy of the atlas is needed by height_m.
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
 
  private:

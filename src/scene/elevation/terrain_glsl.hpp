@@ -1,7 +1,6 @@
-// The elevation shaders compiled as C++ in double precision: tyndall::scene::terrain64 holds every function
-// of shaders/scene/terrain_noise.glsl, terrain_source.glsl and terrain_materials.glsl, with
-// vec2 = glm::dvec2.
-// Conventions are those of the GLSL files. For .cpp files only: it defines functions of internal linkage.
+// The elevation shaders compiled as C++ in double precision. The namespace tyndall::scene::terrain64 contains all
+// functions of shaders/scene/terrain_noise.glsl, terrain_source.glsl and terrain_materials.glsl, with vec2 =
+// glm::dvec2. Include it in .cpp files only, because it defines functions of internal linkage.
 #pragma once
 
 #include <cstdint>
@@ -41,7 +40,7 @@ using glm::sqrt;
 #undef TYNDALL_TERRAIN_FILL_H
 #include "scene/terrain_fill.h"
 
-// A source together with its atlas, which GLSL reads from a texture of its own.
+// A source and its atlas, which is a separate texture in GLSL.
 struct BoundSource : TerrainSource {
   const Sample* atlas = nullptr;
   int atlas_width = 0;

@@ -1,4 +1,4 @@
-// Whether a box can be in sight: of the camera or of a shadow cascade.
+// Culling: tests whether a box can be visible to the camera or to a shadow cascade.
 #pragma once
 
 #include <array>
@@ -8,8 +8,8 @@
 
 namespace tyndall::scene {
 
-// The four sides of what a projection shows; what is nearer or farther is left to it. A point is inside where
-// dot(side, (p, 1)) >= 0 for all of them.
+// The four side planes of a frustum. Near and far planes are not tested. A point p is inside if dot(side, (p, 1)) >= 0
+// for all of them.
 struct Sides {
   std::array<glm::dvec4, 4> planes;
 };
@@ -18,7 +18,8 @@ struct Sides {
   return {{rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1], rows[3] - rows[1]}};
 }
 
-// Never true for a box of which a point is inside all sides; false too for some that are outside near a corner.
+// Returns whether a box is outside one of the planes. The test is conservative: it may return false for a box that is
+// outside near a corner, but never true for a box that is partly inside.
 [[nodiscard]] inline bool is_outside(const Sides& sides, const Box& box) {
   const glm::dvec3 middle = 0.5 * (box.min + box.max);
   const glm::dvec3 half = 0.5 * (box.max - box.min);
@@ -29,7 +30,7 @@ struct Sides {
   return false;
 }
 
-// The box around a transformed box, with room for the single precision that vertices are transformed in.
+// Returns the bounds of a transformed box, enlarged by the rounding errors of vertices in single precision.
 [[nodiscard]] inline Box placed_box(const glm::dmat4& world_from_mesh, const Box& box) {
   const glm::dvec3 middle(world_from_mesh * glm::dvec4(0.5 * (box.min + box.max), 1.0));
   const glm::dvec3 half = 0.5 * (box.max - box.min);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMaxElement = 64;  // bytes: a MAT4 of floats
 
-// Replaces %20 and the like. Throws for anything that is no pair of hexadecimal digits.
+// Decodes percent-encoded characters. Throws if a percent sign is not followed by two hexadecimal digits.
 std::string percent_decoded(std::string_view text, const std::string& user) {
   const auto digit = [&](char c) -> unsigned {
     if (c >= '0' && c <= '9') return static_cast<unsigned>(c - '0');

@@ -1,5 +1,5 @@
-// The bytes behind a glTF document: buffers from files, data URIs and the chunk of a .glb, views, and the elements of
-// accessors. Nothing that a file says about its own size is trusted.
+// The data of a glTF document: buffers (files, data URIs and the chunk of a .glb), views, and the elements of
+// accessors. All sizes that a file states are checked.
 #pragma once
 
 #include <algorithm>
@@ -19,12 +19,12 @@ constexpr std::uint64_t kMaxGltfFileBytes = std::uint64_t{1} << 31U;
 
 // Elements whose range has been checked. Floats are finite.
 struct GltfValues {
-  const unsigned char* data = nullptr;  // none: the attribute is missing
+  const unsigned char* data = nullptr;  // null if the attribute is missing
   std::size_t count = 0, stride = 0;
   GltfComponent component = GltfComponent::float32;
   int components = 0;
   bool normalized = false;
-  std::shared_ptr<const std::vector<unsigned char>> owned;  // of what is not in a buffer as it stands
+  std::shared_ptr<const std::vector<unsigned char>> owned;  // storage of elements that were decoded or assembled
 
   [[nodiscard]] bool empty() const { return data == nullptr; }
   [[nodiscard]] double real(std::size_t i, int c) const {
@@ -40,7 +40,7 @@ struct GltfValues {
     }
     return static_cast<double>(get<float>(p, c_));
   }
-  // A component of an unsigned integer type.
+  // Returns a component of an unsigned integer type.
   [[nodiscard]] std::uint32_t whole(std::size_t i, int c = 0) const {
     const unsigned char* p = data + i * stride;
     const auto c_ = static_cast<std::size_t>(c);
@@ -62,23 +62,23 @@ struct GltfValues {
   }
 };
 
-// All functions throw GltfFailure. What they return is valid while this object and the chunk are.
+// All functions throw GltfFailure. Their results are valid during the lifetime of this object and of the chunk.
 class GltfData {
  public:
-  // `chunk`: the binary chunk of a .glb, empty without one. Files are looked for in `folder`.
+  // `chunk`: the binary chunk of a .glb, or empty. Names of files are relative to `folder`.
   GltfData(const GltfDocument& document, std::string folder, std::string_view chunk)
       : document_(document), folder_(std::move(folder)), chunk_(chunk) {}
 
-  // Reads the files that buffers name, so that one that is missing is reported even if no mesh needs it.
+  // Reads the files of all buffers, so that a missing file is reported even if no mesh uses it.
   void read_buffers();
-  // The bytes of a view, decompressed.
+  // Returns the decompressed bytes of a view.
   [[nodiscard]] std::span<const unsigned char> view(std::size_t index);
-  // The elements of an accessor, sparse ones in place. `user` is who names it, for messages.
+  // Returns the elements of an accessor, including sparse ones. `user`: the referring object, for messages.
   [[nodiscard]] GltfValues values(std::size_t index, const std::string& user);
-  // Elements as an accessor describes them, from `bytes`.
+  // Returns `bytes` as elements of the accessor's type.
   [[nodiscard]] GltfValues values_of(std::size_t index, std::vector<unsigned char> bytes,
                                      const std::string& user) const;
-  // What a URI refers to: a data URI or a file.
+  // Returns the contents of a data URI or a file.
   [[nodiscard]] std::string resource(const std::string& uri, const std::string& user) const;
 
  private:
@@ -91,7 +91,7 @@ class GltfData {
   std::string folder_;
   std::string_view chunk_;
   std::map<std::size_t, std::string> buffers_;
-  std::map<std::size_t, std::vector<unsigned char>> decoded_;  // views that are compressed
+  std::map<std::size_t, std::vector<unsigned char>> decoded_;  // the decompressed views
 };
 
 }  // namespace tyndall::scene

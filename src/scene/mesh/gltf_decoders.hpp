@@ -23,17 +23,17 @@ constexpr bool kHasMeshopt = true;
 constexpr bool kHasMeshopt = false;
 #endif
 
-// The bytes of a view: count * stride. Throws GltfFailure, which names `where`.
+// Returns the decompressed bytes of a view, count * stride of them. Throws GltfFailure with `where` in its message.
 [[nodiscard]] std::vector<unsigned char> decode_meshopt(const GltfMeshopt& compressed,
                                                         std::span<const unsigned char> bytes, const std::string& where);
 
 struct DracoMesh {
   std::size_t points = 0;
-  std::vector<std::uint32_t> corners;                            // three for each triangle, below `points`
-  std::map<std::string, std::vector<unsigned char>> attributes;  // by semantic, elements as their accessors describe
+  std::vector<std::uint32_t> corners;                            // three per triangle, each less than `points`
+  std::map<std::string, std::vector<unsigned char>> attributes;  // by semantic; elements have the accessor's type
 };
 
-// Decodes a primitive that has `draco`. Throws GltfFailure, which names `where`.
+// Decodes a primitive that has `draco`. Throws GltfFailure with `where` in its message.
 [[nodiscard]] DracoMesh decode_draco(const GltfDocument& document, const GltfPrimitive& primitive,
                                      std::span<const unsigned char> bytes, const std::string& where);
 

@@ -21,7 +21,7 @@ std::string joined(const std::set<std::string>& names) {
   return out;
 }
 
-// Whether arrays and objects are nested too deeply. Strings are skipped.
+// Returns whether arrays and objects are nested too deeply for the recursive parser. Strings are skipped.
 bool too_deep(std::string_view json) {
   int depth = 0;
   bool quoted = false;
@@ -41,7 +41,7 @@ bool too_deep(std::string_view json) {
   return false;
 }
 
-// The major and minor number of a text such as "2.0", or nothing.
+// Returns the major and minor number of a text such as "2.0", or nothing.
 std::optional<std::pair<std::int64_t, std::int64_t>> version_of(const std::string& text) {
   const std::size_t dot = text.find('.');
   const auto digits = [](const std::string& part) {
@@ -98,7 +98,7 @@ std::size_t choice(const GltfJson& from, const char* name, const std::array<cons
   return static_cast<std::size_t>(found - names.begin());
 }
 
-// The range of a buffer that a view or its compressed form names.
+// Parses the range of a buffer to which a view or its compressed form refers.
 void parse_range(const GltfJson& json, const GltfDocument& out, std::size_t& buffer, std::uint64_t& offset,
                  std::uint64_t& length) {
   buffer = static_cast<std::size_t>(json.index("buffer", "buffers", true));

@@ -1,5 +1,5 @@
-// What a glTF file says, checked against the schema of glTF 2.0: every index is in range, every number finite and in
-// its range. Only what the demo scene uses is read. Filled by parse_gltf().
+// The contents of a glTF file as far as the demo scene uses them. parse_gltf() checks them against the schema of glTF
+// 2.0: every index is in range, every number is finite and in its range.
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@
 
 namespace tyndall::scene {
 
-// What is wrong with a file, and what is allowed; thrown by everything that reads glTF. load_gltf() makes an error of
-// it.
+// The exception of all functions that read glTF: an error in the file, and what was expected. load_gltf() turns it into
+// an Error.
 struct GltfFailure {
   std::string what, allowed;
 };
@@ -26,7 +26,7 @@ struct GltfFailure {
   throw GltfFailure{std::move(what), std::move(allowed)};
 }
 
-// "accessors[3]"
+// Returns the path of an element, such as "accessors[3]".
 inline std::string at(std::string list, std::size_t index) {
   return std::move(list) + "[" + std::to_string(index) + "]";
 }
@@ -42,12 +42,12 @@ enum class GltfComponent : int {
 [[nodiscard]] std::size_t bytes_of(GltfComponent component);
 
 struct GltfBuffer {
-  std::optional<std::string> uri;  // none: the binary chunk of a .glb
+  std::optional<std::string> uri;  // if missing, the buffer is the binary chunk of a .glb
   std::uint64_t length = 0;
-  bool fallback = false;  // only for readers without EXT_meshopt_compression
+  bool fallback = false;  // contains data only for readers without EXT_meshopt_compression
 };
 
-// EXT_meshopt_compression of a view: bytes of a buffer that decode to the `length` bytes of the view.
+// EXT_meshopt_compression of a view: the range of a buffer with the compressed bytes of the view.
 struct GltfMeshopt {
   enum class Mode { attributes, triangles, indices };
   enum class Filter { none, octahedral, quaternion, exponential };
@@ -61,7 +61,7 @@ struct GltfMeshopt {
 struct GltfView {
   std::size_t buffer = 0;
   std::uint64_t offset = 0, length = 0;
-  std::size_t stride = 0;  // 0: elements without gaps
+  std::size_t stride = 0;  // 0: tightly packed elements
   std::optional<GltfMeshopt> meshopt;
 };
 
@@ -84,11 +84,11 @@ struct GltfAccessor {
 
 struct GltfImage {
   std::optional<std::string> uri;
-  int view = -1;  // of the buffer that holds it, where it has no uri
+  int view = -1;  // the view with the image file, if it has no uri
 };
 
 struct GltfTexture {
-  int image = -1;  // -1: only an extension that is not supported has one
+  int image = -1;  // -1: the texture has an image only in an unsupported extension
   MeshSampler sampler;
 };
 
@@ -101,13 +101,13 @@ struct GltfTextureUse {
 };
 
 struct GltfMaterial {
-  MeshMaterial drawn;  // without its texture
+  MeshMaterial drawn;  // without the texture, which `texture` describes
   GltfTextureUse texture;
 };
 
 using GltfAttributes = std::map<std::string, int>;  // accessors by semantic
 
-// KHR_draco_mesh_compression: a view, and the decoder's numbers of the attributes.
+// KHR_draco_mesh_compression: the compressed view, and the attributes by their numbers in the decoder.
 struct GltfDraco {
   std::size_t view = 0;
   std::map<std::string, std::uint32_t> attributes;
@@ -122,14 +122,14 @@ struct GltfPrimitive {
 
 struct GltfMesh {
   std::vector<GltfPrimitive> primitives;
-  std::vector<double> weights;  // of the morph targets; as many as every primitive has
+  std::vector<double> weights;  // of the morph targets, of which every primitive has the same number
 };
 
 struct GltfNode {
   glm::dmat4 parent_from_node = glm::dmat4(1.0);
   int mesh = -1, skin = -1;
   std::vector<int> children;
-  std::optional<std::vector<double>> weights;  // instead of the mesh's
+  std::optional<std::vector<double>> weights;  // replaces the weights of the mesh
 };
 
 struct GltfSkin {
@@ -147,11 +147,11 @@ struct GltfDocument {
   std::vector<GltfMesh> meshes;
   std::vector<GltfNode> nodes;
   std::vector<GltfSkin> skins;
-  std::vector<int> roots;          // nodes of the scene that is drawn
-  std::vector<std::string> notes;  // what is in the file and is not drawn, one line each
+  std::vector<int> roots;          // root nodes of the default scene
+  std::vector<std::string> notes;  // contents of the file that are not drawn, one line each
 };
 
-// Throws GltfFailure.
+// Parses and checks the JSON of a file. Throws GltfFailure.
 [[nodiscard]] GltfDocument parse_gltf(std::string_view json);
 
 }  // namespace tyndall::scene

@@ -1,4 +1,4 @@
-// Reads a glTF file: the container here, the document in gltf_document.cpp, the meshes in gltf_reader.hpp.
+// Reads a glTF file. The container is read here, the document in gltf_document.cpp and the meshes in gltf_reader.hpp.
 #include "scene/mesh/gltf_file.hpp"
 
 #include <cstring>
@@ -14,10 +14,10 @@ namespace {
 
 constexpr const char* kAllowed = "expected none, hall, and glTF 2.0 files: .gltf or .glb";
 
-// The parts of a file. Views into its bytes.
+// The parts of a file, as views into its bytes.
 struct Container {
   std::string_view json, chunk;
-  bool trailing = false;  // whether bytes follow the end that a .glb states
+  bool trailing = false;  // bytes follow the end that a .glb states
 };
 
 std::uint32_t word(std::string_view bytes, std::size_t at) {
@@ -26,7 +26,7 @@ std::uint32_t word(std::string_view bytes, std::size_t at) {
   return out;
 }
 
-// Chunks of a .glb (glTF 2.0, section 4.4).
+// Splits a .glb into its chunks (glTF 2.0, section 4.4).
 Container split_binary(std::string_view bytes) {
   constexpr std::uint32_t kJson = 0x4E4F534AU, kBin = 0x004E4942U;
   if (bytes.size() < 12) fail("ends within the header of a .glb", "expected 12 bytes and the chunks");

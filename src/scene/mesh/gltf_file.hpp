@@ -1,5 +1,5 @@
-// Meshes from glTF 2.0 files (.gltf with what it refers to, .glb): triangles with base colours. What is supported and
-// what is left out stands in docs/meshes.md. Nothing that a file holds is trusted.
+// Loads meshes from glTF 2.0 files (.gltf with the files it refers to, or .glb): triangles with base colours.
+// docs/meshes.md lists what is supported. The contents of files are not trusted.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace tyndall::scene {
 
-// Coordinates as in the file: right-handed, y up, metres. Errors are one line: the file, what is wrong with it, what
-// is allowed.
+// Returns the meshes of a file in its coordinates: right-handed, y up, metres. Error messages are one line with the
+// file, the error and what was expected.
 [[nodiscard]] Result<MeshData> load_gltf(const std::string& path);
 
 }  // namespace tyndall::scene

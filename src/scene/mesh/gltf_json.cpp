@@ -10,9 +10,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kRounding = 1.0e-3;  // exporters write 1.0000001 where the range ends at 1
+constexpr double kRounding = 1.0e-3;  // tolerance, because exporters write values like 1.0000001
 
-// A value for a message.
+// Returns a value as text for a message.
 std::string shown(const json& value) {
   if (value.is_object()) return "an object";
   if (value.is_array()) return "an array of " + std::to_string(value.size());
@@ -23,7 +23,7 @@ std::string shown(const json& value) {
   fail(path + " is " + shown(value), allowed);
 }
 
-// The integer of a number without a fraction, or nothing.
+// Returns the value of a number without a fraction as an integer, or nothing.
 std::optional<std::int64_t> whole(const json& value) {
   if (value.is_number_unsigned()) {
     const auto number = value.get<std::uint64_t>();

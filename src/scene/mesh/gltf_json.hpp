@@ -18,14 +18,14 @@
 
 namespace tyndall::scene {
 
-// An object of the JSON with its path. Valid while the JSON is.
+// An object of the JSON with its path. The JSON must outlive it.
 class GltfJson {
  public:
-  // Throws if the root of the file is no object.
+  // Throws if the root of the file is not an object.
   explicit GltfJson(const nlohmann::json& root) : GltfJson(root, root, "") {}
 
   [[nodiscard]] bool has(const char* name) const { return value_->contains(name); }
-  // The path of a member: "accessors[3].count".
+  // Returns the path of a member, such as "accessors[3].count".
   [[nodiscard]] std::string path(const char* name) const { return path_.empty() ? name : path_ + "." + name; }
   [[nodiscard]] const std::string& path() const { return path_; }
   [[noreturn]] void refuse(const char* name, const std::string& allowed) const;
@@ -33,26 +33,26 @@ class GltfJson {
   [[nodiscard]] GltfJson object(const char* name) const;  // required
   [[nodiscard]] std::optional<GltfJson> find_object(const char* name) const;
   [[nodiscard]] std::optional<GltfJson> extension(const char* name) const;
-  [[nodiscard]] std::vector<GltfJson> objects(const char* name) const;  // an array of objects; none where it is missing
+  [[nodiscard]] std::vector<GltfJson> objects(const char* name) const;  // array of objects; empty if missing
 
-  // Without a fallback the member is required. Whole numbers may be written as 3.0.
+  // Returns an integer, which may be written as 3.0. The member is required if there is no fallback.
   [[nodiscard]] std::int64_t integer(const char* name, std::int64_t min, std::int64_t max,
                                      std::optional<std::int64_t> fallback = {}) const;
-  // An index into an array of the root; -1 where the member is missing and not required.
+  // Returns an index into an array of the root, or -1 if the member is missing and not required.
   [[nodiscard]] int index(const char* name, const char* list, bool required = false) const;
   [[nodiscard]] std::vector<int> indices(const char* name, const char* list) const;
-  // All members of this object, which are indices, as of attributes.
+  // Returns all members of an object whose members are indices, such as attributes.
   [[nodiscard]] std::vector<std::pair<std::string, int>> named_indices(const char* list) const;
   [[nodiscard]] double number(const char* name, double fallback) const;  // finite
-  [[nodiscard]] std::vector<double> numbers(const char* name) const;     // of any length; none where it is missing
-  // Overwrites `out` with as many numbers as it has, and returns true, where the member is there.
+  [[nodiscard]] std::vector<double> numbers(const char* name) const;     // of any length; empty if missing
+  // Overwrites `out` with an array of the same length. Returns false if the member is missing.
   bool numbers(const char* name, std::span<double> out) const;
-  // Numbers in [low, high]; those that are out of it by less than rounding explains are clamped.
+  // Returns a number in [low, high]. A number that exceeds the range by no more than a rounding error is clamped.
   [[nodiscard]] double bounded(const char* name, double low, double high, double fallback) const;
   bool bounded(const char* name, double low, double high, std::span<double> out) const;
   [[nodiscard]] std::string text(const char* name, std::optional<std::string> fallback = {}) const;
   [[nodiscard]] std::vector<std::string> texts(const char* name) const;
-  [[nodiscard]] bool flag(const char* name) const;  // false where it is missing
+  [[nodiscard]] bool flag(const char* name) const;  // false if missing
 
  private:
   GltfJson(const nlohmann::json& root, const nlohmann::json& value, std::string path);
@@ -65,7 +65,7 @@ class GltfJson {
   std::string path_;
 };
 
-// Parts of parse_gltf(). `undrawn` collects the names of what the file has and the scene does not draw.
+// Parts of parse_gltf(). `undrawn` collects the names of features in the file that the scene does not draw.
 void parse_materials(const GltfJson& root, GltfDocument& out, std::set<std::string>& undrawn);
 void parse_nodes(const GltfJson& root, GltfDocument& out, std::set<std::string>& undrawn);
 

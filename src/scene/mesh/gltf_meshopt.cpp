@@ -10,7 +10,7 @@ namespace tyndall::scene {
 
 std::vector<unsigned char> decode_meshopt(const GltfMeshopt& in, std::span<const unsigned char> bytes,
                                           const std::string& where) {
-  // The codecs shrink by a factor of 64 at most; what claims more is refused before memory is allocated for it.
+  // The codecs compress by a factor of at most 64. A larger stated size is refused before memory is allocated.
   constexpr std::size_t kMaxRatio = 64;
   const std::string path = where + ".extensions.EXT_meshopt_compression";
   if (in.count * in.stride / kMaxRatio > bytes.size()) {

@@ -122,7 +122,7 @@ void parse_nodes(const GltfJson& root, GltfDocument& out, std::set<std::string>&
   if (!scenes.empty()) {
     out.roots = scenes[index < 0 ? 0 : static_cast<std::size_t>(index)].indices("nodes", "nodes");
   } else {
-    // Without a scene: every node that is no other's child.
+    // Without a scene, the roots are all nodes that are not children of others.
     std::vector<bool> child(out.nodes.size(), false);
     for (const GltfNode& one : out.nodes) {
       for (const int c : one.children) child[static_cast<std::size_t>(c)] = true;

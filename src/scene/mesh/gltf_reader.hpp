@@ -1,5 +1,5 @@
-// Turns a glTF document into MeshData: scenes and skins in gltf_scene.cpp, pictures in gltf_images.cpp, triangles in
-// gltf_geometry.cpp. Seen by these and gltf_file.cpp only.
+// Converts a glTF document to MeshData. Scenes and skins are converted in gltf_scene.cpp, pictures in gltf_images.cpp
+// and triangles in gltf_geometry.cpp. Only these files and gltf_file.cpp include this header.
 #pragma once
 
 #include <cstdint>
@@ -26,13 +26,13 @@ struct GltfVertices {
     GltfValues joints, weights;
   };
   GltfValues position, normal, uv, color;
-  std::vector<Target> targets;        // those with a weight
-  std::vector<Influence> influences;  // none: no skin
+  std::vector<Target> targets;        // morph targets whose weight is not 0
+  std::vector<Influence> influences;  // of joints; empty without a skin
   const std::vector<glm::dmat4>* joints = nullptr;
   GltfTextureUse texture;
-  std::string where;                // the primitive, for messages
-  mutable bool clamped = false;     // whether a colour was outside 0 to 1
-  mutable bool unweighted = false;  // whether a vertex has no joint
+  std::string where;                // path of the primitive, for messages
+  mutable bool clamped = false;     // a colour was outside 0 to 1
+  mutable bool unweighted = false;  // a vertex has no joint
 
   [[nodiscard]] MeshVertex at(std::size_t i) const;
 
@@ -46,20 +46,20 @@ class GltfReader {
   GltfReader(const GltfDocument& document, GltfData& data, MeshData& out)
       : document_(document), data_(data), out_(out) {}
 
-  // Throws GltfFailure.
+  // Reads the document. Throws GltfFailure.
   void read();
 
  private:
-  // What is placed together: a mesh, its skin or -1, and the weights of its morph targets.
+  // A mesh, its skin or -1, and the weights of its morph targets. Nodes with equal shapes are instances of one mesh.
   using Shape = std::tuple<int, int, std::vector<double>>;
 
-  void note(std::string text);  // once, however often it is called
-  // Notes the first of a kind in full and how many follow it.
+  void note(std::string text);  // repeated texts are noted once
+  // Notes the first text of a kind, and the number of texts that follow.
   void note_each(const char* kind, const std::string& text);
 
   void read_materials();
   int read_image(std::size_t index);
-  // The material of a primitive; without its texture where the primitive has no coordinates for it.
+  // Returns the material of a primitive, without its texture if the primitive has no texture coordinates.
   std::uint32_t material_of(const GltfPrimitive& primitive, bool has_coordinates, const std::string& where);
 
   void visit(int index, const glm::dmat4& parent, int depth);
@@ -82,9 +82,9 @@ class GltfReader {
   std::map<Shape, std::vector<glm::dmat4>> placed_;
   std::vector<int> parents_;  // of nodes; -1 for roots
   std::map<std::string, std::pair<std::string, std::size_t>>
-      counted_;                              // by kind: the first note, and how many there are
-  std::map<int, int> decoded_;               // image to texture
-  std::map<int, std::uint32_t> untextured_;  // material to its copy without a texture
+      counted_;                              // by kind: the first text and the number of texts
+  std::map<int, int> decoded_;               // from image to texture
+  std::map<int, std::uint32_t> untextured_;  // from material to its copy without a texture
   std::uint64_t texture_bytes_ = 0, visits_ = 0, instances_ = 0;
 };
 

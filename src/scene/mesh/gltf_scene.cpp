@@ -1,4 +1,4 @@
-// Where meshes are placed: the tree of nodes of the scene, and the joints of skins.
+// Places meshes according to the node tree of the scene and the joints of skins.
 #include <algorithm>
 #include <cmath>
 
@@ -7,7 +7,7 @@
 namespace tyndall::scene {
 namespace {
 
-constexpr int kMaxNodeDepth = 256;  // of a tree of nodes
+constexpr int kMaxNodeDepth = 256;
 constexpr std::uint64_t kMaxNodeVisits = 1U << 20U;
 
 [[noreturn]] void refuse_tree() {
@@ -33,7 +33,7 @@ void GltfReader::read() {
   for (std::size_t i = 0; i < document_.nodes.size(); ++i) {
     for (const int child : document_.nodes[i].children) parents_[static_cast<std::size_t>(child)] = static_cast<int>(i);
   }
-  // A mesh without instances costs nothing: those of the scene are collected first.
+  // The instances of the scene are collected first, so that meshes without instances are not read.
   for (const int root : document_.roots) visit(root, glm::dmat4(1.0), 0);
   for (const auto& [shape, placed] : placed_) read_shape(shape, placed);
   for (const auto& [kind, counted] : counted_) {
@@ -52,7 +52,7 @@ void GltfReader::visit(int index, const glm::dmat4& parent, int depth) {
       fail("places too many meshes", "expected up to " + std::to_string(kMaxMeshInstances));
     const std::vector<double>& weights =
         node.weights ? *node.weights : document_.meshes[static_cast<std::size_t>(node.mesh)].weights;
-    // The joints alone place a mesh with a skin (glTF 2.0, section 3.7.3.3).
+    // The node of a mesh with a skin does not affect its position, only the joints do (glTF 2.0, section 3.7.3.3).
     placed_[Shape(node.mesh, node.skin, weights)].push_back(node.skin < 0 ? here : glm::dmat4(1.0));
   }
   for (const int child : node.children) visit(child, here, depth + 1);

@@ -14,25 +14,25 @@ namespace {
 using Vec = glm::dvec3;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kHalfWidth_m = 6.0;  // of the nave, inside
+constexpr double kHalfWidth_m = 6.0;  // interior half width of the nave
 constexpr double kHalfLength_m = 18.0;
 constexpr double kFloor_m = 0.15;
-constexpr double kWall_m = 0.8;    // thickness
-constexpr double kSpring_m = 8.5;  // where the vault begins
-constexpr double kRise_m = 7.0;    // of the vault
+constexpr double kWall_m = 0.8;    // thickness of walls
+constexpr double kSpring_m = 8.5;  // height at which the vault begins
+constexpr double kRise_m = 7.0;    // height of the vault
 constexpr double kBay_m = 6.0;
 constexpr int kBays = 6;
-constexpr double kGlass_m = 0.5;    // of the panes beyond the wall's inner face
-constexpr double kBehind_m = 0.05;  // of the panes that the stone hides, on each side
+constexpr double kGlass_m = 0.5;    // distance of panes behind the inner face of the wall
+constexpr double kBehind_m = 0.05;  // width of panes that stone hides on each side
 constexpr double kSill_m = 2.6;
 constexpr Lancet kWindow = {1.1, 3.4, 5.3};  // above the sill
 constexpr Vec kRose = {0.0, 9.8, kHalfLength_m};
 constexpr double kRoseRadius_m = 2.6;
-constexpr int kSlices = 32;  // of an opening
+constexpr int kSlices = 32;  // per opening
 
 enum Material : std::uint32_t { kStone, kTiles, kWood, kRoof, kFirstGlass, kRoseGlass = kFirstGlass + 4, kMaterials };
 
-// The vault inside, or `out_m` above it: two arcs that meet in a ridge.
+// Returns the height of the vault's inner surface, or of a surface `out_m` above it: two arcs that meet in a ridge.
 double vault_at(double x, double out_m = 0.0) {
   const double centre = (kRise_m * kRise_m - kHalfWidth_m * kHalfWidth_m) / (2.0 * kHalfWidth_m);
   const double radius = kHalfWidth_m + centre + out_m;
@@ -40,10 +40,11 @@ double vault_at(double x, double out_m = 0.0) {
   return kSpring_m + std::sqrt(std::max(radius * radius - d * d, 0.0));
 }
 
-// Triangles by material.
+// Collects triangles by material.
 class Builder {
  public:
-  // a, b, c, d counter-clockwise seen from the front. Stone is laid over the world: 4 m to a picture.
+  // Adds a quad whose corners are counter-clockwise seen from the front. The texture of stone repeats every 4 m of the
+  // world.
   void quad(Material material, const Vec& a, const Vec& b, const Vec& c, const Vec& d) {
     const Vec n = glm::cross(c - a, d - b);
     if (glm::length(n) < 1e-9) return;
@@ -130,30 +131,30 @@ class Builder {
   std::array<std::vector<std::uint32_t>, kMaterials> indices_;
 };
 
-// A wall: its inner face starts at `origin` and runs along `along`, with `out` away from the room; to the right of
-// someone who looks out is +along.
+// A wall: its inner face starts at `origin` and extends along `along`, and `out` points away from the room. Looking
+// out, +along is to the right.
 struct Frame {
   Vec origin, along, out;
   [[nodiscard]] Vec at(double u, double y, double n) const { return origin + along * u + Vec(0, y, 0) + out * n; }
 };
 
-// An opening over [middle - half, middle + half], between two curves.
+// An opening of a wall over [middle - half, middle + half], between two curves.
 struct Opening {
   double middle, half;
-  std::function<double(double)> low, high;  // of the distance from the middle
+  std::function<double(double)> low, high;  // heights as functions of the distance from the middle
   Material glass;
-  glm::dvec2 picture_low, picture_high;  // distance from the middle and height that the picture spans
+  glm::dvec2 picture_low, picture_high;  // corners of the picture: distance from the middle, and height
 };
 
 void wall(Builder& b, const Frame& f, double from, double to, const std::function<double(double)>& top,
           const std::vector<Opening>& openings, int smoothness) {
-  // A part without opening, from the ground up. Inside it is seen from -out: +along is to the right.
+  // Adds a part without an opening, from the ground up.
   const auto face = [&](double u0, double u1, double low0, double low1, double high0, double high1) {
     b.quad(kStone, f.at(u0, low0, 0), f.at(u1, low1, 0), f.at(u1, high1, 0), f.at(u0, high0, 0));
     b.quad(kStone, f.at(u1, low1, kWall_m), f.at(u0, low0, kWall_m), f.at(u0, high0, kWall_m),
            f.at(u1, high1, kWall_m));
   };
-  // Openings of a wall begin and end at the same heights.
+  // The heights at which openings begin and end divide the wall into rows.
   std::vector<double> rows;
   if (!openings.empty())
     rows = {openings.front().low(openings.front().half), openings.front().high(openings.front().half)};
@@ -161,7 +162,7 @@ void wall(Builder& b, const Frame& f, double from, double to, const std::functio
     for (int i = 0; i < smoothness; ++i) {
       const double a = u0 + (u1 - u0) * i / smoothness;
       const double c = u0 + (u1 - u0) * (i + 1) / smoothness;
-      // In rows that end where the openings beside it do: an edge that others meet halfway lets light through.
+      // The wall between openings is divided into the same rows, because T-junctions would let light through.
       double low = 0.0;
       for (const double row : rows) {
         if (row <= low) continue;
@@ -176,7 +177,7 @@ void wall(Builder& b, const Frame& f, double from, double to, const std::functio
   for (const Opening& o : openings) {
     solid(at, o.middle - o.half);
     for (int i = 0; i < kSlices; ++i) {
-      // Finer towards the sides, where a round window is steep.
+      // The slices are narrower towards the sides, where the edge of a round window is steep.
       const auto place = [&](int k) { return -o.half * std::cos(kPi * k / kSlices); };
       const double x0 = place(i), x1 = place(i + 1);
       const double u0 = o.middle + x0, u1 = o.middle + x1;
@@ -192,7 +193,7 @@ void wall(Builder& b, const Frame& f, double from, double to, const std::functio
         return glm::dvec2((x - o.picture_low.x) / (o.picture_high.x - o.picture_low.x),
                           (o.picture_high.y - y) / (o.picture_high.y - o.picture_low.y));
       };
-      // The panes go on behind the stone, so that no texel of a map of colours beside them is lit and clear.
+      // The panes extend behind the stone, so that no texel of the shadow colours next to them is lit without colour.
       const double wider = 1.0 + kBehind_m / o.half;
       const auto pane = [&](double x, double y) { return f.at(o.middle + x * wider, y, kGlass_m); };
       b.quad(o.glass,
@@ -201,7 +202,7 @@ void wall(Builder& b, const Frame& f, double from, double to, const std::functio
              {uv(x1 * wider, l1 - kBehind_m), uv(x0 * wider, l0 - kBehind_m), uv(x0 * wider, h0 + kBehind_m),
               uv(x1 * wider, h1 + kBehind_m)});
     }
-    // The jambs, where the opening begins and ends with some height.
+    // Jambs, if the height of the opening is not zero at its sides.
     const double left = o.middle - o.half, right = o.middle + o.half;
     const double l = o.low(o.half), h = o.high(o.half);
     b.quad(kStone, f.at(left, l, 0), f.at(left, l, kWall_m), f.at(left, h, kWall_m), f.at(left, h, 0));
@@ -231,7 +232,7 @@ void side_walls(Builder& b) {
       o.half = kWindow.half_width_m;
       o.low = [](double) { return kSill_m; };
       o.high = [](double x) {
-        // The height at which the arch is as narrow as |x|: the inverse of half_at.
+        // Returns the height at which the half width of the arch is |x|: the inverse of half_at().
         const double rise = kWindow.top_m - kWindow.spring_m;
         const double centre =
             (rise * rise - kWindow.half_width_m * kWindow.half_width_m) / (2.0 * kWindow.half_width_m);
@@ -244,7 +245,7 @@ void side_walls(Builder& b) {
       o.picture_high = {kWindow.half_width_m, kSill_m + kWindow.top_m};
       openings.push_back(o);
     }
-    // Up behind the vault, whose edge has other corners.
+    // The wall extends up behind the vault, whose edge has different vertices.
     wall(
         b, f, -kHalfLength_m - kIntoGable_m, kHalfLength_m + kIntoGable_m,
         [](double) { return kSpring_m + kBehindVault_m; }, openings, 1);
@@ -266,7 +267,7 @@ void gables(Builder& b) {
   wall(b, {Vec(0, 0, -kHalfLength_m), Vec(1, 0, 0), Vec(0, 0, -1)}, -half, half, top, {}, 48);
 }
 
-// The vault's inner surface, smooth, and the roof above it.
+// Adds the smooth inner surface of the vault and the roof above it.
 void vault(Builder& b) {
   constexpr int kSteps = 48;
   const double reach = kHalfLength_m + 0.4;
@@ -306,7 +307,7 @@ void furniture(Builder& b) {
   for (int bay = 0; bay <= kBays; ++bay) {
     const double z = -kHalfLength_m + kBay_m * bay;
     for (const double side : {-1.0, 1.0}) {
-      // Pilasters on the wall, columns in the room.
+      // Pilasters at the wall, and columns in the room.
       const double x = side * (kHalfWidth_m - 0.15);
       b.box(kStone, Vec(x - 0.2, 0.0, z - 0.3), Vec(x + 0.2, kSpring_m + 0.3, z + 0.3));
       if (bay == 0 || bay == kBays) continue;

@@ -11,7 +11,7 @@ constexpr double kTexel_m = 0.01;
 constexpr double kLead_m = 0.024;  // width of the lead between panes
 constexpr double kPi = std::numbers::pi;
 
-// What of the light each kind of glass lets pass, linear.
+// Transmission of each kind of glass, linear.
 constexpr glm::vec3 kRuby = {0.70F, 0.035F, 0.03F};
 constexpr glm::vec3 kCobalt = {0.03F, 0.10F, 0.70F};
 constexpr glm::vec3 kAmber = {0.90F, 0.45F, 0.05F};
@@ -35,7 +35,7 @@ std::uint32_t hash(int a, int b, int c = 0) {
 
 double unit(std::uint32_t h) { return static_cast<double>(h) / 4294967295.0; }
 
-// A pane: panes with different numbers have lead between them; 0 is stone.
+// A pane. There is lead between panes with different numbers; 0 is stone.
 struct Pane {
   std::uint32_t id = 0;
   glm::vec3 color = {};
@@ -43,7 +43,7 @@ struct Pane {
 
 Pane pane(const glm::vec3& color, int a, int b, int c = 0) {
   const std::uint32_t id = hash(a, b, c) | 1U;
-  // No two panes of old glass are of one tint.
+  // The brightness of old glass varies from pane to pane.
   return {id, color * static_cast<float>(0.72 + 0.28 * unit(hash(id)))};
 }
 
@@ -53,7 +53,7 @@ std::uint8_t srgb(double linear) {
       std::lround(255.0 * (x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055)));
 }
 
-// Paints what `at(x, y)` says for the middle of every texel [m].
+// Sets every texel to at(x, y) of its middle [m].
 template <typename At>
 MeshTexture paint(double width_m, double height_m, double texel_m, const At& at) {
   MeshTexture out;
@@ -70,7 +70,7 @@ MeshTexture paint(double width_m, double height_m, double texel_m, const At& at)
   return out;
 }
 
-// The colour of a pane, or black where its lead is.
+// Returns the colour of the pane at a position, or black on the lead at its edge.
 template <typename PaneAt>
 glm::vec3 leaded(const PaneAt& pane_at, double x, double y) {
   const Pane here = pane_at(x, y);
@@ -95,7 +95,7 @@ Pane lancet_pane(const Lancet& window, std::uint32_t design, double x, double y)
     const int step = static_cast<int>(std::floor(y / 0.225));
     return pane((step & 1) != 0 ? first[design] : second[design], step, side, 2);
   }
-  // Medallions, one between each pair of bars, in both lights.
+  // Medallions, one between each pair of bars, in both halves of the window.
   const double middle = 0.45 + 0.9 * std::floor(y / 0.9);
   const double dx = std::abs(x) - 0.43;
   const double dy = y - middle;
@@ -125,7 +125,7 @@ Pane rose_pane(double radius_m, double x, double y) {
   const auto sector = [&](int count, double shift) {
     return static_cast<int>(std::floor(angle * count + shift)) % count;
   };
-  // Distance to the spoke between two of `count` sectors [m].
+  // Returns the distance to the spoke between two of `count` sectors [m].
   const auto spoke = [&](int count, double shift) {
     return std::abs(std::remainder(angle * count + shift, 1.0)) / count * 2.0 * kPi * r * radius_m;
   };
@@ -160,7 +160,7 @@ Pane rose_pane(double radius_m, double x, double y) {
 double Lancet::half_at(double y_m) const {
   if (y_m <= spring_m) return half_width_m;
   if (y_m >= top_m) return 0.0;
-  // Two arcs with centres on the line where the arch begins.
+  // The arch consists of two arcs whose centres are at the height where it begins.
   const double rise = top_m - spring_m;
   const double centre = (rise * rise - half_width_m * half_width_m) / (2.0 * half_width_m);
   const double radius = half_width_m + centre;

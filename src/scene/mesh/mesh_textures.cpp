@@ -24,7 +24,7 @@ std::uint8_t srgb_of_linear(float x) {
   return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(encoded, 0.0F, 1.0F)));
 }
 
-// Half as large; of an odd side the last row or column joins its neighbour.
+// Returns a texture of half the size. If a side is odd, the last three rows or columns are averaged.
 MeshTexture half_of(const MeshTexture& in) {
   static const std::array<float, 256> kLinear = linear_of_srgb();
   MeshTexture out;

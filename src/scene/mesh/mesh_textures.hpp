@@ -1,5 +1,5 @@
-// Textures of meshes on the GPU, with mip levels: colours are averaged as light, not as sRGB, and by their alpha, so
-// that what is in a hole does not bleed out of it.
+// Textures of meshes on the GPU, with mip levels. Colours are averaged in linear space and weighted by alpha, so that
+// the colours of transparent texels do not bleed into their surroundings.
 #pragma once
 
 #include "gpu/host.hpp"
@@ -7,9 +7,9 @@
 
 namespace tyndall::scene {
 
-// The levels of a texture below the first, each half as large, down to one texel.
+// Returns the levels of a texture after the first, each half as large as the one before, down to one texel.
 [[nodiscard]] std::vector<MeshTexture> mip_levels(const MeshTexture& texture);
-// An sRGB image with all levels, in SHADER_READ_ONLY_OPTIMAL.
+// Creates an sRGB image with all levels, in the layout SHADER_READ_ONLY_OPTIMAL.
 Result<gpu::Image> upload_texture(gpu::Host& host, const MeshTexture& texture);
 Result<gpu::Handle<VkSampler>> create_texture_sampler(const gpu::Device& device, const MeshSampler& sampler);
 

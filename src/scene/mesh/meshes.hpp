@@ -1,5 +1,5 @@
-// Meshes on the GPU, in addition to the terrain or without it, and the bare ground where there is no terrain. They are
-// drawn into the view, into the shadow cascades and, if they transmit light, into the maps of shadow colours.
+// Meshes on the GPU, with or without terrain, and the bare ground if there is no terrain. They are drawn into the view,
+// into the shadow cascades and, if they transmit light, into the maps of shadow colours.
 #pragma once
 
 #include <array>
@@ -21,21 +21,21 @@ class Meshes {
                                                 VkFormat shadow_color_format);
 
   [[nodiscard]] bool any() const { return !data_.instances.empty(); }
-  // Returns whether some of them transmit light, so that maps of shadow colours are needed.
+  // Returns whether some meshes transmit light, so that maps of shadow colours are needed.
   [[nodiscard]] bool has_glass() const { return has_glass_; }
   // Returns `ground` with the heights of the meshes and, without terrain, with the meshes as the only casters.
   [[nodiscard]] Ground ground(Ground ground, const glm::dvec3& camera) const;
   [[nodiscard]] const std::vector<std::string>& notes() const { return data_.notes; }
   [[nodiscard]] VkDeviceSize bytes() const;
 
-  // Writes the constants. Call it before recording the draws.
+  // Writes the constants of a frame. Call it before recording the draws.
   void prepare(const View& view, const LocalFrame& frame, const ShadowParams& shadows,
                const std::vector<CascadeFit>& cascades, const TerrainLight& light, float sky_light);
-  // Record the drawing into a rendering scope with colour and depth: first opaque surfaces, later clear glass over
+  // Record draws into a rendering scope with colour and depth: first opaque surfaces, later clear glass in front of
   // them.
   Result<void> draw_view(VkCommandBuffer cmd, const View& view, const TerrainLight& light);
   Result<void> draw_clear_glass(VkCommandBuffer cmd, const View& view, const TerrainLight& light);
-  // Record the drawing into a layer of the shadow maps, and into a layer of the maps of shadow colours, cleared to one.
+  // Record draws into a layer of the shadow maps, and into a layer of the shadow colours, which is cleared to one.
   Result<void> draw_cascade(VkCommandBuffer cmd, const CascadeFit& cascade);
   Result<void> draw_colors(VkCommandBuffer cmd, const CascadeFit& cascade);
 
@@ -53,15 +53,16 @@ class Meshes {
   double radius_m_ = 0.0;
   bool bare_ground_ = false;
   bool has_glass_ = false;
-  MeshData data_;  // vertices, indices and texels are dropped after the upload
+  MeshData data_;  // without vertices, indices and texels, which are released after the upload
   // East, up and south at the position of the meshes, turned by meshes.yaw_deg. Instances are placed in this frame,
   // near its origin, so that rounding is small.
   glm::dmat4 world_from_site_ = glm::dmat4(1.0);
   glm::dmat4 site_from_model_ = glm::dmat4(1.0);
   LocalFrame frame_;  // of the view
-  // Bounds in the site's frame, mesh by mesh: of the parts of meshes that are placed once, of the instances of others.
+  // Bounds in the frame of the meshes, mesh by mesh: of each part if the mesh has one instance, otherwise of each
+  // instance.
   std::vector<Box> boxes_;
-  std::array<glm::dvec3, 8> corners_ = {};  // of the bounds, in the world
+  std::array<glm::dvec3, 8> corners_ = {};  // of the bounds, in world space
   double lowest_m_ = 0.0, highest_m_ = 0.0;
 
   gpu::Pipeline surfaces_, multiply_, add_, shadow_, shadow_mask_, colors_, ground_;

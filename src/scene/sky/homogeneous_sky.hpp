@@ -1,4 +1,4 @@
-// scattering.model = homogeneous: Hoffman and Preetham (2002) in the frame.
+// The model of Hoffman and Preetham (2002) as a SkyModel: scattering.model = homogeneous.
 #pragma once
 
 #include "scene/sky/sky_model.hpp"

@@ -3,12 +3,13 @@
 // they have in common: the mesh, the pipelines and the drawing. A model adds five shaders and the resources that these
 // read.
 //
-// Shaders. Ground: over scene/terrain_vertex.glsl, scene/terrain_point.glsl and, to light it, scene/terrain_pixel.glsl
-// (bindings 0 to 5 and 8, locations 0 and 1 are the terrain's). What the vertices compute of the atmosphere goes from
-// further locations into images, air_0 and on, which the pass that lights reads; evaluated per pixel, that pass finds
-// it itself, and the ground is drawn as for the effect. Sky: over scene/sky_mesh.glsl and scene/sun_disc.glsl (bindings
-// 0 and 1). The model's own constants are the block `model_block` at binding 6; further resources come at 7 and from 9.
-// Specialisation constant 0 is 1 with scattering.evaluate = pixel; a model may have variants by constants of its own.
+// Shaders of the ground use scene/terrain_vertex.glsl, scene/terrain_point.glsl and, for lighting, terrain_pixel.glsl.
+// Bindings 0 to 5 and 8 and locations 0 and 1 belong to the terrain. The results at the vertices go through further
+// locations to the images air_0, air_1 and so on, which the lighting pass reads. With evaluation per pixel, the
+// lighting pass computes the atmosphere itself, and the ground is drawn as for the effect. Shaders of the sky use
+// scene/sky_mesh.glsl and scene/sun_disc.glsl (bindings 0 and 1). The constants of a model are the block `model_block`
+// at binding 6, and its other resources are at bindings 7 and from 9 on. Specialisation constant 0 is 1 with
+// scattering.evaluate = pixel. A model may have variants that differ in other constants.
 #pragma once
 
 #include <memory>
@@ -64,7 +65,7 @@ class SkyModel {
     const gpu::Shader* ground_vertex;
     const gpu::Shader* ground_fragment;
     const gpu::Shader* ground_light;
-    std::uint32_t air_images;  // that the fragment shader writes after the point of the ground
+    std::uint32_t air_images;  // number of images that the fragment shader writes after the point of the ground
     const gpu::Shader* sky_vertex;
     const gpu::Shader* sky_fragment;
   };
@@ -94,7 +95,7 @@ class SkyModel {
   gpu::Buffer mesh_, indices_, constants_;
 };
 
-// Creates the model that scattering.model names; it must not be `atmosphere`, which is the effect's.
+// Creates the model of scattering.model. Precondition: it is not `atmosphere`, which the effect draws.
 Result<std::unique_ptr<SkyModel>> create_sky_model(gpu::Host& host, const SceneParams& scene, VkFormat color_format,
                                                    VkFormat depth_format);
 

@@ -34,8 +34,8 @@ std::vector<std::uint32_t> block_indices(int coarseness) {
   for (std::uint32_t z = 0; z < cells; ++z) {
     for (std::uint32_t x = 0; x < cells; ++x) {
       const std::uint32_t a = z * side + x;
-      // The diagonal alternates, so that ridges in either direction are cut alike; even vertices, to
-      // which odd ones morph, always have the same diagonals.
+      // The diagonal alternates, so that ridges in both directions are treated alike. The diagonals at even vertices,
+      // to which odd ones morph, are always the same.
       if (((x ^ z) & 1U) == 0) {
         out.insert(out.end(), {a, a + side, a + side + 1, a, a + side + 1, a + 1});
       } else {
@@ -329,8 +329,8 @@ Result<void> Terrain::prepare(const View& view, std::uint32_t height_px, const S
   }
   std::memcpy(constants_.mapped, &out, sizeof out);
 
-  // The blocks of the view, nearest first so that what they hide is not shaded, then each cascade's: no
-  // finer than its texels can show.
+  // First the blocks of the view, from near to far, so that hidden ground is not shaded. Then the blocks of each
+  // cascade, which are not finer than its texels.
   auto* blocks = static_cast<TerrainBlock*>(blocks_.mapped);
   std::uint32_t used = 0;
   ranges_.clear();

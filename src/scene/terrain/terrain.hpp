@@ -1,5 +1,5 @@
-// The terrain on the GPU: fills the clipmap of elevations around the camera, and draws it for the view
-// and for the shadow cascades.
+// The terrain on the GPU: fills the clipmap of elevations around the camera, and draws it for the view and for the
+// shadow cascades.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,7 @@
 
 namespace tyndall::scene {
 
-// What shading the ground needs of a frame, apart from the geometry.
+// The inputs for shading the ground in a frame, apart from the geometry.
 struct TerrainLight {
   glm::dvec3 direction_to_sun = {};
   Vec3 sun_irradiance = Vec3(0.0F);  // above the atmosphere, times scattering.scale
@@ -45,7 +45,7 @@ class Terrain {
   // Uploads elevations that were loaded for these parameters and this radius, to replace the current ones.
   struct Planned;
   [[nodiscard]] Result<Planned> plan_source(const TerrainParams& params, double radius_m, ElevationSource source) const;
-  // Exchanges the current elevations with the planned ones; a second call undoes the first.
+  // Exchanges the current and the planned elevations. A second call undoes the first.
   void swap_source(Planned& planned) noexcept;
   // See TerrainLod.
   Result<void> set_coarseness(int coarseness);

@@ -12,15 +12,15 @@ double distance_to_square(const glm::dvec2& p, const glm::dvec2& low, const glm:
   return std::sqrt(glm::dot(p - nearest, p - nearest) + vertical * vertical);
 }
 
-// The largest distance on a map projection, azimuthal equidistant, of points that are reach_m away from a place on the
-// planet.
+// Returns the largest distance on an azimuthal equidistant map projection of points that are reach_m away from a
+// position on the planet.
 double reach_on_projection(const glm::dvec2& place, double reach_m, double radius_m) {
   constexpr int kDirections = 64;
   const double distance_m = glm::length(place);
   const double arc = distance_m / radius_m;
   const double reach = std::min(reach_m / radius_m, std::numbers::pi);
   double out = reach_m;
-  // As seen from the map projection's centre, with the place at the azimuth 0; both sides are symmetric.
+  // Seen from the centre of the projection, the position is at azimuth 0, and both sides are symmetric.
   for (int i = 0; distance_m > 0.0 && i <= kDirections; ++i) {
     const double angle = std::numbers::pi * i / kDirections;
     const double up = std::cos(arc) * std::cos(reach) - std::sin(arc) * std::sin(reach) * std::cos(angle);

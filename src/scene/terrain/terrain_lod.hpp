@@ -28,7 +28,7 @@ struct TerrainLod {
   int coarseness = 1;
   glm::dvec2 camera_map = {};     // coordinates of the camera on the map projection [m]
   double vertical_m = 0.0;        // height of the camera above the highest ground, at least 0
-  double reach_m = 0.0;           // how far ground can be seen, on the map projection
+  double reach_m = 0.0;           // distance up to which ground is visible, on the map projection
   std::vector<ClipLevel> levels;  // from fine to coarse
 
   // Returns the distance up to which a level is drawn.
@@ -47,8 +47,8 @@ struct TerrainBlock {
   std::int32_t unused = 0;
 };
 
-// Plans the levels for a camera at these coordinates on a map projection and at this altitude, up to the horizon of the
-// highest ground. `min_ground_m`: where ground lies below sea level, the horizon is farther away.
+// Plans the levels for a camera at these coordinates of a map projection and this altitude, up to the horizon of the
+// highest ground. `min_ground_m`: lowest ground; below sea level it makes the horizon more distant.
 [[nodiscard]] TerrainLod plan_terrain(const glm::dvec2& camera_map, double altitude_m, double max_ground_m,
                                       double radius_m, int coarseness = 1, double min_ground_m = 0.0);
 

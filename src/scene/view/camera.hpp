@@ -21,17 +21,19 @@ struct View {
   glm::dvec2 jitter = {};  // shifts the picture by a fraction of a pixel, in clip space
 };
 
-// Yaw and pitch are relative to the local horizontal and north of the camera's place on the planet.
-// camera.altitude_m >= 0 replaces the altitude of camera.position_m.
+// Returns the view for the parameters of a camera. Yaw and pitch are relative to the local horizontal and to north at
+// the position of the camera. camera.altitude_m >= 0 replaces the altitude of camera.position_m.
 [[nodiscard]] View view_from_params(const CameraParams& camera, double aspect, double radius_m);
-// Right-handed, looking down -z, reversed infinite depth: depth = near / distance. In the frame that `frame_from_world`
-// leads to, which is close to the camera: floats hold no place far from the origin (src/scene/view/local_frame.hpp).
+// Returns the camera of the public interface: right-handed, looking down -z, with reversed infinite depth (depth = near
+// / distance). It is in the frame of `frame_from_world`, which is near the camera, because single precision does not
+// suffice far from the origin (src/scene/view/local_frame.hpp).
 [[nodiscard]] Camera camera_from_view(const View& view, const glm::dmat4& frame_from_world = glm::dmat4(1.0));
-// The product of the two in double precision.
+// Returns the product of its two matrices in double precision.
 [[nodiscard]] glm::dmat4 clip_from_world(const View& view);
-// Unit vector towards the sun in the frame of the world's origin.
+// Returns the unit vector towards the sun in the frame of the world's origin.
 [[nodiscard]] glm::dvec3 direction_to_sun(const SunParams& sun);
-// The sun of frame `index` of a sequence: it turns about the axis (0.5, 0.3, 0), as in Yusov's demo (2013).
+// Returns the direction to the sun at a time of a sequence. It rotates about the axis (0.5, 0.3, 0), as in Yusov's demo
+// (2013).
 [[nodiscard]] glm::dvec3 animated_direction_to_sun(const SunParams& sun, double seconds);
 
 [[nodiscard]] Vec3 to_vec3(const glm::dvec3& v);

@@ -9,8 +9,8 @@
 namespace tyndall::scene {
 namespace {
 
-// Distance along a ray from altitude h (elevation sine `mu`) to where it leaves the shell of altitude
-// `top`; bounded, because a sun below the horizon never leaves it upwards.
+// Returns the distance at which a ray from altitude h (elevation sine `mu`) leaves the shell below the altitude `top`.
+// It is bounded, because rays to a sun below the horizon do not leave the shell upwards.
 double distance_out(double h, double mu, double top, double radius_m) {
   constexpr double kLongest_m = 1.2e6;
   const double r = radius_m + h;
@@ -29,7 +29,7 @@ double round_up(double value, double steps) {
 
 glm::dmat3 light_frame(const glm::dvec3& to_sun) {
   glm::dvec3 x = glm::cross(glm::dvec3(0, 1, 0), to_sun);
-  // A sun at the zenith has no azimuth: any horizontal axis serves.
+  // A sun at the zenith has no azimuth, so any horizontal axis is suitable.
   x = glm::length(x) > 1e-6 ? glm::normalize(x) : glm::dvec3(1, 0, 0);
   const glm::dvec3 y = glm::normalize(glm::cross(to_sun, x));
   return {glm::normalize(glm::cross(y, to_sun)), y, to_sun};
@@ -53,8 +53,8 @@ struct Bounds {
   }
 };
 
-// Light-space bounds of (sphere ∩ shell of the ground), from samples on discs at both altitudes, and
-// how far towards the sun casters may stand.
+// Returns the light-space bounds of the intersection of a sphere with the shell of the ground, from samples on discs at
+// both altitudes, and the distance towards the sun within which there may be casters.
 Bounds shell_bounds(const glm::dvec3& centre, double sphere_radius, const glm::dmat3& light_from_world,
                     const glm::dvec3& to_sun, const Ground& ground, double& caster_reach) {
   constexpr int kRings = 4;
@@ -83,8 +83,8 @@ Bounds shell_bounds(const glm::dvec3& centre, double sphere_radius, const glm::d
   return bounds;
 }
 
-// The part of a map in which it counts in full, of its half extent: shaders/scene/sun_shadow.glsl lets it fade over
-// a twentieth of its width, inside of the texels that the filter and the receivers' offset reach over.
+// Returns the fraction of a map's half extent in which it has full weight. shaders/scene/sun_shadow.glsl blends a map
+// over a twentieth of its width, inside a margin for the filter and for the offset of receivers.
 double full_part(const ShadowParams& shadows) { return 1.0 - 2.0 * (0.05 + 6.0 / shadows.resolution); }
 
 // Rounds the centre and the size of a map to whole texels.
@@ -111,8 +111,8 @@ CascadeFit fit_slice(const View& view, const glm::dmat3& world_from_light, doubl
   double caster_reach = 0.0;
   const Bounds bounds =
       shell_bounds(sphere_centre, sphere_radius, light_from_world, world_from_light[2], ground, caster_reach);
-  // Across, what is seen of the shell: both the shell's bounds and the sphere's. Rounded up, the height more
-  // coarsely because it changes with the camera's. A margin of a few texels is for filters.
+  // Across the light, the map covers the intersection of the bounds of shell and sphere. Sizes are rounded up, the
+  // height more coarsely because it changes with the camera. A margin of a few texels is for filters.
   const glm::dvec3 sphere_light = light_from_world * sphere_centre;
   glm::dvec3 low = glm::max(bounds.min, sphere_light - sphere_radius);
   glm::dvec3 high = glm::max(glm::min(bounds.max, sphere_light + sphere_radius), low);
@@ -122,7 +122,7 @@ CascadeFit fit_slice(const View& view, const glm::dmat3& world_from_light, doubl
     for (const glm::dvec3& p : ground.casters) casters.add(light_from_world * p);
     low = glm::clamp(casters.min, low, high);
     high = glm::clamp(casters.max, low, high);
-    margin = 1.0 / full_part(shadows);  // no shadow fades where the casters end
+    margin = 1.0 / full_part(shadows);  // the map has full weight at all casters
   }
   const glm::dvec3 half = 0.5 * (high - low);
   place(fit, 0.5 * (high + low),
@@ -138,7 +138,7 @@ CascadeFit fit_slice(const View& view, const glm::dmat3& world_from_light, doubl
 // Returns the cascade of a whole room. It has full weight everywhere in the room, for every view.
 CascadeFit fit_room(const View& view, const glm::dmat3& world_from_light, const ShadowParams& shadows,
                     const Ground& ground) {
-  constexpr double kShadowLength = 16.0;  // of the shadows behind the room, in its diameters
+  constexpr double kShadowLength = 16.0;  // length of the shadows behind the room, in diameters of it
   CascadeFit fit;
   fit.holds_room = true;
   fit.world_from_light = world_from_light;
@@ -151,7 +151,7 @@ CascadeFit fit_room(const View& view, const glm::dmat3& world_from_light, const 
   const glm::dvec3 middle = 0.5 * (bounds.max + bounds.min);
   const glm::dvec3 half = glm::max(0.5 * (bounds.max - bounds.min), glm::dvec3(0.01));
   place(fit, middle, glm::dvec2(half) / full_part(shadows), shadows);
-  // Towards the sun as far as terrain may stand.
+  // Towards the sun, the map extends as far as there may be terrain.
   const glm::dvec3 up = up_of(world_from_light * middle, ground.radius_m);
   const double reach = ground.casters.empty() ? distance_out(ground.min_m, glm::dot(up, world_from_light[2]),
                                                              ground.max_m, ground.radius_m)

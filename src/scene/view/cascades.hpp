@@ -45,11 +45,12 @@ struct Ground {
 [[nodiscard]] std::vector<double> split_distances(double near_m, double far_m, std::uint32_t count,
                                                   double partitioning);
 
-// `first_near_m` is where the first cascade's own range begins; every cascade is at the same time
-// fitted so that it is whole from its near to its far depth. The cascade `first_marched` starts at the camera.
+// Returns the cascades of a view. Each is fitted so that it is complete between its near and far depth. `first_near_m`:
+// start of the first cascade. The cascade `first_marched` starts at the camera.
 //
-// If there is a room, the first cascade that is coarser than a map of the whole room becomes that map, and the next
-// cascade starts where this one would have started. A room larger than twice the shadows' distance gets no map.
+// If there is a room, the first cascade that is coarser than a map of the whole room is replaced by that map, and the
+// next cascade starts where the replaced one would have started. A room larger than twice the distance of the shadows
+// has no map.
 [[nodiscard]] std::vector<CascadeFit> fit_cascades(const View& view, const glm::dvec3& direction_to_sun,
                                                    const ShadowParams& shadows, const Ground& ground,
                                                    double first_near_m);

@@ -12,7 +12,7 @@ namespace {
 constexpr double kUnitsPerM = 64.0;
 constexpr double kLargestStep_m = 1024.0;
 
-// Returns the position of the origin relative to the centre of a map projection.
+// The position of the origin relative to the centre of a map projection.
 struct Radial {
   glm::dvec2 radial = {1, 0};  // unit vector on the map
   double arc = 0.0;
@@ -43,7 +43,7 @@ LocalFrame local_frame(const glm::dvec3& position, double radius_m) {
   out.projection = nearest_projection(up);
   const double step = std::min(kLargestStep_m, std::exp2(std::floor(std::log2(radius_m / 64.0))));
   out.map_m = glm::round(projection_from_up(out.projection, up, radius_m) / step) * step;
-  // The map projection's axes, turned by the smallest rotation from its centre to the origin.
+  // The axes of the map projection, rotated by the smallest rotation from its centre to the origin.
   const Radial at = radial_of(out.projection, out.map_m, radius_m);
   const glm::dvec3 origin = world_from_projection(out.projection, out.map_m.x, out.map_m.y, 0.0, radius_m);
   const glm::dvec3 zenith = up_of(origin, radius_m);

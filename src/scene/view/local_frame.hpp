@@ -1,4 +1,4 @@
-// The coordinate frame that a view is drawn in. Single precision resolves centimetres only within a hundred kilometres
+// The coordinate frame in which a view is drawn. Single precision resolves centimetres only within a hundred kilometres
 // of the origin. Everything on the device, the effect included, is therefore relative to a point on the planet's
 // surface below the camera: the origin is there, y points up and the planet's centre is at (0, -radius, 0), as in the
 // library's world. Everything on the host stays in the world frame, in double precision. The origin moves in steps, so
