@@ -8,7 +8,7 @@
 
 #include "gpu_test.hpp"
 #include "mesh_files.hpp"
-#include "scene/scene.hpp"
+#include "shared_scene.hpp"
 
 namespace tyndall::scene {
 namespace {
@@ -42,10 +42,12 @@ std::string save_room(const std::string& path, float wall_m) {
   return file.save(path);
 }
 
-class GpuClosedRoom : public GpuTest {
+class GpuClosedRoom : public SharedSceneTest {
  protected:
   GpuClosedRoom()
-      : path_((std::filesystem::temp_directory_path() / ("tyndall-room-" + std::to_string(::getpid()) + ".glb"))
+      : path_((std::filesystem::temp_directory_path() /
+               ("tyndall-room-" + std::to_string(::getpid()) + "-" +
+                testing::UnitTest::GetInstance()->current_test_info()->name() + ".glb"))
                   .string()) {
     params_.tables.size = {8, 32, 32, 4};
     params_.tables.orders = 2;
@@ -59,20 +61,17 @@ class GpuClosedRoom : public GpuTest {
     GpuTest::TearDown();
   }
 
-  std::unique_ptr<Scene> make(const char* terrain, float wall_m) {
+  Scene* make(const char* terrain, float wall_m) {
     scene_.terrain.source = terrain;
     scene_.meshes.source = save_room(path_, wall_m);
     // The terrain shall stay below the floor.
     scene_.meshes.position_m.y = scene_.terrain.source == "none" ? 0.0 : 20.0;
-    SceneDesc desc;
-    desc.extent = kExtent;
-    Result<std::unique_ptr<Scene>> scene = Scene::create(host(), desc, params_, scene_);
-    EXPECT_OK(scene);
-    if (!scene.ok()) return nullptr;
-    const std::shared_ptr<const ElevationSource> ground = scene.value()->elevations();
+    Scene* const scene = shared_scene(kExtent, params_, scene_, 1);
+    if (scene == nullptr) return nullptr;
+    const std::shared_ptr<const ElevationSource> ground = scene->elevations();
     floor_m_ = scene_.meshes.position_m.y;
     if (ground != nullptr) floor_m_ += ground_height(*ground, {0.0, 1.0, 0.0}, params_.planet.radius_m);
-    return std::move(scene).value();
+    return scene;
   }
   // Looks from one place into opposite corners, below and above, under suns from the zenith to the horizon.
   void expect_dark(Scene& scene, std::uint32_t cascades, float distance_m, const std::string& what) {
@@ -108,7 +107,7 @@ class GpuClosedRoom : public GpuTest {
 
 TEST_F(GpuClosedRoom, SurfacesAreDarkOnBareGround) {
   params_.scattering.enabled = false;
-  const std::unique_ptr<Scene> scene = make("none", 0.1F);
+  Scene* const scene = make("none", 0.1F);
   ASSERT_NE(scene, nullptr);
   for (const std::uint32_t cascades : {1U, 2U, 4U}) {
     for (const float distance_m : {10.0F, 3.0e5F}) expect_dark(*scene, cascades, distance_m, "surfaces");
@@ -118,7 +117,7 @@ TEST_F(GpuClosedRoom, SurfacesAreDarkOnBareGround) {
 TEST_F(GpuClosedRoom, AirIsDarkOnBareGround) {
   params_.scattering.medium = MediumKind::homogeneous;
   params_.homogeneous_medium.density = 300.0F;
-  const std::unique_ptr<Scene> scene = make("none", 0.4F);
+  Scene* const scene = make("none", 0.4F);
   ASSERT_NE(scene, nullptr);
   for (const Technique technique : {Technique::brute_force, Technique::epipolar}) {
     params_.scattering.technique = technique;
@@ -130,7 +129,7 @@ TEST_F(GpuClosedRoom, AirIsDarkOnBareGround) {
 
 TEST_F(GpuClosedRoom, SurfacesAndAirAreDarkOnTerrain) {
   params_.scattering.multiple = MultipleScattering::none;  // unoccluded by default
-  const std::unique_ptr<Scene> scene = make("procedural", 0.4F);
+  Scene* const scene = make("procedural", 0.4F);
   ASSERT_NE(scene, nullptr);
   expect_dark(*scene, 1, 60.0F, "terrain");
   expect_dark(*scene, 4, 3.0e5F, "terrain");

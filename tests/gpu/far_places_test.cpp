@@ -7,7 +7,7 @@
 #include "gpu_test.hpp"
 #include "image/metrics.hpp"
 #include "scene/description/map_projection.hpp"
-#include "scene/scene.hpp"
+#include "shared_scene.hpp"
 
 namespace tyndall::scene {
 namespace {
@@ -40,7 +40,7 @@ const Place kPlaces[] = {{"origin", 0.0, 0.0},
                          {"far side", 179.5, 20.0},
                          {"antipode", 180.0, 0.0}};
 
-class GpuFarPlaces : public GpuTest {
+class GpuFarPlaces : public SharedSceneTest {
  protected:
   GpuFarPlaces() {
     params_.planet.radius_m = static_cast<float>(kRadius_m);
@@ -51,14 +51,7 @@ class GpuFarPlaces : public GpuTest {
     scene_.shadows.first_marched = 0;
   }
 
-  std::unique_ptr<Scene> make(VkExtent2D extent = kExtent) {
-    SceneDesc desc;
-    desc.extent = extent;
-    desc.terrain_coarseness = 4;
-    Result<std::unique_ptr<Scene>> scene = Scene::create(host(), desc, params_, scene_);
-    EXPECT_OK(scene);
-    return scene.ok() ? std::move(scene).value() : nullptr;
-  }
+  Scene* make(VkExtent2D extent = kExtent) { return shared_scene(extent, params_, scene_); }
 
   void stand(const glm::dvec3& at) { scene_.camera.position_m = {at.x, at.y, at.z}; }
 
@@ -100,7 +93,7 @@ TEST_F(GpuFarPlaces, AMeshLooksTheSameWhereverItStands) {
   sun.azimuth_deg = 120.0F;
   const glm::dvec3 sun_there = direction_to_sun(sun);
   const glm::dvec3 eye(0.6, 2.1, 1.7);  // from the meshes' origin: east, up, south
-  std::unique_ptr<Scene> scene;
+  Scene* scene = nullptr;
   image::Image first;
   for (const Technique technique : {Technique::brute_force, Technique::epipolar}) {
     params_.scattering.technique = technique;
@@ -136,7 +129,7 @@ TEST_F(GpuFarPlaces, AMeshLooksTheSameWhereverItStands) {
 TEST_F(GpuFarPlaces, TheGroundIsDrawnWhereTheCameraStands) {
   params_.scattering.enabled = false;
   scene_.camera.pitch_deg = -90.0F;
-  const std::unique_ptr<Scene> scene = make();
+  Scene* const scene = make();
   ASSERT_NE(scene, nullptr);
   for (const Place& place : {kPlaces[1], kPlaces[2], kPlaces[3], kPlaces[4], kPlaces[7]}) {
     const double ground_m = ground_height(*scene->elevations(), place.up(), kRadius_m);
@@ -155,7 +148,7 @@ TEST_F(GpuFarPlaces, ThereIsAHorizonAllAround) {
   params_.scattering.enabled = false;
   scene_.camera.pitch_deg = 0.0F;
   scene_.camera.fov_deg = 60.0F;
-  const std::unique_ptr<Scene> scene = make();
+  Scene* const scene = make();
   ASSERT_NE(scene, nullptr);
   for (const Place& place : {kPlaces[2], kPlaces[3], kPlaces[4], kPlaces[7]}) {
     stand(place.at(6000.0));
@@ -179,7 +172,7 @@ TEST_F(GpuFarPlaces, ThereIsAHorizonAllAround) {
 // From high above, every ray that meets the sphere at sea level meets ground before.
 TEST_F(GpuFarPlaces, TheTerrainHasNoEndFromSpace) {
   params_.scattering.enabled = false;
-  const std::unique_ptr<Scene> scene = make();
+  Scene* const scene = make();
   ASSERT_NE(scene, nullptr);
   for (const Place& place : {kPlaces[0], kPlaces[3], kPlaces[6], kPlaces[7]}) {
     for (const double altitude_m : {1.0e6, 8.0e6}) {
@@ -215,7 +208,7 @@ TEST_F(GpuFarPlaces, TheSphereOfOneilsModelIsTheGround) {
   scene_.scattering.model = ScatteringModel::oneil;
   scene_.oneil.ground = OneilGround::sphere;
   stand({0.0, 100.0, 0.0});
-  const std::unique_ptr<Scene> scene = make();
+  Scene* const scene = make();
   ASSERT_NE(scene, nullptr);
   draw(*scene);
   EXPECT_NEAR(scene->images().view.position.y, 100.0, 1e-9);

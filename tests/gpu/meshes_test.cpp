@@ -11,7 +11,7 @@
 #include "image/metrics.hpp"
 #include "mesh_files.hpp"
 #include "scene/mesh/mesh_textures.hpp"
-#include "scene/scene.hpp"
+#include "shared_scene.hpp"
 
 namespace tyndall::scene {
 namespace {
@@ -19,10 +19,10 @@ namespace {
 constexpr VkExtent2D kExtent = {96, 54};
 constexpr double kHeight_m = 20.0;  // of the camera, which looks straight down; north is up in the picture
 
-class GpuMeshes : public GpuTest {
+class GpuMeshes : public SharedSceneTest {
  protected:
   GpuMeshes()
-      : path_((std::filesystem::temp_directory_path() / ("tyndall-meshes-" + std::to_string(::getpid()) + ".glb"))
+      : path_((std::filesystem::temp_directory_path() / ("tyndall-meshes-" + std::to_string(::getpid()) + "-.glb"))
                   .string()) {
     params_.tables.size = {8, 32, 32, 4};
     params_.tables.orders = 2;
@@ -62,7 +62,12 @@ class GpuMeshes : public GpuTest {
     return scene.ok() ? std::move(scene).value() : nullptr;
   }
   image::Image draw(bool with_file = true) {
-    const std::unique_ptr<Scene> scene = make(with_file);
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+    static int files = 0;
+    path_ = path_.substr(0, path_.rfind('-') + 1) + std::to_string(files++) + ".glb";  // a scene reads a file once
+    scene_.meshes.source = with_file ? file_.save(path_) : "none";
+    Scene* const scene = shared_scene(kExtent, params_, scene_);
     return scene != nullptr ? draw(*scene) : image::Image(kExtent.width, kExtent.height);
   }
   static image::Image draw(Scene& scene) {
@@ -319,12 +324,10 @@ TEST_F(GpuMeshes, ColouredShaftsOfTheHallAreThoseOfBruteForce) {
   for (const Technique technique : {Technique::brute_force, Technique::epipolar}) {
     Params params = settings.effect;
     params.scattering.technique = technique;
-    SceneDesc desc;
-    desc.extent = kPicture;
-    Result<std::unique_ptr<Scene>> scene = Scene::create(host(), desc, params, settings.scene);
-    ASSERT_OK(scene);
-    draw(*scene.value());
-    Result<image::Image> display = scene.value()->display();
+    Scene* const scene = shared_scene(kPicture, params, settings.scene);
+    ASSERT_NE(scene, nullptr);
+    draw(*scene);
+    Result<image::Image> display = scene->display();
     ASSERT_OK(display);
     for (float& value : display.value().rgb) {
       const double x = static_cast<double>(value);

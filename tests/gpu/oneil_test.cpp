@@ -8,7 +8,7 @@
 #include "gpu_test.hpp"
 #include "image/metrics.hpp"
 #include "models/gpu_probe.hpp"
-#include "scene/scene.hpp"
+#include "shared_scene.hpp"
 
 namespace tyndall {
 namespace {
@@ -95,15 +95,10 @@ struct DemoPlanet {
   }
 };
 
-class GpuOneilScene : public GpuTest {
+class GpuOneilScene : public s::SharedSceneTest {
  protected:
-  std::unique_ptr<s::Scene> make(const DemoPlanet& setup, VkExtent2D extent = {96, 64}) {
-    s::SceneDesc desc;
-    desc.extent = extent;
-    desc.terrain_coarseness = 4;
-    Result<std::unique_ptr<s::Scene>> scene = s::Scene::create(host(), desc, setup.params, setup.scene);
-    EXPECT_OK(scene);
-    return scene.ok() ? std::move(scene).value() : nullptr;
+  static s::Scene* make(const DemoPlanet& setup, VkExtent2D extent = {96, 64}) {
+    return shared_scene(extent, setup.params, setup.scene);
   }
   static image::Image draw(s::Scene& scene, const s::SceneParams& params) {
     EXPECT_OK(scene.set_scene(params));
@@ -129,7 +124,7 @@ double largest_difference(const image::Image& a, const image::Image& b) {
 // horizontal, and where the rows of the mesh stand.
 TEST_F(GpuOneilScene, CrossesTheTopWithoutAJump) {
   DemoPlanet setup;
-  const std::unique_ptr<s::Scene> scene = make(setup);
+  s::Scene* const scene = make(setup);
   ASSERT_NE(scene, nullptr);
   for (const s::ModelEvaluation evaluate : {s::ModelEvaluation::pixel, s::ModelEvaluation::vertex}) {
     s::SceneParams params = setup.scene;
@@ -151,7 +146,7 @@ TEST_F(GpuOneilScene, CrossesTheTopOfEarthsAirWithoutAJump) {
   setup.scene.camera.pitch_deg = -8.0F;
   for (const s::ScatteringModel model : {s::ScatteringModel::oneil, s::ScatteringModel::oneil_table}) {
     setup.scene.scattering.model = model;
-    const std::unique_ptr<s::Scene> scene = make(setup);
+    s::Scene* const scene = make(setup);
     ASSERT_NE(scene, nullptr);
     for (const s::OneilSpacing spacing : {s::OneilSpacing::uniform, s::OneilSpacing::column}) {
       for (const s::ModelEvaluation evaluate : {s::ModelEvaluation::pixel, s::ModelEvaluation::vertex}) {
@@ -172,7 +167,7 @@ TEST_F(GpuOneilScene, CrossesTheTopOfEarthsAirWithoutAJump) {
 
 TEST_F(GpuOneilScene, VerticesAreFineEnough) {
   DemoPlanet setup;
-  const std::unique_ptr<s::Scene> scene = make(setup);
+  s::Scene* const scene = make(setup);
   ASSERT_NE(scene, nullptr);
   for (const float altitude : {100.0F, 30.0e3F, 159.0e3F, 6000.0e3F}) {
     s::SceneParams params = setup.scene;
@@ -196,7 +191,7 @@ TEST_F(GpuOneilScene, NoPixelOfTheLimbSparkles) {
   setup.params.tables.size = {8, 32, 32, 4};
   setup.scene.oneil.samples = 8;
   setup.scene.oneil.spacing = s::OneilSpacing::column;
-  const std::unique_ptr<s::Scene> scene = make(setup, {160, 90});
+  s::Scene* const scene = make(setup, {160, 90});
   ASSERT_NE(scene, nullptr);
   std::vector<image::Image> pictures[2];
   for (const s::ModelEvaluation evaluate : {s::ModelEvaluation::pixel, s::ModelEvaluation::vertex}) {
@@ -230,7 +225,7 @@ TEST_F(GpuOneilScene, ThickAirHasNoSeamAtTheHorizon) {
   setup.scene.camera.pitch_deg = -72.5F;
   setup.scene.camera.fov_deg = 4.0F;
   setup.scene.sun.azimuth_deg = 0.0F;
-  const std::unique_ptr<s::Scene> scene = make(setup);
+  s::Scene* const scene = make(setup);
   ASSERT_NE(scene, nullptr);
   for (const s::ModelEvaluation evaluate : {s::ModelEvaluation::vertex, s::ModelEvaluation::pixel}) {
     s::SceneParams params = setup.scene;
@@ -250,7 +245,7 @@ TEST_F(GpuOneilScene, NightSideIsBlack) {
   setup.scene.camera.position_m = {0.0F, 6000.0e3F, 0.0F};
   setup.scene.camera.pitch_deg = -90.0F;
   setup.scene.camera.fov_deg = 20.0F;
-  const std::unique_ptr<s::Scene> scene = make(setup);
+  s::Scene* const scene = make(setup);
   ASSERT_NE(scene, nullptr);
   for (const s::ModelEvaluation evaluate : {s::ModelEvaluation::vertex, s::ModelEvaluation::pixel}) {
     s::SceneParams params = setup.scene;
@@ -271,7 +266,7 @@ TEST_F(GpuOneilScene, MoonIsSeenThroughTheAir) {
   setup.scene.camera.position_m = {0.0F, 10.0F, 0.0F};
   setup.scene.camera.pitch_deg = 5.0F;
   setup.scene.camera.fov_deg = 10.0F;
-  const std::unique_ptr<s::Scene> scene = make(setup);
+  s::Scene* const scene = make(setup);
   ASSERT_NE(scene, nullptr);
   const auto moonlight = [&](bool air) {
     Params params = setup.params;

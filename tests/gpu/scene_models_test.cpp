@@ -7,14 +7,14 @@
 #include "image/metrics.hpp"
 #include "models/homogeneous.hpp"
 #include "scene/description/map_projection.hpp"
-#include "scene/scene.hpp"
+#include "shared_scene.hpp"
 
 namespace tyndall::scene {
 namespace {
 
 constexpr VkExtent2D kExtent = {96, 54};
 
-class GpuSceneModels : public GpuTest {
+class GpuSceneModels : public SharedSceneTest {
  protected:
   // Sea level everywhere, so that the ground of the picture is the sphere of the model.
   void SetUp() override {
@@ -30,25 +30,10 @@ class GpuSceneModels : public GpuTest {
     scene_.sun.azimuth_deg = 75.0F;
     params_.atmosphere.mie_phase = MiePhase::henyey_greenstein;
   }
-  void TearDown() override {
-    drawn_.reset();
-    GpuTest::TearDown();
-  }
 
   image::Image draw(VkExtent2D extent = kExtent) {
-    if (drawn_ == nullptr) {
-      SceneDesc desc;
-      desc.extent = extent;
-      desc.timings = true;
-      desc.terrain_coarseness = 4;
-      Result<std::unique_ptr<Scene>> made = Scene::create(host(), desc, params_, scene_);
-      EXPECT_OK(made);
-      if (!made.ok()) return {};
-      drawn_ = std::move(made).value();
-    }
-    EXPECT_OK(drawn_->set_extent(extent));
-    EXPECT_OK(drawn_->set_params(params_));
-    EXPECT_OK(drawn_->set_scene(scene_));
+    drawn_ = shared_scene(extent, params_, scene_);
+    if (drawn_ == nullptr) return {};
     EXPECT_OK(drawn_->render(0.0));
     Result<image::Image> radiance = drawn_->radiance();
     EXPECT_OK(radiance);
@@ -103,7 +88,7 @@ class GpuSceneModels : public GpuTest {
 
   Params params_;
   SceneParams scene_;
-  std::unique_ptr<Scene> drawn_;
+  Scene* drawn_ = nullptr;
 };
 
 TEST_F(GpuSceneModels, HomogeneousPerPixelIsTheModel) {

@@ -12,7 +12,7 @@
 #include "config/scene_file.hpp"
 #include "gpu_test.hpp"
 #include "image/metrics.hpp"
-#include "scene/scene.hpp"
+#include "shared_scene.hpp"
 
 namespace tyndall::scene {
 namespace {
@@ -34,7 +34,7 @@ Params small_planet() {
   return params;
 }
 
-class GpuScene : public GpuTest {
+class GpuScene : public SharedSceneTest {
  protected:
   // An elevation file of a square of `n` samples, written as text; removed at the end.
   std::string elevation_file(int n, double cell_m, const std::function<double(double x, double z)>& height) {
@@ -56,8 +56,12 @@ class GpuScene : public GpuTest {
     GpuTest::TearDown();
   }
 
-  std::unique_ptr<Scene> make(const Params& params, const SceneParams& scene_params, VkExtent2D extent = kSmall,
-                              int terrain_coarseness = 4) {
+  static Scene* make(const Params& params, const SceneParams& scene_params, VkExtent2D extent = kSmall,
+                     int terrain_coarseness = 4) {
+    return shared_scene(extent, params, scene_params, terrain_coarseness);
+  }
+  static std::unique_ptr<Scene> create(const Params& params, const SceneParams& scene_params, VkExtent2D extent,
+                                       int terrain_coarseness) {
     SceneDesc desc;
     desc.extent = extent;
     desc.terrain_coarseness = terrain_coarseness;
@@ -102,7 +106,7 @@ double luminance_sum(const image::Image& image) {
 // One after the other, as in the viewer: that a change leads to what a creation does is the next test's business.
 TEST_F(GpuScene, ShippedScenesAreDrawn) {
   int count = 0;
-  std::unique_ptr<Scene> scene;
+  Scene* scene = nullptr;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(TYNDALL_SOURCE_DIR "/scenes")) {
     // Presets are put on top of scenes.
     if (entry.path().extension() != ".toml" || entry.path().parent_path().filename() == "presets") continue;
@@ -152,7 +156,7 @@ TEST_F(GpuScene, EpipolarSamplingOfTerrainIsLikeBruteForce) {
   for (const Technique technique : {Technique::brute_force, Technique::epipolar}) {
     Params params = with_small_tables();
     params.scattering.technique = technique;
-    const std::unique_ptr<Scene> scene = make(params, {}, kExtent, 1);
+    Scene* const scene = make(params, {}, kExtent, 1);
     ASSERT_NE(scene, nullptr);
     for (const View& view : views) {
       SceneParams settings;
@@ -212,13 +216,13 @@ TEST_F(GpuScene, ChangesLeadToTheSamePictureAsCreation) {
   air.scattering.technique = Technique::brute_force;
   air.atmosphere.aerosol_density = 3.0F;
   const VkExtent2D larger = {80, 50};
-  const std::unique_ptr<Scene> changed = make(small_planet(), {});
+  Scene* const changed = make(small_planet(), {});
   ASSERT_NE(changed, nullptr);
   const image::Image before = draw(*changed);
   ASSERT_OK(changed->set_extent(larger));
   ASSERT_OK(changed->set_params(air));
   const image::Image after = draw(*changed, other);
-  const std::unique_ptr<Scene> created = make(air, other, larger);
+  const std::unique_ptr<Scene> created = create(air, other, larger, 4);
   ASSERT_NE(created, nullptr);
   EXPECT_EQ(after.width, larger.width);
   EXPECT_EQ(after.rgb, draw(*created).rgb);
@@ -244,7 +248,7 @@ TEST_F(GpuScene, DrawsForViewers) {
   }
   EXPECT_GT(steps, 2);
   ASSERT_TRUE(scene.can_render());
-  const std::unique_ptr<Scene> plain = make(small_planet(), {}, kSmall, 1);
+  Scene* const plain = make(small_planet(), {}, kSmall, 1);
   ASSERT_NE(plain, nullptr);
   const image::Image whole = draw(*plain);
   EXPECT_EQ(draw(scene).rgb, whole.rgb);
@@ -271,7 +275,7 @@ TEST_F(GpuScene, DrawsForViewers) {
 
 TEST_F(GpuScene, TheDefaultSceneRepeatsItselfAndIsDarkAtNight) {
   SceneParams settings;
-  const std::unique_ptr<Scene> scene = make(with_small_tables(), settings);
+  Scene* const scene = make(with_small_tables(), settings);
   ASSERT_NE(scene, nullptr);
   const image::Image first = draw(*scene);
   EXPECT_GT(luminance_sum(first), 0.0);
@@ -299,7 +303,7 @@ TEST_F(GpuScene, ShadowParametersAtBothEnds) {
   least.shadows = {4096, 1, 0, 0.0F, 1000.0F, false, false, false};
   most.shadows = {512, 8, 7, 1.0F, 1.0e7F, true, true, true};
   for (const SceneParams& settings : {least, most}) {
-    const std::unique_ptr<Scene> scene = make(params, settings);
+    Scene* const scene = make(params, settings);
     ASSERT_NE(scene, nullptr);
     EXPECT_GT(luminance_sum(draw(*scene)), 0.0);
   }
@@ -315,7 +319,7 @@ TEST_F(GpuScene, ShadingsTheCascadeViewAndTheSunsDisc) {
   settings.camera.position_m = {0.0F, 3000.0F, 0.0F};
   settings.camera.pitch_deg = -35.0F;
   settings.sun.elevation_deg = 40.0F;
-  const std::unique_ptr<Scene> scene = make(params, settings);
+  Scene* const scene = make(params, settings);
   ASSERT_NE(scene, nullptr);
   std::vector<std::vector<float>> images;
   for (const TerrainShading shading : {TerrainShading::materials, TerrainShading::height, TerrainShading::plain}) {
@@ -376,7 +380,7 @@ TEST_F(GpuScene, EveryModelTakesTheColourOfTheSun) {
   scene_params.shadows.resolution = 512;
   scene_params.shadows.cascades = 1;
   scene_params.shadows.first_marched = 0;
-  const std::unique_ptr<Scene> scene = make(params, scene_params);
+  Scene* const scene = make(params, scene_params);
   ASSERT_NE(scene, nullptr);
   const Vec3 color(3.0F, 1.5F, 0.25F);
   const auto expect_colored = [&](const char* what) {
@@ -422,7 +426,7 @@ TEST_F(GpuScene, SmoothGroundUnderAHighSunHasNoAcne) {
   settings.camera = {{0.0F, 3000.0F, 0.0F}, -1.0F, 0.0F, -9.0F, 3.0F, 1};
   settings.sun.elevation_deg = 60.0F;
   settings.sun.azimuth_deg = 270.0F;
-  const std::unique_ptr<Scene> scene = make(params, settings, kSmall, 1);
+  Scene* const scene = make(params, settings, kSmall, 1);
   ASSERT_NE(scene, nullptr);
   // The same without shadows: the cascades end at twice the camera's height, in front of all that is seen.
   SceneParams open_settings = settings;

@@ -1,0 +1,41 @@
+// The fixture of tests that draw with one scene after the other. They share it, because creating the pipelines of a
+// scene takes seconds; scene_test.cpp shows that a scene that has been changed draws what a new one would.
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "gpu_test.hpp"
+#include "scene/scene.hpp"
+
+namespace tyndall::scene {
+
+class SharedSceneTest : public GpuTest {
+ public:
+  static void TearDownTestSuite() { shared_.reset(); }
+
+ protected:
+  // Returns the scene with these parameters, or null after an error, which fails the test.
+  static Scene* shared_scene(VkExtent2D extent, const Params& params, const SceneParams& scene,
+                             int terrain_coarseness = 4) {
+    if (shared_ == nullptr) {
+      SceneDesc desc;
+      desc.extent = extent;
+      desc.timings = true;
+      desc.terrain_coarseness = terrain_coarseness;
+      Result<std::unique_ptr<Scene>> made = Scene::create(host(), desc, params, scene);
+      EXPECT_OK(made);
+      if (!made.ok()) return nullptr;
+      shared_ = std::move(made).value();
+    }
+    const bool changed = shared_->set_terrain_coarseness(terrain_coarseness).ok() && shared_->set_extent(extent).ok() &&
+                         shared_->set_params(params).ok() && shared_->set_scene(scene).ok();
+    EXPECT_TRUE(changed);
+    return changed ? shared_.get() : nullptr;
+  }
+
+ private:
+  static inline std::unique_ptr<Scene> shared_;
+};
+
+}  // namespace tyndall::scene
