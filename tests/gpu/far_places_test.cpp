@@ -45,7 +45,7 @@ class GpuFarPlaces : public SharedSceneTest {
   GpuFarPlaces() {
     params_.planet.radius_m = static_cast<float>(kRadius_m);
     params_.tables.size = {8, 32, 32, 4};
-    params_.tables.orders = 2;
+    params_.tables.orders = 1;
     scene_.shadows.resolution = 512;
     scene_.shadows.cascades = 2;
     scene_.shadows.first_marched = 0;

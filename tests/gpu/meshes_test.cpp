@@ -25,7 +25,7 @@ class GpuMeshes : public SharedSceneTest {
       : path_((std::filesystem::temp_directory_path() / ("tyndall-meshes-" + std::to_string(::getpid()) + "-.glb"))
                   .string()) {
     params_.tables.size = {8, 32, 32, 4};
-    params_.tables.orders = 2;
+    params_.tables.orders = 1;
     params_.scattering.enabled = false;  // the light of the surfaces themselves
     scene_.terrain.source = "none";
     scene_.camera.position_m = {0.0F, static_cast<float>(kHeight_m), 0.0F};
@@ -317,7 +317,7 @@ TEST_F(GpuMeshes, ColouredShaftsOfTheHallAreThoseOfBruteForce) {
   ASSERT_OK(config::load(settings, TYNDALL_SOURCE_DIR "/scenes/hall.toml"));
   settings.scene.camera.samples = 1;
   settings.effect.tables.size = {8, 32, 32, 4};
-  settings.effect.tables.orders = 2;
+  settings.effect.tables.orders = 1;
   settings.scene.shadows.resolution = 1024;
   constexpr VkExtent2D kPicture = {256, 144};
   std::vector<image::Image> pictures;
@@ -354,7 +354,7 @@ TEST_F(GpuMeshes, GlassThatComesLaterColoursTheAir) {
   ASSERT_OK(config::load(settings, TYNDALL_SOURCE_DIR "/scenes/hall.toml"));
   settings.scene.camera.samples = 1;
   settings.effect.tables.size = {8, 32, 32, 4};
-  settings.effect.tables.orders = 2;
+  settings.effect.tables.orders = 1;
   settings.scene.shadows.resolution = 512;
   SceneDesc desc;
   desc.extent = {128, 72};

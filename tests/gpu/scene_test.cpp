@@ -22,7 +22,7 @@ constexpr VkExtent2D kSmall = {64, 36};
 // Tables that are built in a moment: what they hold is the business of tables_test.cpp.
 Params with_small_tables(Params params = {}) {
   params.tables.size = {8, 32, 32, 4};
-  params.tables.orders = 2;
+  params.tables.orders = 1;
   return params;
 }
 

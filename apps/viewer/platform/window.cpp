@@ -7,6 +7,8 @@
 
 #include <algorithm>
 
+#include "viewer/platform/display_loss.hpp"
+
 namespace tyndall::viewer {
 namespace {
 
@@ -152,6 +154,8 @@ void Window::begin_gui() {
   ImGui_ImplGlfw_NewFrame();
   // NewFrame() has read the current pointer.
   ImGuiIO& io = ImGui::GetIO();
+  // GLFW returns an arbitrary size for a window that another program has destroyed.
+  if (window_is_gone()) io.DisplaySize = ImVec2(0.0F, 0.0F);
   for (const KeyEvent& event : events) {
     if (event.kind != KeyEvent::Kind::button) continue;
     buttons_[event.key] = event.action == GLFW_PRESS;
@@ -172,6 +176,7 @@ VkExtent2D Window::size() const {
   int width = 0;
   int height = 0;
   glfwGetFramebufferSize(window_, &width, &height);
+  if (window_is_gone()) return {0, 0};
   return {static_cast<std::uint32_t>(std::max(width, 0)), static_cast<std::uint32_t>(std::max(height, 0))};
 }
 
