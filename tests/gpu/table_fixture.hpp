@@ -31,7 +31,7 @@ class TableBuilderTest : public GpuTest {
     return {};
   }
   Result<void> create(TableBuilder& builder, bool timings, const Params& params) {
-    pipelines_.create(host().device());
+    pipelines_.create(host().device(), 1);
     TYNDALL_TRY(builder.create(host().device(), pipelines_, 1, timings));
     return change(builder, params);
   }
