@@ -22,6 +22,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -220,7 +221,9 @@ class Effect {
   // Takes over new parameters. An error names the first that is out of range. Allocates the memory for tables that
   // become stale; the old tables stay in use until record_precompute() has completed the new ones, and only then do the
   // views of light_tables() and scattering_tables() change. Makes missing pipelines, about 0.1 s each on a CPU device.
-  Result<void> set_params(const Params& params);
+  // With `desc`, also changes what set_shadow_colors() and set_limits() change, in one step: all or nothing. Its other
+  // fields must equal those of desc().
+  Result<void> set_params(const Params& params, const std::optional<EffectDesc>& desc = std::nullopt);
   // Returns the parameters in use.
   [[nodiscard]] const Params& params() const;
   // Makes at most `budget` of the pipelines that other parameters would need, so that switching costs nothing.
@@ -230,9 +233,6 @@ class Effect {
   Result<void> set_shadow_colors(bool shadow_colors);
   // Changes these limits of EffectDesc. Frees memory once the commands in flight have completed.
   Result<void> set_limits(VkExtent2D max_extent, std::uint32_t max_cascades, std::uint32_t max_shadow_resolution);
-  // Changes parameters and the above settings in one step: all or nothing. The other fields of `desc` must equal
-  // those of desc().
-  Result<void> set_params(const Params& params, const EffectDesc& desc);
   // Returns the settings in use.
   [[nodiscard]] const EffectDesc& desc() const;
 

@@ -13,9 +13,6 @@ float altitude_of(vec3 p, float R) {
   return (horizontal_squared + p.y * (2.0 * R + p.y)) / (sqrt(horizontal_squared + y * y) + R);
 }
 
-// Returns the unit vector that points away from the planet's centre at the world position p.
-vec3 up_at(vec3 p, float R) { return normalize(vec3(p.x, p.y + R, p.z)); }
-
 // Returns the altitude at distance d along the ray; d may be negative. From r^2 - r0^2 = d (2 r0 mu + d).
 float altitude_along(float h0, float mu, float d, float R) {
   float r0 = R + h0;

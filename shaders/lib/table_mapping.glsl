@@ -195,10 +195,4 @@ float angle_from_q(IN(TableShape) t, float q) {
   return t.parameterization == 0u ? cos(x * 3.14159265358979) : 2.0 * x - 1.0;
 }
 
-// Returns the cosine of the angle between view and sun that is nearest to nu and possible for these zenith angles.
-float possible_angle(float mu, float mu_s, float nu) {
-  float spread = sqrt(max((1.0 - mu) * (1.0 + mu) * (1.0 - mu_s) * (1.0 + mu_s), 0.0));
-  return clamp(nu, mu * mu_s - spread, mu * mu_s + spread);
-}
-
 #endif

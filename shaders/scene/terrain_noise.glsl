@@ -45,7 +45,7 @@ struct TerrainSurface {
   float crest;  // [0; 1] 1 on crests, 0 on valley floors
 };
 
-// Returns bounds of the elevation that terrain_height() can return [m].
+// Returns bounds of the elevation that terrain_height_at() can return [m].
 vec2 terrain_height_bounds() { return vec2(kTerrainMinM, kTerrainMaxM); }
 
 // Returns the nearest position to a point of the map. Far from the origin, floats are too coarse; use integers there.
@@ -296,11 +296,6 @@ float terrain_height_at(ivec2 units, float spacing_m, uint seed) {
   s.slope += terrain_map_slope(vec2(knoll.y, knoll.z), 1, 2, 18) * knoll_m;
   terrain_gullies(s, point, 0.35 + 0.65 * gain, salt);
   return terrain_soft_limit(s.height_m);
-}
-
-// Returns the elevation at a point of the map in m: x east, y south.
-float terrain_height(vec2 map_m, float spacing_m, uint seed) {
-  return terrain_height_at(terrain_units(map_m), spacing_m, seed);
 }
 
 #endif

@@ -68,10 +68,14 @@ Result<Effect> Effect::create(const DeviceInfo& info, const EffectDesc& desc, co
   });
 }
 
-Result<void> Effect::set_params(const Params& params) {
+Result<void> Effect::set_params(const Params& params, const std::optional<EffectDesc>& desc) {
   return call(state_, "Effect::set_params", [&](State& s) -> Result<void> {
+    if (desc) {
+      TYNDALL_TRY(check_desc(s.info, *desc));
+      TYNDALL_TRY(check_same_desc(s.desc, *desc));
+    }
     TYNDALL_TRY(check_params(params));
-    return s.change(s.desc, params);
+    return s.change(desc.value_or(s.desc), params);
   });
 }
 
@@ -96,15 +100,6 @@ Result<void> Effect::set_limits(VkExtent2D max_extent, std::uint32_t max_cascade
     desc.max_shadow_resolution = max_shadow_resolution;
     TYNDALL_TRY(check_desc(s.info, desc));
     return s.change(desc, s.params);
-  });
-}
-
-Result<void> Effect::set_params(const Params& params, const EffectDesc& desc) {
-  return call(state_, "Effect::set_params", [&](State& s) -> Result<void> {
-    TYNDALL_TRY(check_desc(s.info, desc));
-    TYNDALL_TRY(check_same_desc(s.desc, desc));
-    TYNDALL_TRY(check_params(params));
-    return s.change(desc, params);
   });
 }
 

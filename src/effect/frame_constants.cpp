@@ -12,10 +12,96 @@ namespace {
 
 Vec3 column(const Mat4& m, int i) { return {m.m[4 * i], m.m[4 * i + 1], m.m[4 * i + 2]}; }
 
+Vec3 times(const Vec3& a, const Vec3& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+
 Vec3 normalized(const Vec3& v) {
   const double length =
       std::sqrt(static_cast<double>(v.x) * v.x + static_cast<double>(v.y) * v.y + static_cast<double>(v.z) * v.z);
   return {static_cast<float>(v.x / length), static_cast<float>(v.y / length), static_cast<float>(v.z / length)};
+}
+
+// Sets the position and the direction of the camera, and what follows from its altitude.
+void set_camera(shared::FrameConstants& out, const FrameInputs& inputs, const Params& params) {
+  out.view_from_clip = inverse(inputs.camera.clip_from_view);
+  out.world_from_view = inputs.camera.world_from_view;
+  out.camera_position = column(inputs.camera.world_from_view, 3);
+  const Vec3 back = column(inputs.camera.world_from_view, 2);
+  out.camera_forward = normalized({-back.x, -back.y, -back.z});
+
+  const double radius = params.planet.radius_m;
+  const double x = out.camera_position.x;
+  const double y = out.camera_position.y;
+  const double z = out.camera_position.z;
+  const double distance = std::sqrt(x * x + z * z + (radius + y) * (radius + y));
+  out.camera_altitude_m = static_cast<float>(camera_altitude_m(inputs, params));
+  const double altitude = out.camera_altitude_m;
+  // ground_below() of shaders/lib/geometry.glsl.
+  const double ground = altitude < 0.0 ? std::min(altitude, std::max(2.0 * altitude, -0.5 * radius)) : 0.0;
+  out.horizon_cos =
+      static_cast<float>(-std::sqrt((altitude - ground) * (2.0 * radius + altitude + ground)) / (radius + altitude));
+  out.camera_up = {static_cast<float>(x / distance), static_cast<float>((radius + y) / distance),
+                   static_cast<float>(z / distance)};
+}
+
+// Sets the directions through the pixels. The direction through the middle of a pixel is that of any point that
+// projects there. On the near plane it is an affine function of the pixel.
+void set_rays(shared::FrameConstants& out, const FrameInputs& inputs, const EffectDesc& desc) {
+  const double near_plane = 1.0 - static_cast<double>(desc.sky_depth);
+  const Mat4& m = out.view_from_clip;
+  const auto entry = [&](int row, int col) { return static_cast<double>(m.m[4 * col + row]); };
+  const double width = inputs.extent.width;
+  const double height = inputs.extent.height;
+  const double sign = entry(3, 2) * near_plane + entry(3, 3) < 0.0 ? -1.0 : 1.0;
+  double view[3][3];  // constant, per pixel to the right, per pixel downwards
+  double largest = 0.0;
+  for (int row = 0; row < 3; ++row) {
+    view[1][row] = sign * entry(row, 0) * 2.0 / width;
+    view[2][row] = sign * entry(row, 1) * 2.0 / height;
+    view[0][row] = sign * (entry(row, 2) * near_plane + entry(row, 3) - entry(row, 0) - entry(row, 1));
+    largest = std::max(largest, std::abs(sign * (entry(row, 2) * near_plane + entry(row, 3))));
+  }
+  Vec3* const rays[3] = {&out.ray_origin, &out.ray_x, &out.ray_y};
+  for (int i = 0; i < 3; ++i) {
+    double world[3] = {};
+    for (int row = 0; row < 3; ++row) {
+      for (int k = 0; k < 3; ++k) {
+        world[row] += static_cast<double>(inputs.camera.world_from_view.m[4 * k + row]) * view[i][k] / largest;
+      }
+    }
+    *rays[i] = {static_cast<float>(world[0]), static_cast<float>(world[1]), static_cast<float>(world[2])};
+  }
+}
+
+// Returns the constants of the homogeneous medium (Yusov 2012): the medium at sea level times a density.
+shared::HomogeneousMedium homogeneous_constants(const Params& params) {
+  const HomogeneousMediumParams& p = params.homogeneous_medium;
+  const shared::Medium sea_level = medium_from_params(params);
+  shared::HomogeneousMedium out = {};
+  out.rayleigh_scattering = times(sea_level.rayleigh_scattering, Vec3(p.density));
+  out.mie_scattering = times(sea_level.mie_scattering, Vec3(p.density));
+  const Vec3& air = sea_level.rayleigh_scattering;
+  const Vec3& aerosol = sea_level.mie_extinction;
+  out.extinction = times(Vec3(air.x + aerosol.x, air.y + aerosol.y, air.z + aerosol.z), Vec3(p.density));
+  const double g = params.atmosphere.mie_g;
+  const bool second = params.atmosphere.mie_phase == MiePhase::cornette_shanks;
+  const double rayleigh = 3.0 / (16.0 * std::numbers::pi);
+  const double mie =
+      (1.0 - g * g) * (second ? 3.0 / (8.0 * std::numbers::pi * (2.0 + g * g)) : 0.25 / std::numbers::pi);
+  const auto source = [](double factor, const Vec3& scattering, const Vec3& extinction) {
+    const auto of = [factor](float s, float e) {
+      return static_cast<float>(factor * s / std::max(static_cast<double>(e), 1e-30));
+    };
+    return Vec3(of(scattering.x, extinction.x), of(scattering.y, extinction.y), of(scattering.z, extinction.z));
+  };
+  out.rayleigh_source = source(rayleigh, out.rayleigh_scattering, out.extinction);
+  out.mie_source = source(mie, out.mie_scattering, out.extinction);
+  out.phase_min = static_cast<float>((1.0 - std::abs(g)) * (1.0 - std::abs(g)));
+  out.phase_slope = static_cast<float>(2.0 * std::abs(g));
+  out.phase_sign = g < 0.0 ? -1.0F : 1.0F;
+  out.phase_second = second ? 1.0F : 0.0F;
+  out.extent_m = p.extent_m;
+  out.height_m = p.height_m;
+  return out;
 }
 
 }  // namespace
@@ -49,16 +135,6 @@ Mat4 inverse(const Mat4& matrix) {
   return out;
 }
 
-Vec3 transform_point(const Mat4& matrix, const Vec3& p) {
-  double out[4];
-  for (int row = 0; row < 4; ++row) {
-    out[row] = static_cast<double>(matrix.m[row]) * p.x + static_cast<double>(matrix.m[4 + row]) * p.y +
-               static_cast<double>(matrix.m[8 + row]) * p.z + static_cast<double>(matrix.m[12 + row]);
-  }
-  return {static_cast<float>(out[0] / out[3]), static_cast<float>(out[1] / out[3]),
-          static_cast<float>(out[2] / out[3])};
-}
-
 shared::TableShape table_shape(const Params& params) {
   const UVec4& size = params.tables.size;
   shared::TableShape shape = {};
@@ -83,53 +159,8 @@ double camera_altitude_m(const FrameInputs& inputs, const Params& params) {
 
 shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDesc& desc, const Params& params) {
   shared::FrameConstants out = {};
-  out.view_from_clip = inverse(inputs.camera.clip_from_view);
-  out.world_from_view = inputs.camera.world_from_view;
-  out.camera_position = column(inputs.camera.world_from_view, 3);
-  const Vec3 back = column(inputs.camera.world_from_view, 2);
-  out.camera_forward = normalized({-back.x, -back.y, -back.z});
-
-  const double radius = params.planet.radius_m;
-  const double x = out.camera_position.x;
-  const double y = out.camera_position.y;
-  const double z = out.camera_position.z;
-  const double distance = std::sqrt(x * x + z * z + (radius + y) * (radius + y));
-  out.camera_altitude_m = static_cast<float>(camera_altitude_m(inputs, params));
-  const double altitude = out.camera_altitude_m;
-  // ground_below() of shaders/lib/geometry.glsl.
-  const double ground = altitude < 0.0 ? std::min(altitude, std::max(2.0 * altitude, -0.5 * radius)) : 0.0;
-  out.horizon_cos =
-      static_cast<float>(-std::sqrt((altitude - ground) * (2.0 * radius + altitude + ground)) / (radius + altitude));
-  out.camera_up = {static_cast<float>(x / distance), static_cast<float>((radius + y) / distance),
-                   static_cast<float>(z / distance)};
-
-  // Through a pixel's middle goes the direction of any point that projects there: taken on the near plane, where
-  // it is an affine function of the pixel.
-  const double near_plane = 1.0 - static_cast<double>(desc.sky_depth);
-  const Mat4& m = out.view_from_clip;
-  const auto entry = [&](int row, int col) { return static_cast<double>(m.m[4 * col + row]); };
-  const double width = inputs.extent.width;
-  const double height = inputs.extent.height;
-  const double sign = entry(3, 2) * near_plane + entry(3, 3) < 0.0 ? -1.0 : 1.0;
-  double view[3][3];  // constant, per pixel to the right, per pixel downwards
-  double largest = 0.0;
-  for (int row = 0; row < 3; ++row) {
-    view[1][row] = sign * entry(row, 0) * 2.0 / width;
-    view[2][row] = sign * entry(row, 1) * 2.0 / height;
-    view[0][row] = sign * (entry(row, 2) * near_plane + entry(row, 3) - entry(row, 0) - entry(row, 1));
-    largest = std::max(largest, std::abs(sign * (entry(row, 2) * near_plane + entry(row, 3))));
-  }
-  Vec3* const rays[3] = {&out.ray_origin, &out.ray_x, &out.ray_y};
-  for (int i = 0; i < 3; ++i) {
-    double world[3] = {};
-    for (int row = 0; row < 3; ++row) {
-      for (int k = 0; k < 3; ++k) {
-        world[row] += static_cast<double>(inputs.camera.world_from_view.m[4 * k + row]) * view[i][k] / largest;
-      }
-    }
-    *rays[i] = {static_cast<float>(world[0]), static_cast<float>(world[1]), static_cast<float>(world[2])};
-  }
-
+  set_camera(out, inputs, params);
+  set_rays(out, inputs, desc);
   out.sky_depth = desc.sky_depth;
   out.near_depth = 1.0F - desc.sky_depth;
   out.direction_to_sun = normalized(inputs.sun.direction_to_sun);
@@ -147,34 +178,8 @@ shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDe
   const bool homogeneous = is_homogeneous(params.scattering);
   out.unoccluded = !homogeneous && params.scattering.multiple == MultipleScattering::unoccluded ? 1 : 0;
   if (homogeneous) {
-    const HomogeneousMediumParams& p = params.homogeneous_medium;
-    const shared::Medium sea_level = medium_from_params(params);
-    const auto times = [](const Vec3& v, const Vec3& by) { return Vec3(v.x * by.x, v.y * by.y, v.z * by.z); };
-    out.homogeneous.rayleigh_scattering = times(sea_level.rayleigh_scattering, Vec3(p.density));
-    out.homogeneous.mie_scattering = times(sea_level.mie_scattering, Vec3(p.density));
-    const Vec3& air = sea_level.rayleigh_scattering;
-    const Vec3& aerosol = sea_level.mie_extinction;
-    out.homogeneous.extinction = times(Vec3(air.x + aerosol.x, air.y + aerosol.y, air.z + aerosol.z), Vec3(p.density));
-    const double g = params.atmosphere.mie_g;
-    const bool second = params.atmosphere.mie_phase == MiePhase::cornette_shanks;
-    const double rayleigh = 3.0 / (16.0 * std::numbers::pi);
-    const double mie =
-        (1.0 - g * g) * (second ? 3.0 / (8.0 * std::numbers::pi * (2.0 + g * g)) : 0.25 / std::numbers::pi);
-    const auto source = [](double factor, const Vec3& scattering, const Vec3& extinction) {
-      const auto of = [factor](float s, float e) {
-        return static_cast<float>(factor * s / std::max(static_cast<double>(e), 1e-30));
-      };
-      return Vec3(of(scattering.x, extinction.x), of(scattering.y, extinction.y), of(scattering.z, extinction.z));
-    };
-    out.homogeneous.rayleigh_source = source(rayleigh, out.homogeneous.rayleigh_scattering, out.homogeneous.extinction);
-    out.homogeneous.mie_source = source(mie, out.homogeneous.mie_scattering, out.homogeneous.extinction);
-    out.homogeneous.phase_min = static_cast<float>((1.0 - std::abs(g)) * (1.0 - std::abs(g)));
-    out.homogeneous.phase_slope = static_cast<float>(2.0 * std::abs(g));
-    out.homogeneous.phase_sign = g < 0.0 ? -1.0F : 1.0F;
-    out.homogeneous.phase_second = second ? 1.0F : 0.0F;
-    out.homogeneous.extent_m = p.extent_m;
-    out.homogeneous.height_m = p.height_m;
-    out.sun_irradiance = times(out.sun_irradiance, p.sunlight);
+    out.homogeneous = homogeneous_constants(params);
+    out.sun_irradiance = times(out.sun_irradiance, params.homogeneous_medium.sunlight);
   }
   out.glass_depth_sign = !inputs.shadow_color_depths ? 0.0F : desc.shadow_depth_reversed ? -1.0F : 1.0F;
   out.shadow_depth_reversed = desc.shadow_depth_reversed ? 1 : 0;

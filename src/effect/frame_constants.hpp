@@ -11,8 +11,6 @@ namespace tyndall {
 // The inverse of any invertible 4×4 matrix, computed in double precision. A singular matrix gives
 // non-finite entries.
 [[nodiscard]] Mat4 inverse(const Mat4& matrix);
-// The affine or projective image of a point: matrix * (p, 1), divided by w.
-[[nodiscard]] Vec3 transform_point(const Mat4& matrix, const Vec3& p);
 
 // The shape of the scattering tables, as tables.* asks for it.
 [[nodiscard]] shared::TableShape table_shape(const Params& params);

@@ -10,8 +10,7 @@ namespace tyndall::gpu {
   X(GetDeviceProcAddr)                 \
   X(GetPhysicalDeviceProperties2)      \
   X(GetPhysicalDeviceMemoryProperties) \
-  X(GetPhysicalDeviceFormatProperties) \
-  X(GetPhysicalDeviceQueueFamilyProperties)
+  X(GetPhysicalDeviceFormatProperties)
 
 #define TYNDALL_DEVICE_FUNCTIONS(X)    \
   X(AllocateCommandBuffers)            \
@@ -76,7 +75,6 @@ namespace tyndall::gpu {
   X(GetQueryPoolResults)               \
   X(MapMemory)                         \
   X(QueueSubmit)                       \
-  X(ResetCommandBuffer)                \
   X(ResetEvent)                        \
   X(ResetFences)                       \
   X(WaitForFences)

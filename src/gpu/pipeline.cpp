@@ -173,6 +173,44 @@ Result<Pipeline> create_compute_pipeline(const Device& device, const Shader& sha
   return out;
 }
 
+namespace {
+
+VkPipelineRasterizationStateCreateInfo rasterization(const GraphicsDesc& desc) {
+  VkPipelineRasterizationStateCreateInfo raster = {};
+  raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
+  raster.cullMode = desc.cull;
+  raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
+  raster.lineWidth = 1.0F;
+  return raster;
+}
+
+VkPipelineDepthStencilStateCreateInfo depth_test(const GraphicsDesc& desc) {
+  VkPipelineDepthStencilStateCreateInfo depth = {};
+  depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
+  depth.depthTestEnable = desc.depth_format != VK_FORMAT_UNDEFINED ? VK_TRUE : VK_FALSE;
+  depth.depthWriteEnable = desc.depth_write ? VK_TRUE : VK_FALSE;
+  depth.depthCompareOp = desc.depth_compare;
+  return depth;
+}
+
+VkPipelineColorBlendAttachmentState blending(Blend blend) {
+  VkPipelineColorBlendAttachmentState attachment = {};
+  attachment.colorWriteMask = 0xF;
+  if (blend == Blend::none) return attachment;
+  const bool add = blend == Blend::add;
+  attachment.blendEnable = VK_TRUE;
+  attachment.srcColorBlendFactor = add ? VK_BLEND_FACTOR_ONE : VK_BLEND_FACTOR_ZERO;
+  attachment.dstColorBlendFactor = add ? VK_BLEND_FACTOR_ONE : VK_BLEND_FACTOR_SRC_COLOR;
+  attachment.colorBlendOp = VK_BLEND_OP_ADD;
+  // The minimum takes no factors; otherwise alpha stays.
+  attachment.srcAlphaBlendFactor = VK_BLEND_FACTOR_ZERO;
+  attachment.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
+  attachment.alphaBlendOp = blend == Blend::multiply_min ? VK_BLEND_OP_MIN : VK_BLEND_OP_ADD;
+  return attachment;
+}
+
+}  // namespace
+
 Result<Pipeline> create_graphics_pipeline(const Device& device, const GraphicsDesc& desc,
                                           std::span<const Constant> constants) {
   Pipeline out;
@@ -198,39 +236,18 @@ Result<Pipeline> create_graphics_pipeline(const Device& device, const GraphicsDe
   VkPipelineViewportStateCreateInfo viewport = {};
   viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
   viewport.viewportCount = viewport.scissorCount = 1;
-  VkPipelineRasterizationStateCreateInfo raster = {};
-  raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
-  raster.cullMode = desc.cull;
-  raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
-  raster.lineWidth = 1.0F;
+  const VkPipelineRasterizationStateCreateInfo raster = rasterization(desc);
   VkPipelineMultisampleStateCreateInfo multisample = {};
   multisample.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
   multisample.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
-  VkPipelineDepthStencilStateCreateInfo depth = {};
-  depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
-  depth.depthTestEnable = desc.depth_format != VK_FORMAT_UNDEFINED ? VK_TRUE : VK_FALSE;
-  depth.depthWriteEnable = desc.depth_write ? VK_TRUE : VK_FALSE;
-  depth.depthCompareOp = desc.depth_compare;
-  VkPipelineColorBlendAttachmentState attachment = {};
-  attachment.colorWriteMask = 0xF;
-  if (desc.blend != Blend::none) {
-    const bool add = desc.blend == Blend::add;
-    attachment.blendEnable = VK_TRUE;
-    attachment.srcColorBlendFactor = add ? VK_BLEND_FACTOR_ONE : VK_BLEND_FACTOR_ZERO;
-    attachment.dstColorBlendFactor = add ? VK_BLEND_FACTOR_ONE : VK_BLEND_FACTOR_SRC_COLOR;
-    attachment.colorBlendOp = VK_BLEND_OP_ADD;
-    // The minimum takes no factors; otherwise alpha stays.
-    attachment.srcAlphaBlendFactor = VK_BLEND_FACTOR_ZERO;
-    attachment.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
-    attachment.alphaBlendOp = desc.blend == Blend::multiply_min ? VK_BLEND_OP_MIN : VK_BLEND_OP_ADD;
-  }
+  const VkPipelineDepthStencilStateCreateInfo depth = depth_test(desc);
   VkPipelineColorBlendStateCreateInfo blend = {};
   blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
   const bool color = desc.color_format != VK_FORMAT_UNDEFINED;
   const std::uint32_t colors = color ? desc.color_count : 0;
   std::array<VkPipelineColorBlendAttachmentState, kMaxColors> attachments;
   std::array<VkFormat, kMaxColors> formats;
-  attachments.fill(attachment);
+  attachments.fill(blending(desc.blend));
   formats.fill(desc.color_format);
   blend.attachmentCount = colors;
   blend.pAttachments = attachments.data();

@@ -125,10 +125,6 @@ double Atmosphere::find_opaque_radius() const {
   return low;
 }
 
-double Atmosphere::ozone_density(double r) const {
-  return std::max(0.0, 1.0 - std::abs(r - ozone_centre_m_) / ozone_half_width_m_);
-}
-
 double Atmosphere::ozone_density_integral(double tangent2, double s, double s_top) const {
   const double r = std::sqrt(tangent2 + s * s);
   if (!has_ozone_ || r >= ozone_high_m_) return 0.0;

@@ -50,9 +50,6 @@ class Atmosphere {
     return {std::exp(std::min(-h / rayleigh_scale_height_m, kDensest)),
             std::exp(std::min(-h / mie_scale_height_m, kDensest)), 0.0};
   }
-  // Returns the relative density of ozone at radius r.
-  [[nodiscard]] double ozone_density(double r) const;
-
   [[nodiscard]] bool reaches_ozone(double r) const { return has_ozone_ && r > ozone_low_m_; }
 
   // Returns the density integrals from position s >= 0 of a line (geometry.hpp) to the top of the atmosphere, which the
