@@ -46,6 +46,7 @@ struct Walk {
   float number;    // slope in the numbers of the tree
   float reads_per_cell;
   float metres;  // length of the ray per cell
+  float cells_per_m;
   float x;
   uint level;
   float lit;  // lit length within the panel, and its first moment about the middle
@@ -157,9 +158,9 @@ void walk_to(inout Walk w, inout LitSections sections, float to) {
   }
 }
 
-// Marches the section [from, to] of a ray of a slice in one cascade.
-void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start, float from, float to,
-                   inout March march) {
+// Returns the state at the start of the section [from, to] of a ray of a slice in one cascade. `start` is where the ray
+// enters the medium.
+Walk begin_walk(uint cascade, uint slice, vec3 direction, float start, float from, float to) {
   float resolution = float(frame.shadow_resolution);
   uint row = (cascade - epipolar.first_cascade) * epipolar.slices + slice;
   Walk w;
@@ -172,14 +173,13 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
   w.cascade = cascade;
   w.tree_base = row * (epipolar.tree_cells / kTreeBlock) * kTreeNodes;
   w.full = epipolar.tree_format == kFloat32;
-  vec3 per_metre = (cascades[cascade].shadow_from_world * vec4(ray.direction, 0.0)).xyz;
-  float cells_per_m = max(max(abs(per_metre.x), abs(per_metre.y)) * resolution, 1e-12);
-  w.slope = per_metre.z / cells_per_m;
+  vec3 per_metre = (cascades[cascade].shadow_from_world * vec4(direction, 0.0)).xyz;
+  w.cells_per_m = max(max(abs(per_metre.x), abs(per_metre.y)) * resolution, 1e-12);
+  w.slope = per_metre.z / w.cells_per_m;
   w.number = ray_number(frame.shadow_depth_reversed != 0u ? -w.slope : w.slope, resolution, epipolar.tree_format);
-  w.metres = 1.0 / cells_per_m;
-  w.x = from * cells_per_m;
-  float end = to * cells_per_m;
-  w.reads_per_cell = max(1.0, float(frame.integration_steps) / max(end - w.x, 1e-12));
+  w.metres = 1.0 / w.cells_per_m;
+  w.x = from * w.cells_per_m;
+  w.reads_per_cell = max(1.0, float(frame.integration_steps) / max(to * w.cells_per_m - w.x, 1e-12));
   w.level = kTreeLeafLevel;
   w.lit = 0.0;
   w.moment = 0.0;
@@ -191,40 +191,84 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
   w.since = w.x;
   w.share = 1.0;
   w.transmittance = kHomogeneous ? exp(-frame.homogeneous.extinction * (from - start)) : vec3(1.0);
+  return w;
+}
 
-  // A single panel suffices if only lit lengths are needed.
-  int panels = 1;
+// Where the integration over panels stands: at the beginning of the next panel.
+struct Panels {
+  float altitude;
+  vec3 density;
+  vec3 integral;  // density integral from where the ray enters the atmosphere
+  vec3 rayleigh;  // scattering coefficient x phase function
+  vec3 mie;
+};
+
+// Computes the state at the start of the section [from, to], and returns the number of its panels. A panel spans at
+// most half of the aerosol's scale height, a fifth of an optical depth and a twelfth of the section.
+int begin_panels(Ray ray, float from, float to, out Panels p) {
   float radius = medium.planet_radius_m;
-  float h = 0.0;
-  vec3 density = vec3(0.0);
-  vec3 column = vec3(0.0);
-  vec3 rayleigh = vec3(0.0);
-  vec3 mie = vec3(0.0);
-  if (kPanels) {
-    h = altitude_along(ray.altitude, ray.cos_zenith, from, radius);
-    float h_end = altitude_along(ray.altitude, ray.cos_zenith, to, radius);
-    density = densities(medium, h);
-    vec3 extinction = extinction_at(medium, min(h, h_end));
-    float densest = max(extinction.r, max(extinction.g, extinction.b));
-    // A panel spans at most half of the aerosol's scale height, a fifth of an optical depth and a twelfth of the
-    // section.
-    float wanted = max(max(abs(h_end - h) / (0.5 * medium.mie_scale_height_m), (to - from) * densest / 0.2), 12.0);
-    panels = int(clamp(ceil(wanted), 1.0, 256.0));
-    rayleigh = medium.rayleigh_scattering * rayleigh_phase(ray.cos_view_sun);
-    mie = medium.mie_scattering * mie_phase(medium, ray.cos_view_sun);
-    // The density integral up to here, from where the ray enters the atmosphere.
-    column = density_integral_along(medium, ray.altitude, ray.cos_zenith, from);
+  p.altitude = altitude_along(ray.altitude, ray.cos_zenith, from, radius);
+  float h_end = altitude_along(ray.altitude, ray.cos_zenith, to, radius);
+  p.density = densities(medium, p.altitude);
+  vec3 extinction = extinction_at(medium, min(p.altitude, h_end));
+  float densest = max(extinction.r, max(extinction.g, extinction.b));
+  float wanted =
+      max(max(abs(h_end - p.altitude) / (0.5 * medium.mie_scale_height_m), (to - from) * densest / 0.2), 12.0);
+  p.rayleigh = medium.rayleigh_scattering * rayleigh_phase(ray.cos_view_sun);
+  p.mie = medium.mie_scattering * mie_phase(medium, ray.cos_view_sun);
+  p.integral = density_integral_along(medium, ray.altitude, ray.cos_zenith, from);
+  return int(clamp(ceil(wanted), 1.0, 256.0));
+}
+
+// Returns the in-scattering of the panel of length panel_m that begins at distance t and that `w` has walked along.
+// Advances `p` to its end.
+vec3 panel_light(Walk w, Ray ray, float t, float panel_m, inout Panels p) {
+  float radius = medium.planet_radius_m;
+  float h_next = altitude_along(ray.altitude, ray.cos_zenith, t + panel_m, radius);
+  vec3 density_next = densities(medium, h_next);
+  vec3 mean = mean_densities(medium, p.density, density_next, h_next - p.altitude);
+  float middle = altitude_along(ray.altitude, ray.cos_zenith, t + 0.5 * panel_m, radius);
+  float cos_sun = cos_sun_zenith_along(ray, t + 0.5 * panel_m, radius);
+  vec3 total = p.integral + 0.5 * panel_m * mean + density_integral_to_top(medium, middle, cos_sun);
+  vec3 arriving = sun_visibility(middle, cos_sun, radius) * transmittance(medium, total);
+  float per_panel = w.metres / max(panel_m * w.cells_per_m, 1e-20);
+  vec3 light;
+  if (kColors) {
+    vec3 lit_m = w.lit_tinted * w.metres;
+    vec3 moment = w.moment_tinted * per_panel;
+    light = arriving * (p.rayleigh * max(mean.x * lit_m + (density_next.x - p.density.x) * moment, vec3(0.0)) +
+                        p.mie * max(mean.y * lit_m + (density_next.y - p.density.y) * moment, vec3(0.0)));
+  } else {
+    float lit_m = w.lit * w.metres;
+    float moment = w.moment * per_panel;  // [m]; the coordinate is in units of a panel
+    light = arriving * (p.rayleigh * max(mean.x * lit_m + (density_next.x - p.density.x) * moment, 0.0) +
+                        p.mie * max(mean.y * lit_m + (density_next.y - p.density.y) * moment, 0.0));
   }
-  float panel_m = (to - from) / float(panels);
-  for (int i = 0; i < panels; ++i) {
+  p.integral += mean * panel_m;
+  p.altitude = h_next;
+  p.density = density_next;
+  return light;
+}
+
+// Marches the section [from, to] of a ray of a slice in one cascade.
+void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start, float from, float to,
+                   inout March march) {
+  Walk w = begin_walk(cascade, slice, ray.direction, start, from, to);
+  float end = to * w.cells_per_m;
+  Panels panels;
+  // A single panel suffices if only lit lengths are needed.
+  int count = 1;
+  if (kPanels) count = begin_panels(ray, from, to, panels);
+  float panel_m = (to - from) / float(count);
+  for (int i = 0; i < count; ++i) {
     float t = from + float(i) * panel_m;
-    bool last = i + 1 == panels;
-    float panel_end = last ? end : (t + panel_m) * cells_per_m;
+    bool last = i + 1 == count;
+    float panel_end = last ? end : (t + panel_m) * w.cells_per_m;
     w.lit = 0.0;
     w.moment = 0.0;
     w.lit_tinted = vec3(0.0);
     w.moment_tinted = vec3(0.0);
-    w.middle = (t + 0.5 * panel_m) * cells_per_m;
+    w.middle = (t + 0.5 * panel_m) * w.cells_per_m;
     while (w.x < panel_end) {
       walk_to(w, march.lit, panel_end);
       if (kLitTables) {
@@ -234,28 +278,7 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
       }
     }
     if (!kPanels) break;
-    float h_next = altitude_along(ray.altitude, ray.cos_zenith, t + panel_m, radius);
-    vec3 density_next = densities(medium, h_next);
-    vec3 mean = mean_densities(medium, density, density_next, h_next - h);
-    float middle = altitude_along(ray.altitude, ray.cos_zenith, t + 0.5 * panel_m, radius);
-    float cos_sun = cos_sun_zenith_along(ray, t + 0.5 * panel_m, radius);
-    vec3 total = column + 0.5 * panel_m * mean + density_integral_to_top(medium, middle, cos_sun);
-    vec3 arriving = sun_visibility(middle, cos_sun, radius) * transmittance(medium, total);
-    float per_panel = w.metres / max(panel_m * cells_per_m, 1e-20);
-    if (kColors) {
-      vec3 lit_m = w.lit_tinted * w.metres;
-      vec3 moment = w.moment_tinted * per_panel;
-      march.light += arriving * (rayleigh * max(mean.x * lit_m + (density_next.x - density.x) * moment, vec3(0.0)) +
-                                 mie * max(mean.y * lit_m + (density_next.y - density.y) * moment, vec3(0.0)));
-    } else {
-      float lit_m = w.lit * w.metres;
-      float moment = w.moment * per_panel;  // [m]; the coordinate is in units of a panel
-      march.light += arriving * (rayleigh * max(mean.x * lit_m + (density_next.x - density.x) * moment, 0.0) +
-                                 mie * max(mean.y * lit_m + (density_next.y - density.y) * moment, 0.0));
-    }
-    column += mean * panel_m;
-    h = h_next;
-    density = density_next;
+    march.light += panel_light(w, ray, t, panel_m, panels);
   }
   if (kHomogeneous) {
     close_homogeneous(w);
@@ -319,8 +342,5 @@ bool has_shadowed_end(March march, float depth_m) {
       epipolar.cascades > epipolar.first_cascade && depth_m <= cascades[max(epipolar.cascades, 1u) - 1u].far_m;
   return in_map && march.end_share >= 0.0 && march.end_share < 0.5;
 }
-
-// Returns the ray of a sample.
-Ray sample_ray(vec2 position, float depth_m) { return ray_to_depth(frame, position, depth_m, depth_m >= kSkyDepth); }
 
 #endif
