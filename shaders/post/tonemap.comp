@@ -3,11 +3,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
+#include "post/constant_ids.h"
 #include "post/tonemap_curves.glsl"
 #include "shared/exposure.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(constant_id = 0) const uint kOperator = 3u;
+layout(constant_id = kOperatorId) const uint kOperator = 3u;
 
 layout(binding = 0, rgba32f) uniform readonly image2D radiance;
 layout(binding = 1, rgba32f) uniform writeonly image2D display;

@@ -9,7 +9,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(constant_id = 0) const int kSteps = 16;  // see single_scattering()
+const int kSteps = 16;  // see single_scattering()
 
 layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
 layout(std430, binding = 1) readonly buffer ray_block { ProbeRay rays[]; };

@@ -4,8 +4,9 @@
 #define TYNDALL_HOMOGENEOUS_AIR_GLSL
 
 #include "lib/homogeneous.glsl"
+#include "scene/constant_ids.h"
 
-layout(constant_id = 0) const uint kPerPixel = 0u;  // scattering.evaluate = pixel
+layout(constant_id = kPerPixelId) const uint kPerPixel = 0u;  // scattering.evaluate = pixel
 
 const float kSunsOfSky = 64.0;
 

@@ -2,6 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
+#include "scene/constant_ids.h"
 #include "scene/mesh_light.glsl"
 #include "scene/mesh_push.glsl"
 
@@ -14,9 +15,7 @@ layout(location = 0) out vec4 radiance;
 
 layout(binding = 3) uniform sampler2D base_color;
 
-// 0: opaque surfaces and diffusing glass. 1: clear glass, multiplied into the picture. 2: the light that clear glass
-// reflects, added.
-layout(constant_id = 0) const uint kLayer = 0u;
+layout(constant_id = kLayerId) const uint kLayer = kOpaqueLayer;
 
 const float kPerPi = 0.318309886;
 
@@ -42,7 +41,7 @@ void main() {
   if (push.kind == kMask && base.a < push.alpha_cutoff) discard;
 
   vec3 transmitted = passing(base);
-  if (kLayer == 1u) {
+  if (kLayer == kClearLayer) {
     radiance = vec4(transmitted, 1.0);
     return;
   }
@@ -59,7 +58,7 @@ void main() {
   if (push.kind == kBlend) albedo *= base.a;
   if (mesh.show_cascades != 0u && cascade < mesh.cascade_count) albedo = 0.75 * albedo + 0.25 * cascade_color(cascade);
   vec3 sum = albedo * kPerPi * near;
-  if (kLayer == 0u && push.kind == kGlass) {
+  if (kLayer == kOpaqueLayer && push.kind == kGlass) {
     // Seen from behind, the other side is the outside, under the whole sky.
     vec3 far = (front ? mesh.sky_light : 1.0) * light.sky * 0.5 * (1.0 - dot(normal, light.up));
     far += (front ? mesh.sky_light : 1.0) * light.bounced * 0.5 * (1.0 + dot(normal, light.up));

@@ -3,16 +3,18 @@
 #ifndef TYNDALL_ONEIL_AIR_GLSL
 #define TYNDALL_ONEIL_AIR_GLSL
 
+#include "scene/constant_ids.h"
+
 layout(std430, binding = 7) readonly buffer oneil_table_block { vec4 oneil_texels[]; };
 #define ONEIL_TEXEL(table, index) oneil_texels[index]
 // The fields of the block's Oneil as constants: src/scene/sky/oneil_sky.cpp selects the pipeline by them.
-layout(constant_id = 1) const uint kIntegralMethod = 0u;
-layout(constant_id = 2) const uint kSampleSpacing = 0u;
+layout(constant_id = kIntegralMethodId) const uint kIntegralMethod = 0u;
+layout(constant_id = kSampleSpacingId) const uint kSampleSpacing = 0u;
 #define ONEIL_INTEGRAL_METHOD(o) kIntegralMethod
 #define ONEIL_SPACING(o) kSampleSpacing
 #include "lib/oneil.glsl"
 
-layout(constant_id = 0) const uint kPerPixel = 0u;
+layout(constant_id = kPerPixelId) const uint kPerPixel = 0u;
 
 const uint kSunsOfSky = 128u;
 

@@ -1,6 +1,6 @@
-// The specialisation constants of all compute shaders of the effect: one id means one thing everywhere.
-// GLSL declares a constant by its id here, C++ (src/effect/step.hpp) sets it under the same name. What the values
-// mean stands beside the declaration in GLSL.
+// The specialisation constants of all compute shaders of the effect: one id means one thing everywhere. GLSL declares a
+// constant by its id here, C++ (src/effect/step.hpp) sets it under the same name. The ids of the demo scene and of tone
+// mapping (shaders/scene/constant_ids.h, shaders/post/constant_ids.h) are larger than these.
 #ifndef TYNDALL_SHARED_CONSTANT_IDS
 #define TYNDALL_SHARED_CONSTANT_IDS
 

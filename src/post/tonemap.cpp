@@ -1,17 +1,24 @@
 #include "post/tonemap.hpp"
 
+#include <cstdint>
 #include <string>
 
 #include "gpu/try.hpp"
 #include "post_shaders.hpp"
 
 namespace tyndall::post {
+namespace {
+
+using uint = std::uint32_t;
+#include "post/constant_ids.h"
+
+}  // namespace
 
 Result<Tonemap> Tonemap::create(const gpu::Device& device, std::uint32_t frames_in_flight) {
   Tonemap out;
   out.device_ = &device;
   for (std::uint32_t i = 0; i < kOperators; ++i) {
-    const gpu::Constant constants[] = {{0, i}};
+    const gpu::Constant constants[] = {{kOperatorId, i}};
     TYNDALL_ASSIGN(out.pipelines_[i], gpu::create_compute_pipeline(device, shaders::tonemap_comp, constants));
     out.pipelines_[i].name = "tonemap";
   }

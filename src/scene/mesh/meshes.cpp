@@ -10,6 +10,7 @@
 #include "scene/mesh/hall.hpp"
 #include "scene/mesh/mesh_constants.hpp"
 #include "scene/mesh/mesh_textures.hpp"
+#include "scene/view/constant_ids.hpp"
 #include "scene_shaders.hpp"
 
 namespace tyndall::scene {
@@ -152,9 +153,9 @@ Result<void> Meshes::create_pipelines(VkFormat color_format, VkFormat depth_form
   view.color_format = color_format;
   view.depth_format = depth_format;
   view.depth_compare = VK_COMPARE_OP_GREATER;
-  const auto layer = [](std::uint32_t value) { return std::array<gpu::Constant, 1>{{{0, value}}}; };
+  const auto layer = [](std::uint32_t value) { return std::array<gpu::Constant, 1>{{{shared::kLayerId, value}}}; };
   if (any()) {
-    TYNDALL_ASSIGN(surfaces_, gpu::create_graphics_pipeline(device, view, layer(0)));
+    TYNDALL_ASSIGN(surfaces_, gpu::create_graphics_pipeline(device, view, layer(shared::kOpaqueLayer)));
     gpu::GraphicsDesc shadow;
     shadow.name = "mesh_shadow";
     shadow.vertex = &shaders::mesh_shadow_vert;
@@ -170,10 +171,10 @@ Result<void> Meshes::create_pipelines(VkFormat color_format, VkFormat depth_form
     clear.depth_write = false;
     clear.name = "clear_glass";
     clear.blend = gpu::Blend::multiply;
-    TYNDALL_ASSIGN(multiply_, gpu::create_graphics_pipeline(device, clear, layer(1)));
+    TYNDALL_ASSIGN(multiply_, gpu::create_graphics_pipeline(device, clear, layer(shared::kClearLayer)));
     clear.name = "clear_glass_reflection";
     clear.blend = gpu::Blend::add;
-    TYNDALL_ASSIGN(add_, gpu::create_graphics_pipeline(device, clear, layer(2)));
+    TYNDALL_ASSIGN(add_, gpu::create_graphics_pipeline(device, clear, layer(shared::kReflectionLayer)));
     gpu::GraphicsDesc colors;
     colors.name = "shadow_colors";
     colors.vertex = &shaders::mesh_shadow_vert;

@@ -11,6 +11,7 @@
 #include "gpu/try.hpp"
 #include "scene/description/map_projection.hpp"
 #include "scene/sky/oneil_settings.hpp"
+#include "scene/view/constant_ids.hpp"
 #include "scene_shaders.hpp"
 
 namespace tyndall::scene {
@@ -47,7 +48,8 @@ class OneilSky : public SkyModel {
 
   Result<void> create(gpu::Host& host, ModelEvaluation evaluation, VkFormat color_format, VkFormat depth_format) {
     std::vector<std::array<gpu::Constant, 2>> constants;
-    for (const Variant& v : variants()) constants.push_back({{{1, v.integral_method}, {2, v.spacing}}});
+    for (const Variant& v : variants())
+      constants.push_back({{{shared::kIntegralMethodId, v.integral_method}, {shared::kSampleSpacingId, v.spacing}}});
     const std::vector<std::span<const gpu::Constant>> spans(constants.begin(), constants.end());
     return create_objects(host,
                           {&shaders::oneil_terrain_vert, &shaders::oneil_terrain_frag, &shaders::oneil_light_comp, 3,

@@ -9,6 +9,7 @@
 #include "scene/description/map_projection.hpp"
 #include "scene/sky/homogeneous_sky.hpp"
 #include "scene/sky/oneil_sky.hpp"
+#include "scene/view/constant_ids.hpp"
 
 namespace tyndall::scene {
 namespace {
@@ -78,7 +79,7 @@ Result<void> SkyModel::create_objects(gpu::Host& host, const Shaders& shaders, M
   sky.depth_compare = VK_COMPARE_OP_GREATER_OR_EQUAL;
   sky.depth_write = false;
   for (std::size_t i = 0; i < std::max(variants.size(), std::size_t{1}); ++i) {
-    std::vector<gpu::Constant> constants = {{0, evaluation == ModelEvaluation::pixel ? 1U : 0U}};
+    std::vector<gpu::Constant> constants = {{shared::kPerPixelId, evaluation == ModelEvaluation::pixel ? 1U : 0U}};
     if (!variants.empty()) constants.insert(constants.end(), variants[i].begin(), variants[i].end());
     if (evaluation == ModelEvaluation::vertex) {
       TYNDALL_ASSIGN(gpu::Pipeline of_ground, gpu::create_graphics_pipeline(device, ground, constants));
