@@ -56,11 +56,10 @@ std::string to_markdown() {
   const Settings defaults;
   std::string out =
       "# Parameters\n\n"
-      "Every parameter, by the name that scene files, `--set`, GLSL and image metadata use.\n"
+      "Every parameter, by the name that scene files, `--set` and image metadata use.\n"
       "Made by `tyndall params --format markdown`; edit `include/tyndall/params.def` or\n"
-      "`src/scene/description/scene_params.def` instead. \"Change costs\" says what a change makes stale: the next "
-      "`frame`'s\n"
-      "constants only, a shader `pipeline`, memory (`resources`), or the precomputed `tables`.\n";
+      "`src/scene/description/scene_params.def` instead. \"Change costs\" says what a change requires: only other "
+      "constants\nof the next `frame`, other `pipeline`s, other memory (`resources`), or new precomputed `tables`.\n";
   for (const Group& group : groups()) {
     out.append("\n## ").append(group.title).append("\n\n");
     out.append("| name | type | default | range | unit | change costs | meaning |\n|---|---|---|---|---|---|---|\n");
