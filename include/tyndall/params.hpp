@@ -13,7 +13,8 @@
 
 namespace tyndall {
 
-// What a change of a parameter makes stale, from cheap to expensive.
+// What a change of a parameter requires besides other constants of the next frame (Frame): other pipelines; other
+// buffers, possibly with other pipelines (Resources); or new tables. Effect::set_params() prepares just that.
 enum class Affects : std::uint32_t { Frame, Pipeline, Resources, Tables };
 
 enum class ParamType : std::uint32_t { float32, uint32, flag, enumeration, vec3, uvec4, string, dvec3 };
@@ -69,7 +70,7 @@ struct Params {
 // Returns the rows that describe Params, in the order of params.def. Offsets are from the start of Params.
 [[nodiscard]] std::span<const ParamInfo> param_table();
 
-// Returns what is stale when `before` becomes `after`: a mask of bits 1 << Affects.
+// Returns what the change from `before` to `after` requires: a mask of bits 1 << Affects.
 [[nodiscard]] std::uint32_t affected(const Params& before, const Params& after);
 
 // Returns an error (invalid_argument) that names the first parameter that is out of range, not finite, or not one

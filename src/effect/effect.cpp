@@ -51,6 +51,16 @@ constexpr VkBufferUsageFlags kConstantsUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BI
 constexpr VkBufferUsageFlags kCounterUsage =
     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
 
+constexpr std::uint32_t bit(Affects affects) { return 1U << static_cast<std::uint32_t>(affects); }
+constexpr std::uint32_t kEverything = bit(Affects::Resources) | bit(Affects::Tables);
+
+// Compares the settings that can change after the creation and that pipelines and buffers depend on.
+bool same_limits(const EffectDesc& a, const EffectDesc& b) {
+  return a.max_extent.width == b.max_extent.width && a.max_extent.height == b.max_extent.height &&
+         a.max_cascades == b.max_cascades && a.max_shadow_resolution == b.max_shadow_resolution &&
+         a.shadow_colors == b.shadow_colors;
+}
+
 }  // namespace
 
 Result<void> open_device(gpu::Device& device, const DeviceInfo& info) {
@@ -93,7 +103,8 @@ Result<void> Effect::State::create_objects() {
   pipelines.create(device, desc.pipeline_threads);
   buffers.create(device);
   TYNDALL_TRY(tables.create(device, pipelines, FrameRing::slots(desc), desc.timings));
-  TYNDALL_TRY(change(desc, params));
+  TYNDALL_ASSIGN(Pending everything, plan(desc, params, kEverything));
+  commit(std::move(everything));
   TYNDALL_ASSIGN(no_shadows, gpu::create_image(device, kNoShadows));
   TYNDALL_ASSIGN(no_colors, gpu::create_image(device, kNoColors));
   TYNDALL_ASSIGN(constants, gpu::create_buffer(device, "constants", kSlotBytes * FrameRing::slots(desc),
@@ -135,25 +146,34 @@ Result<void> Effect::State::create_samplers() {
   return {};
 }
 
-Result<Effect::State::Pending> Effect::State::plan(const EffectDesc& d, const Params& p) {
-  TYNDALL_TRY(check_limits(device, d, p));
-  TYNDALL_TRY(pipelines.make(pipelines_of_frames(d, p)));
+Result<Effect::State::Pending> Effect::State::plan(const EffectDesc& d, const Params& p, std::uint32_t required) {
+  const bool other_resources = (required & bit(Affects::Resources)) != 0;
+  if ((required & kEverything) != 0) TYNDALL_TRY(check_limits(device, d, p));
   Pending pending = {d, p, {}, {}};
-  TYNDALL_ASSIGN(pending.buffers, buffers.plan(d, p));
-  TYNDALL_ASSIGN(pending.tables, tables.plan(p));
+  if (other_resources || (required & bit(Affects::Pipeline)) != 0) {
+    TYNDALL_TRY(pipelines.make(pipelines_of_frames(d, p)));
+  }
+  if (other_resources) {
+    TYNDALL_ASSIGN(pending.buffers, buffers.plan(d, p));
+  }
+  if ((required & bit(Affects::Tables)) != 0) {
+    TYNDALL_ASSIGN(pending.tables, tables.plan(p));
+  }
   return pending;
 }
 
 void Effect::State::commit(Pending&& pending) noexcept {
-  buffers.commit(std::move(pending.buffers), FrameRing::slots(desc) + 1);
-  tables.commit(std::move(pending.tables));
+  if (pending.buffers) buffers.commit(std::move(*pending.buffers), FrameRing::slots(desc) + 1);
+  if (pending.tables) tables.commit(std::move(*pending.tables));
   if (desc.shadow_colors != pending.desc.shadow_colors) all_pipelines.clear();
   desc = pending.desc;
   params = pending.params;
 }
 
 Result<void> Effect::State::change(const EffectDesc& d, const Params& p) {
-  TYNDALL_ASSIGN(Pending pending, plan(d, p));
+  std::uint32_t required = affected(params, p);
+  if (!same_limits(desc, d)) required |= bit(Affects::Resources);
+  TYNDALL_ASSIGN(Pending pending, plan(d, p, required));
   commit(std::move(pending));
   return {};
 }

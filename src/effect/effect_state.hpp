@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -62,8 +63,8 @@ struct Effect::State {
   struct Pending {
     EffectDesc desc;
     Params params;
-    FrameBuffers::Pending buffers;
-    TableBuilder::Pending tables;
+    std::optional<FrameBuffers::Pending> buffers;
+    std::optional<TableBuilder::Pending> tables;
   };
 
   [[nodiscard]] std::byte* mapped(VkDeviceSize offset) const {
@@ -72,9 +73,10 @@ struct Effect::State {
 
   // Makes what never changes, and takes over `desc` and `params` of the state.
   Result<void> create_objects();
-  // Checks other settings and allocates what they need. An error leaves what is drawn, the progress of the tables
-  // and memory() as they were; pipelines that were made before it remain, so that the next attempt is faster.
-  Result<Pending> plan(const EffectDesc& desc, const Params& params);
+  // Checks other settings and allocates what they need: only what `required`, a mask of bits 1 << Affects, contains. An
+  // error leaves what is drawn, the progress of the tables and memory() as they were; pipelines that were made before
+  // it remain, so that the next attempt is faster.
+  Result<Pending> plan(const EffectDesc& desc, const Params& params, std::uint32_t required);
   // Takes over what was planned. Cannot fail.
   void commit(Pending&& pending) noexcept;
   // Plans and commits.

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include "gpu/guard.hpp"
@@ -13,13 +12,6 @@
 
 namespace tyndall::scene {
 namespace {
-
-bool same_meshes(const MeshParams& a, const MeshParams& b) {
-  const auto all = [](const MeshParams& m) {
-    return std::tie(m.source, m.position_m.x, m.position_m.y, m.position_m.z, m.scale, m.yaw_deg);
-  };
-  return all(a) == all(b);
-}
 
 bool same(const CascadeFit& a, const CascadeFit& b) {
   return a.world_from_light == b.world_from_light && a.centre == b.centre && a.half_extent == b.half_extent;
@@ -187,7 +179,7 @@ Result<Scene::Pending> Scene::plan(const SceneParams& scene, const Params& param
     TYNDALL_ASSIGN(out.terrain, terrain_->plan_source(scene.terrain, radius_m, std::move(*source)));
     add_notes(out.notes, out.terrain->notes);
   }
-  out.other_meshes = other_ground || !same_meshes(scene.meshes, scene_.meshes);
+  out.other_meshes = other_ground || differs(scene, scene_, "meshes", Affects::Resources);
   if (out.other_meshes) {
     // Meshes are placed on the ground, so the planned terrain is installed while they are created.
     struct InPlace {
@@ -206,16 +198,14 @@ Result<Scene::Pending> Scene::plan(const SceneParams& scene, const Params& param
   }
   const std::unique_ptr<Meshes>& meshes = out.other_meshes ? out.meshes : meshes_;
   const bool glass = meshes != nullptr && meshes->has_glass();
-  const bool other_maps =
-      scene.shadows.resolution != scene_.shadows.resolution || scene.shadows.cascades != scene_.shadows.cascades;
+  const bool other_maps = differs(scene, scene_, "shadows", Affects::Resources);
   if (other_maps) {
     TYNDALL_ASSIGN(out.shadow_maps, make_shadow_maps(scene.shadows));
   }
   if (other_maps || out.other_meshes) {
     TYNDALL_ASSIGN(out.shadow_colors, make_shadow_colors(scene.shadows, glass));
   }
-  out.other_model =
-      scene.scattering.model != scene_.scattering.model || scene.scattering.evaluate != scene_.scattering.evaluate;
+  out.other_model = differs(scene, scene_, "scattering", Affects::Pipeline);
   if (out.other_model) {
     TYNDALL_ASSIGN(out.model, make_model(scene));
   }

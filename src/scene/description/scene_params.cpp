@@ -1,5 +1,9 @@
 #include "scene/description/scene_params.hpp"
 
+#include <algorithm>
+#include <cstring>
+#include <iterator>
+#include <string>
 #include <type_traits>
 
 namespace tyndall::scene {
@@ -70,8 +74,26 @@ constexpr ParamInfo kTable[] = {
 };
 #undef AT
 
+bool same_value(const SceneParams& a, const SceneParams& b, const ParamInfo& info) {
+  const char* const x = reinterpret_cast<const char*>(&a) + info.offset;
+  const char* const y = reinterpret_cast<const char*>(&b) + info.offset;
+  switch (info.type) {
+    case ParamType::string: return *reinterpret_cast<const std::string*>(x) == *reinterpret_cast<const std::string*>(y);
+    case ParamType::vec3: return std::memcmp(x, y, sizeof(Vec3)) == 0;
+    case ParamType::dvec3: return std::memcmp(x, y, sizeof(DVec3)) == 0;
+    case ParamType::uvec4: return std::memcmp(x, y, sizeof(UVec4)) == 0;
+    default: return std::memcmp(x, y, sizeof(float)) == 0;
+  }
+}
+
 }  // namespace
 
 std::span<const ParamInfo> scene_param_table() { return kTable; }
+
+bool differs(const SceneParams& a, const SceneParams& b, std::string_view group, Affects affects) {
+  return std::any_of(std::begin(kTable), std::end(kTable), [&](const ParamInfo& info) {
+    return info.group == group && info.affects == affects && !same_value(a, b, info);
+  });
+}
 
 }  // namespace tyndall::scene
