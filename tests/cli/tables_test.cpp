@@ -86,6 +86,114 @@ TEST_F(CliTables, EveryStageHasATime) {
   EXPECT_NE(text.out.find("\nstored in " + scratch_.at("cache") + "\n"), std::string::npos);
 }
 
+// An export of tables, and the questions to `probe` whose answers its texels must equal.
+struct Export {
+  struct Texel {
+    std::uint32_t altitude, view, sun, angle;
+  };
+  std::string name;  // in messages
+  nlohmann::json axes;
+  std::vector<std::vector<image::Image>> tables;
+  std::vector<Texel> texels;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> lights;  // texels of the light tables
+
+  [[nodiscard]] std::string scattering_queries();
+  [[nodiscard]] std::string light_queries();
+  void expect_scattering(const nlohmann::json& answers) const;
+  void expect_light(const nlohmann::json& answers) const;
+};
+
+// Adds the texels of the scattering tables that a ray of `probe` can ask for, and returns those rays.
+std::string Export::scattering_queries() {
+  std::string queries;
+  const nlohmann::json& scattering = axes["scattering"];
+  for (std::uint32_t a = 0; a < 4; ++a) {
+    const nlohmann::json& views = scattering["view_zenith_by_altitude"][a];
+    EXPECT_EQ(views["cosine"].size(), 16U);
+    for (std::uint32_t v = 0; v < 16; ++v) {
+      const double mu = views["cosine"][v];
+      EXPECT_NEAR(std::cos(views["deg"][v].get<double>() * kPi / 180.0), mu, 1e-12);
+      // At the horizon itself, rounding decides on which side a ray is.
+      if (v == 0 || v == 15 || views["ends_on_ground"][v - 1] != views["ends_on_ground"][v] ||
+          views["ends_on_ground"][v + 1] != views["ends_on_ground"][v]) {
+        continue;
+      }
+      // Leave out the darkest sun: devices filter with limited precision, so the next and much brighter sun contributes
+      // to it.
+      for (std::uint32_t s = 1; s < 12; ++s) {
+        for (std::uint32_t n = 0; n < 6; ++n) {
+          const double nu = scattering["view_sun"]["cosine"][n];
+          // The sun axis refers to the density-weighted mean distance along the ray, the query to the ray's origin.
+          const double r = 6360000.0 + scattering["altitude_m"][a].get<double>();
+          const double d = views["middle_of_air_m"][v];
+          const double r_middle = std::sqrt(r * r + d * d + 2.0 * r * d * mu);
+          const double mu_s = (r_middle * scattering["sun_zenith"]["cosine"][s].get<double>() - d * nu) / r;
+          if (std::abs(mu_s) >= 1.0) continue;
+          const double spread = std::sqrt((1.0 - mu * mu) * (1.0 - mu_s * mu_s));
+          if (spread < 1e-3 || std::abs(nu - mu * mu_s) > 0.999 * spread) continue;
+          texels.push_back({a, v, s, n});
+          queries += files::number_text(scattering["altitude_m"][a].get<double>()) + "," +
+                     files::number_text(views["deg"][v].get<double>()) + "," +
+                     files::number_text(std::acos(mu_s) * 180.0 / kPi) + "," +
+                     files::number_text(std::acos((nu - mu * mu_s) / spread) * 180.0 / kPi) + "\n";
+        }
+      }
+    }
+  }
+  return queries;
+}
+
+// The same for some texels of the light tables.
+std::string Export::light_queries() {
+  std::string queries;
+  const nlohmann::json& light = axes["light"];
+  for (std::uint32_t x = 0; x < 64; x += 9) {
+    for (std::uint32_t y = 60; y < 256; y += 14) {
+      const double cosine = light["cos_horizon"][x].get<double>() + light["cos_sun_from_horizon"][y].get<double>();
+      if (std::abs(cosine) > 1.0) continue;
+      lights.emplace_back(x, y);
+      queries += files::number_text(light["altitude_m"][x].get<double>()) + ",sky," +
+                 files::number_text(std::acos(cosine) * 180.0 / kPi) + ",\n";
+    }
+  }
+  return queries;
+}
+
+void Export::expect_scattering(const nlohmann::json& answers) const {
+  const double g = 0.76;
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    const Texel& t = texels[i];
+    const double nu = axes["scattering"]["view_sun"]["cosine"][t.angle];
+    const double rayleigh = 3.0 / (16.0 * kPi) * (1.0 + nu * nu);
+    // Cornette and Shanks (1992).
+    const double mie =
+        3.0 / (8.0 * kPi) * (1.0 - g * g) / (2.0 + g * g) * (1.0 + nu * nu) / std::pow(1.0 + g * g - 2.0 * g * nu, 1.5);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto value = [&](std::size_t table) {
+        return double{tables[table][t.altitude].pixel(t.sun + 12 * t.angle, t.view)[c]};
+      };
+      const double expected = rayleigh * value(0) + mie * value(1) + value(2);
+      EXPECT_NEAR(answers[i]["L"][c].get<double>(), expected, 0.01 * expected + 1e-9)
+          << name << ' ' << t.altitude << ' ' << t.view << ' ' << t.sun << ' ' << t.angle << ' ' << c;
+    }
+  }
+}
+
+void Export::expect_light(const nlohmann::json& answers) const {
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const auto [x, y] = lights[i];
+    const nlohmann::json& answer = answers[texels.size() + i];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double sky = tables[4][0].pixel(x, y)[c];
+      EXPECT_NEAR(answer["L"][c].get<double>(), sky, 0.002 * sky + 1e-9) << x << ' ' << y;
+      // The sun's disc is not a point at the horizon.
+      if (std::abs(axes["light"]["cos_sun_from_horizon"][y].get<double>()) < 0.01) continue;
+      const double sun = tables[3][0].pixel(x, y)[c];
+      EXPECT_NEAR(answer["T"][c].get<double>(), sun, 0.002 * sun + 1e-6) << x << ' ' << y;
+    }
+  }
+}
+
 // The exported values equal the results of `probe` for the rays that tables.json describes.
 TEST_F(CliTables, TheExportHoldsWhatTheRendererReads) {
   for (const std::string parameterization : {"yusov", "bruneton", "linear"}) {
@@ -101,6 +209,9 @@ TEST_F(CliTables, TheExportHoldsWhatTheRendererReads) {
     EXPECT_EQ(index["parameters"]["tables.parameterization"], parameterization);
     EXPECT_FALSE(index["parameters"].contains("tables.cache"));
     EXPECT_EQ(index["channels_nm"], nlohmann::json({680.0, 550.0, 440.0}));
+    Export exported;
+    exported.name = parameterization;
+    exported.axes = index["axes"];
     const nlohmann::json& axes = index["axes"]["scattering"];
     ASSERT_EQ(axes["altitude_m"].size(), 4U);
     ASSERT_EQ(axes["view_zenith_by_altitude"].size(), 4U);
@@ -109,103 +220,28 @@ TEST_F(CliTables, TheExportHoldsWhatTheRendererReads) {
 
     // Exactly these files are exported.
     std::vector<std::string> files = {"tables.json"};
-    std::vector<std::vector<image::Image>> tables;
     for (const nlohmann::json& table : index["tables"]) {
-      tables.emplace_back();
+      exported.tables.emplace_back();
       for (const nlohmann::json& file : table["files"]) {
         files.push_back(file["file"]);
-        tables.back().push_back(picture(directory + "/" + files.back()));
+        exported.tables.back().push_back(picture(directory + "/" + files.back()));
       }
     }
     std::sort(files.begin(), files.end());
     EXPECT_EQ(names(directory), files);
-    ASSERT_EQ(tables.size(), 5U);
+    ASSERT_EQ(exported.tables.size(), 5U);
 
-    struct Texel {
-      std::uint32_t altitude, view, sun, angle;
-    };
-    std::vector<Texel> texels;
-    std::string queries = "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n";
-    for (std::uint32_t a = 0; a < 4; ++a) {
-      const nlohmann::json& views = axes["view_zenith_by_altitude"][a];
-      ASSERT_EQ(views["cosine"].size(), 16U);
-      for (std::uint32_t v = 0; v < 16; ++v) {
-        const double mu = views["cosine"][v];
-        EXPECT_NEAR(std::cos(views["deg"][v].get<double>() * kPi / 180.0), mu, 1e-12);
-        // At the horizon itself, rounding decides on which side a ray is.
-        if (v == 0 || v == 15 || views["ends_on_ground"][v - 1] != views["ends_on_ground"][v] ||
-            views["ends_on_ground"][v + 1] != views["ends_on_ground"][v]) {
-          continue;
-        }
-        // Leave out the darkest sun: devices filter with limited precision, so the next and much brighter sun
-        // contributes to it.
-        for (std::uint32_t s = 1; s < 12; ++s) {
-          for (std::uint32_t n = 0; n < 6; ++n) {
-            const double nu = axes["view_sun"]["cosine"][n];
-            // The sun axis refers to the density-weighted mean distance along the ray, the query to the ray's origin.
-            const double r = 6360000.0 + axes["altitude_m"][a].get<double>();
-            const double d = views["middle_of_air_m"][v];
-            const double r_middle = std::sqrt(r * r + d * d + 2.0 * r * d * mu);
-            const double mu_s = (r_middle * axes["sun_zenith"]["cosine"][s].get<double>() - d * nu) / r;
-            if (std::abs(mu_s) >= 1.0) continue;
-            const double spread = std::sqrt((1.0 - mu * mu) * (1.0 - mu_s * mu_s));
-            if (spread < 1e-3 || std::abs(nu - mu * mu_s) > 0.999 * spread) continue;
-            texels.push_back({a, v, s, n});
-            queries += files::number_text(axes["altitude_m"][a].get<double>()) + "," +
-                       files::number_text(views["deg"][v].get<double>()) + "," +
-                       files::number_text(std::acos(mu_s) * 180.0 / kPi) + "," +
-                       files::number_text(std::acos((nu - mu * mu_s) / spread) * 180.0 / kPi) + "\n";
-          }
-        }
-      }
-    }
-    ASSERT_GT(texels.size(), 100U);
-    const nlohmann::json& light = index["axes"]["light"];
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> lights;
-    for (std::uint32_t x = 0; x < 64; x += 9) {
-      for (std::uint32_t y = 60; y < 256; y += 14) {
-        const double cosine = light["cos_horizon"][x].get<double>() + light["cos_sun_from_horizon"][y].get<double>();
-        if (std::abs(cosine) > 1.0) continue;
-        lights.emplace_back(x, y);
-        queries += files::number_text(light["altitude_m"][x].get<double>()) + ",sky," +
-                   files::number_text(std::acos(cosine) * 180.0 / kPi) + ",\n";
-      }
-    }
+    const std::string queries = "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n" +
+                                exported.scattering_queries() + exported.light_queries();
+    ASSERT_GT(exported.texels.size(), 100U);
     arguments = set;
     arguments.insert(arguments.end(), {"--json", "--queries", scratch_.write("q.csv", queries)});
     const Outcome asked = run("probe", arguments);
     ASSERT_EQ(asked.status, 0) << asked.err;
     const nlohmann::json answers = nlohmann::json::parse(asked.out)["answers"];
-    ASSERT_EQ(answers.size(), texels.size() + lights.size());
-
-    const double g = 0.76;
-    for (std::size_t i = 0; i < texels.size(); ++i) {
-      const Texel& t = texels[i];
-      const double nu = axes["view_sun"]["cosine"][t.angle];
-      const double rayleigh = 3.0 / (16.0 * kPi) * (1.0 + nu * nu);
-      // Cornette and Shanks (1992).
-      const double mie = 3.0 / (8.0 * kPi) * (1.0 - g * g) / (2.0 + g * g) * (1.0 + nu * nu) /
-                         std::pow(1.0 + g * g - 2.0 * g * nu, 1.5);
-      for (std::size_t c = 0; c < 3; ++c) {
-        const auto value = [&](std::size_t table) {
-          return double{tables[table][t.altitude].pixel(t.sun + 12 * t.angle, t.view)[c]};
-        };
-        const double expected = rayleigh * value(0) + mie * value(1) + value(2);
-        EXPECT_NEAR(answers[i]["L"][c].get<double>(), expected, 0.01 * expected + 1e-9)
-            << parameterization << ' ' << t.altitude << ' ' << t.view << ' ' << t.sun << ' ' << t.angle << ' ' << c;
-      }
-    }
-    for (std::size_t i = 0; i < lights.size(); ++i) {
-      const auto [x, y] = lights[i];
-      const nlohmann::json& answer = answers[texels.size() + i];
-      for (std::size_t c = 0; c < 3; ++c) {
-        const double sky = tables[4][0].pixel(x, y)[c];
-        EXPECT_NEAR(answer["L"][c].get<double>(), sky, 0.002 * sky + 1e-9) << x << ' ' << y;
-        if (std::abs(light["cos_sun_from_horizon"][y].get<double>()) < 0.01) continue;  // the disc is not a point there
-        const double sun = tables[3][0].pixel(x, y)[c];
-        EXPECT_NEAR(answer["T"][c].get<double>(), sun, 0.002 * sun + 1e-6) << x << ' ' << y;
-      }
-    }
+    ASSERT_EQ(answers.size(), exported.texels.size() + exported.lights.size());
+    exported.expect_scattering(answers);
+    exported.expect_light(answers);
   }
 }
 

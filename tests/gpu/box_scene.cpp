@@ -60,13 +60,13 @@ double first_hit(const BoxScene& scene, bool ground, const glm::dvec3& from, con
 }
 
 glm::dvec3 direction_to_sun(const BoxScene& scene, const TestView& view) {
-  if (scene.sun_in_view) {
-    const glm::dvec3 towards = view.forward + view.right * (scene.sun_x * view.tan_half_width) -
-                               view.up * (scene.sun_y * view.tan_half_height);
-    return glm::normalize(scene.sun_behind ? -towards : towards);
+  if (scene.sun.in_view) {
+    const glm::dvec3 towards = view.forward + view.right * (scene.sun.x * view.tan_half_width) -
+                               view.up * (scene.sun.y * view.tan_half_height);
+    return glm::normalize(scene.sun.behind ? -towards : towards);
   }
-  const double e = scene.sun_elevation_deg * kRad;
-  const double a = scene.sun_azimuth_deg * kRad;
+  const double e = scene.sun.elevation_deg * kRad;
+  const double a = scene.sun.azimuth_deg * kRad;
   return {std::cos(e) * std::sin(a), std::sin(e), -std::cos(e) * std::cos(a)};
 }
 
@@ -83,6 +83,17 @@ float shown(double linear) {
 }
 
 }  // namespace
+
+BoxScene sun_at(const std::string& name, double x, double y, double pitch_deg, bool behind) {
+  BoxScene scene;
+  scene.name = name;
+  scene.sun.in_view = true;
+  scene.sun.x = x;
+  scene.sun.y = y;
+  scene.sun.behind = behind;
+  scene.pitch_deg = pitch_deg;
+  return scene;
+}
 
 TestFrame frame_of(const BoxScene& scene) {
   TestFrame frame;

@@ -14,17 +14,21 @@ struct Box {
   glm::dvec3 low, high;
 };
 
+// The sun, in the sky or, when `in_view`, at a place of the picture: (-1, -1) is the upper left corner, (1, 1) the
+// lower right one, of its border and not of the outermost pixels' middles.
+struct BoxSun {
+  bool in_view = false;
+  double x = 0.0, y = 0.0;
+  bool behind = false;  // opposite to that place
+  double elevation_deg = 9.0, azimuth_deg = 12.0;
+};
+
 struct BoxScene {
   std::string name;
   VkExtent2D extent = {160, 90};
   double altitude_m = 1200.0, yaw_deg = 0.0, pitch_deg = 3.0;
   double tan_half_height = 0.42;  // width by the picture's shape
-  // The sun, in the sky or, when `sun_in_view`, at a place of the picture: (-1, -1) is the upper left corner, (1, 1)
-  // the lower right one, of its border and not of the outermost pixels' middles.
-  bool sun_in_view = false;
-  double sun_x = 0.0, sun_y = 0.0;
-  bool sun_behind = false;  // opposite to that place
-  double sun_elevation_deg = 9.0, sun_azimuth_deg = 12.0;
+  BoxSun sun;
   bool buildings = true;
   std::vector<Box> own_buildings;  // in place of the usual ones, unless empty
   double building_size = 1.0;      // times theirs, distances included
@@ -38,6 +42,9 @@ struct BoxScene {
   bool shadow_depth_reversed = false;
   double panes_m = 0.0;  // > 0: all sunlight comes through coloured panes of that size
 };
+
+// A scene with the sun at a place of the picture, or opposite to it.
+[[nodiscard]] BoxScene sun_at(const std::string& name, double x, double y, double pitch_deg, bool behind = false);
 
 [[nodiscard]] TestFrame frame_of(const BoxScene& scene);
 

@@ -35,16 +35,16 @@ TEST_F(Downscale, IsLikeFullResolution) {
       {"towards the sun", [](BoxScene&) {}, 43.0, 38.0},
       {"sun in view",
        [](BoxScene& s) {
-         s.sun_in_view = true;
-         s.sun_x = 0.2;
-         s.sun_y = -0.4;
+         s.sun.in_view = true;
+         s.sun.x = 0.2;
+         s.sun.y = -0.4;
          s.pitch_deg = 8.0;
        },
        43.0, 38.0},
       {"sun behind",
        [](BoxScene& s) {
-         s.sun_in_view = true;
-         s.sun_behind = true;
+         s.sun.in_view = true;
+         s.sun.behind = true;
          s.pitch_deg = -6.0;
        },
        43.0, 38.0},

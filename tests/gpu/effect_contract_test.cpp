@@ -1,32 +1,14 @@
-// What include/tyndall/effect.hpp promises apart from the picture: memory that is known beforehand, recording
-// without allocation, errors that change nothing, effects that do not know of each other, the same bytes.
-#include <atomic>
+// What include/tyndall/effect.hpp promises apart from the picture: memory that is known beforehand, errors that change
+// nothing, effects that do not know of each other, the same bytes.
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <limits>
-#include <new>
 #include <set>
 #include <string>
 
 #include "effect_frame.hpp"
 #include "gpu/pipeline.hpp"
 #include "gpu_test_shaders.hpp"
-
-namespace {
-std::atomic<std::size_t> allocations = 0;
-}  // namespace
-
-// Counts every allocation of the program; what the device allocates for itself comes from malloc. Not inlined, because
-// GCC 12 takes the parts that it inlines for mismatched pairs of allocation and release.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  void* const made = std::malloc(size > 0 ? size : 1);
-  if (made == nullptr) throw std::bad_alloc();
-  return made;
-}
-[[gnu::noinline]] void operator delete(void* pointer) noexcept { std::free(pointer); }
-[[gnu::noinline]] void operator delete(void* pointer, std::size_t) noexcept { std::free(pointer); }
 
 namespace tyndall {
 namespace {
@@ -381,74 +363,6 @@ TEST_F(EffectContract, TablesBuiltInStepsMatchTablesBuiltAtOnce) {
   ASSERT_OK(sliced.value().set_params(params));
   build(sliced.value(), UINT32_MAX);
   EXPECT_EQ(light_tables(sliced.value()), expected);
-}
-
-// Without the validation layer, which allocates for itself.
-TEST(EffectAllocation, RecordingAllocatesNothing) {
-  Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({});
-  ASSERT_TRUE(host.ok()) << "the GPU tests need a Vulkan 1.3 device: " << host.error().message;
-  const TestFrame frame = small_frame();
-  Result<FrameImages> images = FrameImages::create(*host.value(), frame, OutputFormat::rgba32f);
-  ASSERT_OK(images);
-  EffectDesc desc = desc_for(frame);
-  desc.timings = true;
-  desc.counters = true;
-  const gpu::Device& device = host.value()->device();
-  DeviceInfo info;
-  info.instance = device.instance;
-  info.physical_device = device.physical_device;
-  info.device = device.device;
-  info.get_instance_proc_addr = host.value()->get_instance_proc_addr();
-  info.message = [](void*, Severity, std::string_view) {};
-  Result<Effect> effect = Effect::create(info, desc, {});
-  ASSERT_OK(effect);
-  FrameInputs inputs = images.value().inputs(frame);
-  for (std::uint64_t i = 0; i < 8; ++i) {
-    // Both techniques, and every pass of the first.
-    Params params = with_technique(i < 6 ? Technique::epipolar : Technique::brute_force);
-    params.shadows.cascade_processing = static_cast<CascadeProcessing>(i % 3);
-    params.epipolar.show_sampling = i >= 3;
-    params.epipolar.correct_depth_breaks = i >= 3;
-    ASSERT_OK(effect.value().set_params(params));
-    inputs.frame_index = i;
-    std::size_t during = 1;
-    ASSERT_OK(host.value()->run([&](VkCommandBuffer cmd) -> Result<void> {
-      const std::size_t before = allocations;
-      const Result<Progress> built = effect.value().record_precompute(cmd, 3);
-      const Result<void> recorded = effect.value().record(cmd, inputs);
-      during = allocations - before;
-      if (!built.ok()) return built.error();
-      return recorded;
-    }));
-    EXPECT_EQ(during, 0U) << i;
-    const std::size_t before = allocations;
-    EXPECT_FALSE(effect.value().timings(i).empty());
-    EXPECT_EQ(allocations, before);
-  }
-  // Nor does taking tables from a buffer, and giving them.
-  Result<Effect> other = Effect::create(info, desc, {});
-  ASSERT_OK(other);
-  const Result<gpu::Buffer> saved =
-      gpu::create_buffer(device, "saved", other.value().table_bytes(),
-                         VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryKind::device);
-  ASSERT_OK(saved);
-  ASSERT_OK(host.value()->run([&](VkCommandBuffer cmd) -> Result<void> {
-    const VkBuffer buffer = saved.value().buffer.get();
-    const std::size_t before = allocations;
-    Result<void> recorded = other.value().record_load_tables(cmd, buffer);
-    if (recorded.ok()) {
-      gpu::barrier(device, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, VK_PIPELINE_STAGE_TRANSFER_BIT, 0);
-      recorded = other.value().record_save_tables(cmd, buffer);
-    }
-    EXPECT_EQ(allocations, before);
-    return recorded;
-  }));
-  EXPECT_TRUE(other.value().precompute_progress().complete());
-  // The count does count.
-  const std::size_t before = allocations;
-  delete new int(3);
-  const std::string long_text(1000, 'x');
-  EXPECT_GT(allocations, before) << long_text;
 }
 
 }  // namespace

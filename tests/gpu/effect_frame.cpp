@@ -97,14 +97,14 @@ Result<FrameImages> FrameImages::create(gpu::Host& host, const TestFrame& frame,
         const std::uint32_t py = y - static_cast<std::uint32_t>(offset.y);
         return px < frame.extent.width && py < frame.extent.height;
       };
-      const Vec3 shown = inside(frame.color_offset) ? frame.background : Vec3(std::numeric_limits<float>::quiet_NaN());
+      const Vec3 shown = inside(frame.offsets.color) ? frame.background : Vec3(std::numeric_limits<float>::quiet_NaN());
       color.insert(color.end(), {shown.x, shown.y, shown.z, 1.0F});
-      if (!inside(frame.depth_offset)) {
+      if (!inside(frame.offsets.depth)) {
         depth.push_back((x + y) % 2 == 0 ? 0.875F : 1.0F / 65536.0F);
         continue;
       }
-      const std::uint32_t px = x - static_cast<std::uint32_t>(frame.depth_offset.x);
-      const std::uint32_t py = y - static_cast<std::uint32_t>(frame.depth_offset.y);
+      const std::uint32_t px = x - static_cast<std::uint32_t>(frame.offsets.depth.x);
+      const std::uint32_t py = y - static_cast<std::uint32_t>(frame.offsets.depth.y);
       const double distance = frame.distance_m ? frame.distance_m(px, py) : 0.0;
       depth.push_back(
           device_depth(frame, distance * glm::dot(frame.view.ray(px, py, frame.extent), frame.view.forward)));
@@ -171,8 +171,8 @@ FrameInputs FrameImages::inputs(const TestFrame& frame) const {
   constexpr VkImageLayout kRead = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
   FrameInputs out;
   out.extent = frame.extent;
-  out.color = {color_.view.get(), kRead, frame.color_offset};
-  out.depth = {depth_.view.get(), kRead, frame.depth_offset};
+  out.color = {color_.view.get(), kRead, frame.offsets.color};
+  out.depth = {depth_.view.get(), kRead, frame.offsets.depth};
   out.shadow_maps = {shadows_.view.get(), kRead};
   out.shadow_colors = {glass_.view.get(), kRead};
   out.shadow_color_depths = static_cast<bool>(frame.glass_depth);
@@ -183,7 +183,7 @@ FrameInputs FrameImages::inputs(const TestFrame& frame) const {
   out.sun.direction_to_sun = {static_cast<float>(frame.to_sun.x), static_cast<float>(frame.to_sun.y),
                               static_cast<float>(frame.to_sun.z)};
   out.sun.irradiance = frame.irradiance;
-  out.output = {output_.view.get(), VK_IMAGE_LAYOUT_GENERAL, frame.output_offset};
+  out.output = {output_.view.get(), VK_IMAGE_LAYOUT_GENERAL, frame.offsets.output};
   return out;
 }
 

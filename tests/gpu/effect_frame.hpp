@@ -32,11 +32,16 @@ struct RayAngles {
   double altitude_m, cos_view, cos_sun, cos_view_sun;
 };
 
+// The upper left corner of the picture in each image.
+struct PictureOffsets {
+  VkOffset2D color = {0, 0}, depth = {0, 0}, output = {0, 0};
+};
+
 struct TestFrame {
   VkExtent2D extent = {16, 9};
   // Larger images around the picture, filled with what must not be read; 0: of the picture's size.
   VkExtent2D image_extent = {0, 0};
-  VkOffset2D color_offset = {0, 0}, depth_offset = {0, 0}, output_offset = {0, 0};
+  PictureOffsets offsets;
   TestView view;
   DepthConvention convention = DepthConvention::reversed_infinite;
   glm::dvec3 to_sun = {0, 1, 0};

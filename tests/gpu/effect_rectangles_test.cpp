@@ -73,9 +73,9 @@ TEST_F(EffectRectangles, ArePicturesOfTheirOwn) {
       TestFrame within = alone;
       within.image_extent = {40, 30};
       if (extent.width != 22) {
-        within.color_offset = {7, 5};
-        within.depth_offset = {3, 11};
-        within.output_offset = {16, 2};
+        within.offsets.color = {7, 5};
+        within.offsets.depth = {3, 11};
+        within.offsets.output = {16, 2};
       }
       const Result<std::vector<std::byte>> expected = draw(effect.value(), alone);
       const Result<std::vector<std::byte>> image = draw(effect.value(), within);
@@ -86,8 +86,8 @@ TEST_F(EffectRectangles, ArePicturesOfTheirOwn) {
       for (std::uint32_t y = 0; y < within.image_extent.height; ++y) {
         for (std::uint32_t x = 0; x < within.image_extent.width; ++x) {
           const std::byte* texel = image.value().data() + (y * within.image_extent.width + x) * kTexelBytes;
-          const std::uint32_t px = x - static_cast<std::uint32_t>(within.output_offset.x);
-          const std::uint32_t py = y - static_cast<std::uint32_t>(within.output_offset.y);
+          const std::uint32_t px = x - static_cast<std::uint32_t>(within.offsets.output.x);
+          const std::uint32_t py = y - static_cast<std::uint32_t>(within.offsets.output.y);
           if (px < extent.width && py < extent.height) {
             const std::byte* own = expected.value().data() + (py * extent.width + px) * kTexelBytes;
             differing += std::memcmp(texel, own, kTexelBytes) != 0 ? 1 : 0;

@@ -1,5 +1,6 @@
-// Epipolar sampling where it is hardest: an occluder in front of the sun, twilight, and scenes with more depth
-// discontinuities than are corrected. The reference is brute force with the same frame and the same shadow maps.
+// Epipolar sampling where it is hardest: an occluder in front of the sun, twilight, scenes with more depth
+// discontinuities than are corrected, and skies that show every seam. The reference is brute force with the same frame
+// and the same shadow maps.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -31,8 +32,8 @@ BoxScene scene_of(const Pillar& pillar) {
   scene.tan_half_height = 0.25;
   scene.altitude_m = pillar.altitude_m;
   scene.pitch_deg = 8.0;
-  scene.sun_azimuth_deg = std::atan(pillar.sun_from_middle * pillar.half_width_m / pillar.distance_m) * 57.29578;
-  scene.sun_elevation_deg = pillar.sun_elevation_deg;
+  scene.sun.azimuth_deg = std::atan(pillar.sun_from_middle * pillar.half_width_m / pillar.distance_m) * 57.29578;
+  scene.sun.elevation_deg = pillar.sun_elevation_deg;
   scene.far_m = pillar.far_m;
   scene.shadow_resolution = 512;
   scene.own_buildings = {{{-pillar.half_width_m, 0, -pillar.distance_m - pillar.half_width_m},
@@ -92,8 +93,8 @@ TEST_F(EpipolarErrors, TwilightSkyIsLikeBruteForce) {
   scene.extent = {480, 256};
   scene.altitude_m = 8000.0;
   scene.pitch_deg = 8.0;
-  scene.sun_azimuth_deg = 0.0;
-  scene.sun_elevation_deg = -7.0;
+  scene.sun.azimuth_deg = 0.0;
+  scene.sun.elevation_deg = -7.0;
   scene.buildings = false;
   scene.cascades = 0;
   show(scene);
@@ -134,6 +135,76 @@ TEST_F(EpipolarErrors, TooManyDepthBreaksAreAllLeftAlone) {
   EXPECT_LE(counters().pixels_corrected, pixels);
   EXPECT_GT(compare(corrected, reference, scattered.extent).psnr_db,
             compare(picture, reference, scattered.extent).psnr_db + 3.0);
+}
+
+// The sky above buildings and ground: slices come out of the ground one after the other, and no step may be seen where
+// one does.
+TEST_F(EpipolarErrors, FewSlicesLeaveNoStepInTheSky) {
+  struct Case {
+    const char* name;
+    VkExtent2D extent;
+    std::uint32_t slices;
+    double sun_x, sun_y;
+    std::size_t most_steps;
+  };
+  constexpr double kStep = 0.05;  // of the light, from one pixel to the next, that brute force does not have
+  const Case cases[] = {{"32 slices, sun in view", {160, 90}, 32, 0.8, -0.8, 6},
+                        {"32 slices, sun beside the view", {160, 90}, 32, 1.6, -0.9, 6},
+                        {"300 slices, sun in view", {1800, 250}, 300, 0.8, -0.8, 6}};
+  for (const Case& c : cases) {
+    BoxScene scene = sun_at(c.name, c.sun_x, c.sun_y, 6.0);
+    scene.extent = c.extent;
+    show(scene);
+    Params params = small_params();
+    params.epipolar.slices = c.slices;
+    params.epipolar.samples = 256;
+    const Picture reference = draw(by_brute_force(params), scene.name);
+    const Picture picture = draw(params, scene.name);
+    const auto sky = [&](std::uint32_t x, std::uint32_t y) { return frame().distance_m(x, y) == 0.0; };
+    std::size_t seen_pixels = 0;
+    std::size_t steps = 0;
+    for (std::uint32_t y = 0; y + 1 < c.extent.height; ++y) {
+      for (std::uint32_t x = 0; x + 1 < c.extent.width; ++x) {
+        const std::size_t i = static_cast<std::size_t>(y) * c.extent.width + x;
+        if (!sky(x, y) || !sky(x + 1, y)) continue;
+        ++seen_pixels;
+        const glm::dvec3 off = (picture[i + 1] - picture[i] - reference[i + 1] + reference[i]) / reference[i];
+        steps += std::max({std::abs(off.x), std::abs(off.y), std::abs(off.z)}) > kStep ? 1 : 0;
+      }
+    }
+    RecordProperty(std::string("steps: ") + c.name, std::to_string(steps) + " of " + std::to_string(seen_pixels));
+    EXPECT_GT(seen_pixels, reference.size() / 10) << c.name;
+    EXPECT_LE(steps, c.most_steps) << c.name;
+  }
+}
+
+// Where the light is smooth, it is smooth across slices: what a seam would add to the second differences is
+// bounded by those of brute force.
+TEST_F(EpipolarErrors, SmoothLightHasNoSeams) {
+  for (const bool inside : {true, false}) {
+    BoxScene scene = inside ? sun_at("sun in view", 0.31, -0.23, 25.0) : sun_at("sun beside the view", 1.8, -1.5, 25.0);
+    scene.buildings = scene.ground = false;
+    scene.cascades = 0;
+    scene.tan_half_height = 0.06;  // the sky bends little from pixel to pixel
+    show(scene);
+    Params params = small_params();
+    const Picture reference = draw(by_brute_force(params), scene.name);
+    const Picture picture = draw(params, scene.name);
+    double worst = 0.0;
+    const std::uint32_t width = scene.extent.width;
+    for (std::uint32_t y = 1; y + 1 < scene.extent.height; ++y) {
+      for (std::uint32_t x = 1; x + 1 < width; ++x) {
+        const std::size_t i = static_cast<std::size_t>(y) * width + x;
+        for (const std::size_t step : {std::size_t{1}, std::size_t{width}}) {
+          const auto second = [&](const Picture& p) { return p[i - step] - 2.0 * p[i] + p[i + step]; };
+          const glm::dvec3 off = glm::abs(second(picture) - second(reference)) / reference[i];
+          worst = std::max({worst, off.x, off.y, off.z});
+        }
+      }
+    }
+    RecordProperty("seam: " + scene.name, std::to_string(worst));
+    EXPECT_LE(worst, 0.03) << scene.name;
+  }
 }
 
 }  // namespace

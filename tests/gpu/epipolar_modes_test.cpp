@@ -164,8 +164,8 @@ TEST_F(Epipolar, CountersSayWhatWasDone) {
 TEST_F(Epipolar, RaysGoOnWhereTreesEnd) {
   BoxScene scene;
   scene.pitch_deg = 0.0;
-  scene.sun_elevation_deg = 25.0;
-  scene.sun_azimuth_deg = 60.0;
+  scene.sun.elevation_deg = 25.0;
+  scene.sun.azimuth_deg = 60.0;
   scene.shadow_resolution = 512;
   show(scene);
   Params params = small_params();
@@ -258,9 +258,9 @@ TEST_F(Epipolar, DepthBreaksAreCorrectedAndMarked) {
 
 TEST_F(Epipolar, SamplesAreShown) {
   BoxScene scene;
-  scene.sun_in_view = true;
-  scene.sun_x = 0.2;
-  scene.sun_y = -0.4;
+  scene.sun.in_view = true;
+  scene.sun.x = 0.2;
+  scene.sun.y = -0.4;
   scene.pitch_deg = 8.0;
   show(scene);
   Params params = small_params();

@@ -198,15 +198,15 @@ TEST_F(HomogeneousMedium, EpipolarIsLikeBruteForce) {
       {"towards the sun", [](BoxScene&, Params&) {}},
       {"sun in view",
        [](BoxScene& s, Params&) {
-         s.sun_in_view = true;
-         s.sun_x = 0.2;
-         s.sun_y = -0.4;
+         s.sun.in_view = true;
+         s.sun.x = 0.2;
+         s.sun.y = -0.4;
          s.pitch_deg = 8.0;
        }},
       {"sun behind",
        [](BoxScene& s, Params&) {
-         s.sun_in_view = true;
-         s.sun_behind = true;
+         s.sun.in_view = true;
+         s.sun.behind = true;
          s.pitch_deg = -6.0;
        }},
       {"dense", [](BoxScene&, Params& p) { p.homogeneous_medium.density = 8.0F; }},

@@ -37,6 +37,8 @@ void integrate(double a, double b, int panels, F&& add) {
   }
 }
 
+inline double rayleigh_phase(double c) { return 0.75 * (1.0 + c * c) / (4.0 * kPi); }
+
 // The atmosphere of given Params. Functions take the coefficients of one channel.
 struct Air {
   double radius, top, rayleigh_height, mie_height;
@@ -55,10 +57,8 @@ struct Air {
     const double hg = (1.0 - g * g) / (4.0 * kPi * std::pow(1.0 + g * g - 2.0 * g * c, 1.5));
     return cornette_shanks ? hg * 1.5 * (1.0 + c * c) / (2.0 + g * g) : hg;
   }
-  static double rayleigh_phase(double c) { return 0.75 * (1.0 + c * c) / (4.0 * kPi); }
 
   // Returns the distance to the ground, a sphere of radius `solid`, or to the top; `ground` is set accordingly.
-  [[nodiscard]] double reach(const Point& p, const Point& w, bool& ground) const { return reach(p, w, ground, radius); }
   [[nodiscard]] double reach(const Point& p, const Point& w, bool& ground, double solid) const {
     const double b = dot(p, w), c2 = dot(p, p);
     const double hit = b * b - c2 + solid * solid;
@@ -73,7 +73,7 @@ struct Air {
   // Returns the transmittance to the sun, 0 in the planet's shadow.
   [[nodiscard]] double sun_transmittance(const Point& p, const Point& sun, int panels) const {
     bool ground = false;
-    const double length = reach(p, sun, ground);
+    const double length = reach(p, sun, ground, radius);
     return ground ? 0.0 : std::exp(-depth(p, sun, length, panels));
   }
 };
@@ -108,7 +108,7 @@ inline double single_scattering(const Air& air, const Point& p, const Point& w, 
   bool ground = false;
   const double length = air.reach(p, w, ground, camera_ground(air, p));
   const double c = dot(w, sun);
-  const double rayleigh = Air::rayleigh_phase(c), mie = air.mie_phase(c);
+  const double rayleigh = rayleigh_phase(c), mie = air.mie_phase(c);
   // t = length * u^2 concentrates the nodes near the eye. The optical depth is accumulated from node to node.
   double sum = 0.0, depth = 0.0, before = 0.0;
   integrate(0.0, 1.0, panels, [&](double u, double du) {

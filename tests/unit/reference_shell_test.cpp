@@ -112,14 +112,14 @@ BruteForce second_order(const oracle::Air& air, const RayQuery& q, int count) {
     const double z = 2.0 * uniform(random) - 1.0, turn = 2.0 * oracle::kPi * uniform(random);
     const double side = std::sqrt(1.0 - z * z);
     const oracle::Point w = {side * std::cos(turn), side * std::sin(turn), z};
-    const double reach2 = air.reach(a, w, ground), v = uniform(random), t2 = reach2 * v * v;
+    const double reach2 = air.reach(a, w, ground, air.radius), v = uniform(random), t2 = reach2 * v * v;
     const oracle::Point b = oracle::along(a, w, t2);
     double value = air.sun_transmittance(b, sun, 6);
     if (value > 0.0) {
       value *= std::exp(-air.depth(eye, view, t1, 5) - air.depth(a, w, t2, 5));
       value *= air.rayleigh_at(air.height(a)) * 2.0 * reach * u * air.rayleigh_at(air.height(b)) * 2.0 * reach2 * v;
-      value *= 4.0 * oracle::kPi * oracle::Air::rayleigh_phase(oracle::dot(view, w)) *
-               oracle::Air::rayleigh_phase(oracle::dot(w, sun));
+      value *= 4.0 * oracle::kPi * oracle::rayleigh_phase(oracle::dot(view, w)) *
+               oracle::rayleigh_phase(oracle::dot(w, sun));
     }
     sum += value;
     square += value * value;
@@ -158,7 +158,8 @@ TEST(ReferenceShell, OzoneAloneOnlyAbsorbs) {
   const oracle::Air air = oracle::air_of(p, 0.0, 0.0, 0.0, p.atmosphere.ozone_absorption.y);
   const oracle::Point from = {0.0, 0.0, air.radius}, view = view_of(ray(0.0, 80.0, 0.0, 0.0));
   bool ground = false;
-  EXPECT_NEAR(clear[0].transmittance[1], std::exp(-air.depth(from, view, air.reach(from, view, ground), 4000)), 1e-7);
+  EXPECT_NEAR(clear[0].transmittance[1],
+              std::exp(-air.depth(from, view, air.reach(from, view, ground, air.radius), 4000)), 1e-7);
   for (std::size_t c = 0; c < 3; ++c) {
     EXPECT_EQ(clear[0].radiance[c], 0.0);
     EXPECT_EQ(clear[1].radiance[c], 0.0);

@@ -1,4 +1,4 @@
-// Elevation files: formats, projections, units, holes, sizes, and all kinds of errors.
+// Elevation files: formats, projections, units, holes and sizes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,51 +6,10 @@
 #include <fstream>
 #include <limits>
 
-#include <cpl_conv.h>
-#include <netinet/in.h>
-#include <poll.h>
-#include <sys/socket.h>
-
-#include "scene/elevation/elevation_file.hpp"
-#include "terrain_files.hpp"
+#include "terrain_file_fixture.hpp"
 
 namespace tyndall::scene {
 namespace {
-
-constexpr double kRadius_m = 6360000.0;
-
-double hill(int x, int y) { return 1000.0 + 8.0 * x + 3.0 * y; }
-
-class ElevationFile : public ::testing::Test {
- protected:
-  ElevationRaster read(const std::filesystem::path& path, int max_samples = kMaxElevationSamples) {
-    testing::internal::CaptureStderr();
-    Result<ElevationRaster> result = read_elevation_file(path.string(), {kRadius_m, max_samples});
-    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-    EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().message);
-    return result.ok() ? std::move(result).value() : ElevationRaster{};
-  }
-  std::string error(const std::filesystem::path& path) {
-    testing::internal::CaptureStderr();
-    Result<ElevationRaster> result = read_elevation_file(path.string(), {kRadius_m});
-    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-    EXPECT_FALSE(result.ok()) << path;
-    if (result.ok()) return {};
-    const std::string message = result.error().message;
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-    EXPECT_NE(message.find(path.filename().string()), std::string::npos) << message;
-    return message;
-  }
-  static float at(const ElevationRaster& r, int x, int y) {
-    return r.heights[static_cast<std::size_t>(y) * r.width + x];
-  }
-  static bool noted(const ElevationRaster& r, const std::string& text) {
-    return std::any_of(r.notes.begin(), r.notes.end(),
-                       [&](const std::string& note) { return note.find(text) != std::string::npos; });
-  }
-
-  TestFolder folder_;
-};
 
 TEST_F(ElevationFile, UtmBecomesTheMap) {
   // On the central meridian, UTM is aligned with the map and 0.9996 times as large; the sphere is 0.3 % smaller than
@@ -200,43 +159,6 @@ TEST_F(ElevationFile, SrtmTile) {
   EXPECT_NEAR(r.height * r.spacing_m, 1201.0 * third * 111002.0 + 240.0, 2.0 * r.spacing_m);
 }
 
-TEST_F(ElevationFile, ErrorsAreOneLine) {
-  EXPECT_NE(error(folder_.path("missing.tif")).find("does not exist"), std::string::npos);
-  std::filesystem::create_directory(folder_.path("folder.tif"));
-  EXPECT_NE(error(folder_.path("folder.tif")).find("directory"), std::string::npos);
-  std::ofstream(folder_.path("empty.tif")).close();
-  EXPECT_NE(error(folder_.path("empty.tif")).find("empty"), std::string::npos);
-  std::ofstream(folder_.path("text.tif")) << "no elevations here\n";
-  EXPECT_NE(error(folder_.path("text.tif")).find("no format"), std::string::npos);
-
-  TestFile narrow;
-  narrow.name = "narrow.tif";
-  narrow.width = 1;
-  EXPECT_NE(error(folder_.write(narrow, hill)).find("1 x 64 samples"), std::string::npos);
-  TestFile complex;
-  complex.name = "complex.tif";
-  complex.type = GDT_CFloat32;
-  EXPECT_NE(error(folder_.write(complex, hill)).find("complex"), std::string::npos);
-  TestFile holes;
-  holes.name = "holes.tif";
-  EXPECT_NE(error(folder_.write(holes, [](int, int) { return 1e30; })).find("every sample is a hole"),
-            std::string::npos);
-}
-
-TEST_F(ElevationFile, TruncatedFiles) {
-  TestFile file;
-  file.name = "whole.tif";
-  file.width = file.height = 256;
-  const std::filesystem::path whole = folder_.write(file, hill);
-  const auto size = std::filesystem::file_size(whole);
-  for (const double part : {0.02, 0.3, 0.6, 0.95}) {
-    const std::filesystem::path cut = folder_.path("cut.tif");
-    std::filesystem::copy_file(whole, cut, std::filesystem::copy_options::overwrite_existing);
-    std::filesystem::resize_file(cut, static_cast<std::uintmax_t>(static_cast<double>(size) * part));
-    error(cut);
-  }
-}
-
 // Old tools wrote -9999 into Esri grids where data are missing, without declaring it.
 TEST_F(ElevationFile, UndeclaredHolesAreFound) {
   for (const double hole : {-9999.0, -32767.0, -999.0}) {
@@ -335,73 +257,6 @@ TEST_F(ElevationFile, PlacesThatNoPlanetHasAreRefused) {
   read(folder_.write(file, hill));
 }
 
-TEST_F(ElevationFile, NamesOfGdalsOwnAreRead) {
-  TestFile file;
-  file.name = "plain.tif";
-  const std::filesystem::path plain = folder_.write(file, hill);
-  const std::string zip = "/vsizip/" + folder_.path("archive.zip").string() + "/inside.tif";
-  ASSERT_EQ(CPLCopyFile(zip.c_str(), plain.string().c_str()), 0);
-  EXPECT_EQ(read(zip).heights, read(plain).heights);
-  EXPECT_EQ(read("GTIFF_DIR:1:" + plain.string()).heights, read(plain).heights);
-  EXPECT_NE(error("/vsizip/" + folder_.path("archive.zip").string() + "/missing.tif").find("no format"),
-            std::string::npos);
-}
-
-// Downloaded files must not open connections: a virtual raster that refers to a server, and a description of a service.
-TEST_F(ElevationFile, FilesDoNotReachTheNetwork) {
-  // A listener that must receive no connection.
-  const int listener = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  sockaddr_in address = {};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  ASSERT_EQ(::bind(listener, reinterpret_cast<const sockaddr*>(&address), size), 0);
-  ASSERT_EQ(::listen(listener, 8), 0);
-  ASSERT_EQ(::getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size), 0);
-  const std::string server = "http://127.0.0.1:" + std::to_string(ntohs(address.sin_port));
-  CPLSetConfigOption("GDAL_HTTP_TIMEOUT", "2");  // limits a connection that should not happen
-  const auto vrt =
-      [&](const char* name, const std::string& source) {
-        std::ofstream(folder_.path(name))
-            << "<VRTDataset rasterXSize=\"8\" rasterYSize=\"8\"><VRTRasterBand dataType=\"Float32\" band=\"1\">"
-               "<SimpleSource><SourceFilename relativeToVRT=\"0\">"
-            << source << "</SourceFilename><SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>";
-        return folder_.path(name);
-      };
-  for (const std::string& source : {"/vsicurl/" + server + "/a.tif", std::string("/vsis3/bucket/a.tif"),
-                                    "/vsizip//vsicurl/" + server + "/a.zip/a.tif"}) {
-    EXPECT_NE(error(vrt("curl.vrt", source)).find("refers to a network file system"), std::string::npos) << source;
-  }
-  // Through a second virtual raster, which is opened only when its samples are read.
-  const std::string inner = vrt("inner.vrt", "/vsicurl/" + server + "/a.tif").string();
-  error(vrt("outer.vrt", inner));
-  std::ofstream(folder_.path("wms.xml"))
-      << "<GDAL_WMS><Service name=\"TMS\"><ServerUrl>" << server
-      << "/${z}/${x}/${y}</ServerUrl></Service>"
-         "<DataWindow><UpperLeftX>-20037508.34</UpperLeftX><UpperLeftY>20037508.34</UpperLeftY>"
-         "<LowerRightX>20037508.34</LowerRightX><LowerRightY>-20037508.34</LowerRightY><TileLevel>3</TileLevel>"
-         "<TileCountX>1</TileCountX><TileCountY>1</TileCountY></DataWindow><Projection>EPSG:3857</Projection>"
-         "<BlockSizeX>256</BlockSizeX><BlockSizeY>256</BlockSizeY><BandsCount>3</BandsCount></GDAL_WMS>";
-  EXPECT_NE(error(folder_.path("wms.xml")).find("is in no format that is read"), std::string::npos);
-  error(vrt("wms.vrt", folder_.path("wms.xml").string()));
-  error(vrt("http.vrt", server + "/a.tif"));
-  pollfd waiting = {listener, POLLIN, 0};
-  EXPECT_EQ(::poll(&waiting, 1, 0), 0) << "something connected";
-  ::close(listener);
-  // Virtual rasters over local files are read.
-  TestFile file;
-  file.name = "local.tif";
-  folder_.write(file, hill);
-  file.driver = "VRT";
-  file.name = "local.vrt";
-  std::ofstream(folder_.path("local.vrt"))
-      << "<VRTDataset rasterXSize=\"64\" rasterYSize=\"64\"><GeoTransform>0, 100, 0, 6400, 0, -100</GeoTransform>"
-         "<VRTRasterBand dataType=\"Float32\" band=\"1\"><SimpleSource><SourceFilename "
-         "relativeToVRT=\"1\">local.tif</SourceFilename>"
-         "<SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>";
-  EXPECT_FLOAT_EQ(at(read(folder_.path("local.vrt")), 5, 7), static_cast<float>(hill(5, 7)));
-}
-
 TEST_F(ElevationFile, ColourTilesAreDecoded) {
   // Written band by band: red, green and blue of an 8-bit PNG.
   const auto tile = [&](const char* name, const std::function<unsigned(int, int)>& colour) {
@@ -444,30 +299,6 @@ TEST_F(ElevationFile, RealMassif) {
   EXPECT_NEAR(at(r, r.width / 2, r.height / 2), 4790.0, 80.0) << "the summit is at the centre";
   EXPECT_GT(r.min_m, 440.0F);
   EXPECT_LT(r.max_m, 4811.0F);
-}
-
-TEST_F(ElevationFile, FilesOfAVirtualRasterAreListed) {
-  const auto vrt = [&](const char* name, const std::string& of) {
-    const std::filesystem::path path = folder_.path(name);
-    std::ofstream(path)
-        << "<VRTDataset rasterXSize=\"64\" rasterYSize=\"64\"><VRTRasterBand dataType=\"Float32\" band=\"1\">"
-           "<SimpleSource><SourceFilename relativeToVRT=\"1\">"
-        << of << "</SourceFilename><SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>";
-    return path.string();
-  };
-  const std::string file = folder_.write({}, hill).string();
-  const std::string inner = vrt("inner.png", "test.tif");
-  const std::string outer = vrt("outer.vrt", "inner.png");
-  std::vector<std::string> listed = elevation_file_list(outer);
-  std::sort(listed.begin(), listed.end());
-  std::vector<std::string> expected = {file, inner, outer};
-  std::sort(expected.begin(), expected.end());
-  EXPECT_EQ(listed, expected);
-  EXPECT_EQ(elevation_file_list(file), std::vector<std::string>{file});
-  // What cannot be opened lists itself only.
-  const std::string dangling = vrt("dangling.vrt", "none.tif");
-  EXPECT_EQ(elevation_file_list(dangling).front(), dangling);
-  EXPECT_EQ(elevation_file_list("/nonexistent.vrt"), std::vector<std::string>{"/nonexistent.vrt"});
 }
 
 }  // namespace

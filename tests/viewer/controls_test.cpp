@@ -28,11 +28,10 @@ std::string text_of(const Row& row, double value) {
 // Waits until the viewer has set the row, or the component of it, to this text.
 bool was_set(Desk& desk, const Row& row, const std::string& text, std::size_t from, std::size_t component = 0) {
   const std::string before = " set " + row.key() + "=";
-  while (const std::optional<std::size_t> number = desk.number_of({before}, from, 15.0)) {
-    const std::string& line = desk.line(*number);
-    const std::string value = line.substr(line.find(before) + before.size());
+  while (const std::optional<LogLine> line = desk.wait_for_line({before}, from, 15.0)) {
+    const std::string value = line->text.substr(line->text.find(before) + before.size());
     if (components_of(row) == 1 ? value == text : files::part(value, ',', component) == text) return true;
-    from = *number + 1;
+    from = line->number + 1;
   }
   return false;
 }

@@ -182,7 +182,7 @@ void Desk::input(const std::string& commands) {
   status_of(start(words, {"DISPLAY=" + display_}, folder_ + "/input.txt"), 10.0);
 }
 
-std::string Desk::log_text() const { return read_text(folder_ + "/log.txt"); }
+std::string log_text(const Desk& desk) { return read_text(desk.folder() + "/log.txt"); }
 std::string Desk::errors() const { return read_text(folder_ + "/errors.txt"); }
 
 // What the viewer has written since the last look; only whole lines.
@@ -204,7 +204,7 @@ std::size_t Desk::lines() const {
   return log_.size();
 }
 
-std::optional<std::size_t> Desk::number_of(const std::vector<std::string>& words, std::size_t from, double seconds) {
+std::optional<LogLine> Desk::wait_for_line(const std::vector<std::string>& words, std::size_t from, double seconds) {
   const auto has_all = [&words](const std::string& line) {
     return std::all_of(words.begin(), words.end(),
                        [&line](const std::string& word) { return line.find(word) != std::string::npos; });
@@ -213,7 +213,7 @@ std::optional<std::size_t> Desk::number_of(const std::vector<std::string>& words
     // Before the log is read for the last time.
     const bool ended = viewer_ > 0 && has_ended(viewer_);
     for (const std::size_t count = lines(); from < count; ++from) {
-      if (has_all(log_[from])) return from;
+      if (has_all(log_[from])) return LogLine{from, log_[from]};
     }
     if (ended) return std::nullopt;
     pause(kLook_s);
@@ -222,14 +222,14 @@ std::optional<std::size_t> Desk::number_of(const std::vector<std::string>& words
 }
 
 std::optional<std::string> Desk::wait_for(const std::vector<std::string>& words, std::size_t from, double seconds) {
-  const std::optional<std::size_t> number = number_of(words, from, seconds);
-  if (!number) return std::nullopt;
-  return log_[*number];
+  const std::optional<LogLine> line = wait_for_line(words, from, seconds);
+  if (!line) return std::nullopt;
+  return line->text;
 }
 
 bool Desk::settles_after(const std::vector<std::string>& words, std::size_t from) {
-  const std::optional<std::size_t> number = number_of(words, from, kLong_s);
-  return number && wait_for({"settled"}, *number + 1).has_value();
+  const std::optional<LogLine> line = wait_for_line(words, from, kLong_s);
+  return line && wait_for({"settled"}, line->number + 1).has_value();
 }
 
 std::map<std::string, Desk::Rect> Desk::places() const {
@@ -246,17 +246,9 @@ std::map<std::string, Desk::Rect> Desk::places() const {
   return out;
 }
 
-bool Desk::wait_for_place(const std::string& place) {
-  for (double waited = 0.0; waited < 60.0; waited += kLook_s) {
-    if (places().contains(place)) return true;
-    pause(kLook_s);
-  }
-  return false;
-}
-
-bool Desk::wait_for_no_place(const std::string& place) {
-  for (double waited = 0.0; waited < 20.0; waited += kLook_s) {
-    if (!places().contains(place)) return true;
+bool Desk::wait_for_place(const std::string& place, bool there) {
+  for (double waited = 0.0; waited < (there ? 60.0 : 20.0); waited += kLook_s) {
+    if (places().contains(place) == there) return true;
     pause(kLook_s);
   }
   return false;

@@ -13,6 +13,12 @@ namespace tyndall::desk {
 // False where Xvfb or xdotool are missing: tests are skipped then.
 [[nodiscard]] bool equipped();
 
+// A line of the viewer's log.
+struct LogLine {
+  std::size_t number;
+  std::string text;
+};
+
 class Desk {
  public:
   // `name` is that of the folder for what the test leaves: log, state, pictures. The screen's size is in pixels.
@@ -34,9 +40,8 @@ class Desk {
   // The first line from `from` on that contains all of `words`; waits for it.
   std::optional<std::string> wait_for(const std::vector<std::string>& words, std::size_t from = 0,
                                       double seconds = 240.0);
-  // The number of such a line, and the line with a number.
-  std::optional<std::size_t> number_of(const std::vector<std::string>& words, std::size_t from, double seconds);
-  [[nodiscard]] const std::string& line(std::size_t number) const { return log_[number]; }
+  // The same with the line's number.
+  std::optional<LogLine> wait_for_line(const std::vector<std::string>& words, std::size_t from, double seconds);
   // Waits for such a line and then until the picture is that of the settings.
   bool settles_after(const std::vector<std::string>& words, std::size_t from);
   // Moves the pointer to the middle of something in the window, or to a part of its width, and waits until the viewer
@@ -45,12 +50,10 @@ class Desk {
   bool click(const std::string& place, double part = 0.5, int button = 1);
   // Everything that can be clicked now.
   [[nodiscard]] std::vector<std::string> place_names() const;
-  // Waits until a place is in the window.
-  bool wait_for_place(const std::string& place);
+  // Waits until a place is in the window, or with `there` = false until it is not.
+  bool wait_for_place(const std::string& place, bool there = true);
   // Ends the X server.
   void end_server();
-  // Waits until it is not.
-  bool wait_for_no_place(const std::string& place);
   // Leaves by Esc; the exit status, or -1.
   int leave();
   // Waits for the end by itself.
@@ -59,7 +62,6 @@ class Desk {
   bool picture(const std::string& name);
   [[nodiscard]] const std::string& folder() const { return folder_; }
   [[nodiscard]] std::string errors() const;  // what the viewer has printed
-  [[nodiscard]] std::string log_text() const;
   [[nodiscard]] std::string window() const { return window_; }
   // Time of a processor that the viewer has used so far [s].
   [[nodiscard]] double cpu_s() const;
@@ -77,5 +79,8 @@ class Desk {
   mutable std::vector<std::string> log_;  // its whole lines so far
   mutable std::streamoff log_read_ = 0;   // what they take of the file [bytes]
 };
+
+// The whole log of the viewer so far.
+[[nodiscard]] std::string log_text(const Desk& desk);
 
 }  // namespace tyndall::desk

@@ -33,7 +33,7 @@ TEST(Window, TakesEveryParameterToBothEnds) {
   ASSERT_TRUE(desk.wait_for({"script done"}, 0, 900.0));
   EXPECT_EQ(desk.wait_for_end(120.0), 0) << desk.errors();
   // Every number, choice and switch was there, at both ends.
-  const std::string log = desk.log_text();
+  const std::string log = log_text(desk);
   for (const config::Row& row : config::rows()) {
     if (row.info.type == ParamType::string) continue;
     EXPECT_NE(log.find("script " + row.key() + " least"), std::string::npos) << row.key();
@@ -56,7 +56,7 @@ TEST(Window, MemoryStaysBoundedThroughRandomChanges) {
   // there on memory stands still, but for what the settings of the moment take: half of them take 53 MiB more of device
   // memory than the others, which on a device without a GPU is the process's own.
   std::vector<double> resident, allocated, device;
-  std::istringstream text(desk.log_text());
+  std::istringstream text(log_text(desk));
   for (std::string line; std::getline(text, line);) {
     std::istringstream words(line);
     std::string time, word;

@@ -38,7 +38,7 @@ TEST(Window, ComparesTwoModels) {
     ASSERT_TRUE(desk.wait_for({"frame right"}, from)) << value;
     desk.picture(value);
   }
-  EXPECT_EQ(desk.log_text().find("set scattering.model"), std::string::npos);
+  EXPECT_EQ(log_text(desk).find("set scattering.model"), std::string::npos);
   EXPECT_EQ(desk.leave(), 0) << desk.errors();
 }
 

@@ -13,20 +13,15 @@ namespace {
 
 using namespace desk;
 
-TEST(Window, FollowsMouseAndKeys) {
-  NEEDS_A_DESK();
-  Desk desk("mouse_and_keys");
-  ASSERT_TRUE(desk.open(kSmall)) << desk.errors();
-  desk.picture("1_open");
+void expect_keys_to_fly(Desk& desk) {
   const Frame start = last_frame(desk);
-
   // W flies forward: north-west and down from where the default camera stands.
   std::size_t from = desk.lines();
   desk.input("keydown w");
   ASSERT_TRUE(desk.wait_for({"frame left"}, from));
   desk.input("keyup w");
   ASSERT_TRUE(desk.wait_for({"settled"}, desk.lines()));
-  Frame f = last_frame(desk);
+  const Frame f = last_frame(desk);
   EXPECT_LT(f.x, start.x - 1.0);
   EXPECT_LT(f.z, start.z - 1.0);
   EXPECT_LT(f.y, start.y);
@@ -37,42 +32,47 @@ TEST(Window, FollowsMouseAndKeys) {
     desk.input(std::string("key ") + key);
     EXPECT_TRUE(desk.settles_after({"frame left"}, from)) << key;
   }
+}
 
-  // A drag with the left button looks, with the right button turns the sun; both on the picture, beside the controls.
-  const auto drag = [&desk](int button, int x0, int y0, int x1, int y1) {
-    std::size_t at = desk.lines();
-    desk.input("mousemove " + std::to_string(x0) + " " + std::to_string(y0));
-    ASSERT_TRUE(desk.wait_for({"pointer " + std::to_string(x0) + " " + std::to_string(y0)}, at));
-    at = desk.lines();
-    desk.input("mousedown " + std::to_string(button));
-    ASSERT_TRUE(desk.wait_for({"press"}, at));
-    at = desk.lines();
-    desk.input("mousemove " + std::to_string(x1) + " " + std::to_string(y1));
-    ASSERT_TRUE(desk.wait_for({"frame left"}, at));
-    at = desk.lines();
-    desk.input("mouseup " + std::to_string(button));
-    ASSERT_TRUE(desk.settles_after({"release"}, at));
-  };
+void drag(Desk& desk, int button, int x0, int y0, int x1, int y1) {
+  std::size_t at = desk.lines();
+  desk.input("mousemove " + std::to_string(x0) + " " + std::to_string(y0));
+  ASSERT_TRUE(desk.wait_for({"pointer " + std::to_string(x0) + " " + std::to_string(y0)}, at));
+  at = desk.lines();
+  desk.input("mousedown " + std::to_string(button));
+  ASSERT_TRUE(desk.wait_for({"press"}, at));
+  at = desk.lines();
+  desk.input("mousemove " + std::to_string(x1) + " " + std::to_string(y1));
+  ASSERT_TRUE(desk.wait_for({"frame left"}, at));
+  at = desk.lines();
+  desk.input("mouseup " + std::to_string(button));
+  ASSERT_TRUE(desk.settles_after({"release"}, at));
+}
+
+// A drag with the left button looks, with the right button turns the sun; both on the picture, beside the controls.
+void expect_drags_to_turn(Desk& desk) {
   Frame before = last_frame(desk);
-  drag(1, 300, 100, 340, 120);
-  f = last_frame(desk);
+  ASSERT_NO_FATAL_FAILURE(drag(desk, 1, 300, 100, 340, 120));
+  Frame f = last_frame(desk);
   EXPECT_LT(f.yaw, before.yaw - 1.0);
   EXPECT_GT(f.pitch, before.pitch + 1.0);
   EXPECT_EQ(f.azimuth, before.azimuth);
   before = f;
-  drag(3, 300, 120, 345, 90);
+  ASSERT_NO_FATAL_FAILURE(drag(desk, 3, 300, 120, 345, 90));
   f = last_frame(desk);
   EXPECT_GT(f.azimuth, before.azimuth + 10.0);
   EXPECT_GT(f.elevation, before.elevation + 10.0);
   EXPECT_EQ(f.yaw, before.yaw);
-  from = desk.lines();
+  const std::size_t from = desk.lines();
   desk.input("click 4");
   ASSERT_TRUE(desk.settles_after({"frame left"}, from));
   EXPECT_LT(last_frame(desk).fov, f.fov);
   desk.picture("2_flown");
+}
 
-  // F5 keeps everything; what is done after it is undone by F9.
-  from = desk.lines();
+// F5 saves everything; F9 undoes what is done after it.
+void expect_settings_to_be_saved_and_loaded(Desk& desk) {
+  std::size_t from = desk.lines();
   desk.input("key F5");
   ASSERT_TRUE(desk.wait_for({"saved"}, from));
   const Frame saved = last_frame(desk);
@@ -89,9 +89,11 @@ TEST(Window, FollowsMouseAndKeys) {
   ASSERT_TRUE(desk.settles_after({"loaded"}, from));
   EXPECT_NEAR(last_frame(desk).x, saved.x, 0.01);
   EXPECT_NEAR(last_frame(desk).yaw, saved.yaw, 1.0e-3);
+}
 
-  // F12: both pictures, of the right size, with the parameters in them.
-  from = desk.lines();
+// F12 writes both pictures, of the right size, with the parameters in them.
+void expect_screenshots(Desk& desk) {
+  const std::size_t from = desk.lines();
   desk.input("key F12");
   const std::optional<std::string> shot = desk.wait_for({" screenshot "}, from);
   ASSERT_TRUE(shot);
@@ -105,8 +107,11 @@ TEST(Window, FollowsMouseAndKeys) {
     EXPECT_TRUE(
         std::any_of(rows.begin(), rows.end(), [](const auto& row) { return row.first == "tyndall.sun.azimuth_deg"; }));
   }
+}
 
-  // F1 and F2 change what is seen; F11 fills the screen and comes back.
+// F1 and F2 change what is seen; F11 fills the screen and comes back.
+void expect_function_keys_to_change_the_window(Desk& desk) {
+  std::size_t from = desk.lines();
   desk.input("key F1");
   ASSERT_TRUE(desk.wait_for({"key 290"}, from));
   desk.picture("3_help");
@@ -123,6 +128,17 @@ TEST(Window, FollowsMouseAndKeys) {
   from = desk.lines();
   desk.input("key F11");
   ASSERT_TRUE(desk.wait_for({"frame left", " 240 135 "}, from));
+}
+
+TEST(Window, FollowsMouseAndKeys) {
+  NEEDS_A_DESK();
+  Desk desk("mouse_and_keys");
+  ASSERT_TRUE(desk.open(kSmall)) << desk.errors();
+  desk.picture("1_open");
+  for (const auto step : {expect_keys_to_fly, expect_drags_to_turn, expect_settings_to_be_saved_and_loaded,
+                          expect_screenshots, expect_function_keys_to_change_the_window}) {
+    ASSERT_NO_FATAL_FAILURE(step(desk));
+  }
   EXPECT_EQ(desk.leave(), 0) << desk.errors();
 }
 

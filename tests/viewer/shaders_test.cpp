@@ -27,7 +27,7 @@ TEST(Window, RebuildsShadersWhileItRuns) {
   ASSERT_TRUE(desk.open(kSmall, {"TYNDALL_DATA=" + data.string()})) << desk.errors();
   std::size_t from = desk.lines();
   desk.input("key F8");
-  ASSERT_TRUE(desk.wait_for({"shaders same"}, from)) << desk.log_text();
+  ASSERT_TRUE(desk.wait_for({"shaders same"}, from)) << log_text(desk);
 
   const fs::path path = data / "shaders/scene/background.frag";
   std::ifstream source(path);

@@ -17,7 +17,7 @@ Frame frame_of(const std::string& line) {
 
 std::vector<Frame> frames(const Desk& desk) {
   std::vector<Frame> out;
-  std::istringstream text(desk.log_text());
+  std::istringstream text(log_text(desk));
   for (std::string line; std::getline(text, line);) {
     if (line.find(" frame left ") != std::string::npos) out.push_back(frame_of(line));
   }
