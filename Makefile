@@ -7,7 +7,8 @@
 #   make accuracy        measures the numbers of docs/accuracy.md
 #   make epipolar-study  installs Pillow and matplotlib; makes the numbers, plots and pictures of docs/epipolar.md
 #   make models-study    measures and renders what docs/models.md and docs/oneil.md show
-.PHONY: demo check doxygen pictures accuracy epipolar-study models-study setup build format format-check tidy tidy-all sanitize-short sanitize clean
+#   make passes          writes the list of passes, docs/generated/passes.md, with their cost
+.PHONY: demo check doxygen pictures accuracy epipolar-study models-study passes setup build format format-check tidy tidy-all sanitize-short sanitize clean
 
 PRESET ?= release
 CLANG_PACKAGES = clang clang-tidy clang-format libclang-rt-dev llvm
@@ -76,6 +77,17 @@ models-study: build
 	@for planet in demo_planet earth earth_space mars titan; do \
 	  build/release/bin/tyndall render scenes/oneil/$$planet.toml --size 640x360 -o docs/images/oneil_$$planet.png || exit 1; \
 	done
+
+# docs/generated/passes.md, with the costs of every mode.
+passes: PRESET = release
+passes: TARGETS = tyndall passes
+passes: build
+	@mkdir -p build/passes
+	@build/release/bin/passes --modes | while read -r mode options; do \
+	  build/release/bin/tyndall bench scenes/demo.toml --json $$options > build/passes/$$mode.json < /dev/null || exit 1; \
+	done
+	@build/release/bin/tyndall tables --json > build/passes/tables.json
+	@build/release/bin/passes build/passes > docs/generated/passes.md
 
 setup:
 	@tools/setup.sh $(PACKAGES)

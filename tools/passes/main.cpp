@@ -1,0 +1,307 @@
+// Writes docs/generated/passes.md: the passes of a frame and of a build of the tables, with what they read and write,
+// from the same lists that the effect records.
+//   passes --modes           prints a line for each mode: its name and the options of `tyndall bench` that select it
+//   passes DIR               prints the page, with costs from DIR/MODE.json (`tyndall bench --json`) and
+//   DIR/tables.json
+//                            (`tyndall tables --json`)
+//   passes --check PAGE      compares a page with the lists, except for the costs
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "config/settings.hpp"
+#include "effect/frame_steps.hpp"
+#include "effect/table_plan.hpp"
+#include "effect/table_steps.hpp"
+#include "gpu/try.hpp"
+
+namespace tyndall {
+namespace {
+
+constexpr FrameShape kShape = {{1280, 720}, 4, 1, false};  // of the demo scene
+constexpr std::string_view kNoCost = "–";
+
+struct Mode {
+  const char* name;
+  const char* title;
+  std::vector<const char*> settings;
+};
+const Mode kModes[] = {
+    {"default", "Default settings", {}},
+    {"multi_pass", "`shadows.cascade_processing=multi-pass`", {"shadows.cascade_processing=multi-pass"}},
+    {"multi_pass_instanced",
+     "`shadows.cascade_processing=multi-pass-instanced`",
+     {"shadows.cascade_processing=multi-pass-instanced"}},
+    {"downscaled", "`scattering.downscale=2`", {"scattering.downscale=2"}},
+    {"show_sampling", "`epipolar.show_sampling=true`", {"epipolar.show_sampling=true"}},
+    {"brute_force", "`scattering.technique=brute-force`", {"scattering.technique=brute-force"}},
+    {"disabled", "`scattering.enabled=false`", {"scattering.enabled=false"}},
+};
+
+// Milliseconds by the names of passes; empty if nothing has been measured.
+using Costs = std::map<std::string, double>;
+
+Costs costs_in(const std::string& path, const char* rows, const char* value) {
+  Costs out;
+  std::ifstream file(path);
+  if (!file) return out;
+  const nlohmann::json report = nlohmann::json::parse(file);
+  for (const nlohmann::json& row : report[rows]) {
+    if (row.value("in_effect", true)) out[row["name"]] = row[value];
+  }
+  return out;
+}
+
+// Returns the share of the pass in the sum of all, once for each name.
+std::string share(Costs& costs, const std::string& name, double total) {
+  const auto found = costs.find(name);
+  if (found == costs.end()) return std::string(kNoCost);
+  if (found->second < 0.0) return "above";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f %%", 100.0 * found->second / total);
+  found->second = -1.0;
+  return text;
+}
+
+double sum_of(const Costs& costs) {
+  double sum = 0.0;
+  for (const auto& [name, ms] : costs) sum += ms;
+  return std::max(sum, 1e-9);
+}
+
+std::string shader_of(const Step& step) {
+  if (!step.dispatches()) return "";
+  const std::string name = step.pipeline.shader->name;
+  return "`" + name.substr(0, name.find("_comp")) + ".comp`";
+}
+
+std::string work_of(const Step& step) {
+  const std::string list = step.chosen == Resource::none ? "" : std::string("`") + name_of(step.chosen) + "`";
+  switch (step.kind) {
+    case Step::Kind::dispatch_indirect: return "items of " + list;
+    case Step::Kind::reset_list: return "empties " + list;
+    case Step::Kind::clear: return "clears " + list;
+    case Step::Kind::copy: return "copies " + list + " to `" + name_of(step.target) + "`";
+    case Step::Kind::host_read: return "shows " + list + " to the host";
+    case Step::Kind::dispatch: break;
+  }
+  const VkExtent3D& n = step.invocations;
+  std::string out = std::to_string(n.width);
+  if (n.height > 1 || n.depth > 1) out += " × " + std::to_string(n.height);
+  if (n.depth > 1) out += " × " + std::to_string(n.depth);
+  return out;
+}
+
+std::string names_of(const Step& step, bool writes) {
+  std::string out;
+  for (const Use& use : uses_of(step)) {
+    const bool counts = writes ? (use.access & kWriteAccess) != 0 : (use.access & ~kWriteAccess) != 0;
+    if (counts) out += (out.empty() ? "`" : ", `") + std::string(name_of(use.resource)) + "`";
+  }
+  return out;
+}
+
+void add_row(std::string& out, const std::vector<std::string>& cells) {
+  for (const std::string& cell : cells) out += "| " + cell + " ";
+  out += "|\n";
+}
+
+// Where the contents of a resource are valid within a frame: from the pass that first writes it to the last that reads
+// it.
+using Lifetimes = std::map<Resource, std::pair<std::string, std::string>>;
+
+void add_lifetimes(Lifetimes& out, const std::vector<Step>& steps) {
+  for (const Step& step : steps) {
+    if (!step.dispatches()) continue;
+    for (const Use& use : uses_of(step)) {
+      auto& [first, last] = out[use.resource];
+      if (first.empty() && (use.access & kWriteAccess) != 0) first = step.name;
+      if ((use.access & ~kWriteAccess) != 0) last = step.name;
+    }
+  }
+}
+
+struct TableRow {
+  Step step;
+  int runs = 0;
+};
+
+// Steps that differ in their push constants only are one row: neighbours in a frame, all of them in a build.
+std::vector<TableRow> rows_of(const std::vector<Step>& steps, bool of_frame) {
+  std::vector<TableRow> out;
+  for (const Step& step : steps) {
+    const auto first = of_frame && !out.empty() ? out.end() - 1 : out.begin();
+    const auto found = std::find_if(first, out.end(), [&](const TableRow& row) {
+      return std::string_view(row.step.name) == step.name && row.step.kind == step.kind &&
+             row.step.chosen == step.chosen && row.step.pipeline == step.pipeline;
+    });
+    if (found == out.end()) {
+      out.push_back({step, 1});
+    } else {
+      ++found->runs;
+    }
+  }
+  return out;
+}
+
+void add_passes(std::string& out, const std::vector<TableRow>& rows, Costs costs) {
+  const double total = sum_of(costs);
+  add_row(out, {"pass", "shader", "runs", "work", "reads", "writes", "cost"});
+  out += "|---|---|---|---|---|---|---|\n";
+  for (const auto& [step, runs] : rows) {
+    const bool pass = step.dispatches();
+    add_row(out, {pass ? std::string(step.name) : "", shader_of(step), std::to_string(runs), work_of(step),
+                  names_of(step, false), names_of(step, true), pass ? share(costs, step.name, total) : ""});
+  }
+}
+
+std::string lifetime_of(Resource resource, const Lifetimes& frame, const Lifetimes& build) {
+  const auto span = [&](const Lifetimes& lifetimes) {
+    const auto found = lifetimes.find(resource);
+    if (found == lifetimes.end() || found->second.first.empty()) return std::string("unused with these settings");
+    const auto& [first, last] = found->second;
+    return "`" + first + "`" + (last.empty() ? "" : " to `" + last + "`");
+  };
+  switch (info_of(resource).lifetime) {
+    case Lifetime::constants: return "written by the host";
+    case Lifetime::caller: return "the caller's";
+    case Lifetime::tables: return "until other tables are complete";
+    case Lifetime::frame: return "a frame: " + span(frame);
+    case Lifetime::build: return "a build: " + span(build);
+    case Lifetime::chosen: break;
+  }
+  return "";
+}
+
+Result<Params> params_of(const Mode& mode) {
+  config::Settings settings;
+  for (const char* setting : mode.settings) {
+    const Result<void> set = config::set(settings, setting);
+    if (!set.ok()) return set.error();
+  }
+  return settings.effect;
+}
+
+void add_resources(std::string& out, const Lifetimes& frame, const Lifetimes& build) {
+  out +=
+      "\n## Resources\n\n"
+      "The name is that of the binding in GLSL, of memory reports and of debuggers. The lifetime says which passes "
+      "the\n"
+      "contents are kept for; it is that of a frame with the default settings or, for resources that only other modes\n"
+      "use, of those modes. Frame buffers are allocated once and used again by the next frame.\n\n";
+  add_row(out, {"resource", "format", "resolution", "lifetime", "MiB"});
+  out += "|---|---|---|---|---|\n";
+  EffectDesc desc;
+  desc.max_extent = kShape.extent;
+  const FrameBufferSizes sizes = frame_buffer_sizes(desc, {});
+  for (std::size_t i = 0; i < kResources; ++i) {
+    const auto resource = static_cast<Resource>(i);
+    const ResourceInfo& info = info_of(resource);
+    if (info.lifetime == Lifetime::chosen) continue;
+    char mib[32] = "";
+    const bool frame_buffer = i >= kFirstFrameBuffer && i < kFirstFrameBuffer + kFrameBuffers;
+    if (frame_buffer) std::snprintf(mib, sizeof mib, "%.2f", static_cast<double>(sizes[resource]) / 1048576.0);
+    add_row(out, {std::string("`") + info.name + "`", info.format, info.resolution, lifetime_of(resource, frame, build),
+                  mib});
+  }
+}
+
+// Returns the page. `folder`: of measurements, or empty.
+Result<std::string> page(const std::string& folder) {
+  std::string out =
+      "# Passes\n\n"
+      "Made by `make passes` from the lists that the effect records (`frame_steps()`, `table_steps()` and\n"
+      "`resources.def` in `src/effect`). The frame is that of `scenes/demo.toml` at 1280 × 720 with four cascades, of "
+      "which\n"
+      "three are marched. \"Runs\" is how often a pass is dispatched with other push constants. \"Work\" is the "
+      "number of\n"
+      "invocations, or the list whose items an indirect dispatch processes. \"Cost\" is the share of the effect's "
+      "time, or of\n"
+      "the build's, on the CPU device llvmpipe with two cores; passes with one name are measured together. Steps "
+      "without a\n"
+      "name only reset, clear or copy. [epipolar.md](../epipolar.md) and [tables.md](../tables.md) describe the "
+      "methods.\n";
+  Lifetimes frame, build;
+  for (const Mode& mode : kModes) {
+    TYNDALL_ASSIGN(const Params params, params_of(mode));
+    const FrameSteps list = frame_steps({}, params, kShape);
+    const std::vector<Step> steps(list.begin(), list.end());
+    out += std::string("\n## A frame: ") + mode.title + "\n\n";
+    add_passes(out, rows_of(steps, true), costs_in(folder + "/" + mode.name + ".json", "passes", "median_ms"));
+    // The first mode that uses a resource decides about its lifetime.
+    Lifetimes own;
+    add_lifetimes(own, steps);
+    frame.insert(own.begin(), own.end());
+  }
+  const std::vector<Step> steps = table_steps({}, kAllTables);
+  out += "\n## A build of the tables: default settings\n\n";
+  add_passes(out, rows_of(steps, false), costs_in(folder + "/tables.json", "stages", "ms"));
+  add_lifetimes(build, steps);
+  add_resources(out, frame, build);
+  return out;
+}
+
+// Returns the page without the last cell of its rows where that is a cost.
+std::string without_costs(const std::string& text) {
+  std::istringstream lines(text);
+  std::string out;
+  bool costs = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("| pass |") || line.starts_with("| resource |")) costs = line.ends_with("| cost |");
+    if (costs && line.starts_with("| ")) line.erase(line.rfind('|', line.size() - 2));
+    out += line + "\n";
+  }
+  return out;
+}
+
+int fail(const std::string& message) {
+  std::fprintf(stderr, "passes: error: %s\n", message.c_str());
+  return 2;
+}
+
+int print_modes() {
+  for (const Mode& mode : kModes) {
+    std::string line = mode.name;
+    for (const char* setting : mode.settings) line += std::string(" --set ") + setting;
+    std::printf("%s\n", line.c_str());
+  }
+  return 0;
+}
+
+int check(const std::string& path) {
+  std::ifstream file(path);
+  const std::string committed((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const Result<std::string> current = page("");
+  if (!current.ok()) return fail(current.error().message);
+  std::istringstream have(without_costs(committed)), want(without_costs(current.value()));
+  std::string a, b;
+  for (int line = 1;; ++line) {
+    const bool more_a = static_cast<bool>(std::getline(have, a));
+    const bool more_b = static_cast<bool>(std::getline(want, b));
+    if (!more_a && !more_b) return 0;
+    if (more_a == more_b && a == b) continue;
+    std::fprintf(stderr, "%s:%d: differs from the lists of steps; expected\n%s\nRun `make passes`.\n", path.c_str(),
+                 line, more_b ? b.c_str() : "the end");
+    return 1;
+  }
+}
+
+}  // namespace
+}  // namespace tyndall
+
+int main(int argc, char** argv) {
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  if (arguments.size() == 1 && arguments[0] == "--modes") return tyndall::print_modes();
+  if (arguments.size() == 2 && arguments[0] == "--check") return tyndall::check(arguments[1]);
+  if (arguments.size() != 1) return tyndall::fail("expected --modes, --check PAGE or the folder of measurements");
+  const tyndall::Result<std::string> text = tyndall::page(arguments[0]);
+  if (!text.ok()) return tyndall::fail(text.error().message);
+  std::printf("%s", text.value().c_str());
+  return 0;
+}
