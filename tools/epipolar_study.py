@@ -221,7 +221,7 @@ def plot(results):
         figure, axis = plt.subplots(figsize=(7, 3.5))
         sizes = list(results["pixels"])
         base = [0.0] * len(sizes)
-        rows = {"slices and samples": [], "shadow_tree + march_samples": [], "unwarp + unwarp_pixels": []}
+        rows = {"slices and samples": [], "min_max_tree + march_samples": [], "unwarp + unwarp_pixels": []}
         for size in sizes:
             for label, value in zip(rows, grouped(results["pixels"][size])):
                 rows[label].append(value)
@@ -236,7 +236,7 @@ def plot(results):
 def grouped(c):
     """Returns the milliseconds of the passes over samples, of those that read shadow maps, and of those over pixels."""
     ms = {k: v * c["ms"] / c["baselines"] for k, v in c["passes"].items()}
-    shadow = ms.get("shadow_tree", 0.0) + ms["march_samples"]
+    shadow = ms.get("min_max_tree", 0.0) + ms["march_samples"]
     picture = ms["unwarp"] + ms["unwarp_pixels"]
     return sum(ms.values()) - shadow - picture, shadow, picture
 
@@ -289,8 +289,8 @@ def page(results):
         rows = []
         for r in results["tree"]:
             w, o = r["with"]["passes"], r["without"]["passes"]
-            both = w["shadow_tree"] + w["march_samples"]
-            rows.append((f"{r['resolution']}²", f"{w['shadow_tree']:.2f}", f"{w['march_samples']:.2f}",
+            both = w["min_max_tree"] + w["march_samples"]
+            rows.append((f"{r['resolution']}²", f"{w['min_max_tree']:.2f}", f"{w['march_samples']:.2f}",
                          f"{o['march_samples']:.2f}", f"{o['march_samples'] / both:.1f}",
                          f"{r['without']['baselines'] / r['with']['baselines']:.1f}",
                          r["with"]["counters"]["shadow_map_fetches"], r["without"]["counters"]["shadow_map_fetches"],

@@ -1,6 +1,6 @@
 // Blocks of kBlockWidth x 2 pixels: their depths, and the list of blocks whose pixels are composed one by one. The list
-// stores squares of 2 x 2 pixels. Include after declaring medium, frame, epipolar, scene_depth, broken, broken_list and
-// kBlockWidth, and after picture.glsl and unwarp.glsl.
+// stores squares of 2 x 2 pixels. Include after declaring medium, frame, epipolar, scene_depth, broken,
+// discontinuity_blocks and kBlockWidth, and after picture.glsl and unwarp.glsl.
 #ifndef TYNDALL_BLOCK_GLSL
 #define TYNDALL_BLOCK_GLSL
 
@@ -80,13 +80,13 @@ void read_block(inout Block block) {
 }
 
 // Adds a block to the list.
-void list_broken(ivec2 corner) {
+void list_block(ivec2 corner) {
   const uint squares = uint(kBlockWidth) / 2u;
-  uint at = atomicAdd(broken.count, squares);
-  for (uint i = 0u; i < squares; ++i) broken_list[at + i] = uint(corner.y) << 16u | (uint(corner.x) + 2u * i);
+  uint at = atomicAdd(discontinuities.count, squares);
+  for (uint i = 0u; i < squares; ++i) discontinuity_blocks[at + i] = uint(corner.y) << 16u | (uint(corner.x) + 2u * i);
   uint groups = (4u * (at + squares) + kMarchGroup - 1u) / kMarchGroup;
-  atomicMax(broken.groups_x, groups_along_x(groups));
-  atomicMax(broken.groups_y, groups_along_y(groups));
+  atomicMax(discontinuities.groups_x, groups_along_x(groups));
+  atomicMax(discontinuities.groups_y, groups_along_y(groups));
 }
 
 #endif

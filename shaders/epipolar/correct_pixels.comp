@@ -47,6 +47,6 @@ void put_pixel(uint at) {
 
 void main() {
   uint at = list_item(kMarchGroup);
-  bool overflown = work.count > epipolar.break_capacity;  // break_list.glsl
+  bool overflown = work.count > epipolar.correction_capacity;  // correction_list.glsl
   if (at < work.count && !overflown) put_pixel(at);
 }

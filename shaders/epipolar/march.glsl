@@ -1,10 +1,10 @@
-// Marches a ray of a slice through the shadow cascades. Include after declaring medium, frame, cascades, epipolar, rows
-// (ShadowRow[]), tree (uvec2[]), shadow_maps, shadow_colors, the tables, and counters. The ray advances in sections
-// that are lit or in shadow: whole nodes with the tree, single cells without it. An undecided cell is compared in the
-// shadow map itself, at the same position in both cases, so the tree saves reads without changing the result. The
-// medium is integrated over panels on which it is smooth. The in-scattering of a panel is the value at its middle times
-// the lit length, plus its slope times the first moment of the lit length. With kColors both are weighted by the colour
-// of glass, which is read in every cell that is not in shadow.
+// Marches a ray of a slice through the shadow cascades. Include after declaring medium, frame, cascades, epipolar,
+// slice_lines (SliceLine[]), tree (uvec2[]), shadow_maps, shadow_colors, the tables, and counters. The ray advances in
+// sections that are lit or in shadow: whole nodes with the tree, single cells without it. An undecided cell is compared
+// in the shadow map itself, at the same position in both cases, so the tree saves reads without changing the result.
+// The medium is integrated over panels on which it is smooth. The in-scattering of a panel is the value at its middle
+// times the lit length, plus its slope times the first moment of the lit length. With kColors both are weighted by the
+// colour of glass, which is read in every cell that is not in shadow.
 #ifndef TYNDALL_MARCH_GLSL
 #define TYNDALL_MARCH_GLSL
 
@@ -15,7 +15,7 @@
 #include "frame/homogeneous_medium.glsl"
 #include "frame/table_light.glsl"
 #include "epipolar/sample_light.glsl"
-#include "epipolar/shadow_tree.glsl"
+#include "epipolar/min_max_tree.glsl"
 #include "shared/constant_ids.h"
 
 layout(constant_id = kTreeId) const bool kTree = true;
@@ -34,7 +34,7 @@ struct March {
 
 // The state of a ray along a slice line. Distances are in cells from the camera.
 struct Walk {
-  vec4 line;  // ShadowRow
+  vec4 line;  // SliceLine
   float depth;
   int first;
   int extent;
@@ -162,16 +162,16 @@ void walk_to(inout Walk w, inout LitSections sections, float to) {
 // enters the medium.
 Walk begin_walk(uint cascade, uint slice, vec3 direction, float start, float from, float to) {
   float resolution = float(frame.shadow_resolution);
-  uint row = (cascade - epipolar.first_cascade) * epipolar.slices + slice;
+  uint line = (cascade - epipolar.first_cascade) * epipolar.slices + slice;
   Walk w;
-  ShadowRow stored = rows[row];
+  SliceLine stored = slice_lines[line];
   w.line = stored.line;
   w.depth = stored.depth;
   w.first = stored.cells.x;
   w.extent = stored.cells.y;
   w.count = stored.cells.z;
   w.cascade = cascade;
-  w.tree_base = row * (epipolar.tree_cells / kTreeBlock) * kTreeNodes;
+  w.tree_base = line * (epipolar.tree_cells / kTreeBlock) * kTreeNodes;
   w.full = epipolar.tree_format == kFloat32;
   vec3 per_metre = (cascades[cascade].shadow_from_world * vec4(direction, 0.0)).xyz;
   w.cells_per_m = max(max(abs(per_metre.x), abs(per_metre.y)) * resolution, 1e-12);

@@ -14,7 +14,7 @@ layout(local_size_x = kMarchGroup) in;
 layout(std430, binding = 0) readonly buffer medium_block { Medium stored_medium; };
 layout(std430, binding = 1) readonly buffer frame_block { FrameConstants stored_frame; };
 layout(std430, binding = 2) readonly buffer epipolar_block { EpipolarConstants stored_epipolar; };
-layout(std430, binding = 3) readonly buffer slice_lines_block { ShadowRow rows[]; };
+layout(std430, binding = 3) readonly buffer slice_lines_block { SliceLine slice_lines[]; };
 layout(std430, binding = 4) readonly buffer min_max_tree_block { uvec2 tree[]; };
 layout(binding = 5) uniform sampler2DArrayShadow shadow_maps;
 layout(binding = 6) uniform sampler3D single_rayleigh;
@@ -129,7 +129,7 @@ void main() {
   // The dispatch has workgroups for every cascade side by side. The other modes need those of one cascade.
   bool turn_here = processing == kCascadesAside || gl_WorkGroupID.z == 0u;
   uint at = list_item(kMarchGroup);
-  bool overflown = processing == kPixels && work.count > epipolar.break_capacity;  // break_list.glsl
+  bool overflown = processing == kPixels && work.count > epipolar.correction_capacity;  // correction_list.glsl
   if (turn_here && at < work.count && !overflown) march_item(at);
   count(kMarchSteps, steps_done);
   count(kNodesVisited, nodes_visited);

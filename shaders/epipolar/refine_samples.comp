@@ -15,11 +15,12 @@
 #include "shared/frame_constants.h"
 #include "shared/epipolar.h"
 #include "shared/constant_ids.h"
+#include "shared/params.glsl"
 
 const uint kThreads = 32u;
 
 layout(local_size_x = kThreads) in;
-layout(constant_id = kRefinementId) const uint kRefinement = 1u;  // 0 by depth, 1 by in-scattering
+layout(constant_id = kRefinementId) const uint kRefinement = Refinement_inscattering;
 
 layout(std430, binding = 0) readonly buffer frame_block { FrameConstants frame; };
 layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants epipolar; };
@@ -76,15 +77,15 @@ float depth_step(uint at) {
 
 // Returns whether there is a depth discontinuity between a sample and one of its neighbours, as EpipolarConstants
 // defines it for twilight.
-bool at_depth_break(uint at) {
+bool at_discontinuity(uint at) {
   float depth = uintBitsToFloat(samples[at].x);
   vec2 others = uintBitsToFloat(uvec2(samples[at - 1u].x, samples[at + 1u].x));
   vec2 ratio = min(others, depth) / max(max(others, depth), 1e-3);
-  return min(ratio.x, ratio.y) < epipolar.depth_break;
+  return min(ratio.x, ratio.y) < epipolar.discontinuity_ratio;
 }
 
 // Returns the index of the last sample before `count` that follows a depth discontinuity; 0 if there is none.
-uint last_break(uint row, uint count) {
+uint last_discontinuity(uint row, uint count) {
   const float kOtherSurface = 0.8;  // a smaller ratio of depths is a discontinuity
   float before = uintBitsToFloat(samples[row].x);
   uint found = 0u;
@@ -112,12 +113,23 @@ uint right_marked(uint i) {
   return word * 32u + uint(findLSB(bits));
 }
 
-void main() {
-  uint id = gl_WorkGroupID.x;
+// What the threads of a workgroup know about their slice. Loaded once, because CPU devices load from buffers lane by
+// lane.
+struct Work {
+  EpipolarSlice slice;
+  uint id;
+  uint row;  // index of its first sample
+  uint initial_step;
+  float threshold;
+  float near_epipole;  // distance from the epipole up to which initial samples are denser [pixels]
+  vec2 floor_light;    // deviations are relative to at least this in-scattering
+};
+
+void mark(uint i) { atomicOr(marked[i >> 5u], 1u << (i & 31u)); }
+
+// Returns the in-scattering that deviations are relative to at least. All threads must call it.
+vec2 find_floor_light(EpipolarSlice slice, uint row) {
   uint thread = gl_LocalInvocationID.x;
-  EpipolarSlice slice = slices[id];
-  uint row = id * epipolar.samples;
-  for (uint w = thread; w < kWords; w += kThreads) marked[w] = 0u;
   vec2 sum = vec2(0.0);
   for (uint i = thread * kMeanStride; i <= slice.last; i += kThreads * kMeanStride)
     sum += unpack_coarse(coarse[row + i]);
@@ -130,93 +142,123 @@ void main() {
   barrier();
   sum = vec2(0.0);
   for (uint i = 0u; i < kPartials; ++i) sum += partial[i];
-  vec2 floor_light = max(sum * (kDark / float(slice.last / kMeanStride + 1u)), vec2(1e-30));
+  return max(sum * (kDark / float(slice.last / kMeanStride + 1u)), vec2(1e-30));
+}
 
-  // Loaded before the loops, because CPU devices load from buffers lane by lane.
-  const uint initial_step = epipolar.initial_step;
-  const float threshold = epipolar.threshold;
+// Marks the initial samples, and samples that deviate from both neighbours.
+void mark_initial_samples_and_edges(Work w) {
   const vec2 center = epipole();
   // Only the first samples of a slice can be near the epipole.
   const uint near_samples = epipolar.sun_in_picture != 0u ? (epipolar.samples + 19u) / 20u : 0u;
-  uint fine_step = max(initial_step / epipolar.epipole_density, 1u);
-  float near_epipole = 0.05 * float(max(frame.width, frame.height));
-  for (uint first = thread * kRun; first <= slice.last; first += kThreads * kRun) {
+  uint fine_step = max(w.initial_step / epipolar.epipole_density, 1u);
+  for (uint first = gl_LocalInvocationID.x * kRun; first <= w.slice.last; first += kThreads * kRun) {
     uint bits = 0u;
-    vec2 a = unpack_coarse(coarse[row + max(first, 1u) - 1u]);
-    vec2 b = unpack_coarse(coarse[row + first]);
+    vec2 a = unpack_coarse(coarse[w.row + max(first, 1u) - 1u]);
+    vec2 b = unpack_coarse(coarse[w.row + first]);
     for (uint i = first; i < first + kRun; ++i) {
-      vec2 c = unpack_coarse(coarse[row + min(i + 1u, slice.last)]);
-      uint beyond = remainder_of(i, initial_step);
+      vec2 c = unpack_coarse(coarse[w.row + min(i + 1u, w.slice.last)]);
+      uint beyond = remainder_of(i, w.initial_step);
       uint from = i - beyond;
-      bool near = from < near_samples && distance(sample_position(slice, from), center) < near_epipole;
-      bool mark = remainder_of(beyond, near ? fine_step : initial_step) == 0u || i == slice.last;
-      bool kink = !mark && (kRefinement == 0u ? depth_step(row + min(i, slice.last - 1u)) > 0.2 * threshold
-                                              : deviation(a, b, c, 0.5, floor_light) > kTolerance * threshold);
-      bits |= i <= slice.last && (mark || kink) ? 1u << (i & 31u) : 0u;
+      bool near = from < near_samples && distance(sample_position(w.slice, from), center) < w.near_epipole;
+      bool initial = remainder_of(beyond, near ? fine_step : w.initial_step) == 0u || i == w.slice.last;
+      bool edge = !initial &&
+                  (kRefinement == Refinement_depth ? depth_step(w.row + min(i, w.slice.last - 1u)) > 0.2 * w.threshold
+                                                   : deviation(a, b, c, 0.5, w.floor_light) > kTolerance * w.threshold);
+      bits |= i <= w.slice.last && (initial || edge) ? 1u << (i & 31u) : 0u;
       a = b;
       b = c;
     }
     atomicOr(marked[first >> 5u], bits);
   }
-  if (epipolar.depth_break > 0.0) {
-    for (uint i = 1u + thread; i < slice.last; i += kThreads) {
-      if (at_depth_break(row + i)) atomicOr(marked[i >> 5u], 1u << (i & 31u));
-    }
+}
+
+// Marks the samples on both sides of depth discontinuities, in twilight.
+void mark_discontinuities(Work w) {
+  if (epipolar.discontinuity_ratio <= 0.0) return;
+  for (uint i = 1u + gl_LocalInvocationID.x; i < w.slice.last; i += kThreads) {
+    if (at_discontinuity(w.row + i)) mark(i);
   }
-  barrier();
-  // Next to the epipole, shadows change from sample to sample beside an edge, also on the dark face of an object in
-  // front of the sun. Unshadowed in-scattering gives no hint of it, so all samples up to the last edge are marched.
+}
+
+// Next to the epipole, shadows change from sample to sample beside an edge, also on the dark face of an object in front
+// of the sun. Unshadowed in-scattering gives no hint of it, so all samples up to the last edge are marked.
+void mark_samples_near_epipole(Work w) {
   const float kAround = 2.0;  // in units of near_epipole
-  if (thread == 0u && epipolar.sun_in_picture != 0u) {
-    uint count = min(uint(kAround * near_epipole / max(length(slice.stride), 1e-6)), slice.last) + 1u;
-    uint last = last_break(row, count);
-    for (uint i = 0u; i < last; ++i) atomicOr(marked[i >> 5u], 1u << (i & 31u));
-  }
-  barrier();
-  // Gradual changes: the middles of steps, of their halves and so on, compared with the nearest marked samples.
-  if (kRefinement == 1u) {
-    uint segment = initial_step;
-    for (uint from = thread * segment; from < slice.last; from += kThreads * segment) {
-      uint end = min(from + segment, slice.last);
-      for (uint part = segment / 2u; part > 1u; part /= 2u) {
-        for (uint i = from + part; i < end; i += 2u * part) {
-          uint left = left_marked(i);
-          uint right = right_marked(i);
-          if (left != right && deviation(row, left, i, right, floor_light) > kTolerance * threshold) {
-            atomicOr(marked[i >> 5u], 1u << (i & 31u));
-          }
-        }
+  if (gl_LocalInvocationID.x != 0u || epipolar.sun_in_picture == 0u) return;
+  uint count = min(uint(kAround * w.near_epipole / max(length(w.slice.stride), 1e-6)), w.slice.last) + 1u;
+  uint last = last_discontinuity(w.row, count);
+  for (uint i = 0u; i < last; ++i) mark(i);
+}
+
+// Marks gradual changes: the middles of steps, of their halves and so on, compared with the nearest marked samples.
+void mark_gradual_changes(Work w) {
+  if (kRefinement != Refinement_inscattering) return;
+  uint segment = w.initial_step;
+  for (uint from = gl_LocalInvocationID.x * segment; from < w.slice.last; from += kThreads * segment) {
+    uint end = min(from + segment, w.slice.last);
+    for (uint part = segment / 2u; part > 1u; part /= 2u) {
+      for (uint i = from + part; i < end; i += 2u * part) {
+        uint left = left_marked(i);
+        uint right = right_marked(i);
+        if (left != right && deviation(w.row, left, i, right, w.floor_light) > kTolerance * w.threshold) mark(i);
       }
     }
   }
-  barrier();
-  if (thread == 0u) {
-    uint total = 0u;
-    for (uint word = 0u; word <= slice.last >> 5u; ++word) {
-      before[word] = total;
-      total += uint(bitCount(marked[word]));
-    }
-    list_start = atomicAdd(march.count, total);
-    slices[id].first_marched = list_start;
-    uint groups = (list_start + total + kMarchGroup - 1u) / kMarchGroup;
-    atomicMax(march.groups_x, groups_along_x(groups));
-    atomicMax(march.groups_y, groups_along_y(groups));
+}
+
+// Reserves room in the list for the marked samples.
+void begin_list(Work w) {
+  if (gl_LocalInvocationID.x != 0u) return;
+  uint total = 0u;
+  for (uint word = 0u; word <= w.slice.last >> 5u; ++word) {
+    before[word] = total;
+    total += uint(bitCount(marked[word]));
   }
-  barrier();
-  for (uint first = thread * kRun; first <= slice.last; first += kThreads * kRun) {
+  list_start = atomicAdd(march.count, total);
+  slices[w.id].first_marched = list_start;
+  uint groups = (list_start + total + kMarchGroup - 1u) / kMarchGroup;
+  atomicMax(march.groups_x, groups_along_x(groups));
+  atomicMax(march.groups_y, groups_along_y(groups));
+}
+
+// Stores the marked samples in the list, and the interpolation sources of all samples.
+void store_sources(Work w) {
+  for (uint first = gl_LocalInvocationID.x * kRun; first <= w.slice.last; first += kThreads * kRun) {
     uint word = first >> 5u;
     uint bits = marked[word];
     uint left = left_marked(first);
-    uint behind = right_marked(min(first + kRun - 1u, slice.last));
+    uint behind = right_marked(min(first + kRun - 1u, w.slice.last));
     uint at = list_start + before[word] + uint(bitCount(bits & ((1u << (first & 31u)) - 1u)));
-    uint end = min(first + kRun, slice.last + 1u);
+    uint end = min(first + kRun, w.slice.last + 1u);
     for (uint i = first; i < end; ++i) {
       uint onwards = bits >> (i & 31u);
       bool here = (onwards & 1u) != 0u;
       left = here ? i : left;
       uint right = onwards != 0u ? i + uint(findLSB(onwards)) : behind;
-      sources[row + i] = left | right << 16u;
-      if (here) march_list[at++] = id << 16u | i;
+      sources[w.row + i] = left | right << 16u;
+      if (here) march_list[at++] = w.id << 16u | i;
     }
   }
+}
+
+void main() {
+  Work w;
+  w.id = gl_WorkGroupID.x;
+  w.slice = slices[w.id];
+  w.row = w.id * epipolar.samples;
+  for (uint i = gl_LocalInvocationID.x; i < kWords; i += kThreads) marked[i] = 0u;
+  w.floor_light = find_floor_light(w.slice, w.row);
+  w.initial_step = epipolar.initial_step;
+  w.threshold = epipolar.threshold;
+  w.near_epipole = 0.05 * float(max(frame.width, frame.height));
+  mark_initial_samples_and_edges(w);
+  mark_discontinuities(w);
+  barrier();
+  mark_samples_near_epipole(w);
+  barrier();
+  mark_gradual_changes(w);
+  barrier();
+  begin_list(w);
+  barrier();
+  store_sources(w);
 }

@@ -14,7 +14,7 @@ layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer frame_block { FrameConstants stored_frame; };
 layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants stored_epipolar; };
 layout(std430, binding = 2) readonly buffer slices_block { EpipolarSlice slices[]; };
-layout(std430, binding = 3) writeonly buffer slice_lines_block { ShadowRow rows[]; };
+layout(std430, binding = 3) writeonly buffer slice_lines_block { SliceLine slice_lines[]; };
 layout(std430, binding = 4) buffer tree_blocks_block {
   WorkList trees;
   uint tree_list[];
@@ -58,7 +58,7 @@ float reach_of(EpipolarSlice slice, uint id, uint cascade) {
   return reach;
 }
 
-ShadowRow row_of(EpipolarSlice slice, uint cascade, float reach_cells) {
+SliceLine slice_line_of(EpipolarSlice slice, uint cascade, float reach_cells) {
   mat4 shadow_from_world = cascades[cascade].shadow_from_world;
   vec3 camera = shadow_uvz(shadow_from_world, frame.camera_position);
   vec2 near = texels_per_depth(shadow_from_world, sample_position(slice, 0u));
@@ -77,14 +77,14 @@ ShadowRow row_of(EpipolarSlice slice, uint cascade, float reach_cells) {
   float first = max(inside, begin_of(cascade) * max(abs(near.x), abs(near.y)) - 1.0);
   float last = min(outside, cascades[cascade].far_m * scale + 1.0);
 
-  ShadowRow row;
-  row.line = vec4(camera.xy, step_uv);
-  row.depth = camera.z;
-  row.cells.x = int(clamp(floor(first), 0.0, 1e9));
-  row.cells.y = int(clamp(ceil(last) - floor(first), 0.0, 1e6));
-  float reached = ceil(min(reach_cells + 1.0, 1e9)) - float(row.cells.x);
-  row.cells.z = int(clamp(reached, 0.0, float(min(row.cells.y, int(epipolar.tree_cells)))));
-  return row;
+  SliceLine out_line;
+  out_line.line = vec4(camera.xy, step_uv);
+  out_line.depth = camera.z;
+  out_line.cells.x = int(clamp(floor(first), 0.0, 1e9));
+  out_line.cells.y = int(clamp(ceil(last) - floor(first), 0.0, 1e6));
+  float reached = ceil(min(reach_cells + 1.0, 1e9)) - float(out_line.cells.x);
+  out_line.cells.z = int(clamp(reached, 0.0, float(min(out_line.cells.y, int(epipolar.tree_cells)))));
+  return out_line;
 }
 
 void main() {
@@ -94,14 +94,14 @@ void main() {
   uint cascade = epipolar.first_cascade + gl_GlobalInvocationID.y;
   if (id >= epipolar.slices || cascade >= epipolar.cascades) return;
   EpipolarSlice slice = slices[id];
-  ShadowRow row = row_of(slice, cascade, epipolar.tree_cells > 0u ? reach_of(slice, id, cascade) : 0.0);
-  uint row_id = gl_GlobalInvocationID.y * epipolar.slices + id;
-  rows[row_id] = row;
+  SliceLine slice_line = slice_line_of(slice, cascade, epipolar.tree_cells > 0u ? reach_of(slice, id, cascade) : 0.0);
+  uint line_id = gl_GlobalInvocationID.y * epipolar.slices + id;
+  slice_lines[line_id] = slice_line;
   // The blocks of the tree that contain cells.
-  uint blocks = (uint(row.cells.z) + kTreeBlock - 1u) / kTreeBlock;
+  uint blocks = (uint(slice_line.cells.z) + kTreeBlock - 1u) / kTreeBlock;
   uint at = atomicAdd(trees.count, blocks);
   uint groups = (at + blocks + kTreeGroup - 1u) / kTreeGroup;
   atomicMax(trees.groups_x, groups_along_x(groups));
   atomicMax(trees.groups_y, groups_along_y(groups));
-  for (uint i = 0u; i < blocks; ++i) tree_list[at + i] = row_id << 8u | i;
+  for (uint i = 0u; i < blocks; ++i) tree_list[at + i] = line_id << 8u | i;
 }

@@ -20,15 +20,15 @@ layout(binding = 5) uniform sampler2D scene_color;
 layout(binding = 6) uniform sampler2D scene_depth;
 layout(binding = 7, OUTPUT_FORMAT) uniform writeonly image2D output_color;
 layout(std430, binding = 8) buffer discontinuity_blocks_block {
-  WorkList broken;
-  uint broken_list[];
+  WorkList discontinuities;
+  uint discontinuity_blocks[];
 };
 
-layout(std430, binding = 9) writeonly buffer downscaled_inscattering_block { vec4 reduced[]; };
+layout(std430, binding = 9) writeonly buffer downscaled_inscattering_block { vec4 downscaled[]; };
 
 #include "frame/picture.glsl"
 #include "epipolar/unwarp.glsl"
-#include "epipolar/reduced.glsl"
+#include "epipolar/downscaled.glsl"
 const int kBlockWidth = int(kUnwarpWidth);
 #include "epipolar/block.glsl"
 
@@ -94,7 +94,7 @@ vec3 compose(Blend b, Attenuation a, vec3 background) {
   return frame.only == 0u ? color + background * a.transmittance : color;
 }
 
-const bool kBlockAttenuation = !kHomogeneous && kExtinction == 0u && kDownscale == 1;
+const bool kBlockAttenuation = !kHomogeneous && kExtinction == Extinction_epipolar && kDownscale == 1;
 
 void main() {
   ivec2 corner = ivec2(kBlockWidth, 2) * ivec2(gl_GlobalInvocationID.xy);
@@ -104,7 +104,7 @@ void main() {
   ivec2 place[kBlockPixels];
   for (int k = 0; k < kBlockPixels; ++k) {
     place[k] = min(corner + offset_in_block(k), size - 1);
-    block.pixel[k] = kDownscale == 1 ? place[k] : pixel_of_reduced(place[k]);
+    block.pixel[k] = kDownscale == 1 ? place[k] : pixel_of_downscaled(place[k]);
   }
   read_block(block);
   // The last pixels are repeated at an odd size, so the middle is always inside the picture.
@@ -126,10 +126,10 @@ void main() {
   // Next to the limb, extinction decreases so fast that linear extrapolation soon reaches zero.
   dense = dense || extinction_varies(a);
   if (!one_depth || dense || (kSkyline && !scene && depths_differ(a)) || blend(a, middle).weight < min_weight) {
-    list_broken(corner);
+    list_block(corner);
     return;
   }
-  bool own = kSparse && kExtinction == 0u && (!scene || depths_differ(a));
+  bool own = kSparse && kExtinction == Extinction_epipolar && (!scene || depths_differ(a));
   OwnExtinction extinction;
   if (own) extinction = own_extinction(block, scene);
   // The outermost pixels of both rows are blended. The square roots of the pixels between are interpolated linearly.
@@ -159,7 +159,7 @@ void main() {
     b.extinction *= b.extinction;
     if (own) b.extinction = max(extinction.corner + off.x * extinction.per_x + off.y * extinction.per_y, vec3(0.0));
     if (kDownscale > 1) {
-      STORE_REDUCED(place[k], own_m, b);
+      STORE_DOWNSCALED(place[k], own_m, b);
       continue;
     }
     vec3 background = LOAD_COLOR(pixel);

@@ -10,12 +10,13 @@
 #include "epipolar/ray_end.glsl"
 #include "epipolar/slices.glsl"
 #include "shared/constant_ids.h"
+#include "shared/params.glsl"
 
-layout(constant_id = kExtinctionId) const uint kExtinction = 0u;  // 0 epipolar, 1 per pixel
-layout(constant_id = kSparsityId) const uint kSparsity = 0u;      // Sparsity of src/effect/frame_steps.hpp
+layout(constant_id = kExtinctionId) const uint kExtinction = Extinction_epipolar;
+layout(constant_id = kSparsityId) const uint kSparsity = kSparsityNone;
 
-const bool kSkyline = kSparsity >= 1u && !kHomogeneous;
-const bool kSparse = kSparsity == 2u && !kHomogeneous;
+const bool kSkyline = kSparsity >= kSparsitySkyline && !kHomogeneous;
+const bool kSparse = kSparsity == kSparsityAll && !kHomogeneous;
 
 const float kMaxExtrapolation = 0.5;  // fraction of the distance between two samples
 // If the extinction coefficients of the four samples differ by a larger factor than 1.5, they cannot be extrapolated.
@@ -153,7 +154,7 @@ vec3 compose(Blend b, vec2 position, float depth_m, float visible_m, bool sky, v
     return frame.only == 0u ? light + background * transmittance : light;
   }
   vec3 tau;
-  if (kExtinction == 0u) {
+  if (kExtinction == Extinction_epipolar) {
     tau = optical_depth_at(b.extinction, depth_m);
   } else {
     tau = own_optical_depth(position, visible_m, sky);

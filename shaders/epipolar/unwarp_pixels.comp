@@ -22,15 +22,15 @@ layout(std430, binding = 8) readonly buffer work_block {
   uint items[];
 };
 layout(std430, binding = 9) buffer correction_list_block {
-  WorkList breaks;
-  uint break_list[];
+  WorkList corrections;
+  uint correction_list[];
 };
-layout(std430, binding = 10) writeonly buffer downscaled_inscattering_block { vec4 reduced[]; };
+layout(std430, binding = 10) writeonly buffer downscaled_inscattering_block { vec4 downscaled[]; };
 
 #include "frame/picture.glsl"
 #include "epipolar/unwarp.glsl"
-#include "epipolar/reduced.glsl"
-#include "epipolar/break_list.glsl"
+#include "epipolar/downscaled.glsl"
+#include "epipolar/correction_list.glsl"
 #include "epipolar/skyline.glsl"
 
 // Returns whether a pixel is next to the limb as seen from above the atmosphere and must be marched: its ray grazes the
@@ -50,7 +50,7 @@ bool at_limb(Around a, vec2 position) {
 void unwarp_pixel(uint block, uint k) {
   ivec2 place = ivec2((block & 0xFFFFu) + (k & 1u), (block >> 16u) + (k >> 1u));
   if (any(greaterThanEqual(place, computed_size()))) return;
-  ivec2 pixel = kDownscale == 1 ? place : pixel_of_reduced(place);
+  ivec2 pixel = kDownscale == 1 ? place : pixel_of_downscaled(place);
   vec2 position = vec2(pixel) + 0.5;
   float depth = LOAD_DEPTH(pixel);
   bool sky = depth == frame.sky_depth;
@@ -68,9 +68,9 @@ void unwarp_pixel(uint block, uint k) {
     vec3 background = LOAD_COLOR(pixel);
     STORE_COLOR(pixel, compose(b, position, depth_m, visible_m, sky, background));
   } else {
-    STORE_REDUCED(place, depth_m, b);
+    STORE_DOWNSCALED(place, depth_m, b);
   }
-  if (b.weight < (sky ? epipolar.min_weight_sky : epipolar.min_weight) || at_limb(a, position)) list_break(pixel);
+  if (b.weight < (sky ? epipolar.min_weight_sky : epipolar.min_weight) || at_limb(a, position)) list_correction(pixel);
 }
 
 void main() {

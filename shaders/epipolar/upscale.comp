@@ -16,18 +16,18 @@ layout(std140, binding = 1) uniform frame_block { FrameConstants frame; };
 layout(std140, binding = 2) uniform epipolar_block { EpipolarConstants epipolar; };
 layout(std430, binding = 3) readonly buffer slices_block { EpipolarSlice slices[]; };
 layout(std430, binding = 4) readonly buffer samples_block { uvec4 samples[]; };
-layout(std430, binding = 5) readonly buffer downscaled_inscattering_block { vec4 reduced[]; };
+layout(std430, binding = 5) readonly buffer downscaled_inscattering_block { vec4 downscaled[]; };
 layout(binding = 6) uniform sampler2D scene_color;
 layout(binding = 7) uniform sampler2D scene_depth;
 layout(binding = 8, OUTPUT_FORMAT) uniform writeonly image2D output_color;
 layout(std430, binding = 9) buffer discontinuity_blocks_block {
-  WorkList broken;
-  uint broken_list[];
+  WorkList discontinuities;
+  uint discontinuity_blocks[];
 };
 
 #include "frame/picture.glsl"
 #include "epipolar/unwarp.glsl"
-#include "epipolar/reduced_around.glsl"
+#include "epipolar/downscaled_around.glsl"
 const int kBlockWidth = 2;
 #include "epipolar/block.glsl"
 
@@ -44,7 +44,7 @@ void main() {
   read_block(block);
   Sample near[4];
   vec2 part;
-  reduced_around(corner, part, near);
+  downscaled_around(corner, part, near);
   bool scene = block.kinds == kScene;
   float nearest_m = block.nearest_m;
   float farthest_m = block.farthest_m;
@@ -55,7 +55,7 @@ void main() {
   bool one_depth = scene ? farthest_m - nearest_m <= kOneSlope * epipolar.threshold * nearest_m
                          : block.kinds == kSky && nearest_m >= kSkyDepth;
   if (!one_depth) {
-    list_broken(corner);
+    list_block(corner);
     return;
   }
   for (int k = 0; k < kBlockPixels; ++k) {
@@ -64,7 +64,7 @@ void main() {
     vec2 own_part = part + vec2(offset_in_block(k)) / float(kDownscale);
     vec3 background = LOAD_COLOR(pixel);
     float own_m = scene ? block.visible_m[k] : kSkyDepth;
-    vec3 color = compose(blend_reduced(near, bilinear_weights(own_part)), position, own_m, block.visible_m[k],
+    vec3 color = compose(blend_downscaled(near, bilinear_weights(own_part)), position, own_m, block.visible_m[k],
                          block.sky[k], background);
     STORE_COLOR(pixel, color);
   }

@@ -22,15 +22,15 @@ layout(std430, binding = 8) readonly buffer work_block {
   uint items[];
 };
 layout(std430, binding = 9) buffer correction_list_block {
-  WorkList breaks;
-  uint break_list[];
+  WorkList corrections;
+  uint correction_list[];
 };
-layout(std430, binding = 10) readonly buffer downscaled_inscattering_block { vec4 reduced[]; };
+layout(std430, binding = 10) readonly buffer downscaled_inscattering_block { vec4 downscaled[]; };
 
 #include "frame/picture.glsl"
 #include "epipolar/unwarp.glsl"
-#include "epipolar/reduced_around.glsl"
-#include "epipolar/break_list.glsl"
+#include "epipolar/downscaled_around.glsl"
+#include "epipolar/correction_list.glsl"
 
 // A pixel with a smaller sum of weights is interpolated from the slices.
 const float kMinUpscaledWeight = 0.1;
@@ -45,16 +45,16 @@ void upscale_pixel(uint block, uint k) {
   float depth_m = sky ? sky_depth_m(ray_direction(frame, position)) : visible_m;
   Sample near[4];
   vec2 part;
-  reduced_around(pixel, part, near);
+  downscaled_around(pixel, part, near);
   vec4 w = bilinear_weights(part);
   for (int i = 0; i < 4; ++i) w[i] *= depth_nearness(near[i].depth_m, depth_m);
   float sum = w.x + w.y + w.z + w.w;
-  Blend b = blend_reduced(near, w / max(sum, 1e-9));
+  Blend b = blend_downscaled(near, w / max(sum, 1e-9));
   Blend of_slices = blend(around(position, depth_m), position);
   if (sum < kMinUpscaledWeight) b = of_slices;
   vec3 background = LOAD_COLOR(pixel);
   STORE_COLOR(pixel, compose(b, position, depth_m, visible_m, sky, background));
-  if (sum < kMinUpscaledWeight && b.weight < epipolar.min_weight) list_break(pixel);
+  if (sum < kMinUpscaledWeight && b.weight < epipolar.min_weight) list_correction(pixel);
 }
 
 void main() {

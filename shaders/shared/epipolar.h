@@ -35,12 +35,12 @@ struct EpipolarConstants {
   uint tree_format;    // MinMaxFormat
   // The picture for which in-scattering is computed; `slices` and `samples` are for its size.
   uint downscale;
-  uint reduced_width;
-  uint reduced_height;
-  uint break_capacity;  // capacity of the list of pixels to be marched; a multiple of kMarchGroup
+  uint downscaled_width;
+  uint downscaled_height;
+  uint correction_capacity;  // capacity of the list of pixels to be marched; a multiple of kMarchGroup
   // Both exceed 0 and min_weight only in twilight, when the sky is much brighter than the ground below it.
-  float min_weight_sky;  // min_weight for pixels of the sky
-  float depth_break;     // ratio of the depths of neighbouring samples below which both are marched; 0: never
+  float min_weight_sky;       // min_weight for pixels of the sky
+  float discontinuity_ratio;  // ratio of the depths of neighbouring samples below which both are marched; 0: never
   uint unused_0;
   uint unused_1;
 };
@@ -56,7 +56,7 @@ struct EpipolarSlice {
 
 // The slice line in a cascade's map: texture coordinates line.xy + x line.zw, where x counts cells of one texel (along
 // the axis that changes faster) from the camera.
-struct ShadowRow {
+struct SliceLine {
   vec4 line;
   // x: the first cell; y: the number of cells inside the map and within the reach of the cascade; z: how many of these,
   // from the first on, are in the tree because rays of marched samples reach them.
@@ -72,6 +72,14 @@ const uint kTreeGroup = 8u;   // blocks built by one workgroup
 
 // The number of Rayleigh scale heights above which there is almost no medium: a camera above them sees a limb.
 const float kAllOfAir = 5.0f;
+
+// What pixels compute by themselves because slices are few.
+const uint kSparsityNone = 0u;
+// Pixels of the sky whose slices are not all in the sky compute their density integral, and take in-scattering from
+// samples farther away.
+const uint kSparsitySkyline = 1u;
+// Also all pixels of the sky, and pixels among samples of other depths, compute their density integral.
+const uint kSparsityAll = 2u;
 
 const uint kUnwarpWidth = 4u;  // width in pixels of a block of unwarp.comp; the height is 2
 

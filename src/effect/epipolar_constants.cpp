@@ -19,7 +19,7 @@ constexpr float kMinWeightDownscaled = 1e-3F;
 // its samples in the sky is marched. The unshadowed light does not contain the planet's shadow, so that the samples on
 // both sides of a depth discontinuity are marched, too.
 constexpr float kMinWeightTwilight = 0.5F;
-constexpr float kTwilightDepthBreak = 0.8F;
+constexpr float kTwilightDiscontinuityRatio = 0.8F;
 // Initial samples are this many times closer together in twilight: refinement compares unshadowed light, which does not
 // contain the planet's shadow.
 constexpr std::uint32_t kStepsWithSunDown = 4;
@@ -120,9 +120,9 @@ shared::EpipolarConstants epipolar_constants(const FrameInputs& inputs, const Ef
   out.slices = downscaled_count(p.slices, params);
   out.samples = downscaled_count(p.samples, params);
   out.downscale = params.scattering.downscale;
-  const VkExtent2D reduced = downscaled_extent(inputs.extent, params);
-  out.reduced_width = reduced.width;
-  out.reduced_height = reduced.height;
+  const VkExtent2D downscaled = downscaled_extent(inputs.extent, params);
+  out.downscaled_width = downscaled.width;
+  out.downscaled_height = downscaled.height;
   out.initial_step = sun_is_down(inputs, params) ? std::max(p.initial_step / kStepsWithSunDown, 1U) : p.initial_step;
   out.epipole_density = p.epipole_density;
   out.threshold = p.refinement_threshold;
@@ -130,10 +130,10 @@ shared::EpipolarConstants epipolar_constants(const FrameInputs& inputs, const Ef
   out.min_weight = is_downscaled(params)                             ? kMinWeightDownscaled
                    : params.epipolar.correct_depth_breaks.value != 0 ? kMinWeightCorrected
                                                                      : kMinWeight;
-  out.break_capacity = correction_capacity(desc, params);
+  out.correction_capacity = correction_capacity(desc, params);
   const bool twilight = sun_is_down(inputs, params) && !is_downscaled(params);
   out.min_weight_sky = twilight ? std::max(out.min_weight, kMinWeightTwilight) : out.min_weight;
-  out.depth_break = twilight ? kTwilightDepthBreak : 0.0F;
+  out.discontinuity_ratio = twilight ? kTwilightDiscontinuityRatio : 0.0F;
   out.show_depth_breaks = p.show_depth_breaks.value;
   out.tree_cells = p.min_max_tree.value != 0 ? tree_cells(desc) : 0;
   out.tree_format = static_cast<std::uint32_t>(p.min_max_format);

@@ -138,11 +138,11 @@ void downscaled_steps(Frame& f) {
   const VkExtent2D blocks = unwarp_blocks(downscaled_extent(f.shape.extent, f.params));
   const std::uint8_t extinction = f.constants[shared::kExtinctionId];
   f.constants[shared::kExtinctionId] = 0;  // matters only where light is composed with the background
-  f.dispatch("unwarp_reduced", f.variant(shaders::unwarp_comp_rgba16f, shaders::unwarp_comp_rgba32f),
+  f.dispatch("unwarp_downscaled", f.variant(shaders::unwarp_comp_rgba16f, shaders::unwarp_comp_rgba32f),
              {blocks.width, blocks.height, 1});
-  f.dispatch_over(Resource::discontinuity_blocks, "unwarp_reduced_pixels",
+  f.dispatch_over(Resource::discontinuity_blocks, "unwarp_downscaled_pixels",
                   f.variant(shaders::unwarp_pixels_comp_rgba16f, shaders::unwarp_pixels_comp_rgba32f));
-  march_and_correct(f, "correct_reduced", shaders::correct_reduced_comp);
+  march_and_correct(f, "correct_downscaled", shaders::correct_downscaled_comp);
   f.constants[shared::kExtinctionId] = extinction;
   f.reset(Resource::discontinuity_blocks);
   f.reset(Resource::correction_list);
@@ -171,7 +171,7 @@ void epipolar_steps(Frame& f) {
   f.dispatch("refine_samples", shaders::refine_samples_comp,                       // 1.3
              {slices * shaders::refine_samples_comp.local_size[0], 1, 1});
   if (cascades > 0) f.dispatch("slice_directions", shaders::slice_directions_comp, {slices, cascades, 1});  // 1.4
-  if (cascades > 0 && f.uses_tree()) f.dispatch_over(Resource::tree_blocks, "shadow_tree", shaders::shadow_tree_comp);
+  if (cascades > 0 && f.uses_tree()) f.dispatch_over(Resource::tree_blocks, "min_max_tree", shaders::min_max_tree_comp);
   march_cascades(f, processing);                                                               // 1.6, 1.8
   f.dispatch("interpolate_samples", shaders::interpolate_samples_comp, {samples, slices, 1});  // 1.3
   is_downscaled(f.params) ? downscaled_steps(f) : unwarp_steps(f);                             // 1.7

@@ -37,11 +37,11 @@ class FrameSteps {
 };
 [[nodiscard]] FrameSteps frame_steps(const EffectDesc& desc, const Params& params, const FrameShape& shape);
 
-// How much pixels compute by themselves because slices are few.
+// What pixels compute by themselves because slices are few; shared/epipolar.h describes the values.
 enum class Sparsity : std::uint32_t {
-  none,
-  skyline,  // sky pixels whose slices are not all in the sky: the density integral, and light from samples farther away
-  all       // also the density integral of all sky pixels, and of pixels among samples of other depths
+  none = shared::kSparsityNone,
+  skyline = shared::kSparsitySkyline,
+  all = shared::kSparsityAll
 };
 [[nodiscard]] Sparsity sparsity(VkExtent2D extent, const Params& params);
 

@@ -31,7 +31,7 @@ VkDeviceSize bytes_of(Resource resource, const EffectDesc& desc, const Params& p
     case Resource::coarse_inscattering:
     case Resource::interpolation_sources: return samples * 4;
     case Resource::march_list: return sizeof(shared::WorkList) + samples * 4;
-    case Resource::slice_lines: return lines * sizeof(shared::ShadowRow);
+    case Resource::slice_lines: return lines * sizeof(shared::SliceLine);
     case Resource::tree_blocks: return sizeof(shared::WorkList) + lines * blocks_of_line * 4;
     case Resource::min_max_tree: {
       if (!params.epipolar.min_max_tree) return kUnusedBytes;

@@ -82,14 +82,14 @@ EffectDesc full_desc() {
 TEST(FrameSteps, FollowTheMethod) {
   Params params;
   const std::vector<std::string> usual = {
-      "slice_end_points",    "slice_samples", "refine_samples", "slice_directions", "shadow_tree",   "march_samples",
+      "slice_end_points",    "slice_samples", "refine_samples", "slice_directions", "min_max_tree",  "march_samples",
       "interpolate_samples", "unwarp",        "unwarp_pixels",  "march_samples",    "correct_pixels"};
   EXPECT_EQ(names_of(params), usual);
 
   // Nothing is shadowed without cascades.
   std::vector<std::string> unshadowed = usual;
   std::erase(unshadowed, "slice_directions");
-  std::erase(unshadowed, "shadow_tree");
+  std::erase(unshadowed, "min_max_tree");
   EXPECT_EQ(names_of(params, {{1280, 720}, 0, 0, false}), unshadowed);
   EXPECT_EQ(names_of(params, {{1280, 720}, 2, 2, false}), unshadowed);
   params.scattering.light_shafts = false;
@@ -102,16 +102,16 @@ TEST(FrameSteps, FollowTheMethod) {
   params = {};
   params.epipolar.min_max_tree = false;
   std::vector<std::string> without_tree = usual;
-  std::erase(without_tree, "shadow_tree");
+  std::erase(without_tree, "min_max_tree");
   EXPECT_EQ(names_of(params), without_tree);
 
   params = {};
   params.scattering.downscale = 2;
-  const std::vector<std::string> downscaled = {"slice_end_points",    "slice_samples",   "refine_samples",
-                                               "slice_directions",    "shadow_tree",     "march_samples",
-                                               "interpolate_samples", "unwarp_reduced",  "unwarp_reduced_pixels",
-                                               "march_samples",       "correct_reduced", "upscale",
-                                               "upscale_pixels",      "march_samples",   "correct_pixels"};
+  const std::vector<std::string> downscaled = {"slice_end_points",    "slice_samples",      "refine_samples",
+                                               "slice_directions",    "min_max_tree",       "march_samples",
+                                               "interpolate_samples", "unwarp_downscaled",  "unwarp_downscaled_pixels",
+                                               "march_samples",       "correct_downscaled", "upscale",
+                                               "upscale_pixels",      "march_samples",      "correct_pixels"};
   EXPECT_EQ(names_of(params), downscaled);
 
   params = {};
@@ -183,7 +183,7 @@ TEST(FrameSteps, ConstantsFollowTheModes) {
       if (name == "refine_samples") {
         EXPECT_EQ(constants[shared::kRefinementId], static_cast<std::uint32_t>(params.epipolar.refinement));
       }
-      if (name == "shadow_tree") {
+      if (name == "min_max_tree") {
         EXPECT_EQ(constants[shared::kFormatId], static_cast<std::uint32_t>(params.epipolar.min_max_format));
       }
       // Constants that the shader does not have are 0.
@@ -232,8 +232,8 @@ TEST(FrameSteps, ReadOnlyWhatWasWritten) {
         const auto runs = [&](std::string_view name) {
           return std::any_of(steps.begin(), steps.end(), [&](const Step& s) { return name == s.name; });
         };
-        ASSERT_EQ(unwritten_read(steps, runs("shadow_tree"), runs("slice_directions"), params.scattering.downscale > 1),
-                  "");
+        ASSERT_EQ(
+            unwritten_read(steps, runs("min_max_tree"), runs("slice_directions"), params.scattering.downscale > 1), "");
       }
     }
   });

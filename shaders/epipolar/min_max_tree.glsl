@@ -4,11 +4,13 @@
 // per cell. A ray has one slope, so a node classifies every ray: lit below its minimum slope, in shadow above its
 // maximum, undecided in between. The stored numbers are steps of y / (1 + |y|), which maps all slopes to [-1; 1]
 // monotonically.
-#ifndef TYNDALL_SHADOW_TREE_GLSL
-#define TYNDALL_SHADOW_TREE_GLSL
+#ifndef TYNDALL_MIN_MAX_TREE_GLSL
+#define TYNDALL_MIN_MAX_TREE_GLSL
 
-const uint kUnorm16 = 0u;  // MinMaxFormat
-const uint kFloat32 = 1u;
+#include "shared/params.glsl"
+
+const uint kUnorm16 = MinMaxFormat_unorm16;
+const uint kFloat32 = MinMaxFormat_float32;
 
 // Maps a slope to the numbers of the tree, before rounding.
 float tree_number(float slope, float resolution, uint format) {

@@ -1,21 +1,21 @@
 // The four pixels of the half- or quarter-resolution buffer around a full-resolution pixel. Include after declaring
 // reduced and unwarp.glsl.
-#ifndef TYNDALL_REDUCED_AROUND_GLSL
-#define TYNDALL_REDUCED_AROUND_GLSL
+#ifndef TYNDALL_DOWNSCALED_AROUND_GLSL
+#define TYNDALL_DOWNSCALED_AROUND_GLSL
 
-#include "epipolar/reduced.glsl"
+#include "epipolar/downscaled.glsl"
 
 // `part` is the fraction of the way from the first to the last. At the border of the picture there are fewer than four.
-void reduced_around(ivec2 pixel, out vec2 part, out Sample around[4]) {
-  ivec2 at = reduced_before(pixel, part);
-  ivec2 most = ivec2(epipolar.reduced_width, epipolar.reduced_height) - 1;
+void downscaled_around(ivec2 pixel, out vec2 part, out Sample around[4]) {
+  ivec2 at = downscaled_before(pixel, part);
+  ivec2 most = ivec2(epipolar.downscaled_width, epipolar.downscaled_height) - 1;
   for (int k = 0; k < 4; ++k) {
-    uint index = reduced_index(clamp(at + ivec2(k & 1, k >> 1), ivec2(0), most));
-    vec4 source = reduced[index];
+    uint index = downscaled_index(clamp(at + ivec2(k & 1, k >> 1), ivec2(0), most));
+    vec4 source = downscaled[index];
     around[k].source = source.rgb;
     around[k].depth_m = source.a;
-    uint behind = epipolar.reduced_width * epipolar.reduced_height;
-    around[k].extinction = kHomogeneous ? vec3(0.0) : reduced[behind + index].rgb;
+    uint behind = epipolar.downscaled_width * epipolar.downscaled_height;
+    around[k].extinction = kHomogeneous ? vec3(0.0) : downscaled[behind + index].rgb;
   }
 }
 
@@ -23,7 +23,7 @@ vec4 bilinear_weights(vec2 part) {
   return vec4((1.0 - part.x) * (1.0 - part.y), part.x * (1.0 - part.y), (1.0 - part.x) * part.y, part.x * part.y);
 }
 
-Blend blend_reduced(Sample around[4], vec4 w) {
+Blend blend_downscaled(Sample around[4], vec4 w) {
   Blend b;
   b.weight = 1.0;
   b.source = w.x * around[0].source + w.y * around[1].source + w.z * around[2].source + w.w * around[3].source;

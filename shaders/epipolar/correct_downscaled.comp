@@ -19,11 +19,11 @@ layout(std430, binding = 3) readonly buffer work_block {
   uint items[];
 };
 layout(std430, binding = 4) readonly buffer corrected_inscattering_block { uvec2 corrected[]; };
-layout(std430, binding = 5) buffer downscaled_inscattering_block { vec4 reduced[]; };
+layout(std430, binding = 5) buffer downscaled_inscattering_block { vec4 downscaled[]; };
 layout(binding = 6) uniform sampler2D scene_depth;
 
 #include "epipolar/records.glsl"
-#include "epipolar/reduced.glsl"
+#include "epipolar/downscaled.glsl"
 #include "frame/homogeneous_medium.glsl"
 #include "frame/picture.glsl"
 
@@ -41,15 +41,15 @@ void put_pixel(uint at) {
   attenuation(tau, transmittance, opacity);
   ivec2 place = pixel / kDownscale;
   Sample s;
-  s.depth_m = reduced[reduced_index(place)].a;
+  s.depth_m = downscaled[downscaled_index(place)].a;
   s.extinction = extinction_of(tau, s.depth_m);
   s.source = unpack_light(corrected[at]) / max(opacity, vec3(1e-20));
   if (kHomogeneous && !inside) s.source = vec3(1.0);
-  STORE_REDUCED(place, s.depth_m, s);
+  STORE_DOWNSCALED(place, s.depth_m, s);
 }
 
 void main() {
   uint at = list_item(kMarchGroup);
-  bool overflown = work.count > epipolar.break_capacity;  // break_list.glsl
+  bool overflown = work.count > epipolar.correction_capacity;  // correction_list.glsl
   if (at < work.count && !overflown) put_pixel(at);
 }

@@ -7,16 +7,17 @@
 #include "shared/frame_constants.h"
 #include "shared/epipolar.h"
 #include "shared/constant_ids.h"
+#include "shared/params.glsl"
 
 const uint kPartLevel = 6u;                    // level of a part's topmost node
 const uint kParts = kTreeBlock >> kPartLevel;  // parts per block
 
 layout(local_size_x = kTreeGroup * kParts) in;
-layout(constant_id = kFormatId) const uint kFormat = 0u;  // MinMaxFormat
+layout(constant_id = kFormatId) const uint kFormat = MinMaxFormat_unorm16;
 
 layout(std430, binding = 0) readonly buffer frame_block { FrameConstants stored_frame; };
 layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants stored_epipolar; };
-layout(std430, binding = 2) readonly buffer slice_lines_block { ShadowRow rows[]; };
+layout(std430, binding = 2) readonly buffer slice_lines_block { SliceLine slice_lines[]; };
 layout(std430, binding = 3) writeonly buffer min_max_tree_block { uint tree[]; };
 layout(binding = 4) uniform sampler2DArray shadow_depths;
 
@@ -29,7 +30,7 @@ layout(std430, binding = 5) readonly buffer work_block {
 FrameConstants frame;
 EpipolarConstants epipolar;
 
-#include "epipolar/shadow_tree.glsl"
+#include "epipolar/min_max_tree.glsl"
 #include "epipolar/work_list.glsl"
 
 const uint kCells = 1u << kTreeLeafLevel;  // per leaf
@@ -41,10 +42,10 @@ shared vec2 part_nodes[kTreeGroup * kParts];
 vec2 both(vec2 a, vec2 b) { return vec2(min(a.x, b.x), max(a.y, b.y)); }
 
 // Returns the minimum and maximum depth that comparisons between the middles of cell x and the next can read.
-vec2 pair_depths(ShadowRow row, int x, uint cascade) {
-  vec2 uv = row.line.xy + (float(x) + 0.5) * row.line.zw;
+vec2 pair_depths(SliceLine slice_line, int x, uint cascade) {
+  vec2 uv = slice_line.line.xy + (float(x) + 0.5) * slice_line.line.zw;
   vec4 a = textureGather(shadow_depths, vec3(uv, float(cascade)));
-  vec4 b = textureGather(shadow_depths, vec3(uv + row.line.zw, float(cascade)));
+  vec4 b = textureGather(shadow_depths, vec3(uv + slice_line.line.zw, float(cascade)));
   vec4 low = min(a, b);
   vec4 high = max(a, b);
   vec2 depths = vec2(min(min(low.x, low.y), min(low.z, low.w)), max(max(high.x, high.y), max(high.z, high.w)));
@@ -88,19 +89,19 @@ void store_node(uint at, vec2 n) {
 vec2 no_cells() { return kFormat == kUnorm16 ? vec2(65535.0, 0.0) : vec2(2.0, -2.0); }
 
 // Builds the nodes of a part of a block and returns the last of them.
-vec2 build_part(uint base, ShadowRow row, uint cascade, uint block, uint part) {
-  float camera = frame.shadow_depth_reversed != 0u ? 1.0 - row.depth : row.depth;
+vec2 build_part(uint base, SliceLine slice_line, uint cascade, uint block, uint part) {
+  float camera = frame.shadow_depth_reversed != 0u ? 1.0 - slice_line.depth : slice_line.depth;
   vec2 first_half[kPartLevel - kTreeLeafLevel];  // the pending node of each level of children
   vec2 n = no_cells();
   for (uint leaf = 0u; leaf < kPartLeaves; ++leaf) {
     uint cell = (part << kPartLevel) + leaf * kCells;
     int from = int(block * kTreeBlock + cell);
     n = no_cells();
-    if (from < row.cells.z) {
+    if (from < slice_line.cells.z) {
       vec2 slopes = vec2(kAlwaysLit, -kAlwaysLit);
       for (int k = 0; k < int(kCells); k += 2) {
-        int x = row.cells.x + from + k;
-        slopes = both(slopes, pair_slopes(pair_depths(row, x, cascade), x, camera));
+        int x = slice_line.cells.x + from + k;
+        slopes = both(slopes, pair_slopes(pair_depths(slice_line, x, cascade), x, camera));
       }
       n = rounded_numbers(slopes);
     }
@@ -126,10 +127,11 @@ void main() {
   bool working = at < work.count;
   uint base = 0u;
   if (working) {
-    uint row = items[at] >> 8u;
+    uint line = items[at] >> 8u;
     uint block = items[at] & 0xFFu;
-    base = (row * (epipolar.tree_cells / kTreeBlock) + block) * kTreeNodes;
-    part_nodes[thread] = build_part(base, rows[row], epipolar.first_cascade + row / epipolar.slices, block, part);
+    base = (line * (epipolar.tree_cells / kTreeBlock) + block) * kTreeNodes;
+    part_nodes[thread] =
+        build_part(base, slice_lines[line], epipolar.first_cascade + line / epipolar.slices, block, part);
   }
   barrier();
   for (uint level = kPartLevel + 1u; level <= kTreeTopLevel; ++level) {

@@ -1,0 +1,18 @@
+// The list of pixels to be marched. If there are more than its capacity, none of them is marched, because the order in
+// the list varies from run to run. Include after declaring corrections (WorkList), correction_list (uint[]) and
+// epipolar.
+#ifndef TYNDALL_CORRECTION_LIST_GLSL
+#define TYNDALL_CORRECTION_LIST_GLSL
+
+#include "epipolar/work_list.glsl"
+
+void list_correction(ivec2 pixel) {
+  uint slot = atomicAdd(corrections.count, 1u);
+  if (slot >= epipolar.correction_capacity) return;
+  correction_list[slot] = uint(pixel.y) << 16u | uint(pixel.x);
+  uint groups = slot / kMarchGroup + 1u;
+  atomicMax(corrections.groups_x, groups_along_x(groups));
+  atomicMax(corrections.groups_y, groups_along_y(groups));
+}
+
+#endif
