@@ -1,10 +1,23 @@
 // Blocks of kBlockWidth x 2 pixels: their depths, and the list of blocks whose pixels are composed one by one. The list
-// stores squares of 2 x 2 pixels. Include after declaring medium, frame, epipolar, scene_depth, broken,
-// discontinuity_blocks and kBlockWidth, and after picture.glsl and unwarp.glsl.
+// stores squares of 2 x 2 pixels. A shader with blocks of
+// another width than kUnwarpWidth defines BLOCK_WIDTH before its first include.
 #ifndef TYNDALL_BLOCK_GLSL
 #define TYNDALL_BLOCK_GLSL
 
+#include "epipolar/downscaled.glsl"
+#include "epipolar/unwarp.glsl"
 #include "epipolar/work_list.glsl"
+#include "frame/picture.glsl"
+
+#ifndef BLOCK_WIDTH
+#define BLOCK_WIDTH kUnwarpWidth
+#endif
+const int kBlockWidth = int(BLOCK_WIDTH);
+
+layout(std430, binding = 18) buffer discontinuity_blocks_block {
+  WorkList discontinuities;
+  uint discontinuity_blocks[];
+};
 
 // What pixels show, as bits.
 const uint kScene = 1u;
@@ -52,7 +65,7 @@ void read_block(inout Block block) {
   if (kDownscale == 1) {
     // A gather returns a square of 2 x 2 depths.
     for (int k = 0; k < kBlockWidth; k += 2) {
-      vec4 d = GATHER_DEPTH(block.pixel[0] + ivec2(k, 0));
+      vec4 d = gather_depth(block.pixel[0] + ivec2(k, 0));
       depth[k] = d.w;
       depth[k + 1] = d.z;
       depth[kBlockWidth + k] = d.x;
@@ -66,7 +79,7 @@ void read_block(inout Block block) {
     }
     for (int k = 0; k < kBlockWidth; ++k) depth[kBlockWidth + k] = inside.y > 1 ? depth[kBlockWidth + k] : depth[k];
   } else {
-    for (int k = 0; k < kBlockPixels; ++k) depth[k] = LOAD_DEPTH(block.pixel[k]);
+    for (int k = 0; k < kBlockPixels; ++k) depth[k] = load_depth(block.pixel[k]);
   }
   // The horizon is straight within a block, so testing both ends of a row is enough.
   for (int row = 0; row < 2; ++row) {

@@ -2,32 +2,23 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#include "shared/medium.h"
-#include "shared/frame_constants.h"
-#include "shared/epipolar.h"
-#include "lib/optical_depth.glsl"
+#include "epipolar/constants.glsl"
+#include "epipolar/ray_end.glsl"
 #include "epipolar/work_list.glsl"
+#include "frame/picture.glsl"
+#include "lib/optical_depth.glsl"
 
 layout(local_size_x = kMarchGroup) in;
 
-layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
-layout(std430, binding = 1) readonly buffer frame_block { FrameConstants frame; };
-layout(std430, binding = 2) readonly buffer epipolar_block { EpipolarConstants epipolar; };
-layout(std430, binding = 3) readonly buffer work_block {
+layout(std430, binding = 16) readonly buffer work_block {
   WorkList work;
   uint items[];
 };
-layout(std430, binding = 4) readonly buffer corrected_inscattering_block { uvec2 corrected[]; };
-layout(binding = 5) uniform sampler2D scene_color;
-layout(binding = 6) uniform sampler2D scene_depth;
-layout(binding = 7, OUTPUT_FORMAT) uniform writeonly image2D output_color;
-
-#include "epipolar/ray_end.glsl"
-#include "frame/picture.glsl"
+layout(std430, binding = 17) readonly buffer corrected_inscattering_block { uvec2 corrected[]; };
 
 void put_pixel(uint at) {
   ivec2 pixel = ivec2(items[at] & 0xFFFFu, items[at] >> 16u);
-  Ray ray = view_ray(frame, pixel, LOAD_DEPTH(pixel));
+  Ray ray = view_ray(frame, pixel, load_depth(pixel));
   float start, end;
   vec3 transmitted = vec3(1.0);
   vec3 opacity;
@@ -39,10 +30,10 @@ void put_pixel(uint at) {
       transmitted = transmittance(medium, density_integral_along(medium, ray.altitude, ray.cos_zenith, end));
   }
   if (kHomogeneous) color *= homogeneous_phase(ray.cos_view_sun);
-  if (frame.only == 0u) color += LOAD_COLOR(pixel) * transmitted;
+  if (frame.only == 0u) color += load_color(pixel) * transmitted;
   // The mark is green and as bright as a white surface in sunlight, so that it is visible on any background.
   if (epipolar.show_depth_breaks != 0u) color = vec3(0.0, dot(frame.sun_irradiance, vec3(0.1)), 0.0);
-  STORE_COLOR(pixel, color);
+  store_color(pixel, color);
 }
 
 void main() {

@@ -1,10 +1,15 @@
 // The list of pixels to be marched. If there are more than its capacity, none of them is marched, because the order in
-// the list varies from run to run. Include after declaring corrections (WorkList), correction_list (uint[]) and
-// epipolar.
+// the list varies from run to run.
 #ifndef TYNDALL_CORRECTION_LIST_GLSL
 #define TYNDALL_CORRECTION_LIST_GLSL
 
+#include "epipolar/constants.glsl"
 #include "epipolar/work_list.glsl"
+
+layout(std430, binding = 17) buffer correction_list_block {
+  WorkList corrections;
+  uint correction_list[];
+};
 
 void list_correction(ivec2 pixel) {
   uint slot = atomicAdd(corrections.count, 1u);

@@ -1,9 +1,9 @@
 // The picture for which in-scattering is computed: the full-resolution picture, or with scattering.downscale the half-
-// or quarter-resolution buffer, each pixel of which coincides with a pixel of the full resolution. Include after
-// declaring frame and epipolar.
+// or quarter-resolution buffer, each pixel of which coincides with a pixel of the full resolution.
 #ifndef TYNDALL_DOWNSCALED_GLSL
 #define TYNDALL_DOWNSCALED_GLSL
 
+#include "epipolar/constants.glsl"
 #include "shared/constant_ids.h"
 
 layout(constant_id = kDownscaleId) const int kDownscale = 1;
@@ -30,16 +30,5 @@ ivec2 downscaled_before(ivec2 pixel, out vec2 part) {
 }
 
 uint downscaled_index(ivec2 at) { return uint(at.y) * epipolar.downscaled_width + uint(at.x); }
-
-// The buffer stores 32-bit floats: source functions and depths of all pixels, followed by extinction coefficients,
-// which a homogeneous medium does not need.
-#define STORE_DOWNSCALED(at, depth_m, blend)                                     \
-  {                                                                              \
-    downscaled[downscaled_index(at)] = vec4((blend).source, depth_m);            \
-    if (!kHomogeneous) {                                                         \
-      uint behind = epipolar.downscaled_width * epipolar.downscaled_height;      \
-      downscaled[behind + downscaled_index(at)] = vec4((blend).extinction, 0.0); \
-    }                                                                            \
-  }
 
 #endif

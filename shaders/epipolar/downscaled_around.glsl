@@ -1,9 +1,11 @@
-// The four pixels of the half- or quarter-resolution buffer around a full-resolution pixel. Include after declaring
-// reduced and unwarp.glsl.
+// The four pixels of the half- or quarter-resolution buffer around a full-resolution pixel.
 #ifndef TYNDALL_DOWNSCALED_AROUND_GLSL
 #define TYNDALL_DOWNSCALED_AROUND_GLSL
 
 #include "epipolar/downscaled.glsl"
+#include "epipolar/unwarp.glsl"
+
+layout(std430, binding = 15) readonly buffer downscaled_inscattering_block { vec4 downscaled[]; };
 
 // `part` is the fraction of the way from the first to the last. At the border of the picture there are fewer than four.
 void downscaled_around(ivec2 pixel, out vec2 part, out Sample around[4]) {

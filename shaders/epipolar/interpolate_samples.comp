@@ -3,20 +3,17 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#include "shared/epipolar.h"
+#define COPY_CONSTANTS
+
+#include "epipolar/constants.glsl"
+#include "epipolar/records.glsl"
 
 layout(local_size_x = 32, local_size_y = 2) in;
 
-layout(std430, binding = 0) readonly buffer epipolar_block { EpipolarConstants stored_epipolar; };
-layout(std430, binding = 1) readonly buffer slices_block { EpipolarSlice slices[]; };
-layout(std430, binding = 2) readonly buffer interpolation_sources_block { uint sources[]; };
-layout(std430, binding = 3) buffer samples_block { uvec4 samples[]; };
-layout(std430, binding = 4) readonly buffer coarse_inscattering_block { uint coarse[]; };
-
-// main() loads this before anything else (see docs/epipolar.md).
-EpipolarConstants epipolar;
-
-#include "epipolar/records.glsl"
+layout(std430, binding = 13) readonly buffer slices_block { EpipolarSlice slices[]; };
+layout(std430, binding = 15) readonly buffer interpolation_sources_block { uint sources[]; };
+layout(std430, binding = 14) buffer samples_block { uvec4 samples[]; };
+layout(std430, binding = 16) readonly buffer coarse_inscattering_block { uint coarse[]; };
 
 // Relative decrease of the square root of the source function per fraction of in-scattering from behind shadowed end
 // points.
@@ -24,7 +21,7 @@ const float kLostInShadow = 0.35;
 const float kMaxBeyond = 0.1;  // beyond samples at a different depth
 
 void main() {
-  epipolar = stored_epipolar;
+  load_epipolar();
   uint i = gl_GlobalInvocationID.x;
   uint id = gl_GlobalInvocationID.y;
   if (i >= epipolar.samples || id >= epipolar.slices || i > slices[id].last) return;

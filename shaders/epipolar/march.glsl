@@ -1,24 +1,27 @@
-// Marches a ray of a slice through the shadow cascades. Include after declaring medium, frame, cascades, epipolar,
-// slice_lines (SliceLine[]), tree (uvec2[]), shadow_maps, shadow_colors, the tables, and counters. The ray advances in
-// sections that are lit or in shadow: whole nodes with the tree, single cells without it. An undecided cell is compared
-// in the shadow map itself, at the same position in both cases, so the tree saves reads without changing the result.
-// The medium is integrated over panels on which it is smooth. The in-scattering of a panel is the value at its middle
-// times the lit length, plus its slope times the first moment of the lit length. With kColors both are weighted by the
-// colour of glass, which is read in every cell that is not in shadow.
+// Marches a ray of a slice through the shadow cascades. The ray advances in sections that are lit or in shadow: whole
+// nodes with the tree, single cells without it. An undecided cell is compared in the shadow map itself, at the same
+// position in both cases, so the tree saves reads without changing the result. The medium is integrated over panels on
+// which it is smooth. The in-scattering of a panel is the value at its middle times the lit length, plus its slope
+// times the first moment of the lit length. With kColors both are weighted by the colour of glass, which is read in
+// every cell that is not in shadow.
 #ifndef TYNDALL_MARCH_GLSL
 #define TYNDALL_MARCH_GLSL
 
 #include "lib/single_scattering.glsl"
+#include "epipolar/constants.glsl"
 #include "epipolar/ray_end.glsl"
 #include "frame/counters.glsl"
 #include "frame/glass.glsl"
 #include "frame/homogeneous_medium.glsl"
+#include "frame/shadow_maps.glsl"
 #include "frame/table_light.glsl"
 #include "epipolar/sample_light.glsl"
 #include "epipolar/min_max_tree.glsl"
 #include "shared/constant_ids.h"
 
 layout(constant_id = kTreeId) const bool kTree = true;
+layout(std430, binding = 13) readonly buffer slice_lines_block { SliceLine slice_lines[]; };
+layout(std430, binding = 14) readonly buffer min_max_tree_block { uvec2 tree[]; };
 const bool kPanels = kSingle == kIntegration && !kHomogeneous;
 
 uint steps_done = 0u;

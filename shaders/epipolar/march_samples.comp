@@ -5,50 +5,30 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#include "shared/medium.h"
-#include "shared/frame_constants.h"
-#include "shared/epipolar.h"
+#define COPY_CONSTANTS
+
+#include "epipolar/constants.glsl"
+#include "epipolar/march.glsl"
+#include "epipolar/march_state.glsl"
+#include "epipolar/slices.glsl"
+#include "epipolar/work_list.glsl"
+#include "frame/picture.glsl"
 
 layout(local_size_x = kMarchGroup) in;
 
-layout(std430, binding = 0) readonly buffer medium_block { Medium stored_medium; };
-layout(std430, binding = 1) readonly buffer frame_block { FrameConstants stored_frame; };
-layout(std430, binding = 2) readonly buffer epipolar_block { EpipolarConstants stored_epipolar; };
-layout(std430, binding = 3) readonly buffer slice_lines_block { SliceLine slice_lines[]; };
-layout(std430, binding = 4) readonly buffer min_max_tree_block { uvec2 tree[]; };
-layout(binding = 5) uniform sampler2DArrayShadow shadow_maps;
-layout(binding = 6) uniform sampler3D single_rayleigh;
-layout(binding = 7) uniform sampler3D single_mie;
-layout(binding = 8) uniform sampler3D high_orders;
-layout(std430, binding = 9) buffer counters_block { uint counters[]; };
-layout(std430, binding = 10) readonly buffer slices_block { EpipolarSlice slices[]; };
-layout(std430, binding = 11) readonly buffer work_block {
+layout(std430, binding = 17) readonly buffer slices_block { EpipolarSlice slices[]; };
+layout(std430, binding = 16) readonly buffer work_block {
   WorkList work;
   uint items[];
 };
-layout(std430, binding = 12) buffer samples_block { uvec4 samples[]; };
-layout(std430, binding = 13) buffer march_states_block { vec4 states[]; };
-layout(binding = 14) uniform sampler2D scene_depth;
-layout(std430, binding = 15) writeonly buffer corrected_inscattering_block { uvec2 corrected[]; };
-layout(binding = 16) uniform sampler2DArray shadow_colors;
-layout(std430, binding = 17) buffer coarse_inscattering_block { uint coarse[]; };
-layout(std140, binding = 18) uniform cascades_block { CascadeConstants cascades[kMaxCascades]; };
-
-// main() loads these before anything else (see docs/epipolar.md).
-Medium medium;
-FrameConstants frame;
-EpipolarConstants epipolar;
+layout(std430, binding = 18) buffer samples_block { uvec4 samples[]; };
+layout(std430, binding = 19) writeonly buffer corrected_inscattering_block { uvec2 corrected[]; };
+layout(std430, binding = 20) buffer coarse_inscattering_block { uint coarse[]; };
 
 layout(push_constant) uniform Push {
   uint processing;  // kAllCascades to kPixels
   uint turn;        // kOneCascade: the cascade, counted from the first marched
 };
-
-#include "frame/picture.glsl"
-#include "epipolar/march.glsl"
-#include "epipolar/march_state.glsl"
-#include "epipolar/slices.glsl"
-#include "epipolar/work_list.glsl"
 
 void march_item(uint at) {
   bool pixels = processing == kPixels;
@@ -59,7 +39,7 @@ void march_item(uint at) {
   Sample s = unpack_sample(samples[sample_at]);
   vec2 position = vec2(pixel) + 0.5;
   if (pixels) {
-    float depth = LOAD_DEPTH(pixel);
+    float depth = load_depth(pixel);
     s.depth_m = depth == frame.sky_depth ? kSkyDepth : view_depth(frame, position, depth);
     id = uint(slice_coordinate(position) + 0.5);
     id = id >= epipolar.slices ? (epipolar.closed != 0u ? 0u : epipolar.slices - 1u) : id;
@@ -123,9 +103,9 @@ void march_item(uint at) {
 }
 
 void main() {
-  medium = stored_medium;
-  frame = stored_frame;
-  epipolar = stored_epipolar;
+  load_medium();
+  load_frame();
+  load_epipolar();
   // The dispatch has workgroups for every cascade side by side. The other modes need those of one cascade.
   bool turn_here = processing == kCascadesAside || gl_WorkGroupID.z == 0u;
   uint at = list_item(kMarchGroup);

@@ -1,7 +1,10 @@
-// The state of a ray between passes that march one cascade each. Include after declaring march_states_block with `vec4
-// states[]`.
+// The state of a ray between passes that march one cascade each.
 #ifndef TYNDALL_MARCH_STATE_GLSL
 #define TYNDALL_MARCH_STATE_GLSL
+
+#include "epipolar/march.glsl"
+
+layout(std430, binding = 15) buffer march_states_block { vec4 states[]; };
 
 const uint kStateVectors = 4u;  // kStateBytes of src/effect/resources.cpp
 

@@ -3,9 +3,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#include "shared/medium.h"
-#include "shared/frame_constants.h"
-#include "shared/epipolar.h"
+#define COPY_CONSTANTS
+
+#include "epipolar/constants.glsl"
+#include "epipolar/min_max_tree.glsl"
+#include "epipolar/work_list.glsl"
 #include "shared/constant_ids.h"
 #include "shared/params.glsl"
 
@@ -15,23 +17,14 @@ const uint kParts = kTreeBlock >> kPartLevel;  // parts per block
 layout(local_size_x = kTreeGroup * kParts) in;
 layout(constant_id = kFormatId) const uint kFormat = MinMaxFormat_unorm16;
 
-layout(std430, binding = 0) readonly buffer frame_block { FrameConstants stored_frame; };
-layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants stored_epipolar; };
-layout(std430, binding = 2) readonly buffer slice_lines_block { SliceLine slice_lines[]; };
-layout(std430, binding = 3) writeonly buffer min_max_tree_block { uint tree[]; };
-layout(binding = 4) uniform sampler2DArray shadow_depths;
+layout(std430, binding = 13) readonly buffer slice_lines_block { SliceLine slice_lines[]; };
+layout(std430, binding = 14) writeonly buffer min_max_tree_block { uint tree[]; };
+layout(binding = 15) uniform sampler2DArray shadow_depths;
 
-layout(std430, binding = 5) readonly buffer work_block {
+layout(std430, binding = 16) readonly buffer work_block {
   WorkList work;
   uint items[];
 };  // slice line << 8 | block
-
-// main() loads this before anything else (see docs/epipolar.md).
-FrameConstants frame;
-EpipolarConstants epipolar;
-
-#include "epipolar/min_max_tree.glsl"
-#include "epipolar/work_list.glsl"
 
 const uint kCells = 1u << kTreeLeafLevel;  // per leaf
 const uint kPartLeaves = 1u << (kPartLevel - kTreeLeafLevel);
@@ -119,8 +112,8 @@ vec2 build_part(uint base, SliceLine slice_line, uint cascade, uint block, uint 
 }
 
 void main() {
-  frame = stored_frame;
-  epipolar = stored_epipolar;
+  load_frame();
+  load_epipolar();
   uint thread = gl_LocalInvocationIndex;
   uint part = thread % kParts;
   uint at = list_group() * kTreeGroup + thread / kParts;

@@ -1,8 +1,8 @@
 // The end of a ray for interpolation: the surface in the depth buffer, the planet where nothing was drawn, or the sky.
-// Include after the declarations of medium and frame.
 #ifndef TYNDALL_RAY_END_GLSL
 #define TYNDALL_RAY_END_GLSL
 
+#include "frame/constants.glsl"
 #include "frame/view_ray.glsl"
 #include "frame/homogeneous_medium.glsl"
 #include "epipolar/records.glsl"

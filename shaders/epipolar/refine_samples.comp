@@ -11,9 +11,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#include "shared/medium.h"
-#include "shared/frame_constants.h"
-#include "shared/epipolar.h"
+#include "epipolar/constants.glsl"
+#include "epipolar/records.glsl"
+#include "epipolar/slices.glsl"
+#include "epipolar/work_list.glsl"
 #include "shared/constant_ids.h"
 #include "shared/params.glsl"
 
@@ -22,20 +23,14 @@ const uint kThreads = 32u;
 layout(local_size_x = kThreads) in;
 layout(constant_id = kRefinementId) const uint kRefinement = Refinement_inscattering;
 
-layout(std430, binding = 0) readonly buffer frame_block { FrameConstants frame; };
-layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants epipolar; };
-layout(std430, binding = 2) buffer slices_block { EpipolarSlice slices[]; };
-layout(std430, binding = 3) readonly buffer coarse_inscattering_block { uint coarse[]; };
-layout(std430, binding = 6) readonly buffer samples_block { uvec4 samples[]; };
-layout(std430, binding = 4) writeonly buffer interpolation_sources_block { uint sources[]; };
-layout(std430, binding = 5) buffer march_list_block {
+layout(std430, binding = 13) buffer slices_block { EpipolarSlice slices[]; };
+layout(std430, binding = 15) readonly buffer coarse_inscattering_block { uint coarse[]; };
+layout(std430, binding = 14) readonly buffer samples_block { uvec4 samples[]; };
+layout(std430, binding = 16) writeonly buffer interpolation_sources_block { uint sources[]; };
+layout(std430, binding = 17) buffer march_list_block {
   WorkList march;
   uint march_list[];
 };
-
-#include "epipolar/records.glsl"
-#include "epipolar/slices.glsl"
-#include "epipolar/work_list.glsl"
 
 const uint kWords = 64u;  // for 2048 samples
 const uint kRun = 8u;     // samples, all in one word

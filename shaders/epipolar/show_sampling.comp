@@ -2,26 +2,19 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#include "shared/medium.h"
-#include "shared/frame_constants.h"
-#include "shared/epipolar.h"
+#include "epipolar/slices.glsl"
+#include "frame/picture.glsl"
 
 layout(local_size_x = 32, local_size_y = 2) in;
 
-layout(std430, binding = 0) readonly buffer frame_block { FrameConstants frame; };
-layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants epipolar; };
-layout(std430, binding = 2) readonly buffer slices_block { EpipolarSlice slices[]; };
-layout(std430, binding = 3) readonly buffer interpolation_sources_block { uint sources[]; };
-layout(binding = 4, OUTPUT_FORMAT) uniform writeonly image2D output_color;
+layout(std430, binding = 13) readonly buffer slices_block { EpipolarSlice slices[]; };
+layout(std430, binding = 14) readonly buffer interpolation_sources_block { uint sources[]; };
 
 layout(push_constant) uniform Push { uint marched; };  // 0: interpolated samples; 1, in a later pass: marched samples
 
-#include "frame/picture.glsl"
-#include "epipolar/slices.glsl"
-
 void mark(ivec2 pixel, vec3 color) {
   if (pixel.x < 0 || pixel.y < 0 || pixel.x >= int(frame.width) || pixel.y >= int(frame.height)) return;
-  STORE_COLOR(pixel, color * dot(frame.sun_irradiance, vec3(0.333)));
+  store_color(pixel, color * dot(frame.sun_irradiance, vec3(0.333)));
 }
 
 void main() {

@@ -1,7 +1,8 @@
 // The sky next to a skyline at low slice counts, between a slice in the sky and one that is behind the ground there.
-// Include after unwarp.glsl.
 #ifndef TYNDALL_SKYLINE_GLSL
 #define TYNDALL_SKYLINE_GLSL
+
+#include "epipolar/unwarp.glsl"
 
 // The contribution of a slice to a position in the sky. The slice may be behind the ground there.
 struct SkyOnSlice {

@@ -5,34 +5,26 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#include "shared/medium.h"
-#include "shared/frame_constants.h"
-#include "shared/epipolar.h"
-
-layout(local_size_x = 64) in;
-
-layout(std430, binding = 0) readonly buffer frame_block { FrameConstants stored_frame; };
-layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants stored_epipolar; };
-layout(std430, binding = 2) readonly buffer slices_block { EpipolarSlice slices[]; };
-layout(std430, binding = 3) writeonly buffer slice_lines_block { SliceLine slice_lines[]; };
-layout(std430, binding = 4) buffer tree_blocks_block {
-  WorkList trees;
-  uint tree_list[];
-};
-layout(std430, binding = 5) readonly buffer march_list_block {
-  WorkList march;
-  uint march_list[];
-};
-layout(std430, binding = 6) readonly buffer samples_block { uvec4 samples[]; };
-layout(std140, binding = 7) uniform cascades_block { CascadeConstants cascades[kMaxCascades]; };
-
-// main() loads this before anything else (see docs/epipolar.md).
-FrameConstants frame;
-EpipolarConstants epipolar;
+#define COPY_CONSTANTS
 
 #include "epipolar/slices.glsl"
 #include "epipolar/work_list.glsl"
+#include "frame/shadow_maps.glsl"
 #include "frame/view_ray.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(std430, binding = 13) readonly buffer slices_block { EpipolarSlice slices[]; };
+layout(std430, binding = 15) writeonly buffer slice_lines_block { SliceLine slice_lines[]; };
+layout(std430, binding = 16) buffer tree_blocks_block {
+  WorkList trees;
+  uint tree_list[];
+};
+layout(std430, binding = 17) readonly buffer march_list_block {
+  WorkList march;
+  uint march_list[];
+};
+layout(std430, binding = 14) readonly buffer samples_block { uvec4 samples[]; };
 
 // Returns cells per metre of view depth along the ray through a position, and their direction.
 vec2 texels_per_depth(mat4 shadow_from_world, vec2 position) {
@@ -88,8 +80,8 @@ SliceLine slice_line_of(EpipolarSlice slice, uint cascade, float reach_cells) {
 }
 
 void main() {
-  frame = stored_frame;
-  epipolar = stored_epipolar;
+  load_frame();
+  load_epipolar();
   uint id = gl_GlobalInvocationID.x;
   uint cascade = epipolar.first_cascade + gl_GlobalInvocationID.y;
   if (id >= epipolar.slices || cascade >= epipolar.cascades) return;

@@ -3,17 +3,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#include "shared/medium.h"
-#include "shared/frame_constants.h"
-#include "shared/epipolar.h"
+#include "epipolar/slices.glsl"
 
 layout(local_size_x = 64) in;
 
-layout(std430, binding = 0) readonly buffer frame_block { FrameConstants frame; };
-layout(std430, binding = 1) readonly buffer epipolar_block { EpipolarConstants epipolar; };
-layout(std430, binding = 2) writeonly buffer slices_block { EpipolarSlice slices[]; };
-
-#include "epipolar/slices.glsl"
+layout(std430, binding = 13) writeonly buffer slices_block { EpipolarSlice slices[]; };
 
 void main() {
   uint id = gl_GlobalInvocationID.x;

@@ -4,29 +4,22 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#include "shared/medium.h"
-#include "shared/frame_constants.h"
-#include "shared/epipolar.h"
-#include "lib/phase.glsl"
+#define COPY_CONSTANTS
+#define UNIFORM_CONSTANTS
+
+#include "epipolar/constants.glsl"
+#include "epipolar/ray_end.glsl"
+#include "epipolar/slices.glsl"
+#include "frame/picture.glsl"
 #include "lib/optical_depth.glsl"
+#include "lib/phase.glsl"
 #include "lib/table_values.glsl"
 
 layout(local_size_x = 32, local_size_y = 2) in;
 
-layout(std430, binding = 0) readonly buffer medium_block { Medium stored_medium; };
-layout(std140, binding = 1) uniform frame_block { FrameConstants frame; };
-layout(std140, binding = 2) uniform epipolar_block { EpipolarConstants epipolar; };
-layout(std430, binding = 3) readonly buffer slices_block { EpipolarSlice slices[]; };
-layout(std430, binding = 4) writeonly buffer samples_block { uvec4 samples[]; };
-layout(std430, binding = 5) writeonly buffer coarse_inscattering_block { uint coarse[]; };
-layout(binding = 6) uniform sampler2D scene_depth;
-
-// main() loads this before anything else (see docs/epipolar.md).
-Medium medium;
-
-#include "frame/picture.glsl"
-#include "epipolar/ray_end.glsl"
-#include "epipolar/slices.glsl"
+layout(std430, binding = 13) readonly buffer slices_block { EpipolarSlice slices[]; };
+layout(std430, binding = 14) writeonly buffer samples_block { uvec4 samples[]; };
+layout(std430, binding = 15) writeonly buffer coarse_inscattering_block { uint coarse[]; };
 
 // Returns device depth at a position between pixels. On one surface it is the depth of the surface, because device
 // depth is affine in the picture. At a depth discontinuity it is that of the nearest pixel, because averaging yields a
@@ -39,7 +32,7 @@ float depth_at(vec2 position) {
   vec2 part = place - corner;
   // The four surrounding pixels: x lower left, y lower right, z upper right, w upper left. Beyond the picture the
   // outermost pixels are repeated.
-  vec4 d = GATHER_DEPTH(ivec2(corner));
+  vec4 d = gather_depth(ivec2(corner));
   d = corner.x < 0.0 ? d.yyzz : corner.x >= last.x ? d.xxww : d;
   d = corner.y < 0.0 ? d.xyyx : corner.y >= last.y ? d.wzzw : d;
   float a = view_depth(frame, position, min(min(d.x, d.y), min(d.z, d.w)));
@@ -51,7 +44,7 @@ float depth_at(vec2 position) {
 }
 
 void main() {
-  medium = stored_medium;
+  load_medium();
   uint i = gl_GlobalInvocationID.x;
   uint id = gl_GlobalInvocationID.y;
   if (i >= epipolar.samples || id >= epipolar.slices) return;

@@ -1,10 +1,11 @@
 // The positions of slices and samples in the picture, after Yusov, "High Performance Outdoor Light Scattering Using
 // Epipolar Sampling" (2013), section 1.2. There are two differences. Slices end only on the sides of the border where
 // lines from the epipole leave the picture, and they are evenly spaced along these sides. The epipole is given in
-// homogeneous coordinates, so a sun at a right angle to the view needs no special case. Include after declaring
-// epipolar (EpipolarConstants) and frame.
+// homogeneous coordinates, so a sun at a right angle to the view needs no special case.
 #ifndef TYNDALL_SLICES_GLSL
 #define TYNDALL_SLICES_GLSL
+
+#include "epipolar/constants.glsl"
 
 // Returns a direction that points away from the epipole. Its length is arbitrary but exceeds 1e-20.
 vec2 direction_from_epipole(vec2 position) {

@@ -5,32 +5,15 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#include "shared/medium.h"
-#include "shared/frame_constants.h"
-#include "shared/epipolar.h"
+#define UNIFORM_CONSTANTS
+
+#include "epipolar/block.glsl"
+#include "epipolar/downscaled.glsl"
+#include "epipolar/store_downscaled.glsl"
+#include "epipolar/unwarp.glsl"
+#include "frame/picture.glsl"
 
 layout(local_size_x = 64) in;  // along rows, because CPU devices store images row by row
-
-layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
-layout(std140, binding = 1) uniform frame_block { FrameConstants frame; };
-layout(std140, binding = 2) uniform epipolar_block { EpipolarConstants epipolar; };
-layout(std430, binding = 3) readonly buffer slices_block { EpipolarSlice slices[]; };
-layout(std430, binding = 4) readonly buffer samples_block { uvec4 samples[]; };
-layout(binding = 5) uniform sampler2D scene_color;
-layout(binding = 6) uniform sampler2D scene_depth;
-layout(binding = 7, OUTPUT_FORMAT) uniform writeonly image2D output_color;
-layout(std430, binding = 8) buffer discontinuity_blocks_block {
-  WorkList discontinuities;
-  uint discontinuity_blocks[];
-};
-
-layout(std430, binding = 9) writeonly buffer downscaled_inscattering_block { vec4 downscaled[]; };
-
-#include "frame/picture.glsl"
-#include "epipolar/unwarp.glsl"
-#include "epipolar/downscaled.glsl"
-const int kBlockWidth = int(kUnwarpWidth);
-#include "epipolar/block.glsl"
 
 // With more samples per pixel, a block on the ground extends too far beyond its four samples.
 const float kMaxSamplesPerPixel = 0.75;
@@ -159,16 +142,16 @@ void main() {
     b.extinction *= b.extinction;
     if (own) b.extinction = max(extinction.corner + off.x * extinction.per_x + off.y * extinction.per_y, vec3(0.0));
     if (kDownscale > 1) {
-      STORE_DOWNSCALED(place[k], own_m, b);
+      store_downscaled(place[k], own_m, b.source, b.extinction);
       continue;
     }
-    vec3 background = LOAD_COLOR(pixel);
+    vec3 background = load_color(pixel);
     vec3 color;
     if (kBlockAttenuation) {
       color = compose(b, attenuation_near(middle_of_block, optical_depth_at(b.extinction, own_m)), background);
     } else {
       color = compose(b, vec2(pixel) + 0.5, own_m, block.visible_m[k], block.sky[k], background);
     }
-    STORE_COLOR(pixel, color);
+    store_color(pixel, color);
   }
 }

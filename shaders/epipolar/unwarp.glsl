@@ -1,8 +1,7 @@
 // Interpolates a position of the picture between four samples, two on each of two slices. The weights are bilinear and
 // decrease with the difference in depth (Yusov 2013, section 1.7). The mean source function and the mean extinction
 // coefficient are interpolated; in-scattering follows from them and from the depth of the pixel itself. A sample at
-// another depth is therefore a good substitute if there is none at the depth of the pixel. Include after declaring
-// medium, frame, epipolar, slices and samples.
+// another depth is therefore a good substitute if there is none at the depth of the pixel.
 #ifndef TYNDALL_UNWARP_GLSL
 #define TYNDALL_UNWARP_GLSL
 
@@ -14,6 +13,8 @@
 
 layout(constant_id = kExtinctionId) const uint kExtinction = Extinction_epipolar;
 layout(constant_id = kSparsityId) const uint kSparsity = kSparsityNone;
+layout(std430, binding = 13) readonly buffer slices_block { EpipolarSlice slices[]; };
+layout(std430, binding = 14) readonly buffer samples_block { uvec4 samples[]; };
 
 const bool kSkyline = kSparsity >= kSparsitySkyline && !kHomogeneous;
 const bool kSparse = kSparsity == kSparsityAll && !kHomogeneous;

@@ -3,35 +3,21 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#include "shared/medium.h"
-#include "shared/frame_constants.h"
-#include "shared/epipolar.h"
+#define UNIFORM_CONSTANTS
+
+#include "epipolar/correction_list.glsl"
+#include "epipolar/downscaled.glsl"
+#include "epipolar/skyline.glsl"
+#include "epipolar/store_downscaled.glsl"
+#include "epipolar/unwarp.glsl"
+#include "frame/picture.glsl"
 
 layout(local_size_x = kMarchGroup) in;
 
-layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
-layout(std140, binding = 1) uniform frame_block { FrameConstants frame; };
-layout(std140, binding = 2) uniform epipolar_block { EpipolarConstants epipolar; };
-layout(std430, binding = 3) readonly buffer slices_block { EpipolarSlice slices[]; };
-layout(std430, binding = 4) readonly buffer samples_block { uvec4 samples[]; };
-layout(binding = 5) uniform sampler2D scene_color;
-layout(binding = 6) uniform sampler2D scene_depth;
-layout(binding = 7, OUTPUT_FORMAT) uniform writeonly image2D output_color;
-layout(std430, binding = 8) readonly buffer work_block {
+layout(std430, binding = 16) readonly buffer work_block {
   WorkList work;
   uint items[];
 };
-layout(std430, binding = 9) buffer correction_list_block {
-  WorkList corrections;
-  uint correction_list[];
-};
-layout(std430, binding = 10) writeonly buffer downscaled_inscattering_block { vec4 downscaled[]; };
-
-#include "frame/picture.glsl"
-#include "epipolar/unwarp.glsl"
-#include "epipolar/downscaled.glsl"
-#include "epipolar/correction_list.glsl"
-#include "epipolar/skyline.glsl"
 
 // Returns whether a pixel is next to the limb as seen from above the atmosphere and must be marched: its ray grazes the
 // planet, and the samples around it do not all end on the same side of the limb. In-scattering changes there by a large
@@ -52,7 +38,7 @@ void unwarp_pixel(uint block, uint k) {
   if (any(greaterThanEqual(place, computed_size()))) return;
   ivec2 pixel = kDownscale == 1 ? place : pixel_of_downscaled(place);
   vec2 position = vec2(pixel) + 0.5;
-  float depth = LOAD_DEPTH(pixel);
+  float depth = load_depth(pixel);
   bool sky = depth == frame.sky_depth;
   float visible_m = view_depth(frame, position, depth);
   float depth_m = sky ? sky_depth_m(ray_direction(frame, position)) : visible_m;
@@ -65,10 +51,10 @@ void unwarp_pixel(uint block, uint k) {
   if (skyline || kSparse)
     b.extinction = extinction_of(max(own_optical_depth(position, visible_m, sky), vec3(0.0)), depth_m);
   if (kDownscale == 1) {
-    vec3 background = LOAD_COLOR(pixel);
-    STORE_COLOR(pixel, compose(b, position, depth_m, visible_m, sky, background));
+    vec3 background = load_color(pixel);
+    store_color(pixel, compose(b, position, depth_m, visible_m, sky, background));
   } else {
-    STORE_DOWNSCALED(place, depth_m, b);
+    store_downscaled(place, depth_m, b.source, b.extinction);
   }
   if (b.weight < (sky ? epipolar.min_weight_sky : epipolar.min_weight) || at_limb(a, position)) list_correction(pixel);
 }

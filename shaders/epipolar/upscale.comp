@@ -5,31 +5,15 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#include "shared/medium.h"
-#include "shared/frame_constants.h"
-#include "shared/epipolar.h"
+#define UNIFORM_CONSTANTS
+#define BLOCK_WIDTH 2
+
+#include "epipolar/block.glsl"
+#include "epipolar/downscaled_around.glsl"
+#include "epipolar/unwarp.glsl"
+#include "frame/picture.glsl"
 
 layout(local_size_x = 64) in;  // along rows, as in the memory layout of images
-
-layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
-layout(std140, binding = 1) uniform frame_block { FrameConstants frame; };
-layout(std140, binding = 2) uniform epipolar_block { EpipolarConstants epipolar; };
-layout(std430, binding = 3) readonly buffer slices_block { EpipolarSlice slices[]; };
-layout(std430, binding = 4) readonly buffer samples_block { uvec4 samples[]; };
-layout(std430, binding = 5) readonly buffer downscaled_inscattering_block { vec4 downscaled[]; };
-layout(binding = 6) uniform sampler2D scene_color;
-layout(binding = 7) uniform sampler2D scene_depth;
-layout(binding = 8, OUTPUT_FORMAT) uniform writeonly image2D output_color;
-layout(std430, binding = 9) buffer discontinuity_blocks_block {
-  WorkList discontinuities;
-  uint discontinuity_blocks[];
-};
-
-#include "frame/picture.glsl"
-#include "epipolar/unwarp.glsl"
-#include "epipolar/downscaled_around.glsl"
-const int kBlockWidth = 2;
-#include "epipolar/block.glsl"
 
 // Multiple of the refinement threshold within which depths belong to one slope. A slope is even between buffer pixels,
 // regardless of depth_nearness().
@@ -62,10 +46,10 @@ void main() {
     ivec2 pixel = block.pixel[k];
     vec2 position = vec2(pixel) + 0.5;
     vec2 own_part = part + vec2(offset_in_block(k)) / float(kDownscale);
-    vec3 background = LOAD_COLOR(pixel);
+    vec3 background = load_color(pixel);
     float own_m = scene ? block.visible_m[k] : kSkyDepth;
     vec3 color = compose(blend_downscaled(near, bilinear_weights(own_part)), position, own_m, block.visible_m[k],
                          block.sky[k], background);
-    STORE_COLOR(pixel, color);
+    store_color(pixel, color);
   }
 }

@@ -3,34 +3,19 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#include "shared/medium.h"
-#include "shared/frame_constants.h"
-#include "shared/epipolar.h"
+#define UNIFORM_CONSTANTS
+
+#include "epipolar/correction_list.glsl"
+#include "epipolar/downscaled_around.glsl"
+#include "epipolar/unwarp.glsl"
+#include "frame/picture.glsl"
 
 layout(local_size_x = kMarchGroup) in;
 
-layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
-layout(std140, binding = 1) uniform frame_block { FrameConstants frame; };
-layout(std140, binding = 2) uniform epipolar_block { EpipolarConstants epipolar; };
-layout(std430, binding = 3) readonly buffer slices_block { EpipolarSlice slices[]; };
-layout(std430, binding = 4) readonly buffer samples_block { uvec4 samples[]; };
-layout(binding = 5) uniform sampler2D scene_color;
-layout(binding = 6) uniform sampler2D scene_depth;
-layout(binding = 7, OUTPUT_FORMAT) uniform writeonly image2D output_color;
-layout(std430, binding = 8) readonly buffer work_block {
+layout(std430, binding = 16) readonly buffer work_block {
   WorkList work;
   uint items[];
 };
-layout(std430, binding = 9) buffer correction_list_block {
-  WorkList corrections;
-  uint correction_list[];
-};
-layout(std430, binding = 10) readonly buffer downscaled_inscattering_block { vec4 downscaled[]; };
-
-#include "frame/picture.glsl"
-#include "epipolar/unwarp.glsl"
-#include "epipolar/downscaled_around.glsl"
-#include "epipolar/correction_list.glsl"
 
 // A pixel with a smaller sum of weights is interpolated from the slices.
 const float kMinUpscaledWeight = 0.1;
@@ -39,7 +24,7 @@ void upscale_pixel(uint block, uint k) {
   ivec2 pixel = ivec2((block & 0xFFFFu) + (k & 1u), (block >> 16u) + (k >> 1u));
   if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height)) return;
   vec2 position = vec2(pixel) + 0.5;
-  float depth = LOAD_DEPTH(pixel);
+  float depth = load_depth(pixel);
   bool sky = depth == frame.sky_depth;
   float visible_m = view_depth(frame, position, depth);
   float depth_m = sky ? sky_depth_m(ray_direction(frame, position)) : visible_m;
@@ -52,8 +37,8 @@ void upscale_pixel(uint block, uint k) {
   Blend b = blend_downscaled(near, w / max(sum, 1e-9));
   Blend of_slices = blend(around(position, depth_m), position);
   if (sum < kMinUpscaledWeight) b = of_slices;
-  vec3 background = LOAD_COLOR(pixel);
-  STORE_COLOR(pixel, compose(b, position, depth_m, visible_m, sky, background));
+  vec3 background = load_color(pixel);
+  store_color(pixel, compose(b, position, depth_m, visible_m, sky, background));
   if (sum < kMinUpscaledWeight && b.weight < epipolar.min_weight) list_correction(pixel);
 }
 

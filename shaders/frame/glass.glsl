@@ -1,8 +1,11 @@
-// The colour of sunlight behind stained glass. Include after declaring `frame` and the sampler2DArray shadow_colors.
+// The colour of sunlight behind stained glass.
 #ifndef TYNDALL_GLASS_GLSL
 #define TYNDALL_GLASS_GLSL
 
+#include "frame/constants.glsl"
 #include "frame/modes.glsl"
+
+layout(binding = 10) uniform sampler2DArray shadow_colors;
 
 // Returns the colour at a point of a cascade's map and a depth in it. Alpha may hold the depth of the glass nearest to
 // the sun (FrameInputs::shadow_color_depths); light in front of that glass is not coloured. Without such depths,

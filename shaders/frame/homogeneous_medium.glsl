@@ -3,10 +3,10 @@
 //   L = E (beta_R p_R + beta_M p_M) / sigma (exp(-sigma a) - exp(-sigma b))
 // per channel. The factors before the bracket depend on the direction only. They are left out along the ray and applied
 // once per pixel. docs/homogeneous_medium.md has the equations and their limits.
-// Include after declaring `medium` and `frame`.
 #ifndef TYNDALL_HOMOGENEOUS_MEDIUM_GLSL
 #define TYNDALL_HOMOGENEOUS_MEDIUM_GLSL
 
+#include "frame/constants.glsl"
 #include "frame/view_ray.glsl"
 #include "shared/constant_ids.h"
 

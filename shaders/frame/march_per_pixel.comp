@@ -7,35 +7,19 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#include "shared/medium.h"
-#include "shared/frame_constants.h"
-#include "lib/single_scattering.glsl"
-#include "frame/view_ray.glsl"
+#define COPY_CONSTANTS
 
-layout(local_size_x = 8, local_size_y = 8) in;
-
-layout(std430, binding = 0) readonly buffer medium_block { Medium stored_medium; };
-layout(std430, binding = 1) readonly buffer frame_block { FrameConstants stored_frame; };
-layout(binding = 2) uniform sampler2D scene_color;
-layout(binding = 3) uniform sampler2D scene_depth;
-layout(binding = 4) uniform sampler2DArrayShadow shadow_maps;
-layout(binding = 5, OUTPUT_FORMAT) uniform writeonly image2D output_color;
-layout(binding = 6) uniform sampler3D single_rayleigh;
-layout(binding = 7) uniform sampler3D single_mie;
-layout(binding = 8) uniform sampler3D high_orders;
-layout(std430, binding = 9) buffer counters_block { uint counters[]; };
-layout(binding = 10) uniform sampler2DArray shadow_colors;
-layout(std140, binding = 11) uniform cascades_block { CascadeConstants cascades[kMaxCascades]; };
-
-// main() loads both before anything else; docs/epipolar.md gives the reason.
-Medium medium;
-FrameConstants frame;
-
+#include "frame/constants.glsl"
 #include "frame/counters.glsl"
 #include "frame/glass.glsl"
 #include "frame/homogeneous_medium.glsl"
 #include "frame/picture.glsl"
+#include "frame/shadow_maps.glsl"
 #include "frame/table_light.glsl"
+#include "frame/view_ray.glsl"
+#include "lib/single_scattering.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
 
 const int kReadsPerStep = 8;  // shadow-map reads per evaluation of the medium
 const int kMaxReads = 60000;  // per cascade: some CPU devices end a loop after 65 535 iterations
@@ -217,12 +201,12 @@ vec3 inscattering(Ray ray, float start, float end) {
 }
 
 void main() {
-  medium = stored_medium;
-  frame = stored_frame;
+  load_medium();
+  load_frame();
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height)) return;
-  vec3 background = LOAD_COLOR(pixel);
-  float depth = LOAD_DEPTH(pixel);
+  vec3 background = load_color(pixel);
+  float depth = load_depth(pixel);
   Ray ray = view_ray(frame, pixel, depth);
   float start, end;
   vec3 inscattered = vec3(0.0);
@@ -239,7 +223,7 @@ void main() {
   }
   vec3 color = inscattered * frame.sun_irradiance;
   if (frame.only == 0u) color += background * path_transmittance;
-  STORE_COLOR(pixel, color);
+  store_color(pixel, color);
   count(kSamplesMarched, 1u);
   count(kMarchSteps, steps_done);
   count(kShadowFetches, reads_done);

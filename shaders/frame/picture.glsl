@@ -1,17 +1,27 @@
-// Access to the caller's images. A frame covers a rectangle of each image. Pixels are counted from the rectangle's
-// upper left corner. Include after declaring `frame` and the images that the shader uses. These are macros so that a
-// shader need not declare images that it does not use.
+// The caller's images. A frame covers a rectangle of each image. Pixels are counted from the rectangle's upper left
+// corner.
 #ifndef TYNDALL_PICTURE_GLSL
 #define TYNDALL_PICTURE_GLSL
 
-#define LOAD_COLOR(pixel) texelFetch(scene_color, (pixel) + frame.color_offset, 0).rgb
-#define LOAD_DEPTH(pixel) texelFetch(scene_depth, (pixel) + frame.depth_offset, 0).r
-#define STORE_COLOR(pixel, color) imageStore(output_color, (pixel) + frame.output_offset, vec4(color, 1.0))
+#include "frame/constants.glsl"
+
+layout(binding = 3) uniform sampler2D scene_color;
+layout(binding = 4) uniform sampler2D scene_depth;
+
+vec3 load_color(ivec2 pixel) { return texelFetch(scene_color, pixel + frame.color_offset, 0).rgb; }
+float load_depth(ivec2 pixel) { return texelFetch(scene_depth, pixel + frame.depth_offset, 0).r; }
 
 // Gathers the depths of the 2 x 2 pixels whose upper left one is `corner`, in the order of textureGather: lower left,
 // lower right, upper right, upper left. Outside the image its border pixels are repeated. Outside the rectangle but
 // inside the image, the image's own depths are returned.
-#define GATHER_DEPTH(corner) \
-  textureGather(scene_depth, (vec2((corner) + frame.depth_offset) + 1.0) / vec2(textureSize(scene_depth, 0)))
+vec4 gather_depth(ivec2 corner) {
+  return textureGather(scene_depth, (vec2(corner + frame.depth_offset) + 1.0) / vec2(textureSize(scene_depth, 0)));
+}
+
+#ifdef OUTPUT_FORMAT  // defined by the build for shaders that write the output
+layout(binding = 5, OUTPUT_FORMAT) uniform writeonly image2D output_color;
+
+void store_color(ivec2 pixel, vec3 color) { imageStore(output_color, pixel + frame.output_offset, vec4(color, 1.0)); }
+#endif
 
 #endif

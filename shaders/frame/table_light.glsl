@@ -1,10 +1,11 @@
 // In-scattering from the scattering tables with shadows, for scattering.single = table and scattering.multiple =
-// occluded. Include after declaring `medium`, `frame` and the tables.
+// occluded.
 // kContiguous is the method of Yusov, "High Performance Outdoor Light Scattering Using Epipolar Sampling" (2013),
 // section 2.4: one contiguous section from the first lit point. kEach evaluates every lit section; it is ours.
 #ifndef TYNDALL_TABLE_LIGHT_GLSL
 #define TYNDALL_TABLE_LIGHT_GLSL
 
+#include "frame/constants.glsl"
 #include "frame/modes.glsl"
 #include "frame/table_lookup.glsl"
 #include "frame/view_ray.glsl"

@@ -1,12 +1,15 @@
-// Look-ups in the scattering tables. Include after declaring
-//   uniform sampler3D single_rayleigh, single_mie, high_orders;   linear, clamped
-// Radiances are relative to the sun's irradiance above the atmosphere [1/sr].
+// Look-ups in the scattering tables. Radiances are relative to the sun's irradiance above the atmosphere [1/sr].
 #ifndef TYNDALL_TABLE_LOOKUP_GLSL
 #define TYNDALL_TABLE_LOOKUP_GLSL
 
 #include "lib/phase.glsl"
 #include "lib/table_mapping.glsl"
 #include "lib/table_values.glsl"
+
+// Filtered linearly, and clamped.
+layout(binding = 6) uniform sampler3D single_rayleigh;
+layout(binding = 7) uniform sampler3D single_mie;
+layout(binding = 8) uniform sampler3D high_orders;
 
 // A ray from a point within the atmosphere to its end: the ground if `below`, else the top of the atmosphere.
 struct TableRay {

@@ -6,6 +6,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #include "lib/single_scattering.glsl"
+#include "frame/table_lookup.glsl"
 #include "shared/probe.h"
 #include "shared/tables.h"
 #include "tyndall/light_tables.glsl"
@@ -21,12 +22,7 @@ layout(std430, binding = 3) readonly buffer setup_block {
   uint steps;             // of that integration, see single_scattering()
   uint visible_ground;    // 1: includes the light that the ground reflects at the ray's end
 };
-layout(binding = 4) uniform sampler3D single_rayleigh;
-layout(binding = 5) uniform sampler3D single_mie;
-layout(binding = 6) uniform sampler3D high_orders;
-layout(binding = 7) uniform sampler2D sky_irradiance;
-
-#include "frame/table_lookup.glsl"
+layout(binding = 4) uniform sampler2D sky_irradiance;
 
 vec3 sky_light(float h, float mu_s) {
   vec2 uv = light_table_uv(h, mu_s, medium.planet_radius_m, medium.atmosphere_height_m);

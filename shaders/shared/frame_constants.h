@@ -1,6 +1,9 @@
 // The constants of one frame. src/effect/frame_constants.cpp derives them; the caller never sets them. They are read
 // from storage buffers (std430) and uniform buffers (std140; docs/epipolar.md says which). The layouts agree because
 // every vec3 is followed by a four-byte member and every structure is a multiple of 16 bytes.
+#ifndef TYNDALL_SHARED_FRAME_CONSTANTS
+#define TYNDALL_SHARED_FRAME_CONSTANTS
+
 #include "shared/tables.h"
 
 const uint kMaxCascades = 8u;
@@ -69,3 +72,5 @@ struct FrameConstants {
   TableShape tables;
   HomogeneousMedium homogeneous;
 };
+
+#endif
