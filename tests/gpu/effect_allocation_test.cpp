@@ -1,4 +1,4 @@
-// Recording allocates no memory on the host.
+// Recording allocates no memory on the host, nor do changes of parameters that affect only the next frame's constants.
 #include <atomic>
 #include <cstdlib>
 #include <new>
@@ -66,6 +66,14 @@ TEST(EffectAllocation, RecordingAllocatesNothing) {
     EXPECT_FALSE(effect.value().timings(i).empty());
     EXPECT_EQ(allocations, before);
   }
+  // Nor does a change of parameters that only the constants of the next frame depend on.
+  Params other_constants = effect.value().params();
+  other_constants.scattering.scale *= 2.0F;
+  other_constants.epipolar.refinement_threshold *= 2.0F;
+  const std::size_t before_change = allocations;
+  const bool changed = effect.value().set_params(other_constants).ok();
+  EXPECT_EQ(allocations, before_change);
+  EXPECT_TRUE(changed);
   // Nor does taking tables from a buffer, and giving them.
   Result<Effect> other = Effect::create(info, desc, {});
   ASSERT_OK(other);

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -33,7 +34,7 @@ struct Mode {
   std::vector<const char*> settings;
 };
 const Mode kModes[] = {
-    {"default", "Default settings", {}},
+    {"default", "default settings", {}},
     {"multi_pass", "`shadows.cascade_processing=multi-pass`", {"shadows.cascade_processing=multi-pass"}},
     {"multi_pass_instanced",
      "`shadows.cascade_processing=multi-pass-instanced`",
@@ -98,12 +99,15 @@ std::string work_of(const Step& step) {
   return out;
 }
 
+// Returns what a step reads or writes, each resource once, in the order of resources.def.
 std::string names_of(const Step& step, bool writes) {
-  std::string out;
+  std::set<Resource> resources;
   for (const Use& use : uses_of(step)) {
-    const bool counts = writes ? (use.access & kWriteAccess) != 0 : (use.access & ~kWriteAccess) != 0;
-    if (counts) out += (out.empty() ? "`" : ", `") + std::string(name_of(use.resource)) + "`";
+    const VkAccessFlags access = writes ? use.access & kWriteAccess : use.access & ~kWriteAccess;
+    if (access != 0) resources.insert(use.resource);
   }
+  std::string out;
+  for (const Resource resource : resources) out += (out.empty() ? "`" : ", `") + std::string(name_of(resource)) + "`";
   return out;
 }
 
