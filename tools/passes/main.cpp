@@ -193,12 +193,12 @@ Result<Params> params_of(const Mode& mode) {
 }
 
 void add_resources(std::string& out, const Lifetimes& frame, const Lifetimes& build) {
-  out +=
-      "\n## Resources\n\n"
-      "The name is that of the binding in GLSL, of memory reports and of debuggers. The lifetime says which passes "
-      "the\n"
-      "contents are kept for; it is that of a frame with the default settings or, for resources that only other modes\n"
-      "use, of those modes. Frame buffers are allocated once and used again by the next frame.\n\n";
+  out += "\n## Resources\n\n"
+         "The name is that of the binding in GLSL, of memory reports and of debuggers. The lifetime names the first "
+         "pass that\n"
+         "writes the contents and the last that reads them, in a frame with the default settings or, for resources "
+         "that only\n"
+         "other modes use, in those modes. Frame buffers are allocated once and used again by the next frame.\n\n";
   add_row(out, {"resource", "format", "resolution", "lifetime", "MiB"});
   out += "|---|---|---|---|---|\n";
   EffectDesc desc;
