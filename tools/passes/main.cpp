@@ -227,7 +227,7 @@ Result<std::string> page(const std::string& folder) {
       "number of\n"
       "invocations, or the list whose items an indirect dispatch processes. \"Cost\" is the share of the effect's "
       "time, or of\n"
-      "the build's, on the CPU device llvmpipe with two cores; passes with one name are measured together. Steps "
+      "the build's, on the CPU device llvmpipe; passes with one name are measured together. Steps "
       "without a\n"
       "name only reset, clear or copy. [epipolar.md](../epipolar.md) and [tables.md](../tables.md) describe the "
       "methods.\n";
