@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <numbers>
 
@@ -36,18 +35,12 @@ Params small_planet() {
 
 class GpuScene : public SharedSceneTest {
  protected:
-  // An elevation file of a square of `n` samples, written as text; removed at the end.
+  // An elevation file that is removed at the end; see write_grid().
   std::string elevation_file(int n, double cell_m, const std::function<double(double x, double z)>& height) {
     file_ = std::filesystem::temp_directory_path() /
             ("tyndall-scene-" + std::to_string(reinterpret_cast<std::uintptr_t>(this)) + "-" +
              std::to_string(::testing::UnitTest::GetInstance()->random_seed()) + ".asc");
-    std::ofstream out(file_);
-    out << "ncols " << n << "\nnrows " << n << "\nxllcorner 0\nyllcorner 0\ncellsize " << cell_m << "\n";
-    for (int row = 0; row < n; ++row) {
-      for (int column = 0; column < n; ++column) {
-        out << height((column - 0.5 * n) * cell_m, (row - 0.5 * n) * cell_m) << (column + 1 < n ? " " : "\n");
-      }
-    }
+    write_grid(file_, n, cell_m, height);
     return file_.string();
   }
   void TearDown() override {

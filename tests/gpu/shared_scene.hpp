@@ -2,6 +2,9 @@
 // scene takes seconds; scene_test.cpp shows that a scene that has been changed draws what a new one would.
 #pragma once
 
+#include <filesystem>
+#include <fstream>
+#include <functional>
 #include <memory>
 #include <utility>
 
@@ -37,5 +40,17 @@ class SharedSceneTest : public GpuTest {
  private:
   static inline std::unique_ptr<Scene> shared_;
 };
+
+// Writes an elevation file as text: a square of `n` samples around the origin, x to the east and z to the south [m].
+inline void write_grid(const std::filesystem::path& path, int n, double cell_m,
+                       const std::function<double(double x, double z)>& height) {
+  std::ofstream out(path);
+  out << "ncols " << n << "\nnrows " << n << "\nxllcorner 0\nyllcorner 0\ncellsize " << cell_m << "\n";
+  for (int row = 0; row < n; ++row) {
+    for (int column = 0; column < n; ++column) {
+      out << height((column - 0.5 * n) * cell_m, (row - 0.5 * n) * cell_m) << (column + 1 < n ? " " : "\n");
+    }
+  }
+}
 
 }  // namespace tyndall::scene
