@@ -56,7 +56,7 @@ struct DeviceInfo {
   void* replace_shader_user = nullptr;
 };
 
-// What a device must be created with: Vulkan 1.3 and these extensions; no optional feature.
+// The requirements for a device: Vulkan 1.3 and these extensions, but no optional feature.
 struct Requirements {
   std::uint32_t api_version;
   std::span<const char* const> device_extensions;
@@ -84,8 +84,8 @@ struct EffectDesc {
   bool shadow_colors = false;  // frames may have FrameInputs::shadow_colors; needs more pipelines
   bool timings = false;        // measure each pass with timestamps
   bool counters = false;       // count what the passes do; see Effect::counters()
-  // [1; 64] - threads that create pipelines during create(), set_params() and prepare_pipelines(), the calling one
-  // included. With more than one, replace_shader is called by several threads at once.
+  // [1; 64] - threads that create pipelines in create(), set_params() and prepare_pipelines(), including the calling
+  // one. With more than one, replace_shader is called by several threads at once.
   std::uint32_t pipeline_threads = 1;
   // Reports suspicious inputs of a frame through DeviceInfo::message: once, and again only after they were right.
   bool check_inputs = true;

@@ -13,8 +13,8 @@
 
 namespace tyndall {
 
-// What a change of a parameter requires besides other constants of the next frame (Frame): other pipelines; other
-// buffers, possibly with other pipelines (Resources); or new tables. Effect::set_params() prepares just that.
+// The part of the effect that must be replaced when a parameter changes, besides the constants of the next frame
+// (Frame): pipelines, buffers (Resources, possibly with pipelines), or tables. Effect::set_params() prepares only that.
 enum class Affects : std::uint32_t { Frame, Pipeline, Resources, Tables };
 
 enum class ParamType : std::uint32_t { float32, uint32, flag, enumeration, vec3, uvec4, string, dvec3 };

@@ -19,7 +19,7 @@ layout(std430, binding = 18) buffer discontinuity_blocks_block {
   uint discontinuity_blocks[];
 };
 
-// What pixels show, as bits.
+// The contents of pixels, as bits.
 const uint kScene = 1u;
 const uint kPlanet = 2u;  // nothing was drawn, and the ray hits the planet
 const uint kSky = 4u;

@@ -90,7 +90,7 @@ void march_item(uint at) {
       attenuation(optical_depth_at(s.extinction, s.depth_m), transmittance, opacity);
       if (kHomogeneous) homogeneous_attenuation(end - start, transmittance, opacity);
       s.source = light / max(opacity, vec3(1e-20));
-      // The neighbours of a ray that misses the medium may hit it, and are lit.
+      // A ray that misses the medium counts as lit, because neighbours that hit the medium are interpolated with it.
       if (kHomogeneous && kSingle != kNone && !in_air) s.source = vec3(1.0);
       samples[sample_at] = pack_sample(s);
       if (has_shadowed_end(march, s.depth_m)) coarse[sample_at] |= kShadowedEnd;

@@ -108,8 +108,7 @@ uint right_marked(uint i) {
   return word * 32u + uint(findLSB(bits));
 }
 
-// What the threads of a workgroup know about their slice. Loaded once, because CPU devices load from buffers lane by
-// lane.
+// The properties of a slice that its threads share. Loaded once, because CPU devices load from buffers lane by lane.
 struct Work {
   EpipolarSlice slice;
   uint id;
@@ -122,7 +121,7 @@ struct Work {
 
 void mark(uint i) { atomicOr(marked[i >> 5u], 1u << (i & 31u)); }
 
-// Returns the in-scattering that deviations are relative to at least. All threads must call it.
+// Returns the smallest in-scattering to which deviations are relative. All threads must call it.
 vec2 find_floor_light(EpipolarSlice slice, uint row) {
   uint thread = gl_LocalInvocationID.x;
   vec2 sum = vec2(0.0);

@@ -1,5 +1,5 @@
 // A medium of constant density in place of the atmosphere (Yusov, "IVB Atmospheric Light Scattering", 2012, section 2).
-// The same light reaches every point of it, so the light of a lit stretch [a, b] of a ray has the closed form
+// The same light reaches every point of it, so the light of a lit section [a, b] of a ray has the closed form
 //   L = E (beta_R p_R + beta_M p_M) / sigma (exp(-sigma a) - exp(-sigma b))
 // per channel. The factors before the bracket depend on the direction only. They are left out along the ray and applied
 // once per pixel. docs/homogeneous_medium.md has the equations and their limits.

@@ -17,7 +17,7 @@ layout(constant_id = kOccludedId) const bool kOccluded = false;  // shadows also
 layout(constant_id = kSectionsId) const uint kSections = kContiguous;
 layout(constant_id = kColorsId) const bool kColors = false;  // shadow_colors tints the sunlight
 
-// Whether shadows apply to in-scattering from the tables.
+// True if shadows apply to in-scattering from the tables.
 const bool kLitTables = kSingle == kTable || kOccluded;
 
 #endif

@@ -7,7 +7,7 @@
 const uint kPerPixelId = 32u;        // 1: the model is evaluated per pixel, 0: per vertex (scattering.evaluate)
 const uint kIntegralMethodId = 33u;  // Oneil::integral_method
 const uint kSampleSpacingId = 34u;   // Oneil::spacing
-const uint kLayerId = 35u;           // what mesh.frag draws; one of the following values
+const uint kLayerId = 35u;           // layer that mesh.frag draws: one of the following values
 
 const uint kOpaqueLayer = 0u;      // opaque surfaces and diffusing glass
 const uint kClearLayer = 1u;       // clear glass, multiplied into the picture

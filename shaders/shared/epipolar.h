@@ -73,12 +73,11 @@ const uint kTreeGroup = 8u;   // blocks built by one workgroup
 // The number of Rayleigh scale heights above which there is almost no medium: a camera above them sees a limb.
 const float kAllOfAir = 5.0f;
 
-// What pixels compute by themselves because slices are few.
+// The quantities that pixels compute from their own rays because there are few slices.
 const uint kSparsityNone = 0u;
-// Pixels of the sky whose slices are not all in the sky compute their density integral, and take in-scattering from
-// samples farther away.
+// Next to a skyline, pixels of the sky compute density integrals, and use more distant samples.
 const uint kSparsitySkyline = 1u;
-// Also all pixels of the sky, and pixels among samples of other depths, compute their density integral.
+// All pixels of the sky, and pixels between samples at other depths, also compute density integrals.
 const uint kSparsityAll = 2u;
 
 const uint kUnwarpWidth = 4u;  // width in pixels of a block of unwarp.comp; the height is 2

@@ -1,6 +1,5 @@
-// The effect: its creation, changes of its settings, and the recording of a frame. The steps of a frame are in
-// frame_steps.cpp, its constants in frame_constants.cpp and epipolar_constants.cpp, the checks in check.cpp and
-// limits.cpp.
+// Creates the effect, changes its settings and records a frame. The steps of a frame are in frame_steps.cpp, its
+// constants in frame_constants.cpp and epipolar_constants.cpp, and the checks in check.cpp and limits.cpp.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -19,21 +18,21 @@
 namespace tyndall {
 namespace {
 
-// Storage buffers may be bound at multiples of this on every device (the largest minimum allowed).
+// The largest value of minStorageBufferOffsetAlignment that Vulkan allows, so it suits every device.
 constexpr VkDeviceSize kBufferAlignment = 256;
 
-// Stands in for the shadow maps of a frame that has none; never read.
+// Bound instead of the shadow maps if a frame has none. It is never read.
 constexpr gpu::ImageDesc kNoShadows = {"no_shadows", VK_FORMAT_D32_SFLOAT, {1, 1, 1}, VK_IMAGE_USAGE_SAMPLED_BIT, 1, 1,
                                        true};
 
-// Stands in for the colours of a frame that has none; never read.
+// Bound instead of the shadow colours if a frame has none. It is never read.
 constexpr gpu::ImageDesc kNoColors = {
     "no_colors", VK_FORMAT_R8G8B8A8_UNORM, {1, 1, 1}, VK_IMAGE_USAGE_SAMPLED_BIT, 1, 1, true};
 
 constexpr VkDeviceSize align(VkDeviceSize size) {
   return (size + kBufferAlignment - 1) / kBufferAlignment * kBufferAlignment;
 }
-// A slot of the ring of constants holds what one frame in flight reads.
+// Sizes and offsets in a slot of the ring of constants. Each view of a frame in flight has a slot.
 constexpr VkDeviceSize kFrameBytes = align(sizeof(shared::FrameConstants));
 constexpr VkDeviceSize kCascadeBytes = align(sizeof(CascadeArray));
 constexpr VkDeviceSize kMediumBytes = align(sizeof(shared::Medium));
@@ -43,10 +42,10 @@ constexpr VkDeviceSize kMediumOffset = kCascadeOffset + kCascadeBytes;
 constexpr VkDeviceSize kEpipolarOffset = kMediumOffset + kMediumBytes;
 constexpr VkDeviceSize kSlotBytes = kEpipolarOffset + kEpipolarBytes;
 static_assert(shared::kMaxCascades == kMaxCascades);
-// Counters of a frame, as pairs of words.
+// The counters of a frame are 64-bit integers, which shaders see as pairs of words.
 constexpr VkDeviceSize kCounterBytes = align(shared::kCounters * sizeof(std::uint64_t));
 
-// Read as storage by most passes, as uniforms by those that unwarp (docs/epipolar.md says why).
+// Most passes read the constants as storage buffers, a few as uniform buffers (docs/epipolar.md explains why).
 constexpr VkBufferUsageFlags kConstantsUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
 constexpr VkBufferUsageFlags kCounterUsage =
     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
@@ -54,7 +53,7 @@ constexpr VkBufferUsageFlags kCounterUsage =
 constexpr std::uint32_t bit(Affects affects) { return 1U << static_cast<std::uint32_t>(affects); }
 constexpr std::uint32_t kEverything = bit(Affects::Resources) | bit(Affects::Tables);
 
-// Compares the settings that can change after the creation and that pipelines and buffers depend on.
+// Returns whether the settings are equal that can change and on which pipelines and buffers depend.
 bool same_limits(const EffectDesc& a, const EffectDesc& b) {
   return a.max_extent.width == b.max_extent.width && a.max_extent.height == b.max_extent.height &&
          a.max_cascades == b.max_cascades && a.max_shadow_resolution == b.max_shadow_resolution &&
@@ -258,7 +257,7 @@ Result<void> Effect::State::record(VkCommandBuffer cmd, const FrameInputs& input
   prepare_images(cmd);
   const BoundResources resources = bind_resources(inputs, slot);
   StepRecorder recorder(device, cmd, pipelines, resources, desc.timings ? &timer : nullptr);
-  // The frame before used the same buffers, and its commands need not have completed.
+  // The previous frame used the same buffers, and its commands may still be running.
   constexpr VkAccessFlags kFrameBefore = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT |
                                          VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT |
                                          VK_ACCESS_INDIRECT_COMMAND_READ_BIT;

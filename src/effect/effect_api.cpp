@@ -1,4 +1,4 @@
-// The public functions of Effect: what holds for all of them is checked here, and no exception leaves them.
+// The public functions of Effect. They check the preconditions that all of them have, and turn exceptions into errors.
 #include <utility>
 
 #include "effect/effect_state.hpp"
@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* kExtensions[] = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
 
-// Calls body(state) in guarded(). An effect that was moved from has no state, which is an error.
+// Calls body(state) in guarded(). Returns an error for an effect that was moved from, because it has no state.
 template <typename State, typename Body>
 std::invoke_result_t<Body, State&> call(const std::unique_ptr<State>& state, const char* where, Body&& body) noexcept {
   return guarded(where, [&]() -> std::invoke_result_t<Body, State&> {
@@ -23,7 +23,7 @@ std::invoke_result_t<Body, State&> call(const std::unique_ptr<State>& state, con
   });
 }
 
-// The same for functions that record into `cmd`.
+// Does the same for functions that record into `cmd`.
 template <typename State, typename Body>
 std::invoke_result_t<Body, State&> record_with(const std::unique_ptr<State>& state, const char* where,
                                                VkCommandBuffer cmd, Body&& body) noexcept {

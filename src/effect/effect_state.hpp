@@ -1,4 +1,4 @@
-// What an Effect owns, and the steps that its public functions (effect_api.cpp) consist of.
+// The state of an Effect, and the operations from which its public functions (effect_api.cpp) are composed.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ constexpr std::uint32_t kMaxTimedPasses = 40;
 
 // Loads the functions of a device and checks that its limits suffice for every shader of the effect.
 Result<void> open_device(gpu::Device& device, const DeviceInfo& info);
-// Memory that an effect with these settings takes; see query_memory().
+// Returns the memory that an effect with these settings allocates; see query_memory().
 [[nodiscard]] MemoryUsage plan_memory(const gpu::Device& device, const EffectDesc& desc, const Params& params);
 
 struct Effect::State {
@@ -45,11 +45,11 @@ struct Effect::State {
   gpu::Image no_shadows, no_colors;
   gpu::Buffer constants;
   gpu::Buffer counters;           // written by shaders
-  gpu::Buffer counters_readback;  // with EffectDesc::counters
+  gpu::Buffer counters_readback;  // copy for the host, with EffectDesc::counters
   gpu::Handle<VkSampler> nearest;
   gpu::Handle<VkSampler> linear;
   gpu::Handle<VkSampler> shadow_compare;
-  gpu::Handle<VkSampler> shadow_plain;  // the depths themselves, with the same border
+  gpu::Handle<VkSampler> shadow_plain;  // without comparison, with the same border
   gpu::Handle<VkSampler> shadow_tint;
   FrameRing ring;
   Remarks remarks;
@@ -57,9 +57,9 @@ struct Effect::State {
   std::array<PassTiming, kMaxTimedPasses> timings = {};
   std::array<ResourceMemory, kTableCount + kFrameBuffers + 3> resource_rows = {};
 
-  bool images_ready = false;  // the first recording moves them out of the undefined layout
+  bool images_ready = false;  // false until the first recording, which changes their undefined layout
 
-  // Everything that other settings need, allocated before any of it is taken over.
+  // The objects that new settings need. They are all allocated before commit() replaces any old ones.
   struct Pending {
     EffectDesc desc;
     Params params;
@@ -71,15 +71,15 @@ struct Effect::State {
     return static_cast<std::byte*>(constants.mapped) + offset;
   }
 
-  // Makes what never changes, and takes over `desc` and `params` of the state.
+  // Creates the objects that do not depend on settings.
   Result<void> create_objects();
-  // Checks other settings and allocates what they need: only what `required`, a mask of bits 1 << Affects, contains. An
-  // error leaves what is drawn, the progress of the tables and memory() as they were; pipelines that were made before
-  // it remain, so that the next attempt is faster.
+  // Checks new settings and allocates the objects that they need, as far as `required` (a mask of bits 1 << Affects)
+  // contains them. After an error, the picture, the progress of the tables and memory() are unchanged. Pipelines that
+  // were already created are retained, so the next attempt is faster.
   Result<Pending> plan(const EffectDesc& desc, const Params& params, std::uint32_t required);
-  // Takes over what was planned. Cannot fail.
+  // Replaces the objects by those of plan(). Cannot fail.
   void commit(Pending&& pending) noexcept;
-  // Plans and commits.
+  // Calls plan() and commit().
   Result<void> change(const EffectDesc& desc, const Params& params);
 
   Result<Progress> prepare_pipelines(std::uint32_t budget);

@@ -9,19 +9,19 @@
 namespace tyndall {
 namespace {
 
-// Pixels whose sum of weights is smaller are marched. The default means that no sample is near in depth. With
-// correct_depth_breaks it means that the near ones have little weight, or differ by a twentieth in depth. At half or a
-// quarter of the resolution a difference of a sixth is accepted, which halves the number of marched pixels.
+// Pixels with a smaller sum of weights are marched. A sum below the default means that no sample has a similar depth.
+// With correct_depth_breaks, similar samples must also have a considerable weight, and a depth within a twentieth. At
+// half or a quarter of the resolution a difference of a sixth is accepted, which halves the number of marched pixels.
 constexpr float kMinWeight = 1e-2F;
 constexpr float kMinWeightCorrected = 0.1F;
 constexpr float kMinWeightDownscaled = 1e-3F;
-// In twilight the sky grows darker from pixel to pixel towards the ground: a pixel of the sky with less than half of
-// its samples in the sky is marched. The unshadowed light does not contain the planet's shadow, so that the samples on
-// both sides of a depth discontinuity are marched, too.
+// In twilight, the sky becomes darker from pixel to pixel towards the ground. A pixel of the sky is therefore marched
+// if less than half of its weight is from samples in the sky. Unshadowed in-scattering does not contain the planet's
+// shadow, so the samples on both sides of a depth discontinuity are marched, too.
 constexpr float kMinWeightTwilight = 0.5F;
 constexpr float kTwilightDiscontinuityRatio = 0.8F;
-// Initial samples are this many times closer together in twilight: refinement compares unshadowed light, which does not
-// contain the planet's shadow.
+// In twilight, the initial step is divided by this, because refinement compares unshadowed in-scattering, which does
+// not contain the planet's shadow.
 constexpr std::uint32_t kStepsWithSunDown = 4;
 
 // Returns whether the sun is more than two degrees below the horizontal plane of the camera.
@@ -39,7 +39,7 @@ bool sun_is_down(const FrameInputs& inputs, const Params& params) {
                      std::hypot(static_cast<double>(s.x), static_cast<double>(s.y), static_cast<double>(s.z));
 }
 
-// The epipole: the direction to the sun, taken through the camera's matrices in double precision.
+// Computes the epipole: the direction to the sun, projected in double precision.
 void set_epipole(shared::EpipolarConstants& out, const FrameInputs& inputs) {
   const auto row_of = [](const Mat4& m, int row, const double* v) {
     double sum = 0.0;
@@ -52,7 +52,7 @@ void set_epipole(shared::EpipolarConstants& out, const FrameInputs& inputs) {
   const double world[3] = {s.x / length, s.y / length, s.z / length};
   double view[4] = {};
   for (int i = 0; i < 3; ++i) {
-    // world_from_view is rigid: its transpose takes directions back.
+    // world_from_view is rigid, so its transpose transforms directions from world to view space.
     for (int k = 0; k < 3; ++k) view[i] += static_cast<double>(inputs.camera.world_from_view.m[4 * i + k]) * world[k];
   }
   const double clip_x = row_of(inputs.camera.clip_from_view, 0, view);
@@ -72,14 +72,15 @@ void set_epipole(shared::EpipolarConstants& out, const FrameInputs& inputs) {
   x /= size;
   y /= size;
   w /= size;
-  if (w < 1e-12) w = 0.0;  // parallel slices
+  if (w < 1e-12) w = 0.0;  // the slices are parallel
   out.sun_x = static_cast<float>(x);
   out.sun_y = static_cast<float>(y);
   out.sun_w = static_cast<float>(w);
 }
 
-// The sides of the border that lines from the epipole reach from within the picture, in the order of
-// shared/epipolar.h, and where each begins along the perimeter. The rounded epipole that the shaders have decides.
+// Determines the sides of the border on which lines from the epipole leave the picture, in the order of
+// shared/epipolar.h, and where each begins along the perimeter. It uses the epipole in single precision, as the shaders
+// do.
 void set_border(shared::EpipolarConstants& out, const FrameInputs& inputs) {
   const double width = inputs.extent.width;
   const double height = inputs.extent.height;
@@ -104,7 +105,7 @@ void set_border(shared::EpipolarConstants& out, const FrameInputs& inputs) {
     if (ends[side]) along += lengths[side];
   }
   out.perimeter = static_cast<float>(std::max(along, 1e-3));
-  // From an epipole on the border, into the picture.
+  // The direction away from an epipole on the border points into the picture.
   const double to_x = 0.5 * width * pw - px;
   const double to_y = 0.5 * height * pw - py;
   const double to = std::hypot(to_x, to_y);

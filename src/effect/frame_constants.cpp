@@ -20,7 +20,7 @@ Vec3 normalized(const Vec3& v) {
   return {static_cast<float>(v.x / length), static_cast<float>(v.y / length), static_cast<float>(v.z / length)};
 }
 
-// Sets the position and the direction of the camera, and what follows from its altitude.
+// Sets the position and the direction of the camera, and the values that depend on its altitude.
 void set_camera(shared::FrameConstants& out, const FrameInputs& inputs, const Params& params) {
   out.view_from_clip = inverse(inputs.camera.clip_from_view);
   out.world_from_view = inputs.camera.world_from_view;
@@ -43,8 +43,8 @@ void set_camera(shared::FrameConstants& out, const FrameInputs& inputs, const Pa
                    static_cast<float>(z / distance)};
 }
 
-// Sets the directions through the pixels. The direction through the middle of a pixel is that of any point that
-// projects there. On the near plane it is an affine function of the pixel.
+// Sets the rays of the pixels. A ray passes through all points that project to the centre of its pixel. The point on
+// the near plane is an affine function of the pixel.
 void set_rays(shared::FrameConstants& out, const FrameInputs& inputs, const EffectDesc& desc) {
   const double near_plane = 1.0 - static_cast<double>(desc.sky_depth);
   const Mat4& m = out.view_from_clip;
@@ -52,7 +52,7 @@ void set_rays(shared::FrameConstants& out, const FrameInputs& inputs, const Effe
   const double width = inputs.extent.width;
   const double height = inputs.extent.height;
   const double sign = entry(3, 2) * near_plane + entry(3, 3) < 0.0 ? -1.0 : 1.0;
-  double view[3][3];  // constant, per pixel to the right, per pixel downwards
+  double view[3][3];  // ray_origin, ray_x and ray_y in view space
   double largest = 0.0;
   for (int row = 0; row < 3; ++row) {
     view[1][row] = sign * entry(row, 0) * 2.0 / width;
@@ -107,8 +107,8 @@ shared::HomogeneousMedium homogeneous_constants(const Params& params) {
 }  // namespace
 
 Mat4 inverse(const Mat4& matrix) {
-  // Gauss-Jordan with partial pivoting on [matrix | identity]: projections with an infinite far plane
-  // have entries that differ by many orders of magnitude.
+  // Gauss-Jordan elimination on [matrix | identity] with partial pivoting, because the entries of projections with an
+  // infinite far plane differ by many orders of magnitude.
   double a[4][8] = {};
   for (int row = 0; row < 4; ++row) {
     for (int col = 0; col < 4; ++col) a[row][col] = matrix.m[4 * col + row];

@@ -1,4 +1,4 @@
-// From what the caller passes to what the shaders read: pure functions, no Vulkan objects.
+// Computes the constants of the shaders from the inputs of a frame. Pure functions without Vulkan objects.
 #pragma once
 
 #include <array>
@@ -8,24 +8,25 @@
 
 namespace tyndall {
 
-// The inverse of any invertible 4×4 matrix, computed in double precision. A singular matrix gives
-// non-finite entries.
+// Returns the inverse of a 4×4 matrix, computed in double precision. A singular matrix gives non-finite entries.
 [[nodiscard]] Mat4 inverse(const Mat4& matrix);
 
-// The shape of the scattering tables, as tables.* asks for it.
+// Returns the shape of the scattering tables for the parameters tables.*.
 [[nodiscard]] shared::TableShape table_shape(const Params& params);
-// Whether the air is marched through coloured maps.
+// Returns whether rays are marched through coloured maps.
 [[nodiscard]] inline bool has_colors(const FrameInputs& inputs, const Params& params) {
   return inputs.shadow_colors.view != VK_NULL_HANDLE && !inputs.cascades.empty() && params.scattering.light_shafts;
 }
-// Above the planet's sphere, in double: its centre is millions of metres away.
+// Returns the altitude of the camera above the planet's sphere [m]. In double precision, because the centre of the
+// planet is millions of metres away.
 [[nodiscard]] double camera_altitude_m(const FrameInputs& inputs, const Params& params);
 [[nodiscard]] shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDesc& desc,
                                                      const Params& params);
 using CascadeArray = std::array<shared::CascadeConstants, shared::kMaxCascades>;
 [[nodiscard]] CascadeArray cascade_constants(const FrameInputs& inputs);
 
-// Why a frame cannot be recorded, as an error of one line. Remarks on frames that can be are in remarks.hpp.
+// Returns an error with a one-line message if a frame cannot be recorded. Remarks on frames that can be recorded are in
+// remarks.hpp.
 [[nodiscard]] Result<void> check_frame(const FrameInputs& inputs, const EffectDesc& desc, const Params& params);
 
 }  // namespace tyndall

@@ -1,4 +1,5 @@
-// What frames need before any of them is recorded, found by making the steps of all frames that settings allow.
+// Determines the resources and pipelines of frames before any of them is recorded, by listing the steps of all frames
+// that the settings allow.
 #include <algorithm>
 
 #include "effect/frame_steps.hpp"
@@ -6,7 +7,7 @@
 namespace tyndall {
 namespace {
 
-// Calls body(steps) for frames that differ in everything that steps depend on besides the settings.
+// Calls body(steps) for frames of every shape.
 template <typename Body>
 void for_each_shape(const EffectDesc& desc, const Params& params, Body&& body) {
   for (const VkExtent2D extent : {VkExtent2D{1, 1}, VkExtent2D{16384, 16384}}) {
@@ -51,8 +52,8 @@ std::vector<PipelineKey> pipelines_of_frames(const EffectDesc& desc, const Param
 std::vector<PipelineKey> all_frame_pipelines(const EffectDesc& desc) {
   std::vector<PipelineKey> out;
   const auto add = [&](const Params& params) { add_pipelines(out, desc, params); };
-  // No shader has constants of two of these groups, besides the medium: the groups need not be combined.
-  // FrameSteps.AllPipelinesAreFound of tests/unit/frame_steps_test.cpp combines them nevertheless.
+  // Apart from the medium, no shader has constants of two of these groups, so the groups need not be combined.
+  // FrameSteps.AllPipelinesAreFound of tests/unit/frame_steps_test.cpp verifies this with all combinations.
   Params p;
   p.epipolar.show_sampling = true;
   add(p);
@@ -69,7 +70,7 @@ std::vector<PipelineKey> all_frame_pipelines(const EffectDesc& desc) {
   for (const MediumKind medium : {MediumKind::atmosphere, MediumKind::homogeneous}) {
     for (const Extinction extinction : {Extinction::epipolar, Extinction::per_pixel}) {
       for (const std::uint32_t downscale : {1U, 2U, 4U}) {
-        for (const std::uint32_t slices : {64U, 256U, 512U}) {  // one for each Sparsity
+        for (const std::uint32_t slices : {64U, 256U, 512U}) {  // one per Sparsity
           p = {};
           p.scattering.medium = medium;
           p.scattering.extinction = extinction;

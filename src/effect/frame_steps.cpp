@@ -17,7 +17,7 @@ struct Frame {
   Specialisation constants = {};
   FrameSteps steps = {};
 
-  // The variant of a shader that writes the format of the output.
+  // Returns the variant of a shader for the output format.
   [[nodiscard]] const gpu::Shader& variant(const gpu::Shader& rgba16f, const gpu::Shader& rgba32f) const {
     return desc.output_format == OutputFormat::rgba32f ? rgba32f : rgba16f;
   }
@@ -57,12 +57,12 @@ struct Frame {
     steps.add(step);
   }
 
-  // Whether marching looks at the shadow maps at all.
+  // Returns whether marching reads the shadow maps.
   [[nodiscard]] bool marches_shadows() const {
     const ScatteringParams& s = params.scattering;
     return s.single != SingleScattering::none || (!is_homogeneous(s) && s.multiple == MultipleScattering::occluded);
   }
-  // Cascades that shadow the light.
+  // Returns the number of marched cascades.
   [[nodiscard]] std::uint32_t marched_cascades() const {
     const std::uint32_t cascades = params.scattering.light_shafts ? shape.cascades : 0;
     return cascades > shape.first_marched_cascade && marches_shadows() ? cascades - shape.first_marched_cascade : 0;
@@ -72,8 +72,8 @@ struct Frame {
   }
 };
 
-// The values of all specialisation constants. A constant without a meaning in a mode is 0, so that the mode has one
-// pipeline.
+// Returns the values of all specialisation constants. A constant that has no meaning in a mode is 0, so that the mode
+// has only one pipeline.
 Specialisation specialisation(const Frame& frame) {
   const ScatteringParams& s = frame.params.scattering;
   const bool homogeneous = is_homogeneous(s);
@@ -98,7 +98,7 @@ Specialisation specialisation(const Frame& frame) {
   return out;
 }
 
-// March the listed samples through the cascades, all in one pass, one after the other or side by side (section 1.8).
+// Marches the listed samples through all cascades in one pass, one after the other, or side by side (section 1.8).
 void march_cascades(Frame& f, CascadeProcessing processing) {
   const gpu::Shader& march = shaders::march_samples_comp;
   const std::uint32_t cascades = f.marched_cascades();
@@ -114,14 +114,14 @@ void march_cascades(Frame& f, CascadeProcessing processing) {
   f.dispatch_over(Resource::march_list, "march_samples", march, {shared::kFinish, instanced ? cascades : 1});
 }
 
-// Pixels whose depth is unlike that of all samples around them are marched one by one (section 1.7).
+// Marches the listed pixels, whose depth differs from that of all samples around them (section 1.7).
 void march_and_correct(Frame& f, const char* name, const gpu::Shader& correct) {
   f.dispatch_over(Resource::correction_list, "march_samples", shaders::march_samples_comp, {shared::kPixels, 0});
   f.dispatch_over(Resource::correction_list, name, correct);
 }
 
-// From slices to pixels (section 1.7): blocks of pixels at one depth first, then the pixels of the listed blocks, then
-// the pixels that no sample fits.
+// Interpolates pixels between slices (section 1.7): first the blocks at one depth, then the pixels of the other blocks,
+// and finally the pixels that fit no sample.
 void unwarp_steps(Frame& f) {
   const VkExtent2D blocks = unwarp_blocks(f.shape.extent);
   f.dispatch("unwarp", f.variant(shaders::unwarp_comp_rgba16f, shaders::unwarp_comp_rgba32f),
@@ -132,12 +132,12 @@ void unwarp_steps(Frame& f) {
                     f.variant(shaders::correct_pixels_comp_rgba16f, shaders::correct_pixels_comp_rgba32f));
 }
 
-// scattering.downscale: the same for a buffer of half or a quarter of the resolution (Yusov, "IVB Atmospheric Light
-// Scattering", 2012, sections 6.6 and 6.7), then bilateral upscaling of it (section 6.8).
+// Does the same for scattering.downscale: fills a buffer of half or a quarter of the resolution (Yusov, "IVB
+// Atmospheric Light Scattering", 2012, sections 6.6 and 6.7), and then upscales it bilaterally (section 6.8).
 void downscaled_steps(Frame& f) {
   const VkExtent2D blocks = unwarp_blocks(downscaled_extent(f.shape.extent, f.params));
   const std::uint8_t extinction = f.constants[shared::kExtinctionId];
-  f.constants[shared::kExtinctionId] = 0;  // matters only where light is composed with the background
+  f.constants[shared::kExtinctionId] = 0;  // used only by passes that compose the background
   f.dispatch("unwarp_downscaled", f.variant(shaders::unwarp_comp_rgba16f, shaders::unwarp_comp_rgba32f),
              {blocks.width, blocks.height, 1});
   f.dispatch_over(Resource::discontinuity_blocks, "unwarp_downscaled_pixels",
@@ -167,7 +167,7 @@ void epipolar_steps(Frame& f) {
   if (cascades > 0) f.reset(Resource::tree_blocks);
 
   f.dispatch("slice_end_points", shaders::slice_end_points_comp, {slices, 1, 1});  // 1.2
-  f.dispatch("slice_samples", shaders::slice_samples_comp, {samples, slices, 1});  // 1.2, with 1.3's light
+  f.dispatch("slice_samples", shaders::slice_samples_comp, {samples, slices, 1});  // 1.2, and in-scattering of 1.3
   f.dispatch("refine_samples", shaders::refine_samples_comp,                       // 1.3
              {slices * shaders::refine_samples_comp.local_size[0], 1, 1});
   if (cascades > 0) f.dispatch("slice_directions", shaders::slice_directions_comp, {slices, cascades, 1});  // 1.4
@@ -212,8 +212,7 @@ FrameSteps frame_steps(const EffectDesc& desc, const Params& params, const Frame
 Sparsity sparsity(VkExtent2D extent, const Params& params) {
   constexpr std::uint32_t kMany = 512;
   constexpr std::uint32_t kFew = 256;
-  // Distance of slices along the border from which on seams are visible; light from a single slice reaches about as far
-  // from the skyline.
+  // Seams are visible if slices are farther apart along the border.
   constexpr std::uint32_t kVisiblePixels = 4;
   const std::uint32_t slices = params.epipolar.slices;
   if (slices >= kMany || is_downscaled(params) || is_homogeneous(params.scattering)) return Sparsity::none;

@@ -12,7 +12,7 @@
 
 namespace tyndall {
 
-// What the steps depend on besides parameters and limits.
+// The inputs that are present in a frame, as far as the steps depend on them.
 struct FrameShape {
   VkExtent2D extent = {1, 1};
   std::uint32_t cascades = 0;
@@ -21,7 +21,7 @@ struct FrameShape {
 };
 [[nodiscard]] FrameShape frame_shape(const FrameInputs& inputs);
 
-// A list without allocations, because it is made for every frame.
+// A list of fixed capacity. It does not allocate, because it is created for every frame.
 class FrameSteps {
  public:
   static constexpr std::size_t kMax = 64;
@@ -37,7 +37,7 @@ class FrameSteps {
 };
 [[nodiscard]] FrameSteps frame_steps(const EffectDesc& desc, const Params& params, const FrameShape& shape);
 
-// What pixels compute by themselves because slices are few; shared/epipolar.h describes the values.
+// The quantities that pixels compute from their own rays because there are few slices; see shared/epipolar.h.
 enum class Sparsity : std::uint32_t {
   none = shared::kSparsityNone,
   skyline = shared::kSparsitySkyline,
@@ -46,12 +46,12 @@ enum class Sparsity : std::uint32_t {
 [[nodiscard]] Sparsity sparsity(VkExtent2D extent, const Params& params);
 
 using ResourceSet = std::bitset<kResources>;
-// What frames of any shape use with these settings. Independent of scattering.enabled, so that turning scattering off
-// and on allocates nothing.
+// Returns the resources that frames of any shape use with these settings. The result does not depend on
+// scattering.enabled, so switching scattering off and on allocates nothing.
 [[nodiscard]] ResourceSet resources_of_frames(const EffectDesc& desc, const Params& params);
-// The pipelines of frames of any shape with these settings.
+// Returns the pipelines of frames of any shape with these settings.
 [[nodiscard]] std::vector<PipelineKey> pipelines_of_frames(const EffectDesc& desc, const Params& params);
-// The pipelines of frames of any shape with any parameters.
+// Returns the pipelines of frames of any shape with any parameters.
 [[nodiscard]] std::vector<PipelineKey> all_frame_pipelines(const EffectDesc& desc);
 
 }  // namespace tyndall

@@ -21,7 +21,7 @@ Result<gpu::Pipeline> create_pipeline(const gpu::Device& device, const PipelineK
   return gpu::create_compute_pipeline(device, *key.shader, std::span(constants).first(count));
 }
 
-// Runs `work` on the calling thread and on up to `others` more: as many as can be started.
+// Runs `work` on the calling thread and on up to `others` additional threads, as many as can be started.
 template <typename Work>
 void run_on_threads(std::size_t others, const Work& work) {
   std::vector<std::jthread> threads;
@@ -45,7 +45,7 @@ Result<std::uint32_t> PipelineCache::make(std::span<const PipelineKey> keys, std
     if (find(key) == nullptr && std::find(missing.begin(), missing.end(), key) == missing.end()) missing.push_back(key);
   }
   if (missing.empty()) return 0;
-  // Room first: nothing may fail between the creation of a pipeline and its place in the lists.
+  // Reserved first, because nothing may fail between the creation of a pipeline and its insertion into the lists.
   keys_.reserve(keys_.size() + missing.size());
   pipelines_.reserve(keys_.capacity());
   std::vector<std::optional<Result<gpu::Pipeline>>> made(missing.size());

@@ -11,23 +11,23 @@ namespace tyndall {
 
 class PipelineCache {
  public:
-  // `threads`: how many make() uses at most, the calling one included.
+  // `threads`: maximum number of threads that make() uses, including the calling one.
   void create(const gpu::Device& device, std::uint32_t threads) {
     device_ = &device;
     threads_ = threads;
   }
 
-  // Makes the pipelines that are missing, at most `budget` of them, and returns how many were made. Each takes about
-  // 0.05 s on a CPU device. After an error those that were made remain.
+  // Creates missing pipelines, at most `budget` of them, and returns their number. Each takes about 0.05 s on a CPU
+  // device. Pipelines that were created before an error are retained.
   Result<std::uint32_t> make(std::span<const PipelineKey> keys, std::uint32_t budget = UINT32_MAX);
-  // Returns null for a pipeline that was not made. Neither allocates nor locks. The pointer is valid until the next
-  // make().
+  // Returns null if the pipeline has not been created. Neither allocates nor locks. The pointer is valid until the next
+  // call of make().
   [[nodiscard]] const gpu::Pipeline* find(const PipelineKey& key) const;
 
  private:
   const gpu::Device* device_ = nullptr;
   std::uint32_t threads_ = 1;
-  std::vector<PipelineKey> keys_;  // apart from the pipelines, so that a search touches little memory
+  std::vector<PipelineKey> keys_;  // separate from the pipelines, so that a search reads little memory
   std::vector<gpu::Pipeline> pipelines_;
 };
 

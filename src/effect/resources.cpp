@@ -13,11 +13,11 @@ constexpr VkDeviceSize kStateBytes = 16 * sizeof(float);  // march_state.glsl
 constexpr VkDeviceSize kCorrectedBytes = 8;               // pack_light() of records.glsl
 // Buffers that a shader binds although it does not use them with these settings.
 constexpr VkDeviceSize kUnusedBytes = 256;
-// correction_list has room for one pixel in this many. Default views list one in a thousand; a limb that is 16 pixels
-// wide and surrounds the whole picture is less than an eighth of it.
+// correction_list has the capacity of an eighth of all pixels. In default views a thousandth is listed. A limb that is
+// 16 pixels wide and surrounds the whole picture is less than an eighth of it.
 constexpr VkDeviceSize kCorrectedPart = 8;
 
-// Bytes of a frame buffer that a step uses.
+// Returns the size of a frame buffer that a step uses [bytes].
 VkDeviceSize bytes_of(Resource resource, const EffectDesc& desc, const Params& params) {
   const VkDeviceSize slices = downscaled_count(params.epipolar.slices, params);
   const VkDeviceSize samples = slices * downscaled_count(params.epipolar.samples, params);

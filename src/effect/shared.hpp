@@ -1,5 +1,5 @@
-// The structures of shaders/shared in C++, in single precision: what is uploaded to the GPU.
-// vec3 is three floats (12 bytes, aligned to 4); the structures are laid out so that this agrees with std430.
+// The structures of shaders/shared in C++, in single precision, as they are uploaded to the GPU. vec3 is three floats
+// (12 bytes, aligned to 4). The members are ordered so that the layout agrees with std430.
 #pragma once
 
 #include <cstdint>

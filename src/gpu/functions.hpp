@@ -1,5 +1,5 @@
-// The Vulkan functions in use, as a table per device: no global state, and no link to a loader, so that
-// the library runs on the device that the caller made, however it was made.
+// The Vulkan functions in use, as a table per device. There is no global state and no link to a loader, so the library
+// works with a device from any loader.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -79,7 +79,7 @@ namespace tyndall::gpu {
   X(ResetFences)                       \
   X(WaitForFences)
 
-// Present only where the instance has VK_EXT_debug_utils; check before the call.
+// These are null unless the instance has VK_EXT_debug_utils.
 #define TYNDALL_DEBUG_FUNCTIONS(X) \
   X(CmdBeginDebugUtilsLabelEXT)    \
   X(CmdEndDebugUtilsLabelEXT)      \
@@ -93,7 +93,7 @@ struct Functions {
 #undef X
 };
 
-// Fills the table. Returns the name of the first function that the device lacks, or nullptr.
+// Fills in the table. Returns the name of the first function that the device lacks, or nullptr.
 const char* load_functions(Functions& table, PFN_vkGetInstanceProcAddr get, VkInstance instance, VkDevice device);
 
 }  // namespace tyndall::gpu

@@ -24,7 +24,7 @@ bool same_effect_limits(const EffectDesc& a, const EffectDesc& b) {
 
 }  // namespace
 
-// Everything that new parameters need. It is all created before any of it is applied.
+// The objects that new parameters need. They are all created before any of them is used.
 struct Scene::Pending {
   SceneParams scene;
   Params params;
@@ -98,7 +98,7 @@ Result<Scene::Layered> Scene::make_shadow_maps(const ShadowParams& shadows) cons
                        true});
 }
 
-// Creates the maps of the light that glass transmits; one clear texel where there is no glass.
+// Creates the maps of shadow colours, or a single clear texel if there is no glass.
 Result<Scene::Layered> Scene::make_shadow_colors(const ShadowParams& shadows, bool glass) const {
   if (glass) {
     return make_layered({"shadow_colors",
@@ -139,7 +139,7 @@ Result<void> Scene::make_tables_ready() {
   if (model_ != nullptr || desc_.tables_later || effect_->precompute_progress().complete()) return {};
   TYNDALL_ASSIGN(const auto made, tables::make_ready(*host_, *effect_, desc_.make_tables));
   tables_ready_ = true;
-  // From here on nothing may fail: the tables that were there are gone. Without memory for the notes there are none.
+  // From here on nothing may fail, because the old tables are gone. If there is no memory for notes, they are dropped.
   static_cast<void>(within_memory("notes", [&]() -> Result<void> {
     notes_.insert(notes_.end(), made.notes.begin(), made.notes.end());
     return {};
@@ -217,7 +217,7 @@ Result<Scene::Pending> Scene::plan(const SceneParams& scene, const Params& param
   return out;
 }
 
-// Exchanges the current state and the planned one; a second call undoes the first.
+// Exchanges the current and the planned state. A second call undoes the first.
 void Scene::swap(Pending& pending) noexcept {
   std::swap(scene_, pending.scene);
   std::swap(params_, pending.params);
@@ -242,7 +242,7 @@ Result<void> Scene::change(const SceneParams& scene, const Params& params, std::
   const EffectDesc effect_before = effect_->desc();
   const Params params_before = effect_->params();
   if (pending.other_effect) TYNDALL_TRY(effect_->set_params(pending.params, pending.effect));
-  // Making the tables can fail as well, by an error or an exception, and it needs the effect with the new parameters.
+  // Building the tables needs the effect with the new parameters, and may also fail.
   struct Exchanged {
     Scene& scene;
     Pending& pending;
@@ -253,7 +253,7 @@ Result<void> Scene::change(const SceneParams& scene, const Params& params, std::
       if (!taken_back) return;
       scene.swap(pending);
       const Result<void> set = scene.effect_->set_params(params_before, effect_before);
-      // When the last commands of new tables are dropped, nothing is left of those tables or of the ones before them.
+      // If the last commands of new tables are not submitted, neither the new nor the old tables are valid.
       const bool stale =
           scene.model_ == nullptr && !scene.desc_.tables_later && !scene.effect_->precompute_progress().complete();
       if (!set || stale) scene.effect_lost_ = true;

@@ -37,7 +37,7 @@ double hit_planet(double altitude_m, const glm::dvec3& from, const glm::dvec3& d
   return std::max(c / (-b + std::sqrt(square)), 0.0);
 }
 
-// Between the camera, at the origin, and 30 km to the north, with gaps that let shafts through, low and high.
+// Buildings up to 30 km north of the camera, which is at the origin. Light shafts pass through the gaps between them.
 const std::vector<Box> kBuildings = {
     {{-2500, 0, -9000}, {-1700, 2600, -8200}},   {{-900, 0, -9500}, {-300, 3400, -8900}},
     {{600, 0, -9200}, {900, 2200, -8800}},       {{1500, 0, -7500}, {2600, 1700, -7000}},
@@ -70,7 +70,7 @@ glm::dvec3 direction_to_sun(const BoxScene& scene, const TestView& view) {
   return {std::cos(e) * std::sin(a), std::sin(e), -std::cos(e) * std::cos(a)};
 }
 
-// A square map around the view down to far_m, seen from the sun.
+// A square shadow map that covers the view up to a depth of far_m.
 struct Map {
   glm::dvec3 middle, right, up, to_sun;
   double half_m, half_depth_m;
@@ -114,7 +114,7 @@ TestFrame frame_of(const BoxScene& scene) {
   std::vector<Map> maps;
   for (std::uint32_t i = 0; i < scene.cascades; ++i) {
     Cascade cascade;
-    // Each twice as deep as the one before.
+    // Each cascade is twice as deep as the previous one.
     const auto end = [&](std::uint32_t c) {
       return scene.far_m * std::ldexp(1.0, static_cast<int>(c) - static_cast<int>(scene.cascades) + 1);
     };

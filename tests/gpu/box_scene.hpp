@@ -1,5 +1,5 @@
-// Buildings of a kilometre's size on a round planet, under a sun anywhere: depth buffer and shadow cascades of the
-// same solids, in closed form, and the comparison of two pictures of it.
+// A scene of kilometre-sized buildings on a spherical planet under an arbitrary sun. Depth buffer and shadow cascades
+// are computed in closed form. Also compares two pictures of the scene.
 #pragma once
 
 #include <string>
@@ -14,12 +14,12 @@ struct Box {
   glm::dvec3 low, high;
 };
 
-// The sun, in the sky or, when `in_view`, at a place of the picture: (-1, -1) is the upper left corner, (1, 1) the
-// lower right one, of its border and not of the outermost pixels' middles.
+// The sun. With `in_view` it is at a position of the picture: (-1, -1) is its upper left corner and (1, 1) its lower
+// right one. Otherwise it is given by angles.
 struct BoxSun {
   bool in_view = false;
   double x = 0.0, y = 0.0;
-  bool behind = false;  // opposite to that place
+  bool behind = false;  // the sun is opposite to that position
   double elevation_deg = 9.0, azimuth_deg = 12.0;
 };
 
@@ -30,10 +30,10 @@ struct BoxScene {
   double tan_half_height = 0.42;  // width by the picture's shape
   BoxSun sun;
   bool buildings = true;
-  std::vector<Box> own_buildings;  // in place of the usual ones, unless empty
-  double building_size = 1.0;      // times theirs, distances included
-  bool ground = true;              // drawn; the planet is there in any case
-  double ground_altitude_m = 0.0;  // of what is drawn, with the buildings on it
+  std::vector<Box> own_buildings;  // replace the default ones, unless empty
+  double building_size = 1.0;      // factor of the sizes and distances of the default ones
+  bool ground = true;              // draw the ground; the planet exists in any case
+  double ground_altitude_m = 0.0;  // of the drawn ground and of the buildings on it
   bool ground_casts = true;
   std::uint32_t cascades = 3, first_marched = 0;
   std::uint32_t shadow_resolution = 256;
@@ -43,17 +43,17 @@ struct BoxScene {
   double panes_m = 0.0;  // > 0: all sunlight comes through coloured panes of that size
 };
 
-// A scene with the sun at a place of the picture, or opposite to it.
+// Returns a scene with the sun at a position of the picture, or opposite to it.
 [[nodiscard]] BoxScene sun_at(const std::string& name, double x, double y, double pitch_deg, bool behind = false);
 
 [[nodiscard]] TestFrame frame_of(const BoxScene& scene);
 
-// How far a picture is from the reference, as `tyndall compare` says it of two PNGs: the exposure is that at which
-// the reference's mean luminance becomes middle grey, the curve 1 - exp(-x), then sRGB in 8 bits.
+// The difference of a picture from the reference, computed as by `tyndall compare` for two PNGs. The exposure maps the
+// mean luminance of the reference to middle grey, followed by the curve 1 - exp(-x) and sRGB in 8 bits.
 struct Likeness {
-  double psnr_db = 0.0;               // infinite when equal
+  double psnr_db = 0.0;               // infinite if equal
   double mean_relative_error = 0.0;   // of linear radiance
-  double worst_relative_error = 0.0;  // of a channel, relative to it or a hundredth of the reference's mean
+  double worst_relative_error = 0.0;  // of a channel, relative to the larger of it and 1 % of the reference's mean
 };
 [[nodiscard]] Likeness compare(const std::vector<glm::dvec3>& picture, const std::vector<glm::dvec3>& reference,
                                VkExtent2D extent);

@@ -10,8 +10,8 @@ namespace {
 std::atomic<std::size_t> allocations = 0;
 }  // namespace
 
-// Counts every allocation of the program; what the device allocates for itself comes from malloc. Not inlined, because
-// GCC 12 takes the parts that it inlines for mismatched pairs of allocation and release.
+// Counts every allocation with `new` in the program. The driver uses malloc for its own allocations. Not inlined,
+// because GCC 12 would report mismatched allocation and release.
 [[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   void* const made = std::malloc(size > 0 ? size : 1);
@@ -24,7 +24,7 @@ std::atomic<std::size_t> allocations = 0;
 namespace tyndall {
 namespace {
 
-// Without the validation layer, which allocates for itself.
+// Runs without the validation layer, because it allocates memory itself.
 TEST(EffectAllocation, RecordingAllocatesNothing) {
   Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({});
   ASSERT_TRUE(host.ok()) << "the GPU tests need a Vulkan 1.3 device: " << host.error().message;
@@ -45,7 +45,7 @@ TEST(EffectAllocation, RecordingAllocatesNothing) {
   ASSERT_OK(effect);
   FrameInputs inputs = images.value().inputs(frame);
   for (std::uint64_t i = 0; i < 8; ++i) {
-    // Both techniques, and every pass of the first.
+    // Both techniques, and every pass of epipolar sampling.
     Params params = with_technique(i < 6 ? Technique::epipolar : Technique::brute_force);
     params.shadows.cascade_processing = static_cast<CascadeProcessing>(i % 3);
     params.epipolar.show_sampling = i >= 3;
@@ -66,7 +66,7 @@ TEST(EffectAllocation, RecordingAllocatesNothing) {
     EXPECT_FALSE(effect.value().timings(i).empty());
     EXPECT_EQ(allocations, before);
   }
-  // Nor does a change of parameters that only the constants of the next frame depend on.
+  // A change of parameters that only affect the constants of the next frame does not allocate either.
   Params other_constants = effect.value().params();
   other_constants.scattering.scale *= 2.0F;
   other_constants.epipolar.refinement_threshold *= 2.0F;
@@ -74,7 +74,7 @@ TEST(EffectAllocation, RecordingAllocatesNothing) {
   const bool changed = effect.value().set_params(other_constants).ok();
   EXPECT_EQ(allocations, before_change);
   EXPECT_TRUE(changed);
-  // Nor does taking tables from a buffer, and giving them.
+  // Saving tables to a buffer and loading them do not allocate.
   Result<Effect> other = Effect::create(info, desc, {});
   ASSERT_OK(other);
   const Result<gpu::Buffer> saved =
@@ -93,7 +93,7 @@ TEST(EffectAllocation, RecordingAllocatesNothing) {
     return recorded;
   }));
   EXPECT_TRUE(other.value().precompute_progress().complete());
-  // The count does count.
+  // Verify that allocations are counted.
   const std::size_t before = allocations;
   delete new int(3);
   const std::string long_text(1000, 'x');

@@ -1,4 +1,4 @@
-// The scene far from the origin of the world: it looks as it does there, and the planet has ground everywhere.
+// The scene far from the origin of the world looks the same as at the origin, and the planet has ground everywhere.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -16,7 +16,7 @@ constexpr double kRadius_m = 6.36e6;
 constexpr double kDeg = 180.0 / std::numbers::pi;
 constexpr VkExtent2D kExtent = {96, 54};
 
-// A place on the planet, by the way from the origin.
+// A position on the planet, given by the path from the origin.
 struct Place {
   const char* name;
   double arc_deg, azimuth_deg;
@@ -64,7 +64,7 @@ class GpuFarPlaces : public SharedSceneTest {
     return std::move(radiance).value();
   }
 
-  // Depth of every pixel, row by row: near plane / distance along the view, 0 where nothing is.
+  // Returns the depth of every pixel, row by row: near plane / distance along the view; 0 for the sky.
   std::vector<float> depths(Scene& scene) {
     draw(scene);
     const Result<std::vector<std::byte>> bytes =
@@ -79,8 +79,8 @@ class GpuFarPlaces : public SharedSceneTest {
   SceneParams scene_;
 };
 
-// The inside of the hall from where its details are a few pixels wide, with light shafts: at the origin, and elsewhere
-// with the sun at the same place of the sky.
+// The inside of the hall with light shafts, at a distance where details are a few pixels wide: at the origin, and at
+// other positions with the sun in the same local direction.
 TEST_F(GpuFarPlaces, AMeshLooksTheSameWhereverItStands) {
   scene_.terrain.source = "none";
   scene_.meshes.source = "hall";
@@ -92,7 +92,7 @@ TEST_F(GpuFarPlaces, AMeshLooksTheSameWhereverItStands) {
   sun.elevation_deg = 35.0F;
   sun.azimuth_deg = 120.0F;
   const glm::dvec3 sun_there = direction_to_sun(sun);
-  const glm::dvec3 eye(0.6, 2.1, 1.7);  // from the meshes' origin: east, up, south
+  const glm::dvec3 eye(0.6, 2.1, 1.7);  // east, up and south of the origin of the meshes
   Scene* scene = nullptr;
   image::Image first;
   for (const Technique technique : {Technique::brute_force, Technique::epipolar}) {
@@ -118,14 +118,14 @@ TEST_F(GpuFarPlaces, AMeshLooksTheSameWhereverItStands) {
         first = std::move(display).value();
         continue;
       }
-      // What differs is where the texels of the shadow maps lie, and the sun by the rounding of its angles.
+      // The texels of the shadow maps have other positions, and the angles of the sun are rounded.
       EXPECT_GT(image::compare(first, display.value()).psnr_db, 45.0)
           << place.name << (technique == Technique::epipolar ? ", epipolar" : "");
     }
   }
 }
 
-// What is drawn straight below the camera stands where ground_height() says, and the eye is not lifted from there.
+// The ground drawn below the camera has the height that ground_height() returns, and the camera is not raised.
 TEST_F(GpuFarPlaces, TheGroundIsDrawnWhereTheCameraStands) {
   params_.scattering.enabled = false;
   scene_.camera.pitch_deg = -90.0F;
@@ -135,7 +135,7 @@ TEST_F(GpuFarPlaces, TheGroundIsDrawnWhereTheCameraStands) {
     const double ground_m = ground_height(*scene->elevations(), place.up(), kRadius_m);
     stand(place.at(ground_m + 60.0));
     const std::vector<float> depth = depths(*scene);
-    // Four pixels meet below the camera; cells are 4 m wide, and slopes are steep.
+    // Four pixels meet below the camera. Cells are 4 m wide, and slopes are steep.
     const std::size_t middle = kExtent.height / 2 * kExtent.width + kExtent.width / 2;
     const double distance_m = kNearPlane_m / static_cast<double>(depth[middle]);
     EXPECT_NEAR(distance_m, 60.0, 2.0) << place.name;
@@ -143,7 +143,7 @@ TEST_F(GpuFarPlaces, TheGroundIsDrawnWhereTheCameraStands) {
   }
 }
 
-// Level views from above all summits: sky in the upper rows, and from the horizon down nothing but ground.
+// Level views from above all summits show sky in the upper rows, and only ground below the horizon.
 TEST_F(GpuFarPlaces, ThereIsAHorizonAllAround) {
   params_.scattering.enabled = false;
   scene_.camera.pitch_deg = 0.0F;
@@ -157,7 +157,7 @@ TEST_F(GpuFarPlaces, ThereIsAHorizonAllAround) {
       const std::vector<float> depth = depths(*scene);
       std::size_t wrong = 0;
       for (std::size_t x = 0; x < kExtent.width; ++x) {
-        // The horizon lies 2.5 degrees, 2.4 rows below the middle; summits rise over it by less than a row.
+        // The horizon is 2.5 degrees, or 2.4 rows, below the middle. Summits exceed it by less than a row.
         for (std::size_t y = 0; y < kExtent.height; ++y) {
           const bool ground = depth[y * kExtent.width + x] > 0.0F;
           if (y < kExtent.height / 2 - 2) wrong += ground ? 1 : 0;
@@ -169,7 +169,7 @@ TEST_F(GpuFarPlaces, ThereIsAHorizonAllAround) {
   }
 }
 
-// From high above, every ray that meets the sphere at sea level meets ground before.
+// From high above, every ray that hits the sphere at sea level hits ground in front of it.
 TEST_F(GpuFarPlaces, TheTerrainHasNoEndFromSpace) {
   params_.scattering.enabled = false;
   Scene* const scene = make();
@@ -188,9 +188,9 @@ TEST_F(GpuFarPlaces, TheTerrainHasNoEndFromSpace) {
             view.forward + view.right * (x * view.tan_half_width) + view.up * (y * view.tan_half_height);
         const double length = glm::length(ray);
         const glm::dvec3 from_centre = view.position + glm::dvec3(0.0, kRadius_m, 0.0);
-        const double nearest_m = glm::length(glm::cross(from_centre, ray)) / length;  // to the planet's centre
+        const double nearest_m = glm::length(glm::cross(from_centre, ray)) / length;  // distance to its centre
         if (depth[i] <= 0.0F) {
-          // The coarsest cells are flat, and hang through by a few hundred metres.
+          // The coarsest cells are flat, and their middles are a few hundred metres too low.
           wrong += nearest_m < kRadius_m - 2000.0 ? 1 : 0;
           continue;
         }
@@ -203,7 +203,7 @@ TEST_F(GpuFarPlaces, TheTerrainHasNoEndFromSpace) {
   }
 }
 
-// Where a model draws a sphere instead of the terrain there is nothing to collide with.
+// If a model draws a sphere instead of terrain, the camera is only limited by the sphere.
 TEST_F(GpuFarPlaces, TheSphereOfOneilsModelIsTheGround) {
   scene_.scattering.model = ScatteringModel::oneil;
   scene_.oneil.ground = OneilGround::sphere;

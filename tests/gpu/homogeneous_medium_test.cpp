@@ -1,5 +1,5 @@
-// scattering.medium = homogeneous: the closed form against a quadrature of the published integral in double precision,
-// and epipolar sampling against brute force.
+// scattering.medium = homogeneous: compares the closed form with a quadrature of the published integral in double
+// precision, and epipolar sampling with brute force.
 #include <array>
 #include <cmath>
 #include <functional>
@@ -18,7 +18,7 @@ Params homogeneous_params() {
   return params;
 }
 
-// Coefficients of the tests, set in the parameters: nothing of the library's own derivation is taken.
+// The tests set all coefficients, so that they do not depend on the library's derivation of them.
 constexpr glm::dvec3 kRayleigh = {6e-6, 14e-6, 33e-6};
 constexpr glm::dvec3 kMieScattering = {3e-5, 2e-5, 1e-5};
 constexpr glm::dvec3 kMieAbsorption = {1e-6, 2e-6, 4e-6};
@@ -42,8 +42,8 @@ Params with_coefficients(double density) {
   return params;
 }
 
-// Yusov 2012, the in-scattering integral under the assumptions of section 2, by Simpson's rule: `lit` is the visibility
-// of the sun at a distance.
+// The in-scattering integral of Yusov 2012, with the assumptions of section 2, computed by Simpson's rule. `lit` is the
+// visibility of the sun at a distance.
 struct Seen {
   glm::dvec3 light, through;
 };
@@ -70,7 +70,7 @@ TestFrame open_frame() {
   frame.view.tan_half_width = 0.9;
   frame.to_sun = glm::normalize(glm::dvec3(0.35, 0.25, -0.9));
   frame.background = {0.3, 0.2, 0.1};
-  // Surfaces of many distances, and sky above them.
+  // Surfaces at many distances, and sky above them.
   frame.distance_m = [](std::uint32_t x, std::uint32_t y) { return y < 6 ? 0.0 : 40.0 * (x + 1) * (16 - y); };
   return frame;
 }
@@ -111,7 +111,7 @@ TEST_F(HomogeneousMedium, WithoutShadowsIsTheIntegral) {
       params.scattering.technique = Technique::brute_force;
       const double brute = worst_error(draw(params, name), truth, frame.extent);
       EXPECT_LE(brute, 1e-5) << name;
-      // Every ray is wholly lit, so that all sources are 1 and nothing is lost in between.
+      // Every ray is completely lit, so all mean source functions are 1 and interpolation has no error.
       params.scattering.technique = Technique::epipolar;
       const double epipolar = worst_error(draw(params, name), truth, frame.extent);
       EXPECT_LE(epipolar, 1e-3) << name;
@@ -120,7 +120,8 @@ TEST_F(HomogeneousMedium, WithoutShadowsIsTheIntegral) {
   }
 }
 
-// Bars in the map, lit and dark, and glass before them; the truth reads the same map, with the same filter.
+// The map contains lit bars and bars in shadow, and glass in front of them. The expected value uses the same map and
+// filter.
 TEST_F(HomogeneousMedium, WithShadowsIsTheIntegralOverLitSections) {
   TestFrame frame = open_frame();
   frame.shadow_resolution = 64;
@@ -139,7 +140,7 @@ TEST_F(HomogeneousMedium, WithShadowsIsTheIntegralOverLitSections) {
   const auto glass = [bar](std::uint32_t, double u, double v) {
     return bar(u, v) % 4 == 0 ? glm::dvec3(1.0, 0.25, 0.5) : glm::dvec3(0.5, 1.0, 0.75);
   };
-  // The glass: none, of no certain height, level at 850 m, where it colours the air below it.
+  // Without glass, with glass of unknown height, and with glass at 850 m, which colours the medium below it.
   constexpr double kGlass_m = 850.0;
   enum class Glass { none, anywhere, level };
   for (const Glass kind : {Glass::none, Glass::anywhere, Glass::level}) {
@@ -185,7 +186,7 @@ TEST_F(HomogeneousMedium, WithShadowsIsTheIntegralOverLitSections) {
     const std::string name = kind == Glass::none       ? "bars"
                              : kind == Glass::anywhere ? "coloured bars"
                                                        : "coloured bars below glass";
-    // The map is read at every texel, and what lies between is taken as there: a texel is 300 m.
+    // The map is read once per texel, and a texel is 300 m wide.
     params.scattering.integration_steps = 1000;
     const double brute = worst_error(draw(params, name), truth, frame.extent);
     EXPECT_LE(brute, 2e-3) << name;
@@ -257,7 +258,7 @@ TEST_F(HomogeneousMedium, TreesAndOrderOfCascadesChangeNothing) {
   EXPECT_GT(counters().shadow_map_fetches, 4 * with_tree.shadow_map_fetches);
   same("multi-pass", [](Params& p) { p.shadows.cascade_processing = CascadeProcessing::multi_pass; });
   same("instanced", [](Params& p) { p.shadows.cascade_processing = CascadeProcessing::multi_pass_instanced; });
-  // Tables are not looked at.
+  // The tables are not used.
   same("multiple none", [](Params& p) { p.scattering.multiple = MultipleScattering::none; });
   same("single integration", [](Params& p) { p.scattering.single = SingleScattering::integration; });
 }

@@ -1,5 +1,5 @@
-// The demo engine on a device, small: every scene that is shipped, every parameter of the shadows at its ends, and
-// light where it belongs and nowhere else.
+// The demo engine on a device, with small pictures: all supplied scenes, the parameters of shadows at the ends of their
+// ranges, and the light of sun, sky and ground.
 #include <unistd.h>
 
 #include <algorithm>
@@ -18,15 +18,15 @@ namespace {
 
 constexpr VkExtent2D kSmall = {64, 36};
 
-// Tables that are built in a moment: what they hold is the business of tables_test.cpp.
+// Returns parameters with tables that are built quickly. tables_test.cpp tests their accuracy.
 Params with_small_tables(Params params = {}) {
   params.tables.size = {8, 32, 32, 4};
   params.tables.orders = 1;
   return params;
 }
 
-// A planet of the ordinary kind, but small: its horizon is near and its terrain has few levels, which take
-// most of the rest of a scene's time.
+// Returns a small planet. Its horizon is near, so its terrain has few levels, which take most of the time apart from
+// the tables.
 Params small_planet() {
   Params params = with_small_tables();
   params.planet.radius_m = 100.0e3F;
@@ -63,8 +63,8 @@ class GpuScene : public SharedSceneTest {
     return scene.ok() ? std::move(scene).value() : nullptr;
   }
 
-  // The radiance of a frame; everything in it is finite, what is displayed is in range, and the effect has nothing to
-  // remark.
+  // Returns the radiance of a frame. Checks that it is finite, that the displayed picture is in range, and that the
+  // effect makes no remarks.
   static image::Image draw(Scene& scene) {
     EXPECT_OK(scene.render(0.0));
     Result<image::Image> radiance = scene.radiance();
@@ -75,7 +75,7 @@ class GpuScene : public SharedSceneTest {
     for (const float value : radiance.value().rgb) EXPECT_TRUE(std::isfinite(value) && value >= 0.0F);
     for (const float value : display.value().rgb) EXPECT_TRUE(value >= 0.0F && value <= 1.0F);
     for (const std::string& note : scene.notes()) {
-      // A sun without light is meant; remarks on inputs name the members of the interface.
+      // Remarks on inputs contain names of the interface. A sun without light is intended.
       const bool remark = note.find("::") != std::string::npos || note.find("record_precompute") != std::string::npos;
       EXPECT_TRUE(!remark || note.find("irradiance is 0") != std::string::npos) << note;
     }
@@ -96,17 +96,17 @@ double luminance_sum(const image::Image& image) {
   return sum;
 }
 
-// One after the other, as in the viewer: that a change leads to what a creation does is the next test's business.
+// The scenes are loaded one after the other, as in the viewer. The next test compares changes with new scenes.
 TEST_F(GpuScene, ShippedScenesAreDrawn) {
   int count = 0;
   Scene* scene = nullptr;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(TYNDALL_SOURCE_DIR "/scenes")) {
-    // Presets are put on top of scenes.
+    // Presets are combined with scenes.
     if (entry.path().extension() != ".toml" || entry.path().parent_path().filename() == "presets") continue;
     config::Settings settings;
     ASSERT_OK(config::load(settings, entry.path().string()));
     settings.scene.camera.samples = 1;
-    settings.scene.shadows.resolution = 512;  // small as the picture is
+    settings.scene.shadows.resolution = 512;  // sufficient for a small picture
     settings.effect = with_small_tables(settings.effect);
     if (scene == nullptr) scene = make(settings.effect, settings.scene);
     ASSERT_NE(scene, nullptr);
@@ -114,13 +114,13 @@ TEST_F(GpuScene, ShippedScenesAreDrawn) {
     const image::Image image = draw(*scene, settings.scene);
     EXPECT_GT(luminance_sum(image), 0.0) << entry.path();
     const auto [low, high] = std::minmax_element(image.rgb.begin(), image.rgb.end());
-    EXPECT_GT(*high, 1.5F * *low) << entry.path();  // not one colour
+    EXPECT_GT(*high, 1.5F * *low) << entry.path();  // not a uniform colour
     ++count;
   }
   EXPECT_GT(count, 0);
 }
 
-// As `tyndall render` and `tyndall compare` would have it: the exposure is the scene's own, the PNGs have 8 bits.
+// Compares pictures as `tyndall render` and `tyndall compare` do, with the exposure of the scene and 8-bit PNGs.
 TEST_F(GpuScene, EpipolarSamplingOfTerrainIsLikeBruteForce) {
   struct View {
     const char* name;
@@ -138,7 +138,7 @@ TEST_F(GpuScene, EpipolarSamplingOfTerrainIsLikeBruteForce) {
        40.0},
       {"in a valley, the sun at the side",
        [](SceneParams& s) {
-         s.camera.altitude_m = 1500.0F;  // lifted above the ground, where that is higher
+         s.camera.altitude_m = 1500.0F;  // the scene raises it above higher ground
          s.camera.pitch_deg = 5.0F;
          s.sun.azimuth_deg = 62.0F;
        },
@@ -195,7 +195,7 @@ TEST_F(GpuScene, TablesFromTheCacheDrawTheSamePicture) {
   std::filesystem::remove_all(cache);
 }
 
-// A scene that has been changed draws what one created so draws, and back again.
+// After a change, and after the change is undone, a scene draws the same picture as a new scene.
 TEST_F(GpuScene, ChangesLeadToTheSamePictureAsCreation) {
   SceneParams other;
   other.terrain.seed = 7;
@@ -224,7 +224,7 @@ TEST_F(GpuScene, ChangesLeadToTheSamePictureAsCreation) {
   EXPECT_EQ(draw(*changed, {}).rgb, before.rgb);
 }
 
-// What a viewer asks for: shadow maps that are kept where nothing has moved, tables in slices, a coarser terrain.
+// Options for viewers: reused shadow maps, tables built in slices, and coarser terrain.
 TEST_F(GpuScene, DrawsForViewers) {
   SceneDesc desc;
   desc.extent = kSmall;
@@ -256,7 +256,7 @@ TEST_F(GpuScene, DrawsForViewers) {
   low_sun.sun.elevation_deg = 4.0F;
   EXPECT_EQ(draw(scene, low_sun).rgb, draw(*plain, low_sun).rgb);
   EXPECT_TRUE(drawn("shadow_maps"));
-  // Coarser ground is other ground, but not by much.
+  // Coarser terrain differs only slightly.
   desc.tables_later = false;
   desc.terrain_coarseness = 4;
   Result<std::unique_ptr<Scene>> coarse = Scene::create(host(), desc, small_planet(), {});
@@ -273,7 +273,7 @@ TEST_F(GpuScene, TheDefaultSceneRepeatsItselfAndIsDarkAtNight) {
   const image::Image first = draw(*scene);
   EXPECT_GT(luminance_sum(first), 0.0);
   EXPECT_EQ(draw(*scene).rgb, first.rgb);
-  // The ground below in the planet's shadow: no sun, and next to no sky.
+  // The ground below is in the planet's shadow: there is no sun and almost no light from the sky.
   settings.camera.pitch_deg = -60.0F;
   settings.sun.elevation_deg = 30.0F;
   const image::Image day = draw(*scene, settings);
@@ -281,8 +281,8 @@ TEST_F(GpuScene, TheDefaultSceneRepeatsItselfAndIsDarkAtNight) {
   const image::Image night = draw(*scene, settings);
   for (std::size_t i = 0; i < night.rgb.size(); ++i) {
     ASSERT_GT(day.rgb[i], 1e-3F) << i;
-    // Light scattered once at -10 degrees comes from above 90 km but for the sun's grazing rays: thousands of
-    // times less than by day.
+    // At -10 degrees, single scattering comes from above 90 km, apart from grazing rays of the sun. It is thousands of
+    // times weaker than by day.
     ASSERT_LT(night.rgb[i], 1e-3F * day.rgb[i]) << i;
   }
 }
@@ -292,7 +292,7 @@ TEST_F(GpuScene, ShadowParametersAtBothEnds) {
   SceneParams least;
   least.camera.position_m = {0.0F, 2500.0F, 0.0F};
   SceneParams most = least;
-  // Many large maps at once would only show how much memory there is.
+  // Many large maps together would only test the amount of memory.
   least.shadows = {4096, 1, 0, 0.0F, 1000.0F, false, false, false};
   most.shadows = {512, 8, 7, 1.0F, 1.0e7F, true, true, true};
   for (const SceneParams& settings : {least, most}) {
@@ -304,7 +304,7 @@ TEST_F(GpuScene, ShadowParametersAtBothEnds) {
 
 TEST_F(GpuScene, ShadingsTheCascadeViewAndTheSunsDisc) {
   Params params = small_planet();
-  params.scattering.enabled = false;  // the ground's own light
+  params.scattering.enabled = false;  // only the light of the ground
   params.scattering.scale = 1.0F;
   SceneParams settings;
   settings.terrain.source = elevation_file(
@@ -323,7 +323,7 @@ TEST_F(GpuScene, ShadingsTheCascadeViewAndTheSunsDisc) {
   EXPECT_NE(images[1], images[2]);
   settings.shadows.show_cascades = true;
   const image::Image cascades = draw(*scene, settings);
-  // Colours where the plain ground has none.
+  // Textured ground has colours, plain ground has none.
   double saturation = 0.0;
   for (std::size_t i = 0; i < cascades.rgb.size(); i += 3) {
     const auto spread = [i](const std::vector<float>& rgb) {
@@ -334,7 +334,7 @@ TEST_F(GpuScene, ShadingsTheCascadeViewAndTheSunsDisc) {
   }
   EXPECT_GT(saturation, 0.1);
 
-  // The disc, wide enough for 450 pixels: its radiance times solid angle is the irradiance, darkened limb or not.
+  // The disc covers 450 pixels. Its radiance times its solid angle is the irradiance, with or without limb darkening.
   settings.sun.elevation_deg = settings.camera.pitch_deg = 30.0F;
   settings.sun.azimuth_deg = settings.camera.yaw_deg = 0.0F;
   settings.sun.irradiance = {3.0F, 2.0F, 0.5F};
@@ -353,13 +353,13 @@ TEST_F(GpuScene, ShadingsTheCascadeViewAndTheSunsDisc) {
       }
     }
   }
-  // The edge is a ramp of one pixel, where the limb is darkest.
+  // The edge is a ramp of one pixel, at the darkest part of the limb.
   const double irradiance[3] = {3.0, 2.0, 0.5};
   for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(sum[c], irradiance[c], 0.01 * irradiance[c]);
 }
 
-// Whoever draws the air: light of one channel comes from the sun's light in that channel, on the ground, in the air, on
-// the moon and on the disc.
+// With every model, the light of a channel depends only on the sun's light in that channel, on the ground, in the sky,
+// on the moon and on the sun's disc.
 TEST_F(GpuScene, EveryModelTakesTheColourOfTheSun) {
   const Params params = small_planet();
   SceneParams scene_params;
@@ -408,20 +408,20 @@ TEST_F(GpuScene, SmoothGroundUnderAHighSunHasNoAcne) {
   Params params = with_small_tables();
   params.scattering.enabled = false;
   SceneParams settings;
-  // In view slopes of at most 13 degrees, nowhere turned away from a sun of 60 degrees. Out of view in the west a
-  // range of 2 km, whose shadow the high sun keeps to itself.
+  // The visible slopes are at most 13 degrees steep, so none faces away from a sun at 60 degrees. Outside the view, in
+  // the west, is a mountain range of 2 km whose shadow is short under a high sun.
   settings.terrain.source = elevation_file(256, 200.0, [](double x, double z) {
     const double range = (x + 6000.0) / 800.0;
     return 800.0 + 350.0 * std::sin(x / 1500.0) * std::cos(z / 1500.0) + 2000.0 * std::exp(-range * range);
   });
   settings.terrain.shading = TerrainShading::plain;
-  // From 2.2 km above the mean ground, between 10 and 20 km away.
+  // The view is from 2.2 km above the mean ground, and shows ground 10 to 20 km away.
   settings.camera = {{0.0F, 3000.0F, 0.0F}, -1.0F, 0.0F, -9.0F, 3.0F, 1};
   settings.sun.elevation_deg = 60.0F;
   settings.sun.azimuth_deg = 270.0F;
   Scene* const scene = make(params, settings, kSmall, 1);
   ASSERT_NE(scene, nullptr);
-  // The same without shadows: the cascades end at twice the camera's height, in front of all that is seen.
+  // For a picture without shadows, the cascades end at twice the height of the camera, in front of everything visible.
   SceneParams open_settings = settings;
   open_settings.shadows.distance_m = 1000.0F;
   const auto lit_fraction = [&] {
@@ -438,7 +438,7 @@ TEST_F(GpuScene, SmoothGroundUnderAHighSunHasNoAcne) {
     return static_cast<double>(lit) / static_cast<double>(count);
   };
   EXPECT_GE(lit_fraction(), 0.999);
-  // Shadows would be seen: the low sun stands behind the range. (Slopes that face away are dark in both.)
+  // Under a low sun behind the range, shadows are visible. (Slopes that face away are dark in both.)
   settings.sun.elevation_deg = open_settings.sun.elevation_deg = 10.0F;
   EXPECT_LT(lit_fraction(), 0.5);
 }

@@ -1,4 +1,4 @@
-// What the parameters declare that a change requires (Affects) is what it requires: the pipelines and buffers of the
+// The declarations of parameters (Affects) agree with the consequences of a change: the pipelines and buffers of the
 // lists of steps, the tables, and in the demo scene the terrain.
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 namespace tyndall {
 namespace {
 
-// Other values of a parameter: every choice, or numbers across its range.
+// Returns other values of a parameter: every choice, or numbers across its range.
 std::vector<std::vector<std::uint32_t>> values_of(const ParamInfo& info) {
   const auto words = [](auto... values) {
     std::vector<std::uint32_t> out;
@@ -46,7 +46,7 @@ std::vector<std::vector<std::uint32_t>> values_of(const ParamInfo& info) {
   return out;
 }
 
-// Settings in which different parameters matter.
+// Returns settings in which different parameters matter.
 std::vector<Params> settings() {
   std::vector<Params> out(7);
   out[1].scattering.single = SingleScattering::integration;
@@ -68,7 +68,7 @@ struct Requirement {
   bool pipelines = false, buffers = false, tables = false;
 };
 
-// Returns what any change of the parameter alone requires. Other pipelines are those that are missing.
+// Returns everything that a change of this parameter may require. Only missing pipelines count.
 Requirement requirement_of(const ParamInfo& info) {
   EffectDesc desc;
   desc.shadow_colors = true;
@@ -96,12 +96,12 @@ TEST(ParamAffects, IsWhatTheListsOfStepsAndTheTablesNeed) {
                              : needs.pipelines ? Affects::Pipeline
                                                : Affects::Frame;
     EXPECT_EQ(static_cast<int>(info.affects), static_cast<int>(expected)) << info.group << "." << info.name;
-    // One declaration for each parameter suffices.
+    // One declaration per parameter suffices.
     EXPECT_FALSE(needs.tables && (needs.buffers || needs.pipelines)) << info.group << "." << info.name;
   }
 }
 
-// A terrain is loaded again for the parameters of its group that declare it, besides the planet's radius.
+// The terrain is reloaded if the planet's radius or a parameter of its group that declares so has changed.
 TEST(ParamAffects, OfTheTerrainIsItsKey) {
   using scene::SceneParams;
   const auto group = [](const SceneParams& p) { return scene::terrain_key(p.terrain, {}); };

@@ -88,7 +88,7 @@ TEST_F(ElevationFile, FilesDoNotReachTheNetwork) {
                                     "/vsizip//vsicurl/" + server + "/a.zip/a.tif"}) {
     EXPECT_NE(error(vrt("curl.vrt", source)).find("refers to a network file system"), std::string::npos) << source;
   }
-  // Through a second virtual raster, which is opened only when its samples are read.
+  // A second virtual raster between them is opened only when its samples are read.
   const std::string inner = vrt("inner.vrt", "/vsicurl/" + server + "/a.tif").string();
   error(vrt("outer.vrt", inner));
   std::ofstream(folder_.path("wms.xml"))
@@ -136,7 +136,7 @@ TEST_F(ElevationFile, FilesOfAVirtualRasterAreListed) {
   std::sort(expected.begin(), expected.end());
   EXPECT_EQ(listed, expected);
   EXPECT_EQ(elevation_file_list(file), std::vector<std::string>{file});
-  // What cannot be opened lists itself only.
+  // A file that cannot be opened lists only itself.
   const std::string dangling = vrt("dangling.vrt", "none.tif");
   EXPECT_EQ(elevation_file_list(dangling).front(), dangling);
   EXPECT_EQ(elevation_file_list("/nonexistent.vrt"), std::vector<std::string>{"/nonexistent.vrt"});

@@ -1,4 +1,4 @@
-// Reads elevation files that a test has written, and checks what is printed meanwhile.
+// Reads elevation files that a test has written, and checks that nothing is printed.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -37,12 +37,12 @@ bool installed(const std::string& program) {
   return false;
 }
 
-constexpr double kLook_s = 0.02;   // between two looks at what the viewer does
-constexpr double kLong_s = 240.0;  // nothing takes so long
+constexpr double kLook_s = 0.02;   // interval of polling
+constexpr double kLong_s = 240.0;  // timeout
 
 void pause(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
 
-// Starts a program; its output goes to `output`, `descriptor` stays open in it.
+// Starts a program and redirects its output to the file `output`.
 int start(std::vector<std::string> words, const std::vector<std::string>& environment, const std::string& output) {
   const int child = ::fork();
   if (child != 0) return child;
@@ -57,14 +57,14 @@ int start(std::vector<std::string> words, const std::vector<std::string>& enviro
   std::_Exit(127);
 }
 
-// Leaves its status to be asked for.
+// Returns whether a child has ended, without consuming its exit status.
 bool has_ended(int child) {
   siginfo_t info = {};
   return ::waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid == child;
 }
 
 int status_of(int child, double seconds) {
-  constexpr double kStep_s = 0.005;  // real input takes some milliseconds
+  constexpr double kStep_s = 0.005;  // pause between events; real input takes some milliseconds
   for (double waited = 0.0; waited < seconds; waited += kStep_s) {
     int status = 0;
     if (::waitpid(child, &status, WNOHANG) == child) return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
@@ -89,7 +89,7 @@ Desk::Desk(const std::string& name, int width, int height)
     : folder_(std::string(TYNDALL_VIEWER_ARTEFACTS) + "/" + name) {
   fs::remove_all(folder_);
   fs::create_directories(folder_ + "/screen");
-  // The server chooses a free display and says which.
+  // The server chooses a free display and prints its number.
   const std::string said = folder_ + "/display";
   const std::string size = std::to_string(width) + "x" + std::to_string(height);
   server_ = start({"sh", "-c",
@@ -165,7 +165,7 @@ bool Desk::manage() {
   if (!installed("openbox")) return false;
   manager_ = start({"openbox", "--config-file", "/dev/null"}, {"DISPLAY=" + display_, "HOME=" + folder_},
                    folder_ + "/manager.txt");
-  // It is there when it has told its name.
+  // The window manager is ready when it has published its name.
   for (int i = 0; i < 200; ++i) {
     if (status_of(start({"xdotool", "get_num_desktops"}, {"DISPLAY=" + display_}, folder_ + "/input.txt"), 10.0) == 0)
       return true;
@@ -178,14 +178,14 @@ void Desk::input(const std::string& commands) {
   std::vector<std::string> words = {"xdotool"};
   std::istringstream text(commands);
   for (std::string word; text >> word;) words.push_back(word);
-  // "--sync" waits for ever when there is nothing left to do.
+  // "--sync" never returns if there is nothing to change, so there is a timeout.
   status_of(start(words, {"DISPLAY=" + display_}, folder_ + "/input.txt"), 10.0);
 }
 
 std::string log_text(const Desk& desk) { return read_text(desk.folder() + "/log.txt"); }
 std::string Desk::errors() const { return read_text(folder_ + "/errors.txt"); }
 
-// What the viewer has written since the last look; only whole lines.
+// Reads the complete lines that the viewer has written since the last call.
 void Desk::read_log() const {
   std::ifstream file(folder_ + "/log.txt", std::ios::binary);
   if (!file || !file.seekg(log_read_)) return;
@@ -210,7 +210,7 @@ std::optional<LogLine> Desk::wait_for_line(const std::vector<std::string>& words
                        [&line](const std::string& word) { return line.find(word) != std::string::npos; });
   };
   for (double waited = 0.0; waited < seconds; waited += kLook_s) {
-    // Before the log is read for the last time.
+    // Determined before the log is read for the last time, so that no line is missed.
     const bool ended = viewer_ > 0 && has_ended(viewer_);
     for (const std::size_t count = lines(); from < count; ++from) {
       if (has_all(log_[from])) return LogLine{from, log_[from]};
@@ -255,14 +255,14 @@ bool Desk::wait_for_place(const std::string& place, bool there) {
 }
 
 bool Desk::point_at(const std::string& place, double part) {
-  // Menus find their place within a few frames: it is under the pointer when it still is after the viewer has seen
-  // that.
+  // Menus move during their first frames. The place is reached if it is still under the pointer after the viewer has
+  // processed the movement.
   for (int i = 0; i < 20; ++i) {
     if (!wait_for_place(place)) return false;
     const Rect rect = places()[place];
     const int x = static_cast<int>(rect.x + part * rect.width);
     const int y = static_cast<int>(rect.y + 0.5 * rect.height);
-    if (x == pointer_[0] && y == pointer_[1]) return true;  // no event comes of that
+    if (x == pointer_[0] && y == pointer_[1]) return true;  // there would be no event
     const std::size_t from = lines();
     pointer_[0] = x;
     pointer_[1] = y;
@@ -289,7 +289,7 @@ std::vector<std::string> Desk::place_names() const {
   return out;
 }
 
-// Fields 14 and 15 of proc(5), stat, counted after the name in parentheses.
+// Reads fields 14 and 15 of /proc/PID/stat (proc(5)), counted after the name in parentheses.
 double Desk::cpu_s() const {
   const std::string text = read_text("/proc/" + std::to_string(viewer_) + "/stat");
   std::istringstream fields(text.substr(std::min(text.rfind(')') + 1, text.size())));
@@ -313,7 +313,8 @@ int Desk::wait_for_end(double seconds) {
   return status;
 }
 
-// Xvfb keeps the screen in a file: an XWD header of big-endian words, a colour map of 12 bytes an entry, pixels.
+// Xvfb stores the screen in a file: an XWD header of big-endian words, a colour map with 12 bytes per entry, and the
+// pixels.
 bool Desk::picture(const std::string& name) {
   const std::string bytes = read_text(folder_ + "/screen/Xvfb_screen0");
   if (bytes.size() < 100) return false;

@@ -1,4 +1,4 @@
-// Menus and buttons, by the mouse, and the help of the first run.
+// Menus and buttons used with the mouse, and the help at the first start.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -12,7 +12,7 @@ namespace {
 
 using namespace desk;
 
-// Presets change what they name and leave the rest; VSync chooses how the window presents.
+// Presets change only the parameters that they contain. VSync selects the present mode of the window.
 TEST(Window, AppliesPresetsAndVsyncFromTheMenus) {
   NEEDS_A_DESK();
   Desk desk("menus");
@@ -41,8 +41,8 @@ TEST(Window, AppliesPresetsAndVsyncFromTheMenus) {
   EXPECT_EQ(desk.leave(), 0) << desk.errors();
 }
 
-// On the first start with a state folder a help says how to move, to turn the sun and to make haze, until it is closed;
-// then it has been read for ever.
+// At the first start with a state folder, a window explains how to move, to turn the sun and to add haze. Once it has
+// been closed, it does not appear again.
 TEST(Window, ShowsTheFirstStepsOnce) {
   NEEDS_A_DESK();
   Desk desk("first_steps");
@@ -51,7 +51,7 @@ TEST(Window, ShowsTheFirstStepsOnce) {
   for (const char* line : {"Move", "Turn the sun", "More haze", "All keys"})
     EXPECT_TRUE(desk.wait_for_place(std::string("first_run.") + line)) << line;
   desk.picture("first");
-  // What it says of the haze is there: the slider, without anything done before.
+  // The slider of the haze that it mentions is visible from the start.
   EXPECT_TRUE(desk.wait_for_place("atmosphere.aerosol_density"));
   ASSERT_TRUE(desk.click("first_run.close"));
   EXPECT_TRUE(desk.wait_for_place("first_run.close", false));

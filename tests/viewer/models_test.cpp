@@ -1,4 +1,4 @@
-// The models in the viewer: chosen from the menu, and two of them on the sides of a comparison.
+// Models in the viewer: selected from the menu, and two of them in a comparison.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -11,7 +11,7 @@ namespace {
 
 using namespace desk;
 
-// From the menu, whose entries begin with what is given.
+// Selects the entry of the menu that begins with `name`.
 bool choose(Desk& desk, const std::string& name) { return desk.click("menu.Model") && desk.click("item." + name); }
 
 TEST(Window, ComparesTwoModels) {
@@ -28,7 +28,7 @@ TEST(Window, ComparesTwoModels) {
 
   ASSERT_TRUE(compare_two(desk));
   ASSERT_TRUE(desk.click("side.right"));
-  // Right of the divider another system; the left side stays.
+  // A model is selected for the right side. The left side is unchanged.
   for (const auto& [name, value] : {std::pair{"Air and haze (Hoffman, Preetham 2002)", "homogeneous"},
                                     {"Scale function (O'Neil 2005)", "oneil"},
                                     {"Table (O'Neil 2004)", "oneil-table"}}) {

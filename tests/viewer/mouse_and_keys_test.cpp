@@ -1,4 +1,4 @@
-// Keys and the pointer: flight, the sun, the field of view, and F1 to F12.
+// Keys and pointer: flight, sun, field of view, and F1 to F12.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ using namespace desk;
 
 void expect_keys_to_fly(Desk& desk) {
   const Frame start = last_frame(desk);
-  // W flies forward: north-west and down from where the default camera stands.
+  // W flies forward: north-west and down from the default camera.
   std::size_t from = desk.lines();
   desk.input("keydown w");
   ASSERT_TRUE(desk.wait_for({"frame left"}, from));
@@ -26,7 +26,7 @@ void expect_keys_to_fly(Desk& desk) {
   EXPECT_LT(f.z, start.z - 1.0);
   EXPECT_LT(f.y, start.y);
   EXPECT_NEAR(f.pitch, start.pitch, 1.0e-6);
-  // Each of the other keys does something, and Shift more of it.
+  // Each of the other keys moves the camera, faster with Shift.
   for (const char* key : {"s", "a", "d", "q", "e"}) {
     from = desk.lines();
     desk.input(std::string("key ") + key);
@@ -49,7 +49,7 @@ void drag(Desk& desk, int button, int x0, int y0, int x1, int y1) {
   ASSERT_TRUE(desk.settles_after({"release"}, at));
 }
 
-// A drag with the left button looks, with the right button turns the sun; both on the picture, beside the controls.
+// On the picture, dragging with the left button turns the view, and with the right button the sun.
 void expect_drags_to_turn(Desk& desk) {
   Frame before = last_frame(desk);
   ASSERT_NO_FATAL_FAILURE(drag(desk, 1, 300, 100, 340, 120));
@@ -70,7 +70,7 @@ void expect_drags_to_turn(Desk& desk) {
   desk.picture("2_flown");
 }
 
-// F5 saves everything; F9 undoes what is done after it.
+// F5 saves the state, and F9 restores it.
 void expect_settings_to_be_saved_and_loaded(Desk& desk) {
   std::size_t from = desk.lines();
   desk.input("key F5");
@@ -91,7 +91,7 @@ void expect_settings_to_be_saved_and_loaded(Desk& desk) {
   EXPECT_NEAR(last_frame(desk).yaw, saved.yaw, 1.0e-3);
 }
 
-// F12 writes both pictures, of the right size, with the parameters in them.
+// F12 saves both pictures with the right size and with the parameters as metadata.
 void expect_screenshots(Desk& desk) {
   const std::size_t from = desk.lines();
   desk.input("key F12");
@@ -109,7 +109,7 @@ void expect_screenshots(Desk& desk) {
   }
 }
 
-// F1 and F2 change what is seen; F11 fills the screen and comes back.
+// F1 and F2 show and hide windows. F11 switches to full screen and back.
 void expect_function_keys_to_change_the_window(Desk& desk) {
   std::size_t from = desk.lines();
   desk.input("key F1");

@@ -1,4 +1,4 @@
-// F8: shaders are rebuilt while the viewer runs.
+// F8 rebuilds the shaders while the viewer runs.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -15,7 +15,7 @@ using namespace desk;
 
 namespace fs = std::filesystem;
 
-// F8 with sources of its own: as they are, broken, and changed.
+// Tests F8 with a copy of the sources: unchanged, invalid, and changed.
 TEST(Window, RebuildsShadersWhileItRuns) {
   NEEDS_A_DESK();
   Desk desk("shaders");

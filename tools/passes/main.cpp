@@ -1,5 +1,5 @@
-// Writes docs/generated/passes.md: the passes of a frame and of a build of the tables, with what they read and write,
-// from the same lists that the effect records.
+// Writes docs/generated/passes.md: the passes of a frame and of a build of the tables, with their inputs and outputs,
+// from the lists of steps that the effect records.
 //   passes --modes           prints a line for each mode: its name and the options of `tyndall bench` that select it
 //   passes DIR               prints the page, with costs from DIR/MODE.json (`tyndall bench --json`) and
 //   DIR/tables.json
@@ -99,7 +99,7 @@ std::string work_of(const Step& step) {
   return out;
 }
 
-// Returns what a step reads or writes, each resource once, in the order of resources.def.
+// Returns the resources that a step reads or writes, without duplicates, in the order of resources.def.
 std::string names_of(const Step& step, bool writes) {
   std::set<Resource> resources;
   for (const Use& use : uses_of(step)) {
@@ -116,8 +116,8 @@ void add_row(std::string& out, const std::vector<std::string>& cells) {
   out += "|\n";
 }
 
-// Where the contents of a resource are valid within a frame: from the pass that first writes it to the last that reads
-// it.
+// The passes of a frame during which the contents of a resource are valid: from the first that writes it to the last
+// that reads it.
 using Lifetimes = std::map<Resource, std::pair<std::string, std::string>>;
 
 void add_lifetimes(Lifetimes& out, const std::vector<Step>& steps) {
@@ -136,7 +136,7 @@ struct TableRow {
   int runs = 0;
 };
 
-// Steps that differ in their push constants only are one row: neighbours in a frame, all of them in a build.
+// Steps that differ only in their push constants share a row if they are consecutive or belong to a build.
 std::vector<TableRow> rows_of(const std::vector<Step>& steps, bool of_frame) {
   std::vector<TableRow> out;
   for (const Step& step : steps) {
@@ -238,7 +238,7 @@ Result<std::string> page(const std::string& folder) {
     const std::vector<Step> steps(list.begin(), list.end());
     out += std::string("\n## A frame: ") + mode.title + "\n\n";
     add_passes(out, rows_of(steps, true), costs_in(folder + "/" + mode.name + ".json", "passes", "median_ms"));
-    // The first mode that uses a resource decides about its lifetime.
+    // The lifetime of a resource is that in the first mode that uses it.
     Lifetimes own;
     add_lifetimes(own, steps);
     frame.insert(own.begin(), own.end());
@@ -251,7 +251,7 @@ Result<std::string> page(const std::string& folder) {
   return out;
 }
 
-// Returns the page without the last cell of its rows where that is a cost.
+// Returns the page without the costs, which are the last cells of its rows.
 std::string without_costs(const std::string& text) {
   std::istringstream lines(text);
   std::string out;

@@ -11,13 +11,13 @@ namespace {
 
 static_assert(std::is_standard_layout_v<SceneParams>, "the table holds offsets into it");
 
-// Returns the name of a parameter: identifiers that would be keywords end in an underscore, which is not part of it.
+// Returns the name of a parameter without the underscore at the end of identifiers that would be keywords.
 constexpr std::string_view file_name(std::string_view identifier) {
   if (identifier.ends_with('_')) identifier.remove_suffix(1);
   return identifier;
 }
 
-// "name|name|...": the choices of each enumeration, in order of value.
+// The choices of each enumeration in order of value, as "name|name|...".
 #define ENUM_BEGIN(type) constexpr std::string_view k##type##Choices = ""
 #define ENUM_VALUE(type, identifier, value, text) "|" text
 #define ENUM_END(type) ;

@@ -55,7 +55,7 @@ struct SceneParams {
 // SceneParams; at the offset of a row of type string there is a std::string.
 [[nodiscard]] std::span<const ParamInfo> scene_param_table();
 
-// Returns whether a parameter of `group` differs whose change requires `affects`.
+// Returns whether a parameter of `group` that declares `affects` has different values.
 [[nodiscard]] bool differs(const SceneParams& a, const SceneParams& b, std::string_view group, Affects affects);
 
 }  // namespace tyndall::scene

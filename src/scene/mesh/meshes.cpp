@@ -18,9 +18,9 @@ namespace {
 
 constexpr double kRadPerDeg = 0.017453292519943295;
 
-constexpr float kGroundAlbedo = 0.3F;  // of the bare ground, and of what lies under meshes: the plain terrain's grey
+constexpr float kGroundAlbedo = 0.3F;  // of the bare ground and of the ground under meshes, as of plain terrain
 
-// As shaders/scene/mesh_push.glsl reads it.
+// The layout of shaders/scene/mesh_push.glsl.
 struct MeshPush {
   Mat4 clip_from_local;
   float color[4];
@@ -35,7 +35,7 @@ struct GroundPush {
   float near_m;
 };
 
-// East, up and south at a place of the map, turned.
+// Returns the frame of the meshes: east, up and south at a position of the map, rotated by meshes.yaw_deg.
 glm::dmat4 site_of(const MeshParams& params, const Terrain& terrain, double radius_m) {
   const glm::dvec3 p = to_glm(params.position_m);
   const glm::dvec3 up = up_of(world_from_map(p.x, p.z, 0.0, radius_m), radius_m);
@@ -55,7 +55,7 @@ shared::MeshInstance placed(const glm::dmat4& site_from_mesh) {
   shared::MeshInstance out = {};
   out.site_from_mesh = to_mat4(site_from_mesh);
   const glm::dmat3 m(site_from_mesh);
-  // The cofactors: the inverse transpose but for a factor, and defined where a mesh is flattened.
+  // The cofactor matrix is the inverse transpose up to a factor. It also exists for instances that flatten a mesh.
   const glm::dmat3 c(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
   const double handed = glm::determinant(m) < 0.0 ? -1.0 : 1.0;
   const double size = std::max({glm::length(c[0]), glm::length(c[1]), glm::length(c[2]), 1e-300});
@@ -113,7 +113,7 @@ Result<void> Meshes::load(const MeshParams& params, const Terrain& terrain) {
     lowest_m_ = std::min(lowest_m_, altitude);
     highest_m_ = std::max(highest_m_, altitude);
   }
-  // The sphere bends down from under a flat mesh: between its corners it is higher by the sagitta.
+  // The ground is a sphere: under the middle of a flat mesh it is higher than under its corners by the sagitta.
   const double side = glm::distance(corners_[0], corners_[7]);
   lowest_m_ -= side * side / (8.0 * radius_m_);
   find_boxes();
@@ -250,7 +250,7 @@ Ground Meshes::ground(Ground ground, const glm::dvec3& camera) const {
   ground.min_m = std::min(ground.min_m, lowest_m_);
   ground.max_m = std::max(ground.max_m, highest_m_);
   if (bare_ground_) ground.casters = corners_;
-  // From a diameter away one looks in at windows and doors.
+  // From less than a diameter away, the inside is visible through windows and doors.
   if (glm::distance(camera, 0.5 * (corners_[0] + corners_[7])) < glm::distance(corners_[0], corners_[7]))
     ground.room = corners_;
   return ground;
@@ -308,8 +308,8 @@ std::vector<gpu::NamedResource> Meshes::resources(const TerrainLight* light) con
   return out;
 }
 
-// Draws the parts whose material is chosen and which can be in sight, one draw each for instances in a row: what a
-// material needs is bound with it.
+// Draws the parts with a chosen material that can be visible. Consecutive instances share a draw. The resources of a
+// material are bound before its draws.
 template <typename Choose>
 Result<void> Meshes::draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline, const glm::dmat4& clip_from_world,
                           const TerrainLight* light, const Choose& choose) {

@@ -102,7 +102,7 @@ class OneilSky : public SkyModel {
   }
 
  private:
-  // Makes the fit or the table and the irradiance of the sky when the planet, the atmosphere or the settings have
+  // Computes the fit or the table and the irradiance of the sky if the planet, the atmosphere or the settings have
   // changed. No frame may be in flight.
   Result<void> make(const tyndall::shared::Medium& medium, const models::OneilSettings& settings) {
     const bool same =

@@ -123,10 +123,10 @@ void SkyModel::fill_mesh(const ModelFrame& frame) {
     const double x = 2.0 * i / kColumns - 1.0;
     out.angles[i] = static_cast<float>(kHalfTurn * x * (0.3 + 0.7 * x * x));
   }
-  // Rows towards the edge of the sky: the horizontal, or, from space, the rim of the atmosphere; then to the horizon of
-  // the ground sphere, which lies as far below an eye below sea level as that lies below it. At either stands a pair of
-  // rows close together, so that a break there is not smeared over a row, and on neither side of the horizon a vertex
-  // in doubt.
+  // The upper rows extend to the edge of the sky: the horizontal or, from space, the rim of the atmosphere. The next
+  // rows extend to the horizon of the ground sphere, which for an eye below sea level is at twice its depth. At both
+  // edges there are two rows close together, so that a discontinuity there is sharp and every vertex is clearly on one
+  // side.
   const double altitude = altitude_of(frame.view.position, radius);
   const auto dip = [&](double below_m) {  // angle of a sphere's rim below the horizontal
     const double r = radius + altitude;
@@ -142,7 +142,8 @@ void SkyModel::fill_mesh(const ModelFrame& frame) {
   constexpr double kNarrow_rad = 1e-4;
   const double last = horizon - kNarrow_rad;
   for (std::uint32_t i = 1; i <= kRowsBetween; ++i) {
-    // Closer together at both ends: light rises as a square root from the rim, and exponentially to the horizon.
+    // Rows are closer together at both ends, because radiance increases like a square root from the rim, and
+    // exponentially towards the horizon.
     const double t = static_cast<double>(i - 1) / (kRowsBetween - 1);
     const double x = t * t * (3.0 - 2.0 * t);
     zenith[kRowsAbove + i] = static_cast<float>(std::min(edge + kNarrow_rad, last) * (1.0 - x) + last * x);
