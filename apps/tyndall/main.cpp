@@ -52,8 +52,8 @@ int run(Args args) {
   if (first == "--version" || first == "-V") return print("tyndall " TYNDALL_VERSION_STRING "\n");
   if (first == "--help" || first == "-h" || (first == "help" && args.size() == 1)) return print(help_text());
   if (first == "help") {
-    const std::vector<std::string> ask = {"--help"};
-    return run_verb(args[1], ask);
+    const std::vector<std::string> help = {"--help"};
+    return run_verb(args[1], help);
   }
   return run_verb(first, args.subspan(1));
 }

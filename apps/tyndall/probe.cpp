@@ -102,7 +102,7 @@ int run_probe(Args args) {
     settings.progress = [&](double done) {
       progress.update(static_cast<std::uint64_t>(done * static_cast<double>(kSteps)), kSteps);
     };
-    answers = ask_model(model.id, settings, table.value().queries);
+    answers = evaluate_model(model.id, settings, table.value().queries);
   }
   for (const std::string& text : notes) note(text);
   if (!answers) return fail(answers.error());

@@ -166,8 +166,8 @@ models::HomogeneousLengths homogeneous_lengths(const scene::SceneParams& scene) 
   return {own.air_length_m, own.haze_length_m, own.falloff.value != 0};
 }
 
-Result<std::vector<ProbeAnswer>> ask_model(scene::ModelId model, const ProbeSettings& settings,
-                                           std::span<const RayQuery> queries) {
+Result<std::vector<ProbeAnswer>> evaluate_model(scene::ModelId model, const ProbeSettings& settings,
+                                                std::span<const RayQuery> queries) {
   using Id = scene::ModelId;
   switch (model) {
     case Id::precomputed: return run_precomputed(settings, queries);

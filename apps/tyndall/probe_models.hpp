@@ -42,7 +42,7 @@ struct ProbeSettings {
 [[nodiscard]] models::HomogeneousLengths homogeneous_lengths(const scene::SceneParams& scene);
 
 // Evaluates the queries with one of the models.
-[[nodiscard]] Result<std::vector<ProbeAnswer>> ask_model(scene::ModelId model, const ProbeSettings& settings,
-                                                         std::span<const RayQuery> queries);
+[[nodiscard]] Result<std::vector<ProbeAnswer>> evaluate_model(scene::ModelId model, const ProbeSettings& settings,
+                                                              std::span<const RayQuery> queries);
 
 }  // namespace tyndall::cli

@@ -115,22 +115,22 @@ Result<ProbeTable> read_queries(const std::string& path) {
 }
 
 std::string answers_as_csv(const ProbeTable& table, std::span<const ProbeAnswer> answers, bool random) {
-  std::vector<std::size_t> kept;
+  std::vector<std::size_t> columns;
   for (std::size_t i = 0; i < table.input.header.size(); ++i) {
     const std::string name = files::csv_value(table.input.header[i]);
     if (std::find(std::begin(kAnswerColumns), std::end(kAnswerColumns), name) == std::end(kAnswerColumns)) {
-      kept.push_back(i);
+      columns.push_back(i);
     }
   }
   std::string out;
-  for (const std::size_t i : kept) out.append(out.empty() ? "" : ",").append(table.input.header[i]);
+  for (const std::size_t i : columns) out.append(out.empty() ? "" : ",").append(table.input.header[i]);
   const std::size_t count = random ? std::size(kAnswerColumns) : kNumbersWithoutError;
   for (std::size_t i = 0; i < count; ++i) out.append(",").append(kAnswerColumns[i]);
   out += '\n';
   for (std::size_t row = 0; row < table.input.rows(); ++row) {
-    for (std::size_t k = 0; k < kept.size(); ++k) {
+    for (std::size_t k = 0; k < columns.size(); ++k) {
       if (k > 0) out += ',';
-      out += table.input.field(row, kept[k]);
+      out += table.input.field(row, columns[k]);
     }
     const ProbeAnswer& answer = answers[row];
     append_numbers(out, answer.radiance, answer.single_precision);

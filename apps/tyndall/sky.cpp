@@ -41,7 +41,7 @@ class SkySource {
   virtual ~SkySource() = default;
   virtual Result<std::vector<models::Answer>> answer(std::span<const RayQuery> queries) = 0;
   // Returns the origin of the tables; nullptr without tables.
-  [[nodiscard]] virtual const tables::Outcome* tables() const { return nullptr; }
+  [[nodiscard]] virtual const tables::Report* tables() const { return nullptr; }
 };
 
 // Single scattering, and the ground in direct sunlight.
@@ -76,7 +76,7 @@ class PrecomputedSource final : public SkySource {
   Result<std::vector<models::Answer>> answer(std::span<const RayQuery> queries) override {
     return model_.answer(queries);
   }
-  [[nodiscard]] const tables::Outcome* tables() const override { return &model_.origin(); }
+  [[nodiscard]] const tables::Report* tables() const override { return &model_.origin(); }
 
  private:
   models::PrecomputedModel model_;
@@ -260,7 +260,7 @@ int run_sky(Args args) {
   out["sun_elevation_deg"] = sun.value().elevation_deg;
   out["sun_azimuth_deg"] = sun.value().azimuth_deg;
   out["sky_irradiance"] = diffuse;
-  if (const tables::Outcome* const made = source.value()->tables(); made != nullptr) {
+  if (const tables::Report* const made = source.value()->tables(); made != nullptr) {
     out["tables"] = {{"from", made->origin == tables::Origin::cache ? "cache" : "build"}, {"ms", made->milliseconds}};
   }
   return print(out.dump(2) + "\n");

@@ -62,11 +62,11 @@ int run_tables(Args args) {
   Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({options.device, false});
   if (!host) return fail(host.error());
   tables::MakeReady how = make_tables(options.settings.scene);
-  how.build_anew = true;
+  how.rebuild = true;
   Result<models::PrecomputedModel> model = models::PrecomputedModel::create(*host.value(), params, how);
   if (!model) return fail(model.error());
   Effect& effect = model.value().effect();
-  const tables::Outcome& made = model.value().origin();
+  const tables::Report& made = model.value().origin();
   for (const std::string& text : made.notes) note(text);
 
   nlohmann::ordered_json report;

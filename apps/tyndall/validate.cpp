@@ -23,19 +23,20 @@ using files::concat;
 using validate::Rgb;
 
 // Evaluates one of the models of `probe` with the scene's parameters.
-struct AskedModel {
+struct ChosenModel {
   scene::ModelId id;
   std::string device;
   scene::SceneParams scene;
 };
 
-Result<std::vector<Rgb>> ask_probe(const AskedModel& model, const Params& params, std::span<const RayQuery> queries) {
+Result<std::vector<Rgb>> evaluate_probe(const ChosenModel& model, const Params& params,
+                                        std::span<const RayQuery> queries) {
   ProbeSettings settings;
   settings.params = params;
   settings.scene = model.scene;
   settings.device = model.device;
   settings.progress = [](double) {};
-  const Result<std::vector<ProbeAnswer>> answers = ask_model(model.id, settings, queries);
+  const Result<std::vector<ProbeAnswer>> answers = evaluate_model(model.id, settings, queries);
   if (!answers) return answers.error();
   std::vector<Rgb> out;
   out.reserve(answers.value().size());
@@ -45,9 +46,9 @@ Result<std::vector<Rgb>> ask_probe(const AskedModel& model, const Params& params
 
 // Evaluates a model with black ground and adds the directly sunlit ground, which the reference includes at the end of a
 // ray.
-Result<std::vector<Rgb>> ask_over_ground(const AskedModel& model, const Params& params,
-                                         std::span<const RayQuery> queries) {
-  Result<std::vector<Rgb>> found = ask_probe(model, params, queries);
+Result<std::vector<Rgb>> evaluate_over_ground(const ChosenModel& model, const Params& params,
+                                              std::span<const RayQuery> queries) {
+  Result<std::vector<Rgb>> found = evaluate_probe(model, params, queries);
   if (!found || params.planet.ground_albedo == 0.0F) return found;
   const shared::Medium medium = medium_from_params(params);
   for (std::size_t i = 0; i < queries.size(); ++i) {
@@ -68,7 +69,7 @@ class Tables {
   // Returns remarks on the cache, each only once.
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
 
-  Result<std::vector<Rgb>> ask(const Params& params, std::span<const RayQuery> queries) {
+  Result<std::vector<Rgb>> evaluate(const Params& params, std::span<const RayQuery> queries) {
     if (Result<void> r = build(params); !r) return std::move(r).error();
     const Result<std::vector<models::Answer>> found = model_->answer(queries);
     if (!found) return found.error();
@@ -111,7 +112,7 @@ validate::Model table_model(std::string name, std::string meaning, const std::sh
           [tables, change](const Params& params, std::span<const RayQuery> queries) {
             Params changed = params;
             change(changed);
-            return tables->ask(changed, queries);
+            return tables->evaluate(changed, queries);
           }};
 }
 
@@ -158,11 +159,11 @@ std::vector<validate::Model> all_models(const std::string& device, const scene::
       table_model("precomputed, order 1 integrated", "the same with scattering.single = integration", tables,
                   [](Params& p) { p.scattering.single = SingleScattering::integration; })};
   for (const ProbeRow& row : kProbeRows) {
-    AskedModel model = {row.id, device, scene};
+    ChosenModel model = {row.id, device, scene};
     row.change(model.scene);
     out.push_back({row.name, row.meaning != nullptr ? row.meaning : std::string(scene::model_info(row.id).meaning),
                    row.orders, [model](const Params& params, std::span<const RayQuery> queries) {
-                     return ask_over_ground(model, params, queries);
+                     return evaluate_over_ground(model, params, queries);
                    }});
   }
   return out;

@@ -12,7 +12,7 @@ namespace {
 
 bool in_work(const SceneThread* thread) { return thread != nullptr && thread->busy(); }
 
-// Returns whether a thread draws: only one of them may, so that they do not take the machine from each other.
+// Returns whether a thread draws. Only one of them may draw at a time, so that they do not slow each other down.
 bool draws(const SceneThread* thread) { return in_work(thread) && !thread->creating(); }
 
 }  // namespace
@@ -48,7 +48,7 @@ std::unique_ptr<SceneThread> ScenePair::start_thread(const SceneRequest& request
   desc.histogram = true;
   desc.pipeline_threads = gpu::Host::pipeline_threads();
   desc.make_tables = make_tables_;
-  desc.in_parts = one_device_;  // so that the window's frames get their turn on the queue
+  desc.in_parts = one_device_;  // so that frames of the window need not wait for a whole frame of the scene
   auto thread = std::make_unique<SceneThread>();
   thread->start(*host_, desc, request, !one_device_);
   return thread;
@@ -158,7 +158,7 @@ Result<void> ScenePair::take_result(std::size_t side, SceneResult& result, PairR
   return {};
 }
 
-// Puts a scene with rebuilt shaders in the place of the left one once it has been drawn.
+// Replaces the left scene by the one with rebuilt shaders once that has been drawn.
 Result<void> ScenePair::take_replacement(PairResult& out) {
   if (replacement_ == nullptr) return {};
   if (std::optional<SceneResult> result = replacement_->poll()) {
@@ -170,7 +170,7 @@ Result<void> ScenePair::take_replacement(PairResult& out) {
     if (result->picture) replacement_picture_ = std::move(result->picture);
   }
   if (replacement_->busy() || in_work(left_.get()) || in_work(right_.get()) || !replacement_picture_) return {};
-  // To destroy the scene before takes longer than a step of the GUI may.
+  // Destroying the old scene takes too long for the GUI's thread.
   retired_ = std::async(std::launch::async,
                         [before = std::shared_ptr<SceneThread>(std::move(left_))]() mutable { before.reset(); });
   left_ = std::move(replacement_);
@@ -211,9 +211,9 @@ void ScenePair::describe(LoopState& state) const {
     state.background = state.background || thread->facts().working;
   }
   const SceneFacts& facts = left_->facts();
-  state.store_tables_in_s = facts.keep_tables_in_s;
+  state.store_tables_in_s = facts.store_tables_in_s;
   const bool pipelines_left = !facts.pipelines.complete() || facts.pipelines.total == 0;
-  state.idle_work = facts.can_render && (pipelines_left || facts.keep_tables_in_s >= 0.0);
+  state.idle_work = facts.can_render && (pipelines_left || facts.store_tables_in_s >= 0.0);
 }
 
 void ScenePair::log_frame(std::size_t side, double took_ms) {

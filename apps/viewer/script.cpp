@@ -114,7 +114,7 @@ std::string Script::walk(config::Settings& settings) {
   const std::size_t turn = next_++ % 3;
   settings = start_;
   if (turn < 2) set_to_end(row, settings, turn == 1);
-  return row.key() + (turn == 0 ? " least" : turn == 1 ? " largest" : " back");
+  return row.key() + (turn == 0 ? " minimum" : turn == 1 ? " maximum" : " back");
 }
 
 std::string Script::soak(config::Settings& settings, GuiState& gui) {

@@ -153,7 +153,7 @@ PairRequest Viewer::pair_request() const {
   return out;
 }
 
-// Requests what the settings are now, and gives the scenes work.
+// Requests pictures with the current settings, and starts the work of the scenes.
 void Viewer::update_scenes() {
   settings_.synchronise(gui_.state.picture.compare);
   pair_.request(pair_request());
@@ -238,7 +238,7 @@ void Viewer::draw_gui() {
   if (first_run_before && !gui_.state.first_run) leave_first_run_mark(settings_.state_file);
   ImGui::Render();
   notices_.events().places(gui_.widgets.places());
-  // After the places that the pointer was seen among.
+  // Logged after the places, so that the log shows which of them the pointer was at.
   if (const std::string text = flight_.take_pointer_text(); !text.empty()) notices_.log(text);
   if (gui_.state.full_screen != window_.full_screen()) window_.set_full_screen(gui_.state.full_screen);
   swapchain_.set_vsync(gui_.state.vsync);
@@ -335,24 +335,24 @@ void Viewer::start_reload() {
   notices_.note("Rebuilding the shaders ...");
 }
 
-// New shaders need new pipelines: a new scene, which takes the place of the left one when it has been drawn.
+// New shaders need new pipelines, so a new scene is created. It replaces the left one when it has been drawn.
 Result<void> Viewer::finish_reload() {
   TYNDALL_ASSIGN(const ShaderReload::Rebuilt rebuilt, shaders_.finish());
   if (!rebuilt.finished) return {};
   shader_message_ = rebuilt.message;
   if (!rebuilt.message.empty()) {
-    gui_.toast("The shaders stay as they were:\n" + rebuilt.message, true, now());
+    gui_.toast("The shaders are unchanged:\n" + rebuilt.message, true, now());
     notices_.log("shaders failed " + files::one_line(rebuilt.message, 400));
     redraw_.request(3);
     return {};
   }
   if (rebuilt.changed == 0 && rebuilt.restored == 0) {
-    notices_.note("The shaders are as their sources");
+    notices_.note("The shaders match their sources");
     notices_.log("shaders same");
     return {};
   }
-  // Tables that changed shaders make are not those of the cache.
-  desc_.make_tables.build_anew = rebuilt.tables_differ;
+  // The cached tables do not match the changed shaders.
+  desc_.make_tables.rebuild = rebuilt.tables_differ;
   if (rebuilt.tables_differ) desc_.make_tables.cache.place = "off";
   pair_.request(pair_request());
   pair_.start_replacement(desc_.make_tables);
@@ -365,7 +365,7 @@ Error Viewer::after_loss(const Error& error) {
   if (!surface && !device_lost(error)) return error;
   const std::string what = surface ? "the window's surface was lost" : "the Vulkan device was lost";
   const std::string state = settings_.save()
-                                ? "the state is saved, 'tyndall view " + settings_.state_file + "' goes on from there"
+                                ? "the state is saved, 'tyndall view " + settings_.state_file + "' continues from there"
                                 : "the state could not be saved in '" + settings_.state_file + "'";
   return Error{ErrorCode::device_lost, what + " (" + error.message + "), tyndall view, " + state, error.vk_result};
 }

@@ -30,9 +30,9 @@ uint reads_done = 0u;
 
 // The sum of what cascades contribute to the in-scattering of a ray, in any order.
 struct March {
-  LitSections lit;  // single = table, multiple = occluded
-  vec3 light;       // single = integration; in a homogeneous medium before homogeneous_phase()
-  float end_share;  // lit fraction at the end of the farthest marched cascade; -1: none marched
+  LitSections lit;         // single = table, multiple = occluded
+  vec3 light;              // single = integration; in a homogeneous medium before homogeneous_phase()
+  float end_lit_fraction;  // lit fraction at the end of the farthest marched cascade; -1: none marched
 };
 
 // The state of a ray along a slice line. Distances are in cells from the camera.
@@ -57,14 +57,14 @@ struct Walk {
   float middle;
   vec3 lit_tinted;  // the same, with kColors
   vec3 moment_tinted;
-  // In a homogeneous medium: the transmittance up to `since`, the in-scattering up to there, and the light that has lit
-  // the ray since. A section ends where that light changes, so that the result does not depend on how sections were
-  // found.
+  // In a homogeneous medium: transmittance and in-scattering up to `since`, and the source function from there on,
+  // which is the lit fraction times the colour. A section ends where it changes, so that the result does not depend on
+  // the division into sections.
   vec3 transmittance;
   vec3 light;
-  vec3 shine;
+  vec3 source;
   float since;
-  float share;  // lit fraction of the last section
+  float lit_fraction;  // of the last section
 };
 
 vec2 load_node(bool full, uint at) {
@@ -77,18 +77,18 @@ vec2 load_node(bool full, uint at) {
 void close_homogeneous(inout Walk w) {
   vec3 transmittance, opacity;
   homogeneous_attenuation((w.x - w.since) * w.metres, transmittance, opacity);
-  w.light += w.shine * w.transmittance * opacity;
+  w.light += w.source * w.transmittance * opacity;
   w.transmittance *= transmittance;
   w.since = w.x;
 }
 
-void add_run(inout Walk w, inout LitSections sections, float to, float share, vec3 color) {
+void add_run(inout Walk w, inout LitSections sections, float to, float lit_fraction, vec3 color) {
   if (kHomogeneous) {
-    if (w.shine != share * color) close_homogeneous(w);
-    w.shine = share * color;
+    if (w.source != lit_fraction * color) close_homogeneous(w);
+    w.source = lit_fraction * color;
   }
   if (kPanels) {
-    float length_lit = share * (to - w.x);
+    float length_lit = lit_fraction * (to - w.x);
     float moment = length_lit * (0.5 * (w.x + to) - w.middle);
     w.lit += length_lit;
     w.moment += moment;
@@ -97,9 +97,9 @@ void add_run(inout Walk w, inout LitSections sections, float to, float share, ve
       w.moment_tinted += moment * color;
     }
   }
-  if (kLitTables) add_stretch(sections, w.x * w.metres, to * w.metres, share, color);
+  if (kLitTables) add_section(sections, w.x * w.metres, to * w.metres, lit_fraction, color);
   w.x = to;
-  w.share = share;
+  w.lit_fraction = lit_fraction;
 }
 
 bool section_closed(LitSections sections) { return kLitTables && kSections == kEach && sections.closed_at >= 0.0; }
@@ -152,8 +152,8 @@ void walk_to(inout Walk w, inout LitSections sections, float to) {
         end = end > w.x ? end : stop;
         vec2 uv = w.line.xy + (cell + 0.5) * w.line.zw;
         float z = w.depth + 0.5 * (w.x + end) * w.slope;
-        float share = texture(shadow_maps, vec4(uv, float(w.cascade), clamp(z, 0.0, 1.0)));
-        add_run(w, sections, end, share, glass_color(uv, z, w.cascade));
+        float lit_fraction = texture(shadow_maps, vec4(uv, float(w.cascade), clamp(z, 0.0, 1.0)));
+        add_run(w, sections, end, lit_fraction, glass_color(uv, z, w.cascade));
         ++reads_done;
         ++steps_done;
       }
@@ -190,14 +190,14 @@ Walk begin_walk(uint cascade, uint slice, vec3 direction, float start, float fro
   w.lit_tinted = vec3(0.0);
   w.moment_tinted = vec3(0.0);
   w.light = vec3(0.0);
-  w.shine = vec3(0.0);
+  w.source = vec3(0.0);
   w.since = w.x;
-  w.share = 1.0;
+  w.lit_fraction = 1.0;
   w.transmittance = kHomogeneous ? exp(-frame.homogeneous.extinction * (from - start)) : vec3(1.0);
   return w;
 }
 
-// Where the integration over panels stands: at the beginning of the next panel.
+// The state of the integration over panels, at the beginning of the next panel.
 struct Panels {
   float altitude;
   vec3 density;
@@ -223,8 +223,8 @@ int begin_panels(Ray ray, float from, float to, out Panels p) {
   return int(clamp(ceil(wanted), 1.0, 256.0));
 }
 
-// Returns the in-scattering of the panel of length panel_m that begins at distance t and that `w` has walked along.
-// Advances `p` to its end.
+// Returns the in-scattering of a panel of length panel_m that begins at distance t, from the lit length that `w` has
+// found in it. Advances `p` to its end.
 vec3 panel_light(Walk w, Ray ray, float t, float panel_m, inout Panels p) {
   float radius = medium.planet_radius_m;
   float h_next = altitude_along(ray.altitude, ray.cos_zenith, t + panel_m, radius);
@@ -287,7 +287,7 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
     close_homogeneous(w);
     march.light += w.light;
   }
-  march.end_share = w.share;
+  march.end_lit_fraction = w.lit_fraction;
 }
 
 March nothing_marched() { return March(nothing_lit(), vec3(0.0), -1.0); }
@@ -300,7 +300,7 @@ March add(March a, March b) {
   m.lit.light = add(a.lit.light, b.lit.light);
   m.lit.tint = a.lit.tint + b.lit.tint;
   m.light = a.light + b.light;
-  m.end_share = b.end_share >= 0.0 ? b.end_share : a.end_share;
+  m.end_lit_fraction = b.end_lit_fraction >= 0.0 ? b.end_lit_fraction : a.end_lit_fraction;
   return m;
 }
 
@@ -343,7 +343,7 @@ vec3 light_of(March march, Ray ray, TableRay path, float start, float end) {
 bool has_shadowed_end(March march, float depth_m) {
   bool in_map =
       epipolar.cascades > epipolar.first_cascade && depth_m <= cascades[max(epipolar.cascades, 1u) - 1u].far_m;
-  return in_map && march.end_share >= 0.0 && march.end_share < 0.5;
+  return in_map && march.end_lit_fraction >= 0.0 && march.end_lit_fraction < 0.5;
 }
 
 #endif

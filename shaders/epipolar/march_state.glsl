@@ -12,7 +12,7 @@ void store_march(uint at, March m) {
   uint i = at * kStateVectors;
   states[i] = vec4(m.lit.light.single, m.lit.first);
   states[i + 1u] = vec4(m.lit.light.high, m.lit.total);
-  states[i + 2u] = vec4(m.light, m.end_share);
+  states[i + 2u] = vec4(m.light, m.end_lit_fraction);
   states[i + 3u] = vec4(m.lit.tint, 0.0);
 }
 
@@ -27,7 +27,7 @@ March load_march(uint at) {
   m.lit.total = high.a;
   m.lit.tint = states[i + 3u].rgb;
   m.light = light.rgb;
-  m.end_share = light.a;
+  m.end_lit_fraction = light.a;
   return m;
 }
 

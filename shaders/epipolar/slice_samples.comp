@@ -70,14 +70,14 @@ void main() {
   }
   Ray ray = ray_to_depth(frame, position, view_depth(frame, position, depth), sky);
   s.depth_m = sky ? sky_depth_m(ray.direction) : ray.length_m * dot(ray.direction, frame.camera_forward);
-  vec3 column = vec3(0.0);
+  vec3 integral = vec3(0.0);
   float start, end;
   if (clip_to_atmosphere(medium, ray, start, end)) {
-    column = max(density_integral_along(medium, ray.altitude, ray.cos_zenith, end), vec3(0.0));
+    integral = max(density_integral_along(medium, ray.altitude, ray.cos_zenith, end), vec3(0.0));
   }
-  s.extinction = extinction_of(optical_depth(medium, column), s.depth_m);
+  s.extinction = extinction_of(optical_depth(medium, integral), s.depth_m);
   samples[at] = pack_sample(s);
-  NormalisationFactors factors = normalisation_factors(medium, column);
+  NormalisationFactors factors = normalisation_factors(medium, integral);
   vec3 light = medium.rayleigh_scattering * rayleigh_phase(ray.cos_view_sun) * factors.rayleigh +
                medium.mie_scattering * mie_phase(medium, ray.cos_view_sun) * factors.mie;
   coarse[at] = pack_coarse(light);

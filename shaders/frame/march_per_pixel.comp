@@ -128,7 +128,7 @@ void walk_cascade(uint cascade, Ray ray, TableRay path, float start, float from,
     for (; i < reads && lit.closed_at < 0.0; ++i) {
       float lit_fraction = texture(shadow_maps, vec4(uvz.xy, float(cascade), clamp(uvz.z, 0.0, 1.0)));
       float here = from + float(i) * step_m;
-      add_stretch(lit, here, here + step_m, lit_fraction, glass_color(uvz.xy, uvz.z, cascade));
+      add_section(lit, here, here + step_m, lit_fraction, glass_color(uvz.xy, uvz.z, cascade));
       uvz += duvz;
     }
     if (kSections == kEach && i >= reads && lit.since >= 0.0 && lit.closed_at < 0.0) lit.closed_at = to;

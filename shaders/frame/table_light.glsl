@@ -22,8 +22,8 @@ struct LitSections {
 
 LitSections nothing_lit() { return LitSections(-1.0, 0.0, -1.0, -1.0, InScattering(vec3(0.0), vec3(0.0)), vec3(0.0)); }
 
-// Adds the stretch [from, to], of which `lit_fraction` is lit with this colour.
-void add_stretch(inout LitSections lit, float from, float to, float lit_fraction, vec3 color) {
+// Adds the section [from, to], of which `lit_fraction` is lit with this colour.
+void add_section(inout LitSections lit, float from, float to, float lit_fraction, vec3 color) {
   if (kSections == kContiguous) {
     if (lit_fraction > 0.0 && lit.first < 0.0) lit.first = to - lit_fraction * (to - from);
     lit.total += lit_fraction * (to - from);

@@ -250,12 +250,12 @@ OneilLight oneil_scattering(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, IN(One
 
   float first_end = end;
   float second_start = end;
-  float dark_start;
-  float dark_end;
+  float shadow_start;
+  float shadow_end;
   if (ONEIL_INTEGRAL_METHOD(o) != kOneilPublished &&
-      shadow_segment(ray.h0, ray.mu, ray.mu_s, ray.nu, R, dark_start, dark_end)) {
-    first_end = clamp(dark_start, start, end);
-    second_start = clamp(dark_end, start, end);
+      shadow_segment(ray.h0, ray.mu, ray.mu_s, ray.nu, R, shadow_start, shadow_end)) {
+    first_end = clamp(shadow_start, start, end);
+    second_start = clamp(shadow_end, start, end);
   }
   float count = float(o.samples);
   for (int side = 0; side < 2; ++side) {

@@ -140,13 +140,13 @@ vec3 lit_scattering(IN(Medium) m, float h0, float mu, float mu_s, float nu, floa
 // Returns radiance / E0 of the part [start, end] of the ray [m] as seen from its origin. `steps` is roughly the number
 // of panels for a ray through the whole atmosphere: 12 gives an error of 0.1 %, 4 about one per cent.
 vec3 single_scattering(IN(Medium) m, float h0, float mu, float mu_s, float nu, float start, float end, int steps) {
-  float dark_start;
-  float dark_end;
+  float shadow_start;
+  float shadow_end;
   float first_end = end;
   float second_start = end;
-  if (shadow_segment(h0, mu, mu_s, nu, m.planet_radius_m, dark_start, dark_end)) {
-    first_end = clamp(dark_start, start, end);
-    second_start = clamp(dark_end, start, end);
+  if (shadow_segment(h0, mu, mu_s, nu, m.planet_radius_m, shadow_start, shadow_end)) {
+    first_end = clamp(shadow_start, start, end);
+    second_start = clamp(shadow_end, start, end);
   }
   vec3 radiance = vec3(0.0);
   for (int part = 0; part < 2; ++part) {

@@ -159,7 +159,7 @@ Result<void> load_frame_value(scene::PathFrame& frame, std::string_view key, con
   if (key == "time_s") {
     const std::optional<double> seconds = node.value<double>();
     if (!node.is_number() || !std::isfinite(*seconds) || *seconds < 0.0 || *seconds > 1.0e6) {
-      return files::input_error("'time_s' is no time", where, "expected a number, 0 to 1e+06 s");
+      return files::input_error("'time_s' is not a time", where, "expected a number, 0 to 1e+06 s");
     }
     frame.time_s = *seconds;
     return {};
@@ -193,7 +193,7 @@ Result<void> load_path(scene::CameraPath& path, const toml::node& node, std::str
                        const std::string& where) {
   const toml::array* const frames = node.as_array();
   if (frames == nullptr || !frames->is_homogeneous(toml::node_type::table)) {
-    return files::input_error("'path' is no list of frames", where, "expected one table [[path]] for each frame");
+    return files::input_error("'path' is not a list of frames", where, "expected one table [[path]] for each frame");
   }
   path = scene::CameraPath{};
   for (const toml::node& element : *frames) {
@@ -266,7 +266,7 @@ Result<void> check_path(const scene::CameraPath& path, const std::string& where)
 }
 
 Result<void> load_root(Settings& settings, const toml::table& root, std::string_view name) {
-  std::string path_at;  // of what is said of a path in this file
+  std::string path_at;  // position of the path in this file, for messages
   for (const auto& [group, node] : root) {
     const std::string where = position(name, group.source());
     if (group.str() == "path" || group.str() == "playback") {

@@ -1,4 +1,4 @@
-// What can be wrong with what the caller passes, in the caller's terms.
+// Checks of the inputs of a frame. Messages use the names of the public interface.
 #include <cmath>
 #include <string>
 
@@ -20,7 +20,7 @@ bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && 
 
 Error invalid(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
 
-// Layouts that no shader can sample an image in; those of extensions pass.
+// Returns whether shaders can sample an image in this layout. Layouts of extensions are accepted.
 bool can_be_sampled(VkImageLayout layout) {
   switch (layout) {
     case VK_IMAGE_LAYOUT_UNDEFINED:
@@ -44,7 +44,7 @@ Result<void> check_layout(const Texture& texture, const char* name) {
                  " (of VkImageLayout); expected one that can be sampled, such as SHADER_READ_ONLY_OPTIMAL or GENERAL");
 }
 
-// What draws garbage with certainty.
+// Returns an error for a camera with which the picture would certainly be wrong.
 Result<void> check_camera(const Camera& camera, const EffectDesc& desc) {
   constexpr double kRigid = 1e-2;
   if (affine_error(camera.world_from_view) > 1e-4) {
@@ -66,7 +66,7 @@ Result<void> check_camera(const Camera& camera, const EffectDesc& desc) {
     return invalid("Camera::clip_from_view looks down +z of the view; expected one that looks down -z, with a last row "
                    "of 0 0 -1 0");
   }
-  // Depth falls with the distance where the slope is positive.
+  // Device depth decreases with distance if the slope is positive.
   const float far_side = p.depth_slope > 0.0 ? 0.0F : 1.0F;
   if (far_side != desc.sky_depth) {
     return invalid("EffectDesc::sky_depth is " + std::to_string(static_cast<int>(desc.sky_depth)) +
@@ -81,12 +81,12 @@ Result<void> check_cascade(const Cascade& cascade, std::size_t index) {
     return invalid("FrameInputs::cascades[" + std::to_string(index) + "]" + what);
   };
   const Mat4& m = cascade.shadow_from_world;
-  if (!finite(m)) return fault("'s shadow_from_world is not finite");
+  if (!finite(m)) return fault("'s shadow_from_world is not finite; expected a matrix from the world to (u, v, depth)");
   if (!(cascade.near_m >= 0.0F && cascade.far_m >= cascade.near_m)) {
     return fault("'s range is " + std::to_string(cascade.near_m) + " to " + std::to_string(cascade.far_m) +
                  " m; expected 0 <= near_m <= far_m");
   }
-  // Far below what any map's texels or depths could be.
+  // The tolerance is far below that of any usable map.
   const double volume = determinant3(m);
   const double rows = length(row_of(m, 0)) * length(row_of(m, 1)) * length(row_of(m, 2));
   if (!(std::abs(volume) > 1e-4 * rows) || !(rows > 0.0)) {
@@ -101,7 +101,7 @@ Result<void> check_cascade(const Cascade& cascade, std::size_t index) {
   return {};
 }
 
-// What is larger than any image overflows in the shaders.
+// Returns an error for an offset that exceeds the size of any image, because it would overflow in the shaders.
 Result<void> check_offset(const Texture& texture, const char* name) {
   constexpr std::int32_t kMaxOffset = 1 << 20;
   const VkOffset2D o = texture.offset;
@@ -117,12 +117,12 @@ Result<void> check_frame(const FrameInputs& inputs, const EffectDesc& desc, cons
   if (extent.width == 0 || extent.height == 0 || extent.width > desc.max_extent.width ||
       extent.height > desc.max_extent.height) {
     return invalid("FrameInputs::extent is " + std::to_string(extent.width) + "x" + std::to_string(extent.height) +
-                   ", allowed is 1x1 to EffectDesc::max_extent " + std::to_string(desc.max_extent.width) + "x" +
+                   "; expected 1x1 to EffectDesc::max_extent " + std::to_string(desc.max_extent.width) + "x" +
                    std::to_string(desc.max_extent.height));
   }
-  if (inputs.color.view == VK_NULL_HANDLE) return invalid("FrameInputs::color has no view");
-  if (inputs.depth.view == VK_NULL_HANDLE) return invalid("FrameInputs::depth has no view");
-  if (inputs.output.view == VK_NULL_HANDLE) return invalid("FrameInputs::output has no view");
+  if (inputs.color.view == VK_NULL_HANDLE) return invalid("FrameInputs::color has no view; expected a sampled image");
+  if (inputs.depth.view == VK_NULL_HANDLE) return invalid("FrameInputs::depth has no view; expected a sampled image");
+  if (inputs.output.view == VK_NULL_HANDLE) return invalid("FrameInputs::output has no view; expected a storage image");
   TYNDALL_TRY(check_layout(inputs.color, "FrameInputs::color"));
   TYNDALL_TRY(check_layout(inputs.depth, "FrameInputs::depth"));
   if (inputs.output.view == inputs.color.view || inputs.output.view == inputs.depth.view) {
@@ -135,30 +135,32 @@ Result<void> check_frame(const FrameInputs& inputs, const EffectDesc& desc, cons
                    std::to_string(desc.views));
   }
   if (inputs.output.layout != VK_IMAGE_LAYOUT_GENERAL) {
-    return invalid("FrameInputs::output must be in VK_IMAGE_LAYOUT_GENERAL");
+    return invalid("FrameInputs::output is not in VK_IMAGE_LAYOUT_GENERAL; expected this layout");
   }
   TYNDALL_TRY(check_offset(inputs.color, "FrameInputs::color"));
   TYNDALL_TRY(check_offset(inputs.depth, "FrameInputs::depth"));
   TYNDALL_TRY(check_offset(inputs.output, "FrameInputs::output"));
   for (const Texture& texture : {inputs.shadow_maps, inputs.shadow_colors}) {
     if (texture.offset.x != 0 || texture.offset.y != 0) {
-      return invalid(
-          "FrameInputs::shadow_maps or shadow_colors has an offset; shadow maps are used whole, expected 0,0");
+      return invalid("FrameInputs::shadow_maps or shadow_colors has an offset; expected 0,0, because shadow maps are "
+                     "used completely");
     }
   }
   if (inputs.cascades.size() > kMaxCascades) {
-    return invalid("FrameInputs::cascades has " + std::to_string(inputs.cascades.size()) + " entries, at most " +
-                   std::to_string(kMaxCascades) + " are allowed");
+    return invalid("FrameInputs::cascades has " + std::to_string(inputs.cascades.size()) +
+                   " entries; expected at most " + std::to_string(kMaxCascades));
   }
   if (!inputs.cascades.empty()) {
-    if (inputs.shadow_maps.view == VK_NULL_HANDLE) return invalid("FrameInputs::shadow_maps has no view");
-    if (inputs.shadow_resolution == 0) return invalid("FrameInputs::shadow_resolution is 0");
+    if (inputs.shadow_maps.view == VK_NULL_HANDLE)
+      return invalid("FrameInputs::shadow_maps has no view; expected one if there are cascades");
+    if (inputs.shadow_resolution == 0)
+      return invalid("FrameInputs::shadow_resolution is 0; expected the width of the shadow maps");
     if (inputs.shadow_colors.view != VK_NULL_HANDLE && inputs.shadow_colors.view == inputs.shadow_maps.view) {
       return invalid(
-          "FrameInputs::shadow_colors is the view of FrameInputs::shadow_maps, it must be one of colours, or null");
+          "FrameInputs::shadow_colors is the view of FrameInputs::shadow_maps; expected a view of colours, or null");
     }
     if (inputs.shadow_colors.view != VK_NULL_HANDLE && !desc.shadow_colors) {
-      return invalid("there are FrameInputs::shadow_colors, which need EffectDesc::shadow_colors");
+      return invalid("FrameInputs::shadow_colors has a view; expected null without EffectDesc::shadow_colors");
     }
     TYNDALL_TRY(check_layout(inputs.shadow_maps, "FrameInputs::shadow_maps"));
     if (inputs.shadow_colors.view != VK_NULL_HANDLE) {
@@ -166,32 +168,33 @@ Result<void> check_frame(const FrameInputs& inputs, const EffectDesc& desc, cons
     }
     if (inputs.first_marched_cascade >= inputs.cascades.size()) {
       return invalid("FrameInputs::first_marched_cascade is " + std::to_string(inputs.first_marched_cascade) +
-                     ", it must be below the number of cascades, " + std::to_string(inputs.cascades.size()));
+                     "; expected less than the number of cascades, " + std::to_string(inputs.cascades.size()));
     }
   }
   for (std::size_t i = 0; i < inputs.cascades.size(); ++i) TYNDALL_TRY(check_cascade(inputs.cascades[i], i));
-  if (!finite(inputs.camera.world_from_view)) return invalid("Camera::world_from_view is not finite");
+  if (!finite(inputs.camera.world_from_view))
+    return invalid("Camera::world_from_view is not finite; expected a rigid matrix");
   if (!finite(inputs.camera.clip_from_view) || !finite(inverse(inputs.camera.clip_from_view))) {
-    return invalid("Camera::clip_from_view is not finite or cannot be inverted");
+    return invalid("Camera::clip_from_view is not finite or cannot be inverted; expected a perspective projection");
   }
   TYNDALL_TRY(check_camera(inputs.camera, desc));
   const Vec3 sun = inputs.sun.direction_to_sun;
   if (!finite(sun) || (sun.x == 0.0F && sun.y == 0.0F && sun.z == 0.0F)) {
-    return invalid("Sun::direction_to_sun is not a direction");
+    return invalid("Sun::direction_to_sun is zero or not finite; expected a direction");
   }
   const Vec3 irradiance = inputs.sun.irradiance;
   if (!finite(irradiance) || irradiance.x < 0.0F || irradiance.y < 0.0F || irradiance.z < 0.0F) {
-    return invalid("Sun::irradiance must be finite and not negative");
+    return invalid("Sun::irradiance is negative or not finite; expected at least 0");
   }
   if (!std::isfinite(inputs.sun.angular_radius_rad) || inputs.sun.angular_radius_rad < 0.0F) {
-    return invalid("Sun::angular_radius_rad must be finite and not negative");
+    return invalid("Sun::angular_radius_rad is negative or not finite; expected at least 0");
   }
   if (params.scattering.technique == Technique::epipolar && params.scattering.light_shafts) {
     const std::size_t marched = inputs.cascades.empty() ? 0 : inputs.cascades.size() - inputs.first_marched_cascade;
     if (marched > desc.max_cascades) {
       return invalid("FrameInputs::cascades has " + std::to_string(marched) +
-                     " cascades to march, at most EffectDesc::max_cascades, " + std::to_string(desc.max_cascades) +
-                     ", are allowed");
+                     " cascades to march; expected at most EffectDesc::max_cascades, " +
+                     std::to_string(desc.max_cascades));
     }
   }
   return {};

@@ -11,13 +11,13 @@ namespace {
 Error invalid(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
 
 Result<void> check_number(const ParamInfo& info, double value) {
-  // A range's end counts as inside when it is given in single precision. False for NaN.
+  // The ends of a range are included, also when they are rounded to single precision. NaN is rejected.
   const bool real = info.type == ParamType::float32 || info.type == ParamType::vec3;
   const double min = real ? static_cast<double>(static_cast<float>(info.min)) : info.min;
   const double max = real ? static_cast<double>(static_cast<float>(info.max)) : info.max;
   if (value >= min && value <= max) return {};
   return invalid(std::string(info.group) + "." + std::string(info.name) + " is " + std::to_string(value) +
-                 ", allowed is " + std::to_string(info.min) + " to " + std::to_string(info.max));
+                 "; expected " + std::to_string(info.min) + " to " + std::to_string(info.max));
 }
 
 std::uint32_t choice_count(std::string_view choices) {
@@ -49,18 +49,18 @@ Result<void> check_params(const Params& params) {
         break;
       case ParamType::enumeration:
         if (word >= choice_count(info.choices)) {
-          return invalid(std::string(info.group) + "." + std::string(info.name) + " is not one of " +
-                         std::string(info.choices));
+          return invalid(std::string(info.group) + "." + std::string(info.name) +
+                         " is not one of its values; expected " + std::string(info.choices));
         }
         break;
       case ParamType::flag:
         if (word > 1) {
           return invalid(std::string(info.group) + "." + std::string(info.name) + " is " + std::to_string(word) +
-                         ", allowed is 0 (off) or 1 (on)");
+                         "; expected 0 (off) or 1 (on)");
         }
         break;
       case ParamType::string:
-      case ParamType::dvec3: break;  // of scenes only
+      case ParamType::dvec3: break;  // only scenes have such parameters
     }
     std::memcpy(numbers, bytes + info.offset, count * sizeof(float));
     for (std::size_t i = 0; i < count; ++i) {
@@ -69,19 +69,19 @@ Result<void> check_params(const Params& params) {
   }
   const std::uint32_t downscale = params.scattering.downscale;
   if (downscale != 1 && downscale != 2 && downscale != 4) {
-    return invalid("scattering.downscale is " + std::to_string(downscale) + ", allowed is 1, 2 or 4");
+    return invalid("scattering.downscale is " + std::to_string(downscale) + "; expected 1, 2 or 4");
   }
   const UVec4& size = params.tables.size;
   if (size.y % 2 != 0) {
     return invalid("tables.size has " + std::to_string(size.y) +
-                   " view angles, allowed is an even number: half of them lie on each side of the horizon");
+                   " view angles; expected an even number, half of them on each side of the horizon");
   }
-  // Above this no device of today holds a table; the product of four sizes could also overflow.
+  // Larger tables exceed the memory of current devices, and the product of four sizes could overflow.
   constexpr double kMaxTexels = 134217728.0;
   const double texels = static_cast<double>(size.x) * size.y * size.z * size.w;
   if (texels > kMaxTexels) {
-    return invalid("tables.size asks for " + std::to_string(texels * 24.0 / 1048576.0) +
-                   " MiB of tables, allowed is 3072 MiB");
+    return invalid("tables.size needs " + std::to_string(texels * 24.0 / 1048576.0) +
+                   " MiB; expected at most 3072 MiB");
   }
   return {};
 }

@@ -13,14 +13,14 @@
 namespace tyndall {
 namespace {
 
-// `cause`: the settings that the size of the buffer follows from.
+// Returns an error if a buffer is too large for the device. `cause`: the settings that determine its size.
 Result<void> check_buffer(const gpu::Device& device, const char* name, VkDeviceSize size, const char* cause) {
   const VkDeviceSize allowed = std::min({VkDeviceSize{device.properties.limits.maxStorageBufferRange},
                                          device.max_buffer_bytes, device.max_allocation_bytes});
   if (size <= allowed) return {};
-  return Error{ErrorCode::invalid_argument, std::string(cause) + " need a buffer (" + name + ") of " +
-                                                std::to_string(size) + " bytes, this device allows " +
-                                                std::to_string(allowed)};
+  return Error{ErrorCode::invalid_argument,
+               std::string(cause) + " need a buffer (" + name + ") of " + std::to_string(size) +
+                   " bytes; expected at most the limit of this device, " + std::to_string(allowed)};
 }
 
 }  // namespace
@@ -29,36 +29,37 @@ Result<void> check_desc(const DeviceInfo& info, const EffectDesc& desc) {
   const auto invalid = [](const char* text) { return Error{ErrorCode::invalid_argument, text}; };
   if (info.device == VK_NULL_HANDLE || info.physical_device == VK_NULL_HANDLE || info.instance == VK_NULL_HANDLE ||
       info.get_instance_proc_addr == nullptr) {
-    return invalid("DeviceInfo needs instance, physical_device, device and get_instance_proc_addr");
+    return invalid("DeviceInfo is incomplete; expected instance, physical_device, device and get_instance_proc_addr");
   }
   if (desc.max_extent.width == 0 || desc.max_extent.height == 0 || desc.max_extent.width > 16384 ||
       desc.max_extent.height > 16384) {
-    return invalid("EffectDesc::max_extent must be 1x1 to 16384x16384");
+    return invalid("EffectDesc::max_extent is out of range; expected 1x1 to 16384x16384");
   }
   if (desc.frames_in_flight == 0 || desc.frames_in_flight > 8) {
-    return invalid("EffectDesc::frames_in_flight must be 1 to 8");
+    return invalid("EffectDesc::frames_in_flight is out of range; expected 1 to 8");
   }
-  if (desc.views == 0 || desc.views > kMaxViews) return invalid("EffectDesc::views must be 1 to 8");
+  if (desc.views == 0 || desc.views > kMaxViews) return invalid("EffectDesc::views is out of range; expected 1 to 8");
   if (desc.max_cascades == 0 || desc.max_cascades > kMaxCascades) {
-    return invalid("EffectDesc::max_cascades must be 1 to 8");
+    return invalid("EffectDesc::max_cascades is out of range; expected 1 to 8");
   }
   if (desc.max_shadow_resolution == 0 || desc.max_shadow_resolution > 16384) {
-    return invalid("EffectDesc::max_shadow_resolution must be 1 to 16384");
+    return invalid("EffectDesc::max_shadow_resolution is out of range; expected 1 to 16384");
   }
   if (desc.output_format != OutputFormat::rgba16f && desc.output_format != OutputFormat::rgba32f) {
-    return invalid("EffectDesc::output_format must be rgba16f or rgba32f");
+    return invalid("EffectDesc::output_format has no such value; expected rgba16f or rgba32f");
   }
   if (desc.pipeline_threads == 0 || desc.pipeline_threads > 64) {
-    return invalid("EffectDesc::pipeline_threads must be 1 to 64");
+    return invalid("EffectDesc::pipeline_threads is out of range; expected 1 to 64");
   }
-  if (desc.sky_depth != 0.0F && desc.sky_depth != 1.0F) return invalid("EffectDesc::sky_depth must be 0 or 1");
+  if (desc.sky_depth != 0.0F && desc.sky_depth != 1.0F)
+    return invalid("EffectDesc::sky_depth is out of range; expected 0 or 1");
   return {};
 }
 
 Result<void> check_same_desc(const EffectDesc& created, const EffectDesc& wanted) {
   const auto fixed = [](const char* field) {
     return Error{ErrorCode::invalid_argument,
-                 std::string("EffectDesc::") + field + " cannot be changed, it must be that of Effect::desc()"};
+                 std::string("EffectDesc::") + field + " has changed; expected the value of Effect::desc()"};
   };
   if (wanted.frames_in_flight != created.frames_in_flight) return fixed("frames_in_flight");
   if (wanted.views != created.views) return fixed("views");
@@ -73,12 +74,13 @@ Result<void> check_same_desc(const EffectDesc& created, const EffectDesc& wanted
 
 Result<void> check_device(const gpu::Device& device) {
   for (const gpu::Shader* shader : shaders::effect_shaders) TYNDALL_TRY(gpu::check_shader(device, *shader));
-  // No dispatch has more groups in a direction, and every device must allow as many.
+  // No dispatch has more than kMaxGroups workgroups along an axis.
   const std::uint32_t* groups = device.properties.limits.maxComputeWorkGroupCount;
-  const std::uint32_t least = std::min({groups[0], groups[1], groups[2]});
-  if (least >= shared::kMaxGroups) return {};
-  return Error{ErrorCode::unsupported_device, "the device allows dispatches of " + std::to_string(least) + " groups, " +
-                                                  std::to_string(shared::kMaxGroups) + " are needed"};
+  const std::uint32_t smallest = std::min({groups[0], groups[1], groups[2]});
+  if (smallest >= shared::kMaxGroups) return {};
+  return Error{ErrorCode::unsupported_device, "the device allows dispatches of " + std::to_string(smallest) +
+                                                  " workgroups; expected at least " +
+                                                  std::to_string(shared::kMaxGroups)};
 }
 
 Result<void> check_limits(const gpu::Device& device, const EffectDesc& desc, const Params& params) {
@@ -88,7 +90,8 @@ Result<void> check_limits(const gpu::Device& device, const EffectDesc& desc, con
     const VkDeviceSize bytes = gpu::image_bytes(device, table);
     if (bytes <= device.max_allocation_bytes) continue;
     return Error{ErrorCode::invalid_argument, std::string("tables.size needs an image (") + table.name + ") of " +
-                                                  std::to_string(bytes) + " bytes, this device allows " +
+                                                  std::to_string(bytes) +
+                                                  " bytes; expected at most the limit of this device, " +
                                                   std::to_string(device.max_allocation_bytes)};
   }
   for (const BufferPlan& plan : plan_scratch(params.tables.size.y)) {

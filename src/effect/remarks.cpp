@@ -41,7 +41,7 @@ enum class Kind : std::uint32_t {
   cascade_depth
 };
 
-// One line of text in place; what does not fit is cut off.
+// One line of text in a fixed buffer. Text that does not fit is cut off.
 class Text {
  public:
   template <typename... Parts>
@@ -76,7 +76,7 @@ class Text {
 class Speaker {
  public:
   Speaker(const DeviceInfo& device, std::uint64_t& said) : device_(&device), said_(&said) {}
-  // `parts` of the text are put together only when it is said.
+  // The text is composed of `parts` only if the remark is made.
   template <typename... Parts>
   void say_if(Kind kind, bool wrong, const Parts&... parts) {
     const std::uint64_t bit = std::uint64_t{1} << static_cast<std::uint32_t>(kind);
@@ -107,7 +107,7 @@ void remark_on_sun(Speaker& s, const FrameInputs& inputs) {
   s.say_if(Kind::sun_radius, sun.angular_radius_rad > 0.1F, "Sun::angular_radius_rad is ",
            static_cast<double>(sun.angular_radius_rad), "; expected about 0.0047: is it in degrees?");
   s.say_if(Kind::sun_dark, sun.irradiance.x + sun.irradiance.y + sun.irradiance.z <= 0.0F,
-           "Sun::irradiance is 0; expected light: the air will be black");
+           "Sun::irradiance is 0; expected light: there will be no in-scattering");
 }
 
 DVec3 minus(const DVec3& a, const DVec3& b) { return sum(a, b, -1.0); }
@@ -131,7 +131,7 @@ bool turns_about_an_axis(const Mat4& m) {
   return false;
 }
 
-// Returns where a place is in a shadow map: (u, v, depth).
+// Returns the position of a point in a shadow map: (u, v, depth).
 DVec3 in_map(const Cascade& cascade, const DVec3& place) {
   const Mat4& m = cascade.shadow_from_world;
   return sum({dot(row_of(m, 0), place), dot(row_of(m, 1), place), dot(row_of(m, 2), place)}, column_of(m, 3), 1.0);
@@ -141,7 +141,7 @@ bool inside(const DVec3& in_map) {
   return in_map.x > 0.0 && in_map.x < 1.0 && in_map.y > 0.0 && in_map.y < 1.0 && in_map.z > 0.0 && in_map.z < 1.0;
 }
 
-// Returns whether a camera, and the middle of what it sees, are inside the first marched cascade.
+// Returns whether a camera and the middle of its view are inside the first marched cascade.
 bool is_in_cascade(const Mat4& world_from_view, const FrameInputs& inputs) {
   const Cascade& c = inputs.cascades[inputs.first_marched_cascade];
   const DVec3 camera = column_of(world_from_view, 3);
@@ -149,8 +149,8 @@ bool is_in_cascade(const Mat4& world_from_view, const FrameInputs& inputs) {
   return inside(in_map(c, camera)) && inside(in_map(c, sum(camera, column_of(world_from_view, 2), reach_m)));
 }
 
-// Returns whether the camera looks like the inverse of one: like a matrix from the world to the view. No single sign
-// is certain, so that each leaves out what right cameras do.
+// Returns whether the camera matrix is probably inverted, that is, a matrix from world to view space. No single
+// criterion is certain, so each one is chosen such that correct cameras do not meet it.
 bool looks_inverted(const FrameInputs& inputs, const FrameState& state, const Mat4* before) {
   const Mat4& m = inputs.camera.world_from_view;
   const double radius = static_cast<double>(state.params.planet.radius_m);
@@ -158,7 +158,7 @@ bool looks_inverted(const FrameInputs& inputs, const FrameState& state, const Ma
   const double altitude = altitude_of(column_of(m, 3), radius);
   const double other = altitude_of(column_of(inverted, 3), radius);
   if (altitude < -500.0 && other > 1.0) return true;
-  // Few cameras roll; the inverse of one that does not is rolled unless it turns about one axis only.
+  // Few cameras are rolled. The inverse of a camera without roll is rolled, unless it is rotated about one axis only.
   if (!turns_about_an_axis(m) && roll_of(m, radius) > 1e-3 && roll_of(inverted, radius) < 1e-5) return true;
   const bool marched = state.params.scattering.light_shafts && !inputs.cascades.empty() && other > 0.0;
   if (marched && !is_in_cascade(m, inputs) &&
@@ -166,7 +166,7 @@ bool looks_inverted(const FrameInputs& inputs, const FrameState& state, const Ma
       is_in_cascade(inverted, inputs)) {
     return true;
   }
-  // A camera that turns in its place: its inverse swings around the origin, and not only above the sea.
+  // If a camera turns in place, the position of its inverse moves around the origin, partly below the sea.
   if (before == nullptr || altitude > 0.0 || other < 0.0) return false;
   const DVec3 place = column_of(inverted, 3);
   const double turned = length(minus(column_of(m, 2), column_of(*before, 2)));
@@ -222,15 +222,15 @@ void remark_on_projection(Speaker& s, const FrameInputs& inputs, const FrameStat
            " m reads as sky; expected D32_SFLOAT or D24, or a far plane near that distance");
 }
 
-// The part of the view that a cascade is for, in its map.
+// The extent of a cascade's part of the view in its map.
 struct Footprint {
   double low[2] = {1e300, 1e300};
   double high[2] = {-1e300, -1e300};
-  double size = 0.0;        // the larger side
-  double reached_m = -1.0;  // depth down to which the middle of the view is in the map; -1: not at all
+  double size = 0.0;        // of the larger side
+  double reached_m = -1.0;  // depth up to which the middle of the view is in the map; -1: not at all
 };
 
-// A slice of the view, between two depths.
+// Returns the footprint of the part of the view between two depths.
 Footprint footprint(const Cascade& cascade, double near_m, double far_m, const FrameInputs& inputs,
                     const shared::FrameConstants& frame) {
   constexpr int kDepths = 16;
@@ -258,11 +258,12 @@ Footprint footprint(const Cascade& cascade, double near_m, double far_m, const F
   return out;
 }
 
-// What a map does not cover may be what nothing shadows: air above the terrain, or a map may end where what casts
-// shadows ends. Only what no such map does is remarked on.
+// Makes remarks on maps that do not cover their part of the view. A map may omit positions that nothing shadows, such
+// as the atmosphere above the terrain, and it may end where the casters of shadows end. Remarks are made only on maps
+// that cannot be explained in this way.
 void remark_on_coverage(Speaker& s, const FrameInputs& inputs, const FrameState& state) {
-  constexpr float kHigh_m = 10000.0F;  // from higher up there may be no ground in sight to be shadowed
-  constexpr float kLow_m = 200.0F;     // so low, shadows reach the camera
+  constexpr float kHigh_m = 10000.0F;  // from a higher altitude, the visible ground may be without shadows
+  constexpr float kLow_m = 200.0F;     // at a lower altitude, shadows reach the camera
   constexpr double kMuchSmaller = 20.0;
   const std::size_t first = inputs.first_marched_cascade;
   const std::size_t count = inputs.cascades.size();
@@ -278,7 +279,7 @@ void remark_on_coverage(Speaker& s, const FrameInputs& inputs, const FrameState&
     const double far_m = std::min(static_cast<double>(c.far_m), 1e6);
     if (far_m <= near_m) continue;
     const Footprint f = footprint(c, near_m, far_m, inputs, state.frame);
-    // A map of clip space is around (0, 0), and reaches from -1 to 1.
+    // In clip space, a map would extend from -1 to 1.
     bool is_clip = std::min(f.low[0], f.low[1]) < -0.3;
     bool misses = false;
     for (int axis = 0; axis < 2; ++axis) {
@@ -300,15 +301,15 @@ void remark_on_coverage(Speaker& s, const FrameInputs& inputs, const FrameState&
       out_by = std::max({-at.x, at.x - 1.0, -at.y, at.y - 1.0});
       if (out_by > 0.5) outside = i;
     }
-    // Maps that are drawn for the view grow with it from cascade to cascade; those that end where what casts shadows
-    // ends do not.
+    // The size of maps that are fitted to the view increases from cascade to cascade. Maps that are fitted to the
+    // casters have constant size.
     const double size_m = 1.0 / length(row_of(c.shadow_from_world, 0));
     growing = growing && size_m > 1.2 * size_before_m;
     size_before_m = size_m;
     if (f.reached_m < near_m + 0.5 * (far_m - near_m) && (i > first || f.reached_m >= 0.0)) ++narrow;
     if (i == first) reached_m = f.reached_m;
   }
-  // What is above or below the ground need not be in a map, so that only level views say something.
+  // Only level views are tested, because a map need not contain positions above or below the ground.
   const double radius = static_cast<double>(state.params.planet.radius_m);
   const DVec3 zenith = {camera.x, camera.y + radius, camera.z};
   const bool level = std::abs(dot(wide(state.frame.camera_forward), zenith)) < 0.03 * length(zenith) &&
@@ -345,7 +346,7 @@ void remark_on_cascades(Speaker& s, const FrameInputs& inputs, const FrameState&
     if (i > first && c.far_m <= inputs.cascades[i - 1].far_m) unordered = std::min(unordered, i);
     const bool both = c.far_m > c.near_m && i > first && inputs.cascades[i - 1].far_m > inputs.cascades[i - 1].near_m;
     if (both && c.near_m > 1.001F * inputs.cascades[i - 1].far_m) apart = std::min(apart, i);
-    // All that falls on one texel lies along the light.
+    // All points of a texel are on a line parallel to the light.
     const DVec3 light = cross(row_of(c.shadow_from_world, 0), row_of(c.shadow_from_world, 1));
     const DVec3 depth = row_of(c.shadow_from_world, 2);
     const double along = std::abs(dot(light, sun)) / length(light);
@@ -378,8 +379,8 @@ void remark_on_cascades(Speaker& s, const FrameInputs& inputs, const FrameState&
            " m from the camera; expected at least 1 m: is the unit the metre?");
   const double start_m = static_cast<double>(inputs.cascades[first].near_m);
   s.say_if(Kind::cascade_start, start_m > 1.0, "FrameInputs::cascades[first_marched_cascade] starts ", start_m,
-           " m from the camera; expected 0: the air before it is taken as lit");
-  if (!inverse) remark_on_coverage(s, inputs, state);  // one fault, one remark
+           " m from the camera; expected 0: the atmosphere in front of it is taken as lit");
+  if (!inverse) remark_on_coverage(s, inputs, state);  // otherwise one error would cause two remarks
 }
 
 }  // namespace
@@ -390,7 +391,8 @@ void Remarks::on_frame(const FrameInputs& inputs, const FrameState& state, const
   Speaker s(device, said_[view]);
   const ScatteringParams& p = state.params.scattering;
   remark_on_sun(s, inputs);
-  // Seen twice in a row, or in the first frame: a camera that rolls passes through all positions.
+  // The remark requires two frames in succession (or the first frame), because a rolling camera may pass through such a
+  // position.
   Before& before = before_[view];
   const bool suspect = looks_inverted(inputs, state, before.known ? &before.world_from_view : nullptr);
   const bool inverse = suspect && (before.suspect || !before.known);
@@ -407,7 +409,7 @@ void Remarks::on_frame(const FrameInputs& inputs, const FrameState& state, const
                             (p.single == SingleScattering::table || p.multiple != MultipleScattering::none);
   s.say_if(Kind::tables, needs_tables && !state.tables_ready,
            "the scattering tables are not built; expected record_precompute() until its progress is "
-           "complete: the air is black before");
+           "complete: there is no in-scattering before");
   s.say_if(Kind::unfinished, state.unfinished.has_value(), "frame_index ", inputs.frame_index,
            " takes the constants of frame ", state.unfinished.value_or(0),
            ", whose commands have not completed or were never submitted; expected at most "

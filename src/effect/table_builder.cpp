@@ -16,10 +16,12 @@ namespace {
 constexpr std::uint32_t kMaxSteps = 4096 * 3 + 512;
 
 Result<void> check_table_buffer(VkBuffer buffer, VkDeviceSize offset) {
-  if (buffer == VK_NULL_HANDLE) return Error{ErrorCode::invalid_argument, "the buffer of the tables is null"};
+  if (buffer == VK_NULL_HANDLE)
+    return Error{ErrorCode::invalid_argument,
+                 "the buffer of the tables is null; expected a buffer of Effect::table_bytes()"};
   if (offset % kTexelBytes == 0) return {};
   return Error{ErrorCode::invalid_argument,
-               "the tables' offset in their buffer is " + std::to_string(offset) + ", allowed are multiples of 8"};
+               "the tables' offset in their buffer is " + std::to_string(offset) + "; expected a multiple of 8"};
 }
 
 VkBufferImageCopy whole_table(const gpu::Image& image, VkDeviceSize offset) {
@@ -38,7 +40,7 @@ Result<void> TableBuilder::create(const gpu::Device& device, PipelineCache& pipe
   pipelines_ = &pipelines;
   frames_in_flight_ = frames_in_flight;
   timings_ = timings;
-  // A complete build at the defaults has every step.
+  // A complete build with default parameters contains all steps.
   std::vector<PipelineKey> keys;
   for (const Step& step : table_steps({}, kAllTables)) keys.push_back(step.pipeline);
   TYNDALL_TRY(pipelines.make(keys));
@@ -62,7 +64,7 @@ Result<TableScratch> TableBuilder::create_scratch(std::uint32_t views) const {
 Result<TableBuilder::Pending> TableBuilder::plan(const Params& params) {
   Pending out;
   const bool building = done_ < steps_.size();
-  // For what commit() retires, and for what the end of the build does, when nothing may be allocated.
+  // Reserved for commit() and for the end of the build, which must not allocate.
   retired_.reserve(retired_.size() + 2);
   if (building && stale_tables(wanted_, params) == 0) return out;
   out.wanted = params;
@@ -143,7 +145,8 @@ void TableBuilder::make_images_ready(VkCommandBuffer cmd) {
 Result<void> TableBuilder::record_save(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset) {
   TYNDALL_TRY(check_table_buffer(buffer, offset));
   if (!progress().complete()) {
-    return Error{ErrorCode::invalid_argument, "the tables are not complete, nothing can be saved before they are"};
+    return Error{ErrorCode::invalid_argument,
+                 "the tables are not complete; expected record_precompute() until its progress is complete"};
   }
   gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT,
                VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
@@ -153,7 +156,7 @@ Result<void> TableBuilder::record_save(VkCommandBuffer cmd, VkBuffer buffer, VkD
     device_->vk.CmdCopyImageToBuffer(cmd, table.image.image.get(), VK_IMAGE_LAYOUT_GENERAL, buffer, 1, &copy);
     offset += texel_bytes(table.image.desc.extent);
   }
-  // A later build writes them only when they have been read.
+  // A later build must not write the tables before they have been read.
   gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0);
   return {};
 }
@@ -162,7 +165,7 @@ Result<void> TableBuilder::record_load(VkCommandBuffer cmd, VkBuffer buffer, VkD
   TYNDALL_TRY(check_table_buffer(buffer, offset));
   if (progress().complete()) return {};
   make_images_ready(cmd);
-  // Frames before may still read what is not yet built, a build that has begun may still write it.
+  // Earlier frames may still read the tables, and a build in progress may still write them.
   gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
                VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
   for (std::uint32_t i = 0; i < kTableCount; ++i) {
@@ -174,7 +177,7 @@ Result<void> TableBuilder::record_load(VkCommandBuffer cmd, VkBuffer buffer, VkD
     }
     offset += texel_bytes(table_desc(id, wanted_).extent);
   }
-  // From here on as if compute shaders had written them: what waits for a build waits for this as well.
+  // Makes the copies visible in the same way as the writes of a build, so that later commands need no other barrier.
   gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
                VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
   done_ = static_cast<std::uint32_t>(steps_.size());
@@ -191,7 +194,7 @@ Result<void> TableBuilder::record(VkCommandBuffer cmd, std::uint32_t budget) {
   }
   const BoundResources resources = bind_resources();
   StepRecorder recorder(*device_, cmd, *pipelines_, resources, timings_ ? &timer_ : nullptr);
-  // Earlier calls may have recorded steps that are still to be waited for.
+  // Steps of earlier calls may still be running.
   for (std::size_t i = 0; i < kResources; ++i) {
     const auto resource = static_cast<Resource>(i);
     const Lifetime lifetime = info_of(resource).lifetime;
@@ -205,7 +208,7 @@ Result<void> TableBuilder::record(VkCommandBuffer cmd, std::uint32_t budget) {
   return {};
 }
 
-// Tables that this build does not make have no view, and no step binds them.
+// Returns the resources of the build. Tables that it does not write have no view, because no step binds them.
 BoundResources TableBuilder::bind_resources() {
   const TableScratch& s = scratch_;
   BoundResources out;

@@ -1,4 +1,5 @@
-// Sizes and memory of the tables, the tables that a change of parameters makes stale, and the key of the cache.
+// Computes the sizes and the memory of the tables, the tables that become stale when parameters change, and the key of
+// the cache.
 #include "effect/tables.hpp"
 
 #include <algorithm>
@@ -21,11 +22,11 @@ constexpr VkImageUsageFlags kTableUsage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_
 
 bool same(const void* a, const void* b, std::size_t size) { return std::memcmp(a, b, size) == 0; }
 
-// To be raised when the bytes of the tables change although shaders, constants and version do not, for example by
-// another list of slices or another order of the tables in a buffer.
+// Increment this if the bytes of the tables change although the shaders, constants and version do not. An example is a
+// change of the list of slices or of the order of the tables in a buffer.
 constexpr int kTableRevision = 1;
 
-// FNV-1a (Fowler, Noll, Vo). Distinguishes inputs; it is not secure against intent.
+// The hash FNV-1a (Fowler, Noll, Vo). It distinguishes inputs, but is not cryptographically secure.
 class Hash {
  public:
   void add(const void* data, std::size_t size) {
@@ -100,11 +101,12 @@ Result<void> check_table_size(const gpu::Device& device, const Params& params) {
   const UVec4& size = params.tables.size;
   const std::uint32_t limit = device.properties.limits.maxImageDimension3D;
   if (size.x <= limit && size.y <= limit && size.z <= limit / size.w) return {};
-  return Error{ErrorCode::invalid_argument,
-               "tables.size is " + std::to_string(size.x) + "," + std::to_string(size.y) + "," +
-                   std::to_string(size.z) + "," + std::to_string(size.w) +
-                   ", on this device the first two and the product of the last two may be at most " +
-                   std::to_string(limit)};
+  return Error{
+      ErrorCode::invalid_argument,
+      "tables.size is " + std::to_string(size.x) + "," + std::to_string(size.y) + "," + std::to_string(size.z) + "," +
+          std::to_string(size.w) +
+          "; expected at most the limit of this device for the first two and for the product of the last two, " +
+          std::to_string(limit)};
 }
 
 gpu::ImageDesc table_desc(TableId table, const Params& params) {
@@ -124,7 +126,7 @@ std::uint32_t stale_tables(const Params& built, const Params& wanted) {
   const shared::TableShape shape_b = table_shape(wanted);
   std::uint32_t stale = 0;
   if (!same(&a, &b, sizeof a) || !same(&shape_a, &shape_b, sizeof shape_a)) stale |= kHighTables;
-  // The tables of single scattering contain neither the phase function nor light from the ground.
+  // The tables of single scattering do not depend on the phase function or the ground.
   b.mie_g = a.mie_g;
   b.mie_phase = a.mie_phase;
   b.ground_albedo = a.ground_albedo;
@@ -145,7 +147,7 @@ VkDeviceSize table_bytes(const Params& params) {
 }
 
 std::string table_key(const gpu::Device& device, const Params& params) {
-  // The shaders of a complete build, each once.
+  // The shaders of a complete build, without duplicates.
   std::vector<const gpu::Shader*> used;
   for (const Step& step : table_steps({}, kAllTables)) {
     const gpu::Shader* shader = step.pipeline.shader;

@@ -41,7 +41,7 @@ Error vulkan_error(VkResult result, const char* what, const char* name) {
 Result<void> init_device(Device& device, PFN_vkGetInstanceProcAddr get) {
   if (const char* missing = load_functions(device.vk, get, device.instance, device.device)) {
     return Error{ErrorCode::unsupported_device, std::string("the Vulkan device lacks ") + missing +
-                                                    ": Vulkan 1.3 and VK_KHR_push_descriptor are needed"};
+                                                    "; expected Vulkan 1.3 and VK_KHR_push_descriptor"};
   }
   VkPhysicalDeviceMaintenance4Properties buffers = {};
   buffers.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_PROPERTIES;

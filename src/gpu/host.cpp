@@ -82,11 +82,11 @@ Result<std::vector<VkPhysicalDevice>> enumerate(VkInstance instance) {
   return devices;
 }
 
-// The index of the device to use. `wanted` as in HostDesc.
+// Returns the index of the device to use. `wanted` is HostDesc::device.
 Result<std::size_t> choose(const std::vector<DeviceRow>& rows, const std::string& wanted) {
   if (rows.empty()) {
     return Error{ErrorCode::unsupported_device,
-                 "no Vulkan device, on this machine, a driver is needed (without a GPU: Debian's mesa-vulkan-drivers)"};
+                 "no Vulkan device on this machine; expected a driver (without a GPU: Debian's mesa-vulkan-drivers)"};
   }
   std::size_t best = rows.size();
   if (!wanted.empty()) {
@@ -100,7 +100,7 @@ Result<std::size_t> choose(const std::vector<DeviceRow>& rows, const std::string
         names += (i > 0 ? ", " : "") + std::to_string(i) + " = " + rows[i].name;
       }
       return Error{ErrorCode::invalid_argument,
-                   "no Vulkan device '" + wanted + "', --device, an index or a part of a name: " + names};
+                   "--device: no Vulkan device '" + wanted + "'; expected an index or a part of a name: " + names};
     }
   } else {
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -113,7 +113,7 @@ Result<std::size_t> choose(const std::vector<DeviceRow>& rows, const std::string
     std::string missing;
     for (const std::string& m : rows[best].missing) missing += (missing.empty() ? "" : ", ") + m;
     return Error{ErrorCode::unsupported_device,
-                 "the Vulkan device '" + rows[best].name + "' cannot be used, it lacks " + missing};
+                 "the Vulkan device '" + rows[best].name + "' cannot be used; expected " + missing};
   }
   return best;
 }
@@ -143,7 +143,7 @@ VkBool32 VKAPI_PTR Host::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT /*sev
                                     VkDebugUtilsMessageTypeFlagsEXT /*types*/,
                                     const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
   auto* host = static_cast<Host*>(user);
-  const std::lock_guard<std::mutex> telling(host->message_mutex_);
+  const std::lock_guard<std::mutex> lock(host->message_mutex_);
   if (++host->validation_count_ <= 8) host->validation_text_ += std::string(data->pMessage) + "\n";
   if (host->validation_log_ != nullptr) host->validation_log_->emplace_back(data->pMessage);
   return VK_FALSE;
@@ -176,7 +176,7 @@ Result<void> Host::create_instance(bool validation, const std::vector<const char
   if (validation) {
     if (!has_layer(kValidationLayer)) {
       return Error{ErrorCode::unsupported_device,
-                   "the Vulkan validation layer is not installed (Debian: vulkan-validationlayers)"};
+                   "the Vulkan validation layer is not installed; expected Debian's vulkan-validationlayers"};
     }
     info.pNext = &features;
     info.enabledLayerCount = 1;
@@ -189,7 +189,7 @@ Result<void> Host::create_instance(bool validation, const std::vector<const char
   if (result != VK_SUCCESS) {
     return Error{ErrorCode::unsupported_device,
                  "Vulkan does not start (VkResult " + std::to_string(static_cast<int>(result)) +
-                     "), on this machine, a Vulkan 1.3 driver is needed (without a GPU: Debian's mesa-vulkan-drivers)",
+                     "); expected a Vulkan 1.3 driver (without a GPU: Debian's mesa-vulkan-drivers)",
                  static_cast<std::int32_t>(result)};
   }
   if (validation) {

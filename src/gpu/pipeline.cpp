@@ -9,7 +9,7 @@
 namespace tyndall::gpu {
 namespace {
 
-// Merges a stage's bindings into the pipeline's. One number has one name in all stages.
+// Adds the bindings of a stage to those of the pipeline. A binding number must have the same name in all stages.
 Result<void> add_bindings(Pipeline& pipeline, const Shader& shader,
                           std::array<VkShaderStageFlags, kMaxBindings>& stages) {
   for (const Binding& binding : shader.bindings) {
@@ -84,7 +84,7 @@ Result<Handle<VkShaderModule>> create_module(const Device& device, const Shader&
   return Handle<VkShaderModule>(device, module);
 }
 
-// Keeps the arrays that VkSpecializationInfo points into.
+// Owns the arrays that VkSpecializationInfo points into.
 struct Specialization {
   std::vector<VkSpecializationMapEntry> entries;
   VkSpecializationInfo info = {};
@@ -118,9 +118,9 @@ Result<void> check_shader(const Device& device, const Shader& shader) {
   const VkPhysicalDeviceLimits& limits = device.properties.limits;
   const auto exceeds = [&](const char* what, std::uint64_t needed, std::uint64_t allowed) -> Result<void> {
     if (needed <= allowed) return {};
-    return Error{ErrorCode::unsupported_device, std::string("the shader ") + shader.name + " needs " +
-                                                    std::to_string(needed) + " " + what + ", the device allows " +
-                                                    std::to_string(allowed)};
+    return Error{ErrorCode::unsupported_device,
+                 std::string("the shader ") + shader.name + " needs " + std::to_string(needed) + " " + what +
+                     "; expected at most the limit of the device, " + std::to_string(allowed)};
   };
   const auto count = [&](std::initializer_list<VkDescriptorType> types) {
     return static_cast<std::uint32_t>(
@@ -202,7 +202,7 @@ VkPipelineColorBlendAttachmentState blending(Blend blend) {
   attachment.srcColorBlendFactor = add ? VK_BLEND_FACTOR_ONE : VK_BLEND_FACTOR_ZERO;
   attachment.dstColorBlendFactor = add ? VK_BLEND_FACTOR_ONE : VK_BLEND_FACTOR_SRC_COLOR;
   attachment.colorBlendOp = VK_BLEND_OP_ADD;
-  // The minimum takes no factors; otherwise alpha stays.
+  // VK_BLEND_OP_MIN ignores the factors. With the other operations they leave alpha unchanged.
   attachment.srcAlphaBlendFactor = VK_BLEND_FACTOR_ZERO;
   attachment.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
   attachment.alphaBlendOp = blend == Blend::multiply_min ? VK_BLEND_OP_MIN : VK_BLEND_OP_ADD;

@@ -15,9 +15,9 @@ constexpr std::size_t kBatchRays = 16384;  // takes well below a second on a CPU
 std::array<double, 3> widened(const Vec3& v) { return {v.x, v.y, v.z}; }
 
 // Dispatches one of shaders/probe, which reads `more` besides the medium, the rays and the results.
-Result<std::vector<Answer>> ask(gpu::Host& host, const gpu::Shader& shader, const shared::Medium& medium,
-                                std::span<const gpu::NamedResource> more, std::span<const Ray> rays,
-                                const std::function<void(std::size_t)>& progress) {
+Result<std::vector<Answer>> evaluate(gpu::Host& host, const gpu::Shader& shader, const shared::Medium& medium,
+                                     std::span<const gpu::NamedResource> more, std::span<const Ray> rays,
+                                     const std::function<void(std::size_t)>& progress) {
   std::vector<Answer> answers;
   if (rays.empty()) return answers;
   const gpu::Device& device = host.device();
@@ -70,7 +70,7 @@ Result<std::vector<Answer>> ask(gpu::Host& host, const gpu::Shader& shader, cons
 Result<std::vector<Answer>> single_scattering_on_gpu(gpu::Host& host, const shared::Medium& medium,
                                                      std::span<const Ray> rays,
                                                      const std::function<void(std::size_t)>& progress) {
-  return ask(host, shaders::single_comp, medium, {}, rays, progress);
+  return evaluate(host, shaders::single_comp, medium, {}, rays, progress);
 }
 
 Result<std::vector<Answer>> oneil_on_gpu(gpu::Host& host, const OneilModel& model, std::span<const Ray> rays) {
@@ -84,7 +84,7 @@ Result<std::vector<Answer>> oneil_on_gpu(gpu::Host& host, const OneilModel& mode
   std::memcpy(table.mapped, model.table.data(), table_bytes);
   const gpu::NamedResource more[] = {gpu::named_buffer("oneil_block", constants.buffer.get()),
                                      gpu::named_buffer("oneil_table_block", table.buffer.get())};
-  return ask(host, shaders::oneil_comp, model.medium, more, rays, {});
+  return evaluate(host, shaders::oneil_comp, model.medium, more, rays, {});
 }
 
 }  // namespace tyndall::models

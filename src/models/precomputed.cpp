@@ -40,7 +40,7 @@ struct PrecomputedModel::State {
   std::unique_ptr<Effect> effect;
   gpu::Pipeline pipeline;
   gpu::Handle<VkSampler> linear;
-  tables::Outcome origin;
+  tables::Report origin;
 };
 
 PrecomputedModel::PrecomputedModel(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -50,7 +50,7 @@ PrecomputedModel::~PrecomputedModel() = default;
 
 Effect& PrecomputedModel::effect() { return *state_->effect; }
 
-const tables::Outcome& PrecomputedModel::origin() const { return state_->origin; }
+const tables::Report& PrecomputedModel::origin() const { return state_->origin; }
 
 Result<PrecomputedModel> PrecomputedModel::create(gpu::Host& host, const Params& params, const tables::MakeReady& how) {
   const gpu::Device& device = host.device();

@@ -26,8 +26,8 @@ class PrecomputedModel {
   // whether order 1 is integrated.
   Result<std::vector<Answer>> answer(std::span<const RayQuery> queries, bool visible_ground = true);
 
-  // Where the tables came from.
-  [[nodiscard]] const tables::Outcome& origin() const;
+  // Returns the origin of the tables.
+  [[nodiscard]] const tables::Report& origin() const;
   // The effect that holds the tables, for build times, memory use, and images to export.
   [[nodiscard]] Effect& effect();
 

@@ -39,7 +39,7 @@ TableAxes table_axes(const Params& params) {
       axes.ends_on_ground.push_back(below);
       const double mu = axes.cos_view_zenith.back();
       const double end = distance_to_end(m, h, mu, below);
-      axes.middle_of_air_m.push_back(
+      axes.mean_distance_m.push_back(
           glsl64::density_weighted_mean_distance(m, h, mu, end, glsl64::density_integral_along(m, h, mu, end)));
     }
   }

@@ -16,7 +16,7 @@ struct TableAxes {
   // The view axis is relative to the horizon, which depends on altitude: [altitude * views + view].
   std::vector<double> cos_view_zenith;
   std::vector<bool> ends_on_ground;
-  std::vector<double> middle_of_air_m;  // along the ray, same layout: the sun axis refers to the sun at this point
+  std::vector<double> mean_distance_m;  // density-weighted, same layout: the sun axis refers to the sun there
   std::vector<double> cos_sun_zenith;
   std::vector<double> cos_view_sun;  // of the angle between view and sun
 };

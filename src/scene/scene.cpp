@@ -28,7 +28,7 @@ Result<void> check_memory(const gpu::Device& device, VkExtent2D extent, std::uin
   for (std::uint32_t i = 0; i < device.memory.memoryHeapCount; ++i) {
     largest = std::max(largest, device.memory.memoryHeaps[i].size);
   }
-  // A CPU device's heap is the machine's memory, whatever its driver says (lavapipe: at most 2 GiB).
+  // The heap of a CPU device is the memory of the machine, although drivers report less (lavapipe: at most 2 GiB).
   if (device.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU) {
     const long pages = sysconf(_SC_PHYS_PAGES);
     const long page_bytes = sysconf(_SC_PAGESIZE);
@@ -104,7 +104,7 @@ Result<std::unique_ptr<Effect>> Scene::make_effect(const EffectDesc& desc) {
     if (std::find(notes->begin(), notes->end(), text) != notes->end()) return;
     try {
       notes->emplace_back(text);
-    } catch (const std::bad_alloc&) {  // a callback of the library must not throw: the remark is lost
+    } catch (const std::bad_alloc&) {  // a callback of the library must not throw, so the remark is dropped
       return;
     }
   };
@@ -205,7 +205,7 @@ Result<void> Scene::render(double seconds, bool copy_baseline, std::optional<dou
 
 Result<void> Scene::draw_frame(double seconds, bool copy_baseline, std::optional<double> step_s) {
   TYNDALL_TRY(replace_lost_effect());
-  // Time that does not advance, and pictures that were not measured, leave nothing to adapt from.
+  // There is no previous exposure if time has not advanced or the last picture was not measured.
   step_s_ = step_s.value_or(last_seconds_ ? seconds - *last_seconds_ : 0.0);
   if (!last_seconds_ || step_s_ <= 0.0) tonemap_->exposure().reset_history();
   last_seconds_ = seconds;
@@ -254,21 +254,20 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   const bool bare = bare_ground();
   const double ground_m = bare ? 0.0 : terrain_->height_at(up_of(view_.position, radius));
   const double altitude = altitude_of(view_.position, radius);
-  // Meshes do not stop the camera, which may be inside of them. On the bare ground only the near plane limits the
-  // height.
-  const double least_m = bare ? kNearPlane_m : kMinHeight_m;
-  if (altitude < ground_m + least_m) {
-    view_.position = at_altitude(view_.position, ground_m + least_m, radius);
+  // Meshes do not stop the camera, which may be inside them. On the bare ground only the near plane limits the height.
+  const double min_m = bare ? kNearPlane_m : kMinHeight_m;
+  if (altitude < ground_m + min_m) {
+    view_.position = at_altitude(view_.position, ground_m + min_m, radius);
     if (!lifted_) {
       notes_.push_back("the camera was inside the ground and has been lifted to " +
-                       std::to_string(static_cast<int>(std::lround(ground_m + least_m))) + " m");
+                       std::to_string(static_cast<int>(std::lround(ground_m + min_m))) + " m");
     }
     lifted_ = true;
   }
   frame_ = local_frame(view_.position, radius);
   if (!bare) TYNDALL_TRY(terrain_->update(view_, frame_));
-  // Nothing is nearer than half the height above the ground, except for walls beside the camera.
-  const double above = std::max(altitude - ground_m, least_m);
+  // All surfaces are farther away than half the height above the ground, except for walls beside the camera.
+  const double above = std::max(altitude - ground_m, min_m);
   const Ground ground = meshes_ != nullptr ? meshes_->ground(terrain_->ground(), view_.position) : terrain_->ground();
   const double nearest = std::min(20.0, 0.02 * static_cast<double>(scene_.shadows.distance_m));
   cascades_ = fit_cascades(view_, to_sun_, scene_.shadows, ground, std::max(0.5 * above, nearest));

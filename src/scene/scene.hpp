@@ -23,10 +23,10 @@ struct SceneDesc {
   bool timings = false;
   bool counters = false;
   bool histogram = false;              // measure every picture, not only those that auto exposure needs
-  tables::MakeReady make_tables = {};  // how the effect's tables are made
-  bool tables_later = false;           // make the tables with advance_tables() instead of at once
+  tables::MakeReady make_tables = {};  // how the tables are built and cached
+  bool tables_later = false;           // build the tables with advance_tables() instead of in create()
   int terrain_coarseness = 1;          // see TerrainLod
-  bool keep_shadows = true;            // reuse shadow maps that would not change
+  bool reuse_shadows = true;           // reuse shadow maps that would not change
   std::uint32_t pipeline_threads = 1;  // see EffectDesc
   bool in_parts = false;               // submit a frame in parts, so that others get their turn on the queue
 };
@@ -43,10 +43,10 @@ class Scene {
   static Result<std::unique_ptr<Scene>> create(gpu::Host& host, const SceneDesc& desc, const Params& params,
                                                const SceneParams& scene);
 
-  // Set new parameters. An error leaves everything as it was, the next frame included. A different terrain is loaded,
-  // which takes long for large files, unless set_terrain() has provided it. A change back to scattering.model =
-  // atmosphere, or of parameters of the atmosphere, makes the tables, unless SceneDesc::tables_later is set. No
-  // function throws std::bad_alloc: running out of memory is an error.
+  // Set new parameters. An error changes nothing, including the next frame. A different terrain is loaded, which takes
+  // long for large files, unless set_terrain() has provided it. A change back to scattering.model = atmosphere, or of
+  // parameters of the atmosphere, rebuilds the tables, unless SceneDesc::tables_later is set. Running out of memory is
+  // an error; no function throws std::bad_alloc.
   Result<void> set_scene(const SceneParams& scene);
   Result<void> set_params(const Params& params);
   // Sets a terrain that Terrain::load_source() has loaded for these parameters and this radius of the planet.
@@ -54,20 +54,20 @@ class Scene {
   Result<void> set_extent(VkExtent2D extent);
   Result<void> set_terrain_coarseness(int coarseness);
 
-  // Makes one step towards the tables of the parameters (see Effect::precompute_progress()): reads them from the cache,
-  // or builds `budget` slices of them. Until they are complete, frames use the previous tables; without any, render()
-  // fails.
+  // Reads the tables of the parameters from the cache, or builds `budget` slices of them (see
+  // Effect::precompute_progress()). Until they are complete, frames use the previous tables. If there are none,
+  // render() fails.
   Result<Progress> advance_tables(std::uint32_t budget);
   [[nodiscard]] bool can_render() const { return model_ != nullptr || tables_ready_; }
   Effect& effect() { return *effect_; }
 
-  // Renders the frame that is `seconds` into the sequence. After an error the next call draws what this one would have
-  // drawn. `copy_baseline` also times a pass that only copies the picture, which no effect can undercut. `step_s`: time
-  // in which the eye adapts to this frame; without, the time since the frame before. The first frame, and one after no
-  // time at all, is exposed for itself.
+  // Renders the frame at `seconds` of the sequence. After an error, the next call draws the frame that this call should
+  // have drawn. `copy_baseline`: also measure a pass that only copies the picture. `step_s`: the time in which the
+  // exposure adapts to this frame; by default the time since the previous frame. The first frame, and a frame at the
+  // same time as the previous one, is exposed independently.
   Result<void> render(double seconds, bool copy_baseline = false, std::optional<double> step_s = {});
 
-  // Exposes and tone maps the last rendered frame again, `step_s` after the last time: for adaptation, and when only
+  // Exposes and tone maps the last rendered frame again, `step_s` later. Used while the exposure adapts, and if only
   // tonemap.* has changed.
   Result<void> tone(double step_s);
 
@@ -85,7 +85,7 @@ class Scene {
   // the others in SHADER_READ_ONLY_OPTIMAL; shadow_maps is an array with one layer per cascade.
   struct Images {
     const gpu::Image &display, &output, &color, &depth, &shadow_maps;
-    const View& view;  // the camera that they were drawn from
+    const View& view;  // from which they were drawn
   };
   [[nodiscard]] Images images() const { return {display_, output_, color_, depth_, shadow_maps_, view_}; }
   // Returns the ground that is drawn, which any thread may read; nullptr for the bare sphere at sea level.
@@ -93,8 +93,8 @@ class Scene {
     return bare_ground() ? nullptr : terrain_->source();
   }
 
-  // Returns remarks for the user, one line each: what was assumed about a file, which parameters have no effect, that
-  // the camera was lifted above the ground.
+  // Returns remarks for the user, one line each: assumptions about a file, parameters without effect, and whether the
+  // camera was raised above the ground.
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
   // Returns where the origin of the world is on the Earth, if an elevation file says so.
   [[nodiscard]] const std::optional<Place>& place() const { return terrain_->place(); }
@@ -110,7 +110,7 @@ class Scene {
  private:
   Result<void> create_objects();
   [[nodiscard]] Result<std::unique_ptr<Effect>> make_effect(const EffectDesc& desc);
-  // Makes the effect again after commands that it recorded were dropped: it counts them as done.
+  // Creates the effect again after recorded commands were not submitted, because the effect counts them as done.
   Result<void> replace_lost_effect();
   // The images that a picture of one size is drawn into.
   struct Targets {
@@ -132,11 +132,12 @@ class Scene {
   [[nodiscard]] Result<Pending> plan(const SceneParams& scene, const Params& params,
                                      std::optional<ElevationSource> source);
   void swap(Pending& pending) noexcept;
-  // Plans and applies a change; an error leaves everything as it was. `source`: the terrain's, if it has been loaded.
+  // Plans and applies a change. An error changes nothing. `source`: elevations of the terrain, if they have been
+  // loaded.
   Result<void> change(const SceneParams& scene, const Params& params, std::optional<ElevationSource> source);
   void swap_targets(Targets& targets) noexcept;
   [[nodiscard]] bool shadows_are_drawn() const;
-  // Returns whether no terrain is drawn, because of terrain.source or because a model draws a sphere of its own.
+  // Returns whether no terrain is drawn, because of terrain.source or because the model draws its own sphere.
   [[nodiscard]] bool bare_ground() const;
   Result<void> draw_shadows(VkCommandBuffer cmd);
   Result<void> draw_shadow_colors(VkCommandBuffer cmd);
@@ -184,14 +185,14 @@ class Scene {
   double step_s_ = 0.0;
   bool images_ready_ = false;
   bool effect_lost_ = false;                // see replace_lost_effect()
-  bool lifted_ = false;                     // the camera has been lifted, and a note says so
-  std::vector<CascadeFit> drawn_cascades_;  // of the shadow maps as they are
+  bool lifted_ = false;                     // the camera has been raised, which a note reports
+  std::vector<CascadeFit> drawn_cascades_;  // of the current contents of the shadow maps
   std::uint64_t drawn_terrain_ = 0;
   image::Image radiance_sum_, display_sum_;  // with camera.samples > 1
   std::vector<PassTime> times_;
 };
 
-// Returns an error where scattering.model cannot draw the contents of `scene`.
+// Returns an error if scattering.model cannot draw the contents of `scene`.
 [[nodiscard]] Result<void> check_model(const SceneParams& scene);
 // Appends the notes that are not in the list yet.
 void add_notes(std::vector<std::string>& notes, const std::vector<std::string>& more);

@@ -1,4 +1,4 @@
-// The passes of a frame: the shadow maps, the maps of colours, the view, and the effect.
+// Records the passes of a frame: the shadow maps, the shadow colours, the view, and the effect.
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -46,7 +46,7 @@ Result<void> lacks(std::string_view name) {
   return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(name)};
 }
 
-// Returns what background.frag reads: the sun's disc, the moon and how to turn a pixel into a direction.
+// Returns the constants of background.frag: the sun's disc, the moon, and the conversion of pixels to directions.
 BackgroundConstants background_constants(const ModelFrame& frame, const glm::dvec3& to_sun) {
   const View& view = frame.view;
   const double radius_rad = frame.scene.sun.angular_radius_deg * kRadPerDeg;
@@ -100,7 +100,7 @@ Result<void> Scene::draw_shadows(VkCommandBuffer cmd) {
   return draw_shadow_colors(cmd);
 }
 
-// Records the maps of the light that glass transmits, one cascade after the other.
+// Records the maps of shadow colours, one cascade after the other.
 Result<void> Scene::draw_shadow_colors(VkCommandBuffer cmd) {
   if (meshes_ == nullptr || !meshes_->has_glass()) return {};
   const gpu::Device& device = host_->device();
@@ -203,7 +203,7 @@ Result<void> Scene::run_passes(bool first, bool copy_baseline) {
   const gpu::Device& device = host_->device();
   const bool shadows_are_read = model_ == nullptr || model_->draws_terrain(scene_);
   // Jitter moves the picture, not the cascades.
-  const bool other_shadows = shadows_are_read && first && !(desc_.keep_shadows && shadows_are_drawn());
+  const bool other_shadows = shadows_are_read && first && !(desc_.reuse_shadows && shadows_are_drawn());
   const auto shadows = [&](VkCommandBuffer cmd) -> Result<void> {
     if (desc_.timings) timer_.begin_frame(cmd, 0);
     if (!images_ready_) {
@@ -223,7 +223,7 @@ Result<void> Scene::run_passes(bool first, bool copy_baseline) {
     TYNDALL_TRY(view(cmd));
     return air(cmd);
   };
-  // What an error leaves: shadow maps that show nothing in particular, and images whose layout is not known.
+  // After an error, the contents of shadow maps and the layouts of images are unknown.
   std::vector<CascadeFit> drawn = shadows_are_read ? cascades_ : std::vector<CascadeFit>();
   if (other_shadows) drawn_cascades_.clear();
   if (desc_.in_parts) {

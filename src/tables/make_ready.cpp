@@ -23,7 +23,7 @@ void publish(const gpu::Device& device, VkCommandBuffer cmd) {
 }
 
 // Returns whether the cache had them.
-Result<bool> load(gpu::Host& host, Effect& effect, files::FileCache& cache, Outcome& outcome) {
+Result<bool> load(gpu::Host& host, Effect& effect, files::FileCache& cache, Report& report) {
   const gpu::Device& device = host.device();
   const std::string key = effect.table_key();
   if (key.empty() || !cache.holds(key)) return false;
@@ -31,7 +31,7 @@ Result<bool> load(gpu::Host& host, Effect& effect, files::FileCache& cache, Outc
                  gpu::create_buffer(device, "cached_tables", effect.table_bytes(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
                                     gpu::MemoryKind::upload));
   const bool found = cache.read(key, bytes_of(staging));
-  if (!cache.note().empty()) outcome.notes.push_back(cache.note());
+  if (!cache.note().empty()) report.notes.push_back(cache.note());
   if (!found) return false;
   TYNDALL_TRY(host.run([&](VkCommandBuffer cmd) -> Result<void> {
     if (Result<void> r = effect.record_load_tables(cmd, staging.buffer.get()); !r) return r;
@@ -47,11 +47,11 @@ Result<void> advance(gpu::Host& host, Effect& effect, const MakeReady& how, std:
                      std::vector<std::string>& notes) {
   const Progress progress = effect.precompute_progress();
   if (progress.complete()) return {};
-  if (progress.done == 0 && !how.build_anew) {
+  if (progress.done == 0 && !how.rebuild) {
     files::FileCache cache(files::cache_directory(how.cache.place), how.cache.limit_bytes, TYNDALL_VERSION_STRING);
-    Outcome outcome;
-    const Result<bool> loaded = load(host, effect, cache, outcome);
-    notes.insert(notes.end(), outcome.notes.begin(), outcome.notes.end());
+    Report report;
+    const Result<bool> loaded = load(host, effect, cache, report);
+    notes.insert(notes.end(), report.notes.begin(), report.notes.end());
     if (!loaded && loaded.error().code != ErrorCode::out_of_memory) return loaded.error();
     if (loaded && loaded.value()) return {};
   }
@@ -63,7 +63,7 @@ Result<void> advance(gpu::Host& host, Effect& effect, const MakeReady& how, std:
   });
 }
 
-Result<Keeper> Keeper::fetch(gpu::Host& host, Effect& effect, const CacheDesc& cache) {
+Result<CacheWriter> CacheWriter::fetch(gpu::Host& host, Effect& effect, const CacheDesc& cache) {
   const gpu::Device& device = host.device();
   TYNDALL_ASSIGN(const gpu::Buffer staging,
                  gpu::create_buffer(device, "cached_tables", effect.table_bytes(), VK_BUFFER_USAGE_TRANSFER_DST_BIT,
@@ -74,7 +74,7 @@ Result<Keeper> Keeper::fetch(gpu::Host& host, Effect& effect, const CacheDesc& c
                  VK_ACCESS_HOST_READ_BIT);
     return {};
   }));
-  Keeper out;
+  CacheWriter out;
   out.cache_ = cache;
   out.key_ = effect.table_key();
   const std::span<std::byte> bytes = bytes_of(staging);
@@ -82,16 +82,16 @@ Result<Keeper> Keeper::fetch(gpu::Host& host, Effect& effect, const CacheDesc& c
   return out;
 }
 
-std::string Keeper::write() {
+std::string CacheWriter::write() {
   if (key_.empty()) return {};
   files::FileCache cache(files::cache_directory(cache_.place), cache_.limit_bytes, TYNDALL_VERSION_STRING);
   cache.write(key_, bytes_);
   return cache.note();
 }
 
-Result<Outcome> make_ready(gpu::Host& host, Effect& effect, const MakeReady& how) {
-  Outcome outcome;
-  if (effect.precompute_progress().complete()) return outcome;
+Result<Report> make_ready(gpu::Host& host, Effect& effect, const MakeReady& how) {
+  Report report;
+  if (effect.precompute_progress().complete()) return report;
   const auto start = std::chrono::steady_clock::now();
   const auto milliseconds = [&] {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -100,16 +100,16 @@ Result<Outcome> make_ready(gpu::Host& host, Effect& effect, const MakeReady& how
   // A lack of memory for the cache is not an error: the build has its own memory.
   const auto without_cache = [&](const Error& error) -> Result<void> {
     if (error.code != ErrorCode::out_of_memory) return error;
-    outcome.notes.push_back("the cache of the tables is not used: " + error.message);
+    report.notes.push_back("the cache of the tables is not used: " + error.message);
     return {};
   };
-  if (!how.build_anew) {
-    const Result<bool> loaded = load(host, effect, cache, outcome);
+  if (!how.rebuild) {
+    const Result<bool> loaded = load(host, effect, cache, report);
     if (!loaded) TYNDALL_TRY(without_cache(loaded.error()));
     if (loaded && loaded.value()) {
-      outcome.origin = Origin::cache;
-      outcome.milliseconds = milliseconds();
-      return outcome;
+      report.origin = Origin::cache;
+      report.milliseconds = milliseconds();
+      return report;
     }
   }
   if (how.progress) how.progress(effect.precompute_progress());
@@ -122,17 +122,17 @@ Result<Outcome> make_ready(gpu::Host& host, Effect& effect, const MakeReady& how
     }));
     if (how.progress) how.progress(effect.precompute_progress());
   }
-  outcome.origin = Origin::build;
-  outcome.milliseconds = milliseconds();
-  if (!cache.enabled()) return outcome;
+  report.origin = Origin::build;
+  report.milliseconds = milliseconds();
+  if (!cache.enabled()) return report;
   // The tables are complete, and those before them are gone: whatever ends the caching for want of memory is a note.
   const Result<void> cached = within_memory("caching the tables", [&]() -> Result<void> {
-    TYNDALL_ASSIGN(Keeper keeper, Keeper::fetch(host, effect, how.cache));
-    if (const std::string note = keeper.write(); !note.empty()) outcome.notes.push_back(note);
+    TYNDALL_ASSIGN(CacheWriter writer, CacheWriter::fetch(host, effect, how.cache));
+    if (const std::string note = writer.write(); !note.empty()) report.notes.push_back(note);
     return {};
   });
   if (!cached) TYNDALL_TRY(without_cache(cached.error()));
-  return outcome;
+  return report;
 }
 
 }  // namespace tyndall::tables

@@ -27,27 +27,27 @@ struct MakeReady {
   CacheDesc cache;
   std::function<void(Progress)> progress;  // of a build, between its slices; may be empty
   std::uint32_t slice_budget = 8;          // slices per submission
-  bool build_anew = false;                 // ignore cached tables, but store the result
+  bool rebuild = false;                    // ignore cached tables, but store the result
 };
 
-struct Outcome {
+struct Report {
   Origin origin = Origin::unchanged;
   double milliseconds = 0.0;       // until the tables were usable, without the time to store them
   std::vector<std::string> notes;  // remarks on cache errors, one line each; these never fail a run
 };
 
 // Records, submits and waits until the tables of effect.params() are complete.
-Result<Outcome> make_ready(gpu::Host& host, Effect& effect, const MakeReady& how);
+Result<Report> make_ready(gpu::Host& host, Effect& effect, const MakeReady& how);
 
 // Makes one step towards complete tables, for programs that draw meanwhile: loads them from the cache, or builds at
-// most `budget` slices. Does not store them in the cache: see keep(). Adds remarks to `notes`.
+// most `budget` slices. Does not store them in the cache (see CacheWriter). Adds remarks to `notes`.
 Result<void> advance(gpu::Host& host, Effect& effect, const MakeReady& how, std::uint32_t budget,
                      std::vector<std::string>& notes);
 
 // Copies finished tables into the cache. fetch() reads them back from the device; write() may run on another thread.
-class Keeper {
+class CacheWriter {
  public:
-  static Result<Keeper> fetch(gpu::Host& host, Effect& effect, const CacheDesc& cache);
+  static Result<CacheWriter> fetch(gpu::Host& host, Effect& effect, const CacheDesc& cache);
   // Returns a remark about an error, or an empty string.
   [[nodiscard]] std::string write();
 

@@ -17,18 +17,18 @@ constexpr double kHorizonSuns_deg[] = {20.0, 0.0};
 constexpr double kHorizonAltitude_m = 2000.0;
 
 // Runs the queries of a study in order and reports progress.
-class Asker {
+class Evaluator {
  public:
-  Asker(const Options& options, double work, const Progress& progress)
+  Evaluator(const Options& options, double work, const Progress& progress)
       : options_(options), work_(work), progress_(progress) {}
 
-  Result<void> ask(const Params& params, const std::vector<Model>& models, std::uint32_t samples, Answers& answers,
-                   int orders_factor = 1) {
+  Result<void> evaluate(const Params& params, const std::vector<Model>& models, std::uint32_t samples, Answers& answers,
+                        int orders_factor = 1) {
     reference::Options how;
     how.samples = samples;
     how.orders = orders_factor * options_.orders;
     // Every set of queries has its own random numbers.
-    how.seed = options_.seed + 1000 * asked_++;
+    how.seed = options_.seed + 1000 * evaluations_++;
     how.by_order = true;
     const double share = static_cast<double>(samples) * static_cast<double>(answers.queries.size());
     Result<std::vector<reference::Estimate>> estimates =
@@ -51,7 +51,7 @@ class Asker {
   const Options& options_;
   double work_;
   const Progress& progress_;
-  std::uint64_t asked_ = 0;
+  std::uint64_t evaluations_ = 0;
   double done_ = 0.0;
 };
 
@@ -214,17 +214,17 @@ Result<Study> run_study(const Params& params, const Options& options, std::vecto
   for (const RayTest& test : study.turbid) work += static_cast<double>(test.rays.size());
   for (const VerticalTest& test : study.verticals) work += static_cast<double>(test.angle_deg.size());
   for (const HorizonTest& test : study.horizons) work += static_cast<double>(test.elevation_deg.size());
-  Asker asker(options, work * options.samples, progress);
-  const auto ask_rays = [&](std::size_t a) {
-    return asker.ask(study.atmospheres[a].params, study.models, options.samples, study.rays[a].answers);
+  Evaluator evaluator(options, work * options.samples, progress);
+  const auto evaluate_rays = [&](std::size_t a) {
+    return evaluator.evaluate(study.atmospheres[a].params, study.models, options.samples, study.rays[a].answers);
   };
   // Go atmosphere by atmosphere: a model may hold the tables of the last one.
-  if (Result<void> r = ask_rays(0); !r) return std::move(r).error();
+  if (Result<void> r = evaluate_rays(0); !r) return std::move(r).error();
   Answers all;
   for (const VerticalTest& test : study.verticals) {
     all.queries.insert(all.queries.end(), test.answers.queries.begin(), test.answers.queries.end());
   }
-  if (Result<void> r = asker.ask(params, study.models, options.samples, all); !r) return std::move(r).error();
+  if (Result<void> r = evaluator.evaluate(params, study.models, options.samples, all); !r) return std::move(r).error();
   std::size_t next = 0;
   const auto take = [&](Answers& answers) {
     const auto from = static_cast<std::ptrdiff_t>(next);
@@ -235,23 +235,24 @@ Result<Study> run_study(const Params& params, const Options& options, std::vecto
     next += answers.queries.size();
   };
   for (VerticalTest& test : study.verticals) take(test.answers);
-  Result<void> sky = asker.ask(params, study.models, kSkyFactor * options.samples, study.sky.answers);
+  Result<void> sky = evaluator.evaluate(params, study.models, kSkyFactor * options.samples, study.sky.answers);
   if (!sky) return std::move(sky).error();
   if (!study.horizons.empty()) {
     all = {};
     for (const HorizonTest& test : study.horizons) {
       all.queries.insert(all.queries.end(), test.answers.queries.begin(), test.answers.queries.end());
     }
-    if (Result<void> r = asker.ask(params, study.horizon_models, options.samples, all); !r) return std::move(r).error();
+    if (Result<void> r = evaluator.evaluate(params, study.horizon_models, options.samples, all); !r)
+      return std::move(r).error();
     next = 0;
     for (HorizonTest& test : study.horizons) take(test.answers);
   }
   for (std::size_t a = 1; a < study.rays.size(); ++a) {
-    if (Result<void> r = ask_rays(a); !r) return std::move(r).error();
+    if (Result<void> r = evaluate_rays(a); !r) return std::move(r).error();
   }
   for (std::size_t a = 0; a < study.turbid.size(); ++a) {
-    Result<void> turbid = asker.ask(turbid_params(params, kTurbidAirs[a]), study.models, options.samples,
-                                    study.turbid[a].answers, kTurbidOrdersFactor);
+    Result<void> turbid = evaluator.evaluate(turbid_params(params, kTurbidAirs[a]), study.models, options.samples,
+                                             study.turbid[a].answers, kTurbidOrdersFactor);
     if (!turbid) return std::move(turbid).error();
   }
   return study;

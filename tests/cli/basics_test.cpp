@@ -16,30 +16,30 @@ struct Refused {
   std::string message;
 };
 
-void expect_error(const Outcome& outcome, int status, const std::string& message) {
-  EXPECT_EQ(outcome.status, status);
-  EXPECT_EQ(outcome.out, "");
-  EXPECT_EQ(outcome.err, "tyndall: error: " + message + "\n");
+void expect_error(const ProcessResult& process, int status, const std::string& message) {
+  EXPECT_EQ(process.status, status);
+  EXPECT_EQ(process.out, "");
+  EXPECT_EQ(process.err, "tyndall: error: " + message + "\n");
 }
 
 TEST(Cli, HelpAndVersion) {
-  const Outcome version = run_tyndall({"--version"});
+  const ProcessResult version = run_tyndall({"--version"});
   EXPECT_EQ(version.status, 0);
   EXPECT_EQ(version.out, "tyndall " TYNDALL_VERSION_STRING "\n");
-  for (const std::vector<std::string>& ask : {std::vector<std::string>{"--help"}, {"-h"}, {"help"}}) {
-    const Outcome help = run_tyndall(ask);
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--help"}, {"-h"}, {"help"}}) {
+    const ProcessResult help = run_tyndall(arguments);
     EXPECT_EQ(help.status, 0);
     EXPECT_EQ(help.err, "");
     for (const char* const verb : {"\n  compare ", "\n  params "}) EXPECT_NE(help.out.find(verb), std::string::npos);
   }
-  const Outcome verb_help = run_tyndall({"params", "--help"});
+  const ProcessResult verb_help = run_tyndall({"params", "--help"});
   EXPECT_EQ(verb_help.status, 0);
   EXPECT_EQ(verb_help.out.rfind("Usage: tyndall params [SCENE.toml] [OPTIONS]\n", 0), 0U) << verb_help.out;
   EXPECT_NE(verb_help.out.find("--format NAME"), std::string::npos);
   EXPECT_EQ(run_tyndall({"help", "params"}).out, verb_help.out);
 }
 
-TEST(Cli, BadUsageIsOneLineAndTwo) {
+TEST(Cli, BadUsageIsOneLineAndStatusTwo) {
   const Refused cases[] = {
       {{}, "command line: missing verb; see 'tyndall --help'"},
       {{"parms"}, "command line: unknown verb 'parms'; did you mean 'params'?"},
@@ -70,20 +70,20 @@ TEST(Cli, BadUsageIsOneLineAndTwo) {
   for (const Refused& refused : cases) expect_error(run_tyndall(refused.arguments), 2, refused.message);
 }
 
-TEST(Cli, MessagesStayOneLineWhateverIsGiven) {
+TEST(Cli, MessagesAreOneLineForAnyInput) {
   for (const std::string& odd : {std::string("a\nb\x1b[31m"), std::string("\xff\xfe"), std::string(100000, 'x')}) {
     for (const std::vector<std::string>& arguments :
          {std::vector<std::string>{odd}, {"params", odd}, {"params", "--" + odd}, {"params", "--set", odd + "=1"}}) {
-      const Outcome outcome = run_tyndall(arguments);
-      EXPECT_EQ(outcome.status, 2);
-      EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-      EXPECT_EQ(outcome.err.find('\x1b'), std::string::npos);
-      EXPECT_LT(outcome.err.size(), 1000U);
+      const ProcessResult process = run_tyndall(arguments);
+      EXPECT_EQ(process.status, 2);
+      EXPECT_EQ(std::count(process.err.begin(), process.err.end(), '\n'), 1) << process.err;
+      EXPECT_EQ(process.err.find('\x1b'), std::string::npos);
+      EXPECT_LT(process.err.size(), 1000U);
     }
   }
 }
 
-TEST(Cli, ScenesOfEveryKindOfBadness) {
+TEST(Cli, InvalidScenesAreReportedInOneLine) {
   const Scratch scratch;
   const std::pair<std::string, std::string> scenes[] = {
       {"[camera]\nyaw_dge = 3\n", "FILE:2: unknown parameter 'camera.yaw_dge'; did you mean 'camera.yaw_deg'?"},
@@ -102,7 +102,7 @@ TEST(Cli, ScenesOfEveryKindOfBadness) {
     expected.replace(expected.find("FILE"), 4, path);
     expect_error(run_tyndall({"params", path}), 2, expected);
   }
-  const Outcome cut = run_tyndall({"params", scratch.write("scene.toml", "[camera]\nposition_m = [1, 2")});
+  const ProcessResult cut = run_tyndall({"params", scratch.write("scene.toml", "[camera]\nposition_m = [1, 2")});
   EXPECT_EQ(cut.status, 2);
   EXPECT_NE(cut.err.find("scene.toml:2: not valid TOML: "), std::string::npos) << cut.err;
   EXPECT_EQ(run_tyndall({"params", scratch.write("scene.toml", "")}).status, 0);
@@ -110,10 +110,10 @@ TEST(Cli, ScenesOfEveryKindOfBadness) {
 
 TEST(Cli, ParamsRoundTrip) {
   const Scratch scratch;
-  const Outcome defaults = run_tyndall({"params"});
+  const ProcessResult defaults = run_tyndall({"params"});
   EXPECT_EQ(defaults.status, 0);
   EXPECT_EQ(run_tyndall({"params", "--format", "toml"}).out, defaults.out);
-  const Outcome changed =
+  const ProcessResult changed =
       run_tyndall({"params", "--set", "sun.elevation_deg=1.1", "--set", "sun.elevation_deg=-0.1", "--set",
                    "atmosphere.rayleigh_scattering=5.8e-6,13.5e-6,33.3e-6", "--set", "terrain.source=a \"b\".tif"});
   ASSERT_EQ(changed.status, 0) << changed.err;
@@ -128,9 +128,9 @@ TEST(Cli, ParamsRoundTrip) {
 }
 
 TEST(Cli, ParamsAsJsonIsTheWholeTable) {
-  const Outcome outcome = run_tyndall({"params", "--format", "json", "--set", "camera.position_m=1,2.5,-3"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const nlohmann::json document = nlohmann::json::parse(outcome.out);
+  const ProcessResult process = run_tyndall({"params", "--format", "json", "--set", "camera.position_m=1,2.5,-3"});
+  ASSERT_EQ(process.status, 0) << process.err;
+  const nlohmann::json document = nlohmann::json::parse(process.out);
   EXPECT_EQ(document["version"], TYNDALL_VERSION_STRING);
   const nlohmann::json& list = document["parameters"];
   ASSERT_EQ(list.size(), config::rows().size());
@@ -152,9 +152,9 @@ TEST(Cli, ParamsAsJsonIsTheWholeTable) {
 }
 
 TEST(Cli, AFullStandardOutputIsAFailure) {
-  const Outcome outcome = run_tyndall({"params"}, "/dev/full");
-  EXPECT_EQ(outcome.status, 1);
-  EXPECT_EQ(outcome.err, "tyndall: error: standard output: cannot write; expected an open stream with free space\n");
+  const ProcessResult process = run_tyndall({"params"}, "/dev/full");
+  EXPECT_EQ(process.status, 1);
+  EXPECT_EQ(process.err, "tyndall: error: standard output: cannot write; expected an open stream with free space\n");
 }
 
 }  // namespace

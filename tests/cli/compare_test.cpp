@@ -34,9 +34,10 @@ class CliCompare : public testing::Test {
 };
 
 TEST_F(CliCompare, EqualImages) {
-  const Outcome outcome = run_tyndall({"compare", png("a.png", 100), png("b.png", 100), "--json", "--psnr-min", "90"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const nlohmann::json result = nlohmann::json::parse(outcome.out);
+  const ProcessResult process =
+      run_tyndall({"compare", png("a.png", 100), png("b.png", 100), "--json", "--psnr-min", "90"});
+  ASSERT_EQ(process.status, 0) << process.err;
+  const nlohmann::json result = nlohmann::json::parse(process.out);
   EXPECT_EQ(result["rmse"], 0.0);
   EXPECT_EQ(result["psnr_db"], 999.0);
   EXPECT_EQ(result["mean_relative_error"], 0.0);
@@ -47,7 +48,7 @@ TEST_F(CliCompare, EqualImages) {
 TEST_F(CliCompare, LimitsDecideTheStatus) {
   const std::string a = png("a.png", 102);
   const std::string b = png("b.png", 100);
-  const Outcome plain = run_tyndall({"compare", a, b, "--json"});
+  const ProcessResult plain = run_tyndall({"compare", a, b, "--json"});
   ASSERT_EQ(plain.status, 0) << plain.err;
   const nlohmann::json result = nlohmann::json::parse(plain.out);
   const double psnr_db = 20.0 * std::log10(255.0 / 2.0);
@@ -56,7 +57,7 @@ TEST_F(CliCompare, LimitsDecideTheStatus) {
   EXPECT_NEAR(result["mean_relative_error"].get<double>(), 0.75 * 2.0 / 100.0 + 0.25 * 2.0 / 101.0, 1e-6);
 
   EXPECT_EQ(run_tyndall({"compare", a, b, "--psnr-min", "42", "--mre-max", "0.02"}).status, 0);
-  const Outcome low = run_tyndall({"compare", a, b, "--psnr-min", "42.2"});
+  const ProcessResult low = run_tyndall({"compare", a, b, "--psnr-min", "42.2"});
   EXPECT_EQ(low.status, 2);
   EXPECT_EQ(low.err.rfind("tyndall: error: --psnr-min: psnr_db is 42.1", 0), 0U) << low.err;
   EXPECT_NE(low.out.find("rmse 0.0078"), std::string::npos) << low.out;
@@ -64,9 +65,9 @@ TEST_F(CliCompare, LimitsDecideTheStatus) {
 }
 
 TEST_F(CliCompare, ExrIsComparedInLinearValues) {
-  const Outcome outcome = run_tyndall({"compare", exr("a.exr", 101.0F), exr("b.exr", 100.0F), "--json"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const nlohmann::json result = nlohmann::json::parse(outcome.out);
+  const ProcessResult process = run_tyndall({"compare", exr("a.exr", 101.0F), exr("b.exr", 100.0F), "--json"});
+  ASSERT_EQ(process.status, 0) << process.err;
+  const nlohmann::json result = nlohmann::json::parse(process.out);
   EXPECT_NEAR(result["mean_relative_error"].get<double>(), 0.01, 1e-12);
   EXPECT_NEAR(result["rmse"].get<double>(), 1.0, 1e-12);
   EXPECT_EQ(result["kind"], "exr");
@@ -74,23 +75,23 @@ TEST_F(CliCompare, ExrIsComparedInLinearValues) {
 
 TEST_F(CliCompare, NotFiniteIsBeyondAnyLimit) {
   const std::string bad = exr("a.exr", std::numeric_limits<float>::quiet_NaN());
-  const Outcome outcome = run_tyndall({"compare", bad, bad, "--json"});
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_EQ(nlohmann::json::parse(outcome.out)["non_finite"], nlohmann::json({768, 768}));
-  EXPECT_EQ(outcome.err,
+  const ProcessResult process = run_tyndall({"compare", bad, bad, "--json"});
+  EXPECT_EQ(process.status, 2);
+  EXPECT_EQ(nlohmann::json::parse(process.out)["non_finite"], nlohmann::json({768, 768}));
+  EXPECT_EQ(process.err,
             "tyndall: error: tyndall compare: 768 values in A and 768 in B are not finite; expected none\n");
 }
 
-TEST_F(CliCompare, SizesKindsAndUnreadableFiles) {
+TEST_F(CliCompare, OtherSizesKindsAndUnreadableFilesAreErrors) {
   const std::string a = png("a.png", 100);
-  const Outcome sizes = run_tyndall({"compare", a, png("b.png", 100, 17)});
+  const ProcessResult sizes = run_tyndall({"compare", a, png("b.png", 100, 17)});
   EXPECT_EQ(sizes.status, 3);
   EXPECT_EQ(sizes.err, "tyndall: error: tyndall compare: A is 16x16 and B is 17x16; expected equal sizes\n");
   EXPECT_EQ(run_tyndall({"compare", a, exr("b.exr", 1.0F)}).status, 4);
   EXPECT_EQ(run_tyndall({"compare", a, scratch_.at("none.png")}).status, 4);
   EXPECT_EQ(run_tyndall({"compare", scratch_.write("text.png", "no image"), a}).status, 4);
   const std::string whole = contents_of(a);
-  const Outcome cut = run_tyndall({"compare", a, scratch_.write("cut.png", whole.substr(0, whole.size() / 2))});
+  const ProcessResult cut = run_tyndall({"compare", a, scratch_.write("cut.png", whole.substr(0, whole.size() / 2))});
   EXPECT_EQ(cut.status, 4);
   EXPECT_EQ(std::count(cut.err.begin(), cut.err.end(), '\n'), 1) << cut.err;
   EXPECT_EQ(cut.out, "");
@@ -113,10 +114,10 @@ TEST_F(CliCompare, TheDifferenceIsNotWrittenOverAnInput) {
   std::filesystem::create_hard_link(b, scratch_.at("same.png"));
   std::filesystem::create_symlink(b, scratch_.at("link.png"));
   for (const std::string& path : {b, scratch_.at("same.png"), scratch_.at("link.png"), scratch_.at("./b.png")}) {
-    const Outcome outcome = run_tyndall({"compare", a, b, "--diff", path});
-    EXPECT_EQ(outcome.status, 2) << path;
-    EXPECT_NE(outcome.err.find("is B of this run; expected a file that is not an input"), std::string::npos)
-        << outcome.err;
+    const ProcessResult process = run_tyndall({"compare", a, b, "--diff", path});
+    EXPECT_EQ(process.status, 2) << path;
+    EXPECT_NE(process.err.find("is B of this run; expected a file that is not an input"), std::string::npos)
+        << process.err;
     EXPECT_EQ(contents_of(b), before);
   }
 }

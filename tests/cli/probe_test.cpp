@@ -22,13 +22,13 @@ class CliProbe : public testing::Test {
  protected:
   // Returns the table that `probe` prints for these queries, with the model `single` by default. Empty after a failure,
   // which is reported.
-  files::CsvTable ask(const std::string& queries, std::vector<std::string> more = {}) const {
+  files::CsvTable probe(const std::string& queries, std::vector<std::string> more = {}) const {
     if (std::find(more.begin(), more.end(), "--model") == more.end()) more.insert(more.end(), {"--model", "single"});
     more.insert(more.begin(), {"probe", "--queries", scratch_.write("q.csv", queries)});
-    const Outcome outcome = run_tyndall(more);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_EQ(outcome.err, "");
-    Result<files::CsvTable> table = files::parse_csv(outcome.out, "output");
+    const ProcessResult process = run_tyndall(more);
+    EXPECT_EQ(process.status, 0) << process.err;
+    EXPECT_EQ(process.err, "");
+    Result<files::CsvTable> table = files::parse_csv(process.out, "output");
     EXPECT_TRUE(table.ok());
     return table.ok() ? std::move(table).value() : files::CsvTable();
   }
@@ -48,8 +48,8 @@ TEST_F(CliProbe, EveryFormOfTableIsReadAndItsColumnsPassedOn) {
   // Columns in another order, an extra column, quoted fields with a comma, a quote and a line end, CRLF, a byte order
   // mark, blank lines, no line end at the end of the file.
   const files::CsvTable table =
-      ask("\xEF\xBB\xBF\r\nid, azimuth_deg ,\"view_zenith_deg\",sun_zenith_deg,altitude_m\r\n"
-          "\"a,\"\"b\",30,60,+3e1,0\r\n\r\n   \r\n\"two\nlines\",-30, \"60\" ,30.0,0\r\nlast,,sky,30,0");
+      probe("\xEF\xBB\xBF\r\nid, azimuth_deg ,\"view_zenith_deg\",sun_zenith_deg,altitude_m\r\n"
+            "\"a,\"\"b\",30,60,+3e1,0\r\n\r\n   \r\n\"two\nlines\",-30, \"60\" ,30.0,0\r\nlast,,sky,30,0");
   ASSERT_EQ(table.rows(), 3U);
   EXPECT_EQ(table.header[0], "id");
   EXPECT_EQ(table.header[1], " azimuth_deg ");
@@ -66,13 +66,13 @@ TEST_F(CliProbe, EveryFormOfTableIsReadAndItsColumnsPassedOn) {
   }
   // Result columns of an earlier run are replaced, so that a result can be used as a query table.
   const std::string again = std::string(*table.text);
-  EXPECT_EQ(*ask(again).text, again);
+  EXPECT_EQ(*probe(again).text, again);
 }
 
 TEST_F(CliProbe, SingleIsTheIntegralAndTheSkyItsIrradiance) {
   const shared::Medium medium = medium_from_params({});
   const files::CsvTable table =
-      ask(kHeader + "0,30,60,0\n8000,95,88,170\n400000,100,40,20\n400000,60,40,20\n3000,sky,70,0\n");
+      probe(kHeader + "0,30,60,0\n8000,95,88,170\n400000,100,40,20\n400000,60,40,20\n3000,sky,70,0\n");
   const double rays[3][4] = {{0, 30, 60, 0}, {8000, 95, 88, 170}, {400000, 100, 40, 20}};
   const char* const channels = "rgb";
   for (std::size_t c = 0; c < 3; ++c) {
@@ -100,8 +100,8 @@ TEST_F(CliProbe, ReferenceAgreesWithSingleWithinItsError) {
   const std::string queries =
       kHeader + "0,30,60,0\n8000,95,88,170\n3000,sky,70,0\n-400,80,70,90\n-400,93,60,40\n0,100,40,0\n";
   const std::vector<std::string> one = {"--model", "reference", "--orders", "1", "--samples", "20000"};
-  const files::CsvTable reference = ask(queries, one);
-  const files::CsvTable single = ask(queries);
+  const files::CsvTable reference = probe(queries, one);
+  const files::CsvTable single = probe(queries);
   ASSERT_EQ(reference.header.size(), 13U);
   for (const char* const channel : {"r", "g", "b"}) {
     const std::string l = std::string("L_") + channel;
@@ -112,14 +112,14 @@ TEST_F(CliProbe, ReferenceAgreesWithSingleWithinItsError) {
       EXPECT_NEAR(number(reference, row, l), number(single, row, l), 5.0 * error + 2e-3 * number(single, row, l));
     }
   }
-  EXPECT_EQ(*ask(queries, one).text, *reference.text);
+  EXPECT_EQ(*probe(queries, one).text, *reference.text);
   std::vector<std::string> seeded = one;
   seeded.insert(seeded.end(), {"--seed", "2"});
-  EXPECT_NE(*ask(queries, seeded).text, *reference.text);
+  EXPECT_NE(*probe(queries, seeded).text, *reference.text);
   // The ground at the end of a ray is lit in the reference, and black in single scattering.
   const auto lit_ground = [&](const std::string& model) {
-    return number(ask(kHeader + "0,180,40,0\n",
-                      {"--model", model, "--samples", "64", "--orders", "1", "--set", "planet.ground_albedo=0.5"}),
+    return number(probe(kHeader + "0,180,40,0\n",
+                        {"--model", model, "--samples", "64", "--orders", "1", "--set", "planet.ground_albedo=0.5"}),
                   0, "L_g");
   };
   EXPECT_EQ(lit_ground("single"), 0.0);
@@ -129,23 +129,23 @@ TEST_F(CliProbe, ReferenceAgreesWithSingleWithinItsError) {
 TEST_F(CliProbe, ParametersAndScenesApply) {
   const std::string queries = kHeader + "0,30,60,0\n";
   const files::CsvTable none =
-      ask(queries, {"--set", "atmosphere.custom_coefficients=true", "--set", "atmosphere.rayleigh_scattering=0,0,0",
-                    "--set", "atmosphere.aerosol_density=0", "--set", "atmosphere.ozone_absorption=0,0,0"});
+      probe(queries, {"--set", "atmosphere.custom_coefficients=true", "--set", "atmosphere.rayleigh_scattering=0,0,0",
+                      "--set", "atmosphere.aerosol_density=0", "--set", "atmosphere.ozone_absorption=0,0,0"});
   EXPECT_EQ(number(none, 0, "L_b"), 0.0);
   EXPECT_EQ(number(none, 0, "T_b"), 1.0);
   const std::string scene = scratch_.write("scene.toml", "[atmosphere]\naerosol_density = 5.0\n");
-  EXPECT_LT(number(ask(queries, {scene}), 0, "T_r"), number(ask(queries), 0, "T_r"));
+  EXPECT_LT(number(probe(queries, {scene}), 0, "T_r"), number(probe(queries), 0, "T_r"));
   // The radiance scale of a scene does not apply to probe.
-  EXPECT_EQ(*ask(queries, {"--set", "scattering.scale=2"}).text, *ask(queries).text);
+  EXPECT_EQ(*probe(queries, {"--set", "scattering.scale=2"}).text, *probe(queries).text);
 }
 
 TEST_F(CliProbe, WritesAFileOrJson) {
   const std::string queries = scratch_.write("q.csv", kHeader + "0,30,60,0\n0,sky,60,0\n");
   const std::string file = scratch_.at("r.csv");
-  const Outcome outcome = run_tyndall({"probe", "--queries", queries, "-o", file, "--json", "--model", "single"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const ProcessResult process = run_tyndall({"probe", "--queries", queries, "-o", file, "--json", "--model", "single"});
+  ASSERT_EQ(process.status, 0) << process.err;
   EXPECT_EQ(contents_of(file), run_tyndall({"probe", "--queries", queries, "--model", "single"}).out);
-  const nlohmann::json document = nlohmann::json::parse(outcome.out);
+  const nlohmann::json document = nlohmann::json::parse(process.out);
   EXPECT_EQ(document["model"], "single");
   ASSERT_EQ(document["answers"].size(), 2U);
   EXPECT_GT(document["answers"][0]["L"][2].get<double>(), 0.0);
@@ -155,7 +155,7 @@ TEST_F(CliProbe, WritesAFileOrJson) {
   rough_json.emplace_back("--json");
   EXPECT_TRUE(nlohmann::json::parse(run_tyndall(rough_json).out)["answers"][0]["stderr"][0].is_null());
   EXPECT_NE(run_tyndall(rough).out.find(",inf"), std::string::npos);
-  EXPECT_EQ(*ask(kHeader).text, "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg,L_r,L_g,L_b,T_r,T_g,T_b\n");
+  EXPECT_EQ(*probe(kHeader).text, "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg,L_r,L_g,L_b,T_r,T_g,T_b\n");
 }
 
 TEST_F(CliProbe, BadTablesAreNamedByLineAndColumn) {
@@ -189,10 +189,10 @@ TEST_F(CliProbe, BadTablesAreNamedByLineAndColumn) {
     const std::string path = scratch_.write("bad.csv", text);
     std::string expected = message;
     expected.replace(expected.find("FILE"), 4, path);
-    const Outcome outcome = run_tyndall({"probe", "--queries", path, "-o", scratch_.at("r.csv")});
-    EXPECT_EQ(outcome.status, 2) << expected;
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_EQ(outcome.err, "tyndall: error: " + expected + "\n");
+    const ProcessResult process = run_tyndall({"probe", "--queries", path, "-o", scratch_.at("r.csv")});
+    EXPECT_EQ(process.status, 2) << expected;
+    EXPECT_EQ(process.out, "");
+    EXPECT_EQ(process.err, "tyndall: error: " + expected + "\n");
   }
   EXPECT_FALSE(std::filesystem::exists(scratch_.at("r.csv")));
 }
@@ -208,7 +208,7 @@ TEST_F(CliProbe, EyesFarBelowSeaLevel) {
     }
   }
   for (const char* const model : {"single", "homogeneous", "homogeneous-medium", "reference"}) {
-    const files::CsvTable table = ask(
+    const files::CsvTable table = probe(
         queries, {"--model", model, "--samples", "256", "--orders", "3", "--set", "atmosphere.ozone_absorption=0,0,0"});
     for (std::size_t row = 0; row < table.rows(); ++row) {
       for (const char* const column : {"L_r", "L_g", "L_b", "T_r", "T_g", "T_b"}) {
@@ -218,10 +218,10 @@ TEST_F(CliProbe, EyesFarBelowSeaLevel) {
     }
   }
   const std::string path = scratch_.write("deep.csv", kHeader + "0,0,0,0\n-2000,0,0,0\n");
-  const Outcome outcome =
+  const ProcessResult process =
       run_tyndall({"probe", "--queries", path, "--model", "single", "--set", "planet.radius_m=4000"});
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_EQ(outcome.err,
+  EXPECT_EQ(process.status, 2);
+  EXPECT_EQ(process.err,
             "tyndall: error: " + path +
                 ":3: column 'altitude_m': an eye at -2000 m is too deep inside the planet; expected at least minus a "
                 "quarter of planet.radius_m, -1000 m\n");
@@ -243,12 +243,12 @@ TEST_F(CliProbe, BadUsage) {
   for (const auto& [more, message] : cases) {
     std::vector<std::string> arguments = {"probe"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    const Outcome outcome = run_tyndall(arguments);
-    EXPECT_EQ(outcome.status, 2) << message;
-    EXPECT_EQ(outcome.err, "tyndall: error: " + message + "\n");
+    const ProcessResult process = run_tyndall(arguments);
+    EXPECT_EQ(process.status, 2) << message;
+    EXPECT_EQ(process.err, "tyndall: error: " + message + "\n");
   }
   // The error for an unknown model lists the known ones.
-  const Outcome model = run_tyndall({"probe", "--queries", queries, "--model", "onil"});
+  const ProcessResult model = run_tyndall({"probe", "--queries", queries, "--model", "onil"});
   EXPECT_EQ(model.status, 2);
   EXPECT_EQ(model.err.rfind("tyndall: error: --model: unknown value 'onil'; expected one of ", 0), 0U) << model.err;
   for (const char* const name : {"precomputed", "single", "reference"}) {
@@ -259,16 +259,16 @@ TEST_F(CliProbe, BadUsage) {
 TEST_F(CliProbe, OutputsThatCannotBeWritten) {
   const std::string queries = scratch_.write("q.csv", kHeader + "0,30,60,0\n");
   for (const std::string& output : {scratch_.at("none/r.csv"), scratch_.at(""), std::string("/dev/full")}) {
-    const Outcome outcome = run_tyndall({"probe", "--queries", queries, "--model", "single", "-o", output});
-    EXPECT_EQ(outcome.status, 1) << output;
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-    EXPECT_NE(outcome.err.find(": cannot "), std::string::npos) << outcome.err;
+    const ProcessResult process = run_tyndall({"probe", "--queries", queries, "--model", "single", "-o", output});
+    EXPECT_EQ(process.status, 1) << output;
+    EXPECT_EQ(std::count(process.err.begin(), process.err.end(), '\n'), 1) << process.err;
+    EXPECT_NE(process.err.find(": cannot "), std::string::npos) << process.err;
   }
   EXPECT_EQ(run_tyndall({"probe", "--queries", queries, "--model", "single"}, "/dev/full").status, 1);
   // A failed run leaves an existing result untouched.
-  const std::string kept = scratch_.write("kept.csv", "kept");
-  EXPECT_EQ(run_tyndall({"probe", "--queries", queries, "-o", kept, "--device", "no such"}).status, 2);
-  EXPECT_EQ(contents_of(kept), "kept");
+  const std::string old = scratch_.write("old.csv", "old");
+  EXPECT_EQ(run_tyndall({"probe", "--queries", queries, "-o", old, "--device", "no such"}).status, 2);
+  EXPECT_EQ(contents_of(old), "old");
 }
 
 TEST_F(CliProbe, AMillionLines) {
@@ -276,9 +276,9 @@ TEST_F(CliProbe, AMillionLines) {
   // Rays that miss the atmosphere take little time on the device, so this measures the table's own time and memory.
   for (int i = 0; i < 1000000; ++i) text += "100000,1,30," + std::to_string(i % 360) + "\n";
   const std::string out = scratch_.at("r.csv");
-  const Outcome outcome =
+  const ProcessResult process =
       run_tyndall({"probe", "--model", "single", "--queries", scratch_.write("big.csv", text), "-o", out});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  ASSERT_EQ(process.status, 0) << process.err;
   const std::string written = contents_of(out);
   EXPECT_EQ(std::count(written.begin(), written.end(), '\n'), 1000001);
   EXPECT_TRUE(written.ends_with("100000,1,30,279,0,0,0,1,1,1\n")) << written.substr(written.size() - 60);

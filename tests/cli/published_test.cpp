@@ -95,9 +95,9 @@ class CliPublished : public testing::Test {
     }
     std::vector<std::string> all = {"probe", "--queries", scratch_.write("q.csv", csv)};
     all.insert(all.end(), arguments.begin(), arguments.end());
-    const Outcome outcome = run_tyndall(all);
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
-    const Result<files::CsvTable> table = files::parse_csv(outcome.out, "output");
+    const ProcessResult process = run_tyndall(all);
+    ASSERT_EQ(process.status, 0) << process.err;
+    const Result<files::CsvTable> table = files::parse_csv(process.out, "output");
     ASSERT_TRUE(table.ok());
     ASSERT_EQ(table.value().rows(), questions.size());
     double worst = 0.0;

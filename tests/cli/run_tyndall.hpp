@@ -17,11 +17,12 @@ namespace tyndall::cli {
 // Tests must not use the user's cache. They share one of their own, which later runs reuse.
 inline const int kOwnCache = ::setenv("XDG_CACHE_HOME", TYNDALL_TEST_CACHE, 1);
 
-struct Outcome {
+struct ProcessResult {
   int status = -1;  // exit status; 1000 + the signal's number if a signal ended the process
   std::string out;
   std::string err;
 };
+using Outcome = ProcessResult;
 
 // A temporary directory that is removed at the end.
 class Scratch {
@@ -51,7 +52,7 @@ inline std::string contents_of(const std::string& path) {
 }
 
 // Runs tyndall. `stdout_path` redirects stdout to a file, such as "/dev/full", instead of collecting it.
-inline Outcome run_tyndall(const std::vector<std::string>& arguments, const std::string& stdout_path = "") {
+inline ProcessResult run_tyndall(const std::vector<std::string>& arguments, const std::string& stdout_path = "") {
   const Scratch scratch;
   const std::string out = stdout_path.empty() ? scratch.at("out") : stdout_path;
   const std::string err = scratch.at("err");
@@ -66,13 +67,13 @@ inline Outcome run_tyndall(const std::vector<std::string>& arguments, const std:
     ::execv(TYNDALL_EXECUTABLE, argv.data());
     ::_exit(127);
   }
-  Outcome outcome;
+  ProcessResult process;
   int status = 0;
-  if (child < 0 || ::waitpid(child, &status, 0) != child) return outcome;
-  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
-  if (stdout_path.empty()) outcome.out = contents_of(out);
-  outcome.err = contents_of(err);
-  return outcome;
+  if (child < 0 || ::waitpid(child, &status, 0) != child) return process;
+  process.status = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+  if (stdout_path.empty()) process.out = contents_of(out);
+  process.err = contents_of(err);
+  return process;
 }
 
 }  // namespace tyndall::cli

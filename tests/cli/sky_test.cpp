@@ -105,10 +105,10 @@ class CliSky : public testing::Test {
   image::File make(std::vector<std::string> arguments) {
     const std::string path = scratch_.at("sky.exr");
     arguments.insert(arguments.begin(), {"sky", "-o", path});
-    const Outcome outcome = run_tyndall(arguments);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_EQ(outcome.err, "");
-    out_ = outcome.out;
+    const ProcessResult process = run_tyndall(arguments);
+    EXPECT_EQ(process.status, 0) << process.err;
+    EXPECT_EQ(process.err, "");
+    out_ = process.out;
     Result<image::File> file = image::read(path);
     EXPECT_TRUE(file.ok());
     return file ? std::move(file).value() : image::File();
@@ -116,9 +116,9 @@ class CliSky : public testing::Test {
   std::array<double, 3> probe(const std::string& ray, std::vector<std::string> more = {}) {
     const std::string header = "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n";
     more.insert(more.begin(), {"probe", "--json", "--queries", scratch_.write("q.csv", header + ray + "\n")});
-    const Outcome outcome = run_tyndall(more);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return nlohmann::json::parse(outcome.out)["answers"][0]["L"];
+    const ProcessResult process = run_tyndall(more);
+    EXPECT_EQ(process.status, 0) << process.err;
+    return nlohmann::json::parse(process.out)["answers"][0]["L"];
   }
 
   Scratch scratch_;
@@ -177,7 +177,7 @@ TEST_F(CliSky, PixelsAreRays) {
 TEST_F(CliSky, DiscsBeyondHalfPrecisionAreNoted) {
   const std::vector<std::string> sky = with_single({"sky", "-o", scratch_.at("sky.exr"), "--size", "2048x1024",
                                                     "--sun-elevation-deg", "60", "--sun-azimuth-deg", "0"});
-  const Outcome noted = run_tyndall(sky);
+  const ProcessResult noted = run_tyndall(sky);
   EXPECT_EQ(noted.status, 0);
   EXPECT_NE(noted.err.find("tyndall: note: the sun's disc has values up to "), std::string::npos) << noted.err;
   EXPECT_NE(noted.err.find("65504"), std::string::npos);
@@ -245,16 +245,16 @@ TEST_F(CliSky, TheSunByPlaceAndTime) {
   EXPECT_EQ(best / 360, 50U);
 }
 
-TEST_F(CliSky, WhatIsWrongIsSaid) {
+TEST_F(CliSky, ErrorsAreReported) {
   const std::string either = "; expected either --sun-elevation-deg E --sun-azimuth-deg A or --at LAT,LON --time "
                              "ISO8601\n";
   const auto error = [&](std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "sky");
     arguments.insert(arguments.end(), {"-o", scratch_.at("none.exr"), "--size", "4x2"});
-    const Outcome outcome = run_tyndall(arguments);
-    EXPECT_EQ(outcome.status, 2) << outcome.err;
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
-    return outcome.err;
+    const ProcessResult process = run_tyndall(arguments);
+    EXPECT_EQ(process.status, 2) << process.err;
+    EXPECT_EQ(std::count(process.err.begin(), process.err.end(), '\n'), 1);
+    return process.err;
   };
   EXPECT_EQ(error({}), "tyndall: error: tyndall sky: missing position of the sun" + either);
   EXPECT_EQ(error({"--sun-elevation-deg", "3"}),
@@ -284,10 +284,10 @@ TEST_F(CliSky, WhatIsWrongIsSaid) {
   EXPECT_NE(with_sun({"--model", "reference"}).find("--model: unknown value 'reference'; expected one of "),
             std::string::npos);
   EXPECT_NE(with_sun({"--set", "sun.irradiance=-1"}).find("sun.irradiance"), std::string::npos);
-  const Outcome png = run_tyndall({"sky", "-o", scratch_.at("a.png"), sun[0], sun[1], sun[2], sun[3]});
+  const ProcessResult png = run_tyndall({"sky", "-o", scratch_.at("a.png"), sun[0], sun[1], sun[2], sun[3]});
   EXPECT_EQ(png.status, 2);
   EXPECT_NE(png.err.find("expected a name that ends in .exr"), std::string::npos);
-  const Outcome lost = run_tyndall({"sky", "-o", scratch_.at("no/a.exr"), sun[0], sun[1], sun[2], sun[3]});
+  const ProcessResult lost = run_tyndall({"sky", "-o", scratch_.at("no/a.exr"), sun[0], sun[1], sun[2], sun[3]});
   EXPECT_EQ(lost.status, 1);
   EXPECT_FALSE(std::filesystem::exists(scratch_.at("none.exr")));
 }

@@ -26,7 +26,7 @@ const std::vector<std::string> kTwoOrders = {"--set", "tables.orders=2"};
 class CliTables : public testing::Test {
  protected:
   // Runs a verb with small tables and a separate cache.
-  [[nodiscard]] Outcome run(const std::string& verb, std::vector<std::string> more = {}) const {
+  [[nodiscard]] ProcessResult run(const std::string& verb, std::vector<std::string> more = {}) const {
     more.insert(more.begin(), kSmall.begin(), kSmall.end());
     more.insert(more.begin(), verb);
     more.insert(more.end(), {"--set", "tables.cache=" + scratch_.at("cache")});
@@ -41,12 +41,12 @@ class CliTables : public testing::Test {
     return out;
   }
   [[nodiscard]] std::vector<std::string> cached() const { return names(scratch_.at("cache")); }
-  static void expect_one_line(const Outcome& outcome, int status, const std::string& part) {
-    EXPECT_EQ(outcome.status, status) << part << "\n" << outcome.err;
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-    EXPECT_EQ(outcome.err.rfind("tyndall: error: ", 0), 0U) << outcome.err;
-    EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
-    EXPECT_EQ(outcome.out, "");
+  static void expect_one_line(const ProcessResult& process, int status, const std::string& part) {
+    EXPECT_EQ(process.status, status) << part << "\n" << process.err;
+    EXPECT_EQ(std::count(process.err.begin(), process.err.end(), '\n'), 1) << process.err;
+    EXPECT_EQ(process.err.rfind("tyndall: error: ", 0), 0U) << process.err;
+    EXPECT_NE(process.err.find(part), std::string::npos) << process.err;
+    EXPECT_EQ(process.out, "");
   }
   static image::Image picture(const std::string& path) {
     Result<image::File> file = image::read(path);
@@ -58,10 +58,10 @@ class CliTables : public testing::Test {
 };
 
 TEST_F(CliTables, EveryStageHasATime) {
-  const Outcome outcome = run("tables", {"--json", kTwoOrders[0], kTwoOrders[1]});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(outcome.err, "");
-  const nlohmann::json report = nlohmann::json::parse(outcome.out);
+  const ProcessResult process = run("tables", {"--json", kTwoOrders[0], kTwoOrders[1]});
+  ASSERT_EQ(process.status, 0) << process.err;
+  EXPECT_EQ(process.err, "");
+  const nlohmann::json report = nlohmann::json::parse(process.out);
   EXPECT_EQ(report["size"], nlohmann::json({4, 16, 12, 6}));
   EXPECT_EQ(report["orders"], 2);
   EXPECT_EQ(report["stages"].size(), 10U);
@@ -79,23 +79,23 @@ TEST_F(CliTables, EveryStageHasATime) {
   EXPECT_GT(report["memory_bytes"]["while_building"], 0);
   EXPECT_EQ(report["cache"], scratch_.at("cache"));
   EXPECT_TRUE(report["files"].is_null());
-  const Outcome text = run("tables", kTwoOrders);
+  const ProcessResult text = run("tables", kTwoOrders);
   EXPECT_EQ(text.status, 0);
   for (const nlohmann::json& stage : report["stages"])
     EXPECT_NE(text.out.find("  " + stage["name"].get<std::string>()), std::string::npos);
   EXPECT_NE(text.out.find("\nstored in " + scratch_.at("cache") + "\n"), std::string::npos);
 }
 
-// An export of tables, and the questions to `probe` whose answers its texels must equal.
+// An export of tables, and queries of `probe` whose results its texels must equal.
 struct Export {
   struct Texel {
     std::uint32_t altitude, view, sun, angle;
   };
-  std::string name;  // in messages
+  std::string name;  // for messages
   nlohmann::json axes;
   std::vector<std::vector<image::Image>> tables;
   std::vector<Texel> texels;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> lights;  // texels of the light tables
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> lights;  // texels of the 2D look-up tables
 
   [[nodiscard]] std::string scattering_queries();
   [[nodiscard]] std::string light_queries();
@@ -103,7 +103,7 @@ struct Export {
   void expect_light(const nlohmann::json& answers) const;
 };
 
-// Adds the texels of the scattering tables that a ray of `probe` can ask for, and returns those rays.
+// Adds the texels of the scattering tables that correspond to rays of `probe`, and returns these rays.
 std::string Export::scattering_queries() {
   std::string queries;
   const nlohmann::json& scattering = axes["scattering"];
@@ -143,7 +143,7 @@ std::string Export::scattering_queries() {
   return queries;
 }
 
-// The same for some texels of the light tables.
+// The same for some texels of the sky irradiance look-up table.
 std::string Export::light_queries() {
   std::string queries;
   const nlohmann::json& light = axes["light"];
@@ -202,8 +202,8 @@ TEST_F(CliTables, TheExportHoldsWhatTheRendererReads) {
                                           kTwoOrders[1]};
     std::vector<std::string> arguments = set;
     arguments.insert(arguments.end(), {"-o", directory});
-    const Outcome outcome = run("tables", arguments);
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const ProcessResult process = run("tables", arguments);
+    ASSERT_EQ(process.status, 0) << process.err;
     const nlohmann::json index = nlohmann::json::parse(contents_of(directory + "/tables.json"));
     EXPECT_EQ(index["format"], "tyndall tables 1");
     EXPECT_EQ(index["parameters"]["tables.parameterization"], parameterization);
@@ -236,16 +236,16 @@ TEST_F(CliTables, TheExportHoldsWhatTheRendererReads) {
     ASSERT_GT(exported.texels.size(), 100U);
     arguments = set;
     arguments.insert(arguments.end(), {"--json", "--queries", scratch_.write("q.csv", queries)});
-    const Outcome asked = run("probe", arguments);
-    ASSERT_EQ(asked.status, 0) << asked.err;
-    const nlohmann::json answers = nlohmann::json::parse(asked.out)["answers"];
+    const ProcessResult probed = run("probe", arguments);
+    ASSERT_EQ(probed.status, 0) << probed.err;
+    const nlohmann::json answers = nlohmann::json::parse(probed.out)["answers"];
     ASSERT_EQ(answers.size(), exported.texels.size() + exported.lights.size());
     exported.expect_scattering(answers);
     exported.expect_light(answers);
   }
 }
 
-TEST_F(CliTables, AnExportIsWholeOrNotThere) {
+TEST_F(CliTables, ExportsAreCompleteOrMissing) {
   const std::string directory = scratch_.at("out");
   const auto with_limit = [&](rlim_t bytes) {
     rlimit unlimited = {};
@@ -254,10 +254,10 @@ TEST_F(CliTables, AnExportIsWholeOrNotThere) {
     small.rlim_cur = bytes;
     EXPECT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
     // Without the cache, which the limit would prevent from being written.
-    Outcome outcome = run_tyndall(
+    ProcessResult process = run_tyndall(
         {"tables", "-o", directory, kSmall[0], kSmall[1], kSmall[2], kSmall[3], "--set", "tables.cache=off"});
     EXPECT_EQ(::setrlimit(RLIMIT_FSIZE, &unlimited), 0);
-    return outcome;
+    return process;
   };
   expect_one_line(with_limit(6000), 1, "cannot write");
   EXPECT_FALSE(std::filesystem::exists(directory));
@@ -276,7 +276,7 @@ TEST_F(CliTables, AnExportIsWholeOrNotThere) {
   EXPECT_EQ(contents_of(directory + "/high_orders_0002.exr"), table);
 }
 
-TEST_F(CliTables, WhatIsWrongIsSaid) {
+TEST_F(CliTables, ErrorsAreReported) {
   const std::string file = scratch_.write("file", "x");
   expect_one_line(run("tables", {"-o", file}), 1, "it is a file");
   expect_one_line(run("tables", {"-o", file + "/below"}), 1, "cannot write");
@@ -299,10 +299,10 @@ class CliTableCache : public CliTables {
   nlohmann::json sky(std::vector<std::string> more = {}) {
     more.insert(more.begin(), {"-o", scratch_.at("sky.exr"), "--size", "8x4", "--json", "--sun-elevation-deg", "20",
                                "--sun-azimuth-deg", "0"});
-    const Outcome outcome = run("sky", more);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    err_ = outcome.err;
-    return outcome.status == 0 ? nlohmann::json::parse(outcome.out)["tables"] : nlohmann::json();
+    const ProcessResult process = run("sky", more);
+    EXPECT_EQ(process.status, 0) << process.err;
+    err_ = process.err;
+    return process.status == 0 ? nlohmann::json::parse(process.out)["tables"] : nlohmann::json();
   }
   std::string err_;
 };
@@ -339,7 +339,7 @@ TEST_F(CliTableCache, AllVerbsShareIt) {
   EXPECT_EQ(cached().size(), 3U);
 }
 
-TEST_F(CliTableCache, WhereItIsIsTheUsersChoice) {
+TEST_F(CliTableCache, ItsFolderCanBeChosen) {
   const std::string own = ::getenv("XDG_CACHE_HOME");
   ::setenv("XDG_CACHE_HOME", scratch_.at("xdg").c_str(), 1);
   std::vector<std::string> arguments = {"tables", "--json"};
@@ -348,14 +348,14 @@ TEST_F(CliTableCache, WhereItIsIsTheUsersChoice) {
   EXPECT_EQ(names(scratch_.at("xdg/tyndall")).size(), 1U);
   std::filesystem::remove_all(scratch_.at("xdg"));
   arguments.insert(arguments.end(), {"--set", "tables.cache=off"});
-  const Outcome off = run_tyndall(arguments);
+  const ProcessResult off = run_tyndall(arguments);
   EXPECT_EQ(off.status, 0);
   EXPECT_TRUE(nlohmann::json::parse(off.out)["cache"].is_null());
   EXPECT_FALSE(std::filesystem::exists(scratch_.at("xdg/tyndall")));
   ::setenv("XDG_CACHE_HOME", own.c_str(), 1);
 }
 
-TEST_F(CliTableCache, DamageIsSaidInOneLineAndRepaired) {
+TEST_F(CliTableCache, DamagedFilesAreReportedInOneLineAndRebuilt) {
   sky();
   const std::string good = contents_of(scratch_.at("sky.exr"));
   ASSERT_EQ(cached().size(), 1U);
@@ -381,26 +381,26 @@ TEST_F(CliTableCache, DamageIsSaidInOneLineAndRepaired) {
   for (std::vector<std::string> arguments : verbs) {
     arguments.insert(arguments.end(), kSmall.begin(), kSmall.end());
     arguments.insert(arguments.end(), {"--set", blocked});
-    const Outcome outcome = run_tyndall(arguments);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_EQ(outcome.err.rfind("tyndall: note: nothing is cached: ", 0), 0U) << arguments[0] << outcome.err;
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    const ProcessResult process = run_tyndall(arguments);
+    EXPECT_EQ(process.status, 0) << process.err;
+    EXPECT_EQ(process.err.rfind("tyndall: note: nothing is cached: ", 0), 0U) << arguments[0] << process.err;
+    EXPECT_EQ(std::count(process.err.begin(), process.err.end(), '\n'), 1) << process.err;
   }
 }
 
 TEST_F(CliTableCache, ProcessesShareIt) {
   const std::string queries =
       scratch_.write("q.csv", "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n0,70,50,3\n");
-  std::vector<std::future<Outcome>> running;
+  std::vector<std::future<ProcessResult>> running;
   for (int i = 0; i < 3; ++i)
     running.push_back(std::async(std::launch::async, [&] { return run("probe", {"--queries", queries}); }));
-  std::vector<Outcome> outcomes;
-  for (std::future<Outcome>& one : running) outcomes.push_back(one.get());
-  outcomes.push_back(run("probe", {"--queries", queries}));
-  for (const Outcome& outcome : outcomes) {
-    EXPECT_EQ(outcome.status, 0);
-    EXPECT_EQ(outcome.err, "");
-    EXPECT_EQ(outcome.out, outcomes[0].out);
+  std::vector<ProcessResult> results;
+  for (std::future<ProcessResult>& one : running) results.push_back(one.get());
+  results.push_back(run("probe", {"--queries", queries}));
+  for (const ProcessResult& process : results) {
+    EXPECT_EQ(process.status, 0);
+    EXPECT_EQ(process.err, "");
+    EXPECT_EQ(process.out, results[0].out);
   }
   EXPECT_EQ(cached().size(), 1U);  // and no temporary file
 }

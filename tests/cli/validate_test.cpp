@@ -13,7 +13,7 @@ const std::vector<std::string> kSmall = {"--rays", "36", "--samples", "300", "--
 
 class CliValidate : public testing::Test {
  protected:
-  static Outcome run(std::vector<std::string> more) {
+  static ProcessResult run(std::vector<std::string> more) {
     more.insert(more.begin(), kSmall.begin(), kSmall.end());
     more.insert(more.begin(), "validate");
     return run_tyndall(more);
@@ -25,11 +25,11 @@ TEST_F(CliValidate, ReportsAndPagesAreTheSameEveryTime) {
   const std::string html = scratch_.at("report.html");
   const std::string page = scratch_.at("page.md");
   // Small tables are enough to test the report.
-  const Outcome outcome = run(
+  const ProcessResult process = run(
       {"-o", html, "--markdown", page, "--json", "--set", "atmosphere.mie_g=0.7", "--set", "tables.size=8,32,32,4"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(outcome.err, "");
-  const nlohmann::json json = nlohmann::json::parse(outcome.out);
+  ASSERT_EQ(process.status, 0) << process.err;
+  EXPECT_EQ(process.err, "");
+  const nlohmann::json json = nlohmann::json::parse(process.out);
   const std::string command = "tyndall validate -o REPORT.html --rays 36 --samples 300 --seed 7 --orders 3 --set "
                               "atmosphere.mie_g=0.7 --set tables.size=8,32,32,4";
   EXPECT_EQ(json["command"], command);
@@ -56,18 +56,18 @@ TEST_F(CliValidate, ReportsAndPagesAreTheSameEveryTime) {
   EXPECT_EQ(contents_of(page), first_page);
 }
 
-TEST_F(CliValidate, WhatIsWrongIsSaid) {
+TEST_F(CliValidate, ErrorsAreReported) {
   const auto error = [&](const std::vector<std::string>& arguments, int status = 2) {
-    const Outcome outcome = run(arguments);
-    EXPECT_EQ(outcome.status, status) << outcome.err;
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);
-    return outcome.err;
+    const ProcessResult process = run(arguments);
+    EXPECT_EQ(process.status, status) << process.err;
+    EXPECT_EQ(std::count(process.err.begin(), process.err.end(), '\n'), 1);
+    return process.err;
   };
   EXPECT_EQ(error({}), "tyndall: error: -o: no output file; expected -o REPORT.html, --markdown FILE or --json\n");
   EXPECT_NE(error({"-o", scratch_.at("a.pdf")}).find("expected a name that ends in .html or .htm"), std::string::npos);
   EXPECT_NE(error({"--markdown", scratch_.at("a.txt")}).find("expected a name that ends in .md"), std::string::npos);
   EXPECT_NE(error({"-o", scratch_.at("no/a.html")}, 1).find("No such file or directory"), std::string::npos);
-  const Outcome few = run_tyndall({"validate", "--json", "--rays", "3"});
+  const ProcessResult few = run_tyndall({"validate", "--json", "--rays", "3"});
   EXPECT_EQ(few.status, 2);
   EXPECT_NE(few.err.find("--rays: invalid count '3'; expected a whole number, 18 to"), std::string::npos);
 }

@@ -1,5 +1,5 @@
-// A closed room without windows, seen from inside. Under a sky that does not reach it (meshes.sky_light = 0) all of it
-// is black, surfaces and air: every bit of light is a leak.
+// A closed room without windows, seen from inside. Without light from the sky (meshes.sky_light = 0), surfaces and
+// in-scattering must be black, so any light has leaked in.
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 constexpr VkExtent2D kExtent = {128, 72};
 constexpr Point kInside = {6.0F, 8.0F, 5.0F};  // half the width, the height, half the depth [m]
 
-// Six slabs around the inside, each of them closed.
+// Saves a room of six slabs, each of which is a closed mesh.
 std::string save_room(const std::string& path, float wall_m) {
   GltfFile file;
   const int grey = file.material({{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.5, 0.5, 1}}}}});
@@ -64,7 +64,7 @@ class GpuClosedRoom : public SharedSceneTest {
   Scene* make(const char* terrain, float wall_m) {
     scene_.terrain.source = terrain;
     scene_.meshes.source = save_room(path_, wall_m);
-    // The terrain shall stay below the floor.
+    // The terrain must be below the floor.
     scene_.meshes.position_m.y = scene_.terrain.source == "none" ? 0.0 : 20.0;
     Scene* const scene = shared_scene(kExtent, params_, scene_, 1);
     if (scene == nullptr) return nullptr;
@@ -73,7 +73,7 @@ class GpuClosedRoom : public SharedSceneTest {
     if (ground != nullptr) floor_m_ += ground_height(*ground, {0.0, 1.0, 0.0}, params_.planet.radius_m);
     return scene;
   }
-  // Looks from one place into opposite corners, below and above, under suns from the zenith to the horizon.
+  // Draws views into opposite corners, below and above, under suns from the zenith to the horizon.
   void expect_dark(Scene& scene, std::uint32_t cascades, float distance_m, const std::string& what) {
     scene_.shadows.cascades = cascades;
     scene_.shadows.first_marched = std::min(1U, cascades - 1);
@@ -114,7 +114,7 @@ TEST_F(GpuClosedRoom, SurfacesAreDarkOnBareGround) {
   }
 }
 
-TEST_F(GpuClosedRoom, AirIsDarkOnBareGround) {
+TEST_F(GpuClosedRoom, InscatteringIsDarkOnBareGround) {
   params_.scattering.medium = MediumKind::homogeneous;
   params_.homogeneous_medium.density = 300.0F;
   Scene* const scene = make("none", 0.4F);
@@ -127,7 +127,7 @@ TEST_F(GpuClosedRoom, AirIsDarkOnBareGround) {
   }
 }
 
-TEST_F(GpuClosedRoom, SurfacesAndAirAreDarkOnTerrain) {
+TEST_F(GpuClosedRoom, SurfacesAndInscatteringAreDarkOnTerrain) {
   params_.scattering.multiple = MultipleScattering::none;  // unoccluded by default
   Scene* const scene = make("procedural", 0.4F);
   ASSERT_NE(scene, nullptr);

@@ -76,7 +76,7 @@ TEST_F(ColoredShafts, TreesFormatsAndOrderOfCascadesChangeNothing) {
         RecordProperty("worst: " + std::string(mode.name) + ", " + name, std::to_string(likeness.worst_relative_error));
       };
       same("no tree", [](Params& p) { p.epipolar.min_max_tree = false; });
-      // The tree skips what is dark, and only that.
+      // The tree skips only cells in shadow.
       EXPECT_LT(read_with_tree, counters().shadow_map_fetches) << mode.name;
       same("float32", [](Params& p) { p.epipolar.min_max_format = MinMaxFormat::float32; });
       same("multi-pass", [](Params& p) { p.shadows.cascade_processing = CascadeProcessing::multi_pass; });
@@ -85,7 +85,7 @@ TEST_F(ColoredShafts, TreesFormatsAndOrderOfCascadesChangeNothing) {
   }
 }
 
-// A reduced picture is marched, corrected and scaled up as without colours, in both media.
+// At half and a quarter of the resolution, coloured shafts are marched, corrected and upscaled in both media.
 TEST_F(ColoredShafts, AreDownscaled) {
   BoxScene scene = colored();
   scene.extent = {320, 180};
@@ -111,16 +111,16 @@ TEST_F(ColoredShafts, AreDownscaled) {
   }
 }
 
-// Glass of one colour is a sun of that colour; clear glass is none.
+// Glass of one colour everywhere gives the same picture as a sun of that colour, and clear glass changes nothing.
 TEST_F(ColoredShafts, OneColorScalesTheLight) {
   BoxScene scene = colored();
   scene.extent = {96, 54};
-  scene.pitch_deg = -26.0;  // no sky: every ray ends within the maps, beyond which nothing has a colour
+  scene.pitch_deg = -26.0;  // without sky, every ray ends within the maps, beyond which there are no colours
   TestFrame glass = frame_of(scene);
   TestFrame bare = glass;
   bare.shadow_color = nullptr;
   for (const Mode& mode : kModes) {
-    if (mode.multiple == MultipleScattering::unoccluded) continue;  // light that no glass cuts
+    if (mode.multiple == MultipleScattering::unoccluded) continue;  // glass does not affect unoccluded light
     for (const Technique technique : {Technique::epipolar, Technique::brute_force}) {
       Params params = params_of(mode);
       params.scattering.technique = technique;
@@ -140,16 +140,16 @@ TEST_F(ColoredShafts, OneColorScalesTheLight) {
           brightest = std::max({brightest, white[i].x, white[i].y, white[i].z});
         }
         RecordProperty("off: " + name + (color.x == 1.0 ? ", clear" : ", coloured"), std::to_string(worst / brightest));
-        // Brute force rounds once more; sources are kept in half precision.
+        // Brute force has one more rounding. Epipolar sampling stores source functions in half precision.
         EXPECT_LE(worst / brightest, technique == Technique::epipolar ? 1.5e-3 : 2e-6) << name << " " << color.x;
       }
     }
   }
 }
 
-// With the glass's depth the air on the sun's side of it has the sun's own colour: above everything it colours all,
-// below everything nothing, and in between what lies below it; epipolar sampling as brute force.
-TEST_F(ColoredShafts, OnlyTheAirBehindTheGlassIsColored) {
+// With the depth of the glass, the medium on its sunward side is not coloured. Glass above everything colours all
+// light, glass below everything colours none, and between them it colours the light below it. Both techniques agree.
+TEST_F(ColoredShafts, OnlyTheMediumBehindTheGlassIsColored) {
   for (const bool reversed : {false, true}) {
     BoxScene scene = colored();
     scene.extent = {128, 72};
@@ -161,7 +161,7 @@ TEST_F(ColoredShafts, OnlyTheAirBehindTheGlassIsColored) {
       make(own_effect_, with);
     }
     TestFrame frame = frame_of(scene);
-    // Depth at which a map's place is at an altitude above the origin.
+    // Returns the depth at which a position of a map is at an altitude above the origin.
     const auto level = [cascades = frame.cascades](double height_m) {
       return [cascades, height_m](std::uint32_t c, double u, double v) {
         glm::dmat4 shadow_from_world;
@@ -191,9 +191,9 @@ TEST_F(ColoredShafts, OnlyTheAirBehindTheGlassIsColored) {
       frame.glass_depth = level(-1e6);
       show(frame);
       const Likeness below = compare(draw(params, name + ", glass below all", true), white, scene.extent);
-      // Every cell is read instead of whole nodes: sums of other parts, in single precision, kept in half floats.
+      // Every cell is read instead of whole nodes, so sums have other terms in single precision.
       EXPECT_LE(below.worst_relative_error, 2e-3) << name;
-      // Across the sun's direction, 4 km before the camera.
+      // A plane across the direction of the sun, 4 km in front of the camera.
       const glm::dvec3 place = frame.view.position + 4000.0 * frame.to_sun;
       frame.glass_depth = [cascades = frame.cascades, place](std::uint32_t c, double, double) {
         const Mat4& m = cascades[c].shadow_from_world;

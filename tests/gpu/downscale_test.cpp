@@ -1,4 +1,4 @@
-// scattering.downscale: what is scaled up is like what was computed in full, in both media.
+// scattering.downscale: upscaled pictures are similar to those at full resolution, in both media.
 #include <cmath>
 #include <functional>
 
@@ -9,7 +9,7 @@ namespace {
 
 using Downscale = SharedEffect;
 
-// A picture large enough for its slices and samples to be halved.
+// Returns a scene whose picture is large enough for half the number of slices and samples.
 BoxScene wide() {
   BoxScene scene;
   scene.extent = {320, 180};
@@ -29,7 +29,7 @@ TEST_F(Downscale, IsLikeFullResolution) {
   struct Case {
     const char* name;
     std::function<void(BoxScene&)> change;
-    double half_db, quarter_db;  // floors against downscale 1
+    double half_db, quarter_db;  // minimum PSNR against downscale 1
   };
   const Case cases[] = {
       {"towards the sun", [](BoxScene&) {}, 43.0, 38.0},
@@ -111,13 +111,13 @@ TEST_F(Downscale, CountersReportTheSavedWork) {
   EXPECT_LT(half.samples_marched, full.samples_marched / 2);
   EXPECT_GT(half.samples_marched, full.samples_marched / 16);
   EXPECT_LT(half.pixels_corrected, std::uint64_t{320} * 180 / 20);
-  // Brute force computes every pixel, whatever the downscale.
+  // Brute force computes every pixel, independent of the downscale.
   const Picture brute = draw(by_brute_force(params_of(MediumKind::homogeneous, 1)), "brute force");
   EXPECT_EQ(draw(by_brute_force(params_of(MediumKind::homogeneous, 4)), "brute force, 4"), brute);
 }
 
-// What is seen only in one pixel has no reduced one of its depth: it comes from the slices, or is marched.
-TEST_F(Downscale, PostsOfOnePixelKeepTheirLight) {
+// An object one pixel wide has no buffer pixel at its depth. It is interpolated from the slices, or marched.
+TEST_F(Downscale, PostsOfOnePixelAreComposedAtTheirDepth) {
   BoxScene scene = wide();
   scene.buildings = false;
   TestFrame frame = frame_of(scene);

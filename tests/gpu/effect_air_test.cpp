@@ -1,5 +1,5 @@
-// The air without shadows, through the public interface: sky, aerial perspective and the parameters that say
-// what is drawn, against the CPU model in double precision.
+// The atmosphere without shadows, drawn through the public interface: sky, aerial perspective, and the parameters that
+// select what is drawn, compared with the CPU model in double precision.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,8 +11,8 @@ namespace tyndall {
 namespace {
 
 constexpr double kRad = std::numbers::pi / 180.0;
-// The integration is good to 0.1 % at these steps (shaders/lib/single_scattering.glsl); single precision of
-// altitudes and directions near the horizon, where the air is a cliff, takes as much again.
+// With these steps, integration has an error of 0.1 % (shaders/lib/single_scattering.glsl). Near the horizon, where
+// density changes steeply, single precision of altitudes and directions adds as much.
 constexpr double kTolerance = 0.002;
 
 glm::dvec3 sun_at(double elevation_deg, double azimuth_deg = 30.0) {
@@ -37,20 +37,20 @@ class EffectAir : public GpuTest {
   }
 
  private:
-  EffectKeeper effects_;
+  EffectCache effects_;
 };
 
 struct Place {
   const char* name;
   double altitude_m, pitch_deg, tan_half;
 };
-// Below sea level, on the ground, in the air, and in space with the planet filling a part of the picture.
+// Below sea level, on the ground, in the atmosphere, and in space with the planet filling a part of the picture.
 constexpr Place kPlaces[] = {{"below sea level", -430.0, 10.0, 1.0},
                              {"ground", 2.0, 20.0, 1.0},
                              {"air", 9000.0, -5.0, 1.2},
                              {"space", 400000.0, -20.0, 0.7}};
 
-TEST_F(EffectAir, TheSkyIsTheIntegralFromGroundAirAndSpace) {
+TEST_F(EffectAir, TheSkyIsTheIntegralFromGroundAtmosphereAndSpace) {
   for (const Place& place : kPlaces) {
     for (const double elevation : {60.0, 3.0, -8.0}) {
       TestFrame frame;
@@ -75,7 +75,7 @@ TEST_F(EffectAir, TheSkyIsTheIntegralFromGroundAirAndSpace) {
               << place.name << ", sun at " << elevation << ", pixel " << x << " " << y;
         }
       }
-      // The picture does show lit air.
+      // The picture is not just black.
       EXPECT_GT(brightest, elevation < 0.0 ? 1e-6 : 1e-2) << place.name << ", sun at " << elevation;
     }
   }
@@ -88,8 +88,8 @@ TEST_F(EffectAir, InScatteringAloneAndOverFiniteSegments) {
       frame.convention = convention;
       frame.view = TestView::at(place.altitude_m, -0.5, place.pitch_deg * kRad, place.tan_half);
       frame.to_sun = sun_at(15.0);
-      // From a metre to beyond the air, the sky in every eighth pixel. A depth buffer with standard depth
-      // cannot tell far distances apart: they stay below 5 km there, where it is good to 1e-3.
+      // Distances range from a metre to beyond the atmosphere, and every eighth pixel shows the sky. With standard
+      // depth, which cannot resolve large distances, they are below 5 km, where its error is 1e-3.
       const double longest = convention == DepthConvention::standard ? 5000.0 : 2.0e6;
       frame.distance_m = [&](std::uint32_t x, std::uint32_t y) {
         return (x + y) % 8 == 7 ? 0.0 : 1.5 * std::pow(longest / 1.5, (x + 0.37 * y) / 19.0);
@@ -108,8 +108,8 @@ TEST_F(EffectAir, InScatteringAloneAndOverFiniteSegments) {
           glm::dvec3 inscattered(0.0);
           glm::dvec3 through(1.0);
           if (air) {
-            if (distance > air->end + 2000.0 && air->on_ground) continue;  // too deep for anything to be seen through
-            // What is drawn may lie deeper than the ground sphere.
+            if (distance > air->end + 2000.0 && air->on_ground) continue;  // too deep for any light to pass
+            // The drawn surface may be below the ground sphere.
             const double end = distance > 0.0 ? (air->on_ground ? distance : std::min(air->end, distance)) : air->end;
             if (end > air->start) {
               inscattered = true_inscattering(params, ray, air->start, end);
@@ -150,8 +150,8 @@ TEST_F(EffectAir, SwitchesAndScaleDoWhatTheySay) {
     EXPECT_LE(relative_error(quarter[i], 0.25 * only[i]), kFloat);
     EXPECT_LE(relative_error(tinted[i], only[i] * glm::dvec3(1.0, 2.0, 4.0)), kFloat);
     for (int c = 0; c < 3; ++c) {
-      EXPECT_GT(whole[i][c], only[i][c]);                             // background shines through
-      EXPECT_LT(whole[i][c], only[i][c] + frame.background.x * 3.0);  // but is dimmed
+      EXPECT_GT(whole[i][c], only[i][c]);                             // the background is visible
+      EXPECT_LT(whole[i][c], only[i][c] + frame.background.x * 3.0);  // and attenuated
     }
   }
 }
@@ -165,7 +165,7 @@ TEST_F(EffectAir, HalfPrecisionOutputIsTheSamePicture) {
   const std::vector<glm::dvec3> half = draw(params, frame, OutputFormat::rgba16f);
   for (std::size_t i = 0; i < full.size(); ++i) {
     for (int c = 0; c < 3; ++c) {
-      // 11 bits of mantissa, rounded or cut off.
+      // The mantissa has 11 bits, rounded or truncated.
       EXPECT_NEAR(half[i][c], full[i][c], full[i][c] / 1024.0) << i;
     }
   }
@@ -196,7 +196,7 @@ TEST_F(EffectAir, AwayFromTheOriginTheVerticalTurnsWithThePlanet) {
   TestFrame frame;
   frame.to_sun = sun_at(40.0);
   frame.view = TestView::at(0.0, 0.0, 0.0, 1.0);
-  // A quarter of the way round the planet, 3 km above it.
+  // A quarter of the way around the planet, 3 km above it.
   const double radius = 6.36e6;
   frame.view.position = {0.6 * (radius + 3000.0), 0.8 * (radius + 3000.0) - radius, 0.0};
   const Params params = precise_params();

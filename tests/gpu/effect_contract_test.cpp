@@ -1,5 +1,5 @@
-// What include/tyndall/effect.hpp promises apart from the picture: memory that is known beforehand, errors that change
-// nothing, effects that do not know of each other, the same bytes.
+// The promises of include/tyndall/effect.hpp apart from the picture: memory is predicted, errors change nothing,
+// effects are independent of each other, and results are reproducible byte for byte.
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -20,7 +20,7 @@ constexpr Technique kTechniques[] = {Technique::epipolar, Technique::brute_force
 
 class EffectContract : public GpuTest {
  protected:
-  // The two light tables as floats, read the way an engine would.
+  // Returns the sun transmittance and sky irradiance look-up tables as floats, read in the same way as by an engine.
   std::vector<float> light_tables(const Effect& effect) {
     std::vector<float> out;
     const gpu::Device& device = host().device();
@@ -57,7 +57,7 @@ class EffectContract : public GpuTest {
 };
 
 TEST_F(EffectContract, QueriedMemoryIsAllocatedMemory) {
-  // All that memory depends on differs between the three.
+  // The three differ in everything that memory depends on.
   EffectDesc descs[3];
   Params params[3];
   for (Params& p : params) p.tables.size = {8, 16, 16, 4};
@@ -79,16 +79,16 @@ TEST_F(EffectContract, QueriedMemoryIsAllocatedMemory) {
   params[2].epipolar.min_max_format = MinMaxFormat::float32;
   params[2].shadows.cascade_processing = CascadeProcessing::multi_pass_instanced;
   for (std::size_t i = 0; i < std::size(descs); ++i) {
-    const Result<MemoryUsage> asked = query_memory(info(), descs[i], params[i]);
-    ASSERT_OK(asked);
+    const Result<MemoryUsage> planned = query_memory(info(), descs[i], params[i]);
+    ASSERT_OK(planned);
     Result<Effect> effect = Effect::create(info(), descs[i], params[i]);
     ASSERT_OK(effect);
     const MemoryUsage taken = effect.value().memory();
     EXPECT_GT(taken.persistent, 0U);
     EXPECT_GT(taken.host, 0U);
-    EXPECT_EQ(asked.value().persistent, taken.persistent) << i;
-    EXPECT_EQ(asked.value().transient, taken.transient) << i;
-    EXPECT_EQ(asked.value().host, taken.host) << i;
+    EXPECT_EQ(planned.value().persistent, taken.persistent) << i;
+    EXPECT_EQ(planned.value().transient, taken.transient) << i;
+    EXPECT_EQ(planned.value().host, taken.host) << i;
     VkDeviceSize sum = 0;
     std::set<std::string> names;
     for (const ResourceMemory& resource : effect.value().resources()) {
@@ -99,7 +99,7 @@ TEST_F(EffectContract, QueriedMemoryIsAllocatedMemory) {
     EXPECT_EQ(sum, taken.persistent) << i;
     EXPECT_EQ(names.contains("min_max_tree"), params[i].scattering.technique == Technique::epipolar);
     EXPECT_TRUE(names.contains("single_rayleigh"));
-    // The same is known of what set_params() will ask for.
+    // The memory after set_params() is predicted, too.
     for (const Params& other : params) {
       const Result<MemoryUsage> expected = query_memory(info(), descs[i], other);
       ASSERT_OK(expected);
@@ -149,27 +149,27 @@ TEST_F(EffectContract, ParametersOutOfRangeAreRefusedAndTheOldOnesStay) {
       std::memcpy(reinterpret_cast<char*>(&bad) + row.offset, &value, sizeof value);
       return effect.value().set_params(bad);
     };
-    std::vector<Result<void>> outcomes;
+    std::vector<Result<void>> results;
     switch (row.type) {
       case ParamType::float32:
       case ParamType::vec3:
         for (const float value :
              {kNaN, kInfinity, -kInfinity, std::nextafter(static_cast<float>(row.max), kInfinity) * 1.001F,
               static_cast<float>(row.min) - 1.0F}) {
-          outcomes.push_back(with(value));
+          results.push_back(with(value));
         }
         break;
       case ParamType::uint32:
-        outcomes.push_back(with(static_cast<std::uint32_t>(row.max) + 1U));
-        if (row.min > 0.0) outcomes.push_back(with(static_cast<std::uint32_t>(row.min) - 1U));
+        results.push_back(with(static_cast<std::uint32_t>(row.max) + 1U));
+        if (row.min > 0.0) results.push_back(with(static_cast<std::uint32_t>(row.min) - 1U));
         break;
-      case ParamType::enumeration: outcomes.push_back(with(1000U)); break;
+      case ParamType::enumeration: results.push_back(with(1000U)); break;
       default: break;
     }
-    for (const Result<void>& outcome : outcomes) {
-      ASSERT_FALSE(outcome.ok()) << row.group << "." << row.name;
-      EXPECT_EQ(outcome.error().code, ErrorCode::invalid_argument);
-      EXPECT_NE(outcome.error().message.find(std::string(row.group) + "." + std::string(row.name)), std::string::npos);
+    for (const Result<void>& result : results) {
+      ASSERT_FALSE(result.ok()) << row.group << "." << row.name;
+      EXPECT_EQ(result.error().code, ErrorCode::invalid_argument);
+      EXPECT_NE(result.error().message.find(std::string(row.group) + "." + std::string(row.name)), std::string::npos);
     }
     EXPECT_EQ(affected(effect.value().params(), good), 0U) << row.name;
   }
@@ -188,13 +188,13 @@ TEST_F(EffectContract, FramesThatCannotBeDrawnAreErrors) {
     std::array<Cascade, 2> cascades = {frame.cascades[0], frame.cascades[1]};
     inputs.cascades = cascades;
     change(inputs, cascades);
-    Result<void> outcome;
+    Result<void> result;
     EXPECT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
-      outcome = effect.value().record(cmd, inputs);
+      result = effect.value().record(cmd, inputs);
       return {};
     }));
-    EXPECT_TRUE(outcome.ok() || outcome.error().code == ErrorCode::invalid_argument);
-    return !outcome.ok();
+    EXPECT_TRUE(result.ok() || result.error().code == ErrorCode::invalid_argument);
+    return !result.ok();
   };
   using Two = std::array<Cascade, 2>;
   EXPECT_FALSE(refused([](FrameInputs&, Two&) {}));
@@ -225,7 +225,7 @@ TEST_F(EffectContract, FramesThatCannotBeDrawnAreErrors) {
 }
 
 TEST_F(EffectContract, OnlyAsManyCascadesAreMarchedAsThereIsMemoryFor) {
-  const TestFrame frame = small_frame();  // has two
+  const TestFrame frame = small_frame();  // has two cascades
   Result<FrameImages> images = FrameImages::create(host(), frame, OutputFormat::rgba32f);
   ASSERT_OK(images);
   EffectDesc desc = desc_for(frame);
@@ -236,12 +236,12 @@ TEST_F(EffectContract, OnlyAsManyCascadesAreMarchedAsThereIsMemoryFor) {
     EXPECT_OK(effect.value().set_params(params));
     FrameInputs inputs = images.value().inputs(frame);
     inputs.first_marched_cascade = first_marched;
-    Result<void> outcome;
+    Result<void> result;
     EXPECT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
-      outcome = effect.value().record(cmd, inputs);
+      result = effect.value().record(cmd, inputs);
       return {};
     }));
-    return outcome.ok();
+    return result.ok();
   };
   EXPECT_FALSE(drawn({}, 0));
   EXPECT_TRUE(drawn({}, 1));
@@ -305,7 +305,7 @@ TEST_F(EffectContract, TwoEffectsOnOneDeviceAreIndependent) {
     if (recorded.ok()) recorded = b.value().record(cmd, images_b.value().inputs(frame));
     return recorded;
   }));
-  // Moving an effect takes its frame along; the first goes while the second is in use.
+  // An effect can be moved and destroyed while another is in use.
   { const Effect gone = std::move(a).value(); }
   const Result<std::vector<glm::dvec3>> clear = images_a.value().output(host());
   const Result<std::vector<glm::dvec3>> hazy = images_b.value().output(host());
@@ -350,7 +350,7 @@ TEST_F(EffectContract, TablesBuiltInStepsMatchTablesBuiltAtOnce) {
     brightest = std::max(brightest, value);
   }
   EXPECT_GT(brightest, 0.5F);
-  // A parameter of the air makes them stale, another does not; the same tables come back.
+  // Only parameters of the atmosphere make the tables stale. Rebuilt tables are the same.
   params.scattering.integration_steps = 77;
   ASSERT_OK(sliced.value().set_params(params));
   EXPECT_TRUE(sliced.value().precompute_progress().complete());

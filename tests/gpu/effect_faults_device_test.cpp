@@ -1,4 +1,4 @@
-// Failures on a device that draws: the picture is, byte for byte, what it was.
+// After failures on a real device, the picture is unchanged byte for byte.
 #include <algorithm>
 #include <optional>
 #include <string>
@@ -27,7 +27,8 @@ class EffectFaultsOnDevice : public GpuTest {
     EXPECT_OK(bytes);
     return bytes ? std::move(bytes).value() : std::vector<std::byte>();
   }
-  // At every fifth call, which comes to every kind of call and nearly every object; the fake device sees the others.
+  // Fails every fifth call, which includes every kind of call and nearly every object. The fake device covers the
+  // others.
   template <typename Change>
   long refuse_everywhere(Effect& effect, FrameImages& images, const TestFrame& frame, const Change& change) {
     const std::vector<std::byte> before = draw(effect, images, frame);
@@ -48,13 +49,13 @@ class EffectFaultsOnDevice : public GpuTest {
   }
 };
 
-TEST_F(EffectFaultsOnDevice, ThePictureStays) {
+TEST_F(EffectFaultsOnDevice, ThePictureIsUnchanged) {
   const TestFrame frame = small_frame();
   Result<FrameImages> images = FrameImages::create(host(), frame, OutputFormat::rgba32f);
   ASSERT_OK(images);
   DeviceInfo device = info();
   device.get_instance_proc_addr = faults::get_instance_proc_addr;
-  // With so many slices and no buffer of another resolution, few pipelines are needed: they take most of the time.
+  // Creating pipelines takes most of the time. With many slices and without downscaling, few are needed.
   Params params = small_params();
   params.epipolar.slices = 512;
   Params others = other_params();
@@ -65,7 +66,7 @@ TEST_F(EffectFaultsOnDevice, ThePictureStays) {
   ASSERT_OK(made);
   Effect effect = std::move(made).value();
   build(effect);
-  // Makes the pipelines, so that the calls below come to every buffer and image. The tables stay: none is built.
+  // Creates the pipelines first, so that the failures below are those of buffers and images. No tables are built.
   ASSERT_OK(effect.set_params(others));
   ASSERT_OK(effect.set_params(params));
   const std::vector<std::byte> first = draw(effect, images.value(), frame);
@@ -83,7 +84,7 @@ TEST_F(EffectFaultsOnDevice, ThePictureStays) {
   EXPECT_EQ(draw(effect, images.value(), frame), other);
 }
 
-// Of commands that were recorded and have not run, and of those that have.
+// An effect is destroyed after commands were recorded, before and after they have run.
 TEST_F(EffectFaultsOnDevice, DestroyingInFlightIsReported) {
   const TestFrame frame = small_frame();
   Result<FrameImages> images = FrameImages::create(host(), frame, OutputFormat::rgba32f);
@@ -109,7 +110,7 @@ TEST_F(EffectFaultsOnDevice, DestroyingInFlightIsReported) {
   FrameInputs inputs = images.value().inputs(frame);
   inputs.frame_index = 1;
   Result<void> recorded;
-  // The commands are dropped after recording: an error keeps them from being submitted.
+  // The commands are recorded but not submitted, because `record` returns an error.
   EXPECT_FALSE(host()
                    .run([&](VkCommandBuffer cmd) -> Result<void> {
                      recorded = effect->record(cmd, inputs);

@@ -1,5 +1,5 @@
-// Every call of the library that can run out of memory does so once, at each of its allocations: the call returns an
-// error, nothing has changed, nothing has leaked, and the same call then succeeds.
+// Each function of the library that allocates memory is called once for each of its allocations, which then fails. It
+// must return an error, change nothing and leak nothing, and the same call must succeed afterwards.
 #include <functional>
 #include <string>
 
@@ -11,9 +11,9 @@ namespace {
 using faults::Kind;
 constexpr Kind kKinds[] = {Kind::vulkan, Kind::host};
 
-// Refuses `change` at each of its allocations, every time to another effect.
+// Lets each allocation of `change` fail once, each time with a new effect.
 template <typename Change>
-void refuse_everywhere(const std::string& name, Built built, const Change& change, long least_vulkan, long least_host) {
+void refuse_everywhere(const std::string& name, Built built, const Change& change, long min_vulkan, long min_host) {
   for (const Kind kind : kKinds) {
     long n = 0;
     for (;; ++n) {
@@ -32,7 +32,7 @@ void refuse_everywhere(const std::string& name, Built built, const Change& chang
           expect_same(before, observe(effect), where);
           ASSERT_OK(change(effect));
         }
-        // Whether at once or at the second attempt: what was wanted is there and works.
+        // After the first or the second attempt, the change is complete and works.
         const Result<Progress> recorded = effect.record_precompute(kCommands);
         ASSERT_OK(recorded);
         EXPECT_TRUE(recorded.value().complete()) << where;
@@ -43,8 +43,8 @@ void refuse_everywhere(const std::string& name, Built built, const Change& chang
       EXPECT_EQ(faults::live_objects(), 0U) << where;
       EXPECT_EQ(faults::live_pipeline_objects(), 0U) << where;
     }
-    // So that nothing passes because nothing was refused.
-    EXPECT_GE(n, kind == Kind::vulkan ? least_vulkan : least_host) << name;
+    // Verify that allocations have failed.
+    EXPECT_GE(n, kind == Kind::vulkan ? min_vulkan : min_host) << name;
   }
 }
 
@@ -74,7 +74,7 @@ TEST(EffectFaults, ParametersAreRefusedAtEveryAllocation) {
     refuse_everywhere(
         name, built, [](Effect& effect) { return effect.set_params(other_params()); }, 60, 10);
   }
-  // Back to what the finished tables are, from a build that is no longer wanted.
+  // Return to the parameters of the finished tables during a build for others.
   refuse_everywhere(
       "set_params back", Built::others_in_part, [](Effect& effect) { return effect.set_params(small_params()); }, 10,
       0);
@@ -89,7 +89,7 @@ TEST(EffectFaults, LimitsAreRefusedAtEveryAllocation) {
       15, 0);
 }
 
-// Limits and parameters in one step; what is fixed stays fixed.
+// Limits and parameters change in one step. Fixed settings cannot change.
 TEST(EffectFaults, ParametersAndLimitsAreRefusedAtEveryAllocation) {
   EffectDesc desc = small_desc();
   desc.max_extent = {128, 48};
@@ -165,7 +165,7 @@ TEST(EffectFaults, NoOtherCallThrowsAndRecordingAllocatesNothing) {
   });
 }
 
-// Frames without cascades are drawn with the pipelines that set_params() made.
+// Frames without cascades need no pipelines except those that set_params() created.
 TEST(EffectFaults, RecordingMakesNoPipeline) {
   Effect effect = make(Built::completely);
   FrameInputs inputs = fake_frame();

@@ -14,7 +14,7 @@ namespace tyndall {
 namespace {
 
 constexpr double kNear_m = 1.0;
-constexpr double kFar_m = 1.0e6;  // standard convention
+constexpr double kFar_m = 1.0e6;  // far plane with standard depth
 
 float device_depth(const TestFrame& frame, double view_depth_m) {
   if (frame.convention == DepthConvention::reversed_infinite) {
@@ -67,7 +67,7 @@ glm::dvec3 TestView::ray(std::uint32_t x, std::uint32_t y, VkExtent2D extent) co
 }
 
 RayAngles TestFrame::ray(std::uint32_t x, std::uint32_t y, double planet_radius_m) const {
-  // Of the camera as the effect gets it, rounded to single precision.
+  // The effect receives the camera in single precision.
   const glm::dvec3 p = glm::vec3(view.position);
   const glm::dvec3 from_centre = p + glm::dvec3(0.0, planet_radius_m, 0.0);
   const double distance = glm::length(from_centre);
@@ -161,7 +161,7 @@ Result<FrameImages> FrameImages::create(gpu::Host& host, const TestFrame& frame,
   TYNDALL_ASSIGN(out.output_, gpu::create_image(device, {"output", output_format, extent,
                                                          VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
                                                              VK_IMAGE_USAGE_TRANSFER_DST_BIT}));
-  // Filled with what no frame leaves, so that a pixel that is not written is found.
+  // Filled with a value that no frame writes, so that missing pixels are detected.
   const std::vector<std::byte> unwritten(pixels * (format == OutputFormat::rgba16f ? 8 : 16), std::byte{0xFF});
   TYNDALL_TRY(gpu::upload(host, out.output_, unwritten.data(), unwritten.size(), VK_IMAGE_LAYOUT_GENERAL));
   return out;
@@ -244,23 +244,23 @@ Result<std::vector<glm::dvec3>> render(gpu::Host& host, const Params& params, co
   return render(host, effect, frame, format);
 }
 
-Result<std::vector<glm::dvec3>> EffectKeeper::render(gpu::Host& host, const Params& params, const TestFrame& frame,
-                                                     OutputFormat format) {
+Result<std::vector<glm::dvec3>> EffectCache::render(gpu::Host& host, const Params& params, const TestFrame& frame,
+                                                    OutputFormat format) {
   EffectDesc wanted = desc_for(frame, format);
   wanted.max_extent = {128, 128};
   wanted.max_cascades = kMaxCascades;
-  auto kept = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) {
+  auto cached = std::find_if(cached_.begin(), cached_.end(), [&](const Cached& k) {
     return k.desc.output_format == wanted.output_format && k.desc.sky_depth == wanted.sky_depth &&
            k.desc.shadow_depth_reversed == wanted.shadow_depth_reversed && k.desc.shadow_colors == wanted.shadow_colors;
   });
-  if (kept == kept_.end()) {
+  if (cached == cached_.end()) {
     TYNDALL_ASSIGN(Effect effect, Effect::create(info_of(host), wanted, params));
-    kept_.push_back({wanted, std::move(effect)});
-    kept = kept_.end() - 1;
+    cached_.push_back({wanted, std::move(effect)});
+    cached = cached_.end() - 1;
   } else {
-    TYNDALL_TRY(kept->effect.set_params(params));
+    TYNDALL_TRY(cached->effect.set_params(params));
   }
-  return tyndall::render(host, kept->effect, frame, format);
+  return tyndall::render(host, cached->effect, frame, format);
 }
 
 Cascade sun_cascade(const glm::dvec3& to_sun, const glm::dvec3& middle, double half_m, double near_m, double far_m) {
@@ -302,9 +302,9 @@ Params precise_params() {
   Params params;
   params.scattering.scale = 1.0F;
   params.scattering.integration_steps = 48;
-  // Every pixel's own ray, which is what these tests compute; epipolar_modes_test.cpp compares the techniques.
+  // These tests compute the rays of pixels, as brute force does. epipolar_modes_test.cpp compares the techniques.
   params.scattering.technique = Technique::brute_force;
-  // What the tables give is tested in tables_test.cpp; here they are not built.
+  // Needs no tables, which tables_test.cpp tests.
   params.scattering.single = SingleScattering::integration;
   params.scattering.multiple = MultipleScattering::none;
   params.tables.size = {8, 16, 16, 4};
@@ -312,7 +312,7 @@ Params precise_params() {
 }
 
 glm::dvec3 true_inscattering(const Params& params, const RayAngles& ray, double start, double end) {
-  constexpr int kSteps = 48;  // four times what 0.1 % takes
+  constexpr int kSteps = 48;  // four times the steps for 0.1 %
   if (end <= start) return glm::dvec3(0.0);
   return glsl64::single_scattering(wide_medium(params), ray.altitude_m, ray.cos_view, ray.cos_sun, ray.cos_view_sun,
                                    start, end, kSteps);

@@ -1,5 +1,5 @@
-// Pictures that are rectangles of larger images: they are the same bytes as pictures with images of their
-// own, whatever the images hold around them, and nothing is written there.
+// A picture may be a rectangle of larger images. Its bytes are those of a picture with images of its own size, and the
+// rest of the images is neither read nor written.
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -41,7 +41,7 @@ class EffectRectangles : public GpuTest {
   }
 };
 
-// With scene and sky at all four edges, so that what lies beyond them would be seen.
+// Returns a frame with scene and sky at all four edges, so that reads beyond them would be visible.
 TestFrame picture(VkExtent2D extent) {
   TestFrame frame = small_frame();
   frame.extent = extent;
@@ -64,8 +64,7 @@ TEST_F(EffectRectangles, ArePicturesOfTheirOwn) {
     Params changed = params;
     mode.change(changed);
     ASSERT_OK(effect.value().set_params(changed));
-    // Odd sizes; and once each whole blocks of pixels, a single column, a single row, and a corner of the
-    // image.
+    // Odd sizes, and once each: whole blocks of pixels, a single column, a single row, and a corner of the image.
     const bool usual = &mode == &kModes[0];
     for (const VkExtent2D extent : {VkExtent2D{23, 13}, {24, 12}, {1, 9}, {9, 1}, {22, 15}}) {
       if (!usual && extent.width != 23) continue;
@@ -114,8 +113,8 @@ TEST_F(EffectRectangles, OffsetsOutsideTheImagesAreRefused) {
     change(inputs);
     std::string text;
     EXPECT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
-      const Result<void> outcome = effect.value().record(cmd, inputs);
-      if (!outcome.ok()) text = outcome.error().message;
+      const Result<void> result = effect.value().record(cmd, inputs);
+      if (!result.ok()) text = result.error().message;
       return {};
     }));
     return text;

@@ -1,5 +1,5 @@
-// What the effect refuses, whatever the memory: null handles, effects that were moved from, values out of range, and
-// settings that exceed the limits of the device. Nothing has changed after it.
+// The effect refuses null handles, effects that were moved from, values out of range, and settings that exceed the
+// limits of the device. Refusals change nothing.
 #include <cstring>
 #include <functional>
 #include <string>
@@ -12,14 +12,12 @@ namespace {
 TEST(EffectRefusals, NullCommandBuffersAndMovedFromEffectsAreErrors) {
   Effect effect = make(Built::in_part);
   const auto buffer = number<VkBuffer>(1000005);
-  const auto refuses = [&](const Result<void>& outcome) {
-    ASSERT_FALSE(outcome.ok());
-    EXPECT_EQ(outcome.error().code, ErrorCode::invalid_argument);
-    EXPECT_FALSE(outcome.error().message.empty());
+  const auto refuses = [&](const Result<void>& result) {
+    ASSERT_FALSE(result.ok());
+    EXPECT_EQ(result.error().code, ErrorCode::invalid_argument);
+    EXPECT_FALSE(result.error().message.empty());
   };
-  const auto of = [](const Result<Progress>& outcome) {
-    return outcome ? Result<void>() : Result<void>(outcome.error());
-  };
+  const auto of = [](const Result<Progress>& result) { return result ? Result<void>() : Result<void>(result.error()); };
   const auto all_recording = [&](VkCommandBuffer cmd) {
     refuses(effect.record(cmd, fake_frame()));
     refuses(of(effect.record_precompute(cmd)));
@@ -49,7 +47,7 @@ TEST(EffectRefusals, NullCommandBuffersAndMovedFromEffectsAreErrors) {
   EXPECT_TRUE(effect.resources().empty());
   EXPECT_TRUE(effect.timings(0).empty());
   EXPECT_TRUE(effect.precompute_timings().empty());
-  // It can be used again once another is assigned to it.
+  // It can be used again after another effect has been assigned to it.
   effect = std::move(other);
   EXPECT_OK(effect.record(kCommands, fake_frame()));
 }
@@ -70,12 +68,12 @@ TEST(EffectRefusals, ValuesOutOfRangeAreRefused) {
   }
 }
 
-// Limits of a device that some settings exceed.
+// Settings that exceed a limit of the device are refused with a message that names them.
 TEST(EffectRefusals, SettingsThatTheDeviceDoesNotAllowAreRefused) {
   struct Case {
-    const char* message;  // has this in it
+    const char* message;  // contained in the error message
     std::function<void(VkPhysicalDeviceProperties2&)> limit;
-    bool for_all;  // whether the small settings do not fit either
+    bool for_all;  // small settings exceed the limit, too
   };
   const auto buffers = [](VkPhysicalDeviceProperties2& p, VkDeviceSize bytes) {
     for (auto* next = static_cast<VkBaseOutStructure*>(p.pNext); next != nullptr; next = next->pNext) {
@@ -113,13 +111,13 @@ TEST(EffectRefusals, SettingsThatTheDeviceDoesNotAllowAreRefused) {
     Result<Effect> small = Effect::create(faults::fake_device(), small_desc(), small_params());
     EXPECT_EQ(small.ok(), !c.for_all) << c.message;
     if (!small.ok()) continue;
-    // Nor can it be made too large later.
-    commands_of_frame(small.value());  // the first prepares images
+    // Later changes to such settings are refused, too.
+    commands_of_frame(small.value());  // the first frame also prepares images
     const Observed before = observe(small.value());
     EXPECT_FALSE(small.value().set_limits(large.max_extent, 1, 64).ok());
     expect_same(before, observe(small.value()), c.message);
   }
-  // Parameters that a small device does not allow.
+  // The same for parameters.
   faults::set_properties([](P& p) {
     p.properties.limits.maxStorageBufferRange = 1U << 27;
     p.properties.limits.maxImageDimension3D = 256;

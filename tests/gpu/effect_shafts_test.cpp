@@ -1,6 +1,6 @@
-// Shadow maps cut into the air, through the public interface: maps whose shadow is known exactly (everything
-// west of a vertical plane that holds the sun's direction) against a double-precision integral over the lit
-// parts of each ray.
+// Light shafts, drawn through the public interface. The shadow is known exactly: everything west of a vertical plane
+// that contains the direction of the sun. The expected light is an integral over the lit parts of each ray in double
+// precision.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -12,13 +12,13 @@ namespace tyndall {
 namespace {
 
 constexpr double kRad = std::numbers::pi / 180.0;
-// The march takes the air once in a group of eight texels, and at least integration_steps times. A ray that crosses
-// a quarter to a half of a map of 1024 texels gets 32 to 64 groups; the midpoint rule errs by (group / scale of the
-// integrand)^2 / 24, which is below 0.2 % while a group is no longer than a fifth of that scale.
+// Marching evaluates the medium once per group of eight texels, and at least integration_steps times. A ray that
+// crosses a quarter to a half of a map of 1024 texels has 32 to 64 groups. The error of the midpoint rule is (group /
+// scale of the integrand)^2 / 24, which is below 0.2 % if a group is at most a fifth of that scale.
 constexpr double kMarchTolerance = 0.002;
 constexpr std::uint32_t kResolution = 1024;
-// The edge of a shadow is a ramp of one texel, and its group's air is taken in the middle, wherever the edge
-// is. Along a ray that runs nearly beside the edge, a texel is long.
+// The edge of a shadow is a ramp of one texel, and the medium is evaluated in the middle of the group, wherever the
+// edge is. A texel is long for a ray that is nearly parallel to the edge.
 constexpr double kEdgeTolerance = 0.005;
 
 enum class Shadow : std::uint32_t { none, everywhere, west };
@@ -30,15 +30,15 @@ struct Setting {
   double sun_elevation_deg;
   std::uint32_t resolution = kResolution;
 };
-// Shafts of tens of kilometres, and of hundreds where space is between the camera and the air: at the same
-// resolution a texel would be longer than the air is high.
+// Shafts of tens of kilometres, and from space of hundreds, where a higher resolution is needed: otherwise a texel
+// would be longer than the atmosphere is high.
 constexpr Setting kSettings[] = {{"ground", 5.0, 15.0, 40.0e3, 20.0},
                                  {"air", 6000.0, -3.0, 60.0e3, 4.0},
                                  {"below the horizon", 9000.0, 4.0, 60.0e3, -2.0},
                                  {"zenith", 3000.0, 0.0, 40.0e3, 90.0},
                                  {"space", 400000.0, -30.0, 900.0e3, 30.0, 4 * kResolution}};
 
-// Cascades of equal depth to `far_m`; the sun stands in the north or south, so that the plane x = 0 holds it.
+// Adds cascades of equal depth up to `far_m`. The sun is in the north or south, so the plane x = 0 contains it.
 void add_shadows(TestFrame& frame, const Setting& setting, Shadow shadow, std::uint32_t count) {
   const double e = setting.sun_elevation_deg * kRad;
   frame.to_sun = {0.0, std::sin(e), -std::cos(e)};
@@ -48,8 +48,8 @@ void add_shadows(TestFrame& frame, const Setting& setting, Shadow shadow, std::u
     Cascade cascade;
     cascade.near_m = i <= frame.first_marched ? 0.0F : static_cast<float>(setting.far_m * i / count);
     cascade.far_m = static_cast<float>(setting.far_m * (i + 1) / count);
-    // A square around the view, whose corners at tan_half 0.6 are 1.3 times as far as they are deep. The
-    // plane x = 0 lies between two texels.
+    // A square around the view. The distance of its corners at tan_half 0.6 is 1.3 times their depth. The plane x = 0
+    // is between two texels.
     const double half = cascade.far_m;
     const double texel = 2.0 * half / frame.shadow_resolution;
     glm::dvec3 middle = frame.view.position + frame.view.forward * (0.55 * cascade.far_m);
@@ -68,7 +68,7 @@ void add_shadows(TestFrame& frame, const Setting& setting, Shadow shadow, std::u
   const float nearest = frame.shadow_depth_reversed ? 1.0F : 0.0F;
   frame.shadow_depth = [=, first = frame.first_marched, cascades = frame.cascades](std::uint32_t c, double u,
                                                                                    double /*v*/) {
-    // What is not marched must not be looked at: it is all dark.
+    // Cascades that are not marched are all in shadow, so that reading them would be visible.
     const double edge = cascades[c].shadow_from_world.m[12];  // u where x is 0
     const bool dark = c < first || shadow == Shadow::everywhere || (shadow == Shadow::west && u < edge);
     return dark ? nearest : 1.0F - nearest;
@@ -79,14 +79,14 @@ TestFrame frame_for(const Setting& setting, double yaw_deg) {
   TestFrame frame;
   frame.shadow_resolution = setting.resolution;
   frame.view = TestView::at(setting.altitude_m, yaw_deg * kRad, setting.pitch_deg * kRad, 0.6);
-  // Off the plane, in the light, so that rays cross it at all distances.
+  // Beside the plane, on its lit side, so that rays cross it at all distances.
   frame.view.position.x = 0.05 * setting.far_m;
   return frame;
 }
 
 struct Truth {
-  glm::dvec3 shadowed;    // what the ray should show
-  glm::dvec3 unshadowed;  // the same ray without shadows
+  glm::dvec3 shadowed;    // expected light of the ray
+  glm::dvec3 unshadowed;  // without shadows
 };
 
 Truth truth_of(const Params& params, const TestFrame& frame, const Setting& setting, Shadow shadow, std::uint32_t x,
@@ -99,7 +99,7 @@ Truth truth_of(const Params& params, const TestFrame& frame, const Setting& sett
   if (seen > 0.0) end = std::min(end, seen);
   const glm::dvec3 direction = frame.view.ray(x, y, frame.extent);
   const double mapped = std::clamp(setting.far_m / glm::dot(direction, frame.view.forward), air->start, end);
-  const double crossing = -frame.view.position.x / direction.x;  // of the shadow's edge
+  const double crossing = -frame.view.position.x / direction.x;  // distance to the edge of the shadow
   double dark_from = air->start;
   double dark_to = mapped;
   if (shadow == Shadow::none) dark_to = dark_from;
@@ -127,14 +127,13 @@ class EffectShafts : public GpuTest {
     return image.ok() ? std::move(image).value() : std::vector<glm::dvec3>(pixels);
   }
 
-  // Largest error of a pixel, relative to the ray without shadows; and the least part of its light that a ray
-  // keeps.
-  struct Judgement {
-    double worst = 0.0, mean = 0.0, least_lit = 1.0;
+  // The largest and the mean error of a pixel, relative to the ray without shadows, and the smallest lit fraction.
+  struct Errors {
+    double worst = 0.0, mean = 0.0, min_lit = 1.0;
   };
-  Judgement judge(const Params& params, const TestFrame& frame, const Setting& setting, Shadow shadow) {
+  Errors errors_of(const Params& params, const TestFrame& frame, const Setting& setting, Shadow shadow) {
     const std::vector<glm::dvec3> image = draw(params, frame);
-    Judgement out;
+    Errors out;
     int count = 0;
     for (std::uint32_t y = 0; y < frame.extent.height; ++y) {
       for (std::uint32_t x = 0; x < frame.extent.width; ++x) {
@@ -148,27 +147,27 @@ class EffectShafts : public GpuTest {
         }
         out.worst = std::max(out.worst, error / whole);
         out.mean += (error / whole - out.mean) / ++count;
-        out.least_lit = std::min(out.least_lit, truth.shadowed.y / truth.unshadowed.y);
+        out.min_lit = std::min(out.min_lit, truth.shadowed.y / truth.unshadowed.y);
       }
     }
     return out;
   }
 
  private:
-  EffectKeeper effects_;
+  EffectCache effects_;
 };
 
-TEST_F(EffectShafts, AllLitIsAsWithoutShadows) {
+TEST_F(EffectShafts, AllLitEqualsNoShadows) {
   const Params params = precise_params();
   for (const Setting& setting : kSettings) {
     TestFrame frame = frame_for(setting, 10.0);
     add_shadows(frame, setting, Shadow::none, 1);
-    const Judgement j = judge(params, frame, setting, Shadow::none);
+    const Errors j = errors_of(params, frame, setting, Shadow::none);
     EXPECT_LE(j.worst, kMarchTolerance) << setting.name;
   }
 }
 
-TEST_F(EffectShafts, AllDarkShowsNothingBeforeTheLastCascadeEnds) {
+TEST_F(EffectShafts, AllInShadowIsBlackUpToTheEndOfTheLastCascade) {
   Params params = precise_params();
   for (const Setting& setting : kSettings) {
     TestFrame frame = frame_for(setting, 10.0);
@@ -181,22 +180,22 @@ TEST_F(EffectShafts, AllDarkShowsNothingBeforeTheLastCascadeEnds) {
         ASSERT_EQ(image[y * frame.extent.width + x], glm::dvec3(0.0)) << setting.name << " " << x << " " << y;
       }
     }
-    // Beyond it the air is lit: the same sum as without a shadow, from there on.
-    const Judgement j = judge(params, frame, setting, Shadow::everywhere);
+    // Beyond the last cascade everything is lit, with the same sum as without a shadow.
+    const Errors j = errors_of(params, frame, setting, Shadow::everywhere);
     EXPECT_LE(j.worst, kMarchTolerance) << setting.name;
-    EXPECT_LT(j.least_lit, 0.9) << setting.name;
+    EXPECT_LT(j.min_lit, 0.9) << setting.name;
   }
 }
 
-TEST_F(EffectShafts, AShadowsEdgeIsWhereItBelongs) {
+TEST_F(EffectShafts, TheEdgeOfAShadowIsAtItsPosition) {
   const Params params = precise_params();
   for (const Setting& setting : kSettings) {
-    // From the light into the dark, along the edge, and from the dark into the light.
+    // Views from the light into the shadow, along the edge, and from the shadow into the light.
     for (const auto& [yaw_deg, side] : {std::pair(-35.0, 1.0), {80.0, 1.0}, {200.0, -1.0}}) {
       TestFrame frame = frame_for(setting, yaw_deg);
       frame.view.position.x = side * 0.05 * setting.far_m;
       add_shadows(frame, setting, Shadow::west, 1);
-      const Judgement j = judge(params, frame, setting, Shadow::west);
+      const Errors j = errors_of(params, frame, setting, Shadow::west);
       EXPECT_LE(j.worst, kEdgeTolerance) << setting.name << " yaw " << yaw_deg << " side " << side;
     }
   }
@@ -210,9 +209,9 @@ TEST_F(EffectShafts, AnyNumberOfCascadesGivesTheSameShafts) {
       TestFrame frame = frame_for(setting, -35.0);
       frame.first_marched = first;
       add_shadows(frame, setting, Shadow::west, count);
-      // Without cascades nothing is dark.
+      // Without cascades there is no shadow.
       const Shadow truth = count == 0 ? Shadow::none : Shadow::west;
-      EXPECT_LE(judge(params, frame, setting, truth).worst, kEdgeTolerance) << count << " from " << first;
+      EXPECT_LE(errors_of(params, frame, setting, truth).worst, kEdgeTolerance) << count << " from " << first;
     }
   }
 }
@@ -221,8 +220,8 @@ TEST_F(EffectShafts, ReversedShadowDepthIsTheSamePicture) {
   const Params params = precise_params();
   const Setting& setting = kSettings[1];
   TestFrame frame = frame_for(setting, -35.0);
-  // Depths between the ends, so that the comparison's direction matters: the caster is a roof across the sun's
-  // rays, 2 km towards the sun from the camera, over the western half.
+  // Intermediate depths, so that the direction of the comparison matters. The caster is a roof across the sun's rays, 2
+  // km towards the sun from the camera, over the western half.
   const auto roofed = [&](bool reversed) {
     frame.shadow_depth_reversed = reversed;
     add_shadows(frame, setting, Shadow::west, 2);
@@ -241,7 +240,7 @@ TEST_F(EffectShafts, ReversedShadowDepthIsTheSamePicture) {
   const std::vector<glm::dvec3> open = draw(params, lit);
   double shadowed = 0.0;
   for (std::size_t i = 0; i < standard.size(); ++i) {
-    // One of the map's reads may fall on the other side of the roof by rounding: one in some 250.
+    // Because of rounding, one in about 250 reads of the map may be on the other side of the roof.
     EXPECT_LE(glm::length(standard[i] - reversed[i]), 0.005 * glm::length(open[i])) << i;
     shadowed = std::max(shadowed, 1.0 - standard[i].y / open[i].y);
   }

@@ -1,6 +1,6 @@
-// The brute-force technique in the modes that read the scattering tables, through the public interface: against
-// integration, whose shafts effect_shafts_test.cpp compares with the truth, and against each other. One build of
-// small tables serves each case.
+// Brute force in the modes that read the scattering tables, drawn through the public interface. They are compared with
+// integration, whose shafts effect_shafts_test.cpp tests, and with each other. All cases share one build of small
+// tables.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -11,18 +11,18 @@ namespace tyndall {
 namespace {
 
 constexpr double kRad = std::numbers::pi / 180.0;
-constexpr double kFar_m = 60.0e3;   // where the only cascade ends
-constexpr double kMap_m = 160.0e3;  // its width
-// Against integration: of the small tables, and of differences of two of their values.
+constexpr double kFar_m = 60.0e3;   // end of the only cascade
+constexpr double kMap_m = 160.0e3;  // width of its map
+// Error against integration: that of small tables, and of differences of two of their values.
 constexpr double kTableTolerance = 0.03;
-// Sums and differences of the same look-ups in another order.
+// Error between sums and differences of the same look-ups in different orders.
 constexpr double kRoundingTolerance = 1e-4;
 
 using Pixels = std::vector<glm::dvec3>;
 
 double largest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
 
-// Mean and largest difference of two pictures, relative to the pixels of a third.
+// The mean and the largest difference of two pictures, relative to the pixels of a third.
 struct Difference {
   double mean = 0.0, worst = 0.0;
 };
@@ -43,8 +43,8 @@ Pixels sum(const Pixels& a, const Pixels& b) {
   return out;
 }
 
-// From 6 km up across the sun's rays, on both sides of the horizon; the lower half of the picture ends on something
-// within the map and above the ground.
+// Returns a frame at an altitude of 6 km that looks across the sun's rays, above and below the horizon. The lower half
+// of the picture shows surfaces within the map and above the ground.
 TestFrame frame_from_the_air() {
   TestFrame frame;
   frame.extent = {16, 8};
@@ -57,7 +57,7 @@ TestFrame frame_from_the_air() {
   return frame;
 }
 
-// One cascade around the frame's view, in which `dark` says at which distances east of the camera the sun is hidden.
+// Adds one cascade around the view. `dark` returns whether the sun is hidden at a distance east of the camera.
 void add_shadow(TestFrame& frame, const std::function<bool(double east_m)>& dark) {
   const glm::dvec3 sun = frame.to_sun;
   const glm::dvec3 rows[3] = {glm::dvec3(1.0, 0.0, 0.0) / kMap_m, glm::dvec3(0.0, -sun.z, sun.y) / kMap_m,
@@ -74,9 +74,9 @@ void add_shadow(TestFrame& frame, const std::function<bool(double east_m)>& dark
 
 bool nowhere(double) { return false; }
 bool everywhere(double) { return true; }
-// Stripes: two stretches of light, 0 to 8 km and 20 to 36 km away.
+// Returns whether a distance is in shadow, with two lit sections: 0 to 8 km and 20 to 36 km.
 bool two_shafts(double east_m) { return !(east_m < 8.0e3 || (east_m > 20.0e3 && east_m < 36.0e3)); }
-// Lit from 12 to 30 km.
+// The same with one lit section from 12 to 30 km.
 bool one_shaft(double east_m) { return !(east_m > 12.0e3 && east_m < 30.0e3); }
 
 class EffectTables : public GpuTest {
@@ -163,7 +163,7 @@ TEST_F(EffectTables, OrderOneIsTheIntegral) {
   EXPECT_LE(difference(draw(frame, S::table, M::none), integral, integral).worst, kTableTolerance);
 }
 
-TEST_F(EffectTables, AllLitIsAsWithoutShadows) {
+TEST_F(EffectTables, AllLitEqualsNoShadows) {
   TestFrame frame = frame_from_the_air();
   const Pixels single = draw(frame, S::table, M::none);
   const Pixels high = draw(frame, S::none, M::occluded);
@@ -174,7 +174,7 @@ TEST_F(EffectTables, AllLitIsAsWithoutShadows) {
   }
 }
 
-TEST_F(EffectTables, AllDarkShowsOnlyWhatLiesBeyondTheMap) {
+TEST_F(EffectTables, AllInShadowShowsOnlyLightFromBeyondTheMap) {
   TestFrame frame = frame_from_the_air();
   const Pixels open = draw(frame, S::integration, M::none);
   const Pixels open_high = draw(frame, S::none, M::unoccluded);
@@ -185,13 +185,13 @@ TEST_F(EffectTables, AllDarkShowsOnlyWhatLiesBeyondTheMap) {
     const Pixels high = draw(frame, S::none, M::occluded, sections);
     EXPECT_LE(difference(single, beyond, open).worst, kTableTolerance);
     for (std::size_t i = 0; i < single.size(); ++i) {
-      // The lower half ends on geometry within the map.
+      // The rays of the lower half end on surfaces within the map.
       const bool ends_in_map = i >= single.size() / 2;
       EXPECT_EQ(largest(single[i]) == 0.0, ends_in_map) << i;
       EXPECT_EQ(largest(high[i]) == 0.0, ends_in_map) << i;
     }
   }
-  // Light from all around is not cut off where multiple scattering is unoccluded.
+  // Unoccluded multiple scattering ignores shadows.
   EXPECT_EQ(draw(frame, S::none, M::unoccluded), open_high);
 }
 
@@ -205,15 +205,15 @@ TEST_F(EffectTables, EachSectionIsTheIntegralAndOneContiguousIsNot) {
   EXPECT_GT(difference(truth, open, open).mean, 0.2) << "the frame has shafts";
   EXPECT_LE(each.worst, kTableTolerance);
   EXPECT_GT(contiguous.mean, 2.0 * each.mean);
-  // The same length of light, taken a little nearer to the eye or further from it.
+  // The lit length is the same, but at slightly different distances.
   EXPECT_LE(contiguous.worst, 0.15);
-  // Orders beyond the first are cut likewise.
+  // Higher orders are treated in the same way.
   const Pixels high_each = draw(frame, S::none, M::occluded, LitSections::each);
   const Pixels high_contiguous = draw(frame, S::none, M::occluded, LitSections::contiguous);
   const Pixels high_open = draw(frame, S::none, M::unoccluded);
   EXPECT_LE(difference(high_each, high_contiguous, high_open).worst, 0.15);
   for (std::size_t i = 0; i < open.size(); ++i) {
-    // The shadow takes about as large a part of them.
+    // The shadow reduces them by about the same fraction.
     EXPECT_NEAR(high_each[i].y / high_open[i].y, truth[i].y / open[i].y, 0.1) << i;
   }
 }
@@ -250,7 +250,7 @@ TEST_F(EffectTables, FromSpaceOrderOneIsTheIntegral) {
     frame.view = TestView::at(400000.0, 0.0, -22.0 * kRad, 0.18);
     frame.to_sun = {0.0, std::sin(elevation_deg * kRad), -std::cos(elevation_deg * kRad)};
     const Pixels integral = draw(frame, S::integration, M::none);
-    // Pixels that are a hundredth as bright as the brightest are judged by that.
+    // Errors of dark pixels are relative to a hundredth of the brightest.
     Pixels scale = integral;
     double brightest = 0.0;
     for (const glm::dvec3& p : integral) brightest = std::max(brightest, largest(p));

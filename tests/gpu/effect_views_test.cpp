@@ -1,4 +1,4 @@
-// Several pictures in one frame, and recordings that would take each other's constants.
+// Several pictures in one frame, and recordings that would overwrite each other's constants.
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,7 +16,7 @@ class EffectViews : public GpuTest {
     params.scattering.integration_steps = 12;
     return params;
   }
-  // The effect with its messages in texts_.
+  // Creates an effect whose messages are collected in texts_.
   Result<Effect> create(const EffectDesc& desc) {
     DeviceInfo device = info();
     device.message = [](void* user, Severity, std::string_view text) {
@@ -42,9 +42,9 @@ TEST_F(EffectViews, OfOneFrameAreThoseOfTheirOwn) {
   desc.counters = true;
   Result<Effect> effect = create(desc);
   ASSERT_OK(effect);
-  const Result<MemoryUsage> asked = query_memory(info(), desc, light_params());
-  ASSERT_OK(asked);
-  EXPECT_EQ(asked.value().host, effect.value().memory().host);
+  const Result<MemoryUsage> planned = query_memory(info(), desc, light_params());
+  ASSERT_OK(planned);
+  EXPECT_EQ(planned.value().host, effect.value().memory().host);
   std::vector<FrameImages> images;
   std::vector<std::vector<std::byte>> alone;
   const TestFrame frames[2] = {left_eye(), right_eye()};
@@ -109,7 +109,7 @@ TEST_F(EffectViews, TheSameFrameTwiceIsAnErrorUntilItHasCompleted) {
   for (const char* word : {"frame_index 4", "view 0", "not completed", "EffectDesc::views"}) {
     EXPECT_NE(second.error().message.find(word), std::string::npos) << second.error().message;
   }
-  // The host has waited: the slot is free, whatever index comes next.
+  // The host has waited, so the slot is free for any frame index.
   record_both(4, 5);
   EXPECT_OK(first);
   EXPECT_OK(second);
@@ -117,7 +117,8 @@ TEST_F(EffectViews, TheSameFrameTwiceIsAnErrorUntilItHasCompleted) {
   EXPECT_OK(first);
   EXPECT_OK(second);
   EXPECT_EQ(texts_, std::vector<std::string>());
-  // More frames than frames_in_flight, 2: the first may have been dropped by the caller, so it is a remark.
+  // More frames are in flight than frames_in_flight, 2. This is only a remark, because the caller may have dropped the
+  // commands of the first.
   record_both(6, 8);
   EXPECT_OK(first);
   EXPECT_OK(second);

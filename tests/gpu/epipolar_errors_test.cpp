@@ -1,6 +1,6 @@
-// Epipolar sampling where it is hardest: an occluder in front of the sun, twilight, scenes with more depth
-// discontinuities than are corrected, and skies that show every seam. The reference is brute force with the same frame
-// and the same shadow maps.
+// Epipolar sampling in difficult scenes: an occluder in front of the sun, twilight, more depth discontinuities than can
+// be corrected, and skies in which seams would be visible. The reference is brute force with the same frame and the
+// same shadow maps.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,10 +19,10 @@ double largest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
 struct Pillar {
   const char* name;
   double distance_m, half_width_m;
-  double sun_from_middle;  // in half widths
+  double sun_from_middle;  // distance of the sun from the middle of the pillar, in half widths of it
   double sun_elevation_deg, altitude_m, far_m;
   float aerosol_density;
-  double bound;  // on the relative error of any pixel of its face
+  double bound;  // maximum relative error of a pixel of its face
 };
 
 BoxScene scene_of(const Pillar& pillar) {
@@ -41,8 +41,8 @@ BoxScene scene_of(const Pillar& pillar) {
   return scene;
 }
 
-// The sides of the pillar are left out: shadow maps have texels wider than a pixel, and both techniques read them at
-// different places.
+// The sides of the pillar are not compared, because the texels of shadow maps are wider than a pixel there, and the
+// techniques read them at different positions.
 TEST_F(EpipolarErrors, FaceBeforeTheSunHasNoSparks) {
   const Pillar pillars[] = {
       {"sun in the middle", 500.0, 40.0, 0.0, 9.0, 20.0, 2000.0, 1.0F, 0.05},
@@ -85,8 +85,8 @@ TEST_F(EpipolarErrors, FaceBeforeTheSunHasNoSparks) {
   }
 }
 
-// The planet's shadow bends the light of twilight where the unshadowed light is smooth. The sky above the horizon, at
-// the exposure at which it is seen.
+// In twilight, the planet's shadow curves the in-scattering, but not unshadowed in-scattering. Compares the sky above
+// the horizon at its own exposure.
 TEST_F(EpipolarErrors, TwilightSkyIsLikeBruteForce) {
   BoxScene scene;
   scene.name = "twilight";
@@ -111,8 +111,8 @@ TEST_F(EpipolarErrors, TwilightSkyIsLikeBruteForce) {
   EXPECT_GE(psnr_db, 65.0);  // 63.1 with the initial samples of daytime
 }
 
-// Depths without any order, so that most pixels have a depth of their own: more than there is room for.
-TEST_F(EpipolarErrors, TooManyDepthBreaksAreAllLeftAlone) {
+// With random depths, most pixels fit no sample, and there are more of them than the list can hold.
+TEST_F(EpipolarErrors, TooManyDepthDiscontinuitiesAreNotCorrected) {
   TestFrame scattered = frame_of({});
   const std::uint32_t width = scattered.extent.width;
   scattered.distance_m = [width](std::uint32_t x, std::uint32_t y) {
@@ -137,17 +137,16 @@ TEST_F(EpipolarErrors, TooManyDepthBreaksAreAllLeftAlone) {
             compare(picture, reference, scattered.extent).psnr_db + 3.0);
 }
 
-// The sky above buildings and ground: slices come out of the ground one after the other, and no step may be seen where
-// one does.
-TEST_F(EpipolarErrors, FewSlicesLeaveNoStepInTheSky) {
+// Slices leave the ground at different positions of the skyline. None of them may cause a visible seam in the sky.
+TEST_F(EpipolarErrors, FewSlicesCauseNoSeamInTheSky) {
   struct Case {
     const char* name;
     VkExtent2D extent;
     std::uint32_t slices;
     double sun_x, sun_y;
-    std::size_t most_steps;
+    std::size_t max_steps;
   };
-  constexpr double kStep = 0.05;  // of the light, from one pixel to the next, that brute force does not have
+  constexpr double kStep = 0.05;  // relative change from pixel to pixel that brute force does not have
   const Case cases[] = {{"32 slices, sun in view", {160, 90}, 32, 0.8, -0.8, 6},
                         {"32 slices, sun beside the view", {160, 90}, 32, 1.6, -0.9, 6},
                         {"300 slices, sun in view", {1800, 250}, 300, 0.8, -0.8, 6}};
@@ -174,18 +173,18 @@ TEST_F(EpipolarErrors, FewSlicesLeaveNoStepInTheSky) {
     }
     RecordProperty(std::string("steps: ") + c.name, std::to_string(steps) + " of " + std::to_string(seen_pixels));
     EXPECT_GT(seen_pixels, reference.size() / 10) << c.name;
-    EXPECT_LE(steps, c.most_steps) << c.name;
+    EXPECT_LE(steps, c.max_steps) << c.name;
   }
 }
 
-// Where the light is smooth, it is smooth across slices: what a seam would add to the second differences is
-// bounded by those of brute force.
+// Smooth in-scattering is also smooth across slices. A seam would increase the second differences above those of brute
+// force.
 TEST_F(EpipolarErrors, SmoothLightHasNoSeams) {
   for (const bool inside : {true, false}) {
     BoxScene scene = inside ? sun_at("sun in view", 0.31, -0.23, 25.0) : sun_at("sun beside the view", 1.8, -1.5, 25.0);
     scene.buildings = scene.ground = false;
     scene.cascades = 0;
-    scene.tan_half_height = 0.06;  // the sky bends little from pixel to pixel
+    scene.tan_half_height = 0.06;  // the sky changes almost linearly from pixel to pixel
     show(scene);
     Params params = small_params();
     const Picture reference = draw(by_brute_force(params), scene.name);

@@ -1,7 +1,6 @@
-// Epipolar sampling in every mode against brute force: the same frame, the same shadow maps, at fixed exposure. Each
-// case has a floor, some 3 dB below what it reaches but 40 dB where it reaches that; none may have a pixel that is
-// black, negative or not finite. What its counters, marks and corrections say; changes of parameters between frames in
-// flight.
+// Epipolar sampling in every mode against brute force with the same frame, shadow maps and exposure. Each case has a
+// minimum PSNR, about 3 dB below its value or 40 dB if it reaches that. No pixel may be black, negative or not finite.
+// Also tests counters, marks and corrections, and changes of parameters between frames in flight.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -44,7 +43,7 @@ TEST_F(Epipolar, EveryModeIsLikeBruteForce) {
       }
     }
   }
-  // The other parameters, where the shafts are strongest.
+  // The other parameters, with the strongest shafts.
   const auto with = [&](const char* name, const std::function<void(Params&)>& change, double floor_db) {
     Params params = small_params();
     params.scattering.single = SingleScattering::integration;
@@ -76,7 +75,7 @@ TEST_F(Epipolar, EveryModeIsLikeBruteForce) {
 TEST_F(Epipolar, TreesFormatsAndOrderOfCascadesChangeNothing) {
   for (const bool reached : {true, false}) {
     BoxScene scene;
-    // Maps of which a part is behind the room for trees, and such that fit.
+    // One map extends beyond the capacity of the trees, the other fits.
     scene.shadow_resolution = reached ? 512 : 1024;
     scene.pitch_deg = reached ? 3.0 : 12.0;
     show(scene);
@@ -87,8 +86,8 @@ TEST_F(Epipolar, TreesFormatsAndOrderOfCascadesChangeNothing) {
       base.scattering.sections = integrated ? LitSections::each : LitSections::contiguous;
       const std::string where = std::string(integrated ? "integrated" : "tables") + (reached ? "" : ", larger map");
       const Picture picture = draw(base, where);
-      // Trees tell nothing that the maps do not. Another order of additions may move a sample's source by a
-      // step of its root in half precision.
+      // Trees only skip reads of the maps. A different order of additions may change the square root of a mean source
+      // function by one step of half precision.
       constexpr double kStep = 2.0 / 1024.0;
       const auto same = [&](const char* name, const std::function<void(Params&)>& change) {
         Params params = base;
@@ -110,7 +109,7 @@ TEST_F(Epipolar, TreesFormatsAndOrderOfCascadesChangeNothing) {
   }
 }
 
-TEST_F(Epipolar, CountersSayWhatWasDone) {
+TEST_F(Epipolar, CountersReportTheWork) {
   BoxScene scene;
   scene.shadow_resolution = 512;
   show(scene);
@@ -124,7 +123,7 @@ TEST_F(Epipolar, CountersSayWhatWasDone) {
   EXPECT_EQ(brute.tree_nodes_visited, 0U);
   EXPECT_EQ(brute.pixels_corrected, 0U);
 
-  // All samples, so that what is counted does not hang on which are chosen.
+  // March all samples, so that the counters do not depend on refinement.
   params.epipolar.initial_step = 1;
   draw(params, "tree");
   const Counters tree = counters();
@@ -143,7 +142,7 @@ TEST_F(Epipolar, CountersSayWhatWasDone) {
   RecordProperty("fetches", std::to_string(brute.shadow_map_fetches) + " " + std::to_string(texels.shadow_map_fetches) +
                                 " " + std::to_string(tree.shadow_map_fetches));
 
-  // The same rays, however the cascades follow each other.
+  // The number of rays does not depend on the order of the cascades.
   params.epipolar.min_max_tree = true;
   for (const CascadeProcessing processing : {CascadeProcessing::multi_pass, CascadeProcessing::multi_pass_instanced}) {
     params.shadows.cascade_processing = processing;
@@ -160,8 +159,8 @@ TEST_F(Epipolar, CountersSayWhatWasDone) {
   EXPECT_GT(counters().samples_marched, 0U);
 }
 
-// A tree ends where rays of marched samples do; those of corrected pixels may go on.
-TEST_F(Epipolar, RaysGoOnWhereTreesEnd) {
+// Trees are built as far as the rays of marched samples reach. Rays of corrected pixels may be longer.
+TEST_F(Epipolar, RaysContinueWhereTreesEnd) {
   BoxScene scene;
   scene.pitch_deg = 0.0;
   scene.sun.elevation_deg = 25.0;
@@ -178,7 +177,7 @@ TEST_F(Epipolar, RaysGoOnWhereTreesEnd) {
   const Picture with_tree = draw(params, "tree");
   EXPECT_GT(counters().pixels_corrected, 50U);
   params.epipolar.min_max_tree = false;
-  constexpr double kSums = 1e-6;  // of the same stretches in other pieces
+  constexpr double kSums = 1e-6;  // rounding of the same lengths, divided differently
   EXPECT_LE(compare(draw(params, "no tree"), with_tree, scene.extent).worst_relative_error, kSums);
 }
 
@@ -187,7 +186,7 @@ TEST_F(Epipolar, DepthBreaksAreCorrectedAndMarked) {
   show(scene);
   Params params = small_params();
   params.scattering.single = SingleScattering::integration;
-  // Few samples, so that many pixels of the silhouettes have none of their depth near.
+  // With few samples, many pixels at silhouettes have no sample at their depth.
   params.epipolar.slices = 512;
   params.epipolar.samples = 32;
   const Picture reference = draw(by_brute_force(params), "brute force");
@@ -208,8 +207,8 @@ TEST_F(Epipolar, DepthBreaksAreCorrectedAndMarked) {
   EXPECT_EQ(counters().pixels_corrected, fewest);
 
   std::uint64_t green = 0;
-  double unlike_all = 0.0;  // mean errors
-  double before = 0.0;      // of those that only the parameter corrects
+  double unlike_all = 0.0;  // mean errors of pixels unlike all their samples
+  double before = 0.0;      // and of the pixels that only the parameter corrects
   double after = 0.0;
   for (std::size_t i = 0; i < plain.size(); ++i) {
     if (is_mark(fewest_marked[i])) {
@@ -217,7 +216,7 @@ TEST_F(Epipolar, DepthBreaksAreCorrectedAndMarked) {
       EXPECT_EQ(plain[i], corrected[i]) << i;
     }
     if (!is_mark(marked[i])) {
-      // What is not marked is not touched.
+      // Pixels without a mark are unchanged.
       EXPECT_EQ(marked[i], plain[i]) << i;
       EXPECT_EQ(corrected[i], plain[i]) << i;
       continue;
@@ -228,7 +227,7 @@ TEST_F(Epipolar, DepthBreaksAreCorrectedAndMarked) {
     (always ? unlike_all : after) += error / static_cast<double>(always ? fewest : count - fewest);
     if (!always)
       before += glm::length(plain[i] - reference[i]) / glm::length(reference[i]) / static_cast<double>(count - fewest);
-    // A silhouette: a neighbour of another depth.
+    // A pixel at a silhouette has a neighbour at another depth.
     const auto x = static_cast<std::uint32_t>(i % scene.extent.width);
     const auto y = static_cast<std::uint32_t>(i / scene.extent.width);
     const auto depth = [&](std::uint32_t px, std::uint32_t py) {
@@ -271,7 +270,7 @@ TEST_F(Epipolar, SamplesAreShown) {
   std::size_t dark = 0;
   for (std::size_t i = 0; i < plain.size(); ++i) {
     if (shown[i] == plain[i]) continue;
-    // Nothing but red.
+    // Marks are pure red.
     EXPECT_GT(shown[i].x, 0.0);
     EXPECT_EQ(shown[i].y, 0.0);
     EXPECT_EQ(shown[i].z, 0.0);
@@ -314,12 +313,12 @@ TEST_F(Epipolar, ParametersChangeWhileFramesAreInFlight) {
   add([](Params& p) { p.epipolar.correct_depth_breaks = true; });
   add([](Params& p) { p.scattering.enabled = false; });
   add([](Params&) {});
-  // Each alone.
+  // Pictures of single frames.
   std::vector<Picture> alone;
   for (const Params& params : changes) alone.push_back(draw(params, "alone"));
-  bool kept = false;
-  // As many as may be in flight, in one submission, all of different parameters; the last one's picture is
-  // left.
+  bool allocated = false;
+  // One submission contains as many frames as may be in flight, with different parameters. The output is the picture of
+  // the last one.
   std::uint64_t index = 0;
   for (std::size_t first = 0; first < changes.size(); ++first) {
     const std::size_t last = std::min(first + 2, changes.size() - 1);
@@ -327,7 +326,7 @@ TEST_F(Epipolar, ParametersChangeWhileFramesAreInFlight) {
       for (std::size_t i = first; i <= last; ++i) {
         FrameInputs inputs = images().inputs(frame());
         inputs.frame_index = index++;
-        gpu::compute_barrier(host().device(), cmd);  // the frame before wrote the same output
+        gpu::compute_barrier(host().device(), cmd);  // the previous frame wrote the same output
         const Result<void> taken = effect().set_params(changes[i]);
         if (!taken.ok()) return taken.error();
         const Result<void> recorded = effect().record(cmd, inputs);
@@ -335,7 +334,7 @@ TEST_F(Epipolar, ParametersChangeWhileFramesAreInFlight) {
         const Result<MemoryUsage> expected = query_memory(info(), description, changes[i]);
         if (!expected.ok()) return expected.error();
         EXPECT_EQ(effect().memory().persistent, expected.value().persistent) << i;
-        kept = kept || effect().memory().transient > 0;
+        allocated = allocated || effect().memory().transient > 0;
       }
       return {};
     }));
@@ -343,8 +342,8 @@ TEST_F(Epipolar, ParametersChangeWhileFramesAreInFlight) {
     ASSERT_OK(output);
     EXPECT_EQ(output.value(), alone[last]) << first;
   }
-  // What was replaced is gone when no frame can use it any more.
-  EXPECT_TRUE(kept);
+  // Replaced buffers are freed once no frame can use them any more.
+  EXPECT_TRUE(allocated);
   for (int i = 0; i < 5; ++i) draw(changes.back(), "again");
   EXPECT_EQ(effect().memory().transient, 0U);
 }

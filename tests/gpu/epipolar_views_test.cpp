@@ -1,7 +1,7 @@
-// Epipolar sampling against brute force wherever sun and camera are, and whatever the picture's size, the
-// maps, the slices: the same frame, the same shadow maps, the same modes, at fixed exposure. Each case has a
-// floor, some 3 dB below what it reaches but 40 dB where it reaches that; none may have a pixel that is
-// black, negative or not finite. Small pictures are hard ones: a pixel of theirs is eight of a large one.
+// Epipolar sampling against brute force for various positions of sun and camera, picture sizes, shadow maps and numbers
+// of slices, with the same frame, modes and exposure. Each case has a minimum PSNR, about 3 dB below its value or 40 dB
+// if it reaches that. No pixel may be black, negative or not finite. Small pictures are difficult, because their pixels
+// are as wide as eight of a large one.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -25,7 +25,7 @@ BoxScene seen(const std::string& name, const std::function<void(BoxScene&)>& cha
 
 class Epipolar : public SharedEffect {
  protected:
-  // With light from the tables and with light integrated along the ray.
+  // Compares both techniques with in-scattering from the tables, and integrated along the ray.
   void expect_alike_in_both_modes(const std::vector<View>& views) {
     for (const View& view : views) {
       show(view.scene);
@@ -37,8 +37,8 @@ class Epipolar : public SharedEffect {
   }
 };
 
-TEST_F(Epipolar, TheSunMayStandAnywhere) {
-  const double pixel = 1.0 / 160.0;  // the outermost pixel's middle is half a pixel, this much, from the border
+TEST_F(Epipolar, TheSunMayBeAnywhere) {
+  const double pixel = 1.0 / 160.0;  // half a pixel: distance of the outermost pixel centres from the border
   const double line = 1.0 / 90.0;
   std::vector<View> views = {
       {sun_at("straight ahead", 0.0, 0.0, 6.0), 40.0},
@@ -57,7 +57,7 @@ TEST_F(Epipolar, TheSunMayStandAnywhere) {
       {sun_at("beside the picture", 1.4, -0.3, 8.0), 42.0},
       {sun_at("far above", 0.2, -9.0, 0.0), 42.0},
   };
-  // At right angles to the view: w of the epipole is 0.
+  // At a right angle to the view, w of the epipole is 0.
   views.push_back({seen("exactly at the side",
                         [](BoxScene& s) {
                           s.sun.elevation_deg = 0.0;
@@ -82,7 +82,7 @@ TEST_F(Epipolar, TheSunMayStandAnywhere) {
   expect_alike_in_both_modes(views);
 }
 
-TEST_F(Epipolar, TheCameraMayStandAnywhere) {
+TEST_F(Epipolar, TheCameraMayBeAnywhere) {
   const std::vector<View> views = {
       {seen("on the ground",
             [](BoxScene& s) {
@@ -92,13 +92,13 @@ TEST_F(Epipolar, TheCameraMayStandAnywhere) {
        40.0},
       {seen("in a building's shadow",
             [](BoxScene& s) {
-              s.altitude_m = 300.0;  // the hovering one and the nearest tower stand before the sun
+              s.altitude_m = 300.0;  // the hovering building and the nearest tower are in front of the sun
               s.sun.azimuth_deg = 353.0;
               s.sun.elevation_deg = 12.0;
               s.pitch_deg = 10.0;
             }),
        40.0},
-      // Under water level, and a little above it over lower land.
+      // Below sea level, and slightly above it over lower land.
       {seen("by the Dead Sea",
             [](BoxScene& s) {
               s.altitude_m = -428.0;
@@ -155,7 +155,7 @@ TEST_F(Epipolar, TheLimbMayBeSeenFromSpace) {
               s.far_m = 3.0e6;
               s.tan_half_height = 0.12;
               s.building_size = 60.0;  // shadows of hundreds of kilometres
-              s.ground_casts = false;  // not from a map with texels higher than most of the air
+              s.ground_casts = false;  // texels are higher than most of the atmosphere
             }),
        40.0},
       {seen("limb from 400 km, planet not drawn",
@@ -167,7 +167,7 @@ TEST_F(Epipolar, TheLimbMayBeSeenFromSpace) {
               s.cascades = 0;
             }),
        47.0},
-      // Lit from behind, the light of the lowest air changes several times over from pixel to pixel.
+      // Against the sun, the light of the lowest atmosphere changes by a large factor from pixel to pixel.
       {seen("limb against the sun",
             [](BoxScene& s) {
               s.altitude_m = 400000.0;
@@ -265,7 +265,7 @@ TEST_F(Epipolar, ThePictureMayHaveAnyShapeAndFieldOfView) {
   expect_alike_in_both_modes(views);
 }
 
-TEST_F(Epipolar, AnyShadowMapsWillDo) {
+TEST_F(Epipolar, ShadowMapsMayHaveAnySizeAndDepth) {
   Params params = small_params();
   params.scattering.single = SingleScattering::integration;
   params.scattering.multiple = MultipleScattering::occluded;
@@ -288,7 +288,7 @@ TEST_F(Epipolar, AnyShadowMapsWillDo) {
   with("333 texels", 3, 0, 333, 40.0);
 }
 
-TEST_F(Epipolar, DepthMayBeStandardAndThatOfShadowsReversed) {
+TEST_F(Epipolar, SceneDepthMayBeStandardAndShadowDepthReversed) {
   BoxScene scene;
   scene.extent = {96, 54};
   scene.far_m = 30000.0;
@@ -326,7 +326,7 @@ TEST_F(Epipolar, SlicesAndSamplesAtBothEnds) {
         std::to_string(slices) + " slices, " + std::to_string(samples) + " samples" + (optimised ? "" : ", all used"),
         params, floor_db);
   };
-  // A picture of boxes whose shafts are finer than so few slices; the default scene at 1280 x 720 has 40 dB with them.
+  // The shafts between the boxes are finer than so few slices. The default scene at 1280 x 720 has 40 dB with them.
   with(32, 32, true, 36.0);
   with(2048, 32, true, 40.0);
   with(32, 2048, true, 36.0);
@@ -336,7 +336,7 @@ TEST_F(Epipolar, SlicesAndSamplesAtBothEnds) {
 }
 
 // Fewer than 256 slices that are four pixels apart have pipelines of their own.
-TEST_F(Epipolar, FewSlicesWillDoInEveryMode) {
+TEST_F(Epipolar, FewSlicesAreAccurateInEveryMode) {
   for (const VkExtent2D extent : {VkExtent2D{160, 90}, VkExtent2D{96, 54}}) {
     const auto with = [&](const std::string& name, const std::function<void(Params&)>& change, double floor_db) {
       Params params = small_params();

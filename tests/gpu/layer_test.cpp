@@ -1,4 +1,4 @@
-// The Vulkan layer under everything: bindings by name, timers, transfers, and the choice of the device.
+// The private Vulkan layer: bindings by name, timers, transfers, and the selection of the device.
 #include <chrono>
 #include <cstring>
 
@@ -37,7 +37,7 @@ class GpuLayer : public GpuTest {
 
   void record(VkCommandBuffer cmd, std::uint32_t steps, const Pipeline& pipeline) {
     const NamedResource resources[] = {named_buffer("value_block", values_.buffer.get()),
-                                       named_buffer("not_asked_for", seed_.buffer.get()),
+                                       named_buffer("not_a_binding", seed_.buffer.get()),
                                        named_buffer("seed_block", seed_.buffer.get())};
     EXPECT_EQ(bind(host().device(), cmd, pipeline, resources, &steps), "");
     dispatch(host().device(), cmd, pipeline, 64);
@@ -57,7 +57,7 @@ TEST_F(GpuLayer, ResourcesAreBoundByNameWhateverTheirOrder) {
   }));
   const auto* values = static_cast<const float*>(values_.mapped);
   for (int i = 0; i < 64; ++i) EXPECT_EQ(values[i], 2.0F);
-  // A specialisation constant makes a variant.
+  // A specialisation constant selects a variant.
   const Constant constants[] = {{0, 5}};
   const Result<Pipeline> variant = create_compute_pipeline(host().device(), shaders::fill_comp, constants);
   ASSERT_OK(variant);
@@ -88,7 +88,7 @@ TEST_F(GpuLayer, TimersMeasureWhatTheyEnclose) {
   ASSERT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
     timer.value().begin_frame(cmd, 1);
     const char* const names[] = {"long", "short", "middle", "too many"};
-    const std::uint32_t steps[] = {60000, 600, 6000, 600};  // llvmpipe ends a loop after 65535 rounds
+    const std::uint32_t steps[] = {60000, 600, 6000, 600};  // llvmpipe ends loops after 65535 iterations
     for (int i = 0; i < 4; ++i) {
       timer.value().begin(cmd, names[i]);
       record(cmd, steps[i], fill_);
@@ -108,7 +108,7 @@ TEST_F(GpuLayer, TimersMeasureWhatTheyEnclose) {
     sum += scope.milliseconds;
   }
   EXPECT_LE(sum, wall_ms);
-  // Ten times the work: a busy machine may stretch one of them, but not that far.
+  // There is ten times the work. A busy machine may delay one of them, but not by that much.
   EXPECT_GT(scopes[0].milliseconds, 2.0 * scopes[2].milliseconds);
   EXPECT_TRUE(timer.value().read(0).empty());  // nothing was recorded there
 }
@@ -126,7 +126,7 @@ TEST_F(GpuLayer, TransfersPreserveEveryByte) {
   ASSERT_OK(buffer);
   ASSERT_OK(upload(host(), buffer.value(), bytes.data(), bytes.size()));
   same(download(host(), buffer.value(), bytes.size()), 0, bytes.size());
-  // Two layers, odd sizes, rows packed tightly.
+  // Two layers, odd sizes, and tightly packed rows.
   const ImageDesc desc = {
       "layers",
       VK_FORMAT_R8G8_UNORM,
@@ -142,7 +142,8 @@ TEST_F(GpuLayer, TransfersPreserveEveryByte) {
 }
 
 TEST_F(GpuLayer, ValidationMessagesAreReceived) {
-  // What every other test relies on: a mistake is reported. In a host of its own, so that this test passes.
+  // Verifies that mistakes are reported, which every other test relies on. It uses its own host, so that this message
+  // does not fail the test.
   std::vector<std::string> heard;
   {
     Result<std::unique_ptr<Host>> own = Host::create({"", true, &heard});
@@ -153,7 +154,7 @@ TEST_F(GpuLayer, ValidationMessagesAreReceived) {
     EXPECT_TRUE(heard.empty());
     ASSERT_OK(own.value()->run([&](VkCommandBuffer cmd) -> Result<void> {
       device.vk.CmdFillBuffer(cmd, buffer.value().buffer.get(), 0, 64, 1);
-      device.vk.CmdFillBuffer(cmd, buffer.value().buffer.get(), 0, 64, 2);  // written again without a barrier
+      device.vk.CmdFillBuffer(cmd, buffer.value().buffer.get(), 0, 64, 2);  // a second write without a barrier
       return {};
     }));
     EXPECT_EQ(heard.size(), 1U);
@@ -176,7 +177,7 @@ TEST_F(GpuLayer, DevicesAreListedAndChosen) {
     }
   }
   EXPECT_EQ(chosen, 1);
-  // By index, and by part of the name in any case.
+  // By index, and by a part of the name in any case.
   const Result<std::vector<DeviceRow>> first = Host::list("0");
   ASSERT_OK(first);
   EXPECT_TRUE(first.value()[0].chosen);
@@ -187,7 +188,7 @@ TEST_F(GpuLayer, DevicesAreListedAndChosen) {
     const Result<std::unique_ptr<Host>> none = Host::create({wrong, false});
     ASSERT_FALSE(none.ok()) << wrong;
     EXPECT_EQ(none.error().code, ErrorCode::invalid_argument);
-    EXPECT_NE(none.error().message.find(host().device_name()), std::string::npos);  // says which there are
+    EXPECT_NE(none.error().message.find(host().device_name()), std::string::npos);  // lists the available devices
     EXPECT_FALSE(Host::list(wrong).ok());
   }
 }

@@ -1,5 +1,5 @@
-// Meshes on a device: where they are, their holes, their shadows, and the colour of what glass lets pass, on surfaces
-// and in the air.
+// Meshes on a device: their positions, holes and shadows, and the colour of light transmitted by glass, on surfaces and
+// in the medium.
 #include <unistd.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ class GpuMeshes : public SharedSceneTest {
                   .string()) {
     params_.tables.size = {8, 32, 32, 4};
     params_.tables.orders = 1;
-    params_.scattering.enabled = false;  // the light of the surfaces themselves
+    params_.scattering.enabled = false;  // only surfaces
     scene_.terrain.source = "none";
     scene_.camera.position_m = {0.0F, static_cast<float>(kHeight_m), 0.0F};
     scene_.camera.yaw_deg = 0.0F;
@@ -77,7 +77,7 @@ class GpuMeshes : public SharedSceneTest {
     for (const float value : radiance.value().rgb) EXPECT_TRUE(std::isfinite(value) && value >= 0.0F);
     return std::move(radiance).value();
   }
-  // Radiance at a place that stands `y` above the ground, seen from above.
+  // Returns the radiance of a point at a height `y` above the ground, seen from above.
   static glm::dvec3 at(const image::Image& image, double x, double z, double y = 0.0) {
     const double px_per_m = 0.5 * kExtent.height / (std::tan(0.5 * 0.785398163) * (kHeight_m - y));
     const auto i = static_cast<std::size_t>(0.5 * kExtent.width + x * px_per_m);
@@ -105,18 +105,19 @@ TEST_F(GpuMeshes, ALevelFaceIsLitLikeTheGroundAndOnlyItsFrontIsSeen) {
   const image::Image image = draw();
   const glm::dvec3 ground = at(image, 0.0, 6.0);
   for (int c = 0; c < 3; ++c) EXPECT_GT(ground[c], 0.0);
-  // Both are level under one sun and sky: the albedo is what differs, 0.6 to the bare ground's 0.3.
+  // Both are level under the same sun and sky. Only the albedo differs: 0.6 and 0.3.
   expect_near(at(image, -4.0, 0.0, 0.5), 2.0 * ground, 0.002, "face");
   expect_near(at(image, -10.0, 0.0, 0.5), 2.0 * ground, 0.002, "mirrored face");
-  EXPECT_LT(at(image, 4.0, 0.0, 0.5).x, 0.5 * ground.x);  // its shadow on the ground is what is seen
-  // The shape: as many pixels as the face covers.
+  EXPECT_LT(at(image, 4.0, 0.0, 0.5).x, 0.5 * ground.x);  // only its shadow on the ground is visible
+  // The face covers the expected number of pixels.
   const double px_per_m = 0.5 * kExtent.height / (std::tan(0.5 * 0.785398163) * (kHeight_m - 0.5));
   std::size_t bright = 0;
   for (std::size_t i = 0; i < image.rgb.size(); i += 3) bright += image.rgb[i] > 1.5 * ground.x ? 1 : 0;
   EXPECT_NEAR(static_cast<double>(bright), 2.0 * 16.0 * px_per_m * px_per_m, 0.15 * 32.0 * px_per_m * px_per_m);
 }
 
-// A model's floor at y = 0 lies in the plane of the bare ground and hides it, from near and far and at grazing angles.
+// The floor of a model at y = 0 is in the plane of the bare ground and hides it, from near and far and at grazing
+// angles.
 TEST_F(GpuMeshes, AFloorAtSeaLevelHidesTheBareGround) {
   struct Shot {
     View view;
@@ -174,7 +175,7 @@ TEST_F(GpuMeshes, AFloorAtSeaLevelHidesTheBareGround) {
 TEST_F(GpuMeshes, HolesPassLightAndShowWhatIsBehind) {
   // The western half is a hole.
   {
-    // Alpha cannot be written by src/image: vertices carry it instead.
+    // src/image cannot write alpha, so the vertices have it instead.
     const int position =
         file_.points({{-4, 3, 3}, {0, 3, 3}, {0, 3, -3}, {-4, 3, -3}, {0, 3, 3}, {4, 3, 3}, {4, 3, -3}, {0, 3, -3}});
     const int color = file_.floats({1, 1, 1, 0.2F, 1, 1, 1, 0.2F, 1, 1, 1, 0.2F, 1, 1, 1, 0.2F,
@@ -191,37 +192,38 @@ TEST_F(GpuMeshes, HolesPassLightAndShowWhatIsBehind) {
   const glm::dvec3 open = at(without, -8.0, 5.0);
   expect_near(at(with, -2.0, 0.0, 3.0), at(without, -2.0, 0.0, 3.0), 0.002, "through the hole");
   EXPECT_GT(at(with, 2.0, 0.0, 3.0).x, 2.5 * open.x);  // white
-  // The sun stands in the east at 60 degrees: shadows lie 3 / tan(60) = 1.7 m to the west. The hole's is none.
+  // The sun is in the east at 60 degrees, so shadows are displaced by 3 / tan(60) = 1.7 m to the west. The hole casts
+  // none.
   expect_near(at(with, -5.0, 0.0), at(without, -5.0, 0.0), 0.002, "light through the hole");
-  EXPECT_LT(at(with, -1.2, 0.0).x, 0.5 * open.x);  // below the hole, but in the shadow of the other half
+  EXPECT_LT(at(with, -1.2, 0.0).x, 0.5 * open.x);  // below the hole, in the shadow of the other half
 }
 
 TEST_F(GpuMeshes, GlassColoursWhatLiesBehindItAndNotWhatLiesBefore) {
   const int clear = glass(1.0, 0.1, 0.5, 0.0);
   file_.level_quad(-8, -4, -2, 4, 3.0F, clear);
-  file_.level_quad(-6, -1, -4, 1, 4.0F, white_);  // before the glass, towards the sun
-  // Bare of glass, for comparison: a face at the same height and its shadow.
+  file_.level_quad(-6, -1, -4, 1, 4.0F, white_);  // between the glass and the sun
+  // For comparison, a face at the same height and its shadow, without glass.
   file_.level_quad(4, -1, 6, 1, 4.0F, white_);
   scene_.sun.elevation_deg = 30.0F;
   const image::Image image = draw();
   const glm::dvec3 open = at(image, 0.0, 7.0);
   const glm::dvec3 dark = at(image, 5.0 - 4.0 / std::tan(0.523598776), 0.0);
   ASSERT_LT(dark.x, 0.6 * open.x);
-  // On the ground in the glass's shadow (x -13.2 to -7.2), where the glass is not in sight's way (beyond -9.4): the
-  // sun's part times the glass's colour.
+  // The ground in the shadow of the glass (x -13.2 to -7.2) that is not seen through the glass (x below -9.4): sunlight
+  // is multiplied by the colour of the glass.
   const glm::dvec3 colored = at(image, -11.0, 2.5);
   const glm::dvec3 expected = dark + (open - dark) * glm::dvec3(1.0, 0.1, 0.5);
   expect_near(colored, expected, 0.03, "ground behind glass");
-  // What is seen through clear glass is multiplied by its colour once more; the light of the sky is not coloured.
+  // Surfaces seen through clear glass are multiplied by its colour once more. The light of the sky is not coloured.
   const glm::dvec3 seen = at(image, -3.0, 3.0, 3.0);
   EXPECT_LT(seen.y, 0.2 * seen.x);
-  // In front of the glass all is as without.
+  // In front of the glass nothing changes.
   expect_near(at(image, -5.0, 0.0, 4.0), at(image, 5.0, 0.0, 4.0), 0.002, "before the glass");
 }
 
 TEST_F(GpuMeshes, DiffusingGlassGlowsAndHidesWhatIsBehind) {
   file_.level_quad(-3, -3, 3, 3, 3.0F, glass(0.2, 0.9, 0.2, 1.0));
-  file_.level_quad(-1, -1, 1, 1, 9.0F, white_);  // beyond it, and not before the sun's middle
+  file_.level_quad(-1, -1, 1, 1, 9.0F, white_);  // behind it, and not in front of the middle of the sun
   scene_.camera.position_m = {0.0F, 1.0F, 0.0F};
   scene_.camera.pitch_deg = 90.0F;
   const image::Image image = draw();
@@ -267,7 +269,7 @@ TEST_F(GpuMeshes, MeshesComeAndGoAndOtherModelsRefuseThem) {
   EXPECT_FALSE(scene->set_scene(wrong).ok());
   ASSERT_OK(scene->set_scene(scene_));
   EXPECT_EQ(draw(*scene).rgb, bare.rgb);
-  // Yaw turns clockwise seen from above: what lies east comes to the south.
+  // Yaw rotates clockwise seen from above, so east becomes south.
   changed.meshes.position_m = {0.0F, 0.0F, 0.0F};
   file_.level_quad(4, -1, 6, 1, 0.5F, white_);
   changed.meshes.source = file_.save(changed.meshes.source);
@@ -277,8 +279,8 @@ TEST_F(GpuMeshes, MeshesComeAndGoAndOtherModelsRefuseThem) {
   EXPECT_GT(at(turned, 0.0, 5.0, 0.5).x, 1.5 * at(turned, 5.0, 0.0, 0.5).x);
 }
 
-// Dust between the sun and a red pane is in white light, dust behind it in red.
-TEST_F(GpuMeshes, AirOnTheSunsSideOfGlassIsNotColoured) {
+// The medium between the sun and a red pane is lit by white light, the medium behind it by red light.
+TEST_F(GpuMeshes, MediumOnTheSunwardSideOfGlassIsNotColoured) {
   file_.level_quad(-40, -40, 40, 40, 10.0F, glass(1.0, 0.1, 0.1, 0.0));
   params_.scattering.enabled = true;
   params_.scattering.only = true;
@@ -311,7 +313,7 @@ TEST_F(GpuMeshes, AirOnTheSunsSideOfGlassIsNotColoured) {
   }
 }
 
-// As `tyndall render` would have it, with the exposure of the scene.
+// Compares pictures as by `tyndall render`, with the exposure of the scene.
 TEST_F(GpuMeshes, ColouredShaftsOfTheHallAreThoseOfBruteForce) {
   config::Settings settings;
   ASSERT_OK(config::load(settings, TYNDALL_SOURCE_DIR "/scenes/hall.toml"));
@@ -339,7 +341,7 @@ TEST_F(GpuMeshes, ColouredShaftsOfTheHallAreThoseOfBruteForce) {
   const image::Metrics metrics = image::compare(pictures[1], pictures[0]);
   RecordProperty("dB", std::to_string(metrics.psnr_db));
   EXPECT_GE(metrics.psnr_db, 40.0);
-  // The air itself has colours: with it, some pixels of the picture are far from grey.
+  // Some pixels of the in-scattering are strongly coloured.
   double saturation = 0.0;
   for (std::size_t i = 0; i < pictures[0].rgb.size(); i += 3) {
     const auto [low, high] = std::minmax({pictures[0].rgb[i], pictures[0].rgb[i + 1], pictures[0].rgb[i + 2]});
@@ -348,8 +350,8 @@ TEST_F(GpuMeshes, ColouredShaftsOfTheHallAreThoseOfBruteForce) {
   EXPECT_GT(saturation, 0.3);
 }
 
-// Meshes with glass that come later colour the air as those that were there from the start.
-TEST_F(GpuMeshes, GlassThatComesLaterColoursTheAir) {
+// Meshes with glass that are added later give the same coloured in-scattering as those of a new scene.
+TEST_F(GpuMeshes, GlassThatIsAddedLaterColoursInscattering) {
   config::Settings settings;
   ASSERT_OK(config::load(settings, TYNDALL_SOURCE_DIR "/scenes/hall.toml"));
   settings.scene.camera.samples = 1;
@@ -369,9 +371,9 @@ TEST_F(GpuMeshes, GlassThatComesLaterColoursTheAir) {
   EXPECT_EQ(draw(*later.value()).rgb, draw(*at_once.value()).rgb);
 }
 
-// Three faces with the same picture, red and blue, three times across: repeated, mirrored and clamped; and one with
-// smooth texels.
-TEST_F(GpuMeshes, TexturesAreWrappedAndFilteredAsTheirSamplersSay) {
+// Three faces repeat the same red and blue picture three times, with wrap modes repeat, mirror and clamp. A fourth has
+// linear filtering.
+TEST_F(GpuMeshes, TexturesAreWrappedAndFilteredByTheirSamplers) {
   image::Image picture(2, 1);
   picture.rgb = {1, 0, 0, 0, 0, 1};
   const std::string png = path_ + ".png";
@@ -395,7 +397,7 @@ TEST_F(GpuMeshes, TexturesAreWrappedAndFilteredAsTheirSamplersSay) {
   face(4, 10497, 9729);
   const image::Image image = draw();
   std::filesystem::remove(png);
-  // The part of red in red and blue, at a coordinate.
+  // Returns the fraction of red at a coordinate.
   const auto red = [&](double u, double z) {
     const glm::dvec3 color = at(image, -6.0 + 4.0 * u, z, 0.5);
     return color.x / (color.x + color.z);
@@ -408,7 +410,7 @@ TEST_F(GpuMeshes, TexturesAreWrappedAndFilteredAsTheirSamplersSay) {
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(red(i + 0.25, e.z), wanted[i], 0.1) << e.z << " repetition " << i;
     EXPECT_NEAR(red(0.75, e.z), 0.0, 0.1) << e.z;
   }
-  // Nearest: a step between the texels; linear: a ramp.
+  // There is a step between texels with nearest filtering, and a ramp with linear filtering.
   EXPECT_GT(red(1.40, -5.0), 0.9);
   EXPECT_GT(red(1.40, 4.0), 0.4);
   EXPECT_LT(red(1.40, 4.0), 0.85);
@@ -418,7 +420,7 @@ TEST(MeshTextures, LevelsAverageLightAndIgnoreHoles) {
   MeshTexture texture;
   texture.width = 4;
   texture.height = 2;
-  // Black and white in halves; the right half is green with a hole that is red.
+  // The left half is black and white, the right half is green with a transparent red texel.
   for (int y = 0; y < 2; ++y) {
     const std::vector<std::uint8_t> row = {0, 0, 0, 255, 255, 255, 255, 255, 0, 255, 0, 255, 255, 0, 0, 0};
     texture.rgba.insert(texture.rgba.end(), row.begin(), row.end());
@@ -428,8 +430,8 @@ TEST(MeshTextures, LevelsAverageLightAndIgnoreHoles) {
   EXPECT_EQ(levels[0].width, 2U);
   EXPECT_EQ(levels[0].height, 1U);
   EXPECT_EQ(levels[1].width, 1U);
-  EXPECT_NEAR(levels[0].rgba[0], 188, 1);  // half the light, in sRGB
-  EXPECT_EQ(levels[0].rgba[4], 0);         // no red from the hole
+  EXPECT_NEAR(levels[0].rgba[0], 188, 1);  // half of white in sRGB
+  EXPECT_EQ(levels[0].rgba[4], 0);         // no red from the transparent texel
   EXPECT_EQ(levels[0].rgba[5], 255);
   EXPECT_EQ(levels[0].rgba[7], 128);
 }

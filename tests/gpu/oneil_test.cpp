@@ -1,4 +1,4 @@
-// O'Neil's model on the device: its functions against double precision, and the scene that draws with it.
+// O'Neil's model on the device: its functions compared with double precision, and scenes drawn with it.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -34,7 +34,7 @@ TEST_F(GpuOneil, AgreesWithDoublePrecision) {
       settings.integral_method = method;
       settings.space_by_density = by_density;
       shared::Medium medium = medium_from_params({});
-      if (method == models::OneilIntegralMethod::published) {  // for the planet that it was made for
+      if (method == models::OneilIntegralMethod::published) {  // valid only for its own planet
         medium.atmosphere_height_m = 159.0e3F;
         medium.rayleigh_scale_height_m = medium.mie_scale_height_m = 39750.0F;
         medium.rayleigh_scattering = {1.1e-6F, 1.9e-6F, 3.9e-6F};
@@ -49,7 +49,7 @@ TEST_F(GpuOneil, AgreesWithDoublePrecision) {
         const models::Answer truth = models::oneil(model, rays[i]);
         const double brightest = std::max({truth.radiance[0], truth.radiance[1], truth.radiance[2]});
         if (brightest < 1.0e-9) continue;
-        // Steeply downwards past the planet the printed polynomial amplifies, and rounding errors with it.
+        // For steep rays past the planet, the published polynomial amplifies light and also rounding errors.
         if (*std::max_element(truth.transmittance.begin(), truth.transmittance.end()) > 1.0001) continue;
         double error = 0.0;
         for (std::size_t c = 0; c < 3; ++c) {
@@ -59,7 +59,7 @@ TEST_F(GpuOneil, AgreesWithDoublePrecision) {
         mean += error / static_cast<double>(rays.size());
         worst = std::max(worst, error);
       }
-      // Single precision; at the edge of the planet's shadow the ends of a ray's lit part keep few digits.
+      // At the edge of the planet's shadow, the ends of the lit part have few significant digits in single precision.
       EXPECT_LT(mean, 2.0e-4) << static_cast<int>(method) << by_density;
       EXPECT_LT(worst, 0.01) << static_cast<int>(method) << by_density;
     }
@@ -120,8 +120,8 @@ double largest_difference(const image::Image& a, const image::Image& b) {
   return out;
 }
 
-// A metre below the top and a metre above it: the same picture. What differs is the sliver of thin air above the
-// horizontal, and where the rows of the mesh stand.
+// The picture is the same one metre below and above the top of the atmosphere. Only the thin atmosphere just above the
+// horizontal and the rows of the mesh differ.
 TEST_F(GpuOneilScene, CrossesTheTopWithoutAJump) {
   DemoPlanet setup;
   s::Scene* const scene = make(setup);
@@ -137,8 +137,8 @@ TEST_F(GpuOneilScene, CrossesTheTopWithoutAJump) {
   }
 }
 
-// The same over Earth, with the fitted functions and with the table, and with points by column.
-TEST_F(GpuOneilScene, CrossesTheTopOfEarthsAirWithoutAJump) {
+// The same over Earth, with fitted functions, with the table, and with points spaced by density integral.
+TEST_F(GpuOneilScene, CrossesTheTopOfEarthsAtmosphereWithoutAJump) {
   DemoPlanet setup;
   setup.params = Params();
   setup.params.tables.size = {8, 32, 32, 4};
@@ -183,8 +183,8 @@ TEST_F(GpuOneilScene, VerticesAreFineEnough) {
   }
 }
 
-// At the limb, where neighbouring rays end in space and on the ground, no pixel stands out: away from the sun too,
-// where the columns of the mesh are far apart.
+// At the limb, neighbouring rays end in space and on the ground, but no pixel differs from its surroundings, also
+// opposite to the sun, where the columns of the mesh are far apart.
 TEST_F(GpuOneilScene, NoPixelOfTheLimbSparkles) {
   DemoPlanet setup;
   setup.params = Params();
@@ -209,13 +209,14 @@ TEST_F(GpuOneilScene, NoPixelOfTheLimbSparkles) {
     }
   }
   for (std::size_t i = 0; i < pictures[0].size(); ++i) {
-    // What is left is the interpolation over the ground.
+    // The remaining difference is that of interpolation over the ground.
     EXPECT_LT(largest_difference(pictures[0][i], pictures[1][i]), 0.05 * largest(pictures[0][i])) << i;
   }
 }
 
-// Thick air, where a ray that touches the ground crosses many optical depths: no seam, and nothing undefined.
-TEST_F(GpuOneilScene, ThickAirHasNoSeamAtTheHorizon) {
+// In a dense atmosphere, a ray that grazes the ground has a large optical depth. There is no seam, and all values are
+// finite.
+TEST_F(GpuOneilScene, DenseAtmosphereHasNoSeamAtTheHorizon) {
   DemoPlanet setup;
   setup.params.planet.radius_m = 2575.0e3F;
   setup.params.atmosphere.height_m = 450.0e3F;
@@ -231,7 +232,7 @@ TEST_F(GpuOneilScene, ThickAirHasNoSeamAtTheHorizon) {
     s::SceneParams params = setup.scene;
     params.scattering.evaluate = evaluate;
     const image::Image image = draw(*scene, params);
-    for (std::size_t y = 1; y + 1 < 64; ++y) {  // down the middle, across the horizon
+    for (std::size_t y = 1; y + 1 < 64; ++y) {  // the middle column, across the horizon
       const auto at = [&](std::size_t row) { return static_cast<double>(image.rgb[(row * 96 + 48) * 3]); };
       EXPECT_GT(at(y), 0.7 * std::min(at(y - 1), at(y + 1))) << y;
     }
@@ -254,8 +255,8 @@ TEST_F(GpuOneilScene, NightSideIsBlack) {
   }
 }
 
-// Through the air near the horizon a full moon loses light, blue more than red; out of the air it keeps it.
-TEST_F(GpuOneilScene, MoonIsSeenThroughTheAir) {
+// Near the horizon, the atmosphere attenuates the full moon, blue more than red. From space the moon is not attenuated.
+TEST_F(GpuOneilScene, MoonIsAttenuatedByTheAtmosphere) {
   DemoPlanet setup;
   setup.scene.sun.elevation_deg = -3.0F;
   setup.scene.sun.azimuth_deg = 180.0F;

@@ -1,6 +1,6 @@
-// The probe of shaders/probe/single.comp on the device against the CPU model in double precision, and against
-// a quadrature that shares nothing with shaders/lib. What is promised of `single`: a mean error of 0.2 % and
-// a worst one of 1 % of the ray's brightest channel.
+// Compares shaders/probe/single.comp on the device with the CPU model in double precision, and with a quadrature that
+// shares no code with shaders/lib. The documented errors of `single` are 0.2 % on average and at most 1 % of the
+// brightest channel of the ray.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -23,8 +23,8 @@ struct Query {
   double azimuth = 0.0;
 };
 
-// Altitudes of 0 to 79 km (a third of them below 3 km, where most of the air is), view directions evenly over
-// the sphere, the sun to 100 degrees from the zenith.
+// Returns random queries: altitudes of 0 to 79 km (a third of them below 3 km, where most of the atmosphere is),
+// uniform view directions, and suns up to 100 degrees from the zenith.
 std::vector<Query> random_queries(int count) {
   std::mt19937 engine(20240607);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -54,13 +54,13 @@ double error_of(const std::array<double, 3>& value, const std::array<double, 3>&
   const double brightest = std::max({truth[0], truth[1], truth[2]});
   double difference = 0.0;
   for (std::size_t c = 0; c < 3; ++c) difference = std::max(difference, std::abs(value[c] - truth[c]));
-  // Nothing is lit: nothing may be seen.
+  // Without light, any radiance is an error.
   return brightest > 0.0 ? difference / brightest : (difference > 0.0 ? 1.0 : 0.0);
 }
 
 class GpuProbe : public GpuTest {
  protected:
-  std::vector<models::Answer> ask(const shared::Medium& medium, const std::vector<Query>& queries) {
+  std::vector<models::Answer> probe(const shared::Medium& medium, const std::vector<Query>& queries) {
     std::vector<models::Ray> rays;
     for (const Query& q : queries) rays.push_back(q.ray);
     Result<std::vector<models::Answer>> answers = models::single_scattering_on_gpu(host(), medium, rays);
@@ -72,7 +72,7 @@ class GpuProbe : public GpuTest {
 TEST_F(GpuProbe, AgreesWithDoublePrecision) {
   const shared::Medium medium = medium_from_params({});
   const std::vector<Query> queries = random_queries(1000);
-  const std::vector<models::Answer> answers = ask(medium, queries);
+  const std::vector<models::Answer> answers = probe(medium, queries);
   ASSERT_EQ(answers.size(), queries.size());
   Errors radiance;
   Errors transmittance;
@@ -92,12 +92,12 @@ TEST_F(GpuProbe, AgreesWithDoublePrecision) {
 TEST_F(GpuProbe, AgreesWithQuadrature) {
   const shared::Medium medium = medium_from_params({});
   const std::vector<Query> queries = random_queries(1000);
-  const std::vector<models::Answer> answers = ask(medium, queries);
+  const std::vector<models::Answer> answers = probe(medium, queries);
   ASSERT_EQ(answers.size(), queries.size());
   Errors errors;
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const models::Ray& ray = queries[i].ray;
-    // The quadrature's own error is far below what it judges.
+    // The error of the quadrature itself is far below the tolerance.
     const brute::Three truth = brute::single_scattering(medium, ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith,
                                                         queries[i].azimuth, 1e-4);
     errors.add(error_of(answers[i].radiance, truth));

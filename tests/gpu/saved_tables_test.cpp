@@ -1,4 +1,4 @@
-// Tables that are kept: what an engine saves comes back, and the cache of the programs.
+// Saved tables: an engine saves and loads them, and our programs cache them on disk.
 #include <unistd.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ TEST_F(SavedTablesTest, LoadedTablesEqualSavedTables) {
   EXPECT_EQ(built.table_bytes(), 8U * (3U * 6 * 16 * 12 * 4 + 2U * 64 * 256));
   const std::vector<std::byte> bytes = save(built);
   EXPECT_EQ(save(built, 4096), bytes);
-  // In the order that is promised.
+  // Tables are stored in the documented order.
   TableBuilder builder;
   ASSERT_OK(create(builder, false, small_tables()));
   TableBuilderTest::build(builder, UINT32_MAX);
@@ -38,7 +38,7 @@ TEST_F(SavedTablesTest, LoadedTablesEqualSavedTables) {
   ASSERT_OK(load(loaded, bytes, 64));
   EXPECT_TRUE(loaded.precompute_progress().complete());
   EXPECT_EQ(save(loaded), bytes);
-  // Nothing is left to be done; a build that has begun gives way.
+  // After loading, nothing remains to be built. Loading ends a build in progress.
   std::vector<std::byte> noise(bytes.size(), std::byte{1});
   ASSERT_OK(load(loaded, noise));
   EXPECT_EQ(save(loaded), bytes);
@@ -49,7 +49,7 @@ TEST_F(SavedTablesTest, LoadedTablesEqualSavedTables) {
   EXPECT_TRUE(begun.precompute_progress().complete());
   EXPECT_EQ(save(begun), bytes);
 
-  // A change afterwards builds what is stale and nothing else.
+  // A later change rebuilds only the stale tables.
   const std::uint32_t whole = built.precompute_progress().total;
   Params params = small_tables();
   params.planet.ground_albedo = 0.5F;
@@ -60,7 +60,7 @@ TEST_F(SavedTablesTest, LoadedTablesEqualSavedTables) {
   Effect direct = make(params, true);
   EXPECT_NE(save(direct), bytes);
   EXPECT_EQ(save(loaded), save(direct));
-  // And back, from what was saved: into tables that are in use.
+  // The saved tables can also be loaded into tables that are in use.
   ASSERT_OK(loaded.set_params(small_tables()));
   ASSERT_OK(load(loaded, bytes));
   EXPECT_EQ(save(loaded), bytes);
@@ -70,13 +70,13 @@ TEST_F(SavedTablesTest, UnfinishedTablesAreNotSaved) {
   Effect effect = make(small_tables(), false);
   const gpu::Buffer to = buffer(effect.table_bytes() + 8);
   const auto refused = [&](VkBuffer buffer, VkDeviceSize offset) {
-    Result<void> outcome;
+    Result<void> result;
     EXPECT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
-      outcome = effect.record_save_tables(cmd, buffer, offset);
+      result = effect.record_save_tables(cmd, buffer, offset);
       return {};
     }));
-    EXPECT_TRUE(outcome.ok() || outcome.error().code == ErrorCode::invalid_argument);
-    return !outcome.ok();
+    EXPECT_TRUE(result.ok() || result.error().code == ErrorCode::invalid_argument);
+    return !result.ok();
   };
   EXPECT_TRUE(refused(to.buffer.get(), 0));
   build(effect, effect.precompute_progress().total - 1);
@@ -85,7 +85,7 @@ TEST_F(SavedTablesTest, UnfinishedTablesAreNotSaved) {
   EXPECT_FALSE(refused(to.buffer.get(), 8));
   EXPECT_TRUE(refused(to.buffer.get(), 4));
   EXPECT_TRUE(refused(VK_NULL_HANDLE, 0));
-  // The old tables are whole, but not those of the parameters.
+  // The old tables are complete, but do not match the parameters.
   Params other = small_tables();
   other.atmosphere.aerosol_density = 3.0F;
   ASSERT_OK(effect.set_params(other));
@@ -105,7 +105,7 @@ TEST_F(SavedTablesTest, KeysDifferWhereTablesDiffer) {
   for (const ParamInfo& row : param_table()) {
     if (row.type == ParamType::enumeration && row.choices.find('|') == std::string_view::npos) continue;
     Params params = small_tables();
-    // Coefficients of their own count only where they are in use.
+    // Custom coefficients matter only if they are in use.
     params.atmosphere.custom_coefficients =
         row.name == "rayleigh_scattering" || row.name == "mie_scattering" || row.name == "mie_absorption";
     const std::string before = key_of(params);
@@ -114,7 +114,7 @@ TEST_F(SavedTablesTest, KeysDifferWhereTablesDiffer) {
     std::memcpy(&bits, at, sizeof bits);
     const bool real = row.type == ParamType::float32 || row.type == ParamType::vec3;
     bits = row.type == ParamType::flag || row.type == ParamType::enumeration ? 1 - bits : bits + (real ? 256 : 2);
-    // What stands at the end of its range goes the other way.
+    // A value at the maximum of its range is decreased.
     if (real && double{std::bit_cast<float>(bits)} > row.max) bits -= 512;
     if (row.type == ParamType::enumeration && bits > 1) bits = 1;
     if (row.name == "downscale") bits = 2;  // 1, 2 and 4 are allowed
@@ -123,14 +123,14 @@ TEST_F(SavedTablesTest, KeysDifferWhereTablesDiffer) {
   }
 }
 
-// Without the orders that take most of the time.
+// Returns parameters without the higher orders, which take most of the time.
 Params quick_tables() {
   Params params = small_tables();
   params.tables.orders = 1;
   return params;
 }
 
-// The same with the cache, as the programs do it.
+// Uses the cache in the same way as our programs.
 class CachedTablesTest : public SavedTablesTest {
  protected:
   void SetUp() override {
@@ -144,18 +144,18 @@ class CachedTablesTest : public SavedTablesTest {
     std::filesystem::remove_all(directory_);
     SavedTablesTest::TearDown();
   }
-  tables::Outcome ready(Effect& effect) {
-    Result<tables::Outcome> outcome = tables::make_ready(host(), effect, how_);
-    EXPECT_OK(outcome);
+  tables::Report ready(Effect& effect) {
+    Result<tables::Report> report = tables::make_ready(host(), effect, how_);
+    EXPECT_OK(report);
     EXPECT_TRUE(effect.precompute_progress().complete());
-    return outcome ? std::move(outcome).value() : tables::Outcome();
+    return report ? std::move(report).value() : tables::Report();
   }
-  // From a new effect.
-  tables::Outcome ready(const Params& params = quick_tables()) {
+  // Prepares the tables of a new effect.
+  tables::Report ready(const Params& params = quick_tables()) {
     Effect effect = make(params, false);
-    tables::Outcome outcome = ready(effect);
+    tables::Report report = ready(effect);
     bytes_ = save(effect);
-    return outcome;
+    return report;
   }
   [[nodiscard]] std::vector<std::filesystem::path> files() const {
     std::vector<std::filesystem::path> out;
@@ -173,20 +173,20 @@ class CachedTablesTest : public SavedTablesTest {
 TEST_F(CachedTablesTest, AreBuiltOnceAndFoundAfterwards) {
   std::uint32_t calls = 0;
   how_.progress = [&](Progress) { ++calls; };
-  tables::Outcome outcome = ready();
+  tables::Report report = ready();
   const std::vector<std::byte> built = bytes_;
-  EXPECT_EQ(outcome.origin, tables::Origin::build);
-  EXPECT_TRUE(outcome.notes.empty());
+  EXPECT_EQ(report.origin, tables::Origin::build);
+  EXPECT_TRUE(report.notes.empty());
   EXPECT_GT(calls, 2U);
   ASSERT_EQ(files().size(), 1U);
   calls = 0;
-  outcome = ready();
-  EXPECT_EQ(outcome.origin, tables::Origin::cache);
-  EXPECT_GT(outcome.milliseconds, 0.0);
+  report = ready();
+  EXPECT_EQ(report.origin, tables::Origin::cache);
+  EXPECT_GT(report.milliseconds, 0.0);
   EXPECT_EQ(calls, 0U);
   EXPECT_EQ(bytes_, built);
 
-  // What the tables do not depend on changes nothing; what they do is rebuilt.
+  // The cached tables are used if they do not depend on a changed parameter, and rebuilt otherwise.
   Params params = quick_tables();
   params.scattering.scale = 2.0F;
   EXPECT_EQ(ready(params).origin, tables::Origin::cache);
@@ -201,7 +201,7 @@ TEST_F(CachedTablesTest, AreBuiltOnceAndFoundAfterwards) {
   EXPECT_EQ(ready(effect).origin, tables::Origin::cache);
   EXPECT_EQ(save(effect), built);
 
-  how_.build_anew = true;
+  how_.rebuild = true;
   EXPECT_EQ(ready().origin, tables::Origin::build);
   EXPECT_EQ(bytes_, built);
   how_ = {};
@@ -242,19 +242,19 @@ TEST_F(CachedTablesTest, DamagedFilesAreReportedOnceAndRebuilt) {
     std::ifstream in(file, std::ios::binary);
     good.assign(std::istreambuf_iterator<char>(in), {});
   }
-  const auto expect_anew = [&](const std::string& contents, const std::string& why) {
+  const auto expect_rebuilt = [&](const std::string& contents, const std::string& why) {
     std::ofstream(file, std::ios::binary) << contents;
-    const tables::Outcome outcome = ready();
-    EXPECT_EQ(outcome.origin, tables::Origin::build);
-    ASSERT_EQ(outcome.notes.size(), 1U) << why;
-    EXPECT_EQ(outcome.notes[0], "the cached file " + file.string() + " is " + why + " and is rebuilt");
+    const tables::Report report = ready();
+    EXPECT_EQ(report.origin, tables::Origin::build);
+    ASSERT_EQ(report.notes.size(), 1U) << why;
+    EXPECT_EQ(report.notes[0], "the cached file " + file.string() + " is " + why + " and is rebuilt");
     EXPECT_EQ(bytes_, built);
   };
-  expect_anew(good.substr(0, good.size() / 2), "truncated");
-  expect_anew("", "truncated");
+  expect_rebuilt(good.substr(0, good.size() / 2), "truncated");
+  expect_rebuilt("", "truncated");
   std::string damaged = good;
   damaged[good.size() - 1000] ^= 1;
-  expect_anew(damaged, "damaged");
+  expect_rebuilt(damaged, "damaged");
   {
     files::FileCache other(how_.cache.place, how_.cache.limit_bytes, "0.0.0");
     other.write(make(quick_tables(), false).table_key(), built);
@@ -264,16 +264,16 @@ TEST_F(CachedTablesTest, DamagedFilesAreReportedOnceAndRebuilt) {
     std::ifstream in(file, std::ios::binary);
     of_other.assign(std::istreambuf_iterator<char>(in), {});
   }
-  expect_anew(of_other, "of another version");
+  expect_rebuilt(of_other, "of another version");
   EXPECT_EQ(ready().origin, tables::Origin::cache);
 
-  // Where nothing can be kept, one line says so, and the tables are there all the same.
+  // If nothing can be stored, one line reports it, and the tables are complete nevertheless.
   std::ofstream(directory_ / "file") << "";
   how_.cache.place = (directory_ / "file/below").string();
-  const tables::Outcome outcome = ready();
-  EXPECT_EQ(outcome.origin, tables::Origin::build);
-  ASSERT_EQ(outcome.notes.size(), 1U);
-  EXPECT_EQ(outcome.notes[0].rfind("nothing is cached: ", 0), 0U) << outcome.notes[0];
+  const tables::Report report = ready();
+  EXPECT_EQ(report.origin, tables::Origin::build);
+  ASSERT_EQ(report.notes.size(), 1U);
+  EXPECT_EQ(report.notes[0].rfind("nothing is cached: ", 0), 0U) << report.notes[0];
 }
 
 TEST_F(CachedTablesTest, StayWithinTheSizeLimit) {
@@ -291,9 +291,9 @@ TEST_F(CachedTablesTest, StayWithinTheSizeLimit) {
   EXPECT_EQ(ready(params).origin, tables::Origin::build);
   how_.cache.limit_bytes = size;
   params.atmosphere.aerosol_density = 9.0F;
-  const tables::Outcome outcome = ready(params);
-  ASSERT_EQ(outcome.notes.size(), 1U);
-  EXPECT_NE(outcome.notes[0].find("more than its limit of " + std::to_string(size)), std::string::npos);
+  const tables::Report report = ready(params);
+  ASSERT_EQ(report.notes.size(), 1U);
+  EXPECT_NE(report.notes[0].find("more than its limit of " + std::to_string(size)), std::string::npos);
 }
 
 }  // namespace

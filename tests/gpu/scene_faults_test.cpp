@@ -1,5 +1,5 @@
-// A scene runs out of memory at every place of creating, changing and drawing it. The call returns an error, the scene
-// draws what it drew before, nothing leaks, and the same call then succeeds.
+// Creating, changing and drawing a scene run out of memory at every allocation. The call must return an error and leak
+// nothing, the scene must draw the same picture as before, and the same call must succeed afterwards.
 #include <unistd.h>
 
 #include <array>
@@ -19,7 +19,7 @@ constexpr std::array<Kind, 3> kKinds = {Kind::vulkan, Kind::submission, Kind::ho
 constexpr long kMaxCalls = 5000;
 using Change = std::function<Result<void>(Scene&)>;
 
-// A pane of coloured glass in the air, in a file that is removed at the end.
+// Saves a pane of coloured glass to a file, which is removed at the end.
 class Pane {
  public:
   Pane() {
@@ -43,7 +43,7 @@ class Pane {
   std::filesystem::path file_;
 };
 
-// Light scattered once and integrated: the tables are small, and made in a moment.
+// Returns parameters with integrated single scattering, so that the tables are small and quickly built.
 Params small_params() {
   Params params;
   params.tables.size = {4, 8, 8, 4};
@@ -70,7 +70,7 @@ SceneDesc small_desc() {
   return desc;
 }
 
-// Other terrain, shadow maps, and a model with glass.
+// Returns a scene with other terrain and shadow maps, and a model with glass.
 SceneParams other_scene(const std::string& model) {
   SceneParams scene = small_scene();
   scene.shadows.cascades = 3;
@@ -80,7 +80,7 @@ SceneParams other_scene(const std::string& model) {
   return scene;
 }
 
-// Another planet: terrain, meshes, effect and tables.
+// Returns another planet, which changes terrain, meshes, effect and tables.
 Params other_params() {
   Params params = small_params();
   params.planet.radius_m = 120.0e3F;
@@ -89,7 +89,7 @@ Params other_params() {
   return params;
 }
 
-// On a device whose objects are numbers and whose commands do nothing but count.
+// Tests on the fake device of faults.hpp.
 class SceneFaults : public testing::Test {
  protected:
   void SetUp() override {
@@ -114,7 +114,7 @@ class SceneFaults : public testing::Test {
     return made ? std::move(made).value() : nullptr;
   }
 
-  // What must be the same after a call that was refused.
+  // The state that a failed call must not change.
   struct Observed {
     std::size_t objects = 0;
     std::size_t commands = 0;
@@ -147,14 +147,14 @@ class SceneFaults : public testing::Test {
     return out;
   }
 
-  // Refuses `change` at every call of each kind, and of each kind at least as often as `min_refused` says.
+  // Lets `change` fail at every call of each kind. There must be at least `min_refused` failures of each kind.
   void refuse_everywhere(const std::string& name, const std::array<long, 3>& min_refused, const Change& change) {
     std::unique_ptr<Scene> scene;
     Observed before;
     const auto start_again = [&] {
       scene = make();
       ASSERT_NE(scene, nullptr);
-      for (int i = 0; i < 4; ++i) draw(*scene);  // what is no longer used is freed after some frames
+      for (int i = 0; i < 4; ++i) draw(*scene);  // old objects are freed after some frames
       before = observe(*scene);
     };
     for (std::size_t k = 0; k < kKinds.size(); ++k) {
@@ -179,7 +179,7 @@ class SceneFaults : public testing::Test {
         expect_same(before, observe(*scene), where);
         if (HasFailure()) return;
       }
-      draw(*scene);  // as changed
+      draw(*scene);  // with the change
       EXPECT_GE(refused, min_refused[k]) << name << ", kind " << k;
     }
   }
@@ -241,15 +241,15 @@ TEST_F(SceneFaults, AnotherModelIsRefusedAtEveryCall) {
   }
 }
 
-// The first frame fills every level of the terrain and adapts the exposure. When it fails at any call, the scene later
-// draws what one draws that has never failed; after a submission that failed, with an effect made again.
-TEST_F(SceneFaults, AFrameThatFailsLeavesNoTrace) {
+// The first frame fills every level of the terrain and adapts the exposure. If it fails at any call, the scene later
+// draws the same picture as a scene without failures. After a failed submission, the effect is created again.
+TEST_F(SceneFaults, AFailedFrameHasNoEffectOnLaterOnes) {
   const Pane pane;
   scene_ = other_scene(pane.path());
   scene_.tonemap.auto_exposure = true;
   desc_.timings = true;
   for (const bool in_parts : {false, true}) {
-    desc_.in_parts = desc_.keep_shadows = in_parts;
+    desc_.in_parts = desc_.reuse_shadows = in_parts;
     std::unique_ptr<Scene> whole = make();
     ASSERT_NE(whole, nullptr);
     for (int i = 0; i < 4; ++i) draw(*whole);
@@ -279,7 +279,7 @@ TEST_F(SceneFaults, AFrameThatFailsLeavesNoTrace) {
   }
 }
 
-// On a device that draws, at some of the calls: the picture is, byte for byte, what it was.
+// Tests on a real device, at some of the calls: the picture is unchanged byte for byte.
 class SceneFaultsOnDevice : public testing::Test {
  protected:
   void SetUp() override {
@@ -307,7 +307,7 @@ class SceneFaultsOnDevice : public testing::Test {
     EXPECT_OK(picture);
     return picture ? picture.value().rgb : std::vector<float>();
   }
-  // Refuses `change` at every `step`th call that creates something. Returns how many were refused.
+  // Lets `change` fail at every `step`th call that creates something. Returns the number of failures.
   long refuse(const std::string& name, const Change& change, long step) {
     const std::vector<float> before = draw();
     long refused_calls = 0;
@@ -331,7 +331,7 @@ class SceneFaultsOnDevice : public testing::Test {
   std::unique_ptr<gpu::Host> host_;
 };
 
-TEST_F(SceneFaultsOnDevice, ThePictureStays) {
+TEST_F(SceneFaultsOnDevice, ThePictureIsUnchanged) {
   const Pane pane;
   const std::vector<float> first = draw();
   const SceneParams other = other_scene(pane.path());
@@ -346,8 +346,8 @@ TEST_F(SceneFaultsOnDevice, ThePictureStays) {
   EXPECT_NE(draw(), with_pane);
 }
 
-// Commands that were recorded and dropped: of a frame, and of the building of tables up to the last of them.
-TEST_F(SceneFaultsOnDevice, ThePictureStaysWhenSubmittingFails) {
+// Commands are recorded but not submitted: those of a frame, and those of a build of the tables.
+TEST_F(SceneFaultsOnDevice, ThePictureIsUnchangedWhenSubmittingFails) {
   const std::vector<float> first = draw();
   faults::arm(Kind::submission, 0);
   EXPECT_FALSE(scene_->render(0.0).ok());

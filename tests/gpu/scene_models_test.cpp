@@ -1,4 +1,4 @@
-// Frames that a model other than the effect draws, pixel by pixel against the model on the CPU.
+// Frames drawn by models other than the effect, compared pixel by pixel with the model on the CPU.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -16,7 +16,7 @@ constexpr VkExtent2D kExtent = {96, 54};
 
 class GpuSceneModels : public SharedSceneTest {
  protected:
-  // Sea level everywhere, so that the ground of the picture is the sphere of the model.
+  // The terrain is at sea level everywhere, so that the ground of the picture is the sphere of the model.
   void SetUp() override {
     GpuTest::SetUp();
     scene_.terrain.exaggeration = 0.0F;
@@ -40,7 +40,7 @@ class GpuSceneModels : public SharedSceneTest {
     return radiance.ok() ? std::move(radiance).value() : image::Image();
   }
 
-  // What the model says on the CPU of a pixel, as the picture has it, over black ground.
+  // Returns the radiance of a pixel over black ground, computed by the model on the CPU.
   std::array<double, 3> expected(std::uint32_t x, std::uint32_t y) const {
     const double radius = params_.planet.radius_m;
     const View view = view_from_params(scene_.camera, static_cast<double>(kExtent.width) / kExtent.height, radius);
@@ -63,10 +63,10 @@ class GpuSceneModels : public SharedSceneTest {
     return out;
   }
 
-  // Largest and mean relative error of a picture of the air alone, by the brightest channel of each pixel.
+  // Errors of a picture of the in-scattering, relative to the brightest channel of each pixel.
   struct Errors {
     double worst = 0.0, mean = 0.0;
-    double over_1_percent = 0.0;  // share of the values
+    double over_1_percent = 0.0;  // fraction of the values
   };
   Errors errors(const image::Image& picture) const {
     Errors out;
@@ -96,14 +96,14 @@ TEST_F(GpuSceneModels, HomogeneousPerPixelIsTheModel) {
   scene_.scattering.evaluate = ModelEvaluation::pixel;
   for (const bool falloff : {false, true}) {
     scene_.homogeneous.falloff = falloff;
-    // Within the air, and from space down to the ground, with more haze.
+    // In the atmosphere, and from space down to the ground, with more haze.
     for (const float altitude_m : {1500.0F, 300000.0F}) {
       scene_.camera.altitude_m = altitude_m;
       scene_.camera.pitch_deg = altitude_m > 1e5F ? -60.0F : 0.0F;
       params_.atmosphere.aerosol_density = altitude_m > 1e5F ? 1.0F : 3.0F;
       const Errors found = errors(draw());
       RecordProperty("worst " + std::to_string(altitude_m) + (falloff ? " falloff" : ""), std::to_string(found.worst));
-      // Single precision of distances across the horizon; the ground is made of triangles.
+      // Distances across the horizon have single precision, and the ground consists of triangles.
       EXPECT_LT(found.mean, 3e-4) << altitude_m << " m, falloff " << falloff;
       EXPECT_LT(found.worst, 5e-3) << altitude_m << " m, falloff " << falloff;
     }
@@ -112,12 +112,12 @@ TEST_F(GpuSceneModels, HomogeneousPerPixelIsTheModel) {
 
 TEST_F(GpuSceneModels, HomogeneousPerVertexIsNearPerPixel) {
   params_.scattering.only = true;
-  // The sun in the picture, where the haze's lobe is as narrow as it gets by default.
+  // The sun is in the picture, where the default phase function of the aerosol is narrowest.
   scene_.sun.azimuth_deg = 25.0F;
   scene_.sun.elevation_deg = 10.0F;
   const Errors vertex = errors(draw());
   EXPECT_LT(vertex.mean, 3e-3);
-  // Only where a pixel of the horizon holds triangles that are many kilometres long.
+  // Only pixels of the horizon with triangles that are many kilometres long may have larger errors.
   EXPECT_LT(vertex.over_1_percent, 0.002);
   EXPECT_LT(vertex.worst, 0.1);
   scene_.scattering.evaluate = ModelEvaluation::pixel;
@@ -154,14 +154,14 @@ TEST_F(GpuSceneModels, HomogeneousIsFiniteAnywhereAndDarkAtNight) {
         ASSERT_TRUE(std::all_of(picture.rgb.begin(), picture.rgb.end(), [](float v) { return std::isfinite(v); }));
         ASSERT_GE(*low, 0.0F);
         ASSERT_TRUE(sun_deg < 10.0F || *high > 1e-3F) << altitude_m;
-        // From space the sun may shine on what is seen far round the planet.
+        // From space, visible parts of the planet that are far away may be lit.
         ASSERT_TRUE(sun_deg > -10.0F || altitude_m > 8e4F || *high == 0.0F) << altitude_m;
       }
     }
   }
 }
 
-TEST_F(GpuSceneModels, TheAirCanBeLeftOutAndShownAlone) {
+TEST_F(GpuSceneModels, InscatteringCanBeLeftOutAndShownAlone) {
   scene_.camera.pitch_deg = -30.0F;
   const image::Image both = draw();
   params_.scattering.only = true;
@@ -169,7 +169,7 @@ TEST_F(GpuSceneModels, TheAirCanBeLeftOutAndShownAlone) {
   params_.scattering.only = false;
   params_.scattering.enabled = false;
   const image::Image ground = draw();
-  // Equation 1: the air takes from the ground's light and adds its own.
+  // Equation 1: the light of the ground is attenuated, and in-scattering is added.
   for (std::size_t i = 0; i < both.rgb.size(); ++i) {
     ASSERT_GE(both.rgb[i], air.rgb[i]);
     ASSERT_LE(both.rgb[i], air.rgb[i] + ground.rgb[i] + 1e-5F);

@@ -72,7 +72,7 @@ constexpr TurbidRay kTurbidRays[] = {
 
 class ScatteringTablesTest : public GpuTest {
  protected:
-  // How the model answers queries, against `samples` paths of eight orders each.
+  // Returns the errors of the model for some queries, against `samples` paths of eight orders each.
   static Errors errors(models::PrecomputedModel& model, const Params& params, const std::vector<RayQuery>& queries,
                        std::uint64_t samples) {
     reference::Options options;
@@ -96,7 +96,7 @@ class ScatteringTablesTest : public GpuTest {
   }
 };
 
-TEST_F(ScatteringTablesTest, AreAsRightAsThePathTracer) {
+TEST_F(ScatteringTablesTest, MatchThePathTracer) {
   const Params params;
   Result<models::PrecomputedModel> built = models::PrecomputedModel::create(host(), params);
   ASSERT_OK(built);
@@ -123,7 +123,7 @@ TEST_F(ScatteringTablesTest, AreAsRightAsThePathTracer) {
   EXPECT_LE(errors(model, params, random_rays(11, 40, 0.0, 90.0), 6000).mean(), 0.007);
 }
 
-TEST_F(ScatteringTablesTest, AreRightInTurbidAirNearTheHorizonUnderALowSun) {
+TEST_F(ScatteringTablesTest, MatchThePathTracerInATurbidAtmosphereNearTheHorizon) {
   Params params;
   params.atmosphere.aerosol_density = 11.36F;  // an optical depth of 0.3
   params.planet.ground_albedo = 0.2F;

@@ -104,7 +104,7 @@ foreach(top include src shaders apps)
         message(SEND_ERROR "${path}: ${line}: ${room} must not use Vulkan")
       endif()
       if(NOT line MATCHES "\"" OR line MATCHES "\"([a-z_]+_shaders|shader_sources)\\.hpp\"")
-        continue()  # a header of the system, or one that the build makes from shaders
+        continue()  # a system header, or one that the build generates from shaders
       endif()
       string(REGEX REPLACE "^[^\"]*\"([^\"]+)\".*" "\\1" included "${line}")
       set(target NOTFOUND)

@@ -23,7 +23,7 @@ def without_comments_and_strings(text):
     """Blanks comments, strings and preprocessor lines; lengths and line ends stay."""
     def blank(match):
         token = match.group(0)
-        # 1'000 and 0x1p-53 are numbers: a quote within digits begins no character.
+        # A quote after a letter or digit separates digits (1'000), so it does not begin a character literal.
         if token[0] == "'" and match.start() > 0 and text[match.start() - 1].isalnum():
             return token
         return re.sub(r"[^\n]", " ", token)
@@ -69,7 +69,7 @@ def scan(text):
     """Yields (kind, name, first line, size) of functions and classes."""
     clean = without_comments_and_strings(text)
     stack = []
-    begun = 0       # where the declaration at hand begins
+    begun = 0       # start of the current declaration
     depth = 0       # of parentheses
     i = 0
     found = []
@@ -112,7 +112,7 @@ def scan(text):
                     name = call.group(1) if call else plain
                 elif re.match(r"enum\b", plain):
                     kind = "enum"
-            # The braces of a member initialiser are not the function's body.
+            # The braces of a member initialiser are not the body of the function.
             if kind == "function" and re.search(r"\)\s*(noexcept\s*)?:(?!:).*[\w>]$", plain, re.S) and \
                     not re.search(r"[)}]$", plain):
                 kind = "initialiser"
@@ -135,7 +135,7 @@ def scan(text):
             else:
                 begun = i + 1
                 if scope.kind in ("block", "class", "enum"):
-                    # What follows to the semicolon belongs to the declaration that has been counted.
+                    # The rest up to the semicolon belongs to the declaration that has already been counted.
                     rest = re.match(r"[^;{}()]*;", clean[i + 1:])
                     if rest and scope.kind != "class":
                         i += rest.end()

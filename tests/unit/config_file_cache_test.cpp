@@ -51,7 +51,7 @@ class ConfigFileCache : public testing::Test {
   fs::path root_;
 };
 
-TEST_F(ConfigFileCache, WhatIsKeptComesBack) {
+TEST_F(ConfigFileCache, StoredFilesAreRead) {
   FileCache cache = open();
   EXPECT_FALSE(cache.read("key", 10));
   EXPECT_EQ(cache.note(), "");
@@ -71,7 +71,7 @@ TEST_F(ConfigFileCache, WhatIsKeptComesBack) {
   EXPECT_TRUE(cache.read("key", 100000));
 }
 
-TEST_F(ConfigFileCache, WhatIsNotWholeIsRefusedInOneLine) {
+TEST_F(ConfigFileCache, DamagedFilesAreReportedInOneLine) {
   FileCache cache = open();
   const std::string contents = pattern(1000, 2);
   cache.write("key", bytes_of(contents));
@@ -115,7 +115,7 @@ TEST_F(ConfigFileCache, WhatIsNotWholeIsRefusedInOneLine) {
   EXPECT_FALSE(cache.read("key", 1000));
 }
 
-TEST_F(ConfigFileCache, TheOldestGoWhenThereIsNoRoom) {
+TEST_F(ConfigFileCache, TheOldestFilesAreRemovedFirst) {
   FileCache cache = open(10000);
   const std::string contents = pattern(3000, 4);
   for (const char* const key : {"a", "b", "c"}) {
@@ -140,7 +140,7 @@ TEST_F(ConfigFileCache, TheOldestGoWhenThereIsNoRoom) {
   EXPECT_TRUE(cache.read("e", 3000));
 }
 
-TEST_F(ConfigFileCache, TroubleIsToldAndNothingMore) {
+TEST_F(ConfigFileCache, ErrorsAreReportedAndNothingElseHappens) {
   overwrite((root_ / "file").string(), "");
   FileCache blocked((root_ / "file/below").string(), 1000, "v");
   blocked.write("key", bytes_of("x"));

@@ -92,7 +92,7 @@ TEST_F(Files, WithoutCommitNothingRemainsAndTheOldStays) {
   EXPECT_EQ(entries(), 1U);
 }
 
-TEST_F(Files, LinksAndModesAreKept) {
+TEST_F(Files, LinksAndModesArePreserved) {
   ASSERT_TRUE(write_file(at("target"), "old").ok());
   ASSERT_EQ(::chmod(at("target").c_str(), 0640), 0);
   std::filesystem::create_symlink("target", at("link"));
@@ -235,7 +235,7 @@ TEST_F(Files, AKilledWriterLeavesNothing) {
   EXPECT_EQ(entries(), 0U);
 }
 
-TEST_F(Files, ReadingKeepsToItsLimit) {
+TEST_F(Files, ReadingStopsAtItsLimit) {
   ASSERT_TRUE(write_file(at("a"), "12345").ok());
   EXPECT_EQ(read_file(at("a"), 5).value(), "12345");
   EXPECT_FALSE(read_file(at("a"), 4).ok());

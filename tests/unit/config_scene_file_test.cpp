@@ -137,7 +137,7 @@ TEST_F(SceneFile, APathSurvivesARoundTrip) {
 TEST_F(SceneFile, PathsThatAreWrongSayWhereAndWhy) {
   const std::string two = "[[path]]\ntime_s = 0\n[[path]]\ntime_s = 5\n";
   const std::pair<std::string, std::string> wrong[] = {
-      {"path = 3", "s.toml:1: 'path' is no list of frames; expected one table [[path]] for each frame"},
+      {"path = 3", "s.toml:1: 'path' is not a list of frames; expected one table [[path]] for each frame"},
       {"[[path]]\ntime_s = 0\n", "s.toml:1: a path of one frame; expected two or more [[path]]"},
       {"[[path]]\nyaw_deg = 0\n", "s.toml:1: a frame of the path has no time; expected time_s = SECONDS"},
       {two + "[[path]]\ntime_s = 5\n",
@@ -146,9 +146,9 @@ TEST_F(SceneFile, PathsThatAreWrongSayWhereAndWhy) {
       {two + "xyz = 3\n",
        "s.toml:5: unknown key 'xyz' in [[path]]; keys are time_s, position_m, date, altitude_m, yaw_deg, "
        "pitch_deg, fov_deg, sun_elevation_deg, sun_azimuth_deg"},
-      {"[[path]]\ntime_s = -1\n", "s.toml:2: 'time_s' is no time; expected a number, 0 to 1e+06 s"},
-      {"[[path]]\ntime_s = nan\n", "s.toml:2: 'time_s' is no time; expected a number, 0 to 1e+06 s"},
-      {"[[path]]\ntime_s = \"0\"\n", "s.toml:2: 'time_s' is no time; expected a number, 0 to 1e+06 s"},
+      {"[[path]]\ntime_s = -1\n", "s.toml:2: 'time_s' is not a time; expected a number, 0 to 1e+06 s"},
+      {"[[path]]\ntime_s = nan\n", "s.toml:2: 'time_s' is not a time; expected a number, 0 to 1e+06 s"},
+      {"[[path]]\ntime_s = \"0\"\n", "s.toml:2: 'time_s' is not a time; expected a number, 0 to 1e+06 s"},
       {two + "altitude_m = -1\n",
        "s.toml:5: 'altitude_m' is below the sea; expected 0 to 1e+09 m; position_m goes lower"},
       {two + "position_m = [1, 2]\n",
@@ -169,7 +169,7 @@ TEST_F(SceneFile, PathsThatAreWrongSayWhereAndWhy) {
     EXPECT_NE(failure(toml).find(message), std::string::npos) << toml << failure(toml);
 }
 
-TEST_F(SceneFile, PartialFilesKeepTheRestAndLaterWins) {
+TEST_F(SceneFile, PartialFilesPreserveTheRestAndTheLastWins) {
   Settings settings;
   settings.scene.sun.azimuth_deg = 99.0F;
   ASSERT_TRUE(load_text(settings, "[sun]\nelevation_deg = 3\n", "a.toml").ok());

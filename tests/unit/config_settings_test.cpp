@@ -203,7 +203,7 @@ TEST(ConfigSettings, CrossChecks) {
   settings = Settings();
   settings.effect.scattering.downscale = 3;
   ASSERT_FALSE(check(settings).ok());
-  EXPECT_EQ(check(settings).error().message, "scattering.downscale is 3, allowed is 1, 2 or 4");
+  EXPECT_EQ(check(settings).error().message, "scattering.downscale is 3; expected 1, 2 or 4");
   settings = Settings();
   settings.effect.tables.size.y = 33;
   EXPECT_FALSE(check(settings).ok());

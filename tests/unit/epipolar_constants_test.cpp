@@ -95,7 +95,7 @@ TEST(EpipolarConstants, TheEpipoleIsWhereTheSunIsSeen) {
   }
 }
 
-TEST(EpipolarConstants, TheCamerasPlaceAndTurnCount) {
+TEST(EpipolarConstants, TheEpipoleFollowsTheCamera) {
   FrameInputs inputs = level_view();
   // To the east, tilted up by 30 degrees. The camera's position does not matter for infinitely distant points.
   const double s = 0.5;

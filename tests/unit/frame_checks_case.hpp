@@ -1,4 +1,4 @@
-// The frame of frame_checks_test.cpp: a correct one to be changed, and what the checks say about the result.
+// A correct frame, which frame_checks_test.cpp changes, and the errors and remarks about the result.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -63,7 +63,7 @@ inline Mat4 camera_at(double x, double y, double z, double yaw, double pitch) {
   return m;
 }
 
-// Turns a camera about its own axis.
+// Rotates a camera about its axis.
 inline Mat4 rolled(const Mat4& m, double roll) {
   Mat4 out = m;
   const double c = std::cos(roll), s = std::sin(roll);
@@ -128,15 +128,15 @@ inline Case right() {
 inline std::string error_of(const std::function<void(Case&)>& change) {
   Case s = right();
   change(s);
-  const Result<void> outcome = check_frame(s.frame(), s.desc, s.params);
-  return outcome.ok() ? "" : outcome.error().message;
+  const Result<void> result = check_frame(s.frame(), s.desc, s.params);
+  return result.ok() ? "" : result.error().message;
 }
 
 // Returns the remarks of a checker that may have seen other frames.
 inline std::vector<std::string> remarks_of(Remarks& remarks, const Case& s) {
   const FrameInputs inputs = s.frame();
-  const Result<void> outcome = check_frame(inputs, s.desc, s.params);
-  EXPECT_TRUE(outcome.ok()) << outcome.error().message;
+  const Result<void> result = check_frame(inputs, s.desc, s.params);
+  EXPECT_TRUE(result.ok()) << result.error().message;
   std::vector<std::string> texts;
   DeviceInfo device;
   device.message = [](void* user, Severity severity, std::string_view text) {

@@ -17,7 +17,7 @@ namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-TEST(FrameChecks, NothingIsSaidAboutARightFrame) {
+TEST(FrameChecks, CorrectFramesCauseNoRemarks) {
   EXPECT_EQ(error_of([](Case&) {}), "");
   EXPECT_EQ(remark_of([](Case&) {}), "");
   const auto silent = [](const char* name, const std::function<void(Case&)>& change) {
@@ -82,7 +82,7 @@ TEST(FrameChecks, NothingIsSaidAboutARightFrame) {
   });
 }
 
-TEST(FrameChecks, WhatDrawsGarbageIsAnError) {
+TEST(FrameChecks, CertainMistakesAreErrors) {
   const auto expect_error = [](const std::vector<std::string>& words, const std::function<void(Case&)>& change) {
     expect_words(error_of(change), words);
   };
@@ -198,10 +198,10 @@ TEST(FrameChecks, UnlikelyCascadesAreRemarkedOn) {
     s.cascades[2].far_m = 5000.0F;
   });
   expect_remark({"cascades[2]", "starts at 9000 m", "ends at 8000 m"}, [](Case& s) { s.cascades[2].near_m = 9000.0F; });
-  // A map beside the view of its cascade alone.
+  // Only one map is beside the view of its cascade.
   expect_remark({"cascades[1]", "its part of the view", "shadowed there"},
                 [](Case& s) { s.cascades[1].shadow_from_world.m[12] += 3.0F; });
-  // Near the ground, the camera beside a map that holds what it sees.
+  // Near the ground, a map contains the view but not the camera.
   expect_remark({"cascades[0]", "camera outside", "this frame"}, [](Case& s) {
     s.inputs.camera.world_from_view.m[13] = 50.0F;
     place_cascades(s);
@@ -231,16 +231,17 @@ TEST(FrameChecks, UnlikelyCascadesAreRemarkedOn) {
 }
 
 TEST(FrameChecks, UnlikelySunsAndMissingTablesAreRemarkedOn) {
-  expect_remark({"tables are not built", "record_precompute()", "black"}, [](Case& s) { s.tables_ready = false; });
+  expect_remark({"tables are not built", "record_precompute()", "no in-scattering"},
+                [](Case& s) { s.tables_ready = false; });
   expect_remark({"direction_to_sun", "unit length"}, [](Case& s) {
     s.inputs.sun.direction_to_sun = {0.96F, 1.2F, 1.28F};
   });
   expect_remark({"angular_radius_rad", "degrees"}, [](Case& s) { s.inputs.sun.angular_radius_rad = 0.27F; });
-  expect_remark({"irradiance is 0", "black"}, [](Case& s) { s.inputs.sun.irradiance = Vec3(0.0F); });
+  expect_remark({"irradiance is 0", "no in-scattering"}, [](Case& s) { s.inputs.sun.irradiance = Vec3(0.0F); });
 }
 
-// Places, headings and pitches all over, with and without cascades; every camera without roll that turns about more
-// than one axis is known by its inverse, in the first frame.
+// Various positions, headings and pitches, with and without cascades. The inverse of every camera without roll that is
+// rotated about more than one axis is detected in the first frame.
 TEST(FrameChecks, InvertedViewsAreRemarkedOn) {
   int seen = 0, all = 0;
   for (const double distance : {0.0, 30.0, 5000.0, 2.0e5}) {
@@ -266,7 +267,7 @@ TEST(FrameChecks, InvertedViewsAreRemarkedOn) {
     }
   }
   EXPECT_EQ(seen, all);
-  // With cascades even of a camera that rolls, or that turns about one axis.
+  // With cascades, also the inverse of a camera that is rolled or rotated about one axis.
   for (const double roll : {0.0, 0.4}) {
     const std::string text = remark_of([&](Case& s) {
       s.inputs.camera.world_from_view =
@@ -278,7 +279,8 @@ TEST(FrameChecks, InvertedViewsAreRemarkedOn) {
   }
 }
 
-// A camera that rolls and turns in its place, without cascades: the second frame shows that its inverse swings.
+// A camera is rolled and turns in place, without cascades. Its inverse is detected in the second frame, because its
+// position moves around the origin.
 TEST(FrameChecks, AnInvertedViewThatRollsIsRemarkedOnWhenItTurns) {
   for (const bool wrong : {false, true}) {
     Remarks remarks;
@@ -294,7 +296,7 @@ TEST(FrameChecks, AnInvertedViewThatRollsIsRemarkedOnWhenItTurns) {
   }
 }
 
-// Cameras that roll, orbit the origin, stand on their side or fly through a loop are right.
+// Cameras that roll, orbit the origin, are on their side or fly a loop are correct.
 TEST(FrameChecks, UnusualCamerasAreNotRemarkedOn) {
   Remarks remarks;
   for (int frame = 0; frame < 2000; ++frame) {
@@ -316,7 +318,7 @@ TEST(FrameChecks, UnusualCamerasAreNotRemarkedOn) {
   }
 }
 
-TEST(FrameChecks, ARemarkIsMadeOnceUntilItWasRightInBetween) {
+TEST(FrameChecks, ARemarkIsRepeatedOnlyAfterACorrectFrame) {
   Remarks remarks;
   Case good = right();
   Case wrong = right();

@@ -86,7 +86,7 @@ TEST(FrameSteps, FollowTheMethod) {
       "interpolate_samples", "unwarp",        "unwarp_pixels",  "march_samples",    "correct_pixels"};
   EXPECT_EQ(names_of(params), usual);
 
-  // Nothing is shadowed without cascades.
+  // Without cascades there are no shadows.
   std::vector<std::string> unshadowed = usual;
   std::erase(unshadowed, "slice_directions");
   std::erase(unshadowed, "min_max_tree");
@@ -197,8 +197,8 @@ TEST(FrameSteps, ConstantsFollowTheModes) {
   });
 }
 
-// Whether a frame reads a buffer that it has not written. Buffers that shaders bind without using them in a mode are
-// left out.
+// Returns the name of a buffer that a frame reads before writing it, or an empty string. Ignores buffers that shaders
+// bind without using them in a mode.
 std::string unwritten_read(const FrameSteps& steps, bool tree, bool cascades, bool downscaled) {
   std::set<Resource> written;
   for (const Step& step : steps) {
@@ -222,7 +222,7 @@ std::string unwritten_read(const FrameSteps& steps, bool tree, bool cascades, bo
   return written.contains(Resource::output_color) ? "" : "the output is not written";
 }
 
-TEST(FrameSteps, ReadOnlyWhatWasWritten) {
+TEST(FrameSteps, ReadOnlyWrittenResources) {
   for_each_mode([&](Params params) {
     for (const CascadeProcessing processing :
          {CascadeProcessing::single_pass, CascadeProcessing::multi_pass, CascadeProcessing::multi_pass_instanced}) {
@@ -369,7 +369,7 @@ TEST(FrameSteps, SettingsMakeThePipelinesOfTheirFrames) {
   });
 }
 
-TEST(Resources, HaveNamesOfTheirOwn) {
+TEST(Resources, HaveUniqueNames) {
   std::set<std::string> names;
   for (const ResourceInfo& info : kResourceInfo) EXPECT_TRUE(names.insert(info.name).second) << info.name;
 }
@@ -395,7 +395,7 @@ TEST(TableSteps, LateOrdersFollowFromThreeOrdersOn) {
   }
 }
 
-TEST(TableSteps, WriteWhatIsStaleAndReadOnlyWhatWasWritten) {
+TEST(TableSteps, WriteStaleTablesAndReadOnlyWrittenResources) {
   Params params;
   params.tables.size = {5, 6, 7, 8};
   params.tables.orders = 3;

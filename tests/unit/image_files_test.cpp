@@ -65,7 +65,7 @@ class ImageFiles : public testing::Test {
       {"tyndall.camera.yaw_deg", "332"}, {"tyndall.terrain.source", "h\xc3\xb6he.tif"}, {"tyndall.empty", ""}};
 };
 
-TEST_F(ImageFiles, ExrKeepsEveryBit) {
+TEST_F(ImageFiles, ExrPreservesEveryBit) {
   Image image = ramp(131, 77, 1.0e5F);
   image.pixel(3, 4)[0] = std::numeric_limits<float>::infinity();
   image.pixel(5, 6)[1] = -1.0e-30F;
@@ -98,7 +98,7 @@ TEST_F(ImageFiles, HalfExrIsWithinItsPrecision) {
   EXPECT_EQ(entries(), 1U);
 }
 
-TEST_F(ImageFiles, PngKeepsEightBitsAndMetadata) {
+TEST_F(ImageFiles, PngPreservesEightBitsAndMetadata) {
   Image image(256, 3);
   for (std::uint32_t x = 0; x < 256; ++x) {
     for (int i = 0; i < 9; ++i)
@@ -151,7 +151,7 @@ TEST_F(ImageFiles, NotFiniteIsReportedByPng) {
   EXPECT_EQ(entries(), 0U);
 }
 
-TEST_F(ImageFiles, WhatCannotBeWritten) {
+TEST_F(ImageFiles, UnwritableFilesAreErrors) {
   const Image image = ramp(8, 8, 1.0F);
   std::filesystem::create_symlink("/dev/full", at("full"));
   for (const std::string& path : {at("none/a"), directory_.string(), at("full")}) {

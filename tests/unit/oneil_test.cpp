@@ -167,7 +167,7 @@ TEST(Oneil, PrintedEquationsAreASpecialCase) {
 }
 
 // The same sums with numerical density integrals: the difference is the error of the fit, times the optical depth.
-TEST(Oneil, FittedColumnsGiveTheSumsOfIntegratedOnes) {
+TEST(Oneil, FittedDensityIntegralsGiveTheSameSums) {
   const shared::Medium m = planet(6360.0e3, 120.0e3, 7994.0, 1200.0);
   OneilSettings settings;
   const OneilModel model = make_oneil(m, settings);
@@ -300,7 +300,7 @@ TEST(Oneil, ManyPointsGiveTheIntegral) {
   }
 }
 
-TEST(Oneil, FivePointsWhereTheAirIsAreBetterThanFiveEvenOnes) {
+TEST(Oneil, FivePointsSpacedByDensityAreBetterThanFiveUniformOnes) {
   const shared::Medium m = planet(6360.0e3, 80.0e3, 7994.0, 1200.0);
   double sum[2] = {};
   for (const bool by_density : {false, true}) {

@@ -102,7 +102,7 @@ TEST(physics_medium, phase_functions_look_forward_for_positive_g) {
   EXPECT_NEAR(mean_cosine, 0.76, 1.0e-8);
 }
 
-TEST(physics_medium, aerosol_phase_keeps_its_peak_in_single_precision) {
+TEST(physics_medium, aerosol_phase_has_its_peak_in_single_precision) {
   for (const MiePhase kind : {MiePhase::cornette_shanks, MiePhase::henyey_greenstein}) {
     Params params;
     params.atmosphere.mie_g = 0.98F;

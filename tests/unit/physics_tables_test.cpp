@@ -14,7 +14,7 @@ glsl64::TableShape shape_of(std::uint32_t parameterization) { return {32, 128, 6
 
 class TableMapping : public testing::TestWithParam<std::uint32_t> {};
 
-TEST_P(TableMapping, TexelCentresComeBack) {
+TEST_P(TableMapping, TexelCentresMapToThemselves) {
   const glsl64::Medium m = earth();
   const glsl64::TableShape t = shape_of(GetParam());
   for (std::uint32_t i = 0; i < t.altitudes; ++i) {
@@ -49,7 +49,7 @@ TEST_P(TableMapping, TexelCentresComeBack) {
   }
 }
 
-TEST_P(TableMapping, NothingIsFilteredAcrossTheHorizon) {
+TEST_P(TableMapping, FilteringDoesNotCrossTheHorizon) {
   if (GetParam() == 2) GTEST_SKIP() << "the linear mapping is the one that does";
   const glsl64::Medium m = earth();
   const glsl64::TableShape t = shape_of(GetParam());
@@ -67,7 +67,7 @@ TEST_P(TableMapping, NothingIsFilteredAcrossTheHorizon) {
 }
 
 // Look-ups have no step at sea level, and are clamped at the limits of the tables.
-TEST_P(TableMapping, AltitudesGoOnBelowSeaLevel) {
+TEST_P(TableMapping, AltitudesContinueBelowSeaLevel) {
   const glsl64::Medium m = earth();
   const glsl64::TableShape t = shape_of(GetParam());
   const double sea = glsl64::u_from_altitude(t, m, glsl64::table_altitude(m, 0.0));
@@ -85,7 +85,7 @@ TEST_P(TableMapping, AltitudesGoOnBelowSeaLevel) {
 
 INSTANTIATE_TEST_SUITE_P(All, TableMapping, testing::Values(0U, 1U, 2U));
 
-TEST(TableValues, GuideIsExactForAMixedMediumUnderAFullSun) {
+TEST(TableValues, NormalisationIsExactForAMixedMediumUnderAFullSun) {
   glsl64::Medium m = earth();
   m.mie_extinction = m.mie_scattering = glsl64::vec3(0.0);
   m.ozone_absorption = glsl64::vec3(0.0);
@@ -100,7 +100,7 @@ TEST(TableValues, GuideIsExactForAMixedMediumUnderAFullSun) {
   }
 }
 
-TEST(LightTables, AltitudesGoOnBelowSeaLevel) {
+TEST(LightTables, AltitudesContinueBelowSeaLevel) {
   const double R = 6.36e6;
   const double top = 80000.0;
   for (const double h : {-1000.0, -730.0, -430.0, -1.0, 0.0, 3.0, 500.0, 30000.0}) {
@@ -113,7 +113,7 @@ TEST(LightTables, AltitudesGoOnBelowSeaLevel) {
   EXPECT_EQ(glsl64::light_table_uv(-11000.0, 0.5, R, top).x, glsl64::light_table_uv(-1000.0, 0.5, R, top).x);
 }
 
-TEST(TableValues, SunsLightIsThatOfTheColumns) {
+TEST(TableValues, SunlightFollowsFromDensityIntegrals) {
   const glsl64::Medium m = earth();
   for (const double h : {-430.0, 0.0, 3000.0, 40000.0}) {
     for (const double mu : {1.0, 0.3, 0.02, -0.01, -0.05, -0.1}) {

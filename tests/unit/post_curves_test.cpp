@@ -140,7 +140,7 @@ TEST(PostCurves, AgxFollowsTheSigmoidOfItsAuthor) {
 
 // The second matrix inverts the first. The rows of the published ones add up to 1 within 2e-4, which the power of 2.2
 // turns into 5e-4 for grey.
-TEST(PostCurves, AgxKeepsGreyAndHues) {
+TEST(PostCurves, AgxPreservesGreyAndHues) {
   constexpr double kGrey = 5e-4;
   for (const double x : {0.001, 0.18, 1.0, 10.0, 100.0}) {
     const Rgb mapped = tonemapped(with(Operator::agx), 1.0, {x, x, x});
@@ -209,7 +209,7 @@ TEST(PostCurves, TheWhitePointBecomesWhite) {
   }
 }
 
-TEST(PostCurves, NothingBecomesNoNumber) {
+TEST(PostCurves, ResultsAreNeverNan) {
   const double inf = std::numeric_limits<double>::infinity();
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double values[] = {0.0, -0.0, -1.0, -inf, inf, nan, 1e-320, 1e-40, 1e-30, 1e300, 0.5};

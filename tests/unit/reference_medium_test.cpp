@@ -77,9 +77,9 @@ void expect_columns(const Params& params, double tolerance) {
   }
 }
 
-TEST(ReferenceMedium, ColumnsMatchQuadrature) { expect_columns(Params{}, 1e-6); }
+TEST(ReferenceMedium, DensityIntegralsMatchQuadrature) { expect_columns(Params{}, 1e-6); }
 
-TEST(ReferenceMedium, ColumnsMatchQuadratureElsewhere) {
+TEST(ReferenceMedium, DensityIntegralsMatchQuadratureInOtherMedia) {
   Params p;
   p.planet.radius_m = 1e6F;
   p.atmosphere.height_m = 50000.0F;

@@ -54,7 +54,7 @@ TEST(ScenePath, WithoutFramesNothingChanges) {
   EXPECT_EQ(out.sun.animate, true);
 }
 
-TEST(ScenePath, PassesThroughItsFramesAndKeepsWhatTheyLeaveOut) {
+TEST(ScenePath, PassesThroughItsFramesAndPreservesOtherParameters) {
   const CameraPath path = from_valley_to_orbit();
   SceneParams base;
   base.camera.pitch_deg = -7.0F;

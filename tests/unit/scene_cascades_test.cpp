@@ -100,7 +100,7 @@ TEST(SceneCascades, AreFiniteOrderedAndMarchedFromTheCamera) {
       });
 }
 
-TEST(SceneCascades, HoldTheGroundOfTheirSliceAndItsCasters) {
+TEST(SceneCascades, ContainTheGroundOfTheirSliceAndItsCasters) {
   std::mt19937 engine(5);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   std::size_t receivers = 0;
@@ -141,7 +141,7 @@ TEST(SceneCascades, HoldTheGroundOfTheirSliceAndItsCasters) {
 }
 
 // For every view, one cascade contains a room around the camera well inside its map, and finer cascades come before it.
-TEST(SceneCascades, OneHoldsARoomAroundTheCamera) {
+TEST(SceneCascades, OneContainsARoomAroundTheCamera) {
   std::size_t rooms = 0;
   for (const bool bare : {false, true}) {
     for (const float distance_m : {10.0F, 60.0F, 3.0e5F}) {
@@ -191,7 +191,7 @@ TEST(SceneCascades, OneHoldsARoomAroundTheCamera) {
   EXPECT_EQ(rooms, 2U * 3U * 4U * std::size(kElevations_deg));
 }
 
-TEST(SceneCascades, TexelsStayWhenTheCameraMovesAndTurns) {
+TEST(SceneCascades, TexelsAreFixedWhenTheCameraMovesAndTurns) {
   ShadowParams shadows;
   for (const double elevation : {4.0, 45.0, 90.0}) {
     for (const double altitude : {500.0, 8000.0}) {

@@ -186,7 +186,7 @@ TEST_F(SceneMesh, MaterialsAndTextures) {
   }
 }
 
-TEST_F(SceneMesh, WrongFilesSayWhatIsWrong) {
+TEST_F(SceneMesh, InvalidFilesAreReportedWithTheirError) {
   refuses("", "is not a glTF file");
   refuses("not glTF at all", "is not a glTF file");
   refuses("{", "cannot be read");
@@ -248,9 +248,9 @@ TEST_F(SceneMesh, WrongFilesSayWhatIsWrong) {
     });
   };
   refuses(textured({{{"uri", "missing.png"}}}), "missing.png': cannot read");
-  refuses(textured({{{"uri", "data:image/png;base64,QUJDREVGRw=="}}}), "is no picture");
+  refuses(textured({{{"uri", "data:image/png;base64,QUJDREVGRw=="}}}), "is not a picture");
   refuses(textured({{{"bufferView", 9}, {"mimeType", "image/png"}}}), "images[0].bufferView is 9");
-  refuses(textured(json::array({json::object()})), "images[0] is no picture");
+  refuses(textured(json::array({json::object()})), "images[0] is not a picture");
   GltfFile outside = triangle();
   outside.root["buffers"] = {{{"byteLength", 36}, {"uri", "missing.bin"}}};
   refuses(outside.root.dump(), "missing.bin");
@@ -360,7 +360,7 @@ TEST_F(SceneMesh, TheHallIsClosedAndSeenFromInside) {
 }
 
 // Boxes with a visible point are never left out; boxes entirely on the outer side of one plane are.
-TEST(SceneMeshCulling, LeavesOutOnlyWhatIsOutOfSight) {
+TEST(SceneMeshCulling, CullsOnlyInvisibleBoxes) {
   std::mt19937 engine(6);
   const auto uniform = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(engine);

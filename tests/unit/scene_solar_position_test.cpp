@@ -68,7 +68,7 @@ TEST(SolarPosition, EquinoxesAndSolstices) {
   }
 }
 
-TEST(SolarPosition, WhatMustHold) {
+TEST(SolarPosition, InvariantsHold) {
   // Solar noon is midway between equal elevations, up to the change of declination.
   double best = -90.0;
   double noon = 0.0;

@@ -153,7 +153,7 @@ TEST(SceneTerrainLod, ThePlanReachesTheHorizonOfGroundBelowSeaLevel) {
   EXPECT_EQ(above.reach_m, plan_terrain({0.0, 0.0}, 1500.0, kSummit_m, kRadius_m).reach_m);
 }
 
-TEST(SceneTerrainLod, OnlyVisibleBlocksAndNoneFinerThanAsked) {
+TEST(SceneTerrainLod, OnlyVisibleBlocksAndNoneFinerThanRequested) {
   const TerrainLod lod = plan_terrain({0.0, 0.0}, 100.0, kSummit_m, kRadius_m);
   std::vector<TerrainBlock> blocks;
   const auto east = [](const glm::dvec2&, const glm::dvec2& high) { return high.x > 0.0; };

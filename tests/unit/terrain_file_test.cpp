@@ -200,7 +200,7 @@ TEST_F(ElevationFile, UnitsOfCoordinatesCanBeStated) {
 }
 
 // A file of the Earth on Mars, and one of Mars on the Earth: latitudes and longitudes are unchanged.
-TEST_F(ElevationFile, OtherBodiesKeepTheirAngles) {
+TEST_F(ElevationFile, AnglesOfOtherBodiesArePreserved) {
   constexpr double kMars_m = 3389500.0;
   TestFile earth;
   earth.name = "earth.tif";

@@ -123,7 +123,7 @@ TEST(ElevationSource, AtlasHoldsEveryLevel) {
   EXPECT_NEAR(atlas.texels[200], 0.25 * (waves(0, 0) + waves(1, 0) + waves(0, 1) + waves(1, 1)), 0.001);
 }
 
-TEST(ElevationSource, StrangePlacesDoNoHarm) {
+TEST(ElevationSource, InvalidPositionsAreHarmless) {
   const TestFolder folder;
   const ElevationSource source = make(folder, waves);
   for (const double x : {1e300, -1e300, std::nan(""), std::numeric_limits<double>::infinity(), 3e7}) {
@@ -131,7 +131,7 @@ TEST(ElevationSource, StrangePlacesDoNoHarm) {
   }
 }
 
-TEST(ElevationSource, ErrorsComeThrough) {
+TEST(ElevationSource, ErrorsAreForwarded) {
   ElevationDesc desc;
   desc.source = "no such file.tif";
   const Result<ElevationSource> missing = ElevationSource::create(desc);

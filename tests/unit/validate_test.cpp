@@ -116,7 +116,7 @@ TEST(ValidateRays, TurbidSetIsNearTheHorizonUnderLowSuns) {
   }
 }
 
-TEST(ValidateRays, TurbidAirHasTheOpticalDepthThatItSays) {
+TEST(ValidateRays, TurbidAtmospheresHaveTheirOpticalDepth) {
   Params params;
   params.atmosphere.aerosol_absorption = 0.3F;
   for (const TurbidAir& air : kTurbidAirs) {
@@ -130,7 +130,7 @@ TEST(ValidateRays, TurbidAirHasTheOpticalDepthThatItSays) {
   EXPECT_EQ(turbid_params(params, kTurbidAirs[0]).atmosphere.aerosol_density, 0.0F);
 }
 
-TEST(ValidateRays, TheSunStandsAtThePlaceThatSpaceSees) {
+TEST(ValidateRays, TheSunIsGivenAtTheVisiblePosition) {
   for (const TestRay& ray : make_rays(Region::space, SunBand::twilight, 100, 3, kRadius, kHeight)) {
     const RayQuery& q = ray.query;
     // In the eye's frame: x along the heading, y up. Go forward to the ground or to the perigee.
@@ -218,7 +218,7 @@ Model tracer(std::string name, int orders, double factor) {
           }};
 }
 
-TEST(ValidateStudy, FindsWhatIsWrongAndNothingElse) {
+TEST(ValidateStudy, FindsAllErrorsAndNoOthers) {
   Options options;
   options.rays = 72;
   options.samples = 400;

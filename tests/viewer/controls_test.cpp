@@ -1,5 +1,5 @@
-// Every control of two panels to both of its ends, by the mouse and the keyboard; memory_test.cpp takes every parameter
-// there by a script.
+// Sets every control of two panels to both ends of its range with mouse and keyboard. memory_test.cpp does so for all
+// parameters with a script.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,13 +19,13 @@ using config::Row;
 
 int components_of(const Row& row) { return static_cast<int>(config::component_count(row.info.type)); }
 
-// A number of the row, as the log has it.
+// Returns a number of the row in the format of the log.
 std::string text_of(const Row& row, double value) {
   const bool whole = row.info.type == ParamType::uint32 || row.info.type == ParamType::uvec4;
   return whole ? std::to_string(static_cast<std::uint32_t>(value)) : files::number_text(static_cast<float>(value));
 }
 
-// Waits until the viewer has set the row, or the component of it, to this text.
+// Waits until the viewer has set the row or one of its components to this text.
 bool was_set(Desk& desk, const Row& row, const std::string& text, std::size_t from, std::size_t component = 0) {
   const std::string before = " set " + row.key() + "=";
   while (const std::optional<LogLine> line = desk.wait_for_line({before}, from, 15.0)) {
@@ -36,7 +36,7 @@ bool was_set(Desk& desk, const Row& row, const std::string& text, std::size_t fr
   return false;
 }
 
-// What xdotool calls the keys of a number, and the one that ends it.
+// Returns the names that xdotool has for the keys of a number and for the final Enter.
 std::string keys_of(const std::string& number) {
   std::string keys = "key --delay 15";
   for (const char c : number) {
@@ -45,7 +45,7 @@ std::string keys_of(const std::string& number) {
   return keys + " Return";
 }
 
-// Ctrl and click opens a number for typing.
+// Types a number into a control. Ctrl and click opens it for typing.
 bool type_into(Desk& desk, const Row& row, const std::string& place, const std::string& text, std::size_t component) {
   const std::size_t from = desk.lines();
   desk.input("keydown ctrl");
@@ -65,7 +65,7 @@ bool choose_both_ends(Desk& desk, const Row& row) {
     return choose(desk, row, 4096, "4096") && choose(desk, row, 512, "512") && choose(desk, row, 1024, "1024");
   const std::size_t last = files::count_parts(row.info.choices, '|') - 1;
   const auto name = [&](std::size_t i) { return std::string(files::part(row.info.choices, '|', i)); };
-  // From wherever it stands: an end that it stands at is no change.
+  // The control is set to another value first, because the log shows only changes.
   (void)(desk.click(row.key(), 0.2) && desk.click(row.key() + ".0", 0.2));
   return choose(desk, row, last, name(last)) && choose(desk, row, 0, name(0));
 }
@@ -78,31 +78,32 @@ bool both_ends(Desk& desk, const Row& row) {
     return desk.click(key, 0.04) && desk.click(key, 0.04) && was_set(desk, row, "true", from) &&
            was_set(desk, row, "false", from);
   }
-  // Numbers without a slider are typed: a drag has no end.
+  // Numbers without a slider are typed, because dragging has no end.
   const bool typed = row.info.max > 1.0e6 || row.info.type == ParamType::uvec4 ||
                      (row.info.type == ParamType::uint32 && row.info.max > 100000) ||
                      (row.info.type == ParamType::vec3 && row.info.max <= 1.0);
-  const std::string least = text_of(row, row.info.min);
-  const std::string largest = text_of(row, row.info.max);
+  const std::string minimum = text_of(row, row.info.min);
+  const std::string maximum = text_of(row, row.info.max);
   const int count = components_of(row);
   std::size_t from = 0;
   for (int i = 0; i < count; ++i) {
     const auto component = static_cast<std::size_t>(i);
     const std::string place = count > 1 ? key + "." + std::to_string(i) : key;
     if (typed) {
-      if (!type_into(desk, row, place, largest, component)) return false;
-      // Tables of that size may be refused, and what was there comes back: something else before what that may be.
+      if (!type_into(desk, row, place, maximum, component)) return false;
+      // Tables of that size may be refused, which restores the old value. Another value is set first, so that the next
+      // one is a change in any case.
       if (row.info.type == ParamType::uvec4 && !type_into(desk, row, place, "6", component)) return false;
-      if (!type_into(desk, row, place, least, component)) return false;
+      if (!type_into(desk, row, place, minimum, component)) return false;
       continue;
     }
     from = desk.lines();
     if (!pull(desk, place, {-0.02, 1.1, -0.02})) return false;
-    if (!was_set(desk, row, largest, from, component) || !was_set(desk, row, least, from, component)) return false;
+    if (!was_set(desk, row, maximum, from, component) || !was_set(desk, row, minimum, from, component)) return false;
   }
-  // A right click brings the default back.
+  // A right click restores the default.
   const config::Settings usual;
-  if (count == 1 && config::value_text(row, usual) == least) return true;
+  if (count == 1 && config::value_text(row, usual) == minimum) return true;
   from = desk.lines();
   return desk.click(key, 0.3, 3) &&
          desk.wait_for({" set " + key + "=" + config::value_text(row, usual)}, from, 15.0).has_value();
@@ -115,7 +116,7 @@ TEST_P(Controls, GoToBothEnds) {
   std::string name = GetParam();
   std::replace(name.begin(), name.end(), ' ', '_');
   Desk desk("controls_" + name, 900, 1000);
-  // Small, and with what would be grey otherwise in effect.
+  // Small settings, with which no control is greyed out.
   const std::vector<std::string> few = {"--set", "epipolar.slices=64", "--set", "epipolar.samples=64"};
   ASSERT_TRUE(desk.open(joined(joined(kSmallTables, few),
                                {"--size", "900x1000", "--no-first-steps", "--set", "scattering.light_shafts=off",

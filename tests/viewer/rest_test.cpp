@@ -1,4 +1,4 @@
-// The viewer when nothing changes: it sleeps; and what it does then, keeping tables.
+// The viewer at rest: it stores tables, and then sleeps.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -29,7 +29,7 @@ TEST(Window, SleepsWhenNothingChanges) {
   NEEDS_A_DESK();
   Desk desk("rest");
   ASSERT_TRUE(desk.open(joined(kSmall, kSmallTables))) << desk.errors();
-  // Every pipeline made, the eye adapted, the tables stored; then no step of the loop any more.
+  // After all pipelines have been created, the exposure has adapted and the tables are stored, the loop stops.
   ASSERT_TRUE(desk.wait_for({"pipelines"}));
   ASSERT_TRUE(desk.wait_for({"resting"}));
   std::this_thread::sleep_for(std::chrono::seconds(1));
@@ -43,11 +43,11 @@ TEST(Window, SleepsWhenNothingChanges) {
   EXPECT_EQ(desk.leave(), 0) << desk.errors();
 }
 
-// What the viewer starts with is kept at once, what a slider leads to when it has stood for 20 s, and what it only came
-// by not at all.
+// The first tables are stored immediately. Those of later parameters are stored only once the parameters have been
+// stable for 20 s, so intermediate values of a slider are not stored.
 TEST(Window, CachesTablesOnceParametersAreStable) {
   NEEDS_A_DESK();
-  Desk desk("kept");
+  Desk desk("cached");
   const std::string cache = desk.folder() + "/cache";
   ASSERT_TRUE(desk.open(
       joined(joined({"--size", "640x360", "--no-first-steps"}, kSmallTables), {"--set", "tables.cache=" + cache})))
@@ -64,9 +64,9 @@ TEST(Window, CachesTablesOnceParametersAreStable) {
   from = desk.lines();
   ASSERT_TRUE(pull(desk, "atmosphere.aerosol_density", {0.4}));
   ASSERT_TRUE(desk.wait_for({"set atmosphere.aerosol_density"}, from));
-  const std::optional<std::string> kept = desk.wait_for({"tables stored"}, from);
-  ASSERT_TRUE(kept);
-  // From the last time that tables were finished.
+  const std::optional<std::string> stored = desk.wait_for({"tables stored"}, from);
+  ASSERT_TRUE(stored);
+  // The last time at which tables were finished.
   double finished_s = 0.0;
   while (const std::optional<std::string> line = desk.wait_for({" tables"}, from, 1.0)) {
     if (line->ends_with(" tables")) finished_s = time_of(*line);
@@ -74,12 +74,12 @@ TEST(Window, CachesTablesOnceParametersAreStable) {
     if (from >= desk.lines()) break;
   }
   EXPECT_GT(finished_s, 0.0);
-  // The 20 s begin where the tables are finished; the line that says so comes with the frame that shows them.
+  // The 20 s start when the tables are finished. The line in the log follows with the frame that uses them.
   constexpr double kFrame_s = 1.0;
-  EXPECT_GE(time_of(*kept) - finished_s, 20.0 - kFrame_s);
-  EXPECT_LE(time_of(*kept) - finished_s, 30.0);
+  EXPECT_GE(time_of(*stored) - finished_s, 20.0 - kFrame_s);
+  EXPECT_LE(time_of(*stored) - finished_s, 30.0);
   ASSERT_TRUE(desk.wait_for({"resting"}, from > 0 ? from - 1 : 0));
-  EXPECT_EQ(files_in(cache), first + 1) << "those in between are not kept";
+  EXPECT_EQ(files_in(cache), first + 1) << "those in between are not stored";
   EXPECT_EQ(desk.leave(), 0) << desk.errors();
 }
 

@@ -1,4 +1,4 @@
-// What is refused goes back, and nothing else.
+// Refused settings are reverted, and only these.
 #include <gtest/gtest.h>
 
 #include "viewer/scenes/settings_compare.hpp"
@@ -7,14 +7,14 @@ namespace tyndall::viewer {
 namespace {
 
 TEST(ViewerSettings, RefusedSettingsAreRevertedButLaterChangesStay) {
-  config::Settings had, asked, now;
-  asked.effect.tables.size = {4, 4, 4, 4096};
-  asked.effect.atmosphere.mie_g = 0.5F;
-  asked.scene.terrain.source = "nowhere.tif";
-  now = asked;
-  now.effect.atmosphere.mie_g = 0.6F;  // changed again
-  now.effect.scattering.scale = 2.0F;  // changed since
-  go_back(now, asked, had);
+  config::Settings had, requested, now;
+  requested.effect.tables.size = {4, 4, 4, 4096};
+  requested.effect.atmosphere.mie_g = 0.5F;
+  requested.scene.terrain.source = "nowhere.tif";
+  now = requested;
+  now.effect.atmosphere.mie_g = 0.6F;  // changed a second time
+  now.effect.scattering.scale = 2.0F;  // changed after the request
+  go_back(now, requested, had);
   config::Settings wanted = had;
   wanted.effect.atmosphere.mie_g = 0.6F;
   wanted.effect.scattering.scale = 2.0F;

@@ -214,7 +214,7 @@ Result<bool> Swapchain::create_swapchain() {
   const VkPhysicalDevice physical = host_->device().physical_device;
   VkSurfaceCapabilitiesKHR caps = {};
   VkResult result = vkGetPhysicalDeviceSurfaceCapabilitiesKHR(physical, surface_, &caps);
-  if (result != VK_SUCCESS) return gpu::vulkan_error(result, "asking for", "the window's surface");
+  if (result != VK_SUCCESS) return gpu::vulkan_error(result, "querying", "the window's surface");
   const VkExtent2D window = window_->size();
   VkExtent2D extent = caps.currentExtent;
   if (extent.width == UINT32_MAX) {

@@ -17,8 +17,8 @@ constexpr double kTables_ms = 60.0;  // intended duration of building a piece
 constexpr double kTonePeriod_s = 1.0 / 60.0;
 // Tables are stored only once the parameters have been stable for this long, so that dragging a slider does not fill
 // the cache.
-constexpr double kKeepFirst_s = 1.0;
-constexpr double kKeep_s = 20.0;
+constexpr double kStoreFirstAfter_s = 1.0;
+constexpr double kStoreAfter_s = 20.0;
 
 template <typename T>
 bool is_done(const std::future<T>& future) {
@@ -41,7 +41,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 SceneWork::~SceneWork() {
   if (loading_.valid()) loading_.wait();
-  if (keeping_.valid()) keeping_.wait();
+  if (storing_.valid()) storing_.wait();
 }
 
 SceneResult SceneWork::create(gpu::Host& host, const scene::SceneDesc& desc, const SceneRequest& request,
@@ -61,7 +61,7 @@ SceneResult SceneWork::create(gpu::Host& host, const scene::SceneDesc& desc, con
     // The first step searches the cache: if the tables are there, the first frame is drawn at once.
     if (building()) {
       TYNDALL_TRY(scene_->advance_tables(1));
-      unkept_ = building();
+      unstored_ = building();
     }
     if (ready()) TYNDALL_TRY(draw(request, out));
     return {};
@@ -73,7 +73,7 @@ SceneResult SceneWork::create(gpu::Host& host, const scene::SceneDesc& desc, con
     return out;
   }
   out.notes = scene_->notes();
-  notes_told_ = out.notes.size();
+  notes_reported_ = out.notes.size();
   return out;
 }
 
@@ -92,9 +92,9 @@ bool SceneWork::tone_stale() const {
          std::abs(m.luminance - std::max(m.measured, params.least_luminance)) > kAdapted * m.luminance;
 }
 
-double SceneWork::keep_in_s() const {
-  if (!unkept_ || keeping_.valid() || building() || desc_.make_tables.cache.place == "off") return -1.0;
-  return std::max((first_tables_ ? kKeepFirst_s : kKeep_s) - seconds_since(tables_since_), 0.0);
+double SceneWork::store_in_s() const {
+  if (!unstored_ || storing_.valid() || building() || desc_.make_tables.cache.place == "off") return -1.0;
+  return std::max((first_tables_ ? kStoreFirstAfter_s : kStoreAfter_s) - seconds_since(tables_since_), 0.0);
 }
 
 bool SceneWork::follows(const SceneRequest& request) const {
@@ -106,12 +106,12 @@ bool SceneWork::shows(const SceneRequest& request) const { return drawn_ && !sta
 
 bool SceneWork::wants(const SceneRequest& request) const {
   if (scene_ == nullptr) return false;
-  if (is_done(loading_) || is_done(keeping_)) return true;
+  if (is_done(loading_) || is_done(storing_)) return true;
   if (!follows(request) || building()) return true;
   if (!ready()) return false;
   if (stale_ || request.again || request.capture || !same_view(request.view, drawn_view_)) return true;
   if (tone_stale() && seconds_since(drawn_at_) >= kTonePeriod_s) return true;
-  return request.rest && (keep_in_s() == 0.0 || !pipelines_.complete() || pipelines_.total == 0);
+  return request.rest && (store_in_s() == 0.0 || !pipelines_.complete() || pipelines_.total == 0);
 }
 
 SceneResult SceneWork::run(const SceneRequest& request) {
@@ -137,15 +137,15 @@ SceneResult SceneWork::run(const SceneRequest& request) {
   }
   out.settings = wanted_;
   const std::vector<std::string>& notes = scene_->notes();
-  out.notes.insert(out.notes.end(), notes.begin() + static_cast<std::ptrdiff_t>(std::min(notes_told_, notes.size())),
-                   notes.end());
-  notes_told_ = notes.size();
+  out.notes.insert(out.notes.end(),
+                   notes.begin() + static_cast<std::ptrdiff_t>(std::min(notes_reported_, notes.size())), notes.end());
+  notes_reported_ = notes.size();
   return out;
 }
 
 Result<void> SceneWork::next(const SceneRequest& request, SceneResult& out) {
-  if (is_done(keeping_)) {
-    const std::string note = keeping_.get();
+  if (is_done(storing_)) {
+    const std::string note = storing_.get();
     out.tables_stored = note.empty();
     if (!out.tables_stored) out.notes.push_back(note);
   }
@@ -154,7 +154,7 @@ Result<void> SceneWork::next(const SceneRequest& request, SceneResult& out) {
   if (stale_ || request.again || !same_view(request.view, drawn_view_)) return draw(request, out);
   if (tone_stale()) return draw(request, out);
   if (!request.rest || out.tables) return {};
-  if (keep_in_s() == 0.0) return keep_tables();
+  if (store_in_s() == 0.0) return store_tables();
   if (!pipelines_.complete() || pipelines_.total == 0) {
     TYNDALL_ASSIGN(pipelines_, scene_->effect().prepare_pipelines(1));
     out.pipelines_done = pipelines_.complete();
@@ -174,7 +174,7 @@ Result<void> SceneWork::advance_tables(SceneResult& out) {
   out.tables = true;
   if (!progress.complete()) return {};
   // More slices than the budget: the tables came from the cache.
-  if (fresh && progress.total > budget) unkept_ = false;
+  if (fresh && progress.total > budget) unstored_ = false;
   out.tables_done = stale_ = true;
   tables_since_ = Clock::now();
   return {};
@@ -214,10 +214,11 @@ Result<void> SceneWork::draw(const SceneRequest& request, SceneResult& out) {
 }
 
 // Stores the tables on another thread; next() notices when it is done.
-Result<void> SceneWork::keep_tables() {
-  unkept_ = first_tables_ = false;
-  TYNDALL_ASSIGN(tables::Keeper keeper, tables::Keeper::fetch(*host_, scene_->effect(), desc_.make_tables.cache));
-  keeping_ = std::async(std::launch::async, [store = std::move(keeper)]() mutable {
+Result<void> SceneWork::store_tables() {
+  unstored_ = first_tables_ = false;
+  TYNDALL_ASSIGN(tables::CacheWriter writer,
+                 tables::CacheWriter::fetch(*host_, scene_->effect(), desc_.make_tables.cache));
+  storing_ = std::async(std::launch::async, [store = std::move(writer)]() mutable {
     std::string note = store.write();
     Window::wake();
     return note;
@@ -287,7 +288,7 @@ Result<void> SceneWork::follow_settings(const config::Settings& wanted) {
     TYNDALL_TRY(scene_->set_params(next.effect));
     applied_.effect = next.effect;
     if (building()) {
-      unkept_ = true;
+      unstored_ = true;
       first_tables_ = false;
     }
   }
@@ -308,10 +309,10 @@ SceneFacts SceneWork::facts() const {
   if (scene_ == nullptr) return f;
   f.can_render = ready();
   f.building = building();
-  f.working = loading_.valid() || keeping_.valid();
+  f.working = loading_.valid() || storing_.valid();
   f.tables = scene_->effect().precompute_progress();
   f.pipelines = pipelines_;
-  f.keep_tables_in_s = keep_in_s();
+  f.store_tables_in_s = store_in_s();
   f.extent = desc_.extent;
   f.shadow_layers = static_cast<int>(scene_->images().shadow_maps.desc.layers);
   f.elevations = scene_->elevations();

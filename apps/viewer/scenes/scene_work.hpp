@@ -16,13 +16,13 @@
 
 namespace tyndall::viewer {
 
-// What a scene is to contain and to show.
+// The requested contents and view of a scene.
 struct SceneRequest {
   config::Settings settings;
   VkExtent2D extent = {};  // of the picture
   int coarseness = 1;      // of the ground
   View view;
-  double seconds = 0.0;  // of the scene's own time
+  double seconds = 0.0;  // time of the scene
   bool again = false;    // the time has advanced: draw another frame
   bool rest = false;     // the user is idle
   bool capture = false;  // return the picture as images
@@ -34,7 +34,7 @@ struct SceneFacts {
   bool working = false;     // a file is being read or written
   bool tone_stale = false;  // auto exposure has not settled
   Progress tables = {}, pipelines = {};
-  double keep_tables_in_s = -1.0;  // negative: nothing to store
+  double store_tables_in_s = -1.0;  // negative: nothing to store
   std::vector<scene::PassTime> timings;
   scene::Scene::Exposure exposure;
   scene::Scene::Memory memory;
@@ -95,12 +95,12 @@ class SceneWork {
   Result<void> advance_tables(SceneResult& out);
   Result<void> draw(const SceneRequest& request, SceneResult& out);
   Result<void> capture(SceneResult& out);
-  Result<void> keep_tables();
+  Result<void> store_tables();
   [[nodiscard]] bool follows(const SceneRequest& request) const;
   [[nodiscard]] bool building() const;
   [[nodiscard]] bool ready() const { return scene_ != nullptr && scene_->can_render(); }
   [[nodiscard]] bool tone_stale() const;
-  [[nodiscard]] double keep_in_s() const;
+  [[nodiscard]] double store_in_s() const;
   [[nodiscard]] double step_s();
 
   gpu::Host* host_ = nullptr;
@@ -111,8 +111,8 @@ class SceneWork {
   View drawn_view_;
   std::future<Result<scene::ElevationSource>> loading_;
   config::Settings loading_for_;
-  std::future<std::string> keeping_;
-  bool unkept_ = false;  // tables were built that are not in the cache
+  std::future<std::string> storing_;
+  bool unstored_ = false;  // tables were built that are not in the cache
   bool first_tables_ = true;
   Clock::time_point tables_since_;  // when the tables were finished
   bool stale_ = true;
@@ -121,7 +121,7 @@ class SceneWork {
   Clock::time_point drawn_at_;
   Progress pipelines_ = {};
   std::uint32_t budget_ = 1;  // slices of tables for one piece of work
-  std::size_t notes_told_ = 0;
+  std::size_t notes_reported_ = 0;
 };
 
 }  // namespace tyndall::viewer

@@ -73,8 +73,8 @@ double wrapped_deg(double angle_deg) {
   return positive < 360.0 ? positive : 0.0;
 }
 
-// In longitude and in obliquity, deg: the four largest terms (Meeus, "Astronomical Algorithms", 1998, ch.
-// 22), within 0.5 arcseconds of all.
+// Nutation in longitude and obliquity [deg]: the four largest terms (Meeus, "Astronomical Algorithms", 1998, chapter
+// 22), which are within 0.5 arcseconds of the whole series.
 struct Nutation {
   double longitude_deg, obliquity_deg;
 };
@@ -276,7 +276,7 @@ Result<Place> parse_place(std::string_view text, std::string_view where) {
     place.longitude_deg = std::remainder(place.longitude_deg, 360.0);
     return place;
   }
-  return input_error(concat({"'", one_line(text), read ? "' is out of range" : "' is no place"}), where,
+  return input_error(concat({"'", one_line(text), read ? "' is out of range" : "' is not a place"}), where,
                      "expected LAT,LON in degrees, -90 to 90 northwards and -360 to 360 eastwards");
 }
 
@@ -285,7 +285,7 @@ Result<double> parse_time(std::string_view text, std::string_view where) {
     return input_error(concat({"'", one_line(text), "' ", what}), where, allowed);
   };
   const std::optional<Civil> read = read_civil(text);
-  if (!read) return error("is no time", "expected a time as 2003-10-17T12:30:30-07:00 or 2003-10-17T19:30:30.5Z");
+  if (!read) return error("is not a time", "expected a time as 2003-10-17T12:30:30-07:00 or 2003-10-17T19:30:30.5Z");
   const Civil& civil = *read;
   if (!civil.has_offset) return error("has no offset from UTC", "expected Z or an offset such as +01:00 at the end");
   if (civil.year < 1900 || civil.year > 2100) return error("is out of range", "expected the years 1900 to 2100");

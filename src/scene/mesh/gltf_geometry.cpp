@@ -1,4 +1,4 @@
-// Triangles and what stands at their corners, with morph targets and skins applied.
+// Reads the triangles and vertices of primitives, and applies morph targets and skins.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,7 +14,7 @@ std::string shown_range(int low, int high) {
   return low == high ? std::to_string(low) : std::to_string(low) + " to " + std::to_string(high);
 }
 
-// The normal of a triangle; up where it has none.
+// Returns the normal of a triangle, or up if it is degenerate.
 glm::vec3 flat_normal(const MeshVertex& a, const MeshVertex& b, const MeshVertex& c) {
   const glm::dvec3 n =
       glm::cross(glm::dvec3(b.position) - glm::dvec3(a.position), glm::dvec3(c.position) - glm::dvec3(a.position));
@@ -24,7 +24,7 @@ glm::vec3 flat_normal(const MeshVertex& a, const MeshVertex& b, const MeshVertex
 
 }  // namespace
 
-// An element of an attribute and what the morph targets add to it. Components that are missing are 1.
+// Returns an element of an attribute with the displacements of the morph targets added. Missing components are 1.
 glm::dvec4 GltfVertices::morphed(const GltfValues& base, GltfValues Target::*target, std::size_t i) const {
   glm::dvec4 out(1.0);
   for (int c = 0; c < base.components; ++c) out[c] = base.real(i, c);
@@ -35,7 +35,7 @@ glm::dvec4 GltfVertices::morphed(const GltfValues& base, GltfValues Target::*tar
   return out;
 }
 
-// The matrices of the vertex's joints in the parts of their weights, whose sum counts as one.
+// Returns the weighted mean of the matrices of a vertex's joints. The weights are normalised to a sum of one.
 glm::dmat4 GltfVertices::skinned(std::size_t i) const {
   glm::dmat4 out(0.0);
   double sum = 0.0;
@@ -68,7 +68,7 @@ MeshVertex GltfVertices::at(std::size_t i) const {
   if (!influences.empty()) {
     const glm::dmat4 m = skinned(i);
     p = glm::dvec3(m * glm::dvec4(p, 1.0));
-    // Normals are transformed by the cofactor matrix, which is correct for singular matrices too.
+    // Normals are transformed by the cofactor matrix, which is also correct for singular matrices.
     const glm::dmat3 c(glm::cross(glm::dvec3(m[1]), glm::dvec3(m[2])), glm::cross(glm::dvec3(m[2]), glm::dvec3(m[0])),
                        glm::cross(glm::dvec3(m[0]), glm::dvec3(m[1])));
     n = c * n;
@@ -153,7 +153,7 @@ void GltfReader::read_primitive(const GltfPrimitive& primitive, const std::strin
     note_each("joints", where + " has vertices whose joints have no weight; they follow the first joint");
 }
 
-// The values of an attribute, or none.
+// Returns the values of an attribute, or none if it is missing.
 GltfValues GltfReader::attribute(const GltfAttributes& attributes, const std::string& name, const std::string& where,
                                  const DracoMesh* draco, std::size_t count, int min_components, int max_components) {
   const auto found = attributes.find(name);
@@ -189,7 +189,7 @@ GltfVertices GltfReader::vertices(const GltfPrimitive& primitive, const std::str
          "expected the " + std::to_string(draco->points) + " of the Draco mesh");
   }
   out.normal = attribute(primitive.attributes, "NORMAL", path, draco, count, 3, 3);
-  // Of the set that the base colour names, moved as KHR_texture_transform says.
+  // Texture coordinates: the set that the base colour uses, transformed by KHR_texture_transform.
   if (primitive.material >= 0) out.texture = document_.materials[static_cast<std::size_t>(primitive.material)].texture;
   const std::string uv = "TEXCOORD_" + std::to_string(out.texture.set);
   out.uv = attribute(primitive.attributes, uv, path, draco, count, 2, 2);
@@ -244,7 +244,7 @@ void GltfReader::emit(const GltfVertices& vertices, const std::vector<std::uint3
   if (!flat) {
     for (std::size_t i = 0; i < vertices.position.count; ++i) out_.vertices.push_back(vertices.at(i));
     for (const std::uint32_t c : corners) out_.indices.push_back(base + c);
-    // A normal without a length is that of a triangle at the vertex.
+    // A zero normal is replaced by that of a triangle at the vertex.
     for (std::size_t t = 0; t + 2 < corners.size(); t += 3) {
       for (std::size_t k = 0; k < 3; ++k) {
         glm::vec3& normal = out_.vertices[base + corners[t + k]].normal;
@@ -255,7 +255,7 @@ void GltfReader::emit(const GltfVertices& vertices, const std::vector<std::uint3
       }
     }
   } else {
-    // Without normals triangles are flat, so no two share a vertex.
+    // Without normals, triangles are flat, so each has its own vertices.
     for (std::size_t t = 0; t + 2 < corners.size(); t += 3) {
       std::array<MeshVertex, 3> v = {vertices.at(corners[t]), vertices.at(corners[t + 1]), vertices.at(corners[t + 2])};
       const glm::vec3 normal = flat_normal(v[0], v[1], v[2]);
@@ -269,7 +269,7 @@ void GltfReader::emit(const GltfVertices& vertices, const std::vector<std::uint3
   if (part.index_count > 0) out_.parts.push_back(part);
 }
 
-// Corners of the triangles, three by three, whatever the mode.
+// Returns the vertex indices of a primitive as a list of triangles, whatever its mode.
 std::vector<std::uint32_t> GltfReader::triangles(const GltfPrimitive& primitive, const std::string& where,
                                                  std::size_t count) {
   std::vector<std::uint32_t> list;
@@ -297,7 +297,7 @@ std::vector<std::uint32_t> GltfReader::triangles(const GltfPrimitive& primitive,
   if (primitive.mode == 4) {
     if (list.size() % 3 != 0)
       note_each("corners", where + " has " + std::to_string(list.size()) +
-                               " corners, which is no multiple of 3; the last ones are left out");
+                               " corners, which is not a multiple of 3; the last ones are left out");
     list.resize(list.size() / 3 * 3);
     return list;
   }

@@ -1,4 +1,4 @@
-// Pictures through stb_image, which is used in this file only.
+// Decodes pictures with stb_image, which only this file uses.
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
 #define STBI_NO_STDIO
@@ -31,7 +31,8 @@ std::uint32_t big_endian(std::string_view bytes, std::size_t at) {
   return out;
 }
 
-// Whether the compressed parts of a PNG inflate without a fault, to `low` to `high` bytes. Nothing is stored.
+// Returns whether the compressed parts of a PNG inflate without an error to between `low` and `high` bytes. The data is
+// not stored.
 bool inflates(const std::vector<std::string_view>& parts, std::uint64_t low, std::uint64_t high) {
   z_stream stream = {};
   if (inflateInit(&stream) != Z_OK) return false;
@@ -50,7 +51,7 @@ bool inflates(const std::vector<std::string_view>& parts, std::uint64_t low, std
       if (size > high || (state != Z_OK && state != Z_STREAM_END)) return false;
     }
   }
-  // What is still to come out when all has gone in.
+  // The rest of the output, after all input has been passed in.
   while (state == Z_OK) {
     stream.next_out = scratch.data();
     stream.avail_out = static_cast<unsigned>(scratch.size());
@@ -63,8 +64,8 @@ bool inflates(const std::vector<std::string_view>& parts, std::uint64_t low, std
   return state == Z_STREAM_END && size >= low;
 }
 
-// What is wrong with a PNG, before anything of the size that it claims is allocated: chunks, checksums, and how much
-// the picture data inflates to.
+// Returns the error in a PNG, if any: in its chunks, their checksums or the inflated size of the picture. This is
+// checked before memory of the stated size is allocated.
 std::optional<std::string> fault_of_png(std::string_view bytes, std::uint64_t width, std::uint64_t height) {
   std::vector<std::string_view> data;
   std::uint64_t bits = 0;
@@ -89,18 +90,18 @@ std::optional<std::string> fault_of_png(std::string_view bytes, std::uint64_t wi
     i += std::size_t{12} + length;
   }
   const std::uint64_t size = height * (1 + (width * bits + 7) / 8);
-  // Interlacing adds at most a filter byte and a byte of padding for each of its rows, of which there are less than 3 *
-  // height.
+  // Interlacing adds at most a filter byte and a padding byte to each row of its passes, which have fewer than 3 *
+  // height rows.
   const std::uint64_t high = interlaced ? size + 6 * height + 64 : size;
   if (bits == 0 || !inflates(data, interlaced ? width * height * bits / 8 : size, high + 64))
     return "whose picture data is damaged";
   return {};
 }
 
-// What is wrong with a JPEG: one that ends early decodes to a picture with a grey rest, and each block of 8x8 texels
-// takes at least a bit.
+// Returns the error in a JPEG, if any. A truncated file would decode to a picture that is partly grey. Each block of 8
+// x 8 texels takes at least one bit.
 std::optional<std::string> fault_of_jpeg(std::string_view bytes, std::uint64_t width, std::uint64_t height) {
-  // Segments with a marker and a length each, up to the first scan. In a scan the marker of the end cannot be data.
+  // Up to the first scan, segments consist of a marker and a length. The end marker cannot occur inside a scan.
   std::size_t i = 2;
   while (i + 4 <= bytes.size() && bytes.substr(i, 2) != "\xFF\xDA") {
     if (bytes[i + 1] == '\xFF') {
@@ -132,10 +133,10 @@ void GltfReader::read_materials() {
     }
     out_.materials.push_back(std::move(out));
   }
-  out_.materials.emplace_back();  // of parts that name none
+  out_.materials.emplace_back();  // of parts without a material
 }
 
-// The picture of a texture, decoded once.
+// Returns the index of a texture's picture, which is decoded at the first call.
 int GltfReader::read_image(std::size_t index) {
   const auto known = decoded_.find(static_cast<int>(index));
   if (known != decoded_.end()) return known->second;
@@ -153,7 +154,7 @@ int GltfReader::read_image(std::size_t index) {
   const auto* const data = reinterpret_cast<const stbi_uc*>(bytes.data());
   if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()) ||
       stbi_info_from_memory(data, static_cast<int>(bytes.size()), &width, &height, &channels) == 0) {
-    fail(name + " is no picture",
+    fail(name + " is not a picture",
          "expected PNG and JPEG of up to " + std::to_string(kMaxTextureSide) + " texels on a side");
   }
   if (width <= 0 || height <= 0 || width > static_cast<int>(kMaxTextureSide) ||

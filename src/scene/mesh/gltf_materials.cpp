@@ -15,7 +15,7 @@ TextureWrap wrap(const GltfJson& json, const char* name) {
   }
 }
 
-// A missing filter leaves the choice to the program, which then filters as smoothly as it can.
+// Parses a sampler. If a filter is missing, glTF leaves the choice to the program, and the smoothest is used.
 MeshSampler sampler(const GltfJson& json) {
   MeshSampler out;
   out.wrap_u = wrap(json, "wrapS");
@@ -48,8 +48,8 @@ GltfTextureUse texture_use(const GltfJson& json) {
   return out;
 }
 
-// The base colour of either of the two models of materials. Specular reflection is not drawn, so of
-// KHR_materials_pbrSpecularGlossiness the diffuse colour is the base colour.
+// Parses the base colour of either material model. Specular reflection is not drawn, so the diffuse colour of
+// KHR_materials_pbrSpecularGlossiness serves as base colour.
 void base_color(const GltfJson& json, const char* factor, const char* texture, GltfMaterial& out) {
   glm::dvec4 color(1.0);
   json.bounded(factor, 0.0, 1.0, std::span<double>(&color.x, 4));
@@ -68,7 +68,7 @@ void alpha_mode(const GltfJson& json, MeshMaterial& out) {
     json.refuse("alphaMode", "expected OPAQUE, MASK and BLEND");
   }
   const double cutoff = json.bounded("alphaCutoff", 0.0, std::numeric_limits<double>::max(), 0.5);
-  out.alpha_cutoff = static_cast<float>(std::min(cutoff, 2.0));  // above 1 nothing is left of the surface
+  out.alpha_cutoff = static_cast<float>(std::min(cutoff, 2.0));  // all values above 1 make the surface disappear
 }
 
 GltfMaterial material(const GltfJson& json, std::set<std::string>& undrawn) {
@@ -109,7 +109,7 @@ void parse_materials(const GltfJson& root, GltfDocument& out, std::set<std::stri
     if (json.has("uri")) image.uri = json.text("uri");
     image.view = json.index("bufferView", "bufferViews");
     if (image.uri.has_value() == (image.view >= 0))
-      fail(json.path() + " is no picture", "expected either uri or bufferView");
+      fail(json.path() + " is not a picture", "expected either uri or bufferView");
     out.images.push_back(std::move(image));
   }
   std::vector<MeshSampler> samplers;
