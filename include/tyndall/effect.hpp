@@ -155,6 +155,10 @@ struct FrameInputs {
   // not completed.
   std::uint64_t frame_index = 0;
   std::uint32_t view = 0;  // [0; EffectDesc::views)
+  // [<= 0] m - altitude of the lowest land around the camera. A ray on which nothing is drawn ends on a sphere at sea
+  // level. If the land is lower, so are the sphere and its horizon. Below sea level the sphere is at twice the depth of
+  // the camera, unless the land is lower.
+  float lowest_ground_m = 0.0F;
 };
 
 struct Progress {

@@ -13,8 +13,8 @@ float sky_depth_m(vec3 direction) {
   float h = frame.camera_altitude_m;
   float radius = medium.planet_radius_m;
   float mu = dot(direction, frame.camera_up);
-  return ray_hits_ground(h, mu, radius) ? distance_to_ground(h, mu, radius) * dot(direction, frame.camera_forward)
-                                        : kSkyDepth;
+  if (!hits_planet(frame, h, mu, radius)) return kSkyDepth;
+  return distance_to_sphere(h, mu, frame.ground_m, radius) * dot(direction, frame.camera_forward);
 }
 
 // Returns the length [m] inside the homogeneous medium of a ray to such a depth. From kSkyDepth on the ray ends at the

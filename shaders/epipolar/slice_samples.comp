@@ -72,7 +72,7 @@ void main() {
   s.depth_m = sky ? sky_depth_m(ray.direction) : ray.length_m * dot(ray.direction, frame.camera_forward);
   vec3 integral = vec3(0.0);
   float start, end;
-  if (clip_to_atmosphere(medium, ray, start, end)) {
+  if (clip_to_atmosphere(frame, medium, ray, start, end)) {
     integral = max(density_integral_along(medium, ray.altitude, ray.cos_zenith, end), vec3(0.0));
   }
   s.extinction = extinction_of(optical_depth(medium, integral), s.depth_m);

@@ -140,7 +140,7 @@ Blend blend(Around a, vec2 position) {
 vec3 own_optical_depth(vec2 position, float visible_m, bool sky) {
   Ray ray = ray_to_depth(frame, position, visible_m, sky);
   float start, end;
-  if (!clip_to_atmosphere(medium, ray, start, end)) return vec3(0.0);
+  if (!clip_to_atmosphere(frame, medium, ray, start, end)) return vec3(0.0);
   return optical_depth(medium, density_integral_along(medium, ray.altitude, ray.cos_zenith, end));
 }
 

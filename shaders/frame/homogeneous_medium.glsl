@@ -27,8 +27,8 @@ bool clip_to_homogeneous(Ray ray, out float start, out float end) {
   if (ray.sky) {
     float h = frame.camera_altitude_m;
     float radius = medium.planet_radius_m;
-    end = ray_hits_ground(h, ray.cos_zenith, radius) ? distance_to_ground(h, ray.cos_zenith, radius)
-                                                     : frame.homogeneous.extent_m;
+    end = hits_planet(frame, h, ray.cos_zenith, radius) ? distance_to_sphere(h, ray.cos_zenith, frame.ground_m, radius)
+                                                        : frame.homogeneous.extent_m;
   }
   clip_to_top(ray.cos_zenith, start, end);
   return end > start;
@@ -36,7 +36,7 @@ bool clip_to_homogeneous(Ray ray, out float start, out float end) {
 
 bool clip_to_medium(Ray ray, out float start, out float end) {
   if (kHomogeneous) return clip_to_homogeneous(ray, start, end);
-  return clip_to_atmosphere(medium, ray, start, end);
+  return clip_to_atmosphere(frame, medium, ray, start, end);
 }
 
 // Computes exp(-sigma d), and 1 - exp(-sigma d) without cancellation.

@@ -71,6 +71,11 @@ void close_section(inout LitSections lit, TableRay path, float start) {
     lit.light = add(lit.light, tinted(section, lit.tint, lit.closed_at - lit.since));
   }
   if (kColors && lit.closed_at >= 0.0) lit.tint = vec3(0.0);
+  float reach = ray.sky ? 0.0 : ray.length_m;
+  if (ray.sky && frame.ground_m < ground_below(ray.altitude, radius)) {
+    below = hits_planet(frame, ray.altitude, ray.cos_zenith, radius);
+    reach = distance_to_sphere(ray.altitude, ray.cos_zenith, frame.ground_m, radius);
+  }
   lit.since = lit.closed_at >= 0.0 ? -1.0 : lit.since;
   lit.closed_at = -1.0;
 }

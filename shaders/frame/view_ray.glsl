@@ -50,14 +50,20 @@ float cos_sun_zenith_along(Ray ray, float t, float radius) {
   return clamp((r0 * ray.cos_sun_zenith + t * ray.cos_view_sun) / r, -1.0, 1.0);
 }
 
+// Returns whether a ray on which nothing is drawn ends at the planet. Its sphere is that of ground_below(), or lower if
+// the land around the camera is.
+bool hits_planet(FrameConstants frame, float h, float mu, float radius) {
+  return mu < sphere_horizon_cos(h, frame.ground_m, radius);
+}
+
 // Computes the part of the ray inside the atmosphere; returns false if there is none. A ray to geometry ends there,
-// even below the ground sphere. A ray to the sky ends at the planet or at the top of the atmosphere.
-bool clip_to_atmosphere(Medium medium, Ray ray, out float start, out float end) {
+// even below the planet's sphere. A ray to the sky ends at the planet or at the top of the atmosphere.
+bool clip_to_atmosphere(FrameConstants frame, Medium medium, Ray ray, out float start, out float end) {
   float radius = medium.planet_radius_m;
   if (!segment_below_top(ray.altitude, ray.cos_zenith, medium.atmosphere_height_m, radius, start, end)) return false;
   float reach = ray.length_m;
-  if (ray.sky && ray_hits_ground(ray.altitude, ray.cos_zenith, radius)) {
-    reach = distance_to_ground(ray.altitude, ray.cos_zenith, radius);
+  if (ray.sky && hits_planet(frame, ray.altitude, ray.cos_zenith, radius)) {
+    reach = distance_to_sphere(ray.altitude, ray.cos_zenith, frame.ground_m, radius);
   }
   end = min(end, reach);
   return end > start;

@@ -83,26 +83,30 @@ float horizon_cos(float h, float R) {
   return -sqrt(above * (2.0 * R + above)) / (R + above);
 }
 
-// Returns the cosine of the zenith angle of the horizon of ground_below(). Above sea level this is the sea-level
-// horizon.
-float ground_horizon_cos(float h, float R) {
-  float ground = ground_below(h, R);
+// Returns the cosine of the zenith angle of the horizon of a sphere at the altitude `ground` <= h.
+float sphere_horizon_cos(float h, float ground, float R) {
   return -sqrt((h - ground) * (2.0 * R + h + ground)) / (R + h);
 }
 
+// Returns the cosine of the zenith angle of the horizon of ground_below(). Above sea level this is the sea-level
+// horizon.
+float ground_horizon_cos(float h, float R) { return sphere_horizon_cos(h, ground_below(h, R), R); }
+
 bool ray_hits_ground(float h, float mu, float R) { return mu < ground_horizon_cos(h, R); }
 
-// Returns the distance to the ground [m] for a ray that hits it. A ray that misses the ground by a rounding error gets
-// the distance to its perigee.
-float distance_to_ground(float h, float mu, float R) {
+// Returns the distance to the sphere at the altitude `ground` [m] for a ray that hits it. A ray that misses it by a
+// rounding error gets the distance to its perigee.
+float distance_to_sphere(float h, float mu, float ground, float R) {
   float near;
   float far;
   float d = -(R + h) * mu;
-  if (shell_intersections(h, mu, ground_below(h, R), R, near, far)) {
+  if (shell_intersections(h, mu, ground, R, near, far)) {
     d = near;
   }
   return max(d, 0.0);
 }
+
+float distance_to_ground(float h, float mu, float R) { return distance_to_sphere(h, mu, ground_below(h, R), R); }
 
 // Computes the part of the ray that lies below `top`, as distances start <= end [m]. The ground does not end the ray.
 // Returns false, with start = end = 0, if there is no such part.

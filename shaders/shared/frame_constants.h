@@ -51,7 +51,7 @@ struct FrameConstants {
   // depth.
   float glass_depth_sign;
   vec3 ray_y;
-  float unused_2;
+  float ground_m;  // altitude of the sphere at which rays end on which nothing is drawn
   vec3 direction_to_sun;
   float cos_sun_angular_radius;
   vec3 sun_irradiance;  // includes scattering.scale

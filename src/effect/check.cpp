@@ -178,6 +178,9 @@ Result<void> check_frame(const FrameInputs& inputs, const EffectDesc& desc, cons
     return invalid("Camera::clip_from_view is not finite or cannot be inverted; expected a perspective projection");
   }
   TYNDALL_TRY(check_camera(inputs.camera, desc));
+  if (!std::isfinite(inputs.lowest_ground_m) || inputs.lowest_ground_m > 0.0F) {
+    return invalid("FrameInputs::lowest_ground_m must be finite and not above 0");
+  }
   const Vec3 sun = inputs.sun.direction_to_sun;
   if (!finite(sun) || (sun.x == 0.0F && sun.y == 0.0F && sun.z == 0.0F)) {
     return invalid("Sun::direction_to_sun is zero or not finite; expected a direction");

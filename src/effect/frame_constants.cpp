@@ -36,7 +36,9 @@ void set_camera(shared::FrameConstants& out, const FrameInputs& inputs, const Pa
   out.camera_altitude_m = static_cast<float>(camera_altitude_m(inputs, params));
   const double altitude = out.camera_altitude_m;
   // ground_below() of shaders/lib/geometry.glsl.
-  const double ground = altitude < 0.0 ? std::min(altitude, std::max(2.0 * altitude, -0.5 * radius)) : 0.0;
+  const double below = altitude < 0.0 ? std::min(altitude, std::max(2.0 * altitude, -0.5 * radius)) : 0.0;
+  const double ground = std::min(below, std::max<double>(inputs.lowest_ground_m, -0.5 * radius));
+  out.ground_m = static_cast<float>(ground);
   out.horizon_cos =
       static_cast<float>(-std::sqrt((altitude - ground) * (2.0 * radius + altitude + ground)) / (radius + altitude));
   out.camera_up = {static_cast<float>(x / distance), static_cast<float>((radius + y) / distance),

@@ -263,6 +263,7 @@ Result<void> Scene::run_effect(VkCommandBuffer cmd) {
                 static_cast<float>(scene_.sun.angular_radius_deg * kRadPerDeg)};
   inputs.output = {output_.view.get(), VK_IMAGE_LAYOUT_GENERAL};
   inputs.frame_index = frame_index_;
+  if (!bare_ground()) inputs.lowest_ground_m = static_cast<float>(std::min(terrain_->ground().min_m, 0.0));
   Result<void> recorded = effect_->record(cmd, inputs);
   effect_lost_ = recorded.ok();  // until the commands have run
   return recorded;

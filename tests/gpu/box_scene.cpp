@@ -106,6 +106,7 @@ TestFrame frame_of(const BoxScene& scene) {
   frame.first_marched = scene.first_marched;
   frame.to_sun = direction_to_sun(scene, frame.view);
   frame.irradiance = Vec3(10.0F);
+  frame.lowest_ground_m = std::min(scene.ground_altitude_m, 0.0);
   frame.background = {0.02F, 0.03F, 0.05F};
   frame.distance_m = [scene, view = frame.view](std::uint32_t x, std::uint32_t y) {
     const double t = first_hit(scene, scene.ground, view.position, view.ray(x, y, scene.extent));

@@ -81,6 +81,74 @@ TEST_F(EffectAir, TheSkyIsTheIntegralFromGroundAtmosphereAndSpace) {
   }
 }
 
+// From the shore of the Dead Sea, the sky between the horizon of sea level and that of the land, 0.7 degrees lower, is
+// the integral to the top of the atmosphere. Below the lower horizon, rays end on a sphere at the altitude of the land.
+TEST_F(EffectAir, TheSkyReachesDownToTheHorizonOfLowerLand) {
+  constexpr double kLand = -430.0;
+  for (const double altitude : {2.0, -20.0, -130.0}) {
+    for (const Technique technique : {Technique::brute_force, Technique::epipolar}) {
+      TestFrame frame;
+      frame.extent = {8, 32};
+      frame.view = TestView::at(altitude, 0.3, -0.6 * kRad, 0.02);
+      frame.to_sun = sun_at(25.0);
+      frame.lowest_ground_m = kLand;
+      Params params = precise_params();
+      params.scattering.technique = technique;
+      const double radius = params.planet.radius_m;
+      const std::vector<glm::dvec3> image = draw(params, frame);
+      int between = 0;
+      int below = 0;
+      for (std::uint32_t y = 0; y < frame.extent.height; ++y) {
+        for (std::uint32_t x = 0; x < frame.extent.width; ++x) {
+          const RayAngles ray = frame.ray(x, y, radius);
+          const auto crossing = [&](double at_m, double sign) {
+            const double q = (radius + altitude) * ray.cos_view;
+            const double squared = q * q + (at_m - altitude) * (2.0 * radius + at_m + altitude);
+            return squared < 0.0 ? -1.0 : -q + sign * std::sqrt(squared);
+          };
+          double end = crossing(kLand, -1.0);
+          if (end < 0.0) {
+            between += segment_below_top(params, ray)->on_ground ? 1 : 0;
+            end = crossing(params.atmosphere.height_m, 1.0);
+          } else {
+            ++below;
+          }
+          // Epipolar sampling interpolates next to the horizon, where this picture has one pixel for 300 m of altitude.
+          const double tolerance = technique == Technique::brute_force ? kTolerance : 0.05;
+          EXPECT_LE(relative_error(image[y * frame.extent.width + x], true_inscattering(params, ray, 0.0, end)),
+                    tolerance)
+              << altitude << " " << static_cast<int>(technique) << " pixel " << x << " " << y;
+        }
+      }
+      EXPECT_GT(between, altitude < -100.0 ? 10 : 40);
+      EXPECT_GT(below, 20);
+    }
+  }
+}
+
+// The sun sets along the rays of an eye below sea level. Tables would blur this by up to 15 %, so that order 1 is
+// integrated there. So it is below the lowest altitude of the tables.
+TEST_F(EffectAir, BelowSeaLevelTheSunSetsSharplyWithTables) {
+  const double cases[][2] = {{-320.0, 0.18}, {-64.0, 0.03}, {-264.0, -0.2}, {-2000.0, 20.0}};  // altitude, elevation
+  for (const auto& [altitude, elevation] : cases) {
+    TestFrame frame;
+    frame.view = TestView::at(altitude, 2.5, -8.0 * kRad, 0.3);
+    frame.to_sun = sun_at(elevation);
+    Params params = precise_params();
+    params.scattering.single = SingleScattering::table;
+    const std::vector<glm::dvec3> image = draw(params, frame);
+    for (std::uint32_t y = 0; y < frame.extent.height; ++y) {
+      for (std::uint32_t x = 0; x < frame.extent.width; ++x) {
+        const RayAngles ray = frame.ray(x, y, params.planet.radius_m);
+        const auto air = segment_below_top(params, ray);
+        EXPECT_LE(relative_error(image[y * frame.extent.width + x], true_inscattering(params, ray, 0.0, air->end)),
+                  kTolerance)
+            << altitude << " pixel " << x << " " << y;
+      }
+    }
+  }
+}
+
 TEST_F(EffectAir, InScatteringAloneAndOverFiniteSegments) {
   for (const DepthConvention convention : {DepthConvention::reversed_infinite, DepthConvention::standard}) {
     for (const Place& place : kPlaces) {

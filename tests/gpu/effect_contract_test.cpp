@@ -209,6 +209,8 @@ TEST_F(EffectContract, FramesThatCannotBeDrawnAreErrors) {
   EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.shadow_colors = f.color; }));  // without EffectDesc::shadow_colors
   EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.shadow_colors = {f.color.view, VK_IMAGE_LAYOUT_UNDEFINED}; }));
   EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.shadow_resolution = 0; }));
+  EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.lowest_ground_m = 1.0F; }));
+  EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.lowest_ground_m = static_cast<float>(kNaN); }));
   EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.first_marched_cascade = 2; }));
   EXPECT_TRUE(refused([&](FrameInputs& f, Two&) { f.cascades = many; }));
   EXPECT_TRUE(refused([](FrameInputs&, Two& c) { c[1].shadow_from_world.m[5] = kNaN; }));

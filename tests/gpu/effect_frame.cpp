@@ -184,6 +184,7 @@ FrameInputs FrameImages::inputs(const TestFrame& frame) const {
                               static_cast<float>(frame.to_sun.z)};
   out.sun.irradiance = frame.irradiance;
   out.output = {output_.view.get(), VK_IMAGE_LAYOUT_GENERAL, frame.offsets.output};
+  out.lowest_ground_m = static_cast<float>(frame.lowest_ground_m);
   return out;
 }
 

@@ -51,6 +51,7 @@ struct TestFrame {
   std::vector<Cascade> cascades;
   std::uint32_t first_marched = 0;
   std::uint32_t shadow_resolution = 64;
+  double lowest_ground_m = 0.0;
   bool shadow_depth_reversed = false;  // as in EffectDesc
   // Returns the depth in the map of a cascade. Without the function, nothing casts a shadow.
   std::function<float(std::uint32_t cascade, double u, double v)> shadow_depth;

@@ -111,6 +111,32 @@ TEST_F(EpipolarErrors, TwilightSkyIsLikeBruteForce) {
   EXPECT_GE(psnr_db, 65.0);  // 63.1 with the initial samples of daytime
 }
 
+// Between the horizon of sea level and that of lower land, 0.7 degrees below it, the sky of the tables is as smooth as
+// above: from row to row it changes by a few per cent. If rays ended at sea level, there would be a dark line.
+TEST_F(EpipolarErrors, TheSkyHasNoLineAboveLowerLand) {
+  for (const double altitude : {2.0, -130.0}) {
+    BoxScene scene;
+    scene.name = "above the Dead Sea, " + std::to_string(altitude) + " m";
+    scene.extent = {16, 64};
+    scene.altitude_m = altitude;
+    scene.ground_altitude_m = -430.0;
+    scene.buildings = scene.ground = false;
+    scene.cascades = 0;
+    scene.tan_half_height = 0.02;
+    scene.pitch_deg = 0.6;
+    show(scene);
+    for (const Params& params : {small_params(), by_brute_force(small_params())}) {
+      const Picture picture = draw(params, scene.name);
+      for (std::size_t y = 0; y + 1 < scene.extent.height; ++y) {
+        const std::size_t at = y * scene.extent.width + scene.extent.width / 2;
+        const glm::dvec3 ratio = picture[at + scene.extent.width] / picture[at];
+        EXPECT_LT(std::max({ratio.x, ratio.y, ratio.z}), 1.1) << scene.name << ", row " << y;
+        EXPECT_GT(std::min({ratio.x, ratio.y, ratio.z}), 0.9) << scene.name << ", row " << y;
+      }
+    }
+  }
+}
+
 // With random depths, most pixels fit no sample, and there are more of them than the list can hold.
 TEST_F(EpipolarErrors, TooManyDepthDiscontinuitiesAreNotCorrected) {
   TestFrame scattered = frame_of({});

@@ -113,7 +113,7 @@ TEST_F(Epipolar, TheCameraMayBeAnywhere) {
               s.buildings = false;
               s.pitch_deg = -1.0;
             }),
-       47.5},
+       48.0},
       {seen("on a dyke",
             [](BoxScene& s) {
               s.altitude_m = 2.0;
