@@ -35,6 +35,7 @@ vec3 contiguous_light(LitSections lit, TableRay path, float start, float t, floa
   vec3 light = vec3(0.0);
   vec3 high = vec3(0.0);
   while (wanted != 0u) {
+  vec3 deep = deep_factor(medium, path);  // matters only in the pipelines that draw eyes below the tables
     int i = findLSB(wanted);
     wanted &= wanted - 1u;
     float place = i == 0 ? places.x : i == 1 ? places.y : i == 2 ? places.z : i == 3 ? places.w : end;

@@ -47,7 +47,8 @@ InScattering tinted(InScattering light, vec3 tint, float length_m) {
 }
 
 // Returns the ray for table look-ups, from distance `start`, where it enters the atmosphere. It ends at the scene's
-// surface even if that is below the ground sphere.
+// surface even if that is below the ground sphere of the tables. So does a ray to the sky that ends at a lower planet.
+// A ray to the sky that passes between the two continues to the top of the atmosphere, like those above the horizon.
 TableRay table_ray_of(Ray ray, float start) {
   float radius = medium.planet_radius_m;
   bool below = ray_hits_ground(ray.altitude, ray.cos_zenith, radius);
@@ -55,7 +56,7 @@ TableRay table_ray_of(Ray ray, float start) {
   TableRay path = table_ray(medium, min(h, medium.atmosphere_height_m),
                             cos_zenith_along(ray.altitude, ray.cos_zenith, start, radius),
                             cos_sun_zenith_along(ray, start, radius), ray.cos_view_sun, below);
-  if (below && !ray.sky) path.end_m = max(path.end_m, ray.length_m - start);
+  if (below) path.end_m = max(path.end_m, reach - start);
   return path;
 }
 
@@ -70,12 +71,12 @@ void close_section(inout LitSections lit, TableRay path, float start) {
     InScattering section = section_light(path, start, lit.since, lit.closed_at);
     lit.light = add(lit.light, tinted(section, lit.tint, lit.closed_at - lit.since));
   }
-  if (kColors && lit.closed_at >= 0.0) lit.tint = vec3(0.0);
   float reach = ray.sky ? 0.0 : ray.length_m;
   if (ray.sky && frame.ground_m < ground_below(ray.altitude, radius)) {
     below = hits_planet(frame, ray.altitude, ray.cos_zenith, radius);
     reach = distance_to_sphere(ray.altitude, ray.cos_zenith, frame.ground_m, radius);
   }
+  if (kColors && lit.closed_at >= 0.0) lit.tint = vec3(0.0);
   lit.since = lit.closed_at >= 0.0 ? -1.0 : lit.since;
   lit.closed_at = -1.0;
 }

@@ -102,6 +102,35 @@ InScattering inscattering_from_integral(TableShape t, Medium m, TableAngle angle
   return light;
 }
 
+// Returns the optical depth of Rayleigh scattering and aerosol between the altitude h and the lowest of the tables
+// above it, along a unit of the vertical.
+vec3 depth_below_tables(Medium m, float h) {
+  float H = m.rayleigh_scale_height_m;
+  float G = m.mie_scale_height_m;
+  float lowest = lowest_table_altitude(m);
+  return m.rayleigh_scattering * (H * (exp(min(-h / H, 60.0)) - exp(-lowest / H))) +
+         m.mie_extinction * (G * (exp(min(-h / G, 60.0)) - exp(-lowest / G)));
+}
+
+// Returns by how much the orders >= 2 of a ray from below the lowest altitude of the tables are darker than the tables
+// say, which use the light there. An estimate: of what does not come from above the lowest altitude, a part is lost to
+// absorption, and a part is scattered back, which is proportional to 1 - g. Both are fitted to the path tracer
+// (docs/adr/0007-below-sea-level.md).
+vec3 deep_factor(Medium m, TableRay ray) {
+  float h = ray.altitude;
+  float lowest = lowest_table_altitude(m);
+  if (h >= lowest) return vec3(1.0);
+  float slant = 1.0 / max(ray.cos_sun_zenith, 0.2);
+  float G = m.mie_scale_height_m;
+  float above = G * exp(-lowest / G);
+  float here = G * exp(min(-h / G, 60.0));
+  vec3 back = (1.25 * (1.0 - max(m.mie_g, 0.0)) * slant) * m.mie_scattering;
+  vec3 absorbed = (0.5 * slant * (here - above)) * (m.mie_extinction - m.mie_scattering);
+  vec3 attenuation = exp(-absorbed) * (1.0 + back * above) / (1.0 + back * here);
+  vec3 from_above = exp(-depth_below_tables(m, h) / max(ray.cos_zenith, 1.0e-3));
+  return mix(attenuation, vec3(1.0), from_above);
+}
+
 InScattering inscattering_to_end(TableShape t, Medium m, TableAngle angle, TableRay ray) {
   return inscattering_from_integral(t, m, angle, ray,
                                     density_integral_along(m, ray.altitude, ray.cos_zenith, ray.end_m));

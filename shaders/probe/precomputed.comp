@@ -57,7 +57,8 @@ void main() {
   TableRay path = TableRay(ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith, ray.cos_view_sun,
                            ray.on_ground == 1u, ray.end_m);
   InScattering light = inscattering_to_end(shape, medium, table_angle(shape, medium, path.cos_view_sun), path);
-  if (integrate_single == 1u) {
+  light.high *= deep_factor(medium, path);
+  if (integrate_single == 1u || ray.integrate_single == 1u) {
     light.single = single_scattering(medium, ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith, ray.cos_view_sun,
                                      0.0, ray.end_m, int(steps));
   }

@@ -9,9 +9,9 @@ struct ProbeRay {
   float cos_view_zenith;
   float cos_sun_zenith;
   float cos_view_sun;
-  float end_m;     // distance to the ground or to the top; 0: the ray misses the atmosphere
-  uint on_ground;  // 1: the ray ends on the ground
-  float unused_0;
+  float end_m;            // distance to the ground or to the top; 0: the ray misses the atmosphere
+  uint on_ground;         // 1: the ray ends on the ground
+  uint integrate_single;  // 1: the tables do not resolve order 1 of this ray
   float unused_1;
 };
 

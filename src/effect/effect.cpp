@@ -263,7 +263,7 @@ Result<void> Effect::State::record(VkCommandBuffer cmd, const FrameInputs& input
                                          VK_ACCESS_INDIRECT_COMMAND_READ_BIT;
   recorder.assume(Resource::counters, kFrameBefore);
   for (std::size_t i = 0; i < kFrameBuffers; ++i) recorder.assume(frame_buffer(i), kFrameBefore);
-  for (const Step& step : frame_steps(desc, params, frame_shape(inputs))) TYNDALL_TRY(recorder.record(step));
+  for (const Step& step : frame_steps(desc, params, frame_shape(inputs, params))) TYNDALL_TRY(recorder.record(step));
   ring.record_end(cmd, inputs.frame_index, inputs.view);
   return {};
 }

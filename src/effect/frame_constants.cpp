@@ -159,6 +159,28 @@ double camera_altitude_m(const FrameInputs& inputs, const Params& params) {
   return (x * x + z * z + y * (2.0 * radius + y)) / (distance + radius);
 }
 
+bool tables_lack_single(double altitude_m, double cos_sun_zenith, double radius_m) {
+  constexpr double kLowestAltitude_m = -500.0;  // kLowestTableAltitude of shaders/lib/table_mapping.glsl
+  if (altitude_m >= 0.0) return false;
+  if (altitude_m < kLowestAltitude_m) return true;
+  // The sun sets at different points of a ray while it passes through the dip of the ray's horizon. The tables blur
+  // that over the distance between two of their suns.
+  constexpr double kBetweenSuns_rad = 0.009;
+  const double dip = std::sqrt(-2.0 * altitude_m / radius_m);
+  return std::abs(cos_sun_zenith) < dip + kBetweenSuns_rad;
+}
+
+bool tables_lack_single(const FrameInputs& inputs, const Params& params) {
+  const Vec3 eye = column(inputs.camera.world_from_view, 3);
+  const Vec3 sun = inputs.sun.direction_to_sun;
+  const double radius = params.planet.radius_m;
+  const double y = radius + eye.y;
+  const double up = std::sqrt(double{eye.x} * eye.x + double{eye.z} * eye.z + y * y);
+  const double cosine = (double{sun.x} * eye.x + double{sun.y} * y + double{sun.z} * eye.z) / up /
+                        std::sqrt(double{sun.x} * sun.x + double{sun.y} * sun.y + double{sun.z} * sun.z);
+  return tables_lack_single(camera_altitude_m(inputs, params), cosine, radius);
+}
+
 shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDesc& desc, const Params& params) {
   shared::FrameConstants out = {};
   set_camera(out, inputs, params);

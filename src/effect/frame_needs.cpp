@@ -14,7 +14,9 @@ void for_each_shape(const EffectDesc& desc, const Params& params, Body&& body) {
     for (const std::uint32_t cascades : {0U, desc.max_cascades}) {
       for (const bool colors : {false, true}) {
         if (colors && !desc.shadow_colors) continue;
-        body(frame_steps(desc, params, {extent, cascades, 0, colors}));
+        for (const bool integrate_single : {false, true}) {
+          body(frame_steps(desc, params, {extent, cascades, 0, colors, integrate_single}));
+        }
       }
     }
   }

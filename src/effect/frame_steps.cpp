@@ -3,6 +3,7 @@
 // To add a pass, add its shader to CMakeLists.txt, its buffers to resources.def, and a line here.
 #include "effect/frame_steps.hpp"
 
+#include "effect/frame_constants.hpp"
 #include "effect/modes.hpp"
 #include "effect_shaders.hpp"
 
@@ -78,9 +79,11 @@ Specialisation specialisation(const Frame& frame) {
   const ScatteringParams& s = frame.params.scattering;
   const bool homogeneous = is_homogeneous(s);
   const bool occluded = !homogeneous && s.multiple == MultipleScattering::occluded;
-  const bool shadowed_tables = !homogeneous && (s.single == SingleScattering::table || occluded);
   SingleScattering single = s.single;
-  if (homogeneous && single == SingleScattering::table) single = SingleScattering::integration;
+  if (single == SingleScattering::table && (homogeneous || frame.shape.integrate_single)) {
+    single = SingleScattering::integration;
+  }
+  const bool shadowed_tables = !homogeneous && (single == SingleScattering::table || occluded);
   Specialisation out;
   const auto set = [&out](std::uint32_t id, auto value) { out[id] = static_cast<std::uint8_t>(value); };
   set(shared::kSingleId, single);
@@ -184,9 +187,9 @@ void epipolar_steps(Frame& f) {
 
 }  // namespace
 
-FrameShape frame_shape(const FrameInputs& inputs) {
+FrameShape frame_shape(const FrameInputs& inputs, const Params& params) {
   return {inputs.extent, static_cast<std::uint32_t>(inputs.cascades.size()), inputs.first_marched_cascade,
-          inputs.shadow_colors.view != VK_NULL_HANDLE};
+          inputs.shadow_colors.view != VK_NULL_HANDLE, tables_lack_single(inputs, params)};
 }
 
 FrameSteps frame_steps(const EffectDesc& desc, const Params& params, const FrameShape& shape) {

@@ -18,8 +18,9 @@ struct FrameShape {
   std::uint32_t cascades = 0;
   std::uint32_t first_marched_cascade = 0;
   bool shadow_colors = false;
+  bool integrate_single = false;  // scattering.single = table is not accurate here
 };
-[[nodiscard]] FrameShape frame_shape(const FrameInputs& inputs);
+[[nodiscard]] FrameShape frame_shape(const FrameInputs& inputs, const Params& params);
 
 // A list of fixed capacity. It does not allocate, because it is created for every frame.
 class FrameSteps {

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <string>
 
+#include "effect/frame_constants.hpp"
 #include "effect/medium.hpp"
 #include "effect/tables.hpp"
 #include "gpu/pipeline.hpp"
@@ -25,8 +26,13 @@ struct Setup {
 };
 
 shared::ProbeRay probe_ray(const shared::Medium& medium, const RayQuery& query) {
-  if (!query.sky_irradiance) return prepare_probe_ray(medium, ray_from_query(query));
   shared::ProbeRay out = {};
+  if (!query.sky_irradiance) {
+    out = prepare_probe_ray(medium, ray_from_query(query));
+    const bool integrate = tables_lack_single(query.altitude_m, std::cos(query.sun_zenith_rad), medium.planet_radius_m);
+    out.integrate_single = integrate ? 1 : 0;
+    return out;
+  }
   out.altitude_m = static_cast<float>(query.altitude_m);
   out.cos_sun_zenith = static_cast<float>(std::cos(query.sun_zenith_rad));
   out.end_m = -1.0F;
