@@ -300,6 +300,7 @@ March add(March a, March b) {
   m.lit.light = add(a.lit.light, b.lit.light);
   m.lit.tint = a.lit.tint + b.lit.tint;
   m.light = a.light + b.light;
+  m.lit.dark_until = a.lit.dark_until;
   m.end_lit_fraction = b.end_lit_fraction >= 0.0 ? b.end_lit_fraction : a.end_lit_fraction;
   return m;
 }

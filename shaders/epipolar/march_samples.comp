@@ -66,10 +66,15 @@ void march_item(uint at) {
     last = first;
   }
   March march = nothing_marched();
+  if (kLitTables && !kHomogeneous) march.lit.dark_until = planet_shadow_end(ray, start);
   if (kLitTables || kSingle == kIntegration) {
     for (uint c = first; c < last; ++c) {
       float from, to;
       cascade_range(c, ray, start, end, from, to);
+      if (kLitTables) {
+        from = max(from, march.lit.dark_until);
+        if (to <= march.lit.dark_until) march.end_lit_fraction = 0.0;
+      }
       if (!in_air || to - from <= 1e-3) continue;
       march_cascade(c, id, ray, path, start, from, to, march);
     }

@@ -12,10 +12,11 @@
 // of the whole ray for orders that ignore shadows.
 vec3 contiguous_light(LitSections lit, TableRay path, float start, float t, float end) {
   const float kNear = 1e-3;  // [m]
-  float lit_from = lit.first;
+  float lit_from = section_from(lit, lit.first, start);
   float lit_to = lit.first + lit.total;
   bool any_lit = kLitTables && lit.total > kNear;
   bool any_rest = kLitTables && end - t > kNear;
+  if (!any_lit) t = section_from(lit, t, start);
   // The coefficients of in-scattering beyond each position, for the shadowed part and for the whole ray.
   bool whole = frame.unoccluded != 0u;
   bool to_rest = any_lit && any_rest && t - lit_to < kNear;
@@ -34,8 +35,8 @@ vec3 contiguous_light(LitSections lit, TableRay path, float start, float t, floa
   TableAngle angle = table_angle(frame.tables, medium, path.cos_view_sun);
   vec3 light = vec3(0.0);
   vec3 high = vec3(0.0);
-  while (wanted != 0u) {
   vec3 deep = deep_factor(medium, path);  // matters only in the pipelines that draw eyes below the tables
+  while (wanted != 0u) {
     int i = findLSB(wanted);
     wanted &= wanted - 1u;
     float place = i == 0 ? places.x : i == 1 ? places.y : i == 2 ? places.z : i == 3 ? places.w : end;
@@ -45,7 +46,8 @@ vec3 contiguous_light(LitSections lit, TableRay path, float start, float t, floa
     vec3 transmitted = transmittance(medium, before);
     InScattering beyond = inscattering_from_integral(frame.tables, medium, angle, ray_further_on(medium, path, d),
                                                      max(column - before, vec3(0.0)));
-    if (kSingle == kTable) light += counts * transmitted * beyond.single;
+    if (kSingle == kTable && lit.dark_until < end) light += counts * transmitted * beyond.single;
+    if (kSingle != kTable) beyond.high *= deep;
     if (kOccluded)
       light += counts * transmitted * beyond.high;
     else if (i == 0)

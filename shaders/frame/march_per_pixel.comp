@@ -145,12 +145,12 @@ vec3 shadowed_table_light(Ray ray, float start, float end) {
   float t = start;
   if (kLitTables) {
     float depth_per_m = max(dot(ray.direction, frame.camera_forward), 1e-6);
+    lit.dark_until = planet_shadow_end(ray, start);
     for (uint c = frame.first_marched_cascade; c < frame.cascade_count; ++c) {
       float to = min(cascades[c].far_m / depth_per_m, end);
-      if (to - t > 1e-3) {
-        walk_cascade(c, ray, path, start, t, to, lit);
-        t = to;
-      }
+      float from = max(t, lit.dark_until);
+      if (to - from > 1e-3) walk_cascade(c, ray, path, start, from, to, lit);
+      if (to - t > 1e-3) t = to;
     }
     if (end - t <= 1e-3) t = end;  // a remainder too short for a cascade is not beyond the last one
   }

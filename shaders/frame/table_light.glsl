@@ -9,6 +9,7 @@
 #include "frame/modes.glsl"
 #include "frame/table_lookup.glsl"
 #include "frame/view_ray.glsl"
+#include "lib/single_scattering.glsl"
 
 // The lit sections found so far along a ray. Distances are from the ray's origin [m].
 struct LitSections {
@@ -17,10 +18,28 @@ struct LitSections {
   float since;         // kEach: start of the current lit section; < 0: in shadow
   float closed_at;     // kEach: end of that section once found; close_section() must follow
   InScattering light;  // kEach: in-scattering of the completed sections
-  vec3 tint;  // kColors: integral of the glass colour over the lit length; with kEach, over the current section
+  vec3 tint;         // kColors: integral of the glass colour over the lit length; with kEach, over the current section
+  float dark_until;  // from planet_shadow_end()
 };
 
-LitSections nothing_lit() { return LitSections(-1.0, 0.0, -1.0, -1.0, InScattering(vec3(0.0), vec3(0.0)), vec3(0.0)); }
+LitSections nothing_lit() {
+  return LitSections(-1.0, 0.0, -1.0, -1.0, InScattering(vec3(0.0), vec3(0.0)), vec3(0.0), -1.0);
+}
+
+// Returns the distance at which a ray that begins in the planet's shadow leaves it, or -1 if it begins in sunlight. No
+// shadow map matters up to there, because nothing is lit.
+float planet_shadow_end(Ray ray, float start) {
+  float from, to;
+  bool dark = shadow_segment(ray.altitude, ray.cos_zenith, ray.cos_sun_zenith, ray.cos_view_sun, medium.planet_radius_m,
+                             from, to);
+  return dark && from <= start && to > start ? to : -1.0;
+}
+
+// Returns where the look-up for a lit section begins: at the start of the ray, if only the planet's shadow is in front
+// of the section. Both are the same light, but in twilight the interpolated tables differ by tens of per cent between
+// distant points of a ray. The sky would have a step where the first lit point changes abruptly, as it does where rays
+// leave a shadow map.
+float section_from(LitSections lit, float from, float start) { return from - lit.dark_until < 1e-3 ? start : from; }
 
 // Adds the section [from, to], of which `lit_fraction` is lit with this colour.
 void add_section(inout LitSections lit, float from, float to, float lit_fraction, vec3 color) {
@@ -52,6 +71,11 @@ InScattering tinted(InScattering light, vec3 tint, float length_m) {
 TableRay table_ray_of(Ray ray, float start) {
   float radius = medium.planet_radius_m;
   bool below = ray_hits_ground(ray.altitude, ray.cos_zenith, radius);
+  float reach = ray.sky ? 0.0 : ray.length_m;
+  if (ray.sky && frame.ground_m < ground_below(ray.altitude, radius)) {
+    below = hits_planet(frame, ray.altitude, ray.cos_zenith, radius);
+    reach = distance_to_sphere(ray.altitude, ray.cos_zenith, frame.ground_m, radius);
+  }
   float h = altitude_along(ray.altitude, ray.cos_zenith, start, radius);
   TableRay path = table_ray(medium, min(h, medium.atmosphere_height_m),
                             cos_zenith_along(ray.altitude, ray.cos_zenith, start, radius),
@@ -68,13 +92,8 @@ InScattering section_light(TableRay path, float start, float from, float to) {
 void close_section(inout LitSections lit, TableRay path, float start) {
   if (kSections != kEach) return;
   if (lit.since >= 0.0 && lit.closed_at > lit.since) {
-    InScattering section = section_light(path, start, lit.since, lit.closed_at);
+    InScattering section = section_light(path, start, section_from(lit, lit.since, start), lit.closed_at);
     lit.light = add(lit.light, tinted(section, lit.tint, lit.closed_at - lit.since));
-  }
-  float reach = ray.sky ? 0.0 : ray.length_m;
-  if (ray.sky && frame.ground_m < ground_below(ray.altitude, radius)) {
-    below = hits_planet(frame, ray.altitude, ray.cos_zenith, radius);
-    reach = distance_to_sphere(ray.altitude, ray.cos_zenith, frame.ground_m, radius);
   }
   if (kColors && lit.closed_at >= 0.0) lit.tint = vec3(0.0);
   lit.since = lit.closed_at >= 0.0 ? -1.0 : lit.since;
@@ -97,11 +116,13 @@ vec3 table_light(LitSections lit, TableRay path, float start, float t, float end
   while (sections != 0u) {
     int i = findLSB(sections);
     sections &= sections - 1u;
-    float from = i == 0 ? lit.first : i == 1 ? t : start;
+    float from = i == 0 ? section_from(lit, lit.first, start) : i == 1 ? section_from(lit, t, start) : start;
     float to = i == 0 ? lit.first + lit.total : end;
     InScattering section = section_light(path, start, from, to);
     if (i == 0) section = tinted(section, lit.tint, lit.total);
-    if (kSingle == kTable && i < 2) light += section.single;
+    if (kSingle == kTable && i < 2 && lit.dark_until < end) light += section.single;
+    // Only these pipelines draw eyes below the tables.
+    if (kSingle != kTable) section.high *= deep_factor(medium, path);
     if (kOccluded ? i < 2 : i == 2) light += section.high;
   }
   return light;
