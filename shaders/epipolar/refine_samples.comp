@@ -71,7 +71,7 @@ float depth_step(uint at) {
 }
 
 // Returns whether there is a depth discontinuity between a sample and one of its neighbours, as EpipolarConstants
-// defines it for twilight.
+// defines it.
 bool at_discontinuity(uint at) {
   float depth = uintBitsToFloat(samples[at].x);
   vec2 others = uintBitsToFloat(uvec2(samples[at - 1u].x, samples[at + 1u].x));

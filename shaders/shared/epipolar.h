@@ -37,9 +37,8 @@ struct EpipolarConstants {
   uint downscale;
   uint downscaled_width;
   uint downscaled_height;
-  uint correction_capacity;  // capacity of the list of pixels to be marched; a multiple of kMarchGroup
-  // Both exceed 0 and min_weight only in twilight, when the sky is much brighter than the ground below it.
-  float min_weight_sky;       // min_weight for pixels of the sky
+  uint correction_capacity;   // capacity of the list of pixels to be marched; a multiple of kMarchGroup
+  float min_weight_sky;       // min_weight for pixels of the sky; larger in twilight, when the sky is much brighter
   float discontinuity_ratio;  // ratio of the depths of neighbouring samples below which both are marched; 0: never
   uint unused_0;
   uint unused_1;
