@@ -2,6 +2,9 @@
 // force with the same shadows.
 #include <gtest/gtest.h>
 
+#include <map>
+#include <utility>
+
 #include "run_tyndall.hpp"
 
 namespace tyndall::cli {
@@ -11,27 +14,44 @@ class CliEpipolar : public testing::Test {
  protected:
   using Arguments = std::vector<std::string>;
 
-  // Renders a scene, or the defaults.
-  std::string picture(const std::string& name, const Arguments& scene, const Arguments& settings) const {
+  static Arguments preset(const std::string& name) {
+    Arguments out;
+    out.push_back(TYNDALL_PRESETS "/" + name + ".toml");
+    return out;
+  }
+  // Renders a scene, or the defaults, to a file, and returns its path.
+  static std::string picture(const std::string& path, const Arguments& scene, const Arguments& settings) {
     Arguments all = {"render"};
     all.insert(all.end(), scene.begin(), scene.end());
-    all.insert(all.end(), {"--size", "1280x720", "--set", "tonemap.auto_exposure=false", "-o", scratch_.at(name)});
+    all.insert(all.end(), {"--size", "1280x720", "--set", "tonemap.auto_exposure=false", "-o", path});
     for (const std::string& setting : settings) all.insert(all.end(), {"--set", setting});
-    const Outcome outcome = run_tyndall(all);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return scratch_.at(name);
+    const ProcessResult result = run_tyndall(all);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return path;
   }
   void expect_close(const std::string& kind, const Arguments& scene, const Arguments& settings,
                     const Arguments& limit) const {
-    Arguments brute = settings;
-    brute.emplace_back("scattering.technique=brute-force");
-    Arguments all = {"compare", picture("epipolar" + kind, scene, settings), picture("brute" + kind, scene, brute)};
+    Arguments all = {"compare", picture(scratch_.at("epipolar" + kind), scene, settings), brute_force(kind, scene)};
     all.insert(all.end(), limit.begin(), limit.end());
-    const Outcome outcome = run_tyndall(all);
-    EXPECT_EQ(outcome.status, 0) << outcome.err << outcome.out;
+    const ProcessResult result = run_tyndall(all);
+    EXPECT_EQ(result.status, 0) << result.err << result.out;
   }
 
   Scratch scratch_;
+
+ private:
+  // Returns the picture that brute force renders of a scene, which tests share.
+  static std::string brute_force(const std::string& kind, const Arguments& scene) {
+    static const Scratch scratch;
+    const std::string name = std::to_string(pictures().size()) + kind;
+    std::string& path = pictures()[{kind, scene}];
+    if (path.empty()) path = picture(scratch.at(name), scene, {"scattering.technique=brute-force"});
+    return path;
+  }
+  static std::map<std::pair<std::string, Arguments>, std::string>& pictures() {
+    static std::map<std::pair<std::string, Arguments>, std::string> all;
+    return all;
+  }
 };
 
 TEST_F(CliEpipolar, DefaultsAreAsCloseAsPromised) {
@@ -40,11 +60,11 @@ TEST_F(CliEpipolar, DefaultsAreAsCloseAsPromised) {
 }
 
 TEST_F(CliEpipolar, HighQualityIsAsCloseAsPromised) {
-  expect_close(".png", {std::string(TYNDALL_PRESETS) + "/high_quality.toml"}, {}, {"--psnr-min", "56"});
+  expect_close(".png", preset("high_quality"), {}, {"--psnr-min", "56"});
 }
 
 TEST_F(CliEpipolar, HighPerformanceIsAsCloseAsPromised) {
-  expect_close(".png", {std::string(TYNDALL_PRESETS) + "/high_performance.toml"}, {}, {"--psnr-min", "44"});
+  expect_close(".png", preset("high_performance"), {}, {"--psnr-min", "44"});
 }
 
 TEST_F(CliEpipolar, TheFewestSlicesAreAsCloseAsPromised) {
@@ -62,16 +82,16 @@ TEST_F(CliEpipolar, TwilightIsAsCloseAsPromised) {
   }
   const std::string file = scratch_.write("suns.toml", scene);
   for (const std::string technique : {"epipolar", "brute-force"}) {
-    const Outcome outcome =
+    const ProcessResult result =
         run_tyndall({"render", file, "--size", "320x180", "--frames", std::to_string(suns.size()), "--time-step", "1",
                      "--set", "scattering.technique=" + technique, "-o", scratch_.at(technique + "%d.png")});
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    ASSERT_EQ(result.status, 0) << result.err;
   }
   for (std::size_t i = 0; i < suns.size(); ++i) {
     const std::string name = std::to_string(i) + ".png";
-    const Outcome outcome = run_tyndall(
+    const ProcessResult result = run_tyndall(
         {"compare", scratch_.at("epipolar" + name), scratch_.at("brute-force" + name), "--psnr-min", "52.5"});
-    EXPECT_EQ(outcome.status, 0) << "sun at " << suns[i] << " degrees: " << outcome.err << outcome.out;
+    EXPECT_EQ(result.status, 0) << "sun at " << suns[i] << " degrees: " << result.err << result.out;
   }
 }
 

@@ -22,7 +22,6 @@ struct ProcessResult {
   std::string out;
   std::string err;
 };
-using Outcome = ProcessResult;
 
 // A temporary directory that is removed at the end.
 class Scratch {
