@@ -83,7 +83,8 @@ vec3 density_integral_between(IN(Medium) m, float h0, float mu, float da, float 
   float q0 = (R + h0) * mu;
   float qa = q0 + da;
   float qb = q0 + db;
-  bool passes_perigee = qa < 0.0 && qb > 0.0;
+  // A ray along the horizon ends at its perigee exactly: qb is 0.
+  bool passes_perigee = qa < 0.0 && qb >= 0.0;
   float hp = min(ha, hb);  // the lowest altitude on the way
   if (passes_perigee) {
     float ra = R + ha;

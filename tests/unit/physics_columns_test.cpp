@@ -179,6 +179,26 @@ TEST(physics_columns, occluded_rays_stay_finite) {
   }
 }
 
+// A ray along the horizon ends on the ground at its perigee, where the distance from the perigee is 0 exactly.
+TEST(physics_columns, rays_may_end_at_their_perigee) {
+  const shared::Medium m = medium_from_params({});
+  const glsl64::Medium wide = glsl64::widen(m);
+  const double radius = m.planet_radius_m;
+  for (const float h : {16.0F, 1000.0F, 3686.5793F, 8901.3333F, 35557.332F, 60000.0F, 79984.0F}) {
+    const float mu = static_cast<float>(glsl64::ground_horizon_cos(h, radius));
+    const float d = -(m.planet_radius_m + h) * mu;
+    const double d64 = -(radius + h) * static_cast<double>(mu);
+    const glsl64::vec3 before = glsl64::density_integral_along(wide, h, mu, 0.999 * d64);
+    const glsl64::vec3 in_double = glsl64::density_integral_along(wide, h, mu, d64);
+    const glsl32::Column in_single = glsl32::density_integral_along(m, h, mu, d);
+    EXPECT_GT(in_double.x, before.x) << h;
+    EXPECT_LT(in_double.x, 1.05 * before.x) << h;
+    EXPECT_NEAR(static_cast<double>(in_single[0]), in_double.x, kTolerance * in_double.x) << h;
+    EXPECT_NEAR(static_cast<double>(in_single[1]), in_double.y, kTolerance * in_double.y) << h;
+    EXPECT_NEAR(static_cast<double>(in_single[2]), in_double.z, kTolerance * in_double.z + 1.0) << h;
+  }
+}
+
 TEST(physics_columns, transmittance_is_multiplicative) {
   const glsl64::Medium m = glsl64::widen(medium_from_params({}));
   for (const double mu : {-0.04, 0.0, 0.02, 0.5}) {
