@@ -79,10 +79,11 @@ struct TableCoordinates {
 // Returns the texture coordinates. `integral` is the density integral of the whole ray.
 TableCoordinates table_coordinates(TableShape t, Medium m, TableAngle angle, TableRay ray, vec3 integral) {
   float h = table_altitude(m, ray.altitude);
-  float u = u_from_altitude(t, m, ray.altitude < 0.0 ? ray.altitude : h);
   float v = v_from_view(t, m, h, ray.cos_zenith, ray.below);
   float mean_m = density_weighted_mean_distance(m, ray.altitude, ray.cos_zenith, ray.end_m, integral);
-  float w = w_from_sun(t, ray_further_on(m, ray, mean_m).cos_sun_zenith);
+  float mu_s = ray_further_on(m, ray, mean_m).cos_sun_zenith;
+  float u = u_for_lookup(t, m, ray.altitude < 0.0 ? ray.altitude : h, mu_s);
+  float w = w_from_sun(t, mu_s);
   return TableCoordinates(vec3(u, v, (angle.first + w) / angle.slices),
                           vec3(u, v, (angle.first + 1.0 + w) / angle.slices));
 }

@@ -1,9 +1,11 @@
 // The mapping between a ray and its place in the scattering tables. Each of the four axes has a pair of functions that
 // convert between its quantity and a coordinate in [0; 1] over the texels. There are three parameterisations:
-//   yusov    - Yusov, "High Performance Outdoor Light Scattering Using Epipolar Sampling" (2013), section 2: the square
-// root of altitude, the fifth root of the distance from the horizon in cosine, and Bruneton's arctangent for the sun.
-// Our axis for the angle between view and sun is linear in the angle. Yusov raises it to the power 3/2, which leaves 30
-// degrees between the texels around 90 degrees and triples the errors of twilight;
+//   yusov    - Yusov, "High Performance Outdoor Light Scattering Using Epipolar Sampling" (2013), section 2: the fifth
+// root of the distance from the horizon in cosine, and Bruneton's arctangent for the sun. Two axes are ours. Altitude
+// is a fourth power of the coordinate, with a spacing of 400 m at 1 km. The published square has 700 m there, over
+// which the light of a low sun in turbid air changes several times. The spacing of the angle between view and sun grows
+// slowly from the sun: Yusov raises the angle to the power 3/2, which leaves 30 degrees between the texels around 90
+// degrees and triples the errors of twilight;
 //   bruneton - Bruneton and Neyret, "Precomputed Atmospheric Scattering" (2008), section 4: the distances to the
 // horizon and to the boundary, an exponential for the sun, and the cosine of the angle to the sun;
 //   linear   - altitude and the three cosines.
@@ -12,7 +14,7 @@
 #ifndef TYNDALL_LIB_TABLE_MAPPING
 #define TYNDALL_LIB_TABLE_MAPPING
 
-#include "lib/geometry.glsl"
+#include "lib/optical_depth.glsl"
 #include "shared/medium.h"
 #include "shared/tables.h"
 
@@ -20,6 +22,11 @@
 const float kTableMargin = 16.0;
 // The lowest altitude of the tables [m]. Rays that begin below it are looked up as if they began there.
 const float kLowestTableAltitude = -500.0;
+// Offset of the fourth power that spaces altitudes (altitude_share()). It bounds their density at the ground, where the
+// lowest texels of the default size are 90 m apart.
+const float kAltitudeOffset = 0.25;
+// Spacing of the yusov mapping of the angle between view and sun beside the sun, relative to the mean spacing.
+const float kAngleDensity = 0.8;
 // The cosine of the lowest sun: 16 degrees below the horizontal. The density-weighted mean distance of a ray that
 // begins high up in twilight can be under so low a sun. (The gathering grid ends at a sun of 11 degrees below, at the
 // ray's beginning.)
@@ -34,6 +41,26 @@ const float kSunFade = 3.0;
 // Returns the texture coordinate over n texels for x in [0; 1], where 0 and 1 map to texel centres.
 float texel_from_unit(float x, float n) { return (x * (n - 1.0) + 0.5) / n; }
 float unit_from_texel(float c, float n) { return clamp((c * n - 0.5) / (n - 1.0), 0.0, 1.0); }
+
+// Returns the altitude relative to the height of the atmosphere for a coordinate in [0; 1], and the reverse. The
+// spacing grows with the third power of the coordinate.
+float altitude_share(float x) {
+  float low = kAltitudeOffset * kAltitudeOffset;
+  float high = (1.0 + kAltitudeOffset) * (1.0 + kAltitudeOffset);
+  float squared = (x + kAltitudeOffset) * (x + kAltitudeOffset);
+  return (squared * squared - low * low) / (high * high - low * low);
+}
+float altitude_coordinate(float share) {
+  float low = kAltitudeOffset * kAltitudeOffset;
+  float high = (1.0 + kAltitudeOffset) * (1.0 + kAltitudeOffset);
+  return sqrt(sqrt(share * (high * high - low * low) + low * low)) - kAltitudeOffset;
+}
+
+// Maps [0; 1] to itself such that the slope is `density` at 0 and grows linearly, and the reverse.
+float spread_from_unit(float x, float density) { return x * (density + (1.0 - density) * x); }
+float unit_from_spread(float y, float density) {
+  return (sqrt(density * density + 4.0 * (1.0 - density) * y) - density) / (2.0 * (1.0 - density));
+}
 
 float altitude_margin(IN(Medium) m) { return min(kTableMargin, 0.01 * m.atmosphere_height_m); }
 
@@ -65,7 +92,7 @@ float u_from_altitude(IN(TableShape) t, IN(Medium) m, float h) {
   float height = m.atmosphere_height_m;
   float x = clamp((h - margin) / (height - 2.0 * margin), 0.0, 1.0);
   if (t.parameterization == 0u) {
-    x = sqrt(x);
+    x = altitude_coordinate(x);
   } else if (t.parameterization == 1u) {
     // The distance to the horizon, sqrt(r^2 - R^2), relative to those of the lowest and highest texels.
     float R = m.planet_radius_m;
@@ -90,9 +117,43 @@ float altitude_from_u(IN(TableShape) t, IN(Medium) m, float u) {
     return clamp(rho * rho / (sqrt(R * R + rho * rho) + R), margin, height - margin);
   }
   if (t.parameterization == 0u) {
-    x = x * x;
+    x = altitude_share(x);
   }
   return margin + x * (height - 2.0 * margin);
+}
+
+// The interpolation between two altitudes follows sunlight, because the value of a texel is the fourth root of a mean
+// of sunlight along the ray. In turbid air under a low sun it changes several times between two texels: weights that
+// are linear in the coordinate are up to 30 % off. The weights are therefore linear in the fourth root of the aerosol's
+// transmittance towards the sun. A small part that is linear in the coordinate decides where there is little aerosol.
+const float kLinearPart = 0.04;  // per scale height of the aerosol
+// The cosine of the lowest sun whose transmittance is used. Lower suns light the ray from further up.
+const float kLowestWeighingSun = 0.015;
+
+// Returns the fourth root of the aerosol's transmittance from altitude h towards the sun. quarter_depth is a quarter of
+// its optical depth from sea level.
+float sunlight_root(IN(Medium) m, float h, float quarter_depth) {
+  return exp(-quarter_depth * exp(min(-h / m.mie_scale_height_m, 60.0)));
+}
+
+// Returns the coordinate of altitude h for a look-up, where mu_s is the cosine of the sun's zenith angle in the table.
+// At the texels it equals u_from_altitude(); between them it moves the weights of the linear filter.
+float u_for_lookup(IN(TableShape) t, IN(Medium) m, float h, float mu_s) {
+  float n = float(t.altitudes);
+  float texel = u_from_altitude(t, m, h) * n - 0.5;
+  float first = clamp(floor(texel), 0.0, n - 2.0);
+  float low = altitude_from_u(t, m, (first + 0.5) / n);
+  // From below sea level, the next texel stands for sea level itself (table_altitude()).
+  float high = first + 1.0 == texels_below_sea(t) ? 0.0 : altitude_from_u(t, m, (first + 1.5) / n);
+  float R = m.planet_radius_m;
+  float extinction = max(m.mie_extinction.x, max(m.mie_extinction.y, m.mie_extinction.z));
+  float integral = exponential_density_integral(0.0, max(mu_s, kLowestWeighingSun) * R, m.mie_scale_height_m, R);
+  float quarter_depth = 0.25 * extinction * integral;
+  float root = sunlight_root(m, low, quarter_depth);
+  float linear = kLinearPart * (high - low) / m.mie_scale_height_m;
+  float whole = sunlight_root(m, high, quarter_depth) - root + linear;
+  float part = sunlight_root(m, h, quarter_depth) - root + linear * (texel - first);
+  return (first + 0.5 + clamp(part / max(whole, 1.0e-9), 0.0, 1.0)) / n;
 }
 
 // Returns the longest path of a ray from altitude h to the top, minus the distance to the horizon [m].
@@ -185,14 +246,14 @@ float sun_from_w(IN(TableShape) t, float w) {
 float q_from_angle(IN(TableShape) t, float nu) {
   float x = 0.5 * nu + 0.5;
   if (t.parameterization == 0u) {
-    x = acos(clamp(nu, -1.0, 1.0)) * 0.318309886183791;
+    x = unit_from_spread(acos(clamp(nu, -1.0, 1.0)) * 0.318309886183791, kAngleDensity);
   }
   return texel_from_unit(clamp(x, 0.0, 1.0), float(t.angles));
 }
 
 float angle_from_q(IN(TableShape) t, float q) {
   float x = unit_from_texel(q, float(t.angles));
-  return t.parameterization == 0u ? cos(x * 3.14159265358979) : 2.0 * x - 1.0;
+  return t.parameterization == 0u ? cos(spread_from_unit(x, kAngleDensity) * 3.14159265358979) : 2.0 * x - 1.0;
 }
 
 #endif

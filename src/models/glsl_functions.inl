@@ -31,6 +31,7 @@ using glm::clamp;
 using glm::cos;
 using glm::dot;
 using glm::exp;
+using glm::floor;
 using glm::log;
 using glm::max;
 using glm::min;

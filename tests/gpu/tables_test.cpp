@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "effect/medium.hpp"
 #include "gpu_test.hpp"
 #include "models/precomputed.hpp"
 #include "reference/path_tracer.hpp"
@@ -121,6 +122,38 @@ TEST_F(ScatteringTablesTest, MatchThePathTracer) {
   ASSERT_OK(model.effect().set_params(integrated));
   ASSERT_TRUE(model.effect().precompute_progress().complete());
   EXPECT_LE(errors(model, params, random_rays(11, 40, 0.0, 90.0), 6000).mean(), 0.007);
+}
+
+// Under a low sun in turbid air, single scattering grows several times between two altitudes of the table. The eyes
+// stand between them.
+TEST_F(ScatteringTablesTest, MatchSingleScatteringBetweenAltitudesInATurbidAtmosphere) {
+  Params params;
+  params.atmosphere.aerosol_density = 18.94F;  // an optical depth of 0.5
+  params.tables.orders = 1;
+  Result<models::PrecomputedModel> built = models::PrecomputedModel::create(host(), params);
+  ASSERT_OK(built);
+  std::vector<RayQuery> queries;
+  for (const double altitude_m : {58.0, 130.0, 240.0, 410.0, 645.0, 960.0, 1390.0, 1930.0}) {
+    for (const double view_deg : {89.0, 86.0}) {
+      for (const double sun_deg : {87.5, 85.5, 81.0}) {
+        for (const double azimuth_deg : {5.0, 90.0, 170.0})
+          queries.push_back({altitude_m, view_deg * kRadians, sun_deg * kRadians, azimuth_deg * kRadians, false});
+      }
+    }
+  }
+  const Result<std::vector<models::Answer>> answers = built.value().answer(queries, false);
+  ASSERT_OK(answers);
+  const shared::Medium medium = medium_from_params(params);
+  Errors errors;
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    const auto expected = models::single_scattering(medium, models::ray_from_query(queries[i])).radiance;
+    const double largest = std::max({expected[0], expected[1], expected[2]});
+    for (std::size_t c = 0; c < 3; ++c) {
+      errors.all.push_back(std::abs(answers.value()[i].radiance[c] - expected[c]) / largest);
+    }
+  }
+  EXPECT_LE(errors.mean(), 0.01);
+  EXPECT_LE(errors.percentile(0.95), 0.03);
 }
 
 TEST_F(ScatteringTablesTest, MatchThePathTracerInATurbidAtmosphereNearTheHorizon) {

@@ -83,6 +83,32 @@ TEST_P(TableMapping, AltitudesContinueBelowSeaLevel) {
   EXPECT_EQ(glsl64::table_altitude(m, -11000.0), -500.0);
 }
 
+// The coordinate of a look-up moves the weights between two texels, but never away from the texels.
+TEST_P(TableMapping, LookUpsKeepTheTexelsAndTheOrderOfAltitudes) {
+  const glsl64::TableShape t = shape_of(GetParam());
+  for (const float aerosol : {0.0F, 1.0F, 20.0F}) {
+    Params params;
+    params.atmosphere.aerosol_density = aerosol;
+    const glsl64::Medium m = glsl64::widen(medium_from_params(params));
+    for (const double mu_s : {1.0, 0.1, 0.0, -0.2}) {
+      for (std::uint32_t i = 0; i < t.altitudes; ++i) {
+        const double u = (i + 0.5) / t.altitudes;
+        EXPECT_NEAR(glsl64::u_for_lookup(t, m, glsl64::altitude_from_u(t, m, u), mu_s), u, 1e-9);
+      }
+      const double sea = glsl64::u_for_lookup(t, m, glsl64::table_altitude(m, 0.0), mu_s);
+      EXPECT_NEAR(glsl64::u_for_lookup(t, m, -1e-9, mu_s), sea, 1e-9);
+      double before = -1.0;
+      for (double h = -520.0; h < 81000.0; h += h < 4000.0 ? 7.0 : 300.0) {
+        const double inside = h < 0.0 ? h : glsl64::table_altitude(m, h);
+        const double u = glsl64::u_for_lookup(t, m, inside, mu_s);
+        EXPECT_GE(u, before) << h;
+        EXPECT_NEAR(u, glsl64::u_from_altitude(t, m, inside), 1.0 / t.altitudes) << h;
+        before = u;
+      }
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, TableMapping, testing::Values(0U, 1U, 2U));
 
 TEST(TableValues, NormalisationIsExactForAMixedMediumUnderAFullSun) {
