@@ -1,9 +1,10 @@
-// The grids on which the orders of scattering are solved. Altitudes are uniform in their square root, and those below
-// sea level in depth. Suns are densest near the horizon. Source directions are uniform in azimuth from the sun's plane.
+// The grids on which the orders of scattering are solved. Altitudes are spaced as in the tables, and those below sea
+// level evenly. Suns are densest near the horizon. The azimuths of the source function, from the sun's plane, are
+// densest at the sun.
 #ifndef TYNDALL_GATHER_GRID_GLSL
 #define TYNDALL_GATHER_GRID_GLSL
 
-#include "lib/geometry.glsl"
+#include "lib/table_mapping.glsl"
 #include "shared/medium.h"
 #include "shared/tables.h"
 
@@ -15,12 +16,12 @@ float lowest_gather_altitude(Medium m) { return max(kLowestGatherAltitude, -0.25
 float gather_altitude(Medium m, uint i) {
   if (i < kGatherBelow) return lowest_gather_altitude(m) * (1.0 - float(i) / float(kGatherBelow));
   float x = float(i - kGatherBelow) / float(kGatherAltitudes - 1u - kGatherBelow);
-  return x * x * m.atmosphere_height_m;
+  return altitude_share(x) * m.atmosphere_height_m;
 }
 float gather_altitude_index(Medium m, float h) {
   float below = float(kGatherBelow);
   if (h < 0.0) return max(below * (1.0 - h / lowest_gather_altitude(m)), 0.0);
-  return below + sqrt(min(h / m.atmosphere_height_m, 1.0)) * (float(kGatherAltitudes - 1u) - below);
+  return below + altitude_coordinate(min(h / m.atmosphere_height_m, 1.0)) * (float(kGatherAltitudes - 1u) - below);
 }
 
 // Returns the altitude of the ground for the points of the grid. Below sea level it is the altitude of the point
@@ -52,24 +53,25 @@ float gather_sun_index(Medium m, float mu_s) {
   return clamp((s - from) / (to - from), 0.0, 1.0) * float(kGatherSuns - 1u);
 }
 
-// The zenith angles of incident light, from quadrature nodes in [0; 1] on either side of the horizon. They are
-// proportional to the angle, so that several nodes cover the aureole of a sun at any height. gather_zenith() returns
-// the cosine, gather_zenith_stretch() the factor of the quadrature weight.
+// The zenith angles of incident light, from quadrature nodes in [0; 1] on either side of the horizon. The angle from
+// the horizon is the power 3/2 of the node: several nodes cover the aureole of a sun at any height, and more of them
+// the light near the horizon, which changes fastest in turbid air. gather_zenith() returns the cosine,
+// gather_zenith_stretch() the factor of the quadrature weight.
 float gather_angle_span(float horizon, bool below) { return below ? kPi - acos(horizon) : acos(horizon); }
 float gather_zenith(float horizon, float node, bool below) {
-  float offset = node * gather_angle_span(horizon, below);
+  float offset = node * sqrt(node) * gather_angle_span(horizon, below);
   return cos(below ? acos(horizon) + offset : acos(horizon) - offset);
 }
 float gather_zenith_stretch(float horizon, float node, bool below) {
   float mu = gather_zenith(horizon, node, below);
-  return gather_angle_span(horizon, below) * sqrt(max((1.0 - mu) * (1.0 + mu), 0.0));
+  return 1.5 * sqrt(node) * gather_angle_span(horizon, below) * sqrt(max((1.0 - mu) * (1.0 + mu), 0.0));
 }
 float gather_azimuth(uint k) { return (float(k) + 0.5) * kPi / float(kGatherAzimuths); }
 
 // Zenith angles of the source function. They are symmetric to the horizontal and densest there, because in turbid air
 // the light is brightest near the horizon and is scattered along it. The angle from the horizontal is a quadratic
 // function of the index.
-const float kSourceDensity = 0.6;  // spacing at the horizontal over the mean spacing
+const float kSourceDensity = 0.35;  // spacing at the horizontal over the mean spacing
 float source_zenith(uint j) {
   float x = 2.0 * float(j) / float(kSourceZeniths - 1u) - 1.0;
   return 0.5 * kPi * (1.0 + x * (kSourceDensity + (1.0 - kSourceDensity) * abs(x)));
@@ -79,6 +81,14 @@ float source_zenith_index(float angle) {
   float x = sign(y) * (sqrt(kSourceDensity * kSourceDensity + 4.0 * (1.0 - kSourceDensity) * abs(y)) - kSourceDensity) /
             (2.0 * (1.0 - kSourceDensity));
   return clamp(0.5 * (x + 1.0), 0.0, 1.0) * float(kSourceZeniths - 1u);
+}
+
+// Azimuths of the source function. They are denser towards the sun, because a linear function between azimuths 11
+// degrees apart is up to 2 % off in the aureole.
+const float kAzimuthDensity = 0.65;  // spacing at the sun over the mean spacing
+float source_azimuth(uint k) { return kPi * spread_from_unit(float(k) / float(kSourceAzimuths - 1u), kAzimuthDensity); }
+float source_azimuth_index(float azimuth) {
+  return unit_from_spread(azimuth / kPi, kAzimuthDensity) * float(kSourceAzimuths - 1u);
 }
 
 // Indices of incident light and of the source function. The sun varies fastest, because neighbouring invocations

@@ -22,8 +22,9 @@ layout(std430, binding = 2) writeonly buffer node_block { RayNode nodes[]; };
 layout(push_constant) uniform Push { uint first; }
 push;
 
-// Divides the ray into panels of equal effort, and writes the nodes of each.
-void lay_nodes(float h, float mu, float end, float total, uint panels, uint base) {
+// Divides the ray into panels of equal effort, and writes the nodes of each. `kind` selects a component of the effort.
+void lay_nodes(float h, float mu, float end, vec2 totals, int kind, uint panels, uint base) {
+  float total = totals[kind];
   float bounds[kSinglePanels + 1u];
   bounds[0] = 0.0;
   uint found = 1u;
@@ -32,7 +33,7 @@ void lay_nodes(float h, float mu, float end, float total, uint panels, uint base
   float before = 0.0;
   for (int i = 0; i < kWalkSteps; ++i) {
     float after = walk_distance(end, float(i + 1) / float(kWalkSteps));
-    float here = (after - before) * effort(medium, h, mu, 0.5 * (before + after), after - before, tau);
+    float here = (after - before) * effort(medium, h, mu, 0.5 * (before + after), after - before, tau)[kind];
     while (found < panels && sum + here >= total * float(found) / float(panels)) {
       float part = here > 0.0 ? (total * float(found) / float(panels) - sum) / here : 0.0;
       bounds[found] = before + clamp(part, 0.0, 1.0) * (after - before);
@@ -73,7 +74,7 @@ void main() {
   float end = distance_to_top(h, mu, medium.atmosphere_height_m, R);
   if (below) end = kOfTables == 1 ? distance_to_ground(h, mu, R) : gather_ground_distance(medium, h, mu);
 
-  float total = 0.0;
+  vec2 total = vec2(0.0);
   float tau = 0.0;
   float before = 0.0;
   for (int i = 0; i < kWalkSteps; ++i) {
@@ -81,7 +82,7 @@ void main() {
     total += (after - before) * effort(medium, h, mu, 0.5 * (before + after), after - before, tau);
     before = after;
   }
-  lay_nodes(h, mu, end, total, kSinglePanels, base);
-  lay_nodes(h, mu, end, total, kHighPanels, base + kFirstHighNode);
+  lay_nodes(h, mu, end, total, 0, kSinglePanels, base);
+  lay_nodes(h, mu, end, total, 1, kHighPanels, base + kFirstHighNode);
   nodes[base + kEndNode] = ray_node(medium, h, mu, end, 1.0);
 }

@@ -18,22 +18,25 @@ const int kWalkSteps = 192;
 float walk_distance(float end, float s) { return end * s * s * (3.0 - 2.0 * s); }
 
 // Returns the effort per metre at distance d: the rate at which the integrand changes with optical depth, altitude and
-// distance, reduced where the transmittance is low. tau is the optical depth so far in the clearest channel; this
-// step's is added to it.
-float effort(Medium m, float h0, float mu, float d, float step_m, inout float tau) {
+// distance, reduced where the transmittance is low. x is for single scattering, which changes with the sunlight along
+// the ray. y is for the higher orders, whose source function is smoother: there the transmittance towards the eye
+// changes fastest. tau is the optical depth so far in the clearest channel; this step's is added to it.
+vec2 effort(Medium m, float h0, float mu, float d, float step_m, inout float tau) {
   float R = m.planet_radius_m;
   float h = altitude_along(h0, mu, d, R);
   float cosine = cos_zenith_along(h0, mu, d, R);
   vec3 extinction = extinction_at(m, h);
   float clearest = min(extinction.x, min(extinction.y, extinction.z));
   float densest = max(extinction.x, max(extinction.y, extinction.z));
-  float seen = 0.1 + exp(-0.5 * (tau + 0.5 * clearest * step_m));
+  float middle = tau + 0.5 * clearest * step_m;
   tau += clearest * step_m;
   float small_scale = min(m.rayleigh_scale_height_m, m.mie_scale_height_m);
   float large_scale = max(m.rayleigh_scale_height_m, m.mie_scale_height_m);
   float scale = min(small_scale + 0.3333 * max(h, 0.0), large_scale);
   float along_sun = 1.0 / (0.5 * sqrt(2.0 * R * large_scale));
-  return seen * (0.5 * densest + abs(cosine) / scale + along_sun);
+  float climb = abs(cosine) / scale;
+  return vec2((0.1 + exp(-0.5 * middle)) * (0.5 * densest + climb + along_sun),
+              (0.1 + exp(-0.3 * middle)) * (0.8 * densest + 0.7 * climb + along_sun));
 }
 
 RayNode ray_node(Medium m, float h0, float mu, float d, float weight_m) {

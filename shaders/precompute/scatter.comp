@@ -70,7 +70,7 @@ void store_source(uint lane, uint altitude, uint sun) {
   for (uint i = lane; i < kSourceZeniths * kSourceAzimuths; i += 32u) {
     uint j = i / kSourceAzimuths;
     uint index = source_index(altitude, j, i % kSourceAzimuths, sun);
-    vec3 value = scattered_towards(j, float(i % kSourceAzimuths) * kPi / float(kSourceAzimuths - 1u));
+    vec3 value = scattered_towards(j, source_azimuth(i % kSourceAzimuths));
     if (!late) source[index] = vec4(texel_from_value(value), 0.0);
     sums[index] = vec4(push.order == 2u ? value : sums[index].rgb + value, 0.0);
   }

@@ -81,7 +81,7 @@ void main() {
   }
   if (last) {
     for (uint k = 0u; k < kSourceAzimuths; ++k) {
-      float phi = float(k) * kPi / float(kSourceAzimuths - 1u);
+      float phi = source_azimuth(k);
       vec3 value = vec3(0.0);
       for (uint m = 0u; m < kLateTerms; ++m) value += sums_of[m] * cos(float(m) * phi);
       uint index = source_index(altitude, zenith, k, sun);

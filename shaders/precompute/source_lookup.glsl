@@ -57,7 +57,7 @@ SourceAngles source_angles(float mu, float mu_s, float nu) {
 // mu_s, with nu between view ray and sun, per scattering coefficient [1/sr].
 vec3 source_at(Medium m, float h, float mu, float mu_s, float nu) {
   SourceAngles angles = source_angles(mu, mu_s, nu);
-  float azimuth = angles.azimuth / kPi * float(kSourceAzimuths - 1u);
+  float azimuth = source_azimuth_index(angles.azimuth);
   float zenith = source_zenith_index(angles.view);
   float sun = gather_sun_index(m, mu_s > kHighSun ? cos(angles.sun) : mu_s);
   float altitude = gather_altitude_index(m, h);

@@ -26,7 +26,7 @@ const uint kGatherSuns = 64u;
 const uint kGatherZeniths = 24u;  // half of them on each side of the horizon
 const uint kGatherAzimuths = 16u;
 const uint kSourceZeniths = 33u;
-const uint kSourceAzimuths = 17u;
+const uint kSourceAzimuths = 21u;
 const uint kModes = 16u;  // of the Fourier series in azimuth
 // The late orders are those after `orders` of TableShape.
 const uint kLateOrders = 6u;    // the number of them that are solved; the rest is estimated
