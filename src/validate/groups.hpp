@@ -29,7 +29,7 @@ struct TurbidGroup {
   bool (*takes)(const TestRay& ray);
 };
 constexpr TurbidGroup kTurbidGroups[] = {
-    {"0 to 10 deg", [](const TestRay& r) { return r.band == SunBand::up; }},
+    {"0.5 to 10 deg", [](const TestRay& r) { return r.band == SunBand::up; }},
     {"0 to -6 deg", [](const TestRay& r) { return r.band == SunBand::twilight; }},
 };
 

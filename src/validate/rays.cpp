@@ -103,9 +103,9 @@ std::vector<TestRay> make_horizon_rays(SunBand band, std::uint32_t count, std::u
   for (const std::array<double, 4>& u : even_points(mixed(seed) + kSet + static_cast<std::uint64_t>(band), count)) {
     TestRay ray;
     ray.band = band;
-    ray.sun_elevation_rad = (band == SunBand::up ? 10.0 * u[0] : -6.0 * u[0]) * kRadPerDeg;
+    ray.sun_elevation_rad = (band == SunBand::up ? 0.5 + 9.5 * u[0] : -6.0 * u[0]) * kRadPerDeg;
     RayQuery& q = ray.query;
-    q.altitude_m = scale * 1000.0 * u[2] * u[2];
+    q.altitude_m = scale * (2.0 + 2998.0 * u[2] * u[2]);
     const double dip = std::acos(radius_m / (radius_m + q.altitude_m));
     q.view_zenith_rad = 0.5 * kPi + dip - (0.5 + 4.5 * u[3]) * kRadPerDeg;
     q.sun_zenith_rad = 0.5 * kPi - ray.sun_elevation_rad;

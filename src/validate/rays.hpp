@@ -27,8 +27,8 @@ struct TestRay {
 [[nodiscard]] std::vector<TestRay> make_rays(Region region, SunBand band, std::uint32_t count, std::uint64_t seed,
                                              double radius_m, double height_m);
 
-// Returns `count` rays near the horizon under low suns: from 0 to 1 km, 0.5 to 5 degrees above the geometric horizon,
-// with the sun at 0 to 10 degrees or at 0 to -6 degrees. Evenly spread rays rarely include these.
+// Returns `count` rays near the horizon under low suns: from 2 m to 3 km, 0.5 to 5 degrees above the geometric
+// horizon, with the sun at 0.5 to 10 degrees or at 0 to -6 degrees. Evenly spread rays rarely include these.
 [[nodiscard]] std::vector<TestRay> make_horizon_rays(SunBand band, std::uint32_t count, std::uint64_t seed,
                                                      double radius_m, double height_m);
 

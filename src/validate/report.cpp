@@ -86,17 +86,17 @@ std::string error_tables(const Study& study) {
 }
 
 std::string turbid_tables(const Study& study) {
-  std::string out = concat(
-      {"<h2>Turbid air near the horizon under a low sun</h2>\n<p>Rays from 0 to 1 km, 0.5 to 5° above the horizon; the "
-       "reference follows ",
-       std::to_string(kTurbidOrdersFactor * study.options.orders),
-       " orders.</p>\n<table>\n<tr>"
-       "<th class=\"t\">model</th><th>optical depth</th><th>albedo</th><th class=\"t\">sun</th>",
-       kErrorHead});
+  std::string out = concat({"<h2>Turbid air near the horizon under a low sun</h2>\n<p>Rays from 2 m to 3 km, 0.5 to 5° "
+                            "above the horizon; the "
+                            "reference follows ",
+                            std::to_string(kTurbidOrdersFactor * study.options.orders),
+                            " orders.</p>\n<table>\n<tr>"
+                            "<th class=\"t\">model</th><th>optical depth</th><th>albedo</th><th class=\"t\">sun</th>",
+                            kErrorHead});
   for (std::size_t m = 0; m < study.models.size(); ++m) {
     for (std::size_t a = 0; a < study.turbid.size(); ++a) {
       for (const TurbidGroup& group : kTurbidGroups) {
-        out += concat({"<tr>", text_cell(study.models[m].name), cell(fixed(kTurbidAirs[a].optical_depth, 1)),
+        out += concat({"<tr>", text_cell(study.models[m].name), cell(fixed(kTurbidAirs[a].optical_depth, 2)),
                        cell(fixed(kTurbidAirs[a].ground_albedo, 1)), text_cell(group.sun),
                        error_cells(summarise_turbid(study, m, a, group.takes)), "</tr>\n"});
       }

@@ -44,20 +44,21 @@ std::string json_turbid(const Study& study, std::size_t model) {
 }
 
 std::string markdown_turbid(const Study& study) {
-  std::string out = concat({"\n## Turbid air near the horizon under a low sun\n\nRays from 0 to 1 km, 0.5 to 5° above "
-                            "the horizon; the reference "
-                            "follows ",
-                            std::to_string(kTurbidOrdersFactor * study.options.orders),
-                            " orders.\nModels that claim all of them.\n\n"
-                            "| model | optical depth | albedo | sun | rays | mean | median | 95 % | worst | noise |\n"
-                            "|---|--:|--:|---|--:|--:|--:|--:|--:|--:|\n"});
+  std::string out =
+      concat({"\n## Turbid air near the horizon under a low sun\n\nRays from 2 m to 3 km, 0.5 to 5° above "
+              "the horizon; the reference "
+              "follows ",
+              std::to_string(kTurbidOrdersFactor * study.options.orders),
+              " orders.\nModels that claim all of them.\n\n"
+              "| model | optical depth | albedo | sun | rays | mean | median | 95 % | worst | noise |\n"
+              "|---|--:|--:|---|--:|--:|--:|--:|--:|--:|\n"});
   for (std::size_t m = 0; m < study.models.size(); ++m) {
     if (study.models[m].orders != 0) continue;
     for (std::size_t a = 0; a < study.turbid.size(); ++a) {
       for (const TurbidGroup& group : kTurbidGroups) {
         const ErrorSummary e = summarise_turbid(study, m, a, group.takes);
         out += concat({"| ",  study.models[m].name,
-                       " | ", fixed(kTurbidAirs[a].optical_depth, 1),
+                       " | ", fixed(kTurbidAirs[a].optical_depth, 2),
                        " | ", fixed(kTurbidAirs[a].ground_albedo, 1),
                        " | ", group.sun,
                        " | ", std::to_string(e.channels[0].count),

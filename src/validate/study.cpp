@@ -22,7 +22,7 @@ class Evaluator {
   Evaluator(const Options& options, double work, const Progress& progress)
       : options_(options), work_(work), progress_(progress) {}
 
-  Result<void> evaluate(const Params& params, const std::vector<Model>& models, std::uint32_t samples, Answers& answers,
+  Result<void> evaluate(const Params& params, const std::vector<Model>& models, std::uint64_t samples, Answers& answers,
                         int orders_factor = 1) {
     reference::Options how;
     how.samples = samples;
@@ -211,7 +211,7 @@ Result<Study> run_study(const Params& params, const Options& options, std::vecto
 
   double work = kSkyFactor * static_cast<double>(study.sky.answers.queries.size());
   for (const RayTest& test : study.rays) work += static_cast<double>(test.rays.size());
-  for (const RayTest& test : study.turbid) work += static_cast<double>(test.rays.size());
+  for (const RayTest& test : study.turbid) work += kTurbidSamplesFactor * static_cast<double>(test.rays.size());
   for (const VerticalTest& test : study.verticals) work += static_cast<double>(test.angle_deg.size());
   for (const HorizonTest& test : study.horizons) work += static_cast<double>(test.elevation_deg.size());
   Evaluator evaluator(options, work * options.samples, progress);
@@ -251,8 +251,9 @@ Result<Study> run_study(const Params& params, const Options& options, std::vecto
     if (Result<void> r = evaluate_rays(a); !r) return std::move(r).error();
   }
   for (std::size_t a = 0; a < study.turbid.size(); ++a) {
-    Result<void> turbid = evaluator.evaluate(turbid_params(params, kTurbidAirs[a]), study.models, options.samples,
-                                             study.turbid[a].answers, kTurbidOrdersFactor);
+    Result<void> turbid =
+        evaluator.evaluate(turbid_params(params, kTurbidAirs[a]), study.models, kTurbidSamplesFactor * options.samples,
+                           study.turbid[a].answers, kTurbidOrdersFactor);
     if (!turbid) return std::move(turbid).error();
   }
   return study;

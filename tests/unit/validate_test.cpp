@@ -107,8 +107,8 @@ TEST(ValidateRays, TurbidSetIsNearTheHorizonUnderLowSuns) {
     ASSERT_EQ(rays.size(), 50U);
     for (const TestRay& ray : rays) {
       const double sun_deg = ray.sun_elevation_rad * 180.0 / kPi;
-      EXPECT_TRUE(band == SunBand::up ? sun_deg >= 0.0 && sun_deg <= 10.0 : sun_deg >= -6.0 && sun_deg <= 0.0);
-      EXPECT_TRUE(ray.query.altitude_m >= 0.0 && ray.query.altitude_m <= 1000.0);
+      EXPECT_TRUE(band == SunBand::up ? sun_deg >= 0.5 && sun_deg <= 10.0 : sun_deg >= -6.0 && sun_deg <= 0.0);
+      EXPECT_TRUE(ray.query.altitude_m >= 2.0 && ray.query.altitude_m <= 3000.0);
       const double horizon = 0.5 * kPi + std::acos(kRadius / (kRadius + ray.query.altitude_m));
       const double above_deg = (horizon - ray.query.view_zenith_rad) * 180.0 / kPi;
       EXPECT_TRUE(above_deg >= 0.5 - 1e-9 && above_deg <= 5.0 + 1e-9) << above_deg;
@@ -252,7 +252,9 @@ TEST(ValidateStudy, FindsAllErrorsAndNoOthers) {
   ASSERT_EQ(study.value().turbid.size(), std::size(kTurbidAirs));
   for (std::size_t air = 0; air < std::size(kTurbidAirs); ++air) {
     const ErrorSummary first = summarise_turbid(study.value(), 0, air, up);
-    EXPECT_LT(first.all.mean, 3.0 * first.noise + 1e-6) << air;
+    // The reference has more paths than the tracer, whose noise is larger by the root of their ratio.
+    const double noise = first.noise * std::sqrt(0.5 * (1.0 + static_cast<double>(kTurbidSamplesFactor)));
+    EXPECT_LT(first.all.mean, 3.0 * noise + 1e-6) << air;
   }
   EXPECT_LT(summarise_sky(study.value(), 1, 0.001, 90.0).all.mean, 0.05);
   EXPECT_GT(summarise_sky(study.value(), 2, 0.001, 90.0).all.mean, 0.15);
@@ -269,8 +271,8 @@ TEST(ValidateStudy, FindsAllErrorsAndNoOthers) {
   EXPECT_EQ(html.find("nan"), std::string::npos);
   const std::string page = to_markdown(study.value(), origin);
   EXPECT_LT(page.find("    tyndall validate <&>\n"), page.find("## Models"));
-  EXPECT_NE(page.find("| all | 0.5 | 0.2 | 0 to -6 deg |"), std::string::npos);
-  EXPECT_EQ(page.find("| first | 0.5 | 0.2 |"), std::string::npos);  // compared with order 1 only
+  EXPECT_NE(page.find("| all | 0.50 | 0.2 | 0 to -6 deg |"), std::string::npos);
+  EXPECT_EQ(page.find("| first | 0.50 | 0.2 |"), std::string::npos);  // compared with order 1 only
   EXPECT_NE(html.find("Turbid air near the horizon"), std::string::npos);
   EXPECT_NE(to_json(study.value(), origin).find("\"optical_depth\": 0.3"), std::string::npos);
   EXPECT_EQ(page.find("nan"), std::string::npos);
