@@ -206,10 +206,10 @@ TEST_F(CliScenes, WithoutADeviceThereIsOneLine) {
       {{"VK_ICD_FILENAMES", scratch_.at("none.json")}, {"VK_DRIVER_FILES", scratch_.at("none.json")}});
   const std::string queries =
       scratch_.write("q.csv", "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n0,1,2,3\n");
-  expect_one_line(render({}), 1, "driver is needed");
-  expect_one_line(run_tyndall({"bench"}), 1, "driver is needed");
-  expect_one_line(run_tyndall({"devices"}), 1, "driver is needed");
-  expect_one_line(run_tyndall({"probe", "--queries", queries}), 1, "driver is needed");
+  expect_one_line(render({}), 1, "expected a Vulkan 1.3 driver");
+  expect_one_line(run_tyndall({"bench"}), 1, "expected a Vulkan 1.3 driver");
+  expect_one_line(run_tyndall({"devices"}), 1, "expected a Vulkan 1.3 driver");
+  expect_one_line(run_tyndall({"probe", "--queries", queries}), 1, "expected a Vulkan 1.3 driver");
   EXPECT_FALSE(std::filesystem::exists(scratch_.at("out.png")));
   // Verbs that need no device work without one: the reference, and the sky.
   EXPECT_EQ(run_tyndall({"probe", "--queries", queries, "--model", "reference", "--samples", "64"}).status, 0);

@@ -84,7 +84,7 @@ TEST_P(TableMapping, AltitudesContinueBelowSeaLevel) {
 }
 
 // The coordinate of a look-up moves the weights between two texels, but never away from the texels.
-TEST_P(TableMapping, LookUpsKeepTheTexelsAndTheOrderOfAltitudes) {
+TEST_P(TableMapping, LookUpsPreserveTexelsAndTheOrderOfAltitudes) {
   const glsl64::TableShape t = shape_of(GetParam());
   for (const float aerosol : {0.0F, 1.0F, 20.0F}) {
     Params params;
