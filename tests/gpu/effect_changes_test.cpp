@@ -27,14 +27,16 @@ TEST_F(EffectChanges, MissingPipelinesAreCreatedOnRequest) {
   ASSERT_OK(effect);
   const Result<Progress> none = effect.value().prepare_pipelines(0);
   ASSERT_OK(none);
-  const std::uint32_t first = none.value().done;  // created with the effect, and one for the new parameters
+  const std::uint32_t first = none.value().done;  // created with the effect
   ASSERT_OK(effect.value().set_params(with_technique(Technique::brute_force)));
   const Result<Progress> both = effect.value().prepare_pipelines(0);
   ASSERT_OK(both);
-  EXPECT_EQ(both.value().done, first + 1U);
+  // Brute force reads order 1 from the tables or, where they fail below sea level, integrates it.
+  constexpr std::uint32_t kOfBruteForce = 2;
+  EXPECT_EQ(both.value().done, first + kOfBruteForce);
   const Result<Progress> some = effect.value().prepare_pipelines(3);
   ASSERT_OK(some);
-  EXPECT_EQ(some.value().done, first + 4U);
+  EXPECT_EQ(some.value().done, first + kOfBruteForce + 3U);
   const Result<Progress> all = effect.value().prepare_pipelines();
   ASSERT_OK(all);
   EXPECT_TRUE(all.value().complete());
