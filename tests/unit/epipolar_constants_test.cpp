@@ -264,9 +264,9 @@ TEST(EpipolarSteps, InitialSamplesStandCloserInTwilight) {
   };
   Params params;
   const std::uint32_t usual = params.epipolar.initial_step;
-  for (const double elevation_deg : {90.0, 6.0, 0.0, -1.9})
+  for (const double elevation_deg : {90.0, 6.0, 0.0, -0.9})
     EXPECT_EQ(step_at(elevation_deg, params), usual) << elevation_deg;
-  for (const double elevation_deg : {-2.1, -7.0, -18.0})
+  for (const double elevation_deg : {-1.1, -7.0, -18.0})
     EXPECT_EQ(step_at(elevation_deg, params), usual / 4) << elevation_deg;
   params.epipolar.initial_step = 1;
   EXPECT_EQ(step_at(-7.0, params), 1U);
