@@ -160,9 +160,9 @@ double camera_altitude_m(const FrameInputs& inputs, const Params& params) {
 }
 
 bool tables_lack_single(double altitude_m, double cos_sun_zenith, double radius_m) {
-  constexpr double kLowestAltitude_m = -500.0;  // kLowestTableAltitude of shaders/lib/table_mapping.glsl
+  const double lowest_m = std::max(-500.0, -0.125 * radius_m);  // lowest_table_altitude() of lib/table_mapping.glsl
   if (altitude_m >= 0.0) return false;
-  if (altitude_m < kLowestAltitude_m) return true;
+  if (altitude_m < lowest_m) return true;
   // The sun sets at different points of a ray while it passes through the dip of the ray's horizon. The tables blur
   // that over the distance between two of their suns.
   constexpr double kBetweenSuns_rad = 0.009;
