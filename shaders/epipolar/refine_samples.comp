@@ -166,7 +166,7 @@ void mark_initial_samples_and_edges(Work w) {
   }
 }
 
-// Marks the samples on both sides of depth discontinuities, in twilight.
+// Marks the samples on both sides of depth discontinuities.
 void mark_discontinuities(Work w) {
   if (epipolar.discontinuity_ratio <= 0.0) return;
   for (uint i = 1u + gl_LocalInvocationID.x; i < w.slice.last; i += kThreads) {

@@ -1,8 +1,8 @@
-// The constants of a frame as `medium` and `frame`. Where a shader reads them from matters on CPU devices
-// (docs/epipolar.md). It chooses by macros that it defines before its first include:
-//   COPY_CONSTANTS     from storage buffers, copied into variables by load_medium() and so on, which main() calls first
-//   UNIFORM_CONSTANTS  `frame` from a uniform block; `medium` as without this macro
-// Without them, it reads storage buffers.
+// Declares the constants of a frame, `medium` and `frame`. By default a shader reads them from storage buffers. Other
+// ways are faster for some shaders on CPU devices (docs/epipolar.md). A shader selects them with macros, which it
+// defines before its first include:
+//   COPY_CONSTANTS     load_medium() and load_frame() copy them into variables; main() calls these functions first
+//   UNIFORM_CONSTANTS  `frame` is a uniform block
 #ifndef TYNDALL_CONSTANTS_GLSL
 #define TYNDALL_CONSTANTS_GLSL
 

@@ -113,10 +113,10 @@ vec3 depth_below_tables(Medium m, float h) {
          m.mie_extinction * (G * (exp(min(-h / G, 60.0)) - exp(-lowest / G)));
 }
 
-// Returns by how much the orders >= 2 of a ray from below the lowest altitude of the tables are darker than the tables
-// say, which use the light there. An estimate: of what does not come from above the lowest altitude, a part is lost to
-// absorption, and a part is scattered back, which is proportional to 1 - g. Both are fitted to the path tracer
-// (docs/adr/0007-below-sea-level.md).
+// Returns a factor for the orders >= 2 of a ray that begins below the lowest altitude of the tables. The tables give
+// the light at that altitude, which is brighter. The factor is an estimate: light that does not come from above that
+// altitude is absorbed in part, and scattered back in part, in proportion to 1 - g. Both parts are fitted to the path
+// tracer (docs/adr/0007-below-sea-level.md).
 vec3 deep_factor(Medium m, TableRay ray) {
   float h = ray.altitude;
   float lowest = lowest_table_altitude(m);

@@ -2,7 +2,7 @@
 // convert between its quantity and a coordinate in [0; 1] over the texels. There are three parameterisations:
 //   yusov    - Yusov, "High Performance Outdoor Light Scattering Using Epipolar Sampling" (2013), section 2: the fifth
 // root of the distance from the horizon in cosine, and Bruneton's arctangent for the sun. Two axes are ours. Altitude
-// is a fourth power of the coordinate, with a spacing of 400 m at 1 km. The published square has 700 m there, over
+// is a fourth power of the coordinate, with a spacing of 400 m at 1 km. The published square has 600 m there, over
 // which the light of a low sun in turbid air changes several times. The spacing of the angle between view and sun grows
 // slowly from the sun: Yusov raises the angle to the power 3/2, which leaves 30 degrees between the texels around 90
 // degrees and triples the errors of twilight;

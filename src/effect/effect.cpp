@@ -53,7 +53,7 @@ constexpr VkBufferUsageFlags kCounterUsage =
 constexpr std::uint32_t bit(Affects affects) { return 1U << static_cast<std::uint32_t>(affects); }
 constexpr std::uint32_t kEverything = bit(Affects::Resources) | bit(Affects::Tables);
 
-// Returns whether the settings are equal that can change and on which pipelines and buffers depend.
+// Returns whether two descriptions agree in the settings that can change after creation.
 bool same_limits(const EffectDesc& a, const EffectDesc& b) {
   return a.max_extent.width == b.max_extent.width && a.max_extent.height == b.max_extent.height &&
          a.max_cascades == b.max_cascades && a.max_shadow_resolution == b.max_shadow_resolution &&

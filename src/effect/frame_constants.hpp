@@ -20,8 +20,8 @@ namespace tyndall {
 // Returns the altitude of the camera above the planet's sphere [m]. In double precision, because the centre of the
 // planet is millions of metres away.
 [[nodiscard]] double camera_altitude_m(const FrameInputs& inputs, const Params& params);
-// Whether single scattering must be integrated because the tables do not resolve it: below sea level while the sun sets
-// or rises, and below the lowest altitude of the tables (docs/adr/0007-below-sea-level.md).
+// Returns whether single scattering must be integrated because the tables do not resolve it: below sea level while the
+// sun sets or rises, and below the lowest altitude of the tables (docs/adr/0007-below-sea-level.md).
 [[nodiscard]] bool tables_lack_single(double altitude_m, double cos_sun_zenith, double radius_m);
 [[nodiscard]] bool tables_lack_single(const FrameInputs& inputs, const Params& params);
 [[nodiscard]] shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDesc& desc,

@@ -17,7 +17,7 @@ class PipelineCache {
     threads_ = threads;
   }
 
-  // Creates missing pipelines, at most `budget` of them, and returns their number. Each takes about 0.05 s on a CPU
+  // Creates missing pipelines, at most `budget` of them, and returns their number. Each takes about 0.1 s on a CPU
   // device. Pipelines that were created before an error are retained.
   Result<std::uint32_t> make(std::span<const PipelineKey> keys, std::uint32_t budget = UINT32_MAX);
   // Returns null if the pipeline has not been created. Neither allocates nor locks. The pointer is valid until the next
