@@ -2,9 +2,11 @@
 #pragma once
 
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -73,6 +75,15 @@ inline ProcessResult run_tyndall(const std::vector<std::string>& arguments, cons
   if (stdout_path.empty()) process.out = contents_of(out);
   process.err = contents_of(err);
   return process;
+}
+
+// Expects that a run failed with this exit status, printed nothing, and explained it in one line that contains `part`.
+inline void expect_one_line(const ProcessResult& process, int status, const std::string& part) {
+  EXPECT_EQ(process.status, status) << part << "\n" << process.err;
+  EXPECT_EQ(std::count(process.err.begin(), process.err.end(), '\n'), 1) << process.err;
+  EXPECT_EQ(process.err.rfind("tyndall: error: ", 0), 0U) << process.err;
+  EXPECT_NE(process.err.find(part), std::string::npos) << process.err;
+  EXPECT_EQ(process.out, "");
 }
 
 }  // namespace tyndall::cli

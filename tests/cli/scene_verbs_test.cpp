@@ -40,13 +40,6 @@ class Environment {
 
 class CliScenes : public testing::Test {
  protected:
-  static void expect_one_line(const ProcessResult& process, int status, const std::string& part) {
-    EXPECT_EQ(process.status, status) << part << "\n" << process.err;
-    EXPECT_EQ(std::count(process.err.begin(), process.err.end(), '\n'), 1) << process.err;
-    EXPECT_EQ(process.err.rfind("tyndall: error: ", 0), 0U) << process.err;
-    EXPECT_NE(process.err.find(part), std::string::npos) << process.err;
-    EXPECT_EQ(process.out, "");
-  }
   // Returns the number of files in the folder.
   [[nodiscard]] std::size_t files() const {
     std::size_t count = 0;

@@ -41,13 +41,6 @@ class CliTables : public testing::Test {
     return out;
   }
   [[nodiscard]] std::vector<std::string> cached() const { return names(scratch_.at("cache")); }
-  static void expect_one_line(const ProcessResult& process, int status, const std::string& part) {
-    EXPECT_EQ(process.status, status) << part << "\n" << process.err;
-    EXPECT_EQ(std::count(process.err.begin(), process.err.end(), '\n'), 1) << process.err;
-    EXPECT_EQ(process.err.rfind("tyndall: error: ", 0), 0U) << process.err;
-    EXPECT_NE(process.err.find(part), std::string::npos) << process.err;
-    EXPECT_EQ(process.out, "");
-  }
   static image::Image picture(const std::string& path) {
     Result<image::File> file = image::read(path);
     EXPECT_TRUE(file.ok()) << path;
