@@ -84,7 +84,7 @@ passes: TARGETS = tyndall passes
 passes: build
 	@mkdir -p build/passes
 	@build/release/bin/passes --modes | while read -r mode options; do \
-	  build/release/bin/tyndall bench scenes/demo.toml --json $$options > build/passes/$$mode.json < /dev/null || exit 1; \
+	  build/release/bin/tyndall bench scenes/demo.toml --json --frames 3 --set camera.samples=1 $$options > build/passes/$$mode.json < /dev/null || exit 1; \
 	done
 	@build/release/bin/tyndall tables --json > build/passes/tables.json
 	@build/release/bin/passes build/passes > docs/generated/passes.md

@@ -1,10 +1,10 @@
 // Writes docs/generated/passes.md: the passes of a frame and of a build of the tables, with their inputs and outputs,
 // from the lists of steps that the effect records.
-//   passes --modes           prints a line for each mode: its name and the options of `tyndall bench` that select it
-//   passes DIR               prints the page, with costs from DIR/MODE.json (`tyndall bench --json`) and
-//   DIR/tables.json
-//                            (`tyndall tables --json`)
-//   passes --check PAGE      compares a page with the lists, except for the costs
+//
+// `passes --modes` prints a line for each mode: its name, and the options of `tyndall bench` that select it.
+// `passes DIR` prints the page. The costs are from DIR/MODE.json (`tyndall bench --json`) and DIR/tables.json (`tyndall
+// tables --json`); passes without a report have none.
+// `passes --check PAGE` compares a page with the lists, except for the costs.
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -48,11 +48,14 @@ const Mode kModes[] = {
 // Milliseconds by the names of passes; empty if nothing has been measured.
 using Costs = std::map<std::string, double>;
 
-Costs costs_in(const std::string& path, const char* rows, const char* value) {
+Result<Costs> costs_in(const std::string& path, const char* rows, const char* value) {
   Costs out;
   std::ifstream file(path);
   if (!file) return out;
-  const nlohmann::json report = nlohmann::json::parse(file);
+  const nlohmann::json report = nlohmann::json::parse(file, nullptr, false);
+  if (!report.is_object() || !report.contains(rows)) {
+    return Error{ErrorCode::invalid_argument, path + ": not a report with '" + rows + "'; expected one of --json"};
+  }
   for (const nlohmann::json& row : report[rows]) {
     if (row.value("in_effect", true)) out[row["name"]] = row[value];
   }
@@ -237,7 +240,8 @@ Result<std::string> page(const std::string& folder) {
     const FrameSteps list = frame_steps({}, params, kShape);
     const std::vector<Step> steps(list.begin(), list.end());
     out += std::string("\n## A frame: ") + mode.title + "\n\n";
-    add_passes(out, rows_of(steps, true), costs_in(folder + "/" + mode.name + ".json", "passes", "median_ms"));
+    TYNDALL_ASSIGN(const Costs costs, costs_in(folder + "/" + mode.name + ".json", "passes", "median_ms"));
+    add_passes(out, rows_of(steps, true), costs);
     // The lifetime of a resource is that in the first mode that uses it.
     Lifetimes own;
     add_lifetimes(own, steps);
@@ -245,7 +249,8 @@ Result<std::string> page(const std::string& folder) {
   }
   const std::vector<Step> steps = table_steps({}, kAllTables);
   out += "\n## A build of the tables: default settings\n\n";
-  add_passes(out, rows_of(steps, false), costs_in(folder + "/tables.json", "stages", "ms"));
+  TYNDALL_ASSIGN(const Costs costs, costs_in(folder + "/tables.json", "stages", "ms"));
+  add_passes(out, rows_of(steps, false), costs);
   add_lifetimes(build, steps);
   add_resources(out, frame, build);
   return out;
