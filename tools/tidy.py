@@ -18,6 +18,7 @@ import hashlib
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import time
@@ -60,6 +61,18 @@ class Fingerprints:
         return self.known[path]
 
 
+def write_commands(build, entries):
+    """Writes the compile commands without precompiled headers, which only the compiler that made them can read, and
+    returns the folder."""
+    folder = os.path.join(build, "tidy")
+    os.makedirs(folder, exist_ok=True)
+    headers = re.compile(r" -Winvalid-pch| -include \S*cmake_pch\.hxx")
+    rows = [{**entry, "command": headers.sub("", entry["command"])} for entry in entries]
+    with open(os.path.join(folder, "compile_commands.json"), "w", encoding="utf-8") as file:
+        json.dump(rows, file)
+    return folder
+
+
 def object_of(entry):
     words = entry["command"].split()
     return words[words.index("-o") + 1]
@@ -90,7 +103,7 @@ def main():
     with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as file:
         entries = {e["file"]: e for e in json.load(file) if e["file"].startswith(wanted)}
     entries = {file: e for file, e in entries.items() if not file.startswith(build)}
-    arguments = ["-p", build, "--quiet", "--warnings-as-errors=*",
+    arguments = ["-p", write_commands(build, entries.values()), "--quiet", "--warnings-as-errors=*",
                  "--extra-arg=-Wno-unknown-warning-option"]  # the folder may be GCC's
     if options.checks:
         arguments.append(f"--checks={options.checks}")
