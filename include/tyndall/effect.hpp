@@ -77,8 +77,8 @@ struct EffectDesc {
   // Format of FrameInputs::depth, used by check_inputs only: with 16 bits, distant ground reads as sky.
   VkFormat depth_format = VK_FORMAT_UNDEFINED;
   bool shadow_depth_reversed = false;  // 1 is nearest to the sun in shadow maps
-  // [1; 8] - cascades marched, and [1; 16384] texels - side of a shadow map that the min/max trees have room for; both
-  // for epipolar sampling. Wider maps work, but the rest of them is read texel by texel.
+  // Capacity of epipolar sampling: [1; 8] cascades that it can march, and [1; 16384] texels of width of a shadow map
+  // that its min/max trees can cover. Wider maps work, but what lies beyond is read texel by texel.
   std::uint32_t max_cascades = 4;
   std::uint32_t max_shadow_resolution = 1024;
   bool shadow_colors = false;  // frames may have FrameInputs::shadow_colors; needs more pipelines
@@ -87,7 +87,7 @@ struct EffectDesc {
   // [1; 64] - threads that create pipelines in create(), set_params() and prepare_pipelines(), including the calling
   // one. With more than one, replace_shader is called by several threads at once.
   std::uint32_t pipeline_threads = 1;
-  // Reports suspicious inputs of a frame through DeviceInfo::message: once, and again only after they were right.
+  // Reports suspicious inputs of a frame through DeviceInfo::message: once, and again only if they were right between.
   bool check_inputs = true;
 };
 
@@ -115,8 +115,8 @@ struct Texture {
 // One orthographic shadow map, a layer of FrameInputs::shadow_maps.
 struct Cascade {
   Mat4 shadow_from_world;  // affine, along the sun's rays, to (u, v, depth), each 0 to 1 inside the map
-  float near_m = 0.0F;     // [m] - depths in the view that the map was drawn for
-  float far_m = 0.0F;      // the cascade is used from the far_m of the one before to its own
+  float near_m = 0.0F;     // [m] - the map was drawn for view depths from near_m to far_m
+  float far_m = 0.0F;      // [m] - the map is used for view depths from the previous cascade's far_m to this one
 };
 
 // A perspective camera. Errors: a world_from_view that is transposed, scaled or sheared; a projection that is
@@ -134,8 +134,8 @@ struct Sun {
 
 // The inputs of one frame. All images must be visible to compute shaders when the commands execute.
 struct FrameInputs {
-  VkExtent2D extent = {0, 0};  // [1; max_extent] px - of the picture
-  Texture color;               // linear radiance of the opaque scene and of what is behind the atmosphere (disc, stars)
+  VkExtent2D extent = {0, 0};  // [1; max_extent] px - size of the picture
+  Texture color;               // linear radiance of the opaque scene, and of what is outside the atmosphere (stars)
   Texture depth;               // device depth; sampled as float
   Texture shadow_maps;         // 2D array of depth images, one layer per cascade; null without cascades
   // 2D array of the same size and layers: transmittance of glass towards the sun, linear, 1 = clear; null for none.
@@ -151,13 +151,13 @@ struct FrameInputs {
   Camera camera;
   Sun sun;
   Texture output;  // written, in layout GENERAL; must not be the view of color or depth
-  // Consecutive; selects the slot of constants. An error while the commands recorded with the same index and view have
-  // not completed.
+  // Number of the frame: one more for each frame. It selects the slot of the frame's constants, so record() fails if
+  // commands with the same index and view have not completed.
   std::uint64_t frame_index = 0;
   std::uint32_t view = 0;  // [0; EffectDesc::views)
-  // [<= 0] m - altitude of the lowest land around the camera. A ray on which nothing is drawn ends on a sphere at sea
-  // level. If the land is lower, so are the sphere and its horizon. Below sea level the sphere is at twice the depth of
-  // the camera, unless the land is lower.
+  // [<= 0] m - altitude of the lowest land around the camera. A ray on which nothing is drawn ends on a sphere, which
+  // also forms the horizon. The sphere is at this altitude or, if that is lower and the camera is below sea level, at
+  // twice the camera's depth.
   float lowest_ground_m = 0.0F;
 };
 
@@ -187,9 +187,9 @@ struct PassTiming {
   double gpu_ms;
 };
 
-// Look-up tables for shading the opaque scene: RGBA16F images in layout GENERAL, to be sampled linearly and clamped at
-// light_table_uv() of tyndall/light_tables.glsl, times sun.irradiance * scattering.scale. Valid once
-// record_precompute() is complete, whose commands write them in COMPUTE_SHADER / SHADER_WRITE.
+// Look-up tables for shading the opaque scene: RGBA16F images in layout GENERAL. Sample them with a linear, clamping
+// sampler at light_table_uv() of tyndall/light_tables.glsl, and multiply by sun.irradiance * scattering.scale. Valid
+// once record_precompute() is complete; its commands write them in COMPUTE_SHADER / SHADER_WRITE.
 struct LightTables {
   VkImageView sun_transmittance = VK_NULL_HANDLE;  // from the sun to a point; 0 below the horizon
   VkImageView sky_irradiance = VK_NULL_HANDLE;     // on a horizontal surface under an open sky
@@ -218,11 +218,11 @@ class Effect {
   Effect(Effect&&) noexcept;
   // Destroys the previous effect, as the destructor does.
   Effect& operator=(Effect&&) noexcept;
-  // Destroys everything at once: all recorded commands must have completed. With check_inputs, frames that have not are
-  // reported.
+  // Destroys everything immediately. All recorded commands must have completed; check_inputs reports frames whose
+  // commands have not.
   ~Effect();
 
-  // Takes over new parameters. An error names the first that is out of range. Allocates the memory for tables that
+  // Applies new parameters. An error names the first that is out of range. Allocates the memory for tables that
   // become stale; the old tables stay in use until record_precompute() has completed the new ones, and only then do the
   // views of light_tables() and scattering_tables() change. Makes missing pipelines, about 0.1 s each on a CPU device.
   // With `desc`, also changes what set_shadow_colors() and set_limits() change, in one step: all or nothing. Its other
@@ -245,9 +245,9 @@ class Effect {
   // Records at most `budget` slices of the stale tables. Records nothing when all are complete.
   Result<Progress> record_precompute(VkCommandBuffer cmd, std::uint32_t budget = UINT32_MAX);
 
-  // Returns a key for caching finished tables: printable text of several lines. Equal keys mean equal tables, byte for
-  // byte: the key names medium, table shape, shaders, library version, device and driver. Empty when the host is out of
-  // memory.
+  // Returns a key for caching finished tables: printable text of several lines that describes medium, table shape,
+  // shaders, library version, device and driver. Equal keys mean equal tables, byte for byte. The key is empty if the
+  // host is out of memory.
   [[nodiscard]] std::string table_key() const;
   // Returns the size of all tables [bytes]: single_rayleigh, single_mie, high_orders, sun_transmittance and
   // sky_irradiance, one after another, without padding.
@@ -255,9 +255,10 @@ class Effect {
   // Records a copy of the finished tables to `buffer` (TRANSFER_DST) at `offset` [bytes], a multiple of 8. An error
   // unless precompute_progress() is complete. The copy is a TRANSFER / TRANSFER_WRITE.
   Result<void> record_save_tables(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset = 0);
-  // Records loading tables that were saved under the same table_key(), in place of building them. The progress is then
-  // complete. `buffer` (TRANSFER_SRC) must be visible to TRANSFER / TRANSFER_READ and exist until the commands have
-  // completed. Synchronise as after record_precompute(). The contents are not checked. Records nothing when complete.
+  // Records a copy of tables that were saved under the same table_key(), instead of building them;
+  // precompute_progress() is then complete. `buffer` (TRANSFER_SRC) must be visible to TRANSFER / TRANSFER_READ and
+  // exist until the commands have completed. Its contents are not checked. Synchronise as after record_precompute().
+  // Does nothing when complete.
   Result<void> record_load_tables(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset = 0);
 
   // Records the effect: output = color * transmittance + in-scattered light. Inputs must be visible to COMPUTE_SHADER /

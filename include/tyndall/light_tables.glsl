@@ -2,21 +2,21 @@
 #ifndef TYNDALL_LIGHT_TABLES_GLSL
 #define TYNDALL_LIGHT_TABLES_GLSL
 
-// Texels of both tables along altitude; the last stands for the top of the atmosphere.
+// Number of texels of both tables along altitude. The last one is the top of the atmosphere.
 const float kLightTableAltitudes = 64.0;
-// Of these, the texels below sea level, evenly spaced from the lowest altitude [m] up; the next one stands for sea
-// level. Deeper points have the light of the lowest.
+// The first kLightTableBelow of them are below sea level, evenly spaced upwards from kLowestLightAltitude [m]; the next
+// one is sea level. Points below the lowest altitude use the first texel.
 const float kLightTableBelow = 4.0;
 const float kLowestLightAltitude = -1000.0;
 
-// Cosine of the zenith angle of the horizon of sea level; level from below.
+// Returns the cosine of the zenith angle of the sea-level horizon, seen from altitude `h` [m]; 0 below sea level.
 float light_table_horizon(float h, float planet_radius_m) {
   return h > 0.0 ? -sqrt(h * (2.0 * planet_radius_m + h)) / (planet_radius_m + h) : 0.0;
 }
 
-// Texture coordinates for a point at `altitude_m` above sea level where the sun stands at
-// `cos_sun_zenith`. The sun's coordinate is centred on the horizon that the point sees, where the light
-// changes fastest.
+// Returns the texture coordinates for a point at `altitude_m` above sea level and the cosine of the sun's zenith angle
+// there. The second coordinate is 0.5 when the sun is on the point's horizon, and has its finest resolution there,
+// because the light changes fastest around sunset.
 vec2 light_table_uv(float altitude_m, float cos_sun_zenith, float planet_radius_m, float atmosphere_height_m) {
   float lowest = max(kLowestLightAltitude, -0.25 * planet_radius_m);
   float h = clamp(altitude_m, lowest, atmosphere_height_m);
@@ -27,10 +27,11 @@ vec2 light_table_uv(float altitude_m, float cos_sun_zenith, float planet_radius_
   return vec2((kLightTableBelow + above - below + 0.5) / kLightTableAltitudes, v);
 }
 
-// The inverse: altitude and cosine of the sun's zenith angle for texture coordinates in [0; 1].
+// Returns the inverse of light_table_uv(): altitude [m] and cosine of the sun's zenith angle, for coordinates in [0;
+// 1].
 vec2 light_table_point(vec2 uv, float planet_radius_m, float atmosphere_height_m) {
   float lowest = max(kLowestLightAltitude, -0.25 * planet_radius_m);
-  float texel = uv.x * kLightTableAltitudes - 0.5 - kLightTableBelow;  // from that of sea level
+  float texel = uv.x * kLightTableAltitudes - 0.5 - kLightTableBelow;  // counted from the texel at sea level
   float x = clamp(texel / (kLightTableAltitudes - 1.0 - kLightTableBelow), 0.0, 1.0);
   float h = texel < 0.0 ? lowest * min(-texel / kLightTableBelow, 1.0) : x * x * atmosphere_height_m;
   float s = 2.0 * uv.y - 1.0;

@@ -30,7 +30,7 @@ struct ParamInfo {
   std::string_view choices;  // enumerations only: the names, separated by '|', in order of value
   Affects affects;
   std::string_view doc;
-  bool grey = false;  // of a vec3: one value may be given for all three
+  bool grey = false;  // vec3 only: a single value may be given for all three components
 };
 
 #define ENUM_BEGIN(type) enum class type : std::uint32_t {

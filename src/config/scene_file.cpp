@@ -17,7 +17,7 @@
 namespace tyndall::config {
 namespace {
 
-constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 20U;  // bytes; ours are a few thousand
+constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 20U;  // bytes; a typical file has a few thousand
 
 std::string position(std::string_view name, const toml::source_region& source) {
   return files::concat({files::one_line(name, 200), ":", std::to_string(source.begin.line)});
@@ -270,7 +270,7 @@ Result<void> load_root(Settings& settings, const toml::table& root, std::string_
   for (const auto& [group, node] : root) {
     const std::string where = position(name, group.source());
     if (group.str() == "path" || group.str() == "playback") {
-      // The key of an array of tables has the position of its last table.
+      // toml++ gives the key of an array of tables the position of its last table.
       path_at = position(name, node.source());
       Result<void> loaded = group.str() == "path" ? load_path(settings.path, node, name, path_at)
                                                   : load_playback(settings.path, node, name, path_at);

@@ -222,7 +222,7 @@ Result<void> store(Settings& settings, const Row& row, const std::vector<std::st
     return {};
   }
   const std::size_t size = component_size(row.info.type);
-  std::byte bytes[sizeof(DVec3)] = {};  // the largest value
+  std::byte bytes[sizeof(DVec3)] = {};  // has room for the largest type
   if (row.info.type == ParamType::flag || row.info.type == ParamType::enumeration) {
     const bool flag = row.info.type == ParamType::flag;
     const std::optional<std::uint32_t> value = flag ? flag_value(parts[0]) : choice_value(row, parts[0]);

@@ -20,7 +20,7 @@ namespace tyndall::config {
 struct Settings {
   Params effect;
   scene::SceneParams scene;
-  scene::CameraPath path;  // from scene files only; empty: the camera is where `scene` places it
+  scene::CameraPath path;  // from scene files only; if empty, the camera stays where `scene` places it
 };
 
 enum class Owner : std::uint32_t { scene, effect };
@@ -69,7 +69,8 @@ struct Group {
 // tables.size, shadows.first_marched below shadows.cascades, terrain.source and tables.cache not empty.
 [[nodiscard]] Result<void> check(const Settings& settings);
 
-// Returns every parameter as {"tyndall.camera.yaw_deg", "332"} after {"tyndall.version", "0.1.0"}: for images.
+// Returns the metadata of an image: {"tyndall.version", "0.2.0"}, then each parameter as {"tyndall.camera.yaw_deg",
+// "332"}.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> metadata(const Settings& settings);
 
 // Returns metadata() and the meaning of the channels of linear radiance ("tyndall.channels").

@@ -7,7 +7,7 @@
 
 namespace tyndall::config {
 
-constexpr int kMaxKeyParts = 16;  // of one dotted key; ours have two
+constexpr int kMaxKeyParts = 16;  // parts of one dotted key; the keys of parameters have two
 
 // Returns an error that names the line of the first dotted key ("a.b.c") of more than kMaxKeyParts parts. Each part
 // is a table inside the one before it, and the parser recurses into them without a limit of its own. `name` names

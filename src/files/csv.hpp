@@ -1,6 +1,6 @@
 // Tables of comma-separated values (RFC 4180): a header line, then rows with one field for each of its columns. Fields
 // are views of the text as written, with their quotes, so that columns can be copied to the output unchanged. A byte
-// order mark, CRLF line ends, blank lines and a missing last line end are accepted.
+// order mark, CRLF line ends, blank lines and a last row without a line end are accepted.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// The layout of a file is: header, version text, key, contents. Numbers have the byte order of this machine, which the
-// mark reveals.
+// The layout of a file is: header, version text, key, contents. Numbers have the byte order of the machine that wrote
+// them; on a machine with the other order, kMark does not match.
 #include "files/file_cache.hpp"
 
 #include <fcntl.h>
@@ -35,8 +35,9 @@ struct Header {
 
 std::span<const std::byte> as_bytes(std::string_view text) { return std::as_bytes(std::span(text)); }
 
-// Computes a checksum of `total` bytes that arrive in pieces; all but the last are multiples of 32 bytes long. Four
-// lanes of multiply and rotate over words run at the speed of memory; the finish is that of SplitMix64.
+// Computes a checksum of `total` bytes that arrive in pieces; all but the last are multiples of 32 bytes long. Words
+// are multiplied and rotated in four independent lanes, which is as fast as memory can be read. The mixing function of
+// SplitMix64 finishes the sum.
 class Checksum {
  public:
   explicit Checksum(std::uint64_t total)
@@ -187,7 +188,7 @@ bool FileCache::read(std::string_view key, std::span<std::byte> to) {
   if (std::string_view(text).substr(0, header.version_bytes) != version_) return unusable("of another version");
   if (std::string_view(text).substr(header.version_bytes) != key || header.contents_bytes != to.size())
     return unusable("of something else");
-  // In pieces, so that each is summed while it is still in the processor's cache.
+  // Read in pieces, so that the checksum reads each piece while it is still in the processor's cache.
   Checksum sum(to.size());
   std::vector<std::byte> piece(std::min(kPiece, to.size()));
   for (std::size_t at = 0; at < to.size(); at += piece.size()) {

@@ -30,8 +30,8 @@ class FileCache {
   [[nodiscard]] bool holds(std::string_view key) const;
   // Returns what was stored under the key, if it has `size` bytes, and marks it as used.
   [[nodiscard]] std::optional<std::string> read(std::string_view key, std::uint64_t size);
-  // Reads into memory of the caller's, which is written once, in order, and never read, so that it may be device
-  // memory. After `false` its contents are undefined.
+  // Reads into the caller's memory, which is written once, in order, and never read, so that it may be device memory.
+  // If this returns false, the contents of that memory are undefined.
   [[nodiscard]] bool read(std::string_view key, std::span<std::byte> to);
   // Stores the contents under the key, replacing what was there.
   void write(std::string_view key, std::span<const std::byte> contents);

@@ -38,7 +38,8 @@ std::string directory_of(const std::string& path) {
   return parent.empty() ? "." : parent;
 }
 
-// Returns a name in `directory` that no other run uses. It is short, so that it fits where the target's name does.
+// Returns a name in `directory` that no other process uses. It is short, so that it is not too long where the target's
+// own name is not.
 std::string temporary_name(const std::string& directory, int attempt) {
   return concat({directory, "/.tyndall-", std::to_string(::getpid()), "-", std::to_string(attempt), ".tmp"});
 }
@@ -272,7 +273,7 @@ Result<void> write_file(const std::string& path, std::string_view contents) {
 }
 
 Result<void> check_writable(const std::string& path) {
-  // A pipe must not be opened for a check: its reader would see it end.
+  // Do not open a pipe only to check it: closing it again would end the stream for its reader.
   struct stat info {};
   if (::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode)) return {};
   const Result<AtomicFile> file = AtomicFile::create(path);

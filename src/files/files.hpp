@@ -59,8 +59,8 @@ class AtomicFile {
 // Creates, writes and commits a file.
 [[nodiscard]] Result<void> write_file(const std::string& path, std::string_view contents);
 
-// Returns the error that AtomicFile::create() would return and leaves no file: a check before long work. Also removes
-// leftovers beside the target.
+// Checks that a file can be written, before long work: returns the error that AtomicFile::create() would return, and
+// leaves no file. Also removes leftovers beside the target.
 [[nodiscard]] Result<void> check_writable(const std::string& path);
 
 // Removes the temporary files and folders (named ".tyndall-...") of killed runs from a directory: those that are older

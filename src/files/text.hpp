@@ -24,7 +24,7 @@ enum class NumberError : std::uint32_t { none, not_a_number, not_finite, too_lar
 // Reads the whole of `text` (blanks around it are ignored) as a decimal number.
 [[nodiscard]] NumberError read_number(std::string_view text, float& value);
 [[nodiscard]] NumberError read_number(std::string_view text, double& value);
-// Whole numbers only: "3.0" and "3e2" are not_a_number; what an int64 cannot hold is too_large.
+// Reads a whole number: "3.0" and "3e2" give not_a_number, and values outside the range of int64 give too_large.
 [[nodiscard]] NumberError read_integer(std::string_view text, std::int64_t& value);
 
 [[nodiscard]] std::string_view trimmed(std::string_view text);

@@ -1,4 +1,4 @@
-// Code for both file kinds: choosing the kind, checks, quantisation.
+// Code that PNG and EXR files share: choice of the kind, checks, quantisation.
 #include "image/image.hpp"
 
 #include <algorithm>

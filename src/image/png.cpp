@@ -46,7 +46,7 @@ struct Reader {
 // Returns why the chunks of a PNG must be wrong, or an empty string. libpng would allocate the claimed size of a chunk
 // before it notices the end of the file.
 const char* chunk_problem(std::string_view bytes) {
-  constexpr std::size_t kSignature = 8, kAround = 12;  // length, kind and checksum of a chunk
+  constexpr std::size_t kSignature = 8, kAround = 12;  // kAround: length, kind and checksum around a chunk's data
   std::size_t at = kSignature;
   while (bytes.size() - at >= kAround) {
     std::uint32_t length = 0;

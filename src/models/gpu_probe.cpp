@@ -14,7 +14,8 @@ constexpr std::size_t kBatchRays = 16384;  // takes well below a second on a CPU
 
 std::array<double, 3> widened(const Vec3& v) { return {v.x, v.y, v.z}; }
 
-// Dispatches one of shaders/probe, which reads `more` besides the medium, the rays and the results.
+// Evaluates rays with one of the shaders of shaders/probe. The shader reads the medium, the rays and the resources in
+// `more`.
 Result<std::vector<Answer>> evaluate(gpu::Host& host, const gpu::Shader& shader, const shared::Medium& medium,
                                      std::span<const gpu::NamedResource> more, std::span<const Ray> rays,
                                      const std::function<void(std::size_t)>& progress) {

@@ -9,7 +9,7 @@
 namespace tyndall::models {
 namespace {
 
-constexpr int kZenithPanels = 12;  // of two Gauss nodes each; 0.1 % of the sky's irradiance, see the tests
+constexpr int kZenithPanels = 12;  // panels of two Gauss nodes: an error of 0.1 %, see the tests
 constexpr int kAzimuths = 32;
 
 std::array<double, 3> to_array(const glsl64::vec3& v) { return {v.x, v.y, v.z}; }

@@ -10,16 +10,16 @@
 
 namespace tyndall::models {
 
-// The inputs of the model besides tyndall::Params: the vertical optical lengths of air and haze from the ground [m,
-// haze at most air], and whether the densities fall with altitude instead of being constant.
+// The inputs of the model besides tyndall::Params: the vertical optical lengths of air and haze from the ground [m],
+// with haze_m <= air_m, and whether the densities fall with altitude instead of being constant.
 struct HomogeneousLengths {
   double air_m = 8400.0;
   double haze_m = 1250.0;
   bool falloff = false;
 };
 
-// Returns the constant medium: Rayleigh scattering of sea-level air, and the aerosol at sea level as haze with `mie_g`
-// in the Henyey-Greenstein function, regardless of mie_phase. Ozone and scale heights are ignored. The sun is a point.
+// Returns the medium: air and aerosol (haze) with their sea-level coefficients. Haze always has the Henyey-Greenstein
+// function with `mie_g`, whatever mie_phase is. Ozone and scale heights are ignored. The sun is a point.
 [[nodiscard]] shared::Homogeneous homogeneous_from_params(const Params& params, const HomogeneousLengths& lengths);
 
 // Returns radiance / E0 and transmittance along a ray to the ground or out of the atmosphere, over black ground.

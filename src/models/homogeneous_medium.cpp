@@ -10,7 +10,7 @@
 namespace tyndall::models {
 namespace {
 
-constexpr int kZenithPanels = 48;  // of two Gauss nodes each
+constexpr int kZenithPanels = 48;  // panels of two Gauss nodes
 constexpr int kAzimuths = 64;
 
 std::array<double, 3> times(const Vec3& v, const Vec3& by) {

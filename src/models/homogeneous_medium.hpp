@@ -16,9 +16,9 @@ struct HomogeneousMedium {
   std::array<double, 3> mie_scattering = {};
   std::array<double, 3> extinction = {};
   std::array<double, 3> sunlight =
-      {};  // at every point of the medium, relative to the sun's irradiance above the atmosphere
+      {};  // sunlight at every point of the medium, relative to the sun's irradiance above the atmosphere
   double g = 0.0;
-  bool cornette_shanks = true;  // or Henyey-Greenstein
+  bool cornette_shanks = true;  // false: Henyey-Greenstein
   double planet_radius_m = 0.0;
   double extent_m = 0.0;  // length of rays that do not hit the planet
   double height_m = 0.0;  // altitude of the flat top

@@ -50,7 +50,8 @@ IntegralError measure(const OneilModel& model, const glsl64::Medium& m, const gl
   for (int i = 0; i < altitudes; ++i) {
     const double h = altitudes > 1 ? highest_m * i / (altitudes - 1) : 0.0;
     for (int j = 0; j <= kCosines; ++j) {
-      // Spaced by the square root, because most variation is near the horizontal; between the table's own entries.
+      // The cosines are squares of evenly spaced numbers, because the integral varies most near the horizontal, and are
+      // offset so that they fall between the table's entries.
       const double root = j == kCosines ? 1.0 : (j + 0.37) / kCosines;
       const double c = j == 0 ? 0.0 : root * root;
       const glsl64::vec2 integral = glsl64::oneil_density_integral(m, o, model.table.data(), h, c);

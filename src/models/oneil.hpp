@@ -24,7 +24,7 @@ struct OneilSettings {
   OneilIntegralMethod integral_method = OneilIntegralMethod::computed;
   std::uint32_t samples = 5;       // [1; 4096] sample points per ray
   std::uint32_t table_size = 128;  // [16; 1024] entries along each side
-  bool space_by_density = false;   // sample points where most of the medium is; not with the published equations
+  bool space_by_density = false;   // place more sample points where the medium is dense; not with `published`
   bool rayleigh_phase = true;      // false: Rayleigh scattering is isotropic
 
   bool operator==(const OneilSettings&) const = default;
@@ -44,7 +44,7 @@ struct OneilModel {
   IntegralError rayleigh_at_sea_level, mie_at_sea_level, rayleigh, mie;
 };
 
-// Returns the atmosphere of the parameters, as make_oneil() reads it.
+// Returns the medium that make_oneil() takes.
 [[nodiscard]] shared::Medium oneil_medium(const Params& params);
 
 // Fits the scale functions or fills the table, and measures their errors. Takes milliseconds.
@@ -61,8 +61,8 @@ struct OneilModel {
 [[nodiscard]] std::array<double, 3> oneil_sun_transmittance(const OneilModel& model, double altitude_m,
                                                             double cos_sun_zenith);
 
-// Integrates an exponential species outwards from altitude h to `top_m` numerically, to 1e-9, relative to its density
-// at sea level [m]. Requires cosine >= 0. An infinite top is allowed.
+// Returns the density integral [m] of an exponential species along a ray from `altitude_m` outwards to the altitude
+// `top_m`, which may be infinite. Computed numerically with a relative error of 1e-9. Precondition: cosine >= 0.
 [[nodiscard]] double exponential_density_integral(double scale_height_m, double radius_m, double altitude_m,
                                                   double cosine, double top_m);
 

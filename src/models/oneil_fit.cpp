@@ -11,12 +11,13 @@ namespace {
 constexpr int kTerms = 5;
 constexpr int kNodes = 64;
 
-// Eight-point Gauss-Legendre rule on [-1; 1], the positive half.
+// The positive nodes of the eight-point Gauss-Legendre rule on [-1; 1], and their weights.
 constexpr double kNode[] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
 constexpr double kWeight[] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
 
-// Returns the density integral to infinity over the scale height, from a radius of rho scale heights. c may slightly
-// exceed 1: the altitude along the ray, sqrt(rho^2 + 2 rho c d + d^2) - rho, is still smooth there.
+// Returns the density integral over `distance` along a ray that starts at radius rho with zenith cosine c. All lengths
+// are in scale heights. c may slightly exceed 1, because the altitude along the ray, sqrt(rho^2 + 2 rho c d + d^2) -
+// rho, is still smooth there.
 double integral_to(double rho, double c, double distance) {
   constexpr int kPanels = 24;
   const double panel = 1.0 / kPanels;
@@ -34,7 +35,7 @@ double integral_to(double rho, double c, double distance) {
   return sum;
 }
 
-// Returns the distance at which a ray has climbed by `climb`, all in scale heights.
+// Returns the distance at which a ray has gained the altitude `climb`. All lengths are in scale heights.
 double distance_of_climb(double rho, double c, double climb) {
   const double rise = climb * (2.0 * rho + climb);
   return rise / (rho * c + std::sqrt(rho * rho * c * c + rise));
@@ -45,8 +46,8 @@ struct Fit {
   double worst = std::numeric_limits<double>::infinity();
 };
 
-// Solves the normal equations of a polynomial through (x, y) in the Chebyshev basis of [low; high] scaled to [-1; 1],
-// where they are well conditioned, and converts it to powers of x.
+// Fits a polynomial to the points (x, y) by least squares and returns its coefficients as powers of x. It is solved in
+// the Chebyshev basis on [low; high], in which the normal equations are well conditioned.
 std::array<double, kTerms> least_squares(const std::array<double, kNodes>& x, const std::array<double, kNodes>& y,
                                          double low, double high) {
   std::array<std::array<double, kTerms + 1>, kTerms> a = {};
@@ -66,7 +67,7 @@ std::array<double, kTerms> least_squares(const std::array<double, kNodes>& x, co
       for (std::size_t s = p; s <= kTerms; ++s) a[r][s] -= factor * a[p][s];
     }
   }
-  // Chebyshev polynomials as powers of t, then t = slope x + offset.
+  // Convert to powers of t in [-1; 1], then substitute t = slope x + offset.
   std::array<double, kTerms> of_t = {};
   std::array<std::array<double, kTerms>, kTerms> chebyshev = {};
   chebyshev[0][0] = 1.0;
@@ -137,7 +138,8 @@ shared::OneilScale published_scale(double scale_height_m) {
 shared::OneilScale fit_scale(double scale_height_m, double radius_m, double top_m) {
   const double rho = radius_m / scale_height_m;
   const double largest_c = std::sqrt(1.0 + top_m / radius_m);  // see oneil_outward
-  // The ratio of the density integrals at the horizontal and at the zenith is the natural scale of the bend.
+  // This is about the ratio of the density integral of a horizontal ray to that of a vertical one. The best bend is
+  // within a factor of 8 of it.
   const double steepness = integral_to(rho, 0.0, distance_of_climb(rho, 0.0, 42.0));
   double best_bend = steepness;
   Fit best;

@@ -26,7 +26,7 @@ class PrecomputedModel {
   // whether order 1 is integrated.
   Result<std::vector<Answer>> answer(std::span<const RayQuery> queries, bool visible_ground = true);
 
-  // Returns the origin of the tables.
+  // Returns how the tables were obtained: from the cache, or by building them.
   [[nodiscard]] const tables::Report& origin() const;
   // The effect that holds the tables, for build times, memory use, and images to export.
   [[nodiscard]] Effect& effect();

@@ -9,7 +9,7 @@
 namespace tyndall::models {
 namespace {
 
-constexpr int kSkyPanels = 4;  // panels of four nodes: 512 rays; 0.02 % for the default medium
+constexpr int kSkyPanels = 4;  // panels of four nodes, 512 rays in all: an error of 0.02 % for the default medium
 constexpr int kSkySteps = 8;
 
 std::array<double, 3> to_array(const glsl64::vec3& v) { return {v.x, v.y, v.z}; }

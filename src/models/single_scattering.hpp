@@ -10,7 +10,7 @@
 
 namespace tyndall::models {
 
-// A ray on which light arrives at an altitude. The altitude may be above the atmosphere, or slightly below sea level.
+// A ray from an eye at `altitude_m`, which may be above the atmosphere or slightly below sea level.
 struct Ray {
   double altitude_m = 0.0;
   double cos_view_zenith = 1.0;
@@ -44,7 +44,8 @@ struct Answer {
 // without attenuation on the way. The ground is Lambertian with Medium::ground_albedo. Returns 0 for rays that miss it.
 [[nodiscard]] std::array<double, 3> sunlit_ground(const shared::Medium& medium, const Ray& ray);
 
-// Returns the ray for the GPU probe: it begins where it enters the atmosphere and is clipped, in double precision.
+// Converts a ray for the shaders of shaders/probe. In double precision, moves its start to where it enters the
+// atmosphere, and clips its end.
 [[nodiscard]] shared::ProbeRay prepare_probe_ray(const shared::Medium& medium, const Ray& ray);
 
 }  // namespace tyndall::models

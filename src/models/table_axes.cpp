@@ -16,7 +16,7 @@ glsl64::TableShape wide_shape(const Params& params) {
 
 double centre(std::uint32_t texel, std::uint32_t texels) { return (texel + 0.5) / texels; }
 
-// As in shaders/precompute/ray_nodes.comp.
+// Returns the length of a ray of the tables, as shaders/precompute/ray_nodes.comp computes it.
 double distance_to_end(const glsl64::Medium& m, double h, double mu, bool below) {
   const double R = m.planet_radius_m;
   return below ? glsl64::distance_to_ground(h, mu, R) : glsl64::distance_to_top(h, mu, m.atmosphere_height_m, R);

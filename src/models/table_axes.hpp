@@ -16,22 +16,24 @@ struct TableAxes {
   // The view axis is relative to the horizon, which depends on altitude: [altitude * views + view].
   std::vector<double> cos_view_zenith;
   std::vector<bool> ends_on_ground;
-  std::vector<double> mean_distance_m;  // density-weighted, same layout: the sun axis refers to the sun there
+  // The density-weighted mean distance, in the same layout. The sun axis is the sun's zenith angle at this distance.
+  std::vector<double> mean_distance_m;
   std::vector<double> cos_sun_zenith;
-  std::vector<double> cos_view_sun;  // of the angle between view and sun
+  std::vector<double> cos_view_sun;  // cosine of the angle between view and sun
 };
 [[nodiscard]] TableAxes table_axes(const Params& params);
 
-// Axes of the sun transmittance and sky irradiance look-up tables. The sun's cosine is that of the horizon as seen from
-// the altitude, plus an offset, within [-1; 1].
+// Axes of the sun transmittance and sky irradiance look-up tables. The cosine of the sun's zenith angle is the sum of
+// cos_horizon and cos_sun_from_horizon, clamped to [-1; 1].
 struct LightTableAxes {
   std::vector<double> altitude_m;
-  std::vector<double> cos_horizon;  // of the horizon's zenith angle, by altitude
+  std::vector<double> cos_horizon;  // cosine of the horizon's zenith angle, by altitude
   std::vector<double> cos_sun_from_horizon;
 };
 [[nodiscard]] LightTableAxes light_table_axes(const Params& params, std::uint32_t altitudes, std::uint32_t suns);
 
-// A texel t of the scattering tables stands for factor * t^4. By altitude and view, like cos_view_zenith.
+// A texel of value t in the scattering tables stands for the quantity factor * t^4. The factors depend on altitude and
+// view angle and are stored like cos_view_zenith.
 struct TableFactors {
   std::array<double, 3> single_rayleigh;  // L / E0 over the phase function [1]
   std::array<double, 3> single_mie;       // likewise

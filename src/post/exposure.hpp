@@ -18,9 +18,9 @@ constexpr std::size_t kHistogramBins = 256;
 // The measurement of one picture.
 struct Measurement {
   float exposure = 0.0F;                         // scale of the radiance with auto exposure
-  float luminance = 0.0F;                        // to which the eye is adapted
+  float luminance = 0.0F;                        // luminance that the eye is adapted to
   float measured = 0.0F;                         // log-average of the picture; 0 if it is black
-  float counted = 0.0F;                          // mean weight of the samples, 0 to 1: black space has none
+  float counted = 0.0F;                          // mean weight of the samples, 0 to 1; black space weighs 0
   float black = 0.0F;                            // fraction of samples darker than the histogram
   std::array<float, kHistogramBins> share = {};  // fraction of samples in each bin; all and `black` add up to 1
 };
@@ -38,8 +38,8 @@ class Exposure {
                        double seconds, std::uint32_t slot = 0);
   // Resets the history: the next picture is unrelated to the previous one.
   void reset_history() { reset_ = true; }
-  // The state from which the next measurement starts, as far as the host has it. A caller that does not submit the
-  // commands of measure() must restore the previous state.
+  // The state on the host from which the next measurement starts. A caller that drops the commands of measure() must
+  // restore the state from before the call.
   struct Start {
     bool reset = true;
     bool measured = false;

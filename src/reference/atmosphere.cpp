@@ -44,8 +44,8 @@ struct GaussLegendre {
   }
 };
 
-// Returns (1/d) * integral over the path of exp(-(h(u) - h(0)) / scale_height), with u in [0; d] upwards from position
-// s >= 0 of the line. Panels end where the density has fallen by these exponents.
+// Returns (1/d) * integral of exp(-(h(u) - h(0)) / scale_height) du along an upward path of length d that starts at
+// position s >= 0 of a line. The quadrature panels end where the exponent reaches one of kExponents.
 double mean_relative_density(const GaussLegendre<10>& rule, double r, double s, double d, double scale_height) {
   constexpr std::array<double, 8> kExponents = {0.25, 1.0, 2.5, 5.0, 10.0, 18.0, 28.0, 42.0};
   double sum = 0.0, from = 0.0;
@@ -111,7 +111,7 @@ Atmosphere::Atmosphere(const Params& params, double lowest_m) {
 }
 
 double Atmosphere::find_opaque_radius() const {
-  constexpr double kDepth = 1.5;  // of the middle channel, along the whole grazing ray
+  constexpr double kDepth = 1.5;  // optical depth of the middle channel along the whole grazing ray
   double low = radius_m, high = top_radius_m;
   for (int i = 0; i < 40; ++i) {
     const double r = 0.5 * (low + high);

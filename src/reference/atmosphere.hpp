@@ -29,7 +29,7 @@ inline Amounts operator-(const Amounts& a, const Amounts& b) {
 
 class Atmosphere {
  public:
-  // For points from the altitude `lowest_m` [m, <= 0] upwards. The density profiles continue below sea level.
+  // Builds the table for points at `lowest_m` [m, <= 0] and above. The density profiles continue below sea level.
   explicit Atmosphere(const Params& params, double lowest_m = 0.0);
 
   // Lengths in m, coefficients in 1/m at relative density 1.
@@ -45,7 +45,7 @@ class Atmosphere {
   // Returns the relative densities at radius r, without ozone, which does not scatter. They are bounded, so that they
   // stay finite deep below ground and for small scale heights; a medium of that density is opaque anyway.
   [[nodiscard]] Amounts density(double r) const {
-    constexpr double kDensest = 60.0;  // exponent
+    constexpr double kDensest = 60.0;  // largest exponent
     const double h = r - radius_m;
     return {std::exp(std::min(-h / rayleigh_scale_height_m, kDensest)),
             std::exp(std::min(-h / mie_scale_height_m, kDensest)), 0.0};
@@ -81,12 +81,12 @@ class Atmosphere {
   [[nodiscard]] double find_opaque_radius() const;
 
   // The ozone profile: density rises linearly from 0 at `low` to 1 at `centre` and falls to 0 at `high` (radii).
-  double base_radius_m_;  // of the lowest points
+  double base_radius_m_;  // radius of the lowest points
   double ozone_low_m_, ozone_centre_m_, ozone_high_m_, ozone_half_width_m_;
   bool has_ozone_;
-  // table_[ih * nx + ix] holds the mean Rayleigh and Mie densities between a point and the top, relative to the
-  // densities at the point. The point is at radius base + ih / (nh - 1) * (top - base), and the path length is shortest
-  // + ix / (nx - 1) * (longest - shortest). The longest path is the horizontal one.
+  // table_[ih * nx + ix] holds the mean Rayleigh and Mie densities between a point and the top of the atmosphere,
+  // relative to the densities at the point. The point is at radius base + ih / (nh - 1) * (top - base). The path has
+  // the length shortest + ix / (nx - 1) * (longest - shortest): the shortest is vertical, the longest horizontal.
   struct MeanDensity {
     double rayleigh, mie;
   };

@@ -50,7 +50,8 @@ double Line::ozone_travelled(double s) const {
 
 LinePoint Line::invert(std::size_t channel, double depth) const {
   const double from_start = air_->exponential_depth(start_.to_top, channel);
-  // target: depth to the top at the solution, whose distance |s| from the tangent point is in [low; high].
+  // `target` is the optical depth from the solution to the top. The solution's distance |s| from the tangent point is
+  // in [low; high].
   const LinePoint* known = &start_;
   double low = std::max(start_.s, 0.0), high = s_top_;
   double target = from_start - depth;
@@ -110,7 +111,7 @@ Interval Line::shadow(const Vec& sun, double radius_m) const {
   const double reach = s_end_ - start_.s;
   const double along = dot(direction_, sun), depth = dot(origin_, sun);
   Interval t{0.0, reach};
-  // Behind the planet's centre plane,
+  // First clip to the half space behind the planet's centre, as seen from the sun.
   if (along > 0.0) {
     t.to = std::min(t.to, -depth / along);
   } else if (along < 0.0) {
@@ -119,7 +120,7 @@ Interval Line::shadow(const Vec& sun, double radius_m) const {
     return {};
   }
   if (!(t.from < t.to)) return {};
-  // and within the radius around the axis.
+  // Then clip to the cylinder of that radius around the axis towards the sun.
   const double a = (1.0 - along) * (1.0 + along);
   const double b = start_.s - depth * along;
   const double c = dot(origin_, origin_) - depth * depth - radius_m * radius_m;

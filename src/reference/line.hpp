@@ -11,7 +11,7 @@ struct LinePoint {
   double s = 0.0;
   double r = 0.0;
   Amounts density;
-  Amounts to_top;  // density integrals from here upwards along the line to the top, without ozone
+  Amounts to_top;  // density integrals along the line from here upwards to the top, without ozone
 };
 
 struct Interval {
@@ -20,10 +20,10 @@ struct Interval {
 
 class Line {
  public:
-  // From `origin` inside the atmosphere (or on its edge) in the unit direction `direction`, to the ground or to the
-  // top. The ground is a sphere of radius `ground_m`. `air` must outlive the line.
+  // Creates the line from `origin`, inside the atmosphere or on its edge, in the unit direction `direction` to the
+  // ground or to the top. The ground is a sphere of radius `ground_m`. `air` must outlive the line.
   Line(const Atmosphere& air, const Vec& origin, const Vec& direction, double ground_m);
-  // The same with the ground at sea level or, if the origin is below sea level, at the origin.
+  // Creates the line with the ground at sea level or, if the origin is below sea level, at the origin.
   Line(const Atmosphere& air, const Vec& origin, const Vec& direction)
       : Line(air, origin, direction, std::min(air.radius_m, length(origin))) {}
 

@@ -20,7 +20,7 @@ namespace {
 // With this many blocks the standard error is itself accurate to about an eighth.
 constexpr std::uint64_t kBlocksWanted = 32;
 constexpr int kMaxOrders = 256;
-constexpr double kLowestAltitude_m = -11000.0;  // of a camera
+constexpr double kLowestAltitude_m = -11000.0;  // the lowest altitude allowed for a camera
 // The largest number of block values in memory before they are added.
 constexpr std::size_t kBatchValues = std::size_t{1} << 20;
 
@@ -60,7 +60,7 @@ std::string check_options(const Options& options) {
   return {};
 }
 
-// The path tracer only reads these two groups. The parameter table has their ranges.
+// Returns which parameter is out of range, or an empty string. Checks the two groups that the path tracer reads.
 std::string problem_of(const Params& params) {
   const char* base = reinterpret_cast<const char*>(&params);
   for (const ParamInfo& info : param_table()) {
@@ -79,12 +79,12 @@ std::string problem_of(const Params& params) {
   return {};
 }
 
-// Sums of equal blocks of one query, added in the order of the blocks (Welford 1962).
+// Mean and spread over the blocks of one query, which are added in order (Welford 1962).
 class Accumulator {
  public:
   explicit Accumulator(std::size_t orders) : orders_(orders), mean_(orders + 1), spread_(orders + 1) {}
 
-  // `block` holds one value per order. The last entry of the sums is the total.
+  // Adds a block with one value per order. The entry after the orders accumulates their total.
   void add(std::span<const Rgb> block) {
     ++count_;
     const double weight = 1.0 / static_cast<double>(count_);

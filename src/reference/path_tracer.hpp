@@ -1,5 +1,5 @@
 // The reference: an unbiased Monte Carlo path tracer for a spherical-shell atmosphere, in double precision on the CPU.
-// It is written independently of shaders/lib, so that a mistake cannot be hidden in both.
+// It is written independently of shaders/lib, so that the two do not share mistakes.
 // Radiance is relative to the sun's irradiance above the atmosphere [1/sr]. The sun is a point in direction and is
 // never seen directly. All random numbers are seeded; results do not depend on the number of threads. trace() has no
 // state and may be called from several threads at once. docs/reference.md describes the estimator.
@@ -20,7 +20,7 @@ namespace tyndall::reference {
 using Rgb = std::array<double, 3>;  // one value per channel of atmosphere.wavelengths_nm
 
 struct Options {
-  // Paths per query, >= 1. Rounded up to a number of equal blocks, see Estimate::samples.
+  // Paths per query, >= 1. Rounded up to a whole number of equal blocks, see Estimate::samples.
   std::uint64_t samples = 100000;
   // Light is followed over 1 to `orders` events: scattering in the atmosphere or reflection at the ground. 1 is single
   // scattering, plus sunlit ground where the ray ends there.
@@ -40,7 +40,7 @@ struct Estimate {
   // sky: towards the sun, 0 if the planet hides it. Deterministic.
   Rgb transmittance{};
   std::uint64_t samples = 0;              // paths traced; fewer than requested only after a cancelled call
-  std::vector<Rgb> order_radiance;        // with by_order: order_radiance[n - 1] is that of n events
+  std::vector<Rgb> order_radiance;        // with by_order: order_radiance[n - 1] is the radiance after n events
   std::vector<Rgb> order_standard_error;  // likewise
 };
 
@@ -55,7 +55,7 @@ using Progress = std::function<bool(double done)>;
 Result<std::vector<Estimate>> trace(const Params& params, std::span<const RayQuery> queries, const Options& options,
                                     const Progress& progress = {});
 
-// The same for one query (index 0).
+// Traces a single query; its index is 0.
 Result<Estimate> trace(const Params& params, const RayQuery& query, const Options& options,
                        const Progress& progress = {});
 

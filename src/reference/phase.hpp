@@ -32,7 +32,7 @@ class MiePhaseFunction {
     if (cornette_shanks_) scale_ *= 1.5 / (2.0 + g * g);
   }
 
-  // Henyey and Greenstein (1941), or Cornette and Shanks (1992), equation 8.
+  // Returns the function of Henyey and Greenstein (1941), or of Cornette and Shanks (1992, equation 8).
   [[nodiscard]] double operator()(double cosine) const {
     const double base = one_plus_g2_ - 2.0 * g_ * cosine;
     const double value = scale_ / (base * std::sqrt(base));

@@ -22,7 +22,7 @@ constexpr std::array<SobolRow, SobolBlock::kDimensions - 1> kRows = {{
 
 using Columns = std::array<std::uint32_t, SobolBlock::kMaxLog2Count>;
 
-// Returns the columns of the generating matrix as fractions of `bits` bits.
+// Returns the columns of a dimension's generating matrix as binary fractions of `bits` bits.
 Columns direction_numbers(int dimension, int bits) {
   Columns v{};
   for (int j = 0; j < bits; ++j) v[static_cast<std::size_t>(j)] = 1U << (bits - 1 - j);

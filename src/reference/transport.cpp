@@ -1,8 +1,8 @@
-// Paths start at the camera. At every vertex the sun is connected (next event estimation). The next distance is sampled
-// inside the atmosphere by inverting the optical depth of one channel, the next direction from one phase function.
-// All channels are weighted by the balance heuristic over the possible choices (Veach 1997; Wilkie et al., "Hero
-// wavelength spectral sampling", 2014). The channel is chosen in proportion to what it will scatter, so that the sum of
-// the three throughputs grows by no more than the factor of the lit part.
+// Paths start at the camera. Every vertex is connected to the sun (next event estimation). The next distance is sampled
+// by inverting the optical depth of one channel, and the next direction from one phase function. All channels are
+// weighted by the balance heuristic over the possible choices (Veach 1997; Wilkie et al., "Hero wavelength spectral
+// sampling", 2014). A channel is chosen with a probability proportional to the light that it scatters on the line,
+// which bounds the growth of the sum of the three throughputs.
 #include "reference/transport.hpp"
 
 #include <cmath>
@@ -46,22 +46,22 @@ Vertex ground_vertex(const Atmosphere& air, const Line& line) {
   return v;
 }
 
-// The part of a line outside the shadow of a sphere, with its probabilities per channel in units of 1 - transmittance
-// (without ozone) from the start of the line.
+// The part of a line outside the shadow of a sphere. `before`, `shadow_end` and `lit` are opacities per channel
+// (1 - transmittance, without ozone), counted from the start of the line.
 struct LitPart {
   double fraction = 0.0;  // fraction of the samples that are restricted to this part
   Interval shadow;
-  Rgb before{};      // up to the shadow
-  Rgb shadow_end{};  // up to the end of the shadow
-  Rgb lit{};         // probability of the part
+  Rgb before{};      // opacity up to the shadow
+  Rgb shadow_end{};  // opacity up to the end of the shadow
+  Rgb lit{};         // opacity that the lit part contributes
 
-  // Returns the factor by which sampling this part raises the probability of a position.
+  // Returns what sampling this part adds to the probability density of a position, relative to sampling the whole line.
   [[nodiscard]] double preference(double s, double all, std::size_t channel) const {
     return fraction > 0.0 && !(s > shadow.from && s < shadow.to) ? fraction * all / lit[channel] : 0.0;
   }
 };
 
-// The fraction is 0 if the line misses the shadow, or if there is no part outside to prefer.
+// Returns the lit part. Its `fraction` is 0 if the line misses the shadow or has no part outside it.
 LitPart lit_part(const Atmosphere& air, const Line& line, const Vec& sun, double radius_m, const Rgb& all,
                  double fraction) {
   LitPart part;
@@ -76,14 +76,14 @@ LitPart lit_part(const Atmosphere& air, const Line& line, const Vec& sun, double
     if (begins_lit) part.before[c] = std::max(0.0, -std::expm1(-air.exponential_depth(entry, c)));
     part.shadow_end[c] = ends_lit ? std::min(all[c], -std::expm1(-air.exponential_depth(exit, c))) : all[c];
     part.lit[c] = part.before[c] + all[c] - part.shadow_end[c];
-    // Rounding of the difference does not allow to single out a smaller part.
+    // A smaller difference is dominated by rounding errors.
     if (all[c] > 0.0 && !(part.lit[c] > 1e-9 * all[c])) part.fraction = 0.0;
   }
   return part;
 }
 
-// Samples the point from which light arrives along `line`, and multiplies `weight` by contribution over density.
-// Returns false if there is nothing to scatter. `albedo` is that of the ground at the line's end.
+// Samples the point from which light arrives along `line`, and multiplies `weight` by the contribution divided by the
+// probability density. Returns false if nothing scatters. `albedo` is that of the ground at the line's end.
 bool sample_event(const Atmosphere& air, const Line& line, const Vec& sun, double albedo, double u, Rgb& weight,
                   Vertex& v) {
   Rgb scattered{}, weighted{};  // scattered: 1 - transmittance per channel; weighted: the same times `weight`
@@ -133,7 +133,7 @@ bool sample_event(const Atmosphere& air, const Line& line, const Vec& sun, doubl
   Amounts integrals = line.travelled(p);
   integrals.ozone = line.ozone_travelled(p.s);
 
-  double density = 0.0;  // sum over channels of probability times probability density
+  double density = 0.0;  // probability density of the point, summed over the channels that could have been chosen
   Rgb contribution{};
   for (std::size_t c = 0; c < 3; ++c) {
     if (weight[c] <= 0.0) continue;
@@ -155,7 +155,7 @@ bool sample_event(const Atmosphere& air, const Line& line, const Vec& sun, doubl
   return true;
 }
 
-// Returns the fraction of Rayleigh scattering in all scattering at a vertex, per channel.
+// Returns the fraction of the scattering at a vertex that is Rayleigh scattering, per channel.
 Rgb rayleigh_fractions(const Atmosphere& air, const Amounts& density) {
   Rgb fraction;
   for (std::size_t c = 0; c < 3; ++c) {

@@ -26,13 +26,14 @@ struct Scene {
   bool sky = false;
   bool visible_ground = true;
   Rgb transmittance{1.0, 1.0, 1.0};
-  Rgb ground{};  // order 1: the sunlit ground at the end of the ray, attenuated
+  Rgb ground{};  // radiance of the sunlit ground at the end of the ray, attenuated; part of order 1
 
  private:
   bool has_air_ = false;
 };
 
-// Computes the mean over 2^log2_count paths of each order: means[n - 1] is that of n events, without Scene::ground.
+// Computes the mean of each order over 2^log2_count paths: means[n - 1] is the radiance after n events, without
+// Scene::ground.
 // Deterministic in (scene, seed, log2_count, means.size()).
 void trace_block(const Scene& scene, std::uint64_t seed, int log2_count, std::span<Rgb> means);
 

@@ -22,7 +22,7 @@ void publish(const gpu::Device& device, VkCommandBuffer cmd) {
                VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_READ_BIT);
 }
 
-// Returns whether the cache had them.
+// Loads the tables from the cache. Returns whether they were in it.
 Result<bool> load(gpu::Host& host, Effect& effect, files::FileCache& cache, Report& report) {
   const gpu::Device& device = host.device();
   const std::string key = effect.table_key();
@@ -125,7 +125,7 @@ Result<Report> make_ready(gpu::Host& host, Effect& effect, const MakeReady& how)
   report.origin = Origin::build;
   report.milliseconds = milliseconds();
   if (!cache.enabled()) return report;
-  // The tables are complete, and those before them are gone: whatever ends the caching for want of memory is a note.
+  // The new tables are in use and the old ones are freed. If caching now runs out of memory, a note is enough.
   const Result<void> cached = within_memory("caching the tables", [&]() -> Result<void> {
     TYNDALL_ASSIGN(CacheWriter writer, CacheWriter::fetch(host, effect, how.cache));
     if (const std::string note = writer.write(); !note.empty()) report.notes.push_back(note);

@@ -1,5 +1,5 @@
-// Prepares the tables of an effect: loads them from the cache on disk, or builds them and stores them there. Every
-// program here does this before it needs light; an engine can do the same with the public interface.
+// Prepares the tables of an effect: loads them from the cache on disk, or builds them and stores them there. Uses the
+// public interface of the effect only, so an engine can do the same.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +25,7 @@ enum class Origin {
 
 struct MakeReady {
   CacheDesc cache;
-  std::function<void(Progress)> progress;  // of a build, between its slices; may be empty
+  std::function<void(Progress)> progress;  // called between the slices of a build; may be empty
   std::uint32_t slice_budget = 8;          // slices per submission
   bool rebuild = false;                    // ignore cached tables, but store the result
 };

@@ -11,7 +11,7 @@ namespace {
 
 using files::concat;
 
-constexpr double kWidth = 560.0, kHeight = 340.0;  // of the picture, in its own units
+constexpr double kWidth = 560.0, kHeight = 340.0;  // size of the picture in SVG units
 constexpr double kLeft = 66.0, kRight = 14.0, kTop = 30.0, kBottom = 46.0;
 constexpr double kKeyRow = 16.0;
 
@@ -40,7 +40,7 @@ class Scale {
 
 struct Tick {
   double value;
-  std::string text;  // none: a minor tick
+  std::string text;  // empty for a minor tick
 };
 
 std::vector<Tick> ticks(const Axis& axis) {

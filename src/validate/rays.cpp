@@ -37,9 +37,9 @@ std::vector<std::array<double, 4>> even_points(std::uint64_t seed, std::uint32_t
   return points;
 }
 
-// Converts the sun's direction from the frame of the point nearest to the ground to the eye's frame. The ray leaves the
-// eye at zenith angle z and arrives at that point under the local zenith angle z - turn, having gone `turn` around the
-// planet. `azimuth` is the one between sun and ray at the point.
+// Sets the sun of a query, given the sun's direction at the point of the ray that is nearest to the ground: its
+// elevation there, and its azimuth from the ray. `turn` is the angle at the planet's centre between the eye and that
+// point. The zenith angle of the ray decreases by `turn` on the way from the eye to the point.
 void set_sun(RayQuery& query, double turn, double sun_elevation_rad, double azimuth) {
   // In the plane of the ray: x along its heading, y up, z to the side.
   const double x = std::cos(sun_elevation_rad) * std::cos(azimuth);

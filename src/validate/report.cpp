@@ -183,7 +183,8 @@ void add_curves(Plot& plot, const std::vector<double>& x, const Answers& answers
   }
 }
 
-// Models with equal answers (single scattering is compared in two ways) are drawn once.
+// Returns the models to draw: of models with equal answers, only the first. Single scattering, which is compared in two
+// ways, is drawn once.
 std::vector<std::size_t> distinct_models(const Study& study) {
   std::vector<std::size_t> out;
   for (std::size_t m = 0; m < study.models.size(); ++m) {

@@ -9,12 +9,12 @@ namespace tyndall::validate {
 
 // The heading of a report.
 struct Origin {
-  std::string command;  // that produces it
+  std::string command;  // the command that produces the report
   std::string version;
   std::string device;
 };
 
-// Returns tables and plots of everything.
+// Returns a page with all tables and plots.
 [[nodiscard]] std::string to_html(const Study& study, const Origin& origin);
 // Returns the most important tables: docs/generated/accuracy.md.
 [[nodiscard]] std::string to_markdown(const Study& study, const Origin& origin);

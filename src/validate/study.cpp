@@ -10,8 +10,8 @@ namespace tyndall::validate {
 namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-constexpr double kMaxNoise = 0.03;       // of the reference's largest channel
-constexpr std::uint32_t kSkyFactor = 4;  // more paths for the sky's irradiance
+constexpr double kMaxNoise = 0.03;       // standard error, relative to the reference's largest channel
+constexpr std::uint32_t kSkyFactor = 4;  // the sky's irradiance has this many times as many paths
 constexpr double kVerticalSuns_deg[] = {45.0, 6.0, 0.0, -4.0};
 constexpr double kHorizonSuns_deg[] = {20.0, 0.0};
 constexpr double kHorizonAltitude_m = 2000.0;
@@ -27,7 +27,7 @@ class Evaluator {
     reference::Options how;
     how.samples = samples;
     how.orders = orders_factor * options_.orders;
-    // Every set of queries has its own random numbers.
+    // Use different random numbers for each set of queries.
     how.seed = options_.seed + 1000 * evaluations_++;
     how.by_order = true;
     const double share = static_cast<double>(samples) * static_cast<double>(answers.queries.size());
@@ -218,7 +218,7 @@ Result<Study> run_study(const Params& params, const Options& options, std::vecto
   const auto evaluate_rays = [&](std::size_t a) {
     return evaluator.evaluate(study.atmospheres[a].params, study.models, options.samples, study.rays[a].answers);
   };
-  // Go atmosphere by atmosphere: a model may hold the tables of the last one.
+  // Complete one atmosphere before the next, because a model may hold the tables of the last one.
   if (Result<void> r = evaluate_rays(0); !r) return std::move(r).error();
   Answers all;
   for (const VerticalTest& test : study.verticals) {

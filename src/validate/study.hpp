@@ -18,7 +18,7 @@ using Progress = std::function<void(double done)>;
 struct Model {
   std::string name;     // as in reports
   std::string meaning;  // one line
-  int orders = 0;       // the number of the reference's orders to compare with; 0: all
+  int orders = 0;       // compare with the sum of this many orders of the reference; 0: all
   // Returns radiance / E0, or the sky's irradiance / E0, for every query.
   std::function<Result<std::vector<Rgb>>(const Params& params, std::span<const RayQuery> queries)> answer;
 };
@@ -28,7 +28,7 @@ struct Options {
   // Paths per ray; four times as many for the sky's irradiance, and 16 times as many in turbid atmospheres.
   std::uint32_t samples = 8000;
   std::uint64_t seed = 1;
-  int orders = 8;  // of the reference
+  int orders = 8;  // orders of scattering of the reference
 };
 
 struct Atmosphere {
@@ -40,13 +40,13 @@ struct Atmosphere {
 
 // A turbid atmosphere, for rays near the horizon under low suns: the hardest case for multiple scattering.
 struct TurbidAir {
-  double optical_depth;  // of the aerosol, vertical, at the second wavelength
+  double optical_depth;  // vertical optical depth of the aerosol at the second wavelength
   double ground_albedo;
 };
 constexpr TurbidAir kTurbidAirs[] = {{0.15, 0.0}, {0.15, 0.2}, {0.3, 0.0}, {0.3, 0.2}, {0.5, 0.0}, {0.5, 0.2}};
 // Returns the parameters with that amount of aerosol and that ground albedo. Without aerosol they are unchanged.
 [[nodiscard]] Params turbid_params(const Params& params, const TurbidAir& air);
-// Turbid atmospheres need more orders of scattering: the reference follows this many times as many.
+// Turbid atmospheres need more orders of scattering: their reference has this many times as many.
 constexpr int kTurbidOrdersFactor = 3;
 // Their reference has this many times as many paths per ray, because the errors of the tables are smaller than the
 // noise of fewer.
@@ -73,7 +73,7 @@ struct RayTest {
   Answers answers;
 };
 
-// Rays in the vertical plane of the sun at sea level: angles from the zenith, negative on the sun's side.
+// Rays from sea level in the vertical plane of the sun. `angle_deg` is the zenith angle, negative on the sun's side.
 struct VerticalTest {
   double sun_elevation_deg = 0.0;
   std::vector<double> angle_deg;
@@ -90,7 +90,7 @@ struct SkyTest {
 struct HorizonTest {
   double altitude_m = 0.0;
   double sun_elevation_deg = 0.0;
-  std::vector<double> elevation_deg;  // of the view, from the horizon
+  std::vector<double> elevation_deg;  // angle of the view above the horizon
   Answers answers;                    // the models are Study::horizon_models
 };
 
@@ -116,12 +116,13 @@ struct Study {
 // Summarises a model's errors over the selected rays of one of kTurbidAirs.
 [[nodiscard]] ErrorSummary summarise_turbid(const Study& study, std::size_t model, std::size_t air,
                                             const std::function<bool(const TestRay&)>& takes);
-// The rays of all atmospheres with a model's largest errors, worst first.
+// A ray on which a model has one of its largest errors.
 struct BadRay {
   std::size_t atmosphere = 0;
-  std::size_t ray = 0;  // of rays[atmosphere]
+  std::size_t ray = 0;  // index in rays[atmosphere]
   Comparison comparison;
 };
+// Returns the `count` rays of all atmospheres with the model's largest errors, worst first.
 [[nodiscard]] std::vector<BadRay> worst_rays(const Study& study, std::size_t model, std::size_t count);
 
 // Summarises a model's errors of the sky's irradiance for sun elevations from `low` to `high` [deg].
