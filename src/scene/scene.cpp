@@ -19,7 +19,7 @@ namespace tyndall::scene {
 namespace {
 
 constexpr std::uint32_t kMaxTimedPasses = 24;
-constexpr double kMinHeight_m = 2.0;  // of the camera above the ground
+constexpr double kMinHeight_m = 2.0;  // lowest height of the camera above the ground
 
 // Refuses pictures and shadow maps that do not fit the device's memory, before anything is created.
 Result<void> check_memory(const gpu::Device& device, VkExtent2D extent, std::uint32_t resolution,
@@ -43,7 +43,7 @@ Result<void> check_memory(const gpu::Device& device, VkExtent2D extent, std::uin
         "--size or shadows.resolution: a picture or shadow map is larger than this device supports; expected up to " +
             std::to_string(side) + " on a side"};
   }
-  // Three colour images, depth, and as much as two of them again on the host for reading back.
+  // Three colour images and depth, and two colour images on the host for reading back.
   constexpr double kBytesPerPixel = 3 * 16 + 4 + 2 * 16;
   const double needed = (kBytesPerPixel + more_bytes_per_pixel) * extent.width * extent.height +
                         bytes_per_texel * resolution * resolution * cascades;
@@ -124,7 +124,7 @@ Result<void> Scene::replace_lost_effect() {
   TYNDALL_ASSIGN(std::unique_ptr<Effect> made, make_effect(desc));
   const std::size_t notes = notes_.size();
   effect_ = std::move(made);
-  notes_.resize(notes);  // without the remark that its commands have not run
+  notes_.resize(notes);  // drops the remark of the old effect that its commands have not completed
   tables_ready_ = false;
   TYNDALL_TRY(make_tables_ready());
   effect_lost_ = false;
@@ -303,7 +303,7 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   return {};
 }
 
-// With a model, the scene's colour already contains the atmosphere.
+// Copies the scene's colour to the output. Used with a SkyModel, which has already drawn the atmosphere.
 Result<void> Scene::copy_color(VkCommandBuffer cmd) {
   begin_pass(cmd, "copy");
   TYNDALL_TRY(copy_to(cmd, output_));
@@ -341,7 +341,7 @@ Result<void> Scene::run_copy_baseline(VkCommandBuffer cmd) {
   return {};
 }
 
-// Records the copy baseline: copies the scene's colour.
+// Records the copy baseline, which copies the scene's colour to an image.
 Result<void> Scene::copy_to(VkCommandBuffer cmd, const gpu::Image& to) {
   const gpu::Device& device = host_->device();
   const gpu::NamedResource resources[] = {

@@ -28,7 +28,7 @@ struct SceneDesc {
   int terrain_coarseness = 1;          // see TerrainLod
   bool reuse_shadows = true;           // reuse shadow maps that would not change
   std::uint32_t pipeline_threads = 1;  // see EffectDesc
-  bool in_parts = false;               // submit a frame in parts, so that others get their turn on the queue
+  bool in_parts = false;               // submit a frame in parts, so that other users of the queue get their turn
 };
 
 struct PassTime {
@@ -75,7 +75,7 @@ class Scene {
   Result<image::Image> radiance();
   Result<image::Image> display();
   struct Exposure {
-    float scale = 1.0F;             // of the radiance
+    float scale = 1.0F;             // factor of the radiance
     post::Measurement measurement;  // with auto exposure or SceneDesc::histogram
   };
   [[nodiscard]] Exposure exposure() const;
@@ -85,7 +85,7 @@ class Scene {
   // the others in SHADER_READ_ONLY_OPTIMAL; shadow_maps is an array with one layer per cascade.
   struct Images {
     const gpu::Image &display, &output, &color, &depth, &shadow_maps;
-    const View& view;  // from which they were drawn
+    const View& view;  // the view that they were drawn from
   };
   [[nodiscard]] Images images() const { return {display_, output_, color_, depth_, shadow_maps_, view_}; }
   // Returns the ground that is drawn, which any thread may read; nullptr for the bare sphere at sea level.
@@ -112,7 +112,7 @@ class Scene {
   [[nodiscard]] Result<std::unique_ptr<Effect>> make_effect(const EffectDesc& desc);
   // Creates the effect again after recorded commands were not submitted, because the effect counts them as done.
   Result<void> replace_lost_effect();
-  // The images that a picture of one size is drawn into.
+  // The images whose size is that of the picture.
   struct Targets {
     gpu::Image color, depth, output, display;
   };
@@ -162,31 +162,31 @@ class Scene {
   Params params_;
   SceneParams scene_;
   std::unique_ptr<Terrain> terrain_;
-  std::unique_ptr<Meshes> meshes_;  // nullptr: there are no meshes, and there is terrain
+  std::unique_ptr<Meshes> meshes_;  // nullptr if there is only terrain
   std::vector<std::string> notes_;  // outlives the effect, which writes to it
   std::unique_ptr<Effect> effect_;
-  std::unique_ptr<SkyModel> model_;  // nullptr: the effect draws the atmosphere
+  std::unique_ptr<SkyModel> model_;  // nullptr if the effect draws the atmosphere
   bool tables_ready_ = false;
   std::unique_ptr<post::Tonemap> tonemap_;
   gpu::Image color_, depth_, shadow_maps_, shadow_colors_, output_, display_;
-  std::vector<gpu::Handle<VkImageView>> shadow_layers_, shadow_color_layers_;  // views of each layer of these
+  std::vector<gpu::Handle<VkImageView>> shadow_layers_, shadow_color_layers_;  // a view of each layer
   gpu::Handle<VkSampler> linear_, nearest_, shadow_compare_;
   gpu::Pipeline background_, copy_baseline_;
   gpu::Buffer background_constants_;
   gpu::Timer timer_;
 
   View view_;
-  LocalFrame frame_;  // of everything that is drawn
+  LocalFrame frame_;  // the frame in which everything is drawn
   glm::dvec3 to_sun_ = {};
   std::vector<CascadeFit> cascades_;
   TerrainLight light_;
   std::uint64_t frame_index_ = 0;
-  std::optional<double> last_seconds_;  // of the frame before, if it was measured
+  std::optional<double> last_seconds_;  // time of the previous frame, if its exposure was measured
   double step_s_ = 0.0;
   bool images_ready_ = false;
   bool effect_lost_ = false;                // see replace_lost_effect()
   bool lifted_ = false;                     // the camera has been raised, which a note reports
-  std::vector<CascadeFit> drawn_cascades_;  // of the current contents of the shadow maps
+  std::vector<CascadeFit> drawn_cascades_;  // the cascades that the shadow maps now contain
   std::uint64_t drawn_terrain_ = 0;
   image::Image radiance_sum_, display_sum_;  // with camera.samples > 1
   std::vector<PassTime> times_;

@@ -38,7 +38,7 @@ struct Scene::Pending {
   std::vector<std::string> notes;
 };
 
-// Models other than the effect draw only the terrain and the sky.
+// Returns an error if a model other than the effect would have to draw more than terrain and sky.
 Result<void> check_model(const SceneParams& scene) {
   if (scene.scattering.model == ScatteringModel::atmosphere) return {};
   if (scene.meshes.source == "none" && scene.terrain.source != "none") return {};

@@ -138,7 +138,7 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
     air_drawn = model_->attachments();
     for (const gpu::Image& image : air_drawn) {
       gpu::transition(device, cmd, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-      // Only texels where ground has been drawn are read.
+      // Need not be cleared, because only texels where ground has been drawn are read.
       colors.push_back(
           attachment(image.view.get(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_ATTACHMENT_LOAD_OP_DONT_CARE, {}));
     }
@@ -202,7 +202,7 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
 Result<void> Scene::run_passes(bool first, bool copy_baseline) {
   const gpu::Device& device = host_->device();
   const bool shadows_are_read = model_ == nullptr || model_->draws_terrain(scene_);
-  // Jitter moves the picture, not the cascades.
+  // The jitter of the samples does not move the cascades, so only the first sample draws them.
   const bool other_shadows = shadows_are_read && first && !(desc_.reuse_shadows && shadows_are_drawn());
   const auto shadows = [&](VkCommandBuffer cmd) -> Result<void> {
     if (desc_.timings) timer_.begin_frame(cmd, 0);
@@ -265,7 +265,7 @@ Result<void> Scene::run_effect(VkCommandBuffer cmd) {
   inputs.frame_index = frame_index_;
   if (!bare_ground()) inputs.lowest_ground_m = static_cast<float>(std::min(terrain_->ground().min_m, 0.0));
   Result<void> recorded = effect_->record(cmd, inputs);
-  effect_lost_ = recorded.ok();  // until the commands have run
+  effect_lost_ = recorded.ok();  // run_passes() resets it once the commands have run
   return recorded;
 }
 

@@ -31,7 +31,8 @@ double monotone_slope(double h0, double d0, double h1, double d1) {
 // Returns the slope at the middle of three knots of a curve in space: that of the parabola through them.
 double parabola_slope(double h0, double d0, double h1, double d1) { return (h1 * d0 + h0 * d1) / (h0 + h1); }
 
-// Evaluates a cubic Hermite curve at time t. `loop`: the knots repeat, and values increase by last - first per period.
+// Evaluates a cubic Hermite curve at time t. With `loop`, the knots repeat, and each repetition adds last - first to
+// the values.
 double interpolate(const Knots& knots, double t, bool loop, double (*slope_of)(double, double, double, double)) {
   const std::vector<double>& x = knots.times_s;
   const std::vector<double>& y = knots.values;
@@ -52,7 +53,7 @@ double interpolate(const Knots& knots, double t, bool loop, double (*slope_of)(d
          y[i + 1] * square(u) * (3.0 - 2.0 * u) - h * slope(i + 1) * square(u) * (1.0 - u);
 }
 
-// Returns the frames for which `get` returns a number.
+// Returns a knot for each frame for which `get` returns a number.
 template <typename Get>
 Knots knots_of(const CameraPath& path, Get get) {
   Knots out;
@@ -73,14 +74,14 @@ std::optional<double> wide(const std::optional<float>& value) {
   return value ? std::optional(static_cast<double>(*value)) : std::nullopt;
 }
 
-// Adds full rotations to each angle, so that it is nearest to the previous one.
+// Adds full turns to each angle, so that it differs from the previous angle by at most half a turn.
 void unwrap(std::vector<double>& angles_deg) {
   for (std::size_t i = 1; i < angles_deg.size(); ++i) {
     angles_deg[i] += 360.0 * std::round((angles_deg[i - 1] - angles_deg[i]) / 360.0);
   }
 }
 
-// Returns the time of a loop, counted from its first knot.
+// Returns a time on the path. In a loop, it is wrapped to the period that starts at the first knot.
 double time_in(const Knots& knots, double seconds, const CameraPath& path) {
   if (!path.loop) return seconds;
   const double first = knots.times_s.front();
@@ -113,7 +114,7 @@ void set(float& target, const std::optional<double>& value) {
   if (value) target = static_cast<float>(*value);
 }
 
-// Returns an angle in [0; 360).
+// Sets `target` to the value, wrapped to [0; 360), if there is one.
 void set_angle(float& target, const std::optional<double>& value_deg) {
   if (value_deg) target = static_cast<float>(*value_deg - 360.0 * std::floor(*value_deg / 360.0));
 }

@@ -7,8 +7,8 @@
 namespace tyndall::scene {
 namespace {
 
-// The terrains of two map projections are blended where the cosines of the distances from their centres differ by less.
-// shaders/scene/map_projections.glsl has the same value.
+// The terrains of two map projections are blended where the cosines of the angles from their centres differ by less
+// than this. shaders/scene/map_projections.glsl has the same value.
 constexpr double kBlend = 0.08;
 
 std::array<double, kMapProjectionCount> cosines_of(const glm::dvec3& up) {

@@ -30,7 +30,7 @@ constexpr int kMapProjectionCount = 6;  // origin, east, west, south, north, ant
 [[nodiscard]] glm::dvec3 world_from_projection(int projection, double x, double z, double altitude_m, double radius_m);
 [[nodiscard]] glm::dvec2 projection_from_up(int projection, const glm::dvec3& up, double radius_m);
 
-// The same for the map.
+// Convert between coordinates of the map, which is projection 0, and world positions.
 [[nodiscard]] glm::dvec3 world_from_map(double x, double z, double altitude_m, double radius_m);
 [[nodiscard]] glm::dvec2 map_from_world(const glm::dvec3& p, double radius_m);
 

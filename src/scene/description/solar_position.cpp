@@ -80,7 +80,7 @@ struct Nutation {
 };
 
 Nutation nutation(double centuries) {
-  const double node = (125.04452 - 1934.136261 * centuries) * kRadPerDeg;  // of the moon's orbit
+  const double node = (125.04452 - 1934.136261 * centuries) * kRadPerDeg;  // ascending node of the moon's orbit
   const double sun = (280.4665 + 36000.7698 * centuries) * kRadPerDeg;     // mean longitudes
   const double moon = (218.3165 + 481267.8813 * centuries) * kRadPerDeg;
   return {kDegPerArcsecond * (-17.20 * std::sin(node) - 1.32 * std::sin(2.0 * sun) - 0.23 * std::sin(2.0 * moon) +
@@ -150,7 +150,7 @@ struct Civil {
   bool has_offset = false;
 };
 
-// Checks the form only; returns nothing if the text does not have it.
+// Reads the numbers of a date and time without checking their ranges. Returns nothing if the text has another form.
 std::optional<Civil> read_civil(std::string_view text) {
   Reader reader(text);
   const auto year = reader.number(4);
@@ -196,7 +196,7 @@ std::optional<Civil> read_civil(std::string_view text) {
 }  // namespace
 
 double delta_t_s(double year) {
-  // Horner's form, lowest power first.
+  // Evaluates a polynomial by Horner's rule. The coefficients start with the lowest power.
   const auto polynomial = [](double t, std::initializer_list<double> coefficients) {
     double value = 0.0;
     for (auto c = std::rbegin(coefficients); c != std::rend(coefficients); ++c) value = value * t + *c;
@@ -217,7 +217,7 @@ double delta_t_s(double year) {
 SolarPosition solar_position(const Place& place, double julian_day, double altitude_m) {
   const double days = julian_day - kJ2000;
   const double delta_t_days = delta_t_s(2000.0 + days / 365.25) / kSecondsPerDay;
-  const double centuries = (days + delta_t_days) / kDaysPerCentury;  // of terrestrial time
+  const double centuries = (days + delta_t_days) / kDaysPerCentury;  // terrestrial time
   const double t = 0.1 * centuries;
   SolarPosition out;
 
@@ -247,15 +247,16 @@ SolarPosition solar_position(const Place& place, double julian_day, double altit
                               nutated.longitude_deg * std::cos(obliquity);
   const double hour_angle = kRadPerDeg * wrapped_deg(sidereal_deg + place.longitude_deg - out.right_ascension_deg);
 
-  // Parallax (3.12), from the place's distances from the axis and from the equatorial plane in radii.
-  constexpr double kAxes = 0.99664719;  // polar by equatorial radius
+  // Parallax (3.12). The distances of the place from the Earth's axis and equatorial plane are in equatorial radii.
+  constexpr double kAxes = 0.99664719;  // polar radius divided by equatorial radius
   const double phi = kRadPerDeg * place.latitude_deg;
   const double reduced = std::atan2(kAxes * std::sin(phi), std::cos(phi));
   const double radii = altitude_m / 6378140.0;
   const double from_axis = std::cos(reduced) + radii * std::cos(phi);
   const double from_equator = kAxes * std::sin(reduced) + radii * std::sin(phi);
   const double parallax = std::sin(kRadPerDeg * 8.794 * kDegPerArcsecond / out.distance_au);
-  // The direction in the meridian's frame: towards the equator's culmination, west, the pole.
+  // The direction to the sun: x is towards the point where the celestial equator crosses the meridian, y is west, and z
+  // is towards the celestial pole.
   const double x = std::cos(delta) * std::cos(hour_angle) - parallax * from_axis;
   const double y = std::cos(delta) * std::sin(hour_angle);
   const double z = std::sin(delta) - parallax * from_equator;

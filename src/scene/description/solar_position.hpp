@@ -19,14 +19,14 @@ struct SolarPosition {
   // With parallax and without refraction, which raises the sun by about 0.5 deg at the horizon and 0.1 deg at 10 deg.
   double elevation_deg = 0.0;  // above the horizontal
   double azimuth_deg = 0.0;    // clockwise from north, [0; 360)
-  // Apparent, from the centre of the Earth: for the equator and equinox of the date.
+  // Apparent position as seen from the centre of the Earth, for the equator and equinox of the date.
   double right_ascension_deg = 0.0;  // [0; 360)
   double declination_deg = 0.0;
   double distance_au = 1.0;
 };
 
-// Returns the position of the sun. `julian_day`: UT, from 1900 to 2100. `altitude_m`: of the place above sea level;
-// affects only the parallax.
+// Returns the position of the sun. `julian_day` is in UT, from 1900 to 2100. `altitude_m` is the altitude of the place
+// above sea level and affects only the parallax.
 [[nodiscard]] SolarPosition solar_position(const Place& place, double julian_day, double altitude_m = 0.0);
 
 // Returns terrestrial minus universal time [s] by the polynomials of Espenak and Meeus, "Five Millennium Canon of

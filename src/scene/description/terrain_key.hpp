@@ -14,7 +14,7 @@ struct TerrainKey {
   std::uint32_t seed = 0;
   float exaggeration = 1.0F;
   TerrainUnits units = TerrainUnits::automatic;
-  float radius_m = 0.0F;  // of the planet
+  float radius_m = 0.0F;  // radius of the planet
 
   bool operator==(const TerrainKey&) const = default;
 };

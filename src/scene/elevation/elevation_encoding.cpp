@@ -90,7 +90,7 @@ Dataset declare_no_data(GDALDataset& file, std::vector<std::string>& notes) {
   static_cast<void>(band.GetNoDataValue(&declared));
   if (declared != 0) return nullptr;
   constexpr std::array<double, 6> kUsual = {-9999.0, -32768.0, -32767.0, -999.0, 32767.0, 9999.0};
-  constexpr double kMinGap = 500.0;  // units; real heights have no such gap
+  constexpr double kMinGap = 500.0;  // in units of the file; real heights have no such gap
   std::array<std::size_t, kUsual.size()> count = {};
   std::array<double, kUsual.size()> gap = {};
   gap.fill(std::numeric_limits<double>::infinity());
@@ -101,7 +101,7 @@ Dataset declare_no_data(GDALDataset& file, std::vector<std::string>& notes) {
   for (int top = 0; top < height; top += kRowsAtOnce) {
     const int rows = std::min(kRowsAtOnce, height - top);
     if (band.RasterIO(GF_Read, 0, top, width, rows, samples.data(), width, rows, GDT_Float32, 0, 0, nullptr) != CE_None)
-      return nullptr;  // reading the band reports it
+      return nullptr;  // read_band() will report the error
     for (std::size_t i = 0; i < static_cast<std::size_t>(width) * static_cast<std::size_t>(rows); ++i) {
       const double sample = static_cast<double>(samples[i]);
       bool usual = false;

@@ -25,7 +25,7 @@ namespace {
 
 constexpr double kImpossible_m = 20000.0;
 constexpr double kAssumedSpacing_m = 30.0;
-constexpr int kFillReach_samples = 100;  // of GDAL's interpolation; larger holes are filled more coarsely
+constexpr int kFillReach_samples = 100;  // reach of GDAL's interpolation; larger holes are filled more coarsely
 
 // Returns the metres per unit of the heights, and notes unknown units.
 double vertical_unit_m(GDALRasterBand& band, const OGRSpatialReference* srs, std::vector<std::string>& notes) {
@@ -81,7 +81,7 @@ struct Georeference {
   OGRSpatialReference srs;
 };
 
-// Returns the minimum and maximum corner of the raster in the file's coordinates.
+// The bounds of the raster in the file's coordinates.
 struct Extent {
   double min_x, max_x, min_y, max_y;
 };
@@ -131,7 +131,7 @@ Georeference georeference(GDALDataset& file, TerrainUnits units, std::vector<std
   return geo;
 }
 
-// Refuses coordinates outside of a planet. PROJ returns infinities for some of them, and a wrong scale for others.
+// Refuses coordinates that cannot be on a planet. PROJ returns infinities for some, and a wrong scale for others.
 Result<void> check_extent(const std::string& source_name, const Georeference& geo, int width, int height) {
   const Extent extent = extent_of(geo.transform, width, height);
   const auto text = [](double value) {
@@ -180,7 +180,8 @@ Dataset make_memory(int width, int height, const Georeference& geo, std::vector<
   return memory;
 }
 
-// Reads the first band with at most max_samples on a side, in metres, holes as NaN. Adapts the transform to the size.
+// Reads the first band with at most max_samples on a side. Heights are in metres, and holes are NaN. Adapts the
+// transform to the size.
 Result<std::vector<float>> read_band(const std::string& source_name, GDALDataset& file, int max_samples,
                                      Georeference& geo, int& width, int& height, const Messages& messages,
                                      std::vector<std::string>& notes) {
@@ -229,7 +230,7 @@ Result<std::vector<float>> read_band(const std::string& source_name, GDALDataset
   return samples;
 }
 
-// Fills small holes by GDAL's interpolation, and the remaining ones by our own.
+// Fills small holes by GDAL's interpolation, and the remaining ones with fill_holes().
 void fill(std::vector<float>& samples, int width, int height) {
   if (std::none_of(samples.begin(), samples.end(), [](float v) { return std::isnan(v); })) return;
   std::vector<float> valid(samples.size());
@@ -250,7 +251,7 @@ void fill(std::vector<float>& samples, int width, int height) {
   fill_holes(samples, width, height);
 }
 
-// Returns the azimuthal equidistant projection around the middle of the samples.
+// The azimuthal equidistant projection around the middle of the samples.
 struct MapProjection {
   std::string wkt;     // empty: the file's coordinates are metres already
   double scale = 1.0;  // metres on the planet per unit of the projection

@@ -28,7 +28,7 @@ namespace tyndall::scene {
 
 struct ElevationRaster {
   int width = 0, height = 0;   // samples, each at least 2
-  double spacing_m = 0.0;      // of samples, both ways
+  double spacing_m = 0.0;      // distance between samples in both directions
   std::vector<float> heights;  // [m] above sea level, row-major, the northernmost row first
   float min_m = 0.0F, max_m = 0.0F;
   std::optional<Place> centre;     // latitude and longitude on the Earth, where the file has a coordinate system
@@ -39,7 +39,7 @@ constexpr int kMaxElevationSamples = 8192;
 
 struct ElevationRequest {
   double planet_radius_m = 6360000.0;
-  int max_samples = kMaxElevationSamples;  // on a side
+  int max_samples = kMaxElevationSamples;  // limit for each side
   TerrainUnits units = TerrainUnits::automatic;
 };
 

@@ -1,4 +1,4 @@
-// Filling of holes in rasters. Holes are NaN.
+// Fills holes in rasters. Holes are NaN.
 #pragma once
 
 #include <vector>

@@ -137,7 +137,7 @@ Result<ElevationSource> ElevationSource::create(const ElevationDesc& desc) {
     source.atlas_ = build_atlas(raster, blocks);
     source.notes_ = raster.notes;
     source.place_ = raster.centre;
-    const double margin_m = 0.2 * raster.spacing_m;  // as in terrain_raster_height
+    const double margin_m = 0.2 * raster.spacing_m;  // the same as in terrain_raster_height()
     low = std::min(low + std::min(c.outside_offset_m, 0.0F), raster.min_m - margin_m);
     high = std::max(high + std::max(c.outside_offset_m, 0.0F), raster.max_m + margin_m);
   }

@@ -14,7 +14,7 @@
 
 namespace tyndall::scene {
 
-// shaders/scene/terrain_fill.h as uploaded.
+// The structures of shaders/scene/terrain_fill.h, as they are uploaded.
 namespace fill {
 using uint = std::uint32_t;
 struct ivec2 {
@@ -32,8 +32,8 @@ struct ElevationDesc {
   std::uint32_t seed = 1;
   double exaggeration = 1.0;
   double planet_radius_m = 6360000.0;
-  int max_samples = kMaxElevationSamples;        // of a file, on a side; its atlas is 1.5 times as wide
-  TerrainUnits units = TerrainUnits::automatic;  // of a file without a coordinate system
+  int max_samples = kMaxElevationSamples;        // limit for each side of a file; its atlas is 1.5 times as wide
+  TerrainUnits units = TerrainUnits::automatic;  // units of a file without a coordinate system
 };
 
 // An R32F image with the samples of a file and its coarser levels, in the layout of terrain_source.glsl. For procedural
@@ -47,7 +47,7 @@ class ElevationSource {
  public:
   static Result<ElevationSource> create(const ElevationDesc& desc);
 
-  // Returns the elevation of the ground [m], without detail finer than about two of `spacing_m` (at least 1/64 m).
+  // Returns the elevation of the ground [m], without detail finer than about twice `spacing_m` (at least 1/64 m).
   // Positions are rounded to 1/64 m.
   [[nodiscard]] float height_m(double x_m, double z_m, double spacing_m) const;
   // Returns the elevation on one of the planet's map projections (src/scene/description/map_projection.hpp). Projection

@@ -95,7 +95,7 @@ struct GltfTexture {
 // The base colour's texture, with KHR_texture_transform.
 struct GltfTextureUse {
   int texture = -1;
-  int set = 0;  // of TEXCOORD_n
+  int set = 0;  // the n of TEXCOORD_n
   glm::dvec2 offset = glm::dvec2(0.0), scale = glm::dvec2(1.0);
   double rotation_rad = 0.0;
 };
@@ -122,7 +122,7 @@ struct GltfPrimitive {
 
 struct GltfMesh {
   std::vector<GltfPrimitive> primitives;
-  std::vector<double> weights;  // of the morph targets, of which every primitive has the same number
+  std::vector<double> weights;  // one for each morph target; every primitive has the same number of them
 };
 
 struct GltfNode {

@@ -51,7 +51,7 @@ bool inflates(const std::vector<std::string_view>& parts, std::uint64_t low, std
       if (size > high || (state != Z_OK && state != Z_STREAM_END)) return false;
     }
   }
-  // The rest of the output, after all input has been passed in.
+  // All input has been passed in; get the rest of the output.
   while (state == Z_OK) {
     stream.next_out = scratch.data();
     stream.avail_out = static_cast<unsigned>(scratch.size());
@@ -133,7 +133,7 @@ void GltfReader::read_materials() {
     }
     out_.materials.push_back(std::move(out));
   }
-  out_.materials.emplace_back();  // of parts without a material
+  out_.materials.emplace_back();  // used by parts without a material
 }
 
 // Returns the index of a texture's picture, which is decoded at the first call.

@@ -27,7 +27,7 @@ struct GltfVertices {
   };
   GltfValues position, normal, uv, color;
   std::vector<Target> targets;        // morph targets whose weight is not 0
-  std::vector<Influence> influences;  // of joints; empty without a skin
+  std::vector<Influence> influences;  // weights of joints; empty without a skin
   const std::vector<glm::dmat4>* joints = nullptr;
   GltfTextureUse texture;
   std::string where;                // path of the primitive, for messages
@@ -80,7 +80,7 @@ class GltfReader {
   GltfData& data_;
   MeshData& out_;
   std::map<Shape, std::vector<glm::dmat4>> placed_;
-  std::vector<int> parents_;  // of nodes; -1 for roots
+  std::vector<int> parents_;  // the parent of each node; -1 for roots
   std::map<std::string, std::pair<std::string, std::size_t>>
       counted_;                              // by kind: the first text and the number of texts
   std::map<int, int> decoded_;               // from image to texture

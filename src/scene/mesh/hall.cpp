@@ -25,10 +25,10 @@ constexpr int kBays = 6;
 constexpr double kGlass_m = 0.5;    // distance of panes behind the inner face of the wall
 constexpr double kBehind_m = 0.05;  // width of panes that stone hides on each side
 constexpr double kSill_m = 2.6;
-constexpr Lancet kWindow = {1.1, 3.4, 5.3};  // above the sill
+constexpr Lancet kWindow = {1.1, 3.4, 5.3};  // heights are above the sill
 constexpr Vec kRose = {0.0, 9.8, kHalfLength_m};
 constexpr double kRoseRadius_m = 2.6;
-constexpr int kSlices = 32;  // per opening
+constexpr int kSlices = 32;  // vertical slices into which an opening is divided
 
 enum Material : std::uint32_t { kStone, kTiles, kWood, kRoof, kFirstGlass, kRoseGlass = kFirstGlass + 4, kMaterials };
 
@@ -186,9 +186,8 @@ void wall(Builder& b, const Frame& f, double from, double to, const std::functio
       face(u0, u1, h0, h1, top(u0), top(u1));
       b.quad(kStone, f.at(u0, top(u0), 0), f.at(u1, top(u1), 0), f.at(u1, top(u1), kWall_m),
              f.at(u0, top(u0), kWall_m));
-      b.quad(kStone, f.at(u0, l0, 0), f.at(u1, l1, 0), f.at(u1, l1, kWall_m),
-             f.at(u0, l0, kWall_m));  // the sill faces up
-      b.quad(kStone, f.at(u0, h0, kWall_m), f.at(u1, h1, kWall_m), f.at(u1, h1, 0), f.at(u0, h0, 0));  // the arch down
+      b.quad(kStone, f.at(u0, l0, 0), f.at(u1, l1, 0), f.at(u1, l1, kWall_m), f.at(u0, l0, kWall_m));  // the sill
+      b.quad(kStone, f.at(u0, h0, kWall_m), f.at(u1, h1, kWall_m), f.at(u1, h1, 0), f.at(u0, h0, 0));  // the arch
       const auto uv = [&](double x, double y) {
         return glm::dvec2((x - o.picture_low.x) / (o.picture_high.x - o.picture_low.x),
                           (o.picture_high.y - y) / (o.picture_high.y - o.picture_low.y));
@@ -210,7 +209,7 @@ void wall(Builder& b, const Frame& f, double from, double to, const std::functio
     at = right;
   }
   solid(at, to);
-  for (const auto& [u, flip] : {std::pair{from, false}, {to, true}}) {  // the ends
+  for (const auto& [u, flip] : {std::pair{from, false}, {to, true}}) {  // the ends of the wall
     const Vec p[] = {f.at(u, 0, 0), f.at(u, 0, kWall_m), f.at(u, top(u), kWall_m), f.at(u, top(u), 0)};
     if (flip) {
       b.quad(kStone, p[0], p[1], p[2], p[3]);

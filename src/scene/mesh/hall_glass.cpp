@@ -53,7 +53,7 @@ std::uint8_t srgb(double linear) {
       std::lround(255.0 * (x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055)));
 }
 
-// Sets every texel to at(x, y) of its middle [m].
+// Returns a texture in which each texel is at(x, y), where x and y are the coordinates of its middle [m].
 template <typename At>
 MeshTexture paint(double width_m, double height_m, double texel_m, const At& at) {
   MeshTexture out;

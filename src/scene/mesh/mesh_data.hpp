@@ -52,8 +52,8 @@ struct MeshMaterial {
   MeshSampler sampler;
   SurfaceKind kind = SurfaceKind::opaque;
   float alpha_cutoff = 0.5F;
-  float transmission = 0.0F;  // of glass: fraction of light that is not reflected diffusely
-  float roughness = 1.0F;     // of glass: from kRoughGlass on it diffuses transmitted light, below it is clear
+  float transmission = 0.0F;  // glass only: fraction of light that is not reflected diffusely
+  float roughness = 1.0F;     // glass only: from kRoughGlass on it diffuses transmitted light, below it is clear
   bool double_sided = false;
   [[nodiscard]] bool transmits() const { return kind == SurfaceKind::blend || kind == SurfaceKind::glass; }
   [[nodiscard]] bool diffuses() const;
@@ -90,14 +90,14 @@ struct Box {
 
 struct MeshData {
   std::vector<MeshVertex> vertices;
-  std::vector<std::uint32_t> indices;  // of vertices
+  std::vector<std::uint32_t> indices;  // indices into `vertices`
   std::vector<MeshPart> parts;
   std::vector<Mesh> meshes;
   std::vector<glm::mat4> instances;  // transform a mesh to the model; ordered by mesh
   std::vector<MeshMaterial> materials;
   std::vector<MeshTexture> textures;
   std::vector<std::string> notes;  // remarks for the user, one line each
-  Box bounds;                      // of all instances, in the coordinates of the model [m]
+  Box bounds;                      // contains all instances; in the coordinates of the model [m]
 };
 
 }  // namespace tyndall::scene

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kRadPerDeg = 0.017453292519943295;
 
-constexpr float kGroundAlbedo = 0.3F;  // of the bare ground and of the ground under meshes, as of plain terrain
+constexpr float kGroundAlbedo = 0.3F;  // for the ground without terrain and under meshes; plain terrain has the same
 
 // The layout of shaders/scene/mesh_push.glsl.
 struct MeshPush {
@@ -113,7 +113,7 @@ Result<void> Meshes::load(const MeshParams& params, const Terrain& terrain) {
     lowest_m_ = std::min(lowest_m_, altitude);
     highest_m_ = std::max(highest_m_, altitude);
   }
-  // The ground is a sphere: under the middle of a flat mesh it is higher than under its corners by the sagitta.
+  // The ground is a sphere, so it is higher under the middle of a flat mesh than under its corners.
   const double side = glm::distance(corners_[0], corners_[7]);
   lowest_m_ -= side * side / (8.0 * radius_m_);
   find_boxes();

@@ -53,22 +53,22 @@ class Meshes {
   double radius_m_ = 0.0;
   bool bare_ground_ = false;
   bool has_glass_ = false;
-  MeshData data_;  // without vertices, indices and texels, which are released after the upload
+  MeshData data_;  // the vertices, indices and texels have been released after the upload
   // East, up and south at the position of the meshes, turned by meshes.yaw_deg. Instances are placed in this frame,
   // near its origin, so that rounding is small.
   glm::dmat4 world_from_site_ = glm::dmat4(1.0);
   glm::dmat4 site_from_model_ = glm::dmat4(1.0);
-  LocalFrame frame_;  // of the view
-  // Bounds in the frame of the meshes, mesh by mesh: of each part if the mesh has one instance, otherwise of each
-  // instance.
+  LocalFrame frame_;  // the frame of the current view
+  // Bounds in the frame of the meshes, mesh by mesh: one box for each part if the mesh has a single instance, otherwise
+  // one for each instance.
   std::vector<Box> boxes_;
-  std::array<glm::dvec3, 8> corners_ = {};  // of the bounds, in world space
+  std::array<glm::dvec3, 8> corners_ = {};  // corners of the bounds of all meshes, in world space
   double lowest_m_ = 0.0, highest_m_ = 0.0;
 
   gpu::Pipeline surfaces_, multiply_, add_, shadow_, shadow_mask_, colors_, ground_;
   gpu::Buffer constants_, vertices_, indices_, instances_;
   std::vector<gpu::Image> textures_;                        // the last is white
-  std::map<MeshSampler, gpu::Handle<VkSampler>> samplers_;  // of the materials
+  std::map<MeshSampler, gpu::Handle<VkSampler>> samplers_;  // one for each distinct MeshSampler of the materials
 };
 
 }  // namespace tyndall::scene

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kSuns = 64;
 
-// model_block of shaders/scene/homogeneous_air.glsl, in std430.
+// The model_block of shaders/scene/homogeneous_air.glsl in std430.
 struct Block {
   tyndall::shared::Homogeneous medium;
   Vec3 eye_position;

@@ -1,4 +1,4 @@
-// The settings of O'Neil's model from the parameters of the scene.
+// Derives the settings of O'Neil's model from the parameters of the scene.
 #pragma once
 
 #include "models/oneil.hpp"
@@ -6,7 +6,7 @@
 
 namespace tyndall::scene {
 
-// `table`: use the table of 2004 instead of a scale function.
+// Returns the settings. With `table`, the model uses O'Neil's table of 2004 instead of a scale function.
 [[nodiscard]] inline models::OneilSettings oneil_settings(const OneilParams& params, bool table) {
   models::OneilSettings out;
   out.integral_method =

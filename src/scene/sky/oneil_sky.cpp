@@ -18,10 +18,10 @@ namespace tyndall::scene {
 namespace {
 
 constexpr std::size_t kSuns = 128;
-constexpr int kSkyNodes = 10;             // of the irradiance of the sky: 200 rays for each sun
-constexpr std::uint32_t kSkySamples = 8;  // maximum on such a ray
+constexpr int kSkyNodes = 10;             // for the irradiance of the sky: 200 rays for each position of the sun
+constexpr std::uint32_t kSkySamples = 8;  // largest number of samples on each of these rays
 
-// model_block of shaders/scene/oneil_air.glsl, in std430.
+// The model_block of shaders/scene/oneil_air.glsl in std430.
 struct Block {
   tyndall::shared::Medium medium;
   tyndall::shared::Oneil oneil;

@@ -15,9 +15,9 @@ namespace tyndall::scene {
 namespace {
 
 constexpr std::uint32_t kColumns = 128;
-constexpr std::uint32_t kRowsAbove = 64;    // from the zenith to the edge of the sky
-constexpr std::uint32_t kRowsBetween = 48;  // to the planet's horizon
-constexpr std::uint32_t kRowsBelow = 48;    // to the nadir
+constexpr std::uint32_t kRowsAbove = 64;    // rows from the zenith to the edge of the sky
+constexpr std::uint32_t kRowsBetween = 48;  // rows from there to the planet's horizon
+constexpr std::uint32_t kRowsBelow = 48;    // rows from there to the nadir
 constexpr std::uint32_t kRows = kRowsAbove + kRowsBetween + kRowsBelow;
 constexpr std::uint32_t kIndices = kColumns * kRows * 6;
 constexpr double kHalfTurn = std::numbers::pi;
@@ -128,7 +128,7 @@ void SkyModel::fill_mesh(const ModelFrame& frame) {
   // edges there are two rows close together, so that a discontinuity there is sharp and every vertex is clearly on one
   // side.
   const double altitude = altitude_of(frame.view.position, radius);
-  const auto dip = [&](double below_m) {  // angle of a sphere's rim below the horizontal
+  const auto dip = [&](double below_m) {  // returns the angle of a sphere's rim below the horizontal
     const double r = radius + altitude;
     return below_m > 0.0 ? std::acos(std::clamp((r - below_m) / r, -1.0, 1.0)) : 0.0;
   };

@@ -23,7 +23,7 @@ namespace tyndall::scene {
 // The inputs of a model in a frame. All of them outlive the recording of the frame.
 struct ModelFrame {
   const View& view;
-  const LocalFrame& local;  // the frame of everything on the device
+  const LocalFrame& local;  // the frame in which everything on the device is
   const TerrainLight& light;
   const Params& params;
   const SceneParams& scene;
@@ -40,7 +40,7 @@ class SkyModel {
   Result<void> prepare(const ModelFrame& frame);
   // Records the ground into a rendering scope with colour, `attachments()` and depth: see Terrain::draw_view.
   Result<void> draw_ground(VkCommandBuffer cmd, Terrain& terrain, const ModelFrame& frame);
-  // Records the lighting of the ground, outside of the scope and with colour and air() in GENERAL layout.
+  // Records the lighting of the ground. Call it outside of the scope, with colour and air() in GENERAL layout.
   Result<void> light_ground(VkCommandBuffer cmd, Terrain& terrain, const ModelFrame& frame, VkImageView color);
   // Records the sky into a rendering scope with colour and depth. `background` holds the sun's disc.
   Result<void> draw_sky(VkCommandBuffer cmd, VkBuffer background);

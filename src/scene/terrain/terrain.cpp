@@ -34,8 +34,8 @@ std::vector<std::uint32_t> block_indices(int coarseness) {
   for (std::uint32_t z = 0; z < cells; ++z) {
     for (std::uint32_t x = 0; x < cells; ++x) {
       const std::uint32_t a = z * side + x;
-      // The diagonal alternates, so that ridges in both directions are treated alike. The diagonals at even vertices,
-      // to which odd ones morph, are always the same.
+      // The direction of the diagonal alternates, so that ridges in both directions look alike. The pattern repeats
+      // every two cells, so it is the same around all even vertices, to which the odd ones morph.
       if (((x ^ z) & 1U) == 0) {
         out.insert(out.end(), {a, a + side, a + side + 1, a, a + side + 1, a + 1});
       } else {
@@ -190,7 +190,7 @@ Ground Terrain::ground() const {
   return {source_->min_height_m(), source_->max_height_m(), radius_m_, {}};
 }
 
-// The same formula as in terrain_heights.comp.
+// Uses the formula of terrain_heights.comp.
 double ground_height(const ElevationSource& source, const glm::dvec3& up, double radius_m) {
   const std::array<double, kMapProjectionCount> weights = projection_weights(up);
   const glm::dvec2 map = projection_from_up(0, up, radius_m);

@@ -47,7 +47,7 @@ class Terrain {
   [[nodiscard]] Result<Planned> plan_source(const TerrainParams& params, double radius_m, ElevationSource source) const;
   // Exchanges the current and the planned elevations. A second call undoes the first.
   void swap_source(Planned& planned) noexcept;
-  // See TerrainLod.
+  // Changes the level of detail; see TerrainLod::coarseness.
   Result<void> set_coarseness(int coarseness);
   // Returns a number that increases with every change of what is drawn.
   [[nodiscard]] std::uint64_t version() const { return version_; }
@@ -74,8 +74,8 @@ class Terrain {
   // the ground; light_view(), outside of the scope and with the image in GENERAL layout, replaces it by radiance.
   Result<void> draw_view(VkCommandBuffer cmd, const View& view);
   Result<void> light_view(VkCommandBuffer cmd, const TerrainLight& light, VkImageView color, VkExtent2D extent);
-  // The same with pipelines of the caller's, built on scene/terrain_vertex.glsl and scene/terrain_pixel.glsl. `more`:
-  // the resources that they read besides the terrain's.
+  // Record the same with pipelines of the caller, which are built on scene/terrain_vertex.glsl and
+  // scene/terrain_pixel.glsl. `more` holds the resources that these read in addition to the terrain's.
   Result<void> draw_view(VkCommandBuffer cmd, const View& view, const gpu::Pipeline& pipeline,
                          std::span<const gpu::NamedResource> more);
   Result<void> light_view(VkCommandBuffer cmd, const TerrainLight& light, VkImageView color, VkExtent2D extent,
@@ -121,7 +121,7 @@ class Terrain {
   gpu::Buffer blocks_;
   gpu::Buffer indices_;
   gpu::Handle<VkSampler> nearest_;
-  std::vector<Range> ranges_;  // of the view, then of each cascade
+  std::vector<Range> ranges_;  // the blocks of the view, then those of each cascade
   std::vector<TerrainBlock> scratch_;
 };
 

@@ -12,8 +12,8 @@ double distance_to_square(const glm::dvec2& p, const glm::dvec2& low, const glm:
   return std::sqrt(glm::dot(p - nearest, p - nearest) + vertical * vertical);
 }
 
-// Returns the largest distance on an azimuthal equidistant map projection of points that are reach_m away from a
-// position on the planet.
+// Returns the largest distance, measured on an azimuthal equidistant map projection, between a position on the planet
+// and the points that are reach_m away from it.
 double reach_on_projection(const glm::dvec2& place, double reach_m, double radius_m) {
   constexpr int kDirections = 64;
   const double distance_m = glm::length(place);

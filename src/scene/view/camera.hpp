@@ -16,7 +16,7 @@ struct View {
   glm::dvec3 right = {1, 0, 0};
   glm::dvec3 up = {0, 1, 0};
   glm::dvec3 forward = {0, 0, -1};
-  double tan_half_width = 1.0;  // of the field of view
+  double tan_half_width = 1.0;  // tangent of half the horizontal field of view
   double tan_half_height = 1.0;
   glm::dvec2 jitter = {};  // shifts the picture by a fraction of a pixel, in clip space
 };
@@ -28,7 +28,7 @@ struct View {
 // / distance). It is in the frame of `frame_from_world`, which is near the camera, because single precision does not
 // suffice far from the origin (src/scene/view/local_frame.hpp).
 [[nodiscard]] Camera camera_from_view(const View& view, const glm::dmat4& frame_from_world = glm::dmat4(1.0));
-// Returns the product of its two matrices in double precision.
+// Returns the product of the matrices of that camera, in the world frame and in double precision.
 [[nodiscard]] glm::dmat4 clip_from_world(const View& view);
 // Returns the unit vector towards the sun in the frame of the world's origin.
 [[nodiscard]] glm::dvec3 direction_to_sun(const SunParams& sun);

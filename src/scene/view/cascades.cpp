@@ -177,7 +177,7 @@ void insert_room(const View& view, const ShadowParams& shadows, const Ground& gr
   if (at > 0) room.far_m = std::max(room.far_m, 1.01 * fits[at - 1].far_m);
   if (at + 1 == fits.size()) room.far_m = std::max(room.far_m, fits[at].far_m);
   fits[at] = room;
-  // The next cascade covers what the replaced one covered outside of the room.
+  // The next cascade also covers the part of the replaced one's range that lies outside of the room.
   for (std::size_t i = at + 1; i < fits.size(); ++i) {
     const double near_m = i == at + 1 ? replaced_near_m : fits[i].near_m > 0.0 ? fits[i - 1].far_m : 0.0;
     const double far_m = std::max(fits[i].far_m, 1.25 * fits[i - 1].far_m);

@@ -32,7 +32,7 @@ struct CascadeFit {
 
 struct Ground {
   double min_m = 0.0, max_m = 0.0;  // lowest and highest elevation
-  double radius_m = 0.0;            // of the planet
+  double radius_m = 0.0;            // radius of the planet
   // World [m]. If not empty, nothing outside the hull of these points casts a shadow, and the maps end there.
   std::span<const glm::dvec3> casters = {};
   // World [m]. If not empty, the corners of a room that may surround the camera; one cascade has to contain it

@@ -30,7 +30,7 @@ Radial radial_of(int projection, const glm::dvec2& map, double radius_m) {
   return out;
 }
 
-// Returns a number of 1/64 m, wrapped around like the shaders' integers.
+// Converts a length in units of 1/64 m to an integer that wraps around as in the shaders.
 std::int32_t wrapped(double units) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(static_cast<std::int64_t>(units)));
 }
