@@ -29,7 +29,7 @@ std::string_view summary_of(std::string_view verb) {
 struct Arguments::Implementation {
   struct Option {
     std::string names;        // as declared: "-o,--output"; the name of a positional argument
-    std::string placeholder;  // of the value; empty for flags
+    std::string placeholder;  // stands for the value in the help; empty for flags
     std::string help;
     bool repeatable = false;
     std::function<Result<void>(const std::string&)> store;

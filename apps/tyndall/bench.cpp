@@ -67,7 +67,7 @@ int run_bench(Args args) {
   desc.extent = {options.size.width, options.size.height};
   desc.timings = true;
   desc.counters = true;
-  desc.reuse_shadows = false;  // the camera of an application moves
+  desc.reuse_shadows = false;  // draw the shadow maps in every frame, as an application with a moving camera must
   desc.pipeline_threads = gpu::Host::pipeline_threads();
   desc.make_tables = make_tables(options.settings.scene);
   Result<std::unique_ptr<scene::Scene>> scene =

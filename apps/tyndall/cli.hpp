@@ -23,9 +23,9 @@ constexpr int kBadUsage = 2;  // bad usage or bad input
 // Prints "tyndall: error: MESSAGE" on stderr, as one line. Returns the exit status for the error's code: kBadUsage for
 // invalid_argument, kFailed for the rest.
 int fail(const Error& error);
-// The same for errors of input files that the user names: unreadable files count as bad input (kBadUsage).
+// Prints the error of an input file that the user names, and returns kBadUsage even if the file cannot be read.
 int fail_input(const Error& error);
-// The same with a given status.
+// Prints an error message in the same form and returns `status`.
 int fail(std::string_view message, int status);
 
 // Prints "tyndall: note: MESSAGE" on stderr, as one line: a remark on a run that continues.

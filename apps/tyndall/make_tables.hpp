@@ -1,4 +1,4 @@
-// Table builds of the verbs: with the cache that the settings name, and with a progress bar.
+// Describes how the verbs build tables: with the cache that the settings name, and with a progress bar.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@
 namespace tyndall::cli {
 
 [[nodiscard]] tables::CacheDesc table_cache(const scene::SceneParams& scene);
-// The same with a progress bar, which disappears when the tables are complete.
+// Returns the description of a build with this cache and a progress bar, which disappears when the tables are complete.
 [[nodiscard]] tables::MakeReady make_tables(const scene::SceneParams& scene);
 
 }  // namespace tyndall::cli

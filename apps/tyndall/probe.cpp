@@ -15,9 +15,10 @@
 namespace tyndall::cli {
 namespace {
 
-constexpr std::uint32_t kMaxOrders = 256;  // of the path tracer
+constexpr std::uint32_t kMaxOrders = 256;  // limit of the path tracer
 
-// JSON has no infinity: the standard error of a single block of paths becomes null.
+// Returns numbers as a JSON array. An infinite number, such as the standard error of a single block of paths, becomes
+// null, because JSON has no infinity.
 nlohmann::json numbers_as_json(const std::array<double, 3>& numbers) {
   nlohmann::json out = nlohmann::json::array();
   for (const double number : numbers) {

@@ -20,9 +20,9 @@ namespace tyndall::cli {
 
 struct ProbeAnswer {
   std::array<double, 3> radiance = {};  // L / E0 [1/sr]; for the sky E / E0
-  // To the end of the ray; for the sky: of sunlight, 0 if the planet hides the sun.
+  // Transmittance to the end of the ray. For the sky, the transmittance of sunlight, or 0 if the planet hides the sun.
   std::array<double, 3> transmittance = {};
-  std::array<double, 3> standard_error = {};  // of the radiance; zero for models without noise
+  std::array<double, 3> standard_error = {};  // standard error of the radiance; 0 for models without noise
   bool single_precision = false;              // the numbers are floats, and are printed as such
 };
 

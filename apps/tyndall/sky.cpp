@@ -40,7 +40,7 @@ class SkySource {
  public:
   virtual ~SkySource() = default;
   virtual Result<std::vector<models::Answer>> answer(std::span<const RayQuery> queries) = 0;
-  // Returns the origin of the tables; nullptr without tables.
+  // Returns how the tables were obtained; nullptr if the source uses none.
   [[nodiscard]] virtual const tables::Report* tables() const { return nullptr; }
 };
 
@@ -96,7 +96,7 @@ Result<std::unique_ptr<SkySource>> make_precomputed(gpu::Host& host, const confi
   return std::unique_ptr<SkySource>(std::make_unique<PrecomputedSource>(std::move(model).value()));
 }
 
-// The models of the registry that make maps.
+// A model of the registry that can make maps.
 struct SkyModel {
   scene::ModelId id;
   MakeSource make;
@@ -165,7 +165,7 @@ std::array<double, 3> horizontal_irradiance(const image::Image& image, const Sky
   return sum;
 }
 
-// Returns what the map says about itself: how it is projected, and what it shows.
+// Returns the metadata of the map: the settings, its projection, and what it shows.
 image::Metadata sky_metadata(const config::Settings& settings, const SkyOptions& sky) {
   image::Metadata metadata = config::radiance_metadata(settings);
   metadata.emplace_back(

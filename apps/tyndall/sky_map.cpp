@@ -9,12 +9,12 @@ namespace tyndall::cli {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kSamplesPerRadius = 24.0;  // per radius of the disc; error 0.05 % for a pixel that the disc fills
+constexpr double kSamplesPerRadius = 24.0;  // samples per radius of the disc; error 0.05 % for a pixel inside the disc
 
 // The part of the disc within one pixel.
 struct Piece {
   std::uint32_t x, y;
-  std::array<double, 3> flux;  // relative
+  std::array<double, 3> flux;  // attenuated by the atmosphere, in the unit of Splitter::total()
 };
 
 class Splitter {
@@ -37,7 +37,7 @@ class Splitter {
   }
 
   [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
-  // Returns the sum over all pieces without atmosphere and horizon.
+  // Returns the flux of the whole disc without atmosphere and horizon.
   [[nodiscard]] const std::array<double, 3>& total() const { return total_; }
 
  private:
@@ -45,7 +45,7 @@ class Splitter {
     return std::max(1, static_cast<int>(std::ceil(length_rad * kSamplesPerRadius / sun_.angular_radius_rad)));
   }
 
-  // Adds the part of the disc at this zenith angle: azimuths within `reach` of the sun's.
+  // Adds the part of the disc in a ring of the sky: `height_rad` high, around the angle `zenith` from the zenith.
   void split_chord(std::uint32_t y, double zenith, double height_rad) {
     const double across = std::sin(zenith) * std::sin(sun_zenith_);
     const double along = std::cos(sun_.angular_radius_rad) - std::cos(zenith) * std::cos(sun_zenith_);

@@ -12,7 +12,7 @@ namespace tyndall::cli {
 struct SkyMap {
   std::uint32_t width = 2048;
   std::uint32_t height = 1024;
-  double altitude_m = 0.0;  // of the eye
+  double altitude_m = 0.0;  // altitude of the eye
   double sun_elevation_rad = 0.0;
   double sun_azimuth_rad = 0.0;  // clockwise from north
 
@@ -28,7 +28,7 @@ struct SunFace {
   std::array<double, 3> irradiance = {1.0, 1.0, 1.0};  // above the atmosphere
 };
 
-// Adds the sun's disc as attenuated by the atmosphere and cut off by the horizon. Every pixel gets the mean over its
+// Adds the sun's disc, attenuated by the atmosphere and cut off by the horizon. Every pixel gets the mean over its
 // area, so that the map contains the sun's full irradiance at any size.
 void add_sun(image::Image& image, const SkyMap& map, const SunFace& sun, const shared::Medium& medium);
 

@@ -37,7 +37,7 @@ Error directory_error(const std::string& directory, const std::string& why) {
                                       "; expected a directory, or a new name in an existing one"})};
 }
 
-// Converts IEEE 754 binary16. The tables contain no NaN and no infinity.
+// Converts a half (IEEE 754 binary16) to a float. NaN and infinity, which the tables do not contain, are not handled.
 float float_from_half(std::uint16_t half) {
   const int exponent = (half >> 10U) & 31U;
   const auto mantissa = static_cast<float>(half & 1023U);
@@ -129,7 +129,7 @@ ordered_json cosines(std::span<const double> values) {
   return out;
 }
 
-// Returns numbers with the precision of a float.
+// Returns the components as JSON numbers with the digits of a float.
 ordered_json floats(const Vec3& v) {
   ordered_json out = ordered_json::array();
   for (const float value : {v.x, v.y, v.z}) {
@@ -324,7 +324,7 @@ Result<void> check_export(const std::string& directory) {
   const fs::file_status status = fs::status(directory, failed);
   if (fs::is_directory(status)) return files::check_writable((fs::path(directory) / kIndex).string());
   if (fs::exists(status)) return directory_error(directory, "it is a file");
-  // The directory can be created if a file of the same name could be.
+  // If a file of this name could be written, the directory can be created.
   fs::path name = directory;
   if (!name.has_filename()) name = name.parent_path();  // a trailing slash
   return files::check_writable(name.string());

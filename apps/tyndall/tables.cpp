@@ -87,7 +87,7 @@ int run_tables(Args args) {
     memory[table_name(id)] = gpu::image_bytes(host.value()->device(), table_desc(id, params));
   }
   memory["while_building"] = effect.memory().transient;
-  // The directory that now holds the tables; null if none.
+  // The directory that now holds the tables; null if they are not cached.
   report["cache"] = nullptr;
   const std::string cache = files::cache_directory(how.cache.place);
   if (!cache.empty() && made.notes.empty()) report["cache"] = files::one_line(cache, 1000);

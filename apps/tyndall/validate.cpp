@@ -22,7 +22,7 @@ namespace {
 using files::concat;
 using validate::Rgb;
 
-// Evaluates one of the models of `probe` with the scene's parameters.
+// A model of `probe`, and what it needs besides Params.
 struct ChosenModel {
   scene::ModelId id;
   std::string device;
@@ -130,9 +130,9 @@ std::vector<validate::Model> parameterizations(const std::shared_ptr<Tables>& ta
 // A row of the report for one of the registry's models. `change` sets parameters of the scene.
 struct ProbeRow {
   const char* name;
-  const char* meaning;  // nullptr: that of the registry
+  const char* meaning;  // nullptr for the registry's text
   scene::ModelId id;
-  int orders;  // of the reference that it is compared with; 0: all
+  int orders;  // number of orders of the reference that it is compared with; 0: all
   void (*change)(scene::SceneParams& scene);
 };
 constexpr ProbeRow kProbeRows[] = {

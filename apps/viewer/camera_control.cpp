@@ -10,7 +10,7 @@ namespace tyndall::viewer {
 namespace {
 
 constexpr double kDegPerRad = 57.29577951308232;
-constexpr double kSunTurn_deg = 180.0;  // by a drag as long as the window is high
+constexpr double kSunTurn_deg = 180.0;  // how far a drag over the height of the window turns the sun
 
 double wrapped(double angle_deg) {
   const double turned = std::fmod(angle_deg, 360.0);
@@ -21,7 +21,7 @@ struct Horizon {
   glm::dvec3 up, east, north;
 };
 
-// The same conversion as in scene::view_from_params().
+// Returns the local axes at a position, as scene::view_from_params() does.
 Horizon horizon_at(const glm::dvec3& position, double radius_m) {
   Horizon h;
   h.up = scene::up_of(position, radius_m);

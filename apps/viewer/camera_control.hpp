@@ -9,7 +9,7 @@
 
 namespace tyndall::viewer {
 
-constexpr double kMinHeight_m = 2.5;      // of the camera above the ground
+constexpr double kMinHeight_m = 2.5;      // lowest height of the camera above the ground
 constexpr double kMaxAltitude_m = 5.0e7;  // above sea level
 constexpr double kMaxPitch_deg = 89.9;    // view up or down
 constexpr double kFovRange_deg[2] = {2.0, 150.0};
@@ -47,7 +47,7 @@ struct Motion {
 [[nodiscard]] CameraState turned(const CameraState& camera, double dx_px, double dy_px, double height_px);
 // Returns the camera zoomed by notches of the wheel; positive notches, away from the user, narrow the field of view.
 [[nodiscard]] CameraState zoomed(const CameraState& camera, double notches);
-// Returns the sun after such a drag: to the right turns it clockwise seen from above, upwards raises it.
+// Returns the sun after a drag. A drag to the right turns it clockwise as seen from above; a drag upwards raises it.
 [[nodiscard]] scene::SunParams sun_turned(const scene::SunParams& sun, double dx_px, double dy_px, double height_px);
 
 }  // namespace tyndall::viewer

@@ -74,7 +74,7 @@ void Flight::reset_path() {
   path_playing_ = false;
 }
 
-// Evaluates the path with the function that `render` uses. User input stops it.
+// Moves camera and sun along the path, as `render` does. Stops when the user steers.
 void Flight::follow_path(double seconds, const SceneFacts& facts, config::Settings& settings) {
   if (!path_playing_) return;
   const bool steered = dragging_view_ || dragging_sun_ || steering();

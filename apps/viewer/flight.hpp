@@ -28,12 +28,12 @@ class Flight {
   // Returns to the start of the path, and stops it.
   void reset_path();
 
-  // Returns whether keys move the camera, or the path does.
+  // Returns whether keys or the path move the camera.
   [[nodiscard]] bool moving() const { return steering() || path_playing_; }
   [[nodiscard]] bool path_playing() const { return path_playing_; }
   [[nodiscard]] double path_s() const { return path_s_; }
   [[nodiscard]] const CameraState& camera() const { return camera_; }
-  [[nodiscard]] double height_m() const { return height_m_; }  // of the camera above the ground
+  [[nodiscard]] double height_m() const { return height_m_; }  // height of the camera above the ground
   [[nodiscard]] double speed_m_s() const { return speed_m_s_; }
   // Returns "pointer X Y" if the pointer has moved since the last call, for the event log; otherwise an empty text.
   [[nodiscard]] std::string take_pointer_text();
@@ -49,7 +49,7 @@ class Flight {
   Notices* notices_;
   Redraw* redraw_;
   CameraState camera_;
-  scene::CameraParams camera_params_;  // as put_camera() wrote them last
+  scene::CameraParams camera_params_;  // the parameters that put_camera() wrote last
   bool has_camera_ = false;            // camera_params_ holds a camera
   double speed_m_s_ = 0.0, height_m_ = 0.0;
   bool dragging_view_ = false, dragging_sun_ = false;

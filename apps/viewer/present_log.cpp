@@ -5,7 +5,8 @@ namespace tyndall::viewer {
 void PresentLog::add(const Frame& frame, Notices& notices) {
   if (frame.present_mode != last_.present_mode) notices.log("present_mode " + frame.present_mode);
   if (!opened_) {
-    // The first frame of the window is part of starting: the driver compiles the GUI's shaders for it.
+    // The first frame of the window counts as part of the start-up, because the driver compiles the GUI's shaders in
+    // it.
     opened_ = true;
     notices.log("opened");
   }

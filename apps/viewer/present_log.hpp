@@ -1,4 +1,4 @@
-// Logs what has become visible in the window, for tests and for measurements of the start.
+// Logs changes of what the window shows, for tests and for measurements of the start-up time.
 #pragma once
 
 #include <cstdint>

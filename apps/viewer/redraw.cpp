@@ -5,12 +5,12 @@
 namespace tyndall::viewer {
 namespace {
 
-constexpr int kSettlingFrames = 3;  // until ImGui's layout no longer changes
+constexpr int kSettlingFrames = 3;  // frames until ImGui's layout no longer changes
 constexpr double kRestAfter_s = 0.6;
 constexpr double kFlightPeriod_s = 1.0 / 60.0;
-constexpr double kSlowPeriod_s = 1.0 / 30.0;  // between frames of the GUI while a device without a GPU draws the scene
+constexpr double kSlowPeriod_s = 1.0 / 30.0;  // between frames of the GUI while a CPU device draws the scene
 constexpr double kAdaptionPeriod_s = 1.0 / 60.0;
-constexpr double kPollPeriod_s = 0.25;  // for threads that cannot wake the loop when they have finished
+constexpr double kPollPeriod_s = 0.25;  // between checks for threads that cannot wake the loop when they have finished
 
 }  // namespace
 

@@ -12,10 +12,10 @@ struct LoopState {
   bool work_due = false;     // a scene could begin its next piece of work
   bool moving = false;       // the camera or the sun moves
   bool adapting = false;     // auto exposure has not settled
-  bool background = false;   // files, tables or shaders are worked on beside the scenes
+  bool background = false;   // another thread is working on files, tables or shaders
   bool idle_work = false;    // a scene has work that waits for the user to rest
   bool showing_toasts = false;
-  double store_tables_in_s = -1.0;  // until tables are to be stored; negative: never
+  double store_tables_in_s = -1.0;  // time until tables should be stored; negative: never
 };
 
 class Redraw {

@@ -12,7 +12,7 @@ namespace {
 
 bool in_work(const SceneThread* thread) { return thread != nullptr && thread->busy(); }
 
-// Returns whether a thread draws. Only one of them may draw at a time, so that they do not slow each other down.
+// Returns whether a thread is drawing. Only one of them may draw at a time, so that they do not slow each other down.
 bool draws(const SceneThread* thread) { return in_work(thread) && !thread->creating(); }
 
 }  // namespace

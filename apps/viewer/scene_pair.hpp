@@ -18,10 +18,10 @@ namespace tyndall::viewer {
 
 // The requested contents of the scenes.
 struct PairRequest {
-  std::array<config::Settings, 2> settings;  // of the left and the right scene
-  bool compare = false;                      // show both
-  VkExtent2D extent = {};                    // of each picture
-  int coarseness = 1;                        // of the ground
+  std::array<config::Settings, 2> settings;  // settings of the left and the right scene
+  bool compare = false;                      // show both scenes
+  VkExtent2D extent = {};                    // size of each picture
+  int coarseness = 1;                        // see TerrainLod
   View view;
   double seconds = 0.0;  // time of the scenes
   bool resting = false;  // the user is idle
@@ -36,7 +36,7 @@ struct PairResult {
     config::Settings requested, current;
   };
   std::array<std::optional<Refused>, 2> refused;
-  bool right_ended = false;  // with an error that has been reported
+  bool right_ended = false;  // the right scene has ended with an error, which has been reported
   std::optional<Capture> capture;
   bool replaced = false;                   // the replacement has become the left scene
   std::optional<Error> replacement_error;  // it could not be created; the left scene stays
@@ -73,13 +73,13 @@ class ScenePair {
 
   // Returns the facts of the left scene.
   [[nodiscard]] const SceneFacts& facts() const { return left_->facts(); }
-  [[nodiscard]] Progress tables() const;  // of a scene that builds some
+  [[nodiscard]] Progress tables() const;  // progress of a scene that is building tables
   [[nodiscard]] bool creating() const;
   // Returns whether the left scene shows what was requested and nothing is under way.
   [[nodiscard]] bool settled() const;
   // Fills in the state of the scenes for the loop.
   void describe(LoopState& state) const;
-  [[nodiscard]] std::uint64_t frames() const { return frames_; }  // drawn by the left scene
+  [[nodiscard]] std::uint64_t frames() const { return frames_; }  // frames that the left scene has drawn
   [[nodiscard]] const FrameTimes& times() const { return times_; }
   [[nodiscard]] bool has_right() const { return right_ != nullptr; }
   [[nodiscard]] bool has_right_picture() const { return pictures_.has(1); }
@@ -113,7 +113,7 @@ class ScenePair {
   std::uint64_t frames_ = 0;
   bool left_first_ = false;  // the left scene is next; the order alternates
   std::array<bool, 2> again_ = {false, false};
-  std::array<Pose, 2> drawn_poses_;  // of the frames that are being drawn, or were drawn last
+  std::array<Pose, 2> drawn_poses_;  // the poses of the frames that are being drawn, or were drawn last
   bool settled_logged_ = false;
 };
 

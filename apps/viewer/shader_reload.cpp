@@ -115,7 +115,7 @@ ShaderReload::Compiled ShaderReload::compile(const std::string& folder) {
       out.message = path.string() + " cannot be read";
       return out;
     }
-    // The source with all included files. If it has not changed since the last time, it is not compiled again.
+    // Preprocess first. If the source with all its included files has not changed, it need not be compiled again.
     const shaderc::PreprocessedSourceCompilationResult source =
         compiler.PreprocessGlsl(text, kind_of(row.shader->stage), path.string().c_str(), options);
     std::string whole(source.cbegin(), source.cend());
@@ -131,7 +131,7 @@ ShaderReload::Compiled ShaderReload::compile(const std::string& folder) {
       out.message = result.GetErrorMessage();
       return out;
     }
-    // Optimises as the build does: names stay, because bindings are found by them.
+    // Optimise as the build does. Names are not stripped, because bindings are found by name.
     const Words raw(result.cbegin(), result.cend());
     Words words;
     spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_2);

@@ -49,7 +49,7 @@ class ShaderReload {
   // The result of a source that compiles and fits the program.
   struct Known {
     std::string source;  // with the files that it includes; empty: not compiled yet
-    Words words;         // where they differ from the program's
+    Words words;         // the compiled shader, if it differs from the program's
     bool differs = false;
   };
   Compiled compile(const std::string& folder);
@@ -57,9 +57,9 @@ class ShaderReload {
   std::map<std::string, Known, std::less<>> known_;  // by the shader's name; used only by the compiling thread
 
   std::mutex mutex_;                                 // guards words_, which threads that create pipelines read
-  std::map<std::string, Words, std::less<>> words_;  // of shaders that differ from the program's
+  std::map<std::string, Words, std::less<>> words_;  // the shaders that differ from the program's
   std::vector<std::map<std::string, Words, std::less<>>> before_,
-      refused_;  // not freed, because pipelines may be created from them
+      refused_;  // reverted shaders; not freed, because pipelines may still be created from them
   std::future<Compiled> compiling_;
 };
 

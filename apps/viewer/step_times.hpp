@@ -12,7 +12,7 @@ class StepTimes {
   bool add(double milliseconds);
   // Returns "N longest_ms X over_100_ms A over_200_ms B".
   [[nodiscard]] std::string text() const;
-  // From here on.
+  // Forgets all steps.
   void reset() { *this = {}; }
 
  private:

@@ -13,10 +13,10 @@ namespace tyndall::viewer {
 
 struct ViewerDesc {
   config::Settings settings;
-  std::uint32_t width = 1280, height = 720;  // of the window [px]
-  std::string device;                        // as --device names it
+  std::uint32_t width = 1280, height = 720;  // size of the window [px]
+  std::string device;                        // value of --device
   tables::MakeReady make_tables;
-  std::string state_file;   // F5, F9; empty: default_state_file()
+  std::string state_file;   // file that F5 saves and F9 restores; empty: default_state_file()
   std::string screenshots;  // folder; empty: the working directory
   std::string log;          // file for the event log; empty: none
   bool validation = false;

@@ -24,8 +24,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kMaxFlightStep_s = 0.25;
-constexpr float kSlowScale = 0.5F;  // of the resolution on a device without a GPU
-constexpr int kSlowCoarseness = 4;  // of the ground there
+constexpr float kSlowScale = 0.5F;  // scale of the resolution on a CPU device
+constexpr int kSlowCoarseness = 4;  // coarseness of the terrain on a CPU device
 constexpr double kMemoryLogPeriod_s = 2.0;
 
 }  // namespace

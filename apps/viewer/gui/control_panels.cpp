@@ -9,7 +9,7 @@
 namespace tyndall::viewer {
 namespace {
 
-// Coefficients that are shown at full brightness, as in the demo of Yusov (2013).
+// The coefficient that a colour control shows at full brightness, as in the demo of Yusov (2013).
 constexpr float kScatteringScale = 5.0e-5F;  // 1/m
 constexpr float kOzoneScale = 5.0e-6F;
 
@@ -148,7 +148,7 @@ void Panels::atmosphere() {
 }
 
 void Panels::everything() {
-  widgets.with_group = false;  // the headers name it
+  widgets.with_group = false;  // the headers already name the groups
   for (const config::Group& group : config::groups()) {
     const std::string name(group.title);
     const bool open = ImGui::CollapsingHeader(name.c_str());

@@ -79,7 +79,7 @@ void Gui::start() {
   style.FramePadding = ImVec2(4.0F, 2.0F);
   style.ItemSpacing = ImVec2(6.0F, 3.0F);
   style.Colors[ImGuiCol_WindowBg].w = 0.86F;
-  ImGui::GetIO().IniFilename = nullptr;  // the state is in the scene file
+  ImGui::GetIO().IniFilename = nullptr;  // do not write imgui.ini
 }
 
 void Gui::toast(std::string text, bool bad, double now) {
@@ -202,7 +202,7 @@ void Gui::divider(const GuiFacts& facts) {
 }
 
 void Gui::status(const GuiFacts& facts) {
-  // Beside the controls, since the other windows are at the right edge.
+  // Placed beside the controls, because the other windows are at the right edge.
   const float width = static_cast<float>(facts.window.width);
   const float left = state.controls ? std::min(360.0F, 0.5F * width) : 0.0F;
   ImGui::SetNextWindowPos(ImVec2(left + 6.0F, static_cast<float>(facts.window.height) - 6.0F), ImGuiCond_Always,
@@ -240,7 +240,7 @@ void Gui::help(const GuiFacts& facts) {
 }
 
 void Gui::first_run(const GuiFacts& facts) {
-  // In the middle of the area that the controls leave free.
+  // Centred in the area that the controls leave free.
   const float width = static_cast<float>(facts.window.width);
   const float taken = state.controls && !state.hidden ? std::min(360.0F, 0.5F * width) : 0.0F;
   ImGui::SetNextWindowPos(ImVec2(0.5F * (taken + width), 0.5F * static_cast<float>(facts.window.height)),

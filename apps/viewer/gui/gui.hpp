@@ -26,7 +26,7 @@ class Gui {
 
   // Finds the scene files of the menus and sets ImGui's style.
   void start();
-  // Draws one frame. `left` and `right` are the sides of the comparison; without one, only the left counts.
+  // Draws one frame. `left` and `right` are the sides of the comparison. Without a comparison, `right` is not used.
   void draw(config::Settings& left, config::Settings& right, const GuiFacts& facts, GuiRequests& requests);
   void toast(std::string text, bool bad, double now);
   [[nodiscard]] bool showing_toasts(double now) const { return !toasts_.empty() && toasts_.back().until > now; }

@@ -11,18 +11,18 @@ namespace tyndall::viewer {
 
 // The state that the GUI may change besides the settings.
 struct GuiState {
-  bool hidden = false;  // F2
-  bool help = false;    // F1
+  bool hidden = false;  // toggled by F2
+  bool help = false;    // toggled by F1
   bool first_run = false;
   bool controls = true, performance = false, views = false;  // windows that are open
-  int tab = 0;                                               // of the controls, to be selected next; -1: no change
+  int tab = 0;                                               // tab of the controls to select next; -1: no change
   PictureOptions picture;
   bool edit_right = false;  // the controls change the right side of a comparison
   float resolution_scale = 1.0F;
   int coarseness = 1;
   bool vsync = true;
   bool full_screen = false;
-  bool playing = true;  // the sun's animation
+  bool playing = true;  // the animation of the sun is not paused
 };
 
 // The requests of the user in this frame.
@@ -42,13 +42,13 @@ struct FlightFacts {
 
 // The state of the program that the GUI shows.
 struct GuiFacts {
-  const SceneFacts* scene = nullptr;  // of the left side
+  const SceneFacts* scene = nullptr;  // the left scene
   const FrameTimes* times = nullptr;
   std::string device, state_file, present_mode;
   VkExtent2D window = {}, picture = {};
   Progress tables = {};
   bool creating = false;
-  std::string shader_message;  // of the last rebuild that failed
+  std::string shader_message;  // the compiler's message of the last rebuild that failed
   FlightFacts flight;
   double now = 0.0;
 };

@@ -63,7 +63,7 @@ void plot(const char* label, const std::array<float, FrameTimes::kCount>& values
                    largest * 1.05F, ImVec2(ImGui::GetContentRegionAvail().x - 60.0F, 44.0F));
 }
 
-// The two controls that trade detail for time.
+// Draws the two controls that trade detail for time.
 void edit_detail(GuiState& state, Widgets& widgets) {
   ImGui::SetNextItemWidth(140.0F);
   ImGui::SliderFloat("Resolution scale", &state.resolution_scale, 0.25F, 2.0F, "%.2f", ImGuiSliderFlags_AlwaysClamp);

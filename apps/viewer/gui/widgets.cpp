@@ -35,7 +35,7 @@ bool is_wide(const Row& row) { return row.info.max - row.info.min > 500.0 && row
 bool is_boundless(const Row& row) { return row.info.max > 1.0e6; }
 
 const char* float_format(const Row& row, float value) {
-  static std::string text;  // read at once by ImGui, one thread
+  static std::string text;  // ImGui uses the text before the next call replaces it
   const bool fine = row.info.max - row.info.min <= 2.0 && (value == 0.0F || std::abs(value) >= 0.001F);
   text = fine ? "%.3f" : "%.4g";
   if (!row.info.unit.empty() && row.info.unit != "1") text.append(" ").append(row.info.unit);
@@ -59,7 +59,7 @@ bool edit_float(const Row& row, const char* id, float* values, int count) {
                               count > 1 ? "%.3g" : float_format(row, values[0]), flags);
 }
 
-// Positions are edited in double precision, so that metres count at any distance from the origin.
+// Draws the widget of a position. Double precision resolves metres at any distance from the origin.
 bool edit_place(const Row& row, const char* id, double* values) {
   double largest = 0.0;
   for (int i = 0; i < 3; ++i) largest = std::max(largest, std::abs(values[i]));
@@ -67,7 +67,7 @@ bool edit_place(const Row& row, const char* id, double* values) {
   return ImGui::DragScalarN(id, ImGuiDataType_Double, values, 3, speed, &row.info.min, &row.info.max, "%.8g", kSlider);
 }
 
-// `place` records the places of the choices.
+// Draws the widget of one or more whole numbers. If it is a list of choices, `place` records where each of them is.
 bool edit_whole(const Row& row, const char* id, std::uint32_t* values, int count,
                 const std::function<void(std::uint32_t)>& place) {
   const auto min = static_cast<std::uint32_t>(row.info.min);
@@ -130,7 +130,7 @@ void show_tooltip(const std::string& text) {
 
 }  // namespace
 
-// A single word would be ambiguous among the controls of other groups, so the group's name is added: "Sun elevation".
+// With `with_group`, the group's name is added to a single word, which may be ambiguous: "Sun elevation".
 std::string label_of(const Row& row, bool with_group) {
   std::string text(row.info.name);
   for (const std::string_view unit : {"_m", "_deg", "_nm", "_mib"}) {

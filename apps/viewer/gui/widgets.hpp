@@ -9,7 +9,7 @@
 
 namespace tyndall::viewer {
 
-// The rectangle of something that can be clicked, in window coordinates [px]: for tests that use a real pointer.
+// The rectangle of something that can be clicked, in window coordinates [px]. Tests move the pointer there.
 struct Place {
   std::string name;
   float x = 0.0F, y = 0.0F, width = 0.0F, height = 0.0F;

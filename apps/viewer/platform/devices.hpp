@@ -1,6 +1,6 @@
-// The Vulkan devices of the viewer: that of the scenes, and that of the window. On a device without a GPU the window
-// has a device of its own, because a queue works through its submissions in order and the GUI would wait for whole
-// frames of the scene. Otherwise both are the same.
+// The Vulkan devices of the viewer: one for the scenes and one for the window. On a GPU both are the same. On a CPU
+// device the window has a device of its own, because a queue executes its submissions in order, and the GUI would wait
+// for whole frames of the scene.
 #pragma once
 
 #include <cstdint>
@@ -14,15 +14,15 @@ namespace tyndall::viewer {
 class Devices {
  public:
   struct Desc {
-    std::string name;  // of the device, as in --device
+    std::string name;  // name of the device, as for --device
     bool validation = false;
-    bool one_device = false;  // use one device whatever it is
+    bool one_device = false;  // always use one device for both
   };
 
   // Opens the device of the scenes.
   Result<void> open_scene_device(const Desc& desc);
-  // Opens the window's device, unless it is that of the scenes. Apart, because the first scene can be created
-  // meanwhile.
+  // Opens the window's device, unless it is that of the scenes. This is a separate step, so that the first scene can be
+  // created at the same time.
   Result<void> open_window_device();
 
   [[nodiscard]] gpu::Host& scene() const { return *scene_; }

@@ -26,7 +26,7 @@ bool gone = false;
 Window watched = 0;
 
 int end_of_connection(Display*) {
-  // Called once: a failure while saving must not return here.
+  // The handler is called only once, because an error while it saves would lead back here.
   if (const std::function<void()> words = std::exchange(last_words(), nullptr)) words();
   std::fflush(nullptr);
   std::_Exit(1);

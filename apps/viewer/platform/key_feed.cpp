@@ -18,7 +18,7 @@ bool writes(const KeyEvent& event) { return event.key < GLFW_KEY_ESCAPE && (even
 std::vector<KeyEvent> KeyFeed::take() {
   using Kind = KeyEvent::Kind;
   std::vector<KeyEvent> out;
-  bool edited = false;  // a key or a click decides where the following text goes
+  bool edited = false;  // a key or click of this frame may move the focus, which decides where later text goes
   for (; !waiting_.empty(); waiting_.pop_front()) {
     const KeyEvent& event = waiting_.front();
     if (event.kind == Kind::character && edited) break;

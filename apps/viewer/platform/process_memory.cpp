@@ -11,8 +11,8 @@ namespace tyndall::viewer {
 
 void configure_malloc() {
 #ifdef __GLIBC__
-  // With an arena for each thread, freed memory would stay in all of them. Large blocks are the tables and pictures of
-  // a device without a GPU.
+  // With an arena for each thread, freed memory would stay in all of them. Blocks above the threshold are returned to
+  // the system when they are freed. On a CPU device, tables and pictures are such blocks.
   mallopt(M_ARENA_MAX, 1);
   mallopt(M_MMAP_THRESHOLD, 1 << 20);
 #endif

@@ -25,7 +25,7 @@ class Swapchain {
   Swapchain& operator=(const Swapchain&) = delete;
   ~Swapchain();
 
-  // After ImGui::CreateContext() and ImGui_ImplGlfw_InitForVulkan().
+  // Creates the swapchain. Call it after ImGui::CreateContext() and ImGui_ImplGlfw_InitForVulkan().
   Result<void> create(gpu::Host& host, Window& window, bool vsync);
   Result<void> recover();
   void set_vsync(bool on);

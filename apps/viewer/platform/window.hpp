@@ -59,7 +59,7 @@ class Window {
 
   [[nodiscard]] bool closing() const;
   void close();
-  [[nodiscard]] VkExtent2D size() const;  // of the picture [px]; 0 when minimised
+  [[nodiscard]] VkExtent2D size() const;  // size of the framebuffer [px]; 0 when minimised
   [[nodiscard]] bool minimised() const;
   [[nodiscard]] bool full_screen() const { return full_screen_; }
   void set_full_screen(bool on);
@@ -71,7 +71,7 @@ class Window {
 
   GLFWwindow* window_ = nullptr;
   std::vector<Event> events_;
-  KeyFeed keys_;                      // for the GUI
+  KeyFeed keys_;                      // keys and clicks that the GUI has not seen yet
   bool buttons_[2] = {false, false};  // left and right, as the GUI has seen them
   std::vector<int> touched_;          // keys pressed since the last forget_keys()
   bool activity_ = true;

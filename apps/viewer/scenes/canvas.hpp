@@ -33,9 +33,9 @@ constexpr int kShownCount = 10;
 // The inputs of a canvas besides the scene.
 struct View {
   Shown shown = Shown::picture;
-  int layer = 0;         // of the shadow maps
-  float slice = 0.5F;    // through a table
-  float stretch = 1.0F;  // of a shadow map's depths
+  int layer = 0;         // layer of the shadow maps to show
+  float slice = 0.5F;    // position of the slice through a table, 0 to 1
+  float stretch = 1.0F;  // contrast of a shadow map's depths
   VkExtent2D extent = {0, 0};
 };
 [[nodiscard]] bool same_view(const View& a, const View& b);

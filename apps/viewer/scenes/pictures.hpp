@@ -10,12 +10,12 @@ namespace tyndall::viewer {
 
 struct PictureOptions {
   Shown shown = Shown::picture;
-  int layer = 0;         // of the shadow maps
-  float slice = 0.5F;    // through a table
-  float gain = 1.0F;     // of all views but the picture
-  bool compare = false;  // with the other scene
+  int layer = 0;         // layer of the shadow maps to show
+  float slice = 0.5F;    // position of the slice through a table, 0 to 1
+  float gain = 1.0F;     // brightness of all views but the picture
+  bool compare = false;  // show both scenes side by side
   bool difference = false;
-  float divider = 0.5F;  // of the window's width
+  float divider = 0.5F;  // position of the dividing line, as a fraction of the window's width
 };
 
 // Returns the view that the canvases of a window of this size must show.

@@ -13,7 +13,7 @@ namespace tyndall::viewer {
 namespace {
 
 constexpr std::uint32_t kMaxSlices = 64;
-constexpr double kTables_ms = 60.0;  // intended duration of building a piece
+constexpr double kTables_ms = 60.0;  // how long one piece of work should build tables
 constexpr double kTonePeriod_s = 1.0 / 60.0;
 // Tables are stored only once the parameters have been stable for this long, so that dragging a slider does not fill
 // the cache.
@@ -52,7 +52,7 @@ SceneResult SceneWork::create(gpu::Host& host, const scene::SceneDesc& desc, con
   desc_.terrain_coarseness = request.coarseness;
   desc_.tables_later = true;
   wanted_ = applied_ = request.settings;
-  applied_.scene.camera.samples = 1;  // averages are not supported on the device
+  applied_.scene.camera.samples = 1;  // several samples are averaged on the host, but the canvas reads device images
   SceneResult out;
   out.settings = wanted_;
   const Result<void> done = [&]() -> Result<void> {
@@ -117,7 +117,7 @@ bool SceneWork::wants(const SceneRequest& request) const {
 SceneResult SceneWork::run(const SceneRequest& request) {
   SceneResult out;
   out.requested = request.settings;
-  // A capture comes first and is of the frame that is shown; during a flight the next frame is always due.
+  // Capture the frame that is shown before drawing the next one, because during a flight a next one is always due.
   if (request.capture && drawn_) {
     if (Result<void> captured = capture(out); !captured) {
       out.error = captured.error();
@@ -173,7 +173,7 @@ Result<void> SceneWork::advance_tables(SceneResult& out) {
   if (took_ms < 0.4 * kTables_ms) budget_ = std::min(budget_ * 2, kMaxSlices);
   out.tables = true;
   if (!progress.complete()) return {};
-  // More slices than the budget: the tables came from the cache.
+  // If the first call completed more slices than its budget, the tables came from the cache.
   if (fresh && progress.total > budget) unstored_ = false;
   out.tables_done = stale_ = true;
   tables_since_ = Clock::now();
@@ -254,7 +254,7 @@ config::Settings SceneWork::loaded(config::Settings settings) const {
 }
 
 void SceneWork::load_terrain() {
-  if (loading_.valid()) return;  // take_terrain() comes back here
+  if (loading_.valid()) return;  // take_terrain() calls this again
   if (key_of(wanted_) == key_of(applied_)) return;
   loading_for_ = wanted_;
   loading_ = std::async(std::launch::async, [device = &host_->device(), params = wanted_.scene.terrain,

@@ -19,8 +19,8 @@ namespace tyndall::viewer {
 // The requested contents and view of a scene.
 struct SceneRequest {
   config::Settings settings;
-  VkExtent2D extent = {};  // of the picture
-  int coarseness = 1;      // of the ground
+  VkExtent2D extent = {};  // size of the picture
+  int coarseness = 1;      // see TerrainLod
   View view;
   double seconds = 0.0;  // time of the scene
   bool again = false;    // the time has advanced: draw another frame
@@ -53,9 +53,9 @@ struct Capture {
 struct SceneResult {
   std::optional<Error> error;        // for the user
   bool over = false;                 // the scene has ended; otherwise it continues with its previous settings
-  config::Settings settings;         // applied, or being applied
-  config::Settings requested;        // of the request
-  bool frame = false, tone = false;  // was drawn
+  config::Settings settings;         // settings that are applied or being applied
+  config::Settings requested;        // settings of the request that was worked on
+  bool frame = false, tone = false;  // a frame was drawn; the last frame was tone mapped again
   double frame_ms = 0.0;             // wall time, including the time spent waiting for the processor
   bool tables = false;               // slices were built
   bool tables_done = false, tables_stored = false, pipelines_done = false;
