@@ -26,7 +26,7 @@ class GltfFile {
     bytes.append(static_cast<const char*>(data), size);
     return static_cast<int>(root["bufferViews"].size()) - 1;
   }
-  // `component`: number of the component type in glTF.
+  // Adds an accessor with these values. `component` is the number of the component type in glTF.
   template <typename T>
   int accessor(const std::vector<T>& values, int component, const char* type, int components, bool normalized = false) {
     const int at = view(values.data(), values.size() * sizeof(T));

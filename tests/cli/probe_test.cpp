@@ -44,9 +44,9 @@ class CliProbe : public testing::Test {
   Scratch scratch_;
 };
 
-TEST_F(CliProbe, EveryFormOfTableIsReadAndItsColumnsPassedOn) {
-  // Columns in another order, an extra column, quoted fields with a comma, a quote and a line end, CRLF, a byte order
-  // mark, blank lines, no line end at the end of the file.
+TEST_F(CliProbe, EveryFormOfTableIsReadAndItsColumnsAreCopied) {
+  // The table has another order of columns, an extra column, quoted fields with a comma, a quote and a line end, CRLF,
+  // a byte order mark and blank lines, and does not end with a line end.
   const files::CsvTable table =
       probe("\xEF\xBB\xBF\r\nid, azimuth_deg ,\"view_zenith_deg\",sun_zenith_deg,altitude_m\r\n"
             "\"a,\"\"b\",30,60,+3e1,0\r\n\r\n   \r\n\"two\nlines\",-30, \"60\" ,30.0,0\r\nlast,,sky,30,0");

@@ -45,8 +45,7 @@ struct Coefficients {
   double g = 0.0;
 };
 
-// 3 / (16 pi) (1 + cos^2), and the functions of Cornette and Shanks and of Henyey and Greenstein; positive g scatters
-// forward.
+// The phase functions of Rayleigh, Henyey and Greenstein, and Cornette and Shanks. A positive g scatters forward.
 double rayleigh_phase(double c) { return 3.0 / (16.0 * kPi) * (1.0 + c * c); }
 double henyey_greenstein(double c, double g) {
   return (1.0 - g * g) / (4.0 * kPi * std::pow(1.0 + g * g - 2.0 * g * c, 1.5));
@@ -122,7 +121,7 @@ class CliPublished : public testing::Test {
   Scratch scratch_;
 };
 
-// Equation 5 for the optical lengths, and the sky equation of two shells.
+// The sky is that of two shells, whose optical lengths are given by equation 5.
 TEST_F(CliPublished, HoffmanAndPreetham) {
   for (int medium = 0; medium < 4; ++medium) {
     const Coefficients k = coefficients();
@@ -158,7 +157,7 @@ TEST_F(CliPublished, HoffmanAndPreetham) {
   }
 }
 
-// Equations 1, 3 and 4 for rays that hit the ground: constant density along the whole distance, and the sun as seen
+// Rays that hit the ground follow equations 1, 3 and 4: constant density along the whole distance, and the sun as seen
 // from the ground.
 TEST_F(CliPublished, HoffmanAndPreethamsGround) {
   constexpr double kRadius = 6360000.0;
@@ -195,7 +194,8 @@ TEST_F(CliPublished, HoffmanAndPreethamsGround) {
   }
 }
 
-// The sum of chapter 16 for rays that leave the atmosphere, with density integrals from any function.
+// Evaluates the sum of GPU Gems 2, chapter 16, for a ray that leaves the atmosphere. `column` returns density
+// integrals.
 using Column = std::function<double(double height_m, double scale_height_m, double cos_zenith)>;
 Seen oneil(const Question& q, const Coefficients& k, double radius_m, double top_m, const Rgb& scale_heights_m,
            int samples, const Column& column) {
@@ -236,7 +236,8 @@ TEST_F(CliPublished, ONeilWithThePrintedPolynomial) {
     std::vector<Question> questions;
     for (int i = 0; i < 100; ++i)
       questions.push_back({uniform(0.0, 150000.0), uniform(0.0, 85.0), uniform(0.0, 85.0), uniform(0.0, 360.0)});
-    // In the publication's unit, the thickness of the atmosphere. Its integral to infinity is used for that to the top.
+    // The unit of length in the publication is the thickness of the atmosphere. The polynomial approximates the
+    // integral to infinity, which is used in place of the integral to the top.
     const Column printed = [&](double height_m, double scale_height_m, double cos_zenith) {
       const double x = 1.0 - cos_zenith;
       const double scale =
@@ -250,7 +251,7 @@ TEST_F(CliPublished, ONeilWithThePrintedPolynomial) {
                               "--set", "atmosphere.mie_scale_height_m=39750"}),
                      questions, [&](const Question& q) {
                        Seen out = oneil(q, k, kRadius, kTop, {kScaleHeight, kScaleHeight, 0.0}, samples, printed);
-                       // The remainder above the top is also subtracted from the whole path.
+                       // The model subtracts the integral above the top from that of the whole path.
                        const Direction eye = {kRadius + q.altitude_m, 0.0, 0.0};
                        const Direction view = q.view();
                        const double b = dot(eye, view);
@@ -354,8 +355,8 @@ TEST_F(CliPublished, ONeilsTable) {
                    });
 }
 
-// The in-scattering integral under the assumptions of section 2, by Simpson's rule, to the extent, the planet or the
-// flat top.
+// The model is the in-scattering integral under the assumptions of section 2. Simpson's rule computes it here, up to
+// the extent of the medium, the planet or the flat top.
 TEST_F(CliPublished, TheHomogeneousMediumOf2012) {
   for (int medium = 0; medium < 4; ++medium) {
     const Coefficients k = coefficients();

@@ -131,7 +131,7 @@ TEST_F(CliScenes, OutputsAreNotWrittenOverInputs) {
   refused({"render", "--set", "terrain.source=" + dem, "-o", dem}, "is terrain.source of this run; expected");
   refused({"render", "--set", "meshes.source=" + gltf, "-o", texture},
           "is a file of meshes.source of this run; expected");
-  // A virtual raster of a virtual raster of a grid.
+  // A virtual raster that refers to a virtual raster, which refers to a grid.
   const std::string grid =
       scratch_.write("grid.png", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 500\n1 2\n3 4\n");
   const auto raster_of = [](const std::string& file) {
@@ -278,8 +278,7 @@ TEST_F(CliScenes, FlightsArePlayed) {
   EXPECT_TRUE(has(1, "frame.exposure", ""));
 }
 
-// Scenes are read before a device is selected, so a wrong device suffices here. A flight by date over an elevation file
-// takes its place from the file.
+// A flight by date needs a place on the Earth. Without one in the scene file, it is that of the elevation file.
 TEST_F(CliScenes, ElevationFilesGiveFlightsTheirPlace) {
   std::string grid = "ncols 4\nnrows 4\nxllcorner 35.4\nyllcorner 31.4\ncellsize 0.01\n";
   for (int i = 0; i < 16; ++i) grid += "100" + std::string(i % 4 == 3 ? "\n" : " ");
@@ -301,8 +300,8 @@ TEST_F(CliScenes, ElevationFilesGiveFlightsTheirPlace) {
   placed.insert(placed.end(), {"--set", "terrain.source=" + file});
   const ProcessResult process = run_tyndall(placed);
   ASSERT_EQ(process.status, 0) << process.err;
-  // Half past eleven by the sun in Jerusalem on the longest day: 81.8 degrees up, as `sky --at 31.42,35.42` also
-  // computes.
+  // On the longest day, shortly before noon, the sun is 81.8 degrees high near Jerusalem. `sky --at 31.42,35.42`
+  // computes the same.
   const std::string header = contents_of(out);
   const std::size_t at = header.find("tyndall.sun.elevation_deg");
   ASSERT_NE(at, std::string::npos);
@@ -357,7 +356,7 @@ TEST_F(CliScenes, BenchPrintsTheDocumentedValues) {
 }
 
 // Marching runs once per cascade. Its reported time is the sum, so that the passes of a frame add up to the effect.
-TEST_F(CliScenes, BenchAddsUpPassesThatAreDoneSeveralTimes) {
+TEST_F(CliScenes, BenchAddsUpPassesThatRunSeveralTimes) {
   const ProcessResult process = run_tyndall({"bench", "--json", "--size", "64x36", "--frames", "1", "--set",
                                              "planet.radius_m=20000", "--set", "tables.size=4,4,4,4", "--set",
                                              "tables.orders=1", "--set", "shadows.cascade_processing=multi-pass"});

@@ -20,7 +20,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kRadPerDeg = kPi / 180.0;
 
-// Integrates over the whole sphere, or over its upper half times the cosine.
+// Integrates a map over the whole sphere or, if `horizontal`, over the upper half and times the cosine.
 std::array<double, 3> integral(const image::Image& image, bool horizontal) {
   SkyMap map;
   map.width = image.width;
@@ -61,7 +61,7 @@ TEST(CliSkyMap, TheDiscHoldsTheDirectSunAtEverySize) {
   const shared::Medium medium = medium_from_params({});
   for (const auto& [width, height] :
        {std::pair(2U, 1U), std::pair(16U, 8U), std::pair(333U, 77U), std::pair(2048U, 1024U)}) {
-    // Inside the map, at its seam, at the zenith, and near the zenith.
+    // The sun is inside the map, at its seam, at the zenith, and near the zenith.
     for (const auto& [elevation, azimuth] : {std::pair(30.0, 100.0), std::pair(45.0, 0.0), std::pair(20.0, -720.05),
                                              std::pair(90.0, 40.0), std::pair(89.9, 200.0)}) {
       const SkyMap map = map_of(width, height, elevation, azimuth);
@@ -90,7 +90,7 @@ TEST(CliSkyMap, TheHorizonCutsTheDisc) {
     add_sun(image, map, {0.2667 * kRadPerDeg, {}, {10.0, 10.0, 10.0}}, medium);
     return integral(image, false)[1];
   };
-  EXPECT_NEAR(flux(0.0, 0.0), 5.0, 0.01);  // half of it, for a uniform disc
+  EXPECT_NEAR(flux(0.0, 0.0), 5.0, 0.01);  // half of a uniform disc
   // A chord at half the radius leaves 1/2 + (x sqrt(1 - x^2) + asin x) / pi.
   EXPECT_NEAR(flux(0.13335, 0.0), 10.0 * (0.5 + (0.5 * std::sqrt(0.75) + std::asin(0.5)) / kPi), 0.02);
   EXPECT_EQ(flux(-0.27, 0.0), 0.0);
@@ -186,7 +186,7 @@ TEST_F(CliSky, DiscsBeyondHalfPrecisionAreNoted) {
   EXPECT_EQ(run_tyndall(without).err, "");
 }
 
-TEST_F(CliSky, TheGroundIsThatOfTheReference) {
+TEST_F(CliSky, TheGroundMatchesTheReference) {
   const image::File file =
       make(with_single({"--size", "4x6", "--sun-elevation-deg", "40", "--sun-azimuth-deg", "45", "--altitude", "5000",
                         "--disc", "false", "--set", "planet.ground_albedo=0.4", "--set", "sun.irradiance=2,4,0.5"}));
@@ -200,7 +200,7 @@ TEST_F(CliSky, TheGroundIsThatOfTheReference) {
   }
 }
 
-TEST_F(CliSky, TheDefaultIsThatOfTheReferenceInAllOrders) {
+TEST_F(CliSky, TheDefaultMatchesAllOrdersOfTheReference) {
   // Rows at 15, 45, 75 and 105 degrees from the zenith. The error of these small tables is below the tolerance.
   const std::vector<std::string> tables = {"--set", "tables.size=16,64,32,8"};
   for (const double elevation : {35.0, -2.0}) {

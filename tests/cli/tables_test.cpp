@@ -116,7 +116,8 @@ std::string Export::scattering_queries() {
       for (std::uint32_t s = 1; s < 12; ++s) {
         for (std::uint32_t n = 0; n < 6; ++n) {
           const double nu = scattering["view_sun"]["cosine"][n];
-          // The sun axis refers to the density-weighted mean distance along the ray, the query to the ray's origin.
+          // The table has the sun's zenith angle at the density-weighted mean distance, the query that at the ray's
+          // origin.
           const double r = 6360000.0 + scattering["altitude_m"][a].get<double>();
           const double d = views["middle_of_air_m"][v];
           const double r_middle = std::sqrt(r * r + d * d + 2.0 * r * d * mu);
@@ -136,7 +137,7 @@ std::string Export::scattering_queries() {
   return queries;
 }
 
-// The same for some texels of the sky irradiance look-up table.
+// Adds some texels of the sky irradiance look-up table, and returns the queries of `probe` that correspond to them.
 std::string Export::light_queries() {
   std::string queries;
   const nlohmann::json& light = axes["light"];
@@ -246,7 +247,7 @@ TEST_F(CliTables, ExportsAreCompleteOrMissing) {
     rlimit small = unlimited;
     small.rlim_cur = bytes;
     EXPECT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
-    // Without the cache, which the limit would prevent from being written.
+    // The cache is off, because the limit would also prevent it from being written.
     ProcessResult process = run_tyndall(
         {"tables", "-o", directory, kSmall[0], kSmall[1], kSmall[2], kSmall[3], "--set", "tables.cache=off"});
     EXPECT_EQ(::setrlimit(RLIMIT_FSIZE, &unlimited), 0);
@@ -395,7 +396,7 @@ TEST_F(CliTableCache, ProcessesShareIt) {
     EXPECT_EQ(process.err, "");
     EXPECT_EQ(process.out, results[0].out);
   }
-  EXPECT_EQ(cached().size(), 1U);  // and no temporary file
+  EXPECT_EQ(cached().size(), 1U);  // no temporary file is left
 }
 
 }  // namespace

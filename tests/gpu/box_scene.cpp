@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRad = std::numbers::pi / 180.0;
 constexpr double kNone = std::numeric_limits<double>::infinity();
-constexpr double kPlanetRadius_m = 6.36e6;  // as planet.radius_m
+constexpr double kPlanetRadius_m = 6.36e6;  // the default of planet.radius_m
 
 double hit_box(const glm::dvec3& low, const glm::dvec3& high, const glm::dvec3& from, const glm::dvec3& direction) {
   double enter = -kNone;
@@ -127,7 +127,7 @@ TestFrame frame_of(const BoxScene& scene) {
     map.right = glm::normalize(glm::cross(helper, map.to_sun));
     map.up = glm::cross(map.to_sun, map.right);
     map.middle = frame.view.position + frame.view.forward * (0.5 * end(i));
-    // Holds the camera and the corners of the view at its end.
+    // The map contains the camera and the corners of the view at the end of the cascade.
     const double corner = std::hypot(frame.view.tan_half_width, frame.view.tan_half_height);
     map.half_m = end(i) * (0.5 + 0.5 * corner);
     map.half_depth_m = 2.0 * scene.far_m + 10000.0;

@@ -9,7 +9,7 @@
 
 namespace tyndall {
 
-// Corners in metres; x east, y up from the ground, z south of the camera.
+// A box, given by two corners in metres: x east, y up from the ground, z south of the camera.
 struct Box {
   glm::dvec3 low, high;
 };
@@ -27,13 +27,13 @@ struct BoxScene {
   std::string name;
   VkExtent2D extent = {160, 90};
   double altitude_m = 1200.0, yaw_deg = 0.0, pitch_deg = 3.0;
-  double tan_half_height = 0.42;  // width by the picture's shape
+  double tan_half_height = 0.42;  // of the vertical field of view; the horizontal one follows from the picture's shape
   BoxSun sun;
   bool buildings = true;
   std::vector<Box> own_buildings;  // replace the default ones, unless empty
   double building_size = 1.0;      // factor of the sizes and distances of the default ones
   bool ground = true;              // draw the ground; the planet exists in any case
-  double ground_altitude_m = 0.0;  // of the drawn ground and of the buildings on it
+  double ground_altitude_m = 0.0;  // altitude of the drawn ground and of the buildings on it
   bool ground_casts = true;
   std::uint32_t cascades = 3, first_marched = 0;
   std::uint32_t shadow_resolution = 256;
@@ -52,8 +52,8 @@ struct BoxScene {
 // mean luminance of the reference to middle grey, followed by the curve 1 - exp(-x) and sRGB in 8 bits.
 struct Likeness {
   double psnr_db = 0.0;               // infinite if equal
-  double mean_relative_error = 0.0;   // of linear radiance
-  double worst_relative_error = 0.0;  // of a channel, relative to the larger of it and 1 % of the reference's mean
+  double mean_relative_error = 0.0;   // mean error of linear radiance
+  double worst_relative_error = 0.0;  // largest error of a channel, relative to the larger of it and 1 % of the mean
 };
 [[nodiscard]] Likeness compare(const std::vector<glm::dvec3>& picture, const std::vector<glm::dvec3>& reference,
                                VkExtent2D extent);

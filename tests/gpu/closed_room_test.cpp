@@ -73,7 +73,7 @@ class GpuClosedRoom : public SharedSceneTest {
     if (ground != nullptr) floor_m_ += ground_height(*ground, {0.0, 1.0, 0.0}, params_.planet.radius_m);
     return scene;
   }
-  // Draws views into opposite corners, below and above, under suns from the zenith to the horizon.
+  // Draws views into opposite corners, downwards and upwards, under suns from the zenith to the horizon.
   void expect_dark(Scene& scene, std::uint32_t cascades, float distance_m, const std::string& what) {
     scene_.shadows.cascades = cascades;
     scene_.shadows.first_marched = std::min(1U, cascades - 1);

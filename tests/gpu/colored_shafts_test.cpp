@@ -62,7 +62,7 @@ TEST_F(ColoredShafts, TreesFormatsAndOrderOfCascadesChangeNothing) {
   for (const bool reached : {true, false}) {
     BoxScene scene = colored();
     scene.extent = {96, 54};
-    scene.shadow_resolution = reached ? 512 : 1024;  // all of it in the tree, or a part
+    scene.shadow_resolution = reached ? 512 : 1024;  // the tree covers all of the map, or a part of it
     show(scene);
     for (const Mode& mode : {kModes[0], kModes[1], kModes[4]}) {
       Params params = params_of(mode);
@@ -191,7 +191,7 @@ TEST_F(ColoredShafts, OnlyTheMediumBehindTheGlassIsColored) {
       frame.glass_depth = level(-1e6);
       show(frame);
       const Likeness below = compare(draw(params, name + ", glass below all", true), white, scene.extent);
-      // Every cell is read instead of whole nodes, so sums have other terms in single precision.
+      // Cells are read one by one instead of as whole nodes, so the sums are rounded differently.
       EXPECT_LE(below.worst_relative_error, 2e-3) << name;
       // A plane across the direction of the sun, 4 km in front of the camera.
       const glm::dvec3 place = frame.view.position + 4000.0 * frame.to_sun;

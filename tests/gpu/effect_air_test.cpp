@@ -83,7 +83,7 @@ TEST_F(EffectAir, TheSkyIsTheIntegralFromGroundAtmosphereAndSpace) {
 
 // From the shore of the Dead Sea, the sky between the horizon of sea level and that of the land, 0.7 degrees lower, is
 // the integral to the top of the atmosphere. Below the lower horizon, rays end on a sphere at the altitude of the land.
-TEST_F(EffectAir, TheSkyReachesDownToTheHorizonOfLowerLand) {
+TEST_F(EffectAir, TheSkyReachesTheHorizonOfLowerLand) {
   constexpr double kLand = -430.0;
   for (const double altitude : {2.0, -20.0, -130.0}) {
     for (const Technique technique : {Technique::brute_force, Technique::epipolar}) {
@@ -126,8 +126,8 @@ TEST_F(EffectAir, TheSkyReachesDownToTheHorizonOfLowerLand) {
   }
 }
 
-// The sun sets along the rays of an eye below sea level. Tables would blur this by up to 15 %, so that order 1 is
-// integrated there. So it is below the lowest altitude of the tables.
+// Along a ray of an eye below sea level, there is a point beyond which the sun has set. Tables would blur this edge,
+// with errors of up to 15 %, so order 1 is integrated for such rays, and below the lowest altitude of the tables.
 TEST_F(EffectAir, BelowSeaLevelTheSunSetsSharplyWithTables) {
   const double cases[][2] = {{-320.0, 0.18}, {-64.0, 0.03}, {-264.0, -0.2}, {-2000.0, 20.0}};  // altitude, elevation
   for (const auto& [altitude, elevation] : cases) {
@@ -212,7 +212,7 @@ TEST_F(EffectAir, SwitchesAndScaleDoWhatTheySay) {
   const std::vector<glm::dvec3> tinted = draw(params, frame);
   params.scattering.enabled = false;
   const std::vector<glm::dvec3> off = draw(params, frame);
-  constexpr double kFloat = 1e-6;  // relative, of a few roundings
+  constexpr double kFloat = 1e-6;  // relative error of a few roundings
   for (std::size_t i = 0; i < whole.size(); ++i) {
     EXPECT_LE(relative_error(off[i], glm::dvec3(0.1F, 0.2F, 0.3F)), 0.0);
     EXPECT_LE(relative_error(quarter[i], 0.25 * only[i]), kFloat);

@@ -226,7 +226,7 @@ TEST_F(EffectContract, FramesThatCannotBeDrawnAreErrors) {
   EXPECT_TRUE(refused([](FrameInputs& f, Two&) { f.sun.angular_radius_rad = kNaN; }));
 }
 
-TEST_F(EffectContract, OnlyAsManyCascadesAreMarchedAsThereIsMemoryFor) {
+TEST_F(EffectContract, CascadesBeyondMaxCascadesAreNotMarched) {
   const TestFrame frame = small_frame();  // has two cascades
   Result<FrameImages> images = FrameImages::create(host(), frame, OutputFormat::rgba32f);
   ASSERT_OK(images);

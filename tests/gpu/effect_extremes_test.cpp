@@ -45,7 +45,7 @@ Params random_params(std::mt19937& engine) {
   }
   // More than 200 steps would take minutes and test nothing more.
   params.scattering.integration_steps = std::min(params.scattering.integration_steps, 200U);
-  // So would millions of samples for 16 pixels. epipolar_views_test.cpp tests both ends of these ranges.
+  // Millions of samples for 16 pixels would also take minutes. epipolar_views_test.cpp tests both ends of these ranges.
   params.epipolar.slices = std::min(params.epipolar.slices, 33U);
   params.epipolar.samples = std::min(params.epipolar.samples, 33U);
   return params;

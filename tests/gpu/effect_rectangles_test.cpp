@@ -52,7 +52,7 @@ TestFrame picture(VkExtent2D extent) {
   return frame;
 }
 
-TEST_F(EffectRectangles, ArePicturesOfTheirOwn) {
+TEST_F(EffectRectangles, EqualPicturesOfTheirOwnSize) {
   Params params = precise_params();
   params.scattering.technique = Technique::epipolar;
   params.scattering.integration_steps = 12;
@@ -64,7 +64,8 @@ TEST_F(EffectRectangles, ArePicturesOfTheirOwn) {
     Params changed = params;
     mode.change(changed);
     ASSERT_OK(effect.value().set_params(changed));
-    // Odd sizes, and once each: whole blocks of pixels, a single column, a single row, and a corner of the image.
+    // Every mode has an odd size. The first mode also has whole blocks of pixels, a single column, a single row, and a
+    // rectangle in the corner of the image.
     const bool usual = &mode == &kModes[0];
     for (const VkExtent2D extent : {VkExtent2D{23, 13}, {24, 12}, {1, 9}, {9, 1}, {22, 15}}) {
       if (!usual && extent.width != 23) continue;

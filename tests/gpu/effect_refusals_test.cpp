@@ -117,7 +117,7 @@ TEST(EffectRefusals, SettingsThatTheDeviceDoesNotAllowAreRefused) {
     EXPECT_FALSE(small.value().set_limits(large.max_extent, 1, 64).ok());
     expect_same(before, observe(small.value()), c.message);
   }
-  // The same for parameters.
+  // Parameters that exceed a limit of the device are refused, too.
   faults::set_properties([](P& p) {
     p.properties.limits.maxStorageBufferRange = 1U << 27;
     p.properties.limits.maxImageDimension3D = 256;

@@ -30,8 +30,8 @@ struct Setting {
   double sun_elevation_deg;
   std::uint32_t resolution = kResolution;
 };
-// Shafts of tens of kilometres, and from space of hundreds, where a higher resolution is needed: otherwise a texel
-// would be longer than the atmosphere is high.
+// The shafts are tens of kilometres long, and hundreds in the view from space. That view has a higher resolution,
+// because a texel would otherwise be longer than the atmosphere is high.
 constexpr Setting kSettings[] = {{"ground", 5.0, 15.0, 40.0e3, 20.0},
                                  {"air", 6000.0, -3.0, 60.0e3, 4.0},
                                  {"below the horizon", 9000.0, 4.0, 60.0e3, -2.0},
@@ -79,14 +79,14 @@ TestFrame frame_for(const Setting& setting, double yaw_deg) {
   TestFrame frame;
   frame.shadow_resolution = setting.resolution;
   frame.view = TestView::at(setting.altitude_m, yaw_deg * kRad, setting.pitch_deg * kRad, 0.6);
-  // Beside the plane, on its lit side, so that rays cross it at all distances.
+  // The camera is beside the plane, on its lit side, so that rays cross the plane at all distances.
   frame.view.position.x = 0.05 * setting.far_m;
   return frame;
 }
 
 struct Truth {
   glm::dvec3 shadowed;    // expected light of the ray
-  glm::dvec3 unshadowed;  // without shadows
+  glm::dvec3 unshadowed;  // its light without shadows
 };
 
 Truth truth_of(const Params& params, const TestFrame& frame, const Setting& setting, Shadow shadow, std::uint32_t x,
@@ -220,8 +220,8 @@ TEST_F(EffectShafts, ReversedShadowDepthIsTheSamePicture) {
   const Params params = precise_params();
   const Setting& setting = kSettings[1];
   TestFrame frame = frame_for(setting, -35.0);
-  // Intermediate depths, so that the direction of the comparison matters. The caster is a roof across the sun's rays, 2
-  // km towards the sun from the camera, over the western half.
+  // Depths are between 0 and 1, so that the direction of the comparison matters. The caster is a roof at a right angle
+  // to the sun's rays, 2 km from the camera towards the sun, over the western half.
   const auto roofed = [&](bool reversed) {
     frame.shadow_depth_reversed = reversed;
     add_shadows(frame, setting, Shadow::west, 2);

@@ -13,9 +13,10 @@ namespace {
 constexpr double kRad = std::numbers::pi / 180.0;
 constexpr double kFar_m = 60.0e3;   // end of the only cascade
 constexpr double kMap_m = 160.0e3;  // width of its map
-// Error against integration: that of small tables, and of differences of two of their values.
+// Error relative to integration. It is caused by the small size of the tables, and by differences of two of their
+// values.
 constexpr double kTableTolerance = 0.03;
-// Error between sums and differences of the same look-ups in different orders.
+// Error caused by adding and subtracting the same look-ups in another order.
 constexpr double kRoundingTolerance = 1e-4;
 
 using Pixels = std::vector<glm::dvec3>;
@@ -76,7 +77,7 @@ bool nowhere(double) { return false; }
 bool everywhere(double) { return true; }
 // Returns whether a distance is in shadow, with two lit sections: 0 to 8 km and 20 to 36 km.
 bool two_shafts(double east_m) { return !(east_m < 8.0e3 || (east_m > 20.0e3 && east_m < 36.0e3)); }
-// The same with one lit section from 12 to 30 km.
+// Returns whether a distance is in shadow, with one lit section: 12 to 30 km.
 bool one_shaft(double east_m) { return !(east_m > 12.0e3 && east_m < 30.0e3); }
 
 class EffectTables : public GpuTest {
@@ -250,7 +251,7 @@ TEST_F(EffectTables, FromSpaceOrderOneIsTheIntegral) {
     frame.view = TestView::at(400000.0, 0.0, -22.0 * kRad, 0.18);
     frame.to_sun = {0.0, std::sin(elevation_deg * kRad), -std::cos(elevation_deg * kRad)};
     const Pixels integral = draw(frame, S::integration, M::none);
-    // Errors of dark pixels are relative to a hundredth of the brightest.
+    // Errors of dark pixels are relative to a hundredth of the brightest pixel.
     Pixels scale = integral;
     double brightest = 0.0;
     for (const glm::dvec3& p : integral) brightest = std::max(brightest, largest(p));

@@ -35,7 +35,7 @@ TestFrame right_eye() {
   return frame;
 }
 
-TEST_F(EffectViews, OfOneFrameAreThoseOfTheirOwn) {
+TEST_F(EffectViews, EqualThePicturesOfSingleViews) {
   EffectDesc desc = desc_for(left_eye());
   desc.views = 2;
   desc.timings = true;
@@ -61,7 +61,7 @@ TEST_F(EffectViews, OfOneFrameAreThoseOfTheirOwn) {
     images.push_back(std::move(fresh).value());
   }
   ASSERT_NE(alone[0], alone[1]);
-  // Both in one command buffer, before either has run.
+  // Record both frames into one command buffer, so that neither has run when the other is recorded.
   ASSERT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
     FrameInputs inputs = images[0].inputs(frames[0]);
     inputs.frame_index = 7;
@@ -128,7 +128,7 @@ TEST_F(EffectViews, TheSameFrameTwiceIsAnErrorUntilItHasCompleted) {
   }
 }
 
-TEST_F(EffectViews, AsManyAsTheDescriptionSays) {
+TEST_F(EffectViews, NumbersOutOfRangeAreRefused) {
   EffectDesc desc = desc_for(left_eye());
   for (const std::uint32_t views : {0U, kMaxViews + 1}) {
     desc.views = views;

@@ -43,7 +43,7 @@ BoxScene scene_of(const Pillar& pillar) {
 
 // The sides of the pillar are not compared, because the texels of shadow maps are wider than a pixel there, and the
 // techniques read them at different positions.
-TEST_F(EpipolarErrors, FaceBeforeTheSunHasNoSparks) {
+TEST_F(EpipolarErrors, AnOccluderOfTheSunHasNoBrightPixels) {
   const Pillar pillars[] = {
       {"sun in the middle", 500.0, 40.0, 0.0, 9.0, 20.0, 2000.0, 1.0F, 0.05},
       {"narrow", 3000.0, 60.0, 0.3, 3.0, 100.0, 20000.0, 5.0F, 0.05},

@@ -177,7 +177,7 @@ TEST_F(Epipolar, RaysContinueWhereTreesEnd) {
   const Picture with_tree = draw(params, "tree");
   EXPECT_GT(counters().pixels_corrected, 50U);
   params.epipolar.min_max_tree = false;
-  constexpr double kSums = 1e-6;  // rounding of the same lengths, divided differently
+  constexpr double kSums = 1e-6;  // rounding of sums of the same lengths, divided differently
   EXPECT_LE(compare(draw(params, "no tree"), with_tree, scene.extent).worst_relative_error, kSums);
 }
 
@@ -207,8 +207,8 @@ TEST_F(Epipolar, DepthBreaksAreCorrectedAndMarked) {
   EXPECT_EQ(counters().pixels_corrected, fewest);
 
   std::uint64_t green = 0;
-  double unlike_all = 0.0;  // mean errors of pixels unlike all their samples
-  double before = 0.0;      // and of the pixels that only the parameter corrects
+  double unlike_all = 0.0;  // mean error of pixels whose depth differs from all their samples
+  double before = 0.0;      // mean error, before the correction, of pixels that are corrected only with the parameter
   double after = 0.0;
   for (std::size_t i = 0; i < plain.size(); ++i) {
     if (is_mark(fewest_marked[i])) {
@@ -282,7 +282,7 @@ TEST_F(Epipolar, SamplesAreShown) {
   const std::uint32_t sun_x = 96;
   const std::uint32_t sun_y = 27;
   EXPECT_GT(shown[sun_y * frame().extent.width + sun_x].x, 0.5);
-  // All of them where every sample is marched.
+  // If every sample is marched, all marks are bright.
   params.epipolar.initial_step = 1;
   const Picture all = draw(params, "all marched");
   params.epipolar.show_sampling = false;
@@ -313,7 +313,7 @@ TEST_F(Epipolar, ParametersChangeWhileFramesAreInFlight) {
   add([](Params& p) { p.epipolar.correct_depth_breaks = true; });
   add([](Params& p) { p.scattering.enabled = false; });
   add([](Params&) {});
-  // Pictures of single frames.
+  // Draw each frame alone, for comparison.
   std::vector<Picture> alone;
   for (const Params& params : changes) alone.push_back(draw(params, "alone"));
   bool allocated = false;

@@ -183,7 +183,7 @@ TEST_F(Epipolar, TheLimbMayBeSeenFromSpace) {
   expect_alike_in_both_modes(views);
 }
 
-TEST_F(Epipolar, TheViewMayBeOfTheSkyAloneOrVertical) {
+TEST_F(Epipolar, TheViewMayShowOnlySkyOrBeVertical) {
   const auto open = [](BoxScene& s) {
     s.buildings = false;
     s.ground = false;
@@ -313,7 +313,7 @@ TEST_F(Epipolar, SceneDepthMayBeStandardAndShadowDepthReversed) {
   EXPECT_GE(likeness.psnr_db, 60.0);
 }
 
-TEST_F(Epipolar, SlicesAndSamplesAtBothEnds) {
+TEST_F(Epipolar, FewestAndMostSlicesAndSamples) {
   BoxScene scene;
   scene.extent = {96, 54};
   show(scene);
@@ -326,7 +326,8 @@ TEST_F(Epipolar, SlicesAndSamplesAtBothEnds) {
         std::to_string(slices) + " slices, " + std::to_string(samples) + " samples" + (optimised ? "" : ", all used"),
         params, floor_db);
   };
-  // The shafts between the boxes are finer than so few slices. The default scene at 1280 x 720 has 40 dB with them.
+  // The shafts between the boxes are narrower than the distance of 32 slices. The default scene at 1280 x 720 has 40 dB
+  // with as few slices.
   with(32, 32, true, 36.0);
   with(2048, 32, true, 40.0);
   with(32, 2048, true, 36.0);

@@ -79,8 +79,8 @@ class GpuFarPlaces : public SharedSceneTest {
   SceneParams scene_;
 };
 
-// The inside of the hall with light shafts, at a distance where details are a few pixels wide: at the origin, and at
-// other positions with the sun in the same local direction.
+// Draws the inside of the hall with light shafts, from a distance at which details are a few pixels wide: at the
+// origin, and at other positions on the planet with the sun in the same local direction.
 TEST_F(GpuFarPlaces, AMeshLooksTheSameWhereverItStands) {
   scene_.terrain.source = "none";
   scene_.meshes.source = "hall";

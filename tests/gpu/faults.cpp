@@ -116,7 +116,7 @@ constexpr bool kOfPipelines =
 template <typename T>
 VkResult make(T* out, VkDeviceSize bytes) {
   if (fails(Kind::vulkan)) return kError;
-  ++in_driver;  // its allocations are those of the driver
+  ++in_driver;  // allocations in here count as those of the driver
   live[next_object] = bytes;
   --in_driver;
   if constexpr (kOfPipelines<T>) ++pipeline_objects;
@@ -341,7 +341,7 @@ PFN_vkVoidFunction VKAPI_CALL fake_instance_proc(VkInstance, const char* name) {
   if (wanted == "vkGetDeviceProcAddr") return reinterpret_cast<PFN_vkVoidFunction>(fake_device_proc);
   if (wanted == "vkGetPhysicalDeviceProperties2") return reinterpret_cast<PFN_vkVoidFunction>(fake_properties);
   if (wanted == "vkGetPhysicalDeviceMemoryProperties") return reinterpret_cast<PFN_vkVoidFunction>(fake_memory);
-  return reinterpret_cast<PFN_vkVoidFunction>(fake_memory);  // not called
+  return reinterpret_cast<PFN_vkVoidFunction>(fake_memory);  // not null, and never called
 }
 
 }  // namespace

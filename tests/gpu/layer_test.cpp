@@ -108,7 +108,7 @@ TEST_F(GpuLayer, TimersMeasureWhatTheyEnclose) {
     sum += scope.milliseconds;
   }
   EXPECT_LE(sum, wall_ms);
-  // There is ten times the work. A busy machine may delay one of them, but not by that much.
+  // Scope 0 has ten times the work of scope 2. A busy machine may delay one of them, but not by that factor.
   EXPECT_GT(scopes[0].milliseconds, 2.0 * scopes[2].milliseconds);
   EXPECT_TRUE(timer.value().read(0).empty());  // nothing was recorded there
 }
@@ -177,7 +177,7 @@ TEST_F(GpuLayer, DevicesAreListedAndChosen) {
     }
   }
   EXPECT_EQ(chosen, 1);
-  // By index, and by a part of the name in any case.
+  // A device can be selected by its index, or by a part of its name in upper or lower case.
   const Result<std::vector<DeviceRow>> first = Host::list("0");
   ASSERT_OK(first);
   EXPECT_TRUE(first.value()[0].chosen);

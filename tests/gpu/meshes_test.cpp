@@ -17,7 +17,7 @@ namespace tyndall::scene {
 namespace {
 
 constexpr VkExtent2D kExtent = {96, 54};
-constexpr double kHeight_m = 20.0;  // of the camera, which looks straight down; north is up in the picture
+constexpr double kHeight_m = 20.0;  // height of the camera, which looks straight down; north is up in the picture
 
 class GpuMeshes : public SharedSceneTest {
  protected:
@@ -105,7 +105,7 @@ TEST_F(GpuMeshes, ALevelFaceIsLitLikeTheGroundAndOnlyItsFrontIsSeen) {
   const image::Image image = draw();
   const glm::dvec3 ground = at(image, 0.0, 6.0);
   for (int c = 0; c < 3; ++c) EXPECT_GT(ground[c], 0.0);
-  // Both are level under the same sun and sky. Only the albedo differs: 0.6 and 0.3.
+  // Face and ground are level and have the same sun and sky. Only their albedos differ: 0.6 and 0.3.
   expect_near(at(image, -4.0, 0.0, 0.5), 2.0 * ground, 0.002, "face");
   expect_near(at(image, -10.0, 0.0, 0.5), 2.0 * ground, 0.002, "mirrored face");
   EXPECT_LT(at(image, 4.0, 0.0, 0.5).x, 0.5 * ground.x);  // only its shadow on the ground is visible
@@ -198,7 +198,7 @@ TEST_F(GpuMeshes, HolesPassLightAndShowWhatIsBehind) {
   EXPECT_LT(at(with, -1.2, 0.0).x, 0.5 * open.x);  // below the hole, in the shadow of the other half
 }
 
-TEST_F(GpuMeshes, GlassColoursWhatLiesBehindItAndNotWhatLiesBefore) {
+TEST_F(GpuMeshes, GlassColoursOnlyWhatIsBehindIt) {
   const int clear = glass(1.0, 0.1, 0.5, 0.0);
   file_.level_quad(-8, -4, -2, 4, 3.0F, clear);
   file_.level_quad(-6, -1, -4, 1, 4.0F, white_);  // between the glass and the sun
@@ -251,7 +251,7 @@ TEST_F(GpuMeshes, ColourMapsExistOnlyWithGlass) {
   EXPECT_GE(with->memory().scene, before + 8ULL * 1024 * 1024 * 2);
 }
 
-TEST_F(GpuMeshes, MeshesComeAndGoAndOtherModelsRefuseThem) {
+TEST_F(GpuMeshes, MeshesAreAddedAndRemovedAndOtherModelsRefuseThem) {
   const std::unique_ptr<Scene> scene = make(false);
   ASSERT_NE(scene, nullptr);
   const image::Image bare = draw(*scene);

@@ -68,7 +68,7 @@ TEST_F(GpuOneil, AgreesWithDoublePrecision) {
 
 namespace s = scene;
 
-// The demo planet, small in pixels.
+// The planet of O'Neil's demo in a small picture.
 struct DemoPlanet {
   Params params;
   s::SceneParams scene;
@@ -137,7 +137,8 @@ TEST_F(GpuOneilScene, CrossesTheTopWithoutAJump) {
   }
 }
 
-// The same over Earth, with fitted functions, with the table, and with points spaced by density integral.
+// The picture does not jump over Earth either, with fitted functions, with the table, and with points spaced by density
+// integral.
 TEST_F(GpuOneilScene, CrossesTheTopOfEarthsAtmosphereWithoutAJump) {
   DemoPlanet setup;
   setup.params = Params();

@@ -22,7 +22,7 @@ Rgb grey(double luminance) {
   return {static_cast<float>(luminance), static_cast<float>(luminance), static_cast<float>(luminance)};
 }
 
-// Returns a picture of three stops around `middle`, all of which have full weight.
+// Returns a picture whose luminances span three stops around `middle`. All its pixels have full weight.
 Paint mixed(double middle) {
   return [middle](std::uint32_t x, std::uint32_t y) {
     return grey(middle * std::exp2(1.5 * std::sin(0.37 * x) * std::cos(0.23 * y + 0.1 * x)));
@@ -135,7 +135,7 @@ TEST_F(GpuPost, OperatorsAreThoseOfTheCpu) {
         const std::array<double, 3> expected =
             tonemapped(settings_, static_cast<double>(settings_.exposure), {c[0], c[1], c[2]});
         for (std::size_t k = 0; k < 3; ++k) {
-          // A hundredth of an 8-bit step, the error of logarithms and powers in single precision.
+          // The tolerance is a hundredth of an 8-bit step: the error of logarithms and powers in single precision.
           ASSERT_NEAR(static_cast<double>(got[4 * i + k]), expected[k], 4e-5)
               << op << " of " << c[0] << " " << c[1] << " " << c[2] << ", saturation " << saturation;
         }
@@ -224,7 +224,7 @@ TEST_F(GpuPost, OneBrightPixelDoesNotChangeTheExposure) {
       show(extent, [&](std::uint32_t x, std::uint32_t y) { return x == at && y == 41 ? grey(7e4) : mixed(0.2)(x, y); });
       largest = std::max(largest, std::abs(static_cast<double>(measure_alone().measured / without.measured) - 1.0));
     }
-    // ln(7e4/0.2) of 14 400 samples. In larger pictures one pixel may represent two.
+    // One of 14 400 samples changes the mean by ln(7e4/0.2) / 14 400. In larger pictures one pixel may represent two.
     EXPECT_LT(largest, 1e-3);
   }
 }
@@ -242,7 +242,7 @@ TEST_F(GpuPost, AdaptationDoesNotDependOnTheFrameRate) {
     EXPECT_NEAR(static_cast<double>(found.luminance), expected, 1e-3 * expected) << rate;
     EXPECT_NEAR(static_cast<double>(found.measured), kBright, 1e-3 * kBright);
   }
-  // The exposure does not change in no time, and changes completely after a long time or without adaptation.
+  // The exposure does not change within 0 s, and changes completely after a long time or without adaptation.
   show({32, 16}, [&](std::uint32_t, std::uint32_t) { return grey(kDim); });
   const float before = tonemap_->exposure().read(1).luminance;
   EXPECT_FLOAT_EQ(measure(0.0).luminance, before);
@@ -256,7 +256,7 @@ TEST_F(GpuPost, FixedExposureIsIndependentOfThePicture) {
   std::vector<float> first;
   for (const double rest : {0.001, 50.0}) {
     show({32, 16}, [&](std::uint32_t x, std::uint32_t) { return grey(x == 3 ? 0.2 : rest); });
-    if (!first.empty()) measure(1.0);  // measured luminance has no influence either
+    if (!first.empty()) measure(1.0);  // a measurement must not change the fixed exposure
     const std::vector<float> got = display();
     if (first.empty()) first = got;
     EXPECT_EQ(std::vector<float>(got.begin() + 12, got.begin() + 16),

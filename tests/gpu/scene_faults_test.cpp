@@ -168,7 +168,7 @@ class SceneFaults : public testing::Test {
           EXPECT_OK(changed);
           break;
         }
-        if (changed.ok()) {  // nothing depended on that call
+        if (changed.ok()) {  // the change succeeded without that call
           draw(*scene);
           start_again();
           continue;
@@ -179,7 +179,7 @@ class SceneFaults : public testing::Test {
         expect_same(before, observe(*scene), where);
         if (HasFailure()) return;
       }
-      draw(*scene);  // with the change
+      draw(*scene);  // the changed scene can be drawn
       EXPECT_GE(refused, min_refused[k]) << name << ", kind " << k;
     }
   }
@@ -208,7 +208,7 @@ TEST_F(SceneFaults, CreationIsRefusedAtEveryCall) {
         EXPECT_OK(made);
         break;
       }
-      if (made.ok()) continue;  // nothing depended on that call
+      if (made.ok()) continue;  // the scene was created without that call
       ++refused;
       EXPECT_EQ(made.error().code, ErrorCode::out_of_memory) << n << ": " << made.error().message;
       EXPECT_EQ(faults::live_objects(), objects) << n;
@@ -279,7 +279,7 @@ TEST_F(SceneFaults, AFailedFrameHasNoEffectOnLaterOnes) {
   }
 }
 
-// Tests on a real device, at some of the calls: the picture is unchanged byte for byte.
+// On a real device, only some of the calls fail. The picture must be unchanged byte for byte.
 class SceneFaultsOnDevice : public testing::Test {
  protected:
   void SetUp() override {
@@ -346,7 +346,7 @@ TEST_F(SceneFaultsOnDevice, ThePictureIsUnchanged) {
   EXPECT_NE(draw(), with_pane);
 }
 
-// Commands are recorded but not submitted: those of a frame, and those of a build of the tables.
+// The commands of a frame, and those of a build of the tables, are recorded but not submitted.
 TEST_F(SceneFaultsOnDevice, ThePictureIsUnchangedWhenSubmittingFails) {
   const std::vector<float> first = draw();
   faults::arm(Kind::submission, 0);

@@ -96,7 +96,7 @@ TEST_F(GpuSceneModels, HomogeneousPerPixelIsTheModel) {
   scene_.scattering.evaluate = ModelEvaluation::pixel;
   for (const bool falloff : {false, true}) {
     scene_.homogeneous.falloff = falloff;
-    // In the atmosphere, and from space down to the ground, with more haze.
+    // The view is level in a hazy atmosphere, or from space down to the ground.
     for (const float altitude_m : {1500.0F, 300000.0F}) {
       scene_.camera.altitude_m = altitude_m;
       scene_.camera.pitch_deg = altitude_m > 1e5F ? -60.0F : 0.0F;

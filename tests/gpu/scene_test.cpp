@@ -25,8 +25,8 @@ Params with_small_tables(Params params = {}) {
   return params;
 }
 
-// Returns a small planet. Its horizon is near, so its terrain has few levels, which take most of the time apart from
-// the tables.
+// Returns a small planet. Its horizon is near, so its terrain has few levels. Apart from the tables, levels take most
+// of the time.
 Params small_planet() {
   Params params = with_small_tables();
   params.planet.radius_m = 100.0e3F;
@@ -224,7 +224,7 @@ TEST_F(GpuScene, ChangesLeadToTheSamePictureAsCreation) {
   EXPECT_EQ(draw(*changed, {}).rgb, before.rgb);
 }
 
-// Options for viewers: reused shadow maps, tables built in slices, and coarser terrain.
+// Viewers use these options: reused shadow maps, tables built in slices, and coarser terrain.
 TEST_F(GpuScene, DrawsForViewers) {
   SceneDesc desc;
   desc.extent = kSmall;

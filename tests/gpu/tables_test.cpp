@@ -1,5 +1,5 @@
-// The scattering tables: how far what the renderer reads from them is from the path tracer. The floors are those of
-// docs/tables.md, with room for the noise of the few paths traced here.
+// Compares the light that the renderer reads from the scattering tables with the path tracer. The limits are those of
+// docs/tables.md, plus an allowance for the noise of the few paths that are traced here.
 #include <algorithm>
 #include <cmath>
 
@@ -41,7 +41,7 @@ std::vector<RayQuery> skies(std::initializer_list<double> elevations_deg) {
   return out;
 }
 
-// From the shore of the Dead Sea and a little higher.
+// Returns random rays from altitudes of down to -430 m, the shore of the Dead Sea.
 std::vector<RayQuery> below_sea_level(int count) {
   std::vector<RayQuery> out = random_rays(13, count, 5.0, 90.0);
   for (std::size_t i = 0; i < out.size(); ++i)
@@ -49,8 +49,9 @@ std::vector<RayQuery> below_sea_level(int count) {
   return out;
 }
 
-// Turbid air near the horizon under a low sun: light scattered many times, of which the last orders are estimated.
-// Path tracer's values (standard errors of 0.1 to 0.5 % of a ray's largest channel) of
+// A ray near the horizon of a turbid atmosphere under a low sun. Its light has been scattered many times, and the
+// tables estimate the last orders. The values are those of the path tracer, with standard errors of 0.1 to 0.5 % of a
+// ray's largest channel:
 //   tyndall probe --model reference --orders 24 --samples 150000 --seed 3 --queries RAYS.csv
 //     --set atmosphere.aerosol_density=11.36 --set planet.ground_albedo=0.2
 struct TurbidRay {
@@ -124,8 +125,8 @@ TEST_F(ScatteringTablesTest, MatchThePathTracer) {
   EXPECT_LE(errors(model, params, random_rays(11, 40, 0.0, 90.0), 6000).mean(), 0.007);
 }
 
-// Under a low sun in turbid air, single scattering grows several times between two altitudes of the table. The eyes
-// stand between them.
+// Under a low sun in a turbid atmosphere, single scattering grows by a large factor from one altitude of the table to
+// the next. The eyes are between two of these altitudes.
 TEST_F(ScatteringTablesTest, MatchSingleScatteringBetweenAltitudesInATurbidAtmosphere) {
   Params params;
   params.atmosphere.aerosol_density = 18.94F;  // an optical depth of 0.5
@@ -183,8 +184,8 @@ TEST_F(ScatteringTablesTest, MatchThePathTracerInATurbidAtmosphereNearTheHorizon
   EXPECT_LE(errors.percentile(1.0), 0.05);
 }
 
-// From below sea level: downward rays along which the sun sets, and eyes below the lowest altitude of the tables. Path
-// tracer's values (standard errors below 0.5 and 2 % of a ray's largest channel) of
+// Rays from below sea level: downward rays along which the sun sets, and rays of eyes below the lowest altitude of the
+// tables. The values are those of the path tracer, with standard errors below 0.5 and 2 % of a ray's largest channel:
 //   tyndall probe --model reference --samples 600000 --queries RAYS.csv (the first five rays)
 //   tyndall probe --model reference --orders 30 --samples 8000 --queries RAYS.csv
 constexpr TurbidRay kSunsetRays[] = {

@@ -90,7 +90,7 @@ TEST_F(ConfigFileCache, DamagedFilesAreReportedInOneLine) {
     EXPECT_EQ(note(good.substr(0, length)), says("truncated"));
   EXPECT_EQ(note(good.substr(0, good.size() - 1)), says("truncated"));
   EXPECT_EQ(note(good + "x"), says("damaged"));
-  // Flip one bit anywhere.
+  // Flip one bit in any of the bytes.
   for (std::size_t at = 0; at < good.size(); ++at) {
     std::string flipped = good;
     flipped[at] = static_cast<char>(flipped[at] ^ 4);
@@ -109,7 +109,7 @@ TEST_F(ConfigFileCache, DamagedFilesAreReportedInOneLine) {
   // Rewriting the entry repairs it.
   newer.write("key", bytes_of(contents));
   EXPECT_EQ(newer.read("key", 1000), contents);
-  // Another key's file under this key's name.
+  // A file of another key is rejected under this key's name.
   cache.write("other", bytes_of(contents));
   overwrite(file, contents_of(cache.path("other")));
   EXPECT_FALSE(cache.read("key", 1000));

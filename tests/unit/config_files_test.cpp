@@ -148,7 +148,7 @@ TEST_F(Files, LeftoversOfKilledRunsAreRemoved) {
   const auto age = [&](const std::string& name) {
     std::filesystem::last_write_time(at(name), std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
   };
-  // A run that is killed before it commits, on a file system without unnamed temporary files.
+  // The child is killed before it commits, on a file system without unnamed temporary files.
   const pid_t child = ::fork();
   if (child == 0) {
     refuse_nameless = true;

@@ -134,7 +134,7 @@ TEST_F(SceneFile, APathSurvivesARoundTrip) {
   EXPECT_TRUE(back.path.loop);
 }
 
-TEST_F(SceneFile, PathsThatAreWrongSayWhereAndWhy) {
+TEST_F(SceneFile, ErrorsInPathsAreReportedWithTheirLine) {
   const std::string two = "[[path]]\ntime_s = 0\n[[path]]\ntime_s = 5\n";
   const std::pair<std::string, std::string> wrong[] = {
       {"path = 3", "s.toml:1: 'path' is not a list of frames; expected one table [[path]] for each frame"},
@@ -184,7 +184,7 @@ TEST_F(SceneFile, PartialFilesPreserveTheRestAndTheLastWins) {
   }
 }
 
-TEST(SceneFileMessages, NameTheLineTheKeyAndWhatIsAllowed) {
+TEST(SceneFileMessages, NameTheLineTheKeyAndTheAllowedValues) {
   EXPECT_EQ(failure("[atmosphere]\n\nmie_gg = 0.5\n"),
             "s.toml:3: unknown parameter 'atmosphere.mie_gg'; did you mean 'atmosphere.mie_g'?");
   EXPECT_EQ(failure("[atmosphre]\nmie_g = 0.5\n"), "s.toml:1: unknown table [atmosphre]; did you mean [atmosphere]?");

@@ -96,7 +96,7 @@ TEST(ConfigSettings, FloatsReadBackExactly) {
   }
 }
 
-TEST(ConfigSettings, PlacesReadBackInDoublePrecision) {
+TEST(ConfigSettings, PositionsReadBackInDoublePrecision) {
   std::mt19937_64 random(8);
   for (const char* key : {"camera.position_m", "meshes.position_m"}) {
     const Row& row = *find_row(key);
@@ -116,13 +116,13 @@ TEST(ConfigSettings, PlacesReadBackInDoublePrecision) {
       ASSERT_EQ(place(filed), place(settings)) << value_text(row, settings);
     }
   }
-  // One centimetre at five thousand kilometres, which a float would round to half a metre.
+  // Positions resolve a centimetre at a distance of 5000 km, where floats are half a metre apart.
   Settings far;
   ASSERT_TRUE(set(far, "camera.position_m=5000000.01,-2000000.02,0.5").ok());
   EXPECT_EQ(far.scene.camera.position_m, DVec3(5000000.01, -2000000.02, 0.5));
 }
 
-TEST(ConfigSettings, MessagesSayWhatWhereAndWhatIsAllowed) {
+TEST(ConfigSettings, MessagesNameTheErrorItsSourceAndTheAllowedValues) {
   EXPECT_EQ(failure("atmosphere.mie_gg=0.5"),
             "--set: unknown parameter 'atmosphere.mie_gg'; did you mean 'atmosphere.mie_g'?");
   EXPECT_EQ(failure("atmopshere.mie_g=0.5"),

@@ -43,7 +43,7 @@ shared::EpipolarConstants with_sun(const Vec3& sun, const Params& params = {}) {
   return epipolar_constants(inputs, {}, params);
 }
 
-// In the order of shared/epipolar.h.
+// Returns the starts of the four sides, in the order of shared/epipolar.h.
 std::array<float, 4> side_starts(const shared::EpipolarConstants& c) {
   return {c.left_start, c.bottom_start, c.right_start, c.top_start};
 }
@@ -97,7 +97,7 @@ TEST(EpipolarConstants, TheEpipoleIsWhereTheSunIsSeen) {
 
 TEST(EpipolarConstants, TheEpipoleFollowsTheCamera) {
   FrameInputs inputs = level_view();
-  // To the east, tilted up by 30 degrees. The camera's position does not matter for infinitely distant points.
+  // The camera looks east, tilted up by 30 degrees. Its position does not matter for infinitely distant points.
   const double s = 0.5;
   const double c = std::cos(std::numbers::pi / 6.0);
   const double columns[4][3] = {{0, 0, 1}, {-s, c, 0}, {-c, -s, 0}, {1e6, 2e3, -3e5}};
@@ -111,7 +111,7 @@ TEST(EpipolarConstants, TheEpipoleFollowsTheCamera) {
   EXPECT_NEAR(static_cast<double>(out.sun_y / out.sun_w), 45.0, 1e-3);
 }
 
-TEST(EpipolarConstants, ASunAtRightAnglesIsADirection) {
+TEST(EpipolarConstants, ASunAtARightAngleGivesADirection) {
   struct Case {
     Vec3 sun;
     double x, y;  // direction of the epipole in the picture
@@ -162,7 +162,7 @@ TEST(EpipolarConstants, SlicesEndWhereLinesFromTheEpipoleLeaveThePicture) {
   }
 }
 
-TEST(EpipolarConstants, OnePixelHasAPerimeterToDivideBy) {
+TEST(EpipolarConstants, APictureOfOnePixelHasAPositivePerimeter) {
   FrameInputs inputs = level_view();
   inputs.extent = {1, 1};
   for (const Vec3& sun : {Vec3{0, 0, -1}, Vec3{0, 0, 1}, Vec3{1, 0, 0}, Vec3{0, 1, -1}}) {

@@ -19,8 +19,8 @@ inline VkImageView view_number(std::uintptr_t number) {
   return reinterpret_cast<VkImageView>(number);  // NOLINT(performance-no-int-to-ptr): never used as one
 }
 
-// A camera at 1200 m that looks slightly down and to the north-east, under a sun in the south-east. Three cascades
-// along the sun, each a square that covers the view up to its far distance.
+// The inputs of a frame. In right(), a camera at 1200 m looks slightly down and to the north-east, the sun is in the
+// south-east, and each of three square cascades covers the view up to its far distance.
 struct Case {
   EffectDesc desc;
   Params params;

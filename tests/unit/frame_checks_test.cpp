@@ -207,7 +207,7 @@ TEST(FrameChecks, UnlikelyCascadesAreRemarkedOn) {
     place_cascades(s);
     set_row(s.cascades[0].shadow_from_world, 0, 2.4e-4, 0.0, -1.8e-4, -0.55 - 2.4e-4 * 300.0 - 1.8e-4 * 500.0);
   });
-  // Ranges in other units than the maps were drawn for.
+  // The ranges have another unit than the maps.
   expect_remark({"reach less far than their ranges", "far_m"}, [](Case& s) {
     s.inputs.camera.world_from_view = camera_at(300.0, 20.0, -500.0, 0.4, -0.01);
     place_cascades(s);
@@ -240,8 +240,8 @@ TEST(FrameChecks, UnlikelySunsAndMissingTablesAreRemarkedOn) {
   expect_remark({"irradiance is 0", "no in-scattering"}, [](Case& s) { s.inputs.sun.irradiance = Vec3(0.0F); });
 }
 
-// Various positions, headings and pitches, with and without cascades. The inverse of every camera without roll that is
-// rotated about more than one axis is detected in the first frame.
+// Cameras have various positions, headings and pitches, with and without cascades. The first frame detects the inverse
+// of every camera that has no roll and is rotated about more than one axis.
 TEST(FrameChecks, InvertedViewsAreRemarkedOn) {
   int seen = 0, all = 0;
   for (const double distance : {0.0, 30.0, 5000.0, 2.0e5}) {
@@ -267,7 +267,7 @@ TEST(FrameChecks, InvertedViewsAreRemarkedOn) {
     }
   }
   EXPECT_EQ(seen, all);
-  // With cascades, also the inverse of a camera that is rolled or rotated about one axis.
+  // With cascades, the inverse of a camera that is rolled or rotated about one axis is detected, too.
   for (const double roll : {0.0, 0.4}) {
     const std::string text = remark_of([&](Case& s) {
       s.inputs.camera.world_from_view =

@@ -33,7 +33,7 @@ struct KeyHash {
 };
 using KeySet = std::unordered_set<PipelineKey, KeyHash>;
 
-// Calls body(params) for all combinations of what selects steps and pipelines.
+// Calls body(params) for all combinations of the parameters that select steps and pipelines.
 template <typename Body>
 void for_each_mode(Body&& body) {
   Params p;
@@ -144,13 +144,14 @@ TEST(FrameSteps, CascadesAreMarchedTogetherOrApart) {
                 {shared::kOneCascade, 0}, {shared::kOneCascade, 1}, {shared::kOneCascade, 2}, {shared::kFinish, 1}}));
   EXPECT_EQ(marches(CascadeProcessing::multi_pass_instanced, three),
             (std::vector<Push>{{shared::kCascadesAside, 0}, {shared::kFinish, 3}}));
-  // Without cascades all kinds are one pass.
+  // Without cascades, every kind of processing has a single pass.
   for (const CascadeProcessing processing : {CascadeProcessing::multi_pass, CascadeProcessing::multi_pass_instanced}) {
     EXPECT_EQ(marches(processing, {{64, 64}, 0, 0, false}), (std::vector<Push>{{shared::kAllCascades, 0}}));
   }
 }
 
-// The constants say what the parameters say, and have one value where they have no meaning.
+// Specialisation constants follow from the parameters. A parameter that has no effect does not change them, so that the
+// pipelines are equal.
 TEST(FrameSteps, ConstantsFollowTheModes) {
   for_each_mode([&](const Params& params) {
     const ScatteringParams& s = params.scattering;
@@ -327,7 +328,7 @@ TEST(FrameSteps, BarriersAreOnlyWhereTheyAreNeeded) {
                                                                                   VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT));
 }
 
-// prepare_pipelines() makes what frames need, and nothing else; record() makes nothing.
+// prepare_pipelines() creates the pipelines that frames need and no others; record() creates none.
 TEST(FrameSteps, AllPipelinesAreFound) {
   for (const bool colors : {false, true}) {
     EffectDesc desc;
@@ -353,10 +354,10 @@ TEST(FrameSteps, AllPipelinesAreFound) {
   }
 }
 
-TEST(FrameSteps, SettingsMakeThePipelinesOfTheirFrames) {
+TEST(FrameSteps, SetParamsCreatesThePipelinesOfItsFrames) {
   std::uint32_t turn = 0;
   for_each_mode([&](const Params& params) {
-    if (++turn % 37 != 0) return;  // a prime: all parameters vary
+    if (++turn % 37 != 0) return;  // a prime number, so that all parameters vary
     const std::vector<PipelineKey> list = pipelines_of_frames(full_desc(), params);
     const KeySet made(list.begin(), list.end());
     for (const FrameShape& shape : kShapes) {
@@ -374,7 +375,8 @@ TEST(Resources, HaveUniqueNames) {
   for (const ResourceInfo& info : kResourceInfo) EXPECT_TRUE(names.insert(info.name).second) << info.name;
 }
 
-// From 3 orders on, late orders follow those of `tables.orders`, and no pass of `scatter` completes the sums.
+// With tables.orders >= 3, the steps of the late orders follow those of the full orders. With fewer, one more pass of
+// `scatter` completes the sums instead.
 TEST(TableSteps, LateOrdersFollowFromThreeOrdersOn) {
   for (std::uint32_t orders = 1; orders <= 5; ++orders) {
     Params params;
@@ -405,7 +407,7 @@ TEST(TableSteps, WriteStaleTablesAndReadOnlyWrittenResources) {
     for (const Step& step : table_steps(params, stale)) {
       EXPECT_TRUE(std::find(names.begin(), names.end(), step.name) != names.end()) << step.name;
       for (const Use& use : uses_of(step)) {
-        // The first turn of `scatter` writes what later turns add to.
+        // The first pass of `scatter` writes the sums that later passes add to.
         const bool reads = (use.access & kWriteAccess) == 0 && info_of(use.resource).lifetime == Lifetime::build;
         EXPECT_TRUE(!reads || written.contains(use.resource)) << step.name << ' ' << name_of(use.resource);
       }

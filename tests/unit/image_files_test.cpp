@@ -249,7 +249,7 @@ void write_windows(const std::string& path, const Imath::Box2i& display, const I
 }
 
 TEST_F(ImageFiles, ExrIsItsDisplayWindow) {
-  // Data beyond the right edge, and none left of column 3 and above row 2.
+  // The data extends beyond the right edge, and is missing left of column 3 and above row 2.
   write_windows(at("a.exr"), {{0, 0}, {15, 8}}, {{3, 2}, {20, 8}});
   const Result<File> file = read(at("a.exr"));
   ASSERT_TRUE(file.ok()) << file.error().message;
@@ -271,7 +271,7 @@ TEST_F(ImageFiles, ExrIsItsDisplayWindow) {
   ASSERT_TRUE(whole.ok());
   EXPECT_EQ(whole.value().note, "");
   EXPECT_LT(compare(file.value().image, whole.value().image).psnr_db, 40.0);
-  // No data inside the display window, and a frame far larger than the data.
+  // The data is outside the display window. In another file, the display window is far larger than the data.
   write_windows(at("c.exr"), {{0, 0}, {3, 3}}, {{100, 100}, {103, 103}});
   const Result<File> outside = read(at("c.exr"));
   ASSERT_TRUE(outside.ok());

@@ -41,7 +41,7 @@ TEST(ImageMetrics, RelativeErrorDoesNotDependOnTheUnit) {
   for (float& value : a2.rgb) value *= 1024.0F;
   for (float& value : b2.rgb) value *= 1024.0F;
   EXPECT_NEAR(compare(a, b).mean_relative_error, compare(a2, b2).mean_relative_error, 1e-12);
-  // The floor prevents values of a ten-millionth of the mean from counting as wrong by a factor.
+  // Without the floor, values of a ten-millionth of the mean would have a huge relative error.
   EXPECT_NEAR(compare(a, b).mean_relative_error, (0.5 / 1.5 + 0.2) / 6.0, 1e-4);
 }
 

@@ -20,7 +20,7 @@ constexpr double kTolerance = 1e-3;  // the promised tolerance; the inputs are f
 
 double at(const Vec3& v, std::size_t c) { return c == 0 ? v.x : c == 1 ? v.y : v.z; }
 
-// Equation 5.
+// Returns the optical length of a layer by equation 5.
 double printed_length(double zenith_m, double theta_deg) {
   return zenith_m / (std::cos(theta_deg * kPi / 180.0) + 0.15 * std::pow(93.885 - theta_deg, -1.253));
 }
@@ -32,12 +32,12 @@ struct Printed {
     return (1.0 - g * g) / (4.0 * kPi * std::pow(1.0 + g * g + 2.0 * g * cos_theta, 1.5));
   }
   double sun(double air_m, double haze_m) const { return std::exp(-(air * air_m + haze_ex * haze_m)); }
-  // Equation 4.
+  // Returns the in-scattering over the distance s by equation 4.
   double near_ground(double e_sun, double s, double cos_theta) const {
     const double ex = air + haze_ex;
     return e_sun * (air * f_air(cos_theta) + haze * f_haze(cos_theta)) / ex * (1.0 - std::exp(-ex * s));
   }
-  // The sky equation of two shells.
+  // Returns the radiance of the sky by the equation for two shells.
   double sky(double e_sun, double air_m, double haze_m, double cos_theta) const {
     const double ex = air + haze_ex;
     return near_ground(e_sun, haze_m, cos_theta) +
@@ -139,14 +139,14 @@ TEST(Homogeneous, TheGroundIsSeenThroughEquations3And4) {
 TEST(Homogeneous, LimitsOfDistanceAndDensity) {
   Params params;
   const models::HomogeneousLengths lengths;
-  // On the ground, looking down: distance 0.
+  // An eye on the ground looks down, so the distance is 0.
   models::Answer answer = models::homogeneous_light(models::homogeneous_from_params(params, lengths),
                                                     models::ray_from_angles(0.0, kPi, 0.5, 0.0));
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_EQ(answer.radiance[k], 0.0);
     EXPECT_EQ(answer.transmittance[k], 1.0);
   }
-  // So far and so dense that nothing is transmitted: the in-scattering of an infinite ray.
+  // The ray is so long and the medium so dense that nothing is transmitted, as along an infinite ray.
   params.atmosphere.custom_coefficients = true;
   params.atmosphere.rayleigh_scattering = {0.5F, 0.5F, 0.5F};
   params.atmosphere.mie_scattering = params.atmosphere.mie_absorption = {0.0F, 0.0F, 0.0F};
@@ -158,7 +158,7 @@ TEST(Homogeneous, LimitsOfDistanceAndDensity) {
     EXPECT_NEAR(answer.radiance[k] / (e_sun * 3.0 / (16.0 * kPi) * 2.0), 1.0, 1e-6);
     EXPECT_EQ(answer.transmittance[k], 0.0);
   }
-  // No medium and, continuously, almost none.
+  // The light goes to 0 with the coefficient, and is 0 without a medium.
   for (const float beta : {1e-9F, 1e-12F, 1e-30F, 0.0F}) {
     params.atmosphere.rayleigh_scattering = {beta, beta, beta};
     for (const double view : {0.0, 1.5, 1.6, kPi}) {
@@ -173,7 +173,8 @@ TEST(Homogeneous, LimitsOfDistanceAndDensity) {
   }
 }
 
-// Cases that the publication leaves open: no light from a set sun, space around the atmosphere, and no NaN.
+// The publication does not define these cases. A sun that has set gives no light, the atmosphere ends in space, and no
+// ray gives NaN.
 TEST(Homogeneous, NightSpaceAndEveryRayAreDefined) {
   std::mt19937 engine(5);
   const auto uniform = [&](double low, double high) {
@@ -204,8 +205,8 @@ TEST(Homogeneous, NightSpaceAndEveryRayAreDefined) {
   EXPECT_EQ(models::homogeneous_sun(medium, -0.001), (Rgb{0.0, 0.0, 0.0}));
 }
 
-// With densities that fall with altitude: the published results at the ground, transparent space high up, and the whole
-// layer below.
+// With densities that fall with altitude, results at the ground are the published ones, space is transparent, and a
+// view down from space crosses the whole layer.
 TEST(Homogeneous, FalloffAgreesAtTheGroundAndThinsOut) {
   models::HomogeneousLengths lengths;
   const shared::Homogeneous published = models::homogeneous_from_params({}, lengths);
@@ -224,7 +225,7 @@ TEST(Homogeneous, FalloffAgreesAtTheGroundAndThinsOut) {
     last = sky;
   }
   EXPECT_LT(last, 1e-4);
-  // Straight down from orbit: the vertical optical lengths.
+  // Straight down from orbit, the optical lengths are the vertical ones.
   const models::Answer down = models::homogeneous_light(falling, models::ray_from_angles(400000.0, kPi, 0.6, 1.0));
   for (std::size_t k = 0; k < 3; ++k) {
     const double tau = at(falling.air_scattering, k) * 8400.0 + at(falling.haze_extinction, k) * 1250.0;
@@ -232,7 +233,7 @@ TEST(Homogeneous, FalloffAgreesAtTheGroundAndThinsOut) {
   }
 }
 
-// The sky's irradiance against a plain sum over many directions.
+// Compares the sky's irradiance with a plain sum over many directions.
 TEST(Homogeneous, TheSkysIrradianceIsTheSumOfTheSky) {
   const shared::Homogeneous medium = models::homogeneous_from_params({}, {});
   for (const double sun : {0.0, 0.8, 1.3, 1.55}) {

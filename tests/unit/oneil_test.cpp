@@ -91,8 +91,9 @@ Segment segment(const shared::Medium& m, const Point& origin, const Point& view)
   return out;
 }
 
-// The published equations: in units of the atmosphere's thickness and with the published constants, by the sky's
-// listing for rays that leave the atmosphere, and by the text's reversed look-ups for those that end on the ground.
+// Evaluates the published equations in units of the atmosphere's thickness and with the published constants. Rays that
+// leave the atmosphere follow the listing for the sky, and rays to the ground the reversed look-ups that the text
+// describes.
 Answer printed(const shared::Medium& m, const Question& q, int samples) {
   const double inner = m.planet_radius_m;
   const double scale = 1.0 / static_cast<double>(m.atmosphere_height_m);
@@ -166,7 +167,8 @@ TEST(Oneil, PrintedEquationsAreASpecialCase) {
   }
 }
 
-// The same sums with numerical density integrals: the difference is the error of the fit, times the optical depth.
+// The sums are compared with the same sums over numerical density integrals. They differ by the error of the fit, times
+// the optical depth.
 TEST(Oneil, FittedDensityIntegralsGiveTheSameSums) {
   const shared::Medium m = planet(6360.0e3, 120.0e3, 7994.0, 1200.0);
   OneilSettings settings;
@@ -199,7 +201,7 @@ TEST(Oneil, FittedDensityIntegralsGiveTheSameSums) {
              brute::of(m.mie_scattering)[c] * std::exp(-h / 1200.0) * brute::mie_phase(m, q.ray.cos_view_sun));
       }
     }
-    if (!lit) continue;  // there the points differ: they cover the lit part only
+    if (!lit) continue;  // the model spreads its points over the lit part only, so they differ from these
     EXPECT_LT(error_of(oneil(model, q.ray).radiance, truth), 0.001) << q.ray.altitude_m << " " << q.ray.cos_view_zenith;
     ++compared;
   }
@@ -225,7 +227,7 @@ TEST(Oneil, ScaleFunctionFitsAnyPlanet) {
     EXPECT_LT(model.rayleigh_at_sea_level.worst, p.worst_at_sea_level) << p.name;
     EXPECT_LT(model.rayleigh.worst, p.worst) << p.name;
     EXPECT_LE(model.rayleigh.rms, model.rayleigh.worst) << p.name;
-    // The errors that the model reports, against an independent numerical integration.
+    // Compare the errors that the model reports with an independent numerical integration.
     shared::Medium open = m;
     open.atmosphere_height_m = static_cast<float>(40.0 * p.height_m);
     const shared::OneilScale& s = model.constants.rayleigh;
@@ -351,7 +353,7 @@ TEST(Oneil, NightIsDarkAndNothingIsUndefined) {
           for (std::size_t c = 0; c < 3; ++c) {
             EXPECT_TRUE(std::isfinite(answer.radiance[c]) && answer.radiance[c] >= 0.0);
             EXPECT_TRUE(std::isfinite(answer.transmittance[c]) && answer.transmittance[c] >= 0.0);
-            // Away from the sun and down, the planet is in between.
+            // The ray goes down and away from the sun, so the planet hides the sun from all of it.
             if (method != OneilIntegralMethod::published && q.ray.cos_sun_zenith < -0.999 &&
                 q.ray.cos_view_zenith < -0.99) {
               EXPECT_EQ(answer.radiance[c], 0.0);

@@ -14,7 +14,7 @@
 namespace tyndall {
 namespace {
 
-// Returns other values of a parameter: every choice, or numbers across its range.
+// Returns values of a parameter: every choice, or numbers from all over its range.
 std::vector<std::vector<std::uint32_t>> values_of(const ParamInfo& info) {
   const auto words = [](auto... values) {
     std::vector<std::uint32_t> out;
@@ -68,7 +68,7 @@ struct Requirement {
   bool pipelines = false, buffers = false, tables = false;
 };
 
-// Returns everything that a change of this parameter may require. Only missing pipelines count.
+// Returns everything that a change of this parameter may require. Pipelines that exist already are not counted.
 Requirement requirement_of(const ParamInfo& info) {
   EffectDesc desc;
   desc.shadow_colors = true;
@@ -88,7 +88,7 @@ Requirement requirement_of(const ParamInfo& info) {
   return out;
 }
 
-TEST(ParamAffects, IsWhatTheListsOfStepsAndTheTablesNeed) {
+TEST(ParamAffects, AgreesWithTheStepsAndTheTables) {
   for (const ParamInfo& info : param_table()) {
     const Requirement needs = requirement_of(info);
     const Affects expected = needs.tables      ? Affects::Tables
@@ -96,13 +96,13 @@ TEST(ParamAffects, IsWhatTheListsOfStepsAndTheTablesNeed) {
                              : needs.pipelines ? Affects::Pipeline
                                                : Affects::Frame;
     EXPECT_EQ(static_cast<int>(info.affects), static_cast<int>(expected)) << info.group << "." << info.name;
-    // One declaration per parameter suffices.
+    // A parameter has only one declaration, so it must not need both tables and other objects.
     EXPECT_FALSE(needs.tables && (needs.buffers || needs.pipelines)) << info.group << "." << info.name;
   }
 }
 
 // The terrain is reloaded if the planet's radius or a parameter of its group that declares so has changed.
-TEST(ParamAffects, OfTheTerrainIsItsKey) {
+TEST(ParamAffects, TerrainIsStaleWhenItsKeyChanges) {
   using scene::SceneParams;
   const auto group = [](const SceneParams& p) { return scene::terrain_key(p.terrain, {}); };
   std::size_t rows = 0;

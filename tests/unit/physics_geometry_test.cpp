@@ -35,7 +35,7 @@ TEST(physics_geometry, altitude_of_a_position_near_the_ground) {
     const float y = static_cast<float>(rng(-500.0, 9000.0));
     const Real r = std::sqrt(Real(x) * x + Real(z) * z + (Real(y) + kRadius) * (Real(y) + kRadius));
     const Real expected = r - kRadius;
-    // Within a few units in the last place of the summands.
+    // The tolerance is a few units in the last place of the summands.
     const double sum = (static_cast<double>(x) * x + static_cast<double>(z) * z) / (2.0 * kRadius) + std::abs(y);
     EXPECT_NEAR(glsl32::altitude_of(x, y, z, kRadius), static_cast<double>(expected), 6.0e-7 * sum + 1.0e-6);
   }
@@ -86,7 +86,7 @@ TEST(physics_geometry, segments_of_particular_rays) {
   float start = -1.0F;
   float end = -1.0F;
   bool ground = false;
-  // Straight up, straight down.
+  // Rays straight up and straight down.
   EXPECT_TRUE(glsl32::atmosphere_segment(0.0F, 1.0F, kTop, kRadius, start, end, ground));
   EXPECT_EQ(start, 0.0F);
   EXPECT_NEAR(end, 80000.0F, 0.1F);
@@ -94,7 +94,7 @@ TEST(physics_geometry, segments_of_particular_rays) {
   EXPECT_TRUE(glsl32::atmosphere_segment(5000.0F, -1.0F, kTop, kRadius, start, end, ground));
   EXPECT_NEAR(end, 5000.0F, 0.1F);
   EXPECT_TRUE(ground);
-  // From space: down through the whole atmosphere, past it, and away from it.
+  // Rays from space go down through the whole atmosphere, past it, or away from it.
   EXPECT_TRUE(glsl32::atmosphere_segment(1.0e6F, -1.0F, kTop, kRadius, start, end, ground));
   EXPECT_NEAR(start, 920000.0F, 1.0F);
   EXPECT_NEAR(end, 1.0e6F, 1.0F);
@@ -103,7 +103,7 @@ TEST(physics_geometry, segments_of_particular_rays) {
   EXPECT_FALSE(glsl32::atmosphere_segment(1.0e6F, 1.0F, kTop, kRadius, start, end, ground));
   EXPECT_EQ(start, 0.0F);
   EXPECT_EQ(end, 0.0F);
-  // On the ground: a downward ray has length 0, a level ray reaches the sky.
+  // From the ground, a downward ray has length 0, and a level ray reaches the sky.
   EXPECT_FALSE(glsl32::atmosphere_segment(0.0F, -0.5F, kTop, kRadius, start, end, ground));
   EXPECT_TRUE(ground);
   EXPECT_TRUE(glsl32::atmosphere_segment(0.0F, 0.0F, kTop, kRadius, start, end, ground));
@@ -119,7 +119,7 @@ TEST(physics_geometry, segments_of_particular_rays) {
   EXPECT_NEAR(static_cast<double>(true_altitude_along(-300.0F, -0.01F, end, kRadius)), -600.0, 0.1);
 }
 
-// The ground sphere has no step at sea level, and its horizon none from 500 m below to 500 m above.
+// The altitude of the ground sphere has no step at sea level, and its horizon has none between -500 m and 500 m.
 TEST(physics_geometry, the_ground_below_sea_level_begins_at_sea_level) {
   for (const double h : {-1.0e-3, -0.5, -20.0, -500.0, -11000.0}) {
     const float altitude = static_cast<float>(h);

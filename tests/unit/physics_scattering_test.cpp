@@ -37,7 +37,7 @@ std::vector<Query> queries(const shared::Medium& m, int count) {
     double h = 0.0;
     switch (i % 6) {
       case 0:
-        // At sea level and below it.
+        // The eye is at sea level or below it.
         h = i % 12 == 0 ? 0.0 : -450.0 * uniform(0.0, 1.0);
         break;
       case 1: h = 3000.0 * std::pow(uniform(0.0, 1.0), 2.0); break;
@@ -180,7 +180,7 @@ TEST(physics_scattering, transmittance_of_the_answer) {
   EXPECT_EQ(missed.transmittance[2], 1.0);
 }
 
-// Every corner of the parameters' ranges: results must be finite, however odd the planet.
+// Parameters are at the ends of their ranges, in all combinations. However odd the planet, results must be finite.
 TEST(physics_scattering, extreme_parameters_stay_finite) {
   std::mt19937 engine(11);
   const auto pick = [&engine](std::initializer_list<double> values) {
@@ -221,7 +221,7 @@ TEST(physics_scattering, nothing_is_lit_deep_in_the_shadow) {
   EXPECT_EQ(night.radiance[2], 0.0);
 }
 
-// The angles are converted to the cosines of a spherical triangle.
+// The angle between view and sun follows from the zenith angles and the azimuth by the spherical law of cosines.
 TEST(physics_scattering, ray_from_angles) {
   const models::Ray towards = models::ray_from_angles(10.0, 1.0, 1.0, 0.0);
   EXPECT_NEAR(towards.cos_view_sun, 1.0, 1.0e-15);
@@ -229,7 +229,7 @@ TEST(physics_scattering, ray_from_angles) {
   EXPECT_NEAR(away.cos_view_sun, std::cos(1.5), 1.0e-15);
 }
 
-// The fixed quadrature of the sky against an adaptive one of the same radiance.
+// Compares the fixed quadrature of the sky with an adaptive one of the same radiance.
 TEST(physics_scattering, sky_irradiance) {
   const shared::Medium m = medium_from_params({});
   const glsl64::Medium wide = glsl64::widen(m);

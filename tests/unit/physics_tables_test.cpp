@@ -30,7 +30,7 @@ TEST_P(TableMapping, TexelCentresMapToThemselves) {
       const double mu = glsl64::view_from_v(t, m, h, v, below);
       ASSERT_GE(mu, -1.0);
       ASSERT_LE(mu, 1.0);
-      // Next to the horizon, the fifth power leaves too little precision in the cosine for the way back.
+      // Next to the horizon, the cosine is nearly constant (a fifth power), so the inverse loses precision.
       const bool grazing = std::abs(mu - glsl64::ground_horizon_cos(h, m.planet_radius_m)) < 1e-7;
       EXPECT_NEAR(glsl64::v_from_view(t, m, h, mu, below), v, grazing ? 0.02 : 2e-6) << i << " " << j;
       if (t.parameterization != 2) {
@@ -83,7 +83,8 @@ TEST_P(TableMapping, AltitudesContinueBelowSeaLevel) {
   EXPECT_EQ(glsl64::table_altitude(m, -11000.0), -500.0);
 }
 
-// The coordinate of a look-up moves the weights between two texels, but never away from the texels.
+// u_for_lookup() may change the weights of two neighbouring texels, but it maps texel centres to themselves and
+// preserves the order of altitudes.
 TEST_P(TableMapping, LookUpsPreserveTexelsAndTheOrderOfAltitudes) {
   const glsl64::TableShape t = shape_of(GetParam());
   for (const float aerosol : {0.0F, 1.0F, 20.0F}) {

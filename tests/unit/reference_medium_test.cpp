@@ -73,7 +73,8 @@ void expect_columns(const Params& params, double tolerance) {
     };
     EXPECT_LT(error(columns.rayleigh, rayleigh, vertical[0]), tolerance) << h << " m, cosine " << cosine;
     EXPECT_LT(error(columns.mie, mie, vertical[1]), tolerance) << h << " m, cosine " << cosine;
-    EXPECT_LT(error(columns.ozone, ozone, vertical[2]), 1e-5) << h << " m, cosine " << cosine;  // kinks
+    // The kinks of the ozone profile limit the accuracy of the quadrature.
+    EXPECT_LT(error(columns.ozone, ozone, vertical[2]), 1e-5) << h << " m, cosine " << cosine;
   }
 }
 
@@ -146,12 +147,12 @@ TEST(ReferenceMedium, SamplesFollowTheGlow) {
   const Glow glow(up, sun);
   ASSERT_GT(glow.fraction, 0.0);
   EXPECT_EQ(Glow(up, up).fraction, 0.0);
-  // Moments of the direction, from the density over uniform directions and from samples.
+  // Compare the moments of the direction that follow from the density with those of samples.
   constexpr int kCount = 400000;
   double norm = 0.0, expected[3] = {}, sampled[3] = {};
   for (int i = 0; i < kCount; ++i) {
     const double turn = 2.0 * oracle::kPi * random.uniform();
-    // Uniform around the glow's axis, in even steps of the cosine.
+    // Directions are uniform around the glow's axis, in even steps of the cosine.
     const Vec w = around(glow.axis, 2.0 * (i + random.uniform()) / kCount - 1.0, std::cos(turn), std::sin(turn));
     const double weight = 4.0 * oracle::kPi * glow.density(w) / kCount;
     const Vec v = glow.sample(random.uniform(), turn, [&] { return random.uniform(); });

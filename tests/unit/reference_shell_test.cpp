@@ -95,7 +95,8 @@ TEST(ReferenceShell, SingleScatteringMatchesQuadrature) {
   }
 }
 
-// Two scattering events with uniform sampling of everything: slow, but simple enough to be trusted.
+// The radiance of exactly two scattering events. Everything is sampled uniformly, which is slow, but simple enough to
+// be trusted.
 struct BruteForce {
   double mean = 0.0, error = 0.0;
 };
@@ -180,7 +181,7 @@ TEST(ReferenceShell, RaysFromSpace) {
   Params p;
   p.planet.ground_albedo = 0.3F;
   const double radius = p.planet.radius_m, top = radius + p.atmosphere.height_m;
-  // Rays past the atmosphere, away from it, and outwards from its edge: no radiance, transmittance 1.
+  // Rays past the atmosphere, away from it, and outwards from its edge have no radiance and a transmittance of 1.
   const auto missed = run(p,
                           {ray(400000.0, 90.0, 30.0, 0.0), ray(400000.0, 10.0, 30.0, 0.0),
                            ray(80000.0, 60.0, 30.0, 0.0), sky(90000.0, 20.0)},
@@ -194,7 +195,7 @@ TEST(ReferenceShell, RaysFromSpace) {
   }
   EXPECT_EQ(run(p, {sky(90000.0, 179.0)}, 1000, 3)[0].transmittance[1], 0.0);
 
-  // The same ray from three of its points: in space, at the edge and just inside.
+  // The eye is at three points of the same ray: in space, at the edge of the atmosphere and just inside.
   const RayQuery far = ray(1000000.0, 150.0, 40.0, 70.0);
   const double r = radius + far.altitude_m, along = r * std::cos(far.view_zenith_rad);
   const double tangent2 = r * r - along * along;

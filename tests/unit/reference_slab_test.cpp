@@ -1,6 +1,6 @@
 // The path tracer on a planet so large that its atmosphere is a plane-parallel layer with known solutions: the closed
 // form of single scattering, the integral equation of isotropic scattering, reciprocity, and conservation of energy.
-// Then conservation of energy on a small planet.
+// Conservation of energy is also tested on a small planet.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -182,7 +182,8 @@ TEST(ReferenceSlab, IsotropicOrdersOverBrightGround) {
 }
 TEST(ReferenceSlab, IsotropicThickLayer) { expect_isotropic({6.0, 6.0, 6.0}, {1.0, 0.99, 0.8}, 0.0, 24, 16384); }
 
-// Helmholtz reciprocity: radiance / cosine of the sun is unchanged when sun and eye are exchanged.
+// Helmholtz reciprocity: the radiance divided by the cosine of the sun's zenith angle does not change when sun and eye
+// are exchanged.
 TEST(ReferenceSlab, Reciprocity) {
   for (const MiePhase phase : {MiePhase::cornette_shanks, MiePhase::henyey_greenstein}) {
     Params p = slab({0.3, 1.0, 3.0}, {0.9, 1.0, 0.8}, 0.76, phase);
@@ -249,7 +250,7 @@ TEST(ReferenceSlab, WhiteFurnaceOfAWholePlanet) {
   const double radius = p.planet.radius_m, top = radius + p.atmosphere.height_m;
   const auto height_m = static_cast<double>(p.atmosphere.height_m);
 
-  // Rays uniform over directions and over the disc, as seen from where they enter.
+  // The rays are uniform over all directions and, for each direction, over the planet's disc.
   constexpr int kBatches = 16, kRays = 250;
   std::mt19937_64 random(17);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -266,8 +267,8 @@ TEST(ReferenceSlab, WhiteFurnaceOfAWholePlanet) {
   const auto estimates = run(p, queries, 32, 50);
 
   for (std::size_t c = 0; c < 3; ++c) {
-    // Sunlight that passes the planet without scattering: the transmittance of those of these rays whose impact
-    // parameter exceeds the radius.
+    // Sunlight may also pass the planet without being scattered. It is given by the transmittance of the rays that do
+    // not hit the ground, whose impact parameter exceeds the radius.
     double mean = 0.0, square = 0.0;
     for (int batch = 0; batch < kBatches; ++batch) {
       double sum = 0.0;

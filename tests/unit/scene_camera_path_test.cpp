@@ -78,8 +78,8 @@ TEST(ScenePath, PassesThroughItsFramesAndPreservesOtherParameters) {
   EXPECT_EQ(at(path, 0.0, base).sun.elevation_deg, -4.0F);  // until the first frame that sets it
 }
 
-// Differences over a step of 1 ms are continuous, and so are the differences of those. A jump in speed would not change
-// when the step is halved; on smooth curves it halves.
+// Compares the speed just before and just after each time. If the speed is continuous, the difference halves when the
+// step is halved. At a jump of the speed, it would not change.
 TEST(ScenePath, PositionAndAnglesChangeSmoothly) {
   const CameraPath path = from_valley_to_orbit();
   const auto value = [&](double t, int which) {

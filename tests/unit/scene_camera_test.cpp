@@ -26,7 +26,7 @@ TEST(SceneMapProjection, MapAndWorldAreInverse) {
         const double x = distance * std::cos(angle);
         const double z = distance * std::sin(angle);
         const glm::dvec3 p = world_from_map(x, z, altitude, kRadius_m);
-        // Micrometres in double precision, at planetary distances.
+        // At planetary distances, double precision resolves micrometres.
         EXPECT_NEAR(altitude_of(p, kRadius_m), altitude, 1e-6);
         const glm::dvec2 map = map_from_world(p, kRadius_m);
         EXPECT_NEAR(map.x, x, 1e-6);

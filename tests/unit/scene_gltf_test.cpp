@@ -122,7 +122,7 @@ TEST_F(SceneGltf, VersionsThatAreNotReadAreRefused) {
   expect_note(longer.value(), "bytes after the end");
 }
 
-// Types, lengths and ranges of the schema. An earlier reader silently skipped values that did not fit.
+// Values must have the types, lengths and ranges of the schema; none may be skipped silently.
 TEST_F(SceneGltf, ValuesOutsideTheSchemaAreRefusedWithTheirPath) {
   const auto set = [&](const char* pointer, const json& value, const std::string& part) {
     refuses([&](GltfFile& f) { f.root[json::json_pointer(pointer)] = value; }, part);
@@ -253,7 +253,7 @@ TEST_F(SceneGltf, AccessorsWithoutDataAreZerosAndSparseOnesAreRead) {
   const json sparse = {{"count", 2},
                        {"indices", {{"bufferView", index_view}, {"componentType", 5123}}},
                        {"values", {{"bufferView", value_view}}}};
-  // Sparse values over the corners, and over zeros.
+  // Sparse values replace corners, or zeros if the accessor has no view.
   for (const bool zeros : {false, true}) {
     file.root["accessors"][0]["sparse"] = sparse;
     if (zeros) file.root["accessors"][0].erase("bufferView");
@@ -288,7 +288,7 @@ TEST_F(SceneGltf, ExtensionsAreRefusedOrNotedByName) {
   expect_note(data, "not supported are ignored: KHR_lights_punctual, KHR_materials_unlit");
   expect_note(data, "animations");
   expect_note(data, "emission");
-  // A texture whose image only an extension defines.
+  // The image of the texture is defined only by an extension.
   set_picture(file, picture());
   file.root["textures"] = {{{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}}};
   expect_note(load(file), "textures[0] has no PNG or JPEG picture");

@@ -97,7 +97,7 @@ TEST_F(SceneMesh, TrianglesWithAndWithoutIndicesNormalsAndOfAllModes) {
 
 TEST_F(SceneMesh, QuantisedAndInterleavedAttributes) {
   GltfFile file;
-  // Positions as bytes, normalised shorts; normals as bytes; colours as bytes and shorts.
+  // Positions are bytes or normalised shorts, normals are bytes, and colours are bytes or shorts.
   const int bytes = file.accessor<std::int8_t>({0, 0, 0, 127, 0, 0, 0, -127, 0}, 5120, "VEC3", 3);
   const int shorts = file.accessor<std::int16_t>({0, 0, 0, 32767, 0, 0, 0, -32767, 0}, 5122, "VEC3", 3, true);
   const int normals = file.accessor<std::int8_t>({0, 0, -127, 0, 0, -127, 0, 0, -127}, 5120, "VEC3", 3, true);
@@ -107,7 +107,7 @@ TEST_F(SceneMesh, QuantisedAndInterleavedAttributes) {
       {{"mesh", file.mesh({{"attributes",
                             {{"POSITION", bytes}, {"NORMAL", normals}, {"TEXCOORD_0", uv}, {"COLOR_0", color}}}})}});
   file.node({{"mesh", file.mesh({{"attributes", {{"POSITION", shorts}}}})}});
-  // x, y, z and padding, four floats apart.
+  // Elements are four floats apart: x, y, z and padding.
   const std::vector<float> loose = {1, 2, 3, 9, 4, 5, 6, 9, 7, 8, 10, 9};
   const int view = file.view(loose.data(), loose.size() * sizeof(float));
   file.root["bufferViews"][static_cast<std::size_t>(view)]["byteStride"] = 16;
@@ -284,7 +284,7 @@ TEST_F(SceneMesh, CutAndDamagedFilesNeverCrash) {
       std::string damaged = whole;
       for (int k = 0; k < 1 + i % 3; ++k) {
         char& at_random = damaged[engine() % damaged.size()];
-        // Replace digits by digits: files that parse, with wrong numbers.
+        // Replace digits by other digits, so that some files can be parsed but have wrong numbers.
         at_random =
             at_random >= '0' && at_random <= '9' ? static_cast<char>('0' + engine() % 10) : static_cast<char>(engine());
       }

@@ -83,7 +83,7 @@ TEST(SceneTerrainLod, BlocksTileTheReachOnce) {
       for (const TerrainBlock& block : all_blocks(lod, finest)) squares.push_back(square_of(lod, block));
       ASSERT_FALSE(squares.empty());
       for (int i = 0; i < 2000; ++i) {
-        // Near and far; some exactly on the lines between blocks.
+        // Positions are near and far, and some are exactly on the lines between blocks.
         const double distance = lod.reach_m * std::pow(1e-5, uniform(engine)) * 0.9999;
         const double angle = 6.283185307 * uniform(engine);
         const glm::dvec2 p = lod.camera_map + distance * glm::dvec2(std::cos(angle), std::sin(angle));

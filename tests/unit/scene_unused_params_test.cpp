@@ -1,4 +1,4 @@
-// Parameters that have no effect beside others are named, and shipped scenes have none of these.
+// Parameters that have no effect because of other parameters are named. Shipped scenes have no such parameters.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -17,7 +17,7 @@ std::vector<std::string> unused(std::initializer_list<const char*> assignments) 
 
 using Lines = std::vector<std::string>;
 
-TEST(UnusedParams, DefaultsAndWhatIsUsedHaveNone) {
+TEST(UnusedParams, DefaultsAndUsedParametersAreNotNamed) {
   EXPECT_EQ(unused({}), Lines());
   EXPECT_EQ(unused({"scattering.medium=homogeneous", "homogeneous_medium.density=3", "scattering.downscale=2"}),
             Lines());

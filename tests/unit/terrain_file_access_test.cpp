@@ -51,7 +51,7 @@ TEST_F(ElevationFile, TruncatedFiles) {
   }
 }
 
-TEST_F(ElevationFile, NamesOfGdalsOwnAreRead) {
+TEST_F(ElevationFile, GdalNamesAreRead) {
   TestFile file;
   file.name = "plain.tif";
   const std::filesystem::path plain = folder_.write(file, hill);

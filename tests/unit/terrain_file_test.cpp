@@ -168,7 +168,7 @@ TEST_F(ElevationFile, UndeclaredHolesAreFound) {
     const ElevationRaster r = read(folder_.write(file, hilly));
     EXPECT_GT(r.min_m, 900.0F) << hole;
     EXPECT_TRUE(noted(r, "far from all others, taken as holes")) << hole;
-    // The same at a lower resolution, where means would mix them with heights.
+    // The holes are also found at a lower resolution, where averages would mix them with heights.
     EXPECT_GT(read(folder_.path("undeclared.tif"), 16).min_m, 900.0F) << hole;
   }
   // A trench with real depths down to -9999 is read as one.
@@ -199,7 +199,7 @@ TEST_F(ElevationFile, UnitsOfCoordinatesCanBeStated) {
   EXPECT_DOUBLE_EQ(read(folder_.write(file, hill)).spacing_m, 0.5);
 }
 
-// A file of the Earth on Mars, and one of Mars on the Earth: latitudes and longitudes are unchanged.
+// Latitudes and longitudes do not change when a file of the Earth is used on Mars, or one of Mars on the Earth.
 TEST_F(ElevationFile, AnglesOfOtherBodiesArePreserved) {
   constexpr double kMars_m = 3389500.0;
   TestFile earth;
@@ -237,7 +237,7 @@ TEST_F(ElevationFile, AnglesOfOtherBodiesArePreserved) {
   EXPECT_NEAR(at_home.value().spacing_m, 1000.0, 10.0);
 }
 
-TEST_F(ElevationFile, PlacesThatNoPlanetHasAreRefused) {
+TEST_F(ElevationFile, ImpossibleCoordinatesAreRefused) {
   TestFile file;
   file.name = "far.tif";
   file.epsg = 4326;
@@ -258,7 +258,7 @@ TEST_F(ElevationFile, PlacesThatNoPlanetHasAreRefused) {
 }
 
 TEST_F(ElevationFile, ColourTilesAreDecoded) {
-  // Written band by band: red, green and blue of an 8-bit PNG.
+  // Writes an 8-bit PNG band by band: red, green and blue.
   const auto tile = [&](const char* name, const std::function<unsigned(int, int)>& colour) {
     GDALDriverManager& drivers = *GetGDALDriverManager();
     GDALDataset* data = drivers.GetDriverByName("MEM")->Create("", 64, 64, 3, GDT_Byte, nullptr);

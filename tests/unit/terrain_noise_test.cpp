@@ -157,7 +157,7 @@ TEST(TerrainNoise, HasNoCliffs) {
   EXPECT_LT(slope.back(), 8.0);
 }
 
-// A jump does not shrink with the step: halve every steep step until it is 1/64 m long.
+// A jump would remain in ever smaller steps. Every steep step is halved until it is 1/64 m long.
 TEST(TerrainNoise, IsContinuous) {
   Places place(300e3);
   double largest = 0.0;

@@ -1,5 +1,5 @@
-// Elevation files as terrain: through the samples, smooth, level where the file is level, and without a cliff where
-// procedural terrain begins.
+// Elevation files as terrain. It passes through the samples, is smooth, is level where the file is level, and has no
+// cliff where procedural terrain begins.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -77,9 +77,9 @@ TEST(ElevationSource, WaterStaysLevelAndSlopesGetDetail) {
   EXPECT_LT(detail, 40.0);
 }
 
-TEST(ElevationSource, TurnsIntoMountainsWithoutACliff) {
+TEST(ElevationSource, BlendsIntoProceduralTerrainWithoutACliff) {
   const TestFolder folder;
-  // 2 km above all procedural terrain, which must rise to meet it.
+  // The file is 2 km higher than all procedural terrain, which must rise to meet it.
   const ElevationSource source = make(folder, [](int x, int y) { return 2000.0 + waves(x, y); });
   const ElevationSource alone = ElevationSource::create({}).value();
   double steepest = 0.0;

@@ -156,7 +156,7 @@ TEST(ValidatePlot, TextIsEscapedAndNumbersAreFixed) {
   EXPECT_EQ(fixed(12345.678, 0), "12346");
 }
 
-// Every element is closed, in order.
+// Expects that every element is closed, in the right order.
 void expect_balanced(const std::string& text) {
   std::vector<std::string> open;
   for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at + 1)) {
@@ -200,7 +200,7 @@ TEST(ValidatePlot, ValuesStandWhereTheyShould) {
   EXPECT_LT(axis.min, axis.max);
 }
 
-// Returns the reference with as many paths and other random numbers, brighter by a factor.
+// Returns a model that is the reference with other random numbers, as many paths, and brighter by a factor.
 Model tracer(std::string name, int orders, double factor) {
   return {std::move(name), "the reference & <itself>", orders,
           [=](const Params& params, std::span<const RayQuery> queries) -> Result<std::vector<Rgb>> {
@@ -242,15 +242,15 @@ TEST(ValidateStudy, FindsAllErrorsAndNoOthers) {
     for (std::size_t m = 0; m < 2; ++m) {
       const ErrorSummary e = summarise(study.value(), m, a, up);
       EXPECT_GE(e.channels[0].count, 6U);  // some are too noisy with so few paths
-      // The noise of both: 0.8 standard errors each, of equal size.
+      // Model and reference have noise of equal size, on average 0.8 standard errors each.
       EXPECT_LT(e.all.mean, 3.0 * e.noise + 1e-6) << m << ' ' << a;
     }
-    // 50 % too bright, on average over channels that are mostly below the largest.
+    // The model is 50 % too bright. Errors are relative to the largest channel, so their mean is lower.
     const ErrorSummary wrong = summarise(study.value(), 2, a, up);
     EXPECT_GT(wrong.all.mean, 0.15);
     EXPECT_NEAR(wrong.all.worst, 0.5, 0.15);
   }
-  // The turbid set, with the model of order 1.
+  // The model of order 1 on the turbid set.
   ASSERT_EQ(study.value().turbid.size(), std::size(kTurbidAirs));
   for (std::size_t air = 0; air < std::size(kTurbidAirs); ++air) {
     const ErrorSummary first = summarise_turbid(study.value(), 0, air, up);

@@ -37,7 +37,7 @@ bool installed(const std::string& program) {
   return false;
 }
 
-constexpr double kLook_s = 0.02;   // interval of polling
+constexpr double kLook_s = 0.02;   // polling interval
 constexpr double kLong_s = 240.0;  // timeout
 
 void pause(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }

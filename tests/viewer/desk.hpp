@@ -21,7 +21,7 @@ struct LogLine {
 
 class Desk {
  public:
-  // `name`: the folder for the files of the test: log, state and pictures. `width` and `height`: of the screen in
+  // `name` is the folder for the test's files: log, state and pictures. `width` and `height` are those of the screen in
   // pixels.
   explicit Desk(const std::string& name, int width = 800, int height = 600);
   Desk(const Desk&) = delete;

@@ -68,12 +68,12 @@ TEST(Window, MemoryStaysBoundedThroughRandomChanges) {
     allocated.push_back(allocated_kib / 1024.0 - device.back());
   }
   ASSERT_GT(resident.size(), 16U);
-  // Compares the second and the last quarter, which are a minute apart. For memory allocated by malloc (without device
+  // Compare the second and the last quarter, which are a minute apart. For memory allocated by malloc (without device
   // memory), the medians are compared; they differ by up to 22 MiB. Resident memory varies by 60 MiB with
-  // fragmentation, so its median is too noisy: instead, the minimum of the last quarter is at most 6 MiB above the
+  // fragmentation, so its median is too noisy. Instead, the minimum of the last quarter must be at most 6 MiB above the
   // maximum of the second. For comparison, an error that compiled shaders again for every value of a slider took 3
-  // MiB/s, or 90 MiB from the end of the second quarter to the start of the last. Device memory returns to the 23 to 28
-  // MiB of the smallest settings, which recur.
+  // MiB/s, or 90 MiB from the end of the second quarter to the start of the last. The smallest settings recur, and each
+  // time device memory returns to 23 to 28 MiB.
   const double allocated_growth = median_of(allocated, 4, 3) - median_of(allocated, 4, 1);
   const auto quarter = [](const std::vector<double>& all, std::size_t which) {
     return all.begin() + static_cast<std::ptrdiff_t>(all.size() * which / 4);

@@ -60,7 +60,7 @@ TEST(Window, ShowsTheFirstStepsOnce) {
   ASSERT_TRUE(desk.open(arguments)) << desk.errors();
   ASSERT_TRUE(desk.wait_for_place("menu.Help"));
   EXPECT_TRUE(desk.wait_for_place("first_run.close", false));
-  // Again from the menu.
+  // The menu opens the window again.
   ASSERT_TRUE(desk.click("menu.Help"));
   ASSERT_TRUE(desk.click("item.First steps"));
   EXPECT_TRUE(desk.wait_for_place("first_run.close"));

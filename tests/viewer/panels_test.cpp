@@ -42,7 +42,7 @@ TEST(Window, OpensEveryPanelAndComparesByTheMouse) {
   ASSERT_TRUE(desk.click("compare", 0.1));
   ASSERT_TRUE(desk.wait_for({"shown two"}, from));
   desk.picture("comparison");
-  // Every view of intermediate results.
+  // Show every view of intermediate results.
   for (int i = 1; i < 10; ++i) {
     ASSERT_TRUE(desk.click("shown", 0.3));
     ASSERT_TRUE(desk.click("shown." + std::to_string(i), 0.3)) << i;

@@ -78,7 +78,7 @@ TEST(Redraw, LeavesTheProcessorToASlowDeviceBetweenFrames) {
   EXPECT_FALSE(redraw.throttled(state));
 }
 
-TEST(Redraw, WakesForTheFirstOfSeveralThings) {
+TEST(Redraw, WakesForTheEarliestDeadline) {
   const Redraw redraw = settled();
   LoopState state = at(1.2);
   state.store_tables_in_s = 20.0;

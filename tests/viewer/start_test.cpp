@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 TEST(Window, SaysWhatToDoWithoutADisplay) {
   const fs::path said = fs::path(TYNDALL_VIEWER_ARTEFACTS) / "no_display.txt";
   fs::create_directories(said.parent_path());
-  // Not a sum of strings, for which GCC 12 gives a wrong warning at -O1.
+  // Uses append(), because GCC 12 gives a wrong warning for a sum of strings at -O1.
   std::string command = "env -u DISPLAY -u WAYLAND_DISPLAY '" TYNDALL_EXECUTABLE "' view > '";
   command.append(said.string()).append("' 2>&1");
   const int status = std::system(command.c_str());

@@ -31,7 +31,7 @@ void works_without_a_freeze(Desk& desk) {
   ASSERT_TRUE(pull(desk, "shadows.cascades", {0.1, 0.6}));
   ASSERT_TRUE(desk.wait_for({"set shadows.cascades"}, from));
   ASSERT_TRUE(desk.wait_for({"frame left"}, from));
-  // Another technique, whose pipelines have not been created.
+  // The comparison shows another technique, whose pipelines have not been created yet.
   from = desk.lines();
   ASSERT_TRUE(compare_two(desk));
   ASSERT_TRUE(desk.wait_for({"frame right"}, from));
