@@ -60,7 +60,7 @@ accuracy: build
 	@cmake --build build/release --target published_tables
 	@build/release/bin/published_tables > docs/generated/published.md
 
-# SECTIONS chooses among sweeps, pixels, tree, presets and pictures. Debian's Python, because its packages are used.
+# SECTIONS chooses among sweeps, pixels, tree, presets and pictures. Uses the Python of Debian, like the packages it needs.
 epipolar-study: PRESET = release
 epipolar-study: build
 	@tools/setup.sh python3-pil python3-matplotlib

@@ -1,8 +1,8 @@
 // embed_shaders OUT.hpp A.spv B.spv ...: writes a header with one tyndall::gpu::Shader for each module: its words,
 // stage, local size, push-constant size, the ids of its specialisation constants, and its bindings by name with whether
 // each is read and written. A module is named after its file without the extension; an array named after OUT lists them
-// all. All bindings must be in set 0 and have names. Storage images and buffers must be declared readonly or writeonly
-// where they are, because barriers follow from it.
+// all. All bindings must be in set 0 and have names. Storage images and buffers that a shader only reads or only writes
+// must be declared readonly or writeonly, because barriers follow from these declarations.
 #include <spirv_cross/spirv_cross_c.h>
 
 #include <cstdint>

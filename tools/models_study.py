@@ -26,7 +26,7 @@ NOT_OF_A_MODEL = ("shadow_maps", "tonemap", "measure_luminance", "adapt_exposure
 # cost of the rest, and so the noise of that difference.
 COST = ["terrain.shading=plain", "shadows.resolution=512", "shadows.cascades=2"]
 
-# Name of the picture, title, settings, row of `validate` with its errors.
+# One row per model: name of its picture, title, settings, and the row of `validate` with its errors.
 MODELS = [
     ("atmosphere", "`atmosphere`, epipolar", [], "precomputed, order 1 integrated"),
     ("brute_force", "`atmosphere`, every pixel", ["scattering.technique=brute-force"], "precomputed, order 1 integrated"),
@@ -112,7 +112,7 @@ def measure_times(tyndall):
         whole, effect, device = frame(settings)
         if count % 3 == 2:
             bare.append(frame(["scattering.enabled=false"])[0])
-        # For a model that is drawn with the ground: the difference between its frame and one without the atmosphere.
+        # A model that is drawn with the ground costs the difference between its frame and one without the atmosphere.
         taken[title] = (effect, True) if effect > 0 else (whole - statistics.mean(bare), False)
     spread = statistics.pstdev(bare)
     cells = {title: f"{ms:.0f}" if exact else f"{ms:.0f} ± {spread:.0f}" for title, (ms, exact) in taken.items()}

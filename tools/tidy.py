@@ -46,7 +46,7 @@ def headers_by_object(build):
 
 
 class Fingerprints:
-    """What a result depends on, by file: the content within the repository, size and time elsewhere."""
+    """Fingerprints of files: a hash of the content within the repository, and size and time elsewhere."""
 
     def __init__(self):
         self.known = {}
@@ -104,7 +104,7 @@ def main():
         entries = {e["file"]: e for e in json.load(file) if e["file"].startswith(wanted)}
     entries = {file: e for file, e in entries.items() if not file.startswith(build)}
     arguments = ["-p", write_commands(build, entries.values()), "--quiet", "--warnings-as-errors=*",
-                 "--extra-arg=-Wno-unknown-warning-option"]  # the folder may be GCC's
+                 "--extra-arg=-Wno-unknown-warning-option"]  # GCC's options may be among the compile commands
     if options.checks:
         arguments.append(f"--checks={options.checks}")
     common = "\n".join([output_of("clang-tidy", "--version"), (ROOT / ".clang-tidy").read_text(), options.checks])

@@ -46,7 +46,7 @@ class Scope:
 
 
 def member_counts(declaration):
-    """Whether the text of one declaration in a class is a member that counts."""
+    """Returns whether the text of one declaration in a class is a member that counts towards the limit."""
     text = re.sub(r"\[\[[^\]]*\]\]", "", declaration).strip()
     if not text or re.match(r"(using|friend|static_assert|typedef|template\s*<[^>]*>\s*(class|struct|friend)|enum|union"
                             r"|(class|struct)\s+\w+\s*$)\b", text):
@@ -70,7 +70,7 @@ def scan(text):
     clean = without_comments_and_strings(text)
     stack = []
     begun = 0       # start of the current declaration
-    depth = 0       # of parentheses
+    depth = 0       # number of open parentheses
     i = 0
     found = []
     line_of = [0]

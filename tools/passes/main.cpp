@@ -25,7 +25,7 @@
 namespace tyndall {
 namespace {
 
-constexpr FrameShape kShape = {{1280, 720}, 4, 1, false};  // of the demo scene
+constexpr FrameShape kShape = {{1280, 720}, 4, 1, false};  // the shape of the demo scene's frames
 constexpr std::string_view kNoCost = "–";
 
 struct Mode {
@@ -139,7 +139,8 @@ struct TableRow {
   int runs = 0;
 };
 
-// Steps that differ only in their push constants share a row if they are consecutive or belong to a build.
+// Returns the rows of the table. Steps that differ only in their push constants share a row if they are consecutive or
+// belong to a build of the tables.
 std::vector<TableRow> rows_of(const std::vector<Step>& steps, bool of_frame) {
   std::vector<TableRow> out;
   for (const Step& step : steps) {
@@ -219,7 +220,7 @@ void add_resources(std::string& out, const Lifetimes& frame, const Lifetimes& bu
   }
 }
 
-// Returns the page. `folder`: of measurements, or empty.
+// Returns the page. `folder` contains the measured costs; it is empty if there are none.
 Result<std::string> page(const std::string& folder) {
   std::string out =
       "# Passes\n\n"

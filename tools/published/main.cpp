@@ -25,7 +25,7 @@ namespace {
 constexpr std::uint32_t kOrders = 4;
 constexpr std::uint32_t kDirections = 128;
 constexpr VkExtent3D kTexels = {32, 128, 64 * 16};
-constexpr std::uint32_t kSlice = 64;  // texels along the third axis, per submission
+constexpr std::uint32_t kSlice = 64;  // texels along the third axis that one submission computes
 
 // Wall-clock time and processor time. On a CPU device, processor time is less sensitive to other load.
 struct Time {

@@ -16,7 +16,7 @@ struct Row {
   const char* colour;
   validate::Mark mark;
 };
-// In the order of post::Operator.
+// The curves in the order of post::Operator.
 constexpr Row kRows[] = {
     {"exponential", "#1f77b4", validate::Mark::line},
     {"reinhard", "#2ca02c", validate::Mark::line},
