@@ -261,8 +261,8 @@ def page(results):
     text = ""
     if "sweeps" in results:
         s = results["sweeps"]
-        text += (f"Made by `make epipolar-study` on {s['epipolar']['device']}, {SIZE}, default scene. Costs are in copy "
-                 "baselines of the same run.\n\n")
+        text += (f"`make epipolar-study` made these tables on {s['epipolar']['device']}, with the default scene at {SIZE}. Costs are in "
+                 "copy baselines of the same run.\n\n")
         for name in SWEEPS:
             rows = [(short(r["settings"]), f"{r['psnr']:.1f}", f"{r['mre']:.2f}", f"{r['cost']['baselines']:.1f}",
                      r["cost"]["counters"]["samples_marched"], f"{epipolar_mib(r['cost']):.1f}")

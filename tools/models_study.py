@@ -116,9 +116,9 @@ def measure_times(tyndall):
         taken[title] = (effect, True) if effect > 0 else (whole - statistics.mean(bare), False)
     spread = statistics.pstdev(bare)
     cells = {title: f"{ms:.0f}" if exact else f"{ms:.0f} ± {spread:.0f}" for title, (ms, exact) in taken.items()}
-    words = (f"Cost: additional milliseconds per frame of {COST_SIZE} on {device}, median of {COST_FRAMES}, all in one run. For `atmosphere` and its\n"
-             "medium it is the sum of the passes of the effect. The other models are drawn with the ground, so it is the difference to a\n"
-             f"frame without the atmosphere ({statistics.mean(bare):.0f} ms), with the standard deviation of the latter.")
+    words = (f"The cost is the time in milliseconds that a model adds to a frame of {COST_SIZE} on {device}, as the median of {COST_FRAMES} frames, all in\n"
+             "one run. For `atmosphere` and its medium it is the sum of the passes of the effect. The other models are drawn with the ground.\n"
+             f"Their cost is therefore the difference to a frame without the atmosphere ({statistics.mean(bare):.0f} ms), with the standard deviation of\nthe latter.")
     return cells, words
 
 
@@ -132,7 +132,7 @@ def read_page():
         cells = [cell.strip() for cell in line.strip("|").split("|")] if line.startswith("| `") else []
         if len(cells) == 3 + 2 * len(REGIONS):
             rows[cells[0]] = cells
-    words = text[text.index("Cost:"):text.index("\n\nPer pixel:")] if "Cost:" in text and "\n\nPer pixel:" in text else ""
+    words = text[text.index("The cost is"):text.index("\n\nThe column")] if "The cost is" in text and "\n\nThe column" in text else ""
     return rows, words
 
 
@@ -157,11 +157,11 @@ def main():
         for _, title, _, row in MODELS:
             rows[title][3:] = [mean_error(validation, row, atmosphere, region)
                                for atmosphere in ("as given", "without ozone") for region in REGIONS]
-    lines = ["# All models on one scene", "", "Made by `make models-study` from `scenes/models.toml`.", "", words,
-             f"\nPer pixel: PSNR in dB against the same model evaluated per pixel, at {SIZE}.",
-             "\nError: mean against the path tracer with the sun up, in % of the largest channel of the ray, for eyes near the ground, inside",
-             "the atmosphere and in space. The reference has the given medium, or the same without ozone, which only `atmosphere` models. It",
-             "has all orders for `atmosphere` and order 1 for the other models.", "",
+    lines = ["# All models on one scene", "", "`make models-study` makes this page from `scenes/models.toml`.", "", words,
+             f"\nThe column *per pixel* is the PSNR in dB against the same model evaluated at every pixel, at {SIZE}.",
+             "\nThe other columns are mean errors against the path tracer with the sun up, in % of the largest channel of the ray, for eyes near",
+             "the ground, inside the atmosphere and in space. The reference has the given medium, or the same medium without ozone, because only",
+             "`atmosphere` has ozone. It has all orders of scattering for `atmosphere`, and order 1 for the other models.", "",
              "| model | cost, ms | per pixel, dB | ground | atmosphere | space | ground, no ozone | atmosphere, no ozone | space, no ozone |",
              "|---" + "|--:" * (2 + 2 * len(REGIONS)) + "|"]
     lines += ["| " + " | ".join(rows[title]) + " |" for title in titles]

@@ -191,13 +191,14 @@ Result<void> run(std::uint32_t rays, std::uint32_t samples) {
   Published published(*host);
   TYNDALL_TRY(published.build(medium));
 
-  std::printf("Made by `published_tables %u %u` on %s.\n\n", rays, samples, host->device_name().c_str());
-  std::printf("| stage | s | processor s | of the latter, times all of ours |\n|---|--:|--:|--:|\n");
+  std::printf("`published_tables %u %u` made these tables on %s. Errors are in per cent.\n\n", rays, samples,
+              host->device_name().c_str());
+  std::printf("| stage | time, s | processor time, s | processor time relative to all of ours |\n|---|--:|--:|--:|\n");
   const Published::Times& t = published.times();
   for (const auto& [name, time] :
        {std::pair("published: densities", t.density), std::pair("published: order 1", t.single),
-        std::pair("published: orders 2 to 4, light that points scatter", t.scatter),
-        std::pair("published: orders 2 to 4, along the rays", t.gather), std::pair("published: all", t.all()),
+        std::pair("published: orders 2 to 4, scattering at points", t.scatter),
+        std::pair("published: orders 2 to 4, integration along rays", t.gather), std::pair("published: all", t.all()),
         std::pair("ours: all", own)}) {
     std::printf("| %s | %.1f | %.1f | %.2f |\n", name, time.wall_s, time.processor_s,
                 time.processor_s / own.processor_s);
