@@ -114,7 +114,7 @@ std::vector<ProbeAnswer> answer_each(const ProbeSettings& settings, std::span<co
 
 void note_missing_ozone(const ProbeSettings& settings, const char* model) {
   if (!settings.note || settings.params.atmosphere.ozone_absorption == Vec3(0.0F)) return;
-  settings.note(std::string(model) + " has no ozone: atmosphere.ozone_absorption is left out");
+  settings.note(std::string(model) + " has no ozone; atmosphere.ozone_absorption is ignored");
 }
 
 // Evaluates O'Neil's model in double precision, with the functions that the shaders use.

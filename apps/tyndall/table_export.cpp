@@ -159,8 +159,9 @@ class Exporter {
       const char* unit;
       std::array<double, 3> models::TableFactors::*factor;
     };
-    constexpr const char* kOfSpecies = " once, radiance over the sun's irradiance above the atmosphere, without the "
-                                       "phase function: times P(cos_view_sun) it is L / E0";
+    constexpr const char* kOfSpecies =
+        " once, without the phase function: L / E0 divided by P(cos_view_sun), where L is "
+        "the radiance and E0 the sun's irradiance above the atmosphere";
     const std::string rayleigh = concat({"light scattered by air", kOfSpecies});
     const std::string mie = concat({"light scattered by aerosol", kOfSpecies});
     const Kind kinds[] = {
@@ -169,7 +170,8 @@ class Exporter {
         {TableId::high_orders, "light scattered twice and more, phase functions included: L / E0", "1/sr",
          &models::TableFactors::high_orders},
         {TableId::sun_transmittance,
-         "sunlight that reaches a point: fraction of E0, softened at the horizon by the sun's disc", "1", nullptr},
+         "fraction of the sunlight E0 that reaches a point; the sun's disc softens the edge at the horizon", "1",
+         nullptr},
         {TableId::sky_irradiance, "light of the open sky on a horizontal surface: E / E0", "1", nullptr},
     };
     total_ = 3 * axes_.altitude_m.size() + 2;
@@ -271,9 +273,9 @@ class Exporter {
     scattering["sun_at_origin"] =
         "with r = radius + altitude and r_m = sqrt(r^2 + d^2 + 2 r d cos_view_zenith), d = middle_of_air_m of the row: "
         "cos_sun_zenith at the ray's origin = (r_m cos_sun_zenith - d cos_view_sun) / r";
-    scattering["continued"] =
-        "where, at the ray's origin, |cos_view_sun - cos_view_zenith cos_sun_zenith| > sin_view_zenith "
-        "sin_sun_zenith no geometry has the three angles: such texels continue the table for interpolation";
+    scattering["continued"] = "no geometry has the three angles where, at the ray's origin, |cos_view_sun - "
+                              "cos_view_zenith cos_sun_zenith| > "
+                              "sin_view_zenith sin_sun_zenith; such texels continue the table for interpolation";
     scattering["altitude_m"] = axes_.altitude_m;
     ordered_json views = ordered_json::array();
     for (std::size_t i = 0; i < size.x; ++i) {

@@ -137,8 +137,8 @@ struct ProbeRow {
 };
 constexpr ProbeRow kProbeRows[] = {
     {"single", nullptr, scene::ModelId::single, 1, [](scene::SceneParams&) {}},
-    {"single, against all orders", "the same: what leaving out multiple scattering costs", scene::ModelId::single, 0,
-     [](scene::SceneParams&) {}},
+    {"single, against all orders", "the same; its error is the multiple scattering that it leaves out",
+     scene::ModelId::single, 0, [](scene::SceneParams&) {}},
     {"homogeneous", nullptr, scene::ModelId::homogeneous, 1,
      [](scene::SceneParams& scene) { scene.homogeneous.falloff = false; }},
     {"homogeneous, falling off", "the same with homogeneous.falloff", scene::ModelId::homogeneous, 1,

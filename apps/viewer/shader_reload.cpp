@@ -165,8 +165,9 @@ void ShaderReload::revert() {
 Result<void> ShaderReload::start() {
   const std::string folder = shipped_folder("shaders");
   if (folder.empty()) {
-    return Error{ErrorCode::io,
-                 "the sources of the shaders are not here, F8, $TYNDALL_DATA names the folder that holds shaders/"};
+    return Error{
+        ErrorCode::io,
+        "F8: the sources of the shaders are not found; expected $TYNDALL_DATA to name the folder above shaders/"};
   }
   compiling_ = std::async(std::launch::async, [this, folder] {
     Compiled compiled = compile(folder);

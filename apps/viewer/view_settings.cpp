@@ -37,7 +37,8 @@ void ViewSettings::take_back(const PairResult& result) {
 
 Result<void> ViewSettings::save() const {
   if (!make_folder_of(state_file)) {
-    return Error{ErrorCode::io, "the folder of '" + state_file + "' cannot be made, F5, --state names another file"};
+    return Error{ErrorCode::io,
+                 "F5: cannot create the folder of '" + state_file + "'; expected a writable place, or --state FILE"};
   }
   return config::save(left, state_file);
 }

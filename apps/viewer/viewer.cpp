@@ -35,8 +35,8 @@ Result<void> run(const ViewerDesc& desc) {
   }
   Window::stop();
   if (done && messages > 0) {
-    return Error{ErrorCode::vulkan, std::to_string(messages) +
-                                        " messages of the validation layer, the first: " + files::one_line(text, 1500)};
+    return Error{ErrorCode::vulkan, "--validation: " + std::to_string(messages) +
+                                        " messages of the validation layer; the first: " + files::one_line(text, 1500)};
   }
   return done;
 }

@@ -32,15 +32,15 @@ constexpr double kMemoryLogPeriod_s = 2.0;
 
 Result<void> Viewer::start() {
   if (!desc_.log.empty() && !notices_.events().open(desc_.log)) {
-    return Error{ErrorCode::io, "cannot be written, '" + desc_.log + "', --log needs a file in a folder that exists"};
+    return Error{ErrorCode::io, "--log: cannot write '" + desc_.log + "'; expected a file in an existing folder"};
   }
   script_ = Script(desc_.script, desc_.settings);
   if (settings_.state_file.empty()) settings_.state_file = default_state_file();
   TYNDALL_TRY(window_.open(desc_.width, desc_.height, "Tyndall"));
   watch_window(window_.handle());
   on_display_loss([this] {
-    print_error(after_loss(
-        {ErrorCode::device_lost, "the connection to the display has broken off", VK_ERROR_SURFACE_LOST_KHR}));
+    print_error(
+        after_loss({ErrorCode::device_lost, "the connection to the display was lost", VK_ERROR_SURFACE_LOST_KHR}));
   });
   TYNDALL_TRY(devices_.open_scene_device({desc_.device, desc_.validation, desc_.script == "one-device"}));
   devices_.scene().set_replace_shader(&ShaderReload::replace, &shaders_);
@@ -71,7 +71,7 @@ Result<void> Viewer::loop() {
       notices_.log(minimised_ ? "minimised" : "restored");
     }
     if (window_is_gone()) {
-      return Error{ErrorCode::device_lost, "the window has been destroyed from outside", VK_ERROR_SURFACE_LOST_KHR};
+      return Error{ErrorCode::device_lost, "another program destroyed the window", VK_ERROR_SURFACE_LOST_KHR};
     }
     if (minimised_) {
       window_.wait(0.5);
@@ -365,9 +365,9 @@ Error Viewer::after_loss(const Error& error) {
   if (!surface && !device_lost(error)) return error;
   const std::string what = surface ? "the window's surface was lost" : "the Vulkan device was lost";
   const std::string state = settings_.save()
-                                ? "the state is saved, 'tyndall view " + settings_.state_file + "' continues from there"
+                                ? "the state is saved; 'tyndall view " + settings_.state_file + "' continues from there"
                                 : "the state could not be saved in '" + settings_.state_file + "'";
-  return Error{ErrorCode::device_lost, what + " (" + error.message + "), tyndall view, " + state, error.vk_result};
+  return Error{ErrorCode::device_lost, "tyndall view: " + what + " (" + error.message + "); " + state, error.vk_result};
 }
 
 }  // namespace tyndall::viewer

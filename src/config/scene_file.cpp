@@ -92,7 +92,7 @@ Error unknown_table(std::string_view group, std::string_view where) {
   const std::optional<std::string> near = files::nearest(group, names);
   return files::input_error(
       files::concat({"unknown table [", files::one_line(group), "]"}), where,
-      near ? files::concat({"did you mean [", *near, "]?"}) : files::concat({"tables are ", list}));
+      near ? files::concat({"did you mean [", *near, "]?"}) : files::concat({"expected one of ", list}));
 }
 
 bool is_group(std::string_view name) {
@@ -130,8 +130,9 @@ Error unknown_name(std::string_view key, std::string_view table, const std::vect
   std::string list;
   for (const std::string& name : names) list.append(list.empty() ? "" : ", ").append(name);
   const std::optional<std::string> near = files::nearest(key, names);
-  return files::input_error(files::concat({"unknown key '", files::one_line(key), "' in ", table}), where,
-                            near ? files::concat({"did you mean '", *near, "'?"}) : files::concat({"keys are ", list}));
+  return files::input_error(
+      files::concat({"unknown key '", files::one_line(key), "' in ", table}), where,
+      near ? files::concat({"did you mean '", *near, "'?"}) : files::concat({"expected one of ", list}));
 }
 
 Result<void> load_date(scene::PathFrame& frame, const toml::node& node, const std::string& where) {
@@ -177,7 +178,8 @@ Result<void> load_frame_value(scene::PathFrame& frame, std::string_view key, con
     float value = 0.0F;
     static_cast<void>(files::read_number(value_text(row, scratch), value));
     if (key == "altitude_m" && value < 0.0F) {
-      return files::input_error("'altitude_m' is below the sea", where, "expected 0 to 1e+09 m; position_m goes lower");
+      return files::input_error("'altitude_m' is below sea level", where,
+                                "expected 0 to 1e+09 m, or a lower altitude in position_m");
     }
     frame.*known.target = value;
     return {};
@@ -186,6 +188,9 @@ Result<void> load_frame_value(scene::PathFrame& frame, std::string_view key, con
   for (const FrameKey& known : kFrameKeys) names.emplace_back(known.name);
   return unknown_name(key, "[[path]]", names, where);
 }
+
+constexpr std::string_view kTwoSuns = "the path gives the sun both by date and by angles";
+constexpr std::string_view kOneSun = "expected only one of them";
 
 bool has_sun(const scene::PathFrame& frame) { return frame.sun_elevation_deg || frame.sun_azimuth_deg; }
 
@@ -207,17 +212,18 @@ Result<void> load_path(scene::CameraPath& path, const toml::node& node, std::str
     }
     if (!path.frames.empty() && frame.time_s <= path.frames.back().time_s) {
       return files::input_error(
-          files::concat({"the path's time goes from ", files::number_text(path.frames.back().time_s), " s to ",
+          files::concat({"the time of the path goes from ", files::number_text(path.frames.back().time_s), " s to ",
                          files::number_text(frame.time_s), " s"}),
-          at, "each frame's time_s has to be greater than that before");
+          at, "expected a greater time_s in each frame");
     }
     const scene::PathFrame* const first = path.frames.empty() ? nullptr : &path.frames.front();
     if (has_sun(frame) && (frame.julian_day || (first != nullptr && first->julian_day))) {
-      return files::input_error("the sun stands by date and by angles", at, "expected one of them in a path");
+      return files::input_error(kTwoSuns, at, kOneSun);
     }
     path.frames.push_back(std::move(frame));
   }
-  if (path.frames.size() < 2) return files::input_error("a path of one frame", where, "expected two or more [[path]]");
+  if (path.frames.size() < 2)
+    return files::input_error("the path has only one frame", where, "expected two or more [[path]]");
   return {};
 }
 
@@ -225,7 +231,7 @@ Result<void> load_playback(scene::CameraPath& path, const toml::node& node, std:
                            const std::string& where) {
   const toml::table* const table = node.as_table();
   if (table == nullptr)
-    return files::input_error(files::concat({"'playback' is ", kind_of(node)}), where, "it has to be a table");
+    return files::input_error(files::concat({"'playback' is ", kind_of(node)}), where, "expected a table");
   for (const auto& [key, value] : *table) {
     const std::string at = position(name, value.source());
     if (key.str() == "loop") {
@@ -252,15 +258,15 @@ Result<void> check_path(const scene::CameraPath& path, const std::string& where)
   const auto dated = [](const scene::PathFrame& frame) { return frame.julian_day.has_value(); };
   const bool by_date = std::any_of(path.frames.begin(), path.frames.end(), dated);
   if (by_date && std::any_of(path.frames.begin(), path.frames.end(), has_sun)) {
-    return files::input_error("the sun stands by date and by angles", where, "expected one of them in a path");
+    return files::input_error(kTwoSuns, where, kOneSun);
   }
   if (!path.loop) return {};
   if (path.empty()) return files::input_error("there is no path to loop", where, "expected two or more [[path]]");
   const scene::PathFrame& last = path.frames.back();
   const auto given = [&](const FrameKey& key) { return (last.*key.target).has_value(); };
   if (last.position_m || last.julian_day || std::any_of(std::begin(kFrameKeys), std::end(kFrameKeys), given)) {
-    return files::input_error("the last frame of a loop is the first again", where,
-                              "expected time_s alone in the last [[path]]");
+    return files::input_error("the last frame of a loop has more than a time", where,
+                              "expected only time_s, because the frame repeats the first one");
   }
   return {};
 }
@@ -282,8 +288,7 @@ Result<void> load_root(Settings& settings, const toml::table& root, std::string_
       return table != nullptr ? unknown_table(group.str(), where) : unknown_key(group.str(), where);
     }
     if (table == nullptr) {
-      return files::input_error(files::concat({"'", group.str(), "' is ", kind_of(node)}), where,
-                                "it has to be a table");
+      return files::input_error(files::concat({"'", group.str(), "' is ", kind_of(node)}), where, "expected a table");
     }
     if (Result<void> loaded = load_table(settings, group.str(), *table, name); !loaded) return loaded;
   }

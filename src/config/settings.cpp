@@ -217,7 +217,7 @@ Result<void> store(Settings& settings, const Row& row, const std::vector<std::st
   std::byte* const target = address(settings, row);
   if (row.info.type == ParamType::string) {
     if (!files::is_utf8(parts[0])) return bad_value(row, parts[0], "is not valid UTF-8", where);
-    if (files::has_control_characters(parts[0])) return bad_value(row, parts[0], "holds control characters", where);
+    if (files::has_control_characters(parts[0])) return bad_value(row, parts[0], "contains control characters", where);
     *reinterpret_cast<std::string*>(target) = parts[0];
     return {};
   }

@@ -187,7 +187,7 @@ bool FileCache::read(std::string_view key, std::span<std::byte> to) {
   if (checksum(as_bytes(text)) != header.text_checksum) return unusable("damaged");
   if (std::string_view(text).substr(0, header.version_bytes) != version_) return unusable("of another version");
   if (std::string_view(text).substr(header.version_bytes) != key || header.contents_bytes != to.size())
-    return unusable("of something else");
+    return unusable("of another key");
   // Read in pieces, so that the checksum reads each piece while it is still in the processor's cache.
   Checksum sum(to.size());
   std::vector<std::byte> piece(std::min(kPiece, to.size()));
@@ -211,7 +211,7 @@ void FileCache::write(std::string_view key, std::span<const std::byte> contents)
   const std::uint64_t bytes = sizeof header + version_.size() + key.size() + contents.size();
   if (bytes > limit_bytes_) {
     note_ = concat({"nothing is cached in ", one_line(directory_, 200), ": ", std::to_string(bytes),
-                    " bytes are more than its limit of ", std::to_string(limit_bytes_)});
+                    " bytes exceed its limit of ", std::to_string(limit_bytes_)});
     return;
   }
   std::error_code failed;

@@ -224,8 +224,8 @@ File decode(std::string_view bytes, const std::string& path) {
     check_window(display, std::max(kMaxEmptyPixels, width_of(window) * height_of(window)),
                  "its display window is too large");
     file.image = displayed(file.image, window, display);
-    file.note = files::concat({"its pixels cover ", window_text(window), ", its display window ", window_text(display),
-                               ": taken is the display window, black where there are no pixels"});
+    file.note = files::concat({"its data window is ", window_text(window), " and its display window ",
+                               window_text(display), "; the display window is read, black where there are no data"});
   }
   return file;
 }
@@ -278,9 +278,9 @@ Result<void> write_exr(const std::string& path, const Image& image, const Metada
     const auto too_large = [](float value) { return std::isfinite(value) && std::fabs(value) > kLargestHalf; };
     const auto first = std::find_if(image.rgb.begin(), image.rgb.end(), too_large);
     if (first != image.rgb.end()) {
-      return write_error(
-          ErrorCode::invalid_argument, path,
-          files::concat({"it holds the value ", files::number_text(*first), ", 16 bits allow at most 65504: use 32"}));
+      return write_error(ErrorCode::invalid_argument, path,
+                         files::concat({"the value ", files::number_text(*first),
+                                        " does not fit into 16 bits; expected at most 65504"}));
     }
   }
   Result<files::AtomicFile> file = files::AtomicFile::create(path);

@@ -235,7 +235,7 @@ Result<void> write_png(const std::string& path, const Image& image, const Metada
     return write_error(ErrorCode::invalid_argument, path,
                        files::concat({std::to_string(bad), " values are not finite, the first at pixel ",
                                       std::to_string(pixel % image.width), ",", std::to_string(pixel / image.width),
-                                      ", only EXR holds such values"}));
+                                      "; expected finite values, or an EXR file"}));
   }
   Result<files::AtomicFile> file = files::AtomicFile::create(path);
   if (!file) return std::move(file).error();

@@ -57,7 +57,10 @@ Result<Exposure> Exposure::create(const gpu::Device& device, std::uint32_t frame
 
 Result<void> Exposure::measure(VkCommandBuffer cmd, VkImageView from, VkExtent2D extent,
                                const TonemapSettings& settings, double seconds, std::uint32_t slot) {
-  if (slot >= results_.size()) return Error{ErrorCode::invalid_argument, "there is no such slot of the exposure"};
+  if (slot >= results_.size()) {
+    return Error{ErrorCode::invalid_argument, "Exposure::measure: slot " + std::to_string(slot) +
+                                                  " is out of range; expected less than frames_in_flight"};
+  }
   const gpu::Label label(*device_, cmd, "exposure");
   const gpu::NamedResource resources[] = {gpu::named_image("radiance", from),
                                           gpu::named_buffer("counts_block", counts_.buffer.get()),

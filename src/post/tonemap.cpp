@@ -29,10 +29,11 @@ Result<Tonemap> Tonemap::create(const gpu::Device& device, std::uint32_t frames_
 Result<void> Tonemap::record(VkCommandBuffer cmd, VkImageView from, VkImageView to, VkExtent2D extent,
                              const TonemapSettings& settings) const {
   if (settings.auto_exposure && !exposure_.measured()) {
-    return Error{ErrorCode::invalid_argument, "auto exposure needs a picture that has been measured"};
+    return Error{ErrorCode::invalid_argument,
+                 "Tonemap::record: auto_exposure is on, but nothing was measured; expected Exposure::measure() before"};
   }
   if (static_cast<std::uint32_t>(settings.op) >= kOperators) {
-    return Error{ErrorCode::invalid_argument, "there is no such tone-mapping operator"};
+    return Error{ErrorCode::invalid_argument, "TonemapSettings::op is out of range; expected a value of Operator"};
   }
   const gpu::Pipeline& pipeline = pipelines_[static_cast<std::size_t>(settings.op)];
   const gpu::Label label(*device_, cmd, pipeline.name);

@@ -43,20 +43,23 @@ bool within(double value, double low, double high) { return value >= low && valu
 
 std::string check_query(const RayQuery& q, double radius_m) {
   if (!std::isfinite(q.altitude_m) || q.altitude_m < std::max(kLowestAltitude_m, -0.25 * radius_m)) {
-    return "altitude_m, must be finite, at least -11000 and at least minus a quarter of the planet's radius";
+    return "altitude_m is out of range; expected at least -11000 and at least minus a quarter of the planet's radius";
   }
-  if (q.altitude_m > 1e6 * radius_m) return "altitude_m, must be at most a million radii of the planet";
-  if (!within(q.sun_zenith_rad, 0.0, std::numbers::pi)) return "sun_zenith_rad, must be in [0; pi]";
+  if (q.altitude_m > 1e6 * radius_m)
+    return "altitude_m is out of range; expected at most a million radii of the planet";
+  if (!within(q.sun_zenith_rad, 0.0, std::numbers::pi)) return "sun_zenith_rad is out of range; expected 0 to pi";
   if (q.sky_irradiance) return {};
-  if (!within(q.view_zenith_rad, 0.0, std::numbers::pi)) return "view_zenith_rad, must be in [0; pi]";
-  if (!std::isfinite(q.azimuth_rad)) return "azimuth_rad, must be finite";
+  if (!within(q.view_zenith_rad, 0.0, std::numbers::pi)) return "view_zenith_rad is out of range; expected 0 to pi";
+  if (!std::isfinite(q.azimuth_rad)) return "azimuth_rad is not finite; expected a finite angle";
   return {};
 }
 
 std::string check_options(const Options& options) {
-  if (options.samples < 1 || options.samples > (std::uint64_t{1} << 48)) return "samples, must be in [1; 2^48]";
-  if (options.orders < 1 || options.orders > kMaxOrders) return "orders, must be in [1; 256]";
-  if (options.threads < 0 || options.threads > 4096) return "threads, must be in [0; 4096]";
+  if (options.samples < 1 || options.samples > (std::uint64_t{1} << 48)) {
+    return "samples is out of range; expected 1 to 2^48";
+  }
+  if (options.orders < 1 || options.orders > kMaxOrders) return "orders is out of range; expected 1 to 256";
+  if (options.threads < 0 || options.threads > 4096) return "threads is out of range; expected 0 to 4096";
   return {};
 }
 
@@ -71,8 +74,8 @@ std::string problem_of(const Params& params) {
     for (int i = 0; i < (vector ? 3 : 1); ++i) {
       // Bounds in the table are exact decimals; a float may exceed them by its rounding.
       if (!within(value[i], info.min - std::abs(info.min) * 1e-6, info.max + std::abs(info.max) * 1e-6)) {
-        return std::string(info.group) + "." + std::string(info.name) + ", must be in [" + std::to_string(info.min) +
-               "; " + std::to_string(info.max) + "]";
+        return std::string(info.group) + "." + std::string(info.name) + " is out of range; expected " +
+               std::to_string(info.min) + " to " + std::to_string(info.max);
       }
     }
   }
@@ -208,11 +211,11 @@ Estimate finish(const Accumulator& sums, const Scene& scene, const Options& opti
 
 // Returns an empty string if everything is in range, else what is wrong.
 std::string check(const Params& params, std::span<const RayQuery> queries, const Options& options) {
-  if (const std::string bad = problem_of(params); !bad.empty()) return "parameter " + bad;
-  if (const std::string bad = check_options(options); !bad.empty()) return "path tracer, " + bad;
+  if (const std::string bad = problem_of(params); !bad.empty()) return "Params: " + bad;
+  if (const std::string bad = check_options(options); !bad.empty()) return "reference::Options: " + bad;
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const std::string bad = check_query(queries[i], params.planet.radius_m);
-    if (!bad.empty()) return "query " + std::to_string(i + 1) + ", " + bad;
+    if (!bad.empty()) return "query " + std::to_string(i + 1) + ": " + bad;
   }
   return {};
 }

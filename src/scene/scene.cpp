@@ -50,9 +50,10 @@ Result<void> check_memory(const gpu::Device& device, VkExtent2D extent, std::uin
   const double allowed = 0.8 * static_cast<double>(largest);
   if (needed <= allowed) return {};
   const auto gib = [](double bytes) { return std::to_string(static_cast<int>(std::ceil(bytes / 1073741824.0))); };
-  return Error{ErrorCode::out_of_memory, "a picture of " + std::to_string(extent.width) + "x" +
+  return Error{ErrorCode::out_of_memory, "--size: a picture of " + std::to_string(extent.width) + "x" +
                                              std::to_string(extent.height) + " with these shadow maps needs " +
-                                             gib(needed) + " GiB, --size, this device allows " + gib(allowed)};
+                                             gib(needed) + " GiB; expected at most " + gib(allowed) +
+                                             " GiB on this device"};
 }
 
 // Returns the radical inverse of i (Halton, 1960), which is evenly distributed over [0; 1).
@@ -259,7 +260,7 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   if (altitude < ground_m + min_m) {
     view_.position = at_altitude(view_.position, ground_m + min_m, radius);
     if (!lifted_) {
-      notes_.push_back("the camera was inside the ground and has been lifted to " +
+      notes_.push_back("the camera was inside the ground and has been raised to " +
                        std::to_string(static_cast<int>(std::lround(ground_m + min_m))) + " m");
     }
     lifted_ = true;

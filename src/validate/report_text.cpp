@@ -45,11 +45,10 @@ std::string json_turbid(const Study& study, std::size_t model) {
 
 std::string markdown_turbid(const Study& study) {
   std::string out =
-      concat({"\n## Turbid air near the horizon under a low sun\n\nRays from 2 m to 3 km, 0.5 to 5° above "
-              "the horizon; the reference "
-              "follows ",
+      concat({"\n## Turbid atmospheres near the horizon under a low sun\n\nRays from 2 m to 3 km, 0.5 to 5° above "
+              "the horizon. The reference has ",
               std::to_string(kTurbidOrdersFactor * study.options.orders),
-              " orders.\nModels that claim all of them.\n\n"
+              " orders of scattering.\nOnly models with all orders are listed.\n\n"
               "| model | optical depth | albedo | sun | rays | mean | median | 95 % | worst | noise |\n"
               "|---|--:|--:|---|--:|--:|--:|--:|--:|--:|\n"});
   for (std::size_t m = 0; m < study.models.size(); ++m) {
@@ -113,7 +112,7 @@ std::string to_markdown(const Study& study, const Origin& origin) {
                             "a channel, relative to the "
                             "largest\nchannel of the reference on the same ray; `noise` is the reference's "
                             "own mean standard error in the "
-                            "same measure. All in per cent.\nRays are spread over all directions: from the "
+                            "same measure. Both are in per cent.\nRays are spread over all directions: from the "
                             "ground (0 to 2 km), inside the atmosphere (2 to "
                             "70 km) and from space (100 to 20 000 km), with the\nsun above the horizon and "
                             "from 0 to −6° below it.\n\n## Models\n\n"

@@ -293,7 +293,7 @@ TEST_F(CachedTablesTest, StayWithinTheSizeLimit) {
   params.atmosphere.aerosol_density = 9.0F;
   const tables::Report report = ready(params);
   ASSERT_EQ(report.notes.size(), 1U);
-  EXPECT_NE(report.notes[0].find("more than its limit of " + std::to_string(size)), std::string::npos);
+  EXPECT_NE(report.notes[0].find("exceed its limit of " + std::to_string(size)), std::string::npos);
 }
 
 }  // namespace

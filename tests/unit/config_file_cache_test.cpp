@@ -102,7 +102,7 @@ TEST_F(ConfigFileCache, DamagedFilesAreReportedInOneLine) {
   EXPECT_EQ(cache.read("key", 1000), contents);
   EXPECT_EQ(cache.note(), "");
   EXPECT_FALSE(cache.read("key", 999));
-  EXPECT_EQ(cache.note(), says("of something else"));
+  EXPECT_EQ(cache.note(), says("of another key"));
   FileCache newer = open(1U << 20U, "v2");
   EXPECT_FALSE(newer.read("key", 1000));
   EXPECT_EQ(newer.note(), says("of another version"));
@@ -136,7 +136,7 @@ TEST_F(ConfigFileCache, TheOldestFilesAreRemovedFirst) {
   EXPECT_TRUE(fs::exists(root_ / "a/b/their.cache"));
   const std::string large = pattern(10001, 6);
   cache.write("large", bytes_of(large));
-  EXPECT_NE(cache.note().find("more than its limit of 10000"), std::string::npos);
+  EXPECT_NE(cache.note().find("exceed its limit of 10000"), std::string::npos);
   EXPECT_TRUE(cache.read("e", 3000));
 }
 

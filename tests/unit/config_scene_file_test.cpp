@@ -138,32 +138,32 @@ TEST_F(SceneFile, ErrorsInPathsAreReportedWithTheirLine) {
   const std::string two = "[[path]]\ntime_s = 0\n[[path]]\ntime_s = 5\n";
   const std::pair<std::string, std::string> wrong[] = {
       {"path = 3", "s.toml:1: 'path' is not a list of frames; expected one table [[path]] for each frame"},
-      {"[[path]]\ntime_s = 0\n", "s.toml:1: a path of one frame; expected two or more [[path]]"},
+      {"[[path]]\ntime_s = 0\n", "s.toml:1: the path has only one frame; expected two or more [[path]]"},
       {"[[path]]\nyaw_deg = 0\n", "s.toml:1: a frame of the path has no time; expected time_s = SECONDS"},
       {two + "[[path]]\ntime_s = 5\n",
-       "s.toml:5: the path's time goes from 5 s to 5 s; each frame's time_s has to be greater than that before"},
+       "s.toml:5: the time of the path goes from 5 s to 5 s; expected a greater time_s in each frame"},
       {two + "yaw_dge = 3\n", "s.toml:5: unknown key 'yaw_dge' in [[path]]; did you mean 'yaw_deg'?"},
       {two + "xyz = 3\n",
-       "s.toml:5: unknown key 'xyz' in [[path]]; keys are time_s, position_m, date, altitude_m, yaw_deg, "
+       "s.toml:5: unknown key 'xyz' in [[path]]; expected one of time_s, position_m, date, altitude_m, yaw_deg, "
        "pitch_deg, fov_deg, sun_elevation_deg, sun_azimuth_deg"},
       {"[[path]]\ntime_s = -1\n", "s.toml:2: 'time_s' is not a time; expected a number, 0 to 1e+06 s"},
       {"[[path]]\ntime_s = nan\n", "s.toml:2: 'time_s' is not a time; expected a number, 0 to 1e+06 s"},
       {"[[path]]\ntime_s = \"0\"\n", "s.toml:2: 'time_s' is not a time; expected a number, 0 to 1e+06 s"},
       {two + "altitude_m = -1\n",
-       "s.toml:5: 'altitude_m' is below the sea; expected 0 to 1e+09 m; position_m goes lower"},
+       "s.toml:5: 'altitude_m' is below sea level; expected 0 to 1e+09 m, or a lower altitude in position_m"},
       {two + "position_m = [1, 2]\n",
        "s.toml:5: 'camera.position_m' = '2 values' is not 3 numbers; expected 3 numbers, each -1e+09 to 1e+09 m"},
       {two + "fov_deg = 200\n", "s.toml:5: 'camera.fov_deg' = '200' is out of range; expected 1 to 170 deg"},
       {two + "date = \"yesterday\"\n", "yesterday"},
       {two + "date = \"2026-06-21T03:00:00Z\"\nsun_elevation_deg = 3\n",
-       "s.toml:3: the sun stands by date and by angles; expected one of them in a path"},
+       "s.toml:3: the path gives the sun both by date and by angles; expected only one of them"},
       {two + "[playback]\nloops = true\n", "s.toml:6: unknown key 'loops' in [playback]; did you mean 'loop'?"},
       {two + "[playback]\nloop = 1\n", "s.toml:6: 'loop' is a whole number; expected true or false"},
       {two + "[playback]\nplace = \"north\"\n", "s.toml:6"},
       {"[playback]\nloop = true\n", "s.toml:1: there is no path to loop; expected two or more [[path]]"},
-      {"playback = 3", "s.toml:1: 'playback' is a whole number; it has to be a table"},
-      {two + "yaw_deg = 3\n[playback]\nloop = true\n",
-       "s.toml:6: the last frame of a loop is the first again; expected time_s alone in the last [[path]]"},
+      {"playback = 3", "s.toml:1: 'playback' is a whole number; expected a table"},
+      {two + "yaw_deg = 3\n[playback]\nloop = true\n", "s.toml:6: the last frame of a loop has more than a time; "
+                                                       "expected only time_s, because the frame repeats the first one"},
   };
   for (const auto& [toml, message] : wrong)
     EXPECT_NE(failure(toml).find(message), std::string::npos) << toml << failure(toml);
@@ -191,8 +191,8 @@ TEST(SceneFileMessages, NameTheLineTheKeyAndTheAllowedValues) {
   EXPECT_EQ(failure("yaw_deg = 0.5\n"),
             "s.toml:1: unknown parameter 'yaw_deg'; did you mean 'camera.yaw_deg' or 'meshes.yaw_deg'?");
   EXPECT_EQ(failure("fov_deg = 50.0\n"), "s.toml:1: unknown parameter 'fov_deg'; did you mean 'camera.fov_deg'?");
-  EXPECT_EQ(failure("camera = 0.5\n"), "s.toml:1: 'camera' is a number; it has to be a table");
-  EXPECT_EQ(failure("[[camera]]\nyaw_deg = 0.5\n"), "s.toml:1: 'camera' is an array; it has to be a table");
+  EXPECT_EQ(failure("camera = 0.5\n"), "s.toml:1: 'camera' is a number; expected a table");
+  EXPECT_EQ(failure("[[camera]]\nyaw_deg = 0.5\n"), "s.toml:1: 'camera' is an array; expected a table");
   EXPECT_EQ(failure("[camera]\nyaw_deg = 'north'\n"),
             "s.toml:2: 'camera.yaw_deg' is a string; expected -3600 to 3600 deg");
   EXPECT_EQ(failure("[camera]\nfov_deg = 171\n"),
@@ -216,7 +216,7 @@ TEST(SceneFileMessages, NameTheLineTheKeyAndTheAllowedValues) {
   EXPECT_EQ(failure("[terrain]\nshading = 'shiny'\n"),
             "s.toml:2: 'terrain.shading' = 'shiny' is not one of its values; expected materials, height, plain");
   EXPECT_EQ(failure("[terrain]\nsource = \"a\\u0000b\"\n"),
-            "s.toml:2: 'terrain.source' = 'a?b' holds control characters; expected text in UTF-8");
+            "s.toml:2: 'terrain.source' = 'a?b' contains control characters; expected text in UTF-8");
   EXPECT_EQ(failure("[camera.yaw_deg]\n"), "s.toml:1: 'camera.yaw_deg' is a table; expected -3600 to 3600 deg");
   EXPECT_EQ(failure("[camera]\n\"yaw.deg\" = 1\n").substr(0, 45), "s.toml:2: unknown parameter 'camera.yaw.deg';");
 }

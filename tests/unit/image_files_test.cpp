@@ -262,9 +262,9 @@ TEST_F(ImageFiles, ExrIsItsDisplayWindow) {
       EXPECT_EQ(file.value().image.pixel(x, y)[1], inside ? static_cast<float>(y) : 0.0F) << x << ' ' << y;
     }
   }
-  EXPECT_EQ(file.value().note, "its pixels cover 18x7 from 3,2, its display window 16x9 from 0,0: taken is the display "
-                               "window, black where there "
-                               "are no pixels");
+  EXPECT_EQ(file.value().note,
+            "its data window is 18x7 from 3,2 and its display window 16x9 from 0,0; the display window "
+            "is read, black where there are no data");
   // The same pixels at another position are another picture.
   write_windows(at("b.exr"), {{0, 0}, {15, 8}}, {{0, 0}, {15, 8}});
   const Result<File> whole = read(at("b.exr"));

@@ -236,7 +236,7 @@ TEST_F(SceneGltf, ATextureWithoutItsCoordinatesIsLeftOutWithANote) {
   for (int i = 0; i < 3; ++i) many.root["meshes"][0]["primitives"].push_back(primitive(file));
   const MeshData repeated = load(many);
   EXPECT_EQ(repeated.notes.size(), 1U);
-  expect_note(repeated, "(and 3 more of the kind)");
+  expect_note(repeated, "(and 3 more of this kind)");
   primitive(file)["attributes"]["TEXCOORD_1"] = file.floats({0.5, 0, 1, 0, 0, 1}, 2);
   const MeshData with = load(file);
   EXPECT_EQ(with.materials[with.parts[0].material].texture, 0);

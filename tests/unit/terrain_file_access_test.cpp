@@ -21,7 +21,7 @@ TEST_F(ElevationFile, ErrorsAreOneLine) {
   std::ofstream(folder_.path("empty.tif")).close();
   EXPECT_NE(error(folder_.path("empty.tif")).find("empty"), std::string::npos);
   std::ofstream(folder_.path("text.tif")) << "no elevations here\n";
-  EXPECT_NE(error(folder_.path("text.tif")).find("no format"), std::string::npos);
+  EXPECT_NE(error(folder_.path("text.tif")).find("unsupported format"), std::string::npos);
 
   TestFile narrow;
   narrow.name = "narrow.tif";
@@ -59,7 +59,7 @@ TEST_F(ElevationFile, GdalNamesAreRead) {
   ASSERT_EQ(CPLCopyFile(zip.c_str(), plain.string().c_str()), 0);
   EXPECT_EQ(read(zip).heights, read(plain).heights);
   EXPECT_EQ(read("GTIFF_DIR:1:" + plain.string()).heights, read(plain).heights);
-  EXPECT_NE(error("/vsizip/" + folder_.path("archive.zip").string() + "/missing.tif").find("no format"),
+  EXPECT_NE(error("/vsizip/" + folder_.path("archive.zip").string() + "/missing.tif").find("unsupported format"),
             std::string::npos);
 }
 
@@ -98,7 +98,7 @@ TEST_F(ElevationFile, FilesDoNotReachTheNetwork) {
          "<LowerRightX>20037508.34</LowerRightX><LowerRightY>-20037508.34</LowerRightY><TileLevel>3</TileLevel>"
          "<TileCountX>1</TileCountX><TileCountY>1</TileCountY></DataWindow><Projection>EPSG:3857</Projection>"
          "<BlockSizeX>256</BlockSizeX><BlockSizeY>256</BlockSizeY><BandsCount>3</BandsCount></GDAL_WMS>";
-  EXPECT_NE(error(folder_.path("wms.xml")).find("is in no format that is read"), std::string::npos);
+  EXPECT_NE(error(folder_.path("wms.xml")).find("has an unsupported format or is damaged"), std::string::npos);
   error(vrt("wms.vrt", folder_.path("wms.xml").string()));
   error(vrt("http.vrt", server + "/a.tif"));
   pollfd waiting = {listener, POLLIN, 0};

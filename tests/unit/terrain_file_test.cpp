@@ -57,7 +57,7 @@ TEST_F(ElevationFile, AsciiGridWithoutCoordinateSystem) {
   EXPECT_EQ(metres.width, 64);
   EXPECT_DOUBLE_EQ(metres.spacing_m, 100.0);
   EXPECT_FLOAT_EQ(at(metres, 5, 7), static_cast<float>(hill(5, 7)));
-  EXPECT_TRUE(noted(metres, "taken as metres"));
+  EXPECT_TRUE(noted(metres, "metres are assumed"));
 
   file.name = "degrees.asc";
   file.transform = {7.0, 0.001, 0.0, 46.0, 0.0, -0.001};
@@ -167,7 +167,7 @@ TEST_F(ElevationFile, UndeclaredHolesAreFound) {
     const auto hilly = [&](int x, int y) { return x > 20 && x < 30 && y > 20 && y < 30 ? hole : hill(x, y); };
     const ElevationRaster r = read(folder_.write(file, hilly));
     EXPECT_GT(r.min_m, 900.0F) << hole;
-    EXPECT_TRUE(noted(r, "far from all others, taken as holes")) << hole;
+    EXPECT_TRUE(noted(r, "far from all others and treated as holes")) << hole;
     // The holes are also found at a lower resolution, where averages would mix them with heights.
     EXPECT_GT(read(folder_.path("undeclared.tif"), 16).min_m, 900.0F) << hole;
   }
@@ -193,7 +193,7 @@ TEST_F(ElevationFile, UnitsOfCoordinatesCanBeStated) {
   const Result<ElevationRaster> degrees = read_elevation_file(path, {kRadius_m, 4096, TerrainUnits::degrees});
   ASSERT_TRUE(degrees.ok()) << degrees.error().message;
   EXPECT_GT(degrees.value().spacing_m, 20000.0);
-  EXPECT_TRUE(noted(read(path), "terrain.units=metres takes them as metres"));
+  EXPECT_TRUE(noted(read(path), "terrain.units=metres selects metres"));
   // A survey that begins at 0,0 is recognised as local.
   file.transform = {0.0, 0.5, 0.0, 32.0, 0.0, -0.5};
   EXPECT_DOUBLE_EQ(read(folder_.write(file, hill)).spacing_m, 0.5);
@@ -242,12 +242,12 @@ TEST_F(ElevationFile, ImpossibleCoordinatesAreRefused) {
   file.name = "far.tif";
   file.epsg = 4326;
   file.transform = {7.0, 0.1, 0.0, 93.0, 0.0, -0.1};
-  EXPECT_NE(error(folder_.write(file, hill)).find("accepted are -90 to 90 degrees"), std::string::npos);
+  EXPECT_NE(error(folder_.write(file, hill)).find("expected -90 to 90 degrees"), std::string::npos);
   file.transform = {-180.0, 10.0, 0.0, 50.0, 0.0, -0.1};
-  EXPECT_NE(error(folder_.write(file, hill)).find("accepted are at most 360 degrees"), std::string::npos);
+  EXPECT_NE(error(folder_.write(file, hill)).find("expected at most 360 degrees"), std::string::npos);
   file.epsg = 32632;
   file.transform = {500000.0, 1e41, 0.0, 5000000.0, 0.0, -1e41};
-  EXPECT_NE(error(folder_.write(file, hill)).find("accepted are at most 1e+08 m"), std::string::npos);
+  EXPECT_NE(error(folder_.write(file, hill)).find("expected at most 1e+08 m"), std::string::npos);
   file.epsg = 0;
   file.transform = {500000.0, 1e-9, 0.0, 5000000.0, 0.0, -1e-9};
   EXPECT_NE(error(folder_.write(file, hill)).find("at least 0.001 m"), std::string::npos);
@@ -287,7 +287,7 @@ TEST_F(ElevationFile, ColourTilesAreDecoded) {
   EXPECT_NEAR(at(terrain_rgb, 5, 60), height(5, 60), 0.06);
   EXPECT_TRUE(noted(terrain_rgb, "Terrain-RGB"));
   EXPECT_NE(error(tile("photo.png", [](int x, int y) { return static_cast<unsigned>(x * 4 * 65536 + y * 1024 + 77); }))
-                .find("holds no heights"),
+                .find("without heights"),
             std::string::npos);
 }
 

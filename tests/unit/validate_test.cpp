@@ -273,7 +273,7 @@ TEST(ValidateStudy, FindsAllErrorsAndNoOthers) {
   EXPECT_LT(page.find("    tyndall validate <&>\n"), page.find("## Models"));
   EXPECT_NE(page.find("| all | 0.50 | 0.2 | 0 to -6 deg |"), std::string::npos);
   EXPECT_EQ(page.find("| first | 0.50 | 0.2 |"), std::string::npos);  // compared with order 1 only
-  EXPECT_NE(html.find("Turbid air near the horizon"), std::string::npos);
+  EXPECT_NE(html.find("Turbid atmospheres near the horizon"), std::string::npos);
   EXPECT_NE(to_json(study.value(), origin).find("\"optical_depth\": 0.3"), std::string::npos);
   EXPECT_EQ(page.find("nan"), std::string::npos);
 

@@ -30,7 +30,8 @@ TEST(Window, RecreatesALostSurfaceAndSavesTheStateOfALostDevice) {
   arguments.insert(arguments.end(), {"--script", "lose-device", "--set", "sun.azimuth_deg=123"});
   desk.open(arguments);
   EXPECT_EQ(desk.wait_for_end(240.0), 1);
-  EXPECT_NE(desk.errors().find("tyndall: error: the Vulkan device was lost"), std::string::npos) << desk.errors();
+  EXPECT_NE(desk.errors().find("tyndall: error: tyndall view: the Vulkan device was lost"), std::string::npos)
+      << desk.errors();
   EXPECT_NE(desk.errors().find("state.toml"), std::string::npos);
   config::Settings state;
   ASSERT_TRUE(config::load(state, desk.folder() + "/state.toml").ok());
@@ -48,7 +49,8 @@ TEST(Window, SavesTheStateWhenTheDisplayIsLost) {
     if (what == std::string("server")) desk.end_server();
     EXPECT_EQ(desk.wait_for_end(60.0), 1) << what;
     const std::string said = desk.errors();
-    EXPECT_NE(said.find("tyndall: error: the window's surface was lost"), std::string::npos) << what << ": " << said;
+    EXPECT_NE(said.find("tyndall: error: tyndall view: the window's surface was lost"), std::string::npos)
+        << what << ": " << said;
     EXPECT_NE(said.find("the state is saved, 'tyndall view "), std::string::npos) << what << ": " << said;
     EXPECT_EQ(said.find("tyndall: error", 1), std::string::npos) << "said once: " << said;
     config::Settings state;

@@ -29,7 +29,7 @@ TEST(Window, SaysWhatToDoWithoutADisplay) {
   std::string line, more;
   std::getline(file, line);
   EXPECT_FALSE(std::getline(file, more)) << more;
-  EXPECT_EQ(line.find("tyndall: error: no display"), 0U) << line;
+  EXPECT_EQ(line.find("tyndall: error: tyndall view: there is no display"), 0U) << line;
   EXPECT_NE(line.find("tyndall render"), std::string::npos);
   EXPECT_NE(line.find("xvfb-run"), std::string::npos);
 }

@@ -71,8 +71,8 @@ Result<void> Swapchain::create_surface() {
   vkGetPhysicalDeviceSurfaceSupportKHR(physical, host_->queue_family(), surface_, &supported);
   if (supported != VK_TRUE) {
     return Error{ErrorCode::unsupported_device,
-                 "the Vulkan device '" + host_->device_name() +
-                     "' cannot present to this window, --device, another one may: see 'tyndall devices'"};
+                 "--device: '" + host_->device_name() +
+                     "' cannot present to this window; expected another device, see 'tyndall devices'"};
   }
   std::uint32_t count = 0;
   vkGetPhysicalDeviceSurfaceFormatsKHR(physical, surface_, &count, nullptr);

@@ -29,15 +29,14 @@ Window::~Window() {
 Result<void> Window::start() {
   if (glfwInit() != GLFW_TRUE) {
     return Error{ErrorCode::unsupported_device,
-                 "no display to open a window on (" + glfw_error() +
-                     "), tyndall view, 'tyndall render' makes pictures without one, and 'xvfb-run tyndall view' brings "
-                     "a display without a screen"};
+                 "tyndall view: there is no display for a window (" + glfw_error() +
+                     "); expected an X11 or Wayland display, or 'xvfb-run tyndall view'; 'tyndall render' needs none"};
   }
   if (glfwVulkanSupported() != GLFW_TRUE) {
     glfwTerminate();
     return Error{ErrorCode::unsupported_device,
-                 "no Vulkan for windows, tyndall view, a Vulkan loader and a driver with VK_KHR_surface are needed; "
-                 "'tyndall render' makes pictures without"};
+                 "tyndall view: Vulkan cannot draw into windows; expected a Vulkan loader and a driver with "
+                 "VK_KHR_surface; 'tyndall render' needs no window"};
   }
   return {};
 }
@@ -117,8 +116,8 @@ Result<VkSurfaceKHR> Window::create_surface(VkInstance instance) {
   const VkResult result = glfwCreateWindowSurface(instance, window_, nullptr, &surface);
   if (result == VK_SUCCESS) return surface;
   return Error{ErrorCode::unsupported_device,
-               "the window has no surface for Vulkan (" + glfw_error() +
-                   "), tyndall view, a driver that can present to this display is needed",
+               "tyndall view: the window has no Vulkan surface (" + glfw_error() +
+                   "); expected a driver that can present to this display",
                static_cast<std::int32_t>(result)};
 }
 

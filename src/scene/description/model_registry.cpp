@@ -9,20 +9,21 @@ namespace {
 using Drawn = ScatteringModel;
 
 constexpr ModelInfo kModels[] = {
-    {ModelId::precomputed, "precomputed", "all orders, from the renderer's tables", 0, false,
+    {ModelId::precomputed, "precomputed", "all orders of scattering, from the renderer's tables", 0, false,
      DrawnBy{Drawn::atmosphere, MediumKind::atmosphere}, "Atmosphere, all orders, shafts (Yusov 2013)"},
-    {ModelId::single, "single", "light scattered once, integrated for every ray", 1, false, {}, nullptr},
+    {ModelId::single, "single", "single scattering, integrated along every ray", 1, false, {}, nullptr},
     {ModelId::homogeneous, "homogeneous",
-     "Hoffman and Preetham: closed forms for one density at every altitude, no ozone, no other sunset "
-     "than the horizontal",
+     "Hoffman and Preetham 2002: single scattering in closed form; the same density at every altitude, no ozone, and "
+     "the sun sets at the horizontal",
      1, false, DrawnBy{Drawn::homogeneous}, "Air and haze (Hoffman, Preetham 2002)"},
     {ModelId::homogeneous_medium, "homogeneous-medium",
-     "Yusov 2012: scattering.medium = homogeneous, wholly lit: one density out to its extent, "
-     "sunlight that nothing takes from, no sunset",
+     "Yusov 2012: scattering.medium = homogeneous without shadows; constant density, sunlight that is not attenuated, "
+     "and no sunset",
      1, false, DrawnBy{Drawn::atmosphere, MediumKind::homogeneous}, "Homogeneous medium, shafts (Yusov 2012)"},
-    {ModelId::oneil, "oneil", "O'Neil: light scattered once, few points and the scale function, no ozone", 1, false,
+    {ModelId::oneil, "oneil",
+     "O'Neil 2005: single scattering from a few sample points and the scale function, without ozone", 1, false,
      DrawnBy{Drawn::oneil}, "Scale function (O'Neil 2005)"},
-    {ModelId::oneil_table, "oneil-table", "the same as oneil with the table of 2004", 1, false,
+    {ModelId::oneil_table, "oneil-table", "O'Neil 2004: oneil with a table instead of the scale function", 1, false,
      DrawnBy{Drawn::oneil_table}, "Table (O'Neil 2004)"},
     {ModelId::reference, "reference", "the path tracer", 0, true, {}, nullptr},
 };

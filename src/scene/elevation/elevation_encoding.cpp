@@ -79,9 +79,8 @@ Result<Dataset> decode_colours(const std::string& source, GDALDataset& file, std
     if (file.GetSpatialRef() != nullptr) decoded[e]->SetSpatialRef(file.GetSpatialRef());
     return std::move(decoded[e]);
   }
-  return elevation_error(
-      source, "is a colour image that holds no heights; accepted are one band of heights, or tiles encoded as "
-              "Terrarium or Terrain-RGB");
+  return elevation_error(source, "is a colour image without heights; expected one band of heights, or tiles encoded as "
+                                 "Terrarium or Terrain-RGB");
 }
 
 Dataset declare_no_data(GDALDataset& file, std::vector<std::string>& notes) {
@@ -123,7 +122,8 @@ Dataset declare_no_data(GDALDataset& file, std::vector<std::string>& notes) {
     Dataset out(GDALDataset::FromHandle(GDALTranslate("", GDALDataset::ToHandle(&file), options, nullptr)));
     GDALTranslateOptionsFree(options);
     if (out)
-      notes.push_back(std::to_string(count[k]) + " samples of " + value + ", far from all others, taken as holes");
+      notes.push_back(std::to_string(count[k]) + " samples of " + value +
+                      " are far from all others and treated as holes");
     return out;
   }
   return nullptr;

@@ -65,7 +65,7 @@ double vertical_unit_m(GDALRasterBand& band, const OGRSpatialReference* srs, std
     for (const Unit& unit : kUnits) {
       if (unit.name == name) return unit.metres;
     }
-    notes.push_back("heights are in the unknown unit '" + name + "', taken as metres");
+    notes.push_back("the unit of the heights, '" + name + "', is unknown; metres are assumed");
     return 1.0;
   }
   if (srs != nullptr && srs->IsCompound() != 0) {
@@ -109,7 +109,7 @@ Georeference georeference(GDALDataset& file, TerrainUnits units, std::vector<std
                       std::abs(geo.transform[1] * geo.transform[5] - geo.transform[2] * geo.transform[4]) > 0.0;
   const OGRSpatialReference* srs = file.GetSpatialRef();
   if (!placed) {
-    notes.push_back("no georeferencing: samples taken as 30 m apart, north up");
+    notes.push_back("no georeferencing: samples 30 m apart and north up are assumed");
     geo.transform = {0.0, kAssumedSpacing_m, 0.0, 0.0, 0.0, -kAssumedSpacing_m};
     return geo;
   }
@@ -121,9 +121,9 @@ Georeference georeference(GDALDataset& file, TerrainUnits units, std::vector<std
     const bool degrees =
         units == TerrainUnits::automatic ? look_like_degrees(geo.transform, extent) : units == TerrainUnits::degrees;
     if (units == TerrainUnits::automatic) {
-      notes.push_back(
-          degrees ? "no coordinate system: taken as degrees on WGS 84; terrain.units=metres takes them as metres"
-                  : "no coordinate system: taken as metres; terrain.units=degrees takes them as degrees");
+      notes.push_back(degrees
+                          ? "no coordinate system: degrees on WGS 84 are assumed; terrain.units=metres selects metres"
+                          : "no coordinate system: metres are assumed; terrain.units=degrees selects degrees");
     }
     if (degrees) geo.srs.SetWellKnownGeogCS("WGS84");
   }
@@ -145,12 +145,12 @@ Result<void> check_extent(const std::string& source_name, const Georeference& ge
     const double per_degree = geo.srs.GetAngularUnits() / (std::numbers::pi / 180.0);
     if (std::max(-extent.min_y - half_y, extent.max_y - half_y) * per_degree > 90.0) {
       return elevation_error(source_name, "reaches from latitude " + text(extent.min_y) + " to " + text(extent.max_y) +
-                                              "; accepted are -90 to 90 degrees");
+                                              "; expected -90 to 90 degrees");
     }
     if ((extent.max_x - extent.min_x - 2.0 * half_x) * per_degree > 360.0 ||
         std::abs(extent.min_x) * per_degree > 720.0) {
       return elevation_error(source_name, "reaches from longitude " + text(extent.min_x) + " to " + text(extent.max_x) +
-                                              "; accepted are at most 360 degrees");
+                                              "; expected at most 360 degrees");
     }
     return {};
   }
@@ -160,7 +160,7 @@ Result<void> check_extent(const std::string& source_name, const Georeference& ge
   const double spacing_m = std::hypot(geo.transform[1], geo.transform[4]) * unit_m;
   if (size_m <= kMaxExtent_m && spacing_m >= kMinSpacing_m) return {};
   return elevation_error(source_name, "covers " + text(size_m) + " m with samples " + text(spacing_m) +
-                                          " m apart; accepted are at most 1e+08 m and at least 0.001 m");
+                                          " m apart; expected at most 1e+08 m and at least 0.001 m");
 }
 
 Dataset make_memory(int width, int height, const Georeference& geo, std::vector<float>& samples) {
@@ -225,7 +225,9 @@ Result<std::vector<float>> read_band(const std::string& source_name, GDALDataset
     if (hole) ++holes;
   }
   if (holes == samples.size())
-    return elevation_error(source_name, "holds no elevation: every sample is a hole (no-data, NaN or beyond 20 km)");
+    return elevation_error(
+        source_name,
+        "has no elevations: every sample is a hole (no-data, NaN or beyond 20 km); expected at least one height");
   if (holes > 0) notes.push_back("filled " + std::to_string(holes) + " samples without data");
   return samples;
 }
@@ -285,9 +287,10 @@ Result<MapProjection> map_projection(const std::string& source_name, const Geore
   if (std::abs(file_radius_m - kEarth_m) <= kSameBody * kEarth_m) out.centre = Place{y, std::remainder(x, 360.0)};
   std::array<char, 160> text = {};
   if (!same_body) {
-    std::snprintf(text.data(), text.size(),
-                  "made for a body of radius %.0f km; its latitudes and longitudes are laid on this planet of %.0f km",
-                  file_radius_m / 1000.0, radius_m / 1000.0);
+    std::snprintf(
+        text.data(), text.size(),
+        "made for a body of radius %.0f km; its latitudes and longitudes are used on this planet of radius %.0f km",
+        file_radius_m / 1000.0, radius_m / 1000.0);
     notes.emplace_back(text.data());
   }
   std::snprintf(text.data(), text.size(), "+proj=aeqd +lat_0=%.12g +lon_0=%.12g +R=%.12g +units=m +no_defs", y, x,
@@ -296,7 +299,7 @@ Result<MapProjection> map_projection(const std::string& source_name, const Geore
   char* wkt = nullptr;
   if (srs.importFromProj4(text.data()) == OGRERR_NONE && srs.exportToWkt(&wkt) == OGRERR_NONE) out.wkt = wkt;
   CPLFree(wkt);
-  if (out.wkt.empty()) return elevation_error(source_name, "lies where no map can be made around its middle");
+  if (out.wkt.empty()) return elevation_error(source_name, "has a centre around which there is no map projection");
   return out;
 }
 
@@ -361,7 +364,7 @@ Result<ElevationRaster> read_elevation_file(const std::string& source_name, cons
                                             std::to_string(file->GetRasterYSize()) +
                                             " samples, at least 2 x 2 are needed");
   if (GDALDataTypeIsComplex(file->GetRasterBand(1)->GetRasterDataType()) != 0)
-    return elevation_error(source_name, "holds complex numbers, real elevations are needed");
+    return elevation_error(source_name, "contains complex numbers; expected real elevations");
 
   std::vector<std::string> notes;
   Result<Dataset> decoded = decode_colours(source_name, *file, notes);
@@ -370,7 +373,7 @@ Result<ElevationRaster> read_elevation_file(const std::string& source_name, cons
   const Dataset declared = declare_no_data(*file, notes);
   if (declared) file = declared.get();
   if (file->GetRasterCount() > 1)
-    notes.push_back("has " + std::to_string(file->GetRasterCount()) + " bands, the first is taken as elevation");
+    notes.push_back("has " + std::to_string(file->GetRasterCount()) + " bands; the first is used as elevation");
   Georeference geo = georeference(*file, request.units, notes);
   Result<void> somewhere = check_extent(source_name, geo, file->GetRasterXSize(), file->GetRasterYSize());
   if (!somewhere.ok()) return std::move(somewhere).error();

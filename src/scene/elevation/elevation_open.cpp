@@ -84,7 +84,7 @@ Result<void> check_path(const std::string& source) {
   std::error_code ignored;
   const std::filesystem::file_status status = std::filesystem::status(source, ignored);
   if (!std::filesystem::exists(status)) return elevation_error(source, "does not exist");
-  if (std::filesystem::is_directory(status)) return elevation_error(source, "is a directory, a file is needed");
+  if (std::filesystem::is_directory(status)) return elevation_error(source, "is a directory; expected a file");
   if (!std::filesystem::is_regular_file(status)) return elevation_error(source, "is not a regular file");
   if (std::filesystem::file_size(source, ignored) == 0) return elevation_error(source, "is empty");
   return {};
@@ -108,10 +108,11 @@ Result<void> check_references(const std::string& source) {
   std::ifstream file(source, std::ios::binary);
   std::string text;
   text.assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
-  if (text.size() > kMaxText) return elevation_error(source, "is a virtual raster of more than 16 MiB");
+  if (text.size() > kMaxText)
+    return elevation_error(source, "is a virtual raster of more than 16 MiB; expected a smaller one");
   if (!names_network(text)) return {};
   return elevation_error(
-      source, "is a virtual raster that refers to a network file system; accepted are references to local files");
+      source, "is a virtual raster that refers to a network file system; expected references to local files");
 }
 
 }  // namespace
@@ -136,12 +137,14 @@ Result<Dataset> open_elevation(const std::string& source, const Messages& messag
   register_drivers();
   Dataset file(static_cast<GDALDataset*>(GDALOpenEx(
       source.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, kDrivers.data(), nullptr, nullptr)));
-  if (!file) return elevation_error(source, "is in no format that is read, or damaged" + messages.reason());
+  if (!file) return elevation_error(source, "has an unsupported format or is damaged" + messages.reason());
   if (file->GetRasterCount() < 1) {
     char** const inside = file->GetMetadata("SUBDATASETS");
     const char* const first = inside != nullptr ? CSLFetchNameValue(inside, "SUBDATASET_1_NAME") : nullptr;
-    if (first != nullptr) return elevation_error(source, std::string("holds several rasters; name one, as ") + first);
-    return elevation_error(source, "holds no raster; a file with one raster is needed");
+    if (first != nullptr)
+      return elevation_error(source,
+                             std::string("contains several rasters; expected the name of one, such as ") + first);
+    return elevation_error(source, "contains no raster; expected a file with one raster");
   }
   return file;
 }

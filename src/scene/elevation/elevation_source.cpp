@@ -109,7 +109,7 @@ float border_offset(const ElevationRaster& raster, std::uint32_t seed) {
 
 Result<ElevationSource> ElevationSource::create(const ElevationDesc& desc) {
   if (!(desc.exaggeration >= 0.0 && desc.exaggeration <= 100.0))
-    return Error{ErrorCode::invalid_argument, "terrain.exaggeration is outside 0 to 100", 0};
+    return Error{ErrorCode::invalid_argument, "terrain.exaggeration: the value is out of range; expected 0 to 100", 0};
   ElevationSource source;
   fill::TerrainSource& c = source.constants_;
   c.kind = kProcedural;

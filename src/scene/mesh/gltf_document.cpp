@@ -243,7 +243,7 @@ GltfDocument parse_gltf(std::string_view text) {
   parse_accessors(root, out);
   parse_materials(root, out, undrawn);
   parse_nodes(root, out, undrawn);
-  if (!undrawn.empty()) out.notes.push_back("not drawn of the glTF file: " + joined(undrawn));
+  if (!undrawn.empty()) out.notes.push_back("these parts of the glTF file are not drawn: " + joined(undrawn));
   return out;
 }
 

@@ -206,7 +206,7 @@ std::vector<std::string> GltfJson::texts(const char* name) const {
 
 bool GltfJson::flag(const char* name) const {
   const json* const value = find(name);
-  if (value != nullptr && !value->is_boolean()) refuse(name, "expected true and false");
+  if (value != nullptr && !value->is_boolean()) refuse(name, "expected true or false");
   return value != nullptr && value->get<bool>();
 }
 

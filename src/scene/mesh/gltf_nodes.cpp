@@ -131,7 +131,7 @@ void parse_nodes(const GltfJson& root, GltfDocument& out, std::set<std::string>&
       if (!child[i]) out.roots.push_back(static_cast<int>(i));
     }
   }
-  if (root.has("animations")) undrawn.insert("animations (the nodes stand as the file places them)");
+  if (root.has("animations")) undrawn.insert("animations (the nodes are drawn at their initial positions)");
 }
 
 }  // namespace tyndall::scene

@@ -38,7 +38,7 @@ void GltfReader::read() {
   for (const auto& [shape, placed] : placed_) read_shape(shape, placed);
   for (const auto& [kind, counted] : counted_) {
     const auto& [first, count] = counted;
-    note(first + (count > 1 ? " (and " + std::to_string(count - 1) + " more of the kind)" : ""));
+    note(first + (count > 1 ? " (and " + std::to_string(count - 1) + " more of this kind)" : ""));
   }
   if (out_.indices.empty()) fail("has no triangles in its scene", "expected at least one triangle");
 }
