@@ -1,5 +1,5 @@
-// The command line `tyndall`: finds the verb and passes the rest on. Every failure ends in one line on stderr and an
-// exit status.
+// The command line `tyndall`: finds the verb and passes the other arguments to it. Every failure ends in one line on
+// stderr and an exit status.
 #include <csignal>
 #include <cstdio>
 #include <exception>

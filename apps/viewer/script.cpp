@@ -30,7 +30,7 @@ bool chooses_shaders(const config::Row& row) {
          row.key() == "scattering.downscale";
 }
 
-// Returns each of these choices on its own.
+// Returns each choice that selects shaders, as the key and value of a parameter.
 std::vector<std::pair<std::string, std::string>> choices_of_shaders() {
   std::vector<std::pair<std::string, std::string>> out;
   for (const config::Row& row : config::rows()) {

@@ -182,7 +182,7 @@ std::string window_text(const Imath::Box2i& window) {
                         std::to_string(window.min.x), ",", std::to_string(window.min.y)});
 }
 
-// Returns the display window of an image that holds the data window.
+// Returns the pixels of the display window. `data` holds those of the data window; pixels outside of it are black.
 Image displayed(const Image& data, const Imath::Box2i& window, const Imath::Box2i& display) {
   Image out(static_cast<std::uint32_t>(width_of(display)), static_cast<std::uint32_t>(height_of(display)));
   const int left = std::max(window.min.x, display.min.x), right = std::min(window.max.x, display.max.x);

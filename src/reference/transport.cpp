@@ -248,7 +248,7 @@ void trace_path(const Scene& scene, const Line& first, PathNumbers& numbers, Rgb
 Scene::Scene(const Atmosphere& atmosphere, const RayQuery& query, const Options& options)
     : air(&atmosphere), sky(query.sky_irradiance), visible_ground(options.visible_ground) {
   origin = {0.0, 0.0, atmosphere.radius_m + query.altitude_m};
-  // Sky irradiance only collects directions upwards.
+  // The irradiance of the sky only collects light from upward directions, so its ground may be as high as the query.
   ground_radius_m = atmosphere.radius_m + (sky ? std::min(query.altitude_m, 0.0) : ground_altitude_m(query.altitude_m));
   const double sun_sine = std::sin(query.sun_zenith_rad);
   sun = {sun_sine * std::cos(query.azimuth_rad), sun_sine * std::sin(query.azimuth_rad),

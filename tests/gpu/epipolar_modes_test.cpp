@@ -43,7 +43,7 @@ TEST_F(Epipolar, EveryModeIsLikeBruteForce) {
       }
     }
   }
-  // The other parameters, with the strongest shafts.
+  // Vary the other parameters, with the strongest shafts.
   const auto with = [&](const char* name, const std::function<void(Params&)>& change, double floor_db) {
     Params params = small_params();
     params.scattering.single = SingleScattering::integration;

@@ -270,7 +270,7 @@ VkResult VKAPI_CALL submit(VkQueue, std::uint32_t, const VkSubmitInfo*, VkFence)
   set_events.insert(to_set.begin(), to_set.end());
   to_set.clear();
   --in_driver;
-  // The memory that the commands may read, independent of its order.
+  // Add the memory that the commands may read, independent of its order.
   const std::size_t before = std::exchange(hash, 0);
   std::size_t sum = 0;
   for (const auto& [number, bytes] : memory) {

@@ -45,7 +45,7 @@ TEST(FrameChecks, CorrectFramesCauseNoRemarks) {
   silent("scaled as a whole", [](Case& s) {
     for (float& entry : s.inputs.camera.clip_from_view.m) entry *= 100.0F;
   });
-  // Phones rotate the swapchain in the projection.
+  // On phones, the projection may turn the picture to fit a swapchain that stays as it is.
   silent("turned by a quarter", [](Case& s) {
     Mat4& p = s.inputs.camera.clip_from_view;
     p.m[0] = p.m[5] = 0.0F;

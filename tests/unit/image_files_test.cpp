@@ -265,7 +265,7 @@ TEST_F(ImageFiles, ExrIsItsDisplayWindow) {
   EXPECT_EQ(file.value().note,
             "its data window is 18x7 from 3,2 and its display window 16x9 from 0,0; the display window "
             "is read, black where there are no data");
-  // The same pixels at another position are another picture.
+  // If the data window lies at another position, the same pixels give another picture.
   write_windows(at("b.exr"), {{0, 0}, {15, 8}}, {{0, 0}, {15, 8}});
   const Result<File> whole = read(at("b.exr"));
   ASSERT_TRUE(whole.ok());

@@ -245,7 +245,7 @@ TEST(Oneil, ScaleFunctionFitsAnyPlanet) {
   }
 }
 
-// The known errors: +1.6 % at the zenith and within 2.5 % down to the horizontal, for integrals that end at the top.
+// The known errors are +1.6 % at the zenith and within 2.5 % down to the horizontal, for integrals that end at the top.
 TEST(Oneil, PrintedPolynomialFitsItsOwnPlanetOnly) {
   const shared::OneilScale s = published_scale(39750.0);
   const auto value = [&](double c) {

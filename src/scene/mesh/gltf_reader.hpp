@@ -83,7 +83,7 @@ class GltfReader {
   std::vector<int> parents_;  // the parent of each node; -1 for roots
   std::map<std::string, std::pair<std::string, std::size_t>>
       counted_;                              // by kind: the first text and the number of texts
-  std::map<int, int> decoded_;               // from image to texture
+  std::map<int, int> decoded_;               // from a decoded image to its texture
   std::map<int, std::uint32_t> untextured_;  // from material to its copy without a texture
   std::uint64_t texture_bytes_ = 0, visits_ = 0, instances_ = 0;
 };
