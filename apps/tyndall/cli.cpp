@@ -11,6 +11,7 @@
 #include "config/scene_file.hpp"
 #include "files/files.hpp"
 #include "files/text.hpp"
+#include "image/image.hpp"
 #include "input_files.hpp"
 
 namespace tyndall::cli {
@@ -175,6 +176,9 @@ Result<void> check_output(const CommonOptions& options, const std::vector<std::s
   if (!known)
     return input_error(concat({"unknown format ", shown(options.output)}), "-o",
                        concat({"expected a name that ends in ", list}));
+  if (lower_case(options.output).ends_with(".exr")) {
+    if (Result<void> r = image::check_exr_supported(options.output); !r) return r;
+  }
   const std::optional<FramePattern> pattern = find_pattern(options.output);
   const bool single = pattern && !find_pattern(options.output, pattern->start + pattern->length);
   if (options.frames > 1 && !single) {

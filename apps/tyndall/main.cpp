@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "cli.hpp"
+#include "features.hpp"
 #include "files/text.hpp"
-#include "tyndall/version.hpp"
 #include "verbs.hpp"
 
 namespace tyndall::cli {
@@ -49,7 +49,7 @@ int run_verb(const std::string& name, Args args) {
 int run(Args args) {
   if (args.empty()) return fail("command line: missing verb; see 'tyndall --help'", kBadUsage);
   const std::string& first = args[0];
-  if (first == "--version" || first == "-V") return print("tyndall " TYNDALL_VERSION_STRING "\n");
+  if (first == "--version" || first == "-V") return print(version_text());
   if (first == "--help" || first == "-h" || (first == "help" && args.size() == 1)) return print(help_text());
   if (first == "help") {
     const std::vector<std::string> help = {"--help"};

@@ -322,6 +322,7 @@ const char* table_name(TableId table) {
 }
 
 Result<void> check_export(const std::string& directory) {
+  if (Result<void> r = image::check_exr_supported(directory); !r) return r;
   std::error_code failed;
   const fs::file_status status = fs::status(directory, failed);
   if (fs::is_directory(status)) return files::check_writable((fs::path(directory) / kIndex).string());

@@ -21,6 +21,10 @@ int run_tables(Args args);
 int run_validate(Args args);
 int run_view(Args args);
 
+// The optional parts of the viewer, for features(). Defined beside run_view().
+[[nodiscard]] bool has_viewer();
+[[nodiscard]] bool has_shader_reload();
+
 struct Verb {
   std::string_view name;
   int (*run)(Args args);

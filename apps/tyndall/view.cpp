@@ -2,9 +2,13 @@
 #include "arguments.hpp"
 #include "cli.hpp"
 #include "make_tables.hpp"
+#include "viewer/shader_reload.hpp"
 #include "viewer/viewer.hpp"
 
 namespace tyndall::cli {
+
+bool has_viewer() { return true; }
+bool has_shader_reload() { return viewer::ShaderReload::supported(); }
 
 int run_view(Args args) {
   CommonOptions options;

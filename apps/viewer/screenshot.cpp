@@ -18,7 +18,7 @@ void Screenshot::write(Capture capture, const std::string& folder) {
   const std::string stem = screenshot_stem(folder, {".png", ".exr"});
   writing_ = std::async(std::launch::async, [stem, shot = std::move(capture)]() -> Result<std::string> {
     Result<void> written = image::write_png(stem + ".png", shot.display, config::metadata(shot.settings));
-    if (written) {
+    if (written && image::exr_supported()) {
       written = image::write_exr(stem + ".exr", shot.radiance, config::radiance_metadata(shot.settings),
                                  {.content = image::ExrContent::radiance});
     }

@@ -162,6 +162,8 @@ void ShaderReload::revert() {
   before_.pop_back();
 }
 
+bool ShaderReload::supported() { return true; }
+
 Result<void> ShaderReload::start() {
   const std::string folder = shipped_folder("shaders");
   if (folder.empty()) {

@@ -31,6 +31,8 @@ class ShaderReload {
   ShaderReload& operator=(const ShaderReload&) = delete;
   ~ShaderReload();
 
+  // Returns whether the program was built with shaderc. Without it, start() fails.
+  [[nodiscard]] static bool supported();
   // Starts to compile. Returns an error when the sources are not found.
   Result<void> start();
   [[nodiscard]] bool working() const { return compiling_.valid(); }

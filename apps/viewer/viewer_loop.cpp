@@ -12,6 +12,7 @@
 
 #include "files/text.hpp"
 #include "gpu/try.hpp"
+#include "image/image.hpp"
 #include "scene/description/map_projection.hpp"
 #include "viewer/platform/display_loss.hpp"
 #include "viewer/platform/files.hpp"
@@ -325,7 +326,7 @@ void Viewer::finish_screenshot() {
   const std::optional<Result<std::string>> stem = screenshot_.take_written();
   if (!stem) return;
   if (!*stem) return notices_.report(stem->error());
-  notices_.note("Written: " + stem->value() + ".png and .exr");
+  notices_.note("Written: " + stem->value() + (image::exr_supported() ? ".png and .exr" : ".png"));
   notices_.log("screenshot " + stem->value());
 }
 

@@ -260,6 +260,8 @@ void encode(Imf::OStream& stream, const Image& image, const Metadata& metadata, 
 
 }  // namespace
 
+bool exr_supported() { return true; }
+
 Result<File> decode_exr(std::string_view bytes, const std::string& path) {
   try {
     return decode(bytes, path);

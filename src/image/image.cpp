@@ -44,9 +44,19 @@ Error write_error(ErrorCode code, const std::string& path, std::string_view why)
   return Error{code, files::concat({shown(path), ": cannot write: ", files::one_line(why, 300)})};
 }
 
+Result<void> check_exr_supported(const std::string& path) {
+  if (exr_supported()) return {};
+  return Error{ErrorCode::invalid_argument,
+               files::concat({shown(path), ": built without OpenEXR; EXR files cannot be read or written; expected a ",
+                              "program built with OpenEXR"})};
+}
+
 Result<FileKind> kind_of_name(const std::string& path) {
   if (ends_with_ignoring_case(path, ".png")) return FileKind::png;
-  if (ends_with_ignoring_case(path, ".exr")) return FileKind::exr;
+  if (ends_with_ignoring_case(path, ".exr")) {
+    if (Result<void> supported = check_exr_supported(path); !supported) return supported.error();
+    return FileKind::exr;
+  }
   return Error{ErrorCode::invalid_argument,
                files::concat({shown(path), ": unknown image format; expected a name that ends in .png or .exr"})};
 }

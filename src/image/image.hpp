@@ -38,7 +38,13 @@ using Metadata = std::vector<std::pair<std::string, std::string>>;
 
 enum class FileKind : std::uint32_t { png, exr };
 
-// Returns the kind for a file name's extension (.png or .exr, in either case).
+// Returns whether the program was built with OpenEXR. Without it, no EXR can be read or written.
+[[nodiscard]] bool exr_supported();
+// Fails with invalid_argument if the program was built without OpenEXR. `path` is for the message.
+[[nodiscard]] Result<void> check_exr_supported(const std::string& path);
+
+// Returns the kind for a file name's extension (.png or .exr, in either case). Refuses .exr as check_exr_supported()
+// does.
 [[nodiscard]] Result<FileKind> kind_of_name(const std::string& path);
 
 // The meaning of the values that are written to a PNG.

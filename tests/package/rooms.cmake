@@ -74,8 +74,8 @@ room(apps/viewer/gui VULKAN apps/viewer/scenes apps/viewer/platform src/config s
   include/tyndall)
 room(apps/viewer VULKAN apps/viewer/gui apps/viewer/scenes apps/viewer/platform src/config src/scene src/scene/view
   src/scene/description src/tables src/image src/files src/gpu include/tyndall)
-room(apps/tyndall VULKAN apps/viewer src/validate src/reference src/rays src/models src/scene src/scene/sky src/scene/elevation src/scene/description
-  src/config src/tables src/image src/files src/effect src/gpu include/tyndall/effect.hpp include/tyndall)
+room(apps/tyndall VULKAN apps/viewer src/validate src/reference src/rays src/models src/scene src/scene/sky src/scene/mesh src/scene/elevation
+  src/scene/description src/config src/tables src/image src/files src/effect src/gpu include/tyndall/effect.hpp include/tyndall)
 
 # room_of(PATH VAR): the room that a path relative to SOURCE belongs to.
 function(room_of path out)

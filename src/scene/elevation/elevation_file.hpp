@@ -49,6 +49,9 @@ struct ElevationRequest {
 // memory per sample of the result.
 Result<ElevationRaster> read_elevation_file(const std::string& source, const ElevationRequest& request = {});
 
+// Returns whether the program was built with GDAL. Without it, read_elevation_file() refuses every file.
+[[nodiscard]] bool elevation_files_supported();
+
 // Returns `source` and all other files that are read with it, as far as its format lists them: auxiliary files and the
 // sources of a virtual raster.
 [[nodiscard]] std::vector<std::string> elevation_file_list(const std::string& source);

@@ -149,6 +149,8 @@ Result<Dataset> open_elevation(const std::string& source, const Messages& messag
   return file;
 }
 
+bool elevation_files_supported() { return true; }
+
 std::vector<std::string> elevation_file_list(const std::string& source) {
   const Messages messages;
   const NetworkGuard guard(source);
