@@ -15,7 +15,11 @@ const char* load_functions(Functions& table, PFN_vkGetInstanceProcAddr get, VkIn
   if (table.name == nullptr && missing == nullptr) missing = "vk" #name;
   TYNDALL_DEVICE_FUNCTIONS(X)
 #undef X
-#define X(name) table.name = reinterpret_cast<PFN_vk##name>(table.GetDeviceProcAddr(device, "vk" #name));
+  // The loader returns these for an instance only if the extension is enabled. For a device, the validation layer
+  // returns them in any case, and then reports each call.
+#define X(name)                                                                             \
+  table.name = reinterpret_cast<PFN_vk##name>(table.GetDeviceProcAddr(device, "vk" #name)); \
+  if (get(instance, "vk" #name) == nullptr) table.name = nullptr;
   TYNDALL_DEBUG_FUNCTIONS(X)
 #undef X
   return missing;
