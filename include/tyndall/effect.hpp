@@ -27,6 +27,7 @@
 #include <string>
 #include <string_view>
 
+#include "tyndall/export.h"
 #include "tyndall/params.hpp"
 #include "tyndall/result.hpp"
 #include "tyndall/types.hpp"
@@ -61,7 +62,7 @@ struct Requirements {
   std::uint32_t api_version;
   std::span<const char* const> device_extensions;
 };
-[[nodiscard]] Requirements requirements();
+[[nodiscard]] TYNDALL_API Requirements requirements();
 
 enum class OutputFormat : std::uint32_t { rgba16f, rgba32f };
 
@@ -100,8 +101,8 @@ struct MemoryUsage {
   VkDeviceSize host = 0;
 };
 // Returns the memory that an effect would use. Allocates nothing.
-[[nodiscard]] Result<MemoryUsage> query_memory(const DeviceInfo& device, const EffectDesc& desc,
-                                               const Params& params = {});
+[[nodiscard]] TYNDALL_API Result<MemoryUsage> query_memory(const DeviceInfo& device, const EffectDesc& desc,
+                                                           const Params& params = {});
 
 // An image of the caller, and its layout while the effect runs.
 struct Texture {
@@ -209,7 +210,7 @@ struct ScatteringTables {
   Table high_orders;
 };
 
-class Effect {
+class TYNDALL_API Effect {
  public:
   // Allocates all memory and makes the pipelines that `params` need. Tables are built by record_precompute().
   static Result<Effect> create(const DeviceInfo& device, const EffectDesc& desc, const Params& params);

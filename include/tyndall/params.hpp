@@ -8,6 +8,7 @@
 #include <span>
 #include <string_view>
 
+#include "tyndall/export.h"
 #include "tyndall/result.hpp"
 #include "tyndall/types.hpp"
 
@@ -33,6 +34,13 @@ struct ParamInfo {
   bool grey = false;  // vec3 only: a single value may be given for all three components
 };
 
+namespace detail {
+// Makes a Vec3 of the numbers of params.def without a warning about their conversion.
+constexpr Vec3 single_precision(double x, double y, double z) {
+  return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
+}
+}  // namespace detail
+
 #define ENUM_BEGIN(type) enum class type : std::uint32_t {
 #define ENUM_VALUE(type, identifier, value, text) identifier = value,
 #define ENUM_END(type) \
@@ -44,7 +52,7 @@ struct ParamInfo {
   ;
 #define PARAM_FLOAT(group, name, def, min, max, unit, affects, doc) float name = static_cast<float>(def);
 #define PARAM_UINT(group, name, def, min, max, unit, affects, doc) std::uint32_t name = def;
-#define PARAM_VEC3(group, name, def, min, max, unit, affects, doc) Vec3 name = Vec3 def;
+#define PARAM_VEC3(group, name, def, min, max, unit, affects, doc) Vec3 name = detail::single_precision def;
 #define PARAM_UVEC4(group, name, def, min, max, unit, affects, doc) UVec4 name = UVec4 def;
 #define PARAM_FLAG(group, name, def, affects, doc) Flag name = def;
 #define PARAM_ENUM(group, name, type, def, affects, doc) type name = type::def;
@@ -68,14 +76,14 @@ struct Params {
 };
 
 // Returns the rows that describe Params, in the order of params.def. Offsets are from the start of Params.
-[[nodiscard]] std::span<const ParamInfo> param_table();
+[[nodiscard]] TYNDALL_API std::span<const ParamInfo> param_table();
 
 // Returns what the change from `before` to `after` requires: a mask of bits 1 << Affects.
-[[nodiscard]] std::uint32_t affected(const Params& before, const Params& after);
+[[nodiscard]] TYNDALL_API std::uint32_t affected(const Params& before, const Params& after);
 
 // Returns an error (invalid_argument) that names the first parameter that is out of range, not finite, or not one
 // of the values allowed for it (scattering.downscale, tables.size). Needs no device. Limits of the device itself,
 // such as the largest 3D image, are checked by Effect::create() and Effect::set_params().
-[[nodiscard]] Result<void> check_params(const Params& params);
+[[nodiscard]] TYNDALL_API Result<void> check_params(const Params& params);
 
 }  // namespace tyndall

@@ -27,7 +27,8 @@ Result<void> open_device(gpu::Device& device, const DeviceInfo& info);
 // Returns the memory that an effect with these settings allocates; see query_memory().
 [[nodiscard]] MemoryUsage plan_memory(const gpu::Device& device, const EffectDesc& desc, const Params& params);
 
-struct Effect::State {
+// Not exported by the shared library, unlike Effect.
+struct TYNDALL_HIDDEN Effect::State {
   State() = default;
   ~State();
   State(const State&) = delete;

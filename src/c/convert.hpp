@@ -1,0 +1,30 @@
+// Converts between the structures of C and C++.
+#pragma once
+
+#include <array>
+
+#include "tyndall/effect.hpp"
+#include "tyndall/tyndall.h"
+
+namespace tyndall::c {
+
+// `c` must outlive the result, whose callbacks call those of `c`.
+[[nodiscard]] DeviceInfo to_cpp(const TyndallDeviceInfo& c);
+[[nodiscard]] TyndallDeviceInfo to_c(const DeviceInfo& info);
+
+[[nodiscard]] EffectDesc to_cpp(const TyndallEffectDesc& c);
+[[nodiscard]] TyndallEffectDesc to_c(const EffectDesc& desc);
+
+// `cascades` must outlive the result. Precondition: cascade_count <= kMaxCascades.
+[[nodiscard]] FrameInputs to_cpp(const TyndallFrameInputs& c, std::array<Cascade, kMaxCascades>& cascades);
+[[nodiscard]] TyndallFrameInputs to_c(const FrameInputs& inputs);  // without its cascades
+
+[[nodiscard]] TyndallMemoryUsage to_c(const MemoryUsage& memory);
+[[nodiscard]] TyndallCounters to_c(const Counters& counters);
+[[nodiscard]] TyndallLightTables to_c(const LightTables& tables);
+[[nodiscard]] TyndallScatteringTables to_c(const ScatteringTables& tables);
+[[nodiscard]] TyndallProgress to_c(const Progress& progress);
+[[nodiscard]] TyndallResourceMemory to_c(const ResourceMemory& resource);
+[[nodiscard]] TyndallPassTiming to_c(const PassTiming& timing);
+
+}  // namespace tyndall::c

@@ -1,0 +1,10 @@
+// What a TyndallParams is.
+#pragma once
+
+#include "tyndall/params.hpp"
+#include "tyndall/tyndall.h"
+
+// The values are always valid: check_params() accepts them.
+struct TyndallParams {
+  tyndall::Params params;
+};
