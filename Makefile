@@ -7,8 +7,9 @@
 #   make accuracy        measures the numbers of docs/accuracy.md
 #   make epipolar-study  installs Pillow and matplotlib; makes the numbers, plots and pictures of docs/epipolar.md
 #   make models-study    measures and renders what docs/models.md and docs/oneil.md show
+#   make abi             renews the record of the binary interface of the C functions, tests/package/tyndall.abi
 #   make passes          writes the list of passes, docs/generated/passes.md, with their cost
-.PHONY: demo check doxygen pictures accuracy epipolar-study models-study passes setup build format format-check tidy tidy-all sanitize-short sanitize clean
+.PHONY: demo check doxygen pictures accuracy epipolar-study models-study abi passes setup build format format-check tidy tidy-all sanitize-short sanitize clean
 
 PRESET ?= release
 CLANG_PACKAGES = clang clang-tidy clang-format libclang-rt-dev llvm
@@ -78,6 +79,9 @@ models-study: build
 	  build/release/bin/tyndall render scenes/oneil/$$planet.toml --size 640x360 -o docs/images/oneil_$$planet.png || exit 1; \
 	done
 
+abi: setup
+	@python3 tests/package/abi.py --renew . build/abi cc
+
 # docs/generated/passes.md, with the costs of every mode.
 passes: PRESET = release
 passes: TARGETS = tyndall passes
@@ -97,7 +101,7 @@ build: setup
 	@cmake --build --preset $(PRESET) $(if $(TARGETS),--target $(TARGETS))
 
 # `make format` formats the C++ and GLSL sources in place. `make format-check` fails if a source is not formatted.
-SOURCES = git ls-files '*.cpp' '*.hpp' '*.h' '*.inl' '*.glsl' '*.comp' '*.frag' '*.vert'
+SOURCES = git ls-files '*.c' '*.cpp' '*.hpp' '*.h' '*.inl' '*.glsl' '*.comp' '*.frag' '*.vert'
 
 format: PACKAGES = clang-format
 format: setup

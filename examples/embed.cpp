@@ -1,6 +1,7 @@
 // Embeds Tyndall in a minimal engine in plain Vulkan: a device, three images and one frame.
 // The engine clears its colour to black and its depth to the sky, so the picture shows only the sky. The program prints
-// the radiance of a pixel above the horizon. For brevity, an error ends it with a number that names the failed step.
+// the radiance of a pixel above the horizon, and writes the pixels to a file if its argument names one. For brevity, an
+// error ends it with a number that names the failed step. embed.c is the same program in C.
 #include <tyndall/effect.hpp>
 
 #include <cstdio>
@@ -225,12 +226,23 @@ void submit_and_wait(const Device& device) {
   vkDeviceWaitIdle(device.device);
 }
 
-// Prints the radiance of a pixel above the horizon. The test that runs this example checks that the sky is blue and its
-// radiance plausible.
-bool sky_is_blue(const Device& device, const Images& images) {
+// Returns the pixels of the output, four floats each, row by row from the top.
+const float* map_pixels(const Device& device, const Images& images) {
   void* data = nullptr;
   need(vkMapMemory(device.device, images.readback.memory, 0, VK_WHOLE_SIZE, 0, &data) == VK_SUCCESS, 32);
-  const float* pixel = static_cast<const float*>(data) + 4 * (kExtent.width * (kExtent.height / 4) + kExtent.width / 2);
+  return static_cast<const float*>(data);
+}
+
+void write_picture(const float* pixels, const char* path) {
+  const std::size_t count = std::size_t{4} * kExtent.width * kExtent.height;
+  std::FILE* file = std::fopen(path, "wb");
+  need(file != nullptr && std::fwrite(pixels, sizeof(float), count, file) == count && std::fclose(file) == 0, 33);
+}
+
+// Prints the radiance of a pixel above the horizon. The test that runs this example checks that the sky is blue and its
+// radiance plausible.
+bool sky_is_blue(const float* pixels) {
+  const float* pixel = pixels + 4 * (kExtent.width * (kExtent.height / 4) + kExtent.width / 2);
   std::printf("radiance of the sky: %g %g %g\n", static_cast<double>(pixel[0]), static_cast<double>(pixel[1]),
               static_cast<double>(pixel[2]));
   return pixel[2] > pixel[0] && pixel[0] > 1e-3F && pixel[2] < 1.0F;
@@ -251,7 +263,7 @@ void destroy(const Device& device, const Images& images) {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
   const Device device = create_device();
   const Images images = create_images(device);
   {
@@ -262,7 +274,9 @@ int main() {
     vkEndCommandBuffer(device.cmd);
     submit_and_wait(device);
   }  // destroys the effect before the device
-  const bool blue = sky_is_blue(device, images);
+  const float* pixels = map_pixels(device, images);
+  if (argc > 1) write_picture(pixels, argv[1]);
+  const bool blue = sky_is_blue(pixels);
   destroy(device, images);
   return blue ? 0 : 40;
 }

@@ -15,7 +15,7 @@ import sys
 MAX_SOURCE_LINES = 450
 MAX_FUNCTION_LINES = 90
 MAX_PUBLIC_MEMBERS = 20
-ENDINGS = (".cpp", ".hpp", ".h", ".inl", ".glsl", ".comp", ".vert", ".frag")
+ENDINGS = (".c", ".cpp", ".hpp", ".h", ".inl", ".glsl", ".comp", ".vert", ".frag")
 TOKEN = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:[^"\\\n]|\\.)*"|\'(?:[^\'\\\n]|\\.)+\'', re.S)
 
 
