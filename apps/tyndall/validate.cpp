@@ -82,11 +82,10 @@ class Tables {
  private:
   Result<void> build(const Params& params) {
     constexpr std::uint32_t kTables = 1U << static_cast<std::uint32_t>(Affects::Tables);
-    if (model_ && (affected(model_->effect().params(), params) & kTables) == 0)
-      return model_->effect().set_params(params);
+    if (model_ && (affected(model_->params(), params) & kTables) == 0) return model_->set_params(params);
     model_.reset();
     if (!host_) {
-      Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({device_, false});
+      Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({.device = device_, .graphics = false});
       if (!host) return std::move(host).error();
       host_ = std::move(host).value();
     }
@@ -219,7 +218,7 @@ int run_validate(Args args) {
 
   validate::Origin origin = {command_line(options, study_options), TYNDALL_VERSION_STRING, ""};
   {
-    const Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({options.device, false});
+    const Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({.device = options.device, .graphics = false});
     if (!host) return fail(host.error());
     origin.device = host.value()->device_name();
   }

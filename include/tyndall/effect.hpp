@@ -57,7 +57,9 @@ struct DeviceInfo {
   void* replace_shader_user = nullptr;
 };
 
-// The requirements for a device: Vulkan 1.3 and these extensions, but no optional feature.
+// The requirements for a device: Vulkan 1.3 and these extensions (none at present), but no optional feature. An
+// exception are devices with VK_KHR_portability_subset (MoltenVK), where its features mutableComparisonSamplers and
+// events must be enabled. A queue with compute suffices.
 struct Requirements {
   std::uint32_t api_version;
   std::span<const char* const> device_extensions;
@@ -69,7 +71,9 @@ enum class OutputFormat : std::uint32_t { rgba16f, rgba32f };
 // Settings of an effect. set_limits(), set_shadow_colors() and set_params() change some of them later.
 struct EffectDesc {
   VkExtent2D max_extent = {1920, 1080};  // [1; 16384] px - largest FrameInputs::extent
-  std::uint32_t frames_in_flight = 2;    // [1; 8] - frames recorded before the first completes
+  // [1; 8] - frames recorded before the first completes. A frame is an error while the commands of the frame
+  // frames_in_flight before it have not completed, because both use the same constants and descriptor sets.
+  std::uint32_t frames_in_flight = 2;
   // [1; 8] - pictures of one frame: eyes of a stereo pair, a split screen, a reflection. All may be recorded before any
   // completes. They share buffers, so their commands run one after the other.
   std::uint32_t views = 1;
@@ -83,11 +87,14 @@ struct EffectDesc {
   std::uint32_t max_cascades = 4;
   std::uint32_t max_shadow_resolution = 1024;
   bool shadow_colors = false;  // frames may have FrameInputs::shadow_colors; needs more pipelines
-  bool timings = false;        // measure each pass with timestamps
+  bool timings = false;        // measure each pass with timestamps, which the queue must have
   bool counters = false;       // count what the passes do; see Effect::counters()
   // [1; 64] - threads that create pipelines in create(), set_params() and prepare_pipelines(), including the calling
   // one. With more than one, replace_shader is called by several threads at once.
   std::uint32_t pipeline_threads = 1;
+  // Leaves the pipelines that build tables, about twelve, to the first record_precompute() of a build, which then also
+  // allocates descriptor sets. For programs that usually load the tables.
+  bool table_pipelines_later = false;
   // Reports suspicious inputs of a frame through DeviceInfo::message: once, and again only if they were right between.
   bool check_inputs = true;
 };
@@ -152,8 +159,8 @@ struct FrameInputs {
   Camera camera;
   Sun sun;
   Texture output;  // written, in layout GENERAL; must not be the view of color or depth
-  // Number of the frame: one more for each frame. It selects the slot of the frame's constants, so record() fails if
-  // commands with the same index and view have not completed.
+  // Number of the frame: one more for each frame. It selects the slot of the frame's constants and descriptor sets, so
+  // record() fails if commands with the same slot have not completed.
   std::uint64_t frame_index = 0;
   std::uint32_t view = 0;  // [0; EffectDesc::views)
   // [<= 0] m - altitude of the lowest land around the camera. A ray on which nothing is drawn ends on a sphere, which
@@ -263,7 +270,8 @@ class TYNDALL_API Effect {
   Result<void> record_load_tables(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset = 0);
 
   // Records the effect: output = color * transmittance + in-scattered light. Inputs must be visible to COMPUTE_SHADER /
-  // SHADER_READ in the layouts that they state. Writes output in COMPUTE_SHADER / SHADER_WRITE.
+  // SHADER_READ in the layouts that they state. Writes output in COMPUTE_SHADER / SHADER_WRITE. Changes the pipeline,
+  // descriptor set 0 and the push constants of the compute bind point, as record_precompute() does, and no other state.
   Result<void> record(VkCommandBuffer cmd, const FrameInputs& inputs);
 
   // Return the tables in use. Views change only when record_precompute() or record_load_tables() completes new ones.

@@ -169,6 +169,7 @@ typedef struct TyndallEffectDesc {
   VkBool32 counters;
   uint32_t pipeline_threads;
   VkBool32 check_inputs;
+  VkBool32 table_pipelines_later;
 } TyndallEffectDesc;
 
 typedef struct TyndallTexture {

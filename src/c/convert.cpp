@@ -123,7 +123,8 @@ TyndallDeviceInfo to_c(const DeviceInfo& info) {
 EffectDesc to_cpp(const TyndallEffectDesc& c) {
   EffectDesc out;
   auto& [max_extent, frames_in_flight, views, output_format, sky_depth, depth_format, shadow_depth_reversed,
-         max_cascades, max_shadow_resolution, shadow_colors, timings, counters, pipeline_threads, check_inputs] = out;
+         max_cascades, max_shadow_resolution, shadow_colors, timings, counters, pipeline_threads, table_pipelines_later,
+         check_inputs] = out;
   max_extent = c.max_extent;
   frames_in_flight = c.frames_in_flight;
   views = c.views;
@@ -137,14 +138,15 @@ EffectDesc to_cpp(const TyndallEffectDesc& c) {
   timings = c.timings != VK_FALSE;
   counters = c.counters != VK_FALSE;
   pipeline_threads = c.pipeline_threads;
+  table_pipelines_later = c.table_pipelines_later != VK_FALSE;
   check_inputs = c.check_inputs != VK_FALSE;
   return out;
 }
 
 TyndallEffectDesc to_c(const EffectDesc& desc) {
   const auto& [max_extent, frames_in_flight, views, output_format, sky_depth, depth_format, shadow_depth_reversed,
-               max_cascades, max_shadow_resolution, shadow_colors, timings, counters, pipeline_threads, check_inputs] =
-      desc;
+               max_cascades, max_shadow_resolution, shadow_colors, timings, counters, pipeline_threads,
+               table_pipelines_later, check_inputs] = desc;
   TyndallEffectDesc out = {};
   out.max_extent = max_extent;
   out.frames_in_flight = frames_in_flight;
@@ -159,6 +161,7 @@ TyndallEffectDesc to_c(const EffectDesc& desc) {
   out.timings = timings ? VK_TRUE : VK_FALSE;
   out.counters = counters ? VK_TRUE : VK_FALSE;
   out.pipeline_threads = pipeline_threads;
+  out.table_pipelines_later = table_pipelines_later ? VK_TRUE : VK_FALSE;
   out.check_inputs = check_inputs ? VK_TRUE : VK_FALSE;
   return out;
 }

@@ -28,7 +28,7 @@ struct Published;
 TYNDALL_PUBLISHED(TyndallRequirements, device_extensions, device_extensions)
 TYNDALL_PUBLISHED(TyndallParamInfo, max, max)
 TYNDALL_PUBLISHED(TyndallDeviceInfo, replace_shader_user, replace_shader_user)
-TYNDALL_PUBLISHED(TyndallEffectDesc, check_inputs, check_inputs)
+TYNDALL_PUBLISHED(TyndallEffectDesc, table_pipelines_later, table_pipelines_later)
 TYNDALL_PUBLISHED(TyndallFrameInputs, lowest_ground_m, lowest_ground_m)
 TYNDALL_PUBLISHED(TyndallMemoryUsage, host, host)
 TYNDALL_PUBLISHED(TyndallCounters, pixels_corrected, pixels_corrected)

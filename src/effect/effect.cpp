@@ -100,8 +100,9 @@ Effect::State::~State() {
 
 Result<void> Effect::State::create_objects() {
   pipelines.create(device, desc.pipeline_threads);
+  sets.create(device, FrameRing::slots(desc));
   buffers.create(device);
-  TYNDALL_TRY(tables.create(device, pipelines, FrameRing::slots(desc), desc.timings));
+  TYNDALL_TRY(tables.create(device, pipelines, {FrameRing::slots(desc), desc.timings, desc.table_pipelines_later}));
   TYNDALL_ASSIGN(Pending everything, plan(desc, params, kEverything));
   commit(std::move(everything));
   TYNDALL_ASSIGN(no_shadows, gpu::create_image(device, kNoShadows));
@@ -151,6 +152,7 @@ Result<Effect::State::Pending> Effect::State::plan(const EffectDesc& d, const Pa
   Pending pending = {d, p, {}, {}};
   if (other_resources || (required & bit(Affects::Pipeline)) != 0) {
     TYNDALL_TRY(pipelines.make(pipelines_of_frames(d, p)));
+    TYNDALL_TRY(sets.make(sets_of_frames(d, p), pipelines));
   }
   if (other_resources) {
     TYNDALL_ASSIGN(pending.buffers, buffers.plan(d, p));
@@ -247,16 +249,17 @@ BoundResources Effect::State::bind_resources(const FrameInputs& inputs, std::uin
 
 Result<void> Effect::State::record(VkCommandBuffer cmd, const FrameInputs& inputs) {
   TYNDALL_TRY(check_frame(inputs, desc, params));
-  TYNDALL_ASSIGN(const std::optional<std::uint64_t> unfinished, ring.take(inputs.frame_index, inputs.view));
+  TYNDALL_TRY(ring.take(inputs.frame_index, inputs.view));
   const std::uint32_t slot = ring.slot(inputs.frame_index, inputs.view);
   const shared::FrameConstants frame = frame_constants(inputs, desc, params);
-  if (desc.check_inputs) remarks.on_frame(inputs, {desc, params, frame, tables.ready(), unfinished}, info);
+  if (desc.check_inputs) remarks.on_frame(inputs, {desc, params, frame, tables.ready()}, info);
   write_constants(inputs, frame, slot);
 
   if (desc.timings) timer.begin_frame(cmd, slot);
   prepare_images(cmd);
   const BoundResources resources = bind_resources(inputs, slot);
-  StepRecorder recorder(device, cmd, pipelines, resources, desc.timings ? &timer : nullptr);
+  sets.begin(slot);
+  StepRecorder recorder(device, cmd, pipelines, sets, slot, resources, desc.timings ? &timer : nullptr);
   // The previous frame used the same buffers, and its commands may still be running.
   constexpr VkAccessFlags kFrameBefore = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT |
                                          VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT |

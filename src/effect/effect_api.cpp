@@ -10,8 +10,6 @@
 namespace tyndall {
 namespace {
 
-constexpr const char* kExtensions[] = {VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
-
 // Calls body(state) in guarded(). Returns an error for an effect that was moved from, because it has no state.
 template <typename State, typename Body>
 std::invoke_result_t<Body, State&> call(const std::unique_ptr<State>& state, const char* where, Body&& body) noexcept {
@@ -36,7 +34,7 @@ std::invoke_result_t<Body, State&> record_with(const std::unique_ptr<State>& sta
 
 }  // namespace
 
-Requirements requirements() { return {VK_API_VERSION_1_3, kExtensions}; }
+Requirements requirements() { return {VK_API_VERSION_1_3, {}}; }
 
 Effect::Effect(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Effect::Effect(Effect&&) noexcept = default;

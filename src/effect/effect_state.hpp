@@ -12,6 +12,7 @@
 #include "effect/frame_ring.hpp"
 #include "effect/pipeline_cache.hpp"
 #include "effect/remarks.hpp"
+#include "effect/set_cache.hpp"
 #include "effect/step_recorder.hpp"
 #include "effect/tables.hpp"
 #include "gpu/resource.hpp"
@@ -40,6 +41,7 @@ struct TYNDALL_HIDDEN Effect::State {
   gpu::Device device;
 
   PipelineCache pipelines;
+  SetCache sets;                           // of frames, with the slots of `ring`
   std::vector<PipelineKey> all_pipelines;  // that any parameters may need with `desc`; filled when first requested
   FrameBuffers buffers;
   TableBuilder tables;
@@ -75,8 +77,8 @@ struct TYNDALL_HIDDEN Effect::State {
   // Creates the objects that do not depend on settings.
   Result<void> create_objects();
   // Checks new settings and allocates the objects that they need, as far as `required` (a mask of bits 1 << Affects)
-  // contains them. After an error, the picture, the progress of the tables and memory() are unchanged. Pipelines that
-  // were already created are retained, so the next attempt is faster.
+  // contains them. After an error, the picture, the progress of the tables and memory() are unchanged. Pipelines and
+  // descriptor sets that were already created are retained, so the next attempt is faster.
   Result<Pending> plan(const EffectDesc& desc, const Params& params, std::uint32_t required);
   // Replaces the objects by those of plan(). Cannot fail.
   void commit(Pending&& pending) noexcept;

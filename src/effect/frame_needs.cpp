@@ -51,6 +51,18 @@ std::vector<PipelineKey> pipelines_of_frames(const EffectDesc& desc, const Param
   return out;
 }
 
+std::vector<SetKey> sets_of_frames(const EffectDesc& desc, const Params& params) {
+  std::vector<SetKey> out;
+  for_each_shape(desc, params, [&](const FrameSteps& steps) {
+    for (const Step& step : steps) {
+      if (!step.dispatches()) continue;
+      const SetKey key = set_key(step);
+      if (std::find(out.begin(), out.end(), key) == out.end()) out.push_back(key);
+    }
+  });
+  return out;
+}
+
 std::vector<PipelineKey> all_frame_pipelines(const EffectDesc& desc) {
   std::vector<PipelineKey> out;
   const auto add = [&](const Params& params) { add_pipelines(out, desc, params); };

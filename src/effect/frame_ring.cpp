@@ -27,10 +27,17 @@ bool FrameRing::busy(const Slot& slot) const {
   return slot.recorded && device_->vk.GetEventStatus(device_->device, slot.done.get()) == VK_EVENT_RESET;
 }
 
-Result<std::optional<std::uint64_t>> FrameRing::take(std::uint64_t frame_index, std::uint32_t view) const {
+Result<void> FrameRing::take(std::uint64_t frame_index, std::uint32_t view) const {
   const Slot& s = slots_[slot(frame_index, view)];
-  if (!busy(s)) return std::optional<std::uint64_t>();
-  if (s.frame_index != frame_index) return std::optional<std::uint64_t>(s.frame_index);
+  if (!busy(s)) return {};
+  if (s.frame_index != frame_index) {
+    return Error{ErrorCode::invalid_argument,
+                 "FrameInputs::frame_index " + std::to_string(frame_index) +
+                     " takes the constants and descriptors of frame " + std::to_string(s.frame_index) +
+                     ", whose commands have not completed or were never submitted; expected at most "
+                     "EffectDesc::frames_in_flight (" +
+                     std::to_string(frames_) + ") frames at a time, and a new Effect after commands were dropped"};
+  }
   return Error{ErrorCode::invalid_argument,
                "FrameInputs::frame_index " + std::to_string(frame_index) + " with view " + std::to_string(view) +
                    " was recorded before, and its commands have not completed: both would be drawn with the "

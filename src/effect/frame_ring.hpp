@@ -1,8 +1,8 @@
-// The slots of the ring of constants, one per view of a frame in flight. Tracks whether commands may still read them.
+// The slots of constants and descriptor sets, one per view of a frame in flight. Tracks whether commands may still read
+// them.
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "gpu/device.hpp"
@@ -18,10 +18,9 @@ class FrameRing {
   [[nodiscard]] std::uint32_t slot(std::uint64_t frame_index, std::uint32_t view) const {
     return static_cast<std::uint32_t>(frame_index % frames_) * views_ + view;
   }
-  // To be called before a slot is written. Returns an error if the commands that last used the slot for the same frame
-  // and view have not completed. Returns the index of the frame if they are those of another frame; its commands are
-  // late or were never submitted.
-  Result<std::optional<std::uint64_t>> take(std::uint64_t frame_index, std::uint32_t view) const;
+  // To be called before a slot is written. Returns an error if the commands that last used the slot have not completed,
+  // because they are late or were never submitted.
+  Result<void> take(std::uint64_t frame_index, std::uint32_t view) const;
   // Returns whether some commands have not completed, because they are late or were never submitted.
   [[nodiscard]] bool unfinished() const;
   // Records the event of a slot. To be called after the last command that reads the slot.

@@ -52,6 +52,8 @@ using ResourceSet = std::bitset<kResources>;
 [[nodiscard]] ResourceSet resources_of_frames(const EffectDesc& desc, const Params& params);
 // Returns the pipelines of frames of any shape with these settings.
 [[nodiscard]] std::vector<PipelineKey> pipelines_of_frames(const EffectDesc& desc, const Params& params);
+// Returns the descriptor sets of frames of any shape with these settings.
+[[nodiscard]] std::vector<SetKey> sets_of_frames(const EffectDesc& desc, const Params& params);
 // Returns the pipelines of frames of any shape with any parameters.
 [[nodiscard]] std::vector<PipelineKey> all_frame_pipelines(const EffectDesc& desc);
 

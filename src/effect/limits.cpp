@@ -8,6 +8,7 @@
 #include "effect/table_plan.hpp"
 #include "effect_shaders.hpp"
 #include "gpu/pipeline.hpp"
+#include "gpu/portability.hpp"
 #include "gpu/try.hpp"
 
 namespace tyndall {
@@ -69,10 +70,17 @@ Result<void> check_same_desc(const EffectDesc& created, const EffectDesc& wanted
   if (wanted.timings != created.timings) return fixed("timings");
   if (wanted.counters != created.counters) return fixed("counters");
   if (wanted.pipeline_threads != created.pipeline_threads) return fixed("pipeline_threads");
+  if (wanted.table_pipelines_later != created.table_pipelines_later) return fixed("table_pipelines_later");
   return {};
 }
 
 Result<void> check_device(const gpu::Device& device) {
+  const gpu::Portability portability = gpu::portability_of(
+      device.physical_device, device.vk.EnumerateDeviceExtensionProperties, device.vk.GetPhysicalDeviceFeatures2);
+  for (const char* feature : portability.missing()) {
+    return Error{ErrorCode::unsupported_device, std::string("the device has VK_KHR_portability_subset without ") +
+                                                    feature + "; expected mutableComparisonSamplers and events"};
+  }
   for (const gpu::Shader* shader : shaders::effect_shaders) TYNDALL_TRY(gpu::check_shader(device, *shader));
   // No dispatch has more than kMaxGroups workgroups along an axis.
   const std::uint32_t* groups = device.properties.limits.maxComputeWorkGroupCount;

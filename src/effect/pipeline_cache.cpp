@@ -78,4 +78,10 @@ const gpu::Pipeline* PipelineCache::find(const PipelineKey& key) const {
   return found == keys_.end() ? nullptr : &pipelines_[static_cast<std::size_t>(found - keys_.begin())];
 }
 
+const gpu::Pipeline* PipelineCache::find(const gpu::Shader& shader) const {
+  const auto found =
+      std::find_if(keys_.begin(), keys_.end(), [&](const PipelineKey& k) { return k.shader == &shader; });
+  return found == keys_.end() ? nullptr : &pipelines_[static_cast<std::size_t>(found - keys_.begin())];
+}
+
 }  // namespace tyndall

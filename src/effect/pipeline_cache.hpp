@@ -23,6 +23,8 @@ class PipelineCache {
   // Returns null if the pipeline has not been created. Neither allocates nor locks. The pointer is valid until the next
   // call of make().
   [[nodiscard]] const gpu::Pipeline* find(const PipelineKey& key) const;
+  // Returns any pipeline of a shader, or null. All pipelines of a shader have the same bindings.
+  [[nodiscard]] const gpu::Pipeline* find(const gpu::Shader& shader) const;
 
  private:
   const gpu::Device* device_ = nullptr;

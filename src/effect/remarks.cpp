@@ -18,7 +18,6 @@ enum class Kind : std::uint32_t {
   no_cascades,
   no_shafts,
   tables,
-  unfinished,
   depth_bits,
   view_inverse,
   view_mirrored,
@@ -410,11 +409,6 @@ void Remarks::on_frame(const FrameInputs& inputs, const FrameState& state, const
   s.say_if(Kind::tables, needs_tables && !state.tables_ready,
            "the scattering tables are not built; expected record_precompute() until its progress is "
            "complete: there is no in-scattering before");
-  s.say_if(Kind::unfinished, state.unfinished.has_value(), "frame_index ", inputs.frame_index,
-           " takes the constants of frame ", state.unfinished.value_or(0),
-           ", whose commands have not completed or were never submitted; expected at most "
-           "EffectDesc::frames_in_flight (",
-           std::uint64_t{state.desc.frames_in_flight}, ") frames at a time");
 }
 
 }  // namespace tyndall

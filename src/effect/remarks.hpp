@@ -15,8 +15,7 @@ struct FrameState {
   const EffectDesc& desc;
   const Params& params;
   const shared::FrameConstants& frame;
-  bool tables_ready = false;                // the tables have been built at least once
-  std::optional<std::uint64_t> unfinished;  // index of the frame whose commands may still use the slot
+  bool tables_ready = false;  // the tables have been built at least once
 };
 
 class Remarks {

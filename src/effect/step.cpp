@@ -72,6 +72,14 @@ std::span<const Resource> bound_resources(const gpu::Shader& shader) {
   return {resources.list.data(), resources.count};
 }
 
+SetKey set_key(const Step& step) {
+  const gpu::Shader& shader = *step.pipeline.shader;
+  const std::span<const Resource> resources = bound_resources(shader);
+  const bool chooses = std::any_of(resources.begin(), resources.end(),
+                                   [](Resource r) { return info_of(r).lifetime == Lifetime::chosen; });
+  return {&shader, chooses ? step.chosen : Resource::none};
+}
+
 Uses uses_of(const Step& step) {
   Uses uses;
   switch (step.kind) {

@@ -51,6 +51,16 @@ struct Step {
   [[nodiscard]] bool dispatches() const { return kind == Kind::dispatch || kind == Kind::dispatch_indirect; }
 };
 
+// Identifies a descriptor set among those of a frame or a build: steps with the same shader and the same chosen
+// resource have the same bindings.
+struct SetKey {
+  const gpu::Shader* shader = nullptr;
+  Resource chosen = Resource::none;  // none if the shader has no binding for it
+  bool operator==(const SetKey&) const = default;
+};
+// Precondition: step.dispatches().
+[[nodiscard]] SetKey set_key(const Step& step);
+
 // The accesses of a step to a resource, as VK_ACCESS_* flags.
 struct Use {
   Resource resource = Resource::none;

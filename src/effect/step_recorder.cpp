@@ -18,12 +18,15 @@ void StepRecorder::barrier_before(const Step& step) {
   if (b.from != 0) gpu::barrier(device_, cmd_, b.from, b.from_access, b.to, b.to_access);
 }
 
-Result<void> StepRecorder::dispatch(const Step& step) {
-  const auto failure = [&](const std::string& what) {
-    return Error{ErrorCode::invalid_argument, what + " of the pass " + step.name};
-  };
-  const gpu::Pipeline* pipeline = pipelines_.find(step.pipeline);
-  if (pipeline == nullptr) return failure("there is no pipeline");
+namespace {
+
+Error failure(const Step& step, const std::string& what) {
+  return {ErrorCode::invalid_argument, what + " of the pass " + step.name};
+}
+
+}  // namespace
+
+Result<void> StepRecorder::write(const Step& step, const gpu::Pipeline& pipeline, SetCache::Set& set) {
   const std::span<const Resource> bound = bound_resources(*step.pipeline.shader);
   std::array<const gpu::Descriptor*, gpu::kMaxBindings> descriptors = {};
   for (std::size_t i = 0; i < bound.size(); ++i) {
@@ -31,14 +34,25 @@ Result<void> StepRecorder::dispatch(const Step& step) {
     const Resource resource = placeholder ? step.chosen : bound[i];
     const gpu::Descriptor& descriptor = resources_[resource];
     if (descriptor.buffer.buffer == VK_NULL_HANDLE && descriptor.image.imageView == VK_NULL_HANDLE) {
-      return failure(std::string("nothing is bound to ") + name_of(resource));
+      return failure(step, std::string("nothing is bound to ") + name_of(resource));
     }
     descriptors[i] = &descriptor;
   }
+  gpu::write_set(device_, set.set, pipeline, std::span(descriptors).first(bound.size()));
+  set.written = true;
+  return {};
+}
+
+Result<void> StepRecorder::dispatch(const Step& step) {
+  const gpu::Pipeline* pipeline = pipelines_.find(step.pipeline);
+  if (pipeline == nullptr) return failure(step, "there is no pipeline");
+  SetCache::Set* set = sets_.find(set_key(step), slot_);
+  if (set == nullptr) return failure(step, "there is no descriptor set");
+  if (!set->written) TYNDALL_TRY(write(step, *pipeline, *set));
   const gpu::Label label(device_, cmd_, step.name);
   barrier_before(step);
   if (timer_ != nullptr) timer_->begin(cmd_, step.name);
-  gpu::bind(device_, cmd_, *pipeline, std::span(descriptors).first(bound.size()), step.push.data());
+  gpu::bind(device_, cmd_, *pipeline, set->set, step.push.data());
   if (step.kind == Step::Kind::dispatch_indirect) {
     device_.vk.CmdDispatchIndirect(cmd_, resources_[step.chosen].buffer.buffer, 0);
   } else {

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "effect/pipeline_cache.hpp"
+#include "effect/set_cache.hpp"
 #include "effect/step.hpp"
 #include "gpu/timer.hpp"
 
@@ -26,24 +27,34 @@ struct BoundResources {
 // Allocates nothing, except for the message of an error.
 class StepRecorder {
  public:
-  // `timer`: measures the dispatches; may be null. All arguments must outlive the recorder.
-  StepRecorder(const gpu::Device& device, VkCommandBuffer cmd, const PipelineCache& pipelines,
-               const BoundResources& resources, gpu::Timer* timer)
-      : device_(device), cmd_(cmd), pipelines_(pipelines), resources_(resources), timer_(timer) {}
+  // `sets`: written for `resources` where they are not; those of `slot` are bound. `timer`: measures the dispatches;
+  // may be null. All arguments must outlive the recorder.
+  StepRecorder(const gpu::Device& device, VkCommandBuffer cmd, const PipelineCache& pipelines, SetCache& sets,
+               std::uint32_t slot, const BoundResources& resources, gpu::Timer* timer)
+      : device_(device),
+        cmd_(cmd),
+        pipelines_(pipelines),
+        sets_(sets),
+        slot_(slot),
+        resources_(resources),
+        timer_(timer) {}
 
   // See HazardTracker::assume().
   void assume(Resource resource, VkAccessFlags access) { hazards_.assume(resource, access); }
-  // Records a step. Returns an error if a pipeline or a resource is missing.
+  // Records a step. Returns an error if a pipeline, a descriptor set or a resource is missing.
   Result<void> record(const Step& step);
 
  private:
   Result<void> dispatch(const Step& step);
+  Result<void> write(const Step& step, const gpu::Pipeline& pipeline, SetCache::Set& set);
   void transfer(const Step& step);
   void barrier_before(const Step& step);
 
   const gpu::Device& device_;
   VkCommandBuffer cmd_;
   const PipelineCache& pipelines_;
+  SetCache& sets_;
+  std::uint32_t slot_;
   const BoundResources& resources_;
   gpu::Timer* timer_;
   HazardTracker hazards_;

@@ -34,17 +34,11 @@ VkBufferImageCopy whole_table(const gpu::Image& image, VkDeviceSize offset) {
 
 }  // namespace
 
-Result<void> TableBuilder::create(const gpu::Device& device, PipelineCache& pipelines, std::uint32_t frames_in_flight,
-                                  bool timings) {
+Result<void> TableBuilder::create(const gpu::Device& device, PipelineCache& pipelines, const Options& options) {
   device_ = &device;
   pipelines_ = &pipelines;
-  frames_in_flight_ = frames_in_flight;
-  timings_ = timings;
-  // A complete build with default parameters contains all steps.
-  std::vector<PipelineKey> keys;
-  for (const Step& step : table_steps({}, kAllTables)) keys.push_back(step.pipeline);
-  TYNDALL_TRY(pipelines.make(keys));
-  if (timings) {
+  options_ = options;
+  if (options_.timings) {
     TYNDALL_ASSIGN(timer_, gpu::Timer::create(device, 1, kMaxSteps));
     times_.reserve(table_step_names().size());
   }
@@ -58,6 +52,23 @@ Result<TableScratch> TableBuilder::create_scratch(std::uint32_t views) const {
                    gpu::create_buffer(*device_, plan.name, plan.bytes, kScratchUsage, gpu::MemoryKind::device));
   }
   out.views = views;
+  return out;
+}
+
+Result<SetCache> TableBuilder::make_sets(std::span<const Step> steps) {
+  std::vector<PipelineKey> pipelines;
+  std::vector<SetKey> sets;
+  for (const Step& step : steps) {
+    if (std::find(pipelines.begin(), pipelines.end(), step.pipeline) == pipelines.end()) {
+      pipelines.push_back(step.pipeline);
+    }
+    const SetKey key = set_key(step);
+    if (std::find(sets.begin(), sets.end(), key) == sets.end()) sets.push_back(key);
+  }
+  TYNDALL_TRY(pipelines_->make(pipelines));
+  SetCache out;
+  out.create(*device_, 1);
+  TYNDALL_TRY(out.make(sets, *pipelines_));
   return out;
 }
 
@@ -88,19 +99,22 @@ Result<TableBuilder::Pending> TableBuilder::plan(const Params& params) {
     TYNDALL_ASSIGN(out.scratch, create_scratch(params.tables.size.y));
   }
   out.steps = table_steps(params, out.stale);
+  if (!options_.pipelines_later) {
+    TYNDALL_ASSIGN(out.sets, make_sets(out.steps));
+  }
   return out;
 }
 
 void TableBuilder::commit(Pending&& pending) noexcept {
   if (pending.kind == Pending::Kind::nothing) return;
   if (pending.kind == Pending::Kind::cancel) {
-    retire(std::exchange(next_, {}), std::exchange(scratch_, {}));
+    retire(std::exchange(next_, {}), std::exchange(scratch_, {}), std::exchange(sets_, {}));
     steps_.resize(done_);
     return;
   }
   TableSet old = {};
   TableScratch old_scratch = {};
-  bool replaced = false;
+  bool replaced = done_ > 0;  // the sets have been used
   for (std::uint32_t i = 0; i < kTableCount; ++i) {
     if (!pending.images[i].image.view) continue;
     TableImage& image = target(static_cast<TableId>(i));
@@ -111,7 +125,8 @@ void TableBuilder::commit(Pending&& pending) noexcept {
     replaced = replaced || scratch_.views > 0;
     old_scratch = std::exchange(scratch_, std::move(pending.scratch));
   }
-  if (replaced) retire(std::move(old), std::move(old_scratch));
+  SetCache old_sets = std::exchange(sets_, std::move(pending.sets));
+  if (replaced) retire(std::move(old), std::move(old_scratch), std::move(old_sets));
   wanted_ = pending.wanted;
   stale_ = pending.stale;
   steps_ = std::move(pending.steps);
@@ -188,12 +203,15 @@ Result<void> TableBuilder::record_load(VkCommandBuffer cmd, VkBuffer buffer, VkD
 Result<void> TableBuilder::record(VkCommandBuffer cmd, std::uint32_t budget) {
   if (done_ >= steps_.size() || budget == 0) return {};
   if (done_ == 0) {
-    if (timings_) timer_.begin_frame(cmd, 0);
+    if (options_.pipelines_later) {
+      TYNDALL_ASSIGN(sets_, make_sets(steps_));
+    }
+    if (options_.timings) timer_.begin_frame(cmd, 0);
     upload_constants(cmd);
     make_images_ready(cmd);
   }
   const BoundResources resources = bind_resources();
-  StepRecorder recorder(*device_, cmd, *pipelines_, resources, timings_ ? &timer_ : nullptr);
+  StepRecorder recorder(*device_, cmd, *pipelines_, sets_, 0, resources, options_.timings ? &timer_ : nullptr);
   // Steps of earlier calls may still be running.
   for (std::size_t i = 0; i < kResources; ++i) {
     const auto resource = static_cast<Resource>(i);
@@ -239,11 +257,11 @@ void TableBuilder::finish() noexcept {
   }
   complete_ = true;
   built_ = wanted_;
-  retire(std::exchange(next_, {}), std::exchange(scratch_, {}));
+  retire(std::exchange(next_, {}), std::exchange(scratch_, {}), std::exchange(sets_, {}));
 }
 
-void TableBuilder::retire(TableSet tables, TableScratch scratch) noexcept {
-  retired_.push_back({std::move(tables), std::move(scratch), frames_in_flight_ + 1});
+void TableBuilder::retire(TableSet tables, TableScratch scratch, SetCache sets) noexcept {
+  retired_.push_back({std::move(tables), std::move(scratch), std::move(sets), options_.frames_in_flight + 1});
 }
 
 void TableBuilder::begin_frame(VkCommandBuffer cmd) {
@@ -273,7 +291,7 @@ VkDeviceSize TableBuilder::transient_bytes() const {
 }
 
 std::span<const PassTiming> TableBuilder::stage_times() {
-  if (!timings_) return {};
+  if (!options_.timings) return {};
   const std::span<const gpu::TimedScope> scopes = timer_.read(0);
   times_.clear();
   for (const char* const name : table_step_names()) {

@@ -60,17 +60,20 @@ class TableBuilder {
   // The allocated result of plan(); defined below.
   struct Pending;
 
-  // Creates the pipelines of all steps in a cache that must outlive the builder. There are no tables before the first
-  // commit().
-  Result<void> create(const gpu::Device& device, PipelineCache& pipelines, std::uint32_t frames_in_flight,
-                      bool timings);
+  struct Options {
+    std::uint32_t frames_in_flight = 1;
+    bool timings = false;
+    bool pipelines_later = false;  // record() makes the pipelines and descriptor sets of a build, instead of plan()
+  };
+  // `pipelines` must outlive the builder. There are no tables before the first commit().
+  Result<void> create(const gpu::Device& device, PipelineCache& pipelines, const Options& options);
 
   // Allocates everything that the build for other parameters needs (images of another size, scratch memory, the list of
   // steps), and changes nothing else.
   Result<Pending> plan(const Params& params);
   // Takes over the result of the last plan(), and starts the build of the tables that differ from the finished ones.
   void commit(Pending&& pending) noexcept;
-  // Records at most `budget` steps.
+  // Records at most `budget` steps. An error records nothing.
   Result<void> record(VkCommandBuffer cmd, std::uint32_t budget);
   // Copies the finished tables to a buffer, in the order of TableId and without padding. Returns an error while some of
   // them are stale.
@@ -95,24 +98,27 @@ class TableBuilder {
   struct Retired {
     TableSet tables;
     TableScratch scratch;
+    SetCache sets;
     std::uint32_t frames_left;
   };
 
   [[nodiscard]] Result<TableScratch> create_scratch(std::uint32_t views) const;
+  // Makes the pipelines and the descriptor sets of the steps of a build.
+  [[nodiscard]] Result<SetCache> make_sets(std::span<const Step> steps);
   void upload_constants(VkCommandBuffer cmd);
   void make_images_ready(VkCommandBuffer cmd);
   [[nodiscard]] BoundResources bind_resources();
   void finish() noexcept;
-  void retire(TableSet tables, TableScratch scratch) noexcept;
+  void retire(TableSet tables, TableScratch scratch, SetCache sets) noexcept;
   TableImage& target(TableId id);
 
   const gpu::Device* device_ = nullptr;
-  std::uint32_t frames_in_flight_ = 0;
-  bool timings_ = false;
-  const PipelineCache* pipelines_ = nullptr;
+  Options options_;
+  PipelineCache* pipelines_ = nullptr;
   TableSet tables_ = {};
   TableSet next_ = {};  // the new tables, if `tables_` is in use and stale
   TableScratch scratch_ = {};
+  SetCache sets_ = {};       // of the build
   Params built_ = {};        // of tables_, if complete_
   Params wanted_ = {};       // of the build
   bool complete_ = false;    // tables_ have been built at least once
@@ -137,6 +143,7 @@ struct TableBuilder::Pending {
   TableSet images = {};       // of stale tables whose image has another size
   TableScratch scratch = {};  // replaces the present one if `views` is not 0
   std::vector<Step> steps = {};
+  SetCache sets = {};  // new ones for each build, because commands may still use those of the one before
 };
 
 }  // namespace tyndall

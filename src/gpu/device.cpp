@@ -40,8 +40,8 @@ Error vulkan_error(VkResult result, const char* what, const char* name) {
 
 Result<void> init_device(Device& device, PFN_vkGetInstanceProcAddr get) {
   if (const char* missing = load_functions(device.vk, get, device.instance, device.device)) {
-    return Error{ErrorCode::unsupported_device, std::string("the Vulkan device lacks ") + missing +
-                                                    "; expected Vulkan 1.3 and VK_KHR_push_descriptor"};
+    return Error{ErrorCode::unsupported_device,
+                 std::string("the Vulkan device lacks ") + missing + "; expected Vulkan 1.3"};
   }
   VkPhysicalDeviceMaintenance4Properties buffers = {};
   buffers.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_PROPERTIES;
@@ -71,8 +71,10 @@ TYNDALL_DESTROY(VkImage, DestroyImage)
 TYNDALL_DESTROY(VkImageView, DestroyImageView)
 TYNDALL_DESTROY(VkDeviceMemory, FreeMemory)
 TYNDALL_DESTROY(VkPipeline, DestroyPipeline)
+TYNDALL_DESTROY(VkPipelineCache, DestroyPipelineCache)
 TYNDALL_DESTROY(VkPipelineLayout, DestroyPipelineLayout)
 TYNDALL_DESTROY(VkDescriptorSetLayout, DestroyDescriptorSetLayout)
+TYNDALL_DESTROY(VkDescriptorPool, DestroyDescriptorPool)
 TYNDALL_DESTROY(VkSampler, DestroySampler)
 TYNDALL_DESTROY(VkQueryPool, DestroyQueryPool)
 TYNDALL_DESTROY(VkCommandPool, DestroyCommandPool)

@@ -6,19 +6,23 @@
 
 namespace tyndall::gpu {
 
-#define TYNDALL_INSTANCE_FUNCTIONS(X)  \
-  X(GetDeviceProcAddr)                 \
-  X(GetPhysicalDeviceProperties2)      \
-  X(GetPhysicalDeviceMemoryProperties) \
+#define TYNDALL_INSTANCE_FUNCTIONS(X)   \
+  X(EnumerateDeviceExtensionProperties) \
+  X(GetDeviceProcAddr)                  \
+  X(GetPhysicalDeviceFeatures2)         \
+  X(GetPhysicalDeviceProperties2)       \
+  X(GetPhysicalDeviceMemoryProperties)  \
   X(GetPhysicalDeviceFormatProperties)
 
 #define TYNDALL_DEVICE_FUNCTIONS(X)    \
   X(AllocateCommandBuffers)            \
+  X(AllocateDescriptorSets)            \
   X(AllocateMemory)                    \
   X(BeginCommandBuffer)                \
   X(BindBufferMemory)                  \
   X(BindImageMemory)                   \
   X(CmdBeginRendering)                 \
+  X(CmdBindDescriptorSets)             \
   X(CmdBindIndexBuffer)                \
   X(CmdBindPipeline)                   \
   X(CmdCopyBuffer)                     \
@@ -32,7 +36,6 @@ namespace tyndall::gpu {
   X(CmdFillBuffer)                     \
   X(CmdPipelineBarrier)                \
   X(CmdPushConstants)                  \
-  X(CmdPushDescriptorSetKHR)           \
   X(CmdResetQueryPool)                 \
   X(CmdSetEvent)                       \
   X(CmdSetScissor)                     \
@@ -42,24 +45,28 @@ namespace tyndall::gpu {
   X(CreateBuffer)                      \
   X(CreateCommandPool)                 \
   X(CreateComputePipelines)            \
+  X(CreateDescriptorPool)              \
   X(CreateDescriptorSetLayout)         \
   X(CreateEvent)                       \
   X(CreateFence)                       \
   X(CreateGraphicsPipelines)           \
   X(CreateImage)                       \
   X(CreateImageView)                   \
+  X(CreatePipelineCache)               \
   X(CreatePipelineLayout)              \
   X(CreateQueryPool)                   \
   X(CreateSampler)                     \
   X(CreateShaderModule)                \
   X(DestroyBuffer)                     \
   X(DestroyCommandPool)                \
+  X(DestroyDescriptorPool)             \
   X(DestroyDescriptorSetLayout)        \
   X(DestroyEvent)                      \
   X(DestroyFence)                      \
   X(DestroyImage)                      \
   X(DestroyImageView)                  \
   X(DestroyPipeline)                   \
+  X(DestroyPipelineCache)              \
   X(DestroyPipelineLayout)             \
   X(DestroyQueryPool)                  \
   X(DestroySampler)                    \
@@ -72,11 +79,14 @@ namespace tyndall::gpu {
   X(GetDeviceImageMemoryRequirements)  \
   X(GetEventStatus)                    \
   X(GetImageMemoryRequirements)        \
+  X(GetPipelineCacheData)              \
   X(GetQueryPoolResults)               \
   X(MapMemory)                         \
   X(QueueSubmit)                       \
+  X(ResetDescriptorPool)               \
   X(ResetEvent)                        \
   X(ResetFences)                       \
+  X(UpdateDescriptorSets)              \
   X(WaitForFences)
 
 // These are null unless the instance has VK_EXT_debug_utils.

@@ -4,12 +4,14 @@
 #include <cctype>
 #include <cstring>
 
+#include "gpu/portability.hpp"
 #include "gpu/try.hpp"
 
 namespace tyndall::gpu {
 namespace {
 
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
+constexpr const char* kGraphics = "a queue with graphics";
 
 int rank(VkPhysicalDeviceType type) {
   switch (type) {
@@ -27,16 +29,27 @@ std::string lower(std::string text) {
   return text;
 }
 
-std::uint32_t find_queue_family(VkPhysicalDevice device) {
+struct QueueFamily {
+  std::uint32_t index = UINT32_MAX;
+  bool graphics = false;
+  bool timestamps = false;
+};
+
+// Returns the best queue family with compute: one with graphics if there is one, and then one with timestamps.
+QueueFamily find_queue_family(VkPhysicalDevice device) {
   std::uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
   vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
-  const VkQueueFlags needed = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+  QueueFamily best;
   for (std::uint32_t i = 0; i < count; ++i) {
-    if ((families[i].queueFlags & needed) == needed && families[i].timestampValidBits > 0) return i;
+    if ((families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) == 0) continue;
+    const QueueFamily family = {i, (families[i].queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0,
+                                families[i].timestampValidBits > 0};
+    const auto rank = [](const QueueFamily& f) { return (f.graphics ? 2 : 0) + (f.timestamps ? 1 : 0); };
+    if (best.index == UINT32_MAX || rank(family) > rank(best)) best = family;
   }
-  return UINT32_MAX;
+  return best;
 }
 
 bool has_extension(VkPhysicalDevice device, const char* name) {
@@ -46,6 +59,10 @@ bool has_extension(VkPhysicalDevice device, const char* name) {
   vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
   return std::any_of(extensions.begin(), extensions.end(),
                      [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
+}
+
+Portability portability_of(VkPhysicalDevice device) {
+  return gpu::portability_of(device, vkEnumerateDeviceExtensionProperties, vkGetPhysicalDeviceFeatures2);
 }
 
 DeviceRow describe(VkPhysicalDevice device) {
@@ -59,12 +76,10 @@ DeviceRow describe(VkPhysicalDevice device) {
   row.type = properties.properties.deviceType;
   row.api_version = properties.properties.apiVersion;
   if (row.api_version < VK_API_VERSION_1_3) row.missing.emplace_back("Vulkan 1.3");
-  if (!has_extension(device, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME)) {
-    row.missing.emplace_back(VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
-  }
-  if (find_queue_family(device) == UINT32_MAX) {
-    row.missing.emplace_back("a queue with graphics, compute and timestamps");
-  }
+  const QueueFamily family = find_queue_family(device);
+  row.graphics = family.graphics;
+  if (family.index == UINT32_MAX) row.missing.emplace_back("a queue with compute");
+  for (const char* feature : portability_of(device).missing()) row.missing.emplace_back(feature);
   return row;
 }
 
@@ -116,6 +131,15 @@ Result<std::size_t> choose(const std::vector<DeviceRow>& rows, const std::string
                  "the Vulkan device '" + rows[best].name + "' cannot be used; expected " + missing};
   }
   return best;
+}
+
+bool has_instance_extension(const char* name) {
+  std::uint32_t count = 0;
+  vkEnumerateInstanceExtensionProperties(nullptr, &count, nullptr);
+  std::vector<VkExtensionProperties> extensions(count);
+  vkEnumerateInstanceExtensionProperties(nullptr, &count, extensions.data());
+  return std::any_of(extensions.begin(), extensions.end(),
+                     [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
 }
 
 bool has_layer(const char* name) {
@@ -183,6 +207,11 @@ Result<void> Host::create_instance(bool validation, const std::vector<const char
     info.ppEnabledLayerNames = layers;
     extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
   }
+  // Without it, the loader hides drivers over another interface, such as MoltenVK.
+  if (has_instance_extension(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME)) {
+    extensions.push_back(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
+    info.flags |= VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR;
+  }
   info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
   info.ppEnabledExtensionNames = extensions.data();
   const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
@@ -208,15 +237,18 @@ Result<void> Host::create_device(const HostDesc& desc) {
     for (const char* extension : desc.device_extensions) {
       if (!has_extension(device, extension)) rows.back().missing.emplace_back(extension);
     }
-    const std::uint32_t family = find_queue_family(device);
-    if (desc.can_present && family != UINT32_MAX && !desc.can_present(instance_, device, family)) {
+    const QueueFamily family = find_queue_family(device);
+    if (desc.graphics && !family.graphics) rows.back().missing.emplace_back(kGraphics);
+    if (desc.can_present && family.graphics && !desc.can_present(instance_, device, family.index)) {
       rows.back().missing.emplace_back("a queue that can present to this display");
     }
   }
   TYNDALL_ASSIGN(const std::size_t index, choose(rows, desc.device));
   device_.instance = instance_;
   device_.physical_device = devices[index];
-  queue_family_ = find_queue_family(devices[index]);
+  const QueueFamily family = find_queue_family(devices[index]);
+  queue_family_ = family.index;
+  timestamps_ = family.timestamps;
 
   const float priority = 1.0F;
   VkDeviceQueueCreateInfo queue = {};
@@ -228,7 +260,11 @@ Result<void> Host::create_device(const HostDesc& desc) {
   features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
   features.dynamicRendering = VK_TRUE;
   std::vector<const char*> extensions = desc.device_extensions;
-  extensions.push_back(VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
+  Portability portability = portability_of(device_.physical_device);
+  if (portability.subset) {
+    extensions.push_back(VK_KHR_PORTABILITY_SUBSET_EXTENSION_NAME);
+    features.pNext = &portability.features;
+  }
   VkDeviceCreateInfo info = {};
   info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
   info.pNext = &features;
@@ -239,6 +275,7 @@ Result<void> Host::create_device(const HostDesc& desc) {
   VkResult result = vkCreateDevice(device_.physical_device, &info, nullptr, &device_.device);
   if (result != VK_SUCCESS) return vulkan_error(result, "creating the Vulkan device", rows[index].name.c_str());
   TYNDALL_TRY(init_device(device_, get_instance_proc_addr_));
+  sets_.create(device_);
   vkGetDeviceQueue(device_.device, queue_family_, 0, &queue_);
 
   VkCommandPoolCreateInfo pool_info = {};
@@ -280,6 +317,7 @@ Host::~Host() {
   }
   fence_.reset();
   pool_.reset();
+  sets_ = {};
   if (device_.device != VK_NULL_HANDLE) vkDestroyDevice(device_.device, nullptr);
   if (messenger_ != VK_NULL_HANDLE) {
     const auto destroy_messenger = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
@@ -295,7 +333,13 @@ Result<std::vector<DeviceRow>> Host::list(const std::string& wanted) {
   TYNDALL_ASSIGN(const std::vector<VkPhysicalDevice> devices, enumerate(host->instance_));
   std::vector<DeviceRow> rows;
   for (VkPhysicalDevice device : devices) rows.push_back(describe(device));
-  const Result<std::size_t> chosen = choose(rows, wanted);
+  // Prefers a device that can also draw.
+  std::vector<DeviceRow> drawing = rows;
+  for (DeviceRow& row : drawing) {
+    if (!row.graphics) row.missing.emplace_back(kGraphics);
+  }
+  Result<std::size_t> chosen = choose(drawing, wanted);
+  if (!chosen.ok()) chosen = choose(rows, wanted);
   if (chosen.ok()) {
     rows[chosen.value()].chosen = true;
   } else if (!wanted.empty() || rows.empty()) {
@@ -306,6 +350,7 @@ Result<std::vector<DeviceRow>> Host::list(const std::string& wanted) {
 
 Result<void> Host::run(const std::function<Result<void>(VkCommandBuffer)>& record) {
   const std::lock_guard<std::mutex> running(run_mutex_);
+  sets_.reset();
   VkCommandBufferBeginInfo begin = {};
   begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
   begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "gpu/descriptors.hpp"
 #include "gpu/resource.hpp"
 
 namespace tyndall::gpu {
@@ -21,6 +22,7 @@ struct DeviceRow {
   VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
   std::uint32_t api_version = 0;
   std::vector<std::string> missing;  // required features that the device lacks; empty: usable
+  bool graphics = false;             // has a queue for drawing, besides computing; see HostDesc::graphics
   bool chosen = false;
 };
 
@@ -39,9 +41,11 @@ struct HostDesc {
   std::vector<const char*> instance_extensions = {};
   std::vector<const char*> device_extensions = {};
   std::function<bool(VkInstance, VkPhysicalDevice, std::uint32_t queue_family)> can_present = {};
+  bool graphics = true;  // false: the program only computes, and a queue without graphics suffices
 };
 
-// Owns an instance, a device and a queue with graphics and compute. Its functions use the queue synchronously.
+// Owns an instance, a device and a queue with compute and, if HostDesc::graphics, graphics. Its functions use the queue
+// synchronously.
 class Host {
  public:
   static Result<std::unique_ptr<Host>> create(const HostDesc& desc);
@@ -55,6 +59,8 @@ class Host {
   [[nodiscard]] const Device& device() const { return device_; }
   [[nodiscard]] PFN_vkGetInstanceProcAddr get_instance_proc_addr() const { return get_instance_proc_addr_; }
   [[nodiscard]] std::uint32_t queue_family() const { return queue_family_; }
+  // Returns whether the queue has timestamps, which EffectDesc::timings and Timer need.
+  [[nodiscard]] bool timestamps() const { return timestamps_; }
   // The caller must hold lock() while it submits to the queue or waits until the device is idle.
   [[nodiscard]] VkQueue queue() const { return queue_; }
   [[nodiscard]] std::unique_lock<std::mutex> lock() { return std::unique_lock(queue_mutex_); }
@@ -63,6 +69,8 @@ class Host {
     device_.replace_shader = replace;
     device_.replace_shader_user = user;
   }
+  // Sets the cache for all pipelines created afterwards. It must outlive the host.
+  void set_pipeline_cache(VkPipelineCache cache) { device_.pipeline_cache = cache; }
   // Returns how many threads the programs create pipelines with; see EffectDesc::pipeline_threads.
   [[nodiscard]] static std::uint32_t pipeline_threads() {
     return std::clamp(std::thread::hardware_concurrency(), 1U, 8U);
@@ -72,6 +80,8 @@ class Host {
   // Records a command buffer with `record`, submits it and waits until it has completed. May be called from any thread;
   // concurrent calls run one after the other. The queue is locked only during submission.
   Result<void> run(const std::function<Result<void>(VkCommandBuffer)>& record);
+  // The descriptor sets of the command buffer of run(), to be used only while `record` runs.
+  [[nodiscard]] DescriptorArena& sets() { return sets_; }
 
   // The number of warnings and errors of the validation layer so far. The text of the first ones is stored.
   [[nodiscard]] std::uint32_t validation_messages() const { return validation_count_; }
@@ -92,9 +102,11 @@ class Host {
   Device device_;
   VkQueue queue_ = VK_NULL_HANDLE;
   std::uint32_t queue_family_ = 0;
+  bool timestamps_ = false;
   Handle<VkCommandPool> pool_;
   VkCommandBuffer cmd_ = VK_NULL_HANDLE;
   Handle<VkFence> fence_;
+  DescriptorArena sets_;
   std::mutex message_mutex_;  // messages arrive on the thread that made the Vulkan call
   std::atomic<std::uint32_t> validation_count_ = 0;
   std::string validation_text_;

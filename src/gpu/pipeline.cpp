@@ -46,7 +46,6 @@ Result<void> create_layouts(const Device& device, Pipeline& pipeline,
   }
   VkDescriptorSetLayoutCreateInfo set_info = {};
   set_info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-  set_info.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR;
   set_info.bindingCount = pipeline.binding_count;
   set_info.pBindings = bindings.data();
   VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
@@ -282,40 +281,6 @@ Result<Pipeline> create_graphics_pipeline(const Device& device, const GraphicsDe
   out.pipeline = Handle<VkPipeline>(device, pipeline);
   set_name(device, VK_OBJECT_TYPE_PIPELINE, pipeline, desc.name);
   return out;
-}
-
-void bind(const Device& device, VkCommandBuffer cmd, const Pipeline& pipeline,
-          std::span<const Descriptor* const> descriptors, const void* push) {
-  std::array<VkWriteDescriptorSet, kMaxBindings> writes = {};
-  for (std::uint32_t i = 0; i < pipeline.binding_count; ++i) {
-    writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-    writes[i].dstBinding = pipeline.bindings[i].binding;
-    writes[i].descriptorCount = 1;
-    writes[i].descriptorType = pipeline.bindings[i].type;
-    writes[i].pImageInfo = &descriptors[i]->image;
-    writes[i].pBufferInfo = &descriptors[i]->buffer;
-  }
-  device.vk.CmdBindPipeline(cmd, pipeline.bind_point, pipeline.pipeline.get());
-  if (pipeline.binding_count > 0) {
-    device.vk.CmdPushDescriptorSetKHR(cmd, pipeline.bind_point, pipeline.layout.get(), 0, pipeline.binding_count,
-                                      writes.data());
-  }
-  if (push != nullptr && pipeline.push_bytes > 0) {
-    device.vk.CmdPushConstants(cmd, pipeline.layout.get(), pipeline.push_stages, 0, pipeline.push_bytes, push);
-  }
-}
-
-std::string_view bind(const Device& device, VkCommandBuffer cmd, const Pipeline& pipeline,
-                      std::span<const NamedResource> resources, const void* push) {
-  std::array<const Descriptor*, kMaxBindings> descriptors = {};
-  for (std::uint32_t i = 0; i < pipeline.binding_count; ++i) {
-    for (const NamedResource& resource : resources) {
-      if (resource.name == pipeline.bindings[i].name) descriptors[i] = &resource;
-    }
-    if (descriptors[i] == nullptr) return pipeline.bindings[i].name;
-  }
-  bind(device, cmd, pipeline, std::span(descriptors).first(pipeline.binding_count), push);
-  return {};
 }
 
 void dispatch(const Device& device, VkCommandBuffer cmd, const Pipeline& pipeline, std::uint32_t x, std::uint32_t y,

@@ -1,5 +1,5 @@
-// Pipelines from embedded shaders. Push-descriptor layouts follow from the reflected bindings, and resources are bound
-// by name. Specialisation constants select variants. Pipelines are never created while commands are recorded.
+// Pipelines from embedded shaders. The layouts of descriptor sets follow from the reflected bindings; descriptors.hpp
+// binds resources. Specialisation constants select variants. Pipelines are never created while commands are recorded.
 #pragma once
 
 #include <array>
@@ -11,27 +11,7 @@
 
 namespace tyndall::gpu {
 
-constexpr std::uint32_t kMaxBindings = 20;  // every device supports at least 32 push descriptors
-
-// The resource of a binding: a buffer or an image.
-struct Descriptor {
-  VkDescriptorImageInfo image = {};
-  VkDescriptorBufferInfo buffer = {};
-};
-
-// A resource with the name of its binding in GLSL.
-struct NamedResource : Descriptor {
-  std::string_view name;
-};
-[[nodiscard]] inline NamedResource named_buffer(std::string_view name, VkBuffer buffer, VkDeviceSize offset = 0,
-                                                VkDeviceSize size = VK_WHOLE_SIZE) {
-  return {{{}, {buffer, offset, size}}, name};
-}
-[[nodiscard]] inline NamedResource named_image(std::string_view name, VkImageView view,
-                                               VkImageLayout layout = VK_IMAGE_LAYOUT_GENERAL,
-                                               VkSampler sampler = VK_NULL_HANDLE) {
-  return {{{sampler, view, layout}, {}}, name};
-}
+constexpr std::uint32_t kMaxBindings = 20;
 
 // A specialisation constant of four bytes.
 struct Constant {
@@ -80,15 +60,6 @@ struct GraphicsDesc {
 };
 Result<Pipeline> create_graphics_pipeline(const Device& device, const GraphicsDesc& desc,
                                           std::span<const Constant> constants = {});
-
-// Binds the pipeline and one descriptor per binding, in the order of Pipeline::bindings. Allocates nothing.
-// Precondition: there are as many descriptors as bindings, and none is null.
-void bind(const Device& device, VkCommandBuffer cmd, const Pipeline& pipeline,
-          std::span<const Descriptor* const> descriptors, const void* push);
-// Binds the pipeline and looks up the resource of each binding by name. Allocates nothing. Returns the name of a
-// binding that `resources` lacks, or an empty view.
-std::string_view bind(const Device& device, VkCommandBuffer cmd, const Pipeline& pipeline,
-                      std::span<const NamedResource> resources, const void* push = nullptr);
 
 // Records a dispatch of enough workgroups for x × y × z invocations.
 void dispatch(const Device& device, VkCommandBuffer cmd, const Pipeline& pipeline, std::uint32_t x, std::uint32_t y = 1,

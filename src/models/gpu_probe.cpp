@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "gpu/pipeline.hpp"
+#include "gpu/descriptors.hpp"
 #include "gpu/try.hpp"
 #include "probe_shaders.hpp"
 
@@ -49,10 +49,7 @@ Result<std::vector<Answer>> evaluate(gpu::Host& host, const gpu::Shader& shader,
           gpu::named_buffer("result_block", result_buffer.buffer.get(), 0, count * sizeof(shared::ProbeResult)),
       };
       resources.insert(resources.end(), more.begin(), more.end());
-      const std::string_view missing = gpu::bind(device, cmd, pipeline, resources);
-      if (!missing.empty()) {
-        return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(missing)};
-      }
+      if (Result<void> bound = gpu::bind(host.sets(), cmd, pipeline, resources); !bound) return bound;
       gpu::dispatch(device, cmd, pipeline, static_cast<std::uint32_t>(count));
       gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
                    VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);

@@ -7,7 +7,7 @@
 #include "effect/frame_constants.hpp"
 #include "effect/medium.hpp"
 #include "effect/tables.hpp"
-#include "gpu/pipeline.hpp"
+#include "gpu/descriptors.hpp"
 #include "gpu/try.hpp"
 #include "precomputed_shaders.hpp"
 
@@ -39,10 +39,17 @@ shared::ProbeRay probe_ray(const shared::Medium& medium, const RayQuery& query) 
   return out;
 }
 
+// No frames are drawn, so their pipelines are not needed. The tables are the same.
+Params without_frames(Params params) {
+  params.scattering.enabled = false;
+  return params;
+}
+
 }  // namespace
 
 struct PrecomputedModel::State {
   gpu::Host* host;
+  Params params;
   std::unique_ptr<Effect> effect;
   gpu::Pipeline pipeline;
   gpu::Handle<VkSampler> linear;
@@ -53,6 +60,14 @@ PrecomputedModel::PrecomputedModel(std::unique_ptr<State> state) : state_(std::m
 PrecomputedModel::PrecomputedModel(PrecomputedModel&&) noexcept = default;
 PrecomputedModel& PrecomputedModel::operator=(PrecomputedModel&&) noexcept = default;
 PrecomputedModel::~PrecomputedModel() = default;
+
+Result<void> PrecomputedModel::set_params(const Params& params) {
+  TYNDALL_TRY(state_->effect->set_params(without_frames(params)));
+  state_->params = params;
+  return {};
+}
+
+const Params& PrecomputedModel::params() const { return state_->params; }
 
 Effect& PrecomputedModel::effect() { return *state_->effect; }
 
@@ -67,12 +82,15 @@ Result<PrecomputedModel> PrecomputedModel::create(gpu::Host& host, const Params&
   info.physical_device = device.physical_device;
   info.device = device.device;
   info.get_instance_proc_addr = host.get_instance_proc_addr();
+  info.pipeline_cache = device.pipeline_cache;
   EffectDesc desc;
   desc.max_extent = {16, 16};
   desc.frames_in_flight = 1;
-  desc.timings = true;
+  desc.timings = host.timestamps();
   desc.pipeline_threads = gpu::Host::pipeline_threads();
-  TYNDALL_ASSIGN(Effect effect, Effect::create(info, desc, params));
+  desc.table_pipelines_later = true;
+  state->params = params;
+  TYNDALL_ASSIGN(Effect effect, Effect::create(info, desc, without_frames(params)));
   state->effect = std::make_unique<Effect>(std::move(effect));
   TYNDALL_ASSIGN(state->pipeline, gpu::create_compute_pipeline(device, shaders::precomputed_comp));
   TYNDALL_ASSIGN(state->linear, gpu::create_sampler(device, {}));
@@ -85,7 +103,7 @@ Result<std::vector<Answer>> PrecomputedModel::answer(std::span<const RayQuery> q
   if (queries.empty()) return out;
   State& s = *state_;
   const gpu::Device& device = s.host->device();
-  const Params& params = s.effect->params();
+  const Params& params = s.params;
   const shared::Medium medium = medium_from_params(params);
   Setup setup = {};
   setup.shape = table_shape(params);
@@ -122,10 +140,7 @@ Result<std::vector<Answer>> PrecomputedModel::answer(std::span<const RayQuery> q
       gpu::named_image("sky_irradiance", s.effect->light_tables().sky_irradiance, kLayout, linear),
   };
   TYNDALL_TRY(s.host->run([&](VkCommandBuffer cmd) -> Result<void> {
-    const std::string_view missing = gpu::bind(device, cmd, s.pipeline, resources);
-    if (!missing.empty()) {
-      return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(missing)};
-    }
+    if (Result<void> bound = gpu::bind(s.host->sets(), cmd, s.pipeline, resources); !bound) return bound;
     gpu::dispatch(device, cmd, s.pipeline, static_cast<std::uint32_t>(rays.size()));
     gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
                  VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);

@@ -26,6 +26,9 @@ class PrecomputedModel {
   // whether order 1 is integrated.
   Result<std::vector<Answer>> answer(std::span<const RayQuery> queries, bool visible_ground = true);
 
+  // Sets parameters that leave the tables as they are.
+  Result<void> set_params(const Params& params);
+  [[nodiscard]] const Params& params() const;
   // Returns how the tables were obtained: from the cache, or by building them.
   [[nodiscard]] const tables::Report& origin() const;
   // The effect that holds the tables, for build times, memory use, and images to export.

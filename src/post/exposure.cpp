@@ -26,8 +26,6 @@ std::uint32_t stride_of(VkExtent2D extent) {
   return std::max(1U, static_cast<std::uint32_t>(std::ceil(std::sqrt(pixels / kMaxSamples))));
 }
 
-Error lacks(std::string_view name) { return {ErrorCode::invalid_argument, "nothing is bound to " + std::string(name)}; }
-
 }  // namespace
 
 double stop_of_bin(std::size_t bin) {
@@ -41,6 +39,8 @@ Result<Exposure> Exposure::create(const gpu::Device& device, std::uint32_t frame
   TYNDALL_ASSIGN(out.adapt_, gpu::create_compute_pipeline(device, shaders::adapt_exposure_comp));
   constexpr VkBufferUsageFlags kUsage =
       VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+  const gpu::Pipeline* const both[] = {&out.measure_, &out.adapt_};
+  TYNDALL_ASSIGN(out.sets_, gpu::DescriptorSets::create(device, both, std::max(frames_in_flight, 1U)));
   TYNDALL_ASSIGN(out.counts_, gpu::create_buffer(device, "luminance_counts", sizeof(LuminanceCounts), kUsage,
                                                  gpu::MemoryKind::device));
   TYNDALL_ASSIGN(out.state_,
@@ -65,6 +65,8 @@ Result<void> Exposure::measure(VkCommandBuffer cmd, VkImageView from, VkExtent2D
   const gpu::NamedResource resources[] = {gpu::named_image("radiance", from),
                                           gpu::named_buffer("counts_block", counts_.buffer.get()),
                                           gpu::named_buffer("exposure_block", state_.buffer.get())};
+  TYNDALL_TRY(gpu::write_set(*device_, sets_.get(0, slot), measure_, resources));
+  TYNDALL_TRY(gpu::write_set(*device_, sets_.get(1, slot), adapt_, resources));
   // The previous picture may still read the state for tone mapping, and copy its counts.
   constexpr VkPipelineStageFlags kBoth = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
   constexpr VkAccessFlags kWrites = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
@@ -76,8 +78,7 @@ Result<void> Exposure::measure(VkCommandBuffer cmd, VkImageView from, VkExtent2D
                VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
 
   const std::uint32_t stride = stride_of(extent);
-  std::string_view missing = gpu::bind(*device_, cmd, measure_, resources, &stride);
-  if (!missing.empty()) return lacks(missing);
+  gpu::bind(*device_, cmd, measure_, sets_.get(0, slot), &stride);
   constexpr std::uint32_t kSamplesOnSide = 64;  // per group
   const auto groups = [&](std::uint32_t pixels) {
     return (pixels + stride * kSamplesOnSide - 1) / (stride * kSamplesOnSide);
@@ -90,8 +91,7 @@ Result<void> Exposure::measure(VkCommandBuffer cmd, VkImageView from, VkExtent2D
     std::uint32_t reset;
   } push = {static_cast<float>(settings.light_adaptation ? std::clamp(seconds, 0.0, kForever_s) : kForever_s),
             settings.middle_gray, settings.least_luminance, reset_ ? 1U : 0U};
-  missing = gpu::bind(*device_, cmd, adapt_, resources, &push);
-  if (!missing.empty()) return lacks(missing);
+  gpu::bind(*device_, cmd, adapt_, sets_.get(1, slot), &push);
   device_->vk.CmdDispatch(cmd, 1, 1, 1);
   gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT, kBoth,
                VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT);

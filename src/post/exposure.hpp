@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "gpu/pipeline.hpp"
+#include "gpu/descriptors.hpp"
 #include "gpu/resource.hpp"
 #include "post/settings.hpp"
 
@@ -33,7 +33,7 @@ class Exposure {
   // Records the measurement of `from` (RGBA32F in GENERAL layout), and adapts to it over the `seconds` since the
   // previous picture. The first picture, and the first after reset_history(), takes effect at once. Writes to `from`
   // must be visible to compute shaders; the result is visible to later ones. `slot` is below frames_in_flight, for
-  // read().
+  // read(); the commands that were recorded with it before must have completed.
   Result<void> measure(VkCommandBuffer cmd, VkImageView from, VkExtent2D extent, const TonemapSettings& settings,
                        double seconds, std::uint32_t slot = 0);
   // Resets the history: the next picture is unrelated to the previous one.
@@ -60,6 +60,7 @@ class Exposure {
  private:
   const gpu::Device* device_ = nullptr;
   gpu::Pipeline measure_, adapt_;
+  gpu::DescriptorSets sets_;  // of both, a copy per slot
   gpu::Buffer counts_, state_;
   std::vector<gpu::Buffer> results_;  // one per slot: the state, then the counts
   bool reset_ = true;

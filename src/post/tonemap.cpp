@@ -1,7 +1,7 @@
 #include "post/tonemap.hpp"
 
+#include <algorithm>
 #include <cstdint>
-#include <string>
 
 #include "gpu/try.hpp"
 #include "post_shaders.hpp"
@@ -22,12 +22,16 @@ Result<Tonemap> Tonemap::create(const gpu::Device& device, std::uint32_t frames_
     TYNDALL_ASSIGN(out.pipelines_[i], gpu::create_compute_pipeline(device, shaders::tonemap_comp, constants));
     out.pipelines_[i].name = "tonemap";
   }
+  const gpu::Pipeline* const first[] = {&out.pipelines_[0]};
+  out.slots_ = std::max(frames_in_flight, 1U);
+  TYNDALL_ASSIGN(out.sets_, gpu::DescriptorSets::create(device, first, out.slots_));
   TYNDALL_ASSIGN(out.exposure_, Exposure::create(device, frames_in_flight));
   return out;
 }
 
 Result<void> Tonemap::record(VkCommandBuffer cmd, VkImageView from, VkImageView to, VkExtent2D extent,
-                             const TonemapSettings& settings) const {
+                             const TonemapSettings& settings, std::uint32_t slot) const {
+  if (slot >= slots_) return Error{ErrorCode::invalid_argument, "there is no such slot of tone mapping"};
   if (settings.auto_exposure && !exposure_.measured()) {
     return Error{ErrorCode::invalid_argument,
                  "Tonemap::record: auto_exposure is on, but nothing was measured; expected Exposure::measure() before"};
@@ -44,8 +48,8 @@ Result<void> Tonemap::record(VkCommandBuffer cmd, VkImageView from, VkImageView 
     std::uint32_t auto_exposure;
     float white_point, saturation;
   } push = {settings.exposure, settings.auto_exposure ? 1U : 0U, settings.white_point, settings.saturation};
-  const std::string_view missing = gpu::bind(*device_, cmd, pipeline, resources, &push);
-  if (!missing.empty()) return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(missing)};
+  TYNDALL_TRY(gpu::write_set(*device_, sets_.get(0, slot), pipeline, resources));
+  gpu::bind(*device_, cmd, pipeline, sets_.get(0, slot), &push);
   gpu::dispatch(*device_, cmd, pipeline, extent.width, extent.height);
   return {};
 }

@@ -67,10 +67,6 @@ double halton(std::uint32_t i, std::uint32_t base) {
   return out;
 }
 
-Result<void> lacks(std::string_view name) {
-  return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(name)};
-}
-
 }  // namespace
 
 Result<std::unique_ptr<Scene>> Scene::create(gpu::Host& host, const SceneDesc& desc, const Params& params,
@@ -79,6 +75,7 @@ Result<std::unique_ptr<Scene>> Scene::create(gpu::Host& host, const SceneDesc& d
     auto out = std::make_unique<Scene>();
     out->host_ = &host;
     out->desc_ = desc;
+    out->desc_.timings = desc.timings && host.timestamps();
     out->params_ = params;
     out->scene_ = scene;
     TYNDALL_ASSIGN(out->terrain_, Terrain::create(host, scene.terrain, params.planet.radius_m, kColorFormat,
@@ -110,6 +107,7 @@ Result<std::unique_ptr<Effect>> Scene::make_effect(const EffectDesc& desc) {
     }
   };
   info.message_user = &notes_;
+  info.pipeline_cache = device.pipeline_cache;
   info.replace_shader = device.replace_shader;
   info.replace_shader_user = device.replace_shader_user;
   TYNDALL_ASSIGN(Effect effect, Effect::create(info, desc, params_));
@@ -145,6 +143,7 @@ Result<void> Scene::create_objects() {
   effect_desc.timings = desc_.timings;
   effect_desc.counters = desc_.counters;
   effect_desc.pipeline_threads = desc_.pipeline_threads;
+  effect_desc.table_pipelines_later = true;
   TYNDALL_ASSIGN(effect_, make_effect(effect_desc));
   TYNDALL_ASSIGN(post::Tonemap tonemap, post::Tonemap::create(device));
   tonemap_ = std::make_unique<post::Tonemap>(std::move(tonemap));
@@ -350,8 +349,7 @@ Result<void> Scene::copy_to(VkCommandBuffer cmd, const gpu::Image& to) {
       gpu::named_image("scene_depth", depth_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, nearest_.get()),
       gpu::named_image("output_color", to.view.get()),
   };
-  const std::string_view missing = gpu::bind(device, cmd, copy_baseline_, resources);
-  if (!missing.empty()) return lacks(missing);
+  TYNDALL_TRY(gpu::bind(host_->sets(), cmd, copy_baseline_, resources));
   gpu::dispatch(device, cmd, copy_baseline_, desc_.extent.width, desc_.extent.height);
   return {};
 }

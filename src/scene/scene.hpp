@@ -20,7 +20,7 @@ namespace tyndall::scene {
 
 struct SceneDesc {
   VkExtent2D extent = {1280, 720};
-  bool timings = false;
+  bool timings = false;  // if the queue has timestamps
   bool counters = false;
   bool histogram = false;              // measure every picture, not only those that auto exposure needs
   tables::MakeReady make_tables = {};  // how the tables are built and cached

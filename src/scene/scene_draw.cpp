@@ -42,10 +42,6 @@ void begin_rendering(const gpu::Device& device, VkCommandBuffer cmd, VkExtent2D 
   device.vk.CmdSetScissor(cmd, 0, 1, &scissor);
 }
 
-Result<void> lacks(std::string_view name) {
-  return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(name)};
-}
-
 // Returns the constants of background.frag: the sun's disc, the moon, and the conversion of pixels to directions.
 BackgroundConstants background_constants(const ModelFrame& frame, const glm::dvec3& to_sun) {
   const View& view = frame.view;
@@ -185,8 +181,7 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
     if (meshes_ != nullptr) TYNDALL_TRY(meshes_->draw_view(cmd, view_, light_));
     const gpu::Label label(device, cmd, background_.name);
     const gpu::NamedResource resources[] = {gpu::named_buffer("background_block", background_constants_.buffer.get())};
-    const std::string_view missing = gpu::bind(device, cmd, background_, resources);
-    if (!missing.empty()) return lacks(missing);
+    TYNDALL_TRY(gpu::bind(host_->sets(), cmd, background_, resources));
     device.vk.CmdDraw(cmd, 3, 1, 0, 0);
     if (meshes_ != nullptr) TYNDALL_TRY(meshes_->draw_clear_glass(cmd, view_, light_));
   }

@@ -52,6 +52,7 @@ inline TyndallEffectDesc c_desc(const EffectDesc& desc) {
   out.timings = desc.timings ? 1 : 0;
   out.counters = desc.counters ? 1 : 0;
   out.pipeline_threads = desc.pipeline_threads;
+  out.table_pipelines_later = desc.table_pipelines_later ? 1 : 0;
   out.check_inputs = desc.check_inputs ? 1 : 0;
   return out;
 }

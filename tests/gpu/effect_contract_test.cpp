@@ -7,7 +7,7 @@
 #include <string>
 
 #include "effect_frame.hpp"
-#include "gpu/pipeline.hpp"
+#include "gpu/descriptors.hpp"
 #include "gpu_test_shaders.hpp"
 
 namespace tyndall {
@@ -43,7 +43,7 @@ class EffectContract : public GpuTest {
         const gpu::NamedResource resources[] = {
             gpu::named_image("table", view, VK_IMAGE_LAYOUT_GENERAL, sampler.value().get()),
             gpu::named_buffer("texel_block", buffer.value().buffer.get())};
-        EXPECT_EQ(gpu::bind(device, cmd, pipeline.value(), resources), "");
+        EXPECT_TRUE(gpu::bind(host().sets(), cmd, pipeline.value(), resources).ok());
         gpu::dispatch(device, cmd, pipeline.value(), kWidth, kHeight);
         gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
                      VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);

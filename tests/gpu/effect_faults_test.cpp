@@ -175,5 +175,39 @@ TEST(EffectFaults, RecordingMakesNoPipeline) {
   EXPECT_EQ(faults::live_pipeline_objects(), before);
 }
 
+// With EffectDesc::table_pipelines_later, the first record_precompute() makes the pipelines. An error there records
+// nothing, and the call can be repeated.
+TEST(EffectFaults, TablePipelinesCanBeMadeLater) {
+  EffectDesc desc = small_desc();
+  std::size_t at_once = 0;
+  {
+    const Result<Effect> effect = Effect::create(faults::fake_device(), desc, small_params());
+    ASSERT_OK(effect);
+    at_once = faults::live_pipeline_objects();
+  }
+  desc.table_pipelines_later = true;
+  for (const Kind kind : {Kind::vulkan, Kind::host}) {
+    Result<Effect> effect = Effect::create(faults::fake_device(), desc, small_params());
+    ASSERT_OK(effect);
+    EXPECT_LT(faults::live_pipeline_objects() + 12, at_once);
+    long n = 0;
+    for (;; ++n) {
+      faults::forget_commands();
+      faults::arm(kind, n);
+      const Result<Progress> recorded = effect.value().record_precompute(kCommands, 3);
+      if (!faults::disarm()) {
+        ASSERT_OK(recorded);
+        break;
+      }
+      ASSERT_FALSE(recorded.ok()) << n;
+      EXPECT_EQ(recorded.error().code, ErrorCode::out_of_memory);
+      EXPECT_EQ(effect.value().precompute_progress().done, 0U);
+    }
+    EXPECT_GT(n, 4);  // fewer than the calls, because pipelines made before an error are retained
+    EXPECT_EQ(effect.value().precompute_progress().done, 3U);
+    EXPECT_EQ(faults::live_pipeline_objects(), at_once);
+  }
+}
+
 }  // namespace
 }  // namespace tyndall

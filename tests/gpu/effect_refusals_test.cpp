@@ -68,6 +68,22 @@ TEST(EffectRefusals, ValuesOutOfRangeAreRefused) {
   }
 }
 
+// Devices over another interface, such as MoltenVK, are refused if they lack a feature of Vulkan that the effect needs.
+TEST(EffectRefusals, DevicesWithTooSmallASubsetOfVulkanAreRefused) {
+  for (const bool comparison_samplers : {false, true}) {
+    for (const bool events : {false, true}) {
+      faults::set_portability(faults::PortabilitySubset{comparison_samplers, events});
+      const Result<Effect> made = Effect::create(faults::fake_device(), small_desc(), small_params());
+      EXPECT_EQ(made.ok(), comparison_samplers && events);
+      if (made.ok()) continue;
+      EXPECT_EQ(made.error().code, ErrorCode::unsupported_device);
+      const char* feature = comparison_samplers ? "without events" : "without mutableComparisonSamplers";
+      EXPECT_NE(made.error().message.find(feature), std::string::npos) << made.error().message;
+    }
+  }
+  faults::set_portability({});
+}
+
 // Settings that exceed a limit of the device are refused with a message that names them.
 TEST(EffectRefusals, SettingsThatTheDeviceDoesNotAllowAreRefused) {
   struct Case {

@@ -117,15 +117,18 @@ TEST_F(EffectViews, TheSameFrameTwiceIsAnErrorUntilItHasCompleted) {
   EXPECT_OK(first);
   EXPECT_OK(second);
   EXPECT_EQ(texts_, std::vector<std::string>());
-  // More frames are in flight than frames_in_flight, 2. This is only a remark, because the caller may have dropped the
-  // commands of the first.
+  // More frames are in flight than frames_in_flight, 2.
   record_both(6, 8);
   EXPECT_OK(first);
-  EXPECT_OK(second);
-  ASSERT_EQ(texts_.size(), 1U);
+  ASSERT_FALSE(second.ok());
+  EXPECT_EQ(second.error().code, ErrorCode::invalid_argument);
   for (const char* word : {"frame_index 8", "frame 6", "frames_in_flight (2)"}) {
-    EXPECT_NE(texts_[0].find(word), std::string::npos) << texts_[0];
+    EXPECT_NE(second.error().message.find(word), std::string::npos) << second.error().message;
   }
+  record_both(8, 9);
+  EXPECT_OK(first);
+  EXPECT_OK(second);
+  EXPECT_EQ(texts_, std::vector<std::string>());
 }
 
 TEST_F(EffectViews, NumbersOutOfRangeAreRefused) {

@@ -1,6 +1,7 @@
 #include "faults.hpp"
 
 #include <dlfcn.h>
+#include <vulkan/vulkan_beta.h>
 
 #include <cstdlib>
 #include <cstring>
@@ -8,6 +9,7 @@
 #include <new>
 #include <set>
 #include <string_view>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -48,6 +50,7 @@ constexpr VkResult kError = VK_ERROR_OUT_OF_DEVICE_MEMORY;
 
 gpu::Functions real;
 std::function<void(VkPhysicalDeviceProperties2&)> change_properties;
+std::optional<PortabilitySubset> portability;
 
 template <auto kMember, bool kMakes, typename Function>
 struct Wrapped;
@@ -110,8 +113,8 @@ VkDeviceSize bytes_of(const Info&) {
   return 0;
 }
 template <typename T>
-constexpr bool kOfPipelines =
-    std::is_same_v<T, VkPipeline> || std::is_same_v<T, VkPipelineLayout> || std::is_same_v<T, VkDescriptorSetLayout>;
+constexpr bool kOfPipelines = std::is_same_v<T, VkPipeline> || std::is_same_v<T, VkPipelineLayout> ||
+                              std::is_same_v<T, VkDescriptorSetLayout> || std::is_same_v<T, VkDescriptorPool>;
 
 template <typename T>
 VkResult make(T* out, VkDeviceSize bytes) {
@@ -211,13 +214,32 @@ struct Fake<kMember, R(VKAPI_PTR*)(Args...)> {
     }
   }
 };
-// Hashes the descriptors of a pass.
-void VKAPI_CALL push_descriptors(VkCommandBuffer, VkPipelineBindPoint, VkPipelineLayout, std::uint32_t,
-                                 std::uint32_t count, const VkWriteDescriptorSet* writes) {
+// Descriptor sets. They belong to their pool, so they are not counted.
+using Written = std::tuple<VkBuffer, VkDeviceSize, VkImageView>;
+std::map<std::uint64_t, std::map<std::uint32_t, Written>> sets;  // by set and binding
+VkResult VKAPI_CALL allocate_sets(VkDevice, const VkDescriptorSetAllocateInfo* info, VkDescriptorSet* out) {
+  if (fails(Kind::vulkan)) return kError;
+  for (std::uint32_t i = 0; i < info->descriptorSetCount; ++i) {
+    out[i] = reinterpret_cast<VkDescriptorSet>(next_object++);
+  }
+  return VK_SUCCESS;
+}
+void VKAPI_CALL update_sets(VkDevice, std::uint32_t count, const VkWriteDescriptorSet* writes, std::uint32_t,
+                            const VkCopyDescriptorSet*) {
+  ++in_driver;
   for (std::uint32_t i = 0; i < count; ++i) {
-    mix(writes[i].pBufferInfo->buffer);
-    mix(writes[i].pBufferInfo->offset);
-    mix(writes[i].pImageInfo->imageView);
+    sets[reinterpret_cast<std::uint64_t>(writes[i].dstSet)][writes[i].dstBinding] = {
+        writes[i].pBufferInfo->buffer, writes[i].pBufferInfo->offset, writes[i].pImageInfo->imageView};
+  }
+  --in_driver;
+}
+// Hashes the descriptors of a pass.
+void VKAPI_CALL bind_sets(VkCommandBuffer, VkPipelineBindPoint, VkPipelineLayout, std::uint32_t, std::uint32_t count,
+                          const VkDescriptorSet* bound, std::uint32_t, const std::uint32_t*) {
+  for (std::uint32_t i = 0; i < count; ++i) {
+    for (const auto& [binding, written] : sets.at(reinterpret_cast<std::uint64_t>(bound[i]))) {
+      std::apply([](const auto&... part) { (mix(part), ...); }, written);
+    }
   }
 }
 
@@ -312,7 +334,9 @@ VkResult VKAPI_CALL fake_queries(VkDevice, VkQueryPool, std::uint32_t, std::uint
 PFN_vkVoidFunction VKAPI_CALL fake_device_proc(VkDevice, const char* name) {
   const std::string_view wanted = name;
   const std::pair<std::string_view, PFN_vkVoidFunction> own[] = {
-      {"vkCmdPushDescriptorSetKHR", reinterpret_cast<PFN_vkVoidFunction>(push_descriptors)},
+      {"vkAllocateDescriptorSets", reinterpret_cast<PFN_vkVoidFunction>(allocate_sets)},
+      {"vkUpdateDescriptorSets", reinterpret_cast<PFN_vkVoidFunction>(update_sets)},
+      {"vkCmdBindDescriptorSets", reinterpret_cast<PFN_vkVoidFunction>(bind_sets)},
       {"vkCmdPushConstants", reinterpret_cast<PFN_vkVoidFunction>(push_constants)},
       {"vkCmdBeginRendering", reinterpret_cast<PFN_vkVoidFunction>(begin_rendering)},
       {"vkCmdSetEvent", reinterpret_cast<PFN_vkVoidFunction>(set_event)},
@@ -336,10 +360,23 @@ PFN_vkVoidFunction VKAPI_CALL fake_device_proc(VkDevice, const char* name) {
   return nullptr;
 }
 
+VkResult VKAPI_CALL fake_extensions(VkPhysicalDevice, const char*, std::uint32_t* count, VkExtensionProperties* out) {
+  if (out != nullptr && portability) std::strcpy(out->extensionName, VK_KHR_PORTABILITY_SUBSET_EXTENSION_NAME);
+  *count = portability ? 1 : 0;
+  return VK_SUCCESS;
+}
+void VKAPI_CALL fake_features(VkPhysicalDevice, VkPhysicalDeviceFeatures2* out) {
+  auto* subset = static_cast<VkPhysicalDevicePortabilitySubsetFeaturesKHR*>(out->pNext);
+  subset->mutableComparisonSamplers = portability->comparison_samplers ? VK_TRUE : VK_FALSE;
+  subset->events = portability->events ? VK_TRUE : VK_FALSE;
+}
+
 PFN_vkVoidFunction VKAPI_CALL fake_instance_proc(VkInstance, const char* name) {
   const std::string_view wanted = name;
   if (wanted == "vkGetDeviceProcAddr") return reinterpret_cast<PFN_vkVoidFunction>(fake_device_proc);
   if (wanted == "vkGetPhysicalDeviceProperties2") return reinterpret_cast<PFN_vkVoidFunction>(fake_properties);
+  if (wanted == "vkEnumerateDeviceExtensionProperties") return reinterpret_cast<PFN_vkVoidFunction>(fake_extensions);
+  if (wanted == "vkGetPhysicalDeviceFeatures2") return reinterpret_cast<PFN_vkVoidFunction>(fake_features);
   if (wanted == "vkGetPhysicalDeviceMemoryProperties") return reinterpret_cast<PFN_vkVoidFunction>(fake_memory);
   return reinterpret_cast<PFN_vkVoidFunction>(fake_memory);  // not null, and never called
 }
@@ -363,6 +400,8 @@ bool host_allocation_fails(const void* caller) {
 }
 
 void set_properties(std::function<void(VkPhysicalDeviceProperties2&)> change) { change_properties = std::move(change); }
+
+void set_portability(std::optional<PortabilitySubset> subset) { portability = subset; }
 
 PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance instance, const char* name) {
   const std::string_view wanted = name;

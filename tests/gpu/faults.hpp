@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 
 #include "tyndall/effect.hpp"
 
@@ -30,7 +31,14 @@ void set_properties(std::function<void(VkPhysicalDeviceProperties2&)> change);
 DeviceInfo fake_device();
 // The vkGetInstanceProcAddr() of that device, for HostDesc.
 PFN_vkVoidFunction VKAPI_CALL get_fake_proc_addr(VkInstance instance, const char* name);
-// Returns the number of its objects that have not been destroyed, without pipelines and their layouts.
+// Lets that device have VK_KHR_portability_subset with some of its features, or not.
+struct PortabilitySubset {
+  bool comparison_samplers;
+  bool events;
+};
+void set_portability(std::optional<PortabilitySubset> subset);
+// Returns the number of its objects that have not been destroyed, without pipelines, their layouts and descriptor
+// pools.
 std::size_t live_objects();
 std::size_t live_pipeline_objects();
 // Returns a hash of all commands recorded so far, of their arguments, and of mapped memory when they were submitted.

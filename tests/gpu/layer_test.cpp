@@ -2,7 +2,7 @@
 #include <chrono>
 #include <cstring>
 
-#include "gpu/pipeline.hpp"
+#include "gpu/descriptors.hpp"
 #include "gpu/timer.hpp"
 #include "gpu_layer_shaders.hpp"
 #include "gpu_test.hpp"
@@ -39,7 +39,7 @@ class GpuLayer : public GpuTest {
     const NamedResource resources[] = {named_buffer("value_block", values_.buffer.get()),
                                        named_buffer("not_a_binding", seed_.buffer.get()),
                                        named_buffer("seed_block", seed_.buffer.get())};
-    EXPECT_EQ(bind(host().device(), cmd, pipeline, resources, &steps), "");
+    EXPECT_OK(gpu::bind(host().sets(), cmd, pipeline, resources, &steps));
     dispatch(host().device(), cmd, pipeline, 64);
     barrier(host().device(), cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
             VK_PIPELINE_STAGE_HOST_BIT | VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
@@ -71,14 +71,57 @@ TEST_F(GpuLayer, ResourcesAreBoundByNameWhateverTheirOrder) {
 TEST_F(GpuLayer, ABindingThatIsMissingIsNamed) {
   ASSERT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
     const std::uint32_t steps = 0;
+    const auto expect_missing = [&](std::span<const NamedResource> resources, const std::string& name) {
+      const Result<void> bound = gpu::bind(host().sets(), cmd, fill_, resources, &steps);
+      ASSERT_FALSE(bound.ok());
+      EXPECT_NE(bound.error().message.find("nothing is bound to " + name), std::string::npos) << bound.error().message;
+    };
     const NamedResource one[] = {named_buffer("seed_block", seed_.buffer.get())};
-    EXPECT_EQ(bind(host().device(), cmd, fill_, one, &steps), "value_block");
+    expect_missing(one, "value_block");
     const NamedResource other[] = {named_buffer("seed_bloc", seed_.buffer.get()),
                                    named_buffer("value_block", values_.buffer.get())};
-    EXPECT_EQ(bind(host().device(), cmd, fill_, other, &steps), "seed_block");
-    EXPECT_EQ(gpu::bind(host().device(), cmd, fill_, std::span<const gpu::NamedResource>(), &steps).empty(), false);
+    expect_missing(other, "seed_block");
+    expect_missing({}, "");
     return {};
   }));
+}
+
+// More binds than one pool of the arena has room for, each with other resources. The sets of a command buffer are
+// available again in the next one.
+TEST_F(GpuLayer, EachBindOfACommandBufferHasItsOwnSet) {
+  constexpr std::uint32_t kBinds = 70;
+  std::vector<Buffer> seeds, values;
+  for (std::uint32_t i = 0; i < kBinds; ++i) {
+    Result<Buffer> seed =
+        create_buffer(host().device(), "seed", 4, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryKind::upload);
+    Result<Buffer> value =
+        create_buffer(host().device(), "value", 64 * 4, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, MemoryKind::readback);
+    ASSERT_OK(seed);
+    ASSERT_OK(value);
+    seeds.push_back(std::move(seed).value());
+    values.push_back(std::move(value).value());
+  }
+  for (std::uint32_t run = 0; run < 3; ++run) {
+    for (std::uint32_t i = 0; i < kBinds; ++i) {
+      const auto seed = static_cast<float>(100 * run + i);
+      std::memcpy(seeds[i].mapped, &seed, sizeof seed);
+    }
+    ASSERT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
+      for (std::uint32_t i = 0; i < kBinds; ++i) {
+        const std::uint32_t steps = 0;
+        const NamedResource resources[] = {named_buffer("value_block", values[i].buffer.get()),
+                                           named_buffer("seed_block", seeds[i].buffer.get())};
+        EXPECT_TRUE(gpu::bind(host().sets(), cmd, fill_, resources, &steps).ok());
+        dispatch(host().device(), cmd, fill_, 64);
+      }
+      barrier(host().device(), cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
+              VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+      return {};
+    }));
+    for (std::uint32_t i = 0; i < kBinds; ++i) {
+      EXPECT_EQ(*static_cast<const float*>(values[i].mapped), static_cast<float>(100 * run + i));
+    }
+  }
 }
 
 TEST_F(GpuLayer, TimersMeasureWhatTheyEnclose) {

@@ -98,6 +98,7 @@ class SceneFaults : public testing::Test {
     Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create(desc);
     ASSERT_OK(host);
     host_ = std::move(host).value();
+    ASSERT_OK(host_->sets().allocate({}));  // the host retains the pool until it is destroyed
     objects_ = faults::live_objects();
     pipelines_ = faults::live_pipeline_objects();
   }

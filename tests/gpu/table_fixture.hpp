@@ -32,7 +32,7 @@ class TableBuilderTest : public GpuTest {
   }
   Result<void> create(TableBuilder& builder, bool timings, const Params& params) {
     pipelines_.create(host().device(), 1);
-    TYNDALL_TRY(builder.create(host().device(), pipelines_, 1, timings));
+    TYNDALL_TRY(builder.create(host().device(), pipelines_, {1, timings, false}));
     return change(builder, params);
   }
   void build(TableBuilder& builder, std::uint32_t budget) {

@@ -120,7 +120,7 @@ TEST_F(ScatteringTablesTest, MatchThePathTracer) {
 
   Params integrated = params;
   integrated.scattering.single = SingleScattering::integration;
-  ASSERT_OK(model.effect().set_params(integrated));
+  ASSERT_OK(model.set_params(integrated));
   ASSERT_TRUE(model.effect().precompute_progress().complete());
   EXPECT_LE(errors(model, params, random_rays(11, 40, 0.0, 90.0), 6000).mean(), 0.007);
 }

@@ -120,8 +120,7 @@ Result<void> Canvas::draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline, co
                           const void* push) {
   const gpu::Device& device = host_->device();
   const gpu::Label label(device, cmd, pipeline.name);
-  const std::string_view missing = gpu::bind(device, cmd, pipeline, {&resource, 1}, push);
-  if (!missing.empty()) return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(missing)};
+  TYNDALL_TRY(gpu::bind(host_->sets(), cmd, pipeline, {&resource, 1}, push));
   device.vk.CmdDraw(cmd, 3, 1, 0, 0);
   return {};
 }

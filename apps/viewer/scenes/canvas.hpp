@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "gpu/descriptors.hpp"
 #include "gpu/host.hpp"
-#include "gpu/pipeline.hpp"
 #include "gpu/resource.hpp"
 #include "scene/scene.hpp"
 

@@ -30,6 +30,8 @@ Result<void> Pictures::create(gpu::Host& host, VkFormat format) {
   desc.fragment = &shaders::present_picture_frag;
   desc.color_format = format;
   TYNDALL_ASSIGN(present_, gpu::create_graphics_pipeline(host.device(), desc));
+  const gpu::Pipeline* const pipelines[] = {&present_};
+  TYNDALL_ASSIGN(sets_, gpu::DescriptorSets::create(host.device(), pipelines));
   TYNDALL_ASSIGN(sampler_, create_float_sampler(host.device()));
   Picture dark;
   dark.extent = {1, 1};
@@ -77,8 +79,8 @@ Result<void> Pictures::record(VkCommandBuffer cmd, VkExtent2D window, bool two, 
   const gpu::NamedResource resources[] = {gpu::named_image("left_picture", left.view.get(), kRead, sampler_.get()),
                                           gpu::named_image("right_picture", right.view.get(), kRead, sampler_.get())};
   const gpu::Label label(device, cmd, present_.name);
-  const std::string_view missing = gpu::bind(device, cmd, present_, resources, &push);
-  if (!missing.empty()) return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(missing)};
+  TYNDALL_TRY(gpu::write_set(device, sets_.get(0), present_, resources));
+  gpu::bind(device, cmd, present_, sets_.get(0), &push);
   device.vk.CmdDraw(cmd, 3, 1, 0, 0);
   return {};
 }

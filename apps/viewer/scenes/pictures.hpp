@@ -34,6 +34,7 @@ class Pictures {
  private:
   gpu::Host* host_ = nullptr;
   gpu::Pipeline present_;
+  gpu::DescriptorSets sets_;  // one, because the window has one frame in flight
   gpu::Handle<VkSampler> sampler_;
   std::array<std::shared_ptr<const gpu::Image>, 2> sides_;
   std::shared_ptr<const gpu::Image> nothing_;  // one dark texel, until there is a picture

@@ -70,10 +70,6 @@ shared::MeshInstance placed(const glm::dmat4& site_from_mesh) {
   return out;
 }
 
-Result<void> lacks(std::string_view name) {
-  return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(name)};
-}
-
 }  // namespace
 
 Result<std::unique_ptr<Meshes>> Meshes::create(gpu::Host& host, const MeshParams& params, const Terrain& terrain,
@@ -344,8 +340,7 @@ Result<void> Meshes::draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline, co
           material.texture < 0 ? textures_.back() : textures_[static_cast<std::size_t>(material.texture)];
       bound.back() = gpu::named_image("base_color", texture.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
                                       samplers_.at(material.sampler).get());
-      const std::string_view missing = gpu::bind(device, cmd, pipeline, bound, &push);
-      if (!missing.empty()) return lacks(missing);
+      TYNDALL_TRY(gpu::bind(host_->sets(), cmd, pipeline, bound, &push));
       while (first < mesh.instance_count) {
         std::uint32_t end = first + 1;
         while (end < mesh.instance_count && in_sight(i, end)) ++end;
@@ -376,8 +371,7 @@ Result<void> Meshes::draw_view(VkCommandBuffer cmd, const View& view, const Terr
   push.local_from_ndc = to_mat4(local_from_ndc);
   push.near_m = static_cast<float>(kNearPlane_m);
   const std::vector<gpu::NamedResource> bound = resources(&light);
-  const std::string_view missing = gpu::bind(device, cmd, ground_, bound, &push);
-  if (!missing.empty()) return lacks(missing);
+  TYNDALL_TRY(gpu::bind(host_->sets(), cmd, ground_, bound, &push));
   device.vk.CmdDraw(cmd, 3, 1, 0, 0);
   return {};
 }

@@ -209,8 +209,7 @@ Result<void> SkyModel::draw_sky(VkCommandBuffer cmd, VkBuffer background) {
   std::vector<gpu::NamedResource> resources = own_resources();
   resources.push_back(gpu::named_buffer("mesh_block", mesh_.buffer.get()));
   resources.push_back(gpu::named_buffer("background_block", background));
-  const std::string_view missing = gpu::bind(device, cmd, sky, resources);
-  if (!missing.empty()) return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(missing)};
+  TYNDALL_TRY(gpu::bind(host_->sets(), cmd, sky, resources));
   device.vk.CmdBindIndexBuffer(cmd, indices_.buffer.get(), 0, VK_INDEX_TYPE_UINT32);
   device.vk.CmdDrawIndexed(cmd, kIndices, 1, 0, 0, 0);
   return {};

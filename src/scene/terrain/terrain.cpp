@@ -275,8 +275,7 @@ Result<void> Terrain::fill_level(std::size_t layer) {
                          nearest_.get()),
         gpu::named_image("elevation_levels", heights_.view.get()),
     };
-    const std::string_view missing = gpu::bind(device, cmd, fill_, resources);
-    if (!missing.empty()) return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(missing)};
+    TYNDALL_TRY(gpu::bind(host_->sets(), cmd, fill_, resources));
     const auto samples = static_cast<std::uint32_t>(lod_.level_samples());
     gpu::dispatch(device, cmd, fill_, samples, samples);
     gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
@@ -378,8 +377,7 @@ Result<void> Terrain::draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline,
   const gpu::Device& device = host_->device();
   const gpu::Label label(device, cmd, pipeline.name);
   const DrawPush push = {to_mat4(clip_from_world * frame_.world_from_local), ranges_[range].first};
-  const std::string_view missing = gpu::bind(device, cmd, pipeline, resources, &push);
-  if (!missing.empty()) return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(missing)};
+  TYNDALL_TRY(gpu::bind(host_->sets(), cmd, pipeline, resources, &push));
   device.vk.CmdBindIndexBuffer(cmd, indices_.buffer.get(), 0, VK_INDEX_TYPE_UINT32);
   if (ranges_[range].count > 0)
     device.vk.CmdDrawIndexed(cmd, indices_per_block(coarseness_), ranges_[range].count, 0, 0, 0);
@@ -410,8 +408,7 @@ Result<void> Terrain::light_view(VkCommandBuffer cmd, const TerrainLight& light,
   std::vector<gpu::NamedResource> resources = lit(light);
   resources.push_back(gpu::named_image("scene_color", color));
   resources.insert(resources.end(), more.begin(), more.end());
-  const std::string_view missing = gpu::bind(device, cmd, pipeline, resources);
-  if (!missing.empty()) return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(missing)};
+  TYNDALL_TRY(gpu::bind(host_->sets(), cmd, pipeline, resources));
   gpu::dispatch(device, cmd, pipeline, extent.width, extent.height);
   return {};
 }

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "gpu/descriptors.hpp"
 #include "gpu/host.hpp"
-#include "gpu/pipeline.hpp"
 #include "scene/elevation/elevation_source.hpp"
 #include "scene/terrain/terrain_lod.hpp"
 #include "scene/view/cascades.hpp"

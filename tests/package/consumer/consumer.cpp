@@ -7,7 +7,7 @@
 
 int main() {
   const tyndall::Requirements needs = tyndall::requirements();
-  if (needs.api_version != VK_API_VERSION_1_3 || needs.device_extensions.size() != 1) return 1;
+  if (needs.api_version != VK_API_VERSION_1_3 || !needs.device_extensions.empty()) return 1;
   if (tyndall::param_table().empty()) return 2;
   const tyndall::Result<tyndall::Effect> effect = tyndall::Effect::create({}, {}, {});
   if (effect.ok() || effect.error().code != tyndall::ErrorCode::invalid_argument) return 3;

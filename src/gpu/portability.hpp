@@ -1,0 +1,21 @@
+// Devices over another graphics interface, such as MoltenVK, implement a subset of Vulkan. They have the extension
+// VK_KHR_portability_subset, and its features say what they implement.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <vector>
+
+namespace tyndall::gpu {
+
+struct Portability {
+  bool subset = false;  // the device has the extension, so that it must be enabled
+  VkPhysicalDevicePortabilitySubsetFeaturesKHR features = {};
+
+  // Returns the features of the subset that Tyndall needs and the device lacks.
+  [[nodiscard]] std::vector<const char*> missing() const;
+};
+[[nodiscard]] Portability portability_of(VkPhysicalDevice device, PFN_vkEnumerateDeviceExtensionProperties extensions,
+                                         PFN_vkGetPhysicalDeviceFeatures2 features);
+
+}  // namespace tyndall::gpu
