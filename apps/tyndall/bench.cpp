@@ -10,6 +10,7 @@
 #include "gpu/host.hpp"
 #include "make_tables.hpp"
 #include "scene/scene.hpp"
+#include "tables/pipeline_store.hpp"
 
 namespace tyndall::cli {
 namespace {
@@ -63,6 +64,11 @@ int run_bench(Args args) {
 
   Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({options.device, false});
   if (!host) return fail(host.error());
+  const tables::PipelineStore pipelines(*host.value(), table_cache(options.settings.scene));
+  if (!host.value()->timestamps()) {
+    return fail(Error{ErrorCode::unsupported_device, "the queue of the Vulkan device '" + host.value()->device_name() +
+                                                         "' cannot measure passes; expected one with timestamps"});
+  }
   scene::SceneDesc desc;
   desc.extent = {options.size.width, options.size.height};
   desc.timings = true;

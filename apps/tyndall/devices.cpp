@@ -30,6 +30,7 @@ int run_devices(Args args) {
                      {"driver", row.driver},
                      {"vulkan", version_text(row.api_version)},
                      {"missing", row.missing},
+                     {"graphics", row.graphics},
                      {"used", row.chosen}});
     }
     return print(out.dump(2) + "\n");
@@ -39,6 +40,7 @@ int run_devices(Args args) {
     const gpu::DeviceRow& row = rows.value()[i];
     text += std::string(row.chosen ? "* " : "  ") + std::to_string(i) + "  " + row.name + "  (" +
             gpu::type_name(row.type) + ", Vulkan " + version_text(row.api_version) + ", " + row.driver + ")";
+    if (!row.graphics) text += "  computes only: probe, sky, tables and validate";
     for (std::size_t k = 0; k < row.missing.size(); ++k) text += (k == 0 ? "  lacks " : ", ") + row.missing[k];
     text += "\n";
   }

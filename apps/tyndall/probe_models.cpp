@@ -11,6 +11,7 @@
 #include "models/precomputed.hpp"
 #include "reference/path_tracer.hpp"
 #include "scene/sky/oneil_settings.hpp"
+#include "tables/pipeline_store.hpp"
 
 namespace tyndall::cli {
 namespace {
@@ -39,8 +40,9 @@ Result<std::vector<ProbeAnswer>> run_single(const ProbeSettings& settings, std::
     }
   }
   if (rays.empty()) return answers;  // no device needed
-  Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({settings.device, false});
+  Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({.device = settings.device, .graphics = false});
   if (!host) return std::move(host).error();
+  const tables::PipelineStore pipelines(*host.value(), settings.table_cache);
   const auto progress = [&](std::size_t done) {
     settings.progress(sky_share + (1.0 - sky_share) * static_cast<double>(done) / static_cast<double>(rays.size()));
   };
@@ -76,8 +78,9 @@ Result<std::vector<ProbeAnswer>> run_reference(const ProbeSettings& settings, st
 Result<std::vector<ProbeAnswer>> run_precomputed(const ProbeSettings& settings, std::span<const RayQuery> queries) {
   std::vector<ProbeAnswer> answers;
   if (queries.empty()) return answers;
-  Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({settings.device, false});
+  Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({.device = settings.device, .graphics = false});
   if (!host) return std::move(host).error();
+  const tables::PipelineStore pipelines(*host.value(), settings.table_cache);
   tables::MakeReady how;
   how.cache = settings.table_cache;
   how.progress = [&](Progress built) {

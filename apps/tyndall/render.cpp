@@ -8,6 +8,7 @@
 #include "image/image.hpp"
 #include "make_tables.hpp"
 #include "scene/scene.hpp"
+#include "tables/pipeline_store.hpp"
 
 namespace tyndall::cli {
 namespace {
@@ -60,6 +61,7 @@ int run_render(Args args) {
 
   Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({options.device, false});
   if (!host) return fail(host.error());
+  const tables::PipelineStore pipelines(*host.value(), table_cache(options.settings.scene));
   scene::SceneDesc desc;
   desc.extent = {options.size.width, options.size.height};
   desc.pipeline_threads = gpu::Host::pipeline_threads();

@@ -17,6 +17,7 @@
 #include "scene/description/solar_position.hpp"
 #include "scene/sky/sun_disc.hpp"
 #include "sky_map.hpp"
+#include "tables/pipeline_store.hpp"
 
 namespace tyndall::cli {
 namespace {
@@ -223,8 +224,9 @@ int run_sky(Args args) {
   const std::array<double, 3> irradiance = {scene.sun.irradiance.x * scale, scene.sun.irradiance.y * scale,
                                             scene.sun.irradiance.z * scale};
 
-  Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({options.device, false});
+  Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({.device = options.device, .graphics = false});
   if (!host) return fail(host.error());
+  const tables::PipelineStore pipelines(*host.value(), table_cache(options.settings.scene));
   const SkyModel& model =
       *std::find_if(std::begin(kModels), std::end(kModels), [&](const SkyModel& m) { return m.name() == sky.model; });
   Result<std::unique_ptr<SkySource>> source = model.make(*host.value(), options.settings);

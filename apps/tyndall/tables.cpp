@@ -10,6 +10,7 @@
 #include "make_tables.hpp"
 #include "models/precomputed.hpp"
 #include "table_export.hpp"
+#include "tables/pipeline_store.hpp"
 
 namespace tyndall::cli {
 namespace {
@@ -59,8 +60,9 @@ int run_tables(Args args) {
   }
 
   const Params& params = options.settings.effect;
-  Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({options.device, false});
+  Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({.device = options.device, .graphics = false});
   if (!host) return fail(host.error());
+  const tables::PipelineStore pipelines(*host.value(), table_cache(options.settings.scene));
   tables::MakeReady how = make_tables(options.settings.scene);
   how.rebuild = true;
   Result<models::PrecomputedModel> model = models::PrecomputedModel::create(*host.value(), params, how);
@@ -68,6 +70,7 @@ int run_tables(Args args) {
   Effect& effect = model.value().effect();
   const tables::Report& made = model.value().origin();
   for (const std::string& text : made.notes) note(text);
+  if (!host.value()->timestamps()) note("the device has no timestamps, so the stages are not measured");
 
   nlohmann::ordered_json report;
   report["device"] = host.value()->device_name();

@@ -44,6 +44,7 @@ Result<void> Viewer::start() {
         after_loss({ErrorCode::device_lost, "the connection to the display was lost", VK_ERROR_SURFACE_LOST_KHR}));
   });
   TYNDALL_TRY(devices_.open_scene_device({desc_.device, desc_.validation, desc_.script == "one-device"}));
+  pipelines_ = std::make_unique<tables::PipelineStore>(devices_.scene(), desc_.make_tables.cache);
   devices_.scene().set_replace_shader(&ShaderReload::replace, &shaders_);
   if (devices_.slow()) {
     gui_.state.resolution_scale = kSlowScale;

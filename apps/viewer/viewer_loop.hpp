@@ -2,8 +2,10 @@
 // connects the parts of the viewer, which are in their own files.
 #pragma once
 
+#include <memory>
 #include <string>
 
+#include "tables/pipeline_store.hpp"
 #include "viewer/flight.hpp"
 #include "viewer/gui/gui.hpp"
 #include "viewer/notices.hpp"
@@ -64,7 +66,8 @@ class Viewer {
   Notices notices_{gui_, redraw_};
   Window window_;
   Devices devices_;
-  ShaderReload shaders_;  // outlives the scenes
+  std::unique_ptr<tables::PipelineStore> pipelines_;  // of the scenes
+  ShaderReload shaders_;                              // outlives the scenes
   Swapchain swapchain_;
   ViewSettings settings_;
   ScenePair pair_{notices_, redraw_};

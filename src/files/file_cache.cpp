@@ -154,6 +154,13 @@ bool FileCache::holds(std::string_view key) const {
   return enabled() && std::filesystem::exists(path(key), failed);
 }
 
+std::uint64_t FileCache::size(std::string_view key) const {
+  if (!holds(key)) return 0;
+  const std::uint64_t bytes = OpenFile(path(key)).size().value_or(0);
+  const std::uint64_t rest = sizeof(Header) + version_.size() + key.size();
+  return bytes > rest ? bytes - rest : 0;
+}
+
 std::optional<std::string> FileCache::read(std::string_view key, std::uint64_t size) {
   std::string out(holds(key) ? size : 0, '\0');
   if (!read(key, std::as_writable_bytes(std::span(out)))) return std::nullopt;

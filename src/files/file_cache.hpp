@@ -28,6 +28,8 @@ class FileCache {
 
   // Returns whether there is a file for the key; read() may still reject it.
   [[nodiscard]] bool holds(std::string_view key) const;
+  // Returns the size of what was stored under the key, which read() verifies; 0 if there is no such file.
+  [[nodiscard]] std::uint64_t size(std::string_view key) const;
   // Returns what was stored under the key, if it has `size` bytes, and marks it as used.
   [[nodiscard]] std::optional<std::string> read(std::string_view key, std::uint64_t size);
   // Reads into the caller's memory, which is written once, in order, and never read, so that it may be device memory.

@@ -13,6 +13,7 @@
 #include "table_fixture.hpp"
 #include "table_rays.hpp"
 #include "tables/make_ready.hpp"
+#include "tables/pipeline_store.hpp"
 
 namespace tyndall {
 namespace {
@@ -294,6 +295,49 @@ TEST_F(CachedTablesTest, StayWithinTheSizeLimit) {
   const tables::Report report = ready(params);
   ASSERT_EQ(report.notes.size(), 1U);
   EXPECT_NE(report.notes[0].find("exceed its limit of " + std::to_string(size)), std::string::npos);
+}
+
+// Stored pipelines are used only if their header names the device. Damaged ones are ignored.
+TEST_F(SavedTablesTest, PipelinesAreStoredForTheDevice) {
+  const gpu::Device& device = host().device();
+  VkPipelineCacheHeaderVersionOne header = {};
+  header.headerSize = sizeof header;
+  header.headerVersion = VK_PIPELINE_CACHE_HEADER_VERSION_ONE;
+  header.vendorID = device.properties.vendorID;
+  header.deviceID = device.properties.deviceID;
+  std::memcpy(header.pipelineCacheUUID, device.properties.pipelineCacheUUID, VK_UUID_SIZE);
+  const auto accepted = [&](const auto& change, std::size_t size = sizeof header) {
+    VkPipelineCacheHeaderVersionOne changed = header;
+    change(changed);
+    return tables::is_of_device(std::as_bytes(std::span(&changed, 1)).first(size), device.properties);
+  };
+  using Header = VkPipelineCacheHeaderVersionOne;
+  EXPECT_TRUE(accepted([](Header&) {}));
+  EXPECT_FALSE(accepted([](Header&) {}, sizeof header - 1));
+  EXPECT_FALSE(accepted([](Header& h) { h.headerSize = 16; }));
+  EXPECT_FALSE(accepted([](Header& h) { h.headerSize = 64; }));
+  EXPECT_FALSE(accepted([](Header& h) { h.headerVersion = static_cast<VkPipelineCacheHeaderVersion>(2); }));
+  EXPECT_FALSE(accepted([](Header& h) { ++h.vendorID; }));
+  EXPECT_FALSE(accepted([](Header& h) { ++h.deviceID; }));
+  EXPECT_FALSE(accepted([](Header& h) { ++h.pipelineCacheUUID[15]; }));
+
+  std::string folder = (std::filesystem::temp_directory_path() / "tyndall-pipelines-XXXXXX").string();
+  ASSERT_NE(::mkdtemp(folder.data()), nullptr);
+  for (int run = 0; run < 3; ++run) {
+    {
+      const tables::PipelineStore store(host(), {folder});
+      EXPECT_NE(device.pipeline_cache, VkPipelineCache{VK_NULL_HANDLE});
+      DeviceInfo with_cache = info();
+      with_cache.pipeline_cache = device.pipeline_cache;
+      EXPECT_OK(Effect::create(with_cache, {.max_extent = {16, 16}}, small_tables()));
+    }
+    EXPECT_EQ(device.pipeline_cache, VkPipelineCache{VK_NULL_HANDLE});
+    // Some drivers store nothing. The files of the others are damaged before the last run.
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+      if (run == 1 && entry.is_regular_file()) std::filesystem::resize_file(entry.path(), entry.file_size() / 2);
+    }
+  }
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

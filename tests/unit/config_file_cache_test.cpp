@@ -115,6 +115,20 @@ TEST_F(ConfigFileCache, DamagedFilesAreReportedInOneLine) {
   EXPECT_FALSE(cache.read("key", 1000));
 }
 
+TEST_F(ConfigFileCache, TheSizeOfAFileIsKnownBeforeItIsRead) {
+  FileCache cache = open();
+  EXPECT_EQ(cache.size("key"), 0U);
+  for (const std::size_t size : {1U, 1000U, 600001U}) {
+    const std::string contents = pattern(size, 2);
+    cache.write("key", bytes_of(contents));
+    EXPECT_EQ(cache.size("key"), size);
+    EXPECT_EQ(cache.read("key", cache.size("key")), contents);
+  }
+  overwrite(cache.path("key"), "short");
+  EXPECT_EQ(cache.size("key"), 0U);
+  EXPECT_EQ(FileCache().size("key"), 0U);
+}
+
 TEST_F(ConfigFileCache, TheOldestFilesAreRemovedFirst) {
   FileCache cache = open(10000);
   const std::string contents = pattern(3000, 4);
