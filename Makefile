@@ -26,6 +26,7 @@ demo: build
 check: PRESET = ci
 check: PACKAGES = clang-format
 check: format-check build
+	@tools/second_driver.sh build/second_driver
 	@ctest --preset ci --no-tests=error -j "$$(nproc)"
 
 # The reference of the public headers, in build/doxygen/html.
