@@ -10,10 +10,24 @@
 #include <thread>
 #include <vector>
 
+#include "c/structures.hpp"
 #include "tyndall/effect.hpp"
 #include "tyndall/tyndall.h"
 
 namespace tyndall {
+
+// A structure that has grown by `added` since its first version.
+struct Grown {
+  uint32_t struct_size;
+  uint32_t first;
+  uint32_t added;
+};
+template <>
+struct c::Published<Grown> {
+  static constexpr const char* kName = "Grown";
+  static constexpr std::size_t kFirstSize = offsetof(Grown, added);
+};
+
 namespace {
 
 struct Destroy {
@@ -251,6 +265,35 @@ TEST(CInterface, SizesOfStructuresAreChecked) {
   TyndallFrameInputs inputs;
   expect_invalid(tyndall_frame_inputs_defaults(&inputs, 0), {"TyndallFrameInputs", "struct_size is 0"});
   expect_invalid(tyndall_frame_inputs_defaults(&inputs, sizeof inputs + 4), {"expected"});
+}
+
+TEST(CInterface, StructuresOfEarlierHeadersAreUnderstood) {
+  const Grown defaults = {0, 10, 20};
+  const Grown earlier = {8, 1, 2}, now = {12, 1, 2};  // of a program that does not know `added`, and of one that does
+  const Result<Grown> from_earlier = c::read("test", &earlier, defaults), from_now = c::read("test", &now, defaults);
+  ASSERT_TRUE(from_earlier.ok() && from_now.ok());
+  EXPECT_EQ(from_earlier.value().first, 1U);
+  EXPECT_EQ(from_earlier.value().added, 20U);
+  EXPECT_EQ(from_now.value().added, 2U);
+  Grown out = {8, 0, 7};
+  ASSERT_TRUE(c::write("test", Grown{0, 3, 4}, &out).ok());
+  EXPECT_EQ(out.struct_size, 8U);
+  EXPECT_EQ(out.first, 3U);
+  EXPECT_EQ(out.added, 7U);
+  out.struct_size = 12;
+  ASSERT_TRUE(c::write("test", Grown{0, 3, 4}, &out).ok());
+  EXPECT_EQ(out.added, 4U);
+  Grown filled = {0, 0, 7};
+  ASSERT_TRUE(c::write_defaults("test", defaults, &filled, 8).ok());
+  EXPECT_EQ(filled.struct_size, 8U);
+  EXPECT_EQ(filled.first, 10U);
+  EXPECT_EQ(filled.added, 7U);
+  for (const uint32_t size : {0U, 4U, 7U, 13U, 16U}) {
+    const Grown wrong = {size, 1, 2};
+    const Result<Grown> refused = c::read("test", &wrong, defaults);
+    ASSERT_FALSE(refused.ok()) << size;
+    EXPECT_NE(refused.error().message.find("Grown::struct_size is"), std::string::npos) << refused.error().message;
+  }
 }
 
 TEST(CInterface, ErrorsBelongToTheirThread) {
