@@ -20,6 +20,8 @@
 #include "lib/single_scattering.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
+layout(push_constant) uniform Push { uint first_row; }
+push;  // of the picture
 
 const int kReadsPerStep = 8;  // shadow-map reads per evaluation of the medium
 const int kMaxReads = 60000;  // per cascade: some CPU devices end a loop after 65 535 iterations
@@ -203,7 +205,7 @@ vec3 inscattering(Ray ray, float start, float end) {
 void main() {
   load_medium();
   load_frame();
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, int(push.first_row));
   if (pixel.x >= int(frame.width) || pixel.y >= int(frame.height)) return;
   vec3 background = load_color(pixel);
   float depth = load_depth(pixel);

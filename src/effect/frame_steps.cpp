@@ -3,6 +3,8 @@
 // To add a pass, add its shader to CMakeLists.txt, its buffers to resources.def, and a line here.
 #include "effect/frame_steps.hpp"
 
+#include <algorithm>
+
 #include "effect/frame_constants.hpp"
 #include "effect/modes.hpp"
 #include "effect_shaders.hpp"
@@ -185,6 +187,20 @@ void epipolar_steps(Frame& f) {
   }
 }
 
+// Marches every pixel, in bands of rows. A band is short enough for the time-out of a driver, also where a pixel reads
+// thousands of shadow texels.
+void brute_force_steps(Frame& f) {
+  constexpr std::uint32_t kPixelsPerBand = 131072;
+  constexpr std::uint32_t kMaxBands = 32;
+  const gpu::Shader& shader = f.variant(shaders::march_per_pixel_comp_rgba16f, shaders::march_per_pixel_comp_rgba32f);
+  const auto [width, height] = f.shape.extent;
+  const std::uint32_t wanted = std::max(kPixelsPerBand / width, (height + kMaxBands - 1) / kMaxBands);
+  const std::uint32_t group = shader.local_size[1];
+  const std::uint32_t rows = std::max((wanted + group - 1) / group, 1U) * group;
+  for (std::uint32_t first = 0; first < height; first += rows)
+    f.dispatch("march_per_pixel", shader, {width, std::min(rows, height - first), 1}, {first, 0});
+}
+
 }  // namespace
 
 FrameShape frame_shape(const FrameInputs& inputs, const Params& params) {
@@ -200,8 +216,7 @@ FrameSteps frame_steps(const EffectDesc& desc, const Params& params, const Frame
   if (!params.scattering.enabled) {
     f.dispatch("no_air", f.variant(shaders::no_air_comp_rgba16f, shaders::no_air_comp_rgba32f), pixels);
   } else if (params.scattering.technique == Technique::brute_force) {
-    f.dispatch("march_per_pixel",
-               f.variant(shaders::march_per_pixel_comp_rgba16f, shaders::march_per_pixel_comp_rgba32f), pixels);
+    brute_force_steps(f);
   } else {
     epipolar_steps(f);
   }

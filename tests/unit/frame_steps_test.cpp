@@ -121,7 +121,7 @@ TEST(FrameSteps, FollowTheMethod) {
   EXPECT_EQ(names_of(params), shown);
 
   params.scattering.technique = Technique::brute_force;
-  EXPECT_EQ(names_of(params), std::vector<std::string>{"march_per_pixel"});
+  EXPECT_EQ(names_of(params, {{64, 64}, 4, 0, false}), std::vector<std::string>{"march_per_pixel"});
   params.scattering.enabled = false;
   EXPECT_EQ(names_of(params), std::vector<std::string>{"no_air"});
 }
