@@ -149,7 +149,8 @@ class Exporter {
         staging_(staging),
         progress_(progress),
         axes_(models::table_axes(params_)),
-        factors_(models::table_factors(params_, axes_)) {}
+        factors_(models::table_factors(params_, axes_)),
+        shapes_(models::angle_shapes(params_, axes_)) {}
 
   // Writes the files. `texels` are in the order of record_save_tables. Returns the names of the files, the index last.
   Result<std::vector<std::string>> write(std::span<const std::uint16_t> texels, const std::string& device) {
@@ -186,8 +187,9 @@ class Exporter {
       table["name"] = name;
       table["quantity"] = kind.quantity;
       table["unit"] = kind.unit;
-      Result<ordered_json> files =
-          kind.factor != nullptr ? scattering_table(name, own, kind.factor) : light_table(name, own, desc.extent);
+      Result<ordered_json> files = kind.factor != nullptr
+                                       ? scattering_table(name, own, kind.factor, kind.id == TableId::high_orders)
+                                       : light_table(name, own, desc.extent);
       if (!files) return std::move(files).error();
       table["axes"] = kind.factor != nullptr ? "scattering" : "light";
       table["files"] = std::move(files).value();
@@ -208,7 +210,7 @@ class Exporter {
 
   // Writes one picture per altitude.
   Result<ordered_json> scattering_table(const std::string& name, std::span<const std::uint16_t> texels,
-                                        std::array<double, 3> models::TableFactors::*factor) {
+                                        std::array<double, 3> models::TableFactors::*factor, bool shaped) {
     const UVec4& size = params_.tables.size;
     ordered_json files = ordered_json::array();
     image::Image image(size.z * size.w, size.y);
@@ -220,7 +222,8 @@ class Exporter {
           const std::size_t at = ((std::size_t{z} * size.y + view) * size.x + altitude) * 4;
           for (std::size_t c = 0; c < 3; ++c) {
             const double t = float_from_half(texels[at + c]);
-            *out++ = static_cast<float>(scale[c] * t * t * t * t);
+            const double shape = shaped ? shapes_[z / size.z][c] : 1.0;
+            *out++ = static_cast<float>(scale[c] * shape * t * t * t * t);
           }
         }
       }
@@ -308,6 +311,7 @@ class Exporter {
   const std::function<void(std::size_t, std::size_t)>& progress_;
   models::TableAxes axes_;
   std::vector<models::TableFactors> factors_;
+  std::vector<std::array<double, 3>> shapes_;
   VkExtent3D light_extent_ = {0, 0, 0};
   std::vector<std::string> names_;
   std::size_t total_ = 0;

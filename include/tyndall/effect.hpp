@@ -250,7 +250,9 @@ class TYNDALL_API Effect {
 
   // Returns how many slices of the tables have been recorded.
   [[nodiscard]] Progress precompute_progress() const;
-  // Records at most `budget` slices of the stale tables. Records nothing when all are complete.
+  // Records at most `budget` slices of the stale tables, by default all of them. Records nothing when all are complete.
+  // A slice has at most 131 072 invocations, whatever tables.size is. If frames are drawn while tables are built, 8
+  // slices per frame are a suitable budget for integrated GPUs.
   Result<Progress> record_precompute(VkCommandBuffer cmd, std::uint32_t budget = UINT32_MAX);
 
   // Returns a key for caching finished tables: printable text of several lines that describes medium, table shape,

@@ -53,6 +53,7 @@ TableRay ray_further_on(Medium m, TableRay ray, float distance_m) {
 struct TableAngle {
   vec3 rayleigh;  // scattering x phase function [1 / (m sr)]
   vec3 mie;
+  vec3 shape;  // angle_shape()
   float slices;
   float first;
   float part;  // weight of the second slice
@@ -62,6 +63,7 @@ TableAngle table_angle(TableShape t, Medium m, float nu) {
   TableAngle a;
   a.rayleigh = m.rayleigh_scattering * rayleigh_phase(nu);
   a.mie = m.mie_scattering * mie_phase(m, nu);
+  a.shape = angle_shape(angle_shape_of(m), nu);
   a.slices = float(t.angles);
   float slice = clamp(q_from_angle(t, nu) * a.slices - 0.5, 0.0, a.slices - 1.0);
   a.first = min(floor(slice), a.slices - 2.0);
@@ -99,7 +101,7 @@ InScattering inscattering_from_integral(TableShape t, Medium m, TableAngle angle
   InScattering light;
   light.single = angle.rayleigh * factors.rayleigh * table_value(single_rayleigh, c, angle.part) +
                  angle.mie * factors.mie * table_value(single_mie, c, angle.part);
-  light.high = factors.high * table_value(high_orders, c, angle.part);
+  light.high = factors.high * angle.shape * table_value(high_orders, c, angle.part);
   return light;
 }
 

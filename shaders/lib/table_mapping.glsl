@@ -1,13 +1,13 @@
-// The mapping between a ray and its place in the scattering tables. Each of the four axes has a pair of functions that
-// convert between its quantity and a coordinate in [0; 1] over the texels. There are three parameterisations:
-//   yusov    - Yusov, "High Performance Outdoor Light Scattering Using Epipolar Sampling" (2013), section 2: the fifth
-// root of the distance from the horizon in cosine, and Bruneton's arctangent for the sun. Two axes are ours. Altitude
-// is a fourth power of the coordinate, with a spacing of 400 m at 1 km. The published square has 600 m there, over
-// which the light of a low sun in turbid air changes several times. The spacing of the angle between view and sun grows
-// slowly from the sun: Yusov raises the angle to the power 3/2, which leaves 30 degrees between the texels around 90
-// degrees and triples the errors of twilight;
+// The mapping between a ray and its coordinates in the scattering tables. Each of the four axes has a pair of functions
+// that convert between its quantity and a coordinate in [0; 1] over the texels. There are three parameterisations:
+//   yusov    - Yusov, "High Performance Outdoor Light Scattering Using Epipolar Sampling" (2013), section 2. The view
+//              axis is the fifth root of the distance from the horizon in cosine, the sun axis Bruneton's arctangent.
+//              Two axes differ from the publication. Altitude is a fourth power of the coordinate: its spacing is 400 m
+//              at 1 km, where the published square has 600 m, over which the light of a low sun in turbid air changes
+//              several times. The spacing of the angle between view and sun grows slowly from the sun. The published
+//              power of 3/2 leaves 30 degrees between the texels around 90 degrees, and triples the errors of twilight.
 //   bruneton - Bruneton and Neyret, "Precomputed Atmospheric Scattering" (2008), section 4: the distances to the
-// horizon and to the boundary, an exponential for the sun, and the cosine of the angle to the sun;
+//              horizon and to the boundary, an exponential for the sun, and the cosine of the angle to the sun.
 //   linear   - altitude and the three cosines.
 // In the first two, one half of the view axis is for rays that end on the ground (`below`) and the other for rays that
 // leave the atmosphere. Filtering never crosses the horizon.
@@ -18,24 +18,25 @@
 #include "shared/medium.h"
 #include "shared/tables.h"
 
-// Rays that begin nearer than this to the ground or the top are looked up at this distance from it [m].
+// Rays that begin nearer than this to the ground or the top are looked up as if they began at this distance from it
+// [m].
 const float kTableMargin = 16.0;
-// The lowest altitude of the tables [m]. Rays that begin below it are looked up as if they began there.
+// The lowest altitude of the tables [m]. Rays that begin below it are looked up as if they began at this altitude.
 const float kLowestTableAltitude = -500.0;
 // Offset of the fourth power that spaces altitudes (altitude_share()). It bounds their density at the ground, where the
 // lowest texels of the default size are 90 m apart.
 const float kAltitudeOffset = 0.25;
 // Spacing of the yusov mapping of the angle between view and sun beside the sun, relative to the mean spacing.
 const float kAngleDensity = 0.8;
-// The cosine of the lowest sun: 16 degrees below the horizontal. The density-weighted mean distance of a ray that
-// begins high up in twilight can be under so low a sun. (The gathering grid ends at a sun of 11 degrees below, at the
-// ray's beginning.)
+// The cosine of the lowest sun, which is 16 degrees below the horizontal. In twilight, the sun can be this low at the
+// density-weighted mean distance of a ray that begins high up. (The gathering grid ends 11 degrees below the
+// horizontal, because it uses the sun at the beginning of a ray.)
 const float kLowestSun = -0.28;
 // The yusov mapping of the sun: the arctangent of kSunShape times the cosine, which lies in [kSunFrom; kSunTo].
 const float kSunShape = 5.3496235;  // tan(1.26 * 1.1)
 const float kSunFrom = -0.982145272;
 const float kSunTo = 1.386;
-// The decay rate of the bruneton mapping of the sun.
+// The decay rate of the exponential in the bruneton mapping of the sun.
 const float kSunFade = 3.0;
 
 // Returns the texture coordinate over n texels for x in [0; 1], where 0 and 1 map to texel centres.
@@ -66,11 +67,12 @@ float altitude_margin(IN(Medium) m) { return min(kTableMargin, 0.01 * m.atmosphe
 
 float lowest_table_altitude(IN(Medium) m) { return max(kLowestTableAltitude, -0.125 * m.planet_radius_m); }
 
-// Returns the number of texels along the altitude axis that stand for altitudes below sea level. They are evenly
-// spaced. The next texel stands for the margin above sea level.
+// Returns the number of texels below sea level along the altitude axis. They are evenly spaced. The altitude of the
+// next texel is the margin above sea level.
 float texels_below_sea(IN(TableShape) t) { return float(min(t.altitudes / 10u, 3u)); }
 
-// Returns the altitude at which the tables are looked up for h. It is `margin` away from sea level on either side.
+// Returns the altitude at which the tables are looked up for h. On either side of sea level, it is at least
+// altitude_margin() away.
 float table_altitude(IN(Medium) m, float h) {
   float margin = altitude_margin(m);
   return h < 0.0 ? clamp(h, lowest_table_altitude(m), -margin) : clamp(h, margin, m.atmosphere_height_m - margin);
@@ -91,9 +93,9 @@ float u_from_altitude(IN(TableShape) t, IN(Medium) m, float h) {
   float margin = altitude_margin(m);
   float height = m.atmosphere_height_m;
   float x = clamp((h - margin) / (height - 2.0 * margin), 0.0, 1.0);
-  if (t.parameterization == 0u) {
+  if (t.parameterization == kYusovMapping) {
     x = altitude_coordinate(x);
-  } else if (t.parameterization == 1u) {
+  } else if (t.parameterization == kBrunetonMapping) {
     // The distance to the horizon, sqrt(r^2 - R^2), relative to those of the lowest and highest texels.
     float R = m.planet_radius_m;
     float low = horizon_distance(margin, R);
@@ -111,23 +113,24 @@ float altitude_from_u(IN(TableShape) t, IN(Medium) m, float u) {
     return lowest_table_altitude(m) * min(1.0 - texel / below, 1.0);
   }
   float x = clamp((texel - below) / (float(t.altitudes) - 1.0 - below), 0.0, 1.0);
-  if (t.parameterization == 1u) {
+  if (t.parameterization == kBrunetonMapping) {
     float R = m.planet_radius_m;
     float rho = mix(horizon_distance(margin, R), horizon_distance(height - margin, R), x);
     return clamp(rho * rho / (sqrt(R * R + rho * rho) + R), margin, height - margin);
   }
-  if (t.parameterization == 0u) {
+  if (t.parameterization == kYusovMapping) {
     x = altitude_share(x);
   }
   return margin + x * (height - 2.0 * margin);
 }
 
 // The interpolation between two altitudes follows sunlight, because the value of a texel is the fourth root of a mean
-// of sunlight along the ray. In turbid air under a low sun it changes several times between two texels: weights that
-// are linear in the coordinate are up to 30 % off. The weights are therefore linear in the fourth root of the aerosol's
-// transmittance towards the sun. A small part that is linear in the coordinate decides where there is little aerosol.
+// of sunlight along the ray. In turbid air under a low sun, sunlight changes several times between two texels, and
+// weights that are linear in the coordinate have errors of up to 30 %. The weights are therefore linear in the fourth
+// root of the aerosol's transmittance towards the sun. A small part of them is linear in the coordinate. It dominates
+// where there is little aerosol.
 const float kLinearPart = 0.04;  // per scale height of the aerosol
-// The cosine of the lowest sun whose transmittance is used. Lower suns light the ray from further up.
+// The cosine of the lowest sun whose transmittance is used. The light of lower suns comes from higher altitudes.
 const float kLowestWeighingSun = 0.015;
 
 // Returns the fourth root of the aerosol's transmittance from altitude h towards the sun. quarter_depth is a quarter of
@@ -137,13 +140,13 @@ float sunlight_root(IN(Medium) m, float h, float quarter_depth) {
 }
 
 // Returns the coordinate of altitude h for a look-up, where mu_s is the cosine of the sun's zenith angle in the table.
-// At the texels it equals u_from_altitude(); between them it moves the weights of the linear filter.
+// It equals u_from_altitude() at the texels, and moves the weights of the linear filter between them.
 float u_for_lookup(IN(TableShape) t, IN(Medium) m, float h, float mu_s) {
   float n = float(t.altitudes);
   float texel = u_from_altitude(t, m, h) * n - 0.5;
   float first = clamp(floor(texel), 0.0, n - 2.0);
   float low = altitude_from_u(t, m, (first + 0.5) / n);
-  // From below sea level, the next texel stands for sea level itself (table_altitude()).
+  // For rays from below sea level, the texel above them means sea level itself (table_altitude()).
   float high = first + 1.0 == texels_below_sea(t) ? 0.0 : altitude_from_u(t, m, (first + 1.5) / n);
   float R = m.planet_radius_m;
   float extinction = max(m.mie_extinction.x, max(m.mie_extinction.y, m.mie_extinction.z));
@@ -172,12 +175,12 @@ float v_from_half(bool below, float x, float n) {
 // h must be an altitude from table_altitude().
 float v_from_view(IN(TableShape) t, IN(Medium) m, float h, float mu, bool below) {
   float n = float(t.views);
-  if (t.parameterization == 2u) {
+  if (t.parameterization == kLinearMapping) {
     return texel_from_unit(0.5 * mu + 0.5, n);
   }
   float R = m.planet_radius_m;
   float horizon = ground_horizon_cos(h, R);
-  if (t.parameterization == 0u) {
+  if (t.parameterization == kYusovMapping) {
     float x = below ? (horizon - mu) / (horizon + 1.0) : (mu - horizon) / (1.0 - horizon);
     return v_from_half(below, pow(clamp(x, 0.0, 1.0), 0.2), n);
   }
@@ -196,7 +199,7 @@ float v_from_view(IN(TableShape) t, IN(Medium) m, float h, float mu, bool below)
 float view_from_v(IN(TableShape) t, IN(Medium) m, float h, float v, OUT(bool) below) {
   float n = float(t.views);
   float R = m.planet_radius_m;
-  if (t.parameterization == 2u) {
+  if (t.parameterization == kLinearMapping) {
     float mu = 2.0 * unit_from_texel(v, n) - 1.0;
     below = ray_hits_ground(h, mu, R);
     return mu;
@@ -204,7 +207,7 @@ float view_from_v(IN(TableShape) t, IN(Medium) m, float h, float v, OUT(bool) be
   below = v < 0.5;
   float x = clamp(((below ? v : v - 0.5) * n - 0.5) / (0.5 * n - 1.0), 0.0, 1.0);
   float horizon = ground_horizon_cos(h, R);
-  if (t.parameterization == 0u) {
+  if (t.parameterization == kYusovMapping) {
     float x2 = x * x;
     float fifth = x2 * x2 * x;
     return below ? horizon - fifth * (horizon + 1.0) : horizon + fifth * (1.0 - horizon);
@@ -223,9 +226,9 @@ float view_from_v(IN(TableShape) t, IN(Medium) m, float h, float v, OUT(bool) be
 
 float w_from_sun(IN(TableShape) t, float mu_s) {
   float x = 0.5 * mu_s + 0.5;
-  if (t.parameterization == 0u) {
+  if (t.parameterization == kYusovMapping) {
     x = (atan(max(mu_s, kLowestSun) * kSunShape) - kSunFrom) / (kSunTo - kSunFrom);
-  } else if (t.parameterization == 1u) {
+  } else if (t.parameterization == kBrunetonMapping) {
     x = (1.0 - exp(-kSunFade * (max(mu_s, kLowestSun) - kLowestSun))) / (1.0 - exp(-kSunFade * (1.0 - kLowestSun)));
   }
   return texel_from_unit(clamp(x, 0.0, 1.0), float(t.suns));
@@ -233,10 +236,10 @@ float w_from_sun(IN(TableShape) t, float mu_s) {
 
 float sun_from_w(IN(TableShape) t, float w) {
   float x = unit_from_texel(w, float(t.suns));
-  if (t.parameterization == 0u) {
+  if (t.parameterization == kYusovMapping) {
     return clamp(tan(mix(kSunFrom, kSunTo, x)) / kSunShape, kLowestSun, 1.0);
   }
-  if (t.parameterization == 1u) {
+  if (t.parameterization == kBrunetonMapping) {
     float part = 1.0 - x * (1.0 - exp(-kSunFade * (1.0 - kLowestSun)));
     return clamp(kLowestSun - log(part) / kSunFade, kLowestSun, 1.0);
   }
@@ -245,7 +248,7 @@ float sun_from_w(IN(TableShape) t, float w) {
 
 float q_from_angle(IN(TableShape) t, float nu) {
   float x = 0.5 * nu + 0.5;
-  if (t.parameterization == 0u) {
+  if (t.parameterization == kYusovMapping) {
     x = unit_from_spread(acos(clamp(nu, -1.0, 1.0)) * 0.318309886183791, kAngleDensity);
   }
   return texel_from_unit(clamp(x, 0.0, 1.0), float(t.angles));
@@ -253,7 +256,8 @@ float q_from_angle(IN(TableShape) t, float nu) {
 
 float angle_from_q(IN(TableShape) t, float q) {
   float x = unit_from_texel(q, float(t.angles));
-  return t.parameterization == 0u ? cos(spread_from_unit(x, kAngleDensity) * 3.14159265358979) : 2.0 * x - 1.0;
+  return t.parameterization == kYusovMapping ? cos(spread_from_unit(x, kAngleDensity) * 3.14159265358979)
+                                             : 2.0 * x - 1.0;
 }
 
 #endif

@@ -1,7 +1,7 @@
 // Encoding of the scattering tables' texels. A texel holds the mean in-scattered light along a ray, where each stretch
 // of the ray is weighted by the light that it could send to the eye. It is stored as the fourth root of
 //   single, per species:  integral of (density x transmittance x sun's transmittance) / normalisation factor
-//   higher orders:        radiance of orders >= 2 / normalisation factor
+//   higher orders:        radiance of orders >= 2 / (normalisation factor x angle_shape())
 // The normalisation factor is the result for a medium of constant composition along the ray under a sun of 1. It has a
 // closed form and follows every abrupt change at the horizon and near the boundaries, which leaves slowly varying
 // values in [0; ~1]. These fall exponentially into twilight: interpolating the fourth root linearly has a quarter of
@@ -10,6 +10,7 @@
 #define TYNDALL_LIB_TABLE_VALUES
 
 #include "lib/optical_depth.glsl"
+#include "lib/phase.glsl"
 
 struct NormalisationFactors {
   vec3 rayleigh;  // [m]
@@ -31,6 +32,30 @@ NormalisationFactors normalisation_factors(IN(Medium) m, vec3 integral) {
   g.mie = max(integral.y, 1.0e-30) * mean;
   g.high = m.rayleigh_scattering * g.rayleigh + m.mie_scattering * g.mie;
   return g;
+}
+
+// The assumed dependence of the higher orders on the angle between view and sun: a constant, a weak trace of the
+// Rayleigh phase function, and the aureole of light that aerosol scattered twice, in proportion to its part of the
+// vertical optical depth. The table holds the ratio to it, which changes less between its few angles. The constants are
+// fitted to tables with four times as many angles, at aerosol optical depths of 0.03 and 0.5.
+const float kShapeRayleigh = 0.3;
+const float kShapeAureole = 0.5;
+const float kShapeAsymmetry = 0.7;  // of the aureole, over the asymmetry of the aerosol's phase function
+// The parts of the shape that only depend on the medium. Compute them once, before a loop.
+struct AngleShape {
+  vec3 aureole;
+  float g;
+};
+AngleShape angle_shape_of(IN(Medium) m) {
+  vec3 aerosol = m.mie_scale_height_m * m.mie_scattering;
+  vec3 all = aerosol + m.rayleigh_scale_height_m * m.rayleigh_scattering;
+  AngleShape s;
+  s.aureole = kShapeAureole * 12.5663706143592 * aerosol / max(all, vec3(1.0e-30));
+  s.g = kShapeAsymmetry * m.mie_g;
+  return s;
+}
+vec3 angle_shape(IN(AngleShape) s, float nu) {
+  return vec3(1.0 + kShapeRayleigh * nu * nu) + henyey_greenstein_phase(nu, s.g) * s.aureole;
 }
 
 // Returns the density-weighted mean distance of a ray's medium from its origin [m]; Rayleigh density is the weight. The

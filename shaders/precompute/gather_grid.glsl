@@ -1,6 +1,6 @@
-// The grids on which the orders of scattering are solved. Altitudes are spaced as in the tables, and those below sea
-// level evenly. Suns are densest near the horizon. The azimuths of the source function, from the sun's plane, are
-// densest at the sun.
+// The grids on which the orders of scattering are solved. Altitudes above sea level are spaced as in the tables, those
+// below it evenly. Sun angles are densest near the horizon. The azimuths of the source function are counted from the
+// plane that contains the sun, and are densest at the sun.
 #ifndef TYNDALL_GATHER_GRID_GLSL
 #define TYNDALL_GATHER_GRID_GLSL
 
@@ -11,6 +11,7 @@
 const float kPi = 3.14159265358979;
 const float kSunKnee = 0.2;  // cosine of the sun's zenith angle at which the spacing is four times that at the horizon
 
+// Return the lowest altitude of the grid [m], the altitude of index i, and the index of an altitude.
 float lowest_gather_altitude(Medium m) { return max(kLowestGatherAltitude, -0.25 * m.planet_radius_m); }
 
 float gather_altitude(Medium m, uint i) {
@@ -33,24 +34,30 @@ float gather_ground_distance(Medium m, float h, float mu) {
 // Returns the first of the points (altitude x sun) whose irradiance lights the ground below a point.
 uint gather_ground_row(uint altitude) { return min(altitude, kGatherBelow) * kGatherSuns; }
 
-// Element of the irradiance of one order at a point (altitude x sun): the last three orders are stored.
+// Returns the element of the irradiance of one order at a point (altitude x sun). The last three orders are stored.
 uint irradiance_row(uint order, uint point) { return order % 3u * (kGatherAltitudes * kGatherSuns) + point; }
 
 // Returns the cosine of the lowest sun of the grid, which is below the horizon of the top of the atmosphere.
 float lowest_gather_sun(Medium m) { return max(1.6 * horizon_cos(m.atmosphere_height_m, m.planet_radius_m), -1.0); }
-float gather_sun(Medium m, uint i) {
+// The mapping between suns and indices: the coordinate of the lowest sun, and the coordinate per index. Compute it
+// once, before a loop; some compilers do not hoist it.
+struct SunAxis {
+  float from;
+  float step_of_index;
+};
+SunAxis sun_axis(Medium m) {
   float low = lowest_gather_sun(m);
   float from = low / (kSunKnee - low);
-  float to = 1.0 / (kSunKnee + 1.0);
-  float s = mix(from, to, float(i) / float(kGatherSuns - 1u));
+  return SunAxis(from, (1.0 / (kSunKnee + 1.0) - from) / float(kGatherSuns - 1u));
+}
+float gather_sun(Medium m, uint i) {
+  SunAxis axis = sun_axis(m);
+  float s = axis.from + axis.step_of_index * float(i);
   return clamp(kSunKnee * s / (1.0 - abs(s)), -1.0, 1.0);
 }
-float gather_sun_index(Medium m, float mu_s) {
-  float low = lowest_gather_sun(m);
-  float from = low / (kSunKnee - low);
-  float to = 1.0 / (kSunKnee + 1.0);
+float gather_sun_index(SunAxis axis, float mu_s) {
   float s = mu_s / (kSunKnee + abs(mu_s));
-  return clamp((s - from) / (to - from), 0.0, 1.0) * float(kGatherSuns - 1u);
+  return clamp((s - axis.from) / axis.step_of_index, 0.0, float(kGatherSuns - 1u));
 }
 
 // The zenith angles of incident light, from quadrature nodes in [0; 1] on either side of the horizon. The angle from
@@ -98,6 +105,10 @@ uint gather_index(uint altitude, uint zenith, uint azimuth, uint sun) {
 }
 uint source_index(uint altitude, uint zenith, uint azimuth, uint sun) {
   return ((altitude * kSourceZeniths + zenith) * kSourceAzimuths + azimuth) * kGatherSuns + sun;
+}
+// Returns the texel of the source function in its image.
+ivec3 source_texel(uint altitude, uint zenith, uint azimuth, uint sun) {
+  return ivec3(int(sun), int(altitude * kSourceAzimuths + azimuth), int(zenith));
 }
 
 #endif

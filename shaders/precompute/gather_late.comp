@@ -8,14 +8,14 @@
 
 #include "lib/table_values.glsl"
 #include "precompute/late_source.glsl"
-#include "precompute/ray_nodes.glsl"
+#include "precompute/source_lookup.glsl"
 
 layout(local_size_x = 64) in;
 
 layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
-layout(std430, binding = 1) readonly buffer node_block { RayNode nodes[]; };
+layout(std430, binding = 1) readonly buffer grid_rays_block { QuadratureRay rays[]; };
 layout(std430, binding = 2) writeonly buffer incident_block { vec4 incident[]; };
-layout(std430, binding = 3) readonly buffer source_block { vec4 source[]; };
+layout(std430, binding = 3) readonly buffer late_terms_block { vec4 late_terms[]; };
 layout(std430, binding = 4) readonly buffer irradiance_block { vec4 irradiance[]; };
 layout(std430, binding = 5) readonly buffer shape_block {
   TableShape shape;
@@ -40,8 +40,8 @@ struct FirstTerms {
 FirstTerms between_suns(uint altitude, uint zenith, uint sun, float part) {
   uint mean = late_source_index(altitude, zenith, 0u, sun);
   uint ratio = late_source_index(altitude, zenith, 1u, sun);
-  return FirstTerms(mix(source[mean].rgb, source[mean + 1u].rgb, part),
-                    mix(source[ratio].rgb, source[ratio + 1u].rgb, part));
+  return FirstTerms(mix(late_terms[mean].rgb, late_terms[mean + 1u].rgb, part),
+                    mix(late_terms[ratio].rgb, late_terms[ratio + 1u].rgb, part));
 }
 
 FirstTerms mix_terms(FirstTerms a, FirstTerms b, float part) {
@@ -49,63 +49,61 @@ FirstTerms mix_terms(FirstTerms a, FirstTerms b, float part) {
 }
 
 vec3 term_at(uint m, uint altitude, uint zenith, uint sun) {
-  return source[late_source_index(altitude, zenith, m, sun)].rgb;
+  return late_terms[late_source_index(altitude, zenith, m, sun)].rgb;
 }
 
 void main() {
+  SunAxis suns = sun_axis(medium);
+  float mu_s = gather_sun(medium, gl_GlobalInvocationID.x);
+  float R = medium.planet_radius_m;
+  float albedo = medium.ground_albedo;
+  uint modes = late_modes(shape, push.order - 1u);
   uint sun = gl_GlobalInvocationID.x;
   uint zenith = gl_GlobalInvocationID.y;
   uint altitude = gl_GlobalInvocationID.z + push.first;
   if (sun >= kGatherSuns || zenith >= kGatherZeniths || altitude >= kGatherAltitudes) return;
-  uint modes = late_modes(shape, push.order - 1u);
-  uint base = (altitude * kGatherZeniths + zenith) * kNodeStride;
-  float R = medium.planet_radius_m;
-  float h = gather_altitude(medium, altitude);
-  float r0 = R + h;
-  float mu_s = gather_sun(medium, sun);
-  bool below = zenith < kGatherZeniths / 2u;
-  float mu = gather_zenith(horizon_cos(h, R), quadrature.node[zenith % 12u], below);
+  uint ray = altitude * kGatherZeniths + zenith;
+  vec4 start = rays[ray].start;
+  vec4 end = rays[ray].end;
+  uint count = uint(start.w);
+  float q0 = (R + start.x) * mu_s;
+  float mu = start.y;
   float spread = sqrt(max((1.0 - mu * mu) * (1.0 - mu_s * mu_s), 0.0));
   vec3 radiance[kLateAzimuths] = vec3[kLateAzimuths](vec3(0.0), vec3(0.0));
   vec3 terms[kLateTerms];
   for (uint m = 0u; m < kLateTerms; ++m) terms[m] = vec3(0.0);
-  for (uint i = 0u; i < kHighNodes; ++i) {
-    RayNode node = nodes[base + kFirstHighNode + i];
-    vec3 weight = node.weight_m * (medium.rayleigh_scattering * node.rayleigh + medium.mie_scattering * node.mie);
-    float a_index = gather_altitude_index(medium, node.altitude_m);
-    uint a = min(uint(a_index), kGatherAltitudes - 2u);
-    float a_part = a_index - float(a);
-    float z_index = source_zenith_index(acos(clamp(node.cos_zenith, -1.0, 1.0)));
-    uint z = min(uint(z_index), kSourceZeniths - 2u);
-    float z_part = z_index - float(z);
+  for (uint i = 0u; i < count; ++i) {
+    RayNode node = rays[ray].high_nodes[i];
+    uint a = min(uint(node.place.x), kGatherAltitudes - 2u);
+    float a_part = node.place.x - float(a);
+    uint z = min(uint(node.place.y), kSourceZeniths - 2u);
+    float z_part = node.place.y - float(z);
     for (uint k = 0u; k < kLateAzimuths; ++k) {
       float nu = mu * mu_s + spread * kCosine[k];
-      float sun_here = clamp((r0 * mu_s + node.distance_m * nu) / (R + node.altitude_m), -1.0, 1.0);
-      float s_index = gather_sun_index(medium, sun_here);
+      float sun_here = clamp((q0 + node.path.a * nu) / node.place.w, -1.0, 1.0);
+      float s_index = gather_sun_index(suns, sun_here);
       uint s = min(uint(s_index), kGatherSuns - 2u);
       float part = s_index - float(s);
       FirstTerms low = mix_terms(between_suns(a, z, s, part), between_suns(a, z + 1u, s, part), z_part);
       FirstTerms high = mix_terms(between_suns(a + 1u, z, s, part), between_suns(a + 1u, z + 1u, s, part), z_part);
       FirstTerms here = mix_terms(low, high, a_part);
-      float across = sqrt(max((1.0 - node.cos_zenith * node.cos_zenith) * (1.0 - sun_here * sun_here), 1.0e-12));
-      float cosine = clamp((nu - node.cos_zenith * sun_here) / across, -1.0, 1.0);
-      radiance[k] += weight * value_from_texel(here.mean) * max(1.0 + here.ratio * cosine, vec3(0.0));
+      float cosine = clamp(cos_azimuth(node.place.z, sun_here, nu), -1.0, 1.0);
+      radiance[k] += node.path.rgb * value_from_texel(here.mean) * max(1.0 + here.ratio * cosine, vec3(0.0));
     }
     for (uint m = kLateModes; m < modes; ++m) {
       vec3 low = mix(term_at(m, a, z, sun), term_at(m, a, z + 1u, sun), z_part);
       vec3 high = mix(term_at(m, a + 1u, z, sun), term_at(m, a + 1u, z + 1u, sun), z_part);
-      terms[m] += weight * mix(low, high, a_part);
+      terms[m] += node.path.rgb * mix(low, high, a_part);
     }
   }
-  if (below) {
-    RayNode end = nodes[base + kEndNode];
+  if (zenith < kGatherZeniths / 2u) {
     for (uint k = 0u; k < kLateAzimuths; ++k) {
       float nu = mu * mu_s + spread * kCosine[k];
-      float index = gather_sun_index(medium, (r0 * mu_s + end.distance_m * nu) / (R + gather_ground(h)));
+      float index = gather_sun_index(suns, (q0 + end.a * nu) / (R + gather_ground(start.x)));
       uint s = min(uint(index), kGatherSuns - 2u);
       uint row = irradiance_row(push.order - 2u, gather_ground_row(altitude) + s);
       vec3 light = mix(irradiance[row].rgb, irradiance[row + 1u].rgb, index - float(s));
-      radiance[k] += end.weight_m * light * (medium.ground_albedo / kPi);
+      radiance[k] += end.rgb * light * (albedo / kPi);
     }
   }
   terms[0] = 0.5 * (radiance[0] + radiance[1]);

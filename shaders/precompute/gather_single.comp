@@ -1,56 +1,62 @@
 // Integrates the light that is scattered or reflected once along the rays that arrive at the points of the gathering
 // grid. The phase functions are exact, so that order 2 receives the full aureole of the sun. Writes the incident light
-// (gather_index), radiance / E0. One invocation per sun x azimuth x (zenith of an altitude).
+// (gather_index), radiance / E0. One invocation per sun x (kAnglesPerInvocation azimuths) x (zenith of an altitude).
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 
 #include "lib/phase.glsl"
 #include "lib/table_values.glsl"
 #include "precompute/gather_grid.glsl"
-#include "precompute/ray_nodes.glsl"
 
 layout(local_size_x = 64) in;
 
 layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
-layout(std430, binding = 3) readonly buffer shape_block {
-  TableShape shape;
-  ZenithQuadrature quadrature;
-};
-layout(std430, binding = 1) readonly buffer node_block { RayNode nodes[]; };
+layout(std430, binding = 1) readonly buffer grid_rays_block { QuadratureRay rays[]; };
 layout(std430, binding = 2) writeonly buffer incident_block { vec4 incident[]; };
 
 layout(push_constant) uniform Push { uint first; }
-push;
+push;  // altitude
 
 void main() {
+  Medium m = medium;
   uint sun = gl_GlobalInvocationID.x;
-  uint azimuth = gl_GlobalInvocationID.y;
-  uint zenith = gl_GlobalInvocationID.z % kGatherZeniths;
+  uint azimuth = gl_GlobalInvocationID.y * kAnglesPerInvocation;
   uint altitude = gl_GlobalInvocationID.z / kGatherZeniths + push.first;
+  uint zenith = gl_GlobalInvocationID.z % kGatherZeniths;
   if (sun >= kGatherSuns || azimuth >= kGatherAzimuths || altitude >= kGatherAltitudes) return;
-  uint base = (altitude * kGatherZeniths + zenith) * kNodeStride;
-  float R = medium.planet_radius_m;
-  float h = gather_altitude(medium, altitude);
-  float r0 = R + h;
-  float mu_s = gather_sun(medium, sun);
+  uint ray = altitude * kGatherZeniths + zenith;
+  vec4 start = rays[ray].start;
+  vec4 end = rays[ray].end;
+  uint count = uint(start.z);
+  float mu_s = gather_sun(m, sun);
+  float q0 = (m.planet_radius_m + start.x) * mu_s;
+  float spread = sqrt(max((1.0 - start.y * start.y) * (1.0 - mu_s * mu_s), 0.0));
+  float nu[kAnglesPerInvocation];
+  vec3 rayleigh[kAnglesPerInvocation];
+  vec3 mie[kAnglesPerInvocation];
+  [[unroll]] for (uint k = 0u; k < kAnglesPerInvocation; ++k) {
+    nu[k] = clamp(start.y * mu_s + spread * cos(gather_azimuth(azimuth + k)), -1.0, 1.0);
+    rayleigh[k] = vec3(0.0);
+    mie[k] = vec3(0.0);
+  }
+  for (uint i = 0u; i < count; ++i) {
+    RayNode node = rays[ray].single_nodes[i];
+    [[unroll]] for (uint k = 0u; k < kAnglesPerInvocation; ++k) {
+      vec3 light = node.path.rgb * sun_transmittance_at(m, node.place.z, q0 + node.path.a * nu[k]);
+      rayleigh[k] += light * node.place.x;
+      mie[k] += light * node.place.y;
+    }
+  }
+  // Below the horizon, the ray ends on the ground, which the sun lights.
   bool below = zenith < kGatherZeniths / 2u;
-  float mu = gather_zenith(horizon_cos(h, R), quadrature.node[zenith % 12u], below);
-  float spread = sqrt(max((1.0 - mu * mu) * (1.0 - mu_s * mu_s), 0.0));
-  float nu = clamp(mu * mu_s + spread * cos(gather_azimuth(azimuth)), -1.0, 1.0);
-  vec3 rayleigh = medium.rayleigh_scattering * rayleigh_phase(nu);
-  vec3 mie = medium.mie_scattering * mie_phase(medium, nu);
-  vec3 radiance = vec3(0.0);
-  for (uint i = 0u; i < kSingleNodes; ++i) {
-    RayNode node = nodes[base + i];
-    vec3 light = sun_transmittance_at(medium, node.altitude_m, r0 * mu_s + node.distance_m * nu);
-    radiance += node.weight_m * light * (rayleigh * node.rayleigh + mie * node.mie);
+  float ground = gather_ground(start.x);
+  vec3 reflected = below ? end.rgb * (m.ground_albedo / kPi) : vec3(0.0);
+  [[unroll]] for (uint k = 0u; k < kAnglesPerInvocation; ++k) {
+    float q = q0 + end.a * nu[k];
+    vec3 radiance = reflected * (max(q / (m.planet_radius_m + ground), 0.0) * sun_transmittance_at(m, ground, q));
+    radiance +=
+        m.rayleigh_scattering * rayleigh_phase(nu[k]) * rayleigh[k] + m.mie_scattering * mie_phase(m, nu[k]) * mie[k];
+    incident[gather_index(altitude, zenith, azimuth + k, sun)] = vec4(radiance, 0.0);
   }
-  if (below) {
-    RayNode end = nodes[base + kEndNode];
-    float q = r0 * mu_s + end.distance_m * nu;
-    float ground = gather_ground(h);
-    vec3 light = max(q / (R + ground), 0.0) * sun_transmittance_at(medium, ground, q);
-    radiance += end.weight_m * light * (medium.ground_albedo / kPi);
-  }
-  incident[gather_index(altitude, zenith, azimuth, sun)] = vec4(radiance, 0.0);
 }

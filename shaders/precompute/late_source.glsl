@@ -1,28 +1,33 @@
-// The late orders of scattering, those after `orders` of TableShape. By then the light has lost most of its dependence
-// on azimuth, so the solution continues with the first terms of its Fourier series in azimuth. The source function, its
-// sum over the late orders and the incident light store these terms in the elements of the first azimuths of their
-// buffers.
+// The late orders of scattering: those after `orders` of TableShape. By then the light has lost most of its dependence
+// on azimuth, so the solution continues with the first terms of its Fourier series in azimuth. The incident light
+// stores these terms in the elements of the first azimuths of its buffer.
 #ifndef TYNDALL_LATE_SOURCE_GLSL
 #define TYNDALL_LATE_SOURCE_GLSL
 
 #include "lib/medium.glsl"
 #include "precompute/gather_grid.glsl"
 
-const uint kLateTerms = 5u;  // of the source function of order `orders`
+// Returns the number of Fourier modes of the source function of order n. Every scattering multiplies mode m by about
+// g^m. For the remainder that order 2 has with all modes, order n needs 2 / n of them.
+uint source_modes(uint n) { return clamp((2u * kModes + n - 1u) / n, kLateTerms, kModes); }
 
-// Number of terms of the source function of order n: one fewer with each order, but at least kLateModes.
+// Returns the number of terms of the source function of a late order n: one fewer with each order, but at least
+// kLateModes.
 uint late_modes(TableShape shape, uint n) {
   return max(kLateTerms + shape.orders - min(n, kLateTerms + shape.orders), kLateModes);
 }
 
-// Element of term m of the source function, per scattering coefficient. Term 0, the mean, is stored as its fourth root,
-// term 1 as its ratio to the mean: both are interpolated between suns. The other terms are stored as they are.
-uint late_source_index(uint altitude, uint zenith, uint m, uint sun) { return source_index(altitude, zenith, m, sun); }
-// Element of term m of the sum of the source functions of the late orders.
-uint late_sum_index(uint altitude, uint zenith, uint m, uint sun) {
-  return source_index(altitude, zenith, kLateTerms + m, sun);
+// Returns the element of term m of the source function, per scattering coefficient. Term 0, the mean, is stored as its
+// fourth root, term 1 as its ratio to the mean: both are interpolated between suns. The other terms are stored as they
+// are.
+uint late_source_index(uint altitude, uint zenith, uint m, uint sun) {
+  return ((altitude * kSourceZeniths + zenith) * 2u * kLateTerms + m) * kGatherSuns + sun;
 }
-// Element of term m of the incident light.
+// Returns the element of term m of the sum of the source functions of the late orders.
+uint late_sum_index(uint altitude, uint zenith, uint m, uint sun) {
+  return late_source_index(altitude, zenith, kLateTerms + m, sun);
+}
+// Returns the element of term m of the incident light.
 uint late_incident_index(uint altitude, uint zenith, uint m, uint sun) {
   return gather_index(altitude, zenith, m, sun);
 }

@@ -1,11 +1,12 @@
-// Computes the quadrature nodes along each ray of one altitude of the tables, or of the whole gathering grid. Writes
-// kNodeStride nodes per ray. One invocation per altitude and view angle.
+// Computes the quadrature nodes along each ray of one altitude of the tables, or of the whole gathering grid, and what
+// else the passes need to know about a ray. One invocation per altitude and view angle.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
 #include "lib/table_mapping.glsl"
 #include "precompute/ray_nodes.glsl"
 #include "precompute/gather_grid.glsl"
+#include "lib/table_values.glsl"
 #include "shared/constant_ids.h"
 
 layout(local_size_x = 8, local_size_y = 1) in;
@@ -17,14 +18,55 @@ layout(std430, binding = 1) readonly buffer shape_block {
   TableShape shape;
   ZenithQuadrature quadrature;
 };
-layout(std430, binding = 2) writeonly buffer node_block { RayNode nodes[]; };
+layout(std430, binding = 2) writeonly buffer ray_block { QuadratureRay rays[]; };
 
 layout(push_constant) uniform Push { uint first; }
 push;
 
-// Divides the ray into panels of equal effort, and writes the nodes of each. `kind` selects a component of the effort.
-void lay_nodes(float h, float mu, float end, vec2 totals, int kind, uint panels, uint base) {
-  float total = totals[kind];
+// A ray from altitude h with the cosine mu of the zenith angle, and its length.
+struct Line {
+  float h;
+  float mu;
+  float end;
+};
+
+const uint kSingle = 0u;  // components of the effort
+const uint kHigh = 1u;
+
+// `depth` is the optical depth of the ray.
+uint panels_for(float total, float depth, uint kind) {
+  uint most = kind == kSingle ? kSinglePanels : kHighPanels;
+  return uint(clamp(ceil((total + kEffortOfDepth * depth) / kPanelEffort[kind]), 1.0, float(most)));
+}
+
+float node_altitude(Line line, float d) {
+  float R = medium.planet_radius_m;
+  // Rays that begin above sea level end there: lower is a rounding error.
+  return clamp(altitude_along(line.h, line.mu, d, R), ground_below(line.h, R), medium.atmosphere_height_m);
+}
+
+vec3 transmittance_along(Line line, float d) {
+  return transmittance(medium, density_integral_along(medium, line.h, line.mu, d));
+}
+
+void write_node(uint ray, uint i, uint kind, Line line, float d, float weight_m) {
+  float h = node_altitude(line, d);
+  vec2 density = densities(medium, h).xy;
+  vec3 weight = weight_m * transmittance_along(line, d);
+  if (kind == kSingle) {
+    rays[ray].single_nodes[i] = RayNode(vec4(weight, d), vec4(density, h, 0.0));
+    return;
+  }
+  float mu = cos_zenith_along(line.h, line.mu, d, medium.planet_radius_m);
+  vec3 scattering = medium.rayleigh_scattering * density.x + medium.mie_scattering * density.y;
+  rays[ray].high_nodes[i] =
+      RayNode(vec4(weight * scattering, d),
+              vec4(gather_altitude_index(medium, h), source_zenith_index(acos(mu)), mu, medium.planet_radius_m + h));
+}
+
+// Divides the ray into panels of equal effort, and writes the nodes of each. Returns their number.
+uint write_nodes(uint ray, Line line, float total, float depth, uint kind) {
+  uint panels = panels_for(total, depth, kind);
   float bounds[kSinglePanels + 1u];
   bounds[0] = 0.0;
   uint found = 1u;
@@ -32,8 +74,9 @@ void lay_nodes(float h, float mu, float end, vec2 totals, int kind, uint panels,
   float tau = 0.0;
   float before = 0.0;
   for (int i = 0; i < kWalkSteps; ++i) {
-    float after = walk_distance(end, float(i + 1) / float(kWalkSteps));
-    float here = (after - before) * effort(medium, h, mu, 0.5 * (before + after), after - before, tau)[kind];
+    float after = walk_distance(line.end, float(i + 1) / float(kWalkSteps));
+    float middle = 0.5 * (before + after);
+    float here = (after - before) * effort(medium, line.h, line.mu, middle, after - before, tau)[kind];
     while (found < panels && sum + here >= total * float(found) / float(panels)) {
       float part = here > 0.0 ? (total * float(found) / float(panels) - sum) / here : 0.0;
       bounds[found] = before + clamp(part, 0.0, 1.0) * (after - before);
@@ -42,14 +85,26 @@ void lay_nodes(float h, float mu, float end, vec2 totals, int kind, uint panels,
     sum += here;
     before = after;
   }
-  for (uint i = found; i <= panels; ++i) bounds[i] = end;
+  for (uint i = found; i <= panels; ++i) bounds[i] = line.end;
   vec4 node = vec4(0.069431844202974, 0.330009478207572, 0.669990521792428, 0.930568155797026);
   vec4 weight = vec4(0.173927422568727, 0.326072577431273, 0.326072577431273, 0.173927422568727);
   for (uint i = 0u; i < 4u * panels; ++i) {
     float a = bounds[i / 4u];
     float span = bounds[i / 4u + 1u] - a;
-    nodes[base + i] = ray_node(medium, h, mu, a + node[i % 4u] * span, weight[i % 4u] * span);
+    write_node(ray, i, kind, line, a + node[i % 4u] * span, weight[i % 4u] * span);
   }
+  return 4u * panels;
+}
+
+// Writes the normalisation factors of the tables, and the point of the ray to whose sun they refer.
+void write_factors(uint ray, Line line) {
+  vec3 integral = density_integral_along(medium, line.h, line.mu, line.end);
+  float mean_m = density_weighted_mean_distance(medium, line.h, line.mu, line.end, integral);
+  float R = medium.planet_radius_m;
+  NormalisationFactors factors = normalisation_factors(medium, integral);
+  rays[ray].rayleigh = vec4(1.0 / factors.rayleigh, mean_m);
+  rays[ray].mie = vec4(1.0 / factors.mie, R + altitude_along(line.h, line.mu, mean_m, R));
+  rays[ray].high = vec4(1.0 / max(factors.high, vec3(1.0e-30)), 0.0);
 }
 
 void main() {
@@ -57,32 +112,36 @@ void main() {
   uint altitude = gl_GlobalInvocationID.y + push.first;
   uint views = kOfTables == 1 ? shape.views : kGatherZeniths;
   if (view >= views || altitude >= (kOfTables == 1 ? shape.altitudes : kGatherAltitudes)) return;
-  float h;
-  float mu;
+  Line line;
   bool below;
   if (kOfTables == 1) {
-    h = altitude_from_u(shape, medium, (float(altitude) + 0.5) / float(shape.altitudes));
-    mu = view_from_v(shape, medium, h, (float(view) + 0.5) / float(shape.views), below);
+    line.h = altitude_from_u(shape, medium, (float(altitude) + 0.5) / float(shape.altitudes));
+    line.mu = view_from_v(shape, medium, line.h, (float(view) + 0.5) / float(shape.views), below);
   } else {
-    h = gather_altitude(medium, altitude);
-    float half_node = quadrature.node[view % 12u];
+    line.h = gather_altitude(medium, altitude);
     below = view < 12u;
-    mu = gather_zenith(horizon_cos(h, medium.planet_radius_m), half_node, below);
+    line.mu = gather_zenith(horizon_cos(line.h, medium.planet_radius_m), quadrature.node[view % 12u], below);
   }
-  uint base = (kOfTables == 1 ? view : altitude * views + view) * kNodeStride;
+  uint ray = kOfTables == 1 ? view : altitude * views + view;
   float R = medium.planet_radius_m;
-  float end = distance_to_top(h, mu, medium.atmosphere_height_m, R);
-  if (below) end = kOfTables == 1 ? distance_to_ground(h, mu, R) : gather_ground_distance(medium, h, mu);
-
+  line.end = distance_to_top(line.h, line.mu, medium.atmosphere_height_m, R);
+  if (below) {
+    line.end =
+        kOfTables == 1 ? distance_to_ground(line.h, line.mu, R) : gather_ground_distance(medium, line.h, line.mu);
+  }
   vec2 total = vec2(0.0);
   float tau = 0.0;
   float before = 0.0;
   for (int i = 0; i < kWalkSteps; ++i) {
-    float after = walk_distance(end, float(i + 1) / float(kWalkSteps));
-    total += (after - before) * effort(medium, h, mu, 0.5 * (before + after), after - before, tau);
+    float after = walk_distance(line.end, float(i + 1) / float(kWalkSteps));
+    total += (after - before) * effort(medium, line.h, line.mu, 0.5 * (before + after), after - before, tau);
     before = after;
   }
-  lay_nodes(h, mu, end, total, 0, kSinglePanels, base);
-  lay_nodes(h, mu, end, total, 1, kHighPanels, base + kFirstHighNode);
-  nodes[base + kEndNode] = ray_node(medium, h, mu, end, 1.0);
+  vec3 depths = optical_depth(medium, density_integral_along(medium, line.h, line.mu, line.end));
+  float depth = max(depths.x, max(depths.y, depths.z));
+  float single = float(write_nodes(ray, line, total[kSingle], depth, kSingle));
+  float high = float(write_nodes(ray, line, total[kHigh], depth, kHigh));
+  rays[ray].start = vec4(line.h, line.mu, single, high);
+  rays[ray].end = vec4(transmittance_along(line, line.end), line.end);
+  write_factors(ray, line);
 }

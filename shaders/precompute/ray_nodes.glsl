@@ -1,18 +1,18 @@
 // The quadrature along a ray that starts at altitude h: panels of equal effort with four Gauss-Legendre nodes each.
-// The nodes depend on altitude and view angle only, and serve every position of the sun. Each ray has kSingleNodes
-// nodes for light scattered once, kHighNodes for the smoother higher orders, and its end.
 #ifndef TYNDALL_RAY_NODES_GLSL
 #define TYNDALL_RAY_NODES_GLSL
 
 #include "lib/optical_depth.glsl"
 #include "shared/tables.h"
 
-const uint kFirstHighNode = kSingleNodes;
-const uint kEndNode = kSingleNodes + kHighNodes;
-const uint kNodeStride = kEndNode + 1u;
-
 // Number of steps along the ray in the search for the panels.
 const int kWalkSteps = 192;
+
+// The effort of one panel, and the effort per optical depth in the densest channel that is added to the sum over a ray.
+// Rays of little effort have fewer panels than the largest number: downwards from low altitudes, and above most of the
+// atmosphere. The addition is needed because the effort hardly grows beyond an optical depth of a few units.
+const vec2 kPanelEffort = vec2(2.5, 3.5);
+const float kEffortOfDepth = 3.0;
 
 // Returns the distance along a ray of length `end` for s in [0; 1], dense at both ends.
 float walk_distance(float end, float s) { return end * s * s * (3.0 - 2.0 * s); }
@@ -37,20 +37,6 @@ vec2 effort(Medium m, float h0, float mu, float d, float step_m, inout float tau
   float climb = abs(cosine) / scale;
   return vec2((0.1 + exp(-0.5 * middle)) * (0.5 * densest + climb + along_sun),
               (0.1 + exp(-0.3 * middle)) * (0.8 * densest + 0.7 * climb + along_sun));
-}
-
-RayNode ray_node(Medium m, float h0, float mu, float d, float weight_m) {
-  float R = m.planet_radius_m;
-  RayNode node;
-  node.distance_m = d;
-  // Rays that begin above sea level end there: lower is a rounding error.
-  node.altitude_m = clamp(altitude_along(h0, mu, d, R), ground_below(h0, R), m.atmosphere_height_m);
-  node.cos_zenith = cos_zenith_along(h0, mu, d, R);
-  vec3 density = densities(m, node.altitude_m);
-  node.rayleigh = density.x;
-  node.mie = density.y;
-  node.weight_m = weight_m * transmittance(m, density_integral_along(m, h0, mu, d));
-  return node;
 }
 
 #endif

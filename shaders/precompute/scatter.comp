@@ -6,9 +6,11 @@
 // per altitude x sun.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 
 #include "lib/medium.glsl"
 #include "lib/table_values.glsl"
+#include "precompute/half_texel.glsl"
 #include "precompute/late_source.glsl"
 
 layout(local_size_x = 32) in;
@@ -20,10 +22,11 @@ layout(std430, binding = 1) readonly buffer shape_block {
 };
 layout(std430, binding = 2) readonly buffer phase_block { vec2 phase[]; };
 layout(std430, binding = 3) readonly buffer incident_block { vec4 incident[]; };
-layout(std430, binding = 4) buffer source_block { vec4 source[]; };
+layout(std430, binding = 4) writeonly buffer late_terms_block { vec4 late_terms[]; };
 layout(std430, binding = 5) buffer sum_block { vec4 sums[]; };
 layout(std430, binding = 6) buffer irradiance_block { vec4 irradiance[]; };
 layout(std430, binding = 7) buffer sky_block { vec4 sky[]; };
+layout(binding = 8, rgba16f) uniform writeonly image3D source_function;
 
 layout(push_constant) uniform Push {
   uint first;  // altitude
@@ -34,45 +37,104 @@ push;
 shared vec3 light[kGatherZeniths * kModes];
 shared vec3 scattered[kSourceZeniths * kModes];
 
+// Cosines of the multiples of an angle by recurrence: advance() goes from cos(x - step) and cos(x) to cos(x) and
+// cos(x + step).
+struct Cosine {
+  float before;
+  float now;
+};
+void advance(inout Cosine c, float twice_cos_step) { c = Cosine(c.now, twice_cos_step * c.now - c.before); }
+
+// Returns i / n for small numbers; some devices divide integers slowly.
+uint quotient(uint i, float inverse_n) { return uint((float(i) + 0.5) * inverse_n); }
+
+// Each invocation computes several values that share their loads.
+const uint kModesEach = 4u;
+const uint kZenithsEach = 3u;
+const uint kAzimuthsEach = 3u;
+
+// Computes the Fourier series of the incident light in azimuth.
 void transform_light(uint lane, uint altitude, uint sun) {
-  for (uint i = lane; i < kGatherZeniths * kModes; i += 32u) {
-    uint q = i / kModes;
-    uint m = i % kModes;
-    vec3 sum = vec3(0.0);
+  const uint kGroups = kModes / kModesEach;
+  for (uint i = lane; i < kGatherZeniths * kGroups; i += 32u) {
+    uint q = i / kGroups;
+    uint first = i % kGroups * kModesEach;
+    Cosine c[kModesEach];
+    float twice[kModesEach];
+    vec3 sums[kModesEach];
+    [[unroll]] for (uint n = 0u; n < kModesEach; ++n) {
+      float m = float(first + n);
+      twice[n] = 2.0 * cos(m * (kPi / float(kGatherAzimuths)));
+      float start = cos(m * gather_azimuth(0u));
+      c[n] = Cosine(start, start);
+      sums[n] = vec3(0.0);
+    }
     for (uint k = 0u; k < kGatherAzimuths; ++k) {
-      sum += incident[gather_index(altitude, q, k, sun)].rgb * cos(float(m) * gather_azimuth(k));
+      vec3 radiance = incident[gather_index(altitude, q, k, sun)].rgb;
+      [[unroll]] for (uint n = 0u; n < kModesEach; ++n) {
+        sums[n] += radiance * c[n].now;
+        advance(c[n], twice[n]);
+      }
     }
-    light[i] = sum * ((m == 0u ? 1.0 : 2.0) / float(kGatherAzimuths));
+    [[unroll]] for (uint n = 0u; n < kModesEach; ++n) {
+      light[q * kModes + first + n] = sums[n] * ((first + n == 0u ? 1.0 : 2.0) / float(kGatherAzimuths));
+    }
   }
 }
 
-void scatter_modes(uint lane, uint altitude, vec3 share) {
-  for (uint i = lane; i < kSourceZeniths * kModes; i += 32u) {
-    uint j = i / kModes;
-    uint m = i % kModes;
-    vec3 sum = vec3(0.0);
+void scatter_modes(uint lane, uint altitude, uint modes, vec3 aerosol) {
+  const uint kGroups = kSourceZeniths / kZenithsEach;
+  float inverse = 1.0 / float(modes);
+  for (uint i = lane; i < kGroups * modes; i += 32u) {
+    uint j = quotient(i, inverse);
+    uint m = i - j * modes;
+    vec3 sums[kZenithsEach];
+    [[unroll]] for (uint n = 0u; n < kZenithsEach; ++n) sums[n] = vec3(0.0);
     for (uint q = 0u; q < kGatherZeniths; ++q) {
-      vec2 p = phase[((altitude * kSourceZeniths + j) * kGatherZeniths + q) * kModes + m];
-      sum += light[q * kModes + m] * (p.x * (1.0 - share) + p.y * share);
+      vec3 radiance = light[q * kModes + m];
+      vec3 from_aerosol = radiance * aerosol;
+      vec3 from_air = radiance - from_aerosol;
+      [[unroll]] for (uint n = 0u; n < kZenithsEach; ++n) {
+        vec2 p = phase[((altitude * kSourceZeniths + j + n * kGroups) * kGatherZeniths + q) * kModes + m];
+        sums[n] += from_air * p.x + from_aerosol * p.y;
+      }
     }
-    scattered[i] = sum;
+    [[unroll]] for (uint n = 0u; n < kZenithsEach; ++n) scattered[(j + n * kGroups) * kModes + m] = sums[n];
   }
 }
 
-vec3 scattered_towards(uint j, float phi) {
-  vec3 value = vec3(0.0);
-  for (uint m = 0u; m < kModes; ++m) value += scattered[j * kModes + m] * cos(float(m) * phi);
-  return max(value, vec3(0.0));
+void store_value(uint altitude, uint j, uint k, uint sun, bool late, vec3 value) {
+  if (!late) imageStore(source_function, source_texel(altitude, j, k, sun), half_texel(texel_from_value(value)));
+  uint index = source_index(altitude, j, k, sun);
+  if (push.order > 2u) value += sums[index].rgb;
+  sums[index] = vec4(value, 0.0);
 }
 
-void store_source(uint lane, uint altitude, uint sun) {
+void store_source(uint lane, uint altitude, uint sun, uint modes) {
+  const uint kGroups = kSourceAzimuths / kAzimuthsEach;
   bool late = push.order == shape.orders && shape.orders > 2u;
-  for (uint i = lane; i < kSourceZeniths * kSourceAzimuths; i += 32u) {
-    uint j = i / kSourceAzimuths;
-    uint index = source_index(altitude, j, i % kSourceAzimuths, sun);
-    vec3 value = scattered_towards(j, source_azimuth(i % kSourceAzimuths));
-    if (!late) source[index] = vec4(texel_from_value(value), 0.0);
-    sums[index] = vec4(push.order == 2u ? value : sums[index].rgb + value, 0.0);
+  for (uint i = lane; i < kSourceZeniths * kGroups; i += 32u) {
+    uint j = i / kGroups;
+    uint first = i % kGroups * kAzimuthsEach;
+    Cosine c[kAzimuthsEach];
+    float twice[kAzimuthsEach];
+    vec3 values[kAzimuthsEach];
+    [[unroll]] for (uint n = 0u; n < kAzimuthsEach; ++n) {
+      float cosine = cos(source_azimuth(first + n));
+      c[n] = Cosine(cosine, 1.0);
+      twice[n] = 2.0 * cosine;
+      values[n] = vec3(0.0);
+    }
+    for (uint m = 0u; m < modes; ++m) {
+      vec3 term = scattered[j * kModes + m];
+      [[unroll]] for (uint n = 0u; n < kAzimuthsEach; ++n) {
+        values[n] += term * c[n].now;
+        advance(c[n], twice[n]);
+      }
+    }
+    [[unroll]] for (uint n = 0u; n < kAzimuthsEach; ++n) {
+      store_value(altitude, j, first + n, sun, late, max(values[n], vec3(0.0)));
+    }
   }
   if (!late) return;
   for (uint i = lane; i < kSourceZeniths * kLateTerms; i += 32u) {
@@ -81,14 +143,17 @@ void store_source(uint lane, uint altitude, uint sun) {
     vec3 term = scattered[j * kModes + m];
     if (m == 0u) term = texel_from_value(term);
     if (m == 1u) term /= max(scattered[j * kModes], vec3(1.0e-30));
-    source[late_source_index(altitude, j, m, sun)] = vec4(term, 0.0);
+    late_terms[late_source_index(altitude, j, m, sun)] = vec4(term, 0.0);
   }
 }
 
+// Writes the sums of the source functions to the image, from which the table of the higher orders is integrated.
 void complete_sums(uint lane, uint altitude, uint sun) {
   for (uint i = lane; i < kSourceZeniths * kSourceAzimuths; i += 32u) {
-    uint index = source_index(altitude, i / kSourceAzimuths, i % kSourceAzimuths, sun);
-    sums[index] = vec4(texel_from_value(sums[index].rgb), 0.0);
+    uint j = i / kSourceAzimuths;
+    uint k = i % kSourceAzimuths;
+    vec3 texel = texel_from_value(sums[source_index(altitude, j, k, sun)].rgb);
+    imageStore(source_function, source_texel(altitude, j, k, sun), half_texel(texel));
   }
 }
 
@@ -118,10 +183,11 @@ void main() {
   transform_light(lane, altitude, sun);
   barrier();
   bool complete = push.order > shape.orders;
-  if (!complete) scatter_modes(lane, altitude, aerosol_part(medium, h));
+  uint modes = source_modes(push.order);
+  if (!complete) scatter_modes(lane, altitude, modes, aerosol_part(medium, h));
   barrier();
   if (!complete) {
-    store_source(lane, altitude, sun);
+    store_source(lane, altitude, sun, modes);
   } else {
     complete_sums(lane, altitude, sun);
   }

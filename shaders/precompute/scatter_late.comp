@@ -6,6 +6,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #include "lib/table_values.glsl"
+#include "precompute/half_texel.glsl"
 #include "precompute/late_source.glsl"
 
 layout(local_size_x = 64) in;
@@ -17,10 +18,11 @@ layout(std430, binding = 1) readonly buffer shape_block {
 };
 layout(std430, binding = 2) readonly buffer phase_block { vec2 phase[]; };
 layout(std430, binding = 3) readonly buffer incident_block { vec4 incident[]; };
-layout(std430, binding = 4) buffer source_block { vec4 source[]; };
-layout(std430, binding = 5) buffer sum_block { vec4 sums[]; };
+layout(std430, binding = 4) buffer late_terms_block { vec4 late_terms[]; };
+layout(std430, binding = 5) readonly buffer sum_block { vec4 sums[]; };
 layout(std430, binding = 6) buffer irradiance_block { vec4 irradiance[]; };
 layout(std430, binding = 7) buffer sky_block { vec4 sky[]; };
+layout(binding = 8, rgba16f) uniform writeonly image3D source_function;
 
 layout(push_constant) uniform Push {
   uint first;  // altitude
@@ -37,7 +39,7 @@ const float kMaxRatio = 0.95;
 vec3 settled_ratio() {
   vec3 sum = vec3(0.0);
   for (int end = 0; end < 2; ++end) {
-    uint sun = end == 0 ? kGatherSuns - 1u : uint(gather_sun_index(medium, 0.0) + 0.5);
+    uint sun = end == 0 ? kGatherSuns - 1u : uint(gather_sun_index(sun_axis(medium), 0.0) + 0.5);
     uint point = kGatherBelow * kGatherSuns + sun;
     vec3 now = irradiance[irradiance_row(push.order - 2u, point)].rgb;
     vec3 before = irradiance[irradiance_row(push.order - 3u, point)].rgb;
@@ -73,11 +75,11 @@ void main() {
   for (uint m = 0u; m < kLateTerms; ++m) {
     uint sum_index = late_sum_index(altitude, zenith, m, sun);
     vec3 sum = terms[m];
-    if (push.order > shape.orders + 1u) sum += source[sum_index].rgb;
+    if (push.order > shape.orders + 1u) sum += late_terms[sum_index].rgb;
     sums_of[m] = sum + terms[m] * beyond;
-    source[sum_index] = vec4(sum, 0.0);
+    late_terms[sum_index] = vec4(sum, 0.0);
     vec3 stored = m == 0u ? texel_from_value(terms[0]) : m == 1u ? terms[1] / max(terms[0], vec3(1.0e-30)) : terms[m];
-    source[late_source_index(altitude, zenith, m, sun)] = vec4(stored, 0.0);
+    late_terms[late_source_index(altitude, zenith, m, sun)] = vec4(stored, 0.0);
   }
   if (last) {
     for (uint k = 0u; k < kSourceAzimuths; ++k) {
@@ -85,7 +87,8 @@ void main() {
       vec3 value = vec3(0.0);
       for (uint m = 0u; m < kLateTerms; ++m) value += sums_of[m] * cos(float(m) * phi);
       uint index = source_index(altitude, zenith, k, sun);
-      sums[index] = vec4(texel_from_value(sums[index].rgb + max(value, vec3(0.0))), 0.0);
+      vec3 all = sums[index].rgb + max(value, vec3(0.0));
+      imageStore(source_function, source_texel(altitude, zenith, k, sun), half_texel(texel_from_value(all)));
     }
   }
   if (zenith == 0u) {

@@ -6,6 +6,7 @@
 
 #include "lib/table_values.glsl"
 #include "precompute/gather_grid.glsl"
+#include "precompute/half_texel.glsl"
 #include "tyndall/light_tables.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -25,11 +26,11 @@ void main() {
   vec2 uv = (vec2(texel) + 0.5) / vec2(size);
   vec2 point = light_table_point(uv, medium.planet_radius_m, medium.atmosphere_height_m);
   float altitude = gather_altitude_index(medium, point.x);
-  float sun = gather_sun_index(medium, point.y);
+  float sun = gather_sun_index(sun_axis(medium), point.y);
   uint a = min(uint(altitude), kGatherAltitudes - 2u);
   uint s = min(uint(sun), kGatherSuns - 2u);
   // Fourth roots are interpolated because twilight decreases exponentially.
   vec3 low = between_suns(a * kGatherSuns + s, sun - float(s));
   vec3 high = between_suns((a + 1u) * kGatherSuns + s, sun - float(s));
-  imageStore(sky_irradiance_table, texel, vec4(value_from_texel(mix(low, high, altitude - float(a))), 1.0));
+  imageStore(sky_irradiance_table, texel, half_texel(value_from_texel(mix(low, high, altitude - float(a)))));
 }

@@ -5,6 +5,7 @@
 
 #include "shared/medium.h"
 #include "lib/optical_depth.glsl"
+#include "precompute/half_texel.glsl"
 #include "tyndall/light_tables.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -25,5 +26,5 @@ void main() {
   // Where only the upper limb is seen, its light has grazed the horizon.
   float cosine = max(point.y, horizon_cos(point.x, medium.planet_radius_m));
   vec3 light = visible * transmittance(medium, density_integral_to_top(medium, point.x, cosine));
-  imageStore(sun_transmittance, texel, vec4(light, 1.0));
+  imageStore(sun_transmittance, texel, half_texel(light));
 }

@@ -1,49 +1,99 @@
 // Integrates the sum of the source functions of the orders >= 2 along the ray of each texel, and writes the table of
-// the higher orders, phase functions included (lib/table_values.glsl). One invocation per sun x angle x view of one
-// altitude.
+// the higher orders, phase functions included (lib/table_values.glsl). One invocation per sun x (kAnglesPerInvocation
+// angles of one view) of one altitude.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-
-layout(local_size_x = 64) in;
-layout(std430, binding = 3) readonly buffer sum_block { vec4 source[]; };
+#extension GL_EXT_control_flow_attributes : require
 
 #include "lib/table_mapping.glsl"
-#include "precompute/ray_nodes.glsl"
+#include "precompute/half_texel.glsl"
 #include "precompute/source_lookup.glsl"
+
+layout(local_size_x = 64) in;
 
 layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
 layout(std430, binding = 1) readonly buffer shape_block { TableShape shape; };
-layout(std430, binding = 2) readonly buffer node_block { RayNode nodes[]; };
+layout(std430, binding = 2) readonly buffer table_rays_block { QuadratureRay rays[]; };
+layout(binding = 3) uniform sampler3D source_function;
 layout(binding = 4, rgba16f) uniform writeonly image3D high_orders;
 
-layout(push_constant) uniform Push { uint first; }
-push;  // altitude
+layout(push_constant) uniform Push {
+  uint altitude;
+  uint row;  // the first one
+}
+push;
 
-void main() {
-  uvec3 id = gl_GlobalInvocationID;
-  if (id.x >= shape.suns || id.y >= shape.angles || id.z >= shape.views) return;
-  uint base = id.z * kNodeStride;
-  float R = medium.planet_radius_m;
-  float h = altitude_from_u(shape, medium, (float(push.first) + 0.5) / float(shape.altitudes));
-  bool below;
-  float mu = view_from_v(shape, medium, h, (float(id.z) + 0.5) / float(shape.views), below);
-  float mu_s = sun_from_w(shape, (float(id.x) + 0.5) / float(shape.suns));
-  float nu = angle_from_q(shape, (float(id.y) + 0.5) / float(shape.angles));
-  float end = nodes[base + kEndNode].distance_m;
-  vec3 column = density_integral_along(medium, h, mu, end);
-  // The sun axis refers to the mean distance. q0 is r cos(sun zenith) at the beginning of the ray.
-  float middle = density_weighted_mean_distance(medium, h, mu, end, column);
-  float q0 = (R + altitude_along(h, mu, middle, R)) * mu_s - middle * nu;
-  vec3 radiance = vec3(0.0);
-  if (shape.orders > 1u) {
-    for (uint i = 0u; i < kHighNodes; ++i) {
-      RayNode node = nodes[base + kFirstHighNode + i];
-      vec3 scattering = medium.rayleigh_scattering * node.rayleigh + medium.mie_scattering * node.mie;
-      float sun_here = (q0 + node.distance_m * nu) / (R + node.altitude_m);
-      radiance += node.weight_m * scattering * source_at(medium, node.altitude_m, node.cos_zenith, sun_here, nu);
+// Cosines of the zenith angles of a low and a high sun, for impossible angles.
+const float kLowSun = 0.2;
+const float kHighSun = 0.5;
+
+// Returns the angle nearest to x that forms a triangle on the sphere with a and b.
+float angle_in_triangle(float x, float a, float b) { return clamp(x, abs(a - b), min(a + b, 2.0 * kPi - a - b)); }
+
+// Returns the source function at a node under a sun at mu_s, with nu between view and sun. Some texels of the tables
+// stand for angles that form no triangle, and interpolation reads them. Opposite the sun, the light hardly depends on
+// the angle to the sun, but in turbid air near the horizon it depends strongly on the view: the azimuth is clamped. On
+// the sun's side, the angle to the sun determines the aureole:
+//   low sun: the azimuth is clamped, and the light corrected by angle_shape();
+//   else:    the view is turned until the angles fit, or a sun that is high and nearer to the vertical, where its exact
+//            position matters least.
+vec3 source_at_node(AngleShape form, SunAxis suns, RayNode node, float mu_s, float nu) {
+  float mu = node.place.z;
+  float spread = sqrt(max((1.0 - mu * mu) * (1.0 - mu_s * mu_s), 1.0e-12));
+  float cosine = (nu - mu * mu_s) / spread;
+  float zenith = node.place.y;
+  vec3 scale = vec3(1.0);
+  if (cosine > 1.0 && nu > 0.0 && mu_s < kLowSun) {
+    scale = angle_shape(form, nu) / angle_shape(form, min(mu * mu_s + spread, 1.0));
+  } else if (abs(cosine) > 1.0 && nu > 0.0) {
+    float between = acos(clamp(nu, -1.0, 1.0));
+    float view = acos(clamp(mu, -1.0, 1.0));
+    float sun = acos(clamp(mu_s, -1.0, 1.0));
+    if (mu_s > max(kHighSun, abs(mu))) {
+      mu_s = cos(angle_in_triangle(sun, view, between));
+    } else {
+      zenith = source_zenith_index(angle_in_triangle(view, sun, between));
     }
   }
-  NormalisationFactors factors = normalisation_factors(medium, column);
-  ivec3 texel = ivec3(int(push.first), int(id.z), int(id.x + shape.suns * id.y));
-  imageStore(high_orders, texel, vec4(texel_from_value(radiance / max(factors.high, vec3(1.0e-30))), 1.0));
+  float azimuth = source_azimuth_index(acos(clamp(cosine, -1.0, 1.0)));
+  return scale * source_at(source_function, node.place.x, zenith, azimuth, gather_sun_index(suns, mu_s));
+}
+
+void main() {
+  AngleShape form = angle_shape_of(medium);
+  SunAxis suns = sun_axis(medium);
+  TableShape t = shape;
+  uint sun = gl_GlobalInvocationID.x;
+  uint row = gl_GlobalInvocationID.y + push.row;
+  uint groups = (t.angles + kAnglesPerInvocation - 1u) / kAnglesPerInvocation;
+  uint view = row / groups;
+  uint angle = (row - view * groups) * kAnglesPerInvocation;
+  if (sun >= t.suns || view >= t.views) return;
+  float mu_s = sun_from_w(t, (float(sun) + 0.5) / float(t.suns));
+  float mean_m = rays[view].rayleigh.a;
+  float mean_r = rays[view].mie.a;
+  uint count = t.orders > 1u ? uint(rays[view].start.w) : 0u;
+  float nu[kAnglesPerInvocation];
+  float q0[kAnglesPerInvocation];
+  vec3 radiance[kAnglesPerInvocation];
+  [[unroll]] for (uint k = 0u; k < kAnglesPerInvocation; ++k) {
+    nu[k] = angle_from_q(t, (float(angle + k) + 0.5) / float(t.angles));
+    // The sun axis refers to the mean distance. q0 is r cos(sun zenith) at the beginning of the ray.
+    q0[k] = mean_r * mu_s - mean_m * nu[k];
+    radiance[k] = vec3(0.0);
+  }
+  for (uint i = 0u; i < count; ++i) {
+    RayNode node = rays[view].high_nodes[i];
+    [[unroll]] for (uint k = 0u; k < kAnglesPerInvocation; ++k) {
+      float sun_here = (q0[k] + node.path.a * nu[k]) / node.place.w;
+      radiance[k] += node.path.rgb * source_at_node(form, suns, node, sun_here, nu[k]);
+    }
+  }
+  vec3 factor = rays[view].high.rgb;
+  [[unroll]] for (uint k = 0u; k < kAnglesPerInvocation; ++k) {
+    if (angle + k >= t.angles) return;
+    vec3 value = radiance[k] * factor / angle_shape(form, nu[k]);
+    ivec3 texel = ivec3(int(push.altitude), int(view), int(sun + t.suns * (angle + k)));
+    imageStore(high_orders, texel, half_texel(texel_from_value(value)));
+  }
 }

@@ -4,14 +4,19 @@
 #ifndef TYNDALL_SHARED_TABLES
 #define TYNDALL_SHARED_TABLES
 
+// Values of TableShape::parameterization, as TableParameterization of include/tyndall/params.def.
+const uint kYusovMapping = 0u;
+const uint kBrunetonMapping = 1u;
+const uint kLinearMapping = 2u;
+
 // The number of texels along each axis, and their parameterisation.
 struct TableShape {
   uint altitudes;
   uint views;  // even: one half for each side of the horizon
   uint suns;
   uint angles;
-  uint parameterization;  // a TableParameterization of include/tyndall/params.def
-  uint orders;            // of scattering, >= 1
+  uint parameterization;
+  uint orders;  // of scattering, >= 1
   uint unused_0;
   uint unused_1;
 };
@@ -31,21 +36,37 @@ const uint kModes = 16u;  // of the Fourier series in azimuth
 // The late orders are those after `orders` of TableShape.
 const uint kLateOrders = 6u;    // the number of them that are solved; the rest is estimated
 const uint kLateModes = 2u;     // terms of their Fourier series that follow the height of the sun along a ray
+const uint kLateTerms = 5u;     // of the Fourier series from which they start
 const uint kLateAzimuths = 2u;  // azimuths in which these terms are integrated
-// Panels of four nodes for the integration along a ray. Single scattering needs more of them.
+// Each invocation of the passes over rays processes this many azimuths, or angles between view and sun. They share the
+// loads of the nodes.
+const uint kAnglesPerInvocation = 4u;
+// Most panels of four nodes for the integration along a ray. Single scattering needs more of them.
 const uint kSinglePanels = 6u;
 const uint kHighPanels = 4u;
 const uint kSingleNodes = 24u;
 const uint kHighNodes = 16u;
 
-// One node of the integration along a ray. It depends on altitude and view angle only.
+// One node of the integration along a ray.
 struct RayNode {
-  vec3 weight_m;  // quadrature weight times the transmittance to the origin; at the ray's end: the transmittance
-  float distance_m;
-  float rayleigh;  // relative densities
-  float mie;
-  float altitude_m;
-  float cos_zenith;
+  // rgb: quadrature weight times the transmittance to the origin [m], for the higher orders also times the scattering
+  // coefficient [1]. a: distance from the origin [m].
+  vec4 path;
+  // Single scattering: the relative densities of Rayleigh scattering and aerosol, the altitude [m], unused.
+  // Higher orders: the coordinates of altitude and view zenith angle in the grid of the source function, the cosine of
+  // the view zenith angle, the distance to the planet's centre [m].
+  vec4 place;
+};
+
+// A ray with its nodes. They depend on altitude and view angle only, and serve every position of the sun.
+struct QuadratureRay {
+  vec4 start;     // altitude [m], cosine of the zenith angle, numbers of nodes for single scattering and higher orders
+  vec4 end;       // rgb: transmittance to the end of the ray, a: length of the ray [m]
+  vec4 rayleigh;  // rgb: reciprocal of the normalisation factor, a: density-weighted mean distance [m]
+  vec4 mie;       // rgb: the same of the aerosol, a: distance of that point to the planet's centre [m]
+  vec4 high;      // rgb: the same of the higher orders
+  RayNode single_nodes[kSingleNodes];
+  RayNode high_nodes[kHighNodes];
 };
 
 // Gauss-Legendre nodes and weights on [0; 1] for half of the zenith angles. Computed on the CPU.

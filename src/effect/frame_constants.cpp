@@ -144,6 +144,9 @@ shared::TableShape table_shape(const Params& params) {
   shape.views = size.y;
   shape.suns = size.z;
   shape.angles = size.w;
+  static_assert(static_cast<std::uint32_t>(TableParameterization::yusov) == shared::kYusovMapping);
+  static_assert(static_cast<std::uint32_t>(TableParameterization::bruneton) == shared::kBrunetonMapping);
+  static_assert(static_cast<std::uint32_t>(TableParameterization::linear) == shared::kLinearMapping);
   shape.parameterization = static_cast<std::uint32_t>(params.tables.parameterization);
   shape.orders = params.tables.orders;
   return shape;

@@ -37,7 +37,8 @@ struct ivec3 {
 static_assert(sizeof(OneilScale) == 32 && sizeof(Oneil) == 96, "the layout of Oneil must agree with std430");
 static_assert(sizeof(Medium) == 96, "the layout of Medium must agree with std430");
 static_assert(sizeof(Homogeneous) == 64, "the layout of Homogeneous must agree with std430");
-static_assert(sizeof(RayNode) == 32 && sizeof(TableShape) == 32, "the layouts of tables must agree with std430");
+static_assert(sizeof(QuadratureRay) == 80 + 40 * sizeof(RayNode) && sizeof(RayNode) == 32 && sizeof(TableShape) == 32,
+              "the layouts of tables must agree with std430");
 static_assert(sizeof(EpipolarConstants) == 128 && sizeof(EpipolarSlice) == 32 && sizeof(SliceLine) == 32,
               "the layouts of epipolar sampling must agree with std430");
 static_assert(sizeof(ProbeRay) == 32 && sizeof(ProbeResult) == 32, "the layouts of probes must agree with std430");

@@ -42,7 +42,7 @@ struct Step {
   };
   const char* name = "";  // of the pass, in debug labels, timings and documentation
   Kind kind = Kind::dispatch;
-  Resource chosen = Resource::none;  // also the resource of the bindings `work` and `node`
+  Resource chosen = Resource::none;  // also the resource of the bindings `work` and `ray`
   Resource target = Resource::none;
   PipelineKey pipeline;
   std::array<std::uint32_t, 2> push = {};  // push constants

@@ -37,6 +37,7 @@ VkBufferImageCopy whole_table(const gpu::Image& image, VkDeviceSize offset) {
 Result<void> TableBuilder::create(const gpu::Device& device, PipelineCache& pipelines, const Options& options) {
   device_ = &device;
   pipelines_ = &pipelines;
+  TYNDALL_ASSIGN(linear_, gpu::create_sampler(device, {}));
   options_ = options;
   if (options_.timings) {
     TYNDALL_ASSIGN(timer_, gpu::Timer::create(device, 1, kMaxSteps));
@@ -51,6 +52,7 @@ Result<TableScratch> TableBuilder::create_scratch(std::uint32_t views) const {
     TYNDALL_ASSIGN(out.*plan.buffer,
                    gpu::create_buffer(*device_, plan.name, plan.bytes, kScratchUsage, gpu::MemoryKind::device));
   }
+  TYNDALL_ASSIGN(out.source_function, gpu::create_image(*device_, kSourceFunction));
   out.views = views;
   return out;
 }
@@ -209,6 +211,8 @@ Result<void> TableBuilder::record(VkCommandBuffer cmd, std::uint32_t budget) {
     if (options_.timings) timer_.begin_frame(cmd, 0);
     upload_constants(cmd);
     make_images_ready(cmd);
+    // Each build overwrites the whole image before it reads it.
+    gpu::transition(*device_, cmd, scratch_.source_function, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
   }
   const BoundResources resources = bind_resources();
   StepRecorder recorder(*device_, cmd, *pipelines_, sets_, 0, resources, options_.timings ? &timer_ : nullptr);
@@ -232,11 +236,12 @@ BoundResources TableBuilder::bind_resources() {
   BoundResources out;
   out.set(Resource::medium, s.constants.buffer.get(), 0, sizeof(shared::Medium));
   out.set(Resource::shape, s.constants.buffer.get(), kShapeOffset, sizeof(ShapeBlock));
-  out.set(Resource::grid_nodes, s.grid_nodes.buffer.get());
-  out.set(Resource::ray_nodes, s.ray_nodes.buffer.get());
+  out.set(Resource::grid_rays, s.grid_rays.buffer.get());
+  out.set(Resource::table_rays, s.table_rays.buffer.get());
   out.set(Resource::phase, s.phase.buffer.get());
   out.set(Resource::incident, s.incident.buffer.get());
-  out.set(Resource::source, s.source.buffer.get());
+  out.set(Resource::source_function, s.source_function.view.get(), VK_IMAGE_LAYOUT_GENERAL, linear_.get());
+  out.set(Resource::late_terms, s.late_terms.buffer.get());
   out.set(Resource::sum, s.sum.buffer.get());
   out.set(Resource::irradiance, s.irradiance.buffer.get());
   out.set(Resource::sky, s.sky.buffer.get());

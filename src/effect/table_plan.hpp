@@ -32,6 +32,11 @@ struct BufferPlan {
   VkDeviceSize bytes;
 };
 constexpr std::size_t kScratchBuffers = 9;
+constexpr gpu::ImageDesc kSourceFunction = {
+    "source_function",
+    VK_FORMAT_R16G16B16A16_SFLOAT,
+    {shared::kGatherSuns, shared::kGatherAltitudes* shared::kSourceAzimuths, shared::kSourceZeniths},
+    VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT};
 
 [[nodiscard]] std::array<BufferPlan, kScratchBuffers> plan_scratch(std::uint32_t views);
 constexpr VkBufferUsageFlags kScratchUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;

@@ -9,6 +9,8 @@ namespace tyndall {
 namespace {
 
 constexpr std::uint32_t kAltitudesPerStep = 8;  // of the gathering grid
+// No step has more invocations, so that none takes long enough for the time-out of a driver.
+constexpr std::uint32_t kMaxInvocations = 131072;
 
 constexpr const char* kSunLight = "sun_light";
 constexpr const char* kGridNodes = "grid_nodes";
@@ -25,17 +27,37 @@ constexpr const char* kTableHigh = "table_high";
 constexpr const char* kNames[] = {kSunLight,   kGridNodes,   kPhaseMatrix, kGatherSingle, kGatherMultiple, kScatter,
                                   kGatherLate, kScatterLate, kSkyLight,    kRayNodes,     kTableSingle,    kTableHigh};
 
-Step step_of(const char* name, const gpu::Shader& shader, Resource nodes, VkExtent3D invocations,
+Step step_of(const char* name, const gpu::Shader& shader, Resource rays, VkExtent3D invocations,
              std::array<std::uint32_t, 2> push = {}) {
   Specialisation constants;
-  constants[shared::kRaysOfTablesId] = nodes == Resource::ray_nodes ? 1 : 0;
+  constants[shared::kRaysOfTablesId] = rays == Resource::table_rays ? 1 : 0;
   Step step;
   step.name = name;
   step.pipeline = pipeline_key(shader, constants);
-  step.chosen = nodes;
+  step.chosen = rays;
   step.invocations = invocations;
   step.push = push;
   return step;
+}
+
+// Fills the tables altitude by altitude. Their other axes are sun, angle and view; each row of a step has all suns of a
+// few angles of one view.
+void append_tables(const Params& params, bool single, bool high, std::vector<Step>& out) {
+  const UVec4& size = params.tables.size;
+  const std::uint32_t groups = (size.w + shared::kAnglesPerInvocation - 1) / shared::kAnglesPerInvocation;
+  const std::uint32_t rows = groups * size.y;
+  const std::uint32_t width = shaders::table_high_comp.local_size[0];
+  const std::uint32_t rows_per_step = kMaxInvocations / ((size.z + width - 1) / width * width);
+  for (std::uint32_t altitude = 0; altitude < size.x; ++altitude) {
+    out.push_back(step_of(kRayNodes, shaders::ray_nodes_comp, Resource::table_rays, {size.y, 1, 1}, {altitude, 0}));
+    for (std::uint32_t first = 0; first < rows; first += rows_per_step) {
+      const VkExtent3D invocations = {size.z, std::min(rows_per_step, rows - first), 1};
+      const std::array<std::uint32_t, 2> push = {altitude, first};
+      if (single)
+        out.push_back(step_of(kTableSingle, shaders::table_single_comp, Resource::table_rays, invocations, push));
+      if (high) out.push_back(step_of(kTableHigh, shaders::table_high_comp, Resource::table_rays, invocations, push));
+    }
+  }
 }
 
 }  // namespace
@@ -50,8 +72,9 @@ std::vector<Step> table_steps(const Params& params, std::uint32_t stale) {
   if (high) {
     // The orders of scattering, solved on the gathering grid.
     constexpr std::uint32_t altitudes = shared::kGatherAltitudes;
+    constexpr std::uint32_t azimuth_groups = shared::kGatherAzimuths / shared::kAnglesPerInvocation;
     out.push_back(
-        step_of(kGridNodes, shaders::ray_nodes_comp, Resource::grid_nodes, {shared::kGatherZeniths, altitudes, 1}));
+        step_of(kGridNodes, shaders::ray_nodes_comp, Resource::grid_rays, {shared::kGatherZeniths, altitudes, 1}));
     out.push_back(
         step_of(kPhaseMatrix, shaders::phase_matrix_comp, Resource::none, {shared::kSourceZeniths, altitudes, 1}));
     const std::uint32_t orders = params.tables.orders;
@@ -60,10 +83,10 @@ std::vector<Step> table_steps(const Params& params, std::uint32_t stale) {
     for (std::uint32_t order = 2; order <= (late ? orders : orders + 1); ++order) {
       for (std::uint32_t first = 0; first < altitudes; first += kAltitudesPerStep) {
         const std::uint32_t count = std::min(kAltitudesPerStep, altitudes - first);
-        out.push_back(
-            step_of(order == 2 ? kGatherSingle : kGatherMultiple,
-                    order == 2 ? shaders::gather_single_comp : shaders::gather_multiple_comp, Resource::grid_nodes,
-                    {shared::kGatherSuns, shared::kGatherAzimuths, count * shared::kGatherZeniths}, {first, order}));
+        out.push_back(step_of(order == 2 ? kGatherSingle : kGatherMultiple,
+                              order == 2 ? shaders::gather_single_comp : shaders::gather_multiple_comp,
+                              Resource::grid_rays,
+                              {shared::kGatherSuns, azimuth_groups, count * shared::kGatherZeniths}, {first, order}));
       }
       for (std::uint32_t first = 0; first < altitudes; first += kAltitudesPerStep) {
         const std::uint32_t count = std::min(kAltitudesPerStep, altitudes - first);
@@ -73,22 +96,14 @@ std::vector<Step> table_steps(const Params& params, std::uint32_t stale) {
       }
     }
     for (std::uint32_t order = orders + 1; late && order <= orders + shared::kLateOrders; ++order) {
-      out.push_back(step_of(kGatherLate, shaders::gather_late_comp, Resource::grid_nodes,
+      out.push_back(step_of(kGatherLate, shaders::gather_late_comp, Resource::grid_rays,
                             {shared::kGatherSuns, shared::kGatherZeniths, altitudes}, {0, order}));
       out.push_back(step_of(kScatterLate, shaders::scatter_late_comp, Resource::none,
                             {shared::kGatherSuns, shared::kSourceZeniths, altitudes}, {0, order}));
     }
     out.push_back(step_of(kSkyLight, shaders::sky_light_comp, Resource::none, kSkyLightExtent));
   }
-  // The tables are filled altitude by altitude. Their other axes are sun, angle and view.
-  const UVec4& size = params.tables.size;
-  const VkExtent3D texels = {size.z, size.w, size.y};
-  for (std::uint32_t altitude = 0; altitude < size.x; ++altitude) {
-    const std::array<std::uint32_t, 2> push = {altitude, 0};
-    out.push_back(step_of(kRayNodes, shaders::ray_nodes_comp, Resource::ray_nodes, {size.y, 1, 1}, push));
-    if (single) out.push_back(step_of(kTableSingle, shaders::table_single_comp, Resource::ray_nodes, texels, push));
-    if (high) out.push_back(step_of(kTableHigh, shaders::table_high_comp, Resource::ray_nodes, texels, push));
-  }
+  append_tables(params, single, high, out);
   return out;
 }
 

@@ -81,18 +81,18 @@ shared::ZenithQuadrature zenith_quadrature() {
 
 std::array<BufferPlan, kScratchBuffers> plan_scratch(std::uint32_t views) {
   constexpr VkDeviceSize points = shared::kGatherAltitudes * shared::kGatherSuns;
-  constexpr VkDeviceSize ray = (shared::kSingleNodes + shared::kHighNodes + 1) * sizeof(shared::RayNode);
+  constexpr VkDeviceSize ray = sizeof(shared::QuadratureRay);
   constexpr VkDeviceSize vec4 = 16;
-  constexpr VkDeviceSize source = points * shared::kSourceZeniths * shared::kSourceAzimuths * vec4;
+  constexpr VkDeviceSize directions = points * shared::kSourceZeniths * vec4;
   constexpr VkDeviceSize phase =
       VkDeviceSize{8} * shared::kGatherAltitudes * shared::kSourceZeniths * shared::kGatherZeniths * shared::kModes;
   return {{{"table_constants", &TableScratch::constants, kConstantBytes},
-           {"grid_nodes", &TableScratch::grid_nodes, ray * shared::kGatherAltitudes * shared::kGatherZeniths},
-           {"ray_nodes", &TableScratch::ray_nodes, ray * views},
+           {"grid_rays", &TableScratch::grid_rays, ray * shared::kGatherAltitudes * shared::kGatherZeniths},
+           {"table_rays", &TableScratch::table_rays, ray * views},
            {"phase", &TableScratch::phase, phase},
            {"incident", &TableScratch::incident, points * shared::kGatherZeniths * shared::kGatherAzimuths * vec4},
-           {"source", &TableScratch::source, source},
-           {"sum", &TableScratch::sum, source},
+           {"late_terms", &TableScratch::late_terms, directions * 2 * shared::kLateTerms},
+           {"sum", &TableScratch::sum, directions * shared::kSourceAzimuths},
            {"irradiance", &TableScratch::irradiance, 3 * points * vec4},
            {"sky", &TableScratch::sky, points * vec4}}};
 }
@@ -179,13 +179,13 @@ std::string table_key(const gpu::Device& device, const Params& params) {
 }
 
 VkDeviceSize TableScratch::bytes() const {
-  VkDeviceSize total = 0;
+  VkDeviceSize total = source_function.bytes;
   for (const BufferPlan& plan : plan_scratch(views)) total += (this->*plan.buffer).bytes;
   return total;
 }
 
 VkDeviceSize table_scratch_bytes(const gpu::Device& device, const Params& params) {
-  VkDeviceSize total = 0;
+  VkDeviceSize total = gpu::image_bytes(device, kSourceFunction);
   for (const BufferPlan& plan : plan_scratch(params.tables.size.y)) {
     total += gpu::buffer_bytes(device, plan.bytes, kScratchUsage);
   }

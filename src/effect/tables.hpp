@@ -39,16 +39,17 @@ using TableSet = std::array<TableImage, kTableCount>;
 
 // The scratch memory of a build, freed when the build is complete.
 struct TableScratch {
-  gpu::Buffer constants;    // Medium, then TableShape and ZenithQuadrature
-  gpu::Buffer grid_nodes;   // RayNode of the gathering grid
-  gpu::Buffer ray_nodes;    // RayNode of one altitude of the tables
-  gpu::Buffer phase;        // Fourier coefficients of the phase functions
-  gpu::Buffer incident;     // light of one order
-  gpu::Buffer source;       // source function of one order
-  gpu::Buffer sum;          // of the orders
-  gpu::Buffer irradiance;   // of one order
-  gpu::Buffer sky;          // irradiance, sum of the orders
-  std::uint32_t views = 0;  // capacity of ray_nodes
+  gpu::Buffer constants;       // Medium, then TableShape and ZenithQuadrature
+  gpu::Buffer grid_rays;       // rays of the gathering grid
+  gpu::Buffer table_rays;      // rays of one altitude of the tables
+  gpu::Buffer phase;           // Fourier coefficients of the phase functions
+  gpu::Buffer incident;        // light of one order
+  gpu::Image source_function;  // of one order; at last the sum of all orders >= 2
+  gpu::Buffer late_terms;      // Fourier terms of the source function of one late order, and of the sum of these orders
+  gpu::Buffer sum;             // of the source functions so far
+  gpu::Buffer irradiance;      // of one order
+  gpu::Buffer sky;             // irradiance, sum of the orders
+  std::uint32_t views = 0;     // capacity of table_rays
   [[nodiscard]] VkDeviceSize bytes() const;
 };
 [[nodiscard]] VkDeviceSize table_scratch_bytes(const gpu::Device& device, const Params& params);
@@ -115,6 +116,7 @@ class TableBuilder {
   const gpu::Device* device_ = nullptr;
   Options options_;
   PipelineCache* pipelines_ = nullptr;
+  gpu::Handle<VkSampler> linear_ = {};  // of the source function
   TableSet tables_ = {};
   TableSet next_ = {};  // the new tables, if `tables_` is in use and stale
   TableScratch scratch_ = {};

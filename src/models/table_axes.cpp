@@ -82,4 +82,12 @@ std::vector<TableFactors> table_factors(const Params& params, const TableAxes& a
   return out;
 }
 
+std::vector<std::array<double, 3>> angle_shapes(const Params& params, const TableAxes& axes) {
+  const glsl64::AngleShape shape = glsl64::angle_shape_of(glsl64::widen(medium_from_params(params)));
+  std::vector<std::array<double, 3>> out;
+  out.reserve(axes.cos_view_sun.size());
+  for (const double nu : axes.cos_view_sun) out.push_back(to_array(glsl64::angle_shape(shape, nu)));
+  return out;
+}
+
 }  // namespace tyndall::models

@@ -32,13 +32,16 @@ struct LightTableAxes {
 };
 [[nodiscard]] LightTableAxes light_table_axes(const Params& params, std::uint32_t altitudes, std::uint32_t suns);
 
-// A texel of value t in the scattering tables stands for the quantity factor * t^4. The factors depend on altitude and
-// view angle and are stored like cos_view_zenith.
+// A texel of value t in the scattering tables stands for the quantity factor * t^4; for the higher orders, the quantity
+// is also multiplied by angle_shapes(). The factors depend on altitude and view angle and are stored like
+// cos_view_zenith.
 struct TableFactors {
   std::array<double, 3> single_rayleigh;  // L / E0 over the phase function [1]
   std::array<double, 3> single_mie;       // likewise
   std::array<double, 3> high_orders;      // L / E0 [1/sr]
 };
 [[nodiscard]] std::vector<TableFactors> table_factors(const Params& params, const TableAxes& axes);
+// Returns angle_shape() of shaders/lib/table_values.glsl for each angle between view and sun.
+[[nodiscard]] std::vector<std::array<double, 3>> angle_shapes(const Params& params, const TableAxes& axes);
 
 }  // namespace tyndall::models

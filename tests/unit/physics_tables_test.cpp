@@ -127,6 +127,25 @@ TEST(TableValues, NormalisationIsExactForAMixedMediumUnderAFullSun) {
   }
 }
 
+TEST(TableValues, AngleShapeHasTheAureoleOfTheAerosol) {
+  glsl64::Medium m = earth();
+  const auto shape = [&](double nu) { return glsl64::angle_shape(glsl64::angle_shape_of(m), nu); };
+  // Towards the sun, the shape is larger in a channel with less Rayleigh scattering.
+  EXPECT_GT(shape(1.0).x, shape(1.0).y);
+  EXPECT_GT(shape(1.0).y, shape(1.0).z);
+  for (int i = -10; i <= 10; ++i) {
+    for (int c = 0; c < 3; ++c) EXPECT_GE(shape(0.1 * i)[c], 1.0);
+  }
+  // The aureole narrows with the aerosol's phase function, and is absent without aerosol.
+  const double wide = shape(1.0).y;
+  m.mie_g = 0.85F;
+  EXPECT_GT(shape(1.0).y, wide);
+  m.mie_scattering = glsl64::vec3(0.0);
+  for (const double nu : {-1.0, 0.0, 0.3, 1.0}) EXPECT_NEAR(shape(nu).y, 1.0 + 0.3 * nu * nu, 1e-12);
+  m.rayleigh_scattering = glsl64::vec3(0.0);
+  EXPECT_NEAR(shape(1.0).x, 1.3, 1e-12);
+}
+
 TEST(LightTables, AltitudesContinueBelowSeaLevel) {
   const double R = 6.36e6;
   const double top = 80000.0;
