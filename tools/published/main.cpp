@@ -13,7 +13,7 @@
 #include <random>
 
 #include "effect/medium.hpp"
-#include "gpu/pipeline.hpp"
+#include "gpu/descriptors.hpp"
 #include "gpu/try.hpp"
 #include "models/precomputed.hpp"
 #include "published_shaders.hpp"
@@ -147,8 +147,7 @@ class Published {
     for (std::uint32_t first = 0; first < extent.depth; first += kSlice) {
       const std::uint32_t push[] = {first, adds};
       TYNDALL_TRY(host_.run([&](VkCommandBuffer cmd) -> Result<void> {
-        const std::string_view missing = gpu::bind(device, cmd, pipeline, resources, push);
-        if (!missing.empty()) return Error{ErrorCode::invalid_argument, "nothing is bound to " + std::string(missing)};
+        if (Result<void> bound = gpu::bind(host_.sets(), cmd, pipeline, resources, push); !bound) return bound;
         gpu::dispatch(device, cmd, pipeline, extent.width, extent.height, std::min(kSlice, extent.depth - first));
         gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
                      VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
