@@ -1,5 +1,6 @@
 // `tyndall bench`: measures GPU milliseconds per pass of the demo scene, after a warm-up.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -16,6 +17,44 @@ namespace tyndall::cli {
 namespace {
 
 constexpr std::uint32_t kWarmUpFrames = 2;
+
+// Decides which frames are measured: --frames of them after a warm-up of frames, or, with the options, all frames of a
+// time after a warm-up of some seconds. GPUs raise their clocks during the first second.
+class Schedule {
+ public:
+  Schedule(std::uint32_t frames, double warm_up_s, double measure_s)
+      : frames_(frames), warm_up_s_(warm_up_s), measure_s_(measure_s) {}
+
+  [[nodiscard]] bool finished() const {
+    return measured_ > 0 && (measured_ >= frames_ || (measure_s_ > 0.0 && seconds_since(measured_from_) >= measure_s_));
+  }
+  // Counts a frame that has been rendered. Returns whether it is measured.
+  bool count() {
+    if (measured_ == 0 && !warm()) {
+      ++warmed_;
+      measured_from_ = Clock::now();
+      return false;
+    }
+    ++measured_;
+    return true;
+  }
+  [[nodiscard]] std::uint32_t measured() const { return measured_; }
+  [[nodiscard]] std::uint32_t total() const { return kWarmUpFrames + frames_; }
+  [[nodiscard]] std::uint32_t done() const { return std::min(warmed_, kWarmUpFrames) + measured_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  }
+  [[nodiscard]] bool warm() const {
+    return warm_up_s_ > 0.0 ? warmed_ > 0 && seconds_since(started_) >= warm_up_s_ : warmed_ >= kWarmUpFrames;
+  }
+
+  std::uint32_t frames_, warmed_ = 0, measured_ = 0;
+  double warm_up_s_, measure_s_;
+  Clock::time_point started_ = Clock::now(), measured_from_ = started_;
+};
 
 struct Series {
   std::vector<double> ms;
@@ -52,13 +91,37 @@ std::string as_text(const nlohmann::ordered_json& report) {
   return text;
 }
 
+// Adds what the last frame did, and the memory.
+void add_counters(const scene::Scene& scene, nlohmann::ordered_json& out) {
+  const scene::Scene::Memory memory = scene.memory();
+  const Counters counters = scene.counters();
+  out["counters"] = {{"samples_marched", counters.samples_marched},
+                     {"march_steps", counters.march_steps},
+                     {"tree_nodes_visited", counters.tree_nodes_visited},
+                     {"shadow_map_fetches", counters.shadow_map_fetches},
+                     {"pixels_corrected", counters.pixels_corrected}};
+  out["memory_bytes"] = {
+      {"total", memory.effect_persistent + memory.effect_transient + memory.effect_host + memory.scene},
+      {"effect_persistent", memory.effect_persistent},
+      {"effect_transient", memory.effect_transient},
+      {"effect_host", memory.effect_host},
+      {"scene", memory.scene}};
+  for (const ResourceMemory& row : memory.effect_resources)
+    out["memory_bytes"]["effect_resources"][row.name] = row.bytes;
+}
+
 }  // namespace
 
 int run_bench(Args args) {
   CommonOptions options;
   options.frames = 5;
+  double warm_up_s = 0.0;
+  double measure_s = 0.0;
   Arguments arguments("bench");
   add_common(arguments, options, kScene | kSet | kDevice | kSize | kFrames | kJson);
+  arguments.number("--warm-up", warm_up_s, 0.0, 3600.0, "seconds of frames before the first measured one; 0: 2 frames");
+  arguments.number("--seconds", measure_s, 0.0, 3600.0,
+                   "end after this time or --frames, whichever is first; 0: --frames");
   if (const std::optional<int> status = arguments.parse(args)) return *status;
   if (Result<void> r = resolve(options); !r) return fail(r.error());
 
@@ -86,10 +149,11 @@ int run_bench(Args args) {
   Series frame_total;
   Series floor;
   Progress progress("bench");
-  for (std::uint32_t frame = 0; frame < kWarmUpFrames + options.frames; ++frame) {
-    progress.update(frame, kWarmUpFrames + options.frames);
+  Schedule schedule(options.frames, warm_up_s, measure_s);
+  while (!schedule.finished()) {
+    progress.update(schedule.done(), schedule.total());
     if (Result<void> r = scene.value()->render(0.0, true); !r) return fail(r.error());
-    if (frame < kWarmUpFrames) continue;
+    if (!schedule.count()) continue;
     double effect_ms = 0.0;
     double frame_ms = 0.0;
     std::map<std::string, double> of_frame;  // a pass may run several times
@@ -110,11 +174,10 @@ int run_bench(Args args) {
   }
 
   for (const std::string& text : scene.value()->notes()) note(text);
-  const scene::Scene::Memory memory = scene.value()->memory();
   nlohmann::ordered_json out;
   out["device"] = host.value()->device_name();
   out["size"] = {options.size.width, options.size.height};
-  out["frames"] = options.frames;
+  out["frames"] = schedule.measured();
   out["passes"] = nlohmann::ordered_json::array();
   for (const std::string& name : order) {
     const Series& series = passes[name];
@@ -126,20 +189,7 @@ int run_bench(Args args) {
   out["effect_ms"] = median_or_zero(effect);
   out["frame_ms"] = median_or_zero(frame_total);
   out["floor_ms"] = median_or_zero(floor);
-  const Counters counters = scene.value()->counters();
-  out["counters"] = {{"samples_marched", counters.samples_marched},
-                     {"march_steps", counters.march_steps},
-                     {"tree_nodes_visited", counters.tree_nodes_visited},
-                     {"shadow_map_fetches", counters.shadow_map_fetches},
-                     {"pixels_corrected", counters.pixels_corrected}};
-  out["memory_bytes"] = {
-      {"total", memory.effect_persistent + memory.effect_transient + memory.effect_host + memory.scene},
-      {"effect_persistent", memory.effect_persistent},
-      {"effect_transient", memory.effect_transient},
-      {"effect_host", memory.effect_host},
-      {"scene", memory.scene}};
-  for (const ResourceMemory& row : memory.effect_resources)
-    out["memory_bytes"]["effect_resources"][row.name] = row.bytes;
+  add_counters(*scene.value(), out);
   if (options.json) return print(out.dump(2) + "\n");
   return print(as_text(out));
 }

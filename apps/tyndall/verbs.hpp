@@ -16,6 +16,7 @@ int run_devices(Args args);
 int run_params(Args args);
 int run_probe(Args args);
 int run_render(Args args);
+int run_report(Args args);
 int run_sky(Args args);
 int run_tables(Args args);
 int run_validate(Args args);
@@ -41,6 +42,7 @@ inline constexpr Verb kVerbs[] = {
     {"validate", run_validate, "compare every model with the reference in a report with tables and plots"},
     {"bench", run_bench, "measure GPU milliseconds per pass"},
     {"compare", run_compare, "measure the difference of two images"},
+    {"report", run_report, "measure whether the program is right and fast on a device, in at most 8 minutes"},
     {"devices", run_devices, "list the Vulkan devices and the one that would be used"},
     {"params", run_params, "list every parameter: name, type, default, range, unit, meaning"},
 };

@@ -9,7 +9,7 @@ trap 'rm -rf "$work"' EXIT
 
 # Prints "heading PAGE ANCHOR", "link PAGE TARGET" and "path PAGE PATH" for the pages. An anchor is a heading in lower
 # case, without punctuation, with hyphens for spaces. Code blocks are skipped.
-set -- *.md docs/*.md docs/adr/*.md docs/generated/*.md
+set -- *.md docs/*.md docs/adr/*.md docs/generated/*.md docs/gpu/*.md
 for page in tests/*.md tools/*.md; do [ -f "$page" ] && set -- "$@" "$page"; done
 awk '
   FNR == 1 { fenced = 0 }

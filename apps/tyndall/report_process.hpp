@@ -1,0 +1,51 @@
+// Runs this program again with other arguments, with a deadline: a crash, a lost device or a driver that never answers
+// ends a part of the report, not the report.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace tyndall::cli {
+
+struct ProgramRun {
+  int status = -1;         // exit status; 128 + the signal's number after a crash
+  bool timed_out = false;  // it was ended at the deadline
+  bool interrupted = false;
+  double seconds = 0.0;
+  std::string out, err;  // what it printed; `err` is one line
+
+  [[nodiscard]] bool done() const { return status == 0; }
+  // Returns why the run gave no result, in words.
+  [[nodiscard]] std::string reason() const;
+};
+
+struct ProgramLimits {
+  double seconds;           // until it is ended
+  std::string folder;       // for the files with what it prints
+  std::string environment;  // NAME=VALUE to set; empty: none
+};
+
+// Runs the program at `program`, or this one if it is empty. It is looked up in PATH if it has no slash.
+[[nodiscard]] ProgramRun run_program(const std::string& program, const std::vector<std::string>& arguments,
+                                     const ProgramLimits& limits);
+
+// Returns the path of this program.
+[[nodiscard]] std::string own_path();
+
+// A program that runs beside others until it is destroyed. Its output goes to a file.
+class Companion {
+ public:
+  Companion(const std::string& program, const std::vector<std::string>& arguments, const std::string& output);
+  ~Companion();
+  Companion(const Companion&) = delete;
+  Companion& operator=(const Companion&) = delete;
+
+ private:
+  int process_ = -1;
+};
+
+// Interruption (Ctrl-C) ends the running program, and run_program() starts no other afterwards.
+void catch_interruption();
+[[nodiscard]] bool interrupted();
+
+}  // namespace tyndall::cli
