@@ -7,11 +7,15 @@
 #   make accuracy        measures the numbers of docs/accuracy.md
 #   make epipolar-study  installs Pillow and matplotlib; makes the numbers, plots and pictures of docs/epipolar.md
 #   make models-study    measures and renders what docs/models.md and docs/oneil.md show
+#   make bundle          packs a portable program, out/tyndall-VERSION-linux-x86_64.tar.xz
+#   make bundle-chroot   runs the bundle in a bare Debian system
 #   make abi             renews the record of the binary interface of the C functions, tests/package/tyndall.abi
 #   make passes          writes the list of passes, docs/generated/passes.md, with their cost
-.PHONY: demo check doxygen pictures accuracy epipolar-study models-study abi passes setup build format format-check tidy tidy-all sanitize-short sanitize clean
+.PHONY: demo check doxygen pictures accuracy epipolar-study models-study bundle bundle-chroot abi passes setup build format format-check tidy tidy-all sanitize-short sanitize clean
 
 PRESET ?= release
+# The CPU device that computes the values that `tyndall report` compares other devices with.
+REFERENCE_DEVICE ?= llvmpipe
 CLANG_PACKAGES = clang clang-tidy clang-format libclang-rt-dev llvm
 OPERATORS = exponential reinhard reinhard-modified uncharted2 filmic-alu logarithmic adaptive-logarithmic agx pbr-neutral exponential-channels
 
@@ -93,6 +97,20 @@ passes: build
 	done
 	@build/release/bin/tyndall tables --json > build/passes/tables.json
 	@build/release/bin/passes build/passes > docs/generated/passes.md
+
+# The portable bundle, out/tyndall-VERSION-linux-x86_64.tar.xz.
+bundle: PRESET = release
+bundle: TARGETS = tyndall_bundle tyndall_bundle_view
+bundle: build
+	@[ build/release/bundle/share/tyndall/report/hall.exr -nt build/release/bundle/bin/tyndall ] || \
+	  build/release/bundle/bin/tyndall report --reference --device "$(REFERENCE_DEVICE)"
+	@tools/bundle.sh . build/release out
+
+# Runs the bundle in a bare Debian system, build/bookworm, which debootstrap makes. Needs root.
+bundle-chroot: bundle
+	@tools/setup.sh debootstrap
+	@tools/bundle/bookworm.sh build/bookworm
+	@sh tests/package/bundle.sh "$$(ls -t out/tyndall-*-linux-x86_64.tar.xz | head -n 1)" "$$PWD" "$$PWD/build/release" "$$PWD/build/bookworm"
 
 setup:
 	@tools/setup.sh $(PACKAGES)

@@ -17,7 +17,7 @@ std::vector<fs::path> data_folders() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (!error) out.push_back(program.parent_path() / TYNDALL_DATA_FROM_PROGRAM);
-  out.emplace_back(TYNDALL_SOURCE_FOLDER);
+  if (const fs::path sources = TYNDALL_SOURCE_FOLDER; !sources.empty()) out.push_back(sources);
   return out;
 }
 
