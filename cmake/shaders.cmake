@@ -3,6 +3,8 @@
 # embeds module and bindings in the header <set>_shaders.hpp. The header declares one tyndall::gpu::Shader per shader, named
 # like the file without its folder and with underscores instead of dots (march_per_pixel_comp).
 # path@variant:KEY=VALUE compiles the shader with that macro and appends the variant to its name.
+# TYNDALL_SHADERS_FROM names another build folder, which is up to date: its headers are copied instead.
+set(TYNDALL_SHADERS_FROM "" CACHE PATH "Build folder whose embedded shaders are copied instead of compiling them")
 find_program(TYNDALL_GLSLC glslc REQUIRED)
 find_program(TYNDALL_SPIRV_OPT spirv-opt REQUIRED)
 find_program(TYNDALL_SPIRV_VAL spirv-val REQUIRED)
@@ -24,17 +26,19 @@ function(tyndall_add_shaders)
     get_filename_component(name ${source} NAME)
     string(REPLACE "." "_" name ${name})
     set(spv ${out_dir}/${name}${variant}.spv)
-    add_custom_command(
-      OUTPUT ${spv}
-      COMMAND ${TYNDALL_GLSLC} --target-env=vulkan1.2 -Werror ${defines}
-              -I ${PROJECT_SOURCE_DIR}/shaders -I ${PROJECT_SOURCE_DIR}/include -I ${PROJECT_SOURCE_DIR}/src
-              -MD -MF ${spv}.d -MT ${spv} ${PROJECT_SOURCE_DIR}/shaders/${source} -o ${spv}.raw
-      COMMAND ${TYNDALL_SPIRV_OPT} -O ${spv}.raw -o ${spv}
-      COMMAND ${TYNDALL_SPIRV_VAL} --target-env vulkan1.2 ${spv}
-      DEPENDS ${PROJECT_SOURCE_DIR}/shaders/${source}
-      DEPFILE ${spv}.d
-      COMMENT "Shader ${source}${variant}"
-      VERBATIM)
+    if(NOT TYNDALL_SHADERS_FROM)
+      add_custom_command(
+        OUTPUT ${spv}
+        COMMAND ${TYNDALL_GLSLC} --target-env=vulkan1.2 -Werror ${defines}
+                -I ${PROJECT_SOURCE_DIR}/shaders -I ${PROJECT_SOURCE_DIR}/include -I ${PROJECT_SOURCE_DIR}/src
+                -MD -MF ${spv}.d -MT ${spv} ${PROJECT_SOURCE_DIR}/shaders/${source} -o ${spv}.raw
+        COMMAND ${TYNDALL_SPIRV_OPT} -O ${spv}.raw -o ${spv}
+        COMMAND ${TYNDALL_SPIRV_VAL} --target-env vulkan1.2 ${spv}
+        DEPENDS ${PROJECT_SOURCE_DIR}/shaders/${source}
+        DEPFILE ${spv}.d
+        COMMENT "Shader ${source}${variant}"
+        VERBATIM)
+    endif()
     list(APPEND modules ${spv})
     # One row per shader, for programs that compile shaders at run time: set|name|source|define.
     if(defines)
@@ -45,12 +49,18 @@ function(tyndall_add_shaders)
     set_property(GLOBAL APPEND PROPERTY TYNDALL_SHADER_ROWS "${arg_NAME}|${name}${variant}|${source}|${define}")
   endforeach()
   set(header ${out_dir}/${arg_NAME}_shaders.hpp)
-  add_custom_command(
-    OUTPUT ${header}
-    COMMAND tyndall_embed_shaders ${header} ${modules}
-    DEPENDS tyndall_embed_shaders ${modules}
-    COMMENT "Embedding ${arg_NAME} shaders"
-    VERBATIM)
+  if(TYNDALL_SHADERS_FROM)
+    file(RELATIVE_PATH folder ${PROJECT_BINARY_DIR} ${out_dir})
+    set(built ${TYNDALL_SHADERS_FROM}/${folder}/${arg_NAME}_shaders.hpp)
+    add_custom_command(OUTPUT ${header} COMMAND ${CMAKE_COMMAND} -E copy_if_different ${built} ${header} DEPENDS ${built} VERBATIM)
+  else()
+    add_custom_command(
+      OUTPUT ${header}
+      COMMAND tyndall_embed_shaders ${header} ${modules}
+      DEPENDS tyndall_embed_shaders ${modules}
+      COMMENT "Embedding ${arg_NAME} shaders"
+      VERBATIM)
+  endif()
   add_custom_target(${arg_TARGET}_shaders DEPENDS ${header})
   add_dependencies(${arg_TARGET} ${arg_TARGET}_shaders)
   target_include_directories(${arg_TARGET} PRIVATE ${out_dir})

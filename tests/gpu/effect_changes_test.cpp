@@ -1,6 +1,5 @@
 // Changes after the creation of an effect: parameters that need other pipelines, and other limits.
 #include <cmath>
-#include <stdexcept>
 
 #include "effect_frame.hpp"
 
@@ -54,43 +53,6 @@ TEST_F(EffectChanges, MissingPipelinesAreCreatedOnRequest) {
   const Result<Progress> after = effect.value().prepare_pipelines(0);
   ASSERT_OK(after);
   EXPECT_EQ(after.value().done, all.value().total);
-}
-
-// Several threads create the same pipelines as one, and their errors are errors of create().
-TEST_F(EffectChanges, ThreadsCreatePipelines) {
-  const TestFrame frame = small_frame();
-  Result<FrameImages> images = FrameImages::create(host(), frame, OutputFormat::rgba32f);
-  ASSERT_OK(images);
-  Params params = with_technique(Technique::epipolar);
-  params.scattering.single = SingleScattering::integration;  // needs no tables
-  params.scattering.multiple = MultipleScattering::none;
-  EffectDesc desc = desc_for(frame);
-  std::vector<std::byte> bytes[2];
-  std::uint32_t created[2] = {};
-  for (int i = 0; i < 2; ++i) {
-    desc.pipeline_threads = i == 0 ? 1 : 4;
-    Result<Effect> effect = Effect::create(info(), desc, params);
-    ASSERT_OK(effect);
-    created[i] = effect.value().prepare_pipelines(0).value().done;
-    ASSERT_OK(
-        host().run([&](VkCommandBuffer cmd) { return effect.value().record(cmd, images.value().inputs(frame)); }));
-    Result<std::vector<std::byte>> output = images.value().output_bytes(host());
-    ASSERT_OK(output);
-    bytes[i] = output.value();
-  }
-  EXPECT_EQ(bytes[0], bytes[1]);
-  EXPECT_EQ(created[0], created[1]);
-  DeviceInfo failing = info();
-  failing.replace_shader = [](void*, std::string_view) -> std::span<const std::uint32_t> {
-    throw std::runtime_error("no shader");
-  };
-  const Result<Effect> failed = Effect::create(failing, desc, params);
-  ASSERT_FALSE(failed.ok());
-  EXPECT_NE(failed.error().message.find("threw an exception"), std::string::npos) << failed.error().message;
-  for (const std::uint32_t threads : {0U, 65U}) {
-    desc.pipeline_threads = threads;
-    EXPECT_FALSE(Effect::create(info(), desc, params).ok()) << threads;
-  }
 }
 
 // After a change of limits, the effect has the memory and the picture of one that was created with these limits.

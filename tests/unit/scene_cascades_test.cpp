@@ -16,7 +16,6 @@
 namespace tyndall::scene {
 namespace {
 
-constexpr double kRad = 0.017453292519943295;
 constexpr Ground kGround = {-50.0, 4500.0, 6.36e6};
 constexpr double kElevations_deg[] = {-5.0, 0.0, 0.3, 4.0, 20.0, 60.0, 89.9, 90.0};
 constexpr double kAltitudes_m[] = {2.0, 300.0, 5000.0, 30.0e3, 400.0e3};
