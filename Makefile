@@ -1,7 +1,7 @@
 # The two commands. Everything else is CMake: see CONTRIBUTING.md.
 #   make demo            installs what is missing, builds the program, renders the demo scene to out/demo.png
 #   make check           installs what is missing, checks the formatting, builds everything with warnings as errors, runs
-#                        every test
+#                        clang-tidy on changed files, some tests with sanitizers, and every test
 #   make doxygen         writes the reference of the public headers to build/doxygen/html
 #   make pictures        renders the pictures of the documentation
 #   make accuracy        measures the numbers of docs/accuracy.md
@@ -11,7 +11,7 @@
 #   make bundle-chroot   runs the bundle in a bare Debian system
 #   make abi             renews the record of the binary interface of the C functions, tests/package/tyndall.abi
 #   make passes          writes the list of passes, docs/generated/passes.md, with their cost
-.PHONY: demo check doxygen pictures accuracy epipolar-study models-study bundle bundle-chroot abi passes setup build format format-check tidy tidy-all sanitize-short sanitize clean
+.PHONY: demo check doxygen pictures accuracy epipolar-study models-study bundle bundle-chroot abi passes setup build format format-check tidy tidy-check tidy-all sanitize-short sanitize clean
 
 PRESET ?= release
 # The CPU device that computes the values that `tyndall report` compares other devices with.
@@ -28,8 +28,8 @@ demo: build
 
 # The fast checks come first, so that they fail first.
 check: PRESET = ci
-check: PACKAGES = clang-format
-check: format-check build
+check: PACKAGES = $(CLANG_PACKAGES)
+check: setup format-check build tidy-check sanitize-short
 	@tools/second_driver.sh build/second_driver
 	@ctest --preset ci --no-tests=error -j "$$(nproc)"
 
@@ -130,33 +130,35 @@ format-check: PACKAGES = clang-format
 format-check: setup
 	@$(SOURCES) | xargs clang-format --dry-run --Werror
 
-# Runs clang-tidy over the sources that have changed since they were last found clean. `make tidy` checks TIDY_FOLDERS.
-# `make tidy-all` adds the other folders and the slow checks, among them the static analyser.
-TIDY_FOLDERS = apps examples $(addprefix src/,config effect files gpu image models post reference)
+# `make tidy` runs clang-tidy over the files that the ledger of clean files (tools/tidy/clean.txt) does not cover, and updates
+# the ledger. `make tidy-all` checks everything, adds the slow checks, among them the static analyser, and ignores the ledger.
+TIDY_FOLDERS = apps examples include shaders src tests tools
 TIDY_SLOW = clang-analyzer-*,bugprone-branch-clone,bugprone-unchecked-optional-access,performance-unnecessary-value-param,misc-unused-parameters
 
 tidy tidy-all: PRESET = ci
 tidy tidy-all: PACKAGES = $(CLANG_PACKAGES)
 tidy: build
+	@tools/tidy.py build/release --update $(TIDY_FOLDERS)
+
+tidy-check: build
 	@tools/tidy.py build/release $(TIDY_FOLDERS)
 
 tidy-all: build
-	@tools/tidy.py build/release --checks '$(TIDY_SLOW)' apps examples src tests tools
+	@tools/tidy.py build/release --all --checks '$(TIDY_SLOW)' $(TIDY_FOLDERS)
 
-# Builds with clang and its sanitizers, and runs the tests with the label "sanitizers" or, as `make sanitize`, all of them.
-# The first of the two builds is also the build with a second compiler: its warnings are errors.
-define run-sanitizers
-for preset in asan-ubsan tsan; do \
-  cmake --preset $$preset --log-level=WARNING && \
-  cmake --build --preset $$preset $(if $(SANITIZE_ALL),,--target sanitizers) && \
-  ctest --preset $$preset --no-tests=error -j "$$(nproc)" $(if $(SANITIZE_ALL),,-L sanitizers) || exit 1; \
-done
-endef
-
+# Builds with clang, warnings as errors, and its sanitizers, and runs the tests: as `make sanitize` all of them; as
+# `make sanitize-short` those with the label "sanitizers" or, for the thread sanitizer, "threads". Both copy the embedded
+# shaders from the release build.
+sanitize-short sanitize: PRESET = ci
 sanitize-short sanitize: PACKAGES = $(CLANG_PACKAGES)
 sanitize: SANITIZE_ALL = 1
-sanitize-short sanitize: setup
-	@$(run-sanitizers)
+sanitize-short sanitize: build
+	@for run in asan-ubsan/sanitizers tsan/threads; do \
+	  preset=$${run%/*}; label=$${run#*/}; \
+	  cmake --preset $$preset -D TYNDALL_SHADERS_FROM="$(CURDIR)/build/release" --log-level=WARNING > /dev/null && \
+	  cmake --build --preset $$preset $(if $(SANITIZE_ALL),,--target $$label) && \
+	  ctest --preset $$preset --no-tests=error -j "$$(nproc)" $(if $(SANITIZE_ALL),,-L $$label) || exit 1; \
+	done
 
 clean:
 	rm -rf build out
