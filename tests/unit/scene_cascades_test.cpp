@@ -252,7 +252,7 @@ void expect_no_remark(const View& view, const glm::dvec3& sun, const ShadowParam
   DeviceInfo device;
   device.message = [](void*, Severity, std::string_view text) { ADD_FAILURE() << text; };
   const shared::FrameConstants frame = frame_constants(inputs, desc, params);
-  Remarks().on_frame(inputs, {desc, params, frame, true, {}}, device);
+  Remarks().on_frame(inputs, {desc, params, frame, true}, device);
 }
 
 TEST(SceneCascades, TheEffectHasNothingToRemarkAboutThem) {
