@@ -24,10 +24,29 @@ layout(push_constant) uniform Push { uint first_row; }
 push;  // of the picture
 
 const int kReadsPerStep = 8;  // shadow-map reads per evaluation of the medium
-const int kMaxReads = 60000;  // per cascade: some CPU devices end a loop after 65 535 iterations
+// The largest number of reads of a ray. Some CPU devices end all loops of an invocation after 65 535 iterations in
+// total.
+const int kMaxReads = 60000;
 
 uint reads_done = 0u;
 uint steps_done = 0u;
+
+// The section of a ray in a cascade that is read, as fractions of its part in the cascade. A map can be much smaller
+// than the part of the view that its cascade covers, because a camera that looks up sees little of the ground to which
+// maps are fitted. Rays then cross more texels than can be read, most of them outside the map. Everything there is lit.
+// `texels`: the number of texels along each axis.
+vec2 section_to_read(vec3 uvz_from, vec3 uvz_to, vec2 texels) {
+  uint marched = frame.cascade_count - frame.first_marched_cascade;
+  if (max(texels.x, texels.y) * float(marched) <= float(kMaxReads)) return vec2(0.0, 1.0);
+  const float kBeyond = 1.0;  // texels beyond the border that filtering may read
+  float margin = kBeyond / float(frame.shadow_resolution);
+  vec2 change = uvz_to.xy - uvz_from.xy;
+  change = vec2(abs(change.x) > 1e-12 ? change.x : 1e-12, abs(change.y) > 1e-12 ? change.y : 1e-12);
+  vec2 a = (-margin - uvz_from.xy) / change;
+  vec2 b = (1.0 + margin - uvz_from.xy) / change;
+  float from = clamp(max(min(a.x, b.x), min(a.y, b.y)), 0.0, 1.0);
+  return vec2(from, clamp(min(max(a.x, b.x), max(a.y, b.y)), from, 1.0));
+}
 
 // The state of the march: density integrals from the camera [m], and per species the integral of density times the
 // transmittance from the sun to the eye [m].
@@ -52,7 +71,9 @@ void march_cascade(uint cascade, Ray ray, float from, float to, float steps_per_
   // The density varies slowly, shadows abruptly: read the map at every texel, but the density once per group of texels.
   // Within a group the arriving light is nearly linear, and multiplying it by the mean lit fraction errs by less than
   // the map's own resolution.
-  int groups = int(clamp(ceil(wanted), 1.0, 2.0 * float(frame.shadow_resolution)));
+  uint marched = frame.cascade_count - frame.first_marched_cascade;
+  float most = min(2.0 * float(frame.shadow_resolution), float(kMaxReads / (kReadsPerStep + 1)) / float(marched));
+  int groups = int(clamp(ceil(wanted), 1.0, most));
   float dt = (to - from) / float(groups);
   vec3 duvz = (uvz_to - uvz_from) / float(groups * kReadsPerStep);
   vec3 uvz = uvz_from + 0.5 * duvz;
@@ -120,20 +141,28 @@ void walk_cascade(uint cascade, Ray ray, TableRay path, float start, float from,
   vec3 uvz_from = shadow_uvz(shadow_from_world, frame.camera_position + ray.direction * from);
   vec3 uvz_to = shadow_uvz(shadow_from_world, frame.camera_position + ray.direction * to);
   vec2 texels = abs(uvz_to.xy - uvz_from.xy) * float(frame.shadow_resolution);
-  float wanted = max(max(texels.x, texels.y), float(frame.integration_steps));
+  vec2 part = section_to_read(uvz_from, uvz_to, texels);
+  float read_from = mix(from, to, part.x);
+  float read_to = mix(from, to, part.y);
+  float wanted = max(max(texels.x, texels.y) * (part.y - part.x), float(frame.integration_steps));
   int reads = int(clamp(ceil(wanted), 1.0, float(kMaxReads)));
-  float step_m = (to - from) / float(reads);
-  vec3 duvz = (uvz_to - uvz_from) / float(reads);
-  vec3 uvz = uvz_from + 0.5 * duvz;
+  float step_m = (read_to - read_from) / float(reads);
+  vec3 duvz = (uvz_to - uvz_from) * ((part.y - part.x) / float(reads));
+  vec3 uvz = mix(uvz_from, uvz_to, part.x) + 0.5 * duvz;
+  if (part.x > 0.0) add_section(lit, from, read_from, 1.0, vec3(1.0));
   int i = 0;
-  while (i < reads) {
+  while (i <= reads) {
     for (; i < reads && lit.closed_at < 0.0; ++i) {
       float lit_fraction = texture(shadow_maps, vec4(uvz.xy, float(cascade), clamp(uvz.z, 0.0, 1.0)));
-      float here = from + float(i) * step_m;
+      float here = read_from + float(i) * step_m;
       add_section(lit, here, here + step_m, lit_fraction, glass_color(uvz.xy, uvz.z, cascade));
       uvz += duvz;
     }
-    if (kSections == kEach && i >= reads && lit.since >= 0.0 && lit.closed_at < 0.0) lit.closed_at = to;
+    if (i >= reads && lit.closed_at < 0.0) {
+      ++i;
+      if (part.y < 1.0) add_section(lit, read_to, to, 1.0, vec3(1.0));
+      if (kSections == kEach && lit.since >= 0.0) lit.closed_at = to;
+    }
     close_section(lit, path, start);
   }
   steps_done += uint(reads);
@@ -173,17 +202,24 @@ vec3 homogeneous_light(Ray ray, float start, float end) {
     vec3 uvz_from = shadow_uvz(shadow_from_world, frame.camera_position + ray.direction * t);
     vec3 uvz_to = shadow_uvz(shadow_from_world, frame.camera_position + ray.direction * to);
     vec2 texels = abs(uvz_to.xy - uvz_from.xy) * float(frame.shadow_resolution);
-    float wanted = max(max(texels.x, texels.y), float(frame.integration_steps));
+    vec2 part = section_to_read(uvz_from, uvz_to, texels);
+    float wanted = max(max(texels.x, texels.y) * (part.y - part.x), float(frame.integration_steps));
     int reads = int(clamp(ceil(wanted), 1.0, float(kMaxReads)));
-    homogeneous_attenuation((to - t) / float(reads), transmittance, opacity);
-    vec3 duvz = (uvz_to - uvz_from) / float(reads);
-    vec3 uvz = uvz_from + 0.5 * duvz;
+    homogeneous_attenuation((to - t) * part.x, transmittance, opacity);
+    light += before * opacity;
+    before *= transmittance;
+    homogeneous_attenuation((to - t) * ((part.y - part.x) / float(reads)), transmittance, opacity);
+    vec3 duvz = (uvz_to - uvz_from) * ((part.y - part.x) / float(reads));
+    vec3 uvz = mix(uvz_from, uvz_to, part.x) + 0.5 * duvz;
     for (int i = 0; i < reads; ++i) {
       float lit_fraction = texture(shadow_maps, vec4(uvz.xy, float(c), clamp(uvz.z, 0.0, 1.0)));
       light += lit_fraction * glass_color(uvz.xy, uvz.z, c) * before * opacity;
       before *= transmittance;
       uvz += duvz;
     }
+    homogeneous_attenuation((to - t) * (1.0 - part.y), transmittance, opacity);
+    light += before * opacity;
+    before *= transmittance;
     steps_done += uint(reads);
     reads_done += uint(reads);
     t = to;
