@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "arguments.hpp"
 #include "cli.hpp"
@@ -156,10 +157,15 @@ int run_bench(Args args) {
     if (!schedule.count()) continue;
     double effect_ms = 0.0;
     double frame_ms = 0.0;
+    std::optional<double> whole_ms;          // of the effect, where it is measured in one scope
     std::map<std::string, double> of_frame;  // a pass may run several times
     for (const scene::PassTime& pass : scene.value()->timings()) {
       if (pass.name == "floor") {
         floor.ms.push_back(pass.ms);
+        continue;
+      }
+      if (pass.name == "effect") {
+        whole_ms = pass.ms;
         continue;
       }
       if (!passes.contains(pass.name)) order.push_back(pass.name);
@@ -169,8 +175,8 @@ int run_bench(Args args) {
       if (pass.in_effect) effect_ms += pass.ms;
     }
     for (const auto& [name, ms] : of_frame) passes[name].ms.push_back(ms);
-    effect.ms.push_back(effect_ms);
-    frame_total.ms.push_back(frame_ms);
+    effect.ms.push_back(whole_ms.value_or(effect_ms));
+    frame_total.ms.push_back(frame_ms + (whole_ms ? *whole_ms - effect_ms : 0.0));
   }
 
   for (const std::string& text : scene.value()->notes()) note(text);

@@ -4,10 +4,26 @@
 
 namespace tyndall::gpu {
 
+namespace {
+
+// At least these bits of a timestamp are valid in every queue family that has timestamps (Vulkan 1.3,
+// VkQueueFamilyProperties::timestampValidBits). The difference of two timestamps, cut to them, is the duration if that
+// is shorter than 2^36 ticks, which is a minute or more.
+constexpr std::uint64_t kValidTicks = (std::uint64_t{1} << 36U) - 1;
+
+// Records a full barrier. On CPU devices, a timed pass must not overlap with others.
+void settle(const Device& device, VkCommandBuffer cmd) {
+  barrier(device, cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
+          VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
+}
+
+}  // namespace
+
 Result<Timer> Timer::create(const Device& device, std::uint32_t slots, std::uint32_t scopes) {
   Timer out;
   out.device_ = &device;
   out.scopes_ = scopes;
+  out.settles_ = device.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
   VkQueryPoolCreateInfo info = {};
   info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
   info.queryType = VK_QUERY_TYPE_TIMESTAMP;
@@ -26,36 +42,44 @@ Result<Timer> Timer::create(const Device& device, std::uint32_t slots, std::uint
 void Timer::begin_frame(VkCommandBuffer cmd, std::uint32_t slot) {
   slot_ = slot;
   names_[slot].clear();
+  whole_ = 0;
   device_->vk.CmdResetQueryPool(cmd, pool_.get(), slot * scopes_ * 2, scopes_ * 2);
 }
 
-namespace {
-
-// Records a full barrier. A timed pass must not overlap with others, otherwise its duration would be meaningless.
-void settle(const Device& device, VkCommandBuffer cmd) {
-  barrier(device, cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_WRITE_BIT,
-          VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT);
+void Timer::write(VkCommandBuffer cmd, std::size_t scope, std::uint32_t which) {
+  const auto query = static_cast<std::uint32_t>((slot_ * scopes_ + scope) * 2) + which;
+  device_->vk.CmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, pool_.get(), query);
 }
 
-}  // namespace
+void Timer::begin_whole(VkCommandBuffer cmd, const char* name) {
+  std::vector<const char*>& names = names_[slot_];
+  if (settles_ || names.size() == scopes_) return;
+  write(cmd, names.size(), 0);
+  names.push_back(name);
+  whole_ = names.size();
+}
+
+void Timer::end_whole(VkCommandBuffer cmd) {
+  if (whole_ == 0) return;
+  write(cmd, whole_ - 1, 1);
+  whole_ = 0;
+}
 
 void Timer::begin(VkCommandBuffer cmd, const char* name) {
   std::vector<const char*>& names = names_[slot_];
   open_ = names.size() < scopes_;
   if (!open_) return;
-  settle(*device_, cmd);
-  const auto query = static_cast<std::uint32_t>((slot_ * scopes_ + names.size()) * 2);
-  device_->vk.CmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, pool_.get(), query);
-  settle(*device_, cmd);  // some CPU devices execute the timestamp only at the next barrier
+  if (settles_) settle(*device_, cmd);
+  write(cmd, names.size(), 0);
+  if (settles_) settle(*device_, cmd);
   names.push_back(name);
 }
 
 void Timer::end(VkCommandBuffer cmd) {
   if (!open_) return;
   open_ = false;
-  settle(*device_, cmd);
-  const auto query = static_cast<std::uint32_t>((slot_ * scopes_ + names_[slot_].size() - 1) * 2 + 1);
-  device_->vk.CmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, pool_.get(), query);
+  if (settles_) settle(*device_, cmd);
+  write(cmd, names_[slot_].size() - 1, 1);
 }
 
 std::span<const TimedScope> Timer::read(std::uint32_t slot) {
@@ -68,7 +92,8 @@ std::span<const TimedScope> Timer::read(std::uint32_t slot) {
   if (result != VK_SUCCESS) return {};
   const double ms_per_tick = static_cast<double>(device_->properties.limits.timestampPeriod) * 1e-6;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    results_.push_back({names[i], static_cast<double>(ticks_[2 * i + 1] - ticks_[2 * i]) * ms_per_tick});
+    results_.push_back(
+        {names[i], static_cast<double>((ticks_[2 * i + 1] - ticks_[2 * i]) & kValidTicks) * ms_per_tick});
   }
   return results_;
 }

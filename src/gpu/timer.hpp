@@ -1,4 +1,9 @@
 // Measures the durations of the passes of a command buffer with GPU timestamps.
+//
+// On CPU devices a full barrier precedes and follows every timestamp, because some of them execute a timestamp only at
+// the next barrier. On GPUs, timestamps have no barriers of their own, so that measuring does not change what it
+// measures: passes that do not depend on each other may overlap, and the time of a pass is that between the ends of the
+// passes before it and of the pass itself.
 #pragma once
 
 #include <cstdint>
@@ -22,19 +27,29 @@ class Timer {
   static Result<Timer> create(const Device& device, std::uint32_t slots, std::uint32_t scopes);
 
   void begin_frame(VkCommandBuffer cmd, std::uint32_t slot);
+  // Begin and end the scope of all passes in between, which read() returns in addition to theirs. On CPU devices they
+  // do nothing, because barriers around the passes would be part of it.
+  void begin_whole(VkCommandBuffer cmd, const char* name);
+  void end_whole(VkCommandBuffer cmd);
   // Passes beyond `scopes` are not timed.
   void begin(VkCommandBuffer cmd, const char* name);
   void end(VkCommandBuffer cmd);
 
-  // Returns the durations in the last command buffer of the slot, in the order of recording. Valid until the next call.
+  // Returns the durations in the last command buffer of the slot, in the order in which scopes began. Valid until the
+  // next call.
   std::span<const TimedScope> read(std::uint32_t slot);
 
  private:
+  // Writes the first (0) or second (1) timestamp of a scope.
+  void write(VkCommandBuffer cmd, std::size_t scope, std::uint32_t which);
+
   const Device* device_ = nullptr;
   Handle<VkQueryPool> pool_;
   std::uint32_t scopes_ = 0;
   std::uint32_t slot_ = 0;
-  bool open_ = false;  // between begin() and end() of a timed pass
+  bool settles_ = true;    // barriers around timestamps
+  bool open_ = false;      // between begin() and end() of a timed pass
+  std::size_t whole_ = 0;  // index of the scope of begin_whole(), plus one; 0: none
   std::vector<std::vector<const char*>> names_;
   std::vector<TimedScope> results_;
   std::vector<std::uint64_t> ticks_;
