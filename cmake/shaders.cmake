@@ -2,7 +2,7 @@
 # Compiles each shader with glslc and spirv-opt (names are preserved) and checks it with spirv-val. Reflects its bindings, and
 # embeds module and bindings in the header <set>_shaders.hpp. The header declares one tyndall::gpu::Shader per shader, named
 # like the file without its folder and with underscores instead of dots (march_per_pixel_comp).
-# path@variant:KEY=VALUE compiles the shader with that macro and appends the variant to its name.
+# path@variant:KEY=VALUE,KEY=VALUE compiles the shader with these macros and appends the variant to its name.
 # TYNDALL_SHADERS_FROM names another build folder, which is up to date: its headers are copied instead.
 set(TYNDALL_SHADERS_FROM "" CACHE PATH "Build folder whose embedded shaders are copied instead of compiling them")
 find_program(TYNDALL_GLSLC glslc REQUIRED)
@@ -16,12 +16,14 @@ function(tyndall_add_shaders)
   set(modules)
   foreach(entry ${arg_SHADERS})
     set(defines)
+    set(macros -)
     set(variant)
     set(source ${entry})
     if(entry MATCHES "^(.+)@([^:]+):(.+)$")
       set(source ${CMAKE_MATCH_1})
       set(variant _${CMAKE_MATCH_2})
-      set(defines -D${CMAKE_MATCH_3})
+      set(macros ${CMAKE_MATCH_3})
+      string(REPLACE "," ";-D" defines "-D${macros}")
     endif()
     get_filename_component(name ${source} NAME)
     string(REPLACE "." "_" name ${name})
@@ -40,13 +42,8 @@ function(tyndall_add_shaders)
         VERBATIM)
     endif()
     list(APPEND modules ${spv})
-    # One row per shader, for programs that compile shaders at run time: set|name|source|define.
-    if(defines)
-      string(SUBSTRING ${defines} 2 -1 define)
-    else()
-      set(define -)
-    endif()
-    set_property(GLOBAL APPEND PROPERTY TYNDALL_SHADER_ROWS "${arg_NAME}|${name}${variant}|${source}|${define}")
+    # One row per shader, for programs that compile shaders at run time: set|name|source|macros.
+    set_property(GLOBAL APPEND PROPERTY TYNDALL_SHADER_ROWS "${arg_NAME}|${name}${variant}|${source}|${macros}")
   endforeach()
   set(header ${out_dir}/${arg_NAME}_shaders.hpp)
   if(TYNDALL_SHADERS_FROM)

@@ -105,9 +105,10 @@ ShaderReload::Compiled ShaderReload::compile(const std::string& folder) {
     options.SetWarningsAsErrors();
     options.SetIncluder(
         std::make_unique<Includer>(std::vector<fs::path>{shaders, shaders / ".." / "include", shaders / ".." / "src"}));
-    const std::string define(row.define);
-    if (const std::size_t equals = define.find('='); equals != std::string::npos) {
-      options.AddMacroDefinition(define.substr(0, equals), define.substr(equals + 1));
+    std::istringstream macros{std::string(row.macros)};
+    for (std::string macro; std::getline(macros, macro, ',');) {
+      const std::size_t equals = macro.find('=');
+      options.AddMacroDefinition(macro.substr(0, equals), macro.substr(equals + 1));
     }
     std::string text;
     const fs::path path = shaders / row.source;

@@ -1,6 +1,6 @@
 // Blocks of kBlockWidth x 2 pixels: their depths, and the list of blocks whose pixels are composed one by one. The list
-// stores squares of 2 x 2 pixels. A shader with blocks of
-// another width than kUnwarpWidth defines BLOCK_WIDTH before its first include.
+// stores squares of 2 x 2 pixels. A shader whose blocks differ from those of unwarp.comp defines BLOCK_WIDTH before its
+// first include.
 #ifndef TYNDALL_BLOCK_GLSL
 #define TYNDALL_BLOCK_GLSL
 
@@ -10,7 +10,18 @@
 #include "frame/picture.glsl"
 
 #ifndef BLOCK_WIDTH
-#define BLOCK_WIDTH kUnwarpWidth
+#ifdef TARGET_GPU
+#define BLOCK_WIDTH kUnwarpWidthGpu
+#else
+#define BLOCK_WIDTH kUnwarpWidthCpu
+#endif
+#endif
+
+// The workgroup of a pass over blocks. On GPUs, a square stores whole sectors. CPU devices store images row by row.
+#ifdef TARGET_GPU
+#define BLOCK_GROUP layout(local_size_x = 8, local_size_y = 8) in
+#else
+#define BLOCK_GROUP layout(local_size_x = 64) in
 #endif
 const int kBlockWidth = int(BLOCK_WIDTH);
 
@@ -95,9 +106,12 @@ void read_block(inout Block block) {
 // Adds a block to the list.
 void list_block(ivec2 corner) {
   const uint squares = uint(kBlockWidth) / 2u;
-  uint at = atomicAdd(discontinuities.count, squares);
+  uint at, end;
+  bool leads;
+  RESERVE(discontinuities, squares, at, end, leads)
   for (uint i = 0u; i < squares; ++i) discontinuity_blocks[at + i] = uint(corner.y) << 16u | (uint(corner.x) + 2u * i);
-  uint groups = (4u * (at + squares) + kMarchGroup - 1u) / kMarchGroup;
+  if (!leads) return;
+  uint groups = (4u * end + kMarchGroup - 1u) / kMarchGroup;
   atomicMax(discontinuities.groups_x, groups_along_x(groups));
   atomicMax(discontinuities.groups_y, groups_along_y(groups));
 }

@@ -6,7 +6,7 @@
 #include "frame/constants.glsl"
 #include "shared/epipolar.h"
 
-#ifdef UNIFORM_CONSTANTS
+#if defined(TARGET_GPU) || defined(UNIFORM_CONSTANTS)
 layout(std140, binding = 2) uniform epipolar_block { EpipolarConstants epipolar; };
 #elif defined(COPY_CONSTANTS)
 layout(std430, binding = 2) readonly buffer epipolar_block { EpipolarConstants stored_epipolar; };
@@ -15,7 +15,9 @@ EpipolarConstants epipolar;
 layout(std430, binding = 2) readonly buffer epipolar_block { EpipolarConstants epipolar; };
 #endif
 
-#if defined(COPY_CONSTANTS) && !defined(UNIFORM_CONSTANTS)
+#ifdef TARGET_GPU
+void load_epipolar() {}
+#elif defined(COPY_CONSTANTS) && !defined(UNIFORM_CONSTANTS)
 void load_epipolar() { epipolar = stored_epipolar; }
 #endif
 

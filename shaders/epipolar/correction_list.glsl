@@ -12,10 +12,12 @@ layout(std430, binding = 17) buffer correction_list_block {
 };
 
 void list_correction(ivec2 pixel) {
-  uint slot = atomicAdd(corrections.count, 1u);
-  if (slot >= epipolar.correction_capacity) return;
-  correction_list[slot] = uint(pixel.y) << 16u | uint(pixel.x);
-  uint groups = slot / kMarchGroup + 1u;
+  uint slot, end;
+  bool leads;
+  RESERVE(corrections, 1u, slot, end, leads)
+  if (slot < epipolar.correction_capacity) correction_list[slot] = uint(pixel.y) << 16u | uint(pixel.x);
+  if (!leads || slot >= epipolar.correction_capacity) return;
+  uint groups = (min(end, epipolar.correction_capacity) + kMarchGroup - 1u) / kMarchGroup;
   atomicMax(corrections.groups_x, groups_along_x(groups));
   atomicMax(corrections.groups_y, groups_along_y(groups));
 }

@@ -104,6 +104,14 @@ void add_run(inout Walk w, inout LitSections sections, float to, float lit_fract
 
 bool section_closed(LitSections sections) { return kLitTables && kSections == kEach && sections.closed_at >= 0.0; }
 
+// Returns texture coordinates and depth of the comparison for the section [from, to] of the cell that begins at `cell`.
+// `precise`, because the pipelines with and without the tree must compute the same bits although a compiler may fuse
+// operations differently in each of them.
+vec3 compared_place(vec4 line, float depth, float slope, float cell, float from, float to) {
+  precise float z = depth + 0.5 * (from + to) * slope;
+  return vec3(middle_of_cell(line, cell), z);
+}
+
 // Advances to `to`, or until a lit section is complete.
 void walk_to(inout Walk w, inout LitSections sections, float to) {
   while (w.x < to && !section_closed(sections)) {
@@ -150,10 +158,9 @@ void walk_to(inout Walk w, inout LitSections sections, float to) {
         float end = w.x + step_cells;
         end = min(cell + 1.0 - end > 0.01 * step_cells ? end : cell + 1.0, stop);
         end = end > w.x ? end : stop;
-        vec2 uv = w.line.xy + (cell + 0.5) * w.line.zw;
-        float z = w.depth + 0.5 * (w.x + end) * w.slope;
-        float lit_fraction = texture(shadow_maps, vec4(uv, float(w.cascade), clamp(z, 0.0, 1.0)));
-        add_run(w, sections, end, lit_fraction, glass_color(uv, z, w.cascade));
+        vec3 place = compared_place(w.line, w.depth, w.slope, cell, w.x, end);
+        float lit_fraction = texture(shadow_maps, vec4(place.xy, float(w.cascade), clamp(place.z, 0.0, 1.0)));
+        add_run(w, sections, end, lit_fraction, glass_color(place.xy, place.z, w.cascade));
         ++reads_done;
         ++steps_done;
       }
@@ -176,12 +183,17 @@ Walk begin_walk(uint cascade, uint slice, vec3 direction, float start, float fro
   w.cascade = cascade;
   w.tree_base = line * (epipolar.tree_cells / kTreeBlock) * kTreeNodes;
   w.full = epipolar.tree_format == kFloat32;
-  vec3 per_metre = (cascades[cascade].shadow_from_world * vec4(direction, 0.0)).xyz;
-  w.cells_per_m = max(max(abs(per_metre.x), abs(per_metre.y)) * resolution, 1e-12);
-  w.slope = per_metre.z / w.cells_per_m;
+  mat4 shadow_from_world = cascades[cascade].shadow_from_world;
+  precise vec3 per_metre = direction.x * shadow_from_world[0].xyz + direction.y * shadow_from_world[1].xyz +
+                           direction.z * shadow_from_world[2].xyz;
+  precise float cells_per_m = max(max(abs(per_metre.x), abs(per_metre.y)) * resolution, 1e-12);
+  precise float slope = per_metre.z / cells_per_m;
+  precise float first_x = from * cells_per_m;
+  w.cells_per_m = cells_per_m;
+  w.slope = slope;
   w.number = ray_number(frame.shadow_depth_reversed != 0u ? -w.slope : w.slope, resolution, epipolar.tree_format);
   w.metres = 1.0 / w.cells_per_m;
-  w.x = from * w.cells_per_m;
+  w.x = first_x;
   w.reads_per_cell = max(1.0, float(frame.integration_steps) / max(to * w.cells_per_m - w.x, 1e-12));
   w.level = kTreeLeafLevel;
   w.lit = 0.0;

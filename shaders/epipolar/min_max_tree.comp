@@ -11,10 +11,15 @@
 #include "shared/constant_ids.h"
 #include "shared/params.glsl"
 
-const uint kPartLevel = 6u;                    // level of a part's topmost node
-const uint kParts = kTreeBlock >> kPartLevel;  // parts per block
+layout(constant_id = kTreePartId) const uint kPartLevel = 6u;  // level of a part's topmost node
+const uint kParts = kTreeBlock >> kPartLevel;                  // parts per block
 
-layout(local_size_x = kTreeGroup * kParts) in;
+// kTreeGroup * kParts invocations
+#ifdef TARGET_GPU
+layout(local_size_x = 128) in;
+#else
+layout(local_size_x = 32) in;
+#endif
 layout(constant_id = kFormatId) const uint kFormat = MinMaxFormat_unorm16;
 
 layout(std430, binding = 13) readonly buffer slice_lines_block { SliceLine slice_lines[]; };
@@ -36,9 +41,8 @@ vec2 both(vec2 a, vec2 b) { return vec2(min(a.x, b.x), max(a.y, b.y)); }
 
 // Returns the minimum and maximum depth that comparisons between the middles of cell x and the next can read.
 vec2 pair_depths(SliceLine slice_line, int x, uint cascade) {
-  vec2 uv = slice_line.line.xy + (float(x) + 0.5) * slice_line.line.zw;
-  vec4 a = textureGather(shadow_depths, vec3(uv, float(cascade)));
-  vec4 b = textureGather(shadow_depths, vec3(uv + slice_line.line.zw, float(cascade)));
+  vec4 a = textureGather(shadow_depths, vec3(middle_of_cell(slice_line.line, float(x)), float(cascade)));
+  vec4 b = textureGather(shadow_depths, vec3(middle_of_cell(slice_line.line, float(x + 1)), float(cascade)));
   vec4 low = min(a, b);
   vec4 high = max(a, b);
   vec2 depths = vec2(min(min(low.x, low.y), min(low.z, low.w)), max(max(high.x, high.y), max(high.z, high.w)));
@@ -59,14 +63,21 @@ vec2 pair_slopes(vec2 depths, int x, float camera) {
   return vec2(depths.x >= 1.0 ? kAlwaysLit : low, depths.y >= 1.0 ? kAlwaysLit : high);
 }
 
+// Returns the numbers of a node, rounded outwards. A node must not decide a ray that a comparison would decide
+// differently. With u = 2^-24, the numbers of node and ray differ from exact ones by the following errors. Vulkan
+// allows an error of 5 u for a division. The slope of either is a quotient and a product, 6 u; the number of a slope y,
+// y / (1 + |y|), changes by at most a quarter of that, and has an error of 8 u itself. Both together have 19 u
+// or 1.2e-6, which is 0.04 of a step of unorm16.
 vec2 rounded_numbers(vec2 slopes) {
+  const float kSlack = 1.5e-6;
+  const float kSlackSteps = 0.05;
   float resolution = float(frame.shadow_resolution);
   vec2 n = vec2(tree_number(slopes.x, resolution, kFormat), tree_number(slopes.y, resolution, kFormat));
   if (kFormat == kUnorm16) {
-    n = clamp(vec2(floor(n.x - 0.02), ceil(n.y + 0.02)), vec2(0.0), vec2(65535.0));
+    n = clamp(vec2(floor(n.x - kSlackSteps), ceil(n.y + kSlackSteps)), vec2(0.0), vec2(65535.0));
     return vec2(slopes.x >= kAlwaysLit ? 65535.0 : n.x, n.y);
   }
-  return vec2(slopes.x >= kAlwaysLit ? 2.0 : n.x - 2e-7, n.y + 2e-7);
+  return vec2(slopes.x >= kAlwaysLit ? 2.0 : n.x - kSlack, n.y + kSlack);
 }
 
 void store_node(uint at, vec2 n) {

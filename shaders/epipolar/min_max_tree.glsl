@@ -12,6 +12,13 @@
 const uint kUnorm16 = MinMaxFormat_unorm16;
 const uint kFloat32 = MinMaxFormat_float32;
 
+// Returns the texture coordinates of the middle of a cell. The tree and the comparisons of rays read the same texels
+// only if they are equal bit by bit in all pipelines.
+vec2 middle_of_cell(vec4 line, float cell) {
+  precise vec2 uv = line.xy + (cell + 0.5) * line.zw;
+  return uv;
+}
+
 // Maps a slope to the numbers of the tree, before rounding.
 float tree_number(float slope, float resolution, uint format) {
   float y = slope * resolution;

@@ -63,6 +63,9 @@ uint pack_coarse(vec3 light) { return packHalf2x16(root_for_half(light * kCoarse
 // are never negative.
 const uint kShadowedEnd = 0x80000000u;
 
+// Set by slice_samples.comp if the ray of a sample ends in the sky.
+const uint kSkySample = 0x8000u;
+
 float shadowed_end(uint coarse) { return (coarse & kShadowedEnd) != 0u ? 1.0 : 0.0; }
 
 // In-scattering of a pixel that was marched separately: square roots in half precision, as in samples.

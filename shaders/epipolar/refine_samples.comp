@@ -18,9 +18,14 @@
 #include "shared/constant_ids.h"
 #include "shared/params.glsl"
 
+#ifdef TARGET_GPU
+const uint kThreads = 128u;  // with kRun = 2, one turn for 256 samples
+#else
 const uint kThreads = 32u;
+#endif
 
 layout(local_size_x = kThreads) in;
+layout(constant_id = kRefineRunId) const uint kRun = 8u;  // consecutive samples of a thread, all in one word
 layout(constant_id = kRefinementId) const uint kRefinement = Refinement_inscattering;
 
 layout(std430, binding = 13) buffer slices_block { EpipolarSlice slices[]; };
@@ -33,7 +38,6 @@ layout(std430, binding = 17) buffer march_list_block {
 };
 
 const uint kWords = 64u;  // for 2048 samples
-const uint kRun = 8u;     // samples, all in one word
 // Deviations are relative to at least this fraction of the mean in-scattering of the slice. Deviations in darker parts
 // are invisible next to the rest.
 const float kDark = 0.05;
@@ -139,7 +143,9 @@ vec2 find_floor_light(EpipolarSlice slice, uint row) {
   return max(sum * (kDark / float(slice.last / kMeanStride + 1u)), vec2(1e-30));
 }
 
-// Marks the initial samples, and samples that deviate from both neighbours.
+// Marks the initial samples, samples that deviate from both neighbours, and samples on both sides of a skyline. In
+// turbid air, unshadowed in-scattering does not change at a skyline, because the path to the ground is opaque; light
+// shafts do.
 void mark_initial_samples_and_edges(Work w) {
   const vec2 center = epipole();
   // Only the first samples of a slice can be near the epipole.
@@ -147,10 +153,13 @@ void mark_initial_samples_and_edges(Work w) {
   uint fine_step = max(w.initial_step / epipolar.epipole_density, 1u);
   for (uint first = gl_LocalInvocationID.x * kRun; first <= w.slice.last; first += kThreads * kRun) {
     uint bits = 0u;
-    vec2 a = unpack_coarse(coarse[w.row + max(first, 1u) - 1u]);
-    vec2 b = unpack_coarse(coarse[w.row + first]);
+    uint previous = coarse[w.row + max(first, 1u) - 1u];
+    uint here = coarse[w.row + first];
+    vec2 a = unpack_coarse(previous);
+    vec2 b = unpack_coarse(here);
     for (uint i = first; i < first + kRun; ++i) {
-      vec2 c = unpack_coarse(coarse[w.row + min(i + 1u, w.slice.last)]);
+      uint behind = coarse[w.row + min(i + 1u, w.slice.last)];
+      vec2 c = unpack_coarse(behind);
       uint beyond = remainder_of(i, w.initial_step);
       uint from = i - beyond;
       bool near = from < near_samples && distance(sample_position(w.slice, from), center) < w.near_epipole;
@@ -158,7 +167,10 @@ void mark_initial_samples_and_edges(Work w) {
       bool edge = !initial &&
                   (kRefinement == Refinement_depth ? depth_step(w.row + min(i, w.slice.last - 1u)) > 0.2 * w.threshold
                                                    : deviation(a, b, c, 0.5, w.floor_light) > kTolerance * w.threshold);
-      bits |= i <= w.slice.last && (initial || edge) ? 1u << (i & 31u) : 0u;
+      bool skyline = (((previous ^ here) | (here ^ behind)) & kSkySample) != 0u;
+      bits |= i <= w.slice.last && (initial || edge || skyline) ? 1u << (i & 31u) : 0u;
+      previous = here;
+      here = behind;
       a = b;
       b = c;
     }
@@ -166,7 +178,7 @@ void mark_initial_samples_and_edges(Work w) {
   }
 }
 
-// Marks the samples on both sides of depth discontinuities.
+// Marks the samples on both sides of all depth discontinuities, in twilight.
 void mark_discontinuities(Work w) {
   if (epipolar.discontinuity_ratio <= 0.0) return;
   for (uint i = 1u + gl_LocalInvocationID.x; i < w.slice.last; i += kThreads) {

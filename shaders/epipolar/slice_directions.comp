@@ -12,7 +12,9 @@
 #include "frame/shadow_maps.glsl"
 #include "frame/view_ray.glsl"
 
-layout(local_size_x = 64) in;
+const uint kLines = 8u;  // slice lines of a workgroup
+
+layout(local_size_x = kLines * kLineThreads) in;
 
 layout(std430, binding = 13) readonly buffer slices_block { EpipolarSlice slices[]; };
 layout(std430, binding = 15) writeonly buffer slice_lines_block { SliceLine slice_lines[]; };
@@ -35,13 +37,16 @@ vec2 texels_per_depth(mat4 shadow_from_world, vec2 position) {
 
 float begin_of(uint cascade) { return cascade > epipolar.first_cascade ? cascades[cascade - 1u].far_m : 0.0; }
 
-// Returns how far rays of marched samples of a slice reach in a cascade [cells from the camera].
-float reach_of(EpipolarSlice slice, uint id, uint cascade) {
+shared float reaches[kLines * kLineThreads];
+
+// Returns how far rays of marched samples of a slice reach in a cascade [cells from the camera], for every
+// kLineThreads-th sample from `first` on.
+float reach_of(EpipolarSlice slice, uint id, uint cascade, uint first) {
   float begin = begin_of(cascade);
   float far_m = cascades[cascade].far_m;
   mat4 shadow_from_world = cascades[cascade].shadow_from_world;
   float reach = 0.0;
-  for (uint at = slice.first_marched; at < march.count && march_list[at] >> 16u == id; ++at) {
+  for (uint at = slice.first_marched + first; at < march.count && march_list[at] >> 16u == id; at += kLineThreads) {
     uint i = march_list[at] & 0xFFFFu;
     float depth_m = uintBitsToFloat(samples[id * epipolar.samples + i].x);
     vec2 cells = texels_per_depth(shadow_from_world, sample_position(slice, i));
@@ -82,12 +87,19 @@ SliceLine slice_line_of(EpipolarSlice slice, uint cascade, float reach_cells) {
 void main() {
   load_frame();
   load_epipolar();
-  uint id = gl_GlobalInvocationID.x;
-  uint cascade = epipolar.first_cascade + gl_GlobalInvocationID.y;
-  if (id >= epipolar.slices || cascade >= epipolar.cascades) return;
-  EpipolarSlice slice = slices[id];
-  SliceLine slice_line = slice_line_of(slice, cascade, epipolar.tree_cells > 0u ? reach_of(slice, id, cascade) : 0.0);
-  uint line_id = gl_GlobalInvocationID.y * epipolar.slices + id;
+  uint cascade = epipolar.first_cascade + gl_WorkGroupID.y;
+  uint thread = gl_LocalInvocationID.x;
+  // First, several threads find the reach of a line; then, one thread computes the line.
+  uint id = gl_WorkGroupID.x * kLines + thread / kLineThreads;
+  bool reaches_tree = epipolar.tree_cells > 0u && id < epipolar.slices;
+  reaches[thread] = reaches_tree ? reach_of(slices[id], id, cascade, thread % kLineThreads) : 0.0;
+  barrier();
+  id = gl_WorkGroupID.x * kLines + thread;
+  if (thread >= kLines || id >= epipolar.slices) return;
+  float reach = 0.0;
+  for (uint i = 0u; i < kLineThreads; ++i) reach = max(reach, reaches[thread * kLineThreads + i]);
+  SliceLine slice_line = slice_line_of(slices[id], cascade, reach);
+  uint line_id = gl_WorkGroupID.y * epipolar.slices + id;
   slice_lines[line_id] = slice_line;
   // The blocks of the tree that contain cells.
   uint blocks = (uint(slice_line.cells.z) + kTreeBlock - 1u) / kTreeBlock;

@@ -1,5 +1,5 @@
 // Computes the start and end of each slice in the picture and the distribution of its samples (Yusov 2013, section
-// 1.2).
+// 1.2). As the first pass of a frame, it also empties the lists that later passes fill.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -8,9 +8,25 @@
 layout(local_size_x = 64) in;
 
 layout(std430, binding = 13) writeonly buffer slices_block { EpipolarSlice slices[]; };
+layout(std430, binding = 14) writeonly buffer march_list_block { WorkList march; };
+layout(std430, binding = 15) writeonly buffer tree_blocks_block { WorkList trees; };
+layout(std430, binding = 16) writeonly buffer discontinuity_blocks_block { WorkList discontinuities; };
+layout(std430, binding = 17) writeonly buffer correction_list_block { WorkList corrections; };
+
+layout(push_constant) uniform Push {
+  uint march_groups_z;  // workgroups along z of the dispatches over march_list
+};
+
+void empty_lists() {
+  march = WorkList(0u, 1u, march_groups_z, 0u);
+  trees = WorkList(0u, 1u, 1u, 0u);
+  discontinuities = WorkList(0u, 1u, 1u, 0u);
+  corrections = WorkList(0u, 1u, 1u, 0u);
+}
 
 void main() {
   uint id = gl_GlobalInvocationID.x;
+  if (id == 0u) empty_lists();
   if (id >= epipolar.slices) return;
   float steps = float(epipolar.closed != 0u ? epipolar.slices : epipolar.slices - 1u);
   vec2 exit = border_position(epipolar.perimeter * float(id) / steps);

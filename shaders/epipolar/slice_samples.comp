@@ -65,7 +65,7 @@ void main() {
     vec3 transmittance, opacity;
     homogeneous_attenuation(length_in_homogeneous(direction, s.depth_m), transmittance, opacity);
     samples[at] = pack_sample(s);
-    coarse[at] = pack_coarse(opacity);
+    coarse[at] = pack_coarse(opacity);  // no edge is marched for being a skyline
     return;
   }
   Ray ray = ray_to_depth(frame, position, view_depth(frame, position, depth), sky);
@@ -80,5 +80,5 @@ void main() {
   NormalisationFactors factors = normalisation_factors(medium, integral);
   vec3 light = medium.rayleigh_scattering * rayleigh_phase(ray.cos_view_sun) * factors.rayleigh +
                medium.mie_scattering * mie_phase(medium, ray.cos_view_sun) * factors.mie;
-  coarse[at] = pack_coarse(light);
+  coarse[at] = pack_coarse(light) | (s.depth_m >= kSkyDepth ? kSkySample : 0u);
 }

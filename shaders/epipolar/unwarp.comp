@@ -1,7 +1,7 @@
-// Composes the picture in blocks of 4 x 2 pixels. If all pixels of a block are at one depth, they are blended from the
-// same four samples. The other blocks are listed for unwarp_pixels.comp. Every pixel is read and written once. With
-// kDownscale, the output is the half- or quarter-resolution buffer, which stores mean source functions instead of
-// radiance (Yusov 2012, section 6.6).
+// Composes the picture in blocks of 4 x 2 pixels, or 2 x 2 on GPUs. If all pixels of a block are at one depth, they are
+// blended from the same four samples. The other blocks are listed for unwarp_pixels.comp. Every pixel is read and
+// written once. With kDownscale, the output is the half- or quarter-resolution buffer, which stores mean source
+// functions instead of radiance (Yusov 2012, section 6.6).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -13,7 +13,7 @@
 #include "epipolar/unwarp.glsl"
 #include "frame/picture.glsl"
 
-layout(local_size_x = 64) in;  // along rows, because CPU devices store images row by row
+BLOCK_GROUP;
 
 // With more samples per pixel, a block on the ground extends too far beyond its four samples.
 const float kMaxSamplesPerPixel = 0.75;
@@ -94,21 +94,24 @@ void main() {
   vec2 middle = 0.5 * vec2(block.pixel[0] + block.pixel[kBlockPixels - 1]) + 0.5;
   bool scene = block.kinds == kScene;
   float depth_m = scene ? 0.5 * (block.nearest_m + block.farthest_m) : kSkyDepth;
-  bool one_depth = scene ? block.farthest_m - block.nearest_m < kOneDepth * epipolar.threshold * block.farthest_m
+  bool one_depth = scene ? block.farthest_m - block.nearest_m < kOneDepth * epipolar.depth_tolerance * block.farthest_m
                          : block.kinds == kSky;
   Around a = around(middle, depth_m);
   // In twilight, the sum of weights varies within a block of the sky and is smallest next to the ground. The larger
   // minimum for its middle leaves room for that.
   float lowered = 0.8 * (epipolar.min_weight_sky - epipolar.min_weight);
-  float min_weight = scene ? epipolar.min_weight : epipolar.min_weight_sky + lowered;
+  float min_weight = scene ? epipolar.min_weight : min(epipolar.min_weight_sky + lowered, 0.999);
   // Beyond kMaxExtrapolation the blend is constant. A block of the sky that extends farther would appear as a bar if
   // the in-scattering changes.
-  bool too_far = (reach_in_samples(a, middle) - kMaxExtrapolation) * contrast(a) > kInvisibleError;
+  float change = contrast(a);
+  bool too_far = (reach_in_samples(a, middle) - kMaxExtrapolation) * change > kInvisibleError;
   bool dense = max(length(a.origin_lower.zw), length(a.origin_upper.zw)) * float(kDownscale) > kMaxSamplesPerPixel;
   dense = scene ? dense : too_far;
   // Next to the limb, extinction decreases so fast that linear extrapolation soon reaches zero.
   dense = dense || extinction_varies(a);
-  if (!one_depth || dense || (kSkyline && !scene && depths_differ(a)) || blend(a, middle).weight < min_weight) {
+  float weight = blend(a, middle).weight;
+  bool doubtful = weight < min_weight || 2.0 * (1.0 - weight) * change > epipolar.tolerated_difference;
+  if (!one_depth || dense || (kSkyline && !scene && depths_differ(a)) || doubtful) {
     list_block(corner);
     return;
   }

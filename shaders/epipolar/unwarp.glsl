@@ -42,10 +42,10 @@ struct Around {
   vec3 extinction[4];  // square roots
 };
 
-// Returns the weight of a sample for a pixel at another depth: 1 up to the threshold of refinement, and beyond it the
-// fourth power of the threshold over the relative difference.
+// Returns the weight of a sample for a pixel at another depth: 1 up to the tolerance, and beyond it the fourth power of
+// the tolerance over the relative difference.
 float depth_nearness(float sample_m, float depth_m) {
-  float tolerated = epipolar.threshold * max(max(sample_m, depth_m), 1.0);
+  float tolerated = epipolar.depth_tolerance * max(max(sample_m, depth_m), 1.0);
   float nearness = tolerated / max(abs(sample_m - depth_m), tolerated);
   nearness *= nearness;
   return nearness * nearness;

@@ -33,6 +33,20 @@ bool at_limb(Around a, vec2 position) {
   return grazes && depths_differ(a);
 }
 
+// Returns whether the in-scattering of a pixel may be visibly wrong because of samples at other depths. If no sample
+// has a similar depth, it may be anything up to that of the brightest sample. Otherwise the error is estimated by the
+// difference between the samples, times the part of the weight that is lost. `color`: the colour of the pixel.
+bool may_be_wrong(Around a, Blend b, bool sky, vec3 opacity, vec3 color) {
+  const float kInvisible = 0.004;  // of the colour
+  vec3 low = min(min(a.source[0], a.source[1]), min(a.source[2], a.source[3]));
+  vec3 high = max(max(a.source[0], a.source[1]), max(a.source[2], a.source[3]));
+  vec3 brightest = high * high * opacity * frame.sun_irradiance;
+  vec3 difference = brightest - low * low * opacity * frame.sun_irradiance;
+  bool unlike_all = b.weight < (sky ? epipolar.min_weight_sky : epipolar.min_weight);
+  vec3 error = unlike_all ? brightest : max(1.0 - b.weight, 0.0) * difference;
+  return any(greaterThan(error, (unlike_all ? kInvisible : epipolar.tolerated_difference) * color));
+}
+
 void unwarp_pixel(uint block, uint k) {
   ivec2 place = ivec2((block & 0xFFFFu) + (k & 1u), (block >> 16u) + (k >> 1u));
   if (any(greaterThanEqual(place, computed_size()))) return;
@@ -50,13 +64,20 @@ void unwarp_pixel(uint block, uint k) {
   if (skyline) b.source = sky_source(a, position, b.source);
   if (skyline || kSparse)
     b.extinction = extinction_of(max(own_optical_depth(position, visible_m, sky), vec3(0.0)), depth_m);
+  bool wrong = b.weight < (sky ? epipolar.min_weight_sky : epipolar.min_weight);
   if (kDownscale == 1) {
     vec3 background = load_color(pixel);
-    store_color(pixel, compose(b, position, depth_m, visible_m, sky, background));
+    vec3 color = compose(b, position, depth_m, visible_m, sky, background);
+    store_color(pixel, color);
+    if (!kHomogeneous) {
+      vec3 transmittance, opacity;
+      attenuation(optical_depth_at(b.extinction, depth_m), transmittance, opacity);
+      wrong = may_be_wrong(a, b, sky, opacity, color);
+    }
   } else {
     store_downscaled(place, depth_m, b.source, b.extinction);
   }
-  if (b.weight < (sky ? epipolar.min_weight_sky : epipolar.min_weight) || at_limb(a, position)) list_correction(pixel);
+  if (wrong || at_limb(a, position)) list_correction(pixel);
 }
 
 void main() {

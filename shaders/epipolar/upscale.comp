@@ -13,7 +13,7 @@
 #include "epipolar/unwarp.glsl"
 #include "frame/picture.glsl"
 
-layout(local_size_x = 64) in;  // along rows, as in the memory layout of images
+BLOCK_GROUP;
 
 // Multiple of the refinement threshold within which depths belong to one slope. A slope is even between buffer pixels,
 // regardless of depth_nearness().

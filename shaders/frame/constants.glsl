@@ -1,6 +1,7 @@
-// Declares the constants of a frame, `medium` and `frame`. By default a shader reads them from storage buffers. Other
-// ways are faster for some shaders on CPU devices (docs/epipolar.md). A shader selects them with macros, which it
-// defines before its first include:
+// Declares the constants of a frame, `medium` and `frame`. Every pass of a frame is compiled twice. The variant for
+// GPUs, with the macro TARGET_GPU, reads all constants from uniform blocks. The variant for CPU devices reads them from
+// storage buffers by default. Other ways are faster for some passes on such devices (docs/epipolar.md). A pass selects
+// them with macros, which it defines before its first include:
 //   COPY_CONSTANTS     load_medium() and load_frame() copy them into variables; main() calls these functions first
 //   UNIFORM_CONSTANTS  `frame` is a uniform block
 #ifndef TYNDALL_CONSTANTS_GLSL
@@ -9,14 +10,16 @@
 #include "shared/medium.h"
 #include "shared/frame_constants.h"
 
-#ifdef COPY_CONSTANTS
+#ifdef TARGET_GPU
+layout(std140, binding = 0) uniform medium_block { Medium medium; };
+#elif defined(COPY_CONSTANTS)
 layout(std430, binding = 0) readonly buffer medium_block { Medium stored_medium; };
 Medium medium;
 #else
 layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
 #endif
 
-#ifdef UNIFORM_CONSTANTS
+#if defined(TARGET_GPU) || defined(UNIFORM_CONSTANTS)
 layout(std140, binding = 1) uniform frame_block { FrameConstants frame; };
 #elif defined(COPY_CONSTANTS)
 layout(std430, binding = 1) readonly buffer frame_block { FrameConstants stored_frame; };
@@ -25,7 +28,10 @@ FrameConstants frame;
 layout(std430, binding = 1) readonly buffer frame_block { FrameConstants frame; };
 #endif
 
-#ifdef COPY_CONSTANTS
+#ifdef TARGET_GPU
+void load_medium() {}
+void load_frame() {}
+#elif defined(COPY_CONSTANTS)
 void load_medium() { medium = stored_medium; }
 #ifndef UNIFORM_CONSTANTS
 void load_frame() { frame = stored_frame; }

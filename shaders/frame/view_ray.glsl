@@ -22,7 +22,8 @@ float view_depth(FrameConstants frame, vec2 position, float depth) {
 }
 
 vec3 ray_direction(FrameConstants frame, vec2 position) {
-  return normalize(frame.ray_origin + position.x * frame.ray_x + position.y * frame.ray_y);
+  precise vec3 direction = frame.ray_origin + position.x * frame.ray_x + position.y * frame.ray_y;
+  return normalize(direction);
 }
 
 // Returns the ray through a position [pixels; pixel centres are at + 0.5] to a view-space depth, or to the sky.

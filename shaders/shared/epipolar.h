@@ -40,8 +40,10 @@ struct EpipolarConstants {
   uint correction_capacity;   // capacity of the list of pixels to be marched; a multiple of kMarchGroup
   float min_weight_sky;       // min_weight for pixels of the sky; larger in twilight, when the sky is much brighter
   float discontinuity_ratio;  // ratio of the depths of neighbouring samples below which both are marched; 0: never
-  uint unused_0;
-  uint unused_1;
+  float depth_tolerance;      // relative difference of depth up to which all samples are equally suitable
+  // A pixel is marched if samples at other depths have lost a part of the weight, and this part of the difference
+  // between the samples exceeds this fraction of the pixel's colour.
+  float tolerated_difference;
 };
 
 // A slice: sample i is at line.xy + stride i, for i <= last. A position p of the picture projects to sample dot(p -
@@ -66,8 +68,9 @@ struct SliceLine {
 const uint kTreeBlock = 256u;    // cells per tree
 const uint kTreeLeafLevel = 3u;  // nodes of 8, 16, ... 256 cells: 2 to the power of the level
 const uint kTreeTopLevel = 8u;
-const uint kTreeNodes = 64u;  // per block, including one unused
-const uint kTreeGroup = 8u;   // blocks built by one workgroup
+const uint kTreeNodes = 64u;   // per block, including one unused
+const uint kLineThreads = 8u;  // invocations of slice_directions.comp per slice line
+const uint kTreeGroup = 8u;    // blocks built by one workgroup
 
 // The number of Rayleigh scale heights above which there is almost no medium: a camera above them sees a limb.
 const float kAllOfAir = 5.0f;
@@ -79,7 +82,10 @@ const uint kSparsitySkyline = 1u;
 // All pixels of the sky, and pixels between samples at other depths, also compute density integrals.
 const uint kSparsityAll = 2u;
 
-const uint kUnwarpWidth = 4u;  // width in pixels of a block of unwarp.comp; the height is 2
+// The width in pixels of a block of unwarp.comp; the height is 2. On CPU devices, wide blocks share most work. On GPUs,
+// 8 x 8 threads of 2 x 2 pixels cover whole sectors of the picture's memory, with few registers per thread.
+const uint kUnwarpWidthCpu = 4u;
+const uint kUnwarpWidthGpu = 2u;
 
 // The kinds of dispatches of march_samples.comp. The first three are those of CascadeProcessing.
 const uint kAllCascades = 0u;

@@ -99,6 +99,7 @@ Effect::State::~State() {
 }
 
 Result<void> Effect::State::create_objects() {
+  target = target_of(device);
   pipelines.create(device, desc.pipeline_threads);
   sets.create(device, FrameRing::slots(desc));
   buffers.create(device);
@@ -108,7 +109,7 @@ Result<void> Effect::State::create_objects() {
   TYNDALL_ASSIGN(no_shadows, gpu::create_image(device, kNoShadows));
   TYNDALL_ASSIGN(no_colors, gpu::create_image(device, kNoColors));
   TYNDALL_ASSIGN(constants, gpu::create_buffer(device, "constants", kSlotBytes * FrameRing::slots(desc),
-                                               kConstantsUsage, gpu::MemoryKind::upload));
+                                               kConstantsUsage, gpu::MemoryKind::constants));
   const VkDeviceSize counter_bytes = kCounterBytes * FrameRing::slots(desc);
   TYNDALL_ASSIGN(counters,
                  gpu::create_buffer(device, "counters", counter_bytes, kCounterUsage, gpu::MemoryKind::device));
@@ -151,8 +152,8 @@ Result<Effect::State::Pending> Effect::State::plan(const EffectDesc& d, const Pa
   if ((required & kEverything) != 0) TYNDALL_TRY(check_limits(device, d, p));
   Pending pending = {d, p, {}, {}};
   if (other_resources || (required & bit(Affects::Pipeline)) != 0) {
-    TYNDALL_TRY(pipelines.make(pipelines_of_frames(d, p)));
-    TYNDALL_TRY(sets.make(sets_of_frames(d, p), pipelines));
+    TYNDALL_TRY(pipelines.make(pipelines_of_frames(d, p, target)));
+    TYNDALL_TRY(sets.make(sets_of_frames(d, p, target), pipelines));
   }
   if (other_resources) {
     TYNDALL_ASSIGN(pending.buffers, buffers.plan(d, p));
@@ -180,7 +181,7 @@ Result<void> Effect::State::change(const EffectDesc& d, const Params& p) {
 }
 
 Result<Progress> Effect::State::prepare_pipelines(std::uint32_t budget) {
-  if (all_pipelines.empty()) all_pipelines = all_frame_pipelines(desc);
+  if (all_pipelines.empty()) all_pipelines = all_frame_pipelines(desc, target);
   TYNDALL_TRY(pipelines.make(all_pipelines, budget));
   Progress progress;
   progress.total = static_cast<std::uint32_t>(all_pipelines.size());
@@ -266,7 +267,10 @@ Result<void> Effect::State::record(VkCommandBuffer cmd, const FrameInputs& input
                                          VK_ACCESS_INDIRECT_COMMAND_READ_BIT;
   recorder.assume(Resource::counters, kFrameBefore);
   for (std::size_t i = 0; i < kFrameBuffers; ++i) recorder.assume(frame_buffer(i), kFrameBefore);
-  for (const Step& step : frame_steps(desc, params, frame_shape(inputs, params))) TYNDALL_TRY(recorder.record(step));
+  if (desc.timings) timer.begin_whole(cmd, "effect");
+  const FrameSteps steps = frame_steps(desc, params, frame_shape(inputs, params, target));
+  for (const Step& step : steps) TYNDALL_TRY(recorder.record(step));
+  if (desc.timings) timer.end_whole(cmd);
   ring.record_end(cmd, inputs.frame_index, inputs.view);
   return {};
 }

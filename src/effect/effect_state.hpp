@@ -39,6 +39,7 @@ struct TYNDALL_HIDDEN Effect::State {
   EffectDesc desc;
   Params params;
   gpu::Device device;
+  Target target = Target::cpu;  // of the passes of a frame
 
   PipelineCache pipelines;
   SetCache sets;                           // of frames, with the slots of `ring`

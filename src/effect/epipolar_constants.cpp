@@ -16,13 +16,15 @@ constexpr float kMinWeight = 1e-2F;
 constexpr float kMinWeightCorrected = 0.1F;
 constexpr float kMinWeightDownscaled = 1e-3F;
 // In twilight, the sky becomes darker from pixel to pixel towards the ground. A pixel of the sky is therefore marched
-// if less than half of its weight is from samples in the sky.
-constexpr float kMinWeightTwilight = 0.5F;
-// Samples on both sides of a depth discontinuity are marched even where unshadowed in-scattering does not change. In
-// turbid air it does not change at a skyline, because the path to the ground is opaque; light shafts do. In
-// twilight it does not contain the planet's shadow, so that the same holds for all edges. By day, the ratio finds the
-// edges between the ground and the sky only.
-constexpr float kDiscontinuityRatio = 0.05F;
+// unless nearly all of its weight is from samples in the sky.
+constexpr float kMinWeightTwilight = 0.9F;
+// By day the light in front of neighbouring ridges differs too little.
+constexpr float kToleratedTwilight = 0.03F;
+constexpr float kToleratedByDay = 1e9F;
+// In twilight, the light in front of distant ridges changes considerably with their depth.
+constexpr float kTwilightDepthTolerance = 0.5F;  // in units of the tolerance by day
+// In twilight, samples on both sides of every depth discontinuity are marched, because unshadowed in-scattering does
+// not contain the planet's shadow.
 constexpr float kTwilightDiscontinuityRatio = 0.8F;
 // In twilight, the initial step is divided by this, because refinement compares unshadowed in-scattering, which does
 // not contain the planet's shadow.
@@ -138,9 +140,9 @@ shared::EpipolarConstants epipolar_constants(const FrameInputs& inputs, const Ef
   out.correction_capacity = correction_capacity(desc, params);
   const bool twilight = sun_is_down(inputs, params) && !is_downscaled(params);
   out.min_weight_sky = twilight ? std::max(out.min_weight, kMinWeightTwilight) : out.min_weight;
-  out.discontinuity_ratio = twilight                            ? kTwilightDiscontinuityRatio
-                            : is_homogeneous(params.scattering) ? 0.0F
-                                                                : kDiscontinuityRatio;
+  out.tolerated_difference = twilight ? kToleratedTwilight : kToleratedByDay;
+  out.depth_tolerance = p.refinement_threshold * (twilight ? kTwilightDepthTolerance : 1.0F);
+  out.discontinuity_ratio = twilight ? kTwilightDiscontinuityRatio : 0.0F;
   out.show_depth_breaks = p.show_depth_breaks.value;
   out.tree_cells = p.min_max_tree.value != 0 ? tree_cells(desc) : 0;
   out.tree_format = static_cast<std::uint32_t>(p.min_max_format);

@@ -9,21 +9,21 @@ namespace {
 
 // Calls body(steps) for frames of every shape.
 template <typename Body>
-void for_each_shape(const EffectDesc& desc, const Params& params, Body&& body) {
+void for_each_shape(const EffectDesc& desc, const Params& params, Target target, Body&& body) {
   for (const VkExtent2D extent : {VkExtent2D{1, 1}, VkExtent2D{16384, 16384}}) {
     for (const std::uint32_t cascades : {0U, desc.max_cascades}) {
       for (const bool colors : {false, true}) {
         if (colors && !desc.shadow_colors) continue;
         for (const bool integrate_single : {false, true}) {
-          body(frame_steps(desc, params, {extent, cascades, 0, colors, integrate_single}));
+          body(frame_steps(desc, params, {extent, cascades, 0, colors, integrate_single, target}));
         }
       }
     }
   }
 }
 
-void add_pipelines(std::vector<PipelineKey>& out, const EffectDesc& desc, const Params& params) {
-  for_each_shape(desc, params, [&](const FrameSteps& steps) {
+void add_pipelines(std::vector<PipelineKey>& out, const EffectDesc& desc, const Params& params, Target target) {
+  for_each_shape(desc, params, target, [&](const FrameSteps& steps) {
     for (const Step& step : steps) {
       if (!step.dispatches()) continue;
       if (std::find(out.begin(), out.end(), step.pipeline) == out.end()) out.push_back(step.pipeline);
@@ -37,7 +37,8 @@ ResourceSet resources_of_frames(const EffectDesc& desc, const Params& params) {
   Params enabled = params;
   enabled.scattering.enabled = true;
   ResourceSet out;
-  for_each_shape(desc, enabled, [&](const FrameSteps& steps) {
+  // The variants for all targets have the same bindings.
+  for_each_shape(desc, enabled, Target::cpu, [&](const FrameSteps& steps) {
     for (const Step& step : steps) {
       for (const Use& use : uses_of(step)) out.set(index_of(use.resource));
     }
@@ -45,15 +46,15 @@ ResourceSet resources_of_frames(const EffectDesc& desc, const Params& params) {
   return out;
 }
 
-std::vector<PipelineKey> pipelines_of_frames(const EffectDesc& desc, const Params& params) {
+std::vector<PipelineKey> pipelines_of_frames(const EffectDesc& desc, const Params& params, Target target) {
   std::vector<PipelineKey> out;
-  add_pipelines(out, desc, params);
+  add_pipelines(out, desc, params, target);
   return out;
 }
 
-std::vector<SetKey> sets_of_frames(const EffectDesc& desc, const Params& params) {
+std::vector<SetKey> sets_of_frames(const EffectDesc& desc, const Params& params, Target target) {
   std::vector<SetKey> out;
-  for_each_shape(desc, params, [&](const FrameSteps& steps) {
+  for_each_shape(desc, params, target, [&](const FrameSteps& steps) {
     for (const Step& step : steps) {
       if (!step.dispatches()) continue;
       const SetKey key = set_key(step);
@@ -63,9 +64,9 @@ std::vector<SetKey> sets_of_frames(const EffectDesc& desc, const Params& params)
   return out;
 }
 
-std::vector<PipelineKey> all_frame_pipelines(const EffectDesc& desc) {
+std::vector<PipelineKey> all_frame_pipelines(const EffectDesc& desc, Target target) {
   std::vector<PipelineKey> out;
-  const auto add = [&](const Params& params) { add_pipelines(out, desc, params); };
+  const auto add = [&](const Params& params) { add_pipelines(out, desc, params, target); };
   // Apart from the medium, no shader has constants of two of these groups, so the groups need not be combined.
   // FrameSteps.AllPipelinesAreFound of tests/unit/frame_steps_test.cpp verifies this with all combinations.
   Params p;

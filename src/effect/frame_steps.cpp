@@ -28,7 +28,7 @@ struct Frame {
                 std::array<std::uint32_t, 2> push = {}) {
     Step step;
     step.name = name;
-    step.pipeline = pipeline_key(shader, constants);
+    step.pipeline = pipeline_key(variant_for(shader, shape.target), constants);
     step.invocations = invocations;
     step.push = push;
     steps.add(step);
@@ -39,18 +39,11 @@ struct Frame {
     step.name = name;
     step.kind = Step::Kind::dispatch_indirect;
     step.chosen = list;
-    step.pipeline = pipeline_key(shader, constants);
+    step.pipeline = pipeline_key(variant_for(shader, shape.target), constants);
     step.push = push;
     steps.add(step);
   }
-  void reset(Resource list, std::uint32_t groups_z = 1) {
-    Step step;
-    step.name = "reset_list";
-    step.kind = Step::Kind::reset_list;
-    step.chosen = list;
-    step.push[0] = groups_z;
-    steps.add(step);
-  }
+  void reset(Resource list) { other(Step::Kind::reset_list, "reset_list", list); }
   void other(Step::Kind kind, const char* name, Resource chosen, Resource target = Resource::none) {
     Step step;
     step.name = name;
@@ -74,6 +67,15 @@ struct Frame {
     return params.epipolar.min_max_tree && params.scattering.light_shafts && marches_shadows();
   }
 };
+
+// Sets the amounts of work per invocation. On CPU devices, an invocation does much, because it shares loads and because
+// starting a workgroup is expensive. GPUs need more invocations: with 512 slices, 16384 threads would refine samples,
+// and about 8000 would build trees. These values have not been measured on a GPU.
+void set_sizes(Specialisation& out, Target target) {
+  const bool cpu = target == Target::cpu;
+  out[shared::kRefineRunId] = cpu ? 8 : 2;
+  out[shared::kTreePartId] = cpu ? 6 : 4;
+}
 
 // Returns the values of all specialisation constants. A constant that has no meaning in a mode is 0, so that the mode
 // has only one pipeline.
@@ -100,6 +102,7 @@ Specialisation specialisation(const Frame& frame) {
   set(shared::kSparsityId, sparsity(frame.shape.extent, frame.params));
   set(shared::kRefinementId, frame.params.epipolar.refinement);
   set(shared::kFormatId, frame.params.epipolar.min_max_format);
+  set_sizes(out, frame.shape.target);
   return out;
 }
 
@@ -128,7 +131,7 @@ void march_and_correct(Frame& f, const char* name, const gpu::Shader& correct) {
 // Interpolates pixels between slices (section 1.7): first the blocks at one depth, then the pixels of the other blocks,
 // and finally the pixels that fit no sample.
 void unwarp_steps(Frame& f) {
-  const VkExtent2D blocks = unwarp_blocks(f.shape.extent);
+  const VkExtent2D blocks = unwarp_blocks(f.shape.extent, f.shape.target);
   f.dispatch("unwarp", f.variant(shaders::unwarp_comp_rgba16f, shaders::unwarp_comp_rgba32f),
              {blocks.width, blocks.height, 1});
   f.dispatch_over(Resource::discontinuity_blocks, "unwarp_pixels",
@@ -140,7 +143,7 @@ void unwarp_steps(Frame& f) {
 // Does the same for scattering.downscale: fills a buffer of half or a quarter of the resolution (Yusov, "IVB
 // Atmospheric Light Scattering", 2012, sections 6.6 and 6.7), and then upscales it bilaterally (section 6.8).
 void downscaled_steps(Frame& f) {
-  const VkExtent2D blocks = unwarp_blocks(downscaled_extent(f.shape.extent, f.params));
+  const VkExtent2D blocks = unwarp_blocks(downscaled_extent(f.shape.extent, f.params), f.shape.target);
   const std::uint8_t extinction = f.constants[shared::kExtinctionId];
   f.constants[shared::kExtinctionId] = 0;  // used only by passes that compose the background
   f.dispatch("unwarp_downscaled", f.variant(shaders::unwarp_comp_rgba16f, shaders::unwarp_comp_rgba32f),
@@ -166,16 +169,15 @@ void epipolar_steps(Frame& f) {
   const CascadeProcessing processing =
       cascades > 0 ? f.params.shadows.cascade_processing : CascadeProcessing::single_pass;
 
-  f.reset(Resource::march_list, processing == CascadeProcessing::multi_pass_instanced ? cascades : 1);
-  f.reset(Resource::discontinuity_blocks);
-  f.reset(Resource::correction_list);
-  if (cascades > 0) f.reset(Resource::tree_blocks);
-
-  f.dispatch("slice_end_points", shaders::slice_end_points_comp, {slices, 1, 1});  // 1.2
+  const std::uint32_t march_groups_z = processing == CascadeProcessing::multi_pass_instanced ? cascades : 1;
+  f.dispatch("slice_end_points", shaders::slice_end_points_comp, {slices, 1, 1}, {march_groups_z, 0});  // 1.2
   f.dispatch("slice_samples", shaders::slice_samples_comp, {samples, slices, 1});  // 1.2, and in-scattering of 1.3
   f.dispatch("refine_samples", shaders::refine_samples_comp,                       // 1.3
-             {slices * shaders::refine_samples_comp.local_size[0], 1, 1});
-  if (cascades > 0) f.dispatch("slice_directions", shaders::slice_directions_comp, {slices, cascades, 1});  // 1.4
+             {slices * variant_for(shaders::refine_samples_comp, f.shape.target).local_size[0], 1, 1});
+  if (cascades > 0) {
+    f.dispatch("slice_directions", shaders::slice_directions_comp,
+               {slices * shared::kLineThreads, cascades, 1});  // 1.4
+  }
   if (cascades > 0 && f.uses_tree()) f.dispatch_over(Resource::tree_blocks, "min_max_tree", shaders::min_max_tree_comp);
   march_cascades(f, processing);                                                               // 1.6, 1.8
   f.dispatch("interpolate_samples", shaders::interpolate_samples_comp, {samples, slices, 1});  // 1.3
@@ -203,9 +205,13 @@ void brute_force_steps(Frame& f) {
 
 }  // namespace
 
-FrameShape frame_shape(const FrameInputs& inputs, const Params& params) {
-  return {inputs.extent, static_cast<std::uint32_t>(inputs.cascades.size()), inputs.first_marched_cascade,
-          inputs.shadow_colors.view != VK_NULL_HANDLE, tables_lack_single(inputs, params)};
+FrameShape frame_shape(const FrameInputs& inputs, const Params& params, Target target) {
+  return {inputs.extent,
+          static_cast<std::uint32_t>(inputs.cascades.size()),
+          inputs.first_marched_cascade,
+          inputs.shadow_colors.view != VK_NULL_HANDLE,
+          tables_lack_single(inputs, params),
+          target};
 }
 
 FrameSteps frame_steps(const EffectDesc& desc, const Params& params, const FrameShape& shape) {

@@ -19,8 +19,9 @@ struct FrameShape {
   std::uint32_t first_marched_cascade = 0;
   bool shadow_colors = false;
   bool integrate_single = false;  // scattering.single = table is not accurate here
+  Target target = Target::cpu;
 };
-[[nodiscard]] FrameShape frame_shape(const FrameInputs& inputs, const Params& params);
+[[nodiscard]] FrameShape frame_shape(const FrameInputs& inputs, const Params& params, Target target);
 
 // A list of fixed capacity. It does not allocate, because it is created for every frame.
 class FrameSteps {
@@ -51,10 +52,12 @@ using ResourceSet = std::bitset<kResources>;
 // scattering.enabled, so switching scattering off and on allocates nothing.
 [[nodiscard]] ResourceSet resources_of_frames(const EffectDesc& desc, const Params& params);
 // Returns the pipelines of frames of any shape with these settings.
-[[nodiscard]] std::vector<PipelineKey> pipelines_of_frames(const EffectDesc& desc, const Params& params);
+[[nodiscard]] std::vector<PipelineKey> pipelines_of_frames(const EffectDesc& desc, const Params& params,
+                                                           Target target = Target::cpu);
 // Returns the descriptor sets of frames of any shape with these settings.
-[[nodiscard]] std::vector<SetKey> sets_of_frames(const EffectDesc& desc, const Params& params);
+[[nodiscard]] std::vector<SetKey> sets_of_frames(const EffectDesc& desc, const Params& params,
+                                                 Target target = Target::cpu);
 // Returns the pipelines of frames of any shape with any parameters.
-[[nodiscard]] std::vector<PipelineKey> all_frame_pipelines(const EffectDesc& desc);
+[[nodiscard]] std::vector<PipelineKey> all_frame_pipelines(const EffectDesc& desc, Target target = Target::cpu);
 
 }  // namespace tyndall

@@ -44,8 +44,8 @@ VkDeviceSize bytes_of(Resource resource, const EffectDesc& desc, const Params& p
       return samples * kStateBytes * (instanced ? desc.max_cascades : 1);
     }
     case Resource::discontinuity_blocks: {
-      const VkExtent2D blocks = unwarp_blocks(desc.max_extent);
-      const VkDeviceSize squares = VkDeviceSize{blocks.width} * (shared::kUnwarpWidth / 2) * blocks.height;
+      const VkExtent2D blocks = unwarp_blocks(desc.max_extent, Target::cpu);  // has the most
+      const VkDeviceSize squares = VkDeviceSize{blocks.width} * (shared::kUnwarpWidthCpu / 2) * blocks.height;
       return sizeof(shared::WorkList) + squares * 4;
     }
     case Resource::correction_list: return sizeof(shared::WorkList) + corrected * 4;
@@ -92,8 +92,9 @@ VkExtent2D downscaled_extent(VkExtent2D extent, const Params& params) {
   return {(extent.width + d - 1) / d, (extent.height + d - 1) / d};
 }
 
-VkExtent2D unwarp_blocks(VkExtent2D extent) {
-  return {(extent.width + shared::kUnwarpWidth - 1) / shared::kUnwarpWidth, (extent.height + 1) / 2};
+VkExtent2D unwarp_blocks(VkExtent2D extent, Target target) {
+  const std::uint32_t width = target == Target::cpu ? shared::kUnwarpWidthCpu : shared::kUnwarpWidthGpu;
+  return {(extent.width + width - 1) / width, (extent.height + 1) / 2};
 }
 
 }  // namespace tyndall

@@ -13,6 +13,10 @@
 
 namespace tyndall {
 
+// The kind of device for which a variant of the passes of a frame is written
+// (docs/adr/0011-constants-on-cpu-devices.md).
+enum class Target : std::uint8_t { cpu, gpu };
+
 enum class Resource : std::uint8_t {
 #define RESOURCE(name, lifetime, format, resolution) name,
 #define FRAME_BUFFER(name, format, resolution, cause) name,
@@ -77,6 +81,6 @@ struct FrameBufferSizes {
 [[nodiscard]] std::uint32_t downscaled_count(std::uint32_t count, const Params& params);
 [[nodiscard]] VkExtent2D downscaled_extent(VkExtent2D extent, const Params& params);
 // Returns the number of blocks of unwarp.comp along both axes of a picture.
-[[nodiscard]] VkExtent2D unwarp_blocks(VkExtent2D extent);
+[[nodiscard]] VkExtent2D unwarp_blocks(VkExtent2D extent, Target target);
 
 }  // namespace tyndall

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "effect_shaders.hpp"
+#include "gpu/device.hpp"
 
 namespace tyndall {
 namespace {
@@ -47,6 +48,28 @@ static_assert([] {
   return true;
 }());
 
+// The index of the variant for GPUs of every shader, looked up at compile time.
+constexpr auto kGpuVariants = [] {
+  constexpr std::string_view kSuffix = "_gpu";
+  std::array<std::size_t, kShaders> out = {};
+  for (std::size_t i = 0; i < kShaders; ++i) {
+    const std::string_view name = shaders::effect_shaders[i]->name;
+    out[i] = i;
+    for (std::size_t k = 0; k < kShaders; ++k) {
+      const std::string_view other = shaders::effect_shaders[k]->name;
+      if (other.size() == name.size() + kSuffix.size() && other.starts_with(name) && other.ends_with(kSuffix)) {
+        out[i] = k;
+      }
+    }
+  }
+  return out;
+}();
+
+std::size_t index_of(const gpu::Shader& shader) {
+  const auto* const* found = std::find(std::begin(shaders::effect_shaders), std::end(shaders::effect_shaders), &shader);
+  return static_cast<std::size_t>(found - shaders::effect_shaders);
+}
+
 VkPipelineStageFlags stages_of(VkAccessFlags access) {
   constexpr VkAccessFlags kShader = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
   constexpr VkAccessFlags kTransfer = VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
@@ -60,6 +83,22 @@ VkPipelineStageFlags stages_of(VkAccessFlags access) {
 
 }  // namespace
 
+Target target_of(const gpu::Device& device) {
+  VkPhysicalDeviceSubgroupProperties subgroups = {};
+  subgroups.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES;
+  VkPhysicalDeviceProperties2 properties = {VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &subgroups, {}};
+  device.vk.GetPhysicalDeviceProperties2(device.physical_device, &properties);
+  const bool cpu = properties.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+  // Lists are filled with operations of subgroups (shaders/epipolar/work_list.glsl).
+  const bool ballot = (subgroups.supportedOperations & VK_SUBGROUP_FEATURE_BALLOT_BIT) != 0 &&
+                      (subgroups.supportedStages & VK_SHADER_STAGE_COMPUTE_BIT) != 0;
+  return cpu || !ballot ? Target::cpu : Target::gpu;
+}
+
+const gpu::Shader& variant_for(const gpu::Shader& shader, Target target) {
+  return target == Target::cpu ? shader : *shaders::effect_shaders[kGpuVariants[index_of(shader)]];
+}
+
 PipelineKey pipeline_key(const gpu::Shader& shader, const Specialisation& constants) {
   PipelineKey key = {&shader, {}};
   for (const std::uint32_t id : shader.constants) key.constants[id] = constants[id];
@@ -67,8 +106,7 @@ PipelineKey pipeline_key(const gpu::Shader& shader, const Specialisation& consta
 }
 
 std::span<const Resource> bound_resources(const gpu::Shader& shader) {
-  const auto* const* found = std::find(std::begin(shaders::effect_shaders), std::end(shaders::effect_shaders), &shader);
-  const ShaderResources& resources = kShaderResources[static_cast<std::size_t>(found - shaders::effect_shaders)];
+  const ShaderResources& resources = kShaderResources[index_of(shader)];
   return {resources.list.data(), resources.count};
 }
 

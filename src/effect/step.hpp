@@ -12,6 +12,10 @@
 #include "effect/shared.hpp"
 #include "gpu/shader.hpp"
 
+namespace tyndall::gpu {
+struct Device;
+}
+
 namespace tyndall {
 
 // Values of the specialisation constants, indexed by the ids of shaders/shared/constant_ids.h.
@@ -31,11 +35,16 @@ struct PipelineKey {
 };
 [[nodiscard]] PipelineKey pipeline_key(const gpu::Shader& shader, const Specialisation& constants);
 
+// Returns the kind of device for which passes are chosen.
+[[nodiscard]] Target target_of(const gpu::Device& device);
+// Returns the variant of a shader for a target: the shader with "_gpu" appended to its name, or the shader itself.
+[[nodiscard]] const gpu::Shader& variant_for(const gpu::Shader& shader, Target target);
+
 struct Step {
   enum class Kind : std::uint8_t {
     dispatch,           // over `invocations`
     dispatch_indirect,  // over the items of the list `chosen`
-    reset_list,         // makes the list `chosen` empty; `push` holds the groups along z of its dispatches
+    reset_list,         // makes the list `chosen` empty
     clear,              // fills `chosen` with zeros
     copy,               // from `chosen` to `target`
     host_read           // records no command: makes `chosen` visible to the host

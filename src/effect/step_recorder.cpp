@@ -67,7 +67,7 @@ void StepRecorder::transfer(const Step& step) {
   const VkDescriptorBufferInfo& buffer = resources_[step.chosen].buffer;
   switch (step.kind) {
     case Step::Kind::reset_list: {
-      const shared::WorkList empty = {0, 1, step.push[0], 0};
+      constexpr shared::WorkList empty = {0, 1, 1, 0};
       device_.vk.CmdUpdateBuffer(cmd_, buffer.buffer, buffer.offset, sizeof empty, &empty);
       return;
     }

@@ -18,6 +18,10 @@ std::uint32_t memory_type(const Device& device, std::uint32_t bits, MemoryKind k
   VkMemoryPropertyFlags wanted = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
   VkMemoryPropertyFlags needed = 0;
   if (kind == MemoryKind::upload) wanted = needed = host;
+  if (kind == MemoryKind::constants) {
+    wanted = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | host;
+    needed = host;
+  }
   if (kind == MemoryKind::readback) {
     wanted = host | VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
     needed = host;

@@ -35,9 +35,10 @@ struct Buffer {
 };
 
 enum class MemoryKind {
-  device,    // device-local if possible
-  upload,    // written by the host; coherent
-  readback,  // read by the host; coherent, and cached if possible
+  device,     // device-local if possible
+  upload,     // written by the host; coherent
+  constants,  // written by the host for every frame; coherent, and device-local if possible
+  readback,   // read by the host; coherent, and cached if possible
 };
 
 [[nodiscard]] VkImageCreateInfo image_create_info(const ImageDesc& desc);

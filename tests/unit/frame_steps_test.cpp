@@ -330,10 +330,11 @@ TEST(FrameSteps, BarriersAreOnlyWhereTheyAreNeeded) {
 
 // prepare_pipelines() creates the pipelines that frames need and no others; record() creates none.
 TEST(FrameSteps, AllPipelinesAreFound) {
-  for (const bool colors : {false, true}) {
+  for (const auto& [colors, target] :
+       {std::pair(false, Target::cpu), std::pair(true, Target::cpu), std::pair(true, Target::gpu)}) {
     EffectDesc desc;
     desc.shadow_colors = colors;
-    const std::vector<PipelineKey> list = all_frame_pipelines(desc);
+    const std::vector<PipelineKey> list = all_frame_pipelines(desc, target);
     const KeySet all(list.begin(), list.end());
     EXPECT_EQ(all.size(), list.size());
     KeySet reached;
@@ -343,6 +344,7 @@ TEST(FrameSteps, AllPipelinesAreFound) {
         params.scattering.enabled = enabled;
         for (FrameShape shape : kShapes) {
           shape.shadow_colors = shape.shadow_colors && colors;
+          shape.target = target;
           for (const Step& step : frame_steps(desc, params, shape)) {
             if (step.dispatches()) reached.insert(step.pipeline);
           }
@@ -352,6 +354,22 @@ TEST(FrameSteps, AllPipelinesAreFound) {
     EXPECT_EQ(reached.size(), all.size());
     for (const PipelineKey& key : reached) EXPECT_TRUE(all.contains(key)) << key.shader->name;
   }
+}
+
+// The variants of a pass differ only in how they compute. Memory and barriers are planned for one of them.
+TEST(FrameSteps, VariantsUseTheSameResources) {
+  for_each_mode([&](const Params& params) {
+    for (const Step& step : frame_steps(full_desc(), params, kShapes[2])) {
+      if (!step.dispatches()) continue;
+      const gpu::Shader& cpu = *step.pipeline.shader;
+      const gpu::Shader& gpu = variant_for(cpu, Target::gpu);
+      ASSERT_EQ(std::string(gpu.name), std::string(cpu.name) + "_gpu");
+      const auto resources = bound_resources(cpu);
+      const auto others = bound_resources(gpu);
+      ASSERT_TRUE(std::is_permutation(resources.begin(), resources.end(), others.begin(), others.end())) << cpu.name;
+      ASSERT_TRUE(std::equal(cpu.constants.begin(), cpu.constants.end(), gpu.constants.begin(), gpu.constants.end()));
+    }
+  });
 }
 
 TEST(FrameSteps, SetParamsCreatesThePipelinesOfItsFrames) {
