@@ -296,8 +296,9 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   if (desc_.timings) {
     for (const gpu::TimedScope& scope : timer_.read(0)) times_.push_back({scope.name, scope.milliseconds, false});
     const bool by_effect = model_ == nullptr;
+    // On GPUs, the first is that of the whole effect, which contains the others.
     for (const PassTiming& pass : by_effect ? effect_->timings(frame_index_) : std::span<const PassTiming>())
-      times_.push_back({pass.name, pass.gpu_ms, true});
+      times_.push_back({pass.name, pass.gpu_ms, std::string_view(pass.name) != "effect"});
   }
   ++frame_index_;
   return {};
