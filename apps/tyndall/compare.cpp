@@ -103,10 +103,12 @@ int run_compare(Args args) {
   arguments.number("--mre-max", limits.mre_max, 0.0, 1.0e6, "largest accepted mean_relative_error");
   arguments.text("--diff", difference_path, "OUT", "write |A - B| x 16 as a PNG or EXR");
   arguments.flag("--json", json, "print the results as JSON");
-  arguments.footer("Exit status: 0 within --psnr-min and --mre-max; 1 the difference cannot be written; 2 beyond a "
-                   "limit, values that\n"
-                   "are not finite, or bad usage; 3 the sizes differ; 4 a file cannot be read, or the two are of "
-                   "different kinds.\n");
+  arguments.footer(
+      "Exit status: 0 if the difference is within --psnr-min and --mre-max; 1 if the file of --diff cannot be "
+      "written; 2 if the\n"
+      "difference exceeds a limit, a value is not finite, or the usage is wrong; 3 if the sizes differ; 4 if "
+      "a file cannot be\n"
+      "read, or the two are of different kinds.\n");
   if (const std::optional<int> status = arguments.parse(args)) return *status;
   if (!difference_path.empty()) {
     if (const Result<image::FileKind> kind = image::kind_of_name(difference_path); !kind) return fail(kind.error());

@@ -62,10 +62,10 @@ int run_probe(Args args) {
   arguments.text("--queries", queries, "FILE",
                  "rays as CSV: altitude_m, view_zenith_deg (or sky), sun_zenith_deg, azimuth_deg");
   arguments.choice("--model", model_name, model_names,
-                   "model (single: over black ground; reference: with light from the ground)");
-  arguments.count("--orders", settings.orders, 1, kMaxOrders, "reference: orders of scattering");
-  arguments.count("--samples", settings.samples, 1, UINT32_MAX, "reference: paths per ray");
-  arguments.count("--seed", settings.seed, 0, UINT32_MAX, "reference: seed of the random numbers");
+                   "model; the ground is black with single and reflects light with reference");
+  arguments.count("--orders", settings.orders, 1, kMaxOrders, "orders of scattering of the reference");
+  arguments.count("--samples", settings.samples, 1, UINT32_MAX, "paths per ray of the reference");
+  arguments.count("--seed", settings.seed, 0, UINT32_MAX, "seed of the random numbers of the reference");
   if (const std::optional<int> status = arguments.parse(args)) return *status;
   if (queries.empty()) {
     return fail(files::input_error("missing queries", "tyndall probe", "expected --queries FILE"));

@@ -199,7 +199,7 @@ int run_sky(Args args) {
   arguments.text("--at", sky.place, "LAT,LON", "place in degrees, north and east positive; requires --time");
   arguments.text("--time", sky.time, "ISO8601", "time at the place, as in 2003-10-17T12:30:30-07:00; 1900 to 2100");
   arguments.number("--altitude", sky.altitude_m, kLowestAltitude_m, 1.0e9,
-                   "altitude of the eye above sea level in m, from the sea floor to space");
+                   "altitude of the eye above sea level in m, negative below it");
   arguments.choice("--disc", sky.disc, {"true", "false"}, "draw the sun's disc");
   arguments.choice("--model", sky.model, model_names, "model of the sky");
   if (const std::optional<int> status = arguments.parse(args)) return *status;

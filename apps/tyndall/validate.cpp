@@ -136,15 +136,15 @@ struct ProbeRow {
 };
 constexpr ProbeRow kProbeRows[] = {
     {"single", nullptr, scene::ModelId::single, 1, [](scene::SceneParams&) {}},
-    {"single, against all orders", "the same; its error is the multiple scattering that it leaves out",
+    {"single, against all orders", "single; its error is the multiple scattering that it leaves out",
      scene::ModelId::single, 0, [](scene::SceneParams&) {}},
     {"homogeneous", nullptr, scene::ModelId::homogeneous, 1,
      [](scene::SceneParams& scene) { scene.homogeneous.falloff = false; }},
-    {"homogeneous, falling off", "the same with homogeneous.falloff", scene::ModelId::homogeneous, 1,
+    {"homogeneous, falling off", "homogeneous, with homogeneous.falloff", scene::ModelId::homogeneous, 1,
      [](scene::SceneParams& scene) { scene.homogeneous.falloff = true; }},
     {"homogeneous medium", nullptr, scene::ModelId::homogeneous_medium, 1, [](scene::SceneParams&) {}},
     {"oneil", nullptr, scene::ModelId::oneil, 1, [](scene::SceneParams&) {}},
-    {"oneil, points by column", "the same with oneil.spacing = column", scene::ModelId::oneil, 1,
+    {"oneil, points by column", "oneil, with oneil.spacing = column", scene::ModelId::oneil, 1,
      [](scene::SceneParams& scene) { scene.oneil.spacing = scene::OneilSpacing::column; }},
     {"oneil-table", nullptr, scene::ModelId::oneil_table, 1, [](scene::SceneParams&) {}},
 };
@@ -155,7 +155,7 @@ std::vector<validate::Model> all_models(const std::string& device, const scene::
   std::vector<validate::Model> out = {
       table_model(std::string(precomputed.name), std::string(precomputed.meaning), tables,
                   [](Params& p) { p.scattering.single = SingleScattering::table; }),
-      table_model("precomputed, order 1 integrated", "the same with scattering.single = integration", tables,
+      table_model("precomputed, order 1 integrated", "precomputed, with scattering.single = integration", tables,
                   [](Params& p) { p.scattering.single = SingleScattering::integration; })};
   for (const ProbeRow& row : kProbeRows) {
     ChosenModel model = {row.id, device, scene};

@@ -37,13 +37,13 @@ inline constexpr Verb kVerbs[] = {
     {"render", run_render, "render one frame or a sequence to PNG or EXR"},
     {"view", run_view, "fly over the scene in a window with live controls for every parameter"},
     {"probe", run_probe, "compute radiance and transmittance of given rays with any of the models"},
-    {"tables", run_tables, "rebuild the scattering tables (and their cached copy), report the times, export them"},
+    {"tables", run_tables, "build the scattering tables, cache them, report the time of each stage, export them"},
     {"sky", run_sky, "render the sky as an environment map, with the sun by angles or by place and time"},
-    {"validate", run_validate, "compare every model with the reference in a report with tables and plots"},
-    {"bench", run_bench, "measure GPU milliseconds per pass"},
-    {"compare", run_compare, "measure the difference of two images"},
+    {"validate", run_validate, "compare every model with the path tracer, in a report with tables and plots"},
+    {"bench", run_bench, "measure device milliseconds per pass"},
+    {"compare", run_compare, "measure the difference between two images"},
     {"report", run_report, "measure whether the program is right and fast on a device, in at most 8 minutes"},
-    {"devices", run_devices, "list the Vulkan devices and the one that would be used"},
+    {"devices", run_devices, "list the Vulkan devices and show which one would be used"},
     {"params", run_params, "list every parameter: name, type, default, range, unit, meaning"},
 };
 

@@ -18,13 +18,13 @@ int run_view(Args args) {
   arguments.text("--state", desc.state_file, "FILE",
                  "state file that F5 saves and F9 loads [~/.local/state/tyndall/view.toml]");
   arguments.text("--screenshots", desc.screenshots, "FOLDER", "folder for the pictures of F12 [the working directory]");
-  arguments.text("--log", desc.log, "FILE", "write a log of events, one per line");
+  arguments.text("--log", desc.log, "FILE", "write events to this file, one per line");
   arguments.text("--script", desc.script, "WHAT",
                  "for tests: walk, soak=SECONDS, soak-frames=COUNT, lose-surface, lose-device or one-device");
   bool no_first_steps = false;
-  arguments.flag("--no-first-steps", no_first_steps, "do not show the help of the first run");
+  arguments.flag("--no-first-steps", no_first_steps, "do not show the help text of the first run");
   arguments.flag("--validation", desc.validation,
-                 "enable the Vulkan validation layer; exit with 1 if it reports anything");
+                 "enable the Vulkan validation layer; exit with status 1 if it reports anything");
   if (const std::optional<int> status = arguments.parse(args)) return *status;
   if (Result<void> r = resolve(options); !r) return fail(r.error());
   desc.settings = options.settings;

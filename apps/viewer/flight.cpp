@@ -61,7 +61,7 @@ void Flight::advance(double seconds, const SceneFacts& facts, config::Settings& 
 
 void Flight::toggle_path(const config::Settings& settings) {
   if (settings.path.empty()) {
-    notices_->note("This scene has no camera path");
+    notices_->note("This scene has no camera flight");
     return;
   }
   path_playing_ = !path_playing_;

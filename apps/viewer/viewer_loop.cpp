@@ -173,7 +173,7 @@ Result<void> Viewer::take_results() {
   }
   if (result.replaced) {
     shader_message_.clear();
-    notices_.note("The shaders are rebuilt");
+    notices_.note("The shaders have been rebuilt");
     notices_.log("shaders rebuilt");
   }
   if (result.right_ended) gui_.state.picture.compare = false;
@@ -310,7 +310,7 @@ void Viewer::handle_requests(const GuiRequests& requests) {
 
 void Viewer::save_state() {
   if (Result<void> saved = settings_.save(); !saved) return notices_.report(saved.error());
-  notices_.note("The state is saved in " + settings_.state_file);
+  notices_.note("The state has been saved in " + settings_.state_file);
   notices_.log("saved " + settings_.state_file);
 }
 
@@ -318,7 +318,7 @@ void Viewer::load_file(const std::string& path, bool over_defaults) {
   if (Result<void> loaded = settings_.load(path, over_defaults); !loaded) return notices_.report(loaded.error());
   seconds_ = 0.0;
   flight_.reset_path();
-  if (!settings_.left.path.empty()) notices_.note("This scene has a camera path: P plays it");
+  if (!settings_.left.path.empty()) notices_.note("This scene has a camera flight. P plays it");
   notices_.note("Loaded " + path);
   notices_.log("loaded " + path);
 }
@@ -327,7 +327,7 @@ void Viewer::finish_screenshot() {
   const std::optional<Result<std::string>> stem = screenshot_.take_written();
   if (!stem) return;
   if (!*stem) return notices_.report(stem->error());
-  notices_.note("Written: " + stem->value() + (image::exr_supported() ? ".png and .exr" : ".png"));
+  notices_.note("Saved " + stem->value() + (image::exr_supported() ? ".png and .exr" : ".png"));
   notices_.log("screenshot " + stem->value());
 }
 
@@ -343,13 +343,13 @@ Result<void> Viewer::finish_reload() {
   if (!rebuilt.finished) return {};
   shader_message_ = rebuilt.message;
   if (!rebuilt.message.empty()) {
-    gui_.toast("The shaders are unchanged:\n" + rebuilt.message, true, now());
+    gui_.toast("The shaders have not been replaced:\n" + rebuilt.message, true, now());
     notices_.log("shaders failed " + files::one_line(rebuilt.message, 400));
     redraw_.request(3);
     return {};
   }
   if (rebuilt.changed == 0 && rebuilt.restored == 0) {
-    notices_.note("The shaders match their sources");
+    notices_.note("The sources of the shaders have not changed");
     notices_.log("shaders same");
     return {};
   }

@@ -54,15 +54,17 @@ std::string json_value(const Row& row, const Settings& settings) {
 
 std::string to_markdown() {
   const Settings defaults;
-  std::string out =
-      "# Parameters\n\n"
-      "Every parameter, by the name that scene files, `--set` and image metadata use.\n"
-      "Made by `tyndall params --format markdown`; edit `include/tyndall/params.def` or\n"
-      "`src/scene/description/scene_params.def` instead. \"Change costs\" says what a change requires: only other "
-      "constants\nof the next `frame`, other `pipeline`s, other memory (`resources`), or new precomputed `tables`.\n";
+  std::string out = "# Parameters\n\n"
+                    "This page lists all parameters by the names that scene files, `--set` and image metadata use.\n"
+                    "It is made by `tyndall params --format markdown` from `include/tyndall/params.def` and\n"
+                    "`src/scene/description/scene_params.def`. The column \"requires\" lists what the effect prepares "
+                    "when a parameter "
+                    "changes:\nonly the constants of the next frame (`frame`), other pipelines (`pipeline`), other "
+                    "buffers (`resources`) "
+                    "or new\nscattering tables (`tables`).\n";
   for (const Group& group : groups()) {
     out.append("\n## ").append(group.title).append("\n\n");
-    out.append("| name | type | default | range | unit | change costs | meaning |\n|---|---|---|---|---|---|---|\n");
+    out.append("| name | type | default | range | unit | requires | meaning |\n|---|---|---|---|---|---|---|\n");
     for (const Row& row : rows()) {
       if (row.info.group != group.name) continue;
       const std::string_view unit = row.info.unit == "1" ? "" : row.info.unit;

@@ -19,17 +19,17 @@ TEST(Window, ComparesTwoModels) {
   Desk desk("models");
   ASSERT_TRUE(desk.open(joined(kSmallTables, {"--size", "800x600", "--no-first-steps"}))) << desk.errors();
   std::size_t from = desk.lines();
-  ASSERT_TRUE(choose(desk, "Homogeneous medium, shafts (Yusov 2012)"));
+  ASSERT_TRUE(choose(desk, "Homogeneous medium, light shafts (Yusov 2012)"));
   ASSERT_TRUE(desk.wait_for({"set scattering.medium=homogeneous"}, from));
   ASSERT_TRUE(desk.wait_for({"frame left"}, from));
   from = desk.lines();
-  ASSERT_TRUE(choose(desk, "Atmosphere, all orders, shafts (Yusov 2013)"));
+  ASSERT_TRUE(choose(desk, "Atmosphere, all orders, light shafts (Yusov 2013)"));
   ASSERT_TRUE(desk.wait_for({"set scattering.medium=atmosphere"}, from));
 
   ASSERT_TRUE(compare_two(desk));
   ASSERT_TRUE(desk.click("side.right"));
   // A model is selected for the right side. The left side is unchanged.
-  for (const auto& [name, value] : {std::pair{"Air and haze (Hoffman, Preetham 2002)", "homogeneous"},
+  for (const auto& [name, value] : {std::pair{"Air and haze (Hoffman and Preetham 2002)", "homogeneous"},
                                     {"Scale function (O'Neil 2005)", "oneil"},
                                     {"Table (O'Neil 2004)", "oneil-table"}}) {
     from = desk.lines();

@@ -198,11 +198,13 @@ Result<Params> params_of(const Mode& mode) {
 
 void add_resources(std::string& out, const Lifetimes& frame, const Lifetimes& build) {
   out += "\n## Resources\n\n"
-         "The name is that of the binding in GLSL, of memory reports and of debuggers. The lifetime names the first "
-         "pass that\n"
-         "writes the contents and the last that reads them, in a frame with the default settings or, for resources "
-         "that only\n"
-         "other modes use, in those modes. Frame buffers are allocated once and used again by the next frame.\n\n";
+         "The name of a resource is that of its binding in GLSL, in memory reports and in debuggers. The lifetime "
+         "names the first\n"
+         "pass that writes the contents and the last pass that reads them, in a frame with the default settings. For "
+         "resources that\n"
+         "only other modes use, it names the passes of those modes. The buffers of a frame are allocated once, and the "
+         "next frame\n"
+         "uses them again.\n\n";
   add_row(out, {"resource", "format", "resolution", "lifetime", "MiB"});
   out += "|---|---|---|---|---|\n";
   EffectDesc desc;
@@ -224,17 +226,17 @@ void add_resources(std::string& out, const Lifetimes& frame, const Lifetimes& bu
 Result<std::string> page(const std::string& folder) {
   std::string out =
       "# Passes\n\n"
-      "Made by `make passes` from the lists that the effect records (`frame_steps()`, `table_steps()` and\n"
+      "`make passes` makes this page from the lists that the effect records (`frame_steps()`, `table_steps()` and\n"
       "`resources.def` in `src/effect`). The frame is that of `scenes/demo.toml` at 1280 × 720 with four cascades, of "
       "which\n"
-      "three are marched. \"Runs\" is how often a pass is dispatched with other push constants. \"Work\" is the "
+      "three are marched. \"Runs\" is the number of dispatches, which differ in their push constants. \"Work\" is the "
       "number of\n"
-      "invocations, or the list whose items an indirect dispatch processes. \"Cost\" is the share of the effect's "
-      "time, or of\n"
-      "the build's, on the CPU device llvmpipe; passes with one name are measured together. Steps "
-      "without a\n"
-      "name only reset, clear or copy. [epipolar.md](../epipolar.md) and [tables.md](../tables.md) describe the "
-      "methods.\n";
+      "invocations, or the list whose items an indirect dispatch processes. \"Cost\" is the share of the time of the "
+      "effect, or\n"
+      "of the build, on the CPU device llvmpipe. Passes with the same name are measured together, and the share stands "
+      "at the\n"
+      "first of them. Steps without a name only reset, clear or copy. [epipolar.md](../epipolar.md) and\n"
+      "[tables.md](../tables.md) describe the methods.\n";
   Lifetimes frame, build;
   for (const Mode& mode : kModes) {
     TYNDALL_ASSIGN(const Params params, params_of(mode));

@@ -24,26 +24,26 @@ struct HelpLine {
 };
 constexpr HelpLine kHelp[] = {
     {"W A S D", "fly forward, left, back, right"},
-    {"E, Q", "fly up, down"},
-    {"Shift", "faster; speed grows with the height above the ground"},
+    {"E, Q", "fly up and down"},
+    {"Shift", "fly faster; the speed grows with the height above the ground"},
     {"Left drag", "look around"},
     {"Right drag", "turn the sun"},
-    {"Wheel", "field of view"},
-    {"P", "play or stop the camera path of the scene file"},
-    {"F1", "this help"},
+    {"Wheel", "change the field of view"},
+    {"P", "play or stop the camera flight of the scene file"},
+    {"F1", "show or hide this help"},
     {"F2", "hide or show the panels"},
     {"F5, F9", "save and restore the whole state"},
     {"F8", "rebuild the shaders from their sources"},
-    {"F11", "full screen"},
-    {"F12", "screenshot, PNG and EXR"},
+    {"F11", "switch to full screen and back"},
+    {"F12", "save a screenshot as PNG and EXR"},
     {"Esc", "quit"},
 };
 
 constexpr HelpLine kFirstSteps[] = {
-    {"W A S D, and E Q for up and down; Shift is faster. Drag with the left button to look.", "Move"},
+    {"W A S D, and E and Q for up and down. Shift is faster. Drag with the left button to look around.", "Move"},
     {"Drag with the right button.", "Turn the sun"},
     {"Move the slider \"Aerosol density\" at the top of the controls.", "More haze"},
-    {"F1 lists them.", "All keys"},
+    {"F1 shows a list.", "All keys"},
 };
 
 void help_table() {
@@ -144,7 +144,7 @@ void Gui::file_menu(const GuiFacts& facts, GuiRequests& requests) {
   requests.screenshot = item("Screenshot", "F12") || requests.screenshot;
   if (facts.flight.has_path) {
     requests.play =
-        item(facts.flight.path_playing ? "Stop the camera path" : "Play the camera path", "P") || requests.play;
+        item(facts.flight.path_playing ? "Stop the camera flight" : "Play the camera flight", "P") || requests.play;
   }
   requests.reload_shaders = item("Rebuild the shaders", "F8") || requests.reload_shaders;
   ImGui::Separator();
@@ -160,8 +160,10 @@ void Gui::scene_menus(GuiRequests& requests) {
     if (files.empty()) ImGui::TextDisabled("%s", none);
     ImGui::EndMenu();
   };
-  if (begin_menu("Scenes")) list(scenes_, "no scenes found; set $TYNDALL_DATA to their folder", requests.scene);
-  if (begin_menu("Presets")) list(presets_, "no presets found; set $TYNDALL_DATA to their folder", requests.preset);
+  if (begin_menu("Scenes"))
+    list(scenes_, "no scenes found; set $TYNDALL_DATA to the folder that contains scenes", requests.scene);
+  if (begin_menu("Presets"))
+    list(presets_, "no presets found; set $TYNDALL_DATA to the folder that contains scenes", requests.preset);
 }
 
 void Gui::model_menu(config::Settings& settings) {
@@ -216,7 +218,7 @@ void Gui::status(const GuiFacts& facts) {
                          ImVec2(180.0F, 6.0F), "");
     }
     const FlightFacts& flight = facts.flight;
-    if (flight.path_playing) ImGui::Text("Camera path: %.1f s of %.1f s", flight.path_s, flight.path_end_s);
+    if (flight.path_playing) ImGui::Text("Camera flight: %.1f s of %.1f s", flight.path_s, flight.path_end_s);
     const bool far = flight.altitude_m >= 10000.0;
     const double unit = far ? 1000.0 : 1.0;
     ImGui::Text(far ? "Altitude %.1f km, speed %.1f km/s" : "Altitude %.0f m, speed %.0f m/s", flight.altitude_m / unit,
@@ -233,8 +235,9 @@ void Gui::help(const GuiFacts& facts) {
           ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
     help_table();
     ImGui::Separator();
-    ImGui::TextUnformatted("Hold the pointer over a control to read what it does. Ctrl and click to type a value.");
-    ImGui::Text("The state is saved in %s", facts.state_file.c_str());
+    ImGui::TextUnformatted(
+        "Hold the pointer over a control to see its description. Ctrl and click lets you type a value.");
+    ImGui::Text("F5 saves the state in %s", facts.state_file.c_str());
   }
   ImGui::End();
 }
@@ -256,7 +259,7 @@ void Gui::first_run(const GuiFacts& facts) {
     }
     ImGui::PopTextWrapPos();
     ImGui::Spacing();
-    if (ImGui::Button("Let me fly")) state.first_run = false;
+    if (ImGui::Button("Start")) state.first_run = false;
     widgets.place("first_run.close");
   }
   ImGui::End();

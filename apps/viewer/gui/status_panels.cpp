@@ -45,11 +45,11 @@ void histogram(const SceneFacts& scene) {
   ImGui::TextDisabled("2^%.0f", last);
   ImGui::Text("Exposure %.4g (%+.2f stops)", static_cast<double>(scene.exposure.scale),
               std::log2(std::max(static_cast<double>(scene.exposure.scale), 1.0e-12)));
-  ImGui::TextColored(ImVec4(0.47F, 0.78F, 1.0F, 1.0F), "Picture %.4g", static_cast<double>(m.measured));
+  ImGui::TextColored(ImVec4(0.47F, 0.78F, 1.0F, 1.0F), "Luminance %.4g", static_cast<double>(m.measured));
   ImGui::SameLine();
-  ImGui::TextColored(ImVec4(1.0F, 0.78F, 0.35F, 1.0F), "Eye %.4g", static_cast<double>(m.luminance));
+  ImGui::TextColored(ImVec4(1.0F, 0.78F, 0.35F, 1.0F), "adapted %.4g", static_cast<double>(m.luminance));
   ImGui::SameLine();
-  ImGui::TextDisabled("darker %.1f %%", 100.0 * static_cast<double>(m.black));
+  ImGui::TextDisabled("below 2^%.0f: %.1f %%", first, 100.0 * static_cast<double>(m.black));
 }
 
 void plot(const char* label, const std::array<float, FrameTimes::kCount>& values, std::size_t next) {
@@ -70,7 +70,7 @@ void edit_detail(GuiState& state, Widgets& widgets) {
   widgets.place("resolution_scale");
   if (ImGui::IsItemHovered()) {
     ImGui::SetTooltip(
-        "Pixels of the picture per pixel of the window along a side.\nDefault: 1, or 0.5 on devices without a GPU.");
+        "Width of the picture divided by the width of the window.\nDefault: 1, or 0.5 on devices without a GPU.");
   }
   const char* details[] = {"full", "half", "quarter"};
   int detail = state.coarseness == 4 ? 2 : state.coarseness == 2 ? 1 : 0;
@@ -105,7 +105,7 @@ void show_times(const FrameTimes& times) {
     row(pass.in_effect ? "  " : "", pass.name.c_str(), pass.ms);
     if (pass.in_effect) effect += pass.ms;
   }
-  row("", "light scattering in all", effect);
+  row("", "effect, total", effect);
   ImGui::EndTable();
 }
 
@@ -142,7 +142,7 @@ void draw_performance(GuiState& state, Widgets& widgets, const GuiFacts& facts) 
     if (memory_open && facts.scene != nullptr) show_memory(facts.scene->memory);
     if (facts.scene != nullptr && !facts.scene->pipelines.complete()) {
       const Progress& pipelines = facts.scene->pipelines;
-      ImGui::TextDisabled("Pipelines created ahead: %u of %u", pipelines.done, pipelines.total);
+      ImGui::TextDisabled("Pipelines created: %u of %u", pipelines.done, pipelines.total);
     }
     if (!facts.shader_message.empty()) {
       ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0F, 0.45F, 0.35F, 1.0F));
@@ -187,13 +187,13 @@ void draw_views(GuiState& state, Widgets& widgets, const GuiFacts& facts, GuiReq
     if (ImGui::Checkbox("Compare two settings", &p.compare) && p.compare) requests.copy_to_right = true;
     widgets.place("compare");
     if (p.compare) {
-      if (ImGui::Button("Right = left")) requests.copy_to_right = true;
+      if (ImGui::Button("Copy left to right")) requests.copy_to_right = true;
       widgets.place("compare.copy");
       ImGui::SameLine();
       ImGui::Checkbox("Difference", &p.difference);
       widgets.place("compare.difference");
       ImGui::TextWrapped(
-          "The controls change the side that is selected there. Both sides share the camera and the sun.");
+          "The controls change the side that is selected above them. Both sides share the camera and the sun.");
     }
   }
   ImGui::End();

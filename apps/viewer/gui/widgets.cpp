@@ -145,7 +145,7 @@ std::string label_of(const Row& row, bool with_group) {
 std::string tooltip_of(const Row& row) {
   static const Settings kDefaults;
   std::string text = files::concat({row.info.doc, "\n\n", row.key(), ": ", config::allowed_text(row)});
-  text += "\nDefault " + config::value_text(row, kDefaults) + ". Right click resets.";
+  text += "\nDefault: " + config::value_text(row, kDefaults) + ". A right click resets the value.";
   if (row.info.affects == Affects::Tables) text += "\nA change rebuilds the scattering tables, which takes a while.";
   return text;
 }
@@ -263,8 +263,8 @@ bool Widgets::edit_color(std::string_view key, Settings& settings, float scale) 
   place(std::string(key) + "_color");
   dragging_ = dragging_ || ImGui::IsItemActive();
   if (ImGui::IsItemHovered()) {
-    show_tooltip(
-        files::concat({"As a colour: full brightness is ", files::number_text(scale), " 1/m. ", row->info.doc}));
+    show_tooltip(files::concat(
+        {"The coefficient as a colour. Full brightness is ", files::number_text(scale), " 1/m. ", row->info.doc}));
   }
   if (!changed) return false;
   for (int i = 0; i < 3; ++i) {

@@ -10,16 +10,16 @@ using Drawn = ScatteringModel;
 
 constexpr ModelInfo kModels[] = {
     {ModelId::precomputed, "precomputed", "all orders of scattering, from the renderer's tables", 0, false,
-     DrawnBy{Drawn::atmosphere, MediumKind::atmosphere}, "Atmosphere, all orders, shafts (Yusov 2013)"},
+     DrawnBy{Drawn::atmosphere, MediumKind::atmosphere}, "Atmosphere, all orders, light shafts (Yusov 2013)"},
     {ModelId::single, "single", "single scattering, integrated along every ray", 1, false, {}, nullptr},
     {ModelId::homogeneous, "homogeneous",
      "Hoffman and Preetham 2002: single scattering in closed form; the same density at every altitude, no ozone, and "
      "the sun sets at the horizontal",
-     1, false, DrawnBy{Drawn::homogeneous}, "Air and haze (Hoffman, Preetham 2002)"},
+     1, false, DrawnBy{Drawn::homogeneous}, "Air and haze (Hoffman and Preetham 2002)"},
     {ModelId::homogeneous_medium, "homogeneous-medium",
      "Yusov 2012: scattering.medium = homogeneous without shadows; constant density, sunlight that is not attenuated, "
      "and no sunset",
-     1, false, DrawnBy{Drawn::atmosphere, MediumKind::homogeneous}, "Homogeneous medium, shafts (Yusov 2012)"},
+     1, false, DrawnBy{Drawn::atmosphere, MediumKind::homogeneous}, "Homogeneous medium, light shafts (Yusov 2012)"},
     {ModelId::oneil, "oneil",
      "O'Neil 2005: single scattering from a few sample points and the scale function, without ozone", 1, false,
      DrawnBy{Drawn::oneil}, "Scale function (O'Neil 2005)"},

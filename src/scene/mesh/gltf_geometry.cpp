@@ -136,9 +136,9 @@ void GltfReader::read_shape(const Shape& shape, const std::vector<glm::dmat4>& p
 
 void GltfReader::read_primitive(const GltfPrimitive& primitive, const std::string& where, const Shape& shape,
                                 const std::vector<glm::dmat4>& joints) {
-  if (primitive.mode < 4) return note("lines and points of the meshes are left out");
+  if (primitive.mode < 4) return note("lines and points in meshes are not drawn");
   if (!primitive.attributes.contains("POSITION"))
-    return note_each("position", where + " has no POSITION and is left out");
+    return note_each("position", where + " has no POSITION and is not drawn");
   std::optional<DracoMesh> draco;
   if (primitive.draco) draco = decode_draco(document_, primitive, data_.view(primitive.draco->view), where);
   const DracoMesh* const decoded = draco ? &*draco : nullptr;

@@ -70,7 +70,7 @@ glm::dmat4 GltfReader::scene_from_node(int index) const {
 
 std::vector<glm::dmat4> GltfReader::joint_matrices(std::size_t skin) {
   const GltfSkin& in = document_.skins[skin];
-  note("skins are drawn in the pose of the file's nodes; they are not animated");
+  note("skins are drawn in the pose that the nodes have in the file, without animation");
   GltfValues inverse;
   if (in.inverse_bind >= 0)
     inverse = data_.values(static_cast<std::size_t>(in.inverse_bind), at("skins", skin) + ".inverseBindMatrices");
