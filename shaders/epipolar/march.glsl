@@ -28,7 +28,7 @@ uint steps_done = 0u;
 uint nodes_visited = 0u;
 uint reads_done = 0u;
 
-// The sum of what cascades contribute to the in-scattering of a ray, in any order.
+// The contributions of cascades to the in-scattering of a ray, which can be added in any order.
 struct March {
   LitSections lit;         // single = table, multiple = occluded
   vec3 light;              // single = integration; in a homogeneous medium before homogeneous_phase()
@@ -37,7 +37,7 @@ struct March {
 
 // The state of a ray along a slice line. Distances are in cells from the camera.
 struct Walk {
-  vec4 line;  // SliceLine
+  vec4 line;  // SliceLine::line
   float depth;
   int first;
   int extent;
@@ -46,7 +46,7 @@ struct Walk {
   uint tree_base;  // index in `tree` of the blocks of the slice line
   bool full;       // nodes have two words
   float slope;     // change of depth per cell
-  float number;    // slope in the numbers of the tree
+  float number;    // ray_number() of the slope
   float reads_per_cell;
   float metres;  // length of the ray per cell
   float cells_per_m;
@@ -64,7 +64,7 @@ struct Walk {
   vec3 light;
   vec3 source;
   float since;
-  float lit_fraction;  // of the last section
+  float lit_fraction;  // lit fraction of the last section
 };
 
 vec2 load_node(bool full, uint at) {

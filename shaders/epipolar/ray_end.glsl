@@ -17,8 +17,8 @@ float sky_depth_m(vec3 direction) {
   return distance_to_sphere(h, mu, frame.ground_m, radius) * dot(direction, frame.camera_forward);
 }
 
-// Returns the length [m] inside the homogeneous medium of a ray to such a depth. From kSkyDepth on the ray ends at the
-// boundary of the medium.
+// Returns the length [m] inside the homogeneous medium of a ray to a view-space depth. A ray to kSkyDepth or beyond
+// ends at the boundary of the medium.
 float length_in_homogeneous(vec3 direction, float depth_m) {
   float start;
   float end =

@@ -1,4 +1,4 @@
-// The sky next to a skyline at low slice counts, between a slice in the sky and one that is behind the ground there.
+// Interpolates the sky next to a skyline at low slice counts, where one of the two slices may be behind the ground.
 #ifndef TYNDALL_SKYLINE_GLSL
 #define TYNDALL_SKYLINE_GLSL
 

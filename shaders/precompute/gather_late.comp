@@ -24,7 +24,7 @@ layout(std430, binding = 5) readonly buffer shape_block {
 
 layout(push_constant) uniform Push {
   uint first;  // altitude
-  uint order;  // of the light that the pass scatter_late makes of this
+  uint order;  // the order that scatter_late will compute from the result
 }
 push;
 

@@ -26,7 +26,7 @@ layout(binding = 8, rgba16f) uniform writeonly image3D source_function;
 
 layout(push_constant) uniform Push {
   uint first;  // altitude
-  uint order;  // of the source function that is made here
+  uint order;  // order of the source function that this pass writes
 }
 push;
 

@@ -24,7 +24,7 @@ struct Point {
 
 vec3 texel_centre(vec3 c, vec3 size) { return (c * (size - 1.0) + 0.5) / size; }
 
-// `above` selects the side of the horizon.
+// Returns the texture coordinates of a point. `above` selects the side of the horizon.
 vec4 table_coordinates(Medium m, Point p, bool above) {
   float h = clamp(p.altitude, kMargin, m.atmosphere_height_m - kMargin);
   float u = sqrt((h - kMargin) / (m.atmosphere_height_m - 2.0 * kMargin));

@@ -33,8 +33,8 @@ float exact_angle(float sine, float cosine) {
 // Returns the vector rotated by a quarter turn from east to south.
 vec2 turned(vec2 v) { return vec2(-v.y, v.x); }
 
-// The azimuth of a point around a projection's centre, relative to a reference point at distance `along` - x on the
-// axis, from the radial and tangential offsets between the two: 1 - cos and sin of that azimuth.
+// The position of a point in polar coordinates around a projection's centre. The azimuth is counted from the direction
+// of the local frame's origin and stored as versine (1 - cos) and sine, which are precise for small angles.
 struct Azimuth {
   float distance_from_centre;
   float versine;

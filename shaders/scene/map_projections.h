@@ -9,7 +9,7 @@ struct ProjectionLink {
   vec2 radial;        // unit vector from the projection's centre to it, on the map (x east, z south)
   vec2 local_radial;  // the same direction in x and z of the local frame
   float radius_m;     // its distance from the map projection's centre on the map
-  float sine;         // of its arc from the projection's centre
+  float sine;         // sine of its arc from the projection's centre
   float cosine;
   float unused;
 };

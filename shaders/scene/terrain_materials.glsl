@@ -107,8 +107,8 @@ TerrainDetail terrain_detail(ivec2 units, vec2 gradient, float footprint_m, uint
   return d;
 }
 
-// Returns how dry the region is, from 0 to 1. Wet and dry regions measure 939 and 130 km; that of the origin is wet.
-// `hollow` is positive in hollows.
+// Returns how dry the region is, from 0 to 1. It varies over distances of 939 and 130 km, and the region around the
+// origin is wet. `hollow` is positive in hollows.
 float terrain_dryness(ivec2 units, float altitude_m, float large, float hollow, uint salt) {
   vec2 none = vec2(0.0, 0.0);
   vec2 away = vec2(units) * (1.0 / (kTerrainUnitsPerM * 160000.0));

@@ -21,7 +21,7 @@ std::invoke_result_t<Body, State&> call(const std::unique_ptr<State>& state, con
   });
 }
 
-// Does the same for functions that record into `cmd`.
+// Calls body(state) like call(), for functions that record into `cmd`. Returns an error if `cmd` is null.
 template <typename State, typename Body>
 std::invoke_result_t<Body, State&> record_with(const std::unique_ptr<State>& state, const char* where,
                                                VkCommandBuffer cmd, Body&& body) noexcept {

@@ -33,8 +33,8 @@ class FrameBuffers {
   [[nodiscard]] const gpu::Buffer& operator[](Resource resource) const {
     return buffers_[index_of(resource) - kFirstFrameBuffer];
   }
-  [[nodiscard]] VkDeviceSize bytes() const;          // of the current buffers
-  [[nodiscard]] VkDeviceSize retired_bytes() const;  // of old ones that frames in flight may use
+  [[nodiscard]] VkDeviceSize bytes() const;          // memory of the current buffers
+  [[nodiscard]] VkDeviceSize retired_bytes() const;  // memory of old buffers that frames in flight may still use
 
  private:
   struct Retired {

@@ -35,7 +35,7 @@ void set_camera(shared::FrameConstants& out, const FrameInputs& inputs, const Pa
   const double distance = std::sqrt(x * x + z * z + (radius + y) * (radius + y));
   out.camera_altitude_m = static_cast<float>(camera_altitude_m(inputs, params));
   const double altitude = out.camera_altitude_m;
-  // ground_below() of shaders/lib/geometry.glsl.
+  // The same as ground_below() of shaders/lib/geometry.glsl.
   const double below = altitude < 0.0 ? std::min(altitude, std::max(2.0 * altitude, -0.5 * radius)) : 0.0;
   const double ground = std::min(below, std::max<double>(inputs.lowest_ground_m, -0.5 * radius));
   out.ground_m = static_cast<float>(ground);
@@ -166,8 +166,8 @@ bool tables_lack_single(double altitude_m, double cos_sun_zenith, double radius_
   const double lowest_m = std::max(-500.0, -0.125 * radius_m);  // lowest_table_altitude() of lib/table_mapping.glsl
   if (altitude_m >= 0.0) return false;
   if (altitude_m < lowest_m) return true;
-  // The sun sets at different points of a ray while it passes through the dip of the ray's horizon. The tables blur
-  // that over the distance between two of their suns.
+  // While the sun is near the horizontal, by no more than the dip of the horizon, it has set at some points of a ray
+  // and not at others. The tables blur this edge over the distance between two of their sun angles.
   constexpr double kBetweenSuns_rad = 0.009;
   const double dip = std::sqrt(-2.0 * altitude_m / radius_m);
   return std::abs(cos_sun_zenith) < dip + kBetweenSuns_rad;

@@ -221,11 +221,11 @@ void remark_on_projection(Speaker& s, const FrameInputs& inputs, const FrameStat
            " m reads as sky; expected D32_SFLOAT or D24, or a far plane near that distance");
 }
 
-// The extent of a cascade's part of the view in its map.
+// The bounds, in the map of a cascade, of the part of the view that belongs to the cascade.
 struct Footprint {
   double low[2] = {1e300, 1e300};
   double high[2] = {-1e300, -1e300};
-  double size = 0.0;        // of the larger side
+  double size = 0.0;        // length of the larger side
   double reached_m = -1.0;  // depth up to which the middle of the view is in the map; -1: not at all
 };
 
