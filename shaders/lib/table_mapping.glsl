@@ -172,7 +172,7 @@ float v_from_half(bool below, float x, float n) {
   return below ? v : 0.5 + v;
 }
 
-// h must be an altitude from table_altitude().
+// Returns the view coordinate of a ray. h must be an altitude from table_altitude().
 float v_from_view(IN(TableShape) t, IN(Medium) m, float h, float mu, bool below) {
   float n = float(t.views);
   if (t.parameterization == kLinearMapping) {
