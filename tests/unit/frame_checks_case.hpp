@@ -145,7 +145,7 @@ inline std::vector<std::string> remarks_of(Remarks& remarks, const Case& s) {
   };
   device.message_user = &texts;
   const shared::FrameConstants frame = frame_constants(inputs, s.desc, s.params);
-  remarks.on_frame(inputs, {s.desc, s.params, frame, s.tables_ready, {}}, device);
+  remarks.on_frame(inputs, {s.desc, s.params, frame, s.tables_ready}, device);
   return texts;
 }
 
