@@ -53,19 +53,12 @@ struct Frame {
     steps.add(step);
   }
 
-  // Returns whether marching reads the shadow maps.
-  [[nodiscard]] bool marches_shadows() const {
-    const ScatteringParams& s = params.scattering;
-    return s.single != SingleScattering::none || (!is_homogeneous(s) && s.multiple == MultipleScattering::occluded);
-  }
   // Returns the number of marched cascades.
   [[nodiscard]] std::uint32_t marched_cascades() const {
-    const std::uint32_t cascades = params.scattering.light_shafts ? shape.cascades : 0;
-    return cascades > shape.first_marched_cascade && marches_shadows() ? cascades - shape.first_marched_cascade : 0;
+    const bool any = shape.cascades > shape.first_marched_cascade && marches_shadows(params.scattering);
+    return any ? shape.cascades - shape.first_marched_cascade : 0;
   }
-  [[nodiscard]] bool uses_tree() const {
-    return params.epipolar.min_max_tree && params.scattering.light_shafts && marches_shadows();
-  }
+  [[nodiscard]] bool uses_tree() const { return params.epipolar.min_max_tree && marches_shadows(params.scattering); }
 };
 
 // Sets the amounts of work per invocation. On CPU devices, an invocation does much, because it shares loads and because

@@ -32,7 +32,10 @@ VkDeviceSize bytes_of(Resource resource, const EffectDesc& desc, const Params& p
     case Resource::interpolation_sources: return samples * 4;
     case Resource::march_list: return sizeof(shared::WorkList) + samples * 4;
     case Resource::slice_lines: return lines * sizeof(shared::SliceLine);
-    case Resource::tree_blocks: return sizeof(shared::WorkList) + lines * blocks_of_line * 4;
+    case Resource::tree_blocks:
+      // The first pass resets the list even if nothing is appended to it.
+      if (!marches_shadows(params.scattering)) return sizeof(shared::WorkList);
+      return sizeof(shared::WorkList) + lines * blocks_of_line * 4;
     case Resource::min_max_tree: {
       if (!params.epipolar.min_max_tree) return kUnusedBytes;
       const VkDeviceSize node = params.epipolar.min_max_format == MinMaxFormat::float32 ? 8 : 4;

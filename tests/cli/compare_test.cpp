@@ -123,8 +123,9 @@ TEST_F(CliCompare, TheDifferenceIsNotWrittenOverAnInput) {
 }
 
 TEST_F(CliCompare, HelpListsTheExitStatuses) {
-  const std::string help = run_tyndall({"compare", "--help"}).out;
-  EXPECT_NE(help.find("3 the sizes differ; 4 a file cannot be read"), std::string::npos) << help;
+  std::string help = run_tyndall({"compare", "--help"}).out;
+  std::replace(help.begin(), help.end(), '\n', ' ');  // lines may end anywhere
+  EXPECT_NE(help.find("3 if the sizes differ; 4 if a file cannot be read"), std::string::npos) << help;
 }
 
 }  // namespace

@@ -307,7 +307,12 @@ TEST_F(Epipolar, SceneDepthMayBeStandardAndShadowDepthReversed) {
   expect_alike(name, params, 44.0);
   const Picture swapped = draw(params, name);
   params.epipolar.min_max_tree = false;
-  EXPECT_LE(compare(draw(params, name), swapped, scene.extent).worst_relative_error, 1e-3);
+  // Without the tree, the lengths of lit sections are added in other groups. Rounding may then change the square root of
+  // a mean source function by one step of half precision, and so the radiance of a pixel by twice that. A wrong decision
+  // of the tree would change more, and so would a difference in many samples.
+  const Likeness without_tree = compare(draw(params, name), swapped, scene.extent);
+  EXPECT_LE(without_tree.worst_relative_error, 2.0 / 1024.0);
+  EXPECT_LE(without_tree.mean_relative_error, 1e-5);
   const Likeness likeness = compare(swapped, usual, scene.extent);
   RecordProperty("dB: the one and the other", hundredths(likeness.psnr_db));
   EXPECT_GE(likeness.psnr_db, 60.0);

@@ -51,7 +51,7 @@ TEST(Window, SavesTheStateWhenTheDisplayIsLost) {
     const std::string said = desk.errors();
     EXPECT_NE(said.find("tyndall: error: tyndall view: the window's surface was lost"), std::string::npos)
         << what << ": " << said;
-    EXPECT_NE(said.find("the state is saved, 'tyndall view "), std::string::npos) << what << ": " << said;
+    EXPECT_NE(said.find("the state is saved; 'tyndall view "), std::string::npos) << what << ": " << said;
     EXPECT_EQ(said.find("tyndall: error", 1), std::string::npos) << "said once: " << said;
     config::Settings state;
     ASSERT_TRUE(config::load(state, desk.folder() + "/state.toml").ok()) << what;

@@ -21,7 +21,7 @@ TEST(ViewerWidgets, EveryTooltipHasMeaningRangeUnitAndDefault) {
     if (number && !row.info.unit.empty() && row.info.unit != "1") {
       EXPECT_NE(allowed.find(" " + std::string(row.info.unit) + "\n"), std::string::npos) << allowed;
     }
-    EXPECT_NE(text.find("Default " + config::value_text(row, defaults)), std::string::npos) << text;
+    EXPECT_NE(text.find("Default: " + config::value_text(row, defaults)), std::string::npos) << text;
   }
 }
 
