@@ -7,11 +7,11 @@ Usage: tools/tidy.py BUILD [--update] [--jobs N] FOLDER...
 BUILD is a folder that Ninja has built, with compile_commands.json. FOLDERs are relative to the repository. The exit status
 is 1 if there is a warning.
 
-The ledger, tools/tidy/clean.txt, lists the files that were found clean, each with a hash of its own text, .clang-tidy,
-the warning options of the project and the major version of clang-tidy. The headers that a file includes are not part of
-its hash: a change to a header checks the header, not every file that includes it. A header is checked by way of one source
-that includes it; its own, if there is one. --update writes the ledger. A file that the ledger lists but that does not exist
-is an error unless --update is given.
+The ledger, tools/tidy/clean.txt, lists the files that were found clean, each with a hash of its own text (without
+comments on lines of their own), .clang-tidy, the warning options of the project and the major version of clang-tidy. The
+headers that a file includes are not part of its hash: a change to a header checks the header, not every file that
+includes it. A header is checked by way of one source that includes it; its own, if there is one. --update writes the
+ledger. A file that the ledger lists but that does not exist is an error unless --update is given.
 
 --all checks every source and leaves the ledger alone. --checks is added to the checks of .clang-tidy, as for clang-tidy.
 """
@@ -77,7 +77,9 @@ class Project:
         return path[len(f"{ROOT}/"):]
 
     def hash(self, name):
-        return hashlib.sha256(self.common.encode() + (ROOT / name).read_bytes()).hexdigest()[:16]
+        # Comments on lines of their own are ignored, unless they are instructions to clang-tidy.
+        text = re.sub(rb"(?m)^[ \t]*//(?!.*NOLINT).*\n", b"", (ROOT / name).read_bytes())
+        return hashlib.sha256(self.common.encode() + text).hexdigest()[:16]
 
     def all_files(self):
         return sorted(set().union(*self.files.values()))
