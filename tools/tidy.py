@@ -97,12 +97,14 @@ class Project:
         return chosen
 
     def write_commands(self):
-        """Writes the compile commands without precompiled headers, which only the compiler that made them can read, and
+        """Writes the compile commands without what clang cannot read, precompiled headers and an option of GCC, and
         returns the folder."""
         folder = os.path.join(self.build, "tidy")
         os.makedirs(folder, exist_ok=True)
         headers = re.compile(r" -Winvalid-pch| -include \S*cmake_pch\.hxx")
-        rows = [{**entry, "command": headers.sub("", entry["command"])} for entry in self.entries.values()]
+        constants = " -fsingle-precision-constant", " -Xclang -cl-single-precision-constant"
+        rows = [{**entry, "command": headers.sub("", entry["command"]).replace(*constants)}
+                for entry in self.entries.values()]
         with open(os.path.join(folder, "compile_commands.json"), "w", encoding="utf-8") as file:
             json.dump(rows, file)
         return folder

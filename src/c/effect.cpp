@@ -22,9 +22,9 @@ namespace {
 // Calls body(Effect&, where) in call(), for an effect that is not null.
 template <typename Handle, typename Body>
 TyndallStatus with(Handle* effect, const char* where, Body&& body) noexcept {
-  return call(where, [&]() -> Result<void> {
-    TYNDALL_TRY(check_pointer(where, "effect", effect));
-    return body(*effect->effect, where);
+  return call(where, [&](const char* function) -> Result<void> {
+    TYNDALL_TRY(check_pointer(function, "effect", effect));
+    return body(*effect->effect, function);
   });
 }
 
@@ -61,23 +61,23 @@ using namespace tyndall;
 
 TyndallStatus tyndall_device_info_defaults(TyndallDeviceInfo* info, size_t struct_size) {
   return c::call(__func__,
-                 [&, where = __func__] { return c::write_defaults(where, c::to_c(DeviceInfo{}), info, struct_size); });
+                 [&](const char* where) { return c::write_defaults(where, c::to_c(DeviceInfo{}), info, struct_size); });
 }
 
 TyndallStatus tyndall_effect_desc_defaults(TyndallEffectDesc* desc, size_t struct_size) {
   return c::call(__func__,
-                 [&, where = __func__] { return c::write_defaults(where, c::to_c(EffectDesc{}), desc, struct_size); });
+                 [&](const char* where) { return c::write_defaults(where, c::to_c(EffectDesc{}), desc, struct_size); });
 }
 
 TyndallStatus tyndall_frame_inputs_defaults(TyndallFrameInputs* inputs, size_t struct_size) {
-  return c::call(__func__, [&, where = __func__] {
+  return c::call(__func__, [&](const char* where) {
     return c::write_defaults(where, c::to_c(FrameInputs{}), inputs, struct_size);
   });
 }
 
 TyndallStatus tyndall_query_memory(const TyndallDeviceInfo* info, const TyndallEffectDesc* desc,
                                    const TyndallParams* params, TyndallMemoryUsage* memory) {
-  return c::call(__func__, [&, where = __func__]() -> Result<void> {
+  return c::call(__func__, [&](const char* where) -> Result<void> {
     TYNDALL_ASSIGN(const TyndallDeviceInfo callbacks, c::read(where, info, TyndallDeviceInfo{}));
     TYNDALL_ASSIGN(const EffectDesc cpp_desc, c::read_desc(where, desc));
     TYNDALL_ASSIGN(const MemoryUsage usage,
@@ -88,7 +88,7 @@ TyndallStatus tyndall_query_memory(const TyndallDeviceInfo* info, const TyndallE
 
 TyndallStatus tyndall_effect_create(const TyndallDeviceInfo* info, const TyndallEffectDesc* desc,
                                     const TyndallParams* params, TyndallEffect** effect) {
-  return c::call(__func__, [&, where = __func__]() -> Result<void> {
+  return c::call(__func__, [&](const char* where) -> Result<void> {
     TYNDALL_TRY(c::check_pointer(where, "effect", effect));
     auto out = std::make_unique<TyndallEffect>();
     TYNDALL_ASSIGN(out->callbacks, c::read(where, info, TyndallDeviceInfo{}));

@@ -13,10 +13,10 @@ namespace tyndall::c {
 // Stores the error as the last one of this thread. Returns its status.
 TyndallStatus store_error(const Error& error) noexcept;
 
-// Runs `body`, which returns a Result<void>. Stores its error, or that of an exception that it throws.
+// Runs body(where), which returns a Result<void>. Stores its error, or that of an exception that it throws.
 template <typename Body>
-TyndallStatus call(const char* where, Body&& body) noexcept {
-  const Result<void> result = guarded(where, std::forward<Body>(body));
+TyndallStatus call(const char* where, const Body& body) noexcept {
+  const Result<void> result = guarded(where, [&] { return body(where); });
   return result.ok() ? TyndallStatus_success : store_error(result.error());
 }
 

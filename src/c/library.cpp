@@ -66,7 +66,7 @@ const char* tyndall_status_name(TyndallStatus status) {
 }
 
 TyndallStatus tyndall_requirements(TyndallRequirements* requirements) {
-  return c::call(__func__, [&, where = __func__]() -> Result<void> {
+  return c::call(__func__, [&](const char* where) -> Result<void> {
     const auto& [api_version, device_extensions] = tyndall::requirements();
     TyndallRequirements out = {};
     out.api_version = api_version;

@@ -199,7 +199,7 @@ using namespace tyndall;
 uint32_t tyndall_param_count(void) { return static_cast<uint32_t>(param_table().size()); }
 
 TyndallStatus tyndall_param_info(uint32_t index, TyndallParamInfo* info) {
-  return c::call(__func__, [&, where = __func__]() -> Result<void> {
+  return c::call(__func__, [&](const char* where) -> Result<void> {
     if (index >= param_table().size()) {
       return c::invalid(where, "'index' is " + std::to_string(index) + "; expected less than " +
                                    std::to_string(param_table().size()) + ", which tyndall_param_count() returns");
@@ -220,7 +220,7 @@ TyndallStatus tyndall_param_info(uint32_t index, TyndallParamInfo* info) {
 }
 
 TyndallStatus tyndall_params_create(TyndallParams** params) {
-  return c::call(__func__, [&, where = __func__]() -> Result<void> {
+  return c::call(__func__, [&](const char* where) -> Result<void> {
     TYNDALL_TRY(c::check_pointer(where, "params", params));
     *params = std::make_unique<TyndallParams>().release();
     return {};
@@ -230,7 +230,7 @@ TyndallStatus tyndall_params_create(TyndallParams** params) {
 void tyndall_params_destroy(TyndallParams* params) { const std::unique_ptr<TyndallParams> owned(params); }
 
 TyndallStatus tyndall_params_copy(const TyndallParams* from, TyndallParams* to) {
-  return c::call(__func__, [&, where = __func__]() -> Result<void> {
+  return c::call(__func__, [&](const char* where) -> Result<void> {
     TYNDALL_TRY(c::check_pointer(where, "from", from));
     TYNDALL_TRY(c::check_pointer(where, "to", to));
     *to = *from;
@@ -239,33 +239,33 @@ TyndallStatus tyndall_params_copy(const TyndallParams* from, TyndallParams* to) 
 }
 
 TyndallStatus tyndall_params_set_number(TyndallParams* params, const char* name, double value) {
-  return c::call(__func__, [&, where = __func__] { return c::set_numbers(params, {where, name}, &value, 1); });
+  return c::call(__func__, [&](const char* where) { return c::set_numbers(params, {where, name}, &value, 1); });
 }
 
 TyndallStatus tyndall_params_set_numbers(TyndallParams* params, const char* name, const double* values,
                                          uint32_t count) {
-  return c::call(__func__, [&, where = __func__] { return c::set_numbers(params, {where, name}, values, count); });
+  return c::call(__func__, [&](const char* where) { return c::set_numbers(params, {where, name}, values, count); });
 }
 
 TyndallStatus tyndall_params_set_choice(TyndallParams* params, const char* name, const char* choice) {
-  return c::call(__func__, [&, where = __func__] { return c::set_choice(params, {where, name}, choice); });
+  return c::call(__func__, [&](const char* where) { return c::set_choice(params, {where, name}, choice); });
 }
 
 TyndallStatus tyndall_params_get_number(const TyndallParams* params, const char* name, double* value) {
-  return c::call(__func__, [&, where = __func__] { return c::get_numbers(params, {where, name}, value, 1); });
+  return c::call(__func__, [&](const char* where) { return c::get_numbers(params, {where, name}, value, 1); });
 }
 
 TyndallStatus tyndall_params_get_numbers(const TyndallParams* params, const char* name, double* values,
                                          uint32_t count) {
-  return c::call(__func__, [&, where = __func__] { return c::get_numbers(params, {where, name}, values, count); });
+  return c::call(__func__, [&](const char* where) { return c::get_numbers(params, {where, name}, values, count); });
 }
 
 TyndallStatus tyndall_params_get_choice(const TyndallParams* params, const char* name, const char** choice) {
-  return c::call(__func__, [&, where = __func__] { return c::get_choice(params, {where, name}, choice); });
+  return c::call(__func__, [&](const char* where) { return c::get_choice(params, {where, name}, choice); });
 }
 
 TyndallStatus tyndall_params_affected(const TyndallParams* before, const TyndallParams* after, uint32_t* mask) {
-  return c::call(__func__, [&, where = __func__]() -> Result<void> {
+  return c::call(__func__, [&](const char* where) -> Result<void> {
     TYNDALL_TRY(c::check_pointer(where, "before", before));
     TYNDALL_TRY(c::check_pointer(where, "after", after));
     TYNDALL_TRY(c::check_pointer(where, "mask", mask));

@@ -17,6 +17,7 @@ namespace tyndall::c {
 // struct_size would not show whether the program knows it.
 template <typename T>
 struct Published;
+// NOLINTBEGIN(bugprone-sizeof-expression): the members may be pointers, whose own size is meant.
 #define TYNDALL_PUBLISHED(type, last_of_first, last)                                                       \
   template <>                                                                                              \
   struct Published<type> {                                                                                 \
@@ -35,6 +36,7 @@ TYNDALL_PUBLISHED(TyndallCounters, pixels_corrected, pixels_corrected)
 TYNDALL_PUBLISHED(TyndallLightTables, sky_irradiance, sky_irradiance)
 TYNDALL_PUBLISHED(TyndallScatteringTables, high_orders, high_orders)
 #undef TYNDALL_PUBLISHED
+// NOLINTEND(bugprone-sizeof-expression)
 
 // Returns an error unless `size` is the size of a version of the structure that this library knows.
 template <typename T>

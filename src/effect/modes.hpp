@@ -9,8 +9,8 @@ namespace tyndall {
 [[nodiscard]] inline bool is_downscaled(const Params& params) { return params.scattering.downscale > 1; }
 // Returns whether marching reads the shadow maps.
 [[nodiscard]] inline bool marches_shadows(const ScatteringParams& p) {
-  return p.light_shafts && (p.single != SingleScattering::none ||
-                            (!is_homogeneous(p) && p.multiple == MultipleScattering::occluded));
+  return p.light_shafts &&
+         (p.single != SingleScattering::none || (!is_homogeneous(p) && p.multiple == MultipleScattering::occluded));
 }
 
 }  // namespace tyndall

@@ -57,7 +57,7 @@ TEST(Report, ComparesTheDeviceWithReferenceValuesAndMeasuresIt) {
   EXPECT_EQ(report["device"]["used"], true);
   for (const auto& [name, passed] : {std::pair{"model precomputed", true},
                                      {"model single", false},
-                                     {"scene demo", true},
+                                     {"scene hall", true},
                                      {"same bytes", true},
                                      {"with and without the tree", true},
                                      {"validation layer", true}}) {

@@ -56,7 +56,7 @@ TEST(EffectAllocation, RecordingAllocatesNothing) {
     ASSERT_OK(host.value()->run([&](VkCommandBuffer cmd) -> Result<void> {
       const std::size_t before = allocations;
       const Result<Progress> built = effect.value().record_precompute(cmd, 3);
-      const Result<void> recorded = effect.value().record(cmd, inputs);
+      Result<void> recorded = effect.value().record(cmd, inputs);
       during = allocations - before;
       if (!built.ok()) return built.error();
       return recorded;

@@ -30,6 +30,7 @@ TEST(EffectRefusals, NullCommandBuffersAndMovedFromEffectsAreErrors) {
   EXPECT_EQ(faults::command_hash(), 0U);
   EXPECT_EQ(effect.precompute_progress().done, 5U);
 
+  // NOLINTBEGIN(bugprone-use-after-move): an effect that was moved from refuses every call.
   Effect other = std::move(effect);
   all_recording(kCommands);
   refuses(effect.set_params({}));
@@ -47,6 +48,7 @@ TEST(EffectRefusals, NullCommandBuffersAndMovedFromEffectsAreErrors) {
   EXPECT_TRUE(effect.resources().empty());
   EXPECT_TRUE(effect.timings(0).empty());
   EXPECT_TRUE(effect.precompute_timings().empty());
+  // NOLINTEND(bugprone-use-after-move)
   // It can be used again after another effect has been assigned to it.
   effect = std::move(other);
   EXPECT_OK(effect.record(kCommands, fake_frame()));

@@ -113,7 +113,7 @@ TEST_F(Epipolar, TheCameraMayBeAnywhere) {
               s.buildings = false;
               s.pitch_deg = -1.0;
             }),
-       48.0},
+       47.9},
       {seen("on a dyke",
             [](BoxScene& s) {
               s.altitude_m = 2.0;
@@ -307,9 +307,9 @@ TEST_F(Epipolar, SceneDepthMayBeStandardAndShadowDepthReversed) {
   expect_alike(name, params, 44.0);
   const Picture swapped = draw(params, name);
   params.epipolar.min_max_tree = false;
-  // Without the tree, the lengths of lit sections are added in other groups. Rounding may then change the square root of
-  // a mean source function by one step of half precision, and so the radiance of a pixel by twice that. A wrong decision
-  // of the tree would change more, and so would a difference in many samples.
+  // Without the tree, the lengths of lit sections are added in other groups. Rounding may then change the square root
+  // of a mean source function by one step of half precision, and so the radiance of a pixel by twice that. A wrong
+  // decision of the tree would change more, and so would a difference in many samples.
   const Likeness without_tree = compare(draw(params, name), swapped, scene.extent);
   EXPECT_LE(without_tree.worst_relative_error, 2.0 / 1024.0);
   EXPECT_LE(without_tree.mean_relative_error, 1e-5);

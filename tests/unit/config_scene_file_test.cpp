@@ -55,7 +55,7 @@ class SceneFile : public testing::Test {
   ~SceneFile() override { std::filesystem::remove_all(directory_); }
 
   std::string write(const std::string& name, std::string_view contents) {
-    const std::string path = (directory_ / name).string();
+    std::string path = (directory_ / name).string();
     std::ofstream(path, std::ios::binary) << contents;
     return path;
   }

@@ -330,8 +330,10 @@ TEST(FrameSteps, BarriersAreOnlyWhereTheyAreNeeded) {
 
 // prepare_pipelines() creates the pipelines that frames need and no others; record() creates none.
 TEST(FrameSteps, AllPipelinesAreFound) {
-  for (const auto& [colors, target] :
+  for (const auto& chosen :
        {std::pair(false, Target::cpu), std::pair(true, Target::cpu), std::pair(true, Target::gpu)}) {
+    const bool colors = chosen.first;
+    const Target target = chosen.second;
     EffectDesc desc;
     desc.shadow_colors = colors;
     const std::vector<PipelineKey> list = all_frame_pipelines(desc, target);

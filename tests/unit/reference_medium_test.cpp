@@ -244,7 +244,7 @@ TEST(ReferenceMedium, SobolPointsAreStratified) {
     std::vector<int> cells(kCount);
     for (std::size_t i = 0; i < kCount; ++i) {
       const int a = static_cast<int>(x[0][i] * (1 << split)), b = static_cast<int>(x[1][i] * (kCount >> split));
-      ++cells[static_cast<std::size_t>(a * (kCount >> split) + b)];
+      ++cells[static_cast<std::size_t>(a) * (kCount >> split) + static_cast<std::size_t>(b)];
     }
     for (const int n : cells) EXPECT_EQ(n, 1) << "split " << split;
   }

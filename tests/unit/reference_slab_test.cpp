@@ -273,7 +273,7 @@ TEST(ReferenceSlab, WhiteFurnaceOfAWholePlanet) {
     for (int batch = 0; batch < kBatches; ++batch) {
       double sum = 0.0;
       for (int i = 0; i < kRays; ++i) {
-        const auto at = static_cast<std::size_t>(batch * kRays + i);
+        const auto at = static_cast<std::size_t>(batch) * kRays + static_cast<std::size_t>(i);
         const bool through = top * std::sin(queries[at].view_zenith_rad) > radius;
         sum += 4.0 * kPi * estimates[at].radiance[c] + (through ? estimates[at].transmittance[c] : 0.0);
       }

@@ -65,7 +65,8 @@ TEST(SceneHall, IsClosedAndSeenFromInside) {
     const MeshMaterial& material = material_of(hit);
     glass += material.transmits() ? 1 : 0;
     const auto p = [&](int k) {
-      return glm::dvec3(hall.vertices[hall.indices[static_cast<std::size_t>(hit + k)]].position);
+      return glm::dvec3(
+          hall.vertices[hall.indices[static_cast<std::size_t>(hit) + static_cast<std::size_t>(k)]].position);
     };
     const double facing = glm::dot(glm::cross(p(1) - p(0), p(2) - p(0)), direction);
     if (facing > 0.0 && !material.double_sided) {

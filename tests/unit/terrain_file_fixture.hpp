@@ -30,7 +30,7 @@ class ElevationFile : public ::testing::Test {
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
     EXPECT_FALSE(result.ok()) << path;
     if (result.ok()) return {};
-    const std::string message = result.error().message;
+    std::string message = result.error().message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
     EXPECT_NE(message.find(path.filename().string()), std::string::npos) << message;
     return message;

@@ -278,12 +278,13 @@ TEST_F(ElevationFile, ColourTilesAreDecoded) {
     return std::filesystem::path(to);
   };
   const auto height = [](int x, int y) { return -30.0 + 40.25 * x + 3.5 * y; };
-  const ElevationRaster terrarium = read(tile(
-      "terrarium.png", [&](int x, int y) { return static_cast<unsigned>((height(x, y) + 32768.0) * 256.0 + 0.5); }));
+  const ElevationRaster terrarium = read(tile("terrarium.png", [&](int x, int y) {
+    return static_cast<unsigned>(std::lround((height(x, y) + 32768.0) * 256.0));
+  }));
   EXPECT_NEAR(at(terrarium, 5, 60), height(5, 60), 0.01);
   EXPECT_TRUE(noted(terrarium, "Terrarium"));
-  const ElevationRaster terrain_rgb =
-      read(tile("rgb.png", [&](int x, int y) { return static_cast<unsigned>((height(x, y) + 10000.0) * 10.0 + 0.5); }));
+  const ElevationRaster terrain_rgb = read(tile(
+      "rgb.png", [&](int x, int y) { return static_cast<unsigned>(std::lround((height(x, y) + 10000.0) * 10.0)); }));
   EXPECT_NEAR(at(terrain_rgb, 5, 60), height(5, 60), 0.06);
   EXPECT_TRUE(noted(terrain_rgb, "Terrain-RGB"));
   EXPECT_NE(error(tile("photo.png", [](int x, int y) { return static_cast<unsigned>(x * 4 * 65536 + y * 1024 + 77); }))

@@ -74,7 +74,7 @@ class TestFolder {
       if (file.offset != 0.0) band.SetOffset(file.offset);
       if (file.has_no_data) band.SetNoDataValue(file.no_data);
     }
-    const std::filesystem::path to = path(file.name);
+    std::filesystem::path to = path(file.name);
     GDALDataset* copy =
         drivers.GetDriverByName(file.driver)->CreateCopy(to.string().c_str(), data, FALSE, nullptr, nullptr, nullptr);
     EXPECT_NE(copy, nullptr) << file.driver;
