@@ -60,8 +60,10 @@ class Project:
         wanted = tuple(f"{folder.rstrip('/')}/" for folder in folders)
         with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as file:
             entries = {self.name(entry["file"]) or "": entry for entry in json.load(file)}
-        self.entries = {name: entry for name, entry in sorted(entries.items()) if name.startswith(wanted)}
         known = dependencies_by_object(build)
+        # What has not been built, because it is built on request only, may lack generated headers.
+        self.entries = {name: entry for name, entry in sorted(entries.items())
+                        if name.startswith(wanted) and object_of(entry) in known}
         self.files = {}  # by source
         for source, entry in self.entries.items():
             names = {self.name(path) for path in known.get(object_of(entry), [])}
