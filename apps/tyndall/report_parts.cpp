@@ -47,8 +47,11 @@ Json compared(const ReportRun& run, const std::string& a, const std::string& b, 
   Words words = {"compare", a, b, "--json"};
   if (!difference.empty()) words.insert(words.end(), {"--diff", difference});
   constexpr double kShare = 0.05;
-  Json out = parsed(run_verb(run, words, kShare).out);
-  return out.is_object() ? out : Json();
+  const ProgramRun ran = run_verb(run, words, kShare);
+  Json out = parsed(ran.out);
+  // Without limits, `compare` only fails if a value is not finite or if it could not compare. Its numbers then mean
+  // nothing.
+  return ran.done() && out.is_object() ? out : Json();
 }
 
 double number_in(const Json& object, const char* name) {
