@@ -31,6 +31,8 @@ const int kMaxReads = 60000;
 uint reads_done = 0u;
 uint steps_done = 0u;
 
+float reads_per_cascade() { return float(kMaxReads) / float(frame.cascade_count - frame.first_marched_cascade); }
+
 // The section of a ray in a cascade that is read, as fractions of its part in the cascade. A map can be much smaller
 // than the part of the view that its cascade covers, because a camera that looks up sees little of the ground to which
 // maps are fitted. Rays then cross more texels than can be read, most of them outside the map. Everything there is lit.
@@ -145,7 +147,7 @@ void walk_cascade(uint cascade, Ray ray, TableRay path, float start, float from,
   float read_from = mix(from, to, part.x);
   float read_to = mix(from, to, part.y);
   float wanted = max(max(texels.x, texels.y) * (part.y - part.x), float(frame.integration_steps));
-  int reads = int(clamp(ceil(wanted), 1.0, float(kMaxReads)));
+  int reads = int(clamp(ceil(wanted), 1.0, reads_per_cascade()));
   float step_m = (read_to - read_from) / float(reads);
   vec3 duvz = (uvz_to - uvz_from) * ((part.y - part.x) / float(reads));
   vec3 uvz = mix(uvz_from, uvz_to, part.x) + 0.5 * duvz;
@@ -204,7 +206,7 @@ vec3 homogeneous_light(Ray ray, float start, float end) {
     vec2 texels = abs(uvz_to.xy - uvz_from.xy) * float(frame.shadow_resolution);
     vec2 part = section_to_read(uvz_from, uvz_to, texels);
     float wanted = max(max(texels.x, texels.y) * (part.y - part.x), float(frame.integration_steps));
-    int reads = int(clamp(ceil(wanted), 1.0, float(kMaxReads)));
+    int reads = int(clamp(ceil(wanted), 1.0, reads_per_cascade()));
     homogeneous_attenuation((to - t) * part.x, transmittance, opacity);
     light += before * opacity;
     before *= transmittance;

@@ -182,8 +182,8 @@ void epipolar_steps(Frame& f) {
   }
 }
 
-// Marches every pixel, in bands of rows. A band is short enough for the time-out of a driver, also where a pixel reads
-// thousands of shadow texels.
+// Marches every pixel in bands of rows, so that a dispatch stays short. Up to 4 million pixels, a band has about
+// kPixelsPerBand; larger pictures have kMaxBands larger bands.
 void brute_force_steps(Frame& f) {
   constexpr std::uint32_t kPixelsPerBand = 131072;
   constexpr std::uint32_t kMaxBands = 32;
