@@ -49,7 +49,8 @@ for licence in "$top"/licences/*; do
   # The texts that Debian's files refer to.
   grep -o '/usr/share/common-licenses/[A-Za-z0-9.-]*[A-Za-z0-9]' "$licence" || true
 done | sort -u | while read -r text; do
-  [ -f "$text" ] && cp -L "$text" "$top/licences/${text##*/}"
+  [ -f "$text" ] || { echo "bundle.sh: no licence text '$text'; expected the package base-files" >&2; exit 1; }
+  cp -L "$text" "$top/licences/${text##*/}"
 done
 cp "$source/LICENSE" "$top/licences/tyndall.txt"
 chmod 644 "$top"/licences/*

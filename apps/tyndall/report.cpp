@@ -99,8 +99,7 @@ std::unique_ptr<Companion> start_clocks(ReportRun& run) {
                                      run.work + "/clocks.csv");
 }
 
-// Adds the smallest and the largest sample of each column, and all samples in time order. A machine with several
-// devices gives one line for each of them every second.
+// Adds all samples in time order. A machine with several devices gives one line for each of them every second.
 void add_clocks(ReportRun& run) {
   std::ifstream file(run.work + "/clocks.csv");
   Json samples = Json::array();

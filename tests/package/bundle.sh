@@ -84,8 +84,8 @@ inside() {
 }
 if ! unshare --mount $rights true 2> /dev/null; then
   echo "bundle: no rights to make a mount namespace; the programs were not run"
-  [ $failures = 0 ]
-  exit
+  [ $failures = 0 ] && exit 77
+  exit 1
 fi
 export XDG_CACHE_HOME=/cache HOME=/ VK_LOADER_DEBUG=
 unset VK_ICD_FILENAMES VK_DRIVER_FILES LD_LIBRARY_PATH
