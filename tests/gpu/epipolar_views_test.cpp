@@ -331,7 +331,7 @@ TEST_F(Epipolar, FewestAndMostSlicesAndSamples) {
         std::to_string(slices) + " slices, " + std::to_string(samples) + " samples" + (optimised ? "" : ", all used"),
         params, floor_db);
   };
-  // The shafts between the boxes are narrower than the distance of 32 slices. The default scene at 1280 x 720 has 40 dB
+  // The shafts between the boxes are narrower than the spacing of 32 slices. The default scene at 1280 x 720 has 40 dB
   // with as few slices.
   with(32, 32, true, 36.0);
   with(2048, 32, true, 40.0);
