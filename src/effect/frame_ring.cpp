@@ -52,13 +52,7 @@ bool FrameRing::unfinished() const {
 
 void FrameRing::record_end(VkCommandBuffer cmd, std::uint64_t frame_index, std::uint32_t view) {
   Slot& s = slots_[slot(frame_index, view)];
-  if (busy(s)) {
-    // Earlier commands may still set the event, and an event must not be set twice without a barrier.
-    device_->vk.CmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0,
-                                   nullptr, 0, nullptr, 0, nullptr);
-  } else {
-    device_->vk.ResetEvent(device_->device, s.done.get());
-  }
+  device_->vk.ResetEvent(device_->device, s.done.get());  // take() has refused a slot whose commands may still set it
   s.frame_index = frame_index;
   s.recorded = true;
   device_->vk.CmdSetEvent(cmd, s.done.get(), VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT);

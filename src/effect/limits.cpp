@@ -77,9 +77,16 @@ Result<void> check_same_desc(const EffectDesc& created, const EffectDesc& wanted
 Result<void> check_device(const gpu::Device& device) {
   const gpu::Portability portability = gpu::portability_of(
       device.physical_device, device.vk.EnumerateDeviceExtensionProperties, device.vk.GetPhysicalDeviceFeatures2);
-  for (const char* feature : portability.missing()) {
+  if (const auto missing = portability.missing(); !missing.empty()) {
     return Error{ErrorCode::unsupported_device, std::string("the device has VK_KHR_portability_subset without ") +
-                                                    feature + "; expected mutableComparisonSamplers and events"};
+                                                    missing.front() +
+                                                    "; expected mutableComparisonSamplers and events"};
+  }
+  const std::uint32_t side = device.properties.limits.maxImageDimension3D;
+  if (side < kSourceFunction.extent.height) {
+    return Error{ErrorCode::unsupported_device, "the device allows 3D images of " + std::to_string(side) +
+                                                    " texels along an axis; expected at least " +
+                                                    std::to_string(kSourceFunction.extent.height)};
   }
   for (const gpu::Shader* shader : shaders::effect_shaders) TYNDALL_TRY(gpu::check_shader(device, *shader));
   // No dispatch has more than kMaxGroups workgroups along an axis.

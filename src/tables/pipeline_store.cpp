@@ -47,11 +47,13 @@ PipelineStore::PipelineStore(gpu::Host& host, const CacheDesc& cache) : host_(ho
     VkPipelineCacheCreateInfo info = {};
     info.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
     if (stored && is_of_device(std::as_bytes(std::span(*stored)), device.properties)) {
-      info.initialDataSize = stored_bytes_ = stored->size();
+      info.initialDataSize = stored->size();
       info.pInitialData = stored->data();
     }
     VkPipelineCache made = VK_NULL_HANDLE;
     if (device.vk.CreatePipelineCache(device.device, &info, device.allocator, &made) != VK_SUCCESS) return {};
+    // A driver may ignore the stored data. What it has accepted decides whether there is more to store at the end.
+    if (device.vk.GetPipelineCacheData(device.device, made, &stored_bytes_, nullptr) != VK_SUCCESS) stored_bytes_ = 0;
     cache_ = gpu::Handle<VkPipelineCache>(device, made);
     host_.set_pipeline_cache(made);
     return {};

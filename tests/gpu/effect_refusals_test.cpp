@@ -115,7 +115,7 @@ TEST(EffectRefusals, SettingsThatTheDeviceDoesNotAllowAreRefused) {
       {"storage buffers", [](P& p) { p.properties.limits.maxPerStageDescriptorStorageBuffers = 4; }, true},
       {"groups", [](P& p) { p.properties.limits.maxComputeWorkGroupCount[0] = 1024; }, true},
       {"invocations", [](P& p) { p.properties.limits.maxComputeWorkGroupInvocations = 16; }, true},
-      {"tables.size", [](P& p) { p.properties.limits.maxImageDimension3D = 32; }, true},
+      {"3D images", [](P& p) { p.properties.limits.maxImageDimension3D = 256; }, true},
   };
   EffectDesc large = small_desc();
   large.max_extent = {16384, 16384};
@@ -138,7 +138,7 @@ TEST(EffectRefusals, SettingsThatTheDeviceDoesNotAllowAreRefused) {
   // Parameters that exceed a limit of the device are refused, too.
   faults::set_properties([](P& p) {
     p.properties.limits.maxStorageBufferRange = 1U << 27;
-    p.properties.limits.maxImageDimension3D = 256;
+    p.properties.limits.maxImageDimension3D = 1024;
   });
   Result<Effect> effect = Effect::create(faults::fake_device(), small_desc(), small_params());
   ASSERT_OK(effect);
@@ -151,10 +151,13 @@ TEST(EffectRefusals, SettingsThatTheDeviceDoesNotAllowAreRefused) {
   Params wide = small_params();
   wide.epipolar.slices = 32;
   wide.tables.size = {4, 4, 4096, 16};
-  for (const Params& params : {fine, wide}) {
+  for (const Params* const chosen : {&fine, &wide}) {
+    const Params& params = *chosen;
     const Result<void> refused = effect.value().set_params(params);
-    EXPECT_FALSE(refused.ok());
-    expect_same(before, observe(effect.value()), refused.ok() ? "" : refused.error().message);
+    ASSERT_FALSE(refused.ok());
+    const bool of_tables = refused.error().message.find("tables.size") != std::string::npos;
+    EXPECT_EQ(of_tables, &params == &wide) << refused.error().message;
+    expect_same(before, observe(effect.value()), refused.error().message);
   }
   faults::set_properties({});
 }
