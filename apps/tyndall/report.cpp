@@ -29,14 +29,14 @@ class Folder {
  public:
   explicit Folder(const std::string& path) : path_(path + ".part") {
     std::error_code error;
-    fs::remove_all(path_, error);
-    made_ = fs::create_directories(path_ + "/work/cache", error);
+    // A folder that exists is not ours.
+    made_ = !fs::exists(path_, error) && fs::create_directories(path_ + "/work/cache", error);
   }
   Folder(const Folder&) = delete;
   Folder& operator=(const Folder&) = delete;
   ~Folder() {
     std::error_code ignored;
-    if (!path_.empty()) fs::remove_all(path_, ignored);
+    if (made_ && !path_.empty()) fs::remove_all(path_, ignored);
   }
 
   [[nodiscard]] bool made() const { return made_; }
@@ -112,6 +112,7 @@ void add_clocks(ReportRun& run) {
     }
     if (sample.size() == std::size(kClockColumns)) samples.push_back(std::move(sample));
   }
+  if (samples.empty()) return;
   run.json["clocks"] = {{"source", "nvidia-smi, one line a second for each of its devices"},
                         {"columns", kClockColumns},
                         {"samples", std::move(samples)}};
@@ -126,7 +127,7 @@ std::uint64_t bytes_in(const std::string& folder) {
   return sum;
 }
 
-// Removes the largest pictures until the folder has at most 16 MiB.
+// Removes pictures, in this order, until the folder has at most 16 MiB.
 void limit_size(ReportRun& run) {
   constexpr std::uint64_t kLargest = std::uint64_t{16} << 20;
   constexpr std::uint64_t kPages = std::uint64_t{1} << 20;  // for the page and the JSON, which come last
@@ -194,8 +195,11 @@ std::optional<int> parse(Args args, Options& options) {
                  "new folder for the report: index.html, report.json, pictures");
   arguments.number("--seconds", options.seconds, 10.0, 3600.0, "end after this time at the latest");
   arguments.text("--data", options.data, "DIR",
-                 "folder with scenes/ and report/, the values computed on the CPU device [../share/tyndall]");
-  arguments.flag("--short", options.is_short, "tiny pictures and few runs, as a test");
+                 "folder with scenes/ and report/, the values computed on the CPU device [share/tyndall "
+                 "beside the folder of the program]");
+  arguments.flag(
+      "--short", options.is_short,
+      "tiny pictures, small tables and few runs, as a test; compares only with values of --reference --short");
   arguments.flag("--reference", options.reference,
                  "instead of a report, compute the values of this device for report/ in the folder of --data");
   arguments.text("--part", options.part, "NAME", "for internal use: print one part as JSON: validation or pipelines");
@@ -230,7 +234,8 @@ int run_report(Args args) {
   while (options.common.output.size() > 1 && options.common.output.ends_with('/')) options.common.output.pop_back();
   Folder folder(options.common.output);
   if (!folder.made()) {
-    return fail(concat({"-o: cannot create '", files::one_line(folder.path(), 300), "'; expected a writable folder"}),
+    return fail(concat({"-o: cannot create '", files::one_line(folder.path(), 300),
+                        "'; expected a writable folder in which it does not exist"}),
                 kFailed);
   }
   // The tables are built again by each report, and their 96 MiB do not stay on the machine. The short form saves time
@@ -256,7 +261,7 @@ int run_report(Args args) {
     return fail(concat({"--reference: ", run.json["left_out"].dump()}), kFailed);
   }
   run_parts(run);
-  if (interrupted()) return fail("report: interrupted; expected an undisturbed run", kFailed);
+  if (interrupted()) return fail("tyndall report: interrupted; expected an undisturbed run", kFailed);
   return write_report(run, folder, options.common.output);
 }
 

@@ -174,7 +174,8 @@ std::string report_page(const Json& report) {
   page.row({"seconds", concat({shown(report["seconds"]), " of at most ", shown(report["limit_seconds"])})});
   page.end_table();
   if (report["short"].get<bool>())
-    page.paragraph("This is the short form, a test of the report: its times mean nothing.");
+    page.paragraph("This is the short form, a test of the report. Its times mean nothing, and its comparisons need "
+                   "values that were computed with --reference --short.");
   add_checks(page, report);
   page.heading("Left out");
   page.begin_table({"part", "why"});

@@ -26,7 +26,7 @@ struct ReportRun {
   void check(const std::string& name, bool passed, const std::string& limit, nlohmann::ordered_json values);
 };
 
-// Each part takes at most `share` of the whole time.
+// Each program that a part runs takes at most `share` of the whole time, and all of them end with it.
 void report_device(ReportRun& run);
 void report_tables(ReportRun& run, double share);
 void report_probe(ReportRun& run, double share);

@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 #include <thread>
 
@@ -29,6 +30,18 @@ constexpr std::uint64_t kLargestOutput = std::uint64_t{64} << 20;
 std::string contents(const std::string& path) {
   Result<std::string> text = files::read_file(path, kLargestOutput);
   return text ? std::move(text).value() : std::string();
+}
+
+// Ends a process and returns its status, or nothing if it does not end within some seconds: a process that waits for a
+// device cannot be ended.
+std::optional<int> kill_and_wait(int process) {
+  ::kill(process, SIGKILL);
+  for (int i = 0; i < 500; ++i) {
+    int status = 0;
+    if (::waitpid(process, &status, WNOHANG) == process) return status;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return std::nullopt;
 }
 
 // Starts a program with its output in files. Returns -1 on failure.
@@ -88,8 +101,7 @@ ProgramRun run_program(const std::string& program, const std::vector<std::string
     run.timed_out = run.seconds > limits.seconds;
     run.interrupted = interrupted();
     if (run.timed_out || run.interrupted) {
-      ::kill(child, SIGKILL);
-      ::waitpid(child, &status, 0);
+      if (const std::optional<int> ended_with = kill_and_wait(child)) status = *ended_with;
       break;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -108,9 +120,7 @@ Companion::Companion(const std::string& program, const std::vector<std::string>&
     : process_(start(program, arguments, output, "/dev/null", "")) {}
 
 Companion::~Companion() {
-  if (process_ <= 0) return;
-  ::kill(process_, SIGTERM);
-  ::waitpid(process_, nullptr, 0);
+  if (process_ > 0) kill_and_wait(process_);
 }
 
 void catch_interruption() {

@@ -57,9 +57,9 @@ struct DeviceInfo {
   void* replace_shader_user = nullptr;
 };
 
-// The requirements for a device: Vulkan 1.3 and these extensions (none at present), but no optional feature. An
-// exception are devices with VK_KHR_portability_subset (MoltenVK), where its features mutableComparisonSamplers and
-// events must be enabled. A queue with compute suffices.
+// The requirements for a device: Vulkan 1.3 and these extensions (none at present), but no optional feature. Devices
+// with VK_KHR_portability_subset (MoltenVK) are the exception: its features mutableComparisonSamplers and events must
+// be enabled. A queue with compute suffices.
 struct Requirements {
   std::uint32_t api_version;
   std::span<const char* const> device_extensions;
@@ -71,8 +71,8 @@ enum class OutputFormat : std::uint32_t { rgba16f, rgba32f };
 // Settings of an effect. set_limits(), set_shadow_colors() and set_params() change some of them later.
 struct EffectDesc {
   VkExtent2D max_extent = {1920, 1080};  // [1; 16384] px - largest FrameInputs::extent
-  // [1; 8] - frames recorded before the first completes. A frame is an error while the commands of the frame
-  // frames_in_flight before it have not completed, because both use the same constants and descriptor sets.
+  // [1; 8] - frames recorded before the first completes. record() fails if the commands of the frame that is
+  // frames_in_flight earlier have not completed, because both use the same constants and descriptor sets.
   std::uint32_t frames_in_flight = 2;
   // [1; 8] - pictures of one frame: eyes of a stereo pair, a split screen, a reflection. All may be recorded before any
   // completes. They share buffers, so their commands run one after the other.
@@ -95,7 +95,8 @@ struct EffectDesc {
   // Leaves the pipelines that build tables, about twelve, to the first record_precompute() of a build, which then also
   // allocates descriptor sets. For programs that usually load the tables.
   bool table_pipelines_later = false;
-  // Reports suspicious inputs of a frame through DeviceInfo::message: once, and again only if they were right between.
+  // Reports suspicious inputs of a frame through DeviceInfo::message: once, and again
+  // only after a frame in which they were right.
   bool check_inputs = true;
 };
 
@@ -286,7 +287,8 @@ class TYNDALL_API Effect {
   // Returns the counters of a frame whose commands have completed; zeros without EffectDesc::counters.
   [[nodiscard]] Counters counters(std::uint64_t frame_index, std::uint32_t view = 0) const;
   // Returns the times of the passes of a frame whose commands have completed; empty without EffectDesc::timings. The
-  // span is valid until the next call.
+  // span is valid until the next call. A pass that is recorded several times has several entries. On GPUs, the first
+  // entry is "effect", the time of all passes together; do not add it to the others.
   std::span<const PassTiming> timings(std::uint64_t frame_index, std::uint32_t view = 0);
   // Returns the times of the stages of the last build of tables, once its commands have completed.
   std::span<const PassTiming> precompute_timings();

@@ -7,8 +7,8 @@
 #include "lib/medium.glsl"
 #include "precompute/gather_grid.glsl"
 
-// Returns the number of Fourier modes of the source function of order n. Every scattering multiplies mode m by about
-// g^m. For the remainder that order 2 has with all modes, order n needs 2 / n of them.
+// Returns the number of Fourier modes of the source function of order n. Each scattering multiplies mode m by about
+// g^m, so order n with 2 kModes / n modes is truncated at the same error as order 2 with all kModes.
 uint source_modes(uint n) { return clamp((2u * kModes + n - 1u) / n, kLateTerms, kModes); }
 
 // Returns the number of terms of the source function of a late order n: one fewer with each order, but at least

@@ -1,5 +1,5 @@
-// Computes the quadrature nodes along each ray of one altitude of the tables, or of the whole gathering grid, and what
-// else the passes need to know about a ray. One invocation per altitude and view angle.
+// Computes the quadrature nodes along each ray of one altitude of the tables, or of the whole gathering grid, and the
+// other fields of QuadratureRay. One invocation per altitude and view angle.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

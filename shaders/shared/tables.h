@@ -41,7 +41,7 @@ const uint kLateAzimuths = 2u;  // azimuths in which these terms are integrated
 // Each invocation of the passes over rays processes this many azimuths, or angles between view and sun. They share the
 // loads of the nodes.
 const uint kAnglesPerInvocation = 4u;
-// Most panels of four nodes for the integration along a ray. Single scattering needs more of them.
+// The largest numbers of panels of four nodes in the integration along a ray. Single scattering needs more of them.
 const uint kSinglePanels = 6u;
 const uint kHighPanels = 4u;
 const uint kSingleNodes = 24u;

@@ -207,7 +207,7 @@ Result<void> Host::create_instance(bool validation, const std::vector<const char
     info.ppEnabledLayerNames = layers;
     extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
   }
-  // Without it, the loader hides drivers over another interface, such as MoltenVK.
+  // Without it, the loader hides drivers that are layered on another API, such as MoltenVK.
   if (has_instance_extension(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME)) {
     extensions.push_back(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
     info.flags |= VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR;

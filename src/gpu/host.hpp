@@ -69,7 +69,8 @@ class Host {
     device_.replace_shader = replace;
     device_.replace_shader_user = user;
   }
-  // Sets the cache for all pipelines created afterwards. It must outlive the host.
+  // Sets the cache for all pipelines created afterwards. Null for none. It must exist
+  // as long as it is set, and as long as effects that were created with it.
   void set_pipeline_cache(VkPipelineCache cache) { device_.pipeline_cache = cache; }
   // Returns how many threads the programs create pipelines with; see EffectDesc::pipeline_threads.
   [[nodiscard]] static std::uint32_t pipeline_threads() {

@@ -1,5 +1,5 @@
-// Devices over another graphics interface, such as MoltenVK, implement a subset of Vulkan. They have the extension
-// VK_KHR_portability_subset, and its features say what they implement.
+// Drivers that implement Vulkan on top of another graphics API, such as MoltenVK, support a subset of Vulkan. They have
+// the extension VK_KHR_portability_subset, and its features say what they support.
 #pragma once
 
 #include <vulkan/vulkan.h>

@@ -31,7 +31,10 @@ Result<Tonemap> Tonemap::create(const gpu::Device& device, std::uint32_t frames_
 
 Result<void> Tonemap::record(VkCommandBuffer cmd, VkImageView from, VkImageView to, VkExtent2D extent,
                              const TonemapSettings& settings, std::uint32_t slot) const {
-  if (slot >= slots_) return Error{ErrorCode::invalid_argument, "there is no such slot of tone mapping"};
+  if (slot >= slots_) {
+    return Error{ErrorCode::invalid_argument, "Tonemap::record: slot " + std::to_string(slot) +
+                                                  " is out of range; expected less than frames_in_flight"};
+  }
   if (settings.auto_exposure && !exposure_.measured()) {
     return Error{ErrorCode::invalid_argument,
                  "Tonemap::record: auto_exposure is on, but nothing was measured; expected Exposure::measure() before"};

@@ -10,7 +10,7 @@
 namespace tyndall::tables {
 
 // From its creation on, the host uses the stored pipelines. The destructor stores those that were added. Both ignore
-// errors, because the pipelines can always be compiled. To be created after the host, and before everything that
+// errors, because the pipelines can always be compiled. Create it after the host and before everything that
 // creates pipelines.
 class PipelineStore {
  public:

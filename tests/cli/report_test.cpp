@@ -78,7 +78,7 @@ TEST(Report, ComparesTheDeviceWithReferenceValuesAndMeasuresIt) {
   }
   // The CPU device has neither; a device that has them reports them instead.
   for (const auto& [part, present] : {std::pair{"registers, spills and code sizes", report.contains("pipelines")},
-                                      {"clocks", !report["clocks"]["samples"].empty()}}) {
+                                      {"clocks", report.contains("clocks")}}) {
     EXPECT_NE(find(report["left_out"], "part", part) != nullptr, present) << part;
   }
   // The page shows the same, and nothing names this machine's folders.
@@ -117,6 +117,9 @@ TEST(Report, RefusesWhatItCannotUse) {
   expect_one_line(run_tyndall({"report", "--data", scratch.at("none"), "-o", scratch.at("new")}), 2,
                   "there is no scenes/demo.toml");
   expect_one_line(run_tyndall({"report", "--data", data, "-o", "/proc/new"}), 1, "cannot create");
+  const std::string unfinished = scratch.write("new.part", "the user's");
+  expect_one_line(run_tyndall({"report", "--data", data, "-o", scratch.at("new")}), 1, "cannot create");
+  EXPECT_EQ(contents_of(unfinished), "the user's");
   expect_one_line(run_tyndall({"report", "--data", data, "-o", scratch.at("new"), "--seconds", "5"}), 2, "--seconds");
 }
 

@@ -1,5 +1,5 @@
-// Drivers end a dispatch that takes too long. The steps of tables are therefore bounded whatever the size of the tables,
-// and those of brute force for pictures of up to 4 million pixels.
+// Drivers end a dispatch that takes too long. The steps of tables are therefore bounded whatever the size of the
+// tables, and those of brute force for pictures of up to 4 million pixels.
 #include <gtest/gtest.h>
 
 #include <map>
