@@ -265,7 +265,11 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
     lifted_ = true;
   }
   frame_ = local_frame(view_.position, radius);
-  if (!bare) TYNDALL_TRY(terrain_->update(view_, frame_));
+  if (!bare) {
+    TYNDALL_TRY(terrain_->set_coarseness(
+        std::max(desc_.terrain_coarseness, coarseness_for_picture(desc_.extent.height, view_.tan_half_height))));
+    TYNDALL_TRY(terrain_->update(view_, frame_));
+  }
   // All surfaces are farther away than half the height above the ground, except for walls beside the camera.
   const double above = std::max(altitude - ground_m, min_m);
   const Ground ground = meshes_ != nullptr ? meshes_->ground(terrain_->ground(), view_.position) : terrain_->ground();

@@ -25,7 +25,7 @@ struct SceneDesc {
   bool histogram = false;              // measure every picture, not only those that auto exposure needs
   tables::MakeReady make_tables = {};  // how the tables are built and cached
   bool tables_later = false;           // build the tables with advance_tables() instead of in create()
-  int terrain_coarseness = 1;          // see TerrainLod
+  int terrain_coarseness = 1;          // the least, see TerrainLod; small pictures have a larger one
   bool reuse_shadows = true;           // reuse shadow maps that would not change
   std::uint32_t pipeline_threads = 1;  // see EffectDesc
   bool in_parts = false;               // submit a frame in parts, so that other users of the queue get their turn
@@ -52,7 +52,7 @@ class Scene {
   // Sets a terrain that Terrain::load_source() has loaded for these parameters and this radius of the planet.
   Result<void> set_terrain(const TerrainParams& params, double radius_m, ElevationSource source);
   Result<void> set_extent(VkExtent2D extent);
-  Result<void> set_terrain_coarseness(int coarseness);
+  void set_terrain_coarseness(int coarseness) { desc_.terrain_coarseness = coarseness; }
 
   // Reads the tables of the parameters from the cache, or builds `budget` slices of them (see
   // Effect::precompute_progress()). Until they are complete, frames use the previous tables. If there are none,

@@ -295,10 +295,6 @@ Result<void> Scene::set_extent(VkExtent2D extent) {
   });
 }
 
-Result<void> Scene::set_terrain_coarseness(int coarseness) {
-  return within_memory("changing the terrain", [&] { return terrain_->set_coarseness(coarseness); });
-}
-
 Result<void> Scene::tone(double step_s) {
   const post::Exposure::Start start = tonemap_->exposure().start();
   Result<void> toned = within_memory("tone mapping", [&] {

@@ -31,8 +31,9 @@ class SharedSceneTest : public GpuTest {
       if (!made.ok()) return nullptr;
       shared_ = std::move(made).value();
     }
-    const bool changed = shared_->set_terrain_coarseness(terrain_coarseness).ok() && shared_->set_extent(extent).ok() &&
-                         shared_->set_params(params).ok() && shared_->set_scene(scene).ok();
+    shared_->set_terrain_coarseness(terrain_coarseness);
+    const bool changed =
+        shared_->set_extent(extent).ok() && shared_->set_params(params).ok() && shared_->set_scene(scene).ok();
     EXPECT_TRUE(changed);
     return changed ? shared_.get() : nullptr;
   }

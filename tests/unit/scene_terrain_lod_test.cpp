@@ -169,5 +169,17 @@ TEST(SceneTerrainLod, OnlyVisibleBlocksAndNoneFinerThanRequested) {
   EXPECT_TRUE(blocks.empty());
 }
 
+// At 45 degrees a cell at the end of a level spans 1/448 rad times the coarseness, a pixel 0.828 / height.
+TEST(TerrainLod, SmallPicturesHaveCoarserTerrain) {
+  const double tan_half_height = std::tan(0.5 * 0.785398);
+  EXPECT_EQ(coarseness_for_picture(720, tan_half_height), 1);
+  EXPECT_EQ(coarseness_for_picture(371, tan_half_height), 2);
+  EXPECT_EQ(coarseness_for_picture(372, tan_half_height), 1);
+  EXPECT_EQ(coarseness_for_picture(185, tan_half_height), 4);
+  EXPECT_EQ(coarseness_for_picture(186, tan_half_height), 2);
+  EXPECT_EQ(coarseness_for_picture(0, tan_half_height), 4);
+  EXPECT_EQ(coarseness_for_picture(720, std::tan(0.5 * 0.1)), 1) << "a telescope sees all detail";
+}
+
 }  // namespace
 }  // namespace tyndall::scene

@@ -272,7 +272,7 @@ Result<void> SceneWork::resize(const SceneRequest& request) {
     stale_ = true;
   }
   if (request.coarseness != desc_.terrain_coarseness) {
-    TYNDALL_TRY(scene_->set_terrain_coarseness(request.coarseness));
+    scene_->set_terrain_coarseness(request.coarseness);
     desc_.terrain_coarseness = request.coarseness;
     stale_ = true;
   }

@@ -60,6 +60,12 @@ struct Selection {
 
 }  // namespace
 
+int coarseness_for_picture(std::uint32_t height_px, double tan_half_height) {
+  const double pixel = 2.0 * tan_half_height / std::max(height_px, 1U);
+  const double cells = 2.0 * pixel * kRangeCells;
+  return cells >= 4.0 ? 4 : cells >= 2.0 ? 2 : 1;
+}
+
 TerrainLod plan_terrain(const glm::dvec2& camera_map, double altitude_m, double max_ground_m, double radius_m,
                         int coarseness, double min_ground_m) {
   TerrainLod out;

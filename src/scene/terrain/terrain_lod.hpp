@@ -47,6 +47,10 @@ struct TerrainBlock {
   std::int32_t unused = 0;
 };
 
+// Returns the largest coarseness for which cells look no larger than two pixels where their level ends. Small pictures
+// need few cells. `tan_half_height` as in View.
+[[nodiscard]] int coarseness_for_picture(std::uint32_t height_px, double tan_half_height);
+
 // Plans the levels for a camera at these coordinates of a map projection and this altitude, up to the horizon of the
 // highest ground. `min_ground_m`: lowest ground; below sea level it makes the horizon more distant.
 [[nodiscard]] TerrainLod plan_terrain(const glm::dvec2& camera_map, double altitude_m, double max_ground_m,
