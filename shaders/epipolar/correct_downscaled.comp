@@ -25,11 +25,11 @@ void put_pixel(uint at) {
   ivec2 pixel = ivec2(items[at] & 0xFFFFu, items[at] >> 16u);
   Ray ray = view_ray(frame, pixel, load_depth(pixel));
   float start, end;
-  vec3 transmittance, opacity;
-  vec3 tau = vec3(0.0);
+  Spectrum transmittance, opacity;
+  Spectrum tau = Spectrum(0.0);
   bool inside = clip_to_medium(ray, start, end);
   if (kHomogeneous)
-    tau = frame.homogeneous.extinction * (end - start);
+    tau = HOMOGENEOUS_EXTINCTION * (end - start);
   else if (inside)
     tau = optical_depth(medium, density_integral_along(medium, ray.altitude, ray.cos_zenith, end));
   attenuation(tau, transmittance, opacity);
@@ -37,8 +37,8 @@ void put_pixel(uint at) {
   Sample s;
   s.depth_m = downscaled[downscaled_index(place)].a;
   s.extinction = extinction_of(tau, s.depth_m);
-  s.source = unpack_light(corrected[at]) / max(opacity, vec3(1e-20));
-  if (kHomogeneous && !inside) s.source = vec3(1.0);
+  s.source = unpack_light(corrected[at]) / max(opacity, Spectrum(1e-20));
+  if (kHomogeneous && !inside) s.source = Spectrum(1.0);
   store_downscaled(place, s.depth_m, s.source, s.extinction);
 }
 

@@ -20,17 +20,23 @@ void put_pixel(uint at) {
   ivec2 pixel = ivec2(items[at] & 0xFFFFu, items[at] >> 16u);
   Ray ray = view_ray(frame, pixel, load_depth(pixel));
   float start, end;
-  vec3 transmitted = vec3(1.0);
-  vec3 opacity;
-  vec3 color = unpack_light(corrected[at]) * frame.sun_irradiance;
+  Spectrum transmitted = Spectrum(1.0);
+  Spectrum opacity;
+  Spectrum light = unpack_light(corrected[at]);
+#ifdef SPECTRAL
+  if (kHomogeneous) light *= homogeneous_phase(ray.cos_view_sun);
+#endif
+  vec3 color = COLOR(light) * frame.sun_irradiance;
   if (clip_to_medium(ray, start, end)) {
     if (kHomogeneous)
       homogeneous_attenuation(end - start, transmitted, opacity);
     else
       transmitted = transmittance(medium, density_integral_along(medium, ray.altitude, ray.cos_zenith, end));
   }
+#ifndef SPECTRAL
   if (kHomogeneous) color *= homogeneous_phase(ray.cos_view_sun);
-  if (frame.only == 0u) color += load_color(pixel) * transmitted;
+#endif
+  if (frame.only == 0u) color += TRANSMITTED(load_color(pixel), transmitted);
   // The mark is green and as bright as a white surface in sunlight, so that it is visible on any background.
   if (epipolar.show_depth_breaks != 0u) color = vec3(0.0, dot(frame.sun_irradiance, vec3(0.1)), 0.0);
   store_color(pixel, color);

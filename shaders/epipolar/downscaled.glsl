@@ -29,6 +29,9 @@ ivec2 downscaled_before(ivec2 pixel, out vec2 part) {
   return at;
 }
 
+// With SPECTRAL, the buffer ends with the fourth channels of the source functions.
+#define FOURTH_PLANE (kHomogeneous ? 1u : 2u) * (epipolar.downscaled_width * epipolar.downscaled_height)
+
 uint downscaled_index(ivec2 at) { return uint(at.y) * epipolar.downscaled_width + uint(at.x); }
 
 #endif

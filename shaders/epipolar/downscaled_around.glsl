@@ -14,10 +14,14 @@ void downscaled_around(ivec2 pixel, out vec2 part, out Sample around[4]) {
   for (int k = 0; k < 4; ++k) {
     uint index = downscaled_index(clamp(at + ivec2(k & 1, k >> 1), ivec2(0), most));
     vec4 source = downscaled[index];
+#ifdef SPECTRAL
+    around[k].source = vec4(source.rgb, downscaled[FOURTH_PLANE + index].x);
+#else
     around[k].source = source.rgb;
+#endif
     around[k].depth_m = source.a;
     uint behind = epipolar.downscaled_width * epipolar.downscaled_height;
-    around[k].extinction = kHomogeneous ? vec3(0.0) : downscaled[behind + index].rgb;
+    around[k].extinction = kHomogeneous ? Spectrum(0.0) : CHANNELS(downscaled[behind + index]);
   }
 }
 

@@ -46,4 +46,10 @@ void main() {
   samples[row + i].y = packHalf2x16(mix(unpackHalf2x16(a.y), unpackHalf2x16(b.y), part) * scale);
   float blue = mix(unpackHalf2x16(a.z).x, unpackHalf2x16(b.z).x, part) * scale;
   samples[row + i].z = (packHalf2x16(vec2(blue, 0.0)) & 0xFFFFu) | (samples[row + i].z & 0xFFFF0000u);
+#ifdef SPECTRAL
+  float fourth_a = unpackHalf2x16(FOURTH_CHANNEL(row + left)).x;
+  float fourth_b = unpackHalf2x16(FOURTH_CHANNEL(row + right)).x;
+  float extinction = unpackHalf2x16(FOURTH_CHANNEL(row + i)).y;
+  FOURTH_CHANNEL(row + i) = packHalf2x16(vec2(mix(fourth_a, fourth_b, part) * scale, extinction));
+#endif
 }

@@ -31,7 +31,7 @@ uint reads_done = 0u;
 // The contributions of cascades to the in-scattering of a ray, which can be added in any order.
 struct March {
   LitSections lit;         // single = table, multiple = occluded
-  vec3 light;              // single = integration; in a homogeneous medium before homogeneous_phase()
+  Spectrum light;          // single = integration; in a homogeneous medium before homogeneous_phase()
   float end_lit_fraction;  // lit fraction at the end of the farthest marched cascade; -1: none marched
 };
 
@@ -55,14 +55,14 @@ struct Walk {
   float lit;  // lit length within the panel, and its first moment about the middle
   float moment;
   float middle;
-  vec3 lit_tinted;  // the same, with kColors
-  vec3 moment_tinted;
+  Spectrum lit_tinted;  // the same, with kColors
+  Spectrum moment_tinted;
   // In a homogeneous medium: transmittance and in-scattering up to `since`, and the source function from there on,
   // which is the lit fraction times the colour. A section ends where it changes, so that the result does not depend on
   // the division into sections.
-  vec3 transmittance;
-  vec3 light;
-  vec3 source;
+  Spectrum transmittance;
+  Spectrum light;
+  Spectrum source;
   float since;
   float lit_fraction;  // lit fraction of the last section
 };
@@ -75,14 +75,14 @@ vec2 load_node(bool full, uint at) {
 }
 
 void close_homogeneous(inout Walk w) {
-  vec3 transmittance, opacity;
+  Spectrum transmittance, opacity;
   homogeneous_attenuation((w.x - w.since) * w.metres, transmittance, opacity);
   w.light += w.source * w.transmittance * opacity;
   w.transmittance *= transmittance;
   w.since = w.x;
 }
 
-void add_run(inout Walk w, inout LitSections sections, float to, float lit_fraction, vec3 color) {
+void add_run(inout Walk w, inout LitSections sections, float to, float lit_fraction, Spectrum color) {
   if (kHomogeneous) {
     if (w.source != lit_fraction * color) close_homogeneous(w);
     w.source = lit_fraction * color;
@@ -142,7 +142,7 @@ void walk_to(inout Walk w, inout LitSections sections, float to) {
       // Cells that may be lit through glass are read, too.
       read = undecided || (kColors && inside && !dark);
       if (!read) {
-        add_run(w, sections, stop, dark ? 0.0 : 1.0, vec3(1.0));
+        add_run(w, sections, stop, dark ? 0.0 : 1.0, Spectrum(1.0));
         ++steps_done;
       } else if (undecided && in_tree && level > kTreeLeafLevel) {
         w.level = level - 1u;
@@ -199,13 +199,13 @@ Walk begin_walk(uint cascade, uint slice, vec3 direction, float start, float fro
   w.lit = 0.0;
   w.moment = 0.0;
   w.middle = 0.0;
-  w.lit_tinted = vec3(0.0);
-  w.moment_tinted = vec3(0.0);
-  w.light = vec3(0.0);
-  w.source = vec3(0.0);
+  w.lit_tinted = Spectrum(0.0);
+  w.moment_tinted = Spectrum(0.0);
+  w.light = Spectrum(0.0);
+  w.source = Spectrum(0.0);
   w.since = w.x;
   w.lit_fraction = 1.0;
-  w.transmittance = kHomogeneous ? exp(-frame.homogeneous.extinction * (from - start)) : vec3(1.0);
+  w.transmittance = kHomogeneous ? exp(-HOMOGENEOUS_EXTINCTION * (from - start)) : Spectrum(1.0);
   return w;
 }
 
@@ -213,9 +213,9 @@ Walk begin_walk(uint cascade, uint slice, vec3 direction, float start, float fro
 struct Panels {
   float altitude;
   vec3 density;
-  vec3 integral;  // density integral from where the ray enters the atmosphere
-  vec3 rayleigh;  // scattering coefficient x phase function
-  vec3 mie;
+  vec3 integral;      // density integral from where the ray enters the atmosphere
+  Spectrum rayleigh;  // scattering coefficient x phase function
+  Spectrum mie;
 };
 
 // Computes the state at the start of the section [from, to], and returns the number of its panels. A panel spans at
@@ -225,19 +225,19 @@ int begin_panels(Ray ray, float from, float to, out Panels p) {
   p.altitude = altitude_along(ray.altitude, ray.cos_zenith, from, radius);
   float h_end = altitude_along(ray.altitude, ray.cos_zenith, to, radius);
   p.density = densities(medium, p.altitude);
-  vec3 extinction = extinction_at(medium, min(p.altitude, h_end));
-  float densest = max(extinction.r, max(extinction.g, extinction.b));
+  Spectrum extinction = extinction_at(medium, min(p.altitude, h_end));
+  float densest = LARGEST(extinction);
   float wanted =
       max(max(abs(h_end - p.altitude) / (0.5 * medium.mie_scale_height_m), (to - from) * densest / 0.2), 12.0);
-  p.rayleigh = medium.rayleigh_scattering * rayleigh_phase(ray.cos_view_sun);
-  p.mie = medium.mie_scattering * mie_phase(medium, ray.cos_view_sun);
+  p.rayleigh = RAYLEIGH_SCATTERING(medium) * rayleigh_phase(ray.cos_view_sun);
+  p.mie = MIE_SCATTERING(medium) * mie_phase(medium, ray.cos_view_sun);
   p.integral = density_integral_along(medium, ray.altitude, ray.cos_zenith, from);
   return int(clamp(ceil(wanted), 1.0, 256.0));
 }
 
 // Returns the in-scattering of a panel of length panel_m that begins at distance t, from the lit length that `w` has
 // found in it. Advances `p` to its end.
-vec3 panel_light(Walk w, Ray ray, float t, float panel_m, inout Panels p) {
+Spectrum panel_light(Walk w, Ray ray, float t, float panel_m, inout Panels p) {
   float radius = medium.planet_radius_m;
   float h_next = altitude_along(ray.altitude, ray.cos_zenith, t + panel_m, radius);
   vec3 density_next = densities(medium, h_next);
@@ -245,14 +245,14 @@ vec3 panel_light(Walk w, Ray ray, float t, float panel_m, inout Panels p) {
   float middle = altitude_along(ray.altitude, ray.cos_zenith, t + 0.5 * panel_m, radius);
   float cos_sun = cos_sun_zenith_along(ray, t + 0.5 * panel_m, radius);
   vec3 total = p.integral + 0.5 * panel_m * mean + density_integral_to_top(medium, middle, cos_sun);
-  vec3 arriving = sun_visibility(middle, cos_sun, radius) * transmittance(medium, total);
+  Spectrum arriving = sun_visibility(middle, cos_sun, radius) * transmittance(medium, total);
   float per_panel = w.metres / max(panel_m * w.cells_per_m, 1e-20);
-  vec3 light;
+  Spectrum light;
   if (kColors) {
-    vec3 lit_m = w.lit_tinted * w.metres;
-    vec3 moment = w.moment_tinted * per_panel;
-    light = arriving * (p.rayleigh * max(mean.x * lit_m + (density_next.x - p.density.x) * moment, vec3(0.0)) +
-                        p.mie * max(mean.y * lit_m + (density_next.y - p.density.y) * moment, vec3(0.0)));
+    Spectrum lit_m = w.lit_tinted * w.metres;
+    Spectrum moment = w.moment_tinted * per_panel;
+    light = arriving * (p.rayleigh * max(mean.x * lit_m + (density_next.x - p.density.x) * moment, Spectrum(0.0)) +
+                        p.mie * max(mean.y * lit_m + (density_next.y - p.density.y) * moment, Spectrum(0.0)));
   } else {
     float lit_m = w.lit * w.metres;
     float moment = w.moment * per_panel;  // [m]; the coordinate is in units of a panel
@@ -281,8 +281,8 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
     float panel_end = last ? end : (t + panel_m) * w.cells_per_m;
     w.lit = 0.0;
     w.moment = 0.0;
-    w.lit_tinted = vec3(0.0);
-    w.moment_tinted = vec3(0.0);
+    w.lit_tinted = Spectrum(0.0);
+    w.moment_tinted = Spectrum(0.0);
     w.middle = (t + 0.5 * panel_m) * w.cells_per_m;
     while (w.x < panel_end) {
       walk_to(w, march.lit, panel_end);
@@ -302,7 +302,7 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
   march.end_lit_fraction = w.lit_fraction;
 }
 
-March nothing_marched() { return March(nothing_lit(), vec3(0.0), -1.0); }
+March nothing_marched() { return March(nothing_lit(), Spectrum(0.0), -1.0); }
 
 March add(March a, March b) {
   March m;
@@ -326,17 +326,17 @@ void cascade_range(uint cascade, Ray ray, float start, float end, out float from
 }
 
 // Returns the total in-scattering of a ray from the contributions of its cascades.
-vec3 light_of(March march, Ray ray, TableRay path, float start, float end) {
+Spectrum light_of(March march, Ray ray, TableRay path, float start, float end) {
   float depth_per_m = max(dot(ray.direction, frame.camera_forward), 1e-6);
   float t = start;
   if (epipolar.cascades > epipolar.first_cascade) {
     t = clamp(cascades[epipolar.cascades - 1u].far_m / depth_per_m, start, end);
   }
-  vec3 light = march.light;
+  Spectrum light = march.light;
   if (kHomogeneous) {
-    vec3 transmittance, opacity;
+    Spectrum transmittance, opacity;
     homogeneous_attenuation(end - t, transmittance, opacity);
-    if (kSingle != kNone) light += exp(-frame.homogeneous.extinction * (t - start)) * opacity;
+    if (kSingle != kNone) light += exp(-HOMOGENEOUS_EXTINCTION * (t - start)) * opacity;
     return light;
   }
   if (kPanels) {

@@ -36,7 +36,7 @@ void march_item(uint at) {
   ivec2 pixel = ivec2(item & 0xFFFFu, item >> 16u);
   uint id = item >> 16u;
   uint sample_at = pixels ? 0u : id * epipolar.samples + (item & 0xFFFFu);
-  Sample s = unpack_sample(samples[sample_at]);
+  Sample s = squared(LOAD_ROOTS(sample_at));
   vec2 position = vec2(pixel) + 0.5;
   if (pixels) {
     float depth = load_depth(pixel);
@@ -87,17 +87,17 @@ void march_item(uint at) {
     for (uint i = 0u; i < (processing == kFinish ? turn : 0u); ++i) {
       march = add(march, load_march(i * epipolar.slices * epipolar.samples + at));
     }
-    vec3 light = in_air ? light_of(march, ray, path, start, end) : vec3(0.0);
+    Spectrum light = in_air ? light_of(march, ray, path, start, end) : Spectrum(0.0);
     if (pixels) {
       corrected[at] = pack_light(light);
     } else {
-      vec3 transmittance, opacity;
+      Spectrum transmittance, opacity;
       attenuation(optical_depth_at(s.extinction, s.depth_m), transmittance, opacity);
       if (kHomogeneous) homogeneous_attenuation(end - start, transmittance, opacity);
-      s.source = light / max(opacity, vec3(1e-20));
+      s.source = light / max(opacity, Spectrum(1e-20));
       // A ray that misses the medium counts as lit, because neighbours that hit the medium are interpolated with it.
-      if (kHomogeneous && kSingle != kNone && !in_air) s.source = vec3(1.0);
-      samples[sample_at] = pack_sample(s);
+      if (kHomogeneous && kSingle != kNone && !in_air) s.source = Spectrum(1.0);
+      STORE_SAMPLE(sample_at, s)
       if (has_shadowed_end(march, s.depth_m)) coarse[sample_at] |= kShadowedEnd;
     }
   }

@@ -10,7 +10,7 @@
 
 // Returns the in-scattering of the lit section found up to distance t, of the unshadowed rest of the ray to `end`, and
 // of the whole ray for orders that ignore shadows.
-vec3 contiguous_light(LitSections lit, TableRay path, float start, float t, float end) {
+Spectrum contiguous_light(LitSections lit, TableRay path, float start, float t, float end) {
   const float kNear = 1e-3;  // [m]
   float lit_from = section_from(lit, lit.first, start);
   float lit_to = lit.first + lit.total;
@@ -33,9 +33,9 @@ vec3 contiguous_light(LitSections lit, TableRay path, float start, float t, floa
                 (shadowed.w != 0.0 ? 8u : 0u) | (beyond_end && (whole || shadowed_end != 0.0) ? 16u : 0u);
   vec3 column = density_integral_along(medium, path.altitude, path.cos_zenith, path.end_m);
   TableAngle angle = table_angle(frame.tables, medium, path.cos_view_sun);
-  vec3 light = vec3(0.0);
-  vec3 high = vec3(0.0);
-  vec3 deep = deep_factor(medium, path);  // matters only in the pipelines that draw eyes below the tables
+  Spectrum light = Spectrum(0.0);
+  Spectrum high = Spectrum(0.0);
+  Spectrum deep = deep_factor(medium, path);  // matters only in the pipelines that draw eyes below the tables
   while (wanted != 0u) {
     int i = findLSB(wanted);
     wanted &= wanted - 1u;
@@ -43,7 +43,7 @@ vec3 contiguous_light(LitSections lit, TableRay path, float start, float t, floa
     float counts = i == 0 ? shadowed.x : i == 1 ? shadowed.y : i == 2 ? shadowed.z : i == 3 ? shadowed.w : shadowed_end;
     float d = min(place - start, path.end_m);
     vec3 before = density_integral_along(medium, path.altitude, path.cos_zenith, d);
-    vec3 transmitted = transmittance(medium, before);
+    Spectrum transmitted = transmittance(medium, before);
     InScattering beyond = inscattering_from_integral(frame.tables, medium, angle, ray_further_on(medium, path, d),
                                                      max(column - before, vec3(0.0)));
     if (kSingle == kTable && lit.dark_until < end) light += counts * transmitted * beyond.single;
@@ -55,8 +55,8 @@ vec3 contiguous_light(LitSections lit, TableRay path, float start, float t, floa
     else if (i == 4)
       high -= transmitted * beyond.high;
   }
-  light = max(light, vec3(0.0));
-  return whole ? light + max(high, vec3(0.0)) : light;
+  light = max(light, Spectrum(0.0));
+  return whole ? light + max(high, Spectrum(0.0)) : light;
 }
 
 #endif

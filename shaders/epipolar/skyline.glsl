@@ -6,8 +6,8 @@
 
 // The contribution of a slice to a position in the sky. The slice may be behind the ground there.
 struct SkyOnSlice {
-  vec3 source;  // square root
-  float away;   // distance to the samples that contribute [pixels]
+  Spectrum source;  // square root
+  float away;       // distance to the samples that contribute [pixels]
   bool any;
 };
 
@@ -23,13 +23,12 @@ SkyOnSlice sky_on_slice(uint id, vec4 origin, vec2 position) {
   while (right <= last && !in_sky(row + uint(right))) ++right;
   bool any_left = left >= 0;
   bool any_right = right <= last;
-  SkyOnSlice sky = SkyOnSlice(vec3(0.0), 0.0, any_left || any_right);
+  SkyOnSlice sky = SkyOnSlice(Spectrum(0.0), 0.0, any_left || any_right);
   if (!sky.any) return sky;
   left = any_left ? left : right;
   right = any_right ? right : left;
   float part = right > left ? clamp((place - float(left)) / float(right - left), 0.0, 1.0) : 0.0;
-  sky.source =
-      mix(unpack_roots(samples[row + uint(left)]).source, unpack_roots(samples[row + uint(right)]).source, part);
+  sky.source = mix(LOAD_ROOTS(row + uint(left)).source, LOAD_ROOTS(row + uint(right)).source, part);
   float gap = min(abs(place - float(left)), abs(float(right) - place)) - 1.0;  // in samples
   sky.away = max(gap, 0.0) / max(length(origin.zw), 1e-9);
   return sky;
@@ -38,7 +37,7 @@ SkyOnSlice sky_on_slice(uint id, vec4 origin, vec2 position) {
 // Returns the source function at a position in the sky, from the nearest samples of both slices in the sky. The weight
 // of a slice decreases with their distance, so that there is no seam where it leaves the ground. Returns `otherwise` if
 // both slices are behind the ground.
-vec3 sky_source(Around a, vec2 position, vec3 otherwise) {
+Spectrum sky_source(Around a, vec2 position, Spectrum otherwise) {
   uint last = epipolar.slices - 1u;
   uint lower = uint(a.lower);
   uint upper = lower < last ? lower + 1u : epipolar.closed != 0u ? 0u : last;
@@ -47,7 +46,7 @@ vec3 sky_source(Around a, vec2 position, vec3 otherwise) {
   SkyOnSlice sky[2] = SkyOnSlice[2](sky_on_slice(min(lower, last), a.origin_lower, position),
                                     sky_on_slice(upper, a.origin_upper, position));
   float sum = 0.0;
-  vec3 root = vec3(0.0);
+  Spectrum root = Spectrum(0.0);
   for (int i = 0; i < 2; ++i) {
     float far = sky[i].away / reach;
     float weight = sky[i].any ? (i == 0 ? 1.0 - part : part) / (1.0 + far * far) : 0.0;

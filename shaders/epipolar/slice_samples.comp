@@ -54,17 +54,17 @@ void main() {
   float depth = depth_at(position);
   bool sky = depth == frame.sky_depth;
   Sample s;
-  s.source = vec3(0.0);
+  s.source = Spectrum(0.0);
   uint at = id * epipolar.samples + i;
   if (kHomogeneous) {
     // Along a slice, only the length in the medium changes. Pixels apply the phase functions and the extinction
     // coefficient.
     vec3 direction = ray_direction(frame, position);
     s.depth_m = sky ? sky_depth_m(direction) : view_depth(frame, position, depth);
-    s.extinction = vec3(0.0);
-    vec3 transmittance, opacity;
+    s.extinction = Spectrum(0.0);
+    Spectrum transmittance, opacity;
     homogeneous_attenuation(length_in_homogeneous(direction, s.depth_m), transmittance, opacity);
-    samples[at] = pack_sample(s);
+    STORE_SAMPLE(at, s)
     coarse[at] = pack_coarse(opacity);  // no edge is marched for being a skyline
     return;
   }
@@ -76,9 +76,9 @@ void main() {
     integral = max(density_integral_along(medium, ray.altitude, ray.cos_zenith, end), vec3(0.0));
   }
   s.extinction = extinction_of(optical_depth(medium, integral), s.depth_m);
-  samples[at] = pack_sample(s);
+  STORE_SAMPLE(at, s)
   NormalisationFactors factors = normalisation_factors(medium, integral);
-  vec3 light = medium.rayleigh_scattering * rayleigh_phase(ray.cos_view_sun) * factors.rayleigh +
-               medium.mie_scattering * mie_phase(medium, ray.cos_view_sun) * factors.mie;
+  Spectrum light = RAYLEIGH_SCATTERING(medium) * rayleigh_phase(ray.cos_view_sun) * factors.rayleigh +
+                   MIE_SCATTERING(medium) * mie_phase(medium, ray.cos_view_sun) * factors.mie;
   coarse[at] = pack_coarse(light) | (s.depth_m >= kSkyDepth ? kSkySample : 0u);
 }

@@ -13,12 +13,15 @@ layout(std430, binding = 15) buffer downscaled_inscattering_block { vec4 downsca
 layout(std430, binding = 15) writeonly buffer downscaled_inscattering_block { vec4 downscaled[]; };
 #endif
 
-void store_downscaled(ivec2 at, float depth_m, vec3 source, vec3 extinction) {
-  downscaled[downscaled_index(at)] = vec4(source, depth_m);
+void store_downscaled(ivec2 at, float depth_m, Spectrum source, Spectrum extinction) {
+  downscaled[downscaled_index(at)] = vec4(source.rgb, depth_m);
   if (!kHomogeneous) {
     uint behind = epipolar.downscaled_width * epipolar.downscaled_height;
-    downscaled[behind + downscaled_index(at)] = vec4(extinction, 0.0);
+    downscaled[behind + downscaled_index(at)] = STORED(extinction, 0.0);
   }
+#ifdef SPECTRAL
+  downscaled[FOURTH_PLANE + downscaled_index(at)] = vec4(source.a, 0.0, 0.0, 0.0);
+#endif
 }
 
 #endif

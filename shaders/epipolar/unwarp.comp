@@ -33,17 +33,17 @@ float reach_in_samples(Around a, vec2 middle) {
 
 // Mean extinction coefficients of the pixels' own rays: computed at three corners of a block, affine between them.
 struct OwnExtinction {
-  vec3 corner;
-  vec3 per_x;  // change per pixel
-  vec3 per_y;
+  Spectrum corner;
+  Spectrum per_x;  // change per pixel
+  Spectrum per_y;
 };
 
 OwnExtinction own_extinction(Block block, bool scene) {
   const int kCorners[3] = int[3](0, kBlockWidth - 1, kBlockWidth);
-  vec3 extinction[3];
+  Spectrum extinction[3];
   for (int i = 0; i < 3; ++i) {
     int k = kCorners[i];
-    vec3 tau = own_optical_depth(vec2(block.pixel[k]) + 0.5, block.visible_m[k], block.sky[k]);
+    Spectrum tau = own_optical_depth(vec2(block.pixel[k]) + 0.5, block.visible_m[k], block.sky[k]);
     extinction[i] = extinction_of(tau, scene ? block.visible_m[k] : kSkyDepth);
   }
   // The last block of a row may be narrower.
@@ -52,12 +52,12 @@ OwnExtinction own_extinction(Block block, bool scene) {
 }
 
 struct Attenuation {
-  vec3 tau;
-  vec3 transmittance;
-  vec3 opacity;
+  Spectrum tau;
+  Spectrum transmittance;
+  Spectrum opacity;
 };
 
-Attenuation attenuation_of(vec3 tau) {
+Attenuation attenuation_of(Spectrum tau) {
   Attenuation a;
   a.tau = tau;
   attenuation(tau, a.transmittance, a.opacity);
@@ -66,15 +66,15 @@ Attenuation attenuation_of(vec3 tau) {
 
 // Returns the attenuation at another optical depth: a series of fourth order in the difference x. The difference is
 // small in a block at one depth without extinction_varies(). The error is below 0.003 even at the limb.
-Attenuation attenuation_near(Attenuation a, vec3 tau) {
-  vec3 x = tau - a.tau;
-  vec3 more = a.transmittance * x * (1.0 - x * (0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0))));
+Attenuation attenuation_near(Attenuation a, Spectrum tau) {
+  Spectrum x = tau - a.tau;
+  Spectrum more = a.transmittance * x * (1.0 - x * (0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0))));
   return Attenuation(tau, a.transmittance - more, a.opacity + more);
 }
 
 vec3 compose(Blend b, Attenuation a, vec3 background) {
-  vec3 color = b.source * a.opacity * frame.sun_irradiance;
-  return frame.only == 0u ? color + background * a.transmittance : color;
+  vec3 color = COLOR(b.source * a.opacity) * frame.sun_irradiance;
+  return frame.only == 0u ? color + TRANSMITTED(background, a.transmittance) : color;
 }
 
 const bool kBlockAttenuation = !kHomogeneous && kExtinction == Extinction_epipolar && kDownscale == 1;
@@ -129,9 +129,10 @@ void main() {
   float per_pixel = 1.0 / max(float(block.pixel[kRight].x - block.pixel[0].x), 1.0);
   Attenuation middle_of_block;
   if (kBlockAttenuation) {
-    vec3 root = 0.25 * (left[0].extinction + right[0].extinction + left[1].extinction + right[1].extinction);
-    vec3 of_middle = root * root;
-    if (own) of_middle = max(extinction.corner + 0.5 * (extinction.per_x / per_pixel + extinction.per_y), vec3(0.0));
+    Spectrum root = 0.25 * (left[0].extinction + right[0].extinction + left[1].extinction + right[1].extinction);
+    Spectrum of_middle = root * root;
+    if (own)
+      of_middle = max(extinction.corner + 0.5 * (extinction.per_x / per_pixel + extinction.per_y), Spectrum(0.0));
     middle_of_block = attenuation_of(optical_depth_at(of_middle, depth_m));
   }
   for (int k = 0; k < kBlockPixels; ++k) {
@@ -143,7 +144,7 @@ void main() {
     b.extinction = mix(left[k / kBlockWidth].extinction, right[k / kBlockWidth].extinction, off.x * per_pixel);
     b.source *= b.source;
     b.extinction *= b.extinction;
-    if (own) b.extinction = max(extinction.corner + off.x * extinction.per_x + off.y * extinction.per_y, vec3(0.0));
+    if (own) b.extinction = max(extinction.corner + off.x * extinction.per_x + off.y * extinction.per_y, Spectrum(0.0));
     if (kDownscale > 1) {
       store_downscaled(place[k], own_m, b.source, b.extinction);
       continue;

@@ -26,8 +26,8 @@ const float kMaxExtinctionRatio = 1.2247;
 
 struct Blend {
   float weight;  // sum of the weights before normalisation
-  vec3 source;
-  vec3 extinction;
+  Spectrum source;
+  Spectrum extinction;
 };
 
 // The four samples around a position, two on each of two slices. Samples 0 and 1 are on the lower slice.
@@ -37,9 +37,9 @@ struct Around {
   vec2 first;         // index of the first sample on each slice
   vec4 origin_lower;  // EpipolarSlice::line of both
   vec4 origin_upper;
-  vec4 nearness;       // weights by depth, at most 1
-  vec3 source[4];      // square roots
-  vec3 extinction[4];  // square roots
+  vec4 nearness;           // weights by depth, at most 1
+  Spectrum source[4];      // square roots
+  Spectrum extinction[4];  // square roots
 };
 
 // Returns the weight of a sample for a pixel at another depth: 1 up to the tolerance, and beyond it the fourth power of
@@ -74,7 +74,7 @@ Around around(vec2 position, float depth_m) {
       a.origin_upper = origin;
     a.first[i] = float(first);
     for (int k = 0; k < 2; ++k) {
-      Sample s = unpack_roots(samples[id * epipolar.samples + first + uint(k)]);
+      Sample s = LOAD_ROOTS(id * epipolar.samples + first + uint(k));
       a.source[2 * i + k] = s.source;
       a.extinction[2 * i + k] = s.extinction;
       a.nearness[2 * i + k] = depth_nearness(s.depth_m, depth_m);
@@ -85,17 +85,17 @@ Around around(vec2 position, float depth_m) {
 
 // Returns whether the extinction coefficient changes too much between the four samples, as it does next to the limb.
 bool extinction_varies(Around a) {
-  vec3 low = min(min(a.extinction[0], a.extinction[1]), min(a.extinction[2], a.extinction[3]));
-  vec3 high = max(max(a.extinction[0], a.extinction[1]), max(a.extinction[2], a.extinction[3]));
+  Spectrum low = min(min(a.extinction[0], a.extinction[1]), min(a.extinction[2], a.extinction[3]));
+  Spectrum high = max(max(a.extinction[0], a.extinction[1]), max(a.extinction[2], a.extinction[3]));
   return any(greaterThan(high, kMaxExtinctionRatio * low));
 }
 
 // Returns the change of the mean source function among the four samples relative to the largest, both as square roots.
 float contrast(Around a) {
-  vec3 low = min(min(a.source[0], a.source[1]), min(a.source[2], a.source[3]));
-  vec3 high = max(max(a.source[0], a.source[1]), max(a.source[2], a.source[3]));
-  vec3 change = (high - low) / max(high, vec3(1e-20));
-  return max(change.r, max(change.g, change.b));
+  Spectrum low = min(min(a.source[0], a.source[1]), min(a.source[2], a.source[3]));
+  Spectrum high = max(max(a.source[0], a.source[1]), max(a.source[2], a.source[3]));
+  Spectrum change = (high - low) / max(high, Spectrum(1e-20));
+  return LARGEST(change);
 }
 
 float min_nearness(Around a) { return min(min(a.nearness.x, a.nearness.y), min(a.nearness.z, a.nearness.w)); }
@@ -123,8 +123,8 @@ Blend blend_roots(Around a, vec2 position) {
   w /= b.weight;
   b.source = w.x * a.source[0] + w.y * a.source[1] + w.z * a.source[2] + w.w * a.source[3];
   b.extinction = w.x * a.extinction[0] + w.y * a.extinction[1] + w.z * a.extinction[2] + w.w * a.extinction[3];
-  b.source = max(b.source, vec3(0.0));
-  b.extinction = max(b.extinction, vec3(0.0));
+  b.source = max(b.source, Spectrum(0.0));
+  b.extinction = max(b.extinction, Spectrum(0.0));
   return b;
 }
 
@@ -137,10 +137,10 @@ Blend blend(Around a, vec2 position) {
 }
 
 // Returns the optical depth of a pixel's own ray in closed form.
-vec3 own_optical_depth(vec2 position, float visible_m, bool sky) {
+Spectrum own_optical_depth(vec2 position, float visible_m, bool sky) {
   Ray ray = ray_to_depth(frame, position, visible_m, sky);
   float start, end;
-  if (!clip_to_atmosphere(frame, medium, ray, start, end)) return vec3(0.0);
+  if (!clip_to_atmosphere(frame, medium, ray, start, end)) return Spectrum(0.0);
   return optical_depth(medium, density_integral_along(medium, ray.altitude, ray.cos_zenith, end));
 }
 
@@ -149,21 +149,22 @@ vec3 own_optical_depth(vec2 position, float visible_m, bool sky) {
 vec3 compose(Blend b, vec2 position, float depth_m, float visible_m, bool sky, vec3 background) {
   if (kHomogeneous) {
     vec3 direction = ray_direction(frame, position);
-    vec3 transmittance, opacity;
+    Spectrum transmittance, opacity;
     homogeneous_attenuation(length_in_homogeneous(direction, depth_m), transmittance, opacity);
-    vec3 light = b.source * opacity * homogeneous_phase(dot(direction, frame.direction_to_sun)) * frame.sun_irradiance;
-    return frame.only == 0u ? light + background * transmittance : light;
+    vec3 light =
+        COLOR(b.source * opacity * homogeneous_phase(dot(direction, frame.direction_to_sun))) * frame.sun_irradiance;
+    return frame.only == 0u ? light + TRANSMITTED(background, transmittance) : light;
   }
-  vec3 tau;
+  Spectrum tau;
   if (kExtinction == Extinction_epipolar) {
     tau = optical_depth_at(b.extinction, depth_m);
   } else {
     tau = own_optical_depth(position, visible_m, sky);
   }
-  vec3 transmittance, opacity;
+  Spectrum transmittance, opacity;
   attenuation(tau, transmittance, opacity);
-  vec3 color = b.source * opacity * frame.sun_irradiance;
-  return frame.only == 0u ? color + background * transmittance : color;
+  vec3 color = COLOR(b.source * opacity) * frame.sun_irradiance;
+  return frame.only == 0u ? color + TRANSMITTED(background, transmittance) : color;
 }
 
 #endif

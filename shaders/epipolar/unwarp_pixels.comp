@@ -36,12 +36,12 @@ bool at_limb(Around a, vec2 position) {
 // Returns whether the in-scattering of a pixel may be visibly wrong because of samples at other depths. If no sample
 // has a similar depth, it may be anything up to that of the brightest sample. Otherwise the error is estimated by the
 // difference between the samples, times the part of the weight that is lost. `color`: the colour of the pixel.
-bool may_be_wrong(Around a, Blend b, bool sky, vec3 opacity, vec3 color) {
+bool may_be_wrong(Around a, Blend b, bool sky, Spectrum opacity, vec3 color) {
   const float kInvisible = 0.004;  // of the colour
-  vec3 low = min(min(a.source[0], a.source[1]), min(a.source[2], a.source[3]));
-  vec3 high = max(max(a.source[0], a.source[1]), max(a.source[2], a.source[3]));
-  vec3 brightest = high * high * opacity * frame.sun_irradiance;
-  vec3 difference = brightest - low * low * opacity * frame.sun_irradiance;
+  Spectrum low = min(min(a.source[0], a.source[1]), min(a.source[2], a.source[3]));
+  Spectrum high = max(max(a.source[0], a.source[1]), max(a.source[2], a.source[3]));
+  vec3 brightest = COLOR(high * high * opacity) * frame.sun_irradiance;
+  vec3 difference = brightest - COLOR(low * low * opacity) * frame.sun_irradiance;
   bool unlike_all = b.weight < (sky ? epipolar.min_weight_sky : epipolar.min_weight);
   vec3 error = unlike_all ? brightest : max(1.0 - b.weight, 0.0) * difference;
   return any(greaterThan(error, (unlike_all ? kInvisible : epipolar.tolerated_difference) * color));
@@ -63,14 +63,14 @@ void unwarp_pixel(uint block, uint k) {
   bool skyline = kSkyline && depth_m >= kSkyDepth && depths_differ(a);
   if (skyline) b.source = sky_source(a, position, b.source);
   if (skyline || kSparse)
-    b.extinction = extinction_of(max(own_optical_depth(position, visible_m, sky), vec3(0.0)), depth_m);
+    b.extinction = extinction_of(max(own_optical_depth(position, visible_m, sky), Spectrum(0.0)), depth_m);
   bool wrong = b.weight < (sky ? epipolar.min_weight_sky : epipolar.min_weight);
   if (kDownscale == 1) {
     vec3 background = load_color(pixel);
     vec3 color = compose(b, position, depth_m, visible_m, sky, background);
     store_color(pixel, color);
     if (!kHomogeneous) {
-      vec3 transmittance, opacity;
+      Spectrum transmittance, opacity;
       attenuation(optical_depth_at(b.extinction, depth_m), transmittance, opacity);
       wrong = may_be_wrong(a, b, sky, opacity, color);
     }

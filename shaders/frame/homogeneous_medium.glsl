@@ -8,9 +8,20 @@
 
 #include "frame/constants.glsl"
 #include "frame/view_ray.glsl"
+#include "lib/spectrum.glsl"
 #include "shared/constant_ids.h"
 
 layout(constant_id = kHomogeneousId) const bool kHomogeneous = false;
+
+#ifdef SPECTRAL
+#define HOMOGENEOUS_EXTINCTION vec4(frame.homogeneous.extinction, frame.homogeneous_fourth_channel.x)
+#define HOMOGENEOUS_RAYLEIGH_SOURCE vec4(frame.homogeneous.rayleigh_source, frame.homogeneous_fourth_channel.y)
+#define HOMOGENEOUS_MIE_SOURCE vec4(frame.homogeneous.mie_source, frame.homogeneous_fourth_channel.z)
+#else
+#define HOMOGENEOUS_EXTINCTION frame.homogeneous.extinction
+#define HOMOGENEOUS_RAYLEIGH_SOURCE frame.homogeneous.rayleigh_source
+#define HOMOGENEOUS_MIE_SOURCE frame.homogeneous.mie_source
+#endif
 
 // Clips [0, end] to the part below the medium's top, which is a horizontal plane.
 void clip_to_top(float cos_zenith, out float start, inout float end) {
@@ -40,19 +51,19 @@ bool clip_to_medium(Ray ray, out float start, out float end) {
 }
 
 // Computes exp(-sigma d), and 1 - exp(-sigma d) without cancellation.
-void homogeneous_attenuation(float length_m, out vec3 transmittance, out vec3 opacity) {
-  vec3 tau = frame.homogeneous.extinction * length_m;
+void homogeneous_attenuation(float length_m, out Spectrum transmittance, out Spectrum opacity) {
+  Spectrum tau = HOMOGENEOUS_EXTINCTION * length_m;
   transmittance = exp(-tau);
-  opacity = mix(1.0 - transmittance, tau - 0.5 * tau * tau, lessThan(tau, vec3(2e-3)));
+  opacity = mix(1.0 - transmittance, tau - 0.5 * tau * tau, lessThan(tau, Spectrum(2e-3)));
 }
 
 // Returns the factor that depends on the direction only [1/sr]: (beta_R p_R + beta_M p_M) / sigma.
-vec3 homogeneous_phase(float cos_view_sun) {
+Spectrum homogeneous_phase(float cos_view_sun) {
   float second = cos_view_sun * cos_view_sun;
   float root = inversesqrt(frame.homogeneous.phase_min +
                            frame.homogeneous.phase_slope * (1.0 - frame.homogeneous.phase_sign * cos_view_sun));
-  return frame.homogeneous.rayleigh_source * (1.0 + second) +
-         frame.homogeneous.mie_source * ((1.0 + frame.homogeneous.phase_second * second) * (root * root * root));
+  return HOMOGENEOUS_RAYLEIGH_SOURCE * (1.0 + second) +
+         HOMOGENEOUS_MIE_SOURCE * ((1.0 + frame.homogeneous.phase_second * second) * (root * root * root));
 }
 
 #endif

@@ -54,8 +54,8 @@ vec2 section_to_read(vec3 uvz_from, vec3 uvz_to, vec2 texels) {
 // transmittance from the sun to the eye [m].
 struct March {
   vec3 integral;
-  vec3 rayleigh;
-  vec3 mie;
+  Spectrum rayleigh;
+  Spectrum mie;
 };
 
 // Marches [from, to] inside one cascade. `ray` holds altitudes and cosines at the camera.
@@ -83,7 +83,7 @@ void march_cascade(uint cascade, Ray ray, float from, float to, float steps_per_
   vec3 density = densities(medium, altitude);
   for (int i = 0; i < groups; ++i) {
     float lit = 0.0;
-    vec3 tint = vec3(0.0);
+    Spectrum tint = Spectrum(0.0);
     for (int k = 0; k < kReadsPerStep; ++k) {
       float lit_fraction = texture(shadow_maps, vec4(uvz.xy, float(cascade), clamp(uvz.z, 0.0, 1.0)));
       lit += lit_fraction;
@@ -100,7 +100,7 @@ void march_cascade(uint cascade, Ray ray, float from, float to, float steps_per_
       float lit_reads = lit;
       lit *= sun_visibility(altitude_here, cos_sun, radius) / float(kReadsPerStep);
       vec3 integral = march.integral + 0.5 * dt * mean + density_integral_to_top(medium, altitude_here, cos_sun);
-      vec3 arriving = (lit * dt) * transmittance(medium, integral);
+      Spectrum arriving = (lit * dt) * transmittance(medium, integral);
       if (kColors) arriving *= tint / lit_reads;
       march.rayleigh += mean.x * arriving;
       march.mie += mean.y * arriving;
@@ -114,8 +114,8 @@ void march_cascade(uint cascade, Ray ray, float from, float to, float steps_per_
 }
 
 // Returns the single scattering over [start, end] of the ray.
-vec3 integrated_light(Ray ray, float start, float end) {
-  March march = March(vec3(0.0), vec3(0.0), vec3(0.0));
+Spectrum integrated_light(Ray ray, float start, float end) {
+  March march = March(vec3(0.0), Spectrum(0.0), Spectrum(0.0));
   float t = start;
   // View-space depth is proportional to the distance along the ray.
   float depth_per_m = max(dot(ray.direction, frame.camera_forward), 1e-6);
@@ -128,8 +128,8 @@ vec3 integrated_light(Ray ray, float start, float end) {
       t = to;
     }
   }
-  vec3 light = medium.rayleigh_scattering * rayleigh_phase(ray.cos_view_sun) * march.rayleigh +
-               medium.mie_scattering * mie_phase(medium, ray.cos_view_sun) * march.mie;
+  Spectrum light = RAYLEIGH_SCATTERING(medium) * rayleigh_phase(ray.cos_view_sun) * march.rayleigh +
+                   MIE_SCATTERING(medium) * mie_phase(medium, ray.cos_view_sun) * march.mie;
   if (end - t > 1e-3) {
     light += single_scattering(medium, ray.altitude, ray.cos_zenith, ray.cos_sun_zenith, ray.cos_view_sun, t, end,
                                int(frame.integration_steps) / 3);
@@ -151,7 +151,7 @@ void walk_cascade(uint cascade, Ray ray, TableRay path, float start, float from,
   float step_m = (read_to - read_from) / float(reads);
   vec3 duvz = (uvz_to - uvz_from) * ((part.y - part.x) / float(reads));
   vec3 uvz = mix(uvz_from, uvz_to, part.x) + 0.5 * duvz;
-  if (part.x > 0.0) add_section(lit, from, read_from, 1.0, vec3(1.0));
+  if (part.x > 0.0) add_section(lit, from, read_from, 1.0, Spectrum(1.0));
   int i = 0;
   while (i <= reads) {
     for (; i < reads && lit.closed_at < 0.0; ++i) {
@@ -162,7 +162,7 @@ void walk_cascade(uint cascade, Ray ray, TableRay path, float start, float from,
     }
     if (i >= reads && lit.closed_at < 0.0) {
       ++i;
-      if (part.y < 1.0) add_section(lit, read_to, to, 1.0, vec3(1.0));
+      if (part.y < 1.0) add_section(lit, read_to, to, 1.0, Spectrum(1.0));
       if (kSections == kEach && lit.since >= 0.0) lit.closed_at = to;
     }
     close_section(lit, path, start);
@@ -172,7 +172,7 @@ void walk_cascade(uint cascade, Ray ray, TableRay path, float start, float from,
 }
 
 // Returns the in-scattering from the tables over [start, end], shadowed as far as the maps reach.
-vec3 shadowed_table_light(Ray ray, float start, float end) {
+Spectrum shadowed_table_light(Ray ray, float start, float end) {
   TableRay path = table_ray_of(ray, start);
   LitSections lit = nothing_lit();
   float t = start;
@@ -191,10 +191,10 @@ vec3 shadowed_table_light(Ray ray, float start, float end) {
 }
 
 // Returns the in-scattering of a homogeneous medium over the lit parts of [start, end], in closed form.
-vec3 homogeneous_light(Ray ray, float start, float end) {
-  vec3 light = vec3(0.0);
-  vec3 before = vec3(1.0);
-  vec3 transmittance, opacity;
+Spectrum homogeneous_light(Ray ray, float start, float end) {
+  Spectrum light = Spectrum(0.0);
+  Spectrum before = Spectrum(1.0);
+  Spectrum transmittance, opacity;
   float t = start;
   float depth_per_m = max(dot(ray.direction, frame.camera_forward), 1e-6);
   for (uint c = frame.first_marched_cascade; c < frame.cascade_count; ++c) {
@@ -232,8 +232,8 @@ vec3 homogeneous_light(Ray ray, float start, float end) {
 }
 
 // Returns the in-scattering over [start, end] in the selected modes.
-vec3 inscattering(Ray ray, float start, float end) {
-  vec3 light = vec3(0.0);
+Spectrum inscattering(Ray ray, float start, float end) {
+  Spectrum light = Spectrum(0.0);
   if (kHomogeneous) return kSingle == kNone ? light : homogeneous_light(ray, start, end);
   if (kSingle == kIntegration) light += integrated_light(ray, start, end);
   if (kLitTables || frame.unoccluded != 0u) light += shadowed_table_light(ray, start, end);
@@ -249,11 +249,11 @@ void main() {
   float depth = load_depth(pixel);
   Ray ray = view_ray(frame, pixel, depth);
   float start, end;
-  vec3 inscattered = vec3(0.0);
-  vec3 path_transmittance = vec3(1.0);
+  Spectrum inscattered = Spectrum(0.0);
+  Spectrum path_transmittance = Spectrum(1.0);
   if (clip_to_medium(ray, start, end)) {
     inscattered = inscattering(ray, start, end);
-    vec3 opacity;
+    Spectrum opacity;
     if (kHomogeneous) homogeneous_attenuation(end - start, path_transmittance, opacity);
     float from_altitude = altitude_along(ray.altitude, ray.cos_zenith, start, medium.planet_radius_m);
     float from_cosine = cos_zenith_along(ray.altitude, ray.cos_zenith, start, medium.planet_radius_m);
@@ -261,8 +261,8 @@ void main() {
       path_transmittance =
           transmittance(medium, density_integral_along(medium, from_altitude, from_cosine, end - start));
   }
-  vec3 color = inscattered * frame.sun_irradiance;
-  if (frame.only == 0u) color += background * path_transmittance;
+  vec3 color = COLOR(inscattered) * frame.sun_irradiance;
+  if (frame.only == 0u) color += TRANSMITTED(background, path_transmittance);
   store_color(pixel, color);
   count(kSamplesMarched, 1u);
   count(kMarchSteps, steps_done);

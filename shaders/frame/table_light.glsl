@@ -18,12 +18,12 @@ struct LitSections {
   float since;         // kEach: start of the current lit section; < 0: in shadow
   float closed_at;     // kEach: end of that section once found; close_section() must follow
   InScattering light;  // kEach: in-scattering of the completed sections
-  vec3 tint;         // kColors: integral of the glass colour over the lit length; with kEach, over the current section
+  Spectrum tint;     // kColors: integral of the glass colour over the lit length; with kEach, over the current section
   float dark_until;  // from planet_shadow_end()
 };
 
 LitSections nothing_lit() {
-  return LitSections(-1.0, 0.0, -1.0, -1.0, InScattering(vec3(0.0), vec3(0.0)), vec3(0.0), -1.0);
+  return LitSections(-1.0, 0.0, -1.0, -1.0, InScattering(Spectrum(0.0), Spectrum(0.0)), Spectrum(0.0), -1.0);
 }
 
 // Returns the distance at which a ray that begins in the planet's shadow leaves it, or -1 if it begins in sunlight. No
@@ -42,7 +42,7 @@ float planet_shadow_end(Ray ray, float start) {
 float section_from(LitSections lit, float from, float start) { return from - lit.dark_until < 1e-3 ? start : from; }
 
 // Adds the section [from, to], of which `lit_fraction` is lit with this colour.
-void add_section(inout LitSections lit, float from, float to, float lit_fraction, vec3 color) {
+void add_section(inout LitSections lit, float from, float to, float lit_fraction, Spectrum color) {
   if (kSections == kContiguous) {
     if (lit_fraction > 0.0 && lit.first < 0.0) lit.first = to - lit_fraction * (to - from);
     lit.total += lit_fraction * (to - from);
@@ -59,9 +59,9 @@ InScattering add(InScattering a, InScattering b) { return InScattering(a.single 
 
 // Returns a section's light tinted by the mean glass colour over its lit length: the tables cannot resolve positions
 // within a section.
-InScattering tinted(InScattering light, vec3 tint, float length_m) {
+InScattering tinted(InScattering light, Spectrum tint, float length_m) {
   if (!kColors) return light;
-  vec3 mean = tint / max(length_m, 1e-6);
+  Spectrum mean = tint / max(length_m, 1e-6);
   return InScattering(light.single * mean, light.high * mean);
 }
 
@@ -95,15 +95,15 @@ void close_section(inout LitSections lit, TableRay path, float start) {
     InScattering section = section_light(path, start, section_from(lit, lit.since, start), lit.closed_at);
     lit.light = add(lit.light, tinted(section, lit.tint, lit.closed_at - lit.since));
   }
-  if (kColors && lit.closed_at >= 0.0) lit.tint = vec3(0.0);
+  if (kColors && lit.closed_at >= 0.0) lit.tint = Spectrum(0.0);
   lit.since = lit.closed_at >= 0.0 ? -1.0 : lit.since;
   lit.closed_at = -1.0;
 }
 
 // Returns the in-scattering from the tables: of the lit part, which was found up to distance t; of the rest up to
 // `end`, which is not shadowed; and of the whole ray in the modes that ignore shadows.
-vec3 table_light(LitSections lit, TableRay path, float start, float t, float end) {
-  vec3 light = vec3(0.0);
+Spectrum table_light(LitSections lit, TableRay path, float start, float t, float end) {
+  Spectrum light = Spectrum(0.0);
   if (kSections == kEach) {
     if (kSingle == kTable) light += lit.light.single;
     if (kOccluded) light += lit.light.high;

@@ -23,8 +23,8 @@ struct TableRay {
 
 // In-scattered radiance at the origin of a ray.
 struct InScattering {
-  vec3 single;  // order 1
-  vec3 high;    // orders 2 and higher
+  Spectrum single;  // order 1
+  Spectrum high;    // orders 2 and higher
 };
 
 TableRay table_ray(Medium m, float h, float mu, float mu_s, float nu, bool below) {
@@ -51,9 +51,9 @@ TableRay ray_further_on(Medium m, TableRay ray, float distance_m) {
 // The terms that are constant along a ray: scattering times phase function, and the two slices of the angle axis.
 // Compute them once, before a loop over points of the ray; some compilers do not hoist them.
 struct TableAngle {
-  vec3 rayleigh;  // scattering x phase function [1 / (m sr)]
-  vec3 mie;
-  vec3 shape;  // angle_shape()
+  Spectrum rayleigh;  // scattering x phase function [1 / (m sr)]
+  Spectrum mie;
+  Spectrum shape;  // angle_shape()
   float slices;
   float first;
   float part;  // weight of the second slice
@@ -61,8 +61,8 @@ struct TableAngle {
 
 TableAngle table_angle(TableShape t, Medium m, float nu) {
   TableAngle a;
-  a.rayleigh = m.rayleigh_scattering * rayleigh_phase(nu);
-  a.mie = m.mie_scattering * mie_phase(m, nu);
+  a.rayleigh = RAYLEIGH_SCATTERING(m) * rayleigh_phase(nu);
+  a.mie = MIE_SCATTERING(m) * mie_phase(m, nu);
   a.shape = angle_shape(angle_shape_of(m), nu);
   a.slices = float(t.angles);
   float slice = clamp(q_from_angle(t, nu) * a.slices - 0.5, 0.0, a.slices - 1.0);
@@ -90,8 +90,8 @@ TableCoordinates table_coordinates(TableShape t, Medium m, TableAngle angle, Tab
                           vec3(u, v, (angle.first + 1.0 + w) / angle.slices));
 }
 
-vec3 table_value(sampler3D table, TableCoordinates c, float part) {
-  return value_from_texel(mix(textureLod(table, c.near, 0.0).rgb, textureLod(table, c.far, 0.0).rgb, part));
+Spectrum table_value(sampler3D table, TableCoordinates c, float part) {
+  return value_from_texel(mix(CHANNELS(textureLod(table, c.near, 0.0)), CHANNELS(textureLod(table, c.far, 0.0)), part));
 }
 
 // Returns the in-scattering of a whole ray with the density integral `integral`.
@@ -107,31 +107,31 @@ InScattering inscattering_from_integral(TableShape t, Medium m, TableAngle angle
 
 // Returns the optical depth of Rayleigh scattering and aerosol between the altitude h and the lowest of the tables
 // above it, along a unit of the vertical.
-vec3 depth_below_tables(Medium m, float h) {
+Spectrum depth_below_tables(Medium m, float h) {
   float H = m.rayleigh_scale_height_m;
   float G = m.mie_scale_height_m;
   float lowest = lowest_table_altitude(m);
-  return m.rayleigh_scattering * (H * (exp(min(-h / H, 60.0)) - exp(-lowest / H))) +
-         m.mie_extinction * (G * (exp(min(-h / G, 60.0)) - exp(-lowest / G)));
+  return RAYLEIGH_SCATTERING(m) * (H * (exp(min(-h / H, 60.0)) - exp(-lowest / H))) +
+         MIE_EXTINCTION(m) * (G * (exp(min(-h / G, 60.0)) - exp(-lowest / G)));
 }
 
 // Returns a factor for the orders >= 2 of a ray that begins below the lowest altitude of the tables. The tables give
 // the light at that altitude, which is brighter. The factor is an estimate: light that does not come from above that
 // altitude is absorbed in part, and scattered back in part, in proportion to 1 - g. Both parts are fitted to the path
 // tracer (docs/adr/0007-below-sea-level.md).
-vec3 deep_factor(Medium m, TableRay ray) {
+Spectrum deep_factor(Medium m, TableRay ray) {
   float h = ray.altitude;
   float lowest = lowest_table_altitude(m);
-  if (h >= lowest) return vec3(1.0);
+  if (h >= lowest) return Spectrum(1.0);
   float slant = 1.0 / max(ray.cos_sun_zenith, 0.2);
   float G = m.mie_scale_height_m;
   float above = G * exp(-lowest / G);
   float here = G * exp(min(-h / G, 60.0));
-  vec3 back = (1.25 * (1.0 - max(m.mie_g, 0.0)) * slant) * m.mie_scattering;
-  vec3 absorbed = (0.5 * slant * (here - above)) * (m.mie_extinction - m.mie_scattering);
-  vec3 attenuation = exp(-absorbed) * (1.0 + back * above) / (1.0 + back * here);
-  vec3 from_above = exp(-depth_below_tables(m, h) / max(ray.cos_zenith, 1.0e-3));
-  return mix(attenuation, vec3(1.0), from_above);
+  Spectrum back = (1.25 * (1.0 - max(m.mie_g, 0.0)) * slant) * MIE_SCATTERING(m);
+  Spectrum absorbed = (0.5 * slant * (here - above)) * (MIE_EXTINCTION(m) - MIE_SCATTERING(m));
+  Spectrum attenuation = exp(-absorbed) * (1.0 + back * above) / (1.0 + back * here);
+  Spectrum from_above = exp(-depth_below_tables(m, h) / max(ray.cos_zenith, 1.0e-3));
+  return mix(attenuation, Spectrum(1.0), from_above);
 }
 
 InScattering inscattering_to_end(TableShape t, Medium m, TableAngle angle, TableRay ray) {
@@ -143,21 +143,21 @@ InScattering inscattering_to_end(TableShape t, Medium m, TableAngle angle, Table
 // attenuated by the medium before `from`.
 InScattering inscattering_between(TableShape t, Medium m, TableRay ray, float from, float to) {
   float end = min(to, ray.end_m);
-  InScattering light = InScattering(vec3(0.0), vec3(0.0));
+  InScattering light = InScattering(Spectrum(0.0), Spectrum(0.0));
   if (end <= from) return light;
   // A loop, because each inlined copy of the look-up is large.
   int ends = end < ray.end_m ? 2 : 1;
   TableAngle angle = table_angle(t, m, ray.cos_view_sun);
   for (int i = 0; i < ends; ++i) {
     float d = i == 0 ? from : end;
-    vec3 path_transmittance = transmittance(m, density_integral_along(m, ray.altitude, ray.cos_zenith, d));
+    Spectrum path_transmittance = transmittance(m, density_integral_along(m, ray.altitude, ray.cos_zenith, d));
     InScattering beyond = inscattering_to_end(t, m, angle, ray_further_on(m, ray, d));
-    vec3 weight = i == 0 ? path_transmittance : -path_transmittance;
+    Spectrum weight = i == 0 ? path_transmittance : -path_transmittance;
     light.single += weight * beyond.single;
     light.high += weight * beyond.high;
   }
-  light.single = max(light.single, vec3(0.0));
-  light.high = max(light.high, vec3(0.0));
+  light.single = max(light.single, Spectrum(0.0));
+  light.high = max(light.high, Spectrum(0.0));
   return light;
 }
 

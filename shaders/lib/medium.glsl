@@ -4,6 +4,7 @@
 #define TYNDALL_LIB_MEDIUM
 
 #include "lib/portable.glsl"
+#include "lib/spectrum.glsl"
 #include "shared/medium.h"
 
 // Returns the densities at altitude h, relative to sea level (ozone: to the peak of its tent-shaped layer). They are
@@ -33,13 +34,13 @@ vec3 mean_densities(IN(Medium) m, vec3 a, vec3 b, float climb) {
 }
 
 // Returns the optical depth per channel for a density integral.
-vec3 optical_depth(IN(Medium) m, vec3 integral) {
-  return m.rayleigh_scattering * integral.x + m.mie_extinction * integral.y + m.ozone_absorption * integral.z;
+Spectrum optical_depth(IN(Medium) m, vec3 integral) {
+  return RAYLEIGH_SCATTERING(m) * integral.x + MIE_EXTINCTION(m) * integral.y + OZONE_ABSORPTION(m) * integral.z;
 }
 
 // Returns the extinction coefficient at altitude h [1/m].
-vec3 extinction_at(IN(Medium) m, float h) { return optical_depth(m, densities(m, h)); }
+Spectrum extinction_at(IN(Medium) m, float h) { return optical_depth(m, densities(m, h)); }
 
-vec3 transmittance(IN(Medium) m, vec3 integral) { return exp(-optical_depth(m, integral)); }
+Spectrum transmittance(IN(Medium) m, vec3 integral) { return exp(-optical_depth(m, integral)); }
 
 #endif

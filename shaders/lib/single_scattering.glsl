@@ -76,8 +76,8 @@ float panel_length(IN(Medium) m, float h0, float mu, float mu_s, float nu, float
 
   // Limit by optical depth from the camera, with the extinction at the panel's lower end.
   float h_dense = mu_d < 0.0 ? h - min(steepness * span, step_h) : h;
-  vec3 extinction = extinction_at(m, h_dense);
-  float densest = max(extinction.x, max(extinction.y, extinction.z));
+  Spectrum extinction = extinction_at(m, h_dense);
+  float densest = LARGEST(extinction);
   span = min(span, fineness * 1.5 * (1.0 + 0.25 * tau_from_start) / max(densest, 1.0e-30));
 
   // Limit by the change of the sun's transmittance: by its optical depth, by z near the horizontal and, below the
@@ -98,15 +98,15 @@ float panel_length(IN(Medium) m, float h0, float mu, float mu_s, float nu, float
 }
 
 // Returns the single scattering of the lit part [start, end] of the ray. `steps` is as in single_scattering().
-vec3 lit_scattering(IN(Medium) m, float h0, float mu, float mu_s, float nu, float start, float end, int steps) {
+Spectrum lit_scattering(IN(Medium) m, float h0, float mu, float mu_s, float nu, float start, float end, int steps) {
   float fineness = 12.0 / float(max(steps, 1));
   int max_panels = 8 + 6 * steps;
   float R = m.planet_radius_m;
-  vec3 rayleigh = m.rayleigh_scattering * rayleigh_phase(nu);
-  vec3 mie = m.mie_scattering * mie_phase(m, nu);
+  Spectrum rayleigh = RAYLEIGH_SCATTERING(m) * rayleigh_phase(nu);
+  Spectrum mie = MIE_SCATTERING(m) * mie_phase(m, nu);
   vec4 node = vec4(0.069431844202974, 0.330009478207572, 0.669990521792428, 0.930568155797026);
   vec4 weight = vec4(0.173927422568727, 0.326072577431273, 0.326072577431273, 0.173927422568727);
-  vec3 radiance = vec3(0.0);
+  Spectrum radiance = Spectrum(0.0);
   float d = start;
   float tau = 0.0;
   for (int panel = 0; panel < max_panels; ++panel) {
@@ -129,9 +129,9 @@ vec3 lit_scattering(IN(Medium) m, float h0, float mu, float mu_s, float nu, floa
       vec3 density = densities(m, h);
       radiance += weight[i] * span * transmittance(m, integral) * (rayleigh * density.x + mie * density.y);
     }
-    vec3 crossed =
+    Spectrum crossed =
         optical_depth(m, density_integral_along(m, altitude_along(h0, mu, d, R), cos_zenith_along(h0, mu, d, R), span));
-    tau += max(crossed.x, max(crossed.y, crossed.z));
+    tau += LARGEST(crossed);
     d = span < left ? d + span : end;
   }
   return radiance;
@@ -139,7 +139,7 @@ vec3 lit_scattering(IN(Medium) m, float h0, float mu, float mu_s, float nu, floa
 
 // Returns radiance / E0 of the part [start, end] of the ray [m] as seen from its origin. `steps` is roughly the number
 // of panels for a ray through the whole atmosphere: 12 gives an error of 0.1 %, 4 about one per cent.
-vec3 single_scattering(IN(Medium) m, float h0, float mu, float mu_s, float nu, float start, float end, int steps) {
+Spectrum single_scattering(IN(Medium) m, float h0, float mu, float mu_s, float nu, float start, float end, int steps) {
   float shadow_start;
   float shadow_end;
   float first_end = end;
@@ -148,7 +148,7 @@ vec3 single_scattering(IN(Medium) m, float h0, float mu, float mu_s, float nu, f
     first_end = clamp(shadow_start, start, end);
     second_start = clamp(shadow_end, start, end);
   }
-  vec3 radiance = vec3(0.0);
+  Spectrum radiance = Spectrum(0.0);
   for (int part = 0; part < 2; ++part) {
     float a = part == 0 ? start : second_start;
     float b = part == 0 ? first_end : end;
@@ -160,14 +160,14 @@ vec3 single_scattering(IN(Medium) m, float h0, float mu, float mu_s, float nu, f
 }
 
 // Returns radiance / E0 of the ray up to the ground or the top of the atmosphere, and the transmittance to that end.
-vec3 single_scattering_to_end(IN(Medium) m, float h0, float mu, float mu_s, float nu, int steps,
-                              OUT(vec3) transmittance_to_end) {
+Spectrum single_scattering_to_end(IN(Medium) m, float h0, float mu, float mu_s, float nu, int steps,
+                                  OUT(Spectrum) transmittance_to_end) {
   float start;
   float end;
   bool hits_ground;
-  transmittance_to_end = vec3(1.0);
+  transmittance_to_end = Spectrum(1.0);
   if (!atmosphere_segment(h0, mu, m.atmosphere_height_m, m.planet_radius_m, start, end, hits_ground)) {
-    return vec3(0.0);
+    return Spectrum(0.0);
   }
   transmittance_to_end = transmittance(m, density_integral_along(m, h0, mu, end));
   return single_scattering(m, h0, mu, mu_s, nu, start, end, steps);

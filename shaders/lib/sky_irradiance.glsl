@@ -9,14 +9,14 @@
 // the square of the variable, which concentrates the nodes in the aureole.
 // `panels` is the number of four-point panels on each side of the sun in zenith angle, and in azimuth over a half
 // circle (the other half is its mirror image). `steps` is as in single_scattering().
-vec3 sky_irradiance_single(IN(Medium) m, float h, float mu_s, int panels, int steps) {
+Spectrum sky_irradiance_single(IN(Medium) m, float h, float mu_s, int panels, int steps) {
   float pi = 3.14159265358979;
   vec4 node = vec4(0.069431844202974, 0.330009478207572, 0.669990521792428, 0.930568155797026);
   vec4 weight = vec4(0.173927422568727, 0.326072577431273, 0.326072577431273, 0.173927422568727);
   float sun_zenith = acos(clamp(mu_s, 0.0, 1.0));  // a sun below the horizon counts as on the horizon
   float sin_sun = sqrt(max((1.0 - mu_s) * (1.0 + mu_s), 0.0));
   int nodes = 4 * panels;
-  vec3 irradiance = vec3(0.0);
+  Spectrum irradiance = Spectrum(0.0);
   for (int side = 0; side < 2; ++side) {
     float reach = side == 0 ? sun_zenith : 0.5 * pi - sun_zenith;
     if (reach > 1.0e-6) {
@@ -33,7 +33,7 @@ vec3 sky_irradiance_single(IN(Medium) m, float h, float mu_s, int panels, int st
           float v = (float(j / 4) + node[j % 4]) / float(panels);
           float nu = clamp(mu * mu_s + sin_zenith * sin_sun * cos(pi * v * v), -1.0, 1.0);
           float azimuth_weight = 2.0 * 2.0 * pi * v * weight[j % 4] / float(panels);
-          vec3 unused;
+          Spectrum unused;
           irradiance += zenith_weight * azimuth_weight * single_scattering_to_end(m, h, mu, mu_s, nu, steps, unused);
         }
       }

@@ -149,7 +149,7 @@ float u_for_lookup(IN(TableShape) t, IN(Medium) m, float h, float mu_s) {
   // For rays from below sea level, the texel above them means sea level itself (table_altitude()).
   float high = first + 1.0 == texels_below_sea(t) ? 0.0 : altitude_from_u(t, m, (first + 1.5) / n);
   float R = m.planet_radius_m;
-  float extinction = max(m.mie_extinction.x, max(m.mie_extinction.y, m.mie_extinction.z));
+  float extinction = LARGEST(MIE_EXTINCTION(m));
   float integral = exponential_density_integral(0.0, max(mu_s, kLowestWeighingSun) * R, m.mie_scale_height_m, R);
   float quarter_depth = 0.25 * extinction * integral;
   float root = sunlight_root(m, low, quarter_depth);

@@ -13,9 +13,9 @@
 #include "lib/phase.glsl"
 
 struct NormalisationFactors {
-  vec3 rayleigh;  // [m]
-  vec3 mie;       // [m]
-  vec3 high;      // [sr], times radiance / E0
+  Spectrum rayleigh;  // [m]
+  Spectrum mie;       // [m]
+  Spectrum high;      // [sr], times radiance / E0
 };
 
 // Returns (1 - exp(-tau)) / tau: the mean transmittance within a slab of optical depth tau.
@@ -25,12 +25,12 @@ float mean_transmittance(float tau) {
 
 // Returns the normalisation factors for the density integral of a whole ray.
 NormalisationFactors normalisation_factors(IN(Medium) m, vec3 integral) {
-  vec3 tau = optical_depth(m, integral);
-  vec3 mean = vec3(mean_transmittance(tau.x), mean_transmittance(tau.y), mean_transmittance(tau.z));
+  Spectrum tau = optical_depth(m, integral);
+  Spectrum mean = EACH_CHANNEL(mean_transmittance, tau);
   NormalisationFactors g;
   g.rayleigh = max(integral.x, 1.0e-30) * mean;
   g.mie = max(integral.y, 1.0e-30) * mean;
-  g.high = m.rayleigh_scattering * g.rayleigh + m.mie_scattering * g.mie;
+  g.high = RAYLEIGH_SCATTERING(m) * g.rayleigh + MIE_SCATTERING(m) * g.mie;
   return g;
 }
 
@@ -43,19 +43,19 @@ const float kShapeAureole = 0.5;
 const float kShapeAsymmetry = 0.7;  // of the aureole, over the asymmetry of the aerosol's phase function
 // The parts of the shape that only depend on the medium. Compute them once, before a loop.
 struct AngleShape {
-  vec3 aureole;
+  Spectrum aureole;
   float g;
 };
 AngleShape angle_shape_of(IN(Medium) m) {
-  vec3 aerosol = m.mie_scale_height_m * m.mie_scattering;
-  vec3 all = aerosol + m.rayleigh_scale_height_m * m.rayleigh_scattering;
+  Spectrum aerosol = m.mie_scale_height_m * MIE_SCATTERING(m);
+  Spectrum all = aerosol + m.rayleigh_scale_height_m * RAYLEIGH_SCATTERING(m);
   AngleShape s;
-  s.aureole = kShapeAureole * 12.5663706143592 * aerosol / max(all, vec3(1.0e-30));
+  s.aureole = kShapeAureole * 12.5663706143592 * aerosol / max(all, Spectrum(1.0e-30));
   s.g = kShapeAsymmetry * m.mie_g;
   return s;
 }
-vec3 angle_shape(IN(AngleShape) s, float nu) {
-  return vec3(1.0 + kShapeRayleigh * nu * nu) + henyey_greenstein_phase(nu, s.g) * s.aureole;
+Spectrum angle_shape(IN(AngleShape) s, float nu) {
+  return Spectrum(1.0 + kShapeRayleigh * nu * nu) + henyey_greenstein_phase(nu, s.g) * s.aureole;
 }
 
 // Returns the density-weighted mean distance of a ray's medium from its origin [m]; Rayleigh density is the weight. The
@@ -71,9 +71,9 @@ float density_weighted_mean_distance(IN(Medium) m, float h, float mu, float end_
   return clamp(moment / max(integral.x, 1.0e-30) - (R + h) * mu, 0.0, end_m);
 }
 
-vec3 texel_from_value(vec3 value) { return sqrt(sqrt(max(value, vec3(0.0)))); }
-vec3 value_from_texel(vec3 texel) {
-  vec3 squared = texel * texel;
+Spectrum texel_from_value(Spectrum value) { return sqrt(sqrt(max(value, Spectrum(0.0)))); }
+Spectrum value_from_texel(Spectrum texel) {
+  Spectrum squared = texel * texel;
   return squared * squared;
 }
 
@@ -103,10 +103,10 @@ vec3 density_integral_to_sun(IN(Medium) m, float h, float q, OUT(bool) hidden) {
 }
 
 // Returns the transmittance towards the sun; 0 if the planet hides it.
-vec3 sun_transmittance_at(IN(Medium) m, float h, float q) {
+Spectrum sun_transmittance_at(IN(Medium) m, float h, float q) {
   bool hidden;
   vec3 integral = density_integral_to_sun(m, h, q, hidden);
-  return hidden ? vec3(0.0) : transmittance(m, integral);
+  return hidden ? Spectrum(0.0) : transmittance(m, integral);
 }
 
 #endif

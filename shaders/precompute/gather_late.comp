@@ -9,6 +9,7 @@
 #include "lib/table_values.glsl"
 #include "precompute/late_source.glsl"
 #include "precompute/source_lookup.glsl"
+#include "precompute/ray_spectra.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -33,23 +34,23 @@ const float kCosine[kLateAzimuths] =
 
 // Terms 0 and 1 between two suns, as they are stored.
 struct FirstTerms {
-  vec3 mean;
-  vec3 ratio;
+  Spectrum mean;
+  Spectrum ratio;
 };
 
 FirstTerms between_suns(uint altitude, uint zenith, uint sun, float part) {
   uint mean = late_source_index(altitude, zenith, 0u, sun);
   uint ratio = late_source_index(altitude, zenith, 1u, sun);
-  return FirstTerms(mix(late_terms[mean].rgb, late_terms[mean + 1u].rgb, part),
-                    mix(late_terms[ratio].rgb, late_terms[ratio + 1u].rgb, part));
+  return FirstTerms(mix(CHANNELS(late_terms[mean]), CHANNELS(late_terms[mean + 1u]), part),
+                    mix(CHANNELS(late_terms[ratio]), CHANNELS(late_terms[ratio + 1u]), part));
 }
 
 FirstTerms mix_terms(FirstTerms a, FirstTerms b, float part) {
   return FirstTerms(mix(a.mean, b.mean, part), mix(a.ratio, b.ratio, part));
 }
 
-vec3 term_at(uint m, uint altitude, uint zenith, uint sun) {
-  return late_terms[late_source_index(altitude, zenith, m, sun)].rgb;
+Spectrum term_at(uint m, uint altitude, uint zenith, uint sun) {
+  return CHANNELS(late_terms[late_source_index(altitude, zenith, m, sun)]);
 }
 
 void main() {
@@ -69,9 +70,9 @@ void main() {
   float q0 = (R + start.x) * mu_s;
   float mu = start.y;
   float spread = sqrt(max((1.0 - mu * mu) * (1.0 - mu_s * mu_s), 0.0));
-  vec3 radiance[kLateAzimuths] = vec3[kLateAzimuths](vec3(0.0), vec3(0.0));
-  vec3 terms[kLateTerms];
-  for (uint m = 0u; m < kLateTerms; ++m) terms[m] = vec3(0.0);
+  Spectrum radiance[kLateAzimuths] = Spectrum[kLateAzimuths](Spectrum(0.0), Spectrum(0.0));
+  Spectrum terms[kLateTerms];
+  for (uint m = 0u; m < kLateTerms; ++m) terms[m] = Spectrum(0.0);
   for (uint i = 0u; i < count; ++i) {
     RayNode node = rays[ray].high_nodes[i];
     uint a = min(uint(node.place.x), kGatherAltitudes - 2u);
@@ -88,12 +89,13 @@ void main() {
       FirstTerms high = mix_terms(between_suns(a + 1u, z, s, part), between_suns(a + 1u, z + 1u, s, part), z_part);
       FirstTerms here = mix_terms(low, high, a_part);
       float cosine = clamp(cos_azimuth(node.place.z, sun_here, nu), -1.0, 1.0);
-      radiance[k] += node.path.rgb * value_from_texel(here.mean) * max(1.0 + here.ratio * cosine, vec3(0.0));
+      radiance[k] +=
+          HIGH_PATH(rays[ray], node, i) * value_from_texel(here.mean) * max(1.0 + here.ratio * cosine, Spectrum(0.0));
     }
     for (uint m = kLateModes; m < modes; ++m) {
-      vec3 low = mix(term_at(m, a, z, sun), term_at(m, a, z + 1u, sun), z_part);
-      vec3 high = mix(term_at(m, a + 1u, z, sun), term_at(m, a + 1u, z + 1u, sun), z_part);
-      terms[m] += node.path.rgb * mix(low, high, a_part);
+      Spectrum low = mix(term_at(m, a, z, sun), term_at(m, a, z + 1u, sun), z_part);
+      Spectrum high = mix(term_at(m, a + 1u, z, sun), term_at(m, a + 1u, z + 1u, sun), z_part);
+      terms[m] += HIGH_PATH(rays[ray], node, i) * mix(low, high, a_part);
     }
   }
   if (zenith < kGatherZeniths / 2u) {
@@ -102,11 +104,11 @@ void main() {
       float index = gather_sun_index(suns, (q0 + end.a * nu) / (R + gather_ground(start.x)));
       uint s = min(uint(index), kGatherSuns - 2u);
       uint row = irradiance_row(push.order - 2u, gather_ground_row(altitude) + s);
-      vec3 light = mix(irradiance[row].rgb, irradiance[row + 1u].rgb, index - float(s));
-      radiance[k] += end.rgb * light * (albedo / kPi);
+      Spectrum light = mix(CHANNELS(irradiance[row]), CHANNELS(irradiance[row + 1u]), index - float(s));
+      radiance[k] += RAY_END(rays[ray], end) * light * (albedo / kPi);
     }
   }
   terms[0] = 0.5 * (radiance[0] + radiance[1]);
   terms[1] = (radiance[0] - radiance[1]) / (kCosine[0] - kCosine[1]);
-  for (uint m = 0u; m < modes; ++m) incident[late_incident_index(altitude, zenith, m, sun)] = vec4(terms[m], 0.0);
+  for (uint m = 0u; m < modes; ++m) incident[late_incident_index(altitude, zenith, m, sun)] = STORED(terms[m], 0.0);
 }

@@ -6,6 +6,7 @@
 #extension GL_EXT_control_flow_attributes : require
 
 #include "precompute/source_lookup.glsl"
+#include "precompute/ray_spectra.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -38,31 +39,32 @@ void main() {
   float q0 = (R + start.x) * mu_s;
   float spread = sqrt(max((1.0 - start.y * start.y) * (1.0 - mu_s * mu_s), 0.0));
   float nu[kAnglesPerInvocation];
-  vec3 radiance[kAnglesPerInvocation];
+  Spectrum radiance[kAnglesPerInvocation];
   [[unroll]] for (uint k = 0u; k < kAnglesPerInvocation; ++k) {
     nu[k] = clamp(start.y * mu_s + spread * cos(gather_azimuth(azimuth + k)), -1.0, 1.0);
-    radiance[k] = vec3(0.0);
+    radiance[k] = Spectrum(0.0);
   }
   for (uint i = 0u; i < count; ++i) {
     RayNode node = rays[ray].high_nodes[i];
     [[unroll]] for (uint k = 0u; k < kAnglesPerInvocation; ++k) {
       float sun_here = (q0 + node.path.a * nu[k]) / node.place.w;
       float azimuth_here = acos(clamp(cos_azimuth(node.place.z, sun_here, nu[k]), -1.0, 1.0));
-      radiance[k] += node.path.rgb * source_at(source_function, node.place.x, node.place.y,
-                                               source_azimuth_index(azimuth_here), gather_sun_index(suns, sun_here));
+      radiance[k] += HIGH_PATH(rays[ray], node, i) * source_at(source_function, node.place.x, node.place.y,
+                                                               source_azimuth_index(azimuth_here),
+                                                               gather_sun_index(suns, sun_here));
     }
   }
   // Below the horizon, the ray ends on the ground.
   if (zenith < kGatherZeniths / 2u) {
-    vec3 reflected = end.rgb * (albedo / kPi);
+    Spectrum reflected = RAY_END(rays[ray], end) * (albedo / kPi);
     [[unroll]] for (uint k = 0u; k < kAnglesPerInvocation; ++k) {
       float index = gather_sun_index(suns, (q0 + end.a * nu[k]) / (R + gather_ground(start.x)));
       uint s = min(uint(index), kGatherSuns - 2u);
       uint row = irradiance_row(push.order - 2u, gather_ground_row(altitude) + s);
-      radiance[k] += reflected * mix(irradiance[row].rgb, irradiance[row + 1u].rgb, index - float(s));
+      radiance[k] += reflected * mix(CHANNELS(irradiance[row]), CHANNELS(irradiance[row + 1u]), index - float(s));
     }
   }
   [[unroll]] for (uint k = 0u; k < kAnglesPerInvocation; ++k) {
-    incident[gather_index(altitude, zenith, azimuth + k, sun)] = vec4(radiance[k], 0.0);
+    incident[gather_index(altitude, zenith, azimuth + k, sun)] = STORED(radiance[k], 0.0);
   }
 }

@@ -8,6 +8,7 @@
 #include "lib/phase.glsl"
 #include "lib/table_values.glsl"
 #include "precompute/gather_grid.glsl"
+#include "precompute/ray_spectra.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -33,17 +34,17 @@ void main() {
   float q0 = (m.planet_radius_m + start.x) * mu_s;
   float spread = sqrt(max((1.0 - start.y * start.y) * (1.0 - mu_s * mu_s), 0.0));
   float nu[kAnglesPerInvocation];
-  vec3 rayleigh[kAnglesPerInvocation];
-  vec3 mie[kAnglesPerInvocation];
+  Spectrum rayleigh[kAnglesPerInvocation];
+  Spectrum mie[kAnglesPerInvocation];
   [[unroll]] for (uint k = 0u; k < kAnglesPerInvocation; ++k) {
     nu[k] = clamp(start.y * mu_s + spread * cos(gather_azimuth(azimuth + k)), -1.0, 1.0);
-    rayleigh[k] = vec3(0.0);
-    mie[k] = vec3(0.0);
+    rayleigh[k] = Spectrum(0.0);
+    mie[k] = Spectrum(0.0);
   }
   for (uint i = 0u; i < count; ++i) {
     RayNode node = rays[ray].single_nodes[i];
     [[unroll]] for (uint k = 0u; k < kAnglesPerInvocation; ++k) {
-      vec3 light = node.path.rgb * sun_transmittance_at(m, node.place.z, q0 + node.path.a * nu[k]);
+      Spectrum light = SINGLE_PATH(node) * sun_transmittance_at(m, node.place.z, q0 + node.path.a * nu[k]);
       rayleigh[k] += light * node.place.x;
       mie[k] += light * node.place.y;
     }
@@ -51,12 +52,12 @@ void main() {
   // Below the horizon, the ray ends on the ground, which the sun lights.
   bool below = zenith < kGatherZeniths / 2u;
   float ground = gather_ground(start.x);
-  vec3 reflected = below ? end.rgb * (m.ground_albedo / kPi) : vec3(0.0);
+  Spectrum reflected = below ? RAY_END(rays[ray], end) * (m.ground_albedo / kPi) : Spectrum(0.0);
   [[unroll]] for (uint k = 0u; k < kAnglesPerInvocation; ++k) {
     float q = q0 + end.a * nu[k];
-    vec3 radiance = reflected * (max(q / (m.planet_radius_m + ground), 0.0) * sun_transmittance_at(m, ground, q));
+    Spectrum radiance = reflected * (max(q / (m.planet_radius_m + ground), 0.0) * sun_transmittance_at(m, ground, q));
     radiance +=
-        m.rayleigh_scattering * rayleigh_phase(nu[k]) * rayleigh[k] + m.mie_scattering * mie_phase(m, nu[k]) * mie[k];
-    incident[gather_index(altitude, zenith, azimuth + k, sun)] = vec4(radiance, 0.0);
+        RAYLEIGH_SCATTERING(m) * rayleigh_phase(nu[k]) * rayleigh[k] + MIE_SCATTERING(m) * mie_phase(m, nu[k]) * mie[k];
+    incident[gather_index(altitude, zenith, azimuth + k, sun)] = STORED(radiance, 0.0);
   }
 }

@@ -3,12 +3,20 @@
 #ifndef TYNDALL_HALF_TEXEL_GLSL
 #define TYNDALL_HALF_TEXEL_GLSL
 
+#include "lib/spectrum.glsl"
+
+#ifdef SPECTRAL
+#define SpectrumBits uvec4
+#else
+#define SpectrumBits uvec3
+#endif
+
 // Returns the nearest numbers with eleven significant bits, which half precision holds exactly from 6.1e-5 to 65504.
-vec3 nearest_half(vec3 value) {
-  uvec3 bits = floatBitsToUint(value);
+Spectrum nearest_half(Spectrum value) {
+  SpectrumBits bits = floatBitsToUint(value);
   return uintBitsToFloat((bits + 0xfffu + (bits >> 13u & 1u)) & 0xffffe000u);
 }
 
-vec4 half_texel(vec3 value) { return vec4(nearest_half(value), 1.0); }
+vec4 half_texel(Spectrum value) { return STORED(nearest_half(value), 1.0); }
 
 #endif

@@ -33,10 +33,10 @@ uint late_incident_index(uint altitude, uint zenith, uint m, uint sun) {
 }
 
 // Returns the part of the aerosol in the scattering coefficient at altitude h.
-vec3 aerosol_part(Medium m, float h) {
+Spectrum aerosol_part(Medium m, float h) {
   vec3 density = densities(m, h);
-  vec3 mie = m.mie_scattering * density.y;
-  return mie / max(m.rayleigh_scattering * density.x + mie, vec3(1.0e-30));
+  Spectrum mie = MIE_SCATTERING(m) * density.y;
+  return mie / max(RAYLEIGH_SCATTERING(m) * density.x + mie, Spectrum(1.0e-30));
 }
 
 #endif

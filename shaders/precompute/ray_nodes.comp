@@ -8,6 +8,7 @@
 #include "precompute/gather_grid.glsl"
 #include "lib/table_values.glsl"
 #include "shared/constant_ids.h"
+#include "precompute/ray_spectra.glsl"
 
 layout(local_size_x = 8, local_size_y = 1) in;
 layout(constant_id = kRaysOfTablesId) const
@@ -45,23 +46,24 @@ float node_altitude(Line line, float d) {
   return clamp(altitude_along(line.h, line.mu, d, R), ground_below(line.h, R), medium.atmosphere_height_m);
 }
 
-vec3 transmittance_along(Line line, float d) {
+Spectrum transmittance_along(Line line, float d) {
   return transmittance(medium, density_integral_along(medium, line.h, line.mu, d));
 }
 
 void write_node(uint ray, uint i, uint kind, Line line, float d, float weight_m) {
   float h = node_altitude(line, d);
   vec2 density = densities(medium, h).xy;
-  vec3 weight = weight_m * transmittance_along(line, d);
+  Spectrum weight = weight_m * transmittance_along(line, d);
   if (kind == kSingle) {
-    rays[ray].single_nodes[i] = RayNode(vec4(weight, d), vec4(density, h, 0.0));
+    rays[ray].single_nodes[i] = SINGLE_NODE(weight, d, density, h);
     return;
   }
   float mu = cos_zenith_along(line.h, line.mu, d, medium.planet_radius_m);
-  vec3 scattering = medium.rayleigh_scattering * density.x + medium.mie_scattering * density.y;
+  Spectrum scattering = RAYLEIGH_SCATTERING(medium) * density.x + MIE_SCATTERING(medium) * density.y;
   rays[ray].high_nodes[i] =
-      RayNode(vec4(weight * scattering, d),
+      RayNode(vec4((weight * scattering).rgb, d),
               vec4(gather_altitude_index(medium, h), source_zenith_index(acos(mu)), mu, medium.planet_radius_m + h));
+  SET_HIGH_PATH(rays[ray], i, weight * scattering)
 }
 
 // Divides the ray into panels of equal effort, and writes the nodes of each. Returns their number.
@@ -102,9 +104,10 @@ void write_factors(uint ray, Line line) {
   float mean_m = density_weighted_mean_distance(medium, line.h, line.mu, line.end, integral);
   float R = medium.planet_radius_m;
   NormalisationFactors factors = normalisation_factors(medium, integral);
-  rays[ray].rayleigh = vec4(1.0 / factors.rayleigh, mean_m);
-  rays[ray].mie = vec4(1.0 / factors.mie, R + altitude_along(line.h, line.mu, mean_m, R));
-  rays[ray].high = vec4(1.0 / max(factors.high, vec3(1.0e-30)), 0.0);
+  rays[ray].rayleigh = vec4((1.0 / factors.rayleigh).rgb, mean_m);
+  rays[ray].mie = vec4((1.0 / factors.mie).rgb, R + altitude_along(line.h, line.mu, mean_m, R));
+  rays[ray].high = vec4((1.0 / max(factors.high, Spectrum(1.0e-30))).rgb, 0.0);
+  SET_FACTORS(rays[ray], factors)
 }
 
 void main() {
@@ -137,11 +140,13 @@ void main() {
     total += (after - before) * effort(medium, line.h, line.mu, 0.5 * (before + after), after - before, tau);
     before = after;
   }
-  vec3 depths = optical_depth(medium, density_integral_along(medium, line.h, line.mu, line.end));
-  float depth = max(depths.x, max(depths.y, depths.z));
+  Spectrum depths = optical_depth(medium, density_integral_along(medium, line.h, line.mu, line.end));
+  float depth = LARGEST(depths);
   float single = float(write_nodes(ray, line, total[kSingle], depth, kSingle));
   float high = float(write_nodes(ray, line, total[kHigh], depth, kHigh));
   rays[ray].start = vec4(line.h, line.mu, single, high);
-  rays[ray].end = vec4(transmittance_along(line, line.end), line.end);
+  Spectrum transmitted = transmittance_along(line, line.end);
+  rays[ray].end = vec4(transmitted.rgb, line.end);
+  SET_END(rays[ray], transmitted)
   write_factors(ray, line);
 }

@@ -25,9 +25,9 @@ vec2 effort(Medium m, float h0, float mu, float d, float step_m, inout float tau
   float R = m.planet_radius_m;
   float h = altitude_along(h0, mu, d, R);
   float cosine = cos_zenith_along(h0, mu, d, R);
-  vec3 extinction = extinction_at(m, h);
-  float clearest = min(extinction.x, min(extinction.y, extinction.z));
-  float densest = max(extinction.x, max(extinction.y, extinction.z));
+  Spectrum extinction = extinction_at(m, h);
+  float clearest = SMALLEST(extinction);
+  float densest = LARGEST(extinction);
   float middle = tau + 0.5 * clearest * step_m;
   tau += clearest * step_m;
   float small_scale = min(m.rayleigh_scale_height_m, m.mie_scale_height_m);

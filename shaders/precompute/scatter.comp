@@ -34,8 +34,8 @@ layout(push_constant) uniform Push {
 }
 push;
 
-shared vec3 light[kGatherZeniths * kModes];
-shared vec3 scattered[kSourceZeniths * kModes];
+shared Spectrum light[kGatherZeniths * kModes];
+shared Spectrum scattered[kSourceZeniths * kModes];
 
 // Cosines of the multiples of an angle by recurrence: advance() goes from cos(x - step) and cos(x) to cos(x) and
 // cos(x + step).
@@ -61,16 +61,16 @@ void transform_light(uint lane, uint altitude, uint sun) {
     uint first = i % kGroups * kModesEach;
     Cosine c[kModesEach];
     float twice[kModesEach];
-    vec3 sums[kModesEach];
+    Spectrum sums[kModesEach];
     [[unroll]] for (uint n = 0u; n < kModesEach; ++n) {
       float m = float(first + n);
       twice[n] = 2.0 * cos(m * (kPi / float(kGatherAzimuths)));
       float start = cos(m * gather_azimuth(0u));
       c[n] = Cosine(start, start);
-      sums[n] = vec3(0.0);
+      sums[n] = Spectrum(0.0);
     }
     for (uint k = 0u; k < kGatherAzimuths; ++k) {
-      vec3 radiance = incident[gather_index(altitude, q, k, sun)].rgb;
+      Spectrum radiance = CHANNELS(incident[gather_index(altitude, q, k, sun)]);
       [[unroll]] for (uint n = 0u; n < kModesEach; ++n) {
         sums[n] += radiance * c[n].now;
         advance(c[n], twice[n]);
@@ -82,18 +82,18 @@ void transform_light(uint lane, uint altitude, uint sun) {
   }
 }
 
-void scatter_modes(uint lane, uint altitude, uint modes, vec3 aerosol) {
+void scatter_modes(uint lane, uint altitude, uint modes, Spectrum aerosol) {
   const uint kGroups = kSourceZeniths / kZenithsEach;
   float inverse = 1.0 / float(modes);
   for (uint i = lane; i < kGroups * modes; i += 32u) {
     uint j = quotient(i, inverse);
     uint m = i - j * modes;
-    vec3 sums[kZenithsEach];
-    [[unroll]] for (uint n = 0u; n < kZenithsEach; ++n) sums[n] = vec3(0.0);
+    Spectrum sums[kZenithsEach];
+    [[unroll]] for (uint n = 0u; n < kZenithsEach; ++n) sums[n] = Spectrum(0.0);
     for (uint q = 0u; q < kGatherZeniths; ++q) {
-      vec3 radiance = light[q * kModes + m];
-      vec3 from_aerosol = radiance * aerosol;
-      vec3 from_air = radiance - from_aerosol;
+      Spectrum radiance = light[q * kModes + m];
+      Spectrum from_aerosol = radiance * aerosol;
+      Spectrum from_air = radiance - from_aerosol;
       [[unroll]] for (uint n = 0u; n < kZenithsEach; ++n) {
         vec2 p = phase[((altitude * kSourceZeniths + j + n * kGroups) * kGatherZeniths + q) * kModes + m];
         sums[n] += from_air * p.x + from_aerosol * p.y;
@@ -103,11 +103,11 @@ void scatter_modes(uint lane, uint altitude, uint modes, vec3 aerosol) {
   }
 }
 
-void store_value(uint altitude, uint j, uint k, uint sun, bool late, vec3 value) {
+void store_value(uint altitude, uint j, uint k, uint sun, bool late, Spectrum value) {
   if (!late) imageStore(source_function, source_texel(altitude, j, k, sun), half_texel(texel_from_value(value)));
   uint index = source_index(altitude, j, k, sun);
-  if (push.order > 2u) value += sums[index].rgb;
-  sums[index] = vec4(value, 0.0);
+  if (push.order > 2u) value += CHANNELS(sums[index]);
+  sums[index] = STORED(value, 0.0);
 }
 
 void store_source(uint lane, uint altitude, uint sun, uint modes) {
@@ -118,32 +118,32 @@ void store_source(uint lane, uint altitude, uint sun, uint modes) {
     uint first = i % kGroups * kAzimuthsEach;
     Cosine c[kAzimuthsEach];
     float twice[kAzimuthsEach];
-    vec3 values[kAzimuthsEach];
+    Spectrum values[kAzimuthsEach];
     [[unroll]] for (uint n = 0u; n < kAzimuthsEach; ++n) {
       float cosine = cos(source_azimuth(first + n));
       c[n] = Cosine(cosine, 1.0);
       twice[n] = 2.0 * cosine;
-      values[n] = vec3(0.0);
+      values[n] = Spectrum(0.0);
     }
     for (uint m = 0u; m < modes; ++m) {
-      vec3 term = scattered[j * kModes + m];
+      Spectrum term = scattered[j * kModes + m];
       [[unroll]] for (uint n = 0u; n < kAzimuthsEach; ++n) {
         values[n] += term * c[n].now;
         advance(c[n], twice[n]);
       }
     }
     [[unroll]] for (uint n = 0u; n < kAzimuthsEach; ++n) {
-      store_value(altitude, j, first + n, sun, late, max(values[n], vec3(0.0)));
+      store_value(altitude, j, first + n, sun, late, max(values[n], Spectrum(0.0)));
     }
   }
   if (!late) return;
   for (uint i = lane; i < kSourceZeniths * kLateTerms; i += 32u) {
     uint j = i / kLateTerms;
     uint m = i % kLateTerms;
-    vec3 term = scattered[j * kModes + m];
+    Spectrum term = scattered[j * kModes + m];
     if (m == 0u) term = texel_from_value(term);
-    if (m == 1u) term /= max(scattered[j * kModes], vec3(1.0e-30));
-    late_terms[late_source_index(altitude, j, m, sun)] = vec4(term, 0.0);
+    if (m == 1u) term /= max(scattered[j * kModes], Spectrum(1.0e-30));
+    late_terms[late_source_index(altitude, j, m, sun)] = STORED(term, 0.0);
   }
 }
 
@@ -152,7 +152,7 @@ void complete_sums(uint lane, uint altitude, uint sun) {
   for (uint i = lane; i < kSourceZeniths * kSourceAzimuths; i += 32u) {
     uint j = i / kSourceAzimuths;
     uint k = i % kSourceAzimuths;
-    vec3 texel = texel_from_value(sums[source_index(altitude, j, k, sun)].rgb);
+    Spectrum texel = texel_from_value(CHANNELS(sums[source_index(altitude, j, k, sun)]));
     imageStore(source_function, source_texel(altitude, j, k, sun), half_texel(texel));
   }
 }
@@ -160,18 +160,18 @@ void complete_sums(uint lane, uint altitude, uint sun) {
 // Writes the irradiance of the incident light on a horizontal surface that faces up.
 void store_irradiance(uint altitude, uint sun, float h) {
   float horizon = horizon_cos(h, medium.planet_radius_m);
-  vec3 sum = vec3(0.0);
+  Spectrum sum = Spectrum(0.0);
   for (uint q = kGatherZeniths / 2u; q < kGatherZeniths; ++q) {
     float node = quadrature.node[q - 12u];
     float weight = quadrature.weight[q - 12u] * gather_zenith_stretch(horizon, node, false);
     sum += light[q * kModes] * (2.0 * kPi * weight * max(gather_zenith(horizon, node, false), 0.0));
   }
   uint point = altitude * kGatherSuns + sun;
-  irradiance[irradiance_row(push.order - 1u, point)] = vec4(sum, 0.0);
+  irradiance[irradiance_row(push.order - 1u, point)] = STORED(sum, 0.0);
   if (push.order == 2u) {
-    sky[point] = vec4(sum, 0.0);
+    sky[point] = STORED(sum, 0.0);
   } else {
-    sky[point] += vec4(sum, 0.0);
+    sky[point] += STORED(sum, 0.0);
   }
 }
 

@@ -36,14 +36,14 @@ const float kMaxRatio = 0.95;
 // Returns the ratio of successive orders, which after many scatterings is the largest eigenvalue of transport and
 // therefore the same at every point, direction and sun. The irradiance at sea level approaches it from below under the
 // highest sun and from above under one on the horizon; the mean of both is returned.
-vec3 settled_ratio() {
-  vec3 sum = vec3(0.0);
+Spectrum settled_ratio() {
+  Spectrum sum = Spectrum(0.0);
   for (int end = 0; end < 2; ++end) {
     uint sun = end == 0 ? kGatherSuns - 1u : uint(gather_sun_index(sun_axis(medium), 0.0) + 0.5);
     uint point = kGatherBelow * kGatherSuns + sun;
-    vec3 now = irradiance[irradiance_row(push.order - 2u, point)].rgb;
-    vec3 before = irradiance[irradiance_row(push.order - 3u, point)].rgb;
-    sum += 0.5 * min(now / max(before, vec3(1.0e-30)), vec3(kMaxRatio));
+    Spectrum now = CHANNELS(irradiance[irradiance_row(push.order - 2u, point)]);
+    Spectrum before = CHANNELS(irradiance[irradiance_row(push.order - 3u, point)]);
+    sum += 0.5 * min(now / max(before, Spectrum(1.0e-30)), Spectrum(kMaxRatio));
   }
   return sum;
 }
@@ -54,54 +54,56 @@ void main() {
   uint altitude = gl_GlobalInvocationID.z + push.first;
   if (sun >= kGatherSuns || zenith >= kSourceZeniths || altitude >= kGatherAltitudes) return;
   float h = gather_altitude(medium, altitude);
-  vec3 aerosol = aerosol_part(medium, h);
+  Spectrum aerosol = aerosol_part(medium, h);
   bool last = push.order == shape.orders + kLateOrders;
-  vec3 beyond = vec3(0.0);
+  Spectrum beyond = Spectrum(0.0);
   if (last) {
-    vec3 ratio = settled_ratio();
+    Spectrum ratio = settled_ratio();
     beyond = ratio / (1.0 - ratio);
   }
-  vec3 terms[kLateTerms];
-  for (uint m = 0u; m < kLateTerms; ++m) terms[m] = vec3(0.0);
+  Spectrum terms[kLateTerms];
+  for (uint m = 0u; m < kLateTerms; ++m) terms[m] = Spectrum(0.0);
   uint modes = late_modes(shape, push.order - 1u);
   for (uint q = 0u; q < kGatherZeniths; ++q) {
     for (uint m = 0u; m < modes; ++m) {
       vec2 p = phase[((altitude * kSourceZeniths + zenith) * kGatherZeniths + q) * kModes + m];
-      vec3 light = incident[late_incident_index(altitude, q, m, sun)].rgb;
+      Spectrum light = CHANNELS(incident[late_incident_index(altitude, q, m, sun)]);
       terms[m] += light * (p.x * (1.0 - aerosol) + p.y * aerosol);
     }
   }
-  vec3 sums_of[kLateTerms];
+  Spectrum sums_of[kLateTerms];
   for (uint m = 0u; m < kLateTerms; ++m) {
     uint sum_index = late_sum_index(altitude, zenith, m, sun);
-    vec3 sum = terms[m];
-    if (push.order > shape.orders + 1u) sum += late_terms[sum_index].rgb;
+    Spectrum sum = terms[m];
+    if (push.order > shape.orders + 1u) sum += CHANNELS(late_terms[sum_index]);
     sums_of[m] = sum + terms[m] * beyond;
-    late_terms[sum_index] = vec4(sum, 0.0);
-    vec3 stored = m == 0u ? texel_from_value(terms[0]) : m == 1u ? terms[1] / max(terms[0], vec3(1.0e-30)) : terms[m];
-    late_terms[late_source_index(altitude, zenith, m, sun)] = vec4(stored, 0.0);
+    late_terms[sum_index] = STORED(sum, 0.0);
+    Spectrum stored = m == 0u   ? texel_from_value(terms[0])
+                      : m == 1u ? terms[1] / max(terms[0], Spectrum(1.0e-30))
+                                : terms[m];
+    late_terms[late_source_index(altitude, zenith, m, sun)] = STORED(stored, 0.0);
   }
   if (last) {
     for (uint k = 0u; k < kSourceAzimuths; ++k) {
       float phi = source_azimuth(k);
-      vec3 value = vec3(0.0);
+      Spectrum value = Spectrum(0.0);
       for (uint m = 0u; m < kLateTerms; ++m) value += sums_of[m] * cos(float(m) * phi);
       uint index = source_index(altitude, zenith, k, sun);
-      vec3 all = sums[index].rgb + max(value, vec3(0.0));
+      Spectrum all = CHANNELS(sums[index]) + max(value, Spectrum(0.0));
       imageStore(source_function, source_texel(altitude, zenith, k, sun), half_texel(texel_from_value(all)));
     }
   }
   if (zenith == 0u) {
     float horizon = horizon_cos(h, medium.planet_radius_m);
-    vec3 sum = vec3(0.0);
+    Spectrum sum = Spectrum(0.0);
     for (uint q = kGatherZeniths / 2u; q < kGatherZeniths; ++q) {
       float node = quadrature.node[q - 12u];
       float weight = quadrature.weight[q - 12u] * gather_zenith_stretch(horizon, node, false);
-      sum += incident[late_incident_index(altitude, q, 0u, sun)].rgb *
+      sum += CHANNELS(incident[late_incident_index(altitude, q, 0u, sun)]) *
              (2.0 * kPi * weight * max(gather_zenith(horizon, node, false), 0.0));
     }
     uint point = altitude * kGatherSuns + sun;
-    irradiance[irradiance_row(push.order - 1u, point)] = vec4(sum, 0.0);
-    sky[point] += vec4(sum * (1.0 + beyond), 0.0);
+    irradiance[irradiance_row(push.order - 1u, point)] = STORED(sum, 0.0);
+    sky[point] += STORED(sum * (1.0 + beyond), 0.0);
   }
 }

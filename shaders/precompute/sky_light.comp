@@ -15,8 +15,8 @@ layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
 layout(binding = 1, rgba16f) uniform writeonly image2D sky_irradiance_table;
 layout(std430, binding = 2) readonly buffer sky_block { vec4 sky[]; };
 
-vec3 between_suns(uint first, float part) {
-  return mix(texel_from_value(sky[first].rgb), texel_from_value(sky[first + 1u].rgb), part);
+Spectrum between_suns(uint first, float part) {
+  return mix(texel_from_value(CHANNELS(sky[first])), texel_from_value(CHANNELS(sky[first + 1u])), part);
 }
 
 void main() {
@@ -30,7 +30,8 @@ void main() {
   uint a = min(uint(altitude), kGatherAltitudes - 2u);
   uint s = min(uint(sun), kGatherSuns - 2u);
   // Fourth roots are interpolated because twilight decreases exponentially.
-  vec3 low = between_suns(a * kGatherSuns + s, sun - float(s));
-  vec3 high = between_suns((a + 1u) * kGatherSuns + s, sun - float(s));
-  imageStore(sky_irradiance_table, texel, half_texel(value_from_texel(mix(low, high, altitude - float(a)))));
+  Spectrum low = between_suns(a * kGatherSuns + s, sun - float(s));
+  Spectrum high = between_suns((a + 1u) * kGatherSuns + s, sun - float(s));
+  imageStore(sky_irradiance_table, texel,
+             half_texel(LIGHT_TEXEL(value_from_texel(mix(low, high, altitude - float(a))))));
 }

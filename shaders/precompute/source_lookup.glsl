@@ -7,14 +7,14 @@
 
 // Returns the light scattered per scattering coefficient [1/sr] at coordinates in the grid of the source function.
 // `source_function` holds its fourth root, and is filtered linearly.
-vec3 source_at(sampler3D source_function, float altitude, float zenith, float azimuth, float sun) {
+Spectrum source_at(sampler3D source_function, float altitude, float zenith, float azimuth, float sun) {
   const float kRows = float(kSourceAzimuths * kGatherAltitudes);
   float first = min(floor(altitude), float(kGatherAltitudes) - 2.0);
   float row = (first * float(kSourceAzimuths) + azimuth + 0.5) / kRows;
   vec3 at = vec3((sun + 0.5) / float(kGatherSuns), row, (zenith + 0.5) / float(kSourceZeniths));
-  vec3 low = textureLod(source_function, at, 0.0).rgb;
+  Spectrum low = CHANNELS(textureLod(source_function, at, 0.0));
   at.y += float(kSourceAzimuths) / kRows;
-  vec3 high = textureLod(source_function, at, 0.0).rgb;
+  Spectrum high = CHANNELS(textureLod(source_function, at, 0.0));
   return value_from_texel(mix(low, high, altitude - first));
 }
 

@@ -25,6 +25,6 @@ void main() {
   float visible = sun_disc_visibility(point.x, point.y, medium.planet_radius_m, kSunAngularRadius);
   // Where only the upper limb is seen, its light has grazed the horizon.
   float cosine = max(point.y, horizon_cos(point.x, medium.planet_radius_m));
-  vec3 light = visible * transmittance(medium, density_integral_to_top(medium, point.x, cosine));
-  imageStore(sun_transmittance, texel, half_texel(light));
+  Spectrum light = visible * transmittance(medium, density_integral_to_top(medium, point.x, cosine));
+  imageStore(sun_transmittance, texel, half_texel(LIGHT_TEXEL(light)));
 }

@@ -8,6 +8,7 @@
 #include "lib/table_mapping.glsl"
 #include "precompute/half_texel.glsl"
 #include "precompute/source_lookup.glsl"
+#include "precompute/ray_spectra.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -37,12 +38,12 @@ float angle_in_triangle(float x, float a, float b) { return clamp(x, abs(a - b),
 //   low sun: the azimuth is clamped, and the light corrected by angle_shape();
 //   else:    the view is turned until the angles fit, or a sun that is high and nearer to the vertical, where its exact
 //            position matters least.
-vec3 source_at_node(AngleShape form, SunAxis suns, RayNode node, float mu_s, float nu) {
+Spectrum source_at_node(AngleShape form, SunAxis suns, RayNode node, float mu_s, float nu) {
   float mu = node.place.z;
   float spread = sqrt(max((1.0 - mu * mu) * (1.0 - mu_s * mu_s), 1.0e-12));
   float cosine = (nu - mu * mu_s) / spread;
   float zenith = node.place.y;
-  vec3 scale = vec3(1.0);
+  Spectrum scale = Spectrum(1.0);
   if (cosine > 1.0 && nu > 0.0 && mu_s < kLowSun) {
     scale = angle_shape(form, nu) / angle_shape(form, min(mu * mu_s + spread, 1.0));
   } else if (abs(cosine) > 1.0 && nu > 0.0) {
@@ -75,24 +76,24 @@ void main() {
   uint count = t.orders > 1u ? uint(rays[view].start.w) : 0u;
   float nu[kAnglesPerInvocation];
   float q0[kAnglesPerInvocation];
-  vec3 radiance[kAnglesPerInvocation];
+  Spectrum radiance[kAnglesPerInvocation];
   [[unroll]] for (uint k = 0u; k < kAnglesPerInvocation; ++k) {
     nu[k] = angle_from_q(t, (float(angle + k) + 0.5) / float(t.angles));
     // The sun axis refers to the mean distance. q0 is r cos(sun zenith) at the beginning of the ray.
     q0[k] = mean_r * mu_s - mean_m * nu[k];
-    radiance[k] = vec3(0.0);
+    radiance[k] = Spectrum(0.0);
   }
   for (uint i = 0u; i < count; ++i) {
     RayNode node = rays[view].high_nodes[i];
     [[unroll]] for (uint k = 0u; k < kAnglesPerInvocation; ++k) {
       float sun_here = (q0[k] + node.path.a * nu[k]) / node.place.w;
-      radiance[k] += node.path.rgb * source_at_node(form, suns, node, sun_here, nu[k]);
+      radiance[k] += HIGH_PATH(rays[view], node, i) * source_at_node(form, suns, node, sun_here, nu[k]);
     }
   }
-  vec3 factor = rays[view].high.rgb;
+  Spectrum factor = RAY_HIGH(rays[view]);
   [[unroll]] for (uint k = 0u; k < kAnglesPerInvocation; ++k) {
     if (angle + k >= t.angles) return;
-    vec3 value = radiance[k] * factor / angle_shape(form, nu[k]);
+    Spectrum value = radiance[k] * factor / angle_shape(form, nu[k]);
     ivec3 texel = ivec3(int(push.altitude), int(view), int(sun + t.suns * (angle + k)));
     imageStore(high_orders, texel, half_texel(texel_from_value(value)));
   }

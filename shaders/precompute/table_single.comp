@@ -8,6 +8,7 @@
 #include "lib/table_mapping.glsl"
 #include "lib/table_values.glsl"
 #include "precompute/half_texel.glsl"
+#include "precompute/ray_spectra.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -38,19 +39,19 @@ void main() {
   uint count = uint(rays[view].start.z);
   float nu[kAnglesPerInvocation];
   float q0[kAnglesPerInvocation];
-  vec3 rayleigh[kAnglesPerInvocation];
-  vec3 mie[kAnglesPerInvocation];
+  Spectrum rayleigh[kAnglesPerInvocation];
+  Spectrum mie[kAnglesPerInvocation];
   [[unroll]] for (uint k = 0u; k < kAnglesPerInvocation; ++k) {
     nu[k] = angle_from_q(t, (float(angle + k) + 0.5) / float(t.angles));
     // The sun axis refers to the mean distance. q0 is r cos(sun zenith) at the beginning of the ray.
     q0[k] = mie_factor.a * mu_s - rayleigh_factor.a * nu[k];
-    rayleigh[k] = vec3(0.0);
-    mie[k] = vec3(0.0);
+    rayleigh[k] = Spectrum(0.0);
+    mie[k] = Spectrum(0.0);
   }
   for (uint i = 0u; i < count; ++i) {
     RayNode node = rays[view].single_nodes[i];
     [[unroll]] for (uint k = 0u; k < kAnglesPerInvocation; ++k) {
-      vec3 light = node.path.rgb * sun_transmittance_at(m, node.place.z, q0[k] + node.path.a * nu[k]);
+      Spectrum light = SINGLE_PATH(node) * sun_transmittance_at(m, node.place.z, q0[k] + node.path.a * nu[k]);
       rayleigh[k] += light * node.place.x;
       mie[k] += light * node.place.y;
     }
@@ -58,7 +59,8 @@ void main() {
   [[unroll]] for (uint k = 0u; k < kAnglesPerInvocation; ++k) {
     if (angle + k >= t.angles) return;
     ivec3 texel = ivec3(int(push.altitude), int(view), int(sun + t.suns * (angle + k)));
-    imageStore(single_rayleigh, texel, half_texel(texel_from_value(rayleigh[k] * rayleigh_factor.rgb)));
-    imageStore(single_mie, texel, half_texel(texel_from_value(mie[k] * mie_factor.rgb)));
+    imageStore(single_rayleigh, texel,
+               half_texel(texel_from_value(rayleigh[k] * RAY_RAYLEIGH(rays[view], rayleigh_factor))));
+    imageStore(single_mie, texel, half_texel(texel_from_value(mie[k] * RAY_MIE(rays[view], mie_factor))));
   }
 }

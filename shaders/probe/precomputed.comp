@@ -7,6 +7,7 @@
 
 #include "lib/single_scattering.glsl"
 #include "frame/table_lookup.glsl"
+#include "probe/result.glsl"
 #include "shared/probe.h"
 #include "shared/tables.h"
 #include "tyndall/light_tables.glsl"
@@ -24,18 +25,18 @@ layout(std430, binding = 3) readonly buffer setup_block {
 };
 layout(binding = 4) uniform sampler2D sky_irradiance;
 
-vec3 sky_light(float h, float mu_s) {
+Spectrum sky_light(float h, float mu_s) {
   vec2 uv = light_table_uv(h, mu_s, medium.planet_radius_m, medium.atmosphere_height_m);
-  return textureLod(sky_irradiance, uv, 0.0).rgb;
+  return LIGHT_OF_TEXEL(textureLod(sky_irradiance, uv, 0.0));
 }
 
 // Returns the radiance reflected by the ground at the ray's end.
-vec3 ground_light(ProbeRay ray) {
+Spectrum ground_light(ProbeRay ray) {
   float R = medium.planet_radius_m;
   float q = (R + ray.altitude_m) * ray.cos_sun_zenith + ray.end_m * ray.cos_view_sun;
   float ground = ground_below(ray.altitude_m, R);
   float cos_sun = q / (R + ground);
-  vec3 light = max(cos_sun, 0.0) * sun_transmittance_at(medium, ground, q) + sky_light(ground, cos_sun);
+  Spectrum light = max(cos_sun, 0.0) * sun_transmittance_at(medium, ground, q) + sky_light(ground, cos_sun);
   return light * (medium.ground_albedo * 0.318309886183791);
 }
 
@@ -44,14 +45,14 @@ void main() {
   if (index >= uint(rays.length())) return;
   ProbeRay ray = rays[index];
   if (ray.end_m < 0.0) {
-    vec3 towards_sun = sun_visibility(ray.altitude_m, ray.cos_sun_zenith, medium.planet_radius_m) *
-                       transmittance(medium, density_integral_to_top(medium, ray.altitude_m, ray.cos_sun_zenith));
-    results[index] = ProbeResult(sky_light(ray.altitude_m, ray.cos_sun_zenith), 0.0, towards_sun, 0.0);
+    Spectrum towards_sun = sun_visibility(ray.altitude_m, ray.cos_sun_zenith, medium.planet_radius_m) *
+                           transmittance(medium, density_integral_to_top(medium, ray.altitude_m, ray.cos_sun_zenith));
+    results[index] = PROBE_RESULT(sky_light(ray.altitude_m, ray.cos_sun_zenith), towards_sun);
     return;
   }
   if (ray.end_m == 0.0) {
-    vec3 seen = ray.on_ground == 1u && visible_ground == 1u ? ground_light(ray) : vec3(0.0);
-    results[index] = ProbeResult(seen, 0.0, vec3(1.0), 0.0);
+    Spectrum seen = ray.on_ground == 1u && visible_ground == 1u ? ground_light(ray) : Spectrum(0.0);
+    results[index] = PROBE_RESULT(seen, Spectrum(1.0));
     return;
   }
   TableRay path = TableRay(ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith, ray.cos_view_sun,
@@ -62,9 +63,9 @@ void main() {
     light.single = single_scattering(medium, ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith, ray.cos_view_sun,
                                      0.0, ray.end_m, int(steps));
   }
-  vec3 path_transmittance =
+  Spectrum path_transmittance =
       transmittance(medium, density_integral_along(medium, ray.altitude_m, ray.cos_view_zenith, ray.end_m));
-  vec3 radiance = light.single + light.high;
+  Spectrum radiance = light.single + light.high;
   if (ray.on_ground == 1u && visible_ground == 1u) radiance += path_transmittance * ground_light(ray);
-  results[index] = ProbeResult(radiance, 0.0, path_transmittance, 0.0);
+  results[index] = PROBE_RESULT(radiance, path_transmittance);
 }

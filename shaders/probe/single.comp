@@ -5,6 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #include "lib/single_scattering.glsl"
+#include "probe/result.glsl"
 #include "shared/probe.h"
 
 layout(local_size_x = 64) in;
@@ -21,8 +22,8 @@ void main() {
     return;
   }
   ProbeRay ray = rays[index];
-  vec3 radiance = single_scattering(medium, ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith, ray.cos_view_sun,
-                                    0.0, ray.end_m, kSteps);
+  Spectrum radiance = single_scattering(medium, ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith,
+                                        ray.cos_view_sun, 0.0, ray.end_m, kSteps);
   vec3 integral = density_integral_along(medium, ray.altitude_m, ray.cos_view_zenith, ray.end_m);
-  results[index] = ProbeResult(radiance, 0.0, transmittance(medium, integral), 0.0);
+  results[index] = PROBE_RESULT(radiance, transmittance(medium, integral));
 }

@@ -71,6 +71,11 @@ struct FrameConstants {
   ivec2 unused_3;
   TableShape tables;
   HomogeneousMedium homogeneous;
+#if defined(SPECTRAL) || defined(__cplusplus)
+  // Of scattering.color = spectral: extinction, rayleigh_source and mie_source of the homogeneous medium at the fourth
+  // wavelength.
+  vec4 homogeneous_fourth_channel;
+#endif
 };
 
 #endif

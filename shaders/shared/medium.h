@@ -22,6 +22,11 @@ struct Medium {
   float unused_0;
   float unused_1;
   float unused_2;
+#ifdef SPECTRAL
+  // Of scattering.color = spectral: Rayleigh scattering, aerosol scattering, aerosol extinction and ozone absorption at
+  // the fourth wavelength.
+  vec4 fourth_channel;
+#endif
 };
 
 #endif

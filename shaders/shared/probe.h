@@ -16,10 +16,10 @@ struct ProbeRay {
 };
 
 struct ProbeResult {
-  vec3 radiance;  // relative to the sun's irradiance above the atmosphere [1/sr]
-  float unused_0;
-  vec3 transmittance;  // to the end of the ray
-  float unused_1;
+  vec3 radiance;          // relative to the sun's irradiance above the atmosphere [1/sr]
+  float radiance_fourth;  // channel, of scattering.color = spectral
+  vec3 transmittance;     // to the end of the ray
+  float transmittance_fourth;
 };
 
 #endif

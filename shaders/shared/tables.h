@@ -52,7 +52,8 @@ struct RayNode {
   // rgb: quadrature weight times the transmittance to the origin [m], for the higher orders also times the scattering
   // coefficient [1]. a: distance from the origin [m].
   vec4 path;
-  // Single scattering: the relative densities of Rayleigh scattering and aerosol, the altitude [m], unused.
+  // Single scattering: the relative densities of Rayleigh scattering and aerosol, the altitude [m], with SPECTRAL the
+  // fourth channel of `path`.
   // Higher orders: the coordinates of altitude and view zenith angle in the grid of the source function, the cosine of
   // the view zenith angle, the distance to the planet's centre [m].
   vec4 place;
@@ -67,7 +68,15 @@ struct QuadratureRay {
   vec4 high;      // rgb: the same of the higher orders
   RayNode single_nodes[kSingleNodes];
   RayNode high_nodes[kHighNodes];
+#ifdef SPECTRAL
+  // The fourth channels of `end`, `rayleigh`, `mie` and `high`, and of the paths of the higher orders. (Those of single
+  // scattering are in RayNode::place.)
+  vec4 fourth_channel;
+  vec4 high_fourth_channel[kHighNodes / 4u];
+#endif
 };
+// The size of a QuadratureRay with SPECTRAL beyond that without [bytes].
+const uint kSpectralRayBytes = 16u + 4u * kHighNodes;
 
 // Gauss-Legendre nodes and weights on [0; 1] for half of the zenith angles. Computed on the CPU.
 struct ZenithQuadrature {
