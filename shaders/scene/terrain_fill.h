@@ -1,4 +1,4 @@
-// The input of terrain_heights.comp: the source of elevations and the part of a clipmap level to fill. Compiled as GLSL
+// The input of terrain_heights.comp: the source of elevations and the levels of the clipmap. Compiled as GLSL
 // (std430) and as C++ (src/scene/elevation/elevation_source.hpp): every member has four bytes, and vectors of two are
 // at multiples of eight.
 #ifndef TYNDALL_TERRAIN_FILL_H
@@ -16,19 +16,17 @@ struct TerrainSource {
   int raster_levels;  // levels of detail in the atlas, see terrain_source.glsl
 };
 
-// Texel texel_offset + t of the layer, with t in [0; texel_count), is sample first_sample + t of the level, at
-// (first_sample + t) * spacing_m on the map. Texel numbers are taken modulo texel_mask + 1, a power of two, for levels
-// that wrap around. With texel_mask = -1 they are used as they are.
+// A level of the clipmap. Texel t holds sample first_sample + t, at (first_sample + t) * spacing_m on the map.
+struct TerrainFillLevel {
+  ivec2 first_sample;
+  vec2 first_m;     // map position of first_sample relative to the origin of the local frame
+  float spacing_m;  // a multiple of 1/64 m
+  int unused;
+};
+
 struct TerrainFill {
   TerrainSource source;
-  ivec2 first_sample;
-  ivec2 texel_offset;
-  ivec2 texel_count;
-  float spacing_m;  // a multiple of 1/64 m
-  int texel_mask;
-  int layer;
-  int unused;
-  vec2 first_m;  // map position of first_sample relative to the origin of the local frame
+  TerrainFillLevel levels[16];
 };
 
 #endif

@@ -83,7 +83,7 @@ vec3 ground_radiance(GroundPoint point) {
 #ifdef SHADOW_COLORS
   if (lit > 0.0) sun *= sun_color_at(point.position, smooth_normal, cascade);
 #endif
-  float visible = sky_visibility(point.offset_m, point.altitude_m);
+  float visible = sky_visibility(point.offset_m, point.altitude_m, point.layer);
   vec3 sky = open_sky * (visible * 0.5 * (1.0 + dot(normal, up)));
   // The rest of the hemisphere is other ground under the same sky, lit on average like flat ground.
   vec3 sun_on_flat = sun_on_plane * max(dot(up, terrain.direction_to_sun), 0.0);

@@ -1,7 +1,7 @@
-// Fills a rectangle of one level of the elevation clipmap.
-// In: the source and the rectangle (terrain_fill.h) and the atlas of the elevation file (terrain_source.glsl; any 1 x 1
-// image for procedural terrain). The constants are in a storage buffer because some drivers mishandle branches on
-// uniform buffers. Out: elevation in m, one layer of the clipmap.
+// Fills tiles of the elevation clipmap, one per workgroup in z.
+// In: the source and the levels (terrain_fill.h), the tiles (TerrainTile of src/scene/terrain/terrain_tiles.hpp), and
+// the atlas of the elevation file (terrain_source.glsl; any 1 x 1 image for procedural terrain). The constants are in a
+// storage buffer because some drivers mishandle branches on uniform buffers. Out: elevation in m.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -13,18 +13,20 @@ layout(binding = 1) uniform sampler2D elevation_atlas;
 #include "scene/map_projections.glsl"
 
 layout(std430, binding = 0) readonly buffer terrain_fill_block { TerrainFill fill; };
+layout(std430, binding = 3) readonly buffer tiles_block { ivec4 tiles[]; };
 layout(binding = 2, r32f) uniform writeonly image2DArray elevation_levels;
 
 void main() {
-  ivec2 t = ivec2(gl_GlobalInvocationID.xy);
-  if (t.x >= fill.texel_count.x || t.y >= fill.texel_count.y) return;
-  int sample_units = int(fill.spacing_m * kTerrainUnitsPerM + 0.5);
+  ivec4 tile = tiles[gl_WorkGroupID.z];
+  TerrainFillLevel level = fill.levels[tile.z];
+  ivec2 t = tile.xy + ivec2(gl_GlobalInvocationID.xy);
+  int sample_units = int(level.spacing_m * kTerrainUnitsPerM + 0.5);
   // Slightly more than the spacing: the grid would give a jagged edge to a crest as narrow as one cell.
-  float spacing_m = 1.25 * fill.spacing_m;
-  ivec2 units = (fill.first_sample + t) * sample_units;
+  float spacing_m = 1.25 * level.spacing_m;
+  ivec2 units = (level.first_sample + t) * sample_units;
   // The elevation at a point of the planet is that of its map projection; between map projections it is their weighted
   // mean. Where the file lies, only the file counts. ground_height() of src/scene/terrain/terrain.cpp does the same.
-  vec3 direction = local_direction(fill.first_m + vec2(t) * fill.spacing_m);
+  vec3 direction = local_direction(level.first_m + vec2(t) * level.spacing_m);
   float weights[6];
   uint rest = projection_weights(direction, weights);
   ivec2 map_units = map_projections.own == 0u ? units : ivec2(0);
@@ -42,6 +44,5 @@ void main() {
                                                    : projection_units(projection, direction);
     height_m += weight * terrain_projection_height(fill.source, projection, at, spacing_m);
   }
-  ivec2 texel = (fill.texel_offset + t) & fill.texel_mask;
-  imageStore(elevation_levels, ivec3(texel, fill.layer), vec4(height_m, 0.0, 0.0, 0.0));
+  imageStore(elevation_levels, ivec3(t, tile.z), vec4(height_m, 0.0, 0.0, 0.0));
 }

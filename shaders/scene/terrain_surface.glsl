@@ -29,9 +29,9 @@ vec3 surface_shape(vec2 texel, uint layer) {
   return mixed / (2.0 * terrain.levels[layer].cell_m);
 }
 
-// Returns the elevation at a map position from the finest level with cells of at least `cell_m`.
-float coarse_height(vec2 offset_m, float cell_m) {
-  uint layer = 0u;
+// Returns the elevation at a map position from the finest level with cells of at least `cell_m`, but none finer than
+// `layer`: finer levels may end before this position.
+float coarse_height(vec2 offset_m, float cell_m, uint layer) {
   while (layer + 1u < terrain.layers && terrain.levels[layer].cell_m < cell_m) ++layer;
   TerrainLevel level = terrain.levels[layer];
   ivec2 texel = ivec2(floor((offset_m - level.first_m) / level.cell_m + 0.5));
@@ -39,8 +39,9 @@ float coarse_height(vec2 offset_m, float cell_m) {
 }
 
 // Returns the fraction of the sky's irradiance that the surrounding ground lets pass, from the horizon's elevation in
-// eight directions at three distances: the mean of cos^2, exact for a uniform sky.
-float sky_visibility(vec2 offset_m, float altitude_m) {
+// eight directions at three distances: the mean of cos^2, exact for a uniform sky. `layer`: the level of the point.
+// src/scene/terrain/terrain_tiles.cpp knows which texels are read.
+float sky_visibility(vec2 offset_m, float altitude_m, uint layer) {
   float visible = 0.0;
   for (int i = 0; i < 8; ++i) {
     float angle = 0.785398 * (float(i) + 0.5);
@@ -48,7 +49,8 @@ float sky_visibility(vec2 offset_m, float altitude_m) {
     float tangent = 0.0;
     float reach = 200.0;
     for (int k = 0; k < 3; ++k) {
-      tangent = max(tangent, (coarse_height(offset_m + direction * reach, 0.125 * reach) - altitude_m) / reach);
+      float height_m = coarse_height(offset_m + direction * reach, 0.125 * reach, layer);
+      tangent = max(tangent, (height_m - altitude_m) / reach);
       reach *= 4.0;
     }
     visible += 1.0 / (1.0 + tangent * tangent);

@@ -15,6 +15,7 @@ namespace tyndall::scene {
 namespace {
 
 constexpr std::uint32_t kMaxBlocks = 32768;
+constexpr std::size_t kMaxTiles = kMaxLevels * (kLevelSamples / kTileSamples) * (kLevelSamples / kTileSamples);
 
 struct DrawPush {
   Mat4 clip_from_local;
@@ -128,7 +129,7 @@ void Terrain::swap_source(Planned& planned) noexcept {
   std::swap(version_, planned.version);
   std::swap(source_, planned.source);
   std::swap(notes_, planned.notes);
-  std::swap(filled_, planned.filled);
+  std::swap(tiles_, planned.tiles);
   std::swap(atlas_, planned.atlas);
 }
 
@@ -161,6 +162,8 @@ Result<void> Terrain::create_objects(VkFormat color_format, VkFormat depth_forma
                                              VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
   TYNDALL_ASSIGN(fill_constants_, gpu::create_buffer(device, "terrain_fill_constants", sizeof(fill::TerrainFill),
                                                      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
+  TYNDALL_ASSIGN(fill_tiles_, gpu::create_buffer(device, "terrain_fill_tiles", kMaxTiles * sizeof(TerrainTile),
+                                                 VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
   return {};
 }
 
@@ -180,7 +183,7 @@ Result<void> Terrain::set_coarseness(int coarseness) {
   TYNDALL_ASSIGN(indices_, create_indices(coarseness));
   coarseness_ = coarseness;
   heights_ = {};
-  filled_.clear();
+  tiles_.clear();
   ++version_;
   return {};
 }
@@ -208,8 +211,8 @@ double ground_height(const ElevationSource& source, const glm::dvec3& up, double
 double Terrain::height_at(const glm::dvec3& up) const { return none() ? 0.0 : ground_height(*source_, up, radius_m_); }
 
 VkDeviceSize Terrain::bytes() const {
-  return heights_.bytes + atlas_.bytes + fill_constants_.bytes + map_projections_.bytes + constants_.bytes +
-         blocks_.bytes + indices_.bytes;
+  return heights_.bytes + atlas_.bytes + fill_constants_.bytes + fill_tiles_.bytes + map_projections_.bytes +
+         constants_.bytes + blocks_.bytes + indices_.bytes;
 }
 
 Result<void> Terrain::update(const View& view, const LocalFrame& frame) {
@@ -220,7 +223,7 @@ Result<void> Terrain::update(const View& view, const LocalFrame& frame) {
   lod_ = plan_terrain(projection_from_up(frame.projection, up_of(view.position, radius_m_), radius_m_),
                       altitude_of(view.position, radius_m_), source_->max_height_m(), radius_m_, coarseness_,
                       source_->min_height_m());
-  if (frame.projection != filled_projection_) filled_.clear();
+  if (frame.projection != filled_projection_) tiles_.clear();
   filled_projection_ = frame.projection;
   const gpu::Device& device = host_->device();
   const auto layers = static_cast<std::uint32_t>(lod_.levels.size());
@@ -238,51 +241,49 @@ Result<void> Terrain::update(const View& view, const LocalFrame& frame) {
       gpu::transition(device, cmd, heights, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
       return {};
     }));
-    filled_.clear();
+    tiles_.clear();
     heights_ = std::move(heights);
   }
-  filled_.resize(lod_.levels.size());
-  for (std::size_t i = 0; i < lod_.levels.size(); ++i) {
-    const ClipLevel& level = lod_.levels[i];
-    if (filled_[i].cell_m == level.cell_m && filled_[i].origin == level.origin) continue;
-    TYNDALL_TRY(fill_level(i));
-    filled_[i] = level;
-    ++version_;
-  }
+  if (tiles_.start(lod_)) ++version_;
   return {};
 }
 
-Result<void> Terrain::fill_level(std::size_t layer) {
-  const ClipLevel& level = lod_.levels[layer];
+Result<void> Terrain::fill_missing() {
+  const std::vector<TerrainTile> tiles = tiles_.missing();
+  if (tiles.empty()) return {};
   fill::TerrainFill constants = {};
   constants.source = source_->constants();
-  constants.first_sample = {level.origin.x, level.origin.y};
-  constants.texel_offset = {0, 0};
-  constants.texel_mask = -1;
-  constants.texel_count = {lod_.level_samples(), lod_.level_samples()};
-  constants.spacing_m = static_cast<float>(level.cell_m);
-  constants.layer = static_cast<std::int32_t>(layer);
-  const glm::dvec2 first = glm::dvec2(level.origin) * level.cell_m - frame_.map_m;
-  constants.first_m = {static_cast<float>(first.x), static_cast<float>(first.y)};
+  for (std::size_t i = 0; i < lod_.levels.size(); ++i) {
+    const ClipLevel& level = lod_.levels[i];
+    const glm::dvec2 first = glm::dvec2(level.origin) * level.cell_m - frame_.map_m;
+    constants.levels[i] = {{level.origin.x, level.origin.y},
+                           {static_cast<float>(first.x), static_cast<float>(first.y)},
+                           static_cast<float>(level.cell_m),
+                           0};
+  }
   std::memcpy(fill_constants_.mapped, &constants, sizeof constants);
+  std::memcpy(fill_tiles_.mapped, tiles.data(), tiles.size() * sizeof(TerrainTile));
   const gpu::Device& device = host_->device();
-  return host_->run([&](VkCommandBuffer cmd) -> Result<void> {
+  Result<void> filled = host_->run([&](VkCommandBuffer cmd) -> Result<void> {
     const gpu::Label label(device, cmd, fill_.name);
     const gpu::NamedResource resources[] = {
         gpu::named_buffer("terrain_fill_block", fill_constants_.buffer.get()),
+        gpu::named_buffer("tiles_block", fill_tiles_.buffer.get()),
         gpu::named_buffer("map_projections_block", map_projections_.buffer.get()),
         gpu::named_image("elevation_atlas", atlas_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
                          nearest_.get()),
         gpu::named_image("elevation_levels", heights_.view.get()),
     };
     TYNDALL_TRY(gpu::bind(host_->sets(), cmd, fill_, resources));
-    const auto samples = static_cast<std::uint32_t>(lod_.level_samples());
-    gpu::dispatch(device, cmd, fill_, samples, samples);
+    gpu::dispatch(device, cmd, fill_, kTileSamples, kTileSamples, static_cast<std::uint32_t>(tiles.size()));
     gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
-                 VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+                 VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT |
+                     VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
                  VK_ACCESS_SHADER_READ_BIT);
     return {};
   });
+  if (filled.ok()) tiles_.mark_filled();
+  return filled;
 }
 
 Result<void> Terrain::prepare(const View& view, std::uint32_t height_px, const ShadowParams& shadows,
@@ -359,6 +360,7 @@ Result<void> Terrain::prepare(const View& view, std::uint32_t height_px, const S
   std::sort(scratch_.begin(), scratch_.end(),
             [&](const TerrainBlock& a, const TerrainBlock& b) { return distance(a) < distance(b); });
   TYNDALL_TRY(take());
+  for (const TerrainBlock& block : scratch_) tiles_.add_shaded(lod_, block);
   for (const CascadeFit& cascade : cascades) {
     int finest = 0;
     while (finest + 1 < static_cast<int>(lod_.levels.size()) &&
@@ -367,8 +369,9 @@ Result<void> Terrain::prepare(const View& view, std::uint32_t height_px, const S
     }
     select_blocks(lod_, finest, sphere_test(cascade), scratch_);
     TYNDALL_TRY(take());
+    for (const TerrainBlock& block : scratch_) tiles_.add_drawn(lod_, block);
   }
-  return {};
+  return fill_missing();
 }
 
 Result<void> Terrain::draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline,

@@ -10,6 +10,7 @@
 #include "gpu/host.hpp"
 #include "scene/elevation/elevation_source.hpp"
 #include "scene/terrain/terrain_lod.hpp"
+#include "scene/terrain/terrain_tiles.hpp"
 #include "scene/view/cascades.hpp"
 #include "scene/view/local_frame.hpp"
 #include "tyndall/effect.hpp"
@@ -52,8 +53,8 @@ class Terrain {
   // Returns a number that increases with every change of what is drawn.
   [[nodiscard]] std::uint64_t version() const { return version_; }
 
-  // Moves the clipmap to the camera and fills the levels that have changed. Synchronous. From then on everything is
-  // drawn in `frame`, which belongs to the camera's position.
+  // Moves the clipmap to the camera. From then on everything is drawn in `frame`, which belongs to the camera's
+  // position.
   Result<void> update(const View& view, const LocalFrame& frame);
 
   [[nodiscard]] bool none() const { return params_.source == "none"; }
@@ -67,7 +68,8 @@ class Terrain {
   [[nodiscard]] const std::optional<Place>& place() const { return source_->place(); }
   [[nodiscard]] VkDeviceSize bytes() const;
 
-  // Selects the blocks of a frame and writes the constants. Call it before recording the draws.
+  // Selects the blocks of a frame, fills the elevations that they need, and writes the constants. Synchronous. Call it
+  // before recording the draws.
   Result<void> prepare(const View& view, std::uint32_t height_px, const ShadowParams& shadows,
                        const std::vector<CascadeFit>& cascades, const TerrainLight& light, TerrainShading shading);
   // Records the drawing of the ground into a rendering scope with colour and depth. The colour identifies the point of
@@ -86,7 +88,7 @@ class Terrain {
  private:
   Result<void> create_objects(VkFormat color_format, VkFormat depth_format);
   [[nodiscard]] Result<gpu::Buffer> create_indices(int coarseness) const;
-  Result<void> fill_level(std::size_t layer);
+  Result<void> fill_missing();
   Result<void> draw(VkCommandBuffer cmd, const gpu::Pipeline& pipeline, std::span<const gpu::NamedResource> resources,
                     const glm::dmat4& clip_from_world, std::uint32_t range);
 
@@ -106,7 +108,7 @@ class Terrain {
   std::vector<std::string> notes_;
   TerrainLod lod_;
   LocalFrame frame_;
-  std::vector<ClipLevel> filled_;
+  TerrainTiles tiles_;
   int filled_projection_ = 0;
 
   gpu::Pipeline fill_;
@@ -116,6 +118,7 @@ class Terrain {
   gpu::Image heights_;
   gpu::Image atlas_;
   gpu::Buffer fill_constants_;
+  gpu::Buffer fill_tiles_;
   gpu::Buffer map_projections_;
   gpu::Buffer constants_;
   gpu::Buffer blocks_;
@@ -131,7 +134,7 @@ struct Terrain::Planned {
   std::uint64_t version = 0;
   std::shared_ptr<const ElevationSource> source;
   std::vector<std::string> notes;
-  std::vector<ClipLevel> filled;
+  TerrainTiles tiles;
   gpu::Image atlas;
 };
 
