@@ -9,9 +9,11 @@
 #   make models-study    measures and renders what docs/models.md and docs/oneil.md show
 #   make bundle          packs a portable program, out/tyndall-VERSION-linux-x86_64.tar.xz
 #   make bundle-chroot   runs the bundle in a bare Debian system
+#   make packages        builds Debian packages in out/debian: libtyndall0, libtyndall-dev, tyndall
+#   make packages-check  checks them with lintian, and installs, runs and removes them in a root folder
 #   make abi             renews the record of the binary interface of the C functions, tests/package/tyndall.abi
 #   make passes          writes the list of passes, docs/generated/passes.md, with their cost
-.PHONY: demo check doxygen pictures accuracy epipolar-study models-study bundle bundle-chroot abi passes setup build format format-check tidy tidy-check tidy-all sanitize-short sanitize clean
+.PHONY: demo check doxygen pictures accuracy epipolar-study models-study bundle bundle-chroot packages packages-check abi passes setup build format format-check tidy tidy-check tidy-all sanitize-short sanitize clean
 
 PRESET ?= release
 # The CPU device that computes the values that `tyndall report` compares other devices with.
@@ -28,7 +30,7 @@ demo: build
 
 # The fast checks come first, so that they fail first.
 check: PRESET = ci
-check: PACKAGES = $(CLANG_PACKAGES)
+check: PACKAGES = $(CLANG_PACKAGES) lintian
 check: setup format-check build tidy-check sanitize-short
 	@tools/second_driver.sh build/second_driver
 	@ctest --preset ci --no-tests=error -j "$$(nproc)"
@@ -111,6 +113,19 @@ bundle-chroot: bundle
 	@tools/setup.sh debootstrap
 	@tools/bundle/bookworm.sh build/bookworm
 	@sh tests/package/bundle.sh "$$(ls -t out/tyndall-*-linux-x86_64.tar.xz | head -n 1)" "$$PWD" "$$PWD/build/release" "$$PWD/build/bookworm"
+
+# Debian packages, with the folders and the hardening options of Debian.
+packages: setup
+	@cmake --preset release -B build/debian -D CMAKE_INSTALL_PREFIX=/usr -D TYNDALL_BUILD_TESTS=OFF --log-level=WARNING \
+	  -D CMAKE_CXX_FLAGS="$$(DEB_CXXFLAGS_MAINT_STRIP='-g -O2' dpkg-buildflags --get CXXFLAGS) $$(dpkg-buildflags --get CPPFLAGS)" \
+	  -D CMAKE_EXE_LINKER_FLAGS="$$(dpkg-buildflags --get LDFLAGS)" -D CMAKE_SHARED_LINKER_FLAGS="$$(dpkg-buildflags --get LDFLAGS)"
+	@cmake --build build/debian
+	@rm -rf out/debian && cpack --config build/debian/CPackConfig.cmake -B out/debian && rm -rf out/debian/_CPack_Packages
+
+packages-check: PACKAGES = lintian
+packages-check: packages
+	@TYNDALL_DEB_FOLDER="$(CURDIR)/out/debian" sh tests/package/debian.sh build/debian build/packages_check . \
+	  "$$(sed -n 's/.*TYNDALL_VERSION_STRING "\([^"]*\)".*/\1/p' include/tyndall/version.h)"
 
 setup:
 	@tools/setup.sh $(PACKAGES)

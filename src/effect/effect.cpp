@@ -12,6 +12,7 @@
 #include "effect/frame_steps.hpp"
 #include "effect/limits.hpp"
 #include "effect/medium.hpp"
+#include "gpu/open_device.hpp"
 #include "gpu/try.hpp"
 
 namespace tyndall {
@@ -62,14 +63,7 @@ bool same_limits(const EffectDesc& a, const EffectDesc& b) {
 }  // namespace
 
 Result<void> open_device(gpu::Device& device, const DeviceInfo& info) {
-  device.instance = info.instance;
-  device.physical_device = info.physical_device;
-  device.device = info.device;
-  device.allocator = info.allocator;
-  device.pipeline_cache = info.pipeline_cache;
-  device.replace_shader = info.replace_shader;
-  device.replace_shader_user = info.replace_shader_user;
-  TYNDALL_TRY(gpu::init_device(device, info.get_instance_proc_addr));
+  TYNDALL_TRY(gpu::open_device(device, info));
   return check_device(device);
 }
 

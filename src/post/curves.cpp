@@ -1,7 +1,7 @@
 // shaders/post/tonemap_curves.glsl compiled as C++ in double precision.
 #include <glm/glm.hpp>
 
-#include "post/settings.hpp"
+#include "tyndall/post_settings.hpp"
 
 namespace tyndall::post {
 namespace glsl {

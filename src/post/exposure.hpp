@@ -7,23 +7,9 @@
 
 #include "gpu/descriptors.hpp"
 #include "gpu/resource.hpp"
-#include "post/settings.hpp"
+#include "tyndall/post_settings.hpp"
 
 namespace tyndall::post {
-
-constexpr std::size_t kHistogramBins = 256;
-// Returns log2 of the luminance (in the picture's unit of radiance) at the centre of a histogram bin.
-[[nodiscard]] double stop_of_bin(std::size_t bin);
-
-// The measurement of one picture.
-struct Measurement {
-  float exposure = 0.0F;                         // scale of the radiance with auto exposure
-  float luminance = 0.0F;                        // luminance that the eye is adapted to
-  float measured = 0.0F;                         // log-average of the picture; 0 if it is black
-  float counted = 0.0F;                          // mean weight of the samples, 0 to 1; black space weighs 0
-  float black = 0.0F;                            // fraction of samples darker than the histogram
-  std::array<float, kHistogramBins> share = {};  // fraction of samples in each bin; all and `black` add up to 1
-};
 
 class Exposure {
  public:

@@ -8,6 +8,7 @@
 
 #include "gpu_test.hpp"
 #include "post/tonemap.hpp"
+#include "tyndall/post.hpp"
 
 namespace tyndall::post {
 namespace {
@@ -304,6 +305,42 @@ TEST_F(GpuPost, TheSamePicturesGiveTheSameBytes) {
     runs.push_back(tonemap_->exposure().read());
     EXPECT_EQ(std::memcmp(&runs[0], &runs.back(), sizeof(Measurement)), 0);
   }
+}
+
+// The public class records the same work, and refuses what would crash.
+TEST_F(GpuPost, TheToneMapperGivesTheSameBytes) {
+  Result<ToneMapper> made = ToneMapper::create(info());
+  ASSERT_OK(made);
+  ToneMapper mapper = std::move(made).value();
+  show({37, 21}, mixed(0.2));
+  measure_alone();
+  const std::vector<float> expected = display();
+  show({37, 21}, mixed(0.2));
+  const VkImageView from = picture_.view.get();
+  const VkImageView to = display_.view.get();
+  ASSERT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
+    EXPECT_FALSE(mapper.record(cmd, from, to, extent_, settings_).ok()) << "nothing was measured";
+    EXPECT_FALSE(mapper.measure(VK_NULL_HANDLE, from, extent_, settings_, 0.0).ok());
+    EXPECT_FALSE(mapper.measure(cmd, VK_NULL_HANDLE, extent_, settings_, 0.0).ok());
+    EXPECT_FALSE(mapper.measure(cmd, from, {0, 1}, settings_, 0.0).ok());
+    EXPECT_FALSE(mapper.measure(cmd, from, extent_, settings_, 0.0, 2).ok());
+    EXPECT_FALSE(mapper.record(cmd, from, VK_NULL_HANDLE, extent_, settings_).ok());
+    if (Result<void> r = mapper.measure(cmd, from, extent_, settings_, 0.0); !r) return r;
+    return mapper.record(cmd, from, to, extent_, settings_);
+  }));
+  const Result<std::vector<std::byte>> found = gpu::download(host(), display_, VK_IMAGE_LAYOUT_GENERAL, 0, 16);
+  ASSERT_OK(found);
+  ASSERT_EQ(found.value().size(), expected.size() * sizeof(float));
+  EXPECT_EQ(std::memcmp(found.value().data(), expected.data(), found.value().size()), 0);
+  const Measurement measured = mapper.measurement();
+  const Measurement reference = tonemap_->exposure().read();
+  EXPECT_EQ(std::memcmp(&measured, &reference, sizeof measured), 0);
+  EXPECT_EQ(mapper.bytes(), tonemap_->exposure().bytes());
+  EXPECT_FALSE(ToneMapper::create(info(), 0).ok());
+  EXPECT_FALSE(ToneMapper::create({}).ok());
+  const ToneMapper moved = std::move(mapper);
+  EXPECT_FALSE(mapper.record(VK_NULL_HANDLE, from, to, extent_, settings_).ok());  // NOLINT(bugprone-use-after-move)
+  EXPECT_EQ(moved.measurement().measured, measured.measured);
 }
 
 TEST_F(GpuPost, MissingMeasurementsAndWrongOperatorsAreErrors) {

@@ -25,6 +25,7 @@ endmacro()
 # The public interface: parameters and results, then the effect itself.
 room(include/tyndall)
 room(include/tyndall/effect.hpp VULKAN include/tyndall)
+room(include/tyndall/post.hpp VULKAN include/tyndall/effect.hpp include/tyndall)
 room(include/tyndall/tyndall.h VULKAN include/tyndall)
 
 # Shaders, and the structures that they share with C++.
@@ -43,7 +44,7 @@ room(shaders/viewer)
 room(src/gpu VULKAN include/tyndall/effect.hpp include/tyndall)
 room(src/effect VULKAN src/gpu shaders/shared include/tyndall/effect.hpp include/tyndall)
 room(src/c VULKAN src/gpu include/tyndall/effect.hpp include/tyndall/tyndall.h include/tyndall)
-room(src/post VULKAN src/gpu shaders/post shaders/lib shaders/shared include/tyndall)
+room(src/post VULKAN src/gpu shaders/post shaders/lib shaders/shared include/tyndall/post.hpp include/tyndall)
 
 # Files, images and what describes a scene.
 room(src/files include/tyndall)

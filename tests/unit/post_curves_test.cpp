@@ -8,7 +8,7 @@
 #include <functional>
 #include <limits>
 
-#include "post/settings.hpp"
+#include "tyndall/post_settings.hpp"
 
 namespace tyndall::post {
 namespace {

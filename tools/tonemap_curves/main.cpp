@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "files/files.hpp"
-#include "post/settings.hpp"
+#include "tyndall/post_settings.hpp"
 #include "validate/plot.hpp"
 
 namespace tyndall {

@@ -1,14 +1,13 @@
 // Uses tone mapping without the effect and without a device.
-#include <post/tonemap.hpp>
+#include <tyndall/post.hpp>
 
 #include <cmath>
 #include <cstdio>
 
 int main() {
   using namespace tyndall;
-  gpu::Device device;
-  const PFN_vkGetInstanceProcAddr nothing = [](VkInstance, const char*) -> PFN_vkVoidFunction { return nullptr; };
-  if (gpu::init_device(device, nothing).ok()) return 1;
+  const Result<post::ToneMapper> mapper = post::ToneMapper::create({});
+  if (mapper.ok() || mapper.error().code != ErrorCode::invalid_argument) return 1;
   post::TonemapSettings settings;
   settings.op = post::Operator::reinhard;
   const auto dark = post::tonemapped(settings, 1.0, {0.1, 0.1, 0.1});

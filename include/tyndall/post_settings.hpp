@@ -1,13 +1,14 @@
-// The settings of exposure and tone mapping, and the operators as functions of a colour. Independent of devices.
+// The settings of exposure and tone mapping, their measurements, and the operators as functions of a colour. Independent
+// of devices. The library tyndall::post defines the functions.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
-#include <string_view>
 
 namespace tyndall::post {
 
-// Values of TonemapOperator in src/scene/description/scene_params.def and of shaders/post/tonemap_curves.glsl.
+// docs/tonemapping.md defines the operators. The values are those of the parameter tonemap.operator.
 enum class Operator : std::uint32_t {
   exponential,
   reinhard,
@@ -37,5 +38,19 @@ struct TonemapSettings {
 // display values in [0; 1]. Negative radiance and NaN are black.
 [[nodiscard]] std::array<double, 3> tonemapped(const TonemapSettings& settings, double exposure,
                                                const std::array<double, 3>& radiance);
+
+constexpr std::size_t kHistogramBins = 256;
+// Returns log2 of the luminance (in the picture's unit of radiance) at the centre of a histogram bin.
+[[nodiscard]] double stop_of_bin(std::size_t bin);
+
+// The measurement of one picture.
+struct Measurement {
+  float exposure = 0.0F;                         // scale of the radiance with auto exposure
+  float luminance = 0.0F;                        // luminance that the eye is adapted to
+  float measured = 0.0F;                         // log-average of the picture; 0 if it is black
+  float counted = 0.0F;                          // mean weight of the samples, 0 to 1; black space weighs 0
+  float black = 0.0F;                            // fraction of samples darker than the histogram
+  std::array<float, kHistogramBins> share = {};  // fraction of samples in each bin; all and `black` add up to 1
+};
 
 }  // namespace tyndall::post
