@@ -24,7 +24,8 @@ struct vec2 {
   float x = 0.0F, y = 0.0F;
 };
 #include "scene/terrain_fill.h"
-static_assert(sizeof(TerrainSource) == 40 && sizeof(TerrainFillLevel) == 24 && sizeof(TerrainFill) == 40 + 16 * 24, "the layouts must agree with std430");
+static_assert(sizeof(TerrainSource) == 40 && sizeof(TerrainFillLevel) == 24 && sizeof(TerrainFill) == 40 + 16 * 24,
+              "the layouts must agree with std430");
 }  // namespace fill
 
 struct ElevationDesc {
