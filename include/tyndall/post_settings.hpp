@@ -1,5 +1,5 @@
-// The settings of exposure and tone mapping, their measurements, and the operators as functions of a colour. Independent
-// of devices. The library tyndall::post defines the functions.
+// The settings of exposure and tone mapping, their measurements, and the operators as functions of a colour.
+// Independent of devices. The library tyndall::post defines the functions.
 #pragma once
 
 #include <array>
