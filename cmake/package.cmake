@@ -15,6 +15,8 @@ if(TYNDALL_BUILD_SHARED)
 endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/tyndall DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT licence)
+install(FILES ${PROJECT_BINARY_DIR}/include/tyndall/atmosphere.glsl DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tyndall
+        COMPONENT development)
 if(TARGET tyndall_post)
   install(TARGETS tyndall_post EXPORT tyndall COMPONENT development)
 endif()

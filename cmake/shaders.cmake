@@ -33,6 +33,7 @@ function(tyndall_add_shaders)
         OUTPUT ${spv}
         COMMAND ${TYNDALL_GLSLC} --target-env=vulkan1.2 -Werror ${defines}
                 -I ${PROJECT_SOURCE_DIR}/shaders -I ${PROJECT_SOURCE_DIR}/include -I ${PROJECT_SOURCE_DIR}/src
+                -I ${PROJECT_BINARY_DIR}/include
                 -MD -MF ${spv}.d -MT ${spv} ${PROJECT_SOURCE_DIR}/shaders/${source} -o ${spv}.raw
         COMMAND ${TYNDALL_SPIRV_OPT} -O ${spv}.raw -o ${spv}
         COMMAND ${TYNDALL_SPIRV_VAL} --target-env vulkan1.2 ${spv}

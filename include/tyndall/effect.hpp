@@ -218,6 +218,8 @@ struct ScatteringTables {
   Table high_orders;
 };
 
+struct AtmosphereImages;
+
 class TYNDALL_API Effect {
  public:
   // Allocates all memory and makes the pipelines that `params` need. Tables are built by record_precompute().
@@ -294,6 +296,7 @@ class TYNDALL_API Effect {
   std::span<const PassTiming> precompute_timings();
 
  private:
+  friend TYNDALL_API AtmosphereImages atmosphere_images(const Effect& effect);  // see atmosphere.hpp
   struct State;
   explicit Effect(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;

@@ -73,6 +73,7 @@ typedef enum TyndallAffects {
 
 #define TYNDALL_MAX_CASCADES 8U
 #define TYNDALL_MAX_VIEWS 8U
+#define TYNDALL_ATMOSPHERE_CONSTANTS_SIZE 512U
 
 // Returns the version of the library that the program runs with, made with TYNDALL_MAKE_VERSION().
 TYNDALL_API uint32_t tyndall_version(void);
@@ -215,10 +216,18 @@ typedef struct TyndallFrameInputs {
   float lowest_ground_m;
 } TyndallFrameInputs;
 
+// The inputs of the uniform block of tyndall/atmosphere.glsl; see atmosphere.hpp.
+typedef struct TyndallAtmosphereInputs {
+  uint32_t struct_size;
+  TyndallSun sun;
+  double origin_from_centre_m[3];
+} TyndallAtmosphereInputs;
+
 // Fill a structure with the defaults of C++ and set its struct_size. Call them with sizeof(structure).
 TYNDALL_API TyndallStatus tyndall_device_info_defaults(TyndallDeviceInfo* info, size_t struct_size);
 TYNDALL_API TyndallStatus tyndall_effect_desc_defaults(TyndallEffectDesc* desc, size_t struct_size);
 TYNDALL_API TyndallStatus tyndall_frame_inputs_defaults(TyndallFrameInputs* inputs, size_t struct_size);
+TYNDALL_API TyndallStatus tyndall_atmosphere_inputs_defaults(TyndallAtmosphereInputs* inputs, size_t struct_size);
 
 typedef struct TyndallProgress {
   uint32_t done;
@@ -280,6 +289,12 @@ typedef struct TyndallEffect TyndallEffect;
 TYNDALL_API TyndallStatus tyndall_query_memory(const TyndallDeviceInfo* info, const TyndallEffectDesc* desc,
                                                const TyndallParams* params, TyndallMemoryUsage* memory);
 
+// Writes the contents of the uniform block of tyndall/atmosphere.glsl. `size` must be
+// TYNDALL_ATMOSPHERE_CONSTANTS_SIZE. Null `params` means the defaults.
+TYNDALL_API TyndallStatus tyndall_atmosphere_constants(const TyndallParams* params,
+                                                       const TyndallAtmosphereInputs* inputs, void* constants,
+                                                       size_t size);
+
 // Copies `info`, `desc` and `params`. tyndall_effect_destroy() accepts null.
 TYNDALL_API TyndallStatus tyndall_effect_create(const TyndallDeviceInfo* info, const TyndallEffectDesc* desc,
                                                 const TyndallParams* params, TyndallEffect** effect);
@@ -325,6 +340,8 @@ TYNDALL_API TyndallStatus tyndall_effect_counters(const TyndallEffect* effect, u
 // of the library.
 TYNDALL_API TyndallStatus tyndall_effect_resources(TyndallEffect* effect, uint32_t* count,
                                                    TyndallResourceMemory* resources);
+TYNDALL_API TyndallStatus tyndall_effect_atmosphere_images(const TyndallEffect* effect, uint32_t* count,
+                                                           VkDescriptorImageInfo* images);
 TYNDALL_API TyndallStatus tyndall_effect_timings(TyndallEffect* effect, uint64_t frame_index, uint32_t view,
                                                  uint32_t* count, TyndallPassTiming* timings);
 TYNDALL_API TyndallStatus tyndall_effect_precompute_timings(TyndallEffect* effect, uint32_t* count,

@@ -6,10 +6,13 @@
 #include "lib/table_mapping.glsl"
 #include "lib/table_values.glsl"
 
-// Filtered linearly, and clamped.
-layout(binding = 6) uniform sampler3D single_rayleigh;
-layout(binding = 7) uniform sampler3D single_mie;
-layout(binding = 8) uniform sampler3D high_orders;
+// The tables are filtered linearly, and clamped. A file that includes this one may define another layout.
+#ifndef TABLE_LAYOUT
+#define TABLE_LAYOUT(index) layout(binding = 6 + index)
+#endif
+TABLE_LAYOUT(0) uniform sampler3D single_rayleigh;
+TABLE_LAYOUT(1) uniform sampler3D single_mie;
+TABLE_LAYOUT(2) uniform sampler3D high_orders;
 
 // A ray from a point within the atmosphere to its end: the ground if `below`, else the top of the atmosphere.
 struct TableRay {

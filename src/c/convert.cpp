@@ -91,6 +91,13 @@ void set(Sun& sun, const TyndallSun& c) {
   angular_radius_rad = c.angular_radius_rad;
 }
 
+void set(TyndallSun& c, const Sun& sun) {
+  const auto& [direction_to_sun, irradiance, angular_radius_rad] = sun;
+  set(c.direction_to_sun, direction_to_sun);
+  set(c.irradiance, irradiance);
+  c.angular_radius_rad = angular_radius_rad;
+}
+
 }  // namespace
 
 DeviceInfo to_cpp(const TyndallDeviceInfo& c) {
@@ -203,13 +210,30 @@ TyndallFrameInputs to_c(const FrameInputs& inputs) {
   out.first_marched_cascade = first_marched_cascade;
   set(out.camera.world_from_view, camera.world_from_view);
   set(out.camera.clip_from_view, camera.clip_from_view);
-  set(out.sun.direction_to_sun, sun.direction_to_sun);
-  set(out.sun.irradiance, sun.irradiance);
-  out.sun.angular_radius_rad = sun.angular_radius_rad;
+  set(out.sun, sun);
   out.output = to_c(output);
   out.frame_index = frame_index;
   out.view = view;
   out.lowest_ground_m = lowest_ground_m;
+  return out;
+}
+
+AtmosphereInputs to_cpp(const TyndallAtmosphereInputs& c) {
+  AtmosphereInputs out;
+  auto& [origin_from_centre_m, sun] = out;
+  origin_from_centre_m = {c.origin_from_centre_m[0], c.origin_from_centre_m[1], c.origin_from_centre_m[2]};
+  set(sun, c.sun);
+  return out;
+}
+
+TyndallAtmosphereInputs to_c(const AtmosphereInputs& inputs) {
+  const auto& [origin_from_centre_m, sun] = inputs;
+  TyndallAtmosphereInputs out = {};
+  const auto& [x, y, z] = origin_from_centre_m;
+  out.origin_from_centre_m[0] = x;
+  out.origin_from_centre_m[1] = y;
+  out.origin_from_centre_m[2] = z;
+  set(out.sun, sun);
   return out;
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "tyndall/atmosphere.hpp"
 #include "tyndall/effect.hpp"
 #include "tyndall/tyndall.h"
 
@@ -18,6 +19,9 @@ namespace tyndall::c {
 // `cascades` must outlive the result. Precondition: cascade_count <= kMaxCascades.
 [[nodiscard]] FrameInputs to_cpp(const TyndallFrameInputs& c, std::array<Cascade, kMaxCascades>& cascades);
 [[nodiscard]] TyndallFrameInputs to_c(const FrameInputs& inputs);  // without its cascades
+
+[[nodiscard]] AtmosphereInputs to_cpp(const TyndallAtmosphereInputs& c);
+[[nodiscard]] TyndallAtmosphereInputs to_c(const AtmosphereInputs& inputs);
 
 [[nodiscard]] TyndallMemoryUsage to_c(const MemoryUsage& memory);
 [[nodiscard]] TyndallCounters to_c(const Counters& counters);

@@ -1,6 +1,7 @@
 // The functions of the effect in C. Each checks its pointers and structures and calls the function of C++.
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <memory>
 #include <optional>
 #include <span>
@@ -72,6 +73,29 @@ TyndallStatus tyndall_effect_desc_defaults(TyndallEffectDesc* desc, size_t struc
 TyndallStatus tyndall_frame_inputs_defaults(TyndallFrameInputs* inputs, size_t struct_size) {
   return c::call(__func__, [&](const char* where) {
     return c::write_defaults(where, c::to_c(FrameInputs{}), inputs, struct_size);
+  });
+}
+
+TyndallStatus tyndall_atmosphere_inputs_defaults(TyndallAtmosphereInputs* inputs, size_t struct_size) {
+  return c::call(__func__, [&](const char* where) {
+    return c::write_defaults(where, c::to_c(AtmosphereInputs{}), inputs, struct_size);
+  });
+}
+
+TyndallStatus tyndall_atmosphere_constants(const TyndallParams* params, const TyndallAtmosphereInputs* inputs,
+                                           void* constants, size_t size) {
+  return c::call(__func__, [&](const char* where) -> Result<void> {
+    TYNDALL_TRY(c::check_pointer(where, "constants", constants));
+    TYNDALL_ASSIGN(const TyndallAtmosphereInputs read, c::read(where, inputs, c::to_c(AtmosphereInputs{})));
+    TYNDALL_ASSIGN(const AtmosphereConstants made,
+                   atmosphere_constants(c::params_or_defaults(params), c::to_cpp(read)));
+    static_assert(sizeof made == TYNDALL_ATMOSPHERE_CONSTANTS_SIZE);
+    if (size != sizeof made) {
+      return c::invalid(where, "'size' is " + std::to_string(size) + "; expected TYNDALL_ATMOSPHERE_CONSTANTS_SIZE, " +
+                                   std::to_string(sizeof made));
+    }
+    std::memcpy(constants, &made, sizeof made);
+    return {};
   });
 }
 
@@ -236,6 +260,17 @@ TyndallStatus tyndall_effect_resources(TyndallEffect* effect, uint32_t* count, T
   return c::with(effect, __func__, [&](Effect& e, const char* where) -> Result<void> {
     TYNDALL_TRY(c::check_pointer(where, "count", count));
     return c::write_array(e.resources(), count, resources);
+  });
+}
+
+TyndallStatus tyndall_effect_atmosphere_images(const TyndallEffect* effect, uint32_t* count,
+                                               VkDescriptorImageInfo* images) {
+  return c::with(effect, __func__, [&](const Effect& e, const char* where) -> Result<void> {
+    TYNDALL_TRY(c::check_pointer(where, "count", count));
+    const AtmosphereImages all = atmosphere_images(e);
+    if (images != nullptr) std::copy_n(all.list.begin(), std::min(all.count, *count), images);
+    *count = all.count;
+    return {};
   });
 }
 

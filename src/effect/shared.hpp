@@ -24,6 +24,7 @@ struct ivec3 {
   std::int32_t x, y, z;
 };
 
+#include "shared/atmosphere.h"
 #include "shared/constant_ids.h"
 #include "shared/counters.h"
 #include "shared/epipolar.h"
@@ -35,6 +36,7 @@ struct ivec3 {
 #include "shared/tables.h"
 
 static_assert(sizeof(OneilScale) == 32 && sizeof(Oneil) == 96, "the layout of Oneil must agree with std430");
+static_assert(sizeof(AtmosphereConstants) == 176, "the layout of AtmosphereConstants must agree with std140");
 static_assert(sizeof(Medium) == 96, "the layout of Medium must agree with std430");
 static_assert(sizeof(Homogeneous) == 64, "the layout of Homogeneous must agree with std430");
 static_assert(sizeof(QuadratureRay) == 80 + 40 * sizeof(RayNode) && sizeof(RayNode) == 32 && sizeof(TableShape) == 32,

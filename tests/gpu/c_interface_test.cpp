@@ -5,6 +5,7 @@
 
 #include "c_structures.hpp"
 #include "effect_frame.hpp"
+#include "tyndall/atmosphere.hpp"
 
 namespace tyndall {
 namespace {
@@ -139,6 +140,28 @@ class CEffect : public GpuTest {
   static inline OwnedEffect c_;
 };
 
+TEST_F(CEffect, AtmosphereConstantsAreThoseOfCpp) {
+  TyndallAtmosphereInputs inputs = {};
+  ASSERT_SUCCESS(tyndall_atmosphere_inputs_defaults(&inputs, sizeof inputs));
+  AtmosphereInputs cpp;
+  EXPECT_EQ(inputs.origin_from_centre_m[1], cpp.origin_from_centre_m.y);
+  cpp.origin_from_centre_m = {1.0, -6.5e6, 3.0};
+  cpp.sun = {{0.6F, 0.0F, 0.8F}, {1.0F, 2.0F, 3.0F}, 0.01F};
+  inputs.origin_from_centre_m[0] = 1.0;
+  inputs.origin_from_centre_m[1] = -6.5e6;
+  inputs.origin_from_centre_m[2] = 3.0;
+  inputs.sun = {{0.6F, 0.0F, 0.8F}, {1.0F, 2.0F, 3.0F}, 0.01F};
+  std::array<std::byte, TYNDALL_ATMOSPHERE_CONSTANTS_SIZE> bytes = {};
+  ASSERT_SUCCESS(tyndall_atmosphere_constants(c_params().get(), &inputs, bytes.data(), bytes.size()));
+  const Result<AtmosphereConstants> expected = atmosphere_constants(cpp_params(), cpp);
+  ASSERT_OK(expected);
+  EXPECT_TRUE(bytes == expected.value().bytes);
+  EXPECT_EQ(tyndall_atmosphere_constants(nullptr, &inputs, bytes.data(), 4), TyndallStatus_invalid_argument);
+  EXPECT_NE(std::string(tyndall_last_error()).find("'size' is 4; expected"), std::string::npos) << tyndall_last_error();
+  inputs.sun.direction_to_sun[0] = NAN;
+  EXPECT_EQ(tyndall_atmosphere_constants(nullptr, &inputs, bytes.data(), bytes.size()), TyndallStatus_invalid_argument);
+}
+
 TEST_F(CEffect, PicturesAreThoseOfCpp) {
   expect_same_picture(small_frame(), [](FrameInputs&) {});
   expect_same_picture(glass_frame(), [](FrameInputs& inputs) {
@@ -242,6 +265,15 @@ TEST_F(CEffect, TablesAreThoseOfCpp) {
   EXPECT_EQ(scattering.high_orders.extent.width, cpp_->scattering_tables().high_orders.extent.width);
   EXPECT_EQ(scattering.single_mie.extent.depth, cpp_->scattering_tables().single_mie.extent.depth);
   EXPECT_TRUE(scattering.single_rayleigh.image != VK_NULL_HANDLE && scattering.single_rayleigh.view != VK_NULL_HANDLE);
+
+  VkDescriptorImageInfo images[8] = {};
+  std::uint32_t image_count = 0;
+  ASSERT_SUCCESS(tyndall_effect_atmosphere_images(c_.get(), &image_count, nullptr));
+  EXPECT_EQ(image_count, atmosphere_images(*cpp_).count);
+  ASSERT_SUCCESS(tyndall_effect_atmosphere_images(c_.get(), &image_count, images));
+  EXPECT_EQ(images[0].imageView, light.sky_irradiance);
+  EXPECT_EQ(images[3].imageView, scattering.high_orders.view);
+  EXPECT_EQ(images[image_count].imageView, VK_NULL_HANDLE);
 
   // Saved in both languages, the tables are the same; and they can be loaded.
   const gpu::Device& device = host().device();

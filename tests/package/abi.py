@@ -28,6 +28,7 @@ typedef struct VkPipelineCache_T* VkPipelineCache;
 typedef struct VkBuffer_T* VkBuffer;
 typedef struct VkImage_T* VkImage;
 typedef struct VkImageView_T* VkImageView;
+typedef struct VkSampler_T* VkSampler;
 typedef struct VkAllocationCallbacks VkAllocationCallbacks;
 typedef struct VkExtent2D { uint32_t width, height; } VkExtent2D;
 typedef struct VkExtent3D { uint32_t width, height, depth; } VkExtent3D;
@@ -36,6 +37,7 @@ typedef uint32_t VkBool32;
 typedef uint64_t VkDeviceSize;
 typedef int32_t VkFormat;
 typedef int32_t VkImageLayout;
+typedef struct VkDescriptorImageInfo { VkSampler sampler; VkImageView imageView; VkImageLayout imageLayout; } VkDescriptorImageInfo;
 typedef void (*PFN_vkVoidFunction)(void);
 typedef PFN_vkVoidFunction (*PFN_vkGetInstanceProcAddr)(VkInstance, const char*);
 """

@@ -23,6 +23,15 @@ if(KIND STREQUAL installed)
   if(NOT EXISTS ${WORK}/prefix/share/doc/tyndall/LICENSE)
     message(FATAL_ERROR "not installed: the licence")
   endif()
+  # The installed GLSL header is the one that gpu.atmosphere_glsl tests on a device: the shader of that test compiles to the
+  # same code.
+  set(points ${SOURCE}/tests/gpu/atmosphere_points.comp)
+  foreach(place ${WORK}/prefix/include ${BUILD}/include)
+    string(MD5 name ${place})
+    run(${GLSLC} --target-env=vulkan1.2 -Werror -I ${place} ${points} -o ${WORK}/${name}.spv)
+    list(APPEND compiled ${WORK}/${name}.spv)
+  endforeach()
+  run(${CMAKE_COMMAND} -E compare_files ${compiled})
   list(APPEND arguments -D CMAKE_PREFIX_PATH=${WORK}/prefix -D EXAMPLES=${SOURCE}/examples)
 else()
   # A subdirectory looks for no library but the headers of Vulkan, and for the shader tools. GLM is that of tyndall::post.

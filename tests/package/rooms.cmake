@@ -26,6 +26,7 @@ endmacro()
 room(include/tyndall)
 room(include/tyndall/effect.hpp VULKAN include/tyndall)
 room(include/tyndall/post.hpp VULKAN include/tyndall/effect.hpp include/tyndall)
+room(include/tyndall/atmosphere.hpp VULKAN include/tyndall/effect.hpp include/tyndall)
 room(include/tyndall/tyndall.h VULKAN include/tyndall)
 
 # Shaders, and the structures that they share with C++.
@@ -33,6 +34,7 @@ room(shaders/shared include/tyndall)
 room(shaders/lib shaders/shared)
 room(shaders/precompute shaders/lib shaders/shared include/tyndall)
 room(shaders/frame shaders/lib shaders/shared)
+room(shaders/public shaders/frame shaders/lib shaders/shared include/tyndall)
 room(shaders/epipolar shaders/frame shaders/lib shaders/shared)
 room(shaders/probe shaders/frame shaders/lib shaders/shared include/tyndall)
 room(shaders/published shaders/lib shaders/shared)
@@ -42,8 +44,8 @@ room(shaders/viewer)
 
 # The effect.
 room(src/gpu VULKAN include/tyndall/effect.hpp include/tyndall)
-room(src/effect VULKAN src/gpu shaders/shared include/tyndall/effect.hpp include/tyndall)
-room(src/c VULKAN src/gpu include/tyndall/effect.hpp include/tyndall/tyndall.h include/tyndall)
+room(src/effect VULKAN src/gpu shaders/shared include/tyndall/atmosphere.hpp include/tyndall/effect.hpp include/tyndall)
+room(src/c VULKAN src/gpu include/tyndall/atmosphere.hpp include/tyndall/effect.hpp include/tyndall/tyndall.h include/tyndall)
 room(src/post VULKAN src/gpu shaders/post shaders/lib shaders/shared include/tyndall/post.hpp include/tyndall)
 
 # Files, images and what describes a scene.

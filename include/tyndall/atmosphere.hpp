@@ -1,0 +1,44 @@
+// The inputs of tyndall/atmosphere.glsl, with which shaders of an engine look up sunlight, sky light, in-scattering and
+// transmittance. docs/atmosphere_glsl.md explains how to use it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "tyndall/effect.hpp"
+
+namespace tyndall {
+
+// The coordinates in which shaders pass positions and directions, and the sun.
+struct AtmosphereInputs {
+  // [m] - position of the origin of these coordinates relative to the planet's centre, along their axes, which may
+  // point anywhere. Positions have single precision, so choose an origin near them, for example the camera. The default
+  // is that of FrameInputs with the default planet.
+  DVec3 origin_from_centre_m = {0.0, 6'360'000.0, 0.0};
+  Sun sun;  // with its direction along these axes
+};
+
+// The contents of the uniform block of tyndall/atmosphere.glsl. Copy them to a uniform buffer of this size.
+struct AtmosphereConstants {
+  alignas(16) std::array<std::byte, 512> bytes = {};
+};
+
+// Returns the constants for the tables of these parameters. Fill the block again after the parameters, the sun or the
+// origin have changed. An error names the parameter that is out of range, or the input that is not finite.
+[[nodiscard]] TYNDALL_API Result<AtmosphereConstants> atmosphere_constants(const Params& params,
+                                                                           const AtmosphereInputs& inputs);
+
+// The images that tyndall/atmosphere.glsl reads, as combined image samplers. list[i] belongs to the binding
+// TYNDALL_FIRST_BINDING + 1 + i.
+struct AtmosphereImages {
+  std::array<VkDescriptorImageInfo, 8> list = {};
+  std::uint32_t count = 0;
+};
+
+// Returns the images with their layouts and a sampler, all owned by the effect. They are valid once record_precompute()
+// is complete, and change only when it or record_load_tables() completes new tables. Both write them in COMPUTE_SHADER
+// / SHADER_WRITE.
+[[nodiscard]] TYNDALL_API AtmosphereImages atmosphere_images(const Effect& effect);
+
+}  // namespace tyndall

@@ -1,0 +1,86 @@
+// The inputs of tyndall/atmosphere.glsl: its uniform block and its images.
+#include "tyndall/atmosphere.hpp"
+
+#include <cmath>
+#include <cstring>
+
+#include "effect/effect_state.hpp"
+#include "effect/frame_constants.hpp"
+#include "effect/medium.hpp"
+#include "gpu/guard.hpp"
+#include "gpu/try.hpp"
+
+namespace tyndall {
+namespace {
+
+double length(const DVec3& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
+
+Error invalid(const char* what) { return {ErrorCode::invalid_argument, std::string("atmosphere_constants: ") + what}; }
+
+Result<void> check(const AtmosphereInputs& inputs) {
+  const Vec3& d = inputs.sun.direction_to_sun;
+  const Vec3& e = inputs.sun.irradiance;
+  const double direction = length({d.x, d.y, d.z});
+  if (!std::isfinite(length(inputs.origin_from_centre_m))) {
+    return invalid("origin_from_centre_m is not finite; expected metres");
+  }
+  if (!std::isfinite(direction) || direction < 1e-6) {
+    return invalid("direction_to_sun has no direction; expected a vector of length 1");
+  }
+  if (!std::isfinite(e.x + e.y + e.z) || e.x < 0.0F || e.y < 0.0F || e.z < 0.0F) {
+    return invalid("irradiance is negative or not finite; expected at least 0");
+  }
+  if (!std::isfinite(inputs.sun.angular_radius_rad) || inputs.sun.angular_radius_rad < 0.0F) {
+    return invalid("angular_radius_rad is negative or not finite; expected at least 0");
+  }
+  return {};
+}
+
+Vec3 divided(const DVec3& v, double by) {
+  return {static_cast<float>(v.x / by), static_cast<float>(v.y / by), static_cast<float>(v.z / by)};
+}
+
+shared::AtmosphereConstants constants_of(const Params& params, const AtmosphereInputs& inputs) {
+  shared::AtmosphereConstants out = {};
+  out.medium = medium_from_params(params);
+  out.tables = table_shape(params);
+  const double radius = length(inputs.origin_from_centre_m);
+  if (radius > 0.0) out.origin_up = divided(inputs.origin_from_centre_m, radius);
+  out.origin_radius_m = static_cast<float>(radius);
+  out.origin_altitude_m = static_cast<float>(radius - static_cast<double>(params.planet.radius_m));
+  const Vec3& d = inputs.sun.direction_to_sun;
+  out.direction_to_sun = divided({d.x, d.y, d.z}, length({d.x, d.y, d.z}));
+  out.sun_angular_radius_rad = inputs.sun.angular_radius_rad;
+  const Vec3& e = inputs.sun.irradiance;
+  const float scale = params.scattering.scale;
+  out.sun_irradiance = {e.x * scale, e.y * scale, e.z * scale};
+  return out;
+}
+
+}  // namespace
+
+Result<AtmosphereConstants> atmosphere_constants(const Params& params, const AtmosphereInputs& inputs) {
+  return guarded("atmosphere_constants", [&]() -> Result<AtmosphereConstants> {
+    TYNDALL_TRY(check_params(params));
+    TYNDALL_TRY(check(inputs));
+    const shared::AtmosphereConstants constants = constants_of(params, inputs);
+    AtmosphereConstants out;
+    static_assert(sizeof constants <= sizeof out.bytes);
+    std::memcpy(out.bytes.data(), &constants, sizeof constants);
+    return out;
+  });
+}
+
+AtmosphereImages atmosphere_images(const Effect& effect) {
+  AtmosphereImages out;
+  if (!effect.state_) return out;
+  const Effect::State& state = *effect.state_;
+  constexpr TableId kOrder[] = {TableId::sky_irradiance, TableId::single_rayleigh, TableId::single_mie,
+                                TableId::high_orders};
+  for (const TableId id : kOrder) {
+    out.list[out.count++] = {state.linear.get(), state.tables.table(id).view.get(), VK_IMAGE_LAYOUT_GENERAL};
+  }
+  return out;
+}
+
+}  // namespace tyndall
