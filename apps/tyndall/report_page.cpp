@@ -5,26 +5,14 @@
 
 #include "files/text.hpp"
 #include "report_parts.hpp"
+#include "validate/plot.hpp"
 
 namespace tyndall::cli {
 namespace {
 
 using files::concat;
+using validate::escaped;
 using Json = nlohmann::ordered_json;
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '&': out += "&amp;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += c;
-    }
-  }
-  return out;
-}
 
 std::string shown(const Json& value) {
   if (value.is_string()) return escaped(value.get<std::string>());

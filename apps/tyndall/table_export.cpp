@@ -274,7 +274,7 @@ class Exporter {
     scattering["column"] = "sun zenith angle at the density-weighted mean distance along the ray + " +
                            std::to_string(size.z) + " * angle between view and sun";
     scattering["sun_at_origin"] =
-        "with r = radius + altitude and r_m = sqrt(r^2 + d^2 + 2 r d cos_view_zenith), d = middle_of_air_m of the row: "
+        "with r = radius + altitude and r_m = sqrt(r^2 + d^2 + 2 r d cos_view_zenith), d = mean_distance_m of the row: "
         "cos_sun_zenith at the ray's origin = (r_m cos_sun_zenith - d cos_view_sun) / r";
     scattering["continued"] = "no geometry has the three angles where, at the ray's origin, |cos_view_sun - "
                               "cos_view_zenith cos_sun_zenith| > "
@@ -286,7 +286,7 @@ class Exporter {
       ordered_json view = cosines(std::span(axes_.cos_view_zenith).subspan(first, size.y));
       ordered_json& ends = view["ends_on_ground"] = ordered_json::array();
       for (std::size_t k = 0; k < size.y; ++k) ends.push_back(static_cast<bool>(axes_.ends_on_ground[first + k]));
-      view["middle_of_air_m"] = std::span(axes_.mean_distance_m).subspan(first, size.y);
+      view["mean_distance_m"] = std::span(axes_.mean_distance_m).subspan(first, size.y);
       views.push_back(std::move(view));
     }
     scattering["view_zenith_by_altitude"] = std::move(views);

@@ -87,7 +87,11 @@ void main() {
     for (uint k = 0u; k < kSourceAzimuths; ++k) {
       float phi = source_azimuth(k);
       Spectrum value = Spectrum(0.0);
-      for (uint m = 0u; m < kLateTerms; ++m) value += sums_of[m] * cos(float(m) * phi);
+      for (uint m = 0u; m < kLateTerms; ++m) {
+        // Vulkan bounds the error of cos() within half a turn only.
+        float turns = float(m) * phi / (2.0 * kPi);
+        value += sums_of[m] * cos((turns - floor(turns + 0.5)) * (2.0 * kPi));
+      }
       uint index = source_index(altitude, zenith, k, sun);
       Spectrum all = CHANNELS(sums[index]) + max(value, Spectrum(0.0));
       imageStore(source_function, source_texel(altitude, zenith, k, sun), half_texel(texel_from_value(all)));

@@ -5,15 +5,13 @@
 #include <algorithm>
 #include <cstring>
 
+#include "c/structures.hpp"
+
 namespace tyndall::c {
 namespace {
 
 static_assert(TYNDALL_MAX_CASCADES == kMaxCascades && TYNDALL_MAX_VIEWS == kMaxViews);
 
-template <typename C, typename Cpp>
-constexpr bool same(C c, Cpp cpp) {
-  return sizeof(C) == sizeof(std::uint32_t) && static_cast<std::uint32_t>(c) == static_cast<std::uint32_t>(cpp);
-}
 static_assert(same(TyndallSeverity_info, Severity::info) && same(TyndallSeverity_warning, Severity::warning));
 static_assert(same(TyndallOutputFormat_rgba16f, OutputFormat::rgba16f) &&
               same(TyndallOutputFormat_rgba32f, OutputFormat::rgba32f));

@@ -15,10 +15,6 @@
 namespace tyndall::c {
 namespace {
 
-template <typename C, typename Cpp>
-constexpr bool same(C c, Cpp cpp) {
-  return sizeof(C) == sizeof(std::uint32_t) && static_cast<std::uint32_t>(c) == static_cast<std::uint32_t>(cpp);
-}
 static_assert(same(TyndallParamType_float32, ParamType::float32) && same(TyndallParamType_uint32, ParamType::uint32) &&
               same(TyndallParamType_flag, ParamType::flag) &&
               same(TyndallParamType_enumeration, ParamType::enumeration) &&

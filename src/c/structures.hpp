@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 
 #include "c/error.hpp"
@@ -11,6 +12,12 @@
 #include "tyndall/tyndall.h"
 
 namespace tyndall::c {
+
+// Returns whether a value of an enumeration of tyndall.h is that of the C++ library.
+template <typename C, typename Cpp>
+constexpr bool same(C c, Cpp cpp) {
+  return sizeof(C) == sizeof(std::uint32_t) && static_cast<std::uint32_t>(c) == static_cast<std::uint32_t>(cpp);
+}
 
 // Name, and size in the first version of tyndall.h that had the structure: the end of its last member at that time. The
 // end of the last member must be the end of the structure. A later member could otherwise lie in the padding, where

@@ -119,7 +119,7 @@ std::string Export::scattering_queries() {
           // The table has the sun's zenith angle at the density-weighted mean distance, the query that at the ray's
           // origin.
           const double r = 6360000.0 + scattering["altitude_m"][a].get<double>();
-          const double d = views["middle_of_air_m"][v];
+          const double d = views["mean_distance_m"][v];
           const double r_middle = std::sqrt(r * r + d * d + 2.0 * r * d * mu);
           const double mu_s = (r_middle * scattering["sun_zenith"]["cosine"][s].get<double>() - d * nu) / r;
           if (std::abs(mu_s) >= 1.0) continue;

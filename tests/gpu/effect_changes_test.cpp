@@ -6,17 +6,7 @@
 namespace tyndall {
 namespace {
 
-class EffectChanges : public GpuTest {
- protected:
-  DeviceInfo info() {
-    DeviceInfo out;
-    out.instance = host().device().instance;
-    out.physical_device = host().device().physical_device;
-    out.device = host().device().device;
-    out.get_instance_proc_addr = host().get_instance_proc_addr();
-    return out;
-  }
-};
+class EffectChanges : public GpuTest {};
 
 // Pipelines that are created on demand give the same picture as those created with the effect, and can be prepared.
 TEST_F(EffectChanges, MissingPipelinesAreCreatedOnRequest) {

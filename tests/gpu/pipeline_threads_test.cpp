@@ -7,17 +7,7 @@
 namespace tyndall {
 namespace {
 
-class PipelineThreads : public GpuTest {
- protected:
-  DeviceInfo info() {
-    DeviceInfo out;
-    out.instance = host().device().instance;
-    out.physical_device = host().device().physical_device;
-    out.device = host().device().device;
-    out.get_instance_proc_addr = host().get_instance_proc_addr();
-    return out;
-  }
-};
+class PipelineThreads : public GpuTest {};
 
 // Several threads create the same pipelines as one, and their errors are errors of create().
 TEST_F(PipelineThreads, CreateTheSamePipelinesAsOneThread) {
