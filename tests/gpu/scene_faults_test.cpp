@@ -242,8 +242,8 @@ TEST_F(SceneFaults, AnotherModelIsRefusedAtEveryCall) {
   }
 }
 
-// The first frame fills the terrain, in one submission, and adapts the exposure. If it fails at any call, the scene later
-// draws the same picture as a scene without failures. After a failed submission, the effect is created again.
+// The first frame fills the terrain, in one submission, and adapts the exposure. If it fails at any call, the scene
+// later draws the same picture as a scene without failures. After a failed submission, the effect is created again.
 TEST_F(SceneFaults, AFailedFrameHasNoEffectOnLaterOnes) {
   const Pane pane;
   scene_ = other_scene(pane.path());
