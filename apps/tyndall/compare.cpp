@@ -50,7 +50,8 @@ std::string report(const image::Metrics& metrics, const image::File& file, bool 
   if (!json) {
     std::string text =
         concat({"rmse ", number_text(metrics.rmse), "\npsnr_db ", number_text(psnr_db), "\nmean_relative_error ",
-                number_text(metrics.mean_relative_error), "\nmax_abs ", number_text(metrics.max_abs), "\n"});
+                number_text(metrics.mean_relative_error), "\nmax_abs ", number_text(metrics.max_abs),
+                "\ntrimmed_relative_error ", number_text(metrics.trimmed_relative_error), "\n"});
     if (metrics.non_finite_a + metrics.non_finite_b > 0) {
       text += concat(
           {"non_finite ", std::to_string(metrics.non_finite_a), " ", std::to_string(metrics.non_finite_b), "\n"});
@@ -65,6 +66,8 @@ std::string report(const image::Metrics& metrics, const image::File& file, bool 
                  number_text(metrics.mean_relative_error),
                  ", \"max_abs\": ",
                  number_text(metrics.max_abs),
+                 ", \"trimmed_relative_error\": ",
+                 number_text(metrics.trimmed_relative_error),
                  ", \"non_finite\": [",
                  std::to_string(metrics.non_finite_a),
                  ", ",

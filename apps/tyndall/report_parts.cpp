@@ -212,9 +212,11 @@ void report_pictures(ReportRun& run, double share) {
     }
     const std::string difference = concat({run.folder, "/difference_", scene, ".exr"});
     const Json values = compared(run, picture, reference, run.is_short ? "" : difference);
+    // Drivers may place the vertices of triangles on different fractions of a pixel and filter textures with other
+    // roundings, so edges and fine textures are left out.
     constexpr double kMax = 1e-3;
-    run.check(concat({name, " against the CPU device"}), number_in(values, "mean_relative_error") <= kMax,
-              "mean relative error at most 0.001", values);
+    run.check(concat({name, " against the CPU device"}), number_in(values, "trimmed_relative_error") <= kMax,
+              "mean relative error of the 95 % of values with the smallest errors at most 0.001", values);
   }
 }
 

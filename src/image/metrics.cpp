@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 namespace tyndall::image {
 
@@ -26,14 +28,19 @@ Metrics compare(const Image& a, const Image& b) {
   metrics.rmse = std::sqrt(squares / values);
   metrics.psnr_db = -20.0 * std::log10(metrics.rmse);
   const double floor = kRelativeFloor * reference / values;
-  double relative = 0.0;
+  std::vector<double> relative;
+  relative.reserve(count);
   for (std::size_t i = 0; i < b.rgb.size(); ++i) {
     if (!std::isfinite(a.rgb[i]) || !std::isfinite(b.rgb[i])) continue;
     const double error = std::fabs(static_cast<double>(a.rgb[i]) - static_cast<double>(b.rgb[i]));
     const double scale = std::max(std::fabs(static_cast<double>(b.rgb[i])), floor);
-    if (error > 0.0) relative += scale > 0.0 ? error / scale : 1.0;
+    relative.push_back(error == 0.0 ? 0.0 : scale > 0.0 ? error / scale : 1.0);
   }
-  metrics.mean_relative_error = relative / values;
+  metrics.mean_relative_error = std::accumulate(relative.begin(), relative.end(), 0.0) / values;
+  const auto kept = static_cast<std::ptrdiff_t>(std::ceil((1.0 - kTrimmed) * values));
+  std::nth_element(relative.begin(), relative.begin() + kept - 1, relative.end());
+  metrics.trimmed_relative_error =
+      std::accumulate(relative.begin(), relative.begin() + kept, 0.0) / static_cast<double>(kept);
   return metrics;
 }
 

@@ -45,6 +45,18 @@ TEST(ImageMetrics, RelativeErrorDoesNotDependOnTheUnit) {
   EXPECT_NEAR(compare(a, b).mean_relative_error, (0.5 / 1.5 + 0.2) / 6.0, 1e-4);
 }
 
+TEST(ImageMetrics, FiveValuesInAHundredAreTrimmed) {
+  Image a(20, 1);
+  Image b(20, 1);
+  std::fill(b.rgb.begin(), b.rgb.end(), 1.0F);
+  std::fill(a.rgb.begin(), a.rgb.end(), 1.25F);
+  for (const std::size_t edge : {7U, 30U, 59U}) a.rgb[edge] = 9.0F;
+  EXPECT_DOUBLE_EQ(compare(a, b).trimmed_relative_error, 0.25);
+  EXPECT_DOUBLE_EQ(compare(a, b).mean_relative_error, 0.25 + 3.0 * 7.75 / 60.0);
+  a.rgb[40] = 9.0F;
+  EXPECT_DOUBLE_EQ(compare(a, b).trimmed_relative_error, 0.25 + 7.75 / 57.0) << "a fourth of 60 is too many";
+}
+
 TEST(ImageMetrics, AgainstBlack) {
   EXPECT_DOUBLE_EQ(compare(image_of({1.0F, 0.0F, 0.0F}), image_of({0.0F, 0.0F, 0.0F})).mean_relative_error, 1.0 / 3.0);
 }
