@@ -297,6 +297,7 @@ class TYNDALL_API Effect {
 
  private:
   friend TYNDALL_API AtmosphereImages atmosphere_images(const Effect& effect);  // see atmosphere.hpp
+  friend class SkyProbe;
   struct State;
   explicit Effect(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;

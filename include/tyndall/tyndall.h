@@ -347,6 +347,38 @@ TYNDALL_API TyndallStatus tyndall_effect_timings(TyndallEffect* effect, uint64_t
 TYNDALL_API TyndallStatus tyndall_effect_precompute_timings(TyndallEffect* effect, uint32_t* count,
                                                             TyndallPassTiming* timings);
 
+// A sky probe; tyndall/sky_probe.hpp documents it. Destroy it before its effect. tyndall_sky_probe_destroy() accepts
+// null.
+typedef struct TyndallSkyProbe TyndallSkyProbe;
+
+typedef struct TyndallSkyProbeInputs {
+  uint32_t struct_size;
+  float altitude_m;
+  float up[3];
+  TyndallSun sun;
+} TyndallSkyProbeInputs;
+TYNDALL_API TyndallStatus tyndall_sky_probe_inputs_defaults(TyndallSkyProbeInputs* inputs, size_t struct_size);
+
+typedef struct TyndallSkyCoefficients {
+  uint32_t struct_size;
+  uint32_t reserved;
+  VkBuffer buffer;
+  VkDeviceSize offset;
+  VkDeviceSize size;
+} TyndallSkyCoefficients;
+
+TYNDALL_API TyndallStatus tyndall_sky_probe_query_memory(const TyndallDeviceInfo* info, uint32_t frames_in_flight,
+                                                         TyndallMemoryUsage* memory);
+TYNDALL_API TyndallStatus tyndall_sky_probe_create(TyndallEffect* effect, uint32_t frames_in_flight,
+                                                   TyndallSkyProbe** probe);
+TYNDALL_API void tyndall_sky_probe_destroy(TyndallSkyProbe* probe);
+TYNDALL_API TyndallStatus tyndall_sky_probe_record(TyndallSkyProbe* probe, VkCommandBuffer cmd,
+                                                   const TyndallSkyProbeInputs* inputs, uint32_t budget,
+                                                   TyndallProgress* progress);
+TYNDALL_API TyndallStatus tyndall_sky_probe_coefficients(const TyndallSkyProbe* probe,
+                                                         TyndallSkyCoefficients* coefficients);
+TYNDALL_API TyndallStatus tyndall_sky_probe_memory(const TyndallSkyProbe* probe, TyndallMemoryUsage* memory);
+
 #ifdef __cplusplus
 }
 #endif

@@ -6,11 +6,11 @@
 #extension GL_GOOGLE_include_directive : require
 
 #include "lib/single_scattering.glsl"
+#include "frame/ground_light.glsl"
 #include "frame/table_lookup.glsl"
 #include "probe/result.glsl"
 #include "shared/probe.h"
 #include "shared/tables.h"
-#include "tyndall/light_tables.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -25,19 +25,9 @@ layout(std430, binding = 3) readonly buffer setup_block {
 };
 layout(binding = 4) uniform sampler2D sky_irradiance;
 
-Spectrum sky_light(float h, float mu_s) {
-  vec2 uv = light_table_uv(h, mu_s, medium.planet_radius_m, medium.atmosphere_height_m);
-  return LIGHT_OF_TEXEL(textureLod(sky_irradiance, uv, 0.0));
-}
-
 // Returns the radiance reflected by the ground at the ray's end.
 Spectrum ground_light(ProbeRay ray) {
-  float R = medium.planet_radius_m;
-  float q = (R + ray.altitude_m) * ray.cos_sun_zenith + ray.end_m * ray.cos_view_sun;
-  float ground = ground_below(ray.altitude_m, R);
-  float cos_sun = q / (R + ground);
-  Spectrum light = max(cos_sun, 0.0) * sun_transmittance_at(medium, ground, q) + sky_light(ground, cos_sun);
-  return light * (medium.ground_albedo * 0.318309886183791);
+  return ground_light(medium, sky_irradiance, ray.altitude_m, ray.cos_sun_zenith, ray.cos_view_sun, ray.end_m);
 }
 
 void main() {
@@ -47,7 +37,7 @@ void main() {
   if (ray.end_m < 0.0) {
     Spectrum towards_sun = sun_visibility(ray.altitude_m, ray.cos_sun_zenith, medium.planet_radius_m) *
                            transmittance(medium, density_integral_to_top(medium, ray.altitude_m, ray.cos_sun_zenith));
-    results[index] = PROBE_RESULT(sky_light(ray.altitude_m, ray.cos_sun_zenith), towards_sun);
+    results[index] = PROBE_RESULT(sky_light(medium, sky_irradiance, ray.altitude_m, ray.cos_sun_zenith), towards_sun);
     return;
   }
   if (ray.end_m == 0.0) {

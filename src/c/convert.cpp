@@ -235,6 +235,33 @@ TyndallAtmosphereInputs to_c(const AtmosphereInputs& inputs) {
   return out;
 }
 
+SkyProbeInputs to_cpp(const TyndallSkyProbeInputs& c) {
+  SkyProbeInputs out;
+  auto& [up, altitude_m, sun] = out;
+  up = vec3(c.up);
+  altitude_m = c.altitude_m;
+  set(sun, c.sun);
+  return out;
+}
+
+TyndallSkyProbeInputs to_c(const SkyProbeInputs& inputs) {
+  const auto& [up, altitude_m, sun] = inputs;
+  TyndallSkyProbeInputs out = {};
+  set(out.up, up);
+  out.altitude_m = altitude_m;
+  set(out.sun, sun);
+  return out;
+}
+
+TyndallSkyCoefficients to_c(const SkyCoefficients& coefficients) {
+  const auto& [buffer, offset, size] = coefficients;
+  TyndallSkyCoefficients out = {};
+  out.buffer = buffer;
+  out.offset = offset;
+  out.size = size;
+  return out;
+}
+
 TyndallMemoryUsage to_c(const MemoryUsage& memory) {
   const auto& [persistent, transient, host] = memory;
   TyndallMemoryUsage out = {};

@@ -5,6 +5,7 @@
 
 #include "tyndall/atmosphere.hpp"
 #include "tyndall/effect.hpp"
+#include "tyndall/sky_probe.hpp"
 #include "tyndall/tyndall.h"
 
 namespace tyndall::c {
@@ -22,6 +23,9 @@ namespace tyndall::c {
 
 [[nodiscard]] AtmosphereInputs to_cpp(const TyndallAtmosphereInputs& c);
 [[nodiscard]] TyndallAtmosphereInputs to_c(const AtmosphereInputs& inputs);
+[[nodiscard]] SkyProbeInputs to_cpp(const TyndallSkyProbeInputs& c);
+[[nodiscard]] TyndallSkyProbeInputs to_c(const SkyProbeInputs& inputs);
+[[nodiscard]] TyndallSkyCoefficients to_c(const SkyCoefficients& coefficients);
 
 [[nodiscard]] TyndallMemoryUsage to_c(const MemoryUsage& memory);
 [[nodiscard]] TyndallCounters to_c(const Counters& counters);

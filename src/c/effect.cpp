@@ -3,19 +3,14 @@
 #include <array>
 #include <cstring>
 #include <memory>
-#include <optional>
 #include <span>
 
 #include "c/convert.hpp"
 #include "c/error.hpp"
+#include "c/handles.hpp"
 #include "c/params.hpp"
 #include "c/structures.hpp"
 #include "gpu/try.hpp"
-
-struct TyndallEffect {
-  TyndallDeviceInfo callbacks;  // outlives `effect`, which refers to it
-  std::optional<tyndall::Effect> effect;
-};
 
 namespace tyndall::c {
 namespace {

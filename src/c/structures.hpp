@@ -43,6 +43,8 @@ TYNDALL_PUBLISHED(TyndallMemoryUsage, host, host)
 TYNDALL_PUBLISHED(TyndallCounters, pixels_corrected, pixels_corrected)
 TYNDALL_PUBLISHED(TyndallLightTables, sky_irradiance, sky_irradiance)
 TYNDALL_PUBLISHED(TyndallScatteringTables, high_orders, high_orders)
+TYNDALL_PUBLISHED(TyndallSkyProbeInputs, sun, sun)
+TYNDALL_PUBLISHED(TyndallSkyCoefficients, size, size)
 #undef TYNDALL_PUBLISHED
 // NOLINTEND(bugprone-sizeof-expression)
 

@@ -34,6 +34,7 @@ enum class Lifetime : std::uint8_t {
   caller,     // an input or the output of a frame
   tables,     // filled by a build, read by frames
   frame,      // written and read within one frame; the next frame reuses the memory
+  probe,      // written by updates of a sky probe, whose coefficients the caller reads
   build,      // written and read within one build of the tables, and freed when it is complete
   chosen      // a placeholder for a resource that the step chooses
 };

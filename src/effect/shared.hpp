@@ -35,6 +35,8 @@ struct ivec3 {
 #include "shared/probe.h"
 #include "shared/tables.h"
 
+#include "shared/sky_probe.h"  // uses TableShape
+
 static_assert(sizeof(OneilScale) == 32 && sizeof(Oneil) == 96, "the layout of Oneil must agree with std430");
 static_assert(sizeof(AtmosphereConstants) == 176, "the layout of AtmosphereConstants must agree with std140");
 static_assert(sizeof(Medium) == 96, "the layout of Medium must agree with std430");
@@ -43,6 +45,7 @@ static_assert(sizeof(QuadratureRay) == 80 + 40 * sizeof(RayNode) && sizeof(RayNo
               "the layouts of tables must agree with std430");
 static_assert(sizeof(EpipolarConstants) == 128 && sizeof(EpipolarSlice) == 32 && sizeof(SliceLine) == 32,
               "the layouts of epipolar sampling must agree with std430");
+static_assert(sizeof(SkyProbeConstants) == 96, "the layout of sky probes must agree with std430");
 static_assert(sizeof(ProbeRay) == 32 && sizeof(ProbeResult) == 32, "the layouts of probes must agree with std430");
 
 }  // namespace tyndall::shared

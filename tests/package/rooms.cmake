@@ -25,6 +25,7 @@ endmacro()
 # The public interface: parameters and results, then the effect itself.
 room(include/tyndall)
 room(include/tyndall/effect.hpp VULKAN include/tyndall)
+room(include/tyndall/sky_probe.hpp VULKAN include/tyndall/effect.hpp include/tyndall)
 room(include/tyndall/post.hpp VULKAN include/tyndall/effect.hpp include/tyndall)
 room(include/tyndall/atmosphere.hpp VULKAN include/tyndall/effect.hpp include/tyndall)
 room(include/tyndall/tyndall.h VULKAN include/tyndall)
@@ -33,7 +34,8 @@ room(include/tyndall/tyndall.h VULKAN include/tyndall)
 room(shaders/shared include/tyndall)
 room(shaders/lib shaders/shared)
 room(shaders/precompute shaders/lib shaders/shared include/tyndall)
-room(shaders/frame shaders/lib shaders/shared)
+room(shaders/frame shaders/lib shaders/shared include/tyndall)
+room(shaders/sky_probe shaders/frame shaders/shared include/tyndall)
 room(shaders/public shaders/frame shaders/lib shaders/shared include/tyndall)
 room(shaders/epipolar shaders/frame shaders/lib shaders/shared)
 room(shaders/probe shaders/frame shaders/lib shaders/shared include/tyndall)
@@ -44,8 +46,8 @@ room(shaders/viewer)
 
 # The effect.
 room(src/gpu VULKAN include/tyndall/effect.hpp include/tyndall)
-room(src/effect VULKAN src/gpu shaders/shared include/tyndall/atmosphere.hpp include/tyndall/effect.hpp include/tyndall)
-room(src/c VULKAN src/gpu include/tyndall/atmosphere.hpp include/tyndall/effect.hpp include/tyndall/tyndall.h include/tyndall)
+room(src/effect VULKAN src/gpu shaders/shared include/tyndall/sky_probe.hpp include/tyndall/atmosphere.hpp include/tyndall/effect.hpp include/tyndall)
+room(src/c VULKAN src/gpu include/tyndall/sky_probe.hpp include/tyndall/atmosphere.hpp include/tyndall/effect.hpp include/tyndall/tyndall.h include/tyndall)
 room(src/post VULKAN src/gpu shaders/post shaders/lib shaders/shared include/tyndall/post.hpp include/tyndall)
 
 # Files, images and what describes a scene.

@@ -18,6 +18,7 @@
 
 #include "config/settings.hpp"
 #include "effect/frame_steps.hpp"
+#include "effect/sky_probe_steps.hpp"
 #include "effect/table_plan.hpp"
 #include "effect/table_steps.hpp"
 #include "gpu/try.hpp"
@@ -181,6 +182,7 @@ std::string lifetime_of(Resource resource, const Lifetimes& frame, const Lifetim
     case Lifetime::caller: return "the caller's";
     case Lifetime::tables: return "until other tables are complete";
     case Lifetime::frame: return "a frame: " + span(frame);
+    case Lifetime::probe: return "a sky probe";
     case Lifetime::build: return "a build: " + span(build);
     case Lifetime::chosen: break;
   }
@@ -222,6 +224,27 @@ void add_resources(std::string& out, const Lifetimes& frame, const Lifetimes& bu
   }
 }
 
+// The device memory of an effect with default settings, from the sizes of its buffers and tables. Devices round each
+// up.
+void add_memory(std::string& out) {
+  out += "\n## Memory by resolution\n\n"
+         "The sum of the buffers above for other pictures (`EffectDesc::max_extent`), and of the tables, with default "
+         "settings. Devices\n"
+         "may round each buffer up; `query_memory` returns the exact sum.\n\n";
+  add_row(out, {"picture", "buffers of a frame, MiB", "tables, MiB"});
+  out += "|---|--:|--:|\n";
+  for (const VkExtent2D extent : {VkExtent2D{1280, 720}, {1920, 1080}, {2560, 1440}, {3840, 2160}}) {
+    EffectDesc desc;
+    desc.max_extent = extent;
+    VkDeviceSize sum = 0;
+    for (const VkDeviceSize bytes : frame_buffer_sizes(desc, {}).bytes) sum += bytes;
+    char text[2][32];
+    std::snprintf(text[0], sizeof text[0], "%.1f", static_cast<double>(sum) / 1048576.0);
+    std::snprintf(text[1], sizeof text[1], "%.1f", static_cast<double>(table_bytes({})) / 1048576.0);
+    add_row(out, {std::to_string(extent.width) + " × " + std::to_string(extent.height), text[0], text[1]});
+  }
+}
+
 // Returns the page. `folder` contains the measured costs; it is empty if there are none.
 Result<std::string> page(const std::string& folder) {
   std::string out =
@@ -255,7 +278,11 @@ Result<std::string> page(const std::string& folder) {
   TYNDALL_ASSIGN(const Costs costs, costs_in(folder + "/tables.json", "stages", "ms"));
   add_passes(out, rows_of(steps, false), costs);
   add_lifetimes(build, steps);
+  out += "\n## An update of a sky probe\n\n";
+  const std::span<const Step> probe = sky_probe_steps();
+  add_passes(out, rows_of({probe.begin(), probe.end()}, false), {});
   add_resources(out, frame, build);
+  add_memory(out);
   return out;
 }
 

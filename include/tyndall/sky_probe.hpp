@@ -1,0 +1,73 @@
+// A sky probe: the light of the whole sky around a point, for ambient light. It is described by spherical harmonics of
+// order 2, which tyndall/sky_probe.glsl evaluates in your shaders.
+//
+// Contents: the radiance of the sky from every direction above the horizon, and below it that of a ground with
+// planet.ground_albedo, lit by sun and sky, seen through the atmosphere. All orders of scattering of the tables,
+// without the sun's disc, and without the terrain and shadows of your scene. scattering.single and scattering.multiple
+// do not matter. For points inside of the atmosphere.
+//
+// Coefficients: nine vec4 in a buffer, whose rgb are the integrals of the radiance times the functions of
+// tyndall_sky_basis(). The irradiance of a surface that faces upwards is exact. docs/sky_probe.md states the error of
+// other normals.
+//
+// A frame:   probe.record(cmd, inputs, budget);   // then a barrier from COMPUTE_SHADER / SHADER_WRITE to your shaders
+//
+// Conventions, ownership, threads, errors and submission are those of tyndall/effect.hpp. A probe and its effect count
+// as one object for threads.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <cstdint>
+#include <memory>
+
+#include "tyndall/effect.hpp"
+
+namespace tyndall {
+
+// The point, and the sun. Directions are in any right-handed axes of yours; the coefficients are in the same axes.
+struct SkyProbeInputs {
+  Vec3 up = {0.0F, 1.0F, 0.0F};  // unit length, away from the planet's centre
+  float altitude_m = 0.0F;       // [-planet.radius_m / 4; atmosphere.height_m] - above sea level
+  Sun sun;                       // the angular radius is not used
+};
+
+// The buffer of the coefficients, a part of nine vec4 of it.
+struct SkyCoefficients {
+  VkBuffer buffer = VK_NULL_HANDLE;  // can be bound as a storage or a uniform buffer, and copied
+  VkDeviceSize offset = 0;           // [bytes]
+  VkDeviceSize size = 0;             // [bytes]
+};
+
+class TYNDALL_API SkyProbe {
+ public:
+  // Returns the memory of a probe [bytes]. It is not part of the effect's query_memory().
+  static Result<MemoryUsage> query_memory(const DeviceInfo& device, std::uint32_t frames_in_flight);
+  // Makes the pipelines and allocates all memory. The probe uses the effect's tables. Destroy it before the effect,
+  // which may be moved. `frames_in_flight` as in EffectDesc: how many calls of record() may be pending.
+  static Result<SkyProbe> create(Effect& effect, std::uint32_t frames_in_flight = 2);
+  // A moved-from SkyProbe can be destroyed or assigned to. Its functions return an error, null or zeros.
+  SkyProbe(SkyProbe&&) noexcept;
+  SkyProbe& operator=(SkyProbe&&) noexcept;
+  // Destroys everything immediately. All recorded commands must have completed.
+  ~SkyProbe();
+
+  // Records at most `budget` of the slices of an update, by default all of them. The coefficients change with the last
+  // slice only. The inputs take effect with the first slice of an update; a call after the last slice begins another
+  // update. An error if tables were never built, if scattering.medium is homogeneous, or if the commands of the call
+  // frames_in_flight earlier have not completed. Allocates nothing. The last slice waits for all earlier commands of
+  // the queue that may read the coefficients; wait for COMPUTE_SHADER / SHADER_WRITE before you read them.
+  Result<Progress> record(VkCommandBuffer cmd, const SkyProbeInputs& inputs, std::uint32_t budget = UINT32_MAX);
+
+  // Returns the coefficients. The buffer is the same for the probe's whole life, and zero before the first update.
+  [[nodiscard]] SkyCoefficients coefficients() const;
+  // Returns the memory in use.
+  [[nodiscard]] MemoryUsage memory() const;
+
+ private:
+  struct State;
+  explicit SkyProbe(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace tyndall

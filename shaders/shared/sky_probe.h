@@ -1,0 +1,23 @@
+// The constants of shaders/sky_probe. Compiled as GLSL (std430) and as C++ (src/effect/shared.hpp).
+#ifndef TYNDALL_SHARED_SKY_PROBE
+#define TYNDALL_SHARED_SKY_PROBE
+
+// The quadrature over the sphere: rows of nodes at one zenith angle, on one side of the sun's plane.
+const uint kSkyProbeNodes = 12u;     // zenith angles in each of four intervals
+const uint kSkyProbeRows = 48u;      // 4 kSkyProbeNodes
+const uint kSkyProbeAzimuths = 32u;  // a multiple of 4
+const uint kSkyProbeSums = 10u;      // vec4 per row: 9 coefficients, and the irradiance from above
+
+struct SkyProbeConstants {
+  vec3 up;  // directions in the axes of the caller
+  float altitude_m;
+  vec3 ahead;  // horizontal, towards the sun
+  float cos_sun_zenith;
+  vec3 side;  // horizontal, perpendicular to it
+  float sin_sun_zenith;
+  vec3 irradiance;  // of the sun above the atmosphere
+  float unused_0;
+  TableShape shape;
+};
+
+#endif

@@ -1,0 +1,262 @@
+#include "tyndall/sky_probe.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "effect/effect_state.hpp"
+#include "effect/frame_constants.hpp"
+#include "effect/limits.hpp"
+#include "effect/medium.hpp"
+#include "effect/sky_probe_steps.hpp"
+#include "gpu/guard.hpp"
+#include "gpu/try.hpp"
+
+namespace tyndall {
+namespace {
+
+// The largest alignment that Vulkan allows devices to require of offsets.
+constexpr VkDeviceSize kMediumOffset = 256;
+static_assert(sizeof(shared::SkyProbeConstants) <= kMediumOffset && sizeof(shared::Medium) <= 256);
+constexpr VkDeviceSize kSlotBytes = kMediumOffset + 256;
+constexpr VkDeviceSize kCoefficientBytes = 9 * 4 * sizeof(float);
+constexpr VkDeviceSize kRowBytes = VkDeviceSize{shared::kSkyProbeRows} * shared::kSkyProbeSums * 4 * sizeof(float);
+constexpr VkBufferUsageFlags kConstantsUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+constexpr VkBufferUsageFlags kRowsUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+constexpr VkBufferUsageFlags kCoefficientsUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                                                  VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
+                                                  VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+
+Error invalid(const std::string& message) { return {ErrorCode::invalid_argument, message}; }
+
+Result<void> check_frames(const char* where, std::uint32_t frames) {
+  if (frames >= 1 && frames <= 8) return {};
+  return invalid(std::string(where) + ": invalid frames_in_flight " + std::to_string(frames) + "; expected 1 to 8");
+}
+
+bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+double dot(const Vec3& a, const Vec3& b) {
+  return static_cast<double>(a.x) * static_cast<double>(b.x) + static_cast<double>(a.y) * static_cast<double>(b.y) +
+         static_cast<double>(a.z) * static_cast<double>(b.z);
+}
+
+Result<void> check_unit(const char* name, const Vec3& v) {
+  if (finite(v) && std::abs(dot(v, v) - 1.0) < 2e-3) return {};
+  return invalid(std::string("SkyProbe::record: ") + name + " is not a unit vector; its squared length is " +
+                 std::to_string(dot(v, v)) + "; expected 1");
+}
+
+Result<void> check_inputs(const SkyProbeInputs& inputs, const Params& params) {
+  TYNDALL_TRY(check_unit("SkyProbeInputs::up", inputs.up));
+  TYNDALL_TRY(check_unit("Sun::direction_to_sun", inputs.sun.direction_to_sun));
+  const Vec3& e = inputs.sun.irradiance;
+  if (!finite(e) || e.x < 0.0F || e.y < 0.0F || e.z < 0.0F) {
+    return invalid("SkyProbe::record: Sun::irradiance is negative or not finite; expected three values of at least 0");
+  }
+  const float lowest_m = -0.25F * params.planet.radius_m;
+  if (!(inputs.altitude_m >= lowest_m && inputs.altitude_m <= params.atmosphere.height_m)) {
+    return invalid("SkyProbe::record: SkyProbeInputs::altitude_m is " + std::to_string(inputs.altitude_m) +
+                   "; expected " + std::to_string(lowest_m) + " (a quarter of planet.radius_m below the sea) to " +
+                   std::to_string(params.atmosphere.height_m) + " (atmosphere.height_m)");
+  }
+  if (params.scattering.medium == MediumKind::homogeneous) {
+    return invalid("SkyProbe::record: scattering.medium is homogeneous, which has no sky; expected atmosphere");
+  }
+  return {};
+}
+
+Vec3 sum(const Vec3& a, double s, const Vec3& b, double t) {
+  const auto of = [&](float x, float y) {
+    return static_cast<float>(static_cast<double>(x) * s + static_cast<double>(y) * t);
+  };
+  return {of(a.x, b.x), of(a.y, b.y), of(a.z, b.z)};
+}
+
+shared::SkyProbeConstants constants_of(const SkyProbeInputs& inputs, const Params& params) {
+  shared::SkyProbeConstants out = {};
+  const Vec3& sun = inputs.sun.direction_to_sun;
+  const Vec3 up = sum(inputs.up, 1.0 / std::sqrt(dot(inputs.up, inputs.up)), {}, 0.0);
+  const double cosine = std::clamp(dot(up, sun) / std::sqrt(dot(sun, sun)), -1.0, 1.0);
+  Vec3 ahead = sum(sun, 1.0, up, -dot(up, sun));
+  // Any horizontal direction will do for a sun at the zenith or below the nadir.
+  if (dot(ahead, ahead) < 1e-8) {
+    const Vec3 axis = std::abs(up.x) < 0.5F ? Vec3(1.0F, 0.0F, 0.0F) : Vec3(0.0F, 1.0F, 0.0F);
+    ahead = sum(axis, 1.0, up, -dot(axis, up));
+  }
+  ahead = sum(ahead, 1.0 / std::sqrt(dot(ahead, ahead)), {}, 0.0);
+  const float scale = params.scattering.scale;
+  const Vec3& e = inputs.sun.irradiance;
+  out.up = up;
+  out.ahead = ahead;
+  out.side = {up.y * ahead.z - up.z * ahead.y, up.z * ahead.x - up.x * ahead.z, up.x * ahead.y - up.y * ahead.x};
+  out.cos_sun_zenith = static_cast<float>(cosine);
+  out.sin_sun_zenith = static_cast<float>(std::sqrt((1.0 - cosine) * (1.0 + cosine)));
+  out.altitude_m = inputs.altitude_m;
+  out.irradiance = {e.x * scale, e.y * scale, e.z * scale};
+  out.shape = table_shape(params);
+  return out;
+}
+
+MemoryUsage plan(const gpu::Device& device, std::uint32_t frames) {
+  MemoryUsage out;
+  out.persistent = gpu::buffer_bytes(device, kRowBytes, kRowsUsage) +
+                   gpu::buffer_bytes(device, kCoefficientBytes, kCoefficientsUsage);
+  out.host = gpu::buffer_bytes(device, kSlotBytes * frames, kConstantsUsage);
+  return out;
+}
+
+}  // namespace
+
+struct TYNDALL_HIDDEN SkyProbe::State {
+  Effect::State* effect = nullptr;
+  PipelineCache pipelines;
+  SetCache sets;
+  FrameRing ring;
+  std::uint64_t calls = 0;  // successful calls of record()
+  gpu::Buffer constants;    // a slot per pending call
+  gpu::Buffer rows, coefficients;
+  SkyProbeInputs inputs;   // of the update
+  std::uint32_t done = 0;  // slices of the update
+  bool cleared = false;
+
+  Result<void> create_objects(std::uint32_t frames);
+  Result<Progress> record(VkCommandBuffer cmd, const SkyProbeInputs& wanted, std::uint32_t budget);
+  [[nodiscard]] BoundResources bind_resources(VkDeviceSize offset) const;
+};
+
+Result<void> SkyProbe::State::create_objects(std::uint32_t frames) {
+  const gpu::Device& device = effect->device;
+  pipelines.create(device, effect->desc.pipeline_threads);
+  sets.create(device, frames);
+  std::vector<PipelineKey> keys;
+  std::vector<SetKey> set_keys;
+  for (const Step& step : sky_probe_steps()) {
+    if (std::find(keys.begin(), keys.end(), step.pipeline) != keys.end()) continue;
+    keys.push_back(step.pipeline);
+    set_keys.push_back(set_key(step));
+  }
+  TYNDALL_TRY(pipelines.make(keys));
+  TYNDALL_TRY(sets.make(set_keys, pipelines));
+  EffectDesc slots;
+  slots.frames_in_flight = frames;
+  TYNDALL_ASSIGN(ring, FrameRing::create(device, slots));
+  TYNDALL_ASSIGN(constants, gpu::create_buffer(device, "sky_probe", kSlotBytes * frames, kConstantsUsage,
+                                               gpu::MemoryKind::constants));
+  TYNDALL_ASSIGN(rows, gpu::create_buffer(device, "sky_probe_rows", kRowBytes, kRowsUsage, gpu::MemoryKind::device));
+  TYNDALL_ASSIGN(coefficients, gpu::create_buffer(device, "sky_coefficients", kCoefficientBytes, kCoefficientsUsage,
+                                                  gpu::MemoryKind::device));
+  return {};
+}
+
+BoundResources SkyProbe::State::bind_resources(VkDeviceSize offset) const {
+  BoundResources out;
+  const VkBuffer buffer = constants.buffer.get();
+  out.set(Resource::sky_probe, buffer, offset, sizeof(shared::SkyProbeConstants));
+  out.set(Resource::medium, buffer, offset + kMediumOffset, sizeof(shared::Medium));
+  out.set(Resource::sky_probe_rows, rows.buffer.get());
+  out.set(Resource::sky_coefficients, coefficients.buffer.get());
+  const auto table = [&](Resource resource, TableId id) {
+    out.set(resource, effect->tables.table(id).view.get(), VK_IMAGE_LAYOUT_GENERAL, effect->linear.get());
+  };
+  table(Resource::single_rayleigh, TableId::single_rayleigh);
+  table(Resource::single_mie, TableId::single_mie);
+  table(Resource::high_orders, TableId::high_orders);
+  table(Resource::sky_irradiance_table, TableId::sky_irradiance);
+  return out;
+}
+
+Result<Progress> SkyProbe::State::record(VkCommandBuffer cmd, const SkyProbeInputs& wanted, std::uint32_t budget) {
+  const std::span<const Step> steps = sky_probe_steps();
+  const auto total = static_cast<std::uint32_t>(steps.size());
+  TYNDALL_TRY(check_inputs(wanted, effect->params));
+  if (!effect->tables.ready()) {
+    return invalid("SkyProbe::record: the tables were never built; expected record_precompute() or "
+                   "record_load_tables() until precompute_progress() is complete");
+  }
+  if (budget == 0) return Progress{done, total};
+  if (!ring.take(calls, 0)) {
+    return invalid("SkyProbe::record: the commands of an earlier call have not completed or were never submitted; "
+                   "expected at most frames_in_flight pending calls, and a new SkyProbe after commands were dropped");
+  }
+  if (done == total) done = 0;
+  if (done == 0) inputs = wanted;
+  const gpu::Device& device = effect->device;
+  const std::uint32_t slot = ring.slot(calls, 0);
+  const VkDeviceSize offset = kSlotBytes * slot;
+  const shared::SkyProbeConstants probe = constants_of(inputs, effect->params);
+  const shared::Medium medium = medium_from_params(effect->params);
+  std::memcpy(static_cast<std::byte*>(constants.mapped) + offset, &probe, sizeof probe);
+  std::memcpy(static_cast<std::byte*>(constants.mapped) + offset + kMediumOffset, &medium, sizeof medium);
+  if (!cleared) {
+    device.vk.CmdFillBuffer(cmd, coefficients.buffer.get(), 0, kCoefficientBytes, 0);
+    gpu::barrier(device, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
+                 VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
+    cleared = true;
+  }
+  const BoundResources resources = bind_resources(offset);
+  sets.begin(slot);
+  StepRecorder recorder(device, cmd, pipelines, sets, slot, resources, nullptr);
+  recorder.assume(Resource::sky_probe_rows, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
+  for (; budget > 0 && done < total; --budget, ++done) {
+    if (done + 1 == total) {
+      // The caller's commands may read the coefficients in any stage.
+      gpu::barrier(device, cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_SHADER_WRITE_BIT,
+                   VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT);
+    }
+    TYNDALL_TRY(recorder.record(steps[done]));
+  }
+  ring.record_end(cmd, calls, 0);
+  ++calls;
+  return Progress{done, total};
+}
+
+SkyProbe::SkyProbe(std::unique_ptr<State> state) : state_(std::move(state)) {}
+SkyProbe::SkyProbe(SkyProbe&&) noexcept = default;
+SkyProbe& SkyProbe::operator=(SkyProbe&&) noexcept = default;
+SkyProbe::~SkyProbe() = default;
+
+Result<MemoryUsage> SkyProbe::query_memory(const DeviceInfo& info, std::uint32_t frames_in_flight) {
+  return guarded("SkyProbe::query_memory", [&]() -> Result<MemoryUsage> {
+    TYNDALL_TRY(check_desc(info, {}));
+    TYNDALL_TRY(check_frames("SkyProbe::query_memory", frames_in_flight));
+    gpu::Device device;
+    TYNDALL_TRY(open_device(device, info));
+    return plan(device, frames_in_flight);
+  });
+}
+
+Result<SkyProbe> SkyProbe::create(Effect& effect, std::uint32_t frames_in_flight) {
+  return guarded("SkyProbe::create", [&]() -> Result<SkyProbe> {
+    if (!effect.state_) return invalid("SkyProbe::create: the Effect was moved from; expected a valid one");
+    TYNDALL_TRY(check_frames("SkyProbe::create", frames_in_flight));
+    auto state = std::make_unique<State>();
+    state->effect = effect.state_.get();
+    TYNDALL_TRY(state->create_objects(frames_in_flight));
+    return SkyProbe(std::move(state));
+  });
+}
+
+Result<Progress> SkyProbe::record(VkCommandBuffer cmd, const SkyProbeInputs& inputs, std::uint32_t budget) {
+  return guarded("SkyProbe::record", [&]() -> Result<Progress> {
+    if (!state_) return invalid("SkyProbe::record: the SkyProbe was moved from; expected a valid one");
+    if (cmd == VK_NULL_HANDLE) {
+      return invalid("SkyProbe::record: the command buffer is null; expected one that is being recorded");
+    }
+    return state_->record(cmd, inputs, budget);
+  });
+}
+
+SkyCoefficients SkyProbe::coefficients() const {
+  if (!state_) return {};
+  return {state_->coefficients.buffer.get(), 0, kCoefficientBytes};
+}
+
+MemoryUsage SkyProbe::memory() const {
+  if (!state_) return {};
+  return {state_->rows.bytes + state_->coefficients.bytes, 0, state_->constants.bytes};
+}
+
+}  // namespace tyndall
