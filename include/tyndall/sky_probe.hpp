@@ -7,7 +7,7 @@
 // do not matter. For points inside of the atmosphere.
 //
 // Coefficients: nine vec4 in a buffer, whose rgb are the integrals of the radiance times the functions of
-// tyndall_sky_basis(). The irradiance of a surface that faces upwards is exact. docs/sky_probe.md states the error of
+// tyndall_sky_basis(). The irradiance of surfaces that face up or down is exact. docs/sky_probe.md states the error of
 // other normals.
 //
 // A frame:   probe.record(cmd, inputs, budget);   // then a barrier from COMPUTE_SHADER / SHADER_WRITE to your shaders
@@ -59,7 +59,8 @@ class TYNDALL_API SkyProbe {
   // the queue that may read the coefficients; wait for COMPUTE_SHADER / SHADER_WRITE before you read them.
   Result<Progress> record(VkCommandBuffer cmd, const SkyProbeInputs& inputs, std::uint32_t budget = UINT32_MAX);
 
-  // Returns the coefficients. The buffer is the same for the probe's whole life, and zero before the first update.
+  // Returns the coefficients. The buffer is the same for the probe's whole life. Its contents are undefined before the
+  // first call of record(), and zero until the first update is complete.
   [[nodiscard]] SkyCoefficients coefficients() const;
   // Returns the memory in use.
   [[nodiscard]] MemoryUsage memory() const;

@@ -6,7 +6,7 @@
 const uint kSkyProbeNodes = 12u;     // zenith angles in each of four intervals
 const uint kSkyProbeRows = 48u;      // 4 kSkyProbeNodes
 const uint kSkyProbeAzimuths = 32u;  // a multiple of 4
-const uint kSkyProbeSums = 10u;      // vec4 per row: 9 coefficients, and the irradiance from above
+const uint kSkyProbeSums = 11u;      // vec4 per row: 9 coefficients, and the irradiance from above and from below
 
 struct SkyProbeConstants {
   vec3 up;  // directions in the axes of the caller

@@ -23,7 +23,7 @@ const float kPi = 3.14159265358979;
 
 shared vec3 light[kSkyProbeAzimuths];
 shared vec3 directions[2][kSkyProbeAzimuths];
-shared float above;  // max(cos zenith, 0) of the row
+shared float cos_zenith;  // of the row
 
 // Node and weight of the Gauss-Legendre rule with four nodes on [0; 1], repeated on `panels` panels.
 vec2 gauss(uint index, float panels) {
@@ -84,12 +84,12 @@ void main() {
   vec3 beside = sin_zenith * sin(phi) * probe.side;
   directions[0][azimuth] = in_plane + beside;
   directions[1][azimuth] = in_plane - beside;
-  if (azimuth == 0u) above = max(mu, 0.0);
+  if (azimuth == 0u) cos_zenith = mu;
   barrier();
   if (azimuth >= kSkyProbeSums) return;
   vec3 sum = vec3(0.0);
   for (uint i = 0u; i < kSkyProbeAzimuths; ++i) {
-    float factor = 2.0 * above;
+    float factor = 2.0 * max(azimuth == 9u ? cos_zenith : -cos_zenith, 0.0);
     if (azimuth < 9u) {
       float one[9];
       float other[9];

@@ -1,11 +1,14 @@
 // The effect through the C interface on a device: pictures, tables and reports are those of C++, byte for byte.
 #include <cmath>
+#include <cstring>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "c_structures.hpp"
 #include "effect_frame.hpp"
 #include "tyndall/atmosphere.hpp"
+#include "tyndall/sky_probe.hpp"
 
 namespace tyndall {
 namespace {
@@ -302,6 +305,56 @@ TEST_F(CEffect, TablesAreThoseOfCpp) {
   TyndallProgress progress = {};
   ASSERT_SUCCESS(tyndall_effect_precompute_progress(made, &progress));
   EXPECT_EQ(progress.done, progress.total);
+}
+
+TEST_F(CEffect, SkyProbesAreThoseOfCpp) {
+  TyndallSkyProbeInputs inputs = {};
+  ASSERT_SUCCESS(tyndall_sky_probe_inputs_defaults(&inputs, sizeof inputs));
+  EXPECT_EQ(inputs.up[1], 1.0F);
+  inputs.altitude_m = 250.0F;
+  inputs.sun = {{0.6F, 0.0F, 0.8F}, {1.0F, 2.0F, 3.0F}, 0.01F};
+  std::swap(inputs.up[1], inputs.up[2]);
+  SkyProbeInputs cpp_inputs;
+  cpp_inputs.up = {0.0F, 0.0F, 1.0F};
+  cpp_inputs.altitude_m = 250.0F;
+  cpp_inputs.sun = {{0.6F, 0.0F, 0.8F}, {1.0F, 2.0F, 3.0F}, 0.01F};
+  TyndallSkyProbe* made = nullptr;
+  ASSERT_SUCCESS(tyndall_sky_probe_create(c_.get(), 2, &made));
+  const std::unique_ptr<TyndallSkyProbe, void (*)(TyndallSkyProbe*)> c(made, tyndall_sky_probe_destroy);
+  Result<SkyProbe> cpp = SkyProbe::create(*cpp_, 2);
+  ASSERT_OK(cpp);
+  auto from = sized<TyndallSkyCoefficients>();
+  ASSERT_SUCCESS(tyndall_sky_probe_coefficients(c.get(), &from));
+  Result<gpu::Buffer> read = gpu::create_buffer(host().device(), "read", 2 * from.size,
+                                                VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryKind::readback);
+  ASSERT_OK(read);
+  ASSERT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
+    TyndallProgress progress = {};
+    EXPECT_SUCCESS(tyndall_sky_probe_record(c.get(), cmd, &inputs, UINT32_MAX, &progress));
+    EXPECT_EQ(progress.done, progress.total);
+    EXPECT_TRUE(cpp.value().record(cmd, cpp_inputs).ok());
+    gpu::barrier(host().device(), cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
+                 VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT);
+    const VkBufferCopy regions[2] = {{from.offset, 0, from.size}, {0, from.size, from.size}};
+    host().device().vk.CmdCopyBuffer(cmd, from.buffer, read.value().buffer.get(), 1, &regions[0]);
+    host().device().vk.CmdCopyBuffer(cmd, cpp.value().coefficients().buffer, read.value().buffer.get(), 1, &regions[1]);
+    return {};
+  }));
+  const auto* values = static_cast<const float*>(read.value().mapped);
+  EXPECT_EQ(std::memcmp(values, values + 36, 144), 0);
+  EXPECT_GT(values[0], 0.0F);
+  auto memory = sized<TyndallMemoryUsage>(), queried = memory;
+  const TyndallDeviceInfo device = c_device(info());
+  ASSERT_SUCCESS(tyndall_sky_probe_memory(c.get(), &memory));
+  ASSERT_SUCCESS(tyndall_sky_probe_query_memory(&device, 2, &queried));
+  EXPECT_EQ(memory.persistent, queried.persistent);
+  EXPECT_EQ(memory.host, queried.host);
+  inputs.altitude_m = -1.0e7F;
+  EXPECT_EQ(tyndall_sky_probe_record(c.get(), reinterpret_cast<VkCommandBuffer>(1), &inputs, 1, nullptr),
+            TyndallStatus_invalid_argument);
+  EXPECT_EQ(tyndall_sky_probe_record(nullptr, nullptr, &inputs, 1, nullptr), TyndallStatus_invalid_argument);
+  EXPECT_EQ(tyndall_sky_probe_create(c_.get(), 0, &made), TyndallStatus_invalid_argument);
+  tyndall_sky_probe_destroy(nullptr);
 }
 
 }  // namespace

@@ -18,6 +18,9 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kDegree = kPi / 180.0;
+// What docs/sky_probe.md states for tilted normals, relative to the largest irradiance of a normal.
+constexpr double kTruncationMean = 0.03;
+constexpr double kTruncationWorst = 0.08;
 using Rgb = std::array<double, 3>;
 using Coefficients = std::array<std::array<float, 4>, 9>;
 
@@ -65,7 +68,9 @@ class GpuSkyProbe : public GpuTest {
   void SetUp() override {
     GpuTest::SetUp();
     if (HasFatalFailure() || model_) return;
-    Result<models::PrecomputedModel> made = models::PrecomputedModel::create(host(), {});
+    Params params;
+    params.scattering.scale = 1.0F;  // as for the rays of the model
+    Result<models::PrecomputedModel> made = models::PrecomputedModel::create(host(), params);
     ASSERT_OK(made);
     model_ = std::make_unique<models::PrecomputedModel>(std::move(made).value());
   }
@@ -124,7 +129,7 @@ class GpuSkyProbe : public GpuTest {
 TEST_F(GpuSkyProbe, SurfacesThatFaceUpwardsHaveTheIrradianceOfTheTable) {
   SkyProbe probe = make();
   double worst = 0.0;
-  for (const double altitude : {-300.0, 0.0, 1500.0, 12000.0, 60000.0}) {
+  for (const double altitude : {-300.0, 0.0, 1500.0, 4000.0}) {
     for (const double sun_deg : {0.0, 20.0, 50.0, 70.0, 80.0, 87.0, 90.0, 94.0}) {
       const RayQuery query = {altitude, 0.0, sun_deg * kDegree, 0.0, true};
       const Result<std::vector<models::Answer>> table = model_->answer({&query, 1});
@@ -135,7 +140,7 @@ TEST_F(GpuSkyProbe, SurfacesThatFaceUpwardsHaveTheIrradianceOfTheTable) {
       worst = std::max(worst, error);
     }
   }
-  std::printf("upward normals against the table of sky irradiance: worst %.2f %%\n", 100.0 * worst);
+  std::printf("upward normals against the table of sky irradiance, up to 4 km: worst %.2f %%\n", 100.0 * worst);
 }
 
 // A quadrature over the sphere of the radiance that `probe --model precomputed` returns for single rays.
@@ -167,26 +172,59 @@ struct Sphere {
   }
 };
 
+// The table of sky irradiance has few altitudes, between which it is off by up to 2 % at high altitudes. The probe
+// agrees with the radiance.
+TEST_F(GpuSkyProbe, SurfacesThatFaceUpOrDownAgreeWithTheRadianceAtAnyAltitude) {
+  SkyProbe probe = make();
+  double worst = 0.0;
+  for (const double altitude : {200.0, 12000.0, 60000.0}) {
+    const Sphere sphere(altitude, 60.0 * kDegree, 0.7);
+    const Result<std::vector<models::Answer>> radiance = model_->answer(sphere.queries);
+    ASSERT_OK(radiance);
+    const Coefficients found = update(probe, inputs(altitude, 60.0 * kDegree));
+    for (const float y : {1.0F, -1.0F}) {
+      const Vec3 normal = {0.0F, y, 0.0F};
+      const double error = error_of(irradiance(found, normal), sphere.irradiance(radiance.value(), normal));
+      EXPECT_LT(error, 0.005) << altitude << " m, " << y;
+      worst = std::max(worst, error);
+    }
+  }
+  std::printf("normals up and down against a quadrature of the radiance, up to 60 km: worst %.2f %%\n", 100.0 * worst);
+}
+
+// What is left for other normals is the part of the harmonics that are missing.
 TEST_F(GpuSkyProbe, TiltedSurfacesHaveTheErrorOfTheTruncationOnly) {
   SkyProbe probe = make();
   constexpr double kAzimuth = 0.7;
-  std::printf("sun zenith   mean error   worst error   (normals at 0 to 180 degrees, relative to the irradiance)\n");
+  std::printf("normals tilted by 15 to 165 degrees, difference relative to the largest irradiance of a normal\n");
+  std::printf("sun zenith        mean r, g, b         worst r, g, b\n");
   for (const double sun_deg : {10.0, 45.0, 70.0, 85.0, 92.0}) {
     const Sphere sphere(200.0, sun_deg * kDegree, kAzimuth);
     const Result<std::vector<models::Answer>> radiance = model_->answer(sphere.queries);
     ASSERT_OK(radiance);
-    const Coefficients found = update(probe, inputs(200.0, sun_deg * kDegree, kAzimuth));
-    double mean = 0.0, worst = 0.0, count = 0.0;
-    for (int tilt = 0; tilt <= 180; tilt += 30) {
+    const Coefficients coefficients = update(probe, inputs(200.0, sun_deg * kDegree, kAzimuth));
+    Rgb mean = {}, worst = {}, largest = {};
+    double count = 0.0;
+    for (int tilt = 15; tilt <= 165; tilt += 15) {
       for (int azimuth = 0; azimuth < 360; azimuth += 45) {
         const Vec3 normal = direction(tilt * kDegree, azimuth * kDegree + kAzimuth);
-        const double error = error_of(irradiance(found, normal), sphere.irradiance(radiance.value(), normal));
-        mean += error;
+        const Rgb found = irradiance(coefficients, normal), exact = sphere.irradiance(radiance.value(), normal);
         count += 1.0;
-        worst = std::max(worst, error);
+        for (std::size_t k = 0; k < 3; ++k) {
+          mean[k] += std::abs(found[k] - exact[k]);
+          worst[k] = std::max(worst[k], std::abs(found[k] - exact[k]));
+          largest[k] = std::max(largest[k], exact[k]);
+        }
       }
     }
-    std::printf("%10.0f %11.2f %% %12.2f %%\n", sun_deg, 100.0 * mean / count, 100.0 * worst);
+    for (std::size_t k = 0; k < 3; ++k) {
+      mean[k] /= count * largest[k];
+      worst[k] /= largest[k];
+      EXPECT_LT(mean[k], kTruncationMean) << sun_deg;
+      EXPECT_LT(worst[k], kTruncationWorst) << sun_deg;
+    }
+    std::printf("%10.0f   %5.1f %5.1f %5.1f %%   %5.1f %5.1f %5.1f %%\n", sun_deg, 100.0 * mean[0], 100.0 * mean[1],
+                100.0 * mean[2], 100.0 * worst[0], 100.0 * worst[1], 100.0 * worst[2]);
   }
 }
 
@@ -209,13 +247,15 @@ TEST_F(GpuSkyProbe, CoefficientsAreInTheAxesOfTheCaller) {
 
 TEST_F(GpuSkyProbe, UpdatesInSlicesGiveTheSameBytesAndChangeThemWithTheLastOne) {
   SkyProbe probe = make();
-  EXPECT_EQ(read(probe), Coefficients()) << "zero before the first update";
+  ASSERT_OK(record(probe, inputs(0.0, 0.4), 1));
+  EXPECT_EQ(read(probe), Coefficients()) << "zero until the first update is complete";
+  ASSERT_OK(record(probe, inputs(0.0, 0.4)));
   const SkyProbeInputs noon = inputs(0.0, 0.4);
   const SkyProbeInputs evening = inputs(0.0, 1.5);
   const Coefficients first = update(probe, noon);
   SkyProbe once = make();
   const Coefficients expected = update(once, evening);
-  Progress progress;
+  Progress progress = {0, 1};
   for (std::uint32_t slices = 0; slices < 100 && !progress.complete();) {
     // Inputs count in the first slice of an update only.
     const Result<Progress> recorded = record(probe, slices == 0 ? evening : noon, 2);
@@ -262,7 +302,7 @@ TEST_F(GpuSkyProbe, MemoryIsWhatTheQuerySays) {
   ASSERT_OK(query);
   EXPECT_EQ(query.value().persistent, probe.memory().persistent);
   EXPECT_EQ(query.value().host, probe.memory().host);
-  EXPECT_GT(query.value().persistent, 48U * 10U * 16U);
+  EXPECT_GT(query.value().persistent, 48U * 11U * 16U);
   EXPECT_FALSE(SkyProbe::query_memory(info(), 0).ok());
   EXPECT_FALSE(SkyProbe::query_memory({}, 2).ok());
 }
