@@ -8,9 +8,11 @@
 #include <numbers>
 #include <vector>
 
+#include "gpu/descriptors.hpp"
 #include "gpu/try.hpp"
 #include "gpu_test.hpp"
 #include "models/precomputed.hpp"
+#include "sky_test_shaders.hpp"
 #include "tyndall/sky_probe.hpp"
 
 namespace tyndall {
@@ -225,6 +227,42 @@ TEST_F(GpuSkyProbe, TiltedSurfacesHaveTheErrorOfTheTruncationOnly) {
     }
     std::printf("%10.0f   %5.1f %5.1f %5.1f %%   %5.1f %5.1f %5.1f %%\n", sun_deg, 100.0 * mean[0], 100.0 * mean[1],
                 100.0 * mean[2], 100.0 * worst[0], 100.0 * worst[1], 100.0 * worst[2]);
+  }
+}
+
+// The functions for shaders of engines.
+TEST_F(GpuSkyProbe, ShadersGetTheIrradianceOfTheCoefficients) {
+  SkyProbe probe = make();
+  const Coefficients coefficients = update(probe, inputs(100.0, 1.3));
+  std::vector<std::array<float, 4>> normals;
+  for (int i = 0; i < 40; ++i) {
+    const Vec3 n = direction(0.08 * i, 1.7 * i);
+    normals.push_back({n.x, n.y, n.z, 0.0F});
+  }
+  const gpu::Device& device = host().device();
+  const VkDeviceSize size = normals.size() * sizeof normals[0];
+  constexpr VkBufferUsageFlags kUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  Result<gpu::Buffer> from = gpu::create_buffer(device, "normals", size, kUsage, gpu::MemoryKind::upload);
+  Result<gpu::Buffer> to = gpu::create_buffer(device, "results", size, kUsage, gpu::MemoryKind::readback);
+  Result<gpu::Pipeline> pipeline = gpu::create_compute_pipeline(device, shaders::sky_normals_comp);
+  ASSERT_OK(from);
+  ASSERT_OK(to);
+  ASSERT_OK(pipeline);
+  std::memcpy(from.value().mapped, normals.data(), size);
+  const gpu::NamedResource resources[] = {gpu::named_buffer("sky_block", probe.coefficients().buffer),
+                                          gpu::named_buffer("normal_block", from.value().buffer.get()),
+                                          gpu::named_buffer("result_block", to.value().buffer.get())};
+  ASSERT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
+    TYNDALL_TRY(gpu::bind(host().sets(), cmd, pipeline.value(), resources));
+    gpu::dispatch(device, cmd, pipeline.value(), static_cast<std::uint32_t>(normals.size()));
+    gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
+                 VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+    return {};
+  }));
+  const auto* results = static_cast<const float*>(to.value().mapped);
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const Rgb expected = irradiance(coefficients, {normals[i][0], normals[i][1], normals[i][2]});
+    EXPECT_LT(error_of({results[4 * i], results[4 * i + 1], results[4 * i + 2]}, expected), 1e-3) << i;
   }
 }
 

@@ -32,6 +32,7 @@ if(KIND STREQUAL installed)
     list(APPEND compiled ${WORK}/${name}.spv)
   endforeach()
   run(${CMAKE_COMMAND} -E compare_files ${compiled})
+  run(${GLSLC} --target-env=vulkan1.2 -Werror -I ${WORK}/prefix/include ${SOURCE}/tests/gpu/sky_normals.comp -o ${WORK}/sky.spv)
   list(APPEND arguments -D CMAKE_PREFIX_PATH=${WORK}/prefix -D EXAMPLES=${SOURCE}/examples)
 else()
   # A subdirectory looks for no library but the headers of Vulkan, and for the shader tools. GLM is that of tyndall::post.
