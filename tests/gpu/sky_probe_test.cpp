@@ -262,7 +262,10 @@ TEST_F(GpuSkyProbe, ShadersGetTheIrradianceOfTheCoefficients) {
   const auto* results = static_cast<const float*>(to.value().mapped);
   for (std::size_t i = 0; i < normals.size(); ++i) {
     const Rgb expected = irradiance(coefficients, {normals[i][0], normals[i][1], normals[i][2]});
-    EXPECT_LT(error_of({results[4 * i], results[4 * i + 1], results[4 * i + 2]}, expected), 1e-3) << i;
+    // Truncated harmonics are slightly negative for some normals near the nadir.
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_NEAR(static_cast<double>(results[4 * i + k]), std::max(expected[k], 0.0), 1e-6) << i;
+    }
   }
 }
 
