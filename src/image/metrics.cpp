@@ -37,10 +37,10 @@ Metrics compare(const Image& a, const Image& b) {
     relative.push_back(error == 0.0 ? 0.0 : scale > 0.0 ? error / scale : 1.0);
   }
   metrics.mean_relative_error = std::accumulate(relative.begin(), relative.end(), 0.0) / values;
-  const auto kept = static_cast<std::ptrdiff_t>(std::ceil((1.0 - kTrimmed) * values));
-  std::nth_element(relative.begin(), relative.begin() + kept - 1, relative.end());
+  const auto remaining = static_cast<std::ptrdiff_t>(std::ceil((1.0 - kTrimmed) * values));
+  std::nth_element(relative.begin(), relative.begin() + remaining - 1, relative.end());
   metrics.trimmed_relative_error =
-      std::accumulate(relative.begin(), relative.begin() + kept, 0.0) / static_cast<double>(kept);
+      std::accumulate(relative.begin(), relative.begin() + remaining, 0.0) / static_cast<double>(remaining);
   return metrics;
 }
 

@@ -8,7 +8,7 @@ namespace {
 
 // surface_shape() reads two texels beyond a pixel's position; one more is for rounding.
 constexpr double kSlopeMargin = 3.0;
-// The distances of the samples of sky_visibility() [m], and the cells that it asks for at a distance.
+// The distances at which sky_visibility() reads elevations [m], and the size of its cells relative to the distance.
 constexpr double kSkyReaches_m[] = {200.0, 800.0, 3200.0};
 constexpr double kSkyCell = 0.125;
 
