@@ -12,8 +12,9 @@
 #   make packages        builds Debian packages in out/debian: libtyndall0, libtyndall-dev, tyndall
 #   make packages-check  checks them with lintian, and installs, runs and removes them in a root folder
 #   make abi             renews the record of the binary interface of the C functions, tests/package/tyndall.abi
+#   make python-figures  makes the figures of docs/python.md
 #   make passes          writes the list of passes, docs/generated/passes.md, with their cost
-.PHONY: demo check doxygen pictures accuracy epipolar-study models-study bundle bundle-chroot packages packages-check abi passes setup build format format-check tidy tidy-check tidy-all sanitize-short sanitize clean
+.PHONY: python-figures demo check doxygen pictures accuracy epipolar-study models-study bundle bundle-chroot packages packages-check abi passes setup build format format-check tidy tidy-check tidy-all sanitize-short sanitize clean
 
 PRESET ?= release
 # The CPU device that computes the values that `tyndall report` compares other devices with.
@@ -84,6 +85,14 @@ models-study: build
 	done
 	@for planet in demo_planet earth earth_space mars titan; do \
 	  build/release/bin/tyndall render scenes/oneil/$$planet.toml --size 640x360 -o docs/images/oneil_$$planet.png || exit 1; \
+	done
+
+# The figures of docs/python.md.
+python-figures: PRESET = release
+python-figures: TARGETS = tyndall_python
+python-figures: build
+	@for script in twilight_zenith clear_sky visibility limb scattering_orders; do \
+	  PYTHONPATH=build/release/python /usr/bin/python3 -B examples/python/$$script.py -o docs/images/python_$$script.png || exit 1; \
 	done
 
 abi: setup

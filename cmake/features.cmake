@@ -4,7 +4,8 @@ option(TYNDALL_WITH_GDAL "Read elevation files with GDAL" ON)
 option(TYNDALL_WITH_OPENEXR "Read and write EXR files with OpenEXR" ON)
 option(TYNDALL_WITH_VIEWER "Build the viewer with GLFW and ImGui" ON)
 option(TYNDALL_WITH_SHADERC "Reload shaders in the viewer with shaderc" ON)
-set(TYNDALL_FEATURES GDAL OPENEXR VIEWER SHADERC)
+option(TYNDALL_WITH_PYTHON "Build the Python package with pybind11" ON)
+set(TYNDALL_FEATURES GDAL OPENEXR VIEWER SHADERC PYTHON)
 
 # tyndall_require(FEATURE LIBRARY FOUND PACKAGE): ends the configuration if a feature's library was not found. PACKAGE is
 # its name in Debian.

@@ -45,6 +45,12 @@ std::array<double, 3> sun_transmittance(const shared::Medium& medium, double alt
   return to_array(glsl64::transmittance(m, glsl64::density_integral_to_top(m, altitude_m, cos_sun_zenith)));
 }
 
+std::array<double, 3> transmittance_along(const shared::Medium& medium, double altitude_m, double cos_zenith,
+                                          double distance_m) {
+  const glsl64::Medium m = glsl64::widen(medium);
+  return to_array(glsl64::transmittance(m, glsl64::density_integral_along(m, altitude_m, cos_zenith, distance_m)));
+}
+
 std::array<double, 3> sunlit_ground(const shared::Medium& medium, const Ray& ray) {
   const glsl64::Medium m = glsl64::widen(medium);
   double start = 0.0;

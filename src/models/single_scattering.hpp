@@ -40,6 +40,10 @@ struct Answer {
 [[nodiscard]] std::array<double, 3> sun_transmittance(const shared::Medium& medium, double altitude_m,
                                                       double cos_sun_zenith);
 
+// Returns the transmittance over a distance [m] from an altitude, at a zenith angle. The planet is ignored.
+[[nodiscard]] std::array<double, 3> transmittance_along(const shared::Medium& medium, double altitude_m,
+                                                        double cos_zenith, double distance_m);
+
 // Returns the radiance / E0 [1/sr] that the directly sunlit ground at the end of a ray reflects towards the eye,
 // without attenuation on the way. The ground is Lambertian with Medium::ground_albedo. Returns 0 for rays that miss it.
 [[nodiscard]] std::array<double, 3> sunlit_ground(const shared::Medium& medium, const Ray& ray);

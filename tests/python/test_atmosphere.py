@@ -1,0 +1,168 @@
+"""tyndall.Atmosphere gives the numbers of `tyndall probe`, in the shapes and with the errors that it documents."""
+import csv
+import io
+import threading
+
+import numpy as np
+import pytest
+
+import tyndall
+
+QUERIES = [(10, 60, 40, 30), (2000, 95, 70, 120), (0, 89, 85, 10), (60000, 100, 95, 170), (400000, 110, 80, 20)]
+
+
+def probe(run, tmp_path, rows, parameters, *options):
+    queries = tmp_path / "queries.csv"
+    queries.write_text("altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n" +
+                       "".join(",".join(map(str, row)) + "\n" for row in rows))
+    sets = [word for key, value in parameters.items() for word in ("--set", f"{key}={value}")]
+    table = csv.DictReader(io.StringIO(run("probe", "--queries", queries, *sets, *options)))
+    found = list(table)
+    return [np.array([[float(row[f"{name}_{c}"]) for c in "rgb"] for row in found]) for name in "LT"]
+
+
+@pytest.fixture(scope="module")
+def air(small):
+    return tyndall.Atmosphere(small)
+
+
+@pytest.fixture(scope="module")
+def single():
+    return tyndall.Atmosphere(model="single")
+
+
+def columns():
+    altitude, zenith, sun, azimuth = np.array(QUERIES, dtype=float).T
+    return {"altitude": altitude, "zenith": zenith, "sun_zenith": sun, "azimuth": azimuth}
+
+
+@pytest.mark.parametrize("model", ["precomputed", "single"])
+def test_radiance_is_that_of_probe(model, run, tmp_path, small):
+    parameters = {**small, "planet.ground_albedo": 0.3}
+    light, transmittance = probe(run, tmp_path, QUERIES, parameters, "--model", model)
+    mine = tyndall.Atmosphere(parameters, model=model)
+    c = columns()
+    assert np.array_equal(mine.radiance(**c).astype(np.float32), light.astype(np.float32))
+    found = mine.transmittance(c["zenith"], c["altitude"])
+    assert np.array_equal(found.astype(np.float32), transmittance.astype(np.float32))
+
+
+def test_irradiance_is_that_of_probe(air, run, tmp_path, small):
+    light, sun = probe(run, tmp_path, [(0, "sky", 50, 0), (3000, "sky", 92, 0)], small)
+    assert np.array_equal(air.sky_irradiance([50, 92], [0, 3000]).astype(np.float32), light.astype(np.float32))
+    assert np.array_equal(air.sun_irradiance([50, 92], [0, 3000]).astype(np.float32), sun.astype(np.float32))
+    assert np.all(air.sun_irradiance(120.0) == 0.0)
+
+
+def test_shapes_broadcast(air):
+    assert air.radiance(60, 40).shape == (3,)
+    assert air.radiance(np.zeros((4, 1)), np.zeros(5)).shape == (4, 5, 3)
+    assert air.radiance(np.zeros(0), 40).shape == (0, 3)
+    assert air.sky_map(30, width=8, height=6).shape == (6, 8, 3)
+    assert air.sky_irradiance(np.zeros((2, 2))).shape == (2, 2, 3)
+    assert air.aerial_perspective(np.zeros((7, 3)), [0, 0, -1000], 30, 0).transmittance.shape == (7, 3)
+    with pytest.raises(ValueError):
+        air.radiance(np.zeros(4), np.zeros(5))
+
+
+def test_the_sky_is_brightest_around_the_sun(single):
+    sky = single.sky_map(35, 95, width=36, height=18)
+    row, column = np.unravel_index(np.argmax(sky[:9].sum(axis=-1)), (9, 36))
+    assert (row, column) == (5, 9)
+    assert np.all(sky >= 0.0)
+
+
+# At the far end of a long path there is no atmosphere left, so the path has all of the light.
+def test_aerial_perspective_ends_in_the_sky(air):
+    sun = (30.0, 0.0)
+    far = air.aerial_perspective([0, 100, 0], [0, 500e3, -800e3], *sun)
+    zenith = np.degrees(np.arctan2(800e3, 500e3 - 100))
+    assert far.inscattering == pytest.approx(air.radiance(zenith, 60, 0, altitude=100, ground=False), rel=1e-4)
+    assert far.transmittance == pytest.approx(air.transmittance(zenith, 100), rel=1e-4)
+
+
+def test_aerial_perspective_adds_up(single):
+    a, b, c = [0, 500, 0], [3000, 700, -9000], [6000, 900, -18000]
+    near, rest, whole = (single.aerial_perspective(p, q, 20, 80) for p, q in ((a, b), (b, c), (a, c)))
+    assert near.transmittance * rest.transmittance == pytest.approx(whole.transmittance, rel=1e-6)
+    assert near.apply(rest.inscattering) == pytest.approx(whole.inscattering, rel=2e-3)
+    nothing = single.aerial_perspective(a, a, 20, 80)
+    assert np.all(nothing.inscattering == 0.0) and np.all(nothing.transmittance == 1.0)
+
+
+def test_the_path_tracer_agrees(single):
+    traced = single.trace([30, 70], 50, 60, samples=20000, orders=1)
+    assert traced.value.shape == traced.standard_error.shape == (2, 3)
+    assert np.all(np.abs(traced.value - single.radiance([30, 70], 50, 60)) < 5.0 * traced.standard_error + 1e-5)
+
+
+@pytest.mark.parametrize("call, words", [
+    (lambda: tyndall.Atmosphere({"atmosphere.nonsense": 1}), "atmosphere.nonsense"),
+    (lambda: tyndall.Atmosphere({"atmosphere.mie_g": 3}), "mie_g"),
+    (lambda: tyndall.Atmosphere(model="o'neil"), "model"),
+    (lambda: tyndall.Atmosphere(scene="missing.toml"), "missing.toml"),
+    (lambda: tyndall.Atmosphere(device="no such device"), "no such device"),
+    (lambda: tyndall.sun_position(91, 0, "2003-10-17T12:00Z"), "latitude"),
+    (lambda: tyndall.sun_position(1, 0, "yesterday"), "yesterday"),
+])
+def test_errors_name_what_is_wrong(call, words):
+    with pytest.raises((ValueError, OSError, tyndall.Error)) as raised:
+        call()
+    assert words in str(raised.value) and "\n" not in str(raised.value)
+
+
+@pytest.mark.parametrize("arguments", [{"zenith": -1, "sun_zenith": 0}, {"zenith": 0, "sun_zenith": 181},
+                                       {"zenith": np.nan, "sun_zenith": 0}, {"zenith": 0, "sun_zenith": 0, "altitude": -2e4},
+                                       {"zenith": 0, "sun_zenith": 0, "azimuth": np.inf}])
+def test_arguments_out_of_range(single, arguments):
+    with pytest.raises(ValueError, match="expected"):
+        single.radiance(**arguments)
+
+
+def test_parameters(small):
+    air = tyndall.Atmosphere({**small, "atmosphere.rayleigh_scattering": np.array([5e-6, 1e-5, 3e-5]), "scattering.enabled": True})
+    assert air.parameters["atmosphere.rayleigh_scattering"].split(",")[1].startswith("1e-05")
+    names = {entry["name"] for entry in tyndall.parameters()}
+    assert "atmosphere.mie_g" in names and all(entry["meaning"] for entry in tyndall.parameters())
+
+
+def test_threads_get_the_same_numbers(air, single):
+    zenith = np.linspace(0, 180, 500)
+    right = [air.radiance(zenith, 60), single.radiance(zenith, 60)]
+    wrong = []
+
+    def work(model, expected):
+        for _ in range(4):
+            if not np.array_equal(model.radiance(zenith, 60), expected):
+                wrong.append(model)
+
+    threads = [threading.Thread(target=work, args=pair) for pair in 2 * list(zip((air, single), right))]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not wrong
+
+
+# The example of Reda and Andreas (2003), table A5.1: topocentric zenith angle without refraction, and azimuth.
+def test_sun_position():
+    sun = tyndall.sun_position(39.742476, -105.1786, "2003-10-17T12:30:30-07:00", 1830.14)
+    assert sun.elevation == pytest.approx(39.872046, abs=1e-3)
+    assert sun.azimuth == pytest.approx(194.34024, abs=1e-3)
+    assert sun.zenith == 90.0 - sun.elevation
+
+
+def test_render(scenes, small):
+    picture = tyndall.render(parameters={**small, "terrain.source": "none", "camera.pitch_deg": 20}, size=(32, 18))
+    assert picture.shape == (18, 32, 3) and picture.dtype == np.float32 and np.all(picture > 0.0)
+    shown = tyndall.render(parameters={**small, "terrain.source": "none", "camera.pitch_deg": 20}, size=(32, 18), display=True)
+    assert np.all((shown >= 0.0) & (shown <= 1.0))
+
+
+# Nothing is printed, and the types of the documentation hold.
+def test_silence(small, capfd):
+    tyndall.Atmosphere(small).radiance(10, 20)
+    captured = capfd.readouterr()
+    assert captured.out == "" and captured.err == ""
+    for name in tyndall.__all__:
+        assert getattr(tyndall, name).__doc__
