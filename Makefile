@@ -156,7 +156,7 @@ format-check: setup
 
 # `make tidy` runs clang-tidy over the files that the ledger of clean files (tools/tidy/clean.txt) does not cover, and updates
 # the ledger. `make tidy-all` checks everything, adds the slow checks, among them the static analyser, and ignores the ledger.
-TIDY_FOLDERS = apps examples include shaders src tests tools
+TIDY_FOLDERS = apps examples include python shaders src tests tools
 TIDY_SLOW = clang-analyzer-*,bugprone-branch-clone,bugprone-unchecked-optional-access,performance-unnecessary-value-param,misc-unused-parameters
 
 tidy tidy-all: PRESET = ci

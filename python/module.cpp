@@ -91,7 +91,8 @@ py::array_t<double> columns(const Items& items, Member member) {
   py::array_t<double> out({static_cast<py::ssize_t>(items.size()), py::ssize_t{3}});
   auto at = out.template mutable_unchecked<2>();
   for (std::size_t i = 0; i < items.size(); ++i) {
-    for (std::size_t c = 0; c < 3; ++c) at(static_cast<py::ssize_t>(i), static_cast<py::ssize_t>(c)) = (items[i].*member)[c];
+    for (std::size_t c = 0; c < 3; ++c)
+      at(static_cast<py::ssize_t>(i), static_cast<py::ssize_t>(c)) = (items[i].*member)[c];
   }
   return out;
 }
@@ -131,7 +132,8 @@ class Model {
       if (model_ != nullptr) return model_->answer(queries, ground);
       return single(queries);
     });
-    return py::make_tuple(columns(answers, &models::Answer::radiance), columns(answers, &models::Answer::transmittance));
+    return py::make_tuple(columns(answers, &models::Answer::radiance),
+                          columns(answers, &models::Answer::transmittance));
   }
 
   py::tuple trace(const Array& rows, bool sky, std::uint32_t samples, int orders, std::uint32_t seed) const {
@@ -158,7 +160,8 @@ class Model {
                           columns(estimates, &reference::Estimate::standard_error));
   }
 
-  // Returns the transmittance along rays of given lengths: rows of altitude [m], cosine of the zenith angle, length [m].
+  // Returns the transmittance along rays of given lengths: rows of altitude [m], cosine of the zenith angle, length
+  // [m].
   [[nodiscard]] py::array_t<double> transmittance(const Array& rows) const {
     if (rows.ndim() != 2 || rows.shape(1) != 3) throw py::value_error("rays: invalid shape; expected (N, 3)");
     const auto at = rows.unchecked<2>();
@@ -218,8 +221,7 @@ py::array_t<float> render(const std::string& scene, const Assignments& assignmen
     scene::SceneDesc desc;
     desc.extent = {width, height};
     desc.make_tables = make_tables(settings);
-    Result<std::unique_ptr<scene::Scene>> made =
-        scene::Scene::create(*host, desc, settings.effect, settings.scene);
+    Result<std::unique_ptr<scene::Scene>> made = scene::Scene::create(*host, desc, settings.effect, settings.scene);
     if (!made.ok()) return std::move(made).error();
     if (const Result<void> drawn = made.value()->render(0.0); !drawn.ok()) return drawn.error();
     return display ? made.value()->display() : made.value()->radiance();
@@ -231,7 +233,8 @@ py::array_t<float> render(const std::string& scene, const Assignments& assignmen
 
 py::dict sun_position(double latitude_deg, double longitude_deg, const std::string& time, double altitude_m) {
   if (!(std::abs(latitude_deg) <= 90.0)) throw py::value_error("latitude: out of range; expected -90 to 90 degrees");
-  if (!(std::abs(longitude_deg) <= 360.0)) throw py::value_error("longitude: out of range; expected -360 to 360 degrees");
+  if (!(std::abs(longitude_deg) <= 360.0))
+    throw py::value_error("longitude: out of range; expected -360 to 360 degrees");
   const Result<double> day = scene::parse_time(time, "time");
   if (!day.ok()) raise(day.error());
   const scene::SolarPosition sun =

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The colour of the zenith through twilight.
 
-With the sun some degrees below the horizon, its light reaches the air overhead only through the ozone layer, which absorbs
+With the sun some degrees below the horizon, its light reaches the zenith only through the ozone layer, which absorbs
 orange: the zenith turns blue although the light that arrives has lost its blue (Hulburt 1953). Without ozone it would be
 yellowish.
 """

@@ -27,9 +27,9 @@ MODELS = ("precomputed", "single")
 
 
 class AerialPerspective:
-    """What the air does to light between two points.
+    """what the atmosphere does to light between two points.
 
-    inscattering: radiance that the air adds [1/sr], shape (..., 3).
+    inscattering: radiance that the atmosphere adds [1/sr], shape (..., 3).
     transmittance: fraction of the light from the far point that arrives, shape (..., 3).
     """
 
