@@ -18,7 +18,7 @@ class Tyndall(ConanFile):
     options = {"shared": [True, False], "post": [True, False]}
     default_options = {"shared": False, "post": False}
     exports_sources = ("CMakeLists.txt", "LICENSE", "cmake/*", "include/*", "shaders/*", "src/*", "tools/CMakeLists.txt",
-                       "tools/embed_shaders.cpp", "tools/sanitizers/*")
+                       "tools/embed_shaders.cpp", "tools/flatten_glsl.cpp", "tools/sanitizers/*")
 
     def set_version(self):
         header = load(self, os.path.join(self.recipe_folder, "include", "tyndall", "version.h"))
