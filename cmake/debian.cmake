@@ -55,11 +55,6 @@ hills and the shafts of light between them, on any Vulkan 1.3 device.
 This package contains the program tyndall, which renders, measures and
 exports, and its scenes.")
 endif()
-# A library that CMAKE_INSTALL_PREFIX=/usr puts into the folder of its architecture.
-if(CMAKE_LIBRARY_ARCHITECTURE AND CMAKE_INSTALL_LIBDIR STREQUAL "lib/${CMAKE_LIBRARY_ARCHITECTURE}")
-  set(CPACK_DEBIAN_RUNTIME_PACKAGE_MULTIARCH same)
-endif()
-
 # The SONAME has the minor version, the name of the package does not: packages that depend on this one accept no other.
 math(EXPR next_minor "${PROJECT_VERSION_MINOR} + 1")
 set(debian_dir ${PROJECT_BINARY_DIR}/debian)
