@@ -55,7 +55,7 @@ class SingleSource final : public SkySource {
     rays.reserve(queries.size());
     for (const RayQuery& query : queries) rays.push_back(models::ray_from_query(query));
     Result<std::vector<models::Answer>> found = models::single_scattering_on_gpu(host_, medium_, rays);
-    if (!found || medium_.ground_albedo == 0.0F) return found;
+    if (!found || medium_.ground_albedo == Vec3(0.0F)) return found;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       models::Answer& answer = found.value()[i];
       const std::array<double, 3> ground = models::sunlit_ground(medium_, rays[i]);

@@ -49,7 +49,7 @@ Result<std::vector<Rgb>> evaluate_probe(const ChosenModel& model, const Params& 
 Result<std::vector<Rgb>> evaluate_over_ground(const ChosenModel& model, const Params& params,
                                               std::span<const RayQuery> queries) {
   Result<std::vector<Rgb>> found = evaluate_probe(model, params, queries);
-  if (!found || params.planet.ground_albedo == 0.0F) return found;
+  if (!found || params.planet.ground_albedo == Vec3(0.0F)) return found;
   const shared::Medium medium = medium_from_params(params);
   for (std::size_t i = 0; i < queries.size(); ++i) {
     if (queries[i].sky_irradiance) continue;

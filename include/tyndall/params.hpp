@@ -53,6 +53,7 @@ constexpr Vec3 single_precision(double x, double y, double z) {
 #define PARAM_FLOAT(group, name, def, min, max, unit, affects, doc) float name = static_cast<float>(def);
 #define PARAM_UINT(group, name, def, min, max, unit, affects, doc) std::uint32_t name = def;
 #define PARAM_VEC3(group, name, def, min, max, unit, affects, doc) Vec3 name = detail::single_precision def;
+#define PARAM_COLOR(group, name, def, min, max, unit, affects, doc) Vec3 name = detail::single_precision def;
 #define PARAM_UVEC4(group, name, def, min, max, unit, affects, doc) UVec4 name = UVec4 def;
 #define PARAM_FLAG(group, name, def, affects, doc) Flag name = def;
 #define PARAM_ENUM(group, name, type, def, affects, doc) type name = type::def;
@@ -68,6 +69,7 @@ struct Params {
 #define PARAM_FLOAT(group, name, def, min, max, unit, affects, doc)
 #define PARAM_UINT(group, name, def, min, max, unit, affects, doc)
 #define PARAM_VEC3(group, name, def, min, max, unit, affects, doc)
+#define PARAM_COLOR(group, name, def, min, max, unit, affects, doc)
 #define PARAM_UVEC4(group, name, def, min, max, unit, affects, doc)
 #define PARAM_FLAG(group, name, def, affects, doc)
 #define PARAM_ENUM(group, name, type, def, affects, doc)

@@ -121,7 +121,9 @@ TYNDALL_API void tyndall_params_destroy(TyndallParams* params);
 TYNDALL_API TyndallStatus tyndall_params_copy(const TyndallParams* from, TyndallParams* to);
 // Sets a number or a flag (0 or 1).
 TYNDALL_API TyndallStatus tyndall_params_set_number(TyndallParams* params, const char* name, double value);
-// Sets all numbers of a parameter; `count` must be its value_count.
+// Sets all numbers of a parameter; `count` must be its value_count. planet.ground_albedo and
+// atmosphere.single_scattering_albedo also accept one number, which holds for the three channels; it can be read as one
+// number while the three are equal.
 TYNDALL_API TyndallStatus tyndall_params_set_numbers(TyndallParams* params, const char* name, const double* values,
                                                      uint32_t count);
 // Sets an enumeration by the name of the value.

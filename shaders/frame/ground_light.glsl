@@ -20,7 +20,7 @@ Spectrum ground_light(Medium m, sampler2D sky_irradiance, float h, float mu_s, f
   float cos_sun = q / (R + ground);
   Spectrum light =
       max(cos_sun, 0.0) * sun_transmittance_at(m, ground, q) + sky_light(m, sky_irradiance, ground, cos_sun);
-  return light * (m.ground_albedo * 0.318309886183791);
+  return light * (GROUND_ALBEDO(m) * 0.318309886183791);
 }
 
 #endif

@@ -13,6 +13,7 @@
 #define MIE_SCATTERING(m) vec4((m).mie_scattering, (m).fourth_channel.y)
 #define MIE_EXTINCTION(m) vec4((m).mie_extinction, (m).fourth_channel.z)
 #define OZONE_ABSORPTION(m) vec4((m).ozone_absorption, (m).fourth_channel.w)
+#define GROUND_ALBEDO(m) vec4((m).ground_albedo, (m).fourth_ground_albedo)
 // The channels of a vector with four components. In rgb, the fourth may have another meaning.
 #define CHANNELS(v) (v)
 #define OUTER_CHANNELS(v) (v).xw
@@ -40,6 +41,7 @@ typedef vec3 Spectrum;
 #define MIE_SCATTERING(m) (m).mie_scattering
 #define MIE_EXTINCTION(m) (m).mie_extinction
 #define OZONE_ABSORPTION(m) (m).ozone_absorption
+#define GROUND_ALBEDO(m) (m).ground_albedo
 #define CHANNELS(v) (v).rgb
 #define OUTER_CHANNELS(v) (v).xz
 #define LARGEST(v) max((v).x, max((v).y, (v).z))

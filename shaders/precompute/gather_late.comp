@@ -57,7 +57,7 @@ void main() {
   SunAxis suns = sun_axis(medium);
   float mu_s = gather_sun(medium, gl_GlobalInvocationID.x);
   float R = medium.planet_radius_m;
-  float albedo = medium.ground_albedo;
+  Spectrum albedo = GROUND_ALBEDO(medium);
   uint modes = late_modes(shape, push.order - 1u);
   uint sun = gl_GlobalInvocationID.x;
   uint zenith = gl_GlobalInvocationID.y;

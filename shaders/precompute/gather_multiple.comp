@@ -26,7 +26,7 @@ void main() {
   SunAxis suns = sun_axis(medium);
   float mu_s = gather_sun(medium, gl_GlobalInvocationID.x);
   float R = medium.planet_radius_m;
-  float albedo = medium.ground_albedo;
+  Spectrum albedo = GROUND_ALBEDO(medium);
   uint sun = gl_GlobalInvocationID.x;
   uint azimuth = gl_GlobalInvocationID.y * kAnglesPerInvocation;
   uint altitude = gl_GlobalInvocationID.z / kGatherZeniths + push.first;

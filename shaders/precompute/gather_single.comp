@@ -52,7 +52,7 @@ void main() {
   // Below the horizon, the ray ends on the ground, which the sun lights.
   bool below = zenith < kGatherZeniths / 2u;
   float ground = gather_ground(start.x);
-  Spectrum reflected = below ? RAY_END(rays[ray], end) * (m.ground_albedo / kPi) : Spectrum(0.0);
+  Spectrum reflected = below ? RAY_END(rays[ray], end) * (GROUND_ALBEDO(m) / kPi) : Spectrum(0.0);
   [[unroll]] for (uint k = 0u; k < kAnglesPerInvocation; ++k) {
     float q = q0 + end.a * nu[k];
     Spectrum radiance = reflected * (max(q / (m.planet_radius_m + ground), 0.0) * sun_transmittance_at(m, ground, q));

@@ -18,10 +18,8 @@ struct Medium {
   float ozone_centre_m;
   float ozone_half_width_m;
   uint mie_phase;  // a MiePhase of include/tyndall/params.def
-  float ground_albedo;
-  float unused_0;
-  float unused_1;
-  float unused_2;
+  vec3 ground_albedo;
+  float fourth_ground_albedo;  // of scattering.color = spectral; otherwise 0
 #ifdef SPECTRAL
   // Of scattering.color = spectral: Rayleigh scattering, aerosol scattering, aerosol extinction and ozone absorption at
   // the fourth wavelength.

@@ -11,6 +11,7 @@
 #define PARAM_FLOAT(group, name, def, min, max, unit, affects, doc)
 #define PARAM_UINT(group, name, def, min, max, unit, affects, doc)
 #define PARAM_VEC3(group, name, def, min, max, unit, affects, doc)
+#define PARAM_COLOR(group, name, def, min, max, unit, affects, doc)
 #define PARAM_UVEC4(group, name, def, min, max, unit, affects, doc)
 #define PARAM_FLAG(group, name, def, affects, doc)
 #define PARAM_ENUM(group, name, type, def, affects, doc)

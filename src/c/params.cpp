@@ -34,6 +34,7 @@ static_assert(same(TyndallAffects_Frame, Affects::Frame) && same(TyndallAffects_
 #define PARAM_FLOAT(group, name, def, min, max, unit, affects, doc)
 #define PARAM_UINT(group, name, def, min, max, unit, affects, doc)
 #define PARAM_VEC3(group, name, def, min, max, unit, affects, doc)
+#define PARAM_COLOR(group, name, def, min, max, unit, affects, doc)
 #define PARAM_UVEC4(group, name, def, min, max, unit, affects, doc)
 #define PARAM_FLAG(group, name, def, affects, doc)
 #define PARAM_ENUM(group, name, type, def, affects, doc)
@@ -56,6 +57,7 @@ constexpr Names kNames[] = {
 #define PARAM_FLOAT(group, name, def, min, max, unit, affects, doc) {#group "." #name, {}},
 #define PARAM_UINT(group, name, def, min, max, unit, affects, doc) {#group "." #name, {}},
 #define PARAM_VEC3(group, name, def, min, max, unit, affects, doc) {#group "." #name, {}},
+#define PARAM_COLOR(group, name, def, min, max, unit, affects, doc) {#group "." #name, {}},
 #define PARAM_UVEC4(group, name, def, min, max, unit, affects, doc) {#group "." #name, {}},
 #define PARAM_FLAG(group, name, def, affects, doc) {#group "." #name, {}},
 #define PARAM_ENUM(group, name, type, def, affects, doc) {#group "." #name, k##type##Names},
@@ -101,7 +103,8 @@ Result<Param> find_numbers(const Name& at, std::uint32_t count) {
   if (param.info.type == ParamType::enumeration) {
     return wrong(at, "is an enumeration; expected tyndall_params_set_choice() or tyndall_params_get_choice()");
   }
-  if (count != value_count(param.info.type)) {
+  const bool grey = param.info.grey && count == 1;
+  if (count != value_count(param.info.type) && !grey) {
     return wrong(at, "does not have " + std::to_string(count) + " numbers; expected " +
                          std::to_string(value_count(param.info.type)));
   }
@@ -146,8 +149,8 @@ Result<void> set_numbers(TyndallParams* params, const Name& at, const double* va
   TYNDALL_TRY(check_pointer(at.where, "values", values));
   TYNDALL_ASSIGN(const Param param, find_numbers(at, count));
   std::uint32_t words[4] = {};
-  for (std::uint32_t i = 0; i < count; ++i) {
-    TYNDALL_ASSIGN(words[i], word_of(param.info, at, values[i]));
+  for (std::uint32_t i = 0; i < value_count(param.info.type); ++i) {
+    TYNDALL_ASSIGN(words[i], word_of(param.info, at, values[count == 1 ? 0 : i]));
   }
   return set_words(*params, param.info, at, words);
 }
@@ -157,6 +160,13 @@ Result<void> get_numbers(const TyndallParams* params, const Name& at, double* va
   TYNDALL_TRY(check_pointer(at.where, "values", values));
   TYNDALL_ASSIGN(const Param param, find_numbers(at, count));
   const char* bytes = reinterpret_cast<const char*>(&params->params) + param.info.offset;
+  if (count < value_count(param.info.type)) {
+    Vec3 color;
+    std::memcpy(&color, bytes, sizeof color);
+    if (color.x != color.y || color.x != color.z) {
+      return wrong(at, "has three different values; expected tyndall_params_get_numbers() with 3");
+    }
+  }
   for (std::uint32_t i = 0; i < count; ++i) {
     float real = 0.0F;
     std::uint32_t whole = 0;

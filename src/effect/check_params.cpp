@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "air/coefficients.hpp"
 #include "tyndall/params.hpp"
 
 namespace tyndall {
@@ -67,6 +68,7 @@ Result<void> check_params(const Params& params) {
       if (Result<void> r = check_number(info, static_cast<double>(numbers[i])); !r) return r;
     }
   }
+  if (Result<void> r = air::check(params); !r) return r;
   const std::uint32_t downscale = params.scattering.downscale;
   if (downscale != 1 && downscale != 2 && downscale != 4) {
     return invalid("scattering.downscale is " + std::to_string(downscale) + "; expected 1, 2 or 4");

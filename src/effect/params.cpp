@@ -16,6 +16,7 @@ namespace {
 #define PARAM_FLOAT(group, name, def, min, max, unit, affects, doc)
 #define PARAM_UINT(group, name, def, min, max, unit, affects, doc)
 #define PARAM_VEC3(group, name, def, min, max, unit, affects, doc)
+#define PARAM_COLOR(group, name, def, min, max, unit, affects, doc)
 #define PARAM_UVEC4(group, name, def, min, max, unit, affects, doc)
 #define PARAM_FLAG(group, name, def, affects, doc)
 #define PARAM_ENUM(group, name, type, def, affects, doc)
@@ -43,6 +44,8 @@ constexpr ParamInfo kTable[] = {
   {#group, #name, ParamType::uint32, OFFSET(group, name), min, max, unit, "", Affects::affects, doc},
 #define PARAM_VEC3(group, name, def, min, max, unit, affects, doc) \
   {#group, #name, ParamType::vec3, OFFSET(group, name), min, max, unit, "", Affects::affects, doc},
+#define PARAM_COLOR(group, name, def, min, max, unit, affects, doc) \
+  {#group, #name, ParamType::vec3, OFFSET(group, name), min, max, unit, "", Affects::affects, doc, true},
 #define PARAM_UVEC4(group, name, def, min, max, unit, affects, doc) \
   {#group, #name, ParamType::uvec4, OFFSET(group, name), min, max, unit, "", Affects::affects, doc},
 #define PARAM_FLAG(group, name, def, affects, doc) \

@@ -50,7 +50,7 @@ inline Medium widen(const shared::Medium& m) {
   out.ozone_centre_m = m.ozone_centre_m;
   out.ozone_half_width_m = m.ozone_half_width_m;
   out.mie_phase = m.mie_phase;
-  out.ground_albedo = m.ground_albedo;
+  out.ground_albedo = wide(m.ground_albedo);
   return out;
 }
 

@@ -56,12 +56,12 @@ std::array<double, 3> sunlit_ground(const shared::Medium& medium, const Ray& ray
   double start = 0.0;
   double end = 0.0;
   bool on_ground = false;
-  if (m.ground_albedo == 0.0 || !glsl64::atmosphere_segment(ray.altitude_m, ray.cos_view_zenith, m.atmosphere_height_m,
-                                                            m.planet_radius_m, start, end, on_ground)) {
+  const bool black = m.ground_albedo == glsl64::vec3(0.0);
+  if (black || !glsl64::atmosphere_segment(ray.altitude_m, ray.cos_view_zenith, m.atmosphere_height_m,
+                                           m.planet_radius_m, start, end, on_ground)) {
     // A downward ray that begins on the ground has length 0 and still sees the ground.
     end = 0.0;
-    on_ground =
-        m.ground_albedo > 0.0 && glsl64::ray_hits_ground(ray.altitude_m, ray.cos_view_zenith, m.planet_radius_m);
+    on_ground = !black && glsl64::ray_hits_ground(ray.altitude_m, ray.cos_view_zenith, m.planet_radius_m);
   }
   if (!on_ground) return {};
   const double r0 = m.planet_radius_m + ray.altitude_m;
@@ -70,7 +70,7 @@ std::array<double, 3> sunlit_ground(const shared::Medium& medium, const Ray& ray
       std::clamp((r0 * ray.cos_sun_zenith + end * ray.cos_view_sun) / (m.planet_radius_m + ground_m), -1.0, 1.0);
   if (cos_sun <= 0.0) return {};
   std::array<double, 3> out = sun_transmittance(medium, ground_m, cos_sun);
-  for (double& channel : out) channel *= m.ground_albedo * cos_sun / std::numbers::pi;
+  for (int c = 0; c < 3; ++c) out[static_cast<std::size_t>(c)] *= m.ground_albedo[c] * cos_sun / std::numbers::pi;
   return out;
 }
 

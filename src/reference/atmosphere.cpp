@@ -3,19 +3,10 @@
 #include <algorithm>
 #include <numbers>
 
+#include "air/coefficients.hpp"
+
 namespace tyndall::reference {
 namespace {
-
-// Returns the Rayleigh scattering coefficient of air, 1/m (Penndorf 1957, with the constants of Yusov 2013).
-double rayleigh_coefficient(double wavelength_nm) {
-  constexpr double kRefractiveIndex = 1.0003, kMolecules_m3 = 2.545e25, kDepolarisation = 0.035;
-  const double n2_1 = kRefractiveIndex * kRefractiveIndex - 1.0;
-  const double king = (6.0 + 3.0 * kDepolarisation) / (6.0 - 7.0 * kDepolarisation);
-  const double lambda2 = wavelength_nm * wavelength_nm * 1e-18;
-  return 8.0 * std::pow(std::numbers::pi, 3) * n2_1 * n2_1 / (3.0 * kMolecules_m3) * king / (lambda2 * lambda2);
-}
-
-Rgb rgb(const Vec3& v) { return {v.x, v.y, v.z}; }
 
 // Gauss-Legendre nodes and weights on [0; 1], by Newton's method on Legendre's polynomial.
 template <std::size_t N>
@@ -81,24 +72,14 @@ Atmosphere::Atmosphere(const Params& params, double lowest_m) {
   base_radius_m_ = radius_m + std::min(lowest_m, 0.0);
   rayleigh_scale_height_m = a.rayleigh_scale_height_m;
   mie_scale_height_m = a.mie_scale_height_m;
-  ground_albedo = params.planet.ground_albedo;
   mie_phase = MiePhaseFunction(a.mie_phase, a.mie_g);
-  ozone_absorption = rgb(a.ozone_absorption);
-
-  const double amount = a.aerosol_density;
-  const Rgb wavelengths_nm = rgb(a.wavelengths_nm), rayleigh = rgb(a.rayleigh_scattering);
-  const Rgb mie = rgb(a.mie_scattering), absorption = rgb(a.mie_absorption);
   for (std::size_t c = 0; c < 3; ++c) {
-    if (a.custom_coefficients) {
-      rayleigh_scattering[c] = rayleigh[c];
-      mie_scattering[c] = mie[c] * amount;
-      mie_extinction[c] = mie_scattering[c] + absorption[c] * amount;
-    } else {
-      constexpr double kAerosolScattering = 2e-5;  // 1/m at sea level, for aerosol_density = 1
-      rayleigh_scattering[c] = rayleigh_coefficient(wavelengths_nm[c]);
-      mie_scattering[c] = kAerosolScattering * amount;
-      mie_extinction[c] = mie_scattering[c] * (1.0 + static_cast<double>(a.aerosol_absorption));
-    }
+    const air::Coefficients channel = air::in_channel(params, c);
+    rayleigh_scattering[c] = channel.rayleigh_scattering;
+    mie_scattering[c] = channel.mie_scattering;
+    mie_extinction[c] = channel.mie_extinction;
+    ozone_absorption[c] = channel.ozone_absorption;
+    ground_albedo[c] = channel.ground_albedo;
   }
 
   ozone_half_width_m_ = a.ozone_half_width_m;

@@ -1,4 +1,4 @@
-// The medium of the path tracer: coefficients derived from Params, densities and optical depth. Density integrals (path
+// The medium of the path tracer: coefficients of src/air, densities and optical depth. Density integrals (path
 // integrals of relative density, in metres) towards the top of the atmosphere come from a table for the two exponential
 // profiles, built here in double precision, and in closed form for ozone. Immutable after construction, so threads may
 // share it.
@@ -36,7 +36,7 @@ class Atmosphere {
   double radius_m, top_radius_m, height_m;
   double rayleigh_scale_height_m, mie_scale_height_m;
   Rgb rayleigh_scattering, mie_scattering, mie_extinction, ozone_absorption;
-  double ground_albedo;
+  Rgb ground_albedo;
   // Light that passes the planet's centre closer than this radius is mostly absorbed. Where a sphere of this radius
   // hides the sun, the sun is practically set. Only the sampling uses it.
   double opaque_radius_m;

@@ -84,7 +84,7 @@ LitPart lit_part(const Atmosphere& air, const Line& line, const Vec& sun, double
 
 // Samples the point from which light arrives along `line`, and multiplies `weight` by the contribution divided by the
 // probability density. Returns false if nothing scatters. `albedo` is that of the ground at the line's end.
-bool sample_event(const Atmosphere& air, const Line& line, const Vec& sun, double albedo, double u, Rgb& weight,
+bool sample_event(const Atmosphere& air, const Line& line, const Vec& sun, const Rgb& albedo, double u, Rgb& weight,
                   Vertex& v) {
   Rgb scattered{}, weighted{};  // scattered: 1 - transmittance per channel; weighted: the same times `weight`
   double reflected = 0.0;
@@ -92,7 +92,7 @@ bool sample_event(const Atmosphere& air, const Line& line, const Vec& sun, doubl
     const double negative_opacity = std::expm1(-std::max(0.0, air.exponential_depth(line.total(), c)));
     scattered[c] = -negative_opacity;
     weighted[c] = weight[c] * scattered[c];
-    if (line.hits_ground()) reflected += weight[c] * albedo * (1.0 + negative_opacity);
+    if (line.hits_ground()) reflected += weight[c] * albedo[c] * (1.0 + negative_opacity);
   }
   const double total_weight = sum(weighted);
   if (!(total_weight + reflected > 0.0)) return false;
@@ -101,7 +101,7 @@ bool sample_event(const Atmosphere& air, const Line& line, const Vec& sun, doubl
   if (u < reflect_share) {
     Amounts integrals = line.total();
     integrals.ozone = line.ozone_travelled(line.end());
-    for (std::size_t c = 0; c < 3; ++c) weight[c] *= albedo * air.transmittance(integrals, c) / reflect_share;
+    for (std::size_t c = 0; c < 3; ++c) weight[c] *= albedo[c] * air.transmittance(integrals, c) / reflect_share;
     v = ground_vertex(air, line);
     return true;
   }
@@ -224,7 +224,7 @@ void trace_path(const Scene& scene, const Line& first, PathNumbers& numbers, Rgb
     // The directly lit ground at the end of the first line needs no sampling (Scene::ground).
     const bool seen = order == 0;
     const bool last = order + 1 == sums.size();
-    const double albedo = seen && (!scene.visible_ground || last) ? 0.0 : air.ground_albedo;
+    const Rgb albedo = seen && (!scene.visible_ground || last) ? Rgb{} : air.ground_albedo;
     Vertex v;
     if (!sample_event(air, *line, scene.sun, albedo, numbers.next(), weight, v)) return;
     if (v.ground) {
@@ -271,9 +271,9 @@ Scene::Scene(const Atmosphere& atmosphere, const RayQuery& query, const Options&
     integrals.ozone = line.ozone_travelled(line.end());
     for (std::size_t c = 0; c < 3; ++c) transmittance[c] = atmosphere.transmittance(integrals, c);
     if (sky && line.hits_ground()) transmittance = {};
-    if (!sky && visible_ground && line.hits_ground() && atmosphere.ground_albedo > 0.0) {
+    if (!sky && visible_ground && line.hits_ground() && sum(atmosphere.ground_albedo) > 0.0) {
       Rgb weight;
-      for (std::size_t c = 0; c < 3; ++c) weight[c] = transmittance[c] * atmosphere.ground_albedo;
+      for (std::size_t c = 0; c < 3; ++c) weight[c] = transmittance[c] * atmosphere.ground_albedo[c];
       add_ground(atmosphere, ground_vertex(atmosphere, line), sun, weight, ground);
     }
   }

@@ -162,7 +162,12 @@ std::vector<Atmosphere> atmospheres(const Params& params) {
 
 Params turbid_params(const Params& params, const TurbidAir& air) {
   Params out = params;
-  out.planet.ground_albedo = static_cast<float>(air.ground_albedo);
+  out.planet.ground_albedo = Vec3(static_cast<float>(air.ground_albedo));
+  if (out.atmosphere.aerosol_optical_depth > 0.0F || out.atmosphere.visibility_m > 0.0F) {
+    out.atmosphere.aerosol_optical_depth = static_cast<float>(air.optical_depth);
+    out.atmosphere.visibility_m = 0.0F;
+    return out;
+  }
   const reference::Atmosphere medium(params);
   const double depth = medium.mie_extinction[1] * medium.mie_scale_height_m;
   if (depth > 0.0) out.atmosphere.aerosol_density *= static_cast<float>(air.optical_depth / depth);

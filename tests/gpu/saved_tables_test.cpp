@@ -53,7 +53,7 @@ TEST_F(SavedTablesTest, LoadedTablesEqualSavedTables) {
   // A later change rebuilds only the stale tables.
   const std::uint32_t whole = built.precompute_progress().total;
   Params params = small_tables();
-  params.planet.ground_albedo = 0.5F;
+  params.planet.ground_albedo = Vec3(0.5F);
   ASSERT_OK(loaded.set_params(params));
   EXPECT_FALSE(loaded.precompute_progress().complete());
   EXPECT_LT(loaded.precompute_progress().total, whole);

@@ -31,7 +31,7 @@ TEST_F(TableBuilderTest, OldTablesAreUsedUntilNewOnesAreComplete) {
   const std::vector<std::byte> before = bytes(builder, TableId::high_orders);
 
   // Single scattering does not depend on the ground, so only the higher orders are rebuilt.
-  params.planet.ground_albedo = 0.5F;
+  params.planet.ground_albedo = Vec3(0.5F);
   ASSERT_OK(change(builder, params));
   EXPECT_LT(builder.progress().total, whole);
   EXPECT_GT(builder.transient_bytes(), 0U);

@@ -160,7 +160,7 @@ TEST_F(ScatteringTablesTest, MatchSingleScatteringBetweenAltitudesInATurbidAtmos
 TEST_F(ScatteringTablesTest, MatchThePathTracerInATurbidAtmosphereNearTheHorizon) {
   Params params;
   params.atmosphere.aerosol_density = 11.36F;  // an optical depth of 0.3
-  params.planet.ground_albedo = 0.2F;
+  params.planet.ground_albedo = Vec3(0.2F);
   params.tables.size = {32, 64, 32, 16};
   Result<models::PrecomputedModel> built = models::PrecomputedModel::create(host(), params);
   ASSERT_OK(built);

@@ -169,8 +169,9 @@ TEST(CInterface, EveryParameterCanBeSet) {
       }
       continue;
     }
-    // Larger tables are refused.
-    const double high = std::string(info.name) == "tables.size" ? 64.0 : info.max;
+    // Larger tables are refused, and so is a visibility beyond that of the densest air.
+    const std::string name = info.name;
+    const double high = name == "tables.size" ? 64.0 : name == "atmosphere.visibility_m" ? 1.0 : info.max;
     for (const double value : {info.min, high}) {
       const double values[4] = {value, value, value, value};
       double read[4] = {};
@@ -180,6 +181,10 @@ TEST(CInterface, EveryParameterCanBeSet) {
       for (std::uint32_t n = 0; n < info.value_count; ++n) {
         EXPECT_FLOAT_EQ(static_cast<float>(read[n]), static_cast<float>(value)) << info.name;
       }
+    }
+    // These exclude each other.
+    if (name == "atmosphere.aerosol_optical_depth" || name == "atmosphere.visibility_m") {
+      ASSERT_EQ(tyndall_params_set_number(params.get(), info.name, 0.0), TyndallStatus_success);
     }
   }
   std::uint32_t mask = 0;
@@ -209,6 +214,16 @@ TEST(CInterface, WrongParametersChangeNothing) {
   expect_invalid(tyndall_params_get_choice(p, "scattering.scale", &choice), {"not an enumeration"});
   expect_invalid(tyndall_params_set_number(p, "tables.size", 8), {"tables.size", "1 numbers", "expected 4"});
   expect_invalid(tyndall_params_get_numbers(p, "tables.size", numbers, 3), {"expected 4"});
+  expect_invalid(tyndall_params_set_number(p, "atmosphere.ozone_absorption", 0), {"1 numbers", "expected 3"});
+  const double color[] = {0.1, 0.2, 0.3};
+  ASSERT_EQ(tyndall_params_set_numbers(p, "planet.ground_albedo", color, 3), TyndallStatus_success);
+  expect_invalid(tyndall_params_get_number(p, "planet.ground_albedo", numbers), {"three different values"});
+  ASSERT_EQ(tyndall_params_set_number(p, "planet.ground_albedo", 0.25), TyndallStatus_success);
+  ASSERT_EQ(tyndall_params_get_number(p, "planet.ground_albedo", numbers), TyndallStatus_success);
+  EXPECT_EQ(numbers[0], 0.25);
+  ASSERT_EQ(tyndall_params_get_numbers(p, "planet.ground_albedo", numbers, 3), TyndallStatus_success);
+  EXPECT_TRUE(numbers[0] == 0.25 && numbers[1] == 0.25 && numbers[2] == 0.25);
+  ASSERT_EQ(tyndall_params_set_number(p, "planet.ground_albedo", 0.0), TyndallStatus_success);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (const double value : {-1.0, 2.0, 1e300, -1e300, kInfinity, -kInfinity, std::nan("")}) {
     expect_invalid(tyndall_params_set_number(p, "atmosphere.mie_g", value), {"atmosphere.mie_g is", "expected"});

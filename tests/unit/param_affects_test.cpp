@@ -38,7 +38,9 @@ std::vector<std::vector<std::uint32_t>> values_of(const ParamInfo& info) {
       for (const double part : {0.0, 0.1, 0.3, 1.0})
         out.push_back(words(static_cast<std::uint32_t>(info.min + part * (info.max - info.min))));
       break;
-    case ParamType::float32: return {words(low), words(0.7F * low + 0.3F * high), words(high)};
+    case ParamType::float32:
+      if (info.name == "visibility_m") return {words(low), words(5000.0F)};  // at most that of clear air
+      return {words(low), words(0.7F * low + 0.3F * high), words(high)};
     case ParamType::vec3: return {words(low, high, low), words(high, high, high)};
     case ParamType::uvec4: return {words(8U, 16U, 16U, 8U), words(16U, 8U, 16U, 8U)};
     default: break;

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "air/coefficients.hpp"
 #include "models/glsl_double.hpp"
 #include "physics_float.hpp"
 #include "physics_quadrature.hpp"
@@ -20,7 +21,7 @@ TEST(physics_medium, rayleigh_coefficients_of_the_literature) {
   EXPECT_NEAR(m.rayleigh_scattering.x, 5.8045e-6, 1.0e-10);
   EXPECT_NEAR(m.rayleigh_scattering.y, 1.35629e-5, 1.0e-10);
   EXPECT_NEAR(m.rayleigh_scattering.z, 3.31126e-5, 1.0e-10);
-  EXPECT_NEAR(rayleigh_scattering_per_m(680.0) / rayleigh_scattering_per_m(340.0), 1.0 / 16.0, 1.0e-12);
+  EXPECT_NEAR(air::rayleigh_scattering_per_m(680.0) / air::rayleigh_scattering_per_m(340.0), 1.0 / 16.0, 1.0e-12);
 }
 
 TEST(physics_medium, derived_aerosol_follows_density_and_absorption) {

@@ -40,6 +40,13 @@ TEST(UnusedParams, AreNamedWithTheirReason) {
             Lines({"tonemap.exposure has no effect with tonemap.auto_exposure = true"}));
   EXPECT_EQ(unused({"atmosphere.mie_scattering=1e-5,1e-5,1e-5"}),
             Lines({"atmosphere.mie_scattering has no effect with atmosphere.custom_coefficients = false"}));
+  EXPECT_EQ(unused({"atmosphere.aerosol_optical_depth=0.2", "atmosphere.aerosol_density=2"}),
+            Lines({"atmosphere.aerosol_density has no effect with atmosphere.aerosol_optical_depth"}));
+  EXPECT_EQ(unused({"atmosphere.visibility_m=20000", "atmosphere.single_scattering_albedo=0.9",
+                    "atmosphere.aerosol_absorption=0.2"}),
+            Lines({"atmosphere.aerosol_absorption has no effect with atmosphere.single_scattering_albedo"}));
+  EXPECT_EQ(unused({"atmosphere.ozone_du=300", "atmosphere.ozone_absorption=0,0,0"}),
+            Lines({"atmosphere.ozone_absorption has no effect with atmosphere.ozone_du"}));
   EXPECT_EQ(unused({"tonemap.operator=exponential-channels", "tonemap.saturation=0.5", "tonemap.white_point=2"}).size(),
             2U);
 }

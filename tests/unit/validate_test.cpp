@@ -124,7 +124,7 @@ TEST(ValidateRays, TurbidAtmospheresHaveTheirOpticalDepth) {
     const AtmosphereParams& a = turbid.atmosphere;
     EXPECT_NEAR(2e-5 * (1.0 + a.aerosol_absorption) * a.aerosol_density * a.mie_scale_height_m, air.optical_depth,
                 1e-6);
-    EXPECT_FLOAT_EQ(turbid.planet.ground_albedo, static_cast<float>(air.ground_albedo));
+    EXPECT_FLOAT_EQ(turbid.planet.ground_albedo.y, static_cast<float>(air.ground_albedo));
   }
   params.atmosphere.aerosol_density = 0.0F;
   EXPECT_EQ(turbid_params(params, kTurbidAirs[0]).atmosphere.aerosol_density, 0.0F);

@@ -41,6 +41,19 @@ bool is_one_of(T value, std::initializer_list<T> list) {
   return std::find(list.begin(), list.end(), value) != list.end();
 }
 
+// Reports parameters of the air that others replace (docs/air.md).
+template <typename Check>
+void check_air(const AtmosphereParams& air, const Check& check) {
+  const bool depth = air.aerosol_optical_depth > 0.0F;
+  check(depth || air.visibility_m > 0.0F, {"atmosphere.aerosol_density"},
+        depth ? "atmosphere.aerosol_optical_depth" : "atmosphere.visibility_m");
+  check(!(air.single_scattering_albedo == Vec3(0.0F)) && (depth || air.visibility_m > 0.0F),
+        {"atmosphere.aerosol_absorption", "atmosphere.mie_scattering", "atmosphere.mie_absorption"},
+        "atmosphere.single_scattering_albedo");
+  check(air.ozone_du > 0.0F, {"atmosphere.ozone_absorption"}, "atmosphere.ozone_du");
+  check(air.pressure_hpa > 0.0F, {"atmosphere.rayleigh_scattering"}, "atmosphere.pressure_hpa");
+}
+
 }  // namespace
 
 std::vector<std::string> unused_params(const Params& params, const SceneParams& scene) {
@@ -85,6 +98,7 @@ std::vector<std::string> unused_params(const Params& params, const SceneParams& 
   check(!custom, {"atmosphere.rayleigh_scattering", "atmosphere.mie_scattering", "atmosphere.mie_absorption"},
         "atmosphere.custom_coefficients = false");
   check(custom, {"atmosphere.aerosol_absorption"}, "atmosphere.custom_coefficients = true");
+  check_air(params.atmosphere, check);
   check(scene.terrain.source == "none", {"terrain.seed", "terrain.exaggeration", "terrain.shading"},
         "terrain.source = none");
 
