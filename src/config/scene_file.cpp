@@ -1,4 +1,4 @@
-// Reads TOML with toml++, which no other source includes, and writes it from the table of parameters.
+// Reads TOML with toml++, which no other source includes.
 #include "config/scene_file.hpp"
 
 #include <toml++/toml.h>
@@ -10,6 +10,7 @@
 #include <sstream>
 #include <vector>
 
+#include "config/frame_keys.hpp"
 #include "config/toml_limits.hpp"
 #include "files/files.hpp"
 #include "files/text.hpp"
@@ -110,20 +111,6 @@ Result<void> load_table(Settings& settings, std::string_view group, const toml::
   }
   return {};
 }
-
-// The keys of a [[path]] frame that are parameters, and the members that store them.
-struct FrameKey {
-  std::string_view name, parameter;
-  std::optional<float> scene::PathFrame::*target;
-};
-constexpr FrameKey kFrameKeys[] = {
-    {"altitude_m", "camera.altitude_m", &scene::PathFrame::altitude_m},
-    {"yaw_deg", "camera.yaw_deg", &scene::PathFrame::yaw_deg},
-    {"pitch_deg", "camera.pitch_deg", &scene::PathFrame::pitch_deg},
-    {"fov_deg", "camera.fov_deg", &scene::PathFrame::fov_deg},
-    {"sun_elevation_deg", "sun.elevation_deg", &scene::PathFrame::sun_elevation_deg},
-    {"sun_azimuth_deg", "sun.azimuth_deg", &scene::PathFrame::sun_azimuth_deg},
-};
 
 Error unknown_name(std::string_view key, std::string_view table, const std::vector<std::string>& names,
                    std::string_view where) {
@@ -274,6 +261,7 @@ Result<void> check_path(const scene::CameraPath& path, const std::string& where)
 Result<void> load_root(Settings& settings, const toml::table& root, std::string_view name) {
   std::string path_at;  // position of the path in this file, for messages
   for (const auto& [group, node] : root) {
+    if (group.str() == "include") continue;  // load_includes()
     const std::string where = position(name, group.source());
     if (group.str() == "path" || group.str() == "playback") {
       // toml++ gives the key of an array of tables the position of its last table.
@@ -309,62 +297,54 @@ void find_files_beside(Settings& settings, const Settings& before, const std::st
   }
 }
 
-// Returns a number as TOML writes it: real numbers have a point or an exponent.
-std::string toml_number(std::string_view text, bool real) {
-  const bool plain = text.find_first_of(".e") == std::string_view::npos;
-  return std::string(text) + (real && plain ? ".0" : "");
-}
+constexpr std::size_t kMaxIncludeDepth = 8;    // files that include each other
+constexpr std::size_t kMaxIncludedFiles = 64;  // of one scene
 
-std::string toml_value(const Row& row, const Settings& settings) {
-  std::string text = value_text(row, settings);
-  const bool real = is_real(row.info.type);
-  switch (row.info.type) {
-    case ParamType::string:
-    case ParamType::enumeration: return files::quoted_text(text);
-    case ParamType::vec3:
-    case ParamType::dvec3:
-    case ParamType::uvec4: {
-      std::string list = "[";
-      for (std::size_t i = 0; i < files::count_parts(text, ','); ++i) {
-        list += (i > 0 ? ", " : "") + toml_number(files::part(text, ',', i), real);
-      }
-      list += "]";
-      return list;
-    }
-    case ParamType::flag: return text;
-    default: return toml_number(text, real);
+// The files that are being read, the outermost first, and the number of files read so far.
+struct Reading {
+  std::vector<std::filesystem::path> open;
+  std::size_t files = 0;
+};
+
+Result<void> load_file(Settings& settings, const std::string& path, Reading& reading);
+
+// Reads the files of `include`, which are relative to the folder of the file that includes them.
+Result<void> load_includes(Settings& settings, const toml::table& root, std::string_view name, Reading& reading) {
+  const toml::node* const node = root.get("include");
+  if (node == nullptr) return {};
+  const auto problem = [&](std::string_view what, const toml::node& at, std::string_view expected) {
+    return files::input_error(what, position(name, at.source()), expected);
+  };
+  std::vector<const toml::node*> list = {node};
+  if (const toml::array* const array = node->as_array(); array != nullptr) {
+    list.clear();
+    for (const toml::node& element : *array) list.push_back(&element);
   }
-}
-
-void append_path(std::string& out, const scene::CameraPath& path) {
-  if (path.empty()) return;
-  out.append("\n# How the path below is played\n[playback]\n");
-  out.append("loop = ").append(path.loop ? "true" : "false").append("\n");
-  if (!path.place_text.empty()) out.append("place = ").append(files::quoted_text(path.place_text)).append("\n");
-  for (const scene::PathFrame& frame : path.frames) {
-    out.append("\n[[path]]\ntime_s = ").append(toml_number(files::number_text(frame.time_s), true)).append("\n");
-    if (frame.position_m) {
-      const auto part = [](double value) { return toml_number(files::number_text(value), true); };
-      const DVec3& p = *frame.position_m;
-      out.append("position_m = [")
-          .append(part(p.x))
-          .append(", ")
-          .append(part(p.y))
-          .append(", ")
-          .append(part(p.z))
-          .append("]\n");
+  if (reading.open.empty()) return problem("'include' needs a file", *node, "expected a scene without it");
+  const std::filesystem::path folder = reading.open.back().parent_path();
+  for (const toml::node* const element : list) {
+    const auto* const text = element->as_string();
+    if (text == nullptr || text->get().empty() || files::has_control_characters(text->get())) {
+      return problem("'include' does not name a file", *element, "expected \"FILE.toml\" or a list of such names");
     }
-    for (const FrameKey& key : kFrameKeys) {
-      const std::optional<float>& value = frame.*key.target;
-      if (value) out.append(key.name).append(" = ").append(toml_number(files::number_text(*value), true)).append("\n");
+    const std::filesystem::path path = (folder / text->get()).lexically_normal();
+    std::error_code ignored;
+    for (const std::filesystem::path& open : reading.open) {
+      if (open != path && !std::filesystem::equivalent(open, path, ignored)) continue;
+      return problem(files::concat({"'", files::one_line(text->get(), 200), "' includes itself"}), *element,
+                     "expected files that do not include each other in a circle");
     }
-    if (!frame.date.empty()) out.append("date = ").append(files::quoted_text(frame.date)).append("\n");
+    if (reading.open.size() >= kMaxIncludeDepth || reading.files >= kMaxIncludedFiles) {
+      return problem("too many files include each other", *element,
+                     files::concat({"expected at most ", std::to_string(kMaxIncludeDepth), " files in a chain and ",
+                                    std::to_string(kMaxIncludedFiles), " in all"}));
+    }
+    if (Result<void> read = load_file(settings, path.string(), reading); !read) return read;
   }
+  return {};
 }
 
-}  // namespace
-
-Result<void> load_text(Settings& settings, std::string_view toml, std::string_view name) {
+Result<void> load_toml(Settings& settings, std::string_view toml, std::string_view name, Reading& reading) {
   if (!files::is_utf8(toml)) {
     return files::input_error("not a text file", files::one_line(name, 200), "expected a scene file: TOML in UTF-8");
   }
@@ -372,6 +352,7 @@ Result<void> load_text(Settings& settings, std::string_view toml, std::string_vi
   try {
     const toml::table root = toml::parse(toml, name);
     Settings loaded = settings;
+    if (Result<void> read = load_includes(loaded, root, name, reading); !read) return read;
     if (Result<void> read = load_root(loaded, root, name); !read) return read;
     settings = std::move(loaded);
     return {};
@@ -383,33 +364,30 @@ Result<void> load_text(Settings& settings, std::string_view toml, std::string_vi
   }
 }
 
-Result<void> load(Settings& settings, const std::string& path) {
+Result<void> load_file(Settings& settings, const std::string& path, Reading& reading) {
   Result<std::string> text = files::read_file(path, kLargestFile);
   if (!text) return std::move(text).error();
   Settings loaded = settings;
-  if (Result<void> read = load_text(loaded, text.value(), path); !read) return read;
+  reading.open.emplace_back(path);
+  ++reading.files;
+  Result<void> read = load_toml(loaded, text.value(), path, reading);
+  reading.open.pop_back();
+  if (!read) return read;
   find_files_beside(loaded, settings, path);
   settings = std::move(loaded);
   return {};
 }
 
-std::string to_toml(const Settings& settings) {
-  std::string out;
-  for (const Group& group : groups()) {
-    out.append(out.empty() ? "" : "\n").append("# ").append(group.title).append("\n[");
-    out.append(group.name).append("]\n");
-    for (const Row& row : rows()) {
-      if (row.info.group != group.name) continue;
-      out.append("# ").append(row.info.doc).append(" Allowed: ").append(allowed_text(row)).append(".\n");
-      out.append(row.info.name).append(" = ").append(toml_value(row, settings)).append("\n");
-    }
-  }
-  append_path(out, settings.path);
-  return out;
+}  // namespace
+
+Result<void> load_text(Settings& settings, std::string_view toml, std::string_view name) {
+  Reading reading;
+  return load_toml(settings, toml, name, reading);
 }
 
-Result<void> save(const Settings& settings, const std::string& path) {
-  return files::write_file(path, to_toml(settings));
+Result<void> load(Settings& settings, const std::string& path) {
+  Reading reading;
+  return load_file(settings, path, reading);
 }
 
 }  // namespace tyndall::config

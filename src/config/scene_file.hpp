@@ -1,7 +1,8 @@
 // Scene files: TOML with one table for each group ([camera], [sun], ...) and the names of the parameters as keys. A
 // file may be partial; parameters that it leaves out are not changed. Values are TOML numbers, arrays of numbers,
 // booleans and strings. A camera path is an array of tables [[path]] and a table [playback] (docs/scenes.md); it
-// replaces the previous path as a whole.
+// replaces the previous path as a whole. `include` names files that are read first, relative to the folder of the file
+// that includes them.
 #pragma once
 
 #include <string>
@@ -16,7 +17,7 @@ namespace tyndall::config {
 // read, otherwise invalid_argument with the line.
 [[nodiscard]] Result<void> load(Settings& settings, const std::string& path);
 
-// Reads a scene file from text. Errors call it `name`.
+// Reads a scene file from text, which cannot include files. Errors call it `name`.
 [[nodiscard]] Result<void> load_text(Settings& settings, std::string_view toml, std::string_view name);
 
 // Returns a complete scene file, with the unit, range and meaning of each parameter as a comment. Loading it gives the

@@ -115,6 +115,9 @@ TEST_F(SavedTablesTest, KeysDifferWhereTablesDiffer) {
     std::memcpy(&bits, at, sizeof bits);
     const bool real = row.type == ParamType::float32 || row.type == ParamType::vec3;
     bits = row.type == ParamType::flag || row.type == ParamType::enumeration ? 1 - bits : bits + (real ? 256 : 2);
+    // A value of 0, which often means that the parameter is not set, becomes one that matters.
+    if (real && std::bit_cast<float>(bits - 256) == 0.0F)
+      bits = std::bit_cast<std::uint32_t>(static_cast<float>(0.01 * row.max));
     // A value at the maximum of its range is decreased.
     if (real && double{std::bit_cast<float>(bits)} > row.max) bits -= 512;
     if (row.type == ParamType::enumeration && bits > 1) bits = 1;

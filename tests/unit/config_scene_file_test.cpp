@@ -286,6 +286,53 @@ TEST_F(SceneFile, TheSunIsGreyOrAColour) {
   EXPECT_FALSE(load(settings, write("place.toml", "[camera]\nposition_m = 3.0\n")).ok());
 }
 
+TEST_F(SceneFile, IncludedFilesAreReadFirst) {
+  std::filesystem::create_directory(directory_ / "air");
+  write("air/dem.tif", "x");
+  write("air/haze.toml", "include = 'base.toml'\n[atmosphere]\nvisibility_m = 9000\n[terrain]\nsource = 'dem.tif'\n");
+  write("air/base.toml", "[atmosphere]\nvisibility_m = 1\nmie_g = 0.5\n");
+  write("sun.toml", "[sun]\nelevation_deg = 9\nazimuth_deg = 30\n");
+  Settings settings;
+  // The values of the file itself win, wherever `include` stands.
+  const Result<void> loaded =
+      load(settings,
+           write("s.toml", "camera.yaw_deg = 1\nsun.elevation_deg = 3\ninclude = ['air/haze.toml', 'sun.toml']\n"));
+  ASSERT_TRUE(loaded.ok()) << loaded.error().message;
+  EXPECT_EQ(settings.effect.atmosphere.visibility_m, 9000.0F);
+  EXPECT_EQ(settings.effect.atmosphere.mie_g, 0.5F);
+  EXPECT_EQ(settings.scene.sun.elevation_deg, 3.0F);
+  EXPECT_EQ(settings.scene.sun.azimuth_deg, 30.0F);
+  EXPECT_EQ(settings.scene.terrain.source, (directory_ / "air/dem.tif").string());
+}
+
+TEST_F(SceneFile, WrongIncludesAreRefused) {
+  Settings settings;
+  const auto refused = [&](std::string_view toml, std::string_view part) {
+    const Result<void> loaded = load(settings, write("s.toml", toml));
+    ASSERT_FALSE(loaded.ok()) << toml;
+    EXPECT_NE(loaded.error().message.find(part), std::string::npos) << loaded.error().message;
+  };
+  refused("include = 's.toml'\n", "s.toml:1: 's.toml' includes itself; expected files that do not");
+  write("t.toml", "\ninclude = './s.toml'\n");
+  refused("include = 't.toml'\n", "t.toml:2: './s.toml' includes itself");
+  refused("include = 3\n", "s.toml:1: 'include' does not name a file; expected \"FILE.toml\"");
+  refused("include = ['']\n", "does not name a file");
+  refused("include = 'none.toml'\n", "none.toml': cannot read");
+  write("bad.toml", "[atmosphere]\nmie_gg = 1\n");
+  for (int i = 0; i < 9; ++i) {
+    write("chain" + std::to_string(i) + ".toml", "include = 'chain" + std::to_string(i + 1) + ".toml'\n");
+  }
+  refused("include = 'chain0.toml'\n", "too many files include each other; expected at most 8 files in a chain");
+  std::string many = "include = [";
+  for (int i = 0; i < 70; ++i) many += "'empty.toml', ";
+  write("empty.toml", "");
+  refused(many + "]\n", "64 in all");
+  EXPECT_EQ(failure("include = 's.toml'\n"), "s.toml:1: 'include' needs a file; expected a scene without it");
+  // Nothing of a file is used if one that it includes is wrong.
+  refused("include = 'bad.toml'\n[sun]\nelevation_deg = 80\n", "bad.toml:2: unknown parameter 'atmosphere.mie_gg'");
+  EXPECT_EQ(all_text(settings), all_text(Settings()));
+}
+
 TEST_F(SceneFile, FilesAreFoundBesideTheScene) {
   write("dem.tif", "x");
   Settings settings;
