@@ -39,7 +39,7 @@ constexpr double kKoschmieder = 3.912;           // -ln 0.02: optical depth at w
 [[nodiscard]] double exponential_column_m(const Params& params, double scale_height_m);
 [[nodiscard]] double ozone_column_m(const Params& params);
 
-// Returns an error if parameters of the air contradict each other, or need data outside the range of the
+// Returns an error if parameters of the atmosphere contradict each other, or need data outside the range of the
 // cross-sections.
 [[nodiscard]] Result<void> check(const Params& params);
 

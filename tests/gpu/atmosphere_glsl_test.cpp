@@ -92,7 +92,7 @@ class AtmosphereGlsl : public GpuTest {
  protected:
   static Params params() {
     Params out;
-    out.planet.ground_albedo = 0.3F;
+    out.planet.ground_albedo = Vec3(0.3F);
     out.scattering.scale = 1.0F;
     return out;
   }

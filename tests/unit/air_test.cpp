@@ -1,5 +1,5 @@
-// The coefficients of the air against published cross-sections and optical depths, and against the definitions of the
-// parameters.
+// The coefficients of the atmosphere against published cross-sections and optical depths, and against the definitions
+// of the parameters.
 #include "air/coefficients.hpp"
 
 #include <cmath>
@@ -134,7 +134,7 @@ TEST(Air, AngstromExponentReplacesTheSpectrumOfCoefficients) {
   EXPECT_NEAR(in_channel(params, 2).mie_extinction, 4.0e-5 * 1.25 * 1.25, 1.0e-10);
 }
 
-TEST(Air, ChannelsKeepTheirValuesAndPowersContinue) {
+TEST(Air, ChannelsHaveTheirValuesAndPowersContinue) {
   Params params;
   params.atmosphere.custom_coefficients = true;
   params.planet.ground_albedo = Vec3(0.3F, 0.2F, 0.1F);
@@ -155,7 +155,7 @@ TEST(Air, ChannelsKeepTheirValuesAndPowersContinue) {
     EXPECT_NEAR(at_wavelength(params, at).rayleigh_scattering, static_cast<double>(power(at)), 1.0e-10) << at;
   }
   EXPECT_NEAR(at_wavelength(params, 495.0).ground_albedo, 0.2, 1.0e-7);
-  // Channels of the same wavelength keep their own values, and a channel of 0 stays finite.
+  // Channels of the same wavelength have their own values, and a channel of 0 stays finite.
   params.atmosphere.wavelengths_nm = Vec3(550.0F);
   EXPECT_FLOAT_EQ(static_cast<float>(in_channel(params, 1).rayleigh_scattering), power(680.0));
   EXPECT_TRUE(std::isfinite(at_wavelength(params, 440.0).rayleigh_scattering));

@@ -41,7 +41,7 @@ bool is_one_of(T value, std::initializer_list<T> list) {
   return std::find(list.begin(), list.end(), value) != list.end();
 }
 
-// Reports parameters of the air that others replace (docs/air.md).
+// Reports parameters of the atmosphere that others replace (docs/air.md).
 template <typename Check>
 void check_air(const AtmosphereParams& air, const Check& check) {
   const bool depth = air.aerosol_optical_depth > 0.0F;
