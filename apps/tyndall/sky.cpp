@@ -1,12 +1,14 @@
 // `tyndall sky`: renders the sky as an environment map. docs/sky.md describes the picture.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "arguments.hpp"
 #include "cli.hpp"
 #include "effect/medium.hpp"
+#include "files/files.hpp"
 #include "files/text.hpp"
 #include "gpu/host.hpp"
 #include "image/image.hpp"
@@ -33,6 +35,7 @@ struct SkyOptions {
   std::string place, time;
   double altitude_m = 0.0;
   std::string disc = "true";
+  std::string sun, projection = "latlong", clamp = "false";
   std::string model;
 };
 
@@ -148,8 +151,11 @@ Result<void> fill(image::Image& image, const SkyMap& map, const std::array<doubl
     const Result<std::vector<models::Answer>> found = source.answer(queries);
     if (!found) return found.error();
     float* out = image.pixel(0, first);
+    std::uint32_t pixel = first * map.width;
     for (const models::Answer& answer : found.value()) {
-      for (std::size_t c = 0; c < 3; ++c) *out++ = static_cast<float>(irradiance[c] * answer.radiance[c]);
+      const bool seen = map.direction(pixel % map.width, pixel / map.width).solid_angle > 0.0;
+      ++pixel;
+      for (std::size_t c = 0; c < 3; ++c) *out++ = seen ? static_cast<float>(irradiance[c] * answer.radiance[c]) : 0.0F;
     }
   }
   return {};
@@ -157,23 +163,81 @@ Result<void> fill(image::Image& image, const SkyMap& map, const std::array<doubl
 
 std::array<double, 3> horizontal_irradiance(const image::Image& image, const SkyMap& map) {
   std::array<double, 3> sum = {};
-  for (std::uint32_t y = 0; 2 * y + 1 < map.height; ++y) {
-    const double weight = map.pixel_solid_angle(y) * std::cos(std::numbers::pi * (y + 0.5) / map.height);
+  for (std::uint32_t y = 0; y < map.height; ++y) {
     for (std::uint32_t x = 0; x < map.width; ++x) {
+      const PixelDirection direction = map.direction(x, y);
+      const double weight = direction.solid_angle * std::max(std::cos(direction.zenith), 0.0);
       for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * image.pixel(x, y)[c];
     }
   }
   return sum;
 }
 
+struct ProjectionInfo {
+  std::string_view name, text;
+};
+// In the order of Projection.
+constexpr ProjectionInfo kProjections[] = {
+    {"latlong", "latitude-longitude: zenith at the top, north at the left edge, azimuth clockwise to the right"},
+    {"cube", "cube: the faces +X, -X, +Y, -Y, +Z, -Z from top to bottom, as in Vulkan; x east, y up, z south"},
+    {"fisheye", "angular fish-eye of the upper hemisphere: zenith in the middle, north at the top, east on the left"}};
+
+// Checks the options of the map against each other, and resolves `sun`.
+Result<Projection> check_map(SkyOptions& sky, const Size& size) {
+  if (!sky.sun.empty() && sky.disc == "false") {
+    return input_error("the sun's disc is given by --sun and by --disc", "--disc", "expected one of them");
+  }
+  if (sky.sun.empty()) sky.sun = sky.disc == "true" ? "disc" : "none";
+  const auto* const found = std::find_if(std::begin(kProjections), std::end(kProjections),
+                                         [&](const ProjectionInfo& info) { return info.name == sky.projection; });
+  const auto projection = static_cast<Projection>(found - std::begin(kProjections));
+  if (projection == Projection::latlong) return projection;
+  if (sky.sun == "disc") {
+    return input_error(concat({"a ", sky.projection, " map has no sun's disc"}), "--sun", "expected split or none");
+  }
+  const std::uint32_t height = projection == Projection::cube ? 6 * size.width : size.width;
+  if (size.height == height) return projection;
+  return input_error(concat({"invalid size '", std::to_string(size.width), "x", std::to_string(size.height), "' of a ",
+                             sky.projection, " map"}),
+                     "--size", concat({"expected ", std::to_string(size.width), "x", std::to_string(height)}));
+}
+
+constexpr float kLargestHalf = 65504.0F;
+
+// Limits the values to those of half precision, or notes that they exceed them.
+void check_largest(image::Image& image, bool clamp) {
+  const float largest = *std::max_element(image.rgb.begin(), image.rgb.end());
+  if (largest <= kLargestHalf) return;
+  if (!clamp) {
+    note(concat({"the sun's disc has values up to ", files::number_text(largest),
+                 "; programs that read the map in half precision are limited to 65504; --sun split separates the sun, "
+                 "and --clamp true limits the values"}));
+    return;
+  }
+  note(concat({"values up to ", files::number_text(largest), " were clamped to 65504; the map has less sunlight"}));
+  for (float& value : image.rgb) value = std::min(value, kLargestHalf);
+}
+
+// Returns the sun as a light of its own, for --sun split.
+nlohmann::ordered_json sun_json(const SkyMap& map, const SunFace& face, const Sunlight& light) {
+  const double across = std::cos(map.sun_elevation_rad);
+  nlohmann::ordered_json out;
+  out["direction"] = {across * std::sin(map.sun_azimuth_rad), std::sin(map.sun_elevation_rad),
+                      -across * std::cos(map.sun_azimuth_rad)};
+  out["elevation_deg"] = map.sun_elevation_rad / kRadPerDeg;
+  out["azimuth_deg"] = map.sun_azimuth_rad / kRadPerDeg;
+  out["angular_radius_deg"] = face.angular_radius_rad / kRadPerDeg;
+  out["irradiance"] = light.facing;
+  out["horizontal_irradiance"] = light.horizontal;
+  return out;
+}
+
 // Returns the metadata of the map: the settings, its projection, and what it shows.
-image::Metadata sky_metadata(const config::Settings& settings, const SkyOptions& sky) {
+image::Metadata sky_metadata(const config::Settings& settings, const SkyOptions& sky, Projection projection) {
   image::Metadata metadata = config::radiance_metadata(settings);
-  metadata.emplace_back(
-      "tyndall.sky.projection",
-      "latitude-longitude: zenith at the top, north at the left edge, azimuth clockwise to the right");
+  metadata.emplace_back("tyndall.sky.projection", kProjections[static_cast<std::size_t>(projection)].text);
   metadata.emplace_back("tyndall.sky.model", sky.model);
-  metadata.emplace_back("tyndall.sky.disc", sky.disc);
+  metadata.emplace_back("tyndall.sky.disc", sky.sun == "disc" ? "true" : "false");
   if (!sky.place.empty()) {
     metadata.emplace_back("tyndall.sky.at", files::one_line(sky.place));
     metadata.emplace_back("tyndall.sky.time", files::one_line(sky.time));
@@ -181,12 +245,8 @@ image::Metadata sky_metadata(const config::Settings& settings, const SkyOptions&
   return metadata;
 }
 
-}  // namespace
-
-int run_sky(Args args) {
-  CommonOptions options;
+std::optional<int> parse_sky(Args args, CommonOptions& options, SkyOptions& sky) {
   options.size = {2048, 1024};
-  SkyOptions sky;
   sky.model = kModels[0].name();
   std::vector<std::string> model_names;
   for (const SkyModel& model : kModels) model_names.emplace_back(model.name());
@@ -200,13 +260,28 @@ int run_sky(Args args) {
   arguments.text("--time", sky.time, "ISO8601", "time at the place, as in 2003-10-17T12:30:30-07:00; 1900 to 2100");
   arguments.number("--altitude", sky.altitude_m, kLowestAltitude_m, 1.0e9,
                    "altitude of the eye above sea level in m, negative below it");
-  arguments.choice("--disc", sky.disc, {"true", "false"}, "draw the sun's disc");
+  arguments.choice("--disc", sky.disc, {"true", "false"}, "draw the sun's disc; false is the same as --sun none");
+  arguments.choice("--sun", sky.sun, {"disc", "split", "none"},
+                   "draw the sun's disc, or leave it out and write its light to SKY.sun.json, or leave it out");
+  arguments.choice("--projection", sky.projection, {"latlong", "cube", "fisheye"},
+                   "projection of the map; a cube has 6 faces in a column, and a fish-eye the upper hemisphere");
+  arguments.choice("--clamp", sky.clamp, {"true", "false"}, "limit values to those of half precision");
   arguments.choice("--model", sky.model, model_names, "model of the sky");
-  if (const std::optional<int> status = arguments.parse(args)) return *status;
+  return arguments.parse(args);
+}
+
+}  // namespace
+
+int run_sky(Args args) {
+  CommonOptions options;
+  SkyOptions sky;
+  if (const std::optional<int> status = parse_sky(args, options, sky)) return *status;
   const Result<SunAngles> sun = find_sun(sky);
   if (!sun) return fail(sun.error());
   if (Result<void> r = resolve(options); !r) return fail(r.error());
   if (Result<void> r = check_output(options, {".exr"}); !r) return fail(r.error());
+  const Result<Projection> projection = check_map(sky, options.size);
+  if (!projection) return fail(projection.error());
 
   const Params& params = options.settings.effect;
   if (Result<void> r = check_altitude(sky.altitude_m, params, "--altitude"); !r) return fail(r.error());
@@ -218,8 +293,12 @@ int run_sky(Args args) {
     scene.camera.altitude_m = static_cast<float>(sky.altitude_m);
   else
     scene.camera.position_m = {0.0F, static_cast<float>(sky.altitude_m), 0.0F};
-  const SkyMap map = {options.size.width, options.size.height, sky.altitude_m, sun.value().elevation_deg * kRadPerDeg,
-                      sun.value().azimuth_deg * kRadPerDeg};
+  const SkyMap map = {options.size.width,
+                      options.size.height,
+                      sky.altitude_m,
+                      sun.value().elevation_deg * kRadPerDeg,
+                      sun.value().azimuth_deg * kRadPerDeg,
+                      projection.value()};
   const double scale = params.scattering.scale;
   const std::array<double, 3> irradiance = {scene.sun.irradiance.x * scale, scene.sun.irradiance.y * scale,
                                             scene.sun.irradiance.z * scale};
@@ -234,24 +313,22 @@ int run_sky(Args args) {
   image::Image image(map.width, map.height);
   if (Result<void> r = fill(image, map, irradiance, *source.value()); !r) return fail(r.error());
   const std::array<double, 3> diffuse = horizontal_irradiance(image, map);
-  if (sky.disc == "true") {
-    const Vec3& nm = params.atmosphere.wavelengths_nm;
-    const SunFace face = {scene.sun.angular_radius_deg * kRadPerDeg,
-                          {scene::limb_exponent(nm.x), scene::limb_exponent(nm.y), scene::limb_exponent(nm.z)},
-                          irradiance};
-    add_sun(image, map, face, medium_from_params(params));
-  }
+  const Vec3& nm = params.atmosphere.wavelengths_nm;
+  const SunFace face = {scene.sun.angular_radius_deg * kRadPerDeg,
+                        {scene::limb_exponent(nm.x), scene::limb_exponent(nm.y), scene::limb_exponent(nm.z)},
+                        irradiance};
+  const shared::Medium medium = medium_from_params(params);
+  if (sky.sun == "disc") add_sun(image, map, face, medium);
+  check_largest(image, sky.clamp == "true");
 
-  const image::Metadata metadata = sky_metadata(options.settings, sky);
-  constexpr float kLargestHalf = 65504.0F;
-  if (const float largest = *std::max_element(image.rgb.begin(), image.rgb.end()); largest > kLargestHalf) {
-    note(concat({"the sun's disc has values up to ", files::number_text(largest),
-                 "; programs that read the map in half precision are limited to 65504; --disc false omits the disc"}));
-  }
-  if (Result<void> r =
-          image::write_exr(options.output, image, metadata, {.content = image::ExrContent::environment_map});
-      !r) {
-    return fail(r.error());
+  const nlohmann::ordered_json light = sun_json(map, face, sunlight(map, face, medium));
+  const bool latlong = projection.value() == Projection::latlong;
+  const image::ExrOptions as = {.content = latlong ? image::ExrContent::environment_map : image::ExrContent::radiance};
+  const image::Metadata metadata = sky_metadata(options.settings, sky, projection.value());
+  if (Result<void> r = image::write_exr(options.output, image, metadata, as); !r) return fail(r.error());
+  if (sky.sun == "split") {
+    const std::string path = std::filesystem::path(options.output).replace_extension(".sun.json").string();
+    if (Result<void> r = files::write_file(path, light.dump(2) + "\n"); !r) return fail(r.error());
   }
   if (!options.json) return kDone;
   nlohmann::ordered_json out;
@@ -262,6 +339,8 @@ int run_sky(Args args) {
   out["sun_elevation_deg"] = sun.value().elevation_deg;
   out["sun_azimuth_deg"] = sun.value().azimuth_deg;
   out["sky_irradiance"] = diffuse;
+  out["sun_irradiance"] = light["irradiance"];
+  out["sun_horizontal_irradiance"] = light["horizontal_irradiance"];
   if (const tables::Report* const made = source.value()->tables(); made != nullptr) {
     out["tables"] = {{"from", made->origin == tables::Origin::cache ? "cache" : "build"}, {"ms", made->milliseconds}};
   }

@@ -39,6 +39,8 @@ class Splitter {
   [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
   // Returns the flux of the whole disc without atmosphere and horizon.
   [[nodiscard]] const std::array<double, 3>& total() const { return total_; }
+  // Returns the attenuated flux on a horizontal surface.
+  [[nodiscard]] const std::array<double, 3>& horizontal() const { return horizontal_; }
 
  private:
   [[nodiscard]] int pieces_along(double length_rad) const {
@@ -77,6 +79,7 @@ class Splitter {
           const double flux = area * std::pow(mu, sun_.limb_exponent[c]);
           total_[c] += flux;
           piece.flux[c] += flux * passed[c];
+          horizontal_[c] += flux * passed[c] * std::max(std::cos(zenith), 0.0);
         }
       }
       pieces_.push_back(piece);
@@ -93,7 +96,7 @@ class Splitter {
   const shared::Medium& medium_;
   double sun_zenith_;
   std::vector<Piece> pieces_;
-  std::array<double, 3> total_ = {};
+  std::array<double, 3> total_ = {}, horizontal_ = {};
 };
 
 }  // namespace
@@ -105,10 +108,51 @@ double SkyMap::pixel_solid_angle(std::uint32_t y) const {
   return 2.0 * kPi / width * 2.0 * std::sin(0.5 * (top + bottom)) * std::sin(0.5 * (bottom - top));
 }
 
+PixelDirection SkyMap::direction(std::uint32_t x, std::uint32_t y) const {
+  if (projection == Projection::latlong) {
+    return {kPi * (y + 0.5) / height, 2.0 * kPi * (x + 0.5) / width, pixel_solid_angle(y)};
+  }
+  // Coordinates of the centre within the picture or face, -1 to 1, to the right and down.
+  const std::uint32_t size = width;
+  const double a = 2.0 * (x + 0.5) / size - 1.0;
+  const double b = 2.0 * (y % size + 0.5) / size - 1.0;
+  const double area = 4.0 / (static_cast<double>(size) * size);
+  if (projection == Projection::fisheye) {
+    const double radius = std::hypot(a, b);
+    if (radius > 1.0) return {0.0, 0.0, 0.0};
+    const double zenith = 0.5 * kPi * radius;
+    const double stretch = radius > 1.0e-9 ? std::sin(zenith) / radius : 0.5 * kPi;
+    return {zenith, std::atan2(-a, -b), 0.5 * kPi * stretch * area};
+  }
+  // World coordinates: x east, y up, z south.
+  struct Vector {
+    double x, y, z;
+  };
+  const Vector faces[] = {{1.0, -b, -a}, {-1.0, -b, a}, {a, 1.0, b}, {a, -1.0, -b}, {a, -b, 1.0}, {-a, -b, -1.0}};
+  const Vector& v = faces[y / size];
+  const double length2 = 1.0 + a * a + b * b;
+  return {std::acos(v.y / std::sqrt(length2)), std::atan2(v.x, -v.z), area / (length2 * std::sqrt(length2))};
+}
+
 RayQuery SkyMap::query(std::uint32_t x, std::uint32_t y) const {
-  const double zenith = kPi * (y + 0.5) / height;
-  const double azimuth = 2.0 * kPi * (x + 0.5) / width;
+  const auto [zenith, azimuth, solid_angle] = direction(x, y);
   return {altitude_m, zenith, 0.5 * kPi - sun_elevation_rad, azimuth - sun_azimuth_rad, false};
+}
+
+Sunlight sunlight(const SkyMap& map, const SunFace& sun, const shared::Medium& medium) {
+  SkyMap fine = map;  // the pieces of the disc are those of a map
+  fine.projection = Projection::latlong;
+  fine.width = 2048;
+  fine.height = 1024;
+  Splitter splitter(fine, sun, medium);
+  splitter.split();
+  Sunlight out;
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (const Piece& piece : splitter.pieces()) out.facing[c] += piece.flux[c];
+    out.facing[c] *= sun.irradiance[c] / splitter.total()[c];
+    out.horizontal[c] = splitter.horizontal()[c] * sun.irradiance[c] / splitter.total()[c];
+  }
+  return out;
 }
 
 void add_sun(image::Image& image, const SkyMap& map, const SunFace& sun, const shared::Medium& medium) {

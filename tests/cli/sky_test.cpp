@@ -57,6 +57,39 @@ TEST(CliSkyMap, PixelsCoverTheSphereAndLookWhereTheyShould) {
               models::ray_from_query(map.query(11, 5)).cos_view_sun, 1e-12);
 }
 
+TEST(CliSkyMap, FacesAndFishEyesLookWhereTheyShould) {
+  SkyMap cube = map_of(33, 198, 35.0, 125.0);
+  cube.projection = Projection::cube;
+  const auto middle = [&](std::uint32_t face) { return cube.direction(16, 33 * face + 16); };
+  constexpr double kAzimuth[] = {90.0, -90.0, 0.0, 0.0, 180.0, 0.0};
+  for (std::uint32_t face = 0; face < 6; ++face) {
+    EXPECT_NEAR(middle(face).zenith, (face == 2 ? 0.0 : face == 3 ? 1.0 : 0.5) * kPi, 1e-7) << face;
+    if (face == 2 || face == 3) continue;
+    EXPECT_NEAR(std::cos(middle(face).azimuth - kAzimuth[face] * kRadPerDeg), 1.0, 1e-12) << face;
+  }
+  // On the face to the east, the left edge looks to the south-east.
+  EXPECT_NEAR(cube.direction(0, 16).azimuth, 135.0 * kRadPerDeg, 0.04);
+  EXPECT_LT(cube.direction(16, 0).zenith, 50.0 * kRadPerDeg);  // the top row looks up
+  double sum = 0.0;
+  for (std::uint32_t y = 0; y < cube.height; ++y) {
+    for (std::uint32_t x = 0; x < cube.width; ++x) sum += cube.direction(x, y).solid_angle;
+  }
+  EXPECT_NEAR(sum, 4.0 * kPi, 0.002);
+
+  SkyMap fisheye = map_of(101, 101, 35.0, 125.0);
+  fisheye.projection = Projection::fisheye;
+  EXPECT_NEAR(fisheye.direction(50, 50).zenith, 0.0, 1e-9);
+  EXPECT_NEAR(fisheye.direction(50, 0).zenith, 0.5 * kPi * 100.0 / 101.0, 1e-9);
+  EXPECT_NEAR(fisheye.direction(50, 0).azimuth, 0.0, 1e-9);                // north
+  EXPECT_NEAR(fisheye.direction(0, 50).azimuth, 90.0 * kRadPerDeg, 1e-9);  // east
+  EXPECT_EQ(fisheye.direction(0, 0).solid_angle, 0.0);
+  sum = 0.0;
+  for (std::uint32_t y = 0; y < 101; ++y) {
+    for (std::uint32_t x = 0; x < 101; ++x) sum += fisheye.direction(x, y).solid_angle;
+  }
+  EXPECT_NEAR(sum, 2.0 * kPi, 0.01 * kPi);
+}
+
 TEST(CliSkyMap, TheDiscHoldsTheDirectSunAtEverySize) {
   const shared::Medium medium = medium_from_params({});
   for (const auto& [width, height] :
@@ -148,6 +181,41 @@ TEST_F(CliSky, TheUpperHalfHoldsTheIrradianceOfTheSky) {
   }
 }
 
+TEST_F(CliSky, EveryProjectionHoldsTheReportedIrradiance) {
+  const std::vector<std::string> sun = {"--sun-elevation-deg", "25", "--sun-azimuth-deg", "200", "--json"};
+  const auto sky = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), sun.begin(), sun.end());
+    return make(with_single(arguments));
+  };
+  const auto reported = [&](const char* key) -> std::array<double, 3> { return nlohmann::json::parse(out_)[key]; };
+  const image::File whole = sky({"--size", "360x180"});
+  const std::array<double, 3> sky_light = reported("sky_irradiance"), sun_light = reported("sun_horizontal_irradiance");
+  const std::array<double, 3> direct = reported("sun_irradiance");
+  const std::array<double, 3> found = integral(whole.image, true);
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_NEAR(found[c], sky_light[c] + sun_light[c], 0.005 * found[c]);
+    EXPECT_NEAR(sun_light[c], direct[c] * std::sin(25.0 * kRadPerDeg), 1e-3 * direct[c]);
+    const std::array<double, 3> passed =
+        models::sun_transmittance(medium_from_params({}), 0.0, std::sin(25.0 * kRadPerDeg));
+    EXPECT_NEAR(direct[c], 5.0 * passed[c], 1e-3 * direct[c]);
+  }
+  const image::File cube = sky({"--size", "48x288", "--projection", "cube", "--sun", "none"});
+  const std::array<double, 3> of_cube = reported("sky_irradiance");
+  const image::File fisheye = sky({"--size", "120x120", "--projection", "fisheye", "--sun", "split"});
+  const std::array<double, 3> of_fisheye = reported("sky_irradiance");
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_NEAR(of_cube[c], sky_light[c], 0.005 * sky_light[c]);
+    EXPECT_NEAR(of_fisheye[c], sky_light[c], 0.005 * sky_light[c]);
+    EXPECT_EQ(fisheye.image.pixel(0, 0)[c], 0.0F);
+  }
+  const nlohmann::json light = nlohmann::json::parse(contents_of(scratch_.at("sky.sun.json")));
+  EXPECT_NEAR(light["direction"][0].get<double>(), std::cos(25.0 * kRadPerDeg) * std::sin(200.0 * kRadPerDeg), 1e-9);
+  EXPECT_NEAR(light["direction"][1].get<double>(), std::sin(25.0 * kRadPerDeg), 1e-9);
+  EXPECT_NEAR(light["direction"][2].get<double>(), -std::cos(25.0 * kRadPerDeg) * std::cos(200.0 * kRadPerDeg), 1e-9);
+  EXPECT_NEAR(light["angular_radius_deg"].get<double>(), 0.2667, 1e-6);
+  EXPECT_EQ(light["irradiance"].get<std::vector<double>>(), std::vector<double>(direct.begin(), direct.end()));
+}
+
 TEST_F(CliSky, PixelsAreRays) {
   const image::File file =
       make(with_single({"--size", "36x18", "--sun-elevation-deg", "30", "--sun-azimuth-deg", "40", "--altitude",
@@ -181,6 +249,12 @@ TEST_F(CliSky, DiscsBeyondHalfPrecisionAreNoted) {
   EXPECT_EQ(noted.status, 0);
   EXPECT_NE(noted.err.find("tyndall: note: the sun's disc has values up to "), std::string::npos) << noted.err;
   EXPECT_NE(noted.err.find("65504"), std::string::npos);
+  std::vector<std::string> clamped = sky;
+  clamped.insert(clamped.end(), {"--clamp", "true"});
+  EXPECT_NE(run_tyndall(clamped).err.find(" were clamped to 65504"), std::string::npos);
+  const Result<image::File> limited = image::read(scratch_.at("sky.exr"));
+  ASSERT_TRUE(limited.ok());
+  EXPECT_EQ(*std::max_element(limited.value().image.rgb.begin(), limited.value().image.rgb.end()), 65504.0F);
   std::vector<std::string> without = sky;
   without.insert(without.end(), {"--disc", "false"});
   EXPECT_EQ(run_tyndall(without).err, "");
@@ -257,6 +331,17 @@ TEST_F(CliSky, ErrorsAreReported) {
     return process.err;
   };
   EXPECT_EQ(error({}), "tyndall: error: tyndall sky: missing position of the sun" + either);
+  const std::vector<std::string> sun = {"--sun-elevation-deg", "3", "--sun-azimuth-deg", "3"};
+  const auto wrong = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), sun.begin(), sun.end());
+    return error(arguments);
+  };
+  EXPECT_EQ(wrong({"--projection", "cube"}),
+            "tyndall: error: --sun: a cube map has no sun's disc; expected split or none\n");
+  EXPECT_EQ(wrong({"--projection", "fisheye", "--sun", "none"}),
+            "tyndall: error: --size: invalid size '4x2' of a fisheye map; expected 4x4\n");
+  EXPECT_EQ(wrong({"--disc", "false", "--sun", "split"}),
+            "tyndall: error: --disc: the sun's disc is given by --sun and by --disc; expected one of them\n");
   EXPECT_EQ(error({"--sun-elevation-deg", "3"}),
             "tyndall: error: tyndall sky: missing option --sun-azimuth-deg" + either);
   EXPECT_EQ(error({"--sun-azimuth-deg", "3"}),
