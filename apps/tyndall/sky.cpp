@@ -286,6 +286,7 @@ int run_sky(Args args) {
   const Params& params = options.settings.effect;
   if (Result<void> r = check_altitude(sky.altitude_m, params, "--altitude"); !r) return fail(r.error());
   scene::SceneParams& scene = options.settings.scene;
+  scene.sun.time.clear();  // the options of this verb hold
   scene.sun.elevation_deg = static_cast<float>(sun.value().elevation_deg);
   scene.sun.azimuth_deg = static_cast<float>(sun.value().azimuth_deg);
   // camera.altitude_m does not accept values below sea level.

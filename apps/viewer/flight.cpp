@@ -10,6 +10,7 @@
 
 #include "files/text.hpp"
 #include "scene/description/map_projection.hpp"
+#include "scene/description/placed_sun.hpp"
 
 namespace tyndall::viewer {
 namespace {
@@ -42,7 +43,15 @@ void Flight::handle_pointer(const Event& event, config::Settings& settings) {
         pointer_text_ = "pointer " + files::number_text(event.x) + " " + files::number_text(event.y);
       }
       if (dragging_view_) camera_ = turned(camera_, dx, dy, height);
-      if (dragging_sun_) settings.scene.sun = sun_turned(settings.scene.sun, dx, dy, height);
+      if (dragging_sun_) {
+        // The drag continues from where the sun stands, which no longer follows from a time.
+        if (Result<scene::SunParams> sun = scene::placed_sun(settings.scene.sun, terrain_place_); sun) {
+          settings.scene.sun = sun.value();
+        }
+        settings.scene.sun.time.clear();
+        settings.scene.sun.refraction = false;
+        settings.scene.sun = sun_turned(settings.scene.sun, dx, dy, height);
+      }
       break;
     }
     case Event::Kind::wheel:
@@ -55,6 +64,7 @@ void Flight::handle_pointer(const Event& event, config::Settings& settings) {
 std::string Flight::take_pointer_text() { return std::exchange(pointer_text_, {}); }
 
 void Flight::advance(double seconds, const SceneFacts& facts, config::Settings& settings) {
+  terrain_place_ = facts.elevations != nullptr ? facts.elevations->place() : std::nullopt;
   follow_path(seconds, facts, settings);
   fly(seconds, facts, settings);
 }

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "files/text.hpp"
+#include "scene/description/placed_sun.hpp"
 #include "tyndall/version.hpp"
 
 namespace tyndall::config {
@@ -302,6 +303,16 @@ Result<void> check(const Settings& settings) {
     return files::input_error(
         "a path with dates has no place", "[playback]",
         "expected place = \"LAT,LON\", or an elevation file with a coordinate system in terrain.source");
+  }
+  const scene::SunParams& sun = settings.scene.sun;
+  // A file may have a place of its own.
+  if (Result<scene::SunParams> placed = scene::placed_sun(sun, file ? std::optional(scene::Place()) : std::nullopt);
+      !placed) {
+    return std::move(placed).error();
+  }
+  if (!sun.place.empty()) {
+    if (Result<scene::Place> place = scene::parse_place(sun.place, "sun.place"); !place)
+      return std::move(place).error();
   }
   if (settings.scene.tables.cache.empty()) {
     return files::input_error("empty value", "tables.cache", "expected auto, off or a directory");

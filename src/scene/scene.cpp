@@ -10,6 +10,7 @@
 #include "gpu/guard.hpp"
 #include "gpu/try.hpp"
 #include "scene/description/map_projection.hpp"
+#include "scene/description/placed_sun.hpp"
 #include "scene/description/unused_params.hpp"
 #include "scene/formats.hpp"
 #include "scene/sky/background_constants.hpp"
@@ -249,7 +250,8 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   const double aspect = static_cast<double>(desc_.extent.width) / desc_.extent.height;
   view_ = view_from_params(scene_.camera, aspect, radius);
   view_.jitter = jitter;
-  to_sun_ = animated_direction_to_sun(scene_.sun, seconds);
+  TYNDALL_ASSIGN(const SunParams sun, placed_sun(scene_.sun, place()));
+  to_sun_ = animated_direction_to_sun(sun, seconds);
 
   const bool bare = bare_ground();
   const double ground_m = bare ? 0.0 : terrain_->height_at(up_of(view_.position, radius));

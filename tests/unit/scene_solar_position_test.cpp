@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "scene/description/placed_sun.hpp"
 #include "scene/description/solar_position.hpp"
 
 namespace tyndall::scene {
@@ -26,6 +27,52 @@ double longitude_deg(const SolarPosition& p, double obliquity_deg) {
   const double y = std::cos(p.declination_deg * rad) * std::sin(p.right_ascension_deg * rad);
   const double z = std::sin(p.declination_deg * rad);
   return std::atan2(y * std::cos(obliquity_deg * rad) + z * std::sin(obliquity_deg * rad), x) / rad;
+}
+
+TEST(PlacedSun, RefractionIsThatOfTheLiterature) {
+  // Reda and Andreas (2003), table A5.1, for 820 mbar and 11 degrees Celsius instead of 1010 and 10.
+  EXPECT_NEAR(refraction_deg(39.872046), 0.016332 * (1010.0 / 820.0) * (284.0 / 283.0), 1e-4);
+  // Bennett (1982) gives 34.5 arc minutes for an object that is seen at the horizon.
+  EXPECT_NEAR(refraction_deg(-34.5 / 60.0), 34.5 / 60.0, 0.01);
+  EXPECT_NEAR(refraction_deg(90.0), 0.0, 1e-5);
+  EXPECT_EQ(refraction_deg(-5.0), 0.0);
+  EXPECT_EQ(refraction_deg(-90.0), 0.0);
+  double before = -90.0 + refraction_deg(-90.0);
+  for (double h = -90.0; h <= 90.0; h += 0.05) {
+    const double seen = h + refraction_deg(h);
+    EXPECT_TRUE(std::isfinite(seen) && seen >= before) << h;  // the order of elevations does not change
+    before = seen;
+  }
+}
+
+TEST(PlacedSun, TimeAndPlaceReplaceTheAngles) {
+  SunParams sun;
+  sun.time = "2003-10-17T12:30:30-07:00";
+  EXPECT_FALSE(placed_sun(sun, std::nullopt).ok());
+  const Result<SunParams> by_file = placed_sun(sun, Place{39.742476, -105.1786});
+  ASSERT_TRUE(by_file.ok());
+  EXPECT_NEAR(by_file.value().elevation_deg, 39.872, 2e-3);
+  EXPECT_NEAR(by_file.value().azimuth_deg, 194.340, 2e-3);
+  sun.place = "-39.742476,74.8214";  // the opposite point of the Earth
+  const Result<SunParams> opposite = placed_sun(sun, Place{39.742476, -105.1786});
+  ASSERT_TRUE(opposite.ok());
+  EXPECT_NEAR(opposite.value().elevation_deg, -39.872, 0.01);
+  sun.refraction = true;
+  sun.place = "39.742476,-105.1786";
+  const Result<SunParams> raised = placed_sun(sun, std::nullopt);
+  ASSERT_TRUE(raised.ok());
+  EXPECT_NEAR(raised.value().elevation_deg, 39.872 + 0.020, 2e-3);
+  sun.time.clear();
+  sun.elevation_deg = 0.0F;
+  ASSERT_TRUE(placed_sun(sun, std::nullopt).ok());
+  EXPECT_NEAR(placed_sun(sun, std::nullopt).value().elevation_deg, 0.483, 1e-3);
+  EXPECT_EQ(placed_sun(sun, std::nullopt).value().azimuth_deg, sun.azimuth_deg);
+  for (const char* const wrong : {"noon", "2003-10-17", "1803-10-17T12:30:30Z"}) {
+    sun.time = wrong;
+    const Result<SunParams> refused = placed_sun(sun, std::nullopt);
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.error().message.find("sun.time: '"), 0U) << refused.error().message;
+  }
 }
 
 // Reda and Andreas (2003), table A5.1: Golden, Colorado. The zenith angle with refraction is 50.11162; refraction there

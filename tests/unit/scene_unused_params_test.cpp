@@ -45,6 +45,9 @@ TEST(UnusedParams, AreNamedWithTheirReason) {
   EXPECT_EQ(unused({"atmosphere.visibility_m=20000", "atmosphere.single_scattering_albedo=0.9",
                     "atmosphere.aerosol_absorption=0.2"}),
             Lines({"atmosphere.aerosol_absorption has no effect with atmosphere.single_scattering_albedo"}));
+  EXPECT_EQ(unused({"sun.time=2026-06-21T06:00:00Z", "sun.place=46,8", "sun.elevation_deg=20"}),
+            Lines({"sun.elevation_deg has no effect with sun.time"}));
+  EXPECT_EQ(unused({"sun.place=46,8"}), Lines({"sun.place has no effect with an empty sun.time"}));
   EXPECT_EQ(unused({"atmosphere.ozone_du=300", "atmosphere.ozone_absorption=0,0,0"}),
             Lines({"atmosphere.ozone_absorption has no effect with atmosphere.ozone_du"}));
   EXPECT_EQ(unused({"tonemap.operator=exponential-channels", "tonemap.saturation=0.5", "tonemap.white_point=2"}).size(),

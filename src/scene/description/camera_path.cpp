@@ -173,7 +173,10 @@ SceneParams pose_at(const CameraPath& path, double seconds, const SceneParams& b
   }
   set(out.sun.elevation_deg, elevation);
   set_angle(out.sun.azimuth_deg, azimuth);
-  if (elevation || azimuth) out.sun.animate = false;
+  if (elevation || azimuth) {
+    out.sun.animate = false;
+    out.sun.time.clear();
+  }
   return out;
 }
 

@@ -102,6 +102,8 @@ std::vector<std::string> unused_params(const Params& params, const SceneParams& 
   check(scene.terrain.source == "none", {"terrain.seed", "terrain.exaggeration", "terrain.shading"},
         "terrain.source = none");
 
+  check(!scene.sun.time.empty(), {"sun.elevation_deg", "sun.azimuth_deg"}, "sun.time");
+  check(scene.sun.time.empty(), {"sun.place"}, "an empty sun.time");
   using Op = TonemapOperator;
   const Op op = scene.tonemap.operator_;
   check(scene.tonemap.auto_exposure.value != 0, {"tonemap.exposure"}, "tonemap.auto_exposure = true");
