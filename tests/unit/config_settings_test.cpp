@@ -228,6 +228,21 @@ TEST(ConfigSettings, CrossChecks) {
   ASSERT_FALSE(check(settings).ok());
   EXPECT_EQ(check(settings).error().message,
             "homogeneous.haze_length_m: 9000 exceeds homogeneous.air_length_m; expected 1 to 8400");
+  settings = Settings();
+  settings.scene.sun.time = "2026-06-21T06:00:00Z";
+  ASSERT_FALSE(check(settings).ok());
+  EXPECT_EQ(check(settings).error().message,
+            "sun.time: the time of the sun has no place; expected sun.place = \"LAT,LON\", or an elevation file with a "
+            "coordinate system");
+  settings.scene.terrain.source = "mine.tif";
+  EXPECT_TRUE(check(settings).ok());
+  settings.scene.sun.place = "46.6";
+  EXPECT_FALSE(check(settings).ok());
+  settings.scene.sun.place = "46.6,8.0";
+  settings.scene.sun.time.clear();
+  EXPECT_TRUE(check(settings).ok());
+  settings.scene.sun.place = "146.6,8.0";
+  EXPECT_FALSE(check(settings).ok());
 }
 
 TEST(ConfigSettings, MetadataHoldsEverything) {
