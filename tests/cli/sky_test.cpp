@@ -331,9 +331,9 @@ TEST_F(CliSky, ErrorsAreReported) {
     return process.err;
   };
   EXPECT_EQ(error({}), "tyndall: error: tyndall sky: missing position of the sun" + either);
-  const std::vector<std::string> sun = {"--sun-elevation-deg", "3", "--sun-azimuth-deg", "3"};
+  const std::vector<std::string> angles = {"--sun-elevation-deg", "3", "--sun-azimuth-deg", "3"};
   const auto wrong = [&](std::vector<std::string> arguments) {
-    arguments.insert(arguments.end(), sun.begin(), sun.end());
+    arguments.insert(arguments.end(), angles.begin(), angles.end());
     return error(arguments);
   };
   EXPECT_EQ(wrong({"--projection", "cube"}),
