@@ -116,8 +116,8 @@ PixelDirection SkyMap::direction(std::uint32_t x, std::uint32_t y) const {
   const std::uint32_t size = width;
   const double a = 2.0 * (x + 0.5) / size - 1.0;
   const double b = 2.0 * (y % size + 0.5) / size - 1.0;
-  const double area = 4.0 / (static_cast<double>(size) * size);
   if (projection == Projection::fisheye) {
+    const double area = 4.0 / (static_cast<double>(size) * size);
     const double radius = std::hypot(a, b);
     if (radius > 1.0) return {0.0, 0.0, 0.0};
     const double zenith = 0.5 * kPi * radius;
@@ -131,7 +131,12 @@ PixelDirection SkyMap::direction(std::uint32_t x, std::uint32_t y) const {
   const Vector faces[] = {{1.0, -b, -a}, {-1.0, -b, a}, {a, 1.0, b}, {a, -1.0, -b}, {a, -b, 1.0}, {-a, -b, -1.0}};
   const Vector& v = faces[y / size];
   const double length2 = 1.0 + a * a + b * b;
-  return {std::acos(v.y / std::sqrt(length2)), std::atan2(v.x, -v.z), area / (length2 * std::sqrt(length2))};
+  // The solid angle of the rectangle between the middle of the face and a corner, exactly.
+  const auto corner = [](double u, double w) { return std::atan2(u * w, std::sqrt(1.0 + u * u + w * w)); };
+  const double half = 1.0 / size;
+  const double solid_angle =
+      corner(a + half, b + half) - corner(a - half, b + half) - corner(a + half, b - half) + corner(a - half, b - half);
+  return {std::acos(v.y / std::sqrt(length2)), std::atan2(v.x, -v.z), solid_angle};
 }
 
 RayQuery SkyMap::query(std::uint32_t x, std::uint32_t y) const {

@@ -74,7 +74,7 @@ TEST(CliSkyMap, FacesAndFishEyesLookWhereTheyShould) {
   for (std::uint32_t y = 0; y < cube.height; ++y) {
     for (std::uint32_t x = 0; x < cube.width; ++x) sum += cube.direction(x, y).solid_angle;
   }
-  EXPECT_NEAR(sum, 4.0 * kPi, 0.002);
+  EXPECT_NEAR(sum, 4.0 * kPi, 1e-10);
 
   SkyMap fisheye = map_of(101, 101, 35.0, 125.0);
   fisheye.projection = Projection::fisheye;
