@@ -119,6 +119,10 @@ class Model {
  public:
   Model(const std::string& scene, const Assignments& assignments, const std::string& device, bool tables)
       : settings_(settings_of(scene, assignments)), host_(shared_host(device, false)) {
+    if (settings_.effect.scattering.color == ColorMode::spectral) {
+      throw py::value_error(
+          "scattering.color: 'spectral' is not supported here, where light has three channels; expected rgb");
+    }
     if (!tables) return;
     model_ = std::make_unique<models::PrecomputedModel>(without_lock(
         [&] { return models::PrecomputedModel::create(*host_, settings_.effect, make_tables(settings_)); }));

@@ -17,6 +17,8 @@ namespace {
 
 constexpr std::uint32_t kMaxOrders = 256;  // limit of the path tracer
 
+bool is_spectral(const Params& params) { return params.scattering.color == ColorMode::spectral; }
+
 // Returns numbers as a JSON array. An infinite number, such as the standard error of a single block of paths, becomes
 // null, because JSON has no infinity.
 nlohmann::json numbers_as_json(const std::array<double, 3>& numbers) {
@@ -42,6 +44,7 @@ std::string as_json(const scene::ModelInfo& model, const ProbeSettings& settings
     row["L"] = numbers_as_json(answer.radiance);
     row["T"] = numbers_as_json(answer.transmittance);
     if (model.random) row["stderr"] = numbers_as_json(answer.standard_error);
+    if (is_spectral(settings.params)) row["XYZ"] = numbers_as_json(answer.xyz);
     out["answers"].push_back(std::move(row));
   }
   return out.dump(1) + "\n";
@@ -109,7 +112,8 @@ int run_probe(Args args) {
   if (!answers) return fail(answers.error());
   const bool to_file = !options.output.empty();
   if (to_file || !options.json) {
-    const std::string text = answers_as_csv(table.value(), answers.value(), model.random);
+    const std::string text =
+        answers_as_csv(table.value(), answers.value(), {model.random, is_spectral(settings.params)});
     if (!to_file) return print(text);
     if (Result<void> r = files::write_file(options.output, text); !r) return fail(r.error());
   }

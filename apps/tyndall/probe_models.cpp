@@ -4,22 +4,34 @@
 #include <cmath>
 
 #include "effect/medium.hpp"
+#include "effect/spectral_medium.hpp"
 #include "gpu/host.hpp"
 #include "models/gpu_probe.hpp"
 #include "models/homogeneous_medium.hpp"
 #include "models/oneil.hpp"
 #include "models/precomputed.hpp"
+#include "models/spectral.hpp"
 #include "reference/path_tracer.hpp"
+#include "reference/spectrum.hpp"
 #include "scene/sky/oneil_settings.hpp"
 #include "tables/pipeline_store.hpp"
 
 namespace tyndall::cli {
 namespace {
 
+// Returns CIE XYZ in cd/m^2 or lux of a linear Rec. 709 colour in the unit of ProbeAnswer::radiance.
+std::array<double, 3> luminous_xyz(const std::array<double, 3>& color) {
+  constexpr double kLumenPerWatt = 683.0;
+  std::array<double, 3> out = xyz_of_color(color);
+  for (double& value : out) value *= kLumenPerWatt;
+  return out;
+}
+
 // Evaluates rays on the GPU. The sky's irradiance, whose quadrature takes hundreds of rays, is computed on the CPU in
 // double precision.
 Result<std::vector<ProbeAnswer>> run_single(const ProbeSettings& settings, std::span<const RayQuery> queries) {
-  const shared::Medium medium = medium_from_params(settings.params);
+  const Params& params = settings.params;
+  const shared::SpectralMedium medium = spectral_medium_from_params(params);
   std::vector<ProbeAnswer> answers(queries.size());
   std::vector<models::Ray> rays;
   std::vector<std::size_t> places;  // indices of the rays among the queries
@@ -31,8 +43,12 @@ Result<std::vector<ProbeAnswer>> run_single(const ProbeSettings& settings, std::
     const RayQuery& q = queries[i];
     if (q.sky_irradiance) {
       const double cos_sun = std::cos(q.sun_zenith_rad);
-      answers[i].radiance = models::single_sky_irradiance(medium, q.altitude_m, cos_sun);
-      answers[i].transmittance = models::sun_transmittance(medium, q.altitude_m, cos_sun);
+      const models::Answer sky =
+          models::in_all_channels(params, medium, [&](const shared::Medium& m) -> models::Answer {
+            return {models::single_sky_irradiance(m, q.altitude_m, cos_sun),
+                    models::sun_transmittance(m, q.altitude_m, cos_sun)};
+          });
+      answers[i] = probe_answer(params, sky, false);
       settings.progress(sky_share * ++sky_done / sky_count);
     } else {
       rays.push_back(models::ray_from_query(q));
@@ -47,11 +63,38 @@ Result<std::vector<ProbeAnswer>> run_single(const ProbeSettings& settings, std::
     settings.progress(sky_share + (1.0 - sky_share) * static_cast<double>(done) / static_cast<double>(rays.size()));
   };
   const Result<std::vector<models::Answer>> found =
-      models::single_scattering_on_gpu(*host.value(), medium, rays, progress);
+      models::single_scattering_on_gpu(*host.value(), medium, params.scattering.color, rays, progress);
   if (!found) return found.error();
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const models::Answer& answer = found.value()[i];
-    answers[places[i]] = {answer.radiance, answer.transmittance, {}, true};
+    answers[places[i]] = probe_answer(params, found.value()[i], true);
+  }
+  return answers;
+}
+
+// Traces 40 wavelengths along the same paths.
+Result<std::vector<ProbeAnswer>> run_spectral_reference(const ProbeSettings& settings,
+                                                        std::span<const RayQuery> queries,
+                                                        const reference::Options& options) {
+  const reference::VisibleSpectrum spectrum = reference::visible_spectrum_in_rec709();
+  const Result<std::vector<reference::SpectralEstimate>> found =
+      reference::trace_spectrum(settings.params, {spectrum.nm, spectrum.weights}, queries, options, [&](double done) {
+        settings.progress(done);
+        return true;
+      });
+  if (!found) return found.error();
+  std::vector<ProbeAnswer> answers;
+  answers.reserve(queries.size());
+  for (const reference::SpectralEstimate& estimate : found.value()) {
+    ProbeAnswer answer;
+    answer.radiance = estimate.sums;
+    answer.standard_error = estimate.standard_error;
+    for (std::size_t i = 0; i < spectrum.nm.size(); ++i) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        answer.transmittance[c] += spectrum.weights[i][c] * estimate.transmittance[i] / spectrum.sunlight[c];
+      }
+    }
+    answer.xyz = luminous_xyz(answer.radiance);
+    answers.push_back(answer);
   }
   return answers;
 }
@@ -61,6 +104,8 @@ Result<std::vector<ProbeAnswer>> run_reference(const ProbeSettings& settings, st
   options.samples = settings.samples;
   options.orders = static_cast<int>(settings.orders);
   options.seed = settings.seed;
+  if (settings.params.scattering.color == ColorMode::spectral)
+    return run_spectral_reference(settings, queries, options);
   const Result<std::vector<reference::Estimate>> found =
       reference::trace(settings.params, queries, options, [&](double done) {
         settings.progress(done);
@@ -95,7 +140,7 @@ Result<std::vector<ProbeAnswer>> run_precomputed(const ProbeSettings& settings, 
   if (!found) return found.error();
   answers.reserve(queries.size());
   for (const models::Answer& answer : found.value()) {
-    answers.push_back({answer.radiance, answer.transmittance, {}, true});
+    answers.push_back(probe_answer(settings.params, answer, true));
   }
   return answers;
 }
@@ -109,7 +154,7 @@ std::vector<ProbeAnswer> answer_each(const ProbeSettings& settings, std::span<co
   out.reserve(queries.size());
   for (const RayQuery& query : queries) {
     const models::Answer answer = query.sky_irradiance ? sky(query) : ray(query);
-    out.push_back({answer.radiance, answer.transmittance, {}, false});
+    out.push_back(probe_answer(settings.params, answer, false));
     settings.progress(static_cast<double>(out.size()) / static_cast<double>(queries.size()));
   }
   return out;
@@ -152,17 +197,41 @@ Result<std::vector<ProbeAnswer>> run_homogeneous(const ProbeSettings& settings, 
 // Evaluates the medium of scattering.medium = homogeneous without shadows, on the CPU in double precision.
 Result<std::vector<ProbeAnswer>> run_homogeneous_medium(const ProbeSettings& settings,
                                                         std::span<const RayQuery> queries) {
-  const models::HomogeneousMedium medium = models::homogeneous_medium_from_params(settings.params);
-  const auto sky = [&](const RayQuery& q) -> models::Answer {
-    return {models::homogeneous_medium_sky(medium, q.altitude_m, std::cos(q.sun_zenith_rad)), medium.sunlight};
+  const Params& params = settings.params;
+  const shared::SpectralMedium sea_level = spectral_medium_from_params(params);
+  const auto sky = [&](const RayQuery& q) {
+    return models::in_all_channels(params, sea_level, [&](const shared::Medium& m) -> models::Answer {
+      const models::HomogeneousMedium medium = models::homogeneous_medium_from_params(params, m);
+      return {models::homogeneous_medium_sky(medium, q.altitude_m, std::cos(q.sun_zenith_rad)), medium.sunlight};
+    });
   };
   const auto ray = [&](const RayQuery& q) {
-    return models::homogeneous_medium_light(medium, models::ray_from_query(q));
+    return models::in_all_channels(params, sea_level, [&](const shared::Medium& m) {
+      const models::HomogeneousMedium medium = models::homogeneous_medium_from_params(params, m);
+      return models::homogeneous_medium_light(medium, models::ray_from_query(q));
+    });
   };
   return answer_each(settings, queries, sky, ray);
 }
 
 }  // namespace
+
+ProbeAnswer probe_answer(const Params& params, const models::Answer& answer, bool single_precision) {
+  if (params.scattering.color == ColorMode::rgb) {
+    return {answer.radiance, answer.transmittance, {}, single_precision, {}};
+  }
+  ProbeAnswer out;
+  out.single_precision = single_precision;
+  const std::array<double, 3> color = color_of_light(models::radiance_of(answer));
+  const std::array<double, 3> sunlight = color_of_light({1.0, 1.0, 1.0, 1.0});
+  const std::array<double, 3> passed = color_of_light(models::transmittance_of(answer));
+  for (std::size_t c = 0; c < 3; ++c) {
+    out.radiance[c] = color[c] * sun_luminous_irradiance();
+    out.transmittance[c] = passed[c] / sunlight[c];
+  }
+  out.xyz = luminous_xyz(out.radiance);
+  return out;
+}
 
 models::HomogeneousLengths homogeneous_lengths(const scene::SceneParams& scene) {
   const scene::HomogeneousParams& own = scene.homogeneous;
@@ -172,6 +241,11 @@ models::HomogeneousLengths homogeneous_lengths(const scene::SceneParams& scene) 
 Result<std::vector<ProbeAnswer>> evaluate_model(scene::ModelId model, const ProbeSettings& settings,
                                                 std::span<const RayQuery> queries) {
   using Id = scene::ModelId;
+  if (settings.params.scattering.color == ColorMode::spectral && !scene::model_info(model).spectral) {
+    return Error{ErrorCode::invalid_argument, "scattering.color: 'spectral' is not supported by the model '" +
+                                                  std::string(scene::model_info(model).name) +
+                                                  "', which has three channels; expected rgb"};
+  }
   switch (model) {
     case Id::precomputed: return run_precomputed(settings, queries);
     case Id::single: return run_single(settings, queries);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "models/homogeneous.hpp"
+#include "models/single_scattering.hpp"
 #include "rays/ray_query.hpp"
 #include "scene/description/model_registry.hpp"
 #include "scene/description/scene_params.hpp"
@@ -19,11 +20,14 @@
 namespace tyndall::cli {
 
 struct ProbeAnswer {
-  std::array<double, 3> radiance = {};  // L / E0 [1/sr]; for the sky E / E0
+  // L / E0 [1/sr]; for the sky E / E0. With scattering.color = spectral: linear Rec. 709 in the unit of xyz over 683.
+  std::array<double, 3> radiance = {};
   // Transmittance to the end of the ray. For the sky, the transmittance of sunlight, or 0 if the planet hides the sun.
+  // With scattering.color = spectral: that of each channel of the colour of sunlight.
   std::array<double, 3> transmittance = {};
   std::array<double, 3> standard_error = {};  // standard error of the radiance; 0 for models without noise
   bool single_precision = false;              // the numbers are floats, and are printed as such
+  std::array<double, 3> xyz = {};             // with scattering.color = spectral: CIE XYZ [cd/m^2, sky: lux]
 };
 
 struct ProbeSettings {
@@ -37,6 +41,9 @@ struct ProbeSettings {
   std::function<void(const std::string& text)> note;  // receives remarks for the user; may be empty
   std::function<void(double done)> progress;          // receives the completed fraction, 0 to 1
 };
+
+// Returns the answer of a model for its channels as `probe` prints it.
+[[nodiscard]] ProbeAnswer probe_answer(const Params& params, const models::Answer& answer, bool single_precision);
 
 // Returns the optical lengths that the scene's parameters set for the homogeneous model.
 [[nodiscard]] models::HomogeneousLengths homogeneous_lengths(const scene::SceneParams& scene);

@@ -30,9 +30,17 @@ constexpr Column kColumns[kColumnCount] = {
     {"sun_zenith_deg", 0.0, 180.0, "deg"},
     {"azimuth_deg", -360.0, 360.0, "deg"},
 };
-constexpr std::string_view kAnswerColumns[] = {"L_r", "L_g",      "L_b",      "T_r",     "T_g",
-                                               "T_b", "stderr_r", "stderr_g", "stderr_b"};
-constexpr std::size_t kNumbersWithoutError = 6;
+constexpr std::string_view kLightColumns[] = {"L_r", "L_g", "L_b", "T_r", "T_g", "T_b"};
+constexpr std::string_view kErrorColumns[] = {"stderr_r", "stderr_g", "stderr_b"};
+constexpr std::string_view kXyzColumns[] = {"X", "Y", "Z"};
+
+// Returns whether a column of the input has the name of a column that is added.
+bool is_answer_column(std::string_view name) {
+  const auto in = [&](std::span<const std::string_view> names) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  return in(kLightColumns) || in(kErrorColumns) || in(kXyzColumns);
+}
 
 std::string allowed_text(const Column& column) {
   return concat(
@@ -114,18 +122,20 @@ Result<ProbeTable> read_queries(const std::string& path) {
   return table;
 }
 
-std::string answers_as_csv(const ProbeTable& table, std::span<const ProbeAnswer> answers, bool random) {
+std::string answers_as_csv(const ProbeTable& table, std::span<const ProbeAnswer> answers, AnswerColumns with) {
   std::vector<std::size_t> columns;
   for (std::size_t i = 0; i < table.input.header.size(); ++i) {
     const std::string name = files::csv_value(table.input.header[i]);
-    if (std::find(std::begin(kAnswerColumns), std::end(kAnswerColumns), name) == std::end(kAnswerColumns)) {
-      columns.push_back(i);
-    }
+    if (!is_answer_column(name)) columns.push_back(i);
   }
   std::string out;
   for (const std::size_t i : columns) out.append(out.empty() ? "" : ",").append(table.input.header[i]);
-  const std::size_t count = random ? std::size(kAnswerColumns) : kNumbersWithoutError;
-  for (std::size_t i = 0; i < count; ++i) out.append(",").append(kAnswerColumns[i]);
+  const auto append_names = [&](std::span<const std::string_view> names) {
+    for (const std::string_view name : names) out.append(",").append(name);
+  };
+  append_names(kLightColumns);
+  if (with.errors) append_names(kErrorColumns);
+  if (with.xyz) append_names(kXyzColumns);
   out += '\n';
   for (std::size_t row = 0; row < table.input.rows(); ++row) {
     for (std::size_t k = 0; k < columns.size(); ++k) {
@@ -135,7 +145,8 @@ std::string answers_as_csv(const ProbeTable& table, std::span<const ProbeAnswer>
     const ProbeAnswer& answer = answers[row];
     append_numbers(out, answer.radiance, answer.single_precision);
     append_numbers(out, answer.transmittance, answer.single_precision);
-    if (random) append_numbers(out, answer.standard_error, answer.single_precision);
+    if (with.errors) append_numbers(out, answer.standard_error, answer.single_precision);
+    if (with.xyz) append_numbers(out, answer.xyz, answer.single_precision);
     out += '\n';
   }
   return out;

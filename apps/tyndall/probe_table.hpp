@@ -20,6 +20,11 @@ struct ProbeTable {
 
 // Returns the input's columns unchanged, followed by the result columns. Input columns with the name of a result
 // column, as in a table that `probe` has written, are dropped.
-[[nodiscard]] std::string answers_as_csv(const ProbeTable& table, std::span<const ProbeAnswer> answers, bool random);
+struct AnswerColumns {
+  bool errors = false;  // stderr_r, stderr_g, stderr_b
+  bool xyz = false;     // X, Y, Z
+};
+[[nodiscard]] std::string answers_as_csv(const ProbeTable& table, std::span<const ProbeAnswer> answers,
+                                         AnswerColumns with);
 
 }  // namespace tyndall::cli

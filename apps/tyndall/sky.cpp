@@ -7,7 +7,7 @@
 
 #include "arguments.hpp"
 #include "cli.hpp"
-#include "effect/medium.hpp"
+#include "effect/spectral_medium.hpp"
 #include "files/files.hpp"
 #include "files/text.hpp"
 #include "gpu/host.hpp"
@@ -15,6 +15,7 @@
 #include "make_tables.hpp"
 #include "models/gpu_probe.hpp"
 #include "models/precomputed.hpp"
+#include "models/spectral.hpp"
 #include "scene/description/model_registry.hpp"
 #include "scene/description/solar_position.hpp"
 #include "scene/sky/sun_disc.hpp"
@@ -51,25 +52,32 @@ class SkySource {
 // Single scattering, and the ground in direct sunlight.
 class SingleSource final : public SkySource {
  public:
-  SingleSource(gpu::Host& host, const Params& params) : host_(host), medium_(medium_from_params(params)) {}
+  SingleSource(gpu::Host& host, const Params& params)
+      : host_(host), params_(params), medium_(spectral_medium_from_params(params)) {}
 
   Result<std::vector<models::Answer>> answer(std::span<const RayQuery> queries) override {
     std::vector<models::Ray> rays;
     rays.reserve(queries.size());
     for (const RayQuery& query : queries) rays.push_back(models::ray_from_query(query));
-    Result<std::vector<models::Answer>> found = models::single_scattering_on_gpu(host_, medium_, rays);
+    Result<std::vector<models::Answer>> found =
+        models::single_scattering_on_gpu(host_, medium_, params_.scattering.color, rays);
     if (!found || medium_.ground_albedo == Vec3(0.0F)) return found;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       models::Answer& answer = found.value()[i];
-      const std::array<double, 3> ground = models::sunlit_ground(medium_, rays[i]);
-      for (std::size_t c = 0; c < 3; ++c) answer.radiance[c] += answer.transmittance[c] * ground[c];
+      const models::Answer ground =
+          models::in_all_channels(params_, medium_, [&](const shared::Medium& m) -> models::Answer {
+            return {models::sunlit_ground(m, rays[i]), {}};
+          });
+      for (std::size_t c = 0; c < 3; ++c) answer.radiance[c] += answer.transmittance[c] * ground.radiance[c];
+      answer.radiance_fourth += answer.transmittance_fourth * ground.radiance_fourth;
     }
     return found;
   }
 
  private:
   gpu::Host& host_;
-  shared::Medium medium_;
+  const Params params_;
+  shared::SpectralMedium medium_;
 };
 
 // All orders of scattering from the tables, and the ground under sun and sky.
@@ -136,8 +144,14 @@ Result<SunAngles> find_sun(const SkyOptions& options) {
   return SunAngles{position.elevation_deg, position.azimuth_deg};
 }
 
+// Returns the radiance of an answer in the channels of the image, per irradiance of the sun.
+std::array<double, 3> channels_of(const models::Answer& answer, ColorMode color) {
+  return color == ColorMode::spectral ? color_of_light(models::radiance_of(answer)) : answer.radiance;
+}
+
 // Fills the image with the source's radiance times the irradiance, in batches of rows.
-Result<void> fill(image::Image& image, const SkyMap& map, const std::array<double, 3>& irradiance, SkySource& source) {
+Result<void> fill(image::Image& image, const SkyMap& map, const std::array<double, 3>& irradiance, ColorMode color,
+                  SkySource& source) {
   Progress progress("sky");
   const std::uint32_t rows = static_cast<std::uint32_t>(std::max<std::size_t>(kBatchRays / map.width, 1));
   std::vector<RayQuery> queries;
@@ -155,10 +169,64 @@ Result<void> fill(image::Image& image, const SkyMap& map, const std::array<doubl
     for (const models::Answer& answer : found.value()) {
       const bool seen = map.direction(pixel % map.width, pixel / map.width).solid_angle > 0.0;
       ++pixel;
-      for (std::size_t c = 0; c < 3; ++c) *out++ = seen ? static_cast<float>(irradiance[c] * answer.radiance[c]) : 0.0F;
+      const std::array<double, 3> radiance = channels_of(answer, color);
+      for (std::size_t c = 0; c < 3; ++c) *out++ = seen ? static_cast<float>(irradiance[c] * radiance[c]) : 0.0F;
     }
   }
   return {};
+}
+
+// The sun's disc in the channels of the medium: with four wavelengths, the first three and the fourth, with an
+// irradiance of 1.
+struct SunFaces {
+  SunFace first, fourth;
+  std::array<double, 3> irradiance;  // above the atmosphere
+};
+SunFaces sun_faces(double radius_rad, const std::array<double, 3>& irradiance, const Params& params) {
+  const Vec3& nm = params.atmosphere.wavelengths_nm;
+  if (params.scattering.color == ColorMode::rgb) {
+    const SunFace face = {
+        radius_rad, {scene::limb_exponent(nm.x), scene::limb_exponent(nm.y), scene::limb_exponent(nm.z)}, irradiance};
+    return {face, face, irradiance};
+  }
+  const FourChannels wavelengths_nm = spectral_wavelengths_nm();
+  const auto exponent = [&](std::size_t i) { return scene::limb_exponent(static_cast<float>(wavelengths_nm[i])); };
+  return {{radius_rad, {exponent(0), exponent(1), exponent(2)}},
+          {radius_rad, {exponent(3), exponent(3), exponent(3)}},
+          irradiance};
+}
+
+// Adds the sun's disc in all channels.
+void draw_sun(image::Image& image, const SkyMap& map, const SunFaces& faces, const Params& params) {
+  const shared::SpectralMedium medium = spectral_medium_from_params(params);
+  if (params.scattering.color == ColorMode::rgb) {
+    add_sun(image, map, faces.first, medium);
+    return;
+  }
+  image::Image first(map.width, map.height);
+  image::Image fourth(map.width, map.height);
+  add_sun(first, map, faces.first, medium);
+  add_sun(fourth, map, faces.fourth, models::medium_at_fourth(medium));
+  for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) {
+    if (first.rgb[i] == 0.0F && fourth.rgb[i] == 0.0F) continue;
+    const std::array<double, 3> color =
+        color_of_light({first.rgb[i], first.rgb[i + 1], first.rgb[i + 2], fourth.rgb[i]});
+    for (std::size_t c = 0; c < 3; ++c) image.rgb[i + c] += static_cast<float>(faces.irradiance[c] * color[c]);
+  }
+}
+
+// Returns the light of the disc in the channels of the image.
+Sunlight sunlight_of(const SkyMap& map, const SunFaces& faces, const Params& params) {
+  const shared::SpectralMedium medium = spectral_medium_from_params(params);
+  const Sunlight first = sunlight(map, faces.first, medium);
+  if (params.scattering.color == ColorMode::rgb) return first;
+  const Sunlight fourth = sunlight(map, faces.fourth, models::medium_at_fourth(medium));
+  const auto color = [&](const std::array<double, 3>& a, double b) {
+    std::array<double, 3> out = color_of_light({a[0], a[1], a[2], b});
+    for (std::size_t c = 0; c < 3; ++c) out[c] *= faces.irradiance[c];
+    return out;
+  };
+  return {color(first.facing, fourth.facing[0]), color(first.horizontal, fourth.horizontal[0])};
 }
 
 std::array<double, 3> horizontal_irradiance(const image::Image& image, const SkyMap& map) {
@@ -312,17 +380,14 @@ int run_sky(Args args) {
   Result<std::unique_ptr<SkySource>> source = model.make(*host.value(), options.settings);
   if (!source) return fail(source.error());
   image::Image image(map.width, map.height);
-  if (Result<void> r = fill(image, map, irradiance, *source.value()); !r) return fail(r.error());
+  if (Result<void> r = fill(image, map, irradiance, params.scattering.color, *source.value()); !r)
+    return fail(r.error());
   const std::array<double, 3> diffuse = horizontal_irradiance(image, map);
-  const Vec3& nm = params.atmosphere.wavelengths_nm;
-  const SunFace face = {scene.sun.angular_radius_deg * kRadPerDeg,
-                        {scene::limb_exponent(nm.x), scene::limb_exponent(nm.y), scene::limb_exponent(nm.z)},
-                        irradiance};
-  const shared::Medium medium = medium_from_params(params);
-  if (sky.sun == "disc") add_sun(image, map, face, medium);
+  const SunFaces faces = sun_faces(scene.sun.angular_radius_deg * kRadPerDeg, irradiance, params);
+  if (sky.sun == "disc") draw_sun(image, map, faces, params);
   check_largest(image, sky.clamp == "true");
 
-  const nlohmann::ordered_json light = sun_json(map, face, sunlight(map, face, medium));
+  const nlohmann::ordered_json light = sun_json(map, faces.first, sunlight_of(map, faces, params));
   const bool latlong = projection.value() == Projection::latlong;
   const image::ExrOptions as = {.content = latlong ? image::ExrContent::environment_map : image::ExrContent::radiance};
   const image::Metadata metadata = sky_metadata(options.settings, sky, projection.value());

@@ -12,8 +12,10 @@
 #include "make_tables.hpp"
 #include "models/precomputed.hpp"
 #include "models/single_scattering.hpp"
+#include "models/spectral.hpp"
 #include "probe_models.hpp"
 #include "tyndall/version.hpp"
+#include "validate/color.hpp"
 #include "validate/report.hpp"
 
 namespace tyndall::cli {
@@ -79,9 +81,24 @@ class Tables {
     return out;
   }
 
+  // Returns the colours of the light, relative to the luminance of the sun.
+  Result<std::vector<validate::Color>> colors(const Params& params, std::span<const RayQuery> queries) {
+    if (Result<void> r = build(params); !r) return std::move(r).error();
+    const Result<std::vector<models::Answer>> found = model_->answer(queries);
+    if (!found) return found.error();
+    std::vector<validate::Color> out;
+    out.reserve(found.value().size());
+    for (const models::Answer& answer : found.value()) {
+      out.push_back(params.scattering.color == ColorMode::spectral ? color_of_light(models::radiance_of(answer))
+                                                                   : answer.radiance);
+    }
+    return out;
+  }
+
  private:
   Result<void> build(const Params& params) {
-    constexpr std::uint32_t kTables = 1U << static_cast<std::uint32_t>(Affects::Tables);
+    constexpr std::uint32_t kTables =
+        1U << static_cast<std::uint32_t>(Affects::Tables) | 1U << static_cast<std::uint32_t>(Affects::Everything);
     if (model_ && (affected(model_->params(), params) & kTables) == 0) return model_->set_params(params);
     model_.reset();
     if (!host_) {
@@ -168,6 +185,19 @@ std::vector<validate::Model> all_models(const std::string& device, const scene::
   return out;
 }
 
+// Returns the tables in both values of scattering.color, for the test of colours.
+std::vector<validate::ColorModel> color_models(const std::shared_ptr<Tables>& tables) {
+  std::vector<validate::ColorModel> out;
+  for (const auto& [name, color] : {std::pair("rgb", ColorMode::rgb), std::pair("spectral", ColorMode::spectral)}) {
+    out.push_back({name, [tables, color = color](const Params& params, std::span<const RayQuery> queries) {
+                     Params changed = params;
+                     changed.scattering.color = color;
+                     return tables->colors(changed, queries);
+                   }});
+  }
+  return out;
+}
+
 // Returns the command line that produces the same report, without the locations of files.
 std::string command_line(const CommonOptions& options, const validate::Options& study) {
   std::string out = concat({"tyndall validate -o REPORT.html --rays ", std::to_string(study.rays), " --samples ",
@@ -222,25 +252,37 @@ int run_validate(Args args) {
     if (!host) return fail(host.error());
     origin.device = host.value()->device_name();
   }
+  // The study is of three channels. The test of colours has both values.
+  Params params = options.settings.effect;
+  params.scattering.color = ColorMode::rgb;
   Result<validate::Study> study = validate::Study();
+  Result<validate::ColorTest> colors = validate::ColorTest();
   const auto tables = std::make_shared<Tables>(options.device, table_cache(options.settings.scene));
   {
     Progress progress("validate");
     constexpr std::uint64_t kSteps = 1000;
     study = validate::run_study(
-        options.settings.effect, study_options, all_models(options.device, options.settings.scene, tables),
-        parameterizations(tables),
+        params, study_options, all_models(options.device, options.settings.scene, tables), parameterizations(tables),
+        [&](double done) { progress.update(static_cast<std::uint64_t>(done * static_cast<double>(kSteps)), kSteps); });
+  }
+  if (study) {
+    Progress progress("colours");
+    constexpr std::uint64_t kSteps = 1000;
+    colors = validate::run_color_test(
+        params, color_models(tables), study_options.samples, study_options.seed, study_options.orders,
         [&](double done) { progress.update(static_cast<std::uint64_t>(done * static_cast<double>(kSteps)), kSteps); });
   }
   for (const std::string& text : tables->notes()) note(text);
+  if (!colors) return fail(colors.error());
   if (!study) return fail(study.error());
   if (!options.output.empty()) {
     if (Result<void> r = files::write_file(options.output, to_html(study.value(), origin)); !r) return fail(r.error());
   }
   if (!markdown.empty()) {
-    if (Result<void> r = files::write_file(markdown, to_markdown(study.value(), origin)); !r) return fail(r.error());
+    if (Result<void> r = files::write_file(markdown, to_markdown(study.value(), colors.value(), origin)); !r)
+      return fail(r.error());
   }
-  return options.json ? print(to_json(study.value(), origin)) : kDone;
+  return options.json ? print(to_json(study.value(), colors.value(), origin)) : kDone;
 }
 
 }  // namespace tyndall::cli

@@ -197,8 +197,10 @@ struct PassTiming {
 };
 
 // Look-up tables for shading the opaque scene: RGBA16F images in layout GENERAL. Sample them with a linear, clamping
-// sampler at light_table_uv() of tyndall/light_tables.glsl, and multiply by sun.irradiance * scattering.scale. Valid
-// once record_precompute() is complete; its commands write them in COMPUTE_SHADER / SHADER_WRITE.
+// sampler at light_table_uv() of tyndall/light_tables.glsl, and multiply red, green and blue by sun.irradiance *
+// scattering.scale. With scattering.color = spectral, they include the colour of the sun, and alpha holds what is
+// missing to all four wavelengths. Valid once record_precompute() is complete; its commands write them in
+// COMPUTE_SHADER / SHADER_WRITE.
 struct LightTables {
   VkImageView sun_transmittance = VK_NULL_HANDLE;  // from the sun to a point; 0 below the horizon
   VkImageView sky_irradiance = VK_NULL_HANDLE;     // on a horizontal surface under an open sky
@@ -217,6 +219,10 @@ struct ScatteringTables {
   Table single_mie;
   Table high_orders;
 };
+
+// Returns the colour of the sun above the atmosphere, per sun.irradiance: white with scattering.color = rgb, and the
+// linear Rec. 709 colour of its spectrum, with the luminance 1, with spectral. For callers that draw the sun's disc.
+[[nodiscard]] TYNDALL_API Vec3 sun_color(const Params& params);
 
 struct AtmosphereImages;
 

@@ -15,8 +15,9 @@
 namespace tyndall {
 
 // The part of the effect that must be replaced when a parameter changes, besides the constants of the next frame
-// (Frame): pipelines, buffers (Resources, possibly with pipelines), or tables. Effect::set_params() prepares only that.
-enum class Affects : std::uint32_t { Frame, Pipeline, Resources, Tables };
+// (Frame): pipelines, buffers (Resources, possibly with pipelines), tables, or all of them (Everything).
+// Effect::set_params() prepares only that.
+enum class Affects : std::uint32_t { Frame, Pipeline, Resources, Tables, Everything };
 
 enum class ParamType : std::uint32_t { float32, uint32, flag, enumeration, vec3, uvec4, string, dvec3 };
 

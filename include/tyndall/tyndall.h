@@ -68,6 +68,7 @@ typedef enum TyndallAffects {
   TyndallAffects_Pipeline = 1,
   TyndallAffects_Resources = 2,
   TyndallAffects_Tables = 3,
+  TyndallAffects_Everything = 4,
   TyndallAffects_max = 0x7FFFFFFF
 } TyndallAffects;
 
@@ -136,6 +137,9 @@ TYNDALL_API TyndallStatus tyndall_params_get_choice(const TyndallParams* params,
 // Returns what the change from `before` to `after` requires: a mask of bits 1 << TyndallAffects.
 TYNDALL_API TyndallStatus tyndall_params_affected(const TyndallParams* before, const TyndallParams* after,
                                                   uint32_t* mask);
+// Returns the colour of the sun above the atmosphere, per irradiance of TyndallFrameInputs, in red, green and blue:
+// white with scattering.color = rgb. For callers that draw the sun's disc.
+TYNDALL_API TyndallStatus tyndall_params_sun_color(const TyndallParams* params, float color[3]);
 
 // The Vulkan device, borrowed for the effect's whole life.
 typedef struct TyndallDeviceInfo {

@@ -21,7 +21,13 @@ vec4 gather_depth(ivec2 corner) {
 #ifdef OUTPUT_FORMAT  // defined by the build for shaders that write the output
 layout(binding = 5, OUTPUT_FORMAT) uniform writeonly image2D output_color;
 
-void store_color(ivec2 pixel, vec3 color) { imageStore(output_color, pixel + frame.output_offset, vec4(color, 1.0)); }
+void store_color(ivec2 pixel, vec3 color) {
+#ifdef SPECTRAL
+  // Saturated light has colours outside of Rec. 709.
+  color = max(color, vec3(0.0));
+#endif
+  imageStore(output_color, pixel + frame.output_offset, vec4(color, 1.0));
+}
 #endif
 
 #endif

@@ -7,6 +7,8 @@
 
 #ifdef SPECTRAL
 
+#include "lib/spectral_color.glsl"
+
 #define Spectrum vec4
 // Structures have room for three channels of a quantity. The fourth is stored elsewhere.
 #define RAYLEIGH_SCATTERING(m) vec4((m).rayleigh_scattering, (m).fourth_channel.x)

@@ -68,9 +68,33 @@ double rayleigh(const Params& params, const Place& place) {
                                  : rayleigh_scattering_per_m(place.wavelength_nm);
 }
 
+bool covers(const Range& range, double wavelength_nm) {
+  return wavelength_nm >= range.from && wavelength_nm <= range.to;
+}
+
+// Returns the absorption coefficient of ozone that is given for the three channels. It follows the measured
+// cross-sections, scaled by the ratio of what is given to them, because ozone absorbs most between the usual channels.
+double ozone_between_channels(const Params& params, const Place& place) {
+  const Vec3& nm = params.atmosphere.wavelengths_nm;
+  const Vec3& given = params.atmosphere.ozone_absorption;
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (component(nm, c) == place.wavelength_nm) return component(given, c);
+    if (!covers(kOzoneRange, component(nm, c))) return value_at(params, given, place, Between::power);
+  }
+  const auto ratio = [&](std::size_t c) {
+    return static_cast<float>(component(given, c) / (1.0e25 * ozone_cross_section_m2(component(nm, c))));
+  };
+  const double scale = value_at(params, {ratio(0), ratio(1), ratio(2)}, place, Between::power);
+  return scale * 1.0e25 * ozone_cross_section_m2(place.wavelength_nm);
+}
+
 double ozone(const Params& params, const Place& place) {
   const AtmosphereParams& air = params.atmosphere;
-  if (!(air.ozone_du > 0.0F)) return value_at(params, air.ozone_absorption, place, Between::power);
+  if (!(air.ozone_du > 0.0F)) {
+    const bool measured = place.channel == Place::kNoChannel && covers(kOzoneRange, place.wavelength_nm);
+    return measured ? ozone_between_channels(params, place)
+                    : value_at(params, air.ozone_absorption, place, Between::power);
+  }
   return ozone_cross_section_m2(place.wavelength_nm) * air.ozone_du * kMoleculesPerDobsonUnit / ozone_column_m(params);
 }
 
@@ -138,10 +162,6 @@ Coefficients at_place(const Params& params, const Place& place) {
 }
 
 std::string whole(double value) { return std::to_string(static_cast<long long>(value)); }
-
-bool covers(const Range& range, double wavelength_nm) {
-  return wavelength_nm >= range.from && wavelength_nm <= range.to;
-}
 
 Result<void> check_wavelengths(const Params& params, const char* name, const Range& range) {
   for (std::size_t c = 0; c < 3; ++c) {

@@ -11,6 +11,7 @@
 #include "c/error.hpp"
 #include "c/structures.hpp"
 #include "gpu/try.hpp"
+#include "tyndall/effect.hpp"
 
 namespace tyndall::c {
 namespace {
@@ -21,7 +22,8 @@ static_assert(same(TyndallParamType_float32, ParamType::float32) && same(Tyndall
               same(TyndallParamType_vec3, ParamType::vec3) && same(TyndallParamType_uvec4, ParamType::uvec4) &&
               same(TyndallParamType_string, ParamType::string) && same(TyndallParamType_dvec3, ParamType::dvec3));
 static_assert(same(TyndallAffects_Frame, Affects::Frame) && same(TyndallAffects_Pipeline, Affects::Pipeline) &&
-              same(TyndallAffects_Resources, Affects::Resources) && same(TyndallAffects_Tables, Affects::Tables));
+              same(TyndallAffects_Resources, Affects::Resources) && same(TyndallAffects_Tables, Affects::Tables) &&
+              same(TyndallAffects_Everything, Affects::Everything));
 
 // The names of the values of each enumeration, in order of value.
 #define ENUM_BEGIN(type) constexpr const char* k##type##Names[] = {
@@ -276,6 +278,18 @@ TyndallStatus tyndall_params_affected(const TyndallParams* before, const Tyndall
     TYNDALL_TRY(c::check_pointer(where, "after", after));
     TYNDALL_TRY(c::check_pointer(where, "mask", mask));
     *mask = affected(before->params, after->params);
+    return {};
+  });
+}
+
+TyndallStatus tyndall_params_sun_color(const TyndallParams* params, float color[3]) {
+  return c::call(__func__, [&](const char* where) -> Result<void> {
+    TYNDALL_TRY(c::check_pointer(where, "params", params));
+    TYNDALL_TRY(c::check_pointer(where, "color", color));
+    const Vec3 sun = sun_color(params->params);
+    color[0] = sun.x;
+    color[1] = sun.y;
+    color[2] = sun.z;
     return {};
   });
 }

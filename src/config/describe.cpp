@@ -26,6 +26,7 @@ std::string_view affects_name(Affects affects) {
     case Affects::Pipeline: return "pipeline";
     case Affects::Resources: return "resources";
     case Affects::Tables: return "tables";
+    case Affects::Everything: return "everything";
   }
   return "";
 }

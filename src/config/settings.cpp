@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "files/text.hpp"
+#include "scene/description/model_registry.hpp"
 #include "scene/description/placed_sun.hpp"
 #include "tyndall/version.hpp"
 
@@ -284,6 +285,12 @@ std::string allowed_text(const Row& row) {
 
 Result<void> check(const Settings& settings) {
   if (Result<void> allowed = check_params(settings.effect); !allowed) return allowed;
+  const scene::ModelInfo& model = scene::drawn_model(settings.effect, settings.scene);
+  if (settings.effect.scattering.color == ColorMode::spectral && !model.spectral) {
+    return files::input_error(
+        files::concat({"'spectral' is not supported by scattering.model = ", model.name, ", which has three channels"}),
+        "scattering.color", "expected rgb");
+  }
   const scene::ShadowParams& shadows = settings.scene.shadows;
   if (shadows.first_marched >= shadows.cascades) {
     return files::input_error(files::concat({std::to_string(shadows.first_marched),

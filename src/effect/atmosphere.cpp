@@ -2,11 +2,13 @@
 #include "tyndall/atmosphere.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 
 #include "effect/effect_state.hpp"
 #include "effect/frame_constants.hpp"
 #include "effect/medium.hpp"
+#include "effect/spectral_medium.hpp"
 #include "gpu/guard.hpp"
 #include "gpu/try.hpp"
 
@@ -64,9 +66,15 @@ Result<AtmosphereConstants> atmosphere_constants(const Params& params, const Atm
     TYNDALL_TRY(check_params(params));
     TYNDALL_TRY(check(inputs));
     const shared::AtmosphereConstants constants = constants_of(params, inputs);
+    // With the macro TYNDALL_SPECTRAL, the medium at the beginning is larger.
+    const shared::SpectralMedium medium = spectral_medium_from_params(params);
+    const bool spectral = params.scattering.color == ColorMode::spectral;
+    const std::size_t size = spectral ? sizeof medium : sizeof(shared::Medium);
     AtmosphereConstants out;
-    static_assert(sizeof constants <= sizeof out.bytes);
-    std::memcpy(out.bytes.data(), &constants, sizeof constants);
+    static_assert(offsetof(shared::AtmosphereConstants, medium) == 0);
+    static_assert(sizeof constants + sizeof medium - sizeof(shared::Medium) <= sizeof out.bytes);
+    std::memcpy(out.bytes.data(), &medium, size);
+    std::memcpy(out.bytes.data() + size, &constants.tables, sizeof constants - sizeof(shared::Medium));
     return out;
   });
 }

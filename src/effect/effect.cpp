@@ -11,7 +11,7 @@
 #include "effect/frame_constants.hpp"
 #include "effect/frame_steps.hpp"
 #include "effect/limits.hpp"
-#include "effect/medium.hpp"
+#include "effect/spectral_medium.hpp"
 #include "gpu/open_device.hpp"
 #include "gpu/try.hpp"
 
@@ -35,7 +35,7 @@ constexpr VkDeviceSize align(VkDeviceSize size) {
 // Sizes and offsets in a slot of the ring of constants. Each view of a frame in flight has a slot.
 constexpr VkDeviceSize kFrameBytes = align(sizeof(shared::FrameConstants));
 constexpr VkDeviceSize kCascadeBytes = align(sizeof(CascadeArray));
-constexpr VkDeviceSize kMediumBytes = align(sizeof(shared::Medium));
+constexpr VkDeviceSize kMediumBytes = align(sizeof(shared::SpectralMedium));
 constexpr VkDeviceSize kEpipolarBytes = align(sizeof(shared::EpipolarConstants));
 constexpr VkDeviceSize kCascadeOffset = kFrameBytes;
 constexpr VkDeviceSize kMediumOffset = kCascadeOffset + kCascadeBytes;
@@ -140,16 +140,34 @@ Result<void> Effect::State::create_samplers() {
   return {};
 }
 
+Params Effect::State::drawn_with(const Params& p) const {
+  Params out = p;
+  out.scattering.color = tables.color(p.scattering.color);
+  return out;
+}
+
+Result<void> Effect::State::make_pipelines(const EffectDesc& d, const Params& p) {
+  TYNDALL_TRY(pipelines.make(pipelines_of_frames(d, p, target)));
+  TYNDALL_TRY(sets.make(sets_of_frames(d, p, target), pipelines));
+  return {};
+}
+
 Result<Effect::State::Pending> Effect::State::plan(const EffectDesc& d, const Params& p, std::uint32_t required) {
   const bool other_resources = (required & bit(Affects::Resources)) != 0;
   if ((required & kEverything) != 0) TYNDALL_TRY(check_limits(device, d, p));
   Pending pending = {d, p, {}, {}};
   if (other_resources || (required & bit(Affects::Pipeline)) != 0) {
-    TYNDALL_TRY(pipelines.make(pipelines_of_frames(d, p, target)));
-    TYNDALL_TRY(sets.make(sets_of_frames(d, p, target), pipelines));
+    TYNDALL_TRY(make_pipelines(d, p));
+    if (const Params before = drawn_with(p); before.scattering.color != p.scattering.color) {
+      TYNDALL_TRY(make_pipelines(d, before));
+    }
   }
   if (other_resources) {
-    TYNDALL_ASSIGN(pending.buffers, buffers.plan(d, p));
+    // Until tables at three channels are complete, frames are drawn with those at four wavelengths, whose buffers are
+    // larger.
+    Params larger = p;
+    if (drawn_with(p).scattering.color == ColorMode::spectral) larger.scattering.color = ColorMode::spectral;
+    TYNDALL_ASSIGN(pending.buffers, buffers.plan(d, larger));
   }
   if ((required & bit(Affects::Tables)) != 0) {
     TYNDALL_ASSIGN(pending.tables, tables.plan(p));
@@ -160,13 +178,15 @@ Result<Effect::State::Pending> Effect::State::plan(const EffectDesc& d, const Pa
 void Effect::State::commit(Pending&& pending) noexcept {
   if (pending.buffers) buffers.commit(std::move(*pending.buffers), FrameRing::slots(desc) + 1);
   if (pending.tables) tables.commit(std::move(*pending.tables));
-  if (desc.shadow_colors != pending.desc.shadow_colors) all_pipelines.clear();
+  const bool other_color = params.scattering.color != pending.params.scattering.color;
+  if (desc.shadow_colors != pending.desc.shadow_colors || other_color) all_pipelines.clear();
   desc = pending.desc;
   params = pending.params;
 }
 
 Result<void> Effect::State::change(const EffectDesc& d, const Params& p) {
   std::uint32_t required = affected(params, p);
+  if ((required & bit(Affects::Everything)) != 0) required |= kEverything;
   if (!same_limits(desc, d)) required |= bit(Affects::Resources);
   TYNDALL_ASSIGN(Pending pending, plan(d, p, required));
   commit(std::move(pending));
@@ -174,7 +194,7 @@ Result<void> Effect::State::change(const EffectDesc& d, const Params& p) {
 }
 
 Result<Progress> Effect::State::prepare_pipelines(std::uint32_t budget) {
-  if (all_pipelines.empty()) all_pipelines = all_frame_pipelines(desc, target);
+  if (all_pipelines.empty()) all_pipelines = all_frame_pipelines(desc, target, params.scattering.color);
   TYNDALL_TRY(pipelines.make(all_pipelines, budget));
   Progress progress;
   progress.total = static_cast<std::uint32_t>(all_pipelines.size());
@@ -191,11 +211,11 @@ void Effect::State::prepare_images(VkCommandBuffer cmd) {
   images_ready = true;
 }
 
-void Effect::State::write_constants(const FrameInputs& inputs, const shared::FrameConstants& frame,
+void Effect::State::write_constants(const FrameInputs& inputs, const Params& drawn, const shared::FrameConstants& frame,
                                     std::uint32_t slot) {
   const CascadeArray cascades = cascade_constants(inputs);
-  const shared::Medium medium = medium_from_params(params);
-  const shared::EpipolarConstants slices = epipolar_constants(inputs, desc, params);
+  const shared::SpectralMedium medium = spectral_medium_from_params(drawn);
+  const shared::EpipolarConstants slices = epipolar_constants(inputs, desc, drawn);
   const VkDeviceSize offset = kSlotBytes * slot;
   std::memcpy(mapped(offset), &frame, sizeof frame);
   std::memcpy(mapped(offset + kCascadeOffset), &cascades, sizeof cascades);
@@ -209,7 +229,7 @@ BoundResources Effect::State::bind_resources(const FrameInputs& inputs, std::uin
   const VkBuffer ring_buffer = constants.buffer.get();
   out.set(Resource::frame, ring_buffer, offset, sizeof(shared::FrameConstants));
   out.set(Resource::cascades, ring_buffer, offset + kCascadeOffset, sizeof(CascadeArray));
-  out.set(Resource::medium, ring_buffer, offset + kMediumOffset, sizeof(shared::Medium));
+  out.set(Resource::medium, ring_buffer, offset + kMediumOffset, sizeof(shared::SpectralMedium));
   out.set(Resource::epipolar, ring_buffer, offset + kEpipolarOffset, sizeof(shared::EpipolarConstants));
 
   const auto image = [&out](Resource resource, const Texture& texture, VkSampler sampler) {
@@ -245,9 +265,10 @@ Result<void> Effect::State::record(VkCommandBuffer cmd, const FrameInputs& input
   TYNDALL_TRY(check_frame(inputs, desc, params));
   TYNDALL_TRY(ring.take(inputs.frame_index, inputs.view));
   const std::uint32_t slot = ring.slot(inputs.frame_index, inputs.view);
-  const shared::FrameConstants frame = frame_constants(inputs, desc, params);
+  const Params drawn = drawn_with(params);
+  const shared::FrameConstants frame = frame_constants(inputs, desc, drawn);
   if (desc.check_inputs) remarks.on_frame(inputs, {desc, params, frame, tables.ready()}, info);
-  write_constants(inputs, frame, slot);
+  write_constants(inputs, drawn, frame, slot);
 
   if (desc.timings) timer.begin_frame(cmd, slot);
   prepare_images(cmd);
@@ -261,7 +282,7 @@ Result<void> Effect::State::record(VkCommandBuffer cmd, const FrameInputs& input
   recorder.assume(Resource::counters, kFrameBefore);
   for (std::size_t i = 0; i < kFrameBuffers; ++i) recorder.assume(frame_buffer(i), kFrameBefore);
   if (desc.timings) timer.begin_whole(cmd, "effect");
-  const FrameSteps steps = frame_steps(desc, params, frame_shape(inputs, params, target));
+  const FrameSteps steps = frame_steps(desc, drawn, frame_shape(inputs, drawn, target));
   for (const Step& step : steps) TYNDALL_TRY(recorder.record(step));
   if (desc.timings) timer.end_whole(cmd);
   ring.record_end(cmd, inputs.frame_index, inputs.view);

@@ -92,12 +92,17 @@ struct TYNDALL_HIDDEN Effect::State {
   [[nodiscard]] std::span<const ResourceMemory> list_resources();
   [[nodiscard]] MemoryUsage memory() const;
   [[nodiscard]] std::span<const PassTiming> read_timings(std::uint64_t frame_index, std::uint32_t view);
+  // Returns the parameters with which frames are drawn: those given, but with the scattering.color of the tables in
+  // use.
+  [[nodiscard]] Params drawn_with(const Params& p) const;
 
  private:
   Result<void> create_samplers();
+  Result<void> make_pipelines(const EffectDesc& d, const Params& p);
   void prepare_images(VkCommandBuffer cmd);
   // Writes the constants of a frame into its slot of the ring.
-  void write_constants(const FrameInputs& inputs, const shared::FrameConstants& frame, std::uint32_t slot);
+  void write_constants(const FrameInputs& inputs, const Params& drawn, const shared::FrameConstants& frame,
+                       std::uint32_t slot);
   [[nodiscard]] BoundResources bind_resources(const FrameInputs& inputs, std::uint32_t slot) const;
 };
 

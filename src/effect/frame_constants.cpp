@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "effect/medium.hpp"
 #include "effect/modes.hpp"
+#include "effect/spectral_medium.hpp"
 
 namespace tyndall {
 namespace {
@@ -74,10 +74,11 @@ void set_rays(shared::FrameConstants& out, const FrameInputs& inputs, const Effe
   }
 }
 
-// Returns the constants of the homogeneous medium (Yusov 2012): the medium at sea level times a density.
-shared::HomogeneousMedium homogeneous_constants(const Params& params) {
+// Returns the constants of the homogeneous medium (Yusov 2012): the medium at sea level times a density. Sets
+// FrameConstants::homogeneous_fourth_channel.
+shared::HomogeneousMedium homogeneous_constants(const Params& params, shared::vec4& fourth_channel) {
   const HomogeneousMediumParams& p = params.homogeneous_medium;
-  const shared::Medium sea_level = medium_from_params(params);
+  const shared::SpectralMedium sea_level = spectral_medium_from_params(params);
   shared::HomogeneousMedium out = {};
   out.rayleigh_scattering = times(sea_level.rayleigh_scattering, Vec3(p.density));
   out.mie_scattering = times(sea_level.mie_scattering, Vec3(p.density));
@@ -89,12 +90,17 @@ shared::HomogeneousMedium homogeneous_constants(const Params& params) {
   const double rayleigh = 3.0 / (16.0 * std::numbers::pi);
   const double mie =
       (1.0 - g * g) * (second ? 3.0 / (8.0 * std::numbers::pi * (2.0 + g * g)) : 0.25 / std::numbers::pi);
-  const auto source = [](double factor, const Vec3& scattering, const Vec3& extinction) {
-    const auto of = [factor](float s, float e) {
-      return static_cast<float>(factor * s / std::max(static_cast<double>(e), 1e-30));
-    };
-    return Vec3(of(scattering.x, extinction.x), of(scattering.y, extinction.y), of(scattering.z, extinction.z));
+  const auto ratio = [](double factor, float s, float e) {
+    return static_cast<float>(factor * s / std::max(static_cast<double>(e), 1e-30));
   };
+  const auto source = [&](double factor, const Vec3& scattering, const Vec3& extinction) {
+    return Vec3(ratio(factor, scattering.x, extinction.x), ratio(factor, scattering.y, extinction.y),
+                ratio(factor, scattering.z, extinction.z));
+  };
+  const shared::vec4& fourth = sea_level.fourth_channel;
+  const float fourth_extinction = p.density * (fourth.x + fourth.z);
+  fourth_channel = {fourth_extinction, ratio(rayleigh, p.density * fourth.x, fourth_extinction),
+                    ratio(mie, p.density * fourth.y, fourth_extinction), 0.0};
   out.rayleigh_source = source(rayleigh, out.rayleigh_scattering, out.extinction);
   out.mie_source = source(mie, out.mie_scattering, out.extinction);
   out.phase_min = static_cast<float>((1.0 - std::abs(g)) * (1.0 - std::abs(g)));
@@ -205,7 +211,7 @@ shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDe
   const bool homogeneous = is_homogeneous(params.scattering);
   out.unoccluded = !homogeneous && params.scattering.multiple == MultipleScattering::unoccluded ? 1 : 0;
   if (homogeneous) {
-    out.homogeneous = homogeneous_constants(params);
+    out.homogeneous = homogeneous_constants(params, out.homogeneous_fourth_channel);
     out.sun_irradiance = times(out.sun_irradiance, params.homogeneous_medium.sunlight);
   }
   out.glass_depth_sign = !inputs.shadow_color_depths ? 0.0F : desc.shadow_depth_reversed ? -1.0F : 1.0F;

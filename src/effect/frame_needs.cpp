@@ -64,9 +64,12 @@ std::vector<SetKey> sets_of_frames(const EffectDesc& desc, const Params& params,
   return out;
 }
 
-std::vector<PipelineKey> all_frame_pipelines(const EffectDesc& desc, Target target) {
+std::vector<PipelineKey> all_frame_pipelines(const EffectDesc& desc, Target target, ColorMode color) {
   std::vector<PipelineKey> out;
-  const auto add = [&](const Params& params) { add_pipelines(out, desc, params, target); };
+  const auto add = [&](Params params) {
+    params.scattering.color = color;
+    add_pipelines(out, desc, params, target);
+  };
   // Apart from the medium, no shader has constants of two of these groups, so the groups need not be combined.
   // FrameSteps.AllPipelinesAreFound of tests/unit/frame_steps_test.cpp verifies this with all combinations.
   Params p;

@@ -28,7 +28,7 @@ struct Frame {
                 std::array<std::uint32_t, 2> push = {}) {
     Step step;
     step.name = name;
-    step.pipeline = pipeline_key(variant_for(shader, shape.target), constants);
+    step.pipeline = pipeline_key(variant_for(shader, shape.target, params.scattering.color), constants);
     step.invocations = invocations;
     step.push = push;
     steps.add(step);
@@ -39,7 +39,7 @@ struct Frame {
     step.name = name;
     step.kind = Step::Kind::dispatch_indirect;
     step.chosen = list;
-    step.pipeline = pipeline_key(variant_for(shader, shape.target), constants);
+    step.pipeline = pipeline_key(variant_for(shader, shape.target, params.scattering.color), constants);
     step.push = push;
     steps.add(step);
   }

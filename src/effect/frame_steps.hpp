@@ -57,7 +57,8 @@ using ResourceSet = std::bitset<kResources>;
 // Returns the descriptor sets of frames of any shape with these settings.
 [[nodiscard]] std::vector<SetKey> sets_of_frames(const EffectDesc& desc, const Params& params,
                                                  Target target = Target::cpu);
-// Returns the pipelines of frames of any shape with any parameters.
-[[nodiscard]] std::vector<PipelineKey> all_frame_pipelines(const EffectDesc& desc, Target target = Target::cpu);
+// Returns the pipelines of frames of any shape with any parameters, but with this representation of light.
+[[nodiscard]] std::vector<PipelineKey> all_frame_pipelines(const EffectDesc& desc, Target target = Target::cpu,
+                                                           ColorMode color = ColorMode::rgb);
 
 }  // namespace tyndall

@@ -109,7 +109,7 @@ Result<void> check_limits(const gpu::Device& device, const EffectDesc& desc, con
                                                   " bytes; expected at most the limit of this device, " +
                                                   std::to_string(device.max_allocation_bytes)};
   }
-  for (const BufferPlan& plan : plan_scratch(params.tables.size.y)) {
+  for (const BufferPlan& plan : plan_scratch(params.tables.size.y, params.scattering.color)) {
     TYNDALL_TRY(check_buffer(device, plan.name, plan.bytes, "tables.size"));
   }
   const FrameBufferSizes sizes = frame_buffer_sizes(desc, params);

@@ -9,8 +9,10 @@
 namespace tyndall {
 namespace {
 
-constexpr VkDeviceSize kStateBytes = 16 * sizeof(float);  // march_state.glsl
-constexpr VkDeviceSize kCorrectedBytes = 8;               // pack_light() of records.glsl
+// march_state.glsl
+constexpr VkDeviceSize kStateBytes = 16 * sizeof(float);
+constexpr VkDeviceSize kSpectralStateBytes = 20 * sizeof(float);
+constexpr VkDeviceSize kCorrectedBytes = 8;  // pack_light() of records.glsl
 // Buffers that a shader binds although it does not use them with these settings.
 constexpr VkDeviceSize kUnusedBytes = 256;
 // correction_list has the capacity of an eighth of all pixels. In default views a thousandth is listed. A limb that is
@@ -24,10 +26,11 @@ VkDeviceSize bytes_of(Resource resource, const EffectDesc& desc, const Params& p
   const VkDeviceSize lines = slices * desc.max_cascades;
   const VkDeviceSize blocks_of_line = tree_cells(desc) / shared::kTreeBlock;
   const VkDeviceSize corrected = correction_capacity(desc, params);
+  const bool spectral = params.scattering.color == ColorMode::spectral;
   const CascadeProcessing processing = params.shadows.cascade_processing;
   switch (resource) {
     case Resource::slices: return slices * sizeof(shared::EpipolarSlice);
-    case Resource::samples: return samples * 16;
+    case Resource::samples: return samples * 16 + (spectral ? (samples + 3) / 4 * 16 : 0);
     case Resource::coarse_inscattering:
     case Resource::interpolation_sources: return samples * 4;
     case Resource::march_list: return sizeof(shared::WorkList) + samples * 4;
@@ -44,7 +47,7 @@ VkDeviceSize bytes_of(Resource resource, const EffectDesc& desc, const Params& p
     case Resource::march_states: {
       if (processing == CascadeProcessing::single_pass) return kUnusedBytes;
       const bool instanced = processing == CascadeProcessing::multi_pass_instanced;
-      return samples * kStateBytes * (instanced ? desc.max_cascades : 1);
+      return samples * (spectral ? kSpectralStateBytes : kStateBytes) * (instanced ? desc.max_cascades : 1);
     }
     case Resource::discontinuity_blocks: {
       const VkExtent2D blocks = unwarp_blocks(desc.max_extent, Target::cpu);  // has the most
@@ -56,7 +59,8 @@ VkDeviceSize bytes_of(Resource resource, const EffectDesc& desc, const Params& p
     case Resource::downscaled_inscattering: {
       if (!is_downscaled(params)) return kUnusedBytes;
       const VkExtent2D extent = downscaled_extent(desc.max_extent, params);
-      return VkDeviceSize{extent.width} * extent.height * (is_homogeneous(params.scattering) ? 16 : 32);
+      return VkDeviceSize{extent.width} * extent.height *
+             ((is_homogeneous(params.scattering) ? 16 : 32) + (spectral ? 16 : 0));
     }
     default: return 0;
   }

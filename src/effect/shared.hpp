@@ -15,7 +15,10 @@ struct vec2 {
   float x, y;
 };
 struct vec4 {
-  float x, y, z, w;
+  float x = 0.0F, y = 0.0F, z = 0.0F, w = 0.0F;
+  constexpr vec4() = default;
+  constexpr vec4(double a, double b, double c, double d)
+      : x(static_cast<float>(a)), y(static_cast<float>(b)), z(static_cast<float>(c)), w(static_cast<float>(d)) {}
 };
 struct ivec2 {
   std::int32_t x, y;
@@ -37,8 +40,15 @@ struct ivec3 {
 
 #include "shared/sky_probe.h"  // uses TableShape
 
+// The Medium of shaders for scattering.color = spectral. Others read the first part of it.
+struct SpectralMedium : Medium {
+  vec4 fourth_channel;
+};
+
 static_assert(sizeof(OneilScale) == 32 && sizeof(Oneil) == 96, "the layout of Oneil must agree with std430");
 static_assert(sizeof(AtmosphereConstants) == 176, "the layout of AtmosphereConstants must agree with std140");
+static_assert(sizeof(SpectralMedium) == sizeof(Medium) + 16 && sizeof(FrameConstants) % 16 == 0,
+              "the layouts of spectral quantities must agree with std430");
 static_assert(sizeof(Medium) == 96, "the layout of Medium must agree with std430");
 static_assert(sizeof(Homogeneous) == 64, "the layout of Homogeneous must agree with std430");
 static_assert(sizeof(QuadratureRay) == 80 + 40 * sizeof(RayNode) && sizeof(RayNode) == 32 && sizeof(TableShape) == 32,

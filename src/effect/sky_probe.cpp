@@ -9,8 +9,8 @@
 #include "effect/effect_state.hpp"
 #include "effect/frame_constants.hpp"
 #include "effect/limits.hpp"
-#include "effect/medium.hpp"
 #include "effect/sky_probe_steps.hpp"
+#include "effect/spectral_medium.hpp"
 #include "gpu/guard.hpp"
 #include "gpu/try.hpp"
 
@@ -19,7 +19,7 @@ namespace {
 
 // The largest alignment that Vulkan allows devices to require of offsets.
 constexpr VkDeviceSize kMediumOffset = 256;
-static_assert(sizeof(shared::SkyProbeConstants) <= kMediumOffset && sizeof(shared::Medium) <= 256);
+static_assert(sizeof(shared::SkyProbeConstants) <= kMediumOffset && sizeof(shared::SpectralMedium) <= 256);
 constexpr VkDeviceSize kSlotBytes = kMediumOffset + 256;
 constexpr VkDeviceSize kCoefficientBytes = 9 * 4 * sizeof(float);
 constexpr VkDeviceSize kRowBytes = VkDeviceSize{shared::kSkyProbeRows} * shared::kSkyProbeSums * 4 * sizeof(float);
@@ -133,10 +133,12 @@ Result<void> SkyProbe::State::create_objects(std::uint32_t frames) {
   sets.create(device, frames);
   std::vector<PipelineKey> keys;
   std::vector<SetKey> set_keys;
-  for (const Step& step : sky_probe_steps()) {
-    if (std::find(keys.begin(), keys.end(), step.pipeline) != keys.end()) continue;
-    keys.push_back(step.pipeline);
-    set_keys.push_back(set_key(step));
+  for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
+    for (const Step& step : sky_probe_steps(color)) {
+      if (std::find(keys.begin(), keys.end(), step.pipeline) != keys.end()) continue;
+      keys.push_back(step.pipeline);
+      set_keys.push_back(set_key(step));
+    }
   }
   TYNDALL_TRY(pipelines.make(keys));
   TYNDALL_TRY(sets.make(set_keys, pipelines));
@@ -155,7 +157,7 @@ BoundResources SkyProbe::State::bind_resources(VkDeviceSize offset) const {
   BoundResources out;
   const VkBuffer buffer = constants.buffer.get();
   out.set(Resource::sky_probe, buffer, offset, sizeof(shared::SkyProbeConstants));
-  out.set(Resource::medium, buffer, offset + kMediumOffset, sizeof(shared::Medium));
+  out.set(Resource::medium, buffer, offset + kMediumOffset, sizeof(shared::SpectralMedium));
   out.set(Resource::sky_probe_rows, rows.buffer.get());
   out.set(Resource::sky_coefficients, coefficients.buffer.get());
   const auto table = [&](Resource resource, TableId id) {
@@ -169,7 +171,8 @@ BoundResources SkyProbe::State::bind_resources(VkDeviceSize offset) const {
 }
 
 Result<Progress> SkyProbe::State::record(VkCommandBuffer cmd, const SkyProbeInputs& wanted, std::uint32_t budget) {
-  const std::span<const Step> steps = sky_probe_steps();
+  const Params drawn = effect->drawn_with(effect->params);
+  const std::span<const Step> steps = sky_probe_steps(drawn.scattering.color);
   const auto total = static_cast<std::uint32_t>(steps.size());
   TYNDALL_TRY(check_inputs(wanted, effect->params));
   if (!effect->tables.ready()) {
@@ -186,8 +189,8 @@ Result<Progress> SkyProbe::State::record(VkCommandBuffer cmd, const SkyProbeInpu
   const gpu::Device& device = effect->device;
   const std::uint32_t slot = ring.slot(calls, 0);
   const VkDeviceSize offset = kSlotBytes * slot;
-  const shared::SkyProbeConstants probe = constants_of(inputs, effect->params);
-  const shared::Medium medium = medium_from_params(effect->params);
+  const shared::SkyProbeConstants probe = constants_of(inputs, drawn);
+  const shared::SpectralMedium medium = spectral_medium_from_params(drawn);
   std::memcpy(static_cast<std::byte*>(constants.mapped) + offset, &probe, sizeof probe);
   std::memcpy(static_cast<std::byte*>(constants.mapped) + offset + kMediumOffset, &medium, sizeof medium);
   if (!cleared) {

@@ -9,6 +9,6 @@ namespace tyndall {
 
 // Returns the steps of an update. Each is a slice that SkyProbe::record() counts. The push constant is the first row of
 // the quadrature.
-[[nodiscard]] std::span<const Step> sky_probe_steps();
+[[nodiscard]] std::span<const Step> sky_probe_steps(ColorMode color = ColorMode::rgb);
 
 }  // namespace tyndall

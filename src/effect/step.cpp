@@ -48,22 +48,21 @@ static_assert([] {
   return true;
 }());
 
-// The index of the variant for GPUs of every shader, looked up at compile time.
-constexpr auto kGpuVariants = [] {
-  constexpr std::string_view kSuffix = "_gpu";
+// Returns the index of the variant of every shader whose name ends in `suffix`; of shaders without it, their own.
+constexpr std::array<std::size_t, kShaders> find_variants(std::string_view suffix) {
   std::array<std::size_t, kShaders> out = {};
   for (std::size_t i = 0; i < kShaders; ++i) {
     const std::string_view name = shaders::effect_shaders[i]->name;
     out[i] = i;
     for (std::size_t k = 0; k < kShaders; ++k) {
       const std::string_view other = shaders::effect_shaders[k]->name;
-      if (other.size() == name.size() + kSuffix.size() && other.starts_with(name) && other.ends_with(kSuffix)) {
-        out[i] = k;
-      }
+      if (other.size() == name.size() + suffix.size() && other.starts_with(name) && other.ends_with(suffix)) out[i] = k;
     }
   }
   return out;
-}();
+}
+constexpr auto kGpuVariants = find_variants("_gpu");
+constexpr auto kSpectralVariants = find_variants("_spectral");
 
 std::size_t index_of(const gpu::Shader& shader) {
   const auto* const* found = std::find(std::begin(shaders::effect_shaders), std::end(shaders::effect_shaders), &shader);
@@ -95,8 +94,11 @@ Target target_of(const gpu::Device& device) {
   return cpu || !ballot ? Target::cpu : Target::gpu;
 }
 
-const gpu::Shader& variant_for(const gpu::Shader& shader, Target target) {
-  return target == Target::cpu ? shader : *shaders::effect_shaders[kGpuVariants[index_of(shader)]];
+const gpu::Shader& variant_for(const gpu::Shader& shader, Target target, ColorMode color) {
+  std::size_t index = index_of(shader);
+  if (color == ColorMode::spectral) index = kSpectralVariants[index];
+  if (target == Target::gpu) index = kGpuVariants[index];
+  return *shaders::effect_shaders[index];
 }
 
 PipelineKey pipeline_key(const gpu::Shader& shader, const Specialisation& constants) {

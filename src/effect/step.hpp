@@ -11,6 +11,7 @@
 #include "effect/resources.hpp"
 #include "effect/shared.hpp"
 #include "gpu/shader.hpp"
+#include "tyndall/params.hpp"
 
 namespace tyndall::gpu {
 struct Device;
@@ -37,8 +38,10 @@ struct PipelineKey {
 
 // Returns the kind of device for which passes are chosen.
 [[nodiscard]] Target target_of(const gpu::Device& device);
-// Returns the variant of a shader for a target: the shader with "_gpu" appended to its name, or the shader itself.
-[[nodiscard]] const gpu::Shader& variant_for(const gpu::Shader& shader, Target target);
+// Returns the variant of a shader for a target and a representation of light: the shader with "_spectral", "_gpu" or
+// "_spectral_gpu" appended to its name. A shader that has no such variant serves all.
+[[nodiscard]] const gpu::Shader& variant_for(const gpu::Shader& shader, Target target,
+                                             ColorMode color = ColorMode::rgb);
 
 struct Step {
   enum class Kind : std::uint8_t {

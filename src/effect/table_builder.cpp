@@ -4,7 +4,7 @@
 #include <string_view>
 #include <utility>
 
-#include "effect/medium.hpp"
+#include "effect/spectral_medium.hpp"
 #include "effect/table_plan.hpp"
 #include "effect/table_steps.hpp"
 #include "effect/tables.hpp"
@@ -46,14 +46,15 @@ Result<void> TableBuilder::create(const gpu::Device& device, PipelineCache& pipe
   return {};
 }
 
-Result<TableScratch> TableBuilder::create_scratch(std::uint32_t views) const {
+Result<TableScratch> TableBuilder::create_scratch(std::uint32_t views, ColorMode color) const {
   TableScratch out = {};
-  for (const BufferPlan& plan : plan_scratch(views)) {
+  for (const BufferPlan& plan : plan_scratch(views, color)) {
     TYNDALL_ASSIGN(out.*plan.buffer,
                    gpu::create_buffer(*device_, plan.name, plan.bytes, kScratchUsage, gpu::MemoryKind::device));
   }
   TYNDALL_ASSIGN(out.source_function, gpu::create_image(*device_, kSourceFunction));
   out.views = views;
+  out.color = color;
   return out;
 }
 
@@ -97,8 +98,9 @@ Result<TableBuilder::Pending> TableBuilder::plan(const Params& params) {
     if (fits) continue;
     TYNDALL_ASSIGN(out.images[i].image, gpu::create_image(*device_, desc));
   }
-  if (scratch_.views != params.tables.size.y) {
-    TYNDALL_ASSIGN(out.scratch, create_scratch(params.tables.size.y));
+  const ColorMode color = params.scattering.color;
+  if (scratch_.views != params.tables.size.y || scratch_.color != color) {
+    TYNDALL_ASSIGN(out.scratch, create_scratch(params.tables.size.y, color));
   }
   out.steps = table_steps(params, out.stale);
   if (!options_.pipelines_later) {
@@ -138,7 +140,7 @@ void TableBuilder::commit(Pending&& pending) noexcept {
 TableImage& TableBuilder::target(TableId id) { return (complete_ ? next_ : tables_)[static_cast<std::uint32_t>(id)]; }
 
 void TableBuilder::upload_constants(VkCommandBuffer cmd) {
-  const shared::Medium medium = medium_from_params(wanted_);
+  const shared::SpectralMedium medium = spectral_medium_from_params(wanted_);
   const ShapeBlock shape = {table_shape(wanted_), zenith_quadrature()};
   const VkBuffer buffer = scratch_.constants.buffer.get();
   gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT,
@@ -234,7 +236,7 @@ Result<void> TableBuilder::record(VkCommandBuffer cmd, std::uint32_t budget) {
 BoundResources TableBuilder::bind_resources() {
   const TableScratch& s = scratch_;
   BoundResources out;
-  out.set(Resource::medium, s.constants.buffer.get(), 0, sizeof(shared::Medium));
+  out.set(Resource::medium, s.constants.buffer.get(), 0, sizeof(shared::SpectralMedium));
   out.set(Resource::shape, s.constants.buffer.get(), kShapeOffset, sizeof(ShapeBlock));
   out.set(Resource::grid_rays, s.grid_rays.buffer.get());
   out.set(Resource::table_rays, s.table_rays.buffer.get());

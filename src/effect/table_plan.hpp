@@ -38,7 +38,7 @@ constexpr gpu::ImageDesc kSourceFunction = {
     {shared::kGatherSuns, shared::kGatherAltitudes* shared::kSourceAzimuths, shared::kSourceZeniths},
     VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT};
 
-[[nodiscard]] std::array<BufferPlan, kScratchBuffers> plan_scratch(std::uint32_t views);
+[[nodiscard]] std::array<BufferPlan, kScratchBuffers> plan_scratch(std::uint32_t views, ColorMode color);
 constexpr VkBufferUsageFlags kScratchUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 
 // Computes Gauss-Legendre nodes and weights on [0; 1] by Newton's method on the Legendre polynomial.

@@ -27,13 +27,21 @@ constexpr const char* kTableHigh = "table_high";
 constexpr const char* kNames[] = {kSunLight,   kGridNodes,   kPhaseMatrix, kGatherSingle, kGatherMultiple, kScatter,
                                   kGatherLate, kScatterLate, kSkyLight,    kRayNodes,     kTableSingle,    kTableHigh};
 
-Step step_of(const char* name, const gpu::Shader& shader, Resource rays, VkExtent3D invocations,
-             std::array<std::uint32_t, 2> push = {}) {
+// Makes the steps of a build for one representation of light.
+struct StepMaker {
+  ColorMode color;
+
+  Step operator()(const char* name, const gpu::Shader& shader, Resource rays, VkExtent3D invocations,
+                  std::array<std::uint32_t, 2> push = {}) const;
+};
+
+Step StepMaker::operator()(const char* name, const gpu::Shader& shader, Resource rays, VkExtent3D invocations,
+                           std::array<std::uint32_t, 2> push) const {
   Specialisation constants;
   constants[shared::kRaysOfTablesId] = rays == Resource::table_rays ? 1 : 0;
   Step step;
   step.name = name;
-  step.pipeline = pipeline_key(shader, constants);
+  step.pipeline = pipeline_key(variant_for(shader, Target::cpu, color), constants);
   step.chosen = rays;
   step.invocations = invocations;
   step.push = push;
@@ -43,6 +51,7 @@ Step step_of(const char* name, const gpu::Shader& shader, Resource rays, VkExten
 // Fills the tables altitude by altitude. Their other axes are sun, angle and view; each row of a step has all suns of a
 // few angles of one view.
 void append_tables(const Params& params, bool single, bool high, std::vector<Step>& out) {
+  const StepMaker step_of = {params.scattering.color};
   const UVec4& size = params.tables.size;
   const std::uint32_t groups = (size.w + shared::kAnglesPerInvocation - 1) / shared::kAnglesPerInvocation;
   const std::uint32_t rows = groups * size.y;
@@ -63,6 +72,7 @@ void append_tables(const Params& params, bool single, bool high, std::vector<Ste
 }  // namespace
 
 std::vector<Step> table_steps(const Params& params, std::uint32_t stale) {
+  const StepMaker step_of = {params.scattering.color};
   const bool high = (stale & kHighTables) != 0;
   const bool single = (stale & kSingleTables) != 0;
   std::vector<Step> out;

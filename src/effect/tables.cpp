@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "effect/medium.hpp"
+#include "effect/spectral_medium.hpp"
 #include "effect/table_plan.hpp"
 #include "effect/table_steps.hpp"
 #include "tyndall/version.hpp"
@@ -79,9 +80,10 @@ shared::ZenithQuadrature zenith_quadrature() {
   return out;
 }
 
-std::array<BufferPlan, kScratchBuffers> plan_scratch(std::uint32_t views) {
+std::array<BufferPlan, kScratchBuffers> plan_scratch(std::uint32_t views, ColorMode color) {
   constexpr VkDeviceSize points = shared::kGatherAltitudes * shared::kGatherSuns;
-  constexpr VkDeviceSize ray = sizeof(shared::QuadratureRay);
+  const VkDeviceSize ray =
+      sizeof(shared::QuadratureRay) + (color == ColorMode::spectral ? shared::kSpectralRayBytes : 0);
   constexpr VkDeviceSize vec4 = 16;
   constexpr VkDeviceSize directions = points * shared::kSourceZeniths * vec4;
   constexpr VkDeviceSize phase =
@@ -120,8 +122,9 @@ gpu::ImageDesc table_desc(TableId table, const Params& params) {
 }
 
 std::uint32_t stale_tables(const Params& built, const Params& wanted) {
-  shared::Medium a = medium_from_params(built);
-  shared::Medium b = medium_from_params(wanted);
+  if (built.scattering.color != wanted.scattering.color) return kAllTables;
+  shared::SpectralMedium a = spectral_medium_from_params(built);
+  shared::SpectralMedium b = spectral_medium_from_params(wanted);
   const shared::TableShape shape_a = table_shape(built);
   const shared::TableShape shape_b = table_shape(wanted);
   std::uint32_t stale = 0;
@@ -149,7 +152,9 @@ VkDeviceSize table_bytes(const Params& params) {
 std::string table_key(const gpu::Device& device, const Params& params) {
   // The shaders of a complete build, without duplicates.
   std::vector<const gpu::Shader*> used;
-  for (const Step& step : table_steps({}, kAllTables)) {
+  Params any;
+  any.scattering.color = params.scattering.color;
+  for (const Step& step : table_steps(any, kAllTables)) {
     const gpu::Shader* shader = step.pipeline.shader;
     if (std::find(used.begin(), used.end(), shader) == used.end()) used.push_back(shader);
   }
@@ -169,7 +174,7 @@ std::string table_key(const gpu::Device& device, const Params& params) {
   append_hexadecimal(key, p.driverVersion, 8);
   key += ' ';
   for (const std::uint8_t byte : p.pipelineCacheUUID) append_hexadecimal(key, byte, 2);
-  const shared::Medium medium = medium_from_params(params);
+  const shared::SpectralMedium medium = spectral_medium_from_params(params);
   const shared::TableShape shape = table_shape(params);
   key += "\nmedium";
   append_words(key, &medium, sizeof medium);
@@ -180,13 +185,13 @@ std::string table_key(const gpu::Device& device, const Params& params) {
 
 VkDeviceSize TableScratch::bytes() const {
   VkDeviceSize total = source_function.bytes;
-  for (const BufferPlan& plan : plan_scratch(views)) total += (this->*plan.buffer).bytes;
+  for (const BufferPlan& plan : plan_scratch(views, color)) total += (this->*plan.buffer).bytes;
   return total;
 }
 
 VkDeviceSize table_scratch_bytes(const gpu::Device& device, const Params& params) {
   VkDeviceSize total = gpu::image_bytes(device, kSourceFunction);
-  for (const BufferPlan& plan : plan_scratch(params.tables.size.y)) {
+  for (const BufferPlan& plan : plan_scratch(params.tables.size.y, params.scattering.color)) {
     total += gpu::buffer_bytes(device, plan.bytes, kScratchUsage);
   }
   return total;

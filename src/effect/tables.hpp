@@ -50,6 +50,7 @@ struct TableScratch {
   gpu::Buffer irradiance;      // of one order
   gpu::Buffer sky;             // irradiance, sum of the orders
   std::uint32_t views = 0;     // capacity of table_rays
+  ColorMode color = ColorMode::rgb;
   [[nodiscard]] VkDeviceSize bytes() const;
 };
 [[nodiscard]] VkDeviceSize table_scratch_bytes(const gpu::Device& device, const Params& params);
@@ -87,6 +88,8 @@ class TableBuilder {
   [[nodiscard]] Progress progress() const { return {done_, static_cast<std::uint32_t>(steps_.size())}; }
   // Returns true once tables have been built. Stale tables stay in use until the next build is complete.
   [[nodiscard]] bool ready() const { return complete_; }
+  // Returns how the tables that frames read represent light: as `wanted` before the first build is complete.
+  [[nodiscard]] ColorMode color(ColorMode wanted) const { return complete_ ? built_.scattering.color : wanted; }
   // Returns a finished table; before the first build is complete, the table that it fills.
   [[nodiscard]] const gpu::Image& table(TableId id) const { return tables_[static_cast<std::uint32_t>(id)].image; }
   [[nodiscard]] VkDeviceSize persistent_bytes() const;
@@ -103,7 +106,7 @@ class TableBuilder {
     std::uint32_t frames_left;
   };
 
-  [[nodiscard]] Result<TableScratch> create_scratch(std::uint32_t views) const;
+  [[nodiscard]] Result<TableScratch> create_scratch(std::uint32_t views, ColorMode color) const;
   // Makes the pipelines and the descriptor sets of the steps of a build.
   [[nodiscard]] Result<SetCache> make_sets(std::span<const Step> steps);
   void upload_constants(VkCommandBuffer cmd);

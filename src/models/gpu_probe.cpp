@@ -16,7 +16,7 @@ std::array<double, 3> widened(const Vec3& v) { return {v.x, v.y, v.z}; }
 
 // Evaluates rays with one of the shaders of shaders/probe. The shader reads the medium, the rays and the resources in
 // `more`.
-Result<std::vector<Answer>> evaluate(gpu::Host& host, const gpu::Shader& shader, const shared::Medium& medium,
+Result<std::vector<Answer>> evaluate(gpu::Host& host, const gpu::Shader& shader, const shared::SpectralMedium& medium,
                                      std::span<const gpu::NamedResource> more, std::span<const Ray> rays,
                                      const std::function<void(std::size_t)>& progress) {
   std::vector<Answer> answers;
@@ -56,7 +56,8 @@ Result<std::vector<Answer>> evaluate(gpu::Host& host, const gpu::Shader& shader,
       return {};
     }));
     for (std::size_t i = 0; i < count; ++i) {
-      answers.push_back({widened(results[i].radiance), widened(results[i].transmittance)});
+      const shared::ProbeResult& r = results[i];
+      answers.push_back({widened(r.radiance), widened(r.transmittance), r.radiance_fourth, r.transmittance_fourth});
     }
     if (progress) progress(first + count);
   }
@@ -65,10 +66,17 @@ Result<std::vector<Answer>> evaluate(gpu::Host& host, const gpu::Shader& shader,
 
 }  // namespace
 
+Result<std::vector<Answer>> single_scattering_on_gpu(gpu::Host& host, const shared::SpectralMedium& medium,
+                                                     ColorMode color, std::span<const Ray> rays,
+                                                     const std::function<void(std::size_t)>& progress) {
+  const bool spectral = color == ColorMode::spectral;
+  return evaluate(host, spectral ? shaders::single_comp_spectral : shaders::single_comp, medium, {}, rays, progress);
+}
+
 Result<std::vector<Answer>> single_scattering_on_gpu(gpu::Host& host, const shared::Medium& medium,
                                                      std::span<const Ray> rays,
                                                      const std::function<void(std::size_t)>& progress) {
-  return evaluate(host, shaders::single_comp, medium, {}, rays, progress);
+  return single_scattering_on_gpu(host, {medium, {}}, ColorMode::rgb, rays, progress);
 }
 
 Result<std::vector<Answer>> oneil_on_gpu(gpu::Host& host, const OneilModel& model, std::span<const Ray> rays) {
@@ -82,7 +90,7 @@ Result<std::vector<Answer>> oneil_on_gpu(gpu::Host& host, const OneilModel& mode
   std::memcpy(table.mapped, model.table.data(), table_bytes);
   const gpu::NamedResource more[] = {gpu::named_buffer("oneil_block", constants.buffer.get()),
                                      gpu::named_buffer("oneil_table_block", table.buffer.get())};
-  return evaluate(host, shaders::oneil_comp, model.medium, more, rays, {});
+  return evaluate(host, shaders::oneil_comp, {model.medium, {}}, more, rays, {});
 }
 
 }  // namespace tyndall::models

@@ -14,6 +14,11 @@ namespace tyndall::models {
 
 // Evaluates single scattering over black ground with shaders/probe/single.comp in single precision. Returns one answer
 // per ray, in order. `progress` receives the number of completed rays.
+Result<std::vector<Answer>> single_scattering_on_gpu(gpu::Host& host, const shared::SpectralMedium& medium,
+                                                     ColorMode color, std::span<const Ray> rays,
+                                                     const std::function<void(std::size_t)>& progress = {});
+
+// Evaluates the same in three channels.
 Result<std::vector<Answer>> single_scattering_on_gpu(gpu::Host& host, const shared::Medium& medium,
                                                      std::span<const Ray> rays,
                                                      const std::function<void(std::size_t)>& progress = {});

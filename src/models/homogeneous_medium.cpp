@@ -36,7 +36,10 @@ double length_in(const HomogeneousMedium& m, double altitude_m, double cos_zenit
 }  // namespace
 
 HomogeneousMedium homogeneous_medium_from_params(const Params& params) {
-  const shared::Medium sea_level = medium_from_params(params);
+  return homogeneous_medium_from_params(params, medium_from_params(params));
+}
+
+HomogeneousMedium homogeneous_medium_from_params(const Params& params, const shared::Medium& sea_level) {
   const HomogeneousMediumParams& p = params.homogeneous_medium;
   HomogeneousMedium out;
   out.rayleigh_scattering = times(sea_level.rayleigh_scattering, Vec3(p.density));

@@ -24,6 +24,8 @@ struct HomogeneousMedium {
   double height_m = 0.0;  // altitude of the flat top
 };
 
+// `sea_level`: the medium at sea level, medium_from_params() or models::medium_at_fourth().
+[[nodiscard]] HomogeneousMedium homogeneous_medium_from_params(const Params& params, const shared::Medium& sea_level);
 [[nodiscard]] HomogeneousMedium homogeneous_medium_from_params(const Params& params);
 
 // Returns radiance / E0 and transmittance along a ray to the planet, to the medium's top or to its extent, over black

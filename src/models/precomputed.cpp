@@ -5,7 +5,7 @@
 #include <string>
 
 #include "effect/frame_constants.hpp"
-#include "effect/medium.hpp"
+#include "effect/spectral_medium.hpp"
 #include "effect/tables.hpp"
 #include "gpu/descriptors.hpp"
 #include "gpu/try.hpp"
@@ -92,7 +92,9 @@ Result<PrecomputedModel> PrecomputedModel::create(gpu::Host& host, const Params&
   state->params = params;
   TYNDALL_ASSIGN(Effect effect, Effect::create(info, desc, without_frames(params)));
   state->effect = std::make_unique<Effect>(std::move(effect));
-  TYNDALL_ASSIGN(state->pipeline, gpu::create_compute_pipeline(device, shaders::precomputed_comp));
+  TYNDALL_ASSIGN(state->pipeline, gpu::create_compute_pipeline(device, params.scattering.color == ColorMode::spectral
+                                                                           ? shaders::precomputed_comp_spectral
+                                                                           : shaders::precomputed_comp));
   TYNDALL_ASSIGN(state->linear, gpu::create_sampler(device, {}));
   TYNDALL_ASSIGN(state->origin, tables::make_ready(host, *state->effect, how));
   return PrecomputedModel(std::move(state));
@@ -104,7 +106,7 @@ Result<std::vector<Answer>> PrecomputedModel::answer(std::span<const RayQuery> q
   State& s = *state_;
   const gpu::Device& device = s.host->device();
   const Params& params = s.params;
-  const shared::Medium medium = medium_from_params(params);
+  const shared::SpectralMedium medium = spectral_medium_from_params(params);
   Setup setup = {};
   setup.shape = table_shape(params);
   setup.integrate_single = params.scattering.single == SingleScattering::integration ? 1 : 0;
@@ -148,7 +150,10 @@ Result<std::vector<Answer>> PrecomputedModel::answer(std::span<const RayQuery> q
   }));
   const auto* results = static_cast<const shared::ProbeResult*>(result_buffer.mapped);
   const auto wide = [](const Vec3& v) { return std::array<double, 3>{v.x, v.y, v.z}; };
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = {wide(results[i].radiance), wide(results[i].transmittance)};
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const shared::ProbeResult& r = results[i];
+    out[i] = {wide(r.radiance), wide(r.transmittance), r.radiance_fourth, r.transmittance_fourth};
+  }
   return out;
 }
 

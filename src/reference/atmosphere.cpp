@@ -64,7 +64,7 @@ double integrate_radius(double tangent2, double r0, double s0, double r1, double
 
 }  // namespace
 
-Atmosphere::Atmosphere(const Params& params, double lowest_m) {
+Atmosphere::Atmosphere(const Params& params, double lowest_m, std::span<const double> wavelengths_nm) {
   const AtmosphereParams& a = params.atmosphere;
   radius_m = params.planet.radius_m;
   height_m = a.height_m;
@@ -73,8 +73,10 @@ Atmosphere::Atmosphere(const Params& params, double lowest_m) {
   rayleigh_scale_height_m = a.rayleigh_scale_height_m;
   mie_scale_height_m = a.mie_scale_height_m;
   mie_phase = MiePhaseFunction(a.mie_phase, a.mie_g);
-  for (std::size_t c = 0; c < 3; ++c) {
-    const air::Coefficients channel = air::in_channel(params, c);
+  if (!wavelengths_nm.empty()) channels = wavelengths_nm.size();
+  for (std::size_t c = 0; c < channels; ++c) {
+    const air::Coefficients channel =
+        wavelengths_nm.empty() ? air::in_channel(params, c) : air::at_wavelength(params, wavelengths_nm[c]);
     rayleigh_scattering[c] = channel.rayleigh_scattering;
     mie_scattering[c] = channel.mie_scattering;
     mie_extinction[c] = channel.mie_extinction;
@@ -86,7 +88,7 @@ Atmosphere::Atmosphere(const Params& params, double lowest_m) {
   ozone_centre_m_ = radius_m + a.ozone_centre_m;
   ozone_low_m_ = ozone_centre_m_ - ozone_half_width_m_;
   ozone_high_m_ = ozone_centre_m_ + ozone_half_width_m_;
-  has_ozone_ = std::max({ozone_absorption[0], ozone_absorption[1], ozone_absorption[2]}) > 0.0;
+  has_ozone_ = *std::max_element(ozone_absorption.begin(), ozone_absorption.end()) > 0.0;
   build_table();
   opaque_radius_m = find_opaque_radius();
 }
@@ -97,11 +99,11 @@ double Atmosphere::find_opaque_radius() const {
   for (int i = 0; i < 40; ++i) {
     const double r = 0.5 * (low + high);
     const double s_top = std::sqrt((top_radius_m - r) * (top_radius_m + r));
-    Rgb depth;
+    PerChannel depth{};
     const Amounts integrals = exponential_density_integrals(r * r, 0.0, s_top, density(r));
-    for (std::size_t c = 0; c < 3; ++c) depth[c] = 2.0 * exponential_depth(integrals, c);
-    std::sort(depth.begin(), depth.end());
-    (depth[1] > kDepth ? low : high) = r;
+    for (std::size_t c = 0; c < channels; ++c) depth[c] = 2.0 * exponential_depth(integrals, c);
+    std::sort(depth.begin(), depth.begin() + static_cast<std::ptrdiff_t>(channels));
+    (depth[channels / 2] > kDepth ? low : high) = r;
   }
   return low;
 }

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "reference/geometry.hpp"
@@ -27,16 +28,27 @@ inline Amounts operator-(const Amounts& a, const Amounts& b) {
   return {a.rayleigh - b.rayleigh, a.mie - b.mie, a.ozone - b.ozone};
 }
 
-class Atmosphere {
- public:
-  // Builds the table for points at `lowest_m` [m, <= 0] and above. The density profiles continue below sea level.
-  explicit Atmosphere(const Params& params, double lowest_m = 0.0);
+// What depends on the wavelength.
+struct AtmosphereChannels {
+  using PerChannel = std::array<double, kMaxWavelengths>;  // 0 beyond `channels`
+  std::size_t channels = 3;
+  // Coefficients in 1/m at relative density 1.
+  PerChannel rayleigh_scattering{}, mie_scattering{}, mie_extinction{}, ozone_absorption{};
+  PerChannel ground_albedo{};
 
-  // Lengths in m, coefficients in 1/m at relative density 1.
+  // Returns whether the ground is not black.
+  [[nodiscard]] bool reflects() const { return *std::max_element(ground_albedo.begin(), ground_albedo.end()) > 0.0; }
+};
+
+class Atmosphere : public AtmosphereChannels {
+ public:
+  // Builds the table for points at `lowest_m` [m, <= 0] and above. The density profiles continue below sea level. The
+  // channels are those of the parameters or, if wavelengths are given, one for each of them.
+  explicit Atmosphere(const Params& params, double lowest_m = 0.0, std::span<const double> wavelengths_nm = {});
+
+  // Lengths in m.
   double radius_m, top_radius_m, height_m;
   double rayleigh_scale_height_m, mie_scale_height_m;
-  Rgb rayleigh_scattering, mie_scattering, mie_extinction, ozone_absorption;
-  Rgb ground_albedo;
   // Light that passes the planet's centre closer than this radius is mostly absorbed. Where a sphere of this radius
   // hides the sun, the sun is practically set. Only the sampling uses it.
   double opaque_radius_m;

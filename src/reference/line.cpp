@@ -134,18 +134,17 @@ Interval Line::shadow(const Vec& sun, double radius_m) const {
   return {t.from + start_.s, t.to + start_.s};
 }
 
-bool sun_transmittance(const Atmosphere& air, const Vec& position, double r, const Amounts& density, const Vec& sun,
-                       Rgb& transmittance) {
+bool sunward_integrals(const Atmosphere& air, const Vec& position, double r, const Amounts& density, const Vec& sun,
+                       Amounts& integrals) {
   const double s = dot(position, sun);
   const double tangent2 = std::max(0.0, r * r - s * s);
   if (s < 0.0 && tangent2 < air.radius_m * air.radius_m) return false;
   const double s_top = std::sqrt(std::max(0.0, air.top_radius_m * air.top_radius_m - tangent2));
-  Amounts integrals = air.density_integrals_to_top(tangent2, std::abs(s), s_top, density);
+  integrals = air.density_integrals_to_top(tangent2, std::abs(s), s_top, density);
   if (s < 0.0) {
     const Amounts tangent = air.density_integrals_to_top(tangent2, 0.0, s_top, air.density(std::sqrt(tangent2)));
     integrals = tangent + tangent - integrals;
   }
-  for (std::size_t c = 0; c < 3; ++c) transmittance[c] = air.transmittance(integrals, c);
   return true;
 }
 

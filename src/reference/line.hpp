@@ -61,9 +61,9 @@ class Line {
   Amounts total_;
 };
 
-// Computes the transmittance from a point in the atmosphere with the given densities to the sun. Returns false if the
-// planet hides the sun.
-bool sun_transmittance(const Atmosphere& air, const Vec& position, double r, const Amounts& density, const Vec& sun,
-                       Rgb& transmittance);
+// Computes the density integrals from a point in the atmosphere with the given densities to the sun. Returns false if
+// the planet hides the sun.
+bool sunward_integrals(const Atmosphere& air, const Vec& position, double r, const Amounts& density, const Vec& sun,
+                       Amounts& integrals);
 
 }  // namespace tyndall::reference

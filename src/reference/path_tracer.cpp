@@ -83,17 +83,20 @@ std::string problem_of(const Params& params) {
 }
 
 // Mean and spread over the blocks of one query, which are added in order (Welford 1962).
+template <std::size_t N>
 class Accumulator {
  public:
-  explicit Accumulator(std::size_t orders) : orders_(orders), mean_(orders + 1), spread_(orders + 1) {}
+  // `weights` are those of Wavelengths, or empty.
+  Accumulator(std::size_t orders, std::span<const Rgb> weights)
+      : orders_(orders), weights_(weights), mean_(orders + 1), spread_(orders + 1) {}
 
   // Adds a block with one value per order. The entry after the orders accumulates their total.
-  void add(std::span<const Rgb> block) {
+  void add(std::span<const Light<N>> block) {
     ++count_;
     const double weight = 1.0 / static_cast<double>(count_);
-    Rgb total{};
+    Light<N> total{};
     for (std::size_t n = 0; n <= orders_; ++n) {
-      for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t c = 0; c < N; ++c) {
         const double value = n < orders_ ? block[n][c] : total[c];
         if (n < orders_) total[c] += value;
         const double step = value - mean_[n][c];
@@ -101,50 +104,68 @@ class Accumulator {
         spread_[n][c] += step * (value - mean_[n][c]);
       }
     }
+    Rgb sums{};
+    for (std::size_t c = 0; c < weights_.size(); ++c) {
+      for (std::size_t k = 0; k < 3; ++k) sums[k] += weights_[c][k] * total[c];
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double step = sums[k] - sums_mean_[k];
+      sums_mean_[k] += step * weight;
+      sums_spread_[k] += step * (sums[k] - sums_mean_[k]);
+    }
   }
 
   [[nodiscard]] std::uint64_t count() const { return count_; }
-  [[nodiscard]] const Rgb& mean(std::size_t n) const { return mean_[n]; }
-  [[nodiscard]] Rgb standard_error(std::size_t n) const {
-    if (count_ < 2) {
-      const double infinity = std::numeric_limits<double>::infinity();
-      return {infinity, infinity, infinity};
-    }
+  [[nodiscard]] const Light<N>& mean(std::size_t n) const { return mean_[n]; }
+  [[nodiscard]] Light<N> standard_error(std::size_t n) const { return error_of(spread_[n]); }
+  [[nodiscard]] const Rgb& weighted_sums() const { return sums_mean_; }
+  [[nodiscard]] Rgb error_of_sums() const { return error_of(sums_spread_); }
+
+ private:
+  // Returns the standard error of a mean from the sum of squared deviations; infinite for one block.
+  template <std::size_t M>
+  [[nodiscard]] Light<M> error_of(const Light<M>& spread) const {
+    Light<M> error;
     const double blocks = static_cast<double>(count_);
-    Rgb error;
-    for (std::size_t c = 0; c < 3; ++c) error[c] = std::sqrt(spread_[n][c] / (blocks * (blocks - 1.0)));
+    for (std::size_t c = 0; c < M; ++c) {
+      error[c] =
+          count_ < 2 ? std::numeric_limits<double>::infinity() : std::sqrt(spread[c] / (blocks * (blocks - 1.0)));
+    }
     return error;
   }
 
- private:
   std::size_t orders_;
+  std::span<const Rgb> weights_;
   std::uint64_t count_ = 0;
-  std::vector<Rgb> mean_, spread_;
+  std::vector<Light<N>> mean_, spread_;
+  Rgb sums_mean_{}, sums_spread_{};
 };
 
 // A batch of consecutive (query, block) pairs with their results.
+template <std::size_t N>
 struct Batch {
   std::uint64_t first = 0, count = 0;
-  std::vector<Rgb> means;
+  std::vector<Light<N>> means;
   std::vector<std::uint8_t> done;
 };
 
+template <std::size_t N>
 class Work {
  public:
-  Work(std::span<const Scene> scenes, const Options& options, const Plan& plan, const Progress& progress)
+  Work(std::span<const Scene<N>> scenes, const Options& options, const Plan& plan, const Progress& progress)
       : scenes_(scenes),
         options_(options),
         plan_(plan),
         progress_(progress),
         orders_(static_cast<std::size_t>(options.orders)) {}
 
-  void run(std::vector<Accumulator>& sums) {
+  void run(std::vector<Accumulator<N>>& sums) {
     const std::uint64_t total = plan_.blocks * scenes_.size();
     const unsigned machine = std::max(1U, std::thread::hardware_concurrency());
     const std::uint64_t threads = options_.threads > 0 ? static_cast<std::uint64_t>(options_.threads) : machine;
     const std::uint64_t per_batch = std::max<std::uint64_t>(kBatchValues / orders_, 1);
     for (std::uint64_t first = 0; first < total && !cancelled_; first += per_batch) {
-      Batch batch;
+      Batch<N> batch;
       batch.first = first;
       batch.count = std::min(per_batch, total - first);
       batch.means.resize(batch.count * orders_);
@@ -158,21 +179,22 @@ class Work {
       for (std::thread& helper : helpers) helper.join();
       for (std::uint64_t i = 0; i < batch.count; ++i) {
         if (batch.done[i] == 0) continue;
-        sums[(batch.first + i) / plan_.blocks].add(std::span(batch.means).subspan(i * orders_, orders_));
+        sums[(batch.first + i) / plan_.blocks].add(
+            std::span<const Light<N>>(batch.means).subspan(i * orders_, orders_));
       }
     }
   }
 
  private:
-  void work(Batch& batch, std::uint64_t total) {
+  void work(Batch<N>& batch, std::uint64_t total) {
     while (!cancelled_) {
       const std::uint64_t i = next_.fetch_add(1);
       if (i >= batch.count) return;
       const std::uint64_t query = (batch.first + i) / plan_.blocks, block = (batch.first + i) % plan_.blocks;
-      const Scene& scene = scenes_[query];
+      const Scene<N>& scene = scenes_[query];
       if (scene.has_air()) {
-        trace_block(scene, hash_seed(options_.seed, query, block), plan_.log2_count,
-                    std::span(batch.means).subspan(i * orders_, orders_));
+        trace_block<N>(scene, hash_seed(options_.seed, query, block), plan_.log2_count,
+                       std::span(batch.means).subspan(i * orders_, orders_));
       }
       batch.done[i] = 1;
       if (!progress_) continue;
@@ -181,7 +203,7 @@ class Work {
     }
   }
 
-  std::span<const Scene> scenes_;
+  std::span<const Scene<N>> scenes_;
   const Options& options_;
   const Plan& plan_;
   const Progress& progress_;
@@ -192,7 +214,7 @@ class Work {
   std::uint64_t finished_ = 0;  // guarded by progress_mutex_
 };
 
-Estimate finish(const Accumulator& sums, const Scene& scene, const Options& options, const Plan& plan) {
+Estimate finish(const Accumulator<3>& sums, const Scene<3>& scene, const Options& options, const Plan& plan) {
   const auto orders = static_cast<std::size_t>(options.orders);
   Estimate estimate;
   estimate.samples = sums.count() << plan.log2_count;
@@ -220,24 +242,50 @@ std::string check(const Params& params, std::span<const RayQuery> queries, const
   return {};
 }
 
-std::vector<Estimate> compute(const Params& params, std::span<const RayQuery> queries, const Options& options,
-                              const Progress& progress) {
-  double lowest_m = 0.0;
-  for (const RayQuery& query : queries) lowest_m = std::min(lowest_m, ground_altitude_m(query.altitude_m));
-  const Atmosphere air(params, lowest_m);
-  std::vector<Scene> scenes;
+SpectralEstimate finish_spectrum(const Accumulator<kMaxWavelengths>& sums, const Scene<kMaxWavelengths>& scene,
+                                 const Wavelengths& wavelengths, const Options& options, const Plan& plan) {
+  SpectralEstimate estimate;
+  estimate.samples = sums.count() << plan.log2_count;
+  const Light<kMaxWavelengths>& mean = sums.mean(static_cast<std::size_t>(options.orders));
+  estimate.sums = sums.weighted_sums();
+  estimate.standard_error = scene.has_air() ? sums.error_of_sums() : Rgb{};
+  for (std::size_t c = 0; c < wavelengths.nm.size(); ++c) {
+    estimate.radiance.push_back(mean[c] + scene.ground[c]);
+    estimate.transmittance.push_back(scene.transmittance[c]);
+    for (std::size_t k = 0; k < 3; ++k) estimate.sums[k] += wavelengths.weights[c][k] * scene.ground[c];
+  }
+  return estimate;
+}
+
+// Traces all queries in an atmosphere, and passes the results of each to finish(sums, scene, plan).
+template <std::size_t N, typename Finish>
+auto compute(const Atmosphere& air, std::span<const RayQuery> queries, const Options& options,
+             std::span<const Rgb> weights, const Progress& progress, const Finish& finish) {
+  std::vector<Scene<N>> scenes;
   scenes.reserve(queries.size());
   for (const RayQuery& query : queries) scenes.emplace_back(air, query, options);
   const Plan plan = plan_blocks(options.samples);
-  std::vector<Accumulator> sums(queries.size(), Accumulator(static_cast<std::size_t>(options.orders)));
-  Work(scenes, options, plan, progress).run(sums);
-
-  std::vector<Estimate> estimates;
+  std::vector<Accumulator<N>> sums(queries.size(), Accumulator<N>(static_cast<std::size_t>(options.orders), weights));
+  Work<N>(scenes, options, plan, progress).run(sums);
+  std::vector<decltype(finish(sums[0], scenes[0], plan))> estimates;
   estimates.reserve(queries.size());
-  for (std::size_t i = 0; i < queries.size(); ++i) {
-    estimates.push_back(finish(sums[i], scenes[i], options, plan));
-  }
+  for (std::size_t i = 0; i < queries.size(); ++i) estimates.push_back(finish(sums[i], scenes[i], plan));
   return estimates;
+}
+
+double lowest_altitude_m(std::span<const RayQuery> queries) {
+  double lowest_m = 0.0;
+  for (const RayQuery& query : queries) lowest_m = std::min(lowest_m, ground_altitude_m(query.altitude_m));
+  return lowest_m;
+}
+
+std::vector<Estimate> compute_rgb(const Params& params, std::span<const RayQuery> queries, const Options& options,
+                                  const Progress& progress) {
+  const Atmosphere air(params, lowest_altitude_m(queries));
+  return compute<3>(air, queries, options, {}, progress,
+                    [&](const Accumulator<3>& sums, const Scene<3>& scene, const Plan& plan) {
+                      return finish(sums, scene, options, plan);
+                    });
 }
 
 }  // namespace
@@ -246,14 +294,34 @@ Result<std::vector<Estimate>> trace(const Params& params, std::span<const RayQue
                                     const Progress& progress) {
   std::string bad = check(params, queries, options);
   if (!bad.empty()) return Error{ErrorCode::invalid_argument, std::move(bad), 0};
-  return compute(params, queries, options, progress);
+  return compute_rgb(params, queries, options, progress);
+}
+
+Result<std::vector<SpectralEstimate>> trace_spectrum(const Params& params, const Wavelengths& wavelengths,
+                                                     std::span<const RayQuery> queries, const Options& options,
+                                                     const Progress& progress) {
+  std::string bad = check(params, queries, options);
+  if (bad.empty() && (wavelengths.nm.empty() || wavelengths.nm.size() > kMaxWavelengths)) {
+    bad = std::to_string(wavelengths.nm.size()) + " wavelengths; expected 1 to " + std::to_string(kMaxWavelengths);
+  }
+  if (bad.empty() && wavelengths.weights.size() != wavelengths.nm.size()) {
+    bad = std::to_string(wavelengths.weights.size()) + " weights; expected as many as wavelengths, " +
+          std::to_string(wavelengths.nm.size());
+  }
+  if (!bad.empty()) return Error{ErrorCode::invalid_argument, std::move(bad), 0};
+  const Atmosphere air(params, lowest_altitude_m(queries), wavelengths.nm);
+  return compute<kMaxWavelengths>(
+      air, queries, options, wavelengths.weights, progress,
+      [&](const Accumulator<kMaxWavelengths>& sums, const Scene<kMaxWavelengths>& scene, const Plan& plan) {
+        return finish_spectrum(sums, scene, wavelengths, options, plan);
+      });
 }
 
 Result<Estimate> trace(const Params& params, const RayQuery& query, const Options& options, const Progress& progress) {
   const std::span<const RayQuery> one(&query, 1);
   std::string bad = check(params, one, options);
   if (!bad.empty()) return Error{ErrorCode::invalid_argument, std::move(bad), 0};
-  return compute(params, one, options, progress).front();
+  return compute_rgb(params, one, options, progress).front();
 }
 
 }  // namespace tyndall::reference

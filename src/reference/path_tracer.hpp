@@ -18,6 +18,7 @@
 namespace tyndall::reference {
 
 using Rgb = std::array<double, 3>;  // one value per channel of atmosphere.wavelengths_nm
+constexpr std::size_t kMaxWavelengths = 40;
 
 struct Options {
   // Paths per query, >= 1. Rounded up to a whole number of equal blocks, see Estimate::samples.
@@ -54,6 +55,29 @@ using Progress = std::function<bool(double done)>;
 // Errors: invalid_argument for a query, option or parameter out of range.
 Result<std::vector<Estimate>> trace(const Params& params, std::span<const RayQuery> queries, const Options& options,
                                     const Progress& progress = {});
+
+// The wavelengths of trace_spectrum().
+struct Wavelengths {
+  std::span<const double> nm;    // 1 to kMaxWavelengths of them
+  std::span<const Rgb> weights;  // of three sums over the wavelengths, such as X, Y and Z; as many as wavelengths
+};
+
+// Light at any wavelengths, in the units of Estimate, for each of Wavelengths::nm.
+struct SpectralEstimate {
+  std::vector<double> radiance, transmittance;
+  // The three weighted sums of the radiance and, from independent blocks, their standard errors. The errors of
+  // neighbouring wavelengths are similar, because all wavelengths follow the same paths.
+  Rgb sums{};
+  Rgb standard_error{};
+  std::uint64_t samples = 0;
+};
+
+// Traces light at other wavelengths than those of the channels, all of them along the same paths, as trace() does for
+// three. The coefficients at a wavelength are those of air/coefficients.hpp. Options::by_order has no effect.
+// Errors: those of trace(), and invalid_argument for the wavelengths.
+Result<std::vector<SpectralEstimate>> trace_spectrum(const Params& params, const Wavelengths& wavelengths,
+                                                     std::span<const RayQuery> queries, const Options& options,
+                                                     const Progress& progress = {});
 
 // Traces a single query; its index is 0.
 Result<Estimate> trace(const Params& params, const RayQuery& query, const Options& options,

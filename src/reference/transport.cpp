@@ -2,9 +2,10 @@
 // by inverting the optical depth of one channel, and the next direction from one phase function. All channels are
 // weighted by the balance heuristic over the possible choices (Veach 1997; Wilkie et al., "Hero wavelength spectral
 // sampling", 2014). A channel is chosen with a probability proportional to the light that it scatters on the line,
-// which bounds the growth of the sum of the three throughputs.
+// which bounds the growth of the sum of the throughputs.
 #include "reference/transport.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -20,7 +21,12 @@ constexpr double kPi = std::numbers::pi;
 // reaches, and to the part it reaches with little attenuation (Atmosphere::opaque_radius_m).
 constexpr std::array<double, 2> kLitFractions = {0.2, 0.2};
 
-double sum(const Rgb& v) { return v[0] + v[1] + v[2]; }
+template <std::size_t N>
+double sum(const Light<N>& v) {
+  double total = v[0];
+  for (std::size_t c = 1; c < N; ++c) total += v[c];
+  return total;
+}
 
 struct Vertex {
   bool ground = false;
@@ -29,12 +35,24 @@ struct Vertex {
   Amounts density;
 };
 
+// Computes the transmittance from a point in the atmosphere with the given densities to the sun. Returns false if the
+// planet hides the sun.
+template <std::size_t N>
+bool sun_transmittance(const Atmosphere& air, const Vec& position, double r, const Amounts& density, const Vec& sun,
+                       Light<N>& transmittance) {
+  Amounts integrals;
+  if (!sunward_integrals(air, position, r, density, sun, integrals)) return false;
+  for (std::size_t c = 0; c < N; ++c) transmittance[c] = air.transmittance(integrals, c);
+  return true;
+}
+
 // Adds the sunlight that a Lambertian ground reflects; `weight` is the throughput after reflection.
-void add_ground(const Atmosphere& air, const Vertex& v, const Vec& sun, const Rgb& weight, Rgb& sums) {
-  Rgb transmittance;
+template <std::size_t N>
+void add_ground(const Atmosphere& air, const Vertex& v, const Vec& sun, const Light<N>& weight, Light<N>& sums) {
+  Light<N> transmittance;
   const double cosine = dot(v.position, sun) / v.r;
   if (cosine <= 0.0 || !sun_transmittance(air, v.position, v.r, v.density, sun, transmittance)) return;
-  for (std::size_t c = 0; c < 3; ++c) sums[c] += weight[c] * transmittance[c] * cosine / kPi;
+  for (std::size_t c = 0; c < N; ++c) sums[c] += weight[c] * transmittance[c] * cosine / kPi;
 }
 
 Vertex ground_vertex(const Atmosphere& air, const Line& line) {
@@ -48,12 +66,13 @@ Vertex ground_vertex(const Atmosphere& air, const Line& line) {
 
 // The part of a line outside the shadow of a sphere. `before`, `shadow_end` and `lit` are opacities per channel
 // (1 - transmittance, without ozone), counted from the start of the line.
+template <std::size_t N>
 struct LitPart {
   double fraction = 0.0;  // fraction of the samples that are restricted to this part
   Interval shadow;
-  Rgb before{};      // opacity up to the shadow
-  Rgb shadow_end{};  // opacity up to the end of the shadow
-  Rgb lit{};         // opacity that the lit part contributes
+  Light<N> before{};      // opacity up to the shadow
+  Light<N> shadow_end{};  // opacity up to the end of the shadow
+  Light<N> lit{};         // opacity that the lit part contributes
 
   // Returns what sampling this part adds to the probability density of a position, relative to sampling the whole line.
   [[nodiscard]] double preference(double s, double all, std::size_t channel) const {
@@ -62,9 +81,10 @@ struct LitPart {
 };
 
 // Returns the lit part. Its `fraction` is 0 if the line misses the shadow or has no part outside it.
-LitPart lit_part(const Atmosphere& air, const Line& line, const Vec& sun, double radius_m, const Rgb& all,
-                 double fraction) {
-  LitPart part;
+template <std::size_t N>
+LitPart<N> lit_part(const Atmosphere& air, const Line& line, const Vec& sun, double radius_m, const Light<N>& all,
+                    double fraction) {
+  LitPart<N> part;
   part.shadow = line.shadow(sun, radius_m);
   if (!(part.shadow.from < part.shadow.to)) return part;
   part.fraction = fraction;
@@ -72,7 +92,7 @@ LitPart lit_part(const Atmosphere& air, const Line& line, const Vec& sun, double
   Amounts entry, exit;
   if (begins_lit) entry = line.travelled(line.point(part.shadow.from));
   if (ends_lit) exit = line.travelled(line.point(part.shadow.to));
-  for (std::size_t c = 0; c < 3; ++c) {
+  for (std::size_t c = 0; c < N; ++c) {
     if (begins_lit) part.before[c] = std::max(0.0, -std::expm1(-air.exponential_depth(entry, c)));
     part.shadow_end[c] = ends_lit ? std::min(all[c], -std::expm1(-air.exponential_depth(exit, c))) : all[c];
     part.lit[c] = part.before[c] + all[c] - part.shadow_end[c];
@@ -84,11 +104,12 @@ LitPart lit_part(const Atmosphere& air, const Line& line, const Vec& sun, double
 
 // Samples the point from which light arrives along `line`, and multiplies `weight` by the contribution divided by the
 // probability density. Returns false if nothing scatters. `albedo` is that of the ground at the line's end.
-bool sample_event(const Atmosphere& air, const Line& line, const Vec& sun, const Rgb& albedo, double u, Rgb& weight,
-                  Vertex& v) {
-  Rgb scattered{}, weighted{};  // scattered: 1 - transmittance per channel; weighted: the same times `weight`
+template <std::size_t N>
+bool sample_event(const Atmosphere& air, const Line& line, const Vec& sun, const Atmosphere::PerChannel& albedo,
+                  double u, Light<N>& weight, Vertex& v) {
+  Light<N> scattered{}, weighted{};  // scattered: 1 - transmittance per channel; weighted: the same times `weight`
   double reflected = 0.0;
-  for (std::size_t c = 0; c < 3; ++c) {
+  for (std::size_t c = 0; c < N; ++c) {
     const double negative_opacity = std::expm1(-std::max(0.0, air.exponential_depth(line.total(), c)));
     scattered[c] = -negative_opacity;
     weighted[c] = weight[c] * scattered[c];
@@ -101,7 +122,7 @@ bool sample_event(const Atmosphere& air, const Line& line, const Vec& sun, const
   if (u < reflect_share) {
     Amounts integrals = line.total();
     integrals.ozone = line.ozone_travelled(line.end());
-    for (std::size_t c = 0; c < 3; ++c) weight[c] *= albedo[c] * air.transmittance(integrals, c) / reflect_share;
+    for (std::size_t c = 0; c < N; ++c) weight[c] *= albedo[c] * air.transmittance(integrals, c) / reflect_share;
     v = ground_vertex(air, line);
     return true;
   }
@@ -111,20 +132,20 @@ bool sample_event(const Atmosphere& air, const Line& line, const Vec& sun, const
   // Choose the channel to invert in proportion to the light that each will lose on this line.
   u *= total_weight;
   std::size_t channel = 0;
-  while (channel < 2 && u >= weighted[channel]) u -= weighted[channel++];
+  while (channel + 1 < N && u >= weighted[channel]) u -= weighted[channel++];
   if (!(weighted[channel] > 0.0)) return false;  // rounding at the end of the last channel
   u = std::min(u / weighted[channel], std::nextafter(1.0, 0.0));
 
   // If part of this line is in the planet's shadow, reserve some samples for the sunlit part.
-  std::array<LitPart, 2> lit = {lit_part(air, line, sun, air.radius_m, scattered, kLitFractions[0]),
-                                lit_part(air, line, sun, air.opaque_radius_m, scattered, kLitFractions[1])};
+  std::array<LitPart<N>, 2> lit = {lit_part(air, line, sun, air.radius_m, scattered, kLitFractions[0]),
+                                   lit_part(air, line, sun, air.opaque_radius_m, scattered, kLitFractions[1])};
   const double unguided = 1.0 - lit[0].fraction - lit[1].fraction;
   double reached;  // 1 - transmittance at the sample
   if (u < unguided) {
     reached = u / unguided * scattered[channel];
   } else {
     u -= unguided;
-    const LitPart& part = u < lit[0].fraction ? lit[0] : lit[1];
+    const LitPart<N>& part = u < lit[0].fraction ? lit[0] : lit[1];
     if (u >= lit[0].fraction) u -= lit[0].fraction;
     reached = u / part.fraction * part.lit[channel];
     if (reached > part.before[channel]) reached += part.shadow_end[channel] - part.before[channel];
@@ -134,8 +155,8 @@ bool sample_event(const Atmosphere& air, const Line& line, const Vec& sun, const
   integrals.ozone = line.ozone_travelled(p.s);
 
   double density = 0.0;  // probability density of the point, summed over the channels that could have been chosen
-  Rgb contribution{};
-  for (std::size_t c = 0; c < 3; ++c) {
+  Light<N> contribution{};
+  for (std::size_t c = 0; c < N; ++c) {
     if (weight[c] <= 0.0) continue;
     const double transmittance = std::exp(-air.exponential_depth(integrals, c));
     const double preference =
@@ -145,7 +166,7 @@ bool sample_event(const Atmosphere& air, const Line& line, const Vec& sun, const
                       (air.rayleigh_scattering[c] * p.density.rayleigh + air.mie_scattering[c] * p.density.mie);
   }
   if (!(density > 0.0)) return false;
-  for (std::size_t c = 0; c < 3; ++c) {
+  for (std::size_t c = 0; c < N; ++c) {
     weight[c] = contribution[c] * total_weight / density / (1.0 - reflect_share);
   }
   v.ground = false;
@@ -156,9 +177,10 @@ bool sample_event(const Atmosphere& air, const Line& line, const Vec& sun, const
 }
 
 // Returns the fraction of the scattering at a vertex that is Rayleigh scattering, per channel.
-Rgb rayleigh_fractions(const Atmosphere& air, const Amounts& density) {
-  Rgb fraction;
-  for (std::size_t c = 0; c < 3; ++c) {
+template <std::size_t N>
+Light<N> rayleigh_fractions(const Atmosphere& air, const Amounts& density) {
+  Light<N> fraction;
+  for (std::size_t c = 0; c < N; ++c) {
     const double rayleigh = air.rayleigh_scattering[c] * density.rayleigh;
     const double both = rayleigh + air.mie_scattering[c] * density.mie;
     fraction[c] = both > 0.0 ? rayleigh / both : 0.0;
@@ -167,22 +189,24 @@ Rgb rayleigh_fractions(const Atmosphere& air, const Amounts& density) {
 }
 
 // Adds the sunlight that a vertex in the atmosphere scatters back along `direction`.
-void add_air(const Atmosphere& air, const Vertex& v, const Vec& sun, const Vec& direction, const Rgb& rayleigh_fraction,
-             const Rgb& weight, Rgb& sums) {
-  Rgb transmittance;
+template <std::size_t N>
+void add_air(const Atmosphere& air, const Vertex& v, const Vec& sun, const Vec& direction,
+             const Light<N>& rayleigh_fraction, const Light<N>& weight, Light<N>& sums) {
+  Light<N> transmittance;
   if (!sun_transmittance(air, v.position, v.r, v.density, sun, transmittance)) return;
   const double cosine = dot(direction, sun);
   const double rayleigh = rayleigh_phase(cosine), mie = air.mie_phase(cosine);
-  for (std::size_t c = 0; c < 3; ++c) {
+  for (std::size_t c = 0; c < N; ++c) {
     sums[c] += weight[c] * transmittance[c] * (rayleigh_fraction[c] * rayleigh + (1.0 - rayleigh_fraction[c]) * mie);
   }
 }
 
 // Samples the direction in which the path continues from a vertex in the atmosphere.
+template <std::size_t N>
 Vec sample_direction(const Atmosphere& air, const Vertex& v, const Vec& sun, const Vec& direction,
-                     const Rgb& rayleigh_fraction, PathNumbers& numbers, Rgb& weight) {
+                     const Light<N>& rayleigh_fraction, PathNumbers& numbers, Light<N>& weight) {
   double rayleigh_weight = 0.0;
-  for (std::size_t c = 0; c < 3; ++c) rayleigh_weight += weight[c] * rayleigh_fraction[c];
+  for (std::size_t c = 0; c < N; ++c) rayleigh_weight += weight[c] * rayleigh_fraction[c];
   const double fraction = rayleigh_weight / sum(weight);
   const Glow glow(v.position * (1.0 / v.r), sun);
   double u = numbers.next();
@@ -205,7 +229,7 @@ Vec sample_direction(const Atmosphere& air, const Vertex& v, const Vec& sun, con
   const double rayleigh = rayleigh_phase(cosine), mie = air.mie_phase(cosine);
   const double density =
       (1.0 - glow.fraction) * (fraction * rayleigh + (1.0 - fraction) * mie) + glow.fraction * glow.density(next);
-  for (std::size_t c = 0; c < 3; ++c) {
+  for (std::size_t c = 0; c < N; ++c) {
     weight[c] *= (rayleigh_fraction[c] * rayleigh + (1.0 - rayleigh_fraction[c]) * mie) / density;
   }
   return next;
@@ -215,7 +239,9 @@ Vec cosine_direction(const Vec& normal, double u, double turn) {
   return around(normal, std::sqrt(1.0 - u), std::cos(2.0 * kPi * turn), std::sin(2.0 * kPi * turn));
 }
 
-void trace_path(const Scene& scene, const Line& first, PathNumbers& numbers, Rgb weight, std::span<Rgb> sums) {
+template <std::size_t N>
+void trace_path(const Scene<N>& scene, const Line& first, PathNumbers& numbers, Light<N> weight,
+                std::span<Light<N>> sums) {
   const Atmosphere& air = *scene.air;
   std::optional<Line> next;
   const Line* line = &first;
@@ -224,7 +250,8 @@ void trace_path(const Scene& scene, const Line& first, PathNumbers& numbers, Rgb
     // The directly lit ground at the end of the first line needs no sampling (Scene::ground).
     const bool seen = order == 0;
     const bool last = order + 1 == sums.size();
-    const Rgb albedo = seen && (!scene.visible_ground || last) ? Rgb{} : air.ground_albedo;
+    static constexpr Atmosphere::PerChannel kBlack{};
+    const Atmosphere::PerChannel& albedo = seen && (!scene.visible_ground || last) ? kBlack : air.ground_albedo;
     Vertex v;
     if (!sample_event(air, *line, scene.sun, albedo, numbers.next(), weight, v)) return;
     if (v.ground) {
@@ -233,7 +260,7 @@ void trace_path(const Scene& scene, const Line& first, PathNumbers& numbers, Rgb
       const double u = numbers.next();
       direction = cosine_direction(v.position * (1.0 / v.r), u, numbers.next());
     } else {
-      const Rgb rayleigh_fraction = rayleigh_fractions(air, v.density);
+      const Light<N> rayleigh_fraction = rayleigh_fractions<N>(air, v.density);
       add_air(air, v, scene.sun, direction, rayleigh_fraction, weight, sums[order]);
       if (last) return;
       direction = sample_direction(air, v, scene.sun, direction, rayleigh_fraction, numbers, weight);
@@ -245,8 +272,10 @@ void trace_path(const Scene& scene, const Line& first, PathNumbers& numbers, Rgb
 
 }  // namespace
 
-Scene::Scene(const Atmosphere& atmosphere, const RayQuery& query, const Options& options)
+template <std::size_t N>
+Scene<N>::Scene(const Atmosphere& atmosphere, const RayQuery& query, const Options& options)
     : air(&atmosphere), sky(query.sky_irradiance), visible_ground(options.visible_ground) {
+  transmittance.fill(1.0);
   origin = {0.0, 0.0, atmosphere.radius_m + query.altitude_m};
   // The irradiance of the sky only collects light from upward directions, so its ground may be as high as the query.
   ground_radius_m = atmosphere.radius_m + (sky ? std::min(query.altitude_m, 0.0) : ground_altitude_m(query.altitude_m));
@@ -269,11 +298,11 @@ Scene::Scene(const Atmosphere& atmosphere, const RayQuery& query, const Options&
     const Line line(atmosphere, start, view, ground_radius_m);
     Amounts integrals = line.total();
     integrals.ozone = line.ozone_travelled(line.end());
-    for (std::size_t c = 0; c < 3; ++c) transmittance[c] = atmosphere.transmittance(integrals, c);
+    for (std::size_t c = 0; c < N; ++c) transmittance[c] = atmosphere.transmittance(integrals, c);
     if (sky && line.hits_ground()) transmittance = {};
-    if (!sky && visible_ground && line.hits_ground() && sum(atmosphere.ground_albedo) > 0.0) {
-      Rgb weight;
-      for (std::size_t c = 0; c < 3; ++c) weight[c] = transmittance[c] * atmosphere.ground_albedo[c];
+    if (!sky && visible_ground && line.hits_ground() && atmosphere.reflects()) {
+      Light<N> weight;
+      for (std::size_t c = 0; c < N; ++c) weight[c] = transmittance[c] * atmosphere.ground_albedo[c];
       add_ground(atmosphere, ground_vertex(atmosphere, line), sun, weight, ground);
     }
   }
@@ -281,26 +310,35 @@ Scene::Scene(const Atmosphere& atmosphere, const RayQuery& query, const Options&
   if (!sky) origin = start;
 }
 
-void trace_block(const Scene& scene, std::uint64_t seed, int log2_count, std::span<Rgb> means) {
+template <std::size_t N>
+void trace_block(const Scene<N>& scene, std::uint64_t seed, int log2_count, std::span<Light<N>> means) {
   Generator generator(seed);
   const SobolBlock block(log2_count, generator);
   const std::uint32_t count = 1U << log2_count;
-  for (Rgb& mean : means) mean = {};
+  for (Light<N>& mean : means) mean = {};
+  Light<N> white{};
+  std::fill_n(white.begin(), scene.air->channels, 1.0);
   std::optional<Line> camera;
   if (!scene.sky) camera.emplace(*scene.air, scene.origin, scene.view, scene.ground_radius_m);
   for (std::uint32_t i = 0; i < count; ++i) {
     PathNumbers numbers(block, i, generator);
-    Rgb weight = {1.0, 1.0, 1.0};
+    Light<N> weight = white;
     if (scene.sky) {
       const double u = numbers.next();
       camera.emplace(*scene.air, scene.origin, cosine_direction({0.0, 0.0, 1.0}, u, numbers.next()));
-      weight = {kPi, kPi, kPi};
+      for (double& value : weight) value *= kPi;
     }
     trace_path(scene, *camera, numbers, weight, means);
   }
-  for (Rgb& mean : means) {
+  for (Light<N>& mean : means) {
     for (double& value : mean) value /= static_cast<double>(count);
   }
 }
+
+template struct Scene<3>;
+template struct Scene<kMaxWavelengths>;
+template void trace_block<3>(const Scene<3>&, std::uint64_t, int, std::span<Light<3>>);
+template void trace_block<kMaxWavelengths>(const Scene<kMaxWavelengths>&, std::uint64_t, int,
+                                           std::span<Light<kMaxWavelengths>>);
 
 }  // namespace tyndall::reference

@@ -47,7 +47,9 @@ BackgroundConstants background_constants(const ModelFrame& frame, const glm::dve
   const View& view = frame.view;
   const double radius_rad = frame.scene.sun.angular_radius_deg * kRadPerDeg;
   const double solid_angle = 6.283185307179586 * (1.0 - std::cos(radius_rad));
-  const Vec3& sun = frame.light.sun_irradiance;
+  const Vec3 color = sun_color(frame.params);
+  const Vec3& irradiance = frame.light.sun_irradiance;
+  const Vec3 sun = {irradiance.x * color.x, irradiance.y * color.y, irradiance.z * color.z};
   BackgroundConstants out = {};
   out.local_from_view = camera_from_view(view, frame.local.local_from_world).world_from_view;
   out.world_from_local = to_mat4(frame.local.world_from_local);

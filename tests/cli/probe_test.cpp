@@ -284,5 +284,45 @@ TEST_F(CliProbe, AMillionLines) {
   EXPECT_TRUE(written.ends_with("100000,1,30,279,0,0,0,1,1,1\n")) << written.substr(written.size() - 60);
 }
 
+// With four wavelengths, the path tracer with forty confirms the columns X, Y and Z, and models with three channels
+// refuse.
+TEST_F(CliProbe, SpectralColours) {
+  const std::string queries = kHeader + "0,60,80,30\n0,sky,60,\n";
+  const std::vector<std::string> spectral = {"--set", "scattering.color=spectral"};
+  const files::CsvTable single = probe(queries, spectral);
+  ASSERT_EQ(single.rows(), 2U);
+  ASSERT_EQ(single.header.size(), 13U);
+  std::vector<std::string> traced = spectral;
+  traced.insert(traced.end(), {"--model", "reference", "--orders", "1", "--samples", "4000"});
+  const files::CsvTable reference = probe(queries, traced);
+  ASSERT_EQ(reference.header.size(), 16U);
+  for (std::size_t row = 0; row < 2; ++row) {
+    const double noise = 4.0 * 683.0 * number(reference, row, "stderr_g") / number(reference, row, "Y");
+    for (const char* const column : {"X", "Y", "Z"}) {
+      EXPECT_NEAR(number(single, row, column) / number(reference, row, column), 1.0, 0.01 + noise) << row << column;
+    }
+    // Y is the luminance of the colour.
+    EXPECT_NEAR(number(single, row, "Y") / 683.0,
+                0.2126729 * number(single, row, "L_r") + 0.7151522 * number(single, row, "L_g") +
+                    0.0721750 * number(single, row, "L_b"),
+                1e-5 * number(single, row, "Y"));
+    for (const char* const column : {"T_r", "T_g", "T_b"}) {
+      EXPECT_NEAR(number(single, row, column), number(reference, row, column), 0.005) << row << column;
+    }
+  }
+  for (const char* const model : {"oneil", "oneil-table", "homogeneous"}) {
+    const ProcessResult process = run_tyndall({"probe", "--queries", scratch_.write("q.csv", queries), "--model", model,
+                                               "--set", "scattering.color=spectral"});
+    EXPECT_EQ(process.status, 2) << model;
+    EXPECT_NE(process.err.find("scattering.color: 'spectral' is not supported by the model '" + std::string(model)),
+              std::string::npos)
+        << process.err;
+  }
+  const ProcessResult scene = run_tyndall(
+      {"render", "-o", scratch_.at("a.png"), "--set", "scattering.color=spectral", "--set", "scattering.model=oneil"});
+  EXPECT_EQ(scene.status, 2);
+  EXPECT_NE(scene.err.find("scattering.color"), std::string::npos) << scene.err;
+}
+
 }  // namespace
 }  // namespace tyndall::cli

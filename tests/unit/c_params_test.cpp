@@ -190,7 +190,7 @@ TEST(CInterface, EveryParameterCanBeSet) {
   }
   std::uint32_t mask = 0;
   EXPECT_EQ(tyndall_params_affected(before.get(), params.get(), &mask), TyndallStatus_success);
-  EXPECT_EQ(mask, 0xFU);
+  EXPECT_EQ(mask, 0x1FU);
   EXPECT_EQ(tyndall_params_copy(before.get(), params.get()), TyndallStatus_success);
   EXPECT_EQ(tyndall_params_affected(before.get(), params.get(), &mask), TyndallStatus_success);
   EXPECT_EQ(mask, 0U);
@@ -260,6 +260,9 @@ TEST(CInterface, NullPointersAreRefused) {
   expect_invalid(tyndall_params_set_choice(p, "scattering.technique", nullptr), {"'choice' is null"});
   expect_invalid(tyndall_params_get_choice(p, "scattering.technique", nullptr), {"'choice' is null"});
   expect_invalid(tyndall_params_get_choice(nullptr, name, &choice), {"'params' is null"});
+  float color[3] = {};
+  expect_invalid(tyndall_params_sun_color(nullptr, color), {"'params' is null"});
+  expect_invalid(tyndall_params_sun_color(p, nullptr), {"'color' is null"});
   expect_invalid(tyndall_params_affected(nullptr, p, &mask), {"'before' is null"});
   expect_invalid(tyndall_params_affected(p, nullptr, &mask), {"'after' is null"});
   expect_invalid(tyndall_params_affected(p, p, nullptr), {"'mask' is null"});

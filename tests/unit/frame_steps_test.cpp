@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 #include <string>
+#include <tuple>
 #include <unordered_set>
 
 #include "effect/frame_steps.hpp"
@@ -330,23 +331,23 @@ TEST(FrameSteps, BarriersAreOnlyWhereTheyAreNeeded) {
 
 // prepare_pipelines() creates the pipelines that frames need and no others; record() creates none.
 TEST(FrameSteps, AllPipelinesAreFound) {
-  for (const auto& chosen :
-       {std::pair(false, Target::cpu), std::pair(true, Target::cpu), std::pair(true, Target::gpu)}) {
-    const bool colors = chosen.first;
-    const Target target = chosen.second;
+  for (const auto& [colors, target, color] :
+       {std::tuple(false, Target::cpu, ColorMode::rgb), std::tuple(true, Target::gpu, ColorMode::rgb),
+        std::tuple(true, Target::cpu, ColorMode::spectral)}) {
     EffectDesc desc;
     desc.shadow_colors = colors;
-    const std::vector<PipelineKey> list = all_frame_pipelines(desc, target);
+    const std::vector<PipelineKey> list = all_frame_pipelines(desc, target, color);
     const KeySet all(list.begin(), list.end());
     EXPECT_EQ(all.size(), list.size());
     KeySet reached;
-    for_each_mode([&](Params params) {
+    for_each_mode([&, with_glass = colors, device = target, mode = color](Params params) {
       params.epipolar.show_sampling = true;
+      params.scattering.color = mode;
       for (const bool enabled : {false, true}) {
         params.scattering.enabled = enabled;
         for (FrameShape shape : kShapes) {
-          shape.shadow_colors = shape.shadow_colors && colors;
-          shape.target = target;
+          shape.shadow_colors = shape.shadow_colors && with_glass;
+          shape.target = device;
           for (const Step& step : frame_steps(desc, params, shape)) {
             if (step.dispatches()) reached.insert(step.pipeline);
           }

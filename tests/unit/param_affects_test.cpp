@@ -93,13 +93,13 @@ Requirement requirement_of(const ParamInfo& info) {
 TEST(ParamAffects, AgreesWithTheStepsAndTheTables) {
   for (const ParamInfo& info : param_table()) {
     const Requirement needs = requirement_of(info);
-    const Affects expected = needs.tables      ? Affects::Tables
-                             : needs.buffers   ? Affects::Resources
-                             : needs.pipelines ? Affects::Pipeline
-                                               : Affects::Frame;
+    const bool others = needs.buffers || needs.pipelines;
+    const Affects expected = needs.tables && others ? Affects::Everything
+                             : needs.tables         ? Affects::Tables
+                             : needs.buffers        ? Affects::Resources
+                             : needs.pipelines      ? Affects::Pipeline
+                                                    : Affects::Frame;
     EXPECT_EQ(static_cast<int>(info.affects), static_cast<int>(expected)) << info.group << "." << info.name;
-    // A parameter has only one declaration, so it must not need both tables and other objects.
-    EXPECT_FALSE(needs.tables && (needs.buffers || needs.pipelines)) << info.group << "." << info.name;
   }
 }
 

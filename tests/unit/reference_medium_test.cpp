@@ -217,8 +217,8 @@ TEST(ReferenceMedium, ShadowHidesTheSun) {
     for (int k = 0; k < 20; ++k) {
       const double s = line.start() + (line.end() - line.start()) * random.uniform();
       const LinePoint p = line.point(s);
-      Rgb through;
-      const bool lit = sun_transmittance(air, line.position(s), p.r, p.density, sun, through);
+      Amounts through;
+      const bool lit = sunward_integrals(air, line.position(s), p.r, p.density, sun, through);
       EXPECT_EQ(lit, !(s > shadow.from && s < shadow.to));
       shadowed += lit ? 0 : 1;
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "validate/color.hpp"
 #include "validate/plot.hpp"
 #include "validate/rays.hpp"
 #include "validate/report.hpp"
@@ -269,18 +270,22 @@ TEST(ValidateStudy, FindsAllErrorsAndNoOthers) {
     EXPECT_EQ(html.find(foreign), std::string::npos) << foreign;
   }
   EXPECT_EQ(html.find("nan"), std::string::npos);
-  const std::string page = to_markdown(study.value(), origin);
+  const Color white = {1.0, 1.0, 1.0};
+  const ColorTest colors = {
+      {"rgb"}, {{30.0, 5.0, 90.0}, {30.0, 60.0, 90.0}}, {white, white}, {0.01, 0.01}, {{white, {1.1, 1.1, 1.1}}}};
+  const std::string page = to_markdown(study.value(), colors, origin);
+  EXPECT_NE(page.find("| rgb | 60° to 14° | 30° to 90° | 10.00 | 10.00 | 0.0000 |"), std::string::npos) << page;
   EXPECT_LT(page.find("    tyndall validate <&>\n"), page.find("## Models"));
   EXPECT_NE(page.find("| all | 0.50 | 0.2 | 0 to -6 deg |"), std::string::npos);
   EXPECT_EQ(page.find("| first | 0.50 | 0.2 |"), std::string::npos);  // compared with order 1 only
   EXPECT_NE(html.find("Turbid atmospheres near the horizon"), std::string::npos);
-  EXPECT_NE(to_json(study.value(), origin).find("\"optical_depth\": 0.3"), std::string::npos);
+  EXPECT_NE(to_json(study.value(), colors, origin).find("\"optical_depth\": 0.3"), std::string::npos);
   EXPECT_EQ(page.find("nan"), std::string::npos);
 
   const Result<Study> again = run_study({}, options, models, {tracer("at the horizon", 0, 1.0)}, [](double) {});
   ASSERT_TRUE(again.ok());
   EXPECT_EQ(to_html(again.value(), origin), html);
-  EXPECT_EQ(to_json(again.value(), origin), to_json(study.value(), origin));
+  EXPECT_EQ(to_json(again.value(), colors, origin), to_json(study.value(), colors, origin));
 }
 
 TEST(ValidateStudy, AFailingModelEndsIt) {
@@ -293,6 +298,37 @@ TEST(ValidateStudy, AFailingModelEndsIt) {
   const Result<Study> study = run_study({}, options, {broken}, {}, [](double) {});
   ASSERT_FALSE(study.ok());
   EXPECT_EQ(study.error().message, "gone");
+}
+
+// Pairs 1, 2, 7, 9, 17 and 25 of the test data of Sharma, Wu and Dalal (2005), table 1.
+TEST(ValidateColor, Ciede2000OfThePublishedPairs) {
+  struct Pair {
+    std::array<double, 3> a, b;
+    double expected;
+  };
+  const Pair pairs[] = {{{50.0, 2.6772, -79.7751}, {50.0, 0.0, -82.7485}, 2.0425},
+                        {{50.0, 3.1571, -77.2803}, {50.0, 0.0, -82.7485}, 2.8615},
+                        {{50.0, 0.0, 0.0}, {50.0, -1.0, 2.0}, 2.3669},
+                        {{50.0, 2.49, -0.001}, {50.0, -2.49, 0.0009}, 7.1792},
+                        {{50.0, 2.5, 0.0}, {73.0, 25.0, -18.0}, 27.1492},
+                        {{60.2574, -34.0099, 36.2677}, {60.4626, -34.1751, 39.4387}, 1.2644}};
+  for (const Pair& pair : pairs) {
+    EXPECT_NEAR(ciede2000(pair.a, pair.b), pair.expected, 5e-5);
+    EXPECT_NEAR(ciede2000(pair.b, pair.a), pair.expected, 5e-5);
+  }
+}
+
+TEST(ValidateColor, ErrorsOfColours) {
+  const Color color = {0.2, 0.3, 0.5};
+  const ColorError none = color_error(color, color, 1.0);
+  EXPECT_EQ(none.luminance, 0.0);
+  EXPECT_EQ(none.chromaticity, 0.0);
+  EXPECT_EQ(none.difference, 0.0);
+  const ColorError brighter = color_error({0.22, 0.33, 0.55}, color, 1.0);
+  EXPECT_NEAR(brighter.luminance, 0.1, 1e-9);
+  EXPECT_NEAR(brighter.chromaticity, 0.0, 1e-9);
+  EXPECT_GT(brighter.difference, 1.0);
+  EXPECT_GT(color_error({0.25, 0.3, 0.5}, color, 1.0).chromaticity, 0.005);
 }
 
 }  // namespace

@@ -9,23 +9,24 @@ namespace {
 using Drawn = ScatteringModel;
 
 constexpr ModelInfo kModels[] = {
-    {ModelId::precomputed, "precomputed", "all orders of scattering, from the renderer's tables", 0, false,
+    {ModelId::precomputed, "precomputed", "all orders of scattering, from the renderer's tables", 0, false, true,
      DrawnBy{Drawn::atmosphere, MediumKind::atmosphere}, "Atmosphere, all orders, light shafts (Yusov 2013)"},
-    {ModelId::single, "single", "single scattering, integrated along every ray", 1, false, {}, nullptr},
+    {ModelId::single, "single", "single scattering, integrated along every ray", 1, false, true, {}, nullptr},
     {ModelId::homogeneous, "homogeneous",
      "Hoffman and Preetham 2002: single scattering in closed form; the same density at every altitude, no ozone, and "
      "the sun sets at the horizontal",
-     1, false, DrawnBy{Drawn::homogeneous}, "Air and haze (Hoffman and Preetham 2002)"},
+     1, false, false, DrawnBy{Drawn::homogeneous}, "Air and haze (Hoffman and Preetham 2002)"},
     {ModelId::homogeneous_medium, "homogeneous-medium",
      "Yusov 2012: scattering.medium = homogeneous without shadows; constant density, sunlight that is not attenuated, "
      "and no sunset",
-     1, false, DrawnBy{Drawn::atmosphere, MediumKind::homogeneous}, "Homogeneous medium, light shafts (Yusov 2012)"},
+     1, false, true, DrawnBy{Drawn::atmosphere, MediumKind::homogeneous},
+     "Homogeneous medium, light shafts (Yusov 2012)"},
     {ModelId::oneil, "oneil",
-     "O'Neil 2005: single scattering from a few sample points and the scale function, without ozone", 1, false,
+     "O'Neil 2005: single scattering from a few sample points and the scale function, without ozone", 1, false, false,
      DrawnBy{Drawn::oneil}, "Scale function (O'Neil 2005)"},
     {ModelId::oneil_table, "oneil-table", "O'Neil 2004: oneil with a table instead of the scale function", 1, false,
-     DrawnBy{Drawn::oneil_table}, "Table (O'Neil 2004)"},
-    {ModelId::reference, "reference", "the path tracer", 0, true, {}, nullptr},
+     false, DrawnBy{Drawn::oneil_table}, "Table (O'Neil 2004)"},
+    {ModelId::reference, "reference", "the path tracer", 0, true, true, {}, nullptr},
 };
 
 constexpr bool in_order() {

@@ -32,6 +32,7 @@ struct ModelInfo {
   std::string_view meaning;  // one line, for reports
   int orders;                // number of orders of scattering; 0: all
   bool random;               // its results have a standard error
+  bool spectral;             // scattering.color = spectral is supported
   std::optional<DrawnBy> drawn_by;
   const char* title;  // in menus; nullptr if it cannot draw the scene
 };

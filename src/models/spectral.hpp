@@ -1,0 +1,41 @@
+// Light at the four wavelengths of scattering.color = spectral, for models with three channels: they are evaluated for
+// the first three wavelengths and again for the fourth.
+#pragma once
+
+#include <utility>
+
+#include "effect/spectral_medium.hpp"
+#include "models/single_scattering.hpp"
+
+namespace tyndall::models {
+
+// Returns the medium whose three channels are all that of the fourth wavelength.
+[[nodiscard]] inline shared::Medium medium_at_fourth(const shared::SpectralMedium& medium) {
+  shared::Medium out = medium;
+  out.rayleigh_scattering = Vec3(medium.fourth_channel.x);
+  out.mie_scattering = Vec3(medium.fourth_channel.y);
+  out.mie_extinction = Vec3(medium.fourth_channel.z);
+  out.ozone_absorption = Vec3(medium.fourth_channel.w);
+  out.ground_albedo = Vec3(medium.fourth_ground_albedo);
+  return out;
+}
+
+// Evaluates `model`, a function of a shared::Medium that returns an Answer, in the channels of the parameters.
+template <typename Model>
+[[nodiscard]] Answer in_all_channels(const Params& params, const shared::SpectralMedium& medium, const Model& model) {
+  Answer out = model(static_cast<const shared::Medium&>(medium));
+  if (params.scattering.color == ColorMode::rgb) return out;
+  const Answer fourth = model(medium_at_fourth(medium));
+  out.radiance_fourth = fourth.radiance[0];
+  out.transmittance_fourth = fourth.transmittance[0];
+  return out;
+}
+
+[[nodiscard]] inline FourChannels radiance_of(const Answer& a) {
+  return {a.radiance[0], a.radiance[1], a.radiance[2], a.radiance_fourth};
+}
+[[nodiscard]] inline FourChannels transmittance_of(const Answer& a) {
+  return {a.transmittance[0], a.transmittance[1], a.transmittance[2], a.transmittance_fourth};
+}
+
+}  // namespace tyndall::models

@@ -1,0 +1,157 @@
+// scattering.color = spectral: frames against the models in double precision, epipolar sampling against brute force,
+// and changes between both modes.
+#include <cmath>
+
+#include "effect/spectral_medium.hpp"
+#include "models/spectral.hpp"
+#include "shared_effect.hpp"
+
+namespace tyndall {
+namespace {
+
+class Spectral : public SharedEffect {
+ protected:
+  static Params spectral_params() {
+    Params params = small_params();
+    params.scattering.color = ColorMode::spectral;
+    return params;
+  }
+  // Sets the parameters and builds their tables.
+  void prepare(const Params& params) {
+    ASSERT_OK(effect().set_params(params));
+    while (!effect().precompute_progress().complete()) {
+      ASSERT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
+        const Result<Progress> built = effect().record_precompute(cmd);
+        if (!built.ok()) return built.error();
+        return {};
+      }));
+    }
+  }
+};
+
+BoxScene evening() {
+  BoxScene scene;
+  scene.name = "evening";
+  return scene;
+}
+
+// Returns the colour that the model in double precision gives for a ray of single scattering.
+glm::dvec3 expected_color(const Params& params, const RayAngles& ray) {
+  const models::Answer answer =
+      models::in_all_channels(params, spectral_medium_from_params(params), [&](const shared::Medium& medium) {
+        return models::single_scattering(medium, {ray.altitude_m, ray.cos_view, ray.cos_sun, ray.cos_view_sun});
+      });
+  const std::array<double, 3> color = color_of_light(models::radiance_of(answer));
+  return {std::max(color[0], 0.0), std::max(color[1], 0.0), std::max(color[2], 0.0)};
+}
+
+TEST_F(Spectral, TheSkyHasTheColourOfTheModel) {
+  TestFrame sky;
+  sky.to_sun = glm::normalize(glm::dvec3(0.3, 0.1, -1.0));
+  show(sky);
+  Params params = spectral_params();
+  params.scattering.technique = Technique::brute_force;
+  params.scattering.single = SingleScattering::integration;
+  params.scattering.multiple = MultipleScattering::none;
+  params.scattering.scale = 1.0F;
+  prepare(params);
+  const Picture picture = draw(params, "sky");
+  for (std::uint32_t y = 0; y < sky.extent.height; ++y) {
+    for (std::uint32_t x = 0; x < sky.extent.width; ++x) {
+      const glm::dvec3 expected = expected_color(params, sky.ray(x, y, params.planet.radius_m));
+      const glm::dvec3& found = picture[y * sky.extent.width + x];
+      // The renderer's integration has coarser steps: lib/single_scattering.glsl.
+      const double largest = std::max({expected.x, expected.y, expected.z});
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 0.01 * largest) << x << ' ' << y;
+    }
+  }
+}
+
+TEST_F(Spectral, EpipolarSamplingMatchesBruteForce) {
+  show(evening());
+  Params params = spectral_params();
+  prepare(params);
+  expect_alike("spectral, unoccluded", params, 44.0);
+  params.scattering.multiple = MultipleScattering::occluded;
+  expect_alike("spectral, occluded", params, 44.0);
+  params.scattering.single = SingleScattering::integration;
+  expect_alike("spectral, integrated", params, 44.0);
+  params.scattering.downscale = 2;
+  expect_alike("spectral, half resolution", params, 40.0);
+  params.scattering.downscale = 1;
+  params.scattering.medium = MediumKind::homogeneous;
+  expect_alike("spectral, homogeneous", params, 44.0);
+}
+
+// The state of rays between passes is stored with all channels.
+TEST_F(Spectral, CascadesInSeveralPassesGiveTheSamePicture) {
+  show(evening());
+  Params params = spectral_params();
+  params.scattering.multiple = MultipleScattering::occluded;
+  params.scattering.sections = LitSections::each;
+  prepare(params);
+  const Picture together = draw(params, "one pass");
+  for (const CascadeProcessing processing : {CascadeProcessing::multi_pass, CascadeProcessing::multi_pass_instanced}) {
+    params.shadows.cascade_processing = processing;
+    const Likeness likeness = compare(draw(params, "several passes"), together, frame().extent);
+    EXPECT_GE(likeness.psnr_db, 60.0);
+  }
+}
+
+TEST_F(Spectral, ClearAirLeavesTheBackgroundAsItIs) {
+  TestFrame frame;
+  frame.background = {0.7F, 0.2F, 0.05F};
+  frame.distance_m = [](std::uint32_t, std::uint32_t) { return 50000.0; };
+  show(frame);
+  Params params = spectral_params();
+  params.atmosphere.custom_coefficients = true;
+  params.atmosphere.rayleigh_scattering = Vec3(0.0F);
+  params.atmosphere.mie_scattering = Vec3(0.0F);
+  params.atmosphere.mie_absorption = Vec3(0.0F);
+  params.atmosphere.ozone_absorption = Vec3(0.0F);
+  prepare(params);
+  for (const Technique technique : {Technique::brute_force, Technique::epipolar}) {
+    params.scattering.technique = technique;
+    for (const glm::dvec3& pixel : draw(params, "clear air")) {
+      EXPECT_NEAR(pixel.x, 0.7, 1e-3);
+      EXPECT_NEAR(pixel.y, 0.2, 1e-3);
+      EXPECT_NEAR(pixel.z, 0.05, 1e-3);
+    }
+  }
+}
+
+// Until the tables of the other mode are complete, frames are drawn with those that exist.
+TEST_F(Spectral, ChangesOfTheModeShowNoUnfinishedTables) {
+  show(evening());
+  prepare(small_params());
+  const Picture rgb = draw(small_params(), "rgb");
+  EXPECT_EQ(draw(spectral_params(), "spectral without tables"), rgb);
+  EXPECT_FALSE(effect().precompute_progress().complete());
+  prepare(spectral_params());
+  const Picture spectral = draw(spectral_params(), "spectral");
+  EXPECT_NE(spectral, rgb);
+  EXPECT_EQ(draw(small_params(), "rgb without tables"), spectral);
+  prepare(small_params());
+  EXPECT_EQ(draw(small_params(), "rgb again"), rgb);
+}
+
+TEST_F(Spectral, MemoryGrowsByATenthAtMost) {
+  EffectDesc desc;
+  desc.max_extent = {1280, 720};
+  Params params;
+  const Result<MemoryUsage> rgb = query_memory(info(), desc, params);
+  params.scattering.color = ColorMode::spectral;
+  const Result<MemoryUsage> spectral = query_memory(info(), desc, params);
+  ASSERT_TRUE(rgb.ok() && spectral.ok());
+  const auto ratio = [](VkDeviceSize a, VkDeviceSize b) { return static_cast<double>(a) / static_cast<double>(b); };
+  EXPECT_LE(ratio(spectral.value().persistent, rgb.value().persistent), 1.1);
+  EXPECT_LE(ratio(spectral.value().transient, rgb.value().transient), 1.1);
+  prepare(spectral_params());
+  const MemoryUsage used = effect().memory();
+  const Result<MemoryUsage> planned = query_memory(info(), SharedEffect::desc(), spectral_params());
+  ASSERT_OK(planned);
+  EXPECT_EQ(used.persistent, planned.value().persistent);
+}
+
+}  // namespace
+}  // namespace tyndall
