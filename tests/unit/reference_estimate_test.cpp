@@ -37,7 +37,7 @@ bool same_bits(const Rgb& a, const Rgb& b) { return std::memcmp(a.data(), b.data
 
 TEST(ReferenceEstimate, IndependentOfThreads) {
   Params p;
-  p.planet.ground_albedo = Vec3(0.2F);
+  p.planet.ground_albedo = tyndall::Vec3(0.2F);
   const std::vector<RayQuery> queries = {
       ray(0.0, 60.0, 40.0, 20.0), {100.0, 0.0, 80.0 * kDegree, 0.0, true}, ray(0.0, 80.0, 96.0, 100.0)};
   Options options;
@@ -87,7 +87,7 @@ TEST(ReferenceEstimate, HonestErrorsOfTheSky) { expect_honest_errors({0.0, 0.0, 
 
 TEST(ReferenceEstimate, OrdersAddUp) {
   Params p;
-  p.planet.ground_albedo = Vec3(0.5F);
+  p.planet.ground_albedo = tyndall::Vec3(0.5F);
   const std::vector<RayQuery> queries = {ray(2000.0, 120.0, 30.0, 50.0), ray(0.0, 50.0, 70.0, 10.0)};
   Options options;
   options.samples = 20000;
@@ -187,7 +187,7 @@ TEST(ReferenceEstimate, ExtremesStayFinite) {
   worlds[2].atmosphere.aerosol_absorption = 10.0F;
   worlds[2].atmosphere.mie_g = 0.99F;
   worlds[3].atmosphere.rayleigh_scale_height_m = worlds[3].atmosphere.mie_scale_height_m = 1e6F;
-  worlds[3].planet.ground_albedo = Vec3(1.0F);
+  worlds[3].planet.ground_albedo = tyndall::Vec3(1.0F);
   worlds[4].atmosphere.custom_coefficients = true;
   worlds[4].atmosphere.rayleigh_scattering = tyndall::Vec3(1.0F, 0.0F, 1e-12F);
   worlds[4].atmosphere.mie_scattering = worlds[4].atmosphere.mie_absorption = tyndall::Vec3(0.0F, 0.0F, 1.0F);

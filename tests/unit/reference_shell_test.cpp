@@ -179,7 +179,7 @@ TEST(ReferenceShell, OzoneAloneOnlyAbsorbs) {
 
 TEST(ReferenceShell, RaysFromSpace) {
   Params p;
-  p.planet.ground_albedo = Vec3(0.3F);
+  p.planet.ground_albedo = tyndall::Vec3(0.3F);
   const double radius = p.planet.radius_m, top = radius + p.atmosphere.height_m;
   // Rays past the atmosphere, away from it, and outwards from its edge have no radiance and a transmittance of 1.
   const auto missed = run(p,
@@ -223,7 +223,7 @@ TEST(ReferenceShell, RaysFromSpace) {
 
 TEST(ReferenceShell, VisibleGround) {
   Params p;
-  p.planet.ground_albedo = Vec3(0.4F);
+  p.planet.ground_albedo = tyndall::Vec3(0.4F);
   const std::vector<RayQuery> queries = {ray(3000.0, 130.0, 50.0, 30.0), ray(0.0, 60.0, 50.0, 30.0)};
   const auto with = run(p, queries, 50000, 4), without = run(p, queries, 50000, 4, false, false);
   // The light of the ground is that of sun and sky, reflected and attenuated.

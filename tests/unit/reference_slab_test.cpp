@@ -144,7 +144,7 @@ TEST(ReferenceSlab, SingleScatteringClosedForm) {
 void expect_isotropic(const std::array<double, 3>& depth, const std::array<double, 3>& albedo, double ground,
                       int orders, std::uint64_t samples) {
   Params p = slab(depth, albedo);
-  p.planet.ground_albedo = Vec3(static_cast<float>(ground));
+  p.planet.ground_albedo = tyndall::Vec3(static_cast<float>(ground));
   const double mu0 = 0.6, mu = 0.35;
   const auto estimates = run(p, {up(mu, mu0), down(mu, mu0), sky(mu0)}, samples, orders, true);
   for (std::size_t c = 0; c < 3; ++c) {
@@ -187,7 +187,7 @@ TEST(ReferenceSlab, IsotropicThickLayer) { expect_isotropic({6.0, 6.0, 6.0}, {1.
 TEST(ReferenceSlab, Reciprocity) {
   for (const MiePhase phase : {MiePhase::cornette_shanks, MiePhase::henyey_greenstein}) {
     Params p = slab({0.3, 1.0, 3.0}, {0.9, 1.0, 0.8}, 0.76, phase);
-    p.planet.ground_albedo = Vec3(0.3F);
+    p.planet.ground_albedo = tyndall::Vec3(0.3F);
     p.atmosphere.rayleigh_scattering = Vec3(1e-3F, 2e-3F, 3e-3F);
     p.atmosphere.rayleigh_scale_height_m = 400.0F;
     const double a = 0.9, b = 0.3;
@@ -239,7 +239,7 @@ TEST(ReferenceSlab, ConservesEnergy) {
 TEST(ReferenceSlab, WhiteFurnaceOfAWholePlanet) {
   Params p = slab({0.1, 0.4, 1.0}, {1.0, 1.0, 1.0}, 0.4, MiePhase::cornette_shanks);
   p.planet.radius_m = 10000.0F;
-  p.planet.ground_albedo = Vec3(1.0F);
+  p.planet.ground_albedo = tyndall::Vec3(1.0F);
   p.atmosphere.height_m = 8000.0F;
   p.atmosphere.mie_scale_height_m = 2000.0F;
   for (float* v : {&p.atmosphere.mie_scattering.x, &p.atmosphere.mie_scattering.y, &p.atmosphere.mie_scattering.z}) {
