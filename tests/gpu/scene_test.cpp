@@ -258,7 +258,8 @@ TEST_F(GpuScene, DrawsForViewers) {
   EXPECT_TRUE(drawn("shadow_maps"));
   // Coarser terrain differs only slightly. In a narrow field of view, the cells of a picture this small are fine.
   SceneParams narrow;
-  narrow.camera.fov_deg = 3.0F;
+  narrow.camera.fov_deg = 4.5F;
+  narrow.camera.pitch_deg = -28.0F;
   const image::Image fine = draw(*plain, narrow);
   desc.tables_later = false;
   desc.terrain_coarseness = 4;
