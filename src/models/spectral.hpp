@@ -11,7 +11,7 @@ namespace tyndall::models {
 
 // Returns the medium whose three channels are all that of the fourth wavelength.
 [[nodiscard]] inline shared::Medium medium_at_fourth(const shared::SpectralMedium& medium) {
-  shared::Medium out = medium;
+  shared::Medium out = static_cast<const shared::Medium&>(medium);
   out.rayleigh_scattering = Vec3(medium.fourth_channel.x);
   out.mie_scattering = Vec3(medium.fourth_channel.y);
   out.mie_extinction = Vec3(medium.fourth_channel.z);

@@ -43,6 +43,16 @@ Params random_params(std::mt19937& engine) {
       std::memcpy(at, &value, sizeof value);
     }
   }
+  // Measured quantities require wavelengths for which there are data, and some exclude each other.
+  AtmosphereParams& air = params.atmosphere;
+  if (!check_params(params).ok()) {
+    air.wavelengths_nm = AtmosphereParams().wavelengths_nm;
+    air.visibility_m = 0.0F;
+  }
+  if (!check_params(params).ok()) {
+    air.aerosol_optical_depth = air.ozone_du = air.pressure_hpa = 0.0F;
+    params.scattering.color = ColorMode::rgb;
+  }
   // More than 200 steps would take minutes and test nothing more.
   params.scattering.integration_steps = std::min(params.scattering.integration_steps, 200U);
   // Millions of samples for 16 pixels would also take minutes. epipolar_views_test.cpp tests both ends of these ranges.
@@ -63,7 +73,7 @@ TEST_F(EffectExtremes, EveryAllowedParameterGivesFiniteRadiance) {
     desc.max_shadow_resolution = shape.shadow_resolution;
     Result<Effect> effect = Effect::create(info(), desc, {});
     ASSERT_OK(effect);
-    for (int i = 0; i < 200; ++i) {
+    for (int i = 0; i < 120; ++i) {
       const Params params = random_params(engine);
       ASSERT_OK(effect.value().set_params(params));
       const auto pick = [&](std::initializer_list<double> values) {
