@@ -125,7 +125,8 @@ bundle-chroot: bundle
 
 # Debian packages, with the folders and the hardening options of Debian.
 packages: setup
-	@cmake --preset release -B build/debian -D CMAKE_INSTALL_PREFIX=/usr -D TYNDALL_BUILD_TESTS=OFF --log-level=WARNING \
+	@cmake --preset release -B build/debian -D CMAKE_INSTALL_PREFIX=/usr -D TYNDALL_BUILD_TESTS=OFF \
+	  -D TYNDALL_SOURCE_FOLDER= --log-level=WARNING \
 	  -D CMAKE_CXX_FLAGS="$$(DEB_CXXFLAGS_MAINT_STRIP='-g -O2' dpkg-buildflags --get CXXFLAGS) $$(dpkg-buildflags --get CPPFLAGS)" \
 	  -D CMAKE_EXE_LINKER_FLAGS="$$(dpkg-buildflags --get LDFLAGS)" -D CMAKE_SHARED_LINKER_FLAGS="$$(dpkg-buildflags --get LDFLAGS)"
 	@cmake --build build/debian
