@@ -119,8 +119,7 @@ std::string_view name_declared(const std::vector<std::string_view>& words) {
   for (std::size_t i = 0; i < words.size(); ++i) {
     if (words[i] == "struct" && i + 1 < words.size()) return words[i + 1];
     const bool ends = words[i] == "(" || words[i] == "=" || words[i] == "[";
-    if (depth == 0 && ends && i > 0 && words[i - 1] != "layout" && words[i - 1].size() > 0 &&
-        is_word(words[i - 1][0])) {
+    if (depth == 0 && ends && i > 0 && words[i - 1] != "layout" && !words[i - 1].empty() && is_word(words[i - 1][0])) {
       // `TABLE_LAYOUT(0) uniform sampler3D name`: the call of a macro in place of a layout is not the name.
       const bool first = i == 1;
       if (!first) return words[i - 1];

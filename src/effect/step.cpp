@@ -48,15 +48,22 @@ static_assert([] {
   return true;
 }());
 
+constexpr auto kNames = [] {
+  std::array<std::string_view, kShaders> out = {};
+  for (std::size_t i = 0; i < kShaders; ++i) out[i] = shaders::effect_shaders[i]->name;
+  return out;
+}();
+
 // Returns the index of the variant of every shader whose name ends in `suffix`; of shaders without it, their own.
+// Lengths are compared first: compilers limit the number of steps at compile time.
 constexpr std::array<std::size_t, kShaders> find_variants(std::string_view suffix) {
   std::array<std::size_t, kShaders> out = {};
-  for (std::size_t i = 0; i < kShaders; ++i) {
-    const std::string_view name = shaders::effect_shaders[i]->name;
-    out[i] = i;
-    for (std::size_t k = 0; k < kShaders; ++k) {
-      const std::string_view other = shaders::effect_shaders[k]->name;
-      if (other.size() == name.size() + suffix.size() && other.starts_with(name) && other.ends_with(suffix)) out[i] = k;
+  for (std::size_t i = 0; i < kShaders; ++i) out[i] = i;
+  for (std::size_t k = 0; k < kShaders; ++k) {
+    if (!kNames[k].ends_with(suffix)) continue;
+    const std::string_view base = kNames[k].substr(0, kNames[k].size() - suffix.size());
+    for (std::size_t i = 0; i < kShaders; ++i) {
+      if (kNames[i].size() == base.size() && kNames[i] == base) out[i] = k;
     }
   }
   return out;

@@ -15,7 +15,6 @@ using tyndall::ErrorCode;
 using tyndall::Params;
 using namespace tyndall::reference;
 using tyndall::RayQuery;
-using tyndall::Vec3;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 

@@ -84,7 +84,8 @@ Params spectral_params() {
 
 // Returns the medium whose three channels are at these wavelengths.
 shared::Medium medium_at(const Params& params, const std::array<double, 3>& nm) {
-  shared::Medium out = spectral_medium_from_params(params);
+  const shared::SpectralMedium medium = spectral_medium_from_params(params);
+  shared::Medium out = static_cast<const shared::Medium&>(medium);
   const air::Coefficients c[] = {air::at_wavelength(params, nm[0]), air::at_wavelength(params, nm[1]),
                                  air::at_wavelength(params, nm[2])};
   const auto all = [&](double air::Coefficients::*v) {

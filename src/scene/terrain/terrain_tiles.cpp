@@ -19,7 +19,7 @@ bool TerrainTiles::start(const TerrainLod& lod) {
   bool moved = side != side_;
   if (moved) levels_.clear();
   side_ = side;
-  const auto count = static_cast<std::size_t>(side * side);
+  const std::size_t count = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
   levels_.resize(lod.levels.size());
   for (std::size_t i = 0; i < lod.levels.size(); ++i) {
     const ClipLevel& level = lod.levels[i];
@@ -40,7 +40,7 @@ void TerrainTiles::add(int layer, const glm::dvec2& low, const glm::dvec2& high)
   Level& level = levels_[static_cast<std::size_t>(layer)];
   for (int z = tile(low.y); z <= tile(high.y); ++z) {
     for (int x = tile(low.x); x <= tile(high.x); ++x) {
-      Tile& state = level.tiles[static_cast<std::size_t>(z * side_ + x)];
+      Tile& state = level.tiles[index_of(x, z)];
       if (state == Tile::unknown) state = Tile::needed;
     }
   }
@@ -75,9 +75,11 @@ void TerrainTiles::add_shaded(const TerrainLod& lod, const TerrainBlock& block) 
 std::vector<TerrainTile> TerrainTiles::missing() const {
   std::vector<TerrainTile> out;
   for (std::size_t layer = 0; layer < levels_.size(); ++layer) {
-    for (int i = 0; i < side_ * side_; ++i) {
-      if (levels_[layer].tiles[static_cast<std::size_t>(i)] != Tile::needed) continue;
-      out.push_back({i % side_ * kTileSamples, i / side_ * kTileSamples, static_cast<std::int32_t>(layer), 0});
+    for (int z = 0; z < side_; ++z) {
+      for (int x = 0; x < side_; ++x) {
+        if (levels_[layer].tiles[index_of(x, z)] != Tile::needed) continue;
+        out.push_back({x * kTileSamples, z * kTileSamples, static_cast<std::int32_t>(layer), 0});
+      }
     }
   }
   return out;
@@ -88,8 +90,7 @@ void TerrainTiles::mark_filled() {
 }
 
 bool TerrainTiles::filled(int layer, int x, int z) const {
-  const int tile = z / kTileSamples * side_ + x / kTileSamples;
-  return levels_[static_cast<std::size_t>(layer)].tiles[static_cast<std::size_t>(tile)] == Tile::filled;
+  return levels_[static_cast<std::size_t>(layer)].tiles[index_of(x / kTileSamples, z / kTileSamples)] == Tile::filled;
 }
 
 }  // namespace tyndall::scene

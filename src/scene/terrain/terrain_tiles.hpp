@@ -2,6 +2,7 @@
 // in square tiles, because a view and its shadow maps use only a small part of each level. Pure functions on the CPU.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -41,6 +42,10 @@ class TerrainTiles {
     ClipLevel level;
     std::vector<Tile> tiles;  // row by row
   };
+  // Returns the index of a tile in Level::tiles.
+  [[nodiscard]] std::size_t index_of(int x, int z) const {
+    return static_cast<std::size_t>(z) * static_cast<std::size_t>(side_) + static_cast<std::size_t>(x);
+  }
   // Adds the texels of a layer from `low` to `high`, both included, as far as they exist.
   void add(int layer, const glm::dvec2& low, const glm::dvec2& high);
   // Adds the area of a block in the texture of `layer`, widened by `margin` texels on each side.
