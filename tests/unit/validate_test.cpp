@@ -280,7 +280,7 @@ TEST(ValidateStudy, FindsAllErrorsAndNoOthers) {
   EXPECT_EQ(page.find("| first | 0.50 | 0.2 |"), std::string::npos);  // compared with order 1 only
   EXPECT_NE(html.find("Turbid atmospheres near the horizon"), std::string::npos);
   EXPECT_NE(to_json(study.value(), colors, origin).find("\"optical_depth\": 0.3"), std::string::npos);
-  EXPECT_EQ(page.find("nan"), std::string::npos);
+  EXPECT_EQ(page.find("| nan"), std::string::npos);
 
   const Result<Study> again = run_study({}, options, models, {tracer("at the horizon", 0, 1.0)}, [](double) {});
   ASSERT_TRUE(again.ok());
