@@ -262,7 +262,7 @@ def lift_of(color, spectra):
 
 
 def smooth_spectra():
-    """Returns smooth reflectances that resemble none of the colour chart in particular: logistic edges up and down, and
+    """Returns smooth reflectances that resemble no patch of the colour test card in particular: logistic edges up and down, and
     broad bands, at all wavelengths."""
     out = []
     for centre in range(440, 661, 20):
@@ -273,7 +273,7 @@ def smooth_spectra():
     return out
 
 
-def chart():
+def patches():
     """Returns the 24 measured reflectances at all wavelengths."""
     out = {}
     for name, values in REFLECTANCES.items():
@@ -294,7 +294,7 @@ def lift_errors(indices, matrix, lift, color, weights, sun_rows):
     to_xyz = solve(REC709, [[1.0 if i == j else 0.0 for j in range(3)] for i in range(3)])
     for _, transmittance in sun_rows:
         four = [transmittance[i] for i in indices]
-        for reflectance in chart().values():
+        for reflectance in patches().values():
             rgb = [sum(REC709[r][k] * v for k, v in enumerate(xyz_of(reflectance, weights))) / sun_y for r in range(3)]
             lifted = [four[a] * sum(lift[a][k] * rgb[k] for k in range(3)) for a in range(4)]
             out = [sum(color[r][a] * lifted[a] for a in range(4)) for r in range(3)]
@@ -337,7 +337,7 @@ def write_header(path, indices, matrix, color, lift, lost, weights):
     inverse = solve([[color[r][a] for a in range(4)] for r in range(3)] + [lost],
                     [[1.0 if i == j else 0.0 for j in range(4)] for i in range(4)])
     spectrum_of_lost = [inverse[a][3] for a in range(4)]
-    # The texels of the light tables: light = lift color + lost_spectrum (alpha), with alpha = (lost - lost lift color).
+    # The texels of the tables of sunlight and sky light: light = lift color + lost_spectrum (alpha), with alpha = (lost - lost lift color).
     residual = [lost[a] - sum(sum(lost[b] * lift[b][k] for b in range(4)) * color[k][a] for k in range(3)) for a in range(4)]
     sun = [sum(color[r]) for r in range(3)]
     names = ("Red", "Green", "Blue")
@@ -369,14 +369,14 @@ def write_bins(path, weights):
 def write_reflectances(path):
     lines = ["// Reflectances at the wavelengths of src/reference/bins.inl: Ohta, \"The Basis of Color Reproduction Engineering\"",
              "// (1997). Written by `tools/fit_wavelengths.py --reflectances tests/unit/reflectances.inl`."]
-    lines += ['{"%s", {%s}},' % (name, ", ".join("%.4g" % v for v in values)) for name, values in chart().items()]
+    lines += ['{"%s", {%s}},' % (name, ", ".join("%.4g" % v for v in values)) for name, values in patches().items()]
     write_text(path, lines)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--tyndall", default="build/release/bin/tyndall", help="the executable")
-    parser.add_argument("--work", default="out/wavelengths", help="folder for the radiances, which are kept")
+    parser.add_argument("--work", default="out/wavelengths", help="folder for the radiances, which stay there")
     parser.add_argument("--header", help="write the constants to this file")
     parser.add_argument("--bins", help="write the weights of the 40 wavelengths to this file, and stop")
     parser.add_argument("--reflectances", help="write the reflectances of the test to this file, and stop")

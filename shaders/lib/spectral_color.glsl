@@ -20,8 +20,8 @@ vec3 transmitted_color(vec3 background, vec4 transmittance) {
 // Returns the transmittance of a filter (stained glass) of which the colour is given relative to white.
 vec4 spectral_filter(vec3 color) { return max(spectrum_of_color(color * kSunColor), vec4(0.0)); }
 
-// The texels of the light tables hold a colour, which the caller's shaders read, and in alpha the component that the
-// colour lacks. The four wavelengths follow exactly.
+// The texels of the tables of sunlight and sky light hold a colour, which the caller's shaders read, and in alpha the
+// component that the colour lacks. The four wavelengths follow exactly.
 vec4 light_texel(vec4 light) { return vec4(spectral_color(light), dot(kLostInColor, light)); }
 vec4 light_of_texel(vec4 texel) { return spectrum_of_color(texel.rgb) + kOfLost * texel.a; }
 

@@ -1,5 +1,4 @@
-// The demo engine on a device, with small pictures: all supplied scenes, the parameters of shadows at the ends of their
-// ranges, and the light of sun, sky and ground.
+// The demo engine on a device: all supplied scenes, shadows with parameters at the ends of their ranges, and light.
 #include <unistd.h>
 
 #include <algorithm>

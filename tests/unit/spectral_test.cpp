@@ -24,7 +24,7 @@ struct Patch {
   const char* name;
   std::array<double, 40> reflectance;  // at the wavelengths of reference::visible_spectrum()
 };
-constexpr Patch kChart[] = {
+constexpr Patch kPatches[] = {
 #include "reflectances.inl"
 };
 
@@ -163,7 +163,8 @@ TEST(Spectral, TheLiftIsARightInverseAndSmoothForSunlight) {
   EXPECT_NEAR(sun_color(params).x, sun[0], 1e-5);
 }
 
-// The texels of the light tables lose nothing: light_texel() and light_of_texel() of lib/spectral_color.glsl.
+// The texels of the tables of sunlight and sky light lose nothing: light_texel() and light_of_texel() of
+// lib/spectral_color.glsl.
 TEST(Spectral, LightTexelsHoldAllChannels) {
   const FourChannels lost = four(shared::kLostInColor);
   const FourChannels of_lost = four(shared::kOfLost);
@@ -215,7 +216,7 @@ TEST(Spectral, ColoursBehindAirFollowTheirSpectra) {
     const models::Ray ray = models::ray_from_angles(0.0, length_deg * std::numbers::pi / 180.0, 0.5, 0.0);
     const Spectrum40 air = at_all_wavelengths(params, ray);
     const FourChannels through = models::transmittance_of(at_four_wavelengths(params, ray));
-    for (const Patch& patch : kChart) {
+    for (const Patch& patch : kPatches) {
       std::array<double, 40> seen = {};
       for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = patch.reflectance[i] * air.transmittance[i];
       FourChannels lifted = spectrum_of(color_of_spectrum(patch.reflectance));

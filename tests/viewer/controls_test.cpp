@@ -103,7 +103,9 @@ bool both_ends(Desk& desk, const Row& row) {
   }
   // A right click restores the default.
   const config::Settings usual;
-  if (count == 1 && config::value_text(row, usual) == minimum) return true;
+  std::string lowest = minimum;
+  for (int i = 1; i < count; ++i) lowest += "," + minimum;
+  if (config::value_text(row, usual) == lowest) return true;  // it has that value already
   from = desk.lines();
   return desk.click(key, 0.3, 3) &&
          desk.wait_for({" set " + key + "=" + config::value_text(row, usual)}, from, 15.0).has_value();
