@@ -97,21 +97,25 @@ py::array_t<double> columns(const Items& items, Member member) {
   return out;
 }
 
-// A device that several models share. Its pipelines and memory are freed with the last of them.
+// A device that several models share. Its pipelines and memory are freed with the last of them. The interpreter lock is
+// released before the mutex is taken: a thread that waits for the mutex must not hold it.
 std::shared_ptr<gpu::Host> shared_host(const std::string& device, bool graphics) {
   static std::mutex mutex;
   static std::vector<std::pair<std::string, std::weak_ptr<gpu::Host>>> hosts;
-  const std::string key = device + (graphics ? "\ngraphics" : "\n");
-  const std::scoped_lock lock(mutex);
-  for (auto& [name, held] : hosts) {
-    if (name != key) continue;
-    if (std::shared_ptr<gpu::Host> host = held.lock()) return host;
-  }
-  std::shared_ptr<gpu::Host> host =
-      without_lock([&] { return gpu::Host::create({.device = device, .graphics = graphics}); });
-  std::erase_if(hosts, [](const auto& entry) { return entry.second.expired(); });
-  hosts.emplace_back(key, host);
-  return host;
+  return without_lock([&]() -> Result<std::shared_ptr<gpu::Host>> {
+    const std::string key = device + (graphics ? "\ngraphics" : "\n");
+    const std::scoped_lock lock(mutex);
+    for (auto& [name, held] : hosts) {
+      if (name != key) continue;
+      if (std::shared_ptr<gpu::Host> host = held.lock()) return host;
+    }
+    Result<std::unique_ptr<gpu::Host>> made = gpu::Host::create({.device = device, .graphics = graphics});
+    if (!made.ok()) return made.error();
+    std::shared_ptr<gpu::Host> host = std::move(made).value();
+    std::erase_if(hosts, [](const auto& entry) { return entry.second.expired(); });
+    hosts.emplace_back(key, host);
+    return host;
+  });
 }
 
 // A model with its tables on a device. All calls may come from several threads.
@@ -239,6 +243,7 @@ py::dict sun_position(double latitude_deg, double longitude_deg, const std::stri
   if (!(std::abs(latitude_deg) <= 90.0)) throw py::value_error("latitude: out of range; expected -90 to 90 degrees");
   if (!(std::abs(longitude_deg) <= 360.0))
     throw py::value_error("longitude: out of range; expected -360 to 360 degrees");
+  if (!std::isfinite(altitude_m)) throw py::value_error("altitude: not finite; expected a number");
   const Result<double> day = scene::parse_time(time, "time");
   if (!day.ok()) raise(day.error());
   const scene::SolarPosition sun =

@@ -57,7 +57,7 @@ class Estimate:
 
 
 class SunPosition:
-    """The place of the sun in the sky: `elevation` and `azimuth` [deg], azimuth clockwise from north; `distance_au`."""
+    """The position of the sun in the sky: `elevation` and `azimuth` [deg], azimuth clockwise from north; `distance_au`."""
 
     def __init__(self, elevation, azimuth, distance_au):
         self.elevation = elevation
@@ -155,7 +155,8 @@ class Atmosphere:
         sun_zenith: zenith angle of the sun, 0 to 180 deg; more than 90 in twilight.
         azimuth: angle between view and sun around the vertical [deg].
         altitude: of the eye above sea level, from -11000 m to space.
-        ground: whether light from the ground at the end of a ray is included (planet.ground_albedo).
+        ground: whether light from the ground at the end of a ray is included (planet.ground_albedo). With model="single"
+            the ground is always black.
         """
         return self._answer(altitude, zenith, sun_zenith, azimuth, ground=ground)[0]
 
@@ -252,7 +253,7 @@ def sun_position(latitude, longitude, time, altitude=0.0):
     """Returns where the sun is, as a SunPosition, after Reda and Andreas (2003), within 0.001 deg without refraction.
 
     latitude, longitude: in degrees, north and east positive. time: ISO 8601 with an offset from UTC, such as
-    "2003-10-17T12:30:30-07:00", or an aware datetime; 1900 to 2100.
+    "2003-10-17T12:30:30-07:00", or an aware datetime; 1900 to 2100. altitude: of the place above sea level [m].
     """
     if hasattr(time, "isoformat"):
         if time.utcoffset() is None:

@@ -1,6 +1,8 @@
 """tyndall.Atmosphere gives the numbers of `tyndall probe`, in the shapes and with the errors that it documents."""
 import csv
 import io
+import subprocess
+import sys
 import threading
 
 import numpy as np
@@ -142,6 +144,31 @@ def test_threads_get_the_same_numbers(air, single):
     for thread in threads:
         thread.join()
     assert not wrong
+
+
+# In a process of its own, because no device may exist before, and a deadlock must end.
+def test_threads_create_atmospheres():
+    script = ("import threading, tyndall\n"
+              "made = []\n"
+              "def work(): made.append(tyndall.Atmosphere(model='single').radiance(30, 60))\n"
+              "threads = [threading.Thread(target=work) for _ in range(4)]\n"
+              "[t.start() for t in threads]\n"
+              "[t.join() for t in threads]\n"
+              "print(len(made))\n")
+    done = subprocess.run([sys.executable, "-B", "-c", script], capture_output=True, text=True, timeout=120)
+    assert done.stdout == "4\n", done.stderr
+
+
+def test_interrupt_ends_the_path_tracer():
+    script = ("import os, signal, threading, tyndall\n"
+              "air = tyndall.Atmosphere(model='single')\n"
+              "threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT)).start()\n"
+              "try:\n"
+              "    air.trace([30] * 50, 60, samples=20000000)\n"
+              "except KeyboardInterrupt:\n"
+              "    print('interrupted')\n")
+    done = subprocess.run([sys.executable, "-B", "-c", script], capture_output=True, text=True, timeout=120)
+    assert done.stdout == "interrupted\n", done.stderr
 
 
 # The example of Reda and Andreas (2003), table A5.1: topocentric zenith angle without refraction, and azimuth.
