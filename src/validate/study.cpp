@@ -155,8 +155,18 @@ std::vector<HorizonTest> make_horizons(const Params& params) {
 
 std::vector<Atmosphere> atmospheres(const Params& params) {
   std::vector<Atmosphere> out = {{"as given", params}, {"five times the aerosol", params}, {"without ozone", params}};
-  out[1].params.atmosphere.aerosol_density *= 5.0F;
+  AtmosphereParams& turbid = out[1].params.atmosphere;
+  turbid.aerosol_density *= 5.0F;
+  // An optical depth or a visibility replaces the density, and a column of ozone its absorption.
+  if (turbid.visibility_m > 0.0F) {
+    const reference::Atmosphere medium(params);
+    const double to_550_nm = std::pow(static_cast<double>(turbid.wavelengths_nm.y) / 550.0, turbid.angstrom_exponent);
+    turbid.aerosol_optical_depth = static_cast<float>(medium.mie_extinction[1] * medium.mie_scale_height_m * to_550_nm);
+    turbid.visibility_m = 0.0F;
+  }
+  turbid.aerosol_optical_depth = std::min(5.0F * turbid.aerosol_optical_depth, 100.0F);
   out[2].params.atmosphere.ozone_absorption = {0.0F, 0.0F, 0.0F};
+  out[2].params.atmosphere.ozone_du = 0.0F;
   return out;
 }
 

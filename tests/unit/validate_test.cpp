@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "reference/atmosphere.hpp"
 #include "validate/color.hpp"
 #include "validate/plot.hpp"
 #include "validate/rays.hpp"
@@ -219,6 +220,23 @@ Model tracer(std::string name, int orders, double factor) {
             }
             return out;
           }};
+}
+
+TEST(ValidateStudy, AtmospheresDifferHoweverTheyAreDescribed) {
+  Params given, depth, visibility;
+  depth.atmosphere.aerosol_optical_depth = 0.1F;
+  visibility.atmosphere.visibility_m = 60.0e3F;
+  depth.atmosphere.ozone_du = visibility.atmosphere.ozone_du = 300.0F;
+  for (const Params& params : {given, depth, visibility}) {
+    const std::vector<Atmosphere> all = atmospheres(params);
+    ASSERT_EQ(all.size(), 3U);
+    const reference::Atmosphere first(all[0].params), turbid(all[1].params), clear(all[2].params);
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_NEAR(turbid.mie_extinction[c] / first.mie_extinction[c], 5.0, 1e-4);
+      EXPECT_GT(first.ozone_absorption[c], 0.0);
+      EXPECT_EQ(clear.ozone_absorption[c], 0.0);
+    }
+  }
 }
 
 TEST(ValidateStudy, FindsAllErrorsAndNoOthers) {
