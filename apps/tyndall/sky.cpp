@@ -354,7 +354,13 @@ int run_sky(Args args) {
   const Params& params = options.settings.effect;
   if (Result<void> r = check_altitude(sky.altitude_m, params, "--altitude"); !r) return fail(r.error());
   scene::SceneParams& scene = options.settings.scene;
-  scene.sun.time.clear();  // the options of this verb hold
+  // The options of this verb hold.
+  if (scene.sun.refraction.value != 0 || !scene.sun.time.empty()) {
+    note("sun.place, sun.time and sun.refraction have no effect on sky; the sun is where the options place it");
+  }
+  scene.sun.place.clear();
+  scene.sun.time.clear();
+  scene.sun.refraction.value = 0;
   scene.sun.elevation_deg = static_cast<float>(sun.value().elevation_deg);
   scene.sun.azimuth_deg = static_cast<float>(sun.value().azimuth_deg);
   // camera.altitude_m does not accept values below sea level.
