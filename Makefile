@@ -6,6 +6,7 @@
 #   make pictures        renders the pictures of the documentation
 #   make accuracy        measures the numbers of docs/accuracy.md
 #   make epipolar-study  installs Pillow and matplotlib; makes the numbers, plots and pictures of docs/epipolar.md
+#   make froxel-study    measures the froxel volume, docs/generated/froxels.md
 #   make models-study    measures and renders what docs/models.md and docs/oneil.md show
 #   make bundle          packs a portable program, out/tyndall-VERSION-linux-x86_64.tar.xz
 #   make bundle-chroot   runs the bundle in a bare Debian system
@@ -74,6 +75,12 @@ epipolar-study: PRESET = release
 epipolar-study: build
 	@tools/setup.sh python3-pil python3-matplotlib
 	@/usr/bin/python3 tools/epipolar_study.py build/release/bin/tyndall $(SECTIONS)
+
+# The comparison of the froxel volume with epipolar sampling.
+.PHONY: froxel-study
+froxel-study: PRESET = release
+froxel-study: build
+	@python3 tools/froxel_study.py build/release/bin/tyndall
 
 # The numbers and pictures of docs/models.md, and the pictures of docs/oneil.md. PARTS chooses among pictures, times, errors.
 models-study: PRESET = release

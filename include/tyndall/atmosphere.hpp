@@ -38,7 +38,9 @@ struct AtmosphereImages {
 
 // Returns the images with their layouts and a sampler, all owned by the effect. They are valid once record_precompute()
 // is complete, and change only when it or record_load_tables() completes new tables. Both write them in COMPUTE_SHADER
-// / SHADER_WRITE.
-[[nodiscard]] TYNDALL_API AtmosphereImages atmosphere_images(const Effect& effect);
+// / SHADER_WRITE. With froxels.enabled, the last two are the froxel volume of a view, which record() fills in
+// COMPUTE_SHADER / SHADER_WRITE. The next record() waits for all earlier commands of the queue, so that they may read
+// the volume in any stage. The two change when froxels.enabled, columns, rows or slices change.
+[[nodiscard]] TYNDALL_API AtmosphereImages atmosphere_images(const Effect& effect, std::uint32_t view = 0);
 
 }  // namespace tyndall

@@ -302,7 +302,8 @@ class TYNDALL_API Effect {
   std::span<const PassTiming> precompute_timings();
 
  private:
-  friend TYNDALL_API AtmosphereImages atmosphere_images(const Effect& effect);  // see atmosphere.hpp
+  friend TYNDALL_API AtmosphereImages atmosphere_images(const Effect& effect,
+                                                        std::uint32_t view);  // see atmosphere.hpp
   friend class SkyProbe;
   struct State;
   explicit Effect(std::unique_ptr<State> state);

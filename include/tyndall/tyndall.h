@@ -346,7 +346,7 @@ TYNDALL_API TyndallStatus tyndall_effect_counters(const TyndallEffect* effect, u
 // of the library.
 TYNDALL_API TyndallStatus tyndall_effect_resources(TyndallEffect* effect, uint32_t* count,
                                                    TyndallResourceMemory* resources);
-TYNDALL_API TyndallStatus tyndall_effect_atmosphere_images(const TyndallEffect* effect, uint32_t* count,
+TYNDALL_API TyndallStatus tyndall_effect_atmosphere_images(const TyndallEffect* effect, uint32_t view, uint32_t* count,
                                                            VkDescriptorImageInfo* images);
 TYNDALL_API TyndallStatus tyndall_effect_timings(TyndallEffect* effect, uint64_t frame_index, uint32_t view,
                                                  uint32_t* count, TyndallPassTiming* timings);

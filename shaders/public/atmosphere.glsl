@@ -23,6 +23,7 @@
 
 #define TABLE_LAYOUT(index) layout(set = TYNDALL_SET, binding = TYNDALL_FIRST_BINDING + 2 + index)
 #include "frame/table_lookup.glsl"
+#include "lib/froxels.glsl"
 #include "lib/single_scattering.glsl"
 #include "lib/spectrum.glsl"
 #include "shared/atmosphere.h"
@@ -32,6 +33,8 @@ layout(std140, set = TYNDALL_SET, binding = TYNDALL_FIRST_BINDING) uniform const
   AtmosphereConstants tyndall_constants;
 };
 layout(set = TYNDALL_SET, binding = TYNDALL_FIRST_BINDING + 1) uniform sampler2D sky_irradiance_table;
+layout(set = TYNDALL_SET, binding = TYNDALL_FIRST_BINDING + 5) uniform sampler3D froxel_inscattering;
+layout(set = TYNDALL_SET, binding = TYNDALL_FIRST_BINDING + 6) uniform sampler3D froxel_transmittance;
 
 // What happens to light along a path.
 struct TyndallPath {
@@ -177,6 +180,24 @@ TyndallPath tyndall_between(vec3 from, vec3 to) {
   AtmosphereRay ray = ray_from(place_at(from), (to - from) / reach, reach);
   if (!ray.inside || reach <= ray.start_m) return TyndallPath(vec3(0.0), Spectrum(1.0));
   return path_along(ray, reach - ray.start_m);
+}
+
+// Light and transmittance from the camera to a point, from the froxel volume.
+struct TyndallFroxel {
+  vec3 inscattering;
+  vec3 transmittance;
+};
+
+// Returns the radiance `color` as it is seen through the volume.
+vec3 tyndall_apply(TyndallFroxel froxel, vec3 color) { return color * froxel.transmittance + froxel.inscattering; }
+
+// Looks up the froxel volume, which contains light shafts. uv: position in the picture from 0 to 1; distance_m:
+// distance from the camera. Points beyond froxels.far_m get the value there.
+TyndallFroxel tyndall_froxel(vec2 uv, float distance_m) {
+  vec3 at = vec3(uv, froxel_coordinate(distance_m, tyndall_constants.froxel_near_m, tyndall_constants.froxel_far_m,
+                                       tyndall_constants.froxel_slices));
+  return TyndallFroxel(textureLod(froxel_inscattering, at, 0.0).rgb * tyndall_constants.sun_irradiance,
+                       textureLod(froxel_transmittance, at, 0.0).rgb);
 }
 
 #ifdef TYNDALL_SHADOW

@@ -16,6 +16,10 @@ struct AtmosphereConstants {
   float origin_radius_m;  // distance of that origin from the planet's centre
   vec3 sun_irradiance;    // includes scattering.scale
   float sun_angular_radius_rad;
+  float froxel_near_m;
+  float froxel_far_m;
+  float froxel_slices;
+  float unused_0;
 };
 
 #endif

@@ -68,7 +68,12 @@ struct FrameConstants {
   ivec2 color_offset;
   ivec2 depth_offset;
   ivec2 output_offset;
-  ivec2 unused_3;
+  uint froxel_columns;
+  uint froxel_rows;
+  uint froxel_slices;
+  float froxel_near_m;
+  float froxel_far_m;
+  uint unused_3;
   TableShape tables;
   HomogeneousMedium homogeneous;
 #if defined(SPECTRAL) || defined(__cplusplus)

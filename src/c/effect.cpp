@@ -258,11 +258,11 @@ TyndallStatus tyndall_effect_resources(TyndallEffect* effect, uint32_t* count, T
   });
 }
 
-TyndallStatus tyndall_effect_atmosphere_images(const TyndallEffect* effect, uint32_t* count,
+TyndallStatus tyndall_effect_atmosphere_images(const TyndallEffect* effect, uint32_t view, uint32_t* count,
                                                VkDescriptorImageInfo* images) {
   return c::with(effect, __func__, [&](const Effect& e, const char* where) -> Result<void> {
     TYNDALL_TRY(c::check_pointer(where, "count", count));
-    const AtmosphereImages all = atmosphere_images(e);
+    const AtmosphereImages all = atmosphere_images(e, view);
     if (images != nullptr) std::copy_n(all.list.begin(), std::min(all.count, *count), images);
     *count = all.count;
     return {};

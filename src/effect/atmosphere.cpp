@@ -56,6 +56,9 @@ shared::AtmosphereConstants constants_of(const Params& params, const AtmosphereI
   const Vec3& e = inputs.sun.irradiance;
   const float scale = params.scattering.scale;
   out.sun_irradiance = {e.x * scale, e.y * scale, e.z * scale};
+  out.froxel_near_m = params.froxels.near_m;
+  out.froxel_far_m = params.froxels.far_m;
+  out.froxel_slices = static_cast<float>(params.froxels.slices);
   return out;
 }
 
@@ -79,7 +82,7 @@ Result<AtmosphereConstants> atmosphere_constants(const Params& params, const Atm
   });
 }
 
-AtmosphereImages atmosphere_images(const Effect& effect) {
+AtmosphereImages atmosphere_images(const Effect& effect, std::uint32_t view) {
   AtmosphereImages out;
   if (!effect.state_) return out;
   const Effect::State& state = *effect.state_;
@@ -87,6 +90,10 @@ AtmosphereImages atmosphere_images(const Effect& effect) {
                                 TableId::high_orders};
   for (const TableId id : kOrder) {
     out.list[out.count++] = {state.linear.get(), state.tables.table(id).view.get(), VK_IMAGE_LAYOUT_GENERAL};
+  }
+  for (std::uint32_t i = 0; i < FroxelVolume::kImages; ++i) {
+    const VkImageView image = state.froxels.view_of(view, i);
+    if (image != VK_NULL_HANDLE) out.list[out.count++] = {state.linear.get(), image, VK_IMAGE_LAYOUT_GENERAL};
   }
   return out;
 }

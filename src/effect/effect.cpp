@@ -74,7 +74,7 @@ MemoryUsage plan_memory(const gpu::Device& device, const EffectDesc& desc, const
     usage.persistent += gpu::image_bytes(device, table_desc(static_cast<TableId>(i), params));
   }
   usage.persistent += gpu::buffer_bytes(device, kCounterBytes * FrameRing::slots(desc), kCounterUsage);
-  usage.persistent += frame_buffer_bytes(device, desc, params);
+  usage.persistent += frame_buffer_bytes(device, desc, params) + froxel_bytes(device, desc, params);
   usage.transient = table_scratch_bytes(device, params);
   usage.host = gpu::buffer_bytes(device, kSlotBytes * FrameRing::slots(desc), kConstantsUsage);
   if (desc.counters) {
@@ -96,6 +96,7 @@ Result<void> Effect::State::create_objects() {
   pipelines.create(device, desc.pipeline_threads);
   sets.create(device, FrameRing::slots(desc));
   buffers.create(device);
+  froxels.create(device);
   TYNDALL_TRY(tables.create(device, pipelines, {FrameRing::slots(desc), desc.timings, desc.table_pipelines_later}));
   TYNDALL_ASSIGN(Pending everything, plan(desc, params, kEverything));
   commit(std::move(everything));
@@ -155,7 +156,7 @@ Result<void> Effect::State::make_pipelines(const EffectDesc& d, const Params& p)
 Result<Effect::State::Pending> Effect::State::plan(const EffectDesc& d, const Params& p, std::uint32_t required) {
   const bool other_resources = (required & bit(Affects::Resources)) != 0;
   if ((required & kEverything) != 0) TYNDALL_TRY(check_limits(device, d, p));
-  Pending pending = {d, p, {}, {}};
+  Pending pending = {d, p, {}, {}, {}};
   if (other_resources || (required & bit(Affects::Pipeline)) != 0) {
     TYNDALL_TRY(make_pipelines(d, p));
     if (const Params before = drawn_with(p); before.scattering.color != p.scattering.color) {
@@ -168,6 +169,7 @@ Result<Effect::State::Pending> Effect::State::plan(const EffectDesc& d, const Pa
     Params larger = p;
     if (drawn_with(p).scattering.color == ColorMode::spectral) larger.scattering.color = ColorMode::spectral;
     TYNDALL_ASSIGN(pending.buffers, buffers.plan(d, larger));
+    TYNDALL_ASSIGN(pending.froxels, froxels.plan(d, p));
   }
   if ((required & bit(Affects::Tables)) != 0) {
     TYNDALL_ASSIGN(pending.tables, tables.plan(p));
@@ -177,6 +179,7 @@ Result<Effect::State::Pending> Effect::State::plan(const EffectDesc& d, const Pa
 
 void Effect::State::commit(Pending&& pending) noexcept {
   if (pending.buffers) buffers.commit(std::move(*pending.buffers), FrameRing::slots(desc) + 1);
+  if (pending.froxels) froxels.commit(std::move(*pending.froxels), FrameRing::slots(desc) + 1);
   if (pending.tables) tables.commit(std::move(*pending.tables));
   const bool other_color = params.scattering.color != pending.params.scattering.color;
   if (desc.shadow_colors != pending.desc.shadow_colors || other_color) all_pipelines.clear();
@@ -205,6 +208,7 @@ Result<Progress> Effect::State::prepare_pipelines(std::uint32_t budget) {
 void Effect::State::prepare_images(VkCommandBuffer cmd) {
   tables.begin_frame(cmd);
   buffers.begin_frame();
+  froxels.begin_frame(cmd);
   if (images_ready) return;
   gpu::transition(device, cmd, no_shadows, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
   gpu::transition(device, cmd, no_colors, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
@@ -246,6 +250,11 @@ BoundResources Effect::State::bind_resources(const FrameInputs& inputs, std::uin
   image(Resource::shadow_colors, colors, shadow_tint.get());
   image(Resource::output_color, inputs.output, VK_NULL_HANDLE);
 
+  constexpr Resource kFroxels[FroxelVolume::kImages] = {Resource::froxel_inscattering, Resource::froxel_transmittance};
+  for (std::uint32_t i = 0; i < FroxelVolume::kImages; ++i) {
+    out.set(kFroxels[i], froxels.view_of(inputs.view, i), VK_IMAGE_LAYOUT_GENERAL, linear.get());
+  }
+
   const auto table = [&](Resource resource, TableId id) {
     out.set(resource, tables.table(id).view.get(), VK_IMAGE_LAYOUT_GENERAL, linear.get());
   };
@@ -281,6 +290,12 @@ Result<void> Effect::State::record(VkCommandBuffer cmd, const FrameInputs& input
                                          VK_ACCESS_INDIRECT_COMMAND_READ_BIT;
   recorder.assume(Resource::counters, kFrameBefore);
   for (std::size_t i = 0; i < kFrameBuffers; ++i) recorder.assume(frame_buffer(i), kFrameBefore);
+  if (uses_froxels(params)) {
+    recorder.assume(Resource::froxel_inscattering, kFrameBefore);
+    recorder.assume(Resource::froxel_transmittance, kFrameBefore);
+    // Any stage of the caller's earlier commands may read the volume.
+    gpu::barrier(device, cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0);
+  }
   if (desc.timings) timer.begin_whole(cmd, "effect");
   const FrameSteps steps = frame_steps(desc, drawn, frame_shape(inputs, drawn, target));
   for (const Step& step : steps) TYNDALL_TRY(recorder.record(step));
@@ -313,12 +328,18 @@ std::span<const ResourceMemory> Effect::State::list_resources() {
     const gpu::Buffer& buffer = buffers[frame_buffer(i)];
     if (buffer.bytes > 0) row(name_of(frame_buffer(i)), buffer.bytes);
   }
+  for (std::uint32_t i = 0; i < FroxelVolume::kImages; ++i) {
+    const VkDeviceSize bytes = froxels.images().bytes(i);
+    if (bytes > 0) row(FroxelVolume::kNames[i], bytes);
+  }
   return {resource_rows.data(), used};
 }
 
 MemoryUsage Effect::State::memory() const {
-  return {tables.persistent_bytes() + no_shadows.bytes + no_colors.bytes + counters.bytes + buffers.bytes(),
-          tables.transient_bytes() + buffers.retired_bytes(), constants.bytes + counters_readback.bytes};
+  return {tables.persistent_bytes() + no_shadows.bytes + no_colors.bytes + counters.bytes + buffers.bytes() +
+              froxels.images().bytes(),
+          tables.transient_bytes() + buffers.retired_bytes() + froxels.retired_bytes(),
+          constants.bytes + counters_readback.bytes};
 }
 
 std::span<const PassTiming> Effect::State::read_timings(std::uint64_t frame_index, std::uint32_t view) {

@@ -10,6 +10,7 @@
 
 #include "effect/frame_buffers.hpp"
 #include "effect/frame_ring.hpp"
+#include "effect/froxel_volume.hpp"
 #include "effect/pipeline_cache.hpp"
 #include "effect/remarks.hpp"
 #include "effect/set_cache.hpp"
@@ -45,6 +46,7 @@ struct TYNDALL_HIDDEN Effect::State {
   SetCache sets;                           // of frames, with the slots of `ring`
   std::vector<PipelineKey> all_pipelines;  // that any parameters may need with `desc`; filled when first requested
   FrameBuffers buffers;
+  FroxelVolume froxels;
   TableBuilder tables;
   gpu::Image no_shadows, no_colors;
   gpu::Buffer constants;
@@ -59,7 +61,7 @@ struct TYNDALL_HIDDEN Effect::State {
   Remarks remarks;
   gpu::Timer timer;
   std::array<PassTiming, kMaxTimedPasses> timings = {};
-  std::array<ResourceMemory, kTableCount + kFrameBuffers + 3> resource_rows = {};
+  std::array<ResourceMemory, kTableCount + kFrameBuffers + FroxelVolume::kImages + 3> resource_rows = {};
 
   bool images_ready = false;  // false until the first recording, which changes their undefined layout
 
@@ -68,6 +70,7 @@ struct TYNDALL_HIDDEN Effect::State {
     EffectDesc desc;
     Params params;
     std::optional<FrameBuffers::Pending> buffers;
+    std::optional<FroxelVolume::Pending> froxels;
     std::optional<TableBuilder::Pending> tables;
   };
 

@@ -219,6 +219,11 @@ shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDe
   out.color_offset = {inputs.color.offset.x, inputs.color.offset.y};
   out.depth_offset = {inputs.depth.offset.x, inputs.depth.offset.y};
   out.output_offset = {inputs.output.offset.x, inputs.output.offset.y};
+  out.froxel_columns = params.froxels.columns;
+  out.froxel_rows = params.froxels.rows;
+  out.froxel_slices = params.froxels.slices;
+  out.froxel_near_m = params.froxels.near_m;
+  out.froxel_far_m = params.froxels.far_m;
   out.tables = table_shape(params);
   return out;
 }

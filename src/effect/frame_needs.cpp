@@ -103,7 +103,7 @@ std::vector<PipelineKey> all_frame_pipelines(const EffectDesc& desc, Target targ
       for (const MultipleScattering multiple :
            {MultipleScattering::none, MultipleScattering::occluded, MultipleScattering::unoccluded}) {
         for (const LitSections sections : {LitSections::contiguous, LitSections::each}) {
-          for (const Technique technique : {Technique::epipolar, Technique::brute_force}) {
+          for (const Technique technique : {Technique::epipolar, Technique::brute_force, Technique::froxels}) {
             for (const bool tree : {false, true}) {
               p = {};
               p.scattering.medium = medium;

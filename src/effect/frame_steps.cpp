@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "effect/frame_constants.hpp"
+#include "effect/froxel_volume.hpp"
 #include "effect/modes.hpp"
 #include "effect_shaders.hpp"
 
@@ -196,6 +197,12 @@ void brute_force_steps(Frame& f) {
     f.dispatch("march_per_pixel", shader, {width, std::min(rows, height - first), 1}, {first, 0});
 }
 
+// Fills the froxel volume. Without the medium it holds no light and full transmittance.
+void froxel_steps(Frame& f) {
+  const FroxelParams& p = f.params.froxels;
+  f.dispatch("froxels", shaders::froxels_comp, {p.columns, p.rows, 1}, {f.params.scattering.enabled ? 0U : 1U, 0});
+}
+
 }  // namespace
 
 FrameShape frame_shape(const FrameInputs& inputs, const Params& params, Target target) {
@@ -212,10 +219,14 @@ FrameSteps frame_steps(const EffectDesc& desc, const Params& params, const Frame
   f.constants = specialisation(f);
   const VkExtent3D pixels = {shape.extent.width, shape.extent.height, 1};
   if (desc.counters) f.other(Step::Kind::clear, "clear_counters", Resource::counters);
+  if (uses_froxels(params)) froxel_steps(f);
   if (!params.scattering.enabled) {
     f.dispatch("no_air", f.variant(shaders::no_air_comp_rgba16f, shaders::no_air_comp_rgba32f), pixels);
   } else if (params.scattering.technique == Technique::brute_force) {
     brute_force_steps(f);
+  } else if (params.scattering.technique == Technique::froxels) {
+    f.dispatch("compose_froxels",
+               f.variant(shaders::compose_froxels_comp_rgba16f, shaders::compose_froxels_comp_rgba32f), pixels);
   } else {
     epipolar_steps(f);
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "effect/froxel_volume.hpp"
 #include "effect/resources.hpp"
 #include "effect/shared.hpp"
 #include "effect/table_plan.hpp"
@@ -112,6 +113,7 @@ Result<void> check_limits(const gpu::Device& device, const EffectDesc& desc, con
   for (const BufferPlan& plan : plan_scratch(params.tables.size.y, params.scattering.color)) {
     TYNDALL_TRY(check_buffer(device, plan.name, plan.bytes, "tables.size"));
   }
+  TYNDALL_TRY(check_froxels(device, params));
   const FrameBufferSizes sizes = frame_buffer_sizes(desc, params);
   for (std::size_t i = 0; i < kFrameBuffers; ++i) {
     const ResourceInfo& info = info_of(frame_buffer(i));

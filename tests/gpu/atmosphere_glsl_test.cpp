@@ -3,34 +3,18 @@
 // tests/package/consume.cmake compares both. All cases share one build of the default tables.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <optional>
 #include <random>
 
-#include "atmosphere_test_shaders.hpp"
+#include "atmosphere_points.hpp"
 #include "effect_frame.hpp"
 #include "models/precomputed.hpp"
-#include "tyndall/atmosphere.hpp"
 
 namespace tyndall {
 namespace {
 
 constexpr double kTolerance = 0.003;
 constexpr double kRadius_m = 6360000.0;
-
-enum Function { sun_irradiance, sky_irradiance, sky_radiance, to_sky, between, between_shadowed };
-
-// Mirrors the structure of atmosphere_points.comp.
-struct Query {
-  float from[3];
-  float function;
-  float other[3];
-  float steps;
-  float plane[4];
-};
-struct Answer {
-  glm::dvec3 light, transmittance;
-};
 
 // Coordinates of an engine: the position of its origin relative to the planet's centre.
 struct Place {
@@ -57,18 +41,6 @@ RayQuery probe_query(const Place& place, const glm::dvec3& position, const glm::
 RayAngles angles_of(const RayQuery& q) {
   const models::Ray ray = models::ray_from_query(q);
   return {ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith, ray.cos_view_sun};
-}
-
-Query query(Function function, const glm::dvec3& from, const glm::dvec3& other, double steps = 0.0) {
-  Query q = {};
-  for (int i = 0; i < 3; ++i) {
-    q.from[i] = static_cast<float>(from[i]);
-    q.other[i] = static_cast<float>(other[i]);
-  }
-  q.function = static_cast<float>(function);
-  q.steps = static_cast<float>(steps);
-  q.plane[3] = 1.0F;  // lit everywhere
-  return q;
 }
 
 // The positions that the device sees are rounded to single precision.
@@ -112,46 +84,7 @@ class AtmosphereGlsl : public GpuTest {
     inputs.sun.irradiance = Vec3(1.0F);
     inputs.sun.direction_to_sun = {static_cast<float>(place.to_sun.x), static_cast<float>(place.to_sun.y),
                                    static_cast<float>(place.to_sun.z)};
-    const Result<AtmosphereConstants> constants = atmosphere_constants(params(), inputs);
-    const gpu::Device& device = host().device();
-    Result<gpu::Pipeline> pipeline = gpu::create_compute_pipeline(device, shaders::atmosphere_points_comp);
-    const auto buffer = [&](const void* data, std::size_t size, VkBufferUsageFlags usage) {
-      Result<gpu::Buffer> out = gpu::create_buffer(device, "test", size, usage, gpu::MemoryKind::readback);
-      EXPECT_OK(out);
-      if (data != nullptr) std::memcpy(out.value().mapped, data, size);
-      return std::move(out).value();
-    };
-    std::vector<Answer> out(queries.size());
-    EXPECT_OK(constants);
-    EXPECT_OK(pipeline);
-    if (!constants.ok() || !pipeline.ok()) return out;
-    const gpu::Buffer block =
-        buffer(&constants.value(), sizeof(AtmosphereConstants), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
-    const gpu::Buffer in = buffer(queries.data(), queries.size() * sizeof(Query), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-    const gpu::Buffer answers = buffer(nullptr, queries.size() * 32, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-    std::vector<gpu::NamedResource> resources = {gpu::named_buffer("tyndall_constants_block", block.buffer.get()),
-                                                 gpu::named_buffer("query_block", in.buffer.get()),
-                                                 gpu::named_buffer("answer_block", answers.buffer.get())};
-    const AtmosphereImages images = atmosphere_images(model_->effect());
-    for (const gpu::Binding& binding : pipeline.value().bindings) {
-      const std::uint32_t image = binding.binding - 4;  // TYNDALL_FIRST_BINDING is 3
-      if (binding.binding < 4 || image >= images.count) continue;
-      const VkDescriptorImageInfo& info = images.list[image];
-      resources.push_back(gpu::named_image(binding.name, info.imageView, info.imageLayout, info.sampler));
-    }
-    EXPECT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
-      if (Result<void> bound = gpu::bind(host().sets(), cmd, pipeline.value(), resources); !bound.ok()) return bound;
-      gpu::dispatch(device, cmd, pipeline.value(), static_cast<std::uint32_t>(queries.size()));
-      gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
-                   VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
-      return {};
-    }));
-    const auto* values = static_cast<const float*>(answers.mapped);
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      const float* v = values + 8 * i;
-      out[i] = {{v[0], v[1], v[2]}, {v[4], v[5], v[6]}};
-    }
-    return out;
+    return evaluate_points(host(), model_->effect(), params(), inputs, queries);
   }
 
   // Returns what `probe --model precomputed` returns.

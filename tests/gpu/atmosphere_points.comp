@@ -36,6 +36,10 @@ void main() {
   if (kind == 3) path = tyndall_to_sky(query.from.xyz, query.other.xyz);
   if (kind == 4) path = tyndall_between(query.from.xyz, query.other.xyz);
   if (kind == 5) path = tyndall_between_shadowed(query.from.xyz, query.other.xyz, int(query.other.w));
+  if (kind == 6) {
+    TyndallFroxel volume = tyndall_froxel(query.from.xy, query.from.z);
+    path = TyndallPath(tyndall_apply(volume, vec3(0.0)), volume.transmittance);
+  }
   answers[2u * index] = vec4(path.inscattering, 0.0);
   answers[2u * index + 1u] = vec4(path.transmittance, 0.0);
 }

@@ -80,7 +80,7 @@ TEST(CFaults, NullPointersAreRefused) {
   expect_invalid(tyndall_effect_counters(effect, 0, 0, nullptr), {"TyndallCounters", "null"});
   expect_invalid(tyndall_effect_light_tables(effect, nullptr), {"TyndallLightTables", "null"});
   expect_invalid(tyndall_effect_scattering_tables(effect, nullptr), {"TyndallScatteringTables", "null"});
-  expect_invalid(tyndall_effect_atmosphere_images(effect, nullptr, nullptr), {"'count' is null"});
+  expect_invalid(tyndall_effect_atmosphere_images(effect, 0, nullptr, nullptr), {"'count' is null"});
   const auto atmosphere = sized<TyndallAtmosphereInputs>();
   expect_invalid(tyndall_atmosphere_constants(nullptr, &atmosphere, nullptr, 512), {"'constants' is null"});
   expect_invalid(tyndall_atmosphere_constants(nullptr, nullptr, &memory, 512), {"TyndallAtmosphereInputs", "null"});

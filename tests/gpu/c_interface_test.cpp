@@ -271,9 +271,9 @@ TEST_F(CEffect, TablesAreThoseOfCpp) {
 
   VkDescriptorImageInfo images[8] = {};
   std::uint32_t image_count = 0;
-  ASSERT_SUCCESS(tyndall_effect_atmosphere_images(c_.get(), &image_count, nullptr));
+  ASSERT_SUCCESS(tyndall_effect_atmosphere_images(c_.get(), 0, &image_count, nullptr));
   EXPECT_EQ(image_count, atmosphere_images(*cpp_).count);
-  ASSERT_SUCCESS(tyndall_effect_atmosphere_images(c_.get(), &image_count, images));
+  ASSERT_SUCCESS(tyndall_effect_atmosphere_images(c_.get(), 0, &image_count, images));
   EXPECT_EQ(images[0].imageView, light.sky_irradiance);
   EXPECT_EQ(images[3].imageView, scattering.high_orders.view);
   EXPECT_EQ(images[image_count].imageView, VK_NULL_HANDLE);

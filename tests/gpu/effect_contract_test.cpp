@@ -74,6 +74,9 @@ TEST_F(EffectContract, QueriedMemoryIsAllocatedMemory) {
   descs[2].frames_in_flight = 8;
   descs[2].max_cascades = 7;
   descs[2].max_shadow_resolution = 700;
+  descs[2].views = 2;
+  params[2].froxels.enabled = true;
+  params[2].froxels.columns = 33;
   params[2].epipolar.slices = 77;
   params[2].epipolar.samples = 33;
   params[2].epipolar.min_max_format = MinMaxFormat::float32;

@@ -38,7 +38,7 @@ using KeySet = std::unordered_set<PipelineKey, KeyHash>;
 template <typename Body>
 void for_each_mode(Body&& body) {
   Params p;
-  for (const Technique technique : {Technique::epipolar, Technique::brute_force}) {
+  for (const Technique technique : {Technique::epipolar, Technique::brute_force, Technique::froxels}) {
     for (const MediumKind medium : {MediumKind::atmosphere, MediumKind::homogeneous}) {
       for (std::uint32_t single = 0; single < 3; ++single) {
         for (std::uint32_t multiple = 0; multiple < 3; ++multiple) {
@@ -52,7 +52,7 @@ void for_each_mode(Body&& body) {
             p.epipolar.min_max_tree = (bits >> 2U & 1U) != 0;
             p.epipolar.min_max_format = static_cast<MinMaxFormat>(bits >> 3U & 1U);
             p.epipolar.refinement = static_cast<Refinement>(bits >> 4U & 1U);
-            p.scattering.light_shafts = (bits >> 5U & 1U) != 0;
+            p.froxels.enabled = p.scattering.light_shafts = (bits >> 5U & 1U) != 0;
             for (const std::uint32_t downscale : {1U, 2U, 4U}) {
               p.scattering.downscale = downscale;
               for (const std::uint32_t slices : {100U, 300U, 1024U}) {

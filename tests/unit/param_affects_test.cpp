@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "effect/frame_steps.hpp"
+#include "effect/froxel_volume.hpp"
 #include "effect/tables.hpp"
 #include "scene/description/terrain_key.hpp"
 
@@ -50,7 +51,7 @@ std::vector<std::vector<std::uint32_t>> values_of(const ParamInfo& info) {
 
 // Returns settings in which different parameters matter.
 std::vector<Params> settings() {
-  std::vector<Params> out(7);
+  std::vector<Params> out(8);
   out[1].scattering.single = SingleScattering::integration;
   out[1].scattering.multiple = MultipleScattering::occluded;
   out[2].scattering.medium = MediumKind::homogeneous;
@@ -63,6 +64,7 @@ std::vector<Params> settings() {
   out[6].scattering.single = SingleScattering::none;
   out[6].scattering.multiple = MultipleScattering::occluded;
   out[6].epipolar.slices = 100;
+  out[7].froxels.enabled = true;
   return out;
 }
 
@@ -84,6 +86,10 @@ Requirement requirement_of(const ParamInfo& info) {
       for (const PipelineKey& key : pipelines_of_frames(desc, changed))
         out.pipelines = out.pipelines || std::find(made.begin(), made.end(), key) == made.end();
       out.buffers = out.buffers || frame_buffer_sizes(desc, base).bytes != frame_buffer_sizes(desc, changed).bytes;
+      const VkExtent3D volume = froxel_extent(base);
+      const VkExtent3D other = froxel_extent(changed);
+      out.buffers =
+          out.buffers || volume.width != other.width || volume.height != other.height || volume.depth != other.depth;
       out.tables = out.tables || stale_tables(base, changed) != 0;
     }
   }

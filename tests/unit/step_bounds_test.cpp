@@ -60,5 +60,23 @@ TEST(StepBounds, TablesOfAnySizeAreBuiltInSmallSteps) {
   }
 }
 
+// The froxel volume is one dispatch with an invocation for each column, before the passes that draw the picture.
+TEST(StepBounds, FroxelsAreOneDispatchOfColumns) {
+  Params params;
+  params.froxels.enabled = true;
+  for (const Technique technique : {Technique::epipolar, Technique::brute_force, Technique::froxels}) {
+    params.scattering.technique = technique;
+    const FrameSteps steps = frame_steps({}, params, {{640, 360}, 4, 1, false});
+    EXPECT_STREQ(steps.begin()->name, "froxels");
+    EXPECT_EQ(steps.begin()->invocations.width, 160U);
+    EXPECT_EQ(steps.begin()->invocations.height, 90U);
+    EXPECT_EQ(steps.begin()->push[0], 0U);
+    EXPECT_EQ(steps.size() == 2 && std::string((steps.end() - 1)->name) == "compose_froxels",
+              technique == Technique::froxels);
+  }
+  params.scattering.enabled = false;
+  EXPECT_EQ(frame_steps({}, params, {}).begin()->push[0], 1U);  // fills the volume without the medium
+}
+
 }  // namespace
 }  // namespace tyndall

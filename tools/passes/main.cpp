@@ -43,6 +43,7 @@ const Mode kModes[] = {
     {"downscaled", "`scattering.downscale=2`", {"scattering.downscale=2"}},
     {"show_sampling", "`epipolar.show_sampling=true`", {"epipolar.show_sampling=true"}},
     {"brute_force", "`scattering.technique=brute-force`", {"scattering.technique=brute-force"}},
+    {"froxels", "`scattering.technique=froxels`", {"scattering.technique=froxels"}},
     {"disabled", "`scattering.enabled=false`", {"scattering.enabled=false"}},
 };
 

@@ -93,6 +93,8 @@ std::vector<std::string> unused_params(const Params& params, const SceneParams& 
         "scattering.medium = homogeneous");
   check(by_effect && params.scattering.technique == Technique::brute_force,
         {"scattering.downscale", "scattering.extinction"}, "scattering.technique = brute-force");
+  check(by_effect && params.scattering.technique == Technique::froxels,
+        {"scattering.downscale", "scattering.extinction"}, "scattering.technique = froxels");
 
   const bool custom = params.atmosphere.custom_coefficients.value != 0;
   check(!custom, {"atmosphere.rayleigh_scattering", "atmosphere.mie_scattering", "atmosphere.mie_absorption"},

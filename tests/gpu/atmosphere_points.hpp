@@ -1,0 +1,82 @@
+// Evaluates the functions of tyndall/atmosphere.glsl on a device, with the images of an effect, as an engine does.
+#pragma once
+
+#include <cstring>
+#include <vector>
+
+#include "atmosphere_test_shaders.hpp"
+#include "effect_frame.hpp"
+#include "tyndall/atmosphere.hpp"
+
+namespace tyndall {
+
+enum Function { sun_irradiance, sky_irradiance, sky_radiance, to_sky, between, between_shadowed, froxel };
+
+// Mirrors the structure of atmosphere_points.comp.
+struct Query {
+  float from[3];
+  float function;
+  float other[3];
+  float steps;
+  float plane[4];
+};
+struct Answer {
+  glm::dvec3 light, transmittance;
+};
+
+inline Query query(Function function, const glm::dvec3& from, const glm::dvec3& other, double steps = 0.0) {
+  Query q = {};
+  for (int i = 0; i < 3; ++i) {
+    q.from[i] = static_cast<float>(from[i]);
+    q.other[i] = static_cast<float>(other[i]);
+  }
+  q.function = static_cast<float>(function);
+  q.steps = static_cast<float>(steps);
+  q.plane[3] = 1.0F;  // lit everywhere
+  return q;
+}
+
+inline std::vector<Answer> evaluate_points(gpu::Host& host, const Effect& effect, const Params& params,
+                                           const AtmosphereInputs& inputs, const std::vector<Query>& queries) {
+  const Result<AtmosphereConstants> constants = atmosphere_constants(params, inputs);
+  const gpu::Device& device = host.device();
+  Result<gpu::Pipeline> pipeline = gpu::create_compute_pipeline(device, shaders::atmosphere_points_comp);
+  const auto buffer = [&](const void* data, std::size_t size, VkBufferUsageFlags usage) {
+    Result<gpu::Buffer> out = gpu::create_buffer(device, "test", size, usage, gpu::MemoryKind::readback);
+    EXPECT_OK(out);
+    if (data != nullptr) std::memcpy(out.value().mapped, data, size);
+    return std::move(out).value();
+  };
+  std::vector<Answer> out(queries.size());
+  EXPECT_OK(constants);
+  EXPECT_OK(pipeline);
+  if (!constants.ok() || !pipeline.ok()) return out;
+  const gpu::Buffer block = buffer(&constants.value(), sizeof(AtmosphereConstants), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
+  const gpu::Buffer in = buffer(queries.data(), queries.size() * sizeof(Query), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  const gpu::Buffer answers = buffer(nullptr, queries.size() * 32, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+  std::vector<gpu::NamedResource> resources = {gpu::named_buffer("tyndall_constants_block", block.buffer.get()),
+                                               gpu::named_buffer("query_block", in.buffer.get()),
+                                               gpu::named_buffer("answer_block", answers.buffer.get())};
+  const AtmosphereImages images = atmosphere_images(effect);
+  for (const gpu::Binding& binding : pipeline.value().bindings) {
+    if (binding.binding < 4) continue;  // TYNDALL_FIRST_BINDING is 3
+    // Without the froxel volume, a table stands for its images. It is not read.
+    const VkDescriptorImageInfo& info = images.list[binding.binding - 4 < images.count ? binding.binding - 4 : 1];
+    resources.push_back(gpu::named_image(binding.name, info.imageView, info.imageLayout, info.sampler));
+  }
+  EXPECT_OK(host.run([&](VkCommandBuffer cmd) -> Result<void> {
+    if (Result<void> bound = gpu::bind(host.sets(), cmd, pipeline.value(), resources); !bound.ok()) return bound;
+    gpu::dispatch(device, cmd, pipeline.value(), static_cast<std::uint32_t>(queries.size()));
+    gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
+                 VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+    return {};
+  }));
+  const auto* values = static_cast<const float*>(answers.mapped);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const float* v = values + 8 * i;
+    out[i] = {{v[0], v[1], v[2]}, {v[4], v[5], v[6]}};
+  }
+  return out;
+}
+
+}  // namespace tyndall
