@@ -16,9 +16,9 @@ namespace {
 // text.
 bool is_soaked(const config::Row& row) {
   constexpr std::string_view kNot[] = {
-      "tables.size",        "tables.orders",    "tables.cache",        "tables.cache_limit_mib",
-      "shadows.resolution", "epipolar.slices",  "epipolar.samples",    "camera.samples",
-      "camera.position_m",  "scattering.model", "scattering.technique"};
+      "tables.size",          "tables.orders",    "tables.cache",   "tables.cache_limit_mib", "shadows.resolution",
+      "epipolar.slices",      "epipolar.samples", "camera.samples", "camera.position_m",      "scattering.model",
+      "scattering.technique", "froxels.columns",  "froxels.rows",   "froxels.slices"};
   if (row.info.type == ParamType::string || row.info.group == "meshes") return false;
   return std::find(std::begin(kNot), std::end(kNot), row.key()) == std::end(kNot);
 }

@@ -58,6 +58,9 @@ Params random_params(std::mt19937& engine) {
   // Millions of samples for 16 pixels would also take minutes. epipolar_views_test.cpp tests both ends of these ranges.
   params.epipolar.slices = std::min(params.epipolar.slices, 33U);
   params.epipolar.samples = std::min(params.epipolar.samples, 33U);
+  params.froxels.columns = std::min(params.froxels.columns, 16U);
+  params.froxels.rows = std::min(params.froxels.rows, 16U);
+  params.froxels.slices = std::min(params.froxels.slices, 16U);
   return params;
 }
 
