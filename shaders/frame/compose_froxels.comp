@@ -62,7 +62,7 @@ void main() {
   vec2 uv = (vec2(pixel) + 0.5) / vec2(float(frame.width), float(frame.height));
   float w = froxel_coordinate(end, frame.froxel_near_m, frame.froxel_far_m, float(frame.froxel_slices));
   vec3 light = textureLod(froxel_inscattering, vec3(uv, w), 0.0).rgb;
-  vec3 behind = background * textureLod(froxel_transmittance, vec3(uv, w), 0.0).rgb;
+  vec3 behind = TRANSMITTED(background, CHANNELS(textureLod(froxel_transmittance, vec3(uv, w), 0.0)));
   if (end > frame.froxel_far_m) {
     light += COLOR(light_beyond(ray, start, max(frame.froxel_far_m, start), end));
     Spectrum through, opacity;

@@ -1,7 +1,8 @@
 // The froxel volume: in-scattering and transmittance from the camera to points of the view, with light shafts, for
 // transparent surfaces, particles and forward shading. Each invocation marches one column from near to far, in the
 // modes and with the functions of march_per_pixel.comp, and stores what it has gathered at every texel. In: shadow
-// cascades. Out: radiance in units of the sun's irradiance per steradian, and transmittance.
+// cascades. Out: radiance in units of the sun's irradiance per steradian, and transmittance of red, green and blue, or
+// at the four wavelengths.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -13,7 +14,10 @@
 #include "lib/froxels.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(push_constant) uniform Push { uint without_medium; }
+layout(push_constant) uniform Push {
+  uint first_row;  // of the columns
+  uint without_medium;
+}
 push;
 layout(binding = 13, rgba16f) uniform writeonly image3D froxel_inscattering;
 layout(binding = 14, rgba16f) uniform writeonly image3D froxel_transmittance;
@@ -84,7 +88,7 @@ Spectrum homogeneous_to(inout Column column, Ray ray, float to) {
 void main() {
   load_medium();
   load_frame();
-  ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 at = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, int(push.first_row));
   if (at.x >= int(frame.froxel_columns) || at.y >= int(frame.froxel_rows)) return;
   vec2 uv = (vec2(at) + 0.5) / vec2(float(frame.froxel_columns), float(frame.froxel_rows));
   Ray ray = ray_to_depth(frame, uv * vec2(float(frame.width), float(frame.height)), 0.0, true);
@@ -117,6 +121,6 @@ void main() {
       }
     }
     imageStore(froxel_inscattering, ivec3(at, int(k)), vec4(COLOR(light), 1.0));
-    imageStore(froxel_transmittance, ivec3(at, int(k)), vec4(TRANSMITTED(vec3(1.0), path_transmittance), 1.0));
+    imageStore(froxel_transmittance, ivec3(at, int(k)), STORED(path_transmittance, 1.0));
   }
 }

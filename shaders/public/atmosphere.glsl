@@ -185,11 +185,13 @@ TyndallPath tyndall_between(vec3 from, vec3 to) {
 // Light and transmittance from the camera to a point, from the froxel volume.
 struct TyndallFroxel {
   vec3 inscattering;
-  vec3 transmittance;
+  Spectrum transmittance;
 };
 
 // Returns the radiance `color` as it is seen through the volume.
-vec3 tyndall_apply(TyndallFroxel froxel, vec3 color) { return color * froxel.transmittance + froxel.inscattering; }
+vec3 tyndall_apply(TyndallFroxel froxel, vec3 color) {
+  return TRANSMITTED(color, froxel.transmittance) + froxel.inscattering;
+}
 
 // Looks up the froxel volume, which contains light shafts. uv: position in the picture from 0 to 1; distance_m:
 // distance from the camera. Points beyond froxels.far_m get the value there.
@@ -197,7 +199,7 @@ TyndallFroxel tyndall_froxel(vec2 uv, float distance_m) {
   vec3 at = vec3(uv, froxel_coordinate(distance_m, tyndall_constants.froxel_near_m, tyndall_constants.froxel_far_m,
                                        tyndall_constants.froxel_slices));
   return TyndallFroxel(textureLod(froxel_inscattering, at, 0.0).rgb * tyndall_constants.sun_irradiance,
-                       textureLod(froxel_transmittance, at, 0.0).rgb);
+                       CHANNELS(textureLod(froxel_transmittance, at, 0.0)));
 }
 
 #ifdef TYNDALL_SHADOW

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "air/coefficients.hpp"
-#include "effect/froxel_volume.hpp"
 #include "tyndall/params.hpp"
 
 namespace tyndall {
@@ -70,10 +69,6 @@ Result<void> check_params(const Params& params) {
     }
   }
   if (Result<void> r = air::check(params); !r) return r;
-  if (uses_froxels(params) && params.scattering.color == ColorMode::spectral) {
-    return invalid("scattering.color is spectral, which the froxel volume does not support; expected rgb with "
-                   "froxels.enabled or scattering.technique = froxels");
-  }
   const std::uint32_t downscale = params.scattering.downscale;
   if (downscale != 1 && downscale != 2 && downscale != 4) {
     return invalid("scattering.downscale is " + std::to_string(downscale) + "; expected 1, 2 or 4");

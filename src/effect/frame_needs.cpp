@@ -104,7 +104,6 @@ std::vector<PipelineKey> all_frame_pipelines(const EffectDesc& desc, Target targ
            {MultipleScattering::none, MultipleScattering::occluded, MultipleScattering::unoccluded}) {
         for (const LitSections sections : {LitSections::contiguous, LitSections::each}) {
           for (const Technique technique : {Technique::epipolar, Technique::brute_force, Technique::froxels}) {
-            if (technique == Technique::froxels && color == ColorMode::spectral) continue;  // refused
             for (const bool tree : {false, true}) {
               p = {};
               p.scattering.medium = medium;

@@ -197,10 +197,17 @@ void brute_force_steps(Frame& f) {
     f.dispatch("march_per_pixel", shader, {width, std::min(rows, height - first), 1}, {first, 0});
 }
 
-// Fills the froxel volume. Without the medium it holds no light and full transmittance.
+// Fills the froxel volume, in bands of rows so that a dispatch stays short: at the default size one, at the largest
+// eight. Without the medium it holds no light and full transmittance.
 void froxel_steps(Frame& f) {
+  constexpr std::uint32_t kTexelsPerBand = 512 * 64 * 256;
   const FroxelParams& p = f.params.froxels;
-  f.dispatch("froxels", shaders::froxels_comp, {p.columns, p.rows, 1}, {f.params.scattering.enabled ? 0U : 1U, 0});
+  const std::uint32_t group = shaders::froxels_comp.local_size[1];
+  const std::uint32_t rows = std::max(kTexelsPerBand / (p.columns * p.slices * group), 1U) * group;
+  for (std::uint32_t first = 0; first < p.rows; first += rows) {
+    f.dispatch("froxels", shaders::froxels_comp, {p.columns, std::min(rows, p.rows - first), 1},
+               {first, f.params.scattering.enabled ? 0U : 1U});
+  }
 }
 
 }  // namespace

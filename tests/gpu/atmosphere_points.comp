@@ -29,7 +29,8 @@ void main() {
   Query query = queries[index];
   transmittance = query.plane;
   int kind = int(query.from.w);
-  TyndallPath path = TyndallPath(vec3(0.0), vec3(0.0));
+  TyndallPath path = tyndall_between(query.from.xyz, query.from.xyz);
+  path.inscattering = vec3(0.0);
   if (kind == 0) path.inscattering = tyndall_sun_irradiance(query.from.xyz);
   if (kind == 1) path.inscattering = tyndall_sky_irradiance(query.from.xyz, query.other.xyz);
   if (kind == 2) path.inscattering = tyndall_sky_radiance(query.from.xyz, query.other.xyz);
@@ -40,6 +41,7 @@ void main() {
     TyndallFroxel volume = tyndall_froxel(query.from.xy, query.from.z);
     path = TyndallPath(tyndall_apply(volume, vec3(0.0)), volume.transmittance);
   }
+  if (kind == 7) path.inscattering = tyndall_apply(tyndall_froxel(query.from.xy, query.from.z), query.other.xyz);
   answers[2u * index] = vec4(path.inscattering, 0.0);
-  answers[2u * index + 1u] = vec4(path.transmittance, 0.0);
+  answers[2u * index + 1u] = vec4(path.transmittance.rgb, 0.0);
 }

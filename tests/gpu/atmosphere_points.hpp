@@ -10,7 +10,16 @@
 
 namespace tyndall {
 
-enum Function { sun_irradiance, sky_irradiance, sky_radiance, to_sky, between, between_shadowed, froxel };
+enum Function {
+  sun_irradiance,
+  sky_irradiance,
+  sky_radiance,
+  to_sky,
+  between,
+  between_shadowed,
+  froxel,
+  through_froxels
+};
 
 // Mirrors the structure of atmosphere_points.comp.
 struct Query {
@@ -40,7 +49,9 @@ inline std::vector<Answer> evaluate_points(gpu::Host& host, const Effect& effect
                                            const AtmosphereInputs& inputs, const std::vector<Query>& queries) {
   const Result<AtmosphereConstants> constants = atmosphere_constants(params, inputs);
   const gpu::Device& device = host.device();
-  Result<gpu::Pipeline> pipeline = gpu::create_compute_pipeline(device, shaders::atmosphere_points_comp);
+  const bool spectral = params.scattering.color == ColorMode::spectral;
+  Result<gpu::Pipeline> pipeline = gpu::create_compute_pipeline(
+      device, spectral ? shaders::atmosphere_points_comp_spectral : shaders::atmosphere_points_comp);
   const auto buffer = [&](const void* data, std::size_t size, VkBufferUsageFlags usage) {
     Result<gpu::Buffer> out = gpu::create_buffer(device, "test", size, usage, gpu::MemoryKind::readback);
     EXPECT_OK(out);

@@ -2,6 +2,7 @@
 // and changes between both modes.
 #include <cmath>
 
+#include "atmosphere_points.hpp"
 #include "effect/spectral_medium.hpp"
 #include "models/spectral.hpp"
 #include "shared_effect.hpp"
@@ -81,6 +82,36 @@ TEST_F(Spectral, EpipolarSamplingMatchesBruteForce) {
   params.scattering.downscale = 1;
   params.scattering.medium = MediumKind::homogeneous;
   expect_alike("spectral, homogeneous", params, 44.0);
+}
+
+TEST_F(Spectral, FroxelsMatchBruteForce) {
+  BoxScene scene = evening();
+  scene.extent = {48, 27};
+  TestFrame frame = frame_of(scene);
+  frame.background = Vec3(0.4F, 0.2F, 0.05F);
+  show(frame);
+  Params params = spectral_params();
+  params.scattering.technique = Technique::froxels;
+  params.froxels.columns = frame.extent.width;
+  params.froxels.rows = frame.extent.height;
+  prepare(params);
+  expect_alike("spectral, froxels", params, 40.0);
+  // Look-ups of engines.
+  std::vector<Query> queries;
+  const double distance = 900.0;
+  for (std::uint32_t x = 0; x < frame.extent.width; ++x) {
+    queries.push_back(query(through_froxels, {(x + 0.5) / frame.extent.width, 0.5 / frame.extent.height, distance},
+                            {0.4, 0.2, 0.05}));
+  }
+  AtmosphereInputs inputs;
+  inputs.sun.irradiance = frame.irradiance;
+  const std::vector<Answer> looked_up = evaluate_points(host(), effect(), params, inputs, queries);
+  frame.distance_m = [distance](std::uint32_t, std::uint32_t) { return distance; };
+  show(frame);
+  const Picture expected = draw(by_brute_force(params), "brute force");
+  for (std::uint32_t x = 0; x < frame.extent.width; ++x) {
+    EXPECT_LE(relative_error(looked_up[x].light, expected[x]), 0.003) << "column " << x;
+  }
 }
 
 // The state of rays between passes is stored with all channels.

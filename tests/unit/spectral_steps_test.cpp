@@ -22,13 +22,14 @@ EffectDesc full_desc() {
 
 // Returns settings with all passes of a frame.
 std::vector<Params> settings() {
-  std::vector<Params> out(6);
+  std::vector<Params> out(7);
   out[1].scattering.downscale = 2;
   out[2].scattering.technique = Technique::brute_force;
   out[3].scattering.medium = MediumKind::homogeneous;
   out[4].shadows.cascade_processing = CascadeProcessing::multi_pass_instanced;
   out[4].epipolar.show_sampling = true;
   out[5].scattering.enabled = false;
+  out[6].scattering.technique = Technique::froxels;
   return out;
 }
 
@@ -73,9 +74,9 @@ TEST_F(SpectralSteps, OfFrames) {
         if (step.dispatches()) compare(*step.pipeline.shader, *(spectral.begin() + i)->pipeline.shader);
       }
     }
-    // correct_downscaled, correct_pixels, interpolate_samples, march_per_pixel, march_samples, slice_samples, unwarp,
-    // unwarp_pixels, upscale, upscale_pixels
-    EXPECT_EQ(variants_.size(), 10U);
+    // compose_froxels, correct_downscaled, correct_pixels, froxels, interpolate_samples, march_per_pixel,
+    // march_samples, slice_samples, unwarp, unwarp_pixels, upscale, upscale_pixels
+    EXPECT_EQ(variants_.size(), 12U);
   }
 }
 

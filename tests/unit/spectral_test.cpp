@@ -186,21 +186,6 @@ TEST(Spectral, SunlightAboveTheAtmosphere) {
   EXPECT_NEAR(xyz[1] / (xyz[0] + xyz[1] + xyz[2]), 0.3332, 0.002);
 }
 
-TEST(Spectral, TheFroxelVolumeIsRefused) {
-  Params params;
-  params.scattering.color = ColorMode::spectral;
-  EXPECT_TRUE(check_params(params).ok());
-  params.froxels.enabled = true;
-  const Result<void> enabled = check_params(params);
-  ASSERT_FALSE(enabled.ok());
-  EXPECT_NE(enabled.error().message.find("froxels.enabled"), std::string::npos);
-  params.froxels.enabled = false;
-  params.scattering.technique = Technique::froxels;
-  EXPECT_FALSE(check_params(params).ok());
-  params.scattering.color = ColorMode::rgb;
-  EXPECT_TRUE(check_params(params).ok());
-}
-
 TEST(Spectral, FourWavelengthsStandForForty) {
   const Params params = spectral_params();
   Errors light, passed;

@@ -2,6 +2,7 @@
 // tables, and those of brute force for pictures of up to 4 million pixels.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <map>
 #include <string>
 #include <utility>
@@ -60,8 +61,9 @@ TEST(StepBounds, TablesOfAnySizeAreBuiltInSmallSteps) {
   }
 }
 
-// The froxel volume is one dispatch with an invocation for each column, before the passes that draw the picture.
-TEST(StepBounds, FroxelsAreOneDispatchOfColumns) {
+// The froxel volume has an invocation for each column, before the passes that draw the picture. The default size is one
+// dispatch.
+TEST(StepBounds, FroxelsAreShortDispatchesOfColumns) {
   Params params;
   params.froxels.enabled = true;
   for (const Technique technique : {Technique::epipolar, Technique::brute_force, Technique::froxels}) {
@@ -70,12 +72,27 @@ TEST(StepBounds, FroxelsAreOneDispatchOfColumns) {
     EXPECT_STREQ(steps.begin()->name, "froxels");
     EXPECT_EQ(steps.begin()->invocations.width, 160U);
     EXPECT_EQ(steps.begin()->invocations.height, 90U);
-    EXPECT_EQ(steps.begin()->push[0], 0U);
+    EXPECT_EQ(steps.begin()->push[1], 0U);
     EXPECT_EQ(steps.size() == 2 && std::string((steps.end() - 1)->name) == "compose_froxels",
               technique == Technique::froxels);
   }
   params.scattering.enabled = false;
-  EXPECT_EQ(frame_steps({}, params, {}).begin()->push[0], 1U);  // fills the volume without the medium
+  EXPECT_EQ(frame_steps({}, params, {}).begin()->push[1], 1U);  // fills the volume without the medium
+  for (const auto& [columns, rows, slices] :
+       {std::array{512U, 512U, 256U}, std::array{8U, 512U, 4U}, std::array{500U, 333U, 255U}}) {
+    params.froxels.columns = columns;
+    params.froxels.rows = rows;
+    params.froxels.slices = slices;
+    std::uint32_t next = 0;
+    for (const Step& step : frame_steps({}, params, {{640, 360}, 4, 1, false})) {
+      if (std::string(step.name) != "froxels") continue;
+      EXPECT_EQ(step.push[0], next);
+      EXPECT_EQ(step.invocations.width, columns);
+      EXPECT_LE(step.invocations.width * step.invocations.height * slices, 512U * 64 * 256);
+      next += step.invocations.height;
+    }
+    EXPECT_EQ(next, rows);
+  }
 }
 
 }  // namespace
