@@ -1,6 +1,6 @@
-// The part of examples/engine.cpp that every program with Vulkan has, and that does not concern Tyndall: a device,
-// images, barriers and submission. embed.cpp has the same in one file. An error ends the program with a number that
-// names the step.
+// The part of examples/engine.cpp and glass.cpp that every program with Vulkan has, and that does not concern Tyndall:
+// a device, images, barriers and submission. embed.cpp has the same in one file. An error ends the program with a
+// number that names the step.
 #pragma once
 
 #include <tyndall/effect.hpp>
@@ -98,14 +98,15 @@ inline VkDeviceMemory allocate(const Device& device, const VkMemoryRequirements&
 }
 
 inline Image create_image(const Device& device, VkExtent2D extent, VkFormat format, VkImageUsageFlags usage,
-                          VkImageAspectFlags aspect) {
+                          VkImageAspectFlags aspect, std::uint32_t layers = 1) {
   Image out;
   out.aspect = aspect;
   VkImageCreateInfo info = {VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
   info.imageType = VK_IMAGE_TYPE_2D;
   info.format = format;
   info.extent = {extent.width, extent.height, 1};
-  info.mipLevels = info.arrayLayers = 1;
+  info.mipLevels = 1;
+  info.arrayLayers = layers;
   info.samples = VK_SAMPLE_COUNT_1_BIT;
   info.usage = usage;
   need(vkCreateImage(device.device, &info, nullptr, &out.image) == VK_SUCCESS, 12);
@@ -115,18 +116,19 @@ inline Image create_image(const Device& device, VkExtent2D extent, VkFormat form
   need(vkBindImageMemory(device.device, out.image, out.memory, 0) == VK_SUCCESS, 13);
   VkImageViewCreateInfo view = {VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
   view.image = out.image;
-  view.viewType = VK_IMAGE_VIEW_TYPE_2D;
+  view.viewType = layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
   view.format = format;
-  view.subresourceRange = {aspect, 0, 1, 0, 1};
+  view.subresourceRange = {aspect, 0, 1, 0, layers};
   need(vkCreateImageView(device.device, &view, nullptr, &out.view) == VK_SUCCESS, 14);
   return out;
 }
 
-inline Buffer create_buffer(const Device& device, VkDeviceSize bytes) {
+inline Buffer create_buffer(const Device& device, VkDeviceSize bytes,
+                            VkBufferUsageFlags usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT) {
   Buffer out;
   VkBufferCreateInfo info = {VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
   info.size = bytes;
-  info.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+  info.usage = usage;
   need(vkCreateBuffer(device.device, &info, nullptr, &out.buffer) == VK_SUCCESS, 25);
   VkMemoryRequirements requirements;
   vkGetBufferMemoryRequirements(device.device, out.buffer, &requirements);
@@ -160,7 +162,7 @@ inline void wait_and_move(VkCommandBuffer cmd, const Image& image, VkImageLayout
   barrier.newLayout = to;
   barrier.image = image.image;
   barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-  barrier.subresourceRange = {image.aspect, 0, 1, 0, 1};
+  barrier.subresourceRange = {image.aspect, 0, 1, 0, VK_REMAINING_ARRAY_LAYERS};
   vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, nullptr, 0,
                        nullptr, 1, &barrier);
 }

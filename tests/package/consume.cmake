@@ -95,3 +95,8 @@ execute_process(COMMAND ${WORK}/build/engine ${WORK}/build/embed_cpp.rgba RESULT
 if(NOT status EQUAL 0 OR NOT output MATCHES "^irradiance from the sky: [0-9. ]+\neye 0 [^\n]*\neye 1 [^\n]*\n$")
   message(FATAL_ERROR "engine: status ${status}; expected 0 and three lines without messages of the validation layer\n${output}")
 endif()
+# The transparent pane has the haze and the shadows of an opaque surface at its place.
+execute_process(COMMAND ${WORK}/build/glass ${WORK}/glass.rgba RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_QUIET)
+if(NOT status EQUAL 0 OR NOT output MATCHES "^the pane from the froxel volume differs from the opaque one by at most [0-9.e-]+\n$")
+  message(FATAL_ERROR "glass: status ${status}; expected 0 and one line without messages of the validation layer\n${output}")
+endif()
