@@ -41,7 +41,7 @@ while read -r library path; do
   fi
 done < "$work/libraries"
 # ImGui, toml++, CLI11, nlohmann-json and GLM are compiled into the programs.
-for package in libimgui-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libglm-dev; do
+for package in libimgui-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libglm-dev libxxhash-dev; do
   [ -f "/usr/share/doc/$package/copyright" ] || { echo "bundle.sh: no licence was found for '$package'" >&2; exit 1; }
   cp -L "/usr/share/doc/$package/copyright" "$top/licences/$package.txt"
 done

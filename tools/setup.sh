@@ -9,14 +9,14 @@ glslc spirv-tools libspirv-cross-c-shared-dev
 libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers
 libglm-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
 libglfw3-dev libx11-dev libimgui-dev libshaderc-dev xvfb xdotool openbox
-libdraco-dev libmeshoptimizer-dev libstb-dev libopenexr-dev libpng-dev zlib1g-dev libgdal-dev libgtest-dev
+libdraco-dev libmeshoptimizer-dev libstb-dev libopenexr-dev libpng-dev zlib1g-dev libxxhash-dev libgdal-dev libgtest-dev
 python3-dev pybind11-dev python3-numpy python3-pytest python3-matplotlib
 doxygen abigail-tools $*"
 
 needs() {
   echo "Tyndall needs: a C++20 compiler, CMake 3.25, Ninja, pkg-config, Python 3, glslc, SPIRV-Tools, SPIRV-Cross (C API)," >&2
   echo "Vulkan 1.3 headers, loader, a driver and the validation layers, GLM, CLI11, toml++, nlohmann-json," >&2
-  echo "stb, OpenEXR, libpng, zlib, GDAL, GoogleTest, GLFW, ImGui, shaderc, pybind11, NumPy, pytest, matplotlib; Xvfb, xdotool and openbox for tests of windows." >&2
+  echo "stb, OpenEXR, libpng, zlib, xxHash, GDAL, GoogleTest, GLFW, ImGui, shaderc, pybind11, NumPy, pytest, matplotlib; Xvfb, xdotool and openbox for tests of windows." >&2
   echo "Optional: Draco and meshoptimizer, for glTF files that they compress; Doxygen, for the reference of the headers;" >&2
   echo "libabigail, for the check of the binary interface." >&2
   echo "Going on with what is installed." >&2

@@ -129,6 +129,7 @@ int run_bench(Args args) {
   Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({options.device, false});
   if (!host) return fail(host.error());
   const tables::PipelineStore pipelines(*host.value(), table_cache(options.settings.scene));
+  if (!pipelines.note().empty()) note(pipelines.note());
   if (!host.value()->timestamps()) {
     return fail(Error{ErrorCode::unsupported_device, "the queue of the Vulkan device '" + host.value()->device_name() +
                                                          "' cannot measure passes; expected one with timestamps"});

@@ -59,6 +59,7 @@ Result<std::vector<ProbeAnswer>> run_single(const ProbeSettings& settings, std::
   Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({.device = settings.device, .graphics = false});
   if (!host) return std::move(host).error();
   const tables::PipelineStore pipelines(*host.value(), settings.table_cache);
+  if (settings.note && !pipelines.note().empty()) settings.note(pipelines.note());
   const auto progress = [&](std::size_t done) {
     settings.progress(sky_share + (1.0 - sky_share) * static_cast<double>(done) / static_cast<double>(rays.size()));
   };
@@ -126,6 +127,7 @@ Result<std::vector<ProbeAnswer>> run_precomputed(const ProbeSettings& settings, 
   Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({.device = settings.device, .graphics = false});
   if (!host) return std::move(host).error();
   const tables::PipelineStore pipelines(*host.value(), settings.table_cache);
+  if (settings.note && !pipelines.note().empty()) settings.note(pipelines.note());
   tables::MakeReady how;
   how.cache = settings.table_cache;
   how.progress = [&](Progress built) {

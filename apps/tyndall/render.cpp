@@ -62,6 +62,7 @@ int run_render(Args args) {
   Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({options.device, false});
   if (!host) return fail(host.error());
   const tables::PipelineStore pipelines(*host.value(), table_cache(options.settings.scene));
+  if (!pipelines.note().empty()) note(pipelines.note());
   scene::SceneDesc desc;
   desc.extent = {options.size.width, options.size.height};
   desc.pipeline_threads = gpu::Host::pipeline_threads();

@@ -381,6 +381,7 @@ int run_sky(Args args) {
   Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({.device = options.device, .graphics = false});
   if (!host) return fail(host.error());
   const tables::PipelineStore pipelines(*host.value(), table_cache(options.settings.scene));
+  if (!pipelines.note().empty()) note(pipelines.note());
   const SkyModel& model =
       *std::find_if(std::begin(kModels), std::end(kModels), [&](const SkyModel& m) { return m.name() == sky.model; });
   Result<std::unique_ptr<SkySource>> source = model.make(*host.value(), options.settings);

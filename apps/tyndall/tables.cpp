@@ -63,6 +63,7 @@ int run_tables(Args args) {
   Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({.device = options.device, .graphics = false});
   if (!host) return fail(host.error());
   const tables::PipelineStore pipelines(*host.value(), table_cache(options.settings.scene));
+  if (!pipelines.note().empty()) note(pipelines.note());
   tables::MakeReady how = make_tables(options.settings.scene);
   how.rebuild = true;
   Result<models::PrecomputedModel> model = models::PrecomputedModel::create(*host.value(), params, how);

@@ -3,16 +3,20 @@
 #include "files/file_cache.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+// The functions are compiled here, so that the library is not needed at run time.
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 #include <vector>
 
 #include "files/files.hpp"
@@ -21,7 +25,7 @@
 namespace tyndall::files {
 namespace {
 
-constexpr std::uint64_t kMark = 0x3165686361635954U;  // "TYcache1" where the lowest byte comes first
+constexpr std::uint64_t kMark = 0x3265686361635954U;  // "TYcache2" where the lowest byte comes first
 constexpr std::string_view kEnding = ".cache";
 
 struct Header {
@@ -35,48 +39,24 @@ struct Header {
 
 std::span<const std::byte> as_bytes(std::string_view text) { return std::as_bytes(std::span(text)); }
 
-// Computes a checksum of `total` bytes that arrive in pieces; all but the last are multiples of 32 bytes long. Words
-// are multiplied and rotated in four independent lanes, which is as fast as memory can be read. The mixing function of
-// SplitMix64 finishes the sum.
+// Computes a checksum of bytes that arrive in pieces.
 class Checksum {
  public:
-  explicit Checksum(std::uint64_t total)
-      : lanes_{0x9e3779b97f4a7c15U, 0xbf58476d1ce4e5b9U, 0x94d049bb133111ebU, total} {}
-
+  Checksum() { XXH3_64bits_reset(&state_); }
   void add(std::span<const std::byte> bytes) {
-    std::size_t at = 0;
-    const auto word = [&](std::size_t offset) {
-      std::uint64_t value = 0;
-      std::memcpy(&value, bytes.data() + offset, std::min<std::size_t>(8, bytes.size() - offset));
-      return value;
-    };
-    for (; at + 32 <= bytes.size(); at += 32) {
-      for (std::size_t i = 0; i < 4; ++i) lanes_[i] = mix(lanes_[i], word(at + 8 * i));
-    }
-    for (std::size_t lane = 0; at < bytes.size(); at += 8, ++lane) lanes_[lane] = mix(lanes_[lane], word(at));
+    if (!bytes.empty()) XXH3_64bits_update(&state_, bytes.data(), bytes.size());
   }
-
-  [[nodiscard]] std::uint64_t finish() const {
-    std::uint64_t sum = 0;
-    for (const std::uint64_t lane : lanes_) {
-      sum = mix(sum, lane);
-      sum = (sum ^ (sum >> 30U)) * 0xbf58476d1ce4e5b9U;
-      sum ^= sum >> 27U;
-    }
-    return sum;
-  }
+  [[nodiscard]] std::uint64_t finish() const { return XXH3_64bits_digest(&state_); }
 
  private:
-  static std::uint64_t mix(std::uint64_t lane, std::uint64_t value) {
-    return std::rotl((lane ^ value) * 0x9fb21c651e98df25U, 29);
-  }
-  std::array<std::uint64_t, 4> lanes_;
+  XXH3_state_t state_;
 };
 
 // A file that is open for reading.
 class OpenFile {
  public:
-  explicit OpenFile(const std::string& path) : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
+  // Does not wait for the other end of a pipe that has the file's name.
+  explicit OpenFile(const std::string& path) : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
   OpenFile(const OpenFile&) = delete;
   OpenFile& operator=(const OpenFile&) = delete;
   ~OpenFile() {
@@ -125,7 +105,7 @@ bool is_entry_name(std::string_view name) {
 }  // namespace
 
 std::uint64_t checksum(std::span<const std::byte> bytes) {
-  Checksum sum(bytes.size());
+  Checksum sum;
   sum.add(bytes);
   return sum.finish();
 }
@@ -140,6 +120,46 @@ std::string cache_directory(std::string_view place) {
   if (const std::string cache = absolute("XDG_CACHE_HOME"); !cache.empty()) return cache + "/tyndall";
   if (const std::string home = absolute("HOME"); !home.empty()) return home + "/.cache/tyndall";
   return "";
+}
+
+BuildLock::BuildLock(BuildLock&& other) noexcept
+    : state_(std::exchange(other.state_, State::unavailable)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      path_(std::move(other.path_)) {}
+
+BuildLock::~BuildLock() {
+  if (descriptor_ < 0) return;
+  ::unlink(path_.c_str());  // while it is locked: try_lock() recognises a file that has lost its name
+  ::close(descriptor_);
+}
+
+BuildLock FileCache::try_lock(std::string_view key) const {
+  BuildLock lock;
+  if (!enabled()) return lock;
+  std::error_code failed;
+  std::filesystem::create_directories(directory_, failed);
+  // remove_leftovers() removes this file if a killed process has left it.
+  lock.path_ = concat({directory_, "/.tyndall-", hexadecimal(checksum(as_bytes(key))), ".lock"});
+  constexpr mode_t kMode = 0666;  // less the umask
+  const int descriptor = ::open(lock.path_.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, kMode);
+  if (descriptor < 0) return lock;
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+    if (errno == EWOULDBLOCK) lock.state_ = BuildLock::State::busy;
+    ::close(descriptor);
+    return lock;
+  }
+  struct stat opened {};
+  struct stat named {};
+  if (::fstat(descriptor, &opened) != 0 || ::lstat(lock.path_.c_str(), &named) != 0 || opened.st_dev != named.st_dev ||
+      opened.st_ino != named.st_ino) {
+    // The last holder has removed the file between opening and locking it here.
+    ::close(descriptor);
+    lock.state_ = BuildLock::State::busy;
+    return lock;
+  }
+  lock.state_ = BuildLock::State::held;
+  lock.descriptor_ = descriptor;
+  return lock;
 }
 
 FileCache::FileCache(std::string directory, std::uint64_t limit_bytes, std::string version)
@@ -196,7 +216,7 @@ bool FileCache::read(std::string_view key, std::span<std::byte> to) {
   if (std::string_view(text).substr(header.version_bytes) != key || header.contents_bytes != to.size())
     return unusable("of another key");
   // Read in pieces, so that the checksum reads each piece while it is still in the processor's cache.
-  Checksum sum(to.size());
+  Checksum sum;
   std::vector<std::byte> piece(std::min(kPiece, to.size()));
   for (std::size_t at = 0; at < to.size(); at += piece.size()) {
     const std::span<std::byte> next = std::span(piece).first(std::min(piece.size(), to.size() - at));
@@ -264,8 +284,9 @@ void FileCache::make_room(const std::string& new_file) const {
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.used < b.used; });
   for (const Entry& entry : entries) {
     if (total <= limit_bytes_) return;
-    std::filesystem::remove(entry.path, failed);
-    total -= entry.bytes;
+    std::error_code kept;
+    std::filesystem::remove(entry.path, kept);
+    if (!kept) total -= entry.bytes;
   }
 }
 

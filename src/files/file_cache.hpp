@@ -14,6 +14,32 @@
 
 namespace tyndall::files {
 
+// The right to build what belongs to a key, which one process at a time has. It ends with the object or the process.
+class BuildLock {
+ public:
+  enum class State {
+    held,
+    busy,         // another process builds it; try again
+    unavailable,  // the cache is disabled, or its folder permits no locks: build without one
+  };
+
+  BuildLock(BuildLock&& other) noexcept;
+  BuildLock& operator=(BuildLock&&) = delete;
+  BuildLock(const BuildLock&) = delete;
+  BuildLock& operator=(const BuildLock&) = delete;
+  ~BuildLock();
+
+  [[nodiscard]] State state() const { return state_; }
+
+ private:
+  friend class FileCache;
+  BuildLock() = default;
+
+  State state_ = State::unavailable;
+  int descriptor_ = -1;
+  std::string path_;
+};
+
 class FileCache {
  public:
   // Creates a disabled cache: reads find nothing, and writes store nothing.
@@ -38,6 +64,10 @@ class FileCache {
   // Stores the contents under the key, replacing what was there.
   void write(std::string_view key, std::span<const std::byte> contents);
 
+  // Takes the right to build what belongs to the key, so that several processes do not all do the same work. Does not
+  // wait. Without it, everything else works, too.
+  [[nodiscard]] BuildLock try_lock(std::string_view key) const;
+
   // Returns one line that says why the last read or write failed; empty if it succeeded or if nothing was stored.
   [[nodiscard]] const std::string& note() const { return note_; }
 
@@ -57,7 +87,7 @@ class FileCache {
 // $HOME/.cache/tyndall, or nothing when neither is an absolute path; otherwise the name itself.
 [[nodiscard]] std::string cache_directory(std::string_view place);
 
-// Returns a checksum that detects damage, but not deliberate changes.
+// Returns a checksum (XXH3, 64 bits) that detects damage, but not deliberate changes.
 [[nodiscard]] std::uint64_t checksum(std::span<const std::byte> bytes);
 
 }  // namespace tyndall::files

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <span>
+#include <thread>
+#include <utility>
 
 #include "files/file_cache.hpp"
 #include "gpu/guard.hpp"
@@ -39,6 +42,34 @@ Result<bool> load(gpu::Host& host, Effect& effect, files::FileCache& cache, Repo
     return {};
   }));
   return true;
+}
+
+// Waits while another process builds the same tables, and loads them when they are there. Returns the lock under which
+// this process is to build them, or nothing if they were loaded. After kLongestWait the tables are built without a
+// lock: the other process may have been stopped.
+Result<std::optional<files::BuildLock>> load_or_lock(gpu::Host& host, Effect& effect, const MakeReady& how,
+                                                     files::FileCache& cache, Report& report) {
+  constexpr auto kLongestWait = std::chrono::seconds(60);
+  constexpr auto kPause = std::chrono::milliseconds(20);
+  TYNDALL_ASSIGN(bool loaded, load(host, effect, cache, report));
+  if (loaded) return std::optional<files::BuildLock>();
+  const std::string key = effect.table_key();
+  const auto start = std::chrono::steady_clock::now();
+  bool waited = false;
+  for (;;) {
+    files::BuildLock lock = cache.try_lock(key);
+    if (lock.state() != files::BuildLock::State::busy || std::chrono::steady_clock::now() - start > kLongestWait) {
+      // Another process may have stored the tables since they were missed. A damaged file is only reported once.
+      if (cache.holds(key) && (waited || report.notes.empty())) {
+        TYNDALL_ASSIGN(loaded, load(host, effect, cache, report));
+        if (loaded) return std::optional<files::BuildLock>();
+      }
+      return std::optional<files::BuildLock>(std::move(lock));
+    }
+    waited = true;
+    if (how.progress) how.progress(effect.precompute_progress());
+    std::this_thread::sleep_for(kPause);
+  }
 }
 
 }  // namespace
@@ -103,10 +134,12 @@ Result<Report> make_ready(gpu::Host& host, Effect& effect, const MakeReady& how)
     report.notes.push_back("the cache of the tables is not used: " + error.message);
     return {};
   };
+  std::optional<files::BuildLock> lock;  // held until the tables are stored
   if (!how.rebuild) {
-    const Result<bool> loaded = load(host, effect, cache, report);
-    if (!loaded) TYNDALL_TRY(without_cache(loaded.error()));
-    if (loaded && loaded.value()) {
+    Result<std::optional<files::BuildLock>> found = load_or_lock(host, effect, how, cache, report);
+    if (!found) TYNDALL_TRY(without_cache(found.error()));
+    if (found && found.value()) lock.emplace(std::move(*found.value()));
+    if (found && !lock) {
       report.origin = Origin::cache;
       report.milliseconds = milliseconds();
       return report;
@@ -128,7 +161,8 @@ Result<Report> make_ready(gpu::Host& host, Effect& effect, const MakeReady& how)
   // The new tables are in use and the old ones are freed. If caching now runs out of memory, a note is enough.
   const Result<void> cached = within_memory("caching the tables", [&]() -> Result<void> {
     TYNDALL_ASSIGN(CacheWriter writer, CacheWriter::fetch(host, effect, how.cache));
-    if (const std::string note = writer.write(); !note.empty()) report.notes.push_back(note);
+    // One line is enough: a file that cannot be replaced remains damaged.
+    if (const std::string note = writer.write(); !note.empty()) report.notes = {note};
     return {};
   });
   if (!cached) TYNDALL_TRY(without_cache(cached.error()));

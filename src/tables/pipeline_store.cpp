@@ -44,6 +44,7 @@ PipelineStore::PipelineStore(gpu::Host& host, const CacheDesc& cache) : host_(ho
     std::optional<std::string> stored;
     const std::uint64_t bytes = files.size(key_);
     if (bytes > 0 && bytes <= kMaxBytes) stored = files.read(key_, bytes);
+    note_ = files.note();
     VkPipelineCacheCreateInfo info = {};
     info.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
     if (stored && is_of_device(std::as_bytes(std::span(*stored)), device.properties)) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 
 #include "gpu/host.hpp"
@@ -19,12 +20,16 @@ class PipelineStore {
   PipelineStore(const PipelineStore&) = delete;
   PipelineStore& operator=(const PipelineStore&) = delete;
 
+  // Returns one line if there was a file that could not be used; otherwise an empty text.
+  [[nodiscard]] const std::string& note() const { return note_; }
+
  private:
   void store();
 
   gpu::Host& host_;
   CacheDesc desc_;
   std::string key_;
+  std::string note_;
   gpu::Handle<VkPipelineCache> cache_;
   std::size_t stored_bytes_ = 0;
 };

@@ -399,5 +399,24 @@ TEST_F(CliTableCache, ProcessesShareIt) {
   EXPECT_EQ(cached().size(), 1U);  // no temporary file is left
 }
 
+TEST_F(CliTableCache, OneOfSeveralProcessesBuildsTheTables) {
+  std::vector<std::future<ProcessResult>> running;
+  for (int i = 0; i < 3; ++i) {
+    running.push_back(std::async(std::launch::async, [this, i] {
+      return run("sky", {"-o", scratch_.at(std::to_string(i) + ".exr"), "--size", "8x4", "--json",
+                         "--sun-elevation-deg", "20", "--sun-azimuth-deg", "0"});
+    }));
+  }
+  int built = 0;
+  for (std::future<ProcessResult>& one : running) {
+    const ProcessResult process = one.get();
+    ASSERT_EQ(process.status, 0) << process.err;
+    EXPECT_EQ(process.err, "");
+    if (nlohmann::json::parse(process.out)["tables"]["from"] == "build") ++built;
+  }
+  EXPECT_EQ(built, 1);
+  EXPECT_EQ(cached().size(), 1U);
+}
+
 }  // namespace
 }  // namespace tyndall::cli

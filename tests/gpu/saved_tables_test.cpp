@@ -2,11 +2,17 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <iterator>
+#include <memory>
+#include <optional>
+#include <random>
 
 #include "files/file_cache.hpp"
 #include "models/precomputed.hpp"
@@ -14,6 +20,7 @@
 #include "table_rays.hpp"
 #include "tables/make_ready.hpp"
 #include "tables/pipeline_store.hpp"
+#include "tyndall/version.hpp"
 
 namespace tyndall {
 namespace {
@@ -279,6 +286,95 @@ TEST_F(CachedTablesTest, DamagedFilesAreReportedOnceAndRebuilt) {
   EXPECT_EQ(report.origin, tables::Origin::build);
   ASSERT_EQ(report.notes.size(), 1U);
   EXPECT_EQ(report.notes[0].rfind("nothing is cached: ", 0), 0U) << report.notes[0];
+}
+
+// Two sets of tables in turn, so that each of them has to be loaded or built again.
+class TwoCachedTablesTest : public CachedTablesTest {
+ protected:
+  void SetUp() override {
+    CachedTablesTest::SetUp();
+    sets_[1].atmosphere.aerosol_density = 2.0F;
+    effect_.emplace(make(sets_[0], false));
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_EQ(prepare(i).origin, tables::Origin::build);
+      built_[i] = save(*effect_);
+    }
+    EXPECT_NE(built_[0], built_[1]);
+  }
+  void TearDown() override {
+    effect_.reset();
+    CachedTablesTest::TearDown();
+  }
+  tables::Report prepare(std::size_t set) {
+    EXPECT_OK(effect_->set_params(sets_[set]));
+    key_ = effect_->table_key();
+    return ready(*effect_);
+  }
+  [[nodiscard]] files::FileCache cache() const {
+    return {how_.cache.place, how_.cache.limit_bytes, TYNDALL_VERSION_STRING};
+  }
+
+  std::array<Params, 2> sets_ = {quick_tables(), quick_tables()};
+  std::array<std::vector<std::byte>, 2> built_;
+  std::optional<Effect> effect_;
+  std::string key_;
+};
+
+// Returns a file with damage of one of five kinds in a random place.
+std::string damaged(std::string file, int kind, std::mt19937_64& random) {
+  const std::size_t at = random() % file.size();
+  switch (kind) {
+    case 0: file[at] = static_cast<char>(file[at] ^ (1 << (random() % 8))); break;
+    case 1: file.resize(at); break;
+    case 2: file.insert(at, 1 + random() % 100, '\0'); break;
+    case 3: std::fill_n(file.begin() + static_cast<std::ptrdiff_t>(at / 2), 1 + at / 4, '\xff'); break;
+    default: file[at % 400] = static_cast<char>(file[at % 400] + 1 + random() % 255); break;  // header and key
+  }
+  return file;
+}
+
+// TYNDALL_CORRUPTIONS sets the number of damaged files.
+TEST_F(TwoCachedTablesTest, SurviveRandomDamage) {
+  std::array<std::string, 2> paths, good;
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(prepare(i).origin, tables::Origin::cache);
+    paths[i] = cache().path(key_);
+    std::ifstream in(paths[i], std::ios::binary);
+    good[i].assign(std::istreambuf_iterator<char>(in), {});
+  }
+  const char* const count = std::getenv("TYNDALL_CORRUPTIONS");
+  const int corruptions = count != nullptr ? std::atoi(count) : 5;
+  std::mt19937_64 random(21);
+  for (int i = 0; i < corruptions; ++i) {
+    const std::size_t set = static_cast<std::size_t>(i) % 2;
+    std::ofstream(paths[set], std::ios::binary) << damaged(good[set], i % 5, random);
+    const tables::Report report = prepare(set);
+    EXPECT_EQ(report.origin, tables::Origin::build) << i;
+    ASSERT_EQ(report.notes.size(), 1U) << i;
+    EXPECT_EQ(report.notes[0].find('\n'), std::string::npos);
+    ASSERT_EQ(save(*effect_), built_[set]) << i;
+  }
+  std::cout << corruptions << " damaged files of cached tables: each was noticed and rebuilt\n";
+}
+
+// Another process that builds the same tables is waited for, and its result is used.
+TEST_F(TwoCachedTablesTest, AreAwaitedWhileAnotherProcessBuildsThem) {
+  EXPECT_EQ(prepare(0).origin, tables::Origin::cache);
+  const std::string key = key_;
+  EXPECT_EQ(prepare(1).origin, tables::Origin::cache);
+  std::filesystem::remove(cache().path(key));
+  auto lock = std::make_unique<files::BuildLock>(cache().try_lock(key));
+  ASSERT_EQ(lock->state(), files::BuildLock::State::held);
+  std::uint32_t calls = 0;
+  how_.progress = [&](Progress progress) {
+    EXPECT_EQ(progress.done, 0U);
+    if (++calls < 3) return;
+    cache().write(key, built_[0]);
+    lock.reset();
+  };
+  EXPECT_EQ(prepare(0).origin, tables::Origin::cache);
+  EXPECT_EQ(save(*effect_), built_[0]);
+  EXPECT_EQ(calls, 3U);
 }
 
 TEST_F(CachedTablesTest, StayWithinTheSizeLimit) {
