@@ -9,6 +9,7 @@
 
 #include "arguments.hpp"
 #include "config/scene_file.hpp"
+#include "files/access.hpp"
 #include "files/files.hpp"
 #include "files/text.hpp"
 #include "image/image.hpp"
@@ -118,6 +119,10 @@ void add_common(Arguments& arguments, CommonOptions& options, unsigned which) {
     arguments.texts("--set", options.sets, "KEY=VALUE",
                     "set a parameter; may be repeated; overrides the scene file and earlier --set");
   }
+  if ((which & kScene) != 0) {
+    arguments.flag("--allow-outside", options.allow_outside,
+                   "let scene files and models name files outside their own folder, and files on a network");
+  }
   if ((which & kOutput) != 0) arguments.text("-o,--output", options.output, "FILE", "output file");
   if ((which & kSize) != 0) {
     arguments.value("--size", "WxH",
@@ -140,6 +145,7 @@ void add_common(Arguments& arguments, CommonOptions& options, unsigned which) {
 
 Result<void> resolve(CommonOptions& options) {
   options.settings = config::Settings();
+  if (options.allow_outside) files::allow_outside();
   if (!options.scene_file.empty()) {
     if (Result<void> loaded = config::load(options.settings, options.scene_file); !loaded) {
       // An unreadable scene file is bad input, not a failure at run time.

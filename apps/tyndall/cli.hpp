@@ -71,7 +71,8 @@ struct CommonOptions {
   std::uint32_t frames = 1;
   std::string output;  // empty: not given
   bool json = false;
-  config::Settings settings;  // filled by resolve()
+  bool allow_outside = false;  // files that scenes and models name may be anywhere
+  config::Settings settings;   // filled by resolve()
 };
 
 // Adds the options of `which` (CommonOption bits) to the verb's arguments.

@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "config/describe.hpp"
+#include "files/access.hpp"
 #include "files/files.hpp"
 
 namespace tyndall::config {
@@ -331,6 +332,56 @@ TEST_F(SceneFile, WrongIncludesAreRefused) {
   // Nothing of a file is used if one that it includes is wrong.
   refused("include = 'bad.toml'\n[sun]\nelevation_deg = 80\n", "bad.toml:2: unknown parameter 'atmosphere.mie_gg'");
   EXPECT_EQ(all_text(settings), all_text(Settings()));
+}
+
+// A scene that was downloaded cannot make the program read text elsewhere, use a network, or write elsewhere.
+TEST_F(SceneFile, ScenesStayInTheirFolder) {
+  const std::filesystem::path inside = directory_ / "scene";
+  std::filesystem::create_directories(inside / "air");
+  write("secret.toml", "[sun]\nelevation_deg = 3\n");
+  write("scene/air/a.toml", "include = '../b.toml'\n");
+  write("scene/b.toml", "[sun]\nelevation_deg = 4\n");
+  std::filesystem::create_symlink(directory_ / "secret.toml", inside / "link.toml");
+  std::filesystem::create_directory_symlink(directory_, inside / "folder");
+  std::filesystem::create_symlink(inside / "air", inside / "elsewhere");
+  const std::string secret = (directory_ / "secret.toml").string();
+  const auto text_of = [&](const std::string& toml) {
+    Settings settings;
+    const Result<void> loaded = load(settings, write("scene/s.toml", toml));
+    return loaded.ok() ? std::string() : loaded.error().message;
+  };
+  const std::vector<std::pair<std::string, std::string>> refused = {
+      {"include = '../secret.toml'\n", "s.toml:1: '../secret.toml' is outside the folder of the scene; expected"},
+      {"\ninclude = ['b.toml', '" + secret + "']\n", "s.toml:2: '" + secret + "' is outside"},
+      {"include = 'link.toml'\n", "'link.toml' is outside"},
+      {"include = 'folder/secret.toml'\n", "'folder/secret.toml' is outside"},
+      {"include = 'air/../../secret.toml'\n", "is outside"},
+      {"include = '../none.toml'\n", "is outside"},
+      {"[terrain]\nsource = '/vsicurl/http://example.invalid/a.tif'\n", "is on a network; expected a local file"},
+      {"[terrain]\nsource = '/vsizip//vsicurl/http://example.invalid/a.zip/a.tif'\n", "is on a network"},
+      {"[terrain]\nsource = 'NETCDF:http://example.invalid/a:z'\n", "is on a network"},
+      {"[tables]\ncache = '" + (directory_ / "new").string() + "'\n", "is outside the folder of the scene; expected"},
+  };
+  for (const auto& [toml, part] : refused) {
+    EXPECT_NE(text_of(toml).find(part), std::string::npos) << toml << text_of(toml);
+    EXPECT_NE(text_of(toml).find("or --allow-outside"), std::string::npos) << text_of(toml);
+  }
+  write("used.cache", "x");  // now the folder is a cache already
+  for (const std::string& toml :
+       {std::string("include = 'air/a.toml'\n"), std::string("include = 'elsewhere/a.toml'\n"),
+        "include = '" + (inside / "b.toml").string() + "'\n", "[tables]\ncache = '" + (inside / "new").string() + "'\n",
+        std::string("[tables]\ncache = 'off'\n"), "[tables]\ncache = '" + directory_.string() + "'\n",
+        std::string("[terrain]\nsource = '/vsizip/a.zip/a.tif'\n")}) {
+    EXPECT_EQ(text_of(toml), "") << toml;
+  }
+  // In a process of its own, because permission is for the whole process.
+  const auto allowed = [&] {
+    files::allow_outside();
+    bool all = true;
+    for (const auto& [toml, part] : refused) all = all && text_of(toml).find("outside") == std::string::npos;
+    return all;
+  };
+  EXPECT_EXIT(std::exit(allowed() ? 0 : 1), testing::ExitedWithCode(0), "");
 }
 
 TEST_F(SceneFile, FilesAreFoundBesideTheScene) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "files/access.hpp"
 #include "files/files.hpp"
 #include "files/text.hpp"
 #include "scene/mesh/gltf_decoders.hpp"
@@ -90,7 +91,12 @@ std::string GltfData::resource(const std::string& uri, const std::string& user) 
   if (name.find("://") != std::string::npos) fail(shown + " is not a file", "expected files and data URIs");
   if (name.empty() || files::has_control_characters(name))
     fail(shown + " is not the name of a file", "expected files and data URIs");
-  Result<std::string> read = files::read_file((std::filesystem::path(folder_) / name).string(), kMaxGltfFileBytes);
+  const std::string path = (std::filesystem::path(folder_) / name).string();
+  if (!files::outside_allowed() && !files::is_within(path, folder_)) {
+    fail(shown + " leaves the folder of the glTF file",
+         "expected a file in that folder or below it, or --allow-outside");
+  }
+  Result<std::string> read = files::read_file(path, kMaxGltfFileBytes);
   if (!read.ok()) {
     const std::string& message = read.error().message;  // ends with what is expected
     fail(user + ".uri: " + message.substr(0, message.rfind("; ")), "expected a file that can be read");
