@@ -2,13 +2,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <csignal>
+#include <cstdlib>
 #include <fstream>
+#include <functional>
+#include <new>
 
 #include <cpl_conv.h>
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
 
+#include "scene/elevation/elevation_child.hpp"
 #include "terrain_file_fixture.hpp"
 
 namespace tyndall::scene {
@@ -49,6 +54,51 @@ TEST_F(ElevationFile, TruncatedFiles) {
     std::filesystem::resize_file(cut, static_cast<std::uintmax_t>(static_cast<double>(size) * part));
     error(cut);
   }
+}
+
+// GDAL runs in a child process. libnetcdf 4.9 crashes on this file, whose header claims 2^30 variables.
+TEST_F(ElevationFile, ACrashOfItsReaderIsAnError) {
+  const std::filesystem::path file = folder_.path("counts.nc");
+  constexpr std::string_view kHexadecimal =
+      "43444601000000000000000a0000000200000001790000000000000300000001780000000000000300000000"
+      "000000000000000b40000001000000017a000000000000020000000000000001000000000000000000000005"
+      "0000002400000060000000003f80000040000000404000004080000040a0000040c0000040e0000041000000";
+  std::ofstream out(file, std::ios::binary);
+  for (std::size_t i = 0; i < kHexadecimal.size(); i += 2)
+    out.put(static_cast<char>(std::stoi(std::string(kHexadecimal.substr(i, 2)), nullptr, 16)));
+  out.close();
+  EXPECT_NE(error(file).find("has an unsupported format or is damaged"), std::string::npos) << error(file);
+  EXPECT_EQ(elevation_file_list(file.string()), std::vector<std::string>{file.string()});
+}
+
+TEST_F(ElevationFile, ChildProcessesHaveLimits) {
+  const auto message = [](const std::function<std::string()>& work) {
+    const Result<std::string> done = in_child("a.tif", work);
+    return done.ok() ? "ok: " + done.value() : done.error().message;
+  };
+  EXPECT_EQ(message([] { return std::string("text"); }), "ok: text");
+  EXPECT_EQ(message([] { return std::string(3000000, 'x'); }).size(), 3000004U);
+  EXPECT_EQ(message([]() -> std::string { std::abort(); }),
+            "elevation file a.tif has an unsupported format or is damaged (its reader crashed)");
+  EXPECT_EQ(message([]() -> std::string {
+              ::raise(SIGXCPU);
+              return "";
+            }),
+            "elevation file a.tif cannot be read within 300 s of processor time");
+  EXPECT_EQ(message([]() -> std::string {
+              ::raise(SIGINT);
+              return "";
+            }),
+            "elevation file a.tif was not read: interrupted");
+  EXPECT_EQ(message([]() -> std::string { throw std::bad_alloc(); }), "elevation file a.tif does not fit into memory");
+  // The state of the parent is not changed.
+  int value = 1;
+  EXPECT_EQ(message([&] {
+              value = 2;
+              return std::to_string(value);
+            }),
+            "ok: 2");
+  EXPECT_EQ(value, 1);
 }
 
 TEST_F(ElevationFile, GdalNamesAreRead) {

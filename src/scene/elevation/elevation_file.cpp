@@ -353,7 +353,7 @@ Result<ElevationRaster> warp(const std::string& source_name, GDALDataset& source
 
 }  // namespace
 
-Result<ElevationRaster> read_elevation_file(const std::string& source_name, const ElevationRequest& request) {
+Result<ElevationRaster> read_elevation_here(const std::string& source_name, const ElevationRequest& request) {
   const Messages messages;
   const NetworkGuard guard(source_name);
   Result<Dataset> opened = open_elevation(source_name, messages);

@@ -46,7 +46,8 @@ struct ElevationRequest {
 // Reads `source`: a file, or a name of GDAL (/vsizip/..., /vsicurl/..., NETCDF:...). Errors: the file does not exist,
 // is a directory, is empty or truncated, has an unsupported format, fewer than 2 x 2 samples, complex numbers, only
 // holes, latitudes beyond 90 degrees or an impossible extent, or is a picture. Prints nothing. Needs about 12 bytes of
-// memory per sample of the result.
+// memory per sample of the result. GDAL runs in a child process with limits of its own, because some of its drivers
+// crash on damaged files; that is an error of the file here.
 Result<ElevationRaster> read_elevation_file(const std::string& source, const ElevationRequest& request = {});
 
 // Returns whether the program was built with GDAL. Without it, read_elevation_file() refuses every file.

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/elevation/elevation_file.hpp"
 #include "tyndall/result.hpp"
 
 namespace tyndall::scene {
@@ -59,6 +60,15 @@ class NetworkGuard {
  private:
   bool closed_;
 };
+
+// Registers the allowed drivers, and removes all others from the process, because a virtual raster opens its sources
+// with any registered driver.
+void register_drivers();
+
+// The functions of elevation_file.hpp, in this process, in which a damaged file may crash some drivers.
+[[nodiscard]] Result<ElevationRaster> read_elevation_here(const std::string& source,
+                                                          const ElevationRequest& request = {});
+[[nodiscard]] std::vector<std::string> elevation_file_list_here(const std::string& source);
 
 // Opens a file for reading with one of the drivers for local elevation files. Names of GDAL are also accepted:
 // /vsizip/FILE.zip/NAME, /vsicurl/URL, NETCDF:FILE:VARIABLE. The network is only used if the name itself begins with a

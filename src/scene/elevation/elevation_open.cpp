@@ -34,19 +34,6 @@ bool is_allowed(std::string_view name) {
   return false;
 }
 
-// Removes all other drivers from the process, because a virtual raster opens its sources with any registered driver.
-void register_drivers() {
-  GDALAllRegister();
-  GDALDriverManager& manager = *GetGDALDriverManager();
-  for (int i = manager.GetDriverCount() - 1; i >= 0; --i) {
-    GDALDriver* const driver = manager.GetDriver(i);
-    const bool raster = driver->GetMetadataItem(GDAL_DCAP_RASTER) != nullptr;
-    if (!raster || is_allowed(driver->GetDescription())) continue;
-    manager.DeregisterDriver(driver);
-    delete driver;
-  }
-}
-
 bool begins_with(std::string_view text, std::string_view start) { return text.substr(0, start.size()) == start; }
 
 // Returns whether a name belongs to a virtual file system that does not use a network.
@@ -128,6 +115,18 @@ NetworkGuard::~NetworkGuard() {
   if (closed_) CPLSetThreadLocalConfigOption(kAllowedNames, nullptr);
 }
 
+void register_drivers() {
+  GDALAllRegister();
+  GDALDriverManager& manager = *GetGDALDriverManager();
+  for (int i = manager.GetDriverCount() - 1; i >= 0; --i) {
+    GDALDriver* const driver = manager.GetDriver(i);
+    const bool raster = driver->GetMetadataItem(GDAL_DCAP_RASTER) != nullptr;
+    if (!raster || is_allowed(driver->GetDescription())) continue;
+    manager.DeregisterDriver(driver);
+    delete driver;
+  }
+}
+
 Result<Dataset> open_elevation(const std::string& source, const Messages& messages) {
   const bool virtual_name = begins_with(source, "/vsi");
   if (!virtual_name && !is_subdataset(source)) {
@@ -151,7 +150,7 @@ Result<Dataset> open_elevation(const std::string& source, const Messages& messag
 
 bool elevation_files_supported() { return true; }
 
-std::vector<std::string> elevation_file_list(const std::string& source) {
+std::vector<std::string> elevation_file_list_here(const std::string& source) {
   const Messages messages;
   const NetworkGuard guard(source);
   std::vector<std::string> out;
