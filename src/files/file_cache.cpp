@@ -144,7 +144,11 @@ BuildLock FileCache::try_lock(std::string_view key) const {
   const int descriptor = ::open(lock.path_.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, kMode);
   if (descriptor < 0) return lock;
   if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
-    if (errno == EWOULDBLOCK) lock.state_ = BuildLock::State::busy;
+    if (errno == EWOULDBLOCK) {
+      lock.state_ = BuildLock::State::busy;
+    } else {
+      ::unlink(lock.path_.c_str());  // this file system has no locks
+    }
     ::close(descriptor);
     return lock;
   }
@@ -284,9 +288,9 @@ void FileCache::make_room(const std::string& new_file) const {
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.used < b.used; });
   for (const Entry& entry : entries) {
     if (total <= limit_bytes_) return;
-    std::error_code kept;
-    std::filesystem::remove(entry.path, kept);
-    if (!kept) total -= entry.bytes;
+    std::error_code remains;
+    std::filesystem::remove(entry.path, remains);
+    if (!remains) total -= entry.bytes;
   }
 }
 

@@ -74,7 +74,8 @@ bool copy_contents(int from, int to) {
     if (got <= 0) return got == 0;
     for (ssize_t done = 0; done < got;) {
       const ssize_t written = ::write(to, piece + done, static_cast<std::size_t>(got - done));
-      if (written < 0 && errno != EINTR) return false;
+      if (written == 0) errno = ENOSPC;
+      if (written == 0 || (written < 0 && errno != EINTR)) return false;
       if (written > 0) done += written;
     }
     position += got;
@@ -222,7 +223,8 @@ Result<void> AtomicFile::write(const void* data, std::size_t size) {
   while (size > 0) {
     const ssize_t written = ::write(descriptor_, bytes, size);
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return error("cannot write");
+    if (written == 0) errno = ENOSPC;  // allowed by POSIX; trying again might never end
+    if (written <= 0) return error("cannot write");
     bytes += written;
     size -= static_cast<std::size_t>(written);
   }

@@ -194,6 +194,9 @@ std::optional<std::string> nearest(std::string_view name, std::span<const std::s
   std::size_t best = std::max<std::size_t>(2, name.size() / 3) + 1;
   std::optional<std::string> found;
   for (const std::string& candidate : candidates) {
+    // The distance is at least the difference of the lengths.
+    const std::size_t longer = std::max(name.size(), candidate.size()) - std::min(name.size(), candidate.size());
+    if (longer >= best) continue;
     const std::size_t distance = edit_distance(name, candidate);
     if (distance < best && distance < candidate.size()) {
       best = distance;

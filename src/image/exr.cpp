@@ -36,11 +36,7 @@ class BytesIn : public Imf::IStream {
  public:
   BytesIn(std::string_view bytes, const std::string& path) : Imf::IStream(path.c_str()), bytes_(bytes) {}
 
-  bool isMemoryMapped() const override { return true; }
-  char* readMemoryMapped(int size) override {
-    const char* const start = take(size);
-    return const_cast<char*>(start);  // required by OpenEXR's interface, which only reads
-  }
+  // Not isMemoryMapped(): OpenEXR would read beyond blocks that are shorter than the header requires.
   bool read(char target[], int size) override {
     std::memcpy(target, take(size), static_cast<std::size_t>(size));
     return position_ < bytes_.size();

@@ -37,6 +37,8 @@ class Reader {
     return found;
   }
 
+  [[nodiscard]] std::string_view rest() const { return rest_; }
+
  private:
   std::string_view rest_;
 };
@@ -45,12 +47,30 @@ class Reader {
 struct Layout {
   std::int64_t width = 0, height = 0;
   std::uint8_t compression = 0;
+  std::int64_t pixel_bytes = 0;                  // of all channels; 0: some are subsampled
   std::int64_t tile_width = 0, tile_height = 0;  // 0: scan lines
 };
+
+// Returns the bytes of all channels of a pixel, or 0 if there are none, unknown ones or subsampled ones.
+std::int64_t bytes_of_pixel(std::string_view channels) {
+  Reader reader(channels);
+  std::int64_t bytes = 0;
+  for (;;) {
+    const std::optional<std::string_view> name = reader.name();
+    if (!name) return 0;
+    if (name->empty()) return bytes;
+    const std::optional<std::uint32_t> type = reader.word(), linear = reader.word();
+    const std::optional<std::uint32_t> x = reader.word(), y = reader.word();
+    if (!type || !linear || !x || !y || *type > 2 || *x != 1 || *y != 1) return 0;
+    constexpr std::uint32_t kHalf = 1;
+    bytes += *type == kHalf ? 2 : 4;
+  }
+}
 
 void read_attribute(Layout& layout, std::string_view name, std::string_view value) {
   Reader reader(value);
   const auto signed_word = [&] { return std::int64_t{static_cast<std::int32_t>(reader.word().value_or(0))}; };
+  if (name == "channels") layout.pixel_bytes = bytes_of_pixel(value);
   if (name == "dataWindow" && value.size() == 16) {
     const std::int64_t left = signed_word(), top = signed_word(), right = signed_word(), bottom = signed_word();
     layout.width = right - left + 1;
@@ -74,6 +94,23 @@ std::int64_t piece_count(const Layout& layout) {
   return pieces(layout.height, layout.compression < std::size(kLines) ? kLines[layout.compression] : 256);
 }
 
+// Returns whether the blocks of rows without compression, which follow the header, have the size that it requires.
+// OpenEXR takes what follows a block that is too short for pixels.
+bool are_whole(const Layout& layout, std::string_view bytes, std::string_view offsets) {
+  Reader reader(offsets);
+  for (std::int64_t row = 0; row < layout.height; ++row) {
+    const std::optional<std::uint32_t> low = reader.word(), high = reader.word();
+    if (!low || !high) return false;
+    const std::uint64_t at = std::uint64_t{*high} << 32U | *low;
+    constexpr std::uint64_t kBlockHeader = 8;  // the number of the row, and the size
+    if (at == 0 || at > bytes.size() || bytes.size() - at < kBlockHeader) return false;
+    Reader block(bytes.substr(at));
+    static_cast<void>(block.word());
+    if (block.word() != static_cast<std::uint64_t>(layout.width * layout.pixel_bytes)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 std::string exr_header_problem(std::string_view bytes) {
@@ -84,6 +121,7 @@ std::string exr_header_problem(std::string_view bytes) {
   constexpr std::uint32_t kMultiPart = 0x1000;
   const bool many = (*version & kMultiPart) != 0;
   std::int64_t pieces = 0;
+  Layout last;
   for (bool more = true; more;) {
     Layout layout;
     bool empty = true;
@@ -103,10 +141,13 @@ std::string exr_header_problem(std::string_view bytes) {
     if (empty) break;
     if (layout.width < 1 || layout.height < 1) return "its data window is empty";
     pieces += piece_count(layout);
+    last = layout;
   }
   // Each piece has an 8-byte offset in a table and a header of at least 8 bytes.
   constexpr std::int64_t kMinBytes = 16;
-  return pieces > static_cast<std::int64_t>(bytes.size()) / kMinBytes ? kCutOff : "";
+  if (pieces > static_cast<std::int64_t>(bytes.size()) / kMinBytes) return kCutOff;
+  const bool plain_rows = !many && last.tile_width == 0 && last.compression == 0 && last.pixel_bytes > 0;
+  return plain_rows && !are_whole(last, bytes, reader.rest()) ? kCutOff : "";
 }
 
 }  // namespace tyndall::image

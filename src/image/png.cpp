@@ -47,6 +47,7 @@ struct Reader {
 // before it notices the end of the file.
 const char* chunk_problem(std::string_view bytes) {
   constexpr std::size_t kSignature = 8, kAround = 12;  // kAround: length, kind and checksum around a chunk's data
+  if (bytes.size() < kSignature) return "the file is cut off";
   std::size_t at = kSignature;
   while (bytes.size() - at >= kAround) {
     std::uint32_t length = 0;

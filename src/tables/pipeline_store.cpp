@@ -1,5 +1,6 @@
 #include "tables/pipeline_store.hpp"
 
+#include <array>
 #include <cstring>
 #include <optional>
 #include <vector>
@@ -27,13 +28,18 @@ std::string key_of(const VkPhysicalDeviceProperties& p) {
 }  // namespace
 
 bool is_of_device(std::span<const std::byte> data, const VkPhysicalDeviceProperties& device) {
-  VkPipelineCacheHeaderVersionOne header = {};
+  // As words, because its version is an enumeration, and damaged data may hold any number.
+  struct Header {
+    std::uint32_t bytes, version, vendor, device;
+    std::array<std::uint8_t, VK_UUID_SIZE> uuid;
+  } header = {};
+  static_assert(sizeof(Header) == sizeof(VkPipelineCacheHeaderVersionOne));
   if (data.size() < sizeof header) return false;
   std::memcpy(&header, data.data(), sizeof header);
-  return header.headerSize >= sizeof header && header.headerSize <= data.size() &&
-         header.headerVersion == VK_PIPELINE_CACHE_HEADER_VERSION_ONE && header.vendorID == device.vendorID &&
-         header.deviceID == device.deviceID &&
-         std::memcmp(header.pipelineCacheUUID, device.pipelineCacheUUID, VK_UUID_SIZE) == 0;
+  return header.bytes >= sizeof header && header.bytes <= data.size() &&
+         header.version == VK_PIPELINE_CACHE_HEADER_VERSION_ONE && header.vendor == device.vendorID &&
+         header.device == device.deviceID &&
+         std::memcmp(header.uuid.data(), device.pipelineCacheUUID, VK_UUID_SIZE) == 0;
 }
 
 PipelineStore::PipelineStore(gpu::Host& host, const CacheDesc& cache) : host_(host), desc_(cache) {
