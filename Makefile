@@ -15,7 +15,9 @@
 #   make abi             renews the record of the binary interface of the C functions, tests/package/tyndall.abi
 #   make python-figures  makes the figures of docs/python.md
 #   make passes          writes the list of passes, docs/generated/passes.md, with their cost
-.PHONY: python-figures demo check doxygen pictures accuracy epipolar-study models-study bundle bundle-chroot packages packages-check abi passes setup build format format-check tidy tidy-check tidy-all sanitize-short sanitize clean
+#   make soak            draws SOAK_FRAMES (10000) frames of random changes with the validation layer, on both CPU drivers
+#   make fuzz            runs every fuzzer for FUZZ_SECONDS (60) and goes on where the last run ended; FUZZ names some of them
+.PHONY: fuzz soak python-figures demo check doxygen pictures accuracy epipolar-study models-study bundle bundle-chroot packages packages-check abi passes setup build format format-check tidy tidy-check tidy-all sanitize-short sanitize clean
 
 PRESET ?= release
 # The CPU device that computes the values that `tyndall report` compares other devices with.
@@ -191,6 +193,25 @@ sanitize-short sanitize: build
 	  cmake --build --preset $$preset $(if $(SANITIZE_ALL),,--target $$label) && \
 	  ctest --preset $$preset --no-tests=error -j "$$(nproc)" $(if $(SANITIZE_ALL),,-L $$label) || exit 1; \
 	done
+
+# Runs the fuzzers and writes docs/generated/fuzzing.md. Their corpora grow in build/fuzz.
+FUZZ_SECONDS ?= 60
+fuzz: PRESET = ci
+fuzz: PACKAGES = $(CLANG_PACKAGES)
+fuzz: build
+	@cmake --preset fuzz -D TYNDALL_SHADERS_FROM="$(CURDIR)/build/release" --log-level=WARNING > /dev/null
+	@cmake --build --preset fuzz --target fuzzers
+	@tools/fuzz.py --seconds $(FUZZ_SECONDS) --output docs/generated/fuzzing.md build/fuzz tests/fuzz/corpus $(FUZZ)
+
+# Random use of the library on Mesa's driver and on SwiftShader.
+SOAK_FRAMES ?= 10000
+SOAK_SEED ?= 1
+soak: PRESET = ci
+soak: TARGETS = soak
+soak: build
+	@tools/second_driver.sh build/second_driver
+	@build/release/bin/soak --frames $(SOAK_FRAMES) --seed $(SOAK_SEED)
+	@tests/gpu/second_driver.sh build/second_driver/vk_swiftshader_icd.json build/release/bin/soak --frames $(SOAK_FRAMES) --seed $(SOAK_SEED)
 
 clean:
 	rm -rf build out

@@ -343,7 +343,7 @@ TEST_F(TwoCachedTablesTest, SurviveRandomDamage) {
     good[i].assign(std::istreambuf_iterator<char>(in), {});
   }
   const char* const count = std::getenv("TYNDALL_CORRUPTIONS");
-  const int corruptions = count != nullptr ? std::atoi(count) : 5;
+  const int corruptions = count != nullptr ? std::atoi(count) : 3;
   std::mt19937_64 random(21);
   for (int i = 0; i < corruptions; ++i) {
     const std::size_t set = static_cast<std::size_t>(i) % 2;
