@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "config/frame_keys.hpp"
+#include "config/scene_names.hpp"
 #include "config/toml_limits.hpp"
 #include "files/access.hpp"
 #include "files/files.hpp"
@@ -298,43 +299,6 @@ void find_files_beside(Settings& settings, const Settings& before, const std::st
   }
 }
 
-// Returns whether a name of GDAL uses a network: a URL, or a virtual file system other than those of archives.
-bool names_network(std::string_view name) {
-  for (std::size_t at = name.find("/vsi"); at != std::string_view::npos; at = name.find("/vsi", at + 1)) {
-    const std::string_view rest = name.substr(at + 4);
-    if (!rest.starts_with("zip/") && !rest.starts_with("gzip/") && !rest.starts_with("tar/")) return true;
-  }
-  return name.find("://") != std::string_view::npos;
-}
-
-bool holds_cached_files(const std::string& folder) {
-  std::error_code failed;
-  for (std::filesystem::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) {
-    if (it->path().extension() == ".cache") return true;
-  }
-  return false;
-}
-
-// Refuses what a scene file may not name by itself: a network, and a place outside of its folder for new files.
-Result<void> check_names(const Settings& settings, const Settings& before, const std::string& scene_path) {
-  if (files::outside_allowed()) return {};
-  const auto refuse = [&](std::string_view key, std::string_view value, std::string_view what,
-                          std::string_view expected) {
-    return files::input_error(files::concat({key, " '", files::one_line(value, 200), "' ", what}),
-                              files::one_line(scene_path, 200), files::concat({expected, ", or --allow-outside"}));
-  };
-  const std::string& source = settings.scene.terrain.source;
-  if (source != before.scene.terrain.source && names_network(source))
-    return refuse("terrain.source", source, "is on a network", "expected a local file");
-  const std::string& cache = settings.scene.tables.cache;
-  const std::string folder = std::filesystem::path(scene_path).parent_path().string();
-  if (cache == before.scene.tables.cache || cache.empty() || cache == "auto" || cache == "off") return {};
-  if (files::is_within(cache, folder) || files::is_within(cache, ".") || holds_cached_files(cache)) return {};
-  return refuse("tables.cache", cache, "is outside the folder of the scene",
-                "expected auto, off, a folder below that of the scene or the working directory, or one that is in use "
-                "as a cache");
-}
-
 constexpr std::size_t kMaxIncludeDepth = 8;    // files that include each other
 constexpr std::size_t kMaxIncludedFiles = 64;  // of one scene
 
@@ -413,10 +377,11 @@ Result<void> load_file(Settings& settings, const std::string& path, Reading& rea
   reading.open.emplace_back(path);
   ++reading.files;
   Result<void> read = load_toml(loaded, text.value(), path, reading);
+  const std::string folder = reading.open.front().parent_path().string();
   reading.open.pop_back();
   if (!read) return read;
   find_files_beside(loaded, settings, path);
-  if (Result<void> allowed = check_names(loaded, settings, path); !allowed) return allowed;
+  if (Result<void> allowed = check_names(loaded, settings, path, folder); !allowed) return allowed;
   settings = std::move(loaded);
   return {};
 }

@@ -366,6 +366,17 @@ TEST_F(SceneFile, ScenesStayInTheirFolder) {
     EXPECT_NE(text_of(toml).find(part), std::string::npos) << toml << text_of(toml);
     EXPECT_NE(text_of(toml).find("or --allow-outside"), std::string::npos) << text_of(toml);
   }
+  // Tables that a parameter names.
+  for (const Row& row : rows()) {
+    if (row.info.type != ParamType::string || row.info.unit != "file" || row.info.name == "source") continue;
+    const auto toml = [&](const std::string& file) {
+      return "[" + std::string(row.info.group) + "]\n" + std::string(row.info.name) + " = '" + file + "'\n";
+    };
+    EXPECT_NE(text_of(toml(secret)).find("is outside the folder of the scene"), std::string::npos) << row.key();
+    EXPECT_NE(text_of(toml("../secret.toml")).find("is outside"), std::string::npos) << row.key();
+    EXPECT_NE(text_of(toml("link.toml")).find("is outside"), std::string::npos) << row.key();
+    EXPECT_EQ(text_of(toml("b.toml")), "") << row.key();
+  }
   write("used.cache", "x");  // now the folder is a cache already
   for (const std::string& toml :
        {std::string("include = 'air/a.toml'\n"), std::string("include = 'elsewhere/a.toml'\n"),
