@@ -1,9 +1,13 @@
 #include "image/exr_header.hpp"
 
+#include <zlib.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <optional>
+#include <vector>
 
 namespace tyndall::image {
 namespace {
@@ -83,30 +87,76 @@ void read_attribute(Layout& layout, std::string_view name, std::string_view valu
   }
 }
 
+// Returns the scan lines per piece, by compression: none, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA, DWAB.
+std::int64_t lines_of(std::uint8_t compression) {
+  constexpr std::int64_t kLines[] = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
+  return compression < std::size(kLines) ? kLines[compression] : 256;
+}
+
 // Returns the number of pieces at full resolution.
 std::int64_t piece_count(const Layout& layout) {
   const auto pieces = [](std::int64_t size, std::int64_t each) { return (size + each - 1) / each; };
   if (layout.tile_width > 0 && layout.tile_height > 0) {
     return pieces(layout.width, layout.tile_width) * pieces(layout.height, layout.tile_height);
   }
-  // Scan lines per piece, by compression: none, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA, DWAB.
-  constexpr std::int64_t kLines[] = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
-  return pieces(layout.height, layout.compression < std::size(kLines) ? kLines[layout.compression] : 256);
+  return pieces(layout.height, lines_of(layout.compression));
 }
 
-// Returns whether the blocks of rows without compression, which follow the header, have the size that it requires.
-// OpenEXR takes what follows a block that is too short for pixels.
+// Returns the bytes to which run-length encoding expands: a negative count and that many bytes, or a count and a byte
+// that is repeated once more than the count.
+std::uint64_t run_length_size(std::string_view data) {
+  std::uint64_t size = 0;
+  while (!data.empty()) {
+    const int count = static_cast<signed char>(data[0]);
+    const auto used = static_cast<std::size_t>(count < 0 ? 1 - count : 2);
+    if (data.size() < used) break;
+    size += static_cast<std::uint64_t>(count < 0 ? -count : count + 1);
+    data.remove_prefix(used);
+  }
+  return size;
+}
+
+// Returns the bytes to which data inflates, up to `limit`. They are not stored.
+std::uint64_t inflated_size(std::string_view data, std::uint64_t limit) {
+  z_stream stream = {};
+  if (inflateInit(&stream) != Z_OK) return 0;
+  const std::unique_ptr<z_stream, int (*)(z_stream*)> end(&stream, inflateEnd);
+  std::vector<unsigned char> scratch(std::size_t{1} << 16U);
+  stream.next_in = reinterpret_cast<unsigned char*>(const_cast<char*>(data.data()));
+  stream.avail_in = static_cast<unsigned>(data.size());
+  std::uint64_t size = 0;
+  for (int state = Z_OK; state == Z_OK && size < limit;) {
+    stream.next_out = scratch.data();
+    stream.avail_out = static_cast<unsigned>(scratch.size());
+    state = inflate(&stream, Z_NO_FLUSH);
+    size += scratch.size() - stream.avail_out;
+  }
+  return size;
+}
+
+// Returns whether the blocks of rows, which follow the header, contain as much as the header requires. For blocks that
+// are too short, OpenEXR takes whatever is in its memory for pixels, with the compressions none, RLE, ZIPS and ZIP; the
+// others check their data.
 bool are_whole(const Layout& layout, std::string_view bytes, std::string_view offsets) {
   Reader reader(offsets);
-  for (std::int64_t row = 0; row < layout.height; ++row) {
+  const std::int64_t lines = lines_of(layout.compression);
+  for (std::int64_t row = 0; row < layout.height; row += lines) {
     const std::optional<std::uint32_t> low = reader.word(), high = reader.word();
     if (!low || !high) return false;
     const std::uint64_t at = std::uint64_t{*high} << 32U | *low;
-    constexpr std::uint64_t kBlockHeader = 8;  // the number of the row, and the size
-    if (at == 0 || at > bytes.size() || bytes.size() - at < kBlockHeader) return false;
+    if (at == 0 || at > bytes.size()) return false;
     Reader block(bytes.substr(at));
-    static_cast<void>(block.word());
-    if (block.word() != static_cast<std::uint64_t>(layout.width * layout.pixel_bytes)) return false;
+    static_cast<void>(block.word());  // the number of the row
+    const std::optional<std::uint32_t> size = block.word();
+    if (!size) return false;
+    const std::optional<std::string_view> data = block.take(*size);
+    const auto expected =
+        static_cast<std::uint64_t>(std::min(lines, layout.height - row) * layout.width * layout.pixel_bytes);
+    if (!data) return false;
+    if (data->size() >= expected) continue;  // not compressed; too many bytes are an error of OpenEXR
+    if (layout.compression == 0) return false;
+    const std::uint64_t got = layout.compression == 1 ? run_length_size(*data) : inflated_size(*data, expected);
+    if (got < expected) return false;
   }
   return true;
 }
@@ -146,8 +196,9 @@ std::string exr_header_problem(std::string_view bytes) {
   // Each piece has an 8-byte offset in a table and a header of at least 8 bytes.
   constexpr std::int64_t kMinBytes = 16;
   if (pieces > static_cast<std::int64_t>(bytes.size()) / kMinBytes) return kCutOff;
-  const bool plain_rows = !many && last.tile_width == 0 && last.compression == 0 && last.pixel_bytes > 0;
-  return plain_rows && !are_whole(last, bytes, reader.rest()) ? kCutOff : "";
+  constexpr std::uint8_t kZip = 3;
+  const bool rows = !many && last.tile_width == 0 && last.compression <= kZip && last.pixel_bytes > 0;
+  return rows && !are_whole(last, bytes, reader.rest()) ? kCutOff : "";
 }
 
 }  // namespace tyndall::image

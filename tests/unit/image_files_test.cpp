@@ -15,8 +15,10 @@
 #include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <limits>
 
@@ -246,6 +248,60 @@ void write_windows(const std::string& path, const Imath::Box2i& display, const I
   Imf::OutputFile output(path.c_str(), header);
   output.setFrameBuffer(source);
   output.writePixels(height);
+}
+
+// Writes an EXR and replaces the data of its first block of rows by `data`, which is shorter.
+std::string with_short_block(const std::string& path, Imf::Compression compression, std::string_view data) {
+  constexpr int kSide = 20;
+  std::vector<float> pixels(std::size_t{3} * kSide * kSide, 0.25F);
+  {
+    Imf::Header header(kSide, kSide);
+    header.compression() = compression;
+    Imf::FrameBuffer source;
+    for (const char* const name : {"R", "G", "B"}) {
+      header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+      source.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(pixels.data()), 4, 4 * kSide));
+    }
+    Imf::OutputFile file(path.c_str(), header);
+    file.setFrameBuffer(source);
+    file.writePixels(kSide);
+  }
+  std::string bytes = files::read_file(path, 1U << 20U).value();
+  // The table of offsets ends where its first entry points to.
+  const std::size_t blocks = compression == Imf::ZIP_COMPRESSION ? 2 : kSide;
+  std::size_t table = 0;
+  for (std::uint64_t first = 0; first != table + 8 * blocks; ++table)
+    std::memcpy(&first, &bytes[table + 1], sizeof first);
+  const std::size_t block = table + 8 * blocks;
+  const auto size = static_cast<std::uint32_t>(data.size());
+  std::memcpy(&bytes[block + 4], &size, sizeof size);
+  bytes.replace(block + 8, data.size(), data);
+  return bytes;
+}
+
+// OpenEXR would take what is in memory for the missing pixels.
+TEST_F(ImageFiles, ShortBlocksOfRowsAreRefused) {
+  std::string deflated(100, '\0');
+  uLongf size = deflated.size();
+  const std::string few(30, 'x');
+  ASSERT_EQ(::compress(reinterpret_cast<Bytef*>(deflated.data()), &size, reinterpret_cast<const Bytef*>(few.data()),
+                       few.size()),
+            Z_OK);
+  deflated.resize(size);
+  const std::pair<Imf::Compression, std::string> cases[] = {{Imf::NO_COMPRESSION, std::string(236, 'x')},
+                                                            {Imf::RLE_COMPRESSION, std::string("\x05x\xfe"
+                                                                                               "ab",
+                                                                                               5)},
+                                                            {Imf::ZIPS_COMPRESSION, deflated},
+                                                            {Imf::ZIP_COMPRESSION, deflated}};
+  for (const auto& [compression, data] : cases) {
+    const std::string bytes = with_short_block(at("block.exr"), compression, data);
+    EXPECT_TRUE(read(at("block.exr")).ok()) << compression;
+    ASSERT_TRUE(files::write_file(at("block.exr"), bytes).ok());
+    const Result<File> file = read(at("block.exr"));
+    ASSERT_FALSE(file.ok()) << compression;
+    EXPECT_NE(file.error().message.find("the file is cut off"), std::string::npos) << file.error().message;
+  }
 }
 
 TEST_F(ImageFiles, ExrIsItsDisplayWindow) {
