@@ -66,8 +66,14 @@ class CliWriteFaults : public testing::Test {
       EXPECT_EQ(made, good) << what;
       return;
     }
-    expect_one_line(process, 1, scratch_.at("out"));
-    EXPECT_NE(process.err.find("cannot "), std::string::npos) << what;
+    EXPECT_EQ(process.status, 1) << what;
+    EXPECT_EQ(process.out, "") << what;
+    // The error is the last line. Notes may precede it.
+    const std::size_t error = process.err.find("tyndall: error: ");
+    ASSERT_NE(error, std::string::npos) << what;
+    EXPECT_EQ(process.err.find('\n', error), process.err.size() - 1) << what;
+    EXPECT_NE(process.err.find(scratch_.at("out"), error), std::string::npos) << what;
+    EXPECT_NE(process.err.find("cannot ", error), std::string::npos) << what;
     EXPECT_LT(made.size(), good.size()) << what;
     for (const auto& file : made)
       EXPECT_NE(std::find(good.begin(), good.end(), file), good.end()) << what << ": " << file.first << " is left";
