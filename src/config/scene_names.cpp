@@ -19,12 +19,16 @@ bool names_network(std::string_view name) {
   return name.find("://") != std::string_view::npos;
 }
 
-bool holds_cached_files(const std::string& folder) {
+// Returns whether a folder is in use as a cache, or exists and is empty.
+bool can_be_cache(const std::string& folder) {
   std::error_code failed;
+  bool cached = false, others = false;
   for (std::filesystem::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) {
-    if (it->path().extension() == ".cache") return true;
+    const bool ours = it->path().extension() == ".cache";
+    cached = cached || ours;
+    others = others || !ours;
   }
-  return false;
+  return !failed && (cached || !others);
 }
 
 }  // namespace
@@ -51,7 +55,7 @@ Result<void> check_names(const Settings& settings, const Settings& before, const
   }
   const std::string& cache = settings.scene.tables.cache;
   if (cache == before.scene.tables.cache || cache.empty() || cache == "auto" || cache == "off") return {};
-  if (files::is_within(cache, folder) || files::is_within(cache, ".") || holds_cached_files(cache)) return {};
+  if (files::is_within(cache, folder) || files::is_within(cache, ".") || can_be_cache(cache)) return {};
   return refuse("tables.cache", cache, "is outside the folder of the scene",
                 "expected auto, off, a folder below that of the scene or the working directory, or one that is in use "
                 "as a cache");

@@ -377,6 +377,10 @@ TEST_F(SceneFile, ScenesStayInTheirFolder) {
     EXPECT_NE(text_of(toml("link.toml")).find("is outside"), std::string::npos) << row.key();
     EXPECT_EQ(text_of(toml("b.toml")), "") << row.key();
   }
+  const std::string empty = (directory_ / "empty").string();
+  std::filesystem::create_directory(empty);
+  EXPECT_EQ(text_of("[tables]\ncache = '" + empty + "'\n"), "");
+  EXPECT_NE(text_of("[tables]\ncache = '" + directory_.string() + "'\n"), "");
   write("used.cache", "x");  // now the folder is a cache already
   for (const std::string& toml :
        {std::string("include = 'air/a.toml'\n"), std::string("include = 'elsewhere/a.toml'\n"),
