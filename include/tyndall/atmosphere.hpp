@@ -24,8 +24,10 @@ struct AtmosphereConstants {
   alignas(16) std::array<std::byte, 512> bytes = {};
 };
 
-// Returns the constants for the tables of these parameters. Fill the block again after the parameters, the sun or the
-// origin have changed. An error names the parameter that is out of range, or the input that is not finite.
+// Returns the constants for the tables of these parameters. Pass table_params(effect), so that they belong to the
+// images of atmosphere_images() while other tables are being built. Fill the block again after the parameters, the sun
+// or the origin have changed, and when new tables are complete. An error names the parameter that is out of range, or
+// the input that is not finite.
 [[nodiscard]] TYNDALL_API Result<AtmosphereConstants> atmosphere_constants(const Params& params,
                                                                            const AtmosphereInputs& inputs);
 

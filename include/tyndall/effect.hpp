@@ -198,8 +198,8 @@ struct PassTiming {
 
 // Look-up tables for shading the opaque scene: RGBA16F images in layout GENERAL. Sample them with a linear, clamping
 // sampler at light_table_uv() of tyndall/light_tables.glsl, and multiply red, green and blue by sun.irradiance *
-// scattering.scale. With scattering.color = spectral, they include the colour of the sun, and alpha holds what is
-// missing to all four wavelengths. Valid once record_precompute() is complete; its commands write them in
+// scattering.scale. With scattering.color = spectral in table_params(), they include the colour of the sun, and alpha
+// holds what is missing to all four wavelengths. Valid once record_precompute() is complete; its commands write them in
 // COMPUTE_SHADER / SHADER_WRITE.
 struct LightTables {
   VkImageView sun_transmittance = VK_NULL_HANDLE;  // from the sun to a point; 0 below the horizon
@@ -222,9 +222,20 @@ struct ScatteringTables {
 
 // Returns the colour of the sun above the atmosphere, per sun.irradiance: white with scattering.color = rgb, and the
 // linear Rec. 709 colour of its spectrum, with the luminance 1, with spectral. For callers that draw the sun's disc.
+// With an effect, pass table_params(effect).
 [[nodiscard]] TYNDALL_API Vec3 sun_color(const Params& params);
 
 struct AtmosphereImages;
+class Effect;
+
+// Returns the parameters of the tables in use: params() with the planet.*, atmosphere.*, tables.* and scattering.color
+// for which the tables were last completed. They differ from params() while tables are being built. Pass them to
+// sun_color() and atmosphere_constants(), and decode the tables by their scattering.color.
+[[nodiscard]] TYNDALL_API Params table_params(const Effect& effect);
+// Returns how the next picture represents light. If pictures read no tables (scattering.medium = homogeneous, or
+// scattering.single = integration or none with multiple = none), it is params().scattering.color, otherwise that of
+// table_params().
+[[nodiscard]] TYNDALL_API ColorMode picture_color(const Effect& effect);
 
 class TYNDALL_API Effect {
  public:
@@ -242,6 +253,8 @@ class TYNDALL_API Effect {
   // Applies new parameters. An error names the first that is out of range. Allocates the memory for tables that
   // become stale; the old tables stay in use until record_precompute() has completed the new ones, and only then do the
   // views of light_tables() and scattering_tables() change. Makes missing pipelines, about 0.1 s each on a CPU device.
+  // After scattering.color has changed from spectral to rgb, the larger buffers of spectral stay in use until the new
+  // tables are complete; the next call after that frees them, also with the same parameters.
   // With `desc`, also changes what set_shadow_colors() and set_limits() change, in one step: all or nothing. Its other
   // fields must equal those of desc().
   Result<void> set_params(const Params& params, const std::optional<EffectDesc>& desc = std::nullopt);
@@ -304,6 +317,8 @@ class TYNDALL_API Effect {
  private:
   friend TYNDALL_API AtmosphereImages atmosphere_images(const Effect& effect,
                                                         std::uint32_t view);  // see atmosphere.hpp
+  friend TYNDALL_API Params table_params(const Effect& effect);
+  friend TYNDALL_API ColorMode picture_color(const Effect& effect);
   friend class SkyProbe;
   struct State;
   explicit Effect(std::unique_ptr<State> state);

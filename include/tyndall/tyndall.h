@@ -138,7 +138,8 @@ TYNDALL_API TyndallStatus tyndall_params_get_choice(const TyndallParams* params,
 TYNDALL_API TyndallStatus tyndall_params_affected(const TyndallParams* before, const TyndallParams* after,
                                                   uint32_t* mask);
 // Returns the colour of the sun above the atmosphere, per irradiance of TyndallFrameInputs, in red, green and blue:
-// white with scattering.color = rgb. For callers that draw the sun's disc.
+// white with scattering.color = rgb. For callers that draw the sun's disc, with the parameters of
+// tyndall_effect_get_table_params().
 TYNDALL_API TyndallStatus tyndall_params_sun_color(const TyndallParams* params, float color[3]);
 
 // The Vulkan device, borrowed for the effect's whole life.
@@ -310,6 +311,11 @@ TYNDALL_API void tyndall_effect_destroy(TyndallEffect* effect);
 TYNDALL_API TyndallStatus tyndall_effect_set_params(TyndallEffect* effect, const TyndallParams* params,
                                                     const TyndallEffectDesc* desc);
 TYNDALL_API TyndallStatus tyndall_effect_get_params(const TyndallEffect* effect, TyndallParams* params);
+// Returns the parameters of the tables in use, as table_params() of C++. Pass them to tyndall_params_sun_color() and
+// tyndall_atmosphere_constants().
+TYNDALL_API TyndallStatus tyndall_effect_get_table_params(const TyndallEffect* effect, TyndallParams* params);
+// Returns how the next picture represents light, as picture_color() of C++: the constant text "rgb" or "spectral".
+TYNDALL_API TyndallStatus tyndall_effect_picture_color(const TyndallEffect* effect, const char** choice);
 TYNDALL_API TyndallStatus tyndall_effect_get_desc(const TyndallEffect* effect, TyndallEffectDesc* desc);
 TYNDALL_API TyndallStatus tyndall_effect_set_shadow_colors(TyndallEffect* effect, VkBool32 shadow_colors);
 TYNDALL_API TyndallStatus tyndall_effect_set_limits(TyndallEffect* effect, VkExtent2D max_extent, uint32_t max_cascades,

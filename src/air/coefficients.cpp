@@ -29,6 +29,18 @@ double component(const Vec3& v, std::size_t i) { return static_cast<double>(i ==
 // How values that are given for the three channels continue between and beyond them.
 enum class Between { power, line };
 
+// Beyond the channels, a value follows at most this power of the wavelength, in either direction. Molecules scatter
+// with the power -4.1 (Bodhaine et al. 1999), particles that are much smaller than the wavelength with -4, and larger
+// ones with about 0. The steepest measured spectra are those of absorption by organic aerosol, with about -7 (Hoffer et
+// al. 2006). Without a limit, channels a few nanometres apart would give arbitrary powers.
+constexpr double kLargestPower = 8.0;
+
+// Limits a value that was continued from the channel at `end` to a wavelength beyond it.
+double continued(double at, double end, double value_at_end, double value) {
+  const double factor = std::pow(std::max(at, end) / std::min(at, end), kLargestPower);
+  return std::clamp(value, value_at_end / factor, value_at_end * factor);
+}
+
 double interpolated(double at, double a, double b, double value_a, double value_b, Between between) {
   if (a == b) return value_a;
   if (between == Between::line) return std::lerp(value_a, value_b, std::clamp((at - a) / (b - a), 0.0, 1.0));
@@ -55,7 +67,12 @@ double value_at(const Params& params, const Vec3& values, const Place& place, Be
   if (nodes[low].wavelength_nm == nodes[low + 1].wavelength_nm) low = 1 - low;
   const Node& a = nodes[low];
   const Node& b = nodes[low + 1];
-  return interpolated(place.wavelength_nm, a.wavelength_nm, b.wavelength_nm, a.value, b.value, between);
+  const double nm = place.wavelength_nm;
+  const double value = interpolated(nm, a.wavelength_nm, b.wavelength_nm, a.value, b.value, between);
+  if (between == Between::line) return value;  // is never continued
+  if (nm < a.wavelength_nm) return continued(nm, a.wavelength_nm, a.value, value);
+  if (nm > b.wavelength_nm) return continued(nm, b.wavelength_nm, b.value, value);
+  return value;
 }
 
 double rayleigh(const Params& params, const Place& place) {
@@ -202,6 +219,16 @@ double ozone_column_m(const Params& params) {
     return half * (x < 0.0 ? 0.5 * (1.0 + x) * (1.0 + x) : 1.0 - 0.5 * (1.0 - x) * (1.0 - x));
   };
   return below(params.atmosphere.height_m) - below(0.0);
+}
+
+Result<void> check_wavelength(const Params& params, double wavelength_nm) {
+  Range range = {100.0, 4000.0};  // as atmosphere.wavelengths_nm
+  if (params.atmosphere.pressure_hpa > 0.0F) range = kRayleighRange;
+  if (params.atmosphere.ozone_du > 0.0F) range = kOzoneRange;  // lies inside the other ranges
+  if (covers(range, wavelength_nm)) return {};
+  return Error{ErrorCode::invalid_argument, "a wavelength is " + std::to_string(wavelength_nm) + " nm; expected " +
+                                                whole(range.from) + " to " + whole(range.to) +
+                                                " nm for the parameters that are set"};
 }
 
 Result<void> check(const Params& params) {

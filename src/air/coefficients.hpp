@@ -42,5 +42,7 @@ constexpr double kKoschmieder = 3.912;           // -ln 0.02: optical depth at w
 // Returns an error if parameters of the atmosphere contradict each other, or need data outside the range of the
 // cross-sections.
 [[nodiscard]] Result<void> check(const Params& params);
+// Returns an error if the coefficients at this wavelength need data outside the range of the cross-sections.
+[[nodiscard]] Result<void> check_wavelength(const Params& params, double wavelength_nm);
 
 }  // namespace tyndall::air

@@ -140,6 +140,22 @@ TyndallStatus tyndall_effect_get_params(const TyndallEffect* effect, TyndallPara
   });
 }
 
+TyndallStatus tyndall_effect_get_table_params(const TyndallEffect* effect, TyndallParams* params) {
+  return c::with(effect, __func__, [&](const Effect& e, const char* where) -> Result<void> {
+    TYNDALL_TRY(c::check_pointer(where, "params", params));
+    params->params = table_params(e);
+    return {};
+  });
+}
+
+TyndallStatus tyndall_effect_picture_color(const TyndallEffect* effect, const char** choice) {
+  return c::with(effect, __func__, [&](const Effect& e, const char* where) -> Result<void> {
+    TYNDALL_TRY(c::check_pointer(where, "choice", choice));
+    *choice = picture_color(e) == ColorMode::spectral ? "spectral" : "rgb";
+    return {};
+  });
+}
+
 TyndallStatus tyndall_effect_get_desc(const TyndallEffect* effect, TyndallEffectDesc* desc) {
   return c::with(effect, __func__,
                  [&](const Effect& e, const char* where) { return c::write(where, c::to_c(e.desc()), desc); });

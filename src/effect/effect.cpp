@@ -11,6 +11,7 @@
 #include "effect/frame_constants.hpp"
 #include "effect/frame_steps.hpp"
 #include "effect/limits.hpp"
+#include "effect/modes.hpp"
 #include "effect/spectral_medium.hpp"
 #include "gpu/open_device.hpp"
 #include "gpu/try.hpp"
@@ -143,8 +144,26 @@ Result<void> Effect::State::create_samplers() {
 
 Params Effect::State::drawn_with(const Params& p) const {
   Params out = p;
-  out.scattering.color = tables.color(p.scattering.color);
+  const Params& built = tables.built(p);
+  out.tables = built.tables;
+  if (reads_tables(p.scattering)) out.scattering.color = built.scattering.color;
   return out;
+}
+
+Params Effect::State::table_params() const {
+  Params out = params;
+  const Params& built = tables.built(params);
+  out.planet = built.planet;
+  out.atmosphere = built.atmosphere;
+  out.tables = built.tables;
+  out.scattering.color = built.scattering.color;
+  return out;
+}
+
+// Returns the mode with the largest buffers among those that frames with these parameters may have before and after the
+// tables in progress are complete.
+ColorMode Effect::State::color_of_buffers(const Params& p) const {
+  return drawn_with(p).scattering.color == ColorMode::spectral ? ColorMode::spectral : p.scattering.color;
 }
 
 Result<void> Effect::State::make_pipelines(const EffectDesc& d, const Params& p) {
@@ -156,7 +175,7 @@ Result<void> Effect::State::make_pipelines(const EffectDesc& d, const Params& p)
 Result<Effect::State::Pending> Effect::State::plan(const EffectDesc& d, const Params& p, std::uint32_t required) {
   const bool other_resources = (required & bit(Affects::Resources)) != 0;
   if ((required & kEverything) != 0) TYNDALL_TRY(check_limits(device, d, p));
-  Pending pending = {d, p, {}, {}, {}};
+  Pending pending = {d, p, {}, ColorMode::rgb, {}, {}};
   if (other_resources || (required & bit(Affects::Pipeline)) != 0) {
     TYNDALL_TRY(make_pipelines(d, p));
     if (const Params before = drawn_with(p); before.scattering.color != p.scattering.color) {
@@ -167,7 +186,7 @@ Result<Effect::State::Pending> Effect::State::plan(const EffectDesc& d, const Pa
     // Until tables at three channels are complete, frames are drawn with those at four wavelengths, whose buffers are
     // larger.
     Params larger = p;
-    if (drawn_with(p).scattering.color == ColorMode::spectral) larger.scattering.color = ColorMode::spectral;
+    larger.scattering.color = pending.buffer_color = color_of_buffers(p);
     TYNDALL_ASSIGN(pending.buffers, buffers.plan(d, larger));
     TYNDALL_ASSIGN(pending.froxels, froxels.plan(d, p));
   }
@@ -178,7 +197,10 @@ Result<Effect::State::Pending> Effect::State::plan(const EffectDesc& d, const Pa
 }
 
 void Effect::State::commit(Pending&& pending) noexcept {
-  if (pending.buffers) buffers.commit(std::move(*pending.buffers), FrameRing::slots(desc) + 1);
+  if (pending.buffers) {
+    buffers.commit(std::move(*pending.buffers), FrameRing::slots(desc) + 1);
+    buffer_color = pending.buffer_color;
+  }
   if (pending.froxels) froxels.commit(std::move(*pending.froxels), FrameRing::slots(desc) + 1);
   if (pending.tables) tables.commit(std::move(*pending.tables));
   const bool other_color = params.scattering.color != pending.params.scattering.color;
@@ -190,7 +212,7 @@ void Effect::State::commit(Pending&& pending) noexcept {
 Result<void> Effect::State::change(const EffectDesc& d, const Params& p) {
   std::uint32_t required = affected(params, p);
   if ((required & bit(Affects::Everything)) != 0) required |= kEverything;
-  if (!same_limits(desc, d)) required |= bit(Affects::Resources);
+  if (!same_limits(desc, d) || color_of_buffers(p) != buffer_color) required |= bit(Affects::Resources);
   TYNDALL_ASSIGN(Pending pending, plan(d, p, required));
   commit(std::move(pending));
   return {};

@@ -143,6 +143,12 @@ std::string Effect::table_key() const {
 
 VkDeviceSize Effect::table_bytes() const { return state_ ? tyndall::table_bytes(state_->params) : 0; }
 
+Params table_params(const Effect& effect) { return effect.state_ ? effect.state_->table_params() : Params{}; }
+
+ColorMode picture_color(const Effect& effect) {
+  return effect.state_ ? effect.state_->drawn_with(effect.state_->params).scattering.color : ColorMode::rgb;
+}
+
 LightTables Effect::light_tables() const {
   if (!state_) return {};
   const TableBuilder& tables = state_->tables;

@@ -63,13 +63,15 @@ struct TYNDALL_HIDDEN Effect::State {
   std::array<PassTiming, kMaxTimedPasses> timings = {};
   std::array<ResourceMemory, kTableCount + kFrameBuffers + FroxelVolume::kImages + 3> resource_rows = {};
 
-  bool images_ready = false;  // false until the first recording, which changes their undefined layout
+  ColorMode buffer_color = ColorMode::rgb;  // for which `buffers` are large enough
+  bool images_ready = false;                // false until the first recording, which changes their undefined layout
 
   // The objects that new settings need. They are all allocated before commit() replaces any old ones.
   struct Pending {
     EffectDesc desc;
     Params params;
     std::optional<FrameBuffers::Pending> buffers;
+    ColorMode buffer_color = ColorMode::rgb;  // of `buffers`
     std::optional<FroxelVolume::Pending> froxels;
     std::optional<TableBuilder::Pending> tables;
   };
@@ -95,11 +97,14 @@ struct TYNDALL_HIDDEN Effect::State {
   [[nodiscard]] std::span<const ResourceMemory> list_resources();
   [[nodiscard]] MemoryUsage memory() const;
   [[nodiscard]] std::span<const PassTiming> read_timings(std::uint64_t frame_index, std::uint32_t view);
-  // Returns the parameters with which frames are drawn: those given, but with the scattering.color of the tables in
-  // use.
+  // Returns the parameters with which frames are drawn: those given, but with the tables.* of the tables in use and, if
+  // frames read them, their scattering.color.
   [[nodiscard]] Params drawn_with(const Params& p) const;
+  // Returns tyndall::table_params().
+  [[nodiscard]] Params table_params() const;
 
  private:
+  [[nodiscard]] ColorMode color_of_buffers(const Params& p) const;
   Result<void> create_samplers();
   Result<void> make_pipelines(const EffectDesc& d, const Params& p);
   void prepare_images(VkCommandBuffer cmd);

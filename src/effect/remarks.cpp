@@ -404,9 +404,7 @@ void Remarks::on_frame(const FrameInputs& inputs, const FrameState& state, const
   s.say_if(Kind::no_shafts, inputs.shadow_colors.view != VK_NULL_HANDLE && (inputs.cascades.empty() || !p.light_shafts),
            "there are FrameInputs::shadow_colors, but no light shafts for them: nothing will be coloured");
   if (p.light_shafts && !inputs.cascades.empty()) remark_on_cascades(s, inputs, state, inverse);
-  const bool needs_tables = p.enabled && !is_homogeneous(p) &&
-                            (p.single == SingleScattering::table || p.multiple != MultipleScattering::none);
-  s.say_if(Kind::tables, needs_tables && !state.tables_ready,
+  s.say_if(Kind::tables, p.enabled && reads_tables(p) && !state.tables_ready,
            "the scattering tables are not built; expected record_precompute() until its progress is "
            "complete: there is no in-scattering before");
 }

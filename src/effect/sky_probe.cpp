@@ -118,8 +118,11 @@ struct TYNDALL_HIDDEN SkyProbe::State {
   std::uint64_t calls = 0;  // successful calls of record()
   gpu::Buffer constants;    // a slot per pending call
   gpu::Buffer rows, coefficients;
-  SkyProbeInputs inputs;   // of the update
-  std::uint32_t done = 0;  // slices of the update
+  // The update: its constants, the tables that it reads, and its slices.
+  shared::SkyProbeConstants probe = {};
+  shared::SpectralMedium medium = {};
+  std::uint64_t tables_version = 0;
+  std::uint32_t done = 0;
   bool cleared = false;
 
   Result<void> create_objects(std::uint32_t frames);
@@ -171,10 +174,10 @@ BoundResources SkyProbe::State::bind_resources(VkDeviceSize offset) const {
 }
 
 Result<Progress> SkyProbe::State::record(VkCommandBuffer cmd, const SkyProbeInputs& wanted, std::uint32_t budget) {
-  const Params drawn = effect->drawn_with(effect->params);
-  const std::span<const Step> steps = sky_probe_steps(drawn.scattering.color);
+  const Params params = effect->table_params();
+  const std::span<const Step> steps = sky_probe_steps(params.scattering.color);
   const auto total = static_cast<std::uint32_t>(steps.size());
-  TYNDALL_TRY(check_inputs(wanted, effect->params));
+  TYNDALL_TRY(check_inputs(wanted, params));
   if (!effect->tables.ready()) {
     return invalid("SkyProbe::record: the tables were never built; expected record_precompute() or "
                    "record_load_tables() until precompute_progress() is complete");
@@ -184,13 +187,16 @@ Result<Progress> SkyProbe::State::record(VkCommandBuffer cmd, const SkyProbeInpu
     return invalid("SkyProbe::record: the commands of an earlier call have not completed or were never submitted; "
                    "expected at most frames_in_flight pending calls, and a new SkyProbe after commands were dropped");
   }
-  if (done == total) done = 0;
-  if (done == 0) inputs = wanted;
+  // The parts of an update must come from the same tables.
+  if (done == total || tables_version != effect->tables.version()) done = 0;
+  if (done == 0) {
+    tables_version = effect->tables.version();
+    probe = constants_of(wanted, params);
+    medium = spectral_medium_from_params(params);
+  }
   const gpu::Device& device = effect->device;
   const std::uint32_t slot = ring.slot(calls, 0);
   const VkDeviceSize offset = kSlotBytes * slot;
-  const shared::SkyProbeConstants probe = constants_of(inputs, drawn);
-  const shared::SpectralMedium medium = spectral_medium_from_params(drawn);
   std::memcpy(static_cast<std::byte*>(constants.mapped) + offset, &probe, sizeof probe);
   std::memcpy(static_cast<std::byte*>(constants.mapped) + offset + kMediumOffset, &medium, sizeof medium);
   if (!cleared) {

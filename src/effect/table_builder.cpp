@@ -263,6 +263,7 @@ void TableBuilder::finish() noexcept {
     }
   }
   complete_ = true;
+  ++version_;
   built_ = wanted_;
   retire(std::exchange(next_, {}), std::exchange(scratch_, {}), std::exchange(sets_, {}));
 }

@@ -88,8 +88,10 @@ class TableBuilder {
   [[nodiscard]] Progress progress() const { return {done_, static_cast<std::uint32_t>(steps_.size())}; }
   // Returns true once tables have been built. Stale tables stay in use until the next build is complete.
   [[nodiscard]] bool ready() const { return complete_; }
-  // Returns how the tables that frames read represent light: as `wanted` before the first build is complete.
-  [[nodiscard]] ColorMode color(ColorMode wanted) const { return complete_ ? built_.scattering.color : wanted; }
+  // Returns the parameters of the tables that frames read; `wanted` before the first build is complete.
+  [[nodiscard]] const Params& built(const Params& wanted) const { return complete_ ? built_ : wanted; }
+  // Returns a number that changes whenever a build is complete.
+  [[nodiscard]] std::uint64_t version() const { return version_; }
   // Returns a finished table; before the first build is complete, the table that it fills.
   [[nodiscard]] const gpu::Image& table(TableId id) const { return tables_[static_cast<std::uint32_t>(id)].image; }
   [[nodiscard]] VkDeviceSize persistent_bytes() const;
@@ -123,10 +125,11 @@ class TableBuilder {
   TableSet tables_ = {};
   TableSet next_ = {};  // the new tables, if `tables_` is in use and stale
   TableScratch scratch_ = {};
-  SetCache sets_ = {};       // of the build
-  Params built_ = {};        // of tables_, if complete_
-  Params wanted_ = {};       // of the build
-  bool complete_ = false;    // tables_ have been built at least once
+  SetCache sets_ = {};     // of the build
+  Params built_ = {};      // of tables_, if complete_
+  Params wanted_ = {};     // of the build
+  bool complete_ = false;  // tables_ have been built at least once
+  std::uint64_t version_ = 0;
   std::uint32_t stale_ = 0;  // tables that the build writes
   std::vector<Step> steps_ = {};
   std::uint32_t done_ = 0;

@@ -11,6 +11,7 @@
 #include <string>
 #include <thread>
 
+#include "air/coefficients.hpp"
 #include "reference/random.hpp"
 #include "reference/transport.hpp"
 
@@ -234,10 +235,32 @@ Estimate finish(const Accumulator<3>& sums, const Scene<3>& scene, const Options
 // Returns an empty string if everything is in range, else what is wrong.
 std::string check(const Params& params, std::span<const RayQuery> queries, const Options& options) {
   if (const std::string bad = problem_of(params); !bad.empty()) return "Params: " + bad;
+  if (const Result<void> consistent = air::check(params); !consistent) return "Params: " + consistent.error().message;
   if (const std::string bad = check_options(options); !bad.empty()) return "reference::Options: " + bad;
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const std::string bad = check_query(queries[i], params.planet.radius_m);
     if (!bad.empty()) return "query " + std::to_string(i + 1) + ": " + bad;
+  }
+  return {};
+}
+
+// Does the same for the arguments of trace_spectrum().
+std::string check(const Params& params, const Wavelengths& wavelengths, std::span<const RayQuery> queries,
+                  const Options& options) {
+  std::string bad = check(params, queries, options);
+  if (!bad.empty()) return bad;
+  if (wavelengths.nm.empty() || wavelengths.nm.size() > kMaxWavelengths) {
+    return std::to_string(wavelengths.nm.size()) + " wavelengths; expected 1 to " + std::to_string(kMaxWavelengths);
+  }
+  if (wavelengths.weights.size() != wavelengths.nm.size()) {
+    return std::to_string(wavelengths.weights.size()) + " weights; expected as many as wavelengths, " +
+           std::to_string(wavelengths.nm.size());
+  }
+  for (const double nm : wavelengths.nm) {
+    if (const Result<void> known = air::check_wavelength(params, nm); !known) return known.error().message;
+  }
+  for (const Rgb& weight : wavelengths.weights) {
+    if (!std::isfinite(weight[0] + weight[1] + weight[2])) return "a weight is not finite; expected finite weights";
   }
   return {};
 }
@@ -300,14 +323,7 @@ Result<std::vector<Estimate>> trace(const Params& params, std::span<const RayQue
 Result<std::vector<SpectralEstimate>> trace_spectrum(const Params& params, const Wavelengths& wavelengths,
                                                      std::span<const RayQuery> queries, const Options& options,
                                                      const Progress& progress) {
-  std::string bad = check(params, queries, options);
-  if (bad.empty() && (wavelengths.nm.empty() || wavelengths.nm.size() > kMaxWavelengths)) {
-    bad = std::to_string(wavelengths.nm.size()) + " wavelengths; expected 1 to " + std::to_string(kMaxWavelengths);
-  }
-  if (bad.empty() && wavelengths.weights.size() != wavelengths.nm.size()) {
-    bad = std::to_string(wavelengths.weights.size()) + " weights; expected as many as wavelengths, " +
-          std::to_string(wavelengths.nm.size());
-  }
+  std::string bad = check(params, wavelengths, queries, options);
   if (!bad.empty()) return Error{ErrorCode::invalid_argument, std::move(bad), 0};
   const Atmosphere air(params, lowest_altitude_m(queries), wavelengths.nm);
   return compute<kMaxWavelengths>(

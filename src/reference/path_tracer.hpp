@@ -52,14 +52,16 @@ using Progress = std::function<bool(double done)>;
 // queries in one call give independent estimates. A cancelled call returns what is complete: see Estimate::samples.
 // Below sea level the atmosphere continues, and the camera ray hits ground at twice the depth of the camera. Light that
 // arrives from below at any other point comes from ground at that point (docs/adr/0007-below-sea-level.md).
-// Errors: invalid_argument for a query, option or parameter out of range.
+// Errors: invalid_argument for a query, option or parameter out of range, and for parameters that contradict each
+// other.
 Result<std::vector<Estimate>> trace(const Params& params, std::span<const RayQuery> queries, const Options& options,
                                     const Progress& progress = {});
 
 // The wavelengths of trace_spectrum().
 struct Wavelengths {
-  std::span<const double> nm;    // 1 to kMaxWavelengths of them
-  std::span<const Rgb> weights;  // of three sums over the wavelengths, such as X, Y and Z; as many as wavelengths
+  std::span<const double> nm;  // [100; 4000] or the range of cross-sections - 1 to kMaxWavelengths of them
+  std::span<const Rgb>
+      weights;  // finite; of three sums over the wavelengths, such as X, Y and Z; as many as wavelengths
 };
 
 // Light at any wavelengths, in the units of Estimate, for each of Wavelengths::nm.

@@ -42,12 +42,12 @@ void begin_rendering(const gpu::Device& device, VkCommandBuffer cmd, VkExtent2D 
   device.vk.CmdSetScissor(cmd, 0, 1, &scissor);
 }
 
-// Returns the constants of background.frag: the sun's disc, the moon, and the conversion of pixels to directions.
-BackgroundConstants background_constants(const ModelFrame& frame, const glm::dvec3& to_sun) {
+// Returns the constants of background.frag: the sun's disc with its colour above the atmosphere, the moon, and the
+// conversion of pixels to directions.
+BackgroundConstants background_constants(const ModelFrame& frame, const glm::dvec3& to_sun, const Vec3& color) {
   const View& view = frame.view;
   const double radius_rad = frame.scene.sun.angular_radius_deg * kRadPerDeg;
   const double solid_angle = 6.283185307179586 * (1.0 - std::cos(radius_rad));
-  const Vec3 color = sun_color(frame.params);
   const Vec3& irradiance = frame.light.sun_irradiance;
   const Vec3 sun = {irradiance.x * color.x, irradiance.y * color.y, irradiance.z * color.z};
   BackgroundConstants out = {};
@@ -123,7 +123,9 @@ Result<void> Scene::draw_shadow_colors(VkCommandBuffer cmd) {
 Result<void> Scene::draw_view(VkCommandBuffer cmd) {
   const gpu::Device& device = host_->device();
   const ModelFrame frame = {view_, frame_, light_, params_, scene_, desc_.extent};
-  const BackgroundConstants constants = background_constants(frame, to_sun_);
+  // While tables of the other scattering.color are being built, the light of the scene is that of the old ones.
+  const Vec3 color = sun_color(model_ == nullptr ? table_params(*effect_) : params_);
+  const BackgroundConstants constants = background_constants(frame, to_sun_, color);
   std::memcpy(background_constants_.mapped, &constants, sizeof constants);
 
   gpu::transition(device, cmd, color_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);

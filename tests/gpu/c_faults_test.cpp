@@ -63,6 +63,8 @@ TEST(CFaults, NullPointersAreRefused) {
   expect_invalid(tyndall_effect_set_params(effect, nullptr, nullptr), {"'params' is null"});
   expect_invalid(tyndall_effect_set_params(nullptr, params.get(), nullptr), {"'effect' is null"});
   expect_invalid(tyndall_effect_get_params(effect, nullptr), {"'params' is null"});
+  expect_invalid(tyndall_effect_get_table_params(effect, nullptr), {"'params' is null"});
+  expect_invalid(tyndall_effect_picture_color(effect, nullptr), {"'choice' is null"});
   expect_invalid(tyndall_effect_get_desc(effect, nullptr), {"TyndallEffectDesc", "null"});
   expect_invalid(tyndall_effect_set_limits(nullptr, {1, 1}, 1, 1), {"'effect' is null"});
   expect_invalid(tyndall_effect_set_shadow_colors(nullptr, 1), {"'effect' is null"});
@@ -89,6 +91,27 @@ TEST(CFaults, NullPointersAreRefused) {
   expect_invalid(tyndall_effect_precompute_timings(nullptr, &count, nullptr), {"'effect' is null"});
   EXPECT_SUCCESS(tyndall_effect_record_precompute(effect, kCommands, UINT32_MAX, nullptr));
   EXPECT_SUCCESS(tyndall_effect_record(effect, kCommands, &frame.inputs));
+}
+
+TEST(CFaults, TheModeIsThatOfTheTablesInUse) {
+  const OwnedEffect owned = make_c();
+  TyndallEffect* effect = owned.get();
+  const OwnedParams params = c_params(), used = c_params();
+  const auto modes = [&] {
+    const char* picture = "";
+    const char* tables = "";
+    EXPECT_SUCCESS(tyndall_effect_picture_color(effect, &picture));
+    EXPECT_SUCCESS(tyndall_effect_get_table_params(effect, used.get()));
+    EXPECT_SUCCESS(tyndall_params_get_choice(used.get(), "scattering.color", &tables));
+    return std::string(picture) + " " + tables;
+  };
+  EXPECT_SUCCESS(tyndall_effect_record_precompute(effect, kCommands, UINT32_MAX, nullptr));
+  EXPECT_EQ(modes(), "rgb rgb");
+  EXPECT_SUCCESS(tyndall_params_set_choice(params.get(), "scattering.color", "spectral"));
+  EXPECT_SUCCESS(tyndall_effect_set_params(effect, params.get(), nullptr));
+  EXPECT_EQ(modes(), "rgb rgb");
+  EXPECT_SUCCESS(tyndall_effect_record_precompute(effect, kCommands, UINT32_MAX, nullptr));
+  EXPECT_EQ(modes(), "spectral spectral");
 }
 
 TEST(CFaults, SizesOfStructuresAreChecked) {

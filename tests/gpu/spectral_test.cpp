@@ -6,6 +6,7 @@
 #include "effect/spectral_medium.hpp"
 #include "models/spectral.hpp"
 #include "shared_effect.hpp"
+#include "tyndall/atmosphere.hpp"
 
 namespace tyndall {
 namespace {
@@ -164,6 +165,115 @@ TEST_F(Spectral, ChangesOfTheModeShowNoUnfinishedTables) {
   EXPECT_EQ(draw(small_params(), "rgb without tables"), spectral);
   prepare(small_params());
   EXPECT_EQ(draw(small_params(), "rgb again"), rgb);
+}
+
+// Engines decode the tables and light their scene by what the effect says about the tables in use.
+TEST_F(Spectral, WhatIsGivenOutFollowsTheTablesInUse) {
+  const Params rgb = small_params();
+  prepare(rgb);
+  const auto constants = [&] {
+    const Result<AtmosphereConstants> made = atmosphere_constants(table_params(effect()), {});
+    EXPECT_OK(made);
+    return made.value().bytes;
+  };
+  const auto before = constants();
+  Params other = spectral_params();
+  other.atmosphere.aerosol_density = 3.0F;
+  other.planet.ground_albedo = Vec3(0.4F);
+  other.tables.size = {6, 24, 12, 4};
+  ASSERT_OK(effect().set_params(other));
+  for (const std::uint32_t budget : {0U, 3U}) {
+    ASSERT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
+      const Result<Progress> built = effect().record_precompute(cmd, budget);
+      if (!built.ok()) return built.error();
+      return {};
+    }));
+    EXPECT_EQ(picture_color(effect()), ColorMode::rgb);
+    EXPECT_EQ(sun_color(table_params(effect())), Vec3(1.0F));
+    EXPECT_EQ(table_params(effect()).planet.ground_albedo, rgb.planet.ground_albedo);
+    EXPECT_TRUE(constants() == before);
+  }
+  prepare(other);
+  EXPECT_EQ(picture_color(effect()), ColorMode::spectral);
+  EXPECT_EQ(sun_color(table_params(effect())), sun_color(other));
+  EXPECT_EQ(affected(table_params(effect()), other), 0U);
+  EXPECT_FALSE(constants() == before);
+  // What does not belong to the tables is that of the parameters.
+  other.scattering.scale = 2.5F;
+  ASSERT_OK(effect().set_params(other));
+  EXPECT_EQ(table_params(effect()).scattering.scale, 2.5F);
+}
+
+// Until tables of another size are complete, frames read the old ones with their own coordinates.
+TEST_F(Spectral, TablesOfAnotherSizeAreNotReadBeforeTheyAreComplete) {
+  show(evening());
+  const Params params = small_params();
+  prepare(params);
+  const Picture before = draw(params, "before");
+  Params other = params;
+  other.tables.size = {6, 24, 12, 4};
+  EXPECT_EQ(draw(other, "without the other tables"), before);
+}
+
+// Pictures that read no tables need not wait for them.
+TEST_F(Spectral, TheModeChangesAtOnceIfNoTablesAreRead) {
+  show(evening());
+  Params rgb = small_params();
+  rgb.scattering.single = SingleScattering::integration;
+  rgb.scattering.multiple = MultipleScattering::none;
+  prepare(rgb);
+  const Picture before = draw(rgb, "rgb");
+  Params params = rgb;
+  params.scattering.color = ColorMode::spectral;
+  const Picture after = draw(params, "spectral");
+  EXPECT_EQ(picture_color(effect()), ColorMode::spectral);
+  EXPECT_EQ(table_params(effect()).scattering.color, ColorMode::rgb);
+  EXPECT_NE(after, before);
+  prepare(params);
+  EXPECT_EQ(draw(params, "spectral with tables"), after);
+  EXPECT_EQ(draw(rgb, "rgb again"), before);
+}
+
+TEST_F(Spectral, BuffersShrinkAfterTheChangeToRgb) {
+  prepare(spectral_params());
+  const VkDeviceSize large = effect().memory().persistent;
+  prepare(small_params());
+  EXPECT_EQ(effect().memory().persistent, large);
+  ASSERT_OK(effect().set_params(small_params()));
+  const Result<MemoryUsage> planned = query_memory(info(), SharedEffect::desc(), small_params());
+  ASSERT_OK(planned);
+  EXPECT_EQ(effect().memory().persistent, planned.value().persistent);
+  EXPECT_LT(planned.value().persistent, large);
+}
+
+// Half floats, and tables that another effect has saved.
+TEST_F(Spectral, HalfFloatsAndSavedTablesShowTheSamePicture) {
+  show(evening());
+  prepare(spectral_params());
+  const Picture expected = draw(spectral_params(), "single precision");
+  EffectDesc half = SharedEffect::desc();
+  half.output_format = OutputFormat::rgba16f;
+  half.max_extent = frame().extent;
+  Result<Effect> made = Effect::create(info(), half, spectral_params());
+  ASSERT_OK(made);
+  EXPECT_EQ(made.value().table_key(), effect().table_key());
+  EXPECT_EQ(made.value().table_bytes(), effect().table_bytes());
+  Result<gpu::Buffer> saved =
+      gpu::create_buffer(host().device(), "saved", effect().table_bytes(),
+                         VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryKind::device);
+  ASSERT_OK(saved);
+  const VkBuffer buffer = saved.value().buffer.get();
+  ASSERT_OK(host().run([&](VkCommandBuffer cmd) { return effect().record_save_tables(cmd, buffer); }));
+  ASSERT_OK(host().run([&](VkCommandBuffer cmd) { return made.value().record_load_tables(cmd, buffer); }));
+  EXPECT_TRUE(made.value().precompute_progress().complete());
+  const Result<Picture> drawn = render(host(), made.value(), frame(), OutputFormat::rgba16f);
+  ASSERT_OK(drawn);
+  // Half floats have 11 significant bits.
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(drawn.value()[i][c], expected[i][c], 0.0006 * expected[i][c] + 1e-6) << i;
+    }
+  }
 }
 
 TEST_F(Spectral, MemoryGrowsByATenthAtMost) {

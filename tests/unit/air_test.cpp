@@ -163,6 +163,28 @@ TEST(Air, ChannelsHaveTheirValuesAndPowersContinue) {
   EXPECT_TRUE(std::isfinite(at_wavelength(params, 440.0).rayleigh_scattering));
 }
 
+// Between channels a few nanometres apart a power is steep. It does not continue beyond them.
+TEST(Air, ChannelsCloseTogetherContinueWithALimitedPower) {
+  Params params;
+  params.atmosphere.custom_coefficients = true;
+  params.atmosphere.wavelengths_nm = Vec3(552.0F, 551.0F, 550.0F);
+  const auto check = [&](const Vec3& rayleigh) {
+    params.atmosphere.rayleigh_scattering = rayleigh;
+    for (const double at : {445.0, 525.0, 575.0, 635.0, 775.0}) {
+      const double end_nm = at < 551.0 ? 550.0 : 552.0;
+      const double end = static_cast<double>(at < 551.0 ? rayleigh.z : rayleigh.x);
+      const double limit = std::pow(std::max(at / end_nm, end_nm / at), 8.0) * (1.0 + 1e-12);
+      const double value = at_wavelength(params, at).rayleigh_scattering;
+      EXPECT_LE(value, end * limit) << at;
+      EXPECT_GE(value, end / limit) << at;
+    }
+  };
+  check({2.0e-5F, 1.0e-5F, 2.0e-5F});
+  check({1.0e-5F, 2.0e-5F, 1.0e-5F});
+  check({1.0e-5F, 0.0F, 1.0e-5F});
+  check({0.0F, 1.0e-5F, 0.0F});
+}
+
 TEST(Air, ContradictionsAreRefused) {
   Params params;
   params.atmosphere.aerosol_optical_depth = 0.1F;

@@ -241,6 +241,19 @@ TEST(CInterface, WrongParametersChangeNothing) {
   EXPECT_EQ(mask, 0U);
 }
 
+TEST(CInterface, TheColourOfTheSunFollowsTheMode) {
+  const OwnedParams params = make_params();
+  float color[3] = {};
+  ASSERT_EQ(tyndall_params_sun_color(params.get(), color), TyndallStatus_success);
+  EXPECT_TRUE(color[0] == 1.0F && color[1] == 1.0F && color[2] == 1.0F);
+  ASSERT_EQ(tyndall_params_set_choice(params.get(), "scattering.color", "spectral"), TyndallStatus_success);
+  ASSERT_EQ(tyndall_params_sun_color(params.get(), color), TyndallStatus_success);
+  Params cpp;
+  cpp.scattering.color = ColorMode::spectral;
+  EXPECT_TRUE(Vec3(color[0], color[1], color[2]) == sun_color(cpp));
+  EXPECT_GT(color[0], 1.05F);
+}
+
 TEST(CInterface, NullPointersAreRefused) {
   const OwnedParams params = make_params();
   TyndallParams* p = params.get();

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/glm.hpp>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -14,6 +16,16 @@
 #include "models/spectral.hpp"
 #include "reference/spectrum.hpp"
 #include "tyndall/effect.hpp"
+
+// The functions for shaders.
+#undef TYNDALL_SHARED_WAVELENGTHS
+namespace glsl {
+using glm::clamp;
+using glm::dot;
+using vec3 = glm::dvec3;
+using vec4 = glm::dvec4;
+#include "lib/spectral_color.glsl"
+}  // namespace glsl
 
 namespace tyndall {
 namespace {
@@ -178,6 +190,23 @@ TEST(Spectral, LightTexelsHoldAllChannels) {
   }
 }
 
+// The smooth spectra of saturated colours leave the range from 0 to 1: unlimited, yellow would amplify light at 575 nm
+// by 1.06.
+TEST(Spectral, GlassNeverAmplifiesLight) {
+  for (int i = 0; i < 125; ++i) {
+    const glm::dvec3 color = glm::dvec3(i % 5, i / 5 % 5, i / 25) / 4.0;
+    const glm::dvec4 filter = glsl::spectral_filter(color);
+    for (int c = 0; c < 4; ++c) {
+      EXPECT_GE(filter[c], 0.0);
+      EXPECT_LE(filter[c], 1.0);
+    }
+  }
+  const glm::dvec4 yellow = glsl::spectrum_of_color(glm::dvec3(1.0, 1.0, 0.0) * glsl::kSunColor);
+  EXPECT_GT(yellow[1], 1.0);
+  const glm::dvec4 clear = glsl::spectral_filter(glm::dvec3(1.0));
+  for (int c = 0; c < 4; ++c) EXPECT_NEAR(clear[c], 1.0, 1e-5);
+}
+
 // G173 has 133.1 klux above the atmosphere (Gueymard 2004), with the chromaticity of a black body of 5770 K.
 TEST(Spectral, SunlightAboveTheAtmosphere) {
   EXPECT_NEAR(683.0 * sun_luminous_irradiance(), 133.1e3, 0.7e3);
@@ -272,6 +301,35 @@ TEST(Spectral, ThePathTracerFollowsAnyWavelengths) {
   const std::vector<reference::Rgb> weights(41);
   EXPECT_FALSE(reference::trace_spectrum(params, {many, weights}, std::span(&query, 1), options).ok());
   EXPECT_FALSE(reference::trace_spectrum(params, {nm, {}}, std::span(&query, 1), options).ok());
+}
+
+TEST(Spectral, ThePathTracerRefusesWhatHasNoCoefficients) {
+  const RayQuery query = {100.0, 1.2, 1.3, 0.8, false};
+  reference::Options options;
+  options.samples = 1;
+  const std::array<reference::Rgb, 1> weights = {{{1.0, 1.0, 1.0}}};
+  const auto problem = [&](const Params& params, double nm, const reference::Rgb& weight) {
+    const auto found = reference::trace_spectrum(params, {{&nm, 1}, {&weight, 1}}, std::span(&query, 1), options);
+    return found.ok() ? std::string() : found.error().message;
+  };
+  Params params;
+  EXPECT_EQ(problem(params, 550.0, weights[0]), "");
+  for (const double nm : {0.0, -550.0, 5000.0, std::nan("")}) {
+    EXPECT_NE(problem(params, nm, weights[0]).find("nm; expected 100 to 4000 nm"), std::string::npos) << nm;
+  }
+  EXPECT_NE(problem(params, 550.0, {1.0, std::numeric_limits<double>::infinity(), 0.0}).find("finite"),
+            std::string::npos);
+  params.atmosphere.ozone_du = 300.0F;
+  EXPECT_NE(problem(params, 350.0, weights[0]).find("expected 360 to 840 nm"), std::string::npos);
+  params.atmosphere.pressure_hpa = 1000.0F;
+  EXPECT_EQ(problem(params, 365.0, weights[0]), "");
+  // trace() refuses the same parameters as the effect.
+  params = {};
+  params.atmosphere.aerosol_optical_depth = 0.1F;
+  params.atmosphere.visibility_m = 10000.0F;
+  const Result<reference::Estimate> contradiction = reference::trace(params, query, options);
+  ASSERT_FALSE(contradiction.ok());
+  EXPECT_NE(contradiction.error().message.find("are both set; expected one of them"), std::string::npos);
 }
 
 // Single scattering of the path tracer at 40 wavelengths against quadrature at each of them.
