@@ -28,6 +28,7 @@
 #include <string_view>
 
 #include "tyndall/export.h"
+#include "tyndall/memory.hpp"
 #include "tyndall/params.hpp"
 #include "tyndall/result.hpp"
 #include "tyndall/types.hpp"
@@ -55,6 +56,8 @@ struct DeviceInfo {
   // shaders make under table_key().
   std::span<const std::uint32_t> (*replace_shader)(void* user, std::string_view name) = nullptr;
   void* replace_shader_user = nullptr;
+  // The allocator for all images and buffers. Without it, each has an allocation of the device.
+  MemoryCallbacks memory;
 };
 
 // The requirements for a device: Vulkan 1.3 and these extensions (none at present), but no optional feature. Devices
@@ -100,9 +103,10 @@ struct EffectDesc {
   bool check_inputs = true;
 };
 
-// Bytes of device memory, equal to what create() allocates. `persistent` is in use for the effect's whole life.
-// `transient` is freed when the tables are built and the frames then in flight have completed. `host` is host-visible.
-// While tables are rebuilt, `transient` includes the new ones, and the old ones stay in use.
+// Bytes of device memory, equal to what create() allocates or requests from DeviceInfo::memory. `persistent` is in use
+// for the effect's whole life. `transient` is freed when the tables are built and the frames then in flight have
+// completed. `host` is host-visible. While tables are rebuilt, `transient` includes the new ones, and the old ones stay
+// in use.
 struct MemoryUsage {
   VkDeviceSize persistent = 0;
   VkDeviceSize transient = 0;

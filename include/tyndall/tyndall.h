@@ -142,6 +142,24 @@ TYNDALL_API TyndallStatus tyndall_params_affected(const TyndallParams* before, c
 // tyndall_effect_get_table_params().
 TYNDALL_API TyndallStatus tyndall_params_sun_color(const TyndallParams* params, float color[3]);
 
+// Device memory from the program's allocator; see memory.hpp. These structures never grow.
+typedef struct TyndallMemoryRequest {
+  const char* name;
+  VkImage image;  // null for a buffer
+  VkBuffer buffer;
+  VkMemoryRequirements requirements;
+  VkFlags usage;
+  VkMemoryPropertyFlags needed;
+  VkMemoryPropertyFlags preferred;
+} TyndallMemoryRequest;
+
+typedef struct TyndallMemoryBlock {
+  VkDeviceMemory memory;
+  VkDeviceSize offset;
+  void* mapped;
+  void* user;
+} TyndallMemoryBlock;
+
 // The Vulkan device, borrowed for the effect's whole life.
 typedef struct TyndallDeviceInfo {
   uint32_t struct_size;
@@ -159,6 +177,10 @@ typedef struct TyndallDeviceInfo {
   // length, or returns null.
   const uint32_t* (*replace_shader)(void* user, const char* name, size_t* words);
   void* replace_shader_user;
+  // The allocator for all images and buffers, as MemoryCallbacks of C++: both functions or neither.
+  VkResult (*allocate_memory)(void* user, const TyndallMemoryRequest* request, TyndallMemoryBlock* block);
+  void (*free_memory)(void* user, const TyndallMemoryBlock* block, VkDeviceSize bytes);
+  void* memory_user;
 } TyndallDeviceInfo;
 
 typedef struct TyndallEffectDesc {

@@ -117,38 +117,39 @@ TyndallPath path_along(AtmosphereRay ray, float to) {
                     density_integral_along(tyndall_constants.medium, path.altitude, path.cos_zenith, to)));
 }
 
-// Returns the irradiance of the sun at normal incidence. The closed form serves altitudes above the atmosphere too.
-// Where only the upper limb of the sun is seen, its light has grazed the horizon.
-vec3 sun_at(float altitude, float cos_sun_zenith) {
+// Returns the irradiance of the sun at normal incidence, relative to that above the atmosphere. The closed form serves
+// altitudes above the atmosphere too. Where only the upper limb of the sun is seen, its light has grazed the horizon.
+Spectrum sun_at(float altitude, float cos_sun_zenith) {
   float R = tyndall_constants.medium.planet_radius_m;
   float visible = sun_disc_visibility(altitude, cos_sun_zenith, R, tyndall_constants.sun_angular_radius_rad);
   vec3 integral =
       density_integral_to_top(tyndall_constants.medium, altitude, max(cos_sun_zenith, horizon_cos(altitude, R)));
-  return visible * COLOR(transmittance(tyndall_constants.medium, integral)) * tyndall_constants.sun_irradiance;
+  return visible * transmittance(tyndall_constants.medium, integral);
 }
 
-// Returns the irradiance of the sky on a surface that faces upwards.
-vec3 sky_at(float altitude, float cos_sun_zenith) {
+// Returns the irradiance of the sky on a surface that faces upwards, relative to the sun's above the atmosphere.
+Spectrum sky_at(float altitude, float cos_sun_zenith) {
   vec2 uv = light_table_uv(altitude, cos_sun_zenith, tyndall_constants.medium.planet_radius_m,
                            tyndall_constants.medium.atmosphere_height_m);
-  return COLOR(LIGHT_OF_TEXEL(textureLod(sky_irradiance_table, uv, 0.0))) * tyndall_constants.sun_irradiance;
+  return LIGHT_OF_TEXEL(textureLod(sky_irradiance_table, uv, 0.0));
 }
 
 // Returns the irradiance of sunlight at a position, at normal incidence. It is 0 if the planet hides the sun; your
 // shadows are not included.
 vec3 tyndall_sun_irradiance(vec3 position) {
   Place place = place_at(position);
-  return sun_at(place.altitude, place.cos_sun_zenith);
+  return COLOR(sun_at(place.altitude, place.cos_sun_zenith)) * tyndall_constants.sun_irradiance;
 }
 
 // Returns the irradiance of the sky, and of light that the ground reflects, on a surface with this normal. It is exact
 // for a surface that faces upwards. For others the sky and the ground are treated as evenly bright.
 vec3 tyndall_sky_irradiance(vec3 position, vec3 normal) {
   Place place = place_at(position);
-  vec3 sky = sky_at(place.altitude, place.cos_sun_zenith);
-  vec3 sun = sun_at(place.altitude, place.cos_sun_zenith) * max(place.cos_sun_zenith, 0.0);
+  Spectrum sky = sky_at(place.altitude, place.cos_sun_zenith);
+  Spectrum sun = sun_at(place.altitude, place.cos_sun_zenith) * max(place.cos_sun_zenith, 0.0);
   float up = clamp(0.5 + 0.5 * dot(place.up, normal), 0.0, 1.0);
-  return up * sky + (1.0 - up) * tyndall_constants.medium.ground_albedo * (sky + sun);
+  Spectrum light = up * sky + (1.0 - up) * GROUND_ALBEDO(tyndall_constants.medium) * (sky + sun);
+  return COLOR(light) * tyndall_constants.sun_irradiance;
 }
 
 // Returns the path from a position to the ground of the planet or out of the atmosphere. The position may be at any
@@ -168,9 +169,10 @@ vec3 tyndall_sky_radiance(vec3 position, vec3 direction) {
   if (!ray.path.below) return path.inscattering;
   // The ground is where the ray ends, which may be below sea level.
   TableRay end = ray_further_on(tyndall_constants.medium, ray.path, ray.path.end_m);
-  vec3 light = sky_at(end.altitude, end.cos_sun_zenith) +
-               sun_at(end.altitude, end.cos_sun_zenith) * max(end.cos_sun_zenith, 0.0);
-  return tyndall_apply(path, light * (tyndall_constants.medium.ground_albedo * 0.318309886183791));
+  Spectrum light = sky_at(end.altitude, end.cos_sun_zenith) +
+                   sun_at(end.altitude, end.cos_sun_zenith) * max(end.cos_sun_zenith, 0.0);
+  Spectrum reflected = light * (GROUND_ALBEDO(tyndall_constants.medium) * 0.318309886183791);
+  return path.inscattering + COLOR(reflected * path.transmittance) * tyndall_constants.sun_irradiance;
 }
 
 // Returns the path between two positions, without shadows.

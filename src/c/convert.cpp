@@ -41,6 +41,24 @@ std::span<const std::uint32_t> call_replace_shader(void* user, std::string_view 
   return {code, words};
 }
 
+TyndallMemoryBlock to_c(const MemoryBlock& block) { return {block.memory, block.offset, block.mapped, block.user}; }
+
+VkResult call_allocate(void* user, const MemoryRequest& request, MemoryBlock& block) {
+  const TyndallDeviceInfo& c = callbacks(user);
+  const TyndallMemoryRequest wanted = {request.name,  request.image,  request.buffer,   request.requirements,
+                                       request.usage, request.needed, request.preferred};
+  TyndallMemoryBlock made = {};
+  const VkResult result = c.allocate_memory(c.memory_user, &wanted, &made);
+  if (result == VK_SUCCESS) block = {made.memory, made.offset, made.mapped, made.user};
+  return result;
+}
+
+void call_free(void* user, const MemoryBlock& block, VkDeviceSize bytes) {
+  const TyndallDeviceInfo& c = callbacks(user);
+  const TyndallMemoryBlock freed = to_c(block);
+  c.free_memory(c.memory_user, &freed, bytes);
+}
+
 TyndallTexture to_c(const Texture& texture) {
   const auto& [view, layout, offset] = texture;
   return {view, layout, offset};
@@ -101,7 +119,7 @@ void set(TyndallSun& c, const Sun& sun) {
 DeviceInfo to_cpp(const TyndallDeviceInfo& c) {
   DeviceInfo out;
   auto& [instance, physical_device, device, get_instance_proc_addr, allocator, pipeline_cache, message, message_user,
-         replace_shader, replace_shader_user] = out;
+         replace_shader, replace_shader_user, memory] = out;
   instance = c.instance;
   physical_device = c.physical_device;
   device = c.device;
@@ -110,7 +128,9 @@ DeviceInfo to_cpp(const TyndallDeviceInfo& c) {
   pipeline_cache = c.pipeline_cache;
   message = c.message != nullptr ? call_message : nullptr;
   replace_shader = c.replace_shader != nullptr ? call_replace_shader : nullptr;
-  message_user = replace_shader_user = const_cast<TyndallDeviceInfo*>(&c);
+  memory.allocate = c.allocate_memory != nullptr ? call_allocate : nullptr;
+  memory.free = c.free_memory != nullptr ? call_free : nullptr;
+  message_user = replace_shader_user = memory.user = const_cast<TyndallDeviceInfo*>(&c);
   return out;
 }
 

@@ -33,6 +33,9 @@ Result<void> check_desc(const DeviceInfo& info, const EffectDesc& desc) {
       info.get_instance_proc_addr == nullptr) {
     return invalid("DeviceInfo is incomplete; expected instance, physical_device, device and get_instance_proc_addr");
   }
+  if ((info.memory.allocate == nullptr) != (info.memory.free == nullptr)) {
+    return invalid("DeviceInfo::memory has only one of allocate and free; expected both or neither");
+  }
   if (desc.max_extent.width == 0 || desc.max_extent.height == 0 || desc.max_extent.width > 16384 ||
       desc.max_extent.height > 16384) {
     return invalid("EffectDesc::max_extent is out of range; expected 1x1 to 16384x16384");

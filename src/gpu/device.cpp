@@ -69,7 +69,6 @@ std::uint32_t find_memory_type(const Device& device, std::uint32_t bits, VkMemor
 TYNDALL_DESTROY(VkBuffer, DestroyBuffer)
 TYNDALL_DESTROY(VkImage, DestroyImage)
 TYNDALL_DESTROY(VkImageView, DestroyImageView)
-TYNDALL_DESTROY(VkDeviceMemory, FreeMemory)
 TYNDALL_DESTROY(VkPipeline, DestroyPipeline)
 TYNDALL_DESTROY(VkPipelineCache, DestroyPipelineCache)
 TYNDALL_DESTROY(VkPipelineLayout, DestroyPipelineLayout)

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "gpu/functions.hpp"
+#include "tyndall/memory.hpp"
 #include "tyndall/result.hpp"
 
 namespace tyndall::gpu {
@@ -27,6 +28,7 @@ struct Device {
   // Returns SPIR-V to use instead of the built-in shader of that name, or an empty span (DeviceInfo::replace_shader).
   std::span<const std::uint32_t> (*replace_shader)(void* user, std::string_view name) = nullptr;
   void* replace_shader_user = nullptr;
+  MemoryCallbacks memory_callbacks;  // DeviceInfo::memory
 };
 
 // Returns the error for a VkResult. The message reads: `what` of `name` failed.
@@ -41,7 +43,6 @@ Result<void> init_device(Device& device, PFN_vkGetInstanceProcAddr get);
 void destroy(const Device& device, VkBuffer handle);
 void destroy(const Device& device, VkImage handle);
 void destroy(const Device& device, VkImageView handle);
-void destroy(const Device& device, VkDeviceMemory handle);
 void destroy(const Device& device, VkPipeline handle);
 void destroy(const Device& device, VkPipelineCache handle);
 void destroy(const Device& device, VkPipelineLayout handle);

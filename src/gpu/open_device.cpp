@@ -10,6 +10,7 @@ Result<void> open_device(Device& device, const DeviceInfo& info) {
   device.pipeline_cache = info.pipeline_cache;
   device.replace_shader = info.replace_shader;
   device.replace_shader_user = info.replace_shader_user;
+  device.memory_callbacks = info.memory;
   return init_device(device, info.get_instance_proc_addr);
 }
 

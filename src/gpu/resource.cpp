@@ -13,36 +13,75 @@ VkBufferCreateInfo buffer_create_info(VkDeviceSize size, VkBufferUsageFlags usag
   return info;
 }
 
-std::uint32_t memory_type(const Device& device, std::uint32_t bits, MemoryKind kind) {
-  const VkMemoryPropertyFlags host = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-  VkMemoryPropertyFlags wanted = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
-  VkMemoryPropertyFlags needed = 0;
-  if (kind == MemoryKind::upload) wanted = needed = host;
-  if (kind == MemoryKind::constants) {
-    wanted = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | host;
-    needed = host;
+struct Properties {
+  VkMemoryPropertyFlags needed, preferred;
+};
+
+Properties properties_of(MemoryKind kind) {
+  constexpr VkMemoryPropertyFlags kHost = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  switch (kind) {
+    case MemoryKind::upload: return {kHost, kHost};
+    case MemoryKind::constants: return {kHost, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | kHost};
+    case MemoryKind::readback: return {kHost, kHost | VK_MEMORY_PROPERTY_HOST_CACHED_BIT};
+    default: return {0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT};
   }
-  if (kind == MemoryKind::readback) {
-    wanted = host | VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
-    needed = host;
-  }
-  const std::uint32_t best = find_memory_type(device, bits, wanted);
-  return best != VK_MAX_MEMORY_TYPES ? best : find_memory_type(device, bits, needed);
 }
 
-Result<Handle<VkDeviceMemory>> allocate(const Device& device, const VkMemoryRequirements& requirements, MemoryKind kind,
-                                        const char* name) {
+// Allocates from the device, and maps memory that the host needs.
+Result<Memory> allocate_from_device(const Device& device, const MemoryRequest& request) {
+  const std::uint32_t bits = request.requirements.memoryTypeBits;
   VkMemoryAllocateInfo info = {};
   info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-  info.allocationSize = requirements.size;
-  info.memoryTypeIndex = memory_type(device, requirements.memoryTypeBits, kind);
+  info.allocationSize = request.requirements.size;
+  info.memoryTypeIndex = find_memory_type(device, bits, request.preferred);
+  if (info.memoryTypeIndex == VK_MAX_MEMORY_TYPES)
+    info.memoryTypeIndex = find_memory_type(device, bits, request.needed);
   if (info.memoryTypeIndex == VK_MAX_MEMORY_TYPES) {
-    return Error{ErrorCode::unsupported_device, std::string("no memory type of the device can hold ") + name};
+    return Error{ErrorCode::unsupported_device, std::string("no memory type of the device can hold ") + request.name};
   }
-  VkDeviceMemory memory = VK_NULL_HANDLE;
-  const VkResult result = device.vk.AllocateMemory(device.device, &info, device.allocator, &memory);
-  if (result != VK_SUCCESS) return vulkan_error(result, "allocating the memory", name);
-  return Handle<VkDeviceMemory>(device, memory);
+  MemoryBlock block;
+  VkResult result = device.vk.AllocateMemory(device.device, &info, device.allocator, &block.memory);
+  if (result != VK_SUCCESS) return vulkan_error(result, "allocating the memory", request.name);
+  Memory owner(device, block, info.allocationSize);
+  if ((request.needed & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0) {
+    result = device.vk.MapMemory(device.device, block.memory, 0, VK_WHOLE_SIZE, 0, &block.mapped);
+    if (result != VK_SUCCESS) return vulkan_error(result, "mapping the memory", request.name);
+    owner.set_mapped(block.mapped);
+  }
+  return owner;
+}
+
+// Allocates with the callbacks of the engine, and checks what they return.
+Result<Memory> allocate_from_engine(const Device& device, const MemoryRequest& request) {
+  const MemoryCallbacks& callbacks = device.memory_callbacks;
+  MemoryBlock block;
+  const VkResult result = callbacks.allocate(callbacks.user, request, block);
+  if (result != VK_SUCCESS) {
+    Error error = vulkan_error(result, "allocating the memory with MemoryCallbacks::allocate", request.name);
+    error.code = ErrorCode::out_of_memory;
+    return error;
+  }
+  const auto invalid = [&](const char* what) {
+    return Error{ErrorCode::invalid_argument,
+                 std::string("MemoryCallbacks::allocate: the block for ") + request.name + " has " + what};
+  };
+  if (block.memory == VK_NULL_HANDLE) return invalid("no memory; expected a VkDeviceMemory, or an error");
+  Memory owner(device, block, request.requirements.size);
+  if (block.offset % request.requirements.alignment != 0) {
+    return invalid("an offset that is not aligned; expected a multiple of requirements.alignment");
+  }
+  if ((request.needed & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0 && block.mapped == nullptr) {
+    return invalid("no address on the host; expected mapped memory");
+  }
+  return owner;
+}
+
+Result<Memory> allocate(const Device& device, MemoryRequest request, MemoryKind kind) {
+  const Properties properties = properties_of(kind);
+  request.needed = properties.needed;
+  request.preferred = properties.preferred;
+  return device.memory_callbacks.allocate != nullptr ? allocate_from_engine(device, request)
+                                                     : allocate_from_device(device, request);
 }
 
 Result<Handle<VkImageView>> create_view(const Device& device, const Image& image, VkImageViewType type,
@@ -61,6 +100,27 @@ Result<Handle<VkImageView>> create_view(const Device& device, const Image& image
 }
 
 }  // namespace
+
+Memory& Memory::operator=(Memory&& other) noexcept {
+  if (this != &other) {
+    reset();
+    device_ = std::exchange(other.device_, nullptr);
+    block_ = other.block_;
+    bytes_ = other.bytes_;
+  }
+  return *this;
+}
+
+void Memory::reset() noexcept {
+  if (device_ == nullptr) return;
+  const MemoryCallbacks& callbacks = device_->memory_callbacks;
+  if (callbacks.free != nullptr) {
+    callbacks.free(callbacks.user, block_, bytes_);
+  } else {
+    device_->vk.FreeMemory(device_->device, block_.memory, device_->allocator);
+  }
+  device_ = nullptr;
+}
 
 VkImageCreateInfo image_create_info(const ImageDesc& desc) {
   VkImageCreateInfo info = {};
@@ -91,9 +151,15 @@ Result<Image> create_image(const Device& device, const ImageDesc& desc) {
   set_name(device, VK_OBJECT_TYPE_IMAGE, image, desc.name);
   VkMemoryRequirements requirements = {};
   device.vk.GetImageMemoryRequirements(device.device, image, &requirements);
-  TYNDALL_ASSIGN(out.memory, allocate(device, requirements, MemoryKind::device, desc.name));
+  MemoryRequest request;
+  request.name = desc.name;
+  request.image = image;
+  request.usage = desc.usage;
+  request.requirements = requirements;
+  TYNDALL_ASSIGN(out.memory, allocate(device, request, MemoryKind::device));
   out.bytes = requirements.size;
-  result = device.vk.BindImageMemory(device.device, image, out.memory.get(), 0);
+  const MemoryBlock& block = out.memory.block();
+  result = device.vk.BindImageMemory(device.device, image, block.memory, block.offset);
   if (result != VK_SUCCESS) return vulkan_error(result, "binding the memory", desc.name);
   VkImageViewType type = desc.layers > 1 || desc.array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
   if (desc.extent.depth > 1) type = VK_IMAGE_VIEW_TYPE_3D;
@@ -117,14 +183,17 @@ Result<Buffer> create_buffer(const Device& device, const char* name, VkDeviceSiz
   set_name(device, VK_OBJECT_TYPE_BUFFER, buffer, name);
   VkMemoryRequirements requirements = {};
   device.vk.GetBufferMemoryRequirements(device.device, buffer, &requirements);
-  TYNDALL_ASSIGN(out.memory, allocate(device, requirements, kind, name));
+  MemoryRequest request;
+  request.name = name;
+  request.buffer = buffer;
+  request.usage = usage;
+  request.requirements = requirements;
+  TYNDALL_ASSIGN(out.memory, allocate(device, request, kind));
   out.bytes = requirements.size;
-  result = device.vk.BindBufferMemory(device.device, buffer, out.memory.get(), 0);
+  const MemoryBlock& block = out.memory.block();
+  result = device.vk.BindBufferMemory(device.device, buffer, block.memory, block.offset);
   if (result != VK_SUCCESS) return vulkan_error(result, "binding the memory", name);
-  if (kind != MemoryKind::device) {
-    result = device.vk.MapMemory(device.device, out.memory.get(), 0, VK_WHOLE_SIZE, 0, &out.mapped);
-    if (result != VK_SUCCESS) return vulkan_error(result, "mapping the memory", name);
-  }
+  if (kind != MemoryKind::device) out.mapped = block.mapped;
   return out;
 }
 

@@ -1,8 +1,10 @@
-// Images and buffers with their memory. Each has its own allocation, which suffices for the few dozen of a frame.
+// Images and buffers with their memory. Each has its own allocation, which suffices for the few dozen of a frame, or a
+// block of the allocator of DeviceInfo::memory.
 #pragma once
 
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "gpu/device.hpp"
 
@@ -18,8 +20,31 @@ struct ImageDesc {
   bool array = false;  // create an array view even if there is only one layer
 };
 
+// The owner of the memory of an image or a buffer.
+class Memory {
+ public:
+  Memory() = default;
+  Memory(const Device& device, const MemoryBlock& block, VkDeviceSize bytes)
+      : device_(&device), block_(block), bytes_(bytes) {}
+  Memory(Memory&& other) noexcept
+      : device_(std::exchange(other.device_, nullptr)), block_(other.block_), bytes_(other.bytes_) {}
+  Memory& operator=(Memory&& other) noexcept;
+  Memory(const Memory&) = delete;
+  Memory& operator=(const Memory&) = delete;
+  ~Memory() { reset(); }
+  [[nodiscard]] const MemoryBlock& block() const { return block_; }
+  void set_mapped(void* address) { block_.mapped = address; }
+
+ private:
+  void reset() noexcept;
+
+  const Device* device_ = nullptr;  // null: owns nothing
+  MemoryBlock block_ = {};
+  VkDeviceSize bytes_ = 0;
+};
+
 struct Image {
-  Handle<VkDeviceMemory> memory;
+  Memory memory;
   Handle<VkImage> image;
   Handle<VkImageView> view;  // all layers and levels; an array view if layers > 1 or desc.array
   ImageDesc desc = {};
@@ -27,7 +52,7 @@ struct Image {
 };
 
 struct Buffer {
-  Handle<VkDeviceMemory> memory;
+  Memory memory;
   Handle<VkBuffer> buffer;
   void* mapped = nullptr;  // address of a host-visible buffer, which is always mapped
   VkDeviceSize size = 0;   // requested size [bytes]

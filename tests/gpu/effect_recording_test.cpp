@@ -139,5 +139,29 @@ TEST(EffectRecording, WhatIsWatchedIsSeen) {
   }
 }
 
+// Tables that are completed between two slices: the update starts again, because its parts must come from one set.
+TEST(EffectRecording, UpdatesOfTheSkyProbeNeverMixTables) {
+  Effect effect = make(Built::completely);
+  Result<SkyProbe> probe = SkyProbe::create(effect, 8);
+  ASSERT_OK(probe);
+  const auto done = [&](std::uint32_t budget) {
+    const Result<Progress> recorded = probe.value().record(kCommands, {}, budget);
+    EXPECT_OK(recorded);
+    return recorded.ok() ? recorded.value().done : 0U;
+  };
+  EXPECT_EQ(done(3), 3U);
+  Params params = small_params();
+  params.scattering.color = ColorMode::spectral;
+  ASSERT_OK(effect.set_params(params));
+  ASSERT_OK(effect.record_precompute(kCommands, 2));
+  EXPECT_EQ(done(1), 4U) << "the tables of the update are still in use";
+  ASSERT_OK(effect.record_precompute(kCommands));
+  EXPECT_EQ(done(1), 1U) << "the update has begun again";
+  params.planet.ground_albedo = Vec3(0.9F);
+  ASSERT_OK(effect.set_params(params));
+  ASSERT_OK(effect.record_precompute(kCommands));
+  EXPECT_EQ(done(2), 2U) << "the update has begun again";
+}
+
 }  // namespace
 }  // namespace tyndall

@@ -7,11 +7,11 @@
 #include <numbers>
 #include <optional>
 
+#include "atmosphere_points.hpp"
 #include "effect/spectral_medium.hpp"
 #include "effect_frame.hpp"
 #include "models/precomputed.hpp"
 #include "models/spectral.hpp"
-#include "spectral_test_shaders.hpp"
 #include "tyndall/atmosphere.hpp"
 #include "tyndall/sky_probe.hpp"
 
@@ -21,19 +21,6 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kRadius_m = 6360000.0;
 constexpr double kAltitude_m = 300.0;
-
-// Mirrors the structure of atmosphere_points.comp.
-struct Query {
-  float from[3];
-  float function;
-  float other[3];
-  float steps;
-  float plane[4];
-};
-
-struct Answer {
-  glm::dvec3 light, transmittance;
-};
 
 glm::dvec3 color(const FourChannels& light) {
   const std::array<double, 3> out = color_of_light(light);
@@ -79,53 +66,13 @@ class SpectralLookUps : public GpuTest {
     inputs.origin_from_centre_m = {0.0, 0.0, kRadius_m + kAltitude_m};
     inputs.sun.irradiance = Vec3(1.0F);
     inputs.sun.direction_to_sun = single(to_sun);
-    const gpu::Device& device = host().device();
-    const Result<AtmosphereConstants> constants = atmosphere_constants(table_params(model_->effect()), inputs);
-    Result<gpu::Pipeline> pipeline = gpu::create_compute_pipeline(device, shaders::atmosphere_points_comp_spectral);
-    std::vector<Answer> out(queries.size());
-    EXPECT_OK(constants);
-    EXPECT_OK(pipeline);
-    if (!constants.ok() || !pipeline.ok()) return out;
-    const auto buffer = [&](const void* data, std::size_t size, VkBufferUsageFlags usage) {
-      Result<gpu::Buffer> made = gpu::create_buffer(device, "test", size, usage, gpu::MemoryKind::readback);
-      EXPECT_OK(made);
-      if (data != nullptr) std::memcpy(made.value().mapped, data, size);
-      return std::move(made).value();
-    };
-    const gpu::Buffer block =
-        buffer(&constants.value(), sizeof(AtmosphereConstants), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
-    const gpu::Buffer in = buffer(queries.data(), queries.size() * sizeof(Query), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-    const gpu::Buffer answers = buffer(nullptr, queries.size() * 32, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-    std::vector<gpu::NamedResource> resources = {gpu::named_buffer("tyndall_constants_block", block.buffer.get()),
-                                                 gpu::named_buffer("query_block", in.buffer.get()),
-                                                 gpu::named_buffer("answer_block", answers.buffer.get())};
-    const AtmosphereImages images = atmosphere_images(model_->effect());
-    for (const gpu::Binding& binding : pipeline.value().bindings) {
-      const std::uint32_t image = binding.binding - 4;  // TYNDALL_FIRST_BINDING is 3
-      if (binding.binding < 4 || image >= images.count) continue;
-      const VkDescriptorImageInfo& info = images.list[image];
-      resources.push_back(gpu::named_image(binding.name, info.imageView, info.imageLayout, info.sampler));
-    }
-    EXPECT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
-      if (Result<void> bound = gpu::bind(host().sets(), cmd, pipeline.value(), resources); !bound.ok()) return bound;
-      gpu::dispatch(device, cmd, pipeline.value(), static_cast<std::uint32_t>(queries.size()));
-      gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
-                   VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
-      return {};
-    }));
-    const auto* values = static_cast<const float*>(answers.mapped);
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      const float* v = values + 8 * i;
-      out[i] = {{v[0], v[1], v[2]}, {v[4], v[5], v[6]}};
-    }
-    return out;
+    return evaluate_points(host(), model_->effect(), table_params(model_->effect()), inputs, queries);
   }
 
   static inline std::optional<models::PrecomputedModel> model_;
 };
 
 TEST_F(SpectralLookUps, AtmosphereGlslAgreesWithProbe) {
-  enum Function { sun_irradiance, sky_irradiance, sky_radiance, to_sky };
   for (const double sun_deg : {30.0, 82.0, 93.0}) {
     const double sun_zenith = sun_deg * kPi / 180.0;
     std::vector<Query> queries;
@@ -134,14 +81,10 @@ TEST_F(SpectralLookUps, AtmosphereGlslAgreesWithProbe) {
       for (const double azimuth : {0.1, 1.0, 2.0, 3.0}) {
         const double zenith = view_deg * kPi / 180.0;
         const glm::dvec3 ahead = direction(zenith, azimuth);
-        const auto add = [&](Function function, const glm::dvec3& other) {
-          queries.push_back({{}, static_cast<float>(function), {}, 0.0F, {0.0F, 0.0F, 0.0F, 1.0F}});
-          std::memcpy(queries.back().other, &single(other).x, sizeof queries.back().other);
-        };
-        add(sun_irradiance, ahead);
-        add(sky_irradiance, {0.0, 0.0, 1.0});
-        add(sky_radiance, ahead);
-        add(to_sky, ahead);
+        queries.push_back(query(sun_irradiance, {}, ahead));
+        queries.push_back(query(sky_irradiance, {}, {0.0, 0.0, 1.0}));
+        queries.push_back(query(sky_radiance, {}, ahead));
+        queries.push_back(query(to_sky, {}, ahead));
         rays.push_back({kAltitude_m, zenith, sun_zenith, azimuth, false});
         skies.push_back({kAltitude_m, zenith, sun_zenith, azimuth, true});
       }
@@ -214,52 +157,6 @@ TEST_F(SpectralLookUps, TheSkyProbeAgreesWithTheRadianceOfProbe) {
     for (std::size_t i = 0; i < 9; ++i) found += kFactors[i] * static_cast<double>(coefficients[i][c]);
     EXPECT_NEAR(found / expected[static_cast<int>(c)], 1.0, 0.005) << c;
   }
-}
-
-// Tables of the other mode that are completed between two slices: the update starts again.
-TEST_F(SpectralLookUps, UpdatesOfTheSkyProbeNeverMixTables) {
-  EffectDesc desc;
-  desc.max_extent = {16, 16};
-  Params rgb = params();
-  rgb.scattering.color = ColorMode::rgb;
-  rgb.scattering.technique = Technique::brute_force;
-  rgb.tables.size = {4, 8, 8, 4};
-  Params spectral = rgb;
-  spectral.scattering.color = ColorMode::spectral;
-  Result<Effect> made = Effect::create(info(), desc, rgb);
-  ASSERT_OK(made);
-  Effect effect = std::move(made).value();
-  const auto build = [&](const Params& wanted) {
-    ASSERT_OK(effect.set_params(wanted));
-    ASSERT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
-      const Result<Progress> built = effect.record_precompute(cmd);
-      if (!built.ok()) return built.error();
-      return {};
-    }));
-  };
-  const auto record = [&](SkyProbe& probe, std::uint32_t budget) {
-    SkyProbeInputs inputs;
-    inputs.sun.direction_to_sun = single(glm::normalize(glm::dvec3(0.6, 0.5, 0.2)));
-    Progress out;
-    EXPECT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
-      const Result<Progress> recorded = probe.record(cmd, inputs, budget);
-      if (!recorded.ok()) return recorded.error();
-      out = recorded.value();
-      return {};
-    }));
-    return out;
-  };
-  build(rgb);
-  Result<SkyProbe> probe = SkyProbe::create(effect);
-  ASSERT_OK(probe);
-  EXPECT_EQ(record(probe.value(), 3).done, 3U);
-  ASSERT_OK(effect.set_params(spectral));
-  EXPECT_EQ(record(probe.value(), 1).done, 4U) << "the tables of the update are still in use";
-  build(spectral);
-  EXPECT_EQ(record(probe.value(), 1).done, 1U) << "the update began again";
-  spectral.planet.ground_albedo = Vec3(0.9F);
-  build(spectral);
-  EXPECT_EQ(record(probe.value(), 2).done, 2U) << "the update began again";
 }
 
 }  // namespace

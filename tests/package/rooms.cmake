@@ -24,7 +24,8 @@ endmacro()
 
 # The public interface: parameters and results, then the effect itself.
 room(include/tyndall)
-room(include/tyndall/effect.hpp VULKAN include/tyndall)
+room(include/tyndall/memory.hpp VULKAN include/tyndall)
+room(include/tyndall/effect.hpp VULKAN include/tyndall/memory.hpp include/tyndall)
 room(include/tyndall/sky_probe.hpp VULKAN include/tyndall/effect.hpp include/tyndall)
 room(include/tyndall/post.hpp VULKAN include/tyndall/effect.hpp include/tyndall)
 room(include/tyndall/atmosphere.hpp VULKAN include/tyndall/effect.hpp include/tyndall)
@@ -48,7 +49,7 @@ room(shaders/viewer)
 room(src/air include/tyndall)
 
 # The effect.
-room(src/gpu VULKAN include/tyndall/effect.hpp include/tyndall)
+room(src/gpu VULKAN include/tyndall/effect.hpp include/tyndall/memory.hpp include/tyndall)
 room(src/effect VULKAN src/air src/gpu shaders/shared include/tyndall/sky_probe.hpp include/tyndall/atmosphere.hpp include/tyndall/effect.hpp include/tyndall)
 room(src/c VULKAN src/gpu include/tyndall/sky_probe.hpp include/tyndall/atmosphere.hpp include/tyndall/effect.hpp include/tyndall/tyndall.h include/tyndall)
 room(src/post VULKAN src/gpu shaders/post shaders/lib shaders/shared include/tyndall/post.hpp include/tyndall)
