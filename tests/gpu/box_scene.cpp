@@ -100,6 +100,7 @@ TestFrame frame_of(const BoxScene& scene) {
   frame.extent = scene.extent;
   frame.view = TestView::at(scene.altitude_m, scene.yaw_deg * kRad, scene.pitch_deg * kRad, scene.tan_half_height);
   frame.view.tan_half_width = scene.tan_half_height * scene.extent.width / scene.extent.height;
+  frame.view.jitter_px = scene.jitter_px;
   frame.convention = scene.convention;
   frame.shadow_depth_reversed = scene.shadow_depth_reversed;
   frame.shadow_resolution = scene.shadow_resolution;

@@ -26,6 +26,7 @@ struct BoxSun {
 struct BoxScene {
   std::string name;
   VkExtent2D extent = {160, 90};
+  glm::dvec2 jitter_px = {0, 0};  // of the camera
   double altitude_m = 1200.0, yaw_deg = 0.0, pitch_deg = 3.0;
   double tan_half_height = 0.42;  // of the vertical field of view; the horizontal one follows from the picture's shape
   BoxSun sun;

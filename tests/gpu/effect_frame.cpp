@@ -35,6 +35,8 @@ Camera camera_of(const TestFrame& frame) {
   clip = Mat4{{}};
   clip.m[0] = static_cast<float>(1.0 / v.tan_half_width);
   clip.m[5] = static_cast<float>(-1.0 / v.tan_half_height);
+  clip.m[8] = static_cast<float>(2.0 * v.jitter_px.x / frame.extent.width);
+  clip.m[9] = static_cast<float>(2.0 * v.jitter_px.y / frame.extent.height);
   clip.m[11] = -1.0F;
   if (frame.convention == DepthConvention::reversed_infinite) {
     clip.m[14] = static_cast<float>(kNear_m);
@@ -61,8 +63,8 @@ TestView TestView::at(double altitude_m, double yaw_rad, double pitch_rad, doubl
 }
 
 glm::dvec3 TestView::ray(std::uint32_t x, std::uint32_t y, VkExtent2D extent) const {
-  const double ndc_x = 2.0 * (x + 0.5) / extent.width - 1.0;
-  const double ndc_y = 2.0 * (y + 0.5) / extent.height - 1.0;
+  const double ndc_x = 2.0 * (x + 0.5 + jitter_px.x) / extent.width - 1.0;
+  const double ndc_y = 2.0 * (y + 0.5 + jitter_px.y) / extent.height - 1.0;
   return glm::normalize(forward + right * (ndc_x * tan_half_width) - up * (ndc_y * tan_half_height));
 }
 

@@ -17,6 +17,7 @@ struct TestView {
   glm::dvec3 position = {0, 1000, 0};
   glm::dvec3 right = {1, 0, 0}, up = {0, 1, 0}, forward = {0, 0, -1};
   double tan_half_width = 1.0, tan_half_height = 1.0;
+  glm::dvec2 jitter_px = {0, 0};  // of temporal anti-aliasing: the rays pass beside the centres of the pixels
 
   // Returns a view from above the origin of the world. The angles correspond to camera.yaw_deg and camera.pitch_deg.
   static TestView at(double altitude_m, double yaw_rad, double pitch_rad, double tan_half);

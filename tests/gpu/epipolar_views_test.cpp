@@ -382,5 +382,35 @@ TEST_F(Epipolar, FewSlicesAreAccurateInEveryMode) {
   }
 }
 
+// Temporal anti-aliasing moves the projection by parts of a pixel. Four jittered pictures are those of every second
+// pixel and line of a picture of twice the size.
+TEST_F(Epipolar, JitteredPicturesAreSamplesOfALargerOne) {
+  BoxScene scene;
+  scene.name = "jitter";
+  const VkExtent2D extent = {80, 46};
+  scene.extent = {2 * extent.width, 2 * extent.height};
+  show(scene);
+  const Picture large = draw(by_brute_force(small_params()), "twice the size");
+  scene.extent = extent;
+  Picture marched(large.size()), epipolar(large.size());
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const std::uint32_t right = i % 2, down = i / 2;
+    scene.jitter_px = {right == 0 ? -0.25 : 0.25, down == 0 ? -0.25 : 0.25};
+    show(scene);
+    const Picture a = draw(by_brute_force(small_params()), "jittered, brute force");
+    const Picture b = draw(small_params(), "jittered");
+    for (std::uint32_t y = 0; y < extent.height; ++y) {
+      for (std::uint32_t x = 0; x < extent.width; ++x) {
+        const std::size_t to = (2 * y + down) * std::size_t{2} * extent.width + 2 * x + right;
+        marched[to] = a[y * extent.width + x];
+        epipolar[to] = b[y * extent.width + x];
+      }
+    }
+  }
+  const VkExtent2D twice = {2 * extent.width, 2 * extent.height};
+  EXPECT_GE(compare(marched, large, twice).psnr_db, 60.0);
+  EXPECT_GE(compare(epipolar, large, twice).psnr_db, 40.0);
+}
+
 }  // namespace
 }  // namespace tyndall
