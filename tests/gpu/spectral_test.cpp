@@ -268,10 +268,10 @@ TEST_F(Spectral, HalfFloatsAndSavedTablesShowTheSamePicture) {
   EXPECT_TRUE(made.value().precompute_progress().complete());
   const Result<Picture> drawn = render(host(), made.value(), frame(), OutputFormat::rgba16f);
   ASSERT_OK(drawn);
-  // Half floats have 11 significant bits.
+  // Half floats have 11 significant bits, and Vulkan leaves the direction of rounding to the device.
   for (std::size_t i = 0; i < expected.size(); ++i) {
     for (int c = 0; c < 3; ++c) {
-      EXPECT_NEAR(drawn.value()[i][c], expected[i][c], 0.0006 * expected[i][c] + 1e-6) << i;
+      EXPECT_NEAR(drawn.value()[i][c], expected[i][c], expected[i][c] * 0x1p-10 + 0x1p-24) << i;
     }
   }
 }
