@@ -57,7 +57,7 @@ struct DeviceInfo {
   std::span<const std::uint32_t> (*replace_shader)(void* user, std::string_view name) = nullptr;
   void* replace_shader_user = nullptr;
   // The allocator for all images and buffers. Without it, each has an allocation of the device.
-  MemoryCallbacks memory;
+  MemoryCallbacks memory = {};
 };
 
 // The requirements for a device: Vulkan 1.3 and these extensions (none at present), but no optional feature. Devices

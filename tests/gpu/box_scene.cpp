@@ -95,12 +95,12 @@ BoxScene sun_at(const std::string& name, double x, double y, double pitch_deg, b
   return scene;
 }
 
-TestFrame frame_of(const BoxScene& scene) {
+TestFrame frame_of(const BoxScene& scene, const glm::dvec2& jitter_px) {
   TestFrame frame;
   frame.extent = scene.extent;
   frame.view = TestView::at(scene.altitude_m, scene.yaw_deg * kRad, scene.pitch_deg * kRad, scene.tan_half_height);
   frame.view.tan_half_width = scene.tan_half_height * scene.extent.width / scene.extent.height;
-  frame.view.jitter_px = scene.jitter_px;
+  frame.view.jitter_px = jitter_px;
   frame.convention = scene.convention;
   frame.shadow_depth_reversed = scene.shadow_depth_reversed;
   frame.shadow_resolution = scene.shadow_resolution;

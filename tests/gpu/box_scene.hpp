@@ -26,7 +26,6 @@ struct BoxSun {
 struct BoxScene {
   std::string name;
   VkExtent2D extent = {160, 90};
-  glm::dvec2 jitter_px = {0, 0};  // of the camera
   double altitude_m = 1200.0, yaw_deg = 0.0, pitch_deg = 3.0;
   double tan_half_height = 0.42;  // of the vertical field of view; the horizontal one follows from the picture's shape
   BoxSun sun;
@@ -47,7 +46,7 @@ struct BoxScene {
 // Returns a scene with the sun at a position of the picture, or opposite to it.
 [[nodiscard]] BoxScene sun_at(const std::string& name, double x, double y, double pitch_deg, bool behind = false);
 
-[[nodiscard]] TestFrame frame_of(const BoxScene& scene);
+[[nodiscard]] TestFrame frame_of(const BoxScene& scene, const glm::dvec2& jitter_px = {0, 0});
 
 // The difference of a picture from the reference, computed as by `tyndall compare` for two PNGs. The exposure maps the
 // mean luminance of the reference to middle grey, followed by the curve 1 - exp(-x) and sRGB in 8 bits.

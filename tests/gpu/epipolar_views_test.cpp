@@ -395,8 +395,7 @@ TEST_F(Epipolar, JitteredPicturesAreSamplesOfALargerOne) {
   Picture marched(large.size()), epipolar(large.size());
   for (std::uint32_t i = 0; i < 4; ++i) {
     const std::uint32_t right = i % 2, down = i / 2;
-    scene.jitter_px = {right == 0 ? -0.25 : 0.25, down == 0 ? -0.25 : 0.25};
-    show(scene);
+    show(frame_of(scene, {right == 0 ? -0.25 : 0.25, down == 0 ? -0.25 : 0.25}));
     const Picture a = draw(by_brute_force(small_params()), "jittered, brute force");
     const Picture b = draw(small_params(), "jittered");
     for (std::uint32_t y = 0; y < extent.height; ++y) {
