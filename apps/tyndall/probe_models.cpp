@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "effect/medium.hpp"
 #include "effect/spectral_medium.hpp"
@@ -147,73 +148,67 @@ Result<std::vector<ProbeAnswer>> run_precomputed(const ProbeSettings& settings, 
   return answers;
 }
 
-// Evaluates queries one after the other on the CPU. `sky` and `ray` are functions of a query that return
-// models::Answer.
-template <typename Sky, typename Ray>
-std::vector<ProbeAnswer> answer_each(const ProbeSettings& settings, std::span<const RayQuery> queries, const Sky& sky,
-                                     const Ray& ray) {
+// Evaluates queries one after the other on the CPU.
+std::vector<ProbeAnswer> run_on_cpu(const ProbeSettings& settings, std::span<const RayQuery> queries,
+                                    const CpuModel& model) {
+  if (settings.note) {
+    for (const std::string& text : model.notes) settings.note(text);
+  }
   std::vector<ProbeAnswer> out;
   out.reserve(queries.size());
   for (const RayQuery& query : queries) {
-    const models::Answer answer = query.sky_irradiance ? sky(query) : ray(query);
-    out.push_back(probe_answer(settings.params, answer, false));
+    out.push_back(probe_answer(settings.params, model.answer(query), false));
     settings.progress(static_cast<double>(out.size()) / static_cast<double>(queries.size()));
   }
   return out;
 }
 
-void note_missing_ozone(const ProbeSettings& settings, const char* model) {
-  if (!settings.note || settings.params.atmosphere.ozone_absorption == Vec3(0.0F)) return;
-  settings.note(std::string(model) + " has no ozone; atmosphere.ozone_absorption is ignored");
+void note_missing_ozone(std::vector<std::string>& notes, const Params& params, const char* model) {
+  if (params.atmosphere.ozone_absorption == Vec3(0.0F)) return;
+  notes.push_back(std::string(model) + " has no ozone; atmosphere.ozone_absorption is ignored");
 }
 
-// Evaluates O'Neil's model in double precision, with the functions that the shaders use.
-Result<std::vector<ProbeAnswer>> run_oneil(const ProbeSettings& settings, std::span<const RayQuery> queries,
-                                           bool table) {
-  const models::OneilModel model =
-      models::make_oneil(medium_from_params(settings.params), scene::oneil_settings(settings.scene.oneil, table));
-  if (settings.note) settings.note(models::describe_errors(model));
-  note_missing_ozone(settings, "O'Neil's model");
-  const auto sky = [&](const RayQuery& q) -> models::Answer {
+// O'Neil's model in double precision, with the functions that the shaders use.
+CpuModel oneil_model(const Params& params, const scene::SceneParams& scene, bool table) {
+  const auto model = std::make_shared<const models::OneilModel>(
+      models::make_oneil(medium_from_params(params), scene::oneil_settings(scene.oneil, table)));
+  CpuModel out;
+  out.notes.push_back(models::describe_errors(*model));
+  note_missing_ozone(out.notes, params, "O'Neil's model");
+  out.answer = [model](const RayQuery& q) -> models::Answer {
+    if (!q.sky_irradiance) return models::oneil(*model, models::ray_from_query(q));
     const double cos_sun = std::cos(q.sun_zenith_rad);
-    return {models::oneil_sky_irradiance(model, q.altitude_m, cos_sun),
-            models::oneil_sun_transmittance(model, q.altitude_m, cos_sun)};
+    return {models::oneil_sky_irradiance(*model, q.altitude_m, cos_sun),
+            models::oneil_sun_transmittance(*model, q.altitude_m, cos_sun)};
   };
-  const auto ray = [&](const RayQuery& q) { return models::oneil(model, models::ray_from_query(q)); };
-  return answer_each(settings, queries, sky, ray);
+  return out;
 }
 
-// Evaluates the closed forms in double precision.
-Result<std::vector<ProbeAnswer>> run_homogeneous(const ProbeSettings& settings, std::span<const RayQuery> queries) {
-  const shared::Homogeneous medium =
-      models::homogeneous_from_params(settings.params, homogeneous_lengths(settings.scene));
-  note_missing_ozone(settings, "the homogeneous model");
-  const auto sky = [&](const RayQuery& q) -> models::Answer {
+// Hoffman and Preetham's closed forms in double precision.
+CpuModel homogeneous_model(const Params& params, const scene::SceneParams& scene) {
+  const shared::Homogeneous medium = models::homogeneous_from_params(params, homogeneous_lengths(scene));
+  CpuModel out;
+  note_missing_ozone(out.notes, params, "the homogeneous model");
+  out.answer = [medium](const RayQuery& q) -> models::Answer {
+    if (!q.sky_irradiance) return models::homogeneous_light(medium, models::ray_from_query(q));
     const double cos_sun = std::cos(q.sun_zenith_rad);
     return {models::homogeneous_sky_irradiance(medium, cos_sun), models::homogeneous_sun(medium, cos_sun)};
   };
-  const auto ray = [&](const RayQuery& q) { return models::homogeneous_light(medium, models::ray_from_query(q)); };
-  return answer_each(settings, queries, sky, ray);
+  return out;
 }
 
-// Evaluates the medium of scattering.medium = homogeneous without shadows, on the CPU in double precision.
-Result<std::vector<ProbeAnswer>> run_homogeneous_medium(const ProbeSettings& settings,
-                                                        std::span<const RayQuery> queries) {
-  const Params& params = settings.params;
+// The medium of scattering.medium = homogeneous without shadows, in double precision.
+CpuModel homogeneous_medium_model(const Params& params) {
   const shared::SpectralMedium sea_level = spectral_medium_from_params(params);
-  const auto sky = [&](const RayQuery& q) {
+  CpuModel out;
+  out.answer = [params, sea_level](const RayQuery& q) {
     return models::in_all_channels(params, sea_level, [&](const shared::Medium& m) -> models::Answer {
       const models::HomogeneousMedium medium = models::homogeneous_medium_from_params(params, m);
+      if (!q.sky_irradiance) return models::homogeneous_medium_light(medium, models::ray_from_query(q));
       return {models::homogeneous_medium_sky(medium, q.altitude_m, std::cos(q.sun_zenith_rad)), medium.sunlight};
     });
   };
-  const auto ray = [&](const RayQuery& q) {
-    return models::in_all_channels(params, sea_level, [&](const shared::Medium& m) {
-      const models::HomogeneousMedium medium = models::homogeneous_medium_from_params(params, m);
-      return models::homogeneous_medium_light(medium, models::ray_from_query(q));
-    });
-  };
-  return answer_each(settings, queries, sky, ray);
+  return out;
 }
 
 }  // namespace
@@ -240,24 +235,41 @@ models::HomogeneousLengths homogeneous_lengths(const scene::SceneParams& scene) 
   return {own.air_length_m, own.haze_length_m, own.falloff.value != 0};
 }
 
+CpuModel cpu_model(scene::ModelId model, const Params& params, const scene::SceneParams& scene) {
+  using Id = scene::ModelId;
+  switch (model) {
+    case Id::homogeneous: return homogeneous_model(params, scene);
+    case Id::homogeneous_medium: return homogeneous_medium_model(params);
+    case Id::oneil: return oneil_model(params, scene, false);
+    case Id::oneil_table: return oneil_model(params, scene, true);
+    case Id::precomputed:
+    case Id::single:
+    case Id::reference: break;
+  }
+  return {};
+}
+
+Result<void> check_color(scene::ModelId model, ColorMode color) {
+  if (color == ColorMode::rgb || scene::model_info(model).spectral) return {};
+  return Error{ErrorCode::invalid_argument, "scattering.color: 'spectral' is not supported by the model '" +
+                                                std::string(scene::model_info(model).name) +
+                                                "', which has three channels; expected rgb"};
+}
+
 Result<std::vector<ProbeAnswer>> evaluate_model(scene::ModelId model, const ProbeSettings& settings,
                                                 std::span<const RayQuery> queries) {
   using Id = scene::ModelId;
-  if (settings.params.scattering.color == ColorMode::spectral && !scene::model_info(model).spectral) {
-    return Error{ErrorCode::invalid_argument, "scattering.color: 'spectral' is not supported by the model '" +
-                                                  std::string(scene::model_info(model).name) +
-                                                  "', which has three channels; expected rgb"};
-  }
+  if (Result<void> r = check_color(model, settings.params.scattering.color); !r) return std::move(r).error();
   switch (model) {
     case Id::precomputed: return run_precomputed(settings, queries);
     case Id::single: return run_single(settings, queries);
-    case Id::homogeneous: return run_homogeneous(settings, queries);
-    case Id::homogeneous_medium: return run_homogeneous_medium(settings, queries);
-    case Id::oneil: return run_oneil(settings, queries, false);
-    case Id::oneil_table: return run_oneil(settings, queries, true);
     case Id::reference: return run_reference(settings, queries);
+    case Id::homogeneous:
+    case Id::homogeneous_medium:
+    case Id::oneil:
+    case Id::oneil_table: break;
   }
-  return std::vector<ProbeAnswer>();
+  return run_on_cpu(settings, queries, cpu_model(model, settings.params, settings.scene));
 }
 
 }  // namespace tyndall::cli

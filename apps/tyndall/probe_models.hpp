@@ -48,6 +48,17 @@ struct ProbeSettings {
 // Returns the optical lengths that the scene's parameters set for the homogeneous model.
 [[nodiscard]] models::HomogeneousLengths homogeneous_lengths(const scene::SceneParams& scene);
 
+// A model that is computed on the CPU in double precision: all except precomputed, single and reference.
+struct CpuModel {
+  std::function<models::Answer(const RayQuery&)> answer;  // may be called by several threads at once
+  std::vector<std::string> notes;                         // remarks for the user, one line each
+};
+// Returns an empty function for the other models.
+[[nodiscard]] CpuModel cpu_model(scene::ModelId model, const Params& params, const scene::SceneParams& scene);
+
+// Returns an error if a model has three channels only, and spectral colours are requested.
+[[nodiscard]] Result<void> check_color(scene::ModelId model, ColorMode color);
+
 // Evaluates the queries with one of the models.
 [[nodiscard]] Result<std::vector<ProbeAnswer>> evaluate_model(scene::ModelId model, const ProbeSettings& settings,
                                                               std::span<const RayQuery> queries);

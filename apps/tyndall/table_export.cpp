@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -21,6 +20,7 @@
 #include "files/text.hpp"
 #include "image/image.hpp"
 #include "models/table_axes.hpp"
+#include "models/table_values.hpp"
 
 namespace tyndall::cli {
 namespace {
@@ -35,32 +35,6 @@ constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 Error directory_error(const std::string& directory, const std::string& why) {
   return Error{ErrorCode::io, concat({"'", files::one_line(directory, 200), "': cannot write: ", why,
                                       "; expected a directory, or a new name in an existing one"})};
-}
-
-// Converts a half (IEEE 754 binary16) to a float. NaN and infinity, which the tables do not contain, are not handled.
-float float_from_half(std::uint16_t half) {
-  const int exponent = (half >> 10U) & 31U;
-  const auto mantissa = static_cast<float>(half & 1023U);
-  const float magnitude = exponent == 0 ? std::ldexp(mantissa, -24) : std::ldexp(1024.0F + mantissa, exponent - 25);
-  return (half & 0x8000U) != 0 ? -magnitude : magnitude;
-}
-
-Result<std::vector<std::uint16_t>> download(gpu::Host& host, Effect& effect) {
-  const gpu::Device& device = host.device();
-  const VkDeviceSize size = effect.table_bytes();
-  Result<gpu::Buffer> to =
-      gpu::create_buffer(device, "exported_tables", size, VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryKind::readback);
-  if (!to) return std::move(to).error();
-  const Result<void> copied = host.run([&](VkCommandBuffer cmd) -> Result<void> {
-    if (Result<void> r = effect.record_save_tables(cmd, to.value().buffer.get()); !r) return r;
-    gpu::barrier(device, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_HOST_BIT,
-                 VK_ACCESS_HOST_READ_BIT);
-    return {};
-  });
-  if (!copied) return copied.error();
-  std::vector<std::uint16_t> out(size / sizeof(std::uint16_t));
-  std::memcpy(out.data(), to.value().mapped, size);
-  return out;
 }
 
 // A folder inside the directory that holds the files until all are complete.
@@ -148,17 +122,14 @@ class Exporter {
         params_(settings.effect),
         staging_(staging),
         progress_(progress),
-        axes_(models::table_axes(params_)),
-        factors_(models::table_factors(params_, axes_)),
-        shapes_(models::angle_shapes(params_, axes_)) {}
+        axes_(models::table_axes(params_)) {}
 
-  // Writes the files. `texels` are in the order of record_save_tables. Returns the names of the files, the index last.
-  Result<std::vector<std::string>> write(std::span<const std::uint16_t> texels, const std::string& device) {
+  // Writes the files of all tables. Returns the names of the files, the index last.
+  Result<std::vector<std::string>> write(std::span<const models::TableValues> values, const std::string& device) {
     struct Kind {
-      TableId id;
       const char* quantity;
       const char* unit;
-      std::array<double, 3> models::TableFactors::*factor;
+      bool light;  // one of the look-up tables of light
     };
     constexpr const char* kOfSpecies =
         " once, without the phase function: L / E0 divided by P(cos_view_sun), where L is "
@@ -166,32 +137,24 @@ class Exporter {
     const std::string rayleigh = concat({"light scattered by air", kOfSpecies});
     const std::string mie = concat({"light scattered by aerosol", kOfSpecies});
     const Kind kinds[] = {
-        {TableId::single_rayleigh, rayleigh.c_str(), "1", &models::TableFactors::single_rayleigh},
-        {TableId::single_mie, mie.c_str(), "1", &models::TableFactors::single_mie},
-        {TableId::high_orders, "light scattered twice and more, phase functions included: L / E0", "1/sr",
-         &models::TableFactors::high_orders},
-        {TableId::sun_transmittance,
-         "fraction of the sunlight E0 that reaches a point; the sun's disc softens the edge at the horizon", "1",
-         nullptr},
-        {TableId::sky_irradiance, "light of the open sky on a horizontal surface: E / E0", "1", nullptr},
+        {rayleigh.c_str(), "1", false},
+        {mie.c_str(), "1", false},
+        {"light scattered twice and more, phase functions included: L / E0", "1/sr", false},
+        {"fraction of the sunlight E0 that reaches a point; the sun's disc softens the edge at the horizon", "1", true},
+        {"light of the open sky on a horizontal surface: E / E0", "1", true},
     };
     total_ = 3 * axes_.altitude_m.size() + 2;
     ordered_json tables = ordered_json::array();
-    for (const Kind& kind : kinds) {
-      const gpu::ImageDesc desc = table_desc(kind.id, params_);
-      const std::size_t count = std::size_t{4} * desc.extent.width * desc.extent.height * desc.extent.depth;
-      const std::span<const std::uint16_t> own = texels.first(count);
-      texels = texels.subspan(count);
+    for (const models::TableValues& table_of : values) {
+      const Kind& kind = kinds[static_cast<std::uint32_t>(table_of.id)];
+      const std::string name = models::table_name(table_of.id);
       ordered_json table;
-      const std::string name = table_name(kind.id);
       table["name"] = name;
       table["quantity"] = kind.quantity;
       table["unit"] = kind.unit;
-      Result<ordered_json> files = kind.factor != nullptr
-                                       ? scattering_table(name, own, kind.factor, kind.id == TableId::high_orders)
-                                       : light_table(name, own, desc.extent);
+      Result<ordered_json> files = kind.light ? light_table(name, table_of) : scattering_table(name, table_of);
       if (!files) return std::move(files).error();
-      table["axes"] = kind.factor != nullptr ? "scattering" : "light";
+      table["axes"] = kind.light ? "light" : "scattering";
       table["files"] = std::move(files).value();
       tables.push_back(std::move(table));
     }
@@ -209,24 +172,12 @@ class Exporter {
   }
 
   // Writes one picture per altitude.
-  Result<ordered_json> scattering_table(const std::string& name, std::span<const std::uint16_t> texels,
-                                        std::array<double, 3> models::TableFactors::*factor, bool shaped) {
-    const UVec4& size = params_.tables.size;
+  Result<ordered_json> scattering_table(const std::string& name, const models::TableValues& table) {
     ordered_json files = ordered_json::array();
-    image::Image image(size.z * size.w, size.y);
-    for (std::uint32_t altitude = 0; altitude < size.x; ++altitude) {
-      for (std::uint32_t view = 0; view < size.y; ++view) {
-        const std::array<double, 3>& scale = factors_[std::size_t{altitude} * size.y + view].*factor;
-        float* out = image.pixel(0, view);
-        for (std::uint32_t z = 0; z < image.width; ++z) {
-          const std::size_t at = ((std::size_t{z} * size.y + view) * size.x + altitude) * 4;
-          for (std::size_t c = 0; c < 3; ++c) {
-            const double t = float_from_half(texels[at + c]);
-            const double shape = shaped ? shapes_[z / size.z][c] : 1.0;
-            *out++ = static_cast<float>(scale[c] * shape * t * t * t * t);
-          }
-        }
-      }
+    image::Image image(table.size[2] * table.size[3], table.size[1]);
+    for (std::uint32_t altitude = 0; altitude < table.size[0]; ++altitude) {
+      const auto own = std::span(table.values).subspan(altitude * image.rgb.size(), image.rgb.size());
+      std::copy(own.begin(), own.end(), image.rgb.begin());
       const std::string number = std::to_string(altitude);
       const std::string file = name + "_" + std::string(4 - number.size(), '0') + number + ".exr";
       if (Result<void> r = write_image(file, image); !r) return std::move(r).error();
@@ -235,13 +186,10 @@ class Exporter {
     return files;
   }
 
-  Result<ordered_json> light_table(const std::string& name, std::span<const std::uint16_t> texels,
-                                   const VkExtent3D& extent) {
-    image::Image image(extent.width, extent.height);
-    for (std::size_t i = 0; i < image.rgb.size() / 3; ++i) {
-      for (std::size_t c = 0; c < 3; ++c) image.rgb[3 * i + c] = float_from_half(texels[4 * i + c]);
-    }
-    light_extent_ = extent;
+  Result<ordered_json> light_table(const std::string& name, const models::TableValues& table) {
+    image::Image image(table.size[3], table.size[2]);
+    std::copy(table.values.begin(), table.values.end(), image.rgb.begin());
+    light_size_ = {table.size[3], table.size[2]};
     const std::string file = name + ".exr";
     if (Result<void> r = write_image(file, image); !r) return std::move(r).error();
     return ordered_json::array({{{"file", file}}});
@@ -293,7 +241,7 @@ class Exporter {
     scattering["sun_zenith"] = cosines(axes_.cos_sun_zenith);
     scattering["view_sun"] = cosines(axes_.cos_view_sun);
 
-    const models::LightTableAxes light = models::light_table_axes(params_, light_extent_.width, light_extent_.height);
+    const models::LightTableAxes light = models::light_table_axes(params_, light_size_[0], light_size_[1]);
     ordered_json& lights = out["axes"]["light"];
     lights["row"] = "sun zenith angle: its cosine is cos_horizon of the column + cos_sun_from_horizon of the row, "
                     "within -1 to 1";
@@ -310,20 +258,12 @@ class Exporter {
   const Staging& staging_;
   const std::function<void(std::size_t, std::size_t)>& progress_;
   models::TableAxes axes_;
-  std::vector<models::TableFactors> factors_;
-  std::vector<std::array<double, 3>> shapes_;
-  VkExtent3D light_extent_ = {0, 0, 0};
+  std::array<std::uint32_t, 2> light_size_ = {};  // altitudes, suns
   std::vector<std::string> names_;
   std::size_t total_ = 0;
 };
 
 }  // namespace
-
-const char* table_name(TableId table) {
-  constexpr const char* kNames[kTableCount] = {"single_rayleigh", "single_mie", "high_orders", "sun_transmittance",
-                                               "sky_irradiance"};
-  return kNames[static_cast<std::uint32_t>(table)];
-}
 
 Result<void> check_export(const std::string& directory) {
   if (Result<void> r = image::check_exr_supported(directory); !r) return r;
@@ -340,12 +280,12 @@ Result<void> check_export(const std::string& directory) {
 Result<std::size_t> export_tables(const std::string& directory, gpu::Host& host, Effect& effect,
                                   const config::Settings& settings,
                                   const std::function<void(std::size_t, std::size_t)>& progress) {
-  const Result<std::vector<std::uint16_t>> texels = download(host, effect);
-  if (!texels) return texels.error();
+  const Result<std::vector<models::TableValues>> values = models::table_values(host, effect, settings.effect);
+  if (!values) return values.error();
   Result<Staging> staging = Staging::create(directory);
   if (!staging) return std::move(staging).error();
   Exporter exporter(settings, staging.value(), progress);
-  const Result<std::vector<std::string>> files = exporter.write(texels.value(), host.device_name());
+  const Result<std::vector<std::string>> files = exporter.write(values.value(), host.device_name());
   if (!files) return files.error();
   if (Result<void> r = staging.value().publish(files.value()); !r) return std::move(r).error();
   return files.value().size();

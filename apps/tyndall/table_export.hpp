@@ -6,14 +6,10 @@
 #include <string>
 
 #include "config/settings.hpp"
-#include "effect/tables.hpp"
 #include "gpu/host.hpp"
 #include "tyndall/effect.hpp"
 
 namespace tyndall::cli {
-
-// Returns the name of a table in files and reports, which is that of its view in the public interface.
-[[nodiscard]] const char* table_name(TableId table);
 
 // Checks before long work that the directory exists or can be created, and is writable.
 [[nodiscard]] Result<void> check_export(const std::string& directory);

@@ -9,6 +9,7 @@
 #include "gpu/host.hpp"
 #include "make_tables.hpp"
 #include "models/precomputed.hpp"
+#include "models/table_values.hpp"
 #include "table_export.hpp"
 #include "tables/pipeline_store.hpp"
 
@@ -88,7 +89,7 @@ int run_tables(Args args) {
   nlohmann::ordered_json& memory = report["memory_bytes"];
   for (std::uint32_t i = 0; i < kTableCount; ++i) {
     const auto id = static_cast<TableId>(i);
-    memory[table_name(id)] = gpu::image_bytes(host.value()->device(), table_desc(id, params));
+    memory[models::table_name(id)] = gpu::image_bytes(host.value()->device(), table_desc(id, params));
   }
   memory["while_building"] = effect.memory().transient;
   // The directory that now holds the tables; null if they are not cached.

@@ -207,6 +207,42 @@ Coefficients in_channel(const Params& params, std::size_t channel) {
 
 Coefficients at_wavelength(const Params& params, double wavelength_nm) { return at_place(params, {wavelength_nm}); }
 
+Result<Params> with_wavelengths(const Params& params, const std::array<double, 3>& wavelengths_nm) {
+  Params out = params;
+  AtmosphereParams& air = out.atmosphere;
+  const auto floats = [](const std::array<double, 3>& v) {
+    return Vec3(static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]));
+  };
+  air.wavelengths_nm = floats(wavelengths_nm);
+  if (params.atmosphere.pressure_hpa > 0.0F) {
+    if (Result<void> r = check_wavelengths(out, "atmosphere.pressure_hpa", kRayleighRange); !r)
+      return std::move(r).error();
+  }
+  if (params.atmosphere.ozone_du > 0.0F) {
+    if (Result<void> r = check_wavelengths(out, "atmosphere.ozone_du", kOzoneRange); !r) return std::move(r).error();
+  }
+  std::array<double, 3> rayleigh_at, scattering_at, absorption_at, ozone_at, albedo_at;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Coefficients at = at_wavelength(params, wavelengths_nm[c]);
+    rayleigh_at[c] = at.rayleigh_scattering;
+    scattering_at[c] = at.mie_scattering;
+    absorption_at[c] = at.mie_extinction - at.mie_scattering;
+    ozone_at[c] = at.ozone_absorption;
+    albedo_at[c] = at.ground_albedo;
+  }
+  air.rayleigh_scattering = floats(rayleigh_at);
+  air.mie_scattering = floats(scattering_at);
+  air.mie_absorption = floats(absorption_at);
+  air.ozone_absorption = floats(ozone_at);
+  out.planet.ground_albedo = floats(albedo_at);
+  // The coefficients hold as they are.
+  air.custom_coefficients = true;
+  air.aerosol_density = 1.0F;
+  air.aerosol_optical_depth = air.visibility_m = air.angstrom_exponent = air.ozone_du = air.pressure_hpa = 0.0F;
+  air.single_scattering_albedo = Vec3(0.0F);
+  return out;
+}
+
 double exponential_column_m(const Params& params, double scale_height_m) {
   return -scale_height_m * std::expm1(-params.atmosphere.height_m / scale_height_m);
 }

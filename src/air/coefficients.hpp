@@ -3,6 +3,7 @@
 // the path tracer share: they define what the parameters mean. docs/air.md explains how the parameters combine.
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 #include "tyndall/params.hpp"
@@ -33,6 +34,10 @@ constexpr double kKoschmieder = 3.912;           // -ln 0.02: optical depth at w
 // parameters, and the wavelength is within the ranges of cross_sections.hpp if they are used.
 [[nodiscard]] Coefficients in_channel(const Params& params, std::size_t channel);
 [[nodiscard]] Coefficients at_wavelength(const Params& params, double wavelength_nm);
+
+// Returns parameters whose three channels are at other wavelengths, with the coefficients of at_wavelength(): a
+// spectrum is evaluated in groups of three. An error names a wavelength for which a coefficient has no data.
+[[nodiscard]] Result<Params> with_wavelengths(const Params& params, const std::array<double, 3>& wavelengths_nm);
 
 // Return the integrals over the altitude, from sea level to the top of the atmosphere, of an exponential profile
 // with the given scale height and of the ozone layer [m].

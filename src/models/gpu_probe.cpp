@@ -14,17 +14,16 @@ constexpr std::size_t kBatchRays = 16384;  // takes well below a second on a CPU
 
 std::array<double, 3> widened(const Vec3& v) { return {v.x, v.y, v.z}; }
 
-// Evaluates rays with one of the shaders of shaders/probe. The shader reads the medium, the rays and the resources in
-// `more`.
-Result<std::vector<Answer>> evaluate(gpu::Host& host, const gpu::Shader& shader, const shared::SpectralMedium& medium,
-                                     std::span<const gpu::NamedResource> more, std::span<const Ray> rays,
-                                     const std::function<void(std::size_t)>& progress) {
+// Evaluates rays with the pipeline of one of the shaders of shaders/probe. The shader reads the medium, the rays and
+// the resources in `more`.
+Result<std::vector<Answer>> evaluate(gpu::Host& host, const gpu::Pipeline& pipeline,
+                                     const shared::SpectralMedium& medium, std::span<const gpu::NamedResource> more,
+                                     std::span<const Ray> rays, const std::function<void(std::size_t)>& progress) {
   std::vector<Answer> answers;
   if (rays.empty()) return answers;
   const gpu::Device& device = host.device();
   const std::size_t batch = std::min(rays.size(), kBatchRays);
   constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-  TYNDALL_ASSIGN(const gpu::Pipeline pipeline, gpu::create_compute_pipeline(device, shader));
   TYNDALL_ASSIGN(const gpu::Buffer medium_buffer,
                  gpu::create_buffer(device, "probe_medium", sizeof medium, kStorage, gpu::MemoryKind::upload));
   TYNDALL_ASSIGN(
@@ -69,8 +68,24 @@ Result<std::vector<Answer>> evaluate(gpu::Host& host, const gpu::Shader& shader,
 Result<std::vector<Answer>> single_scattering_on_gpu(gpu::Host& host, const shared::SpectralMedium& medium,
                                                      ColorMode color, std::span<const Ray> rays,
                                                      const std::function<void(std::size_t)>& progress) {
+  if (rays.empty()) return std::vector<Answer>();
+  TYNDALL_ASSIGN(const SingleScatteringOnGpu model, SingleScatteringOnGpu::create(host, color));
+  return model.answer(medium, rays, progress);
+}
+
+Result<SingleScatteringOnGpu> SingleScatteringOnGpu::create(gpu::Host& host, ColorMode color) {
+  SingleScatteringOnGpu out;
+  out.host_ = &host;
   const bool spectral = color == ColorMode::spectral;
-  return evaluate(host, spectral ? shaders::single_comp_spectral : shaders::single_comp, medium, {}, rays, progress);
+  TYNDALL_ASSIGN(out.pipeline_, gpu::create_compute_pipeline(
+                                    host.device(), spectral ? shaders::single_comp_spectral : shaders::single_comp));
+  return out;
+}
+
+Result<std::vector<Answer>> SingleScatteringOnGpu::answer(const shared::SpectralMedium& medium,
+                                                          std::span<const Ray> rays,
+                                                          const std::function<void(std::size_t)>& progress) const {
+  return evaluate(*host_, pipeline_, medium, {}, rays, progress);
 }
 
 Result<std::vector<Answer>> single_scattering_on_gpu(gpu::Host& host, const shared::Medium& medium,
@@ -90,7 +105,8 @@ Result<std::vector<Answer>> oneil_on_gpu(gpu::Host& host, const OneilModel& mode
   std::memcpy(table.mapped, model.table.data(), table_bytes);
   const gpu::NamedResource more[] = {gpu::named_buffer("oneil_block", constants.buffer.get()),
                                      gpu::named_buffer("oneil_table_block", table.buffer.get())};
-  return evaluate(host, shaders::oneil_comp, {model.medium, {}}, more, rays, {});
+  TYNDALL_ASSIGN(const gpu::Pipeline pipeline, gpu::create_compute_pipeline(host.device(), shaders::oneil_comp));
+  return evaluate(host, pipeline, {model.medium, {}}, more, rays, {});
 }
 
 }  // namespace tyndall::models

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gpu/host.hpp"
+#include "gpu/pipeline.hpp"
 #include "models/oneil.hpp"
 #include "models/single_scattering.hpp"
 
@@ -17,6 +18,19 @@ namespace tyndall::models {
 Result<std::vector<Answer>> single_scattering_on_gpu(gpu::Host& host, const shared::SpectralMedium& medium,
                                                      ColorMode color, std::span<const Ray> rays,
                                                      const std::function<void(std::size_t)>& progress = {});
+
+// Does the same with a pipeline that is made once, for many calls. Use from one thread at a time.
+class SingleScatteringOnGpu {
+ public:
+  // `host` must outlive the object.
+  static Result<SingleScatteringOnGpu> create(gpu::Host& host, ColorMode color);
+  [[nodiscard]] Result<std::vector<Answer>> answer(const shared::SpectralMedium& medium, std::span<const Ray> rays,
+                                                   const std::function<void(std::size_t)>& progress = {}) const;
+
+ private:
+  gpu::Host* host_ = nullptr;
+  gpu::Pipeline pipeline_;
+};
 
 // Evaluates the same in three channels.
 Result<std::vector<Answer>> single_scattering_on_gpu(gpu::Host& host, const shared::Medium& medium,

@@ -270,11 +270,13 @@ SpectralEstimate finish_spectrum(const Accumulator<kMaxWavelengths>& sums, const
   SpectralEstimate estimate;
   estimate.samples = sums.count() << plan.log2_count;
   const Light<kMaxWavelengths>& mean = sums.mean(static_cast<std::size_t>(options.orders));
+  const Light<kMaxWavelengths> error = sums.standard_error(static_cast<std::size_t>(options.orders));
   estimate.sums = sums.weighted_sums();
   estimate.standard_error = scene.has_air() ? sums.error_of_sums() : Rgb{};
   for (std::size_t c = 0; c < wavelengths.nm.size(); ++c) {
     estimate.radiance.push_back(mean[c] + scene.ground[c]);
     estimate.transmittance.push_back(scene.transmittance[c]);
+    estimate.radiance_error.push_back(scene.has_air() ? error[c] : 0.0);
     for (std::size_t k = 0; k < 3; ++k) estimate.sums[k] += wavelengths.weights[c][k] * scene.ground[c];
   }
   return estimate;

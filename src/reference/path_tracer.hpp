@@ -67,8 +67,10 @@ struct Wavelengths {
 // Light at any wavelengths, in the units of Estimate, for each of Wavelengths::nm.
 struct SpectralEstimate {
   std::vector<double> radiance, transmittance;
-  // The three weighted sums of the radiance and, from independent blocks, their standard errors. The errors of
-  // neighbouring wavelengths are similar, because all wavelengths follow the same paths.
+  // Standard errors of the radiance, from independent blocks. The errors of neighbouring wavelengths are similar,
+  // because all wavelengths follow the same paths.
+  std::vector<double> radiance_error;
+  // The three weighted sums of the radiance and their standard errors.
   Rgb sums{};
   Rgb standard_error{};
   std::uint64_t samples = 0;

@@ -92,6 +92,18 @@ def test_aerial_perspective_adds_up(single):
     assert np.all(nothing.inscattering == 0.0) and np.all(nothing.transmittance == 1.0)
 
 
+# The horizon of an eye at 100 m is 36 km away: a point on the ground behind it is hidden, and one above it is not.
+def test_aerial_perspective_ends_at_the_ground(single):
+    ends = [[0, -y, -x] for x, y in ((30e3, 70.0), (60e3, 282.0), (60e3, -200.0), (0.0, 50.0))]
+    seen = single.aerial_perspective([0, 100, 0], ends, 20, 80)
+    for array in (seen.inscattering, seen.transmittance):
+        assert np.array_equal(np.isnan(array).all(axis=-1), [False, True, False, False])
+    through = single.aerial_perspective([0, 100, 0], [0, -12.8e6, 0], 20, 80)
+    assert np.all(np.isnan(through.inscattering))
+    shore = single.aerial_perspective([0, -400, 0], [2000, -410, 0], 20, 80)
+    assert np.all(shore.transmittance < 1.0) and np.all(shore.inscattering > 0.0)
+
+
 def test_the_path_tracer_agrees(single):
     traced = single.trace([30, 70], 50, 60, samples=20000, orders=1)
     assert traced.value.shape == traced.standard_error.shape == (2, 3)
@@ -106,6 +118,11 @@ def test_the_path_tracer_agrees(single):
     (lambda: tyndall.Atmosphere(device="no such device"), "no such device"),
     (lambda: tyndall.sun_position(91, 0, "2003-10-17T12:00Z"), "latitude"),
     (lambda: tyndall.sun_position(1, 0, "yesterday"), "yesterday"),
+    (lambda: tyndall.sun_position([1, 2], 0, "2003-10-17T12:00Z"), "latitude"),
+    (lambda: tyndall.Atmosphere({"atmosphere.mie_g": "x"}, model="single"), "mie_g"),
+    (lambda: tyndall.render(size=(0, 10)), "size"),
+    (lambda: tyndall.render(size=5), "size"),
+    (lambda: tyndall.xyz_from_rgb([1, 2]), "rgb"),
 ])
 def test_errors_name_what_is_wrong(call, words):
     with pytest.raises((ValueError, OSError, tyndall.Error)) as raised:
@@ -119,6 +136,30 @@ def test_errors_name_what_is_wrong(call, words):
 def test_arguments_out_of_range(single, arguments):
     with pytest.raises(ValueError, match="expected"):
         single.radiance(**arguments)
+
+
+@pytest.mark.parametrize("name, arguments, words", [
+    ("radiance", ("high", 0), "zenith: invalid value 'high'; expected numbers"),
+    ("radiance", (1j, 0), "zenith"),
+    ("radiance", ([0, 1, 2], [0, 1]), r"zenith \(3,\), sun_zenith \(2,\)"),
+    ("sky_map", (91,), "sun_elevation"),
+    ("sky_map", ([10, 20],), "sun_elevation"),
+    ("sky_map", (10, 0, 0), "width: 0 is out of range; expected 1 to 65536"),
+    ("sky_map", (10, 0, 2.5), "width"),
+    ("aerial_perspective", ([0, 0], [0, 1, 0], 30, 0), r"start: invalid shape \(2,\)"),
+    ("aerial_perspective", ([0, 0, np.nan], [0, 1, 0], 30, 0), "start"),
+    ("aerial_perspective", (np.zeros((2, 3)), np.zeros((4, 3)), 30, 0), "shapes"),
+    ("aerial_perspective", ([0, 0, 0], [0, 1, 0], 100, 0), "sun_elevation"),
+])
+def test_arguments_are_named(single, name, arguments, words):
+    with pytest.raises(ValueError, match=words):
+        getattr(single, name)(*arguments)
+
+
+@pytest.mark.parametrize("options", [{"samples": 0}, {"samples": -1}, {"samples": "many"}, {"orders": 257}, {"seed": -1}])
+def test_options_of_the_path_tracer(single, options):
+    with pytest.raises(ValueError, match=f"{list(options)[0]}.*expected"):
+        single.trace(0, 0, **options)
 
 
 def test_parameters(small):
