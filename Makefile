@@ -10,18 +10,23 @@
 #   make models-study    measures and renders what docs/models.md and docs/oneil.md show
 #   make bundle          packs a portable program, out/tyndall-VERSION-linux-x86_64.tar.xz
 #   make bundle-chroot   runs the bundle in a bare Debian system
-#   make packages        builds Debian packages in out/debian: libtyndall0, libtyndall-dev, tyndall
+#   make packages        builds Debian packages in out/debian: libtyndall0, libtyndall-dev, tyndall, python3-tyndall
 #   make packages-check  checks them with lintian, and installs, runs and removes them in a root folder
+#   make wheel-check     builds a wheel of the Python package with pip, installs it and uses it
 #   make abi             renews the record of the binary interface of the C functions, tests/package/tyndall.abi
 #   make python-figures  makes the figures of docs/python.md
+#   make python-comparison  writes docs/generated/comparison.md: published data against the Python package
+#   make site            builds the documentation as a site in build/site, and checks its links
+#   make site-check      opens the site in Chromium and searches it
 #   make passes          writes the list of passes, docs/generated/passes.md, with their cost
 #   make soak            draws SOAK_FRAMES (10000) frames of random changes with the validation layer, on both CPU drivers
 #   make fuzz            runs every fuzzer for FUZZ_SECONDS (60) and goes on where the last run ended; FUZZ names some of them
-.PHONY: fuzz soak python-figures demo check doxygen pictures accuracy epipolar-study models-study bundle bundle-chroot packages packages-check abi passes setup build format format-check tidy tidy-check tidy-all sanitize-short sanitize clean
+.PHONY: fuzz soak python-figures demo check doxygen pictures accuracy epipolar-study models-study bundle bundle-chroot packages packages-check wheel-check python-comparison site site-check abi passes setup build format format-check tidy tidy-check tidy-all sanitize-short sanitize clean
 
 PRESET ?= release
 # The CPU device that computes the values that `tyndall report` compares other devices with.
 REFERENCE_DEVICE ?= llvmpipe
+SITE_PACKAGES = python3-sphinx python3-myst-parser python3-breathe python3-sphinx-rtd-theme
 CLANG_PACKAGES = clang clang-tidy clang-format libclang-rt-dev llvm
 OPERATORS = exponential reinhard reinhard-modified uncharted2 filmic-alu logarithmic adaptive-logarithmic agx pbr-neutral exponential-channels
 
@@ -100,9 +105,27 @@ models-study: build
 python-figures: PRESET = release
 python-figures: TARGETS = tyndall_python
 python-figures: build
-	@for script in twilight_zenith clear_sky visibility limb scattering_orders; do \
+	@for script in illuminance twilight_zenith clear_sky visibility limb model_errors; do \
 	  PYTHONPATH=build/release/python /usr/bin/python3 -B examples/python/$$script.py -o docs/images/python_$$script.png || exit 1; \
 	done
+
+# The numbers of docs/generated/comparison.md.
+python-comparison: PRESET = release
+python-comparison: TARGETS = tyndall_python
+python-comparison: build
+	@mkdir -p build
+	@PYTHONPATH=build/release/python /usr/bin/python3 -B tools/python_comparison.py > build/comparison.md
+	@mv build/comparison.md docs/generated/comparison.md
+
+# The documentation as a site, in build/site, and in a browser.
+site:
+	@tools/setup.sh $(SITE_PACKAGES) $(PACKAGES)
+	@mkdir -p build
+	@/usr/bin/python3 -B tools/site.py build/site
+
+site-check: PACKAGES = chromium
+site-check: site
+	@sh tests/package/site.sh build/site build/site_check
 
 abi: setup
 	@python3 tests/package/abi.py --renew . build/abi cc
@@ -144,7 +167,11 @@ packages: setup
 packages-check: PACKAGES = lintian
 packages-check: packages
 	@TYNDALL_DEB_FOLDER="$(CURDIR)/out/debian" sh tests/package/debian.sh build/debian build/packages_check . \
-	  "$$(sed -n 's/.*TYNDALL_VERSION_STRING "\([^"]*\)".*/\1/p' include/tyndall/version.h)"
+	  "$$(sed -n 's/.*TYNDALL_VERSION_STRING "\([^"]*\)".*/\1/p' include/tyndall/version.h)" python
+
+# A wheel of the Python package, in build/wheel_check, installed and used.
+wheel-check: setup
+	@sh tests/package/wheel.sh . build/wheel_check
 
 setup:
 	@tools/setup.sh $(PACKAGES)

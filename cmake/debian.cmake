@@ -1,5 +1,5 @@
 # Debian packages through CPack: libtyndall0 (shared library), libtyndall-dev (headers, static libraries, packages of CMake and
-# pkg-config) and tyndall (the program). `make packages` builds them; tests/package/debian.sh installs, runs and removes them.
+# pkg-config), tyndall (the program) and python3-tyndall. `make packages` builds them; tests/package/debian.sh installs, runs and removes them.
 find_program(TYNDALL_DPKG_DEB dpkg-deb)
 if(NOT TYNDALL_DPKG_DEB OR NOT TYNDALL_BUILD_SHARED OR NOT TYNDALL_INSTALL_STATIC)
   return()
@@ -55,6 +55,23 @@ hills and the shafts of light between them, on any Vulkan 1.3 device.
 This package contains the program tyndall, which renders, measures and
 exports, and its scenes.")
 endif()
+if(TARGET tyndall_python)
+  list(APPEND CPACK_COMPONENTS_ALL python_package)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_PACKAGE_NAME python3-tyndall)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_PACKAGE_SHLIBDEPS ON)
+  # The extension module belongs to one minor version of Python.
+  get_target_property(python_minor tyndall_python TYNDALL_PYTHON_MINOR)
+  math(EXPR python_next "${python_minor} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_PACKAGE_DEPENDS "python3 (>= 3.${python_minor}~), python3 (<< 3.${python_next}), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_PACKAGE_RECOMMENDS "mesa-vulkan-drivers | vulkan-icd")
+  set(CPACK_COMPONENT_PYTHON_PACKAGE_DESCRIPTION "Outdoor light scattering: Python module
+Tyndall answers how bright the sky is, at any hour and through any air:
+radiance, irradiance, transmittance and aerial perspective as NumPy arrays,
+from tables on a Vulkan device or from a path tracer.
+
+This package contains the module tyndall for Python 3.")
+endif()
 # The SONAME has the minor version, the name of the package does not: packages that depend on this one accept no other.
 math(EXPR next_minor "${PROJECT_VERSION_MINOR} + 1")
 set(debian_dir ${PROJECT_BINARY_DIR}/debian)
@@ -67,13 +84,22 @@ foreach(script postinst postrm)
   list(APPEND CPACK_DEBIAN_RUNTIME_PACKAGE_CONTROL_EXTRA ${debian_dir}/${script})
 endforeach()
 
+# Python's byte code is compiled at installation, and removed.
+foreach(script postinst:py3compile prerm:py3clean)
+  string(REPLACE ":" ";" script ${script})
+  list(GET script 0 name)
+  list(GET script 1 command)
+  file(WRITE ${debian_dir}/python/${name} "#!/bin/sh\nset -e\nif [ -z \"\${DPKG_ROOT:-}\" ] && command -v ${command} > /dev/null; then ${command} -p python3-tyndall; fi\nexit 0\n")
+  list(APPEND CPACK_DEBIAN_PYTHON_PACKAGE_PACKAGE_CONTROL_EXTRA ${debian_dir}/python/${name})
+endforeach()
+
 # Documents of the packages, which other installations do not get.
 execute_process(COMMAND sh ${PROJECT_SOURCE_DIR}/tools/debian/documents.sh ${PROJECT_SOURCE_DIR} ${debian_dir} ${TYNDALL_PACKAGE_RELEASE}
                         "${TYNDALL_PACKAGE_CONTACT}" COMMAND_ERROR_IS_FATAL ANY)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/CHANGELOG.md
              ${PROJECT_SOURCE_DIR}/tools/debian/documents.sh)
 install(FILES ${debian_dir}/tyndall.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program EXCLUDE_FROM_ALL)
-foreach(pair runtime:libtyndall0 development:libtyndall-dev program:tyndall)
+foreach(pair runtime:libtyndall0 development:libtyndall-dev program:tyndall python_package:python3-tyndall)
   string(REPLACE ":" ";" pair ${pair})
   list(GET pair 0 component)
   list(GET pair 1 package)

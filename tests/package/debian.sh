@@ -2,10 +2,11 @@
 # Builds the Debian packages, checks them with lintian as far as it is installed, installs them into a root folder whose package
 # database is a copy of this system's, runs the program, builds and runs a program in C with the library, and removes all
 # packages. Nothing of them may be left.
-# usage: debian.sh BUILD_FOLDER WORK_FOLDER SOURCE_FOLDER VERSION
+# usage: debian.sh BUILD_FOLDER WORK_FOLDER SOURCE_FOLDER VERSION [python]
 set -eu
 build=$1 work=$2 source=$3 version=$4
 packages="libtyndall0 libtyndall-dev tyndall"
+[ "${5:-}" != python ] || packages="$packages python3-tyndall"
 rm -rf "$work"
 mkdir -p "$work/deb"
 
@@ -66,6 +67,12 @@ printf 'altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n0,60,50,30\n' > "
 "$root/usr/bin/tyndall" probe --queries "$work/rays.csv" --model single > "$work/radiance.csv" || fail "the program does not work"
 grep -q '^0,60,50,30,0\.0[0-9]*,0\.0' "$work/radiance.csv" || fail "the program returns $(cat "$work/radiance.csv")"
 [ -f "$root/usr/share/tyndall/scenes/noon.toml" ] || fail "the scenes are not installed"
+case "$packages" in *python3*)
+  (cd / && PYTHONPATH=$root/usr/lib/python3/dist-packages /usr/bin/python3 -B -c "import tyndall
+assert tyndall.__file__.startswith('$root') and tyndall.__version__ == '$version', tyndall
+assert abs(tyndall.Atmosphere(model='single').radiance(60, 50, 30)[0] - $(sed -n '2s/^0,60,50,30,\([^,]*\),.*/\1/p' "$work/radiance.csv")) < 1e-7") ||
+    fail "the Python module does not work" ;;
+esac
 libraries=$(dirname "$(find "$root/usr/lib" -name libtyndall.so)")
 flags=$(PKG_CONFIG_PATH=$libraries/pkgconfig pkg-config --cflags --libs tyndall)
 # shellcheck disable=SC2086  # the flags are split on purpose

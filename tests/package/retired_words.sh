@@ -6,8 +6,8 @@ cd "$1" || exit 1
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-find .ci .clang-tidy ./*.md Makefile CMakeLists.txt CMakePresets.json \
-  apps cmake docs examples include scenes shaders src tests tools \
+find .ci .clang-tidy ./*.md Makefile CMakeLists.txt CMakePresets.json pyproject.toml setup.py \
+  apps cmake docs examples include python scenes shaders src tests tools \
   -type f ! -name '*.png' ! -name '*.svg' ! -path 'tests/package/retired_words*' | sort > "$work/files"
 
 # grep -w counts an underscore as a letter, so names such as kept_bytes need explicit boundaries.

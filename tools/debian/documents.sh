@@ -14,7 +14,7 @@ entries() {
   done
 }
 
-for package in libtyndall0 libtyndall-dev tyndall; do
+for package in libtyndall0 libtyndall-dev tyndall python3-tyndall; do
   mkdir -p "$out/$package"
   cp "$source/tools/debian/copyright" "$out/$package/copyright"
   gzip -9nc "$source/CHANGELOG.md" > "$out/$package/changelog.gz"
