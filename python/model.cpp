@@ -274,13 +274,10 @@ py::dict Model::tables() {
     out[models::table_name(table.id)] = py::array_t<float>(shape, table.values.data());
   }
   const models::TableAxes axes = models::table_axes(params);
-  const auto [altitudes, views, suns, angles] =
-      std::array{params.tables.size.x, params.tables.size.y, params.tables.size.z, params.tables.size.w};
-  static_cast<void>(suns);
-  static_cast<void>(angles);
-  const std::size_t per_altitude = views;
+  const std::size_t altitudes = params.tables.size.x;
+  const std::size_t views = params.tables.size.y;
   const auto by_altitude = [&](const std::vector<double>& values) {
-    return filled(altitudes, views, [&](std::size_t i, std::size_t k) { return values[i * per_altitude + k]; });
+    return filled(altitudes, views, [&](std::size_t i, std::size_t k) { return values[i * views + k]; });
   };
   out["altitude"] = column(axes.altitude_m);
   out["cos_view_zenith"] = by_altitude(axes.cos_view_zenith);
