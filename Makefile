@@ -67,6 +67,7 @@ pictures: build
 	done
 	@build/release/bin/tyndall render scenes/flythrough.toml --size 256x144 --frames 9 --time-step 7.5 \
 	  -o docs/images/flythrough_%d.png
+	@tools/air_pictures.sh build/release/bin/tyndall docs/images
 	@cmake --build build/release --target tonemap_curves
 	@build/release/bin/tonemap_curves docs/images/tonemap_curves.svg
 

@@ -8,13 +8,16 @@ fit, and measures the errors on the others. Writes shaders/shared/wavelengths.h 
 """
 import argparse
 import csv
+import glob
 import itertools
 import math
 import os
 import shutil
 import subprocess
 import sys
+import tomllib
 
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from spectral_data import (CIE_1931, OZONE_CROSS_SECTION, REFLECTANCES, SOLAR_IRRADIANCE)  # noqa: E402
 
@@ -51,7 +54,8 @@ def mars_albedo(nm):
     return table[-1][1]
 
 
-# name: part of the fit, factor on Rayleigh scattering, ozone [DU], aerosol, asymmetry, ground albedo
+# name: part of the fit, factor on Rayleigh scattering, ozone [DU], aerosol, asymmetry, ground albedo, and optionally the
+# scale height of the aerosol [m]
 ATMOSPHERES = {
     "clean": (True, 1.0, 300.0, angstrom(0.065, 0.8, 0.92), 0.76, 0.1),
     "hazy": (True, 1.0, 300.0, angstrom(0.33, 1.3, 0.92), 0.76, 0.1),
@@ -62,6 +66,25 @@ ATMOSPHERES = {
     "optical depth 1": (False, 1.0, 300.0, angstrom(1.0, 0.2, 0.93), 0.72, 0.2),
     "Mars dust": (False, 0.01, 0.0, angstrom(0.5, 0.0, mars_albedo, 11000.0), 0.65, 0.2),
 }
+
+
+def presets():
+    """Returns the aerosol presets of scenes/air, none of which is part of the fit."""
+    out = {}
+    for path in sorted(glob.glob(os.path.join(ROOT, "scenes/air/*.toml"))):
+        with open(path, "rb") as file:
+            scene = tomllib.load(file)
+        air = scene["atmosphere"]
+        if "planet" in scene or "aerosol_optical_depth" not in air or not isinstance(air.get("single_scattering_albedo"), float):
+            continue  # another planet
+        aerosol = angstrom(air["aerosol_optical_depth"], air["angstrom_exponent"], air["single_scattering_albedo"],
+                           air["mie_scale_height_m"])
+        name = os.path.basename(path)[:-5].replace("_", " ") + " (preset)"
+        out[name] = (False, 1.0, air["ozone_du"], aerosol, air["mie_g"], 0.15, air["mie_scale_height_m"])
+    return out
+
+
+ATMOSPHERES.update(presets())
 SUN_ELEVATIONS = (90, 60, 30, 14, 10, 7, 4, 2, 1, 0, -2, -4, -6)
 GROUPS = (("14° and above", 14, 90), ("10° to 4°", 4, 10), ("2° to 0°", 0, 2), ("−2° to −6°", -6, -2))
 
@@ -85,7 +108,7 @@ def evaluate(tyndall, name, work):
     path = os.path.join(work, name.replace(" ", "_") + ".csv")
     queries = rays()
     if not os.path.exists(path):
-        _, molecules, ozone_du, (scattering, extinction), g, albedo = ATMOSPHERES[name]
+        _, molecules, ozone_du, (scattering, extinction), g, albedo, *scale_m = ATMOSPHERES[name]
         query_path = os.path.join(work, "queries.csv")
         with open(query_path, "w") as file:
             file.write("altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n")
@@ -108,6 +131,8 @@ def evaluate(tyndall, name, work):
                 "tables.cache": "off",
                 "tables.size": "24,96,48,12",
             }
+            if scale_m:
+                settings["atmosphere.mie_scale_height_m"] = scale_m[0]
             if name == "Mars dust":
                 settings.update({"planet.radius_m": 3389500, "atmosphere.height_m": 110000,
                                  "atmosphere.rayleigh_scale_height_m": 11000, "atmosphere.mie_scale_height_m": 11000})

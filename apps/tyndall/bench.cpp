@@ -85,6 +85,11 @@ std::string as_text(const nlohmann::ordered_json& report) {
   std::snprintf(line, sizeof line, "  effect %.3f ms, frame %.3f ms, floor %.3f ms\n",
                 report["effect_ms"].get<double>(), report["frame_ms"].get<double>(), report["floor_ms"].get<double>());
   text += line;
+  if (const nlohmann::ordered_json& exposure = report["exposure"]; !exposure["ev100"].is_null()) {
+    std::snprintf(line, sizeof line, "  exposure %.4g, EV100 %.2f\n", exposure["scale"].get<double>(),
+                  exposure["ev100"].get<double>());
+    text += line;
+  }
   for (const auto& [name, value] : report["counters"].items()) {
     std::snprintf(line, sizeof line, "  %-20s %10llu\n", name.c_str(), value.get<unsigned long long>());
     text += line;
@@ -92,8 +97,15 @@ std::string as_text(const nlohmann::ordered_json& report) {
   return text;
 }
 
-// Adds what the last frame did, and the memory.
+// Adds the exposure and the light of the last frame, what it did, and the memory.
 void add_counters(const scene::Scene& scene, nlohmann::ordered_json& out) {
+  const scene::Scene::Exposure exposure = scene.exposure();
+  out["exposure"] = {{"scale", exposure.scale}, {"ev100", exposure.ev100 ? nlohmann::json(*exposure.ev100) : nullptr}};
+  if (exposure.illuminance) {
+    out["illuminance_lux"] = {{"sun", exposure.illuminance->sun_lux},
+                              {"sun_horizontal", exposure.illuminance->sun_horizontal_lux},
+                              {"sky", exposure.illuminance->sky_lux}};
+  }
   const scene::Scene::Memory memory = scene.memory();
   const Counters counters = scene.counters();
   out["counters"] = {{"samples_marched", counters.samples_marched},
@@ -138,6 +150,7 @@ int run_bench(Args args) {
   desc.extent = {options.size.width, options.size.height};
   desc.timings = true;
   desc.counters = true;
+  desc.illuminance = true;
   desc.reuse_shadows = false;  // draw the shadow maps in every frame, as an application with a moving camera must
   desc.pipeline_threads = gpu::Host::pipeline_threads();
   desc.make_tables = make_tables(options.settings.scene);

@@ -7,6 +7,7 @@
 #include "gpu/host.hpp"
 #include "image/image.hpp"
 #include "make_tables.hpp"
+#include "picture_units.hpp"
 #include "scene/scene.hpp"
 #include "tables/pipeline_store.hpp"
 
@@ -14,26 +15,35 @@ namespace tyndall::cli {
 namespace {
 
 // Returns the settings and the frame's exposure.
-std::vector<std::pair<std::string, std::string>> metadata_of(const scene::Scene& scene,
-                                                             const config::Settings& settings, image::FileKind kind) {
-  std::vector<std::pair<std::string, std::string>> list =
-      kind == image::FileKind::exr ? config::radiance_metadata(settings) : config::metadata(settings);
-  list.emplace_back("tyndall.frame.exposure", files::number_text(scene.exposure().scale));
+image::Metadata metadata_of(const scene::Scene& scene, const config::Settings& settings, const PictureUnits& units,
+                            image::FileKind kind) {
+  image::Metadata list = kind == image::FileKind::exr ? units.metadata(settings) : config::metadata(settings);
+  const scene::Scene::Exposure exposure = scene.exposure();
+  list.emplace_back("tyndall.frame.exposure", files::number_text(exposure.scale));
+  if (exposure.ev100) list.emplace_back("tyndall.frame.ev100", files::number_text(*exposure.ev100));
   return list;
 }
 
-Result<void> write_frame(scene::Scene& scene, const std::string& path, const config::Settings& settings) {
+Result<void> write_frame(scene::Scene& scene, const std::string& path, const config::Settings& settings,
+                         const PictureUnits& units) {
   const Result<image::FileKind> kind = image::kind_of_name(path);
   if (!kind) return kind.error();
   if (kind.value() == image::FileKind::exr) {
-    const Result<image::Image> radiance = scene.radiance();
-    if (!radiance) return radiance.error();
-    return image::write_exr(path, radiance.value(), metadata_of(scene, settings, kind.value()),
-                            {.content = image::ExrContent::radiance});
+    Result<image::Image> radiance = scene.radiance();
+    if (!radiance) return std::move(radiance).error();
+    units.convert(radiance.value());
+    return image::write_exr(path, radiance.value(), metadata_of(scene, settings, units, kind.value()),
+                            units.exr(image::ExrContent::radiance));
   }
   const Result<image::Image> display = scene.display();
   if (!display) return display.error();
-  return image::write_png(path, display.value(), metadata_of(scene, settings, kind.value()));
+  return image::write_png(path, display.value(), metadata_of(scene, settings, units, kind.value()));
+}
+
+Result<void> check_units(PictureUnits& units, const CommonOptions& options) {
+  const Result<image::FileKind> kind = image::kind_of_name(options.output);
+  if (!kind) return kind.error();
+  return kind.value() == image::FileKind::png ? units.check_png() : units.resolve(options.settings);
 }
 
 // Sets the place of a flight by date from the elevation file if the scene file has none.
@@ -52,12 +62,15 @@ Result<void> find_place(scene::CameraPath& path, const scene::Scene& scene) {
 int run_render(Args args) {
   CommonOptions options;
   double time_step = 1.0 / 30.0;
+  PictureUnits units;
   Arguments arguments("render");
   add_common(arguments, options, kScene | kSet | kDevice | kSize | kFrames | kOutput);
   arguments.number("--time-step", time_step, 0.0, 1.0e6, "seconds between the frames of a sequence");
+  units.add_options(arguments);
   if (const std::optional<int> status = arguments.parse(args)) return *status;
   if (Result<void> r = resolve(options); !r) return fail(r.error());
   if (Result<void> r = check_output(options, {".png", ".exr"}); !r) return fail(r.error());
+  if (Result<void> r = check_units(units, options); !r) return fail(r.error());
 
   Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({options.device, false});
   if (!host) return fail(host.error());
@@ -80,7 +93,7 @@ int run_render(Args args) {
         scene::pose_at(now.path, seconds, options.settings.scene, static_cast<double>(now.effect.planet.radius_m));
     if (Result<void> r = scene.value()->set_scene(now.scene); !r) return fail(r.error());
     if (Result<void> r = scene.value()->render(seconds); !r) return fail(r.error());
-    if (Result<void> r = write_frame(*scene.value(), frame_path(options.output, frame), now); !r)
+    if (Result<void> r = write_frame(*scene.value(), frame_path(options.output, frame), now, units); !r)
       return fail(r.error());
   }
   for (const std::string& text : scene.value()->notes()) note(text);

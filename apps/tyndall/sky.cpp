@@ -16,11 +16,13 @@
 #include "models/gpu_probe.hpp"
 #include "models/precomputed.hpp"
 #include "models/spectral.hpp"
+#include "picture_units.hpp"
 #include "scene/description/model_registry.hpp"
 #include "scene/description/solar_position.hpp"
-#include "scene/sky/sun_disc.hpp"
+#include "sky_light.hpp"
 #include "sky_map.hpp"
 #include "tables/pipeline_store.hpp"
+#include "tyndall/photometry.hpp"
 
 namespace tyndall::cli {
 namespace {
@@ -38,6 +40,7 @@ struct SkyOptions {
   std::string disc = "true";
   std::string sun, projection = "latlong", clamp = "false";
   std::string model;
+  PictureUnits units;
 };
 
 // Evaluates rays: radiance / E0 of the atmosphere and the ground behind it.
@@ -176,67 +179,16 @@ Result<void> fill(image::Image& image, const SkyMap& map, const std::array<doubl
   return {};
 }
 
-// The sun's disc in the channels of the medium: with four wavelengths, the first three and the fourth, with an
-// irradiance of 1.
-struct SunFaces {
-  SunFace first, fourth;
-  std::array<double, 3> irradiance;  // above the atmosphere
-};
-SunFaces sun_faces(double radius_rad, const std::array<double, 3>& irradiance, const Params& params) {
-  const Vec3& nm = params.atmosphere.wavelengths_nm;
-  if (params.scattering.color == ColorMode::rgb) {
-    const SunFace face = {
-        radius_rad, {scene::limb_exponent(nm.x), scene::limb_exponent(nm.y), scene::limb_exponent(nm.z)}, irradiance};
-    return {face, face, irradiance};
-  }
-  const FourChannels wavelengths_nm = spectral_wavelengths_nm();
-  const auto exponent = [&](std::size_t i) { return scene::limb_exponent(static_cast<float>(wavelengths_nm[i])); };
-  return {{radius_rad, {exponent(0), exponent(1), exponent(2)}},
-          {radius_rad, {exponent(3), exponent(3), exponent(3)}},
-          irradiance};
-}
-
-// Adds the sun's disc in all channels.
-void draw_sun(image::Image& image, const SkyMap& map, const SunFaces& faces, const Params& params) {
-  const shared::SpectralMedium medium = spectral_medium_from_params(params);
-  if (params.scattering.color == ColorMode::rgb) {
-    add_sun(image, map, faces.first, medium);
-    return;
-  }
-  image::Image first(map.width, map.height);
-  image::Image fourth(map.width, map.height);
-  add_sun(first, map, faces.first, medium);
-  add_sun(fourth, map, faces.fourth, models::medium_at_fourth(medium));
-  for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) {
-    if (first.rgb[i] == 0.0F && fourth.rgb[i] == 0.0F) continue;
-    const std::array<double, 3> color =
-        color_of_light({first.rgb[i], first.rgb[i + 1], first.rgb[i + 2], fourth.rgb[i]});
-    for (std::size_t c = 0; c < 3; ++c) image.rgb[i + c] += static_cast<float>(faces.irradiance[c] * color[c]);
-  }
-}
-
-// Returns the light of the disc in the channels of the image.
-Sunlight sunlight_of(const SkyMap& map, const SunFaces& faces, const Params& params) {
-  const shared::SpectralMedium medium = spectral_medium_from_params(params);
-  const Sunlight first = sunlight(map, faces.first, medium);
-  if (params.scattering.color == ColorMode::rgb) return first;
-  const Sunlight fourth = sunlight(map, faces.fourth, models::medium_at_fourth(medium));
-  const auto color = [&](const std::array<double, 3>& a, double b) {
-    std::array<double, 3> out = color_of_light({a[0], a[1], a[2], b});
-    for (std::size_t c = 0; c < 3; ++c) out[c] *= faces.irradiance[c];
-    return out;
-  };
-  return {color(first.facing, fourth.facing[0]), color(first.horizontal, fourth.horizontal[0])};
-}
-
-std::array<double, 3> horizontal_irradiance(const image::Image& image, const SkyMap& map) {
+// Returns the irradiance of the sky on a horizontal surface in the channels of an image.
+Result<std::array<double, 3>> sky_irradiance(const SkyMap& map, const std::array<double, 3>& irradiance,
+                                             ColorMode color, SkySource& source) {
+  const SkyQuadrature quadrature = sky_quadrature(map.altitude_m, 0.5 * std::numbers::pi - map.sun_elevation_rad);
+  const Result<std::vector<models::Answer>> found = source.answer(quadrature.queries);
+  if (!found) return found.error();
   std::array<double, 3> sum = {};
-  for (std::uint32_t y = 0; y < map.height; ++y) {
-    for (std::uint32_t x = 0; x < map.width; ++x) {
-      const PixelDirection direction = map.direction(x, y);
-      const double weight = direction.solid_angle * std::max(std::cos(direction.zenith), 0.0);
-      for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * image.pixel(x, y)[c];
-    }
+  for (std::size_t i = 0; i < quadrature.weights.size(); ++i) {
+    const std::array<double, 3> radiance = channels_of(found.value()[i], color);
+    for (std::size_t c = 0; c < 3; ++c) sum[c] += quadrature.weights[i] * irradiance[c] * radiance[c];
   }
   return sum;
 }
@@ -273,39 +225,28 @@ Result<Projection> check_map(SkyOptions& sky, const Size& size) {
 constexpr float kLargestHalf = 65504.0F;
 
 // Limits the values to those of half precision, or notes that they exceed them.
-void check_largest(image::Image& image, bool clamp) {
+void check_largest(image::Image& image, bool clamp, bool has_disc) {
   const float largest = *std::max_element(image.rgb.begin(), image.rgb.end());
   if (largest <= kLargestHalf) return;
   if (!clamp) {
-    note(concat({"the sun's disc has values up to ", files::number_text(largest),
-                 "; programs that read the map in half precision are limited to 65504; --sun split separates the sun, "
-                 "and --clamp true limits the values"}));
+    note(concat({has_disc ? "the sun's disc" : "the map", " has values up to ", files::number_text(largest),
+                 "; programs that read the map in half precision are limited to 65504; ",
+                 has_disc ? "--sun split separates the sun, and " : "", "--clamp true limits the values"}));
     return;
   }
-  note(concat({"values up to ", files::number_text(largest), " were clamped to 65504; the map has less sunlight"}));
+  note(concat({"values up to ", files::number_text(largest), " were clamped to 65504; the map has less ",
+               has_disc ? "sunlight" : "light"}));
   for (float& value : image.rgb) value = std::min(value, kLargestHalf);
-}
-
-// Returns the sun as a light of its own, for --sun split.
-nlohmann::ordered_json sun_json(const SkyMap& map, const SunFace& face, const Sunlight& light) {
-  const double across = std::cos(map.sun_elevation_rad);
-  nlohmann::ordered_json out;
-  out["direction"] = {across * std::sin(map.sun_azimuth_rad), std::sin(map.sun_elevation_rad),
-                      -across * std::cos(map.sun_azimuth_rad)};
-  out["elevation_deg"] = map.sun_elevation_rad / kRadPerDeg;
-  out["azimuth_deg"] = map.sun_azimuth_rad / kRadPerDeg;
-  out["angular_radius_deg"] = face.angular_radius_rad / kRadPerDeg;
-  out["irradiance"] = light.facing;
-  out["horizontal_irradiance"] = light.horizontal;
-  return out;
 }
 
 // Returns the metadata of the map: the settings, its projection, and what it shows.
 image::Metadata sky_metadata(const config::Settings& settings, const SkyOptions& sky, Projection projection) {
-  image::Metadata metadata = config::radiance_metadata(settings);
+  image::Metadata metadata = sky.units.metadata(settings);
   metadata.emplace_back("tyndall.sky.projection", kProjections[static_cast<std::size_t>(projection)].text);
   metadata.emplace_back("tyndall.sky.model", sky.model);
   metadata.emplace_back("tyndall.sky.disc", sky.sun == "disc" ? "true" : "false");
+  metadata.emplace_back("tyndall.sky.sun", sky.sun);
+  metadata.emplace_back("tyndall.sky.clamp", sky.clamp);
   if (!sky.place.empty()) {
     metadata.emplace_back("tyndall.sky.at", files::one_line(sky.place));
     metadata.emplace_back("tyndall.sky.time", files::one_line(sky.time));
@@ -335,7 +276,99 @@ std::optional<int> parse_sky(Args args, CommonOptions& options, SkyOptions& sky)
                    "projection of the map; a cube has 6 faces in a column, and a fish-eye the upper hemisphere");
   arguments.choice("--clamp", sky.clamp, {"true", "false"}, "limit values to those of half precision");
   arguments.choice("--model", sky.model, model_names, "model of the sky");
+  sky.units.add_options(arguments);
   return arguments.parse(args);
+}
+
+// Places the sun and the eye of the options in the scene, for the metadata.
+void place_in_scene(scene::SceneParams& scene, const SkyOptions& sky, const SunAngles& sun) {
+  if (scene.sun.refraction.value != 0 || !scene.sun.time.empty()) {
+    note("sun.place, sun.time and sun.refraction have no effect on sky; the sun is where the options place it");
+  }
+  scene.sun.place.clear();
+  scene.sun.time.clear();
+  scene.sun.refraction.value = 0;
+  scene.sun.elevation_deg = static_cast<float>(sun.elevation_deg);
+  scene.sun.azimuth_deg = static_cast<float>(sun.azimuth_deg);
+  // camera.altitude_m does not accept values below sea level.
+  if (sky.altitude_m >= 0.0)
+    scene.camera.altitude_m = static_cast<float>(sky.altitude_m);
+  else
+    scene.camera.position_m = {0.0F, static_cast<float>(sky.altitude_m), 0.0F};
+}
+
+// The name of the file of --sun split.
+std::string sun_path(const std::string& output) {
+  return std::filesystem::path(output).replace_extension(".sun.json").string();
+}
+
+// Writes the map and, with --sun split, the file of the sun: both or neither.
+Result<void> write_files(const std::string& output, const image::Image& image, const image::Metadata& metadata,
+                         const image::ExrOptions& as, const std::string* sun) {
+  Result<files::AtomicFile> map = image::prepare_exr(output, image, metadata, as);
+  if (!map) return std::move(map).error();
+  if (sun == nullptr) return map.value().commit();
+  Result<files::AtomicFile> light = files::AtomicFile::create(sun_path(output));
+  if (!light) return std::move(light).error();
+  if (Result<void> r = light.value().write(*sun); !r) return r;
+  if (Result<void> r = light.value().commit(); !r) return r;
+  return map.value().commit();
+}
+
+// The light of the map in its unit and primaries, and in lux.
+struct SkyLight {
+  std::array<double, 3> sky = {};
+  Sunlight sun;
+  Illuminance lux;
+};
+
+SkyLight in_units(const PictureUnits& units, const std::array<double, 3>& sky, const Sunlight& sun) {
+  const auto lux = [&](const std::array<double, 3>& color) {
+    return units.white_luminance() *
+           luminance({static_cast<float>(color[0]), static_cast<float>(color[1]), static_cast<float>(color[2])});
+  };
+  return {units.convert(sky),
+          {units.convert(sun.facing), units.convert(sun.horizontal)},
+          {lux(sun.facing), lux(sun.horizontal), lux(sky)}};
+}
+
+std::string lux_text(double lux) {
+  char text[40];
+  std::snprintf(text, sizeof text, lux < 1000.0 ? "%.4g lx" : "%.0f lx", lux);
+  return text;
+}
+
+// Prints the illuminances, or with --json everything about the map.
+int print_sky(const CommonOptions& options, const SkyOptions& sky, const SkyMap& map, const SkyLight& light,
+              const std::string& device, const tables::Report* tables) {
+  const bool has_lux = sky.units.white_luminance() > 0.0;
+  if (!options.json) {
+    if (!has_lux) return kDone;
+    return print(concat({"sun: ", lux_text(light.lux.sun_lux), " on a surface that faces it, ",
+                         lux_text(light.lux.sun_horizontal_lux),
+                         " on a horizontal one\nsky: ", lux_text(light.lux.sky_lux), " on a horizontal one\n"}));
+  }
+  nlohmann::ordered_json out;
+  out["device"] = device;
+  out["model"] = sky.model;
+  out["size"] = {map.width, map.height};
+  out["altitude_m"] = sky.altitude_m;
+  out["sun_elevation_deg"] = map.sun_elevation_rad / kRadPerDeg;
+  out["sun_azimuth_deg"] = map.sun_azimuth_rad / kRadPerDeg;
+  out["sky_irradiance"] = light.sky;
+  out["sun_irradiance"] = light.sun.facing;
+  out["sun_horizontal_irradiance"] = light.sun.horizontal;
+  if (has_lux) {
+    out["sky_illuminance_lux"] = light.lux.sky_lux;
+    out["sun_illuminance_lux"] = light.lux.sun_lux;
+    out["sun_horizontal_illuminance_lux"] = light.lux.sun_horizontal_lux;
+    out["white_luminance_cd_per_m2"] = sky.units.white_luminance() / sky.units.factor();
+  }
+  if (tables != nullptr) {
+    out["tables"] = {{"from", tables->origin == tables::Origin::cache ? "cache" : "build"},
+                     {"ms", tables->milliseconds}};
+  }
+  return print(out.dump(2) + "\n");
 }
 
 }  // namespace
@@ -350,24 +383,16 @@ int run_sky(Args args) {
   if (Result<void> r = check_output(options, {".exr"}); !r) return fail(r.error());
   const Result<Projection> projection = check_map(sky, options.size);
   if (!projection) return fail(projection.error());
+  if (sky.sun == "split") {
+    if (Result<void> r = files::check_writable(sun_path(options.output)); !r) return fail(r.error());
+  }
+  if (Result<void> r = sky.units.resolve(options.settings); !r) return fail(r.error());
 
   const Params& params = options.settings.effect;
+  const ColorMode color = params.scattering.color;
   if (Result<void> r = check_altitude(sky.altitude_m, params, "--altitude"); !r) return fail(r.error());
   scene::SceneParams& scene = options.settings.scene;
-  // The options of this verb hold.
-  if (scene.sun.refraction.value != 0 || !scene.sun.time.empty()) {
-    note("sun.place, sun.time and sun.refraction have no effect on sky; the sun is where the options place it");
-  }
-  scene.sun.place.clear();
-  scene.sun.time.clear();
-  scene.sun.refraction.value = 0;
-  scene.sun.elevation_deg = static_cast<float>(sun.value().elevation_deg);
-  scene.sun.azimuth_deg = static_cast<float>(sun.value().azimuth_deg);
-  // camera.altitude_m does not accept values below sea level.
-  if (sky.altitude_m >= 0.0)
-    scene.camera.altitude_m = static_cast<float>(sky.altitude_m);
-  else
-    scene.camera.position_m = {0.0F, static_cast<float>(sky.altitude_m), 0.0F};
+  place_in_scene(scene, sky, sun.value());
   const SkyMap map = {options.size.width,
                       options.size.height,
                       sky.altitude_m,
@@ -387,37 +412,24 @@ int run_sky(Args args) {
   Result<std::unique_ptr<SkySource>> source = model.make(*host.value(), options.settings);
   if (!source) return fail(source.error());
   image::Image image(map.width, map.height);
-  if (Result<void> r = fill(image, map, irradiance, params.scattering.color, *source.value()); !r)
-    return fail(r.error());
-  const std::array<double, 3> diffuse = horizontal_irradiance(image, map);
+  if (Result<void> r = fill(image, map, irradiance, color, *source.value()); !r) return fail(r.error());
+  const Result<std::array<double, 3>> diffuse = sky_irradiance(map, irradiance, color, *source.value());
+  if (!diffuse) return fail(diffuse.error());
   const SunFaces faces = sun_faces(scene.sun.angular_radius_deg * kRadPerDeg, irradiance, params);
-  if (sky.sun == "disc") draw_sun(image, map, faces, params);
-  check_largest(image, sky.clamp == "true");
+  const bool has_disc = sky.sun == "disc";
+  if (has_disc) draw_sun(image, map, faces, params);
+  sky.units.convert(image);
+  check_largest(image, sky.clamp == "true", has_disc);
 
-  const nlohmann::ordered_json light = sun_json(map, faces.first, sunlight_of(map, faces, params));
-  const bool latlong = projection.value() == Projection::latlong;
-  const image::ExrOptions as = {.content = latlong ? image::ExrContent::environment_map : image::ExrContent::radiance};
+  const SkyLight light = in_units(sky.units, diffuse.value(), sunlight_of(map, faces, params));
+  const std::string sun_text =
+      sun_json(map, faces.first, light.sun, sky.units.white_luminance() > 0.0 ? &light.lux : nullptr).dump(2) + "\n";
+  const image::ExrOptions as = sky.units.exr(
+      projection.value() == Projection::latlong ? image::ExrContent::environment_map : image::ExrContent::radiance);
   const image::Metadata metadata = sky_metadata(options.settings, sky, projection.value());
-  if (Result<void> r = image::write_exr(options.output, image, metadata, as); !r) return fail(r.error());
-  if (sky.sun == "split") {
-    const std::string path = std::filesystem::path(options.output).replace_extension(".sun.json").string();
-    if (Result<void> r = files::write_file(path, light.dump(2) + "\n"); !r) return fail(r.error());
-  }
-  if (!options.json) return kDone;
-  nlohmann::ordered_json out;
-  out["device"] = host.value()->device_name();
-  out["model"] = sky.model;
-  out["size"] = {map.width, map.height};
-  out["altitude_m"] = sky.altitude_m;
-  out["sun_elevation_deg"] = sun.value().elevation_deg;
-  out["sun_azimuth_deg"] = sun.value().azimuth_deg;
-  out["sky_irradiance"] = diffuse;
-  out["sun_irradiance"] = light["irradiance"];
-  out["sun_horizontal_irradiance"] = light["horizontal_irradiance"];
-  if (const tables::Report* const made = source.value()->tables(); made != nullptr) {
-    out["tables"] = {{"from", made->origin == tables::Origin::cache ? "cache" : "build"}, {"ms", made->milliseconds}};
-  }
-  return print(out.dump(2) + "\n");
+  if (Result<void> r = write_files(options.output, image, metadata, as, sky.sun == "split" ? &sun_text : nullptr); !r)
+    return fail(r.error());
+  return print_sky(options, sky, map, light, host.value()->device_name(), source.value()->tables());
 }
 
 }  // namespace tyndall::cli

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "files/text.hpp"
 #include "gpu/try.hpp"
+#include "scene/description/placed_sun.hpp"
 
 namespace tyndall::viewer {
 namespace {
@@ -46,6 +48,7 @@ std::unique_ptr<SceneThread> ScenePair::start_thread(const SceneRequest& request
   scene::SceneDesc desc;
   desc.timings = true;
   desc.histogram = true;
+  desc.illuminance = true;
   desc.pipeline_threads = gpu::Host::pipeline_threads();
   desc.make_tables = make_tables_;
   desc.in_parts = one_device_;  // so that frames of the window need not wait for a whole frame of the scene
@@ -220,7 +223,11 @@ void ScenePair::log_frame(std::size_t side, double took_ms) {
   if (!notices_->events().on()) return;
   const SceneFacts& facts = (side == 0 ? *left_ : *right_).facts();
   const CameraState& camera = drawn_poses_.at(side).camera;
-  const scene::SunParams& sun = drawn_poses_.at(side).sun;
+  // Where the sun stands, which may follow from a time.
+  const scene::SunParams& given = drawn_poses_.at(side).sun;
+  const std::optional<scene::Place> place = facts.elevations != nullptr ? facts.elevations->place() : std::nullopt;
+  const Result<scene::SunParams> placed = scene::placed_sun(given, place);
+  const scene::SunParams& sun = placed ? placed.value() : given;
   std::string text = side == 0 ? "frame left " : "frame right ";
   text += std::to_string(frames_) + " " + std::to_string(facts.extent.width) + " " +
           std::to_string(facts.extent.height) + " ms " + files::number_text(took_ms) + " camera";

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "image/image.hpp"
+#include "scene/photometry.hpp"
 #include "viewer/platform/files.hpp"
 #include "viewer/platform/window.hpp"
 
@@ -19,8 +20,12 @@ void Screenshot::write(Capture capture, const std::string& folder) {
   writing_ = std::async(std::launch::async, [stem, shot = std::move(capture)]() -> Result<std::string> {
     Result<void> written = image::write_png(stem + ".png", shot.display, config::metadata(shot.settings));
     if (written && image::exr_supported()) {
-      written = image::write_exr(stem + ".exr", shot.radiance, config::radiance_metadata(shot.settings),
-                                 {.content = image::ExrContent::radiance});
+      const Params& params = shot.settings.effect;
+      image::ExrOptions options = {.content = image::ExrContent::radiance};
+      if (params.scattering.color == ColorMode::spectral) {
+        options.white_luminance = scene::white_luminance(params, shot.settings.scene);
+      }
+      written = image::write_exr(stem + ".exr", shot.radiance, config::radiance_metadata(shot.settings), options);
     }
     Window::wake();
     if (!written) return written.error();

@@ -285,17 +285,20 @@ Result<void> load_root(Settings& settings, const toml::table& root, std::string_
   return path_at.empty() ? Result<void>() : check_path(settings.path, path_at);
 }
 
-// Makes file names that are relative to the scene file relative to the working directory.
-void find_files_beside(Settings& settings, const Settings& before, const std::string& scene_path) {
-  const std::filesystem::path directory = std::filesystem::path(scene_path).parent_path();
+// Makes file names in a scene file that are relative to it relative to the working directory. Those of the files that
+// it includes are already.
+void find_files_beside(Settings& settings, const toml::table& root, const std::filesystem::path& scene_path) {
+  const std::filesystem::path directory = scene_path.parent_path();
   for (const Row& row : rows()) {
     if (row.info.type != ParamType::string || row.info.unit != "file") continue;
+    const toml::table* const group = root[row.info.group].as_table();
+    if (group == nullptr || !group->contains(row.info.name)) continue;
     const std::string value = value_text(row, settings);
-    if (value.empty() || value == value_text(row, before) || value == value_text(row, Settings())) continue;
+    if (value.empty() || value == value_text(row, Settings())) continue;
     const std::filesystem::path beside = directory / value;  // `value` itself when it is absolute
     std::error_code ignored;
     if (!std::filesystem::exists(beside, ignored)) continue;
-    static_cast<void>(set(settings, row.key(), beside.string(), scene_path).ok());
+    static_cast<void>(set(settings, row.key(), beside.string(), scene_path.string()).ok());
   }
 }
 
@@ -329,7 +332,7 @@ Result<void> load_includes(Settings& settings, const toml::table& root, std::str
     if (text == nullptr || text->get().empty() || files::has_control_characters(text->get())) {
       return problem("'include' does not name a file", *element, "expected \"FILE.toml\" or a list of such names");
     }
-    const std::filesystem::path path = (folder / text->get()).lexically_normal();
+    const std::filesystem::path path = folder / text->get();
     if (!files::outside_allowed() && !files::is_within(path.string(), reading.open.front().parent_path().string())) {
       return problem(files::concat({"'", files::one_line(text->get(), 200), "' is outside the folder of the scene"}),
                      *element, "expected a file in that folder or below it, or --allow-outside");
@@ -360,6 +363,7 @@ Result<void> load_toml(Settings& settings, std::string_view toml, std::string_vi
     Settings loaded = settings;
     if (Result<void> read = load_includes(loaded, root, name, reading); !read) return read;
     if (Result<void> read = load_root(loaded, root, name); !read) return read;
+    if (!reading.open.empty()) find_files_beside(loaded, root, reading.open.back());
     settings = std::move(loaded);
     return {};
   } catch (const toml::parse_error& error) {
@@ -380,7 +384,6 @@ Result<void> load_file(Settings& settings, const std::string& path, Reading& rea
   const std::string folder = reading.open.front().parent_path().string();
   reading.open.pop_back();
   if (!read) return read;
-  find_files_beside(loaded, settings, path);
   if (Result<void> allowed = check_names(loaded, settings, path, folder); !allowed) return allowed;
   settings = std::move(loaded);
   return {};

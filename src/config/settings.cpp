@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "files/text.hpp"
+#include "scene/description/camera_exposure.hpp"
 #include "scene/description/model_registry.hpp"
 #include "scene/description/placed_sun.hpp"
 #include "tyndall/version.hpp"
@@ -321,6 +322,7 @@ Result<void> check(const Settings& settings) {
     if (Result<scene::Place> place = scene::parse_place(sun.place, "sun.place"); !place)
       return std::move(place).error();
   }
+  if (Result<void> r = scene::check_camera_exposure(settings.scene.tonemap); !r) return r;
   if (settings.scene.tables.cache.empty()) {
     return files::input_error("empty value", "tables.cache", "expected auto, off or a directory");
   }
@@ -338,15 +340,20 @@ std::vector<std::pair<std::string, std::string>> metadata(const Settings& settin
   return list;
 }
 
-std::vector<std::pair<std::string, std::string>> radiance_metadata(const Settings& settings) {
+std::vector<std::pair<std::string, std::string>> radiance_metadata(const Settings& settings, std::string_view unit) {
   std::vector<std::pair<std::string, std::string>> list = metadata(settings);
   const Vec3& nm = settings.effect.atmosphere.wavelengths_nm;
-  list.emplace_back(
-      "tyndall.channels",
-      files::concat(
-          {"R, G, B are the radiance at ", files::number_text(nm.x), ", ", files::number_text(nm.y), " and ",
-           files::number_text(nm.z),
-           " nm, in the unit of sun.irradiance per steradian; they are shown as if they were linear Rec. 709"}));
+  const bool spectral = settings.effect.scattering.color == ColorMode::spectral;
+  list.emplace_back("tyndall.channels",
+                    spectral ? std::string("R, G, B are the linear colour of the whole spectrum")
+                             : files::concat({"R, G, B are the radiance at ", files::number_text(nm.x), ", ",
+                                              files::number_text(nm.y), " and ", files::number_text(nm.z),
+                                              " nm, which is shown as if it were linear Rec. 709"}));
+  if (unit.empty()) {
+    unit =
+        spectral ? "sun.irradiance per steradian; times whiteLuminance it is cd/m^2" : "sun.irradiance per steradian";
+  }
+  list.emplace_back("tyndall.unit", unit);
   return list;
 }
 

@@ -73,8 +73,10 @@ struct Group {
 // "332"}.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> metadata(const Settings& settings);
 
-// Returns metadata() and the meaning of the channels of linear radiance ("tyndall.channels").
-[[nodiscard]] std::vector<std::pair<std::string, std::string>> radiance_metadata(const Settings& settings);
+// Returns metadata(), the meaning of the channels of linear radiance ("tyndall.channels"), and their unit
+// ("tyndall.unit"), by default that of a relative scene.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> radiance_metadata(const Settings& settings,
+                                                                                 std::string_view unit = {});
 
 // Sets a value whose components have been separated already, for readers of other syntaxes. Numbers are given as text.
 // A vector has one part for each component; a colour may also have one part for all three.

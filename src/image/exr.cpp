@@ -25,6 +25,7 @@
 #include "files/text.hpp"
 #include "image/codec.hpp"
 #include "image/exr_header.hpp"
+#include "image/primaries.hpp"
 
 namespace tyndall::image {
 namespace {
@@ -226,12 +227,21 @@ File decode(std::string_view bytes, const std::string& path) {
   return file;
 }
 
+Imf::Chromaticities attribute_of(Primaries primaries) {
+  const Chromaticities& c = chromaticities_of(primaries);
+  const auto point = [](const double(&xy)[2]) {
+    return Imath::V2f(static_cast<float>(xy[0]), static_cast<float>(xy[1]));
+  };
+  return {point(c.red), point(c.green), point(c.blue), point(c.white)};
+}
+
 void encode(Imf::OStream& stream, const Image& image, const Metadata& metadata, const ExrOptions& options) {
   const Imf::PixelType type = options.precision == ExrPrecision::half16 ? Imf::HALF : Imf::FLOAT;
   Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
   header.compression() = Imf::ZIP_COMPRESSION;
   for (const auto& [name, value] : metadata) header.insert(name.c_str(), Imf::StringAttribute(value));
-  if (options.content != ExrContent::data) Imf::addChromaticities(header, Imf::Chromaticities());  // Rec. 709
+  if (options.content != ExrContent::data) Imf::addChromaticities(header, attribute_of(options.primaries));
+  if (options.white_luminance > 0.0) Imf::addWhiteLuminance(header, static_cast<float>(options.white_luminance));
   if (options.content == ExrContent::environment_map) Imf::addEnvmap(header, Imf::ENVMAP_LATLONG);
   for (const char* const name : {"R", "G", "B"}) header.channels().insert(name, Imf::Channel(type));
   const Imath::Box2i window = header.dataWindow();
@@ -268,9 +278,9 @@ Result<File> decode_exr(std::string_view bytes, const std::string& path) {
   }
 }
 
-Result<void> write_exr(const std::string& path, const Image& image, const Metadata& metadata,
-                       const ExrOptions& options) {
-  if (Result<void> fits = check_writable_image(path, image, metadata); !fits) return fits;
+Result<files::AtomicFile> prepare_exr(const std::string& path, const Image& image, const Metadata& metadata,
+                                      const ExrOptions& options) {
+  if (Result<void> fits = check_writable_image(path, image, metadata); !fits) return std::move(fits).error();
   if (options.precision == ExrPrecision::half16) {
     constexpr float kLargestHalf = 65504.0F;
     const auto too_large = [](float value) { return std::isfinite(value) && std::fabs(value) > kLargestHalf; };
@@ -295,6 +305,13 @@ Result<void> write_exr(const std::string& path, const Image& image, const Metada
     return write_error(ErrorCode::io, path, files::concat({"EXR: ", exception.what()}));
   }
   if (stream.error() != nullptr) return *stream.error();
+  return file;
+}
+
+Result<void> write_exr(const std::string& path, const Image& image, const Metadata& metadata,
+                       const ExrOptions& options) {
+  Result<files::AtomicFile> file = prepare_exr(path, image, metadata, options);
+  if (!file) return std::move(file).error();
   return file.value().commit();
 }
 

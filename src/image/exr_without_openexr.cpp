@@ -14,4 +14,9 @@ Result<void> write_exr(const std::string& path, const Image& /*image*/, const Me
   return check_exr_supported(path);
 }
 
+Result<files::AtomicFile> prepare_exr(const std::string& path, const Image& /*image*/, const Metadata& /*metadata*/,
+                                      const ExrOptions& /*options*/) {
+  return check_exr_supported(path).error();
+}
+
 }  // namespace tyndall::image

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "files/files.hpp"
 #include "tyndall/result.hpp"
 
 namespace tyndall::image {
@@ -70,13 +71,18 @@ enum class ExrPrecision : std::uint32_t { half16, float32 };
 // The meaning of an EXR's channels, which decides the standard attributes of its header.
 enum class ExrContent : std::uint32_t {
   data,            // numbers that are not colours: no attribute
-  radiance,        // linear Rec. 709: `chromaticities`
+  radiance,        // linear colours: `chromaticities`
   environment_map  // radiance by latitude and longitude: `chromaticities` and `envmap`
 };
+
+// The colour space of radiance; see primaries.hpp.
+enum class Primaries : std::uint32_t { rec709, xyz, rec2020, acescg };
 
 struct ExrOptions {
   ExrPrecision precision = ExrPrecision::float32;
   ExrContent content = ExrContent::data;
+  Primaries primaries = Primaries::rec709;  // those of the image, which is not converted
+  double white_luminance = 0.0;             // [cd/m^2] - of the colour (1, 1, 1), `whiteLuminance`; 0: not known
 };
 
 // Writes an EXR with channels R, G, B, ZIP compression and the metadata as string attributes. Values that are not
@@ -84,6 +90,9 @@ struct ExrOptions {
 // the range of half16 (65504).
 [[nodiscard]] Result<void> write_exr(const std::string& path, const Image& image, const Metadata& metadata,
                                      const ExrOptions& options = {});
+// Writes the file as write_exr() does, but leaves it to the caller to commit it, so that several files appear together.
+[[nodiscard]] Result<files::AtomicFile> prepare_exr(const std::string& path, const Image& image,
+                                                    const Metadata& metadata, const ExrOptions& options = {});
 
 // The content of an image file.
 struct File {

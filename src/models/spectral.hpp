@@ -38,4 +38,15 @@ template <typename Model>
   return {a.transmittance[0], a.transmittance[1], a.transmittance[2], a.transmittance_fourth};
 }
 
+// Returns the colour of direct sunlight at a point, relative to its luminance above the atmosphere. The parameters have
+// scattering.color = spectral.
+[[nodiscard]] inline std::array<double, 3> sunlight_color(const Params& params, double altitude_m,
+                                                          double cos_sun_zenith) {
+  const Answer light =
+      in_all_channels(params, spectral_medium_from_params(params), [&](const shared::Medium& m) -> Answer {
+        return {{}, sun_transmittance(m, altitude_m, cos_sun_zenith)};
+      });
+  return color_of_light(transmittance_of(light));
+}
+
 }  // namespace tyndall::models

@@ -9,12 +9,15 @@
 
 #include "gpu/guard.hpp"
 #include "gpu/try.hpp"
+#include "scene/description/camera_exposure.hpp"
 #include "scene/description/map_projection.hpp"
 #include "scene/description/placed_sun.hpp"
 #include "scene/description/unused_params.hpp"
 #include "scene/formats.hpp"
+#include "scene/photometry.hpp"
 #include "scene/sky/background_constants.hpp"
 #include "scene_shaders.hpp"
+#include "tyndall/photometry.hpp"
 
 namespace tyndall::scene {
 namespace {
@@ -123,6 +126,7 @@ Result<void> Scene::replace_lost_effect() {
   desc.max_shadow_resolution = scene_.shadows.resolution;
   TYNDALL_ASSIGN(std::unique_ptr<Effect> made, make_effect(desc));
   const std::size_t notes = notes_.size();
+  light_meter_.reset();
   effect_ = std::move(made);
   notes_.resize(notes);  // drops the remark of the old effect that its commands have not completed
   tables_ready_ = false;
@@ -210,7 +214,7 @@ Result<void> Scene::draw_frame(double seconds, bool copy_baseline, std::optional
   step_s_ = step_s.value_or(last_seconds_ ? seconds - *last_seconds_ : 0.0);
   if (!last_seconds_ || step_s_ <= 0.0) tonemap_->exposure().reset_history();
   last_seconds_ = seconds;
-  if (!scene_.tonemap.auto_exposure && !desc_.histogram) last_seconds_.reset();
+  if (!is_auto_exposed(scene_.tonemap) && !desc_.histogram) last_seconds_.reset();
   radiance_sum_ = {};
   display_sum_ = {};
   const std::uint32_t samples = scene_.camera.samples;
@@ -223,6 +227,9 @@ Result<void> Scene::draw_frame(double seconds, bool copy_baseline, std::optional
     if (samples == 1) break;
     TYNDALL_TRY(accumulate(output_, radiance_sum_));
     TYNDALL_TRY(accumulate(display_, display_sum_));
+  }
+  if (desc_.illuminance) {
+    TYNDALL_ASSIGN(illuminance_, measure_illuminance());
   }
   return {};
 }
@@ -320,16 +327,8 @@ Result<void> Scene::copy_color(VkCommandBuffer cmd) {
 
 Result<void> Scene::tonemap(VkCommandBuffer cmd, bool first) {
   gpu::compute_barrier(host_->device(), cmd);
-  const TonemapParams& params = scene_.tonemap;
-  const post::TonemapSettings settings = {static_cast<post::Operator>(params.operator_),
-                                          params.middle_gray,
-                                          params.white_point,
-                                          params.saturation,
-                                          params.auto_exposure,
-                                          params.light_adaptation,
-                                          params.least_luminance,
-                                          params.exposure};
-  if (first && (params.auto_exposure || desc_.histogram)) {
+  const post::TonemapSettings settings = tonemap_settings(params_, scene_);
+  if (first && (settings.auto_exposure || desc_.histogram)) {
     begin_pass(cmd, "exposure");
     TYNDALL_TRY(tonemap_->exposure().measure(cmd, output_.view.get(), desc_.extent, settings, step_s_));
     end_pass(cmd);
@@ -379,8 +378,14 @@ Result<image::Image> Scene::display() {
 }
 
 Scene::Exposure Scene::exposure() const {
-  const post::Measurement measurement = tonemap_->exposure().read();
-  return {scene_.tonemap.auto_exposure ? measurement.exposure : scene_.tonemap.exposure, measurement};
+  const post::TonemapSettings settings = tonemap_settings(params_, scene_);
+  Exposure out = {illuminance_, settings.exposure, {}, tonemap_->exposure().read()};
+  if (settings.auto_exposure) out.scale = out.measurement.exposure;
+  const double white = white_luminance(params_, scene_);
+  if (out.scale > 0.0F && white > 0.0) {
+    out.ev100 = ev100_of_exposure(static_cast<double>(out.scale), static_cast<double>(settings.middle_gray), white);
+  }
+  return out;
 }
 
 Counters Scene::counters() const {

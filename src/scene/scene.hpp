@@ -12,6 +12,7 @@
 #include "image/image.hpp"
 #include "post/tonemap.hpp"
 #include "scene/mesh/meshes.hpp"
+#include "scene/sky/light_meter.hpp"
 #include "scene/sky/sky_model.hpp"
 #include "scene/terrain/terrain.hpp"
 #include "tables/make_ready.hpp"
@@ -25,6 +26,7 @@ struct SceneDesc {
   bool histogram = false;              // measure every picture, not only those that auto exposure needs
   tables::MakeReady make_tables = {};  // how the tables are built and cached
   bool tables_later = false;           // build the tables with advance_tables() instead of in create()
+  bool illuminance = false;            // measure the illuminance at the camera with every picture
   int terrain_coarseness = 1;          // the least, see TerrainLod; small pictures have a larger one
   bool reuse_shadows = true;           // reuse shadow maps that would not change
   std::uint32_t pipeline_threads = 1;  // see EffectDesc
@@ -75,7 +77,11 @@ class Scene {
   Result<image::Image> radiance();
   Result<image::Image> display();
   struct Exposure {
+    // At the camera, with SceneDesc::illuminance. Nothing if the light has no unit (scattering.color = rgb), with a
+    // medium or model that is not the atmosphere, or with a camera in space.
+    std::optional<Illuminance> illuminance;
     float scale = 1.0F;             // factor of the radiance
+    std::optional<double> ev100;    // to which it corresponds; nothing if it is 0, or if the sun has no light
     post::Measurement measurement;  // with auto exposure or SceneDesc::histogram
   };
   [[nodiscard]] Exposure exposure() const;
@@ -147,6 +153,7 @@ class Scene {
   Result<void> tonemap(VkCommandBuffer cmd, bool first);
   Result<void> run_copy_baseline(VkCommandBuffer cmd);
   Result<void> copy_to(VkCommandBuffer cmd, const gpu::Image& to);
+  [[nodiscard]] Result<std::optional<Illuminance>> measure_illuminance();
   Result<void> draw_frame(double seconds, bool copy_baseline, std::optional<double> step_s);
   Result<void> render_sample(double seconds, const glm::dvec2& jitter, bool first, bool copy_baseline);
   // Records and submits one sample of a frame.
@@ -165,7 +172,9 @@ class Scene {
   std::unique_ptr<Meshes> meshes_;  // nullptr if there is only terrain
   std::vector<std::string> notes_;  // outlives the effect, which writes to it
   std::unique_ptr<Effect> effect_;
-  std::unique_ptr<SkyModel> model_;  // nullptr if the effect draws the atmosphere
+  std::optional<Illuminance> illuminance_;
+  std::unique_ptr<LightMeter> light_meter_;  // reads the effect's tables; nullptr until it is needed
+  std::unique_ptr<SkyModel> model_;          // nullptr if the effect draws the atmosphere
   bool tables_ready_ = false;
   std::unique_ptr<post::Tonemap> tonemap_;
   gpu::Image color_, depth_, shadow_maps_, shadow_colors_, output_, display_;

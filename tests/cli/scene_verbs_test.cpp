@@ -4,9 +4,12 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "image/image.hpp"
 #include "run_tyndall.hpp"
 
 namespace tyndall::cli {
@@ -278,6 +281,51 @@ TEST_F(CliScenes, FlightsArePlayed) {
   EXPECT_TRUE(has(1, "frame.exposure", ""));
 }
 
+// A frame reports its exposure value, which gives the same exposure again.
+TEST_F(CliScenes, ExposureValuesAreThoseOfThePicture) {
+  const auto render_with = [&](std::vector<std::string> more) {
+    const std::vector<std::string> quick = {"render",
+                                            "-o",
+                                            scratch_.at("out.exr"),
+                                            "--size",
+                                            "16x9",
+                                            "--set",
+                                            "planet.radius_m=20000",
+                                            "--set",
+                                            "tables.size=4,4,4,4",
+                                            "--set",
+                                            "tables.orders=1",
+                                            "--set",
+                                            "shadows.cascades=1",
+                                            "--set",
+                                            "shadows.first_marched=0",
+                                            "--set",
+                                            "scattering.color=spectral"};
+    more.insert(more.begin(), quick.begin(), quick.end());
+    const ProcessResult process = run_tyndall(more);
+    EXPECT_EQ(process.status, 0) << process.err;
+    EXPECT_EQ(process.err, "");
+    const Result<image::File> file = image::read(scratch_.at("out.exr"));
+    EXPECT_TRUE(file.ok());
+    std::map<std::string, std::string> found;
+    if (file) found.insert(file.value().metadata.begin(), file.value().metadata.end());
+    return found;
+  };
+  const std::map<std::string, std::string> automatic = render_with({});
+  const double ev100 = std::stod(automatic.at("tyndall.frame.ev100"));
+  EXPECT_NE(automatic.at("tyndall.unit").find("times whiteLuminance it is cd/m^2"), std::string::npos);
+  const auto fixed = render_with({"--set", "tonemap.exposure_ev100=" + automatic.at("tyndall.frame.ev100")});
+  EXPECT_NEAR(std::stod(fixed.at("tyndall.frame.exposure")), std::stod(automatic.at("tyndall.frame.exposure")),
+              1e-4 * std::stod(fixed.at("tyndall.frame.exposure")));
+  // f/16 and 1/100 s are 14.64 at ISO 100.
+  const auto camera = render_with({"--set", "tonemap.aperture=16", "--set", "tonemap.shutter_s=0.01"});
+  EXPECT_NEAR(std::stod(camera.at("tyndall.frame.ev100")), 14.644, 0.001);
+  EXPECT_NEAR(std::stod(camera.at("tyndall.frame.exposure")) / std::stod(fixed.at("tyndall.frame.exposure")),
+              std::exp2(ev100 - 14.644), 0.001 * std::exp2(ev100 - 14.644));
+  expect_one_line(render({"--set", "tonemap.aperture=16"}), 2, "tonemap.aperture: the camera has no exposure time");
+  expect_one_line(render({"--primaries", "xyz"}), 2, "--primaries: a PNG holds display values");
+}
+
 // A flight by date needs a place on the Earth. Without one in the scene file, it is that of the elevation file.
 TEST_F(CliScenes, ElevationFilesGiveFlightsTheirPlace) {
   std::string grid = "ncols 4\nnrows 4\nxllcorner 35.4\nyllcorner 31.4\ncellsize 0.01\n";
@@ -326,11 +374,13 @@ TEST_F(CliScenes, PresetsAreScenes) {
 TEST_F(CliScenes, BenchPrintsTheDocumentedValues) {
   const ProcessResult process =
       run_tyndall({"bench", "--json", "--size", "16x9", "--frames", "2", "--set", "planet.radius_m=20000", "--set",
-                   "tables.size=4,4,4,4", "--set", "tables.orders=1"});
+                   "tables.size=4,4,4,4", "--set", "tables.orders=1", "--set", "scattering.color=spectral"});
   ASSERT_EQ(process.status, 0) << process.err;
   const nlohmann::json report = nlohmann::json::parse(process.out);
-  for (const char* const key :
-       {"device", "size", "frames", "passes", "effect_ms", "frame_ms", "floor_ms", "counters", "memory_bytes"}) {
+  EXPECT_GT(report["illuminance_lux"]["sky"].get<double>(), 100.0);
+  EXPECT_GT(report["illuminance_lux"]["sun"].get<double>(), report["illuminance_lux"]["sun_horizontal"].get<double>());
+  for (const char* const key : {"device", "size", "frames", "passes", "effect_ms", "frame_ms", "floor_ms", "exposure",
+                                "counters", "memory_bytes"}) {
     EXPECT_TRUE(report.contains(key)) << key;
   }
   EXPECT_EQ(report["size"], nlohmann::json({16, 9}));

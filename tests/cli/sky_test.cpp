@@ -217,6 +217,57 @@ TEST_F(CliSky, EveryProjectionHoldsTheReportedIrradiance) {
   EXPECT_EQ(light["irradiance"].get<std::vector<double>>(), std::vector<double>(direct.begin(), direct.end()));
 }
 
+// The illuminance of a map, from its pixels and the header, is the reported one, in every projection and unit.
+TEST_F(CliSky, MapsHoldTheReportedIlluminance) {
+  const auto sky = [&](std::vector<std::string> arguments) {
+    const std::vector<std::string> sun = {
+        "--sun-elevation-deg",       "25",    "--sun-azimuth-deg",       "200", "--json", "--set",
+        "scattering.color=spectral", "--set", "planet.ground_albedo=0.2"};
+    arguments.insert(arguments.end(), sun.begin(), sun.end());
+    return make(with_single(arguments));
+  };
+  const auto reported = [&](const char* key) -> double { return nlohmann::json::parse(out_)[key]; };
+  const auto luminance_of = [](const std::array<double, 3>& rgb) {
+    return 0.2126729 * rgb[0] + 0.7151522 * rgb[1] + 0.0721750 * rgb[2];
+  };
+  const image::File whole = sky({"--size", "360x180"});
+  const double sky_lux = reported("sky_illuminance_lux"), sun_lux = reported("sun_horizontal_illuminance_lux");
+  const double all_lux = luminance_of(integral(whole.image, true)) * reported("white_luminance_cd_per_m2");
+  EXPECT_NEAR(all_lux, sky_lux + sun_lux, 0.005 * all_lux);
+  EXPECT_NEAR(sun_lux, std::sin(25.0 * kRadPerDeg) * reported("sun_illuminance_lux"), 1e-3 * sun_lux);
+  // A clear sky and a sun at 25 degrees.
+  EXPECT_GT(sky_lux, 3000.0);
+  EXPECT_LT(sky_lux, 15000.0);
+  EXPECT_GT(reported("sun_illuminance_lux"), 70000.0);
+  EXPECT_LT(reported("sun_illuminance_lux"), 110000.0);
+  // In cd/m^2 and XYZ, the second channel is the luminance.
+  const image::File absolute =
+      sky({"--size", "360x180", "--unit", "luminance", "--primaries", "xyz", "--sun", "split"});
+  EXPECT_NEAR(integral(absolute.image, true)[1], sky_lux, 0.005 * sky_lux);
+  EXPECT_EQ(reported("white_luminance_cd_per_m2"), 1.0);
+  const nlohmann::json light = nlohmann::json::parse(contents_of(scratch_.at("sky.sun.json")));
+  EXPECT_NEAR(light["illuminance_lux"].get<double>(), reported("sun_illuminance_lux"), 1e-9 * sun_lux);
+  EXPECT_NEAR(light["irradiance"][1].get<double>(), reported("sun_illuminance_lux"), 1e-3 * sun_lux);
+  const std::map<std::string, std::string> metadata(absolute.metadata.begin(), absolute.metadata.end());
+  EXPECT_EQ(metadata.at("tyndall.unit"), "cd/m^2");
+  EXPECT_EQ(metadata.at("tyndall.primaries"), "xyz");
+  EXPECT_EQ(metadata.at("tyndall.sky.sun"), "split");
+  EXPECT_EQ(metadata.at("tyndall.sky.clamp"), "false");
+  sky({"--size", "4x4", "--projection", "fisheye", "--sun", "none"});
+  EXPECT_NEAR(reported("sky_illuminance_lux"), sky_lux, 1e-9 * sky_lux);
+}
+
+TEST_F(CliSky, UnitsNeedASpectrum) {
+  const ProcessResult process =
+      run_tyndall(with_single({"sky", "-o", scratch_.at("sky.exr"), "--size", "4x4", "--sun-elevation-deg", "25",
+                               "--sun-azimuth-deg", "0", "--unit", "luminance"}));
+  EXPECT_EQ(process.status, 2);
+  EXPECT_NE(process.err.find("--unit: three channels have no unit 'luminance'; expected scattering.color = spectral"),
+            std::string::npos)
+      << process.err;
+  EXPECT_FALSE(std::filesystem::exists(scratch_.at("sky.exr")));
+}
+
 TEST_F(CliSky, PixelsAreRays) {
   const image::File file =
       make(with_single({"--size", "36x18", "--sun-elevation-deg", "30", "--sun-azimuth-deg", "40", "--altitude",

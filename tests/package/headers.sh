@@ -23,7 +23,7 @@ for compiler in gcc clang; do
     compile "$compiler" c c11 "$header"
     compile "$compiler" c++ c++20 "$header"
   done
-  for header in atmosphere.hpp conventions.hpp effect.hpp memory.hpp params.hpp post.hpp post_settings.hpp result.hpp sky_probe.hpp types.hpp version.hpp; do
+  for header in atmosphere.hpp conventions.hpp effect.hpp memory.hpp params.hpp photometry.hpp post.hpp post_settings.hpp result.hpp sky_probe.hpp types.hpp version.hpp; do
     compile "$compiler" c++ c++20 "$header"
   done
 done

@@ -73,7 +73,8 @@ room(src/scene/view VULKAN src/scene/description shaders/scene include/tyndall/e
 room(src/scene/terrain VULKAN src/scene/elevation src/scene/view src/scene/description shaders/scene src/gpu include/tyndall/effect.hpp
   include/tyndall)
 room(src/scene/mesh VULKAN src/scene/terrain src/scene/view src/scene/description shaders/scene src/gpu src/files include/tyndall)
-room(src/scene/sky VULKAN src/scene/terrain src/scene/view src/scene/description src/models src/gpu include/tyndall)
+room(src/scene/sky VULKAN src/scene/terrain src/scene/view src/scene/description src/models src/gpu include/tyndall/sky_probe.hpp
+  include/tyndall/effect.hpp include/tyndall)
 room(src/scene VULKAN src/scene/sky src/scene/mesh src/scene/terrain src/scene/view src/scene/elevation src/scene/description
   src/tables src/post src/image src/gpu include/tyndall/effect.hpp include/tyndall)
 

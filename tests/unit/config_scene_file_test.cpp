@@ -306,6 +306,15 @@ TEST_F(SceneFile, IncludedFilesAreReadFirst) {
   EXPECT_EQ(settings.scene.terrain.source, (directory_ / "air/dem.tif").string());
 }
 
+TEST_F(SceneFile, IncludesFollowLinksBeforeDots) {
+  std::filesystem::create_directories(directory_ / "a/b");
+  write("a/air.toml", "[atmosphere]\nmie_g = 0.5\n");
+  std::filesystem::create_directory_symlink(directory_ / "a/b", directory_ / "link");
+  Settings settings;
+  ASSERT_TRUE(load(settings, write("s.toml", "include = 'link/../air.toml'\n")).ok());
+  EXPECT_EQ(settings.effect.atmosphere.mie_g, 0.5F);
+}
+
 TEST_F(SceneFile, WrongIncludesAreRefused) {
   Settings settings;
   const auto refused = [&](std::string_view toml, std::string_view part) {

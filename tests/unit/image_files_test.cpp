@@ -378,6 +378,12 @@ TEST_F(ImageFiles, ExrHeadersSayWhatTheChannelsAre) {
   ASSERT_TRUE(Imf::hasEnvmap(map));
   EXPECT_EQ(Imf::envmap(map), Imf::ENVMAP_LATLONG);
   EXPECT_TRUE(Imf::hasChromaticities(map));
+  const ExrOptions options = {{}, ExrContent::radiance, Primaries::rec2020, 26636.65};
+  ASSERT_TRUE(write_exr(at("b.exr"), ramp(8, 4, 1.0F), {}, options).ok());
+  const Imf::Header wide = Imf::InputFile(at("b.exr").c_str()).header();
+  EXPECT_NEAR(Imf::chromaticities(wide).green.y, 0.797F, 1e-6F);
+  ASSERT_TRUE(Imf::hasWhiteLuminance(wide));
+  EXPECT_NEAR(Imf::whiteLuminance(wide), 26636.65F, 0.01F);
 }
 
 std::string big_endian(std::uint32_t value) {

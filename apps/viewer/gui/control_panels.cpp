@@ -46,17 +46,28 @@ struct Panels {
   void everything();
 
  private:
+  [[nodiscard]] bool has_effect(std::string_view key) const;
   void edit(std::initializer_list<const char*> keys);
   void edit_group(std::string_view group);
 };
 
 void Panels::edit(std::initializer_list<const char*> keys) {
-  for (const char* key : keys) widgets.edit(key, settings);
+  for (const char* key : keys) {
+    const Enabled on(has_effect(key));
+    widgets.edit(key, settings);
+  }
+}
+
+// Returns whether the sun's angles hold, for their keys. With a time they do not.
+bool Panels::has_effect(std::string_view key) const {
+  return settings.scene.sun.time.empty() || (key != "sun.elevation_deg" && key != "sun.azimuth_deg");
 }
 
 void Panels::edit_group(std::string_view group) {
   for (const config::Row& row : config::rows()) {
-    if (row.info.group == group) widgets.edit(row, settings);
+    if (row.info.group != group) continue;
+    const Enabled on(has_effect(row.key()));
+    widgets.edit(row, settings);
   }
 }
 

@@ -45,6 +45,14 @@ void histogram(const SceneFacts& scene) {
   ImGui::TextDisabled("2^%.0f", last);
   ImGui::Text("Exposure %.4g (%+.2f stops)", static_cast<double>(scene.exposure.scale),
               std::log2(std::max(static_cast<double>(scene.exposure.scale), 1.0e-12)));
+  if (scene.exposure.ev100) {
+    ImGui::SameLine();
+    ImGui::Text("EV100 %.2f", *scene.exposure.ev100);
+  }
+  if (scene.exposure.illuminance) {
+    ImGui::Text("Sun %.4g lx (horizontal %.4g lx), sky %.4g lx", scene.exposure.illuminance->sun_lux,
+                scene.exposure.illuminance->sun_horizontal_lux, scene.exposure.illuminance->sky_lux);
+  }
   ImGui::TextColored(ImVec4(0.47F, 0.78F, 1.0F, 1.0F), "Luminance %.4g", static_cast<double>(m.measured));
   ImGui::SameLine();
   ImGui::TextColored(ImVec4(1.0F, 0.78F, 0.35F, 1.0F), "adapted %.4g", static_cast<double>(m.luminance));

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "gpu/try.hpp"
+#include "scene/description/camera_exposure.hpp"
 #include "scene/description/terrain_key.hpp"
 #include "viewer/platform/window.hpp"
 #include "viewer/scenes/settings_compare.hpp"
@@ -85,7 +86,7 @@ bool SceneWork::building() const {
 bool SceneWork::tone_stale() const {
   if (tone_wanted_) return true;
   const scene::TonemapParams& params = applied_.scene.tonemap;
-  if (!params.auto_exposure || !params.light_adaptation || !drawn_ || stale_) return false;
+  if (!scene::is_auto_exposed(params) || !params.light_adaptation || !drawn_ || stale_) return false;
   constexpr float kAdapted = 0.005F;  // relative difference that is not visible
   const post::Measurement m = scene_->exposure().measurement;
   return m.measured > 0.0F &&

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <string_view>
 
+#include "scene/description/camera_exposure.hpp"
 #include "scene/description/model_registry.hpp"
 
 namespace tyndall::scene {
@@ -52,6 +53,22 @@ void check_air(const AtmosphereParams& air, const Check& check) {
         "atmosphere.single_scattering_albedo");
   check(air.ozone_du > 0.0F, {"atmosphere.ozone_absorption"}, "atmosphere.ozone_du");
   check(air.pressure_hpa > 0.0F, {"atmosphere.rayleigh_scattering"}, "atmosphere.pressure_hpa");
+}
+
+// Reports parameters of an exposure that is given in another way.
+template <typename Check>
+void check_exposure(const TonemapParams& tonemap, const Check& check) {
+  check(tonemap.aperture == 0.0F, {"tonemap.iso"}, "tonemap.aperture = 0");
+  if (camera_ev100(tonemap)) {
+    const bool by_value = tonemap.aperture == 0.0F;
+    check(true, {"tonemap.exposure", "tonemap.light_adaptation", "tonemap.least_luminance"},
+          by_value ? "tonemap.exposure_ev100" : "tonemap.aperture");
+    return;
+  }
+  check(tonemap.auto_exposure.value != 0, {"tonemap.exposure"}, "tonemap.auto_exposure = true");
+  check(tonemap.auto_exposure.value == 0,
+        {"tonemap.middle_gray", "tonemap.light_adaptation", "tonemap.least_luminance"},
+        "tonemap.auto_exposure = false");
 }
 
 }  // namespace
@@ -108,10 +125,7 @@ std::vector<std::string> unused_params(const Params& params, const SceneParams& 
   check(scene.sun.time.empty(), {"sun.place"}, "an empty sun.time");
   using Op = TonemapOperator;
   const Op op = scene.tonemap.operator_;
-  check(scene.tonemap.auto_exposure.value != 0, {"tonemap.exposure"}, "tonemap.auto_exposure = true");
-  check(scene.tonemap.auto_exposure.value == 0,
-        {"tonemap.middle_gray", "tonemap.light_adaptation", "tonemap.least_luminance"},
-        "tonemap.auto_exposure = false");
+  check_exposure(scene.tonemap, check);
   check(!is_one_of(op, {Op::reinhard_modified, Op::uncharted2, Op::logarithmic, Op::adaptive_logarithmic}),
         {"tonemap.white_point"}, "this tonemap.operator");
   check(is_one_of(op, {Op::uncharted2, Op::filmic_alu, Op::pbr_neutral, Op::exponential_channels}),
