@@ -1,4 +1,4 @@
-// The background: the sun's disc, and the moon if there is one, on black.
+// The background: the sun's disc, and the moon if there is one, on the airglow.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -20,7 +20,7 @@ float moon_shade(vec3 n, float footprint) {
 }
 
 vec3 beyond_air(vec3 direction) {
-  vec3 light = sun_disc(direction);
+  vec3 light = sun_disc(direction) + airglow;
   if (moon_radius_rad > 0.0) {
     float angle = 2.0 * asin(min(0.5 * distance(direction, direction_to_moon), 1.0));
     float forward = dot(direction, -vec3(local_from_view[2]));

@@ -11,7 +11,9 @@ layout(std430, binding = 0) readonly buffer background_block {
   vec3 disc_radiance;     // mean over the disc
   float pixel_angle_rad;  // of one pixel at the centre of the picture
   vec3 limb_exponent;
-  float unused_0;
+  // By how much the height of the disc is enlarged before it is compared with the radius, less 1: refraction flattens
+  // it. 0: it is round.
+  float sun_stretch;
   vec2 tan_half;  // tangents of half the field of view; y points down in clip space
   vec2 jitter;    // subpixel offset of the picture in clip space
   vec3 direction_to_moon;
@@ -19,12 +21,22 @@ layout(std430, binding = 0) readonly buffer background_block {
   vec3 moon_irradiance;   // irradiance of the sun at the moon
   float unused_1;
   mat4 world_from_local;  // directions
+  vec3 up;                // vertical at the origin of the world; only with sun_stretch
+  float unused_2;
+  vec3 airglow;  // radiance
+  float unused_3;
 };
 
 // Returns the radiance in a direction of unit length; 0 beside the disc.
 vec3 sun_disc(vec3 direction) {
   // The chord between unit vectors is precise where the arc cosine of a dot product is not.
-  float angle = 2.0 * asin(min(0.5 * distance(direction, direction_to_sun), 1.0));
+  float chord = distance(direction, direction_to_sun);
+  if (sun_stretch > 0.0) {
+    vec3 upright = normalize(up - direction_to_sun * dot(up, direction_to_sun) + 1e-9);
+    vec3 offset = direction - direction_to_sun;
+    chord = length(offset + upright * (sun_stretch * dot(offset, upright)));
+  }
+  float angle = 2.0 * asin(min(0.5 * chord, 1.0));
   // A pixel away from the centre of the picture spans a smaller angle.
   float forward = dot(direction, -vec3(local_from_view[2]));
   float pixel = pixel_angle_rad * forward * forward;

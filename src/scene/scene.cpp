@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numbers>
 #include <utility>
 
 #include "gpu/guard.hpp"
@@ -252,13 +253,29 @@ Result<image::Image> Scene::average(const gpu::Image& image, const image::Image&
   return out;
 }
 
+Result<void> Scene::place_lights(double seconds) {
+  TYNDALL_ASSIGN(const SunParams sun, placed_sun(scene_.sun, place()));
+  to_sun_ = animated_direction_to_sun(sun, seconds);
+  TYNDALL_ASSIGN(moon_, placed_moon(scene_.moon, scene_.sun, place()));
+  key_light_ = {to_sun_, scene_.sun.irradiance, scene_.sun.angular_radius_deg};
+  const double lowest = std::sin(scene_.moon.light_below_deg * std::numbers::pi / 180.0);
+  if (!scene_.moon.light || to_sun_.y >= lowest || moon_.elevation_deg <= 0.0F) return {};
+  SunParams moon;
+  moon.elevation_deg = moon_.elevation_deg;
+  moon.azimuth_deg = moon_.azimuth_deg;
+  const glm::dvec3 to_moon = direction_to_sun(moon);
+  const auto ratio = static_cast<float>(moon_irradiance_ratio(moon_, glm::dot(to_sun_, to_moon)));
+  const Vec3& e = scene_.sun.irradiance;
+  key_light_ = {to_moon, {e.x * ratio, e.y * ratio, e.z * ratio}, moon_.angular_radius_deg};
+  return {};
+}
+
 Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool first, bool copy_baseline) {
   const double radius = params_.planet.radius_m;
   const double aspect = static_cast<double>(desc_.extent.width) / desc_.extent.height;
   view_ = view_from_params(scene_.camera, aspect, radius);
   view_.jitter = jitter;
-  TYNDALL_ASSIGN(const SunParams sun, placed_sun(scene_.sun, place()));
-  to_sun_ = animated_direction_to_sun(sun, seconds);
+  TYNDALL_TRY(place_lights(seconds));
 
   const bool bare = bare_ground();
   const double ground_m = bare ? 0.0 : terrain_->height_at(up_of(view_.position, radius));
@@ -283,9 +300,9 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   const double above = std::max(altitude - ground_m, min_m);
   const Ground ground = meshes_ != nullptr ? meshes_->ground(terrain_->ground(), view_.position) : terrain_->ground();
   const double nearest = std::min(20.0, 0.02 * static_cast<double>(scene_.shadows.distance_m));
-  cascades_ = fit_cascades(view_, to_sun_, scene_.shadows, ground, std::max(0.5 * above, nearest));
-  light_.direction_to_sun = to_sun_;
-  const Vec3& sunlight = scene_.sun.irradiance;
+  cascades_ = fit_cascades(view_, key_light_.direction, scene_.shadows, ground, std::max(0.5 * above, nearest));
+  light_.direction_to_sun = key_light_.direction;
+  const Vec3& sunlight = key_light_.irradiance;
   const float scale = params_.scattering.scale;
   light_.sun_irradiance = {sunlight.x * scale, sunlight.y * scale, sunlight.z * scale};
   light_.atmosphere_height_m = params_.atmosphere.height_m;

@@ -155,6 +155,8 @@ class Scene {
   Result<void> copy_to(VkCommandBuffer cmd, const gpu::Image& to);
   [[nodiscard]] Result<std::optional<Illuminance>> measure_illuminance();
   Result<void> draw_frame(double seconds, bool copy_baseline, std::optional<double> step_s);
+  // Places the sun, the moon, and the brighter of them as the light.
+  Result<void> place_lights(double seconds);
   Result<void> render_sample(double seconds, const glm::dvec2& jitter, bool first, bool copy_baseline);
   // Records and submits one sample of a frame.
   Result<void> run_passes(bool first, bool copy_baseline);
@@ -187,6 +189,13 @@ class Scene {
   View view_;
   LocalFrame frame_;  // the frame in which everything is drawn
   glm::dvec3 to_sun_ = {};
+  MoonParams moon_;  // where it stands
+  // The light that falls on the scene: the sun, or the moon with moon.light.
+  struct KeyLight {
+    glm::dvec3 direction = {};
+    Vec3 irradiance;
+    float angular_radius_deg = 0.0F;
+  } key_light_;
   std::vector<CascadeFit> cascades_;
   TerrainLight light_;
   std::uint64_t frame_index_ = 0;

@@ -1,9 +1,11 @@
 // Records the passes of a frame: the shadow maps, the shadow colours, the view, and the effect.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 
 #include "gpu/try.hpp"
+#include "scene/description/placed_sun.hpp"
 #include "scene/formats.hpp"
 #include "scene/scene.hpp"
 #include "scene/sky/background_constants.hpp"
@@ -44,11 +46,14 @@ void begin_rendering(const gpu::Device& device, VkCommandBuffer cmd, VkExtent2D 
 
 // Returns the constants of background.frag: the sun's disc with its colour above the atmosphere, the moon, and the
 // conversion of pixels to directions.
-BackgroundConstants background_constants(const ModelFrame& frame, const glm::dvec3& to_sun, const Vec3& color) {
+BackgroundConstants background_constants(const ModelFrame& frame, const glm::dvec3& to_sun, const Vec3& color,
+                                         const MoonParams& placed) {
   const View& view = frame.view;
   const double radius_rad = frame.scene.sun.angular_radius_deg * kRadPerDeg;
   const double solid_angle = 6.283185307179586 * (1.0 - std::cos(radius_rad));
-  const Vec3& irradiance = frame.light.sun_irradiance;
+  const Vec3& given = frame.scene.sun.irradiance;
+  const float scale = frame.params.scattering.scale;
+  const Vec3 irradiance = {given.x * scale, given.y * scale, given.z * scale};
   const Vec3 sun = {irradiance.x * color.x, irradiance.y * color.y, irradiance.z * color.z};
   BackgroundConstants out = {};
   out.local_from_view = camera_from_view(view, frame.local.local_from_world).world_from_view;
@@ -57,18 +62,26 @@ BackgroundConstants background_constants(const ModelFrame& frame, const glm::dve
   out.angular_radius_rad = static_cast<float>(radius_rad);
   out.disc_radiance = to_vec3(glm::dvec3(sun.x, sun.y, sun.z) / solid_angle);
   out.pixel_angle_rad = static_cast<float>(2.0 * view.tan_half_height / frame.extent.height);
+  const double glow = frame.scene.night.airglow / kSunIlluminance;
+  out.airglow = to_vec3(glow * glm::dvec3(sun.x, sun.y, sun.z));
   const Vec3& nm = frame.params.atmosphere.wavelengths_nm;
   out.limb_exponent = {limb_exponent(nm.x), limb_exponent(nm.y), limb_exponent(nm.z)};
   out.tan_half[0] = static_cast<float>(view.tan_half_width);
   out.tan_half[1] = static_cast<float>(view.tan_half_height);
   out.jitter[0] = static_cast<float>(view.jitter.x);
   out.jitter[1] = static_cast<float>(view.jitter.y);
+  if (frame.scene.sun.refraction) {
+    const double seen_deg = std::asin(std::clamp(to_sun.y, -1.0, 1.0)) / kRadPerDeg;
+    out.sun_stretch =
+        static_cast<float>(1.0 / refraction_flattening(seen_deg, frame.scene.sun.angular_radius_deg) - 1.0);
+    out.up = to_vec3(frame.local.direction({0.0, 1.0, 0.0}));
+  }
   if (frame.scene.moon.visible) {
     SunParams moon;
-    moon.elevation_deg = frame.scene.moon.elevation_deg;
-    moon.azimuth_deg = frame.scene.moon.azimuth_deg;
+    moon.elevation_deg = placed.elevation_deg;
+    moon.azimuth_deg = placed.azimuth_deg;
     out.direction_to_moon = to_vec3(frame.local.direction(direction_to_sun(moon)));
-    out.moon_radius_rad = static_cast<float>(frame.scene.moon.angular_radius_deg * kRadPerDeg);
+    out.moon_radius_rad = static_cast<float>(placed.angular_radius_deg * kRadPerDeg);
     out.moon_irradiance = sun;
   }
   return out;
@@ -125,7 +138,7 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
   const ModelFrame frame = {view_, frame_, light_, params_, scene_, desc_.extent};
   // While tables of the other scattering.color are being built, the light of the scene is that of the old ones.
   const Vec3 color = sun_color(model_ == nullptr ? table_params(*effect_) : params_);
-  const BackgroundConstants constants = background_constants(frame, to_sun_, color);
+  const BackgroundConstants constants = background_constants(frame, to_sun_, color, moon_);
   std::memcpy(background_constants_.mapped, &constants, sizeof constants);
 
   gpu::transition(device, cmd, color_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
@@ -258,8 +271,8 @@ Result<void> Scene::run_effect(VkCommandBuffer cmd) {
   inputs.cascades = {cascades.data(), cascades_.size()};
   inputs.first_marched_cascade = first_marched(scene_.shadows, cascades_);
   inputs.camera = camera_from_view(view_, frame_.local_from_world);
-  inputs.sun = {to_vec3(frame_.direction(to_sun_)), scene_.sun.irradiance,
-                static_cast<float>(scene_.sun.angular_radius_deg * kRadPerDeg)};
+  inputs.sun = {to_vec3(frame_.direction(key_light_.direction)), key_light_.irradiance,
+                static_cast<float>(key_light_.angular_radius_deg * kRadPerDeg)};
   inputs.output = {output_.view.get(), VK_IMAGE_LAYOUT_GENERAL};
   inputs.frame_index = frame_index_;
   if (!bare_ground()) inputs.lowest_ground_m = static_cast<float>(std::min(terrain_->ground().min_m, 0.0));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "scene/description/lunar_position.hpp"
 #include "scene/description/placed_sun.hpp"
 #include "scene/description/solar_position.hpp"
 
@@ -43,6 +44,62 @@ TEST(PlacedSun, RefractionIsThatOfTheLiterature) {
     EXPECT_TRUE(std::isfinite(seen) && seen >= before) << h;  // the order of elevations does not change
     before = seen;
   }
+}
+
+TEST(PlacedSun, RefractionFlattensTheDisc) {
+  // The discs of sun and moon are about a sixth lower than wide on the horizon.
+  EXPECT_NEAR(refraction_flattening(0.0, 0.2667), 0.83, 0.02);
+  EXPECT_NEAR(refraction_flattening(10.0, 0.2667), 0.99, 0.005);
+  EXPECT_NEAR(refraction_flattening(89.0, 0.2667), 1.0, 1e-3);
+}
+
+// Meeus, "Astronomical Algorithms" (1998), examples 47.a and 48.a: 1992 April 12, 0 h TD.
+TEST(Moon, ItStandsWhereItWasPublished) {
+  const LunarPosition moon = lunar_position({0.0, 0.0}, 2448724.5 - delta_t_s(1992.28) / 86400.0);
+  EXPECT_NEAR(moon.right_ascension_deg, 134.688470, 0.02);
+  EXPECT_NEAR(moon.declination_deg, 13.768368, 0.02);
+  EXPECT_NEAR(moon.distance_km, 368409.7, 40.0);
+  EXPECT_NEAR(moon.phase_angle_deg, 69.0756, 0.02);
+}
+
+TEST(Moon, ParallaxAndSizeFollowItsDistance) {
+  // From the opposite sides of the Earth, the moon is seen at elevations that add up to less than 0 by the parallax.
+  const double day = time_of("2026-01-03T10:00Z");  // a full moon
+  const LunarPosition here = lunar_position({20.0, 30.0}, day);
+  const LunarPosition there = lunar_position({-20.0, -150.0}, day);
+  const double h = 0.5 * (here.elevation_deg - there.elevation_deg) * std::acos(-1.0) / 180.0;
+  const double parallax = 2.0 * 6378.14 / here.distance_km * std::cos(h) * 180.0 / std::acos(-1.0);
+  EXPECT_NEAR(here.elevation_deg + there.elevation_deg, -parallax, 0.02);
+  EXPECT_LT(here.phase_angle_deg, 10.0);
+  EXPECT_NEAR(here.angular_radius_deg, 0.2725 * std::asin(6378.14 / here.distance_km) * 180.0 / std::acos(-1.0), 0.006);
+}
+
+// Krisciunas and Schaefer (1991); a full moon gives 0.2 to 0.4 lux, a half moon a tenth of that.
+TEST(Moon, ItsLightFollowsThePhase) {
+  EXPECT_NEAR(moon_illuminance(7.0), 0.264, 0.003);
+  EXPECT_NEAR(moon_illuminance(0.0), 0.423, 0.01);
+  EXPECT_NEAR(moon_illuminance(90.0), 0.0285, 0.001);
+  EXPECT_EQ(moon_illuminance(-30.0), moon_illuminance(30.0));
+  MoonParams moon;
+  moon.angular_radius_deg = 0.2591F;
+  EXPECT_NEAR(moon_irradiance_ratio(moon, -1.0), 0.423 / 133183.0, 1e-7);
+  EXPECT_NEAR(moon_irradiance_ratio(moon, 0.0), 0.0285 / 133183.0, 1e-8);
+}
+
+TEST(Moon, ByDateItReplacesTheAngles) {
+  MoonParams moon;
+  moon.by_date = true;
+  SunParams sun;
+  EXPECT_FALSE(placed_moon(moon, sun, std::nullopt).ok());
+  sun.time = "2026-01-03T22:00Z";
+  EXPECT_FALSE(placed_moon(moon, sun, std::nullopt).ok());
+  sun.place = "47,8";
+  const Result<MoonParams> placed = placed_moon(moon, sun, std::nullopt);
+  ASSERT_TRUE(placed.ok());
+  const LunarPosition expected = lunar_position({47.0, 8.0}, time_of("2026-01-03T22:00Z"));
+  EXPECT_NEAR(placed.value().elevation_deg, expected.elevation_deg, 1e-4);
+  EXPECT_NEAR(placed.value().azimuth_deg, expected.azimuth_deg, 1e-4);
+  EXPECT_GT(expected.elevation_deg, 30.0);  // a full moon in winter stands high at night
 }
 
 TEST(PlacedSun, TimeAndPlaceReplaceTheAngles) {

@@ -13,8 +13,23 @@ namespace tyndall::scene {
 // 0 from an elevation of -1 degree to one of -5 degrees, where the formula does not hold.
 [[nodiscard]] double refraction_deg(double elevation_deg);
 
+// Returns the ratio of the heights of the sun's or the moon's disc with and without refraction, where the elevation
+// with refraction is given: 0.83 on the horizon, and 1 at the zenith.
+[[nodiscard]] double refraction_flattening(double seen_elevation_deg, double angular_radius_deg);
+
 // Returns the sun with the angles at which it stands. With a time, they are those of the place, or else of
 // `terrain_place`, the place of an elevation file. Errors (invalid_argument): no place, or text that cannot be read.
 [[nodiscard]] Result<SunParams> placed_sun(const SunParams& sun, const std::optional<Place>& terrain_place);
+
+// Returns the moon with the angles at which it stands, and its size there. With MoonParams::by_date, they are those of
+// the time and place of the sun. Errors: as placed_sun(), and no time.
+[[nodiscard]] Result<MoonParams> placed_moon(const MoonParams& moon, const SunParams& sun,
+                                             const std::optional<Place>& terrain_place);
+
+constexpr double kSunIlluminance = 133'183.0;  // above the atmosphere [lux]: ASTM G173-03
+
+// Returns the irradiance of the moon relative to that of the sun, above the atmosphere. `cos_sun_moon`: the cosine of
+// the angle between both.
+[[nodiscard]] double moon_irradiance_ratio(const MoonParams& placed, double cos_sun_moon);
 
 }  // namespace tyndall::scene

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "files/text.hpp"
+#include "scene/description/celestial.hpp"
 
 namespace tyndall::scene {
 namespace {
@@ -15,10 +16,6 @@ using files::concat;
 using files::input_error;
 using files::one_line;
 
-constexpr double kRadPerDeg = 0.017453292519943295;
-constexpr double kDegPerArcsecond = 1.0 / 3600.0;
-constexpr double kJ2000 = 2451545.0;  // Julian day of the epoch
-constexpr double kDaysPerCentury = 36525.0;
 constexpr double kSecondsPerDay = 86400.0;
 
 // One periodic term: amplitude [1e-8 rad or au] * cos(phase + rate * millennia).
@@ -65,28 +62,6 @@ double sum(std::span<const Term> terms, double millennia) {
   double total = 0.0;
   for (const Term& term : terms) total += term.amplitude * std::cos(term.phase_rad + term.rate_rad * millennia);
   return 1e-8 * total;
-}
-
-double wrapped_deg(double angle_deg) {
-  const double wrapped = std::fmod(angle_deg, 360.0);
-  const double positive = wrapped < 0.0 ? wrapped + 360.0 : wrapped;
-  return positive < 360.0 ? positive : 0.0;
-}
-
-// Nutation in longitude and obliquity [deg]: the four largest terms (Meeus, "Astronomical Algorithms", 1998, chapter
-// 22), which are within 0.5 arcseconds of the whole series.
-struct Nutation {
-  double longitude_deg, obliquity_deg;
-};
-
-Nutation nutation(double centuries) {
-  const double node = (125.04452 - 1934.136261 * centuries) * kRadPerDeg;  // ascending node of the moon's orbit
-  const double sun = (280.4665 + 36000.7698 * centuries) * kRadPerDeg;     // mean longitudes
-  const double moon = (218.3165 + 481267.8813 * centuries) * kRadPerDeg;
-  return {kDegPerArcsecond * (-17.20 * std::sin(node) - 1.32 * std::sin(2.0 * sun) - 0.23 * std::sin(2.0 * moon) +
-                              0.21 * std::sin(2.0 * node)),
-          kDegPerArcsecond * (9.20 * std::cos(node) + 0.57 * std::cos(2.0 * sun) + 0.10 * std::cos(2.0 * moon) -
-                              0.09 * std::cos(2.0 * node))};
 }
 
 // Returns the days from 1970-01-01 to a date of the Gregorian calendar.
@@ -215,55 +190,28 @@ double delta_t_s(double year) {
 }
 
 SolarPosition solar_position(const Place& place, double julian_day, double altitude_m) {
-  const double days = julian_day - kJ2000;
-  const double delta_t_days = delta_t_s(2000.0 + days / 365.25) / kSecondsPerDay;
-  const double centuries = (days + delta_t_days) / kDaysPerCentury;  // terrestrial time
-  const double t = 0.1 * centuries;
+  const Epoch time = epoch(julian_day);
+  const double t = 0.1 * time.centuries;
   SolarPosition out;
 
   // The sun seen from the centre of the Earth, on the ecliptic of the date (3.2 to 3.8 of the report).
   const double longitude_rad =
       sum(kL0, t) + t * (sum(kL1, t) + t * (sum(kL2, t) + t * (sum(kL3, t) + t * sum(kL4, t))));
   out.distance_au = sum(kR0, t) + t * (sum(kR1, t) + t * sum(kR2, t));
-  const Nutation nutated = nutation(centuries);
-  const double aberration_deg = -20.4898 * kDegPerArcsecond / out.distance_au;
-  const double lambda = kRadPerDeg * (longitude_rad / kRadPerDeg + 180.0 + nutated.longitude_deg + aberration_deg);
+  const Nutation nutated = nutation(time.centuries);
+  const double aberration_deg = -20.4898 * kDegreesPerArcsecond / out.distance_au;
+  const double lambda =
+      kRadPerDegree * (longitude_rad / kRadPerDegree + 180.0 + nutated.longitude_deg + aberration_deg);
   const double beta = -sum(kB0, t);
-  const double obliquity_deg =
-      kDegPerArcsecond * (84381.448 + centuries * (-46.8150 + centuries * (-0.00059 + centuries * 0.001813))) +
-      nutated.obliquity_deg;
-  const double obliquity = kRadPerDeg * obliquity_deg;
-  const double alpha =
-      std::atan2(std::sin(lambda) * std::cos(obliquity) - std::tan(beta) * std::sin(obliquity), std::cos(lambda));
-  const double delta =
-      std::asin(std::sin(beta) * std::cos(obliquity) + std::cos(beta) * std::sin(obliquity) * std::sin(lambda));
-  out.right_ascension_deg = wrapped_deg(alpha / kRadPerDeg);
-  out.declination_deg = delta / kRadPerDeg;
+  const double obliquity = kRadPerDegree * obliquity_deg(time.centuries, nutated);
+  const Equatorial position = equatorial(lambda, beta, obliquity);
+  out.right_ascension_deg = wrapped_degrees(position.right_ascension_rad / kRadPerDegree);
+  out.declination_deg = position.declination_rad / kRadPerDegree;
 
-  // The rotation of the Earth (3.9 to 3.11).
-  const double ut_centuries = days / kDaysPerCentury;
-  const double sidereal_deg = 280.46061837 + 360.98564736629 * days +
-                              ut_centuries * ut_centuries * (0.000387933 - ut_centuries / 38710000.0) +
-                              nutated.longitude_deg * std::cos(obliquity);
-  const double hour_angle = kRadPerDeg * wrapped_deg(sidereal_deg + place.longitude_deg - out.right_ascension_deg);
-
-  // Parallax (3.12). The distances of the place from the Earth's axis and equatorial plane are in equatorial radii.
-  constexpr double kAxes = 0.99664719;  // polar radius divided by equatorial radius
-  const double phi = kRadPerDeg * place.latitude_deg;
-  const double reduced = std::atan2(kAxes * std::sin(phi), std::cos(phi));
-  const double radii = altitude_m / 6378140.0;
-  const double from_axis = std::cos(reduced) + radii * std::cos(phi);
-  const double from_equator = kAxes * std::sin(reduced) + radii * std::sin(phi);
-  const double parallax = std::sin(kRadPerDeg * 8.794 * kDegPerArcsecond / out.distance_au);
-  // The direction to the sun: x is towards the point where the celestial equator crosses the meridian, y is west, and z
-  // is towards the celestial pole.
-  const double x = std::cos(delta) * std::cos(hour_angle) - parallax * from_axis;
-  const double y = std::cos(delta) * std::sin(hour_angle);
-  const double z = std::sin(delta) - parallax * from_equator;
-  const double up = std::sin(phi) * z + std::cos(phi) * x;
-  const double north = std::cos(phi) * z - std::sin(phi) * x;
-  out.elevation_deg = std::atan2(up, std::hypot(north, y)) / kRadPerDeg;
-  out.azimuth_deg = wrapped_deg(std::atan2(-y, north) / kRadPerDeg);
+  const double parallax = std::sin(kRadPerDegree * 8.794 * kDegreesPerArcsecond / out.distance_au);
+  const Horizontal seen = horizontal(place, altitude_m, time, nutated, obliquity, position, parallax);
+  out.elevation_deg = seen.elevation_deg;
+  out.azimuth_deg = seen.azimuth_deg;
   return out;
 }
 

@@ -12,7 +12,7 @@ struct BackgroundConstants {
   Vec3 disc_radiance;
   float pixel_angle_rad;
   Vec3 limb_exponent;
-  float unused_0;
+  float sun_stretch;  // by how much the disc is stretched along `up` before it is drawn, less 1; 0: it is round
   float tan_half[2];
   float jitter[2];
   Vec3 direction_to_moon;
@@ -20,6 +20,10 @@ struct BackgroundConstants {
   Vec3 moon_irradiance;
   float unused_1;
   Mat4 world_from_local;
+  Vec3 up;
+  float unused_2;
+  Vec3 airglow;
+  float unused_3;
 };
 
 }  // namespace tyndall::scene
