@@ -5,6 +5,7 @@
 
 #include "air/coefficients.hpp"
 #include "effect/medium.hpp"
+#include "effect/phase_rows.hpp"
 #include "effect/spectral_medium.hpp"
 #include "models/spectral.hpp"
 #include "models/table_axes.hpp"
@@ -84,6 +85,7 @@ Model::Model(const std::string& scene, const Assignments& assignments, const std
   check_drawn_model(settings_, model);
   if (light.spectral) settings_.effect.scattering.color = ColorMode::spectral;
   if (const Result<void> r = cli::check_color(model.id, settings_.effect.scattering.color); !r.ok()) raise(r.error());
+  if (const Result<void> r = cli::check_phase(model.id, settings_.effect.atmosphere); !r.ok()) raise(r.error());
   given_ = settings_.effect;
   if (!light.wavelengths_nm.empty()) {
     const std::vector<double>& nm = light.wavelengths_nm;
@@ -141,20 +143,23 @@ Result<std::vector<models::Answer>> Model::answer_some(std::span<const RayQuery>
 
 Result<std::vector<models::Answer>> Model::single(std::span<const RayQuery> queries) {
   const shared::SpectralMedium medium = spectral_medium_from_params(settings_.effect);
+  const PhaseRows phase = phase_rows(settings_.effect, settings_.effect.scattering.color);
   if (!queries.front().sky_irradiance) {
     std::vector<models::Ray> rays;
     rays.reserve(queries.size());
     for (const RayQuery& query : queries) rays.push_back(models::ray_from_query(query));
-    return single_->answer(medium, rays);
+    return single_->answer(medium, phase, rays);
   }
+  const PhaseRows fourth_phase = models::phase_at_fourth(phase);
   std::vector<models::Answer> out;
   out.reserve(queries.size());
   for (const RayQuery& query : queries) {
     const double cos_sun = std::cos(query.sun_zenith_rad);
-    out.push_back(models::in_all_channels(settings_.effect, medium, [&](const shared::Medium& m) -> models::Answer {
-      return {models::single_sky_irradiance(m, query.altitude_m, cos_sun),
+    const auto sky = [&](const shared::Medium& m, bool fourth) -> models::Answer {
+      return {models::single_sky_irradiance(m, query.altitude_m, cos_sun, fourth ? fourth_phase : phase),
               models::sun_transmittance(m, query.altitude_m, cos_sun)};
-    }));
+    };
+    out.push_back(models::in_all_channels(settings_.effect, medium, sky));
   }
   return out;
 }

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <optional>
 
 #include "arguments.hpp"
+#include "config/phase_file.hpp"
 #include "config/scene_file.hpp"
 #include "files/access.hpp"
 #include "files/files.hpp"
@@ -155,7 +157,16 @@ Result<void> resolve(CommonOptions& options) {
   for (const std::string& assignment : options.sets) {
     if (Result<void> assigned = config::set(options.settings, assignment); !assigned) return assigned;
   }
-  return config::check(options.settings);
+  if (Result<void> loaded = config::load_files(options.settings); !loaded) return loaded;
+  if (Result<void> checked = config::check(options.settings); !checked) return checked;
+  if (const PhaseTable* const phase = options.settings.effect.phase_table.get(); phase != nullptr) {
+    constexpr double kNoticed = 0.01;
+    if (phase->deviation() > kNoticed) {
+      note(concat({"atmosphere.phase_table: the integral over the sphere was off by ",
+                   files::number_text(std::round(1000.0 * phase->deviation()) / 10.0), " % and has been corrected"}));
+    }
+  }
+  return {};
 }
 
 std::string frame_path(const std::string& pattern, std::uint32_t frame) {

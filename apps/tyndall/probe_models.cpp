@@ -4,7 +4,9 @@
 #include <cmath>
 #include <memory>
 
+#include "air/phase.hpp"
 #include "effect/medium.hpp"
+#include "effect/phase_rows.hpp"
 #include "effect/spectral_medium.hpp"
 #include "gpu/host.hpp"
 #include "models/gpu_probe.hpp"
@@ -33,6 +35,8 @@ std::array<double, 3> luminous_xyz(const std::array<double, 3>& color) {
 Result<std::vector<ProbeAnswer>> run_single(const ProbeSettings& settings, std::span<const RayQuery> queries) {
   const Params& params = settings.params;
   const shared::SpectralMedium medium = spectral_medium_from_params(params);
+  const PhaseRows phase = phase_rows(params, params.scattering.color);
+  const PhaseRows fourth_phase = models::phase_at_fourth(phase);
   std::vector<ProbeAnswer> answers(queries.size());
   std::vector<models::Ray> rays;
   std::vector<std::size_t> places;  // indices of the rays among the queries
@@ -45,8 +49,8 @@ Result<std::vector<ProbeAnswer>> run_single(const ProbeSettings& settings, std::
     if (q.sky_irradiance) {
       const double cos_sun = std::cos(q.sun_zenith_rad);
       const models::Answer sky =
-          models::in_all_channels(params, medium, [&](const shared::Medium& m) -> models::Answer {
-            return {models::single_sky_irradiance(m, q.altitude_m, cos_sun),
+          models::in_all_channels(params, medium, [&](const shared::Medium& m, bool fourth) -> models::Answer {
+            return {models::single_sky_irradiance(m, q.altitude_m, cos_sun, fourth ? fourth_phase : phase),
                     models::sun_transmittance(m, q.altitude_m, cos_sun)};
           });
       answers[i] = probe_answer(params, sky, false);
@@ -65,7 +69,7 @@ Result<std::vector<ProbeAnswer>> run_single(const ProbeSettings& settings, std::
     settings.progress(sky_share + (1.0 - sky_share) * static_cast<double>(done) / static_cast<double>(rays.size()));
   };
   const Result<std::vector<models::Answer>> found =
-      models::single_scattering_on_gpu(*host.value(), medium, params.scattering.color, rays, progress);
+      models::single_scattering_on_gpu(*host.value(), medium, phase, params.scattering.color, rays, progress);
   if (!found) return found.error();
   for (std::size_t i = 0; i < places.size(); ++i) {
     answers[places[i]] = probe_answer(params, found.value()[i], true);
@@ -202,8 +206,8 @@ CpuModel homogeneous_medium_model(const Params& params) {
   const shared::SpectralMedium sea_level = spectral_medium_from_params(params);
   CpuModel out;
   out.answer = [params, sea_level](const RayQuery& q) {
-    return models::in_all_channels(params, sea_level, [&](const shared::Medium& m) -> models::Answer {
-      const models::HomogeneousMedium medium = models::homogeneous_medium_from_params(params, m);
+    return models::in_all_channels(params, sea_level, [&](const shared::Medium& m, bool fourth) -> models::Answer {
+      const models::HomogeneousMedium medium = models::homogeneous_medium_from_params(params, m, fourth);
       if (!q.sky_irradiance) return models::homogeneous_medium_light(medium, models::ray_from_query(q));
       return {models::homogeneous_medium_sky(medium, q.altitude_m, std::cos(q.sun_zenith_rad)), medium.sunlight};
     });
@@ -256,10 +260,20 @@ Result<void> check_color(scene::ModelId model, ColorMode color) {
                                                 "', which has three channels; expected rgb"};
 }
 
+Result<void> check_phase(scene::ModelId model, const AtmosphereParams& atmosphere) {
+  if (!air::tabulated(atmosphere) || scene::model_info(model).spectral) return {};
+  const bool table = atmosphere.mie_phase == MiePhase::table;
+  return Error{ErrorCode::invalid_argument, "atmosphere.mie_phase: '" + std::string(table ? "table" : "draine") +
+                                                "' is not supported by the model '" +
+                                                std::string(scene::model_info(model).name) +
+                                                "'; expected cornette-shanks or henyey-greenstein"};
+}
+
 Result<std::vector<ProbeAnswer>> evaluate_model(scene::ModelId model, const ProbeSettings& settings,
                                                 std::span<const RayQuery> queries) {
   using Id = scene::ModelId;
   if (Result<void> r = check_color(model, settings.params.scattering.color); !r) return std::move(r).error();
+  if (Result<void> r = check_phase(model, settings.params.atmosphere); !r) return std::move(r).error();
   switch (model) {
     case Id::precomputed: return run_precomputed(settings, queries);
     case Id::single: return run_single(settings, queries);

@@ -58,6 +58,8 @@ struct CpuModel {
 
 // Returns an error if a model has three channels only, and spectral colours are requested.
 [[nodiscard]] Result<void> check_color(scene::ModelId model, ColorMode color);
+// Returns an error if a model does not support the phase function.
+[[nodiscard]] Result<void> check_phase(scene::ModelId model, const AtmosphereParams& atmosphere);
 
 // Evaluates the queries with one of the models.
 [[nodiscard]] Result<std::vector<ProbeAnswer>> evaluate_model(scene::ModelId model, const ProbeSettings& settings,

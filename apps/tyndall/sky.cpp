@@ -7,6 +7,7 @@
 
 #include "arguments.hpp"
 #include "cli.hpp"
+#include "effect/phase_rows.hpp"
 #include "effect/spectral_medium.hpp"
 #include "files/files.hpp"
 #include "files/text.hpp"
@@ -56,14 +57,17 @@ class SkySource {
 class SingleSource final : public SkySource {
  public:
   SingleSource(gpu::Host& host, const Params& params)
-      : host_(host), params_(params), medium_(spectral_medium_from_params(params)) {}
+      : host_(host),
+        params_(params),
+        medium_(spectral_medium_from_params(params)),
+        phase_(phase_rows(params, params.scattering.color)) {}
 
   Result<std::vector<models::Answer>> answer(std::span<const RayQuery> queries) override {
     std::vector<models::Ray> rays;
     rays.reserve(queries.size());
     for (const RayQuery& query : queries) rays.push_back(models::ray_from_query(query));
     Result<std::vector<models::Answer>> found =
-        models::single_scattering_on_gpu(host_, medium_, params_.scattering.color, rays);
+        models::single_scattering_on_gpu(host_, medium_, phase_, params_.scattering.color, rays);
     if (!found || medium_.ground_albedo == Vec3(0.0F)) return found;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       models::Answer& answer = found.value()[i];
@@ -81,6 +85,7 @@ class SingleSource final : public SkySource {
   gpu::Host& host_;
   const Params params_;
   shared::SpectralMedium medium_;
+  PhaseRows phase_;
 };
 
 // All orders of scattering from the tables, and the ground under sun and sky.

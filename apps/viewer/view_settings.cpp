@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "config/phase_file.hpp"
 #include "config/scene_file.hpp"
 #include "gpu/try.hpp"
 #include "viewer/platform/files.hpp"
@@ -47,6 +48,7 @@ Result<void> ViewSettings::load(const std::string& path, bool over_defaults) {
   config::Settings loaded = over_defaults ? config::Settings() : left;
   loaded.scene.tables = left.scene.tables;
   TYNDALL_TRY(config::load(loaded, path));
+  TYNDALL_TRY(config::load_files(loaded));
   TYNDALL_TRY(config::check(loaded));
   left = std::move(loaded);
   return {};

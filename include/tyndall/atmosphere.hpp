@@ -31,6 +31,17 @@ struct AtmosphereConstants {
 [[nodiscard]] TYNDALL_API Result<AtmosphereConstants> atmosphere_constants(const Params& params,
                                                                            const AtmosphereInputs& inputs);
 
+// The rows of the phase function with atmosphere.mie_phase = draine or table, as tyndall/atmosphere.glsl reads them
+// with the macro TYNDALL_PHASE_BINDING.
+constexpr std::size_t kPhaseRows = 1001;
+struct AtmospherePhase {
+  std::array<std::array<float, 4>, kPhaseRows> rows = {};
+};
+
+// Copies the rows for these parameters to `out`, for a uniform buffer of this size. They depend on the parameters
+// alone. An error names the parameter that is out of range, or says that no table is needed.
+[[nodiscard]] TYNDALL_API Result<void> atmosphere_phase(const Params& params, AtmospherePhase& out);
+
 // The images that tyndall/atmosphere.glsl reads, as combined image samplers. list[i] belongs to the binding
 // TYNDALL_FIRST_BINDING + 1 + i.
 struct AtmosphereImages {

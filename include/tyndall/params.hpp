@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string_view>
 
@@ -61,6 +62,8 @@ constexpr Vec3 single_precision(double x, double y, double z) {
 #include "tyndall/params.def"
 #include "tyndall/params_undef.h"
 
+class PhaseTable;
+
 struct Params {
 #define ENUM_BEGIN(type)
 #define ENUM_VALUE(type, identifier, value, text)
@@ -76,6 +79,9 @@ struct Params {
 #define PARAM_ENUM(group, name, type, def, affects, doc)
 #include "tyndall/params.def"
 #include "tyndall/params_undef.h"
+  // The phase function with atmosphere.mie_phase = table (tyndall/phase_table.hpp); it is not in param_table().
+  // Required then, and otherwise not read.
+  std::shared_ptr<const PhaseTable> phase_table = nullptr;
 };
 
 // Returns the rows that describe Params, in the order of params.def. Offsets are from the start of Params.

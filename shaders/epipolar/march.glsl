@@ -230,7 +230,7 @@ int begin_panels(Ray ray, float from, float to, out Panels p) {
   float wanted =
       max(max(abs(h_end - p.altitude) / (0.5 * medium.mie_scale_height_m), (to - from) * densest / 0.2), 12.0);
   p.rayleigh = RAYLEIGH_SCATTERING(medium) * rayleigh_phase(ray.cos_view_sun);
-  p.mie = MIE_SCATTERING(medium) * mie_phase(medium, ray.cos_view_sun);
+  p.mie = mie_scattering_towards(medium, ray.cos_view_sun);
   p.integral = density_integral_along(medium, ray.altitude, ray.cos_zenith, from);
   return int(clamp(ceil(wanted), 1.0, 256.0));
 }

@@ -79,6 +79,6 @@ void main() {
   STORE_SAMPLE(at, s)
   NormalisationFactors factors = normalisation_factors(medium, integral);
   Spectrum light = RAYLEIGH_SCATTERING(medium) * rayleigh_phase(ray.cos_view_sun) * factors.rayleigh +
-                   MIE_SCATTERING(medium) * mie_phase(medium, ray.cos_view_sun) * factors.mie;
+                   mie_scattering_towards(medium, ray.cos_view_sun) * factors.mie;
   coarse[at] = pack_coarse(light) | (s.depth_m >= kSkyDepth ? kSkySample : 0u);
 }

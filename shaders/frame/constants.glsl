@@ -10,13 +10,27 @@
 #include "shared/medium.h"
 #include "shared/frame_constants.h"
 
+#ifdef TYNDALL_LIB_PHASE
+#error "include frame/constants.glsl before lib/phase.glsl, which uses its table of the phase function"
+#endif
+#define PHASE_ENTRY(m, i) phase_table[i]
+
 #ifdef TARGET_GPU
-layout(std140, binding = 0) uniform medium_block { Medium medium; };
+layout(std140, binding = 0) uniform medium_block {
+  Medium medium;
+  PHASE_TABLE_MEMBERS
+};
 #elif defined(COPY_CONSTANTS)
-layout(std430, binding = 0) readonly buffer medium_block { Medium stored_medium; };
+layout(std430, binding = 0) readonly buffer medium_block {
+  Medium stored_medium;
+  PHASE_TABLE_MEMBERS
+};
 Medium medium;
 #else
-layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
+layout(std430, binding = 0) readonly buffer medium_block {
+  Medium medium;
+  PHASE_TABLE_MEMBERS
+};
 #endif
 
 #if defined(TARGET_GPU) || defined(UNIFORM_CONSTANTS)

@@ -51,7 +51,7 @@ Spectrum integrate_to(inout Column column, Ray ray, float start, float to) {
     column.t = to;
   }
   return RAYLEIGH_SCATTERING(medium) * rayleigh_phase(ray.cos_view_sun) * column.march.rayleigh +
-         MIE_SCATTERING(medium) * mie_phase(medium, ray.cos_view_sun) * column.march.mie + column.beyond;
+         mie_scattering_towards(medium, ray.cos_view_sun) * column.march.mie + column.beyond;
 }
 
 Spectrum look_up_to(inout Column column, Ray ray, TableRay path, float start, float to) {

@@ -8,6 +8,7 @@
 
 #include "frame/constants.glsl"
 #include "frame/view_ray.glsl"
+#include "lib/phase.glsl"
 #include "lib/spectrum.glsl"
 #include "shared/constant_ids.h"
 
@@ -60,6 +61,10 @@ void homogeneous_attenuation(float length_m, out Spectrum transmittance, out Spe
 // Returns the factor that depends on the direction only [1/sr]: (beta_R p_R + beta_M p_M) / sigma.
 Spectrum homogeneous_phase(float cos_view_sun) {
   float second = cos_view_sun * cos_view_sun;
+  if (PHASE_TABULATED(medium)) {
+    return HOMOGENEOUS_RAYLEIGH_SOURCE * (1.0 + second) +
+           HOMOGENEOUS_MIE_SOURCE * CHANNELS(tabulated_phase(medium, cos_view_sun));
+  }
   float root = inversesqrt(frame.homogeneous.phase_min +
                            frame.homogeneous.phase_slope * (1.0 - frame.homogeneous.phase_sign * cos_view_sun));
   return HOMOGENEOUS_RAYLEIGH_SOURCE * (1.0 + second) +

@@ -35,7 +35,7 @@ Spectrum integrated_light(Ray ray, float start, float end) {
     }
   }
   Spectrum light = RAYLEIGH_SCATTERING(medium) * rayleigh_phase(ray.cos_view_sun) * march.rayleigh +
-                   MIE_SCATTERING(medium) * mie_phase(medium, ray.cos_view_sun) * march.mie;
+                   mie_scattering_towards(medium, ray.cos_view_sun) * march.mie;
   if (end - t > 1e-3) {
     light += single_scattering(medium, ray.altitude, ray.cos_zenith, ray.cos_sun_zenith, ray.cos_view_sun, t, end,
                                int(frame.integration_steps) / 3);

@@ -65,7 +65,7 @@ struct TableAngle {
 TableAngle table_angle(TableShape t, Medium m, float nu) {
   TableAngle a;
   a.rayleigh = RAYLEIGH_SCATTERING(m) * rayleigh_phase(nu);
-  a.mie = MIE_SCATTERING(m) * mie_phase(m, nu);
+  a.mie = mie_scattering_towards(m, nu);
   a.shape = angle_shape(angle_shape_of(m), nu);
   a.slices = float(t.angles);
   float slice = clamp(q_from_angle(t, nu) * a.slices - 0.5, 0.0, a.slices - 1.0);

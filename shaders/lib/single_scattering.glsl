@@ -103,7 +103,7 @@ Spectrum lit_scattering(IN(Medium) m, float h0, float mu, float mu_s, float nu, 
   int max_panels = 8 + 6 * steps;
   float R = m.planet_radius_m;
   Spectrum rayleigh = RAYLEIGH_SCATTERING(m) * rayleigh_phase(nu);
-  Spectrum mie = MIE_SCATTERING(m) * mie_phase(m, nu);
+  Spectrum mie = mie_scattering_towards(m, nu);
   vec4 node = vec4(0.069431844202974, 0.330009478207572, 0.669990521792428, 0.930568155797026);
   vec4 weight = vec4(0.173927422568727, 0.326072577431273, 0.326072577431273, 0.173927422568727);
   Spectrum radiance = Spectrum(0.0);

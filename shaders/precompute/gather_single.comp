@@ -1,18 +1,19 @@
 // Integrates the light that is scattered or reflected once along the rays that arrive at the points of the gathering
-// grid. The phase functions are exact, so that order 2 receives the full aureole of the sun. Writes the incident light
+// grid. Phase functions that have a formula are exact, so that order 2 receives the full aureole of the sun; tables
+// are without the details that the grid does not resolve (src/effect/phase_rows.hpp). Writes the incident light
 // (gather_index), radiance / E0. One invocation per sun x (kAnglesPerInvocation azimuths) x (zenith of an altitude).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 
-#include "lib/phase.glsl"
+#include "precompute/phase_block.glsl"
+
 #include "lib/table_values.glsl"
 #include "precompute/gather_grid.glsl"
 #include "precompute/ray_spectra.glsl"
 
 layout(local_size_x = 64) in;
 
-layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
 layout(std430, binding = 1) readonly buffer grid_rays_block { QuadratureRay rays[]; };
 layout(std430, binding = 2) writeonly buffer incident_block { vec4 incident[]; };
 
@@ -57,7 +58,7 @@ void main() {
     float q = q0 + end.a * nu[k];
     Spectrum radiance = reflected * (max(q / (m.planet_radius_m + ground), 0.0) * sun_transmittance_at(m, ground, q));
     radiance +=
-        RAYLEIGH_SCATTERING(m) * rayleigh_phase(nu[k]) * rayleigh[k] + MIE_SCATTERING(m) * mie_phase(m, nu[k]) * mie[k];
+        RAYLEIGH_SCATTERING(m) * rayleigh_phase(nu[k]) * rayleigh[k] + mie_scattering_towards(m, nu[k]) * mie[k];
     incident[gather_index(altitude, zenith, azimuth + k, sun)] = STORED(radiance, 0.0);
   }
 }

@@ -12,6 +12,7 @@
 #include "lib/table_values.glsl"
 #include "precompute/half_texel.glsl"
 #include "precompute/late_source.glsl"
+#include "precompute/phase_terms.glsl"
 
 layout(local_size_x = 32) in;
 
@@ -20,7 +21,6 @@ layout(std430, binding = 1) readonly buffer shape_block {
   TableShape shape;
   ZenithQuadrature quadrature;
 };
-layout(std430, binding = 2) readonly buffer phase_block { vec2 phase[]; };
 layout(std430, binding = 3) readonly buffer incident_block { vec4 incident[]; };
 layout(std430, binding = 4) writeonly buffer late_terms_block { vec4 late_terms[]; };
 layout(std430, binding = 5) buffer sum_block { vec4 sums[]; };
@@ -95,8 +95,8 @@ void scatter_modes(uint lane, uint altitude, uint modes, Spectrum aerosol) {
       Spectrum from_aerosol = radiance * aerosol;
       Spectrum from_air = radiance - from_aerosol;
       [[unroll]] for (uint n = 0u; n < kZenithsEach; ++n) {
-        vec2 p = phase[((altitude * kSourceZeniths + j + n * kGroups) * kGatherZeniths + q) * kModes + m];
-        sums[n] += from_air * p.x + from_aerosol * p.y;
+        PhaseTerm p = phase_term(((altitude * kSourceZeniths + j + n * kGroups) * kGatherZeniths + q) * kModes + m);
+        sums[n] += from_air * p.rayleigh + from_aerosol * p.aerosol;
       }
     }
     [[unroll]] for (uint n = 0u; n < kZenithsEach; ++n) scattered[(j + n * kGroups) * kModes + m] = sums[n];

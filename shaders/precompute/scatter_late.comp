@@ -8,6 +8,7 @@
 #include "lib/table_values.glsl"
 #include "precompute/half_texel.glsl"
 #include "precompute/late_source.glsl"
+#include "precompute/phase_terms.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -16,7 +17,6 @@ layout(std430, binding = 1) readonly buffer shape_block {
   TableShape shape;
   ZenithQuadrature quadrature;
 };
-layout(std430, binding = 2) readonly buffer phase_block { vec2 phase[]; };
 layout(std430, binding = 3) readonly buffer incident_block { vec4 incident[]; };
 layout(std430, binding = 4) buffer late_terms_block { vec4 late_terms[]; };
 layout(std430, binding = 5) readonly buffer sum_block { vec4 sums[]; };
@@ -66,9 +66,9 @@ void main() {
   uint modes = late_modes(shape, push.order - 1u);
   for (uint q = 0u; q < kGatherZeniths; ++q) {
     for (uint m = 0u; m < modes; ++m) {
-      vec2 p = phase[((altitude * kSourceZeniths + zenith) * kGatherZeniths + q) * kModes + m];
+      PhaseTerm p = phase_term(((altitude * kSourceZeniths + zenith) * kGatherZeniths + q) * kModes + m);
       Spectrum light = CHANNELS(incident[late_incident_index(altitude, q, m, sun)]);
-      terms[m] += light * (p.x * (1.0 - aerosol) + p.y * aerosol);
+      terms[m] += light * (p.rayleigh * (1.0 - aerosol) + p.aerosol * aerosol);
     }
   }
   Spectrum sums_of[kLateTerms];

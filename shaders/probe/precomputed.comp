@@ -5,6 +5,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
+#include "frame/phase_block.glsl"
+
 #include "lib/single_scattering.glsl"
 #include "frame/ground_light.glsl"
 #include "frame/table_lookup.glsl"
@@ -14,7 +16,6 @@
 
 layout(local_size_x = 64) in;
 
-layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
 layout(std430, binding = 1) readonly buffer ray_block { ProbeRay rays[]; };
 layout(std430, binding = 2) writeonly buffer result_block { ProbeResult results[]; };
 layout(std430, binding = 3) readonly buffer setup_block {

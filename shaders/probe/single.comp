@@ -4,6 +4,8 @@
 // the transmittance to the ray's end.
 #extension GL_GOOGLE_include_directive : require
 
+#include "frame/phase_block.glsl"
+
 #include "lib/single_scattering.glsl"
 #include "probe/result.glsl"
 #include "shared/probe.h"
@@ -12,7 +14,6 @@ layout(local_size_x = 64) in;
 
 const int kSteps = 16;  // see single_scattering()
 
-layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
 layout(std430, binding = 1) readonly buffer ray_block { ProbeRay rays[]; };
 layout(std430, binding = 2) writeonly buffer result_block { ProbeResult results[]; };
 

@@ -11,6 +11,9 @@
 //   TYNDALL_SHADOW(p)      returns how much sunlight your shadows let pass at position p, as a float or a vec3 from 0
 //   to
 //                          1. It enables tyndall_between_shadowed().
+//   TYNDALL_PHASE_BINDING  binding of a uniform block with the rows of atmosphere_phase(), for atmosphere.mie_phase =
+//                          draine or table. Without it, these are drawn with the phase function of Henyey and
+//                          Greenstein that has the same mean cosine.
 #ifndef TYNDALL_ATMOSPHERE_GLSL
 #define TYNDALL_ATMOSPHERE_GLSL
 
@@ -19,6 +22,15 @@
 #endif
 #ifndef TYNDALL_FIRST_BINDING
 #define TYNDALL_FIRST_BINDING 0
+#endif
+
+#include "shared/medium.h"
+#ifdef TYNDALL_PHASE_BINDING
+layout(std140, set = TYNDALL_SET, binding = TYNDALL_PHASE_BINDING) uniform phase_rows_block {
+  vec4 phase_rows[kPhaseNodes];
+};
+#define PHASE_ENTRY(m, i) phase_rows[i]
+#define PHASE_TABULATED(m) ((m).mie_phase >= 2u)
 #endif
 
 #define TABLE_LAYOUT(index) layout(set = TYNDALL_SET, binding = TYNDALL_FIRST_BINDING + 2 + index)
@@ -222,7 +234,7 @@ TyndallPath tyndall_between_shadowed(vec3 from, vec3 to, int steps) {
                                      path.cos_view_sun, 0.0, end, 16);
   }
   Spectrum rayleigh = RAYLEIGH_SCATTERING(tyndall_constants.medium) * rayleigh_phase(path.cos_view_sun);
-  Spectrum mie = MIE_SCATTERING(tyndall_constants.medium) * mie_phase(tyndall_constants.medium, path.cos_view_sun);
+  Spectrum mie = mie_scattering_towards(tyndall_constants.medium, path.cos_view_sun);
   float dt = end / float(max(steps, 1));
   Spectrum lit = Spectrum(0.0);
   Spectrum all = Spectrum(0.0);

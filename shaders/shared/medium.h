@@ -5,6 +5,18 @@
 #ifndef TYNDALL_SHARED_MEDIUM
 #define TYNDALL_SHARED_MEDIUM
 
+// Rows of the aerosol's phase function where it has no formula: its natural logarithm [ln 1/sr], one component per
+// channel, at nodes that are dense ahead and towards the sun (phase_coordinate() of lib/phase.glsl). They follow the
+// medium in the same block. Together they are within the smallest limit of uniform blocks, 16 384 bytes.
+const uint kPhaseNodes = 1001u;
+#ifdef SPECTRAL
+#define PHASE_TABLE_MEMBERS vec4 phase_table[kPhaseNodes];
+#else
+#define PHASE_TABLE_MEMBERS   \
+  vec4 unused_fourth_channel; \
+  vec4 phase_table[kPhaseNodes];
+#endif
+
 struct Medium {
   vec3 rayleigh_scattering;
   float planet_radius_m;
@@ -24,6 +36,9 @@ struct Medium {
   // Of scattering.color = spectral: Rayleigh scattering, aerosol scattering, aerosol extinction and ozone absorption at
   // the fourth wavelength.
   vec4 fourth_channel;
+#endif
+#ifdef PHASE_ROWS_OF_MEDIUM
+  PHASE_ROWS_OF_MEDIUM  // of C++ models
 #endif
 };
 

@@ -32,6 +32,9 @@ const uint kGatherZeniths = 24u;  // half of them on each side of the horizon
 const uint kGatherAzimuths = 16u;
 const uint kSourceZeniths = 33u;
 const uint kSourceAzimuths = 21u;
+// Entries of two floats per coefficient of the phase functions, if the aerosol's is tabulated, and then depends on the
+// channel: Rayleigh and the first channel, the second and the third, the fourth. Otherwise there is one.
+const uint kPhaseTerms = 3u;
 const uint kModes = 16u;  // of the Fourier series in azimuth
 // The late orders are those after `orders` of TableShape.
 const uint kLateOrders = 6u;    // the number of them that are solved; the rest is estimated

@@ -5,6 +5,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
+#include "frame/phase_block.glsl"
+
 #include "frame/ground_light.glsl"
 #include "frame/table_lookup.glsl"
 #include "shared/sky_probe.h"
@@ -13,7 +15,6 @@
 
 layout(local_size_x = 32) in;
 
-layout(std430, binding = 0) readonly buffer medium_block { Medium medium; };
 layout(std430, binding = 1) readonly buffer sky_probe_block { SkyProbeConstants probe; };
 layout(std430, binding = 2) writeonly buffer sky_probe_rows_block { vec4 rows[]; };
 layout(binding = 4) uniform sampler2D sky_irradiance_table;

@@ -46,7 +46,7 @@ Result<EffectDesc> read_desc(const char* where, const TyndallEffectDesc* desc) {
 }
 
 const Params& params_or_defaults(const TyndallParams* params) {
-  static constexpr Params kDefaults;
+  static const Params kDefaults;
   return params != nullptr ? params->params : kDefaults;
 }
 

@@ -292,6 +292,12 @@ Result<void> check(const Settings& settings) {
         files::concat({"'spectral' is not supported by scattering.model = ", model.name, ", which has three channels"}),
         "scattering.color", "expected rgb");
   }
+  const MiePhase phase = settings.effect.atmosphere.mie_phase;
+  if ((phase == MiePhase::draine || phase == MiePhase::table) && !model.spectral) {
+    return files::input_error(files::concat({"'", phase == MiePhase::table ? "table" : "draine",
+                                             "' is not supported by scattering.model = ", model.name}),
+                              "atmosphere.mie_phase", "expected cornette-shanks or henyey-greenstein");
+  }
   const scene::ShadowParams& shadows = settings.scene.shadows;
   if (shadows.first_marched >= shadows.cascades) {
     return files::input_error(files::concat({std::to_string(shadows.first_marched),
@@ -317,6 +323,11 @@ Result<void> check(const Settings& settings) {
   if (Result<scene::SunParams> placed = scene::placed_sun(sun, file ? std::optional(scene::Place()) : std::nullopt);
       !placed) {
     return std::move(placed).error();
+  }
+  if (Result<scene::MoonParams> moon =
+          scene::placed_moon(settings.scene.moon, sun, file ? std::optional(scene::Place()) : std::nullopt);
+      !moon) {
+    return std::move(moon).error();
   }
   if (!sun.place.empty()) {
     if (Result<scene::Place> place = scene::parse_place(sun.place, "sun.place"); !place)

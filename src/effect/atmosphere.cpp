@@ -8,6 +8,7 @@
 #include "effect/effect_state.hpp"
 #include "effect/frame_constants.hpp"
 #include "effect/medium.hpp"
+#include "effect/phase_rows.hpp"
 #include "effect/spectral_medium.hpp"
 #include "gpu/guard.hpp"
 #include "gpu/try.hpp"
@@ -79,6 +80,20 @@ Result<AtmosphereConstants> atmosphere_constants(const Params& params, const Atm
     std::memcpy(out.bytes.data(), &medium, size);
     std::memcpy(out.bytes.data() + size, &constants.tables, sizeof constants - sizeof(shared::Medium));
     return out;
+  });
+}
+
+Result<void> atmosphere_phase(const Params& params, AtmospherePhase& out) {
+  return guarded("atmosphere_phase", [&]() -> Result<void> {
+    TYNDALL_TRY(check_params(params));
+    const PhaseRows rows = phase_rows(params, params.scattering.color);
+    static_assert(sizeof out == kPhaseBytes);
+    if (rows.empty()) {
+      return Error{ErrorCode::invalid_argument,
+                   "atmosphere_phase: atmosphere.mie_phase has a formula in the shader; expected draine or table"};
+    }
+    std::memcpy(out.rows.data(), rows.data(), sizeof out);
+    return {};
   });
 }
 

@@ -68,6 +68,10 @@ Result<void> check_params(const Params& params) {
       if (Result<void> r = check_number(info, static_cast<double>(numbers[i])); !r) return r;
     }
   }
+  if (params.atmosphere.mie_phase == MiePhase::table && !params.phase_table) {
+    return invalid("atmosphere.mie_phase is 'table', but there is no table; expected atmosphere.phase_table, or "
+                   "Params::phase_table in C++");
+  }
   if (Result<void> r = air::check(params); !r) return r;
   const std::uint32_t downscale = params.scattering.downscale;
   if (downscale != 1 && downscale != 2 && downscale != 4) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "air/phase.hpp"
 #include "effect/effect_state.hpp"
 #include "effect/epipolar_constants.hpp"
 #include "effect/frame_constants.hpp"
@@ -36,7 +37,7 @@ constexpr VkDeviceSize align(VkDeviceSize size) {
 // Sizes and offsets in a slot of the ring of constants. Each view of a frame in flight has a slot.
 constexpr VkDeviceSize kFrameBytes = align(sizeof(shared::FrameConstants));
 constexpr VkDeviceSize kCascadeBytes = align(sizeof(CascadeArray));
-constexpr VkDeviceSize kMediumBytes = align(sizeof(shared::SpectralMedium));
+constexpr VkDeviceSize kMediumBytes = align(kMediumBlockBytes);
 constexpr VkDeviceSize kEpipolarBytes = align(sizeof(shared::EpipolarConstants));
 constexpr VkDeviceSize kCascadeOffset = kFrameBytes;
 constexpr VkDeviceSize kMediumOffset = kCascadeOffset + kCascadeBytes;
@@ -175,7 +176,8 @@ Result<void> Effect::State::make_pipelines(const EffectDesc& d, const Params& p)
 Result<Effect::State::Pending> Effect::State::plan(const EffectDesc& d, const Params& p, std::uint32_t required) {
   const bool other_resources = (required & bit(Affects::Resources)) != 0;
   if ((required & kEverything) != 0) TYNDALL_TRY(check_limits(device, d, p));
-  Pending pending = {d, p, {}, ColorMode::rgb, {}, {}};
+  Pending pending = {
+      d, p, {phase_rows(p, ColorMode::rgb), phase_rows(p, ColorMode::spectral)}, {}, ColorMode::rgb, {}, {}};
   if (other_resources || (required & bit(Affects::Pipeline)) != 0) {
     TYNDALL_TRY(make_pipelines(d, p));
     if (const Params before = drawn_with(p); before.scattering.color != p.scattering.color) {
@@ -204,7 +206,9 @@ void Effect::State::commit(Pending&& pending) noexcept {
   if (pending.froxels) froxels.commit(std::move(*pending.froxels), FrameRing::slots(desc) + 1);
   if (pending.tables) tables.commit(std::move(*pending.tables));
   const bool other_color = params.scattering.color != pending.params.scattering.color;
-  if (desc.shadow_colors != pending.desc.shadow_colors || other_color) all_pipelines.clear();
+  const bool other_phase = air::tabulated(params.atmosphere) != air::tabulated(pending.params.atmosphere);
+  if (desc.shadow_colors != pending.desc.shadow_colors || other_color || other_phase) all_pipelines.clear();
+  phase = std::move(pending.phase);
   desc = pending.desc;
   params = pending.params;
 }
@@ -219,7 +223,7 @@ Result<void> Effect::State::change(const EffectDesc& d, const Params& p) {
 }
 
 Result<Progress> Effect::State::prepare_pipelines(std::uint32_t budget) {
-  if (all_pipelines.empty()) all_pipelines = all_frame_pipelines(desc, target, params.scattering.color);
+  if (all_pipelines.empty()) all_pipelines = all_frame_pipelines(desc, target, params);
   TYNDALL_TRY(pipelines.make(all_pipelines, budget));
   Progress progress;
   progress.total = static_cast<std::uint32_t>(all_pipelines.size());
@@ -237,6 +241,11 @@ void Effect::State::prepare_images(VkCommandBuffer cmd) {
   images_ready = true;
 }
 
+void Effect::State::write_phase(std::byte* block, ColorMode color) const {
+  const PhaseRows& rows = phase[color == ColorMode::spectral ? 1 : 0];
+  if (!rows.empty()) std::memcpy(block + sizeof(shared::SpectralMedium), rows.data(), kPhaseBytes);
+}
+
 void Effect::State::write_constants(const FrameInputs& inputs, const Params& drawn, const shared::FrameConstants& frame,
                                     std::uint32_t slot) {
   const CascadeArray cascades = cascade_constants(inputs);
@@ -246,6 +255,7 @@ void Effect::State::write_constants(const FrameInputs& inputs, const Params& dra
   std::memcpy(mapped(offset), &frame, sizeof frame);
   std::memcpy(mapped(offset + kCascadeOffset), &cascades, sizeof cascades);
   std::memcpy(mapped(offset + kMediumOffset), &medium, sizeof medium);
+  write_phase(mapped(offset + kMediumOffset), drawn.scattering.color);
   std::memcpy(mapped(offset + kEpipolarOffset), &slices, sizeof slices);
 }
 
@@ -255,7 +265,7 @@ BoundResources Effect::State::bind_resources(const FrameInputs& inputs, std::uin
   const VkBuffer ring_buffer = constants.buffer.get();
   out.set(Resource::frame, ring_buffer, offset, sizeof(shared::FrameConstants));
   out.set(Resource::cascades, ring_buffer, offset + kCascadeOffset, sizeof(CascadeArray));
-  out.set(Resource::medium, ring_buffer, offset + kMediumOffset, sizeof(shared::SpectralMedium));
+  out.set(Resource::medium, ring_buffer, offset + kMediumOffset, kMediumBlockBytes);
   out.set(Resource::epipolar, ring_buffer, offset + kEpipolarOffset, sizeof(shared::EpipolarConstants));
 
   const auto image = [&out](Resource resource, const Texture& texture, VkSampler sampler) {

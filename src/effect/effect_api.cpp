@@ -107,7 +107,7 @@ const EffectDesc& Effect::desc() const {
 }
 
 const Params& Effect::params() const {
-  static constexpr Params kDefaults;
+  static const Params kDefaults;
   return state_ ? state_->params : kDefaults;
 }
 

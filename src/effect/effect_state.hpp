@@ -11,6 +11,7 @@
 #include "effect/frame_buffers.hpp"
 #include "effect/frame_ring.hpp"
 #include "effect/froxel_volume.hpp"
+#include "effect/phase_rows.hpp"
 #include "effect/pipeline_cache.hpp"
 #include "effect/remarks.hpp"
 #include "effect/set_cache.hpp"
@@ -39,6 +40,7 @@ struct TYNDALL_HIDDEN Effect::State {
   DeviceInfo info;
   EffectDesc desc;
   Params params;
+  std::array<PhaseRows, 2> phase;  // of `params`, with scattering.color = rgb and spectral
   gpu::Device device;
   Target target = Target::cpu;  // of the passes of a frame
 
@@ -70,6 +72,7 @@ struct TYNDALL_HIDDEN Effect::State {
   struct Pending {
     EffectDesc desc;
     Params params;
+    std::array<PhaseRows, 2> phase;
     std::optional<FrameBuffers::Pending> buffers;
     ColorMode buffer_color = ColorMode::rgb;  // of `buffers`
     std::optional<FroxelVolume::Pending> froxels;
@@ -102,6 +105,8 @@ struct TYNDALL_HIDDEN Effect::State {
   [[nodiscard]] Params drawn_with(const Params& p) const;
   // Returns tyndall::table_params().
   [[nodiscard]] Params table_params() const;
+  // Writes the rows of the phase function, if it has any, behind the medium at the beginning of `block`.
+  void write_phase(std::byte* block, ColorMode color) const;
 
  private:
   [[nodiscard]] ColorMode color_of_buffers(const Params& p) const;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "air/phase.hpp"
 #include "effect/modes.hpp"
 #include "effect/spectral_medium.hpp"
 
@@ -88,8 +89,11 @@ shared::HomogeneousMedium homogeneous_constants(const Params& params, shared::ve
   const double g = params.atmosphere.mie_g;
   const bool second = params.atmosphere.mie_phase == MiePhase::cornette_shanks;
   const double rayleigh = 3.0 / (16.0 * std::numbers::pi);
+  // The tabulated function is a factor of its own in the shaders.
   const double mie =
-      (1.0 - g * g) * (second ? 3.0 / (8.0 * std::numbers::pi * (2.0 + g * g)) : 0.25 / std::numbers::pi);
+      air::tabulated(params.atmosphere)
+          ? 1.0
+          : (1.0 - g * g) * (second ? 3.0 / (8.0 * std::numbers::pi * (2.0 + g * g)) : 0.25 / std::numbers::pi);
   const auto ratio = [](double factor, float s, float e) {
     return static_cast<float>(factor * s / std::max(static_cast<double>(e), 1e-30));
   };

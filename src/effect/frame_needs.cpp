@@ -64,10 +64,11 @@ std::vector<SetKey> sets_of_frames(const EffectDesc& desc, const Params& params,
   return out;
 }
 
-std::vector<PipelineKey> all_frame_pipelines(const EffectDesc& desc, Target target, ColorMode color) {
+std::vector<PipelineKey> all_frame_pipelines(const EffectDesc& desc, Target target, const Params& similar) {
   std::vector<PipelineKey> out;
   const auto add = [&](Params params) {
-    params.scattering.color = color;
+    params.scattering.color = similar.scattering.color;
+    params.atmosphere.mie_phase = similar.atmosphere.mie_phase;
     add_pipelines(out, desc, params, target);
   };
   // Apart from the medium, no shader has constants of two of these groups, so the groups need not be combined.

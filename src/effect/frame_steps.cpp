@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "air/phase.hpp"
 #include "effect/frame_constants.hpp"
 #include "effect/froxel_volume.hpp"
 #include "effect/modes.hpp"
@@ -96,6 +97,7 @@ Specialisation specialisation(const Frame& frame) {
   set(shared::kSparsityId, sparsity(frame.shape.extent, frame.params));
   set(shared::kRefinementId, frame.params.epipolar.refinement);
   set(shared::kFormatId, frame.params.epipolar.min_max_format);
+  set(shared::kPhaseTableId, air::tabulated(frame.params.atmosphere));
   set_sizes(out, frame.shape.target);
   return out;
 }

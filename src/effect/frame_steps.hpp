@@ -57,8 +57,9 @@ using ResourceSet = std::bitset<kResources>;
 // Returns the descriptor sets of frames of any shape with these settings.
 [[nodiscard]] std::vector<SetKey> sets_of_frames(const EffectDesc& desc, const Params& params,
                                                  Target target = Target::cpu);
-// Returns the pipelines of frames of any shape with any parameters, but with this representation of light.
+// Returns the pipelines of frames of any shape with any parameters, but with the representation of light and the kind
+// of phase function (air::tabulated) of `similar`.
 [[nodiscard]] std::vector<PipelineKey> all_frame_pipelines(const EffectDesc& desc, Target target = Target::cpu,
-                                                           ColorMode color = ColorMode::rgb);
+                                                           const Params& similar = {});
 
 }  // namespace tyndall

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "air/phase.hpp"
 #include "effect/froxel_volume.hpp"
 #include "effect/resources.hpp"
 #include "effect/shared.hpp"
@@ -113,7 +114,8 @@ Result<void> check_limits(const gpu::Device& device, const EffectDesc& desc, con
                                                   " bytes; expected at most the limit of this device, " +
                                                   std::to_string(device.max_allocation_bytes)};
   }
-  for (const BufferPlan& plan : plan_scratch(params.tables.size.y, params.scattering.color)) {
+  const bool tabulated = air::tabulated(params.atmosphere);
+  for (const BufferPlan& plan : plan_scratch(params.tables.size.y, params.scattering.color, tabulated)) {
     TYNDALL_TRY(check_buffer(device, plan.name, plan.bytes, "tables.size"));
   }
   TYNDALL_TRY(check_froxels(device, params));

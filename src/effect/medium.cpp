@@ -1,6 +1,7 @@
 #include "effect/medium.hpp"
 
 #include "air/coefficients.hpp"
+#include "air/phase.hpp"
 
 namespace tyndall {
 
@@ -11,7 +12,7 @@ shared::Medium medium_from_params(const Params& params) {
   medium.atmosphere_height_m = a.height_m;
   medium.rayleigh_scale_height_m = a.rayleigh_scale_height_m;
   medium.mie_scale_height_m = a.mie_scale_height_m;
-  medium.mie_g = a.mie_g;
+  medium.mie_g = air::tabulated(a) ? static_cast<float>(air::asymmetry(params, air::kAerosolWavelength_nm)) : a.mie_g;
   medium.mie_phase = static_cast<std::uint32_t>(a.mie_phase);
   medium.ozone_centre_m = a.ozone_centre_m;
   medium.ozone_half_width_m = a.ozone_half_width_m;

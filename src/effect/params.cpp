@@ -4,6 +4,8 @@
 #include <array>
 #include <cstring>
 
+#include "effect/phase_rows.hpp"
+
 namespace tyndall {
 namespace {
 
@@ -70,6 +72,7 @@ std::uint32_t affected(const Params& before, const Params& after) {
       mask |= 1U << static_cast<std::uint32_t>(info.affects);
     }
   }
+  if (!same_phase(before, after)) mask |= 1U << static_cast<std::uint32_t>(Affects::Tables);
   return mask;
 }
 

@@ -19,8 +19,8 @@ namespace {
 
 // The largest alignment that Vulkan allows devices to require of offsets.
 constexpr VkDeviceSize kMediumOffset = 256;
-static_assert(sizeof(shared::SkyProbeConstants) <= kMediumOffset && sizeof(shared::SpectralMedium) <= 256);
-constexpr VkDeviceSize kSlotBytes = kMediumOffset + 256;
+static_assert(sizeof(shared::SkyProbeConstants) <= kMediumOffset);
+constexpr VkDeviceSize kSlotBytes = kMediumOffset + (kMediumBlockBytes + 255) / 256 * 256;
 constexpr VkDeviceSize kCoefficientBytes = 9 * 4 * sizeof(float);
 constexpr VkDeviceSize kRowBytes = VkDeviceSize{shared::kSkyProbeRows} * shared::kSkyProbeSums * 4 * sizeof(float);
 constexpr VkBufferUsageFlags kConstantsUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
@@ -160,7 +160,7 @@ BoundResources SkyProbe::State::bind_resources(VkDeviceSize offset) const {
   BoundResources out;
   const VkBuffer buffer = constants.buffer.get();
   out.set(Resource::sky_probe, buffer, offset, sizeof(shared::SkyProbeConstants));
-  out.set(Resource::medium, buffer, offset + kMediumOffset, sizeof(shared::SpectralMedium));
+  out.set(Resource::medium, buffer, offset + kMediumOffset, kMediumBlockBytes);
   out.set(Resource::sky_probe_rows, rows.buffer.get());
   out.set(Resource::sky_coefficients, coefficients.buffer.get());
   const auto table = [&](Resource resource, TableId id) {
@@ -199,6 +199,7 @@ Result<Progress> SkyProbe::State::record(VkCommandBuffer cmd, const SkyProbeInpu
   const VkDeviceSize offset = kSlotBytes * slot;
   std::memcpy(static_cast<std::byte*>(constants.mapped) + offset, &probe, sizeof probe);
   std::memcpy(static_cast<std::byte*>(constants.mapped) + offset + kMediumOffset, &medium, sizeof medium);
+  effect->write_phase(static_cast<std::byte*>(constants.mapped) + offset + kMediumOffset, drawn.scattering.color);
   if (!cleared) {
     device.vk.CmdFillBuffer(cmd, coefficients.buffer.get(), 0, kCoefficientBytes, 0);
     gpu::barrier(device, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <utility>
 
+#include "air/phase.hpp"
 #include "effect/spectral_medium.hpp"
 #include "effect/table_plan.hpp"
 #include "effect/table_steps.hpp"
@@ -46,15 +47,16 @@ Result<void> TableBuilder::create(const gpu::Device& device, PipelineCache& pipe
   return {};
 }
 
-Result<TableScratch> TableBuilder::create_scratch(std::uint32_t views, ColorMode color) const {
+Result<TableScratch> TableBuilder::create_scratch(std::uint32_t views, ColorMode color, bool tabulated) const {
   TableScratch out = {};
-  for (const BufferPlan& plan : plan_scratch(views, color)) {
+  for (const BufferPlan& plan : plan_scratch(views, color, tabulated)) {
     TYNDALL_ASSIGN(out.*plan.buffer,
                    gpu::create_buffer(*device_, plan.name, plan.bytes, kScratchUsage, gpu::MemoryKind::device));
   }
   TYNDALL_ASSIGN(out.source_function, gpu::create_image(*device_, kSourceFunction));
   out.views = views;
   out.color = color;
+  out.tabulated = tabulated;
   return out;
 }
 
@@ -99,8 +101,9 @@ Result<TableBuilder::Pending> TableBuilder::plan(const Params& params) {
     TYNDALL_ASSIGN(out.images[i].image, gpu::create_image(*device_, desc));
   }
   const ColorMode color = params.scattering.color;
-  if (scratch_.views != params.tables.size.y || scratch_.color != color) {
-    TYNDALL_ASSIGN(out.scratch, create_scratch(params.tables.size.y, color));
+  const bool tabulated = air::tabulated(params.atmosphere);
+  if (scratch_.views != params.tables.size.y || scratch_.color != color || scratch_.tabulated != tabulated) {
+    TYNDALL_ASSIGN(out.scratch, create_scratch(params.tables.size.y, color, tabulated));
   }
   out.steps = table_steps(params, out.stale);
   if (!options_.pipelines_later) {
@@ -147,6 +150,9 @@ void TableBuilder::upload_constants(VkCommandBuffer cmd) {
                VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
   device_->vk.CmdUpdateBuffer(cmd, buffer, 0, sizeof medium, &medium);
   device_->vk.CmdUpdateBuffer(cmd, buffer, kShapeOffset, sizeof shape, &shape);
+  if (const PhaseRows rows = resolved_phase_rows(wanted_); !rows.empty()) {
+    device_->vk.CmdUpdateBuffer(cmd, buffer, sizeof medium, kPhaseBytes, rows.data());
+  }
   gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
                VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT);
 }
@@ -236,7 +242,7 @@ Result<void> TableBuilder::record(VkCommandBuffer cmd, std::uint32_t budget) {
 BoundResources TableBuilder::bind_resources() {
   const TableScratch& s = scratch_;
   BoundResources out;
-  out.set(Resource::medium, s.constants.buffer.get(), 0, sizeof(shared::SpectralMedium));
+  out.set(Resource::medium, s.constants.buffer.get(), 0, kMediumBlockBytes);
   out.set(Resource::shape, s.constants.buffer.get(), kShapeOffset, sizeof(ShapeBlock));
   out.set(Resource::grid_rays, s.grid_rays.buffer.get());
   out.set(Resource::table_rays, s.table_rays.buffer.get());

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "effect/phase_rows.hpp"
 #include "effect/tables.hpp"
 
 namespace tyndall {
@@ -17,7 +18,8 @@ struct ShapeBlock {
   shared::TableShape shape;
   shared::ZenithQuadrature quadrature;
 };
-constexpr VkDeviceSize kShapeOffset = 256;  // a multiple of every device's alignment
+// The medium with its phase function comes first. A multiple of every device's alignment.
+constexpr VkDeviceSize kShapeOffset = (kMediumBlockBytes + 255) / 256 * 256;
 constexpr VkDeviceSize kConstantBytes = kShapeOffset + sizeof(ShapeBlock);
 
 constexpr std::uint32_t bit(TableId id) { return 1U << static_cast<std::uint32_t>(id); }
@@ -38,7 +40,8 @@ constexpr gpu::ImageDesc kSourceFunction = {
     {shared::kGatherSuns, shared::kGatherAltitudes* shared::kSourceAzimuths, shared::kSourceZeniths},
     VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT};
 
-[[nodiscard]] std::array<BufferPlan, kScratchBuffers> plan_scratch(std::uint32_t views, ColorMode color);
+[[nodiscard]] std::array<BufferPlan, kScratchBuffers> plan_scratch(std::uint32_t views, ColorMode color,
+                                                                   bool tabulated);
 constexpr VkBufferUsageFlags kScratchUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 
 // Computes Gauss-Legendre nodes and weights on [0; 1] by Newton's method on the Legendre polynomial.

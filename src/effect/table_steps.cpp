@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "air/phase.hpp"
 #include "effect/table_plan.hpp"
 #include "effect_shaders.hpp"
 
@@ -30,6 +31,7 @@ constexpr const char* kNames[] = {kSunLight,   kGridNodes,   kPhaseMatrix, kGath
 // Makes the steps of a build for one representation of light.
 struct StepMaker {
   ColorMode color;
+  bool tabulated;  // of the aerosol's phase function
 
   Step operator()(const char* name, const gpu::Shader& shader, Resource rays, VkExtent3D invocations,
                   std::array<std::uint32_t, 2> push = {}) const;
@@ -39,6 +41,7 @@ Step StepMaker::operator()(const char* name, const gpu::Shader& shader, Resource
                            std::array<std::uint32_t, 2> push) const {
   Specialisation constants;
   constants[shared::kRaysOfTablesId] = rays == Resource::table_rays ? 1 : 0;
+  constants[shared::kPhaseTableId] = tabulated ? 1 : 0;
   Step step;
   step.name = name;
   step.pipeline = pipeline_key(variant_for(shader, Target::cpu, color), constants);
@@ -51,7 +54,7 @@ Step StepMaker::operator()(const char* name, const gpu::Shader& shader, Resource
 // Fills the tables altitude by altitude. Their other axes are sun, angle and view; each row of a step has all suns of a
 // few angles of one view.
 void append_tables(const Params& params, bool single, bool high, std::vector<Step>& out) {
-  const StepMaker step_of = {params.scattering.color};
+  const StepMaker step_of = {params.scattering.color, air::tabulated(params.atmosphere)};
   const UVec4& size = params.tables.size;
   const std::uint32_t groups = (size.w + shared::kAnglesPerInvocation - 1) / shared::kAnglesPerInvocation;
   const std::uint32_t rows = groups * size.y;
@@ -72,7 +75,7 @@ void append_tables(const Params& params, bool single, bool high, std::vector<Ste
 }  // namespace
 
 std::vector<Step> table_steps(const Params& params, std::uint32_t stale) {
-  const StepMaker step_of = {params.scattering.color};
+  const StepMaker step_of = {params.scattering.color, air::tabulated(params.atmosphere)};
   const bool high = (stale & kHighTables) != 0;
   const bool single = (stale & kSingleTables) != 0;
   std::vector<Step> out;

@@ -9,7 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "air/phase.hpp"
 #include "effect/medium.hpp"
+#include "effect/phase_rows.hpp"
 #include "effect/spectral_medium.hpp"
 #include "effect/table_plan.hpp"
 #include "effect/table_steps.hpp"
@@ -80,7 +82,7 @@ shared::ZenithQuadrature zenith_quadrature() {
   return out;
 }
 
-std::array<BufferPlan, kScratchBuffers> plan_scratch(std::uint32_t views, ColorMode color) {
+std::array<BufferPlan, kScratchBuffers> plan_scratch(std::uint32_t views, ColorMode color, bool tabulated) {
   constexpr VkDeviceSize points = shared::kGatherAltitudes * shared::kGatherSuns;
   const VkDeviceSize ray =
       sizeof(shared::QuadratureRay) + (color == ColorMode::spectral ? shared::kSpectralRayBytes : 0);
@@ -91,7 +93,7 @@ std::array<BufferPlan, kScratchBuffers> plan_scratch(std::uint32_t views, ColorM
   return {{{"table_constants", &TableScratch::constants, kConstantBytes},
            {"grid_rays", &TableScratch::grid_rays, ray * shared::kGatherAltitudes * shared::kGatherZeniths},
            {"table_rays", &TableScratch::table_rays, ray * views},
-           {"phase", &TableScratch::phase, phase},
+           {"phase", &TableScratch::phase, phase * (tabulated ? shared::kPhaseTerms : 1)},
            {"incident", &TableScratch::incident, points * shared::kGatherZeniths * shared::kGatherAzimuths * vec4},
            {"late_terms", &TableScratch::late_terms, directions * 2 * shared::kLateTerms},
            {"sum", &TableScratch::sum, directions * shared::kSourceAzimuths},
@@ -128,6 +130,7 @@ std::uint32_t stale_tables(const Params& built, const Params& wanted) {
   const shared::TableShape shape_a = table_shape(built);
   const shared::TableShape shape_b = table_shape(wanted);
   std::uint32_t stale = 0;
+  if (!same_phase(built, wanted)) stale |= kHighTables;
   if (!same(&a, &b, sizeof a) || !same(&shape_a, &shape_b, sizeof shape_a)) stale |= kHighTables;
   // The tables of single scattering do not depend on the phase function or the ground.
   b.mie_g = a.mie_g;
@@ -154,6 +157,7 @@ std::string table_key(const gpu::Device& device, const Params& params) {
   std::vector<const gpu::Shader*> used;
   Params any;
   any.scattering.color = params.scattering.color;
+  any.atmosphere.mie_phase = params.atmosphere.mie_phase;
   for (const Step& step : table_steps(any, kAllTables)) {
     const gpu::Shader* shader = step.pipeline.shader;
     if (std::find(used.begin(), used.end(), shader) == used.end()) used.push_back(shader);
@@ -180,18 +184,25 @@ std::string table_key(const gpu::Device& device, const Params& params) {
   append_words(key, &medium, sizeof medium);
   key += "\nshape";
   append_words(key, &shape, sizeof shape);
+  if (const PhaseRows rows = phase_rows(params, params.scattering.color); !rows.empty()) {
+    Hash phase;
+    phase.add(rows.data(), kPhaseBytes);
+    key += "\nphase ";
+    append_hexadecimal(key, phase.value(), 16);
+  }
   return key;
 }
 
 VkDeviceSize TableScratch::bytes() const {
   VkDeviceSize total = source_function.bytes;
-  for (const BufferPlan& plan : plan_scratch(views, color)) total += (this->*plan.buffer).bytes;
+  for (const BufferPlan& plan : plan_scratch(views, color, tabulated)) total += (this->*plan.buffer).bytes;
   return total;
 }
 
 VkDeviceSize table_scratch_bytes(const gpu::Device& device, const Params& params) {
   VkDeviceSize total = gpu::image_bytes(device, kSourceFunction);
-  for (const BufferPlan& plan : plan_scratch(params.tables.size.y, params.scattering.color)) {
+  for (const BufferPlan& plan :
+       plan_scratch(params.tables.size.y, params.scattering.color, air::tabulated(params.atmosphere))) {
     total += gpu::buffer_bytes(device, plan.bytes, kScratchUsage);
   }
   return total;

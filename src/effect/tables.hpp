@@ -51,6 +51,7 @@ struct TableScratch {
   gpu::Buffer sky;             // irradiance, sum of the orders
   std::uint32_t views = 0;     // capacity of table_rays
   ColorMode color = ColorMode::rgb;
+  bool tabulated = false;  // of the aerosol's phase function
   [[nodiscard]] VkDeviceSize bytes() const;
 };
 [[nodiscard]] VkDeviceSize table_scratch_bytes(const gpu::Device& device, const Params& params);
@@ -108,7 +109,7 @@ class TableBuilder {
     std::uint32_t frames_left;
   };
 
-  [[nodiscard]] Result<TableScratch> create_scratch(std::uint32_t views, ColorMode color) const;
+  [[nodiscard]] Result<TableScratch> create_scratch(std::uint32_t views, ColorMode color, bool tabulated) const;
   // Makes the pipelines and the descriptor sets of the steps of a build.
   [[nodiscard]] Result<SetCache> make_sets(std::span<const Step> steps);
   void upload_constants(VkCommandBuffer cmd);

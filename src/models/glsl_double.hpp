@@ -22,9 +22,16 @@ using vec4 = glm::dvec4;
 #ifdef __clang__
 #pragma clang diagnostic ignored "-Wkeyword-macro"
 #endif
+// Row i of the table of the phase function, which the C++ form of Medium points to; null where there is a formula.
+#define PHASE_ROWS_OF_MEDIUM const ::tyndall::shared::vec4* phase_rows = nullptr;
+#define PHASE_ENTRY(m, i) vec4((m).phase_rows[i].x, (m).phase_rows[i].y, (m).phase_rows[i].z, (m).phase_rows[i].w)
+#define PHASE_TABULATED(m) ((m).phase_rows != nullptr)
 #define float double
 #include "models/glsl_functions.inl"
 #undef float
+#undef PHASE_ROWS_OF_MEDIUM
+#undef PHASE_ENTRY
+#undef PHASE_TABULATED
 
 inline OneilScale widen(const shared::OneilScale& s) {
   return {s.scale_height_m, s.bend, s.k0, s.k1, s.k2, s.k3, s.k4, 0.0};
@@ -34,10 +41,11 @@ inline Oneil widen(const shared::Oneil& o) {
           widen(o.rayleigh), widen(o.mie)};
 }
 
-// Returns the uploaded medium in double precision.
-inline Medium widen(const shared::Medium& m) {
+// Returns the uploaded medium in double precision, with the rows of its phase function if it has no formula.
+inline Medium widen(const shared::Medium& m, const shared::vec4* phase_rows = nullptr) {
   const auto wide = [](const Vec3& v) { return vec3(v.x, v.y, v.z); };
   Medium out = {};
+  out.phase_rows = phase_rows;
   out.rayleigh_scattering = wide(m.rayleigh_scattering);
   out.planet_radius_m = m.planet_radius_m;
   out.mie_scattering = wide(m.mie_scattering);

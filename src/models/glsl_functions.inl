@@ -66,6 +66,7 @@ namespace {
 #undef OUT
 #undef INOUT
 #undef ONEIL_TABLE
+#undef PHASE_TABLE_MEMBERS
 #undef ONEIL_TEXEL
 #undef RAYLEIGH_SCATTERING
 #undef MIE_SCATTERING

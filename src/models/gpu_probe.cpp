@@ -17,15 +17,16 @@ std::array<double, 3> widened(const Vec3& v) { return {v.x, v.y, v.z}; }
 // Evaluates rays with the pipeline of one of the shaders of shaders/probe. The shader reads the medium, the rays and
 // the resources in `more`.
 Result<std::vector<Answer>> evaluate(gpu::Host& host, const gpu::Pipeline& pipeline,
-                                     const shared::SpectralMedium& medium, std::span<const gpu::NamedResource> more,
-                                     std::span<const Ray> rays, const std::function<void(std::size_t)>& progress) {
+                                     const shared::SpectralMedium& medium, const PhaseRows& phase,
+                                     std::span<const gpu::NamedResource> more, std::span<const Ray> rays,
+                                     const std::function<void(std::size_t)>& progress) {
   std::vector<Answer> answers;
   if (rays.empty()) return answers;
   const gpu::Device& device = host.device();
   const std::size_t batch = std::min(rays.size(), kBatchRays);
   constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   TYNDALL_ASSIGN(const gpu::Buffer medium_buffer,
-                 gpu::create_buffer(device, "probe_medium", sizeof medium, kStorage, gpu::MemoryKind::upload));
+                 gpu::create_buffer(device, "probe_medium", kMediumBlockBytes, kStorage, gpu::MemoryKind::upload));
   TYNDALL_ASSIGN(
       const gpu::Buffer ray_buffer,
       gpu::create_buffer(device, "probe_rays", batch * sizeof(shared::ProbeRay), kStorage, gpu::MemoryKind::upload));
@@ -33,6 +34,9 @@ Result<std::vector<Answer>> evaluate(gpu::Host& host, const gpu::Pipeline& pipel
                  gpu::create_buffer(device, "probe_results", batch * sizeof(shared::ProbeResult), kStorage,
                                     gpu::MemoryKind::readback));
   std::memcpy(medium_buffer.mapped, &medium, sizeof medium);
+  if (!phase.empty()) {
+    std::memcpy(static_cast<std::byte*>(medium_buffer.mapped) + sizeof medium, phase.data(), kPhaseBytes);
+  }
   auto* const prepared = static_cast<shared::ProbeRay*>(ray_buffer.mapped);
   const auto* const results = static_cast<const shared::ProbeResult*>(result_buffer.mapped);
 
@@ -66,11 +70,11 @@ Result<std::vector<Answer>> evaluate(gpu::Host& host, const gpu::Pipeline& pipel
 }  // namespace
 
 Result<std::vector<Answer>> single_scattering_on_gpu(gpu::Host& host, const shared::SpectralMedium& medium,
-                                                     ColorMode color, std::span<const Ray> rays,
+                                                     const PhaseRows& phase, ColorMode color, std::span<const Ray> rays,
                                                      const std::function<void(std::size_t)>& progress) {
   if (rays.empty()) return std::vector<Answer>();
   TYNDALL_ASSIGN(const SingleScatteringOnGpu model, SingleScatteringOnGpu::create(host, color));
-  return model.answer(medium, rays, progress);
+  return model.answer(medium, phase, rays, progress);
 }
 
 Result<SingleScatteringOnGpu> SingleScatteringOnGpu::create(gpu::Host& host, ColorMode color) {
@@ -85,13 +89,13 @@ Result<SingleScatteringOnGpu> SingleScatteringOnGpu::create(gpu::Host& host, Col
 Result<std::vector<Answer>> SingleScatteringOnGpu::answer(const shared::SpectralMedium& medium,
                                                           std::span<const Ray> rays,
                                                           const std::function<void(std::size_t)>& progress) const {
-  return evaluate(*host_, pipeline_, medium, {}, rays, progress);
+  return evaluate(*host_, pipeline_, medium, phase, {}, rays, progress);
 }
 
 Result<std::vector<Answer>> single_scattering_on_gpu(gpu::Host& host, const shared::Medium& medium,
                                                      std::span<const Ray> rays,
                                                      const std::function<void(std::size_t)>& progress) {
-  return single_scattering_on_gpu(host, {medium, {}}, ColorMode::rgb, rays, progress);
+  return single_scattering_on_gpu(host, {medium, {}}, {}, ColorMode::rgb, rays, progress);
 }
 
 Result<std::vector<Answer>> oneil_on_gpu(gpu::Host& host, const OneilModel& model, std::span<const Ray> rays) {
@@ -106,7 +110,7 @@ Result<std::vector<Answer>> oneil_on_gpu(gpu::Host& host, const OneilModel& mode
   const gpu::NamedResource more[] = {gpu::named_buffer("oneil_block", constants.buffer.get()),
                                      gpu::named_buffer("oneil_table_block", table.buffer.get())};
   TYNDALL_ASSIGN(const gpu::Pipeline pipeline, gpu::create_compute_pipeline(host.device(), shaders::oneil_comp));
-  return evaluate(host, pipeline, {model.medium, {}}, more, rays, {});
+  return evaluate(host, pipeline, {model.medium, {}}, {}, more, rays, {});
 }
 
 }  // namespace tyndall::models

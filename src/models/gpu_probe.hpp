@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "effect/phase_rows.hpp"
 #include "gpu/host.hpp"
 #include "gpu/pipeline.hpp"
 #include "models/oneil.hpp"
@@ -14,9 +15,10 @@
 namespace tyndall::models {
 
 // Evaluates single scattering over black ground with shaders/probe/single.comp in single precision. Returns one answer
-// per ray, in order. `progress` receives the number of completed rays.
+// per ray, in order. `phase`: the rows of the medium's phase function, empty if it has a formula. `progress` receives
+// the number of completed rays.
 Result<std::vector<Answer>> single_scattering_on_gpu(gpu::Host& host, const shared::SpectralMedium& medium,
-                                                     ColorMode color, std::span<const Ray> rays,
+                                                     const PhaseRows& phase, ColorMode color, std::span<const Ray> rays,
                                                      const std::function<void(std::size_t)>& progress = {});
 
 // Does the same with a pipeline that is made once, for many calls. Use from one thread at a time.
@@ -24,7 +26,8 @@ class SingleScatteringOnGpu {
  public:
   // `host` must outlive the object.
   static Result<SingleScatteringOnGpu> create(gpu::Host& host, ColorMode color);
-  [[nodiscard]] Result<std::vector<Answer>> answer(const shared::SpectralMedium& medium, std::span<const Ray> rays,
+  [[nodiscard]] Result<std::vector<Answer>> answer(const shared::SpectralMedium& medium, const PhaseRows& phase,
+                                                   std::span<const Ray> rays,
                                                    const std::function<void(std::size_t)>& progress = {}) const;
 
  private:

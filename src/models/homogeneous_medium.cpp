@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "air/phase.hpp"
 #include "effect/medium.hpp"
+#include "effect/spectral_medium.hpp"
 #include "models/glsl_double.hpp"
 #include "models/hemisphere.hpp"
 
@@ -39,7 +41,7 @@ HomogeneousMedium homogeneous_medium_from_params(const Params& params) {
   return homogeneous_medium_from_params(params, medium_from_params(params));
 }
 
-HomogeneousMedium homogeneous_medium_from_params(const Params& params, const shared::Medium& sea_level) {
+HomogeneousMedium homogeneous_medium_from_params(const Params& params, const shared::Medium& sea_level, bool fourth) {
   const HomogeneousMediumParams& p = params.homogeneous_medium;
   HomogeneousMedium out;
   out.rayleigh_scattering = times(sea_level.rayleigh_scattering, Vec3(p.density));
@@ -49,6 +51,14 @@ HomogeneousMedium homogeneous_medium_from_params(const Params& params, const sha
   out.sunlight = times(p.sunlight, Vec3(1.0F));
   out.g = params.atmosphere.mie_g;
   out.cornette_shanks = params.atmosphere.mie_phase == MiePhase::cornette_shanks;
+  if (air::tabulated(params.atmosphere)) {
+    out.tabulated = &params;
+    const FourChannels nm = spectral_wavelengths_nm();
+    for (std::size_t c = 0; c < 3; ++c) {
+      const bool spectral = params.scattering.color == ColorMode::spectral;
+      out.wavelengths_nm[c] = spectral ? nm[fourth ? 3 : c] : air::channel_wavelength_nm(params, c);
+    }
+  }
   out.planet_radius_m = params.planet.radius_m;
   out.extent_m = p.extent_m;
   out.height_m = p.height_m;
@@ -58,11 +68,13 @@ HomogeneousMedium homogeneous_medium_from_params(const Params& params, const sha
 Answer homogeneous_medium_light(const HomogeneousMedium& m, const Ray& ray) {
   const double length = length_in(m, ray.altitude_m, ray.cos_view_zenith);
   const double rayleigh = glsl64::rayleigh_phase(ray.cos_view_sun);
-  const double mie = m.cornette_shanks ? glsl64::cornette_shanks_phase(ray.cos_view_sun, m.g)
-                                       : glsl64::henyey_greenstein_phase(ray.cos_view_sun, m.g);
+  const double formula = m.cornette_shanks ? glsl64::cornette_shanks_phase(ray.cos_view_sun, m.g)
+                                           : glsl64::henyey_greenstein_phase(ray.cos_view_sun, m.g);
   Answer out;
   for (std::size_t c = 0; c < 3; ++c) {
     const double tau = m.extinction[c] * length;
+    const double mie =
+        m.tabulated != nullptr ? air::phase(*m.tabulated, ray.cos_view_sun, m.wavelengths_nm[c]) : formula;
     // (1 - exp(-tau)) / sigma, which is the length itself without extinction.
     const double lit = m.extinction[c] > 0.0 ? -std::expm1(-tau) / m.extinction[c] : length;
     out.radiance[c] = m.sunlight[c] * (m.rayleigh_scattering[c] * rayleigh + m.mie_scattering[c] * mie) * lit;

@@ -19,13 +19,18 @@ struct HomogeneousMedium {
       {};  // sunlight at every point of the medium, relative to the sun's irradiance above the atmosphere
   double g = 0.0;
   bool cornette_shanks = true;  // false: Henyey-Greenstein
+  // The parameters, if their phase function has no formula, and the wavelengths of the channels [nm].
+  const Params* tabulated = nullptr;
+  std::array<double, 3> wavelengths_nm = {};
   double planet_radius_m = 0.0;
   double extent_m = 0.0;  // length of rays that do not hit the planet
   double height_m = 0.0;  // altitude of the flat top
 };
 
-// `sea_level`: the medium at sea level, medium_from_params() or models::medium_at_fourth().
-[[nodiscard]] HomogeneousMedium homogeneous_medium_from_params(const Params& params, const shared::Medium& sea_level);
+// `sea_level`: the medium at sea level, medium_from_params() or, for the fourth wavelength, models::medium_at_fourth().
+// `params` must outlive the result.
+[[nodiscard]] HomogeneousMedium homogeneous_medium_from_params(const Params& params, const shared::Medium& sea_level,
+                                                               bool fourth = false);
 [[nodiscard]] HomogeneousMedium homogeneous_medium_from_params(const Params& params);
 
 // Returns radiance / E0 and transmittance along a ray to the planet, to the medium's top or to its extent, over black

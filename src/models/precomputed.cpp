@@ -5,6 +5,7 @@
 #include <string>
 
 #include "effect/frame_constants.hpp"
+#include "effect/phase_rows.hpp"
 #include "effect/spectral_medium.hpp"
 #include "effect/tables.hpp"
 #include "gpu/descriptors.hpp"
@@ -122,7 +123,12 @@ Result<std::vector<Answer>> PrecomputedModel::answer(std::span<const RayQuery> q
     std::memcpy(buffer.mapped, data, size);
     return buffer;
   };
-  TYNDALL_ASSIGN(const gpu::Buffer medium_buffer, filled("probe_medium", &medium, sizeof medium));
+  std::vector<std::byte> medium_block(kMediumBlockBytes);
+  std::memcpy(medium_block.data(), &medium, sizeof medium);
+  if (const PhaseRows rows = phase_rows(params, params.scattering.color); !rows.empty()) {
+    std::memcpy(medium_block.data() + sizeof medium, rows.data(), kPhaseBytes);
+  }
+  TYNDALL_ASSIGN(const gpu::Buffer medium_buffer, filled("probe_medium", medium_block.data(), medium_block.size()));
   TYNDALL_ASSIGN(const gpu::Buffer setup_buffer, filled("probe_setup", &setup, sizeof setup));
   TYNDALL_ASSIGN(const gpu::Buffer ray_buffer, filled("probe_rays", rays.data(), rays.size() * sizeof rays[0]));
   TYNDALL_ASSIGN(const gpu::Buffer result_buffer,

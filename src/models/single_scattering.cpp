@@ -34,9 +34,10 @@ Answer single_scattering(const shared::Medium& medium, const Ray& ray, int steps
   return {to_array(radiance), to_array(transmittance)};
 }
 
-std::array<double, 3> single_sky_irradiance(const shared::Medium& medium, double altitude_m, double cos_sun_zenith) {
-  return to_array(
-      glsl64::sky_irradiance_single(glsl64::widen(medium), altitude_m, cos_sun_zenith, kSkyPanels, kSkySteps));
+std::array<double, 3> single_sky_irradiance(const shared::Medium& medium, double altitude_m, double cos_sun_zenith,
+                                            std::span<const shared::vec4> phase_rows) {
+  const glsl64::Medium m = glsl64::widen(medium, phase_rows.empty() ? nullptr : phase_rows.data());
+  return to_array(glsl64::sky_irradiance_single(m, altitude_m, cos_sun_zenith, kSkyPanels, kSkySteps));
 }
 
 std::array<double, 3> sun_transmittance(const shared::Medium& medium, double altitude_m, double cos_sun_zenith) {

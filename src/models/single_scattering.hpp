@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "effect/shared.hpp"
 #include "rays/ray_query.hpp"
@@ -36,8 +37,10 @@ struct Answer {
 [[nodiscard]] Answer single_scattering(const shared::Medium& medium, const Ray& ray, int steps = 24);
 
 // Returns the horizontal irradiance / E0 of the sky's single scattering, at an altitude within or above the atmosphere.
+// `phase_rows`: those of the medium (src/effect/phase_rows.hpp); empty if its phase function has a formula.
 [[nodiscard]] std::array<double, 3> single_sky_irradiance(const shared::Medium& medium, double altitude_m,
-                                                          double cos_sun_zenith);
+                                                          double cos_sun_zenith,
+                                                          std::span<const shared::vec4> phase_rows = {});
 
 // Returns the transmittance of sunlight to a point: 0 if the planet hides the sun.
 [[nodiscard]] std::array<double, 3> sun_transmittance(const shared::Medium& medium, double altitude_m,

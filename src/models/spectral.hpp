@@ -2,8 +2,10 @@
 // the first three wavelengths and again for the fourth.
 #pragma once
 
+#include <type_traits>
 #include <utility>
 
+#include "effect/phase_rows.hpp"
 #include "effect/spectral_medium.hpp"
 #include "models/single_scattering.hpp"
 
@@ -20,12 +22,23 @@ namespace tyndall::models {
   return out;
 }
 
-// Evaluates `model`, a function of a shared::Medium that returns an Answer, in the channels of the parameters.
+// Returns the rows of a phase function in which all channels are that of the fourth wavelength.
+[[nodiscard]] inline PhaseRows phase_at_fourth(PhaseRows rows) {
+  for (shared::vec4& row : rows) row.x = row.y = row.z = row.w;
+  return rows;
+}
+
+// Evaluates `model`, a function of a shared::Medium that returns an Answer, in the channels of the parameters. It may
+// have a second argument, whether the medium is that of the fourth wavelength.
 template <typename Model>
 [[nodiscard]] Answer in_all_channels(const Params& params, const shared::SpectralMedium& medium, const Model& model) {
-  Answer out = model(static_cast<const shared::Medium&>(medium));
+  const auto evaluate = [&](const shared::Medium& m, bool fourth) -> Answer {
+    if constexpr (std::is_invocable_v<Model, const shared::Medium&, bool>) return model(m, fourth);
+    if constexpr (!std::is_invocable_v<Model, const shared::Medium&, bool>) return model(m);
+  };
+  Answer out = evaluate(medium, false);
   if (params.scattering.color == ColorMode::rgb) return out;
-  const Answer fourth = model(medium_at_fourth(medium));
+  const Answer fourth = evaluate(medium_at_fourth(medium), true);
   out.radiance_fourth = fourth.radiance[0];
   out.transmittance_fourth = fourth.transmittance[0];
   return out;

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "air/coefficients.hpp"
+#include "air/phase.hpp"
 
 namespace tyndall::reference {
 namespace {
@@ -72,8 +73,14 @@ Atmosphere::Atmosphere(const Params& params, double lowest_m, std::span<const do
   base_radius_m_ = radius_m + std::min(lowest_m, 0.0);
   rayleigh_scale_height_m = a.rayleigh_scale_height_m;
   mie_scale_height_m = a.mie_scale_height_m;
-  mie_phase = MiePhaseFunction(a.mie_phase, a.mie_g);
   if (!wavelengths_nm.empty()) channels = wavelengths_nm.size();
+  if (air::tabulated(a)) {
+    std::vector<double> nm(wavelengths_nm.begin(), wavelengths_nm.end());
+    for (std::size_t c = nm.size(); c < channels; ++c) nm.push_back(air::channel_wavelength_nm(params, c));
+    mie_phase = MiePhaseFunction(std::make_shared<const TabulatedPhase>(params, nm));
+  } else {
+    mie_phase = MiePhaseFunction(a.mie_phase, a.mie_g);
+  }
   for (std::size_t c = 0; c < channels; ++c) {
     const air::Coefficients channel =
         wavelengths_nm.empty() ? air::in_channel(params, c) : air::at_wavelength(params, wavelengths_nm[c]);

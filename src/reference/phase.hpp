@@ -4,7 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <memory>
 #include <numbers>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "tyndall/params.hpp"
 
@@ -21,6 +26,31 @@ inline double sample_rayleigh(double u) {
   return std::copysign(a - 1.0 / a, u - 0.5);
 }
 
+// A phase function that has no formula for sampling: a histogram of its mean over the wavelengths, from which cosines
+// are sampled exactly, and the function itself at every wavelength.
+class TabulatedPhase {
+ public:
+  // Evaluates the phase function of the parameters at the wavelengths of the channels. Precondition: air::tabulated().
+  TabulatedPhase(const Params& params, std::span<const double> wavelengths_nm);
+
+  // Computes the phase function in all channels: linear in the cosine between nodes that are 0.05 degrees apart, and
+  // closer ahead.
+  void values(double cosine, std::span<double> channels) const;
+  // Returns the probability density of sample() per steradian.
+  [[nodiscard]] double density(double cosine) const;
+  // Maps u in [0; 1) to a cosine.
+  [[nodiscard]] double sample(double u) const;
+
+ private:
+  [[nodiscard]] std::size_t bin_of(double cosine) const;
+
+  std::size_t channels_;
+  std::vector<double> cosines_;     // ends of the bins, decreasing from 1 to -1
+  std::vector<double> values_;      // at the ends of the bins, channel by channel
+  std::vector<double> densities_;   // of the bins
+  std::vector<double> cumulative_;  // probability of all bins before one
+};
+
 // The aerosol's phase function with precomputed constants.
 class MiePhaseFunction {
  public:
@@ -31,6 +61,7 @@ class MiePhaseFunction {
     scale_ = isotropic * (1.0 - g * g);
     if (cornette_shanks_) scale_ *= 1.5 / (2.0 + g * g);
   }
+  explicit MiePhaseFunction(std::shared_ptr<const TabulatedPhase> table) : table_(std::move(table)) {}
 
   // Returns the function of Henyey and Greenstein (1941), or of Cornette and Shanks (1992, equation 8).
   [[nodiscard]] double operator()(double cosine) const {
@@ -39,10 +70,22 @@ class MiePhaseFunction {
     return cornette_shanks_ ? value * (1.0 + cosine * cosine) : value;
   }
 
+  // Evaluates any function in all channels. Returns the probability density with which sample() chooses the cosine.
+  double evaluate(double cosine, std::span<double> channels) const {
+    if (table_) {
+      table_->values(cosine, channels);
+      return table_->density(cosine);
+    }
+    const double value = (*this)(cosine);
+    std::fill(channels.begin(), channels.end(), value);
+    return value;
+  }
+
   // Maps u in [0; 1) to a cosine; `random()` yields further numbers in [0; 1). Cornette-Shanks is Henyey-Greenstein
   // times (1 + c^2) / 2 <= 1, so rejection sampling is exact; at least 2/3 of the candidates are accepted.
   template <typename Random>
   [[nodiscard]] double sample(double u, Random&& random) const {
+    if (table_) return table_->sample(u);
     double cosine = henyey_greenstein_cosine(u);
     while (cornette_shanks_ && random() * 2.0 > 1.0 + cosine * cosine) {
       cosine = henyey_greenstein_cosine(random());
@@ -60,6 +103,7 @@ class MiePhaseFunction {
 
   double g_ = 0.0, one_plus_g2_ = 1.0, scale_ = 0.0;
   bool cornette_shanks_ = false;
+  std::shared_ptr<const TabulatedPhase> table_ = nullptr;
 };
 
 }  // namespace tyndall::reference

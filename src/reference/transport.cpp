@@ -195,9 +195,11 @@ void add_air(const Atmosphere& air, const Vertex& v, const Vec& sun, const Vec& 
   Light<N> transmittance;
   if (!sun_transmittance(air, v.position, v.r, v.density, sun, transmittance)) return;
   const double cosine = dot(direction, sun);
-  const double rayleigh = rayleigh_phase(cosine), mie = air.mie_phase(cosine);
+  const double rayleigh = rayleigh_phase(cosine);
+  Light<N> mie{};
+  air.mie_phase.evaluate(cosine, std::span(mie).first(air.channels));
   for (std::size_t c = 0; c < N; ++c) {
-    sums[c] += weight[c] * transmittance[c] * (rayleigh_fraction[c] * rayleigh + (1.0 - rayleigh_fraction[c]) * mie);
+    sums[c] += weight[c] * transmittance[c] * (rayleigh_fraction[c] * rayleigh + (1.0 - rayleigh_fraction[c]) * mie[c]);
   }
 }
 
@@ -226,11 +228,13 @@ Vec sample_direction(const Atmosphere& air, const Vertex& v, const Vec& sun, con
     next = around(direction, cosine, std::cos(turn), std::sin(turn));
   }
   const double cosine = dot(direction, next);
-  const double rayleigh = rayleigh_phase(cosine), mie = air.mie_phase(cosine);
-  const double density =
-      (1.0 - glow.fraction) * (fraction * rayleigh + (1.0 - fraction) * mie) + glow.fraction * glow.density(next);
+  const double rayleigh = rayleigh_phase(cosine);
+  Light<N> mie{};
+  const double mie_density = air.mie_phase.evaluate(cosine, std::span(mie).first(air.channels));
+  const double density = (1.0 - glow.fraction) * (fraction * rayleigh + (1.0 - fraction) * mie_density) +
+                         glow.fraction * glow.density(next);
   for (std::size_t c = 0; c < N; ++c) {
-    weight[c] *= (rayleigh_fraction[c] * rayleigh + (1.0 - rayleigh_fraction[c]) * mie) / density;
+    weight[c] *= (rayleigh_fraction[c] * rayleigh + (1.0 - rayleigh_fraction[c]) * mie[c]) / density;
   }
   return next;
 }

@@ -152,7 +152,7 @@ TEST(Cli, ParamsAsJsonIsTheWholeTable) {
       EXPECT_EQ(list[i]["value"], nlohmann::json({1, 2.5, -3}));
     }
     if (row.key() == "atmosphere.mie_phase") {
-      EXPECT_EQ(list[i]["choices"], nlohmann::json({"cornette-shanks", "henyey-greenstein"}));
+      EXPECT_EQ(list[i]["choices"], nlohmann::json({"cornette-shanks", "henyey-greenstein", "draine", "table"}));
     }
   }
 }

@@ -11,6 +11,7 @@
 #include "effect/froxel_volume.hpp"
 #include "effect/tables.hpp"
 #include "scene/description/terrain_key.hpp"
+#include "tyndall/phase_table.hpp"
 
 namespace tyndall {
 namespace {
@@ -51,7 +52,7 @@ std::vector<std::vector<std::uint32_t>> values_of(const ParamInfo& info) {
 
 // Returns settings in which different parameters matter.
 std::vector<Params> settings() {
-  std::vector<Params> out(8);
+  std::vector<Params> out(9);
   out[1].scattering.single = SingleScattering::integration;
   out[1].scattering.multiple = MultipleScattering::occluded;
   out[2].scattering.medium = MediumKind::homogeneous;
@@ -65,6 +66,9 @@ std::vector<Params> settings() {
   out[6].scattering.multiple = MultipleScattering::occluded;
   out[6].epipolar.slices = 100;
   out[7].froxels.enabled = true;
+  out[8].atmosphere.mie_phase = MiePhase::draine;
+  const double angles[] = {0.0, 90.0, 180.0}, nm[] = {550.0}, isotropic[] = {1.0, 1.0, 1.0};
+  for (Params& params : out) params.phase_table = PhaseTable::create(angles, nm, isotropic).value();
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "config/phase_file.hpp"
 #include "gpu/try.hpp"
 #include "scene/description/camera_exposure.hpp"
 #include "scene/description/terrain_key.hpp"
@@ -282,8 +283,10 @@ Result<void> SceneWork::resize(const SceneRequest& request) {
 
 Result<void> SceneWork::follow_settings(const config::Settings& wanted) {
   if (same_settings(wanted, wanted_)) return {};
-  TYNDALL_TRY(config::check(wanted));
-  const config::Settings next = loaded(wanted);
+  config::Settings next = wanted;
+  TYNDALL_TRY(config::load_files(next));
+  TYNDALL_TRY(config::check(next));
+  next = loaded(std::move(next));
   const bool only_tone = same_but_for_tone(wanted, wanted_);
   if (affected(applied_.effect, next.effect) != 0) {
     TYNDALL_TRY(scene_->set_params(next.effect));

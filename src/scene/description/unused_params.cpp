@@ -51,6 +51,14 @@ void check_air(const AtmosphereParams& air, const Check& check) {
   check(!(air.single_scattering_albedo == Vec3(0.0F)) && (depth || air.visibility_m > 0.0F),
         {"atmosphere.aerosol_absorption", "atmosphere.mie_scattering", "atmosphere.mie_absorption"},
         "atmosphere.single_scattering_albedo");
+  const bool draine = air.mie_phase == MiePhase::draine;
+  const bool table = air.mie_phase == MiePhase::table;
+  const std::string_view phase = draine  ? "atmosphere.mie_phase = draine"
+                                 : table ? "atmosphere.mie_phase = table"
+                                         : "this atmosphere.mie_phase";
+  check(draine || table, {"atmosphere.mie_g"}, phase);
+  check(!draine, {"atmosphere.droplet_diameter_um"}, phase);
+  check(!table, {"atmosphere.phase_table"}, phase);
   check(air.ozone_du > 0.0F, {"atmosphere.ozone_absorption"}, "atmosphere.ozone_du");
   check(air.pressure_hpa > 0.0F, {"atmosphere.rayleigh_scattering"}, "atmosphere.pressure_hpa");
 }
@@ -123,6 +131,9 @@ std::vector<std::string> unused_params(const Params& params, const SceneParams& 
 
   check(!scene.sun.time.empty(), {"sun.elevation_deg", "sun.azimuth_deg"}, "sun.time");
   check(scene.sun.time.empty(), {"sun.place"}, "an empty sun.time");
+  check(scene.moon.by_date.value != 0, {"moon.elevation_deg", "moon.azimuth_deg", "moon.angular_radius_deg"},
+        "moon.by_date = true");
+  check(scene.moon.light.value == 0, {"moon.light_below_deg"}, "moon.light = false");
   using Op = TonemapOperator;
   const Op op = scene.tonemap.operator_;
   check_exposure(scene.tonemap, check);
