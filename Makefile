@@ -21,7 +21,8 @@
 #   make passes          writes the list of passes, docs/generated/passes.md, with their cost
 #   make soak            draws SOAK_FRAMES (10000) frames of random changes with the validation layer, on both CPU drivers
 #   make fuzz            runs every fuzzer for FUZZ_SECONDS (60) and goes on where the last run ended; FUZZ names some of them
-.PHONY: fuzz soak python-figures demo check doxygen pictures accuracy epipolar-study models-study bundle bundle-chroot packages packages-check wheel-check python-comparison site site-check abi passes setup build format format-check tidy tidy-check tidy-all sanitize-short sanitize clean
+#   make twilight        writes the table of illuminances by the sun's elevation, docs/generated/twilight.md
+.PHONY: fuzz soak python-figures demo check doxygen pictures accuracy epipolar-study models-study twilight bundle bundle-chroot packages packages-check wheel-check python-comparison site site-check abi passes setup build format format-check tidy tidy-check tidy-all sanitize-short sanitize clean
 
 PRESET ?= release
 # The CPU device that computes the values that `tyndall report` compares other devices with.
@@ -130,6 +131,12 @@ site-check: site
 
 abi: setup
 	@python3 tests/package/abi.py --renew . build/abi cc
+
+# The illuminance from noon to deep twilight, docs/generated/twilight.md.
+twilight: PRESET = release
+twilight: TARGETS = tyndall
+twilight: build
+	@tools/twilight.py build/release/bin/tyndall > docs/generated/twilight.md
 
 # docs/generated/passes.md, with the costs of every mode.
 passes: PRESET = release
