@@ -176,8 +176,8 @@ Result<void> Effect::State::make_pipelines(const EffectDesc& d, const Params& p)
 Result<Effect::State::Pending> Effect::State::plan(const EffectDesc& d, const Params& p, std::uint32_t required) {
   const bool other_resources = (required & bit(Affects::Resources)) != 0;
   if ((required & kEverything) != 0) TYNDALL_TRY(check_limits(device, d, p));
-  Pending pending = {
-      d, p, {phase_rows(p, ColorMode::rgb), phase_rows(p, ColorMode::spectral)}, {}, ColorMode::rgb, {}, {}};
+  Pending pending = {d,  p, {phase_rows(p, ColorMode::rgb), phase_rows(p, ColorMode::spectral)}, {}, ColorMode::rgb,
+                     {}, {}};
   if (other_resources || (required & bit(Affects::Pipeline)) != 0) {
     TYNDALL_TRY(make_pipelines(d, p));
     if (const Params before = drawn_with(p); before.scattering.color != p.scattering.color) {
