@@ -121,6 +121,7 @@ struct TYNDALL_HIDDEN SkyProbe::State {
   // The update: its constants, the tables that it reads, and its slices.
   shared::SkyProbeConstants probe = {};
   shared::SpectralMedium medium = {};
+  PhaseRows phase;  // of the medium
   std::uint64_t tables_version = 0;
   std::uint32_t done = 0;
   bool cleared = false;
@@ -193,13 +194,17 @@ Result<Progress> SkyProbe::State::record(VkCommandBuffer cmd, const SkyProbeInpu
     tables_version = effect->tables.version();
     probe = constants_of(wanted, params);
     medium = spectral_medium_from_params(params);
+    phase = phase_rows(params, params.scattering.color);
   }
   const gpu::Device& device = effect->device;
   const std::uint32_t slot = ring.slot(calls, 0);
   const VkDeviceSize offset = kSlotBytes * slot;
   std::memcpy(static_cast<std::byte*>(constants.mapped) + offset, &probe, sizeof probe);
   std::memcpy(static_cast<std::byte*>(constants.mapped) + offset + kMediumOffset, &medium, sizeof medium);
-  effect->write_phase(static_cast<std::byte*>(constants.mapped) + offset + kMediumOffset, drawn.scattering.color);
+  if (!phase.empty()) {
+    std::memcpy(static_cast<std::byte*>(constants.mapped) + offset + kMediumOffset + sizeof medium, phase.data(),
+                kPhaseBytes);
+  }
   if (!cleared) {
     device.vk.CmdFillBuffer(cmd, coefficients.buffer.get(), 0, kCoefficientBytes, 0);
     gpu::barrier(device, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
