@@ -14,6 +14,9 @@ namespace {
 
 bool in_work(const SceneThread* thread) { return thread != nullptr && thread->busy(); }
 
+// A frame of the window waits for at most two frames of the scene that are as long as this.
+constexpr double kAheadUpTo_ms = 40.0;
+
 // Returns whether a thread is drawing. Only one of them may draw at a time, so that they do not slow each other down.
 bool draws(const SceneThread* thread) { return in_work(thread) && !thread->creating(); }
 
@@ -52,6 +55,7 @@ std::unique_ptr<SceneThread> ScenePair::start_thread(const SceneRequest& request
   desc.pipeline_threads = gpu::Host::pipeline_threads();
   desc.make_tables = make_tables_;
   desc.in_parts = one_device_;  // so that frames of the window need not wait for a whole frame of the scene
+  if (one_device_) desc.ahead_up_to_ms = kAheadUpTo_ms;  // otherwise each canvas is read back, which waits for it
   auto thread = std::make_unique<SceneThread>();
   thread->start(*host_, desc, request, !one_device_);
   return thread;

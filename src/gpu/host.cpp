@@ -275,7 +275,6 @@ Result<void> Host::create_device(const HostDesc& desc) {
   VkResult result = vkCreateDevice(device_.physical_device, &info, nullptr, &device_.device);
   if (result != VK_SUCCESS) return vulkan_error(result, "creating the Vulkan device", rows[index].name.c_str());
   TYNDALL_TRY(init_device(device_, get_instance_proc_addr_));
-  sets_.create(device_);
   vkGetDeviceQueue(device_.device, queue_family_, 0, &queue_);
 
   VkCommandPoolCreateInfo pool_info = {};
@@ -291,14 +290,17 @@ Result<void> Host::create_device(const HostDesc& desc) {
   allocate.commandPool = pool;
   allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
   allocate.commandBufferCount = 1;
-  result = device_.vk.AllocateCommandBuffers(device_.device, &allocate, &cmd_);
-  if (result != VK_SUCCESS) return vulkan_error(result, "allocating", "the command buffer");
   VkFenceCreateInfo fence_info = {};
   fence_info.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
-  VkFence fence = VK_NULL_HANDLE;
-  result = device_.vk.CreateFence(device_.device, &fence_info, nullptr, &fence);
-  if (result != VK_SUCCESS) return vulkan_error(result, "creating", "the fence");
-  fence_ = Handle<VkFence>(device_, fence);
+  for (Slot& slot : slots_) {
+    slot.sets.create(device_);
+    result = device_.vk.AllocateCommandBuffers(device_.device, &allocate, &slot.cmd);
+    if (result != VK_SUCCESS) return vulkan_error(result, "allocating", "the command buffer");
+    VkFence fence = VK_NULL_HANDLE;
+    result = device_.vk.CreateFence(device_.device, &fence_info, nullptr, &fence);
+    if (result != VK_SUCCESS) return vulkan_error(result, "creating", "the fence");
+    slot.fence = Handle<VkFence>(device_, fence);
+  }
   return {};
 }
 
@@ -315,9 +317,8 @@ Host::~Host() {
   if (device_.device != VK_NULL_HANDLE && device_.vk.DeviceWaitIdle != nullptr) {
     device_.vk.DeviceWaitIdle(device_.device);
   }
-  fence_.reset();
+  for (Slot& slot : slots_) slot = {};
   pool_.reset();
-  sets_ = {};
   if (device_.device != VK_NULL_HANDLE) vkDestroyDevice(device_.device, nullptr);
   if (messenger_ != VK_NULL_HANDLE) {
     const auto destroy_messenger = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
@@ -348,40 +349,80 @@ Result<std::vector<DeviceRow>> Host::list(const std::string& wanted) {
   return rows;
 }
 
-Result<void> Host::run(const std::function<Result<void>(VkCommandBuffer)>& record) {
+Result<void> Host::run(const Record& record) {
   const std::lock_guard<std::mutex> running(run_mutex_);
-  sets_.reset();
+  TYNDALL_ASSIGN(const std::uint64_t submission, record_and_submit(record));
+  return wait_for(*pending(submission));
+}
+
+Result<std::uint64_t> Host::submit(const Record& record) {
+  const std::lock_guard<std::mutex> running(run_mutex_);
+  return record_and_submit(record);
+}
+
+Result<void> Host::wait(std::uint64_t submission) {
+  const std::lock_guard<std::mutex> running(run_mutex_);
+  Slot* const slot = pending(submission);
+  return slot != nullptr ? wait_for(*slot) : Result<void>();
+}
+
+void Host::wait_idle() {
+  const std::unique_lock<std::mutex> locked = lock();
+  device_.vk.DeviceWaitIdle(device_.device);
+}
+
+Host::Slot* Host::pending(std::uint64_t submission) {
+  if (submission == 0) return nullptr;
+  const auto slot =
+      std::find_if(slots_.begin(), slots_.end(), [&](const Slot& s) { return s.submission == submission; });
+  return slot != slots_.end() ? &*slot : nullptr;
+}
+
+Result<std::uint64_t> Host::record_and_submit(const Record& record) {
+  // A free slot, whose number is 0, or the one that has waited longest.
+  const auto least = std::min_element(slots_.begin(), slots_.end(),
+                                      [](const Slot& a, const Slot& b) { return a.submission < b.submission; });
+  recording_ = static_cast<std::size_t>(least - slots_.begin());
+  Slot& slot = *least;
+  if (slot.submission != 0) TYNDALL_TRY(wait_for(slot));
+  slot.sets.reset();
   VkCommandBufferBeginInfo begin = {};
   begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
   begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-  VkResult result = device_.vk.BeginCommandBuffer(cmd_, &begin);
+  VkResult result = device_.vk.BeginCommandBuffer(slot.cmd, &begin);
   if (result != VK_SUCCESS) return vulkan_error(result, "beginning", "a command buffer");
   Result<void> recorded;
   try {
-    recorded = record(cmd_);
+    recorded = record(slot.cmd);
   } catch (...) {
-    device_.vk.EndCommandBuffer(cmd_);  // otherwise the next call could not begin
+    device_.vk.EndCommandBuffer(slot.cmd);  // otherwise the next call could not begin
     throw;
   }
-  result = device_.vk.EndCommandBuffer(cmd_);
-  if (!recorded.ok()) return recorded;
+  result = device_.vk.EndCommandBuffer(slot.cmd);
+  if (!recorded.ok()) return recorded.error();
   if (result != VK_SUCCESS) return vulkan_error(result, "ending", "a command buffer");
-  VkSubmitInfo submit = {};
-  submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
-  submit.commandBufferCount = 1;
-  submit.pCommandBuffers = &cmd_;
+  VkSubmitInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+  info.commandBufferCount = 1;
+  info.pCommandBuffers = &slot.cmd;
   {
     const std::unique_lock<std::mutex> locked = lock();
-    result = device_.vk.QueueSubmit(queue_, 1, &submit, fence_.get());
+    result = device_.vk.QueueSubmit(queue_, 1, &info, slot.fence.get());
   }
   if (result != VK_SUCCESS) return vulkan_error(result, "submitting", "a command buffer");
-  const VkFence fence = fence_.get();
-  result = device_.vk.WaitForFences(device_.device, 1, &fence, VK_TRUE, UINT64_MAX);
+  slot.submission = ++submissions_;
+  return submissions_;
+}
+
+Result<void> Host::wait_for(Slot& slot) {
+  const VkFence fence = slot.fence.get();
+  VkResult result = device_.vk.WaitForFences(device_.device, 1, &fence, VK_TRUE, UINT64_MAX);
   if (result != VK_SUCCESS) {
     // A wait that ran out of memory leaves the commands running, and the caller would free what they use.
     const std::unique_lock<std::mutex> locked = lock();
     result = device_.vk.DeviceWaitIdle(device_.device);
   }
+  slot.submission = 0;
   if (result != VK_SUCCESS) return vulkan_error(result, "waiting for", "the device");
   device_.vk.ResetFences(device_.device, 1, &fence);
   return {};

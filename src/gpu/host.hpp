@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <functional>
 #include <memory>
@@ -44,8 +45,7 @@ struct HostDesc {
   bool graphics = true;  // false: the program only computes, and a queue without graphics suffices
 };
 
-// Owns an instance, a device and a queue with compute and, if HostDesc::graphics, graphics. Its functions use the queue
-// synchronously.
+// Owns an instance, a device and a queue with compute and, if HostDesc::graphics, graphics.
 class Host {
  public:
   static Result<std::unique_ptr<Host>> create(const HostDesc& desc);
@@ -78,11 +78,20 @@ class Host {
   }
   [[nodiscard]] std::string device_name() const { return device_.properties.deviceName; }
 
-  // Records a command buffer with `record`, submits it and waits until it has completed. May be called from any thread;
-  // concurrent calls run one after the other. The queue is locked only during submission.
-  Result<void> run(const std::function<Result<void>(VkCommandBuffer)>& record);
-  // The descriptor sets of the command buffer of run(), to be used only while `record` runs.
-  [[nodiscard]] DescriptorArena& sets() { return sets_; }
+  using Record = std::function<Result<void>(VkCommandBuffer)>;
+  // Records a command buffer with `record`, submits it and waits until it and all earlier ones have completed. May be
+  // called from any thread; concurrent calls run one after the other. The queue is locked only during submission.
+  Result<void> run(const Record& record);
+  // Does the same without waiting, unless kPending earlier command buffers have not been waited for. Returns the number
+  // of the submission, for wait().
+  Result<std::uint64_t> submit(const Record& record);
+  static constexpr std::size_t kPending = 8;
+  // Waits until a submission and all earlier ones have completed. 0 is none.
+  Result<void> wait(std::uint64_t submission);
+  // Waits until the device is idle.
+  void wait_idle();
+  // The descriptor sets of the command buffer that is being recorded, to be used only while `record` runs.
+  [[nodiscard]] DescriptorArena& sets() { return slots_[recording_].sets; }
 
   // The number of warnings and errors of the validation layer so far. The text of the first ones is stored.
   [[nodiscard]] std::uint32_t validation_messages() const { return validation_count_; }
@@ -96,7 +105,20 @@ class Host {
                                        VkDebugUtilsMessageTypeFlagsEXT types,
                                        const VkDebugUtilsMessengerCallbackDataEXT* data, void* user);
 
-  std::mutex queue_mutex_, run_mutex_;  // run_mutex_ guards the members that run() uses
+  // A command buffer with what it needs while it executes.
+  struct Slot {
+    VkCommandBuffer cmd = VK_NULL_HANDLE;
+    Handle<VkFence> fence;
+    DescriptorArena sets;
+    std::uint64_t submission = 0;  // 0: none, or it has been waited for
+  };
+  // These need run_mutex_.
+  Result<std::uint64_t> record_and_submit(const Record& record);
+  Result<void> wait_for(Slot& slot);
+  // Returns the slot of a submission, or nullptr if it has been waited for.
+  [[nodiscard]] Slot* pending(std::uint64_t submission);
+
+  std::mutex queue_mutex_, run_mutex_;  // run_mutex_ guards the slots
   VkInstance instance_ = VK_NULL_HANDLE;
   PFN_vkGetInstanceProcAddr get_instance_proc_addr_ = vkGetInstanceProcAddr;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
@@ -105,10 +127,10 @@ class Host {
   std::uint32_t queue_family_ = 0;
   bool timestamps_ = false;
   Handle<VkCommandPool> pool_;
-  VkCommandBuffer cmd_ = VK_NULL_HANDLE;
-  Handle<VkFence> fence_;
-  DescriptorArena sets_;
-  std::mutex message_mutex_;  // messages arrive on the thread that made the Vulkan call
+  std::array<Slot, kPending> slots_;
+  std::size_t recording_ = 0;      // index of the slot that is being recorded
+  std::uint64_t submissions_ = 0;  // the number of the last one
+  std::mutex message_mutex_;       // messages arrive on the thread that made the Vulkan call
   std::atomic<std::uint32_t> validation_count_ = 0;
   std::string validation_text_;
   std::vector<std::string>* validation_log_ = nullptr;

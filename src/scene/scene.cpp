@@ -126,6 +126,7 @@ Result<void> Scene::replace_lost_effect() {
   desc.max_cascades = scene_.shadows.cascades;
   desc.max_shadow_resolution = scene_.shadows.resolution;
   TYNDALL_ASSIGN(std::unique_ptr<Effect> made, make_effect(desc));
+  TYNDALL_TRY(wait_for_frames());
   const std::size_t notes = notes_.size();
   light_meter_.reset();
   effect_ = std::move(made);
@@ -140,7 +141,7 @@ Result<void> Scene::create_objects() {
   const gpu::Device& device = host_->device();
   EffectDesc effect_desc;
   effect_desc.max_extent = desc_.extent;
-  effect_desc.frames_in_flight = 1;
+  effect_desc.frames_in_flight = ahead() ? gpu::kFramesInFlight : 1;
   effect_desc.output_format = OutputFormat::rgba32f;
   effect_desc.max_cascades = scene_.shadows.cascades;
   effect_desc.max_shadow_resolution = scene_.shadows.resolution;
@@ -151,7 +152,7 @@ Result<void> Scene::create_objects() {
   effect_desc.pipeline_threads = desc_.pipeline_threads;
   effect_desc.table_pipelines_later = true;
   TYNDALL_ASSIGN(effect_, make_effect(effect_desc));
-  TYNDALL_ASSIGN(post::Tonemap tonemap, post::Tonemap::create(device));
+  TYNDALL_ASSIGN(post::Tonemap tonemap, post::Tonemap::create(device, effect_desc.frames_in_flight));
   tonemap_ = std::make_unique<post::Tonemap>(std::move(tonemap));
 
   TYNDALL_TRY(check_memory(device, desc_.extent, scene_.shadows.resolution, scene_.shadows.cascades, glass ? 12.0 : 4.0,
@@ -181,10 +182,9 @@ Result<void> Scene::create_objects() {
   TYNDALL_ASSIGN(background_, gpu::create_graphics_pipeline(device, background));
   TYNDALL_ASSIGN(copy_baseline_, gpu::create_compute_pipeline(device, shaders::copy_baseline_comp));
   TYNDALL_ASSIGN(background_constants_,
-                 gpu::create_buffer(device, "background_constants", sizeof(BackgroundConstants),
-                                    VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
+                 gpu::UploadRing::create(device, "background_constants", sizeof(BackgroundConstants)));
   if (desc_.timings) {
-    TYNDALL_ASSIGN(timer_, gpu::Timer::create(device, 1, kMaxTimedPasses));
+    TYNDALL_ASSIGN(timer_, gpu::Timer::create(device, effect_desc.frames_in_flight, kMaxTimedPasses));
   }
   TYNDALL_ASSIGN(model_, make_model(scene_));
   return make_tables_ready();
@@ -203,6 +203,7 @@ Result<void> Scene::render(double seconds, bool copy_baseline, std::optional<dou
   const std::optional<double> last_seconds = last_seconds_;
   Result<void> drawn = within_memory("drawing the scene", [&] { return draw_frame(seconds, copy_baseline, step_s); });
   if (!drawn) {
+    static_cast<void>(host_->wait(in_flight_.at(slot()).submission));  // its first parts may have been submitted
     tonemap_->exposure().put_back(start);
     last_seconds_ = last_seconds;
   }
@@ -229,10 +230,9 @@ Result<void> Scene::draw_frame(double seconds, bool copy_baseline, std::optional
     TYNDALL_TRY(accumulate(output_, radiance_sum_));
     TYNDALL_TRY(accumulate(display_, display_sum_));
   }
-  if (desc_.illuminance) {
-    TYNDALL_ASSIGN(illuminance_, measure_illuminance());
-  }
-  return {};
+  // The measurement waits for the frame, so it is made later if the frame is not waited for.
+  illuminance_stale_ = desc_.illuminance;
+  return waits() ? finish() : Result<void>();
 }
 
 // Adds an image to a sum on the host.
@@ -271,6 +271,7 @@ Result<void> Scene::place_lights(double seconds) {
 }
 
 Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool first, bool copy_baseline) {
+  TYNDALL_TRY(finish(slot()));
   const double radius = params_.planet.radius_m;
   const double aspect = static_cast<double>(desc_.extent.width) / desc_.extent.height;
   view_ = view_from_params(scene_.camera, aspect, radius);
@@ -322,13 +323,12 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
   if (model_ != nullptr) TYNDALL_TRY(model_->prepare({view_, frame_, light_, params_, scene_, desc_.extent}));
 
   TYNDALL_TRY(run_passes(first, copy_baseline));
-  times_.clear();
-  if (desc_.timings) {
-    for (const gpu::TimedScope& scope : timer_.read(0)) times_.push_back({scope.name, scope.milliseconds, false});
-    const bool by_effect = model_ == nullptr;
-    // On GPUs, the first is that of the whole effect, which contains the others.
-    for (const PassTiming& pass : by_effect ? effect_->timings(frame_index_) : std::span<const PassTiming>())
-      times_.push_back({pass.name, pass.gpu_ms, std::string_view(pass.name) != "effect"});
+  InFlight& frame = in_flight_.at(slot());
+  frame.frame_index = frame_index_;
+  frame.taken = false;
+  if (waits()) {
+    for (InFlight& complete : in_flight_) complete.taken = true;
+    take_results(slot());
   }
   ++frame_index_;
   return {};
@@ -347,11 +347,11 @@ Result<void> Scene::tonemap(VkCommandBuffer cmd, bool first) {
   const post::TonemapSettings settings = tonemap_settings(params_, scene_);
   if (first && (settings.auto_exposure || desc_.histogram)) {
     begin_pass(cmd, "exposure");
-    TYNDALL_TRY(tonemap_->exposure().measure(cmd, output_.view.get(), desc_.extent, settings, step_s_));
+    TYNDALL_TRY(tonemap_->exposure().measure(cmd, output_.view.get(), desc_.extent, settings, step_s_, slot()));
     end_pass(cmd);
   }
   begin_pass(cmd, "tonemap");
-  TYNDALL_TRY(tonemap_->record(cmd, output_.view.get(), display_.view.get(), desc_.extent, settings));
+  TYNDALL_TRY(tonemap_->record(cmd, output_.view.get(), display_.view.get(), desc_.extent, settings, slot()));
   end_pass(cmd);
   return {};
 }
@@ -396,7 +396,7 @@ Result<image::Image> Scene::display() {
 
 Scene::Exposure Scene::exposure() const {
   const post::TonemapSettings settings = tonemap_settings(params_, scene_);
-  Exposure out = {illuminance_, settings.exposure, {}, tonemap_->exposure().read()};
+  Exposure out = {illuminance_, settings.exposure, {}, tonemap_->exposure().read(taken_slot_)};
   if (settings.auto_exposure) out.scale = out.measurement.exposure;
   const double white = white_luminance(params_, scene_);
   if (out.scale > 0.0F && white > 0.0) {
@@ -406,7 +406,7 @@ Scene::Exposure Scene::exposure() const {
 }
 
 Counters Scene::counters() const {
-  return frame_index_ > 0 && model_ == nullptr ? effect_->counters(frame_index_ - 1) : Counters{};
+  return frame_index_ > 0 && model_ == nullptr ? effect_->counters(in_flight_.at(taken_slot_).frame_index) : Counters{};
 }
 
 Scene::Memory Scene::memory() const {

@@ -1,7 +1,8 @@
 // The demo engine: renders terrain, meshes, sun and shadow cascades into colour and depth, and applies tyndall::Effect.
-// Like any engine, it uses only the public interface of the library. It renders one frame at a time and waits for it.
+// Like any engine, it uses only the public interface of the library.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include "gpu/host.hpp"
 #include "gpu/timer.hpp"
+#include "gpu/upload_ring.hpp"
 #include "image/image.hpp"
 #include "post/tonemap.hpp"
 #include "scene/mesh/meshes.hpp"
@@ -31,6 +33,10 @@ struct SceneDesc {
   bool reuse_shadows = true;           // reuse shadow maps that would not change
   std::uint32_t pipeline_threads = 1;  // see EffectDesc
   bool in_parts = false;               // submit a frame in parts, so that other users of the queue get their turn
+  // If above 0, record a frame while the previous one executes. Then render() returns before the frame is complete, and
+  // timings(), exposure() and counters() are those of the last one that is known to be. While frames take longer than
+  // this, each is waited for, because other users of the queue would have to wait for two.
+  double ahead_up_to_ms = 0.0;
 };
 
 struct PassTime {
@@ -41,6 +47,7 @@ struct PassTime {
 
 class Scene {
  public:
+  ~Scene();
   // Loads the terrain and builds the tables unless they are cached. Takes seconds.
   static Result<std::unique_ptr<Scene>> create(gpu::Host& host, const SceneDesc& desc, const Params& params,
                                                const SceneParams& scene);
@@ -68,6 +75,9 @@ class Scene {
   // exposure adapts to this frame; by default the time since the previous frame. The first frame, and a frame at the
   // same time as the previous one, is exposed independently.
   Result<void> render(double seconds, bool copy_baseline = false, std::optional<double> step_s = {});
+
+  // Waits until all frames are complete, takes their results, and measures the illuminance.
+  Result<void> finish();
 
   // Exposes and tone maps the last rendered frame again, `step_s` later. Used while the exposure adapts, and if only
   // tonemap.* has changed.
@@ -142,6 +152,19 @@ class Scene {
   // loaded.
   Result<void> change(const SceneParams& scene, const Params& params, std::optional<ElevationSource> source);
   void swap_targets(Targets& targets) noexcept;
+  // Waits until all frames are complete, and takes their results.
+  Result<void> wait_for_frames();
+  // Waits until the frame that was recorded with a slot is complete, and takes its results.
+  Result<void> finish(std::uint32_t slot);
+  void take_results(std::uint32_t slot);
+  [[nodiscard]] bool ahead() const { return desc_.ahead_up_to_ms > 0.0; }
+  // Returns whether the frame that is being drawn is waited for.
+  [[nodiscard]] bool waits() const { return !ahead() || slow_; }
+  // Returns the slot of the frame that is being drawn, or of the next one.
+  [[nodiscard]] std::uint32_t slot() const {
+    return ahead() ? static_cast<std::uint32_t>(frame_index_ % gpu::kFramesInFlight) : 0;
+  }
+  Result<void> execute(const gpu::Host::Record& record);
   [[nodiscard]] bool shadows_are_drawn() const;
   // Returns whether no terrain is drawn, because of terrain.source or because the model draws its own sphere.
   [[nodiscard]] bool bare_ground() const;
@@ -175,6 +198,7 @@ class Scene {
   std::vector<std::string> notes_;  // outlives the effect, which writes to it
   std::unique_ptr<Effect> effect_;
   std::optional<Illuminance> illuminance_;
+  bool illuminance_stale_ = false;
   std::unique_ptr<LightMeter> light_meter_;  // reads the effect's tables; nullptr until it is needed
   std::unique_ptr<SkyModel> model_;          // nullptr if the effect draws the atmosphere
   bool tables_ready_ = false;
@@ -183,7 +207,7 @@ class Scene {
   std::vector<gpu::Handle<VkImageView>> shadow_layers_, shadow_color_layers_;  // a view of each layer
   gpu::Handle<VkSampler> linear_, nearest_, shadow_compare_;
   gpu::Pipeline background_, copy_baseline_;
-  gpu::Buffer background_constants_;
+  gpu::UploadRing background_constants_;
   gpu::Timer timer_;
 
   View view_;
@@ -199,6 +223,14 @@ class Scene {
   std::vector<CascadeFit> cascades_;
   TerrainLight light_;
   std::uint64_t frame_index_ = 0;
+  // The frames that may be executing, by slot.
+  struct InFlight {
+    std::uint64_t submission = 0;  // the last one of the frame; see gpu::Host::wait()
+    std::uint64_t frame_index = 0;
+    bool taken = true;  // its results have been taken
+  };
+  std::array<InFlight, gpu::kFramesInFlight> in_flight_;
+  std::uint32_t taken_slot_ = 0;        // the slot whose results were taken last
   std::optional<double> last_seconds_;  // time of the previous frame, if its exposure was measured
   double step_s_ = 0.0;
   bool images_ready_ = false;

@@ -36,6 +36,11 @@ struct Scene::Pending {
   std::unique_ptr<SkyModel> model;
   std::optional<Layered> shadow_maps, shadow_colors;
   std::vector<std::string> notes;
+
+  // Returns whether the swap replaces something that frames in flight use.
+  [[nodiscard]] bool replaces() const {
+    return other_effect || terrain || other_meshes || other_model || shadow_maps || shadow_colors;
+  }
 };
 
 // Returns an error if a model other than the effect would have to draw more than terrain and sky.
@@ -149,6 +154,7 @@ Result<void> Scene::make_tables_ready() {
 
 Result<Progress> Scene::advance_tables(std::uint32_t budget) {
   return within_memory("making the scattering tables", [&]() -> Result<Progress> {
+    TYNDALL_TRY(wait_for_frames());
     TYNDALL_TRY(replace_lost_effect());
     const Progress before = effect_->precompute_progress();
     if (!before.complete()) {
@@ -239,6 +245,7 @@ void Scene::swap(Pending& pending) noexcept {
 Result<void> Scene::change(const SceneParams& scene, const Params& params, std::optional<ElevationSource> source) {
   TYNDALL_TRY(replace_lost_effect());
   TYNDALL_ASSIGN(Pending pending, plan(scene, params, std::move(source)));
+  if (pending.replaces()) TYNDALL_TRY(wait_for_frames());
   const EffectDesc effect_before = effect_->desc();
   const Params params_before = effect_->params();
   if (pending.other_effect) TYNDALL_TRY(effect_->set_params(pending.params, pending.effect));
@@ -286,6 +293,7 @@ Result<void> Scene::set_params(const Params& params) {
 
 Result<void> Scene::set_extent(VkExtent2D extent) {
   return within_memory("changing the size of the picture", [&]() -> Result<void> {
+    TYNDALL_TRY(wait_for_frames());
     TYNDALL_TRY(replace_lost_effect());
     TYNDALL_ASSIGN(Targets targets, make_targets(extent));
     TYNDALL_TRY(effect_->set_limits(extent, scene_.shadows.cascades, scene_.shadows.resolution));
@@ -297,12 +305,15 @@ Result<void> Scene::set_extent(VkExtent2D extent) {
 
 Result<void> Scene::tone(double step_s) {
   const post::Exposure::Start start = tonemap_->exposure().start();
-  Result<void> toned = within_memory("tone mapping", [&] {
+  Result<void> toned = within_memory("tone mapping", [&]() -> Result<void> {
+    TYNDALL_TRY(wait_for_frames());
     step_s_ = step_s;
-    return host_->run([&](VkCommandBuffer cmd) -> Result<void> {
-      if (desc_.timings) timer_.begin_frame(cmd, 0);
+    TYNDALL_TRY(host_->run([&](VkCommandBuffer cmd) -> Result<void> {
+      if (desc_.timings) timer_.begin_frame(cmd, slot());
       return tonemap(cmd, true);
-    });
+    }));
+    taken_slot_ = slot();
+    return {};
   });
   if (!toned) tonemap_->exposure().put_back(start);
   return toned;

@@ -138,8 +138,7 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
   const ModelFrame frame = {view_, frame_, light_, params_, scene_, desc_.extent};
   // While tables of the other scattering.color are being built, the light of the scene is that of the old ones.
   const Vec3 color = sun_color(model_ == nullptr ? table_params(*effect_) : params_);
-  const BackgroundConstants constants = background_constants(frame, to_sun_, color, moon_);
-  std::memcpy(background_constants_.mapped, &constants, sizeof constants);
+  background_constants_.write(background_constants(frame, to_sun_, color, moon_));
 
   gpu::transition(device, cmd, color_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
   gpu::transition(device, cmd, depth_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
@@ -193,11 +192,11 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
   begin_pass(cmd, model_ != nullptr ? "sky" : "background");
   begin_rendering(device, cmd, desc_.extent, {&on_color, 1}, &on_depth);
   if (model_ != nullptr) {
-    TYNDALL_TRY(model_->draw_sky(cmd, background_constants_.buffer.get()));
+    TYNDALL_TRY(model_->draw_sky(cmd, background_constants_.buffer()));
   } else {
     if (meshes_ != nullptr) TYNDALL_TRY(meshes_->draw_view(cmd, view_, light_));
     const gpu::Label label(device, cmd, background_.name);
-    const gpu::NamedResource resources[] = {gpu::named_buffer("background_block", background_constants_.buffer.get())};
+    const gpu::NamedResource resources[] = {gpu::named_buffer("background_block", background_constants_.buffer())};
     TYNDALL_TRY(gpu::bind(host_->sets(), cmd, background_, resources));
     device.vk.CmdDraw(cmd, 3, 1, 0, 0);
     if (meshes_ != nullptr) TYNDALL_TRY(meshes_->draw_clear_glass(cmd, view_, light_));
@@ -217,7 +216,7 @@ Result<void> Scene::run_passes(bool first, bool copy_baseline) {
   // The jitter of the samples does not move the cascades, so only the first sample draws them.
   const bool other_shadows = shadows_are_read && first && !(desc_.reuse_shadows && shadows_are_drawn());
   const auto shadows = [&](VkCommandBuffer cmd) -> Result<void> {
-    if (desc_.timings) timer_.begin_frame(cmd, 0);
+    if (desc_.timings) timer_.begin_frame(cmd, slot());
     if (!images_ready_) {
       gpu::transition(device, cmd, output_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
       gpu::transition(device, cmd, display_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
@@ -239,11 +238,11 @@ Result<void> Scene::run_passes(bool first, bool copy_baseline) {
   std::vector<CascadeFit> drawn = shadows_are_read ? cascades_ : std::vector<CascadeFit>();
   if (other_shadows) drawn_cascades_.clear();
   if (desc_.in_parts) {
-    TYNDALL_TRY(host_->run(shadows));
-    TYNDALL_TRY(host_->run(view));
-    TYNDALL_TRY(host_->run(air));
+    TYNDALL_TRY(execute(shadows));
+    TYNDALL_TRY(execute(view));
+    TYNDALL_TRY(execute(air));
   } else {
-    TYNDALL_TRY(host_->run(whole));
+    TYNDALL_TRY(execute(whole));
   }
   effect_lost_ = false;
   images_ready_ = true;
@@ -277,7 +276,7 @@ Result<void> Scene::run_effect(VkCommandBuffer cmd) {
   inputs.frame_index = frame_index_;
   if (!bare_ground()) inputs.lowest_ground_m = static_cast<float>(std::min(terrain_->ground().min_m, 0.0));
   Result<void> recorded = effect_->record(cmd, inputs);
-  effect_lost_ = recorded.ok();  // run_passes() resets it once the commands have run
+  effect_lost_ = recorded.ok();  // run_passes() resets it once the commands have been submitted
   return recorded;
 }
 

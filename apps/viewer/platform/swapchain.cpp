@@ -42,12 +42,14 @@ VkImageMemoryBarrier to_attachment(VkImage image) {
 Swapchain::~Swapchain() {
   if (host_ == nullptr) return;
   const VkDevice device = host_->device().device;
-  wait_idle();
+  host_->wait_idle();
   if (gui_) ImGui_ImplVulkan_Shutdown();
   destroy_targets();
   if (swapchain_ != VK_NULL_HANDLE) vkDestroySwapchainKHR(device, swapchain_, nullptr);
-  if (acquired_ != VK_NULL_HANDLE) vkDestroySemaphore(device, acquired_, nullptr);
-  if (fence_ != VK_NULL_HANDLE) vkDestroyFence(device, fence_, nullptr);
+  for (const Frame& frame : frames_) {
+    if (frame.acquired != VK_NULL_HANDLE) vkDestroySemaphore(device, frame.acquired, nullptr);
+    if (frame.fence != VK_NULL_HANDLE) vkDestroyFence(device, frame.fence, nullptr);
+  }
   if (pool_ != VK_NULL_HANDLE) vkDestroyCommandPool(device, pool_, nullptr);
   if (descriptors_ != VK_NULL_HANDLE) vkDestroyDescriptorPool(device, descriptors_, nullptr);
   if (render_pass_ != VK_NULL_HANDLE) vkDestroyRenderPass(device, render_pass_, nullptr);
@@ -128,14 +130,17 @@ Result<void> Swapchain::create_frame_objects() {
   allocate.commandPool = pool_;
   allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
   allocate.commandBufferCount = 1;
-  TYNDALL_TRY(checked(vkAllocateCommandBuffers(device, &allocate, &cmd_), "allocating", "the window's command buffer"));
   VkFenceCreateInfo fence = {};
   fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
-  TYNDALL_TRY(checked(vkCreateFence(device, &fence, nullptr, &fence_), "creating", "the window's fence"));
   VkSemaphoreCreateInfo semaphore = {};
   semaphore.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
-  TYNDALL_TRY(
-      checked(vkCreateSemaphore(device, &semaphore, nullptr, &acquired_), "creating", "the window's semaphore"));
+  for (Frame& frame : frames_) {
+    TYNDALL_TRY(
+        checked(vkAllocateCommandBuffers(device, &allocate, &frame.cmd), "allocating", "the window's command buffer"));
+    TYNDALL_TRY(checked(vkCreateFence(device, &fence, nullptr, &frame.fence), "creating", "the window's fence"));
+    TYNDALL_TRY(
+        checked(vkCreateSemaphore(device, &semaphore, nullptr, &frame.acquired), "creating", "the window's semaphore"));
+  }
   const VkDescriptorPoolSize size = {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 8};
   VkDescriptorPoolCreateInfo descriptors = {};
   descriptors.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
@@ -170,7 +175,7 @@ Result<void> Swapchain::start_gui() {
 
 Result<void> Swapchain::recover() {
   const VkDevice device = host_->device().device;
-  wait_idle();
+  host_->wait_idle();
   destroy_targets();
   if (swapchain_ != VK_NULL_HANDLE) vkDestroySwapchainKHR(device, swapchain_, nullptr);
   swapchain_ = VK_NULL_HANDLE;
@@ -192,11 +197,6 @@ const char* Swapchain::present_mode() const {
     case VK_PRESENT_MODE_FIFO_KHR: return "fifo";
     default: return "other";
   }
-}
-
-void Swapchain::wait_idle() {
-  const std::unique_lock<std::mutex> locked = host_->lock();
-  vkDeviceWaitIdle(host_->device().device);
 }
 
 void Swapchain::destroy_targets() {
@@ -231,7 +231,7 @@ Result<bool> Swapchain::create_swapchain() {
   if (!vsync_ && offers(VK_PRESENT_MODE_MAILBOX_KHR)) mode_ = VK_PRESENT_MODE_MAILBOX_KHR;
   if (!vsync_ && offers(VK_PRESENT_MODE_IMMEDIATE_KHR)) mode_ = VK_PRESENT_MODE_IMMEDIATE_KHR;
 
-  wait_idle();
+  host_->wait_idle();
   VkSwapchainCreateInfoKHR info = {};
   info.sType = VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR;
   info.surface = surface_;
@@ -327,6 +327,15 @@ Result<void> Swapchain::record(VkCommandBuffer cmd, const Target& target,
   return drawn;
 }
 
+Result<void> Swapchain::wait_for(Frame& frame) {
+  if (!frame.pending) return {};
+  const VkDevice device = host_->device().device;
+  TYNDALL_TRY(
+      checked(vkWaitForFences(device, 1, &frame.fence, VK_TRUE, UINT64_MAX), "waiting for", "the window's frame"));
+  frame.pending = false;
+  return checked(vkResetFences(device, 1, &frame.fence), "resetting", "the window's fence");
+}
+
 Result<Drawn> Swapchain::draw(const std::function<Result<void>(VkCommandBuffer, VkExtent2D)>& picture) {
   if (window_->minimised()) return Drawn::not_now;
   const VkExtent2D window = window_->size();
@@ -338,9 +347,11 @@ Result<Drawn> Swapchain::draw(const std::function<Result<void>(VkCommandBuffer, 
     if (!made) return made.error();
     if (!made.value()) return Drawn::not_now;
   }
-  const VkDevice device = host_->device().device;
+  Frame& frame = frames_[frame_];
+  TYNDALL_TRY(wait_for(frame));
   std::uint32_t index = 0;
-  VkResult result = vkAcquireNextImageKHR(device, swapchain_, UINT64_MAX, acquired_, VK_NULL_HANDLE, &index);
+  VkResult result =
+      vkAcquireNextImageKHR(host_->device().device, swapchain_, UINT64_MAX, frame.acquired, VK_NULL_HANDLE, &index);
   if (result == VK_ERROR_OUT_OF_DATE_KHR) {
     stale_ = true;
     return Drawn::not_now;
@@ -355,16 +366,16 @@ Result<Drawn> Swapchain::draw(const std::function<Result<void>(VkCommandBuffer, 
   VkCommandBufferBeginInfo begin = {};
   begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
   begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-  TYNDALL_TRY(checked(vkBeginCommandBuffer(cmd_, &begin), "beginning", "the window's command buffer"));
-  TYNDALL_TRY(record(cmd_, target, picture));
-  TYNDALL_TRY(checked(vkEndCommandBuffer(cmd_), "ending", "the window's command buffer"));
+  TYNDALL_TRY(checked(vkBeginCommandBuffer(frame.cmd, &begin), "beginning", "the window's command buffer"));
+  TYNDALL_TRY(record(frame.cmd, target, picture));
+  TYNDALL_TRY(checked(vkEndCommandBuffer(frame.cmd), "ending", "the window's command buffer"));
   const VkPipelineStageFlags stage = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;
   VkSubmitInfo submit = {};
   submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
   submit.waitSemaphoreCount = submit.commandBufferCount = submit.signalSemaphoreCount = 1;
-  submit.pWaitSemaphores = &acquired_;
+  submit.pWaitSemaphores = &frame.acquired;
   submit.pWaitDstStageMask = &stage;
-  submit.pCommandBuffers = &cmd_;
+  submit.pCommandBuffers = &frame.cmd;
   submit.pSignalSemaphores = &target.rendered;
   VkPresentInfoKHR present = {};
   present.sType = VK_STRUCTURE_TYPE_PRESENT_INFO_KHR;
@@ -374,11 +385,11 @@ Result<Drawn> Swapchain::draw(const std::function<Result<void>(VkCommandBuffer, 
   present.pImageIndices = &index;
   {
     const std::unique_lock<std::mutex> locked = host_->lock();
-    TYNDALL_TRY(checked(vkQueueSubmit(host_->queue(), 1, &submit, fence_), "submitting", "the window's frame"));
+    TYNDALL_TRY(checked(vkQueueSubmit(host_->queue(), 1, &submit, frame.fence), "submitting", "the window's frame"));
+    frame.pending = true;
     result = vkQueuePresentKHR(host_->queue(), &present);
   }
-  TYNDALL_TRY(checked(vkWaitForFences(device, 1, &fence_, VK_TRUE, UINT64_MAX), "waiting for", "the window's frame"));
-  vkResetFences(device, 1, &fence_);
+  frame_ = (frame_ + 1) % gpu::kFramesInFlight;
   if (result == VK_ERROR_SURFACE_LOST_KHR) return Drawn::surface_lost;
   if (result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_SUBOPTIMAL_KHR) {
     stale_ = true;

@@ -3,9 +3,11 @@
 
 #include <vulkan/vulkan.h>
 
+#include <array>
 #include <functional>
 #include <vector>
 
+#include "gpu/frames_in_flight.hpp"
 #include "gpu/host.hpp"
 #include "viewer/platform/window.hpp"
 
@@ -32,7 +34,7 @@ class Swapchain {
   [[nodiscard]] bool vsync() const { return vsync_; }
 
   // Calls `picture` to record into a rendering scope over the whole window, draws ImGui's draw data on top, and
-  // presents.
+  // presents. Waits for the frame gpu::kFramesInFlight calls ago, not for this one.
   Result<Drawn> draw(const std::function<Result<void>(VkCommandBuffer, VkExtent2D)>& picture);
 
   [[nodiscard]] VkFormat format() const { return format_.format; }
@@ -51,9 +53,16 @@ class Swapchain {
   Result<void> create_render_pass();
   Result<void> create_frame_objects();
   Result<void> start_gui();
+  // What a frame of the window needs while it executes.
+  struct Frame {
+    VkCommandBuffer cmd = VK_NULL_HANDLE;
+    VkFence fence = VK_NULL_HANDLE;
+    VkSemaphore acquired = VK_NULL_HANDLE;
+    bool pending = false;  // submitted, and not waited for
+  };
+  Result<void> wait_for(Frame& frame);
   Result<bool> create_swapchain();  // false: the window has no area now
   void destroy_targets();
-  void wait_idle();
   Result<void> record(VkCommandBuffer cmd, const Target& target,
                       const std::function<Result<void>(VkCommandBuffer, VkExtent2D)>& picture);
 
@@ -71,9 +80,8 @@ class Swapchain {
   VkRenderPass render_pass_ = VK_NULL_HANDLE;
   VkDescriptorPool descriptors_ = VK_NULL_HANDLE;
   VkCommandPool pool_ = VK_NULL_HANDLE;
-  VkCommandBuffer cmd_ = VK_NULL_HANDLE;
-  VkFence fence_ = VK_NULL_HANDLE;
-  VkSemaphore acquired_ = VK_NULL_HANDLE;
+  std::array<Frame, gpu::kFramesInFlight> frames_;
+  std::uint32_t frame_ = 0;  // index of the next frame
 };
 
 }  // namespace tyndall::viewer

@@ -35,8 +35,8 @@ const char* name_of(Shown shown) { return kRows[static_cast<int>(shown)].name; }
 const char* meaning_of(Shown shown) { return kRows[static_cast<int>(shown)].meaning; }
 
 bool same_view(const View& a, const View& b) {
-  return a.shown == b.shown && a.layer == b.layer && a.slice == b.slice && a.stretch == b.stretch &&
-         a.extent.width == b.extent.width && a.extent.height == b.extent.height;
+  return a.shown == b.shown && a.precise == b.precise && a.layer == b.layer && a.slice == b.slice &&
+         a.stretch == b.stretch && a.extent.width == b.extent.width && a.extent.height == b.extent.height;
 }
 
 Result<gpu::Handle<VkSampler>> create_float_sampler(const gpu::Device& device) {
@@ -46,23 +46,30 @@ Result<gpu::Handle<VkSampler>> create_float_sampler(const gpu::Device& device) {
   return gpu::create_sampler(device, {.filter = filters ? VK_FILTER_LINEAR : VK_FILTER_NEAREST});
 }
 
-Result<void> Canvas::create(gpu::Host& host, bool to_host) {
+Canvas::~Canvas() {
+  if (host_ != nullptr) static_cast<void>(host_->wait(submission_));
+}
+
+Result<void> Canvas::create(gpu::Host& host, bool to_host, bool ahead) {
   host_ = &host;
   to_host_ = to_host;
+  ahead_ = ahead && !to_host;
   const gpu::Device& device = host.device();
-  const auto make = [&](gpu::Pipeline& out, const char* name, const gpu::Shader& fragment) -> Result<void> {
+  const auto make = [&](gpu::Pipeline& out, const char* name, const gpu::Shader& fragment,
+                        bool precise = false) -> Result<void> {
     gpu::GraphicsDesc desc;
     desc.name = name;
     desc.vertex = &shaders::present_vert;
     desc.fragment = &fragment;
-    desc.color_format = kCanvasFormat;
+    desc.color_format = format_of({.precise = precise});
     TYNDALL_ASSIGN(out, gpu::create_graphics_pipeline(device, desc));
     return {};
   };
   TYNDALL_TRY(make(color_, "show_color", shaders::show_color_frag));
+  TYNDALL_TRY(make(precise_color_, "show_color", shaders::show_color_frag, true));
   TYNDALL_TRY(make(depth_, "show_depth", shaders::show_depth_frag));
   TYNDALL_TRY(make(layer_, "show_layer", shaders::show_layer_frag));
-  TYNDALL_TRY(make(table_, "show_table", shaders::show_table_frag));
+  TYNDALL_TRY(make(precise_table_, "show_table", shaders::show_table_frag, true));
   TYNDALL_ASSIGN(nearest_, gpu::create_sampler(device, {.filter = VK_FILTER_NEAREST}));
   TYNDALL_ASSIGN(linear_, create_float_sampler(device));
   return {};
@@ -70,17 +77,18 @@ Result<void> Canvas::create(gpu::Host& host, bool to_host) {
 
 Result<Picture> Canvas::draw(scene::Scene& scene, const View& view) {
   const gpu::Device& device = host_->device();
-  if (image_ == nullptr || image_->desc.extent.width != view.extent.width ||
+  if (image_ == nullptr || image_->desc.format != format_of(view) || image_->desc.extent.width != view.extent.width ||
       image_->desc.extent.height != view.extent.height) {
     TYNDALL_ASSIGN(gpu::Image image,
                    gpu::create_image(device, {"canvas",
-                                              kCanvasFormat,
+                                              format_of(view),
                                               {view.extent.width, view.extent.height, 1},
                                               VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
                                                   VK_IMAGE_USAGE_TRANSFER_SRC_BIT}));
+    TYNDALL_TRY(host_->wait(submission_));
     image_ = std::make_shared<gpu::Image>(std::move(image));
   }
-  TYNDALL_TRY(host_->run([&](VkCommandBuffer cmd) -> Result<void> {
+  const gpu::Host::Record commands = [&](VkCommandBuffer cmd) -> Result<void> {
     gpu::transition(device, cmd, *image_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
     VkRenderingAttachmentInfo color = {};
     color.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
@@ -105,15 +113,21 @@ Result<Picture> Canvas::draw(scene::Scene& scene, const View& view) {
     gpu::transition(device, cmd, *image_, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     return recorded;
-  }));
+  };
+  if (ahead_) {
+    TYNDALL_ASSIGN(submission_, host_->submit(commands));
+  } else {
+    TYNDALL_TRY(host_->run(commands));
+  }
   Picture out;
   out.extent = view.extent;
+  out.format = format_of(view);
   if (!to_host_) {
     out.image = image_;
     return out;
   }
   TYNDALL_ASSIGN(out.texels,
-                 gpu::download(*host_, *image_, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, 0, 4 * sizeof(float)));
+                 gpu::download(*host_, *image_, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, 0, view.precise ? 16 : 8));
   return out;
 }
 
@@ -131,10 +145,10 @@ Result<void> Canvas::record(VkCommandBuffer cmd, scene::Scene& scene, const View
   constexpr VkImageLayout kGeneral = VK_IMAGE_LAYOUT_GENERAL;
   constexpr VkImageLayout kRead = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
   const auto show = [&](VkImageView image, VkImageLayout layout) {
-    return draw(cmd, color_, gpu::named_image("image", image, layout, linear_.get()));
+    return draw(cmd, view.precise ? precise_color_ : color_, gpu::named_image("image", image, layout, linear_.get()));
   };
   const auto show_table = [&](VkImageView table) {
-    return draw(cmd, table_, gpu::named_image("table", table, kGeneral, nearest_.get()), &view.slice);
+    return draw(cmd, precise_table_, gpu::named_image("table", table, kGeneral, nearest_.get()), &view.slice);
   };
   switch (view.shown) {
     case Shown::picture: return show(images.display.view.get(), kGeneral);

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "gpu/frames_in_flight.hpp"
 #include "viewer/scenes/canvas.hpp"
 
 namespace tyndall::viewer {
@@ -23,20 +24,28 @@ struct PictureOptions {
 
 class Pictures {
  public:
+  Pictures() = default;
+  Pictures(const Pictures&) = delete;
+  Pictures& operator=(const Pictures&) = delete;
+  ~Pictures();
   Result<void> create(gpu::Host& host, VkFormat format);
   // Sets the canvas of a side. 0: left or only, 1: right.
   Result<void> take(std::size_t side, Picture picture);
   void forget(std::size_t side) { sides_.at(side) = {}; }
   [[nodiscard]] bool has(std::size_t side) const { return sides_.at(side) != nullptr; }
-  // Records the drawing into a rendering scope over the window.
+  // Records the drawing into a rendering scope over the window. At most gpu::kFramesInFlight of these drawings may be
+  // recorded or executing.
   Result<void> record(VkCommandBuffer cmd, VkExtent2D window, bool two, const PictureOptions& options);
 
  private:
   gpu::Host* host_ = nullptr;
   gpu::Pipeline present_;
-  gpu::DescriptorSets sets_;  // one, because the window has one frame in flight
+  gpu::DescriptorSets sets_;  // one per frame in flight
   gpu::Handle<VkSampler> sampler_;
   std::array<std::shared_ptr<const gpu::Image>, 2> sides_;
+  // The images that frames in flight read, which take() and forget() must not destroy.
+  std::array<std::array<std::shared_ptr<const gpu::Image>, 2>, gpu::kFramesInFlight> read_;
+  std::uint32_t frame_ = 0;                    // index of the last recorded frame
   std::shared_ptr<const gpu::Image> nothing_;  // one dark texel, until there is a picture
 };
 

@@ -58,7 +58,7 @@ SceneResult SceneWork::create(gpu::Host& host, const scene::SceneDesc& desc, con
   SceneResult out;
   out.settings = wanted_;
   const Result<void> done = [&]() -> Result<void> {
-    TYNDALL_TRY(canvas_.create(host, to_host));
+    TYNDALL_TRY(canvas_.create(host, to_host, desc.ahead_up_to_ms > 0.0));
     TYNDALL_ASSIGN(scene_, scene::Scene::create(host, desc_, applied_.effect, applied_.scene));
     // The first step searches the cache: if the tables are there, the first frame is drawn at once.
     if (building()) {
@@ -85,7 +85,7 @@ bool SceneWork::building() const {
 }
 
 bool SceneWork::tone_stale() const {
-  if (tone_wanted_) return true;
+  if (tone_wanted_ || (unmeasured_ && drawn_ && !stale_)) return true;
   const scene::TonemapParams& params = applied_.scene.tonemap;
   if (!scene::is_auto_exposed(params) || !params.light_adaptation || !drawn_ || stale_) return false;
   constexpr float kAdapted = 0.005F;  // relative difference that is not visible
@@ -154,6 +154,8 @@ Result<void> SceneWork::next(const SceneRequest& request, SceneResult& out) {
   if (building()) TYNDALL_TRY(advance_tables(out));
   if (!ready()) return {};
   if (stale_ || request.again || !same_view(request.view, drawn_view_)) return draw(request, out);
+  TYNDALL_TRY(scene_->finish());
+  unmeasured_ = false;
   if (tone_stale()) return draw(request, out);
   if (!request.rest || out.tables) return {};
   if (store_in_s() == 0.0) return store_tables();
@@ -202,6 +204,7 @@ Result<void> SceneWork::draw(const SceneRequest& request, SceneResult& out) {
     stale_ = tone_wanted_ = false;
     TYNDALL_TRY(scene_->render(request.seconds, false, step_s()));
     out.frame = drawn_ = true;
+    unmeasured_ = desc_.ahead_up_to_ms > 0.0;
     drawn_settings_ = wanted_;
     out.frame_ms = 1000.0 * seconds_since(start);
   } else if (tone_stale()) {

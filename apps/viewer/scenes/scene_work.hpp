@@ -117,7 +117,8 @@ class SceneWork {
   Clock::time_point tables_since_;  // when the tables were finished
   bool stale_ = true;
   bool tone_wanted_ = false;
-  bool drawn_ = false;  // a frame has been drawn
+  bool drawn_ = false;       // a frame has been drawn
+  bool unmeasured_ = false;  // the results of the frame are not known yet, because it may be executing
   Clock::time_point drawn_at_;
   Progress pipelines_ = {};
   std::uint32_t budget_ = 1;  // slices of tables for one piece of work

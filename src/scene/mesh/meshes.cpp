@@ -191,8 +191,7 @@ Result<void> Meshes::create_pipelines(VkFormat color_format, VkFormat depth_form
 
 Result<void> Meshes::create_buffers() {
   const gpu::Device& device = host_->device();
-  TYNDALL_ASSIGN(constants_, gpu::create_buffer(device, "mesh_constants", sizeof(shared::MeshConstants),
-                                                VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
+  TYNDALL_ASSIGN(constants_, gpu::UploadRing::create(device, "mesh_constants", sizeof(shared::MeshConstants)));
   if (!any()) return {};
   std::vector<shared::MeshInstance> instances;
   instances.reserve(data_.instances.size());
@@ -253,7 +252,7 @@ Ground Meshes::ground(Ground ground, const glm::dvec3& camera) const {
 }
 
 VkDeviceSize Meshes::bytes() const {
-  VkDeviceSize out = constants_.bytes + vertices_.bytes + indices_.bytes + instances_.bytes;
+  VkDeviceSize out = constants_.bytes() + vertices_.bytes + indices_.bytes + instances_.bytes;
   for (const gpu::Image& texture : textures_) out += texture.bytes;
   return out;
 }
@@ -284,11 +283,11 @@ void Meshes::prepare(const View& view, const LocalFrame& frame, const ShadowPara
                       static_cast<float>(2.0 * c.half_extent.y / shadows.resolution),
                       static_cast<float>(2.0 * c.half_extent.z)};
   }
-  std::memcpy(constants_.mapped, &out, sizeof out);
+  constants_.write(out);
 }
 
 std::vector<gpu::NamedResource> Meshes::resources(const TerrainLight* light) const {
-  std::vector<gpu::NamedResource> out = {gpu::named_buffer("mesh_block", constants_.buffer.get())};
+  std::vector<gpu::NamedResource> out = {gpu::named_buffer("mesh_block", constants_.buffer())};
   if (any()) {
     out.push_back(gpu::named_buffer("vertices_block", vertices_.buffer.get()));
     out.push_back(gpu::named_buffer("instances_block", instances_.buffer.get()));

@@ -66,7 +66,8 @@ class Meshes {
   double lowest_m_ = 0.0, highest_m_ = 0.0;
 
   gpu::Pipeline surfaces_, multiply_, add_, shadow_, shadow_mask_, colors_, ground_;
-  gpu::Buffer constants_, vertices_, indices_, instances_;
+  gpu::UploadRing constants_;
+  gpu::Buffer vertices_, indices_, instances_;
   std::vector<gpu::Image> textures_;                        // the last is white
   std::map<MeshSampler, gpu::Handle<VkSampler>> samplers_;  // one for each distinct MeshSampler of the materials
 };

@@ -103,16 +103,17 @@ class OneilSky : public SkyModel {
 
  private:
   // Computes the fit or the table and the irradiance of the sky if the planet, the atmosphere or the settings have
-  // changed. No frame may be in flight.
+  // changed. The previous frame, which reads the previous table, may be in flight.
   Result<void> make(const tyndall::shared::Medium& medium, const models::OneilSettings& settings) {
     const bool same =
         table_buffer_.buffer && settings == settings_ && std::memcmp(&medium, &model_.medium, sizeof medium) == 0;
     if (same) return {};
     models::OneilModel model = models::make_oneil(medium, settings);
     const VkDeviceSize bytes = model.table.size() * sizeof model.table[0];
-    TYNDALL_ASSIGN(table_buffer_, gpu::create_buffer(host_->device(), "oneil_table", bytes,
-                                                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
-    std::memcpy(table_buffer_.mapped, model.table.data(), bytes);
+    TYNDALL_ASSIGN(gpu::Buffer table, gpu::create_buffer(host_->device(), "oneil_table", bytes,
+                                                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
+    std::memcpy(table.mapped, model.table.data(), bytes);
+    previous_table_ = std::exchange(table_buffer_, std::move(table));
     settings_ = settings;
     model_ = std::move(model);
     models::OneilModel coarse = model_;
@@ -143,7 +144,7 @@ class OneilSky : public SkyModel {
   models::OneilModel model_ = {};
   models::OneilSettings settings_ = {};
   float sky_by_sun_[kSuns][4] = {};
-  gpu::Buffer table_buffer_;
+  gpu::Buffer table_buffer_, previous_table_;
 };
 
 }  // namespace

@@ -99,10 +99,8 @@ Result<void> SkyModel::create_objects(gpu::Host& host, const Shaders& shaders, M
                                               VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                                               gpu::MemoryKind::device));
   TYNDALL_TRY(gpu::upload(host, indices_, indices.data(), index_bytes));
-  TYNDALL_ASSIGN(mesh_, gpu::create_buffer(device, "sky_mesh", sizeof(MeshBlock), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                                           gpu::MemoryKind::upload));
-  TYNDALL_ASSIGN(constants_, gpu::create_buffer(device, "model_constants", constants_bytes,
-                                                VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
+  TYNDALL_ASSIGN(mesh_, gpu::UploadRing::create(device, "sky_mesh", sizeof(MeshBlock)));
+  TYNDALL_ASSIGN(constants_, gpu::UploadRing::create(device, "model_constants", constants_bytes));
   return {};
 }
 
@@ -153,7 +151,7 @@ void SkyModel::fill_mesh(const ModelFrame& frame) {
     const double from = horizon + kNarrow_rad;
     zenith[kRowsAbove + kRowsBetween + i] = static_cast<float>(from + (kHalfTurn - from) * x * (0.1 + 0.9 * x));
   }
-  std::memcpy(mesh_.mapped, &out, sizeof out);
+  mesh_.write(out);
 }
 
 Result<void> SkyModel::create_air(VkExtent2D extent) {
@@ -172,21 +170,21 @@ Result<void> SkyModel::create_air(VkExtent2D extent) {
 }
 
 VkDeviceSize SkyModel::bytes() const {
-  VkDeviceSize out = mesh_.bytes + constants_.bytes + indices_.bytes;
+  VkDeviceSize out = mesh_.bytes() + constants_.bytes() + indices_.bytes;
   for (const gpu::Image& image : air_) out += image.bytes;
   return out;
 }
 
 std::vector<gpu::NamedResource> SkyModel::own_resources() const {
   std::vector<gpu::NamedResource> out = more_resources();
-  out.push_back(gpu::named_buffer("model_block", constants_.buffer.get()));
+  out.push_back(gpu::named_buffer("model_block", constants_.buffer()));
   return out;
 }
 
 Result<void> SkyModel::prepare(const ModelFrame& frame) {
   fill_mesh(frame);
   TYNDALL_TRY(create_air(frame.extent));
-  return fill(frame, constants_.mapped);
+  return fill(frame, constants_.next());
 }
 
 Result<void> SkyModel::draw_ground(VkCommandBuffer cmd, Terrain& terrain, const ModelFrame& frame) {
@@ -207,7 +205,7 @@ Result<void> SkyModel::draw_sky(VkCommandBuffer cmd, VkBuffer background) {
   const gpu::Pipeline& sky = sky_[variant()];
   const gpu::Label label(device, cmd, sky.name);
   std::vector<gpu::NamedResource> resources = own_resources();
-  resources.push_back(gpu::named_buffer("mesh_block", mesh_.buffer.get()));
+  resources.push_back(gpu::named_buffer("mesh_block", mesh_.buffer()));
   resources.push_back(gpu::named_buffer("background_block", background));
   TYNDALL_TRY(gpu::bind(host_->sets(), cmd, sky, resources));
   device.vk.CmdBindIndexBuffer(cmd, indices_.buffer.get(), 0, VK_INDEX_TYPE_UINT32);

@@ -36,7 +36,8 @@ class SkyModel {
   SkyModel(const SkyModel&) = delete;
   SkyModel& operator=(const SkyModel&) = delete;
 
-  // Writes the constants of a frame. Call it before recording the draws, and with no frame in flight.
+  // Writes the constants of a frame. Call it before recording the draws. There may be kFramesInFlight - 1 frames in
+  // flight, or none if `extent` has changed.
   Result<void> prepare(const ModelFrame& frame);
   // Records the ground into a rendering scope with colour, `attachments()` and depth: see Terrain::draw_view.
   Result<void> draw_ground(VkCommandBuffer cmd, Terrain& terrain, const ModelFrame& frame);
@@ -92,7 +93,8 @@ class SkyModel {
   std::vector<gpu::Pipeline> ground_, light_, sky_;  // by variant; ground_ is empty with evaluation per pixel
   std::vector<gpu::Image> air_;
   VkFormat air_format_ = VK_FORMAT_UNDEFINED;
-  gpu::Buffer mesh_, indices_, constants_;
+  gpu::Buffer indices_;
+  gpu::UploadRing mesh_, constants_;
 };
 
 // Creates the model of scattering.model. Precondition: it is not `atmosphere`, which the effect draws.

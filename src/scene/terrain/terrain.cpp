@@ -154,12 +154,10 @@ Result<void> Terrain::create_objects(VkFormat color_format, VkFormat depth_forma
   TYNDALL_ASSIGN(nearest_, gpu::create_sampler(device, {.filter = VK_FILTER_NEAREST}));
 
   TYNDALL_ASSIGN(indices_, create_indices(coarseness_));
-  TYNDALL_ASSIGN(map_projections_, gpu::create_buffer(device, "terrain_projections", sizeof(shared::MapProjections),
-                                                      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
-  TYNDALL_ASSIGN(constants_, gpu::create_buffer(device, "terrain_constants", sizeof(shared::TerrainConstants),
-                                                VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
-  TYNDALL_ASSIGN(blocks_, gpu::create_buffer(device, "terrain_blocks", kMaxBlocks * sizeof(TerrainBlock),
-                                             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
+  TYNDALL_ASSIGN(map_projections_,
+                 gpu::UploadRing::create(device, "terrain_projections", sizeof(shared::MapProjections)));
+  TYNDALL_ASSIGN(constants_, gpu::UploadRing::create(device, "terrain_constants", sizeof(shared::TerrainConstants)));
+  TYNDALL_ASSIGN(blocks_, gpu::UploadRing::create(device, "terrain_blocks", kMaxBlocks * sizeof(TerrainBlock)));
   TYNDALL_ASSIGN(fill_constants_, gpu::create_buffer(device, "terrain_fill_constants", sizeof(fill::TerrainFill),
                                                      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryKind::upload));
   TYNDALL_ASSIGN(fill_tiles_, gpu::create_buffer(device, "terrain_fill_tiles", kMaxTiles * sizeof(TerrainTile),
@@ -211,15 +209,14 @@ double ground_height(const ElevationSource& source, const glm::dvec3& up, double
 double Terrain::height_at(const glm::dvec3& up) const { return none() ? 0.0 : ground_height(*source_, up, radius_m_); }
 
 VkDeviceSize Terrain::bytes() const {
-  return heights_.bytes + atlas_.bytes + fill_constants_.bytes + fill_tiles_.bytes + map_projections_.bytes +
-         constants_.bytes + blocks_.bytes + indices_.bytes;
+  return heights_.bytes + atlas_.bytes + fill_constants_.bytes + fill_tiles_.bytes + map_projections_.bytes() +
+         constants_.bytes() + blocks_.bytes() + indices_.bytes;
 }
 
 Result<void> Terrain::update(const View& view, const LocalFrame& frame) {
   if (none()) return {};
   frame_ = frame;
-  const shared::MapProjections map_projections = map_projections_of(frame, radius_m_);
-  std::memcpy(map_projections_.mapped, &map_projections, sizeof map_projections);
+  map_projections_.write(map_projections_of(frame, radius_m_));
   lod_ = plan_terrain(projection_from_up(frame.projection, up_of(view.position, radius_m_), radius_m_),
                       altitude_of(view.position, radius_m_), source_->max_height_m(), radius_m_, coarseness_,
                       source_->min_height_m());
@@ -269,7 +266,7 @@ Result<void> Terrain::fill_missing() {
     const gpu::NamedResource resources[] = {
         gpu::named_buffer("terrain_fill_block", fill_constants_.buffer.get()),
         gpu::named_buffer("tiles_block", fill_tiles_.buffer.get()),
-        gpu::named_buffer("map_projections_block", map_projections_.buffer.get()),
+        gpu::named_buffer("map_projections_block", map_projections_.buffer()),
         gpu::named_image("elevation_atlas", atlas_.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
                          nearest_.get()),
         gpu::named_image("elevation_levels", heights_.view.get()),
@@ -327,11 +324,11 @@ Result<void> Terrain::prepare(const View& view, std::uint32_t height_px, const S
                       static_cast<float>(2.0 * c.half_extent.y / shadows.resolution),
                       static_cast<float>(2.0 * c.half_extent.z)};
   }
-  std::memcpy(constants_.mapped, &out, sizeof out);
+  constants_.write(out);
 
   // First the blocks of the view, from near to far, so that hidden ground is not shaded. Then the blocks of each
   // cascade, which are not finer than its texels.
-  auto* blocks = static_cast<TerrainBlock*>(blocks_.mapped);
+  auto* blocks = static_cast<TerrainBlock*>(blocks_.next());
   std::uint32_t used = 0;
   ranges_.clear();
   const auto take = [&]() -> Result<void> {
@@ -417,9 +414,9 @@ Result<void> Terrain::light_view(VkCommandBuffer cmd, const TerrainLight& light,
 }
 
 std::vector<gpu::NamedResource> Terrain::geometry() const {
-  return {gpu::named_buffer("terrain_block", constants_.buffer.get()),
-          gpu::named_buffer("map_projections_block", map_projections_.buffer.get()),
-          gpu::named_buffer("blocks_block", blocks_.buffer.get()),
+  return {gpu::named_buffer("terrain_block", constants_.buffer()),
+          gpu::named_buffer("map_projections_block", map_projections_.buffer()),
+          gpu::named_buffer("blocks_block", blocks_.buffer()),
           gpu::named_image("terrain_heights", heights_.view.get(), VK_IMAGE_LAYOUT_GENERAL, nearest_.get())};
 }
 

@@ -8,6 +8,7 @@
 
 #include "gpu/descriptors.hpp"
 #include "gpu/host.hpp"
+#include "gpu/upload_ring.hpp"
 #include "scene/elevation/elevation_source.hpp"
 #include "scene/terrain/terrain_lod.hpp"
 #include "scene/terrain/terrain_tiles.hpp"
@@ -119,9 +120,9 @@ class Terrain {
   gpu::Image atlas_;
   gpu::Buffer fill_constants_;
   gpu::Buffer fill_tiles_;
-  gpu::Buffer map_projections_;
-  gpu::Buffer constants_;
-  gpu::Buffer blocks_;
+  gpu::UploadRing map_projections_;
+  gpu::UploadRing constants_;
+  gpu::UploadRing blocks_;
   gpu::Buffer indices_;
   gpu::Handle<VkSampler> nearest_;
   std::vector<Range> ranges_;  // the blocks of the view, then those of each cascade

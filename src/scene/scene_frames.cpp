@@ -1,0 +1,58 @@
+// Frames in flight: submission, waiting, and the results of frames that are complete.
+#include <string_view>
+
+#include "gpu/try.hpp"
+#include "scene/scene.hpp"
+
+namespace tyndall::scene {
+
+Scene::~Scene() { static_cast<void>(wait_for_frames()); }
+
+Result<void> Scene::finish() {
+  TYNDALL_TRY(wait_for_frames());
+  if (!illuminance_stale_) return {};
+  TYNDALL_ASSIGN(illuminance_, measure_illuminance());
+  illuminance_stale_ = false;
+  return {};
+}
+
+Result<void> Scene::wait_for_frames() {
+  // From the oldest to the newest, so that the results are those of the newest.
+  for (std::uint32_t i = 0; i < gpu::kFramesInFlight; ++i) {
+    TYNDALL_TRY(finish(static_cast<std::uint32_t>((frame_index_ + i) % gpu::kFramesInFlight)));
+  }
+  return {};
+}
+
+Result<void> Scene::finish(std::uint32_t slot) {
+  InFlight& frame = in_flight_.at(slot);
+  if (frame.taken) return {};
+  frame.taken = true;
+  TYNDALL_TRY(host_->wait(frame.submission));
+  take_results(slot);
+  return {};
+}
+
+void Scene::take_results(std::uint32_t slot) {
+  taken_slot_ = slot;
+  times_.clear();
+  if (!desc_.timings) return;
+  for (const gpu::TimedScope& scope : timer_.read(slot)) times_.push_back({scope.name, scope.milliseconds, false});
+  const bool by_effect = model_ == nullptr;
+  // On GPUs, the first is that of the whole effect, which contains the others.
+  for (const PassTiming& pass :
+       by_effect ? effect_->timings(in_flight_.at(slot).frame_index) : std::span<const PassTiming>())
+    times_.push_back({pass.name, pass.gpu_ms, std::string_view(pass.name) != "effect"});
+  double frame_ms = 0.0;
+  for (const PassTime& pass : times_) frame_ms += pass.name == "effect" ? 0.0 : pass.ms;
+  slow_ = frame_ms > desc_.ahead_up_to_ms;
+}
+
+// Runs commands of the frame that is being drawn, or only submits them, as SceneDesc::ahead_up_to_ms says.
+Result<void> Scene::execute(const gpu::Host::Record& record) {
+  if (waits()) return host_->run(record);
+  TYNDALL_ASSIGN(in_flight_.at(slot()).submission, host_->submit(record));
+  return {};
+}
+
+}  // namespace tyndall::scene
