@@ -86,7 +86,7 @@ Result<SingleScatteringOnGpu> SingleScatteringOnGpu::create(gpu::Host& host, Col
   return out;
 }
 
-Result<std::vector<Answer>> SingleScatteringOnGpu::answer(const shared::SpectralMedium& medium,
+Result<std::vector<Answer>> SingleScatteringOnGpu::answer(const shared::SpectralMedium& medium, const PhaseRows& phase,
                                                           std::span<const Ray> rays,
                                                           const std::function<void(std::size_t)>& progress) const {
   return evaluate(*host_, pipeline_, medium, phase, {}, rays, progress);

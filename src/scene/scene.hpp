@@ -231,6 +231,7 @@ class Scene {
   };
   std::array<InFlight, gpu::kFramesInFlight> in_flight_;
   std::uint32_t taken_slot_ = 0;        // the slot whose results were taken last
+  bool slow_ = false;                   // that frame took longer than SceneDesc::ahead_up_to_ms
   std::optional<double> last_seconds_;  // time of the previous frame, if its exposure was measured
   double step_s_ = 0.0;
   bool images_ready_ = false;
