@@ -47,7 +47,6 @@ struct PassTime {
 
 class Scene {
  public:
-  ~Scene();
   // Loads the terrain and builds the tables unless they are cached. Takes seconds.
   static Result<std::unique_ptr<Scene>> create(gpu::Host& host, const SceneDesc& desc, const Params& params,
                                                const SceneParams& scene);
@@ -223,8 +222,14 @@ class Scene {
   std::vector<CascadeFit> cascades_;
   TerrainLight light_;
   std::uint64_t frame_index_ = 0;
-  // The frames that may be executing, by slot.
+  // The frames that may be executing, by slot. They are waited for before the members above, which they use, are
+  // destroyed.
   struct InFlight {
+    InFlight() = default;
+    InFlight(const InFlight&) = delete;
+    InFlight& operator=(const InFlight&) = delete;
+    ~InFlight();
+    gpu::Host* host = nullptr;     // set with `submission`
     std::uint64_t submission = 0;  // the last one of the frame; see gpu::Host::wait()
     std::uint64_t frame_index = 0;
     bool taken = true;  // its results have been taken

@@ -6,7 +6,9 @@
 
 namespace tyndall::scene {
 
-Scene::~Scene() { static_cast<void>(wait_for_frames()); }
+Scene::InFlight::~InFlight() {
+  if (host != nullptr) static_cast<void>(host->wait(submission));
+}
 
 Result<void> Scene::finish() {
   TYNDALL_TRY(wait_for_frames());
@@ -51,7 +53,9 @@ void Scene::take_results(std::uint32_t slot) {
 // Runs commands of the frame that is being drawn, or only submits them, as SceneDesc::ahead_up_to_ms says.
 Result<void> Scene::execute(const gpu::Host::Record& record) {
   if (waits()) return host_->run(record);
-  TYNDALL_ASSIGN(in_flight_.at(slot()).submission, host_->submit(record));
+  InFlight& frame = in_flight_.at(slot());
+  frame.host = host_;
+  TYNDALL_ASSIGN(frame.submission, host_->submit(record));
   return {};
 }
 
