@@ -161,11 +161,16 @@ TEST(CInterface, EveryParameterCanBeSet) {
       std::string choices = std::string(info.choices) + "|";
       while (!choices.empty()) {
         const std::string choice = choices.substr(0, choices.find('|'));
+        choices.erase(0, choice.size() + 1);
+        if (std::string(info.name) == "atmosphere.mie_phase" && choice == "table") {
+          // A table cannot be given through the C interface.
+          EXPECT_EQ(tyndall_params_set_choice(params.get(), info.name, "table"), TyndallStatus_invalid_argument);
+          continue;
+        }
         const char* read = nullptr;
         EXPECT_EQ(tyndall_params_set_choice(params.get(), info.name, choice.c_str()), TyndallStatus_success);
         EXPECT_EQ(tyndall_params_get_choice(params.get(), info.name, &read), TyndallStatus_success);
         EXPECT_EQ(read, choice);
-        choices.erase(0, choice.size() + 1);
       }
       continue;
     }
