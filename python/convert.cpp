@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "config/phase_file.hpp"
 #include "config/scene_file.hpp"
 
 namespace tyndall::python {
@@ -30,6 +31,7 @@ config::Settings settings_of(const std::string& scene, const Assignments& assign
   for (const auto& [key, value] : assignments) {
     if (const Result<void> set = config::set(settings, key, value, "parameters"); !set.ok()) raise(set.error());
   }
+  if (const Result<void> loaded = config::load_files(settings); !loaded.ok()) raise(loaded.error());
   if (const Result<void> checked = config::check(settings); !checked.ok()) raise(checked.error());
   return settings;
 }
