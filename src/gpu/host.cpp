@@ -366,6 +366,12 @@ Result<void> Host::wait(std::uint64_t submission) {
   return slot != nullptr ? wait_for(*slot) : Result<void>();
 }
 
+Result<void> Host::wait_for_all() {
+  const std::lock_guard<std::mutex> running(run_mutex_);
+  Slot* const newest = pending(submissions_);
+  return newest != nullptr ? wait_for(*newest) : Result<void>();
+}
+
 void Host::wait_idle() {
   const std::unique_lock<std::mutex> locked = lock();
   device_.vk.DeviceWaitIdle(device_.device);

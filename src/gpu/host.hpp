@@ -88,6 +88,8 @@ class Host {
   static constexpr std::size_t kPending = 8;
   // Waits until a submission and all earlier ones have completed. 0 is none.
   Result<void> wait(std::uint64_t submission);
+  // Waits until all submissions have completed, whoever made them.
+  Result<void> wait_for_all();
   // Waits until the device is idle.
   void wait_idle();
   // The descriptor sets of the command buffer that is being recorded, to be used only while `record` runs.

@@ -23,7 +23,8 @@ Result<void> Scene::wait_for_frames() {
   for (std::uint32_t i = 0; i < gpu::kFramesInFlight; ++i) {
     TYNDALL_TRY(finish(static_cast<std::uint32_t>((frame_index_ + i) % gpu::kFramesInFlight)));
   }
-  return {};
+  // Others may still read the pictures, as the viewer's canvas does.
+  return ahead() ? host_->wait_for_all() : Result<void>();
 }
 
 Result<void> Scene::finish(std::uint32_t slot) {
