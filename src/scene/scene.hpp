@@ -59,8 +59,8 @@ class Scene {
   Result<void> set_params(const Params& params);
   // Sets a terrain that Terrain::load_source() has loaded for these parameters and this radius of the planet.
   Result<void> set_terrain(const TerrainParams& params, double radius_m, ElevationSource source);
-  Result<void> set_extent(VkExtent2D extent);
-  void set_terrain_coarseness(int coarseness) { desc_.terrain_coarseness = coarseness; }
+  // `terrain_coarseness`: see SceneDesc.
+  Result<void> set_extent(VkExtent2D extent, std::optional<int> terrain_coarseness = {});
 
   // Reads the tables of the parameters from the cache, or builds `budget` slices of them (see
   // Effect::precompute_progress()). Until they are complete, frames use the previous tables. If there are none,

@@ -291,14 +291,17 @@ Result<void> Scene::set_params(const Params& params) {
   return within_memory("changing the scene", [&] { return change(scene_, params, {}); });
 }
 
-Result<void> Scene::set_extent(VkExtent2D extent) {
+Result<void> Scene::set_extent(VkExtent2D extent, std::optional<int> terrain_coarseness) {
   return within_memory("changing the size of the picture", [&]() -> Result<void> {
-    TYNDALL_TRY(wait_for_frames());
-    TYNDALL_TRY(replace_lost_effect());
-    TYNDALL_ASSIGN(Targets targets, make_targets(extent));
-    TYNDALL_TRY(effect_->set_limits(extent, scene_.shadows.cascades, scene_.shadows.resolution));
-    swap_targets(targets);
-    desc_.extent = extent;
+    if (extent.width != desc_.extent.width || extent.height != desc_.extent.height || effect_lost_) {
+      TYNDALL_TRY(wait_for_frames());
+      TYNDALL_TRY(replace_lost_effect());
+      TYNDALL_ASSIGN(Targets targets, make_targets(extent));
+      TYNDALL_TRY(effect_->set_limits(extent, scene_.shadows.cascades, scene_.shadows.resolution));
+      swap_targets(targets);
+      desc_.extent = extent;
+    }
+    desc_.terrain_coarseness = terrain_coarseness.value_or(desc_.terrain_coarseness);
     return {};
   });
 }

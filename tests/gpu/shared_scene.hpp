@@ -31,9 +31,8 @@ class SharedSceneTest : public GpuTest {
       if (!made.ok()) return nullptr;
       shared_ = std::move(made).value();
     }
-    shared_->set_terrain_coarseness(terrain_coarseness);
-    const bool changed =
-        shared_->set_extent(extent).ok() && shared_->set_params(params).ok() && shared_->set_scene(scene).ok();
+    const bool changed = shared_->set_extent(extent, terrain_coarseness).ok() && shared_->set_params(params).ok() &&
+                         shared_->set_scene(scene).ok();
     EXPECT_TRUE(changed);
     return changed ? shared_.get() : nullptr;
   }

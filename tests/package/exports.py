@@ -24,11 +24,14 @@ def declared_names(folder):
     """Names of functions in C, of functions in C++, and of classes with the names of their members."""
     c = set(re.findall(r"TYNDALL_API\b[^;(]*?\b(tyndall_\w+)\(", without_comments(f"{folder}/tyndall/tyndall.h")))
     functions, members = set(), set()
-    for header in ("atmosphere.hpp", "effect.hpp", "params.hpp", "sky_probe.hpp"):
+    for header in ("atmosphere.hpp", "effect.hpp", "params.hpp", "phase_table.hpp", "sky_probe.hpp"):
         text = without_comments(f"{folder}/tyndall/{header}")
         functions |= set(re.findall(r"TYNDALL_API\b(?!\s*\w+\s*\{)[^;({]*?\b(\w+)\(", text))
         for name, body in re.findall(r"class TYNDALL_API (\w+) \{(.*?)\n\};", text, re.S):
-            body = re.sub(r"\bfriend [^;]*;", "", body)
+            body = re.sub(r"\bfriend [^;]*;|\btemplate <[^;]*;|\b\w+\(\) = default;", "", body)
+            body = re.sub(r"(\b\w+|operator==)\([^()]*\)[^;{}]*\{[^{}]*\}", "", body)  # defined in the class
+            if "operator()(" in body:
+                members.add(f"{name}::operator")
             members |= {f"{name}::{member}" for member in re.findall(r"(~?\b\w+|operator=)\(", body)
                         if member not in ("operator",)}
     return c, functions, members

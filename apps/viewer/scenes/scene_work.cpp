@@ -271,16 +271,12 @@ void SceneWork::load_terrain() {
 }
 
 Result<void> SceneWork::resize(const SceneRequest& request) {
-  if (request.extent.width != desc_.extent.width || request.extent.height != desc_.extent.height) {
-    TYNDALL_TRY(scene_->set_extent(request.extent));
-    desc_.extent = request.extent;
-    stale_ = true;
-  }
-  if (request.coarseness != desc_.terrain_coarseness) {
-    scene_->set_terrain_coarseness(request.coarseness);
-    desc_.terrain_coarseness = request.coarseness;
-    stale_ = true;
-  }
+  const bool other_extent = request.extent.width != desc_.extent.width || request.extent.height != desc_.extent.height;
+  if (!other_extent && request.coarseness == desc_.terrain_coarseness) return {};
+  TYNDALL_TRY(scene_->set_extent(request.extent, request.coarseness));
+  desc_.extent = request.extent;
+  desc_.terrain_coarseness = request.coarseness;
+  stale_ = true;
   return {};
 }
 
