@@ -6,6 +6,7 @@
 #include <random>
 
 #include "effect_frame.hpp"
+#include "tyndall/phase_table.hpp"
 
 namespace tyndall {
 namespace {

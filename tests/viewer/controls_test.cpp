@@ -63,7 +63,9 @@ bool choose(Desk& desk, const Row& row, std::size_t index, const std::string& te
 bool choose_both_ends(Desk& desk, const Row& row) {
   if (row.info.type == ParamType::uint32)
     return choose(desk, row, 4096, "4096") && choose(desk, row, 512, "512") && choose(desk, row, 1024, "1024");
-  const std::size_t last = files::count_parts(row.info.choices, '|') - 1;
+  // The last phase function, a table, is refused without a file.
+  const bool refused = row.key() == "atmosphere.mie_phase";
+  const std::size_t last = files::count_parts(row.info.choices, '|') - (refused ? 2 : 1);
   const auto name = [&](std::size_t i) { return std::string(files::part(row.info.choices, '|', i)); };
   // The control is set to another value first, because the log shows only changes.
   (void)(desk.click(row.key(), 0.2) && desk.click(row.key() + ".0", 0.2));
@@ -72,6 +74,7 @@ bool choose_both_ends(Desk& desk, const Row& row) {
 
 bool both_ends(Desk& desk, const Row& row) {
   const std::string key = row.key();
+  if (row.info.type == ParamType::string) return true;  // a text has no ends
   if (row.info.type == ParamType::enumeration || key == "shadows.resolution") return choose_both_ends(desk, row);
   if (row.info.type == ParamType::flag) {
     const std::size_t from = desk.lines();
