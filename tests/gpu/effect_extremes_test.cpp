@@ -45,8 +45,7 @@ Params random_params(std::mt19937& engine) {
     }
   }
   if (params.atmosphere.mie_phase == MiePhase::table) {
-    const double angles_deg[] = {0, 30, 90, 180}, wavelengths_nm[] = {450, 650},
-                 values[] = {9, 6, 3, 2, 0.6, 0.9, 0.3, 0.6};
+    const double angles_deg[] = {0, 30, 90, 180}, wavelengths_nm[] = {450, 650}, values[] = {1, 1, 1, 1, 1, 1, 1, 1};
     Result<std::shared_ptr<const PhaseTable>> table = PhaseTable::create(angles_deg, wavelengths_nm, values);
     EXPECT_OK(table);
     if (table.ok()) params.phase_table = table.value();
