@@ -90,7 +90,8 @@ TEST(Phase, DropletsAreNormalisedAndHaveTheirMeanCosine) {
 TEST(Phase, TablesAreNormalisedAndInterpolated) {
   const std::shared_ptr<const PhaseTable> table = two_colors(4.0 * kPi * 1.03).value();
   EXPECT_NEAR(table->deviation(), 0.03, 1e-3);
-  for (const auto& [nm, g] : {std::pair(450.0, 0.5), std::pair(650.0, 0.8), std::pair(300.0, 0.5)}) {
+  for (const auto& [wavelength_nm, g] : {std::pair(450.0, 0.5), std::pair(650.0, 0.8), std::pair(300.0, 0.5)}) {
+    const double nm = wavelength_nm;
     EXPECT_NEAR(moments([&](double c) { return (*table)(c, nm); }).total, 1.0, 1e-5) << nm;
     EXPECT_NEAR(table->asymmetry(nm), g, 1e-4);
     for (const double c : {1.0, 0.9, 0.0, -0.7, -1.0}) {
