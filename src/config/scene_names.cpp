@@ -24,6 +24,7 @@ bool can_be_cache(const std::string& folder) {
   std::error_code failed;
   bool cached = false, others = false;
   for (std::filesystem::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) {
+    if (it->path().filename().string().starts_with(".tyndall-")) continue;  // of another process that fills the cache
     const bool ours = it->path().extension() == ".cache";
     cached = cached || ours;
     others = others || !ours;
@@ -45,8 +46,9 @@ Result<void> check_names(const Settings& settings, const Settings& before, const
   if (source != before.scene.terrain.source && names_network(source))
     return refuse("terrain.source", source, "is on a network", "expected a local file");
   for (const Row& row : rows()) {
-    // Elevations and models may be anywhere. They are only drawn.
-    if (row.info.type != ParamType::string || row.info.unit != "file" || row.info.name == "source") continue;
+    // Elevations, models and phase functions may be anywhere. They are only drawn.
+    if (row.info.type != ParamType::string || row.info.unit != "file") continue;
+    if (row.info.name == "source" || row.info.name == "phase_table") continue;
     const std::string value = value_text(row, settings);
     if (value.empty() || value == value_text(row, before)) continue;
     if (!files::is_within(value, folder) && !files::is_within(value, "."))

@@ -156,6 +156,7 @@ Params Effect::State::table_params() const {
   const Params& built = tables.built(params);
   out.planet = built.planet;
   out.atmosphere = built.atmosphere;
+  out.phase_table = built.phase_table;
   out.tables = built.tables;
   out.scattering.color = built.scattering.color;
   return out;

@@ -203,7 +203,7 @@ Result<void> Scene::render(double seconds, bool copy_baseline, std::optional<dou
   const std::optional<double> last_seconds = last_seconds_;
   Result<void> drawn = within_memory("drawing the scene", [&] { return draw_frame(seconds, copy_baseline, step_s); });
   if (!drawn) {
-    static_cast<void>(host_->wait(in_flight_.at(slot()).submission));  // its first parts may have been submitted
+    static_cast<void>(wait_for_frames());  // the next frame writes what the previous one and parts of this one read
     tonemap_->exposure().put_back(start);
     last_seconds_ = last_seconds;
   }
@@ -232,6 +232,7 @@ Result<void> Scene::draw_frame(double seconds, bool copy_baseline, std::optional
   }
   // The measurement waits for the frame, so it is made later if the frame is not waited for.
   illuminance_stale_ = desc_.illuminance;
+  illuminance_.reset();
   return waits() ? finish() : Result<void>();
 }
 
@@ -396,7 +397,7 @@ Result<image::Image> Scene::display() {
 
 Scene::Exposure Scene::exposure() const {
   const post::TonemapSettings settings = tonemap_settings(params_, scene_);
-  Exposure out = {illuminance_, settings.exposure, {}, tonemap_->exposure().read(taken_slot_)};
+  Exposure out = {illuminance_, settings.exposure, {}, measurement_};
   if (settings.auto_exposure) out.scale = out.measurement.exposure;
   const double white = white_luminance(params_, scene_);
   if (out.scale > 0.0F && white > 0.0) {
@@ -405,9 +406,7 @@ Scene::Exposure Scene::exposure() const {
   return out;
 }
 
-Counters Scene::counters() const {
-  return frame_index_ > 0 && model_ == nullptr ? effect_->counters(in_flight_.at(taken_slot_).frame_index) : Counters{};
-}
+Counters Scene::counters() const { return counters_; }
 
 Scene::Memory Scene::memory() const {
   const MemoryUsage effect = effect_->memory();

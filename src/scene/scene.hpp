@@ -86,8 +86,8 @@ class Scene {
   Result<image::Image> radiance();
   Result<image::Image> display();
   struct Exposure {
-    // At the camera, with SceneDesc::illuminance. Nothing if the light has no unit (scattering.color = rgb), with a
-    // medium or model that is not the atmosphere, or with a camera in space.
+    // By the sun at the camera, with SceneDesc::illuminance; light of the moon is left out. Nothing if the light has no
+    // unit (scattering.color = rgb), with a medium or model that is not the atmosphere, or with a camera in space.
     std::optional<Illuminance> illuminance;
     float scale = 1.0F;             // factor of the radiance
     std::optional<double> ev100;    // to which it corresponds; nothing if it is 0, or if the sun has no light
@@ -177,7 +177,7 @@ class Scene {
   Result<void> copy_to(VkCommandBuffer cmd, const gpu::Image& to);
   [[nodiscard]] Result<std::optional<Illuminance>> measure_illuminance();
   Result<void> draw_frame(double seconds, bool copy_baseline, std::optional<double> step_s);
-  // Places the sun, the moon, and the brighter of them as the light.
+  // Places the sun, the moon, and the one of them that lights the scene (moon.light_below_deg).
   Result<void> place_lights(double seconds);
   Result<void> render_sample(double seconds, const glm::dvec2& jitter, bool first, bool copy_baseline);
   // Records and submits one sample of a frame.
@@ -235,8 +235,10 @@ class Scene {
     bool taken = true;  // its results have been taken
   };
   std::array<InFlight, gpu::kFramesInFlight> in_flight_;
-  std::uint32_t taken_slot_ = 0;        // the slot whose results were taken last
-  bool slow_ = false;                   // that frame took longer than SceneDesc::ahead_up_to_ms
+  // The results of the newest frame that is known to be complete; for `times_` see below.
+  post::Measurement measurement_;
+  Counters counters_;
+  bool slow_ = false;                   // it took longer than SceneDesc::ahead_up_to_ms
   std::optional<double> last_seconds_;  // time of the previous frame, if its exposure was measured
   double step_s_ = 0.0;
   bool images_ready_ = false;

@@ -315,7 +315,7 @@ Result<void> Scene::tone(double step_s) {
       if (desc_.timings) timer_.begin_frame(cmd, slot());
       return tonemap(cmd, true);
     }));
-    taken_slot_ = slot();
+    measurement_ = tonemap_->exposure().read(slot());
     return {};
   });
   if (!toned) tonemap_->exposure().put_back(start);

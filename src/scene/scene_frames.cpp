@@ -37,7 +37,8 @@ Result<void> Scene::finish(std::uint32_t slot) {
 }
 
 void Scene::take_results(std::uint32_t slot) {
-  taken_slot_ = slot;
+  measurement_ = tonemap_->exposure().read(slot);
+  counters_ = model_ == nullptr ? effect_->counters(in_flight_.at(slot).frame_index) : Counters{};
   times_.clear();
   if (!desc_.timings) return;
   for (const gpu::TimedScope& scope : timer_.read(slot)) times_.push_back({scope.name, scope.milliseconds, false});

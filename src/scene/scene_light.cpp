@@ -12,8 +12,8 @@ Result<std::optional<Illuminance>> Scene::measure_illuminance() {
   const double white = white_luminance(params_, scene_);
   const bool has_unit = params_.scattering.color == ColorMode::spectral && white > 0.0;
   const bool in_air = model_ == nullptr && params_.scattering.medium == MediumKind::atmosphere && tables_ready_ &&
-                      frame_index_ > 0 && altitude_m < static_cast<double>(params_.atmosphere.height_m) &&
-                      altitude_m > -0.25 * radius_m;
+                      effect_->precompute_progress().complete() && frame_index_ > 0 &&
+                      altitude_m < static_cast<double>(params_.atmosphere.height_m) && altitude_m > -0.25 * radius_m;
   if (!has_unit || !in_air) return std::optional<Illuminance>();
   if (light_meter_ == nullptr) {
     TYNDALL_ASSIGN(LightMeter made, LightMeter::create(*host_, *effect_));

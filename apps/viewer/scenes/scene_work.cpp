@@ -58,6 +58,7 @@ SceneResult SceneWork::create(gpu::Host& host, const scene::SceneDesc& desc, con
   SceneResult out;
   out.settings = wanted_;
   const Result<void> done = [&]() -> Result<void> {
+    TYNDALL_TRY(config::load_files(applied_));
     TYNDALL_TRY(canvas_.create(host, to_host, desc.ahead_up_to_ms > 0.0));
     TYNDALL_ASSIGN(scene_, scene::Scene::create(host, desc_, applied_.effect, applied_.scene));
     // The first step searches the cache: if the tables are there, the first frame is drawn at once.
