@@ -46,9 +46,8 @@ Result<void> check_names(const Settings& settings, const Settings& before, const
   if (source != before.scene.terrain.source && names_network(source))
     return refuse("terrain.source", source, "is on a network", "expected a local file");
   for (const Row& row : rows()) {
-    // Elevations, models and phase functions may be anywhere. They are only drawn.
-    if (row.info.type != ParamType::string || row.info.unit != "file") continue;
-    if (row.info.name == "source" || row.info.name == "phase_table") continue;
+    // Elevations and models may be anywhere. They are only drawn.
+    if (row.info.type != ParamType::string || row.info.unit != "file" || row.info.name == "source") continue;
     const std::string value = value_text(row, settings);
     if (value.empty() || value == value_text(row, before)) continue;
     if (!files::is_within(value, folder) && !files::is_within(value, "."))

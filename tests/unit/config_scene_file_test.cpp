@@ -34,8 +34,7 @@ std::string other_value(const Row& row, const Settings& defaults) {
     return std::to_string(static_cast<std::int64_t>(row.info.min + fraction * (row.info.max - row.info.min)));
   };
   switch (row.info.type) {
-    case ParamType::float32:
-      return now == "0.1" ? "0.3" : row.info.min < 0.1 && row.info.max > 0.1 ? "0.1" : number(0.7);
+    case ParamType::float32: return now == "0.1" || row.info.min >= 0.1 || row.info.max <= 0.1 ? number(0.7) : "0.1";
     case ParamType::uint32: return number(0.6);
     case ParamType::vec3:
     case ParamType::dvec3:
