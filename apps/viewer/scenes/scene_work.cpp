@@ -285,6 +285,9 @@ Result<void> SceneWork::follow_settings(const config::Settings& wanted) {
   if (same_settings(wanted, wanted_)) return {};
   config::Settings next = wanted;
   TYNDALL_TRY(config::load_files(next));
+  // The aperture and the exposure time are set one after the other. One of them alone has no effect.
+  scene::TonemapParams& tonemap = next.scene.tonemap;
+  if ((tonemap.aperture > 0.0F) != (tonemap.shutter_s > 0.0F)) tonemap.aperture = tonemap.shutter_s = 0.0F;
   TYNDALL_TRY(config::check(next));
   next = loaded(std::move(next));
   const bool only_tone = same_but_for_tone(wanted, wanted_);
