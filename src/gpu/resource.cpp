@@ -140,6 +140,25 @@ VkImageAspectFlags aspect_of(VkFormat format) {
   return format == VK_FORMAT_D32_SFLOAT ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
 }
 
+// Assigning the members in their order would free the memory before what is bound to it.
+Image& Image::operator=(Image&& other) noexcept {
+  view = std::move(other.view);
+  image = std::move(other.image);
+  memory = std::move(other.memory);
+  desc = other.desc;
+  bytes = other.bytes;
+  return *this;
+}
+
+Buffer& Buffer::operator=(Buffer&& other) noexcept {
+  buffer = std::move(other.buffer);
+  memory = std::move(other.memory);
+  mapped = other.mapped;
+  size = other.size;
+  bytes = other.bytes;
+  return *this;
+}
+
 Result<Image> create_image(const Device& device, const ImageDesc& desc) {
   Image out;
   out.desc = desc;

@@ -44,7 +44,14 @@ class Memory {
 };
 
 struct Image {
-  Memory memory;
+  Image() = default;
+  Image(Image&&) noexcept = default;
+  Image& operator=(Image&& other) noexcept;
+  Image(const Image&) = delete;
+  Image& operator=(const Image&) = delete;
+  ~Image() = default;
+
+  Memory memory;  // before what is bound to it, so that it is freed last
   Handle<VkImage> image;
   Handle<VkImageView> view;  // all layers and levels; an array view if layers > 1 or desc.array
   ImageDesc desc = {};
@@ -52,6 +59,13 @@ struct Image {
 };
 
 struct Buffer {
+  Buffer() = default;
+  Buffer(Buffer&&) noexcept = default;
+  Buffer& operator=(Buffer&& other) noexcept;
+  Buffer(const Buffer&) = delete;
+  Buffer& operator=(const Buffer&) = delete;
+  ~Buffer() = default;
+
   Memory memory;
   Handle<VkBuffer> buffer;
   void* mapped = nullptr;  // address of a host-visible buffer, which is always mapped

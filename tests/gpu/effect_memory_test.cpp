@@ -12,11 +12,19 @@
 namespace tyndall {
 namespace {
 
+// Returns the number of the image or the buffer of the fake device.
+template <typename Request>
+std::uint64_t object_of(const Request& request) {
+  return request.image != VK_NULL_HANDLE ? reinterpret_cast<std::uint64_t>(request.image)
+                                         : reinterpret_cast<std::uint64_t>(request.buffer);
+}
+
 // An engine's allocator. It counts, and can fail.
 struct Engine {
   struct Live {
     std::string name;
     VkDeviceSize bytes;
+    std::uint64_t object;  // the image or buffer that is bound to it
   };
   std::map<void*, Live> live;  // by MemoryBlock::user
   VkDeviceSize bytes = 0;
@@ -27,7 +35,7 @@ struct Engine {
   enum class Wrong { nothing, memory, offset, address } wrong = Wrong::nothing;
 
   VkResult allocate(const char* name, VkFlags usage, const VkMemoryRequirements& requirements, bool on_host,
-                    MemoryBlock& block) {
+                    std::uint64_t object, MemoryBlock& block) {
     ++requests;
     EXPECT_FALSE(std::string(name).empty());
     EXPECT_NE(usage, 0U) << name;
@@ -46,7 +54,7 @@ struct Engine {
       std::free(block.user);
       return VK_SUCCESS;
     }
-    live[block.user] = {name, requirements.size};
+    live[block.user] = {name, requirements.size, object};
     bytes += requirements.size;
     return VK_SUCCESS;
   }
@@ -54,6 +62,9 @@ struct Engine {
     const auto found = live.find(block.user);
     ASSERT_NE(found, live.end()) << "freed twice";
     EXPECT_EQ(freed, found->second.bytes) << found->second.name;
+    // An image or buffer is bound to the block unless the block is refused.
+    EXPECT_FALSE(wrong == Wrong::nothing && faults::is_live(found->second.object))
+        << found->second.name << " outlives its memory";
     bytes -= freed;
     live.erase(found);
     std::free(block.user);
@@ -70,7 +81,8 @@ struct Engine {
       EXPECT_NE(request.image == VK_NULL_HANDLE, request.buffer == VK_NULL_HANDLE) << request.name;
       EXPECT_EQ(request.preferred & request.needed, request.needed) << request.name;
       const bool on_host = (request.needed & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0;
-      return static_cast<Engine*>(user)->allocate(request.name, request.usage, request.requirements, on_host, block);
+      return static_cast<Engine*>(user)->allocate(request.name, request.usage, request.requirements, on_host,
+                                                  object_of(request), block);
     };
     out.memory.free = [](void* user, const MemoryBlock& block, VkDeviceSize size) {
       static_cast<Engine*>(user)->free(block, size);
@@ -164,6 +176,29 @@ TEST(EffectMemory, RefusedRequestsChangeNothing) {
   EXPECT_GE(n, 10);
 }
 
+// Buffers and images that are replaced are destroyed while others, which were replaced later, still wait for their
+// frames. Engine::free() checks that each goes before its memory.
+TEST(EffectMemory, MemoryIsFreedAfterWhatIsBoundToIt) {
+  Engine engine;
+  {
+    Params params = small_params();
+    params.froxels.enabled = true;
+    params.froxels.columns = params.froxels.rows = params.froxels.slices = 8;
+    Effect effect = make_with(engine, params);
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      EXPECT_OK(effect.set_limits({64 + 16 * i, 32}, 2, 64));
+      params.froxels.columns = 8 + 8 * i;
+      params.tables.size.x = 4 + i;
+      EXPECT_OK(effect.set_params(params));
+      EXPECT_OK(effect.record_precompute(kCommands, 1000));
+      commands_of_frame(effect);
+    }
+    for (int frame = 0; frame < 8; ++frame) commands_of_frame(effect);
+    EXPECT_EQ(engine.bytes, sum(effect.memory()));
+  }
+  EXPECT_EQ(engine.live.size(), 0U);
+}
+
 TEST(EffectMemory, BlocksThatCannotBeUsedAreRefused) {
   const std::pair<Engine::Wrong, const char*> cases[] = {
       {Engine::Wrong::memory, "has no memory; expected"},
@@ -193,8 +228,8 @@ TEST(EffectMemory, ProgramsInCHaveTheSameCallbacks) {
   device.allocate_memory = [](void* user, const TyndallMemoryRequest* request, TyndallMemoryBlock* block) {
     MemoryBlock made;
     const bool on_host = (request->needed & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT) != 0;
-    const VkResult result =
-        static_cast<Engine*>(user)->allocate(request->name, request->usage, request->requirements, on_host, made);
+    const VkResult result = static_cast<Engine*>(user)->allocate(request->name, request->usage, request->requirements,
+                                                                 on_host, object_of(*request), made);
     *block = {made.memory, made.offset, made.mapped, made.user};
     return result;
   };

@@ -432,6 +432,7 @@ DeviceInfo fake_device() {
 
 std::size_t live_objects() { return live.size() - pipeline_objects; }
 std::size_t live_pipeline_objects() { return pipeline_objects; }
+bool is_live(std::uint64_t object) { return live.contains(object); }
 std::size_t command_hash() { return hash; }
 void forget_commands() {
   hash = 0;
@@ -439,7 +440,6 @@ void forget_commands() {
 }
 
 }  // namespace tyndall::faults
-
 [[gnu::noinline]] void* operator new(std::size_t size) {
   if (tyndall::faults::host_allocation_fails(__builtin_return_address(0))) throw std::bad_alloc();
   void* const made = std::malloc(size > 0 ? size : 1);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 
@@ -41,6 +42,8 @@ void set_portability(std::optional<PortabilitySubset> subset);
 // pools.
 std::size_t live_objects();
 std::size_t live_pipeline_objects();
+// Returns whether one of its buffers, images or other objects exists.
+bool is_live(std::uint64_t object);
 // Returns a hash of all commands recorded so far, of their arguments, and of mapped memory when they were submitted.
 // Then resets the hash.
 std::size_t command_hash();
