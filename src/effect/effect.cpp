@@ -177,8 +177,7 @@ Result<void> Effect::State::make_pipelines(const EffectDesc& d, const Params& p)
 Result<Effect::State::Pending> Effect::State::plan(const EffectDesc& d, const Params& p, std::uint32_t required) {
   const bool other_resources = (required & bit(Affects::Resources)) != 0;
   if ((required & kEverything) != 0) TYNDALL_TRY(check_limits(device, d, p));
-  Pending pending = {d,  p, {phase_rows(p, ColorMode::rgb), phase_rows(p, ColorMode::spectral)}, {}, ColorMode::rgb,
-                     {}, {}};
+  Pending pending = {d, p, {}, {}, ColorMode::rgb, {}, {}};
   if (other_resources || (required & bit(Affects::Pipeline)) != 0) {
     TYNDALL_TRY(make_pipelines(d, p));
     if (const Params before = drawn_with(p); before.scattering.color != p.scattering.color) {
@@ -195,6 +194,7 @@ Result<Effect::State::Pending> Effect::State::plan(const EffectDesc& d, const Pa
   }
   if ((required & bit(Affects::Tables)) != 0) {
     TYNDALL_ASSIGN(pending.tables, tables.plan(p));
+    pending.phase = {phase_rows(p, ColorMode::rgb), phase_rows(p, ColorMode::spectral)};
   }
   return pending;
 }
@@ -209,7 +209,7 @@ void Effect::State::commit(Pending&& pending) noexcept {
   const bool other_color = params.scattering.color != pending.params.scattering.color;
   const bool other_phase = air::tabulated(params.atmosphere) != air::tabulated(pending.params.atmosphere);
   if (desc.shadow_colors != pending.desc.shadow_colors || other_color || other_phase) all_pipelines.clear();
-  phase = std::move(pending.phase);
+  if (pending.phase) phase = std::move(*pending.phase);
   desc = pending.desc;
   params = pending.params;
 }

@@ -72,7 +72,7 @@ struct TYNDALL_HIDDEN Effect::State {
   struct Pending {
     EffectDesc desc;
     Params params;
-    std::array<PhaseRows, 2> phase;
+    std::optional<std::array<PhaseRows, 2>> phase;
     std::optional<FrameBuffers::Pending> buffers;
     ColorMode buffer_color = ColorMode::rgb;  // of `buffers`
     std::optional<FroxelVolume::Pending> froxels;

@@ -39,14 +39,13 @@ double cosine_of_node(std::size_t i) {
 }
 
 template <typename Function>
-PhaseRows rows_of(const Function& function) {
-  PhaseRows rows(shared::kPhaseNodes);
+void write_rows(const Function& function, PhaseRows& rows) {
+  rows.resize(shared::kPhaseNodes);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const double cosine = cosine_of_node(i);
     const auto value = [&](std::size_t channel) { return std::log(std::max(function(cosine, channel), kFloor)); };
     rows[i] = {value(0), value(1), value(2), value(3)};
   }
-  return rows;
 }
 
 // Calls body(degree, value of the Legendre polynomial).
@@ -84,9 +83,16 @@ std::array<double, kDegrees> series(const Params& params, double wavelength_nm) 
 }  // namespace
 
 PhaseRows phase_rows(const Params& params, ColorMode color) {
-  if (!air::tabulated(params.atmosphere)) return {};
+  PhaseRows rows;
+  phase_rows(params, color, rows);
+  return rows;
+}
+
+void phase_rows(const Params& params, ColorMode color, PhaseRows& rows) {
+  rows.clear();
+  if (!air::tabulated(params.atmosphere)) return;
   const Wavelengths nm = wavelengths_nm(params, color);
-  return rows_of([&](double cosine, std::size_t channel) { return air::phase(params, cosine, nm[channel]); });
+  write_rows([&](double cosine, std::size_t channel) { return air::phase(params, cosine, nm[channel]); }, rows);
 }
 
 PhaseRows resolved_phase_rows(const Params& params) {
@@ -94,11 +100,14 @@ PhaseRows resolved_phase_rows(const Params& params) {
   const Wavelengths nm = wavelengths_nm(params, params.scattering.color);
   std::array<std::array<double, kDegrees>, 4> moments;
   for (std::size_t c = 0; c < 4; ++c) moments[c] = series(params, nm[c]);
-  return rows_of([&](double cosine, std::size_t channel) {
+  PhaseRows rows;
+  const auto function = [&](double cosine, std::size_t channel) {
     double sum = 0.0;
     for_each_degree(cosine, [&](std::size_t l, double legendre) { sum += moments[channel][l] * legendre; });
     return sum;
-  });
+  };
+  write_rows(function, rows);
+  return rows;
 }
 
 bool same_phase(const Params& a, const Params& b) {

@@ -17,6 +17,8 @@ constexpr std::size_t kMediumBlockBytes = sizeof(shared::SpectralMedium) + kPhas
 
 // Returns the rows for a representation of light, or none if shaders have a formula. Precondition: check_params().
 [[nodiscard]] PhaseRows phase_rows(const Params& params, ColorMode color);
+// Writes them to `rows`, which allocates nothing if its capacity is kPhaseNodes.
+void phase_rows(const Params& params, ColorMode color, PhaseRows& rows);
 
 // Returns the rows from which the orders >= 2 are built: the function without the details that the gathering grid does
 // not resolve. Its Legendre moments of degree l are multiplied by exp(-(l (l + 1) / 450)^1.5), so that those up to

@@ -132,6 +132,7 @@ struct TYNDALL_HIDDEN SkyProbe::State {
 };
 
 Result<void> SkyProbe::State::create_objects(std::uint32_t frames) {
+  phase.reserve(shared::kPhaseNodes);
   const gpu::Device& device = effect->device;
   pipelines.create(device, effect->desc.pipeline_threads);
   sets.create(device, frames);
@@ -189,12 +190,13 @@ Result<Progress> SkyProbe::State::record(VkCommandBuffer cmd, const SkyProbeInpu
                    "expected at most frames_in_flight pending calls, and a new SkyProbe after commands were dropped");
   }
   // The parts of an update must come from the same tables.
-  if (done == total || tables_version != effect->tables.version()) done = 0;
+  const bool other_tables = calls == 0 || tables_version != effect->tables.version();
+  if (done == total || other_tables) done = 0;
+  if (other_tables) phase_rows(params, params.scattering.color, phase);
   if (done == 0) {
     tables_version = effect->tables.version();
     probe = constants_of(wanted, params);
     medium = spectral_medium_from_params(params);
-    phase = phase_rows(params, params.scattering.color);
   }
   const gpu::Device& device = effect->device;
   const std::uint32_t slot = ring.slot(calls, 0);

@@ -105,6 +105,7 @@ Result<TableBuilder::Pending> TableBuilder::plan(const Params& params) {
   if (scratch_.views != params.tables.size.y || scratch_.color != color || scratch_.tabulated != tabulated) {
     TYNDALL_ASSIGN(out.scratch, create_scratch(params.tables.size.y, color, tabulated));
   }
+  out.phase_rows = resolved_phase_rows(params);
   out.steps = table_steps(params, out.stale);
   if (!options_.pipelines_later) {
     TYNDALL_ASSIGN(out.sets, make_sets(out.steps));
@@ -136,6 +137,7 @@ void TableBuilder::commit(Pending&& pending) noexcept {
   if (replaced) retire(std::move(old), std::move(old_scratch), std::move(old_sets));
   wanted_ = pending.wanted;
   stale_ = pending.stale;
+  phase_rows_ = std::move(pending.phase_rows);
   steps_ = std::move(pending.steps);
   done_ = 0;
 }
@@ -150,8 +152,8 @@ void TableBuilder::upload_constants(VkCommandBuffer cmd) {
                VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
   device_->vk.CmdUpdateBuffer(cmd, buffer, 0, sizeof medium, &medium);
   device_->vk.CmdUpdateBuffer(cmd, buffer, kShapeOffset, sizeof shape, &shape);
-  if (const PhaseRows rows = resolved_phase_rows(wanted_); !rows.empty()) {
-    device_->vk.CmdUpdateBuffer(cmd, buffer, sizeof medium, kPhaseBytes, rows.data());
+  if (!phase_rows_.empty()) {
+    device_->vk.CmdUpdateBuffer(cmd, buffer, sizeof medium, kPhaseBytes, phase_rows_.data());
   }
   gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
                VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT);
@@ -282,6 +284,11 @@ void TableBuilder::begin_frame(VkCommandBuffer cmd) {
   for (TableImage& table : tables_) {
     if (table.ready) continue;
     gpu::transition(*device_, cmd, table.image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
+    // Frames before the first build read black tables.
+    constexpr VkClearColorValue kBlack = {};
+    constexpr VkImageSubresourceRange kWhole = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    device_->vk.CmdClearColorImage(cmd, table.image.image.get(), VK_IMAGE_LAYOUT_GENERAL, &kBlack, 1, &kWhole);
+    gpu::transition(*device_, cmd, table.image, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_GENERAL);
     table.ready = true;
   }
   for (Retired& r : retired_) --r.frames_left;

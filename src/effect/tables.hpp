@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "effect/frame_constants.hpp"
+#include "effect/phase_rows.hpp"
 #include "effect/pipeline_cache.hpp"
 #include "effect/shared.hpp"
 #include "effect/step_recorder.hpp"
@@ -129,6 +130,7 @@ class TableBuilder {
   SetCache sets_ = {};     // of the build
   Params built_ = {};      // of tables_, if complete_
   Params wanted_ = {};     // of the build
+  PhaseRows phase_rows_;   // of the build; see resolved_phase_rows()
   bool complete_ = false;  // tables_ have been built at least once
   std::uint64_t version_ = 0;
   std::uint32_t stale_ = 0;  // tables that the build writes
@@ -151,6 +153,7 @@ struct TableBuilder::Pending {
   std::uint32_t stale = 0;
   TableSet images = {};       // of stale tables whose image has another size
   TableScratch scratch = {};  // replaces the present one if `views` is not 0
+  PhaseRows phase_rows = {};
   std::vector<Step> steps = {};
   SetCache sets = {};  // new ones for each build, because commands may still use those of the one before
 };

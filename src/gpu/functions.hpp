@@ -25,6 +25,7 @@ namespace tyndall::gpu {
   X(CmdBindDescriptorSets)             \
   X(CmdBindIndexBuffer)                \
   X(CmdBindPipeline)                   \
+  X(CmdClearColorImage)                \
   X(CmdCopyBuffer)                     \
   X(CmdCopyBufferToImage)              \
   X(CmdCopyImageToBuffer)              \

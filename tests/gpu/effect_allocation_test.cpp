@@ -5,6 +5,7 @@
 #include <string>
 
 #include "effect_frame.hpp"
+#include "tyndall/sky_probe.hpp"
 
 namespace {
 std::atomic<std::size_t> allocations = 0;
@@ -50,6 +51,7 @@ TEST(EffectAllocation, RecordingAllocatesNothing) {
     params.shadows.cascade_processing = static_cast<CascadeProcessing>(i % 3);
     params.epipolar.show_sampling = i >= 3;
     params.epipolar.correct_depth_breaks = i >= 3;
+    if (i >= 6) params.atmosphere.mie_phase = MiePhase::draine;
     ASSERT_OK(effect.value().set_params(params));
     inputs.frame_index = i;
     std::size_t during = 1;
@@ -66,6 +68,19 @@ TEST(EffectAllocation, RecordingAllocatesNothing) {
     EXPECT_FALSE(effect.value().timings(i).empty());
     EXPECT_EQ(allocations, before);
   }
+  // The sky probe, with a phase function that shaders read from rows.
+  Result<SkyProbe> probe = SkyProbe::create(effect.value());
+  ASSERT_OK(probe);
+  ASSERT_OK(host.value()->run([&](VkCommandBuffer cmd) -> Result<void> {
+    const Result<Progress> built = effect.value().record_precompute(cmd, 100'000);
+    if (!built.ok()) return built.error();
+    SkyProbeInputs at;
+    at.sun = inputs.sun;
+    const std::size_t before = allocations;
+    const Result<Progress> recorded = probe.value().record(cmd, at);
+    EXPECT_EQ(allocations, before);
+    return recorded.ok() ? Result<void>() : recorded.error();
+  }));
   // A change of parameters that only affect the constants of the next frame does not allocate either.
   Params other_constants = effect.value().params();
   other_constants.scattering.scale *= 2.0F;
