@@ -44,7 +44,13 @@ void Flight::handle_pointer(const Event& event, config::Settings& settings) {
       }
       if (dragging_view_) camera_ = turned(camera_, dx, dy, height);
       if (dragging_sun_) {
-        // The drag continues from where the sun stands, which no longer follows from a time.
+        // The drag continues from where the sun and the moon stand, which no longer follows from a time.
+        if (Result<scene::MoonParams> moon =
+                scene::placed_moon(settings.scene.moon, settings.scene.sun, terrain_place_);
+            moon) {
+          settings.scene.moon = moon.value();
+        }
+        settings.scene.moon.by_date = false;
         if (Result<scene::SunParams> sun = scene::placed_sun(settings.scene.sun, terrain_place_); sun) {
           settings.scene.sun = sun.value();
         }

@@ -318,6 +318,10 @@ Result<void> check(const Settings& settings) {
         "a path with dates has no place", "[playback]",
         "expected place = \"LAT,LON\", or an elevation file with a coordinate system in terrain.source");
   }
+  if (settings.scene.moon.by_date && !settings.path.has_dates() && settings.path.moves_sun()) {
+    return files::input_error("the camera path moves the sun without dates", "moon.by_date",
+                              "expected date in the frames of the path, or moon.by_date = false");
+  }
   const scene::SunParams& sun = settings.scene.sun;
   // A file may have a place of its own.
   if (Result<scene::SunParams> placed = scene::placed_sun(sun, file ? std::optional(scene::Place()) : std::nullopt);

@@ -10,6 +10,7 @@
 #include "scene/scene.hpp"
 #include "scene/sky/background_constants.hpp"
 #include "scene/sky/sun_disc.hpp"
+#include "tyndall/photometry.hpp"
 
 namespace tyndall::scene {
 namespace {
@@ -62,7 +63,7 @@ BackgroundConstants background_constants(const ModelFrame& frame, const glm::dve
   out.angular_radius_rad = static_cast<float>(radius_rad);
   out.disc_radiance = to_vec3(glm::dvec3(sun.x, sun.y, sun.z) / solid_angle);
   out.pixel_angle_rad = static_cast<float>(2.0 * view.tan_half_height / frame.extent.height);
-  const double glow = frame.scene.night.airglow / kSunIlluminance;
+  const double glow = frame.scene.night.airglow / kSunIlluminance_lux;
   out.airglow = to_vec3(glow * glm::dvec3(sun.x, sun.y, sun.z));
   const Vec3& nm = frame.params.atmosphere.wavelengths_nm;
   out.limb_exponent = {limb_exponent(nm.x), limb_exponent(nm.y), limb_exponent(nm.z)};

@@ -220,6 +220,18 @@ TEST(ConfigSettings, CrossChecks) {
                                              "system in terrain.source");
   settings.scene.terrain.source = "mine.tif";
   EXPECT_TRUE(check(settings).ok());
+  // Angles of the sun say nothing about where the moon is.
+  for (scene::PathFrame& frame : settings.path.frames) {
+    frame.julian_day.reset();
+    frame.sun_elevation_deg = 10.0F;
+  }
+  settings.scene.sun.time = "2026-06-21T06:00:00Z";
+  EXPECT_TRUE(check(settings).ok());
+  settings.scene.moon.by_date = true;
+  ASSERT_FALSE(check(settings).ok());
+  EXPECT_EQ(check(settings).error().message,
+            "moon.by_date: the camera path moves the sun without dates; expected date in the frames of the path, or "
+            "moon.by_date = false");
   settings = Settings();
   settings.scene.tables.cache.clear();
   EXPECT_FALSE(check(settings).ok());

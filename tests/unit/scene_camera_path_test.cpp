@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "scene/description/camera_path.hpp"
+
 #include "scene/description/map_projection.hpp"
+#include "scene/description/placed_sun.hpp"
 
 namespace tyndall::scene {
 namespace {
@@ -196,6 +198,30 @@ TEST(ScenePath, TheSunByDateAndPlace) {
     EXPECT_NEAR(static_cast<double>(at(path, t, base).sun.azimuth_deg), sun.azimuth_deg, 1e-3);
     EXPECT_EQ(at(path, t, base).sun.animate, false);
   }
+}
+
+TEST(ScenePath, TheMoonOfADatedPathFollowsTheDates) {
+  CameraPath path;
+  path.place = {46.6, 8.0};
+  path.frames = {frame(0.0), frame(10.0)};
+  path.frames[0].julian_day = parse_time("2026-06-21T03:00:00Z", "test").value();
+  path.frames[1].julian_day = parse_time("2026-06-21T11:00:00Z", "test").value();
+  SceneParams base;
+  base.sun.time = "2026-01-01T00:00:00Z";
+  base.sun.place = "46.6,8.0";
+  base.moon.by_date = true;
+  const SceneParams last = at(path, 10.0, base);
+  SunParams sun = base.sun;
+  sun.time = "2026-06-21T11:00:00Z";
+  const MoonParams expected = placed_moon(base.moon, sun, {}).value();
+  const Result<MoonParams> found = placed_moon(last.moon, last.sun, {});
+  ASSERT_TRUE(found.ok()) << found.error().message;
+  EXPECT_NEAR(found.value().elevation_deg, expected.elevation_deg, 1e-3);
+  EXPECT_NEAR(found.value().azimuth_deg, expected.azimuth_deg, 1e-3);
+  EXPECT_NEAR(found.value().angular_radius_deg, expected.angular_radius_deg, 1e-5);
+  EXPECT_GT(std::abs(at(path, 0.0, base).moon.azimuth_deg - last.moon.azimuth_deg), 10.0F);
+  EXPECT_FALSE(CameraPath().moves_sun());
+  EXPECT_TRUE(path.moves_sun());
 }
 
 }  // namespace

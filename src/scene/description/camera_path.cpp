@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "scene/description/lunar_position.hpp"
 #include "scene/description/map_projection.hpp"
+#include "scene/description/placed_sun.hpp"
 
 namespace tyndall::scene {
 namespace {
@@ -152,6 +154,12 @@ bool CameraPath::has_dates() const {
   return std::any_of(frames.begin(), frames.end(), [](const PathFrame& frame) { return frame.julian_day.has_value(); });
 }
 
+bool CameraPath::moves_sun() const {
+  return std::any_of(frames.begin(), frames.end(), [](const PathFrame& frame) {
+    return frame.julian_day || frame.sun_elevation_deg || frame.sun_azimuth_deg;
+  });
+}
+
 double CameraPath::duration_s() const { return frames.empty() ? 0.0 : frames.back().time_s; }
 
 SceneParams pose_at(const CameraPath& path, double seconds, const SceneParams& base, double radius_m) {
@@ -170,6 +178,14 @@ SceneParams pose_at(const CameraPath& path, double seconds, const SceneParams& b
     const SolarPosition sun = solar_position(path.place, *day);
     elevation = sun.elevation_deg;
     azimuth = sun.azimuth_deg;
+    if (base.moon.by_date) {
+      const LunarPosition moon = lunar_position(path.place, *day);
+      const double raised_deg = base.sun.refraction ? refraction_deg(moon.elevation_deg) : 0.0;
+      out.moon.elevation_deg = static_cast<float>(moon.elevation_deg + raised_deg);
+      out.moon.azimuth_deg = static_cast<float>(moon.azimuth_deg);
+      out.moon.angular_radius_deg = static_cast<float>(moon.angular_radius_deg);
+      out.moon.by_date = false;
+    }
   }
   set(out.sun.elevation_deg, elevation);
   set_angle(out.sun.azimuth_deg, azimuth);

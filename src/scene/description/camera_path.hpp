@@ -31,6 +31,7 @@ struct CameraPath {
 
   [[nodiscard]] bool empty() const { return frames.empty(); }
   [[nodiscard]] bool has_dates() const;     // whether the sun's position follows from date and place
+  [[nodiscard]] bool moves_sun() const;     // whether it follows from dates or from angles of keyframes
   [[nodiscard]] double duration_s() const;  // time of the last frame
 };
 
@@ -38,7 +39,7 @@ struct CameraPath {
 // derivatives are continuous and never overshoot the keyframes. Yaw and azimuth rotate the shorter way; positions
 // follow the curvature of the planet; altitudes are interpolated in asinh(h/1 km), which is linear near the ground and
 // logarithmic far above it. Before the first frame and after the last the pose is constant, unless the path loops. If
-// the path moves the sun, sun.animate is off.
+// the path moves the sun, sun.animate is off. With dates, the moon of moon.by_date moves as well.
 [[nodiscard]] SceneParams pose_at(const CameraPath& path, double seconds, const SceneParams& base, double radius_m);
 
 }  // namespace tyndall::scene

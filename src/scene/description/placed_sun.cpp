@@ -6,6 +6,7 @@
 
 #include "files/text.hpp"
 #include "scene/description/lunar_position.hpp"
+#include "tyndall/photometry.hpp"
 
 namespace tyndall::scene {
 namespace {
@@ -80,7 +81,7 @@ double moon_irradiance_ratio(const MoonParams& placed, double cos_sun_moon) {
   // The sun is so far away that the phase angle and the elongation add up to half a turn.
   const double phase_deg = 180.0 - std::acos(std::clamp(cos_sun_moon, -1.0, 1.0)) * kDegPerRad;
   const double nearer = static_cast<double>(placed.angular_radius_deg) / kMeanRadius_deg;
-  return moon_illuminance(phase_deg) / kSunIlluminance * nearer * nearer;
+  return moon_illuminance(phase_deg) / kSunIlluminance_lux * nearer * nearer;
 }
 
 }  // namespace tyndall::scene

@@ -26,8 +26,6 @@ namespace tyndall::scene {
 [[nodiscard]] Result<MoonParams> placed_moon(const MoonParams& moon, const SunParams& sun,
                                              const std::optional<Place>& terrain_place);
 
-constexpr double kSunIlluminance = 133'183.0;  // above the atmosphere [lux]: ASTM G173-03
-
 // Returns the irradiance of the moon relative to that of the sun, above the atmosphere. `cos_sun_moon`: the cosine of
 // the angle between both.
 [[nodiscard]] double moon_irradiance_ratio(const MoonParams& placed, double cos_sun_moon);
