@@ -50,8 +50,11 @@ inline std::vector<Answer> evaluate_points(gpu::Host& host, const Effect& effect
   const Result<AtmosphereConstants> constants = atmosphere_constants(params, inputs);
   const gpu::Device& device = host.device();
   const bool spectral = params.scattering.color == ColorMode::spectral;
-  Result<gpu::Pipeline> pipeline = gpu::create_compute_pipeline(
-      device, spectral ? shaders::atmosphere_points_comp_spectral : shaders::atmosphere_points_comp);
+  const bool rows = params.atmosphere.mie_phase >= MiePhase::draine;  // only tested with four wavelengths
+  Result<gpu::Pipeline> pipeline =
+      gpu::create_compute_pipeline(device, rows       ? shaders::atmosphere_points_comp_spectral_phase
+                                           : spectral ? shaders::atmosphere_points_comp_spectral
+                                                      : shaders::atmosphere_points_comp);
   const auto buffer = [&](const void* data, std::size_t size, VkBufferUsageFlags usage) {
     Result<gpu::Buffer> out = gpu::create_buffer(device, "test", size, usage, gpu::MemoryKind::readback);
     EXPECT_OK(out);
@@ -68,6 +71,10 @@ inline std::vector<Answer> evaluate_points(gpu::Host& host, const Effect& effect
   std::vector<gpu::NamedResource> resources = {gpu::named_buffer("tyndall_constants_block", block.buffer.get()),
                                                gpu::named_buffer("query_block", in.buffer.get()),
                                                gpu::named_buffer("answer_block", answers.buffer.get())};
+  AtmospherePhase phase;
+  if (rows) EXPECT_OK(atmosphere_phase(params, phase));
+  const gpu::Buffer phase_rows = buffer(&phase, sizeof phase, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
+  if (rows) resources.push_back(gpu::named_buffer("tyndall_phase_rows_block", phase_rows.buffer.get()));
   const AtmosphereImages images = atmosphere_images(effect);
   for (const gpu::Binding& binding : pipeline.value().bindings) {
     if (binding.binding < 4) continue;  // TYNDALL_FIRST_BINDING is 3

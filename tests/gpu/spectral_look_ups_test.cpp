@@ -1,5 +1,6 @@
 // What engines look up with scattering.color = spectral, compared with `probe`: tyndall/atmosphere.glsl with the macro
-// TYNDALL_SPECTRAL, the light look-up tables and the sky probe. All cases share small tables, which all sides read.
+// TYNDALL_SPECTRAL, the light look-up tables and the sky probe. With a phase function that has a formula, and with one
+// that shaders read from rows. Small tables, which all sides read.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -34,12 +35,14 @@ glm::dvec3 direction(double zenith, double azimuth) {
 
 Vec3 single(const glm::dvec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
 
-class SpectralLookUps : public GpuTest {
+class SpectralLookUps : public GpuTest, public testing::WithParamInterface<MiePhase> {
  protected:
   static Params params() {
     Params out;
     out.scattering.color = ColorMode::spectral;
     out.scattering.scale = 1.0F;
+    out.atmosphere.mie_phase = GetParam();
+    out.atmosphere.droplet_diameter_um = 3.0F;
     out.planet.ground_albedo = Vec3(0.3F, 0.2F, 0.1F);
     out.tables.size = {8, 32, 16, 8};
     out.tables.orders = 2;
@@ -47,7 +50,9 @@ class SpectralLookUps : public GpuTest {
   }
   void SetUp() override {
     GpuTest::SetUp();
-    if (model_) return;
+    if (model_ && made_for_ == GetParam()) return;
+    model_.reset();
+    made_for_ = GetParam();
     Result<models::PrecomputedModel> made = models::PrecomputedModel::create(host(), params());
     ASSERT_OK(made);
     model_.emplace(std::move(made).value());
@@ -70,9 +75,10 @@ class SpectralLookUps : public GpuTest {
   }
 
   static inline std::optional<models::PrecomputedModel> model_;
+  static inline MiePhase made_for_ = {};
 };
 
-TEST_F(SpectralLookUps, AtmosphereGlslAgreesWithProbe) {
+TEST_P(SpectralLookUps, AtmosphereGlslAgreesWithProbe) {
   for (const double sun_deg : {30.0, 82.0, 93.0}) {
     const double sun_zenith = sun_deg * kPi / 180.0;
     std::vector<Query> queries;
@@ -108,7 +114,7 @@ TEST_F(SpectralLookUps, AtmosphereGlslAgreesWithProbe) {
 }
 
 // The irradiance of surfaces that face up, from the coefficients, against a quadrature of single rays.
-TEST_F(SpectralLookUps, TheSkyProbeAgreesWithTheRadianceOfProbe) {
+TEST_P(SpectralLookUps, TheSkyProbeAgreesWithTheRadianceOfProbe) {
   Result<SkyProbe> made = SkyProbe::create(model_->effect());
   ASSERT_OK(made);
   SkyProbe sky = std::move(made).value();
@@ -158,6 +164,8 @@ TEST_F(SpectralLookUps, TheSkyProbeAgreesWithTheRadianceOfProbe) {
     EXPECT_NEAR(found / expected[static_cast<int>(c)], 1.0, 0.005) << c;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Phase, SpectralLookUps, testing::Values(MiePhase::cornette_shanks, MiePhase::draine));
 
 }  // namespace
 }  // namespace tyndall
