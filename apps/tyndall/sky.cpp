@@ -307,7 +307,7 @@ std::string sun_path(const std::string& output) {
   return std::filesystem::path(output).replace_extension(".sun.json").string();
 }
 
-// Writes the map and, with --sun split, the file of the sun: both or neither.
+// Writes the map and, with --sun split, the file of the sun. Both are complete before either replaces an older file.
 Result<void> write_files(const std::string& output, const image::Image& image, const image::Metadata& metadata,
                          const image::ExrOptions& as, const std::string* sun) {
   Result<files::AtomicFile> map = image::prepare_exr(output, image, metadata, as);
