@@ -19,7 +19,8 @@
 #   make site            builds the documentation as a site in build/site, and checks its links
 #   make site-check      opens the site in Chromium and searches it
 #   make passes          writes the list of passes, docs/generated/passes.md, with their cost
-#   make soak            draws SOAK_FRAMES (10000) frames of random changes with the validation layer, on both CPU drivers
+#   make soak            changes the viewer at random for two minutes, and draws SOAK_FRAMES (10000) frames of random changes
+#                        with the validation layer, on both CPU drivers
 #   make fuzz            runs every fuzzer for FUZZ_SECONDS (60) and goes on where the last run ended; FUZZ names some of them
 #   make twilight        writes the table of illuminances by the sun's elevation, docs/generated/twilight.md
 .PHONY: fuzz soak python-figures demo check doxygen pictures accuracy epipolar-study models-study twilight bundle bundle-chroot packages packages-check wheel-check python-comparison site site-check abi passes setup build format format-check tidy tidy-check tidy-all sanitize-short sanitize clean
@@ -238,13 +239,14 @@ fuzz: build
 	@cmake --build --preset fuzz --target fuzzers
 	@tools/fuzz.py --seconds $(FUZZ_SECONDS) --output docs/generated/fuzzing.md build/fuzz tests/fuzz/corpus $(FUZZ)
 
-# Random use of the library on Mesa's driver and on SwiftShader.
+# Random use of the viewer for two minutes, and of the library on Mesa's driver and on SwiftShader.
 SOAK_FRAMES ?= 10000
 SOAK_SEED ?= 1
 soak: PRESET = ci
-soak: TARGETS = soak
+soak: TARGETS = soak viewer_window_test
 soak: build
 	@tools/second_driver.sh build/second_driver
+	@ctest --preset ci -C soak --no-tests=error -R MemoryStaysBounded -V
 	@build/release/bin/soak --frames $(SOAK_FRAMES) --seed $(SOAK_SEED)
 	@tests/gpu/second_driver.sh build/second_driver/vk_swiftshader_icd.json build/release/bin/soak --frames $(SOAK_FRAMES) --seed $(SOAK_SEED)
 

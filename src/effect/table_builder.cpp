@@ -159,14 +159,22 @@ void TableBuilder::upload_constants(VkCommandBuffer cmd) {
                VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT);
 }
 
-void TableBuilder::make_images_ready(VkCommandBuffer cmd) {
-  for (TableSet* set : {&tables_, &next_}) {
-    for (TableImage& table : *set) {
-      if (table.ready || !table.image.view) continue;
-      gpu::transition(*device_, cmd, table.image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
-      table.ready = true;
-    }
+void TableBuilder::make_ready(VkCommandBuffer cmd, TableImage& table, bool black) {
+  if (table.ready || !table.image.view) return;
+  gpu::transition(*device_, cmd, table.image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
+  if (black) {
+    constexpr VkClearColorValue kBlack = {};
+    constexpr VkImageSubresourceRange kWhole = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    device_->vk.CmdClearColorImage(cmd, table.image.image.get(), VK_IMAGE_LAYOUT_GENERAL, &kBlack, 1, &kWhole);
+    gpu::transition(*device_, cmd, table.image, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_GENERAL);
   }
+  table.ready = true;
+}
+
+void TableBuilder::make_images_ready(VkCommandBuffer cmd) {
+  // Frames read the first tables before they are complete, and expect black where nothing has been written.
+  for (TableImage& table : tables_) make_ready(cmd, table, true);
+  for (TableImage& table : next_) make_ready(cmd, table, false);
 }
 
 Result<void> TableBuilder::record_save(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset) {
@@ -281,16 +289,7 @@ void TableBuilder::retire(TableSet tables, TableScratch scratch, SetCache sets) 
 }
 
 void TableBuilder::begin_frame(VkCommandBuffer cmd) {
-  for (TableImage& table : tables_) {
-    if (table.ready) continue;
-    gpu::transition(*device_, cmd, table.image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
-    // Frames before the first build read black tables.
-    constexpr VkClearColorValue kBlack = {};
-    constexpr VkImageSubresourceRange kWhole = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-    device_->vk.CmdClearColorImage(cmd, table.image.image.get(), VK_IMAGE_LAYOUT_GENERAL, &kBlack, 1, &kWhole);
-    gpu::transition(*device_, cmd, table.image, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_GENERAL);
-    table.ready = true;
-  }
+  for (TableImage& table : tables_) make_ready(cmd, table, true);
   for (Retired& r : retired_) --r.frames_left;
   std::erase_if(retired_, [](const Retired& r) { return r.frames_left == 0; });
 }

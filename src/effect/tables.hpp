@@ -114,6 +114,8 @@ class TableBuilder {
   // Makes the pipelines and the descriptor sets of the steps of a build.
   [[nodiscard]] Result<SetCache> make_sets(std::span<const Step> steps);
   void upload_constants(VkCommandBuffer cmd);
+  // Gives the image of a table its layout before its first use, and clears it where frames may read it.
+  void make_ready(VkCommandBuffer cmd, TableImage& table, bool black);
   void make_images_ready(VkCommandBuffer cmd);
   [[nodiscard]] BoundResources bind_resources();
   void finish() noexcept;
