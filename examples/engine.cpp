@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <string_view>
 #include <vector>
 
 #include "vulkan_host.hpp"
@@ -37,15 +36,6 @@ tyndall::Mat4 projection(float near_m, float far_m) {  // y up, depth 0 at the n
 constexpr tyndall::Vec3 kTowardsSun = {0.0F, 0.8F, 0.6F};
 
 tyndall::Effect create_effect(const Device& device) {
-  tyndall::DeviceInfo info;
-  info.instance = device.instance;
-  info.physical_device = device.physical;
-  info.device = device.device;
-  info.get_instance_proc_addr = vkGetInstanceProcAddr;
-  info.message = [](void*, tyndall::Severity, std::string_view text) {
-    std::fprintf(stderr, "tyndall: %.*s\n", static_cast<int>(text.size()), text.data());
-    std::exit(2);
-  };
   tyndall::EffectDesc desc;
   desc.max_extent = kEye;
   desc.views = 2;  // eyes
@@ -53,7 +43,7 @@ tyndall::Effect create_effect(const Device& device) {
   desc.sky_depth = 1.0F;  // standard Z
   tyndall::Params params;
   params.scattering.light_shafts = false;  // because this engine has no shadow maps
-  return value_or_exit(tyndall::Effect::create(info, desc, params));
+  return value_or_exit(tyndall::Effect::create(device_info(device), desc, params));
 }
 
 // Both eyes of a frame, each in its half of the images.

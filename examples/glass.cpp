@@ -11,7 +11,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <string_view>
 #include <vector>
 
 #include "vulkan_host.hpp"
@@ -38,22 +37,13 @@ struct Pane {
 };
 
 tyndall::Effect create_effect(const Device& device) {
-  tyndall::DeviceInfo info;
-  info.instance = device.instance;
-  info.physical_device = device.physical;
-  info.device = device.device;
-  info.get_instance_proc_addr = vkGetInstanceProcAddr;
-  info.message = [](void*, tyndall::Severity, std::string_view text) {
-    std::fprintf(stderr, "tyndall: %.*s\n", static_cast<int>(text.size()), text.data());
-    std::exit(2);
-  };
   tyndall::EffectDesc desc;
   desc.max_extent = kExtent;
   desc.frames_in_flight = 1;
   desc.output_format = tyndall::OutputFormat::rgba32f;
   tyndall::Params params;
   params.froxels.enabled = true;
-  return value_or_exit(tyndall::Effect::create(info, desc, params));
+  return value_or_exit(tyndall::Effect::create(device_info(device), desc, params));
 }
 
 // The pass that draws transparent surfaces, and what it binds.

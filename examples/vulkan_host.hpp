@@ -1,6 +1,6 @@
-// The part of examples/engine.cpp and glass.cpp that every program with Vulkan has, and that does not concern Tyndall:
-// a device, images, barriers and submission. embed.cpp has the same in one file. An error ends the program with a
-// number that names the step.
+// The part of examples/engine.cpp and glass.cpp that every program with Vulkan has: a device and its description,
+// images, barriers and submission. embed.cpp has the same in one file. An error ends the program with a number that
+// names the step.
 #pragma once
 
 #include <tyndall/effect.hpp>
@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <string_view>
 #include <utility>
 
 namespace host {
@@ -67,6 +68,20 @@ inline Device create_device() {
   cmd_info.commandBufferCount = 1;
   need(vkAllocateCommandBuffers(out.device, &cmd_info, &out.cmd) == VK_SUCCESS, 24);
   return out;
+}
+
+// Returns the description of the device for the library. A message of the library ends the program.
+inline tyndall::DeviceInfo device_info(const Device& device) {
+  tyndall::DeviceInfo info;
+  info.instance = device.instance;
+  info.physical_device = device.physical;
+  info.device = device.device;
+  info.get_instance_proc_addr = vkGetInstanceProcAddr;
+  info.message = [](void*, tyndall::Severity, std::string_view text) {
+    std::fprintf(stderr, "tyndall: %.*s\n", static_cast<int>(text.size()), text.data());
+    std::exit(2);
+  };
+  return info;
 }
 
 // The engine's images, and a buffer to read the output on the host.
