@@ -5,9 +5,13 @@
 
 #include "convert.hpp"
 #include "effect/spectral_medium.hpp"
+#include "files/access.hpp"
 #include "model.hpp"
+#include "scene/description/lunar_position.hpp"
+#include "scene/description/placed_sun.hpp"
 #include "scene/description/solar_position.hpp"
 #include "scene/scene.hpp"
+#include "tyndall/photometry.hpp"
 #include "tyndall/version.h"
 
 namespace tyndall::python {
@@ -31,19 +35,39 @@ py::array_t<float> render(const std::string& scene, const Assignments& assignmen
   return out;
 }
 
-py::dict sun_position(double latitude_deg, double longitude_deg, const std::string& time, double altitude_m) {
+scene::Place place_at(double latitude_deg, double longitude_deg) {
   if (!(std::abs(latitude_deg) <= 90.0)) throw py::value_error("latitude: out of range; expected -90 to 90 degrees");
   if (!(std::abs(longitude_deg) <= 360.0))
     throw py::value_error("longitude: out of range; expected -360 to 360 degrees");
-  if (!std::isfinite(altitude_m)) throw py::value_error("altitude: not finite; expected a number");
+  return {latitude_deg, std::remainder(longitude_deg, 360.0)};
+}
+
+double julian_day(const std::string& time) {
   const Result<double> day = scene::parse_time(time, "time");
   if (!day.ok()) raise(day.error());
-  const scene::SolarPosition sun =
-      scene::solar_position({latitude_deg, std::remainder(longitude_deg, 360.0)}, day.value(), altitude_m);
+  return day.value();
+}
+
+py::dict sun_position(double latitude_deg, double longitude_deg, const std::string& time, double altitude_m) {
+  const scene::Place place = place_at(latitude_deg, longitude_deg);
+  if (!std::isfinite(altitude_m)) throw py::value_error("altitude: not finite; expected a number");
+  const scene::SolarPosition sun = scene::solar_position(place, julian_day(time), altitude_m);
   py::dict out;
   out["elevation"] = sun.elevation_deg;
   out["azimuth"] = sun.azimuth_deg;
   out["distance_au"] = sun.distance_au;
+  return out;
+}
+
+py::dict moon_position(double latitude_deg, double longitude_deg, const std::string& time) {
+  const scene::LunarPosition moon = scene::lunar_position(place_at(latitude_deg, longitude_deg), julian_day(time));
+  py::dict out;
+  out["elevation"] = moon.elevation_deg;
+  out["azimuth"] = moon.azimuth_deg;
+  out["distance_km"] = moon.distance_km;
+  out["angular_radius"] = moon.angular_radius_deg;
+  out["phase_angle"] = moon.phase_angle_deg;
+  out["illuminance"] = scene::moon_illuminance(moon.phase_angle_deg, moon.angular_radius_deg);
   return out;
 }
 
@@ -69,6 +93,7 @@ PYBIND11_MODULE(_core, module) {
   using namespace tyndall::python;
   module.doc() = "Bindings; use the package tyndall.";
   module.attr("version") = TYNDALL_VERSION_STRING;
+  module.attr("sun_illuminance") = tyndall::kSunIlluminance_lux;
   PyObject* const error = PyErr_NewExceptionWithDoc(
       "tyndall.Error", "A device failed, or there is none that can be used.", PyExc_RuntimeError, nullptr);
   module.attr("Error") = py::reinterpret_borrow<py::object>(error);
@@ -102,5 +127,8 @@ PYBIND11_MODULE(_core, module) {
   module.def("xyz_of_color", &tyndall::xyz_of_color);
   module.def("render", &render);
   module.def("sun_position", &sun_position);
+  module.def("moon_position", &moon_position);
+  module.def("refraction", py::vectorize(&tyndall::scene::refraction_deg));
+  module.def("allow_outside", &tyndall::files::allow_outside);
   module.def("describe_parameters", &describe_parameters);
 }

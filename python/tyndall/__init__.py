@@ -20,13 +20,16 @@ import numpy as np
 
 from . import _checks, _core
 from ._core import Error
-from ._results import AerialPerspective, Estimate, SunPosition, Tables
+from ._results import AerialPerspective, Estimate, MoonPosition, SunPosition, Tables
 
 __version__ = _core.version
-__all__ = ["Atmosphere", "AerialPerspective", "Error", "Estimate", "SunPosition", "Tables", "parameters", "render",
-           "rgb_from_xyz", "sun_position", "visible_spectrum", "xyz_from_rgb"]
+__all__ = ["Atmosphere", "AerialPerspective", "Error", "Estimate", "MoonPosition", "SunPosition", "Tables", "allow_outside",
+           "moon_position", "parameters", "refraction", "render", "rgb_from_xyz", "sun_position", "visible_spectrum",
+           "xyz_from_rgb"]
 
 COLORS = ("channels", "rgb", "xyz")
+# Illuminance of the sun above the atmosphere at a distance of 1 au [lux], from the spectrum of ASTM G173-03.
+SUN_ILLUMINANCE = _core.sun_illuminance
 _LUMEN_PER_WATT = 683.0
 
 
@@ -292,17 +295,33 @@ def sun_position(latitude, longitude, time, altitude=0.0):
     latitude, longitude: in degrees, north and east positive. time: ISO 8601 with an offset from UTC, such as
     "2003-10-17T12:30:30-07:00", or an aware datetime; 1900 to 2100. altitude: of the place above sea level [m].
     """
-    if hasattr(time, "isoformat"):
-        if getattr(time, "utcoffset", lambda: None)() is None:
-            raise ValueError("time: the datetime has no time zone; expected an aware datetime")
-        time = time.isoformat()
-    place = []
-    for name, value in (("latitude", latitude), ("longitude", longitude), ("altitude", altitude)):
-        place.append(_checks.numbers(name, value))
-        if place[-1].ndim != 0:
-            raise ValueError(f"{name}: invalid shape {place[-1].shape}; expected a number")
-    found = _core.sun_position(float(place[0]), float(place[1]), str(time), float(place[2]))
+    found = _core.sun_position(*_checks.place(latitude, longitude), _checks.time(time), _checks.number("altitude", altitude))
     return SunPosition(found["elevation"], found["azimuth"], found["distance_au"])
+
+
+def moon_position(latitude, longitude, time):
+    """Returns where the moon is and how bright, as a MoonPosition. The position follows Meeus (1998), chapter 47, within
+    0.02 deg, with parallax and without refraction, and the illuminance Krisciunas and Schaefer (1991). Arguments as for
+    sun_position(). For the sky under the moon, pass its zenith angle as that of the sun, and multiply colours by
+    illuminance / SUN_ILLUMINANCE.
+    """
+    return MoonPosition(**_core.moon_position(*_checks.place(latitude, longitude), _checks.time(time)))
+
+
+def refraction(elevation):
+    """Returns by how much the atmosphere raises an object [deg] whose elevation [deg] without an atmosphere is given.
+
+    After Saemundsson (1986), at 1010 hPa and 10 degrees Celsius. Add it to the elevation of the sun or the moon.
+    """
+    return _core.refraction(_checks.numbers("elevation", elevation))
+
+
+def allow_outside():
+    """Allows scenes and models to name files outside of their folders, from now on in this process.
+
+    As --allow-outside of the program. Call it only if you trust the scene files; SECURITY.md says why.
+    """
+    _core.allow_outside()
 
 
 def visible_spectrum():

@@ -34,6 +34,27 @@ def numbers(name, value):
     return array
 
 
+def number(name, value):
+    """Returns an argument as a float."""
+    array = numbers(name, value)
+    if array.ndim != 0:
+        raise ValueError(f"{name}: invalid shape {array.shape}; expected a number")
+    return float(array)
+
+
+def place(latitude, longitude):
+    return number("latitude", latitude), number("longitude", longitude)
+
+
+def time(value):
+    """Returns a time as text of ISO 8601."""
+    if hasattr(value, "isoformat"):
+        if getattr(value, "utcoffset", lambda: None)() is None:
+            raise ValueError("time: the datetime has no time zone; expected an aware datetime")
+        return value.isoformat()
+    return str(value)
+
+
 def count(name, value, low, high):
     """Returns an argument as an integer within a range."""
     try:

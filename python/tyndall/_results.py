@@ -52,6 +52,37 @@ class SunPosition:
         return f"SunPosition(elevation={self.elevation!r}, azimuth={self.azimuth!r}, distance_au={self.distance_au!r})"
 
 
+class MoonPosition:
+    """The position of the moon in the sky, and its light.
+
+    elevation, azimuth: in degrees, azimuth clockwise from north. distance_km: from the centre of the Earth.
+    angular_radius: in degrees. phase_angle: between the directions from the moon to the sun and to the Earth, in degrees;
+    0 is a full moon. illuminance: of moonlight above the atmosphere, on a surface that faces it [lux].
+    """
+
+    def __init__(self, elevation, azimuth, distance_km, angular_radius, phase_angle, illuminance):
+        self.elevation = elevation
+        self.azimuth = azimuth
+        self.distance_km = distance_km
+        self.angular_radius = angular_radius
+        self.phase_angle = phase_angle
+        self.illuminance = illuminance
+
+    @property
+    def zenith(self):
+        """The zenith angle of the moon [deg]."""
+        return 90.0 - self.elevation
+
+    @property
+    def illuminated_fraction(self):
+        """The fraction of the disc that the sun lights, from 0 (new moon) to 1 (full moon)."""
+        return 0.5 * (1.0 + np.cos(np.radians(self.phase_angle)))
+
+    def __repr__(self):
+        return (f"MoonPosition(elevation={self.elevation!r}, azimuth={self.azimuth!r}, "
+                f"illuminated_fraction={self.illuminated_fraction:.3f}, illuminance={self.illuminance:.4g})")
+
+
 class Tables:
     """The scattering tables as arrays with the coordinates of their entries. docs/tables.md explains how they are made.
 

@@ -119,6 +119,9 @@ def test_the_path_tracer_agrees(single):
     (lambda: tyndall.sun_position(91, 0, "2003-10-17T12:00Z"), "latitude"),
     (lambda: tyndall.sun_position(1, 0, "yesterday"), "yesterday"),
     (lambda: tyndall.sun_position([1, 2], 0, "2003-10-17T12:00Z"), "latitude"),
+    (lambda: tyndall.moon_position(0, 361, "2003-10-17T12:00Z"), "longitude"),
+    (lambda: tyndall.moon_position(0, 0, "2003-10-17T12:00"), "offset"),
+    (lambda: tyndall.refraction([0, np.nan]), "elevation"),
     (lambda: tyndall.Atmosphere({"atmosphere.mie_g": "x"}, model="single"), "mie_g"),
     (lambda: tyndall.render(size=(0, 10)), "size"),
     (lambda: tyndall.render(size=5), "size"),
@@ -218,6 +221,38 @@ def test_sun_position():
     assert sun.elevation == pytest.approx(39.872046, abs=1e-3)
     assert sun.azimuth == pytest.approx(194.34024, abs=1e-3)
     assert sun.zenith == 90.0 - sun.elevation
+
+
+# Meeus (1998), example 47.a: the distance on 1992-04-12 at 0h TD, which is 58 s after UT, and example 48.a: the lit fraction.
+def test_moon_position():
+    moon = tyndall.moon_position(0, 0, "1992-04-11T23:59:02Z")
+    assert moon.distance_km == pytest.approx(368409.7, abs=40)
+    assert moon.illuminated_fraction == pytest.approx(0.6786, abs=1e-3)
+    assert moon.zenith == 90.0 - moon.elevation
+    full = tyndall.moon_position(46.6, 7.9, "2026-01-03T23:00+01:00")  # a full moon near its perigee, high in winter
+    assert full.elevation > 50 and full.illuminated_fraction > 0.99 and 0.25 < full.illuminance < 0.4
+    assert 130e3 < tyndall.SUN_ILLUMINANCE < 136e3
+
+
+# Saemundsson (1986): 28.98 minutes of arc at the horizon of an object without an atmosphere; 0 at the zenith.
+def test_refraction():
+    found = tyndall.refraction([0, 45, 90])
+    assert found[0] * 60 == pytest.approx(28.98, abs=0.1)
+    assert found[1] * 60 == pytest.approx(1.0, abs=0.05)
+    assert found[2] * 60 == pytest.approx(0.0, abs=0.01)
+
+
+def test_scenes_name_files_in_their_folder_until_it_is_allowed(tmp_path):
+    (tmp_path / "a").mkdir()
+    (tmp_path / "air.toml").write_text("[atmosphere]\naerosol_density = 2\n")
+    (tmp_path / "a" / "scene.toml").write_text('include = ["../air.toml"]\n')
+    ask = ("import sys, tyndall\nif len(sys.argv) > 2: tyndall.allow_outside()\n"
+           "try: tyndall.Atmosphere(scene=sys.argv[1], model='oneil'); print('read')\n"
+           "except ValueError as error: print('outside' if '--allow-outside' in str(error) else error)\n")
+    scene = str(tmp_path / "a" / "scene.toml")
+    for arguments, words in ([scene], "outside"), ([scene, "yes"], "read"):
+        done = subprocess.run([sys.executable, "-c", ask] + arguments, capture_output=True, text=True)
+        assert done.stdout.strip() == words, done.stderr
 
 
 def test_render(scenes, small):

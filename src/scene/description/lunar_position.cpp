@@ -104,4 +104,10 @@ double moon_illuminance(double phase_angle_deg) {
   return kLuxPerFootcandle * opposition * std::pow(10.0, -0.4 * magnitude);
 }
 
+double moon_illuminance(double phase_angle_deg, double angular_radius_deg) {
+  constexpr double kMeanRadius_deg = 0.2591;  // at the mean distance
+  const double nearer = angular_radius_deg / kMeanRadius_deg;
+  return moon_illuminance(phase_angle_deg) * nearer * nearer;
+}
+
 }  // namespace tyndall::scene

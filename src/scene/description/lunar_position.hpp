@@ -25,5 +25,7 @@ struct LunarPosition {
 // "A model of the brightness of moonlight" (1991), equation 20, which includes the opposition effect below 7 degrees,
 // for the mean distance.
 [[nodiscard]] double moon_illuminance(double phase_angle_deg);
+// Returns the same for the distance at which the moon has this size.
+[[nodiscard]] double moon_illuminance(double phase_angle_deg, double angular_radius_deg);
 
 }  // namespace tyndall::scene

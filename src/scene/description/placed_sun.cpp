@@ -76,12 +76,10 @@ Result<MoonParams> placed_moon(const MoonParams& moon, const SunParams& sun,
 }
 
 double moon_irradiance_ratio(const MoonParams& placed, double cos_sun_moon) {
-  constexpr double kMeanRadius_deg = 0.2591;  // at the mean distance
   constexpr double kDegPerRad = 180.0 / std::numbers::pi;
   // The sun is so far away that the phase angle and the elongation add up to half a turn.
   const double phase_deg = 180.0 - std::acos(std::clamp(cos_sun_moon, -1.0, 1.0)) * kDegPerRad;
-  const double nearer = static_cast<double>(placed.angular_radius_deg) / kMeanRadius_deg;
-  return moon_illuminance(phase_deg) / kSunIlluminance_lux * nearer * nearer;
+  return moon_illuminance(phase_deg, static_cast<double>(placed.angular_radius_deg)) / kSunIlluminance_lux;
 }
 
 }  // namespace tyndall::scene
