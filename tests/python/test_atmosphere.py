@@ -246,12 +246,12 @@ def test_scenes_name_files_in_their_folder_until_it_is_allowed(tmp_path):
     (tmp_path / "a").mkdir()
     (tmp_path / "air.toml").write_text("[atmosphere]\naerosol_density = 2\n")
     (tmp_path / "a" / "scene.toml").write_text('include = ["../air.toml"]\n')
-    ask = ("import sys, tyndall\nif len(sys.argv) > 2: tyndall.allow_outside()\n"
-           "try: tyndall.Atmosphere(scene=sys.argv[1], model='oneil'); print('read')\n"
-           "except ValueError as error: print('outside' if '--allow-outside' in str(error) else error)\n")
+    script = ("import sys, tyndall\nif len(sys.argv) > 2: tyndall.allow_outside()\n"
+              "try: tyndall.Atmosphere(scene=sys.argv[1], model='oneil'); print('read')\n"
+              "except ValueError as error: print('outside' if '--allow-outside' in str(error) else error)\n")
     scene = str(tmp_path / "a" / "scene.toml")
     for arguments, words in ([scene], "outside"), ([scene, "yes"], "read"):
-        done = subprocess.run([sys.executable, "-c", ask] + arguments, capture_output=True, text=True)
+        done = subprocess.run([sys.executable, "-c", script] + arguments, capture_output=True, text=True)
         assert done.stdout.strip() == words, done.stderr
 
 
