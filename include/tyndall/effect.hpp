@@ -174,6 +174,10 @@ struct FrameInputs {
   float lowest_ground_m = 0.0F;
 };
 
+// The parts in which Effect::record() can record a frame. `first` reads FrameInputs::depth, and `second` everything
+// else.
+enum class FramePart : std::uint32_t { whole, first, second };
+
 struct Progress {
   std::uint32_t done = 0;
   std::uint32_t total = 0;
@@ -300,7 +304,11 @@ class TYNDALL_API Effect {
   // Records the effect: output = color * transmittance + in-scattered light. Inputs must be visible to COMPUTE_SHADER /
   // SHADER_READ in the layouts that they state. Writes output in COMPUTE_SHADER / SHADER_WRITE. Changes the pipeline,
   // descriptor set 0 and the push constants of the compute bind point, as record_precompute() does, and no other state.
-  Result<void> record(VkCommandBuffer cmd, const FrameInputs& inputs);
+  // A frame can be recorded in two parts, with the same inputs and to any command buffers that execute one after the
+  // other. The commands of the first part read the depth and write only to memory of the effect, so they can run while
+  // shadow maps and colour are drawn. The picture is the same, byte for byte. The second part must follow before the
+  // next frame or view, and before calls that change parameters, limits or tables; they are errors in between.
+  Result<void> record(VkCommandBuffer cmd, const FrameInputs& inputs, FramePart part = FramePart::whole);
 
   // Return the tables in use. Views change only when record_precompute() or record_load_tables() completes new ones.
   [[nodiscard]] LightTables light_tables() const;
@@ -313,7 +321,8 @@ class TYNDALL_API Effect {
   [[nodiscard]] Counters counters(std::uint64_t frame_index, std::uint32_t view = 0) const;
   // Returns the times of the passes of a frame whose commands have completed; empty without EffectDesc::timings. The
   // span is valid until the next call. A pass that is recorded several times has several entries. On GPUs, the first
-  // entry is "effect", the time of all passes together; do not add it to the others.
+  // entry is "effect", the time of all passes together; do not add it to the others. A frame in two parts has one
+  // before the passes of each part.
   std::span<const PassTiming> timings(std::uint64_t frame_index, std::uint32_t view = 0);
   // Returns the times of the stages of the last build of tables, once its commands have completed.
   std::span<const PassTiming> precompute_timings();

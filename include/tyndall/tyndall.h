@@ -62,6 +62,14 @@ typedef enum TyndallParamType {
   TyndallParamType_max = 0x7FFFFFFF
 } TyndallParamType;
 
+// The parts of a frame; see tyndall_effect_record_part().
+typedef enum TyndallFramePart {
+  TyndallFramePart_whole = 0,
+  TyndallFramePart_first = 1,
+  TyndallFramePart_second = 2,
+  TyndallFramePart_max = 0x7FFFFFFF
+} TyndallFramePart;
+
 // What a change of a parameter requires; see tyndall_params_affected().
 typedef enum TyndallAffects {
   TyndallAffects_Frame = 0,
@@ -362,6 +370,9 @@ TYNDALL_API TyndallStatus tyndall_effect_record_load_tables(TyndallEffect* effec
 // Records the effect.
 TYNDALL_API TyndallStatus tyndall_effect_record(TyndallEffect* effect, VkCommandBuffer cmd,
                                                 const TyndallFrameInputs* inputs);
+// Records a part of the effect; `whole` is tyndall_effect_record().
+TYNDALL_API TyndallStatus tyndall_effect_record_part(TyndallEffect* effect, VkCommandBuffer cmd,
+                                                     const TyndallFrameInputs* inputs, TyndallFramePart part);
 
 TYNDALL_API TyndallStatus tyndall_effect_light_tables(const TyndallEffect* effect, TyndallLightTables* tables);
 TYNDALL_API TyndallStatus tyndall_effect_scattering_tables(const TyndallEffect* effect,

@@ -16,6 +16,9 @@ static_assert(same(TyndallSeverity_info, Severity::info) && same(TyndallSeverity
 static_assert(same(TyndallOutputFormat_rgba16f, OutputFormat::rgba16f) &&
               same(TyndallOutputFormat_rgba32f, OutputFormat::rgba32f));
 
+static_assert(same(TyndallFramePart_whole, FramePart::whole) && same(TyndallFramePart_first, FramePart::first) &&
+              same(TyndallFramePart_second, FramePart::second));
+
 const TyndallDeviceInfo& callbacks(void* user) { return *static_cast<const TyndallDeviceInfo*>(user); }
 
 // Text with a final 0, cut off if it does not fit.

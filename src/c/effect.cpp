@@ -227,19 +227,34 @@ TyndallStatus tyndall_effect_record_load_tables(TyndallEffect* effect, VkCommand
   return c::with(effect, __func__, [&](Effect& e, const char*) { return e.record_load_tables(cmd, buffer, offset); });
 }
 
+namespace {
+
+Result<void> record(Effect& e, const char* where, VkCommandBuffer cmd, const TyndallFrameInputs* inputs,
+                    FramePart part) {
+  static const TyndallFrameInputs kDefaults = c::to_c(FrameInputs{});
+  TYNDALL_ASSIGN(const TyndallFrameInputs read, c::read(where, inputs, kDefaults));
+  if (read.cascade_count > kMaxCascades) {
+    return c::invalid(where, "TyndallFrameInputs::cascade_count is " + std::to_string(read.cascade_count) +
+                                 "; expected at most " + std::to_string(kMaxCascades));
+  }
+  if (read.cascade_count > 0) {
+    TYNDALL_TRY(c::check_pointer(where, "TyndallFrameInputs::cascades", read.cascades));
+  }
+  std::array<Cascade, kMaxCascades> cascades;
+  return e.record(cmd, c::to_cpp(read, cascades), part);
+}
+
+}  // namespace
+
 TyndallStatus tyndall_effect_record(TyndallEffect* effect, VkCommandBuffer cmd, const TyndallFrameInputs* inputs) {
-  return c::with(effect, __func__, [&](Effect& e, const char* where) -> Result<void> {
-    static const TyndallFrameInputs kDefaults = c::to_c(FrameInputs{});
-    TYNDALL_ASSIGN(const TyndallFrameInputs read, c::read(where, inputs, kDefaults));
-    if (read.cascade_count > kMaxCascades) {
-      return c::invalid(where, "TyndallFrameInputs::cascade_count is " + std::to_string(read.cascade_count) +
-                                   "; expected at most " + std::to_string(kMaxCascades));
-    }
-    if (read.cascade_count > 0) {
-      TYNDALL_TRY(c::check_pointer(where, "TyndallFrameInputs::cascades", read.cascades));
-    }
-    std::array<Cascade, kMaxCascades> cascades;
-    return e.record(cmd, c::to_cpp(read, cascades));
+  return c::with(effect, __func__,
+                 [&](Effect& e, const char* where) { return record(e, where, cmd, inputs, FramePart::whole); });
+}
+
+TyndallStatus tyndall_effect_record_part(TyndallEffect* effect, VkCommandBuffer cmd, const TyndallFrameInputs* inputs,
+                                         TyndallFramePart part) {
+  return c::with(effect, __func__, [&](Effect& e, const char* where) {
+    return record(e, where, cmd, inputs, static_cast<FramePart>(part));
   });
 }
 

@@ -87,6 +87,12 @@ MemoryUsage plan_memory(const gpu::Device& device, const EffectDesc& desc, const
 
 Effect::State::~State() {
   if (info.message == nullptr || !desc.check_inputs || !ring.unfinished()) return;
+  if (parts.open()) {
+    info.message(info.message_user, Severity::warning,
+                 "an Effect is destroyed between the two parts of a frame; expected to record and submit "
+                 "FramePart::second first, and to wait for it");
+    return;
+  }
   info.message(
       info.message_user, Severity::warning,
       "an Effect is destroyed before the commands that it recorded have completed, or without submitting them; "
@@ -303,27 +309,34 @@ BoundResources Effect::State::bind_resources(const FrameInputs& inputs, std::uin
   return out;
 }
 
-Result<void> Effect::State::record(VkCommandBuffer cmd, const FrameInputs& inputs) {
+Result<void> Effect::State::begin_frame(VkCommandBuffer cmd, const FrameInputs& inputs, const Params& drawn) {
   TYNDALL_TRY(check_frame(inputs, desc, params));
   TYNDALL_TRY(ring.take(inputs.frame_index, inputs.view));
   const std::uint32_t slot = ring.slot(inputs.frame_index, inputs.view);
-  const Params drawn = drawn_with(params);
   const shared::FrameConstants frame = frame_constants(inputs, desc, drawn);
   if (desc.check_inputs) remarks.on_frame(inputs, {desc, params, frame, tables.ready()}, info);
   write_constants(inputs, drawn, frame, slot);
 
   if (desc.timings) timer.begin_frame(cmd, slot);
   prepare_images(cmd);
-  const BoundResources resources = bind_resources(inputs, slot);
   sets.begin(slot);
+  return {};
+}
+
+Result<void> Effect::State::record(VkCommandBuffer cmd, const FrameInputs& inputs, FramePart part) {
+  TYNDALL_TRY(parts.check(inputs, part));
+  const Params drawn = drawn_with(params);
+  if (part != FramePart::second) TYNDALL_TRY(begin_frame(cmd, inputs, drawn));
+  const std::uint32_t slot = ring.slot(inputs.frame_index, inputs.view);
+  const BoundResources resources = bind_resources(inputs, slot);
   StepRecorder recorder(device, cmd, pipelines, sets, slot, resources, desc.timings ? &timer : nullptr);
-  // The previous frame used the same buffers, and its commands may still be running.
+  // The previous frame used the same buffers, and its commands may still be running. So may those of the first part.
   constexpr VkAccessFlags kFrameBefore = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT |
                                          VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT |
                                          VK_ACCESS_INDIRECT_COMMAND_READ_BIT;
   recorder.assume(Resource::counters, kFrameBefore);
   for (std::size_t i = 0; i < kFrameBuffers; ++i) recorder.assume(frame_buffer(i), kFrameBefore);
-  if (uses_froxels(params)) {
+  if (uses_froxels(params) && part != FramePart::first) {
     recorder.assume(Resource::froxel_inscattering, kFrameBefore);
     recorder.assume(Resource::froxel_transmittance, kFrameBefore);
     // Any stage of the caller's earlier commands may read the volume.
@@ -331,9 +344,14 @@ Result<void> Effect::State::record(VkCommandBuffer cmd, const FrameInputs& input
   }
   if (desc.timings) timer.begin_whole(cmd, "effect");
   const FrameSteps steps = frame_steps(desc, drawn, frame_shape(inputs, drawn, target));
-  for (const Step& step : steps) TYNDALL_TRY(recorder.record(step));
+  for (const Step& step : steps.of(part)) TYNDALL_TRY(recorder.record(step));
   if (desc.timings) timer.end_whole(cmd);
-  ring.record_end(cmd, inputs.frame_index, inputs.view);
+  if (part == FramePart::first) {
+    ring.hold(inputs.frame_index, inputs.view);
+  } else {
+    ring.record_end(cmd, inputs.frame_index, inputs.view);
+  }
+  parts.recorded(inputs, part);
   return {};
 }
 

@@ -73,6 +73,7 @@ Result<void> Effect::set_params(const Params& params, const std::optional<Effect
       TYNDALL_TRY(check_same_desc(s.desc, *desc));
     }
     TYNDALL_TRY(check_params(params));
+    TYNDALL_TRY(s.parts.check_between("Effect::set_params"));
     return s.change(desc.value_or(s.desc), params);
   });
 }
@@ -82,7 +83,8 @@ Result<Progress> Effect::prepare_pipelines(std::uint32_t budget) {
 }
 
 Result<void> Effect::set_shadow_colors(bool shadow_colors) {
-  return call(state_, "Effect::set_shadow_colors", [&](State& s) {
+  return call(state_, "Effect::set_shadow_colors", [&](State& s) -> Result<void> {
+    TYNDALL_TRY(s.parts.check_between("Effect::set_shadow_colors"));
     EffectDesc desc = s.desc;
     desc.shadow_colors = shadow_colors;
     return s.change(desc, s.params);
@@ -97,6 +99,7 @@ Result<void> Effect::set_limits(VkExtent2D max_extent, std::uint32_t max_cascade
     desc.max_cascades = max_cascades;
     desc.max_shadow_resolution = max_shadow_resolution;
     TYNDALL_TRY(check_desc(s.info, desc));
+    TYNDALL_TRY(s.parts.check_between("Effect::set_limits"));
     return s.change(desc, s.params);
   });
 }
@@ -115,13 +118,14 @@ Progress Effect::precompute_progress() const { return state_ ? state_->tables.pr
 
 Result<Progress> Effect::record_precompute(VkCommandBuffer cmd, std::uint32_t budget) {
   return record_with(state_, "Effect::record_precompute", cmd, [&](State& s) -> Result<Progress> {
+    TYNDALL_TRY(s.parts.check_between("Effect::record_precompute"));
     TYNDALL_TRY(s.tables.record(cmd, budget));
     return s.tables.progress();
   });
 }
 
-Result<void> Effect::record(VkCommandBuffer cmd, const FrameInputs& inputs) {
-  return record_with(state_, "Effect::record", cmd, [&](State& s) { return s.record(cmd, inputs); });
+Result<void> Effect::record(VkCommandBuffer cmd, const FrameInputs& inputs, FramePart part) {
+  return record_with(state_, "Effect::record", cmd, [&](State& s) { return s.record(cmd, inputs, part); });
 }
 
 Result<void> Effect::record_save_tables(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset) {
@@ -130,8 +134,10 @@ Result<void> Effect::record_save_tables(VkCommandBuffer cmd, VkBuffer buffer, Vk
 }
 
 Result<void> Effect::record_load_tables(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset) {
-  return record_with(state_, "Effect::record_load_tables", cmd,
-                     [&](State& s) { return s.tables.record_load(cmd, buffer, offset); });
+  return record_with(state_, "Effect::record_load_tables", cmd, [&](State& s) -> Result<void> {
+    TYNDALL_TRY(s.parts.check_between("Effect::record_load_tables"));
+    return s.tables.record_load(cmd, buffer, offset);
+  });
 }
 
 std::string Effect::table_key() const {

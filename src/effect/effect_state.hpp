@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "effect/frame_buffers.hpp"
+#include "effect/frame_parts.hpp"
 #include "effect/frame_ring.hpp"
 #include "effect/froxel_volume.hpp"
 #include "effect/phase_rows.hpp"
@@ -60,6 +61,7 @@ struct TYNDALL_HIDDEN Effect::State {
   gpu::Handle<VkSampler> shadow_plain;  // without comparison, with the same border
   gpu::Handle<VkSampler> shadow_tint;
   FrameRing ring;
+  FrameParts parts;
   Remarks remarks;
   gpu::Timer timer;
   std::array<PassTiming, kMaxTimedPasses> timings = {};
@@ -95,7 +97,7 @@ struct TYNDALL_HIDDEN Effect::State {
   Result<void> change(const EffectDesc& desc, const Params& params);
 
   Result<Progress> prepare_pipelines(std::uint32_t budget);
-  Result<void> record(VkCommandBuffer cmd, const FrameInputs& inputs);
+  Result<void> record(VkCommandBuffer cmd, const FrameInputs& inputs, FramePart part);
   [[nodiscard]] Counters read_counters(std::uint64_t frame_index, std::uint32_t view) const;
   [[nodiscard]] std::span<const ResourceMemory> list_resources();
   [[nodiscard]] MemoryUsage memory() const;
@@ -113,6 +115,8 @@ struct TYNDALL_HIDDEN Effect::State {
   Result<void> create_samplers();
   Result<void> make_pipelines(const EffectDesc& d, const Params& p);
   void prepare_images(VkCommandBuffer cmd);
+  // Does what precedes the steps of a frame: checks the inputs, and writes the constants.
+  Result<void> begin_frame(VkCommandBuffer cmd, const FrameInputs& inputs, const Params& drawn);
   // Writes the constants of a frame into its slot of the ring.
   void write_constants(const FrameInputs& inputs, const Params& drawn, const shared::FrameConstants& frame,
                        std::uint32_t slot);

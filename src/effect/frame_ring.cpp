@@ -50,12 +50,17 @@ bool FrameRing::unfinished() const {
   return std::any_of(slots_.begin(), slots_.end(), [this](const Slot& slot) { return busy(slot); });
 }
 
-void FrameRing::record_end(VkCommandBuffer cmd, std::uint64_t frame_index, std::uint32_t view) {
+void FrameRing::hold(std::uint64_t frame_index, std::uint32_t view) {
   Slot& s = slots_[slot(frame_index, view)];
   device_->vk.ResetEvent(device_->device, s.done.get());  // take() has refused a slot whose commands may still set it
   s.frame_index = frame_index;
   s.recorded = true;
-  device_->vk.CmdSetEvent(cmd, s.done.get(), VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT);
+}
+
+void FrameRing::record_end(VkCommandBuffer cmd, std::uint64_t frame_index, std::uint32_t view) {
+  hold(frame_index, view);
+  device_->vk.CmdSetEvent(cmd, slots_[slot(frame_index, view)].done.get(),
+                          VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT);
 }
 
 }  // namespace tyndall

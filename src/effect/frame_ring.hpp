@@ -23,6 +23,8 @@ class FrameRing {
   Result<void> take(std::uint64_t frame_index, std::uint32_t view) const;
   // Returns whether some commands have not completed, because they are late or were never submitted.
   [[nodiscard]] bool unfinished() const;
+  // Marks the commands of a slot as not completed until record_end(), for a frame that is recorded in two parts.
+  void hold(std::uint64_t frame_index, std::uint32_t view);
   // Records the event of a slot. To be called after the last command that reads the slot.
   void record_end(VkCommandBuffer cmd, std::uint64_t frame_index, std::uint32_t view);
 

@@ -4,6 +4,7 @@
 #include "effect/frame_steps.hpp"
 
 #include <algorithm>
+#include <span>
 
 #include "air/phase.hpp"
 #include "effect/frame_constants.hpp"
@@ -158,6 +159,19 @@ void downscaled_steps(Frame& f) {
                     f.variant(shaders::correct_pixels_comp_rgba16f, shaders::correct_pixels_comp_rgba32f));
 }
 
+// Fills the froxel volume, in bands of rows so that a dispatch stays short: at the default size one, at the largest
+// eight. Without the medium it holds no light and full transmittance.
+void froxel_steps(Frame& f) {
+  constexpr std::uint32_t kTexelsPerBand = 512 * 64 * 256;
+  const FroxelParams& p = f.params.froxels;
+  const std::uint32_t group = shaders::froxels_comp.local_size[1];
+  const std::uint32_t rows = std::max(kTexelsPerBand / (p.columns * p.slices * group), 1U) * group;
+  for (std::uint32_t first = 0; first < p.rows; first += rows) {
+    f.dispatch("froxels", shaders::froxels_comp, {p.columns, std::min(rows, p.rows - first), 1},
+               {first, f.params.scattering.enabled ? 0U : 1U});
+  }
+}
+
 void epipolar_steps(Frame& f) {
   const std::uint32_t slices = downscaled_count(f.params.epipolar.slices, f.params);
   const std::uint32_t samples = downscaled_count(f.params.epipolar.samples, f.params);
@@ -174,6 +188,7 @@ void epipolar_steps(Frame& f) {
     f.dispatch("slice_directions", shaders::slice_directions_comp,
                {slices * shared::kLineThreads, cascades, 1});  // 1.4
   }
+  if (uses_froxels(f.params)) froxel_steps(f);  // after the steps of FramePart::first, which need no shadows
   if (cascades > 0 && f.uses_tree()) f.dispatch_over(Resource::tree_blocks, "min_max_tree", shaders::min_max_tree_comp);
   march_cascades(f, processing);                                                               // 1.6, 1.8
   f.dispatch("interpolate_samples", shaders::interpolate_samples_comp, {samples, slices, 1});  // 1.3
@@ -199,20 +214,20 @@ void brute_force_steps(Frame& f) {
     f.dispatch("march_per_pixel", shader, {width, std::min(rows, height - first), 1}, {first, 0});
 }
 
-// Fills the froxel volume, in bands of rows so that a dispatch stays short: at the default size one, at the largest
-// eight. Without the medium it holds no light and full transmittance.
-void froxel_steps(Frame& f) {
-  constexpr std::uint32_t kTexelsPerBand = 512 * 64 * 256;
-  const FroxelParams& p = f.params.froxels;
-  const std::uint32_t group = shaders::froxels_comp.local_size[1];
-  const std::uint32_t rows = std::max(kTexelsPerBand / (p.columns * p.slices * group), 1U) * group;
-  for (std::uint32_t first = 0; first < p.rows; first += rows) {
-    f.dispatch("froxels", shaders::froxels_comp, {p.columns, std::min(rows, p.rows - first), 1},
-               {first, f.params.scattering.enabled ? 0U : 1U});
-  }
-}
-
 }  // namespace
+
+std::span<const Step> FrameSteps::of(FramePart part) const {
+  const std::span<const Step> all = {list_.data(), count_};
+  if (part == FramePart::whole) return all;
+  const auto second = std::find_if(all.begin(), all.end(), [](const Step& step) {
+    const Uses uses = uses_of(step);
+    return std::any_of(uses.begin(), uses.end(), [](const Use& use) {
+      return info_of(use.resource).lifetime == Lifetime::caller && use.resource != Resource::scene_depth;
+    });
+  });
+  const auto first = static_cast<std::size_t>(second - all.begin());
+  return part == FramePart::first ? all.first(first) : all.subspan(first);
+}
 
 FrameShape frame_shape(const FrameInputs& inputs, const Params& params, Target target) {
   return {inputs.extent,
@@ -228,7 +243,8 @@ FrameSteps frame_steps(const EffectDesc& desc, const Params& params, const Frame
   f.constants = specialisation(f);
   const VkExtent3D pixels = {shape.extent.width, shape.extent.height, 1};
   if (desc.counters) f.other(Step::Kind::clear, "clear_counters", Resource::counters);
-  if (uses_froxels(params)) froxel_steps(f);
+  const bool epipolar = params.scattering.enabled && params.scattering.technique == Technique::epipolar;
+  if (uses_froxels(params) && !epipolar) froxel_steps(f);
   if (!params.scattering.enabled) {
     f.dispatch("no_air", f.variant(shaders::no_air_comp_rgba16f, shaders::no_air_comp_rgba32f), pixels);
   } else if (params.scattering.technique == Technique::brute_force) {

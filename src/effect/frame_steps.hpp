@@ -32,6 +32,9 @@ class FrameSteps {
   [[nodiscard]] const Step* begin() const { return list_.data(); }
   [[nodiscard]] const Step* end() const { return list_.data() + count_; }
   [[nodiscard]] std::size_t size() const { return count_; }
+  // Returns the steps of a part of the frame. The first part ends where a step uses another image of the caller than
+  // the depth.
+  [[nodiscard]] std::span<const Step> of(FramePart part) const;
 
  private:
   std::array<Step, kMax> list_ = {};

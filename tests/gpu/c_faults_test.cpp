@@ -54,6 +54,8 @@ TEST(CFaults, NullPointersAreRefused) {
   tyndall_effect_destroy(nullptr);
   expect_invalid(tyndall_effect_record(nullptr, kCommands, &frame.inputs), {"tyndall_effect_record", "'effect'"});
   expect_invalid(tyndall_effect_record(effect, VK_NULL_HANDLE, &frame.inputs), {"command buffer is null"});
+  expect_invalid(tyndall_effect_record_part(nullptr, kCommands, &frame.inputs, TyndallFramePart_first), {"'effect'"});
+  expect_invalid(tyndall_effect_record_part(effect, kCommands, nullptr, TyndallFramePart_first), {"null"});
   expect_invalid(tyndall_effect_record(effect, kCommands, nullptr), {"TyndallFrameInputs", "null"});
   CFrame without = c_frame(fake_frame());
   without.inputs.cascades = nullptr;
@@ -178,6 +180,17 @@ TEST(CFaults, ValuesOutOfRangeAreRefused) {
   frame.inputs.extent = {65, 32};
   expect_invalid(tyndall_effect_record(owned.get(), kCommands, &frame.inputs), {"extent", "expected"});
   expect_invalid(tyndall_effect_set_limits(owned.get(), {0, 1}, 1, 1), {"max_extent", "expected"});
+  frame = c_frame(fake_frame());
+  expect_invalid(tyndall_effect_record_part(owned.get(), kCommands, &frame.inputs, static_cast<TyndallFramePart>(3)),
+                 {"part", "expected FramePart::whole"});
+  expect_invalid(tyndall_effect_record_part(owned.get(), kCommands, &frame.inputs, TyndallFramePart_second),
+                 {"FramePart::second", "no first part"});
+  // Both parts are recorded through C.
+  EXPECT_EQ(tyndall_effect_record_part(owned.get(), kCommands, &frame.inputs, TyndallFramePart_first),
+            TyndallStatus_success);
+  expect_invalid(tyndall_effect_record(owned.get(), kCommands, &frame.inputs), {"FramePart::second"});
+  EXPECT_EQ(tyndall_effect_record_part(owned.get(), kCommands, &frame.inputs, TyndallFramePart_second),
+            TyndallStatus_success);
 }
 
 TEST(CFaults, SettingsChangeAndAreReadBack) {

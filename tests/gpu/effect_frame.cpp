@@ -119,15 +119,6 @@ Result<FrameImages> FrameImages::create(gpu::Host& host, const TestFrame& frame,
 
   if (!frame.cascades.empty()) {
     const std::uint32_t n = frame.shadow_resolution;
-    std::vector<float> shadows;
-    for (std::uint32_t c = 0; c < frame.cascades.size(); ++c) {
-      for (std::uint32_t y = 0; y < n; ++y) {
-        for (std::uint32_t x = 0; x < n; ++x) {
-          const float nothing = frame.shadow_depth_reversed ? 0.0F : 1.0F;
-          shadows.push_back(frame.shadow_depth ? frame.shadow_depth(c, (x + 0.5) / n, (y + 0.5) / n) : nothing);
-        }
-      }
-    }
     TYNDALL_ASSIGN(out.shadows_, gpu::create_image(device, {"shadows",
                                                             VK_FORMAT_D32_SFLOAT,
                                                             {n, n, 1},
@@ -135,7 +126,7 @@ Result<FrameImages> FrameImages::create(gpu::Host& host, const TestFrame& frame,
                                                             static_cast<std::uint32_t>(frame.cascades.size()),
                                                             1,
                                                             true}));
-    TYNDALL_TRY(gpu::upload(host, out.shadows_, shadows.data(), shadows.size() * 4, kRead));
+    TYNDALL_TRY(out.draw_shadows(host, frame));
     if (frame.shadow_color) {
       std::vector<float> glass;
       for (std::uint32_t c = 0; c < frame.cascades.size(); ++c) {
@@ -188,6 +179,20 @@ FrameInputs FrameImages::inputs(const TestFrame& frame) const {
   out.output = {output_.view.get(), VK_IMAGE_LAYOUT_GENERAL, frame.offsets.output};
   out.lowest_ground_m = static_cast<float>(frame.lowest_ground_m);
   return out;
+}
+
+Result<void> FrameImages::draw_shadows(gpu::Host& host, const TestFrame& frame) {
+  const std::uint32_t n = frame.shadow_resolution;
+  std::vector<float> shadows;
+  for (std::uint32_t c = 0; c < frame.cascades.size(); ++c) {
+    for (std::uint32_t y = 0; y < n; ++y) {
+      for (std::uint32_t x = 0; x < n; ++x) {
+        const float nothing = frame.shadow_depth_reversed ? 0.0F : 1.0F;
+        shadows.push_back(frame.shadow_depth ? frame.shadow_depth(c, (x + 0.5) / n, (y + 0.5) / n) : nothing);
+      }
+    }
+  }
+  return gpu::upload(host, shadows_, shadows.data(), shadows.size() * 4, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
 }
 
 Result<std::vector<std::byte>> FrameImages::output_bytes(gpu::Host& host) {

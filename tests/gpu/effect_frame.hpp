@@ -68,6 +68,8 @@ class FrameImages {
  public:
   static Result<FrameImages> create(gpu::Host& host, const TestFrame& frame, OutputFormat format);
   [[nodiscard]] FrameInputs inputs(const TestFrame& frame) const;
+  // Draws the shadow maps again, with those of another frame of the same resolution and number of cascades.
+  Result<void> draw_shadows(gpu::Host& host, const TestFrame& frame);
   Result<std::vector<std::byte>> output_bytes(gpu::Host& host);
   // Returns red, green and blue of each pixel of the image, which TestFrame::image_extent may make larger than the
   // picture.

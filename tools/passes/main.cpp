@@ -139,11 +139,13 @@ void add_lifetimes(Lifetimes& out, const std::vector<Step>& steps) {
 struct TableRow {
   Step step;
   int runs = 0;
+  int part = 0;  // of the frame, from 1; 0 for steps of other lists
 };
 
 // Returns the rows of the table. Steps that differ only in their push constants share a row if they are consecutive or
 // belong to a build of the tables.
-std::vector<TableRow> rows_of(const std::vector<Step>& steps, bool of_frame) {
+std::vector<TableRow> rows_of(std::span<const Step> steps, int part) {
+  const bool of_frame = part > 0;
   std::vector<TableRow> out;
   for (const Step& step : steps) {
     const auto first = of_frame && !out.empty() ? out.end() - 1 : out.begin();
@@ -152,7 +154,7 @@ std::vector<TableRow> rows_of(const std::vector<Step>& steps, bool of_frame) {
              row.step.chosen == step.chosen && row.step.pipeline == step.pipeline;
     });
     if (found == out.end()) {
-      out.push_back({step, 1});
+      out.push_back({step, 1, part});
     } else {
       ++found->runs;
     }
@@ -162,12 +164,22 @@ std::vector<TableRow> rows_of(const std::vector<Step>& steps, bool of_frame) {
 
 void add_passes(std::string& out, const std::vector<TableRow>& rows, Costs costs) {
   const double total = sum_of(costs);
-  add_row(out, {"pass", "shader", "runs", "work", "reads", "writes", "cost"});
-  out += "|---|---|---|---|---|---|---|\n";
-  for (const auto& [step, runs] : rows) {
+  const bool of_frame = !rows.empty() && rows[0].part > 0;
+  std::vector<std::string> cells = {"pass", "shader", "runs", "work", "reads", "writes", "cost"};
+  if (of_frame) cells.insert(cells.begin() + 1, "part");
+  add_row(out, cells);
+  out += of_frame ? "|---|---|---|---|---|---|---|---|\n" : "|---|---|---|---|---|---|---|\n";
+  for (const auto& [step, runs, part] : rows) {
     const bool pass = step.dispatches();
-    add_row(out, {pass ? std::string(step.name) : "", shader_of(step), std::to_string(runs), work_of(step),
-                  names_of(step, false), names_of(step, true), pass ? share(costs, step.name, total) : ""});
+    cells = {pass ? std::string(step.name) : "",
+             shader_of(step),
+             std::to_string(runs),
+             work_of(step),
+             names_of(step, false),
+             names_of(step, true),
+             pass ? share(costs, step.name, total) : ""};
+    if (of_frame) cells.insert(cells.begin() + 1, std::to_string(part));
+    add_row(out, cells);
   }
 }
 
@@ -253,8 +265,9 @@ Result<std::string> page(const std::string& folder) {
       "`make passes` makes this page from the lists that the effect records (`frame_steps()`, `table_steps()` and\n"
       "`resources.def` in `src/effect`). The frame is that of `scenes/demo.toml` at 1280 × 720 with four cascades, of "
       "which\n"
-      "three are marched. \"Runs\" is the number of dispatches, which differ in their push constants. \"Work\" is the "
-      "number of\n"
+      "three are marched. \"Runs\" is the number of dispatches, which differ in their push constants. \"Part\" is the "
+      "`FramePart` to\n"
+      "which a pass belongs if the frame is recorded in two parts. \"Work\" is the number of\n"
       "invocations, or the list whose items an indirect dispatch processes. \"Cost\" is the share of the time of the "
       "effect, or\n"
       "of the build, on the CPU device llvmpipe. Passes with the same name are measured together, and the share stands "
@@ -268,7 +281,10 @@ Result<std::string> page(const std::string& folder) {
     const std::vector<Step> steps(list.begin(), list.end());
     out += std::string("\n## A frame: ") + mode.title + "\n\n";
     TYNDALL_ASSIGN(const Costs costs, costs_in(folder + "/" + mode.name + ".json", "passes", "median_ms"));
-    add_passes(out, rows_of(steps, true), costs);
+    std::vector<TableRow> rows = rows_of(list.of(FramePart::first), 1);
+    const std::vector<TableRow> second = rows_of(list.of(FramePart::second), 2);
+    rows.insert(rows.end(), second.begin(), second.end());
+    add_passes(out, rows, costs);
     // The lifetime of a resource is that in the first mode that uses it.
     Lifetimes own;
     add_lifetimes(own, steps);
@@ -277,11 +293,11 @@ Result<std::string> page(const std::string& folder) {
   const std::vector<Step> steps = table_steps({}, kAllTables);
   out += "\n## A build of the tables: default settings\n\n";
   TYNDALL_ASSIGN(const Costs costs, costs_in(folder + "/tables.json", "stages", "ms"));
-  add_passes(out, rows_of(steps, false), costs);
+  add_passes(out, rows_of(steps, 0), costs);
   add_lifetimes(build, steps);
   out += "\n## An update of a sky probe\n\n";
   const std::span<const Step> probe = sky_probe_steps();
-  add_passes(out, rows_of({probe.begin(), probe.end()}, false), {});
+  add_passes(out, rows_of(probe, 0), {});
   add_resources(out, frame, build);
   add_memory(out);
   return out;
