@@ -142,6 +142,13 @@ TYNDALL_API TyndallStatus tyndall_params_get_number(const TyndallParams* params,
 TYNDALL_API TyndallStatus tyndall_params_get_numbers(const TyndallParams* params, const char* name, double* values,
                                                      uint32_t count);
 TYNDALL_API TyndallStatus tyndall_params_get_choice(const TyndallParams* params, const char* name, const char** choice);
+// Sets the phase function of atmosphere.mie_phase = table: values[i * wavelength_count + k] at angles_deg[i], from 0
+// (straight ahead) to 180, and wavelengths_nm[k]. The arrays are copied. The conditions are those of
+// PhaseTable::create() in phase_table.hpp. Call it before tyndall_params_set_choice(), which refuses "table" without a
+// table.
+TYNDALL_API TyndallStatus tyndall_params_set_phase_table(TyndallParams* params, const double* angles_deg,
+                                                         uint32_t angle_count, const double* wavelengths_nm,
+                                                         uint32_t wavelength_count, const double* values);
 // Returns what the change from `before` to `after` requires: a mask of bits 1 << TyndallAffects.
 TYNDALL_API TyndallStatus tyndall_params_affected(const TyndallParams* before, const TyndallParams* after,
                                                   uint32_t* mask);

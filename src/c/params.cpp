@@ -7,11 +7,13 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <utility>
 
 #include "c/error.hpp"
 #include "c/structures.hpp"
 #include "gpu/try.hpp"
 #include "tyndall/effect.hpp"
+#include "tyndall/phase_table.hpp"
 
 namespace tyndall::c {
 namespace {
@@ -270,6 +272,23 @@ TyndallStatus tyndall_params_get_numbers(const TyndallParams* params, const char
 
 TyndallStatus tyndall_params_get_choice(const TyndallParams* params, const char* name, const char** choice) {
   return c::call(__func__, [&](const char* where) { return c::get_choice(params, {where, name}, choice); });
+}
+
+TyndallStatus tyndall_params_set_phase_table(TyndallParams* params, const double* angles_deg, uint32_t angle_count,
+                                             const double* wavelengths_nm, uint32_t wavelength_count,
+                                             const double* values) {
+  return c::call(__func__, [&](const char* where) -> Result<void> {
+    TYNDALL_TRY(c::check_pointer(where, "params", params));
+    TYNDALL_TRY(c::check_pointer(where, "angles_deg", angles_deg));
+    TYNDALL_TRY(c::check_pointer(where, "wavelengths_nm", wavelengths_nm));
+    TYNDALL_TRY(c::check_pointer(where, "values", values));
+    Result<std::shared_ptr<const PhaseTable>> table =
+        PhaseTable::create({angles_deg, angle_count}, {wavelengths_nm, wavelength_count},
+                           {values, std::size_t{angle_count} * wavelength_count});
+    if (!table.ok()) return c::invalid(where, table.error().message);
+    params->params.phase_table = std::move(table).value();
+    return {};
+  });
 }
 
 TyndallStatus tyndall_params_affected(const TyndallParams* before, const TyndallParams* after, uint32_t* mask) {

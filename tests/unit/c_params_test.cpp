@@ -344,5 +344,36 @@ TEST(CInterface, ErrorsBelongToTheirThread) {
   EXPECT_EQ(tyndall_last_vk_result(), 0);
 }
 
+TEST(CInterface, TakesAPhaseTable) {
+  const OwnedParams params = make_params();
+  const double angles[] = {0, 90, 180}, nm[] = {450, 650};
+  const double isotropic = 1.0 / (4.0 * std::acos(-1.0));
+  double values[6];
+  for (double& value : values) value = isotropic;
+  const auto set = [&](const double* at, uint32_t angle_count, uint32_t wavelength_count, const double* v) {
+    return tyndall_params_set_phase_table(params.get(), at, angle_count, nm, wavelength_count, v);
+  };
+  expect_invalid(tyndall_params_set_choice(params.get(), "atmosphere.mie_phase", "table"), {"atmosphere.mie_phase"});
+  expect_invalid(set(nullptr, 3, 2, values), {"tyndall_params_set_phase_table", "angles_deg"});
+  expect_invalid(set(angles, 3, 2, nullptr), {"values"});
+  expect_invalid(set(angles, 2, 2, values), {"2 angles"});
+  expect_invalid(set(angles, 3, 0xFFFFFFFFU, values), {"wavelengths"});
+  ASSERT_EQ(set(angles, 3, 2, values), TyndallStatus_success) << tyndall_last_error();
+  EXPECT_EQ(tyndall_params_set_choice(params.get(), "atmosphere.mie_phase", "table"), TyndallStatus_success)
+      << tyndall_last_error();
+  // A copy shares the table, and another table is a change of the tables.
+  const OwnedParams copy = make_params();
+  ASSERT_EQ(tyndall_params_copy(params.get(), copy.get()), TyndallStatus_success);
+  uint32_t mask = 1;
+  EXPECT_EQ(tyndall_params_affected(params.get(), copy.get(), &mask), TyndallStatus_success);
+  EXPECT_EQ(mask, 0U);
+  values[0] = values[1] = 5.0 * isotropic;
+  expect_invalid(set(angles, 3, 2, values), {"integral"});
+  values[0] = values[1] = 1.1 * isotropic;
+  ASSERT_EQ(set(angles, 3, 2, values), TyndallStatus_success) << tyndall_last_error();
+  EXPECT_EQ(tyndall_params_affected(params.get(), copy.get(), &mask), TyndallStatus_success);
+  EXPECT_NE(mask & (1U << TyndallAffects_Tables), 0U);
+}
+
 }  // namespace
 }  // namespace tyndall
