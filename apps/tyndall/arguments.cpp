@@ -64,6 +64,8 @@ struct Arguments::Implementation {
   std::deque<Option> options;
   std::vector<std::pair<std::string, std::string>> flags;  // names, help
   std::vector<Positional> positionals;
+  std::string rest_name, rest_help;
+  std::vector<std::string>* rest = nullptr;  // of the positional arguments
   std::string footer;
 };
 
@@ -73,6 +75,10 @@ std::string Arguments::Implementation::help() const {
   for (const Positional& positional : positionals) {
     usage += positional.required ? concat({" ", positional.name}) : concat({" [", positional.name, "]"});
     lines.emplace_back(positional.name, positional.help);
+  }
+  if (rest != nullptr) {
+    usage += concat({" ", rest_name, "..."});
+    lines.emplace_back(rest_name, rest_help);
   }
   for (const Option& option : options) {
     lines.emplace_back(option.placeholder.empty() ? option.names : concat({option.names, " ", option.placeholder}),
@@ -129,18 +135,26 @@ Result<void> Arguments::Implementation::store_positionals() const {
     }
   }
   for (const std::string& argument : given) {
-    if (next == positionals.size()) {
+    const bool extra = next == positionals.size();
+    if (extra && rest == nullptr) {
       return input_error(concat({"unexpected argument '", one_line(argument), "'"}), command,
                          concat({"see '", command, " --help'"}));
     }
-    if (argument.empty())
-      return input_error("empty file name ''", command, concat({"expected ", positionals[next].name}));
-    *positionals[next++].target = argument;
+    if (argument.empty()) {
+      return input_error("empty file name ''", command,
+                         concat({"expected ", extra ? rest_name : positionals[next].name}));
+    }
+    if (extra)
+      rest->push_back(argument);
+    else
+      *positionals[next++].target = argument;
   }
   if (next < positionals.size() && positionals[next].required) {
     return input_error(concat({"missing argument ", positionals[next].name}), command,
                        concat({"see '", command, " --help'"}));
   }
+  if (rest != nullptr && rest->empty())
+    return input_error(concat({"missing argument ", rest_name}), command, concat({"see '", command, " --help'"}));
   return {};
 }
 
@@ -222,6 +236,12 @@ void Arguments::choice(const std::string& names, std::string& target, const std:
 
 void Arguments::positional(const std::string& name, std::string& target, bool required, const std::string& help) {
   implementation_->positionals.push_back({name, help, &target, required});
+}
+
+void Arguments::rest(const std::string& name, std::vector<std::string>& target, const std::string& help) {
+  implementation_->rest_name = name;
+  implementation_->rest_help = help;
+  implementation_->rest = &target;
 }
 
 void Arguments::footer(const std::string& text) { implementation_->footer = text; }

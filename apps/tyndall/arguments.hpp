@@ -38,6 +38,8 @@ class Arguments {
   void value(const std::string& names, const std::string& placeholder, const std::string& help,
              std::function<Result<void>(const std::string&)> store);
   void positional(const std::string& name, std::string& target, bool required, const std::string& help);
+  // Adds one or more positional arguments, after all others.
+  void rest(const std::string& name, std::vector<std::string>& target, const std::string& help);
 
   // Adds text below the list of options in the help, in whole lines.
   void footer(const std::string& text);

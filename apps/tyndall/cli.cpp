@@ -76,6 +76,10 @@ int print(std::string_view text) {
   return written ? kDone : fail("standard output: cannot write; expected an open stream with free space", kFailed);
 }
 
+std::string size_text(const Size& size) {
+  return concat({std::to_string(size.width), "x", std::to_string(size.height)});
+}
+
 Result<Size> parse_size(std::string_view text, std::string_view option) {
   std::int64_t width = 0;
   std::int64_t height = 0;
@@ -127,9 +131,7 @@ void add_common(Arguments& arguments, CommonOptions& options, unsigned which) {
   }
   if ((which & kOutput) != 0) arguments.text("-o,--output", options.output, "FILE", "output file");
   if ((which & kSize) != 0) {
-    arguments.value("--size", "WxH",
-                    concat({"size of the picture in pixels [", std::to_string(options.size.width), "x",
-                            std::to_string(options.size.height), "]"}),
+    arguments.value("--size", "WxH", concat({"size of the picture in pixels [", size_text(options.size), "]"}),
                     [&options](const std::string& text) {
                       Result<Size> size = parse_size(text, "--size");
                       if (!size) return Result<void>(std::move(size).error());
@@ -199,8 +201,9 @@ Result<void> check_output(const CommonOptions& options, const std::vector<std::s
   const std::optional<FramePattern> pattern = find_pattern(options.output);
   const bool single = pattern && !find_pattern(options.output, pattern->start + pattern->length);
   if (options.frames > 1 && !single) {
-    return input_error(concat({std::to_string(options.frames), " frames in one file ", shown(options.output)}), "-o",
-                       "expected one frame number in the name, as in out.%04d.png");
+    return input_error(
+        concat({std::to_string(options.frames), " ", options.items, " in one file ", shown(options.output)}), "-o",
+        "expected one frame number in the name, as in out.%04d.png");
   }
   const std::vector<InputFile> inputs = input_files(options);
   for (std::uint32_t frame = 0; frame < options.frames; ++frame) {

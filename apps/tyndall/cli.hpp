@@ -39,6 +39,8 @@ struct Size {
   std::uint32_t height = 720;
 };
 constexpr std::uint32_t kLargestSize = 16384;  // pixels, each side
+// Returns "1280x720".
+[[nodiscard]] std::string size_text(const Size& size);
 
 // The lowest altitude of an eye [m]: below the deepest sea floor of the Earth.
 constexpr double kLowestAltitude_m = -11000.0;
@@ -69,7 +71,8 @@ struct CommonOptions {
   std::string device;             // index or part of a name; empty: the best device
   Size size;
   std::uint32_t frames = 1;
-  std::string output;  // empty: not given
+  std::string items = "frames";  // name of what `frames` counts, for messages
+  std::string output;            // empty: not given
   bool json = false;
   bool allow_outside = false;  // files that scenes and models name may be anywhere
   config::Settings settings;   // filled by resolve()

@@ -65,4 +65,9 @@ image::Metadata PictureUnits::metadata(const config::Settings& settings) const {
   return out;
 }
 
+void PictureUnits::add_inputs(std::vector<std::pair<std::string, std::string>>& inputs) const {
+  inputs.emplace_back("--primaries", primaries_name_);
+  inputs.emplace_back("--unit", unit_);
+}
+
 }  // namespace tyndall::cli

@@ -26,6 +26,8 @@ class PictureUnits {
   [[nodiscard]] std::array<double, 3> convert(std::array<double, 3> color) const;
   [[nodiscard]] image::ExrOptions exr(image::ExrContent content) const;
   [[nodiscard]] image::Metadata metadata(const config::Settings& settings) const;
+  // Adds the options to the inputs of a manifest.
+  void add_inputs(std::vector<std::pair<std::string, std::string>>& inputs) const;
 
  private:
   std::string primaries_name_ = "rec709", unit_ = "relative";

@@ -110,6 +110,8 @@ Result<std::vector<ProbeAnswer>> run_reference(const ProbeSettings& settings, st
   options.samples = settings.samples;
   options.orders = static_cast<int>(settings.orders);
   options.seed = settings.seed;
+  options.first = settings.first;
+  options.stride = settings.stride;
   if (settings.params.scattering.color == ColorMode::spectral)
     return run_spectral_reference(settings, queries, options);
   const Result<std::vector<reference::Estimate>> found =
@@ -274,6 +276,12 @@ Result<std::vector<ProbeAnswer>> evaluate_model(scene::ModelId model, const Prob
   using Id = scene::ModelId;
   if (Result<void> r = check_color(model, settings.params.scattering.color); !r) return std::move(r).error();
   if (Result<void> r = check_phase(model, settings.params.atmosphere); !r) return std::move(r).error();
+  std::vector<RayQuery> chosen;
+  // The random numbers of the reference depend on the indices of all queries.
+  if (model != Id::reference && settings.stride > 1) {
+    for (std::size_t i = settings.first; i < queries.size(); i += settings.stride) chosen.push_back(queries[i]);
+    queries = chosen;
+  }
   switch (model) {
     case Id::precomputed: return run_precomputed(settings, queries);
     case Id::single: return run_single(settings, queries);

@@ -36,6 +36,9 @@ struct ProbeSettings {
   std::uint32_t orders = 8;
   std::uint32_t samples = 100000;
   std::uint32_t seed = 1;
+  // Only the queries with the indices first, first + stride and so on are evaluated.
+  std::uint32_t first = 0;
+  std::uint32_t stride = 1;
   std::string device;
   tables::CacheDesc table_cache = {};
   std::function<void(const std::string& text)> note;  // receives remarks for the user; may be empty
@@ -61,7 +64,7 @@ struct CpuModel {
 // Returns an error if a model does not support the phase function.
 [[nodiscard]] Result<void> check_phase(scene::ModelId model, const AtmosphereParams& atmosphere);
 
-// Evaluates the queries with one of the models.
+// Evaluates the chosen queries with one of the models, each as in an evaluation of all of them.
 [[nodiscard]] Result<std::vector<ProbeAnswer>> evaluate_model(scene::ModelId model, const ProbeSettings& settings,
                                                               std::span<const RayQuery> queries);
 

@@ -122,6 +122,19 @@ Result<ProbeTable> read_queries(const std::string& path) {
   return table;
 }
 
+void keep_rows(ProbeTable& table, const Shard& shard) {
+  ProbeTable kept;
+  const std::size_t columns = table.input.header.size();
+  for (const std::uint64_t row : shard.items(table.input.rows())) {
+    for (std::size_t i = 0; i < columns; ++i) kept.input.fields.push_back(table.input.field(row, i));
+    kept.input.lines.push_back(table.input.lines[row]);
+    kept.queries.push_back(table.queries[row]);
+  }
+  table.input.fields = std::move(kept.input.fields);
+  table.input.lines = std::move(kept.input.lines);
+  table.queries = std::move(kept.queries);
+}
+
 std::string answers_as_csv(const ProbeTable& table, std::span<const ProbeAnswer> answers, AnswerColumns with) {
   std::vector<std::size_t> columns;
   for (std::size_t i = 0; i < table.input.header.size(); ++i) {

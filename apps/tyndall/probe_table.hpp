@@ -7,6 +7,7 @@
 
 #include "files/csv.hpp"
 #include "probe_models.hpp"
+#include "shard.hpp"
 
 namespace tyndall::cli {
 
@@ -17,6 +18,9 @@ struct ProbeTable {
 
 // Reads the queries. Every mistake in the file is bad input; the error names line and column.
 [[nodiscard]] Result<ProbeTable> read_queries(const std::string& path);
+
+// Removes the rows that do not belong to the shard.
+void keep_rows(ProbeTable& table, const Shard& shard);
 
 // Returns the input's columns unchanged, followed by the result columns. Input columns with the name of a result
 // column, as in a table that `probe` has written, are dropped.

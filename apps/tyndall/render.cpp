@@ -2,12 +2,15 @@
 #include <cmath>
 
 #include "arguments.hpp"
+#include "batch.hpp"
 #include "cli.hpp"
 #include "files/text.hpp"
 #include "gpu/host.hpp"
 #include "image/image.hpp"
+#include "interruption.hpp"
 #include "make_tables.hpp"
 #include "picture_units.hpp"
+#include "scene/description/camera_exposure.hpp"
 #include "scene/scene.hpp"
 #include "tables/pipeline_store.hpp"
 
@@ -57,23 +60,59 @@ Result<void> find_place(scene::CameraPath& path, const scene::Scene& scene) {
   return {};
 }
 
+// Returns an error if a part of the frames would differ from the same frames of a whole sequence.
+Result<void> check_batch(const CommonOptions& options, const BatchOptions& batch) {
+  if (!batch.active()) return {};
+  const scene::TonemapParams& tonemap = options.settings.scene.tonemap;
+  if (options.frames > 1 && scene::is_auto_exposed(tonemap) && tonemap.light_adaptation.value != 0) {
+    return files::input_error("each frame depends on those before it", "tonemap.light_adaptation",
+                              "expected false with --shard or --resume, or no automatic exposure");
+  }
+  return check_batch_output(options.output);
+}
+
+// Starts the batch of the frames of this run.
+Result<Batch> begin_batch(const CommonOptions& options, const BatchOptions& batch, double time_step,
+                          const PictureUnits& units) {
+  BatchDesc desc = {batch, "render", "frames", options.output, options.frames, batch.shard.items(options.frames), {}};
+  if (batch.active()) {
+    desc.inputs = common_inputs(options);
+    desc.inputs.emplace_back("--size", size_text(options.size));
+    desc.inputs.emplace_back("--time-step", files::number_text(time_step));
+    units.add_inputs(desc.inputs);
+  }
+  return Batch::begin(std::move(desc));
+}
+
 }  // namespace
 
 int run_render(Args args) {
   CommonOptions options;
   double time_step = 1.0 / 30.0;
   PictureUnits units;
+  BatchOptions batch_options;
+  Interruption interruption;
   Arguments arguments("render");
   add_common(arguments, options, kScene | kSet | kDevice | kSize | kFrames | kOutput);
   arguments.number("--time-step", time_step, 0.0, 1.0e6, "seconds between the frames of a sequence");
   units.add_options(arguments);
+  add_batch_options(arguments, batch_options, "frames");
   if (const std::optional<int> status = arguments.parse(args)) return *status;
   if (Result<void> r = resolve(options); !r) return fail(r.error());
   if (Result<void> r = check_output(options, {".png", ".exr"}); !r) return fail(r.error());
   if (Result<void> r = check_units(units, options); !r) return fail(r.error());
+  if (Result<void> r = check_batch(options, batch_options); !r) return fail(r.error());
+  Result<Batch> batch = begin_batch(options, batch_options, time_step, units);
+  if (!batch) return fail(batch.error());
+  interruption.describe_by(batch.value().describe());
+  if (batch.value().numbers().empty()) {
+    const Result<void> ended = batch.value().end();
+    return ended ? kDone : fail(ended.error());
+  }
 
   Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({options.device, false});
   if (!host) return fail(host.error());
+  batch.value().set_device(host.value()->device_name());
   const tables::PipelineStore pipelines(*host.value(), table_cache(options.settings.scene));
   if (!pipelines.note().empty()) note(pipelines.note());
   scene::SceneDesc desc;
@@ -85,17 +124,21 @@ int run_render(Args args) {
   if (!scene) return fail_input(scene.error());
   if (Result<void> r = find_place(options.settings.path, *scene.value()); !r) return fail(r.error());
   Progress progress("render");
-  for (std::uint32_t frame = 0; frame < options.frames; ++frame) {
-    progress.update(frame, options.frames);
+  std::size_t drawn = 0;
+  for (const std::uint64_t number : batch.value().numbers()) {
+    progress.update(drawn++, batch.value().numbers().size());
+    const auto frame = static_cast<std::uint32_t>(number);
+    const std::string path = frame_path(options.output, frame);
     const double seconds = frame * time_step;
     config::Settings now = options.settings;
     now.scene =
         scene::pose_at(now.path, seconds, options.settings.scene, static_cast<double>(now.effect.planet.radius_m));
     if (Result<void> r = scene.value()->set_scene(now.scene); !r) return fail(r.error());
     if (Result<void> r = scene.value()->render(seconds); !r) return fail(r.error());
-    if (Result<void> r = write_frame(*scene.value(), frame_path(options.output, frame), now, units); !r)
-      return fail(r.error());
+    if (Result<void> r = write_frame(*scene.value(), path, now, units); !r) return fail(r.error());
+    if (Result<void> r = batch.value().finished(number, {path}); !r) return fail(r.error());
   }
+  if (Result<void> r = batch.value().end(); !r) return fail(r.error());
   for (const std::string& text : scene.value()->notes()) note(text);
   return kDone;
 }

@@ -6,22 +6,21 @@
 #include <numbers>
 
 #include "arguments.hpp"
+#include "batch.hpp"
 #include "cli.hpp"
-#include "effect/phase_rows.hpp"
-#include "effect/spectral_medium.hpp"
 #include "files/files.hpp"
 #include "files/text.hpp"
 #include "gpu/host.hpp"
 #include "image/image.hpp"
+#include "input_files.hpp"
+#include "interruption.hpp"
 #include "make_tables.hpp"
-#include "models/gpu_probe.hpp"
-#include "models/precomputed.hpp"
-#include "models/spectral.hpp"
 #include "picture_units.hpp"
-#include "scene/description/model_registry.hpp"
 #include "scene/description/solar_position.hpp"
 #include "sky_light.hpp"
+#include "sky_list.hpp"
 #include "sky_map.hpp"
+#include "sky_source.hpp"
 #include "tables/pipeline_store.hpp"
 #include "tyndall/photometry.hpp"
 
@@ -32,108 +31,23 @@ using files::concat;
 using files::input_error;
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-constexpr std::size_t kBatchRays = 131072;
 
 struct SkyOptions {
   std::optional<double> sun_elevation_deg, sun_azimuth_deg;
-  std::string place, time;
+  std::string place, time, list;
   double altitude_m = 0.0;
   std::string disc = "true";
   std::string sun, projection = "latlong", clamp = "false";
   std::string model;
   PictureUnits units;
-};
-
-// Evaluates rays: radiance / E0 of the atmosphere and the ground behind it.
-class SkySource {
- public:
-  virtual ~SkySource() = default;
-  virtual Result<std::vector<models::Answer>> answer(std::span<const RayQuery> queries) = 0;
-  // Returns how the tables were obtained; nullptr if the source uses none.
-  [[nodiscard]] virtual const tables::Report* tables() const { return nullptr; }
-};
-
-// Single scattering, and the ground in direct sunlight.
-class SingleSource final : public SkySource {
- public:
-  SingleSource(gpu::Host& host, const Params& params)
-      : host_(host),
-        params_(params),
-        medium_(spectral_medium_from_params(params)),
-        phase_(phase_rows(params, params.scattering.color)) {}
-
-  Result<std::vector<models::Answer>> answer(std::span<const RayQuery> queries) override {
-    std::vector<models::Ray> rays;
-    rays.reserve(queries.size());
-    for (const RayQuery& query : queries) rays.push_back(models::ray_from_query(query));
-    Result<std::vector<models::Answer>> found =
-        models::single_scattering_on_gpu(host_, medium_, phase_, params_.scattering.color, rays);
-    if (!found || medium_.ground_albedo == Vec3(0.0F)) return found;
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      models::Answer& answer = found.value()[i];
-      const models::Answer ground =
-          models::in_all_channels(params_, medium_, [&](const shared::Medium& m) -> models::Answer {
-            return {models::sunlit_ground(m, rays[i]), {}};
-          });
-      for (std::size_t c = 0; c < 3; ++c) answer.radiance[c] += answer.transmittance[c] * ground.radiance[c];
-      answer.radiance_fourth += answer.transmittance_fourth * ground.radiance_fourth;
-    }
-    return found;
-  }
-
- private:
-  gpu::Host& host_;
-  const Params params_;
-  shared::SpectralMedium medium_;
-  PhaseRows phase_;
-};
-
-// All orders of scattering from the tables, and the ground under sun and sky.
-class PrecomputedSource final : public SkySource {
- public:
-  explicit PrecomputedSource(models::PrecomputedModel model) : model_(std::move(model)) {}
-
-  Result<std::vector<models::Answer>> answer(std::span<const RayQuery> queries) override {
-    return model_.answer(queries);
-  }
-  [[nodiscard]] const tables::Report* tables() const override { return &model_.origin(); }
-
- private:
-  models::PrecomputedModel model_;
-};
-
-using MakeSource = Result<std::unique_ptr<SkySource>> (*)(gpu::Host& host, const config::Settings& settings);
-
-Result<std::unique_ptr<SkySource>> make_single(gpu::Host& host, const config::Settings& settings) {
-  return std::unique_ptr<SkySource>(std::make_unique<SingleSource>(host, settings.effect));
-}
-
-Result<std::unique_ptr<SkySource>> make_precomputed(gpu::Host& host, const config::Settings& settings) {
-  Result<models::PrecomputedModel> model =
-      models::PrecomputedModel::create(host, settings.effect, make_tables(settings.scene));
-  if (!model) return std::move(model).error();
-  for (const std::string& text : model.value().origin().notes) note(text);
-  return std::unique_ptr<SkySource>(std::make_unique<PrecomputedSource>(std::move(model).value()));
-}
-
-// A model of the registry that can make maps.
-struct SkyModel {
-  scene::ModelId id;
-  MakeSource make;
-  [[nodiscard]] std::string_view name() const { return scene::model_info(id).name; }
-};
-constexpr SkyModel kModels[] = {{scene::ModelId::precomputed, make_precomputed}, {scene::ModelId::single, make_single}};
-
-// The sun's elevation and azimuth [deg].
-struct SunAngles {
-  double elevation_deg, azimuth_deg;
+  BatchOptions batch;
 };
 
 Result<SunAngles> find_sun(const SkyOptions& options) {
   const bool any_angle = options.sun_elevation_deg || options.sun_azimuth_deg;
   const bool any_place = !options.place.empty() || !options.time.empty();
   constexpr std::string_view kNeeded =
-      "expected either --sun-elevation-deg E --sun-azimuth-deg A or --at LAT,LON --time ISO8601";
+      "expected either --sun-elevation-deg E --sun-azimuth-deg A or --at LAT,LON --time ISO8601, or --list LIST.csv";
   const auto error = [&](std::string_view what) { return input_error(what, "tyndall sky", kNeeded); };
   if (any_angle && any_place) return error("the sun is given both by angles and by place and time");
   if (!any_angle && !any_place) return error("missing position of the sun");
@@ -152,50 +66,18 @@ Result<SunAngles> find_sun(const SkyOptions& options) {
   return SunAngles{position.elevation_deg, position.azimuth_deg};
 }
 
-// Returns the radiance of an answer in the channels of the image, per irradiance of the sun.
-std::array<double, 3> channels_of(const models::Answer& answer, ColorMode color) {
-  return color == ColorMode::spectral ? color_of_light(models::radiance_of(answer)) : answer.radiance;
-}
-
-// Fills the image with the source's radiance times the irradiance, in batches of rows.
-Result<void> fill(image::Image& image, const SkyMap& map, const std::array<double, 3>& irradiance, ColorMode color,
-                  SkySource& source) {
-  Progress progress("sky");
-  const std::uint32_t rows = static_cast<std::uint32_t>(std::max<std::size_t>(kBatchRays / map.width, 1));
-  std::vector<RayQuery> queries;
-  for (std::uint32_t first = 0; first < map.height; first += rows) {
-    progress.update(first, map.height);
-    const std::uint32_t last = std::min(first + rows, map.height);
-    queries.clear();
-    for (std::uint32_t y = first; y < last; ++y) {
-      for (std::uint32_t x = 0; x < map.width; ++x) queries.push_back(map.query(x, y));
-    }
-    const Result<std::vector<models::Answer>> found = source.answer(queries);
-    if (!found) return found.error();
-    float* out = image.pixel(0, first);
-    std::uint32_t pixel = first * map.width;
-    for (const models::Answer& answer : found.value()) {
-      const bool seen = map.direction(pixel % map.width, pixel / map.width).solid_angle > 0.0;
-      ++pixel;
-      const std::array<double, 3> radiance = channels_of(answer, color);
-      for (std::size_t c = 0; c < 3; ++c) *out++ = seen ? static_cast<float>(irradiance[c] * radiance[c]) : 0.0F;
-    }
+// Returns the skies of the options: those of the list, or one.
+Result<std::vector<SkyEntry>> find_skies(const SkyOptions& options) {
+  if (options.list.empty()) {
+    const Result<SunAngles> sun = find_sun(options);
+    if (!sun) return sun.error();
+    return std::vector<SkyEntry>{{sun.value(), options.place, options.time, {}}};
   }
-  return {};
-}
-
-// Returns the irradiance of the sky on a horizontal surface in the channels of an image.
-Result<std::array<double, 3>> sky_irradiance(const SkyMap& map, const std::array<double, 3>& irradiance,
-                                             ColorMode color, SkySource& source) {
-  const SkyQuadrature quadrature = sky_quadrature(map.altitude_m, 0.5 * std::numbers::pi - map.sun_elevation_rad);
-  const Result<std::vector<models::Answer>> found = source.answer(quadrature.queries);
-  if (!found) return found.error();
-  std::array<double, 3> sum = {};
-  for (std::size_t i = 0; i < quadrature.weights.size(); ++i) {
-    const std::array<double, 3> radiance = channels_of(found.value()[i], color);
-    for (std::size_t c = 0; c < 3; ++c) sum[c] += quadrature.weights[i] * irradiance[c] * radiance[c];
+  if (options.sun_elevation_deg || options.sun_azimuth_deg || !options.place.empty() || !options.time.empty()) {
+    return input_error("the sun is given both by a list and by other options", "--list",
+                       "expected no --sun-elevation-deg, --sun-azimuth-deg, --at and --time");
   }
-  return sum;
+  return read_sky_list(options.list, options.altitude_m);
 }
 
 struct ProjectionInfo {
@@ -229,41 +111,41 @@ Result<Projection> check_map(SkyOptions& sky, const Size& size) {
 
 constexpr float kLargestHalf = 65504.0F;
 
-// Limits the values to those of half precision, or notes that they exceed them.
-void check_largest(image::Image& image, bool clamp, bool has_disc) {
+// Limits the values to those of half precision. Returns a remark for the user if they exceed them.
+std::string check_largest(image::Image& image, bool clamp, bool has_disc) {
   const float largest = *std::max_element(image.rgb.begin(), image.rgb.end());
-  if (largest <= kLargestHalf) return;
+  if (largest <= kLargestHalf) return {};
   if (!clamp) {
-    note(concat({has_disc ? "the sun's disc" : "the map", " has values up to ", files::number_text(largest),
-                 "; programs that read the map in half precision are limited to 65504; ",
-                 has_disc ? "--sun split separates the sun, and " : "", "--clamp true limits the values"}));
-    return;
+    return concat({has_disc ? "the sun's disc" : "the map", " has values up to ", files::number_text(largest),
+                   "; programs that read the map in half precision are limited to 65504; ",
+                   has_disc ? "--sun split separates the sun, and " : "", "--clamp true limits the values"});
   }
-  note(concat({"values up to ", files::number_text(largest), " were clamped to 65504; the map has less ",
-               has_disc ? "sunlight" : "light"}));
   for (float& value : image.rgb) value = std::min(value, kLargestHalf);
+  return concat({"values up to ", files::number_text(largest), " were clamped to 65504; the map has less ",
+                 has_disc ? "sunlight" : "light"});
 }
 
 // Returns the metadata of the map: the settings, its projection, and what it shows.
-image::Metadata sky_metadata(const config::Settings& settings, const SkyOptions& sky, Projection projection) {
+image::Metadata sky_metadata(const config::Settings& settings, const SkyOptions& sky, const SkyEntry& entry,
+                             Projection projection) {
   image::Metadata metadata = sky.units.metadata(settings);
   metadata.emplace_back("tyndall.sky.projection", kProjections[static_cast<std::size_t>(projection)].text);
   metadata.emplace_back("tyndall.sky.model", sky.model);
   metadata.emplace_back("tyndall.sky.disc", sky.sun == "disc" ? "true" : "false");
   metadata.emplace_back("tyndall.sky.sun", sky.sun);
   metadata.emplace_back("tyndall.sky.clamp", sky.clamp);
-  if (!sky.place.empty()) {
-    metadata.emplace_back("tyndall.sky.at", files::one_line(sky.place));
-    metadata.emplace_back("tyndall.sky.time", files::one_line(sky.time));
+  if (!entry.place.empty()) {
+    metadata.emplace_back("tyndall.sky.at", files::one_line(entry.place));
+    metadata.emplace_back("tyndall.sky.time", files::one_line(entry.time));
   }
+  if (!entry.name.empty()) metadata.emplace_back("tyndall.sky.name", files::one_line(entry.name, 200));
   return metadata;
 }
 
 std::optional<int> parse_sky(Args args, CommonOptions& options, SkyOptions& sky) {
   options.size = {2048, 1024};
-  sky.model = kModels[0].name();
-  std::vector<std::string> model_names;
-  for (const SkyModel& model : kModels) model_names.emplace_back(model.name());
+  sky.model = sky_models().front();
+  const std::vector<std::string> model_names = sky_models();
   Arguments arguments("sky");
   add_common(arguments, options, kScene | kSet | kDevice | kSize | kOutput | kJson);
   arguments.number("--sun-elevation-deg", sky.sun_elevation_deg, -90.0, 90.0,
@@ -272,6 +154,8 @@ std::optional<int> parse_sky(Args args, CommonOptions& options, SkyOptions& sky)
                    "azimuth of the sun, clockwise from north");
   arguments.text("--at", sky.place, "LAT,LON", "place in degrees, north and east positive; requires --time");
   arguments.text("--time", sky.time, "ISO8601", "time at the place, as in 2003-10-17T12:30:30-07:00; 1900 to 2100");
+  arguments.text("--list", sky.list, "LIST.csv",
+                 "one map for each row: latitude_deg, longitude_deg, time or sun_elevation_deg, sun_azimuth_deg; name");
   arguments.number("--altitude", sky.altitude_m, kLowestAltitude_m, 1.0e9,
                    "altitude of the eye above sea level in m, negative below it");
   arguments.choice("--disc", sky.disc, {"true", "false"}, "draw the sun's disc; false is the same as --sun none");
@@ -282,6 +166,7 @@ std::optional<int> parse_sky(Args args, CommonOptions& options, SkyOptions& sky)
   arguments.choice("--clamp", sky.clamp, {"true", "false"}, "limit values to those of half precision");
   arguments.choice("--model", sky.model, model_names, "model of the sky");
   sky.units.add_options(arguments);
+  add_batch_options(arguments, sky.batch, "maps of the list");
   return arguments.parse(args);
 }
 
@@ -343,16 +228,17 @@ std::string lux_text(double lux) {
   return text;
 }
 
-// Prints the illuminances, or with --json everything about the map.
-int print_sky(const CommonOptions& options, const SkyOptions& sky, const SkyMap& map, const SkyLight& light,
-              const std::string& device, const tables::Report* tables) {
-  const bool has_lux = sky.units.white_luminance() > 0.0;
-  if (!options.json) {
-    if (!has_lux) return kDone;
-    return print(concat({"sun: ", lux_text(light.lux.sun_lux), " on a surface that faces it, ",
-                         lux_text(light.lux.sun_horizontal_lux),
-                         " on a horizontal one\nsky: ", lux_text(light.lux.sky_lux), " on a horizontal one\n"}));
-  }
+// Returns the illuminances as text; nothing with three channels.
+std::string light_text(const SkyOptions& sky, const SkyLight& light) {
+  if (sky.units.white_luminance() <= 0.0) return {};
+  return concat({"sun: ", lux_text(light.lux.sun_lux), " on a surface that faces it, ",
+                 lux_text(light.lux.sun_horizontal_lux), " on a horizontal one\nsky: ", lux_text(light.lux.sky_lux),
+                 " on a horizontal one\n"});
+}
+
+// Returns everything about a map.
+nlohmann::ordered_json map_json(const SkyOptions& sky, const SkyMap& map, const SkyLight& light,
+                                const std::string& device, const tables::Report* tables) {
   nlohmann::ordered_json out;
   out["device"] = device;
   out["model"] = sky.model;
@@ -363,7 +249,7 @@ int print_sky(const CommonOptions& options, const SkyOptions& sky, const SkyMap&
   out["sky_irradiance"] = light.sky;
   out["sun_irradiance"] = light.sun.facing;
   out["sun_horizontal_irradiance"] = light.sun.horizontal;
-  if (has_lux) {
+  if (sky.units.white_luminance() > 0.0) {
     out["sky_illuminance_lux"] = light.lux.sky_lux;
     out["sun_illuminance_lux"] = light.lux.sun_lux;
     out["sun_horizontal_illuminance_lux"] = light.lux.sun_horizontal_lux;
@@ -373,68 +259,156 @@ int print_sky(const CommonOptions& options, const SkyOptions& sky, const SkyMap&
     out["tables"] = {{"from", tables->origin == tables::Origin::cache ? "cache" : "build"},
                      {"ms", tables->milliseconds}};
   }
-  return print(out.dump(2) + "\n");
+  return out;
+}
+
+// What the maps of a run share.
+struct SkyRun {
+  CommonOptions& options;
+  const SkyOptions& sky;
+  Projection projection;
+  SkySource& source;
+  std::string device;
+  std::string label;   // of the progress bar
+  std::string remark;  // on values of maps, once for all of them
+};
+
+// Computes and writes a map. Returns what is printed about it.
+Result<std::string> make_map(SkyRun& run, const SkyEntry& entry, const std::string& path, std::string_view file) {
+  const SkyOptions& sky = run.sky;
+  const Params& params = run.options.settings.effect;
+  const ColorMode color = params.scattering.color;
+  scene::SceneParams& scene = run.options.settings.scene;
+  place_in_scene(scene, sky, entry.sun);
+  const SkyMap map = {run.options.size.width,
+                      run.options.size.height,
+                      sky.altitude_m,
+                      entry.sun.elevation_deg * kRadPerDeg,
+                      entry.sun.azimuth_deg * kRadPerDeg,
+                      run.projection};
+  const double scale = params.scattering.scale;
+  const std::array<double, 3> irradiance = {scene.sun.irradiance.x * scale, scene.sun.irradiance.y * scale,
+                                            scene.sun.irradiance.z * scale};
+  image::Image image(map.width, map.height);
+  if (Result<void> r = fill(image, map, irradiance, color, run.source, run.label); !r) return std::move(r).error();
+  const Result<std::array<double, 3>> diffuse = sky_irradiance(map, irradiance, color, run.source);
+  if (!diffuse) return diffuse.error();
+  const SunFaces faces = sun_faces(scene.sun.angular_radius_deg * kRadPerDeg, irradiance, params);
+  const bool has_disc = sky.sun == "disc";
+  if (has_disc) draw_sun(image, map, faces, params);
+  sky.units.convert(image);
+  const std::string remark = check_largest(image, sky.clamp == "true", has_disc);
+  if (run.remark.empty() && !remark.empty()) note(run.remark = remark);
+
+  const SkyLight light = in_units(sky.units, diffuse.value(), sunlight_of(map, faces, params));
+  const std::string sun_text =
+      sun_json(map, faces.first, light.sun, sky.units.white_luminance() > 0.0 ? &light.lux : nullptr).dump(2) + "\n";
+  const image::ExrOptions as = sky.units.exr(run.projection == Projection::latlong ? image::ExrContent::environment_map
+                                                                                   : image::ExrContent::radiance);
+  const image::Metadata metadata = sky_metadata(run.options.settings, sky, entry, run.projection);
+  if (Result<void> r = write_files(path, image, metadata, as, sky.sun == "split" ? &sun_text : nullptr); !r)
+    return std::move(r).error();
+  if (!run.options.json) {
+    const std::string text = light_text(sky, light);
+    return text.empty() || file.empty() ? text : concat({file, ":\n", text});
+  }
+  nlohmann::ordered_json json = map_json(sky, map, light, run.device, run.source.tables());
+  if (file.empty()) return json.dump(2) + "\n";
+  nlohmann::ordered_json of_list = {{"file", files::one_line(file, 1000)}};
+  if (!entry.name.empty()) of_list["name"] = files::one_line(entry.name, 1000);
+  of_list.update(json);
+  return of_list.dump(2);
+}
+
+// Checks everything before the work, and starts the batch.
+Result<Batch> begin_sky(CommonOptions& options, SkyOptions& sky, const std::vector<SkyEntry>& skies) {
+  options.frames = static_cast<std::uint32_t>(skies.size());
+  options.items = "maps";
+  if (Result<void> r = check_output(options, {".exr"}); !r) return std::move(r).error();
+  const std::string first = frame_path(options.output, 0);
+  if (!sky.list.empty()) {
+    for (std::uint32_t i = 0; i < options.frames; ++i) {
+      if (Result<void> r = check_not_input(frame_path(options.output, i), "-o", {{"the list", sky.list}}); !r)
+        return std::move(r).error();
+    }
+  }
+  if (sky.sun == "split") {
+    if (Result<void> r = files::check_writable(sun_path(first)); !r) return std::move(r).error();
+  }
+  if (Result<void> r = sky.units.resolve(options.settings); !r) return std::move(r).error();
+  if (Result<void> r = check_altitude(sky.altitude_m, options.settings.effect, "--altitude"); !r)
+    return std::move(r).error();
+  BatchDesc desc = {sky.batch, "sky", "maps", options.output, skies.size(), sky.batch.shard.items(skies.size()), {}};
+  if (sky.batch.active()) {
+    if (Result<void> r = check_batch_output(options.output); !r) return std::move(r).error();
+    desc.inputs = common_inputs(options);
+    for (const auto& [name, value] : {std::pair<const char*, std::string>("--size", size_text(options.size)),
+                                      {"--projection", sky.projection},
+                                      {"--sun", sky.sun},
+                                      {"--clamp", sky.clamp},
+                                      {"--model", sky.model},
+                                      {"--altitude", files::number_text(sky.altitude_m)}}) {
+      desc.inputs.emplace_back(name, value);
+    }
+    sky.units.add_inputs(desc.inputs);
+    if (sky.list.empty()) {
+      desc.inputs.emplace_back("the sun's elevation", files::number_text(skies.front().sun.elevation_deg));
+      desc.inputs.emplace_back("the sun's azimuth", files::number_text(skies.front().sun.azimuth_deg));
+      desc.inputs.emplace_back("--at", files::one_line(sky.place));
+      desc.inputs.emplace_back("--time", files::one_line(sky.time));
+    } else {
+      add_file(desc.inputs, "--list", sky.list);
+    }
+  }
+  return Batch::begin(std::move(desc));
 }
 
 }  // namespace
 
 int run_sky(Args args) {
+  Interruption interruption;
   CommonOptions options;
   SkyOptions sky;
   if (const std::optional<int> status = parse_sky(args, options, sky)) return *status;
-  const Result<SunAngles> sun = find_sun(sky);
-  if (!sun) return fail(sun.error());
+  const Result<std::vector<SkyEntry>> skies = find_skies(sky);
+  if (!skies) return fail(skies.error());
   if (Result<void> r = resolve(options); !r) return fail(r.error());
-  if (Result<void> r = check_output(options, {".exr"}); !r) return fail(r.error());
   const Result<Projection> projection = check_map(sky, options.size);
   if (!projection) return fail(projection.error());
-  if (sky.sun == "split") {
-    if (Result<void> r = files::check_writable(sun_path(options.output)); !r) return fail(r.error());
+  Result<Batch> batch = begin_sky(options, sky, skies.value());
+  if (!batch) return fail(batch.error());
+  interruption.describe_by(batch.value().describe());
+
+  std::string printed;
+  if (!batch.value().numbers().empty()) {
+    Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({.device = options.device, .graphics = false});
+    if (!host) return fail(host.error());
+    batch.value().set_device(host.value()->device_name());
+    const tables::PipelineStore pipelines(*host.value(), table_cache(options.settings.scene));
+    if (!pipelines.note().empty()) note(pipelines.note());
+    const Result<std::unique_ptr<SkySource>> source = make_sky_source(sky.model, *host.value(), options.settings);
+    if (!source) return fail(source.error());
+    SkyRun run = {options, sky, projection.value(), *source.value(), host.value()->device_name(), {}, {}};
+    const bool listed = !sky.list.empty();
+    std::size_t made = 0;
+    for (const std::uint64_t number : batch.value().numbers()) {
+      run.label = listed
+                      ? concat({"map ", std::to_string(++made), " of ", std::to_string(batch.value().numbers().size())})
+                      : std::string("sky");
+      const std::string path = frame_path(options.output, static_cast<std::uint32_t>(number));
+      const SkyEntry& entry = skies.value()[number];
+      const Result<std::string> text = make_map(run, entry, path, listed ? std::string_view(path) : std::string_view());
+      if (!text) return fail(text.error());
+      if (listed && options.json) printed += printed.empty() ? "" : ",\n";
+      printed += text.value();
+      std::vector<std::string> paths = {path};
+      if (sky.sun == "split") paths.push_back(sun_path(path));
+      if (Result<void> r = batch.value().finished(number, paths, entry.name); !r) return fail(r.error());
+    }
   }
-  if (Result<void> r = sky.units.resolve(options.settings); !r) return fail(r.error());
-
-  const Params& params = options.settings.effect;
-  const ColorMode color = params.scattering.color;
-  if (Result<void> r = check_altitude(sky.altitude_m, params, "--altitude"); !r) return fail(r.error());
-  scene::SceneParams& scene = options.settings.scene;
-  place_in_scene(scene, sky, sun.value());
-  const SkyMap map = {options.size.width,
-                      options.size.height,
-                      sky.altitude_m,
-                      sun.value().elevation_deg * kRadPerDeg,
-                      sun.value().azimuth_deg * kRadPerDeg,
-                      projection.value()};
-  const double scale = params.scattering.scale;
-  const std::array<double, 3> irradiance = {scene.sun.irradiance.x * scale, scene.sun.irradiance.y * scale,
-                                            scene.sun.irradiance.z * scale};
-
-  Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({.device = options.device, .graphics = false});
-  if (!host) return fail(host.error());
-  const tables::PipelineStore pipelines(*host.value(), table_cache(options.settings.scene));
-  if (!pipelines.note().empty()) note(pipelines.note());
-  const SkyModel& model =
-      *std::find_if(std::begin(kModels), std::end(kModels), [&](const SkyModel& m) { return m.name() == sky.model; });
-  Result<std::unique_ptr<SkySource>> source = model.make(*host.value(), options.settings);
-  if (!source) return fail(source.error());
-  image::Image image(map.width, map.height);
-  if (Result<void> r = fill(image, map, irradiance, color, *source.value()); !r) return fail(r.error());
-  const Result<std::array<double, 3>> diffuse = sky_irradiance(map, irradiance, color, *source.value());
-  if (!diffuse) return fail(diffuse.error());
-  const SunFaces faces = sun_faces(scene.sun.angular_radius_deg * kRadPerDeg, irradiance, params);
-  const bool has_disc = sky.sun == "disc";
-  if (has_disc) draw_sun(image, map, faces, params);
-  sky.units.convert(image);
-  check_largest(image, sky.clamp == "true", has_disc);
-
-  const SkyLight light = in_units(sky.units, diffuse.value(), sunlight_of(map, faces, params));
-  const std::string sun_text =
-      sun_json(map, faces.first, light.sun, sky.units.white_luminance() > 0.0 ? &light.lux : nullptr).dump(2) + "\n";
-  const image::ExrOptions as = sky.units.exr(
-      projection.value() == Projection::latlong ? image::ExrContent::environment_map : image::ExrContent::radiance);
-  const image::Metadata metadata = sky_metadata(options.settings, sky, projection.value());
-  if (Result<void> r = write_files(options.output, image, metadata, as, sky.sun == "split" ? &sun_text : nullptr); !r)
-    return fail(r.error());
-  return print_sky(options, sky, map, light, host.value()->device_name(), source.value()->tables());
+  if (Result<void> r = batch.value().end(); !r) return fail(r.error());
+  if (!sky.list.empty() && options.json) printed = concat({"[\n", printed, "\n]\n"});
+  return printed.empty() ? kDone : print(printed);
 }
 
 }  // namespace tyndall::cli

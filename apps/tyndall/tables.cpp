@@ -7,6 +7,7 @@
 #include "files/file_cache.hpp"
 #include "files/text.hpp"
 #include "gpu/host.hpp"
+#include "interruption.hpp"
 #include "make_tables.hpp"
 #include "models/precomputed.hpp"
 #include "models/table_values.hpp"
@@ -42,6 +43,7 @@ std::string as_text(const nlohmann::ordered_json& report) {
 }  // namespace
 
 int run_tables(Args args) {
+  Interruption interruption;
   CommonOptions options;
   bool export_wanted = false;
   Arguments arguments("tables");
@@ -69,6 +71,9 @@ int run_tables(Args args) {
   how.rebuild = true;
   Result<models::PrecomputedModel> model = models::PrecomputedModel::create(*host.value(), params, how);
   if (!model) return fail(model.error());
+  interruption.describe_by([export_wanted] {
+    return std::string(export_wanted ? "the tables are built, and not exported" : "the tables are built");
+  });
   Effect& effect = model.value().effect();
   const tables::Report& made = model.value().origin();
   for (const std::string& text : made.notes) note(text);

@@ -1,202 +1,25 @@
 // `tyndall validate`: compares every model with the path tracer and writes a report.
-#include <algorithm>
 #include <filesystem>
 
 #include "arguments.hpp"
+#include "batch.hpp"
 #include "cli.hpp"
-#include "effect/medium.hpp"
 #include "files/files.hpp"
 #include "files/text.hpp"
 #include "gpu/host.hpp"
 #include "input_files.hpp"
+#include "interruption.hpp"
 #include "make_tables.hpp"
-#include "models/precomputed.hpp"
-#include "models/single_scattering.hpp"
-#include "models/spectral.hpp"
-#include "probe_models.hpp"
 #include "tyndall/version.hpp"
-#include "validate/color.hpp"
+#include "validate/parts.hpp"
 #include "validate/report.hpp"
+#include "validate_models.hpp"
+#include "validate_part.hpp"
 
 namespace tyndall::cli {
 namespace {
 
 using files::concat;
-using validate::Rgb;
-
-// A model of `probe`, and what it needs besides Params.
-struct ChosenModel {
-  scene::ModelId id;
-  std::string device;
-  scene::SceneParams scene;
-};
-
-Result<std::vector<Rgb>> evaluate_probe(const ChosenModel& model, const Params& params,
-                                        std::span<const RayQuery> queries) {
-  ProbeSettings settings;
-  settings.params = params;
-  settings.scene = model.scene;
-  settings.device = model.device;
-  settings.progress = [](double) {};
-  const Result<std::vector<ProbeAnswer>> answers = evaluate_model(model.id, settings, queries);
-  if (!answers) return answers.error();
-  std::vector<Rgb> out;
-  out.reserve(answers.value().size());
-  for (const ProbeAnswer& answer : answers.value()) out.push_back(answer.radiance);
-  return out;
-}
-
-// Evaluates a model with black ground and adds the directly sunlit ground, which the reference includes at the end of a
-// ray.
-Result<std::vector<Rgb>> evaluate_over_ground(const ChosenModel& model, const Params& params,
-                                              std::span<const RayQuery> queries) {
-  Result<std::vector<Rgb>> found = evaluate_probe(model, params, queries);
-  if (!found || params.planet.ground_albedo == Vec3(0.0F)) return found;
-  const shared::Medium medium = medium_from_params(params);
-  for (std::size_t i = 0; i < queries.size(); ++i) {
-    if (queries[i].sky_irradiance) continue;
-    const models::Ray ray = models::ray_from_query(queries[i]);
-    const Rgb ground = models::sunlit_ground(medium, ray);
-    const Rgb passed = models::single_scattering(medium, ray, 1).transmittance;
-    for (std::size_t c = 0; c < 3; ++c) found.value()[i][c] += passed[c] * ground[c];
-  }
-  return found;
-}
-
-// Evaluates the scattering tables, and stores those of the latest parameters for the next call.
-class Tables {
- public:
-  Tables(std::string device, tables::CacheDesc cache) : device_(std::move(device)) { how_.cache = std::move(cache); }
-
-  // Returns remarks on the cache, each only once.
-  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
-
-  Result<std::vector<Rgb>> evaluate(const Params& params, std::span<const RayQuery> queries) {
-    if (Result<void> r = build(params); !r) return std::move(r).error();
-    const Result<std::vector<models::Answer>> found = model_->answer(queries);
-    if (!found) return found.error();
-    std::vector<Rgb> out;
-    out.reserve(found.value().size());
-    for (const models::Answer& answer : found.value()) out.push_back(answer.radiance);
-    return out;
-  }
-
-  // Returns the colours of the light, relative to the luminance of the sun.
-  Result<std::vector<validate::Color>> colors(const Params& params, std::span<const RayQuery> queries) {
-    if (Result<void> r = build(params); !r) return std::move(r).error();
-    const Result<std::vector<models::Answer>> found = model_->answer(queries);
-    if (!found) return found.error();
-    std::vector<validate::Color> out;
-    out.reserve(found.value().size());
-    for (const models::Answer& answer : found.value()) {
-      out.push_back(params.scattering.color == ColorMode::spectral ? color_of_light(models::radiance_of(answer))
-                                                                   : answer.radiance);
-    }
-    return out;
-  }
-
- private:
-  Result<void> build(const Params& params) {
-    constexpr std::uint32_t kTables =
-        1U << static_cast<std::uint32_t>(Affects::Tables) | 1U << static_cast<std::uint32_t>(Affects::Everything);
-    if (model_ && (affected(model_->params(), params) & kTables) == 0) return model_->set_params(params);
-    model_.reset();
-    if (!host_) {
-      Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({.device = device_, .graphics = false});
-      if (!host) return std::move(host).error();
-      host_ = std::move(host).value();
-    }
-    Result<models::PrecomputedModel> model = models::PrecomputedModel::create(*host_, params, how_);
-    if (!model) return std::move(model).error();
-    for (const std::string& text : model.value().origin().notes) {
-      if (std::find(notes_.begin(), notes_.end(), text) == notes_.end()) notes_.push_back(text);
-    }
-    model_.emplace(std::move(model).value());
-    return {};
-  }
-
-  std::string device_;
-  tables::MakeReady how_;
-  std::vector<std::string> notes_;
-  std::unique_ptr<gpu::Host> host_;
-  std::optional<models::PrecomputedModel> model_;
-};
-
-validate::Model table_model(std::string name, std::string meaning, const std::shared_ptr<Tables>& tables,
-                            const std::function<void(Params&)>& change) {
-  return {std::move(name), std::move(meaning), 0,
-          [tables, change](const Params& params, std::span<const RayQuery> queries) {
-            Params changed = params;
-            change(changed);
-            return tables->evaluate(changed, queries);
-          }};
-}
-
-// Returns the parameterisations of the tables, for the horizon test.
-std::vector<validate::Model> parameterizations(const std::shared_ptr<Tables>& tables) {
-  std::vector<validate::Model> out;
-  for (const auto& [name, value] :
-       {std::pair("yusov", TableParameterization::yusov), std::pair("bruneton", TableParameterization::bruneton),
-        std::pair("linear", TableParameterization::linear)}) {
-    out.push_back(table_model(name, "", tables, [value = value](Params& p) { p.tables.parameterization = value; }));
-  }
-  return out;
-}
-
-// A row of the report for one of the registry's models. `change` sets parameters of the scene.
-struct ProbeRow {
-  const char* name;
-  const char* meaning;  // nullptr for the registry's text
-  scene::ModelId id;
-  int orders;  // number of orders of the reference that it is compared with; 0: all
-  void (*change)(scene::SceneParams& scene);
-};
-constexpr ProbeRow kProbeRows[] = {
-    {"single", nullptr, scene::ModelId::single, 1, [](scene::SceneParams&) {}},
-    {"single, against all orders", "single; its error is the multiple scattering that it leaves out",
-     scene::ModelId::single, 0, [](scene::SceneParams&) {}},
-    {"homogeneous", nullptr, scene::ModelId::homogeneous, 1,
-     [](scene::SceneParams& scene) { scene.homogeneous.falloff = false; }},
-    {"homogeneous, falling off", "homogeneous, with homogeneous.falloff", scene::ModelId::homogeneous, 1,
-     [](scene::SceneParams& scene) { scene.homogeneous.falloff = true; }},
-    {"homogeneous medium", nullptr, scene::ModelId::homogeneous_medium, 1, [](scene::SceneParams&) {}},
-    {"oneil", nullptr, scene::ModelId::oneil, 1, [](scene::SceneParams&) {}},
-    {"oneil, points by column", "oneil, with oneil.spacing = column", scene::ModelId::oneil, 1,
-     [](scene::SceneParams& scene) { scene.oneil.spacing = scene::OneilSpacing::column; }},
-    {"oneil-table", nullptr, scene::ModelId::oneil_table, 1, [](scene::SceneParams&) {}},
-};
-
-std::vector<validate::Model> all_models(const std::string& device, const scene::SceneParams& scene,
-                                        const std::shared_ptr<Tables>& tables) {
-  const scene::ModelInfo& precomputed = scene::model_info(scene::ModelId::precomputed);
-  std::vector<validate::Model> out = {
-      table_model(std::string(precomputed.name), std::string(precomputed.meaning), tables,
-                  [](Params& p) { p.scattering.single = SingleScattering::table; }),
-      table_model("precomputed, order 1 integrated", "precomputed, with scattering.single = integration", tables,
-                  [](Params& p) { p.scattering.single = SingleScattering::integration; })};
-  for (const ProbeRow& row : kProbeRows) {
-    ChosenModel model = {row.id, device, scene};
-    row.change(model.scene);
-    out.push_back({row.name, row.meaning != nullptr ? row.meaning : std::string(scene::model_info(row.id).meaning),
-                   row.orders, [model](const Params& params, std::span<const RayQuery> queries) {
-                     return evaluate_over_ground(model, params, queries);
-                   }});
-  }
-  return out;
-}
-
-// Returns the tables in both values of scattering.color, for the test of colours.
-std::vector<validate::ColorModel> color_models(const std::shared_ptr<Tables>& tables) {
-  std::vector<validate::ColorModel> out;
-  for (const auto& [name, color] : {std::pair("rgb", ColorMode::rgb), std::pair("spectral", ColorMode::spectral)}) {
-    out.push_back({name, [tables, color = color](const Params& params, std::span<const RayQuery> queries) {
-                     Params changed = params;
-                     changed.scattering.color = color;
-                     return tables->colors(changed, queries);
-                   }});
-  }
-  return out;
-}
 
 // Returns the command line that produces the same report, without the locations of files.
 std::string command_line(const CommonOptions& options, const validate::Options& study) {
@@ -212,77 +35,160 @@ std::string command_line(const CommonOptions& options, const validate::Options& 
 
 bool is_markdown(const std::string& path) { return path.ends_with(".md"); }
 
+struct ValidateOptions {
+  CommonOptions common;
+  validate::Options study;
+  std::string markdown;
+  BatchOptions batch;
+  // Returns whether the run computes a part, which is not a report.
+  [[nodiscard]] bool part() const { return batch.shard.count > 1; }
+};
+
+std::optional<int> parse_validate(Args args, ValidateOptions& options) {
+  std::uint32_t seed = 1;
+  std::uint32_t orders = 8;
+  Arguments arguments("validate");
+  add_common(arguments, options.common, kScene | kSet | kDevice | kOutput | kJson);
+  arguments.text("--markdown", options.markdown, "FILE",
+                 "also write the summary as Markdown (docs/generated/accuracy.md)");
+  arguments.count("--rays", options.study.rays, 18, 1000000, "rays of the error tables");
+  arguments.count("--samples", options.study.samples, 2, 1000000000, "paths per ray of the reference");
+  arguments.count("--seed", seed, 0, UINT32_MAX, "seed of the rays and the paths");
+  arguments.count("--orders", orders, 1, 256, "orders of scattering of the reference");
+  add_batch_options(arguments, options.batch, "rays");
+  const std::optional<int> status = arguments.parse(args);
+  options.study.seed = seed;
+  options.study.orders = static_cast<int>(orders);
+  return status;
+}
+
+// Checks the options against each other, and the outputs.
+Result<void> check_validate(const ValidateOptions& options) {
+  const CommonOptions& common = options.common;
+  if (options.batch.active() && common.output.empty())
+    return files::input_error("no output file", "-o", "expected -o REPORT.html with --shard or --resume");
+  if (options.batch.active() && common.json)
+    return files::input_error("a part of a report is not printed", "--json", "expected no --shard and no --resume");
+  if (options.part() && !options.markdown.empty())
+    return files::input_error("a part is not a page", "--markdown", "expected 'tyndall merge PAGE.md' for all parts");
+  if (common.output.empty() && options.markdown.empty() && !common.json)
+    return files::input_error("no output file", "-o", "expected -o REPORT.html, --markdown FILE or --json");
+  if (!common.output.empty()) {
+    if (Result<void> r = check_output(common, {".html", ".htm"}); !r) return r;
+  }
+  if (options.markdown.empty()) return {};
+  if (!is_markdown(options.markdown)) {
+    return files::input_error(concat({"unknown format '", files::one_line(options.markdown), "'"}), "--markdown",
+                              "expected a name that ends in .md");
+  }
+  if (Result<void> r = check_not_input(options.markdown, "--markdown", input_files(common)); !r) return r;
+  return files::check_writable(options.markdown);
+}
+
+// Starts the batch, which has one item: the report, or the part of this shard.
+Result<Batch> begin_batch(const ValidateOptions& options) {
+  const BatchOptions& batch = options.batch;
+  BatchDesc desc = {batch, "validate", "reports", options.common.output, 0, {batch.shard.index}, {}};
+  if (batch.active()) {
+    desc.total = validate::count_queries(options.common.settings.effect, options.study, true);
+    desc.inputs = common_inputs(options.common);
+    desc.inputs.emplace_back("--rays", std::to_string(options.study.rays));
+    desc.inputs.emplace_back("--samples", std::to_string(options.study.samples));
+    desc.inputs.emplace_back("--seed", std::to_string(options.study.seed));
+    desc.inputs.emplace_back("--orders", std::to_string(options.study.orders));
+    desc.inputs.emplace_back("command", command_line(options.common, options.study));
+    if (!options.markdown.empty()) desc.inputs.emplace_back("--markdown", files::one_line(options.markdown, 1000));
+  }
+  return Batch::begin(std::move(desc));
+}
+
+struct Parts {
+  validate::StudyPart rays;
+  validate::ColorPart colors;
+};
+
+// Computes the queries of a shard.
+Result<Parts> evaluate(const Params& params, const validate::Options& how, const ValidateModels& models,
+                       const Shard& shard) {
+  constexpr std::uint64_t kSteps = 1000;
+  const auto show = [](Progress& progress) {
+    return [&progress](double done) {
+      progress.update(static_cast<std::uint64_t>(done * static_cast<double>(kSteps)), kSteps);
+    };
+  };
+  const validate::PartIndex part = {shard.index, shard.count};
+  Result<validate::StudyPart> rays = validate::StudyPart();
+  {
+    Progress progress("validate");
+    rays = validate::run_study_part(params, how, models.rays, models.horizon, part, show(progress));
+  }
+  if (!rays) return std::move(rays).error();
+  Progress progress("colours");
+  Result<validate::ColorPart> colors =
+      validate::run_color_part(params, models.colors, how.samples, how.seed, how.orders, part, show(progress));
+  if (!colors) return std::move(colors).error();
+  return Parts{std::move(rays).value(), std::move(colors).value()};
+}
+
 }  // namespace
 
 int run_validate(Args args) {
-  CommonOptions options;
-  validate::Options study_options;
-  std::uint32_t seed = 1;
-  std::uint32_t orders = 8;
-  std::string markdown;
-  Arguments arguments("validate");
-  add_common(arguments, options, kScene | kSet | kDevice | kOutput | kJson);
-  arguments.text("--markdown", markdown, "FILE", "also write the summary as Markdown (docs/generated/accuracy.md)");
-  arguments.count("--rays", study_options.rays, 18, 1000000, "rays of the error tables");
-  arguments.count("--samples", study_options.samples, 2, 1000000000, "paths per ray of the reference");
-  arguments.count("--seed", seed, 0, UINT32_MAX, "seed of the rays and the paths");
-  arguments.count("--orders", orders, 1, 256, "orders of scattering of the reference");
-  if (const std::optional<int> status = arguments.parse(args)) return *status;
-  study_options.seed = seed;
-  study_options.orders = static_cast<int>(orders);
-  if (Result<void> r = resolve(options); !r) return fail(r.error());
-  if (options.output.empty() && markdown.empty() && !options.json) {
-    return fail(files::input_error("no output file", "-o", "expected -o REPORT.html, --markdown FILE or --json"));
-  }
-  if (!options.output.empty()) {
-    if (Result<void> r = check_output(options, {".html", ".htm"}); !r) return fail(r.error());
-  }
-  if (!markdown.empty()) {
-    if (!is_markdown(markdown)) {
-      return fail(files::input_error(concat({"unknown format '", files::one_line(markdown), "'"}), "--markdown",
-                                     "expected a name that ends in .md"));
-    }
-    if (Result<void> r = check_not_input(markdown, "--markdown", input_files(options)); !r) return fail(r.error());
-    if (Result<void> r = files::check_writable(markdown); !r) return fail(r.error());
+  Interruption interruption;
+  ValidateOptions options;
+  if (const std::optional<int> status = parse_validate(args, options)) return *status;
+  CommonOptions& common = options.common;
+  if (Result<void> r = resolve(common); !r) return fail(r.error());
+  if (Result<void> r = check_validate(options); !r) return fail(r.error());
+  Result<Batch> batch = begin_batch(options);
+  if (!batch) return fail(batch.error());
+  interruption.describe_by(batch.value().describe());
+  if (batch.value().numbers().empty()) {
+    const Result<void> ended = batch.value().end();
+    return ended ? kDone : fail(ended.error());
   }
 
-  validate::Origin origin = {command_line(options, study_options), TYNDALL_VERSION_STRING, ""};
+  validate::Origin origin = {command_line(common, options.study), TYNDALL_VERSION_STRING, ""};
   {
-    const Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({.device = options.device, .graphics = false});
+    const Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({.device = common.device, .graphics = false});
     if (!host) return fail(host.error());
     origin.device = host.value()->device_name();
   }
+  batch.value().set_device(origin.device);
   // The study is of three channels. The test of colours has both values.
-  Params params = options.settings.effect;
+  Params params = common.settings.effect;
   params.scattering.color = ColorMode::rgb;
-  Result<validate::Study> study = validate::Study();
-  Result<validate::ColorTest> colors = validate::ColorTest();
-  const auto tables = std::make_shared<Tables>(options.device, table_cache(options.settings.scene));
-  {
-    Progress progress("validate");
-    constexpr std::uint64_t kSteps = 1000;
-    study = validate::run_study(
-        params, study_options, all_models(options.device, options.settings.scene, tables), parameterizations(tables),
-        [&](double done) { progress.update(static_cast<std::uint64_t>(done * static_cast<double>(kSteps)), kSteps); });
+  const ValidateModels models =
+      validate_models(common.device, common.settings.scene, table_cache(common.settings.scene));
+  Result<Parts> parts = evaluate(params, options.study, models, options.batch.shard);
+  for (const std::string& text : models.notes()) note(text);
+  if (!parts) return fail(parts.error());
+  std::vector<std::string> written;
+  const auto write = [&](const std::string& path, const std::string& text) {
+    written.push_back(path);
+    return files::write_file(path, text);
+  };
+  std::string printed;
+  if (options.part()) {
+    const std::string path = shard_path(common.output, options.batch.shard, kPartEnding);
+    if (Result<void> r = write(path, part_json(parts.value().rays, parts.value().colors)); !r) return fail(r.error());
+  } else {
+    const Result<validate::Study> study =
+        validate::join_study(params, options.study, models.rays, models.horizon, {std::move(parts.value().rays)});
+    if (!study) return fail(study.error());
+    const Result<validate::ColorTest> colors = validate::join_colors(models.colors, {std::move(parts.value().colors)});
+    if (!colors) return fail(colors.error());
+    if (!common.output.empty()) {
+      if (Result<void> r = write(common.output, to_html(study.value(), origin)); !r) return fail(r.error());
+    }
+    if (!options.markdown.empty()) {
+      if (Result<void> r = write(options.markdown, to_markdown(study.value(), colors.value(), origin)); !r)
+        return fail(r.error());
+    }
+    if (common.json) printed = to_json(study.value(), colors.value(), origin);
   }
-  if (study) {
-    Progress progress("colours");
-    constexpr std::uint64_t kSteps = 1000;
-    colors = validate::run_color_test(
-        params, color_models(tables), study_options.samples, study_options.seed, study_options.orders,
-        [&](double done) { progress.update(static_cast<std::uint64_t>(done * static_cast<double>(kSteps)), kSteps); });
-  }
-  for (const std::string& text : tables->notes()) note(text);
-  if (!colors) return fail(colors.error());
-  if (!study) return fail(study.error());
-  if (!options.output.empty()) {
-    if (Result<void> r = files::write_file(options.output, to_html(study.value(), origin)); !r) return fail(r.error());
-  }
-  if (!markdown.empty()) {
-    if (Result<void> r = files::write_file(markdown, to_markdown(study.value(), colors.value(), origin)); !r)
-      return fail(r.error());
-  }
-  return options.json ? print(to_json(study.value(), colors.value(), origin)) : kDone;
+  if (Result<void> r = batch.value().finished(options.batch.shard.index, written); !r) return fail(r.error());
+  if (Result<void> r = batch.value().end(); !r) return fail(r.error());
+  return printed.empty() ? kDone : print(printed);
 }
 
 }  // namespace tyndall::cli

@@ -13,6 +13,7 @@ using Args = std::span<const std::string>;
 int run_bench(Args args);
 int run_compare(Args args);
 int run_devices(Args args);
+int run_merge(Args args);
 int run_params(Args args);
 int run_probe(Args args);
 int run_render(Args args);
@@ -40,6 +41,7 @@ inline constexpr Verb kVerbs[] = {
     {"tables", run_tables, "build the scattering tables, cache them, report the time of each stage, export them"},
     {"sky", run_sky, "render the sky as an environment map, with the sun by angles or by place and time"},
     {"validate", run_validate, "compare every model with the path tracer, in a report with tables and plots"},
+    {"merge", run_merge, "combine the results of shards: tables of probe, reports of validate, manifests"},
     {"bench", run_bench, "measure device milliseconds per pass"},
     {"compare", run_compare, "measure the difference between two images"},
     {"report", run_report, "measure whether the program is right and fast on a device, in at most 8 minutes"},

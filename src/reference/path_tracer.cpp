@@ -60,6 +60,7 @@ std::string check_options(const Options& options) {
     return "samples is out of range; expected 1 to 2^48";
   }
   if (options.orders < 1 || options.orders > kMaxOrders) return "orders is out of range; expected 1 to 256";
+  if (options.stride < 1) return "stride is out of range; expected at least 1";
   if (options.threads < 0 || options.threads > 4096) return "threads is out of range; expected 0 to 4096";
   return {};
 }
@@ -194,7 +195,8 @@ class Work {
       const std::uint64_t query = (batch.first + i) / plan_.blocks, block = (batch.first + i) % plan_.blocks;
       const Scene<N>& scene = scenes_[query];
       if (scene.has_air()) {
-        trace_block<N>(scene, hash_seed(options_.seed, query, block), plan_.log2_count,
+        const std::uint64_t index = options_.first + query * options_.stride;
+        trace_block<N>(scene, hash_seed(options_.seed, index, block), plan_.log2_count,
                        std::span(batch.means).subspan(i * orders_, orders_));
       }
       batch.done[i] = 1;
@@ -287,14 +289,16 @@ template <std::size_t N, typename Finish>
 auto compute(const Atmosphere& air, std::span<const RayQuery> queries, const Options& options,
              std::span<const Rgb> weights, const Progress& progress, const Finish& finish) {
   std::vector<Scene<N>> scenes;
-  scenes.reserve(queries.size());
-  for (const RayQuery& query : queries) scenes.emplace_back(air, query, options);
+  scenes.reserve(queries.size() / options.stride + 1);
+  for (std::uint64_t i = options.first; i < queries.size(); i += options.stride) {
+    scenes.emplace_back(air, queries[i], options);
+  }
   const Plan plan = plan_blocks(options.samples);
-  std::vector<Accumulator<N>> sums(queries.size(), Accumulator<N>(static_cast<std::size_t>(options.orders), weights));
+  std::vector<Accumulator<N>> sums(scenes.size(), Accumulator<N>(static_cast<std::size_t>(options.orders), weights));
   Work<N>(scenes, options, plan, progress).run(sums);
   std::vector<decltype(finish(sums[0], scenes[0], plan))> estimates;
-  estimates.reserve(queries.size());
-  for (std::size_t i = 0; i < queries.size(); ++i) estimates.push_back(finish(sums[i], scenes[i], plan));
+  estimates.reserve(scenes.size());
+  for (std::size_t i = 0; i < scenes.size(); ++i) estimates.push_back(finish(sums[i], scenes[i], plan));
   return estimates;
 }
 
@@ -314,6 +318,11 @@ std::vector<Estimate> compute_rgb(const Params& params, std::span<const RayQuery
 }
 
 }  // namespace
+
+std::uint64_t traced_samples(std::uint64_t samples) {
+  const Plan plan = plan_blocks(samples);
+  return plan.blocks << plan.log2_count;
+}
 
 Result<std::vector<Estimate>> trace(const Params& params, std::span<const RayQuery> queries, const Options& options,
                                     const Progress& progress) {
@@ -337,9 +346,11 @@ Result<std::vector<SpectralEstimate>> trace_spectrum(const Params& params, const
 
 Result<Estimate> trace(const Params& params, const RayQuery& query, const Options& options, const Progress& progress) {
   const std::span<const RayQuery> one(&query, 1);
-  std::string bad = check(params, one, options);
+  Options whole = options;
+  whole.first = 0;
+  std::string bad = check(params, one, whole);
   if (!bad.empty()) return Error{ErrorCode::invalid_argument, std::move(bad), 0};
-  return compute_rgb(params, one, options, progress).front();
+  return compute_rgb(params, one, whole, progress).front();
 }
 
 }  // namespace tyndall::reference

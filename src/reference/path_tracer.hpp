@@ -32,6 +32,10 @@ struct Options {
   // True if the ground at the end of a ray contributes to its radiance. Otherwise only in-scattered light does,
   // including light that the ground reflected before; transmittance then applies to whatever is behind the atmosphere.
   bool visible_ground = true;
+  // Which of the queries are traced: those with the indices first, first + stride, first + 2 stride and so on.
+  // Together, calls with all values of `first` below `stride` give the same estimates as one call for all queries.
+  std::uint64_t first = 0;
+  std::uint64_t stride = 1;  // >= 1
 };
 
 struct Estimate {
@@ -48,12 +52,15 @@ struct Estimate {
 // Called from time to time, by one thread at a time, with the completed fraction in [0; 1]. Returning false cancels.
 using Progress = std::function<bool(double done)>;
 
-// Returns one estimate per query, in order. Query i has its own random numbers, a function of (seed, i), so equal
-// queries in one call give independent estimates. A cancelled call returns what is complete: see Estimate::samples.
-// Below sea level the atmosphere continues, and the camera ray hits ground at twice the depth of the camera. Light that
-// arrives from below at any other point comes from ground at that point (docs/adr/0007-below-sea-level.md).
-// Errors: invalid_argument for a query, option or parameter out of range, and for parameters that contradict each
-// other.
+// Returns the number of paths per query that are traced for Options::samples.
+[[nodiscard]] std::uint64_t traced_samples(std::uint64_t samples);
+
+// Returns one estimate per traced query, in order. Query i has its own random numbers, a function of (seed, i), so
+// equal queries in one call give independent estimates. A cancelled call returns what is complete: see
+// Estimate::samples. Below sea level the atmosphere continues, and the camera ray hits ground at twice the depth of the
+// camera. Light that arrives from below at any other point comes from ground at that point
+// (docs/adr/0007-below-sea-level.md). Errors: invalid_argument for a query, option or parameter out of range, and for
+// parameters that contradict each other.
 Result<std::vector<Estimate>> trace(const Params& params, std::span<const RayQuery> queries, const Options& options,
                                     const Progress& progress = {});
 

@@ -6,6 +6,7 @@
 
 #include "files/text.hpp"
 #include "reference/spectrum.hpp"
+#include "validate/parts.hpp"
 #include "validate/plot.hpp"
 
 namespace tyndall::validate {
@@ -131,17 +132,22 @@ std::vector<ColorRay> color_rays() {
   return out;
 }
 
-Result<ColorTest> run_color_test(const Params& params, const std::vector<ColorModel>& models, std::uint64_t samples,
-                                 std::uint64_t seed, int orders, const std::function<void(double)>& progress) {
-  ColorTest out;
-  out.rays = color_rays();
+Result<ColorPart> run_color_part(const Params& params, const std::vector<ColorModel>& models, std::uint64_t samples,
+                                 std::uint64_t seed, int orders, PartIndex part,
+                                 const std::function<void(double)>& progress) {
+  const std::vector<ColorRay> rays = color_rays();
   std::vector<RayQuery> queries;
-  queries.reserve(out.rays.size());
-  for (const ColorRay& ray : out.rays) queries.push_back(ray.query());
+  std::vector<RayQuery> chosen;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    queries.push_back(rays[i].query());
+    if (i % part.count == part.index) chosen.push_back(queries.back());
+  }
   reference::Options options;
   options.samples = samples;
   options.seed = seed;
   options.orders = orders;
+  options.first = part.index;
+  options.stride = part.count;
   const reference::VisibleSpectrum spectrum = reference::visible_spectrum_in_rec709();
   double sun = 0.0;
   for (const reference::Bin& bin : reference::visible_spectrum()) sun += bin.xyz[1];
@@ -151,18 +157,18 @@ Result<ColorTest> run_color_test(const Params& params, const std::vector<ColorMo
         return true;
       });
   if (!traced) return traced.error();
+  ColorPart out;
   for (const reference::SpectralEstimate& estimate : traced.value()) {
     Color color = estimate.sums;
     for (double& channel : color) channel /= sun;
-    out.reference.push_back(color);
     // The channels are summed with positive weights, and their errors are similar.
-    out.noise.push_back(luminance(estimate.standard_error) / (sun * luminance(color)));
+    out.push_back({color, luminance(estimate.standard_error) / (sun * luminance(color)), {}});
   }
+  if (chosen.empty()) return out;
   for (const ColorModel& model : models) {
-    Result<std::vector<Color>> answers = model.answer(params, queries);
-    if (!answers) return std::move(answers).error();
-    out.models.push_back(model.name);
-    out.answers.push_back(std::move(answers).value());
+    const Result<std::vector<Color>> answers = model.answer(params, chosen);
+    if (!answers) return answers.error();
+    for (std::size_t i = 0; i < out.size(); ++i) out[i].models.push_back(answers.value()[i]);
   }
   return out;
 }

@@ -16,45 +16,6 @@ constexpr double kVerticalSuns_deg[] = {45.0, 6.0, 0.0, -4.0};
 constexpr double kHorizonSuns_deg[] = {20.0, 0.0};
 constexpr double kHorizonAltitude_m = 2000.0;
 
-// Runs the queries of a study in order and reports progress.
-class Evaluator {
- public:
-  Evaluator(const Options& options, double work, const Progress& progress)
-      : options_(options), work_(work), progress_(progress) {}
-
-  Result<void> evaluate(const Params& params, const std::vector<Model>& models, std::uint64_t samples, Answers& answers,
-                        int orders_factor = 1) {
-    reference::Options how;
-    how.samples = samples;
-    how.orders = orders_factor * options_.orders;
-    // Use different random numbers for each set of queries.
-    how.seed = options_.seed + 1000 * evaluations_++;
-    how.by_order = true;
-    const double share = static_cast<double>(samples) * static_cast<double>(answers.queries.size());
-    Result<std::vector<reference::Estimate>> estimates =
-        reference::trace(params, answers.queries, how, [&](double part) {
-          progress_(std::min((done_ + part * share) / work_, 1.0));
-          return true;
-        });
-    if (!estimates) return std::move(estimates).error();
-    done_ += share;
-    answers.reference = std::move(estimates).value();
-    for (const Model& model : models) {
-      Result<std::vector<Rgb>> found = model.answer(params, answers.queries);
-      if (!found) return std::move(found).error();
-      answers.models.push_back(std::move(found).value());
-    }
-    return {};
-  }
-
- private:
-  const Options& options_;
-  double work_;
-  const Progress& progress_;
-  std::uint64_t evaluations_ = 0;
-  double done_ = 0.0;
-};
-
 RayQuery query_of(double altitude_m, double view_zenith_deg, double sun_elevation_deg, double azimuth_deg) {
   return {altitude_m, view_zenith_deg * kRadPerDeg, (90.0 - sun_elevation_deg) * kRadPerDeg, azimuth_deg * kRadPerDeg,
           false};
@@ -211,8 +172,8 @@ Comparison compare(const Rgb& model, const Truth& truth) {
   return out;
 }
 
-Result<Study> run_study(const Params& params, const Options& options, std::vector<Model> models,
-                        std::vector<Model> horizon_models, const Progress& progress) {
+Study prepare_study(const Params& params, const Options& options, std::vector<Model> models,
+                    std::vector<Model> horizon_models) {
   Study study;
   study.options = options;
   study.models = std::move(models);
@@ -223,55 +184,39 @@ Result<Study> run_study(const Params& params, const Options& options, std::vecto
   study.verticals = make_verticals();
   study.sky = make_sky();
   if (!study.horizon_models.empty()) study.horizons = make_horizons(params);
+  return study;
+}
 
-  double work = kSkyFactor * static_cast<double>(study.sky.answers.queries.size());
-  for (const RayTest& test : study.rays) work += static_cast<double>(test.rays.size());
-  for (const RayTest& test : study.turbid) work += kTurbidSamplesFactor * static_cast<double>(test.rays.size());
-  for (const VerticalTest& test : study.verticals) work += static_cast<double>(test.angle_deg.size());
-  for (const HorizonTest& test : study.horizons) work += static_cast<double>(test.elevation_deg.size());
-  Evaluator evaluator(options, work * options.samples, progress);
-  const auto evaluate_rays = [&](std::size_t a) {
-    return evaluator.evaluate(study.atmospheres[a].params, study.models, options.samples, study.rays[a].answers);
+std::vector<Evaluation> evaluations(Study& study, const Params& params) {
+  const Options& options = study.options;
+  std::vector<Evaluation> out;
+  const auto add = [&](const Params& air, const std::vector<Model>& models, std::uint64_t samples,
+                       std::vector<Answers*> answers, int orders_factor = 1) {
+    reference::Options how;
+    how.samples = samples;
+    how.orders = orders_factor * options.orders;
+    // Use different random numbers for each set of queries.
+    how.seed = options.seed + 1000 * out.size();
+    how.by_order = true;
+    out.push_back({air, &models, how, std::move(answers)});
   };
   // Complete one atmosphere before the next, because a model may hold the tables of the last one.
-  if (Result<void> r = evaluate_rays(0); !r) return std::move(r).error();
-  Answers all;
-  for (const VerticalTest& test : study.verticals) {
-    all.queries.insert(all.queries.end(), test.answers.queries.begin(), test.answers.queries.end());
-  }
-  if (Result<void> r = evaluator.evaluate(params, study.models, options.samples, all); !r) return std::move(r).error();
-  std::size_t next = 0;
-  const auto take = [&](Answers& answers) {
-    const auto from = static_cast<std::ptrdiff_t>(next);
-    const auto to = static_cast<std::ptrdiff_t>(next + answers.queries.size());
-    answers.reference.assign(all.reference.begin() + from, all.reference.begin() + to);
-    for (const std::vector<Rgb>& model : all.models)
-      answers.models.emplace_back(model.begin() + from, model.begin() + to);
-    next += answers.queries.size();
-  };
-  for (VerticalTest& test : study.verticals) take(test.answers);
-  Result<void> sky = evaluator.evaluate(params, study.models, kSkyFactor * options.samples, study.sky.answers);
-  if (!sky) return std::move(sky).error();
-  if (!study.horizons.empty()) {
-    all = {};
-    for (const HorizonTest& test : study.horizons) {
-      all.queries.insert(all.queries.end(), test.answers.queries.begin(), test.answers.queries.end());
-    }
-    if (Result<void> r = evaluator.evaluate(params, study.horizon_models, options.samples, all); !r)
-      return std::move(r).error();
-    next = 0;
-    for (HorizonTest& test : study.horizons) take(test.answers);
-  }
+  add(study.atmospheres[0].params, study.models, options.samples, {&study.rays[0].answers});
+  std::vector<Answers*> verticals;
+  for (VerticalTest& test : study.verticals) verticals.push_back(&test.answers);
+  add(params, study.models, options.samples, verticals);
+  add(params, study.models, std::uint64_t{kSkyFactor} * options.samples, {&study.sky.answers});
+  std::vector<Answers*> horizons;
+  for (HorizonTest& test : study.horizons) horizons.push_back(&test.answers);
+  if (!horizons.empty()) add(params, study.horizon_models, options.samples, horizons);
   for (std::size_t a = 1; a < study.rays.size(); ++a) {
-    if (Result<void> r = evaluate_rays(a); !r) return std::move(r).error();
+    add(study.atmospheres[a].params, study.models, options.samples, {&study.rays[a].answers});
   }
   for (std::size_t a = 0; a < study.turbid.size(); ++a) {
-    Result<void> turbid =
-        evaluator.evaluate(turbid_params(params, kTurbidAirs[a]), study.models, kTurbidSamplesFactor * options.samples,
-                           study.turbid[a].answers, kTurbidOrdersFactor);
-    if (!turbid) return std::move(turbid).error();
+    add(turbid_params(params, kTurbidAirs[a]), study.models, kTurbidSamplesFactor * options.samples,
+        {&study.turbid[a].answers}, kTurbidOrdersFactor);
   }
-  return study;
+  return out;
 }
 
 ErrorSummary summarise(const Study& study, std::size_t model, std::size_t atmosphere,

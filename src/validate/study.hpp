@@ -110,6 +110,20 @@ struct Study {
 [[nodiscard]] Result<Study> run_study(const Params& params, const Options& options, std::vector<Model> models,
                                       std::vector<Model> horizon_models, const Progress& progress);
 
+// Returns the study without answers.
+[[nodiscard]] Study prepare_study(const Params& params, const Options& options, std::vector<Model> models,
+                                  std::vector<Model> horizon_models);
+
+// A step of a study: the reference and some models for queries of one atmosphere.
+struct Evaluation {
+  Params params;
+  const std::vector<Model>* models;  // of the study
+  reference::Options how;
+  std::vector<Answers*> answers;  // of the study; their queries, one after the other, are evaluated together
+};
+// Returns the steps of a study in order. They refer to it.
+[[nodiscard]] std::vector<Evaluation> evaluations(Study& study, const Params& params);
+
 // Summarises a model's errors over the rays of one atmosphere that a predicate selects.
 [[nodiscard]] ErrorSummary summarise(const Study& study, std::size_t model, std::size_t atmosphere,
                                      const std::function<bool(const TestRay&)>& takes);

@@ -1,0 +1,181 @@
+#include "batch.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <filesystem>
+#include <mutex>
+
+#include "arguments.hpp"
+#include "cli.hpp"
+#include "files/files.hpp"
+#include "files/text.hpp"
+#include "tyndall/version.hpp"
+
+namespace tyndall::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+using files::concat;
+
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts = {};
+  ::gmtime_r(&now, &parts);
+  char text[32];
+  return std::string(text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts));
+}
+
+std::string folder_of(const std::string& path) { return fs::path(path).parent_path().string(); }
+
+// Returns the place of the first item with at least this number.
+auto place_of(const std::vector<ManifestItem>& items, std::uint64_t number) {
+  return std::lower_bound(items.begin(), items.end(), number,
+                          [](const ManifestItem& item, std::uint64_t n) { return item.number < n; });
+}
+
+bool holds(const std::vector<ManifestItem>& items, std::uint64_t number) {
+  const auto place = place_of(items, number);
+  return place != items.end() && place->number == number;
+}
+
+// Returns the items among `numbers` whose files are there as the manifest says, ordered by number.
+std::vector<ManifestItem> whole_items(const Manifest& manifest, const std::vector<std::uint64_t>& numbers,
+                                      const std::string& folder) {
+  std::vector<ManifestItem> out;
+  for (const ManifestItem& item : manifest.items) {
+    if (!std::binary_search(numbers.begin(), numbers.end(), item.number) || item.files.empty()) continue;
+    if (holds(out, item.number)) continue;
+    if (std::all_of(item.files.begin(), item.files.end(),
+                    [&](const ManifestFile& file) { return is_whole(file, folder); })) {
+      out.insert(place_of(out, item.number), item);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+struct Batch::State {
+  std::mutex mutex;  // guards the rest
+  Manifest manifest;
+  std::string path;    // of the manifest; empty without one
+  std::string folder;  // that contains it
+  std::string unit;
+  std::size_t wanted = 0;  // items of this run, with those that were there
+  Clock::time_point last_item = Clock::now();
+  Clock::time_point last_write = Clock::now();
+
+  Result<void> write() {
+    last_write = Clock::now();
+    manifest.time = utc_now();
+    return path.empty() ? Result<void>() : files::write_file(path, to_json(manifest));
+  }
+};
+
+void add_batch_options(Arguments& arguments, BatchOptions& options, const std::string& unit) {
+  arguments.value("--shard", "I/N", concat({"compute only part I of N of the ", unit, ", and write a manifest"}),
+                  [&options](const std::string& text) {
+                    const Result<Shard> shard = parse_shard(text, "--shard");
+                    if (!shard) return Result<void>(shard.error());
+                    options.shard = shard.value();
+                    options.sharded = true;
+                    return Result<void>();
+                  });
+  arguments.flag(
+      "--resume", options.resume,
+      "skip what the manifest of an earlier run lists, if it is there, undamaged and of the same parameters");
+}
+
+Result<Batch> Batch::begin(BatchDesc desc) {
+  Batch out;
+  out.state_ = std::make_shared<State>();
+  State& state = *out.state_;
+  state.unit = desc.unit;
+  state.wanted = desc.numbers.size();
+  out.numbers_ = std::move(desc.numbers);
+  if (!desc.options.active()) return out;
+  Manifest& manifest = state.manifest;
+  manifest.verb = desc.verb;
+  manifest.version = TYNDALL_VERSION_STRING;
+  manifest.output = fs::path(desc.output).filename().string();
+  manifest.shard = desc.options.shard;
+  manifest.total = desc.total;
+  manifest.inputs = std::move(desc.inputs);
+  state.path = manifest_path(desc.output, manifest.shard);
+  state.folder = folder_of(state.path);
+  std::error_code ignored;
+  if (desc.options.resume && fs::exists(state.path, ignored)) {
+    Result<Manifest> earlier = read_manifest(state.path);
+    if (!earlier) {
+      note(concat({"--resume: ", earlier.error().message, "; everything is made again"}));
+    } else if (earlier.value().verb != manifest.verb || earlier.value().inputs_hash() != manifest.inputs_hash()) {
+      note(concat({"--resume: '", files::one_line(state.path, 200), "' has other parameters (",
+                   files::one_line(first_difference(earlier.value().inputs, manifest.inputs)),
+                   "); everything is made again"}));
+    } else {
+      manifest.device = earlier.value().device;
+      manifest.items = whole_items(earlier.value(), out.numbers_, state.folder);
+      std::vector<std::uint64_t> missing;
+      for (const std::uint64_t number : out.numbers_) {
+        if (!holds(manifest.items, number)) missing.push_back(number);
+      }
+      out.numbers_ = std::move(missing);
+    }
+  }
+  if (Result<void> written = state.write(); !written) return std::move(written).error();
+  return out;
+}
+
+void Batch::set_device(const std::string& device) {
+  const std::scoped_lock lock(state_->mutex);
+  state_->manifest.device = device;
+}
+
+Result<void> Batch::finished(std::uint64_t number, const std::vector<std::string>& paths, const std::string& name) {
+  ManifestItem item;
+  item.number = number;
+  item.name = name;
+  if (!state_->path.empty()) {
+    for (const std::string& path : paths) {
+      Result<files::FileSum> sum = files::sum_of_file(path);
+      if (!sum) return std::move(sum).error();
+      item.files.push_back({relative_name(path, state_->folder), std::move(sum).value()});
+    }
+  }
+  const std::scoped_lock lock(state_->mutex);
+  const Clock::time_point now = Clock::now();
+  item.seconds = std::chrono::duration<double>(now - state_->last_item).count();
+  state_->last_item = now;
+  std::vector<ManifestItem>& items = state_->manifest.items;
+  items.insert(place_of(items, number), std::move(item));
+  return now - state_->last_write < std::chrono::seconds(1) ? Result<void>() : state_->write();
+}
+
+Result<void> Batch::end() {
+  const std::scoped_lock lock(state_->mutex);
+  state_->manifest.complete = state_->manifest.items.size() == state_->wanted;
+  return state_->write();
+}
+
+std::function<std::string()> Batch::describe() const {
+  return [state = state_]() -> std::string {
+    const std::scoped_lock lock(state->mutex);
+    std::string text = concat({std::to_string(state->manifest.items.size()), " of ", std::to_string(state->wanted), " ",
+                               state->unit, " are finished"});
+    if (state->path.empty()) return text;
+    const Result<void> written = state->write();
+    if (!written) return concat({text, "; ", written.error().message});
+    return concat({text, "; --resume makes the others"});
+  };
+}
+
+Result<void> check_batch_output(const std::string& output) {
+  const std::string folder = folder_of(output);
+  if (frame_path(folder, 0) == folder) return {};
+  return files::input_error(concat({"the frame number is in the name of a folder of '", files::one_line(output), "'"}),
+                            "-o", "expected it in the name of the file with --shard and --resume");
+}
+
+}  // namespace tyndall::cli

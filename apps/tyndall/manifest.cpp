@@ -1,0 +1,193 @@
+#include "manifest.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "config/scene_file.hpp"
+#include "files/files.hpp"
+#include "files/text.hpp"
+#include "input_files.hpp"
+#include "tyndall/version.hpp"
+
+namespace tyndall::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using files::concat;
+using nlohmann::ordered_json;
+
+constexpr int kFormat = 1;  // of manifests
+constexpr std::uint64_t kLargestManifest = std::uint64_t{1} << 30U;
+
+std::string hash_of(const Inputs& inputs) {
+  std::string text;
+  for (const auto& [name, value] : inputs) {
+    text.append(std::to_string(name.size())).append(":").append(name);
+    text.append(std::to_string(value.size())).append(":").append(value);
+  }
+  return files::checksum_text(text);
+}
+
+// The text that is stored has to be valid UTF-8, which names of files need not be.
+std::string stored(std::string_view text) { return files::one_line(text, text.size()); }
+
+ordered_json json_of(const ManifestItem& item) {
+  ordered_json out;
+  out["item"] = item.number;
+  if (!item.name.empty()) out["name"] = stored(item.name);
+  out["files"] = ordered_json::array();
+  for (const ManifestFile& file : item.files) {
+    out["files"].push_back({{"file", stored(file.name)}, {"bytes", file.sum.bytes}, {"checksum", file.sum.checksum}});
+  }
+  out["seconds"] = item.seconds;
+  return out;
+}
+
+// Throws an exception of the JSON library if a member is missing or has another type.
+Manifest from_json(const ordered_json& json) {
+  Manifest out;
+  out.verb = json.at("verb").get<std::string>();
+  out.version = json.at("version").get<std::string>();
+  out.device = json.at("device").get<std::string>();
+  out.time = json.at("time").get<std::string>();
+  out.output = json.at("output").get<std::string>();
+  const auto index = json.at("shard").get<std::uint64_t>();
+  const auto count = json.at("shards").get<std::uint64_t>();
+  if (index < 1 || index > count || count > kMaxShards) throw std::out_of_range("shard");
+  out.shard = {static_cast<std::uint32_t>(index - 1), static_cast<std::uint32_t>(count)};
+  out.total = json.at("total").get<std::uint64_t>();
+  out.complete = json.at("complete").get<bool>();
+  for (const auto& [name, value] : json.at("inputs").items()) out.inputs.emplace_back(name, value.get<std::string>());
+  if (json.at("inputs_hash").get<std::string>() != hash_of(out.inputs)) throw std::out_of_range("inputs_hash");
+  for (const ordered_json& made : json.at("items")) {
+    ManifestItem item;
+    item.number = made.at("item").get<std::uint64_t>();
+    item.name = made.value("name", std::string());
+    for (const ordered_json& file : made.at("files")) {
+      item.files.push_back({file.at("file").get<std::string>(),
+                            {file.at("bytes").get<std::uint64_t>(), file.at("checksum").get<std::string>()}});
+    }
+    item.seconds = made.at("seconds").get<double>();
+    out.items.push_back(std::move(item));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string Manifest::inputs_hash() const { return hash_of(inputs); }
+
+std::string Manifest::input(std::string_view name) const {
+  const auto found = std::find_if(inputs.begin(), inputs.end(), [&](const auto& pair) { return pair.first == name; });
+  return found == inputs.end() ? std::string() : found->second;
+}
+
+std::string shard_path(const std::string& output, const Shard& shard, const std::string& ending) {
+  if (shard.count == 1) return output;
+  return concat({output, ".shard-", std::to_string(shard.index + 1), "-of-", std::to_string(shard.count), ending});
+}
+
+std::string manifest_path(const std::string& output, const Shard& shard) {
+  return concat({output, ".shard-", std::to_string(shard.index + 1), "-of-", std::to_string(shard.count), ".json"});
+}
+
+std::string to_json(const Manifest& manifest) {
+  ordered_json out;
+  out["format"] = kFormat;
+  out["verb"] = manifest.verb;
+  out["version"] = manifest.version;
+  out["device"] = stored(manifest.device);
+  out["time"] = manifest.time;
+  out["output"] = stored(manifest.output);
+  out["shard"] = manifest.shard.index + 1;
+  out["shards"] = manifest.shard.count;
+  out["total"] = manifest.total;
+  out["complete"] = manifest.complete;
+  double seconds = 0.0;
+  for (const ManifestItem& item : manifest.items) seconds += item.seconds;
+  out["seconds"] = seconds;
+  out["inputs_hash"] = manifest.inputs_hash();
+  out["inputs"] = ordered_json::object();
+  for (const auto& [name, value] : manifest.inputs) out["inputs"][name] = value;
+  out["items"] = ordered_json::array();
+  for (const ManifestItem& item : manifest.items) out["items"].push_back(json_of(item));
+  return out.dump(1) + "\n";
+}
+
+Result<Manifest> parse_manifest(std::string_view text, std::string_view name) {
+  constexpr std::string_view kExpected = "expected a manifest, OUT.shard-I-of-N.json, that --shard or --resume wrote";
+  const ordered_json json = ordered_json::parse(text, nullptr, false);
+  if (!json.is_object()) return files::input_error("it is not a JSON object", files::one_line(name, 200), kExpected);
+  try {
+    if (json.at("format").get<int>() != kFormat)
+      return files::input_error("it has an unknown format", files::one_line(name, 200), kExpected);
+    return from_json(json);
+  } catch (const std::exception&) {
+    return files::input_error("it is not a manifest, or it is damaged", files::one_line(name, 200), kExpected);
+  }
+}
+
+Result<Manifest> read_manifest(const std::string& path) {
+  Result<std::string> text = files::read_file(path, kLargestManifest);
+  if (!text) return std::move(text).error();
+  return parse_manifest(text.value(), path);
+}
+
+std::string relative_name(const std::string& path, const std::string& folder) {
+  std::error_code failed;
+  const fs::path from = fs::absolute(folder.empty() ? "." : folder, failed);
+  return fs::absolute(path, failed).lexically_normal().lexically_relative(from.lexically_normal()).string();
+}
+
+bool is_whole(const ManifestFile& file, const std::string& folder) {
+  const std::string path = (fs::path(folder) / file.name).string();
+  std::error_code failed;
+  if (fs::file_size(path, failed) != file.sum.bytes || failed) return false;
+  const Result<files::FileSum> sum = files::sum_of_file(path);
+  return sum && sum.value() == file.sum;
+}
+
+std::string first_difference(const Inputs& a, const Inputs& b) {
+  for (std::size_t i = 0; i < std::max(a.size(), b.size()); ++i) {
+    if (i >= a.size()) return b[i].first;
+    if (i >= b.size() || a[i] != b[i]) return a[i].first;
+  }
+  return {};
+}
+
+void add_file(Inputs& inputs, const std::string& name, const std::string& path) {
+  const Result<files::FileSum> sum = files::sum_of_file(path);
+  inputs.emplace_back(name, sum ? concat({"checksum ", sum.value().checksum}) : std::string("unreadable"));
+}
+
+Inputs common_inputs(const CommonOptions& options) {
+  Inputs out = {{"version", TYNDALL_VERSION_STRING}};
+  for (const config::Row& row : config::rows()) {
+    const std::string key = row.key();
+    // These say where tables are stored.
+    if (key == "tables.cache" || key == "tables.cache_limit_mib") continue;
+    const std::string value = config::value_text(row, options.settings);
+    std::error_code failed;
+    if (row.info.type == ParamType::string && row.info.unit == "file" && fs::is_regular_file(value, failed)) {
+      add_file(out, key, value);
+    } else {
+      out.emplace_back(key, stored(value));
+    }
+  }
+  if (!options.settings.path.empty()) {
+    config::Settings only_path;
+    only_path.path = options.settings.path;
+    out.emplace_back("[[path]]", concat({"checksum ", files::checksum_text(config::to_toml(only_path))}));
+  }
+  // The files of parameters are above. The scene file is left out, because its values are.
+  std::size_t number = 0;
+  for (const InputFile& file : input_files(options)) {
+    if (file.name.starts_with("a file of "))
+      add_file(out, concat({file.name, " ", std::to_string(++number)}), file.path);
+  }
+  return out;
+}
+
+}  // namespace tyndall::cli

@@ -1,0 +1,19 @@
+// The file of a shard of `validate`: the answers of its queries, as JSON. `tyndall merge` reads it.
+#pragma once
+
+#include <string>
+
+#include "validate/parts.hpp"
+
+namespace tyndall::cli {
+
+constexpr const char* kPartEnding = ".answers.json";  // see shard_path()
+
+// Returns the text of the file, which restores every number exactly.
+[[nodiscard]] std::string part_json(const validate::StudyPart& rays, const validate::ColorPart& colors);
+
+// Reads such a text. Errors (invalid_argument) call it `name`.
+[[nodiscard]] Result<void> parse_part(std::string_view text, std::string_view name, validate::StudyPart& rays,
+                                      validate::ColorPart& colors);
+
+}  // namespace tyndall::cli
