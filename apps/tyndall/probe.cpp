@@ -125,7 +125,7 @@ Result<std::vector<ProbeAnswer>> evaluate(ProbeSettings& settings, const scene::
     answers = evaluate_model(model.id, settings, table.queries);
   }
   for (const std::string& text : notes) note(text);
-  keep_rows(table, shard);
+  select_rows(table, shard);
   return answers;
 }
 

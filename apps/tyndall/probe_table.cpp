@@ -122,17 +122,17 @@ Result<ProbeTable> read_queries(const std::string& path) {
   return table;
 }
 
-void keep_rows(ProbeTable& table, const Shard& shard) {
-  ProbeTable kept;
+void select_rows(ProbeTable& table, const Shard& shard) {
+  ProbeTable chosen;
   const std::size_t columns = table.input.header.size();
   for (const std::uint64_t row : shard.items(table.input.rows())) {
-    for (std::size_t i = 0; i < columns; ++i) kept.input.fields.push_back(table.input.field(row, i));
-    kept.input.lines.push_back(table.input.lines[row]);
-    kept.queries.push_back(table.queries[row]);
+    for (std::size_t i = 0; i < columns; ++i) chosen.input.fields.push_back(table.input.field(row, i));
+    chosen.input.lines.push_back(table.input.lines[row]);
+    chosen.queries.push_back(table.queries[row]);
   }
-  table.input.fields = std::move(kept.input.fields);
-  table.input.lines = std::move(kept.input.lines);
-  table.queries = std::move(kept.queries);
+  table.input.fields = std::move(chosen.input.fields);
+  table.input.lines = std::move(chosen.input.lines);
+  table.queries = std::move(chosen.queries);
 }
 
 std::string answers_as_csv(const ProbeTable& table, std::span<const ProbeAnswer> answers, AnswerColumns with) {

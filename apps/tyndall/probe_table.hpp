@@ -20,7 +20,7 @@ struct ProbeTable {
 [[nodiscard]] Result<ProbeTable> read_queries(const std::string& path);
 
 // Removes the rows that do not belong to the shard.
-void keep_rows(ProbeTable& table, const Shard& shard);
+void select_rows(ProbeTable& table, const Shard& shard);
 
 // Returns the input's columns unchanged, followed by the result columns. Input columns with the name of a result
 // column, as in a table that `probe` has written, are dropped.

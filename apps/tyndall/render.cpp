@@ -60,15 +60,10 @@ Result<void> find_place(scene::CameraPath& path, const scene::Scene& scene) {
   return {};
 }
 
-// Returns an error if a part of the frames would differ from the same frames of a whole sequence.
-Result<void> check_batch(const CommonOptions& options, const BatchOptions& batch) {
-  if (!batch.active()) return {};
+// Returns whether the exposure of a frame depends on the frames before it.
+bool adapts(const CommonOptions& options) {
   const scene::TonemapParams& tonemap = options.settings.scene.tonemap;
-  if (options.frames > 1 && scene::is_auto_exposed(tonemap) && tonemap.light_adaptation.value != 0) {
-    return files::input_error("each frame depends on those before it", "tonemap.light_adaptation",
-                              "expected false with --shard or --resume, or no automatic exposure");
-  }
-  return check_batch_output(options.output);
+  return options.frames > 1 && scene::is_auto_exposed(tonemap) && tonemap.light_adaptation.value != 0;
 }
 
 // Starts the batch of the frames of this run.
@@ -101,7 +96,12 @@ int run_render(Args args) {
   if (Result<void> r = resolve(options); !r) return fail(r.error());
   if (Result<void> r = check_output(options, {".png", ".exr"}); !r) return fail(r.error());
   if (Result<void> r = check_units(units, options); !r) return fail(r.error());
-  if (Result<void> r = check_batch(options, batch_options); !r) return fail(r.error());
+  if (batch_options.active()) {
+    if (Result<void> r = check_batch_output(options.output); !r) return fail(r.error());
+    if (adapts(options)) {
+      note("tonemap.light_adaptation has no effect with --shard and --resume; each frame is exposed independently");
+    }
+  }
   Result<Batch> batch = begin_batch(options, batch_options, time_step, units);
   if (!batch) return fail(batch.error());
   interruption.describe_by(batch.value().describe());
@@ -134,7 +134,9 @@ int run_render(Args args) {
     now.scene =
         scene::pose_at(now.path, seconds, options.settings.scene, static_cast<double>(now.effect.planet.radius_m));
     if (Result<void> r = scene.value()->set_scene(now.scene); !r) return fail(r.error());
-    if (Result<void> r = scene.value()->render(seconds); !r) return fail(r.error());
+    // A shard does not draw the frames that this one would adapt from.
+    const std::optional<double> step_s = batch_options.active() ? std::optional<double>(0.0) : std::nullopt;
+    if (Result<void> r = scene.value()->render(seconds, false, step_s); !r) return fail(r.error());
     if (Result<void> r = write_frame(*scene.value(), path, now, units); !r) return fail(r.error());
     if (Result<void> r = batch.value().finished(number, {path}); !r) return fail(r.error());
   }

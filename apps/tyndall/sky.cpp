@@ -407,7 +407,7 @@ int run_sky(Args args) {
     }
   }
   if (Result<void> r = batch.value().end(); !r) return fail(r.error());
-  if (!sky.list.empty() && options.json) printed = concat({"[\n", printed, "\n]\n"});
+  if (!sky.list.empty() && options.json) printed = printed.empty() ? "[]\n" : concat({"[\n", printed, "\n]\n"});
   return printed.empty() ? kDone : print(printed);
 }
 

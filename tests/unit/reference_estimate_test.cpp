@@ -57,6 +57,31 @@ TEST(ReferenceEstimate, IndependentOfThreads) {
   EXPECT_FALSE(same_bits(run(p, queries, options)[0].radiance, one[0].radiance));
 }
 
+TEST(ReferenceEstimate, PartsOfTheQueriesHaveTheSameEstimates) {
+  const Params p;
+  // The eye below sea level extends the atmosphere for all queries.
+  const std::vector<RayQuery> queries = {ray(0.0, 60.0, 40.0, 20.0), ray(500.0, 30.0, 70.0, 20.0),
+                                         ray(-300.0, 80.0, 60.0, 100.0), ray(9000.0, 95.0, 20.0, 10.0)};
+  Options options;
+  options.samples = 500;
+  const auto whole = run(p, queries, options);
+  for (const std::uint64_t stride : {2U, 3U, 7U}) {
+    std::size_t count = 0;
+    options.stride = stride;
+    for (options.first = 0; options.first < stride; ++options.first) {
+      const auto part = run(p, queries, options);
+      for (std::size_t i = 0; i < part.size(); ++i, ++count) {
+        EXPECT_TRUE(same_bits(part[i].radiance, whole[options.first + i * stride].radiance));
+        EXPECT_TRUE(same_bits(part[i].transmittance, whole[options.first + i * stride].transmittance));
+      }
+    }
+    EXPECT_EQ(count, queries.size());
+  }
+  EXPECT_EQ(traced_samples(500), whole[0].samples);
+  options.stride = 0;
+  EXPECT_FALSE(trace(p, queries, options).ok());
+}
+
 // Compares the spread of many independent estimates of one ray with their standard errors.
 void expect_honest_errors(const RayQuery& query) {
   constexpr std::size_t kRepeats = 200;

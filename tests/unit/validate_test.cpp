@@ -7,6 +7,7 @@
 
 #include "reference/atmosphere.hpp"
 #include "validate/color.hpp"
+#include "validate/parts.hpp"
 #include "validate/plot.hpp"
 #include "validate/rays.hpp"
 #include "validate/report.hpp"
@@ -304,6 +305,39 @@ TEST(ValidateStudy, FindsAllErrorsAndNoOthers) {
   ASSERT_TRUE(again.ok());
   EXPECT_EQ(to_html(again.value(), origin), html);
   EXPECT_EQ(to_json(again.value(), colors, origin), to_json(study.value(), colors, origin));
+}
+
+TEST(ValidateStudy, PartsGiveTheSameReport) {
+  Options options;
+  options.rays = 18;
+  options.samples = 40;
+  options.orders = 2;
+  // Unlike a path tracer, it does not depend on which other rays there are.
+  const auto answer = [](const Params&, std::span<const RayQuery> queries) -> Result<std::vector<Rgb>> {
+    std::vector<Rgb> out;
+    for (const RayQuery& q : queries) out.push_back({0.1 * q.view_zenith_rad, 0.1 * q.sun_zenith_rad, 0.2});
+    return out;
+  };
+  const std::vector<Model> models = {{"first", "", 1, answer}, {"all", "", 0, answer}};
+  const std::vector<Model> horizon = {{"at the horizon", "", 0, answer}};
+  const auto ignore = [](double) {};
+  const Result<Study> whole = run_study({}, options, models, horizon, ignore);
+  ASSERT_TRUE(whole.ok());
+  std::vector<StudyPart> parts;
+  std::size_t count = color_rays().size();
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    Result<StudyPart> part = run_study_part({}, options, models, horizon, {i, 3}, ignore);
+    ASSERT_TRUE(part.ok());
+    count += part.value().size();
+    parts.push_back(std::move(part).value());
+  }
+  EXPECT_EQ(count, count_queries({}, options, true));
+  const Result<Study> joined = join_study({}, options, models, horizon, parts);
+  ASSERT_TRUE(joined.ok());
+  EXPECT_EQ(to_html(joined.value(), {}), to_html(whole.value(), {}));
+  parts[1].pop_back();
+  EXPECT_FALSE(join_study({}, options, models, horizon, parts).ok());
+  EXPECT_FALSE(join_study({}, options, models, {}, {}).ok());
 }
 
 TEST(ValidateStudy, AFailingModelEndsIt) {
