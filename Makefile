@@ -22,8 +22,10 @@
 #   make soak            changes the viewer at random for two minutes, and draws SOAK_FRAMES (10000) frames of random changes
 #                        with the validation layer, on both CPU drivers
 #   make fuzz            runs every fuzzer for FUZZ_SECONDS (60) and goes on where the last run ended; FUZZ names some of them
+#   make interruptions   interrupts the program at INTERRUPTIONS (200) random moments, and checks what is left
+#   make slurm-test      installs Slurm and GNU parallel, and runs the commands of docs/batch.md with them
 #   make twilight        writes the table of illuminances by the sun's elevation, docs/generated/twilight.md
-.PHONY: fuzz soak python-figures demo check doxygen pictures accuracy epipolar-study models-study twilight bundle bundle-chroot packages packages-check wheel-check python-comparison site site-check abi passes setup build format format-check tidy tidy-check tidy-all sanitize-short sanitize clean
+.PHONY: fuzz soak interruptions slurm-test python-figures demo check doxygen pictures accuracy epipolar-study models-study twilight bundle bundle-chroot packages packages-check wheel-check python-comparison site site-check abi passes setup build format format-check tidy tidy-check tidy-all sanitize-short sanitize clean
 
 PRESET ?= release
 # The CPU device that computes the values that `tyndall report` compares other devices with.
@@ -249,6 +251,21 @@ soak: build
 	@ctest --preset ci -C soak --no-tests=error -R MemoryStaysBounded -V
 	@build/release/bin/soak --frames $(SOAK_FRAMES) --seed $(SOAK_SEED)
 	@tests/gpu/second_driver.sh build/second_driver/vk_swiftshader_icd.json build/release/bin/soak --frames $(SOAK_FRAMES) --seed $(SOAK_SEED)
+
+# Signals at random moments of render, sky, tables, probe and validate.
+INTERRUPTIONS ?= 200
+INTERRUPTION_SEED ?= 1
+interruptions: PRESET = ci
+interruptions: TARGETS = tyndall
+interruptions: build
+	@/usr/bin/python3 -B tools/interruptions.py build/release/bin/tyndall --count $(INTERRUPTIONS) --seed $(INTERRUPTION_SEED)
+
+# The commands of docs/batch.md with GNU parallel and a Slurm cluster of this machine, in build/slurm. Needs root.
+slurm-test: PRESET = ci
+slurm-test: TARGETS = tyndall
+slurm-test: PACKAGES = slurm-wlm munge parallel
+slurm-test: build
+	@tools/slurm_test.sh build/slurm build/release/bin/tyndall
 
 clean:
 	rm -rf build out
