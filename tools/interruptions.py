@@ -39,7 +39,7 @@ def commands(folder):
                    "-o", f"{out}/f_%d.exr", "--resume", *SMALL],
         "sky": ["sky", "--list", skies, "--size", "32x16", "--sun", "split", "-o", f"{out}/sky_%d.exr", "--resume", *SMALL],
         "tables": ["tables", "-o", f"{out}/tables", *SMALL],
-        "probe": ["probe", "--queries", queries, "--model", "reference", "--samples", "100000", "-o", f"{out}/r.csv", "--resume"],
+        "probe": ["probe", "--queries", queries, "--model", "reference", "--samples", "20000", "-o", f"{out}/r.csv", "--resume"],
         "validate": ["validate", "--rays", "18", "--samples", "40", "--orders", "2", "-o", f"{out}/v.html",
                      "--markdown", f"{out}/v.md", "--resume", *SMALL],
     }
@@ -175,9 +175,10 @@ class Check:
         done = 0
         while done < count:
             self.prepare(verb)
-            # Half of the runs start with an empty cache, so that its files are interrupted as well.
-            if random.random() < 0.5:
-                shutil.copytree(os.path.join(self.work, "good-" + verb, "cache"), os.path.join(self.folder, "cache"))
+            # Half of the runs start with an empty cache, so that its files are interrupted as well. That takes long.
+            cache = os.path.join(self.work, "good-" + verb, "cache")
+            if os.path.exists(cache) and (count < 20 or random.random() < 0.5):
+                shutil.copytree(cache, os.path.join(self.folder, "cache"))
             arguments = commands(self.folder)[verb]
             for _ in range(min(chain, count - done)):
                 what = self.interrupt(verb, arguments, random.choice(SIGNALS), random.uniform(0.0, duration), row)
