@@ -390,7 +390,7 @@ TEST_F(CliSky, TheOptionsHoldInsteadOfTheScenesSun) {
 
 TEST_F(CliSky, ErrorsAreReported) {
   const std::string either = "; expected either --sun-elevation-deg E --sun-azimuth-deg A or --at LAT,LON --time "
-                             "ISO8601\n";
+                             "ISO8601, or --list LIST.csv\n";
   const auto error = [&](std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "sky");
     arguments.insert(arguments.end(), {"-o", scratch_.at("none.exr"), "--size", "4x2"});
