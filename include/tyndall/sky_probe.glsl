@@ -1,5 +1,6 @@
 // Light of the sky from the coefficients of tyndall::SkyProbe. Include this file in your own shaders, and declare the
 // buffer there:  layout(std140, set = S, binding = B) uniform Sky { vec4 sky_coefficients[9]; };
+// The cube map of SkyProbe::cube(), if there is one, is a  uniform samplerCube.
 // Directions are unit vectors in the axes in which SkyProbeInputs were given.
 #ifndef TYNDALL_SKY_PROBE_GLSL
 #define TYNDALL_SKY_PROBE_GLSL
@@ -43,6 +44,23 @@ vec3 tyndall_sky_radiance(vec4 coefficients[9], vec3 d) {
   vec3 sum = vec3(0.0);
   for (int i = 0; i < 9; ++i) sum += basis[i] * coefficients[i].rgb;
   return max(sum, vec3(0.0));
+}
+
+// Returns the level of the cube map for a surface with this perceptual roughness, the square root of the alpha of GGX.
+float tyndall_sky_level(samplerCube cube, float roughness) {
+  return clamp(roughness, 0.0, 1.0) * float(textureQueryLevels(cube) - 4);
+}
+
+// Returns the radiance around the direction `d`, into which the view is reflected, for a surface with this roughness.
+// Multiply it by the reflectance of the surface, as in the split-sum approximation of Karis.
+vec3 tyndall_sky_reflection(samplerCube cube, vec3 d, float roughness) {
+  return textureLod(cube, d, tyndall_sky_level(cube, roughness)).rgb;
+}
+
+// Returns the irradiance of a surface with the normal `normal`, without direct sunlight, from the cube map. For normals
+// that are neither up nor down, it is more accurate than that from the coefficients.
+vec3 tyndall_sky_irradiance(samplerCube cube, vec3 normal) {
+  return 3.141592653589793 * tyndall_sky_reflection(cube, normal, 1.0);
 }
 
 #endif

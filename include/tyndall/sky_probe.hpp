@@ -1,5 +1,6 @@
-// A sky probe: the light of the whole sky around a point, for ambient light. It is described by spherical harmonics of
-// order 2, which tyndall/sky_probe.glsl evaluates in your shaders.
+// A sky probe: the light of the whole sky around a point, for ambient light and reflections. It is described by
+// spherical harmonics of order 2, and optionally by a small cube map; tyndall/sky_probe.glsl evaluates both in your
+// shaders.
 //
 // Contents: the radiance of the sky from every direction above the horizon, and below it that of a ground with
 // planet.ground_albedo, lit by sun and sky, seen through the atmosphere. All orders of scattering of the tables,
@@ -9,6 +10,13 @@
 // Coefficients: nine vec4 in a buffer, whose rgb are the integrals of the radiance times the functions of
 // tyndall_sky_basis(). The irradiance of surfaces that face up or down is exact. docs/sky_probe.md states the error of
 // other normals.
+//
+// Cube map: RGBA16F, with the radiance in rgb and 1 in alpha. Level 0 holds the radiance at the centres of its texels.
+// The others are filtered for reflections in rough surfaces, as Karis, "Real Shading in Unreal Engine 4" (2013): means
+// under the lobe of the GGX distribution with alpha = roughness^2, where the view, the normal and the reflected ray
+// coincide. The roughness of a level is its number over `levels` - 4, and 1 for the last four. At 1 it is the mean
+// under the cosine, the irradiance over pi. Radiance beyond 65504 is clamped, so choose the unit of Sun::irradiance
+// accordingly.
 //
 // A frame:   probe.record(cmd, inputs, budget);   // then a barrier from COMPUTE_SHADER / SHADER_WRITE to your shaders
 //
@@ -39,30 +47,55 @@ struct SkyCoefficients {
   VkDeviceSize size = 0;             // [bytes]
 };
 
+// The cube map, in layout GENERAL.
+struct SkyCube {
+  VkImage image = VK_NULL_HANDLE;      // six layers: +x, -x, +y, -y, +z, -z; can also be copied
+  VkImageView view = VK_NULL_HANDLE;   // a cube map with all levels
+  VkSampler sampler = VK_NULL_HANDLE;  // linear, also between levels
+  std::uint32_t size = 0;              // width of a face at level 0 [texels]; 0 without a cube map
+  std::uint32_t levels = 0;            // down to one texel per face
+};
+
+struct SkyProbeDesc {
+  std::uint32_t frames_in_flight = 2;  // [1; 8] - how many calls of record() may be pending
+  // 32, 64, 128, or 0 for no cube map [texels] - width of a face. Twice the width takes four times the memory and about
+  // four times the slices.
+  std::uint32_t cube_size = 0;
+};
+
 class TYNDALL_API SkyProbe {
  public:
   // Returns the memory of a probe [bytes]. It is not part of the effect's query_memory().
-  static Result<MemoryUsage> query_memory(const DeviceInfo& device, std::uint32_t frames_in_flight);
+  static Result<MemoryUsage> query_memory(const DeviceInfo& device, const SkyProbeDesc& desc);
+  static Result<MemoryUsage> query_memory(const DeviceInfo& device, std::uint32_t frames_in_flight) {
+    return query_memory(device, SkyProbeDesc{frames_in_flight, 0});
+  }
   // Makes the pipelines and allocates all memory. The probe uses the effect's tables. Destroy it before the effect,
-  // which may be moved. `frames_in_flight` as in EffectDesc: how many calls of record() may be pending.
-  static Result<SkyProbe> create(Effect& effect, std::uint32_t frames_in_flight = 2);
+  // which may be moved. Without a SkyProbeDesc, there is no cube map.
+  static Result<SkyProbe> create(Effect& effect, const SkyProbeDesc& desc);
+  static Result<SkyProbe> create(Effect& effect, std::uint32_t frames_in_flight = 2) {
+    return create(effect, SkyProbeDesc{frames_in_flight, 0});
+  }
   // A moved-from SkyProbe can be destroyed or assigned to. Its functions return an error, null or zeros.
   SkyProbe(SkyProbe&&) noexcept;
   SkyProbe& operator=(SkyProbe&&) noexcept;
   // Destroys everything immediately. All recorded commands must have completed.
   ~SkyProbe();
 
-  // Records at most `budget` of the slices of an update, by default all of them. The coefficients change with the last
-  // slice only. The inputs, and scattering.scale, take effect with the first slice of an update; a call after the last
-  // slice begins another update, and so does the first call after other tables are complete. An error if tables were
-  // never built, if scattering.medium is homogeneous, or if the commands of the call frames_in_flight earlier have not
-  // completed. Allocates nothing. The last slice waits for all earlier commands of the queue that may read the
-  // coefficients; wait for COMPUTE_SHADER / SHADER_WRITE before you read them.
+  // Records at most `budget` of the slices of an update, by default all of them. Coefficients and cube map change with
+  // the last slice only. The inputs, and scattering.scale, take effect with the first slice of an update; a call after
+  // the last slice begins another update, and so does the first call after other tables are complete. An error if
+  // tables were never built, if scattering.medium is homogeneous, or if the commands of the call frames_in_flight
+  // earlier have not completed. Allocates nothing. The last slice waits for all earlier commands of the queue that may
+  // read the coefficients or the cube map; wait for COMPUTE_SHADER / SHADER_WRITE before you read them.
   Result<Progress> record(VkCommandBuffer cmd, const SkyProbeInputs& inputs, std::uint32_t budget = UINT32_MAX);
 
   // Returns the coefficients. The buffer is the same for the probe's whole life. Its contents are undefined before the
   // first call of record(), and zero until the first update is complete.
   [[nodiscard]] SkyCoefficients coefficients() const;
+  // Returns the cube map; null without one. The image is the same for the probe's whole life. It is undefined before
+  // the first call of record(), and black until the first update is complete.
+  [[nodiscard]] SkyCube cube() const;
   // Returns the memory in use.
   [[nodiscard]] MemoryUsage memory() const;
 

@@ -419,6 +419,29 @@ typedef struct TyndallSkyCoefficients {
   VkDeviceSize size;
 } TyndallSkyCoefficients;
 
+typedef struct TyndallSkyProbeDesc {
+  uint32_t struct_size;
+  uint32_t frames_in_flight;
+  uint32_t cube_size;
+} TyndallSkyProbeDesc;
+TYNDALL_API TyndallStatus tyndall_sky_probe_desc_defaults(TyndallSkyProbeDesc* desc, size_t struct_size);
+
+typedef struct TyndallSkyCube {
+  uint32_t struct_size;
+  uint32_t size;
+  VkImage image;
+  VkImageView view;
+  VkSampler sampler;
+  uint32_t levels;
+  uint32_t reserved;
+} TyndallSkyCube;
+
+// The functions that end in _with take all settings; the others make a probe without a cube map.
+TYNDALL_API TyndallStatus tyndall_sky_probe_query_memory_with(const TyndallDeviceInfo* info,
+                                                              const TyndallSkyProbeDesc* desc,
+                                                              TyndallMemoryUsage* memory);
+TYNDALL_API TyndallStatus tyndall_sky_probe_create_with(TyndallEffect* effect, const TyndallSkyProbeDesc* desc,
+                                                        TyndallSkyProbe** probe);
 TYNDALL_API TyndallStatus tyndall_sky_probe_query_memory(const TyndallDeviceInfo* info, uint32_t frames_in_flight,
                                                          TyndallMemoryUsage* memory);
 TYNDALL_API TyndallStatus tyndall_sky_probe_create(TyndallEffect* effect, uint32_t frames_in_flight,
@@ -429,6 +452,7 @@ TYNDALL_API TyndallStatus tyndall_sky_probe_record(TyndallSkyProbe* probe, VkCom
                                                    TyndallProgress* progress);
 TYNDALL_API TyndallStatus tyndall_sky_probe_coefficients(const TyndallSkyProbe* probe,
                                                          TyndallSkyCoefficients* coefficients);
+TYNDALL_API TyndallStatus tyndall_sky_probe_cube(const TyndallSkyProbe* probe, TyndallSkyCube* cube);
 TYNDALL_API TyndallStatus tyndall_sky_probe_memory(const TyndallSkyProbe* probe, TyndallMemoryUsage* memory);
 
 #ifdef __cplusplus

@@ -8,6 +8,11 @@ const uint kSkyProbeRows = 48u;      // 4 kSkyProbeNodes
 const uint kSkyProbeAzimuths = 32u;  // a multiple of 4
 const uint kSkyProbeSums = 11u;      // vec4 per row: 9 coefficients, and the irradiance from above and from below
 
+// The coarsest level of the cube map's radiance that is stored, and the level that is filtered for roughness 1
+// [texels].
+const uint kSkyCubeCoarse = 16u;
+const uint kSkyCubeRoughest = 8u;
+
 struct SkyProbeConstants {
   vec3 up;  // directions in the axes of the caller
   float altitude_m;
@@ -15,9 +20,13 @@ struct SkyProbeConstants {
   float cos_sun_zenith;
   vec3 side;  // horizontal, perpendicular to it
   float sin_sun_zenith;
-  vec3 irradiance;  // of the sun above the atmosphere
-  float unused_0;
+  vec3 irradiance;        // of the sun above the atmosphere
+  uint integrate_single;  // 1: the tables lack single scattering
   TableShape shape;
+  uint cube_size;  // of a face [texels]
+  uint unused_0;
+  uint unused_1;
+  uint unused_2;
 };
 
 #endif

@@ -5,19 +5,13 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
-#include "frame/phase_block.glsl"
+#include "sky_probe/sky_radiance.glsl"
 
-#include "frame/ground_light.glsl"
-#include "frame/table_lookup.glsl"
-#include "shared/sky_probe.h"
-#include "shared/tables.h"
 #include "tyndall/sky_probe.glsl"
 
 layout(local_size_x = 32) in;
 
-layout(std430, binding = 1) readonly buffer sky_probe_block { SkyProbeConstants probe; };
 layout(std430, binding = 2) writeonly buffer sky_probe_rows_block { vec4 rows[]; };
-layout(binding = 4) uniform sampler2D sky_irradiance_table;
 layout(push_constant) uniform Push { uint first; };
 
 const float kPi = 3.14159265358979;
@@ -55,20 +49,6 @@ Row row_of(uint index, float sun, float horizon) {
   return row;
 }
 
-vec3 radiance(Row row, float nu) {
-  float h = probe.altitude_m;
-  TableRay ray = table_ray(medium, h, cos(row.zenith), probe.cos_sun_zenith, nu, row.below);
-  TableAngle angle = table_angle(probe.shape, medium, nu);
-  vec3 integral = density_integral_along(medium, h, ray.cos_zenith, ray.end_m);
-  InScattering scattered = inscattering_from_integral(probe.shape, medium, angle, ray, integral);
-  Spectrum sum = scattered.single + scattered.high * deep_factor(medium, ray);
-  if (row.below) {
-    sum += transmittance(medium, integral) *
-           ground_light(medium, sky_irradiance_table, h, probe.cos_sun_zenith, nu, ray.end_m);
-  }
-  return COLOR(sum);
-}
-
 void main() {
   uint index = first + gl_WorkGroupID.x;
   uint azimuth = gl_LocalInvocationIndex;
@@ -80,7 +60,7 @@ void main() {
   float sin_zenith = sin(row.zenith);
   float nu = clamp(mu * probe.cos_sun_zenith + sin_zenith * probe.sin_sun_zenith * cos(phi), -1.0, 1.0);
   float weight = row.weight * 2.0 * kPi * g.x * g.y;
-  light[azimuth] = weight > 0.0 ? weight * radiance(row, nu) : vec3(0.0);
+  light[azimuth] = weight > 0.0 ? weight * sky_radiance(cos(row.zenith), nu, row.below) : vec3(0.0);
   vec3 in_plane = mu * probe.up + sin_zenith * cos(phi) * probe.ahead;
   vec3 beside = sin_zenith * sin(phi) * probe.side;
   directions[0][azimuth] = in_plane + beside;

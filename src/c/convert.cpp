@@ -285,6 +285,33 @@ TyndallSkyCoefficients to_c(const SkyCoefficients& coefficients) {
   return out;
 }
 
+SkyProbeDesc to_cpp(const TyndallSkyProbeDesc& c) {
+  SkyProbeDesc out;
+  auto& [frames_in_flight, cube_size] = out;
+  frames_in_flight = c.frames_in_flight;
+  cube_size = c.cube_size;
+  return out;
+}
+
+TyndallSkyProbeDesc to_c(const SkyProbeDesc& desc) {
+  const auto& [frames_in_flight, cube_size] = desc;
+  TyndallSkyProbeDesc out = {};
+  out.frames_in_flight = frames_in_flight;
+  out.cube_size = cube_size;
+  return out;
+}
+
+TyndallSkyCube to_c(const SkyCube& cube) {
+  const auto& [image, view, sampler, size, levels] = cube;
+  TyndallSkyCube out = {};
+  out.image = image;
+  out.view = view;
+  out.sampler = sampler;
+  out.size = size;
+  out.levels = levels;
+  return out;
+}
+
 TyndallMemoryUsage to_c(const MemoryUsage& memory) {
   const auto& [persistent, transient, host] = memory;
   TyndallMemoryUsage out = {};

@@ -25,6 +25,9 @@ namespace tyndall::c {
 [[nodiscard]] TyndallAtmosphereInputs to_c(const AtmosphereInputs& inputs);
 [[nodiscard]] SkyProbeInputs to_cpp(const TyndallSkyProbeInputs& c);
 [[nodiscard]] TyndallSkyProbeInputs to_c(const SkyProbeInputs& inputs);
+[[nodiscard]] SkyProbeDesc to_cpp(const TyndallSkyProbeDesc& c);
+[[nodiscard]] TyndallSkyProbeDesc to_c(const SkyProbeDesc& desc);
+[[nodiscard]] TyndallSkyCube to_c(const SkyCube& cube);
 [[nodiscard]] TyndallSkyCoefficients to_c(const SkyCoefficients& coefficients);
 
 [[nodiscard]] TyndallMemoryUsage to_c(const MemoryUsage& memory);

@@ -45,6 +45,8 @@ TYNDALL_PUBLISHED(TyndallLightTables, sky_irradiance, sky_irradiance)
 TYNDALL_PUBLISHED(TyndallScatteringTables, high_orders, high_orders)
 TYNDALL_PUBLISHED(TyndallSkyProbeInputs, sun, sun)
 TYNDALL_PUBLISHED(TyndallSkyCoefficients, size, size)
+TYNDALL_PUBLISHED(TyndallSkyProbeDesc, cube_size, cube_size)
+TYNDALL_PUBLISHED(TyndallSkyCube, reserved, reserved)
 #undef TYNDALL_PUBLISHED
 // NOLINTEND(bugprone-sizeof-expression)
 

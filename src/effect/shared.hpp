@@ -55,7 +55,7 @@ static_assert(sizeof(QuadratureRay) == 80 + 40 * sizeof(RayNode) && sizeof(RayNo
               "the layouts of tables must agree with std430");
 static_assert(sizeof(EpipolarConstants) == 128 && sizeof(EpipolarSlice) == 32 && sizeof(SliceLine) == 32,
               "the layouts of epipolar sampling must agree with std430");
-static_assert(sizeof(SkyProbeConstants) == 96, "the layout of sky probes must agree with std430");
+static_assert(sizeof(SkyProbeConstants) == 112, "the layout of sky probes must agree with std430");
 static_assert(sizeof(ProbeRay) == 32 && sizeof(ProbeResult) == 32, "the layouts of probes must agree with std430");
 
 }  // namespace tyndall::shared

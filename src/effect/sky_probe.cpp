@@ -1,6 +1,7 @@
 #include "tyndall/sky_probe.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -9,6 +10,7 @@
 #include "effect/effect_state.hpp"
 #include "effect/frame_constants.hpp"
 #include "effect/limits.hpp"
+#include "effect/sky_cube.hpp"
 #include "effect/sky_probe_steps.hpp"
 #include "effect/spectral_medium.hpp"
 #include "gpu/guard.hpp"
@@ -31,8 +33,9 @@ constexpr VkBufferUsageFlags kCoefficientsUsage = VK_BUFFER_USAGE_STORAGE_BUFFER
 
 Error invalid(const std::string& message) { return {ErrorCode::invalid_argument, message}; }
 
-Result<void> check_frames(const char* where, std::uint32_t frames) {
-  if (frames >= 1 && frames <= 8) return {};
+Result<void> check(const char* where, const SkyProbeDesc& desc) {
+  const std::uint32_t frames = desc.frames_in_flight;
+  if (frames >= 1 && frames <= 8) return check_cube_size(where, desc.cube_size);
   return invalid(std::string(where) + ": invalid frames_in_flight " + std::to_string(frames) + "; expected 1 to 8");
 }
 
@@ -75,7 +78,7 @@ Vec3 sum(const Vec3& a, double s, const Vec3& b, double t) {
   return {of(a.x, b.x), of(a.y, b.y), of(a.z, b.z)};
 }
 
-shared::SkyProbeConstants constants_of(const SkyProbeInputs& inputs, const Params& params) {
+shared::SkyProbeConstants constants_of(const SkyProbeInputs& inputs, const Params& params, std::uint32_t cube_size) {
   shared::SkyProbeConstants out = {};
   const Vec3& sun = inputs.sun.direction_to_sun;
   const Vec3 up = sum(inputs.up, 1.0 / std::sqrt(dot(inputs.up, inputs.up)), {}, 0.0);
@@ -96,15 +99,18 @@ shared::SkyProbeConstants constants_of(const SkyProbeInputs& inputs, const Param
   out.sin_sun_zenith = static_cast<float>(std::sqrt((1.0 - cosine) * (1.0 + cosine)));
   out.altitude_m = inputs.altitude_m;
   out.irradiance = {e.x * scale, e.y * scale, e.z * scale};
+  out.integrate_single = tables_lack_single(inputs.altitude_m, cosine, params.planet.radius_m) ? 1 : 0;
   out.shape = table_shape(params);
+  out.cube_size = cube_size;
   return out;
 }
 
-MemoryUsage plan(const gpu::Device& device, std::uint32_t frames) {
+MemoryUsage plan(const gpu::Device& device, const SkyProbeDesc& desc) {
   MemoryUsage out;
   out.persistent = gpu::buffer_bytes(device, kRowBytes, kRowsUsage) +
-                   gpu::buffer_bytes(device, kCoefficientBytes, kCoefficientsUsage);
-  out.host = gpu::buffer_bytes(device, kSlotBytes * frames, kConstantsUsage);
+                   gpu::buffer_bytes(device, kCoefficientBytes, kCoefficientsUsage) +
+                   sky_cube_bytes(device, desc.cube_size);
+  out.host = gpu::buffer_bytes(device, kSlotBytes * desc.frames_in_flight, kConstantsUsage);
   return out;
 }
 
@@ -112,12 +118,15 @@ MemoryUsage plan(const gpu::Device& device, std::uint32_t frames) {
 
 struct TYNDALL_HIDDEN SkyProbe::State {
   Effect::State* effect = nullptr;
+  SkyProbeDesc desc;
   PipelineCache pipelines;
   SetCache sets;
   FrameRing ring;
   std::uint64_t calls = 0;  // successful calls of record()
   gpu::Buffer constants;    // a slot per pending call
   gpu::Buffer rows, coefficients;
+  SkyCubeMap cube;
+  std::array<std::vector<Step>, 2> steps;  // of tables with scattering.color = rgb and spectral
   // The update: its constants, the tables that it reads, and its slices.
   shared::SkyProbeConstants probe = {};
   shared::SpectralMedium medium = {};
@@ -126,20 +135,22 @@ struct TYNDALL_HIDDEN SkyProbe::State {
   std::uint32_t done = 0;
   bool cleared = false;
 
-  Result<void> create_objects(std::uint32_t frames);
+  Result<void> create_objects();
   Result<Progress> record(VkCommandBuffer cmd, const SkyProbeInputs& wanted, std::uint32_t budget);
   [[nodiscard]] BoundResources bind_resources(VkDeviceSize offset) const;
 };
 
-Result<void> SkyProbe::State::create_objects(std::uint32_t frames) {
+Result<void> SkyProbe::State::create_objects() {
+  const std::uint32_t frames = desc.frames_in_flight;
   phase.reserve(shared::kPhaseNodes);
   const gpu::Device& device = effect->device;
   pipelines.create(device, effect->desc.pipeline_threads);
   sets.create(device, frames);
   std::vector<PipelineKey> keys;
   std::vector<SetKey> set_keys;
-  for (const ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
-    for (const Step& step : sky_probe_steps(color)) {
+  steps = {sky_probe_steps(ColorMode::rgb, desc.cube_size), sky_probe_steps(ColorMode::spectral, desc.cube_size)};
+  for (const std::vector<Step>& list : steps) {
+    for (const Step& step : list) {
       if (std::find(keys.begin(), keys.end(), step.pipeline) != keys.end()) continue;
       keys.push_back(step.pipeline);
       set_keys.push_back(set_key(step));
@@ -155,6 +166,7 @@ Result<void> SkyProbe::State::create_objects(std::uint32_t frames) {
   TYNDALL_ASSIGN(rows, gpu::create_buffer(device, "sky_probe_rows", kRowBytes, kRowsUsage, gpu::MemoryKind::device));
   TYNDALL_ASSIGN(coefficients, gpu::create_buffer(device, "sky_coefficients", kCoefficientBytes, kCoefficientsUsage,
                                                   gpu::MemoryKind::device));
+  TYNDALL_ASSIGN(cube, SkyCubeMap::create(device, desc.cube_size));
   return {};
 }
 
@@ -165,6 +177,7 @@ BoundResources SkyProbe::State::bind_resources(VkDeviceSize offset) const {
   out.set(Resource::medium, buffer, offset + kMediumOffset, kMediumBlockBytes);
   out.set(Resource::sky_probe_rows, rows.buffer.get());
   out.set(Resource::sky_coefficients, coefficients.buffer.get());
+  cube.bind(out);
   const auto table = [&](Resource resource, TableId id) {
     out.set(resource, effect->tables.table(id).view.get(), VK_IMAGE_LAYOUT_GENERAL, effect->linear.get());
   };
@@ -177,8 +190,8 @@ BoundResources SkyProbe::State::bind_resources(VkDeviceSize offset) const {
 
 Result<Progress> SkyProbe::State::record(VkCommandBuffer cmd, const SkyProbeInputs& wanted, std::uint32_t budget) {
   const Params params = effect->table_params();
-  const std::span<const Step> steps = sky_probe_steps(params.scattering.color);
-  const auto total = static_cast<std::uint32_t>(steps.size());
+  const std::vector<Step>& slices = steps[params.scattering.color == ColorMode::spectral ? 1 : 0];
+  const auto total = static_cast<std::uint32_t>(slices.size());
   TYNDALL_TRY(check_inputs(wanted, params));
   if (!effect->tables.ready()) {
     return invalid("SkyProbe::record: the tables were never built; expected record_precompute() or "
@@ -195,7 +208,7 @@ Result<Progress> SkyProbe::State::record(VkCommandBuffer cmd, const SkyProbeInpu
   if (other_tables) phase_rows(params, params.scattering.color, phase);
   if (done == 0) {
     tables_version = effect->tables.version();
-    probe = constants_of(wanted, params);
+    probe = constants_of(wanted, params, desc.cube_size);
     medium = spectral_medium_from_params(params);
   }
   const gpu::Device& device = effect->device;
@@ -211,19 +224,24 @@ Result<Progress> SkyProbe::State::record(VkCommandBuffer cmd, const SkyProbeInpu
     device.vk.CmdFillBuffer(cmd, coefficients.buffer.get(), 0, kCoefficientBytes, 0);
     gpu::barrier(device, cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
                  VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
+    cube.record_clear(cmd);
     cleared = true;
   }
   const BoundResources resources = bind_resources(offset);
   sets.begin(slot);
   StepRecorder recorder(device, cmd, pipelines, sets, slot, resources, nullptr);
-  recorder.assume(Resource::sky_probe_rows, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
+  for (const Resource resource : {Resource::sky_probe_rows, Resource::sky_cube_radiance, Resource::sky_cube_texels}) {
+    recorder.assume(resource, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
+  }
   for (; budget > 0 && done < total; --budget, ++done) {
-    if (done + 1 == total) {
+    const bool last = done + 1 == total;
+    if (last) {
       // The caller's commands may read the coefficients in any stage.
       gpu::barrier(device, cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_ACCESS_SHADER_WRITE_BIT,
                    VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT);
     }
-    TYNDALL_TRY(recorder.record(steps[done]));
+    TYNDALL_TRY(recorder.record(slices[done]));
+    if (last) cube.record_copy(cmd);
   }
   ring.record_end(cmd, calls, 0);
   ++calls;
@@ -235,23 +253,24 @@ SkyProbe::SkyProbe(SkyProbe&&) noexcept = default;
 SkyProbe& SkyProbe::operator=(SkyProbe&&) noexcept = default;
 SkyProbe::~SkyProbe() = default;
 
-Result<MemoryUsage> SkyProbe::query_memory(const DeviceInfo& info, std::uint32_t frames_in_flight) {
+Result<MemoryUsage> SkyProbe::query_memory(const DeviceInfo& info, const SkyProbeDesc& desc) {
   return guarded("SkyProbe::query_memory", [&]() -> Result<MemoryUsage> {
     TYNDALL_TRY(check_desc(info, {}));
-    TYNDALL_TRY(check_frames("SkyProbe::query_memory", frames_in_flight));
+    TYNDALL_TRY(check("SkyProbe::query_memory", desc));
     gpu::Device device;
     TYNDALL_TRY(open_device(device, info));
-    return plan(device, frames_in_flight);
+    return plan(device, desc);
   });
 }
 
-Result<SkyProbe> SkyProbe::create(Effect& effect, std::uint32_t frames_in_flight) {
+Result<SkyProbe> SkyProbe::create(Effect& effect, const SkyProbeDesc& desc) {
   return guarded("SkyProbe::create", [&]() -> Result<SkyProbe> {
     if (!effect.state_) return invalid("SkyProbe::create: the Effect was moved from; expected a valid one");
-    TYNDALL_TRY(check_frames("SkyProbe::create", frames_in_flight));
+    TYNDALL_TRY(check("SkyProbe::create", desc));
     auto state = std::make_unique<State>();
     state->effect = effect.state_.get();
-    TYNDALL_TRY(state->create_objects(frames_in_flight));
+    state->desc = desc;
+    TYNDALL_TRY(state->create_objects());
     return SkyProbe(std::move(state));
   });
 }
@@ -271,9 +290,11 @@ SkyCoefficients SkyProbe::coefficients() const {
   return {state_->coefficients.buffer.get(), 0, kCoefficientBytes};
 }
 
+SkyCube SkyProbe::cube() const { return state_ ? state_->cube.cube() : SkyCube{}; }
+
 MemoryUsage SkyProbe::memory() const {
   if (!state_) return {};
-  return {state_->rows.bytes + state_->coefficients.bytes, 0, state_->constants.bytes};
+  return {state_->rows.bytes + state_->coefficients.bytes + state_->cube.bytes(), 0, state_->constants.bytes};
 }
 
 }  // namespace tyndall

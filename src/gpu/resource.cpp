@@ -133,6 +133,7 @@ VkImageCreateInfo image_create_info(const ImageDesc& desc) {
   info.samples = VK_SAMPLE_COUNT_1_BIT;
   info.tiling = VK_IMAGE_TILING_OPTIMAL;
   info.usage = desc.usage;
+  if (desc.cube) info.flags = VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT;
   return info;
 }
 
@@ -182,6 +183,7 @@ Result<Image> create_image(const Device& device, const ImageDesc& desc) {
   if (result != VK_SUCCESS) return vulkan_error(result, "binding the memory", desc.name);
   VkImageViewType type = desc.layers > 1 || desc.array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
   if (desc.extent.depth > 1) type = VK_IMAGE_VIEW_TYPE_3D;
+  if (desc.cube) type = VK_IMAGE_VIEW_TYPE_CUBE;
   TYNDALL_ASSIGN(out.view, create_view(device, out, type, 0, desc.layers));
   return out;
 }

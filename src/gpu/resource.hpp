@@ -18,6 +18,7 @@ struct ImageDesc {
   std::uint32_t layers = 1;
   std::uint32_t levels = 1;
   bool array = false;  // create an array view even if there is only one layer
+  bool cube = false;   // `layers` is 6, and the view is that of a cube map
 };
 
 // The owner of the memory of an image or a buffer.
@@ -53,7 +54,7 @@ struct Image {
 
   Memory memory;  // before what is bound to it, so that it is freed last
   Handle<VkImage> image;
-  Handle<VkImageView> view;  // all layers and levels; an array view if layers > 1 or desc.array
+  Handle<VkImageView> view;  // all layers and levels; an array view if layers > 1 or desc.array, unless desc.cube
   ImageDesc desc = {};
   VkDeviceSize bytes = 0;
 };

@@ -349,12 +349,41 @@ TEST_F(CEffect, SkyProbesAreThoseOfCpp) {
   ASSERT_SUCCESS(tyndall_sky_probe_query_memory(&device, 2, &queried));
   EXPECT_EQ(memory.persistent, queried.persistent);
   EXPECT_EQ(memory.host, queried.host);
+  auto cube = sized<TyndallSkyCube>();
+  ASSERT_SUCCESS(tyndall_sky_probe_cube(c.get(), &cube));
+  EXPECT_EQ(cube.view, VK_NULL_HANDLE);
   inputs.altitude_m = -1.0e7F;
   EXPECT_EQ(tyndall_sky_probe_record(c.get(), reinterpret_cast<VkCommandBuffer>(1), &inputs, 1, nullptr),
             TyndallStatus_invalid_argument);
   EXPECT_EQ(tyndall_sky_probe_record(nullptr, nullptr, &inputs, 1, nullptr), TyndallStatus_invalid_argument);
   EXPECT_EQ(tyndall_sky_probe_create(c_.get(), 0, &made), TyndallStatus_invalid_argument);
   tyndall_sky_probe_destroy(nullptr);
+}
+
+TEST_F(CEffect, SkyProbesHaveCubeMaps) {
+  TyndallSkyProbeDesc desc = {};
+  ASSERT_SUCCESS(tyndall_sky_probe_desc_defaults(&desc, sizeof desc));
+  EXPECT_EQ(desc.frames_in_flight, SkyProbeDesc().frames_in_flight);
+  EXPECT_EQ(desc.cube_size, 0U);
+  desc.cube_size = 32;
+  TyndallSkyProbe* made = nullptr;
+  ASSERT_SUCCESS(tyndall_sky_probe_create_with(c_.get(), &desc, &made));
+  const std::unique_ptr<TyndallSkyProbe, void (*)(TyndallSkyProbe*)> probe(made, tyndall_sky_probe_destroy);
+  auto cube = sized<TyndallSkyCube>();
+  ASSERT_SUCCESS(tyndall_sky_probe_cube(probe.get(), &cube));
+  EXPECT_NE(cube.image, VK_NULL_HANDLE);
+  EXPECT_NE(cube.view, VK_NULL_HANDLE);
+  EXPECT_NE(cube.sampler, VK_NULL_HANDLE);
+  EXPECT_EQ(cube.size, 32U);
+  EXPECT_EQ(cube.levels, 6U);
+  auto memory = sized<TyndallMemoryUsage>(), queried = memory;
+  const TyndallDeviceInfo device = c_device(info());
+  ASSERT_SUCCESS(tyndall_sky_probe_memory(probe.get(), &memory));
+  ASSERT_SUCCESS(tyndall_sky_probe_query_memory_with(&device, &desc, &queried));
+  EXPECT_EQ(memory.persistent, queried.persistent);
+  desc.cube_size = 33;
+  EXPECT_EQ(tyndall_sky_probe_create_with(c_.get(), &desc, &made), TyndallStatus_invalid_argument);
+  EXPECT_EQ(tyndall_sky_probe_query_memory_with(&device, &desc, &queried), TyndallStatus_invalid_argument);
 }
 
 }  // namespace

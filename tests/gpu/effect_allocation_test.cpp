@@ -2,9 +2,11 @@
 #include <atomic>
 #include <cstdlib>
 #include <new>
+#include <numbers>
 #include <string>
 
 #include "effect_frame.hpp"
+#include "tyndall/phase_table.hpp"
 #include "tyndall/sky_probe.hpp"
 
 namespace {
@@ -24,6 +26,13 @@ std::atomic<std::size_t> allocations = 0;
 
 namespace tyndall {
 namespace {
+
+// Returns a phase function that is the same in all directions.
+std::shared_ptr<const PhaseTable> phase_table() {
+  const double angles[] = {0.0, 90.0, 180.0}, wavelengths[] = {400.0, 700.0};
+  const std::vector<double> values(6, 0.25 / std::numbers::pi);
+  return PhaseTable::create(angles, wavelengths, values).value();
+}
 
 // Runs without the validation layer, because it allocates memory itself.
 TEST(EffectAllocation, RecordingAllocatesNothing) {
@@ -68,19 +77,25 @@ TEST(EffectAllocation, RecordingAllocatesNothing) {
     EXPECT_FALSE(effect.value().timings(i).empty());
     EXPECT_EQ(allocations, before);
   }
-  // The sky probe, with a phase function that shaders read from rows.
-  Result<SkyProbe> probe = SkyProbe::create(effect.value());
+  // The sky probe, with phase functions that shaders read from rows.
+  Result<SkyProbe> probe = SkyProbe::create(effect.value(), SkyProbeDesc{2, 32});
   ASSERT_OK(probe);
-  ASSERT_OK(host.value()->run([&](VkCommandBuffer cmd) -> Result<void> {
-    const Result<Progress> built = effect.value().record_precompute(cmd, 100'000);
-    if (!built.ok()) return built.error();
-    SkyProbeInputs at;
-    at.sun = inputs.sun;
-    const std::size_t before = allocations;
-    const Result<Progress> recorded = probe.value().record(cmd, at);
-    EXPECT_EQ(allocations, before);
-    return recorded.ok() ? Result<void>() : recorded.error();
-  }));
+  for (const MiePhase phase : {MiePhase::draine, MiePhase::table}) {
+    Params params = effect.value().params();
+    params.atmosphere.mie_phase = phase;
+    params.phase_table = phase_table();
+    ASSERT_OK(effect.value().set_params(params));
+    ASSERT_OK(host.value()->run([&](VkCommandBuffer cmd) -> Result<void> {
+      const Result<Progress> built = effect.value().record_precompute(cmd, 100'000);
+      if (!built.ok()) return built.error();
+      SkyProbeInputs at;
+      at.sun = inputs.sun;
+      const std::size_t before = allocations;
+      const Result<Progress> recorded = probe.value().record(cmd, at);
+      EXPECT_EQ(allocations, before);
+      return recorded.ok() ? Result<void>() : recorded.error();
+    }));
+  }
   // A change of parameters that only affect the constants of the next frame does not allocate either.
   Params other_constants = effect.value().params();
   other_constants.scattering.scale *= 2.0F;

@@ -123,8 +123,9 @@ TEST(EffectMemory, EveryByteIsRequestedFromTheEngine) {
     EXPECT_OK(effect.set_params(small_params()));
     EXPECT_EQ(engine.bytes, sum(effect.memory()));
     const VkDeviceSize before = engine.bytes;
-    const Result<SkyProbe> probe = SkyProbe::create(effect);
+    const Result<SkyProbe> probe = SkyProbe::create(effect, SkyProbeDesc{2, 64});
     ASSERT_OK(probe);
+    EXPECT_EQ(engine.bytes - before, sum(SkyProbe::query_memory(device, SkyProbeDesc{2, 64}).value()));
     EXPECT_EQ(engine.bytes - before, sum(probe.value().memory()));
   }
   EXPECT_EQ(engine.live.size(), 0U);

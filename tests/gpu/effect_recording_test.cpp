@@ -92,7 +92,7 @@ TEST(EffectRecording, TablesCreateNothing) {
 
 TEST(EffectRecording, SkyProbesCreateNothing) {
   Effect effect = make(Built::completely);
-  Result<SkyProbe> probe = SkyProbe::create(effect, 2);
+  Result<SkyProbe> probe = SkyProbe::create(effect, SkyProbeDesc{2, 32});
   ASSERT_OK(probe);
   for (const std::uint32_t budget : {2U, UINT32_MAX}) {
     expect_nothing_created("SkyProbe::record", [&] { return probe.value().record(kCommands, {}, budget).ok(); });
@@ -108,7 +108,7 @@ TEST(EffectRecording, SkyProbesAreRefusedAtEveryAllocation) {
       Effect effect = make(Built::completely);
       const std::size_t objects = faults::live_objects();
       faults::arm(kind, n);
-      const Result<SkyProbe> made = SkyProbe::create(effect, 2);
+      const Result<SkyProbe> made = SkyProbe::create(effect, SkyProbeDesc{2, 32});
       const bool failed = faults::disarm();
       ASSERT_EQ(made.ok(), !failed) << n;
       if (!failed) break;

@@ -295,9 +295,10 @@ Result<std::string> page(const std::string& folder) {
   TYNDALL_ASSIGN(const Costs costs, costs_in(folder + "/tables.json", "stages", "ms"));
   add_passes(out, rows_of(steps, 0), costs);
   add_lifetimes(build, steps);
-  out += "\n## An update of a sky probe\n\n";
-  const std::span<const Step> probe = sky_probe_steps();
-  add_passes(out, rows_of(probe, 0), {});
+  out += "\n## An update of a sky probe\n\n"
+         "With a cube map of 64 texels per face; without one, the passes `sky_cube…` are missing.\n\n";
+  constexpr std::uint32_t kCube = 64;
+  add_passes(out, rows_of(sky_probe_steps(ColorMode::rgb, kCube), 0), {});
   add_resources(out, frame, build);
   add_memory(out);
   return out;
