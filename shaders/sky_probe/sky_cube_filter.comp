@@ -17,9 +17,9 @@ layout(std430, binding = 2) readonly buffer sky_cube_radiance_block { vec4 radia
 layout(std430, binding = 3) writeonly buffer sky_cube_texels_block { uvec2 texels[]; };
 layout(push_constant) uniform Push { uint first; };
 
-// Coarse texels whose centres are closer than this to the direction are divided into fine ones. 22.5 degrees, or four
+// Coarse texels whose centres are closer than this to the direction are divided into fine ones. 28 degrees, or five
 // times their width.
-const float kCosNear = 0.9238795;
+const float kCosNear = 0.8829476;
 
 vec3 direction;  // of the texel that is computed
 float change;    // alpha^2 - 1

@@ -97,6 +97,7 @@ void SkyCubeMap::record_copy(VkCommandBuffer cmd) const {
 }
 
 SkyCube SkyCubeMap::cube() const {
+  if (device_ == nullptr) return {};
   return {image_.image.get(), image_.view.get(), sampler_.get(), image_.desc.extent.width, image_.desc.levels};
 }
 

@@ -84,10 +84,13 @@ shared::SkyProbeConstants constants_of(const SkyProbeInputs& inputs, const Param
   const Vec3 up = sum(inputs.up, 1.0 / std::sqrt(dot(inputs.up, inputs.up)), {}, 0.0);
   const double cosine = std::clamp(dot(up, sun) / std::sqrt(dot(sun, sun)), -1.0, 1.0);
   Vec3 ahead = sum(sun, 1.0, up, -dot(up, sun));
+  // Not from the cosine, which rounds near the zenith.
+  double sine = std::sqrt(dot(ahead, ahead) / dot(sun, sun));
   // Any horizontal direction will do for a sun at the zenith or below the nadir.
-  if (dot(ahead, ahead) < 1e-8) {
+  if (sine < 1e-6) {
     const Vec3 axis = std::abs(up.x) < 0.5F ? Vec3(1.0F, 0.0F, 0.0F) : Vec3(0.0F, 1.0F, 0.0F);
     ahead = sum(axis, 1.0, up, -dot(axis, up));
+    sine = 0.0;
   }
   ahead = sum(ahead, 1.0 / std::sqrt(dot(ahead, ahead)), {}, 0.0);
   const float scale = params.scattering.scale;
@@ -96,7 +99,7 @@ shared::SkyProbeConstants constants_of(const SkyProbeInputs& inputs, const Param
   out.ahead = ahead;
   out.side = {up.y * ahead.z - up.z * ahead.y, up.z * ahead.x - up.x * ahead.z, up.x * ahead.y - up.y * ahead.x};
   out.cos_sun_zenith = static_cast<float>(cosine);
-  out.sin_sun_zenith = static_cast<float>(std::sqrt((1.0 - cosine) * (1.0 + cosine)));
+  out.sin_sun_zenith = static_cast<float>(sine);
   out.altitude_m = inputs.altitude_m;
   out.irradiance = {e.x * scale, e.y * scale, e.z * scale};
   out.integrate_single = tables_lack_single(inputs.altitude_m, cosine, params.planet.radius_m) ? 1 : 0;

