@@ -71,6 +71,8 @@ struct Requirements {
 
 enum class OutputFormat : std::uint32_t { rgba16f, rgba32f };
 
+class Effect;
+
 // Settings of an effect. set_limits(), set_shadow_colors() and set_params() change some of them later.
 struct EffectDesc {
   VkExtent2D max_extent = {1920, 1080};  // [1; 16384] px - largest FrameInputs::extent
@@ -101,6 +103,16 @@ struct EffectDesc {
   // Reports suspicious inputs of a frame through DeviceInfo::message: once, and again
   // only after a frame in which they were right.
   bool check_inputs = true;
+  // Shares the tables of this effect, of the same VkDevice, instead of having its own. Both effects are then equal: the
+  // tables exist until the last effect that uses them is destroyed, and any of them can build, load and save them. The
+  // parameters from which tables follow must agree, or create() is refused: planet.*, atmosphere.*, tables.* and
+  // scattering.color. To change them, call set_params() of each effect; the first call begins the build. record() of an
+  // effect whose parameters are those of neither the finished tables nor the build is an error. The effects count as
+  // one object for threads, and their commands must go to the same queue. DeviceInfo::memory, message and
+  // replace_shader of the effect that made the tables must outlive all of them. The memory of the tables is part of one
+  // effect's memory() and resources(). query_memory() omits it if this is not null. Read by create() and query_memory()
+  // only; null in desc().
+  const Effect* tables_of = nullptr;
 };
 
 // Bytes of device memory, equal to what create() allocates or requests from DeviceInfo::memory. `persistent` is in use
@@ -234,7 +246,6 @@ struct ScatteringTables {
 [[nodiscard]] TYNDALL_API Vec3 sun_color(const Params& params);
 
 struct AtmosphereImages;
-class Effect;
 
 // Returns the parameters of the tables in use: params() with the planet.*, atmosphere.*, tables.* and scattering.color
 // for which the tables were last completed. They differ from params() while tables are being built. Pass them to

@@ -198,6 +198,8 @@ typedef struct TyndallDeviceInfo {
   void* memory_user;
 } TyndallDeviceInfo;
 
+typedef struct TyndallEffect TyndallEffect;
+
 typedef struct TyndallEffectDesc {
   uint32_t struct_size;
   VkExtent2D max_extent;
@@ -215,6 +217,7 @@ typedef struct TyndallEffectDesc {
   uint32_t pipeline_threads;
   VkBool32 check_inputs;
   VkBool32 table_pipelines_later;
+  const TyndallEffect* tables_of;
 } TyndallEffectDesc;
 
 typedef struct TyndallTexture {
@@ -326,8 +329,6 @@ typedef struct TyndallScatteringTables {
   TyndallTable single_mie;
   TyndallTable high_orders;
 } TyndallScatteringTables;
-
-typedef struct TyndallEffect TyndallEffect;
 
 // Returns the memory that an effect would use. Null `params` means the defaults, here and in tyndall_effect_create().
 TYNDALL_API TyndallStatus tyndall_query_memory(const TyndallDeviceInfo* info, const TyndallEffectDesc* desc,

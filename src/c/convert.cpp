@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "c/handles.hpp"
 #include "c/structures.hpp"
 
 namespace tyndall::c {
@@ -152,7 +153,7 @@ EffectDesc to_cpp(const TyndallEffectDesc& c) {
   EffectDesc out;
   auto& [max_extent, frames_in_flight, views, output_format, sky_depth, depth_format, shadow_depth_reversed,
          max_cascades, max_shadow_resolution, shadow_colors, timings, counters, pipeline_threads, table_pipelines_later,
-         check_inputs] = out;
+         check_inputs, tables_of] = out;
   max_extent = c.max_extent;
   frames_in_flight = c.frames_in_flight;
   views = c.views;
@@ -168,13 +169,14 @@ EffectDesc to_cpp(const TyndallEffectDesc& c) {
   pipeline_threads = c.pipeline_threads;
   table_pipelines_later = c.table_pipelines_later != VK_FALSE;
   check_inputs = c.check_inputs != VK_FALSE;
+  tables_of = c.tables_of != nullptr ? &*c.tables_of->effect : nullptr;
   return out;
 }
 
 TyndallEffectDesc to_c(const EffectDesc& desc) {
   const auto& [max_extent, frames_in_flight, views, output_format, sky_depth, depth_format, shadow_depth_reversed,
                max_cascades, max_shadow_resolution, shadow_colors, timings, counters, pipeline_threads,
-               table_pipelines_later, check_inputs] = desc;
+               table_pipelines_later, check_inputs, tables_of] = desc;
   TyndallEffectDesc out = {};
   out.max_extent = max_extent;
   out.frames_in_flight = frames_in_flight;

@@ -110,9 +110,12 @@ TyndallStatus tyndall_effect_create(const TyndallDeviceInfo* info, const Tyndall
   return c::call(__func__, [&](const char* where) -> Result<void> {
     TYNDALL_TRY(c::check_pointer(where, "effect", effect));
     auto out = std::make_unique<TyndallEffect>();
-    TYNDALL_ASSIGN(out->callbacks, c::read(where, info, TyndallDeviceInfo{}));
-    TYNDALL_ASSIGN(const EffectDesc cpp_desc, c::read_desc(where, desc));
-    TYNDALL_ASSIGN(Effect made, Effect::create(c::to_cpp(out->callbacks), cpp_desc, c::params_or_defaults(params)));
+    TYNDALL_ASSIGN(const TyndallDeviceInfo callbacks, c::read(where, info, TyndallDeviceInfo{}));
+    out->callbacks = std::make_shared<const TyndallDeviceInfo>(callbacks);
+    TYNDALL_ASSIGN(const TyndallEffectDesc c_desc, c::read(where, desc, c::to_c(EffectDesc{})));
+    out->callbacks_of_tables = c_desc.tables_of != nullptr ? c_desc.tables_of->callbacks_of_tables : out->callbacks;
+    TYNDALL_ASSIGN(Effect made,
+                   Effect::create(c::to_cpp(*out->callbacks), c::to_cpp(c_desc), c::params_or_defaults(params)));
     out->effect.emplace(std::move(made));
     *effect = out.release();
     return {};

@@ -1,6 +1,7 @@
 // The objects behind the handles of the C interface.
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "tyndall/effect.hpp"
@@ -8,7 +9,8 @@
 #include "tyndall/tyndall.h"
 
 struct TyndallEffect {
-  TyndallDeviceInfo callbacks;  // outlives `effect`, which refers to it
+  // Outlive `effect`, which refers to them: its own, and those with which its tables were made, which it may share.
+  std::shared_ptr<const TyndallDeviceInfo> callbacks, callbacks_of_tables;
   std::optional<tyndall::Effect> effect;
 };
 

@@ -36,7 +36,7 @@ struct Published;
 TYNDALL_PUBLISHED(TyndallRequirements, device_extensions, device_extensions)
 TYNDALL_PUBLISHED(TyndallParamInfo, max, max)
 TYNDALL_PUBLISHED(TyndallDeviceInfo, replace_shader_user, memory_user)
-TYNDALL_PUBLISHED(TyndallEffectDesc, table_pipelines_later, table_pipelines_later)
+TYNDALL_PUBLISHED(TyndallEffectDesc, table_pipelines_later, tables_of)
 TYNDALL_PUBLISHED(TyndallFrameInputs, lowest_ground_m, lowest_ground_m)
 TYNDALL_PUBLISHED(TyndallAtmosphereInputs, origin_from_centre_m, origin_from_centre_m)
 TYNDALL_PUBLISHED(TyndallMemoryUsage, host, host)

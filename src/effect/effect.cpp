@@ -72,12 +72,14 @@ Result<void> open_device(gpu::Device& device, const DeviceInfo& info) {
 MemoryUsage plan_memory(const gpu::Device& device, const EffectDesc& desc, const Params& params) {
   MemoryUsage usage;
   usage.persistent = gpu::image_bytes(device, kNoShadows) + gpu::image_bytes(device, kNoColors);
-  for (std::uint32_t i = 0; i < kTableCount; ++i) {
-    usage.persistent += gpu::image_bytes(device, table_desc(static_cast<TableId>(i), params));
+  if (desc.tables_of == nullptr) {
+    for (std::uint32_t i = 0; i < kTableCount; ++i) {
+      usage.persistent += gpu::image_bytes(device, table_desc(static_cast<TableId>(i), params));
+    }
+    usage.transient = table_scratch_bytes(device, params);
   }
   usage.persistent += gpu::buffer_bytes(device, kCounterBytes * FrameRing::slots(desc), kCounterUsage);
   usage.persistent += frame_buffer_bytes(device, desc, params) + froxel_bytes(device, desc, params);
-  usage.transient = table_scratch_bytes(device, params);
   usage.host = gpu::buffer_bytes(device, kSlotBytes * FrameRing::slots(desc), kConstantsUsage);
   if (desc.counters) {
     usage.host += gpu::buffer_bytes(device, kCounterBytes * FrameRing::slots(desc), VK_BUFFER_USAGE_TRANSFER_DST_BIT);
@@ -86,6 +88,7 @@ MemoryUsage plan_memory(const gpu::Device& device, const EffectDesc& desc, const
 }
 
 Effect::State::~State() {
+  tables.remove_user(&ring);
   if (info.message == nullptr || !desc.check_inputs || !ring.unfinished()) return;
   if (parts.open()) {
     info.message(info.message_user, Severity::warning,
@@ -105,7 +108,8 @@ Result<void> Effect::State::create_objects() {
   sets.create(device, FrameRing::slots(desc));
   buffers.create(device);
   froxels.create(device);
-  TYNDALL_TRY(tables.create(device, pipelines, {FrameRing::slots(desc), desc.timings, desc.table_pipelines_later}));
+  TYNDALL_ASSIGN(ring, FrameRing::create(device, desc));
+  TYNDALL_TRY(create_tables());
   TYNDALL_ASSIGN(Pending everything, plan(desc, params, kEverything));
   commit(std::move(everything));
   TYNDALL_ASSIGN(no_shadows, gpu::create_image(device, kNoShadows));
@@ -119,11 +123,42 @@ Result<void> Effect::State::create_objects() {
     TYNDALL_ASSIGN(counters_readback, gpu::create_buffer(device, "counters_readback", counter_bytes,
                                                          VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryKind::readback));
   }
-  TYNDALL_ASSIGN(ring, FrameRing::create(device, desc));
   TYNDALL_TRY(create_samplers());
   if (desc.timings) {
     TYNDALL_ASSIGN(timer, gpu::Timer::create(device, FrameRing::slots(desc), kMaxTimedPasses));
   }
+  return {};
+}
+
+Result<void> Effect::State::create_tables() {
+  if (tables.has_users()) {
+    if (shared_tables->device.device != device.device) {
+      return Error{ErrorCode::invalid_argument,
+                   "EffectDesc::tables_of belongs to another VkDevice; expected an effect of this one"};
+    }
+    if (stale_tables(tables.wanted(), params) != 0) {
+      return Error{ErrorCode::invalid_argument,
+                   "the parameters need other tables than those of EffectDesc::tables_of; expected the same planet.*, "
+                   "atmosphere.*, tables.* and scattering.color"};
+    }
+  } else {
+    shared_tables->device = device;
+    shared_tables->pipelines.create(shared_tables->device, desc.pipeline_threads);
+    TYNDALL_TRY(tables.create(shared_tables->device, shared_tables->pipelines,
+                              {FrameRing::slots(desc), desc.timings, desc.table_pipelines_later}));
+  }
+  tables.add_user({&ring, &parts, FrameRing::slots(desc)});
+  return {};
+}
+
+Result<void> Effect::State::check_tables() {
+  if (served_revision == tables.revision()) return {};
+  if (!tables.serves(params)) {
+    return Error{ErrorCode::invalid_argument,
+                 "Effect::record: an effect that shares the tables has built them for other planet.*, atmosphere.*, "
+                 "tables.* or scattering.color; expected set_params() with the same of each effect"};
+  }
+  served_revision = tables.revision();
   return {};
 }
 
@@ -218,6 +253,7 @@ void Effect::State::commit(Pending&& pending) noexcept {
   if (pending.phase) phase = std::move(*pending.phase);
   desc = pending.desc;
   params = pending.params;
+  served_revision = 0;
 }
 
 Result<void> Effect::State::change(const EffectDesc& d, const Params& p) {
@@ -239,7 +275,7 @@ Result<Progress> Effect::State::prepare_pipelines(std::uint32_t budget) {
 }
 
 void Effect::State::prepare_images(VkCommandBuffer cmd) {
-  tables.begin_frame(cmd);
+  tables.begin_frame(cmd, &ring);
   buffers.begin_frame();
   froxels.begin_frame(cmd);
   if (images_ready) return;
@@ -311,6 +347,7 @@ BoundResources Effect::State::bind_resources(const FrameInputs& inputs, std::uin
 
 Result<void> Effect::State::begin_frame(VkCommandBuffer cmd, const FrameInputs& inputs, const Params& drawn) {
   TYNDALL_TRY(check_frame(inputs, desc, params));
+  TYNDALL_TRY(check_tables());
   TYNDALL_TRY(ring.take(inputs.frame_index, inputs.view));
   const std::uint32_t slot = ring.slot(inputs.frame_index, inputs.view);
   const shared::FrameConstants frame = frame_constants(inputs, desc, drawn);
@@ -368,7 +405,7 @@ Counters Effect::State::read_counters(std::uint64_t frame_index, std::uint32_t v
 std::span<const ResourceMemory> Effect::State::list_resources() {
   std::size_t used = 0;
   const auto row = [&](const char* name, VkDeviceSize bytes) { resource_rows[used++] = {name, bytes}; };
-  for (std::uint32_t i = 0; i < kTableCount; ++i) {
+  for (std::uint32_t i = 0; i < (tables.counted_by(&ring) ? kTableCount : 0); ++i) {
     const gpu::Image& table = tables.table(static_cast<TableId>(i));
     row(table.desc.name, table.bytes);
   }
@@ -387,9 +424,10 @@ std::span<const ResourceMemory> Effect::State::list_resources() {
 }
 
 MemoryUsage Effect::State::memory() const {
-  return {tables.persistent_bytes() + no_shadows.bytes + no_colors.bytes + counters.bytes + buffers.bytes() +
-              froxels.images().bytes(),
-          tables.transient_bytes() + buffers.retired_bytes() + froxels.retired_bytes(),
+  const bool counted = tables.counted_by(&ring);
+  return {(counted ? tables.persistent_bytes() : 0) + no_shadows.bytes + no_colors.bytes + counters.bytes +
+              buffers.bytes() + froxels.images().bytes(),
+          (counted ? tables.transient_bytes() : 0) + buffers.retired_bytes() + froxels.retired_bytes(),
           constants.bytes + counters_readback.bytes};
 }
 

@@ -56,9 +56,16 @@ Result<Effect> Effect::create(const DeviceInfo& info, const EffectDesc& desc, co
   return guarded("Effect::create", [&]() -> Result<Effect> {
     TYNDALL_TRY(check_desc(info, desc));
     TYNDALL_TRY(check_params(params));
-    auto state = std::make_unique<State>();
+    if (desc.tables_of != nullptr && !desc.tables_of->state_) {
+      return Error{
+          ErrorCode::invalid_argument,
+          "Effect::create: EffectDesc::tables_of has been moved from; expected an effect that create() returned"};
+    }
+    auto state = std::make_unique<State>(desc.tables_of != nullptr ? desc.tables_of->state_->shared_tables
+                                                                   : std::make_shared<SharedTables>());
     state->info = info;
     state->desc = desc;
+    state->desc.tables_of = nullptr;
     state->params = params;
     TYNDALL_TRY(open_device(state->device, info));
     TYNDALL_TRY(state->create_objects());
@@ -73,8 +80,10 @@ Result<void> Effect::set_params(const Params& params, const std::optional<Effect
       TYNDALL_TRY(check_same_desc(s.desc, *desc));
     }
     TYNDALL_TRY(check_params(params));
-    TYNDALL_TRY(s.parts.check_between("Effect::set_params"));
-    return s.change(desc.value_or(s.desc), params);
+    TYNDALL_TRY(s.tables.check_between("Effect::set_params"));
+    EffectDesc wanted = desc.value_or(s.desc);
+    wanted.tables_of = nullptr;
+    return s.change(wanted, params);
   });
 }
 
@@ -118,7 +127,7 @@ Progress Effect::precompute_progress() const { return state_ ? state_->tables.pr
 
 Result<Progress> Effect::record_precompute(VkCommandBuffer cmd, std::uint32_t budget) {
   return record_with(state_, "Effect::record_precompute", cmd, [&](State& s) -> Result<Progress> {
-    TYNDALL_TRY(s.parts.check_between("Effect::record_precompute"));
+    TYNDALL_TRY(s.tables.check_between("Effect::record_precompute"));
     TYNDALL_TRY(s.tables.record(cmd, budget));
     return s.tables.progress();
   });
@@ -135,7 +144,7 @@ Result<void> Effect::record_save_tables(VkCommandBuffer cmd, VkBuffer buffer, Vk
 
 Result<void> Effect::record_load_tables(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset) {
   return record_with(state_, "Effect::record_load_tables", cmd, [&](State& s) -> Result<void> {
-    TYNDALL_TRY(s.parts.check_between("Effect::record_load_tables"));
+    TYNDALL_TRY(s.tables.check_between("Effect::record_load_tables"));
     return s.tables.record_load(cmd, buffer, offset);
   });
 }

@@ -4,8 +4,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "effect/frame_buffers.hpp"
@@ -33,7 +35,7 @@ Result<void> open_device(gpu::Device& device, const DeviceInfo& info);
 
 // Not exported by the shared library, unlike Effect.
 struct TYNDALL_HIDDEN Effect::State {
-  State() = default;
+  explicit State(std::shared_ptr<SharedTables> of) : shared_tables(std::move(of)), tables(shared_tables->builder) {}
   ~State();
   State(const State&) = delete;
   State& operator=(const State&) = delete;
@@ -50,7 +52,9 @@ struct TYNDALL_HIDDEN Effect::State {
   std::vector<PipelineKey> all_pipelines;  // that any parameters may need with `desc`; filled when first requested
   FrameBuffers buffers;
   FroxelVolume froxels;
-  TableBuilder tables;
+  std::shared_ptr<SharedTables> shared_tables;
+  TableBuilder& tables;
+  std::uint64_t served_revision = 0;  // of the tables, for which TableBuilder::serves() has been true
   gpu::Image no_shadows, no_colors;
   gpu::Buffer constants;
   gpu::Buffer counters;           // written by shaders
@@ -85,7 +89,7 @@ struct TYNDALL_HIDDEN Effect::State {
     return static_cast<std::byte*>(constants.mapped) + offset;
   }
 
-  // Creates the objects that do not depend on settings.
+  // Creates the objects that do not depend on settings, and all others.
   Result<void> create_objects();
   // Checks new settings and allocates the objects that they need, as far as `required` (a mask of bits 1 << Affects)
   // contains them. After an error, the picture, the progress of the tables and memory() are unchanged. Pipelines and
@@ -113,6 +117,10 @@ struct TYNDALL_HIDDEN Effect::State {
  private:
   [[nodiscard]] ColorMode color_of_buffers(const Params& p) const;
   Result<void> create_samplers();
+  // Creates the tables, or checks those of another effect. Becomes a user of them.
+  Result<void> create_tables();
+  // Returns an error if other effects have changed the tables, so that they do not belong to `params`.
+  Result<void> check_tables();
   Result<void> make_pipelines(const EffectDesc& d, const Params& p);
   void prepare_images(VkCommandBuffer cmd);
   // Does what precedes the steps of a frame: checks the inputs, and writes the constants.

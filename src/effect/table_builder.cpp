@@ -115,6 +115,7 @@ Result<TableBuilder::Pending> TableBuilder::plan(const Params& params) {
 
 void TableBuilder::commit(Pending&& pending) noexcept {
   if (pending.kind == Pending::Kind::nothing) return;
+  ++revision_;
   if (pending.kind == Pending::Kind::cancel) {
     retire(std::exchange(next_, {}), std::exchange(scratch_, {}), std::exchange(sets_, {}));
     steps_.resize(done_);
@@ -280,18 +281,38 @@ void TableBuilder::finish() noexcept {
   }
   complete_ = true;
   ++version_;
+  ++revision_;
   built_ = wanted_;
   retire(std::exchange(next_, {}), std::exchange(scratch_, {}), std::exchange(sets_, {}));
 }
 
 void TableBuilder::retire(TableSet tables, TableScratch scratch, SetCache sets) noexcept {
-  retired_.push_back({std::move(tables), std::move(scratch), std::move(sets), options_.frames_in_flight + 1});
+  std::uint32_t frames = options_.frames_in_flight + 1;
+  // With several effects, one may already have begun a frame of the present round.
+  for (const User& user : users_) frames = std::max(frames, user.user.slots + (users_.size() > 1 ? 2 : 1));
+  retired_.push_back({std::move(tables), std::move(scratch), std::move(sets), frames});
 }
 
-void TableBuilder::begin_frame(VkCommandBuffer cmd) {
+void TableBuilder::begin_frame(VkCommandBuffer cmd, const FrameRing* ring) {
   for (TableImage& table : tables_) make_ready(cmd, table, true);
+  for (User& user : users_) user.begun = user.begun || user.user.ring == ring;
+  if (retired_.empty()) return;
+  // A round is over when each effect has begun a frame since the last one, or has no commands in flight.
+  const bool over = std::all_of(users_.begin(), users_.end(),
+                                [](const User& user) { return user.begun || !user.user.ring->unfinished(); });
+  if (!over) return;
+  for (User& user : users_) user.begun = false;
   for (Retired& r : retired_) --r.frames_left;
   std::erase_if(retired_, [](const Retired& r) { return r.frames_left == 0; });
+}
+
+void TableBuilder::remove_user(const FrameRing* ring) noexcept {
+  std::erase_if(users_, [&](const User& user) { return user.user.ring == ring; });
+}
+
+Result<void> TableBuilder::check_between(const char* where) const {
+  for (const User& user : users_) TYNDALL_TRY(user.user.parts->check_between(where));
+  return {};
 }
 
 VkDeviceSize TableBuilder::persistent_bytes() const {

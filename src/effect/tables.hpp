@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "effect/frame_constants.hpp"
+#include "effect/frame_parts.hpp"
+#include "effect/frame_ring.hpp"
 #include "effect/phase_rows.hpp"
 #include "effect/pipeline_cache.hpp"
 #include "effect/shared.hpp"
@@ -57,8 +59,16 @@ struct TableScratch {
 };
 [[nodiscard]] VkDeviceSize table_scratch_bytes(const gpu::Device& device, const Params& params);
 
+// An effect that uses the tables, while it exists.
+struct TableUser {
+  const FrameRing* ring = nullptr;  // identifies it
+  const FrameParts* parts = nullptr;
+  std::uint32_t slots = 0;  // of the ring
+};
+
 // Builds the tables. Owns them and, during a build, the scratch memory and the unfinished tables. Objects that
-// commands in flight may still use are destroyed after `frames_in_flight` more frames have been recorded.
+// commands in flight may still use are destroyed after `frames_in_flight` more frames have been recorded, by each
+// effect that uses the tables.
 class TableBuilder {
  public:
   // The allocated result of plan(); defined below.
@@ -84,8 +94,29 @@ class TableBuilder {
   Result<void> record_save(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset);
   // Copies the stale tables, if any, from such a buffer, in place of the rest of the build.
   Result<void> record_load(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset);
-  // To be called once per frame. Moves new images out of the undefined layout, and frees objects that no frame uses.
-  void begin_frame(VkCommandBuffer cmd);
+  // To be called once per frame of each effect, with its ring. Moves new images out of the undefined layout, and frees
+  // objects that no frame uses.
+  void begin_frame(VkCommandBuffer cmd, const FrameRing* ring = nullptr);
+
+  // Several effects may use the tables.
+  void add_user(const TableUser& user) { users_.push_back({user, false}); }
+  void remove_user(const FrameRing* ring) noexcept;
+  [[nodiscard]] bool has_users() const { return !users_.empty(); }
+  // Returns whether this user counts the memory of the tables as its own, as one of them does.
+  [[nodiscard]] bool counted_by(const FrameRing* ring) const {
+    return !users_.empty() && users_.front().user.ring == ring;
+  }
+  // Returns an error if a user has recorded the first part of a frame only, as FrameParts::check_between().
+  [[nodiscard]] Result<void> check_between(const char* where) const;
+  // Returns the parameters of the build in progress, or those of the finished tables.
+  [[nodiscard]] const Params& wanted() const { return done_ < steps_.size() ? wanted_ : built_; }
+  // Returns whether frames with these parameters may read the tables: they are those of the tables, or those of the
+  // build that will replace them. Needs some time; the answer changes with revision() only.
+  [[nodiscard]] bool serves(const Params& params) const {
+    return !complete_ || stale_tables(built_, params) == 0 || stale_tables(wanted(), params) == 0;
+  }
+  // Returns a number that changes when a build begins, ends or is cancelled.
+  [[nodiscard]] std::uint64_t revision() const { return revision_; }
 
   [[nodiscard]] Progress progress() const { return {done_, static_cast<std::uint32_t>(steps_.size())}; }
   // Returns true once tables have been built. Stale tables stay in use until the next build is complete.
@@ -122,7 +153,14 @@ class TableBuilder {
   void retire(TableSet tables, TableScratch scratch, SetCache sets) noexcept;
   TableImage& target(TableId id);
 
+  struct User {
+    TableUser user;
+    bool begun;  // a frame since the last round
+  };
+
   const gpu::Device* device_ = nullptr;
+  std::vector<User> users_ = {};
+  std::uint64_t revision_ = 0;
   Options options_;
   PipelineCache* pipelines_ = nullptr;
   gpu::Handle<VkSampler> linear_ = {};  // of the source function
@@ -158,6 +196,13 @@ struct TableBuilder::Pending {
   PhaseRows phase_rows = {};
   std::vector<Step> steps = {};
   SetCache sets = {};  // new ones for each build, because commands may still use those of the one before
+};
+
+// The tables of an effect, or of several that share them, with what their builds need.
+struct SharedTables {
+  gpu::Device device;       // first, because the others refer to it
+  PipelineCache pipelines;  // of builds
+  TableBuilder builder;
 };
 
 }  // namespace tyndall
