@@ -1,10 +1,10 @@
 // Embeds Tyndall in an engine with other conventions and needs than embed.cpp:
 //   * its world has z up (right-handed, x east, y north), its clip space y up, its depth standard Z,
 //   * it draws the two eyes of a stereo pair into one image, at a resolution that changes between frames,
-//   * it lights its surfaces by a sky probe.
-// It clears its colour and depth, so that the picture shows only the sky. The program prints what the probe says of a
-// surface that faces upwards. With the pixels that embed.cpp writes as its argument, it compares its left eye with
-// them.
+//   * it lights its surfaces by a sky probe, whose cube map it could also use for reflections.
+// It clears its colour and depth, so that the picture shows only the sky. The program prints what coefficients and cube
+// map say of a surface that faces upwards, and fails if they differ by more than 1 %. With the pixels that embed.cpp
+// writes as its argument, it compares its left eye with them.
 #include <tyndall/conventions.hpp>
 #include <tyndall/effect.hpp>
 #include <tyndall/sky_probe.hpp>
@@ -45,6 +45,9 @@ tyndall::Effect create_effect(const Device& device) {
   params.scattering.light_shafts = false;  // because this engine has no shadow maps
   return value_or_exit(tyndall::Effect::create(device_info(device), desc, params));
 }
+
+// Returns a half float that is positive and not below 6e-5.
+float from_half(std::uint16_t half) { return std::ldexp(static_cast<float>(half % 1024 + 1024), half / 1024 - 25); }
 
 // Both eyes of a frame, each in its half of the images.
 void record_eyes(VkCommandBuffer cmd, const Images& images, tyndall::Effect& effect, std::uint64_t frame,
@@ -131,9 +134,12 @@ int main(int argc, char** argv) {
   const Device device = create_device();
   const Images images = create_images(device, kAtlas);
   const Buffer coefficients = create_buffer(device, 144);
+  const Buffer roughest = create_buffer(device, 8);  // a texel of the cube map
   {
     tyndall::Effect effect = create_effect(device);
-    tyndall::SkyProbe probe = value_or_exit(tyndall::SkyProbe::create(effect));
+    tyndall::SkyProbeDesc desc;
+    desc.cube_size = 32;
+    tyndall::SkyProbe probe = value_or_exit(tyndall::SkyProbe::create(effect, desc));
     run(device, [&](VkCommandBuffer cmd) {
       value_or_exit(effect.record_precompute(cmd));
       record_ambient(cmd, probe);
@@ -148,17 +154,26 @@ int main(int argc, char** argv) {
       const tyndall::SkyCoefficients from = probe.coefficients();
       const VkBufferCopy region = {from.offset, 0, from.size};
       vkCmdCopyBuffer(cmd, from.buffer, coefficients.buffer, 1, &region);
+      // The face that looks up, +z, of the level with one texel per face: the irradiance of an upward surface over pi.
+      const tyndall::SkyCube cube = probe.cube();
+      copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, cube.levels - 1, 4, 1};
+      copy.imageExtent = {1, 1, 1};
+      vkCmdCopyImageToBuffer(cmd, cube.image, kGeneral, roughest.buffer, 1, &copy);
     });
   }  // destroys the probe and the effect before the device
   // As tyndall_sky_irradiance() of tyndall/sky_probe.glsl does it, for the normal (0, 0, 1).
   const float* c = map(device, coefficients);
+  bool same = true;
+  std::uint16_t halves[4] = {};
+  std::memcpy(halves, map(device, roughest), sizeof halves);
   std::printf("irradiance from the sky:");
   for (int k = 0; k < 3; ++k) {
     const float e = 3.141593F * 0.282095F * c[k] + 2.094395F * 0.488603F * c[8 + k] + 0.785398F * 0.630783F * c[24 + k];
-    std::printf(" %g", static_cast<double>(e));
+    const float by_cube = 3.141593F * from_half(halves[k]);
+    std::printf(" %g (%g)", static_cast<double>(e), static_cast<double>(by_cube));
+    same = same && std::abs(by_cube / e - 1.0F) < 0.01F;
   }
   std::printf("\n");
-  bool same = true;
   if (argc > 1) {
     std::vector<float> picture(std::size_t{4} * kEye.width * kEye.height);
     std::FILE* file = std::fopen(argv[1], "rb");
@@ -171,8 +186,10 @@ int main(int argc, char** argv) {
       same = same && found < 2e-3F;
     }
   }
-  vkDestroyBuffer(device.device, coefficients.buffer, nullptr);
-  vkFreeMemory(device.device, coefficients.memory, nullptr);
+  for (const Buffer& buffer : {coefficients, roughest}) {
+    vkDestroyBuffer(device.device, buffer.buffer, nullptr);
+    vkFreeMemory(device.device, buffer.memory, nullptr);
+  }
   destroy(device, images);
   return same ? 0 : 40;
 }

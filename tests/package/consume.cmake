@@ -96,7 +96,7 @@ endforeach()
 # The engine with z up, standard Z, two eyes, dynamic resolution and a sky probe draws the same sky.
 execute_process(COMMAND ${WORK}/build/engine ${WORK}/build/embed_cpp.rgba RESULT_VARIABLE status OUTPUT_VARIABLE output
                 ERROR_QUIET)
-if(NOT status EQUAL 0 OR NOT output MATCHES "^irradiance from the sky: [0-9. ]+\neye 0 [^\n]*\neye 1 [^\n]*\n$")
+if(NOT status EQUAL 0 OR NOT output MATCHES "^irradiance from the sky: [0-9.() ]+\neye 0 [^\n]*\neye 1 [^\n]*\n$")
   message(FATAL_ERROR "engine: status ${status}; expected 0 and three lines without messages of the validation layer\n${output}")
 endif()
 # The transparent pane has the haze and the shadows of an opaque surface at its place.
