@@ -282,8 +282,7 @@ typedef struct TyndallProgress {
 } TyndallProgress;
 
 typedef struct TyndallMemoryUsage {
-  uint32_t struct_size;
-  uint32_t reserved;
+  uint32_t struct_size, reserved;
   VkDeviceSize persistent;
   VkDeviceSize transient;
   VkDeviceSize host;
@@ -300,18 +299,15 @@ typedef struct TyndallPassTiming {
 } TyndallPassTiming;
 
 typedef struct TyndallCounters {
-  uint32_t struct_size;
-  uint32_t reserved;
-  uint64_t samples_marched;
-  uint64_t march_steps;
+  uint32_t struct_size, reserved;
+  uint64_t samples_marched, march_steps;
   uint64_t tree_nodes_visited;
   uint64_t shadow_map_fetches;
   uint64_t pixels_corrected;
 } TyndallCounters;
 
 typedef struct TyndallLightTables {
-  uint32_t struct_size;
-  uint32_t reserved;
+  uint32_t struct_size, reserved;
   VkImageView sun_transmittance;
   VkImageView sky_irradiance;
 } TyndallLightTables;
@@ -323,11 +319,8 @@ typedef struct TyndallTable {
 } TyndallTable;
 
 typedef struct TyndallScatteringTables {
-  uint32_t struct_size;
-  uint32_t reserved;
-  TyndallTable single_rayleigh;
-  TyndallTable single_mie;
-  TyndallTable high_orders;
+  uint32_t struct_size, reserved;
+  TyndallTable single_rayleigh, single_mie, high_orders;
 } TyndallScatteringTables;
 
 // Returns the memory that an effect would use. Null `params` means the defaults, here and in tyndall_effect_create().
@@ -413,28 +406,22 @@ typedef struct TyndallSkyProbeInputs {
 TYNDALL_API TyndallStatus tyndall_sky_probe_inputs_defaults(TyndallSkyProbeInputs* inputs, size_t struct_size);
 
 typedef struct TyndallSkyCoefficients {
-  uint32_t struct_size;
-  uint32_t reserved;
+  uint32_t struct_size, reserved;
   VkBuffer buffer;
   VkDeviceSize offset;
   VkDeviceSize size;
 } TyndallSkyCoefficients;
 
 typedef struct TyndallSkyProbeDesc {
-  uint32_t struct_size;
-  uint32_t frames_in_flight;
-  uint32_t cube_size;
+  uint32_t struct_size, frames_in_flight, cube_size;
 } TyndallSkyProbeDesc;
 TYNDALL_API TyndallStatus tyndall_sky_probe_desc_defaults(TyndallSkyProbeDesc* desc, size_t struct_size);
 
 typedef struct TyndallSkyCube {
-  uint32_t struct_size;
-  uint32_t size;
+  uint32_t struct_size, size, levels, reserved;
   VkImage image;
   VkImageView view;
   VkSampler sampler;
-  uint32_t levels;
-  uint32_t reserved;
 } TyndallSkyCube;
 
 // The functions that end in _with take all settings; the others make a probe without a cube map.

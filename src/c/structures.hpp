@@ -46,7 +46,7 @@ TYNDALL_PUBLISHED(TyndallScatteringTables, high_orders, high_orders)
 TYNDALL_PUBLISHED(TyndallSkyProbeInputs, sun, sun)
 TYNDALL_PUBLISHED(TyndallSkyCoefficients, size, size)
 TYNDALL_PUBLISHED(TyndallSkyProbeDesc, cube_size, cube_size)
-TYNDALL_PUBLISHED(TyndallSkyCube, reserved, reserved)
+TYNDALL_PUBLISHED(TyndallSkyCube, sampler, sampler)
 #undef TYNDALL_PUBLISHED
 // NOLINTEND(bugprone-sizeof-expression)
 

@@ -88,7 +88,7 @@ MemoryUsage plan_memory(const gpu::Device& device, const EffectDesc& desc, const
 }
 
 Effect::State::~State() {
-  tables.remove_user(&ring);
+  tables.users().remove(&ring);
   if (info.message == nullptr || !desc.check_inputs || !ring.unfinished()) return;
   if (parts.open()) {
     info.message(info.message_user, Severity::warning,
@@ -131,7 +131,7 @@ Result<void> Effect::State::create_objects() {
 }
 
 Result<void> Effect::State::create_tables() {
-  if (tables.has_users()) {
+  if (!tables.users().empty()) {
     if (shared_tables->device.device != device.device) {
       return Error{ErrorCode::invalid_argument,
                    "EffectDesc::tables_of belongs to another VkDevice; expected an effect of this one"};
@@ -147,7 +147,7 @@ Result<void> Effect::State::create_tables() {
     TYNDALL_TRY(tables.create(shared_tables->device, shared_tables->pipelines,
                               {FrameRing::slots(desc), desc.timings, desc.table_pipelines_later}));
   }
-  tables.add_user({&ring, &parts, FrameRing::slots(desc)});
+  tables.users().add({&ring, &parts, FrameRing::slots(desc)});
   return {};
 }
 
@@ -405,7 +405,7 @@ Counters Effect::State::read_counters(std::uint64_t frame_index, std::uint32_t v
 std::span<const ResourceMemory> Effect::State::list_resources() {
   std::size_t used = 0;
   const auto row = [&](const char* name, VkDeviceSize bytes) { resource_rows[used++] = {name, bytes}; };
-  for (std::uint32_t i = 0; i < (tables.counted_by(&ring) ? kTableCount : 0); ++i) {
+  for (std::uint32_t i = 0; i < (tables.users().counted_by(&ring) ? kTableCount : 0); ++i) {
     const gpu::Image& table = tables.table(static_cast<TableId>(i));
     row(table.desc.name, table.bytes);
   }
@@ -424,7 +424,7 @@ std::span<const ResourceMemory> Effect::State::list_resources() {
 }
 
 MemoryUsage Effect::State::memory() const {
-  const bool counted = tables.counted_by(&ring);
+  const bool counted = tables.users().counted_by(&ring);
   return {(counted ? tables.persistent_bytes() : 0) + no_shadows.bytes + no_colors.bytes + counters.bytes +
               buffers.bytes() + froxels.images().bytes(),
           (counted ? tables.transient_bytes() : 0) + buffers.retired_bytes() + froxels.retired_bytes(),

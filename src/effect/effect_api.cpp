@@ -80,7 +80,7 @@ Result<void> Effect::set_params(const Params& params, const std::optional<Effect
       TYNDALL_TRY(check_same_desc(s.desc, *desc));
     }
     TYNDALL_TRY(check_params(params));
-    TYNDALL_TRY(s.tables.check_between("Effect::set_params"));
+    TYNDALL_TRY(s.tables.users().check_between("Effect::set_params"));
     EffectDesc wanted = desc.value_or(s.desc);
     wanted.tables_of = nullptr;
     return s.change(wanted, params);
@@ -127,7 +127,7 @@ Progress Effect::precompute_progress() const { return state_ ? state_->tables.pr
 
 Result<Progress> Effect::record_precompute(VkCommandBuffer cmd, std::uint32_t budget) {
   return record_with(state_, "Effect::record_precompute", cmd, [&](State& s) -> Result<Progress> {
-    TYNDALL_TRY(s.tables.check_between("Effect::record_precompute"));
+    TYNDALL_TRY(s.tables.users().check_between("Effect::record_precompute"));
     TYNDALL_TRY(s.tables.record(cmd, budget));
     return s.tables.progress();
   });
@@ -144,7 +144,7 @@ Result<void> Effect::record_save_tables(VkCommandBuffer cmd, VkBuffer buffer, Vk
 
 Result<void> Effect::record_load_tables(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset) {
   return record_with(state_, "Effect::record_load_tables", cmd, [&](State& s) -> Result<void> {
-    TYNDALL_TRY(s.tables.check_between("Effect::record_load_tables"));
+    TYNDALL_TRY(s.tables.users().check_between("Effect::record_load_tables"));
     return s.tables.record_load(cmd, buffer, offset);
   });
 }

@@ -287,32 +287,16 @@ void TableBuilder::finish() noexcept {
 }
 
 void TableBuilder::retire(TableSet tables, TableScratch scratch, SetCache sets) noexcept {
-  std::uint32_t frames = options_.frames_in_flight + 1;
-  // With several effects, one may already have begun a frame of the present round.
-  for (const User& user : users_) frames = std::max(frames, user.user.slots + (users_.size() > 1 ? 2 : 1));
+  const std::uint32_t frames = users_.rounds(options_.frames_in_flight + 1);
   retired_.push_back({std::move(tables), std::move(scratch), std::move(sets), frames});
 }
 
 void TableBuilder::begin_frame(VkCommandBuffer cmd, const FrameRing* ring) {
   for (TableImage& table : tables_) make_ready(cmd, table, true);
-  for (User& user : users_) user.begun = user.begun || user.user.ring == ring;
-  if (retired_.empty()) return;
-  // A round is over when each effect has begun a frame since the last one, or has no commands in flight.
-  const bool over = std::all_of(users_.begin(), users_.end(),
-                                [](const User& user) { return user.begun || !user.user.ring->unfinished(); });
-  if (!over) return;
-  for (User& user : users_) user.begun = false;
+  users_.begin_frame(ring);
+  if (retired_.empty() || !users_.end_round()) return;
   for (Retired& r : retired_) --r.frames_left;
   std::erase_if(retired_, [](const Retired& r) { return r.frames_left == 0; });
-}
-
-void TableBuilder::remove_user(const FrameRing* ring) noexcept {
-  std::erase_if(users_, [&](const User& user) { return user.user.ring == ring; });
-}
-
-Result<void> TableBuilder::check_between(const char* where) const {
-  for (const User& user : users_) TYNDALL_TRY(user.user.parts->check_between(where));
-  return {};
 }
 
 VkDeviceSize TableBuilder::persistent_bytes() const {

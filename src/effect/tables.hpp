@@ -59,11 +59,38 @@ struct TableScratch {
 };
 [[nodiscard]] VkDeviceSize table_scratch_bytes(const gpu::Device& device, const Params& params);
 
-// An effect that uses the tables, while it exists.
-struct TableUser {
-  const FrameRing* ring = nullptr;  // identifies it
-  const FrameParts* parts = nullptr;
-  std::uint32_t slots = 0;  // of the ring
+// The effects that use the tables, and how far their frames have come.
+class TableUsers {
+ public:
+  struct User {
+    const FrameRing* ring = nullptr;  // identifies it
+    const FrameParts* parts = nullptr;
+    std::uint32_t slots = 0;  // of the ring
+  };
+  void add(const User& user) { users_.push_back({user, false}); }
+  void remove(const FrameRing* ring) noexcept;
+  [[nodiscard]] bool empty() const { return users_.empty(); }
+  // Returns whether this user counts the memory of the tables as its own, as one of them does.
+  [[nodiscard]] bool counted_by(const FrameRing* ring) const {
+    return !users_.empty() && users_.front().user.ring == ring;
+  }
+  // Returns an error if a user has recorded the first part of a frame only, as FrameParts::check_between().
+  [[nodiscard]] Result<void> check_between(const char* where) const;
+
+  // Notes that a user begins a frame.
+  void begin_frame(const FrameRing* ring);
+  // Returns whether each user has begun a frame since the last round, or has no commands in flight. Then begins another
+  // round.
+  [[nodiscard]] bool end_round();
+  // Returns the number of rounds after which no commands of now can be in flight.
+  [[nodiscard]] std::uint32_t rounds(std::uint32_t least) const;
+
+ private:
+  struct Entry {
+    User user;
+    bool begun;
+  };
+  std::vector<Entry> users_;
 };
 
 // Builds the tables. Owns them and, during a build, the scratch memory and the unfinished tables. Objects that
@@ -98,16 +125,8 @@ class TableBuilder {
   // objects that no frame uses.
   void begin_frame(VkCommandBuffer cmd, const FrameRing* ring = nullptr);
 
-  // Several effects may use the tables.
-  void add_user(const TableUser& user) { users_.push_back({user, false}); }
-  void remove_user(const FrameRing* ring) noexcept;
-  [[nodiscard]] bool has_users() const { return !users_.empty(); }
-  // Returns whether this user counts the memory of the tables as its own, as one of them does.
-  [[nodiscard]] bool counted_by(const FrameRing* ring) const {
-    return !users_.empty() && users_.front().user.ring == ring;
-  }
-  // Returns an error if a user has recorded the first part of a frame only, as FrameParts::check_between().
-  [[nodiscard]] Result<void> check_between(const char* where) const;
+  [[nodiscard]] TableUsers& users() { return users_; }
+  [[nodiscard]] const TableUsers& users() const { return users_; }
   // Returns the parameters of the build in progress, or those of the finished tables.
   [[nodiscard]] const Params& wanted() const { return done_ < steps_.size() ? wanted_ : built_; }
   // Returns whether frames with these parameters may read the tables: they are those of the tables, or those of the
@@ -153,13 +172,8 @@ class TableBuilder {
   void retire(TableSet tables, TableScratch scratch, SetCache sets) noexcept;
   TableImage& target(TableId id);
 
-  struct User {
-    TableUser user;
-    bool begun;  // a frame since the last round
-  };
-
   const gpu::Device* device_ = nullptr;
-  std::vector<User> users_ = {};
+  TableUsers users_;
   std::uint64_t revision_ = 0;
   Options options_;
   PipelineCache* pipelines_ = nullptr;

@@ -34,6 +34,28 @@ std::shared_ptr<const PhaseTable> phase_table() {
   return PhaseTable::create(angles, wavelengths, values).value();
 }
 
+// With phase functions that shaders read from rows.
+void expect_no_allocations_of_sky_probes(gpu::Host& host, Effect& effect, const Sun& sun) {
+  Result<SkyProbe> probe = SkyProbe::create(effect, SkyProbeDesc{2, 32});
+  ASSERT_OK(probe);
+  for (const MiePhase phase : {MiePhase::draine, MiePhase::table}) {
+    Params params = effect.params();
+    params.atmosphere.mie_phase = phase;
+    params.phase_table = phase_table();
+    ASSERT_OK(effect.set_params(params));
+    ASSERT_OK(host.run([&](VkCommandBuffer cmd) -> Result<void> {
+      const Result<Progress> built = effect.record_precompute(cmd, 100'000);
+      if (!built.ok()) return built.error();
+      SkyProbeInputs at;
+      at.sun = sun;
+      const std::size_t before = allocations;
+      const Result<Progress> recorded = probe.value().record(cmd, at);
+      EXPECT_EQ(allocations, before);
+      return recorded.ok() ? Result<void>() : recorded.error();
+    }));
+  }
+}
+
 // Runs without the validation layer, because it allocates memory itself.
 TEST(EffectAllocation, RecordingAllocatesNothing) {
   Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({});
@@ -77,25 +99,7 @@ TEST(EffectAllocation, RecordingAllocatesNothing) {
     EXPECT_FALSE(effect.value().timings(i).empty());
     EXPECT_EQ(allocations, before);
   }
-  // The sky probe, with phase functions that shaders read from rows.
-  Result<SkyProbe> probe = SkyProbe::create(effect.value(), SkyProbeDesc{2, 32});
-  ASSERT_OK(probe);
-  for (const MiePhase phase : {MiePhase::draine, MiePhase::table}) {
-    Params params = effect.value().params();
-    params.atmosphere.mie_phase = phase;
-    params.phase_table = phase_table();
-    ASSERT_OK(effect.value().set_params(params));
-    ASSERT_OK(host.value()->run([&](VkCommandBuffer cmd) -> Result<void> {
-      const Result<Progress> built = effect.value().record_precompute(cmd, 100'000);
-      if (!built.ok()) return built.error();
-      SkyProbeInputs at;
-      at.sun = inputs.sun;
-      const std::size_t before = allocations;
-      const Result<Progress> recorded = probe.value().record(cmd, at);
-      EXPECT_EQ(allocations, before);
-      return recorded.ok() ? Result<void>() : recorded.error();
-    }));
-  }
+  expect_no_allocations_of_sky_probes(*host.value(), effect.value(), inputs.sun);
   // A change of parameters that only affect the constants of the next frame does not allocate either.
   Params other_constants = effect.value().params();
   other_constants.scattering.scale *= 2.0F;

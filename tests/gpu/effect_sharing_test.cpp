@@ -242,7 +242,7 @@ TEST_F(GpuEffectSharing, PicturesAreTheSame) {
   ASSERT_OK(a);
   ASSERT_OK(b);
   EXPECT_EQ(a.value(), b.value());
-  // Both in one submission, while the tables are built anew, and after the first effect is gone.
+  // Both in one submission, while the tables are built again, and after the first effect is gone.
   params.atmosphere.aerosol_density = 3.0F;
   ASSERT_OK(first->set_params(params));
   ASSERT_OK(second.set_params(params));
