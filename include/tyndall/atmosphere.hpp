@@ -17,6 +17,8 @@ struct AtmosphereInputs {
   // is that of FrameInputs with the default planet.
   DVec3 origin_from_centre_m = {0.0, 6'360'000.0, 0.0};
   Sun sun;  // with its direction along these axes
+  // Affine, from these coordinates to (u, v, depth) of Clouds::map. Used with the macro TYNDALL_CLOUDS_BINDING only.
+  Mat4 clouds_from_position;
 };
 
 // The contents of the uniform block of tyndall/atmosphere.glsl. Copy them to a uniform buffer of this size.

@@ -92,6 +92,7 @@ struct EffectDesc {
   std::uint32_t max_cascades = 4;
   std::uint32_t max_shadow_resolution = 1024;
   bool shadow_colors = false;  // frames may have FrameInputs::shadow_colors; needs more pipelines
+  bool clouds = false;         // frames may have FrameInputs::clouds; needs more pipelines
   bool timings = false;        // measure each pass with timestamps, which the queue must have
   bool counters = false;       // count what the passes do; see Effect::counters()
   // [1; 64] - threads that create pipelines in create(), set_params() and prepare_pipelines(), including the calling
@@ -157,6 +158,15 @@ struct Sun {
   float angular_radius_rad = 0.004655F;
 };
 
+// Clouds or fog of the caller between the sun and the scene, as a layer that is seen from the sun (docs/clouds.md).
+struct Clouds {
+  // 2D image: red, green and blue are the fraction of sunlight that passes the layer, linear, 1 = clear. Alpha is the
+  // depth of the layer in this map, at least in half floats: what is farther from the sun is darkened. Nothing is
+  // darkened outside of the map. A null view: no clouds. Needs EffectDesc::clouds.
+  Texture map;
+  Mat4 map_from_world;  // affine, along the sun's rays, to (u, v, depth); depth grows away from the sun
+};
+
 // The inputs of one frame. All images must be visible to compute shaders when the commands execute.
 struct FrameInputs {
   VkExtent2D extent = {0, 0};  // [1; max_extent] px - size of the picture
@@ -184,6 +194,7 @@ struct FrameInputs {
   // also forms the horizon. The sphere is at this altitude or, if that is lower and the camera is below sea level, at
   // twice the camera's depth.
   float lowest_ground_m = 0.0F;
+  Clouds clouds;
 };
 
 // The parts in which Effect::record() can record a frame. `first` reads FrameInputs::depth, and `second` everything
@@ -274,8 +285,8 @@ class TYNDALL_API Effect {
   // views of light_tables() and scattering_tables() change. Makes missing pipelines, about 0.1 s each on a CPU device.
   // After scattering.color has changed from spectral to rgb, the larger buffers of spectral stay in use until the new
   // tables are complete; the next call after that frees them, also with the same parameters.
-  // With `desc`, also changes what set_shadow_colors() and set_limits() change, in one step: all or nothing. Its other
-  // fields must equal those of desc().
+  // With `desc`, also changes EffectDesc::clouds and what set_shadow_colors() and set_limits() change, in one step: all
+  // or nothing. Its other fields must equal those of desc().
   Result<void> set_params(const Params& params, const std::optional<EffectDesc>& desc = std::nullopt);
   // Returns the parameters in use.
   [[nodiscard]] const Params& params() const;

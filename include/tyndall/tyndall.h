@@ -217,6 +217,7 @@ typedef struct TyndallEffectDesc {
   uint32_t pipeline_threads;
   VkBool32 check_inputs;
   VkBool32 table_pipelines_later;
+  VkBool32 clouds;
   const TyndallEffect* tables_of;
 } TyndallEffectDesc;
 
@@ -243,6 +244,11 @@ typedef struct TyndallSun {
   float angular_radius_rad;
 } TyndallSun;
 
+typedef struct TyndallClouds {
+  TyndallTexture map;
+  float map_from_world[16];
+} TyndallClouds;
+
 typedef struct TyndallFrameInputs {
   uint32_t struct_size;
   VkExtent2D extent;
@@ -261,6 +267,7 @@ typedef struct TyndallFrameInputs {
   TyndallCamera camera;
   TyndallSun sun;
   float lowest_ground_m;
+  TyndallClouds clouds;
 } TyndallFrameInputs;
 
 // The inputs of the uniform block of tyndall/atmosphere.glsl; see atmosphere.hpp.
@@ -268,6 +275,7 @@ typedef struct TyndallAtmosphereInputs {
   uint32_t struct_size;
   TyndallSun sun;
   double origin_from_centre_m[3];
+  float clouds_from_position[16];
 } TyndallAtmosphereInputs;
 
 // Fill a structure with the defaults of C++ and set its struct_size. Call them with sizeof(structure).

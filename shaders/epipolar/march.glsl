@@ -3,13 +3,15 @@
 // position in both cases, so the tree saves reads without changing the result. The medium is integrated over panels on
 // which it is smooth. The in-scattering of a panel is the value at its middle times the lit length, plus its slope
 // times the first moment of the lit length. With kColors both are weighted by the colour of glass, which is read in
-// every cell that is not in shadow.
+// every cell that is not in shadow. With kClouds they are weighted by the sunlight behind clouds, and lit sections are
+// divided into steps of about a texel of the map of clouds.
 #ifndef TYNDALL_MARCH_GLSL
 #define TYNDALL_MARCH_GLSL
 
 #include "lib/single_scattering.glsl"
 #include "epipolar/constants.glsl"
 #include "epipolar/ray_end.glsl"
+#include "frame/clouds.glsl"
 #include "frame/counters.glsl"
 #include "frame/glass.glsl"
 #include "frame/homogeneous_medium.glsl"
@@ -22,7 +24,8 @@
 layout(constant_id = kTreeId) const bool kTree = true;
 layout(std430, binding = 13) readonly buffer slice_lines_block { SliceLine slice_lines[]; };
 layout(std430, binding = 14) readonly buffer min_max_tree_block { uvec2 tree[]; };
-const bool kPanels = kSingle == kIntegration && !kHomogeneous;
+const bool kPanels = (kSingle == kIntegration || kCloudFraction) && !kHomogeneous;
+const bool kTinted = kColors || kClouds;
 
 uint steps_done = 0u;
 uint nodes_visited = 0u;
@@ -32,6 +35,7 @@ uint reads_done = 0u;
 struct March {
   LitSections lit;         // single = table, multiple = occluded
   Spectrum light;          // single = integration; in a homogeneous medium before homogeneous_phase()
+  Spectrum plain;          // kCloudFraction: the same without clouds and glass
   float end_lit_fraction;  // lit fraction at the end of the farthest marched cascade; -1: none marched
 };
 
@@ -55,7 +59,7 @@ struct Walk {
   float lit;  // lit length within the panel, and its first moment about the middle
   float moment;
   float middle;
-  Spectrum lit_tinted;  // the same, with kColors
+  Spectrum lit_tinted;  // the same, with kTinted
   Spectrum moment_tinted;
   // In a homogeneous medium: transmittance and in-scattering up to `since`, and the source function from there on,
   // which is the lit fraction times the colour. A section ends where it changes, so that the result does not depend on
@@ -65,6 +69,9 @@ struct Walk {
   Spectrum source;
   float since;
   float lit_fraction;  // lit fraction of the last section
+  // kClouds: the change of (u, v, depth) in the map of clouds per cell, and the length of a step.
+  vec3 cloud_change;
+  float cloud_step;
 };
 
 vec2 load_node(bool full, uint at) {
@@ -92,17 +99,26 @@ void add_run(inout Walk w, inout LitSections sections, float to, float lit_fract
     float moment = length_lit * (0.5 * (w.x + to) - w.middle);
     w.lit += length_lit;
     w.moment += moment;
-    if (kColors) {
+    if (kTinted) {
       w.lit_tinted += length_lit * color;
       w.moment_tinted += moment * color;
     }
   }
-  if (kLitTables) add_section(sections, w.x * w.metres, to * w.metres, lit_fraction, color);
+  // With clouds, cloud_fraction() contains the colour.
+  if (kLitTables) {
+    add_section(sections, w.x * w.metres, to * w.metres, lit_fraction, kClouds ? Spectrum(1.0) : color);
+  }
   w.x = to;
   w.lit_fraction = lit_fraction;
 }
 
 bool section_closed(LitSections sections) { return kLitTables && kSections == kEach && sections.closed_at >= 0.0; }
+
+// Returns the sunlight behind clouds in the section from w.x to `to`.
+Spectrum clouds_before(Walk w, float to) {
+  if (!kClouds) return Spectrum(1.0);
+  return cloud_light(cloud_camera() + w.cloud_change * (0.5 * (w.x + to)), w.cloud_change.z * (to - w.x));
+}
 
 // Returns texture coordinates and depth of the comparison for the section [from, to] of the cell that begins at `cell`.
 // `precise`, because the pipelines with and without the tree must compute the same bits although a compiler may fuse
@@ -141,15 +157,21 @@ void walk_to(inout Walk w, inout LitSections sections, float to) {
       stop = end > w.x ? min(end, to) : to;
       // Cells that may be lit through glass are read, too.
       read = undecided || (kColors && inside && !dark);
+      bool cut = false;  // the section ends within the node
+      if (kClouds && !read && !dark && w.x + w.cloud_step > w.x) {
+        cut = w.x + w.cloud_step < stop;
+        stop = min(stop, w.x + w.cloud_step);
+      }
       if (!read) {
-        add_run(w, sections, stop, dark ? 0.0 : 1.0, Spectrum(1.0));
+        add_run(w, sections, stop, dark ? 0.0 : 1.0, dark ? Spectrum(1.0) : clouds_before(w, stop));
         ++steps_done;
       } else if (undecided && in_tree && level > kTreeLeafLevel) {
         w.level = level - 1u;
         read = false;
       }
       // Go up one level where a node of that level begins.
-      if (kTree && !undecided && in_tree && (next & ((2 << level) - 1)) == 0) w.level = min(level + 1u, kTreeTopLevel);
+      if (kTree && !undecided && !cut && in_tree && (next & ((2 << level) - 1)) == 0)
+        w.level = min(level + 1u, kTreeTopLevel);
     }
     if (read) {
       float step_cells = 1.0 / w.reads_per_cell;
@@ -160,7 +182,7 @@ void walk_to(inout Walk w, inout LitSections sections, float to) {
         end = end > w.x ? end : stop;
         vec3 place = compared_place(w.line, w.depth, w.slope, cell, w.x, end);
         float lit_fraction = texture(shadow_maps, vec4(place.xy, float(w.cascade), clamp(place.z, 0.0, 1.0)));
-        add_run(w, sections, end, lit_fraction, glass_color(place.xy, place.z, w.cascade));
+        add_run(w, sections, end, lit_fraction, glass_color(place.xy, place.z, w.cascade) * clouds_before(w, end));
         ++reads_done;
         ++steps_done;
       }
@@ -195,6 +217,14 @@ Walk begin_walk(uint cascade, uint slice, vec3 direction, float start, float fro
   w.metres = 1.0 / w.cells_per_m;
   w.x = first_x;
   w.reads_per_cell = max(1.0, float(frame.integration_steps) / max(to * w.cells_per_m - w.x, 1e-12));
+  w.cloud_change = vec3(0.0);
+  w.cloud_step = 0.0;
+  if (kClouds) {
+    float cells = to * w.cells_per_m - w.x;
+    w.cloud_change = cloud_change(direction) * w.metres;
+    w.cloud_step = cells / cloud_steps(w.cloud_change, cells, kCloudSteps);
+    w.reads_per_cell = max(w.reads_per_cell, 1.0 / max(w.cloud_step, 1e-3));
+  }
   w.level = kTreeLeafLevel;
   w.lit = 0.0;
   w.moment = 0.0;
@@ -236,8 +266,8 @@ int begin_panels(Ray ray, float from, float to, out Panels p) {
 }
 
 // Returns the in-scattering of a panel of length panel_m that begins at distance t, from the lit length that `w` has
-// found in it. Advances `p` to its end.
-Spectrum panel_light(Walk w, Ray ray, float t, float panel_m, inout Panels p) {
+// found in it. Advances `p` to its end. With kCloudFraction, adds the in-scattering without tint to `plain`.
+Spectrum panel_light(Walk w, Ray ray, float t, float panel_m, inout Panels p, inout Spectrum plain) {
   float radius = medium.planet_radius_m;
   float h_next = altitude_along(ray.altitude, ray.cos_zenith, t + panel_m, radius);
   vec3 density_next = densities(medium, h_next);
@@ -248,16 +278,21 @@ Spectrum panel_light(Walk w, Ray ray, float t, float panel_m, inout Panels p) {
   Spectrum arriving = sun_visibility(middle, cos_sun, radius) * transmittance(medium, total);
   float per_panel = w.metres / max(panel_m * w.cells_per_m, 1e-20);
   Spectrum light;
-  if (kColors) {
+  if (kTinted) {
     Spectrum lit_m = w.lit_tinted * w.metres;
     Spectrum moment = w.moment_tinted * per_panel;
     light = arriving * (p.rayleigh * max(mean.x * lit_m + (density_next.x - p.density.x) * moment, Spectrum(0.0)) +
                         p.mie * max(mean.y * lit_m + (density_next.y - p.density.y) * moment, Spectrum(0.0)));
-  } else {
+  }
+  if (!kTinted || kCloudFraction) {
     float lit_m = w.lit * w.metres;
     float moment = w.moment * per_panel;  // [m]; the coordinate is in units of a panel
-    light = arriving * (p.rayleigh * max(mean.x * lit_m + (density_next.x - p.density.x) * moment, 0.0) +
-                        p.mie * max(mean.y * lit_m + (density_next.y - p.density.y) * moment, 0.0));
+    Spectrum untinted = arriving * (p.rayleigh * max(mean.x * lit_m + (density_next.x - p.density.x) * moment, 0.0) +
+                                    p.mie * max(mean.y * lit_m + (density_next.y - p.density.y) * moment, 0.0));
+    if (kCloudFraction)
+      plain += untinted;
+    else
+      light = untinted;
   }
   p.integral += mean * panel_m;
   p.altitude = h_next;
@@ -293,7 +328,7 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
       }
     }
     if (!kPanels) break;
-    march.light += panel_light(w, ray, t, panel_m, panels);
+    march.light += panel_light(w, ray, t, panel_m, panels, march.plain);
   }
   if (kHomogeneous) {
     close_homogeneous(w);
@@ -302,7 +337,7 @@ void march_cascade(uint cascade, uint slice, Ray ray, TableRay path, float start
   march.end_lit_fraction = w.lit_fraction;
 }
 
-March nothing_marched() { return March(nothing_lit(), Spectrum(0.0), -1.0); }
+March nothing_marched() { return March(nothing_lit(), Spectrum(0.0), Spectrum(0.0), -1.0); }
 
 March add(March a, March b) {
   March m;
@@ -312,6 +347,7 @@ March add(March a, March b) {
   m.lit.light = add(a.lit.light, b.lit.light);
   m.lit.tint = a.lit.tint + b.lit.tint;
   m.light = a.light + b.light;
+  m.plain = a.plain + b.plain;
   m.lit.dark_until = a.lit.dark_until;
   m.end_lit_fraction = b.end_lit_fraction >= 0.0 ? b.end_lit_fraction : a.end_lit_fraction;
   return m;
@@ -335,19 +371,29 @@ Spectrum light_of(March march, Ray ray, TableRay path, float start, float end) {
   Spectrum light = march.light;
   if (kHomogeneous) {
     Spectrum transmittance, opacity;
+    if (kClouds) {
+      transmittance = exp(-HOMOGENEOUS_EXTINCTION * (t - start));
+      if (kSingle != kNone) add_clouded_homogeneous(ray.direction, t, end, kCloudSteps, light, transmittance);
+      return light;
+    }
     homogeneous_attenuation(end - t, transmittance, opacity);
     if (kSingle != kNone) light += exp(-HOMOGENEOUS_EXTINCTION * (t - start)) * opacity;
     return light;
   }
   if (kPanels) {
-    if (end - t > 1e-3) {
+    if (kClouds) {
+      if (end - t > 1e-3) add_clouded(ray, t, end, kCloudSteps, light, march.plain);
+    } else if (end - t > 1e-3) {
       light += single_scattering(medium, ray.altitude, ray.cos_zenith, ray.cos_sun_zenith, ray.cos_view_sun, t, end,
                                  int(frame.integration_steps) / 3);
     }
   }
   if (kLitTables || frame.unoccluded != 0u) {
-    light += kSections == kEach || kColors ? table_light(march.lit, path, start, t, end)
-                                           : contiguous_light(march.lit, path, start, t, end);
+    Spectrum looked_up = kSections == kEach || kColors ? table_light(march.lit, path, start, t, end)
+                                                       : contiguous_light(march.lit, path, start, t, end);
+    if (kCloudFraction) looked_up *= cloud_fraction(light, march.plain);
+    if (kCloudFraction && kSingle == kNone) light = Spectrum(0.0);
+    light += looked_up;
   }
   return light;
 }

@@ -15,6 +15,8 @@ const uint kStateVectors = 4u;
 
 void store_march(uint at, March m) {
   uint i = at * kStateVectors;
+  // With clouds, no mode reads single scattering from the tables.
+  if (kCloudFraction) m.lit.light.single = m.plain;
   states[i] = vec4(m.lit.light.single.rgb, m.lit.first);
   states[i + 1u] = vec4(m.lit.light.high.rgb, m.lit.total);
   states[i + 2u] = vec4(m.light.rgb, m.end_lit_fraction);
@@ -44,6 +46,10 @@ March load_march(uint at) {
 #else
   m.light = light.rgb;
 #endif
+  if (kCloudFraction) {
+    m.plain = m.lit.light.single;
+    m.lit.light.single = Spectrum(0.0);
+  }
   m.end_lit_fraction = light.a;
   return m;
 }

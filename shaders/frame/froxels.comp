@@ -26,17 +26,21 @@ layout(binding = 14, rgba16f) uniform writeonly image3D froxel_transmittance;
 // is a sum over sections.
 struct Column {
   float t;
-  March march;      // integration
-  Spectrum beyond;  // integration: light from beyond the cascades
-  LitSections lit;  // tables
-  float lit_until;  // tables: the distance up to which `lit` is known
-  Spectrum light;   // homogeneous medium, without its phase function
-  Spectrum before;  // homogeneous medium: transmittance up to t
+  March march;            // integration
+  Spectrum beyond;        // integration: light from beyond the cascades
+  Spectrum plain_beyond;  // kCloudFraction: the same without clouds
+  LitSections lit;        // tables
+  float lit_until;        // tables: the distance up to which `lit` is known
+  Spectrum light;         // homogeneous medium, without its phase function
+  Spectrum before;        // homogeneous medium: transmittance up to t
 };
+
+const float kCloudStepsOfSlice = 64.0;  // beyond the cascades
 
 float depth_per_m(Ray ray) { return max(dot(ray.direction, frame.camera_forward), 1e-6); }
 
-Spectrum integrate_to(inout Column column, Ray ray, float start, float to) {
+// With kCloudFraction, also computes the fraction of the light that clouds and glass let pass.
+Spectrum integrate_to(inout Column column, Ray ray, float start, float to, out Spectrum fraction) {
   float last = frame.cascade_count > 0u ? cascades[frame.cascade_count - 1u].far_m / depth_per_m(ray) : 0.0;
   float steps_per_m = float(frame.integration_steps) / max(min(last, frame.froxel_far_m) - start, 1.0);
   for (uint c = frame.first_marched_cascade; c < frame.cascade_count; ++c) {
@@ -46,12 +50,23 @@ Spectrum integrate_to(inout Column column, Ray ray, float start, float to) {
     column.t = end;
   }
   if (to - column.t > 1e-3) {
-    column.beyond += single_scattering(medium, ray.altitude, ray.cos_zenith, ray.cos_sun_zenith, ray.cos_view_sun,
-                                       column.t, to, int(frame.integration_steps) / 3);
+    if (kClouds) {
+      add_clouded(ray, column.t, to, kCloudStepsOfSlice, column.beyond, column.plain_beyond);
+    } else {
+      column.beyond += single_scattering(medium, ray.altitude, ray.cos_zenith, ray.cos_sun_zenith, ray.cos_view_sun,
+                                         column.t, to, int(frame.integration_steps) / 3);
+    }
     column.t = to;
   }
-  return RAYLEIGH_SCATTERING(medium) * rayleigh_phase(ray.cos_view_sun) * column.march.rayleigh +
-         mie_scattering_towards(medium, ray.cos_view_sun) * column.march.mie + column.beyond;
+  Spectrum light = RAYLEIGH_SCATTERING(medium) * rayleigh_phase(ray.cos_view_sun) * column.march.rayleigh +
+                   mie_scattering_towards(medium, ray.cos_view_sun) * column.march.mie + column.beyond;
+  fraction = Spectrum(1.0);
+  if (kCloudFraction) {
+    Spectrum plain = RAYLEIGH_SCATTERING(medium) * rayleigh_phase(ray.cos_view_sun) * column.march.plain_rayleigh +
+                     mie_scattering_towards(medium, ray.cos_view_sun) * column.march.plain_mie + column.plain_beyond;
+    fraction = cloud_fraction(light, plain);
+  }
+  return light;
 }
 
 Spectrum look_up_to(inout Column column, Ray ray, TableRay path, float start, float to) {
@@ -75,6 +90,10 @@ Spectrum homogeneous_to(inout Column column, Ray ray, float to) {
     march_homogeneous(c, ray, column.t, end, column.light, column.before);
     column.t = end;
   }
+  if (kClouds && to - column.t > 1e-3) {
+    add_clouded_homogeneous(ray.direction, column.t, to, kCloudStepsOfSlice, column.light, column.before);
+    column.t = to;
+  }
   if (to - column.t > 1e-3) {
     Spectrum transmittance, opacity;
     homogeneous_attenuation(to - column.t, transmittance, opacity);
@@ -96,8 +115,8 @@ void main() {
   bool inside = clip_to_medium(ray, start, end) && push.without_medium == 0u;
   float from_altitude = altitude_along(ray.altitude, ray.cos_zenith, start, medium.planet_radius_m);
   float from_cosine = cos_zenith_along(ray.altitude, ray.cos_zenith, start, medium.planet_radius_m);
-  Column column = Column(start, March(vec3(0.0), Spectrum(0.0), Spectrum(0.0)), Spectrum(0.0), nothing_lit(), start,
-                         Spectrum(0.0), Spectrum(1.0));
+  Column column = Column(start, nothing_marched(), Spectrum(0.0), Spectrum(0.0), nothing_lit(), start, Spectrum(0.0),
+                         Spectrum(1.0));
   if (kLitTables) column.lit.dark_until = planet_shadow_end(ray, start);
   TableRay path = table_ray_of(ray, start);
   Spectrum light = Spectrum(0.0);
@@ -114,8 +133,15 @@ void main() {
         Spectrum opacity;
         homogeneous_attenuation(to - start, path_transmittance, opacity);
       } else {
-        if (kSingle == kIntegration) light += integrate_to(column, ray, start, to);
-        if (kLitTables || frame.unoccluded != 0u) light += look_up_to(column, ray, path, start, to);
+        Spectrum fraction = Spectrum(1.0);
+        if (kSingle == kIntegration || kCloudFraction) {
+          Spectrum single = integrate_to(column, ray, start, to, fraction);
+          if (kSingle == kIntegration) light += single;
+        }
+        if (kLitTables || frame.unoccluded != 0u) {
+          Spectrum high = look_up_to(column, ray, path, start, to);
+          light += kCloudFraction ? fraction * high : high;
+        }
         path_transmittance =
             transmittance(medium, density_integral_along(medium, from_altitude, from_cosine, to - start));
       }

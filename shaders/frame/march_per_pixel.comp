@@ -19,9 +19,10 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(push_constant) uniform Push { uint first_row; }
 push;  // of the picture
 
-// Returns the single scattering over [start, end] of the ray.
-Spectrum integrated_light(Ray ray, float start, float end) {
-  March march = March(vec3(0.0), Spectrum(0.0), Spectrum(0.0));
+// Returns the single scattering over [start, end] of the ray. With kCloudFraction, computes the fraction of it that
+// clouds and glass let pass.
+Spectrum integrated_light(Ray ray, float start, float end, out Spectrum fraction) {
+  March march = nothing_marched();
   float t = start;
   // View-space depth is proportional to the distance along the ray.
   float depth_per_m = max(dot(ray.direction, frame.camera_forward), 1e-6);
@@ -36,7 +37,13 @@ Spectrum integrated_light(Ray ray, float start, float end) {
   }
   Spectrum light = RAYLEIGH_SCATTERING(medium) * rayleigh_phase(ray.cos_view_sun) * march.rayleigh +
                    mie_scattering_towards(medium, ray.cos_view_sun) * march.mie;
-  if (end - t > 1e-3) {
+  fraction = Spectrum(1.0);
+  if (kClouds) {
+    Spectrum plain = RAYLEIGH_SCATTERING(medium) * rayleigh_phase(ray.cos_view_sun) * march.plain_rayleigh +
+                     mie_scattering_towards(medium, ray.cos_view_sun) * march.plain_mie;
+    if (end - t > 1e-3) add_clouded(ray, t, end, kCloudSteps, light, plain);
+    fraction = cloud_fraction(light, plain);
+  } else if (end - t > 1e-3) {
     light += single_scattering(medium, ray.altitude, ray.cos_zenith, ray.cos_sun_zenith, ray.cos_view_sun, t, end,
                                int(frame.integration_steps) / 3);
   }
@@ -76,6 +83,10 @@ Spectrum homogeneous_light(Ray ray, float start, float end) {
     t = to;
   }
   if (end - t <= 1e-3) return light * homogeneous_phase(ray.cos_view_sun);  // remainder too short for a cascade
+  if (kClouds) {
+    add_clouded_homogeneous(ray.direction, t, end, kCloudSteps, light, before);
+    return light * homogeneous_phase(ray.cos_view_sun);
+  }
   homogeneous_attenuation(end - t, transmittance, opacity);
   return (light + before * opacity) * homogeneous_phase(ray.cos_view_sun);
 }
@@ -84,8 +95,15 @@ Spectrum homogeneous_light(Ray ray, float start, float end) {
 Spectrum inscattering(Ray ray, float start, float end) {
   Spectrum light = Spectrum(0.0);
   if (kHomogeneous) return kSingle == kNone ? light : homogeneous_light(ray, start, end);
-  if (kSingle == kIntegration) light += integrated_light(ray, start, end);
-  if (kLitTables || frame.unoccluded != 0u) light += shadowed_table_light(ray, start, end);
+  Spectrum fraction = Spectrum(1.0);
+  if (kSingle == kIntegration || kCloudFraction) {
+    Spectrum single = integrated_light(ray, start, end, fraction);
+    if (kSingle == kIntegration) light += single;
+  }
+  if (kLitTables || frame.unoccluded != 0u) {
+    Spectrum high = shadowed_table_light(ray, start, end);
+    light += kCloudFraction ? fraction * high : high;
+  }
   return light;
 }
 

@@ -7,6 +7,7 @@
 #define TYNDALL_MARCH_RAY_GLSL
 
 #include "frame/constants.glsl"
+#include "frame/clouds.glsl"
 #include "frame/counters.glsl"
 #include "frame/glass.glsl"
 #include "frame/homogeneous_medium.glsl"
@@ -50,7 +51,16 @@ struct March {
   vec3 integral;
   Spectrum rayleigh;
   Spectrum mie;
+  Spectrum plain_rayleigh;  // kCloudFraction: the same without clouds and glass
+  Spectrum plain_mie;
 };
+
+March nothing_marched() { return March(vec3(0.0), Spectrum(0.0), Spectrum(0.0), Spectrum(0.0), Spectrum(0.0)); }
+
+const bool kTinted = kColors || kClouds;
+
+// Returns the sunlight behind clouds at a read of the shadow map; `change`: of the map of clouds per read.
+Spectrum clouds_before(vec3 place, vec3 change) { return kClouds ? cloud_light(place, change.z) : Spectrum(1.0); }
 
 // Marches [from, to] inside one cascade. `ray` holds altitudes and cosines at the camera.
 void march_cascade(uint cascade, Ray ray, float from, float to, float steps_per_m, inout March march) {
@@ -58,6 +68,9 @@ void march_cascade(uint cascade, Ray ray, float from, float to, float steps_per_
   vec3 uvz_from = shadow_uvz(cascades[cascade].shadow_from_world, frame.camera_position + ray.direction * from);
   vec3 uvz_to = shadow_uvz(cascades[cascade].shadow_from_world, frame.camera_position + ray.direction * to);
   vec2 texels = abs(uvz_to.xy - uvz_from.xy) * float(frame.shadow_resolution);
+  if (kClouds) {
+    texels.x = max(texels.x, cloud_steps(cloud_change(ray.direction), to - from, kCloudSteps));
+  }
   // A ray towards the sun stays in one texel but crosses many densities: limit the climb per group of reads to half the
   // aerosol's scale height.
   float h_from = altitude_along(ray.altitude, ray.cos_zenith, from, radius);
@@ -72,6 +85,8 @@ void march_cascade(uint cascade, Ray ray, float from, float to, float steps_per_
   float dt = (to - from) / float(groups);
   vec3 duvz = (uvz_to - uvz_from) / float(groups * kReadsPerStep);
   vec3 uvz = uvz_from + 0.5 * duvz;
+  vec3 dcloud = kClouds ? cloud_change(ray.direction) * (dt / float(kReadsPerStep)) : vec3(0.0);
+  vec3 cloud = kClouds ? cloud_camera() + cloud_change(ray.direction) * from + 0.5 * dcloud : vec3(0.0);
   float altitude = h_from;
   vec3 density = densities(medium, altitude);
   for (int i = 0; i < groups; ++i) {
@@ -80,8 +95,9 @@ void march_cascade(uint cascade, Ray ray, float from, float to, float steps_per_
     for (int k = 0; k < kReadsPerStep; ++k) {
       float lit_fraction = texture(shadow_maps, vec4(uvz.xy, float(cascade), clamp(uvz.z, 0.0, 1.0)));
       lit += lit_fraction;
-      if (kColors) tint += lit_fraction * glass_color(uvz.xy, uvz.z, cascade);
+      if (kTinted) tint += lit_fraction * glass_color(uvz.xy, uvz.z, cascade) * clouds_before(cloud, dcloud);
       uvz += duvz;
+      cloud += dcloud;
     }
     float next_altitude = altitude_along(ray.altitude, ray.cos_zenith, from + (float(i) + 1.0) * dt, radius);
     vec3 next_density = densities(medium, next_altitude);
@@ -94,7 +110,11 @@ void march_cascade(uint cascade, Ray ray, float from, float to, float steps_per_
       lit *= sun_visibility(altitude_here, cos_sun, radius) / float(kReadsPerStep);
       vec3 integral = march.integral + 0.5 * dt * mean + density_integral_to_top(medium, altitude_here, cos_sun);
       Spectrum arriving = (lit * dt) * transmittance(medium, integral);
-      if (kColors) arriving *= tint / lit_reads;
+      if (kCloudFraction) {
+        march.plain_rayleigh += mean.x * arriving;
+        march.plain_mie += mean.y * arriving;
+      }
+      if (kTinted) arriving *= tint / lit_reads;
       march.rayleigh += mean.x * arriving;
       march.mie += mean.y * arriving;
     }
@@ -126,7 +146,9 @@ void walk_cascade(uint cascade, Ray ray, TableRay path, float start, float from,
     for (; i < reads && lit.closed_at < 0.0; ++i) {
       float lit_fraction = texture(shadow_maps, vec4(uvz.xy, float(cascade), clamp(uvz.z, 0.0, 1.0)));
       float here = read_from + float(i) * step_m;
-      add_section(lit, here, here + step_m, lit_fraction, glass_color(uvz.xy, uvz.z, cascade));
+      // With clouds, cloud_fraction() contains the colour.
+      add_section(lit, here, here + step_m, lit_fraction,
+                  kClouds ? Spectrum(1.0) : glass_color(uvz.xy, uvz.z, cascade));
       uvz += duvz;
     }
     if (i >= reads && lit.closed_at < 0.0) {
@@ -140,6 +162,19 @@ void walk_cascade(uint cascade, Ray ray, TableRay path, float start, float from,
   reads_done += uint(reads);
 }
 
+// Adds the in-scattering of a homogeneous medium between two distances, where nothing is in shadow.
+void add_lit_homogeneous(vec3 direction, float from, float to, float length_m, inout Spectrum light,
+                         inout Spectrum before) {
+  if (kClouds) {
+    add_clouded_homogeneous(direction, from, to, kCloudSteps, light, before);
+    return;
+  }
+  Spectrum transmittance, opacity;
+  homogeneous_attenuation(length_m, transmittance, opacity);
+  light += before * opacity;
+  before *= transmittance;
+}
+
 // Adds the in-scattering of a homogeneous medium between two distances inside one cascade to `light`, without the
 // factor of homogeneous_phase(). `before`: the transmittance from the eye.
 void march_homogeneous(uint cascade, Ray ray, float from, float to, inout Spectrum light, inout Spectrum before) {
@@ -150,22 +185,25 @@ void march_homogeneous(uint cascade, Ray ray, float from, float to, inout Spectr
   vec2 texels = abs(uvz_to.xy - uvz_from.xy) * float(frame.shadow_resolution);
   vec2 part = section_to_read(uvz_from, uvz_to, texels);
   float wanted = max(max(texels.x, texels.y) * (part.y - part.x), float(MIN_READS));
+  if (kClouds) {
+    wanted = max(wanted, cloud_steps(cloud_change(ray.direction), (to - from) * (part.y - part.x), kCloudSteps));
+  }
   int reads = int(clamp(ceil(wanted), 1.0, reads_per_cascade()));
-  homogeneous_attenuation((to - from) * part.x, transmittance, opacity);
-  light += before * opacity;
-  before *= transmittance;
+  add_lit_homogeneous(ray.direction, from, mix(from, to, part.x), (to - from) * part.x, light, before);
   homogeneous_attenuation((to - from) * ((part.y - part.x) / float(reads)), transmittance, opacity);
   vec3 duvz = (uvz_to - uvz_from) * ((part.y - part.x) / float(reads));
   vec3 uvz = mix(uvz_from, uvz_to, part.x) + 0.5 * duvz;
+  vec3 dcloud = kClouds ? cloud_change(ray.direction) * ((to - from) * (part.y - part.x) / float(reads)) : vec3(0.0);
+  vec3 cloud =
+      kClouds ? cloud_camera() + cloud_change(ray.direction) * mix(from, to, part.x) + 0.5 * dcloud : vec3(0.0);
   for (int i = 0; i < reads; ++i) {
     float lit_fraction = texture(shadow_maps, vec4(uvz.xy, float(cascade), clamp(uvz.z, 0.0, 1.0)));
-    light += lit_fraction * glass_color(uvz.xy, uvz.z, cascade) * before * opacity;
+    light += lit_fraction * glass_color(uvz.xy, uvz.z, cascade) * clouds_before(cloud, dcloud) * before * opacity;
     before *= transmittance;
     uvz += duvz;
+    cloud += dcloud;
   }
-  homogeneous_attenuation((to - from) * (1.0 - part.y), transmittance, opacity);
-  light += before * opacity;
-  before *= transmittance;
+  add_lit_homogeneous(ray.direction, mix(from, to, part.y), to, (to - from) * (1.0 - part.y), light, before);
   steps_done += uint(reads);
   reads_done += uint(reads);
 }

@@ -11,6 +11,9 @@
 //   TYNDALL_SHADOW(p)      returns how much sunlight your shadows let pass at position p, as a float or a vec3 from 0
 //   to
 //                          1. It enables tyndall_between_shadowed().
+//   TYNDALL_CLOUDS_BINDING binding of your map of clouds (FrameInputs::clouds), a combined image sampler with linear
+//                          filtering that clamps to an opaque white border. Clouds then darken the results of
+//                          tyndall_sun_irradiance() and tyndall_between_shadowed(), which it enables as well.
 //   TYNDALL_PHASE_BINDING  binding of a uniform block with the rows of atmosphere_phase(), for atmosphere.mie_phase =
 //                          draine or table. Without it, these are drawn with the phase function of Henyey and
 //                          Greenstein that has the same mean cosine.
@@ -47,6 +50,25 @@ layout(std140, set = TYNDALL_SET, binding = TYNDALL_FIRST_BINDING) uniform const
 layout(set = TYNDALL_SET, binding = TYNDALL_FIRST_BINDING + 1) uniform sampler2D sky_irradiance_table;
 layout(set = TYNDALL_SET, binding = TYNDALL_FIRST_BINDING + 5) uniform sampler3D froxel_inscattering;
 layout(set = TYNDALL_SET, binding = TYNDALL_FIRST_BINDING + 6) uniform sampler3D froxel_transmittance;
+
+#ifdef TYNDALL_CLOUDS_BINDING
+#include "lib/cloud_map.glsl"
+layout(set = TYNDALL_SET, binding = TYNDALL_CLOUDS_BINDING) uniform sampler2D tyndall_clouds;
+
+// Returns the fraction of sunlight that the clouds let pass to a position.
+vec3 tyndall_cloud_transmittance(vec3 position) {
+  vec4 place = vec4(position, 1.0);
+  vec2 uv = vec2(dot(tyndall_constants.cloud_u, place), dot(tyndall_constants.cloud_v, place));
+  vec4 texel = textureLod(tyndall_clouds, uv, 0.0);
+  return mix(vec3(1.0), texel.rgb, behind_clouds(texel.a, dot(tyndall_constants.cloud_depth, place), 0.0));
+}
+#ifndef TYNDALL_SHADOW
+#define TYNDALL_SHADOW(p) 1.0
+#endif
+#define SUNLIGHT_THROUGH(color, position) (color) * tyndall_cloud_transmittance(position)
+#else
+#define SUNLIGHT_THROUGH(color, position) (color)
+#endif
 
 // What happens to light along a path.
 struct TyndallPath {
@@ -147,10 +169,14 @@ Spectrum sky_at(float altitude, float cos_sun_zenith) {
 }
 
 // Returns the irradiance of sunlight at a position, at normal incidence. It is 0 if the planet hides the sun; your
-// shadows are not included.
+// shadows are not included, but clouds are.
 vec3 tyndall_sun_irradiance(vec3 position) {
   Place place = place_at(position);
-  return COLOR(sun_at(place.altitude, place.cos_sun_zenith)) * tyndall_constants.sun_irradiance;
+  Spectrum sun = sun_at(place.altitude, place.cos_sun_zenith);
+#ifdef TYNDALL_CLOUDS_BINDING
+  sun *= FILTER(tyndall_cloud_transmittance(position));
+#endif
+  return COLOR(sun) * tyndall_constants.sun_irradiance;
 }
 
 // Returns the irradiance of the sky, and of light that the ground reflects, on a surface with this normal. It is exact
@@ -217,9 +243,10 @@ TyndallFroxel tyndall_froxel(vec2 uv, float distance_m) {
 }
 
 #ifdef TYNDALL_SHADOW
-// Returns the path between two positions, with your shadows in its single scattering: the fraction of single scattering
-// that TYNDALL_SHADOW lets pass is integrated in `steps` steps. Where nothing is in shadow, the result equals that of
-// tyndall_between(). Light that is scattered more than once is not shadowed, as with scattering.multiple = unoccluded.
+// Returns the path between two positions, with your shadows and clouds in its single scattering: the fraction of single
+// scattering that TYNDALL_SHADOW and the clouds let pass is integrated in `steps` steps. Where nothing is in shadow,
+// the result equals that of tyndall_between(). Light that is scattered more than once is not shadowed, as with
+// scattering.multiple = unoccluded.
 TyndallPath tyndall_between_shadowed(vec3 from, vec3 to, int steps) {
   float reach = distance(from, to);
   if (reach < 1.0e-4) return TyndallPath(vec3(0.0), Spectrum(1.0));
@@ -247,7 +274,8 @@ TyndallPath tyndall_between_shadowed(vec3 from, vec3 to, int steps) {
     vec3 density = densities(tyndall_constants.medium, here.altitude);
     Spectrum source = transmittance(tyndall_constants.medium, integral) * (rayleigh * density.x + mie * density.y);
     all += source;
-    lit += source * FILTER(vec3(TYNDALL_SHADOW(from + direction * (ray.start_m + t))));
+    vec3 position = from + direction * (ray.start_m + t);
+    lit += source * FILTER(SUNLIGHT_THROUGH(vec3(TYNDALL_SHADOW(position)), position));
   }
   Spectrum fraction = mix(Spectrum(1.0), lit / max(all, Spectrum(1.0e-30)), greaterThan(all, Spectrum(1.0e-30)));
   light.high *= deep_factor(tyndall_constants.medium, path);

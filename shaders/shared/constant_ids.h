@@ -20,6 +20,7 @@ const uint kRaysOfTablesId = 12u;     // 1: the rays are those of the tables, 0:
 const uint kRefineRunId = 13u;        // consecutive samples per thread of refine_samples.comp: 1, 2, 4, ... 32
 const uint kTreePartId = 14u;         // binary logarithm of the cells per thread of min_max_tree.comp, 4 to 7
 const uint kPhaseTableId = 15u;       // 1: the aerosol's phase function is read from a table (lib/phase.glsl)
-const uint kSpecialisationIds = 16u;  // how many there are
+const uint kCloudsId = 16u;           // 1: clouds darken the sunlight
+const uint kSpecialisationIds = 17u;  // how many there are
 
 #endif

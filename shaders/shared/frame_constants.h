@@ -74,6 +74,13 @@ struct FrameConstants {
   float froxel_near_m;
   float froxel_far_m;
   uint unused_3;
+  // The map of the clouds: rows of the linear part of its matrix [1/m], and the camera's (u, v, depth).
+  vec3 cloud_u;
+  float cloud_camera_u;
+  vec3 cloud_v;
+  float cloud_camera_v;
+  vec3 cloud_depth;
+  float cloud_camera_depth;
   TableShape tables;
   HomogeneousMedium homogeneous;
 #if defined(SPECTRAL) || defined(__cplusplus)

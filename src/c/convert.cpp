@@ -111,6 +111,12 @@ void set(Sun& sun, const TyndallSun& c) {
   angular_radius_rad = c.angular_radius_rad;
 }
 
+void set(Clouds& clouds, const TyndallClouds& c) {
+  auto& [map, map_from_world] = clouds;
+  set(map, c.map);
+  set(map_from_world, c.map_from_world);
+}
+
 void set(TyndallSun& c, const Sun& sun) {
   const auto& [direction_to_sun, irradiance, angular_radius_rad] = sun;
   set(c.direction_to_sun, direction_to_sun);
@@ -152,8 +158,8 @@ TyndallDeviceInfo to_c(const DeviceInfo& info) {
 EffectDesc to_cpp(const TyndallEffectDesc& c) {
   EffectDesc out;
   auto& [max_extent, frames_in_flight, views, output_format, sky_depth, depth_format, shadow_depth_reversed,
-         max_cascades, max_shadow_resolution, shadow_colors, timings, counters, pipeline_threads, table_pipelines_later,
-         check_inputs, tables_of] = out;
+         max_cascades, max_shadow_resolution, shadow_colors, clouds, timings, counters, pipeline_threads,
+         table_pipelines_later, check_inputs, tables_of] = out;
   max_extent = c.max_extent;
   frames_in_flight = c.frames_in_flight;
   views = c.views;
@@ -164,6 +170,7 @@ EffectDesc to_cpp(const TyndallEffectDesc& c) {
   max_cascades = c.max_cascades;
   max_shadow_resolution = c.max_shadow_resolution;
   shadow_colors = c.shadow_colors != VK_FALSE;
+  clouds = c.clouds != VK_FALSE;
   timings = c.timings != VK_FALSE;
   counters = c.counters != VK_FALSE;
   pipeline_threads = c.pipeline_threads;
@@ -175,7 +182,7 @@ EffectDesc to_cpp(const TyndallEffectDesc& c) {
 
 TyndallEffectDesc to_c(const EffectDesc& desc) {
   const auto& [max_extent, frames_in_flight, views, output_format, sky_depth, depth_format, shadow_depth_reversed,
-               max_cascades, max_shadow_resolution, shadow_colors, timings, counters, pipeline_threads,
+               max_cascades, max_shadow_resolution, shadow_colors, clouds, timings, counters, pipeline_threads,
                table_pipelines_later, check_inputs, tables_of] = desc;
   TyndallEffectDesc out = {};
   out.max_extent = max_extent;
@@ -188,6 +195,7 @@ TyndallEffectDesc to_c(const EffectDesc& desc) {
   out.max_cascades = max_cascades;
   out.max_shadow_resolution = max_shadow_resolution;
   out.shadow_colors = shadow_colors ? VK_TRUE : VK_FALSE;
+  out.clouds = clouds ? VK_TRUE : VK_FALSE;
   out.timings = timings ? VK_TRUE : VK_FALSE;
   out.counters = counters ? VK_TRUE : VK_FALSE;
   out.pipeline_threads = pipeline_threads;
@@ -199,7 +207,7 @@ TyndallEffectDesc to_c(const EffectDesc& desc) {
 FrameInputs to_cpp(const TyndallFrameInputs& c, std::array<Cascade, kMaxCascades>& room) {
   FrameInputs out;
   auto& [extent, color, depth, shadow_maps, shadow_colors, shadow_color_depths, shadow_resolution, cascades,
-         first_marched_cascade, camera, sun, output, frame_index, view, lowest_ground_m] = out;
+         first_marched_cascade, camera, sun, output, frame_index, view, lowest_ground_m, clouds] = out;
   extent = c.extent;
   set(color, c.color);
   set(depth, c.depth);
@@ -216,12 +224,13 @@ FrameInputs to_cpp(const TyndallFrameInputs& c, std::array<Cascade, kMaxCascades
   frame_index = c.frame_index;
   view = c.view;
   lowest_ground_m = c.lowest_ground_m;
+  set(clouds, c.clouds);
   return out;
 }
 
 TyndallFrameInputs to_c(const FrameInputs& inputs) {
   const auto& [extent, color, depth, shadow_maps, shadow_colors, shadow_color_depths, shadow_resolution, cascades,
-               first_marched_cascade, camera, sun, output, frame_index, view, lowest_ground_m] = inputs;
+               first_marched_cascade, camera, sun, output, frame_index, view, lowest_ground_m, clouds] = inputs;
   TyndallFrameInputs out = {};
   out.extent = extent;
   out.color = to_c(color);
@@ -238,25 +247,29 @@ TyndallFrameInputs to_c(const FrameInputs& inputs) {
   out.frame_index = frame_index;
   out.view = view;
   out.lowest_ground_m = lowest_ground_m;
+  out.clouds.map = to_c(clouds.map);
+  set(out.clouds.map_from_world, clouds.map_from_world);
   return out;
 }
 
 AtmosphereInputs to_cpp(const TyndallAtmosphereInputs& c) {
   AtmosphereInputs out;
-  auto& [origin_from_centre_m, sun] = out;
+  auto& [origin_from_centre_m, sun, clouds_from_position] = out;
   origin_from_centre_m = {c.origin_from_centre_m[0], c.origin_from_centre_m[1], c.origin_from_centre_m[2]};
   set(sun, c.sun);
+  set(clouds_from_position, c.clouds_from_position);
   return out;
 }
 
 TyndallAtmosphereInputs to_c(const AtmosphereInputs& inputs) {
-  const auto& [origin_from_centre_m, sun] = inputs;
+  const auto& [origin_from_centre_m, sun, clouds_from_position] = inputs;
   TyndallAtmosphereInputs out = {};
   const auto& [x, y, z] = origin_from_centre_m;
   out.origin_from_centre_m[0] = x;
   out.origin_from_centre_m[1] = y;
   out.origin_from_centre_m[2] = z;
   set(out.sun, sun);
+  set(out.clouds_from_position, clouds_from_position);
   return out;
 }
 

@@ -36,6 +36,11 @@ Result<void> check(const AtmosphereInputs& inputs) {
   if (!std::isfinite(inputs.sun.angular_radius_rad) || inputs.sun.angular_radius_rad < 0.0F) {
     return invalid("angular_radius_rad is negative or not finite; expected at least 0");
   }
+  for (const float entry : inputs.clouds_from_position.m) {
+    if (!std::isfinite(entry)) {
+      return invalid("clouds_from_position is not finite; expected a matrix to (u, v, depth) of the map of clouds");
+    }
+  }
   return {};
 }
 
@@ -60,6 +65,13 @@ shared::AtmosphereConstants constants_of(const Params& params, const AtmosphereI
   out.froxel_near_m = params.froxels.near_m;
   out.froxel_far_m = params.froxels.far_m;
   out.froxel_slices = static_cast<float>(params.froxels.slices);
+  const Mat4& clouds = inputs.clouds_from_position;
+  const auto row = [&clouds](int i) {
+    return shared::vec4(clouds.m[i], clouds.m[4 + i], clouds.m[8 + i], clouds.m[12 + i]);
+  };
+  out.cloud_u = row(0);
+  out.cloud_v = row(1);
+  out.cloud_depth = row(2);
   return out;
 }
 

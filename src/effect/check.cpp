@@ -76,27 +76,47 @@ Result<void> check_camera(const Camera& camera, const EffectDesc& desc) {
   return {};
 }
 
-Result<void> check_cascade(const Cascade& cascade, std::size_t index) {
-  const auto fault = [&](const std::string& what) {
-    return invalid("FrameInputs::cascades[" + std::to_string(index) + "]" + what);
-  };
-  const Mat4& m = cascade.shadow_from_world;
-  if (!finite(m)) return fault("'s shadow_from_world is not finite; expected a matrix from the world to (u, v, depth)");
-  if (!(cascade.near_m >= 0.0F && cascade.far_m >= cascade.near_m)) {
-    return fault("'s range is " + std::to_string(cascade.near_m) + " to " + std::to_string(cascade.far_m) +
-                 " m; expected 0 <= near_m <= far_m");
-  }
+// Returns what is wrong with a matrix to (u, v, depth) of an orthographic map, or null. Allocates nothing.
+const char* map_matrix_fault(const Mat4& m) {
+  if (!finite(m)) return " is not finite; expected a matrix from the world to (u, v, depth)";
   // The tolerance is far below that of any usable map.
   const double volume = determinant3(m);
   const double rows = length(row_of(m, 0)) * length(row_of(m, 1)) * length(row_of(m, 2));
   if (!(std::abs(volume) > 1e-4 * rows) || !(rows > 0.0)) {
-    return fault(
-        "'s shadow_from_world is zero or cannot be inverted; expected a matrix from the world to (u, v, depth)");
+    return " is zero or cannot be inverted; expected a matrix from the world to (u, v, depth)";
   }
   if (affine_error(m) > 1e-4) {
-    return fault("'s shadow_from_world has a last row other than 0 0 0 1; expected an orthographic shadow map's "
-                 "matrix, column-major: "
-                 "is it transposed, or a perspective one?");
+    return " has a last row other than 0 0 0 1; expected the matrix of an orthographic map, column-major: is it "
+           "transposed, or a perspective one?";
+  }
+  return nullptr;
+}
+
+Result<void> check_cascade(const Cascade& cascade, std::size_t index) {
+  const auto fault = [&](const std::string& what) {
+    return invalid("FrameInputs::cascades[" + std::to_string(index) + "]" + what);
+  };
+  if (const char* const what = map_matrix_fault(cascade.shadow_from_world); what != nullptr) {
+    return fault(std::string("'s shadow_from_world") + what);
+  }
+  if (!(cascade.near_m >= 0.0F && cascade.far_m >= cascade.near_m)) {
+    return fault("'s range is " + std::to_string(cascade.near_m) + " to " + std::to_string(cascade.far_m) +
+                 " m; expected 0 <= near_m <= far_m");
+  }
+  return {};
+}
+
+Result<void> check_sun(const Sun& sun) {
+  const Vec3 direction = sun.direction_to_sun;
+  if (!finite(direction) || (direction.x == 0.0F && direction.y == 0.0F && direction.z == 0.0F)) {
+    return invalid("Sun::direction_to_sun is zero or not finite; expected a direction");
+  }
+  const Vec3 irradiance = sun.irradiance;
+  if (!finite(irradiance) || irradiance.x < 0.0F || irradiance.y < 0.0F || irradiance.z < 0.0F) {
+    return invalid("Sun::irradiance is negative or not finite; expected at least 0");
+  }
+  if (!std::isfinite(sun.angular_radius_rad) || sun.angular_radius_rad < 0.0F) {
+    return invalid("Sun::angular_radius_rad is negative or not finite; expected at least 0");
   }
   return {};
 }
@@ -108,6 +128,25 @@ Result<void> check_offset(const Texture& texture, const char* name) {
   if (o.x >= 0 && o.y >= 0 && o.x <= kMaxOffset && o.y <= kMaxOffset) return {};
   return invalid(std::string(name) + "'s offset is " + std::to_string(o.x) + "," + std::to_string(o.y) +
                  "; expected pixels inside the image, from 0,0 on");
+}
+
+Result<void> check_clouds(const FrameInputs& inputs, const EffectDesc& desc) {
+  const Texture& map = inputs.clouds.map;
+  if (map.view == VK_NULL_HANDLE) return {};
+  if (!desc.clouds) return invalid("FrameInputs::clouds has a view; expected null without EffectDesc::clouds");
+  TYNDALL_TRY(check_layout(map, "FrameInputs::clouds.map"));
+  if (map.offset.x != 0 || map.offset.y != 0) {
+    return invalid("FrameInputs::clouds.map has an offset; expected 0,0, because the map is used completely");
+  }
+  if (map.view == inputs.output.view || map.view == inputs.depth.view || map.view == inputs.shadow_maps.view) {
+    return invalid(
+        "FrameInputs::clouds.map is the view of FrameInputs::output, depth or shadow_maps; expected an image "
+        "of transmittances and depths");
+  }
+  if (const char* const what = map_matrix_fault(inputs.clouds.map_from_world); what != nullptr) {
+    return invalid(std::string("FrameInputs::clouds's map_from_world") + what);
+  }
+  return {};
 }
 
 }  // namespace
@@ -172,6 +211,7 @@ Result<void> check_frame(const FrameInputs& inputs, const EffectDesc& desc, cons
     }
   }
   for (std::size_t i = 0; i < inputs.cascades.size(); ++i) TYNDALL_TRY(check_cascade(inputs.cascades[i], i));
+  TYNDALL_TRY(check_clouds(inputs, desc));
   if (!finite(inputs.camera.world_from_view))
     return invalid("Camera::world_from_view is not finite; expected a rigid matrix");
   if (!finite(inputs.camera.clip_from_view) || !finite(inverse(inputs.camera.clip_from_view))) {
@@ -181,17 +221,7 @@ Result<void> check_frame(const FrameInputs& inputs, const EffectDesc& desc, cons
   if (!std::isfinite(inputs.lowest_ground_m) || inputs.lowest_ground_m > 0.0F) {
     return invalid("FrameInputs::lowest_ground_m must be finite and not above 0");
   }
-  const Vec3 sun = inputs.sun.direction_to_sun;
-  if (!finite(sun) || (sun.x == 0.0F && sun.y == 0.0F && sun.z == 0.0F)) {
-    return invalid("Sun::direction_to_sun is zero or not finite; expected a direction");
-  }
-  const Vec3 irradiance = inputs.sun.irradiance;
-  if (!finite(irradiance) || irradiance.x < 0.0F || irradiance.y < 0.0F || irradiance.z < 0.0F) {
-    return invalid("Sun::irradiance is negative or not finite; expected at least 0");
-  }
-  if (!std::isfinite(inputs.sun.angular_radius_rad) || inputs.sun.angular_radius_rad < 0.0F) {
-    return invalid("Sun::angular_radius_rad is negative or not finite; expected at least 0");
-  }
+  TYNDALL_TRY(check_sun(inputs.sun));
   if (params.scattering.technique == Technique::epipolar && params.scattering.light_shafts) {
     const std::size_t marched = inputs.cascades.empty() ? 0 : inputs.cascades.size() - inputs.first_marched_cascade;
     if (marched > desc.max_cascades) {

@@ -31,6 +31,9 @@ constexpr gpu::ImageDesc kNoShadows = {"no_shadows", VK_FORMAT_D32_SFLOAT, {1, 1
 constexpr gpu::ImageDesc kNoColors = {
     "no_colors", VK_FORMAT_R8G8B8A8_UNORM, {1, 1, 1}, VK_IMAGE_USAGE_SAMPLED_BIT, 1, 1, true};
 
+// Bound instead of the map of clouds if a frame has none. It is never read.
+constexpr gpu::ImageDesc kNoClouds = {"no_clouds", VK_FORMAT_R8G8B8A8_UNORM, {1, 1, 1}, VK_IMAGE_USAGE_SAMPLED_BIT};
+
 constexpr VkDeviceSize align(VkDeviceSize size) {
   return (size + kBufferAlignment - 1) / kBufferAlignment * kBufferAlignment;
 }
@@ -59,7 +62,7 @@ constexpr std::uint32_t kEverything = bit(Affects::Resources) | bit(Affects::Tab
 bool same_limits(const EffectDesc& a, const EffectDesc& b) {
   return a.max_extent.width == b.max_extent.width && a.max_extent.height == b.max_extent.height &&
          a.max_cascades == b.max_cascades && a.max_shadow_resolution == b.max_shadow_resolution &&
-         a.shadow_colors == b.shadow_colors;
+         a.shadow_colors == b.shadow_colors && a.clouds == b.clouds;
 }
 
 }  // namespace
@@ -71,11 +74,12 @@ Result<void> open_device(gpu::Device& device, const DeviceInfo& info) {
 
 MemoryUsage plan_memory(const gpu::Device& device, const EffectDesc& desc, const Params& params) {
   MemoryUsage usage;
-  usage.persistent = gpu::image_bytes(device, kNoShadows) + gpu::image_bytes(device, kNoColors);
+  for (const gpu::ImageDesc& image : {kNoShadows, kNoColors, kNoClouds}) {
+    usage.persistent += gpu::image_bytes(device, image);
+  }
   if (desc.tables_of == nullptr) {
-    for (std::uint32_t i = 0; i < kTableCount; ++i) {
+    for (std::uint32_t i = 0; i < kTableCount; ++i)
       usage.persistent += gpu::image_bytes(device, table_desc(static_cast<TableId>(i), params));
-    }
     usage.transient = table_scratch_bytes(device, params);
   }
   usage.persistent += gpu::buffer_bytes(device, kCounterBytes * FrameRing::slots(desc), kCounterUsage);
@@ -90,16 +94,12 @@ MemoryUsage plan_memory(const gpu::Device& device, const EffectDesc& desc, const
 Effect::State::~State() {
   tables.users().remove(&ring);
   if (info.message == nullptr || !desc.check_inputs || !ring.unfinished()) return;
-  if (parts.open()) {
-    info.message(info.message_user, Severity::warning,
-                 "an Effect is destroyed between the two parts of a frame; expected to record and submit "
-                 "FramePart::second first, and to wait for it");
-    return;
-  }
-  info.message(
-      info.message_user, Severity::warning,
-      "an Effect is destroyed before the commands that it recorded have completed, or without submitting them; "
-      "expected to wait for them first");
+  const char* const text =
+      parts.open() ? "an Effect is destroyed between the two parts of a frame; expected to record and submit "
+                     "FramePart::second first, and to wait for it"
+                   : "an Effect is destroyed before the commands that it recorded have completed, or without "
+                     "submitting them; expected to wait for them first";
+  info.message(info.message_user, Severity::warning, text);
 }
 
 Result<void> Effect::State::create_objects() {
@@ -114,6 +114,7 @@ Result<void> Effect::State::create_objects() {
   commit(std::move(everything));
   TYNDALL_ASSIGN(no_shadows, gpu::create_image(device, kNoShadows));
   TYNDALL_ASSIGN(no_colors, gpu::create_image(device, kNoColors));
+  TYNDALL_ASSIGN(no_clouds, gpu::create_image(device, kNoClouds));
   TYNDALL_ASSIGN(constants, gpu::create_buffer(device, "constants", kSlotBytes * FrameRing::slots(desc),
                                                kConstantsUsage, gpu::MemoryKind::constants));
   const VkDeviceSize counter_bytes = kCounterBytes * FrameRing::slots(desc);
@@ -249,7 +250,8 @@ void Effect::State::commit(Pending&& pending) noexcept {
   if (pending.tables) tables.commit(std::move(*pending.tables));
   const bool other_color = params.scattering.color != pending.params.scattering.color;
   const bool other_phase = air::tabulated(params.atmosphere) != air::tabulated(pending.params.atmosphere);
-  if (desc.shadow_colors != pending.desc.shadow_colors || other_color || other_phase) all_pipelines.clear();
+  const bool other_inputs = desc.shadow_colors != pending.desc.shadow_colors || desc.clouds != pending.desc.clouds;
+  if (other_inputs || other_color || other_phase) all_pipelines.clear();
   if (pending.phase) phase = std::move(*pending.phase);
   desc = pending.desc;
   params = pending.params;
@@ -279,8 +281,9 @@ void Effect::State::prepare_images(VkCommandBuffer cmd) {
   buffers.begin_frame();
   froxels.begin_frame(cmd);
   if (images_ready) return;
-  gpu::transition(device, cmd, no_shadows, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
-  gpu::transition(device, cmd, no_colors, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
+  for (const gpu::Image* image : {&no_shadows, &no_colors, &no_clouds}) {
+    gpu::transition(device, cmd, *image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
+  }
   images_ready = true;
 }
 
@@ -318,11 +321,14 @@ BoundResources Effect::State::bind_resources(const FrameInputs& inputs, std::uin
       inputs.cascades.empty() ? Texture{no_shadows.view.get(), VK_IMAGE_LAYOUT_GENERAL} : inputs.shadow_maps;
   const Texture& colors =
       has_colors(inputs, params) ? inputs.shadow_colors : Texture{no_colors.view.get(), VK_IMAGE_LAYOUT_GENERAL};
+  const Texture& clouds =
+      has_clouds(inputs) ? inputs.clouds.map : Texture{no_clouds.view.get(), VK_IMAGE_LAYOUT_GENERAL};
   image(Resource::scene_color, inputs.color, nearest.get());
   image(Resource::scene_depth, inputs.depth, nearest.get());
   image(Resource::shadow_maps, shadows, shadow_compare.get());
   image(Resource::shadow_depths, shadows, shadow_plain.get());
   image(Resource::shadow_colors, colors, shadow_tint.get());
+  image(Resource::clouds, clouds, shadow_tint.get());
   image(Resource::output_color, inputs.output, VK_NULL_HANDLE);
 
   constexpr Resource kFroxels[FroxelVolume::kImages] = {Resource::froxel_inscattering, Resource::froxel_transmittance};
@@ -411,6 +417,7 @@ std::span<const ResourceMemory> Effect::State::list_resources() {
   }
   row(no_shadows.desc.name, no_shadows.bytes);
   row(no_colors.desc.name, no_colors.bytes);
+  row(no_clouds.desc.name, no_clouds.bytes);
   row("counters", counters.bytes);
   for (std::size_t i = 0; i < kFrameBuffers; ++i) {
     const gpu::Buffer& buffer = buffers[frame_buffer(i)];
@@ -424,9 +431,10 @@ std::span<const ResourceMemory> Effect::State::list_resources() {
 }
 
 MemoryUsage Effect::State::memory() const {
+  const VkDeviceSize placeholders = no_shadows.bytes + no_colors.bytes + no_clouds.bytes;
   const bool counted = tables.users().counted_by(&ring);
-  return {(counted ? tables.persistent_bytes() : 0) + no_shadows.bytes + no_colors.bytes + counters.bytes +
-              buffers.bytes() + froxels.images().bytes(),
+  return {(counted ? tables.persistent_bytes() : 0) + placeholders + counters.bytes + buffers.bytes() +
+              froxels.images().bytes(),
           (counted ? tables.transient_bytes() : 0) + buffers.retired_bytes() + froxels.retired_bytes(),
           constants.bytes + counters_readback.bytes};
 }

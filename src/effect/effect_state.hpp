@@ -55,7 +55,7 @@ struct TYNDALL_HIDDEN Effect::State {
   std::shared_ptr<SharedTables> shared_tables;
   TableBuilder& tables;
   std::uint64_t served_revision = 0;  // of the tables, for which TableBuilder::serves() has been true
-  gpu::Image no_shadows, no_colors;
+  gpu::Image no_shadows, no_colors, no_clouds;
   gpu::Buffer constants;
   gpu::Buffer counters;           // written by shaders
   gpu::Buffer counters_readback;  // copy for the host, with EffectDesc::counters
@@ -69,7 +69,7 @@ struct TYNDALL_HIDDEN Effect::State {
   Remarks remarks;
   gpu::Timer timer;
   std::array<PassTiming, kMaxTimedPasses> timings = {};
-  std::array<ResourceMemory, kTableCount + kFrameBuffers + FroxelVolume::kImages + 3> resource_rows = {};
+  std::array<ResourceMemory, kTableCount + kFrameBuffers + FroxelVolume::kImages + 4> resource_rows = {};
 
   ColorMode buffer_color = ColorMode::rgb;  // for which `buffers` are large enough
   bool images_ready = false;                // false until the first recording, which changes their undefined layout

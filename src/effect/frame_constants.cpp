@@ -116,6 +116,23 @@ shared::HomogeneousMedium homogeneous_constants(const Params& params, shared::ve
   return out;
 }
 
+// Sets the map of the clouds relative to the camera, in double precision: the map can be far from the world's origin.
+void set_clouds(shared::FrameConstants& out, const FrameInputs& inputs) {
+  const Mat4& m = inputs.clouds.map_from_world;
+  const Vec3 eye = column(inputs.camera.world_from_view, 3);
+  const auto row = [&](int i) { return Vec3(m.m[i], m.m[4 + i], m.m[8 + i]); };
+  const auto at_camera = [&](int i) {
+    const Vec3 r = row(i);
+    return static_cast<float>(double{r.x} * eye.x + double{r.y} * eye.y + double{r.z} * eye.z + double{m.m[12 + i]});
+  };
+  out.cloud_u = row(0);
+  out.cloud_v = row(1);
+  out.cloud_depth = row(2);
+  out.cloud_camera_u = at_camera(0);
+  out.cloud_camera_v = at_camera(1);
+  out.cloud_camera_depth = at_camera(2);
+}
+
 }  // namespace
 
 Mat4 inverse(const Mat4& matrix) {
@@ -229,6 +246,7 @@ shared::FrameConstants frame_constants(const FrameInputs& inputs, const EffectDe
   out.froxel_near_m = params.froxels.near_m;
   out.froxel_far_m = params.froxels.far_m;
   out.tables = table_shape(params);
+  if (has_clouds(inputs)) set_clouds(out, inputs);
   return out;
 }
 

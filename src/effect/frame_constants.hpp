@@ -17,6 +17,7 @@ namespace tyndall {
 [[nodiscard]] inline bool has_colors(const FrameInputs& inputs, const Params& params) {
   return inputs.shadow_colors.view != VK_NULL_HANDLE && !inputs.cascades.empty() && params.scattering.light_shafts;
 }
+[[nodiscard]] inline bool has_clouds(const FrameInputs& inputs) { return inputs.clouds.map.view != VK_NULL_HANDLE; }
 // Returns the altitude of the camera above the planet's sphere [m]. In double precision, because the centre of the
 // planet is millions of metres away.
 [[nodiscard]] double camera_altitude_m(const FrameInputs& inputs, const Params& params);

@@ -17,6 +17,7 @@ void for_each_shape(const EffectDesc& desc, const Params& params, Target target,
         for (const bool integrate_single : {false, true}) {
           body(frame_steps(desc, params, {extent, cascades, 0, colors, integrate_single, target}));
         }
+        if (desc.clouds) body(frame_steps(desc, params, {extent, cascades, 0, colors, false, target, true}));
       }
     }
   }

@@ -29,7 +29,7 @@ bool same(std::span<const Cascade> a, std::span<const Cascade> b) {
 // bindings do not compile while a member is missing here.
 const char* difference(const FrameInputs& a, std::span<const Cascade> cascades_of_a, const FrameInputs& b) {
   const auto& [extent, color, depth, shadow_maps, shadow_colors, shadow_color_depths, shadow_resolution, cascades,
-               first_marched_cascade, camera, sun, output, frame_index, view, lowest_ground_m] = b;
+               first_marched_cascade, camera, sun, output, frame_index, view, lowest_ground_m, clouds] = b;
   struct Member {
     const char* name;
     bool equal;
@@ -50,6 +50,7 @@ const char* difference(const FrameInputs& a, std::span<const Cascade> cascades_o
       {"sun", same_bytes(a.sun, sun)},
       {"output", same(a.output, output)},
       {"lowest_ground_m", a.lowest_ground_m == lowest_ground_m},
+      {"clouds", same(a.clouds.map, clouds.map) && same_bytes(a.clouds.map_from_world, clouds.map_from_world)},
   };
   for (const Member& member : members) {
     if (!member.equal) return member.name;

@@ -80,9 +80,9 @@ Specialisation specialisation(const Frame& frame) {
   const bool homogeneous = is_homogeneous(s);
   const bool occluded = !homogeneous && s.multiple == MultipleScattering::occluded;
   SingleScattering single = s.single;
-  if (single == SingleScattering::table && (homogeneous || frame.shape.integrate_single)) {
-    single = SingleScattering::integration;
-  }
+  // The tables cannot darken a part of a ray.
+  const bool integrates = homogeneous || frame.shape.integrate_single || frame.shape.clouds;
+  if (single == SingleScattering::table && integrates) single = SingleScattering::integration;
   const bool shadowed_tables = !homogeneous && (single == SingleScattering::table || occluded);
   Specialisation out;
   const auto set = [&out](std::uint32_t id, auto value) { out[id] = static_cast<std::uint8_t>(value); };
@@ -98,6 +98,7 @@ Specialisation specialisation(const Frame& frame) {
   set(shared::kSparsityId, sparsity(frame.shape.extent, frame.params));
   set(shared::kRefinementId, frame.params.epipolar.refinement);
   set(shared::kFormatId, frame.params.epipolar.min_max_format);
+  set(shared::kCloudsId, frame.shape.clouds && (single != SingleScattering::none || occluded));
   set(shared::kPhaseTableId, air::tabulated(frame.params.atmosphere));
   set_sizes(out, frame.shape.target);
   return out;
@@ -235,7 +236,8 @@ FrameShape frame_shape(const FrameInputs& inputs, const Params& params, Target t
           inputs.first_marched_cascade,
           inputs.shadow_colors.view != VK_NULL_HANDLE,
           tables_lack_single(inputs, params),
-          target};
+          target,
+          has_clouds(inputs)};
 }
 
 FrameSteps frame_steps(const EffectDesc& desc, const Params& params, const FrameShape& shape) {

@@ -20,6 +20,7 @@ struct FrameShape {
   bool shadow_colors = false;
   bool integrate_single = false;  // scattering.single = table is not accurate here
   Target target = Target::cpu;
+  bool clouds = false;
 };
 [[nodiscard]] FrameShape frame_shape(const FrameInputs& inputs, const Params& params, Target target);
 

@@ -37,7 +37,10 @@ enum class Kind : std::uint32_t {
   cascade_narrow,
   cascade_gap,
   cascade_sun,
-  cascade_depth
+  cascade_depth,
+  cloud_sun,
+  cloud_depth,
+  cloud_unused
 };
 
 // One line of text in a fixed buffer. Text that does not fit is cut off.
@@ -382,6 +385,26 @@ void remark_on_cascades(Speaker& s, const FrameInputs& inputs, const FrameState&
   if (!inverse) remark_on_coverage(s, inputs, state);  // otherwise one error would cause two remarks
 }
 
+void remark_on_clouds(Speaker& s, const FrameInputs& inputs, const ScatteringParams& p) {
+  const bool any = inputs.clouds.map.view != VK_NULL_HANDLE;
+  const Mat4& m = inputs.clouds.map_from_world;
+  const double sun_m = length(wide(inputs.sun.direction_to_sun));
+  const DVec3 sun = sum({}, wide(inputs.sun.direction_to_sun), 1.0 / sun_m);
+  const DVec3 light = cross(row_of(m, 0), row_of(m, 1));
+  const double along = any ? std::abs(dot(light, sun)) / length(light) : 1.0;
+  const double depth_along = any ? dot(row_of(m, 2), sun) / length(row_of(m, 2)) : -1.0;
+  const double off = std::acos(std::min(along, 1.0)) * 180.0 / std::numbers::pi;
+  s.say_if(Kind::cloud_sun, off > 3.0, "FrameInputs::clouds looks ", off,
+           " degrees past the sun; expected a map along Sun::direction_to_sun");
+  s.say_if(Kind::cloud_depth, depth_along > -0.5 && off <= 3.0,
+           "the depth of FrameInputs::clouds does not grow away from the sun; expected 0 nearest to the sun, whatever "
+           "EffectDesc::shadow_depth_reversed is");
+  const bool occluded = !is_homogeneous(p) && p.multiple == MultipleScattering::occluded;
+  s.say_if(Kind::cloud_unused, any && p.single == SingleScattering::none && !occluded,
+           "there are FrameInputs::clouds, but scattering.single is none and scattering.multiple is not occluded: "
+           "nothing will be darkened");
+}
+
 }  // namespace
 
 void Remarks::on_frame(const FrameInputs& inputs, const FrameState& state, const DeviceInfo& device) {
@@ -404,6 +427,7 @@ void Remarks::on_frame(const FrameInputs& inputs, const FrameState& state, const
   s.say_if(Kind::no_shafts, inputs.shadow_colors.view != VK_NULL_HANDLE && (inputs.cascades.empty() || !p.light_shafts),
            "there are FrameInputs::shadow_colors, but no light shafts for them: nothing will be coloured");
   if (p.light_shafts && !inputs.cascades.empty()) remark_on_cascades(s, inputs, state, inverse);
+  remark_on_clouds(s, inputs, p);
   s.say_if(Kind::tables, p.enabled && reads_tables(p) && !state.tables_ready,
            "the scattering tables are not built; expected record_precompute() until its progress is "
            "complete: there is no in-scattering before");

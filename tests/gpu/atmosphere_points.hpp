@@ -45,8 +45,10 @@ inline Query query(Function function, const glm::dvec3& from, const glm::dvec3& 
   return q;
 }
 
+// `clouds`: the map for inputs.clouds_from_position, with a sampler; null for none.
 inline std::vector<Answer> evaluate_points(gpu::Host& host, const Effect& effect, const Params& params,
-                                           const AtmosphereInputs& inputs, const std::vector<Query>& queries) {
+                                           const AtmosphereInputs& inputs, const std::vector<Query>& queries,
+                                           const VkDescriptorImageInfo* clouds = nullptr) {
   const Result<AtmosphereConstants> constants = atmosphere_constants(params, inputs);
   const gpu::Device& device = host.device();
   const bool spectral = params.scattering.color == ColorMode::spectral;
@@ -54,6 +56,7 @@ inline std::vector<Answer> evaluate_points(gpu::Host& host, const Effect& effect
   Result<gpu::Pipeline> pipeline =
       gpu::create_compute_pipeline(device, rows       ? shaders::atmosphere_points_comp_spectral_phase
                                            : spectral ? shaders::atmosphere_points_comp_spectral
+                                           : clouds   ? shaders::atmosphere_points_comp_clouds
                                                       : shaders::atmosphere_points_comp);
   const auto buffer = [&](const void* data, std::size_t size, VkBufferUsageFlags usage) {
     Result<gpu::Buffer> out = gpu::create_buffer(device, "test", size, usage, gpu::MemoryKind::readback);
@@ -78,6 +81,10 @@ inline std::vector<Answer> evaluate_points(gpu::Host& host, const Effect& effect
   const AtmosphereImages images = atmosphere_images(effect);
   for (const gpu::Binding& binding : pipeline.value().bindings) {
     if (binding.binding < 4) continue;  // TYNDALL_FIRST_BINDING is 3
+    if (clouds != nullptr && binding.binding == 10) {
+      resources.push_back(gpu::named_image(binding.name, clouds->imageView, clouds->imageLayout, clouds->sampler));
+      continue;
+    }
     // Without the froxel volume, a table stands for its images. It is not read.
     const VkDescriptorImageInfo& info = images.list[binding.binding - 4 < images.count ? binding.binding - 4 : 1];
     resources.push_back(gpu::named_image(binding.name, info.imageView, info.imageLayout, info.sampler));

@@ -128,11 +128,15 @@ TEST(CFaults, SizesOfStructuresAreChecked) {
       return structure;
     };
     auto device = wrong(kDevice);
-    // This structure has grown, so smaller sizes are those of earlier versions.
-    if (difference == -4) device.struct_size = offsetof(TyndallDeviceInfo, allocate_memory) - 4;
-    const auto desc = wrong(kDesc);
+    auto desc = wrong(kDesc);
     const CFrame frame = c_frame(fake_frame());
-    const auto inputs = wrong(frame.inputs);
+    auto inputs = wrong(frame.inputs);
+    // These structures have grown, so smaller sizes are those of earlier versions.
+    if (difference == -4) {
+      device.struct_size = offsetof(TyndallDeviceInfo, allocate_memory) - 4;
+      desc.struct_size = offsetof(TyndallEffectDesc, clouds) - 4;
+      inputs.struct_size = offsetof(TyndallFrameInputs, clouds) - 4;
+    }
     auto light = wrong(sized<TyndallLightTables>());
     auto counters = wrong(sized<TyndallCounters>());
     auto usage = wrong(sized<TyndallMemoryUsage>());
@@ -156,7 +160,16 @@ TEST(CFaults, SizesOfStructuresAreChecked) {
   TyndallDeviceInfo first = kDevice;
   first.struct_size = offsetof(TyndallDeviceInfo, allocate_memory);
   first.free_memory = [](void*, const TyndallMemoryBlock*, VkDeviceSize) { ADD_FAILURE() << "not part of it"; };
-  EXPECT_SUCCESS(tyndall_effect_create(&first, &kDesc, params.get(), &made));
+  // Nor do they know clouds.
+  TyndallEffectDesc first_desc = kDesc;
+  first_desc.struct_size = offsetof(TyndallEffectDesc, clouds);
+  first_desc.clouds = VK_TRUE;
+  EXPECT_SUCCESS(tyndall_effect_create(&first, &first_desc, params.get(), &made));
+  CFrame first_frame = c_frame(fake_frame());
+  first_frame.inputs.clouds.map.view = first_frame.inputs.color.view;
+  expect_invalid(tyndall_effect_record(made, kCommands, &first_frame.inputs), {"FrameInputs::clouds"});
+  first_frame.inputs.struct_size = offsetof(TyndallFrameInputs, clouds);
+  EXPECT_SUCCESS(tyndall_effect_record(made, kCommands, &first_frame.inputs));
   tyndall_effect_destroy(made);
 }
 

@@ -46,7 +46,7 @@ OwnedParams c_params() {
   return OwnedParams(p);
 }
 
-// A frame with stained glass, in rectangles of larger images.
+// A frame with stained glass and clouds, in rectangles of larger images.
 TestFrame glass_frame() {
   TestFrame frame = small_frame();
   frame.image_extent = {24, 15};
@@ -55,6 +55,8 @@ TestFrame glass_frame() {
   frame.lowest_ground_m = -100.0;
   frame.shadow_color = [](std::uint32_t, double u, double v) { return glm::dvec3(u, v, 0.5); };
   frame.glass_depth = [](std::uint32_t, double, double) { return 0.25F; };
+  frame.clouds.texel = [](double u, double v) { return glm::dvec4(v, u, 0.5, 0.5); };
+  frame.clouds.map_from_world = sun_cascade(frame.to_sun, frame.view.position, 30000.0, 0.0, 1.0).shadow_from_world;
   return frame;
 }
 
@@ -154,6 +156,7 @@ TEST_F(CEffect, AtmosphereConstantsAreThoseOfCpp) {
   inputs.origin_from_centre_m[1] = -6.5e6;
   inputs.origin_from_centre_m[2] = 3.0;
   inputs.sun = {{0.6F, 0.0F, 0.8F}, {1.0F, 2.0F, 3.0F}, 0.01F};
+  for (int i = 0; i < 16; ++i) inputs.clouds_from_position[i] = cpp.clouds_from_position.m[i] = 0.5F + 0.25F * i;
   std::array<std::byte, TYNDALL_ATMOSPHERE_CONSTANTS_SIZE> bytes = {};
   ASSERT_SUCCESS(tyndall_atmosphere_constants(c_params().get(), &inputs, bytes.data(), bytes.size()));
   const Result<AtmosphereConstants> expected = atmosphere_constants(cpp_params(), cpp);

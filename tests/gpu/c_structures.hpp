@@ -52,6 +52,7 @@ inline TyndallEffectDesc c_desc(const EffectDesc& desc) {
   out.timings = desc.timings ? 1 : 0;
   out.counters = desc.counters ? 1 : 0;
   out.pipeline_threads = desc.pipeline_threads;
+  out.clouds = desc.clouds ? 1 : 0;
   out.table_pipelines_later = desc.table_pipelines_later ? 1 : 0;
   out.check_inputs = desc.check_inputs ? 1 : 0;
   return out;
@@ -84,6 +85,8 @@ inline CFrame c_frame(const FrameInputs& from) {
   out.inputs.sun = {
       {to_sun.x, to_sun.y, to_sun.z}, {irradiance.x, irradiance.y, irradiance.z}, from.sun.angular_radius_rad};
   out.inputs.lowest_ground_m = from.lowest_ground_m;
+  out.inputs.clouds.map = texture(from.clouds.map);
+  std::copy_n(from.clouds.map_from_world.m, 16, out.inputs.clouds.map_from_world);
   for (const Cascade& cascade : from.cascades) {
     TyndallCascade& c = out.cascades.emplace_back();
     std::copy_n(cascade.shadow_from_world.m, 16, c.shadow_from_world);

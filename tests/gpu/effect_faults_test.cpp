@@ -119,6 +119,21 @@ TEST(EffectFaults, ShadowColorsAreRefusedAtEveryAllocation) {
       "set_shadow_colors", Built::completely, [](Effect& effect) { return effect.set_shadow_colors(true); }, 4, 1);
 }
 
+TEST(EffectFaults, CloudsAreRefusedAtEveryAllocation) {
+  const auto allow = [](Effect& effect) {
+    EffectDesc desc = effect.desc();
+    desc.clouds = true;
+    return effect.set_params(effect.params(), desc);
+  };
+  refuse_everywhere("clouds", Built::completely, allow, 4, 1);
+  // A frame with clouds then needs no further pipeline.
+  Effect effect = make(Built::completely);
+  ASSERT_OK(allow(effect));
+  FrameInputs inputs = fake_frame();
+  inputs.clouds.map.view = number<VkImageView>(1000010);
+  EXPECT_OK(effect.record(kCommands, inputs));
+}
+
 TEST(EffectFaults, NoOtherCallThrowsAndRecordingAllocatesNothing) {
   Effect effect = make(Built::in_part);
   const auto survives = [](const char* name, const auto& call) {

@@ -149,6 +149,8 @@ Result<FrameImages> FrameImages::create(gpu::Host& host, const TestFrame& frame,
     }
   }
 
+  if (frame.clouds.texel) TYNDALL_TRY(out.draw_clouds(host, frame));
+
   const VkFormat output_format =
       format == OutputFormat::rgba16f ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
   TYNDALL_ASSIGN(out.output_, gpu::create_image(device, {"output", output_format, extent,
@@ -178,7 +180,25 @@ FrameInputs FrameImages::inputs(const TestFrame& frame) const {
   out.sun.irradiance = frame.irradiance;
   out.output = {output_.view.get(), VK_IMAGE_LAYOUT_GENERAL, frame.offsets.output};
   out.lowest_ground_m = static_cast<float>(frame.lowest_ground_m);
+  out.clouds = {{clouds_.view.get(), kRead}, frame.clouds.map_from_world};
   return out;
+}
+
+Result<void> FrameImages::draw_clouds(gpu::Host& host, const TestFrame& frame) {
+  const std::uint32_t n = frame.clouds.resolution;
+  std::vector<float> texels;
+  for (std::uint32_t y = 0; y < n; ++y) {
+    for (std::uint32_t x = 0; x < n; ++x) {
+      const glm::vec4 texel = frame.clouds.texel((x + 0.5) / n, (y + 0.5) / n);
+      texels.insert(texels.end(), {texel.x, texel.y, texel.z, texel.w});
+    }
+  }
+  TYNDALL_ASSIGN(clouds_,
+                 gpu::create_image(host.device(), {"clouds",
+                                                   VK_FORMAT_R32G32B32A32_SFLOAT,
+                                                   {n, n, 1},
+                                                   VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT}));
+  return gpu::upload(host, clouds_, texels.data(), texels.size() * 4, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
 }
 
 Result<void> FrameImages::draw_shadows(gpu::Host& host, const TestFrame& frame) {
@@ -225,6 +245,7 @@ EffectDesc desc_for(const TestFrame& frame, OutputFormat format) {
   desc.sky_depth = frame.convention == DepthConvention::standard ? 1.0F : 0.0F;
   desc.shadow_depth_reversed = frame.shadow_depth_reversed;
   desc.shadow_colors = static_cast<bool>(frame.shadow_color);
+  desc.clouds = static_cast<bool>(frame.clouds.texel);
   return desc;
 }
 
@@ -259,7 +280,8 @@ Result<std::vector<glm::dvec3>> EffectCache::render(gpu::Host& host, const Param
   wanted.max_cascades = kMaxCascades;
   auto cached = std::find_if(cached_.begin(), cached_.end(), [&](const Cached& k) {
     return k.desc.output_format == wanted.output_format && k.desc.sky_depth == wanted.sky_depth &&
-           k.desc.shadow_depth_reversed == wanted.shadow_depth_reversed && k.desc.shadow_colors == wanted.shadow_colors;
+           k.desc.shadow_depth_reversed == wanted.shadow_depth_reversed &&
+           k.desc.shadow_colors == wanted.shadow_colors && k.desc.clouds == wanted.clouds;
   });
   if (cached == cached_.end()) {
     TYNDALL_ASSIGN(Effect effect, Effect::create(info_of(host), wanted, params));

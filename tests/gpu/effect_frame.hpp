@@ -37,6 +37,13 @@ struct PictureOffsets {
   VkOffset2D color = {0, 0}, depth = {0, 0}, output = {0, 0};
 };
 
+struct TestClouds {
+  // Returns the transmittance of clouds and, in w, the depth of their layer. Without the function, there are none.
+  std::function<glm::dvec4(double u, double v)> texel;
+  Mat4 map_from_world;
+  std::uint32_t resolution = 64;
+};
+
 struct TestFrame {
   VkExtent2D extent = {16, 9};
   // Size of the images, which may be larger than the picture; the rest must not be read. 0: size of the picture.
@@ -59,6 +66,7 @@ struct TestFrame {
   // Returns the transmission of glass there. Without the function, the frame has no shadow colours.
   std::function<glm::dvec3(std::uint32_t cascade, double u, double v)> shadow_color;
   std::function<float(std::uint32_t cascade, double u, double v)> glass_depth;  // depth of the glass, if known
+  TestClouds clouds;
 
   [[nodiscard]] RayAngles ray(std::uint32_t x, std::uint32_t y, double planet_radius_m) const;
 };
@@ -68,6 +76,8 @@ class FrameImages {
  public:
   static Result<FrameImages> create(gpu::Host& host, const TestFrame& frame, OutputFormat format);
   [[nodiscard]] FrameInputs inputs(const TestFrame& frame) const;
+  // Draws the map of clouds.
+  Result<void> draw_clouds(gpu::Host& host, const TestFrame& frame);
   // Draws the shadow maps again, with those of another frame of the same resolution and number of cascades.
   Result<void> draw_shadows(gpu::Host& host, const TestFrame& frame);
   Result<std::vector<std::byte>> output_bytes(gpu::Host& host);
@@ -77,7 +87,7 @@ class FrameImages {
 
  private:
   OutputFormat format_ = OutputFormat::rgba32f;
-  gpu::Image color_, depth_, shadows_, glass_, output_;
+  gpu::Image color_, depth_, shadows_, glass_, clouds_, output_;
 };
 
 // Draws the frame with an effect that has built its tables. Returns red, green and blue of each pixel.

@@ -215,6 +215,8 @@ TEST(EffectPartsRefusals, OtherInputsAreErrors) {
   refused("FrameInputs::camera", [](FrameInputs& i) { i.camera.world_from_view.m[12] = 1.0F; });
   refused("FrameInputs::sun", [](FrameInputs& i) { i.sun.irradiance.y = 2.0F; });
   refused("FrameInputs::output", [](FrameInputs& i) { i.output.view = number<VkImageView>(1000009); });
+  refused("FrameInputs::clouds", [](FrameInputs& i) { i.clouds.map_from_world.m[12] = 1.0F; });
+  refused("FrameInputs::clouds", [](FrameInputs& i) { i.clouds.map.view = i.color.view; });
   refused("FrameInputs::lowest_ground_m", [](FrameInputs& i) { i.lowest_ground_m = -1.0F; });
   EXPECT_EQ(faults::command_hash(), 0U);
   // A copy of the cascades counts as equal.

@@ -51,6 +51,7 @@ class SharedEffect : public testing::Test {
     out.max_shadow_resolution = 512;
     out.counters = true;
     out.shadow_colors = with_colors_;
+    out.clouds = with_clouds_;
     return out;
   }
   static void SetUpTestSuite() {
@@ -142,6 +143,7 @@ class SharedEffect : public testing::Test {
 
   std::optional<Effect> own_effect_;        // used instead of the shared one
   static inline bool with_colors_ = false;  // of the shared effect; must be set before it is created
+  static inline bool with_clouds_ = false;
 
  private:
   TestFrame frame_;

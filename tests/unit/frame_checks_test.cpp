@@ -297,6 +297,57 @@ TEST(FrameChecks, AnInvertedViewThatRollsIsRemarkedOnWhenItTurns) {
 }
 
 // Cameras that roll, orbit the origin, are on their side or fly a loop are correct.
+// Adds a map of clouds along the sun, as the cascades are.
+void add_clouds(Case& s) {
+  s.desc.clouds = true;
+  s.inputs.clouds.map = {view_number(9), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, {0, 0}};
+  s.inputs.clouds.map_from_world = s.cascades.back().shadow_from_world;
+}
+
+TEST(FrameChecks, CloudsAreChecked) {
+  EXPECT_EQ(error_of(add_clouds), "");
+  EXPECT_EQ(remark_of(add_clouds), "");
+  const auto error = [](const std::function<void(Case&)>& change) {
+    return error_of([&](Case& s) {
+      add_clouds(s);
+      change(s);
+    });
+  };
+  expect_words(error([](Case& s) { s.desc.clouds = false; }), {"FrameInputs::clouds", "EffectDesc::clouds"});
+  expect_words(error([](Case& s) { s.inputs.clouds.map.layout = VK_IMAGE_LAYOUT_UNDEFINED; }),
+               {"FrameInputs::clouds.map's layout is 0", "can be sampled"});
+  expect_words(error([](Case& s) { s.inputs.clouds.map.offset.x = 1; }), {"FrameInputs::clouds.map", "offset"});
+  expect_words(error([](Case& s) { s.inputs.clouds.map.view = s.inputs.output.view; }),
+               {"FrameInputs::clouds.map is the view of FrameInputs::output"});
+  for (const int entry : {0, 2, 12, 14}) {  // in u, and in the depth
+    expect_words(error([entry](Case& s) { s.inputs.clouds.map_from_world.m[entry] = kNaN; }),
+                 {"FrameInputs::clouds's map_from_world is not finite", "expected a matrix"});
+  }
+  expect_words(error([](Case& s) { set_row(s.inputs.clouds.map_from_world, 2, 0.0, 0.0, 0.0, 0.5); }),
+               {"FrameInputs::clouds's map_from_world is zero or cannot be inverted"});
+  expect_words(error([](Case& s) { s.inputs.clouds.map_from_world.m[3] = 0.1F; }),
+               {"FrameInputs::clouds's map_from_world", "last row", "transposed"});
+
+  const auto remark = [](const std::function<void(Case&)>& change) {
+    return remark_of([&](Case& s) {
+      add_clouds(s);
+      change(s);
+    });
+  };
+  expect_words(remark([](Case& s) { set_row(s.inputs.clouds.map_from_world, 0, 1e-5, 1e-5, 0.0, 0.5); }),
+               {"FrameInputs::clouds looks", "degrees past the sun"});
+  expect_words(remark([](Case& s) {
+                 Mat4& m = s.inputs.clouds.map_from_world;
+                 for (const int entry : {2, 6, 10, 14}) m.m[entry] = -m.m[entry];
+               }),
+               {"the depth of FrameInputs::clouds does not grow away from the sun"});
+  expect_words(remark([](Case& s) {
+                 s.params.scattering.single = SingleScattering::none;
+                 s.params.scattering.multiple = MultipleScattering::unoccluded;
+               }),
+               {"FrameInputs::clouds", "nothing will be darkened"});
+}
+
 TEST(FrameChecks, UnusualCamerasAreNotRemarkedOn) {
   Remarks remarks;
   for (int frame = 0; frame < 2000; ++frame) {
