@@ -19,6 +19,7 @@
 #include <vulkan/vulkan.h>
 
 #include "tyndall/export.h"
+#include "tyndall/tyndall_memory.h"
 #include "tyndall/version.h"
 
 #ifdef __cplusplus
@@ -156,24 +157,6 @@ TYNDALL_API TyndallStatus tyndall_params_affected(const TyndallParams* before, c
 // white with scattering.color = rgb. For callers that draw the sun's disc, with the parameters of
 // tyndall_effect_get_table_params().
 TYNDALL_API TyndallStatus tyndall_params_sun_color(const TyndallParams* params, float color[3]);
-
-// Device memory from the program's allocator; see memory.hpp. These structures never grow.
-typedef struct TyndallMemoryRequest {
-  const char* name;
-  VkImage image;  // null for a buffer
-  VkBuffer buffer;
-  VkMemoryRequirements requirements;
-  VkFlags usage;
-  VkMemoryPropertyFlags needed;
-  VkMemoryPropertyFlags preferred;
-} TyndallMemoryRequest;
-
-typedef struct TyndallMemoryBlock {
-  VkDeviceMemory memory;
-  VkDeviceSize offset;
-  void* mapped;
-  void* user;
-} TyndallMemoryBlock;
 
 // The Vulkan device, borrowed for the effect's whole life.
 typedef struct TyndallDeviceInfo {

@@ -19,7 +19,7 @@ before 1.0, and a new major version from then on (docs/c_interface.md). Renew th
 
 
 # The types of Vulkan that tyndall.h uses, so that the record does not depend on the installed headers of Vulkan.
-VULKAN = """
+VULKAN = """#pragma once
 typedef struct VkInstance_T* VkInstance;
 typedef struct VkPhysicalDevice_T* VkPhysicalDevice;
 typedef struct VkDevice_T* VkDevice;

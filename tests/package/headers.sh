@@ -18,7 +18,7 @@ compile() { # COMPILER LANGUAGE STANDARD HEADER
 include=$1
 for compiler in gcc clang; do
   command -v "$compiler" > /dev/null || continue
-  for header in tyndall.h export.h version.h; do
+  for header in tyndall.h tyndall_memory.h export.h version.h; do
     compile "$compiler" c c99 "$header"
     compile "$compiler" c c11 "$header"
     compile "$compiler" c++ c++20 "$header"

@@ -30,6 +30,7 @@ room(include/tyndall/sky_probe.hpp VULKAN include/tyndall/effect.hpp include/tyn
 room(include/tyndall/post.hpp VULKAN include/tyndall/effect.hpp include/tyndall)
 room(include/tyndall/atmosphere.hpp VULKAN include/tyndall/effect.hpp include/tyndall)
 room(include/tyndall/tyndall.h VULKAN include/tyndall)
+room(include/tyndall/tyndall_memory.h VULKAN)
 
 # Shaders, and the structures that they share with C++.
 room(shaders/shared include/tyndall)
