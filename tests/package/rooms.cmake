@@ -29,8 +29,8 @@ room(include/tyndall/effect.hpp VULKAN include/tyndall/memory.hpp include/tyndal
 room(include/tyndall/sky_probe.hpp VULKAN include/tyndall/effect.hpp include/tyndall)
 room(include/tyndall/post.hpp VULKAN include/tyndall/effect.hpp include/tyndall)
 room(include/tyndall/atmosphere.hpp VULKAN include/tyndall/effect.hpp include/tyndall)
-room(include/tyndall/tyndall.h VULKAN include/tyndall)
 room(include/tyndall/tyndall_memory.h VULKAN)
+room(include/tyndall/tyndall.h VULKAN include/tyndall/tyndall_memory.h include/tyndall)
 
 # Shaders, and the structures that they share with C++.
 room(shaders/shared include/tyndall)
@@ -52,7 +52,7 @@ room(src/air include/tyndall)
 # The effect.
 room(src/gpu VULKAN include/tyndall/effect.hpp include/tyndall/memory.hpp include/tyndall)
 room(src/effect VULKAN src/air src/gpu shaders/shared include/tyndall/sky_probe.hpp include/tyndall/atmosphere.hpp include/tyndall/effect.hpp include/tyndall)
-room(src/c VULKAN src/gpu include/tyndall/sky_probe.hpp include/tyndall/atmosphere.hpp include/tyndall/effect.hpp include/tyndall/tyndall.h include/tyndall)
+room(src/c VULKAN src/gpu include/tyndall/sky_probe.hpp include/tyndall/atmosphere.hpp include/tyndall/effect.hpp include/tyndall/tyndall_memory.h include/tyndall/tyndall.h include/tyndall)
 room(src/post VULKAN src/gpu shaders/post shaders/lib shaders/shared include/tyndall/post.hpp include/tyndall)
 
 # Files, images and what describes a scene.
