@@ -256,7 +256,7 @@ TEST_F(GpuEffectSharing, PicturesAreTheSame) {
       if (!built.ok()) return built.error();
       FrameInputs inputs = one.value().inputs(frame);
       inputs.frame_index = i;
-      const Result<void> drawn = first->record(cmd, inputs);
+      Result<void> drawn = first->record(cmd, inputs);
       if (!drawn.ok()) return drawn;
       inputs = other.value().inputs(frame);
       inputs.frame_index = i;
