@@ -17,12 +17,20 @@ struct ShaderResources {
   std::size_t count = 0;
 };
 
-// Returns Resource::none for a binding without a resource.
+constexpr auto kResourceNames = [] {
+  std::array<std::string_view, kResources> out = {};
+  for (std::size_t i = 0; i < kResources; ++i) out[i] = kResourceInfo[i].name;
+  return out;
+}();
+
+// Returns Resource::none for a binding without a resource. Lengths are compared first: compilers limit the number of
+// steps at compile time.
 constexpr Resource resource_of(std::string_view binding) {
   constexpr std::string_view kSuffix = "_block";
   if (binding.ends_with(kSuffix)) binding.remove_suffix(kSuffix.size());
   for (std::size_t i = 0; i < kResources; ++i) {
-    if (binding == kResourceInfo[i].name) return static_cast<Resource>(i);
+    const std::string_view name = kResourceNames[i];
+    if (binding.size() == name.size() && binding == name) return static_cast<Resource>(i);
   }
   return Resource::none;
 }
@@ -55,7 +63,6 @@ constexpr auto kNames = [] {
 }();
 
 // Returns the index of the variant of every shader whose name ends in `suffix`; of shaders without it, their own.
-// Lengths are compared first: compilers limit the number of steps at compile time.
 constexpr std::array<std::size_t, kShaders> find_variants(std::string_view suffix) {
   std::array<std::size_t, kShaders> out = {};
   for (std::size_t i = 0; i < kShaders; ++i) out[i] = i;
