@@ -57,10 +57,4 @@ vec3 tyndall_sky_reflection(samplerCube cube, vec3 d, float roughness) {
   return textureLod(cube, d, tyndall_sky_level(cube, roughness)).rgb;
 }
 
-// Returns the irradiance of a surface with the normal `normal`, without direct sunlight, from the cube map. For normals
-// that are neither up nor down, it is more accurate than that from the coefficients.
-vec3 tyndall_sky_irradiance(samplerCube cube, vec3 normal) {
-  return 3.141592653589793 * tyndall_sky_reflection(cube, normal, 1.0);
-}
-
 #endif

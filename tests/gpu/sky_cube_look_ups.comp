@@ -1,5 +1,4 @@
-// Looks up the cube map of a sky probe as a shader of an engine does: reflections in directions with a roughness in w,
-// or the irradiance of a normal if w is negative.
+// Looks up the cube map of a sky probe as a shader of an engine does: reflections in directions with a roughness in w.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -15,6 +14,5 @@ void main() {
   uint index = gl_GlobalInvocationID.x;
   if (index >= uint(queries.length())) return;
   vec4 q = queries[index];
-  vec3 light = q.w < 0.0 ? tyndall_sky_irradiance(sky_cube, q.xyz) : tyndall_sky_reflection(sky_cube, q.xyz, q.w);
-  results[index] = vec4(light, 0.0);
+  results[index] = vec4(tyndall_sky_reflection(sky_cube, q.xyz, q.w), 0.0);
 }

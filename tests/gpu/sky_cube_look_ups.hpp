@@ -14,7 +14,7 @@
 
 namespace tyndall {
 
-// queries: directions, and the roughness in w; a negative one requests the irradiance of a normal.
+// queries: directions, and the roughness in w.
 inline std::vector<glm::dvec3> look_up(gpu::Host& host, const SkyCube& cube, const std::vector<glm::vec4>& queries) {
   const gpu::Device& device = host.device();
   const VkDeviceSize size = queries.size() * sizeof(glm::vec4);

@@ -231,9 +231,9 @@ TEST_P(SkyCubeMap, OtherLevelsAreMeansUnderTheLobe) {
   }
 }
 
-// Surfaces with any normal, against a quadrature of the radiance that `probe` returns. What is left is the linear
-// interpolation between the 8 x 8 texels of a face.
-TEST_P(SkyCubeMap, IrradianceOfAnyNormalAgreesWithTheRadiance) {
+// At roughness 1, in any direction, against a quadrature of the radiance that `probe` returns. What is left is the
+// linear interpolation between the 8 x 8 texels of a face.
+TEST_P(SkyCubeMap, ReflectionsOfRoughnessOneAreTheMeanUnderTheCosine) {
   SkyProbe probe = make(64);
   for (const double sun_deg : {10.0, 70.0, 92.0}) {
     const Place place(200.0, sun_deg * kDegree);
@@ -259,7 +259,7 @@ TEST_P(SkyCubeMap, IrradianceOfAnyNormalAgreesWithTheRadiance) {
     std::vector<glm::vec4> normals;
     for (int tilt = 0; tilt <= 180; tilt += 15) {
       for (int azimuth = 0; azimuth < 360; azimuth += 40) {
-        normals.emplace_back(glm::vec3(direction(tilt * kDegree, azimuth * kDegree)), -1.0F);
+        normals.emplace_back(glm::vec3(direction(tilt * kDegree, azimuth * kDegree)), 1.0F);
       }
     }
     const std::vector<glm::dvec3> found = look_up(host(), probe.cube(), normals);
@@ -269,10 +269,10 @@ TEST_P(SkyCubeMap, IrradianceOfAnyNormalAgreesWithTheRadiance) {
       for (std::size_t i = 0; i < light.size(); ++i) {
         expected += std::max(glm::dot(glm::dvec3(normals[n]), directions[i]), 0.0) * weights[i] * light[i];
       }
-      worst = std::max(worst, difference(found[n] / kIrradiance, expected));
+      worst = std::max(worst, difference(kPi * found[n] / kIrradiance, expected));
       brightest = std::max(brightest, largest(expected));
     }
-    std::printf("sun at %.0f degrees, irradiance of any normal: worst %.2f %% of the largest\n", sun_deg,
+    std::printf("sun at %.0f degrees, roughness 1: worst %.2f %% of the brightest direction\n", sun_deg,
                 100.0 * worst / brightest);
     EXPECT_LE(worst, 0.02 * brightest) << sun_deg;
   }
