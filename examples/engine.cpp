@@ -171,7 +171,8 @@ int main(int argc, char** argv) {
     const float e = 3.141593F * 0.282095F * c[k] + 2.094395F * 0.488603F * c[8 + k] + 0.785398F * 0.630783F * c[24 + k];
     const float by_cube = 3.141593F * from_half(halves[k]);
     std::printf(" %g (%g)", static_cast<double>(e), static_cast<double>(by_cube));
-    same = same && std::abs(by_cube / e - 1.0F) < 0.01F;
+    // Both are approximate: the coefficients within 1 %, the texels of the cube map within 0.5 %.
+    same = same && std::abs(by_cube / e - 1.0F) < 0.015F;
   }
   std::printf("\n");
   if (argc > 1) {
