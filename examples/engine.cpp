@@ -3,7 +3,7 @@
 //   * it draws the two eyes of a stereo pair into one image, at a resolution that changes between frames,
 //   * it lights its surfaces by a sky probe, whose cube map it could also use for reflections.
 // It clears its colour and depth, so that the picture shows only the sky. The program prints what coefficients and cube
-// map say of a surface that faces upwards, and fails if they differ by more than 1 %. With the pixels that embed.cpp
+// map say of a surface that faces upwards, and fails if they differ by more than 1.5 %. With the pixels that embed.cpp
 // writes as its argument, it compares its left eye with them.
 #include <tyndall/conventions.hpp>
 #include <tyndall/effect.hpp>
