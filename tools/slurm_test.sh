@@ -13,6 +13,10 @@ for tool in slurmctld slurmd sbatch munged parallel; do
   PATH="$PATH:/usr/sbin" command -v "$tool" > /dev/null || { echo "missing $tool: install slurm-wlm, munge and parallel" >&2; exit 1; }
 done
 PATH="$PATH:/usr/sbin"
+if [ -n "$(ls -A "$folder")" ] && [ ! -e "$folder/slurm.conf" ]; then
+  echo "$folder is not empty; expected an empty folder, or that of an earlier run, which is deleted" >&2
+  exit 1
+fi
 rm -rf "$folder"/*
 mkdir -p "$folder/state" "$folder/spool" "$folder/bin" "$folder/work/out"
 chmod 700 "$folder"
