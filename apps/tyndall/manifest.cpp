@@ -1,6 +1,7 @@
 #include "manifest.hpp"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <system_error>
@@ -18,8 +19,9 @@ namespace fs = std::filesystem;
 using files::concat;
 using nlohmann::ordered_json;
 
-constexpr int kFormat = 1;  // of manifests
+constexpr std::uint64_t kFormat = 1;  // of manifests
 constexpr std::uint64_t kLargestManifest = std::uint64_t{1} << 30U;
+constexpr double kLongest_s = 1e9;  // of an item
 
 std::string hash_of(const Inputs& inputs) {
   std::string text;
@@ -45,31 +47,84 @@ ordered_json json_of(const ManifestItem& item) {
   return out;
 }
 
-// Throws an exception of the JSON library if a member is missing or has another type.
+// Reads a text without storing it, and stops at an object with more names than any manifest has, or at deep nesting.
+// The time to store the names of an object grows with the square of their number.
+class Limits final : public nlohmann::json_sax<ordered_json> {
+ public:
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(std::size_t) override { return enter(); }
+  bool key(string_t&) override { return ++names_.back() <= kMostNames; }
+  bool end_object() override { return leave(); }
+  bool start_array(std::size_t) override { return enter(); }
+  bool end_array() override { return leave(); }
+  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override { return false; }
+
+ private:
+  static constexpr std::size_t kDeepest = 16, kMostNames = 4096;
+  bool enter() {
+    names_.push_back(0);
+    return names_.size() <= kDeepest;
+  }
+  bool leave() {
+    names_.pop_back();
+    return true;
+  }
+  std::vector<std::size_t> names_;  // of the objects around the current position
+};
+
+// Returns a whole number. The conversions of the library accept negative and fractional ones.
+std::uint64_t whole_number(const ordered_json& value) {
+  if (!value.is_number_unsigned()) throw std::out_of_range("whole number");
+  return value.get<std::uint64_t>();
+}
+
+double seconds_of(const ordered_json& value) {
+  const auto seconds = value.get<double>();
+  if (!(seconds >= 0.0 && seconds <= kLongest_s)) throw std::out_of_range("seconds");
+  return seconds;
+}
+
+const ordered_json& list_of(const ordered_json& value) {
+  if (!value.is_array()) throw std::out_of_range("list");
+  return value;
+}
+
+// Throws an exception if a member is missing or has another type or an impossible value.
 Manifest from_json(const ordered_json& json) {
   Manifest out;
   out.verb = json.at("verb").get<std::string>();
+  constexpr std::array<std::string_view, 4> kVerbs = {"probe", "render", "sky", "validate"};
+  if (std::find(kVerbs.begin(), kVerbs.end(), out.verb) == kVerbs.end()) throw std::out_of_range("verb");
   out.version = json.at("version").get<std::string>();
   out.device = json.at("device").get<std::string>();
   out.time = json.at("time").get<std::string>();
   out.output = json.at("output").get<std::string>();
-  const auto index = json.at("shard").get<std::uint64_t>();
-  const auto count = json.at("shards").get<std::uint64_t>();
+  const std::uint64_t index = whole_number(json.at("shard"));
+  const std::uint64_t count = whole_number(json.at("shards"));
   if (index < 1 || index > count || count > kMaxShards) throw std::out_of_range("shard");
   out.shard = {static_cast<std::uint32_t>(index - 1), static_cast<std::uint32_t>(count)};
-  out.total = json.at("total").get<std::uint64_t>();
+  out.total = whole_number(json.at("total"));
   out.complete = json.at("complete").get<bool>();
-  for (const auto& [name, value] : json.at("inputs").items()) out.inputs.emplace_back(name, value.get<std::string>());
+  const ordered_json& inputs = json.at("inputs");
+  if (!inputs.is_object()) throw std::out_of_range("inputs");
+  for (const auto& [name, value] : inputs.items()) out.inputs.emplace_back(name, value.get<std::string>());
   if (json.at("inputs_hash").get<std::string>() != hash_of(out.inputs)) throw std::out_of_range("inputs_hash");
-  for (const ordered_json& made : json.at("items")) {
+  for (const ordered_json& made : list_of(json.at("items"))) {
     ManifestItem item;
-    item.number = made.at("item").get<std::uint64_t>();
+    item.number = whole_number(made.at("item"));
+    if (!out.items.empty() && item.number <= out.items.back().number) throw std::out_of_range("order");
     item.name = made.value("name", std::string());
-    for (const ordered_json& file : made.at("files")) {
+    for (const ordered_json& file : list_of(made.at("files"))) {
       item.files.push_back({file.at("file").get<std::string>(),
-                            {file.at("bytes").get<std::uint64_t>(), file.at("checksum").get<std::string>()}});
+                            {whole_number(file.at("bytes")), file.at("checksum").get<std::string>()}});
     }
-    item.seconds = made.at("seconds").get<double>();
+    item.seconds = seconds_of(made.at("seconds"));
     out.items.push_back(std::move(item));
   }
   return out;
@@ -118,14 +173,18 @@ std::string to_json(const Manifest& manifest) {
 
 Result<Manifest> parse_manifest(std::string_view text, std::string_view name) {
   constexpr std::string_view kExpected = "expected a manifest, OUT.shard-I-of-N.json, that --shard or --resume wrote";
-  const ordered_json json = ordered_json::parse(text, nullptr, false);
-  if (!json.is_object()) return files::input_error("it is not a JSON object", files::one_line(name, 200), kExpected);
+  const auto error = [&](std::string_view what) {
+    return files::input_error(what, files::one_line(name, 200), kExpected);
+  };
   try {
-    if (json.at("format").get<int>() != kFormat)
-      return files::input_error("it has an unknown format", files::one_line(name, 200), kExpected);
+    Limits limits;
+    const bool within = ordered_json::sax_parse(text, &limits);
+    const ordered_json json = within ? ordered_json::parse(text, nullptr, false) : ordered_json();
+    if (!json.is_object()) return error("it is not a JSON object");
+    if (whole_number(json.at("format")) != kFormat) return error("it has an unknown format");
     return from_json(json);
   } catch (const std::exception&) {
-    return files::input_error("it is not a manifest, or it is damaged", files::one_line(name, 200), kExpected);
+    return error("it is not a manifest, or it is damaged");
   }
 }
 

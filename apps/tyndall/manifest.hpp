@@ -37,7 +37,7 @@ struct Manifest {
   std::uint64_t total = 0;  // frames, maps, rows or rays of all shards
   bool complete = false;    // everything of this shard has been made
   Inputs inputs;
-  std::vector<ManifestItem> items;
+  std::vector<ManifestItem> items;  // ordered by number, each once
 
   [[nodiscard]] std::string inputs_hash() const;
   // Returns the value of an input; an empty text if there is none.

@@ -31,12 +31,12 @@ Kind kind_of(std::string_view name) {
   return std::find(kErrors.begin(), kErrors.end(), name) != kErrors.end() ? Kind::error : Kind::other;
 }
 
-// Reads a number; "inf" is the standard error of a single block of paths.
-Result<double> number_of(std::string_view field, const EstimateTable& table, std::size_t line) {
+// Reads a number; the standard error of a single block of paths is "inf".
+Result<double> number_of(std::string_view field, Kind kind, const EstimateTable& table, std::size_t line) {
   const std::string text = files::csv_value(field);
   double value = 0.0;
   if (files::read_number(text, value) == files::NumberError::none) return value;
-  if (text == "inf") return INFINITY;
+  if (text == "inf" && kind == Kind::error) return INFINITY;
   return input_error(concat({"'", files::one_line(text), "' is not a number"}),
                      concat({files::one_line(table.name, 200), ":", std::to_string(line)}), kExpected);
 }
@@ -96,7 +96,7 @@ Result<std::string> combine_estimates(const std::vector<EstimateTable>& tables) 
           }
           continue;
         }
-        const Result<double> value = number_of(field, tables[t], parsed[t].lines[row]);
+        const Result<double> value = number_of(field, kind, tables[t], parsed[t].lines[row]);
         if (!value) return value.error();
         const double weight = static_cast<double>(tables[t].paths) / paths;
         sum += kind == Kind::mean ? weight * value.value() : weight * weight * value.value() * value.value();

@@ -51,10 +51,13 @@ std::optional<int> parse_validate(Args args, ValidateOptions& options) {
   add_common(arguments, options.common, kScene | kSet | kDevice | kOutput | kJson);
   arguments.text("--markdown", options.markdown, "FILE",
                  "also write the summary as Markdown (docs/generated/accuracy.md)");
-  arguments.count("--rays", options.study.rays, 18, 1000000, "rays of the error tables");
-  arguments.count("--samples", options.study.samples, 2, 1000000000, "paths per ray of the reference");
-  arguments.count("--seed", seed, 0, UINT32_MAX, "seed of the rays and the paths");
-  arguments.count("--orders", orders, 1, 256, "orders of scattering of the reference");
+  const auto count = [&arguments](std::size_t i, std::uint32_t& value, const char* meaning) {
+    arguments.count(kStudyRanges[i].option, value, kStudyRanges[i].min, kStudyRanges[i].max, meaning);
+  };
+  count(0, options.study.rays, "rays of the error tables");
+  count(1, options.study.samples, "paths per ray of the reference");
+  count(2, seed, "seed of the rays and the paths");
+  count(3, orders, "orders of scattering of the reference");
   add_batch_options(arguments, options.batch, "rays");
   const std::optional<int> status = arguments.parse(args);
   options.study.seed = seed;

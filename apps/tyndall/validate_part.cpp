@@ -32,12 +32,26 @@ double number_of(const json& value) {
   throw std::out_of_range("number");
 }
 
-Rgb rgb_of(const json& value) { return {number_of(value.at(0)), number_of(value.at(1)), number_of(value.at(2))}; }
+const json& array_of(const json& value) {
+  if (!value.is_array()) throw std::out_of_range("array");
+  return value;
+}
+
+Rgb rgb_of(const json& value) {
+  if (array_of(value).size() != 3) throw std::out_of_range("colour");
+  return {number_of(value[0]), number_of(value[1]), number_of(value[2])};
+}
 
 std::vector<Rgb> list_of(const json& value) {
   std::vector<Rgb> out;
-  for (const json& rgb : value) out.push_back(rgb_of(rgb));
+  for (const json& rgb : array_of(value)) out.push_back(rgb_of(rgb));
   return out;
+}
+
+// Conversions of negative or fractional numbers would not report them.
+std::uint64_t count_of(const json& value) {
+  if (!value.is_number_unsigned()) throw std::out_of_range("count");
+  return value.get<std::uint64_t>();
 }
 
 }  // namespace
@@ -66,18 +80,18 @@ Result<void> parse_part(std::string_view text, std::string_view name, validate::
                         validate::ColorPart& colors) {
   const json read = json::parse(text, nullptr, false);
   try {
-    for (const json& ray : read.at("rays")) {
+    for (const json& ray : array_of(read.at("rays"))) {
       validate::Answered answered;
       answered.reference.radiance = rgb_of(ray.at("radiance"));
       answered.reference.standard_error = rgb_of(ray.at("standard_error"));
       answered.reference.transmittance = rgb_of(ray.at("transmittance"));
-      answered.reference.samples = ray.at("samples").get<std::uint64_t>();
+      answered.reference.samples = count_of(ray.at("samples"));
       answered.reference.order_radiance = list_of(ray.at("orders"));
       answered.reference.order_standard_error = list_of(ray.at("order_errors"));
       answered.models = list_of(ray.at("models"));
       rays.push_back(std::move(answered));
     }
-    for (const json& ray : read.at("colors")) {
+    for (const json& ray : array_of(read.at("colors"))) {
       colors.push_back({rgb_of(ray.at("reference")), number_of(ray.at("noise")), list_of(ray.at("models"))});
     }
   } catch (const std::exception&) {

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstring>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -73,7 +74,32 @@ TEST(CliBatch, ManifestsAreReadBack) {
   for (const std::string& bad : {std::string(), std::string("[]"), std::string("{}"), text.substr(0, 100), changed}) {
     EXPECT_FALSE(parse_manifest(bad, "m.json").ok()) << bad;
   }
+  const auto replaced = [&](const char* from, const char* to) {
+    std::string out = text;
+    return out.replace(out.find(from), std::strlen(from), to);
+  };
+  for (const std::string& bad :
+       {replaced("\"total\": 8", "\"total\": -8"), replaced("\"total\": 8", "\"total\": 8.5"),
+        replaced("\"item\": 4", "\"item\": 1"), replaced("\"seconds\": 0.5", "\"seconds\": -1"),
+        replaced("\"bytes\": 12", "\"bytes\": 1e300"), replaced("\"verb\": \"render\"", "\"verb\": \"print\"")}) {
+    EXPECT_FALSE(parse_manifest(bad, "m.json").ok()) << bad;
+  }
   EXPECT_EQ(manifest_path("out/f_%d.png", {1, 3}), "out/f_%d.png.shard-2-of-3.json");
+}
+
+// Reading takes a time that grows with the square of the names in an object, and deep nesting needs memory.
+TEST(CliBatch, ManifestsHaveLimits) {
+  std::string names = R"({"format": 1, "inputs": {)";
+  for (int i = 0; i < 500000; ++i) names += "\"" + std::to_string(i) + "\": \"\", ";
+  names += "\"\": \"\"}}";
+  const std::string deep = R"({"format": )" + std::string(5000000, '[') + std::string(5000000, ']') + "}";
+  const auto begin = std::chrono::steady_clock::now();
+  for (const std::string& text : {names, deep}) {
+    const Result<Manifest> read = parse_manifest(text, "m.json");
+    ASSERT_FALSE(read.ok());
+    EXPECT_EQ(read.error().message.find('\n'), std::string::npos);
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
 }
 
 TEST(CliBatch, RowsAreJoinedInTheirOrder) {
@@ -82,6 +108,14 @@ TEST(CliBatch, RowsAreJoinedInTheirOrder) {
   EXPECT_EQ(joined.value(), "n,\"a, b\"\n0,x\n1,y\n2,\"z,\"\"\"\n");
   EXPECT_FALSE(join_rows({{"n\n0\n", "1"}, {"m\n1\n", "2"}}).ok());
   EXPECT_FALSE(join_rows({{"n\n0\n", "1"}, {"n\n1\n3\n", "2"}}).ok());
+}
+
+TEST(CliBatch, InfiniteMeansAreRefused) {
+  const std::string good = "n,L_r,stderr_r\n0,1,inf\n", bad = "n,L_r,stderr_r\n0,inf,1\n";
+  EXPECT_TRUE(combine_estimates({{good, "a", 10}, {good, "b", 10}}).ok());
+  const Result<std::string> refused = combine_estimates({{good, "a", 10}, {bad, "b", 10}});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().message.find("'inf' is not a number"), std::string::npos) << refused.error().message;
 }
 
 TEST(CliBatch, EstimatesAreWeightedByTheirPaths) {
