@@ -53,7 +53,7 @@ Interruption::~Interruption() {
   if (!thread_.joinable()) return;
   for (const int number : kSignals) {
     struct sigaction now {};
-    if (::sigaction(number, nullptr, &now) == 0 && now.sa_handler == tyndall_on_signal) std::signal(number, SIG_DFL);
+    if (::sigaction(number, nullptr, &now) == 0 && now.sa_handler == tyndall_on_signal) std::signal(number, SIG_IGN);
   }
   const char end = 0;
   static_cast<void>(!::write(pipe_[1], &end, 1));

@@ -1,7 +1,8 @@
 // Ends the program within a second after SIGINT or SIGTERM, whatever it is computing, with one line on stderr that says
 // what was finished: "tyndall: interrupted: 3 of 10 frames are finished". The program then ends by the signal itself,
 // so that shells and schedulers see it. A second signal ends it at once. Files that are being written do not appear
-// under their names. Make one at a time; signals that the program was started to ignore stay ignored.
+// under their names. Once it is destroyed, the program is about to end by itself, and the signals are ignored. Make one
+// at a time; signals that the program was started to ignore stay ignored.
 #pragma once
 
 #include <functional>
