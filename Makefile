@@ -252,12 +252,13 @@ soak: build
 	@build/release/bin/soak --frames $(SOAK_FRAMES) --seed $(SOAK_SEED)
 	@tests/gpu/second_driver.sh build/second_driver/vk_swiftshader_icd.json build/release/bin/soak --frames $(SOAK_FRAMES) --seed $(SOAK_SEED)
 
-# Signals at random moments of render, sky, tables, probe and validate.
+# Signals at random moments of render, sky, tables, probe and validate, and at every write of the viewer while it saves.
 INTERRUPTIONS ?= 200
 INTERRUPTION_SEED ?= 1
 interruptions: PRESET = ci
-interruptions: TARGETS = tyndall
+interruptions: TARGETS = tyndall viewer_saves_test
 interruptions: build
+	@TYNDALL_ALL_KILLS=1 build/release/bin/viewer_saves_test
 	@/usr/bin/python3 -B tools/interruptions.py build/release/bin/tyndall --count $(INTERRUPTIONS) --seed $(INTERRUPTION_SEED)
 
 # The commands of docs/batch.md with GNU parallel and a Slurm cluster of this machine, in build/slurm. Needs root.

@@ -117,6 +117,7 @@ int run_compare(Args args) {
     if (const Result<image::FileKind> kind = image::kind_of_name(difference_path); !kind) return fail(kind.error());
     const Result<void> apart = check_not_input(difference_path, "--diff", {{"A", path_a}, {"B", path_b}});
     if (!apart) return fail(apart.error());
+    if (const Result<void> r = files::check_writable(difference_path); !r) return fail(r.error());
   }
 
   const Result<image::File> a = image::read(path_a);

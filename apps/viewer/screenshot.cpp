@@ -3,6 +3,7 @@
 #include <chrono>
 #include <utility>
 
+#include "files/files.hpp"
 #include "image/image.hpp"
 #include "scene/photometry.hpp"
 #include "viewer/platform/files.hpp"
@@ -17,7 +18,8 @@ Screenshot::~Screenshot() {
 void Screenshot::write(Capture capture, const std::string& folder) {
   requested_ = false;
   const std::string stem = screenshot_stem(folder, {".png", ".exr"});
-  writing_ = std::async(std::launch::async, [stem, shot = std::move(capture)]() -> Result<std::string> {
+  writing_ = std::async(std::launch::async, [stem, folder, shot = std::move(capture)]() -> Result<std::string> {
+    files::remove_leftovers(folder.empty() ? "." : folder);
     Result<void> written = image::write_png(stem + ".png", shot.display, config::metadata(shot.settings));
     if (written && image::exr_supported()) {
       const Params& params = shot.settings.effect;

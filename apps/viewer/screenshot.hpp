@@ -20,7 +20,8 @@ class Screenshot {
   void request() { requested_ = true; }
   // Returns whether a capture is to be made now: one is requested and none is being written.
   [[nodiscard]] bool wants_capture() const { return requested_ && !writing(); }
-  // Begins to write a capture into a folder (empty: the working directory).
+  // Begins to write a capture into a folder (empty: the working directory), and removes what killed runs have left
+  // there.
   void write(Capture capture, const std::string& folder);
   [[nodiscard]] bool writing() const { return writing_.valid(); }
   // Returns the name of the files without their endings once they are written, or why they are not; otherwise nothing.

@@ -1,9 +1,11 @@
 #include "viewer/view_settings.hpp"
 
+#include <filesystem>
 #include <utility>
 
 #include "config/phase_file.hpp"
 #include "config/scene_file.hpp"
+#include "files/files.hpp"
 #include "gpu/try.hpp"
 #include "viewer/platform/files.hpp"
 #include "viewer/scenes/settings_compare.hpp"
@@ -41,6 +43,8 @@ Result<void> ViewSettings::save() const {
     return Error{ErrorCode::io,
                  "F5: cannot create the folder of '" + state_file + "'; expected a writable place, or --state FILE"};
   }
+  const std::string folder = std::filesystem::path(state_file).parent_path().string();
+  files::remove_leftovers(folder.empty() ? "." : folder);
   return config::save(left, state_file);
 }
 

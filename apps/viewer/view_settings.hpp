@@ -20,7 +20,7 @@ struct ViewSettings {
   void copy_to_right(bool new_comparison);
   // Reverts settings that the scenes have refused. The camera and the sun are not reverted.
   void take_back(const PairResult& result);
-  // Saves the left settings to the state file.
+  // Saves the left settings to the state file, and removes what killed runs have left beside it.
   [[nodiscard]] Result<void> save() const;
   // Loads a scene file over the defaults or over the left settings. The location of the table cache is retained,
   // because it depends on the machine and not on the scene. An error changes nothing.

@@ -3,7 +3,7 @@
 // TYNDALL_FAULT_FOLDER count. Environment:
 //   TYNDALL_FAULT_FOLDER  absolute path of the folder
 //   TYNDALL_FAULT_AT      number of the call that fails, from 1; 0: none
-//   TYNDALL_FAULT_ERROR   the value of errno that the call sets; "short" makes a write shorter instead
+//   TYNDALL_FAULT_ERROR   the value of errno that the call sets, or a value of write_faults.hpp
 //   TYNDALL_FAULT_CALL    fails only calls with this name, and counts only these
 //   TYNDALL_FAULT_LOG     a file outside the folder that receives the name of each counted call, one a line
 // Tests in the same process call tyndall_write_faults() instead.
@@ -18,6 +18,7 @@
 #include <atomic>
 #include <cerrno>
 #include <climits>
+#include <csignal>
 #include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
@@ -29,12 +30,13 @@ namespace {
 struct Settings {
   std::string folder, call, log;
   long at = 0;
-  int error = 0;  // 0: a short write
+  int error = 0;  // of errno, or of write_faults.hpp
 };
 
 // A pointer, because calls arrive before and after the lifetime of static objects.
 Settings* settings = nullptr;
 std::atomic<long> calls{0};
+std::atomic<bool> has_unnamed_files{true};
 constexpr int kMaxDescriptors = 4096;
 std::array<std::atomic<bool>, kMaxDescriptors> tracked;
 
@@ -85,7 +87,7 @@ void log_call(const char* name) {
   ::close(file);
 }
 
-enum class Effect { normal, fails, is_short };
+enum class Effect { normal, fails, is_short, is_killed };
 
 // Counts a call and returns what is to happen to it; sets errno if it fails.
 Effect effect_of(const char* name) {
@@ -93,7 +95,9 @@ Effect effect_of(const char* name) {
   if (!now.call.empty() && now.call != name) return Effect::normal;
   log_call(name);
   if (++calls != now.at) return Effect::normal;
-  if (now.error == 0) return Effect::is_short;
+  if (now.error == kShortWrite) return Effect::is_short;
+  if (now.error == kKillInside && std::strcmp(name, "write") == 0) return Effect::is_killed;
+  if (now.error < 0) std::raise(SIGKILL);
   errno = now.error;
   return Effect::fails;
 }
@@ -102,6 +106,10 @@ bool fails(const char* name) { return effect_of(name) == Effect::fails; }
 
 int open_with(const char* symbol, const char* path, int flags, mode_t mode) {
   const bool writes = (flags & O_ACCMODE) != O_RDONLY && is_inside(path);
+  if (writes && !has_unnamed_files && (flags & O_TMPFILE) == O_TMPFILE) {
+    errno = EOPNOTSUPP;
+    return -1;
+  }
   if (writes && fails("open")) return -1;
   const int descriptor = original<int(const char*, int, ...)>(symbol)(path, flags, mode);
   if (descriptor >= 0 && descriptor < kMaxDescriptors) tracked[std::size_t(descriptor)] = writes;
@@ -121,6 +129,8 @@ void tyndall_write_faults(const char* folder, long at, int error, const char* ca
   settings = new Settings{folder, call, "", at, error};
   calls = 0;
 }
+
+void tyndall_unnamed_files(bool available) { has_unnamed_files = available; }
 
 long tyndall_write_calls() { return calls; }
 
@@ -145,7 +155,11 @@ ssize_t write(int descriptor, const void* data, size_t size) {
   if (is_tracked(descriptor)) {
     const Effect now = effect_of("write");
     if (now == Effect::fails) return -1;
-    if (now == Effect::is_short && size > 1) size /= 2;
+    if (now != Effect::normal && size > 1) size /= 2;
+    if (now == Effect::is_killed) {
+      static_cast<void>(next(descriptor, data, size));
+      std::raise(SIGKILL);
+    }
   }
   return next(descriptor, data, size);
 }
