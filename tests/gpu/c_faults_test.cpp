@@ -1,6 +1,7 @@
 // Misuse and failing allocations in the C interface, on the fake device: each call returns a status and a text, and
 // changes nothing. No exception leaves a function; it would end the program.
 #include <functional>
+#include <iostream>
 #include <string>
 #include <string_view>
 
@@ -243,6 +244,8 @@ long fail_each(Kind kind, const char* name, const std::function<TyndallStatus()>
     const TyndallStatus status = body();
     if (!faults::disarm()) {
       EXPECT_SUCCESS(status) << name;
+      std::cout << n << (kind == Kind::host ? " failing allocations of the host: " : " failing calls of Vulkan: ")
+                << name << "\n";
       return n;
     }
     EXPECT_EQ(status, TyndallStatus_out_of_memory) << name << " " << n;
@@ -285,6 +288,57 @@ TEST(CFaults, FailedAllocationsAreReturned) {
   EXPECT_GT(fail_each(Kind::host, "table_key", [&] { return tyndall_effect_table_key(effect, &size, nullptr); }), 0);
   fail_each(Kind::host, "prepare_pipelines",
             [&] { return tyndall_effect_prepare_pipelines(effect, UINT32_MAX, nullptr); });
+}
+
+TEST(CFaults, FailedAllocationsOfEveryOtherFunctionAreReturned) {
+  const OwnedEffect owned = make_c();
+  TyndallEffect* effect = owned.get();
+  const OwnedParams params = c_params(), other = c_params();
+  const double angles[] = {0.0, 90.0, 180.0}, wavelengths[] = {400.0, 700.0};
+  const std::vector<double> values(6, 0.0795774715);
+  auto desc = sized<TyndallSkyProbeDesc>();
+  desc.frames_in_flight = 2;
+  desc.cube_size = 32;
+  auto memory = sized<TyndallMemoryUsage>();
+  const std::pair<const char*, std::function<TyndallStatus()>> calls[] = {
+      {"params_copy", [&] { return tyndall_params_copy(other.get(), params.get()); }},
+      {"params_set_choice", [&] { return tyndall_params_set_choice(params.get(), "scattering.color", "rgb"); }},
+      {"params_set_numbers",
+       [&] {
+         const double size[4] = {8, 16, 16, 4};
+         return tyndall_params_set_numbers(params.get(), "tables.size", size, 4);
+       }},
+      {"params_set_phase_table",
+       [&] { return tyndall_params_set_phase_table(params.get(), angles, 3, wavelengths, 2, values.data()); }},
+      {"effect_get_params", [&] { return tyndall_effect_get_params(effect, other.get()); }},
+      {"effect_get_table_params", [&] { return tyndall_effect_get_table_params(effect, other.get()); }},
+      {"sky_probe_query_memory", [&] { return tyndall_sky_probe_query_memory_with(&kDevice, &desc, &memory); }}};
+  for (const auto& [name, call] : calls) fail_each(Kind::host, name, call);
+  ASSERT_SUCCESS(tyndall_effect_record_precompute(effect, kCommands, UINT32_MAX, nullptr));
+  const std::size_t objects = faults::live_objects();
+  for (const Kind kind : {Kind::vulkan, Kind::host}) {
+    EXPECT_GT(fail_each(kind, "sky_probe_create",
+                        [&] {
+                          TyndallSkyProbe* made = nullptr;
+                          const TyndallStatus status = tyndall_sky_probe_create_with(effect, &desc, &made);
+                          EXPECT_EQ(made != nullptr, status == TyndallStatus_success);
+                          tyndall_sky_probe_destroy(made);
+                          EXPECT_EQ(faults::live_objects(), objects);
+                          return status;
+                        }),
+              3);
+    // A call that has changed the effect changes nothing more, so every failure has a new one.
+    const auto changes = {std::pair{"effect_set_limits",
+                                    +[](TyndallEffect* e) {
+                                      return tyndall_effect_set_limits(e, {128, 48}, 6, 300);
+                                    }},
+                          std::pair{"effect_set_shadow_colors",
+                                    +[](TyndallEffect* e) { return tyndall_effect_set_shadow_colors(e, 1); }}};
+    for (const auto& [name, change] : changes) {
+      OwnedEffect changed = make_c();
+      fail_each(kind, name, [&, change = change] { return change(changed.get()); });
+    }
+  }
 }
 
 // Errors of arguments are texts of more than one allocation: one of the two errors is returned.

@@ -1,15 +1,22 @@
 // Each function of the library that allocates memory is called once for each of its allocations, which then fails. It
 // must return an error, change nothing and leak nothing, and the same call must succeed afterwards.
 #include <functional>
+#include <iostream>
 #include <string>
 
 #include "small_effect.hpp"
+#include "tyndall/sky_probe.hpp"
 
 namespace tyndall {
 namespace {
 
 using faults::Kind;
 constexpr Kind kKinds[] = {Kind::vulkan, Kind::host};
+
+void print_count(const std::string& name, Kind kind, long faults) {
+  std::cout << faults << (kind == Kind::host ? " failing allocations of the host" : " failing calls of Vulkan") << ": "
+            << name << "\n";
+}
 
 // Lets each allocation of `change` fail once, each time with a new effect.
 template <typename Change>
@@ -45,6 +52,7 @@ void refuse_everywhere(const std::string& name, Built built, const Change& chang
     }
     // Verify that allocations have failed.
     EXPECT_GE(n, kind == Kind::vulkan ? min_vulkan : min_host) << name;
+    print_count(name, kind, n);
   }
 }
 
@@ -64,8 +72,43 @@ TEST(EffectFaults, CreationIsRefusedAtEveryAllocation) {
       EXPECT_EQ(faults::live_pipeline_objects(), 0U) << n;
     }
     EXPECT_GT(n, kind == Kind::vulkan ? 150 : 40);
+    print_count("Effect::create", kind, n);
   }
   EXPECT_EQ(faults::live_objects(), 0U);
+}
+
+// A refused probe leaves the effect as it was.
+TEST(EffectFaults, SkyProbesAreRefusedAtEveryAllocation) {
+  Effect effect = make(Built::completely);
+  const std::size_t objects = faults::live_objects(), pipelines = faults::live_pipeline_objects();
+  for (const std::uint32_t cube_size : {0U, 32U}) {
+    for (const Kind kind : kKinds) {
+      long n = 0;
+      for (;; ++n) {
+        ASSERT_LT(n, 1000);
+        const Observed before = observe(effect);
+        faults::arm(kind, n);
+        Result<SkyProbe> made = SkyProbe::create(effect, SkyProbeDesc{2, cube_size});
+        const bool failed = faults::disarm();
+        ASSERT_EQ(made.ok(), !failed) << n;
+        if (!failed) {
+          faults::arm(Kind::host, 0);
+          const bool recorded = made.value().record(kCommands, {}).ok();
+          EXPECT_FALSE(faults::disarm()) << "recording allocates";
+          EXPECT_TRUE(recorded);
+          break;
+        }
+        EXPECT_EQ(made.error().code, ErrorCode::out_of_memory) << n;
+        EXPECT_FALSE(made.error().message.empty()) << n;
+        expect_same(before, observe(effect), "sky probe " + std::to_string(n));
+        EXPECT_EQ(faults::live_objects(), objects) << n;
+        EXPECT_EQ(faults::live_pipeline_objects(), pipelines) << n;
+      }
+      EXPECT_GT(n, kind == Kind::vulkan ? 8 : 3);
+      print_count("SkyProbe::create with a cube map of " + std::to_string(cube_size), kind, n);
+      EXPECT_EQ(faults::live_objects(), objects);
+    }
+  }
 }
 
 TEST(EffectFaults, ParametersAreRefusedAtEveryAllocation) {
@@ -143,10 +186,14 @@ TEST(EffectFaults, NoOtherCallThrowsAndRecordingAllocatesNothing) {
       const bool ok = call();
       if (!faults::disarm()) {
         EXPECT_TRUE(ok) << name;
+        print_count(name, Kind::host, n);
         return;
       }
     }
   };
+  survives("query_memory of a sky probe", [&] {
+    return SkyProbe::query_memory(faults::fake_device(), SkyProbeDesc{2, 32}).ok();
+  });
   survives("query_memory", [&] { return query_memory(faults::fake_device(), small_desc(), small_params()).ok(); });
   survives("prepare_pipelines", [&] { return effect.prepare_pipelines().ok(); });
   survives("table_key", [&] { return !effect.table_key().empty(); });
