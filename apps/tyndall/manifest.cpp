@@ -59,17 +59,17 @@ class Limits final : public nlohmann::json_sax<ordered_json> {
   bool string(string_t&) override { return true; }
   bool binary(binary_t&) override { return true; }
   bool start_object(std::size_t) override { return enter(); }
-  bool key(string_t&) override { return ++names_.back() <= kMostNames; }
+  bool key(string_t&) override { return ++names_.back() <= kMaxNames; }
   bool end_object() override { return leave(); }
   bool start_array(std::size_t) override { return enter(); }
   bool end_array() override { return leave(); }
   bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override { return false; }
 
  private:
-  static constexpr std::size_t kDeepest = 16, kMostNames = 4096;
+  static constexpr std::size_t kMaxDepth = 16, kMaxNames = 4096;
   bool enter() {
     names_.push_back(0);
-    return names_.size() <= kDeepest;
+    return names_.size() <= kMaxDepth;
   }
   bool leave() {
     names_.pop_back();

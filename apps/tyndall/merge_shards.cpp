@@ -207,7 +207,7 @@ Result<void> merge_reports(const std::string& output, const Run& run, const Vali
     if (Result<void> r = parse_part(text.value(), path, rays[i], colors[i]); !r) return r;
     total += rays[i].size() + colors[i].size();
   }
-  // A manifest cannot ask for more rays than there are results.
+  // A manifest cannot claim more rays than there are results.
   if (total != run[0].manifest.total || options.value().rays > total) {
     return input_error(concat({"there are the results of ", std::to_string(total), " rays in all files"}),
                        run[0].shown(), "expected the results of all rays");

@@ -51,7 +51,7 @@ void check_manifest(const std::string& path) {
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const fuzz::Folder folder;
   static constexpr std::string_view kEnd = "\n%\n";
-  constexpr std::size_t kMostShards = 6;
+  constexpr std::size_t kMaxManifests = 6;
   std::string_view rest = fuzz::text_of(data, size);
   const auto next = [&rest] {
     const std::string_view part = rest.substr(0, std::min(rest.find(kEnd), rest.size()));
@@ -61,7 +61,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::vector<std::string> paths;
   std::size_t seeds = 0;
   std::string verb;
-  while (!rest.empty() && paths.size() < kMostShards) {
+  while (!rest.empty() && paths.size() < kMaxManifests) {
     const std::string_view text = next();
     const std::string name = "file-" + std::to_string(paths.size());
     const Result<files::FileSum> sum = files::sum_of_file(folder.write(name, next()));
