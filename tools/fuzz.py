@@ -16,6 +16,7 @@ import json
 import os
 import pathlib
 import re
+import resource
 import subprocess
 import sys
 
@@ -32,8 +33,15 @@ def number(pattern, text, default=0):
     return int(found[-1]) if found else default
 
 
+def hangs(program, path, environment):
+    """Returns whether an input that took too long also needs that much processor time, not only on a busy machine."""
+    limit = lambda: resource.setrlimit(resource.RLIMIT_CPU, (TIMEOUT_S, TIMEOUT_S))
+    return subprocess.run([program.resolve(), path.resolve(), "-timeout=86400"], stdout=subprocess.DEVNULL,
+                          stderr=subprocess.DEVNULL, env=environment, preexec_fn=limit).returncode != 0
+
+
 def run(build, corpus, name, seconds, state):
-    """Runs one fuzzer and adds to its state. Returns the paths of its findings."""
+    """Runs one fuzzer and adds to its state. Returns the paths of its findings, and the exit status."""
     program = build / "bin" / f"fuzz_{name}"
     digest = hashlib.sha256(program.read_bytes()).hexdigest()
     if state.get("program") != digest:
@@ -60,14 +68,19 @@ def run(build, corpus, name, seconds, state):
         finally:
             text = log.read_text(errors="replace")
             found = sorted(set(findings.glob(f"{name}-*")) - before)
+            busy = [path for path in found if f"{name}-timeout-" in path.name and not hangs(program, path, environment)]
+            for path in busy:
+                path.unlink()
+            found = [path for path in found if path not in busy]
+            status = 0 if busy and not found else process.returncode
             executed = number(r"stat::number_of_executed_units: (\d+)", text, number(r"^#(\d+)", text))
             state["executions"] += executed
             state["seconds"] += number(r"Done \d+ runs in (\d+) second", text, seconds)
-            state["findings"] += len(found) + (process.returncode not in (0, None, INTERRUPTED) and not found)
+            state["findings"] += len(found) + (status not in (0, None, INTERRUPTED) and not found)
             state["edges"] = number(r"\((\d+) inline 8-bit counters\)", text)
             state["covered"] = number(r"cov: (\d+)", text, state.get("covered", 0))
             state["inputs"] = len(list(grown.iterdir())) + len(list((corpus / name).iterdir()))
-    return found, process.returncode
+    return found, status
 
 
 def table(states):
