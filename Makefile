@@ -55,7 +55,7 @@ doxygen:
 	@doxygen Doxyfile
 
 pictures: PRESET = release
-pictures: TARGETS = tyndall
+pictures: TARGETS = tyndall clouds
 pictures: build
 	@mkdir -p docs/images
 	@for scene in demo noon stratosphere hall; do \
@@ -74,6 +74,11 @@ pictures: build
 	@tools/air_pictures.sh build/release/bin/tyndall docs/images
 	@cmake --build build/release --target tonemap_curves
 	@build/release/bin/tonemap_curves docs/images/tonemap_curves.svg
+	@tools/setup.sh python3-pil
+	@build/release/bin/clouds build/clouds
+	@for name in clouds clouds_without; do \
+	  /usr/bin/python3 -c "from PIL import Image; Image.open('build/$$name.ppm').save('docs/images/$$name.png', optimize=True)" || exit 1; \
+	done
 
 # The numbers of docs/accuracy.md.
 accuracy: PRESET = release

@@ -62,9 +62,11 @@ void unwarp_pixel(uint block, uint k) {
   // which is optical depth.
   bool skyline = kSkyline && depth_m >= kSkyDepth && depths_differ(a);
   if (skyline) b.source = sky_source(a, position, b.source);
-  if (skyline || kSparse)
+  bool unlike_all = b.weight < (sky ? epipolar.min_weight_sky : epipolar.min_weight);
+  // Extinction of samples at other depths says nothing about that of the pixel, which may_be_wrong() needs.
+  if (skyline || kSparse || (unlike_all && !kHomogeneous && kDownscale == 1))
     b.extinction = extinction_of(max(own_optical_depth(position, visible_m, sky), Spectrum(0.0)), depth_m);
-  bool wrong = b.weight < (sky ? epipolar.min_weight_sky : epipolar.min_weight);
+  bool wrong = unlike_all;
   if (kDownscale == 1) {
     vec3 background = load_color(pixel);
     vec3 color = compose(b, position, depth_m, visible_m, sky, background);

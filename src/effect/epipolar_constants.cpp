@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "effect/frame_constants.hpp"
 #include "effect/modes.hpp"
 #include "effect/resources.hpp"
 
@@ -26,9 +27,9 @@ constexpr float kTwilightDepthTolerance = 0.5F;  // in units of the tolerance by
 // In twilight, samples on both sides of every depth discontinuity are marched, because unshadowed in-scattering does
 // not contain the planet's shadow.
 constexpr float kTwilightDiscontinuityRatio = 0.8F;
-// In twilight, the initial step is divided by this, because refinement compares unshadowed in-scattering, which does
-// not contain the planet's shadow.
-constexpr std::uint32_t kStepsWithSunDown = 4;
+// In twilight and with clouds, the initial step is divided by this, because refinement compares unshadowed
+// in-scattering, which contains neither the planet's shadow nor those of clouds.
+constexpr std::uint32_t kStepDivisor = 4;
 
 // Returns whether the sun is a degree or more below the horizontal plane of the camera.
 bool sun_is_down(const FrameInputs& inputs, const Params& params) {
@@ -130,7 +131,8 @@ shared::EpipolarConstants epipolar_constants(const FrameInputs& inputs, const Ef
   const VkExtent2D downscaled = downscaled_extent(inputs.extent, params);
   out.downscaled_width = downscaled.width;
   out.downscaled_height = downscaled.height;
-  out.initial_step = sun_is_down(inputs, params) ? std::max(p.initial_step / kStepsWithSunDown, 1U) : p.initial_step;
+  const bool fine = sun_is_down(inputs, params) || has_clouds(inputs);
+  out.initial_step = fine ? std::max(p.initial_step / kStepDivisor, 1U) : p.initial_step;
   out.epipole_density = p.epipole_density;
   out.threshold = p.refinement_threshold;
   out.optimize_locations = p.optimize_locations.value;

@@ -396,7 +396,8 @@ void remark_on_clouds(Speaker& s, const FrameInputs& inputs, const ScatteringPar
   const double off = std::acos(std::min(along, 1.0)) * 180.0 / std::numbers::pi;
   s.say_if(Kind::cloud_sun, off > 3.0, "FrameInputs::clouds looks ", off,
            " degrees past the sun; expected a map along Sun::direction_to_sun");
-  s.say_if(Kind::cloud_depth, depth_along > -0.5 && off <= 3.0,
+  // Depths are compared along the sunlight only, so they may be altitudes, even with a sun at the horizon.
+  s.say_if(Kind::cloud_depth, depth_along > -1e-3 && off <= 3.0,
            "the depth of FrameInputs::clouds does not grow away from the sun; expected 0 nearest to the sun, whatever "
            "EffectDesc::shadow_depth_reversed is");
   const bool occluded = !is_homogeneous(p) && p.multiple == MultipleScattering::occluded;

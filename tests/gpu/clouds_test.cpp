@@ -391,6 +391,23 @@ TEST_F(CloudsOfCaller, LookUpsAreDarkened) {
   EXPECT_NE(refused.error().message.find("clouds_from_position is not finite"), std::string::npos);
 }
 
+// Bright surfaces of one pixel, between samples, before a sky that clouds darken completely. They have the attenuation
+// of their own distance, although no sample is at it.
+TEST_F(CloudsOfCaller, ThinSurfacesBeforeADarkSkyAreAttenuated) {
+  TestFrame frame;
+  frame.extent = {96, 54};
+  frame.view = TestView::at(500.0, 0.3, 0.5, 0.4);  // above the horizon
+  frame.to_sun = glm::normalize(glm::dvec3(0.3, 0.8, -0.5));
+  frame.background = Vec3(1.0F);
+  frame.distance_m = [](std::uint32_t x, std::uint32_t y) { return x % 12 == 5 && y % 10 == 4 ? 40000.0 : 0.0; };
+  add_clouds(frame, 2e6, kAboveAll_m, everywhere(glm::dvec3(0.0)));
+  show(frame);
+  const Picture picture = draw(params_of(kModes[0]), "epipolar", true);
+  const Picture truth = draw(by_brute_force(params_of(kModes[0])), "brute force", true);
+  EXPECT_LT(truth[4 * 96 + 5].z, 0.8);
+  EXPECT_LE(worst_of(picture, truth), 0.03);  // with the extinction of samples in the sky, more than 0.2
+}
+
 // The last case, because the others need the tables of rgb.
 TEST_F(CloudsOfCaller, SpectralPicturesAreLikeBruteForce) {
   BoxScene scene;

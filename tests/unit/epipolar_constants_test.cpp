@@ -276,5 +276,13 @@ TEST(EpipolarSteps, InitialSamplesStandCloserInTwilight) {
   EXPECT_EQ(step_at(-7.0, params), usual);
 }
 
+TEST(EpipolarSteps, InitialSamplesStandCloserWithClouds) {
+  FrameInputs inputs = level_view();
+  const Params params;
+  EXPECT_EQ(epipolar_constants(inputs, {}, params).initial_step, params.epipolar.initial_step);
+  inputs.clouds.map.view = reinterpret_cast<VkImageView>(std::uintptr_t{1});
+  EXPECT_EQ(epipolar_constants(inputs, {}, params).initial_step, params.epipolar.initial_step / 4);
+}
+
 }  // namespace
 }  // namespace tyndall

@@ -341,6 +341,8 @@ TEST(FrameChecks, CloudsAreChecked) {
                  for (const int entry : {2, 6, 10, 14}) m.m[entry] = -m.m[entry];
                }),
                {"the depth of FrameInputs::clouds does not grow away from the sun"});
+  // The depth may be the altitude, with the opposite sign.
+  EXPECT_EQ(remark([](Case& s) { set_row(s.inputs.clouds.map_from_world, 2, 0.0, -1e-4, 0.0, 0.5); }), "");
   expect_words(remark([](Case& s) {
                  s.params.scattering.single = SingleScattering::none;
                  s.params.scattering.multiple = MultipleScattering::unoccluded;
