@@ -19,6 +19,7 @@
 #   make site            builds the documentation as a site in build/site, and checks its links
 #   make site-check      opens the site in Chromium and searches it
 #   make passes          writes the list of passes, docs/generated/passes.md, with their cost
+#   make costs           measures the cost of techniques and features, docs/generated/costs.md
 #   make soak            changes the viewer at random for two minutes, and draws SOAK_FRAMES (10000) frames of random changes
 #                        with the validation layer, on both CPU drivers
 #   make fuzz            runs every fuzzer for FUZZ_SECONDS (60) and goes on where the last run ended; FUZZ names some of them
@@ -156,6 +157,14 @@ passes: build
 	done
 	@build/release/bin/tyndall tables --json > build/passes/tables.json
 	@build/release/bin/passes build/passes > docs/generated/passes.md
+
+# docs/generated/costs.md: what techniques and features cost. Takes about five minutes on a quiet machine with two cores.
+.PHONY: costs
+costs: PRESET = release
+costs: TARGETS = tyndall library_costs
+costs: build
+	@tools/costs.py build/release/bin > build/costs.md
+	@mv build/costs.md docs/generated/costs.md
 
 # The portable bundle, out/tyndall-VERSION-linux-x86_64.tar.xz.
 bundle: PRESET = release
