@@ -25,6 +25,7 @@
 #   make fuzz            runs every fuzzer for FUZZ_SECONDS (60) and goes on where the last run ended; FUZZ names some of them
 #   make interruptions   interrupts the program at INTERRUPTIONS (200) random moments, and checks what is left
 #   make slurm-test      installs Slurm and GNU parallel, and runs the commands of docs/batch.md with them
+#   make phase-limits    measures the errors of narrow phase functions, docs/generated/phase.md
 #   make twilight        writes the table of illuminances by the sun's elevation, docs/generated/twilight.md
 .PHONY: fuzz soak interruptions slurm-test python-figures demo check doxygen pictures accuracy epipolar-study models-study twilight bundle bundle-chroot packages packages-check wheel-check python-comparison site site-check abi passes setup build format format-check tidy tidy-check tidy-all sanitize-short sanitize clean
 
@@ -146,6 +147,15 @@ twilight: PRESET = release
 twilight: TARGETS = tyndall
 twilight: build
 	@tools/twilight.py build/release/bin/tyndall > docs/generated/twilight.md
+
+# The errors of narrow phase functions against the path tracer, docs/generated/phase.md.
+.PHONY: phase-limits
+phase-limits: PRESET = release
+phase-limits: TARGETS = tyndall
+phase-limits: build
+	@mkdir -p build
+	@python3 tools/phase_limits.py build/release/bin/tyndall > build/phase.md
+	@mv build/phase.md docs/generated/phase.md
 
 # docs/generated/passes.md, with the costs of every mode.
 passes: PRESET = release

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "effect/medium.hpp"
+#include "effect/phase_rows.hpp"
 #include "models/glsl_double.hpp"
 #include "models/single_scattering.hpp"
 #include "physics_float.hpp"
@@ -262,6 +263,40 @@ TEST(physics_scattering, sky_irradiance) {
         EXPECT_NEAR(coarse[c], above[c] + below[c], 5.0e-3 * scale) << h << ' ' << elevation_deg;
       }
     }
+  }
+}
+
+// Fog scatters much of its light within a few degrees of the sun. The other quadrature has polar coordinates about the
+// sun.
+TEST(physics_scattering, sky_irradiance_of_a_narrow_peak) {
+  constexpr int kRings = 200;
+  constexpr int kSpokes = 80;
+  Params params;
+  params.atmosphere.mie_phase = MiePhase::draine;
+  params.atmosphere.droplet_diameter_um = 20.0F;
+  params.atmosphere.aerosol_density = 6.0F;
+  const PhaseRows rows = phase_rows(params, ColorMode::rgb);
+  const shared::Medium m = medium_from_params(params);
+  const glsl64::Medium wide = glsl64::widen(m, rows.data());
+  for (const double sun_zenith : {0.26, 0.79, 1.22}) {
+    double expected = 0.0;
+    for (int i = 0; i < kRings; ++i) {
+      const double u = (i + 0.5) / kRings;
+      const double angle = kPi * u * u * u;
+      const double ring = std::sin(angle) * 3.0 * kPi * u * u / kRings * 2.0 * kPi / kSpokes;
+      for (int k = 0; k < kSpokes; ++k) {
+        const double spoke = kPi * (k + 0.5) / kSpokes;
+        const double mu =
+            std::cos(angle) * std::cos(sun_zenith) + std::sin(angle) * std::sin(sun_zenith) * std::cos(spoke);
+        if (mu <= 0.0) continue;
+        glsl64::vec3 through;
+        expected +=
+            ring * mu *
+            glsl64::single_scattering_to_end(wide, 0.0, mu, std::cos(sun_zenith), std::cos(angle), 8, through).y;
+      }
+    }
+    EXPECT_NEAR(models::single_sky_irradiance(m, 0.0, std::cos(sun_zenith), rows)[1] / expected, 1.0, 3.0e-3)
+        << sun_zenith;
   }
 }
 
