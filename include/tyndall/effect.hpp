@@ -198,8 +198,9 @@ struct FrameInputs {
 };
 
 // The parts in which Effect::record() can record a frame. `first` reads FrameInputs::depth, and `second` everything
-// else.
-enum class FramePart : std::uint32_t { whole, first, second };
+// else. `drop` ends a frame that will not get its second part: it records no pass, and FrameInputs::output stays as it
+// is. It needs FrameInputs::frame_index and view only.
+enum class FramePart : std::uint32_t { whole, first, second, drop };
 
 struct Progress {
   std::uint32_t done = 0;
@@ -328,8 +329,9 @@ class TYNDALL_API Effect {
   // descriptor set 0 and the push constants of the compute bind point, as record_precompute() does, and no other state.
   // A frame can be recorded in two parts, with the same inputs and to any command buffers that execute one after the
   // other. The commands of the first part read the depth and write only to memory of the effect, so they can run while
-  // shadow maps and colour are drawn. The picture is the same, byte for byte. The second part must follow before the
-  // next frame or view, and before calls that change parameters, limits or tables; they are errors in between.
+  // shadow maps and colour are drawn. The picture is the same, byte for byte. The second part, or FramePart::drop, must
+  // follow before the next frame or view, and before calls that change parameters, limits or tables; they are errors in
+  // between.
   Result<void> record(VkCommandBuffer cmd, const FrameInputs& inputs, FramePart part = FramePart::whole);
 
   // Return the tables in use. Views change only when record_precompute() or record_load_tables() completes new ones.

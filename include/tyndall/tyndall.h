@@ -68,6 +68,7 @@ typedef enum TyndallFramePart {
   TyndallFramePart_whole = 0,
   TyndallFramePart_first = 1,
   TyndallFramePart_second = 2,
+  TyndallFramePart_drop = 3,  // instead of second: ends the frame without drawing it
   TyndallFramePart_max = 0x7FFFFFFF
 } TyndallFramePart;
 

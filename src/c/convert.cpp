@@ -18,7 +18,7 @@ static_assert(same(TyndallOutputFormat_rgba16f, OutputFormat::rgba16f) &&
               same(TyndallOutputFormat_rgba32f, OutputFormat::rgba32f));
 
 static_assert(same(TyndallFramePart_whole, FramePart::whole) && same(TyndallFramePart_first, FramePart::first) &&
-              same(TyndallFramePart_second, FramePart::second));
+              same(TyndallFramePart_second, FramePart::second) && same(TyndallFramePart_drop, FramePart::drop));
 
 const TyndallDeviceInfo& callbacks(void* user) { return *static_cast<const TyndallDeviceInfo*>(user); }
 

@@ -1,5 +1,6 @@
-// Creates the effect, changes its settings and records a frame. The steps of a frame are in frame_steps.cpp, its
-// constants in frame_constants.cpp and epipolar_constants.cpp, and the checks in check.cpp and limits.cpp.
+// Creates the effect and records a frame. effect_changes.cpp changes its settings. The steps of a frame are in
+// frame_steps.cpp, its constants in frame_constants.cpp and epipolar_constants.cpp, and the checks in check.cpp and
+// limits.cpp.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -55,16 +56,6 @@ constexpr VkBufferUsageFlags kConstantsUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BI
 constexpr VkBufferUsageFlags kCounterUsage =
     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
 
-constexpr std::uint32_t bit(Affects affects) { return 1U << static_cast<std::uint32_t>(affects); }
-constexpr std::uint32_t kEverything = bit(Affects::Resources) | bit(Affects::Tables);
-
-// Returns whether two descriptions agree in the settings that can change after creation.
-bool same_limits(const EffectDesc& a, const EffectDesc& b) {
-  return a.max_extent.width == b.max_extent.width && a.max_extent.height == b.max_extent.height &&
-         a.max_cascades == b.max_cascades && a.max_shadow_resolution == b.max_shadow_resolution &&
-         a.shadow_colors == b.shadow_colors && a.clouds == b.clouds;
-}
-
 }  // namespace
 
 Result<void> open_device(gpu::Device& device, const DeviceInfo& info) {
@@ -96,7 +87,7 @@ Effect::State::~State() {
   if (info.message == nullptr || !desc.check_inputs || !ring.unfinished()) return;
   const char* const text =
       parts.open() ? "an Effect is destroyed between the two parts of a frame; expected to record and submit "
-                     "FramePart::second first, and to wait for it"
+                     "FramePart::second or drop first, and to wait for it"
                    : "an Effect is destroyed before the commands that it recorded have completed, or without "
                      "submitting them; expected to wait for them first";
   info.message(info.message_user, Severity::warning, text);
@@ -183,97 +174,6 @@ Result<void> Effect::State::create_samplers() {
   }
   TYNDALL_ASSIGN(shadow_compare, gpu::create_sampler(device, compare));
   return {};
-}
-
-Params Effect::State::drawn_with(const Params& p) const {
-  Params out = p;
-  const Params& built = tables.built(p);
-  out.tables = built.tables;
-  if (reads_tables(p.scattering)) out.scattering.color = built.scattering.color;
-  return out;
-}
-
-Params Effect::State::table_params() const {
-  Params out = params;
-  const Params& built = tables.built(params);
-  out.planet = built.planet;
-  out.atmosphere = built.atmosphere;
-  out.phase_table = built.phase_table;
-  out.tables = built.tables;
-  out.scattering.color = built.scattering.color;
-  return out;
-}
-
-// Returns the mode with the largest buffers among those that frames with these parameters may have before and after the
-// tables in progress are complete.
-ColorMode Effect::State::color_of_buffers(const Params& p) const {
-  return drawn_with(p).scattering.color == ColorMode::spectral ? ColorMode::spectral : p.scattering.color;
-}
-
-Result<void> Effect::State::make_pipelines(const EffectDesc& d, const Params& p) {
-  TYNDALL_TRY(pipelines.make(pipelines_of_frames(d, p, target)));
-  TYNDALL_TRY(sets.make(sets_of_frames(d, p, target), pipelines));
-  return {};
-}
-
-Result<Effect::State::Pending> Effect::State::plan(const EffectDesc& d, const Params& p, std::uint32_t required) {
-  const bool other_resources = (required & bit(Affects::Resources)) != 0;
-  if ((required & kEverything) != 0) TYNDALL_TRY(check_limits(device, d, p));
-  Pending pending = {d, p, {}, {}, ColorMode::rgb, {}, {}};
-  if (other_resources || (required & bit(Affects::Pipeline)) != 0) {
-    TYNDALL_TRY(make_pipelines(d, p));
-    if (const Params before = drawn_with(p); before.scattering.color != p.scattering.color) {
-      TYNDALL_TRY(make_pipelines(d, before));
-    }
-  }
-  if (other_resources) {
-    // Until tables at three channels are complete, frames are drawn with those at four wavelengths, whose buffers are
-    // larger.
-    Params larger = p;
-    larger.scattering.color = pending.buffer_color = color_of_buffers(p);
-    TYNDALL_ASSIGN(pending.buffers, buffers.plan(d, larger));
-    TYNDALL_ASSIGN(pending.froxels, froxels.plan(d, p));
-  }
-  if ((required & bit(Affects::Tables)) != 0) {
-    TYNDALL_ASSIGN(pending.tables, tables.plan(p));
-    pending.phase = {phase_rows(p, ColorMode::rgb), phase_rows(p, ColorMode::spectral)};
-  }
-  return pending;
-}
-
-void Effect::State::commit(Pending&& pending) noexcept {
-  if (pending.buffers) {
-    buffers.commit(std::move(*pending.buffers), FrameRing::slots(desc) + 1);
-    buffer_color = pending.buffer_color;
-  }
-  if (pending.froxels) froxels.commit(std::move(*pending.froxels), FrameRing::slots(desc) + 1);
-  if (pending.tables) tables.commit(std::move(*pending.tables));
-  const bool other_color = params.scattering.color != pending.params.scattering.color;
-  const bool other_phase = air::tabulated(params.atmosphere) != air::tabulated(pending.params.atmosphere);
-  const bool other_inputs = desc.shadow_colors != pending.desc.shadow_colors || desc.clouds != pending.desc.clouds;
-  if (other_inputs || other_color || other_phase) all_pipelines.clear();
-  if (pending.phase) phase = std::move(*pending.phase);
-  desc = pending.desc;
-  params = pending.params;
-  served_revision = 0;
-}
-
-Result<void> Effect::State::change(const EffectDesc& d, const Params& p) {
-  std::uint32_t required = affected(params, p);
-  if ((required & bit(Affects::Everything)) != 0) required |= kEverything;
-  if (!same_limits(desc, d) || color_of_buffers(p) != buffer_color) required |= bit(Affects::Resources);
-  TYNDALL_ASSIGN(Pending pending, plan(d, p, required));
-  commit(std::move(pending));
-  return {};
-}
-
-Result<Progress> Effect::State::prepare_pipelines(std::uint32_t budget) {
-  if (all_pipelines.empty()) all_pipelines = all_frame_pipelines(desc, target, params);
-  TYNDALL_TRY(pipelines.make(all_pipelines, budget));
-  Progress progress;
-  progress.total = static_cast<std::uint32_t>(all_pipelines.size());
-  for (const PipelineKey& key : all_pipelines) progress.done += pipelines.find(key) != nullptr ? 1 : 0;
-  return progress;
 }
 
 void Effect::State::prepare_images(VkCommandBuffer cmd) {
@@ -366,8 +266,23 @@ Result<void> Effect::State::begin_frame(VkCommandBuffer cmd, const FrameInputs& 
   return {};
 }
 
+// Ends a frame of which only the first part has been recorded. Its slot is free when these commands have completed,
+// because the event waits for those of the first part.
+void Effect::State::drop(VkCommandBuffer cmd, const FrameInputs& inputs) {
+  if (desc.counters) {
+    const VkDeviceSize offset = kCounterBytes * ring.slot(inputs.frame_index, inputs.view);
+    std::memset(static_cast<std::byte*>(counters_readback.mapped) + offset, 0, kCounterBytes);
+  }
+  ring.record_end(cmd, inputs.frame_index, inputs.view);
+  parts.recorded(inputs, FramePart::drop);
+}
+
 Result<void> Effect::State::record(VkCommandBuffer cmd, const FrameInputs& inputs, FramePart part) {
   TYNDALL_TRY(parts.check(inputs, part));
+  if (part == FramePart::drop) {
+    drop(cmd, inputs);
+    return {};
+  }
   const Params drawn = drawn_with(params);
   if (part != FramePart::second) TYNDALL_TRY(begin_frame(cmd, inputs, drawn));
   const std::uint32_t slot = ring.slot(inputs.frame_index, inputs.view);

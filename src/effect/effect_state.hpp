@@ -91,6 +91,9 @@ struct TYNDALL_HIDDEN Effect::State {
 
   // Creates the objects that do not depend on settings, and all others.
   Result<void> create_objects();
+  // The mask of all that plan() can prepare.
+  static constexpr std::uint32_t kEverything =
+      1U << static_cast<std::uint32_t>(Affects::Resources) | 1U << static_cast<std::uint32_t>(Affects::Tables);
   // Checks new settings and allocates the objects that they need, as far as `required` (a mask of bits 1 << Affects)
   // contains them. After an error, the picture, the progress of the tables and memory() are unchanged. Pipelines and
   // descriptor sets that were already created are retained, so the next attempt is faster.
@@ -123,6 +126,7 @@ struct TYNDALL_HIDDEN Effect::State {
   Result<void> check_tables();
   Result<void> make_pipelines(const EffectDesc& d, const Params& p);
   void prepare_images(VkCommandBuffer cmd);
+  void drop(VkCommandBuffer cmd, const FrameInputs& inputs);
   // Does what precedes the steps of a frame: checks the inputs, and writes the constants.
   Result<void> begin_frame(VkCommandBuffer cmd, const FrameInputs& inputs, const Params& drawn);
   // Writes the constants of a frame into its slot of the ring.

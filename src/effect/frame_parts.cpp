@@ -65,19 +65,25 @@ std::string frame_of(const FrameInputs& inputs) {
 }  // namespace
 
 Result<void> FrameParts::check(const FrameInputs& inputs, FramePart part) const {
-  if (part != FramePart::whole && part != FramePart::first && part != FramePart::second) {
+  if (part > FramePart::drop) {
     return invalid("the part of the frame is " + std::to_string(static_cast<std::uint32_t>(part)) +
-                   "; expected FramePart::whole, first or second");
+                   "; expected FramePart::whole, first, second or drop");
   }
-  if (part != FramePart::second) {
+  const bool ends = part == FramePart::second || part == FramePart::drop;
+  if (!ends) {
     if (!open_) return {};
     return invalid("the first part of " + frame_of(inputs_) +
-                   " has been recorded, but not the second; expected FramePart::second of this frame before any other "
-                   "frame or view");
+                   " has been recorded, but not the second; expected FramePart::second or drop of this frame before "
+                   "any other frame or view");
   }
   if (!open_) {
-    return invalid("FramePart::second of " + frame_of(inputs) +
-                   " has no first part; expected FramePart::first with the same inputs before it");
+    return invalid(std::string(part == FramePart::drop ? "FramePart::drop of " : "FramePart::second of ") +
+                   frame_of(inputs) + " has no first part; expected FramePart::first with the same inputs before it");
+  }
+  if (part == FramePart::drop) {  // needs no other inputs: an engine may have lost them
+    if (inputs.frame_index == inputs_.frame_index && inputs.view == inputs_.view) return {};
+    return invalid("FramePart::drop of " + frame_of(inputs) + " follows the first part of " + frame_of(inputs_) +
+                   "; expected the same frame_index and view");
   }
   if (const char* member = difference(inputs_, {cascades_.data(), cascade_count_}, inputs); member != nullptr) {
     return invalid("FrameInputs::" + std::string(member) +
@@ -90,8 +96,8 @@ Result<void> FrameParts::check(const FrameInputs& inputs, FramePart part) const 
 Result<void> FrameParts::check_between(const char* where) const {
   if (!open_) return {};
   return invalid(std::string(where) + ": the first part of " + frame_of(inputs_) +
-                 " has been recorded, but not the second; expected FramePart::second before this call, which changes "
-                 "what it reads");
+                 " has been recorded, but not the second; expected FramePart::second or drop before this call, which "
+                 "changes what it reads");
 }
 
 void FrameParts::recorded(const FrameInputs& inputs, FramePart part) {

@@ -33,6 +33,7 @@ struct QueueFamily {
   std::uint32_t index = UINT32_MAX;
   bool graphics = false;
   bool timestamps = false;
+  std::uint32_t queues = 0;
 };
 
 // Returns the best queue family with compute: one with graphics if there is one, and then one with timestamps.
@@ -45,7 +46,7 @@ QueueFamily find_queue_family(VkPhysicalDevice device) {
   for (std::uint32_t i = 0; i < count; ++i) {
     if ((families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) == 0) continue;
     const QueueFamily family = {i, (families[i].queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0,
-                                families[i].timestampValidBits > 0};
+                                families[i].timestampValidBits > 0, families[i].queueCount};
     const auto rank = [](const QueueFamily& f) { return (f.graphics ? 2 : 0) + (f.timestamps ? 1 : 0); };
     if (best.index == UINT32_MAX || rank(family) > rank(best)) best = family;
   }
@@ -250,12 +251,12 @@ Result<void> Host::create_device(const HostDesc& desc) {
   queue_family_ = family.index;
   timestamps_ = family.timestamps;
 
-  const float priority = 1.0F;
+  const std::vector<float> priorities(std::clamp(desc.queues, 1U, family.queues), 1.0F);
   VkDeviceQueueCreateInfo queue = {};
   queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
   queue.queueFamilyIndex = queue_family_;
-  queue.queueCount = 1;
-  queue.pQueuePriorities = &priority;
+  queue.queueCount = static_cast<std::uint32_t>(priorities.size());
+  queue.pQueuePriorities = priorities.data();
   VkPhysicalDeviceVulkan13Features features = {};
   features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
   features.dynamicRendering = VK_TRUE;
@@ -275,7 +276,10 @@ Result<void> Host::create_device(const HostDesc& desc) {
   VkResult result = vkCreateDevice(device_.physical_device, &info, nullptr, &device_.device);
   if (result != VK_SUCCESS) return vulkan_error(result, "creating the Vulkan device", rows[index].name.c_str());
   TYNDALL_TRY(init_device(device_, get_instance_proc_addr_));
-  vkGetDeviceQueue(device_.device, queue_family_, 0, &queue_);
+  queues_.resize(priorities.size());
+  for (std::uint32_t i = 0; i < queue.queueCount; ++i) {
+    vkGetDeviceQueue(device_.device, queue_family_, i, &queues_[i]);
+  }
 
   VkCommandPoolCreateInfo pool_info = {};
   pool_info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
@@ -413,7 +417,7 @@ Result<std::uint64_t> Host::record_and_submit(const Record& record) {
   info.pCommandBuffers = &slot.cmd;
   {
     const std::unique_lock<std::mutex> locked = lock();
-    result = device_.vk.QueueSubmit(queue_, 1, &info, slot.fence.get());
+    result = device_.vk.QueueSubmit(queue(), 1, &info, slot.fence.get());
   }
   if (result != VK_SUCCESS) return vulkan_error(result, "submitting", "a command buffer");
   slot.submission = ++submissions_;

@@ -42,7 +42,8 @@ struct HostDesc {
   std::vector<const char*> instance_extensions = {};
   std::vector<const char*> device_extensions = {};
   std::function<bool(VkInstance, VkPhysicalDevice, std::uint32_t queue_family)> can_present = {};
-  bool graphics = true;  // false: the program only computes, and a queue without graphics suffices
+  bool graphics = true;      // false: the program only computes, and a queue without graphics suffices
+  std::uint32_t queues = 1;  // wanted of the queue's family; fewer are made if it has fewer
 };
 
 // Owns an instance, a device and a queue with compute and, if HostDesc::graphics, graphics.
@@ -62,7 +63,8 @@ class Host {
   // Returns whether the queue has timestamps, which EffectDesc::timings and Timer need.
   [[nodiscard]] bool timestamps() const { return timestamps_; }
   // The caller must hold lock() while it submits to the queue or waits until the device is idle.
-  [[nodiscard]] VkQueue queue() const { return queue_; }
+  // Other functions use the first queue, which is also returned for those that could not be made.
+  [[nodiscard]] VkQueue queue(std::size_t index = 0) const { return queues_[index < queues_.size() ? index : 0]; }
   [[nodiscard]] std::unique_lock<std::mutex> lock() { return std::unique_lock(queue_mutex_); }
   // Sets DeviceInfo::replace_shader for all pipelines created afterwards.
   void set_replace_shader(std::span<const std::uint32_t> (*replace)(void* user, std::string_view name), void* user) {
@@ -125,7 +127,7 @@ class Host {
   PFN_vkGetInstanceProcAddr get_instance_proc_addr_ = vkGetInstanceProcAddr;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
   Device device_;
-  VkQueue queue_ = VK_NULL_HANDLE;
+  std::vector<VkQueue> queues_;
   std::uint32_t queue_family_ = 0;
   bool timestamps_ = false;
   Handle<VkCommandPool> pool_;

@@ -195,7 +195,7 @@ TEST(CFaults, ValuesOutOfRangeAreRefused) {
   expect_invalid(tyndall_effect_record(owned.get(), kCommands, &frame.inputs), {"extent", "expected"});
   expect_invalid(tyndall_effect_set_limits(owned.get(), {0, 1}, 1, 1), {"max_extent", "expected"});
   frame = c_frame(fake_frame());
-  expect_invalid(tyndall_effect_record_part(owned.get(), kCommands, &frame.inputs, static_cast<TyndallFramePart>(3)),
+  expect_invalid(tyndall_effect_record_part(owned.get(), kCommands, &frame.inputs, static_cast<TyndallFramePart>(4)),
                  {"part", "expected FramePart::whole"});
   expect_invalid(tyndall_effect_record_part(owned.get(), kCommands, &frame.inputs, TyndallFramePart_second),
                  {"FramePart::second", "no first part"});
@@ -205,6 +205,14 @@ TEST(CFaults, ValuesOutOfRangeAreRefused) {
   expect_invalid(tyndall_effect_record(owned.get(), kCommands, &frame.inputs), {"FramePart::second"});
   EXPECT_EQ(tyndall_effect_record_part(owned.get(), kCommands, &frame.inputs, TyndallFramePart_second),
             TyndallStatus_success);
+  // A frame can be dropped after its first part.
+  frame.inputs.frame_index = 1;
+  EXPECT_EQ(tyndall_effect_record_part(owned.get(), kCommands, &frame.inputs, TyndallFramePart_first),
+            TyndallStatus_success);
+  EXPECT_EQ(tyndall_effect_record_part(owned.get(), kCommands, &frame.inputs, TyndallFramePart_drop),
+            TyndallStatus_success);
+  expect_invalid(tyndall_effect_record_part(owned.get(), kCommands, &frame.inputs, TyndallFramePart_drop),
+                 {"FramePart::drop", "no first part"});
 }
 
 TEST(CFaults, SettingsChangeAndAreReadBack) {

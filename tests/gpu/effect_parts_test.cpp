@@ -100,6 +100,64 @@ TEST_F(EffectParts, ThePictureIsThatOfTheWholeFrame) {
   }
 }
 
+// An engine that loses its images between the parts drops the frame: the output stays as it is, and later frames, also
+// one with the same number, have the usual picture. The second part of a dropped frame is an error.
+TEST_F(EffectParts, AFrameCanBeDroppedAfterItsFirstPart) {
+  const TestFrame frame = small_frame();
+  TestFrame other = frame;
+  other.view = TestView::at(2500.0, 0.9, -0.1, 0.8);
+  EffectDesc desc = desc_for(frame);
+  desc.frames_in_flight = 1;
+  desc.counters = true;
+  Result<Effect> effect = Effect::create(info(), desc, params_of(kModes[0]));
+  ASSERT_OK(effect);
+  Result<FrameImages> images = FrameImages::create(host(), frame, OutputFormat::rgba32f);
+  Result<FrameImages> dropped = FrameImages::create(host(), other, OutputFormat::rgba32f);
+  ASSERT_OK(images);
+  ASSERT_OK(dropped);
+  const auto draw = [&](FrameImages& to, const TestFrame& what, std::uint64_t frame_index, FramePart part) {
+    FrameInputs inputs = to.inputs(what);
+    inputs.frame_index = frame_index;
+    return host().run([&](VkCommandBuffer cmd) { return effect.value().record(cmd, inputs, part); });
+  };
+  const auto picture = [&](FrameImages& of) {
+    Result<std::vector<std::byte>> bytes = of.output_bytes(host());
+    return bytes.ok() ? std::move(bytes).value() : std::vector<std::byte>();
+  };
+  ASSERT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
+    const Result<Progress> built = effect.value().record_precompute(cmd);
+    return built.ok() ? Result<void>() : built.error();
+  }));
+  ASSERT_OK(draw(images.value(), frame, 0, FramePart::whole));
+  const std::vector<std::byte> expected = picture(images.value());
+  const std::vector<std::byte> before = picture(dropped.value());
+  EXPECT_GT(effect.value().counters(0).samples_marched, 0U);
+
+  ASSERT_OK(draw(dropped.value(), other, 1, FramePart::first));
+  FrameInputs lost;  // no image is left
+  lost.frame_index = 1;
+  ASSERT_OK(host().run([&](VkCommandBuffer cmd) { return effect.value().record(cmd, lost, FramePart::drop); }));
+  EXPECT_TRUE(picture(dropped.value()) == before);
+  EXPECT_EQ(effect.value().counters(1).samples_marched, 0U);
+  EXPECT_FALSE(draw(dropped.value(), other, 1, FramePart::second).ok());
+  ASSERT_OK(draw(images.value(), frame, 1, FramePart::whole));
+  EXPECT_TRUE(picture(images.value()) == expected);
+
+  // Both parts in one command buffer. The next frame waits for it.
+  FrameInputs inputs = dropped.value().inputs(other);
+  inputs.frame_index = 2;
+  ASSERT_OK(host().run([&](VkCommandBuffer cmd) {
+    const Result<void> first = effect.value().record(cmd, inputs, FramePart::first);
+    const Result<void> drop = effect.value().record(cmd, inputs, FramePart::drop);
+    EXPECT_FALSE(effect.value().record(cmd, inputs).ok());  // the same frame again, before its commands have completed
+    return first.ok() ? drop : first;
+  }));
+  EXPECT_TRUE(picture(dropped.value()) == before);
+  ASSERT_OK(draw(images.value(), frame, 3, FramePart::first));
+  ASSERT_OK(draw(images.value(), frame, 3, FramePart::second));
+  EXPECT_TRUE(picture(images.value()) == expected);
+}
+
 // Two views of a frame, each in two parts, in one command buffer.
 TEST_F(EffectParts, ViewsFollowOneAnother) {
   TestFrame frames[2] = {small_frame(), small_frame()};
@@ -152,7 +210,7 @@ TEST(EffectPartsRefusals, PartsOutOfOrderAreErrors) {
   faults::forget_commands();
   expect_refused(effect.record(kCommands, inputs, FramePart::second),
                  {"FramePart::second", "frame_index 7", "view 0", "no first part", "expected FramePart::first"});
-  expect_refused(effect.record(kCommands, inputs, static_cast<FramePart>(3)), {"3", "expected FramePart::whole"});
+  expect_refused(effect.record(kCommands, inputs, static_cast<FramePart>(4)), {"4", "expected FramePart::whole"});
   EXPECT_EQ(faults::command_hash(), 0U);
 
   ASSERT_OK(effect.record(kCommands, inputs, FramePart::first));
@@ -162,12 +220,12 @@ TEST(EffectPartsRefusals, PartsOutOfOrderAreErrors) {
   for (const FramePart part : {FramePart::whole, FramePart::first}) {
     for (const FrameInputs& other : {inputs, next}) {
       expect_refused(effect.record(kCommands, other, part),
-                     {"first part of frame_index 7", "expected FramePart::second of this frame"});
+                     {"first part of frame_index 7", "expected FramePart::second or drop of this frame"});
     }
   }
   const Progress progress = effect.precompute_progress();
   const auto of = [](const Result<Progress>& result) { return result ? Result<void>() : Result<void>(result.error()); };
-  const char* text = "expected FramePart::second before this call";
+  const char* text = "expected FramePart::second or drop before this call";
   expect_refused(effect.set_params(other_params()), {"Effect::set_params", "frame_index 7", text});
   expect_refused(effect.set_limits({8, 8}, 1, 64), {"Effect::set_limits", text});
   expect_refused(effect.set_shadow_colors(true), {"Effect::set_shadow_colors", text});
@@ -180,6 +238,16 @@ TEST(EffectPartsRefusals, PartsOutOfOrderAreErrors) {
   // The second part can be recorded nevertheless, and then all that was refused.
   EXPECT_OK(effect.record(kCommands, inputs, FramePart::second));
   expect_refused(effect.record(kCommands, inputs, FramePart::second), {"no first part"});
+  expect_refused(effect.record(kCommands, inputs, FramePart::drop), {"FramePart::drop of frame_index 7", "no first"});
+  EXPECT_OK(effect.record(kCommands, next, FramePart::first));
+  expect_refused(effect.record(kCommands, inputs, FramePart::drop),
+                 {"FramePart::drop of frame_index 7", "first part of frame_index 8", "expected the same frame_index"});
+  FrameInputs other_view = next;
+  other_view.view = 1;
+  expect_refused(effect.record(kCommands, other_view, FramePart::drop), {"view 1", "expected the same"});
+  EXPECT_OK(effect.record(kCommands, next, FramePart::drop));
+  expect_refused(effect.record(kCommands, next, FramePart::second), {"no first part"});
+  next.frame_index = 9;
   EXPECT_OK(effect.record(kCommands, next));
   EXPECT_OK(effect.set_params(other_params()));
   EXPECT_OK(effect.set_limits({8, 8}, 1, 64));
@@ -232,8 +300,11 @@ TEST(EffectPartsRefusals, NeitherPartAllocates) {
   for (const faults::Kind kind : {faults::Kind::vulkan, faults::Kind::host}) {
     FrameInputs inputs = fake_frame();
     faults::arm(kind, 0);
-    const bool first = effect.record(kCommands, inputs, FramePart::first).ok();
-    const bool second = effect.record(kCommands, inputs, FramePart::second).ok();
+    bool first = effect.record(kCommands, inputs, FramePart::first).ok();
+    bool second = effect.record(kCommands, inputs, FramePart::drop).ok();
+    inputs.frame_index = 1;
+    first = effect.record(kCommands, inputs, FramePart::first).ok() && first;
+    second = effect.record(kCommands, inputs, FramePart::second).ok() && second;
     EXPECT_FALSE(faults::disarm());
     EXPECT_TRUE(first && second);
   }
@@ -246,11 +317,12 @@ TEST(EffectPartsRefusals, DestructionBetweenThePartsIsReported) {
     static_cast<std::vector<std::string>*>(user)->emplace_back(text);
   };
   device.message_user = &texts;
-  for (const bool complete : {true, false}) {
+  for (const FramePart end : {FramePart::second, FramePart::drop, FramePart::first}) {
+    const bool complete = end != FramePart::first;
     Result<Effect> effect = Effect::create(device, small_desc(), small_params());
     ASSERT_OK(effect);
     ASSERT_OK(effect.value().record(kCommands, fake_frame(), FramePart::first));
-    if (complete) ASSERT_OK(effect.value().record(kCommands, fake_frame(), FramePart::second));
+    if (complete) ASSERT_OK(effect.value().record(kCommands, fake_frame(), end));
     texts.clear();
     effect = Error{ErrorCode::invalid_argument, ""};
     const bool said = texts.size() == 1 && texts[0].find("between the two parts of a frame") != std::string::npos;
