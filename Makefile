@@ -57,7 +57,7 @@ doxygen:
 	@doxygen Doxyfile
 
 pictures: PRESET = release
-pictures: TARGETS = tyndall clouds
+pictures: TARGETS = tyndall clouds spheres
 pictures: build
 	@mkdir -p docs/images
 	@for scene in demo noon stratosphere hall; do \
@@ -78,7 +78,8 @@ pictures: build
 	@build/release/bin/tonemap_curves docs/images/tonemap_curves.svg
 	@tools/setup.sh python3-pil
 	@build/release/bin/clouds build/clouds
-	@for name in clouds clouds_without; do \
+	@build/release/bin/spheres build/sky_probe_spheres.ppm
+	@for name in clouds clouds_without sky_probe_spheres; do \
 	  /usr/bin/python3 -c "from PIL import Image; Image.open('build/$$name.ppm').save('docs/images/$$name.png', optimize=True)" || exit 1; \
 	done
 
