@@ -1,9 +1,10 @@
 # tyndall_add_shaders(TARGET <target> NAME <set> SHADERS a.comp b.vert path@variant:KEY=VALUE ...)
 # Compiles each shader with glslc and spirv-opt (names are preserved) and checks it with spirv-val. Reflects its bindings, and
-# embeds module and bindings in the header <set>_shaders.hpp. The header declares one tyndall::gpu::Shader per shader, named
-# like the file without its folder and with underscores instead of dots (march_per_pixel_comp).
+# embeds module and bindings in <set>_shaders.hpp and <set>_shaders.cpp. The header declares one tyndall::gpu::Shader per shader,
+# named like the file without its folder and with underscores instead of dots (march_per_pixel_comp). Other targets that
+# include it must link TARGET and depend on TARGET_shaders.
 # path@variant:KEY=VALUE,KEY=VALUE compiles the shader with these macros and appends the variant to its name.
-# TYNDALL_SHADERS_FROM names another build folder, which is up to date: its headers are copied instead.
+# TYNDALL_SHADERS_FROM names another build folder, which is up to date: its files are copied instead.
 set(TYNDALL_SHADERS_FROM "" CACHE PATH "Build folder whose embedded shaders are copied instead of compiling them")
 find_program(TYNDALL_GLSLC glslc REQUIRED)
 find_program(TYNDALL_SPIRV_OPT spirv-opt REQUIRED)
@@ -46,21 +47,24 @@ function(tyndall_add_shaders)
     # One row per shader, for programs that compile shaders at run time: set|name|source|macros.
     set_property(GLOBAL APPEND PROPERTY TYNDALL_SHADER_ROWS "${arg_NAME}|${name}${variant}|${source}|${macros}")
   endforeach()
-  set(header ${out_dir}/${arg_NAME}_shaders.hpp)
+  set(files ${out_dir}/${arg_NAME}_shaders.hpp ${out_dir}/${arg_NAME}_shaders.cpp)
   if(TYNDALL_SHADERS_FROM)
     file(RELATIVE_PATH folder ${PROJECT_BINARY_DIR} ${out_dir})
-    set(built ${TYNDALL_SHADERS_FROM}/${folder}/${arg_NAME}_shaders.hpp)
-    add_custom_command(OUTPUT ${header} COMMAND ${CMAKE_COMMAND} -E copy_if_different ${built} ${header} DEPENDS ${built} VERBATIM)
+    foreach(file ${files})
+      get_filename_component(name ${file} NAME)
+      set(built ${TYNDALL_SHADERS_FROM}/${folder}/${name})
+      add_custom_command(OUTPUT ${file} COMMAND ${CMAKE_COMMAND} -E copy_if_different ${built} ${file} DEPENDS ${built} VERBATIM)
+    endforeach()
   else()
     add_custom_command(
-      OUTPUT ${header}
-      COMMAND tyndall_embed_shaders ${header} ${modules}
+      OUTPUT ${files}
+      COMMAND tyndall_embed_shaders ${files} ${modules}
       DEPENDS tyndall_embed_shaders ${modules}
       COMMENT "Embedding ${arg_NAME} shaders"
       VERBATIM)
   endif()
-  add_custom_target(${arg_TARGET}_shaders DEPENDS ${header})
+  add_custom_target(${arg_TARGET}_shaders DEPENDS ${files})
   add_dependencies(${arg_TARGET} ${arg_TARGET}_shaders)
   target_include_directories(${arg_TARGET} PRIVATE ${out_dir})
-  target_sources(${arg_TARGET} PRIVATE ${header})
+  target_sources(${arg_TARGET} PRIVATE ${files})
 endfunction()

@@ -1,7 +1,7 @@
-// embed_shaders OUT.hpp A.spv B.spv ...: writes a header with one tyndall::gpu::Shader for each module: its words,
+// embed_shaders OUT.hpp OUT.cpp A.spv B.spv ...: writes a header with one tyndall::gpu::Shader for each module: its
 // stage, local size, push-constant size, the ids of its specialisation constants, and its bindings by name with whether
 // each is read and written. A module is named after its file without the extension; an array named after OUT lists them
-// all. All bindings must be in set 0 and have names. Storage images and buffers that a shader only reads or only writes
+// all. The words are in a source, because they take seconds to compile, and several sources include the header. All bindings must be in set 0 and have names. Storage images and buffers that a shader only reads or only writes
 // must be declared readonly or writeonly, because barriers follow from these declarations.
 #include <spirv_cross/spirv_cross_c.h>
 
@@ -130,7 +130,12 @@ const char* stage_of(const Reflector& r) {
   }
 }
 
-std::string embed(const std::string& path) {
+// The text of both files.
+struct Output {
+  std::string header, source;
+};
+
+void embed(const std::string& path, Output& to) {
   const std::string name = std::filesystem::path(path).stem().string();
   const std::vector<std::uint32_t> words = read_words(path);
   Reflector r;
@@ -147,14 +152,15 @@ std::string embed(const std::string& path) {
       local[i] = spvc_compiler_get_execution_mode_argument_by_index(r.compiler, SpvExecutionModeLocalSize, i);
     }
   }
-  std::ostringstream out;
-  out << "inline constexpr std::uint32_t " << name << "_words[] = {";
+  to.source += "const std::uint32_t " + name + "_words[] = {";
   char word[32];
   for (std::size_t i = 0; i < words.size(); ++i) {
-    std::snprintf(word, sizeof word, "%s0x%08x,", i % 8 == 0 ? "\n    " : "", words[i]);
-    out << word;
+    std::snprintf(word, sizeof word, "%s%u,", i % 8 == 0 ? "\n" : "", words[i]);
+    to.source += word;
   }
-  out << "};\n";
+  to.source += "};\n";
+  std::ostringstream out;
+  out << "extern const std::uint32_t " << name << "_words[" << words.size() << "];\n";
   if (binding_count > 0) {
     out << "inline constexpr tyndall::gpu::Binding " << name << "_bindings[] = {\n" << bindings << "};\n";
   }
@@ -169,27 +175,35 @@ std::string embed(const std::string& path) {
       << local[0] << ", " << local[1] << ", " << local[2] << "}, " << (constants.empty() ? "{}" : name + "_constants")
       << "};\n\n";
   spvc_context_destroy(r.context);
-  return out.str();
+  to.header += out.str();
+}
+
+void write(const char* path, const std::string& text) {
+  std::ofstream out(path, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw Failure{std::string(path) + ": cannot be written"};
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 3) {
-    std::fprintf(stderr, "usage: embed_shaders OUT.hpp A.spv...\n");
+  if (argc < 4) {
+    std::fprintf(stderr, "usage: embed_shaders OUT.hpp OUT.cpp A.spv...\n");
     return 2;
   }
   try {
-    std::string text = "// Made by tools/embed_shaders.cpp from the compiled shaders.\n#pragma once\n\n"
-                       "#include \"gpu/shader.hpp\"\n\nnamespace tyndall::shaders {\n\n";
-    for (int i = 2; i < argc; ++i) text += embed(argv[i]);
-    text += "inline constexpr const tyndall::gpu::Shader* " + std::filesystem::path(argv[1]).stem().string() + "[] = {";
-    for (int i = 2; i < argc; ++i) text += "&" + std::filesystem::path(argv[i]).stem().string() + ", ";
-    text += "};\n\n}  // namespace tyndall::shaders\n";
-    std::ofstream out(argv[1], std::ios::binary);
-    out << text;
-    out.close();
-    if (!out) throw Failure{std::string(argv[1]) + ": cannot be written"};
+    const std::filesystem::path header = argv[1];
+    const std::string made_by = "// Made by tools/embed_shaders.cpp from the compiled shaders.\n";
+    Output out = {made_by + "#pragma once\n\n#include \"gpu/shader.hpp\"\n\nnamespace tyndall::shaders {\n\n",
+                  made_by + "#include \"" + header.filename().string() + "\"\n\nnamespace tyndall::shaders {\n\n"};
+    for (int i = 3; i < argc; ++i) embed(argv[i], out);
+    out.header += "inline constexpr const tyndall::gpu::Shader* " + header.stem().string() + "[] = {";
+    for (int i = 3; i < argc; ++i) out.header += "&" + std::filesystem::path(argv[i]).stem().string() + ", ";
+    out.header += "};\n\n}  // namespace tyndall::shaders\n";
+    out.source += "\n}  // namespace tyndall::shaders\n";
+    write(argv[1], out.header);
+    write(argv[2], out.source);
   } catch (const Failure& failure) {
     std::fprintf(stderr, "embed_shaders: error: %s\n", failure.message.c_str());
     return 1;
