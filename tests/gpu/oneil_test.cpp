@@ -75,6 +75,7 @@ struct DemoPlanet {
 
   DemoPlanet() {
     params.tables.size = {8, 32, 32, 4};
+    params.tables.orders = 1;  // the model does not read the tables
     params.atmosphere.height_m = 159.0e3F;
     params.atmosphere.rayleigh_scale_height_m = 39750.0F;
     params.atmosphere.mie_scale_height_m = 39750.0F;
@@ -143,6 +144,7 @@ TEST_F(GpuOneilScene, CrossesTheTopOfEarthsAtmosphereWithoutAJump) {
   DemoPlanet setup;
   setup.params = Params();
   setup.params.tables.size = {8, 32, 32, 4};
+  setup.params.tables.orders = 1;
   setup.scene.oneil.scale_function = s::OneilScaleFunction::computed;
   setup.scene.camera.pitch_deg = -8.0F;
   for (const s::ScatteringModel model : {s::ScatteringModel::oneil, s::ScatteringModel::oneil_table}) {
@@ -190,6 +192,7 @@ TEST_F(GpuOneilScene, NoPixelOfTheLimbSparkles) {
   DemoPlanet setup;
   setup.params = Params();
   setup.params.tables.size = {8, 32, 32, 4};
+  setup.params.tables.orders = 1;
   setup.scene.oneil.samples = 8;
   setup.scene.oneil.spacing = s::OneilSpacing::column;
   s::Scene* const scene = make(setup, {160, 90});

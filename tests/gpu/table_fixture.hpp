@@ -16,6 +16,7 @@ inline Params small_tables() {
   Params params;
   params.tables.size = {6, 16, 12, 4};
   params.tables.orders = 2;
+  params.scattering.enabled = false;  // no frames are drawn: creating their pipelines would take most of the time
   return params;
 }
 
