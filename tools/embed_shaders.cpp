@@ -1,8 +1,9 @@
 // embed_shaders OUT.hpp OUT.cpp A.spv B.spv ...: writes a header with one tyndall::gpu::Shader for each module: its
 // stage, local size, push-constant size, the ids of its specialisation constants, and its bindings by name with whether
 // each is read and written. A module is named after its file without the extension; an array named after OUT lists them
-// all. The words are in a source, because they take seconds to compile, and several sources include the header. All bindings must be in set 0 and have names. Storage images and buffers that a shader only reads or only writes
-// must be declared readonly or writeonly, because barriers follow from these declarations.
+// all. The words are in a source, because they take seconds to compile, and several sources include the header. All
+// bindings must be in set 0 and have names. Storage images and buffers that a shader only reads or only writes must be
+// declared readonly or writeonly, because barriers follow from these declarations.
 #include <spirv_cross/spirv_cross_c.h>
 
 #include <cstdint>
