@@ -283,8 +283,8 @@ INTERRUPTION_SEED ?= 1
 interruptions: PRESET = ci
 interruptions: TARGETS = tyndall viewer_saves_test
 interruptions: build
-	@TYNDALL_ALL_KILLS=1 build/release/bin/viewer_saves_test
 	@/usr/bin/python3 -B tools/interruptions.py build/release/bin/tyndall --count $(INTERRUPTIONS) --seed $(INTERRUPTION_SEED)
+	@TYNDALL_ALL_KILLS=1 build/release/bin/viewer_saves_test
 
 # The commands of docs/batch.md with GNU parallel and a Slurm cluster of this machine, in build/slurm. Needs root.
 slurm-test: PRESET = ci

@@ -97,7 +97,7 @@ def main():
     usual = effect[CASES[0][0]]
     print(f"""# Costs
 
-`make costs` made this page on {times[CASES[0][0]][0][2]}, with medians over {options.rounds} round(s). Times are in milliseconds on the
+`make costs` made this page on {times[CASES[0][0]][0][2]}, with medians over `--rounds {options.rounds}`. Times are in milliseconds on the
 device. The copy baseline is a pass that only reads colour and depth and writes colour at the same size, the least that any effect can
 cost. Compare ratios between machines, not times. No GPU has been measured.
 
