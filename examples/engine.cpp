@@ -46,10 +46,10 @@ tyndall::Effect create_effect(const Device& device) {
   return value_or_exit(tyndall::Effect::create(device_info(device), desc, params));
 }
 
-// Returns a half float that is positive and not below 6e-5.
+// Converts a half float. Precondition: it is a normal positive number, at least 6e-5.
 float from_half(std::uint16_t half) { return std::ldexp(static_cast<float>(half % 1024 + 1024), half / 1024 - 25); }
 
-// Both eyes of a frame, each in its half of the images.
+// Records both eyes of a frame, each in its half of the images.
 void record_eyes(VkCommandBuffer cmd, const Images& images, tyndall::Effect& effect, std::uint64_t frame,
                  VkExtent2D extent) {
   for (std::uint32_t eye = 0; eye < 2; ++eye) {

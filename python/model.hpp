@@ -27,15 +27,16 @@ struct Light {
 // All calls may come from several threads.
 class Model {
  public:
-  // `name` is one of --model, except reference.
+  // `name` is a model as in `tyndall probe --model`, except reference.
   Model(const std::string& scene, const Assignments& assignments, const std::string& device, const std::string& name,
         const Light& light);
 
-  // Returns radiance / E0 (sky: E / E0) and transmittance in the channels, both of shape (N, channels).
+  // Returns radiance / E0 (sky: irradiance / E0) and transmittance in the channels, both of shape (N, channels).
   py::tuple answer(const Array& rows, bool sky, bool ground);
-  // Returns radiance, transmittance and standard error by the path tracer, each of shape (N, K). `wavelengths_nm`, if
-  // not empty, are traced along the same paths, at most 40, and K is their number. Otherwise, K is 3: the channels, or
-  // with light at four wavelengths the colour of 40, in Rec. 709 or in XYZ as in colors().
+  // Returns radiance, transmittance and standard error by the path tracer, each of shape (N, K). If `wavelengths_nm`
+  // has entries (at most 40), these wavelengths are traced along the same paths, and K is their number. Otherwise K is
+  // 3: the three channels, or, with light at four wavelengths, the colour of 40 wavelengths in Rec. 709 or XYZ, as by
+  // colors().
   py::tuple trace(const Array& rows, bool sky, const reference::Options& options, bool xyz,
                   const std::vector<double>& wavelengths_nm) const;
   // Returns the transmittance along rays of given lengths: rows of altitude [m], cosine of the zenith angle, length

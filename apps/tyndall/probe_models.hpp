@@ -56,7 +56,7 @@ struct CpuModel {
   std::function<models::Answer(const RayQuery&)> answer;  // may be called by several threads at once
   std::vector<std::string> notes;                         // remarks for the user, one line each
 };
-// Returns an empty function for the other models.
+// Returns such a model. For precomputed, single and reference, `answer` is empty.
 [[nodiscard]] CpuModel cpu_model(scene::ModelId model, const Params& params, const scene::SceneParams& scene);
 
 // Returns an error if a model has three channels only, and spectral colours are requested.
@@ -64,7 +64,8 @@ struct CpuModel {
 // Returns an error if a model does not support the phase function.
 [[nodiscard]] Result<void> check_phase(scene::ModelId model, const AtmosphereParams& atmosphere);
 
-// Evaluates the chosen queries with one of the models, each as in an evaluation of all of them.
+// Evaluates the chosen queries with one of the models. The result of a query does not depend on which others are
+// chosen.
 [[nodiscard]] Result<std::vector<ProbeAnswer>> evaluate_model(scene::ModelId model, const ProbeSettings& settings,
                                                               std::span<const RayQuery> queries);
 

@@ -83,7 +83,7 @@ Result<std::vector<SkyEntry>> find_skies(const SkyOptions& options) {
 struct ProjectionInfo {
   std::string_view name, text;
 };
-// In the order of Projection.
+// The names of the projections, in the order of Projection.
 constexpr ProjectionInfo kProjections[] = {
     {"latlong", "latitude-longitude: zenith at the top, north at the left edge, azimuth clockwise to the right"},
     {"cube", "cube: the faces +X, -X, +Y, -Y, +Z, -Z from top to bottom, as in Vulkan; x east, y up, z south"},
@@ -187,7 +187,7 @@ void place_in_scene(scene::SceneParams& scene, const SkyOptions& sky, const SunA
     scene.camera.position_m = {0.0F, static_cast<float>(sky.altitude_m), 0.0F};
 }
 
-// The name of the file of --sun split.
+// Returns the name of the file that --sun split writes for the sun.
 std::string sun_path(const std::string& output) {
   return std::filesystem::path(output).replace_extension(".sun.json").string();
 }
@@ -262,7 +262,7 @@ nlohmann::ordered_json map_json(const SkyOptions& sky, const SkyMap& map, const 
   return out;
 }
 
-// What the maps of a run share.
+// The data that all maps of a run share.
 struct SkyRun {
   CommonOptions& options;
   const SkyOptions& sky;

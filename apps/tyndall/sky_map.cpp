@@ -47,7 +47,8 @@ class Splitter {
     return std::max(1, static_cast<int>(std::ceil(length_rad * kSamplesPerRadius / sun_.angular_radius_rad)));
   }
 
-  // Adds the part of the disc in a ring of the sky: `height_rad` high, around the angle `zenith` from the zenith.
+  // Adds the part of the disc that lies in row y of the map: a ring around the zenith at the zenith angle `zenith`
+  // [rad], `height_rad` high.
   void split_chord(std::uint32_t y, double zenith, double height_rad) {
     const double across = std::sin(zenith) * std::sin(sun_zenith_);
     const double along = std::cos(sun_.angular_radius_rad) - std::cos(zenith) * std::cos(sun_zenith_);

@@ -101,18 +101,18 @@ struct EffectDesc {
   // Leaves the pipelines that build tables, about twelve, to the first record_precompute() of a build, which then also
   // allocates descriptor sets. For programs that usually load the tables.
   bool table_pipelines_later = false;
-  // Reports suspicious inputs of a frame through DeviceInfo::message: once, and again
-  // only after a frame in which they were right.
+  // Reports suspicious inputs of a frame through DeviceInfo::message. Each is reported once per view, and again only
+  // after a frame in which it was right.
   bool check_inputs = true;
   // Shares the tables of this effect, of the same VkDevice, instead of having its own. Both effects are then equal: the
   // tables exist until the last effect that uses them is destroyed, and any of them can build, load and save them. The
   // parameters from which tables follow must agree, or create() is refused: planet.*, atmosphere.*, tables.* and
   // scattering.color. To change them, call set_params() of each effect; the first call begins the build. record() of an
   // effect whose parameters are those of neither the finished tables nor the build is an error. The effects count as
-  // one object for threads, and their commands must go to the same queue. DeviceInfo::memory, message and
-  // replace_shader of the effect that made the tables must outlive all of them. The memory of the tables is part of one
-  // effect's memory() and resources(). query_memory() omits it if this is not null. Read by create() and query_memory()
-  // only; null in desc().
+  // one object: use them from one thread at a time, and submit their commands to the same queue. DeviceInfo::memory,
+  // message and replace_shader of the effect that made the tables must outlive all of them. The memory of the tables is
+  // part of one effect's memory() and resources(). query_memory() omits it if this is not null. Read by create() and
+  // query_memory() only; null in desc().
   const Effect* tables_of = nullptr;
 };
 
@@ -197,9 +197,9 @@ struct FrameInputs {
   Clouds clouds;
 };
 
-// The parts in which Effect::record() can record a frame. `first` reads FrameInputs::depth, and `second` everything
-// else. `drop` ends a frame that will not get its second part: it records no pass, and FrameInputs::output stays as it
-// is. It needs FrameInputs::frame_index and view only.
+// The parts in which Effect::record() can record a frame. Of the caller's images, `first` reads FrameInputs::depth
+// only, and `second` uses all of them. `drop` ends a frame that will not get its second part: it records no pass, and
+// FrameInputs::output stays as it is. It needs FrameInputs::frame_index and view only.
 enum class FramePart : std::uint32_t { whole, first, second, drop };
 
 struct Progress {
@@ -230,9 +230,9 @@ struct PassTiming {
 
 // Look-up tables for shading the opaque scene: RGBA16F images in layout GENERAL. Sample them with a linear, clamping
 // sampler at light_table_uv() of tyndall/light_tables.glsl, and multiply red, green and blue by sun.irradiance *
-// scattering.scale. With scattering.color = spectral in table_params(), they include the colour of the sun, and alpha
-// holds what is missing to all four wavelengths. Valid once record_precompute() is complete; its commands write them in
-// COMPUTE_SHADER / SHADER_WRITE.
+// scattering.scale. With scattering.color = spectral in table_params(), they include the colour of the sun; the colour
+// and alpha together determine the light at the four wavelengths. Valid once record_precompute() is complete; its
+// commands write them in COMPUTE_SHADER / SHADER_WRITE.
 struct LightTables {
   VkImageView sun_transmittance = VK_NULL_HANDLE;  // from the sun to a point; 0 below the horizon
   VkImageView sky_irradiance = VK_NULL_HANDLE;     // on a horizontal surface under an open sky

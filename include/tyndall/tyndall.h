@@ -139,7 +139,7 @@ TYNDALL_API TyndallStatus tyndall_params_set_numbers(TyndallParams* params, cons
                                                      uint32_t count);
 // Sets an enumeration by the name of the value.
 TYNDALL_API TyndallStatus tyndall_params_set_choice(TyndallParams* params, const char* name, const char* choice);
-// Return what the functions above set. The text of a choice is a constant of the library.
+// Return the value of a parameter. The text of a choice is a constant of the library; do not free it.
 TYNDALL_API TyndallStatus tyndall_params_get_number(const TyndallParams* params, const char* name, double* value);
 TYNDALL_API TyndallStatus tyndall_params_get_numbers(const TyndallParams* params, const char* name, double* values,
                                                      uint32_t count);

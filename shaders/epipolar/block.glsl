@@ -17,7 +17,8 @@
 #endif
 #endif
 
-// The workgroup of a pass over blocks. On GPUs, a square stores whole sectors. CPU devices store images row by row.
+// The workgroup of a pass over blocks. On GPUs it is a square, so that its writes fill whole sectors of the cache. On
+// CPU devices it is a row, because they store images row by row.
 #ifdef TARGET_GPU
 #define BLOCK_GROUP layout(local_size_x = 8, local_size_y = 8) in
 #else
@@ -44,9 +45,9 @@ struct Block {
   ivec2 pixel[kBlockPixels];
   float visible_m[kBlockPixels];
   bool sky[kBlockPixels];
-  uint kinds;        // of all pixels
+  uint kinds;        // kScene, kPlanet and kSky, as far as any pixel has them
   float nearest_m;   // minimum depth of the pixels that show the scene
-  float farthest_m;  // maximum depth of these
+  float farthest_m;  // maximum depth of these pixels
 };
 
 bool below_horizon(ivec2 pixel) {

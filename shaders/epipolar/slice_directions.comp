@@ -1,7 +1,7 @@
 // Computes the slice line of each slice in the shadow map of each marched cascade, and the parts of its tree to be
 // built (Yusov 2013, section 1.4). All rays of a slice lie in a plane that contains the direction to the sun. In the
-// map the plane is a line through the camera. Few rays of a slice cross distant cascades, and rays near the sun hardly
-// move in the map. The tree therefore contains only cells that the ray of a marched sample reaches.
+// map the plane is a line through the camera. Few rays of a slice cross distant cascades, and rays near the sun cross
+// few texels of the map. The tree therefore contains only cells that the ray of a marched sample reaches.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -89,7 +89,7 @@ void main() {
   load_epipolar();
   uint cascade = epipolar.first_cascade + gl_WorkGroupID.y;
   uint thread = gl_LocalInvocationID.x;
-  // First, several threads find the reach of a line; then, one thread computes the line.
+  // First, kLineThreads threads find the reach of each slice line. Then one thread computes the line.
   uint id = gl_WorkGroupID.x * kLines + thread / kLineThreads;
   bool reaches_tree = epipolar.tree_cells > 0u && id < epipolar.slices;
   reaches[thread] = reaches_tree ? reach_of(slices[id], id, cascade, thread % kLineThreads) : 0.0;

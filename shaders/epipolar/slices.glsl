@@ -39,7 +39,8 @@ vec2 border_position(float along) {
   vec2 high = border_high();
   vec2 size = high - low;
   vec2 position = low;
-  // The side that contains it. Because of rounding there may be none; then the side that ends closest before it.
+  // Find the side that contains the position. Rounding may place it on no side; then take the side that ends closest
+  // before it.
   float min_beyond = 1e30;
   vec4 starts = vec4(epipolar.left_start, epipolar.bottom_start, epipolar.right_start, epipolar.top_start);
   for (int side = 0; side < 4; ++side) {
@@ -69,7 +70,6 @@ struct Side {
 };
 
 // Returns the side where the line from the epipole through a position leaves the picture.
-
 Side side_behind(vec2 position) {
   vec2 d = direction_from_epipole(position);
   vec2 low = border_low();
@@ -110,7 +110,7 @@ float slices_within(vec2 position, Side side, vec2 reach) {
   d = side.upright ? d : d.yx;
   reach = side.upright ? reach : reach.yx;
   float across = max(abs(d.x), 1e-9);
-  // The ratio of the distances between slices at the border and here.
+  // The ratio of the distance between two slices at the border to their distance at this position.
   float widening = abs(side.edge * epipolar.sun_w - sun) / across;
   float count = float(epipolar.closed != 0u ? epipolar.slices : epipolar.slices - 1u);
   return widening * (reach.y + reach.x * abs(d.y) / across) * (count / epipolar.perimeter);

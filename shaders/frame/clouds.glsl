@@ -1,6 +1,6 @@
 // Sunlight behind the clouds of the caller, and in-scattering of the parts of a ray that no shadow map covers. A ray
-// is divided into steps of about a texel of the map of clouds. In a step the light is that of its middle; a step that
-// crosses the layer is darkened in part.
+// is divided into steps of about a texel of the map of clouds. The light of a step is that of its middle. A step that
+// crosses the layer is darkened in proportion to the part behind the layer.
 #ifndef TYNDALL_CLOUDS_GLSL
 #define TYNDALL_CLOUDS_GLSL
 
@@ -32,8 +32,8 @@ float cloud_texels_per_m(vec3 change) {
   return max(texels.x, texels.y);
 }
 
-// Returns the number of steps of a section of a ray, `max_steps` or fewer. A layer may be crossed within a texel, so
-// that there is a smallest number as well.
+// Returns the number of steps of a section of a ray, `max_steps` or fewer. A ray may cross the layer within one texel,
+// so there is also a minimum number.
 float cloud_steps(vec3 change, float length_m, float max_steps) {
   return clamp(ceil(length_m * cloud_texels_per_m(change)), max_steps / 16.0, max_steps);
 }
@@ -140,7 +140,7 @@ void add_clouded_homogeneous(vec3 direction, float from, float to, float max_ste
   }
 }
 
-// Returns the fraction of single scattering that clouds and glass let pass.
+// Returns the fraction of single scattering that remains behind clouds and glass.
 Spectrum cloud_fraction(Spectrum light, Spectrum plain) {
   Spectrum fraction = clamp(light / max(plain, Spectrum(1e-30)), Spectrum(0.0), Spectrum(1.0));
   return mix(Spectrum(1.0), fraction, greaterThan(plain, Spectrum(1e-30)));

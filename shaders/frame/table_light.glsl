@@ -35,10 +35,11 @@ float planet_shadow_end(Ray ray, float start) {
   return dark && from <= start && to > start ? to : -1.0;
 }
 
-// Returns where the look-up for a lit section begins: at the start of the ray, if only the planet's shadow is in front
-// of the section. Both are the same light, but in twilight the interpolated tables differ by tens of per cent between
-// distant points of a ray. The sky would have a step where the first lit point changes abruptly, as it does where rays
-// leave a shadow map.
+// Returns the distance from which the tables are looked up for a lit section. If only the planet's shadow lies in front
+// of the section, this is the start of the ray, because the shadow adds no light. A look-up from the section itself
+// should give the same light, but in twilight the interpolated tables differ by tens of per cent between distant points
+// of a ray. The sky would then have a step where the first lit point changes abruptly, for example where rays leave a
+// shadow map.
 float section_from(LitSections lit, float from, float start) { return from - lit.dark_until < 1e-3 ? start : from; }
 
 // Adds the section [from, to], of which `lit_fraction` is lit with this colour.
@@ -66,8 +67,9 @@ InScattering tinted(InScattering light, Spectrum tint, float length_m) {
 }
 
 // Returns the ray for table look-ups, from distance `start`, where it enters the atmosphere. It ends at the scene's
-// surface even if that is below the ground sphere of the tables. So does a ray to the sky that ends at a lower planet.
-// A ray to the sky that passes between the two continues to the top of the atmosphere, like those above the horizon.
+// surface even if that is below the ground sphere of the tables. If nothing was drawn and the sphere at frame.ground_m
+// is lower than the ground sphere, the ray ends at this lower sphere. If it passes between both spheres, it continues
+// to the top of the atmosphere, like rays above the horizon.
 TableRay table_ray_of(Ray ray, float start) {
   float radius = medium.planet_radius_m;
   bool below = ray_hits_ground(ray.altitude, ray.cos_zenith, radius);
@@ -100,16 +102,16 @@ void close_section(inout LitSections lit, TableRay path, float start) {
   lit.closed_at = -1.0;
 }
 
-// Returns the in-scattering from the tables: of the lit part, which was found up to distance t; of the rest up to
-// `end`, which is not shadowed; and of the whole ray in the modes that ignore shadows.
+// Returns the in-scattering from the tables. `lit` holds the lit sections up to distance t. From there to `end`,
+// nothing casts shadows. The modes that ignore shadows look up the whole ray.
 Spectrum table_light(LitSections lit, TableRay path, float start, float t, float end) {
   Spectrum light = Spectrum(0.0);
   if (kSections == kEach) {
     if (kSingle == kTable) light += lit.light.single;
     if (kOccluded) light += lit.light.high;
   }
-  // The sections to look up, as a bit set: 0 the lit part, 1 the rest, 2 the whole ray. With a set, neighbouring rays
-  // do not wait for sections that only some of them have.
+  // The sections to look up, as a set of bits: 0 for the lit part, 1 for the rest, 2 for the whole ray. A loop over
+  // this set does not make neighbouring rays wait for sections that only some of them have.
   uint sections = frame.unoccluded != 0u ? 4u : 0u;
   if (kLitTables && kSections == kContiguous && lit.total > 1e-3) sections |= 1u;
   if (kLitTables && end - t > 1e-3) sections |= 2u;
@@ -121,7 +123,7 @@ Spectrum table_light(LitSections lit, TableRay path, float start, float t, float
     InScattering section = section_light(path, start, from, to);
     if (i == 0) section = tinted(section, lit.tint, lit.total);
     if (kSingle == kTable && i < 2 && lit.dark_until < end) light += section.single;
-    // Only these pipelines draw eyes below the tables.
+    // With kTable, no eye is below the lowest altitude of the tables: see tables_lack_single() in frame_constants.cpp.
     if (kSingle != kTable) section.high *= deep_factor(medium, path);
     if (kOccluded ? i < 2 : i == 2) light += section.high;
   }

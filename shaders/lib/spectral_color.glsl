@@ -21,8 +21,8 @@ vec3 transmitted_color(vec3 background, vec4 transmittance) {
 // spectrum of a saturated colour leaves the range of a passive filter, so it is clamped to 0 to 1.
 vec4 spectral_filter(vec3 color) { return clamp(spectrum_of_color(color * kSunColor), vec4(0.0), vec4(1.0)); }
 
-// The texels of the tables of sunlight and sky light hold a colour, which the caller's shaders read, and in alpha the
-// component that the colour lacks. The four wavelengths follow exactly.
+// The texels of the sun transmittance and sky irradiance tables hold a colour, which the caller's shaders read, and in
+// alpha the component of the spectrum that does not change the colour. Both together determine the four wavelengths.
 vec4 light_texel(vec4 light) { return vec4(spectral_color(light), dot(kLostInColor, light)); }
 vec4 light_of_texel(vec4 texel) { return spectrum_of_color(vec3(texel)) + kOfLost * texel.a; }
 

@@ -28,7 +28,7 @@
 #define COLOR(light) spectral_color(light)
 #define TRANSMITTED(background, transmittance) transmitted_color(background, transmittance)
 #define FILTER(color) spectral_filter(color)
-// The texels of the tables of sunlight and sky light.
+// The texels of the sun transmittance and sky irradiance tables.
 #define LIGHT_TEXEL(light) light_texel(light)
 #define LIGHT_OF_TEXEL(texel) light_of_texel(texel)
 

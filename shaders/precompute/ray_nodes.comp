@@ -42,7 +42,7 @@ uint panels_for(float total, float depth, uint kind) {
 
 float node_altitude(Line line, float d) {
   float R = medium.planet_radius_m;
-  // Rays that begin above sea level end there: lower is a rounding error.
+  // A ray that begins above sea level does not go below it. A lower altitude is a rounding error.
   return clamp(altitude_along(line.h, line.mu, d, R), ground_below(line.h, R), medium.atmosphere_height_m);
 }
 
@@ -98,7 +98,9 @@ uint write_nodes(uint ray, Line line, float total, float depth, uint kind) {
   return 4u * panels;
 }
 
-// Writes the normalisation factors of the tables, and the point of the ray to whose sun they refer.
+// Writes the reciprocals of the normalisation factors, and the point of the ray at its density-weighted mean distance:
+// the distance itself, and the distance of the point from the planet's centre. The tables use the sun's zenith angle at
+// this point.
 void write_factors(uint ray, Line line) {
   vec3 integral = density_integral_along(medium, line.h, line.mu, line.end);
   float mean_m = density_weighted_mean_distance(medium, line.h, line.mu, line.end, integral);

@@ -24,20 +24,22 @@ layout(push_constant) uniform Push {
 }
 push;
 
-// Cosines of the zenith angles of a low and a high sun, for impossible angles.
+// Cosines of the sun's zenith angle. source_at_node() treats a sun below the first and above the second differently.
 const float kLowSun = 0.2;
 const float kHighSun = 0.5;
 
 // Returns the angle nearest to x that forms a triangle on the sphere with a and b.
 float angle_in_triangle(float x, float a, float b) { return clamp(x, abs(a - b), min(a + b, 2.0 * kPi - a - b)); }
 
-// Returns the source function at a node under a sun at mu_s, with nu between view and sun. Some texels of the tables
-// stand for angles that form no triangle, and interpolation reads them. Opposite the sun, the light hardly depends on
-// the angle to the sun, but in turbid air near the horizon it depends strongly on the view: the azimuth is clamped. On
-// the sun's side, the angle to the sun determines the aureole:
-//   low sun: the azimuth is clamped, and the light corrected by angle_shape();
-//   else:    the view is turned until the angles fit, or a sun that is high and nearer to the vertical, where its exact
-//            position matters least.
+// Returns the source function at a node. mu_s is the cosine of the sun's zenith angle, nu that of the angle between
+// view and sun. Interpolation also reads texels whose three angles form no triangle on the sphere. For these, one of
+// the angles is changed:
+//   nu <= 0: the azimuth is clamped. Opposite the sun, the light hardly depends on the angle to the sun, but in a
+//   turbid
+//            atmosphere near the horizon it depends strongly on the view zenith angle, which therefore stays as it is.
+//   nu > 0:  the angle to the sun determines the aureole. With a low sun, the azimuth is clamped and the light is
+//            corrected by angle_shape(). Otherwise the zenith angle of the view is changed, or that of the sun if the
+//            sun is high and nearer to the vertical than the view, because its exact position then matters least.
 Spectrum source_at_node(AngleShape form, SunAxis suns, RayNode node, float mu_s, float nu) {
   float mu = node.place.z;
   float spread = sqrt(max((1.0 - mu * mu) * (1.0 - mu_s * mu_s), 1.0e-12));

@@ -8,15 +8,14 @@
 // Macros that you may define before you include this file:
 //   TYNDALL_SET            descriptor set, by default 0
 //   TYNDALL_FIRST_BINDING  binding of the uniform block, by default 0. The images of atmosphere_images() follow it.
-//   TYNDALL_SHADOW(p)      returns how much sunlight your shadows let pass at position p, as a float or a vec3 from 0
-//   to
-//                          1. It enables tyndall_between_shadowed().
+//   TYNDALL_SHADOW(p)      returns the fraction of sunlight that reaches position p through your shadows, as a float or
+//                          a vec3 from 0 to 1. It enables tyndall_between_shadowed().
 //   TYNDALL_CLOUDS_BINDING binding of your map of clouds (FrameInputs::clouds), a combined image sampler with linear
 //                          filtering that clamps to an opaque white border. Clouds then darken the results of
 //                          tyndall_sun_irradiance() and tyndall_between_shadowed(), which it enables as well.
 //   TYNDALL_PHASE_BINDING  binding of a uniform block with the rows of atmosphere_phase(), for atmosphere.mie_phase =
-//                          draine or table. Without it, these are drawn with the phase function of Henyey and
-//                          Greenstein that has the same mean cosine.
+//                          draine or table. Without it, both phase functions are replaced by that of Henyey and
+//                          Greenstein with the same mean cosine.
 #ifndef TYNDALL_ATMOSPHERE_GLSL
 #define TYNDALL_ATMOSPHERE_GLSL
 
@@ -55,7 +54,7 @@ layout(set = TYNDALL_SET, binding = TYNDALL_FIRST_BINDING + 6) uniform sampler3D
 #include "lib/cloud_map.glsl"
 layout(set = TYNDALL_SET, binding = TYNDALL_CLOUDS_BINDING) uniform sampler2D tyndall_clouds;
 
-// Returns the fraction of sunlight that the clouds let pass to a position.
+// Returns the fraction of sunlight that the clouds transmit to a position.
 vec3 tyndall_cloud_transmittance(vec3 position) {
   vec4 place = vec4(position, 1.0);
   vec2 uv = vec2(dot(tyndall_constants.cloud_u, place), dot(tyndall_constants.cloud_v, place));
@@ -104,11 +103,11 @@ struct AtmosphereRay {
   TableRay path;
   float start_m;          // distance from the position to the beginning of `path`
   bool inside;            // false: the ray misses the atmosphere
-  bool integrate_single;  // the tables lack single scattering
+  bool integrate_single;  // the tables lack accurate single scattering: see lacks_single()
 };
 
-// Returns whether the tables lack single scattering. The same as tables_lack_single() of
-// src/effect/frame_constants.cpp.
+// Returns whether single scattering must be integrated because the tables are not accurate here. Computes the same
+// value as tables_lack_single() of src/effect/frame_constants.cpp.
 bool lacks_single(Place place) {
   float R = tyndall_constants.medium.planet_radius_m;
   float dip = sqrt(max(-2.0 * place.altitude / R, 0.0));
@@ -179,8 +178,8 @@ vec3 tyndall_sun_irradiance(vec3 position) {
   return COLOR(sun) * tyndall_constants.sun_irradiance;
 }
 
-// Returns the irradiance of the sky, and of light that the ground reflects, on a surface with this normal. It is exact
-// for a surface that faces upwards. For others the sky and the ground are treated as evenly bright.
+// Returns the irradiance of the sky and of the light that the ground reflects, on a surface with this normal. It is
+// exact for a surface that faces upwards. For other surfaces, sky and ground each count as evenly bright.
 vec3 tyndall_sky_irradiance(vec3 position, vec3 normal) {
   Place place = place_at(position);
   Spectrum sky = sky_at(place.altitude, place.cos_sun_zenith);

@@ -28,10 +28,10 @@ void main() {
   vec3 p = mesh.camera_position;
   float b = dot(direction, p) + direction.y * radius;
   float c = dot(p, p) + 2.0 * radius * p.y;
-  // For an eye below sea level the sphere is lower.
+  // For an eye below sea level, the sphere lies at ground_below() instead of at sea level.
   float ground = ground_below(altitude_of(p, radius), radius);
   c -= ground * (2.0 * radius + ground);
-  // Far away b^2 - c loses precision, but there it does not matter.
+  // Far from the planet, b^2 - c loses precision, but then an error of the distance is not visible.
   float root = b * b - c;
   if (root < 0.0 || b >= 0.0 || c < 0.0) discard;
   float t = c / (sqrt(root) - b);

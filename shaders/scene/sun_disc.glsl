@@ -9,10 +9,10 @@ layout(std430, binding = 0) readonly buffer background_block {
   vec3 direction_to_sun;
   float angular_radius_rad;
   vec3 disc_radiance;     // mean over the disc
-  float pixel_angle_rad;  // of one pixel at the centre of the picture
+  float pixel_angle_rad;  // angle that one pixel spans at the centre of the picture
   vec3 limb_exponent;
-  // By how much the height of the disc is enlarged before it is compared with the radius, less 1: refraction flattens
-  // it. 0: it is round.
+  // Refraction flattens the disc. Vertical angles are multiplied by 1 + sun_stretch before they are compared with the
+  // radius; 0 gives a round disc.
   float sun_stretch;
   vec2 tan_half;  // tangents of half the field of view; y points down in clip space
   vec2 jitter;    // subpixel offset of the picture in clip space

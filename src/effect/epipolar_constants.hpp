@@ -1,5 +1,5 @@
-// Computes the constants of the epipolar shaders, a pure function of inputs and settings: among them the epipole, and
-// the sides of the picture on which slices end.
+// Computes the constants of the epipolar shaders as a pure function of inputs and settings. Among the constants are the
+// epipole and the sides of the picture on which slices end.
 #pragma once
 
 #include "effect/shared.hpp"

@@ -36,7 +36,7 @@ void set_camera(shared::FrameConstants& out, const FrameInputs& inputs, const Pa
   const double distance = std::sqrt(x * x + z * z + (radius + y) * (radius + y));
   out.camera_altitude_m = static_cast<float>(camera_altitude_m(inputs, params));
   const double altitude = out.camera_altitude_m;
-  // The same as ground_below() of shaders/lib/geometry.glsl.
+  // Computes the same value as ground_below() of shaders/lib/geometry.glsl.
   const double below = altitude < 0.0 ? std::min(altitude, std::max(2.0 * altitude, -0.5 * radius)) : 0.0;
   const double ground = std::min(below, std::max<double>(inputs.lowest_ground_m, -0.5 * radius));
   out.ground_m = static_cast<float>(ground);

@@ -1,5 +1,5 @@
-// Recording a frame in two parts: remembers the first one until the second follows, and refuses what would come
-// between.
+// The state of a frame that is recorded in two parts. It holds the inputs of the first part until the second follows,
+// and refuses calls that are not allowed between them.
 #pragma once
 
 #include <array>

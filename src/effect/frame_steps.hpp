@@ -18,7 +18,7 @@ struct FrameShape {
   std::uint32_t cascades = 0;
   std::uint32_t first_marched_cascade = 0;
   bool shadow_colors = false;
-  bool integrate_single = false;  // scattering.single = table is not accurate here
+  bool integrate_single = false;  // integrate in place of scattering.single = table: tables_lack_single()
   Target target = Target::cpu;
   bool clouds = false;
 };
@@ -33,8 +33,8 @@ class FrameSteps {
   [[nodiscard]] const Step* begin() const { return list_.data(); }
   [[nodiscard]] const Step* end() const { return list_.data() + count_; }
   [[nodiscard]] std::size_t size() const { return count_; }
-  // Returns the steps of a part of the frame. The first part ends where a step uses another image of the caller than
-  // the depth.
+  // Returns the steps of a part of the frame. The second part begins with the first step that uses an image of the
+  // caller other than the depth.
   [[nodiscard]] std::span<const Step> of(FramePart part) const;
 
  private:

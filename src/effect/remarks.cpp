@@ -264,8 +264,8 @@ Footprint footprint(const Cascade& cascade, double near_m, double far_m, const F
 // as the atmosphere above the terrain, and it may end where the casters of shadows end. Remarks are made only on maps
 // that cannot be explained in this way.
 void remark_on_coverage(Speaker& s, const FrameInputs& inputs, const FrameState& state) {
-  constexpr float kHigh_m = 10000.0F;  // from a higher altitude, the visible ground may be without shadows
-  constexpr float kLow_m = 200.0F;     // at a lower altitude, shadows reach the camera
+  constexpr float kHigh_m = 10000.0F;  // above this altitude of the camera, the visible ground may have no shadows
+  constexpr float kLow_m = 200.0F;     // below this altitude of the camera, the camera may be in shadow
   constexpr double kMuchSmaller = 20.0;
   const std::size_t first = inputs.first_marched_cascade;
   const std::size_t count = inputs.cascades.size();

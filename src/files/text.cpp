@@ -50,7 +50,8 @@ NumberError read_real(std::string_view text, T& value) {
     return NumberError::not_a_number;
   }
   if (end.ec == std::errc::result_out_of_range) {
-    // from_chars does not report at which end the number leaves the range. A number too small for T is zero.
+    // from_chars does not report whether the number is too large or too small. A number that is too small for T becomes
+    // zero.
     if (order_of_magnitude(text) > 0) return NumberError::too_large;
     read = T{};
   }

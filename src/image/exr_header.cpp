@@ -134,9 +134,9 @@ std::uint64_t inflated_size(std::string_view data, std::uint64_t limit) {
   return size;
 }
 
-// Returns whether the blocks of rows, which follow the header, contain as much as the header requires. For blocks that
-// are too short, OpenEXR takes whatever is in its memory for pixels, with the compressions none, RLE, ZIPS and ZIP; the
-// others check their data.
+// Returns whether the blocks of rows, which follow the header, contain as many bytes as the header requires. With the
+// compressions none, RLE, ZIPS and ZIP, OpenEXR does not detect blocks that are too short, and returns uninitialised
+// memory as pixels. The other compressions check their data.
 bool are_whole(const Layout& layout, std::string_view bytes, std::string_view offsets) {
   Reader reader(offsets);
   const std::int64_t lines = lines_of(layout.compression);

@@ -7,8 +7,8 @@
 
 namespace tyndall::image {
 
-// Over all 3 * width * height values as the files store them (PNG: encoded [0; 1], EXR: linear). Values that are not
-// finite in either image are excluded and counted.
+// The differences over all 3 * width * height values as the files store them (PNG: encoded [0; 1], EXR: linear). Values
+// that are not finite in one of the images are excluded and counted.
 struct Metrics {
   double rmse = 0.0;     // root of the mean squared difference
   double psnr_db = 0.0;  // 20 log10(1 / rmse): the peak is 1 for both kinds; infinite for equal images
@@ -16,15 +16,15 @@ struct Metrics {
   // dominate, and the result is independent of the unit. It is 1 where b is zero everywhere and a is not.
   double mean_relative_error = 0.0;
   double max_abs = 0.0;  // largest |a - b|
-  // The same mean without the kTrimmed largest errors. Edges, which drivers may draw some hundredths of a pixel
-  // apart, and textures as fine as pixels do not count.
+  // The mean relative error without the fraction kTrimmed of values that have the largest errors. This excludes edges,
+  // which drivers may draw some hundredths of a pixel apart, and textures as fine as pixels.
   double trimmed_relative_error = 0.0;
   std::size_t non_finite_a = 0;  // values that are NaN or infinite
   std::size_t non_finite_b = 0;
 };
 
 constexpr double kRelativeFloor = 1e-3;
-constexpr double kTrimmed = 0.05;  // of all values
+constexpr double kTrimmed = 0.05;  // fraction of all values
 
 // Compares two images. Precondition: equal sizes.
 [[nodiscard]] Metrics compare(const Image& a, const Image& b);

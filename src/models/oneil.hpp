@@ -30,7 +30,7 @@ struct OneilSettings {
   bool operator==(const OneilSettings&) const = default;
 };
 
-// Relative errors of the density integrals of outward rays, per species.
+// Relative errors of the density integrals of one species along rays that leave the atmosphere upwards.
 struct IntegralError {
   double worst = 0.0, rms = 0.0;
 };

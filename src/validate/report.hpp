@@ -17,7 +17,7 @@ struct Origin {
 
 // Returns a page with all tables and plots.
 [[nodiscard]] std::string to_html(const Study& study, const Origin& origin);
-// Returns the most important tables: docs/generated/accuracy.md.
+// Returns a page with the most important tables, such as docs/generated/accuracy.md.
 [[nodiscard]] std::string to_markdown(const Study& study, const ColorTest& colors, const Origin& origin);
 // Returns {"command", "version", "device", "rays", "samples", "seed", "orders", "models": [{"name", "orders", "groups":
 // [{"atmosphere", "sun", "region", "rays", "mean", "median", "p95", "worst", "noise", "channels": [{"mean", ...}]}],

@@ -355,8 +355,8 @@ TEST_F(CliPublished, ONeilsTable) {
                    });
 }
 
-// The model is the in-scattering integral under the assumptions of section 2. Simpson's rule computes it here, up to
-// the extent of the medium, the planet or the flat top.
+// The model is the in-scattering integral under the assumptions of section 2. Simpson's rule computes it here along the
+// part of the ray below the flat top of the medium. The ray ends at the planet or at the extent of the medium.
 TEST_F(CliPublished, TheHomogeneousMediumOf2012) {
   for (int medium = 0; medium < 4; ++medium) {
     const Coefficients k = coefficients();

@@ -52,7 +52,8 @@ TEST_F(SecondDriver, NothingIsMissing) {
 }
 
 // Single scattering is computed in single precision. Vulkan allows exp(x) an error of 3 + 2|x| units in the last place:
-// 1.1e-6 for an optical depth of 8. Density, the sun's column and the ray's transmittance each have one.
+// 1.1e-6 for an optical depth of 8. The relative density, the density integral towards the sun and the transmittance of
+// the ray each contain one exponential.
 TEST_F(SecondDriver, ProbeAgrees) {
   const Scratch scratch;
   const std::string queries = scratch.write("queries.csv", "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n"
@@ -88,7 +89,7 @@ TEST_F(SecondDriver, TablesAreBuilt) {
   ASSERT_EQ(first.size(), 20U);
   ASSERT_EQ(second.size(), 20U);
   // Texels are rounded to half precision, whose steps are up to 2^-10 of a value. A difference in the last place moves
-  // some texels by one step, in the table that is read and in the light of the order before.
+  // some texels by one step, both in the table that is read and in that of the previous order, from which it was made.
   constexpr double kBound = 2.0 / 1024.0;
   for (std::size_t i = 0; i < first.size(); ++i) {
     EXPECT_LE(std::abs(first[i] - second[i]), kBound * std::abs(first[i]) + 1.0e-9)

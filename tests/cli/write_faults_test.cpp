@@ -1,7 +1,7 @@
-// The program when a call that writes its output fails: status 1 and one line with the name of the output, nothing
-// half-written under that name, and nothing left after the next run. TYNDALL_WRITE_FAULTS=200 tries that many faults of
-// every verb, evenly over the run, which takes long. `bench`, `devices` and `params` write no files. The parts of
-// `report` are runs of the other verbs; it leaves out those that fail.
+// Tests the program when a call that writes its output fails. It must end with status 1 and one line with the name of
+// the output. No incomplete file may have this name, and nothing else may be left after the next run. With
+// TYNDALL_WRITE_FAULTS=200, that many faults of every verb are tried, evenly over the run, which takes long. `bench`,
+// `devices` and `params` write no files. `report` runs the other verbs and leaves out those that fail.
 #include <gtest/gtest.h>
 
 #include <cerrno>
@@ -135,7 +135,7 @@ class CliWriteFaults : public testing::Test {
     EXPECT_GT(calls, 3);
     std::vector<Fault> faults = some;
     if (const long wanted = many_faults(); wanted > 0) {
-      // Every call for every reason, or as many of them as wanted.
+      // Try every call with every reason, or as many of these pairs as TYNDALL_WRITE_FAULTS says.
       faults.clear();
       const std::vector<int> errors = {ENOSPC, EACCES, EIO, EINTR, EROFS, kShortWrite};
       const auto reasons = static_cast<long>(errors.size());
@@ -146,7 +146,7 @@ class CliWriteFaults : public testing::Test {
       }
     }
     for (const Fault& fault : faults) try_fault(arguments, fault, good);
-    // The next run makes everything, and leaves nothing else.
+    // The next run must make all files, and leave no others.
     const ProcessResult again = run(arguments);
     EXPECT_EQ(again.status, 0) << again.err;
     EXPECT_EQ(output(), good);
@@ -249,13 +249,13 @@ TEST_F(CliWriteFaults, SkyList) {
               {});
 }
 
-// cli.tables has a full disk.
+// cli.tables tests a full disk in every run.
 TEST_F(CliWriteFaults, Tables) {
   TYNDALL_SKIP_UNLESS_MANY();
   expect_safe("tables", with_small_tables({"tables", "-o", scratch_.at("out/tables")}), {});
 }
 
-// `validate` draws many rays; its files are written as those of `probe`.
+// `validate` computes many rays. It writes its files with the same functions as `probe`.
 TEST_F(CliWriteFaults, Validate) {
   TYNDALL_SKIP_UNLESS_MANY();
   expect_safe("validate",

@@ -30,8 +30,8 @@ struct BoxScene {
   double tan_half_height = 0.42;  // of the vertical field of view; the horizontal one follows from the picture's shape
   BoxSun sun;
   bool buildings = true;
-  std::vector<Box> own_buildings;  // replace the default ones, unless empty
-  double building_size = 1.0;      // factor of the sizes and distances of the default ones
+  std::vector<Box> own_buildings;  // used instead of the default buildings, if there are any
+  double building_size = 1.0;      // factor on the sizes and distances of all buildings
   bool ground = true;              // draw the ground; the planet exists in any case
   double ground_altitude_m = 0.0;  // altitude of the drawn ground and of the buildings on it
   bool ground_casts = true;

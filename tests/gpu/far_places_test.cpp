@@ -188,7 +188,7 @@ TEST_F(GpuFarPlaces, TheTerrainHasNoEndFromSpace) {
             view.forward + view.right * (x * view.tan_half_width) + view.up * (y * view.tan_half_height);
         const double length = glm::length(ray);
         const glm::dvec3 from_centre = view.position + glm::dvec3(0.0, kRadius_m, 0.0);
-        const double nearest_m = glm::length(glm::cross(from_centre, ray)) / length;  // distance to its centre
+        const double nearest_m = glm::length(glm::cross(from_centre, ray)) / length;  // distance to the planet's centre
         if (depth[i] <= 0.0F) {
           // The coarsest cells are flat, and their middles are a few hundred metres too low.
           wrong += nearest_m < kRadius_m - 2000.0 ? 1 : 0;

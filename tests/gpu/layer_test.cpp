@@ -86,8 +86,8 @@ TEST_F(GpuLayer, ABindingThatIsMissingIsNamed) {
   }));
 }
 
-// More binds than one pool of the arena has room for, each with other resources. The sets of a command buffer are
-// available again in the next one.
+// Binds more sets than one pool of the arena holds, each with different resources. The sets of one command buffer are
+// available again for the next one.
 TEST_F(GpuLayer, EachBindOfACommandBufferHasItsOwnSet) {
   constexpr std::uint32_t kBinds = 70;
   std::vector<Buffer> seeds, values;

@@ -65,7 +65,8 @@ class GpuMeshes : public SharedSceneTest {
     std::error_code ignored;
     std::filesystem::remove(path_, ignored);
     static int files = 0;
-    path_ = path_.substr(0, path_.rfind('-') + 1) + std::to_string(files++) + ".glb";  // a scene reads a file once
+    // A scene reads a file with the same name only once, so each drawing has a new name.
+    path_ = path_.substr(0, path_.rfind('-') + 1) + std::to_string(files++) + ".glb";
     scene_.meshes.source = with_file ? file_.save(path_) : "none";
     Scene* const scene = shared_scene(kExtent, params_, scene_);
     return scene != nullptr ? draw(*scene) : image::Image(kExtent.width, kExtent.height);
@@ -217,7 +218,7 @@ TEST_F(GpuMeshes, GlassColoursOnlyWhatIsBehindIt) {
   // Surfaces seen through clear glass are multiplied by its colour once more. The light of the sky is not coloured.
   const glm::dvec3 seen = at(image, -3.0, 3.0, 3.0);
   EXPECT_LT(seen.y, 0.2 * seen.x);
-  // In front of the glass nothing changes.
+  // Surfaces in front of the glass do not change.
   expect_near(at(image, -5.0, 0.0, 4.0), at(image, 5.0, 0.0, 4.0), 0.002, "before the glass");
 }
 
@@ -371,8 +372,8 @@ TEST_F(GpuMeshes, GlassThatIsAddedLaterColoursInscattering) {
   EXPECT_EQ(draw(*later.value()).rgb, draw(*at_once.value()).rgb);
 }
 
-// Three faces repeat the same red and blue picture three times, with wrap modes repeat, mirror and clamp. A fourth has
-// linear filtering.
+// Texture coordinates on all faces go from 0 to 3. Three faces show the same red and blue picture with the wrap modes
+// repeat, mirror and clamp, and nearest filtering. A fourth has linear filtering.
 TEST_F(GpuMeshes, TexturesAreWrappedAndFilteredByTheirSamplers) {
   image::Image picture(2, 1);
   picture.rgb = {1, 0, 0, 0, 0, 1};

@@ -358,7 +358,7 @@ TEST_F(TwoCachedTablesTest, SurviveRandomDamage) {
   std::cout << corruptions << " damaged files of cached tables: each was noticed and rebuilt\n";
 }
 
-// Another process that builds the same tables is waited for, and its result is used.
+// A process waits for another one that builds the same tables, and uses its result.
 TEST_F(TwoCachedTablesTest, AreAwaitedWhileAnotherProcessBuildsThem) {
   EXPECT_EQ(prepare(0).origin, tables::Origin::cache);
   const std::string key = key_;

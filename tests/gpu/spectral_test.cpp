@@ -97,7 +97,7 @@ TEST_F(Spectral, FroxelsMatchBruteForce) {
   params.froxels.rows = frame.extent.height;
   prepare(params);
   expect_alike("spectral, froxels", params, 40.0);
-  // Look-ups of engines.
+  // The look-ups that engines make.
   std::vector<Query> queries;
   const double distance = 900.0;
   for (std::uint32_t x = 0; x < frame.extent.width; ++x) {
@@ -179,7 +179,8 @@ TEST_F(Spectral, ChangesOfTheModeShowNoUnfinishedTables) {
   prepare(small_params());
 }
 
-// Engines decode the tables and light their scene by what the effect says about the tables in use.
+// While other tables are built, table_params() and picture_color() describe the tables in use. Engines need these
+// values to decode the tables and to light their scene.
 TEST_F(Spectral, WhatIsGivenOutFollowsTheTablesInUse) {
   const Params rgb = small_params();
   prepare(rgb);
@@ -210,7 +211,7 @@ TEST_F(Spectral, WhatIsGivenOutFollowsTheTablesInUse) {
   EXPECT_EQ(sun_color(table_params(effect())), sun_color(other));
   EXPECT_EQ(affected(table_params(effect()), other), 0U);
   EXPECT_FALSE(constants() == before);
-  // What does not belong to the tables is that of the parameters.
+  // Parameters that do not affect the tables are those of the last set_params().
   other.scattering.scale = 2.5F;
   ASSERT_OK(effect().set_params(other));
   EXPECT_EQ(table_params(effect()).scattering.scale, 2.5F);

@@ -43,7 +43,7 @@ fi
 
 root=$work/root
 mkdir -p "$root/var/lib"
-# The database says which packages are installed, so that dpkg checks the dependencies.
+# Copy the database of installed packages, so that dpkg can check the dependencies.
 cp -R /var/lib/dpkg "$root/var/lib/dpkg"
 rm -rf "$root/var/lib/dpkg/lock"* "$root/var/lib/dpkg/triggers"/* "$root/var/lib/dpkg/info"/*
 for name in $packages; do

@@ -343,7 +343,8 @@ TEST_F(SceneFile, WrongIncludesAreRefused) {
   EXPECT_EQ(all_text(settings), all_text(Settings()));
 }
 
-// A scene that was downloaded cannot make the program read text elsewhere, use a network, or write elsewhere.
+// A scene from a stranger cannot make the program read or write files outside of the folder of the scene, or use a
+// network.
 TEST_F(SceneFile, ScenesStayInTheirFolder) {
   const std::filesystem::path inside = directory_ / "scene";
   std::filesystem::create_directories(inside / "air");

@@ -63,7 +63,8 @@ TEST(Moon, ItStandsWhereItWasPublished) {
 }
 
 TEST(Moon, ParallaxAndSizeFollowItsDistance) {
-  // From the opposite sides of the Earth, the moon is seen at elevations that add up to less than 0 by the parallax.
+  // Two observers on opposite sides of the Earth would see a distant body at elevations whose sum is 0. For the moon,
+  // the sum is lower by the parallax.
   const double day = time_of("2026-01-03T10:00Z");  // a full moon
   const LunarPosition here = lunar_position({20.0, 30.0}, day);
   const LunarPosition there = lunar_position({-20.0, -150.0}, day);

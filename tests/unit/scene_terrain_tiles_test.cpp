@@ -118,7 +118,7 @@ TEST_F(TerrainTilesTest, OnlyNewTilesAreMissing) {
   tiles_.add_drawn(lod, blocks[0]);
   EXPECT_TRUE(tiles_.missing().empty());
 
-  // A failed fill is repeated; what a later frame does not need is not filled.
+  // Tiles that were missing and have not been filled are missing again in the next frame, but only if it needs them.
   tiles_.add_drawn(lod, blocks.back());
   const std::size_t missing = tiles_.missing().size();
   EXPECT_GT(missing, 0U);

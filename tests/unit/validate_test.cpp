@@ -136,7 +136,8 @@ TEST(ValidateRays, TurbidAtmospheresHaveTheirOpticalDepth) {
 TEST(ValidateRays, TheSunIsGivenAtTheVisiblePosition) {
   for (const TestRay& ray : make_rays(Region::space, SunBand::twilight, 100, 3, kRadius, kHeight)) {
     const RayQuery& q = ray.query;
-    // In the eye's frame: x along the heading, y up. Go forward to the ground or to the perigee.
+    // In coordinates with x along the azimuth of the view and y up, find the point where the ray meets the ground, or
+    // its perigee if it misses the ground.
     const double r = kRadius + q.altitude_m;
     const double vx = std::sin(q.view_zenith_rad);
     const double vy = std::cos(q.view_zenith_rad);

@@ -21,8 +21,8 @@ constexpr int kMapProjectionCount = 6;  // origin, east, west, south, north, ant
 [[nodiscard]] const glm::dmat3& projection_frame(int projection);
 // Returns the map projection whose centre is nearest to the direction `up` from the planet's centre.
 [[nodiscard]] int nearest_projection(const glm::dvec3& up);
-// Returns the weights of the map projections in this direction. Their sum is one. More than one is positive only within
-// 0.06 rad of positions with equal distances from two centres.
+// Returns the weights of the map projections in this direction. Their sum is one. More than one weight is positive only
+// near the seams: within 0.06 rad of directions that are equally far from two centres.
 [[nodiscard]] std::array<double, kMapProjectionCount> projection_weights(const glm::dvec3& up);
 // Convert between map coordinates (x, z) at altitude_m and world positions, and return the map coordinates of the
 // direction `up` from the planet's centre. At the antipode of a projection, where they are undefined, they are those of

@@ -23,7 +23,7 @@ namespace tyndall::scene {
 // The inputs of a model in a frame. All of them outlive the recording of the frame.
 struct ModelFrame {
   const View& view;
-  const LocalFrame& local;  // the frame in which everything on the device is
+  const LocalFrame& local;  // the coordinate system of all positions on the device
   const TerrainLight& light;
   const Params& params;
   const SceneParams& scene;
@@ -47,8 +47,8 @@ class SkyModel {
   Result<void> draw_sky(VkCommandBuffer cmd, VkBuffer background);
 
   [[nodiscard]] const ModelEvaluation& evaluation() const { return evaluation_; }
-  // Returns the images of in-scattering and transmittance that the ground's vertices write; single texels with
-  // evaluation per pixel.
+  // Returns the images of in-scattering and transmittance that the ground's vertices write. With evaluation per pixel,
+  // they have one texel each and are not written.
   [[nodiscard]] std::span<const gpu::Image> air() const { return air_; }
   // Returns those of air() that are attachments while the ground is drawn.
   [[nodiscard]] std::span<const gpu::Image> attachments() const {
