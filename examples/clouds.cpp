@@ -54,7 +54,7 @@ float noise(float x, float z) {
                    b);
 }
 
-// Returns the fraction of sunlight that broken clouds let pass at a point of the layer. It is 1 at the borders.
+// Returns the fraction of sunlight that broken clouds transmit at a point of the layer. It is 1 at the borders.
 float broken(float x, float z) {
   float sum = 0.0F, size_m = 3500.0F, weight = 0.55F;
   for (int octave = 0; octave < 5; ++octave, size_m *= 0.45F, weight *= 0.45F) {

@@ -209,7 +209,7 @@ static void record_frame(VkCommandBuffer cmd, const Images* images, TyndallEffec
   inputs.color = (TyndallTexture){.view = images->color.view, .layout = general};
   inputs.depth = (TyndallTexture){.view = images->depth.view, .layout = general};
   inputs.output = (TyndallTexture){.view = images->output.view, .layout = general};
-  // At an altitude of 1 km, looking north (-z).
+  // The camera is at an altitude of 1 km and looks north (-z).
   inputs.camera = (TyndallCamera){{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 1000, 0, 1},
                                   {1, 0, 0, 0, 0, -16.0F / 9.0F, 0, 0, 0, 0, 0, -1, 0, 0, 0.1F, 0}};
   inputs.sun = (TyndallSun){.direction_to_sun = {0.0F, 0.6F, -0.8F},

@@ -161,7 +161,7 @@ int main(int argc, char** argv) {
       vkCmdCopyImageToBuffer(cmd, cube.image, kGeneral, roughest.buffer, 1, &copy);
     });
   }  // destroys the probe and the effect before the device
-  // As tyndall_sky_irradiance() of tyndall/sky_probe.glsl does it, for the normal (0, 0, 1).
+  // Evaluate the coefficients as tyndall_sky_irradiance() of tyndall/sky_probe.glsl does, for the normal (0, 0, 1).
   const float* c = map(device, coefficients);
   bool same = true;
   std::uint16_t halves[4] = {};

@@ -18,7 +18,7 @@ namespace tyndall::python {
 // Returns a device that several models share. Its pipelines and memory are freed with the last of them.
 [[nodiscard]] std::shared_ptr<gpu::Host> shared_host(const std::string& device, bool graphics);
 
-// How a model represents light.
+// The representation of light in a model.
 struct Light {
   bool spectral = false;  // at the four wavelengths of scattering.color = spectral, whatever the settings say
   std::vector<double> wavelengths_nm;  // in three channels at these wavelengths; empty: at those of the settings

@@ -27,7 +27,8 @@ LUMINOUS_EFFICACY = 683.0  # lm/W
 REC709 = ((3.2404542, -1.5371385, -0.4985314), (-0.9692660, 1.8760108, 0.0415560), (0.0556434, -0.2040259, 1.0572252))
 DOBSON = 2.6867e20  # molecules per m^2
 
-# Of squared errors of X, Y and Z relative to their sum: an error of luminance counts more than one of chromaticity.
+# Weights of the squared errors of X, Y and Z relative to their sum. Errors of luminance count more than those of
+# chromaticity.
 IMPORTANCE = (1.0, 6.0, 1.0)
 POWER_WEIGHT = 20.0  # of a power of the wavelength in the fit; a ray has 1
 

@@ -23,7 +23,7 @@ import sys
 # A second is enough for every input; the limit leaves room for a busy machine.
 TIMEOUT_S = 20
 MEMORY_MIB = 3072
-# Of address space for one object, of which only what is written needs memory.
+# Address space for one object [MiB]. Only the part that is written takes memory.
 RESERVED_MIB = 65536
 INTERRUPTED = 72  # exit status of libFuzzer
 

@@ -61,7 +61,7 @@ class Project:
         with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as file:
             entries = {self.name(entry["file"]) or "": entry for entry in json.load(file)}
         known = dependencies_by_object(build)
-        # What has not been built, because it is built on request only, may lack generated headers.
+        # Sources that are built on request only, and have not been built, may lack generated headers.
         self.entries = {name: entry for name, entry in sorted(entries.items())
                         if name.startswith(wanted) and object_of(entry) in known}
         self.files = {}  # by source

@@ -34,7 +34,7 @@ extern "C" void tyndall_on_signal(int number) {
 }  // namespace
 
 Interruption::Interruption() {
-  if (::pipe2(pipe_, O_CLOEXEC) != 0) return;  // signals then end the program without a word
+  if (::pipe2(pipe_, O_CLOEXEC) != 0) return;  // signals then end the program without a message
   written_end = pipe_[1];
   owner = ::getpid();
   thread_ = std::thread([this] { wait(); });

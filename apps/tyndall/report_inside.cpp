@@ -19,8 +19,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// What the hooks below record. The library calls Vulkan through the function that it is given, so that pipelines can be
-// created with statistics, and named, without a change of the library.
+// The data that the hooks below record. The library calls Vulkan through the function that it is given, so that
+// pipelines can be created with statistics, and named, without a change of the library.
 struct Recorded {
   PFN_vkGetDeviceProcAddr get_device_proc_addr = nullptr;
   PFN_vkCreateComputePipelines create_compute_pipelines = nullptr;

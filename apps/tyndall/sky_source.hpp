@@ -1,4 +1,4 @@
-// What a sky map is computed from: a model that evaluates rays, prepared once for any number of maps.
+// The source of a sky map: a model that evaluates rays. It is prepared once for any number of maps.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-"""What the example scripts share: their options, and how they save a figure."""
+"""Functions that the example scripts share: they read the options and save a figure."""
 import argparse
 
 import matplotlib

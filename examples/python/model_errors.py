@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How wrong three wavelengths, single scattering and O'Neil's model are.
+"""Draws the errors of three wavelengths, of single scattering and of O'Neil's model.
 
 The truth is the path tracer with 40 wavelengths and all orders of scattering. For each model the figure shows the error of the
 luminance and of the chromaticity, as a distance in the diagram u'v' of the CIE (1976): 0.004 is visible side by side. Points

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""What aerosol does to visibility.
+"""Draws how aerosol reduces visibility.
 
-The contrast of a black object against the sky behind it falls with distance. Koschmieder (1924): in even air it is
-exp(-extinction * distance), and the visibility is the distance where 2 % are left, 3.912 / extinction.
+The contrast of a black object against the sky behind it falls with distance. In a homogeneous atmosphere it is
+exp(-extinction * distance) (Koschmieder 1924). The visibility is the distance at which 2 % remain, 3.912 / extinction.
 """
 import matplotlib.pyplot as plt
 import numpy as np

@@ -27,9 +27,9 @@ struct MemoryBlock {
   void* user = nullptr;  // not used by the effect
 };
 
-// Both functions or neither. They are called in the thread of the call of the library that needs or frees memory, never
-// by record functions that only record, except that a frame may free memory that is no longer in use. They must not
-// throw, nor call the object that called them.
+// Callbacks for device memory. Set both functions or neither. The library calls them in the thread that called it.
+// Record functions never allocate, but Effect::record() may free memory that no frame in flight uses. The callbacks
+// must not throw, and must not call the object that called them.
 struct MemoryCallbacks {
   // Fills in `block` with at least requirements.size bytes, and returns VK_SUCCESS. Any other result is answered with
   // ErrorCode::out_of_memory by the call that needed the memory, which then has changed nothing.

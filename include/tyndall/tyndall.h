@@ -72,7 +72,7 @@ typedef enum TyndallFramePart {
   TyndallFramePart_max = 0x7FFFFFFF
 } TyndallFramePart;
 
-// What a change of a parameter requires; see tyndall_params_affected().
+// The work that a change of a parameter requires; see tyndall_params_affected().
 typedef enum TyndallAffects {
   TyndallAffects_Frame = 0,
   TyndallAffects_Pipeline = 1,

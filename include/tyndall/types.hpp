@@ -17,7 +17,7 @@ struct Vec3 {
   constexpr bool operator==(const Vec3&) const = default;
 };
 
-// For positions far from the origin of the world, where a float would round to decimetres.
+// A position in double precision. Far from the origin of the world, a float would round to decimetres.
 struct DVec3 {
   double x = 0.0, y = 0.0, z = 0.0;
 

@@ -111,7 +111,7 @@ class Atmosphere:
         lowest = self._model.lowest_altitude_m
         if not np.all(altitude >= lowest):
             raise ValueError(f"altitude: out of range; expected at least {lowest:g} m")
-        # The same product as `tyndall probe`, so that the results are the same.
+        # Multiply as `tyndall probe` does, so that the results are the same.
         return np.stack([altitude, zenith * (np.pi / 180.0), sun_zenith * (np.pi / 180.0), azimuth * (np.pi / 180.0)], axis=1)
 
     def _join(self, parts):
@@ -319,7 +319,7 @@ def refraction(elevation):
 def allow_outside():
     """Allows scenes and models to name files outside of their folders, from now on in this process.
 
-    As --allow-outside of the program. Call it only if you trust the scene files; SECURITY.md says why.
+    This is the same as --allow-outside of the program. Call it only if you trust the scene files; SECURITY.md says why.
     """
     _core.allow_outside()
 

@@ -3,7 +3,7 @@ import numpy as np
 
 
 class AerialPerspective:
-    """What the atmosphere does to light between two points.
+    """The in-scattering and the transmittance of the atmosphere between two points.
 
     inscattering: radiance that the atmosphere adds, shape (..., C).
     transmittance: fraction of the light from the far point that arrives, shape (..., C).

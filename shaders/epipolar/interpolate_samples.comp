@@ -32,9 +32,9 @@ void main() {
   uvec4 a = samples[row + left];
   uvec4 b = samples[row + right];
   float part = float(i - left) / float(right - left);
-  // If the in-scattering is not on the line between the two, the ray ends in front of or behind theirs. If they have
-  // shadowed end points, the additional part of the medium contributes only higher orders, which reduces the mean
-  // source function.
+  // If the coarse in-scattering is not on the line between those of the interpolation sources, the ray ends in front of
+  // or behind their rays. If the sources have shadowed end points, the additional part of the medium contributes only
+  // higher orders, which reduces the mean source function.
   uint coarse_a = coarse[row + left];
   uint coarse_b = coarse[row + right];
   vec2 light = unpack_coarse(coarse[row + i]);

@@ -61,9 +61,9 @@ struct Walk {
   float middle;
   Spectrum lit_tinted;  // the same, with kTinted
   Spectrum moment_tinted;
-  // In a homogeneous medium: transmittance and in-scattering up to `since`, and the source function from there on,
-  // which is the lit fraction times the colour. A section ends where it changes, so that the result does not depend on
-  // the division into sections.
+  // For a homogeneous medium: transmittance and in-scattering up to `since`, and the source function after it, which is
+  // the lit fraction times the colour. A section ends where the source function changes, so that the result does not
+  // depend on the steps of the march.
   Spectrum transmittance;
   Spectrum light;
   Spectrum source;

@@ -99,7 +99,8 @@ const uint kSkySample = 0x8000u;
 
 float shadowed_end(uint coarse) { return (coarse & kShadowedEnd) != 0u ? 1.0 : 0.0; }
 
-// In-scattering of a pixel that was marched separately: square roots in half precision, as in samples.
+// Packs the in-scattering of a pixel that was marched separately, as square roots in half precision like that of
+// samples.
 uvec2 pack_light(Spectrum light) {
   Spectrum root = root_for_half(light * kCoarseUnit);
 #ifdef SPECTRAL

@@ -22,8 +22,8 @@ push;
 layout(binding = 13, rgba16f) uniform writeonly image3D froxel_inscattering;
 layout(binding = 14, rgba16f) uniform writeonly image3D froxel_transmittance;
 
-// What has been gathered along a column up to the distance `t`. Beyond the last cascade, t grows only where the light
-// is a sum over sections.
+// The light that has been gathered along a column of froxels up to the distance `t`. Beyond the last cascade, t grows
+// only in modes in which the light is a sum over sections.
 struct Column {
   float t;
   March march;            // integration
@@ -39,7 +39,7 @@ const float kCloudStepsOfSlice = 64.0;  // beyond the cascades
 
 float depth_per_m(Ray ray) { return max(dot(ray.direction, frame.camera_forward), 1e-6); }
 
-// With kCloudFraction, also computes the fraction of the light that clouds and glass let pass.
+// With kCloudFraction, also computes the fraction of the light that remains behind clouds and glass.
 Spectrum integrate_to(inout Column column, Ray ray, float start, float to, out Spectrum fraction) {
   float last = frame.cascade_count > 0u ? cascades[frame.cascade_count - 1u].far_m / depth_per_m(ray) : 0.0;
   float steps_per_m = float(frame.integration_steps) / max(min(last, frame.froxel_far_m) - start, 1.0);

@@ -19,8 +19,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(push_constant) uniform Push { uint first_row; }
 push;  // of the picture
 
-// Returns the single scattering over [start, end] of the ray. With kCloudFraction, computes the fraction of it that
-// clouds and glass let pass.
+// Returns the single scattering over [start, end] of the ray. With kCloudFraction, also computes the fraction of it
+// that remains behind clouds and glass.
 Spectrum integrated_light(Ray ray, float start, float end, out Spectrum fraction) {
   March march = nothing_marched();
   float t = start;

@@ -69,7 +69,7 @@ vec3 tyndall_cloud_transmittance(vec3 position) {
 #define SUNLIGHT_THROUGH(color, position) (color)
 #endif
 
-// What happens to light along a path.
+// The in-scattering and the transmittance along a path.
 struct TyndallPath {
   vec3 inscattering;       // radiance that reaches the beginning of the path
   Spectrum transmittance;  // fraction of the light at its end that reaches the beginning
@@ -243,8 +243,8 @@ TyndallFroxel tyndall_froxel(vec2 uv, float distance_m) {
 
 #ifdef TYNDALL_SHADOW
 // Returns the path between two positions, with your shadows and clouds in its single scattering: the fraction of single
-// scattering that TYNDALL_SHADOW and the clouds let pass is integrated in `steps` steps. Where nothing is in shadow,
-// the result equals that of tyndall_between(). Light that is scattered more than once is not shadowed, as with
+// scattering that remains behind TYNDALL_SHADOW and the clouds is integrated in `steps` steps. Where nothing is in
+// shadow, the result equals that of tyndall_between(). Light that is scattered more than once is not shadowed, as with
 // scattering.multiple = unoccluded.
 TyndallPath tyndall_between_shadowed(vec3 from, vec3 to, int steps) {
   float reach = distance(from, to);

@@ -38,9 +38,9 @@ float coarse_height(vec2 offset_m, float cell_m, uint layer) {
   return height_at(clamp(texel, ivec2(0), ivec2(textureSize(terrain_heights, 0).xy) - 1), layer);
 }
 
-// Returns the fraction of the sky's irradiance that the surrounding ground lets pass, from the horizon's elevation in
-// eight directions at three distances: the mean of cos^2, exact for a uniform sky. `layer`: the level of the point.
-// src/scene/terrain/terrain_tiles.cpp knows which texels are read.
+// Returns the fraction of the sky's irradiance that the surrounding ground does not block: the mean of cos^2 of the
+// horizon's elevation in eight directions, found at three distances. It is exact for a uniform sky. `layer`: the level
+// of the point. The texels that are read here must be those in src/scene/terrain/terrain_tiles.cpp.
 float sky_visibility(vec2 offset_m, float altitude_m, uint layer) {
   float visible = 0.0;
   for (int i = 0; i < 8; ++i) {

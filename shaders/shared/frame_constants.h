@@ -84,8 +84,8 @@ struct FrameConstants {
   TableShape tables;
   HomogeneousMedium homogeneous;
 #if defined(SPECTRAL) || defined(__cplusplus)
-  // Of scattering.color = spectral: extinction, rayleigh_source and mie_source of the homogeneous medium at the fourth
-  // wavelength.
+  // Values at the fourth wavelength of scattering.color = spectral: extinction, rayleigh_source and mie_source of the
+  // homogeneous medium.
   vec4 homogeneous_fourth_channel;
 #endif
 };

@@ -33,8 +33,8 @@ struct Medium {
   vec3 ground_albedo;
   float fourth_ground_albedo;  // of scattering.color = spectral; otherwise 0
 #ifdef SPECTRAL
-  // Of scattering.color = spectral: Rayleigh scattering, aerosol scattering, aerosol extinction and ozone absorption at
-  // the fourth wavelength.
+  // Values at the fourth wavelength of scattering.color = spectral: Rayleigh scattering, aerosol scattering, aerosol
+  // extinction and ozone absorption.
   vec4 fourth_channel;
 #endif
 #ifdef PHASE_ROWS_OF_MEDIUM

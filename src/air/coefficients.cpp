@@ -26,7 +26,7 @@ struct Place {
 
 double component(const Vec3& v, std::size_t i) { return static_cast<double>(i == 0 ? v.x : i == 1 ? v.y : v.z); }
 
-// How values that are given for the three channels continue between and beyond them.
+// The function of the wavelength by which values of the three channels are interpolated and extrapolated.
 enum class Between { power, line };
 
 // Beyond the channels, a value follows at most this power of the wavelength, in either direction. Molecules scatter

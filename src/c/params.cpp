@@ -51,7 +51,7 @@ struct Names {
   std::span<const char* const> choices;
 };
 
-// In the order of param_table().
+// The names of the enumerators, in the order of param_table().
 constexpr Names kNames[] = {
 #define ENUM_BEGIN(type)
 #define ENUM_VALUE(type, identifier, value, text)

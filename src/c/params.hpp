@@ -1,4 +1,4 @@
-// What a TyndallParams is.
+// The definition of the opaque type TyndallParams.
 #pragma once
 
 #include "tyndall/params.hpp"

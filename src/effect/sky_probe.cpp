@@ -84,7 +84,7 @@ shared::SkyProbeConstants constants_of(const SkyProbeInputs& inputs, const Param
   const Vec3 up = sum(inputs.up, 1.0 / std::sqrt(dot(inputs.up, inputs.up)), {}, 0.0);
   const double cosine = std::clamp(dot(up, sun) / std::sqrt(dot(sun, sun)), -1.0, 1.0);
   Vec3 ahead = sum(sun, 1.0, up, -dot(up, sun));
-  // Not from the cosine, which rounds near the zenith.
+  // The sine is not computed from the cosine, because the cosine is rounded to 1 near the zenith.
   double sine = std::sqrt(dot(ahead, ahead) / dot(sun, sun));
   // Any horizontal direction will do for a sun at the zenith or below the nadir.
   if (sine < 1e-6) {

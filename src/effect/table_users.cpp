@@ -29,7 +29,7 @@ bool TableUsers::end_round() {
 
 std::uint32_t TableUsers::rounds(std::uint32_t least) const {
   std::uint32_t out = least;
-  // With several effects, one may already have begun a frame of the present round.
+  // One of several effects may already have begun a frame that the others have not.
   for (const Entry& entry : users_) out = std::max(out, entry.user.slots + (users_.size() > 1 ? 2 : 1));
   return out;
 }

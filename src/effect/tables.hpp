@@ -82,7 +82,7 @@ class TableUsers {
   // Returns whether each user has begun a frame since the last round, or has no commands in flight. Then begins another
   // round.
   [[nodiscard]] bool end_round();
-  // Returns the number of rounds after which no commands of now can be in flight.
+  // Returns the number of rounds after which no command that is in flight now can still be in flight.
   [[nodiscard]] std::uint32_t rounds(std::uint32_t least) const;
 
  private:

@@ -4,7 +4,7 @@
 
 namespace tyndall::gpu {
 
-// How many frames may be recorded or executing at a time in our own programs.
+// The number of frames that our own programs may be recording or executing at a time.
 constexpr std::uint32_t kFramesInFlight = 2;
 
 }  // namespace tyndall::gpu

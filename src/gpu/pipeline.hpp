@@ -38,8 +38,8 @@ struct Pipeline {
 Result<Pipeline> create_compute_pipeline(const Device& device, const Shader& shader,
                                          std::span<const Constant> constants = {});
 
-// How the colour of a fragment is combined with the attachment. `multiply_min` multiplies the colours and stores the
-// smaller alpha.
+// The operation that combines the colour of a fragment with the attachment. `multiply_min` multiplies the colours and
+// stores the smaller alpha.
 enum class Blend { none, add, multiply, multiply_min };
 
 constexpr std::uint32_t kMaxColors = 4;  // colour attachments; every device supports as many

@@ -37,7 +37,7 @@ class BytesIn : public Imf::IStream {
  public:
   BytesIn(std::string_view bytes, const std::string& path) : Imf::IStream(path.c_str()), bytes_(bytes) {}
 
-  // Not isMemoryMapped(): OpenEXR would read beyond blocks that are shorter than the header requires.
+  // isMemoryMapped() must stay false. Otherwise OpenEXR reads beyond blocks that are shorter than the header requires.
   bool read(char target[], int size) override {
     std::memcpy(target, take(size), static_cast<std::size_t>(size));
     return position_ < bytes_.size();

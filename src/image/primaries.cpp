@@ -12,7 +12,7 @@ using Matrix = std::array<Vector, 3>;  // rows
 constexpr double kD65[] = {0.3127, 0.3290};
 constexpr double kAcesWhite[] = {0.32168, 0.33767};
 
-// In the order of Primaries.
+// The chromaticities of the primaries and of white, in the order of Primaries.
 constexpr Chromaticities kChromaticities[] = {
     {{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}, {kD65[0], kD65[1]}},
     {{1.0, 0.0}, {0.0, 1.0}, {0.0, 0.0}, {1.0 / 3.0, 1.0 / 3.0}},

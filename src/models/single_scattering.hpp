@@ -27,7 +27,7 @@ struct Ray {
 struct Answer {
   std::array<double, 3> radiance = {};       // [1/sr]
   std::array<double, 3> transmittance = {};  // to the ground or out of the atmosphere
-  // The same at the fourth wavelength of scattering.color = spectral.
+  // Radiance and transmittance at the fourth wavelength of scattering.color = spectral.
   double radiance_fourth = 0.0;
   double transmittance_fourth = 0.0;
 };

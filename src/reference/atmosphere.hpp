@@ -28,7 +28,7 @@ inline Amounts operator-(const Amounts& a, const Amounts& b) {
   return {a.rayleigh - b.rayleigh, a.mie - b.mie, a.ozone - b.ozone};
 }
 
-// What depends on the wavelength.
+// The properties of the atmosphere that depend on the wavelength.
 struct AtmosphereChannels {
   using PerChannel = std::array<double, kMaxWavelengths>;  // 0 beyond `channels`
   std::size_t channels = 3;

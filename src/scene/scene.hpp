@@ -33,9 +33,10 @@ struct SceneDesc {
   bool reuse_shadows = true;           // reuse shadow maps that would not change
   std::uint32_t pipeline_threads = 1;  // see EffectDesc
   bool in_parts = false;               // submit a frame in parts, so that other users of the queue get their turn
-  // If above 0, record a frame while the previous one executes. Then render() returns before the frame is complete, and
-  // timings(), exposure() and counters() are those of the last one that is known to be. While frames take longer than
-  // this, each is waited for, because other users of the queue would have to wait for two.
+  // If above 0, a frame is recorded while the previous one executes. render() then returns before the frame is
+  // complete, and timings(), exposure() and counters() are those of the last frame that is known to be complete. While
+  // frames take longer than this, render() waits for each, because other users of the queue would have to wait for two
+  // frames.
   double ahead_up_to_ms = 0.0;
 };
 
@@ -86,8 +87,9 @@ class Scene {
   Result<image::Image> radiance();
   Result<image::Image> display();
   struct Exposure {
-    // By the sun at the camera, with SceneDesc::illuminance; light of the moon is left out. Nothing if the light has no
-    // unit (scattering.color = rgb), with a medium or model that is not the atmosphere, or with a camera in space.
+    // The illuminance by sun and sky at the camera, with SceneDesc::illuminance, without moonlight. Empty if the light
+    // has no unit (scattering.color = rgb), if the medium or the model is not the atmosphere, or with a camera in
+    // space.
     std::optional<Illuminance> illuminance;
     float scale = 1.0F;             // factor of the radiance
     std::optional<double> ev100;    // to which it corresponds; nothing if it is 0, or if the sun has no light

@@ -19,7 +19,7 @@ Result<void> Scene::finish() {
 }
 
 Result<void> Scene::wait_for_frames() {
-  // From the oldest to the newest, so that the results are those of the newest.
+  // Wait from the oldest frame to the newest, so that the results are those of the newest.
   for (std::uint32_t i = 0; i < gpu::kFramesInFlight; ++i) {
     TYNDALL_TRY(finish(static_cast<std::uint32_t>((frame_index_ + i) % gpu::kFramesInFlight)));
   }

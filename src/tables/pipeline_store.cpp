@@ -28,7 +28,7 @@ std::string key_of(const VkPhysicalDeviceProperties& p) {
 }  // namespace
 
 bool is_of_device(std::span<const std::byte> data, const VkPhysicalDeviceProperties& device) {
-  // As words, because its version is an enumeration, and damaged data may hold any number.
+  // VkPipelineCacheHeaderVersionOne as integers: its version is an enumeration, but damaged data may hold any number.
   struct Header {
     std::uint32_t bytes, version, vendor, device;
     std::array<std::uint8_t, VK_UUID_SIZE> uuid;

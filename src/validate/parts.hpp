@@ -40,7 +40,7 @@ using ColorPart = std::vector<ColorAnswered>;
 [[nodiscard]] Result<Study> join_study(const Params& params, const Options& options, std::vector<Model> models,
                                        std::vector<Model> horizon_models, const std::vector<StudyPart>& parts);
 
-// The same for run_color_test().
+// Computes a part of run_color_test(), as run_study_part() does for a study.
 [[nodiscard]] Result<ColorPart> run_color_part(const Params& params, const std::vector<ColorModel>& models,
                                                std::uint64_t samples, std::uint64_t seed, int orders, PartIndex part,
                                                const std::function<void(double)>& progress);

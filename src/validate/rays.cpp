@@ -41,7 +41,7 @@ std::vector<std::array<double, 4>> even_points(std::uint64_t seed, std::uint32_t
 // elevation there, and its azimuth from the ray. `turn` is the angle at the planet's centre between the eye and that
 // point. The zenith angle of the ray decreases by `turn` on the way from the eye to the point.
 void set_sun(RayQuery& query, double turn, double sun_elevation_rad, double azimuth) {
-  // In the plane of the ray: x along its heading, y up, z to the side.
+  // Coordinates in which the ray lies in the plane z = 0: x along its azimuth, y up, z to the side.
   const double x = std::cos(sun_elevation_rad) * std::cos(azimuth);
   const double y = std::sin(sun_elevation_rad);
   const double side = std::cos(sun_elevation_rad) * std::sin(azimuth);

@@ -284,8 +284,8 @@ TEST_F(CliProbe, AMillionLines) {
   EXPECT_TRUE(written.ends_with("100000,1,30,279,0,0,0,1,1,1\n")) << written.substr(written.size() - 60);
 }
 
-// With four wavelengths, the path tracer with forty confirms the columns X, Y and Z, and models with three channels
-// refuse.
+// The columns X, Y and Z of models with four wavelengths agree with the path tracer with forty. Models with three
+// channels refuse spectral colours.
 TEST_F(CliProbe, SpectralColours) {
   const std::string queries = kHeader + "0,60,80,30\n0,sky,60,\n";
   const std::vector<std::string> spectral = {"--set", "scattering.color=spectral"};

@@ -3,17 +3,17 @@
 
 extern "C" {
 
-// Values of `error` besides those of errno: a write is shorter; the process is killed (SIGKILL) before the call; it is
-// killed after a half of a write.
+// Values of `error` besides those of errno: a write writes less than requested; the process is killed (SIGKILL) before
+// the call; the process is killed after half of a write.
 constexpr int kShortWrite = 0, kKillBefore = -1, kKillInside = -2;
 
-// From now on the call number `at`, from 1, to files below `folder` fails with this error. `call` limits this to calls
-// of one name; "" means any.
+// Makes one of the following calls for files below `folder` fail with this error: the call number `at`, counted from 1.
+// With a name in `call`, only calls of this function are counted; with "", calls of all functions.
 void tyndall_write_faults(const char* folder, long at, int error, const char* call);
 
-// Lets the file systems have unnamed files (O_TMPFILE), or not.
+// Sets whether file systems appear to support unnamed files (O_TMPFILE).
 void tyndall_unnamed_files(bool available);
 
-// Returns the number of calls since then.
+// Returns the number of counted calls since tyndall_write_faults().
 long tyndall_write_calls();
 }

@@ -28,7 +28,7 @@ Params cpp_params() {
   return params;
 }
 
-// The same, by name.
+// Returns the same parameters, set by name through the C interface.
 OwnedParams c_params() {
   TyndallParams* p = nullptr;
   EXPECT_SUCCESS(tyndall_params_create(&p));

@@ -210,8 +210,9 @@ TEST_F(CloudsOfCaller, ASlabOverOneHalfDarkensTheRaysBehindIt) {
   }
 }
 
-// The same in a homogeneous medium, where the light of a section is exp(-sigma a) - exp(-sigma b). With the medium lit
-// only behind a layer at distance t, what a ray gains is the whole but for the part beyond t.
+// In a homogeneous medium, the light of a section [a, b] of a ray is exp(-sigma a) - exp(-sigma b). Under an opaque
+// layer, only the medium beyond the layer is lit. The ray then gains the light of the whole medium minus that of the
+// medium in front of the layer.
 TEST_F(CloudsOfCaller, AHomogeneousMediumIsDividedInClosedForm) {
   TestFrame frame;
   frame.extent = {32, 20};
@@ -228,7 +229,7 @@ TEST_F(CloudsOfCaller, AHomogeneousMediumIsDividedInClosedForm) {
   };
   const Picture whole = draw_with(kAboveAll_m, 1.0);
   const Picture beyond = draw_with(kHeight_m, 0.0);
-  // The medium ends at the layer: the light in front of it, which is behind the layer as seen from the sun.
+  // With a medium that ends at the layer, the picture shows the light of the part in front of the layer.
   params.homogeneous_medium.height_m = static_cast<float>(kHeight_m);
   const Picture near = draw_with(kAboveAll_m, 1.0);
   Picture truth = whole;

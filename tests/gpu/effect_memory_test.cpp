@@ -31,7 +31,7 @@ struct Engine {
   long until_failure = -1;  // requests that succeed before one fails; negative: none fails
   int requests = 0;
   bool refused = false;
-  // How a block is wrong: see BlocksThatCannotBeUsedAreRefused.
+  // The fault of the blocks that the allocator returns: see BlocksThatCannotBeUsedAreRefused.
   enum class Wrong { nothing, memory, offset, address } wrong = Wrong::nothing;
 
   VkResult allocate(const char* name, VkFlags usage, const VkMemoryRequirements& requirements, bool on_host,

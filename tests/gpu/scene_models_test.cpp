@@ -154,7 +154,7 @@ TEST_F(GpuSceneModels, HomogeneousIsFiniteAnywhereAndDarkAtNight) {
         ASSERT_TRUE(std::all_of(picture.rgb.begin(), picture.rgb.end(), [](float v) { return std::isfinite(v); }));
         ASSERT_GE(*low, 0.0F);
         ASSERT_TRUE(sun_deg < 10.0F || *high > 1e-3F) << altitude_m;
-        // From space, visible parts of the planet that are far away may be lit.
+        // From space, distant parts of the planet may be visible where it is day.
         ASSERT_TRUE(sun_deg > -10.0F || altitude_m > 8e4F || *high == 0.0F) << altitude_m;
       }
     }

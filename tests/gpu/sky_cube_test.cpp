@@ -231,8 +231,8 @@ TEST_P(SkyCubeMap, OtherLevelsAreMeansUnderTheLobe) {
   }
 }
 
-// At roughness 1, in any direction, against a quadrature of the radiance that `probe` returns. What is left is the
-// linear interpolation between the 8 x 8 texels of a face.
+// Compares reflections of roughness 1 in any direction with a quadrature of the radiance that `probe` returns. The
+// remaining error is that of linear interpolation between the 8 x 8 texels of a face.
 TEST_P(SkyCubeMap, ReflectionsOfRoughnessOneAreTheMeanUnderTheCosine) {
   SkyProbe probe = make(64);
   for (const double sun_deg : {10.0, 70.0, 92.0}) {

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kDegree = kPi / 180.0;
-// What docs/sky_probe.md states for tilted normals, relative to the largest irradiance of a normal.
+// The errors that docs/sky_probe.md states for tilted normals, relative to the largest irradiance of any normal.
 constexpr double kTruncationMean = 0.03;
 constexpr double kTruncationWorst = 0.08;
 using Rgb = std::array<double, 3>;
@@ -194,7 +194,7 @@ TEST_F(GpuSkyProbe, SurfacesThatFaceUpOrDownAgreeWithTheRadianceAtAnyAltitude) {
   std::printf("normals up and down against a quadrature of the radiance, up to 60 km: worst %.2f %%\n", 100.0 * worst);
 }
 
-// What is left for other normals is the part of the harmonics that are missing.
+// For normals that are not vertical, the only error is the missing part of higher harmonics.
 TEST_F(GpuSkyProbe, TiltedSurfacesHaveTheErrorOfTheTruncationOnly) {
   SkyProbe probe = make();
   constexpr double kAzimuth = 0.7;

@@ -1,6 +1,6 @@
-// What engines look up with scattering.color = spectral, compared with `probe`: tyndall/atmosphere.glsl with the macro
-// TYNDALL_SPECTRAL, the light look-up tables and the sky probe. With a phase function that has a formula, and with one
-// that shaders read from rows. Small tables, which all sides read.
+// Compares the look-ups of engines with scattering.color = spectral with `probe`: tyndall/atmosphere.glsl with the
+// macro TYNDALL_SPECTRAL, the light look-up tables and the sky probe. Tests a phase function that has a formula, and
+// one that shaders read from rows. All of them read the same small tables.
 #include <algorithm>
 #include <array>
 #include <cmath>

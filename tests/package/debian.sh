@@ -61,7 +61,7 @@ for package in $packages; do
   dpkg-query --admindir="$root/var/lib/dpkg" -W -f '${db:Status-Abbrev}' $package | grep -q '^ii' || fail "$package is not installed"
 done
 
-# What was installed works.
+# The installed program and library work.
 [ "$("$root/usr/bin/tyndall" --version | head -n 1)" = "tyndall $version" ] || fail "the program is not version $version"
 printf 'altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n0,60,50,30\n' > "$work/rays.csv"
 "$root/usr/bin/tyndall" probe --queries "$work/rays.csv" --model single > "$work/radiance.csv" || fail "the program does not work"

@@ -46,7 +46,7 @@ room(shaders/post shaders/lib shaders/shared)
 room(shaders/scene shaders/lib include/tyndall)
 room(shaders/viewer)
 
-# What the parameters of the atmosphere mean, for the effect and for the path tracer.
+# The coefficients that follow from the parameters of the atmosphere, for the effect and for the path tracer.
 room(src/air include/tyndall)
 
 # The effect.

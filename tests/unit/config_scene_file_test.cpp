@@ -343,8 +343,7 @@ TEST_F(SceneFile, WrongIncludesAreRefused) {
   EXPECT_EQ(all_text(settings), all_text(Settings()));
 }
 
-// A scene from a stranger cannot make the program read or write files outside of the folder of the scene, or use a
-// network.
+// A scene cannot make the program read or write files outside of the folder of the scene, or use a network.
 TEST_F(SceneFile, ScenesStayInTheirFolder) {
   const std::filesystem::path inside = directory_ / "scene";
   std::filesystem::create_directories(inside / "air");
@@ -399,7 +398,7 @@ TEST_F(SceneFile, ScenesStayInTheirFolder) {
         std::string("[terrain]\nsource = '/vsizip/a.zip/a.tif'\n")}) {
     EXPECT_EQ(text_of(toml), "") << toml;
   }
-  // In a process of its own, because permission is for the whole process.
+  // Run in a separate process, because allow_outside() applies to the whole process.
   const auto allowed = [&] {
     files::allow_outside();
     bool all = true;

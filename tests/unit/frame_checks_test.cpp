@@ -198,7 +198,7 @@ TEST(FrameChecks, UnlikelyCascadesAreRemarkedOn) {
     s.cascades[2].far_m = 5000.0F;
   });
   expect_remark({"cascades[2]", "starts at 9000 m", "ends at 8000 m"}, [](Case& s) { s.cascades[2].near_m = 9000.0F; });
-  // Only one map is beside the view of its cascade.
+  // The map of one cascade lies beside the part of the view that belongs to the cascade.
   expect_remark({"cascades[1]", "its part of the view", "shadowed there"},
                 [](Case& s) { s.cascades[1].shadow_from_world.m[12] += 3.0F; });
   // Near the ground, a map contains the view but not the camera.

@@ -52,7 +52,7 @@ std::vector<Question> random_questions(int count, double top_m, double radius_m,
   std::vector<Question> out;
   while (out.size() < static_cast<std::size_t>(count)) {
     const double altitude = (out.size() % 3 == 2 ? 1.0 + 9.0 * uniform(engine) : 0.95 * uniform(engine)) * top_m;
-    // From space: within the planet's disc and the atmosphere around it.
+    // From space, choose rays that hit the planet's disc or the atmosphere around it.
     const double rim = altitude > top_m ? std::asin((radius_m + top_m) / (radius_m + altitude)) : kPi;
     const double view = kPi - rim * std::sqrt(uniform(engine));
     const double sun = std::acos(lowest_sun + (1.0 - lowest_sun) * uniform(engine));

@@ -190,7 +190,8 @@ TEST(ScenePath, TheSunByDateAndPlace) {
   SceneParams base;
   base.sun.animate = true;
   for (const double t : {0.0, 5.0, 10.0}) {
-    // In the middle of the interval, by symmetry.
+    // The date is that of the keyframes at both ends of the interval and, by symmetry, halfway between them in its
+    // middle.
     const double day =
         *path.frames[0].julian_day + t / 10.0 * (*path.frames[1].julian_day - *path.frames[0].julian_day);
     const SolarPosition sun = solar_position(path.place, day);

@@ -42,7 +42,7 @@ TEST_F(SceneGltf, UrisStayInTheFolder) {
                                  std::string("textures/../textures/p.png"), (inside / "textures/p.png").string()}) {
     EXPECT_EQ(message(uri), "") << uri;
   }
-  // In a process of its own, because permission is for the whole process.
+  // Run in a separate process, because allow_outside() applies to the whole process.
   const auto allowed = [&] {
     files::allow_outside();
     return message("../p.png").empty() && message("link.png").empty();

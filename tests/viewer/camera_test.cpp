@@ -42,7 +42,7 @@ TEST(ViewerCamera, SpeedGrowsWithHeightAndShift) {
   EXPECT_GT(flight_speed(1000.0, false), flight_speed(10.0, false));
   EXPECT_GT(flight_speed(10.0, true), 3.0 * flight_speed(10.0, false));
   EXPECT_EQ(flight_speed(-5.0, false), flight_speed(0.0, false));
-  // From the ground to orbit in less than a minute.
+  // The flight from the ground to orbit takes less than a minute.
   double height_m = 2.0;
   double seconds = 0.0;
   for (; height_m < 400.0e3; seconds += 0.1) height_m += 0.1 * flight_speed(height_m, false);

@@ -72,7 +72,7 @@ FrameInputs inputs_of(const Images& images, bool clouds) {
   out.camera.clip_from_view = {{1, 0, 0, 0, 0, -16.0F / 9.0F, 0, 0, 0, 0, 0, -1, 0, 0, 0.1F, 0}};
   out.sun.direction_to_sun = kToSun;
   if (!clouds) return out;
-  // As in examples/clouds.cpp: the layer at 2 km, seen from above.
+  // The layer is at 2 km and is seen from above, as in examples/clouds.cpp.
   constexpr float kScale = 1.0F / 50000.0F, kLayer_m = 2000.0F;
   const float u = -kToSun.x / kToSun.y * kScale, v = -kToSun.z / kToSun.y * kScale;
   out.clouds.map = {images.clouds.view.get(), kGeneral};

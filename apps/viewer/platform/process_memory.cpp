@@ -11,7 +11,7 @@ namespace tyndall::viewer {
 
 void configure_malloc() {
 #ifdef __GLIBC__
-  // With an arena for each thread, freed memory would stay in all of them. Blocks above the threshold are returned to
+  // If each thread had its own arena, each arena would retain freed memory. Blocks above the threshold are returned to
   // the system when they are freed. On a CPU device, tables and pictures are such blocks.
   mallopt(M_ARENA_MAX, 1);
   mallopt(M_MMAP_THRESHOLD, 1 << 20);

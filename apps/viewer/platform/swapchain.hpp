@@ -53,7 +53,7 @@ class Swapchain {
   Result<void> create_render_pass();
   Result<void> create_frame_objects();
   Result<void> start_gui();
-  // What a frame of the window needs while it executes.
+  // The objects that a frame of the window uses while it executes.
   struct Frame {
     VkCommandBuffer cmd = VK_NULL_HANDLE;
     VkFence fence = VK_NULL_HANDLE;

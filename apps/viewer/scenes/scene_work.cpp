@@ -253,7 +253,7 @@ Result<void> SceneWork::take_terrain() {
 // Returns `settings` with the terrain that is loaded.
 config::Settings SceneWork::loaded(config::Settings settings) const {
   set_terrain_key(key_of(applied_), settings);
-  // Only the effect draws without terrain; another model is used once there is one.
+  // Without terrain, only the effect can draw, so it replaces another model until there is terrain again.
   if (settings.scene.terrain.source == "none") settings.scene.scattering.model = scene::ScatteringModel::atmosphere;
   settings.scene.camera.samples = 1;
   return settings;

@@ -1,5 +1,5 @@
-// What the positions of the sun and of the moon have in common: the nutation of the Earth's axis, the rotation of the
-// Earth, and the parallax of a place on it. After Reda and Andreas (2003), whose sections are named; see
+// Functions that the positions of the sun and of the moon share: the nutation of the Earth's axis, the rotation of the
+// Earth, and the parallax of a place on it. They follow Reda and Andreas (2003) and name its sections; see
 // solar_position.hpp.
 #pragma once
 

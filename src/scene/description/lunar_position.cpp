@@ -25,7 +25,7 @@ constexpr LongitudeTerm kLongitude[] = {
     {2, 0, 2, 0, 3994, -10445},       {4, 0, 0, 0, 3861, -11650},       {2, 0, -3, 0, 3665, 14403},
 };
 
-// The same for the latitude [1e-6 deg].
+// A term of the latitude [1e-6 deg].
 struct LatitudeTerm {
   int d, m, m1, f;
   double latitude;

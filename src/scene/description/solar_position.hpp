@@ -16,7 +16,8 @@ struct Place {
 };
 
 struct SolarPosition {
-  // With parallax and without refraction, which raises the sun by about 0.5 deg at the horizon and 0.1 deg at 10 deg.
+  // The angles include parallax, but no refraction, which raises the sun by about 0.5 deg at the horizon and by 0.1 deg
+  // at an elevation of 10 deg.
   double elevation_deg = 0.0;  // above the horizontal
   double azimuth_deg = 0.0;    // clockwise from north, [0; 360)
   // Apparent position as seen from the centre of the Earth, for the equator and equinox of the date.

@@ -37,7 +37,7 @@ enum class SurfaceKind : std::uint32_t {
 enum class TextureWrap : std::uint32_t { repeat, mirrored_repeat, clamp_to_edge };
 enum class MipFilter : std::uint32_t { none, nearest, linear };  // none: only the first level is sampled
 
-// How a texture is sampled. The default repeats it and filters between texels and mip levels.
+// The wrap modes and filters of a texture. By default it repeats, and is filtered between texels and mip levels.
 struct MeshSampler {
   TextureWrap wrap_u = TextureWrap::repeat, wrap_v = TextureWrap::repeat;
   bool mag_linear = true, min_linear = true;  // false: nearest
