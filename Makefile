@@ -12,6 +12,7 @@
 #   make bundle-chroot   runs the bundle in a bare Debian system
 #   make packages        builds Debian packages in out/debian: libtyndall0, libtyndall-dev, tyndall, python3-tyndall
 #   make packages-check  checks them with lintian, and installs, runs and removes them in a root folder
+#   make first-figure    installs the package of Python in a bare Debian system, and runs the first example there
 #   make wheel-check     builds a wheel of the Python package with pip, installs it and uses it
 #   make abi             renews the record of the binary interface of the C functions, tests/package/tyndall.abi
 #   make python-figures  makes the figures of docs/python.md
@@ -22,6 +23,7 @@
 #   make costs           measures the cost of techniques and features, docs/generated/costs.md
 #   make soak            changes the viewer at random for two minutes, and draws SOAK_FRAMES (10000) frames of random changes
 #                        with the validation layer, on both CPU drivers
+#   make second-driver   runs every GPU test and the examples on SwiftShader
 #   make fuzz            runs every fuzzer for FUZZ_SECONDS (60) and goes on where the last run ended; FUZZ names some of them
 #   make interruptions   interrupts the program at INTERRUPTIONS (200) random moments, and checks what is left
 #   make slurm-test      installs Slurm and GNU parallel, and runs the commands of docs/batch.md with them
@@ -205,6 +207,12 @@ packages-check: packages
 	@TYNDALL_DEB_FOLDER="$(CURDIR)/out/debian" sh tests/package/debian.sh build/debian build/packages_check . \
 	  "$$(sed -n 's/.*TYNDALL_VERSION_STRING "\([^"]*\)".*/\1/p' include/tyndall/version.h)" python
 
+# A new user of Python in a bare Debian system, build/first_figure. Needs root.
+.PHONY: first-figure
+first-figure: PACKAGES = debootstrap
+first-figure: packages
+	@tools/debian/first_figure.sh build/first_figure out/debian docs/python.md
+
 # A wheel of the Python package, in build/wheel_check, installed and used.
 wheel-check: setup
 	@sh tests/package/wheel.sh . build/wheel_check
@@ -276,6 +284,13 @@ soak: build
 	@ctest --preset ci -C soak --no-tests=error -R MemoryStaysBounded -V
 	@build/release/bin/soak --frames $(SOAK_FRAMES) --seed $(SOAK_SEED)
 	@tests/gpu/second_driver.sh build/second_driver/vk_swiftshader_icd.json build/release/bin/soak --frames $(SOAK_FRAMES) --seed $(SOAK_SEED)
+
+# SUITES chooses among the tests by a regular expression.
+.PHONY: second-driver
+second-driver: PRESET = ci
+second-driver: build
+	@tools/second_driver.sh build/second_driver
+	@ctest --preset ci -C second_driver --no-tests=error -L second_driver $(if $(SUITES),-R '$(SUITES)')
 
 # Signals at random moments of render, sky, tables, probe and validate, and at every write of the viewer while it saves.
 INTERRUPTIONS ?= 200
