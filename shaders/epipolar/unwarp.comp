@@ -72,11 +72,6 @@ Attenuation attenuation_near(Attenuation a, Spectrum tau) {
   return Attenuation(tau, a.transmittance - more, a.opacity + more);
 }
 
-vec3 compose(Blend b, Attenuation a, vec3 background) {
-  vec3 color = COLOR(b.source * a.opacity) * frame.sun_irradiance;
-  return frame.only == 0u ? color + TRANSMITTED(background, a.transmittance) : color;
-}
-
 const bool kBlockAttenuation = !kHomogeneous && kExtinction == Extinction_epipolar && kDownscale == 1;
 
 void main() {
@@ -152,7 +147,8 @@ void main() {
     vec3 background = load_color(pixel);
     vec3 color;
     if (kBlockAttenuation) {
-      color = compose(b, attenuation_near(middle_of_block, optical_depth_at(b.extinction, own_m)), background);
+      Attenuation here = attenuation_near(middle_of_block, optical_depth_at(b.extinction, own_m));
+      color = compose(b.source, here.transmittance, here.opacity, background);
     } else {
       color = compose(b, vec2(pixel) + 0.5, own_m, block.visible_m[k], block.sky[k], background);
     }

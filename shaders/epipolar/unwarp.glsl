@@ -144,6 +144,12 @@ Spectrum own_optical_depth(vec2 position, float visible_m, bool sky) {
   return optical_depth(medium, density_integral_along(medium, ray.altitude, ray.cos_zenith, end));
 }
 
+// Returns the colour of a pixel from its mean source function, transmittance and opacity (1 - transmittance).
+vec3 compose(Spectrum source, Spectrum transmittance, Spectrum opacity, vec3 background) {
+  vec3 behind = frame.only == 0u ? background : vec3(0.0);
+  return COMPOSED(source, transmittance, opacity, behind, frame.sun_irradiance);
+}
+
 // Returns the colour of a pixel: in-scattering from blended samples and the attenuated background. `visible_m`:
 // view-space depth of what was drawn.
 vec3 compose(Blend b, vec2 position, float depth_m, float visible_m, bool sky, vec3 background) {
@@ -151,9 +157,8 @@ vec3 compose(Blend b, vec2 position, float depth_m, float visible_m, bool sky, v
     vec3 direction = ray_direction(frame, position);
     Spectrum transmittance, opacity;
     homogeneous_attenuation(length_in_homogeneous(direction, depth_m), transmittance, opacity);
-    vec3 light =
-        COLOR(b.source * opacity * homogeneous_phase(dot(direction, frame.direction_to_sun))) * frame.sun_irradiance;
-    return frame.only == 0u ? light + TRANSMITTED(background, transmittance) : light;
+    Spectrum source = b.source * homogeneous_phase(dot(direction, frame.direction_to_sun));
+    return compose(source, transmittance, opacity, background);
   }
   Spectrum tau;
   if (kExtinction == Extinction_epipolar) {
@@ -163,8 +168,7 @@ vec3 compose(Blend b, vec2 position, float depth_m, float visible_m, bool sky, v
   }
   Spectrum transmittance, opacity;
   attenuation(tau, transmittance, opacity);
-  vec3 color = COLOR(b.source * opacity) * frame.sun_irradiance;
-  return frame.only == 0u ? color + TRANSMITTED(background, transmittance) : color;
+  return compose(b.source, transmittance, opacity, background);
 }
 
 #endif

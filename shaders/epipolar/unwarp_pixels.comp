@@ -40,10 +40,9 @@ bool may_be_wrong(Around a, Blend b, bool sky, Spectrum opacity, vec3 color) {
   const float kInvisible = 0.004;  // of the colour
   Spectrum low = min(min(a.source[0], a.source[1]), min(a.source[2], a.source[3]));
   Spectrum high = max(max(a.source[0], a.source[1]), max(a.source[2], a.source[3]));
-  vec3 brightest = COLOR(high * high * opacity) * frame.sun_irradiance;
-  vec3 difference = brightest - COLOR(low * low * opacity) * frame.sun_irradiance;
   bool unlike_all = b.weight < (sky ? epipolar.min_weight_sky : epipolar.min_weight);
-  vec3 error = unlike_all ? brightest : max(1.0 - b.weight, 0.0) * difference;
+  Spectrum wrong = unlike_all ? high * high : max(1.0 - b.weight, 0.0) * (high * high - low * low);
+  vec3 error = COLOR(wrong * opacity) * frame.sun_irradiance;
   return any(greaterThan(error, (unlike_all ? kInvisible : epipolar.tolerated_difference) * color));
 }
 

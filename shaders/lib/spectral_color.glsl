@@ -17,6 +17,12 @@ vec3 transmitted_color(vec3 background, vec4 transmittance) {
   return background - spectral_color(spectrum_of_color(background) * (1.0 - transmittance));
 }
 
+// Returns the colour of a medium with a mean source function under a sun of a colour, in front of a background:
+// sun * spectral_color(source * opacity) + transmitted_color(background, 1 - opacity).
+vec3 composed_color(vec4 source, vec4 opacity, vec3 background, vec3 sun) {
+  return background + sun * spectral_color(source * opacity) - spectral_color(spectrum_of_color(background) * opacity);
+}
+
 // Returns the transmittance of a filter (stained glass) of which the colour is given relative to white. The smooth
 // spectrum of a saturated colour leaves the range of a passive filter, so it is clamped to 0 to 1.
 vec4 spectral_filter(vec3 color) { return clamp(spectrum_of_color(color * kSunColor), vec4(0.0), vec4(1.0)); }

@@ -27,6 +27,8 @@
 // The colour of light relative to the sun's, and the colour that a coloured background has behind the medium.
 #define COLOR(light) spectral_color(light)
 #define TRANSMITTED(background, transmittance) transmitted_color(background, transmittance)
+// The colour of a medium with a mean source function under a sun of a colour, in front of a background.
+#define COMPOSED(source, transmittance, opacity, background, sun) composed_color(source, opacity, background, sun)
 #define FILTER(color) spectral_filter(color)
 // The texels of the sun transmittance and sky irradiance tables.
 #define LIGHT_TEXEL(light) light_texel(light)
@@ -52,6 +54,8 @@ typedef vec3 Spectrum;
 #define STORED(v, w) vec4(v, w)
 #define COLOR(light) (light)
 #define TRANSMITTED(background, transmittance) (background) * (transmittance)
+#define COMPOSED(source, transmittance, opacity, background, sun) \
+  ((source) * (opacity) * (sun) + (background) * (transmittance))
 #define FILTER(color) (color)
 #define LIGHT_TEXEL(light) (light)
 #define LIGHT_OF_TEXEL(texel) (texel).rgb

@@ -9,6 +9,7 @@ packages="libtyndall0 libtyndall-dev tyndall"
 [ "${5:-}" != python ] || packages="$packages python3-tyndall"
 rm -rf "$work"
 mkdir -p "$work/deb"
+work=$(cd "$work" && pwd)  # dpkg runs the scripts of packages in another folder
 
 fail() {
   echo "debian.sh: $*"
