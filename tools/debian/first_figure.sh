@@ -1,6 +1,6 @@
 #!/bin/sh
 # Tries what a new user of the Python package does: installs its Debian package with apt in a bare Debian system, and runs the
-# first example of docs/python.md there. Prints how long both take. debootstrap makes the system in FOLDER, anew in each run.
+# first example of docs/python.md there. Prints how long both take. debootstrap makes the system in FOLDER in each run.
 # Needs root, debootstrap and Debian's archive; TYNDALL_DEBIAN_MIRROR is used instead of Debian's own mirror.
 # usage: first_figure.sh FOLDER DEB_FOLDER PAGE
 set -eu
