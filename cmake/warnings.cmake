@@ -8,6 +8,6 @@ if(TYNDALL_SANITIZE)
   add_compile_options(-fsanitize=${TYNDALL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${TYNDALL_SANITIZE})
 endif()
-# Options for targets with precompiled headers. GCC 12 does not recognise system headers within these, and reports
-# false warnings about the strings of the standard library.
+# For targets with precompiled headers. In these, GCC 12 no longer knows that a header is a system header, and reports its false
+# warnings about the strings of the standard library.
 set(tyndall_pch_warnings -Wno-array-bounds$<SEMICOLON>-Wno-stringop-overflow$<SEMICOLON>-Wno-stringop-overread)
