@@ -153,6 +153,33 @@ TEST_F(Spectral, ClearAirLeavesTheBackgroundAsItIs) {
 }
 
 // Until the tables of the other mode are complete, frames are drawn with those that exist.
+// In-scattered light has the colour of the sun times that of the same light under a white sun. The background is
+// independent of the sun.
+TEST_F(Spectral, TheColourOfTheSunDoesNotChangeTheBackground) {
+  TestFrame frame = frame_of(evening());
+  show(frame);
+  Params params = spectral_params();
+  prepare(params);
+  const auto picture = [&](const Vec3& sun, const Vec3& background) {
+    frame.irradiance = sun;
+    frame.background = background;
+    show(frame);
+    return draw(params, "coloured sun");
+  };
+  const Vec3 background = {0.4F, 0.3F, 0.2F};
+  const Vec3 sun = {1.0F, 0.5F, 0.2F};
+  for (const Technique technique : {Technique::brute_force, Technique::epipolar}) {
+    params.scattering.technique = technique;
+    const Picture light = picture(Vec3(1.0F), Vec3(0.0F));
+    const Picture both = picture(Vec3(1.0F), background);
+    const Picture colored = picture(sun, background);
+    for (std::size_t i = 0; i < light.size(); ++i) {
+      const glm::dvec3 expected = glm::dvec3(sun.x, sun.y, sun.z) * light[i] + (both[i] - light[i]);
+      for (int c = 0; c < 3; ++c) ASSERT_NEAR(colored[i][c], expected[c], 2.0e-3 * both[i][c]) << i << ' ' << c;
+    }
+  }
+}
+
 TEST_F(Spectral, ChangesOfTheModeShowNoUnfinishedTables) {
   show(evening());
   prepare(small_params());
