@@ -49,6 +49,8 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--set", action="append", default=[])
     options = parser.parse_args()
+    if options.rays < 1 or not options.noise > 0.0:
+        parser.error("--rays, --noise: expected at least 1 and more than 0")
     air = tyndall.Atmosphere(parse_settings(options.set), color="xyz")
     random = np.random.default_rng(options.seed)
     print("| sun | luminance, mean | 95 % | worst | Δu′v′, mean | 95 % | noise |\n|---|--:|--:|--:|--:|--:|--:|")
