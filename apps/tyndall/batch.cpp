@@ -40,19 +40,28 @@ bool holds(const std::vector<ManifestItem>& items, std::uint64_t number) {
   return place != items.end() && place->number == number;
 }
 
-// Returns the items among `numbers` whose files are there as the manifest says, ordered by number.
+// Returns the items among `numbers` that have the inputs of this run and whose files are there as the manifest says,
+// ordered by number.
 std::vector<ManifestItem> whole_items(const Manifest& manifest, const std::vector<std::uint64_t>& numbers,
-                                      const std::string& folder) {
+                                      const std::string& folder,
+                                      const std::function<std::string(std::uint64_t)>& item_inputs) {
   std::vector<ManifestItem> out;
   for (const ManifestItem& item : manifest.items) {
     if (!std::binary_search(numbers.begin(), numbers.end(), item.number) || item.files.empty()) continue;
     if (holds(out, item.number)) continue;
+    if (item_inputs && item.inputs_hash != item_inputs(item.number)) continue;
     if (std::all_of(item.files.begin(), item.files.end(),
                     [&](const ManifestFile& file) { return is_whole(file, folder); })) {
       out.insert(place_of(out, item.number), item);
     }
   }
   return out;
+}
+
+// Returns the inputs that every item depends on.
+Inputs shared_inputs(Inputs inputs, const std::string& items_input) {
+  std::erase_if(inputs, [&](const auto& input) { return !items_input.empty() && input.first == items_input; });
+  return inputs;
 }
 
 }  // namespace
@@ -63,6 +72,7 @@ struct Batch::State {
   std::string path;    // of the manifest; empty without one
   std::string folder;  // that contains it
   std::string unit;
+  std::function<std::string(std::uint64_t)> item_inputs;
   std::size_t wanted = 0;  // items of this run, with those that were there
   Clock::time_point last_item = Clock::now();
   Clock::time_point last_write = Clock::now();
@@ -105,18 +115,20 @@ Result<Batch> Batch::begin(BatchDesc desc) {
   manifest.inputs = std::move(desc.inputs);
   state.path = manifest_path(desc.output, manifest.shard);
   state.folder = folder_of(state.path);
+  state.item_inputs = std::move(desc.item_inputs);
   std::error_code ignored;
   if (desc.options.resume && fs::exists(state.path, ignored)) {
     Result<Manifest> earlier = read_manifest(state.path);
     if (!earlier) {
       note(concat({"--resume: ", earlier.error().message, "; everything is made again"}));
-    } else if (earlier.value().verb != manifest.verb || earlier.value().inputs_hash() != manifest.inputs_hash()) {
+    } else if (const Inputs before = shared_inputs(earlier.value().inputs, desc.items_input),
+               now = shared_inputs(manifest.inputs, desc.items_input);
+               earlier.value().verb != manifest.verb || before != now) {
       note(concat({"--resume: '", files::one_line(state.path, 200), "' has other parameters (",
-                   files::one_line(first_difference(earlier.value().inputs, manifest.inputs)),
-                   "); everything is made again"}));
+                   files::one_line(first_difference(before, now)), "); everything is made again"}));
     } else {
       manifest.device = earlier.value().device;
-      manifest.items = whole_items(earlier.value(), out.numbers_, state.folder);
+      manifest.items = whole_items(earlier.value(), out.numbers_, state.folder, state.item_inputs);
       std::vector<std::uint64_t> missing;
       for (const std::uint64_t number : out.numbers_) {
         if (!holds(manifest.items, number)) missing.push_back(number);
@@ -138,6 +150,7 @@ Result<void> Batch::finished(std::uint64_t number, const std::vector<std::string
   item.number = number;
   item.name = name;
   if (!state_->path.empty()) {
+    if (state_->item_inputs) item.inputs_hash = state_->item_inputs(number);
     for (const std::string& path : paths) {
       Result<files::FileSum> sum = files::sum_of_file(path);
       if (!sum) return std::move(sum).error();

@@ -32,6 +32,11 @@ struct BatchDesc {
   std::uint64_t total = 0;
   std::vector<std::uint64_t> numbers;  // of the items that this run makes, ascending
   Inputs inputs;                       // only needed if options.active()
+  // The name of an input of which each item uses only a part, such as a list with one row for each item, and a function
+  // that returns a checksum of the part of an item. --resume compares these checksums instead of the input. Both may be
+  // empty. The function is called until the last finished().
+  std::string items_input = {};
+  std::function<std::string(std::uint64_t number)> item_inputs = {};
 };
 
 // Use from one thread, except describe().

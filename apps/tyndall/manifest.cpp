@@ -39,6 +39,7 @@ ordered_json json_of(const ManifestItem& item) {
   ordered_json out;
   out["item"] = item.number;
   if (!item.name.empty()) out["name"] = stored(item.name);
+  if (!item.inputs_hash.empty()) out["inputs_hash"] = stored(item.inputs_hash);
   out["files"] = ordered_json::array();
   for (const ManifestFile& file : item.files) {
     out["files"].push_back({{"file", stored(file.name)}, {"bytes", file.sum.bytes}, {"checksum", file.sum.checksum}});
@@ -120,6 +121,7 @@ Manifest from_json(const ordered_json& json) {
     item.number = whole_number(made.at("item"));
     if (!out.items.empty() && item.number <= out.items.back().number) throw std::out_of_range("order");
     item.name = made.value("name", std::string());
+    item.inputs_hash = made.value("inputs_hash", std::string());
     for (const ordered_json& file : list_of(made.at("files"))) {
       item.files.push_back({file.at("file").get<std::string>(),
                             {whole_number(file.at("bytes")), file.at("checksum").get<std::string>()}});

@@ -27,6 +27,7 @@ struct ManifestItem {
   std::string name;          // from the list of skies; may be empty
   std::vector<ManifestFile> files;
   double seconds = 0.0;
+  std::string inputs_hash = {};  // of the row of the list; may be empty
 };
 
 struct Manifest {

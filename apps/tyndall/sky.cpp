@@ -358,6 +358,8 @@ Result<Batch> begin_sky(CommonOptions& options, SkyOptions& sky, const std::vect
       desc.inputs.emplace_back("--time", files::one_line(sky.time));
     } else {
       add_file(desc.inputs, "--list", sky.list);
+      desc.items_input = "--list";
+      desc.item_inputs = [&skies](std::uint64_t number) { return checksum(skies.at(number)); };
     }
   }
   return Batch::begin(std::move(desc));

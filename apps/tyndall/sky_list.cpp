@@ -5,6 +5,7 @@
 
 #include "cli.hpp"
 #include "files/csv.hpp"
+#include "files/file_sum.hpp"
 #include "files/files.hpp"
 #include "files/text.hpp"
 #include "scene/description/solar_position.hpp"
@@ -87,6 +88,15 @@ Result<SunAngles> find_sun(const List& list, std::size_t row, SkyEntry& entry, d
 }
 
 }  // namespace
+
+std::string checksum(const SkyEntry& entry) {
+  std::string text =
+      concat({files::number_text(entry.sun.elevation_deg), " ", files::number_text(entry.sun.azimuth_deg)});
+  for (const std::string& part : {entry.place, entry.time, entry.name}) {
+    text += concat({" ", std::to_string(part.size()), ":", part});
+  }
+  return files::checksum_text(text);
+}
 
 Result<std::vector<SkyEntry>> read_sky_list(const std::string& path, double altitude_m) {
   List list;

@@ -20,6 +20,9 @@ struct SkyEntry {
   std::string name;         // of the row; may be empty
 };
 
+// Returns a checksum of everything that the map of an entry takes from the list.
+[[nodiscard]] std::string checksum(const SkyEntry& entry);
+
 // Reads the list: columns latitude_deg, longitude_deg and time, or sun_elevation_deg and sun_azimuth_deg, and
 // optionally name. `altitude_m` is that of the eye. Every mistake in the file is bad input; the error names line and
 // column.

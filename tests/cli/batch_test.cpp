@@ -55,7 +55,7 @@ TEST(CliBatch, ManifestsAreReadBack) {
   manifest.total = 8;
   manifest.complete = true;
   manifest.inputs = {{"camera.yaw_deg", "12.5"}, {"--size", "8x4"}};
-  manifest.items = {{1, "", {{"f_1.png", {12, "0123456789abcdef"}}}, 0.5}, {4, "a \"name\"", {}, 0.25}};
+  manifest.items = {{1, "", {{"f_1.png", {12, "0123456789abcdef"}}}, 0.5}, {4, "a \"name\"", {}, 0.25, "fedc"}};
   const std::string text = to_json(manifest);
   const Result<Manifest> read = parse_manifest(text, "m.json");
   ASSERT_TRUE(read.ok()) << read.error().message;
@@ -64,6 +64,7 @@ TEST(CliBatch, ManifestsAreReadBack) {
   EXPECT_EQ(read.value().inputs, manifest.inputs);
   EXPECT_EQ(read.value().items[0].files[0].sum, manifest.items[0].files[0].sum);
   EXPECT_EQ(read.value().items[1].name, "a \"name\"");
+  EXPECT_EQ(read.value().items[1].inputs_hash, "fedc");
   EXPECT_EQ(read.value().input("--size"), "8x4");
   EXPECT_EQ(first_difference(manifest.inputs, {{"camera.yaw_deg", "12.5"}, {"--size", "8x5"}}), "--size");
   EXPECT_EQ(first_difference(manifest.inputs, {{"camera.yaw_deg", "12.5"}}), "--size");
@@ -261,6 +262,38 @@ TEST_F(CliBatchRuns, ListsOfSkies) {
   EXPECT_EQ(all["items"][1]["name"], "evening");
   fs::remove(scratch_.at("b_01.sun.json"));
   expect_one_line(run_tyndall(merge), 2, "its file 'b_01.sun.json' is missing");
+}
+
+TEST_F(CliBatchRuns, OnlyChangedRowsOfAListAreMadeAgain) {
+  const std::string header = "sun_elevation_deg,sun_azimuth_deg,name\n";
+  const auto run = [&](const std::string& rows) {
+    return good(with({"sky", "--list", scratch_.write("list.csv", header + rows), "--size", "8x4", "--model", "single",
+                      "-o", scratch_.at("c_%d.exr"), "--resume"},
+                     kSmall));
+  };
+  const auto map = [&](int number) { return scratch_.at("c_" + std::to_string(number) + ".exr"); };
+  run("60,10,a\n30,20,b\n10,30,c\n");
+  std::array<fs::file_time_type, 3> times;
+  std::array<std::string, 3> maps;
+  for (int i = 0; i < 3; ++i) {
+    times[i] = fs::last_write_time(map(i));
+    maps[i] = contents_of(map(i));
+  }
+  // The second row has another sun, and a row is added.
+  run("60,10,a\n31,20,b\n10,30,c\n5,40,d\n");
+  EXPECT_EQ(fs::last_write_time(map(0)), times[0]);
+  EXPECT_NE(contents_of(map(1)), maps[1]);
+  EXPECT_EQ(fs::last_write_time(map(2)), times[2]);
+  EXPECT_TRUE(fs::exists(map(3)));
+  const nlohmann::json manifest = nlohmann::json::parse(contents_of(scratch_.at("c_%d.exr.shard-1-of-1.json")));
+  EXPECT_EQ(manifest["complete"], true);
+  ASSERT_EQ(manifest["items"].size(), 4U);
+  EXPECT_NE(manifest["items"][0]["inputs_hash"], manifest["items"][1]["inputs_hash"]);
+  // The name is part of the map's metadata. The old second row makes the old map.
+  run("60,10,other\n30,20,b\n10,30,c\n5,40,d\n");
+  EXPECT_NE(contents_of(map(0)), maps[0]);
+  EXPECT_EQ(contents_of(map(1)), maps[1]);
+  EXPECT_EQ(fs::last_write_time(map(2)), times[2]);
 }
 
 TEST_F(CliBatchRuns, ReportsOfShards) {
