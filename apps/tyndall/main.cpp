@@ -1,8 +1,10 @@
 // The command line `tyndall`: finds the verb and passes the other arguments to it. Every failure ends in one line on
 // stderr and an exit status.
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <iterator>
 #include <new>
 #include <optional>
 #include <string>
@@ -11,6 +13,7 @@
 #include "cli.hpp"
 #include "features.hpp"
 #include "files/text.hpp"
+#include "large_pages.hpp"
 #include "verbs.hpp"
 
 namespace tyndall::cli {
@@ -46,6 +49,11 @@ int run_verb(const std::string& name, Args args) {
            : concat({option ? "expected --help or --version" : "expected one of ", option ? "" : list})));
 }
 
+bool wants_large_pages(Args args) {
+  return !args.empty() && std::any_of(std::begin(kVerbs), std::end(kVerbs),
+                                      [&](const Verb& verb) { return verb.large_pages && verb.name == args[0]; });
+}
+
 int run(Args args) {
   if (args.empty()) return fail("command line: missing verb; see 'tyndall --help'", kBadUsage);
   const std::string& first = args[0];
@@ -66,6 +74,7 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);
   try {
     const std::vector<std::string> args(argv + (argc > 0 ? 1 : 0), argv + argc);
+    if (tyndall::cli::wants_large_pages(args)) tyndall::cli::restart_with_large_pages(argv);
     return tyndall::cli::run(args);
   } catch (const std::bad_alloc&) {
     std::fputs("tyndall: error: this machine: not enough memory; expected a smaller size or fewer resources\n", stderr);

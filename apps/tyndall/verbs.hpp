@@ -31,18 +31,19 @@ struct Verb {
   std::string_view name;
   int (*run)(Args args);
   std::string_view summary;
+  bool large_pages = false;  // uses much memory
 };
 
 // The verbs in the order of `tyndall --help`.
 inline constexpr Verb kVerbs[] = {
-    {"render", run_render, "render one frame or a sequence to PNG or EXR"},
-    {"view", run_view, "fly over the scene in a window with live controls for every parameter"},
-    {"probe", run_probe, "compute radiance and transmittance of given rays with any of the models"},
-    {"tables", run_tables, "build the scattering tables, cache them, report the time of each stage, export them"},
-    {"sky", run_sky, "render the sky as an environment map, with the sun by angles or by place and time"},
-    {"validate", run_validate, "compare every model with the path tracer, in a report with tables and plots"},
+    {"render", run_render, "render one frame or a sequence to PNG or EXR", true},
+    {"view", run_view, "fly over the scene in a window with live controls for every parameter", true},
+    {"probe", run_probe, "compute radiance and transmittance of given rays with any of the models", true},
+    {"tables", run_tables, "build the scattering tables, cache them, report the time of each stage, export them", true},
+    {"sky", run_sky, "render the sky as an environment map, with the sun by angles or by place and time", true},
+    {"validate", run_validate, "compare every model with the path tracer, in a report with tables and plots", true},
     {"merge", run_merge, "combine the results of shards: tables of probe, reports of validate, manifests"},
-    {"bench", run_bench, "measure device milliseconds per pass"},
+    {"bench", run_bench, "measure device milliseconds per pass", true},
     {"compare", run_compare, "measure the difference between two images"},
     {"report", run_report, "measure whether the program is right and fast on a device, in at most 8 minutes"},
     {"devices", run_devices, "list the Vulkan devices and show which one would be used"},

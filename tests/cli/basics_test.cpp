@@ -1,5 +1,6 @@
 // The executable's interface for scripts: exit statuses, one line per error, help, params.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -20,6 +21,39 @@ void expect_error(const ProcessResult& process, int status, const std::string& m
   EXPECT_EQ(process.status, status);
   EXPECT_EQ(process.out, "");
   EXPECT_EQ(process.err, "tyndall: error: " + message + "\n");
+}
+
+// Returns the contents of a file of /proc about a process, with spaces for zeros.
+std::string about_process(pid_t process, const std::string& name) {
+  std::string text = contents_of("/proc/" + std::to_string(process) + "/" + name);
+  std::replace(text.begin(), text.end(), '\0', ' ');
+  return text;
+}
+
+// A verb that uses much memory restarts itself once, with its arguments and under its name.
+TEST(Cli, LargePages) {
+  if (contents_of("/sys/kernel/mm/transparent_hugepage/enabled").find("[madvise]") == std::string::npos)
+    GTEST_SKIP() << "this system does not grant large pages on request";
+  const Scratch scratch;
+  const std::string queries = scratch.at("queries.csv");  // `probe` waits until something writes to it
+  ASSERT_EQ(::mkfifo(queries.c_str(), 0600), 0);
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    ::unsetenv("GLIBC_TUNABLES");
+    const int none = ::open("/dev/null", O_WRONLY);
+    if (::dup2(none, STDERR_FILENO) < 0) ::_exit(127);
+    ::execl(TYNDALL_EXECUTABLE, "tyndall", "probe", "--model", "homogeneous", "--queries", queries.c_str(), nullptr);
+    ::_exit(127);
+  }
+  const int writer = ::open(queries.c_str(), O_WRONLY);  // returns when the program reads
+  EXPECT_NE(about_process(child, "environ").find("GLIBC_TUNABLES=glibc.malloc.hugetlb=1 "), std::string::npos);
+  EXPECT_EQ(about_process(child, "comm"), "tyndall\n");
+  EXPECT_EQ(about_process(child, "cmdline"), "tyndall probe --model homogeneous --queries " + queries + " ");
+  ::close(writer);
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 2) << status;  // an empty table
 }
 
 TEST(Cli, HelpAndVersion) {
