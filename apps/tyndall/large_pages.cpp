@@ -11,7 +11,7 @@
 namespace tyndall::cli {
 namespace {
 
-// Returns whether the kernel gives large pages to a process that asks for them, and to no other.
+// Returns whether the kernel gives large pages to a process that requests them, and to no other.
 bool granted_on_request() {
   std::ifstream file("/sys/kernel/mm/transparent_hugepage/enabled");
   std::string text;
