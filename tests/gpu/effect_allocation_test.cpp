@@ -21,6 +21,14 @@ std::atomic<std::size_t> allocations = 0;
   if (made == nullptr) throw std::bad_alloc();
   return made;
 }
+// Like that of the C++ library. That of the address sanitizer returns memory that must not be given to free().
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  try {
+    return ::operator new(size);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
 [[gnu::noinline]] void operator delete(void* pointer) noexcept { std::free(pointer); }
 [[gnu::noinline]] void operator delete(void* pointer, std::size_t) noexcept { std::free(pointer); }
 

@@ -25,8 +25,7 @@ thread_local bool has_failed = false;
 thread_local int in_driver = 0;
 
 bool fails(Kind kind) {
-  if (left < 0 || kind != armed_kind || in_driver > 0) return false;
-  if (left-- > 0) return false;
+  if (left < 0 || kind != armed_kind || in_driver > 0 || left-- > 0) return false;
   has_failed = true;
   return true;
 }
@@ -441,10 +440,11 @@ void forget_commands() {
 
 }  // namespace tyndall::faults
 [[gnu::noinline]] void* operator new(std::size_t size) {
-  if (tyndall::faults::host_allocation_fails(__builtin_return_address(0))) throw std::bad_alloc();
-  void* const made = std::malloc(size > 0 ? size : 1);
-  if (made == nullptr) throw std::bad_alloc();
-  return made;
+  const bool fails = tyndall::faults::host_allocation_fails(__builtin_return_address(0));
+  if (void* const made = fails ? nullptr : std::malloc(size > 0 ? size : 1); made != nullptr) return made;
+  throw std::bad_alloc();
 }
+// Only for the driver. That of the address sanitizer returns memory that must not be given to free().
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return std::malloc(size > 0 ? size : 1); }
 [[gnu::noinline]] void operator delete(void* pointer) noexcept { std::free(pointer); }
 [[gnu::noinline]] void operator delete(void* pointer, std::size_t) noexcept { std::free(pointer); }
