@@ -103,8 +103,8 @@ Result<ElevationSource> Terrain::load_source(const gpu::Device& device, const Te
   elevation.exaggeration = params.exaggeration;
   elevation.units = params.units;
   elevation.planet_radius_m = radius_m;
-  elevation.max_samples = static_cast<int>(device.properties.limits.maxImageDimension2D) * 2 / 3;
-  elevation.max_samples = std::min(elevation.max_samples, kMaxElevationSamples);
+  const std::uint32_t side = device.properties.limits.maxImageDimension2D;
+  elevation.max_samples = static_cast<int>(std::min<std::uint64_t>(std::uint64_t{side} * 2 / 3, kMaxElevationSamples));
   return ElevationSource::create(elevation);
 }
 
