@@ -3,7 +3,10 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "config/settings.hpp"
 #include "run_tyndall.hpp"
@@ -46,11 +49,19 @@ TEST(Cli, LargePages) {
     ::execl(TYNDALL_EXECUTABLE, "tyndall", "probe", "--model", "homogeneous", "--queries", queries.c_str(), nullptr);
     ::_exit(127);
   }
-  const int writer = ::open(queries.c_str(), O_WRONLY);  // returns when the program reads
+  int writer = -1;  // can be opened once the program reads
+  for (int i = 0; i < 3000 && writer < 0; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    writer = ::open(queries.c_str(), O_WRONLY | O_NONBLOCK);
+  }
+  EXPECT_GE(writer, 0) << "the program does not read the queries";
   EXPECT_NE(about_process(child, "environ").find("GLIBC_TUNABLES=glibc.malloc.hugetlb=1 "), std::string::npos);
   EXPECT_EQ(about_process(child, "comm"), "tyndall\n");
   EXPECT_EQ(about_process(child, "cmdline"), "tyndall probe --model homogeneous --queries " + queries + " ");
-  ::close(writer);
+  if (writer >= 0)
+    ::close(writer);
+  else
+    ::kill(child, SIGKILL);
   int status = 0;
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 2) << status;  // an empty table

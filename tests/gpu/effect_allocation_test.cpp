@@ -21,7 +21,7 @@ std::atomic<std::size_t> allocations = 0;
   if (made == nullptr) throw std::bad_alloc();
   return made;
 }
-// Like that of the C++ library. That of the address sanitizer returns memory that must not be given to free().
+// As in the C++ library. The version of the address sanitizer returns memory that free() must not receive.
 [[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   try {
     return ::operator new(size);

@@ -444,7 +444,7 @@ void forget_commands() {
   if (void* const made = fails ? nullptr : std::malloc(size > 0 ? size : 1); made != nullptr) return made;
   throw std::bad_alloc();
 }
-// Only for the driver. That of the address sanitizer returns memory that must not be given to free().
+// Only the driver calls this. The version of the address sanitizer returns memory that free() must not receive.
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return std::malloc(size > 0 ? size : 1); }
 [[gnu::noinline]] void operator delete(void* pointer) noexcept { std::free(pointer); }
 [[gnu::noinline]] void operator delete(void* pointer, std::size_t) noexcept { std::free(pointer); }
