@@ -88,6 +88,17 @@ TEST_F(SceneGltf, MorphTargetsMoveNormalsCoordinatesAndColours) {
   EXPECT_EQ(data.vertices[0].color, 0xFFFF00FFU);
 }
 
+TEST_F(SceneGltf, NormalsOfZeroLengthAreReplaced) {
+  GltfFile file = triangle();
+  // The fourth vertex belongs to no triangle.
+  primitive(file)["attributes"]["POSITION"] = file.points({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {9, 9, 9}});
+  primitive(file)["attributes"]["NORMAL"] = file.points({{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {0, 0, 0}});
+  const MeshData data = load(file);
+  ASSERT_EQ(data.vertices.size(), 4U);
+  const std::vector<glm::vec3> expected = {{0, 0, 1}, {1, 0, 0}, {0, 0, 1}, {0, 1, 0}};
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(data.vertices[i].normal, expected[i]) << i;
+}
+
 TEST_F(SceneGltf, SpecularGlossinessIsDrawnWithItsDiffuseColour) {
   GltfFile file = triangle();
   file.root["materials"][0] = {

@@ -9,6 +9,7 @@ namespace tyndall::scene {
 namespace {
 
 constexpr double kLargestCoordinate_m = 1.0e7;
+constexpr glm::vec3 kUp(0, 1, 0);
 
 std::string shown_range(int low, int high) {
   return low == high ? std::to_string(low) : std::to_string(low) + " to " + std::to_string(high);
@@ -19,7 +20,7 @@ glm::vec3 flat_normal(const MeshVertex& a, const MeshVertex& b, const MeshVertex
   const glm::dvec3 n =
       glm::cross(glm::dvec3(b.position) - glm::dvec3(a.position), glm::dvec3(c.position) - glm::dvec3(a.position));
   const double length = glm::length(n);
-  return length > 0.0 ? glm::vec3(n / length) : glm::vec3(0, 1, 0);
+  return length > 0.0 ? glm::vec3(n / length) : kUp;
 }
 
 }  // namespace
@@ -253,6 +254,10 @@ void GltfReader::emit(const GltfVertices& vertices, const std::vector<std::uint3
                                out_.vertices[base + corners[t + 2]]);
         }
       }
+    }
+    // Vertices without a triangle are not drawn, but every normal has unit length.
+    for (std::size_t i = base; i < out_.vertices.size(); ++i) {
+      if (out_.vertices[i].normal == glm::vec3(0.0F)) out_.vertices[i].normal = kUp;
     }
   } else {
     // Without normals, triangles are flat, so each has its own vertices.
