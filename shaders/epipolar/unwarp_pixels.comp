@@ -33,17 +33,32 @@ bool at_limb(Around a, vec2 position) {
   return grazes && depths_differ(a);
 }
 
-// Returns whether the in-scattering of a pixel may be visibly wrong because of samples at other depths. If no sample
-// has a similar depth, it may be anything up to that of the brightest sample. Otherwise the error is estimated by the
-// difference between the samples, times the part of the weight that is lost. `color`: the colour of the pixel.
-bool may_be_wrong(Around a, Blend b, bool sky, Spectrum opacity, vec3 color) {
-  const float kInvisible = 0.004;  // of the colour
+// Error of the picture that cannot be seen, relative to the colour of a pixel.
+const float kInvisible = 0.004;
+
+// Returns an upper bound of the opacity of the air in front of a pixel. It costs much less than own_optical_depth().
+float opacity_bound(vec2 position, float visible_m, bool sky) {
+  if (sky) return 1.0;
+  Ray ray = ray_to_depth(frame, position, visible_m, false);
+  float lowest = ray.altitude + ray.length_m * min(ray.cos_zenith, 0.0);
+  return min(LARGEST(extinction_at(medium, min(lowest, medium.atmosphere_height_m))) * ray.length_m, 1.0);
+}
+
+// Returns whether a pixel that no sample resembles may be visibly wrong. Its in-scattering may be anything up to that
+// of the brightest sample, and its transmittance anything that its opacity allows. `color`: the colour of the pixel.
+bool may_be_unlike(Around a, float opacity, vec3 color) {
+  Spectrum high = max(max(a.source[0], a.source[1]), max(a.source[2], a.source[3]));
+  vec3 error = (COLOR(high * high) * frame.sun_irradiance + color) * opacity;
+  return any(greaterThan(error, kInvisible * color));
+}
+
+// Returns whether the in-scattering of a pixel may be visibly wrong because some of its samples are at other depths.
+// The error is estimated by the difference between the samples, times the part of the weight that is lost.
+bool may_be_wrong(Around a, Blend b, Spectrum opacity, vec3 color) {
   Spectrum low = min(min(a.source[0], a.source[1]), min(a.source[2], a.source[3]));
   Spectrum high = max(max(a.source[0], a.source[1]), max(a.source[2], a.source[3]));
-  bool unlike_all = b.weight < (sky ? epipolar.min_weight_sky : epipolar.min_weight);
-  Spectrum wrong = unlike_all ? high * high : max(1.0 - b.weight, 0.0) * (high * high - low * low);
-  vec3 error = COLOR(wrong * opacity) * frame.sun_irradiance;
-  return any(greaterThan(error, (unlike_all ? kInvisible : epipolar.tolerated_difference) * color));
+  vec3 error = COLOR(max(1.0 - b.weight, 0.0) * (high * high - low * low) * opacity) * frame.sun_irradiance;
+  return any(greaterThan(error, epipolar.tolerated_difference * color));
 }
 
 void unwarp_pixel(uint block, uint k) {
@@ -62,8 +77,7 @@ void unwarp_pixel(uint block, uint k) {
   bool skyline = kSkyline && depth_m >= kSkyDepth && depths_differ(a);
   if (skyline) b.source = sky_source(a, position, b.source);
   bool unlike_all = b.weight < (sky ? epipolar.min_weight_sky : epipolar.min_weight);
-  // Extinction of samples at other depths says nothing about that of the pixel, which may_be_wrong() needs.
-  if (skyline || kSparse || (unlike_all && !kHomogeneous && kDownscale == 1))
+  if (skyline || kSparse)
     b.extinction = extinction_of(max(own_optical_depth(position, visible_m, sky), Spectrum(0.0)), depth_m);
   bool wrong = unlike_all;
   if (kDownscale == 1) {
@@ -73,7 +87,8 @@ void unwarp_pixel(uint block, uint k) {
     if (!kHomogeneous) {
       Spectrum transmittance, opacity;
       attenuation(optical_depth_at(b.extinction, depth_m), transmittance, opacity);
-      wrong = may_be_wrong(a, b, sky, opacity, color);
+      wrong = unlike_all ? may_be_unlike(a, opacity_bound(position, visible_m, sky), color)
+                         : may_be_wrong(a, b, opacity, color);
     }
   } else {
     store_downscaled(place, depth_m, b.source, b.extinction);
