@@ -69,6 +69,7 @@ struct Requirements {
 };
 [[nodiscard]] TYNDALL_API Requirements requirements();
 
+// The format of the output. Radiance beyond 65504, the largest number in half precision, is clamped to it in rgba16f.
 enum class OutputFormat : std::uint32_t { rgba16f, rgba32f };
 
 class Effect;

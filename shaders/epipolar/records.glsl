@@ -5,6 +5,7 @@
 #ifndef TYNDALL_RECORDS_GLSL
 #define TYNDALL_RECORDS_GLSL
 
+#include "lib/portable.glsl"
 #include "lib/spectrum.glsl"
 
 const float kSkyDepth = 1e9;  // [m] of rays that leave the atmosphere
@@ -28,7 +29,7 @@ void attenuation(Spectrum tau, out Spectrum transmittance, out Spectrum opacity)
 
 Spectrum optical_depth_at(Spectrum extinction, float depth_m) { return extinction * depth_in_megametres(depth_m); }
 
-Spectrum root_for_half(Spectrum x) { return min(sqrt(max(x, Spectrum(0.0))), Spectrum(65504.0)); }
+Spectrum root_for_half(Spectrum x) { return min(sqrt(max(x, Spectrum(0.0))), Spectrum(kLargestHalf)); }
 
 uvec4 pack_sample(Sample s) {
   Spectrum source = root_for_half(s.source);

@@ -146,7 +146,7 @@ void main() {
             transmittance(medium, density_integral_along(medium, from_altitude, from_cosine, to - start));
       }
     }
-    imageStore(froxel_inscattering, ivec3(at, int(k)), vec4(COLOR(light), 1.0));
+    imageStore(froxel_inscattering, ivec3(at, int(k)), vec4(min(COLOR(light), vec3(kLargestHalf)), 1.0));
     imageStore(froxel_transmittance, ivec3(at, int(k)), STORED(path_transmittance, 1.0));
   }
 }

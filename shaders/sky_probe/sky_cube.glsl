@@ -3,6 +3,8 @@
 #ifndef TYNDALL_SKY_CUBE_GLSL
 #define TYNDALL_SKY_CUBE_GLSL
 
+#include "lib/portable.glsl"
+
 // Returns the index of the first texel of a level. The levels before it have 6 (s^2 + (s / 2)^2 + ...) texels.
 uint level_start(uint cube_size, uint level) {
   uint width = cube_size >> level;
@@ -25,9 +27,9 @@ vec3 texel_point(uint index, uint width) {
   return face_point(index / (width * width), at * (2.0 / float(width)) - 1.0);
 }
 
-// Returns the texel of a cube map in half floats, which end at 65504.
+// Returns the texel of a cube map in half precision.
 uvec2 texel_of(vec3 light) {
-  vec3 held = min(light, vec3(65504.0));
+  vec3 held = min(light, vec3(kLargestHalf));
   return uvec2(packHalf2x16(held.rg), packHalf2x16(vec2(held.b, 1.0)));
 }
 

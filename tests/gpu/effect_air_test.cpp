@@ -86,7 +86,7 @@ TEST_F(EffectAir, TheSkyIsTheIntegralFromGroundAtmosphereAndSpace) {
 TEST_F(EffectAir, TheSkyReachesTheHorizonOfLowerLand) {
   constexpr double kLand = -430.0;
   for (const double altitude : {2.0, -20.0, -130.0}) {
-    for (const Technique technique : {Technique::brute_force, Technique::epipolar}) {
+    for (const Technique technique : {Technique::brute_force, Technique::epipolar, Technique::froxels}) {
       TestFrame frame;
       frame.extent = {8, 32};
       frame.view = TestView::at(altitude, 0.3, -0.6 * kRad, 0.02);
@@ -236,6 +236,27 @@ TEST_F(EffectAir, HalfPrecisionOutputIsTheSamePicture) {
       // The mantissa has 11 bits, rounded or truncated.
       EXPECT_NEAR(half[i][c], full[i][c], full[i][c] / 1024.0) << i;
     }
+  }
+}
+
+TEST_F(EffectAir, HalfPrecisionOutputIsClamped) {
+  TestFrame frame;
+  frame.view = TestView::at(1000.0, 0.5, 0.2, 0.5);
+  frame.to_sun = sun_at(10.0);
+  frame.irradiance = Vec3(1e6F);
+  Params params = precise_params();
+  for (const Technique technique : {Technique::brute_force, Technique::epipolar, Technique::froxels}) {
+    params.scattering.technique = technique;
+    const std::vector<glm::dvec3> full = draw(params, frame);
+    const std::vector<glm::dvec3> half = draw(params, frame, OutputFormat::rgba16f);
+    int clamped = 0;
+    for (std::size_t i = 0; i < full.size(); ++i) {
+      for (int c = 0; c < 3; ++c) {
+        clamped += full[i][c] > 65504.0 ? 1 : 0;
+        EXPECT_NEAR(half[i][c], std::min(full[i][c], 65504.0), full[i][c] / 1024.0) << i;
+      }
+    }
+    EXPECT_GT(clamped, 0);
   }
 }
 

@@ -89,10 +89,14 @@ void change(Params& params, const ParamInfo& row, Random& random) {
   std::memcpy(at, &value, sizeof value);
 }
 
-// Limits what only takes time: samples, steps and orders.
+// Limits what only takes time: large tables and volumes, samples, steps and orders.
 void shorten(Params& params) {
+  if (params.tables.size == Params().tables.size) params.tables.size = {4, 8, 8, 4};
   params.epipolar.slices = std::min(params.epipolar.slices, 64U);
   params.epipolar.samples = std::min(params.epipolar.samples, 64U);
+  params.froxels.columns = std::min(params.froxels.columns, 16U);
+  params.froxels.rows = std::min(params.froxels.rows, 16U);
+  params.froxels.slices = std::min(params.froxels.slices, 16U);
   params.scattering.integration_steps = std::min(params.scattering.integration_steps, 64U);
   params.tables.orders = std::min(params.tables.orders, 3U);
 }
@@ -221,7 +225,7 @@ class Soak {
     if (!effect_ || random_.one_in(400)) make();
     if (random_.one_in(2)) set_params();
     if (random_.one_in(20)) set_limits();
-    if (random_.one_in(4)) build(random_.one_in(2) ? UINT32_MAX : 1 + random_.below(20));
+    if (random_.one_in(16)) build(random_.one_in(2) ? UINT32_MAX : 1 + random_.below(20));
     draw();
     if (random_.one_in(10)) refuse();
   }
@@ -239,7 +243,6 @@ class Soak {
     desc.timings = random_.one_in(2);
     desc.table_pipelines_later = random_.one_in(2);
     Params params;
-    params.tables.size = {4, 8, 8, 4};
     params.tables.orders = 2;
     shorten(params);
     Result<Effect> made = Effect::create(info_, desc, params);
@@ -373,6 +376,7 @@ int run(const Options& options) {
         return 1;
       }
       if (options.frames >= 8 && (i + 1) % (options.frames / 8) == 0) memory.push_back(resident_bytes() >> 20U);
+      if ((i + 1) % 1000 == 0) std::fprintf(stderr, "soak: %llu frames\n", static_cast<unsigned long long>(i + 1));
     }
     counts = soak.counts();
   }
