@@ -5,7 +5,7 @@
 #ifndef TYNDALL_RECORDS_GLSL
 #define TYNDALL_RECORDS_GLSL
 
-#include "lib/portable.glsl"
+#include "lib/half.glsl"
 #include "lib/spectrum.glsl"
 
 const float kSkyDepth = 1e9;  // [m] of rays that leave the atmosphere

@@ -12,6 +12,7 @@
 
 #include "frame/march_ray.glsl"
 #include "lib/froxels.glsl"
+#include "lib/half.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(push_constant) uniform Push {

@@ -4,7 +4,7 @@
 #define TYNDALL_PICTURE_GLSL
 
 #include "frame/constants.glsl"
-#include "lib/portable.glsl"
+#include "lib/half.glsl"
 
 layout(binding = 3) uniform sampler2D scene_color;
 layout(binding = 4) uniform sampler2D scene_depth;

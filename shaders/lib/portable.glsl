@@ -12,7 +12,4 @@
 #define INOUT(type) inout type
 #endif
 
-// The largest number in half precision. A larger one is stored as infinity, or as NaN by SwiftShader.
-const float kLargestHalf = 65504.0;
-
 #endif

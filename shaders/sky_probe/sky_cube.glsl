@@ -3,7 +3,7 @@
 #ifndef TYNDALL_SKY_CUBE_GLSL
 #define TYNDALL_SKY_CUBE_GLSL
 
-#include "lib/portable.glsl"
+#include "lib/half.glsl"
 
 // Returns the index of the first texel of a level. The levels before it have 6 (s^2 + (s / 2)^2 + ...) texels.
 uint level_start(uint cube_size, uint level) {
