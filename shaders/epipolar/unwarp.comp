@@ -64,8 +64,9 @@ Attenuation attenuation_of(Spectrum tau) {
   return a;
 }
 
-// Returns the attenuation at another optical depth: a series of fourth order in the difference x. The difference is
-// small in a block at one depth without extinction_varies(). The error is below 0.003 even at the limb.
+// Returns the attenuation at another optical depth, by a series of fourth order in the difference x. For use in blocks
+// whose pixels have one depth and for which extinction_varies() is false, because x is small there. The error is below
+// 0.003 even at the limb.
 Attenuation attenuation_near(Attenuation a, Spectrum tau) {
   Spectrum x = tau - a.tau;
   Spectrum more = a.transmittance * x * (1.0 - x * (0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0))));

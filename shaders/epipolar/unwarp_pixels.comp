@@ -36,7 +36,7 @@ bool at_limb(Around a, vec2 position) {
 // Error of the picture that cannot be seen, relative to the colour of a pixel.
 const float kInvisible = 0.004;
 
-// Returns an upper bound of the opacity of the air in front of a pixel. It costs much less than own_optical_depth().
+// Returns an upper bound of the opacity of the medium in front of a pixel. It costs much less than own_optical_depth().
 float opacity_bound(vec2 position, float visible_m, bool sky) {
   if (sky) return 1.0;
   Ray ray = ray_to_depth(frame, position, visible_m, false);

@@ -15,8 +15,8 @@
 
 BLOCK_GROUP;
 
-// Multiple of the refinement threshold within which depths belong to one slope. A slope is even between buffer pixels,
-// regardless of depth_nearness().
+// Depths whose relative difference is at most this multiple of the refinement threshold belong to one sloping surface.
+// On such a surface, buffer pixels are blended bilinearly, without the weights of depth_nearness().
 const float kOneSlope = 8.0;
 
 void main() {

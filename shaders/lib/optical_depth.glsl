@@ -100,7 +100,7 @@ vec3 density_integral_between(IN(Medium) m, float h0, float mu, float da, float 
 
   float ozone = 0.0;
   if (!smooth_ozone && highest > m.ozone_centre_m - m.ozone_half_width_m) {
-    // Split into outward paths: from the lower end, or from the perigee to each end.
+    // Divide the ray into paths along which altitude increases: one from the lower end, or two from the perigee.
     float from = passes_perigee ? hp : qa >= 0.0 ? ha : hb;
     float q = passes_perigee ? 0.0 : abs(qa >= 0.0 ? qa : qb);
     float to = passes_perigee || qa < 0.0 ? ha : hb;

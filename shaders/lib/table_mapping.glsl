@@ -23,8 +23,8 @@
 const float kTableMargin = 16.0;
 // The lowest altitude of the tables [m]. Rays that begin below it are looked up as if they began at this altitude.
 const float kLowestTableAltitude = -500.0;
-// Offset of the fourth power that spaces altitudes (altitude_share()). It bounds their density at the ground, where the
-// lowest texels of the default size are 90 m apart.
+// Offset in the fourth power that spaces altitudes (altitude_share()). It prevents texels from crowding at the ground:
+// the lowest ones are 90 m apart with the default size.
 const float kAltitudeOffset = 0.25;
 // Spacing of the yusov mapping of the angle between view and sun beside the sun, relative to the mean spacing.
 const float kAngleDensity = 0.8;

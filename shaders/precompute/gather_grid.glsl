@@ -34,7 +34,7 @@ float gather_ground_distance(Medium m, float h, float mu) {
 // Returns the first of the points (altitude x sun) whose irradiance lights the ground below a point.
 uint gather_ground_row(uint altitude) { return min(altitude, kGatherBelow) * kGatherSuns; }
 
-// Returns the element of the irradiance of one order at a point (altitude x sun). The last three orders are stored.
+// Returns the index of the irradiance of one order at a point (altitude x sun). The last three orders are stored.
 uint irradiance_row(uint order, uint point) { return order % 3u * (kGatherAltitudes * kGatherSuns) + point; }
 
 // Returns the cosine of the lowest sun of the grid, which is below the horizon of the top of the atmosphere.

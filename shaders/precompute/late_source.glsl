@@ -17,22 +17,22 @@ uint late_modes(TableShape shape, uint n) {
   return max(kLateTerms + shape.orders - min(n, kLateTerms + shape.orders), kLateModes);
 }
 
-// Returns the element of term m of the source function, per scattering coefficient. Term 0, the mean, is stored as its
+// Returns the index of term m of the source function, per scattering coefficient. Term 0, the mean, is stored as its
 // fourth root, term 1 as its ratio to the mean: both are interpolated between suns. The other terms are stored as they
 // are.
 uint late_source_index(uint altitude, uint zenith, uint m, uint sun) {
   return ((altitude * kSourceZeniths + zenith) * 2u * kLateTerms + m) * kGatherSuns + sun;
 }
-// Returns the element of term m of the sum of the source functions of the late orders.
+// Returns the index of term m of the sum of the source functions of the late orders.
 uint late_sum_index(uint altitude, uint zenith, uint m, uint sun) {
   return late_source_index(altitude, zenith, kLateTerms + m, sun);
 }
-// Returns the element of term m of the incident light.
+// Returns the index of term m of the incident light.
 uint late_incident_index(uint altitude, uint zenith, uint m, uint sun) {
   return gather_index(altitude, zenith, m, sun);
 }
 
-// Returns the part of the aerosol in the scattering coefficient at altitude h.
+// Returns the aerosol's fraction of the scattering coefficient at altitude h.
 Spectrum aerosol_part(Medium m, float h) {
   vec3 density = densities(m, h);
   Spectrum mie = MIE_SCATTERING(m) * density.y;

@@ -179,7 +179,8 @@ vec3 tyndall_sun_irradiance(vec3 position) {
 }
 
 // Returns the irradiance of the sky and of the light that the ground reflects, on a surface with this normal. It is
-// exact for a surface that faces upwards. For other surfaces, sky and ground each count as evenly bright.
+// exact for a surface that faces upwards. For other surfaces, the sky and the ground are each treated as uniformly
+// bright.
 vec3 tyndall_sky_irradiance(vec3 position, vec3 normal) {
   Place place = place_at(position);
   Spectrum sky = sky_at(place.altitude, place.cos_sun_zenith);

@@ -1,4 +1,5 @@
-// Meshes seen by the camera. Out: the radiance of the surface, or the factor that it leaves of the picture behind it.
+// Shades meshes as the camera sees them. Writes the radiance of the surface or, for clear glass, the factor by which
+// the picture behind it is multiplied.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

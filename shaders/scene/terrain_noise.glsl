@@ -38,7 +38,7 @@ struct TerrainCell {
   vec2 f;        // position in the cell, [0; 1)
 };
 
-// The terrain that the octaves so far have built.
+// The terrain after the octaves that have been added so far.
 struct TerrainSurface {
   float height_m;
   vec2 slope;   // smooth gradient that steers finer gullies, m/m
@@ -48,7 +48,8 @@ struct TerrainSurface {
 // Returns bounds of the elevation that terrain_height_at() can return [m].
 vec2 terrain_height_bounds() { return vec2(kTerrainMinM, kTerrainMaxM); }
 
-// Returns the nearest position to a point of the map. Far from the origin, floats are too coarse; use integers there.
+// Returns the integer position, in units of 1 / kTerrainUnitsPerM metres, that is nearest to a point of the map. Far
+// from the origin, floats are too coarse; compute with integers there.
 ivec2 terrain_units(vec2 map_m) { return ivec2(floor(map_m * kTerrainUnitsPerM + vec2(0.5, 0.5))); }
 
 TerrainCell terrain_cell(ivec2 units, vec2 warp_m, int a, int b, int shift) {

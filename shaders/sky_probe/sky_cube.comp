@@ -13,8 +13,8 @@ layout(std430, binding = 2) writeonly buffer sky_cube_radiance_block { vec4 radi
 layout(std430, binding = 3) writeonly buffer sky_cube_texels_block { uvec2 texels[]; };
 layout(push_constant) uniform Push { uint first; };
 
-// Returns the solid angle of a texel [sr]: its area on the face times the mean of the density (1 + s^2 + t^2)^-1.5, as
-// the value at the centre and the next term of the series, which has the Laplacian.
+// Returns the solid angle of a texel [sr]: its area on the face times the mean of the density (1 + s^2 + t^2)^-1.5. The
+// mean is the value at the centre plus the next term of its series, which contains the Laplacian.
 float solid_angle(uint index, uint width) {
   float h = 1.0 / float(width);
   vec3 centre = texel_point(index, width);
