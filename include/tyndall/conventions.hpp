@@ -77,7 +77,7 @@ inline constexpr Mat4 kLooksDownZ = {{1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0
 }
 
 // Returns a projection with depth from 0 to 1, from one with depth from -1 to 1. The depth image must have been written
-// with glDepthRange's default, which stores the same.
+// with the default of glDepthRange, which maps depth in the same way.
 [[nodiscard]] constexpr Mat4 depth_from_opengl(const Mat4& clip_from_view) {
   Mat4 out = clip_from_view;
   for (int column = 0; column < 4; ++column) {

@@ -105,15 +105,15 @@ struct EffectDesc {
   // Reports suspicious inputs of a frame through DeviceInfo::message. Each is reported once per view, and again only
   // after a frame in which it was right.
   bool check_inputs = true;
-  // Shares the tables of this effect, of the same VkDevice, instead of having its own. Both effects are then equal: the
-  // tables exist until the last effect that uses them is destroyed, and any of them can build, load and save them. The
-  // parameters from which tables follow must agree, or create() is refused: planet.*, atmosphere.*, tables.* and
-  // scattering.color. To change them, call set_params() of each effect; the first call begins the build. record() of an
-  // effect whose parameters are those of neither the finished tables nor the build is an error. The effects count as
-  // one object: use them from one thread at a time, and submit their commands to the same queue. DeviceInfo::memory,
-  // message and replace_shader of the effect that made the tables must outlive all of them. The memory of the tables is
-  // part of one effect's memory() and resources(). query_memory() omits it if this is not null. Read by create() and
-  // query_memory() only; null in desc().
+  // Shares the tables of this effect, of the same VkDevice, instead of having its own. Both effects then have the same
+  // rights: the tables exist until the last effect that uses them is destroyed, and each effect can build, load and
+  // save them. The parameters that determine the tables must agree: planet.*, atmosphere.*, tables.* and
+  // scattering.color; otherwise create() returns an error. To change them, call set_params() of each effect; the first
+  // call begins the build. record() returns an error if the parameters of its effect belong neither to the finished
+  // tables nor to those that are being built. The effects count as one object: use them from one thread at a time, and
+  // submit their commands to the same queue. DeviceInfo::memory, message and replace_shader of the effect that made the
+  // tables must outlive all effects that share them. The memory of the tables is part of one effect's memory() and
+  // resources(). query_memory() omits it if this is not null. Read by create() and query_memory() only; null in desc().
   const Effect* tables_of = nullptr;
 };
 

@@ -79,8 +79,8 @@ struct Params {
 #define PARAM_ENUM(group, name, type, def, affects, doc)
 #include "tyndall/params.def"
 #include "tyndall/params_undef.h"
-  // The phase function with atmosphere.mie_phase = table (tyndall/phase_table.hpp); it is not in param_table().
-  // Required then, and otherwise not read.
+  // The phase function if atmosphere.mie_phase is table (tyndall/phase_table.hpp). With other values of mie_phase it is
+  // not read and may be null. It is not in param_table().
   std::shared_ptr<const PhaseTable> phase_table = nullptr;
 };
 

@@ -34,8 +34,8 @@ class ToneMapper {
   Result<void> measure(VkCommandBuffer cmd, VkImageView radiance, VkExtent2D extent, const TonemapSettings& settings,
                        double seconds, std::uint32_t slot = 0);
   // Records the pass from `radiance` to `display`, two images of the same extent: linear values in [0; 1] with Rec. 709
-  // primaries, which are not yet encoded as sRGB. Writes `display` in COMPUTE_SHADER / SHADER_WRITE. With auto
-  // exposure, an error unless measure() was recorded before. `slot` as in measure().
+  // primaries, which are not yet encoded as sRGB. Writes `display` in COMPUTE_SHADER / SHADER_WRITE. Returns an error
+  // with auto exposure if measure() was not recorded before. `slot` has the same meaning as for measure().
   Result<void> record(VkCommandBuffer cmd, VkImageView radiance, VkImageView display, VkExtent2D extent,
                       const TonemapSettings& settings, std::uint32_t slot = 0);
   // Makes the next picture take effect at once, because it is unrelated to the previous one.

@@ -43,7 +43,7 @@ constexpr std::size_t kHistogramBins = 256;
 // Returns log2 of the luminance (in the picture's unit of radiance) at the centre of a histogram bin.
 [[nodiscard]] double stop_of_bin(std::size_t bin);
 
-// The measurement of one picture.
+// The luminance of one picture and the exposure that follows from it, as measured on the GPU.
 struct Measurement {
   float exposure = 0.0F;                         // scale of the radiance with auto exposure
   float luminance = 0.0F;                        // luminance that the eye is adapted to

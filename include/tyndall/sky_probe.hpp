@@ -83,11 +83,12 @@ class TYNDALL_API SkyProbe {
   ~SkyProbe();
 
   // Records at most `budget` of the slices of an update, by default all of them. Coefficients and cube map change with
-  // the last slice only. The inputs, and scattering.scale, take effect with the first slice of an update; a call after
-  // the last slice begins another update, and so does the first call after other tables are complete. An error if
-  // tables were never built, if scattering.medium is homogeneous, or if the commands of the call frames_in_flight
-  // earlier have not completed. Allocates nothing. The last slice waits for all earlier commands of the queue that may
-  // read the coefficients or the cube map; wait for COMPUTE_SHADER / SHADER_WRITE before you read them.
+  // the last slice only. The inputs and scattering.scale take effect with the first slice of an update. A call after
+  // the last slice begins another update, and so does the first call after other tables have been completed. Returns an
+  // error if tables were never built, if scattering.medium is homogeneous, or if the commands of the call
+  // frames_in_flight earlier have not completed. Allocates nothing. The last slice waits for all earlier commands of
+  // the queue that may read the coefficients or the cube map. Wait for COMPUTE_SHADER / SHADER_WRITE before you read
+  // them.
   Result<Progress> record(VkCommandBuffer cmd, const SkyProbeInputs& inputs, std::uint32_t budget = UINT32_MAX);
 
   // Returns the coefficients. The buffer is the same for the probe's whole life. Its contents are undefined before the
