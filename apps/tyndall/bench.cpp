@@ -19,8 +19,9 @@ namespace {
 
 constexpr std::uint32_t kWarmUpFrames = 2;
 
-// Decides which frames are measured: --frames of them after a warm-up of frames, or, with the options, all frames of a
-// time after a warm-up of some seconds. GPUs raise their clocks during the first second.
+// Decides which frames are measured. The warm-up takes kWarmUpFrames frames, or the time of --warm-up, because GPUs
+// raise their clocks during the first second. Then frames are measured until there are --frames of them, or until the
+// time of --seconds is over.
 class Schedule {
  public:
   Schedule(std::uint32_t frames, double warm_up_s, double measure_s)

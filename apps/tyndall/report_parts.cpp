@@ -88,8 +88,8 @@ std::string rays() {
   return text;
 }
 
-// The relative differences of the radiances of two answers of `probe`: the sum over the channels of |a − b| relative to
-// the sum of |b|, ray by ray. Rays with less than a millionth of the brightest radiance are left out.
+// Returns the relative difference of the radiances in two outputs of `probe` for each ray: the sum of |a − b| over the
+// channels, divided by the sum of |b|. Rays with less than a millionth of the brightest radiance are left out.
 std::optional<std::vector<double>> relative_differences(const std::string& a_text, const std::string& b_text) {
   const Result<files::CsvTable> a = files::parse_csv(a_text, "answer");
   const Result<files::CsvTable> b = files::parse_csv(b_text, "reference");

@@ -157,7 +157,7 @@ int run_validate(Args args) {
     origin.device = host.value()->device_name();
   }
   batch.value().set_device(origin.device);
-  // The study is of three channels. The test of colours has both values.
+  // The study compares three channels. The test of colours evaluates both values of scattering.color.
   Params params = common.settings.effect;
   params.scattering.color = ColorMode::rgb;
   const ValidateModels models =

@@ -20,7 +20,7 @@ bool has_viewer() { return true; }
 bool has_shader_reload() { return false; }
 
 int run_view(Args args) {
-  // GLFW links this library; the others it loads when it opens a window.
+  // GLFW is linked with this library. It loads the other X libraries only when it opens a window.
   constexpr const char* kDesktopLibrary = "libX11.so.6";
   if (void* const library = ::dlopen(kDesktopLibrary, RTLD_LAZY); library == nullptr) {
     return fail(

@@ -44,8 +44,8 @@ void Flight::handle_pointer(const Event& event, config::Settings& settings) {
       }
       if (dragging_view_) camera_ = turned(camera_, dx, dy, height);
       if (dragging_sun_) {
-        // The drag begins at the positions of the sun and the moon in the picture. From then on they do not follow from
-        // a time.
+        // The drag begins at the positions of the sun and the moon in the picture. From then on they are no longer
+        // computed from a time.
         if (Result<scene::MoonParams> moon =
                 scene::placed_moon(settings.scene.moon, settings.scene.sun, terrain_place_);
             moon) {

@@ -27,8 +27,8 @@ struct BoundResources {
 // Allocates nothing, except for the message of an error.
 class StepRecorder {
  public:
-  // `sets`: written for `resources` where they are not; those of `slot` are bound. `timer`: measures the dispatches;
-  // may be null. All arguments must outlive the recorder.
+  // Binds the sets of `slot` from `sets`; a set that has not been written is first written with `resources`. `timer`
+  // measures the dispatches and may be null. All arguments must outlive the recorder.
   StepRecorder(const gpu::Device& device, VkCommandBuffer cmd, const PipelineCache& pipelines, SetCache& sets,
                std::uint32_t slot, const BoundResources& resources, gpu::Timer* timer)
       : device_(device),

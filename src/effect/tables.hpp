@@ -59,7 +59,8 @@ struct TableScratch {
 };
 [[nodiscard]] VkDeviceSize table_scratch_bytes(const gpu::Device& device, const Params& params);
 
-// The effects that use the tables, and how far their frames have come.
+// The effects that use the tables. Counts rounds, in each of which every effect begins a frame, so that retired images
+// are freed only when no frame can read them any more.
 class TableUsers {
  public:
   struct User {

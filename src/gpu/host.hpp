@@ -43,10 +43,10 @@ struct HostDesc {
   std::vector<const char*> device_extensions = {};
   std::function<bool(VkInstance, VkPhysicalDevice, std::uint32_t queue_family)> can_present = {};
   bool graphics = true;      // false: the program only computes, and a queue without graphics suffices
-  std::uint32_t queues = 1;  // wanted of the queue's family; fewer are made if it has fewer
+  std::uint32_t queues = 1;  // number of queues to create in the family; fewer if the family has fewer
 };
 
-// Owns an instance, a device and a queue with compute and, if HostDesc::graphics, graphics.
+// Owns an instance, a device and a queue. The queue supports compute and, if HostDesc::graphics is set, graphics.
 class Host {
  public:
   static Result<std::unique_ptr<Host>> create(const HostDesc& desc);
@@ -84,8 +84,8 @@ class Host {
   // Records a command buffer with `record`, submits it and waits until it and all earlier ones have completed. May be
   // called from any thread; concurrent calls run one after the other. The queue is locked only during submission.
   Result<void> run(const Record& record);
-  // Does the same without waiting, unless kPending earlier command buffers have not been waited for. Returns the number
-  // of the submission, for wait().
+  // Records and submits a command buffer without waiting for it. If kPending earlier ones have not been waited for,
+  // waits for the oldest of them first. Returns the number of the submission, for wait().
   Result<std::uint64_t> submit(const Record& record);
   static constexpr std::size_t kPending = 8;
   // Waits until a submission and all earlier ones have completed. 0 is none.

@@ -9,11 +9,10 @@
 
 namespace tyndall::models {
 
-// Integrates `radiance` times cosine over the upper hemisphere. Steps of the azimuth are even because the function is
+// Integrates `radiance` times cosine over the upper hemisphere. Steps of the azimuth are equal, because the function is
 // periodic. Zenith angles are at Gauss nodes of x, with zenith angle (1 - x^2) 90 degrees: dense near the horizon,
-// where a sky changes fastest.
-// `radiance` takes the cosines of the view zenith angle and of the angle between view and sun, and returns three
-// channels. `zenith_panels` is the number of panels of two nodes each.
+// where a sky changes fastest. `radiance` takes the cosines of the view zenith angle and of the angle between view and
+// sun, and returns three channels. `zenith_panels` is the number of panels of two nodes each.
 template <typename Radiance>
 std::array<double, 3> hemisphere_irradiance(double cos_sun_zenith, int zenith_panels, int azimuths,
                                             const Radiance& radiance) {

@@ -52,7 +52,7 @@ void Scene::take_results(std::uint32_t slot) {
   slow_ = frame_ms > desc_.ahead_up_to_ms;
 }
 
-// Runs commands of the frame that is being drawn, or only submits them, as SceneDesc::ahead_up_to_ms says.
+// Submits commands of the frame that is being drawn, and also waits for them if waits() is true.
 Result<void> Scene::execute(const gpu::Host::Record& record) {
   if (waits()) return host_->run(record);
   InFlight& frame = in_flight_.at(slot());

@@ -48,8 +48,8 @@ constexpr TurbidAir kTurbidAirs[] = {{0.15, 0.0}, {0.15, 0.2}, {0.3, 0.0}, {0.3,
 [[nodiscard]] Params turbid_params(const Params& params, const TurbidAir& air);
 // Turbid atmospheres need more orders of scattering: their reference has this many times as many.
 constexpr int kTurbidOrdersFactor = 3;
-// Their reference has this many times as many paths per ray, because the errors of the tables are smaller than the
-// noise of fewer.
+// They also need this many times as many paths per ray. With fewer paths, the noise of the reference would exceed the
+// errors of the tables.
 constexpr std::uint64_t kTurbidSamplesFactor = 16;
 
 // Queries with the results of the reference and of all models.

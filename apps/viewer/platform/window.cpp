@@ -151,7 +151,8 @@ void Window::begin_gui() {
     if (event.kind == KeyEvent::Kind::character) ImGui_ImplGlfw_CharCallback(window_, event.character);
   }
   ImGui_ImplGlfw_NewFrame();
-  // NewFrame() has read the current pointer.
+  // NewFrame() has read the current position of the mouse pointer. A click is reported at the position where it
+  // happened.
   ImGuiIO& io = ImGui::GetIO();
   // GLFW returns an arbitrary size for a window that another program has destroyed.
   if (window_is_gone()) io.DisplaySize = ImVec2(0.0F, 0.0F);

@@ -50,7 +50,7 @@ class SkyModel {
   // Returns the images of in-scattering and transmittance that the ground's vertices write. With evaluation per pixel,
   // they have one texel each and are not written.
   [[nodiscard]] std::span<const gpu::Image> air() const { return air_; }
-  // Returns those of air() that are attachments while the ground is drawn.
+  // Returns the images of air() that are attachments while the ground is drawn: all or none.
   [[nodiscard]] std::span<const gpu::Image> attachments() const {
     return evaluation_ == ModelEvaluation::vertex ? air() : std::span<const gpu::Image>();
   }

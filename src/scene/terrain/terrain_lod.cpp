@@ -72,7 +72,7 @@ TerrainLod plan_terrain(const glm::dvec2& camera_map, double altitude_m, double 
   out.coarseness = coarseness;
   out.camera_map = camera_map;
   out.vertical_m = std::max(altitude_m - max_ground_m, 0.0);
-  // Arc to the horizon of the camera plus arc to that of the highest summit behind it.
+  // The arc from the camera to its horizon, plus the arc from there to the farthest summit that rises above it.
   const double lowest = std::min(min_ground_m, 0.0);
   const double base = radius_m + lowest;
   const auto horizon_arc = [&](double h) { return radius_m * std::acos(base / (base + std::max(h - lowest, 1.0))); };

@@ -23,9 +23,9 @@ class TerrainTiles {
  public:
   // Starts a frame. Tiles stay filled in levels that have not moved. Returns whether any level has moved.
   bool start(const TerrainLod& lod);
-  // Adds what the vertices of a block read: terrain_vertex.glsl.
+  // Adds the tiles that the vertices of a block read (terrain_vertex.glsl).
   void add_drawn(const TerrainLod& lod, const TerrainBlock& block);
-  // Adds what the vertices and the pixels of a block read: terrain_surface.glsl too.
+  // Adds the tiles that the vertices and the pixels of a block read (also terrain_surface.glsl).
   void add_shaded(const TerrainLod& lod, const TerrainBlock& block);
   // Returns the tiles that have been added and are not filled.
   [[nodiscard]] std::vector<TerrainTile> missing() const;
