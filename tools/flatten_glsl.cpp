@@ -130,7 +130,8 @@ std::string_view name_declared(const std::vector<std::string_view>& words) {
   return !words.empty() && is_word(words.back()[0]) ? words.back() : std::string_view();
 }
 
-// Returns the names at global scope, and those of macros, whether they are defined here or by who includes the header.
+// Returns the names at global scope, and those of macros, whether they are defined here or by the file that includes
+// the header.
 std::set<std::string> global_names(const std::vector<Token>& tokens) {
   std::set<std::string> out;
   std::vector<std::string_view> declaration;

@@ -62,7 +62,7 @@ def solar_spectrum():
     air = tyndall.Atmosphere(G173_AIR, wavelengths=G173[:, 0])
     sun = turned(np.array([[0.0, 0.0, 1.0]]), SUN_ZENITH)[0]
     normal = turned(np.array([[0.0, 0.0, 1.0]]), TILT)[0]
-    # Around the sun, and everything in front of the surface except that.
+    # First the light from around the sun, then that from all other directions in front of the tilted surface.
     near, solid_angle = directions(nodes(np.cos(np.radians(CIRCUMSOLAR)), 1.0, 6), 12)
     near = turned(near, SUN_ZENITH)
     around = light_from(air, near) * (near @ sun * solid_angle)[:, None]

@@ -17,7 +17,7 @@ const std::string kQueries =
 
 class CliPhase : public testing::Test {
  protected:
-  // Returns the channels of all answers of `probe`.
+  // Returns the channels of all results of `probe`.
   std::vector<double> probe(const std::string& model, const std::vector<std::string>& settings,
                             const std::string& err = "") const {
     std::vector<std::string> arguments = {"probe", "--queries", scratch_.write("q.csv", kQueries), "--model", model};

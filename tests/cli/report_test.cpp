@@ -16,7 +16,7 @@ const nlohmann::json* find(const nlohmann::json& list, const char* key, const st
   return nullptr;
 }
 
-// Doubles the red radiance of every answer.
+// Doubles the red radiance of every result.
 std::string falsified(const std::string& csv) {
   std::istringstream in(csv);
   std::string out;
@@ -81,7 +81,7 @@ TEST(Report, ComparesTheDeviceWithReferenceValuesAndMeasuresIt) {
                                       {"clocks", report.contains("clocks")}}) {
     EXPECT_NE(find(report["left_out"], "part", part) != nullptr, present) << part;
   }
-  // The page shows the same, and nothing names this machine's folders.
+  // The page shows the same results. Neither the page nor report.json names folders of this machine.
   const std::string page = contents_of(folder + "/index.html");
   EXPECT_NE(page.find("<b class=bad>failed</b>"), std::string::npos);
   EXPECT_NE(page.find(report["device"]["name"].get<std::string>()), std::string::npos);

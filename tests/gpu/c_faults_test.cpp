@@ -349,7 +349,8 @@ TEST(CFaults, FailedAllocationsOfEveryOtherFunctionAreReturned) {
   }
 }
 
-// Errors of arguments are texts of more than one allocation: one of the two errors is returned.
+// The message of an invalid argument takes more than one allocation. A call returns out_of_memory if one of them fails,
+// and otherwise invalid_argument.
 TEST(CFaults, FailedAllocationsOfErrorsAreReturned) {
   const OwnedEffect owned = make_c();
   const OwnedParams params = c_params();

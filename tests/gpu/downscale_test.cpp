@@ -111,7 +111,7 @@ TEST_F(Downscale, CountersReportTheSavedWork) {
   EXPECT_LT(half.samples_marched, full.samples_marched / 2);
   EXPECT_GT(half.samples_marched, full.samples_marched / 16);
   EXPECT_LT(half.pixels_corrected, std::uint64_t{320} * 180 / 20);
-  // Brute force computes every pixel, independent of the downscale.
+  // Brute force computes every pixel, independent of scattering.downscale.
   const Picture brute = draw(by_brute_force(params_of(MediumKind::homogeneous, 1)), "brute force");
   EXPECT_EQ(draw(by_brute_force(params_of(MediumKind::homogeneous, 4)), "brute force, 4"), brute);
 }

@@ -13,8 +13,8 @@ namespace {
 constexpr double kRad = std::numbers::pi / 180.0;
 constexpr double kFar_m = 60.0e3;   // end of the only cascade
 constexpr double kMap_m = 160.0e3;  // width of its map
-// Error relative to integration. It is caused by the small size of the tables, and by differences of two of their
-// values.
+// Error relative to integration. It is caused by the small size of the tables, and by subtracting two of their values
+// from each other.
 constexpr double kTableTolerance = 0.03;
 // Error caused by adding and subtracting the same look-ups in another order.
 constexpr double kRoundingTolerance = 1e-4;

@@ -155,7 +155,7 @@ TEST_F(Epipolar, TheLimbMayBeSeenFromSpace) {
               s.far_m = 3.0e6;
               s.tan_half_height = 0.12;
               s.building_size = 60.0;  // shadows of hundreds of kilometres
-              s.ground_casts = false;  // texels are higher than most of the atmosphere
+              s.ground_casts = false;  // a texel of the shadow map spans most of the height of the atmosphere
             }),
        40.0},
       {seen("limb from 400 km, planet not drawn",

@@ -99,12 +99,12 @@ execute_process(COMMAND ${WORK}/build/engine ${WORK}/build/embed_cpp.rgba RESULT
 if(NOT status EQUAL 0 OR NOT output MATCHES "^irradiance from the sky: [0-9.() ]+\neye 0 [^\n]*\neye 1 [^\n]*\n$")
   message(FATAL_ERROR "engine: status ${status}; expected 0 and three lines without messages of the validation layer\n${output}")
 endif()
-# The transparent pane has the haze and the shadows of an opaque surface at its place.
+# The transparent pane has the same haze and shadows as an opaque surface in the same place.
 execute_process(COMMAND ${WORK}/build/glass ${WORK}/glass.rgba RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_QUIET)
 if(NOT status EQUAL 0 OR NOT output MATCHES "^the pane from the froxel volume differs from the opaque one by at most [0-9.e-]+\n$")
   message(FATAL_ERROR "glass: status ${status}; expected 0 and one line without messages of the validation layer\n${output}")
 endif()
-# The shadows of clouds are where they belong, and light through gaps is that without clouds.
+# The shadows of clouds are where they belong, and the light through gaps is the same as without clouds.
 execute_process(COMMAND ${WORK}/build/clouds ${WORK}/clouds RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_QUIET)
 if(NOT status EQUAL 0 OR NOT output MATCHES "^clear: [0-9.]+ changed, broken: [0-9.]+ of the light, [^\n]*\n$")
   message(FATAL_ERROR "clouds: status ${status}; expected 0 and one line without messages of the validation layer\n${output}")

@@ -33,7 +33,7 @@ TEST(Photometry, TheDirectSunIsThatOfTheStandard) {
   constexpr Bin kBins[] = {
 #include "reference/bins.inl"
   };
-  // Direct over extraterrestrial irradiance of the standard at 385, 395, ... 715 nm.
+  // Direct irradiance divided by extraterrestrial irradiance, both from the standard, at 385, 395, ... 715 nm.
   constexpr double kTransmittance[] = {0.45027, 0.48270, 0.51224, 0.54030, 0.56588, 0.58923, 0.61028, 0.63243, 0.65045,
                                        0.66130, 0.67999, 0.69420, 0.69834, 0.71387, 0.71883, 0.72301, 0.72876, 0.73494,
                                        0.73310, 0.72110, 0.74820, 0.72385, 0.75680, 0.77418, 0.77050, 0.79086, 0.80947,

@@ -108,7 +108,8 @@ TEST(physics_geometry, segments_of_particular_rays) {
   EXPECT_TRUE(ground);
   EXPECT_TRUE(glsl32::atmosphere_segment(0.0F, 0.0F, kTop, kRadius, start, end, ground));
   EXPECT_NEAR(end, 1.01193e6F, 20.0F);
-  // Below sea level the ground is at twice the depth. Level rays pass it, and so do those down to its horizon.
+  // For an eye below sea level, the ground is at twice its depth. Level rays miss the ground, and so do rays above its
+  // horizon.
   EXPECT_TRUE(glsl32::atmosphere_segment(-300.0F, 0.01F, kTop, kRadius, start, end, ground));
   EXPECT_FALSE(ground);
   EXPECT_TRUE(glsl32::atmosphere_segment(-300.0F, -0.009F, kTop, kRadius, start, end, ground));

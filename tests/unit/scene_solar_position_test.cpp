@@ -47,7 +47,7 @@ TEST(PlacedSun, RefractionIsThatOfTheLiterature) {
 }
 
 TEST(PlacedSun, RefractionFlattensTheDisc) {
-  // The discs of sun and moon are about a sixth lower than wide on the horizon.
+  // On the horizon, refraction flattens the discs of sun and moon by about a sixth.
   EXPECT_NEAR(refraction_flattening(0.0, 0.2667), 0.83, 0.02);
   EXPECT_NEAR(refraction_flattening(10.0, 0.2667), 0.99, 0.005);
   EXPECT_NEAR(refraction_flattening(89.0, 0.2667), 1.0, 1e-3);

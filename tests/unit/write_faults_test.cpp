@@ -1,5 +1,5 @@
-// Every call to the system that writes a file fails once, at every count and with several reasons. Either nothing
-// happens to the file under its name and the error names it, or the file is complete.
+// While a file is written, each of its system calls is made to fail in turn, with several error numbers. Then either
+// the file is unchanged and the returned error names it, or it is complete.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
