@@ -72,7 +72,8 @@ from tables on a Vulkan device or from a path tracer.
 
 This package contains the module tyndall for Python 3.")
 endif()
-# The SONAME has the minor version, the name of the package does not: packages that depend on this one accept no other.
+# The SONAME contains the minor version, but the name of the package does not. Packages that depend on this one therefore require
+# this minor version.
 math(EXPR next_minor "${PROJECT_VERSION_MINOR} + 1")
 set(debian_dir ${PROJECT_BINARY_DIR}/debian)
 file(WRITE ${debian_dir}/shlibs "libtyndall ${TYNDALL_COMPATIBLE_VERSION} libtyndall0 (>= ${PROJECT_VERSION}), libtyndall0 (<< ${PROJECT_VERSION_MAJOR}.${next_minor}~)\n")

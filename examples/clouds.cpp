@@ -91,7 +91,8 @@ void draw_pixel(float dx, float dy, float* color, float& depth) {
     depth = kNear_m / z_m;
     for (int c = 0; c < 3; ++c) color[c] = grey * (c == 1 ? green : 1.0F);
   };
-  const auto sunlight = [](float x, float y, float z) {  // that passes the layer on its way to a point
+  // Returns the fraction of sunlight that passes the layer on its way to a point.
+  const auto sunlight = [](float x, float y, float z) {
     const float up = (kLayer_m - y) / kToSun.y;
     return broken(x + kToSun.x * up, z + kToSun.z * up);
   };

@@ -7,7 +7,7 @@ Janiczek and DeYoung (1987): the decimal logarithm of the illuminance in lux is 
 degrees. Elevations are those of the sun without refraction.
 
 The curve is measured, so it contains the light of the night sky: 0.00064 lux at -18 degrees, where twilight has ended. Both
-columns therefore include an even sky of NIGHT_CD_PER_M2. Below the horizon, the illuminance by the tables is the sum over
+columns therefore include a uniform sky of NIGHT_CD_PER_M2. Below the horizon, the illuminance by the tables is the sum over
 rays of their radiance, because the table of the sky's irradiance has half precision, which is too coarse below -8 degrees.
 Few of the path tracer's paths contribute most of the light there, so it follows more of them.
 

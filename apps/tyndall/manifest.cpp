@@ -79,7 +79,7 @@ class Limits final : public nlohmann::json_sax<ordered_json> {
   std::vector<std::size_t> names_;  // of the objects around the current position
 };
 
-// Returns a whole number. The conversions of the library accept negative and fractional ones.
+// Returns a whole number. The conversions of the JSON library would also accept negative and fractional numbers.
 std::uint64_t whole_number(const ordered_json& value) {
   if (!value.is_number_unsigned()) throw std::out_of_range("whole number");
   return value.get<std::uint64_t>();

@@ -20,8 +20,8 @@ struct ProgramRun {
 };
 
 struct ProgramLimits {
-  double seconds;           // until it is ended
-  std::string folder;       // for the files with what it prints
+  double seconds;           // after which it is stopped
+  std::string folder;       // for the files that hold its output
   std::string environment;  // NAME=VALUE to set; empty: none
 };
 

@@ -176,7 +176,7 @@ class Atmosphere:
         level, and below both points. (The ground is at sea level, or as low as the lower point if that is below sea level.)
 
         In-scattering over short paths is a difference of two larger numbers, as in the renderer: over 100 m of clear air it
-        is precise to about 1 %. Only the models "precomputed" and "single" know parts of a ray; others raise ValueError.
+        is precise to about 1 %. Only the models "precomputed" and "single" have this method; others raise ValueError.
         """
         radius = self._model.planet_radius_m
         a, b, sun = self._points(start, end, sun_elevation, sun_azimuth)

@@ -266,7 +266,7 @@ OneilLight oneil_scattering(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, IN(One
       float densest = clamp(-((R + ray.h0) * ray.mu), from, part.to);
       float last = densest;
       for (uint i = 0u; i < o.samples; ++i) {
-        // Go away from the densest point, so that each search starts at the previous result.
+        // Move away from the densest point, so that each search starts at the previous result.
         float seen = (float(densest < part.to ? i : o.samples - 1u - i) + 0.5) / count;
         float d = from + seen * span;
         float fraction = 1.0 / count;

@@ -29,9 +29,10 @@ constexpr double kKoschmieder = 3.912;           // -ln 0.02: optical depth at w
 
 // Return the coefficients in one of the three channels (0 to 2), and at any wavelength. At the wavelength of a channel,
 // both are equal. Between the channels, coefficients that are given for three channels follow a power of the
-// wavelength, and albedos are linear; that of ozone follows the cross-sections between 360 and 840 nm. Beyond the
-// channels, coefficients continue with the same power, and albedos are constant. Precondition: check() accepts the
-// parameters, and the wavelength is within the ranges of cross_sections.hpp if they are used.
+// wavelength, and albedos are interpolated linearly. The absorption coefficient of ozone follows its cross-sections
+// between 360 and 840 nm. Beyond the channels, coefficients continue with the same power, within limits, and albedos
+// are constant. Precondition: check() accepts the parameters, and the wavelength is within the ranges of
+// cross_sections.hpp if they are used.
 [[nodiscard]] Coefficients in_channel(const Params& params, std::size_t channel);
 [[nodiscard]] Coefficients at_wavelength(const Params& params, double wavelength_nm);
 

@@ -68,7 +68,7 @@ void add_shadows(TestFrame& frame, const Setting& setting, Shadow shadow, std::u
   const float nearest = frame.shadow_depth_reversed ? 1.0F : 0.0F;
   frame.shadow_depth = [=, first = frame.first_marched, cascades = frame.cascades](std::uint32_t c, double u,
                                                                                    double /*v*/) {
-    // Cascades that are not marched are all in shadow, so that reading them would be visible.
+    // Cascades that are not marched are all in shadow, so that reading them would show in the picture.
     const double edge = cascades[c].shadow_from_world.m[12];  // u where x is 0
     const bool dark = c < first || shadow == Shadow::everywhere || (shadow == Shadow::west && u < edge);
     return dark ? nearest : 1.0F - nearest;

@@ -126,7 +126,7 @@ TEST_F(HomogeneousMedium, WithShadowsIsTheIntegralOverLitSections) {
   TestFrame frame = open_frame();
   frame.shadow_resolution = 64;
   Cascade cascade;
-  cascade.far_m = 9000.0F;  // behind it everything is lit
+  cascade.far_m = 9000.0F;  // beyond it, everything is lit
   cascade.shadow_from_world = Mat4{{}};
   cascade.shadow_from_world.m[0] = 1.0F / 20000.0F;   // u from x
   cascade.shadow_from_world.m[9] = 1.0F / 20000.0F;   // v from z
