@@ -100,6 +100,25 @@ TEST_F(ElevationFile, VerticalUnitsScaleAndOffset) {
   EXPECT_TRUE(noted(unknown, "fathom"));
 }
 
+TEST_F(ElevationFile, ProjectionFilesHaveVerticalUnits) {
+  TestFile file;
+  file.driver = "AAIGrid";
+  file.name = "feet.asc";
+  file.epsg = 0;
+  folder_.write(file, hill);
+  const auto highest = [&](const char* unit) {
+    std::ofstream(folder_.path("feet.prj")) << "Projection UTM\nZone 32\nDatum WGS84\nZunits " << unit
+                                            << "\nUnits METERS\nSpheroid WGS84\nXshift 0.0\nYshift 0.0\nParameters\n";
+    return read(folder_.path("feet.asc"));
+  };
+  EXPECT_NEAR(highest("METERS").max_m, hill(63, 63), 12.0);
+  EXPECT_NEAR(highest("NO").max_m, hill(63, 63), 12.0);
+  EXPECT_NEAR(highest("FEET").max_m, 0.3048 * hill(63, 63), 4.0);
+  EXPECT_NEAR(highest("DECIMETERS").max_m, 0.1 * hill(63, 63), 2.0);
+  EXPECT_NEAR(highest("100").max_m, 0.01 * hill(63, 63), 1.0);
+  EXPECT_TRUE(noted(highest("CUBITS"), "'cubits'"));
+}
+
 TEST_F(ElevationFile, HolesAreFilledFromTheirBorders) {
   TestFile file;
   file.epsg = 0;
@@ -290,6 +309,107 @@ TEST_F(ElevationFile, ColourTilesAreDecoded) {
   EXPECT_NE(error(tile("photo.png", [](int x, int y) { return static_cast<unsigned>(x * 4 * 65536 + y * 1024 + 77); }))
                 .find("without heights"),
             std::string::npos);
+}
+
+// French maps count longitudes from Paris, and some in grads.
+TEST_F(ElevationFile, LongitudesFromParisAndGradsAreConverted) {
+  constexpr double kParis_deg = 2.33722917;
+  TestFile file;
+  file.name = "lambert.tif";
+  file.epsg = 27572;  // its origin is at 52 grads north
+  file.transform = {596800.0, 100.0, 0.0, 2203200.0, 0.0, -100.0};
+  const ElevationRaster lambert = read(folder_.write(file, hill));
+  ASSERT_TRUE(lambert.centre);
+  EXPECT_NEAR(lambert.centre->latitude_deg, 46.8, 1e-6);
+  EXPECT_NEAR(lambert.centre->longitude_deg, kParis_deg, 1e-6);
+  EXPECT_NEAR(lambert.spacing_m, 100.0, 1.0);
+  EXPECT_NEAR(at(lambert, lambert.width / 2, lambert.height / 2), hill(32, 32), 12.0);
+
+  file.name = "grads.tif";
+  file.epsg = 4807;
+  file.transform = {4.0, 0.001, 0.0, 52.0, 0.0, -0.001};
+  const ElevationRaster grads = read(folder_.write(file, hill));
+  ASSERT_TRUE(grads.centre);
+  EXPECT_NEAR(grads.centre->latitude_deg, 0.9 * 51.968, 1e-6);
+  EXPECT_NEAR(grads.centre->longitude_deg, 0.9 * 4.032 + kParis_deg, 1e-6);
+  EXPECT_NEAR(grads.height * grads.spacing_m, 0.9 * 0.064 * kRadius_m * M_PI / 180.0, 2.0 * grads.spacing_m);
+}
+
+// Weather models use longitudes and latitudes around another pole. The equator of this one passes through 50.75 degrees
+// north at 18 degrees east.
+TEST_F(ElevationFile, RotatedGridsArePlaced) {
+  TestFile file;
+  file.definition = "+proj=ob_tran +o_proj=longlat +o_lon_p=0 +o_lat_p=39.25 +lon_0=18 +datum=WGS84 +no_defs";
+  file.transform = {-0.32, 0.01, 0.0, 0.32, 0.0, -0.01};
+  const ElevationRaster r = read(folder_.write(file, hill));
+  ASSERT_TRUE(r.centre);
+  EXPECT_NEAR(r.centre->latitude_deg, 50.75, 1e-6);
+  EXPECT_NEAR(r.centre->longitude_deg, 18.0, 1e-6);
+  EXPECT_NEAR(at(r, r.width / 2, r.height / 2), hill(32, 32), 12.0);
+  EXPECT_GT(at(r, r.width - 14, r.height / 2), at(r, 14, r.height / 2) + 250.0F);
+}
+
+TEST_F(ElevationFile, SignedBytes) {
+  TestFile file;
+  file.epsg = 0;
+  file.type = GDT_Byte;
+  file.prepare = [](GDALDataset& data) {
+    data.GetRasterBand(1)->SetMetadataItem("PIXELTYPE", "SIGNEDBYTE", "IMAGE_STRUCTURE");
+  };
+  const ElevationRaster r = read(folder_.write(file, [](int x, int) { return x < 32 ? 254.0 : 7.0; }));
+  EXPECT_FLOAT_EQ(r.min_m, -2.0F);
+  EXPECT_FLOAT_EQ(r.max_m, 7.0F);
+}
+
+// Masks and opacities mark holes.
+TEST_F(ElevationFile, MaskedSamplesAreHoles) {
+  const auto masked = [](int x, int y) { return x > 20 && x < 40 && y > 20 && y < 40; };
+  const auto heights = [&](int x, int y) { return masked(x, y) ? -5000.0 : hill(x, y); };
+  std::vector<float> shown;
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x) shown.push_back(masked(x, y) ? 0.0F : 255.0F);
+  }
+  const auto store = [&](GDALRasterBand& band) {
+    EXPECT_EQ(band.RasterIO(GF_Write, 0, 0, 64, 64, shown.data(), 64, 64, GDT_Float32, 0, 0, nullptr), CE_None);
+  };
+  TestFile file;
+  file.epsg = 0;
+  file.name = "mask.tif";
+  file.prepare = [&](GDALDataset& data) {
+    ASSERT_EQ(data.CreateMaskBand(GMF_PER_DATASET), CE_None);
+    store(*data.GetRasterBand(1)->GetMaskBand());
+  };
+  std::vector<std::filesystem::path> paths = {folder_.write(file, heights)};
+  file.name = "alpha.tif";
+  file.bands = 2;
+  file.prepare = [&](GDALDataset& data) {
+    data.GetRasterBand(2)->SetColorInterpretation(GCI_AlphaBand);
+    store(*data.GetRasterBand(2));
+  };
+  paths.push_back(folder_.write(file, heights));
+  for (const std::filesystem::path& path : paths) {
+    const ElevationRaster r = read(path);
+    EXPECT_NEAR(at(r, 30, 30), hill(30, 30), 60.0) << path;
+    EXPECT_FLOAT_EQ(at(r, 60, 60), static_cast<float>(hill(60, 60))) << path;
+    EXPECT_TRUE(noted(r, "filled 361 samples")) << path;
+  }
+}
+
+TEST_F(ElevationFile, PalettesAreRefused) {
+  TestFile file;
+  file.driver = "PNG";
+  file.name = "palette.png";
+  file.type = GDT_Byte;
+  file.prepare = [](GDALDataset& data) {
+    GDALColorTable palette;
+    for (short i = 0; i < 256; ++i) {
+      const GDALColorEntry entry = {i, static_cast<short>(255 - i), 0, 255};
+      palette.SetColorEntry(i, &entry);
+    }
+    data.GetRasterBand(1)->SetColorInterpretation(GCI_PaletteIndex);
+    data.GetRasterBand(1)->SetColorTable(&palette);
+  };
+  EXPECT_NE(error(folder_.write(file, [](int x, int) { return x; })).find("palette"), std::string::npos);
 }
 
 TEST_F(ElevationFile, RealMassif) {

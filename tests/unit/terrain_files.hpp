@@ -28,6 +28,8 @@ struct TestFile {
   double scale = 1.0, offset = 0.0;
   bool has_no_data = false;
   double no_data = 0.0;
+  std::string definition = {};                     // of the coordinate system, instead of `epsg`
+  std::function<void(GDALDataset&)> prepare = {};  // changes the data set before it is stored
 };
 
 class TestFolder {
@@ -60,6 +62,11 @@ class TestFolder {
       srs.importFromEPSG(file.epsg);
       data->SetSpatialRef(&srs);
     }
+    if (!file.definition.empty()) {
+      OGRSpatialReference srs;
+      srs.SetFromUserInput(file.definition.c_str());
+      data->SetSpatialRef(&srs);
+    }
     std::vector<double> samples(static_cast<std::size_t>(file.width) * file.height);
     for (int y = 0; y < file.height; ++y) {
       for (int x = 0; x < file.width; ++x) samples[static_cast<std::size_t>(y) * file.width + x] = value(x, y);
@@ -74,6 +81,7 @@ class TestFolder {
       if (file.offset != 0.0) band.SetOffset(file.offset);
       if (file.has_no_data) band.SetNoDataValue(file.no_data);
     }
+    if (file.prepare) file.prepare(*data);
     std::filesystem::path to = path(file.name);
     GDALDataset* copy =
         drivers.GetDriverByName(file.driver)->CreateCopy(to.string().c_str(), data, FALSE, nullptr, nullptr, nullptr);

@@ -25,6 +25,17 @@ bool is_colour_image(GDALDataset& file) {
   return true;
 }
 
+// Returns whether the samples of a band are indices of colours. A palette of greys may be meant as heights.
+bool has_palette(GDALRasterBand& band) {
+  const GDALColorTable* const palette = band.GetColorTable();
+  if (palette == nullptr || band.GetColorInterpretation() != GCI_PaletteIndex) return false;
+  for (int i = 0; i < palette->GetColorEntryCount(); ++i) {
+    const GDALColorEntry& entry = *palette->GetColorEntry(i);
+    if (entry.c1 != entry.c2 || entry.c1 != entry.c3) return true;
+  }
+  return false;
+}
+
 struct Encoding {
   const char* name;
   double offset_m, per_red_m, per_green_m, per_blue_m;
@@ -36,6 +47,8 @@ constexpr double kLowest_m = -11500.0, kHighest_m = 9500.0;
 }  // namespace
 
 Result<Dataset> decode_colours(const std::string& source, GDALDataset& file, std::vector<std::string>& notes) {
+  if (has_palette(*file.GetRasterBand(1)))
+    return elevation_error(source, "is an image with a palette of colours; expected one band of heights");
   if (!is_colour_image(file)) return Dataset();
   const int width = file.GetRasterXSize();
   const int height = file.GetRasterYSize();

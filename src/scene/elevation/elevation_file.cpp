@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
@@ -23,62 +22,15 @@
 namespace tyndall::scene {
 namespace {
 
-constexpr double kImpossible_m = 20000.0;
+constexpr double kImpossible_m = 25000.0;  // Olympus Mons has 21.2 km
 constexpr double kAssumedSpacing_m = 30.0;
 constexpr int kFillReach_samples = 100;  // reach of GDAL's interpolation; larger holes are filled more coarsely
-
-// Returns the metres per unit of the heights, and notes unknown units.
-double vertical_unit_m(GDALRasterBand& band, const OGRSpatialReference* srs, std::vector<std::string>& notes) {
-  struct Unit {
-    std::string_view name;
-    double metres;
-  };
-  constexpr double kFoot = 0.3048;
-  constexpr double kSurveyFoot = 1200.0 / 3937.0;
-  constexpr std::array<Unit, 23> kUnits = {{{"m", 1.0},
-                                            {"metre", 1.0},
-                                            {"meter", 1.0},
-                                            {"metres", 1.0},
-                                            {"meters", 1.0},
-                                            {"ft", kFoot},
-                                            {"foot", kFoot},
-                                            {"feet", kFoot},
-                                            {"international foot", kFoot},
-                                            {"us survey foot", kSurveyFoot},
-                                            {"us survey feet", kSurveyFoot},
-                                            {"us_survey_foot", kSurveyFoot},
-                                            {"foot_us", kSurveyFoot},
-                                            {"us-ft", kSurveyFoot},
-                                            {"ftus", kSurveyFoot},
-                                            {"mm", 0.001},
-                                            {"cm", 0.01},
-                                            {"centimetre", 0.01},
-                                            {"centimeter", 0.01},
-                                            {"dm", 0.1},
-                                            {"decimetre", 0.1},
-                                            {"decimeter", 0.1},
-                                            {"km", 1000.0}}};
-  std::string name = band.GetUnitType();
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (!name.empty()) {
-    for (const Unit& unit : kUnits) {
-      if (unit.name == name) return unit.metres;
-    }
-    notes.push_back("the unit of the heights, '" + name + "', is unknown; metres are assumed");
-    return 1.0;
-  }
-  if (srs != nullptr && srs->IsCompound() != 0) {
-    const double metres = srs->GetTargetLinearUnits("VERT_CS");
-    if (metres > 0.0) return metres;
-  }
-  return 1.0;
-}
 
 // The georeference of the samples. Without a coordinate system `srs` is empty and the transform is in metres.
 struct Georeference {
   std::array<double, 6> transform = {};
   OGRSpatialReference srs;
+  double height_unit_m = 1.0;
 };
 
 // The bounds of the raster in the file's coordinates.
@@ -144,13 +96,13 @@ Result<void> check_extent(const std::string& source_name, const Georeference& ge
     const double half_y = 0.5 * (std::abs(geo.transform[4]) + std::abs(geo.transform[5]));
     const double per_degree = geo.srs.GetAngularUnits() / (std::numbers::pi / 180.0);
     if (std::max(-extent.min_y - half_y, extent.max_y - half_y) * per_degree > 90.0) {
-      return elevation_error(source_name, "reaches from latitude " + text(extent.min_y) + " to " + text(extent.max_y) +
-                                              "; expected -90 to 90 degrees");
+      return elevation_error(source_name, "reaches from latitude " + text(extent.min_y * per_degree) + " to " +
+                                              text(extent.max_y * per_degree) + "; expected -90 to 90 degrees");
     }
     if ((extent.max_x - extent.min_x - 2.0 * half_x) * per_degree > 360.0 ||
         std::abs(extent.min_x) * per_degree > 720.0) {
-      return elevation_error(source_name, "reaches from longitude " + text(extent.min_x) + " to " + text(extent.max_x) +
-                                              "; expected at most 360 degrees");
+      return elevation_error(source_name, "reaches from longitude " + text(extent.min_x * per_degree) + " to " +
+                                              text(extent.max_x * per_degree) + "; expected at most 360 degrees");
     }
     return {};
   }
@@ -180,6 +132,28 @@ Dataset make_memory(int width, int height, const Georeference& geo, std::vector<
   return memory;
 }
 
+// Returns whether GDAL reports signed bytes as unsigned ones, as it does before version 3.7.
+bool has_signed_bytes(GDALRasterBand& band) {
+  const char* const type = band.GetMetadataItem("PIXELTYPE", "IMAGE_STRUCTURE");
+  return type != nullptr && std::string_view(type) == "SIGNEDBYTE";
+}
+
+// Returns the mask or the opacity of a band: 0 where there are no heights. Empty if the band has neither.
+std::vector<std::uint8_t> read_mask(GDALRasterBand& band, int width, int height) {
+  GDALRasterBand* source = nullptr;
+  if ((band.GetMaskFlags() & (GMF_PER_DATASET | GMF_ALPHA)) != 0) source = band.GetMaskBand();
+  // GDAL ignores opacities that are stored as real numbers.
+  GDALDataset* const file = band.GetDataset();
+  GDALRasterBand* const last = file == nullptr ? nullptr : file->GetRasterBand(file->GetRasterCount());
+  if (source == nullptr && last != nullptr && last->GetColorInterpretation() == GCI_AlphaBand) source = last;
+  if (source == nullptr) return {};
+  std::vector<std::uint8_t> mask(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  if (source->RasterIO(GF_Read, 0, 0, band.GetXSize(), band.GetYSize(), mask.data(), width, height, GDT_Byte, 0, 0,
+                       nullptr) != CE_None)
+    return {};
+  return mask;
+}
+
 // Reads the first band with at most max_samples on a side. Heights are in metres, and holes are NaN. Adapts the
 // transform to the size.
 Result<std::vector<float>> read_band(const std::string& source_name, GDALDataset& file, int max_samples,
@@ -193,8 +167,10 @@ Result<std::vector<float>> read_band(const std::string& source_name, GDALDataset
   height = std::max(2, static_cast<int>(file_height / shrink));
   GDALRasterIOExtraArg how;
   INIT_RASTERIO_EXTRA_ARG(how);
+  const bool signed_bytes = has_signed_bytes(band);
   if (shrink > 1.0) {
-    how.eResampleAlg = GRIORA_Average;
+    // GDAL would average signed bytes as unsigned ones.
+    how.eResampleAlg = signed_bytes ? GRIORA_NearestNeighbour : GRIORA_Average;
     notes.push_back("read at " + std::to_string(width) + " x " + std::to_string(height) + " of its " +
                     std::to_string(file_width) + " x " + std::to_string(file_height) + " samples");
   }
@@ -214,20 +190,23 @@ Result<std::vector<float>> read_band(const std::string& source_name, GDALDataset
   const float no_data_sample =
       static_cast<float>(std::clamp(no_data, -static_cast<double>(std::numeric_limits<float>::max()),
                                     static_cast<double>(std::numeric_limits<float>::max())));
-  const double unit = vertical_unit_m(band, file.GetSpatialRef(), notes);
-  const double scale = band.GetScale() * unit;
-  const double offset = band.GetOffset() * unit;
+  const double scale = band.GetScale() * geo.height_unit_m;
+  const double offset = band.GetOffset() * geo.height_unit_m;
+  const std::vector<std::uint8_t> mask = read_mask(band, width, height);
   std::size_t holes = 0;
-  for (float& v : samples) {
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    float& v = samples[i];
+    if (signed_bytes && v > 127.0F) v -= 256.0F;
     const double h = v * scale + offset;
-    const bool hole = !std::isfinite(v) || (has_no_data != 0 && v == no_data_sample) || std::abs(h) > kImpossible_m;
+    const bool hole = !std::isfinite(v) || (has_no_data != 0 && v == no_data_sample) || std::abs(h) > kImpossible_m ||
+                      (!mask.empty() && mask[i] == 0);
     v = hole ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(h);
     if (hole) ++holes;
   }
   if (holes == samples.size())
     return elevation_error(
         source_name,
-        "has no elevations: every sample is a hole (no-data, NaN or beyond 20 km); expected at least one height");
+        "has no elevations: every sample is a hole (no-data, NaN or beyond 25 km); expected at least one height");
   if (holes > 0) notes.push_back("filled " + std::to_string(holes) + " samples without data");
   return samples;
 }
@@ -260,22 +239,36 @@ struct MapProjection {
   std::optional<Place> centre;
 };
 
+// Returns the latitude and the longitude east of Greenwich of a point in a coordinate system. Systems may count
+// longitudes from another meridian, such as that of Paris, or angles in other units than degrees.
+Result<Place> place_of(const std::string& source_name, const OGRSpatialReference& srs, double x, double y) {
+  std::unique_ptr<OGRSpatialReference> geographic(srs.CloneGeogCS());
+  if (!geographic) return elevation_error(source_name, "has a coordinate system without latitudes and longitudes");
+  // The base of a rotated grid is a system with the same body.
+  if (srs.IsDerivedGeographic() != 0) {
+    geographic = std::make_unique<OGRSpatialReference>();
+    geographic->SetGeogCS("", "", "", srs.GetSemiMajor(), srs.GetInvFlattening());
+  }
+  geographic->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  if (srs.IsGeographic() == 0 || srs.IsDerivedGeographic() != 0) {
+    const std::unique_ptr<OGRCoordinateTransformation> to_angles(
+        OGRCreateCoordinateTransformation(&srs, geographic.get()));
+    if (!to_angles || to_angles->Transform(1, &x, &y) == 0)
+      return elevation_error(source_name,
+                             "has a coordinate system that cannot be converted to latitudes and longitudes");
+  }
+  const double degrees = geographic->GetAngularUnits() * (180.0 / std::numbers::pi);
+  return Place{y * degrees, std::remainder(x * degrees + geographic->GetPrimeMeridian(), 360.0)};
+}
+
 Result<MapProjection> map_projection(const std::string& source_name, const Georeference& geo, int width, int height,
                                      double radius_m, std::vector<std::string>& notes) {
   MapProjection out;
   if (geo.srs.IsEmpty()) return out;
-  double x = geo.transform[0] + 0.5 * (width * geo.transform[1] + height * geo.transform[2]);
-  double y = geo.transform[3] + 0.5 * (width * geo.transform[4] + height * geo.transform[5]);
-  if (geo.srs.IsGeographic() == 0) {
-    const std::unique_ptr<OGRSpatialReference> geographic(geo.srs.CloneGeogCS());
-    if (!geographic) return elevation_error(source_name, "has a coordinate system without latitudes and longitudes");
-    geographic->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-    const std::unique_ptr<OGRCoordinateTransformation> to_degrees(
-        OGRCreateCoordinateTransformation(&geo.srs, geographic.get()));
-    if (!to_degrees || to_degrees->Transform(1, &x, &y) == 0)
-      return elevation_error(source_name,
-                             "has a coordinate system that cannot be converted to latitudes and longitudes");
-  }
+  const double x = geo.transform[0] + 0.5 * (width * geo.transform[1] + height * geo.transform[2]);
+  const double y = geo.transform[3] + 0.5 * (width * geo.transform[4] + height * geo.transform[5]);
+  Result<Place> middle = place_of(source_name, geo.srs, x, y);
+  if (!middle.ok()) return std::move(middle).error();
   // PROJ does not convert between celestial bodies. The sphere therefore has the size of the file's body, and the
   // result is scaled to the planet. Latitudes and longitudes are unchanged.
   constexpr double kSameBody = 0.005;
@@ -284,7 +277,7 @@ Result<MapProjection> map_projection(const std::string& source_name, const Geore
   const double sphere_m = same_body ? radius_m : file_radius_m;
   out.scale = radius_m / sphere_m;
   constexpr double kEarth_m = 6378137.0;
-  if (std::abs(file_radius_m - kEarth_m) <= kSameBody * kEarth_m) out.centre = Place{y, std::remainder(x, 360.0)};
+  if (std::abs(file_radius_m - kEarth_m) <= kSameBody * kEarth_m) out.centre = middle.value();
   std::array<char, 160> text = {};
   if (!same_body) {
     std::snprintf(
@@ -293,8 +286,8 @@ Result<MapProjection> map_projection(const std::string& source_name, const Geore
         file_radius_m / 1000.0, radius_m / 1000.0);
     notes.emplace_back(text.data());
   }
-  std::snprintf(text.data(), text.size(), "+proj=aeqd +lat_0=%.12g +lon_0=%.12g +R=%.12g +units=m +no_defs", y, x,
-                sphere_m);
+  std::snprintf(text.data(), text.size(), "+proj=aeqd +lat_0=%.12g +lon_0=%.12g +R=%.12g +units=m +no_defs",
+                middle.value().latitude_deg, middle.value().longitude_deg, sphere_m);
   OGRSpatialReference srs;
   char* wkt = nullptr;
   if (srs.importFromProj4(text.data()) == OGRERR_NONE && srs.exportToWkt(&wkt) == OGRERR_NONE) out.wkt = wkt;
@@ -375,6 +368,7 @@ Result<ElevationRaster> read_elevation_here(const std::string& source_name, cons
   if (file->GetRasterCount() > 1)
     notes.push_back("has " + std::to_string(file->GetRasterCount()) + " bands; the first is used as elevation");
   Georeference geo = georeference(*file, request.units, notes);
+  geo.height_unit_m = height_unit_m(*opened.value(), *file, notes);
   Result<void> somewhere = check_extent(source_name, geo, file->GetRasterXSize(), file->GetRasterYSize());
   if (!somewhere.ok()) return std::move(somewhere).error();
   int width = 0;

@@ -81,6 +81,10 @@ void register_drivers();
 [[nodiscard]] Result<Dataset> decode_colours(const std::string& source, GDALDataset& file,
                                              std::vector<std::string>& notes);
 
+// Returns the metres per unit of the heights: of the band, of its coordinate system, or of a projection file beside the
+// data set `stored`, from which `read` may be derived. Adds a note about unknown units, which are taken as metres.
+[[nodiscard]] double height_unit_m(GDALDataset& stored, GDALDataset& read, std::vector<std::string>& notes);
+
 // Returns a virtual raster over `file` that declares an undeclared "no data" value: -9999 or a similar value that is at
 // least 500 units from every other sample. Adds a note with the value. Returns null if there is none. `file` must
 // outlive the result.

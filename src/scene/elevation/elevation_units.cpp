@@ -1,0 +1,93 @@
+// The unit of the heights in an elevation file.
+#include <array>
+#include <cctype>
+#include <cstdlib>
+
+#include <cpl_string.h>
+#include <ogr_spatialref.h>
+
+#include "scene/elevation/elevation_gdal.hpp"
+
+namespace tyndall::scene {
+namespace {
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+// Returns the metres per unit, or 0 for an unknown name.
+double metres_per(const std::string& name) {
+  struct Unit {
+    std::string_view name;
+    double metres;
+  };
+  constexpr double kFoot = 0.3048;
+  constexpr double kSurveyFoot = 1200.0 / 3937.0;
+  constexpr std::array<Unit, 24> kUnits = {{{"m", 1.0},
+                                            {"metre", 1.0},
+                                            {"meter", 1.0},
+                                            {"metres", 1.0},
+                                            {"meters", 1.0},
+                                            {"ft", kFoot},
+                                            {"foot", kFoot},
+                                            {"feet", kFoot},
+                                            {"international foot", kFoot},
+                                            {"us survey foot", kSurveyFoot},
+                                            {"us survey feet", kSurveyFoot},
+                                            {"us_survey_foot", kSurveyFoot},
+                                            {"foot_us", kSurveyFoot},
+                                            {"us-ft", kSurveyFoot},
+                                            {"ftus", kSurveyFoot},
+                                            {"mm", 0.001},
+                                            {"cm", 0.01},
+                                            {"centimetre", 0.01},
+                                            {"centimeter", 0.01},
+                                            {"dm", 0.1},
+                                            {"decimetre", 0.1},
+                                            {"decimeter", 0.1},
+                                            {"decimeters", 0.1},
+                                            {"km", 1000.0}}};
+  for (const Unit& unit : kUnits) {
+    if (unit.name == name) return unit.metres;
+  }
+  return 0.0;
+}
+
+// Returns the name of the unit in the projection file (.prj) that belongs to a data set, or an empty string. Old files
+// of ESRI have a line such as "Zunits FEET", which GDAL ignores. Some have a number of units per metre instead of a
+// name.
+std::string unit_of_projection_file(GDALDataset& file) {
+  const CPLStringList files(file.GetFileList());
+  for (int i = 0; i < files.Count(); ++i) {
+    if (!lower(files[i]).ends_with(".prj")) continue;
+    const CPLStringList lines(CSLLoad2(files[i], 100, 1000, nullptr));
+    for (int k = 0; k < lines.Count(); ++k) {
+      const CPLStringList words(CSLTokenizeString(lines[k]));
+      if (words.Count() == 2 && lower(words[0]) == "zunits" && lower(words[1]) != "no") return lower(words[1]);
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+double height_unit_m(GDALDataset& stored, GDALDataset& read, std::vector<std::string>& notes) {
+  std::string name = lower(read.GetRasterBand(1)->GetUnitType());
+  if (name.empty()) {
+    const OGRSpatialReference* const srs = read.GetSpatialRef();
+    const double metres = srs != nullptr && srs->IsCompound() != 0 ? srs->GetTargetLinearUnits("VERT_CS") : 0.0;
+    if (metres > 0.0) return metres;
+    name = unit_of_projection_file(stored);
+    if (name.empty()) return 1.0;
+    const double per_metre = std::strtod(name.c_str(), nullptr);
+    if (per_metre > 0.0) return 1.0 / per_metre;
+  }
+  const double metres = metres_per(name);
+  if (metres > 0.0) return metres;
+  notes.push_back("the unit of the heights, '" + name + "', is unknown; metres are assumed");
+  return 1.0;
+}
+
+}  // namespace tyndall::scene
