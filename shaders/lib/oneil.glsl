@@ -46,7 +46,7 @@ float oneil_scale(IN(OneilScale) s, float c) {
   return s.scale_height_m * (1.0 + s.bend) * b * exp(s.k0 + x * (s.k1 + x * (s.k2 + x * (s.k3 + x * s.k4))));
 }
 
-// Returns the density integral from altitude h >= 0 to infinity for c >= 0, over a planet of radius R. The atmosphere
+// Returns the density integral from altitude h to infinity for c >= 0, over a planet of radius R. The atmosphere
 // above h looks like that above sea level when lengths along the horizon are scaled by sqrt(r / R); the error is of the
 // order of the scale height over R.
 float oneil_outward(IN(OneilScale) s, float h, float c, float R) {
@@ -71,10 +71,16 @@ vec4 oneil_table(IN(Oneil) o, ONEIL_TABLE table, float h, float c, float top) {
   return mix(low, high, fv);
 }
 
+// Returns the factors by which density and density integral exceed those at sea level, where the table begins.
+vec2 oneil_below_sea_level(IN(Oneil) o, float h) {
+  float depth = max(-h, 0.0);
+  return vec2(exp(min(depth / o.rayleigh.scale_height_m, 60.0)), exp(min(depth / o.mie.scale_height_m, 60.0)));
+}
+
 vec2 oneil_densities(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h) {
   if (ONEIL_INTEGRAL_METHOD(o) == kOneilTable) {
     vec4 entry = oneil_table(o, table, h, 1.0, m.atmosphere_height_m);
-    return vec2(entry.x, entry.z);
+    return vec2(entry.x, entry.z) * oneil_below_sea_level(o, h);
   }
   return vec2(exp(min(-h / o.rayleigh.scale_height_m, 60.0)), exp(min(-h / o.mie.scale_height_m, 60.0)));
 }
@@ -83,14 +89,13 @@ vec2 oneil_densities(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h) {
 vec2 oneil_density_integral(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, float h, float c) {
   if (ONEIL_INTEGRAL_METHOD(o) == kOneilTable) {
     vec4 entry = oneil_table(o, table, h, c, m.atmosphere_height_m);
-    return vec2(entry.y, entry.w);
+    return vec2(entry.y, entry.w) * oneil_below_sea_level(o, h);
   }
   if (ONEIL_INTEGRAL_METHOD(o) == kOneilPublished) {
     return oneil_densities(m, o, table, h) * vec2(oneil_scale(o.rayleigh, c), oneil_scale(o.mie, c));
   }
   float R = m.planet_radius_m;
-  float above = max(h, 0.0);
-  return vec2(oneil_outward(o.rayleigh, above, c, R), oneil_outward(o.mie, above, c, R));
+  return vec2(oneil_outward(o.rayleigh, h, c, R), oneil_outward(o.mie, h, c, R));
 }
 
 // A ray: altitude of its origin, cosines of the view and sun zenith angles there, cosine of the angle between view
@@ -143,7 +148,7 @@ vec2 oneil_sun_density_integral(IN(Medium) m, IN(Oneil) o, ONEIL_TABLE table, fl
   if (c >= 0.0 || ONEIL_INTEGRAL_METHOD(o) == kOneilPublished) {
     return oneil_density_integral(m, o, table, h, c);
   }
-  float lowest = max(perigee_altitude(h, c, m.planet_radius_m), 0.0);
+  float lowest = max(perigee_altitude(h, c, m.planet_radius_m), min(h, 0.0));
   return 2.0 * oneil_density_integral(m, o, table, lowest, 0.0) - oneil_density_integral(m, o, table, h, -c);
 }
 

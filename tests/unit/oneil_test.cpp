@@ -335,6 +335,37 @@ TEST(Oneil, NoJumpAcrossTheTop) {
   }
 }
 
+TEST(Oneil, TheAtmosphereContinuesBelowSeaLevel) {
+  const shared::Medium m = planet(6360.0e3, 80.0e3, 7994.0, 1200.0);
+  for (const OneilIntegralMethod method : {OneilIntegralMethod::computed, OneilIntegralMethod::table}) {
+    OneilSettings settings;
+    settings.integral_method = method;
+    const OneilModel model = make_oneil(m, settings);
+    for (const double altitude : {-430.0, -2000.0, -11000.0}) {
+      // The density integral of a vertical ray is that of an exponential.
+      const Answer up = oneil(model, ray_from_angles(altitude, 0.0, 0.8, 0.5));
+      const auto integral = [&](double scale_height) {
+        return scale_height * (std::exp(-altitude / scale_height) - std::exp(-80.0e3 / scale_height));
+      };
+      const Three expected = {static_cast<double>(m.rayleigh_scattering.x) * integral(7994.0) +
+                                  static_cast<double>(m.mie_extinction.x) * integral(1200.0),
+                              static_cast<double>(m.rayleigh_scattering.y) * integral(7994.0) +
+                                  static_cast<double>(m.mie_extinction.y) * integral(1200.0),
+                              static_cast<double>(m.rayleigh_scattering.z) * integral(7994.0) +
+                                  static_cast<double>(m.mie_extinction.z) * integral(1200.0)};
+      for (std::size_t c = 0; c < 3; ++c) {
+        EXPECT_NEAR(-std::log(std::max(up.transmittance[c], 1e-300)), std::min(expected[c], 690.0), 0.01 * expected[c])
+            << altitude;
+      }
+      // No direction is brighter than the sunlight that the phase function can send towards the eye.
+      for (double zenith = 0.05; zenith < kPi; zenith += 0.1) {
+        const Answer answer = oneil(model, ray_from_angles(altitude, zenith, 0.8, 0.5));
+        for (std::size_t c = 0; c < 3; ++c) EXPECT_LT(answer.radiance[c], 1.0) << altitude << " " << zenith;
+      }
+    }
+  }
+}
+
 TEST(Oneil, NightIsDarkAndNothingIsUndefined) {
   const shared::Medium media[] = {demo(), planet(6360.0e3, 80.0e3, 7994.0, 1200.0),
                                   planet(2575.0e3, 400.0e3, 40000.0, 25000.0), planet(1000.0, 1000.0, 10.0, 1.0e6),
