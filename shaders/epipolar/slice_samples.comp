@@ -43,6 +43,17 @@ float depth_at(vec2 position) {
   return scene && min(a, b) > kSameSurface * max(a, b) ? between : nearest_pixel;
 }
 
+// Returns the sunlight where a ray from outside of the atmosphere is closest to the ground. Without it, samples on both
+// sides of the terminator would look alike.
+Spectrum sunlight_of_ray(Ray ray, float end) {
+  float radius = medium.planet_radius_m;
+  float lowest = min(max(-(radius + ray.altitude) * ray.cos_zenith, 0.0), end);
+  float altitude = max(altitude_along(ray.altitude, ray.cos_zenith, lowest, radius), medium.rayleigh_scale_height_m);
+  float cos_sun = cos_sun_zenith_along(ray, lowest, radius);
+  return sun_visibility(altitude, cos_sun, radius) *
+         transmittance(medium, density_integral_to_top(medium, altitude, cos_sun));
+}
+
 void main() {
   load_medium();
   uint i = gl_GlobalInvocationID.x;
@@ -69,6 +80,11 @@ void main() {
     return;
   }
   Ray ray = ray_to_depth(frame, position, view_depth(frame, position, depth), sky);
+  bool from_space = ray.altitude > medium.atmosphere_height_m;
+  // Between pixels that are many kilometres apart, the interpolated depth is that of a chord far below the ground.
+  if (from_space && !sky && hits_planet(frame, ray.altitude, ray.cos_zenith, medium.planet_radius_m))
+    ray.length_m =
+        min(ray.length_m, distance_to_sphere(ray.altitude, ray.cos_zenith, frame.ground_m, medium.planet_radius_m));
   s.depth_m = sky ? sky_depth_m(ray.direction) : ray.length_m * dot(ray.direction, frame.camera_forward);
   vec3 integral = vec3(0.0);
   float start, end;
@@ -80,5 +96,6 @@ void main() {
   NormalisationFactors factors = normalisation_factors(medium, integral);
   Spectrum light = RAYLEIGH_SCATTERING(medium) * rayleigh_phase(ray.cos_view_sun) * factors.rayleigh +
                    mie_scattering_towards(medium, ray.cos_view_sun) * factors.mie;
+  if (from_space) light *= sunlight_of_ray(ray, end);
   coarse[at] = pack_coarse(light) | (s.depth_m >= kSkyDepth ? kSkySample : 0u);
 }

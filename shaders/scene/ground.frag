@@ -5,9 +5,10 @@
 #include "lib/geometry.glsl"
 #include "scene/mesh_light.glsl"
 
-// In the depth test against meshes, the ground counts as farther away by this fraction. A floor at sea level then hides
-// the ground however depths are rounded. From a height h, the ground looks as if it were lower by kBehindMeshes * h.
-const float kBehindMeshes = 5.0e-4;
+// Returns by how much the ground counts as farther away in the depth test against meshes. A floor at sea level then
+// hides the ground however depths are rounded. The effect sees the ground lower by as much, so this must stay far below
+// the scale height of the aerosol, from space too.
+float behind_meshes(float distance_m) { return min(5.0e-4 * distance_m, 5.0) + 2.0e-7 * distance_m; }
 
 layout(location = 0) in vec2 ndc;
 layout(location = 0) out vec4 radiance;
@@ -31,14 +32,19 @@ void main() {
   // For an eye below sea level, the sphere lies at ground_below() instead of at sea level.
   float ground = ground_below(altitude_of(p, radius), radius);
   c -= ground * (2.0 * radius + ground);
-  // Far from the planet, b^2 - c loses precision, but then an error of the distance is not visible.
   float root = b * b - c;
+  if (c > radius * radius) {
+    // Far from the planet, b^2 - c is the difference of large numbers. The distance of the ray from the centre is
+    // precise.
+    float from_centre = length(cross(p + vec3(0.0, radius, 0.0), direction));
+    root = (radius + ground - from_centre) * (radius + ground + from_centre);
+  }
   if (root < 0.0 || b >= 0.0 || c < 0.0) discard;
   float t = c / (sqrt(root) - b);
   vec3 position = p + direction * t;
   float depth = push.near_m / (t * view_depth_per_m);
   if (depth > 1.0) discard;
-  gl_FragDepth = depth * (1.0 - kBehindMeshes);
+  gl_FragDepth = push.near_m / ((t + behind_meshes(t)) * view_depth_per_m);
 
   SurfaceLight light = surface_light(position);
   uint cascade;

@@ -1,8 +1,10 @@
 // The scene far from the origin of the world looks the same as at the origin, and the planet has ground everywhere.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <numbers>
+#include <utility>
 
 #include "gpu_test.hpp"
 #include "image/metrics.hpp"
@@ -122,6 +124,47 @@ TEST_F(GpuFarPlaces, AMeshLooksTheSameWhereverItStands) {
       EXPECT_GT(image::compare(first, display.value()).psnr_db, 45.0)
           << place.name << (technique == Technique::epipolar ? ", epipolar" : "");
     }
+  }
+}
+
+// Straight down, radiance does not depend on the height above the atmosphere. From far away, the terminator is as sharp
+// with epipolar sampling as by brute force.
+TEST_F(GpuFarPlaces, ThePlanetLooksTheSameFromAnyHeight) {
+  scene_.terrain.source = "none";
+  scene_.camera.pitch_deg = -90.0F;
+  scene_.sun.elevation_deg = 60.0F;
+  scene_.tonemap.auto_exposure = false;
+  params_.tables.size = {16, 64, 32, 8};
+  Scene* const scene = make();
+  ASSERT_NE(scene, nullptr);
+  const auto look = [&](double altitude_m, float fov_deg, Technique technique) {
+    params_.scattering.technique = technique;
+    EXPECT_OK(scene->set_params(params_));
+    scene_.camera.fov_deg = fov_deg;
+    stand({0.0, altitude_m, 0.0});
+    return draw(*scene);
+  };
+  const std::size_t middle = 3 * (kExtent.height / 2 * kExtent.width + kExtent.width / 2);
+  std::array<double, 3> first = {};
+  for (const Technique technique : {Technique::brute_force, Technique::epipolar}) {
+    for (const double altitude_m : {2e5, 1e6, 1e7, 3.5786e7}) {
+      const image::Image picture = look(altitude_m, 1.0F, technique);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double radiance = static_cast<double>(picture.rgb[middle + c]);
+        if (first[c] == 0.0) first[c] = radiance;
+        EXPECT_NEAR(radiance, first[c], 0.02 * first[c]) << altitude_m << " channel " << c;
+      }
+    }
+  }
+  scene_.sun.elevation_deg = 0.0F;
+  for (const auto& [altitude_m, fov_deg] : {std::pair(1e7, 53.0F), std::pair(3.5786e7, 20.0F)}) {
+    look(altitude_m, fov_deg, Technique::brute_force);
+    const Result<image::Image> reference = scene->display();
+    look(altitude_m, fov_deg, Technique::epipolar);
+    const Result<image::Image> picture = scene->display();
+    ASSERT_OK(reference);
+    ASSERT_OK(picture);
+    EXPECT_GT(image::compare(picture.value(), reference.value()).psnr_db, 38.0) << altitude_m;
   }
 }
 
