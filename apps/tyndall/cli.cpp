@@ -11,6 +11,7 @@
 #include "arguments.hpp"
 #include "config/phase_file.hpp"
 #include "config/scene_file.hpp"
+#include "effect/medium.hpp"
 #include "files/access.hpp"
 #include "files/files.hpp"
 #include "files/text.hpp"
@@ -117,6 +118,29 @@ void add_common(Arguments& arguments, CommonOptions& options, unsigned which) {
   if ((which & kJson) != 0) arguments.flag("--json", options.json, "print the results as JSON");
 }
 
+namespace {
+
+// Notes that the tables have too few orders of scattering for the air (docs/air.md).
+void note_thick_air(const Params& params) {
+  constexpr double kThick = 2.0;
+  if (params.scattering.medium != MediumKind::atmosphere) return;
+  const shared::Medium air = medium_from_params(params);
+  double thickest = 0.0;
+  const auto add = [&](float rayleigh, float mie) {
+    thickest = std::max(thickest, static_cast<double>(rayleigh) * static_cast<double>(air.rayleigh_scale_height_m) +
+                                      static_cast<double>(mie) * static_cast<double>(air.mie_scale_height_m));
+  };
+  add(air.rayleigh_scattering.x, air.mie_scattering.x);
+  add(air.rayleigh_scattering.y, air.mie_scattering.y);
+  add(air.rayleigh_scattering.z, air.mie_scattering.z);
+  if (thickest <= kThick) return;
+  note(concat(
+      {"the air scatters with a vertical optical depth of ", files::number_text(std::round(10.0 * thickest) / 10.0),
+       "; the tables hold only tables.orders orders of scattering, so results from them are too dark (docs/air.md)"}));
+}
+
+}  // namespace
+
 Result<void> resolve(CommonOptions& options) {
   options.settings = config::Settings();
   if (options.allow_outside) files::allow_outside();
@@ -138,6 +162,7 @@ Result<void> resolve(CommonOptions& options) {
                    files::number_text(std::round(1000.0 * phase->deviation()) / 10.0), " % and has been corrected"}));
     }
   }
+  note_thick_air(options.settings.effect);
   return {};
 }
 

@@ -139,6 +139,17 @@ TEST_F(CliProbe, ParametersAndScenesApply) {
   EXPECT_EQ(*probe(queries, {"--set", "scattering.scale=2"}).text, *probe(queries).text);
 }
 
+TEST_F(CliProbe, ThickAirIsNoted) {
+  const std::string path = scratch_.write("queries.csv", kHeader + "0,30,60,0\n");
+  const auto notes = [&](const std::string& visibility_m) {
+    return run_tyndall({"probe", "--queries", path, "--model", "single", "--set",
+                        "atmosphere.single_scattering_albedo=1", "--set", "atmosphere.visibility_m=" + visibility_m})
+        .err;
+  };
+  EXPECT_EQ(notes("5000"), "");
+  EXPECT_NE(notes("1000").find("vertical optical depth of 4.9"), std::string::npos) << notes("1000");
+}
+
 TEST_F(CliProbe, WritesAFileOrJson) {
   const std::string queries = scratch_.write("q.csv", kHeader + "0,30,60,0\n0,sky,60,0\n");
   const std::string file = scratch_.at("r.csv");
