@@ -120,8 +120,8 @@ void add_common(Arguments& arguments, CommonOptions& options, unsigned which) {
 
 namespace {
 
-// Notes that the tables have too few orders of scattering for the air (docs/air.md).
-void note_thick_air(const Params& params) {
+// Notes that the tables have too few orders of scattering for a thick atmosphere (docs/air.md).
+void note_thick_atmosphere(const Params& params) {
   constexpr double kThick = 2.0;
   if (params.scattering.medium != MediumKind::atmosphere) return;
   const shared::Medium air = medium_from_params(params);
@@ -135,7 +135,8 @@ void note_thick_air(const Params& params) {
   add(air.rayleigh_scattering.z, air.mie_scattering.z);
   if (thickest <= kThick) return;
   note(concat(
-      {"the air scatters with a vertical optical depth of ", files::number_text(std::round(10.0 * thickest) / 10.0),
+      {"the atmosphere scatters with a vertical optical depth of ",
+       files::number_text(std::round(10.0 * thickest) / 10.0),
        "; the tables hold only tables.orders orders of scattering, so results from them are too dark (docs/air.md)"}));
 }
 
@@ -162,7 +163,7 @@ Result<void> resolve(CommonOptions& options) {
                    files::number_text(std::round(1000.0 * phase->deviation()) / 10.0), " % and has been corrected"}));
     }
   }
-  note_thick_air(options.settings.effect);
+  note_thick_atmosphere(options.settings.effect);
   return {};
 }
 

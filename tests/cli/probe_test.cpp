@@ -139,7 +139,7 @@ TEST_F(CliProbe, ParametersAndScenesApply) {
   EXPECT_EQ(*probe(queries, {"--set", "scattering.scale=2"}).text, *probe(queries).text);
 }
 
-TEST_F(CliProbe, ThickAirIsNoted) {
+TEST_F(CliProbe, ThickAtmospheresAreNoted) {
   const std::string path = scratch_.write("queries.csv", kHeader + "0,30,60,0\n");
   const auto notes = [&](const std::string& visibility_m) {
     return run_tyndall({"probe", "--queries", path, "--model", "single", "--set",
