@@ -377,7 +377,7 @@ int run(const Options& options) {
         return 1;
       }
       if (options.frames >= 8 && (i + 1) % (options.frames / 8) == 0) memory.push_back(resident_bytes() >> 20U);
-      if ((i + 1) % 1000 == 0) std::fprintf(stderr, "soak: %llu frames\n", static_cast<unsigned long long>(i + 1));
+      if ((i + 1) % 1000 == 0) std::fprintf(stderr, "soak: %llu frames\n", static_cast<unsigned long long>(i) + 1);
     }
     counts = soak.counts();
   }
