@@ -114,6 +114,35 @@ Channels kind_of_channels(const Imf::ChannelList& channels) {
   return Channels::rgb;
 }
 
+// Returns what of a file is ignored: channels that carry no colour, and primaries. Empty if nothing is.
+std::string ignored_parts(const Imf::Header& header, Channels kind) {
+  std::string names;
+  int count = 0;
+  for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
+    const std::string_view name = it.name();
+    const bool read = kind == Channels::rgb    ? name == "R" || name == "G" || name == "B"
+                      : kind == Channels::grey ? name == "Y"
+                                               : name == "Y" || name == "RY" || name == "BY";
+    if (read) continue;
+    constexpr int kNamed = 4;
+    if (count < kNamed) names.append(count > 0 ? ", " : "").append(name);
+    ++count;
+    if (count == kNamed + 1) names.append(", ...");
+  }
+  std::string out;
+  if (count > 0) out = files::concat({"its channels ", names, " are ignored"});
+  const Imf::Chromaticities rec709;
+  if (Imf::hasChromaticities(header) && kind != Channels::grey) {
+    const Imf::Chromaticities& own = Imf::chromaticities(header);
+    constexpr float kSame = 1e-3F;
+    const bool same =
+        own.red.equalWithAbsError(rec709.red, kSame) && own.green.equalWithAbsError(rec709.green, kSame) &&
+        own.blue.equalWithAbsError(rec709.blue, kSame) && own.white.equalWithAbsError(rec709.white, kSame);
+    if (!same) out.append(out.empty() ? "" : "; ").append("its primaries are not those of Rec. 709, and are ignored");
+  }
+  return out;
+}
+
 Metadata string_attributes(const Imf::Header& header) {
   Metadata metadata;
   for (Imf::Header::ConstIterator it = header.begin(); it != header.end(); ++it) {
@@ -208,6 +237,7 @@ File decode(std::string_view bytes, const std::string& path) {
   File file;
   file.kind = FileKind::exr;
   file.metadata = string_attributes(input.header());
+  file.note = ignored_parts(input.header(), channels);
   file.image.width = static_cast<std::uint32_t>(width_of(window));
   file.image.height = static_cast<std::uint32_t>(height_of(window));
   if (channels == Channels::luminance_chroma) {
@@ -221,8 +251,9 @@ File decode(std::string_view bytes, const std::string& path) {
     check_window(display, std::max(kMaxEmptyPixels, width_of(window) * height_of(window)),
                  "its display window is too large");
     file.image = displayed(file.image, window, display);
-    file.note = files::concat({"its data window is ", window_text(window), " and its display window ",
-                               window_text(display), "; the display window is read, black where there are no data"});
+    if (!file.note.empty()) file.note.append("; ");
+    file.note += files::concat({"its data window is ", window_text(window), " and its display window ",
+                                window_text(display), "; the display window is read, black where there are no data"});
   }
   return file;
 }

@@ -99,8 +99,8 @@ struct File {
   FileKind kind = FileKind::png;  // by content, not by name
   Image image;                    // PNG: encoded values, scaled to [0; 1]; EXR: linear values
   Metadata metadata;              // PNG: text chunks; EXR: string attributes
-  // A one-line remark on the pixels, empty for most files: the data window of an EXR differs from its display window,
-  // or luminance and chroma were converted to RGB.
+  // A one-line remark on the pixels, empty for most files: transparency, a gamma, channels or primaries are ignored,
+  // the data window of an EXR differs from its display window, or luminance and chroma were converted to RGB.
   std::string note;
 };
 

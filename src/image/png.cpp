@@ -41,6 +41,8 @@ struct Reader {
   std::uint32_t width = 0, height = 0;
   unsigned char* samples = nullptr;  // RGB, 8 or 16 bits in native byte order
   int depth = 8;
+  bool transparent = false;
+  double gamma = 0.0;  // exponent of the encoding if the file has one instead of the sRGB curve; otherwise 0
 };
 
 // Returns why the chunks of a PNG must be wrong, or an empty string. libpng would allocate the claimed size of a chunk
@@ -75,6 +77,10 @@ bool read_samples(Reader* reader) {
   png_read_info(reader->png, reader->info);
   reader->width = png_get_image_width(reader->png, reader->info);
   reader->height = png_get_image_height(reader->png, reader->info);
+  reader->transparent = (png_get_color_type(reader->png, reader->info) & PNG_COLOR_MASK_ALPHA) != 0 ||
+                        png_get_valid(reader->png, reader->info, PNG_INFO_tRNS) != 0;
+  if (png_get_valid(reader->png, reader->info, PNG_INFO_sRGB) == 0)
+    png_get_gAMA(reader->png, reader->info, &reader->gamma);
   png_set_expand(reader->png);
   png_set_gray_to_rgb(reader->png);
   png_set_strip_alpha(reader->png);
@@ -103,6 +109,16 @@ bool read_samples(Reader* reader) {
   }
   png_read_end(reader->png, reader->info);
   return true;
+}
+
+// Returns what of a file is ignored, or an empty string.
+std::string ignored_parts(const Reader& reader) {
+  std::string out;
+  if (reader.transparent) out = "its transparency is ignored";
+  constexpr double kCloseToSrgb = 0.01;
+  if (reader.gamma > 0.0 && std::abs(reader.gamma - 1.0 / 2.2) > kCloseToSrgb)
+    out.append(out.empty() ? "" : "; ").append("its gamma is ignored, and the sRGB curve is assumed");
+  return out;
 }
 
 Metadata text_chunks(const Reader& reader) {
@@ -207,6 +223,7 @@ Result<File> decode_png(std::string_view bytes, const std::string& path) {
       file->kind = FileKind::png;
       file->image = Image(reader.width, reader.height);
       file->metadata = text_chunks(reader);
+      file->note = ignored_parts(reader);
     }
   } catch (const std::bad_alloc&) {
     file.reset();
