@@ -63,8 +63,14 @@ std::optional<std::string> scalar_text(const toml::node& node, ParamType type) {
 }
 
 Error wrong_type(const Row& row, const toml::node& node, const std::string& where) {
+  const bool unquoted = row.info.type == ParamType::string && !node.is_string();
   return files::input_error(files::concat({"'", row.key(), "' is ", kind_of(node)}), where,
-                            files::concat({"expected ", allowed_text(row)}));
+                            files::concat({"expected ", allowed_text(row), unquoted ? ", in quotes" : ""}));
+}
+
+Error quoted_key(std::string_view key, std::string_view where) {
+  return files::input_error(files::concat({"the name '", files::one_line(key), "' is in quotes"}), where,
+                            "expected it without quotes, because its dot separates table and parameter");
 }
 
 Result<void> load_value(Settings& settings, const Row& row, const toml::node& node, std::string_view name) {
@@ -274,6 +280,7 @@ Result<void> load_root(Settings& settings, const toml::table& root, std::string_
       continue;
     }
     const toml::table* const table = node.as_table();
+    if (find_row(group.str()) != nullptr) return quoted_key(group.str(), where);
     if (!is_group(group.str())) {
       return table != nullptr ? unknown_table(group.str(), where) : unknown_key(group.str(), where);
     }
@@ -347,6 +354,10 @@ Result<void> load_includes(Settings& settings, const toml::table& root, std::str
       return problem("too many files include each other", *element,
                      files::concat({"expected at most ", std::to_string(kMaxIncludeDepth), " files in a chain and ",
                                     std::to_string(kMaxIncludedFiles), " in all"}));
+    }
+    if (!std::filesystem::exists(path, ignored)) {
+      return problem(files::concat({"'", files::one_line(text->get(), 200), "' does not exist"}), *element,
+                     "expected a file, relative to the folder of this one");
     }
     if (Result<void> read = load_file(settings, path.string(), reading); !read) return read;
   }

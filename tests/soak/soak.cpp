@@ -303,8 +303,9 @@ class Soak {
     }
     const Result<std::vector<glm::dvec3>> picture = images.value().output(host_);
     if (!picture.ok()) find("output: " + picture.error().message);
-    // Half precision rounds up by at most one part in 2048.
-    const double bound = brightest(effect_->params(), shape) * (format == OutputFormat::rgba16f ? 1.0005 : 1.0);
+    double bound = brightest(effect_->params(), shape);
+    // Half precision rounds up by at most one part in 2048, or by half of its smallest number.
+    if (format == OutputFormat::rgba16f) bound = bound * 1.0005 + 0x1p-25;
     for (const glm::dvec3& pixel : picture.value()) {
       for (int c = 0; c < 3; ++c) {
         if (std::isfinite(pixel[c]) && pixel[c] >= 0.0 && pixel[c] <= bound) continue;

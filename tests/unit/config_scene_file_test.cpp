@@ -327,7 +327,7 @@ TEST_F(SceneFile, WrongIncludesAreRefused) {
   refused("include = 't.toml'\n", "t.toml:2: './s.toml' includes itself");
   refused("include = 3\n", "s.toml:1: 'include' does not name a file; expected \"FILE.toml\"");
   refused("include = ['']\n", "does not name a file");
-  refused("include = 'none.toml'\n", "none.toml': cannot read");
+  refused("include = 'none.toml'\n", "s.toml:1: 'none.toml' does not exist");
   write("bad.toml", "[atmosphere]\nmie_gg = 1\n");
   for (int i = 0; i < 9; ++i) {
     write("chain" + std::to_string(i) + ".toml", "include = 'chain" + std::to_string(i + 1) + ".toml'\n");

@@ -20,6 +20,21 @@ std::string failure(std::string_view assignment) {
   return result ? "(accepted)" : result.error().message;
 }
 
+TEST(ConfigSettings, QuotesInSceneFiles) {
+  const auto refusal = [](std::string_view toml) {
+    Settings settings;
+    const Result<void> result = load_text(settings, toml, "s.toml");
+    return result ? "(accepted)" : result.error().message;
+  };
+  EXPECT_EQ(
+      refusal("\"sun.elevation_deg\" = 20\n"),
+      "s.toml:1: the name 'sun.elevation_deg' is in quotes; expected it without quotes, because its dot separates "
+      "table and parameter");
+  EXPECT_EQ(refusal("sun.elevation_deg = 20\n"), "(accepted)");
+  EXPECT_EQ(refusal("[sun]\ntime = 2026-06-21T06:00:00Z\n"),
+            "s.toml:2: 'sun.time' is a date or time; expected text in UTF-8, in quotes");
+}
+
 TEST(ConfigSettings, KeysAreUniqueAndDefaultsAreAllowed) {
   std::set<std::string> seen;
   for (const Row& row : rows()) {
