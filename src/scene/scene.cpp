@@ -72,6 +72,25 @@ double halton(std::uint32_t i, std::uint32_t base) {
   return out;
 }
 
+// Returns notes on what cannot be drawn well from a position. `height_m`: above the ground.
+std::vector<std::string> limits_of_view(const View& view, double height_m, double radius_m) {
+  std::vector<std::string> out;
+  constexpr double kGrainy_m = 2.0e8;
+  if (height_m > kGrainy_m)
+    out.emplace_back("the camera is farther than 200000 km from the ground; single precision makes the planet grainy");
+  const glm::dvec3 up = up_of(view.position, radius_m);
+  for (const double x : {-1.0, 0.0, 1.0}) {
+    for (const double y : {-1.0, 1.0}) {
+      const glm::dvec3 ray =
+          view.forward + x * view.tan_half_width * view.right + y * view.tan_half_height * view.up;  // depth 1
+      if (-glm::dot(ray, up) * kNearPlane_m <= height_m) continue;
+      out.emplace_back("the field of view contains ground within the near plane at 0.5 m, which is not drawn");
+      return out;
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Scene>> Scene::create(gpu::Host& host, const SceneDesc& desc, const Params& params,
@@ -292,6 +311,7 @@ Result<void> Scene::render_sample(double seconds, const glm::dvec2& jitter, bool
     }
     lifted_ = true;
   }
+  add_notes(notes_, limits_of_view(view_, std::max(altitude - ground_m, min_m), radius));
   frame_ = local_frame(view_.position, radius);
   if (!bare) {
     TYNDALL_TRY(terrain_->set_coarseness(

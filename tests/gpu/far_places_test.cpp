@@ -168,6 +168,28 @@ TEST_F(GpuFarPlaces, ThePlanetLooksTheSameFromAnyHeight) {
   }
 }
 
+// What cannot be drawn well is noted.
+TEST_F(GpuFarPlaces, LimitsAreNoted) {
+  scene_.terrain.source = "none";
+  params_.scattering.technique = Technique::brute_force;
+  Scene* const scene = make();
+  ASSERT_NE(scene, nullptr);
+  const auto noted = [&](const char* part) {
+    draw(*scene);
+    return std::any_of(scene->notes().begin(), scene->notes().end(),
+                       [&](const std::string& note) { return note.find(part) != std::string::npos; });
+  };
+  stand({0.0, 2.0, 0.0});
+  scene_.camera.fov_deg = 100.0F;
+  EXPECT_FALSE(noted("within the near plane"));
+  scene_.camera.fov_deg = 170.0F;
+  EXPECT_TRUE(noted("within the near plane"));
+  stand({0.0, 1e8, 0.0});
+  EXPECT_FALSE(noted("single precision"));
+  stand({0.0, 1e9, 0.0});
+  EXPECT_TRUE(noted("single precision"));
+}
+
 // The ground drawn below the camera has the height that ground_height() returns, and the camera is not raised.
 TEST_F(GpuFarPlaces, TheGroundIsDrawnWhereTheCameraStands) {
   params_.scattering.enabled = false;
