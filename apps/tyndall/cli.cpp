@@ -121,9 +121,12 @@ void add_common(Arguments& arguments, CommonOptions& options, unsigned which) {
 namespace {
 
 // Notes that the tables have too few orders of scattering for a thick atmosphere (docs/air.md).
-void note_thick_atmosphere(const Params& params) {
+void note_thick_atmosphere(const config::Settings& settings) {
   constexpr double kThick = 2.0;
-  if (params.scattering.medium != MediumKind::atmosphere) return;
+  const Params& params = settings.effect;
+  if (settings.scene.scattering.model != scene::ScatteringModel::atmosphere ||
+      params.scattering.medium != MediumKind::atmosphere || params.scattering.multiple == MultipleScattering::none)
+    return;
   const shared::Medium air = medium_from_params(params);
   double thickest = 0.0;
   const auto add = [&](float rayleigh, float mie) {
@@ -163,7 +166,7 @@ Result<void> resolve(CommonOptions& options) {
                    files::number_text(std::round(1000.0 * phase->deviation()) / 10.0), " % and has been corrected"}));
     }
   }
-  note_thick_atmosphere(options.settings.effect);
+  note_thick_atmosphere(options.settings);
   return {};
 }
 
