@@ -19,8 +19,8 @@ class Interruption {
   Interruption& operator=(const Interruption&) = delete;
   ~Interruption();
 
-  // Sets a function that returns what was finished. Another thread calls it, at most once. Until it is
-  // set, nothing counts as finished.
+  // Sets a function that returns what was finished. Another thread calls it, at most once. Until it is set,
+  // nothing counts as finished.
   void describe_by(std::function<std::string()> describe);
 
  private:

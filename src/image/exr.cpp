@@ -130,7 +130,8 @@ std::string ignored_parts(const Imf::Header& header, Channels kind) {
     if (count == kNamed + 1) names.append(", ...");
   }
   std::string out;
-  if (count > 0) out = files::concat({"its channels ", names, " are ignored"});
+  if (count > 0)
+    out = files::concat({count > 1 ? "its channels " : "its channel ", names, count > 1 ? " are" : " is", " ignored"});
   const Imf::Chromaticities rec709;
   if (Imf::hasChromaticities(header) && kind != Channels::grey) {
     const Imf::Chromaticities& own = Imf::chromaticities(header);

@@ -84,6 +84,7 @@ std::vector<std::string> limits_of_view(const View& view, double height_m, doubl
       const glm::dvec3 ray =
           view.forward + x * view.tan_half_width * view.right + y * view.tan_half_height * view.up;  // depth 1
       if (-glm::dot(ray, up) * kNearPlane_m <= height_m) continue;
+      static_assert(kNearPlane_m == 0.5);
       out.emplace_back("the field of view contains ground within the near plane at 0.5 m, which is not drawn");
       return out;
     }

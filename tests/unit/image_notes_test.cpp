@@ -86,7 +86,7 @@ TEST_F(ImageNotes, TransparencyAndGammaOfPng) {
 
 TEST_F(ImageNotes, ChannelsAndPrimariesOfExr) {
   EXPECT_EQ(note_of_exr({"R", "G", "B"}), "");
-  EXPECT_EQ(note_of_exr({"R", "G", "B", "A"}), "its channels A are ignored");
+  EXPECT_EQ(note_of_exr({"R", "G", "B", "A"}), "its channel A is ignored");
   EXPECT_EQ(note_of_exr({"X", "Y", "Z"}), "its channels X, Z are ignored");
   EXPECT_EQ(note_of_exr({"R", "G", "B", "a", "b", "c", "d", "e"}), "its channels a, b, c, d, ... are ignored");
   const Imf::Chromaticities rec709;

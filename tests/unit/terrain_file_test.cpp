@@ -117,6 +117,7 @@ TEST_F(ElevationFile, ProjectionFilesHaveVerticalUnits) {
   EXPECT_NEAR(highest("DECIMETERS").max_m, 0.1 * hill(63, 63), 2.0);
   EXPECT_NEAR(highest("100").max_m, 0.01 * hill(63, 63), 1.0);
   EXPECT_TRUE(noted(highest("CUBITS"), "'cubits'"));
+  EXPECT_TRUE(noted(highest("INF"), "'inf'"));
 }
 
 TEST_F(ElevationFile, HolesAreFilledFromTheirBorders) {
@@ -393,6 +394,26 @@ TEST_F(ElevationFile, MaskedSamplesAreHoles) {
     EXPECT_FLOAT_EQ(at(r, 60, 60), static_cast<float>(hill(60, 60))) << path;
     EXPECT_TRUE(noted(r, "filled 361 samples")) << path;
   }
+}
+
+TEST_F(ElevationFile, DamagedMasksAreRefused) {
+  TestFile file;
+  file.epsg = 0;
+  file.name = "cut.tif";
+  file.prepare = [](GDALDataset& data) {
+    ASSERT_EQ(data.CreateMaskBand(GMF_PER_DATASET), CE_None);
+    ASSERT_EQ(data.GetRasterBand(1)->GetMaskBand()->Fill(255.0), CE_None);
+  };
+  const std::filesystem::path path = folder_.write(file, hill);
+  const std::filesystem::path mask = path.string() + ".msk";
+  ASSERT_TRUE(std::filesystem::exists(mask));
+  read(path);
+  // The compressed samples are at the end of the file.
+  std::fstream bytes(mask, std::ios::in | std::ios::out | std::ios::binary);
+  bytes.seekp(-16, std::ios::end);
+  for (int i = 0; i < 16; ++i) bytes.put('\xFF');
+  bytes.close();
+  EXPECT_NE(error(path).find("mask that cannot be read"), std::string::npos);
 }
 
 TEST_F(ElevationFile, PalettesAreRefused) {

@@ -139,18 +139,21 @@ bool has_signed_bytes(GDALRasterBand& band) {
 }
 
 // Returns the mask or the opacity of a band: 0 where there are no heights. Empty if the band has neither.
-std::vector<std::uint8_t> read_mask(GDALRasterBand& band, int width, int height) {
+Result<std::vector<std::uint8_t>> read_mask(const std::string& source_name, GDALRasterBand& band, int width, int height,
+                                            const Messages& messages) {
   GDALRasterBand* source = nullptr;
   if ((band.GetMaskFlags() & (GMF_PER_DATASET | GMF_ALPHA)) != 0) source = band.GetMaskBand();
   // GDAL ignores opacities that are stored as real numbers.
   GDALDataset* const file = band.GetDataset();
   GDALRasterBand* const last = file == nullptr ? nullptr : file->GetRasterBand(file->GetRasterCount());
-  if (source == nullptr && last != nullptr && last->GetColorInterpretation() == GCI_AlphaBand) source = last;
-  if (source == nullptr) return {};
-  std::vector<std::uint8_t> mask(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  if (source == nullptr && last != nullptr && last != &band && last->GetColorInterpretation() == GCI_AlphaBand)
+    source = last;
+  std::vector<std::uint8_t> mask;
+  if (source == nullptr) return mask;
+  mask.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   if (source->RasterIO(GF_Read, 0, 0, band.GetXSize(), band.GetYSize(), mask.data(), width, height, GDT_Byte, 0, 0,
                        nullptr) != CE_None)
-    return {};
+    return elevation_error(source_name, "has a mask that cannot be read: truncated or damaged" + messages.reason());
   return mask;
 }
 
@@ -192,14 +195,15 @@ Result<std::vector<float>> read_band(const std::string& source_name, GDALDataset
                                     static_cast<double>(std::numeric_limits<float>::max())));
   const double scale = band.GetScale() * geo.height_unit_m;
   const double offset = band.GetOffset() * geo.height_unit_m;
-  const std::vector<std::uint8_t> mask = read_mask(band, width, height);
+  const Result<std::vector<std::uint8_t>> mask = read_mask(source_name, band, width, height, messages);
+  if (!mask.ok()) return mask.error();
   std::size_t holes = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     float& v = samples[i];
     if (signed_bytes && v > 127.0F) v -= 256.0F;
     const double h = v * scale + offset;
     const bool hole = !std::isfinite(v) || (has_no_data != 0 && v == no_data_sample) || std::abs(h) > kImpossible_m ||
-                      (!mask.empty() && mask[i] == 0);
+                      (!mask.value().empty() && mask.value()[i] == 0);
     v = hole ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(h);
     if (hole) ++holes;
   }

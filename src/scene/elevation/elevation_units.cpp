@@ -1,6 +1,7 @@
 // The unit of the heights in an elevation file.
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <cstdlib>
 
 #include <cpl_string.h>
@@ -82,7 +83,7 @@ double height_unit_m(GDALDataset& stored, GDALDataset& read, std::vector<std::st
     name = unit_of_projection_file(stored);
     if (name.empty()) return 1.0;
     const double per_metre = std::strtod(name.c_str(), nullptr);
-    if (per_metre > 0.0) return 1.0 / per_metre;
+    if (per_metre > 0.0 && std::isfinite(per_metre)) return 1.0 / per_metre;
   }
   const double metres = metres_per(name);
   if (metres > 0.0) return metres;
