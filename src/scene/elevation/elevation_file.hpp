@@ -9,11 +9,11 @@
 //   metres;
 // - no vertical unit: that of the vertical coordinate system if there is one, otherwise metres.
 // The band's scale, offset, unit (metres, feet, US survey feet, and decimal multiples) and no-data value are used. NaN,
-// infinite and impossible heights (beyond ±25 km), and masked or transparent samples, are holes, too. Holes are filled from their borders. Undeclared
-// samples of -9999 and similar values are holes if they are far from all other values. If there are several bands, the
-// first is read, but colour tiles (Terrarium, Terrain-RGB) are decoded and other colour images are refused. Files with
-// more than max_samples on a side are read at a lower resolution. The latitudes and longitudes of a file of another
-// celestial body are used unchanged.
+// infinite and impossible heights (beyond ±25 km), and masked or transparent samples, are holes, too. Holes are filled
+// from their borders. Undeclared samples of -9999 and similar values are holes if they are far from all other values.
+// If there are several bands, the first is read, but colour tiles (Terrarium, Terrain-RGB) are decoded and other colour
+// images are refused. Files with more than max_samples on a side are read at a lower resolution. The latitudes and
+// longitudes of a file of another celestial body are used unchanged.
 #pragma once
 
 #include <optional>
