@@ -9,6 +9,7 @@
 #include <spirv-tools/optimizer.hpp>
 #include <sstream>
 
+#include "files/glsl_sources.hpp"
 #include "shader_sources.hpp"
 #include "viewer/platform/files.hpp"
 #include "viewer/platform/window.hpp"
@@ -30,13 +31,13 @@ bool read(const fs::path& path, std::string& text) {
 // Finds included files in the folders that the build searches.
 class Includer : public shaderc::CompileOptions::IncluderInterface {
  public:
-  explicit Includer(std::vector<fs::path> folders) : folders_(std::move(folders)) {}
+  explicit Includer(std::vector<std::string> folders) : folders_(std::move(folders)) {}
 
   shaderc_include_result* GetInclude(const char* wanted, shaderc_include_type, const char*, std::size_t) override {
     auto* found = new Found;
     found->text = "cannot be found";
-    for (const fs::path& folder : folders_) {
-      const fs::path path = folder / wanted;
+    for (const std::string& folder : folders_) {
+      const fs::path path = fs::path(folder) / wanted;
       if (!read(path, found->text)) continue;
       found->name = path.string();
       break;
@@ -51,7 +52,7 @@ class Includer : public shaderc::CompileOptions::IncluderInterface {
     std::string name, text;
     shaderc_include_result result;
   };
-  std::vector<fs::path> folders_;
+  std::vector<std::string> folders_;
 };
 
 shaderc_shader_kind kind_of(VkShaderStageFlagBits stage) {
@@ -99,33 +100,39 @@ ShaderReload::Compiled ShaderReload::compile(const std::string& folder) {
   Compiled out;
   const fs::path shaders(folder);
   shaderc::Compiler compiler;
+  files::GlslSources sources(folder);
   for (const ShaderSource& row : kShaderSources) {
+    const fs::path path = shaders / row.source;
+    std::string checksum = sources.checksum(std::string(row.source));
+    if (checksum.empty()) {
+      out.message = path.string() + " cannot be read";
+      return out;
+    }
+    // A shader whose source is that of the program, or that of its last compilation, need not be compiled.
+    Known& known = known_[row.shader->name];
+    if (checksum == row.checksum) {
+      known = {};
+      continue;
+    }
+    if (checksum == known.checksum) {
+      if (known.differs) out.changed.emplace(row.shader->name, known.words);
+      continue;
+    }
+    known = {};
     shaderc::CompileOptions options;
     options.SetTargetEnvironment(shaderc_target_env_vulkan, shaderc_env_version_vulkan_1_2);
     options.SetWarningsAsErrors();
-    options.SetIncluder(
-        std::make_unique<Includer>(std::vector<fs::path>{shaders, shaders / ".." / "include", shaders / ".." / "src"}));
+    options.SetIncluder(std::make_unique<Includer>(files::glsl_include_folders(folder)));
     std::istringstream macros{std::string(row.macros)};
     for (std::string macro; std::getline(macros, macro, ',');) {
       const std::size_t equals = macro.find('=');
       options.AddMacroDefinition(macro.substr(0, equals), macro.substr(equals + 1));
     }
     std::string text;
-    const fs::path path = shaders / row.source;
     if (!read(path, text)) {
       out.message = path.string() + " cannot be read";
       return out;
     }
-    // Preprocess first. If the source with all its included files has not changed, it need not be compiled again.
-    const shaderc::PreprocessedSourceCompilationResult source =
-        compiler.PreprocessGlsl(text, kind_of(row.shader->stage), path.string().c_str(), options);
-    std::string whole(source.cbegin(), source.cend());
-    Known& known = known_[row.shader->name];
-    if (source.GetCompilationStatus() == shaderc_compilation_status_success && known.source == whole) {
-      if (known.differs) out.changed.emplace(row.shader->name, known.words);
-      continue;
-    }
-    known = {};
     const shaderc::SpvCompilationResult result =
         compiler.CompileGlslToSpv(text, kind_of(row.shader->stage), path.string().c_str(), options);
     if (result.GetCompilationStatus() != shaderc_compilation_status_success) {
@@ -142,14 +149,14 @@ ShaderReload::Compiled ShaderReload::compile(const std::string& folder) {
       return out;
     }
     if (words.size() == row.shader->spirv.size() && std::equal(words.begin(), words.end(), row.shader->spirv.begin())) {
-      known.source = std::move(whole);
+      known.checksum = std::move(checksum);
       continue;
     }
     if (!fits(*row.shader, words)) {
       out.message = path.string() + ": bindings or the workgroup size have changed; rebuild the program";
       return out;
     }
-    known = {std::move(whole), words, true};
+    known = {std::move(checksum), words, true};
     out.changed.emplace(row.shader->name, std::move(words));
   }
   return out;

@@ -1,6 +1,6 @@
-// Reloads shaders (F8): compiles every shader from its source on another thread, as the build does. Pipelines that are
-// created afterwards use the shaders that differ from those in the program. If one does not compile, nothing changes,
-// and the compiler's message is reported.
+// Reloads shaders (F8): compiles every shader whose source has changed since the build, on another thread and as the
+// build does. Pipelines that are created afterwards use the shaders that differ from those in the program. If one does
+// not compile, nothing changes, and the compiler's message is reported.
 #pragma once
 
 #include <cstdint>
@@ -50,8 +50,8 @@ class ShaderReload {
   };
   // The result of a source that compiles and fits the program.
   struct Known {
-    std::string source;  // with the files that it includes; empty: not compiled yet
-    Words words;         // the compiled shader, if it differs from the program's
+    std::string checksum;  // of the source with the files that it includes; empty: not compiled yet
+    Words words;           // the compiled shader, if it differs from the program's
     bool differs = false;
   };
   Compiled compile(const std::string& folder);

@@ -15,7 +15,7 @@ using namespace desk;
 
 namespace fs = std::filesystem;
 
-// Tests F8 with a copy of the sources: unchanged, invalid, and changed.
+// Tests F8 with a copy of the sources: unchanged, with another comment, invalid, and changed.
 TEST(Window, RebuildsShadersWhileItRuns) {
   NEEDS_A_DESK();
   Desk desk("shaders");
@@ -34,6 +34,12 @@ TEST(Window, RebuildsShadersWhileItRuns) {
   std::stringstream text;
   text << source.rdbuf();
   source.close();
+  // The compiler makes the same shader as the build from a source that differs in a comment only.
+  std::ofstream(path) << text.str() << "\n// changed\n";
+  from = desk.lines();
+  desk.input("key F8");
+  ASSERT_TRUE(desk.wait_for({"shaders same"}, from)) << log_text(desk);
+
   std::ofstream(path) << text.str() << "\nvoid broken( {\n";
   from = desk.lines();
   desk.input("key F8");

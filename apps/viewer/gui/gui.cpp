@@ -33,7 +33,7 @@ constexpr HelpLine kHelp[] = {
     {"F1", "show or hide this help"},
     {"F2", "hide or show the panels"},
     {"F5, F9", "save and restore the whole state"},
-    {"F8", "rebuild the shaders from their sources"},
+    {"F8", "rebuild the shaders whose sources have changed"},
     {"F11", "switch to full screen and back"},
     {"F12", "save a screenshot as PNG and EXR"},
     {"Esc", "quit"},
