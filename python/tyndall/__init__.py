@@ -290,7 +290,7 @@ def render(scene="", parameters=None, *, size=(1280, 720), display=False, device
 
 
 def sun_position(latitude, longitude, time, altitude=0.0):
-    """Returns where the sun is, as a SunPosition, after Reda and Andreas (2003), within 0.001 deg without refraction.
+    """Returns where the sun is, as a SunPosition, after Reda and Andreas (2003), within 0.005 deg without refraction.
 
     latitude, longitude: in degrees, north and east positive. time: ISO 8601 with an offset from UTC, such as
     "2003-10-17T12:30:30-07:00", or an aware datetime; 1900 to 2100. altitude: of the place above sea level [m].
