@@ -8,7 +8,7 @@
 //   camera.clip_from_view = clip_from_view(engine_clip_from_view, view);
 //   cascade.shadow_from_world = shadow_from_world(engine_shadow_from_world, world);
 //   sun.direction_to_sun = direction(world, engine_direction_to_sun);
-// Results in the world of Tyndall are only seen as pictures, so nothing is converted back.
+// The results are pictures, so nothing has to be converted back to the engine's axes.
 #pragma once
 
 #include "tyndall/types.hpp"
@@ -29,7 +29,7 @@ namespace tyndall::conventions {
 }
 
 // Matrices from the axes of an engine. Each is a rotation or a reflection, so that its inverse is its transpose.
-// Right-handed, y up: those of Tyndall. Also the view of OpenGL, Vulkan samples and glTF, which looks down -z.
+// Right-handed, y up: the axes of Tyndall. Also the view of OpenGL, Vulkan samples and glTF, which looks down -z.
 inline constexpr Mat4 kSame = {};
 // Right-handed, z up, x east, y north: (x, y, z) becomes (x, z, -y).
 inline constexpr Mat4 kZUp = {{1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1}};
@@ -68,8 +68,8 @@ inline constexpr Mat4 kLooksDownZ = {{1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0
   return product(engine_shadow_from_world, transposed(world));
 }
 
-// Returns a projection for clip space with y down, from one with y up, such as those of OpenGL and Direct3D. Do this if
-// your picture is not stored upside down: its first row is the top, as with a viewport of negative height.
+// Returns a projection for clip space with y down, from one with y up, such as those of OpenGL and Direct3D. It is
+// needed if the first row of your picture is its top, as with a viewport of negative height.
 [[nodiscard]] constexpr Mat4 y_flipped(const Mat4& clip_from_view) {
   Mat4 out = clip_from_view;
   for (int column = 0; column < 4; ++column) out.m[4 * column + 1] = -out.m[4 * column + 1];

@@ -1,6 +1,6 @@
 // Photometric units: what a colour relative to the sun means in candela per square metre, and exposure values of
-// cameras. With scattering.color = spectral, radiance in the unit of Sun::irradiance per steradian becomes luminance by
-// white_luminance(). With three channels it does approximately: the sun counts as white.
+// cameras. white_luminance() converts radiance in the unit of Sun::irradiance per steradian to luminance. This is exact
+// with scattering.color = spectral, and approximate with three channels, where the sun counts as white.
 #pragma once
 
 #include <cmath>
