@@ -267,7 +267,7 @@ Result<void> Effect::State::begin_frame(VkCommandBuffer cmd, const FrameInputs& 
 }
 
 // Ends a frame of which only the first part has been recorded. Its slot is free when these commands have completed,
-// because the event waits for those of the first part.
+// because the event is set only after the commands of the first part.
 void Effect::State::drop(VkCommandBuffer cmd, const FrameInputs& inputs) {
   if (desc.counters) {
     const VkDeviceSize offset = kCounterBytes * ring.slot(inputs.frame_index, inputs.view);
@@ -288,7 +288,7 @@ Result<void> Effect::State::record(VkCommandBuffer cmd, const FrameInputs& input
   const std::uint32_t slot = ring.slot(inputs.frame_index, inputs.view);
   const BoundResources resources = bind_resources(inputs, slot);
   StepRecorder recorder(device, cmd, pipelines, sets, slot, resources, desc.timings ? &timer : nullptr);
-  // The previous frame used the same buffers, and its commands may still be running. So may those of the first part.
+  // The previous frame and the first part of this one use the same buffers, and their commands may still be running.
   constexpr VkAccessFlags kFrameBefore = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT |
                                          VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT |
                                          VK_ACCESS_INDIRECT_COMMAND_READ_BIT;

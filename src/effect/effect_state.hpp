@@ -43,18 +43,18 @@ struct TYNDALL_HIDDEN Effect::State {
   DeviceInfo info;
   EffectDesc desc;
   Params params;
-  std::array<PhaseRows, 2> phase;  // of `params`, with scattering.color = rgb and spectral
+  std::array<PhaseRows, 2> phase;  // rows of `params` with scattering.color = rgb, and with spectral
   gpu::Device device;
-  Target target = Target::cpu;  // of the passes of a frame
+  Target target = Target::cpu;  // the kind of device for which the passes of a frame are chosen
 
   PipelineCache pipelines;
-  SetCache sets;                           // of frames, with the slots of `ring`
-  std::vector<PipelineKey> all_pipelines;  // that any parameters may need with `desc`; filled when first requested
+  SetCache sets;                           // descriptor sets of frames, with the slots of `ring`
+  std::vector<PipelineKey> all_pipelines;  // all that prepare_pipelines() makes; empty until it is called
   FrameBuffers buffers;
   FroxelVolume froxels;
   std::shared_ptr<SharedTables> shared_tables;
   TableBuilder& tables;
-  std::uint64_t served_revision = 0;  // of the tables, for which TableBuilder::serves() has been true
+  std::uint64_t served_revision = 0;  // revision of the tables for which TableBuilder::serves() was last true
   gpu::Image no_shadows, no_colors, no_clouds;
   gpu::Buffer constants;
   gpu::Buffer counters;           // written by shaders
@@ -71,7 +71,7 @@ struct TYNDALL_HIDDEN Effect::State {
   std::array<PassTiming, kMaxTimedPasses> timings = {};
   std::array<ResourceMemory, kTableCount + kFrameBuffers + FroxelVolume::kImages + 4> resource_rows = {};
 
-  ColorMode buffer_color = ColorMode::rgb;  // for which `buffers` are large enough
+  ColorMode buffer_color = ColorMode::rgb;  // representation of light for which `buffers` are large enough
   bool images_ready = false;                // false until the first recording, which changes their undefined layout
 
   // The objects that new settings need. They are all allocated before commit() replaces any old ones.
@@ -80,7 +80,7 @@ struct TYNDALL_HIDDEN Effect::State {
     Params params;
     std::optional<std::array<PhaseRows, 2>> phase;
     std::optional<FrameBuffers::Pending> buffers;
-    ColorMode buffer_color = ColorMode::rgb;  // of `buffers`
+    ColorMode buffer_color = ColorMode::rgb;  // representation of light for which `buffers` are large enough
     std::optional<FroxelVolume::Pending> froxels;
     std::optional<TableBuilder::Pending> tables;
   };
@@ -91,7 +91,7 @@ struct TYNDALL_HIDDEN Effect::State {
 
   // Creates the objects that do not depend on settings, and all others.
   Result<void> create_objects();
-  // The mask of all that plan() can prepare.
+  // The mask with which plan() prepares everything that it can.
   static constexpr std::uint32_t kEverything =
       1U << static_cast<std::uint32_t>(Affects::Resources) | 1U << static_cast<std::uint32_t>(Affects::Tables);
   // Checks new settings and allocates the objects that they need, as far as `required` (a mask of bits 1 << Affects)
@@ -109,12 +109,12 @@ struct TYNDALL_HIDDEN Effect::State {
   [[nodiscard]] std::span<const ResourceMemory> list_resources();
   [[nodiscard]] MemoryUsage memory() const;
   [[nodiscard]] std::span<const PassTiming> read_timings(std::uint64_t frame_index, std::uint32_t view);
-  // Returns the parameters with which frames are drawn: those given, but with the tables.* of the tables in use and, if
-  // frames read them, their scattering.color.
+  // Returns the parameters with which frames are drawn: `p`, but with the tables.* of the tables in use and, if frames
+  // read the tables, with the scattering.color for which they were built.
   [[nodiscard]] Params drawn_with(const Params& p) const;
   // Returns tyndall::table_params().
   [[nodiscard]] Params table_params() const;
-  // Writes the rows of the phase function, if it has any, behind the medium at the beginning of `block`.
+  // Writes the rows of a tabulated phase function into `block`, behind the medium. Does nothing for other functions.
   void write_phase(std::byte* block, ColorMode color) const;
 
  private:

@@ -18,8 +18,8 @@ namespace tyndall {
   return inputs.shadow_colors.view != VK_NULL_HANDLE && !inputs.cascades.empty() && params.scattering.light_shafts;
 }
 [[nodiscard]] inline bool has_clouds(const FrameInputs& inputs) { return inputs.clouds.map.view != VK_NULL_HANDLE; }
-// Returns the altitude of the camera above the planet's sphere [m]. In double precision, because the centre of the
-// planet is millions of metres away.
+// Returns the altitude of the camera above the planet's sphere [m]. It is computed in double precision, because the
+// centre of the planet is millions of metres away.
 [[nodiscard]] double camera_altitude_m(const FrameInputs& inputs, const Params& params);
 // Returns whether single scattering must be integrated because the tables do not resolve it: below sea level while the
 // sun sets or rises, and below the lowest altitude of the tables (docs/adr/0007-below-sea-level.md).

@@ -72,7 +72,8 @@ std::vector<PipelineKey> all_frame_pipelines(const EffectDesc& desc, Target targ
     params.atmosphere.mie_phase = similar.atmosphere.mie_phase;
     add_pipelines(out, desc, params, target);
   };
-  // Apart from the medium, no shader has constants of two of these groups, so the groups need not be combined.
+  // Each loop below varies one group of constants. Apart from the medium, no shader has constants of two groups, so the
+  // groups need not be combined.
   // FrameSteps.AllPipelinesAreFound of tests/unit/frame_steps_test.cpp verifies this with all combinations.
   Params p;
   p.epipolar.show_sampling = true;

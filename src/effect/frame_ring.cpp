@@ -52,7 +52,7 @@ bool FrameRing::unfinished() const {
 
 void FrameRing::hold(std::uint64_t frame_index, std::uint32_t view) {
   Slot& s = slots_[slot(frame_index, view)];
-  device_->vk.ResetEvent(device_->device, s.done.get());  // take() has refused a slot whose commands may still set it
+  device_->vk.ResetEvent(device_->device, s.done.get());  // no command can still set it: take() refuses busy slots
   s.frame_index = frame_index;
   s.recorded = true;
 }

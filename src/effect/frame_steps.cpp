@@ -73,14 +73,14 @@ void set_sizes(Specialisation& out, Target target) {
   out[shared::kTreePartId] = cpu ? 6 : 4;
 }
 
-// Returns the values of all specialisation constants. A constant that has no meaning in a mode is 0, so that the mode
-// has only one pipeline.
+// Returns the values of all specialisation constants. A constant that has no effect in a mode is 0 there, so that the
+// mode does not need several equal pipelines.
 Specialisation specialisation(const Frame& frame) {
   const ScatteringParams& s = frame.params.scattering;
   const bool homogeneous = is_homogeneous(s);
   const bool occluded = !homogeneous && s.multiple == MultipleScattering::occluded;
   SingleScattering single = s.single;
-  // The tables cannot darken a part of a ray.
+  // The tables contain neither the homogeneous medium nor clouds, and lack single scattering if tables_lack_single().
   const bool integrates = homogeneous || frame.shape.integrate_single || frame.shape.clouds;
   if (single == SingleScattering::table && integrates) single = SingleScattering::integration;
   const bool shadowed_tables = !homogeneous && (single == SingleScattering::table || occluded);
@@ -138,7 +138,7 @@ void unwarp_steps(Frame& f) {
                     f.variant(shaders::correct_pixels_comp_rgba16f, shaders::correct_pixels_comp_rgba32f));
 }
 
-// Does the same for scattering.downscale: fills a buffer of half or a quarter of the resolution (Yusov, "IVB
+// Interpolates with scattering.downscale: fills a buffer of half or a quarter of the resolution (Yusov, "IVB
 // Atmospheric Light Scattering", 2012, sections 6.6 and 6.7), and then upscales it bilaterally (section 6.8).
 void downscaled_steps(Frame& f) {
   const VkExtent2D blocks = unwarp_blocks(downscaled_extent(f.shape.extent, f.params), f.shape.target);
@@ -160,8 +160,8 @@ void downscaled_steps(Frame& f) {
                     f.variant(shaders::correct_pixels_comp_rgba16f, shaders::correct_pixels_comp_rgba32f));
 }
 
-// Fills the froxel volume, in bands of rows so that a dispatch stays short: at the default size one, at the largest
-// eight. Without the medium it holds no light and full transmittance.
+// Fills the froxel volume in bands of rows, so that a dispatch stays short. The default size has one band, the largest
+// eight. With scattering.enabled off, the volume holds no light and full transmittance.
 void froxel_steps(Frame& f) {
   constexpr std::uint32_t kTexelsPerBand = 512 * 64 * 256;
   const FroxelParams& p = f.params.froxels;
@@ -201,8 +201,8 @@ void epipolar_steps(Frame& f) {
   }
 }
 
-// Marches every pixel in bands of rows, so that a dispatch stays short. Up to 4 million pixels, a band has about
-// kPixelsPerBand; larger pictures have kMaxBands larger bands.
+// Marches every pixel in bands of rows, so that a dispatch stays short. In pictures of up to 4 million pixels, a band
+// has about kPixelsPerBand pixels; larger pictures have kMaxBands bands of more pixels.
 void brute_force_steps(Frame& f) {
   constexpr std::uint32_t kPixelsPerBand = 131072;
   constexpr std::uint32_t kMaxBands = 32;

@@ -11,7 +11,7 @@
 
 namespace tyndall {
 
-// Returns whether frames fill the volume.
+// Returns whether frames fill the froxel volume.
 [[nodiscard]] bool uses_froxels(const Params& params);
 // Returns the size of the volume; 0 if frames do not fill it.
 [[nodiscard]] VkExtent3D froxel_extent(const Params& params);

@@ -65,7 +65,7 @@ void for_each_degree(double cosine, const Body& body) {
 // Returns the coefficients of the Legendre series of the phase function at a wavelength, multiplied by the filter.
 std::array<double, kDegrees> series(const Params& params, double wavelength_nm) {
   std::array<double, kDegrees> out = {};
-  // The midpoint rule in the square root of the half angle's sine, which is dense ahead.
+  // The midpoint rule over the square root of the half angle's sine, whose nodes are dense in the forward peak.
   for (std::size_t i = 0; i < kSamples; ++i) {
     const double x = (static_cast<double>(i) + 0.5) / kSamples;
     const double cosine = 1.0 - 2.0 * x * x * x * x;

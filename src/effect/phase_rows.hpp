@@ -17,7 +17,7 @@ constexpr std::size_t kMediumBlockBytes = sizeof(shared::SpectralMedium) + kPhas
 
 // Returns the rows for a representation of light, or none if shaders have a formula. Precondition: check_params().
 [[nodiscard]] PhaseRows phase_rows(const Params& params, ColorMode color);
-// Writes them to `rows`, which allocates nothing if its capacity is kPhaseNodes.
+// Writes the same rows to `rows`. Allocates nothing if the capacity of `rows` is kPhaseNodes.
 void phase_rows(const Params& params, ColorMode color, PhaseRows& rows);
 
 // Returns the rows from which the orders >= 2 are built: the function without the details that the gathering grid does

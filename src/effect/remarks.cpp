@@ -382,7 +382,7 @@ void remark_on_cascades(Speaker& s, const FrameInputs& inputs, const FrameState&
   const double start_m = static_cast<double>(inputs.cascades[first].near_m);
   s.say_if(Kind::cascade_start, start_m > 1.0, "FrameInputs::cascades[first_marched_cascade] starts ", start_m,
            " m from the camera; expected 0: the atmosphere in front of it is taken as lit");
-  if (!inverse) remark_on_coverage(s, inputs, state);  // otherwise one error would cause two remarks
+  if (!inverse) remark_on_coverage(s, inputs, state);  // an inverted camera has caused a remark already
 }
 
 void remark_on_clouds(Speaker& s, const FrameInputs& inputs, const ScatteringParams& p) {

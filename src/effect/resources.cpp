@@ -9,14 +9,14 @@
 namespace tyndall {
 namespace {
 
-// march_state.glsl
+// The state of a ray between passes, with three and with four channels; see march_state.glsl.
 constexpr VkDeviceSize kStateBytes = 16 * sizeof(float);
 constexpr VkDeviceSize kSpectralStateBytes = 20 * sizeof(float);
 constexpr VkDeviceSize kCorrectedBytes = 8;  // pack_light() of records.glsl
 // Buffers that a shader binds although it does not use them with these settings.
 constexpr VkDeviceSize kUnusedBytes = 256;
-// correction_list has the capacity of an eighth of all pixels. In default views a thousandth is listed. A limb that is
-// 16 pixels wide and surrounds the whole picture is less than an eighth of it.
+// correction_list has room for an eighth of all pixels. In ordinary views, a thousandth of the pixels is listed. Even a
+// limb that is 16 pixels wide and runs along the whole border of the picture is less than an eighth of it.
 constexpr VkDeviceSize kCorrectedPart = 8;
 
 // Returns the size of a frame buffer that a step uses [bytes].

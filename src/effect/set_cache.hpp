@@ -14,7 +14,7 @@ namespace tyndall {
 
 class SetCache {
  public:
-  // A set of one slot. `written`: refers to the resources of the present commands.
+  // A set of one slot. `written`: it refers to the resources of the commands that are being recorded.
   struct Set {
     VkDescriptorSet set = VK_NULL_HANDLE;
     bool written = false;

@@ -129,11 +129,11 @@ struct TYNDALL_HIDDEN SkyProbe::State {
   gpu::Buffer constants;    // a slot per pending call
   gpu::Buffer rows, coefficients;
   SkyCubeMap cube;
-  std::array<std::vector<Step>, 2> steps;  // of tables with scattering.color = rgb and spectral
+  std::array<std::vector<Step>, 2> steps;  // for tables with scattering.color = rgb, and with spectral
   // The update: its constants, the tables that it reads, and its slices.
   shared::SkyProbeConstants probe = {};
   shared::SpectralMedium medium = {};
-  PhaseRows phase;  // of the medium
+  PhaseRows phase;  // phase function of the aerosol
   std::uint64_t tables_version = 0;
   std::uint32_t done = 0;
   bool cleared = false;

@@ -14,8 +14,8 @@ using FourChannels = std::array<double, 4>;  // at the wavelengths of shaders/sh
 // medium_from_params(), with spectral those at the four wavelengths. Precondition: as of medium_from_params().
 [[nodiscard]] shared::SpectralMedium spectral_medium_from_params(const Params& params);
 
-// Returns the colour of light that is relative to the sun's irradiance above the atmosphere: linear Rec. 709 in which
-// that sunlight has the luminance 1.
+// Returns the linear Rec. 709 colour of light that is given relative to the sun's irradiance above the atmosphere. That
+// sunlight itself has the luminance 1.
 [[nodiscard]] std::array<double, 3> color_of_light(const FourChannels& light);
 // Returns CIE XYZ (1931, 2 degrees) of a linear Rec. 709 colour, in the same unit.
 [[nodiscard]] std::array<double, 3> xyz_of_color(const std::array<double, 3>& color);

@@ -10,7 +10,7 @@
 
 namespace tyndall {
 
-// The Vulkan objects of the resources in one frame or build. Those that no step uses are null.
+// The Vulkan objects of the resources in one frame or build. Resources that no step uses are null.
 struct BoundResources {
   std::array<gpu::Descriptor, kResources> list = {};
 
@@ -24,7 +24,7 @@ struct BoundResources {
   [[nodiscard]] const gpu::Descriptor& operator[](Resource resource) const { return list[index_of(resource)]; }
 };
 
-// Allocates nothing, except for the message of an error.
+// Records steps. It allocates nothing, except for the message of an error.
 class StepRecorder {
  public:
   // Binds the sets of `slot` from `sets`; a set that has not been written is first written with `resources`. `timer`

@@ -18,7 +18,7 @@ struct ShapeBlock {
   shared::TableShape shape;
   shared::ZenithQuadrature quadrature;
 };
-// The medium with its phase function comes first. A multiple of every device's alignment.
+// Offset of the ShapeBlock, behind the medium with its phase function: a multiple of every device's alignment.
 constexpr VkDeviceSize kShapeOffset = (kMediumBlockBytes + 255) / 256 * 256;
 constexpr VkDeviceSize kConstantBytes = kShapeOffset + sizeof(ShapeBlock);
 

@@ -31,7 +31,7 @@ constexpr const char* kNames[] = {kSunLight,   kGridNodes,   kPhaseMatrix, kGath
 // Makes the steps of a build for one representation of light.
 struct StepMaker {
   ColorMode color;
-  bool tabulated;  // of the aerosol's phase function
+  bool tabulated;  // the aerosol's phase function is read from a table
 
   Step operator()(const char* name, const gpu::Shader& shader, Resource rays, VkExtent3D invocations,
                   std::array<std::uint32_t, 2> push = {}) const;

@@ -46,15 +46,15 @@ struct TableScratch {
   gpu::Buffer grid_rays;       // rays of the gathering grid
   gpu::Buffer table_rays;      // rays of one altitude of the tables
   gpu::Buffer phase;           // Fourier coefficients of the phase functions
-  gpu::Buffer incident;        // light of one order
-  gpu::Image source_function;  // of one order; at last the sum of all orders >= 2
+  gpu::Buffer incident;        // incident radiance of one order
+  gpu::Image source_function;  // source function of one order; in the end the sum of all orders >= 2
   gpu::Buffer late_terms;      // Fourier terms of the source function of one late order, and of the sum of these orders
-  gpu::Buffer sum;             // of the source functions so far
-  gpu::Buffer irradiance;      // of one order
-  gpu::Buffer sky;             // irradiance, sum of the orders
+  gpu::Buffer sum;             // sum of the source functions so far
+  gpu::Buffer irradiance;      // irradiance of one order
+  gpu::Buffer sky;             // sum of the irradiance of all orders
   std::uint32_t views = 0;     // capacity of table_rays
   ColorMode color = ColorMode::rgb;
-  bool tabulated = false;  // of the aerosol's phase function
+  bool tabulated = false;  // the aerosol's phase function is read from a table
   [[nodiscard]] VkDeviceSize bytes() const;
 };
 [[nodiscard]] VkDeviceSize table_scratch_bytes(const gpu::Device& device, const Params& params);
@@ -178,14 +178,14 @@ class TableBuilder {
   std::uint64_t revision_ = 0;
   Options options_;
   PipelineCache* pipelines_ = nullptr;
-  gpu::Handle<VkSampler> linear_ = {};  // of the source function
+  gpu::Handle<VkSampler> linear_ = {};  // samples the source function
   TableSet tables_ = {};
   TableSet next_ = {};  // the new tables, if `tables_` is in use and stale
   TableScratch scratch_ = {};
-  SetCache sets_ = {};     // of the build
-  Params built_ = {};      // of tables_, if complete_
-  Params wanted_ = {};     // of the build
-  PhaseRows phase_rows_;   // of the build; see resolved_phase_rows()
+  SetCache sets_ = {};     // descriptor sets of the build
+  Params built_ = {};      // parameters of tables_, if complete_
+  Params wanted_ = {};     // parameters of the build
+  PhaseRows phase_rows_;   // resolved_phase_rows() for the build
   bool complete_ = false;  // tables_ have been built at least once
   std::uint64_t version_ = 0;
   std::uint32_t stale_ = 0;  // tables that the build writes
