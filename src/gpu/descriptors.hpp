@@ -71,8 +71,8 @@ class DescriptorArena {
 // Precondition: there are as many descriptors as bindings, and none is null.
 void write_set(const Device& device, VkDescriptorSet set, const Pipeline& pipeline,
                std::span<const Descriptor* const> descriptors);
-// Does the same with the resource of the name of each binding. Returns an error if `resources` lacks a name, and then
-// changes nothing.
+// Points a set to the resources that have the names of its bindings. Returns an error if `resources` lacks a name, and
+// then changes nothing.
 Result<void> write_set(const Device& device, VkDescriptorSet set, const Pipeline& pipeline,
                        std::span<const NamedResource> resources);
 

@@ -1,5 +1,5 @@
-// Turns exceptions into errors. Every public function of the library runs its body in guarded(), and every public
-// function of scenes in within_memory(). No code below them handles exceptions.
+// Turns exceptions into errors. Every public function of the library that can fail runs its body in guarded(), and
+// those of scenes in within_memory(). Other code catches exceptions only to clean up or to do with fewer threads.
 #pragma once
 
 #include <new>
@@ -10,8 +10,8 @@
 
 namespace tyndall {
 
-// Returns an error with a message that names `where`, or with a short message that every std::string stores without an
-// allocation.
+// Returns an error with a message that names `where`. If there is no memory for it, the message is `briefly`, which is
+// so short that std::string stores it without an allocation.
 [[nodiscard]] inline Error guard_error(ErrorCode code, const char* where, const char* what,
                                        const char* briefly) noexcept {
   Error error;

@@ -389,7 +389,7 @@ Host::Slot* Host::pending(std::uint64_t submission) {
 }
 
 Result<std::uint64_t> Host::record_and_submit(const Record& record) {
-  // A free slot, whose number is 0, or the one that has waited longest.
+  // A free slot, whose number is 0, or the slot of the oldest submission.
   const auto least = std::min_element(slots_.begin(), slots_.end(),
                                       [](const Slot& a, const Slot& b) { return a.submission < b.submission; });
   recording_ = static_cast<std::size_t>(least - slots_.begin());

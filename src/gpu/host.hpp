@@ -63,7 +63,7 @@ class Host {
   // Returns whether the queue has timestamps, which EffectDesc::timings and Timer need.
   [[nodiscard]] bool timestamps() const { return timestamps_; }
   // The caller must hold lock() while it submits to the queue or waits until the device is idle.
-  // Other functions use the first queue, which is also returned for those that could not be made.
+  // The functions below use the first queue, which is also returned for an index beyond the created queues.
   [[nodiscard]] VkQueue queue(std::size_t index = 0) const { return queues_[index < queues_.size() ? index : 0]; }
   [[nodiscard]] std::unique_lock<std::mutex> lock() { return std::unique_lock(queue_mutex_); }
   // Sets DeviceInfo::replace_shader for all pipelines created afterwards.
@@ -71,8 +71,8 @@ class Host {
     device_.replace_shader = replace;
     device_.replace_shader_user = user;
   }
-  // Sets the cache for all pipelines created afterwards. Null for none. It must exist
-  // as long as it is set, and as long as effects that were created with it.
+  // Sets the cache for all pipelines created afterwards; null for none. It must outlive its use here and all effects
+  // that were created with it.
   void set_pipeline_cache(VkPipelineCache cache) { device_.pipeline_cache = cache; }
   // Returns how many threads the programs create pipelines with; see EffectDesc::pipeline_threads.
   [[nodiscard]] static std::uint32_t pipeline_threads() {
@@ -88,7 +88,7 @@ class Host {
   // waits for the oldest of them first. Returns the number of the submission, for wait().
   Result<std::uint64_t> submit(const Record& record);
   static constexpr std::size_t kPending = 8;
-  // Waits until a submission and all earlier ones have completed. 0 is none.
+  // Waits until a submission and all earlier ones have completed. Does nothing for the number 0.
   Result<void> wait(std::uint64_t submission);
   // Waits until all submissions have completed, whoever made them.
   Result<void> wait_for_all();

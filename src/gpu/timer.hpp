@@ -27,8 +27,8 @@ class Timer {
   static Result<Timer> create(const Device& device, std::uint32_t slots, std::uint32_t scopes);
 
   void begin_frame(VkCommandBuffer cmd, std::uint32_t slot);
-  // Begin and end the scope of all passes in between, which read() returns in addition to theirs. On CPU devices they
-  // do nothing, because barriers around the passes would be part of it.
+  // Begin and end a scope that contains all passes in between; read() returns it in addition to the scopes of the
+  // passes. On CPU devices they do nothing, because the barriers around the passes would be measured too.
   void begin_whole(VkCommandBuffer cmd, const char* name);
   void end_whole(VkCommandBuffer cmd);
   // Passes beyond `scopes` are not timed.
