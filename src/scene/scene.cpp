@@ -72,7 +72,7 @@ double halton(std::uint32_t i, std::uint32_t base) {
   return out;
 }
 
-// Returns notes on what cannot be drawn well from a position. `height_m`: above the ground.
+// Returns notes on what cannot be drawn well from the view. `height_m`: height of the camera above the ground.
 std::vector<std::string> limits_of_view(const View& view, double height_m, double radius_m) {
   std::vector<std::string> out;
   constexpr double kGrainy_m = 2.0e8;

@@ -29,7 +29,7 @@ struct SceneDesc {
   tables::MakeReady make_tables = {};  // how the tables are built and cached
   bool tables_later = false;           // build the tables with advance_tables() instead of in create()
   bool illuminance = false;            // measure the illuminance at the camera with every picture
-  int terrain_coarseness = 1;          // the least, see TerrainLod; small pictures have a larger one
+  int terrain_coarseness = 1;          // minimum of TerrainLod::coarseness; small pictures use a larger value
   bool reuse_shadows = true;           // reuse shadow maps that would not change
   std::uint32_t pipeline_threads = 1;  // see EffectDesc
   bool in_parts = false;               // submit a frame in parts, so that other users of the queue get their turn
@@ -92,7 +92,7 @@ class Scene {
     // space.
     std::optional<Illuminance> illuminance;
     float scale = 1.0F;             // factor of the radiance
-    std::optional<double> ev100;    // to which it corresponds; nothing if it is 0, or if the sun has no light
+    std::optional<double> ev100;    // exposure value of `scale`; empty if that is 0, or if the sun has no light
     post::Measurement measurement;  // with auto exposure or SceneDesc::histogram
   };
   [[nodiscard]] Exposure exposure() const;
@@ -214,7 +214,7 @@ class Scene {
   View view_;
   LocalFrame frame_;  // the frame in which everything is drawn
   glm::dvec3 to_sun_ = {};
-  MoonParams moon_;  // where it stands
+  MoonParams moon_;  // the moon with the angles at which it stands
   // The light that falls on the scene: the sun, or the moon with moon.light.
   struct KeyLight {
     glm::dvec3 direction = {};
@@ -234,18 +234,18 @@ class Scene {
     gpu::Host* host = nullptr;     // set with `submission`
     std::uint64_t submission = 0;  // the last one of the frame; see gpu::Host::wait()
     std::uint64_t frame_index = 0;
-    bool taken = true;  // its results have been taken
+    bool taken = true;  // the results of the frame have been taken
   };
   std::array<InFlight, gpu::kFramesInFlight> in_flight_;
-  // The results of the newest frame that is known to be complete; for `times_` see below.
+  // The results of the newest frame that is known to be complete. The times of its passes are in `times_`.
   post::Measurement measurement_;
   Counters counters_;
-  bool slow_ = false;                   // it took longer than SceneDesc::ahead_up_to_ms
+  bool slow_ = false;                   // that frame took longer than SceneDesc::ahead_up_to_ms
   std::optional<double> last_seconds_;  // time of the previous frame, if its exposure was measured
   double step_s_ = 0.0;
   bool images_ready_ = false;
   bool effect_lost_ = false;                // see replace_lost_effect()
-  bool lifted_ = false;                     // the camera has been raised, which a note reports
+  bool lifted_ = false;                     // the camera has been raised above the ground, and a note says so
   std::vector<CascadeFit> drawn_cascades_;  // the cascades that the shadow maps now contain
   std::uint64_t drawn_terrain_ = 0;
   image::Image radiance_sum_, display_sum_;  // with camera.samples > 1

@@ -37,7 +37,7 @@ struct Scene::Pending {
   std::optional<Layered> shadow_maps, shadow_colors;
   std::vector<std::string> notes;
 
-  // Returns whether the swap replaces something that frames in flight use.
+  // Returns whether Scene::swap() replaces something that frames in flight use.
   [[nodiscard]] bool replaces() const {
     return other_effect || terrain || other_meshes || other_model || shadow_maps || shadow_colors;
   }
@@ -144,7 +144,7 @@ Result<void> Scene::make_tables_ready() {
   if (model_ != nullptr || desc_.tables_later || effect_->precompute_progress().complete()) return {};
   TYNDALL_ASSIGN(const auto made, tables::make_ready(*host_, *effect_, desc_.make_tables));
   tables_ready_ = true;
-  // From here on nothing may fail, because the old tables are gone. If there is no memory for notes, they are dropped.
+  // From here on nothing may fail, because the old tables no longer exist. Notes are dropped if there is no memory.
   static_cast<void>(within_memory("notes", [&]() -> Result<void> {
     notes_.insert(notes_.end(), made.notes.begin(), made.notes.end());
     return {};

@@ -151,7 +151,7 @@ Result<void> Scene::draw_view(VkCommandBuffer cmd) {
     air_drawn = model_->attachments();
     for (const gpu::Image& image : air_drawn) {
       gpu::transition(device, cmd, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-      // Need not be cleared, because only texels where ground has been drawn are read.
+      // The images need not be cleared, because only texels where ground has been drawn are read.
       colors.push_back(
           attachment(image.view.get(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_ATTACHMENT_LOAD_OP_DONT_CARE, {}));
     }

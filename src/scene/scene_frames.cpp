@@ -23,7 +23,7 @@ Result<void> Scene::wait_for_frames() {
   for (std::uint32_t i = 0; i < gpu::kFramesInFlight; ++i) {
     TYNDALL_TRY(finish(static_cast<std::uint32_t>((frame_index_ + i) % gpu::kFramesInFlight)));
   }
-  // Others may still read the pictures, as the viewer's canvas does.
+  // Commands of other users of the queue may still read the pictures; the viewer's canvas does.
   return ahead() ? host_->wait_for_all() : Result<void>();
 }
 
@@ -43,7 +43,7 @@ void Scene::take_results(std::uint32_t slot) {
   if (!desc_.timings) return;
   for (const gpu::TimedScope& scope : timer_.read(slot)) times_.push_back({scope.name, scope.milliseconds, false});
   const bool by_effect = model_ == nullptr;
-  // On GPUs, the first is that of the whole effect, which contains the others.
+  // On GPUs, the first entry is the time of the whole effect, which contains the other entries.
   for (const PassTiming& pass :
        by_effect ? effect_->timings(in_flight_.at(slot).frame_index) : std::span<const PassTiming>())
     times_.push_back({pass.name, pass.gpu_ms, std::string_view(pass.name) != "effect"});

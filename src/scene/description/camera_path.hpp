@@ -15,12 +15,12 @@ namespace tyndall::scene {
 struct PathFrame {
   double time_s = 0.0;
   std::optional<DVec3> position_m;
-  std::optional<float> altitude_m;  // above sea level, >= 0; replaces that of position_m
+  std::optional<float> altitude_m;  // above sea level, >= 0; replaces the altitude of position_m
   std::optional<float> yaw_deg, pitch_deg, fov_deg;
   std::optional<float> sun_elevation_deg, sun_azimuth_deg;
-  std::string
-      date;  // ISO 8601 with the offset from UTC; with CameraPath::place it gives the sun's position; empty: not given
-  std::optional<double> julian_day;  // of `date`
+  // ISO 8601 with the offset from UTC; empty: not given. The sun's position follows from it and CameraPath::place.
+  std::string date;
+  std::optional<double> julian_day;  // the Julian day of `date`
 };
 
 struct CameraPath {
@@ -30,9 +30,9 @@ struct CameraPath {
   Place place;
 
   [[nodiscard]] bool empty() const { return frames.empty(); }
-  [[nodiscard]] bool has_dates() const;     // whether the sun's position follows from date and place
-  [[nodiscard]] bool moves_sun() const;     // whether it follows from dates or from angles of keyframes
-  [[nodiscard]] double duration_s() const;  // time of the last frame
+  [[nodiscard]] bool has_dates() const;     // returns whether the sun's position follows from dates and the place
+  [[nodiscard]] bool moves_sun() const;     // returns whether it follows from dates, or from angles of keyframes
+  [[nodiscard]] double duration_s() const;  // returns the time of the last frame
 };
 
 // Returns `base` with the camera and the sun as they are `seconds` into the path. All quantities and their first

@@ -24,9 +24,9 @@ constexpr int kMapProjectionCount = 6;  // origin, east, west, south, north, ant
 // Returns the weights of the map projections in this direction. Their sum is one. More than one weight is positive only
 // near the seams: within 0.06 rad of directions that are equally far from two centres.
 [[nodiscard]] std::array<double, kMapProjectionCount> projection_weights(const glm::dvec3& up);
-// Convert between map coordinates (x, z) at altitude_m and world positions, and return the map coordinates of the
-// direction `up` from the planet's centre. At the antipode of a projection, where they are undefined, they are those of
-// a point due east.
+// world_from_projection() returns the world position of map coordinates (x, z) at altitude_m. projection_from_up()
+// returns the map coordinates of the direction `up` from the planet's centre. At the antipode of a projection, where
+// they are undefined, they are those of a point due east.
 [[nodiscard]] glm::dvec3 world_from_projection(int projection, double x, double z, double altitude_m, double radius_m);
 [[nodiscard]] glm::dvec2 projection_from_up(int projection, const glm::dvec3& up, double radius_m);
 
@@ -41,8 +41,8 @@ constexpr int kMapProjectionCount = 6;  // origin, east, west, south, north, ant
 [[nodiscard]] glm::dvec3 up_of(const glm::dvec3& p, double radius_m);
 // Returns the point at altitude_m above or below a world position.
 [[nodiscard]] glm::dvec3 at_altitude(const glm::dvec3& p, double altitude_m, double radius_m);
-// Returns the horizontal unit vector to the east, along the x axis of the world. Where that axis is vertical, it is the
-// limit on the way from the origin.
+// Returns the horizontal unit vector to the east, along the x axis of the world. Where that axis is vertical, returns
+// the limit on the way there from the origin.
 [[nodiscard]] glm::dvec3 east_of(const glm::dvec3& up);
 
 }  // namespace tyndall::scene

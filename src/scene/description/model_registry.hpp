@@ -23,7 +23,7 @@ enum class ModelId : std::uint32_t {
 // The parameters with which the scene is drawn by a model.
 struct DrawnBy {
   ScatteringModel model = ScatteringModel::atmosphere;
-  MediumKind medium = MediumKind::atmosphere;  // counts with ScatteringModel::atmosphere
+  MediumKind medium = MediumKind::atmosphere;  // compared only if `model` is ScatteringModel::atmosphere
 };
 
 struct ModelInfo {

@@ -17,8 +17,9 @@ namespace tyndall::scene {
 // with refraction is given: 0.83 on the horizon, and 1 at the zenith.
 [[nodiscard]] double refraction_flattening(double seen_elevation_deg, double angular_radius_deg);
 
-// Returns the sun with the angles at which it stands. With a time, they are those of the place, or else of
-// `terrain_place`, the place of an elevation file. Errors (invalid_argument): no place, or text that cannot be read.
+// Returns the sun with the angles at which it stands. With sun.time, they are computed for sun.place or, if that is
+// empty, for `terrain_place`, the place of an elevation file. Errors (invalid_argument): no place, or text that cannot
+// be read.
 [[nodiscard]] Result<SunParams> placed_sun(const SunParams& sun, const std::optional<Place>& terrain_place);
 
 // Returns the moon with the angles at which it stands, and its size there. With MoonParams::by_date, they are those of

@@ -34,11 +34,11 @@ struct SolarPosition {
 // Solar Eclipses" (NASA/TP-2006-214141), 1900 to 2150. `year` includes the fraction.
 [[nodiscard]] double delta_t_s(double year);
 
-// Parses "LAT,LON" in degrees. Errors call the source `where`.
+// Parses "LAT,LON" in degrees. Error messages name the source of the text, `where`.
 [[nodiscard]] Result<Place> parse_place(std::string_view text, std::string_view where);
 
 // Parses a date and time of ISO 8601 in the extended form, with Z or an offset from UTC, of the years 1900 to 2100,
-// such as "2003-10-17T12:30:30.5-07:00" or "2003-10-17T19:30Z". Returns the Julian day. Errors call the source `where`.
+// such as "2003-10-17T12:30:30.5-07:00" or "2003-10-17T19:30Z". Returns the Julian day. Error messages name `where`.
 [[nodiscard]] Result<double> parse_time(std::string_view text, std::string_view where);
 
 }  // namespace tyndall::scene

@@ -10,7 +10,8 @@
 namespace tyndall::scene {
 namespace {
 
-// Held while a child is started, so that no other thread is inside of GDAL then: the child would wait for it forever.
+// Held while a child is started and runs. If another thread were inside of GDAL during the fork, the child would
+// inherit its locks and wait for them forever.
 std::mutex& gdal_mutex() {
   static std::mutex mutex;
   return mutex;

@@ -1,6 +1,6 @@
 // Strict access to the JSON of a glTF file. A member that is missing, has another type or lies out of its range throws
-// GltfFailure with the path of the member, for example "accessors[3].byteOffset is -4". Included by gltf_document.cpp
-// and gltf_file.cpp only.
+// GltfFailure with the path of the member, for example "accessors[3].byteOffset is -4". Only gltf_document.cpp,
+// gltf_json.cpp, gltf_materials.cpp and gltf_nodes.cpp include this header.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ class GltfJson {
   [[nodiscard]] const std::string& path() const { return path_; }
   [[noreturn]] void refuse(const char* name, const std::string& allowed) const;
 
-  [[nodiscard]] GltfJson object(const char* name) const;  // required
+  [[nodiscard]] GltfJson object(const char* name) const;  // throws if the member is missing
   [[nodiscard]] std::optional<GltfJson> find_object(const char* name) const;
   [[nodiscard]] std::optional<GltfJson> extension(const char* name) const;
   [[nodiscard]] std::vector<GltfJson> objects(const char* name) const;  // array of objects; empty if missing
@@ -43,7 +43,7 @@ class GltfJson {
   [[nodiscard]] std::vector<int> indices(const char* name, const char* list) const;
   // Returns all members of an object whose members are indices, such as attributes.
   [[nodiscard]] std::vector<std::pair<std::string, int>> named_indices(const char* list) const;
-  [[nodiscard]] double number(const char* name, double fallback) const;  // finite
+  [[nodiscard]] double number(const char* name, double fallback) const;  // always finite
   [[nodiscard]] std::vector<double> numbers(const char* name) const;     // of any length; empty if missing
   // Overwrites `out` with an array of the same length. Returns false if the member is missing.
   bool numbers(const char* name, std::span<double> out) const;

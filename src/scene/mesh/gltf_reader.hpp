@@ -53,7 +53,7 @@ class GltfReader {
   // A mesh, its skin or -1, and the weights of its morph targets. Nodes with equal shapes are instances of one mesh.
   using Shape = std::tuple<int, int, std::vector<double>>;
 
-  void note(std::string text);  // repeated texts are noted once
+  void note(std::string text);  // adds the text to the notes, unless it is there already
   // Notes the first text of a kind, and the number of texts that follow.
   void note_each(const char* kind, const std::string& text);
 
@@ -83,8 +83,8 @@ class GltfReader {
   std::vector<int> parents_;  // the parent of each node; -1 for roots
   std::map<std::string, std::pair<std::string, std::size_t>>
       counted_;                              // by kind: the first text and the number of texts
-  std::map<int, int> decoded_;               // from a decoded image to its texture
-  std::map<int, std::uint32_t> untextured_;  // from material to its copy without a texture
+  std::map<int, int> decoded_;               // the texture of each decoded image
+  std::map<int, std::uint32_t> untextured_;  // the copy without a texture of a material
   std::uint64_t texture_bytes_ = 0, visits_ = 0, instances_ = 0;
 };
 

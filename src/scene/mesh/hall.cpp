@@ -32,7 +32,8 @@ constexpr int kSlices = 32;  // vertical slices into which an opening is divided
 
 enum Material : std::uint32_t { kStone, kTiles, kWood, kRoof, kFirstGlass, kRoseGlass = kFirstGlass + 4, kMaterials };
 
-// Returns the height of the vault's inner surface, or of a surface `out_m` above it: two arcs that meet in a ridge.
+// Returns the height of the vault's inner surface, or of the surface that is `out_m` outside of it. Each consists of two
+// arcs that meet in a ridge.
 double vault_at(double x, double out_m = 0.0) {
   const double centre = (kRise_m * kRise_m - kHalfWidth_m * kHalfWidth_m) / (2.0 * kHalfWidth_m);
   const double radius = kHalfWidth_m + centre + out_m;
@@ -244,7 +245,7 @@ void side_walls(Builder& b) {
       o.picture_high = {kWindow.half_width_m, kSill_m + kWindow.top_m};
       openings.push_back(o);
     }
-    // The wall extends up behind the vault, whose edge has different vertices.
+    // The wall extends up behind the vault: their edges have different vertices, and would leave gaps.
     wall(
         b, f, -kHalfLength_m - kIntoGable_m, kHalfLength_m + kIntoGable_m,
         [](double) { return kSpring_m + kBehindVault_m; }, openings, 1);

@@ -35,7 +35,7 @@ std::uint32_t hash(int a, int b, int c = 0) {
 
 double unit(std::uint32_t h) { return static_cast<double>(h) / 4294967295.0; }
 
-// A pane. There is lead between panes with different numbers; 0 is stone.
+// A pane. There is lead between panes with different `id`; 0 is stone.
 struct Pane {
   std::uint32_t id = 0;
   glm::vec3 color = {};

@@ -12,7 +12,7 @@ struct BackgroundConstants {
   Vec3 disc_radiance;
   float pixel_angle_rad;
   Vec3 limb_exponent;
-  float sun_stretch;  // by how much the disc is stretched along `up` before it is drawn, less 1; 0: it is round
+  float sun_stretch;  // factor by which positions on the disc are stretched along `up`, minus 1; 0: the disc is round
   float tan_half[2];
   float jitter[2];
   Vec3 direction_to_moon;

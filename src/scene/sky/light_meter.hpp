@@ -7,8 +7,8 @@
 
 namespace tyndall::scene {
 
-// [lx] - of the sun on a surface that faces it and on a horizontal one, and of the sky on a horizontal one, without
-// terrain and shadows.
+// [lx] - illuminance by the sun on a surface that faces it and on a horizontal one, and by the sky on a horizontal one,
+// without terrain and shadows.
 struct Illuminance {
   double sun_lux = 0.0, sun_horizontal_lux = 0.0, sky_lux = 0.0;
 };

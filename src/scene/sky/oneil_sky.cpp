@@ -18,7 +18,7 @@ namespace tyndall::scene {
 namespace {
 
 constexpr std::size_t kSuns = 128;
-constexpr int kSkyNodes = 10;             // for the irradiance of the sky: 200 rays for each position of the sun
+constexpr int kSkyNodes = 10;             // nodes of the sky's irradiance: 200 rays for each position of the sun
 constexpr std::uint32_t kSkySamples = 8;  // largest number of samples on each of these rays
 
 // The model_block of shaders/scene/oneil_air.glsl in std430.

@@ -1,5 +1,5 @@
-// The models other than the effect that draw a frame (scattering.model). Each lights the ground through its own
-// atmosphere and draws the sky on a mesh around the camera, directly into the scene's colour. This class holds what
+// The models that draw a frame instead of the effect (scattering.model). Each lights the ground through its own
+// atmosphere and draws the sky on a mesh around the camera, directly into the scene's colour. This class contains what
 // they have in common: the mesh, the pipelines and the drawing. A model adds five shaders and the resources that these
 // read.
 //

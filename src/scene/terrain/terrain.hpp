@@ -38,7 +38,7 @@ struct TerrainLight {
 class Terrain {
  public:
   // Creates the terrain. With terrain.source = none there is nothing to draw, and the ground is at sea level.
-  // `coarseness` as in TerrainLod.
+  // `coarseness`: see TerrainLod.
   static Result<std::unique_ptr<Terrain>> create(gpu::Host& host, const TerrainParams& params, double radius_m,
                                                  VkFormat color_format, VkFormat depth_format, int coarseness = 1);
 

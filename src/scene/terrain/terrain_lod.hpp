@@ -48,7 +48,7 @@ struct TerrainBlock {
 };
 
 // Returns the largest coarseness for which cells look no larger than two pixels where their level ends. Small pictures
-// need few cells. `tan_half_height` as in View.
+// need few cells. `tan_half_height`: see View.
 [[nodiscard]] int coarseness_for_picture(std::uint32_t height_px, double tan_half_height);
 
 // Plans the levels for a camera at these coordinates of a map projection and this altitude, up to the horizon of the

@@ -1,5 +1,6 @@
-// Which parts of the elevation clipmap the shaders of a frame read, and which of them are filled. Elevations are filled
-// in square tiles, because a view and its shadow maps use only a small part of each level. Pure functions on the CPU.
+// Tracks which parts of the elevation clipmap the shaders of a frame read, and which of these parts are filled.
+// Elevations are filled in square tiles, because a view and its shadow maps use only a small part of each level. Pure
+// functions on the CPU.
 #pragma once
 
 #include <cstddef>

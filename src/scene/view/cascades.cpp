@@ -112,7 +112,7 @@ CascadeFit fit_slice(const View& view, const glm::dmat3& world_from_light, doubl
   const Bounds bounds =
       shell_bounds(sphere_centre, sphere_radius, light_from_world, world_from_light[2], ground, caster_reach);
   // Across the light, the map covers the intersection of the bounds of shell and sphere. Sizes are rounded up, the
-  // height more coarsely because it changes with the camera. A margin of a few texels is for filters.
+  // height more coarsely because it changes with the camera. Filters need a margin of a few texels.
   const glm::dvec3 sphere_light = light_from_world * sphere_centre;
   glm::dvec3 low = glm::max(bounds.min, sphere_light - sphere_radius);
   glm::dvec3 high = glm::max(glm::min(bounds.max, sphere_light + sphere_radius), low);

@@ -54,8 +54,8 @@ struct Ground {
 [[nodiscard]] std::vector<CascadeFit> fit_cascades(const View& view, const glm::dvec3& direction_to_sun,
                                                    const ShadowParams& shadows, const Ground& ground,
                                                    double first_near_m);
-// Returns the first cascade that light shafts are marched through: `first_marched`, or the room's, which contains the
-// camera as well.
+// Returns the first cascade that light shafts are marched through: shadows.first_marched, or the cascade of the room if
+// that comes earlier, because it contains the camera as well.
 [[nodiscard]] std::uint32_t first_marched(const ShadowParams& shadows, std::span<const CascadeFit> cascades);
 
 }  // namespace tyndall::scene
