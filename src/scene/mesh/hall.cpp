@@ -32,7 +32,7 @@ constexpr int kSlices = 32;  // vertical slices into which an opening is divided
 
 enum Material : std::uint32_t { kStone, kTiles, kWood, kRoof, kFirstGlass, kRoseGlass = kFirstGlass + 4, kMaterials };
 
-// Returns the height of the vault's inner surface, or of the surface that is `out_m` outside of it. Each consists of two
+// Returns the height of the vault's inner surface, or of the surface that is `out_m` outside of it. Both consist of two
 // arcs that meet in a ridge.
 double vault_at(double x, double out_m = 0.0) {
   const double centre = (kRise_m * kRise_m - kHalfWidth_m * kHalfWidth_m) / (2.0 * kHalfWidth_m);
