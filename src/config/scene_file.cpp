@@ -292,8 +292,8 @@ Result<void> load_root(Settings& settings, const toml::table& root, std::string_
   return path_at.empty() ? Result<void>() : check_path(settings.path, path_at);
 }
 
-// Makes file names in a scene file that are relative to it relative to the working directory. Those of the files that
-// it includes are already.
+// Resolves the file names in a scene file that exist relative to its folder, so that they hold for the working
+// directory. Names in the files that it includes have been resolved already.
 void find_files_beside(Settings& settings, const toml::table& root, const std::filesystem::path& scene_path) {
   const std::filesystem::path directory = scene_path.parent_path();
   for (const Row& row : rows()) {

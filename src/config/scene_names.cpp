@@ -24,7 +24,7 @@ bool can_be_cache(const std::string& folder) {
   std::error_code failed;
   bool cached = false, others = false;
   for (std::filesystem::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) {
-    if (it->path().filename().string().starts_with(".tyndall-")) continue;  // of another process that fills the cache
+    if (it->path().filename().string().starts_with(".tyndall-")) continue;  // a process is filling the cache
     const bool ours = it->path().extension() == ".cache";
     cached = cached || ours;
     others = others || !ours;

@@ -7,9 +7,9 @@
 
 namespace tyndall::config {
 
-// Refuses what a scene file may not name by itself: a network, tables outside of the folder of the outermost scene, and
-// a place outside of it for new files. `before` are the settings before the file was read; `folder` is that of the
-// outermost scene. Does nothing with files::outside_allowed().
+// Refuses names that a scene file may not contain: elevations on a network, and a phase function or a cache folder
+// outside of the folder of the outermost scene, `folder`. `before` contains the settings before the file was read; what
+// the file did not change is accepted. Does nothing with files::outside_allowed().
 [[nodiscard]] Result<void> check_names(const Settings& settings, const Settings& before, const std::string& scene_path,
                                        const std::string& folder);
 

@@ -65,8 +65,8 @@ struct Group {
 // Returns the error for a key that does not exist, with the nearest key that does.
 [[nodiscard]] Error unknown_key(std::string_view key, std::string_view where);
 
-// Checks what the ranges of single parameters cannot express: the values allowed for scattering.downscale and
-// tables.size, shadows.first_marched below shadows.cascades, terrain.source and tables.cache not empty.
+// Checks what the ranges of single parameters cannot express: values that are not allowed inside a range, such as
+// scattering.downscale = 3, texts that cannot be read, and parameters that contradict each other or the camera path.
 [[nodiscard]] Result<void> check(const Settings& settings);
 
 // Returns the metadata of an image: {"tyndall.version", "0.2.0"}, then each parameter as {"tyndall.camera.yaw_deg",

@@ -65,7 +65,7 @@ class FileCache {
   void write(std::string_view key, std::span<const std::byte> contents);
 
   // Takes the right to build what belongs to the key, so that several processes do not all do the same work. Does not
-  // wait. Without it, everything else works, too.
+  // wait. The other functions do not need the lock.
   [[nodiscard]] BuildLock try_lock(std::string_view key) const;
 
   // Returns one line that says why the last read or write failed; empty if it succeeded or if nothing was stored.

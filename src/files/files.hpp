@@ -49,10 +49,10 @@ class AtomicFile {
   [[nodiscard]] bool copy_to_named();
 
   int descriptor_ = -1;
-  std::string shown_;           // the caller's name for it, for messages
+  std::string shown_;           // the caller's name for the file, for messages
   std::string path_;            // the target, with links resolved
   std::string temporary_;       // the name before commit; empty for nameless files and devices
-  std::optional<mode_t> mode_;  // of the file that will be replaced
+  std::optional<mode_t> mode_;  // mode of the file that will be replaced
   bool nameless_ = false;
 };
 

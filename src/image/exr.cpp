@@ -114,7 +114,7 @@ Channels kind_of_channels(const Imf::ChannelList& channels) {
   return Channels::rgb;
 }
 
-// Returns what of a file is ignored: channels that carry no colour, and primaries. Empty if nothing is.
+// Returns which parts of a file are ignored: channels that carry no colour, and primaries. Empty if there are none.
 std::string ignored_parts(const Imf::Header& header, Channels kind) {
   std::string names;
   int count = 0;

@@ -111,7 +111,7 @@ bool read_samples(Reader* reader) {
   return true;
 }
 
-// Returns what of a file is ignored, or an empty string.
+// Returns which properties of a file are ignored, or an empty string.
 std::string ignored_parts(const Reader& reader) {
   std::string out;
   if (reader.transparent) out = "its transparency is ignored";
