@@ -1,6 +1,6 @@
 // The functions of shaders/lib as C++, in whatever namespace and precision the includer has set up (`float`,
-// vec2 to vec4, uint). Included by src/models/glsl_double.hpp and by the tests; no include guard, and the
-// guards of the GLSL files are lifted so that several precisions can stand in one translation unit.
+// vec2 to vec4, uint). Included by src/models/glsl_double.hpp and by the tests. There is no include guard, and the
+// guards of the GLSL files are removed, so that one translation unit can contain several precisions.
 #define IN(type) const type&
 #define OUT(type) type&
 #define INOUT(type) type&

@@ -21,7 +21,8 @@ Result<std::vector<Answer>> single_scattering_on_gpu(gpu::Host& host, const shar
                                                      const PhaseRows& phase, ColorMode color, std::span<const Ray> rays,
                                                      const std::function<void(std::size_t)>& progress = {});
 
-// Does the same with a pipeline that is made once, for many calls. Use from one thread at a time.
+// Evaluates single scattering in the same way, with a pipeline that is made once for many calls. Use it from one thread
+// at a time.
 class SingleScatteringOnGpu {
  public:
   // `host` must outlive the object.
@@ -35,7 +36,7 @@ class SingleScatteringOnGpu {
   gpu::Pipeline pipeline_;
 };
 
-// Evaluates the same in three channels.
+// Evaluates single scattering in three channels, with a phase function that has a formula.
 Result<std::vector<Answer>> single_scattering_on_gpu(gpu::Host& host, const shared::Medium& medium,
                                                      std::span<const Ray> rays,
                                                      const std::function<void(std::size_t)>& progress = {});

@@ -11,7 +11,7 @@
 
 namespace tyndall::models {
 
-// Returns the medium whose three channels are all that of the fourth wavelength.
+// Returns a medium in which all three channels have the properties of the fourth wavelength.
 [[nodiscard]] inline shared::Medium medium_at_fourth(const shared::SpectralMedium& medium) {
   shared::Medium out = static_cast<const shared::Medium&>(medium);
   out.rayleigh_scattering = Vec3(medium.fourth_channel.x);
@@ -22,14 +22,14 @@ namespace tyndall::models {
   return out;
 }
 
-// Returns the rows of a phase function in which all channels are that of the fourth wavelength.
+// Returns the rows of a phase function with the values of the fourth wavelength in all channels.
 [[nodiscard]] inline PhaseRows phase_at_fourth(PhaseRows rows) {
   for (shared::vec4& row : rows) row.x = row.y = row.z = row.w;
   return rows;
 }
 
-// Evaluates `model`, a function of a shared::Medium that returns an Answer, in the channels of the parameters. It may
-// have a second argument, whether the medium is that of the fourth wavelength.
+// Evaluates `model`, a function of a shared::Medium that returns an Answer, in the channels of the parameters. The
+// function may have a second argument of type bool: true for the medium of medium_at_fourth().
 template <typename Model>
 [[nodiscard]] Answer in_all_channels(const Params& params, const shared::SpectralMedium& medium, const Model& model) {
   const auto evaluate = [&](const shared::Medium& m, bool fourth) -> Answer {

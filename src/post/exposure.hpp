@@ -46,7 +46,7 @@ class Exposure {
  private:
   const gpu::Device* device_ = nullptr;
   gpu::Pipeline measure_, adapt_;
-  gpu::DescriptorSets sets_;  // of both, a copy per slot
+  gpu::DescriptorSets sets_;  // sets of both pipelines, a copy for each slot
   gpu::Buffer counts_, state_;
   std::vector<gpu::Buffer> results_;  // one per slot: the state, then the counts
   bool reset_ = true;

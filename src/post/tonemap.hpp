@@ -22,8 +22,8 @@ class Tonemap {
 
  private:
   const gpu::Device* device_ = nullptr;
-  std::array<gpu::Pipeline, kOperators> pipelines_;  // with the same bindings
-  gpu::DescriptorSets sets_;                         // a copy per slot
+  std::array<gpu::Pipeline, kOperators> pipelines_;  // one for each operator; all have the same bindings
+  gpu::DescriptorSets sets_;                         // one set for each slot
   std::uint32_t slots_ = 0;
   Exposure exposure_;
 };

@@ -246,7 +246,7 @@ std::string check(const Params& params, std::span<const RayQuery> queries, const
   return {};
 }
 
-// Does the same for the arguments of trace_spectrum().
+// Checks the arguments of trace_spectrum() in the same way.
 std::string check(const Params& params, const Wavelengths& wavelengths, std::span<const RayQuery> queries,
                   const Options& options) {
   std::string bad = check(params, queries, options);

@@ -46,7 +46,7 @@ struct Estimate {
   Rgb transmittance{};
   std::uint64_t samples = 0;              // paths traced; fewer than requested only after a cancelled call
   std::vector<Rgb> order_radiance;        // with by_order: order_radiance[n - 1] is the radiance after n events
-  std::vector<Rgb> order_standard_error;  // likewise
+  std::vector<Rgb> order_standard_error;  // with by_order: the standard errors of order_radiance
 };
 
 // Called from time to time, by one thread at a time, with the completed fraction in [0; 1]. Returning false cancels.
@@ -67,8 +67,8 @@ Result<std::vector<Estimate>> trace(const Params& params, std::span<const RayQue
 // The wavelengths of trace_spectrum().
 struct Wavelengths {
   std::span<const double> nm;  // [100; 4000] or the range of cross-sections - 1 to kMaxWavelengths of them
-  std::span<const Rgb>
-      weights;  // finite; of three sums over the wavelengths, such as X, Y and Z; as many as wavelengths
+  // Weights of three sums over the wavelengths, such as X, Y and Z: finite, one entry for each wavelength.
+  std::span<const Rgb> weights;
 };
 
 // Light at any wavelengths, in the units of Estimate, for each of Wavelengths::nm.

@@ -47,8 +47,8 @@ class TabulatedPhase {
   std::size_t channels_;
   std::vector<double> cosines_;     // ends of the bins, decreasing from 1 to -1
   std::vector<double> values_;      // at the ends of the bins, channel by channel
-  std::vector<double> densities_;   // of the bins
-  std::vector<double> cumulative_;  // probability of all bins before one
+  std::vector<double> densities_;   // probability density of each bin, per steradian
+  std::vector<double> cumulative_;  // for each bin, the probability of all bins before it
 };
 
 // The aerosol's phase function with precomputed constants.

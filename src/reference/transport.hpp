@@ -27,7 +27,7 @@ struct Scene {
 
   const Atmosphere* air;
   Vec origin, view, sun;         // origin: where the ray enters the atmosphere, or the camera inside it
-  double ground_radius_m = 0.0;  // of the sphere at which the camera ray ends
+  double ground_radius_m = 0.0;  // radius of the sphere at which the camera ray ends
   bool sky = false;
   bool visible_ground = true;
   Light<N> transmittance{};

@@ -18,7 +18,7 @@ struct CacheDesc {
 };
 
 enum class Origin {
-  unchanged,  // they were already complete
+  unchanged,  // the tables were already complete
   cache,
   build,
 };
