@@ -65,7 +65,7 @@ struct Arguments::Implementation {
   std::vector<std::pair<std::string, std::string>> flags;  // names, help
   std::vector<Positional> positionals;
   std::string rest_name, rest_help;
-  std::vector<std::string>* rest = nullptr;  // of the positional arguments
+  std::vector<std::string>* rest = nullptr;  // target of the repeated positional argument
   std::string footer;
 };
 

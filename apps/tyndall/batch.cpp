@@ -69,11 +69,11 @@ Inputs shared_inputs(Inputs inputs, const std::string& items_input) {
 struct Batch::State {
   std::mutex mutex;  // guards the rest
   Manifest manifest;
-  std::string path;    // of the manifest; empty without one
-  std::string folder;  // that contains it
+  std::string path;    // path of the manifest; empty without one
+  std::string folder;  // folder of the manifest
   std::string unit;
   std::function<std::string(std::uint64_t)> item_inputs;
-  std::size_t wanted = 0;  // items of this run, with those that were there
+  std::size_t wanted = 0;  // number of items of this run, including those that were made before it
   Clock::time_point last_item = Clock::now();
   Clock::time_point last_write = Clock::now();
 

@@ -1,5 +1,5 @@
-// A run that makes several items, such as frames, of which a shard makes a part and --resume skips those that are
-// there. Records what is finished, for the manifest and for the message of an interrupted run. docs/batch.md.
+// A run that makes several items, such as frames. A shard makes a part of them, and --resume skips finished ones.
+// Records what is finished, for the manifest and for the message of an interrupted run. See docs/batch.md.
 #pragma once
 
 #include <functional>
@@ -30,7 +30,7 @@ struct BatchDesc {
   std::string unit;    // for messages: "frames"
   std::string output;  // -o
   std::uint64_t total = 0;
-  std::vector<std::uint64_t> numbers;  // of the items that this run makes, ascending
+  std::vector<std::uint64_t> numbers;  // numbers of the items that this run makes, ascending
   Inputs inputs;                       // only needed if options.active()
   // The name of an input of which each item uses only a part, such as a list with one row for each item, and a function
   // that returns a checksum of the part of an item. --resume compares these checksums instead of the input. Both may be

@@ -98,7 +98,7 @@ std::string as_text(const nlohmann::ordered_json& report) {
   return text;
 }
 
-// Adds the exposure and the light of the last frame, what it did, and the memory.
+// Adds the exposure, the illuminance and the counters of the last frame, and the memory.
 void add_counters(const scene::Scene& scene, nlohmann::ordered_json& out) {
   const scene::Scene::Exposure exposure = scene.exposure();
   out["exposure"] = {{"scale", exposure.scale}, {"ev100", exposure.ev100 ? nlohmann::json(*exposure.ev100) : nullptr}};
@@ -172,7 +172,7 @@ int run_bench(Args args) {
     if (!schedule.count()) continue;
     double effect_ms = 0.0;
     double frame_ms = 0.0;
-    std::optional<double> whole_ms;          // of the effect, where it is measured in one scope
+    std::optional<double> whole_ms;          // time of the whole effect, where it is measured in one scope
     std::map<std::string, double> of_frame;  // a pass may run several times
     for (const scene::PassTime& pass : scene.value()->timings()) {
       if (pass.name == "floor") {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kSignals[] = {SIGINT, SIGTERM};
 
-// For the handlers. They are written only while no handler is installed.
+// Variables that the signal handlers read. They are written only while no handler is installed.
 int written_end = -1;
 pid_t owner = 0;
 

@@ -19,9 +19,9 @@ namespace fs = std::filesystem;
 using files::concat;
 using nlohmann::ordered_json;
 
-constexpr std::uint64_t kFormat = 1;  // of manifests
+constexpr std::uint64_t kFormat = 1;  // version of the format of manifests
 constexpr std::uint64_t kLargestManifest = std::uint64_t{1} << 30U;
-constexpr double kLongest_s = 1e9;  // of an item
+constexpr double kLongest_s = 1e9;  // longest accepted duration of an item
 
 std::string hash_of(const Inputs& inputs) {
   std::string text;
@@ -76,7 +76,7 @@ class Limits final : public nlohmann::json_sax<ordered_json> {
     names_.pop_back();
     return true;
   }
-  std::vector<std::size_t> names_;  // of the objects around the current position
+  std::vector<std::size_t> names_;  // numbers of names in the objects that contain the current position
 };
 
 // Returns a whole number. The conversions of the JSON library would also accept negative and fractional numbers.
@@ -227,7 +227,7 @@ Inputs common_inputs(const CommonOptions& options) {
   Inputs out = {{"version", TYNDALL_VERSION_STRING}};
   for (const config::Row& row : config::rows()) {
     const std::string key = row.key();
-    // These say where tables are stored.
+    // These two parameters do not change results, because they only select where tables are stored.
     if (key == "tables.cache" || key == "tables.cache_limit_mib") continue;
     const std::string value = config::value_text(row, options.settings);
     std::error_code failed;
@@ -242,7 +242,7 @@ Inputs common_inputs(const CommonOptions& options) {
     only_path.path = options.settings.path;
     out.emplace_back("[[path]]", concat({"checksum ", files::checksum_text(config::to_toml(only_path))}));
   }
-  // The files of parameters are above. The scene file is left out, because its values are.
+  // Files that parameters name have been added above. The scene file itself is not added, because its values have been.
   std::size_t number = 0;
   for (const InputFile& file : input_files(options)) {
     if (file.name.starts_with("a file of "))

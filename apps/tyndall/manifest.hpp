@@ -1,6 +1,6 @@
-// The manifest of a shard: a JSON file beside the output that lists what the shard has made, from what, and with
-// checksums. `--resume` reads it to skip what is there, and `tyndall merge` to combine shards. docs/batch.md describes
-// the members.
+// The manifest of a shard: a JSON file beside the output that lists the files that the shard has made, with checksums,
+// and the inputs of the run. `--resume` reads it to skip finished items, and `tyndall merge` to combine shards.
+// docs/batch.md describes the members.
 #pragma once
 
 #include <string>
@@ -23,11 +23,11 @@ struct ManifestFile {
 };
 
 struct ManifestItem {
-  std::uint64_t number = 0;  // of the frame or map; for probe and validate, of the shard, from 0
+  std::uint64_t number = 0;  // number of the frame or map; for probe and validate, number of the shard from 0
   std::string name;          // from the list of skies; may be empty
   std::vector<ManifestFile> files;
   double seconds = 0.0;
-  std::string inputs_hash = {};  // of the row of the list; may be empty
+  std::string inputs_hash = {};  // checksum of the item's row of the list; may be empty
 };
 
 struct Manifest {

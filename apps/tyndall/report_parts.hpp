@@ -12,12 +12,12 @@ namespace tyndall::cli {
 // The results of a run and what its parts share.
 struct ReportRun {
   nlohmann::ordered_json json;
-  std::string folder;     // of the report
-  std::string work;       // for files that are removed at the end
-  std::string data;       // holds scenes/ and report/ (the values computed on the CPU device)
-  std::string device;     // as --device names it
-  double seconds = 0.0;   // for everything
-  bool is_short = false;  // tiny pictures and few runs
+  std::string folder;     // folder of the report
+  std::string work;       // folder for files that are removed at the end
+  std::string data;       // folder with scenes/ and report/ (the values computed on the CPU device)
+  std::string device;     // name of the device, as for --device
+  double seconds = 0.0;   // time limit of the whole run
+  bool is_short = false;  // the report has tiny pictures and few runs
   std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
 
   [[nodiscard]] double seconds_left() const;
@@ -26,7 +26,7 @@ struct ReportRun {
   void check(const std::string& name, bool passed, const std::string& limit, nlohmann::ordered_json values);
 };
 
-// Each program that a part runs takes at most `share` of the whole time, and all of them end with it.
+// Each program that a part runs takes at most `share` of ReportRun::seconds, and ends at the latest when this is over.
 void report_device(ReportRun& run);
 void report_tables(ReportRun& run, double share);
 void report_probe(ReportRun& run, double share);

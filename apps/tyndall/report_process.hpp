@@ -9,10 +9,10 @@ namespace tyndall::cli {
 
 struct ProgramRun {
   int status = -1;         // exit status; 128 + the signal's number after a crash
-  bool timed_out = false;  // it was ended at the deadline
+  bool timed_out = false;  // the program was ended at the deadline
   bool interrupted = false;
   double seconds = 0.0;
-  std::string out, err;  // what it printed; `err` is one line
+  std::string out, err;  // stdout and stderr of the program; `err` is one line
 
   [[nodiscard]] bool done() const { return status == 0; }
   // Returns why the run gave no result, in words.
@@ -20,12 +20,12 @@ struct ProgramRun {
 };
 
 struct ProgramLimits {
-  double seconds;           // after which it is stopped
-  std::string folder;       // for the files that hold its output
-  std::string environment;  // NAME=VALUE to set; empty: none
+  double seconds;           // time after which the program is stopped
+  std::string folder;       // folder for the files that hold the program's output
+  std::string environment;  // environment variable to set, NAME=VALUE; empty: none
 };
 
-// Runs the program at `program`, or this one if it is empty. It is looked up in PATH if it has no slash.
+// Runs the program at the path `program`, or this one if `program` is empty. A name without a slash is sought in PATH.
 [[nodiscard]] ProgramRun run_program(const std::string& program, const std::vector<std::string>& arguments,
                                      const ProgramLimits& limits);
 

@@ -269,8 +269,8 @@ struct SkyRun {
   Projection projection;
   SkySource& source;
   std::string device;
-  std::string label;   // of the progress bar
-  std::string remark;  // on values of maps, once for all of them
+  std::string label;   // label of the progress bar
+  std::string remark;  // remark on the values of maps, printed once for all maps
 };
 
 // Computes and writes a map. Returns what is printed about it.

@@ -9,8 +9,8 @@
 
 namespace tyndall::cli {
 
-// The sun's disc in the channels of the medium: with four wavelengths, the first three and the fourth, with an
-// irradiance of 1.
+// The sun's disc in the channels of the medium. With four wavelengths, `first` has the first three, and `fourth` has
+// the fourth, for an irradiance of 1.
 struct SunFaces {
   SunFace first, fourth;
   std::array<double, 3> irradiance;  // above the atmosphere

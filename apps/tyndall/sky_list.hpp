@@ -17,7 +17,7 @@ struct SunAngles {
 struct SkyEntry {
   SunAngles sun;
   std::string place, time;  // as given, "LAT,LON" and ISO 8601; empty if the sun is given by its angles
-  std::string name;         // of the row; may be empty
+  std::string name;         // name in the row of the list; may be empty
 };
 
 // Returns a checksum of everything that the map of an entry takes from the list.

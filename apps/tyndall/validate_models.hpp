@@ -13,7 +13,7 @@
 namespace tyndall::cli {
 
 struct ValidateModels {
-  std::vector<validate::Model> rays;     // of the study
+  std::vector<validate::Model> rays;     // models for all rays of the study
   std::vector<validate::Model> horizon;  // parameterisations of the tables, for the horizon test
   std::vector<validate::ColorModel> colors;
   std::function<std::vector<std::string>()> notes;  // returns remarks on the cache
