@@ -34,8 +34,8 @@ struct Motion {
   [[nodiscard]] bool any() const { return right != 0.0 || up != 0.0 || forward != 0.0; }
 };
 
-// Returns the speed [m/s] at a height above the ground: it grows from some metres a second at the ground to the scale
-// of the planet in orbit.
+// Returns the speed [m/s] at a height above the ground: 30 m/s at the ground, growing linearly with the height, so that
+// a flight around the planet in orbit takes minutes.
 [[nodiscard]] double flight_speed(double height_m, bool fast);
 
 // Returns the camera after `seconds` at `speed` [m/s].

@@ -56,7 +56,7 @@ class Flight {
   bool dragging_view_ = false, dragging_sun_ = false;
   double pointer_x_ = 0.0, pointer_y_ = 0.0;
   std::string pointer_text_;
-  std::optional<scene::Place> terrain_place_;  // of the elevation file
+  std::optional<scene::Place> terrain_place_;  // place of the elevation file
   bool path_playing_ = false;
   double path_s_ = 0.0;
 };

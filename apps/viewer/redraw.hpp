@@ -1,4 +1,4 @@
-// Decides when the viewer draws its GUI again and how long its loop may sleep. Knows neither a window nor a scene.
+// Decides when the viewer draws its GUI again and how long its loop may sleep. Uses neither the window nor the scenes.
 // Times are seconds on the viewer's clock.
 #pragma once
 
@@ -38,7 +38,7 @@ class Redraw {
   [[nodiscard]] double wait_time(const LoopState& state) const;
 
  private:
-  int frames_ = 3;  // of the GUI that are still to be drawn
+  int frames_ = 3;  // number of frames of the GUI that are still to be drawn
   double last_input_ = 0.0;
   double last_drawn_ = -1.0;
 };

@@ -17,7 +17,7 @@ bool in_work(const SceneThread* thread) { return thread != nullptr && thread->bu
 // A frame of the window waits for at most two frames of the scene that are as long as this.
 constexpr double kAheadUpTo_ms = 40.0;
 
-// Returns whether a thread is drawing. Only one of them may draw at a time, so that they do not slow each other down.
+// Returns whether a thread is drawing. Only one scene may draw at a time, so that they do not slow each other down.
 bool draws(const SceneThread* thread) { return in_work(thread) && !thread->creating(); }
 
 }  // namespace
@@ -227,7 +227,7 @@ void ScenePair::log_frame(std::size_t side, double took_ms) {
   if (!notices_->events().on()) return;
   const SceneFacts& facts = (side == 0 ? *left_ : *right_).facts();
   const CameraState& camera = drawn_poses_.at(side).camera;
-  // Where the sun stands, which may follow from a time.
+  // The sun's position may follow from a time.
   const scene::SunParams& given = drawn_poses_.at(side).sun;
   const std::optional<scene::Place> place = facts.elevations != nullptr ? facts.elevations->place() : std::nullopt;
   const Result<scene::SunParams> placed = scene::placed_sun(given, place);

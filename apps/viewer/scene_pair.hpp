@@ -39,7 +39,7 @@ struct PairResult {
   bool right_ended = false;  // the right scene has ended with an error, which has been reported
   std::optional<Capture> capture;
   bool replaced = false;                   // the replacement has become the left scene
-  std::optional<Error> replacement_error;  // it could not be created; the left scene stays
+  std::optional<Error> replacement_error;  // why no replacement could be created; the left scene stays
 };
 
 class ScenePair {

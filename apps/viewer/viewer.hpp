@@ -21,8 +21,8 @@ struct ViewerDesc {
   std::string log;          // file for the event log; empty: none
   bool validation = false;
   // For tests: "walk" sets every parameter to both ends of its range; "soak=SECONDS" or "soak-frames=COUNT" changes
-  // random parameters; then the viewer quits. "lose-surface" and "lose-device" simulate these losses after the first
-  // frame; "one-device" draws the window and the scenes on one device, whatever it is.
+  // random parameters; then the viewer quits. "lose-surface" and "lose-device" simulate the loss of the surface or the
+  // device after the first frame; "one-device" draws the window and the scenes on one device, also without a GPU.
   std::string script;
   bool first_steps = true;  // show the first steps if this is the first run
 };

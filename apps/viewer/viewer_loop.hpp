@@ -66,7 +66,7 @@ class Viewer {
   Notices notices_{gui_, redraw_};
   Window window_;
   Devices devices_;
-  std::unique_ptr<tables::PipelineStore> pipelines_;  // of the scenes
+  std::unique_ptr<tables::PipelineStore> pipelines_;  // pipelines of the scenes
   ShaderReload shaders_;                              // outlives the scenes
   Swapchain swapchain_;
   ViewSettings settings_;

@@ -58,7 +58,7 @@ void Panels::edit(std::initializer_list<const char*> keys) {
   }
 }
 
-// Returns whether the sun's angles hold, for their keys. With a time they do not.
+// Returns whether a parameter has an effect. The sun's angles have none if sun.time is set.
 bool Panels::has_effect(std::string_view key) const {
   return settings.scene.sun.time.empty() || (key != "sun.elevation_deg" && key != "sun.azimuth_deg");
 }

@@ -14,7 +14,7 @@ struct KeyEvent {
   Kind kind = Kind::key;
   int key = 0, scancode = 0, action = 0, mods = 0;  // as in GLFW; for a button, `key` is its number
   unsigned character = 0;                           // UTF-32
-  double x = 0.0, y = 0.0;                          // of the pointer [px], for a button
+  double x = 0.0, y = 0.0;                          // position of the pointer [px], for a button
 };
 
 class KeyFeed {

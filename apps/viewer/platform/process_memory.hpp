@@ -9,7 +9,7 @@ namespace tyndall::viewer {
 void configure_malloc();
 // Returns the resident memory [KiB]; 0 where it is not known.
 [[nodiscard]] long resident_kib();
-// Returns the part of it that malloc has given out [KiB]; 0 where it is not known.
+// Returns the memory that malloc has given out [KiB]; 0 where it is not known.
 [[nodiscard]] std::size_t allocated_kib();
 
 }  // namespace tyndall::viewer

@@ -1,4 +1,4 @@
-// The swapchain of the window. One frame is in flight at a time; the GUI is drawn last.
+// The swapchain of the window. Up to gpu::kFramesInFlight frames are in flight. The GUI is drawn last in each of them.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -58,7 +58,7 @@ class Swapchain {
     VkCommandBuffer cmd = VK_NULL_HANDLE;
     VkFence fence = VK_NULL_HANDLE;
     VkSemaphore acquired = VK_NULL_HANDLE;
-    bool pending = false;  // submitted, and not waited for
+    bool pending = false;  // the frame has been submitted and not waited for
   };
   Result<void> wait_for(Frame& frame);
   Result<bool> create_swapchain();  // false: the window has no area now

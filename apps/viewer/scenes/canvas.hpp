@@ -74,7 +74,7 @@ class Canvas {
 
   gpu::Host* host_ = nullptr;
   bool to_host_ = false, ahead_ = false;
-  std::uint64_t submission_ = 0;  // of the last canvas
+  std::uint64_t submission_ = 0;  // submission of the last canvas
   std::shared_ptr<gpu::Image> image_;
   gpu::Pipeline color_, precise_color_, depth_, layer_, precise_table_;
   gpu::Handle<VkSampler> nearest_, linear_;

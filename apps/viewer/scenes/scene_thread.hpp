@@ -24,7 +24,8 @@ class SceneThread {
   std::optional<SceneResult> poll();
   [[nodiscard]] bool busy() const { return running_.valid(); }
   [[nodiscard]] bool creating() const { return busy() && !made_; }
-  // Return whether a piece of work is due for the request, and whether the last frame shows it. Only when not busy.
+  // Return whether a piece of work is due for the request, and whether the last frame shows the request. Not to be
+  // called while busy().
   [[nodiscard]] bool wants(const SceneRequest& request) const { return made_ && work_->wants(request); }
   [[nodiscard]] bool shows(const SceneRequest& request) const { return made_ && work_->shows(request); }
   void launch(const SceneRequest& request);
