@@ -24,7 +24,7 @@ struct Point {
 enum class Mark { line, dashed, dotted, points, circles };
 
 struct Series {
-  std::string label;   // in the legend; none if empty
+  std::string label;   // label in the legend; empty: no entry
   std::string colour;  // "#1f77b4"
   Mark mark = Mark::line;
   std::vector<Point> points;  // lines are interrupted at values that are not finite

@@ -16,7 +16,7 @@ namespace tyndall::validate {
 using Progress = std::function<void(double done)>;
 
 struct Model {
-  std::string name;     // as in reports
+  std::string name;     // name in reports
   std::string meaning;  // one line
   int orders = 0;       // compare with the sum of this many orders of the reference; 0: all
   // Returns radiance / E0, or the sky's irradiance / E0, for every query.
@@ -86,7 +86,7 @@ struct SkyTest {
   Answers answers;
 };
 
-// The sky just above and below the horizon in the sun's vertical plane, at an altitude, for some models.
+// The sky just above and below the horizon, at an altitude and 60 degrees to the side of the sun, for some models.
 struct HorizonTest {
   double altitude_m = 0.0;
   double sun_elevation_deg = 0.0;
@@ -117,11 +117,11 @@ struct Study {
 // A step of a study: the reference and some models for queries of one atmosphere.
 struct Evaluation {
   Params params;
-  const std::vector<Model>* models;  // of the study
+  const std::vector<Model>* models;  // models of the study
   reference::Options how;
-  std::vector<Answers*> answers;  // of the study; their queries, one after the other, are evaluated together
+  std::vector<Answers*> answers;  // answers of the study; their queries, one after the other, are evaluated together
 };
-// Returns the steps of a study in order. They refer to it.
+// Returns the steps of a study in order. The steps refer to the study.
 [[nodiscard]] std::vector<Evaluation> evaluations(Study& study, const Params& params);
 
 // Summarises a model's errors over the rays of one atmosphere that a predicate selects.
