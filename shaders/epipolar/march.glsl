@@ -59,7 +59,7 @@ struct Walk {
   float lit;  // lit length within the panel, and its first moment about the middle
   float moment;
   float middle;
-  Spectrum lit_tinted;  // the same, with kTinted
+  Spectrum lit_tinted;  // kTinted: `lit` and `moment`, weighted by the colour of the light
   Spectrum moment_tinted;
   // For a homogeneous medium: transmittance and in-scattering up to `since`, and the source function after it, which is
   // the lit fraction times the colour. A section ends where the source function changes, so that the result does not

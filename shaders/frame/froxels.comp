@@ -16,7 +16,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(push_constant) uniform Push {
-  uint first_row;  // of the columns
+  uint first_row;  // first row of columns of this dispatch
   uint without_medium;
 }
 push;

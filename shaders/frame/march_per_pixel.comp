@@ -17,7 +17,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(push_constant) uniform Push { uint first_row; }
-push;  // of the picture
+push;  // first row of the picture of this dispatch
 
 // Returns the single scattering over [start, end] of the ray. With kCloudFraction, also computes the fraction of it
 // that remains behind clouds and glass.

@@ -1,7 +1,7 @@
 // In-scattering from the scattering tables with shadows, for scattering.single = table and scattering.multiple =
 // occluded.
 // kContiguous is the method of Yusov, "High Performance Outdoor Light Scattering Using Epipolar Sampling" (2013),
-// section 2.4: one contiguous section from the first lit point. kEach evaluates every lit section; it is ours.
+// section 2.4: one contiguous section from the first lit point. kEach is Tyndall's own: it evaluates every lit section.
 #ifndef TYNDALL_TABLE_LIGHT_GLSL
 #define TYNDALL_TABLE_LIGHT_GLSL
 

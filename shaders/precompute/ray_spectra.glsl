@@ -1,5 +1,5 @@
-// Access to the spectra of a QuadratureRay, whose fourth channels are stored apart. The values without the fourth
-// channel are usually loaded already, and are arguments where they are.
+// Access to the spectra of a QuadratureRay, whose fourth channels are stored apart. Where the callers have already
+// loaded the other three channels, they pass these as an argument.
 #ifndef TYNDALL_RAY_SPECTRA_GLSL
 #define TYNDALL_RAY_SPECTRA_GLSL
 

@@ -2,8 +2,8 @@
 // series in azimuth per zenith angle. Writes the source function of order n (fourth root, per scattering coefficient),
 // its sum over the orders so far (linear; fourth root once complete), the horizontal irradiance of order n - 1, and its
 // sum. From 3 orders on, the source function of the last order is written as the terms from which the late orders
-// continue (late_source.glsl), and these complete the sums; otherwise, the pass after the last order does. One group
-// per altitude x sun.
+// continue (late_source.glsl), and these complete the sums. With fewer orders, the pass after the last order completes
+// them. One group per altitude x sun.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require

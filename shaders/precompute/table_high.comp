@@ -34,8 +34,7 @@ float angle_in_triangle(float x, float a, float b) { return clamp(x, abs(a - b),
 // Returns the source function at a node. mu_s is the cosine of the sun's zenith angle, nu that of the angle between
 // view and sun. Interpolation also reads texels whose three angles form no triangle on the sphere. For these, one of
 // the angles is changed:
-//   nu <= 0: the azimuth is clamped. Opposite the sun, the light hardly depends on the angle to the sun, but in a
-//   turbid
+//   nu <= 0: the azimuth is clamped. Opposite the sun, the light hardly depends on the angle to the sun. In a turbid
 //            atmosphere near the horizon it depends strongly on the view zenith angle, which therefore stays as it is.
 //   nu > 0:  the angle to the sun determines the aureole. With a low sun, the azimuth is clamped and the light is
 //            corrected by angle_shape(). Otherwise the zenith angle of the view is changed, or that of the sun if the

@@ -7,8 +7,8 @@
 #include "scene/noise3.glsl"
 #include "scene/sun_disc.glsl"
 
-// At full moon it reflects like a white Lambertian disc of this albedo (Allen's Astrophysical Quantities, 4th edition,
-// 2000: geometric albedo 0.12).
+// The full moon reflects like a Lambertian disc of this albedo (Allen's Astrophysical Quantities, 4th edition, 2000:
+// geometric albedo 0.12).
 const float kMoonAlbedo = 0.12;
 
 // Returns the relative albedo at a point of the moon's surface; the mean is 1. n is in world space, so that features

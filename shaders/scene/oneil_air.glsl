@@ -7,7 +7,7 @@
 
 layout(std430, binding = 7) readonly buffer oneil_table_block { vec4 oneil_texels[]; };
 #define ONEIL_TEXEL(table, index) oneil_texels[index]
-// The fields of the block's Oneil as constants: src/scene/sky/oneil_sky.cpp selects the pipeline by them.
+// Oneil::integral_method and Oneil::spacing as constants: src/scene/sky/oneil_sky.cpp selects the pipeline by them.
 layout(constant_id = kIntegralMethodId) const uint kIntegralMethod = 0u;
 layout(constant_id = kSampleSpacingId) const uint kSampleSpacing = 0u;
 #define ONEIL_INTEGRAL_METHOD(o) kIntegralMethod

@@ -3,7 +3,7 @@
 // src/scene/view/local_frame.hpp.
 struct TerrainLevel {
   ivec2 origin;  // grid index on the projection of the texture's first sample
-  vec2 first_m;  // its position on the map, relative to the origin of the local frame as all map positions
+  vec2 first_m;  // the sample's position on the map, relative to the origin of the local frame, like all map positions
                  // (map_projections.glsl)
   float cell_m;
   float range_m;

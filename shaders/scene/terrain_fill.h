@@ -6,7 +6,7 @@
 
 struct TerrainSource {
   ivec2 raster_size;       // samples of the elevation file; 0 0 for procedural terrain
-  float raster_spacing_m;  // its centre is at the origin of the map
+  float raster_spacing_m;  // distance between samples; the centre of the file is at the origin of the map
   float raster_min_m;      // lowest and highest sample
   float raster_max_m;
   float outside_offset_m;  // raises the procedural terrain around the file to the level of the file's border

@@ -65,7 +65,7 @@ struct SliceLine {
   float depth;  // depth of the camera
 };
 
-const uint kTreeBlock = 256u;    // cells per tree
+const uint kTreeBlock = 256u;    // cells per block of a tree
 const uint kTreeLeafLevel = 3u;  // nodes of 8, 16, ... 256 cells: 2 to the power of the level
 const uint kTreeTopLevel = 8u;
 const uint kTreeNodes = 64u;   // per block, including one unused
@@ -90,7 +90,7 @@ const uint kUnwarpWidthGpu = 2u;
 // The kinds of dispatches of march_samples.comp. The first three are those of CascadeProcessing.
 const uint kAllCascades = 0u;
 const uint kOneCascade = 1u;     // one cascade, added to the results of the previous ones
-const uint kCascadesAside = 2u;  // one cascade per workgroup along y
+const uint kCascadesAside = 2u;  // one cascade per workgroup along z
 const uint kFinish = 3u;         // computes in-scattering from the results of all cascades
 const uint kPixels = 4u;         // pixels, all cascades
 

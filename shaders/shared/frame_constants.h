@@ -51,7 +51,7 @@ struct FrameConstants {
   // depth.
   float glass_depth_sign;
   vec3 ray_y;
-  float ground_m;  // altitude of the sphere at which rays end on which nothing is drawn
+  float ground_m;  // altitude of the sphere where rays end if nothing is drawn on them
   vec3 direction_to_sun;
   float cos_sun_angular_radius;
   vec3 sun_irradiance;  // includes scattering.scale

@@ -17,7 +17,7 @@ struct ProbeRay {
 
 struct ProbeResult {
   vec3 radiance;          // relative to the sun's irradiance above the atmosphere [1/sr]
-  float radiance_fourth;  // channel, of scattering.color = spectral
+  float radiance_fourth;  // fourth channel, with scattering.color = spectral
   vec3 transmittance;     // to the end of the ray
   float transmittance_fourth;
 };

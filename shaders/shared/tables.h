@@ -25,7 +25,7 @@ struct TableShape {
 // incident light is known in kGatherZeniths x kGatherAzimuths directions, and the scattered light in kSourceZeniths x
 // kSourceAzimuths. The azimuths cover one side of the sun's plane; the other side is the mirror image.
 const uint kGatherAltitudes = 43u;
-const uint kGatherBelow = 3u;                 // the number of these below sea level
+const uint kGatherBelow = 3u;                 // the number of gathering altitudes below sea level
 const float kLowestGatherAltitude = -1000.0;  // [m]
 const uint kGatherSuns = 64u;
 const uint kGatherZeniths = 24u;  // half of them on each side of the horizon
@@ -37,9 +37,9 @@ const uint kSourceAzimuths = 21u;
 const uint kPhaseTerms = 3u;
 const uint kModes = 16u;  // of the Fourier series in azimuth
 // The late orders are those after `orders` of TableShape.
-const uint kLateOrders = 6u;    // the number of them that are solved; the rest is estimated
+const uint kLateOrders = 6u;    // number of late orders that are solved; the rest is estimated
 const uint kLateModes = 2u;     // terms of their Fourier series that follow the height of the sun along a ray
-const uint kLateTerms = 5u;     // of the Fourier series from which they start
+const uint kLateTerms = 5u;     // terms of the Fourier series from which the late orders start
 const uint kLateAzimuths = 2u;  // azimuths in which these terms are integrated
 // Each invocation of the passes over rays processes this many azimuths, or angles between view and sun. They share the
 // loads of the nodes.
@@ -78,7 +78,7 @@ struct QuadratureRay {
   vec4 high_fourth_channel[kHighNodes / 4u];
 #endif
 };
-// The size of a QuadratureRay with SPECTRAL beyond that without [bytes].
+// The number of bytes by which SPECTRAL enlarges a QuadratureRay.
 const uint kSpectralRayBytes = 16u + 4u * kHighNodes;
 
 // Gauss-Legendre nodes and weights on [0; 1] for half of the zenith angles. Computed on the CPU.
