@@ -20,8 +20,8 @@ namespace tyndall::python {
 
 // The representation of light in a model.
 struct Light {
-  bool spectral = false;  // at the four wavelengths of scattering.color = spectral, whatever the settings say
-  std::vector<double> wavelengths_nm;  // in three channels at these wavelengths; empty: at those of the settings
+  bool spectral = false;  // use the four wavelengths of scattering.color = spectral, whatever the settings say
+  std::vector<double> wavelengths_nm;  // wavelengths of the three channels; empty: those of the settings
 };
 
 // All calls may come from several threads.
@@ -59,7 +59,7 @@ class Model {
   Result<std::vector<models::Answer>> single(std::span<const RayQuery> queries);
 
   config::Settings settings_;
-  Params given_;  // before the channels were moved to other wavelengths
+  Params given_;  // parameters before the channels were moved to other wavelengths
   std::shared_ptr<gpu::Host> host_;
   std::unique_ptr<models::PrecomputedModel> precomputed_;
   std::unique_ptr<models::SingleScatteringOnGpu> single_;

@@ -83,7 +83,7 @@ def broadcast(**arguments):
 
 
 def lowest_altitude(altitude, mu, length, radius):
-    """Returns the lowest altitude of lines from a point, with the cosine of its zenith angle [m]."""
+    """Returns the lowest altitude [m] of lines that start at `altitude` with the cosine `mu` of the zenith angle."""
     along = np.clip(-(radius + altitude) * mu, 0.0, length)
     # |(r, along)| - R without cancellation: its square is r^2 + along^2 + 2 r along mu.
     excess = altitude * (2.0 * radius + altitude) + along * (along + 2.0 * (radius + altitude) * mu)

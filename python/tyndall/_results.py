@@ -1,4 +1,4 @@
-"""What calls return."""
+"""The classes of the results that the functions of this package return."""
 import numpy as np
 
 
