@@ -15,8 +15,8 @@ G173 = np.array([
     (500, 1.916, 1.5451, 1.3391), (520, 1.86, 1.5236, 1.3349), (550, 1.863, 1.5399, 1.3648), (580, 1.834, 1.502, 1.3455),
     (610, 1.724, 1.4686, 1.3237), (670, 1.534, 1.4196, 1.2853), (710, 1.404, 1.3175, 1.1954), (780, 1.193, 1.1636, 1.0687)])
 SUN_ZENITH, TILT, CIRCUMSOLAR = 48.19, 37.0, 2.9  # deg; air mass 1.5
-# Its atmosphere: aerosol optical depth 0.084 at 500 nm, 0.344 atm cm of ozone. The exponent of rural aerosol, the albedos of
-# aerosol and of light soil are not numbers of the standard: they are rounded values, chosen before the comparison.
+# The standard's atmosphere: aerosol optical depth 0.084 at 500 nm, 0.344 atm cm of ozone. The standard does not contain
+# the exponent of rural aerosol and the albedos of aerosol and light soil. They are rounded, and were chosen before.
 EXPONENT = 1.2
 G173_AIR = {"atmosphere.aerosol_optical_depth": 0.084 * (550.0 / 500.0) ** -EXPONENT, "atmosphere.angstrom_exponent": EXPONENT,
             "atmosphere.single_scattering_albedo": (0.93, 0.93, 0.93), "atmosphere.ozone_du": 344,
