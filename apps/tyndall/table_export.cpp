@@ -205,8 +205,8 @@ class Exporter {
     ordered_json& parameters = out["parameters"];
     for (const auto& [name, value] : config::metadata(settings_)) {
       const config::Row* const row = name.starts_with("tyndall.") ? config::find_row(name.substr(8)) : nullptr;
-      const bool matters =
-          row != nullptr && row->owner == config::Owner::effect && row->info.affects == Affects::Tables;
+      const bool matters = row != nullptr && row->owner == config::Owner::effect &&
+                           (row->info.affects == Affects::Tables || row->info.affects == Affects::Everything);
       if (matters) parameters[row->key()] = value;
       if (name == "tyndall.version") out["version"] = value;
     }
@@ -265,7 +265,11 @@ class Exporter {
 
 }  // namespace
 
-Result<void> check_export(const std::string& directory) {
+Result<void> check_export(const std::string& directory, const Params& params) {
+  if (params.scattering.color == ColorMode::spectral) {
+    return files::input_error("scattering.color = spectral has tables at four wavelengths", "-o",
+                              "expected scattering.color = rgb, whose three channels the exported files have");
+  }
   if (Result<void> r = image::check_exr_supported(directory); !r) return r;
   std::error_code failed;
   const fs::file_status status = fs::status(directory, failed);

@@ -12,7 +12,7 @@
 namespace tyndall::cli {
 
 // Checks before long work that the directory exists or can be created, and is writable.
-[[nodiscard]] Result<void> check_export(const std::string& directory);
+[[nodiscard]] Result<void> check_export(const std::string& directory, const Params& params);
 
 // Writes the finished tables of an effect whose parameters are settings.effect. Returns the number of files. They
 // replace those of an earlier export when all of them are complete; after an error, the old files are still there.

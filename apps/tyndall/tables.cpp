@@ -59,7 +59,7 @@ int run_tables(Args args) {
   if (Result<void> r = resolve(options); !r) return fail(r.error());
   if (export_wanted) {
     if (options.output.empty()) return fail(files::input_error("empty directory name", "-o", "expected -o DIR"));
-    if (Result<void> r = check_export(options.output); !r) return fail(r.error());
+    if (Result<void> r = check_export(options.output, options.settings.effect); !r) return fail(r.error());
   }
 
   const Params& params = options.settings.effect;

@@ -202,6 +202,9 @@ TEST_F(CliTables, TheExportHoldsWhatTheRendererReads) {
     EXPECT_EQ(index["format"], "tyndall tables 1");
     EXPECT_EQ(index["parameters"]["tables.parameterization"], parameterization);
     EXPECT_FALSE(index["parameters"].contains("tables.cache"));
+    // These affect the tables among others.
+    EXPECT_EQ(index["parameters"]["atmosphere.mie_phase"], "cornette-shanks");
+    EXPECT_EQ(index["parameters"]["scattering.color"], "rgb");
     EXPECT_EQ(index["channels_nm"], nlohmann::json({680.0, 550.0, 440.0}));
     Export exported;
     exported.name = parameterization;
@@ -284,6 +287,9 @@ TEST_F(CliTables, ErrorsAreReported) {
   expect_one_line(run_tyndall({"tables", "--set", "tables.cache="}), 2,
                   "tables.cache: empty value; expected auto, off or a directory");
   expect_one_line(run_tyndall({"tables", "--set", "tables.cache_limit_mib=0"}), 2, "tables.cache_limit_mib");
+  // The files have three channels.
+  expect_one_line(run("tables", {"-o", scratch_.at("out"), "--set", "scattering.color=spectral"}), 2,
+                  "-o: scattering.color = spectral has tables at four wavelengths; expected scattering.color = rgb");
   EXPECT_EQ(names(scratch_.at("")), std::vector<std::string>{"file"});
 }
 
