@@ -170,8 +170,10 @@ std::vector<ProbeAnswer> run_on_cpu(const ProbeSettings& settings, std::span<con
 }
 
 void note_missing_ozone(std::vector<std::string>& notes, const Params& params, const char* model) {
-  if (params.atmosphere.ozone_absorption == Vec3(0.0F)) return;
-  notes.push_back(std::string(model) + " has no ozone; atmosphere.ozone_absorption is ignored");
+  const bool by_column = params.atmosphere.ozone_du > 0.0F;
+  if (!by_column && params.atmosphere.ozone_absorption == Vec3(0.0F)) return;
+  notes.push_back(std::string(model) + " has no ozone; atmosphere." + (by_column ? "ozone_du" : "ozone_absorption") +
+                  " is ignored");
 }
 
 // O'Neil's model in double precision, with the functions that the shaders use.

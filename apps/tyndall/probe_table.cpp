@@ -142,7 +142,7 @@ std::string answers_as_csv(const ProbeTable& table, std::span<const ProbeAnswer>
     if (!is_answer_column(name)) columns.push_back(i);
   }
   std::string out;
-  for (const std::size_t i : columns) out.append(out.empty() ? "" : ",").append(table.input.header[i]);
+  for (std::size_t k = 0; k < columns.size(); ++k) out.append(k > 0 ? "," : "").append(table.input.header[columns[k]]);
   const auto append_names = [&](std::span<const std::string_view> names) {
     for (const std::string_view name : names) out.append(",").append(name);
   };
