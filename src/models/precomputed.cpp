@@ -1,5 +1,6 @@
 #include "models/precomputed.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -16,6 +17,8 @@ namespace tyndall::models {
 namespace {
 
 constexpr std::uint32_t kIntegrationSteps = 16;
+// Buffers and dispatches are far below the limits of every device.
+constexpr std::size_t kBatchRays = 65536;
 
 // Mirrors setup_block of shaders/probe/precomputed.comp.
 struct Setup {
@@ -113,9 +116,6 @@ Result<std::vector<Answer>> PrecomputedModel::answer(std::span<const RayQuery> q
   setup.integrate_single = params.scattering.single == SingleScattering::integration ? 1 : 0;
   setup.steps = kIntegrationSteps;
   setup.visible_ground = visible_ground ? 1 : 0;
-  std::vector<shared::ProbeRay> rays;
-  rays.reserve(queries.size());
-  for (const RayQuery& query : queries) rays.push_back(probe_ray(medium, query));
 
   constexpr VkBufferUsageFlags kUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   const auto filled = [&](const char* name, const void* data, std::size_t size) -> Result<gpu::Buffer> {
@@ -128,11 +128,14 @@ Result<std::vector<Answer>> PrecomputedModel::answer(std::span<const RayQuery> q
   if (const PhaseRows rows = phase_rows(params, params.scattering.color); !rows.empty()) {
     std::memcpy(medium_block.data() + sizeof medium, rows.data(), kPhaseBytes);
   }
+  const std::size_t batch = std::min(queries.size(), kBatchRays);
   TYNDALL_ASSIGN(const gpu::Buffer medium_buffer, filled("probe_medium", medium_block.data(), medium_block.size()));
   TYNDALL_ASSIGN(const gpu::Buffer setup_buffer, filled("probe_setup", &setup, sizeof setup));
-  TYNDALL_ASSIGN(const gpu::Buffer ray_buffer, filled("probe_rays", rays.data(), rays.size() * sizeof rays[0]));
+  TYNDALL_ASSIGN(
+      const gpu::Buffer ray_buffer,
+      gpu::create_buffer(device, "probe_rays", batch * sizeof(shared::ProbeRay), kUsage, gpu::MemoryKind::upload));
   TYNDALL_ASSIGN(const gpu::Buffer result_buffer,
-                 gpu::create_buffer(device, "probe_results", rays.size() * sizeof(shared::ProbeResult), kUsage,
+                 gpu::create_buffer(device, "probe_results", batch * sizeof(shared::ProbeResult), kUsage,
                                     gpu::MemoryKind::readback));
   const ScatteringTables tables = s.effect->scattering_tables();
   const VkSampler linear = s.linear.get();
@@ -147,18 +150,24 @@ Result<std::vector<Answer>> PrecomputedModel::answer(std::span<const RayQuery> q
       gpu::named_image("high_orders", tables.high_orders.view, kLayout, linear),
       gpu::named_image("sky_irradiance", s.effect->light_tables().sky_irradiance, kLayout, linear),
   };
-  TYNDALL_TRY(s.host->run([&](VkCommandBuffer cmd) -> Result<void> {
-    if (Result<void> bound = gpu::bind(s.host->sets(), cmd, s.pipeline, resources); !bound) return bound;
-    gpu::dispatch(device, cmd, s.pipeline, static_cast<std::uint32_t>(rays.size()));
-    gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
-                 VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
-    return {};
-  }));
-  const auto* results = static_cast<const shared::ProbeResult*>(result_buffer.mapped);
   const auto wide = [](const Vec3& v) { return std::array<double, 3>{v.x, v.y, v.z}; };
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const shared::ProbeResult& r = results[i];
-    out[i] = {wide(r.radiance), wide(r.transmittance), r.radiance_fourth, r.transmittance_fourth};
+  for (std::size_t first = 0; first < queries.size(); first += batch) {
+    const std::size_t count = std::min(batch, queries.size() - first);
+    auto* const rays = static_cast<shared::ProbeRay*>(ray_buffer.mapped);
+    for (std::size_t i = 0; i < count; ++i) rays[i] = probe_ray(medium, queries[first + i]);
+    // The last batch also evaluates rays of the one before, whose results are not read.
+    TYNDALL_TRY(s.host->run([&](VkCommandBuffer cmd) -> Result<void> {
+      if (Result<void> bound = gpu::bind(s.host->sets(), cmd, s.pipeline, resources); !bound) return bound;
+      gpu::dispatch(device, cmd, s.pipeline, static_cast<std::uint32_t>(batch));
+      gpu::barrier(device, cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
+                   VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+      return {};
+    }));
+    const auto* results = static_cast<const shared::ProbeResult*>(result_buffer.mapped);
+    for (std::size_t i = 0; i < count; ++i) {
+      const shared::ProbeResult& r = results[i];
+      out[first + i] = {wide(r.radiance), wide(r.transmittance), r.radiance_fourth, r.transmittance_fourth};
+    }
   }
   return out;
 }

@@ -69,6 +69,30 @@ TEST_F(CliProbe, EveryFormOfTableIsReadAndItsColumnsAreCopied) {
   EXPECT_EQ(*probe(again).text, again);
 }
 
+// Tables of pandas have a first column without a name.
+TEST_F(CliProbe, AFirstColumnWithoutANameIsCopied) {
+  const files::CsvTable table = probe(",altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n7,0,60,30,30\n");
+  ASSERT_EQ(table.header.size(), 11U);
+  EXPECT_EQ(table.header[0], "");
+  EXPECT_EQ(table.header[1], "altitude_m");
+  EXPECT_EQ(table.field(0, 0), "7");
+  EXPECT_GT(number(table, 0, "L_b"), 0.0);
+}
+
+// Every batch of rays has the results of the same rays in another batch.
+TEST_F(CliProbe, ManyRaysThroughTheTables) {
+  constexpr int kDifferent = 90, kRows = 66000;
+  std::string text = kHeader;
+  for (int i = 0; i < kRows; ++i) text += "0," + std::to_string(i % kDifferent) + ",30,40\n";
+  const files::CsvTable table = probe(text, {"--model", "precomputed", "--set", "tables.size=8,32,16,8"});
+  ASSERT_EQ(table.rows(), std::size_t{kRows});
+  const std::size_t column = table.find("L_g").front();
+  for (std::size_t i = kDifferent; i < table.rows(); ++i) {
+    ASSERT_EQ(table.field(i, column), table.field(i - kDifferent, column)) << i;
+  }
+  EXPECT_NE(table.field(0, column), table.field(1, column));
+}
+
 TEST_F(CliProbe, SingleIsTheIntegralAndTheSkyItsIrradiance) {
   const shared::Medium medium = medium_from_params({});
   const files::CsvTable table =
