@@ -374,8 +374,12 @@ TEST_F(CliScenes, PresetsAreScenes) {
 TEST_F(CliScenes, BenchPrintsTheDocumentedValues) {
   const ProcessResult process =
       run_tyndall({"bench", "--json", "--size", "16x9", "--frames", "2", "--set", "planet.radius_m=20000", "--set",
-                   "tables.size=4,4,4,4", "--set", "tables.orders=1", "--set", "scattering.color=spectral"});
+                   "tables.size=4,4,4,4", "--set", "tables.orders=1", "--set", "scattering.color=spectral", "--set",
+                   "camera.samples=4"});
   ASSERT_EQ(process.status, 0) << process.err;
+  // The passes of the first sample are measured, among them the shadow maps.
+  EXPECT_NE(process.err.find("bench measures pictures with one sample per pixel"), std::string::npos) << process.err;
+  EXPECT_NE(process.out.find("\"shadow_maps\""), std::string::npos) << process.out;
   const nlohmann::json report = nlohmann::json::parse(process.out);
   EXPECT_GT(report["illuminance_lux"]["sky"].get<double>(), 100.0);
   EXPECT_GT(report["illuminance_lux"]["sun"].get<double>(), report["illuminance_lux"]["sun_horizontal"].get<double>());
