@@ -181,10 +181,12 @@ void place_in_scene(scene::SceneParams& scene, const SkyOptions& sky, const SunA
   scene.sun.elevation_deg = static_cast<float>(sun.elevation_deg);
   scene.sun.azimuth_deg = static_cast<float>(sun.azimuth_deg);
   // camera.altitude_m does not accept values below sea level.
-  if (sky.altitude_m >= 0.0)
+  if (sky.altitude_m >= 0.0) {
     scene.camera.altitude_m = static_cast<float>(sky.altitude_m);
-  else
+  } else {
+    scene.camera.altitude_m = -1.0F;  // that of position_m
     scene.camera.position_m = {0.0F, static_cast<float>(sky.altitude_m), 0.0F};
+  }
 }
 
 // Returns the name of the file that --sun split writes for the sun.
