@@ -292,6 +292,12 @@ Result<void> load_root(Settings& settings, const toml::table& root, std::string_
   return path_at.empty() ? Result<void>() : check_path(settings.path, path_at);
 }
 
+// Returns whether a parameter for a file has a name with a meaning of its own, which is not that of a file.
+bool is_keyword(const Row& row, std::string_view value) {
+  if (row.key() == "terrain.source") return value == "procedural" || value == "none";
+  return row.key() == "meshes.source" && (value == "none" || value == "hall");
+}
+
 // Resolves the file names in a scene file that exist relative to its folder, so that they hold for the working
 // directory. Names in the files that it includes have been resolved already.
 void find_files_beside(Settings& settings, const toml::table& root, const std::filesystem::path& scene_path) {
@@ -301,7 +307,7 @@ void find_files_beside(Settings& settings, const toml::table& root, const std::f
     const toml::table* const group = root[row.info.group].as_table();
     if (group == nullptr || !group->contains(row.info.name)) continue;
     const std::string value = value_text(row, settings);
-    if (value.empty() || value == value_text(row, Settings())) continue;
+    if (value.empty() || is_keyword(row, value)) continue;
     const std::filesystem::path beside = directory / value;  // `value` itself when it is absolute
     std::error_code ignored;
     if (!std::filesystem::exists(beside, ignored)) continue;

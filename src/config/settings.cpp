@@ -328,10 +328,13 @@ Result<void> check(const Settings& settings) {
       !placed) {
     return std::move(placed).error();
   }
-  if (Result<scene::MoonParams> moon =
-          scene::placed_moon(settings.scene.moon, sun, file ? std::optional(scene::Place()) : std::nullopt);
-      !moon) {
-    return std::move(moon).error();
+  // The dates of a path place the moon without sun.time.
+  if (!settings.path.has_dates()) {
+    if (Result<scene::MoonParams> moon =
+            scene::placed_moon(settings.scene.moon, sun, file ? std::optional(scene::Place()) : std::nullopt);
+        !moon) {
+      return std::move(moon).error();
+    }
   }
   if (!sun.place.empty()) {
     if (Result<scene::Place> place = scene::parse_place(sun.place, "sun.place"); !place)

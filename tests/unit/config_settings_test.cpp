@@ -2,8 +2,11 @@
 #include "config/settings.hpp"
 
 #include <gtest/gtest.h>
+#include <stdlib.h>
 
 #include <bit>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <random>
 #include <set>
@@ -270,6 +273,37 @@ TEST(ConfigSettings, CrossChecks) {
   EXPECT_TRUE(check(settings).ok());
   settings.scene.sun.place = "146.6,8.0";
   EXPECT_FALSE(check(settings).ok());
+}
+
+// The dates of a path place the moon, so that sun.time is not needed.
+TEST(ConfigSettings, PathsWithDatesPlaceTheMoon) {
+  Settings settings;
+  settings.scene.moon.by_date = true;
+  EXPECT_FALSE(check(settings).ok());
+  settings.path.frames.resize(2);
+  settings.path.frames[1].time_s = 1.0;
+  for (scene::PathFrame& frame : settings.path.frames) frame.julian_day = 2460000.0;
+  settings.path.place_text = "46.6,8.0";
+  const Result<void> checked = check(settings);
+  EXPECT_TRUE(checked.ok()) << checked.error().message;
+}
+
+// Names with a meaning of their own are not those of files that happen to lie beside a scene.
+TEST(ConfigSettings, KeywordsAreNotFilesBesideAScene) {
+  namespace fs = std::filesystem;
+  std::string pattern = (fs::temp_directory_path() / "tyndall-scene-XXXXXX").string();
+  const fs::path folder = ::mkdtemp(pattern.data());
+  for (const char* name : {"hall", "none", "procedural"}) fs::create_directory(folder / name);
+  std::ofstream(folder / "scene.toml") << "terrain.source = \"none\"\nmeshes.source = \"hall\"\n";
+  Settings settings;
+  ASSERT_TRUE(load(settings, (folder / "scene.toml").string()).ok());
+  EXPECT_EQ(settings.scene.terrain.source, "none");
+  EXPECT_EQ(settings.scene.meshes.source, "hall");
+  // The default, against another value in an included file.
+  std::ofstream(folder / "other.toml") << "include = \"scene.toml\"\nterrain.source = \"procedural\"\n";
+  ASSERT_TRUE(load(settings, (folder / "other.toml").string()).ok());
+  EXPECT_EQ(settings.scene.terrain.source, "procedural");
+  fs::remove_all(folder);
 }
 
 TEST(ConfigSettings, MetadataHoldsEverything) {
