@@ -143,15 +143,26 @@ Result<void> Effect::State::create_tables() {
   return {};
 }
 
+namespace {
+
+Error other_tables(const char* where) {
+  return Error{ErrorCode::invalid_argument,
+               std::string(where) +
+                   ": an effect that shares the tables has built them for other planet.*, atmosphere.*, tables.* or "
+                   "scattering.color; expected set_params() with the same of each effect"};
+}
+
+}  // namespace
+
 Result<void> Effect::State::check_tables() {
   if (served_revision == tables.revision()) return {};
-  if (!tables.serves(params)) {
-    return Error{ErrorCode::invalid_argument,
-                 "Effect::record: an effect that shares the tables has built them for other planet.*, atmosphere.*, "
-                 "tables.* or scattering.color; expected set_params() with the same of each effect"};
-  }
+  if (!tables.serves(params)) return other_tables("Effect::record");
   served_revision = tables.revision();
   return {};
+}
+
+Result<void> Effect::State::check_tables_wanted(const char* where) const {
+  return stale_tables(tables.wanted(), params) == 0 ? Result<void>() : other_tables(where);
 }
 
 Result<void> Effect::State::create_samplers() {

@@ -138,13 +138,16 @@ Result<void> Effect::record(VkCommandBuffer cmd, const FrameInputs& inputs, Fram
 }
 
 Result<void> Effect::record_save_tables(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset) {
-  return record_with(state_, "Effect::record_save_tables", cmd,
-                     [&](State& s) { return s.tables.record_save(cmd, buffer, offset); });
+  return record_with(state_, "Effect::record_save_tables", cmd, [&](State& s) -> Result<void> {
+    TYNDALL_TRY(s.check_tables_wanted("Effect::record_save_tables"));
+    return s.tables.record_save(cmd, buffer, offset);
+  });
 }
 
 Result<void> Effect::record_load_tables(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset) {
   return record_with(state_, "Effect::record_load_tables", cmd, [&](State& s) -> Result<void> {
     TYNDALL_TRY(s.tables.users().check_between("Effect::record_load_tables"));
+    TYNDALL_TRY(s.check_tables_wanted("Effect::record_load_tables"));
     return s.tables.record_load(cmd, buffer, offset);
   });
 }

@@ -26,7 +26,7 @@
 
 namespace tyndall {
 
-constexpr std::uint32_t kMaxTimedPasses = 40;
+constexpr std::uint32_t kMaxTimedPasses = 48;
 
 // Loads the functions of a device and checks that its limits suffice for every shader of the effect.
 Result<void> open_device(gpu::Device& device, const DeviceInfo& info);
@@ -114,6 +114,9 @@ struct TYNDALL_HIDDEN Effect::State {
   [[nodiscard]] Params drawn_with(const Params& p) const;
   // Returns tyndall::table_params().
   [[nodiscard]] Params table_params() const;
+  // Returns an error if other effects have set other parameters for the tables, so that table_key() and table_bytes()
+  // are not those of the tables.
+  [[nodiscard]] Result<void> check_tables_wanted(const char* where) const;
   // Writes the rows of a tabulated phase function into `block`, behind the medium. Does nothing for other functions.
   void write_phase(std::byte* block, ColorMode color) const;
 

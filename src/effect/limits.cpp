@@ -72,6 +72,8 @@ Result<void> check_same_desc(const EffectDesc& created, const EffectDesc& wanted
   if (wanted.output_format != created.output_format) return fixed("output_format");
   if (wanted.sky_depth != created.sky_depth) return fixed("sky_depth");
   if (wanted.shadow_depth_reversed != created.shadow_depth_reversed) return fixed("shadow_depth_reversed");
+  if (wanted.depth_format != created.depth_format) return fixed("depth_format");
+  if (wanted.check_inputs != created.check_inputs) return fixed("check_inputs");
   if (wanted.timings != created.timings) return fixed("timings");
   if (wanted.counters != created.counters) return fixed("counters");
   if (wanted.pipeline_threads != created.pipeline_threads) return fixed("pipeline_threads");

@@ -136,6 +136,7 @@ std::uint32_t stale_tables(const Params& built, const Params& wanted) {
   b.mie_g = a.mie_g;
   b.mie_phase = a.mie_phase;
   b.ground_albedo = a.ground_albedo;
+  b.fourth_ground_albedo = a.fourth_ground_albedo;
   const bool air = !same(&a, &b, sizeof a);
   const bool shape =
       !(built.tables.size == wanted.tables.size) || built.tables.parameterization != wanted.tables.parameterization;

@@ -141,6 +141,23 @@ TEST(EffectSharing, TablesForOtherParametersAreAnErrorOfTheFrame) {
   EXPECT_OK(draw(second, 2));
 }
 
+// table_key() and table_bytes() follow from the parameters of an effect, which are not always those of the tables.
+TEST(EffectSharing, TablesAreSavedAndLoadedWithTheirOwnParametersOnly) {
+  Effect first = make(Built::completely);
+  Effect second = make_sharing(first);
+  const auto buffer = number<VkBuffer>(99);
+  ASSERT_OK(second.record_save_tables(kCommands, buffer));
+  ASSERT_OK(first.set_params(other_air()));
+  const char* const text = "expected set_params() with the same of each effect";
+  expect_error(second.record_load_tables(kCommands, buffer), text);
+  EXPECT_FALSE(first.precompute_progress().complete());
+  ASSERT_OK(first.record_precompute(kCommands));
+  expect_error(second.record_save_tables(kCommands, buffer), text);
+  EXPECT_OK(first.record_save_tables(kCommands, buffer));
+  ASSERT_OK(second.set_params(other_air()));
+  EXPECT_OK(second.record_save_tables(kCommands, buffer));
+}
+
 // Old tables are freed after frames of both effects. (The commands of the fake device have completed at once.)
 TEST(EffectSharing, OldTablesLastUntilNoFrameOfAnyEffectReadsThem) {
   Effect first = make(Built::completely);
