@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <mutex>
 #include <numbers>
 #include <string>
+#include <system_error>
 #include <thread>
 
 #include "air/coefficients.hpp"
@@ -173,12 +175,7 @@ class Work {
       batch.means.resize(batch.count * orders_);
       batch.done.resize(batch.count);
       next_ = 0;
-      std::vector<std::thread> helpers;
-      for (std::uint64_t i = 1; i < std::min(threads, batch.count); ++i) {
-        helpers.emplace_back([&] { work(batch, total); });
-      }
-      work(batch, total);
-      for (std::thread& helper : helpers) helper.join();
+      work_on_threads(std::min(threads, batch.count), batch, total);
       for (std::uint64_t i = 0; i < batch.count; ++i) {
         if (batch.done[i] == 0) continue;
         sums[(batch.first + i) / plan_.blocks].add(
@@ -188,6 +185,33 @@ class Work {
   }
 
  private:
+  // Throws what a thread has thrown, after all of them have ended. Without the system's permission for a thread, there
+  // are fewer.
+  void work_on_threads(std::uint64_t threads, Batch<N>& batch, std::uint64_t total) {
+    std::mutex mutex;
+    std::exception_ptr thrown;
+    const auto guarded = [&]() noexcept {
+      try {
+        work(batch, total);
+      } catch (...) {
+        cancelled_ = true;
+        const std::scoped_lock lock(mutex);
+        thrown = std::current_exception();
+      }
+    };
+    {
+      std::vector<std::jthread> helpers;
+      helpers.reserve(threads);
+      try {
+        for (std::uint64_t i = 1; i < threads; ++i) helpers.emplace_back(guarded);
+      } catch (const std::system_error&) {
+        // The threads that there are do all the work.
+      }
+      guarded();
+    }
+    if (thrown) std::rethrow_exception(thrown);
+  }
+
   void work(Batch<N>& batch, std::uint64_t total) {
     while (!cancelled_) {
       const std::uint64_t i = next_.fetch_add(1);
