@@ -83,11 +83,14 @@ void Flight::toggle_path(const config::Settings& settings) {
   }
   path_playing_ = !path_playing_;
   if (!settings.path.loop && path_s_ >= settings.path.duration_s()) path_s_ = 0.0;
+  // A pose replaces moon.by_date by the angles of the moon, so that the settings do not have it any more.
+  moon_by_date_ = moon_by_date_ || settings.scene.moon.by_date;
   notices_->log(path_playing_ ? "path begins" : "path stops");
 }
 
 void Flight::reset_path() {
   path_s_ = 0.0;
+  moon_by_date_ = false;
   path_playing_ = false;
 }
 
@@ -107,7 +110,9 @@ void Flight::follow_path(double seconds, const SceneFacts& facts, config::Settin
     settings.path.place = *facts.elevations->place();
   }
   if (!settings.path.loop) path_s_ = std::min(path_s_, end_s);
-  settings.scene = scene::pose_at(settings.path, path_s_, settings.scene, settings.effect.planet.radius_m);
+  scene::SceneParams base = settings.scene;
+  base.moon.by_date = base.moon.by_date || (moon_by_date_ && settings.path.has_dates());
+  settings.scene = scene::pose_at(settings.path, path_s_, base, settings.effect.planet.radius_m);
   redraw_->request(2);
 }
 

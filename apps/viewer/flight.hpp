@@ -58,6 +58,7 @@ class Flight {
   std::string pointer_text_;
   std::optional<scene::Place> terrain_place_;  // place of the elevation file
   bool path_playing_ = false;
+  bool moon_by_date_ = false;  // moon.by_date when the path began
   double path_s_ = 0.0;
 };
 

@@ -17,6 +17,11 @@ void ViewSettings::synchronise(bool compare) {
   if (!compare) return;
   right.scene.camera = left.scene.camera;
   right.scene.sun = left.scene.sun;
+  // The moon's place may follow from the date of the sun.
+  right.scene.moon.by_date = left.scene.moon.by_date;
+  right.scene.moon.elevation_deg = left.scene.moon.elevation_deg;
+  right.scene.moon.azimuth_deg = left.scene.moon.azimuth_deg;
+  right.scene.moon.angular_radius_deg = left.scene.moon.angular_radius_deg;
   make_consistent(right);
 }
 

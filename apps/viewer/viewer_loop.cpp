@@ -355,7 +355,7 @@ Result<void> Viewer::finish_reload() {
   }
   // The cached tables do not match the changed shaders.
   desc_.make_tables.rebuild = rebuilt.tables_differ;
-  if (rebuilt.tables_differ) desc_.make_tables.cache.place = "off";
+  desc_.make_tables.cache.place = rebuilt.tables_differ ? "off" : cache_place_;
   pair_.request(pair_request());
   pair_.start_replacement(desc_.make_tables);
   return {};

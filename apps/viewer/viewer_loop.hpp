@@ -26,7 +26,10 @@ namespace tyndall::viewer {
 
 class Viewer {
  public:
-  explicit Viewer(const ViewerDesc& desc) : desc_(desc), settings_{desc.settings, desc.settings, desc.state_file} {}
+  explicit Viewer(const ViewerDesc& desc)
+      : desc_(desc),
+        cache_place_(desc.make_tables.cache.place),
+        settings_{desc.settings, desc.settings, desc.state_file} {}
   Viewer(const Viewer&) = delete;
   Viewer& operator=(const Viewer&) = delete;
   ~Viewer() = default;
@@ -61,6 +64,7 @@ class Viewer {
   Result<void> finish_reload();
 
   ViewerDesc desc_;
+  const std::string cache_place_;  // of tables that the program's own shaders build
   Gui gui_;
   Redraw redraw_;
   Notices notices_{gui_, redraw_};

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "viewer/scenes/settings_compare.hpp"
+#include "viewer/view_settings.hpp"
 
 namespace tyndall::viewer {
 namespace {
@@ -19,6 +20,23 @@ TEST(ViewerSettings, RefusedSettingsAreRevertedButLaterChangesStay) {
   wanted.effect.atmosphere.mie_g = 0.6F;
   wanted.effect.scattering.scale = 2.0F;
   EXPECT_TRUE(same_settings(now, wanted));
+}
+
+// Both sides of a comparison have the same date, which may place the moon.
+TEST(ViewerSettings, BothSidesHaveTheSameMoonInTheSky) {
+  ViewSettings settings;
+  settings.left.scene.sun.time = "2026-06-21T22:00:00Z";
+  settings.left.scene.sun.place = "46,7";
+  settings.left.scene.moon.by_date = true;
+  settings.right = settings.left;
+  settings.right.scene.moon.visible = true;
+  settings.left.scene.sun.time.clear();
+  settings.left.scene.moon.by_date = false;
+  settings.left.scene.moon.elevation_deg = 21.0F;
+  settings.synchronise(true);
+  EXPECT_FALSE(settings.right.scene.moon.by_date);
+  EXPECT_EQ(settings.right.scene.moon.elevation_deg, 21.0F);
+  EXPECT_TRUE(settings.right.scene.moon.visible) << "how the moon looks may differ";
 }
 
 }  // namespace

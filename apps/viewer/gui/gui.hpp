@@ -2,6 +2,7 @@
 // of parameters.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,9 @@ class Gui {
   // Draws one frame. `left` and `right` are the sides of the comparison. Without a comparison, `right` is not used.
   void draw(config::Settings& left, config::Settings& right, const GuiFacts& facts, GuiRequests& requests);
   void toast(std::string text, bool bad, double now);
-  [[nodiscard]] bool showing_toasts(double now) const { return !toasts_.empty() && toasts_.back().until > now; }
+  [[nodiscard]] bool showing_toasts(double now) const {
+    return std::any_of(toasts_.begin(), toasts_.end(), [now](const Toast& toast) { return toast.until > now; });
+  }
 
  private:
   void menu(config::Settings& settings, const GuiFacts& facts, GuiRequests& requests);

@@ -206,7 +206,7 @@ Result<void> SceneWork::draw(const SceneRequest& request, SceneResult& out) {
     TYNDALL_TRY(scene_->render(request.seconds, false, step_s()));
     out.frame = drawn_ = true;
     unmeasured_ = desc_.ahead_up_to_ms > 0.0;
-    drawn_settings_ = wanted_;
+    drawn_settings_ = loaded(wanted_);
     out.frame_ms = 1000.0 * seconds_since(start);
   } else if (tone_stale()) {
     tone_wanted_ = false;
