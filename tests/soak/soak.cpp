@@ -410,8 +410,9 @@ int run(const Options& options) {
   std::printf("resident memory without an effect [MiB]:");
   for (const std::size_t mib : memory) std::printf(" %zu", mib);
   std::printf("\n");
-  // Without an effect, memory is that of the device and of the validation layer, which keeps objects of effects for a
-  // while. Compares the second and the last quarter of a long run by their medians.
+  // Without an effect, memory is that of the device and of the validation layer, which holds objects of earlier effects
+  // until their command buffers are recorded again. Compares the second and the last quarter of a long run by their
+  // medians.
   constexpr std::size_t kLongRun = 20;
   if (memory.size() < kLongRun) return 0;
   const std::size_t before = median_of_quarter(memory, 1), after = median_of_quarter(memory, 3);
