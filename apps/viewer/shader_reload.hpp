@@ -50,7 +50,7 @@ class ShaderReload {
   };
   // The result of a source that compiles and fits the program.
   struct Known {
-    std::string checksum;  // of the source with the files that it includes; empty: not compiled yet
+    std::string checksum;  // GlslSources::checksum() of its source; empty: not compiled yet
     Words words;           // the compiled shader, if it differs from the program's
     bool differs = false;
   };

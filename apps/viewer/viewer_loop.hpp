@@ -64,7 +64,7 @@ class Viewer {
   Result<void> finish_reload();
 
   ViewerDesc desc_;
-  const std::string cache_place_;  // of tables that the program's own shaders build
+  const std::string cache_place_;  // place of the table cache while the shaders are those of the program
   Gui gui_;
   Redraw redraw_;
   Notices notices_{gui_, redraw_};

@@ -317,7 +317,8 @@ class TYNDALL_API Effect {
   // sky_irradiance, one after another, without padding.
   [[nodiscard]] VkDeviceSize table_bytes() const;
   // Records a copy of the finished tables to `buffer` (TRANSFER_DST) at `offset` [bytes], a multiple of 8. An error
-  // unless precompute_progress() is complete. The copy is a TRANSFER / TRANSFER_WRITE.
+  // unless precompute_progress() is complete. The copy is a TRANSFER / TRANSFER_WRITE. Saving and loading are also
+  // errors if an effect that shares the tables (EffectDesc::tables_of) has set other parameters for them.
   Result<void> record_save_tables(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset = 0);
   // Records a copy of tables that were saved under the same table_key(), instead of building them;
   // precompute_progress() is then complete. `buffer` (TRANSFER_SRC) must be visible to TRANSFER / TRANSFER_READ and

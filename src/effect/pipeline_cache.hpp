@@ -29,7 +29,7 @@ class PipelineCache {
  private:
   const gpu::Device* device_ = nullptr;
   std::uint32_t threads_ = 1;
-  std::vector<PipelineKey> keys_;  // of pipelines_[i]; a list of their own, so that a search reads little memory
+  std::vector<PipelineKey> keys_;  // keys of pipelines_, in the same order; a search reads only these
   std::vector<gpu::Pipeline> pipelines_;
 };
 

@@ -1,5 +1,6 @@
 #include "files/glsl_sources.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>

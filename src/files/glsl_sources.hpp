@@ -1,5 +1,5 @@
-// The sources of shaders with the files that they include, to recognise which shaders have changed since the program
-// was built.
+// Checksums of the sources of shaders and of the files that they include. They show which shaders have changed since
+// the program was built.
 #pragma once
 
 #include <map>

@@ -185,8 +185,8 @@ class Work {
   }
 
  private:
-  // Throws what a thread has thrown, after all of them have ended. Without the system's permission for a thread, there
-  // are fewer.
+  // Calls work() on several threads; fewer if the system refuses to start one. If a thread throws, the others end, and
+  // this function throws the same.
   void work_on_threads(std::uint64_t threads, Batch<N>& batch, std::uint64_t total) {
     std::mutex mutex;
     std::exception_ptr thrown;
@@ -205,7 +205,7 @@ class Work {
       try {
         for (std::uint64_t i = 1; i < threads; ++i) helpers.emplace_back(guarded);
       } catch (const std::system_error&) {
-        // The threads that there are do all the work.
+        // The threads that have started do all the work.
       }
       guarded();
     }
