@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "gpu/host.hpp"
+#include "shared_pipelines.hpp"
 #include "tyndall/effect.hpp"
 
 #define ASSERT_OK(expression)                                 \
@@ -32,12 +33,14 @@ class SharedHost : public testing::Environment {
  public:
   Result<void> make() {
     if (host_ != nullptr) return {};
-    Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({"", true, &messages_});
+    Result<std::unique_ptr<gpu::Host>> host =
+        gpu::Host::create({"", true, &messages_, &shared_pipelines::get_instance_proc_addr});
     if (!host.ok()) return host.error();
     host_ = std::move(host).value();
     return {};
   }
   void TearDown() override {
+    EXPECT_EQ(shared_pipelines::release(), 0U) << "pipelines that have not been destroyed";
     host_.reset();
     report_messages();
   }

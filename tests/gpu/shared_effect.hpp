@@ -55,7 +55,8 @@ class SharedEffect : public testing::Test {
     return out;
   }
   static void SetUpTestSuite() {
-    Result<std::unique_ptr<gpu::Host>> host = gpu::Host::create({"", true, &messages_});
+    Result<std::unique_ptr<gpu::Host>> host =
+        gpu::Host::create({"", true, &messages_, &shared_pipelines::get_instance_proc_addr});
     ASSERT_TRUE(host.ok()) << "the GPU tests need a Vulkan 1.3 device and the Khronos validation layer: "
                            << host.error().message;
     host_ = std::move(host).value();
@@ -63,6 +64,7 @@ class SharedEffect : public testing::Test {
   }
   static void TearDownTestSuite() {
     effect_.reset();
+    EXPECT_EQ(shared_pipelines::release(), 0U) << "pipelines that have not been destroyed";
     host_.reset();
     report_messages();
   }

@@ -70,24 +70,25 @@ else
 fi
 rm -rf "$root/bundle"
 cp -R "$top" "$root/bundle"
-mkdir -p "$root/cache"
-mkdir -p "$build/tests/cache"
+mkdir -p "$root/cache" "$root/mesa"
+shaders=${MESA_SHADER_CACHE_DIR:-$build/tests/cache}
+mkdir -p "$build/tests/cache" "$shaders"
 
-# inside COMMAND...: runs a program in the root folder, with the tests' cache of tables. User namespaces stand in for the
-# rights of root where there are any.
+# inside COMMAND...: runs a program in the root folder, with the tests' caches of tables and of compiled shaders. User
+# namespaces stand in for the rights of root where there are any.
 rights=
 [ "$(id -u)" = 0 ] || rights=--map-root-user
 inside() {
   # shellcheck disable=SC2016,SC2086  # expanded by the inner shell
-  unshare --mount $rights sh -c 'mount --bind /proc "$1/proc" && mount --bind "$2" "$1/cache" && shift 2 && exec "$@"' \
-    sh "$root" "$build/tests/cache" chroot "$root" "$@"
+  unshare --mount $rights sh -c 'mount --bind /proc "$1/proc" && mount --bind "$2" "$1/cache" \
+    && mount --bind "$3" "$1/mesa" && shift 3 && exec "$@"' sh "$root" "$build/tests/cache" "$shaders" chroot "$root" "$@"
 }
 if ! unshare --mount $rights true 2> /dev/null; then
   echo "bundle: no rights to make a mount namespace; the programs were not run"
   [ $failures = 0 ] && exit 77
   exit 1
 fi
-export XDG_CACHE_HOME=/cache HOME=/ VK_LOADER_DEBUG=
+export XDG_CACHE_HOME=/cache MESA_SHADER_CACHE_DIR=/mesa HOME=/ VK_LOADER_DEBUG=
 unset VK_ICD_FILENAMES VK_DRIVER_FILES LD_LIBRARY_PATH
 
 version=$(sed -n 's/.*TYNDALL_VERSION_STRING "\([^"]*\)".*/\1/p' "$source/include/tyndall/version.h")
