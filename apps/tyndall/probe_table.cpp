@@ -1,12 +1,12 @@
 #include "probe_table.hpp"
 
 #include <algorithm>
-#include <numbers>
 #include <optional>
 
 #include "cli.hpp"
 #include "files/files.hpp"
 #include "files/text.hpp"
+#include "math/angles.hpp"
 
 namespace tyndall::cli {
 namespace {
@@ -16,7 +16,6 @@ using files::input_error;
 
 constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 31U;  // bytes; about ten million rays
 constexpr std::string_view kSky = "sky";
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 struct Column {
   std::string_view name;

@@ -62,13 +62,15 @@ double number_in(const Json& object, const char* name) {
 // The size of the pictures of checks: the reference is made at the same size.
 constexpr const char* kReferenceSize = "320x180";
 constexpr const char* kScenes[] = {"demo", "noon", "twilight", "hall"};
-constexpr const char* kModels[] = {"precomputed", "single", "oneil"};
+constexpr const char* kReportModels[] = {"precomputed", "single", "oneil"};
 
 // The short report compares one scene, which is drawn fastest because it has no terrain, and two models.
 std::span<const char* const> scenes_of(const ReportRun& run) { return std::span(kScenes).last(run.is_short ? 1 : 4); }
 // The scene of the other checks and of most times.
 const char* usual_scene(bool is_short) { return is_short ? "hall" : "demo"; }
-std::span<const char* const> models_of(const ReportRun& run) { return std::span(kModels).first(run.is_short ? 2 : 3); }
+std::span<const char* const> models_of(const ReportRun& run) {
+  return std::span(kReportModels).first(run.is_short ? 2 : 3);
+}
 
 std::string scene_file(const ReportRun& run, const std::string& name) { return run.data + "/scenes/" + name + ".toml"; }
 std::string reference_file(const ReportRun& run, const std::string& name) { return run.data + "/report/" + name; }

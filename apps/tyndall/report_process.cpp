@@ -21,9 +21,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-volatile std::sig_atomic_t interruption = 0;
+volatile std::sig_atomic_t stop_signal = 0;
 
-void on_interruption(int /*signal*/) { interruption = 1; }
+void on_interruption(int /*signal*/) { stop_signal = 1; }
 
 constexpr std::uint64_t kLargestOutput = std::uint64_t{64} << 20;
 
@@ -128,6 +128,6 @@ void catch_interruption() {
   std::signal(SIGTERM, on_interruption);
 }
 
-bool interrupted() { return interruption != 0; }
+bool interrupted() { return stop_signal != 0; }
 
 }  // namespace tyndall::cli

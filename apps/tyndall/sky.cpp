@@ -3,7 +3,6 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "arguments.hpp"
 #include "batch.hpp"
@@ -15,6 +14,7 @@
 #include "input_files.hpp"
 #include "interruption.hpp"
 #include "make_tables.hpp"
+#include "math/angles.hpp"
 #include "picture_units.hpp"
 #include "scene/description/solar_position.hpp"
 #include "sky_light.hpp"
@@ -29,8 +29,6 @@ namespace {
 
 using files::concat;
 using files::input_error;
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 struct SkyOptions {
   std::optional<double> sun_elevation_deg, sun_azimuth_deg;

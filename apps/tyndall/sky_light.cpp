@@ -6,13 +6,12 @@
 #include <numbers>
 
 #include "effect/spectral_medium.hpp"
+#include "math/angles.hpp"
 #include "models/spectral.hpp"
 #include "scene/sky/sun_disc.hpp"
 
 namespace tyndall::cli {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 struct Node {
   double at, weight;

@@ -19,19 +19,19 @@ using files::input_error;
 constexpr std::uint64_t kLargestList = std::uint64_t{1} << 28U;  // bytes
 constexpr std::size_t kMaxSkies = 1000000;                       // as many as frames of `render`
 
-enum ColumnIndex : std::size_t { kLatitude, kLongitude, kTime, kElevation, kAzimuth, kName, kColumnCount };
-constexpr std::array<std::string_view, kColumnCount> kColumns = {"latitude_deg",      "longitude_deg",   "time",
-                                                                 "sun_elevation_deg", "sun_azimuth_deg", "name"};
+enum SkyColumn : std::size_t { kLatitude, kLongitude, kTime, kSunElevation, kSunAzimuth, kName, kSkyColumnCount };
+constexpr std::array<std::string_view, kSkyColumnCount> kSkyColumns = {"latitude_deg",      "longitude_deg",   "time",
+                                                                       "sun_elevation_deg", "sun_azimuth_deg", "name"};
 constexpr std::string_view kNeeded =
     "expected latitude_deg, longitude_deg, time or sun_elevation_deg, sun_azimuth_deg, and optionally name";
 constexpr std::size_t kMissing = SIZE_MAX;
 
 struct List {
   files::CsvTable table;
-  std::array<std::size_t, kColumnCount> at = {};  // indices of the columns; kMissing for those that are not there
-  std::string shown;                              // name of the file for messages
+  std::array<std::size_t, kSkyColumnCount> at = {};  // indices of the columns; kMissing for those that are not there
+  std::string shown;                                 // name of the file for messages
 
-  [[nodiscard]] std::string cell(std::size_t row, ColumnIndex column) const {
+  [[nodiscard]] std::string cell(std::size_t row, SkyColumn column) const {
     return files::csv_value(table.field(row, at[column]));
   }
   [[nodiscard]] std::string where(std::size_t row, std::string_view column) const {
@@ -44,37 +44,37 @@ Result<void> find_columns(List& list) {
   list.at.fill(kMissing);
   for (std::size_t i = 0; i < list.table.header.size(); ++i) {
     const std::string name = files::csv_value(list.table.header[i]);
-    const auto* const known = std::find(kColumns.begin(), kColumns.end(), name);
-    if (known == kColumns.end())
+    const auto* const known = std::find(kSkyColumns.begin(), kSkyColumns.end(), name);
+    if (known == kSkyColumns.end())
       return input_error(concat({"unknown column '", files::one_line(name), "'"}), list.shown, kNeeded);
-    std::size_t& place = list.at[static_cast<std::size_t>(known - kColumns.begin())];
+    std::size_t& place = list.at[static_cast<std::size_t>(known - kSkyColumns.begin())];
     if (place != kMissing)
       return input_error(concat({"several columns '", name, "'"}), list.shown, concat({kNeeded, ", once each"}));
     place = i;
   }
-  const auto has = [&](ColumnIndex column) { return list.at[column] != kMissing; };
+  const auto has = [&](SkyColumn column) { return list.at[column] != kMissing; };
   const bool any_place = has(kLatitude) || has(kLongitude) || has(kTime);
-  const bool any_angle = has(kElevation) || has(kAzimuth);
+  const bool any_angle = has(kSunElevation) || has(kSunAzimuth);
   if (any_place && any_angle)
     return input_error("the sun is given both by angles and by place and time", list.shown, kNeeded);
-  for (std::size_t i = any_angle ? kElevation : kLatitude; i < (any_angle ? kName : kElevation); ++i) {
-    if (list.at[i] == kMissing) return input_error(concat({"no column '", kColumns[i], "'"}), list.shown, kNeeded);
+  for (std::size_t i = any_angle ? kSunElevation : kLatitude; i < (any_angle ? kName : kSunElevation); ++i) {
+    if (list.at[i] == kMissing) return input_error(concat({"no column '", kSkyColumns[i], "'"}), list.shown, kNeeded);
   }
   return {};
 }
 
 Result<SunAngles> find_sun(const List& list, std::size_t row, SkyEntry& entry, double altitude_m) {
-  if (list.at[kElevation] != kMissing) {
+  if (list.at[kSunElevation] != kMissing) {
     SunAngles sun;
-    const auto read = [&](ColumnIndex column, double limit, double& value) -> Result<void> {
+    const auto read = [&](SkyColumn column, double limit, double& value) -> Result<void> {
       const Result<double> number =
-          parse_number(list.cell(row, column), list.where(row, kColumns[column]), -limit, limit);
+          parse_number(list.cell(row, column), list.where(row, kSkyColumns[column]), -limit, limit);
       if (!number) return number.error();
       value = number.value();
       return {};
     };
-    if (Result<void> r = read(kElevation, 90.0, sun.elevation_deg); !r) return std::move(r).error();
-    if (Result<void> r = read(kAzimuth, 3600.0, sun.azimuth_deg); !r) return std::move(r).error();
+    if (Result<void> r = read(kSunElevation, 90.0, sun.elevation_deg); !r) return std::move(r).error();
+    if (Result<void> r = read(kSunAzimuth, 3600.0, sun.azimuth_deg); !r) return std::move(r).error();
     return sun;
   }
   entry.place = concat({list.cell(row, kLatitude), ",", list.cell(row, kLongitude)});

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
+
+#include "math/angles.hpp"
 
 namespace tyndall::cli {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kSamplesPerRadius = 24.0;  // samples per radius of the disc; error 0.05 % for a pixel inside the disc
 
 // The part of the disc within one pixel.

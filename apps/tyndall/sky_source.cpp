@@ -87,7 +87,8 @@ struct SkyModel {
   MakeSource make;
   [[nodiscard]] std::string_view name() const { return scene::model_info(id).name; }
 };
-constexpr SkyModel kModels[] = {{scene::ModelId::precomputed, make_precomputed}, {scene::ModelId::single, make_single}};
+constexpr SkyModel kSkyModels[] = {{scene::ModelId::precomputed, make_precomputed},
+                                   {scene::ModelId::single, make_single}};
 
 // Returns the radiance of an answer in the channels of the image, per irradiance of the sun.
 std::array<double, 3> channels_of(const models::Answer& answer, ColorMode color) {
@@ -98,14 +99,14 @@ std::array<double, 3> channels_of(const models::Answer& answer, ColorMode color)
 
 std::vector<std::string> sky_models() {
   std::vector<std::string> names;
-  for (const SkyModel& model : kModels) names.emplace_back(model.name());
+  for (const SkyModel& model : kSkyModels) names.emplace_back(model.name());
   return names;
 }
 
 Result<std::unique_ptr<SkySource>> make_sky_source(const std::string& model, gpu::Host& host,
                                                    const config::Settings& settings) {
   const SkyModel* const found =
-      std::find_if(std::begin(kModels), std::end(kModels), [&](const SkyModel& m) { return m.name() == model; });
+      std::find_if(std::begin(kSkyModels), std::end(kSkyModels), [&](const SkyModel& m) { return m.name() == model; });
   return found->make(host, settings);
 }
 

@@ -9,10 +9,10 @@
 namespace tyndall::air {
 namespace {
 
-constexpr double kCarbonDioxide = 360.0e-6;      // parts per volume
-constexpr double kMoleculesPerM3 = 2.546899e25;  // at 288.15 K and 1013.25 hPa
-constexpr double kAvogadro = 6.02214076e23;      // 1/mol
-constexpr double kStandardGravity = 9.80665;     // m/s^2
+constexpr double kCarbonDioxide = 360.0e-6;           // parts per volume
+constexpr double kMoleculesPerM3At15C = 2.546899e25;  // at 288.15 K and 1013.25 hPa
+constexpr double kAvogadro = 6.02214076e23;           // 1/mol
+constexpr double kStandardGravity = 9.80665;          // m/s^2
 constexpr double kPascalPerHpa = 100.0;
 
 // Returns the refractive index of dry air minus 1, at 288.15 K and 1013.25 hPa (Bodhaine et al. 1999, equations 18 and
@@ -47,7 +47,7 @@ double rayleigh_cross_section_m2(double wavelength_nm) {
   const double n = 1.0 + refractivity(x);
   const double n2 = n * n;
   const double wavelength_m = wavelength_nm * 1.0e-9;
-  const double ratio = (n2 - 1.0) / (n2 + 2.0) / (wavelength_m * wavelength_m * kMoleculesPerM3);
+  const double ratio = (n2 - 1.0) / (n2 + 2.0) / (wavelength_m * wavelength_m * kMoleculesPerM3At15C);
   return 24.0 * std::pow(std::numbers::pi, 3) * ratio * ratio * king_factor(x);
 }
 

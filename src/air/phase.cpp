@@ -1,14 +1,12 @@
 #include "air/phase.hpp"
 
 #include <cmath>
-#include <numbers>
 
+#include "math/angles.hpp"
 #include "tyndall/phase_table.hpp"
 
 namespace tyndall::air {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 // (1 - g^2) / (4 pi (1 + g^2 - 2 g c)^1.5), without cancellation where the base is small.
 double henyey_greenstein(double cosine, double g) {

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
+
+#include "math/angles.hpp"
 
 namespace tyndall {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kTolerance = 0.1;  // of the integral over the sphere
 constexpr std::size_t kMinAngles = 3, kMaxAngles = 10'000, kMaxWavelengths = 1000;
 

@@ -45,8 +45,6 @@ std::span<const std::uint32_t> call_replace_shader(void* user, std::string_view 
   return {code, words};
 }
 
-TyndallMemoryBlock to_c(const MemoryBlock& block) { return {block.memory, block.offset, block.mapped, block.user}; }
-
 VkResult call_allocate(void* user, const MemoryRequest& request, MemoryBlock& block) {
   const TyndallDeviceInfo& c = callbacks(user);
   const TyndallMemoryRequest wanted = {request.name,  request.image,  request.buffer,   request.requirements,
@@ -59,11 +57,11 @@ VkResult call_allocate(void* user, const MemoryRequest& request, MemoryBlock& bl
 
 void call_free(void* user, const MemoryBlock& block, VkDeviceSize bytes) {
   const TyndallDeviceInfo& c = callbacks(user);
-  const TyndallMemoryBlock freed = to_c(block);
+  const TyndallMemoryBlock freed = {block.memory, block.offset, block.mapped, block.user};
   c.free_memory(c.memory_user, &freed, bytes);
 }
 
-TyndallTexture to_c(const Texture& texture) {
+TyndallTexture c_texture(const Texture& texture) {
   const auto& [view, layout, offset] = texture;
   return {view, layout, offset};
 }
@@ -75,7 +73,7 @@ void set(Texture& texture, const TyndallTexture& c) {
   offset = c.offset;
 }
 
-TyndallTable to_c(const Table& table) {
+TyndallTable c_table(const Table& table) {
   const auto& [image, view, extent] = table;
   return {image, view, extent};
 }
@@ -233,21 +231,21 @@ TyndallFrameInputs to_c(const FrameInputs& inputs) {
                first_marched_cascade, camera, sun, output, frame_index, view, lowest_ground_m, clouds] = inputs;
   TyndallFrameInputs out = {};
   out.extent = extent;
-  out.color = to_c(color);
-  out.depth = to_c(depth);
-  out.shadow_maps = to_c(shadow_maps);
-  out.shadow_colors = to_c(shadow_colors);
+  out.color = c_texture(color);
+  out.depth = c_texture(depth);
+  out.shadow_maps = c_texture(shadow_maps);
+  out.shadow_colors = c_texture(shadow_colors);
   out.shadow_color_depths = shadow_color_depths ? VK_TRUE : VK_FALSE;
   out.shadow_resolution = shadow_resolution;
   out.first_marched_cascade = first_marched_cascade;
   set(out.camera.world_from_view, camera.world_from_view);
   set(out.camera.clip_from_view, camera.clip_from_view);
   set(out.sun, sun);
-  out.output = to_c(output);
+  out.output = c_texture(output);
   out.frame_index = frame_index;
   out.view = view;
   out.lowest_ground_m = lowest_ground_m;
-  out.clouds.map = to_c(clouds.map);
+  out.clouds.map = c_texture(clouds.map);
   set(out.clouds.map_from_world, clouds.map_from_world);
   return out;
 }
@@ -358,9 +356,9 @@ TyndallLightTables to_c(const LightTables& tables) {
 TyndallScatteringTables to_c(const ScatteringTables& tables) {
   const auto& [single_rayleigh, single_mie, high_orders] = tables;
   TyndallScatteringTables out = {};
-  out.single_rayleigh = to_c(single_rayleigh);
-  out.single_mie = to_c(single_mie);
-  out.high_orders = to_c(high_orders);
+  out.single_rayleigh = c_table(single_rayleigh);
+  out.single_mie = c_table(single_mie);
+  out.high_orders = c_table(high_orders);
   return out;
 }
 

@@ -9,7 +9,7 @@
 namespace tyndall::config {
 namespace {
 
-constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 24U;  // bytes
+constexpr std::uint64_t kLargestPhaseFile = std::uint64_t{1} << 24U;  // bytes
 constexpr std::string_view kKey = "atmosphere.phase_table";
 
 std::string place(std::string_view where, std::string_view path, std::size_t line) {
@@ -19,7 +19,7 @@ std::string place(std::string_view where, std::string_view path, std::size_t lin
 }  // namespace
 
 Result<std::shared_ptr<const PhaseTable>> read_phase_table(const std::string& path, std::string_view where) {
-  Result<std::string> text = files::read_file(path, kLargestFile);
+  Result<std::string> text = files::read_file(path, kLargestPhaseFile);
   if (!text) {
     return Error{ErrorCode::invalid_argument, files::concat({where, ": ", std::move(text).error().message})};
   }

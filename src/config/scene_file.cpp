@@ -20,7 +20,7 @@
 namespace tyndall::config {
 namespace {
 
-constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 20U;  // bytes; a typical file has a few thousand
+constexpr std::uint64_t kLargestSceneFile = std::uint64_t{1} << 20U;  // bytes; a typical file has a few thousand
 
 std::string position(std::string_view name, const toml::source_region& source) {
   return files::concat({files::one_line(name, 200), ":", std::to_string(source.begin.line)});
@@ -392,7 +392,7 @@ Result<void> load_toml(Settings& settings, std::string_view toml, std::string_vi
 }
 
 Result<void> load_file(Settings& settings, const std::string& path, Reading& reading) {
-  Result<std::string> text = files::read_file(path, kLargestFile);
+  Result<std::string> text = files::read_file(path, kLargestSceneFile);
   if (!text) return std::move(text).error();
   Settings loaded = settings;
   reading.open.emplace_back(path);

@@ -7,6 +7,7 @@
 
 #include "effect/effect_state.hpp"
 #include "effect/frame_constants.hpp"
+#include "effect/frame_geometry.hpp"
 #include "effect/medium.hpp"
 #include "effect/phase_rows.hpp"
 #include "effect/spectral_medium.hpp"
@@ -16,29 +17,30 @@
 namespace tyndall {
 namespace {
 
-double length(const DVec3& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
-
-Error invalid(const char* what) { return {ErrorCode::invalid_argument, std::string("atmosphere_constants: ") + what}; }
+Error invalid_atmosphere(const char* what) {
+  return {ErrorCode::invalid_argument, std::string("atmosphere_constants: ") + what};
+}
 
 Result<void> check(const AtmosphereInputs& inputs) {
   const Vec3& d = inputs.sun.direction_to_sun;
   const Vec3& e = inputs.sun.irradiance;
   const double direction = length({d.x, d.y, d.z});
   if (!std::isfinite(length(inputs.origin_from_centre_m))) {
-    return invalid("origin_from_centre_m is not finite; expected metres");
+    return invalid_atmosphere("origin_from_centre_m is not finite; expected metres");
   }
   if (!std::isfinite(direction) || direction < 1e-6) {
-    return invalid("direction_to_sun has no direction; expected a vector of length 1");
+    return invalid_atmosphere("direction_to_sun has no direction; expected a vector of length 1");
   }
   if (!std::isfinite(e.x + e.y + e.z) || e.x < 0.0F || e.y < 0.0F || e.z < 0.0F) {
-    return invalid("irradiance is negative or not finite; expected at least 0");
+    return invalid_atmosphere("irradiance is negative or not finite; expected at least 0");
   }
   if (!std::isfinite(inputs.sun.angular_radius_rad) || inputs.sun.angular_radius_rad < 0.0F) {
-    return invalid("angular_radius_rad is negative or not finite; expected at least 0");
+    return invalid_atmosphere("angular_radius_rad is negative or not finite; expected at least 0");
   }
   for (const float entry : inputs.clouds_from_position.m) {
     if (!std::isfinite(entry)) {
-      return invalid("clouds_from_position is not finite; expected a matrix to (u, v, depth) of the map of clouds");
+      return invalid_atmosphere(
+          "clouds_from_position is not finite; expected a matrix to (u, v, depth) of the map of clouds");
     }
   }
   return {};

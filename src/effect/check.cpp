@@ -4,6 +4,7 @@
 
 #include "effect/frame_constants.hpp"
 #include "effect/frame_geometry.hpp"
+#include "effect/invalid.hpp"
 #include "gpu/try.hpp"
 
 namespace tyndall {
@@ -17,8 +18,6 @@ bool finite(const Mat4& m) {
 }
 
 bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
-Error invalid(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
 
 // Returns whether shaders can sample an image in this layout. Layouts of extensions are accepted.
 bool can_be_sampled(VkImageLayout layout) {

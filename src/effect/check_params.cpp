@@ -4,12 +4,11 @@
 #include <utility>
 
 #include "air/coefficients.hpp"
+#include "effect/invalid.hpp"
 #include "tyndall/params.hpp"
 
 namespace tyndall {
 namespace {
-
-Error invalid(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
 
 Result<void> check_number(const ParamInfo& info, double value) {
   // The ends of a range are included, also when they are rounded to single precision. NaN is rejected.

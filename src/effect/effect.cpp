@@ -58,7 +58,7 @@ constexpr VkBufferUsageFlags kCounterUsage =
 
 }  // namespace
 
-Result<void> open_device(gpu::Device& device, const DeviceInfo& info) {
+Result<void> open_checked_device(gpu::Device& device, const DeviceInfo& info) {
   TYNDALL_TRY(gpu::open_device(device, info));
   return check_device(device);
 }

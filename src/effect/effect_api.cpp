@@ -46,7 +46,7 @@ Result<MemoryUsage> query_memory(const DeviceInfo& info, const EffectDesc& desc,
     TYNDALL_TRY(check_desc(info, desc));
     TYNDALL_TRY(check_params(params));
     gpu::Device device;
-    TYNDALL_TRY(open_device(device, info));
+    TYNDALL_TRY(open_checked_device(device, info));
     TYNDALL_TRY(check_limits(device, desc, params));
     return plan_memory(device, desc, params);
   });
@@ -67,7 +67,7 @@ Result<Effect> Effect::create(const DeviceInfo& info, const EffectDesc& desc, co
     state->desc = desc;
     state->desc.tables_of = nullptr;
     state->params = params;
-    TYNDALL_TRY(open_device(state->device, info));
+    TYNDALL_TRY(open_checked_device(state->device, info));
     TYNDALL_TRY(state->create_objects());
     return Effect(std::move(state));
   });

@@ -29,7 +29,7 @@ namespace tyndall {
 constexpr std::uint32_t kMaxTimedPasses = 48;
 
 // Loads the functions of a device and checks that its limits suffice for every shader of the effect.
-Result<void> open_device(gpu::Device& device, const DeviceInfo& info);
+Result<void> open_checked_device(gpu::Device& device, const DeviceInfo& info);
 // Returns the memory that an effect with these settings allocates; see query_memory().
 [[nodiscard]] MemoryUsage plan_memory(const gpu::Device& device, const EffectDesc& desc, const Params& params);
 

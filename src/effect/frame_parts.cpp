@@ -1,4 +1,5 @@
 #include "effect/frame_parts.hpp"
+#include "effect/invalid.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -7,8 +8,6 @@
 
 namespace tyndall {
 namespace {
-
-Error invalid(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
 
 bool same(const Texture& a, const Texture& b) {
   return a.view == b.view && a.layout == b.layout && a.offset.x == b.offset.x && a.offset.y == b.offset.y;

@@ -6,12 +6,12 @@
 
 #include "air/phase.hpp"
 #include "effect/wavelengths.hpp"
+#include "math/angles.hpp"
 #include "tyndall/phase_table.hpp"
 
 namespace tyndall {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kFloor = 1e-12;  // [1/sr], so that the logarithm exists
 constexpr std::size_t kDegrees = 80;
 constexpr std::size_t kSamples = 4000;

@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint32_t kSmallest = 32, kLargest = 128;
 constexpr std::uint32_t kMaxLevels = 8;
 static_assert(kLargest >> (kMaxLevels - 1) == 1);
-constexpr VkDeviceSize kTexelBytes = 8;
+constexpr VkDeviceSize kCubeTexelBytes = 8;
 constexpr VkBufferUsageFlags kRadianceUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
 constexpr VkBufferUsageFlags kTexelsUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
 
@@ -21,7 +21,7 @@ VkDeviceSize texels(std::uint32_t size, std::uint32_t last) {
   return VkDeviceSize{8} * size * size - VkDeviceSize{2} * last * last;
 }
 VkDeviceSize radiance_bytes(std::uint32_t size) { return texels(size, shared::kSkyCubeCoarse) * 4 * sizeof(float); }
-VkDeviceSize texel_bytes(std::uint32_t size) { return texels(size, 1) * kTexelBytes; }
+VkDeviceSize texel_bytes(std::uint32_t size) { return texels(size, 1) * kCubeTexelBytes; }
 
 gpu::ImageDesc image_desc(std::uint32_t size) {
   gpu::ImageDesc out = {"sky_cube",
@@ -85,7 +85,7 @@ void SkyCubeMap::record_copy(VkCommandBuffer cmd) const {
     regions[level].bufferOffset = offset;
     regions[level].imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, level, 0, 6};
     regions[level].imageExtent = {width, width, 1};
-    offset += kTexelBytes * 6 * width * width;
+    offset += kCubeTexelBytes * 6 * width * width;
   }
   gpu::barrier(*device_, cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,

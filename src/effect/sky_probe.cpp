@@ -9,6 +9,7 @@
 
 #include "effect/effect_state.hpp"
 #include "effect/frame_constants.hpp"
+#include "effect/invalid.hpp"
 #include "effect/limits.hpp"
 #include "effect/sky_cube.hpp"
 #include "effect/sky_probe_steps.hpp"
@@ -30,8 +31,6 @@ constexpr VkBufferUsageFlags kRowsUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
 constexpr VkBufferUsageFlags kCoefficientsUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
                                                   VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
                                                   VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-
-Error invalid(const std::string& message) { return {ErrorCode::invalid_argument, message}; }
 
 Result<void> check(const char* where, const SkyProbeDesc& desc) {
   const std::uint32_t frames = desc.frames_in_flight;
@@ -261,7 +260,7 @@ Result<MemoryUsage> SkyProbe::query_memory(const DeviceInfo& info, const SkyProb
     TYNDALL_TRY(check_desc(info, {}));
     TYNDALL_TRY(check("SkyProbe::query_memory", desc));
     gpu::Device device;
-    TYNDALL_TRY(open_device(device, info));
+    TYNDALL_TRY(open_checked_device(device, info));
     return plan(device, desc);
   });
 }

@@ -56,7 +56,7 @@ static_assert([] {
   return true;
 }());
 
-constexpr auto kNames = [] {
+constexpr auto kShaderNames = [] {
   std::array<std::string_view, kShaders> out = {};
   for (std::size_t i = 0; i < kShaders; ++i) out[i] = shaders::effect_shaders[i]->name;
   return out;
@@ -67,10 +67,10 @@ constexpr std::array<std::size_t, kShaders> find_variants(std::string_view suffi
   std::array<std::size_t, kShaders> out = {};
   for (std::size_t i = 0; i < kShaders; ++i) out[i] = i;
   for (std::size_t k = 0; k < kShaders; ++k) {
-    if (!kNames[k].ends_with(suffix)) continue;
-    const std::string_view base = kNames[k].substr(0, kNames[k].size() - suffix.size());
+    if (!kShaderNames[k].ends_with(suffix)) continue;
+    const std::string_view base = kShaderNames[k].substr(0, kShaderNames[k].size() - suffix.size());
     for (std::size_t i = 0; i < kShaders; ++i) {
-      if (kNames[i].size() == base.size() && kNames[i] == base) out[i] = k;
+      if (kShaderNames[i].size() == base.size() && kShaderNames[i] == base) out[i] = k;
     }
   }
   return out;

@@ -25,8 +25,9 @@ constexpr const char* kSkyLight = "sky_light";
 constexpr const char* kRayNodes = "ray_nodes";
 constexpr const char* kTableSingle = "table_single";
 constexpr const char* kTableHigh = "table_high";
-constexpr const char* kNames[] = {kSunLight,   kGridNodes,   kPhaseMatrix, kGatherSingle, kGatherMultiple, kScatter,
-                                  kGatherLate, kScatterLate, kSkyLight,    kRayNodes,     kTableSingle,    kTableHigh};
+constexpr const char* kStepNames[] = {kSunLight,       kGridNodes, kPhaseMatrix, kGatherSingle,
+                                      kGatherMultiple, kScatter,   kGatherLate,  kScatterLate,
+                                      kSkyLight,       kRayNodes,  kTableSingle, kTableHigh};
 
 // Makes the steps of a build for one representation of light.
 struct StepMaker {
@@ -120,6 +121,6 @@ std::vector<Step> table_steps(const Params& params, std::uint32_t stale) {
   return out;
 }
 
-std::span<const char* const> table_step_names() { return kNames; }
+std::span<const char* const> table_step_names() { return kStepNames; }
 
 }  // namespace tyndall

@@ -90,12 +90,6 @@ class OpenFile {
 
 constexpr std::size_t kPiece = std::size_t{1} << 18U;  // bytes, well within a cache
 
-std::string hexadecimal(std::uint64_t value) {
-  std::string out(16, '0');
-  for (std::size_t i = 0; i < out.size(); ++i) out[15 - i] = "0123456789abcdef"[(value >> (4 * i)) & 15U];
-  return out;
-}
-
 // Returns whether a file may be part of the cache; the directory is the user's and may contain others.
 bool is_entry_name(std::string_view name) {
   return name.size() == 16 + kEnding.size() && name.ends_with(kEnding) &&

@@ -13,16 +13,6 @@
 #include <xxhash.h>
 
 namespace tyndall::files {
-namespace {
-
-std::string hexadecimal(std::uint64_t value) {
-  constexpr std::string_view kDigits = "0123456789abcdef";
-  std::string out(16, '0');
-  for (std::size_t i = out.size(); i-- > 0; value >>= 4U) out[i] = kDigits[value & 15U];
-  return out;
-}
-
-}  // namespace
 
 Result<FileSum> sum_of_file(const std::string& path) {
   const auto error = [&](int code) {

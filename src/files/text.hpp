@@ -32,6 +32,9 @@ enum class NumberError : std::uint32_t { none, not_a_number, not_finite, too_lar
 [[nodiscard]] std::size_t count_parts(std::string_view text, char separator);
 [[nodiscard]] std::string_view part(std::string_view text, char separator, std::size_t index);
 
+// Returns 16 hexadecimal digits.
+[[nodiscard]] std::string hexadecimal(std::uint64_t value);
+
 [[nodiscard]] bool is_utf8(std::string_view text);
 // Returns whether `text` contains a byte below 0x20 or the byte 0x7f.
 [[nodiscard]] bool has_control_characters(std::string_view text);

@@ -15,13 +15,13 @@ namespace {
 constexpr const char* kCutOff = "the file is cut off";
 
 // Reads little-endian values and zero-terminated names in sequence.
-class Reader {
+class HeaderReader {
  public:
-  explicit Reader(std::string_view bytes) : rest_(bytes) {}
+  explicit HeaderReader(std::string_view bytes) : rest_(bytes) {}
 
   std::optional<std::string_view> name() {
-    constexpr std::size_t kLongestName = 255;
-    const std::size_t end = rest_.substr(0, kLongestName + 1).find('\0');
+    constexpr std::size_t kLongest = 255;
+    const std::size_t end = rest_.substr(0, kLongest + 1).find('\0');
     if (end == std::string_view::npos) return std::nullopt;
     const std::string_view found = rest_.substr(0, end);
     rest_.remove_prefix(end + 1);
@@ -57,7 +57,7 @@ struct Layout {
 
 // Returns the bytes of all channels of a pixel, or 0 if there are none, unknown ones or subsampled ones.
 std::int64_t bytes_of_pixel(std::string_view channels) {
-  Reader reader(channels);
+  HeaderReader reader(channels);
   std::int64_t bytes = 0;
   for (;;) {
     const std::optional<std::string_view> name = reader.name();
@@ -72,7 +72,7 @@ std::int64_t bytes_of_pixel(std::string_view channels) {
 }
 
 void read_attribute(Layout& layout, std::string_view name, std::string_view value) {
-  Reader reader(value);
+  HeaderReader reader(value);
   const auto signed_word = [&] { return std::int64_t{static_cast<std::int32_t>(reader.word().value_or(0))}; };
   if (name == "channels") layout.pixel_bytes = bytes_of_pixel(value);
   if (name == "dataWindow" && value.size() == 16) {
@@ -138,14 +138,14 @@ std::uint64_t inflated_size(std::string_view data, std::uint64_t limit) {
 // compressions none, RLE, ZIPS and ZIP, OpenEXR does not detect blocks that are too short, and returns uninitialised
 // memory as pixels. The other compressions check their data.
 bool are_whole(const Layout& layout, std::string_view bytes, std::string_view offsets) {
-  Reader reader(offsets);
+  HeaderReader reader(offsets);
   const std::int64_t lines = lines_of(layout.compression);
   for (std::int64_t row = 0; row < layout.height; row += lines) {
     const std::optional<std::uint32_t> low = reader.word(), high = reader.word();
     if (!low || !high) return false;
     const std::uint64_t at = std::uint64_t{*high} << 32U | *low;
     if (at == 0 || at > bytes.size()) return false;
-    Reader block(bytes.substr(at));
+    HeaderReader block(bytes.substr(at));
     static_cast<void>(block.word());  // the number of the row
     const std::optional<std::uint32_t> size = block.word();
     if (!size) return false;
@@ -164,7 +164,7 @@ bool are_whole(const Layout& layout, std::string_view bytes, std::string_view of
 }  // namespace
 
 std::string exr_header_problem(std::string_view bytes) {
-  Reader reader(bytes);
+  HeaderReader reader(bytes);
   static_cast<void>(reader.word());  // the magic number
   const std::optional<std::uint32_t> version = reader.word();
   if (!version) return kCutOff;

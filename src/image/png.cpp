@@ -32,7 +32,7 @@ struct Problem {
 
 void on_warning(png_structp, png_const_charp) {}
 
-struct Reader {
+struct PngReader {
   std::string_view bytes;
   std::size_t position = 0;
   Problem problem;
@@ -62,13 +62,13 @@ const char* chunk_problem(std::string_view bytes) {
 }
 
 void on_read(png_structp png, png_bytep target, png_size_t size) {
-  Reader* reader = static_cast<Reader*>(png_get_io_ptr(png));
+  PngReader* reader = static_cast<PngReader*>(png_get_io_ptr(png));
   if (reader->bytes.size() - reader->position < size) png_error(png, "the file is cut off");
   std::memcpy(target, reader->bytes.data() + reader->position, size);
   reader->position += size;
 }
 
-bool read_samples(Reader* reader) {
+bool read_samples(PngReader* reader) {
   if (setjmp(png_jmpbuf(reader->png)) != 0) return false;
   png_set_read_fn(reader->png, reader, on_read);
   png_set_user_limits(reader->png, kLargestSide, kLargestSide);
@@ -112,7 +112,7 @@ bool read_samples(Reader* reader) {
 }
 
 // Returns which properties of a file are ignored, or an empty string.
-std::string ignored_parts(const Reader& reader) {
+std::string ignored_parts(const PngReader& reader) {
   std::string out;
   if (reader.transparent) out = "its transparency is ignored";
   constexpr double kCloseToSrgb = 0.01;
@@ -121,7 +121,7 @@ std::string ignored_parts(const Reader& reader) {
   return out;
 }
 
-Metadata text_chunks(const Reader& reader) {
+Metadata text_chunks(const PngReader& reader) {
   Metadata metadata;
   png_textp texts = nullptr;
   const int count = png_get_text(reader.png, reader.info, &texts, nullptr);
@@ -210,7 +210,7 @@ Result<File> decode_png(std::string_view bytes, const std::string& path) {
   if (const char* const problem = chunk_problem(bytes); *problem != '\0') {
     return read_error(path, files::concat({"PNG: ", problem}));
   }
-  Reader reader;
+  PngReader reader;
   reader.bytes = bytes;
   reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader.problem, on_error, on_warning);
   reader.info = reader.png == nullptr ? nullptr : png_create_info_struct(reader.png);

@@ -4,6 +4,7 @@
 // linkage.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -32,6 +33,8 @@ using vec4 = glm::dvec4;
 #undef PHASE_ROWS_OF_MEDIUM
 #undef PHASE_ENTRY
 #undef PHASE_TABULATED
+
+inline std::array<double, 3> to_array(const vec3& v) { return {v.x, v.y, v.z}; }
 
 inline OneilScale widen(const shared::OneilScale& s) {
   return {s.scale_height_m, s.bend, s.k0, s.k1, s.k2, s.k3, s.k4, 0.0};

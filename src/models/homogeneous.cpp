@@ -12,8 +12,6 @@ namespace {
 constexpr int kZenithPanels = 12;  // panels of two Gauss nodes: an error of 0.1 %, see the tests
 constexpr int kAzimuths = 32;
 
-std::array<double, 3> to_array(const glsl64::vec3& v) { return {v.x, v.y, v.z}; }
-
 glsl64::Homogeneous widen(const shared::Homogeneous& m) {
   const auto wide = [](const Vec3& v) { return glsl64::vec3(v.x, v.y, v.z); };
   glsl64::Homogeneous out = {};
@@ -53,7 +51,7 @@ Answer homogeneous_light(const shared::Homogeneous& medium, const Ray& ray) {
       glsl64::homogeneous_path(m, ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith, ray.cos_view_sun, -1.0);
   glsl64::vec3 extinction;
   const glsl64::vec3 radiance = glsl64::homogeneous_inscattering(m, path, ray.cos_view_sun, extinction);
-  return {to_array(radiance * glsl64::homogeneous_sun(m, path.mu_s)), to_array(extinction)};
+  return {glsl64::to_array(radiance * glsl64::homogeneous_sun(m, path.mu_s)), glsl64::to_array(extinction)};
 }
 
 std::array<double, 3> homogeneous_sky_irradiance(const shared::Homogeneous& medium, double cos_sun_zenith) {
@@ -63,12 +61,12 @@ std::array<double, 3> homogeneous_sky_irradiance(const shared::Homogeneous& medi
   return hemisphere_irradiance(cos_sun_zenith, kZenithPanels, kAzimuths, [&](double mu, double nu) {
     glsl64::vec3 extinction;
     const glsl64::HomogeneousPath path = glsl64::homogeneous_path(m, 0.0, mu, cos_sun_zenith, nu, -1.0);
-    return to_array(glsl64::homogeneous_inscattering(m, path, nu, extinction) * sun);
+    return glsl64::to_array(glsl64::homogeneous_inscattering(m, path, nu, extinction) * sun);
   });
 }
 
 std::array<double, 3> homogeneous_sun(const shared::Homogeneous& medium, double cos_sun_zenith) {
-  return to_array(glsl64::homogeneous_sun(widen(medium), cos_sun_zenith));
+  return glsl64::to_array(glsl64::homogeneous_sun(widen(medium), cos_sun_zenith));
 }
 
 }  // namespace tyndall::models

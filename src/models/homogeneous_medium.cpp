@@ -12,8 +12,8 @@
 namespace tyndall::models {
 namespace {
 
-constexpr int kZenithPanels = 48;  // panels of two Gauss nodes
-constexpr int kAzimuths = 64;
+constexpr int kFineZenithPanels = 48;  // panels of two Gauss nodes
+constexpr int kFineAzimuths = 64;
 
 std::array<double, 3> times(const Vec3& v, const Vec3& by) {
   return {static_cast<double>(v.x) * static_cast<double>(by.x), static_cast<double>(v.y) * static_cast<double>(by.y),
@@ -84,7 +84,7 @@ Answer homogeneous_medium_light(const HomogeneousMedium& m, const Ray& ray) {
 }
 
 std::array<double, 3> homogeneous_medium_sky(const HomogeneousMedium& m, double altitude_m, double cos_sun_zenith) {
-  return hemisphere_irradiance(cos_sun_zenith, kZenithPanels, kAzimuths, [&](double mu, double nu) {
+  return hemisphere_irradiance(cos_sun_zenith, kFineZenithPanels, kFineAzimuths, [&](double mu, double nu) {
     return homogeneous_medium_light(m, {altitude_m, mu, cos_sun_zenith, nu}).radiance;
   });
 }

@@ -13,8 +13,6 @@
 namespace tyndall::models {
 namespace {
 
-std::array<double, 3> to_array(const glsl64::vec3& v) { return {v.x, v.y, v.z}; }
-
 // Builds the table, one row per cosine: see oneil_table() in shaders/lib/oneil.glsl.
 std::vector<std::array<float, 4>> make_table(const shared::Medium& m, std::uint32_t size) {
   std::vector<std::array<float, 4>> out;
@@ -122,7 +120,7 @@ Answer oneil(const OneilModel& model, const Ray& ray) {
   glsl64::vec3 transmittance;
   const glsl64::vec3 radiance = glsl64::oneil_to_end(glsl64::widen(model.medium), glsl64::widen(model.constants),
                                                      model.table.data(), path, transmittance);
-  return {to_array(radiance), to_array(transmittance)};
+  return {glsl64::to_array(radiance), glsl64::to_array(transmittance)};
 }
 
 std::array<double, 3> oneil_sky_irradiance(const OneilModel& model, double altitude_m, double cos_sun_zenith,
@@ -160,7 +158,7 @@ std::array<double, 3> oneil_sun_transmittance(const OneilModel& model, double al
   if (altitude_m > m.atmosphere_height_m) {
     return oneil(model, {altitude_m, cos_sun_zenith, cos_sun_zenith, 1.0}).transmittance;
   }
-  return to_array(
+  return glsl64::to_array(
       glsl64::oneil_sunlight(m, glsl64::widen(model.constants), model.table.data(), altitude_m, cos_sun_zenith));
 }
 

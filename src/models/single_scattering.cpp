@@ -22,8 +22,6 @@ int sky_panels(const glsl64::Medium& m) {
   return narrow ? 12 : 4;
 }
 
-std::array<double, 3> to_array(const glsl64::vec3& v) { return {v.x, v.y, v.z}; }
-
 }  // namespace
 
 Ray ray_from_query(const RayQuery& query) {
@@ -41,25 +39,26 @@ Answer single_scattering(const shared::Medium& medium, const Ray& ray, int steps
   const glsl64::vec3 radiance =
       glsl64::single_scattering_to_end(glsl64::widen(medium), ray.altitude_m, ray.cos_view_zenith, ray.cos_sun_zenith,
                                        ray.cos_view_sun, steps, transmittance);
-  return {to_array(radiance), to_array(transmittance)};
+  return {glsl64::to_array(radiance), glsl64::to_array(transmittance)};
 }
 
 std::array<double, 3> single_sky_irradiance(const shared::Medium& medium, double altitude_m, double cos_sun_zenith,
                                             std::span<const shared::vec4> phase_rows) {
   const glsl64::Medium m = glsl64::widen(medium, phase_rows.empty() ? nullptr : phase_rows.data());
-  return to_array(glsl64::sky_irradiance_single(m, altitude_m, cos_sun_zenith, sky_panels(m), kSkySteps));
+  return glsl64::to_array(glsl64::sky_irradiance_single(m, altitude_m, cos_sun_zenith, sky_panels(m), kSkySteps));
 }
 
 std::array<double, 3> sun_transmittance(const shared::Medium& medium, double altitude_m, double cos_sun_zenith) {
   const glsl64::Medium m = glsl64::widen(medium);
   if (glsl64::sun_visibility(altitude_m, cos_sun_zenith, m.planet_radius_m) == 0.0) return {};
-  return to_array(glsl64::transmittance(m, glsl64::density_integral_to_top(m, altitude_m, cos_sun_zenith)));
+  return glsl64::to_array(glsl64::transmittance(m, glsl64::density_integral_to_top(m, altitude_m, cos_sun_zenith)));
 }
 
 std::array<double, 3> transmittance_along(const shared::Medium& medium, double altitude_m, double cos_zenith,
                                           double distance_m) {
   const glsl64::Medium m = glsl64::widen(medium);
-  return to_array(glsl64::transmittance(m, glsl64::density_integral_along(m, altitude_m, cos_zenith, distance_m)));
+  return glsl64::to_array(
+      glsl64::transmittance(m, glsl64::density_integral_along(m, altitude_m, cos_zenith, distance_m)));
 }
 
 std::array<double, 3> sunlit_ground(const shared::Medium& medium, const Ray& ray) {

@@ -22,8 +22,6 @@ double distance_to_end(const glsl64::Medium& m, double h, double mu, bool below)
   return below ? glsl64::distance_to_ground(h, mu, R) : glsl64::distance_to_top(h, mu, m.atmosphere_height_m, R);
 }
 
-std::array<double, 3> to_array(const glsl64::vec3& v) { return {v.x, v.y, v.z}; }
-
 }  // namespace
 
 TableAxes table_axes(const Params& params) {
@@ -76,8 +74,8 @@ std::vector<TableFactors> table_factors(const Params& params, const TableAxes& a
     const double end = distance_to_end(m, h, mu, axes.ends_on_ground[i]);
     const glsl64::NormalisationFactors factors =
         glsl64::normalisation_factors(m, glsl64::density_integral_along(m, h, mu, end));
-    out.push_back({to_array(m.rayleigh_scattering * factors.rayleigh), to_array(m.mie_scattering * factors.mie),
-                   to_array(factors.high)});
+    out.push_back({glsl64::to_array(m.rayleigh_scattering * factors.rayleigh),
+                   glsl64::to_array(m.mie_scattering * factors.mie), glsl64::to_array(factors.high)});
   }
   return out;
 }
@@ -86,7 +84,7 @@ std::vector<std::array<double, 3>> angle_shapes(const Params& params, const Tabl
   const glsl64::AngleShape shape = glsl64::angle_shape_of(glsl64::widen(medium_from_params(params)));
   std::vector<std::array<double, 3>> out;
   out.reserve(axes.cos_view_sun.size());
-  for (const double nu : axes.cos_view_sun) out.push_back(to_array(glsl64::angle_shape(shape, nu)));
+  for (const double nu : axes.cos_view_sun) out.push_back(glsl64::to_array(glsl64::angle_shape(shape, nu)));
   return out;
 }
 

@@ -3,11 +3,10 @@
 #include <functional>
 
 #include "air/phase.hpp"
+#include "math/angles.hpp"
 
 namespace tyndall::reference {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 // The angles of the ends of the bins: t^3 pi up to 30 degrees, and then equal steps.
 std::vector<double> bin_angles() {

@@ -7,16 +7,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
+#include "math/angles.hpp"
 #include "reference/glow.hpp"
 #include "reference/random.hpp"
 
 namespace tyndall::reference {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 // On a line through the planet's shadow, the fractions of the distance samples that are restricted to the part the sun
 // reaches, and to the part it reaches with little attenuation (Atmosphere::opaque_radius_m).
 constexpr std::array<double, 2> kLitFractions = {0.2, 0.2};

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "gpu/try.hpp"
+#include "math/angles.hpp"
 #include "scene/description/placed_sun.hpp"
 #include "scene/formats.hpp"
 #include "scene/scene.hpp"
@@ -14,8 +15,6 @@
 
 namespace tyndall::scene {
 namespace {
-
-constexpr double kRadPerDeg = 0.017453292519943295;
 
 VkRenderingAttachmentInfo attachment(VkImageView view, VkImageLayout layout, VkAttachmentLoadOp load,
                                      VkClearValue clear) {

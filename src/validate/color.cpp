@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "files/text.hpp"
+#include "math/angles.hpp"
 #include "reference/spectrum.hpp"
 #include "validate/parts.hpp"
 #include "validate/plot.hpp"
@@ -14,7 +14,6 @@ namespace {
 
 using files::concat;
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 // Darker rays have no luminance to compare.
 constexpr double kDarkest = 1.0e-9;
 // Luminance of white over the mean luminance of a sky, for CIELAB: the eye is adapted to the sky as middle grey.

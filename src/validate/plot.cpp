@@ -161,6 +161,8 @@ std::string fixed(double value, int decimals) {
   return out;
 }
 
+std::string percent(double ratio) { return fixed(100.0 * ratio, 2); }
+
 std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : text) {

@@ -48,5 +48,7 @@ void fit_logarithmic(Axis& axis, const std::vector<Series>& series, int decades)
 
 // Formats in fixed notation with the given number of decimals.
 [[nodiscard]] std::string fixed(double value, int decimals);
+// Returns a ratio in percent, with two decimals and without the sign %.
+[[nodiscard]] std::string percent(double ratio);
 
 }  // namespace tyndall::validate

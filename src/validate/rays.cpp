@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
+
+#include "math/angles.hpp"
 
 namespace tyndall::validate {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-constexpr double kRadPerDeg = kPi / 180.0;
 
 // SplitMix64 (Steele, Lea, Flood 2014).
 std::uint64_t mixed(std::uint64_t x) {

@@ -28,8 +28,6 @@ constexpr std::string_view kStyle =
     "div.plots{display:flex;flex-wrap:wrap;gap:1em}svg{width:36em;max-width:100%;height:auto}"
     "@media(prefers-color-scheme:dark){body{color:#ddd;background:#181818}}";
 
-std::string percent(double value) { return fixed(100.0 * value, 2); }
-
 std::string cell(std::string_view text) { return concat({"<td>", text, "</td>"}); }
 std::string text_cell(std::string_view text) { return concat({"<td class=\"t\">", escaped(text), "</td>"}); }
 

@@ -12,8 +12,6 @@ namespace {
 using files::concat;
 using files::quoted_text;
 
-std::string percent(double value) { return fixed(100.0 * value, 2); }
-
 std::string json_number(double value) { return std::isfinite(value) ? files::number_text(value) : "null"; }
 
 std::string json_summary(const Summary& s) {

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "math/angles.hpp"
 #include "reference/atmosphere.hpp"
 
 namespace tyndall::validate {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kMaxNoise = 0.03;       // standard error, relative to the reference's largest channel
 constexpr std::uint32_t kSkyFactor = 4;  // the sky's irradiance has this many times as many paths
 constexpr double kVerticalSuns_deg[] = {45.0, 6.0, 0.0, -4.0};

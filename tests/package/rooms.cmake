@@ -46,37 +46,40 @@ room(shaders/post shaders/lib shaders/shared)
 room(shaders/scene shaders/lib include/tyndall)
 room(shaders/viewer)
 
+# Constants of mathematics, for all rooms.
+room(src/math)
+
 # The coefficients that follow from the parameters of the atmosphere, for the effect and for the path tracer.
-room(src/air include/tyndall)
+room(src/air src/math include/tyndall)
 
 # The effect.
 room(src/gpu VULKAN include/tyndall/effect.hpp include/tyndall/memory.hpp include/tyndall)
-room(src/effect VULKAN src/air src/gpu shaders/shared include/tyndall/sky_probe.hpp include/tyndall/atmosphere.hpp include/tyndall/effect.hpp include/tyndall)
+room(src/effect VULKAN src/air src/math src/gpu shaders/shared include/tyndall/sky_probe.hpp include/tyndall/atmosphere.hpp include/tyndall/effect.hpp include/tyndall)
 room(src/c VULKAN src/gpu include/tyndall/sky_probe.hpp include/tyndall/atmosphere.hpp include/tyndall/effect.hpp include/tyndall/tyndall_memory.h include/tyndall/tyndall.h include/tyndall)
 room(src/post VULKAN src/gpu shaders/post shaders/lib shaders/shared include/tyndall/post.hpp include/tyndall)
 
 # Files, images and what describes a scene.
 room(src/files include/tyndall)
 room(src/image src/files include/tyndall)
-room(src/scene/description src/files include/tyndall)
+room(src/scene/description src/math src/files include/tyndall)
 room(src/config src/scene/description src/files include/tyndall)
 
 # Models of scattering, and the reference that they are compared with. The reference shares only src/air with the others.
 room(src/rays)
-room(src/reference src/air src/rays include/tyndall)
-room(src/validate src/reference src/rays src/files include/tyndall)
+room(src/reference src/air src/math src/rays include/tyndall)
+room(src/validate src/math src/reference src/rays src/files include/tyndall)
 room(src/tables VULKAN src/gpu src/files include/tyndall/effect.hpp include/tyndall)
 room(src/models VULKAN src/air src/rays src/tables src/effect src/gpu shaders/lib shaders/shared include/tyndall/effect.hpp include/tyndall)
 
 # The demo engine. It is a client of the effect's public interface.
 room(src/scene/elevation src/scene/description shaders/scene include/tyndall)
-room(src/scene/view VULKAN src/scene/description shaders/scene include/tyndall/effect.hpp include/tyndall)
+room(src/scene/view VULKAN src/math src/scene/description shaders/scene include/tyndall/effect.hpp include/tyndall)
 room(src/scene/terrain VULKAN src/scene/elevation src/scene/view src/scene/description shaders/scene src/gpu include/tyndall/effect.hpp
   include/tyndall)
-room(src/scene/mesh VULKAN src/scene/terrain src/scene/view src/scene/description shaders/scene src/gpu src/files include/tyndall)
-room(src/scene/sky VULKAN src/scene/terrain src/scene/view src/scene/description src/models src/gpu include/tyndall/sky_probe.hpp
+room(src/scene/mesh VULKAN src/math src/scene/terrain src/scene/view src/scene/description shaders/scene src/gpu src/files include/tyndall)
+room(src/scene/sky VULKAN src/math src/scene/terrain src/scene/view src/scene/description src/models src/gpu include/tyndall/sky_probe.hpp
   include/tyndall/effect.hpp include/tyndall)
-room(src/scene VULKAN src/scene/sky src/scene/mesh src/scene/terrain src/scene/view src/scene/elevation src/scene/description
+room(src/scene VULKAN src/math src/scene/sky src/scene/mesh src/scene/terrain src/scene/view src/scene/elevation src/scene/description
   src/tables src/post src/image src/gpu include/tyndall/effect.hpp include/tyndall)
 
 # The programs.
@@ -87,7 +90,7 @@ room(apps/viewer/gui VULKAN apps/viewer/scenes apps/viewer/platform src/config s
   include/tyndall)
 room(apps/viewer VULKAN apps/viewer/gui apps/viewer/scenes apps/viewer/platform src/config src/scene src/scene/view
   src/scene/description src/tables src/image src/files src/gpu include/tyndall)
-room(apps/tyndall VULKAN src/air apps/viewer src/validate src/reference src/rays src/models src/scene src/scene/sky src/scene/mesh src/scene/elevation
+room(apps/tyndall VULKAN src/math src/air apps/viewer src/validate src/reference src/rays src/models src/scene src/scene/sky src/scene/mesh src/scene/elevation
   src/scene/description src/config src/tables src/image src/files src/effect src/gpu include/tyndall/effect.hpp include/tyndall)
 
 # room_of(PATH VAR): the room that a path relative to SOURCE belongs to.

@@ -7,7 +7,6 @@ namespace {
 
 constexpr double kJ2000 = 2451545.0;  // Julian day of the epoch
 constexpr double kDaysPerCentury = 36525.0;
-constexpr double kSecondsPerDay = 86400.0;
 
 }  // namespace
 
@@ -24,9 +23,9 @@ double wrapped_degrees(double angle_deg) {
 }
 
 Nutation nutation(double centuries) {
-  const double node = (125.04452 - 1934.136261 * centuries) * kRadPerDegree;  // ascending node of the moon's orbit
-  const double sun = (280.4665 + 36000.7698 * centuries) * kRadPerDegree;     // mean longitudes
-  const double moon = (218.3165 + 481267.8813 * centuries) * kRadPerDegree;
+  const double node = (125.04452 - 1934.136261 * centuries) * kRadPerDeg;  // ascending node of the moon's orbit
+  const double sun = (280.4665 + 36000.7698 * centuries) * kRadPerDeg;     // mean longitudes
+  const double moon = (218.3165 + 481267.8813 * centuries) * kRadPerDeg;
   return {kDegreesPerArcsecond * (-17.20 * std::sin(node) - 1.32 * std::sin(2.0 * sun) - 0.23 * std::sin(2.0 * moon) +
                                   0.21 * std::sin(2.0 * node)),
           kDegreesPerArcsecond * (9.20 * std::cos(node) + 0.57 * std::cos(2.0 * sun) + 0.10 * std::cos(2.0 * moon) -
@@ -53,14 +52,13 @@ Horizontal horizontal(const Place& place, double altitude_m, const Epoch& time, 
   const double sidereal_deg = 280.46061837 + 360.98564736629 * time.days +
                               ut_centuries * ut_centuries * (0.000387933 - ut_centuries / 38710000.0) +
                               nutated.longitude_deg * std::cos(obliquity_rad);
-  const double hour_angle =
-      kRadPerDegree * wrapped_degrees(sidereal_deg + place.longitude_deg -
-                                      wrapped_degrees(position.right_ascension_rad / kRadPerDegree));
+  const double hour_angle = kRadPerDeg * wrapped_degrees(sidereal_deg + place.longitude_deg -
+                                                         wrapped_degrees(position.right_ascension_rad / kRadPerDeg));
 
   // Parallax (3.12). The distances of the place from the Earth's axis and equatorial plane are in equatorial radii.
   constexpr double kAxes = 0.99664719;  // polar radius divided by equatorial radius
   const double delta = position.declination_rad;
-  const double phi = kRadPerDegree * place.latitude_deg;
+  const double phi = kRadPerDeg * place.latitude_deg;
   const double reduced = std::atan2(kAxes * std::sin(phi), std::cos(phi));
   const double radii = altitude_m / 6378140.0;
   const double from_axis = std::cos(reduced) + radii * std::cos(phi);
@@ -72,7 +70,7 @@ Horizontal horizontal(const Place& place, double altitude_m, const Epoch& time, 
   const double z = std::sin(delta) - sine_of_parallax * from_equator;
   const double up = std::sin(phi) * z + std::cos(phi) * x;
   const double north = std::cos(phi) * z - std::sin(phi) * x;
-  return {std::atan2(up, std::hypot(north, y)) / kRadPerDegree, wrapped_degrees(std::atan2(-y, north) / kRadPerDegree)};
+  return {std::atan2(up, std::hypot(north, y)) / kRadPerDeg, wrapped_degrees(std::atan2(-y, north) / kRadPerDeg)};
 }
 
 }  // namespace tyndall::scene

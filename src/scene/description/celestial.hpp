@@ -3,11 +3,12 @@
 // solar_position.hpp.
 #pragma once
 
+#include "math/angles.hpp"
 #include "scene/description/solar_position.hpp"
 
 namespace tyndall::scene {
 
-constexpr double kRadPerDegree = 0.017453292519943295;
+constexpr double kSecondsPerDay = 86400.0;
 constexpr double kDegreesPerArcsecond = 1.0 / 3600.0;
 
 // A time in the two scales of astronomy.

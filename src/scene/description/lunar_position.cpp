@@ -36,7 +36,7 @@ constexpr LatitudeTerm kLatitude[] = {
     {2, -1, 0, -1, 8216},  {2, 0, -2, -1, 4324}, {2, 0, 1, 1, 4200},
 };
 
-double sine(double degrees) { return std::sin(kRadPerDegree * degrees); }
+double sine(double degrees) { return std::sin(kRadPerDeg * degrees); }
 
 }  // namespace
 
@@ -59,7 +59,7 @@ LunarPosition lunar_position(const Place& place, double julian_day) {
   for (const LongitudeTerm& term : kLongitude) {
     const double angle = term.d * d + term.m * m + term.m1 * m1 + term.f * f;
     longitude += weight(term.m) * term.longitude * sine(angle);
-    distance += weight(term.m) * term.distance * std::cos(kRadPerDegree * angle);
+    distance += weight(term.m) * term.distance * std::cos(kRadPerDeg * angle);
   }
   double latitude = -2235.0 * sine(mean) + 382.0 * sine(313.45 + 481266.484 * t);
   for (const LatitudeTerm& term : kLatitude) {
@@ -67,31 +67,31 @@ LunarPosition lunar_position(const Place& place, double julian_day) {
   }
 
   const Nutation nutated = nutation(t);
-  const double obliquity = kRadPerDegree * obliquity_deg(t, nutated);
-  const double lambda = kRadPerDegree * (mean + 1e-6 * longitude + nutated.longitude_deg);
-  const Equatorial position = equatorial(lambda, kRadPerDegree * 1e-6 * latitude, obliquity);
+  const double obliquity = kRadPerDeg * obliquity_deg(t, nutated);
+  const double lambda = kRadPerDeg * (mean + 1e-6 * longitude + nutated.longitude_deg);
+  const Equatorial position = equatorial(lambda, kRadPerDeg * 1e-6 * latitude, obliquity);
   LunarPosition out;
-  out.right_ascension_deg = wrapped_degrees(position.right_ascension_rad / kRadPerDegree);
-  out.declination_deg = position.declination_rad / kRadPerDegree;
+  out.right_ascension_deg = wrapped_degrees(position.right_ascension_rad / kRadPerDeg);
+  out.declination_deg = position.declination_rad / kRadPerDeg;
   out.distance_km = 385000.56 + 1e-3 * distance;
   constexpr double kEarthRadius_km = 6378.14, kMoonRadius_km = 1737.4;
   const double parallax = kEarthRadius_km / out.distance_km;
   const Horizontal seen = horizontal(place, 0.0, time, nutated, obliquity, position, parallax);
   out.elevation_deg = seen.elevation_deg;
   out.azimuth_deg = seen.azimuth_deg;
-  const double nearer_km = kEarthRadius_km * std::sin(kRadPerDegree * out.elevation_deg);
-  out.angular_radius_deg = std::asin(kMoonRadius_km / (out.distance_km - nearer_km)) / kRadPerDegree;
+  const double nearer_km = kEarthRadius_km * std::sin(kRadPerDeg * out.elevation_deg);
+  out.angular_radius_deg = std::asin(kMoonRadius_km / (out.distance_km - nearer_km)) / kRadPerDeg;
 
   // The phase angle follows from the elongation from the sun (Meeus, chapter 48).
   const SolarPosition sun = solar_position(place, julian_day);
-  const double between = kRadPerDegree * (sun.right_ascension_deg - out.right_ascension_deg);
-  const double delta = kRadPerDegree * sun.declination_deg;
+  const double between = kRadPerDeg * (sun.right_ascension_deg - out.right_ascension_deg);
+  const double delta = kRadPerDeg * sun.declination_deg;
   const double cosine = std::sin(delta) * std::sin(position.declination_rad) +
                         std::cos(delta) * std::cos(position.declination_rad) * std::cos(between);
   const double elongation = std::acos(std::fmax(-1.0, std::fmin(1.0, cosine)));
   const double sun_km = 149597870.7 * sun.distance_au;
   out.phase_angle_deg =
-      std::atan2(sun_km * std::sin(elongation), out.distance_km - sun_km * std::cos(elongation)) / kRadPerDegree;
+      std::atan2(sun_km * std::sin(elongation), out.distance_km - sun_km * std::cos(elongation)) / kRadPerDeg;
   return out;
 }
 

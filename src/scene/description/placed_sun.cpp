@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "files/text.hpp"
+#include "math/angles.hpp"
 #include "scene/description/lunar_position.hpp"
 #include "tyndall/photometry.hpp"
 
@@ -22,7 +23,6 @@ Result<Place> place_of(const SunParams& sun, const std::optional<Place>& terrain
 }  // namespace
 
 double refraction_deg(double elevation_deg) {
-  constexpr double kRadPerDeg = std::numbers::pi / 180.0;
   constexpr double kLowest_deg = -5.0;  // the formula has a pole at -5.11
   const double h = std::max(elevation_deg, -1.0);
   const double arcmin = 1.02 / std::tan((h + 10.3 / (h + 5.11)) * kRadPerDeg) + 0.0019279;

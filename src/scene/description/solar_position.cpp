@@ -16,8 +16,6 @@ using files::concat;
 using files::input_error;
 using files::one_line;
 
-constexpr double kSecondsPerDay = 86400.0;
-
 // One periodic term: amplitude [1e-8 rad or au] * cos(phase + rate * millennia).
 struct Term {
   double amplitude, phase_rad, rate_rad;
@@ -200,15 +198,14 @@ SolarPosition solar_position(const Place& place, double julian_day, double altit
   out.distance_au = sum(kR0, t) + t * (sum(kR1, t) + t * sum(kR2, t));
   const Nutation nutated = nutation(time.centuries);
   const double aberration_deg = -20.4898 * kDegreesPerArcsecond / out.distance_au;
-  const double lambda =
-      kRadPerDegree * (longitude_rad / kRadPerDegree + 180.0 + nutated.longitude_deg + aberration_deg);
+  const double lambda = kRadPerDeg * (longitude_rad / kRadPerDeg + 180.0 + nutated.longitude_deg + aberration_deg);
   const double beta = -sum(kB0, t);
-  const double obliquity = kRadPerDegree * obliquity_deg(time.centuries, nutated);
+  const double obliquity = kRadPerDeg * obliquity_deg(time.centuries, nutated);
   const Equatorial position = equatorial(lambda, beta, obliquity);
-  out.right_ascension_deg = wrapped_degrees(position.right_ascension_rad / kRadPerDegree);
-  out.declination_deg = position.declination_rad / kRadPerDegree;
+  out.right_ascension_deg = wrapped_degrees(position.right_ascension_rad / kRadPerDeg);
+  out.declination_deg = position.declination_rad / kRadPerDeg;
 
-  const double parallax = std::sin(kRadPerDegree * 8.794 * kDegreesPerArcsecond / out.distance_au);
+  const double parallax = std::sin(kRadPerDeg * 8.794 * kDegreesPerArcsecond / out.distance_au);
   const Horizontal seen = horizontal(place, altitude_m, time, nutated, obliquity, position, parallax);
   out.elevation_deg = seen.elevation_deg;
   out.azimuth_deg = seen.azimuth_deg;

@@ -216,7 +216,7 @@ Result<std::vector<float>> read_band(const std::string& source_name, GDALDataset
 }
 
 // Fills small holes by GDAL's interpolation, and the remaining ones with fill_holes().
-void fill(std::vector<float>& samples, int width, int height) {
+void fill_all_holes(std::vector<float>& samples, int width, int height) {
   if (std::none_of(samples.begin(), samples.end(), [](float v) { return std::isnan(v); })) return;
   std::vector<float> valid(samples.size());
   std::transform(samples.begin(), samples.end(), valid.begin(), [](float v) { return std::isnan(v) ? 0.0F : 1.0F; });
@@ -380,7 +380,7 @@ Result<ElevationRaster> read_elevation_here(const std::string& source_name, cons
   Result<std::vector<float>> samples =
       read_band(source_name, *file, request.max_samples, geo, width, height, messages, notes);
   if (!samples.ok()) return std::move(samples).error();
-  fill(samples.value(), width, height);
+  fill_all_holes(samples.value(), width, height);
 
   const Dataset memory = make_memory(width, height, geo, samples.value());
   if (!memory) return Error{ErrorCode::out_of_memory, "elevation file " + source_name + " does not fit into memory", 0};

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <numbers>
 
+#include "math/angles.hpp"
 #include "scene/mesh/hall_glass.hpp"
 
 namespace tyndall::scene {
@@ -13,7 +13,6 @@ namespace {
 
 using Vec = glm::dvec3;
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kHalfWidth_m = 6.0;  // interior half width of the nave
 constexpr double kHalfLength_m = 18.0;
 constexpr double kFloor_m = 0.15;

@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "math/angles.hpp"
 
 namespace tyndall::scene {
 namespace {
 
 constexpr double kTexel_m = 0.01;
 constexpr double kLead_m = 0.024;  // width of the lead between panes
-constexpr double kPi = std::numbers::pi;
 
 // Transmission of each kind of glass, linear.
 constexpr glm::vec3 kRuby = {0.70F, 0.035F, 0.03F};

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "gpu/try.hpp"
+#include "math/angles.hpp"
 #include "scene/description/map_projection.hpp"
 #include "scene/mesh/gltf_file.hpp"
 #include "scene/mesh/hall.hpp"
@@ -15,8 +16,6 @@
 
 namespace tyndall::scene {
 namespace {
-
-constexpr double kRadPerDeg = 0.017453292519943295;
 
 constexpr float kGroundAlbedo = 0.3F;  // for the ground without terrain and under meshes; plain terrain has the same
 

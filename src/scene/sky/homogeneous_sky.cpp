@@ -11,10 +11,10 @@
 namespace tyndall::scene {
 namespace {
 
-constexpr std::size_t kSuns = 64;
+constexpr std::size_t kHomogeneousSuns = 64;
 
 // The model_block of shaders/scene/homogeneous_air.glsl in std430.
-struct Block {
+struct HomogeneousBlock {
   tyndall::shared::Homogeneous medium;
   Vec3 eye_position;
   float eye_altitude_m;
@@ -28,7 +28,7 @@ struct Block {
   float ground_shown;
   Vec3 sun_irradiance;
   float unused;
-  float sky_by_sun[kSuns][4];
+  float sky_by_sun[kHomogeneousSuns][4];
 };
 
 Vec3 narrow(const std::array<double, 3>& v) {
@@ -42,13 +42,13 @@ class HomogeneousSky : public SkyModel {
         host,
         {&shaders::homogeneous_terrain_vert, &shaders::homogeneous_terrain_frag, &shaders::homogeneous_light_comp, 2,
          &shaders::homogeneous_sky_vert, &shaders::homogeneous_sky_frag},
-        evaluation, sizeof(Block), color_format, depth_format);
+        evaluation, sizeof(HomogeneousBlock), color_format, depth_format);
   }
 
  protected:
   Result<void> fill(const ModelFrame& frame, void* constants) override {
     const HomogeneousParams& own = frame.scene.homogeneous;
-    Block out = {};
+    HomogeneousBlock out = {};
     out.medium =
         models::homogeneous_from_params(frame.params, {own.air_length_m, own.haze_length_m, own.falloff.value != 0});
     out.medium.sun_radius_rad = glm::radians(frame.scene.sun.angular_radius_deg);
@@ -75,10 +75,10 @@ class HomogeneousSky : public SkyModel {
  private:
   // Fills the table of the sky's irradiance by the sun's zenith angle, which views from space need. It takes thousands
   // of rays, so it is updated only when the medium changes.
-  void fill_sky_by_sun(const tyndall::shared::Homogeneous& medium, float (&to)[kSuns][4]) {
+  void fill_sky_by_sun(const tyndall::shared::Homogeneous& medium, float (&to)[kHomogeneousSuns][4]) {
     if (std::memcmp(&medium, &known_, sizeof medium) != 0) {
-      for (std::size_t i = 0; i < kSuns; ++i) {
-        const double root = static_cast<double>(i) / (kSuns - 1);
+      for (std::size_t i = 0; i < kHomogeneousSuns; ++i) {
+        const double root = static_cast<double>(i) / (kHomogeneousSuns - 1);
         const Vec3 sky = narrow(models::homogeneous_sky_irradiance(medium, root * root));
         const float row[4] = {sky.x, sky.y, sky.z, 0.0F};
         std::memcpy(sky_by_sun_[i], row, sizeof row);
@@ -89,7 +89,7 @@ class HomogeneousSky : public SkyModel {
   }
 
   tyndall::shared::Homogeneous known_ = {};
-  float sky_by_sun_[kSuns][4] = {};
+  float sky_by_sun_[kHomogeneousSuns][4] = {};
 };
 
 }  // namespace

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <numbers>
 
 #include "gpu/try.hpp"
+#include "math/angles.hpp"
 #include "models/spectral.hpp"
 #include "tyndall/photometry.hpp"
 
@@ -17,7 +17,6 @@ constexpr VkDeviceSize kCoefficientBytes = 9 * 4 * sizeof(float);
 
 // Returns the irradiance of a surface that faces along y, as tyndall_sky_irradiance() of sky_probe.glsl.
 Vec3 irradiance_up(const std::array<float, 36>& coefficients) {
-  constexpr double kPi = std::numbers::pi;
   const double weights[] = {0.282094791773878 * kPi, 0.488602511902920 * 2.0 * kPi / 3.0,
                             -0.315391565252520 * kPi / 4.0, -0.546274215296040 * kPi / 4.0};
   constexpr std::size_t kPlaces[] = {0, 1, 6, 8};  // the others are 0 along y

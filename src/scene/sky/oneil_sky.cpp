@@ -17,12 +17,12 @@
 namespace tyndall::scene {
 namespace {
 
-constexpr std::size_t kSuns = 128;
+constexpr std::size_t kOneilSuns = 128;
 constexpr int kSkyNodes = 10;             // nodes of the sky's irradiance: 200 rays for each position of the sun
 constexpr std::uint32_t kSkySamples = 8;  // largest number of samples on each of these rays
 
 // The model_block of shaders/scene/oneil_air.glsl in std430.
-struct Block {
+struct OneilBlock {
   tyndall::shared::Medium medium;
   tyndall::shared::Oneil oneil;
   Vec3 eye_position;
@@ -38,9 +38,9 @@ struct Block {
   std::uint32_t sphere_seed;
   std::uint32_t is_sphere;
   float unused[2];
-  float sky_by_sun[kSuns][4];
+  float sky_by_sun[kOneilSuns][4];
 };
-static_assert(sizeof(Block) == 2 * 96 + 6 * 16 + 16 * kSuns);
+static_assert(sizeof(OneilBlock) == 2 * 96 + 6 * 16 + 16 * kOneilSuns);
 
 class OneilSky : public SkyModel {
  public:
@@ -54,7 +54,7 @@ class OneilSky : public SkyModel {
     return create_objects(host,
                           {&shaders::oneil_terrain_vert, &shaders::oneil_terrain_frag, &shaders::oneil_light_comp, 3,
                            &shaders::oneil_sky_vert, &shaders::oneil_sky_frag},
-                          evaluation, sizeof(Block), color_format, depth_format, spans);
+                          evaluation, sizeof(OneilBlock), color_format, depth_format, spans);
   }
 
   [[nodiscard]] bool draws_terrain(const SceneParams& scene) const override {
@@ -67,7 +67,7 @@ class OneilSky : public SkyModel {
     const double radius = frame.params.planet.radius_m;
     const glm::dvec3 up = up_of(frame.view.position, radius);
     const double altitude = altitude_of(frame.view.position, radius);
-    Block out = {};
+    OneilBlock out = {};
     out.medium = model_.medium;
     out.oneil = model_.constants;
     out.eye_position = to_vec3(frame.local.place(frame.view.position));
@@ -118,8 +118,8 @@ class OneilSky : public SkyModel {
     model_ = std::move(model);
     models::OneilModel coarse = model_;
     coarse.constants.samples = std::min(coarse.constants.samples, kSkySamples);
-    for (std::size_t i = 0; i < kSuns; ++i) {
-      const double cos_sun = -1.0 + 2.0 * static_cast<double>(i) / (kSuns - 1);
+    for (std::size_t i = 0; i < kOneilSuns; ++i) {
+      const double cos_sun = -1.0 + 2.0 * static_cast<double>(i) / (kOneilSuns - 1);
       const std::array<double, 3> sky = models::oneil_sky_irradiance(coarse, 0.0, cos_sun, kSkyNodes);
       for (std::size_t c = 0; c < 3; ++c) sky_by_sun_[i][c] = static_cast<float>(sky[c]);
     }
@@ -143,7 +143,7 @@ class OneilSky : public SkyModel {
   bool table_ = false;
   models::OneilModel model_ = {};
   models::OneilSettings settings_ = {};
-  float sky_by_sun_[kSuns][4] = {};
+  float sky_by_sun_[kOneilSuns][4] = {};
   gpu::Buffer table_buffer_, previous_table_;
 };
 

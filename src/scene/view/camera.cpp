@@ -2,15 +2,10 @@
 
 #include <cmath>
 
+#include "math/angles.hpp"
 #include "scene/description/map_projection.hpp"
 
 namespace tyndall::scene {
-namespace {
-
-constexpr double kRadPerDeg = 0.017453292519943295;
-
-}  // namespace
-
 View view_from_params(const CameraParams& camera, double aspect, double radius_m) {
   View view;
   view.position = to_glm(camera.position_m);
