@@ -7,8 +7,6 @@
 
 namespace tyndall {
 
-[[nodiscard]] inline Error invalid(std::string message) {
-  return {ErrorCode::invalid_argument, std::move(message)};
-}
+[[nodiscard]] inline Error invalid(std::string message) { return {ErrorCode::invalid_argument, std::move(message)}; }
 
 }  // namespace tyndall
