@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <optional>
 
@@ -23,6 +22,7 @@ namespace {
 
 using files::concat;
 using files::input_error;
+using files::lower_case;
 using files::one_line;
 
 constexpr std::uint32_t kMaxFrames = 1000000;
@@ -43,12 +43,6 @@ std::optional<FramePattern> find_pattern(std::string_view text, std::size_t from
     if (padded) return FramePattern{start, 4, static_cast<std::size_t>(rest[1] - '0')};
   }
   return std::nullopt;
-}
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
-  return text;
 }
 
 std::string shown(std::string_view text) { return concat({"'", one_line(text), "'"}); }

@@ -48,7 +48,7 @@ void add_references(const std::string& path, std::vector<InputFile>& out) {
       const auto uri = entry.is_object() ? entry.find("uri") : entry.end();
       if (!entry.is_object() || uri == entry.end() || !uri->is_string()) continue;
       const std::string name = uri->get<std::string>();
-      if (name.starts_with("data:")) continue;
+      if (files::lower_case(name.substr(0, 5)) == "data:") continue;
       out.push_back({"a file of meshes.source", (fs::path(path).parent_path() / decoded_uri(name)).string()});
     }
   }

@@ -32,6 +32,9 @@ enum class NumberError : std::uint32_t { none, not_a_number, not_finite, too_lar
 [[nodiscard]] std::size_t count_parts(std::string_view text, char separator);
 [[nodiscard]] std::string_view part(std::string_view text, char separator, std::size_t index);
 
+// Returns `text` with lower-case letters for A to Z, whatever the locale is.
+[[nodiscard]] std::string lower_case(std::string_view text);
+
 // Returns 16 hexadecimal digits.
 [[nodiscard]] std::string hexadecimal(std::uint64_t value);
 

@@ -2,6 +2,7 @@
 // destructors; their callers own these.
 #include <png.h>
 
+#include <array>
 #include <cmath>
 #include <csetjmp>
 #include <cstdlib>
@@ -42,7 +43,11 @@ struct PngReader {
   unsigned char* samples = nullptr;  // RGB, 8 or 16 bits in native byte order
   int depth = 8;
   bool transparent = false;
-  double gamma = 0.0;  // exponent of the encoding if the file has one instead of the sRGB curve; otherwise 0
+  double gamma = 0.0;            // exponent of the encoding if the file has one instead of the sRGB curve; otherwise 0
+  bool other_primaries = false;  // cHRM differs from Rec. 709
+  char profile[80] = "";         // name of the ICC profile
+  std::array<unsigned char, 4> code_points = {};  // of cICP: primaries, transfer function, matrix, range
+  bool has_code_points = false;
 };
 
 // Returns why the chunks of a PNG must be wrong, or an empty string. libpng would allocate the claimed size of a chunk
@@ -68,19 +73,51 @@ void on_read(png_structp png, png_bytep target, png_size_t size) {
   reader->position += size;
 }
 
+// Takes the chunk of code points of ITU-T H.273 in the third edition of PNG, which libpng 1.6 does not know.
+int on_unknown_chunk(png_structp png, png_unknown_chunkp chunk) {
+  if (std::memcmp(chunk->name, "cICP", 4) != 0 || chunk->size != 4) return 0;
+  PngReader* reader = static_cast<PngReader*>(png_get_user_chunk_ptr(png));
+  std::memcpy(reader->code_points.data(), chunk->data, 4);
+  reader->has_code_points = true;
+  return 1;
+}
+
+// Reads the chunks that describe another colour space than sRGB. The order of precedence is cICP, iCCP, sRGB, and cHRM
+// with gAMA (PNG, third edition, section 4.3).
+void read_color_space(PngReader* reader) {
+  if (png_get_valid(reader->png, reader->info, PNG_INFO_sRGB) != 0) return;
+  png_charp name = nullptr;
+  png_bytep profile = nullptr;
+  png_uint_32 size = 0;
+  int compression = 0;
+  if (png_get_iCCP(reader->png, reader->info, &name, &compression, &profile, &size) != 0) {
+    std::strncpy(reader->profile, name, sizeof(reader->profile) - 1);
+    return;
+  }
+  png_get_gAMA(reader->png, reader->info, &reader->gamma);
+  double own[8] = {};
+  if (png_get_cHRM(reader->png, reader->info, &own[0], &own[1], &own[2], &own[3], &own[4], &own[5], &own[6], &own[7]) ==
+      0)
+    return;
+  constexpr double kRec709[8] = {0.3127, 0.3290, 0.64, 0.33, 0.30, 0.60, 0.15, 0.06};  // white, red, green, blue
+  constexpr double kSame = 2e-3;
+  for (int i = 0; i < 8; ++i)
+    reader->other_primaries = reader->other_primaries || std::abs(own[i] - kRec709[i]) > kSame;
+}
+
 bool read_samples(PngReader* reader) {
   if (setjmp(png_jmpbuf(reader->png)) != 0) return false;
   png_set_read_fn(reader->png, reader, on_read);
   png_set_user_limits(reader->png, kLargestSide, kLargestSide);
   constexpr png_alloc_size_t kMaxChunk = 8U << 20U;  // bytes of one decompressed text chunk or profile
   png_set_chunk_malloc_max(reader->png, kMaxChunk);
+  png_set_read_user_chunk_fn(reader->png, reader, on_unknown_chunk);
   png_read_info(reader->png, reader->info);
   reader->width = png_get_image_width(reader->png, reader->info);
   reader->height = png_get_image_height(reader->png, reader->info);
   reader->transparent = (png_get_color_type(reader->png, reader->info) & PNG_COLOR_MASK_ALPHA) != 0 ||
                         png_get_valid(reader->png, reader->info, PNG_INFO_tRNS) != 0;
-  if (png_get_valid(reader->png, reader->info, PNG_INFO_sRGB) == 0)
-    png_get_gAMA(reader->png, reader->info, &reader->gamma);
+  read_color_space(reader);
   png_set_expand(reader->png);
   png_set_gray_to_rgb(reader->png);
   png_set_strip_alpha(reader->png);
@@ -114,10 +151,24 @@ bool read_samples(PngReader* reader) {
 // Returns which properties of a file are ignored, or an empty string.
 std::string ignored_parts(const PngReader& reader) {
   std::string out;
-  if (reader.transparent) out = "its transparency is ignored";
-  constexpr double kCloseToSrgb = 0.01;
-  if (reader.gamma > 0.0 && std::abs(reader.gamma - 1.0 / 2.2) > kCloseToSrgb)
-    out.append(out.empty() ? "" : "; ").append("its gamma is ignored, and the sRGB curve is assumed");
+  const auto add = [&out](std::string_view part) { out.append(out.empty() ? "" : "; ").append(part); };
+  if (reader.transparent) add("its transparency is ignored");
+  const std::string profile = files::one_line(reader.profile);
+  if (reader.has_code_points) {
+    // Primaries of Rec. 709, the curve of sRGB, RGB, full range.
+    const std::array<unsigned char, 4>& own = reader.code_points;
+    if (own != std::array<unsigned char, 4>{1, 13, 0, 1})
+      add(files::concat({"its colour space (cICP ", std::to_string(own[0]), ", ", std::to_string(own[1]), ", ",
+                         std::to_string(own[2]), ", ", std::to_string(own[3]), ") is ignored, and sRGB is assumed"}));
+  } else if (!profile.empty()) {
+    if (files::lower_case(profile).find("srgb") == std::string::npos)
+      add(files::concat({"its colour profile '", profile, "' is ignored, and sRGB is assumed"}));
+  } else {
+    constexpr double kCloseToSrgb = 0.01;
+    if (reader.other_primaries) add("its primaries are not those of sRGB, and are ignored");
+    if (reader.gamma > 0.0 && std::abs(reader.gamma - 1.0 / 2.2) > kCloseToSrgb)
+      add("its gamma is ignored, and the sRGB curve is assumed");
+  }
   return out;
 }
 

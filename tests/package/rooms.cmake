@@ -72,7 +72,7 @@ room(src/tables VULKAN src/gpu src/files include/tyndall/effect.hpp include/tynd
 room(src/models VULKAN src/air src/rays src/tables src/effect src/gpu shaders/lib shaders/shared include/tyndall/effect.hpp include/tyndall)
 
 # The demo engine. It is a client of the effect's public interface.
-room(src/scene/elevation src/scene/description shaders/scene include/tyndall)
+room(src/scene/elevation src/scene/description shaders/scene src/files include/tyndall)
 room(src/scene/view VULKAN src/math src/scene/description shaders/scene include/tyndall/effect.hpp include/tyndall)
 room(src/scene/terrain VULKAN src/scene/elevation src/scene/view src/scene/description shaders/scene src/gpu include/tyndall/effect.hpp
   include/tyndall)

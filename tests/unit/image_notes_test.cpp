@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,8 @@ class ImageNotes : public testing::Test {
   }
 
   // Writes a PNG of two pixels and returns the note of its reader.
-  std::string note_of_png(int color_type, double gamma) {
+  std::string note_of_png(int color_type, double gamma,
+                          const std::function<void(png_structp, png_infop)>& prepare = {}) {
     const std::string path = (folder_ / "x.png").string();
     std::FILE* const file = std::fopen(path.c_str(), "wb");
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
@@ -39,7 +41,10 @@ class ImageNotes : public testing::Test {
     png_set_IHDR(png, info, 2, 1, 8, color_type, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
                  PNG_FILTER_TYPE_DEFAULT);
     if (gamma > 0.0) png_set_gAMA(png, info, gamma);
+    if (prepare) prepare(png, info);
     png_write_info(png, info);
+    if (!code_points_.empty())
+      png_write_chunk(png, reinterpret_cast<png_const_bytep>("cICP"), code_points_.data(), code_points_.size());
     const std::vector<png_byte> row = {10, 20, 30, 40, 50, 60, 70, 80};
     png_write_row(png, row.data());
     png_write_end(png, nullptr);
@@ -66,6 +71,8 @@ class ImageNotes : public testing::Test {
     return note(path);
   }
 
+  std::vector<png_byte> code_points_;  // of the chunk cICP; empty: without this chunk
+
  private:
   static std::string note(const std::string& path) {
     const Result<File> file = read(path);
@@ -82,6 +89,58 @@ TEST_F(ImageNotes, TransparencyAndGammaOfPng) {
   EXPECT_EQ(note_of_png(PNG_COLOR_TYPE_RGB_ALPHA, 0.0), "its transparency is ignored");
   EXPECT_EQ(note_of_png(PNG_COLOR_TYPE_RGB_ALPHA, 1.0),
             "its transparency is ignored; its gamma is ignored, and the sRGB curve is assumed");
+}
+
+TEST_F(ImageNotes, PrimariesOfPng) {
+  const auto with = [this](double red_x) {
+    return note_of_png(PNG_COLOR_TYPE_RGB, 0.0, [red_x](png_structp png, png_infop info) {
+      png_set_cHRM(png, info, 0.3127, 0.3290, red_x, 0.32, 0.265, 0.69, 0.15, 0.06);
+    });
+  };
+  EXPECT_EQ(with(0.68), "its primaries are not those of sRGB, and are ignored");
+  EXPECT_EQ(note_of_png(PNG_COLOR_TYPE_RGB, 0.0,
+                        [](png_structp png, png_infop info) {
+                          png_set_cHRM(png, info, 0.3127, 0.3290, 0.64, 0.33, 0.3, 0.6, 0.15, 0.06);
+                        }),
+            "");
+}
+
+// Returns a profile without tags. libpng refuses those that it can compress to less than 81 bytes.
+std::vector<png_byte> icc_profile() {
+  std::vector<png_byte> out(132 + 0x100, 0);
+  for (std::size_t i = 0; i < 0x100; ++i) out[132 + i] = static_cast<png_byte>(i * i * 167U >> 3U);
+  out[2] = 1;  // the size, 0x184
+  out[3] = 0x84;
+  out[8] = 2;  // version
+  const auto put = [&out](std::size_t offset, const std::string& text) {
+    std::copy(text.begin(), text.end(), out.begin() + static_cast<std::ptrdiff_t>(offset));
+  };
+  put(12, "mntrRGB XYZ ");
+  put(36, "acsp");
+  const std::vector<png_byte> white = {0, 0, 0xf6, 0xd6, 0, 1, 0, 0, 0, 0, 0xd3, 0x2d};  // D50
+  std::copy(white.begin(), white.end(), out.begin() + 68);
+  return out;
+}
+
+TEST_F(ImageNotes, ProfilesOfPng) {
+  const auto with = [this](const char* name) {
+    return note_of_png(PNG_COLOR_TYPE_RGB, 0.0, [name](png_structp png, png_infop info) {
+      const std::vector<png_byte> profile = icc_profile();
+      png_set_iCCP(png, info, name, PNG_COMPRESSION_TYPE_BASE, profile.data(),
+                   static_cast<png_uint_32>(profile.size()));
+    });
+  };
+  EXPECT_EQ(with("Display P3"), "its colour profile 'Display P3' is ignored, and sRGB is assumed");
+  EXPECT_EQ(with("sRGB IEC61966-2.1"), "");
+}
+
+TEST_F(ImageNotes, CodePointsOfPng) {
+  const auto with = [this](const std::vector<png_byte>& points) {
+    code_points_ = points;
+    return note_of_png(PNG_COLOR_TYPE_RGB, 0.0);
+  };
+  EXPECT_EQ(with({1, 13, 0, 1}), "");
+  EXPECT_EQ(with({9, 16, 0, 1}), "its colour space (cICP 9, 16, 0, 1) is ignored, and sRGB is assumed");
 }
 
 TEST_F(ImageNotes, ChannelsAndPrimariesOfExr) {

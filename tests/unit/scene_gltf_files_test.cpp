@@ -1,4 +1,5 @@
 // The files that a glTF file names: in its folder or below it.
+#include <cctype>
 #include <cstdlib>
 
 #include "files/access.hpp"
@@ -48,6 +49,22 @@ TEST_F(SceneGltf, UrisStayInTheFolder) {
     return message("../p.png").empty() && message("link.png").empty();
   };
   EXPECT_EXIT(std::exit(allowed() ? 0 : 1), testing::ExitedWithCode(0), "");
+}
+
+// The scheme of a URI, and "base64", are written in any case.
+TEST_F(SceneGltf, DataUrisAreCaseInsensitive) {
+  for (const bool capitals : {false, true}) {
+    GltfFile file = triangle();
+    json document = json::parse(file.text());
+    std::string uri = document["buffers"][0]["uri"];
+    const std::size_t comma = uri.find(',');
+    ASSERT_NE(comma, std::string::npos);
+    for (std::size_t i = 0; capitals && i < comma; ++i) uri[i] = static_cast<char>(std::toupper(uri[i]));
+    document["buffers"][0]["uri"] = uri;
+    std::ofstream(at("data.gltf"), std::ios::binary) << document.dump();
+    const Result<MeshData> read = load_gltf(at("data.gltf"));
+    EXPECT_TRUE(read.ok()) << uri.substr(0, comma) << ": " << read.error().message;
+  }
 }
 
 }  // namespace

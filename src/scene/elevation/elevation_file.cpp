@@ -16,6 +16,7 @@
 #include <gdalwarper.h>
 #include <ogr_spatialref.h>
 
+#include "files/text.hpp"
 #include "scene/elevation/elevation_fill.hpp"
 #include "scene/elevation/elevation_gdal.hpp"
 
@@ -55,19 +56,46 @@ bool look_like_degrees(const std::array<double, 6>& t, const Extent& extent) {
          std::max(std::abs(extent.min_y), std::abs(extent.max_y)) <= 90.0 && std::abs(t[1]) + std::abs(t[2]) < 1.0;
 }
 
-Georeference georeference(GDALDataset& file, TerrainUnits units, std::vector<std::string>& notes) {
+bool is_invertible(const std::array<double, 6>& t) { return std::abs(t[1] * t[5] - t[2] * t[4]) > 0.0; }
+
+// Sets the transform and the coordinate system of a file without a transform: from ground control points if an affine
+// transform fits them to a quarter of a sample, otherwise by assumption.
+Result<const OGRSpatialReference*> place_without_transform(const std::string& source_name, GDALDataset& file,
+                                                           std::array<double, 6>& transform,
+                                                           std::vector<std::string>& notes) {
+  const int points = file.GetGCPCount();
+  if (points > 0) {
+    if (GDALGCPsToGeoTransform(points, file.GetGCPs(), transform.data(), FALSE) != 0 && is_invertible(transform))
+      return file.GetGCPSpatialRef();
+    return elevation_error(source_name, "is placed by " + std::to_string(points) +
+                                            " ground control points that no affine transform fits; expected a raster "
+                                            "that gdalwarp has resampled");
+  }
+  if (file.GetMetadata("GEOLOCATION") != nullptr)
+    return elevation_error(source_name,
+                           "is placed by arrays of coordinates; expected a raster that gdalwarp has resampled");
+  notes.push_back("no georeferencing: samples 30 m apart and north up are assumed");
+  transform = {0.0, kAssumedSpacing_m, 0.0, 0.0, 0.0, -kAssumedSpacing_m};
+  return nullptr;
+}
+
+Result<Georeference> georeference(const std::string& source_name, GDALDataset& file, TerrainUnits units,
+                                  std::vector<std::string>& notes) {
   Georeference geo;
-  const bool placed = file.GetGeoTransform(geo.transform.data()) == CE_None &&
-                      std::abs(geo.transform[1] * geo.transform[5] - geo.transform[2] * geo.transform[4]) > 0.0;
   const OGRSpatialReference* srs = file.GetSpatialRef();
-  if (!placed) {
-    notes.push_back("no georeferencing: samples 30 m apart and north up are assumed");
-    geo.transform = {0.0, kAssumedSpacing_m, 0.0, 0.0, 0.0, -kAssumedSpacing_m};
-    return geo;
+  if (file.GetGeoTransform(geo.transform.data()) != CE_None || !is_invertible(geo.transform)) {
+    const Result<const OGRSpatialReference*> placed = place_without_transform(source_name, file, geo.transform, notes);
+    if (!placed.ok()) return placed.error();
+    srs = placed.value();
+    if (file.GetGCPCount() == 0) return geo;
   }
   if (srs != nullptr && !srs->IsLocal()) {
     geo.srs = *srs;
     geo.srs.StripVertical();
+  } else if (const char* unit = nullptr;
+             srs != nullptr && units == TerrainUnits::automatic && std::abs(srs->GetLinearUnits(&unit) - 1.0) > 1e-9) {
+    for (double& value : geo.transform) value *= srs->GetLinearUnits();
+    notes.push_back("local coordinates in the unit '" + files::one_line(unit) + "' are converted to metres");
   } else {
     const Extent extent = extent_of(geo.transform, file.GetRasterXSize(), file.GetRasterYSize());
     const bool degrees =
@@ -371,7 +399,9 @@ Result<ElevationRaster> read_elevation_here(const std::string& source_name, cons
   if (declared) file = declared.get();
   if (file->GetRasterCount() > 1)
     notes.push_back("has " + std::to_string(file->GetRasterCount()) + " bands; the first is used as elevation");
-  Georeference geo = georeference(*file, request.units, notes);
+  Result<Georeference> placed = georeference(source_name, *opened.value(), request.units, notes);
+  if (!placed.ok()) return std::move(placed).error();
+  Georeference geo = std::move(placed).value();
   geo.height_unit_m = height_unit_m(*opened.value(), *file, notes);
   Result<void> somewhere = check_extent(source_name, geo, file->GetRasterXSize(), file->GetRasterYSize());
   if (!somewhere.ok()) return std::move(somewhere).error();

@@ -1,22 +1,16 @@
 // The unit of the heights in an elevation file.
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <cstdlib>
 
 #include <cpl_string.h>
 #include <ogr_spatialref.h>
 
+#include "files/text.hpp"
 #include "scene/elevation/elevation_gdal.hpp"
 
 namespace tyndall::scene {
 namespace {
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 // Returns the metres per unit, or 0 for an unknown name.
 double metres_per(const std::string& name) {
@@ -60,13 +54,14 @@ double metres_per(const std::string& name) {
 // of ESRI have a line such as "Zunits FEET", which GDAL ignores. Some have a number of units per metre instead of a
 // name.
 std::string unit_of_projection_file(GDALDataset& file) {
-  const CPLStringList files(file.GetFileList());
-  for (int i = 0; i < files.Count(); ++i) {
-    if (!lower(files[i]).ends_with(".prj")) continue;
-    const CPLStringList lines(CSLLoad2(files[i], 100, 1000, nullptr));
+  const CPLStringList parts(file.GetFileList());
+  for (int i = 0; i < parts.Count(); ++i) {
+    if (!files::lower_case(parts[i]).ends_with(".prj")) continue;
+    const CPLStringList lines(CSLLoad2(parts[i], 100, 1000, nullptr));
     for (int k = 0; k < lines.Count(); ++k) {
       const CPLStringList words(CSLTokenizeString(lines[k]));
-      if (words.Count() == 2 && lower(words[0]) == "zunits" && lower(words[1]) != "no") return lower(words[1]);
+      if (words.Count() == 2 && files::lower_case(words[0]) == "zunits" && files::lower_case(words[1]) != "no")
+        return files::lower_case(words[1]);
     }
   }
   return {};
@@ -75,7 +70,7 @@ std::string unit_of_projection_file(GDALDataset& file) {
 }  // namespace
 
 double height_unit_m(GDALDataset& stored, GDALDataset& read, std::vector<std::string>& notes) {
-  std::string name = lower(read.GetRasterBand(1)->GetUnitType());
+  std::string name = files::lower_case(read.GetRasterBand(1)->GetUnitType());
   if (name.empty()) {
     const OGRSpatialReference* const srs = read.GetSpatialRef();
     const double metres = srs != nullptr && srs->IsCompound() != 0 ? srs->GetTargetLinearUnits("VERT_CS") : 0.0;

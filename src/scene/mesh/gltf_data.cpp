@@ -79,12 +79,13 @@ void check_finite(const GltfValues& values, const std::string& user) {
 }  // namespace
 
 std::string GltfData::resource(const std::string& uri, const std::string& user) const {
-  if (uri.starts_with("data:")) {
+  // The scheme and "base64" are case-insensitive (RFC 3986, section 3.1; RFC 2045, section 6.1).
+  if (files::lower_case(uri.substr(0, 5)) == "data:") {
     const std::size_t comma = uri.find(',');
     if (comma == std::string::npos) fail(user + ".uri is a data URI without data", "expected data:MIME;base64,DATA");
     const std::string_view data = std::string_view(uri).substr(comma + 1);
     const std::string_view head = std::string_view(uri).substr(0, comma);
-    return head.ends_with(";base64") ? base64_decoded(data, user) : percent_decoded(data, user);
+    return files::lower_case(head).ends_with(";base64") ? base64_decoded(data, user) : percent_decoded(data, user);
   }
   const std::string name = percent_decoded(uri, user);
   const std::string shown = user + ".uri '" + files::one_line(name, 200) + "'";

@@ -1,0 +1,95 @@
+// Elevation files that are placed by other means than a transform and a coordinate system of the Earth.
+#include <cmath>
+
+#include <ogr_spatialref.h>
+
+#include "terrain_file_fixture.hpp"
+
+namespace tyndall::scene {
+namespace {
+
+// Four control points at the corners, as the transform of TestFile has them, the last one displaced by this much.
+void set_corners(GDALDataset& data, double displaced_m) {
+  OGRSpatialReference srs;
+  srs.importFromEPSG(32632);
+  std::array<GDAL_GCP, 4> corners = {};
+  GDALInitGCPs(4, corners.data());
+  for (int i = 0; i < 4; ++i) {
+    GDAL_GCP& corner = corners[static_cast<std::size_t>(i)];
+    corner.dfGCPPixel = i % 2 * 64.0;
+    corner.dfGCPLine = static_cast<double>(i / 2) * 64.0;
+    corner.dfGCPX = 500000.0 + 100.0 * corner.dfGCPPixel + (i == 3 ? displaced_m : 0.0);
+    corner.dfGCPY = 5000000.0 - 100.0 * corner.dfGCPLine;
+  }
+  EXPECT_EQ(data.SetGCPs(4, corners.data(), &srs), CE_None);
+  GDALDeinitGCPs(4, corners.data());
+}
+
+TEST_F(ElevationFile, ControlPointsPlaceTheSamplesLikeATransform) {
+  TestFile file;
+  const ElevationRaster usual = read(folder_.write(file, hill));
+  file.name = "points.tif";
+  file.placed = false;
+  file.epsg = 0;
+  file.prepare = [](GDALDataset& data) { set_corners(data, 0.0); };
+  const ElevationRaster points = read(folder_.write(file, hill));
+  EXPECT_TRUE(points.notes.empty()) << points.notes.front();
+  ASSERT_EQ(points.width, usual.width);
+  ASSERT_EQ(points.height, usual.height);
+  EXPECT_NEAR(points.spacing_m, usual.spacing_m, 1e-6);
+  for (const int i : {5, 30, 60}) EXPECT_NEAR(at(points, i, i / 2), at(usual, i, i / 2), 0.01F) << i;
+  ASSERT_TRUE(points.centre.has_value());
+  EXPECT_NEAR(points.centre->latitude_deg, usual.centre->latitude_deg, 1e-9);
+}
+
+TEST_F(ElevationFile, ControlPointsThatNoTransformFitsAreRefused) {
+  TestFile file;
+  file.placed = false;
+  file.epsg = 0;
+  file.prepare = [](GDALDataset& data) { set_corners(data, 1500.0); };
+  EXPECT_NE(error(folder_.write(file, hill))
+                .find("is placed by 4 ground control points that no affine transform fits; expected a raster that "
+                      "gdalwarp has resampled"),
+            std::string::npos);
+}
+
+TEST_F(ElevationFile, ArraysOfCoordinatesAreRefused) {
+  TestFile file;
+  file.name = "swath.vrt";
+  file.driver = "VRT";
+  file.placed = false;
+  file.epsg = 0;
+  const std::string samples = folder_.write({.name = "samples.tif", .placed = false, .epsg = 0}, hill).string();
+  GDALDataset* const source = GDALDataset::FromHandle(GDALOpen(samples.c_str(), GA_ReadOnly));
+  ASSERT_NE(source, nullptr);
+  const std::filesystem::path path = folder_.path("swath.vrt");
+  GDALDataset* const swath = GetGDALDriverManager()->GetDriverByName("VRT")->CreateCopy(path.c_str(), source, FALSE,
+                                                                                        nullptr, nullptr, nullptr);
+  ASSERT_NE(swath, nullptr);
+  swath->SetMetadataItem("X_DATASET", samples.c_str(), "GEOLOCATION");
+  swath->SetMetadataItem("Y_DATASET", samples.c_str(), "GEOLOCATION");
+  GDALClose(swath);
+  GDALClose(source);
+  EXPECT_NE(error(path).find("is placed by arrays of coordinates; expected a raster that gdalwarp has resampled"),
+            std::string::npos);
+}
+
+// Local coordinates in feet, as in a survey of a construction site.
+TEST_F(ElevationFile, LocalCoordinatesAreConvertedToMetres) {
+  TestFile file;
+  file.epsg = 0;
+  file.definition = R"(LOCAL_CS["site",UNIT["US survey foot",0.304800609601219]])";
+  const ElevationRaster feet = read(folder_.write(file, hill));
+  EXPECT_NEAR(feet.spacing_m, 100.0 * 1200.0 / 3937.0, 1e-3);
+  EXPECT_TRUE(noted(feet, "local coordinates in the unit 'US survey foot' are converted to metres"));
+  // The transform of a file without a coordinate system has no unit.
+  file.definition = R"(LOCAL_CS["site",UNIT["metre",1]])";
+  file.name = "metres.tif";
+  EXPECT_NEAR(read(folder_.write(file, hill)).spacing_m, 100.0, 1e-3);
+  file.definition.clear();
+  file.name = "none.tif";
+  EXPECT_NEAR(read(folder_.write(file, hill)).spacing_m, 100.0, 1e-3);
+}
+
+}  // namespace
+}  // namespace tyndall::scene
