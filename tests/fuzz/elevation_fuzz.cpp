@@ -34,7 +34,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
                 "the raster is complete");
   fuzz::require(raster.spacing_m > 0.0 && std::isfinite(raster.spacing_m), "the samples have a distance");
   for (const float height : raster.heights) {
-    fuzz::require(std::abs(height) <= 20001.0F, "heights are finite and possible");
+    fuzz::require(std::abs(static_cast<double>(height)) <= scene::kMaxElevation_m + 1.0,
+                  "heights are finite and possible");
   }
   return 0;
 }

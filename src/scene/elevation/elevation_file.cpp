@@ -23,7 +23,6 @@
 namespace tyndall::scene {
 namespace {
 
-constexpr double kImpossible_m = 25000.0;  // Olympus Mons has 21.2 km
 constexpr double kAssumedSpacing_m = 30.0;
 constexpr int kFillReach_samples = 100;  // reach of GDAL's interpolation; larger holes are filled more coarsely
 
@@ -230,7 +229,7 @@ Result<std::vector<float>> read_band(const std::string& source_name, GDALDataset
     float& v = samples[i];
     if (signed_bytes && v > 127.0F) v -= 256.0F;
     const double h = v * scale + offset;
-    const bool hole = !std::isfinite(v) || (has_no_data != 0 && v == no_data_sample) || std::abs(h) > kImpossible_m ||
+    const bool hole = !std::isfinite(v) || (has_no_data != 0 && v == no_data_sample) || std::abs(h) > kMaxElevation_m ||
                       (!mask.value().empty() && mask.value()[i] == 0);
     v = hole ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(h);
     if (hole) ++holes;
@@ -258,7 +257,7 @@ void fill_all_holes(std::vector<float>& samples, int width, int height) {
       GDALFillNodata(values->GetRasterBand(1), mask->GetRasterBand(1), kFillReach_samples, 0, 0, nullptr, nullptr,
                      nullptr) == CE_None) {
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      if (std::isnan(samples[i]) && std::abs(filled[i]) <= kImpossible_m) samples[i] = filled[i];
+      if (std::isnan(samples[i]) && std::abs(filled[i]) <= kMaxElevation_m) samples[i] = filled[i];
     }
   }
   fill_holes(samples, width, height);

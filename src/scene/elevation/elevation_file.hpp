@@ -36,6 +36,7 @@ struct ElevationRaster {
 };
 
 constexpr int kMaxElevationSamples = 8192;
+constexpr double kMaxElevation_m = 25000.0;  // greater heights and depths are holes; Olympus Mons has 21.2 km
 
 struct ElevationRequest {
   double planet_radius_m = 6360000.0;
