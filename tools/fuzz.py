@@ -57,7 +57,8 @@ def run(build, corpus, name, seconds, state):
     with log.open("w") as out:
         process = subprocess.Popen(
             [program.resolve(), grown.resolve(), (corpus / name).resolve(), f"-max_total_time={seconds}",
-             f"-timeout={TIMEOUT_S}", f"-rss_limit_mb={MEMORY_MIB}", f"-malloc_limit_mb={RESERVED_MIB}", "-print_final_stats=1", "-use_value_profile=1",
+             f"-timeout={TIMEOUT_S}", f"-rss_limit_mb={MEMORY_MIB}", f"-malloc_limit_mb={RESERVED_MIB}",
+             "-print_final_stats=1", "-print_funcs=0", "-use_value_profile=1",
              f"-artifact_prefix={findings.resolve()}/{name}-"], stdout=out, stderr=out, stdin=subprocess.DEVNULL,
             env=environment, cwd=build, preexec_fn=lambda: os.nice(19))
         try:
