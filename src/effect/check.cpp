@@ -98,9 +98,9 @@ Result<void> check_cascade(const Cascade& cascade, std::size_t index) {
   if (const char* const what = map_matrix_fault(cascade.shadow_from_world); what != nullptr) {
     return fault(std::string("'s shadow_from_world") + what);
   }
-  if (!(cascade.near_m >= 0.0F && cascade.far_m >= cascade.near_m)) {
+  if (!(cascade.near_m >= 0.0F && cascade.far_m >= cascade.near_m && std::isfinite(cascade.far_m))) {
     return fault("'s range is " + std::to_string(cascade.near_m) + " to " + std::to_string(cascade.far_m) +
-                 " m; expected 0 <= near_m <= far_m");
+                 " m; expected finite numbers, 0 <= near_m <= far_m");
   }
   return {};
 }

@@ -46,22 +46,23 @@ void set_camera(shared::FrameConstants& out, const FrameInputs& inputs, const Pa
                    static_cast<float>(z / distance)};
 }
 
-// Sets the rays of the pixels. A ray passes through all points that project to the centre of its pixel. The point on
-// the near plane is an affine function of the pixel.
+// Sets the rays of the pixels. A ray passes through all points that project to the centre of its pixel. The first three
+// homogeneous coordinates of the point on the near plane are an affine function of the pixel. They are its position
+// divided by its W in clip space, and thus point forwards even if an oblique near plane lies behind the camera there.
 void set_rays(shared::FrameConstants& out, const FrameInputs& inputs, const EffectDesc& desc) {
   const double near_plane = 1.0 - static_cast<double>(desc.sky_depth);
   const Mat4& m = out.view_from_clip;
   const auto entry = [&](int row, int col) { return static_cast<double>(m.m[4 * col + row]); };
   const double width = inputs.extent.width;
   const double height = inputs.extent.height;
-  const double sign = entry(3, 2) * near_plane + entry(3, 3) < 0.0 ? -1.0 : 1.0;
   double view[3][3];  // ray_origin, ray_x and ray_y in view space
   double largest = 0.0;
   for (int row = 0; row < 3; ++row) {
-    view[1][row] = sign * entry(row, 0) * 2.0 / width;
-    view[2][row] = sign * entry(row, 1) * 2.0 / height;
-    view[0][row] = sign * (entry(row, 2) * near_plane + entry(row, 3) - entry(row, 0) - entry(row, 1));
-    largest = std::max(largest, std::abs(sign * (entry(row, 2) * near_plane + entry(row, 3))));
+    const double centre = entry(row, 2) * near_plane + entry(row, 3);
+    view[1][row] = entry(row, 0) * 2.0 / width;
+    view[2][row] = entry(row, 1) * 2.0 / height;
+    view[0][row] = centre - entry(row, 0) - entry(row, 1);
+    largest = std::max(largest, std::abs(centre));
   }
   Vec3* const rays[3] = {&out.ray_origin, &out.ray_x, &out.ray_y};
   for (int i = 0; i < 3; ++i) {

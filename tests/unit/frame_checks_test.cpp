@@ -82,6 +82,56 @@ TEST(FrameChecks, CorrectFramesCauseNoRemarks) {
   });
 }
 
+// Replaces the near plane of a reflection by the mirror (Lengyel, "Oblique view frustum depth projection and clipping",
+// 2005). Rays do not depend on the near plane, also where the mirror lies behind the camera.
+TEST(FrameChecks, AnObliqueNearPlaneChangesNoRay) {
+  const auto expect_near = [](const Vec3& a, const Vec3& b) {
+    for (const auto& [x, y] : {std::pair{a.x, b.x}, {a.y, b.y}, {a.z, b.z}}) EXPECT_NEAR(x, y, 1e-5F);
+  };
+  for (const double pitch : {-0.6, -0.2, 0.2, 0.6}) {
+    for (const bool reversed : {false, true}) {
+      Case s = right();
+      s.desc.sky_depth = reversed ? 0.0F : 1.0F;
+      s.inputs.camera = {camera_at(0.0, 10.0, 0.0, 0.4, pitch), projection(0.1, reversed)};
+      // The mirror is 2 m above the reflected camera, and what is above the mirror is visible.
+      const double plane[4] = {0.0, std::cos(pitch), -std::sin(pitch), -2.0};
+      const double corner = std::abs(plane[1]) / 1.6 - plane[2];
+      const double factor = 1.0 / std::max(corner, 0.1);
+      Mat4 oblique = s.inputs.camera.clip_from_view;
+      for (int column = 0; column < 4; ++column) {
+        const double w = static_cast<double>(oblique.m[4 * column + 3]);
+        const double z = factor * plane[column];
+        oblique.m[4 * column + 2] = static_cast<float>(reversed ? w - z : z);
+      }
+      const auto rays = [&](const Mat4& clip_from_view) {
+        s.inputs.camera.clip_from_view = clip_from_view;
+        const Result<void> accepted = check_frame(s.frame(), s.desc, s.params);
+        EXPECT_TRUE(accepted.ok()) << accepted.error().message;
+        return frame_constants(s.frame(), s.desc, s.params);
+      };
+      const shared::FrameConstants usual = rays(s.inputs.camera.clip_from_view);
+      const shared::FrameConstants mirrored = rays(oblique);
+      for (const double x : {0.0, 50.0, 160.0}) {
+        for (const double y : {0.0, 70.0, 100.0}) {
+          SCOPED_TRACE(testing::Message() << pitch << ' ' << reversed << ' ' << x << ' ' << y);
+          const auto ray = [&](const shared::FrameConstants& frame) {
+            const auto sum = [&](float origin, float across, float down) {
+              return static_cast<double>(origin) + x * static_cast<double>(across) + y * static_cast<double>(down);
+            };
+            const double r[3] = {sum(frame.ray_origin.x, frame.ray_x.x, frame.ray_y.x),
+                                 sum(frame.ray_origin.y, frame.ray_x.y, frame.ray_y.y),
+                                 sum(frame.ray_origin.z, frame.ray_x.z, frame.ray_y.z)};
+            const double length = std::sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
+            return Vec3(static_cast<float>(r[0] / length), static_cast<float>(r[1] / length),
+                        static_cast<float>(r[2] / length));
+          };
+          expect_near(ray(mirrored), ray(usual));
+        }
+      }
+    }
+  }
+}
+
 TEST(FrameChecks, CertainMistakesAreErrors) {
   const auto expect_error = [](const std::vector<std::string>& words, const std::function<void(Case&)>& change) {
     expect_words(error_of(change), words);
@@ -117,6 +167,8 @@ TEST(FrameChecks, CertainMistakesAreErrors) {
                [](Case& s) { set_row(s.cascades[0].shadow_from_world, 2, 0, 0, 0, 0.5); });
   expect_error({"cascades[0]", "not finite"}, [](Case& s) { s.cascades[0].shadow_from_world.m[3] = kNaN; });
   expect_error({"cascades[1]", "near_m <= far_m"}, [](Case& s) { s.cascades[1].far_m = 10.0F; });
+  expect_error({"cascades[2]", "finite"},
+               [](Case& s) { s.cascades[2].far_m = std::numeric_limits<float>::infinity(); });
   expect_error({"FrameInputs::depth", "layout", "SHADER_READ_ONLY_OPTIMAL"},
                [](Case& s) { s.inputs.depth.layout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL; });
   expect_error({"FrameInputs::color", "layout"}, [](Case& s) { s.inputs.color.layout = VK_IMAGE_LAYOUT_UNDEFINED; });
