@@ -1,6 +1,7 @@
 // scattering.color = spectral: frames against the models in double precision, epipolar sampling against brute force,
 // and changes between both modes.
 #include <cmath>
+#include <limits>
 
 #include "atmosphere_points.hpp"
 #include "effect/spectral_medium.hpp"
@@ -152,7 +153,27 @@ TEST_F(Spectral, ClearAirLeavesTheBackgroundAsItIs) {
   }
 }
 
-// Until the tables of the other mode are complete, frames are drawn with those that exist.
+// A sun's disc that half floats store as infinite is as bright as the largest of them, and not black.
+TEST_F(Spectral, InfiniteBackgroundsAreBright) {
+  TestFrame frame = frame_of(evening());
+  for (const ColorMode mode : {ColorMode::spectral, ColorMode::rgb}) {
+    Params params = spectral_params();
+    params.scattering.color = mode;
+    prepare(params);
+    for (const Technique technique : {Technique::brute_force, Technique::epipolar}) {
+      params.scattering.technique = technique;
+      const auto picture = [&](float background) {
+        frame.background = Vec3(background);
+        show(frame);
+        return draw(params, "bright background");
+      };
+      const Picture infinite = picture(std::numeric_limits<float>::infinity());
+      const Picture largest = picture(65504.0F);
+      for (std::size_t i = 0; i < largest.size(); ++i) ASSERT_EQ(infinite[i], largest[i]) << i;
+    }
+  }
+}
+
 // In-scattered light has the colour of the sun times that of the same light under a white sun. The background is
 // independent of the sun.
 TEST_F(Spectral, TheColourOfTheSunDoesNotChangeTheBackground) {
@@ -180,6 +201,7 @@ TEST_F(Spectral, TheColourOfTheSunDoesNotChangeTheBackground) {
   }
 }
 
+// Until the tables of the other mode are complete, frames are drawn with those that exist.
 TEST_F(Spectral, ChangesOfTheModeShowNoUnfinishedTables) {
   show(evening());
   prepare(small_params());
