@@ -130,7 +130,8 @@ TyndallStatus tyndall_effect_set_params(TyndallEffect* effect, const TyndallPara
     TYNDALL_TRY(c::check_pointer(where, "params", params));
     if (desc == nullptr) return e.set_params(params->params);
     // Members that the program does not know stay as they are.
-    TYNDALL_ASSIGN(const TyndallEffectDesc changed, c::read(where, desc, c::to_c(e.desc())));
+    TYNDALL_ASSIGN(TyndallEffectDesc changed, c::read(where, desc, c::to_c(e.desc())));
+    changed.tables_of = nullptr;  // not read, and possibly destroyed since the effect was created
     return e.set_params(params->params, c::to_cpp(changed));
   });
 }
@@ -235,7 +236,9 @@ namespace {
 Result<void> record(Effect& e, const char* where, VkCommandBuffer cmd, const TyndallFrameInputs* inputs,
                     FramePart part) {
   static const TyndallFrameInputs kDefaults = c::to_c(FrameInputs{});
-  TYNDALL_ASSIGN(const TyndallFrameInputs read, c::read(where, inputs, kDefaults));
+  TYNDALL_ASSIGN(TyndallFrameInputs read, c::read(where, inputs, kDefaults));
+  // Inputs that are not read may be gone.
+  if (part == FramePart::drop) read.cascade_count = 0;
   if (read.cascade_count > kMaxCascades) {
     return c::invalid(where, "TyndallFrameInputs::cascade_count is " + std::to_string(read.cascade_count) +
                                  "; expected at most " + std::to_string(kMaxCascades));

@@ -197,6 +197,23 @@ TEST_F(CEffect, PicturesAreThoseOfCpp) {
   ASSERT_OK(cpp_->set_params(cpp_params()));
 }
 
+// A program that drops a frame has lost its images, and perhaps its cascades.
+TEST_F(CEffect, DroppedFramesReadNoCascades) {
+  const TestFrame frame = small_frame();
+  Result<FrameImages> images = FrameImages::create(host(), frame, OutputFormat::rgba32f);
+  ASSERT_OK(images);
+  FrameInputs inputs = images.value().inputs(frame);
+  inputs.frame_index = 20;
+  CFrame c = c_frame(inputs);
+  ASSERT_OK(host().run([&](VkCommandBuffer cmd) -> Result<void> {
+    EXPECT_SUCCESS(tyndall_effect_record_part(c_.get(), cmd, &c.inputs, TyndallFramePart_first));
+    c.inputs.cascades = nullptr;
+    c.inputs.cascade_count = 1000;
+    EXPECT_SUCCESS(tyndall_effect_record_part(c_.get(), cmd, &c.inputs, TyndallFramePart_drop));
+    return {};
+  }));
+}
+
 TEST_F(CEffect, RemarksAreThoseOfCpp) {
   expect_same_picture(small_frame(), [](FrameInputs& inputs) {
     inputs.sun.direction_to_sun = {0.0F, 0.5F, -0.5F};
