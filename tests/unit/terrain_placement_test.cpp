@@ -91,5 +91,70 @@ TEST_F(ElevationFile, LocalCoordinatesAreConvertedToMetres) {
   EXPECT_NEAR(read(folder_.write(file, hill)).spacing_m, 100.0, 1e-3);
 }
 
+// The vertical axis of "MSL depth" points down.
+TEST_F(ElevationFile, DepthsAreNegativeHeights) {
+  TestFile file;
+  file.epsg = 0;
+  file.definition = "EPSG:32632+5715";
+  const ElevationRaster depths = read(folder_.write(file, hill));
+  EXPECT_TRUE(noted(depths, "depths are converted to heights"));
+  EXPECT_LT(depths.max_m, -999.0F);
+  EXPECT_GT(depths.min_m, -1800.0F);
+}
+
+TEST_F(ElevationFile, ScalesWithoutAMeaningAreRefused) {
+  TestFile file;
+  file.scale = 0.0;
+  EXPECT_NE(error(folder_.write(file, hill)).find("has the scale 0.000000"), std::string::npos);
+  file.name = "nan.tif";
+  file.scale = std::nan("");
+  EXPECT_NE(error(folder_.write(file, hill)).find("expected finite numbers, and a scale other than 0"),
+            std::string::npos);
+}
+
+// Transparent samples of Terrain-RGB tiles are holes, and not 10 km deep.
+TEST_F(ElevationFile, TransparentColoursAreHoles) {
+  for (const bool terrarium : {false, true}) {
+    TestFile file;
+    file.name = terrarium ? "terrarium.png" : "terrain_rgb.png";
+    file.driver = "PNG";
+    file.bands = 4;
+    file.type = GDT_Byte;
+    file.placed = false;
+    file.epsg = 0;
+    file.prepare = [terrarium](GDALDataset& data) {
+      constexpr std::array<GDALColorInterp, 4> kColours = {GCI_RedBand, GCI_GreenBand, GCI_BlueBand, GCI_AlphaBand};
+      const std::array<std::uint8_t, 3> at_500_m =
+          terrarium ? std::array<std::uint8_t, 3>{129, 244, 0} : std::array<std::uint8_t, 3>{1, 154, 40};
+      for (int b = 0; b < 4; ++b) {
+        std::vector<std::uint8_t> samples(std::size_t{64} * 64);
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+          const bool hole = i % 64 < 20;
+          samples[i] = hole ? 0 : b == 3 ? 255 : at_500_m[static_cast<std::size_t>(b)];
+        }
+        GDALRasterBand& band = *data.GetRasterBand(b + 1);
+        band.SetColorInterpretation(kColours[static_cast<std::size_t>(b)]);
+        EXPECT_EQ(band.RasterIO(GF_Write, 0, 0, 64, 64, samples.data(), 64, 64, GDT_Byte, 0, 0, nullptr), CE_None);
+      }
+    };
+    const ElevationRaster tile = read(folder_.write(file, [](int, int) { return 0.0; }));
+    EXPECT_NEAR(tile.min_m, 500.0F, 0.1F) << file.name;
+    EXPECT_NEAR(tile.max_m, 500.0F, 0.1F) << file.name;
+    EXPECT_TRUE(noted(tile, "filled 1280 samples without data"));
+  }
+}
+
+// In a file that is read at less than its resolution, impossible heights are not averaged with others.
+TEST_F(ElevationFile, ImpossibleHeightsAreHolesAtAnyResolution) {
+  TestFile file;
+  file.width = file.height = 256;
+  for (const double value : {-30000.0, 65535.0, 3.4028234663852886e38}) {
+    const auto height = [value](int x, int y) { return (x + y) % 3 == 0 ? value : 1000.0; };
+    const ElevationRaster reduced = read(folder_.write(file, height), 100);
+    EXPECT_NEAR(reduced.min_m, 1000.0F, 0.1F) << value;
+    EXPECT_NEAR(reduced.max_m, 1000.0F, 0.1F) << value;
+  }
+}
+
 }  // namespace
 }  // namespace tyndall::scene

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <utility>
 
@@ -44,6 +45,26 @@ constexpr std::array<Encoding, 2> kEncodings = {
     {{"Terrarium (Mapzen)", -32768.0, 256.0, 1.0, 1.0 / 256.0}, {"Terrain-RGB (Mapbox)", -10000.0, 6553.6, 25.6, 0.1}}};
 constexpr double kLowest_m = -11500.0, kHighest_m = 9500.0;
 
+// Sets `holes` for samples that are transparent, masked or without data in all three bands. Returns whether that
+// worked.
+bool read_holes(GDALDataset& file, int top, int rows, std::vector<bool>& holes) {
+  const int width = file.GetRasterXSize();
+  std::vector<std::uint8_t> mask(static_cast<std::size_t>(width) * static_cast<std::size_t>(rows));
+  holes.assign(mask.size(), true);
+  for (int b = 1; b <= 3; ++b) {
+    GDALRasterBand& band = *file.GetRasterBand(b);
+    if ((band.GetMaskFlags() & GMF_ALL_VALID) != 0) {
+      holes.assign(mask.size(), false);
+      return true;
+    }
+    if (band.GetMaskBand()->RasterIO(GF_Read, 0, top, width, rows, mask.data(), width, rows, GDT_Byte, 0, 0, nullptr) !=
+        CE_None)
+      return false;
+    for (std::size_t i = 0; i < mask.size(); ++i) holes[i] = holes[i] && mask[i] == 0;
+  }
+  return true;
+}
+
 }  // namespace
 
 Result<Dataset> decode_colours(const std::string& source, GDALDataset& file, std::vector<std::string>& notes) {
@@ -64,11 +85,14 @@ Result<Dataset> decode_colours(const std::string& source, GDALDataset& file, std
   }
   std::vector<std::uint8_t> colours(static_cast<std::size_t>(width) * kRowsAtOnce * 3);
   std::vector<float> heights(static_cast<std::size_t>(width) * kRowsAtOnce);
+  std::vector<bool> holes;
+  bool has_holes = false;
   std::array<int, 3> bands = {1, 2, 3};
   for (int top = 0; top < height; top += kRowsAtOnce) {
     const int rows = std::min(kRowsAtOnce, height - top);
     if (file.RasterIO(GF_Read, 0, top, width, rows, colours.data(), width, rows, GDT_Byte, 3, bands.data(), 3,
-                      GSpacing{3} * width, 1, nullptr) != CE_None)
+                      GSpacing{3} * width, 1, nullptr) != CE_None ||
+        !read_holes(file, top, rows, holes))
       return elevation_error(source, "cannot be read: truncated or damaged");
     for (std::size_t e = 0; e < kEncodings.size(); ++e) {
       if (!possible[e]) continue;
@@ -76,8 +100,9 @@ Result<Dataset> decode_colours(const std::string& source, GDALDataset& file, std
       for (std::size_t i = 0; i < static_cast<std::size_t>(width) * static_cast<std::size_t>(rows); ++i) {
         const double h = encoding.offset_m + encoding.per_red_m * colours[3 * i] +
                          encoding.per_green_m * colours[3 * i + 1] + encoding.per_blue_m * colours[3 * i + 2];
-        possible[e] = possible[e] && h >= kLowest_m && h <= kHighest_m;
-        heights[i] = static_cast<float>(h);
+        possible[e] = possible[e] && (holes[i] || (h >= kLowest_m && h <= kHighest_m));
+        has_holes = has_holes || holes[i];
+        heights[i] = holes[i] ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(h);
       }
       if (decoded[e]->GetRasterBand(1)->RasterIO(GF_Write, 0, top, width, rows, heights.data(), width, rows,
                                                  GDT_Float32, 0, 0, nullptr) != CE_None)
@@ -90,6 +115,7 @@ Result<Dataset> decode_colours(const std::string& source, GDALDataset& file, std
     std::array<double, 6> transform = {};
     if (file.GetGeoTransform(transform.data()) == CE_None) decoded[e]->SetGeoTransform(transform.data());
     if (file.GetSpatialRef() != nullptr) decoded[e]->SetSpatialRef(file.GetSpatialRef());
+    if (has_holes) decoded[e]->GetRasterBand(1)->SetNoDataValue(std::numeric_limits<double>::quiet_NaN());
     return std::move(decoded[e]);
   }
   return elevation_error(source, "is a colour image without heights; expected one band of heights, or tiles encoded as "
@@ -110,6 +136,12 @@ Dataset declare_no_data(GDALDataset& file, std::vector<std::string>& notes) {
   const int height = file.GetRasterYSize();
   std::vector<float> samples(static_cast<std::size_t>(width) * kRowsAtOnce);
   std::size_t others = 0;
+  // Heights that are impossible would otherwise be averaged with others in large files.
+  const double scale = band.GetScale(), offset = band.GetOffset();
+  double impossible = 0.0;
+  std::size_t impossible_count = 0;
+  bool several = false;
+  double highest = -std::numeric_limits<double>::infinity(), lowest = std::numeric_limits<double>::infinity();
   for (int top = 0; top < height; top += kRowsAtOnce) {
     const int rows = std::min(kRowsAtOnce, height - top);
     if (band.RasterIO(GF_Read, 0, top, width, rows, samples.data(), width, rows, GDT_Float32, 0, 0, nullptr) != CE_None)
@@ -123,22 +155,35 @@ Dataset declare_no_data(GDALDataset& file, std::vector<std::string>& notes) {
         usual = usual || distance == 0.0;
         if (distance > 0.0 && distance < gap[k]) gap[k] = distance;
       }
+      if (std::abs(sample * scale + offset) > kMaxElevation_m) {
+        several = several || (impossible_count > 0 && sample != impossible);
+        impossible = sample;
+        ++impossible_count;
+      } else if (std::isfinite(sample) && !usual) {
+        highest = std::max(highest, sample);
+        lowest = std::min(lowest, sample);
+      }
       others += usual ? 0 : 1;
     }
   }
   if (others == 0) return nullptr;
-  for (std::size_t k = 0; k < kUsual.size(); ++k) {
-    if (count[k] == 0 || gap[k] < kMinGap) continue;
-    const std::string value = std::to_string(static_cast<int>(kUsual[k]));
-    std::array<const char*, 5> arguments = {"-of", "VRT", "-a_nodata", value.c_str(), nullptr};
+  const auto declare = [&](double no_data, std::size_t holes) {
+    std::array<char, 32> value = {};
+    std::snprintf(value.data(), value.size(), "%.9g", no_data);
+    std::array<const char*, 5> arguments = {"-of", "VRT", "-a_nodata", value.data(), nullptr};
     GDALTranslateOptions* const options = GDALTranslateOptionsNew(const_cast<char**>(arguments.data()), nullptr);
     Dataset out(GDALDataset::FromHandle(GDALTranslate("", GDALDataset::ToHandle(&file), options, nullptr)));
     GDALTranslateOptionsFree(options);
     if (out)
-      notes.push_back(std::to_string(count[k]) + " samples of " + value +
+      notes.push_back(std::to_string(holes) + " samples of " + value.data() +
                       " are far from all others and treated as holes");
     return out;
+  };
+  for (std::size_t k = 0; k < kUsual.size(); ++k) {
+    if (count[k] > 0 && gap[k] >= kMinGap) return declare(kUsual[k], count[k]);
   }
+  const bool apart = impossible > highest + kMinGap || impossible < lowest - kMinGap;
+  if (impossible_count > 0 && !several && apart && lowest <= highest) return declare(impossible, impossible_count);
   return nullptr;
 }
 

@@ -222,6 +222,11 @@ Result<std::vector<float>> read_band(const std::string& source_name, GDALDataset
                                     static_cast<double>(std::numeric_limits<float>::max())));
   const double scale = band.GetScale() * geo.height_unit_m;
   const double offset = band.GetOffset() * geo.height_unit_m;
+  if (!std::isfinite(scale) || !std::isfinite(offset) || scale == 0.0) {
+    return elevation_error(source_name, "has the scale " + std::to_string(band.GetScale()) + " and the offset " +
+                                            std::to_string(band.GetOffset()) +
+                                            " of heights; expected finite numbers, and a scale other than 0");
+  }
   const Result<std::vector<std::uint8_t>> mask = read_mask(source_name, band, width, height, messages);
   if (!mask.ok()) return mask.error();
   std::size_t holes = 0;

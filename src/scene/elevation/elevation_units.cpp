@@ -67,9 +67,8 @@ std::string unit_of_projection_file(GDALDataset& file) {
   return {};
 }
 
-}  // namespace
-
-double height_unit_m(GDALDataset& stored, GDALDataset& read, std::vector<std::string>& notes) {
+// Returns the unit of the heights [m], whatever the direction of their axis is.
+double unsigned_unit_m(GDALDataset& stored, GDALDataset& read, std::vector<std::string>& notes) {
   std::string name = files::lower_case(read.GetRasterBand(1)->GetUnitType());
   if (name.empty()) {
     const OGRSpatialReference* const srs = read.GetSpatialRef();
@@ -84,6 +83,19 @@ double height_unit_m(GDALDataset& stored, GDALDataset& read, std::vector<std::st
   if (metres > 0.0) return metres;
   notes.push_back("the unit of the heights, '" + name + "', is unknown; metres are assumed");
   return 1.0;
+}
+
+}  // namespace
+
+double height_unit_m(GDALDataset& stored, GDALDataset& read, std::vector<std::string>& notes) {
+  const double unit_m = unsigned_unit_m(stored, read, notes);
+  const OGRSpatialReference* const srs = stored.GetSpatialRef();
+  OGRAxisOrientation orientation = OAO_Up;
+  if (srs == nullptr || srs->IsCompound() == 0 || srs->GetAxis("VERT_CS", 0, &orientation) == nullptr ||
+      orientation != OAO_Down)
+    return unit_m;
+  notes.emplace_back("its vertical axis points down: depths are converted to heights");
+  return -unit_m;
 }
 
 }  // namespace tyndall::scene
