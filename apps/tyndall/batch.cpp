@@ -113,6 +113,10 @@ Result<Batch> Batch::begin(BatchDesc desc) {
   manifest.shard = desc.options.shard;
   manifest.total = desc.total;
   manifest.inputs = std::move(desc.inputs);
+  for (const auto& [name, value] : manifest.inputs) {
+    if (value == kStream)
+      return files::input_error("cannot be read twice", name, "expected a regular file with --shard and --resume");
+  }
   state.path = manifest_path(desc.output, manifest.shard);
   state.folder = folder_of(state.path);
   state.item_inputs = std::move(desc.item_inputs);

@@ -32,6 +32,13 @@ std::string hash_of(const Inputs& inputs) {
   return files::checksum_text(text);
 }
 
+// Returns whether a file can be read only once: a pipe, a socket or a device.
+bool is_stream(const std::string& path) {
+  std::error_code failed;
+  const fs::file_status status = fs::status(path, failed);
+  return fs::is_fifo(status) || fs::is_socket(status) || fs::is_character_file(status);
+}
+
 // The text that is stored has to be valid UTF-8, which names of files need not be.
 std::string stored(std::string_view text) { return files::one_line(text, text.size()); }
 
@@ -219,6 +226,10 @@ std::string first_difference(const Inputs& a, const Inputs& b) {
 }
 
 void add_file(Inputs& inputs, const std::string& name, const std::string& path) {
+  if (is_stream(path)) {
+    inputs.emplace_back(name, kStream);
+    return;
+  }
   const Result<files::FileSum> sum = files::sum_of_file(path);
   inputs.emplace_back(name, sum ? concat({"checksum ", sum.value().checksum}) : std::string("unreadable"));
 }
@@ -233,6 +244,8 @@ Inputs common_inputs(const CommonOptions& options) {
     std::error_code failed;
     if (row.info.type == ParamType::string && row.info.unit == "file" && fs::is_regular_file(value, failed)) {
       add_file(out, key, value);
+    } else if (row.info.type == ParamType::string && row.info.unit == "file" && is_stream(value)) {
+      out.emplace_back(key, kStream);
     } else {
       out.emplace_back(key, stored(value));
     }

@@ -16,6 +16,9 @@ namespace tyndall::cli {
 // Names and values that determine the results of a run: the parameters, the options of the verb, and the checksums of
 // input files.
 using Inputs = std::vector<std::pair<std::string, std::string>>;
+// The value of an input that can be read only once, which Batch::begin() refuses because its contents cannot be
+// compared.
+inline constexpr std::string_view kStream = "<stream>";
 
 struct ManifestFile {
   std::string name;  // relative to the folder of the manifest
@@ -67,7 +70,8 @@ struct Manifest {
 // Returns the inputs that all verbs have: the version, all parameters except those that do not change results, the
 // camera path, and the checksums of the files that they name. Call after resolve().
 [[nodiscard]] Inputs common_inputs(const CommonOptions& options);
-// Adds a name with the checksum of a file. An unreadable file has the value "unreadable".
+// Adds a name with the checksum of a file. An unreadable file has the value "unreadable",
+// and a pipe or a device has the value kStream.
 void add_file(Inputs& inputs, const std::string& name, const std::string& path);
 
 }  // namespace tyndall::cli

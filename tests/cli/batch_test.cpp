@@ -1,10 +1,12 @@
 // --shard, --resume and `tyndall merge`: the parts of a run give the same bytes as one run.
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/stat.h>
 
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -214,6 +216,21 @@ TEST_F(CliBatchRuns, OptionsThatDoNotFit) {
   error({"render", "--frames", "2", "--resume", "-o", scratch_.at("%d/a.png")}, "in the name of a folder");
   error({"merge"}, "missing argument OUT");
   error({"merge", "a.csv"}, "missing argument IN");
+}
+
+// A pipe can be read only once, so that --resume could not notice other contents.
+TEST_F(CliBatchRuns, PipesAreRefused) {
+  const std::string pipe = scratch_.at("pipe");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::vector<std::string>& option : {std::vector<std::string>{"--resume"}, {"--shard", "1/2"}}) {
+    std::thread writer(
+        [&] { std::ofstream(pipe) << "altitude_m,view_zenith_deg,sun_zenith_deg,azimuth_deg\n0,60,50,30\n"; });
+    std::vector<std::string> all = {"probe", "--queries", pipe, "--model", "homogeneous", "-o", scratch_.at("r.csv")};
+    all.insert(all.end(), option.begin(), option.end());
+    const ProcessResult result = run_tyndall(all);
+    writer.join();
+    expect_one_line(result, 2, "--queries: cannot be read twice; expected a regular file with --shard and --resume");
+  }
 }
 
 TEST_F(CliBatchRuns, ListsOfSkies) {
