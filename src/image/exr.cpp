@@ -7,10 +7,12 @@
 #include <ImfHeader.h>
 #include <ImfIO.h>
 #include <ImfInputFile.h>
+#include <ImfMultiPartInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfRgbaFile.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
+#include <ImfVersion.h>
 #include <half.h>
 
 #include <algorithm>
@@ -204,6 +206,13 @@ void read_luminance_chroma(std::string_view bytes, const std::string& path, cons
   }
 }
 
+// Returns the number of images in a file. Only the first is read.
+int number_of_parts(const Imf::InputFile& input, std::string_view bytes, const std::string& path) {
+  if (!Imf::isMultiPart(input.version())) return 1;
+  BytesIn stream(bytes, path);
+  return Imf::MultiPartInputFile(stream).parts();
+}
+
 std::string window_text(const Imath::Box2i& window) {
   return files::concat({std::to_string(width_of(window)), "x", std::to_string(height_of(window)), " from ",
                         std::to_string(window.min.x), ",", std::to_string(window.min.y)});
@@ -230,6 +239,7 @@ File decode(std::string_view bytes, const std::string& path) {
   Imf::Header::setMaxImageSize(static_cast<int>(kLargestSide), static_cast<int>(kLargestSide));
   Imf::Header::setMaxTileSize(4096, 4096);
   Imf::InputFile input(stream);
+  const int parts = number_of_parts(input, bytes, path);
   const Imath::Box2i window = input.header().dataWindow();
   const Imath::Box2i display = input.header().displayWindow();
   const Channels channels = kind_of_channels(input.header().channels());
@@ -239,6 +249,10 @@ File decode(std::string_view bytes, const std::string& path) {
   file.kind = FileKind::exr;
   file.metadata = string_attributes(input.header());
   file.note = ignored_parts(input.header(), channels);
+  if (parts > 1) {
+    if (!file.note.empty()) file.note.append("; ");
+    file.note += files::concat({"of its ", std::to_string(parts), " parts only the first is read"});
+  }
   file.image.width = static_cast<std::uint32_t>(width_of(window));
   file.image.height = static_cast<std::uint32_t>(height_of(window));
   if (channels == Channels::luminance_chroma) {

@@ -10,7 +10,10 @@
 #include <ImfChromaticities.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
+#include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
 #include <png.h>
 #include <unistd.h>
@@ -71,15 +74,17 @@ class ImageNotes : public testing::Test {
     return note(path);
   }
 
+  [[nodiscard]] std::string at(const char* name) const { return (folder_ / name).string(); }
+
   std::vector<png_byte> code_points_;  // of the chunk cICP; empty: without this chunk
 
- private:
   static std::string note(const std::string& path) {
     const Result<File> file = read(path);
     EXPECT_TRUE(file.ok()) << (file.ok() ? "" : file.error().message);
     return file.ok() ? file.value().note : "";
   }
 
+ private:
   std::filesystem::path folder_;
 };
 
@@ -152,6 +157,33 @@ TEST_F(ImageNotes, ChannelsAndPrimariesOfExr) {
   EXPECT_EQ(note_of_exr({"R", "G", "B"}, &rec709), "");
   const Imf::Chromaticities xyz({1.0F, 0.0F}, {0.0F, 1.0F}, {0.0F, 0.0F}, {1.0F / 3.0F, 1.0F / 3.0F});
   EXPECT_EQ(note_of_exr({"R", "G", "B"}, &xyz), "its primaries are not those of Rec. 709, and are ignored");
+}
+
+TEST_F(ImageNotes, PartsOfExr) {
+  const std::string path = at("parts.exr");
+  const auto write = [&](int parts) {
+    std::vector<Imf::Header> headers;
+    for (int i = 0; i < parts; ++i) {
+      Imf::Header& header = headers.emplace_back(1, 1);
+      header.setName("part" + std::to_string(i));
+      header.setType(Imf::SCANLINEIMAGE);
+      for (const char* const name : {"R", "G", "B"}) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    }
+    Imf::MultiPartOutputFile file(path.c_str(), headers.data(), parts);
+    for (int i = 0; i < parts; ++i) {
+      float value = 0.5F + static_cast<float>(i);
+      Imf::FrameBuffer buffer;
+      for (const char* const name : {"R", "G", "B"})
+        buffer.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(&value), 4, 4));
+      Imf::OutputPart part(file, i);
+      part.setFrameBuffer(buffer);
+      part.writePixels(1);
+    }
+  };
+  write(2);
+  EXPECT_EQ(note(path), "of its 2 parts only the first is read");
+  write(1);
+  EXPECT_EQ(note(path), "");
 }
 
 }  // namespace
