@@ -409,7 +409,7 @@ int run(const Options& options) {
       static_cast<unsigned long long>(counts.effects), static_cast<unsigned long long>(counts.builds));
   std::printf("resident memory without an effect [MiB]:");
   for (const std::size_t mib : memory) std::printf(" %zu", mib);
-  std::printf("\n");
+  std::printf("\nresident memory without a device [MiB]: %zu\n", resident_bytes() >> 20U);
   // Without an effect, memory is that of the device and of the validation layer, which holds objects of earlier effects
   // until their command buffers are recorded again. Compares the second and the last quarter of a long run by their
   // medians.
