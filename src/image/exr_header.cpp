@@ -71,6 +71,42 @@ std::int64_t bytes_of_pixel(std::string_view channels) {
   }
 }
 
+// Returns whether the values of a type of attribute have this size. OpenEXR ignores the size that a file claims for
+// types of fixed size, and would read what follows as other attributes, such as a text of 2 GB.
+bool has_size_of_type(std::string_view type, std::uint32_t size) {
+  struct Fixed {
+    std::string_view type;
+    std::uint32_t size;
+  };
+  constexpr Fixed kFixed[] = {{"box2f", 16},
+                              {"box2i", 16},
+                              {"chromaticities", 32},
+                              {"compression", 1},
+                              {"deepImageState", 1},
+                              {"double", 8},
+                              {"envmap", 1},
+                              {"float", 4},
+                              {"int", 4},
+                              {"keycode", 28},
+                              {"lineOrder", 1},
+                              {"m33d", 72},
+                              {"m33f", 36},
+                              {"m44d", 128},
+                              {"m44f", 64},
+                              {"rational", 8},
+                              {"tiledesc", 9},
+                              {"timecode", 8},
+                              {"v2d", 16},
+                              {"v2f", 8},
+                              {"v2i", 8},
+                              {"v3d", 24},
+                              {"v3f", 12},
+                              {"v3i", 12}};
+  const Fixed* const found =
+      std::find_if(std::begin(kFixed), std::end(kFixed), [&](const Fixed& fixed) { return fixed.type == type; });
+  return found == std::end(kFixed) || found->size == size;
+}
+
 void read_attribute(Layout& layout, std::string_view name, std::string_view value) {
   HeaderReader reader(value);
   const auto signed_word = [&] { return std::int64_t{static_cast<std::int32_t>(reader.word().value_or(0))}; };
@@ -185,6 +221,7 @@ std::string exr_header_problem(std::string_view bytes) {
       if (!type || !size) return kCutOff;
       const std::optional<std::string_view> value = reader.take(*size);
       if (!value) return kCutOff;
+      if (!has_size_of_type(*type, *size)) return "an attribute of its header has the wrong size";
       read_attribute(layout, *name, *value);
     }
     more = many && !empty;
