@@ -242,10 +242,9 @@ Inputs common_inputs(const CommonOptions& options) {
     if (key == "tables.cache" || key == "tables.cache_limit_mib") continue;
     const std::string value = config::value_text(row, options.settings);
     std::error_code failed;
-    if (row.info.type == ParamType::string && row.info.unit == "file" && fs::is_regular_file(value, failed)) {
+    const bool may_be_file = row.info.type == ParamType::string && row.info.unit == "file";
+    if (may_be_file && (fs::is_regular_file(value, failed) || is_stream(value))) {
       add_file(out, key, value);
-    } else if (row.info.type == ParamType::string && row.info.unit == "file" && is_stream(value)) {
-      out.emplace_back(key, kStream);
     } else {
       out.emplace_back(key, stored(value));
     }

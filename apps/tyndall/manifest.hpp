@@ -70,8 +70,8 @@ struct Manifest {
 // Returns the inputs that all verbs have: the version, all parameters except those that do not change results, the
 // camera path, and the checksums of the files that they name. Call after resolve().
 [[nodiscard]] Inputs common_inputs(const CommonOptions& options);
-// Adds a name with the checksum of a file. An unreadable file has the value "unreadable",
-// and a pipe or a device has the value kStream.
+// Adds a name with the checksum of a file. An unreadable file has the value "unreadable", and a pipe or a device the
+// value kStream.
 void add_file(Inputs& inputs, const std::string& name, const std::string& path);
 
 }  // namespace tyndall::cli
